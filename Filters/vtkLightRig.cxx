@@ -1,0 +1,246 @@
+#include "vtkLightRig.h"
+
+#include "Device/Errors.h"
+#include "Lights/Lights.h"
+
+#include "vtkCellArray.h"
+#include "vtkDoubleArray.h"
+#include "vtkInformation.h"
+#include "vtkMath.h"
+#include "vtkNew.h"
+#include "vtkObjectFactory.h"
+#include "vtkPointData.h"
+#include "vtkPoints.h"
+#include "vtkPolyData.h"
+#include "vtkUnsignedCharArray.h"
+
+#include <array>
+#include <cmath>
+#include <vector>
+
+namespace
+{
+using tyndall::Light;
+using tyndall::LightType;
+
+/// Unit vector, so that `direction` can be compared; a vector without length stays what it is.
+std::array<double, 3> Normalized(std::array<double, 3> direction)
+{
+  vtkMath::Normalize(direction.data());
+  return direction;
+}
+
+Light SunLight(double elevation, double azimuth, const double power[3])
+{
+  const double up = vtkMath::RadiansFromDegrees(elevation);
+  const double around = vtkMath::RadiansFromDegrees(azimuth);
+  Light sun;
+  sun.type = LightType::Directional;
+  sun.direction = { -std::cos(up) * std::cos(around), -std::cos(up) * std::sin(around), -std::sin(up) };
+  sun.power = { power[0], power[1], power[2] };
+  return sun;
+}
+
+vtkNew<vtkDoubleArray> MakeArray(const char* name, std::initializer_list<const char*> components, std::size_t tuples)
+{
+  vtkNew<vtkDoubleArray> array;
+  array->SetName(name);
+  array->SetNumberOfComponents(static_cast<int>(components.size()));
+  array->SetNumberOfTuples(static_cast<vtkIdType>(tuples));
+  int component = 0;
+  for (const char* componentName : components)
+  {
+    if (componentName[0] != '\0')
+    {
+      array->SetComponentName(component, componentName);
+    }
+    ++component;
+  }
+  return array;
+}
+
+void Pack(const std::vector<Light>& lights, vtkPolyData* output)
+{
+  vtkNew<vtkPoints> points;
+  points->SetDataTypeToDouble();
+  vtkNew<vtkCellArray> vertices;
+  vtkNew<vtkUnsignedCharArray> type;
+  type->SetName("light_type");
+  type->SetNumberOfTuples(static_cast<vtkIdType>(lights.size()));
+  const auto direction = MakeArray("direction", { "X", "Y", "Z" }, lights.size());
+  const auto power = MakeArray("power", { "R", "G", "B" }, lights.size());
+  const auto size = MakeArray("size", { "width", "height" }, lights.size());
+  const auto angle = MakeArray("angle", { "" }, lights.size());
+
+  for (const Light& light : lights)
+  {
+    const vtkIdType id = points->InsertNextPoint(light.position.data());
+    vertices->InsertNextCell(1, &id);
+    type->SetValue(id, static_cast<unsigned char>(light.type));
+    direction->SetTuple(id, light.direction.data());
+    power->SetTuple(id, light.power.data());
+    size->SetTuple(id, light.size.data());
+    angle->SetValue(id, light.angle);
+  }
+
+  output->SetPoints(points);
+  output->SetVerts(vertices);
+  for (vtkDataArray* array : std::initializer_list<vtkDataArray*>{ type, direction, power, size, angle })
+  {
+    output->GetPointData()->AddArray(array);
+  }
+}
+}
+
+struct vtkLightRig::AddedLights
+{
+  std::vector<Light> Directional;
+  std::vector<Light> Point;
+  std::vector<Light> Spot;
+  std::vector<Light> Rectangle;
+};
+
+vtkStandardNewMacro(vtkLightRig);
+
+vtkLightRig::vtkLightRig()
+  : Added(new AddedLights)
+{
+  this->SetNumberOfInputPorts(0);
+}
+
+vtkLightRig::~vtkLightRig() = default;
+
+void vtkLightRig::AddDirectionalLight(double dx, double dy, double dz, double r, double g, double b)
+{
+  Light light;
+  light.type = LightType::Directional;
+  light.direction = Normalized({ dx, dy, dz });
+  light.power = { r, g, b };
+  this->Added->Directional.push_back(light);
+  this->Modified();
+}
+
+void vtkLightRig::AddPointLight(double x, double y, double z, double r, double g, double b)
+{
+  Light light;
+  light.type = LightType::Point;
+  light.position = { x, y, z };
+  light.direction = { 0.0, 0.0, 0.0 };
+  light.power = { r, g, b };
+  this->Added->Point.push_back(light);
+  this->Modified();
+}
+
+void vtkLightRig::AddSpotLight(
+  double x, double y, double z, double dx, double dy, double dz, double r, double g, double b, double angle)
+{
+  Light light;
+  light.type = LightType::Spot;
+  light.position = { x, y, z };
+  light.direction = Normalized({ dx, dy, dz });
+  light.power = { r, g, b };
+  light.angle = angle;
+  this->Added->Spot.push_back(light);
+  this->Modified();
+}
+
+void vtkLightRig::AddRectangleLight(double x, double y, double z, double dx, double dy, double dz, double r, double g,
+  double b, double width, double height)
+{
+  Light light;
+  light.type = LightType::Rectangle;
+  light.position = { x, y, z };
+  light.direction = Normalized({ dx, dy, dz });
+  light.power = { r, g, b };
+  light.size = { width, height };
+  this->Added->Rectangle.push_back(light);
+  this->Modified();
+}
+
+void vtkLightRig::RemoveAllDirectionalLights()
+{
+  this->Added->Directional.clear();
+  this->Modified();
+}
+
+void vtkLightRig::RemoveAllPointLights()
+{
+  this->Added->Point.clear();
+  this->Modified();
+}
+
+void vtkLightRig::RemoveAllSpotLights()
+{
+  this->Added->Spot.clear();
+  this->Modified();
+}
+
+void vtkLightRig::RemoveAllRectangleLights()
+{
+  this->Added->Rectangle.clear();
+  this->Modified();
+}
+
+void vtkLightRig::RemoveAllLights()
+{
+  *this->Added = AddedLights();
+  this->Modified();
+}
+
+int vtkLightRig::GetNumberOfDirectionalLights() const
+{
+  return static_cast<int>(this->Added->Directional.size());
+}
+
+int vtkLightRig::GetNumberOfPointLights() const
+{
+  return static_cast<int>(this->Added->Point.size());
+}
+
+int vtkLightRig::GetNumberOfSpotLights() const
+{
+  return static_cast<int>(this->Added->Spot.size());
+}
+
+int vtkLightRig::GetNumberOfRectangleLights() const
+{
+  return static_cast<int>(this->Added->Rectangle.size());
+}
+
+int vtkLightRig::RequestData(vtkInformation*, vtkInformationVector**, vtkInformationVector* outputVector)
+{
+  tyndall::Illumination illumination;
+  if (this->Sun)
+  {
+    illumination.lights.push_back(SunLight(this->SunElevation, this->SunAzimuth, this->SunPower));
+  }
+  for (const auto* kind : { &this->Added->Directional, &this->Added->Point, &this->Added->Spot, &this->Added->Rectangle })
+  {
+    illumination.lights.insert(illumination.lights.end(), kind->begin(), kind->end());
+  }
+
+  try
+  {
+    tyndall::Check(illumination);
+  }
+  catch (const tyndall::InvalidInput& error)
+  {
+    vtkErrorMacro(<< error.what());
+    return 1; // The output is empty; a failure would make the pipeline add an error that says less.
+  }
+  Pack(illumination.lights, vtkPolyData::GetData(outputVector));
+  return 1;
+}
+
+void vtkLightRig::PrintSelf(ostream& os, vtkIndent indent)
+{
+  this->Superclass::PrintSelf(os, indent);
+  os << indent << "Sun: " << (this->Sun ? "on" : "off") << "\n";
+  os << indent << "SunElevation: " << this->SunElevation << "\n";
+  os << indent << "SunAzimuth: " << this->SunAzimuth << "\n";
+  os << indent << "SunPower: " << this->SunPower[0] << " " << this->SunPower[1] << " " << this->SunPower[2] << "\n";
+  os << indent << "Directional lights: " << this->GetNumberOfDirectionalLights() << "\n";
+  os << indent << "Point lights: " << this->GetNumberOfPointLights() << "\n";
+  os << indent << "Spot lights: " << this->GetNumberOfSpotLights() << "\n";
+  os << indent << "Rectangle lights: " << this->GetNumberOfRectangleLights() << "\n";
+}
