@@ -1,0 +1,2 @@
+// What the test of the layers must find.
+#include <vtkImageData.h>

@@ -1,0 +1,11 @@
+# cmake -DFOLDER=... -P: fails if a source under FOLDER includes a VTK header.
+file(GLOB_RECURSE sources "${FOLDER}/*.h" "${FOLDER}/*.hpp" "${FOLDER}/*.cxx" "${FOLDER}/*.cpp" "${FOLDER}/*.cl")
+if (NOT sources)
+  message(FATAL_ERROR "There is no source under ${FOLDER}.")
+endif ()
+foreach (source IN LISTS sources)
+  file(STRINGS "${source}" includes REGEX "^[ \t]*#[ \t]*include[ \t]*[<\"]([^>\"]*/)?vtk")
+  if (includes)
+    message(SEND_ERROR "${source} includes a VTK header: ${includes}")
+  endif ()
+endforeach ()
