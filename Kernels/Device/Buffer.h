@@ -1,0 +1,125 @@
+#pragma once
+
+#include "Device.h"
+
+#include <vector>
+
+namespace tyndall
+{
+/// An array of T on a device. Moves, does not copy; gives its memory back when it goes.
+template <class T>
+class Buffer
+{
+public:
+  Buffer() = default;
+
+  /// @param what  what the array holds, for the message when it does not fit
+  /// @throws DeviceError if it does not fit
+  Buffer(Device& device, std::size_t count, const char* what, cl_mem_flags flags = CL_MEM_READ_WRITE)
+    : Owner(&device)
+    , Count(count)
+    , Memory(device.Allocate(this->Bytes(), flags, what))
+  {
+  }
+
+  Buffer(Device& device, const T* values, std::size_t count, const char* what)
+    : Buffer(device, count, what)
+  {
+    this->Write(values);
+  }
+
+  Buffer(Device& device, const std::vector<T>& values, const char* what)
+    : Buffer(device, values.data(), values.size(), what)
+  {
+  }
+
+  Buffer(Buffer&& other) noexcept { this->Swap(other); }
+  Buffer& operator=(Buffer&& other) noexcept
+  {
+    Buffer taken(std::move(other));
+    this->Swap(taken);
+    return *this;
+  }
+  Buffer(const Buffer&) = delete;
+  Buffer& operator=(const Buffer&) = delete;
+
+  ~Buffer()
+  {
+    if (this->Owner)
+    {
+      this->Owner->Release(this->Bytes());
+    }
+  }
+
+  std::size_t Size() const { return this->Count; }
+  const cl::Buffer& Handle() const { return this->Memory; }
+
+  /// Wait for the device and copy `Size()` values there or back.
+  void Write(const T* values)
+  {
+    if (this->Count > 0)
+    {
+      this->Owner->Queue().enqueueWriteBuffer(this->Memory, CL_TRUE, 0, this->Count * sizeof(T), values);
+    }
+  }
+  void Read(T* values) const
+  {
+    if (this->Count > 0)
+    {
+      this->Owner->Queue().enqueueReadBuffer(this->Memory, CL_TRUE, 0, this->Count * sizeof(T), values);
+    }
+  }
+  std::vector<T> Read() const
+  {
+    std::vector<T> values(this->Count);
+    this->Read(values.data());
+    return values;
+  }
+
+  void Fill(T value)
+  {
+    if (this->Count > 0)
+    {
+      this->Owner->Queue().enqueueFillBuffer(this->Memory, value, 0, this->Count * sizeof(T));
+    }
+  }
+
+  void Swap(Buffer& other) noexcept
+  {
+    std::swap(this->Owner, other.Owner);
+    std::swap(this->Count, other.Count);
+    std::swap(this->Memory, other.Memory);
+  }
+
+private:
+  /// OpenCL has no empty buffers; an empty array takes one value, so that it can still be passed to a kernel.
+  std::size_t Bytes() const { return (this->Count > 0 ? this->Count : 1) * sizeof(T); }
+
+  Device* Owner = nullptr;
+  std::size_t Count = 0;
+  cl::Buffer Memory;
+};
+
+namespace detail
+{
+template <class T>
+void SetArgument(cl::Kernel& kernel, cl_uint index, const T& value)
+{
+  kernel.setArg(index, value);
+}
+template <class T>
+void SetArgument(cl::Kernel& kernel, cl_uint index, const Buffer<T>& buffer)
+{
+  kernel.setArg(index, buffer.Handle());
+}
+}
+
+/// Set all arguments of a kernel in order; a Buffer stands for its memory.
+template <class... Arguments>
+cl::Kernel& With(cl::Kernel& kernel, const Arguments&... arguments)
+{
+  cl_uint index = 0;
+  (detail::SetArgument(kernel, index++, arguments), ...);
+  return kernel;
+}
+}

@@ -1,0 +1,21 @@
+#pragma once
+
+#include "Errors.h"
+
+#include <functional>
+
+namespace tyndall
+{
+/// Told the fraction done in [0, 1] at least about ten times a second by every long computation; returns false to stop it.
+/// Called on the thread that started the computation.
+using Monitor = std::function<bool(double fractionDone)>;
+
+/// Report progress and leave by Aborted where the caller wants to stop. An empty monitor never stops.
+inline void Report(const Monitor& monitor, double fractionDone)
+{
+  if (monitor && !monitor(fractionDone))
+  {
+    throw Aborted();
+  }
+}
+}

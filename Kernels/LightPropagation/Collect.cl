@@ -1,0 +1,77 @@
+// What the sweeps gathered becomes light and the next order's source (Gruson et al., Eq. 4, conservative). Read after
+// Numerics.cl.
+
+#define CHUNK 4096 // voxels a work-item sums up before the host adds the chunks in double
+
+static float sum_of(real values)
+{
+#if REAL_WIDTH == 16
+  const float8 a = values.lo + values.hi;
+  const float4 b = a.lo + a.hi;
+  return (b.x + b.y) + (b.z + b.w);
+#elif REAL_WIDTH == 8
+  const float4 b = values.lo + values.hi;
+  return (b.x + b.y) + (b.z + b.w);
+#elif REAL_WIDTH == 4
+  return (values.x + values.y) + (values.z + values.w);
+#else
+  return values;
+#endif
+}
+
+// One channel; its arrays begin at a vector's border and are filled up with zeros to a whole number of vectors.
+// path     W length; cleared
+// fluence  W / length^2, added to
+// source   W / (length^3 sr), replaced by what was scattered
+// tally    [chunk] absorbed and scattered W, W length of this order and of all
+__kernel void collect(__global float* path, __global float* fluence, __global float* source,
+  const __global float* sigma_t, const __global float* sigma_s, __global float4* tally, ulong stride, int channel,
+  int sigma_t_channel, float per_volume)
+{
+  const ulong begin = get_global_id(0) * CHUNK;
+  const ulong end = min(stride, begin + CHUNK);
+  path += channel * stride;
+  fluence += channel * stride;
+  source += channel * stride;
+  sigma_s += channel * stride;
+  sigma_t += sigma_t_channel * stride;
+  real absorbed = (real)0.0f, scattered = (real)0.0f, gathered = (real)0.0f, all = (real)0.0f;
+  for (ulong i = begin; i < end; i += REAL_WIDTH)
+  {
+    const real p = load_real(i, path);
+    const real s = load_real(i, sigma_s);
+    const real f = mad(p, (real)per_volume, load_real(i, fluence));
+    absorbed = mad(fmax(load_real(i, sigma_t) - s, (real)0.0f), p, absorbed);
+    scattered = mad(s, p, scattered);
+    gathered += p;
+    all += f;
+    store_real(f, i, fluence);
+    store_real(s * p * (per_volume * M_1_PI_F * 0.25f), i, source);
+    store_real((real)0.0f, i, path);
+  }
+  tally[get_global_id(0)] = (float4)(sum_of(absorbed), sum_of(scattered), sum_of(gathered), sum_of(all));
+}
+
+// Power of the rays in a bundle's maps, a work-item a row: what leaves at the far end of an axis.
+// maps  [row][member][channel][row_floats], rays in the first `size_u` floats after REAL_WIDTH
+// sums  [row][channel]
+__kernel void map_power(const __global float* maps, ulong first, int members, int channels, int row_floats, int size_u,
+  __global float* sums)
+{
+  const int row = get_global_id(0);
+  maps += first + (ulong)row * members * channels * row_floats + REAL_WIDTH;
+  for (int c = 0; c < channels; ++c)
+  {
+    float total = 0.0f;
+    for (int m = 0; m < members; ++m)
+    {
+      float partial[4] = { 0.0f, 0.0f, 0.0f, 0.0f };
+      for (int x = 0; x < size_u; ++x)
+      {
+        partial[x & 3] += maps[(m * channels + c) * row_floats + x];
+      }
+      total += (partial[0] + partial[1]) + (partial[2] + partial[3]);
+    }
+    sums[row * channels + c] = total;
+  }
+}

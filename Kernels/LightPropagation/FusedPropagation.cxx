@@ -1,0 +1,424 @@
+#include "FusedPropagation.h"
+
+#include "AxisSweep.h"
+#include "TyndallKernelSources.h"
+
+#include <algorithm>
+#include <chrono>
+#include <cmath>
+#include <memory>
+#include <numeric>
+#include <string>
+
+namespace tyndall
+{
+namespace
+{
+constexpr double Pi = 3.14159265358979323846;
+constexpr std::size_t Padding = 16;  ///< the widest vector: every channel begins at its border
+constexpr std::size_t Chunk = 4096;  ///< as in Collect.cl
+constexpr int BeamResolution = 2;    ///< rays of a directional light per voxel edge
+constexpr int MostOrders = 100000;
+
+double Total(const Rgb& values)
+{
+  return values[0] + values[1] + values[2];
+}
+
+/// One solve, from the arrays of the medium to those of the light.
+class Solver
+{
+public:
+  Solver(Device& device, const Medium& medium, const Illumination& illumination, const PropagationSettings& settings)
+    : TheDevice(device)
+    , TheMedium(medium)
+    , Lights(illumination)
+    , Settings(settings)
+    , Directions(SoundDirections(settings.directionsPerFace))
+    , Channels(NeededChannels(medium, illumination))
+    , SharedExtinction(medium.sigma_a.components == 1 && medium.sigma_s.components == 1)
+    , Stride((medium.grid.VoxelCount() + Padding - 1) / Padding * Padding)
+  {
+  }
+
+  LightField Run(const Monitor& monitor)
+  {
+    this->Start = std::chrono::steady_clock::now();
+    this->Load();
+    this->MakeSweeps();
+    int order = 0;
+    do
+    {
+      const Monitor ofOrder = monitor
+        ? Monitor([&](double done) { return monitor(this->Progress(order, done)); })
+        : Monitor();
+      this->PropagateOrder(order, ofOrder);
+      this->CollectOrder(order);
+      ++order;
+    } while (!this->Done(order));
+    this->Unload(order);
+    return std::move(this->Result);
+  }
+
+private:
+  static int NeededChannels(const Medium& medium, const Illumination& illumination);
+  float SigmaS(std::size_t voxel, int channel) const
+  {
+    return static_cast<float>(this->TheMedium.sigma_s.At(voxel, channel) * (1.0 - this->TheMedium.g));
+  }
+  float SigmaT(std::size_t voxel, int channel) const
+  {
+    return this->TheMedium.sigma_a.At(voxel, channel) + this->SigmaS(voxel, channel);
+  }
+
+  void Load();
+  void FindSharedExtinction();
+  void MakeSweeps();
+  void PropagateOrder(int order, const Monitor& monitor);
+  void PropagateLights(const Monitor& monitor);
+  void Sweep(AxisSweep& sweep, const AxisSweep::Boundary& boundary, bool hasSource, const Monitor& monitor);
+  AxisSweep::Boundary BoundaryOfOrder(int order) const;
+  void CollectOrder(int order);
+  bool Done(int orders) const;
+  double Progress(int order, double done) const;
+  void Unload(int orders);
+
+  std::vector<float> Interleaved(const Buffer<float>& planar, double scale) const;
+
+  Device& TheDevice;
+  const Medium& TheMedium;
+  const Illumination& Lights;
+  const PropagationSettings& Settings;
+  DirectionSet Directions;
+  int Channels;
+  bool SharedExtinction;
+  std::size_t Stride;
+
+  Buffer<float> Extinction, Scattering, Source, Path, Flux, Fluence;
+  std::vector<std::unique_ptr<AxisSweep>> Sweeps;
+  std::vector<Rgb> FromFarAway;
+  bool Shining = false;   ///< the source is not zero
+  bool LitFromOutside = false;
+
+  LightField Result;
+  std::chrono::steady_clock::time_point Start;
+  Rgb Scattered = {};     ///< W, by the order just done
+  double Ratio = 0.0;     ///< of this order's light to that of the one before
+  double Residual = 1.0;
+  double LastGathered = 0.0;
+};
+
+int Solver::NeededChannels(const Medium& medium, const Illumination& illumination)
+{
+  const auto coloured = [](const Rgb& rgb) { return rgb[0] != rgb[1] || rgb[1] != rgb[2]; };
+  bool colour = medium.Channels() == 3 || coloured(illumination.sky);
+  for (const Light& light : illumination.lights)
+  {
+    colour = colour || coloured(light.power);
+  }
+  for (const Rgb& face : illumination.faces)
+  {
+    colour = colour || coloured(face);
+  }
+  const std::vector<float>& radiance = illumination.environment.radiance;
+  for (std::size_t i = 0; i + 2 < radiance.size() && !colour; i += 3)
+  {
+    colour = radiance[i] != radiance[i + 1] || radiance[i + 1] != radiance[i + 2];
+  }
+  return colour ? 3 : 1;
+}
+
+/// A coloured medium often has a grey sigma_t all the same: the same density, only the albedo has colour.
+void Solver::FindSharedExtinction()
+{
+  if (this->Channels == 1 || this->SharedExtinction)
+  {
+    this->SharedExtinction = true;
+    return;
+  }
+  const std::size_t voxels = this->TheMedium.grid.VoxelCount();
+  for (std::size_t i = 0; i < voxels; ++i)
+  {
+    const float grey = this->SigmaT(i, 0);
+    const float tolerance = 2e-7f * grey;
+    if (std::abs(this->SigmaT(i, 1) - grey) > tolerance || std::abs(this->SigmaT(i, 2) - grey) > tolerance)
+    {
+      return;
+    }
+  }
+  this->SharedExtinction = true;
+}
+
+void Solver::Load()
+{
+  this->FindSharedExtinction();
+  const std::size_t voxels = this->TheMedium.grid.VoxelCount();
+  const std::size_t extinctions = this->SharedExtinction ? 1 : 3;
+  const std::size_t all = this->Stride * this->Channels;
+  Device& device = this->TheDevice;
+  this->Extinction = Buffer<float>(device, this->Stride * extinctions, "sigma_t");
+  this->Scattering = Buffer<float>(device, all, "sigma_s");
+  this->Source = Buffer<float>(device, all, "the scattered light");
+  this->Path = Buffer<float>(device, all, "the light gathered");
+  this->Fluence = Buffer<float>(device, all, "fluence");
+  if (this->Settings.netFlux)
+  {
+    this->Flux = Buffer<float>(device, 3 * all, "net_flux");
+    this->Flux.Fill(0.0f);
+  }
+  this->Path.Fill(0.0f);
+  this->Fluence.Fill(0.0f);
+
+  std::vector<float> values(all, 0.0f);
+  const auto load = [&](Buffer<float>& buffer, std::size_t channels, auto&& value) {
+    std::fill(values.begin(), values.end(), 0.0f);
+    for (std::size_t c = 0; c < channels; ++c)
+    {
+      for (std::size_t i = 0; i < voxels; ++i)
+      {
+        values[c * this->Stride + i] = value(i, static_cast<int>(c));
+      }
+    }
+    buffer.Write(values.data());
+  };
+  load(this->Extinction, extinctions, [&](std::size_t i, int c) { return this->SigmaT(i, c); });
+  load(this->Scattering, this->Channels, [&](std::size_t i, int c) { return this->SigmaS(i, c); });
+  load(this->Source, this->Channels, [&](std::size_t i, int c) {
+    const float emission = this->TheMedium.emission.At(i, c);
+    this->Result.balance.emitted[c] += 4.0 * Pi * emission * this->TheMedium.grid.VoxelVolume();
+    return emission;
+  });
+  this->Shining = Total(this->Result.balance.emitted) > 0.0;
+}
+
+void Solver::MakeSweeps()
+{
+  for (int axis = 0; axis < 3; ++axis)
+  {
+    std::vector<Bundle> bundles =
+      BundlesAlong(axis, this->TheMedium.grid, this->Directions, this->Settings.mapResolution);
+    if (!bundles.empty())
+    {
+      this->Sweeps.push_back(std::make_unique<AxisSweep>(this->TheDevice, this->TheMedium.grid, axis, std::move(bundles),
+        this->SharedExtinction ? this->Channels : 1, this->Settings.periodic));
+    }
+  }
+  this->FromFarAway = BoundaryRadiance(this->Directions, this->Lights.environment, this->Lights.sky);
+  for (const Rgb& radiance : this->FromFarAway)
+  {
+    this->LitFromOutside = this->LitFromOutside || Total(radiance) > 0.0;
+  }
+  for (const Rgb& radiance : this->Lights.faces)
+  {
+    this->LitFromOutside = this->LitFromOutside || Total(radiance) > 0.0;
+  }
+}
+
+AxisSweep::Boundary Solver::BoundaryOfOrder(int order) const
+{
+  if (order > 0 || !this->LitFromOutside)
+  {
+    return {};
+  }
+  return [this](int direction, int face) {
+    Rgb radiance = this->FromFarAway[direction];
+    for (int c = 0; c < 3; ++c)
+    {
+      radiance[c] += this->Lights.faces[face][c];
+    }
+    return radiance;
+  };
+}
+
+/// Through one axis: all channels at once where they share sigma_t, else one by one.
+void Solver::Sweep(
+  AxisSweep& sweep, const AxisSweep::Boundary& boundary, bool hasSource, const Monitor& monitor)
+{
+  const int rounds = this->SharedExtinction ? 1 : this->Channels;
+  for (int round = 0; round < rounds; ++round)
+  {
+    SweepVolume volume;
+    volume.grid = this->TheMedium.grid;
+    volume.channels = this->SharedExtinction ? this->Channels : 1;
+    volume.stride = this->Stride;
+    volume.sigma_t = &this->Extinction;
+    volume.sigma_t_first = round * this->Stride;
+    volume.source = &this->Source;
+    volume.path = &this->Path;
+    volume.flux = this->Settings.netFlux ? &this->Flux : nullptr;
+    volume.first = round * this->Stride;
+    const AxisSweep::Boundary ofChannel = boundary && rounds > 1
+      ? AxisSweep::Boundary([&](int direction, int face) { return Rgb{ boundary(direction, face)[round], 0.0, 0.0 }; })
+      : boundary;
+    const SweepTally tally = sweep.Run(volume, ofChannel, hasSource, monitor);
+    for (int c = 0; c < volume.channels; ++c)
+    {
+      for (int face = 0; face < 6; ++face)
+      {
+        this->Result.balance.entered[round + c] += tally.in[face][c];
+        this->Result.balance.escaped[round + c] += tally.out[face][c];
+        this->Result.facePowerOut[face][round + c] += tally.out[face][c];
+      }
+    }
+  }
+}
+
+/// The first-collision source: each directional light along its own exact rays.
+void Solver::PropagateLights(const Monitor& monitor)
+{
+  const Grid& grid = this->TheMedium.grid;
+  for (const Light& light : this->Lights.lights)
+  {
+    if (light.type != LightType::Directional || Total(light.power) == 0.0)
+    {
+      continue;
+    }
+    const double length = std::hypot(light.direction[0], light.direction[1], light.direction[2]);
+    const std::array<double, 3> omega = { light.direction[0] / length, light.direction[1] / length,
+      light.direction[2] / length };
+    const int axis = MarchingAxis(grid, omega);
+    AxisSweep beam(this->TheDevice, grid, axis, BeamAlong(axis, grid, omega, BeamResolution),
+      this->SharedExtinction ? this->Channels : 1, this->Settings.periodic);
+    this->Sweep(beam, [&](int, int) { return light.power; }, false, monitor);
+  }
+}
+
+void Solver::PropagateOrder(int order, const Monitor& monitor)
+{
+  if (order == 0)
+  {
+    this->PropagateLights({});
+  }
+  const AxisSweep::Boundary boundary = this->BoundaryOfOrder(order);
+  if (!boundary && !this->Shining)
+  {
+    return;
+  }
+  for (std::size_t s = 0; s < this->Sweeps.size(); ++s)
+  {
+    const Monitor ofSweep = monitor
+      ? Monitor([&](double done) { return monitor((static_cast<double>(s) + done) / this->Sweeps.size()); })
+      : Monitor();
+    this->Sweep(*this->Sweeps[s], boundary, this->Shining, ofSweep);
+  }
+}
+
+void Solver::CollectOrder(int order)
+{
+  const int vector = this->TheDevice.FloatVectorWidth() >= 8 ? 8 : 4;
+  cl::Kernel kernel = this->TheDevice.Kernel(
+    "collect", { kernel_source::Numerics, kernel_source::Collect }, "-DREAL_WIDTH=" + std::to_string(vector));
+  const std::size_t chunks = (this->Stride + Chunk - 1) / Chunk;
+  Buffer<cl_float4> tally(this->TheDevice, chunks, "sums");
+  double gathered = 0.0;
+  double all = 0.0;
+  this->Scattered = {};
+  for (int c = 0; c < this->Channels; ++c)
+  {
+    With(kernel, this->Path, this->Fluence, this->Source, this->Extinction, this->Scattering, tally,
+      cl_ulong(this->Stride), cl_int(c), cl_int(this->SharedExtinction ? 0 : c),
+      static_cast<float>(1.0 / this->TheMedium.grid.VoxelVolume()));
+    this->TheDevice.Queue().enqueueNDRangeKernel(kernel, cl::NullRange, cl::NDRange(chunks), cl::NDRange(1));
+    for (const cl_float4& sums : tally.Read())
+    {
+      this->Result.balance.absorbed[c] += sums.s[0];
+      this->Scattered[c] += sums.s[1];
+      gathered += sums.s[2];
+      all += sums.s[3];
+    }
+  }
+  all *= this->TheMedium.grid.VoxelVolume();
+  this->Result.balance.leftOver = this->Scattered;
+  this->Shining = Total(this->Scattered) > 0.0;
+  this->Ratio = this->LastGathered > 0.0 ? gathered / this->LastGathered : 0.0;
+  this->LastGathered = gathered;
+  // Orders fall off geometrically in the end; what is still to come is the rest of that series.
+  const double ratio = order > 0 ? std::min(this->Ratio, 1.0 - 1e-12) : 0.5;
+  this->Residual = all > 0.0 ? gathered / all * ratio / (1.0 - ratio) : 0.0;
+  if (!this->Shining)
+  {
+    this->Residual = 0.0;
+  }
+  if (order == 0)
+  {
+    this->Result.fluenceDirect = this->Interleaved(this->Fluence, 1.0);
+  }
+  this->Result.convergence.push_back({ order,
+    std::chrono::duration<double>(std::chrono::steady_clock::now() - this->Start).count(), this->Residual,
+    Total(this->Result.balance.absorbed), Total(this->Result.balance.escaped), Total(this->Result.balance.leftOver) });
+}
+
+bool Solver::Done(int orders) const
+{
+  if (!this->Shining || orders >= MostOrders)
+  {
+    return true;
+  }
+  return this->Settings.maximumOrders > 0 ? orders >= this->Settings.maximumOrders
+                                          : orders > 1 && this->Residual <= this->Settings.tolerance;
+}
+
+/// Orders are counted where their number is known, else the logarithm of the residual tells how far the solve is.
+double Solver::Progress(int order, double done) const
+{
+  if (this->Settings.maximumOrders > 0)
+  {
+    return (order + done) / this->Settings.maximumOrders;
+  }
+  const double way = std::log(std::clamp(this->Residual, 1e-12, 1.0)) / std::log(this->Settings.tolerance);
+  return std::clamp(std::max(way, 1.0 - 1.0 / (1.0 + 0.05 * (order + done))), 0.0, 0.99);
+}
+
+std::vector<float> Solver::Interleaved(const Buffer<float>& planar, double scale) const
+{
+  const std::vector<float> values = planar.Read();
+  const std::size_t parts = values.size() / this->Stride;
+  const std::size_t voxels = this->TheMedium.grid.VoxelCount();
+  std::vector<float> interleaved(voxels * parts);
+  for (std::size_t p = 0; p < parts; ++p)
+  {
+    for (std::size_t i = 0; i < voxels; ++i)
+    {
+      interleaved[i * parts + p] = static_cast<float>(values[p * this->Stride + i] * scale);
+    }
+  }
+  return interleaved;
+}
+
+void Solver::Unload(int)
+{
+  LightField& light = this->Result;
+  light.channels = this->Channels;
+  light.fluence = this->Interleaved(this->Fluence, 1.0);
+  if (this->Settings.netFlux)
+  {
+    light.netFlux = this->Interleaved(this->Flux, 1.0 / this->TheMedium.grid.VoxelVolume());
+  }
+  light.scatteredRadiance.resize(light.fluence.size());
+  std::transform(light.fluence.begin(), light.fluence.end(), light.scatteredRadiance.begin(),
+    [](float fluence) { return static_cast<float>(fluence / (4.0 * Pi)); });
+  light.storedDirections = { { 0.0, 0.0, 0.0 } };
+  light.device = this->TheDevice.Name();
+}
+}
+
+double EnergyBalance::RelativeError(int channels) const
+{
+  double worst = 0.0;
+  for (int c = 0; c < channels; ++c)
+  {
+    const double in = this->entered[c] + this->emitted[c];
+    const double out = this->absorbed[c] + this->escaped[c] + this->leftOver[c];
+    worst = std::max(worst, in > 0.0 ? std::abs(in - out) / in : std::abs(out));
+  }
+  return worst;
+}
+
+LightField SolveFused(Device& device, const Medium& medium, const Illumination& illumination,
+  const PropagationSettings& settings, const Monitor& monitor)
+{
+  Check(medium);
+  Check(illumination);
+  return Solver(device, medium, illumination, settings).Run(monitor);
+}
+}

@@ -1,0 +1,193 @@
+#include "RayPattern.h"
+
+#include <algorithm>
+#include <cmath>
+
+namespace tyndall
+{
+namespace
+{
+/// Positions closer than this to a voxel's border lie on it: rounding must not decide which way a tie goes.
+constexpr double OnBorder = 1e-9;
+
+/// A coordinate as whole voxels and the rest in [0, 1).
+struct Position
+{
+  double voxel, rest;
+  explicit Position(double x)
+    : voxel(std::floor(x + OnBorder))
+    , rest(std::max(0.0, x - this->voxel))
+  {
+  }
+};
+
+/// Where in the plane (0 its entry, 1 its exit) a ray crosses into the next voxel; above 1 if it does not.
+double CrossingDepth(double start, double tangent, int plane)
+{
+  const Position now(start + tangent * plane);
+  const Position next(start + tangent * (plane + 1));
+  return next.voxel > now.voxel ? std::min(1.0, (1.0 - now.rest) / tangent) : 2.0;
+}
+
+bool Same(double a, double b)
+{
+  return std::abs(a - b) <= 1e-12 * std::max(std::abs(a), std::abs(b));
+}
+
+double Tangent(const Grid& grid, const std::array<double, 3>& omega, int axis, int aside)
+{
+  return (omega[aside] / grid.spacing[aside]) / (std::abs(omega[axis]) / grid.spacing[axis]);
+}
+
+Bundle EmptyBundle(const PlaneAxes& axes, const Grid& grid, const std::array<double, 3>& omega)
+{
+  Bundle bundle;
+  bundle.tangentU = std::abs(Tangent(grid, omega, axes.axis, axes.u));
+  bundle.tangentV = std::abs(Tangent(grid, omega, axes.axis, axes.v));
+  bundle.length = grid.spacing[axes.axis] / std::abs(omega[axes.axis]);
+  bundle.power = std::abs(omega[axes.axis]) * grid.spacing[axes.u] * grid.spacing[axes.v];
+  return bundle;
+}
+
+/// The index of omega's mirror image at the plane across `axis`. The set holds it: direction sets are symmetric.
+int MirrorImage(const DirectionSet& set, int direction, int axis)
+{
+  std::array<double, 3> omega = set.directions[direction].omega;
+  omega[axis] = -omega[axis];
+  return Nearest(set, omega);
+}
+
+int Sign(double x)
+{
+  return x < 0.0 ? -1 : 1;
+}
+
+/// Add a direction to the bundle it belongs to, or to a new one.
+void Sort(std::vector<Bundle>& bundles, const PlaneAxes& axes, const Grid& grid, const DirectionSet& set, int d)
+{
+  const Direction& direction = set.directions[d];
+  const std::array<double, 3>& omega = direction.omega;
+  Bundle fresh = EmptyBundle(axes, grid, omega);
+  fresh.power *= direction.weight;
+  const bool square = Same(grid.spacing[axes.u], grid.spacing[axes.v]);
+  const int signU = Sign(omega[axes.u]);
+  const int signV = Sign(omega[axes.v]);
+  for (Bundle& bundle : bundles)
+  {
+    if (!Same(bundle.power, fresh.power))
+    {
+      continue;
+    }
+    if (Same(bundle.tangentU, fresh.tangentU) && Same(bundle.tangentV, fresh.tangentV))
+    {
+      bundle.members.push_back({ d, MirrorImage(set, d, axes.axis), signU, 0, 0, signV });
+      return;
+    }
+    if (square && Same(bundle.tangentU, fresh.tangentV) && Same(bundle.tangentV, fresh.tangentU))
+    {
+      bundle.members.push_back({ d, MirrorImage(set, d, axes.axis), 0, signU, signV, 0 });
+      return;
+    }
+  }
+  fresh.members.push_back({ d, MirrorImage(set, d, axes.axis), signU, 0, 0, signV });
+  bundles.push_back(fresh);
+}
+
+/// Each bundle once for every point of the map's finer lattice.
+std::vector<Bundle> OnLattice(const std::vector<Bundle>& bundles, int mapResolution)
+{
+  std::vector<Bundle> all;
+  for (const Bundle& bundle : bundles)
+  {
+    for (int j = 0; j < mapResolution; ++j)
+    {
+      for (int i = 0; i < mapResolution; ++i)
+      {
+        Bundle shifted = bundle;
+        shifted.startU = (i + 0.5) / mapResolution;
+        shifted.startV = (j + 0.5) / mapResolution;
+        shifted.power /= static_cast<double>(mapResolution) * mapResolution;
+        all.push_back(shifted);
+      }
+    }
+  }
+  return all;
+}
+}
+
+PlaneCrossing Bundle::Crossing(int plane) const
+{
+  const double u = CrossingDepth(this->startU, this->tangentU, plane);
+  const double v = CrossingDepth(this->startV, this->tangentV, plane);
+  const bool together = std::abs(u - v) < OnBorder;
+  PlaneCrossing crossing;
+  double depth = 0.0;
+  const auto cross = [&](double at, int moveU, int moveV) {
+    crossing.segments[crossing.count - 1].length = std::max(0.0, at - depth) * this->length;
+    crossing.segments[crossing.count] = { moveU, moveV, 0.0 };
+    ++crossing.count;
+    depth = at;
+  };
+  if (together && u <= 1.0)
+  {
+    cross(u, 1, 1);
+  }
+  else
+  {
+    const double first = std::min(u, v);
+    const double second = std::max(u, v);
+    if (first <= 1.0)
+    {
+      cross(first, u < v ? 1 : 0, u < v ? 0 : 1);
+    }
+    if (second <= 1.0)
+    {
+      cross(second, u < v ? 0 : 1, u < v ? 1 : 0);
+    }
+  }
+  crossing.segments[crossing.count - 1].length = std::max(0.0, 1.0 - depth) * this->length;
+  return crossing;
+}
+
+PlaneAxes AcrossAxis(int axis)
+{
+  return axis == 0 ? PlaneAxes{ 0, 1, 2 } : axis == 1 ? PlaneAxes{ 1, 0, 2 } : PlaneAxes{ 2, 0, 1 };
+}
+
+int MarchingAxis(const Grid& grid, const std::array<double, 3>& omega)
+{
+  int axis = 0;
+  for (int other = 1; other < 3; ++other)
+  {
+    if (std::abs(omega[other]) / grid.spacing[other] > std::abs(omega[axis]) / grid.spacing[axis])
+    {
+      axis = other;
+    }
+  }
+  return axis;
+}
+
+std::vector<Bundle> BundlesAlong(int axis, const Grid& grid, const DirectionSet& set, int mapResolution)
+{
+  const PlaneAxes axes = AcrossAxis(axis);
+  std::vector<Bundle> bundles;
+  for (std::size_t d = 0; d < set.directions.size(); ++d)
+  {
+    const std::array<double, 3>& omega = set.directions[d].omega;
+    if (MarchingAxis(grid, omega) == axis && omega[axis] > 0.0)
+    {
+      Sort(bundles, axes, grid, set, static_cast<int>(d));
+    }
+  }
+  return OnLattice(bundles, mapResolution);
+}
+
+std::vector<Bundle> BeamAlong(int axis, const Grid& grid, const std::array<double, 3>& omega, int mapResolution)
+{
+  const PlaneAxes axes = AcrossAxis(axis);
+  Bundle beam = EmptyBundle(axes, grid, omega);
+  const bool forward = omega[axis] > 0.0;
+  beam.members.push_back({ forward ? 0 : -1, forward ? -1 : 0, Sign(omega[axes.u]), 0, 0, Sign(omega[axes.v]) });
+  return OnLattice({ beam }, mapResolution);
+}
+}

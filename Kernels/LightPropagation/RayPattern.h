@@ -1,0 +1,72 @@
+#pragma once
+
+#include "Directions.h"
+
+#include "../Medium/Grid.h"
+
+#include <array>
+#include <vector>
+
+namespace tyndall
+{
+/// How the rays of light propagation maps run through a grid, worked out once on the host, in double.
+///
+/// Rays march along an axis of the grid, plane by plane. All rays of one direction start on the lattice of the voxels, so
+/// they cross every plane in the same pattern: at most three voxels, one shift of the whole map. Directions that are
+/// mirror images of each other (and, where voxels are square across the axis, those with both tangents swapped) share
+/// the lengths of all segments: they make a Bundle, and transmittance is computed once for it.
+
+/// The part of a plane that a ray crosses in one voxel.
+struct Segment
+{
+  int moveU = 0; ///< voxels moved since the segment before, in the bundle's own frame (both tangents positive): 0 or 1
+  int moveV = 0;
+  double length = 0.0; ///< along the ray, in the dataset's unit
+};
+
+/// What a bundle does in one plane: one to three segments.
+struct PlaneCrossing
+{
+  int count = 1;
+  std::array<Segment, 3> segments;
+};
+
+/// One ray family of a bundle: a direction, and how the bundle's frame maps to the plane's axes.
+struct Member
+{
+  int direction = 0; ///< index into the direction set (the one that marches forward along the axis)
+  int opposite = 0;  ///< its mirror image that marches backward
+  int uFromU = 1, uFromV = 0, vFromU = 0, vFromV = 1; ///< a signed permutation
+};
+
+struct Bundle
+{
+  double tangentU = 0.0; ///< voxels moved per plane, 0 <= tangent <= 1
+  double tangentV = 0.0;
+  double startU = 0.5; ///< where rays start within a voxel of the first plane, in (0, 1)
+  double startV = 0.5;
+  double length = 1.0; ///< of a ray within one plane
+  double power = 1.0;  ///< that a ray carries at radiance 1: weight |cos| area, length^2 sr
+  std::vector<Member> members; ///< 1, 2, 4 or 8
+
+  PlaneCrossing Crossing(int plane) const; ///< planes are counted from where the rays start, without end
+};
+
+/// The axes of a plane across `axis`: u runs along rows in memory.
+struct PlaneAxes
+{
+  int axis, u, v;
+};
+PlaneAxes AcrossAxis(int axis);
+
+/// The axis that a direction marches along: the one of whose voxel planes it crosses most per unit length, so that it never
+/// moves more than one voxel aside.
+int MarchingAxis(const Grid& grid, const std::array<double, 3>& omega);
+
+/// The bundles that march along `axis`, both ways, with mapResolution x mapResolution rays a voxel and direction.
+std::vector<Bundle> BundlesAlong(int axis, const Grid& grid, const DirectionSet& set, int mapResolution);
+
+/// Rays of one collimated beam: a bundle with one member for each of the mapResolution^2 lattices. Its `direction` is 0
+/// where the beam runs forward along the axis, else `opposite` is 0; the other is -1. Power is that of irradiance 1.
+std::vector<Bundle> BeamAlong(int axis, const Grid& grid, const std::array<double, 3>& omega, int mapResolution);
+}

@@ -1,0 +1,223 @@
+// One bundle through one plane. Compiled once for each number of MEMBERS.
+//
+// A plane is crossed in up to three stages, one a segment. A stage takes every ray from where the stage before left it: the
+// whole map moves by one voxel or none, which costs nothing but an offset in the load. Stages follow each other row by row at
+// a distance of LAG rows, so that what passes between them stays in the cache; the last one writes the map in place.
+
+#define NAME_OF(a, b) TYNDALL_JOIN(a, b)
+#define STAGE_ROW NAME_OF(stage_row_, MEMBERS)
+#define COUNT_ESCAPED NAME_OF(count_escaped_, MEMBERS)
+#define FILL_BORDER NAME_OF(fill_border_, MEMBERS)
+#define CROSS_PLANE NAME_OF(cross_plane_, MEMBERS)
+#define BLOCK (MEMBERS * CHANNELS * ROW)
+#define FIRST(member, channel) (((member) * CHANNELS + (channel)) * ROW + PAD)
+
+// All rays of a row through one segment each (Gruson et al., Eq. 3, conservative):
+//   path += p1 L,  L' = L - sigma p1 L + q p1,  p1 = (1 - exp(-tau)) / sigma
+// For small tau L' is L less what it loses, for large tau it is L times what is left: neither rounds to a leak.
+static void STAGE_ROW(sweep_state* state, int y, bool deposit, const __global float** in, __global float* out, float length,
+  const __global bundle_info* bundle)
+{
+  const int rows = state->sizeV * ROW;
+  const __global float* sigma_row = state->planes + PLANE_SIGMA * rows + y * ROW;
+  const __global float* inverse_row = state->planes + PLANE_INVERSE * rows + y * ROW;
+  __global float* taken_row = state->planes + PLANE_TAKEN * rows + y * ROW;
+  const __global float* source_row = state->planes + PLANE_SOURCE * rows + y * ROW;
+  __global float* path_row = state->planes + PLANE_PATH * rows + y * ROW;
+  const float power = bundle->power;
+#if NET_FLUX
+  __global float* flux_row = state->planes + PLANE_FLUX * rows + y * ROW;
+  float along_u[MEMBERS], along_v[MEMBERS];
+#pragma unroll
+  for (int m = 0; m < MEMBERS; ++m)
+  {
+    along_u[m] = bundle->move[m][0] * bundle->sineU + bundle->move[m][1] * bundle->sineV;
+    along_v[m] = bundle->move[m][2] * bundle->sineU + bundle->move[m][3] * bundle->sineV;
+  }
+#endif
+  for (int x = 0; x < state->width; x += REAL_WIDTH)
+  {
+    const real tau = load_real(x, sigma_row) * length;
+    real left;
+    const real lost = extinguished(tau, &left);
+    const real mean_length = lost * load_real(x, inverse_row);
+    const integer thin = tau < (real)1.0f;
+    const real keep = select((real)0.0f, (real)1.0f, thin);
+    const real change = select(left, -lost, thin);
+#if SOURCE
+    if (deposit)
+    {
+      store_real(mad(mean_length, (real)(power * MEMBERS), load_real(x, taken_row)), x, taken_row);
+    }
+    const real shine = mean_length * power;
+#endif
+#pragma unroll
+    for (int c = 0; c < CHANNELS; ++c)
+    {
+#if SOURCE
+      const real gain = shine * load_real(x, source_row + c * rows);
+#endif
+      real sum = (real)0.0f;
+#if NET_FLUX
+      real sum_u = (real)0.0f, sum_v = (real)0.0f;
+#endif
+#pragma unroll
+      for (int m = 0; m < MEMBERS; ++m)
+      {
+        const real ray = load_real(x, in[m] + c * ROW);
+        sum += ray;
+#if NET_FLUX
+        sum_u = mad(ray, (real)along_u[m], sum_u);
+        sum_v = mad(ray, (real)along_v[m], sum_v);
+#endif
+#if SOURCE
+        const real after = mad(ray, change, mad(ray, keep, gain));
+#else
+        const real after = mad(ray, change, ray * keep);
+#endif
+        store_real(after, x, out + FIRST(m, c));
+      }
+      if (deposit)
+      {
+        store_real(mad(mean_length, sum, load_real(x, path_row + c * rows)), x, path_row + c * rows);
+#if NET_FLUX
+        __global float* flux = flux_row + 3 * c * rows;
+        store_real(mad(mean_length, sum_u, load_real(x, flux)), x, flux);
+        store_real(mad(mean_length, sum_v, load_real(x, flux + rows)), x, flux + rows);
+        store_real(mad(mean_length * bundle->cosine, sum, load_real(x, flux + 2 * rows)), x, flux + 2 * rows);
+#endif
+      }
+    }
+  }
+#if PERIODIC_U
+  for (int i = 0; i < MEMBERS * CHANNELS; ++i)
+  {
+    out[i * ROW + PAD - 1] = out[i * ROW + PAD + state->sizeU - 1];
+    out[i * ROW + PAD + state->sizeU] = out[i * ROW + PAD];
+  }
+#endif
+}
+
+// Power of the rays that leave row y of `row` by a move of (du, dv), through u first.
+static void COUNT_ESCAPED(sweep_state* state, const __global float* row, int y, int m, int du, int dv)
+{
+  const bool through_v = !PERIODIC_V && ((dv < 0 && y == 0) || (dv > 0 && y == state->sizeV - 1));
+  const bool through_u = !PERIODIC_U && du != 0;
+  const int last = state->sizeU - 1;
+  for (int c = 0; c < CHANNELS; ++c)
+  {
+    const __global float* rays = row + FIRST(m, c);
+    if (through_u)
+    {
+      const int side = du > 0 ? 1 : 0;
+      add_exactly(&state->escaped[side][c], &state->rounding[side][c], rays[du > 0 ? last : 0]);
+    }
+    if (through_v)
+    {
+      const int side = dv > 0 ? 3 : 2;
+      const int begin = through_u && du < 0 ? 1 : 0;
+      const int end = through_u && du > 0 ? last : last + 1;
+      for (int x = begin; x < end; ++x)
+      {
+        add_exactly(&state->escaped[side][c], &state->rounding[side][c], rays[x]);
+      }
+    }
+  }
+}
+
+#if BORDER
+// Rays that come in from the side within a row: the column beside it, on both ends of every row in the rings.
+static void FILL_BORDER(sweep_state* state, const __global float* radiance)
+{
+  for (int i = 0; i < MEMBERS * CHANNELS; ++i)
+  {
+    for (int r = 0; r < 2 * RING_ROWS; ++r)
+    {
+      __global float* row = state->ring + r * (MAX_MEMBERS * CHANNELS * ROW) + i * ROW + PAD;
+      row[-1] = radiance[i];
+      row[state->width] = radiance[i];
+    }
+  }
+}
+#endif
+
+// @param map      rays of the bundle, [row][member][channel][ROW], two rows more than the plane has
+// @param outside  a row of rays that come in through the faces across v, [member][channel][ROW]
+// @param radiance of rays that come in through the faces across u, [member][channel]
+static void CROSS_PLANE(sweep_state* state, __global float* map, const __global float* outside,
+  const __global float* radiance, const __global bundle_info* bundle, const __global crossing_info* crossing)
+{
+#if BORDER
+  FILL_BORDER(state, radiance);
+#endif
+  const int stages = crossing->stages;
+  const int height = state->sizeV;
+#if PERIODIC_V
+  // Rows beyond the plane are rows of the other side, and computed again there; the first ones are needed after they
+  // are overwritten.
+  const int beyond = stages - 1;
+  for (int i = 0; i < beyond * BLOCK; ++i)
+  {
+    map[height * BLOCK + i] = map[(i / BLOCK % height) * BLOCK + i % BLOCK];
+  }
+#else
+  const int beyond = 0;
+#endif
+  for (int r = -beyond; r < height + beyond + LAG * (stages - 1); ++r)
+  {
+    for (int s = 0; s < stages; ++s)
+    {
+      const int y = r - LAG * s;
+#if PERIODIC_V
+      const int reach = stages - 1 - s;
+#else
+      const int reach = 0;
+#endif
+      if (y < -reach || y >= height + reach)
+      {
+        continue;
+      }
+      const bool inside = y >= 0 && y < height;
+      const int wrapped = inside ? y : (y % height + height) % height;
+      const __global float* in[MEMBERS];
+#pragma unroll
+      for (int m = 0; m < MEMBERS; ++m)
+      {
+        const int du = bundle->move[m][0] * crossing->moveU[s] + bundle->move[m][1] * crossing->moveV[s];
+        const int dv = bundle->move[m][2] * crossing->moveU[s] + bundle->move[m][3] * crossing->moveV[s];
+        const int from = y - dv;
+        const __global float* row;
+        if (s == 0)
+        {
+          row = map + (from < 0 ? (from % height + height) % height : from) * BLOCK;
+        }
+        else
+        {
+          const __global float* ring = state->ring + ((s - 1) & 1) * (RING_ROWS * MAX_MEMBERS * CHANNELS * ROW);
+          row = ring + (from & (RING_ROWS - 1)) * (MAX_MEMBERS * CHANNELS * ROW);
+          if (inside && (du != 0 || dv != 0))
+          {
+            COUNT_ESCAPED(state, ring + (y & (RING_ROWS - 1)) * (MAX_MEMBERS * CHANNELS * ROW), y, m, du, dv);
+          }
+        }
+        if (!PERIODIC_V && (from < 0 || from >= height))
+        {
+          row = outside;
+        }
+        in[m] = row + FIRST(m, 0) - du;
+      }
+      __global float* out = s == stages - 1 ? map + y * BLOCK
+                                            : state->ring + (s & 1) * (RING_ROWS * MAX_MEMBERS * CHANNELS * ROW) +
+          (y & (RING_ROWS - 1)) * (MAX_MEMBERS * CHANNELS * ROW);
+      STAGE_ROW(state, wrapped, inside, in, out, crossing->length[s], bundle);
+    }
+  }
+}
+
+#undef FIRST
+#undef BLOCK
+#undef CROSS_PLANE
+#undef FILL_BORDER
+#undef COUNT_ESCAPED
+#undef STAGE_ROW
+#undef NAME_OF

@@ -1,0 +1,64 @@
+// The layout of a sweep, shared by the texts that follow. Read after Numerics.cl; the host gives
+//   CHANNELS  1 or 3 colours that share sigma_t
+//   ROW       floats in a padded row; the REAL_WIDTH floats after a row's voxels and before the next row's are its border
+//   SOURCE    1 where the medium shines (emission or scattered light)
+//   NET_FLUX  1 where the net flux is wanted
+//   BORDER    1 where light comes in through the faces that rays pass sideways
+//   PERIODIC_U, PERIODIC_V  1 where rays come back on the other side
+//
+// Rays carry power (W), so that leaving through any face needs no further factor. A map row holds the rays by the voxel they
+// enter, for all members of a bundle and all channels: float [member][channel][ROW].
+
+#define PAD REAL_WIDTH
+#define MAX_MEMBERS 8
+#define RING_ROWS 4 // a stage reads rows y - 1 to y + 1 while the stage before writes row y + 2
+#define LAG 2       // rows a stage stays behind the one before
+#define FLUX (NET_FLUX ? 3 : 0)
+
+// The quantities of one plane, each [row][ROW].
+#define PLANE_SIGMA 0
+#define PLANE_INVERSE 1
+#define PLANE_TAKEN 2 // sum over rays of power times mean transmitted length: what is missing of the source's own light
+#define PLANE_SOURCE 3
+#define PLANE_PATH (PLANE_SOURCE + CHANNELS) // path integral of power, W length
+#define PLANE_FLUX (PLANE_PATH + CHANNELS)
+#define PLANES (PLANE_FLUX + FLUX * CHANNELS)
+
+// As BundleOnDevice, CrossingOnDevice in Sweep.cxx.
+typedef struct
+{
+  int members;
+  int map;      // where its maps begin, in floats
+  int border;   // where its radiances at the faces begin, in floats: [member][channel]
+  int outside;  // where its rows outside begin, in floats: [member][channel][ROW]
+  float power;  // that a ray carries at radiance 1
+  float cosine; // of its directions with the axis it marches along, for the net flux
+  float sineU, sineV;
+  int move[MAX_MEMBERS][4]; // u from u, u from v, v from u, v from v: a signed permutation
+} bundle_info;
+
+typedef struct
+{
+  int stages;
+  int moveU[3], moveV[3];
+  float length[3];
+} crossing_info;
+
+// Where a work-item is: its planes, its rows, its buffers.
+typedef struct
+{
+  int sizeU, sizeV;        // voxels of the plane
+  int width;               // sizeU rounded up to whole vectors
+  __global float* planes;  // PLANES planes of sizeV rows
+  __global float* ring;    // 2 rings of RING_ROWS rows of MAX_MEMBERS * CHANNELS * ROW floats
+  float escaped[4][CHANNELS]; // through -u, +u, -v, +v, W; with the rounding errors
+  float rounding[4][CHANNELS];
+} sweep_state;
+
+static void add_exactly(float* sum, float* rounding, float value) // Kahan
+{
+  const float y = value - *rounding;
+  const float t = *sum + y;
+  *rounding = (t - *sum) - y;
+  *sum = t;
+}

@@ -1,0 +1,119 @@
+#include "Lights.h"
+
+#include "../Device/Errors.h"
+
+#include <cmath>
+#include <string>
+
+namespace tyndall
+{
+Rgb Lookup(const Environment& environment, const std::array<double, 3>& direction)
+{
+  const double pi = std::acos(-1.0);
+  const double polar = std::atan2(std::hypot(direction[0], direction[1]), direction[2]);
+  const double azimuth = std::atan2(direction[1], direction[0]);
+  const double column = (azimuth < 0.0 ? azimuth / (2.0 * pi) + 1.0 : azimuth / (2.0 * pi)) * environment.width - 0.5;
+  const double row = (1.0 - polar / pi) * environment.height - 0.5;
+  const double left = std::floor(column);
+  const double below = std::floor(row);
+  Rgb sum = {};
+  for (int corner = 0; corner < 4; ++corner)
+  {
+    const int dx = corner % 2;
+    const int dy = corner / 2;
+    const double weight = (dx ? column - left : 1.0 - (column - left)) * (dy ? row - below : 1.0 - (row - below));
+    const int i = (static_cast<int>(left) + dx + environment.width) % environment.width;
+    const int j = std::min(std::max(static_cast<int>(below) + dy, 0), environment.height - 1);
+    const std::size_t pixel = 3 * (static_cast<std::size_t>(j) * environment.width + i);
+    for (int c = 0; c < 3; ++c)
+    {
+      sum[c] += weight * environment.radiance[pixel + c];
+    }
+  }
+  return sum;
+}
+
+std::array<std::array<double, 3>, 2> RectangleEdges(const Light& light)
+{
+  const auto [x, y, z] = light.direction;
+  const double length = std::hypot(x, y, z);
+  const double across = std::hypot(x, y);
+  const bool vertical = across < 1e-9 * length;
+  const double ex = vertical ? 1.0 : -y / across;
+  const double ey = vertical ? 0.0 : x / across;
+  const double s = light.size[1] / length;
+  return { { { light.size[0] * ex, light.size[0] * ey, 0.0 },
+    { -s * z * ey, s * z * ex, s * (x * ey - y * ex) } } }; // direction x first edge
+}
+
+namespace
+{
+bool Usable(double value)
+{
+  return value >= 0.0 && std::isfinite(value);
+}
+
+void CheckLight(const Light& light, std::size_t number)
+{
+  const std::string name = "Light " + std::to_string(number);
+  for (int axis = 0; axis < 3; ++axis)
+  {
+    if (!std::isfinite(light.position[axis]) || !std::isfinite(light.direction[axis]))
+    {
+      throw InvalidInput(name + " has a position or direction that is not finite.");
+    }
+    if (!Usable(light.power[axis]))
+    {
+      throw InvalidInput(name + " has power " + std::to_string(light.power[axis]) + "; it must be finite and not negative.");
+    }
+  }
+  if (light.type != LightType::Point && std::hypot(light.direction[0], light.direction[1], light.direction[2]) == 0.0)
+  {
+    throw InvalidInput(name + " has direction (0, 0, 0); say where it shines.");
+  }
+  if (light.type == LightType::Spot && !(light.angle > 0.0 && light.angle <= 180.0))
+  {
+    throw InvalidInput(name + " is a spot with opening angle " + std::to_string(light.angle) + "; it must be in (0, 180].");
+  }
+  if (light.type == LightType::Rectangle &&
+    !(light.size[0] > 0.0 && light.size[1] > 0.0 && std::isfinite(light.size[0] * light.size[1])))
+  {
+    throw InvalidInput(name + " is a rectangle without a size; give both edges a positive length.");
+  }
+}
+}
+
+void Check(const Illumination& illumination)
+{
+  for (std::size_t i = 0; i < illumination.lights.size(); ++i)
+  {
+    CheckLight(illumination.lights[i], i);
+  }
+  for (int c = 0; c < 3; ++c)
+  {
+    for (std::size_t face = 0; face < 6; ++face)
+    {
+      if (!Usable(illumination.faces[face][c]))
+      {
+        throw InvalidInput("FaceRadiance of face " + std::to_string(face) + " (-x, +x, -y, +y, -z, +z) is " +
+          std::to_string(illumination.faces[face][c]) + "; it must be finite and not negative.");
+      }
+    }
+    if (!Usable(illumination.sky[c]))
+    {
+      throw InvalidInput("The sky's radiance is " + std::to_string(illumination.sky[c]) +
+        "; it must be finite and not negative.");
+    }
+  }
+  const Environment& environment = illumination.environment;
+  for (std::size_t i = 0; i < environment.radiance.size(); ++i)
+  {
+    if (!Usable(environment.radiance[i]))
+    {
+      throw InvalidInput("The environment's radiance is " + std::to_string(environment.radiance[i]) + " in pixel (" +
+        std::to_string(i / 3 % environment.width) + ", " + std::to_string(i / 3 / environment.width) +
+        ") (the first such pixel); it must be finite and not negative.");
+    }
+  }
+}
+}

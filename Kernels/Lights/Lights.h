@@ -1,0 +1,62 @@
+#pragma once
+
+#include <array>
+#include <vector>
+
+namespace tyndall
+{
+using Rgb = std::array<double, 3>;
+
+enum class LightType
+{
+  Directional = 0, ///< parallel light through all of space
+  Point = 1,
+  Spot = 2,      ///< a point that shines evenly into a cone
+  Rectangle = 3, ///< shines from one side, Lambertian
+};
+
+/// One light, as a row of the LightRig's polydata.
+struct Light
+{
+  LightType type = LightType::Directional;
+  std::array<double, 3> position = { 0.0, 0.0, 0.0 };   ///< of the point, or the rectangle's centre
+  std::array<double, 3> direction = { 0.0, 0.0, -1.0 }; ///< in which the light travels; any length but 0
+  Rgb power = { 1.0, 1.0, 1.0 }; ///< W; for a directional light W/length^2 through a plane across `direction`
+  std::array<double, 2> size = { 0.0, 0.0 }; ///< edges of a rectangle
+  double angle = 0.0;                        ///< full opening angle of a spot, degrees
+};
+
+/// Radiance that comes from infinitely far away, W / (length^2 sr), in latitude-longitude layout with z up: pixel (i, j)
+/// of width x height looks along azimuth 2 pi (i + 1/2) / width about +z from +x, polar angle
+/// pi (1 - (j + 1/2) / height) from +z; so row 0 is the nadir.
+struct Environment
+{
+  int width = 0; ///< 0: there is no environment
+  int height = 0;
+  std::vector<float> radiance; ///< 3 * width * height, RGB interleaved
+
+  bool Empty() const { return this->width == 0; }
+};
+
+/// Everything that shines on a medium from outside (and the lights inside it).
+struct Illumination
+{
+  std::vector<Light> lights;
+  Environment environment;
+  Rgb sky = { 0.0, 0.0, 0.0 }; ///< radiance from every direction alike, W / (length^2 sr), added to the environment
+  /// Diffuse radiance entering through -x, +x, -y, +y, -z, +z, W / (length^2 sr), added to the others.
+  std::array<Rgb, 6> faces = {};
+};
+
+/// The edges of a rectangular light as vectors: the first is horizontal (across z and the direction; along x where the
+/// direction is vertical), the second across the first and the direction.
+std::array<std::array<double, 3>, 2> RectangleEdges(const Light& light);
+
+/// Mean radiance the environment has where it is looked at along `direction` (from the viewer outwards; the light
+/// travels the other way), bilinear between pixels.
+Rgb Lookup(const Environment& environment, const std::array<double, 3>& direction);
+
+/// @throws InvalidInput where a light has a zero direction, a negative or infinite power, no size; an environment has a
+///   negative or infinite pixel (names the first)
+void Check(const Illumination& illumination);
+}

@@ -1,0 +1,66 @@
+#include "Medium.h"
+
+#include "../Device/Errors.h"
+
+#include <cmath>
+
+namespace tyndall
+{
+namespace
+{
+std::string VoxelName(const Grid& grid, std::size_t voxel)
+{
+  const std::size_t nx = static_cast<std::size_t>(grid.size[0]);
+  const std::size_t ny = static_cast<std::size_t>(grid.size[1]);
+  return "(" + std::to_string(voxel % nx) + ", " + std::to_string(voxel / nx % ny) + ", " +
+    std::to_string(voxel / (nx * ny)) + ")";
+}
+
+void CheckField(const Field& field, const char* name, const Grid& grid)
+{
+  if (!field.values)
+  {
+    return;
+  }
+  if (field.components != 1 && field.components != 3)
+  {
+    throw InvalidInput(std::string(name) + " has " + std::to_string(field.components) +
+      " components a voxel; give it 1 (grey) or 3 (red, green, blue).");
+  }
+  const std::size_t count = grid.VoxelCount() * static_cast<std::size_t>(field.components);
+  for (std::size_t i = 0; i < count; ++i)
+  {
+    if (!(field.values[i] >= 0.0f) || std::isinf(field.values[i]))
+    {
+      throw InvalidInput(std::string(name) + " is " + std::to_string(field.values[i]) + " in voxel " +
+        VoxelName(grid, i / static_cast<std::size_t>(field.components)) +
+        " (the first such voxel); it must be finite and not negative. Clean the input, for example with a Calculator.");
+    }
+  }
+}
+}
+
+void Check(const Medium& medium)
+{
+  for (int axis = 0; axis < 3; ++axis)
+  {
+    const double spacing = medium.grid.spacing[axis];
+    if (medium.grid.size[axis] < 1)
+    {
+      throw InvalidInput("The grid has no voxels along " + std::string(1, "xyz"[axis]) + "; it needs at least one.");
+    }
+    if (!(spacing > 0.0) || std::isinf(spacing))
+    {
+      throw InvalidInput("The grid's spacing along " + std::string(1, "xyz"[axis]) + " is " + std::to_string(spacing) +
+        "; it must be a positive number.");
+    }
+  }
+  if (!(std::abs(medium.g) < 1.0))
+  {
+    throw InvalidInput("The mean cosine g is " + std::to_string(medium.g) + "; it must lie between -1 and 1.");
+  }
+  CheckField(medium.sigma_a, "sigma_a", medium.grid);
+  CheckField(medium.sigma_s, "sigma_s", medium.grid);
+  CheckField(medium.emission, "emission", medium.grid);
+}
+}

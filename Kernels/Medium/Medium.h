@@ -1,0 +1,40 @@
+#pragma once
+
+#include "Grid.h"
+
+#include <string>
+
+namespace tyndall
+{
+/// One quantity over a grid's voxels, seen, not owned: `components` floats a voxel (1, or 3 for RGB interleaved).
+struct Field
+{
+  const float* values = nullptr; ///< null: the quantity is zero everywhere
+  int components = 1;
+
+  float At(std::size_t voxel, int channel) const
+  {
+    return this->values ? this->values[voxel * this->components + (this->components == 3 ? channel : 0)] : 0.0f;
+  }
+};
+
+/// A participating medium: what pbrt calls sigma_a, sigma_s, Le and the phase function, constant in each voxel.
+struct Medium
+{
+  Grid grid;
+  Field sigma_a;  ///< absorption coefficient, 1/length
+  Field sigma_s;  ///< scattering coefficient, 1/length
+  Field emission; ///< emitted radiance per unit length, W / (length^3 sr)
+  double g = 0.0; ///< mean cosine of the phase function (Henyey-Greenstein), in (-1, 1)
+
+  /// 3 where any quantity is coloured, else 1.
+  int Channels() const
+  {
+    return this->sigma_a.components == 3 || this->sigma_s.components == 3 || this->emission.components == 3 ? 3 : 1;
+  }
+};
+
+/// @throws InvalidInput where the grid is empty or has a spacing that is not a positive number, where a coefficient is
+///   negative or not finite (names the array and the first such voxel), or where g is outside (-1, 1)
+void Check(const Medium& medium);
+}
