@@ -14,8 +14,13 @@
 /// What the tests of filters share.
 namespace test
 {
-/// What a test returns where there is no OpenCL device.
-constexpr int Skipped = 125;
+/// What a test returns where there is no OpenCL device: skipped, or failed if TYNDALL_REQUIRE_DEVICE is set.
+/// @param why  what the filter said
+inline int SkippedWithoutDevice(const std::string& why)
+{
+  std::cerr << "No OpenCL device: " << why << "\n";
+  return std::getenv("TYNDALL_REQUIRE_DEVICE") ? EXIT_FAILURE : 125;
+}
 
 /// Counts failed claims; a test ends with `return claims.Result();`.
 class Claims
