@@ -214,7 +214,8 @@ int vtkLightRig::RequestData(vtkInformation*, vtkInformationVector**, vtkInforma
   {
     illumination.lights.push_back(SunLight(this->SunElevation, this->SunAzimuth, this->SunPower));
   }
-  for (const auto* kind : { &this->Added->Directional, &this->Added->Point, &this->Added->Spot, &this->Added->Rectangle })
+  for (const auto* kind :
+    { &this->Added->Directional, &this->Added->Point, &this->Added->Spot, &this->Added->Rectangle })
   {
     illumination.lights.insert(illumination.lights.end(), kind->begin(), kind->end());
   }

@@ -88,8 +88,8 @@ public:
   ///@{
   /// A point at (x, y, z) that shines evenly into a cone about (dx, dy, dz), of any length, with power (r, g, b), W.
   /// `angle` is the cone's full opening, degrees, valid (0, 180].
-  void AddSpotLight(double x, double y, double z, double dx, double dy, double dz, double r, double g, double b,
-    double angle);
+  void AddSpotLight(
+    double x, double y, double z, double dx, double dy, double dz, double r, double g, double b, double angle);
   void RemoveAllSpotLights();
   int GetNumberOfSpotLights() const;
   ///@}
