@@ -1,0 +1,143 @@
+#pragma once
+
+#include "Device/Errors.h"
+#include "Device/Monitor.h"
+#include "LightPropagation/LightField.h"
+#include "Lights/Lights.h"
+#include "Medium/Medium.h"
+
+#include "vtkFloatArray.h"
+#include "vtkSmartPointer.h"
+
+#include <functional>
+#include <initializer_list>
+#include <string>
+#include <vector>
+
+class vtkAlgorithm;
+class vtkDataObject;
+class vtkImageData;
+class vtkInformationVector;
+class vtkPolyData;
+class vtkTable;
+
+/// The one place where filters read and write what flows between them: arrays, their names, shapes and units.
+///
+/// What reads throws InvalidInput with a text for the user; a filter does all its work within Guarded, which turns that
+/// into an error of VTK. A filter's RequestData so reads:
+///
+///     int vtkX::RequestData(vtkInformation*, vtkInformationVector** inputs, vtkInformationVector* outputs)
+///     {
+///       return Guarded(this, outputs, [&] {
+///         vtkImageData* image = vtkImageData::GetData(inputs[0]);
+///         const MediumInput input = ReadMedium(this, image);
+///         LightField light = Solve(input.medium, ..., MonitorOf(this));
+///         vtkImageData* output = vtkImageData::GetData(outputs);
+///         output->ShallowCopy(image);
+///         WriteLight(std::move(light), output);
+///       });
+///     }
+namespace tyndall
+{
+/// The cells of an image, wherever its extent starts.
+/// @throws InvalidInput where there is no image, no cell, a spacing that is not a positive number, or a rotation
+Grid GridOf(vtkImageData* image);
+
+/// An array as floats, and the memory they are in.
+class FloatField
+{
+public:
+  FloatField() = default; ///< the quantity that is zero everywhere
+  explicit FloatField(vtkSmartPointer<vtkFloatArray> array)
+    : Array(std::move(array))
+  {
+  }
+
+  bool IsThere() const { return this->Array != nullptr; }
+  int Components() const { return this->Array ? this->Array->GetNumberOfComponents() : 1; }
+  const float* Values() const { return this->Array ? this->Array->GetPointer(0) : nullptr; }
+  operator Field() const { return { this->Values(), this->Components() }; }
+
+private:
+  vtkSmartPointer<vtkFloatArray> Array;
+};
+
+enum class Need
+{
+  Required, ///< a missing array is an error
+  Optional, ///< a missing array is a FloatField that is not there
+};
+
+/// Shapes an array may have; empty: any.
+using Components = std::initializer_list<int>;
+
+/// Values of the image's cells: the cell array of that name, or its point array averaged to cells. Float arrays are used
+/// where they are, others are converted.
+/// @throws InvalidInput naming the array, the components it has, or the arrays that there are
+FloatField ReadCells(vtkImageData* image, const std::string& name, Need need, Components components = { 1, 3 });
+
+/// The same for the array that SetInputArrayToProcess chose as number `index`, by name or by attribute (SCALARS). Where
+/// points were chosen, the point array is preferred to a cell array of the same name.
+FloatField ReadChosenCells(
+  vtkAlgorithm* filter, int index, vtkImageData* image, Need need, Components components = { 1, 3 });
+
+/// Numbers of SetInputArrayToProcess for the filters that take a medium.
+enum MediumArray
+{
+  SigmaA = 0,
+  SigmaS = 1,
+  Emission = 2,
+};
+
+/// To be called by the constructor of a filter that takes a medium at port 0: choose its arrays by their names.
+void ChooseMediumArrays(vtkAlgorithm* filter);
+
+/// A medium and the arrays that it sees.
+struct MediumInput
+{
+  Medium medium;
+  FloatField sigma_a, sigma_s, emission;
+};
+
+/// The medium of an image: cells `sigma_a`, `sigma_s` (1 or 3 components, 1/length), `emission` (optional, 1 or 3) or the
+/// arrays chosen instead, and field data `g` (one number; missing: 0). Checked.
+MediumInput ReadMedium(vtkAlgorithm* filter, vtkImageData* image);
+
+/// Field data `name`: one number.
+/// @throws InvalidInput where it is there and is not one number
+double ReadFact(vtkDataObject* data, const char* name, double missing);
+
+/// Lights as LightRig makes them: point data `light_type` and `power` (1 or 3 components); `direction`, `size` and `angle`
+/// where the types need them. No polydata or one without points: no lights. Checked.
+std::vector<Light> ReadLights(vtkPolyData* lights);
+
+/// The environment of a latitude-longitude image: point data `radiance`, 1 (grey) or 3 components, of width x height x 1
+/// points. No image: an empty environment. Checked.
+Environment ReadEnvironment(vtkImageData* image);
+
+/// Add values to an image's cells, without copying them.
+/// @param values  `components` a cell, x fastest
+void AddCells(vtkImageData* image, const char* name, std::vector<float>&& values, int components);
+
+/// Add field data.
+/// @param values  tuples of `components` one after the other
+void AddFact(vtkDataObject* data, const char* name, const std::vector<double>& values, int components = 1);
+void AddFact(vtkDataObject* data, const char* name, const std::vector<std::string>& values);
+
+/// Everything a solver found but its convergence: cells `fluence` (made the active scalars), `fluence_direct`, `net_flux`,
+/// `scattered_radiance` (channels fastest, then stored directions), those that are not empty; field data `energy_balance`,
+/// `face_power_out`, `stored_directions`, `left_out`, `device`.
+void WriteLight(LightField&& light, vtkImageData* output);
+
+/// One row an iteration: `iteration`, `seconds`, `residual`, `absorbed`, `escaped`, `left_over`.
+void WriteConvergence(const std::vector<ConvergenceRow>& rows, vtkTable* table);
+
+/// Reports to the filter's progress; says stop when the filter is asked to abort.
+Monitor MonitorOf(vtkAlgorithm* filter);
+
+/// Runs the work of a filter's RequestData. Whatever it throws becomes one error of the filter; the outputs are empty then
+/// and after an abort, which is no error.
+/// @return what RequestData is to return: always 1. With 0 the pipeline would add an error that says less, and run the
+///   filter again, in vain, with every update.
+int Guarded(vtkAlgorithm* filter, vtkInformationVector* outputs, const std::function<void()>& work);
+}
