@@ -2,6 +2,7 @@
 
 #include "../Device/Errors.h"
 
+#include <algorithm>
 #include <cmath>
 #include <string>
 
@@ -44,6 +45,73 @@ std::array<std::array<double, 3>, 2> RectangleEdges(const Light& light)
   const double s = light.size[1] / length;
   return { { { light.size[0] * ex, light.size[0] * ey, 0.0 },
     { -s * z * ey, s * z * ex, s * (x * ey - y * ex) } } }; // direction x first edge
+}
+
+namespace
+{
+Environment Shifted(const Environment& environment, int columns)
+{
+  Environment shifted = environment;
+  const std::size_t row = 3 * static_cast<std::size_t>(environment.width);
+  for (auto begin = shifted.radiance.begin(); begin != shifted.radiance.end(); begin += row)
+  {
+    std::rotate(begin, begin + 3 * (environment.width - columns), begin + row);
+  }
+  return shifted;
+}
+
+/// Mean of what is seen through pixel (i, j), which looks along `axes` of the environment's own frame.
+Rgb SeenThrough(const Environment& environment, int i, int j, int up)
+{
+  constexpr int Parts = 4;
+  const double pi = std::acos(-1.0);
+  Rgb sum = {};
+  double total = 0.0;
+  for (int part = 0; part < Parts * Parts; ++part)
+  {
+    const double azimuth = 2.0 * pi * (i + (part % Parts + 0.5) / Parts) / environment.width;
+    const double polar = pi * (1.0 - (j + (part / Parts + 0.5) / Parts) / environment.height);
+    const std::array<double, 3> scene = { std::sin(polar) * std::cos(azimuth), std::sin(polar) * std::sin(azimuth),
+      std::cos(polar) };
+    const Rgb seen = Lookup(environment, { scene[(up + 1) % 3], scene[(up + 2) % 3], scene[up] });
+    for (int c = 0; c < 3; ++c)
+    {
+      sum[c] += std::sin(polar) * seen[c];
+    }
+    total += std::sin(polar);
+  }
+  return { sum[0] / total, sum[1] / total, sum[2] / total };
+}
+
+Environment StoodUp(const Environment& environment, int up)
+{
+  Environment stood = environment;
+  for (int j = 0; j < environment.height; ++j)
+  {
+    for (int i = 0; i < environment.width; ++i)
+    {
+      const Rgb seen = SeenThrough(environment, i, j, up);
+      std::copy(seen.begin(), seen.end(), stood.radiance.begin() + 3 * (static_cast<std::size_t>(j) * environment.width + i));
+    }
+  }
+  return stood;
+}
+}
+
+Environment Turned(const Environment& environment, int up, double degrees)
+{
+  if (up < 0 || up > 2 || !std::isfinite(degrees))
+  {
+    throw InvalidInput("An environment stands up along axis 0, 1 or 2 (x, y, z) and is turned by a finite angle.");
+  }
+  if (environment.Empty())
+  {
+    return environment;
+  }
+  const double turn = degrees / 360.0 - std::floor(degrees / 360.0);
+  const int columns = static_cast<int>(std::lround(turn * environment.width)) % environment.width;
+  const Environment turned = columns == 0 ? environment : Shifted(environment, columns);
+  return up == 2 ? turned : StoodUp(turned, up);
 }
 
 namespace

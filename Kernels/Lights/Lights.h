@@ -56,6 +56,11 @@ std::array<std::array<double, 3>, 2> RectangleEdges(const Light& light);
 /// travels the other way), bilinear between pixels.
 Rgb Lookup(const Environment& environment, const std::array<double, 3>& direction);
 
+/// The same environment standing otherwise: its up (+z) along axis `up` of the scene (0, 1, 2: x, y, z; the other axes
+/// follow in their cyclic order), then turned by `degrees` about that axis. A turn about z moves whole pixels, so that
+/// nothing is lost; other axes are resampled.
+Environment Turned(const Environment& environment, int up, double degrees);
+
 /// @throws InvalidInput where a light has a zero direction, a negative or infinite power, no size; an environment has a
 ///   negative or infinite pixel (names the first)
 void Check(const Illumination& illumination);
