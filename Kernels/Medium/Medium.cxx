@@ -6,8 +6,6 @@
 
 namespace tyndall
 {
-namespace
-{
 std::string VoxelName(const Grid& grid, std::size_t voxel)
 {
   const std::size_t nx = static_cast<std::size_t>(grid.size[0]);
@@ -16,6 +14,8 @@ std::string VoxelName(const Grid& grid, std::size_t voxel)
     std::to_string(voxel / (nx * ny)) + ")";
 }
 
+namespace
+{
 void CheckField(const Field& field, const char* name, const Grid& grid)
 {
   if (!field.values)

@@ -34,6 +34,9 @@ struct Medium
   }
 };
 
+/// "(i, j, k)" of the voxel that is `voxel`th in an array.
+std::string VoxelName(const Grid& grid, std::size_t voxel);
+
 /// @throws InvalidInput where the grid is empty or has a spacing that is not a positive number, where a coefficient is
 ///   negative or not finite (names the array and the first such voxel), or where g is outside (-1, 1)
 void Check(const Medium& medium);

@@ -1,0 +1,148 @@
+#ifndef vtkParticipatingMedium_h
+#define vtkParticipatingMedium_h
+
+#include "vtkImageAlgorithm.h"
+#include "vtkTyndallModule.h" // for export macro
+
+/**
+ * @class vtkParticipatingMedium
+ * @brief turns a density into a medium that absorbs, scatters and emits light
+ *
+ * Input: vtkImageData with an array of one component, of cells or of points (averaged to cells): the active scalars, or
+ * the array chosen by SetInputArrayToProcess(0, ...).
+ *
+ * Output: the input with the cell arrays
+ *
+ * | array      | components           | unit              |
+ * |------------|----------------------|-------------------|
+ * | `sigma_a`  | 1, or 3 where it has colour | 1/length   |
+ * | `sigma_s`  | 1, or 3 where it has colour | 1/length   |
+ * | `emission` | 1 or 3; only where EmissionScale is not 0 | W/(length^3 sr) |
+ *
+ * and the field data `g` (mean cosine of the phase function). Lengths are in the dataset's own unit.
+ *
+ * With the relative density rho = (density - MinimumDensity) / (MaximumDensity - MinimumDensity), at least 0:
+ *
+ *     sigma_t  = rho ExtinctionScale
+ *     sigma_s  = Albedo sigma_t,   sigma_a = (1 - Albedo) sigma_t
+ *     emission = rho EmissionScale EmissionColor
+ *
+ * A preset gives sigma_s, sigma_a (1/mm at rho = 1) and g of a real medium instead of Albedo and MeanCosine;
+ * ExtinctionScale then multiplies them, 1 being the medium as it was measured, and MillimetresPerUnit says how long a unit
+ * of the dataset is.
+ *
+ * @sa vtkLightPropagationMaps
+ */
+class TYNDALL_EXPORT vtkParticipatingMedium : public vtkImageAlgorithm
+{
+public:
+  static vtkParticipatingMedium* New();
+  vtkTypeMacro(vtkParticipatingMedium, vtkImageAlgorithm);
+  void PrintSelf(ostream& os, vtkIndent indent) override;
+
+  /// Media for SetPreset. Sources: GetPresetSource.
+  enum Presets
+  {
+    CUSTOM = 0,
+    CLOUD,     ///< rho 1: 1 g of liquid water per cubic metre, droplets of 10 um
+    FOG,       ///< rho 1: 1 droplet per cubic centimetre
+    SMOKE,     ///< rho 1: 1 g of soot per cubic metre
+    SKIM_MILK, ///< this and the following: rho 1 is the medium as it was measured
+    WHOLE_MILK,
+    CREAM,
+    ESPRESSO,
+    KETCHUP,
+    MARBLE,
+    SKIN_1,
+    SKIN_2
+  };
+
+  ///@{
+  /// The medium, one of Presets. Default CUSTOM: Albedo and MeanCosine.
+  vtkSetClampMacro(Preset, int, CUSTOM, SKIN_2);
+  vtkGetMacro(Preset, int);
+  ///@}
+
+  ///@{
+  /// Name, meaning of density 1, and source of a preset; empty for CUSTOM.
+  static const char* GetPresetName(int preset);
+  static const char* GetPresetDensity(int preset);
+  static const char* GetPresetSource(int preset);
+  ///@}
+
+  ///@{
+  /// Density that is vacuum, as is what lies below it. Default 0.
+  vtkSetMacro(MinimumDensity, double);
+  vtkGetMacro(MinimumDensity, double);
+  ///@}
+
+  ///@{
+  /// Density with relative density 1; what lies above it is denser in proportion. Default 1, valid from MinimumDensity on;
+  /// if equal to it, everything above it has relative density 1.
+  vtkSetMacro(MaximumDensity, double);
+  vtkGetMacro(MaximumDensity, double);
+  ///@}
+
+  ///@{
+  /// Extinction coefficient sigma_t at relative density 1, 1/length; with a preset the multiple of its coefficients.
+  /// Default 1, valid [0, infinity).
+  vtkSetMacro(ExtinctionScale, double);
+  vtkGetMacro(ExtinctionScale, double);
+  ///@}
+
+  ///@{
+  /// Part of the extinguished light that is scattered, not absorbed; red, green, blue. Default (0.9, 0.9, 0.9), valid
+  /// [0, 1]. Not used with a preset.
+  vtkSetVector3Macro(Albedo, double);
+  vtkGetVector3Macro(Albedo, double);
+  ///@}
+
+  ///@{
+  /// Mean cosine g of the angle by which light is scattered (Henyey-Greenstein): 0 isotropic, near 1 forward. Default 0,
+  /// valid (-1, 1). Not used with a preset.
+  vtkSetMacro(MeanCosine, double);
+  vtkGetMacro(MeanCosine, double);
+  ///@}
+
+  ///@{
+  /// Radiance emitted per unit length at relative density 1, W/(length^3 sr), times EmissionColor. Default 0, valid
+  /// [0, infinity).
+  vtkSetMacro(EmissionScale, double);
+  vtkGetMacro(EmissionScale, double);
+  ///@}
+
+  ///@{
+  /// Red, green and blue part of EmissionScale. Default (1, 1, 1), valid [0, infinity).
+  vtkSetVector3Macro(EmissionColor, double);
+  vtkGetVector3Macro(EmissionColor, double);
+  ///@}
+
+  ///@{
+  /// Length of the dataset's unit in millimetres, for presets: 1 for a scan in mm, 1000 for metres. Default 1, valid
+  /// (0, infinity).
+  vtkSetMacro(MillimetresPerUnit, double);
+  vtkGetMacro(MillimetresPerUnit, double);
+  ///@}
+
+protected:
+  vtkParticipatingMedium();
+  ~vtkParticipatingMedium() override;
+
+  int RequestData(vtkInformation* request, vtkInformationVector** inputs, vtkInformationVector* outputs) override;
+
+private:
+  vtkParticipatingMedium(const vtkParticipatingMedium&) = delete;
+  void operator=(const vtkParticipatingMedium&) = delete;
+
+  int Preset = CUSTOM;
+  double MinimumDensity = 0.0;
+  double MaximumDensity = 1.0;
+  double ExtinctionScale = 1.0;
+  double Albedo[3] = { 0.9, 0.9, 0.9 };
+  double MeanCosine = 0.0;
+  double EmissionScale = 0.0;
+  double EmissionColor[3] = { 1.0, 1.0, 1.0 };
+  double MillimetresPerUnit = 1.0;
+};
+
+#endif
