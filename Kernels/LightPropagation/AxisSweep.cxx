@@ -15,8 +15,8 @@ constexpr int MaxMembers = 8;
 constexpr int RingRows = 4;
 constexpr double SecondsPerLaunch = 0.08;
 constexpr double SecondsPerRay = 1e-9; ///< a ray through a plane of voxels on a slow core: only sizes the launches
-constexpr int MaxPasses = 64;           ///< round a periodic axis in one sweep
-constexpr double NothingLeft = 1e-7;    ///< of what came in: rays that need not go round again
+constexpr int PlanesPerRound = 128; ///< at least, when rays go round a periodic axis: a short one several times
+constexpr double NothingLeft = 1e-7; ///< of what was on the way after the first time: not worth going round again
 
 // As bundle_info, crossing_info, unit_info, plane_layout in SweepLayout.cl and Sweep.cl.
 struct BundleOnDevice
@@ -25,6 +25,7 @@ struct BundleOnDevice
   cl_float power, cosine, sineU, sineV;
   cl_int move[MaxMembers][4];
 };
+using BundleMaps = cl_int2; ///< members, first float of the maps
 struct CrossingOnDevice
 {
   cl_int stages, moveU[3], moveV[3];
@@ -99,15 +100,17 @@ struct AxisSweep::Implementation
   std::vector<UnitOnDevice> Units;
   std::vector<cl_int2> Schedule; ///< [launch][unit]
   int Launches = 0;
+  int Laps = 1; ///< times that a sweep's rays start anew on a short periodic axis, so that their pattern has room
+  std::vector<cl_int2> RoundSchedule; ///< for going round a periodic axis, one unit at a time
   std::size_t MapsEachWay = 0;
   std::size_t OutsideEachWay = 0;
   std::size_t RadianceEachWay = 0;
-  bool Carrying = false; ///< maps hold rays that went round a periodic axis in the sweep before
 
   Buffer<float> Maps, Outside, Radiance, Scratch, Tally, Sums;
   Buffer<BundleOnDevice> BundleBuffer;
+  Buffer<BundleMaps> MapBuffer;
   Buffer<UnitOnDevice> UnitBuffer;
-  Buffer<cl_int2> ScheduleBuffer;
+  Buffer<cl_int2> ScheduleBuffer, RoundScheduleBuffer;
   Buffer<CrossingOnDevice> FirstCrossings;
   Buffer<cl_float4> FirstLengths;
 
@@ -129,14 +132,32 @@ struct AxisSweep::Implementation
       }
     }
     this->Vector = device.FloatVectorWidth() >= 16 ? 16 : device.FloatVectorWidth() >= 8 ? 8 : 4;
+    this->LayLaps();
     this->LayPlane();
     this->LayBundles();
     this->LayUnits();
     this->LaySchedule();
+    this->LayRounds();
     this->Allocate();
   }
 
   int Planes() const { return this->TheGrid.size[this->Axes.axis]; }
+
+  int PatternPlanes() const { return this->Planes() * this->Laps; } ///< that the rays of a sweep start in
+
+  /// On a periodic axis of few planes the rays that start in them would all cross in one and the same way. Let them start
+  /// in several laps instead, each with its part of the power.
+  void LayLaps()
+  {
+    if (this->Periodic[this->Axes.axis])
+    {
+      this->Laps = (PlanesPerRound + this->Planes() - 1) / this->Planes();
+    }
+    for (Bundle& bundle : this->Bundles)
+    {
+      bundle.power /= this->Laps;
+    }
+  }
 
   void LayPlane()
   {
@@ -262,6 +283,16 @@ struct AxisSweep::Implementation
     }
   }
 
+  void LayRounds()
+  {
+    const std::size_t units = this->Units.size();
+    this->RoundSchedule.assign(units * units, cl_int2{ { 0, 0 } });
+    for (std::size_t u = 0; u < units; ++u)
+    {
+      this->RoundSchedule[u * units + u] = { { 0, Int(this->PatternPlanes()) } };
+    }
+  }
+
   int RaysPerUnit() const
   {
     std::size_t most = 0;
@@ -285,21 +316,29 @@ struct AxisSweep::Implementation
     this->Radiance = Buffer<float>(device, 2 * this->RadianceEachWay, "the light that comes in sideways");
     this->Scratch = Buffer<float>(device, this->Units.size() * this->ScratchFloats(), "the planes being crossed");
     this->Tally =
-      Buffer<float>(device, this->Units.size() * this->Planes() * 4 * this->Channels, "the power that leaves sideways");
-    this->Sums = Buffer<float>(device, static_cast<std::size_t>(this->Layout.sizeV) * this->Channels, "sums");
+      Buffer<float>(device, this->Units.size() * this->PatternPlanes() * 4 * this->Channels, "the power that leaves sideways");
+    this->Sums = Buffer<float>(device, this->Bundles.size() * this->Layout.sizeV * this->Channels, "sums");
     this->BundleBuffer = Buffer<BundleOnDevice>(device, this->BundleRows, "the bundles of rays");
+    std::vector<BundleMaps> maps;
+    for (const BundleOnDevice& bundle : this->BundleRows)
+    {
+      maps.push_back({ { bundle.members, bundle.map } });
+    }
+    this->MapBuffer = Buffer<BundleMaps>(device, maps, "the bundles of rays");
     this->UnitBuffer = Buffer<UnitOnDevice>(device, this->Units, "the units of work");
     this->ScheduleBuffer = Buffer<cl_int2>(device, this->Schedule, "the schedule");
-    this->FirstCrossings = Buffer<CrossingOnDevice>(device, this->Crossings(0), "the ray pattern");
+    this->RoundScheduleBuffer = Buffer<cl_int2>(device, this->RoundSchedule, "the schedule");
+    this->FirstCrossings = Buffer<CrossingOnDevice>(device, this->Crossings(0, this->PatternPlanes()), "the ray pattern");
     this->FirstLengths = Buffer<cl_float4>(device, this->Lengths(), "the ray pattern");
     this->Scratch.Fill(0.0f);
+    this->Maps.Fill(0.0f);
   }
 
   /// [plane][bundle], planes counted on from `firstPlane`.
-  std::vector<CrossingOnDevice> Crossings(int firstPlane) const
+  std::vector<CrossingOnDevice> Crossings(int firstPlane, int planes) const
   {
     std::vector<CrossingOnDevice> rows;
-    for (int k = 0; k < this->Planes(); ++k)
+    for (int k = 0; k < planes; ++k)
     {
       for (const Bundle& bundle : this->Bundles)
       {
@@ -324,7 +363,7 @@ struct AxisSweep::Implementation
     std::vector<cl_float4> rows;
     for (const UnitOnDevice& unit : this->Units)
     {
-      for (int k = 0; k < this->Planes(); ++k)
+      for (int k = 0; k < this->PatternPlanes(); ++k)
       {
         std::array<double, 4> sum = {};
         for (int b = unit.firstBundle; b < unit.firstBundle + unit.bundles; ++b)
@@ -473,7 +512,7 @@ struct AxisSweep::Implementation
   std::array<double, 2> SidewaysCrossings(const Bundle& bundle) const
   {
     std::array<double, 2> moves = {};
-    for (int k = 0; k < this->Planes(); ++k)
+    for (int k = 0; k < this->PatternPlanes(); ++k)
     {
       const PlaneCrossing crossing = bundle.Crossing(k);
       for (int s = 1; s < crossing.count; ++s)
@@ -488,7 +527,7 @@ struct AxisSweep::Implementation
   double DiagonalCrossings(const Bundle& bundle) const
   {
     double moves = 0.0;
-    for (int k = 0; k < this->Planes(); ++k)
+    for (int k = 0; k < this->PatternPlanes(); ++k)
     {
       const PlaneCrossing crossing = bundle.Crossing(k);
       for (int s = 1; s < crossing.count; ++s)
@@ -501,7 +540,7 @@ struct AxisSweep::Implementation
 
   void EnterNothing()
   {
-    if (!this->Carrying)
+    if (!this->Periodic[this->Axes.axis]) // else they hold what is on the way from the sweep before
     {
       this->Maps.Fill(0.0f);
     }
@@ -510,23 +549,64 @@ struct AxisSweep::Implementation
     this->Scratch.Fill(0.0f); // the columns beside the rows hold what came in last time
   }
 
+  /// From where rays start to where they leave the axis for the first time, or the last lap ends.
+  void Launch(const SweepVolume& volume, bool source, bool border, SweepTally& tally, const Monitor& monitor)
+  {
+    if (this->Laps == 1)
+    {
+      this->Launch(volume, source, border, this->FirstCrossings, this->ScheduleBuffer, this->Launches, tally, monitor);
+    }
+    else
+    {
+      this->Launch(volume, source, border, this->FirstCrossings, this->RoundScheduleBuffer, Int(this->Units.size()),
+        tally, monitor);
+    }
+  }
+
+  /// Rays that left a periodic axis come back on the other side, until next to nothing is on the way.
+  void GoRound(const SweepVolume& volume, int mostPlanes, SweepTally& tally, const Monitor& monitor)
+  {
+    const auto onTheWay = [this]() {
+      const Rgb up = this->PowerInMaps(0);
+      const Rgb down = this->PowerInMaps(1);
+      return Rgb{ up[0] + down[0], up[1] + down[1], up[2] + down[2] };
+    };
+    const auto sum = [](const Rgb& rgb) { return rgb[0] + rgb[1] + rgb[2]; };
+    this->Outside.Fill(0.0f);
+    this->Scratch.Fill(0.0f);
+    tally.onTheWay = onTheWay();
+    const double atFirst = sum(tally.onTheWay);
+    for (int gone = this->PatternPlanes(); gone < mostPlanes && sum(tally.onTheWay) > NothingLeft * atFirst;
+         gone += this->PatternPlanes())
+    {
+      const Buffer<CrossingOnDevice> crossings(
+        this->TheDevice, this->Crossings(gone, this->PatternPlanes()), "the ray pattern");
+      this->Launch(
+        volume, false, false, crossings, this->RoundScheduleBuffer, Int(this->Units.size()), tally, monitor);
+      tally.onTheWay = onTheWay();
+    }
+  }
+
   void Launch(const SweepVolume& volume, bool source, bool border, const Buffer<CrossingOnDevice>& crossings,
-    const Monitor& monitor)
+    const Buffer<cl_int2>& schedule, int launches, SweepTally& tally, const Monitor& monitor)
   {
     Device& device = this->TheDevice;
+    this->Tally.Fill(0.0f);
     cl::Kernel kernel = this->SweepKernel(source, border, volume.flux != nullptr);
     const Buffer<float>& flux = volume.flux ? *volume.flux : *volume.path;
-    for (int launch = 0; launch < this->Launches; ++launch)
+    for (int launch = 0; launch < launches; ++launch)
     {
       With(kernel, *volume.sigma_t, cl_ulong(volume.sigma_t_first), *volume.source, *volume.path, flux,
         cl_ulong(volume.first), cl_ulong(volume.stride), this->Maps, cl_ulong(this->MapsEachWay), this->Outside,
         cl_uint(this->OutsideEachWay), this->Radiance, cl_uint(this->RadianceEachWay), this->Scratch, this->UnitBuffer,
-        this->BundleBuffer, Int(this->Bundles.size()), crossings, this->FirstLengths, this->ScheduleBuffer, launch,
+        this->BundleBuffer, Int(this->Bundles.size()), crossings, this->FirstLengths,
+        Int(this->PatternPlanes()), schedule, launch,
         this->Tally, this->Layout, Int(this->Axes.axis));
       device.Queue().enqueueNDRangeKernel(kernel, cl::NullRange, cl::NDRange(this->Units.size()), cl::NDRange(1));
       device.Finish();
-      Report(monitor, (launch + 1.0) / this->Launches);
+      Report(monitor, (launch + 1.0) / launches);
     }
+    this->CountSideways(tally);
   }
 
   void CountSideways(SweepTally& tally) const
@@ -542,19 +622,16 @@ struct AxisSweep::Implementation
   /// Power in the maps of one way.
   Rgb PowerInMaps(int way)
   {
+    cl::Kernel kernel = this->TheDevice.Kernel("map_power", { kernel_source::Numerics, kernel_source::Collect });
+    With(kernel, this->Maps, cl_ulong(way * this->MapsEachWay), this->MapBuffer, this->Layout.sizeV, Int(this->Channels),
+      Int(this->Row), Int(this->Vector), this->Layout.sizeU, this->Sums);
+    this->TheDevice.Queue().enqueueNDRangeKernel(
+      kernel, cl::NullRange, cl::NDRange(this->Layout.sizeV, this->Bundles.size()), cl::NDRange(1, 1));
     Rgb power = {};
-    cl::Kernel kernel = this->TheDevice.Kernel(
-      "map_power", { kernel_source::Numerics, kernel_source::Collect }, "-DREAL_WIDTH=" + std::to_string(this->Vector));
-    for (const BundleOnDevice& bundle : this->BundleRows)
+    const std::vector<float> sums = this->Sums.Read();
+    for (std::size_t i = 0; i < sums.size(); ++i)
     {
-      With(kernel, this->Maps, cl_ulong(way * this->MapsEachWay + bundle.map), bundle.members, Int(this->Channels),
-        Int(this->Row), this->Layout.sizeU, this->Sums);
-      this->TheDevice.Queue().enqueueNDRangeKernel(kernel, cl::NullRange, cl::NDRange(this->Layout.sizeV), cl::NDRange(1));
-      const std::vector<float> sums = this->Sums.Read();
-      for (std::size_t i = 0; i < sums.size(); ++i)
-      {
-        power[i % this->Channels] += sums[i];
-      }
+      power[i % this->Channels] += sums[i];
     }
     return power;
   }
@@ -581,8 +658,8 @@ int AxisSweep::DirectionCount() const
   return count;
 }
 
-SweepTally AxisSweep::Run(
-  const SweepVolume& volume, const Boundary& boundary, bool hasSource, const Monitor& monitor)
+SweepTally AxisSweep::Run(const SweepVolume& volume, const Boundary& boundary, bool hasSource, int mostPlanes,
+  const Monitor& monitor)
 {
   Implementation& self = *this->Inner;
   SweepTally tally;
@@ -594,16 +671,20 @@ SweepTally AxisSweep::Run(
   {
     self.EnterNothing();
   }
-  self.Launch(volume, hasSource, static_cast<bool>(boundary), self.FirstCrossings, monitor);
-  self.CountSideways(tally);
+  self.Launch(volume, hasSource, static_cast<bool>(boundary), tally, monitor);
 
   const int axis = self.Axes.axis;
+  if (self.Periodic[axis])
+  {
+    self.GoRound(volume, mostPlanes, tally, monitor);
+    return tally;
+  }
   for (int way = 0; way < 2; ++way)
   {
     const Rgb power = self.PowerInMaps(way);
     for (int c = 0; c < self.Channels; ++c)
     {
-      (self.Periodic[axis] ? tally.onTheWay : tally.out[2 * axis + 1 - way])[c] += power[c];
+      tally.out[2 * axis + 1 - way][c] += power[c];
     }
   }
   return tally;

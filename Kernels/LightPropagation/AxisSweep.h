@@ -51,8 +51,10 @@ public:
   /// Once through the volume, both ways.
   /// @param boundary  what comes in; empty: nothing
   /// @param hasSource  whether volume.source is to be read
+  /// @param mostPlanes  that rays go on a periodic axis before they wait for the next Run
   /// @param monitor  told fractions of this sweep
-  SweepTally Run(const SweepVolume& volume, const Boundary& boundary, bool hasSource, const Monitor& monitor);
+  SweepTally Run(const SweepVolume& volume, const Boundary& boundary, bool hasSource, int mostPlanes,
+    const Monitor& monitor);
 
   int DirectionCount() const; ///< rays families carried, both ways
 

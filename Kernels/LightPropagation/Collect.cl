@@ -52,26 +52,35 @@ __kernel void collect(__global float* path, __global float* fluence, __global fl
   tally[get_global_id(0)] = (float4)(sum_of(absorbed), sum_of(scattered), sum_of(gathered), sum_of(all));
 }
 
-// Power of the rays in a bundle's maps, a work-item a row: what leaves at the far end of an axis.
-// maps  [row][member][channel][row_floats], rays in the first `size_u` floats after REAL_WIDTH
-// sums  [row][channel]
-__kernel void map_power(const __global float* maps, ulong first, int members, int channels, int row_floats, int size_u,
-  __global float* sums)
+// Power of the rays in the maps, a work-item a row of a bundle: what leaves at the far end of an axis.
+// maps     [bundle][row][member][channel][row_floats], rays in the first `size_u` floats after `border`
+// bundles  [bundle] members, first float of its maps
+// sums     [bundle][row][channel]
+__kernel void map_power(const __global float* maps, ulong first, const __global int2* bundles, int rows, int channels,
+  int row_floats, int border, int size_u, __global float* sums)
 {
   const int row = get_global_id(0);
-  maps += first + (ulong)row * members * channels * row_floats + REAL_WIDTH;
+  const int2 bundle = bundles[get_global_id(1)];
+  maps += first + bundle.y + (ulong)row * bundle.x * channels * row_floats + border;
   for (int c = 0; c < channels; ++c)
   {
     float total = 0.0f;
-    for (int m = 0; m < members; ++m)
+    for (int m = 0; m < bundle.x; ++m)
     {
-      float partial[4] = { 0.0f, 0.0f, 0.0f, 0.0f };
-      for (int x = 0; x < size_u; ++x)
+      const __global float* rays = maps + (m * channels + c) * row_floats;
+      float4 partial = (float4)(0.0f);
+      int x = 0;
+      for (; x + 4 <= size_u; x += 4)
       {
-        partial[x & 3] += maps[(m * channels + c) * row_floats + x];
+        partial += vload4(0, rays + x);
       }
-      total += (partial[0] + partial[1]) + (partial[2] + partial[3]);
+      float rest = 0.0f;
+      for (; x < size_u; ++x)
+      {
+        rest += rays[x];
+      }
+      total += ((partial.x + partial.y) + (partial.z + partial.w)) + rest;
     }
-    sums[row * channels + c] = total;
+    sums[(get_global_id(1) * rows + row) * channels + c] = total;
   }
 }

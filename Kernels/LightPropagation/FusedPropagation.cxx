@@ -19,6 +19,8 @@ constexpr std::size_t Padding = 16;  ///< the widest vector: every channel begin
 constexpr std::size_t Chunk = 4096;  ///< as in Collect.cl
 constexpr int BeamResolution = 2;    ///< rays of a directional light per voxel edge
 constexpr int MostOrders = 100000;
+constexpr int ManyPlanes = 8192; ///< a ray goes round a periodic axis before it is given up, or waits for the next order
+constexpr int FewPlanes = 256;   ///< the same where there will be more orders as long as it matters
 
 double Total(const Rgb& values)
 {
@@ -52,6 +54,11 @@ public:
       const Monitor ofOrder = monitor
         ? Monitor([&](double done) { return monitor(this->Progress(order, done)); })
         : Monitor();
+      if (order == 0)
+      {
+        this->PropagateLights(ofOrder);
+        this->Stranded = this->OnTheWay;
+      }
       this->PropagateOrder(order, ofOrder);
       this->CollectOrder(order);
       ++order;
@@ -76,7 +83,8 @@ private:
   void MakeSweeps();
   void PropagateOrder(int order, const Monitor& monitor);
   void PropagateLights(const Monitor& monitor);
-  void Sweep(AxisSweep& sweep, const AxisSweep::Boundary& boundary, bool hasSource, const Monitor& monitor);
+  void Sweep(AxisSweep& sweep, const AxisSweep::Boundary& boundary, bool hasSource, int mostPlanes,
+    const Monitor& monitor);
   AxisSweep::Boundary BoundaryOfOrder(int order) const;
   void CollectOrder(int order);
   bool Done(int orders) const;
@@ -103,6 +111,8 @@ private:
   LightField Result;
   std::chrono::steady_clock::time_point Start;
   Rgb Scattered = {};     ///< W, by the order just done
+  Rgb OnTheWay = {};      ///< W, rays that still go round a periodic axis
+  Rgb Stranded = {};      ///< W, of lights whose rays go round a periodic axis without end
   double Ratio = 0.0;     ///< of this order's light to that of the one before
   double Residual = 1.0;
   double LastGathered = 0.0;
@@ -231,8 +241,8 @@ AxisSweep::Boundary Solver::BoundaryOfOrder(int order) const
 }
 
 /// Through one axis: all channels at once where they share sigma_t, else one by one.
-void Solver::Sweep(
-  AxisSweep& sweep, const AxisSweep::Boundary& boundary, bool hasSource, const Monitor& monitor)
+void Solver::Sweep(AxisSweep& sweep, const AxisSweep::Boundary& boundary, bool hasSource, int mostPlanes,
+  const Monitor& monitor)
 {
   const int rounds = this->SharedExtinction ? 1 : this->Channels;
   for (int round = 0; round < rounds; ++round)
@@ -250,7 +260,7 @@ void Solver::Sweep(
     const AxisSweep::Boundary ofChannel = boundary && rounds > 1
       ? AxisSweep::Boundary([&](int direction, int face) { return Rgb{ boundary(direction, face)[round], 0.0, 0.0 }; })
       : boundary;
-    const SweepTally tally = sweep.Run(volume, ofChannel, hasSource, monitor);
+    const SweepTally tally = sweep.Run(volume, ofChannel, hasSource, mostPlanes, monitor);
     for (int c = 0; c < volume.channels; ++c)
     {
       for (int face = 0; face < 6; ++face)
@@ -259,6 +269,7 @@ void Solver::Sweep(
         this->Result.balance.escaped[round + c] += tally.out[face][c];
         this->Result.facePowerOut[face][round + c] += tally.out[face][c];
       }
+      this->OnTheWay[round + c] += tally.onTheWay[c];
     }
   }
 }
@@ -279,18 +290,16 @@ void Solver::PropagateLights(const Monitor& monitor)
     const int axis = MarchingAxis(grid, omega);
     AxisSweep beam(this->TheDevice, grid, axis, BeamAlong(axis, grid, omega, BeamResolution),
       this->SharedExtinction ? this->Channels : 1, this->Settings.periodic);
-    this->Sweep(beam, [&](int, int) { return light.power; }, false, monitor);
+    this->Sweep(beam, [&](int, int) { return light.power; }, false, ManyPlanes, monitor);
   }
 }
 
 void Solver::PropagateOrder(int order, const Monitor& monitor)
 {
-  if (order == 0)
-  {
-    this->PropagateLights({});
-  }
   const AxisSweep::Boundary boundary = this->BoundaryOfOrder(order);
-  if (!boundary && !this->Shining)
+  const bool nothing = !boundary && !this->Shining && Total(this->OnTheWay) == 0.0;
+  this->OnTheWay = {};
+  if (nothing)
   {
     return;
   }
@@ -299,7 +308,8 @@ void Solver::PropagateOrder(int order, const Monitor& monitor)
     const Monitor ofSweep = monitor
       ? Monitor([&](double done) { return monitor((static_cast<double>(s) + done) / this->Sweeps.size()); })
       : Monitor();
-    this->Sweep(*this->Sweeps[s], boundary, this->Shining, ofSweep);
+    this->Sweep(*this->Sweeps[s], boundary, this->Shining, this->Settings.maximumOrders > 0 ? ManyPlanes : FewPlanes,
+      ofSweep);
   }
 }
 
@@ -328,14 +338,17 @@ void Solver::CollectOrder(int order)
     }
   }
   all *= this->TheMedium.grid.VoxelVolume();
-  this->Result.balance.leftOver = this->Scattered;
+  for (int c = 0; c < 3; ++c)
+  {
+    this->Result.balance.leftOver[c] = this->Scattered[c] + this->OnTheWay[c] + this->Stranded[c];
+  }
   this->Shining = Total(this->Scattered) > 0.0;
   this->Ratio = this->LastGathered > 0.0 ? gathered / this->LastGathered : 0.0;
   this->LastGathered = gathered;
   // Orders fall off geometrically in the end; what is still to come is the rest of that series.
   const double ratio = order > 0 ? std::min(this->Ratio, 1.0 - 1e-12) : 0.5;
   this->Residual = all > 0.0 ? gathered / all * ratio / (1.0 - ratio) : 0.0;
-  if (!this->Shining)
+  if (!this->Shining && Total(this->OnTheWay) == 0.0)
   {
     this->Residual = 0.0;
   }
@@ -350,7 +363,7 @@ void Solver::CollectOrder(int order)
 
 bool Solver::Done(int orders) const
 {
-  if (!this->Shining || orders >= MostOrders)
+  if (this->Residual == 0.0 || orders >= MostOrders)
   {
     return true;
   }

@@ -81,7 +81,7 @@ static void unpack(const plane_layout* layout, __global float* planes, int first
   for (int j = 0; j < count; ++j)
   {
     __global float* plane = planes + j * PLANES * rows;
-    const float4 l = lengths[backward ? -(first + j) : first + j];
+    const float4 l = lengths[backward ? count - 1 - j : j];
     for (int at = 0; at < rows; at += REAL_WIDTH)
     {
       const real sigma = load_real(at, plane + PLANE_SIGMA * rows);
@@ -145,13 +145,13 @@ static void cross_plane(sweep_state* state, __global float* maps, const __global
 // outside, radiance   rays that come in, both ways as maps
 // crossings [plane from where rays start][bundle]
 // lengths   [unit][plane from where rays start], see unpack
-// schedule  [launch][unit] first plane and end, counted from where rays start
+// schedule  [launch][unit] first plane and end, counted from where rays start; beyond the last plane the axis begins anew
 // tally     [plane from where rays start][unit][-u, +u, -v, +v][channel] W that left
 __kernel __attribute__((reqd_work_group_size(1, 1, 1))) void sweep(const __global float* sigma,
   ulong sigma_first, const __global float* source, __global float* path, __global float* flux, ulong first_value,
   ulong stride, __global float* maps, ulong maps_each_way, const __global float* outside, uint outside_each_way, const __global float* radiance, uint radiance_each_way,
   __global float* scratch, const __global unit_info* units, const __global bundle_info* bundles, int bundle_count,
-  const __global crossing_info* crossings, const __global float4* lengths, const __global int2* schedule, int launch,
+  const __global crossing_info* crossings, const __global float4* lengths, int planes_of_pattern, const __global int2* schedule, int launch,
   __global float* tally, plane_layout layout, int axis)
 {
   const int u = get_global_id(0);
@@ -174,14 +174,15 @@ __kernel __attribute__((reqd_work_group_size(1, 1, 1))) void sweep(const __globa
   outside += unit.backward * outside_each_way;
   radiance += unit.backward * radiance_each_way;
 
-  for (int begin = range.x; begin < range.y; begin += layout.block)
+  for (int begin = range.x, count; begin < range.y; begin += count)
   {
-    const int count = min(layout.block, range.y - begin);
-    const int first = unit.backward ? layout.sizeP - begin - count : begin;
+    const int lap = begin / layout.sizeP * layout.sizeP; // planes already marched when the axis began anew
+    count = min(min(layout.block, range.y - begin), lap + layout.sizeP - begin);
+    const int first = unit.backward ? layout.sizeP - (begin - lap) - count : begin - lap;
     pack(&layout, planes, first, count, sigma, source, stride);
     for (int k = begin; k < begin + count; ++k)
     {
-      const int plane = unit.backward ? layout.sizeP - 1 - k : k;
+      const int plane = unit.backward ? layout.sizeP - 1 - (k - lap) : k - lap;
       state.planes = planes + (plane - first) * PLANES * rows;
       for (int side = 0; side < 4; ++side)
       {
@@ -203,7 +204,6 @@ __kernel __attribute__((reqd_work_group_size(1, 1, 1))) void sweep(const __globa
         }
       }
     }
-    const __global float4* own = lengths + u * layout.sizeP + (unit.backward ? layout.sizeP - 1 : 0);
-    unpack(&layout, planes, first, count, path, flux, stride, own, unit.backward, axis);
+    unpack(&layout, planes, first, count, path, flux, stride, lengths + u * planes_of_pattern + begin, unit.backward, axis);
   }
 }
