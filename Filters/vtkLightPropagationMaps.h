@@ -1,0 +1,232 @@
+#ifndef vtkLightPropagationMaps_h
+#define vtkLightPropagationMaps_h
+
+#include "vtkImageAlgorithm.h"
+#include "vtkTyndallModule.h" // for export macro
+
+#include <string>
+
+namespace tyndall
+{
+struct LightField;
+}
+
+/**
+ * @class vtkLightPropagationMaps
+ * @brief light that is scattered many times in a medium, by light propagation maps
+ *
+ * Rays march through the grid in DirectionsPerFace directions of each face of a cube, one per MapResolution-th part of a
+ * voxel's edge. What they lose to a voxel becomes its scattered light, which the next scattering order propagates, until
+ * the light that is left does not matter any more.
+ *
+ * Input 0, the medium: vtkImageData with cell arrays (point arrays are averaged to cells)
+ *
+ * | array      | components | unit             | meaning                                          |
+ * |------------|------------|------------------|--------------------------------------------------|
+ * | `sigma_a`  | 1 or 3     | 1/length         | absorption coefficient                           |
+ * | `sigma_s`  | 1 or 3     | 1/length         | scattering coefficient                           |
+ * | `emission` | 1 or 3     | W/(length^3 sr)  | emitted radiance per unit length; optional       |
+ *
+ * or those chosen by SetInputArrayToProcess 0, 1 and 2, and field data `g` (default 0).
+ * Input 1, optional: lights as vtkLightRig makes them.
+ * Input 2, optional: the environment, vtkImageData in latitude-longitude layout, point array `radiance` (1 or 3 components,
+ * W/(length^2 sr)), as vtkEnvironmentReader makes it.
+ *
+ * Output 0: the medium's image with cell arrays of 1 component, or 3 where medium or light has colour
+ *
+ * | array                | components           | unit            | meaning                                           |
+ * |----------------------|----------------------|-----------------|---------------------------------------------------|
+ * | `fluence`            | 1 or 3               | W/length^2      | radiance integrated over all directions           |
+ * | `fluence_direct`     | 1 or 3               | W/length^2      | its unscattered part                              |
+ * | `net_flux`           | 3 or 9               | W/length^2      | radiance times direction, integrated (if NetFlux) |
+ * | `scattered_radiance` | StoredDirections x 1 or 3 | W/(length^2 sr) | radiance scattered into each stored direction |
+ *
+ * and field data `energy_balance` (W: entered, emitted, absorbed, escaped, left over), `face_power_out` (W through -x, +x,
+ * -y, +y, -z, +z), `left_out` (what the scene did not need), `device`, `stored_directions`.
+ * Output 1: vtkTable, one row a scattering order: `iteration`, `seconds`, `residual`, `absorbed`, `escaped`, `left_over`.
+ *
+ * Without lights, environment, SkyColor, FaceRadiance and emission the result is dark, with a warning.
+ *
+ * In a parallel pipeline light crosses the borders of pieces, so every rank asks for the whole extent and solves it, and
+ * hands on the piece it was asked for.
+ *
+ * @sa vtkParticipatingMedium vtkLightRig vtkEnvironmentReader vtkMediumRayCaster
+ * @par Thanks
+ * A. Gruson, A. Hakke Patil, R. Cozot, K. Bouatouch, S. Pattanaik: Light Propagation Maps on Parallel Graphics Architectures,
+ * EGPGV 2012. R. Fattal: Participating Media Illumination Using Light Propagation Maps, ACM Trans. Graph. 28 (2009).
+ */
+class TYNDALL_EXPORT vtkLightPropagationMaps : public vtkImageAlgorithm
+{
+public:
+  static vtkLightPropagationMaps* New();
+  vtkTypeMacro(vtkLightPropagationMaps, vtkImageAlgorithm);
+  void PrintSelf(ostream& os, vtkIndent indent) override;
+
+  enum Schemes
+  {
+    PUBLISHED = 0, ///< as Gruson et al. describe it
+    SOUND = 1      ///< conservative deposit, directions by solid angle, lights followed exactly
+  };
+
+  enum Algorithms
+  {
+    SEQUENTIAL = 0, ///< Algorithm 1: one ray after the other, on one core of the host
+    PARALLEL = 1    ///< Algorithm 2: propagation and collection on the device
+  };
+
+  ///@{
+  /// Lights (vtkPolyData) and environment (vtkImageData) by connection or as data; null: none.
+  void SetLightsConnection(vtkAlgorithmOutput* lights);
+  void SetLightsData(vtkDataObject* lights);
+  void SetEnvironmentConnection(vtkAlgorithmOutput* environment);
+  void SetEnvironmentData(vtkDataObject* environment);
+  ///@}
+
+  ///@{
+  /// How to compute: PUBLISHED, or SOUND (default).
+  vtkSetClampMacro(Scheme, int, PUBLISHED, SOUND);
+  vtkGetMacro(Scheme, int);
+  ///@}
+
+  ///@{
+  /// Which algorithm of the published scheme: SEQUENTIAL, or PARALLEL (default). The sound scheme has one only.
+  vtkSetClampMacro(Algorithm, int, SEQUENTIAL, PARALLEL);
+  vtkGetMacro(Algorithm, int);
+  ///@}
+
+  ///@{
+  /// Directions per face of a cube. Default 25, valid square numbers: 1, 4, 9, 16, 25, ...
+  vtkSetMacro(DirectionsPerFace, int);
+  vtkGetMacro(DirectionsPerFace, int);
+  ///@}
+
+  ///@{
+  /// Rays of a direction per voxel edge. Default 1, valid from 1 on.
+  vtkSetMacro(MapResolution, int);
+  vtkGetMacro(MapResolution, int);
+  ///@}
+
+  ///@{
+  /// Scattering orders at most. Default 0: as many as Tolerance takes.
+  vtkSetMacro(MaximumOrders, int);
+  vtkGetMacro(MaximumOrders, int);
+  ///@}
+
+  ///@{
+  /// Relative error of fluence at which to stop. Default 1e-4, valid (0, 1).
+  vtkSetMacro(Tolerance, double);
+  vtkGetMacro(Tolerance, double);
+  ///@}
+
+  ///@{
+  /// Whether rays that leave along an axis return on the other side. Default off.
+  vtkSetMacro(PeriodicX, bool);
+  vtkGetMacro(PeriodicX, bool);
+  vtkBooleanMacro(PeriodicX, bool);
+  vtkSetMacro(PeriodicY, bool);
+  vtkGetMacro(PeriodicY, bool);
+  vtkBooleanMacro(PeriodicY, bool);
+  vtkSetMacro(PeriodicZ, bool);
+  vtkGetMacro(PeriodicZ, bool);
+  vtkBooleanMacro(PeriodicZ, bool);
+  ///@}
+
+  ///@{
+  /// Diffuse radiance that enters through the faces -x, +x, -y, +y, -z, +z, W/(length^2 sr). Default 0, valid
+  /// [0, infinity).
+  vtkSetVector6Macro(FaceRadiance, double);
+  vtkGetVector6Macro(FaceRadiance, double);
+  ///@}
+
+  ///@{
+  /// Radiance from every direction alike, red, green, blue, added to the environment, W/(length^2 sr). Default 0, valid
+  /// [0, infinity).
+  vtkSetVector3Macro(SkyColor, double);
+  vtkGetVector3Macro(SkyColor, double);
+  ///@}
+
+  ///@{
+  /// Axis of the scene along which the environment's up points: 0, 1, 2 for x, y, z. Default 2.
+  vtkSetClampMacro(EnvironmentUp, int, 0, 2);
+  vtkGetMacro(EnvironmentUp, int);
+  ///@}
+
+  ///@{
+  /// By how much the environment is turned about its up, degrees, rounded to whole pixels. Default 0.
+  vtkSetMacro(EnvironmentAzimuth, double);
+  vtkGetMacro(EnvironmentAzimuth, double);
+  ///@}
+
+  ///@{
+  /// Whether to compute `net_flux` too; it costs time and memory. Default off.
+  vtkSetMacro(NetFlux, bool);
+  vtkGetMacro(NetFlux, bool);
+  vtkBooleanMacro(NetFlux, bool);
+  ///@}
+
+  ///@{
+  /// Directions for which `scattered_radiance` is kept. Default 1 (enough for isotropic scattering), valid from 1 on.
+  vtkSetMacro(StoredDirections, int);
+  vtkGetMacro(StoredDirections, int);
+  ///@}
+
+  ///@{
+  /// Part of the name of the OpenCL device to use, of any case. Default empty: what the variable TYNDALL_DEVICE names, or
+  /// else PoCL's CPU device.
+  vtkSetStdStringFromCharMacro(Device);
+  vtkGetCharFromStdStringMacro(Device);
+  ///@}
+
+  ///@{
+  /// What came of the last update: scattering orders done, estimated relative error of fluence left, relative error of the
+  /// energy balance, seconds, the device's name, and what the scene did not need, one a line.
+  vtkGetMacro(Orders, int);
+  vtkGetMacro(Residual, double);
+  vtkGetMacro(BalanceError, double);
+  vtkGetMacro(Seconds, double);
+  vtkGetCharFromStdStringMacro(DeviceName);
+  vtkGetCharFromStdStringMacro(LeftOut);
+  ///@}
+
+protected:
+  vtkLightPropagationMaps();
+  ~vtkLightPropagationMaps() override;
+
+  int FillInputPortInformation(int port, vtkInformation* information) override;
+  int FillOutputPortInformation(int port, vtkInformation* information) override;
+  int RequestUpdateExtent(
+    vtkInformation* request, vtkInformationVector** inputs, vtkInformationVector* outputs) override;
+  int RequestData(vtkInformation* request, vtkInformationVector** inputs, vtkInformationVector* outputs) override;
+
+private:
+  vtkLightPropagationMaps(const vtkLightPropagationMaps&) = delete;
+  void operator=(const vtkLightPropagationMaps&) = delete;
+
+  void Note(const tyndall::LightField& light);
+
+  int Scheme = SOUND;
+  int Algorithm = PARALLEL;
+  int DirectionsPerFace = 25;
+  int MapResolution = 1;
+  int MaximumOrders = 0;
+  double Tolerance = 1e-4;
+  bool PeriodicX = false;
+  bool PeriodicY = false;
+  bool PeriodicZ = false;
+  double FaceRadiance[6] = { 0.0, 0.0, 0.0, 0.0, 0.0, 0.0 };
+  double SkyColor[3] = { 0.0, 0.0, 0.0 };
+  int EnvironmentUp = 2;
+  double EnvironmentAzimuth = 0.0;
+  bool NetFlux = false;
+  int StoredDirections = 1;
+  std::string Device;
+
+  int Orders = 0;
+  double Residual = 0.0;
+  double BalanceError = 0.0;
+  double Seconds = 0.0;
+  std::string DeviceName;
+  std::string LeftOut;
+};
+
+#endif
