@@ -1,0 +1,94 @@
+// Collection as published (Gruson et al. 2012, Algorithm 2, second half): each voxel reads the temporary buffers of all
+// directions and updates U and I. Read after Numerics.cl; the host gives
+//   CHANNELS  1 or 3
+//   MOMENTS   sums over directions that are kept: the fluence, and more where scattering depends on direction
+//   COLOURED  1 where sigma has CHANNELS channels, 0 where all share one
+//
+// A moment is the sum over directions of a coefficient times T. Directions are added one by one in their order, so that the
+// result does not depend on how they are cut into batches.
+
+// As Volumes in ParallelPropagation.cxx: floats from row to row, plane to plane and channel to channel of the two layouts.
+// Layout 0 is [z][y][x]; layout 1, for maps that march along x, is [x][z][y].
+typedef struct
+{
+  int size[3];
+  int row[2], plane[2], volume[2];
+} volume_info;
+
+// As PartOnDevice: a U as a multiple of a moment, and where it goes.
+typedef struct
+{
+  int moment;
+  float factor;
+  int layout;
+  int slot;
+} part_info;
+
+// Adds the directions of a batch to the moments, REAL_WIDTH voxels at a time, whatever the layout.
+//   coefficients   [MOMENTS][directions], from first on
+//   contributions  T, [direction][CHANNELS][volume], length W / (length^2 sr)
+//   moments        [MOMENTS][CHANNELS][volume]
+//   add            0: the first batch of the order
+__kernel void AddDirections(const int volume, const int directions, const int add, const int first,
+  __global const float* coefficients, __global const float* contributions, __global float* moments)
+{
+  const int voxel = get_global_id(0) * REAL_WIDTH;
+  const int channel = get_global_id(1);
+  if (voxel >= volume)
+  {
+    return;
+  }
+  contributions += (ulong)channel * volume + voxel;
+  moments += (ulong)channel * volume + voxel;
+  for (int k = 0; k < MOMENTS; ++k)
+  {
+    real sum = add ? load_real((ulong)k * CHANNELS * volume, moments) : (real)0.0f;
+    for (int i = 0; i < directions; ++i)
+    {
+      const real t = load_real((ulong)i * CHANNELS * volume, contributions);
+      sum = mad((real)coefficients[first + k * directions + i], t, sum);
+    }
+    store_real(sum, (ulong)k * CHANNELS * volume, moments);
+  }
+}
+
+// Eq. (4): U of the next order, and the moments of all orders so far.
+//   moments0, moments1  of this order, from maps of either layout; those of layout 0 become the sum of both
+//   totals              [MOMENTS][CHANNELS][volume 0]
+__kernel void UpdateSources(const volume_info info, const int parts, __global const part_info* part,
+  __global const float* sigma_s, __global float* moments0, __global const float* moments1, __global float* totals,
+  __global float* sources0, __global float* sources1)
+{
+  const int x = get_global_id(0);
+  const int y = get_global_id(1);
+  const int z = get_global_id(2) / CHANNELS;
+  const int channel = get_global_id(2) % CHANNELS;
+  if (x >= info.size[0] || y >= info.size[1])
+  {
+    return;
+  }
+  const ulong voxel0 = (ulong)z * info.plane[0] + y * info.row[0] + x;
+  const ulong voxel1 = (ulong)x * info.plane[1] + z * info.row[1] + y;
+  for (int k = 0; k < MOMENTS; ++k)
+  {
+    const ulong at = (ulong)(k * CHANNELS + channel) * info.volume[0] + voxel0;
+    const float sum = moments0[at] + moments1[(ulong)(k * CHANNELS + channel) * info.volume[1] + voxel1];
+    moments0[at] = sum;
+    totals[at] += sum;
+  }
+  const float scattering = sigma_s[voxel0 + (COLOURED ? (ulong)channel * info.volume[0] : 0)];
+  for (int p = 0; p < parts; ++p)
+  {
+    const ulong moment = (ulong)(part[p].moment * CHANNELS + channel) * info.volume[0] + voxel0;
+    const float value = part[p].factor * scattering * moments0[moment];
+    const ulong slot = part[p].slot * CHANNELS + channel;
+    if (part[p].layout == 0)
+    {
+      sources0[slot * info.volume[0] + voxel0] = value;
+    }
+    else
+    {
+      sources1[slot * info.volume[1] + voxel1] = value;
+    }
+  }
+}
