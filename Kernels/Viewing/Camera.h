@@ -1,0 +1,30 @@
+#pragma once
+
+#include "../Medium/Grid.h"
+
+#include <array>
+
+namespace tyndall
+{
+/// Where the picture is taken from; named as vtkCamera names it, lengths in the dataset's own unit.
+struct Camera
+{
+  std::array<double, 3> position = { 0.0, 0.0, 1.0 };
+  std::array<double, 3> focalPoint = { 0.0, 0.0, 0.0 }; ///< seen in the picture's centre
+  std::array<double, 3> viewUp = { 0.0, 0.0, 1.0 };     ///< upwards in the picture; not along the view
+  double viewAngle = 30.0;         ///< between the picture's lower and upper edge, degrees, in (0, 180)
+  bool parallelProjection = false; ///< parallel rays instead of rays from `position`
+  double parallelScale = 1.0;      ///< then half the picture's height, length, > 0
+};
+
+/// A camera that looks at the grid's centre and sees all of the box, which touches the picture's margin (5% of its size).
+/// @param aspect     width over height of the picture
+/// @param towards    from the grid's centre to the camera; the default sees the sides -y, +x and the top, z upwards
+/// @param viewUp     replaced by y where it is along the view
+Camera FrameGrid(const Grid& grid, double aspect, double viewAngle = 30.0,
+  const std::array<double, 3>& towards = { 0.55, -1.0, 0.5 }, const std::array<double, 3>& viewUp = { 0.0, 0.0, 1.0 });
+
+/// The camera's axes in the world, unit vectors: to the right, upwards in the picture, and forward.
+/// @throws InvalidInput where position and focal point coincide, viewUp is along the view, or a number is not usable
+std::array<std::array<double, 3>, 3> Axes(const Camera& camera);
+}

@@ -1,0 +1,118 @@
+#pragma once
+
+#include "../Device/Buffer.h"
+#include "../Device/Device.h"
+#include "../Device/Monitor.h"
+#include "../Lights/Lights.h"
+#include "../Medium/Medium.h"
+#include "Camera.h"
+
+#include <array>
+#include <string>
+#include <vector>
+
+namespace tyndall
+{
+/// What a solver found out about the light in a medium, as `fluence` and `fluence_direct` of the data contract; seen, not
+/// owned.
+struct SolvedLight
+{
+  Field fluence;       ///< W / length^2, all of it; null: dark
+  Field fluenceDirect; ///< its unscattered part; null: not known
+};
+
+/// The names are those of the filter's properties.
+struct ViewSettings
+{
+  std::array<int, 2> imageSize = { 800, 600 }; ///< pixels
+  double stepSize = 0.5;                       ///< voxels a ray advances between samples, > 0
+  bool singleScatteringOnly = false;           ///< show only light that was scattered once
+  bool shadowRays = false;  ///< find the lights' direct light by shadow rays, with the medium's phase function
+  int rectangleSamples = 3; ///< per edge of a rectangular light, for shadow rays
+  bool showBackground = true;
+  Rgb backgroundColor = { 0.0, 0.0, 0.0 }; ///< radiance behind the medium where there is no environment
+  bool skipEmptyBricks = true;             ///< leap over what is empty; changes the time and nothing else
+  double minimumTransmittance = 1e-4;      ///< a ray that has less left stops; 0: never
+  int packetWidth = 0; ///< rays marched together: 1, 4, 8 or 16; 0: what the device does best. Changes the time only
+};
+
+/// What a camera sees, row by row from the lowest, pixels from left to right.
+struct Picture
+{
+  int width = 0;
+  int height = 0;
+  std::vector<float> radiance; ///< 3 a pixel, W / (length^2 sr)
+  std::vector<float> alpha;    ///< 1 - transmittance, its mean over the channels
+  /// Distance from the camera along the view axis to where transmittance (its mean over the channels) falls to 1/2.
+  /// `farDepth` where it never does.
+  std::vector<float> depth;
+  float farDepth = 0.0f; ///< beyond every point of the box
+};
+
+/// Looks into a medium whose light is known: marches a ray through every pixel and gathers
+///   L = integral of T(t) (sigma_s J + emission) dt + T(end) background,  T(t) = exp(-integral of sigma_t).
+/// The source in brackets and sigma_t are taken at voxel centres and interpolated linearly between them; each step is exact
+/// for the coefficients in its middle, so that vacuum, opaque voxels and everything between need no special case.
+///
+/// J, the in-scattered radiance, is
+///
+///   |                     | single scattering only | all |
+///   |---|---|---|
+///   | without shadow rays | fluenceDirect / 4 pi   | fluence / 4 pi |
+///   | with shadow rays    | sum over lights of E p | that + max(fluence - D, 0) / 4 pi |
+///
+/// E is a light's irradiance behind the medium, p the phase function (Henyey and Greenstein's with the medium's g) from the
+/// light's direction to the camera's. D is the part of fluence that E shows already, so that nothing counts twice:
+/// fluenceDirect where the lights are all that shines; where an environment, a sky or a face shines too, whose direct light
+/// is in fluenceDirect as well and is to stay, D = min(sum of E, fluenceDirect). What is not found by shadow rays scatters
+/// evenly in all directions.
+class MediumRayCaster
+{
+public:
+  /// Brings medium and light to the device.
+  /// @param illumination  its lights are used by shadow rays, environment and sky as background
+  /// @throws InvalidInput as Check(medium) and Check(illumination); for a light array that is not finite or has not 1 or 3
+  ///   components; where settings ask for an array that is not there; for a step or an image that is not positive
+  /// @throws DeviceError if the samples (16 bytes a voxel, 32 where extinction is coloured) do not fit
+  MediumRayCaster(Device& device, const Medium& medium, const SolvedLight& light, const Illumination& illumination,
+    const ViewSettings& settings);
+
+  /// @throws InvalidInput for a camera that looks nowhere; Aborted
+  Picture Render(const Camera& camera, const Monitor& monitor = {});
+
+  /// What the scene did not need, in words.
+  const std::vector<std::string>& LeftOut() const { return this->Omitted; }
+
+private:
+  struct View;
+
+  std::string PackingOptions() const;
+  int PacketWidth() const;
+  void Upload(const Medium& medium, const SolvedLight& light);
+  void Pack(bool withShadowRays);
+  void SeeLights(const Camera& camera, const Monitor& monitor);
+  View MakeView(const Camera& camera) const;
+
+  Device& TheDevice;
+  Grid TheGrid;
+  ViewSettings Settings;
+  double G = 0.0;
+  bool Coloured = false;     ///< extinction differs between channels
+  bool OtherSources = false; ///< more than lights shines on the medium
+  bool SourcesDependOnCamera = false;
+  bool SourcesReady = false;
+  Rgb Background = {};
+  std::array<int, 2> EnvironmentSize = { 0, 0 };
+  std::array<int, 3> BrickCount = {};
+  int LightCount = 0;
+  std::array<int, 5> Components = {}; ///< of absorption, scattering, emission, fluence, fluenceDirect
+  std::array<Buffer<float>, 5> Arrays;
+  Buffer<float> Direct;      ///< 6 a voxel: what the lights scatter towards the eye, and their irradiance
+  Buffer<cl_float4> Samples; ///< source and grey extinction, with a border
+  Buffer<cl_float4> Extinctions;
+  Buffer<cl_uchar> Bricks;
+  Buffer<cl_float4> EnvironmentPixels;
+  Buffer<cl_float4> Lights; ///< three a small_light
+  std::vector<std::string> Omitted;
+};
+}

@@ -1,0 +1,271 @@
+// What the rays meet: every voxel's source radiance per unit length and its extinction, made from the medium's arrays and
+// from the light that a solver left in them or that shadow rays find.
+//
+// Needs Numerics.cl and Sampling.cl before it. Define besides
+//   ABSORPTION, SCATTERING, EMISSION, FLUENCE, UNSCATTERED   components of each array: 0 (there is none), 1 or 3
+//   SHADOW_RAYS  1: `direct` holds what the lights scatter towards the eye
+
+#define PER_SPHERE 0.0795774715f // 1 / (4 pi)
+
+inline float channel_of(global const float* values, int voxel, int components, int channel)
+{
+  return components == 0 ? 0.0f : values[voxel * components + (components == 3 ? channel : 0)];
+}
+
+// Voxels by work-items of a plane with its border: the work-item's own place, and the voxel that is repeated there.
+inline int padded_index(int4 size)
+{
+  return ((int)get_global_id(2) * (size.y + 2) + (int)get_global_id(1)) * (size.x + 2) + (int)get_global_id(0);
+}
+inline int voxel_index(int4 size)
+{
+  const int i = clamp((int)get_global_id(0) - 1, 0, size.x - 1);
+  const int j = clamp((int)get_global_id(1) - 1, 0, size.y - 1);
+  const int k = clamp((int)get_global_id(2) - 1, 0, size.z - 1);
+  return (k * size.y + j) * size.x + i;
+}
+
+// In-scattered radiance of one channel. `fluence` holds everything, `unscattered` what of it came straight from a light;
+// what is seen of the lights by shadow rays is taken out of fluence, so that it does not count twice.
+inline float in_scattered(global const float* fluence, global const float* unscattered, global const float* direct,
+  int voxel, int channel, int4 mode)
+{
+  const float whole = channel_of(fluence, voxel, FLUENCE, channel);
+  const float first = channel_of(unscattered, voxel, UNSCATTERED, channel);
+#if SHADOW_RAYS
+  const float seen = direct[voxel * 6 + channel];
+  const float from_lights = mode.y ? fmin(direct[voxel * 6 + 3 + channel], first) : first;
+  return seen + (mode.x ? 0.0f : fmax(whole - from_lights, 0.0f) * PER_SPHERE);
+#else
+  return (mode.x ? first : whole) * PER_SPHERE;
+#endif
+}
+
+// mode  x: only light that scatters once; y: part of `unscattered` comes from elsewhere than the lights
+kernel void pack_samples(int4 size, int4 mode, global const float* restrict absorption, global const float* restrict scattering,
+  global const float* restrict emission, global const float* restrict fluence, global const float* restrict unscattered,
+  global const float* restrict direct, global float4* restrict samples, global float4* restrict extinctions)
+{
+  if (get_global_id(0) >= size.x + 2)
+  {
+    return;
+  }
+  const int voxel = voxel_index(size);
+  const int place = padded_index(size);
+  float4 sigma_s = (float4)(0.0f);
+  float4 sigma_t = (float4)(0.0f);
+  float4 source = (float4)(0.0f);
+#define CHANNEL(c, n)                                                                                                    \
+  sigma_s.c = channel_of(scattering, voxel, SCATTERING, n);                                                              \
+  sigma_t.c = sigma_s.c + channel_of(absorption, voxel, ABSORPTION, n);                                                  \
+  source.c = sigma_s.c * in_scattered(fluence, unscattered, direct, voxel, n, mode) +                                    \
+    channel_of(emission, voxel, EMISSION, n);
+  CHANNEL(x, 0)
+  CHANNEL(y, 1)
+  CHANNEL(z, 2)
+#undef CHANNEL
+  source.w = sigma_t.x;
+  samples[place] = source;
+#if COLOURED
+  extinctions[place] = sigma_t;
+#endif
+}
+
+// 0 for a brick where anything extinguishes or shines, or does so close enough to be interpolated into it; else 255.
+kernel void find_empty_bricks(int4 size, int4 brick_count, global const float4* restrict samples,
+  global const float4* restrict extinctions, global uchar* restrict bricks)
+{
+  const int i = get_global_id(0);
+  const int j = get_global_id(1);
+  const int k = get_global_id(2);
+  if (i >= brick_count.x)
+  {
+    return;
+  }
+  const int row = size.x + 2;
+  const int slice = row * (size.y + 2);
+  const int x0 = i * BRICK, x1 = min(x0 + BRICK + 1, size.x + 1);
+  const int y0 = j * BRICK, y1 = min(y0 + BRICK + 1, size.y + 1);
+  const int z0 = k * BRICK, z1 = min(z0 + BRICK + 1, size.z + 1);
+  uchar found = 255;
+  for (int z = z0; z <= z1 && found; ++z)
+  {
+    for (int y = y0; y <= y1 && found; ++y)
+    {
+      for (int x = x0; x <= x1; ++x)
+      {
+        const int place = z * slice + y * row + x;
+        int something = any(samples[place] != (float4)(0.0f));
+#if COLOURED
+        something |= any(extinctions[place] != (float4)(0.0f));
+#endif
+        found = something ? 0 : found;
+      }
+    }
+  }
+  bricks[(k * brick_count.y + j) * brick_count.x + i] = found;
+}
+
+// A light as the shadow rays see it: parallel light, or a point of one.
+typedef struct
+{
+  float4 place; // world, from the box's lower corner; w: 1 a point, 0 parallel light
+  float4 axis;  // unit vector, the way the light travels; w: cosine of the cone's half angle, -2 for a whole sphere
+  float4 power; // irradiance, or radiant intensity along the axis; w: 1 falls with the cosine to the axis, else 0
+} small_light;
+
+// Scatters towards the eye what the lights send straight to each voxel's centre.
+//   direct  6 a voxel: sum of irradiance times phase function, W / (length^2 sr), and sum of irradiance, W / length^2
+// Work-items by voxels of a slice. nearest_square keeps a voxel that holds a light finite: the mean of 1/r^2 over a sphere of
+// the voxel's volume is 3/R^2.
+kernel void see_lights(int4 size, int4 brick_count, float4 spacing, float4 eye, float4 forward, float g, float step,
+  float nearest_square, int light_count, global const small_light* restrict lights,
+  global const float* restrict scattering, global const float4* restrict samples, global const float4* restrict extinctions,
+  global const uchar* restrict bricks, int first_slice, global float* restrict direct)
+{
+  // The voxels of this packet, along x.
+  const int first = get_global_id(0) * REAL_WIDTH;
+  const int j = get_global_id(1);
+  const int k = get_global_id(2) + first_slice;
+  if (first >= size.x || j >= size.y)
+  {
+    return;
+  }
+#if REAL_WIDTH == 16
+  const integer i = min(first + (integer)(0, 1, 2, 3, 4, 5, 6, 7, 8, 9, 10, 11, 12, 13, 14, 15), size.x - 1);
+#elif REAL_WIDTH == 8
+  const integer i = min(first + (integer)(0, 1, 2, 3, 4, 5, 6, 7), size.x - 1);
+#elif REAL_WIDTH == 4
+  const integer i = min(first + (integer)(0, 1, 2, 3), size.x - 1);
+#else
+  const integer i = first;
+#endif
+  const integer voxel = i + (k * size.y + j) * size.x;
+  real scatters = (real)0.0f;
+#define SCATTERS(n)                                                                                                      \
+  LANE(scatters, n) = channel_of(scattering, LANE(voxel, n), SCATTERING, 0) +                                            \
+    channel_of(scattering, LANE(voxel, n), SCATTERING, 1) + channel_of(scattering, LANE(voxel, n), SCATTERING, 2);
+  EACH_LANE(SCATTERS)
+#undef SCATTERS
+  rgb towards_eye = { (real)0.0f, (real)0.0f, (real)0.0f };
+  rgb irradiance = { (real)0.0f, (real)0.0f, (real)0.0f };
+  const real3 centre = { to_real(i) + (real)0.5f, (real)((float)j + 0.5f), (real)((float)k + 0.5f) };
+  const real3 place = { centre.x * (real)spacing.x, centre.y * (real)spacing.y, centre.z * (real)spacing.z };
+  // Towards the eye: back along the view axis where rays are parallel.
+  const real perspective = (real)(1.0f - eye.w);
+  real3 out = { fma(perspective, (real)eye.x - place.x, (real)(-eye.w * forward.x)),
+    fma(perspective, (real)eye.y - place.y, (real)(-eye.w * forward.y)),
+    fma(perspective, (real)eye.z - place.z, (real)(-eye.w * forward.z)) };
+  const real out_scale =
+    (real)1.0f / sqrt(greater(fma(out.x, out.x, fma(out.y, out.y, out.z * out.z)), (real)1e-30f));
+
+  for (int n = 0; n < light_count && any_lane(scatters > (real)0.0f); ++n)
+  {
+    const small_light light = lights[n];
+    const real point = (real)light.place.w;
+    // To the light, and what would arrive through vacuum.
+    const real3 to = { fma(point, (real)light.place.x - place.x, (real)((light.place.w - 1.0f) * light.axis.x)),
+      fma(point, (real)light.place.y - place.y, (real)((light.place.w - 1.0f) * light.axis.y)),
+      fma(point, (real)light.place.z - place.z, (real)((light.place.w - 1.0f) * light.axis.z)) };
+    const real square = greater(fma(to.x, to.x, fma(to.y, to.y, to.z * to.z)), (real)1e-30f);
+    const real distance = sqrt(square);
+    const real inverse = (real)1.0f / distance;
+    const real3 d = { to.x * inverse, to.y * inverse, to.z * inverse };
+    const real to_axis =
+      -fma(d.x, (real)light.axis.x, fma(d.y, (real)light.axis.y, d.z * (real)light.axis.z));
+    real arriving = point > (real)0.0f ? (real)1.0f / greater(square, (real)nearest_square) : (real)1.0f;
+    arriving *= light.power.w > 0.0f ? greater(to_axis, (real)0.0f) : (real)1.0f;
+    arriving = to_axis >= (real)light.axis.w ? arriving : (real)0.0f;
+    arriving = scatters > (real)0.0f ? arriving : (real)0.0f;
+    if (!any_lane(arriving > (real)0.0f))
+    {
+      continue;
+    }
+
+    // What the medium on the way takes.
+    const real3 direction = { d.x / (real)spacing.x, d.y / (real)spacing.y, d.z / (real)spacing.z };
+    real before;
+    const rays packet =
+      clip_to_box(centre, direction, point > (real)0.0f ? distance : (real)1e30f, size, &before);
+    const real stride = step_length(direction, step);
+    const real3 advance = { direction.x * stride, direction.y * stride, direction.z * stride };
+    const int steps = (int)ceil(most_lanes(arriving > (real)0.0f ? packet.length / stride : (real)0.0f));
+    rgb depths = { (real)0.0f, (real)0.0f, (real)0.0f };
+    real depth = (real)0.0f;
+    for (int m = 0; m < steps;)
+    {
+      const real so_far = stride * (real)(float)m;
+#if COLOURED
+      const real least = lesser(lesser(depths.r, depths.g), depths.b);
+#else
+      const real least = depth;
+#endif
+      const integer done = (so_far >= packet.length) | (least > (real)30.0f) | (arriving <= (real)0.0f);
+      if (all_lanes(done))
+      {
+        break;
+      }
+      int empty;
+      const real3 ahead = along(packet, fma(stride, (real)0.5f, so_far), size);
+      const int stop = min(m + stretch_ahead(bricks, brick_count, ahead, advance, done, &empty), steps);
+      for (m = empty ? stop : m; m < stop; ++m)
+      {
+        const real start = stride * (real)(float)m;
+        const real length = lesser(greater(packet.length - start, (real)0.0f), stride);
+        const corners at = corners_around(along(packet, fma(length, (real)0.5f, start), size), size);
+        rgb colour;
+        real w;
+#if COLOURED
+        gather(extinctions, at, size, &colour, &w);
+        depths.r = fma(colour.r, length, depths.r);
+        depths.g = fma(colour.g, length, depths.g);
+        depths.b = fma(colour.b, length, depths.b);
+#else
+        gather(samples, at, size, &colour, &w);
+        depth = fma(w, length, depth);
+#endif
+      }
+    }
+
+    // Henyey and Greenstein's phase function; the light travels along -d.
+    const real cosine =
+      -(fma(d.x, out.x, fma(d.y, out.y, d.z * out.z))) * out_scale;
+    const real base = greater(fma((real)(-2.0f * g), cosine, (real)(1.0f + g * g)), (real)1e-12f);
+    const real phase = (real)(PER_SPHERE * (1.0f - g * g)) / (base * sqrt(base));
+#if COLOURED
+    real left;
+    extinguished(depths.r, &left);
+    const real red = arriving * left * (real)light.power.x;
+    extinguished(depths.g, &left);
+    const real green = arriving * left * (real)light.power.y;
+    extinguished(depths.b, &left);
+    const real blue = arriving * left * (real)light.power.z;
+#else
+    real left;
+    extinguished(depth, &left);
+    const real red = arriving * left * (real)light.power.x;
+    const real green = arriving * left * (real)light.power.y;
+    const real blue = arriving * left * (real)light.power.z;
+#endif
+    irradiance.r += red;
+    irradiance.g += green;
+    irradiance.b += blue;
+    towards_eye.r = fma(red, phase, towards_eye.r);
+    towards_eye.g = fma(green, phase, towards_eye.g);
+    towards_eye.b = fma(blue, phase, towards_eye.b);
+  }
+
+  // Lanes beyond the last voxel repeat it, and write the same again.
+#define KEEP(n)                                                                                                          \
+  {                                                                                                                      \
+    global float* kept = direct + 6 * LANE(voxel, n);                                                                    \
+    kept[0] = LANE(towards_eye.r, n);                                                                                    \
+    kept[1] = LANE(towards_eye.g, n);                                                                                    \
+    kept[2] = LANE(towards_eye.b, n);                                                                                    \
+    kept[3] = LANE(irradiance.r, n);                                                                                     \
+    kept[4] = LANE(irradiance.g, n);                                                                                     \
+    kept[5] = LANE(irradiance.b, n);                                                                                     \
+  }
+  EACH_LANE(KEEP)
+#undef KEEP
+}

@@ -1,0 +1,32 @@
+#pragma once
+
+#include <array>
+#include <cstdint>
+#include <vector>
+
+namespace tyndall
+{
+enum class ToneCurve
+{
+  Linear = 0, ///< radiance times exposure, cut at 1: for comparing numbers
+  Filmic = 1, ///< K. Narkowicz, "ACES Filmic Tone Mapping Curve", 2015: the fit to the Academy's reference transform
+};
+
+struct ToneMapping
+{
+  /// What radiance is multiplied by before the curve; 0 chooses it so that the picture's logarithmic mean luminance becomes
+  /// the 0.18 of a photographer's grey card (Reinhard et al. 2002, "Photographic tone reproduction", equations 1 and 2).
+  double exposure = 0.0;
+  ToneCurve curve = ToneCurve::Filmic;
+};
+
+/// The exposure that `exposure` = 0 stands for. Pixels without light do not count; 1 where no pixel has any.
+/// @param radiance  3 a pixel, not negative
+double AutomaticExposure(const std::vector<float>& radiance);
+
+/// Eight bits a channel, red, green, blue and alpha, for a screen that follows sRGB (IEC 61966-2-1). Colours are not
+/// multiplied by alpha: laid over black, the picture is what the radiance says.
+/// @param alpha  one a pixel in [0, 1]; empty: opaque
+std::vector<std::uint8_t> ToneMap(
+  const std::vector<float>& radiance, const std::vector<float>& alpha, const ToneMapping& settings);
+}
