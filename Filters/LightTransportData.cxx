@@ -117,7 +117,7 @@ struct Choice
   bool pointsFirst = false;
 };
 
-Choice ChoiceOf(vtkAlgorithm* filter, int index)
+Choice ChoiceOf(vtkAlgorithm* filter, int index, const std::string& otherwise)
 {
   vtkInformation* information = filter->GetInputArrayInformation(index);
   Choice choice;
@@ -130,6 +130,11 @@ Choice ChoiceOf(vtkAlgorithm* filter, int index)
   else if (information->Has(vtkDataObject::FIELD_ATTRIBUTE_TYPE()))
   {
     choice.attribute = information->Get(vtkDataObject::FIELD_ATTRIBUTE_TYPE());
+  }
+  if (choice.name.empty() && choice.attribute < 0)
+  {
+    choice.name = otherwise;
+    choice.attribute = otherwise.empty() ? static_cast<int>(vtkDataSetAttributes::SCALARS) : -1;
   }
   return choice;
 }
@@ -220,28 +225,30 @@ FloatField ReadCells(vtkImageData* image, const std::string& name, Need need, Co
   return Read(image, choice, need, components);
 }
 
-FloatField ReadChosenCells(vtkAlgorithm* filter, int index, vtkImageData* image, Need need, Components components)
+FloatField ReadChosenCells(
+  vtkAlgorithm* filter, int index, vtkImageData* image, const std::string& otherwise, Need need, Components components)
 {
-  return Read(image, ChoiceOf(filter, index), need, components);
+  return Read(image, ChoiceOf(filter, index, otherwise), need, components);
 }
 
-void ChooseMediumArrays(vtkAlgorithm* filter)
+namespace
 {
-  const auto choose = [filter](MediumArray number, const char* name) {
-    filter->SetInputArrayToProcess(number, 0, 0, vtkDataObject::FIELD_ASSOCIATION_CELLS, name);
-  };
-  choose(SigmaA, "sigma_a");
-  choose(SigmaS, "sigma_s");
-  choose(Emission, "emission");
+/// By name only: ParaView's panel says "points" of a name that it does not find.
+FloatField ReadOfMedium(vtkAlgorithm* filter, MediumArray number, const char* otherwise, vtkImageData* image, Need need)
+{
+  Choice choice = ChoiceOf(filter, number, otherwise);
+  choice.pointsFirst = false;
+  return Read(image, choice, need, { 1, 3 });
+}
 }
 
 MediumInput ReadMedium(vtkAlgorithm* filter, vtkImageData* image)
 {
   MediumInput input;
   input.medium.grid = GridOf(image);
-  input.sigma_a = ReadChosenCells(filter, SigmaA, image, Need::Required);
-  input.sigma_s = ReadChosenCells(filter, SigmaS, image, Need::Required);
-  input.emission = ReadChosenCells(filter, Emission, image, Need::Optional);
+  input.sigma_a = ReadOfMedium(filter, SigmaA, "sigma_a", image, Need::Required);
+  input.sigma_s = ReadOfMedium(filter, SigmaS, "sigma_s", image, Need::Required);
+  input.emission = ReadOfMedium(filter, Emission, "emission", image, Need::Optional);
   input.medium.sigma_a = input.sigma_a;
   input.medium.sigma_s = input.sigma_s;
   input.medium.emission = input.emission;

@@ -77,20 +77,18 @@ using Components = std::initializer_list<int>;
 FloatField ReadCells(vtkImageData* image, const std::string& name, Need need, Components components = { 1, 3 });
 
 /// The same for the array that SetInputArrayToProcess chose as number `index`, by name or by attribute (SCALARS). Where
-/// points were chosen, the point array is preferred to a cell array of the same name.
-FloatField ReadChosenCells(
-  vtkAlgorithm* filter, int index, vtkImageData* image, Need need, Components components = { 1, 3 });
+/// points were chosen, the point array is preferred to a cell array of the same name. Where nothing was chosen, or "" (as
+/// ParaView does before it knows the input), `otherwise` is read; "" there stands for the active scalars.
+FloatField ReadChosenCells(vtkAlgorithm* filter, int index, vtkImageData* image, const std::string& otherwise,
+  Need need, Components components = { 1, 3 });
 
-/// Numbers of SetInputArrayToProcess for the filters that take a medium.
+/// Numbers of SetInputArrayToProcess for the filters that take a medium at port 0.
 enum MediumArray
 {
   SigmaA = 0,
   SigmaS = 1,
   Emission = 2,
 };
-
-/// To be called by the constructor of a filter that takes a medium at port 0: choose its arrays by their names.
-void ChooseMediumArrays(vtkAlgorithm* filter);
 
 /// A medium and the arrays that it sees.
 struct MediumInput
@@ -100,7 +98,7 @@ struct MediumInput
 };
 
 /// The medium of an image: cells `sigma_a`, `sigma_s` (1 or 3 components, 1/length), `emission` (optional, 1 or 3) or the
-/// arrays chosen instead, and field data `g` (one number; missing: 0). Checked.
+/// arrays chosen instead by MediumArray, and field data `g` (one number; missing: 0). Checked.
 MediumInput ReadMedium(vtkAlgorithm* filter, vtkImageData* image);
 
 /// Field data `name`: one number.

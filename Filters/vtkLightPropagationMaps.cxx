@@ -131,7 +131,6 @@ vtkLightPropagationMaps::vtkLightPropagationMaps()
 {
   this->SetNumberOfInputPorts(InputPortCount);
   this->SetNumberOfOutputPorts(2);
-  tyndall::ChooseMediumArrays(this);
 }
 
 vtkLightPropagationMaps::~vtkLightPropagationMaps() = default;

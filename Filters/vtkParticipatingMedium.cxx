@@ -3,7 +3,6 @@
 #include "LightTransportData.h"
 #include "Medium/Presets.h"
 
-#include "vtkDataSetAttributes.h"
 #include "vtkImageData.h"
 #include "vtkInformation.h"
 #include "vtkObjectFactory.h"
@@ -135,11 +134,7 @@ const tyndall::MediumPreset* PresetOf(int preset)
 
 vtkStandardNewMacro(vtkParticipatingMedium);
 
-vtkParticipatingMedium::vtkParticipatingMedium()
-{
-  this->SetInputArrayToProcess(
-    0, 0, 0, vtkDataObject::FIELD_ASSOCIATION_POINTS_THEN_CELLS, vtkDataSetAttributes::SCALARS);
-}
+vtkParticipatingMedium::vtkParticipatingMedium() = default;
 
 vtkParticipatingMedium::~vtkParticipatingMedium() = default;
 
@@ -163,7 +158,7 @@ int vtkParticipatingMedium::RequestData(vtkInformation*, vtkInformationVector** 
   return tyndall::Guarded(this, outputs, [&] {
     vtkImageData* input = vtkImageData::GetData(inputs[0]);
     const Recipe recipe = RecipeOf(this);
-    const tyndall::FloatField density = tyndall::ReadChosenCells(this, 0, input, tyndall::Need::Required, { 1 });
+    const tyndall::FloatField density = tyndall::ReadChosenCells(this, 0, input, "", tyndall::Need::Required, { 1 });
     const std::vector<float> relative =
       RelativeDensity(density, tyndall::GridOf(input), this->MinimumDensity, this->MaximumDensity);
 
