@@ -38,6 +38,7 @@ struct UnitOnDevice
 struct LayoutOnDevice
 {
   cl_int sizeU, sizeV, sizeP, stepU, stepV, stepP, width, block;
+  cl_float vacuum;
 };
 
 int RoundUp(int value, int multiple)
@@ -45,11 +46,16 @@ int RoundUp(int value, int multiple)
   return (value + multiple - 1) / multiple * multiple;
 }
 
-/// Floats of a padded row: an odd number of vectors, so that rows do not fall on the same cache lines.
+/// Floats of a padded row: an odd number of vectors, so that rows do not fall on the same cache lines, and one of few
+/// numbers, since kernels are compiled for each.
 int RowFloats(int width, int vector)
 {
-  const int vectors = width / vector + 1;
-  return (vectors | 1) * vector;
+  int vectors = 2;
+  while (vectors * vector < width)
+  {
+    vectors *= 2;
+  }
+  return (vectors + 1) * vector;
 }
 
 /// Bundles of 1, 2, 4 or 8 members: what the kernels are compiled for.
@@ -166,7 +172,8 @@ struct AxisSweep::Implementation
     const int width = RoundUp(n[this->Axes.u], this->Vector);
     this->Row = RowFloats(width, this->Vector);
     this->Layout = { n[this->Axes.u], n[this->Axes.v], n[this->Axes.axis], step[this->Axes.u], step[this->Axes.v],
-      step[this->Axes.axis], width, this->Axes.u == 0 ? 1 : 16 };
+      step[this->Axes.axis], width, this->Axes.u == 0 ? 1 : 16,
+      static_cast<float>(std::max(1e-30 / this->LongestSegment(), 1e-37)) };
   }
 
   void LayBundles()
@@ -389,20 +396,23 @@ struct AxisSweep::Implementation
 
   cl::Kernel SweepKernel(bool source, bool border, bool flux)
   {
-    const double thinnest = 1e-30 / this->LongestSegment();
-    char vacuum[32];
-    std::snprintf(vacuum, sizeof(vacuum), "%.6ef", std::max(thinnest, 1e-37));
-    const std::string options = "-DREAL_WIDTH=" + std::to_string(this->Vector) + " -DCHANNELS=" +
-      std::to_string(this->Channels) + " -DROW=" + std::to_string(this->Row) + " -DSOURCE=" + std::to_string(source) +
-      " -DBORDER=" + std::to_string(border) + " -DNET_FLUX=" + std::to_string(flux) +
-      " -DPERIODIC_U=" + std::to_string(this->Periodic[this->Axes.u]) +
-      " -DPERIODIC_V=" + std::to_string(this->Periodic[this->Axes.v]) + " -DVACUUM=" + vacuum;
-    namespace text = kernel_source;
+    std::string options = "-DREAL_WIDTH=" + std::to_string(this->Vector) + " -DCHANNELS=" + std::to_string(this->Channels) +
+      " -DROW=" + std::to_string(this->Row) + " -DSOURCE=" + std::to_string(source) + " -DBORDER=" +
+      std::to_string(border) + " -DNET_FLUX=" + std::to_string(flux) + " -DPERIODIC_U=" +
+      std::to_string(this->Periodic[this->Axes.u]) + " -DPERIODIC_V=" + std::to_string(this->Periodic[this->Axes.v]);
+    std::string bundles;
+    for (int members = 1; members <= MaxMembers; members *= 2)
+    {
+      const auto has = [&](const BundleOnDevice& bundle) { return bundle.members == members; };
+      if (std::any_of(this->BundleRows.begin(), this->BundleRows.end(), has))
+      {
+        options += " -DMEMBERS_" + std::to_string(members);
+        bundles += "#define MEMBERS " + std::to_string(members) + "\n" + std::string(kernel_source::SweepBundle) +
+          "#undef MEMBERS\n";
+      }
+    }
     return this->TheDevice.Kernel("sweep",
-      { text::Numerics, text::SweepLayout, "#define MEMBERS 1\n", text::SweepBundle, "#undef MEMBERS\n#define MEMBERS 2\n",
-        text::SweepBundle, "#undef MEMBERS\n#define MEMBERS 4\n", text::SweepBundle,
-        "#undef MEMBERS\n#define MEMBERS 8\n", text::SweepBundle, text::Sweep },
-      options);
+      { kernel_source::Numerics, kernel_source::SweepLayout, bundles, kernel_source::Sweep }, options);
   }
 
   double LongestSegment() const

@@ -3,9 +3,6 @@
 #include "../Device/Errors.h"
 
 #include <glm/gtc/constants.hpp>
-#include <glm/mat3x3.hpp>
-#include <glm/matrix.hpp>
-#include <glm/vec3.hpp>
 
 #include <algorithm>
 #include <cmath>
@@ -78,41 +75,6 @@ DirectionSet CubeDirections(int perFace, bool equiangular)
   }
   return set;
 }
-
-/// Symmetric under the cube's 48 rotations and mirrorings: what a weight may depend on.
-struct Invariants
-{
-  double one, halfRange, fourth;
-  glm::dvec3 Vector() const { return { this->one, this->halfRange, this->fourth }; }
-};
-
-Invariants MomentsOf(const std::array<double, 3>& omega)
-{
-  std::array<double, 3> sorted = { std::abs(omega[0]), std::abs(omega[1]), std::abs(omega[2]) };
-  std::sort(sorted.begin(), sorted.end());
-  const auto fourth = [](double x) { return x * x * x * x; };
-  return { 1.0, (sorted[0] + sorted[1] + sorted[2]) / 3.0,
-    (fourth(sorted[0]) + fourth(sorted[1]) + fourth(sorted[2])) / 3.0 };
-}
-
-/// Change the weights by the least sum of squared relative changes such that the moments become exact.
-void FitMoments(DirectionSet& set)
-{
-  const glm::dvec3 exact(4.0 * Pi, 2.0 * Pi, 4.0 * Pi / 5.0);
-  glm::dmat3 normal(0.0);
-  glm::dvec3 missing = exact;
-  for (const Direction& direction : set.directions)
-  {
-    const glm::dvec3 m = MomentsOf(direction.omega).Vector();
-    normal += glm::outerProduct(m, m) * direction.weight;
-    missing -= m * direction.weight;
-  }
-  const glm::dvec3 factor = glm::inverse(normal) * missing;
-  for (Direction& direction : set.directions)
-  {
-    direction.weight *= 1.0 + glm::dot(MomentsOf(direction.omega).Vector(), factor);
-  }
-}
 }
 
 DirectionSet PublishedDirections(int perFace)
@@ -133,10 +95,6 @@ DirectionSet SoundDirections(int perFace)
     const int v = std::max(std::max(i, n - 1 - i), std::max(j, n - 1 - j));
     set.directions[d].weight =
       SolidAngle(Tangent(true, n, 2 * u), Tangent(true, n, 2 * u + 2), Tangent(true, n, 2 * v), Tangent(true, n, 2 * v + 2));
-  }
-  if (n >= 4) // with fewer cells there are too few distinct weights for the higher moments
-  {
-    FitMoments(set);
   }
   return set;
 }

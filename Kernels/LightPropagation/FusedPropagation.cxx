@@ -1,11 +1,13 @@
 #include "FusedPropagation.h"
 
 #include "AxisSweep.h"
+#include "FirstCollision.h"
 #include "TyndallKernelSources.h"
 
 #include <algorithm>
 #include <chrono>
 #include <cmath>
+#include <functional>
 #include <memory>
 #include <numeric>
 #include <string>
@@ -17,7 +19,6 @@ namespace
 constexpr double Pi = 3.14159265358979323846;
 constexpr std::size_t Padding = 16;  ///< the widest vector: every channel begins at its border
 constexpr std::size_t Chunk = 4096;  ///< as in Collect.cl
-constexpr int BeamResolution = 2;    ///< rays of a directional light per voxel edge
 constexpr int MostOrders = 100000;
 constexpr int ManyPlanes = 8192; ///< a ray goes round a periodic axis before it is given up, or waits for the next order
 constexpr int FewPlanes = 256;   ///< the same where there will be more orders as long as it matters
@@ -83,8 +84,8 @@ private:
   void MakeSweeps();
   void PropagateOrder(int order, const Monitor& monitor);
   void PropagateLights(const Monitor& monitor);
-  void Sweep(AxisSweep& sweep, const AxisSweep::Boundary& boundary, bool hasSource, int mostPlanes,
-    const Monitor& monitor);
+  void ForChannels(const std::function<SweepTally(const SweepVolume&, int)>& act);
+  void Count(const SweepTally& tally, int firstChannel, int channels);
   AxisSweep::Boundary BoundaryOfOrder(int order) const;
   void CollectOrder(int order);
   bool Done(int orders) const;
@@ -240,9 +241,9 @@ AxisSweep::Boundary Solver::BoundaryOfOrder(int order) const
   };
 }
 
-/// Through one axis: all channels at once where they share sigma_t, else one by one.
-void Solver::Sweep(AxisSweep& sweep, const AxisSweep::Boundary& boundary, bool hasSource, int mostPlanes,
-  const Monitor& monitor)
+/// Do something to the volume: for all channels at once where they share sigma_t, else for one after the other. `act`
+/// takes the volume and the first of its channels.
+void Solver::ForChannels(const std::function<SweepTally(const SweepVolume&, int)>& act)
 {
   const int rounds = this->SharedExtinction ? 1 : this->Channels;
   for (int round = 0; round < rounds; ++round)
@@ -257,40 +258,39 @@ void Solver::Sweep(AxisSweep& sweep, const AxisSweep::Boundary& boundary, bool h
     volume.path = &this->Path;
     volume.flux = this->Settings.netFlux ? &this->Flux : nullptr;
     volume.first = round * this->Stride;
-    const AxisSweep::Boundary ofChannel = boundary && rounds > 1
-      ? AxisSweep::Boundary([&](int direction, int face) { return Rgb{ boundary(direction, face)[round], 0.0, 0.0 }; })
-      : boundary;
-    const SweepTally tally = sweep.Run(volume, ofChannel, hasSource, mostPlanes, monitor);
-    for (int c = 0; c < volume.channels; ++c)
-    {
-      for (int face = 0; face < 6; ++face)
-      {
-        this->Result.balance.entered[round + c] += tally.in[face][c];
-        this->Result.balance.escaped[round + c] += tally.out[face][c];
-        this->Result.facePowerOut[face][round + c] += tally.out[face][c];
-      }
-      this->OnTheWay[round + c] += tally.onTheWay[c];
-    }
+    this->Count(act(volume, round), round, volume.channels);
   }
 }
 
-/// The first-collision source: each directional light along its own exact rays.
+void Solver::Count(const SweepTally& tally, int firstChannel, int channels)
+{
+  for (int c = 0; c < channels; ++c)
+  {
+    for (int face = 0; face < 6; ++face)
+    {
+      this->Result.balance.entered[firstChannel + c] += tally.in[face][c];
+      this->Result.balance.escaped[firstChannel + c] += tally.out[face][c];
+      this->Result.facePowerOut[face][firstChannel + c] += tally.out[face][c];
+    }
+    this->OnTheWay[firstChannel + c] += tally.onTheWay[c];
+  }
+}
+
+/// The channels from `first` on.
+Rgb From(const Rgb& rgb, int first)
+{
+  return first == 0 ? rgb : Rgb{ rgb[first], 0.0, 0.0 };
+}
+
 void Solver::PropagateLights(const Monitor& monitor)
 {
-  const Grid& grid = this->TheMedium.grid;
   for (const Light& light : this->Lights.lights)
   {
-    if (light.type != LightType::Directional || Total(light.power) == 0.0)
-    {
-      continue;
-    }
-    const double length = std::hypot(light.direction[0], light.direction[1], light.direction[2]);
-    const std::array<double, 3> omega = { light.direction[0] / length, light.direction[1] / length,
-      light.direction[2] / length };
-    const int axis = MarchingAxis(grid, omega);
-    AxisSweep beam(this->TheDevice, grid, axis, BeamAlong(axis, grid, omega, BeamResolution),
-      this->SharedExtinction ? this->Channels : 1, this->Settings.periodic);
-    this->Sweep(beam, [&](int, int) { return light.power; }, false, ManyPlanes, monitor);
+    this->ForChannels([&](const SweepVolume& volume, int first) {
+      Light ofChannels = light;
+      ofChannels.power = From(light.power, first);
+      return DepositLight(this->TheDevice, volume, ofChannels, this->Settings.periodic, monitor);
+    });
   }
 }
 
@@ -308,8 +308,13 @@ void Solver::PropagateOrder(int order, const Monitor& monitor)
     const Monitor ofSweep = monitor
       ? Monitor([&](double done) { return monitor((static_cast<double>(s) + done) / this->Sweeps.size()); })
       : Monitor();
-    this->Sweep(*this->Sweeps[s], boundary, this->Shining, this->Settings.maximumOrders > 0 ? ManyPlanes : FewPlanes,
-      ofSweep);
+    this->ForChannels([&](const SweepVolume& volume, int first) {
+      const AxisSweep::Boundary ofChannels = boundary && first > 0
+        ? AxisSweep::Boundary([&](int direction, int face) { return From(boundary(direction, face), first); })
+        : boundary;
+      return this->Sweeps[s]->Run(volume, ofChannels, this->Shining,
+        this->Settings.maximumOrders > 0 ? ManyPlanes : FewPlanes, ofSweep);
+    });
   }
 }
 
@@ -432,6 +437,7 @@ LightField SolveFused(Device& device, const Medium& medium, const Illumination& 
 {
   Check(medium);
   Check(illumination);
+  Check(settings);
   return Solver(device, medium, illumination, settings).Run(monitor);
 }
 }

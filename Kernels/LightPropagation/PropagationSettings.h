@@ -15,4 +15,7 @@ struct PropagationSettings
   int storedDirections = 1; ///< directions kept for scattered radiance: 1 (isotropic), 6 (faces), or more
   bool netFlux = false;     ///< compute net_flux too: it costs
 };
+
+/// @throws InvalidInput where a number is out of its range (directionsPerFace is looked at by the direction sets)
+void Check(const PropagationSettings& settings);
 }

@@ -1,6 +1,7 @@
 // Rays through a range of planes, on a CPU: a work-item carries all the rays of its unit (one way along the axis, some or all
 // bundles) and deposits into the volume itself. Units of one launch never share a plane, so nothing is lost and sums have one
-// order. Read after SweepLayout.cl and one SweepBundle.cl for 1, 2, 4 and 8 MEMBERS.
+// order. Read after SweepLayout.cl and one SweepBundle.cl for each number of MEMBERS
+// that occurs (1, 2, 4, 8), with MEMBERS_1, ... defined.
 
 typedef struct
 {
@@ -15,7 +16,8 @@ typedef struct
   int sizeU, sizeV, sizeP;
   int stepU, stepV, stepP;
   int width;
-  int block; // planes packed together: 1 where rows are contiguous in memory, else a vector's worth
+  int block;    // planes packed together: 1 where rows are contiguous in memory, else a vector's worth
+  float vacuum; // 1/length, so thin that no float notices
 } plane_layout;
 
 static void zero(__global float* values, int count)
@@ -61,8 +63,8 @@ static void pack(const plane_layout* layout, __global float* planes, int first, 
       for (int x = 0; x < layout->width; x += REAL_WIDTH)
       {
         const int at = v * ROW + x;
-        // Vacuum is a medium so thin that no float notices: 0 / 0 never happens.
-        const real s = fmax(load_real(at, plane + PLANE_SIGMA * rows), (real)VACUUM);
+        // Vacuum is a very thin medium: 0 / 0 never happens.
+        const real s = fmax(load_real(at, plane + PLANE_SIGMA * rows), (real)layout->vacuum);
         store_real(s, at, plane + PLANE_SIGMA * rows);
         store_real((real)1.0f / s, at, plane + PLANE_INVERSE * rows);
       }
@@ -130,10 +132,18 @@ static void cross_plane(sweep_state* state, __global float* maps, const __global
   const __global float* values = radiance + bundle->border;
   switch (bundle->members)
   {
+#ifdef MEMBERS_1
     case 1: cross_plane_1(state, map, rows, values, bundle, crossing); break;
+#endif
+#ifdef MEMBERS_2
     case 2: cross_plane_2(state, map, rows, values, bundle, crossing); break;
+#endif
+#ifdef MEMBERS_4
     case 4: cross_plane_4(state, map, rows, values, bundle, crossing); break;
-    default: cross_plane_8(state, map, rows, values, bundle, crossing); break;
+#endif
+#ifdef MEMBERS_8
+    case 8: cross_plane_8(state, map, rows, values, bundle, crossing); break;
+#endif
   }
 }
 
@@ -165,7 +175,7 @@ __kernel __attribute__((reqd_work_group_size(1, 1, 1))) void sweep(const __globa
   state.sizeV = layout.sizeV;
   state.width = layout.width;
   state.ring = scratch + unit.scratch;
-  __global float* planes = state.ring + 2 * RING_ROWS * MAX_MEMBERS * CHANNELS * ROW;
+  __global float* planes = state.ring + 2 * RING_ROWS * MAX_MEMBERS * CHANNELS * ROW + PAD; // past the last row's border
   sigma += sigma_first;
   source += first_value;
   path += first_value;

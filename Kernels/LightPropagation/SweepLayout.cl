@@ -1,6 +1,6 @@
 // The layout of a sweep, shared by the texts that follow. Read after Numerics.cl; the host gives
 //   CHANNELS  1 or 3 colours that share sigma_t
-//   ROW       floats in a padded row; the REAL_WIDTH floats after a row's voxels and before the next row's are its border
+//   ROW       floats in a padded row; the floats after a row's voxels and before the next row's are its border
 //   SOURCE    1 where the medium shines (emission or scattered light)
 //   NET_FLUX  1 where the net flux is wanted
 //   BORDER    1 where light comes in through the faces that rays pass sideways

@@ -1,0 +1,273 @@
+#include "FirstCollision.h"
+
+#include "TyndallKernelSources.h"
+
+#include <glm/geometric.hpp>
+#include <glm/gtc/constants.hpp>
+#include <glm/vec3.hpp>
+
+#include <algorithm>
+#include <cmath>
+#include <string>
+
+namespace tyndall
+{
+namespace
+{
+constexpr int RaysPerEdge = 2;      ///< of a voxel, for parallel beams
+constexpr int PointsPerEdge = 4;    ///< of a rectangle
+constexpr double BeamWidth = 0.5;   ///< of a lamp's beams where they leave the box, in voxels; of a rectangle's points twice
+constexpr int RowsPerLaunch = 256;  ///< keeps a launch well below a tenth of a second for rows of a thousand voxels
+constexpr int RoundsAtMost = 64;    ///< of a ray on a periodic axis
+constexpr int ManyPlanes = 8192;    ///< of a beam on a periodic axis
+
+// As lamp_info, beam_row in LampBeams.cl.
+struct LampOnDevice
+{
+  cl_int size[3], periodic[3];
+  cl_float spacing[3], position[3], direction[3];
+  cl_float cosine;
+  cl_float power[3];
+  cl_float scale;
+  cl_int rounds;
+};
+struct BeamRow
+{
+  cl_int axis, up;
+  cl_float tangentU, tangentV, widthU, widthV;
+  cl_int count;
+  cl_float begin;
+};
+
+glm::dvec3 Vector(const std::array<double, 3>& v)
+{
+  return { v[0], v[1], v[2] };
+}
+
+std::array<double, 3> Array(const glm::dvec3& v)
+{
+  return { v.x, v.y, v.z };
+}
+
+SweepTally DepositBeam(Device& device, const SweepVolume& volume, const Light& light, const std::array<bool, 3>& periodic,
+  const Monitor& monitor)
+{
+  const std::array<double, 3> omega = Array(glm::normalize(Vector(light.direction)));
+  const int axis = MarchingAxis(volume.grid, omega);
+  AxisSweep beam(
+    device, volume.grid, axis, BeamAlong(axis, volume.grid, omega, RaysPerEdge), volume.channels, periodic);
+  return beam.Run(volume, [&](int, int) { return light.power; }, false, ManyPlanes, monitor);
+}
+
+/// Smallest and largest tangent (voxels along `aside` per layer) at which the box is seen from `position` between two depths,
+/// within the pyramid.
+std::array<double, 2> Tangents(const Grid& grid, const glm::dvec3& position, int aside, double near, double far)
+{
+  const double low = -position[aside];
+  const double high = grid.size[aside] - position[aside];
+  const double depth = std::max(near, 1e-9);
+  return { std::max(-1.0, std::min(low / depth, low / far)), std::min(1.0, std::max(high / depth, high / far)) };
+}
+
+/// The beams from `position` (in voxels), row by row; a beam is `width` voxels wide where it leaves the box.
+std::vector<BeamRow> Beams(const Grid& grid, const glm::dvec3& position, double width)
+{
+  std::vector<BeamRow> rows;
+  for (int face = 0; face < 6; ++face)
+  {
+    const int axis = face / 2;
+    const bool up = face % 2 == 1;
+    const double near = std::max(0.0, up ? -position[axis] : position[axis] - grid.size[axis]);
+    const double far = up ? grid.size[axis] - position[axis] : position[axis];
+    if (far <= 0.0)
+    {
+      continue;
+    }
+    const std::array<double, 2> u = Tangents(grid, position, (axis + 1) % 3, near, far);
+    const std::array<double, 2> v = Tangents(grid, position, (axis + 2) % 3, near, far);
+    const int countU = static_cast<int>(std::ceil((u[1] - u[0]) * far / width));
+    const int countV = static_cast<int>(std::ceil((v[1] - v[0]) * far / width));
+    for (int j = 0; countU > 0 && j < countV; ++j)
+    {
+      const double widthU = (u[1] - u[0]) / countU;
+      const double widthV = (v[1] - v[0]) / countV;
+      rows.push_back({ axis, up, static_cast<float>(u[0] + 0.5 * widthU), static_cast<float>(v[0] + (j + 0.5) * widthV),
+        static_cast<float>(widthU), static_cast<float>(widthV), countU, static_cast<float>(near) });
+    }
+  }
+  return rows;
+}
+
+/// Points that stand for the light: one, or the centres of a rectangle's parts.
+std::vector<glm::dvec3> Points(const Light& light)
+{
+  if (light.type != LightType::Rectangle)
+  {
+    return { Vector(light.position) };
+  }
+  const glm::dvec3 normal = glm::normalize(Vector(light.direction));
+  const glm::dvec3 aside = std::abs(normal.z) < 0.9 ? glm::dvec3(0.0, 0.0, 1.0) : glm::dvec3(1.0, 0.0, 0.0);
+  const glm::dvec3 u = glm::normalize(glm::cross(aside, normal));
+  const glm::dvec3 v = glm::cross(normal, u);
+  std::vector<glm::dvec3> points;
+  for (int j = 0; j < PointsPerEdge; ++j)
+  {
+    for (int i = 0; i < PointsPerEdge; ++i)
+    {
+      points.push_back(Vector(light.position) + u * (light.size[0] * ((i + 0.5) / PointsPerEdge - 0.5)) +
+        v * (light.size[1] * ((j + 0.5) / PointsPerEdge - 0.5)));
+    }
+  }
+  return points;
+}
+
+/// W per steradian of a light of 1 W, along its axis.
+double Intensity(const Light& light)
+{
+  const double pi = glm::pi<double>();
+  switch (light.type)
+  {
+    case LightType::Spot:
+      return 1.0 / (2.0 * pi * (1.0 - std::cos(0.5 * light.angle * pi / 180.0)));
+    case LightType::Rectangle:
+      return 1.0 / pi;
+    default:
+      return 1.0 / (4.0 * pi);
+  }
+}
+
+/// The beams of one lamp, from all points that stand for it.
+class LampBeams
+{
+public:
+  LampBeams(Device& device, const SweepVolume& volume, const Light& light, const std::array<bool, 3>& periodic)
+    : TheDevice(device)
+    , Volume(volume)
+    , TheLight(light)
+    , Periodic(periodic)
+    , Path(device, volume.stride * volume.channels, "the light of a lamp")
+  {
+    this->Path.Fill(0);
+  }
+
+  SweepTally Run(const Monitor& monitor)
+  {
+    const std::vector<glm::dvec3> points = Points(this->TheLight);
+    for (std::size_t p = 0; p < points.size(); ++p)
+    {
+      this->Follow(points[p], 1.0 / points.size(), [&](double done) { Report(monitor, (p + done) / points.size()); });
+    }
+    cl::Kernel add = this->Kernel("add_fixed");
+    With(add, this->Path, *this->Volume.path, cl_ulong(this->Volume.first), static_cast<float>(1.0 / this->Scale()));
+    this->TheDevice.Queue().enqueueNDRangeKernel(add, cl::NullRange, cl::NDRange(this->Path.Size()), cl::NullRange);
+    return this->Tally;
+  }
+
+private:
+  bool HasAtomics() const { return this->TheDevice.HasExtension("cl_khr_int64_base_atomics"); }
+
+  cl::Kernel Kernel(const char* name)
+  {
+    return this->TheDevice.Kernel(name, { kernel_source::Numerics, kernel_source::LampBeams },
+      "-DCHANNELS=" + std::to_string(this->Volume.channels) + " -DRAYS=" + std::to_string(RaysPerEdge) +
+        " -DATOMICS=" + std::to_string(this->HasAtomics()) +
+        " -DLAMBERT=" + std::to_string(this->TheLight.type == LightType::Rectangle) +
+        " -DCONE=" + std::to_string(this->TheLight.type == LightType::Spot));
+  }
+
+  /// Fixed point units per W length: no voxel can gather more than all power along its diagonal.
+  double Scale() const
+  {
+    const std::array<double, 3>& h = this->Volume.grid.spacing;
+    const Rgb& power = this->TheLight.power;
+    const double most = std::max({ power[0], power[1], power[2] }) * std::sqrt(h[0] * h[0] + h[1] * h[1] + h[2] * h[2]);
+    return std::exp2(std::floor(std::log2(0x1p60 / (most * RoundsAtMost))));
+  }
+
+  LampOnDevice Describe(const glm::dvec3& position, double part) const
+  {
+    LampOnDevice info = {};
+    const Grid& grid = this->Volume.grid;
+    const glm::dvec3 direction = this->TheLight.type == LightType::Point
+      ? glm::dvec3(0.0, 0.0, 1.0)
+      : glm::normalize(Vector(this->TheLight.direction));
+    for (int a = 0; a < 3; ++a)
+    {
+      info.size[a] = grid.size[a];
+      info.periodic[a] = this->Periodic[a];
+      info.spacing[a] = static_cast<float>(grid.spacing[a]);
+      info.position[a] = static_cast<float>(position[a]);
+      info.direction[a] = static_cast<float>(direction[a]);
+      info.power[a] = static_cast<float>(this->TheLight.power[a] * Intensity(this->TheLight) * part);
+    }
+    info.cosine = static_cast<float>(std::cos(0.5 * this->TheLight.angle * glm::pi<double>() / 180.0));
+    info.scale = static_cast<float>(this->Scale());
+    info.rounds = RoundsAtMost;
+    return info;
+  }
+
+  void Follow(const glm::dvec3& point, double part, const std::function<void(double)>& report)
+  {
+    const Grid& grid = this->Volume.grid;
+    glm::dvec3 position;
+    for (int a = 0; a < 3; ++a)
+    {
+      position[a] = (point[a] - grid.origin[a]) / grid.spacing[a];
+    }
+    const bool many = this->TheLight.type == LightType::Rectangle;
+    const std::vector<BeamRow> rows = Beams(grid, position, many ? 2.0 * BeamWidth : BeamWidth);
+    const Buffer<BeamRow> rowBuffer(this->TheDevice, rows, "the beams of a lamp");
+    Buffer<float> sums(this->TheDevice, rows.size() * 8 * this->Volume.channels, "sums");
+    cl::Kernel kernel = this->Kernel("follow_lamp");
+    const LampOnDevice info = this->Describe(position, part);
+    for (std::size_t first = 0; first < rows.size(); first += RowsPerLaunch)
+    {
+      const std::size_t count = std::min<std::size_t>(RowsPerLaunch, rows.size() - first);
+      With(kernel, info, *this->Volume.sigma_t, cl_ulong(this->Volume.sigma_t_first), this->Path,
+        cl_ulong(this->Volume.stride), rowBuffer, cl_int(count), cl_int(first), sums);
+      this->TheDevice.Queue().enqueueNDRangeKernel(
+        kernel, cl::NullRange, cl::NDRange(this->HasAtomics() ? count : 1), cl::NDRange(1));
+      this->TheDevice.Finish();
+      report(static_cast<double>(first + count) / rows.size());
+    }
+    this->Count(rows, sums.Read());
+  }
+
+  void Count(const std::vector<BeamRow>& rows, const std::vector<float>& sums)
+  {
+    const std::size_t channels = this->Volume.channels;
+    for (std::size_t r = 0; r < rows.size(); ++r)
+    {
+      const float* row = sums.data() + r * 8 * channels;
+      for (std::size_t c = 0; c < channels; ++c)
+      {
+        this->Tally.in[2 * rows[r].axis + rows[r].up][c] += row[c]; // by the way it shines: lamps inside pass no face
+        for (int face = 0; face < 6; ++face)
+        {
+          this->Tally.out[face][c] += row[(1 + face) * channels + c];
+        }
+        this->Tally.onTheWay[c] += row[7 * channels + c];
+      }
+    }
+  }
+
+  Device& TheDevice;
+  const SweepVolume& Volume;
+  const Light& TheLight;
+  std::array<bool, 3> Periodic;
+  Buffer<cl_long> Path;
+  SweepTally Tally;
+};
+}
+
+SweepTally DepositLight(Device& device, const SweepVolume& volume, const Light& light,
+  const std::array<bool, 3>& periodic, const Monitor& monitor)
+{
+  if (light.power[0] + light.power[1] + light.power[2] == 0.0)
+  {
+    return {};
+  }
+  return light.type == LightType::Directional ? DepositBeam(device, volume, light, periodic, monitor)
+                                              : LampBeams(device, volume, light, periodic).Run(monitor);
+}
+}

@@ -1,0 +1,303 @@
+// Beams from a point lamp through the box. Read after Numerics.cl; the host gives
+//   CHANNELS     colours that share sigma_t
+//   ATOMICS      1 where the device has 64-bit atomics, else one work-item does all
+//   LAMBERT, CONE  1 for a rectangle, a spot
+//
+// Space around the lamp is six pyramids, one for each way along an axis; in a pyramid beams lie on a grid of tangents, so fine
+// that a beam is at most a voxel wide where it leaves the box. It is followed layer by layer; where its square cross-section
+// lies over up to four voxels, each takes its part.
+
+#if ATOMICS
+#pragma OPENCL EXTENSION cl_khr_int64_base_atomics : enable
+#endif
+
+#define STEPS 2 // a layer: a beam moves aside by half a voxel at most
+
+// Lengths along axis a are in voxels of `spacing[a]`.
+typedef struct
+{
+  int size[3];
+  int periodic[3];
+  float spacing[3];
+  float position[3];  // of the lamp, from the box's corner
+  float direction[3]; // unit, in space
+  float cosine;       // of the cone's half angle
+  float power[3];     // W per steradian; at normal emission where LAMBERT
+  float scale;        // fixed point units per W length
+  int rounds;         // of a beam round a periodic axis
+} lamp_info;
+
+// The beams of one pyramid at one tangent v.
+typedef struct
+{
+  int axis, up;           // marches along the axis, up or down
+  float tangentU, tangentV; // of the first beam's middle; v's for all
+  float widthU, widthV;     // of a beam, in tangents
+  int count;                // of beams along u
+  float begin;              // layers from the lamp to the box, 0 inside
+} beam_row;
+
+static float corner_angle(float a, float b, float d)
+{
+  return atan2(a * b, d * sqrt(a * a + b * b + d * d));
+}
+
+// Solid angle of the rectangle [a0, a1] x [b0, b1] at distance d: in closed form where it is near; far away, where that
+// is a small difference of large angles, by Gauss's rule of 2 x 2 points.
+static float solid_angle(float a0, float a1, float b0, float b1, float d)
+{
+  const float a = 0.5f * (a0 + a1), b = 0.5f * (b0 + b1);
+  const float width = a1 - a0, height = b1 - b0;
+  if (a * a + b * b + d * d < 64.0f * fmax(width * width, height * height))
+  {
+    return corner_angle(a1, b1, d) - corner_angle(a0, b1, d) - corner_angle(a1, b0, d) + corner_angle(a0, b0, d);
+  }
+  float sum = 0.0f;
+  for (int i = 0; i < 4; ++i)
+  {
+    const float x = a + (i & 1 ? 0.288675135f : -0.288675135f) * width;
+    const float y = b + (i & 2 ? 0.288675135f : -0.288675135f) * height;
+    const float inverse = rsqrt(x * x + y * y + d * d);
+    sum += inverse * inverse * inverse;
+  }
+  return 0.25f * sum * width * height * d;
+}
+
+static void deposit(__global long* path, ulong index, float amount, float scale)
+{
+  const long units = convert_long_sat_rte(amount * scale);
+#if ATOMICS
+  atom_add(path + index, units);
+#else
+  path[index] += units;
+#endif
+}
+
+#define INSIDE 0
+#define BEFORE 1 // outside, and coming nearer
+#define AFTER 2
+
+// Where voxel i of an axis is for a beam that moves by `tangent` along it; wraps it on a periodic axis.
+static int place(const lamp_info* lamp, int axis, float tangent, int* i)
+{
+  const int n = lamp->size[axis];
+  if (lamp->periodic[axis])
+  {
+    *i = (*i % n + n) % n;
+    return INSIDE;
+  }
+  if (*i >= 0 && *i < n)
+  {
+    return INSIDE;
+  }
+  return (*i < 0) == (tangent < 0.0f) ? AFTER : BEFORE;
+}
+
+typedef struct
+{
+  float entered[CHANNELS], escaped[6][CHANNELS], stranded[CHANNELS];
+} lamp_tally;
+
+// The first voxel under a cross-section from low to low + width, and the part of it that lies there.
+static void overlap(float low, float width, int* voxel, float* part)
+{
+  *voxel = (int)floor(low);
+  *part = clamp((*voxel + 1 - low) / width, 0.0f, 1.0f);
+}
+
+// One step of a beam: every part of it through its voxel. Changes `left`; returns the part that will never be inside.
+static void step_beam(const lamp_info* lamp, const beam_row* row, int layer, bool first, bool last, float2 tangent,
+  float2 middle, float2 width, float length, const __global float* sigma, __global long* path, ulong stride, float* left,
+  lamp_tally* tally)
+{
+  const int u = (row->axis + 1) % 3;
+  const int v = (row->axis + 2) % 3;
+  int2 lowest;
+  float part_u, part_v;
+  int voxel[3];
+  overlap(middle.x - 0.5f * width.x, width.x, &voxel[0], &part_u);
+  overlap(middle.y - 0.5f * width.y, width.y, &voxel[1], &part_v);
+  lowest = (int2)(voxel[0], voxel[1]);
+  float after[CHANNELS];
+  for (int c = 0; c < CHANNELS; ++c)
+  {
+    after[c] = 0.0f;
+  }
+  for (int q = 0; q < 4; ++q)
+  {
+    const float part = (q & 1 ? 1.0f - part_u : part_u) * (q & 2 ? 1.0f - part_v : part_v);
+    if (part <= 0.0f)
+    {
+      continue;
+    }
+    voxel[row->axis] = layer;
+    voxel[u] = lowest.x + (q & 1);
+    voxel[v] = lowest.y + (q >> 1);
+    const int at_u = place(lamp, u, tangent.x, &voxel[u]);
+    const int at_v = place(lamp, v, tangent.y, &voxel[v]);
+    const bool outside = at_u != INSIDE || at_v != INSIDE;
+    const bool gone = at_u == AFTER || at_v == AFTER;
+    const bool missed = (gone && (first || at_u == BEFORE || at_v == BEFORE)) || (outside && last && !gone);
+    float lost = 0.0f, through = 1.0f, mean_length = 0.0f;
+    ulong index = 0;
+    if (!outside)
+    {
+      index = ((ulong)voxel[2] * lamp->size[1] + voxel[1]) * lamp->size[0] + voxel[0];
+      const float tau = sigma[index] * length;
+      lost = extinguished(tau, &through);
+      mean_length = tau > 1e-20f ? lost / sigma[index] : length;
+    }
+    for (int c = 0; c < CHANNELS; ++c)
+    {
+      const float power = left[c] * part;
+      if (missed)
+      {
+        tally->entered[c] -= power;
+      }
+      else if (gone)
+      {
+        const int face = at_u == AFTER ? 2 * u + (tangent.x > 0.0f) : 2 * v + (tangent.y > 0.0f);
+        tally->escaped[face][c] += power;
+      }
+      else if (outside)
+      {
+        after[c] += power;
+      }
+      else
+      {
+        deposit(path, c * stride + index, power * mean_length, lamp->scale);
+        after[c] += mean_length * sigma[index] < 0.5f * length * sigma[index] ? power * through : power - power * lost;
+      }
+    }
+  }
+  for (int c = 0; c < CHANNELS; ++c)
+  {
+    left[c] = after[c];
+  }
+}
+
+// One beam from where it comes into the box's layers to where it leaves them.
+static void follow_beam(const lamp_info* lamp, const beam_row* row, float2 tangent, const float* power,
+  const __global float* sigma, __global long* path, ulong stride, lamp_tally* tally)
+{
+  const int n = lamp->size[row->axis];
+  const int u = (row->axis + 1) % 3;
+  const int v = (row->axis + 2) % 3;
+  const float3 along = (float3)(lamp->spacing[row->axis], tangent.x * lamp->spacing[u], tangent.y * lamp->spacing[v]);
+  const float per_layer = sqrt(dot(along, along));
+  const float start = lamp->position[row->axis];
+  const int first = row->begin > 0.0f ? (row->up ? 0 : n - 1)
+                                      : clamp((int)(row->up ? floor(start) : ceil(start) - 1.0f), 0, n - 1);
+  const int layers = row->up ? n - first : first + 1;
+  const int all = lamp->periodic[row->axis] ? layers + n * lamp->rounds : layers;
+  float left[CHANNELS];
+  for (int c = 0; c < CHANNELS; ++c)
+  {
+    left[c] = power[c];
+  }
+  float now = row->begin;
+  for (int k = 0; k < all; ++k)
+  {
+    const int layer = row->up ? (first + k) % n : ((first - k) % n + n) % n;
+    const float end = row->up ? first + k + 1 - start : start - (first - k);
+    for (int s = 0; s < STEPS; ++s)
+    {
+      const float t0 = now + (end - now) * s / STEPS;
+      const float t1 = now + (end - now) * (s + 1) / STEPS;
+      const float t = 0.5f * (t0 + t1);
+      const float2 middle = (float2)(lamp->position[u] + tangent.x * t, lamp->position[v] + tangent.y * t);
+      step_beam(lamp, row, layer, k == 0 && s == 0, k == all - 1 && s == STEPS - 1, tangent, middle,
+        clamp((float2)(row->widthU, row->widthV) * t, 1e-4f, 1.0f), (t1 - t0) * per_layer, sigma, path, stride, left, tally);
+    }
+    now = end;
+  }
+  for (int c = 0; c < CHANNELS; ++c)
+  {
+    if (lamp->periodic[row->axis])
+    {
+      tally->stranded[c] += left[c];
+    }
+    else
+    {
+      tally->escaped[2 * row->axis + row->up][c] += left[c];
+    }
+  }
+}
+
+static void follow_row(const lamp_info* lamp, const beam_row* row, const __global float* sigma, __global long* path,
+  ulong stride, __global float* sums)
+{
+  const int u = (row->axis + 1) % 3;
+  const int v = (row->axis + 2) % 3;
+  const float hu = lamp->spacing[u], hv = lamp->spacing[v], hp = lamp->spacing[row->axis];
+  lamp_tally tally;
+  for (int c = 0; c < CHANNELS; ++c)
+  {
+    tally.entered[c] = tally.stranded[c] = 0.0f;
+    for (int face = 0; face < 6; ++face)
+    {
+      tally.escaped[face][c] = 0.0f;
+    }
+  }
+  for (int i = 0; i < row->count; ++i)
+  {
+    const float2 tangent = (float2)(row->tangentU + i * row->widthU, row->tangentV);
+    const float2 half_width = 0.5f * (float2)(row->widthU, row->widthV);
+    float angle = solid_angle((tangent.x - half_width.x) * hu, (tangent.x + half_width.x) * hu, (tangent.y - half_width.y) * hv,
+      (tangent.y + half_width.y) * hv, hp);
+#if LAMBERT || CONE
+    float way[3];
+    way[row->axis] = row->up ? hp : -hp;
+    way[u] = tangent.x * hu;
+    way[v] = tangent.y * hv;
+    const float cosine = (way[0] * lamp->direction[0] + way[1] * lamp->direction[1] + way[2] * lamp->direction[2]) *
+      rsqrt(way[0] * way[0] + way[1] * way[1] + way[2] * way[2]);
+#if LAMBERT
+    angle *= fmax(cosine, 0.0f);
+#else
+    angle = cosine >= lamp->cosine ? angle : 0.0f;
+#endif
+#endif
+    if (angle > 0.0f)
+    {
+      float power[CHANNELS];
+      for (int c = 0; c < CHANNELS; ++c)
+      {
+        power[c] = lamp->power[c] * angle;
+        tally.entered[c] += power[c];
+      }
+      follow_beam(lamp, row, tangent, power, sigma, path, stride, &tally);
+    }
+  }
+  for (int c = 0; c < CHANNELS; ++c)
+  {
+    sums[c] = tally.entered[c];
+    for (int face = 0; face < 6; ++face)
+    {
+      sums[(1 + face) * CHANNELS + c] = tally.escaped[face][c];
+    }
+    sums[7 * CHANNELS + c] = tally.stranded[c];
+  }
+}
+
+// path  W length in fixed point, [channel][stride], added to
+// sums  [row][entered, escaped through -x to +z, stranded][channel] W
+__kernel void follow_lamp(lamp_info lamp, const __global float* sigma, ulong sigma_first, __global long* path, ulong stride,
+  const __global beam_row* rows, int row_count, int first_row, __global float* sums)
+{
+#if ATOMICS
+  const int r = first_row + get_global_id(0);
+#else
+  for (int r = first_row; r < first_row + row_count; ++r)
+#endif
+  {
+    const beam_row row = rows[r];
+    follow_row(&lamp, &row, sigma + sigma_first, path, stride, sums + r * 8 * CHANNELS);
+  }
+}
+
+__kernel void add_fixed(const __global long* fixed_path, __global float* path, ulong first, float unit)
+{
+  const ulong i = get_global_id(0);
+  path[first + i] += (float)fixed_path[i] * unit;
+}

@@ -1,0 +1,30 @@
+#include "PropagationSettings.h"
+
+#include "../Device/Errors.h"
+
+#include <string>
+
+namespace tyndall
+{
+void Check(const PropagationSettings& settings)
+{
+  if (settings.mapResolution < 1 || settings.mapResolution > 16)
+  {
+    throw InvalidInput(
+      "MapResolution is " + std::to_string(settings.mapResolution) + "; it must be at least 1 and at most 16.");
+  }
+  if (settings.maximumOrders < 0)
+  {
+    throw InvalidInput("MaximumOrders is " + std::to_string(settings.maximumOrders) +
+      "; give a number of scattering orders, or 0 for as many as the tolerance needs.");
+  }
+  if (!(settings.tolerance > 0.0))
+  {
+    throw InvalidInput("Tolerance is " + std::to_string(settings.tolerance) + "; it must be positive.");
+  }
+  if (settings.storedDirections < 1)
+  {
+    throw InvalidInput("StoredDirections is " + std::to_string(settings.storedDirections) + "; it must be at least 1.");
+  }
+}
+}

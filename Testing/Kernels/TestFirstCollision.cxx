@@ -1,0 +1,114 @@
+#include "DeviceTest.h"
+#include "MediumScene.h"
+
+using namespace tyndall;
+
+namespace
+{
+constexpr double Pi = 3.14159265358979323846;
+
+Light Lamp(LightType type, std::array<double, 3> position, double power = 10.0)
+{
+  Light lamp;
+  lamp.type = type;
+  lamp.position = position;
+  lamp.direction = { 0.0, 0.0, 1.0 };
+  lamp.power = { power, power, power };
+  lamp.angle = 60.0;
+  lamp.size = { 2.0, 2.0 };
+  return lamp;
+}
+
+double FluenceAt(const LightField& light, const Scene& scene, int x, int y, int z)
+{
+  const std::array<int, 3>& n = scene.medium.grid.size;
+  return light.fluence[(static_cast<std::size_t>(z) * n[1] + y) * n[0] + x];
+}
+}
+
+class FirstCollision : public DeviceTest
+{
+};
+
+TEST_F(FirstCollision, LampsInsideAndOutsideKeepTheirPower)
+{
+  for (LightType type : { LightType::Point, LightType::Spot, LightType::Rectangle })
+  {
+    for (double sigma : { 0.0, 1e-5, 0.2, 1e5 })
+    {
+      for (double z : { 6.3, -4.0 })
+      {
+        Scene scene({ 12, 13, 14 }, static_cast<float>(sigma), static_cast<float>(sigma));
+        scene.light.lights = { Lamp(type, { 6.2, 6.1, z }) };
+        scene.settings.maximumOrders = 2;
+        const LightField light = scene.Solve(this->GetDevice());
+        EXPECT_LT(light.balance.RelativeError(1), 1e-5) << static_cast<int>(type) << ' ' << sigma << ' ' << z;
+        if (z > 0.0)
+        {
+          // A cone's edge cuts voxel faces in parts; the others are whole.
+          EXPECT_NEAR(light.balance.entered[0], 10.0, type == LightType::Point ? 1e-3 : 0.3);
+        }
+        else
+        {
+          EXPECT_LT(light.balance.entered[0], 10.0 * 1.03);
+          EXPECT_GT(light.balance.entered[0], 1.0);
+        }
+      }
+    }
+  }
+}
+
+TEST_F(FirstCollision, APointInAbsorberFollowsTheInverseSquareAndTheExponential)
+{
+  const double sigma = 0.1;
+  Scene scene({ 33, 33, 33 }, static_cast<float>(sigma), 0.0f);
+  scene.light.lights = { Lamp(LightType::Point, { 16.5, 16.5, 16.5 }) };
+  const LightField light = scene.Solve(this->GetDevice());
+  for (const std::array<int, 3>& voxel : { std::array<int, 3>{ 26, 16, 16 }, { 16, 5, 16 }, { 24, 25, 23 }, { 10, 6, 29 } })
+  {
+    const double r = std::hypot(voxel[0] - 16.0, voxel[1] - 16.0, voxel[2] - 16.0);
+    const double exact = 10.0 * std::exp(-sigma * r) / (4.0 * Pi * r * r);
+    EXPECT_NEAR(FluenceAt(light, scene, voxel[0], voxel[1], voxel[2]) / exact, 1.0, 0.03) << r;
+  }
+}
+
+TEST_F(FirstCollision, ARectangleShinesByTheCosineAndOnOneSideOnly)
+{
+  Scene scene({ 31, 31, 31 }, 0.0f, 0.0f);
+  scene.light.lights = { Lamp(LightType::Rectangle, { 15.5, 15.5, 5.0 }) };
+  const LightField light = scene.Solve(this->GetDevice());
+  EXPECT_NEAR(FluenceAt(light, scene, 15, 15, 27) / (10.0 / (Pi * 22.5 * 22.5)), 1.0, 0.05);
+  const double r = std::hypot(10.0, 22.5);
+  EXPECT_NEAR(FluenceAt(light, scene, 25, 15, 27) / (10.0 * (22.5 / r) / (Pi * r * r)), 1.0, 0.05);
+  EXPECT_EQ(FluenceAt(light, scene, 15, 15, 2), 0.0);
+  EXPECT_NEAR(light.facePowerOut[4][0], 0.0, 1e-6);
+}
+
+TEST_F(FirstCollision, ASpotLightsItsConeOnly)
+{
+  Scene scene({ 31, 31, 31 }, 0.0f, 0.0f);
+  scene.light.lights = { Lamp(LightType::Spot, { 15.5, 15.5, 0.5 }) };
+  const LightField light = scene.Solve(this->GetDevice());
+  const double intensity = 10.0 / (2.0 * Pi * (1.0 - std::cos(30.0 * Pi / 180.0)));
+  EXPECT_NEAR(FluenceAt(light, scene, 15, 15, 25) / (intensity / 625.0), 1.0, 0.03);
+  EXPECT_EQ(FluenceAt(light, scene, 30, 15, 10), 0.0);
+}
+
+TEST_F(FirstCollision, LampsGiveTheSameLightBitForBit)
+{
+  Scene scene({ 16, 16, 16 });
+  scene.Randomise(1.0, 4.0, 0.5);
+  scene.light.lights = { Lamp(LightType::Point, { 8.0, 8.0, 8.0 }), Lamp(LightType::Rectangle, { 3.0, 4.0, 1.0 }) };
+  scene.settings.maximumOrders = 2;
+  EXPECT_EQ(scene.Solve(this->GetDevice()).fluence, scene.Solve(this->GetDevice()).fluence);
+}
+
+TEST_F(FirstCollision, AnIsolatedOpaqueVoxelStopsEveryRay)
+{
+  Scene scene({ 9, 9, 9 }, 0.0f, 0.0f);
+  scene.sigma_a[(4 * 9 + 4) * 9 + 4] = 1e9f;
+  scene.light.lights = { Lamp(LightType::Point, { 4.5, 4.5, 4.5 }) };
+  const LightField light = scene.Solve(this->GetDevice());
+  EXPECT_NEAR(light.balance.absorbed[0], 10.0, 1e-3);
+  EXPECT_NEAR(light.balance.escaped[0], 0.0, 1e-6);
+}

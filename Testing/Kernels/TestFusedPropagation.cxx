@@ -1,0 +1,450 @@
+#include "DeviceTest.h"
+#include "MediumScene.h"
+#include "SlabReference.h"
+
+#include <algorithm>
+#include <cmath>
+
+using namespace tyndall;
+
+namespace
+{
+constexpr double Pi = 3.14159265358979323846;
+
+double LargestRelativeDifference(const std::vector<float>& a, const std::vector<float>& b)
+{
+  EXPECT_EQ(a.size(), b.size());
+  double largest = 0.0;
+  for (std::size_t i = 0; i < std::min(a.size(), b.size()); ++i)
+  {
+    largest = std::max(largest, std::abs(static_cast<double>(a[i]) - b[i]) / std::max<double>(std::abs(b[i]), 1e-30));
+  }
+  return largest;
+}
+
+void ExpectFiniteAndNotNegative(const std::vector<float>& values)
+{
+  for (float value : values)
+  {
+    ASSERT_TRUE(std::isfinite(value));
+    ASSERT_GE(value, 0.0f);
+  }
+}
+
+/// The medium after x, y, z have become y, z, x.
+std::vector<float> Turned(const std::vector<float>& values, std::array<int, 3> size)
+{
+  std::vector<float> turned(values.size());
+  for (int z = 0; z < size[2]; ++z)
+  {
+    for (int y = 0; y < size[1]; ++y)
+    {
+      for (int x = 0; x < size[0]; ++x)
+      {
+        // new coordinates (z, x, y) on a grid of size (nz, nx, ny)
+        turned[(static_cast<std::size_t>(y) * size[0] + x) * size[2] + z] =
+          values[(static_cast<std::size_t>(z) * size[1] + y) * size[0] + x];
+      }
+    }
+  }
+  return turned;
+}
+
+std::vector<float> MirroredInX(const std::vector<float>& values, std::array<int, 3> size)
+{
+  std::vector<float> mirrored(values);
+  for (std::size_t row = 0; row < values.size(); row += size[0])
+  {
+    std::reverse(mirrored.begin() + row, mirrored.begin() + row + size[0]);
+  }
+  return mirrored;
+}
+}
+
+class FusedPropagation : public DeviceTest
+{
+};
+
+TEST_F(FusedPropagation, GivesBackEveryWattItTakes)
+{
+  for (double albedo : { 0.0, 0.5, 1.0 })
+  {
+    for (double thickest : { 0.0, 1e-8, 1e-4, 1.0, 1e3, 1e6 })
+    {
+      for (bool periodic : { false, true })
+      {
+        Scene scene({ 19, 16, 13 });
+        scene.Randomise(thickest, 8.0, albedo);
+        scene.ShineFromEverywhere(1.0);
+        scene.ShineAlong({ 0.3, -0.5, -0.8 }, 2.0);
+        scene.settings.maximumOrders = 3;
+        scene.settings.periodic = { periodic, periodic, false };
+        const LightField light = scene.Solve(this->GetDevice());
+        EXPECT_LT(light.balance.RelativeError(1), 1e-5)
+          << "albedo " << albedo << ", sigma_t up to " << thickest << (periodic ? ", periodic" : ", open");
+        EXPECT_GT(light.balance.entered[0], 0.0);
+        ExpectFiniteAndNotNegative(light.fluence);
+      }
+    }
+  }
+}
+
+TEST_F(FusedPropagation, CountsEnteringPowerAsTheSurfaceIntegralOfRadiance)
+{
+  Scene scene({ 40, 40, 40 }, 0.01f, 0.0f);
+  scene.ShineFromEverywhere(3.0);
+  scene.settings.directionsPerFace = 100;
+  const LightField light = scene.Solve(this->GetDevice());
+  EXPECT_NEAR(light.balance.entered[0] / (6.0 * 40.0 * 40.0 * Pi * 3.0), 1.0, 0.01);
+}
+
+TEST_F(FusedPropagation, KeepsTheFurnaceAtItsTemperature)
+{
+  Scene scene({ 17, 12, 9 });
+  scene.Randomise(1e3, 8.0, 0.0);
+  scene.emission.resize(scene.sigma_a.size());
+  const float equilibrium = 2.0f;
+  for (std::size_t i = 0; i < scene.emission.size(); ++i)
+  {
+    scene.emission[i] = scene.sigma_a[i] * equilibrium;
+  }
+  scene.ShineFromEverywhere(equilibrium);
+  const LightField light = scene.Solve(this->GetDevice());
+  for (float fluence : light.fluence)
+  {
+    ASSERT_NEAR(fluence / (4.0 * Pi * equilibrium), 1.0, 1e-5);
+  }
+}
+
+TEST_F(FusedPropagation, KeepsTheFurnaceWhereLightIsScatteredToo)
+{
+  Scene scene({ 10, 11, 12 });
+  scene.Randomise(2.0, 4.0, 0.5);
+  scene.emission.resize(scene.sigma_a.size());
+  for (std::size_t i = 0; i < scene.emission.size(); ++i)
+  {
+    scene.emission[i] = scene.sigma_a[i] * 2.0f;
+  }
+  scene.ShineFromEverywhere(2.0);
+  scene.settings.tolerance = 1e-7;
+  const LightField light = scene.Solve(this->GetDevice());
+  for (float fluence : light.fluence)
+  {
+    ASSERT_NEAR(fluence / (8.0 * Pi), 1.0, 1e-5);
+  }
+}
+
+TEST_F(FusedPropagation, LeavesRadianceInVacuumAlone)
+{
+  Scene scene({ 21, 8, 5 });
+  scene.ShineFromEverywhere(1.0);
+  const LightField light = scene.Solve(this->GetDevice());
+  for (float fluence : light.fluence)
+  {
+    ASSERT_NEAR(fluence / (4.0 * Pi), 1.0, 2e-6);
+  }
+}
+
+TEST_F(FusedPropagation, AttenuatesABeamExponentiallyAlongEachAxis)
+{
+  for (int axis = 0; axis < 3; ++axis)
+  {
+    for (double sign : { -1.0, 1.0 })
+    {
+      for (double sigma : { 1e-6, 0.1, 3.0 })
+      {
+        Scene scene({ 20, 20, 20 }, static_cast<float>(sigma), 0.0f);
+        std::array<double, 3> direction = {};
+        direction[axis] = sign;
+        scene.ShineAlong(direction);
+        const LightField light = scene.Solve(this->GetDevice());
+        const double out = light.facePowerOut[2 * axis + (sign > 0.0 ? 1 : 0)][0] / light.balance.entered[0];
+        EXPECT_NEAR(light.balance.entered[0], 400.0, 1e-3);
+        EXPECT_NEAR(out / std::exp(-20.0 * sigma), 1.0, 1e-5 * std::max(1.0, 20.0 * sigma));
+        EXPECT_NEAR(light.balance.absorbed[0] / (400.0 * -std::expm1(-20.0 * sigma)), 1.0, 1e-5);
+      }
+    }
+  }
+}
+
+TEST_F(FusedPropagation, CastsTheSunsShadowAlongExactRays)
+{
+  Scene scene({ 24, 24, 24 });
+  scene.sigma_a[(static_cast<std::size_t>(20) * 24 + 12) * 24 + 12] = 1e6f;
+  scene.ShineAlong({ 0.0, 0.0, -1.0 });
+  const LightField light = scene.Solve(this->GetDevice());
+  for (int z = 0; z < 24; ++z)
+  {
+    const float shaded = light.fluence[(static_cast<std::size_t>(z) * 24 + 12) * 24 + 12];
+    const float beside = light.fluence[(static_cast<std::size_t>(z) * 24 + 12) * 24 + 13];
+    EXPECT_NEAR(beside, 1.0, 1e-6);
+    EXPECT_NEAR(shaded, z > 20 ? 1.0 : 0.0, 1e-5) << z;
+  }
+}
+
+TEST_F(FusedPropagation, TurnsAndMirrorsWithItsInput)
+{
+  const std::array<int, 3> size = { 9, 14, 20 };
+  Scene scene(size);
+  scene.Randomise(1.0, 3.0, 0.8);
+  scene.ShineFromEverywhere(0.5);
+  scene.ShineAlong({ 0.2, -0.5, -0.8 });
+  scene.settings.maximumOrders = 3;
+  const LightField light = scene.Solve(this->GetDevice());
+
+  Scene turned({ size[2], size[0], size[1] });
+  turned.sigma_a = Turned(scene.sigma_a, size);
+  turned.sigma_s = Turned(scene.sigma_s, size);
+  turned.ShineFromEverywhere(0.5);
+  turned.ShineAlong({ -0.8, 0.2, -0.5 });
+  turned.settings.maximumOrders = 3;
+  EXPECT_LT(LargestRelativeDifference(turned.Solve(this->GetDevice()).fluence, Turned(light.fluence, size)), 3e-6);
+
+  Scene mirrored(size);
+  mirrored.sigma_a = MirroredInX(scene.sigma_a, size);
+  mirrored.sigma_s = MirroredInX(scene.sigma_s, size);
+  mirrored.ShineFromEverywhere(0.5);
+  mirrored.ShineAlong({ -0.2, -0.5, -0.8 });
+  mirrored.settings.maximumOrders = 3;
+  EXPECT_LT(
+    LargestRelativeDifference(mirrored.Solve(this->GetDevice()).fluence, MirroredInX(light.fluence, size)), 3e-6);
+}
+
+TEST_F(FusedPropagation, ReflectsAndTransmitsAsSlabsDo)
+{
+  for (const SlabReference& slab : SlabReferences)
+  {
+    const int cells = 24;
+    Scene scene({ 1, 1, cells }, static_cast<float>(slab.tau * (1.0 - slab.albedo) / cells),
+      static_cast<float>(slab.tau * slab.albedo / cells));
+    scene.settings.periodic = { true, true, false };
+    scene.settings.tolerance = 1e-5;
+    scene.settings.directionsPerFace = 49;
+    scene.light.faces[4] = { 1.0, 1.0, 1.0 };
+    const LightField diffuse = scene.Solve(this->GetDevice());
+    const double in = diffuse.balance.entered[0];
+    EXPECT_NEAR(in / Pi, 1.0, 1e-2);
+    EXPECT_NEAR(diffuse.facePowerOut[4][0] / in, slab.diffuseR, 6e-3) << slab.tau << ' ' << slab.albedo;
+    EXPECT_NEAR(diffuse.facePowerOut[5][0] / in, slab.diffuseT, 6e-3) << slab.tau << ' ' << slab.albedo;
+
+    scene.light.faces[4] = {};
+    scene.ShineAlong({ 0.0, 0.0, 1.0 });
+    const LightField beam = scene.Solve(this->GetDevice());
+    EXPECT_NEAR(beam.facePowerOut[4][0], slab.beamR, 2e-3) << slab.tau << ' ' << slab.albedo;
+    EXPECT_NEAR(beam.facePowerOut[5][0], slab.beamT, 2e-3) << slab.tau << ' ' << slab.albedo;
+  }
+}
+
+TEST_F(FusedPropagation, ConvergesWithTheSquareOfTheVoxelOnASlab)
+{
+  const SlabReference& slab = SlabReferences[4];
+  std::vector<double> transmitted;
+  for (int cells : { 8, 16, 32 })
+  {
+    Scene scene({ 1, 1, cells }, static_cast<float>(slab.tau * (1.0 - slab.albedo) / cells),
+      static_cast<float>(slab.tau * slab.albedo / cells));
+    scene.settings.periodic = { true, true, false };
+    scene.settings.tolerance = 1e-6;
+    scene.ShineAlong({ 0.0, 0.0, 1.0 });
+    transmitted.push_back(scene.Solve(this->GetDevice()).facePowerOut[5][0]);
+  }
+  const double order = std::log2((transmitted[0] - transmitted[1]) / (transmitted[1] - transmitted[2]));
+  RecordProperty("order", std::to_string(order));
+  EXPECT_GT(order, 1.8);
+}
+
+TEST_F(FusedPropagation, TakesAnyGrid)
+{
+  const std::array<int, 3> sizes[] = { { 1, 1, 1 }, { 1, 7, 3 }, { 5, 1, 1 }, { 33, 2, 17 }, { 1, 1, 65 } };
+  for (const std::array<int, 3>& size : sizes)
+  {
+    for (const std::array<double, 3>& spacing :
+      { std::array<double, 3>{ 1.0, 1.0, 1.0 }, std::array<double, 3>{ 0.1, 1.0, 3.0 },
+        std::array<double, 3>{ 1000.0, 1.0, 1.0 }, std::array<double, 3>{ 2e-9, 1e-9, 1e-9 } })
+    {
+      Scene scene(size, static_cast<float>(0.1 / spacing[1]), static_cast<float>(0.4 / spacing[1]));
+      scene.medium.grid.spacing = spacing;
+      scene.medium.grid.origin = { 1e6, -1e6, 5e5 };
+      scene.ShineFromEverywhere(1.0);
+      scene.settings.maximumOrders = 4;
+      const LightField light = scene.Solve(this->GetDevice());
+      EXPECT_LT(light.balance.RelativeError(1), 1e-5) << size[0] << 'x' << size[1] << 'x' << size[2];
+      ExpectFiniteAndNotNegative(light.fluence);
+      EXPECT_LT(*std::max_element(light.fluence.begin(), light.fluence.end()), 4.0 * Pi * 1.0001);
+    }
+  }
+}
+
+TEST_F(FusedPropagation, SolvesColoursThatShareSigmaTAsItSolvesThemAlone)
+{
+  const std::array<int, 3> size = { 13, 10, 8 };
+  Scene rgb(size);
+  rgb.Randomise(0.5, 2.0, 0.0);
+  const std::vector<float> sigma_t = rgb.sigma_a;
+  const float albedo[3] = { 0.5f, 0.75f, 1.0f };
+  rgb.sigma_a.resize(3 * sigma_t.size());
+  rgb.sigma_s.resize(3 * sigma_t.size());
+  for (std::size_t i = 0; i < sigma_t.size(); ++i)
+  {
+    for (int c = 0; c < 3; ++c)
+    {
+      rgb.sigma_s[3 * i + c] = sigma_t[i] * albedo[c];
+      rgb.sigma_a[3 * i + c] = sigma_t[i] - rgb.sigma_s[3 * i + c];
+    }
+  }
+  rgb.light.sky = { 1.0, 2.0, 3.0 };
+  rgb.settings.maximumOrders = 3;
+  const LightField together = rgb.Solve(this->GetDevice());
+  ASSERT_EQ(together.channels, 3);
+  for (int c = 0; c < 3; ++c)
+  {
+    Scene grey(size);
+    for (std::size_t i = 0; i < sigma_t.size(); ++i)
+    {
+      grey.sigma_a[i] = rgb.sigma_a[3 * i + c];
+      grey.sigma_s[i] = rgb.sigma_s[3 * i + c];
+    }
+    grey.ShineFromEverywhere(c + 1.0);
+    grey.settings.maximumOrders = 3;
+    const LightField alone = grey.Solve(this->GetDevice());
+    for (std::size_t i = 0; i < sigma_t.size(); ++i)
+    {
+      ASSERT_NEAR(together.fluence[3 * i + c] / alone.fluence[i], 1.0, 1e-5);
+    }
+    EXPECT_NEAR(together.balance.escaped[c] / alone.balance.escaped[0], 1.0, 1e-5);
+  }
+}
+
+TEST_F(FusedPropagation, SolvesColoursWithTheirOwnSigmaT)
+{
+  Scene rgb({ 8, 9, 10 });
+  rgb.sigma_a.assign(3 * rgb.medium.grid.VoxelCount(), 0.0f);
+  for (std::size_t i = 0; i < rgb.sigma_a.size(); ++i)
+  {
+    rgb.sigma_a[i] = 0.1f * (1.0f + i % 3);
+  }
+  rgb.ShineAlong({ 0.0, 1.0, 0.0 });
+  const LightField light = rgb.Solve(this->GetDevice());
+  for (int c = 0; c < 3; ++c)
+  {
+    EXPECT_NEAR(light.facePowerOut[3][c] / (80.0 * std::exp(-0.9 * (1 + c))), 1.0, 1e-5);
+    EXPECT_LT(light.balance.RelativeError(3), 1e-6);
+  }
+}
+
+TEST_F(FusedPropagation, NetFluxHasTheSourcesAndSinksOfTheMedium)
+{
+  // On the box's faces the flux that goes out less the one that comes in is minus what is absorbed.
+  Scene scene({ 16, 16, 16 }, 0.05f, 0.1f);
+  scene.light.faces[4] = { 1.0, 1.0, 1.0 };
+  scene.settings.netFlux = true;
+  scene.settings.tolerance = 1e-6;
+  const LightField light = scene.Solve(this->GetDevice());
+  ASSERT_EQ(light.netFlux.size(), 3 * light.fluence.size());
+  double throughMiddle[3] = {};
+  double absorbedAbove = 0.0;
+  for (int z = 0; z < 16; ++z)
+  {
+    for (int i = 0; i < 256; ++i)
+    {
+      const std::size_t voxel = static_cast<std::size_t>(z) * 256 + i;
+      for (int axis = 0; axis < 3 && z == 8; ++axis)
+      {
+        throughMiddle[axis] += light.netFlux[3 * voxel + axis];
+      }
+      absorbedAbove += z > 8 ? 0.05 * light.fluence[voxel] : z == 8 ? 0.025 * light.fluence[voxel] : 0.0;
+    }
+  }
+  EXPECT_GT(throughMiddle[2], 0.0) << "light comes from below";
+  EXPECT_NEAR(throughMiddle[0] / throughMiddle[2], 0.0, 1e-5) << "and not from one side";
+  EXPECT_NEAR(throughMiddle[1] / throughMiddle[2], 0.0, 1e-5);
+  double out = light.facePowerOut[5][0];
+  EXPECT_GT(throughMiddle[2], out + 0.5 * absorbedAbove);
+  EXPECT_LT(throughMiddle[2], light.balance.entered[0]);
+}
+
+TEST_F(FusedPropagation, AMapTwiceAsFineEndsNearTheSameLight)
+{
+  Scene scene({ 12, 12, 12 }, 0.05f, 0.2f);
+  scene.ShineFromEverywhere(1.0);
+  scene.settings.maximumOrders = 3;
+  const LightField coarse = scene.Solve(this->GetDevice());
+  scene.settings.mapResolution = 2;
+  const LightField fine = scene.Solve(this->GetDevice());
+  EXPECT_LT(fine.balance.RelativeError(1), 1e-5);
+  EXPECT_LT(LargestRelativeDifference(coarse.fluence, fine.fluence), 0.1);
+}
+
+TEST_F(FusedPropagation, IsTheSameBitForBitTheSecondTime)
+{
+  Scene scene({ 20, 17, 15 });
+  scene.Randomise(1.0, 3.0, 0.9);
+  scene.ShineFromEverywhere(1.0);
+  scene.ShineAlong({ 0.4, 0.3, -1.0 });
+  scene.settings.maximumOrders = 3;
+  EXPECT_EQ(scene.Solve(this->GetDevice()).fluence, scene.Solve(this->GetDevice()).fluence);
+}
+
+TEST_F(FusedPropagation, StopsWhenToldTo)
+{
+  Scene scene({ 32, 32, 32 }, 0.0f, 1.0f);
+  scene.ShineFromEverywhere(1.0);
+  int reports = 0;
+  EXPECT_THROW(scene.Solve(this->GetDevice(), [&](double) { return ++reports < 5; }), Aborted);
+  EXPECT_EQ(reports, 5);
+}
+
+TEST_F(FusedPropagation, ReportsProgressThatGrows)
+{
+  Scene scene({ 16, 16, 16 }, 0.05f, 0.5f);
+  scene.ShineFromEverywhere(1.0);
+  for (int orders : { 0, 4 })
+  {
+    scene.settings.maximumOrders = orders;
+    double last = 0.0;
+    scene.Solve(this->GetDevice(), [&](double done) {
+      EXPECT_GE(done, last - 1e-9);
+      EXPECT_LE(done, 1.0 + 1e-9);
+      last = done;
+      return true;
+    });
+    EXPECT_GT(last, 0.5);
+  }
+}
+
+TEST_F(FusedPropagation, StaysDarkWithoutLight)
+{
+  Scene scene({ 4, 4, 4 }, 1.0f, 1.0f);
+  const LightField light = scene.Solve(this->GetDevice());
+  EXPECT_EQ(*std::max_element(light.fluence.begin(), light.fluence.end()), 0.0f);
+  EXPECT_EQ(light.balance.RelativeError(1), 0.0);
+}
+
+TEST_F(FusedPropagation, RefusesWhatHasNoMeaning)
+{
+  const auto solve = [&](auto&& spoil) {
+    Scene scene({ 4, 5, 6 }, 0.1f, 0.1f);
+    scene.ShineFromEverywhere(1.0);
+    spoil(scene);
+    scene.Solve(this->GetDevice());
+  };
+  const auto message = [&](auto&& spoil) {
+    try
+    {
+      solve(spoil);
+    }
+    catch (const InvalidInput& error)
+    {
+      return std::string(error.what());
+    }
+    return std::string();
+  };
+  EXPECT_NE(message([](Scene& s) { s.sigma_a[(3 * 5 + 2) * 4 + 1] = NAN; }).find("(1, 2, 3)"), std::string::npos);
+  EXPECT_NE(message([](Scene& s) { s.sigma_s[7] = -1.0f; }).find("sigma_s"), std::string::npos);
+  EXPECT_NE(message([](Scene& s) { s.sigma_s[7] = INFINITY; }).find("sigma_s"), std::string::npos);
+  EXPECT_NE(message([](Scene& s) { s.medium.grid.spacing[1] = 0.0; }).find("along y"), std::string::npos);
+  EXPECT_NE(message([](Scene& s) { s.ShineAlong({ 0.0, 0.0, 0.0 }); }).find("Light 0"), std::string::npos);
+  EXPECT_NE(message([](Scene& s) { s.settings.directionsPerFace = 7; }).find("DirectionsPerFace"), std::string::npos);
+  EXPECT_NE(message([](Scene& s) { s.settings.mapResolution = 0; }).find("MapResolution"), std::string::npos);
+  EXPECT_NE(message([](Scene& s) { s.settings.tolerance = 0.0; }).find("Tolerance"), std::string::npos);
+}
