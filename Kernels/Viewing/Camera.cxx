@@ -67,6 +67,20 @@ std::array<std::array<double, 3>, 3> Axes(const Camera& camera)
   return { Array(unitRight), Array(glm::cross(unitRight, forward)), Array(forward) };
 }
 
+std::array<double, 3> ThreeQuarterView(const std::array<double, 3>& viewUp)
+{
+  int up = 2;
+  for (int axis : { 1, 0 })
+  {
+    up = std::abs(viewUp[axis]) > std::abs(viewUp[up]) ? axis : up;
+  }
+  std::array<double, 3> towards;
+  towards[up] = std::copysign(0.5, viewUp[up]);
+  towards[(up + 1) % 3] = 0.55;
+  towards[(up + 2) % 3] = -1.0;
+  return towards;
+}
+
 Camera FrameGrid(const Grid& grid, double aspect, double viewAngle, const std::array<double, 3>& towards,
   const std::array<double, 3>& viewUp)
 {

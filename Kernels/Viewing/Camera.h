@@ -17,12 +17,17 @@ struct Camera
   double parallelScale = 1.0;      ///< then half the picture's height, length, > 0
 };
 
-/// A camera that looks at the grid's centre and sees all of the box, which touches the picture's margin (5% of its size).
-/// @param aspect     width over height of the picture
-/// @param towards    from the grid's centre to the camera; the default sees the sides -y, +x and the top, z upwards
-/// @param viewUp     replaced by y where it is along the view
+/// From where things are looked at untold: three quarters from the front and a little from above, with the axis nearest to
+/// `viewUp` upwards; for z the sides -y and +x and the top are seen.
+std::array<double, 3> ThreeQuarterView(const std::array<double, 3>& viewUp);
+
+/// A camera that looks at the grid's centre and sees all of the box, with a margin of 5% of the picture.
+/// @param aspect   width over height of the picture
+/// @param towards  from the grid's centre to the camera, any length but 0
+/// @param viewUp   replaced by y where it is along the view
 Camera FrameGrid(const Grid& grid, double aspect, double viewAngle = 30.0,
-  const std::array<double, 3>& towards = { 0.55, -1.0, 0.5 }, const std::array<double, 3>& viewUp = { 0.0, 0.0, 1.0 });
+  const std::array<double, 3>& towards = ThreeQuarterView({ 0.0, 0.0, 1.0 }),
+  const std::array<double, 3>& viewUp = { 0.0, 0.0, 1.0 });
 
 /// The camera's axes in the world, unit vectors: to the right, upwards in the picture, and forward.
 /// @throws InvalidInput where position and focal point coincide, viewUp is along the view, or a number is not usable

@@ -121,12 +121,6 @@ bool IsZero(const Rgb& colour)
   return colour[0] == 0.0 && colour[1] == 0.0 && colour[2] == 0.0;
 }
 
-bool MoreThanLights(const Illumination& illumination)
-{
-  return !illumination.environment.Empty() || !IsZero(illumination.sky) ||
-    !std::all_of(illumination.faces.begin(), illumination.faces.end(), IsZero);
-}
-
 /// Points and parallel beams that stand for the lights, as ScatteredLight.cl's small_light: three float4 each, world
 /// coordinates from the box's lower corner.
 std::vector<cl_float4> SmallLights(const std::vector<Light>& lights, const Grid& grid, int rectangleSamples)
@@ -262,7 +256,6 @@ MediumRayCaster::MediumRayCaster(Device& device, const Medium& medium, const Sol
 
   // Traits of the scene.
   this->Coloured = medium.sigma_a.components == 3 || medium.sigma_s.components == 3;
-  this->OtherSources = MoreThanLights(illumination);
   const std::vector<cl_float4> lights = settings.shadowRays
     ? SmallLights(illumination.lights, medium.grid, settings.rectangleSamples)
     : std::vector<cl_float4>();
@@ -353,10 +346,10 @@ void MediumRayCaster::Pack(bool withShadowRays)
   const std::string options = this->PackingOptions() + " -DSHADOW_RAYS=" + (withShadowRays ? "1" : "0");
   const cl_int4 size = Int4(this->TheGrid.size[0], this->TheGrid.size[1], this->TheGrid.size[2]);
   const cl_int4 bricks = Int4(this->BrickCount[0], this->BrickCount[1], this->BrickCount[2]);
-  const cl_int4 mode = Int4(this->Settings.singleScatteringOnly, this->OtherSources, 0);
+  const cl_int single = this->Settings.singleScatteringOnly ? 1 : 0;
 
   cl::Kernel pack = this->TheDevice.Kernel("pack_samples", sources, options);
-  With(pack, size, mode, this->Arrays[0], this->Arrays[1], this->Arrays[2], this->Arrays[3], this->Arrays[4],
+  With(pack, size, single, this->Arrays[0], this->Arrays[1], this->Arrays[2], this->Arrays[3], this->Arrays[4],
     this->Direct, this->Samples, this->Extinctions);
   this->TheDevice.Queue().enqueueNDRangeKernel(
     pack, cl::NullRange, cl::NDRange(RoundUp(size.s[0] + 2, 64), size.s[1] + 2, size.s[2] + 2), cl::NDRange(64, 1, 1));

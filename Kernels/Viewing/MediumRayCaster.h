@@ -62,10 +62,9 @@ struct Picture
 ///   | with shadow rays    | sum over lights of E p | that + max(fluence - D, 0) / 4 pi |
 ///
 /// E is a light's irradiance behind the medium, p the phase function (Henyey and Greenstein's with the medium's g) from the
-/// light's direction to the camera's. D is the part of fluence that E shows already, so that nothing counts twice:
-/// fluenceDirect where the lights are all that shines; where an environment, a sky or a face shines too, whose direct light
-/// is in fluenceDirect as well and is to stay, D = min(sum of E, fluenceDirect). What is not found by shadow rays scatters
-/// evenly in all directions.
+/// light's direction to the camera's. D = min(sum of E, fluenceDirect) is the part of fluence that E shows already, so that
+/// nothing counts twice; what else is in fluenceDirect came straight from an environment or a sky and stays. All light
+/// that is not found by shadow rays scatters evenly in all directions.
 class MediumRayCaster
 {
 public:
@@ -98,7 +97,6 @@ private:
   ViewSettings Settings;
   double G = 0.0;
   bool Coloured = false;     ///< extinction differs between channels
-  bool OtherSources = false; ///< more than lights shines on the medium
   bool SourcesDependOnCamera = false;
   bool SourcesReady = false;
   Rgb Background = {};

@@ -28,22 +28,23 @@ inline int voxel_index(int4 size)
 // In-scattered radiance of one channel. `fluence` holds everything, `unscattered` what of it came straight from a light;
 // what is seen of the lights by shadow rays is taken out of fluence, so that it does not count twice.
 inline float in_scattered(global const float* fluence, global const float* unscattered, global const float* direct,
-  int voxel, int channel, int4 mode)
+  int voxel, int channel, int single)
 {
   const float whole = channel_of(fluence, voxel, FLUENCE, channel);
   const float first = channel_of(unscattered, voxel, UNSCATTERED, channel);
 #if SHADOW_RAYS
   const float seen = direct[voxel * 6 + channel];
-  const float from_lights = mode.y ? fmin(direct[voxel * 6 + 3 + channel], first) : first;
-  return seen + (mode.x ? 0.0f : fmax(whole - from_lights, 0.0f) * PER_SPHERE);
+  const float from_lights = fmin(direct[voxel * 6 + 3 + channel], first);
+  return seen + (single ? 0.0f : fmax(whole - from_lights, 0.0f) * PER_SPHERE);
 #else
-  return (mode.x ? first : whole) * PER_SPHERE;
+  return (single ? first : whole) * PER_SPHERE;
 #endif
 }
 
-// mode  x: only light that scatters once; y: part of `unscattered` comes from elsewhere than the lights
-kernel void pack_samples(int4 size, int4 mode, global const float* restrict absorption, global const float* restrict scattering,
-  global const float* restrict emission, global const float* restrict fluence, global const float* restrict unscattered,
+// single  1: only light that scatters once
+kernel void pack_samples(int4 size, int single, global const float* restrict absorption,
+  global const float* restrict scattering, global const float* restrict emission,
+  global const float* restrict fluence, global const float* restrict unscattered,
   global const float* restrict direct, global float4* restrict samples, global float4* restrict extinctions)
 {
   if (get_global_id(0) >= size.x + 2)
@@ -58,7 +59,7 @@ kernel void pack_samples(int4 size, int4 mode, global const float* restrict abso
 #define CHANNEL(c, n)                                                                                                    \
   sigma_s.c = channel_of(scattering, voxel, SCATTERING, n);                                                              \
   sigma_t.c = sigma_s.c + channel_of(absorption, voxel, ABSORPTION, n);                                                  \
-  source.c = sigma_s.c * in_scattered(fluence, unscattered, direct, voxel, n, mode) +                                    \
+  source.c = sigma_s.c * in_scattered(fluence, unscattered, direct, voxel, n, single) +                                  \
     channel_of(emission, voxel, EMISSION, n);
   CHANNEL(x, 0)
   CHANNEL(y, 1)

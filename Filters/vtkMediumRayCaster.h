@@ -1,0 +1,238 @@
+#ifndef vtkMediumRayCaster_h
+#define vtkMediumRayCaster_h
+
+#include "vtkImageAlgorithm.h"
+#include "vtkTyndallModule.h" // for export macro
+
+#include <string>
+
+/**
+ * @class vtkMediumRayCaster
+ * @brief a picture of a medium whose light is known
+ *
+ * Marches a ray through every pixel of the picture, and gathers along it the light that the medium scatters towards the
+ * camera and the light it emits, each dimmed by the medium before it; behind the medium the background is seen through it.
+ * The source is interpolated linearly between voxel centres.
+ *
+ * Input 0, the medium with its light: vtkImageData with cell arrays (point arrays are averaged to cells)
+ *
+ * | array            | components | unit             | meaning                                          |
+ * |------------------|------------|------------------|--------------------------------------------------|
+ * | `sigma_a`        | 1 or 3     | 1/length         | absorption coefficient                           |
+ * | `sigma_s`        | 1 or 3     | 1/length         | scattering coefficient                           |
+ * | `emission`       | 1 or 3     | W/(length^3 sr)  | emitted radiance per unit length; optional       |
+ * | `fluence`        | 1 or 3     | W/length^2       | light, as every solver writes it; optional       |
+ * | `fluence_direct` | 1 or 3     | W/length^2       | its unscattered part; needed only to separate it |
+ *
+ * or those chosen by SetInputArrayToProcess 0 to 4, and field data `g` (default 0).
+ * Input 1, optional: lights as vtkLightRig makes them, for shadow rays.
+ * Input 2, optional: the environment behind the medium, vtkImageData in latitude-longitude layout, point array `radiance`.
+ *
+ * What is scattered towards the camera:
+ *
+ * |                     | SingleScatteringOnly                                 | else                       |
+ * |---------------------|------------------------------------------------------|----------------------------|
+ * | without ShadowRays  | `fluence_direct` / 4 pi                              | `fluence` / 4 pi           |
+ * | with ShadowRays     | the lights behind the medium, with its phase function | that, and the rest of `fluence` / 4 pi |
+ *
+ * The rest of `fluence` is what the shadow rays do not show already, so that no light counts twice. Where there is no
+ * `fluence` but there are lights, shadow rays are used without being asked for.
+ *
+ * Output: vtkImageData of ImageSize pixels (x to the right, y upwards), point arrays
+ *
+ * | array      | type      | unit            | meaning                                                              |
+ * |------------|-----------|-----------------|----------------------------------------------------------------------|
+ * | `color`    | uint8 x 4 | sRGB            | the picture for a screen, active scalars; opaque if ShowBackground    |
+ * | `radiance` | float x 3 | W/(length^2 sr) | what arrives at the camera                                           |
+ * | `alpha`    | float     | 1               | 1 - transmittance (mean of the channels)                             |
+ * | `depth`    | float     | length          | distance along the view to where transmittance (mean of the channels) falls to 1/2; beyond the whole medium where it does not |
+ *
+ * and field data `exposure` (what radiance was multiplied by), `left_out` (what the scene did not need), `device`.
+ *
+ * While CameraPosition and CameraFocalPoint are equal, as they are untouched, the camera frames the whole medium, from
+ * above, z upwards.
+ *
+ * In a parallel pipeline every rank renders the whole picture and hands on the piece it was asked for.
+ *
+ * @sa vtkLightPropagationMaps vtkLightRig vtkEnvironmentReader
+ * @par Thanks
+ * Tone mapping: K. Narkowicz, ACES Filmic Tone Mapping Curve, 2015; E. Reinhard et al., Photographic Tone Reproduction for
+ * Digital Images, SIGGRAPH 2002 (exposure).
+ */
+class TYNDALL_EXPORT vtkMediumRayCaster : public vtkImageAlgorithm
+{
+public:
+  static vtkMediumRayCaster* New();
+  vtkTypeMacro(vtkMediumRayCaster, vtkImageAlgorithm);
+  void PrintSelf(ostream& os, vtkIndent indent) override;
+
+  enum ToneCurves
+  {
+    LINEAR = 0, ///< radiance times exposure, cut at white
+    FILMIC = 1  ///< bright parts are compressed as film does it
+  };
+
+  ///@{
+  /// Lights (vtkPolyData) and environment (vtkImageData) by connection or as data; null: none.
+  void SetLightsConnection(vtkAlgorithmOutput* lights);
+  void SetLightsData(vtkDataObject* lights);
+  void SetEnvironmentConnection(vtkAlgorithmOutput* environment);
+  void SetEnvironmentData(vtkDataObject* environment);
+  ///@}
+
+  ///@{
+  /// Columns and rows of the picture, pixels. Default 800 x 600, valid from 1 on.
+  vtkSetVector2Macro(ImageSize, int);
+  vtkGetVector2Macro(ImageSize, int);
+  ///@}
+
+  ///@{
+  /// Where the camera is and what it looks at, as vtkCamera has it. Default (0, 0, 0) both: while they are equal, the
+  /// camera frames the medium.
+  vtkSetVector3Macro(CameraPosition, double);
+  vtkGetVector3Macro(CameraPosition, double);
+  vtkSetVector3Macro(CameraFocalPoint, double);
+  vtkGetVector3Macro(CameraFocalPoint, double);
+  ///@}
+
+  ///@{
+  /// What is upwards in the picture. Default (0, 0, 1), valid what is not along the view.
+  vtkSetVector3Macro(CameraViewUp, double);
+  vtkGetVector3Macro(CameraViewUp, double);
+  ///@}
+
+  ///@{
+  /// Angle between the picture's lower and upper edge, degrees. Default 30, valid (0, 180).
+  vtkSetMacro(CameraViewAngle, double);
+  vtkGetMacro(CameraViewAngle, double);
+  ///@}
+
+  ///@{
+  /// Whether rays are parallel, and then half the picture's height, length. Default off; 1, valid (0, infinity). A camera
+  /// that frames the medium finds the height itself.
+  vtkSetMacro(CameraParallelProjection, bool);
+  vtkGetMacro(CameraParallelProjection, bool);
+  vtkBooleanMacro(CameraParallelProjection, bool);
+  vtkSetMacro(CameraParallelScale, double);
+  vtkGetMacro(CameraParallelScale, double);
+  ///@}
+
+  ///@{
+  /// Voxels that a ray advances between two samples. Default 0.5, valid (0, infinity). The error falls with its square.
+  vtkSetMacro(StepSize, double);
+  vtkGetMacro(StepSize, double);
+  ///@}
+
+  ///@{
+  /// Whether to show only light that was scattered once. Default off.
+  vtkSetMacro(SingleScatteringOnly, bool);
+  vtkGetMacro(SingleScatteringOnly, bool);
+  vtkBooleanMacro(SingleScatteringOnly, bool);
+  ///@}
+
+  ///@{
+  /// Whether to follow the lights' direct light by shadow rays, scattered by the medium's phase function. Default off: it is
+  /// in `fluence`, scattered evenly.
+  vtkSetMacro(ShadowRays, bool);
+  vtkGetMacro(ShadowRays, bool);
+  vtkBooleanMacro(ShadowRays, bool);
+  ///@}
+
+  ///@{
+  /// Samples along each edge of a rectangular light. Default 3, valid [1, 32].
+  vtkSetClampMacro(RectangleSamples, int, 1, 32);
+  vtkGetMacro(RectangleSamples, int);
+  ///@}
+
+  ///@{
+  /// Whether the environment, or else BackgroundColor, is seen behind the medium. Default on.
+  vtkSetMacro(ShowBackground, bool);
+  vtkGetMacro(ShowBackground, bool);
+  vtkBooleanMacro(ShowBackground, bool);
+  ///@}
+
+  ///@{
+  /// Radiance behind the medium where there is no environment, red, green, blue, W/(length^2 sr). Default 0, valid
+  /// [0, infinity).
+  vtkSetVector3Macro(BackgroundColor, double);
+  vtkGetVector3Macro(BackgroundColor, double);
+  ///@}
+
+  ///@{
+  /// Axis of the scene along which the environment's up points (0, 1, 2 for x, y, z; default 2), and by how much it is
+  /// turned about it, degrees (default 0). As in the solver.
+  vtkSetClampMacro(EnvironmentUp, int, 0, 2);
+  vtkGetMacro(EnvironmentUp, int);
+  vtkSetMacro(EnvironmentAzimuth, double);
+  vtkGetMacro(EnvironmentAzimuth, double);
+  ///@}
+
+  ///@{
+  /// What radiance is multiplied by for `color`. Default 0: so that the picture's logarithmic mean becomes a medium grey.
+  vtkSetClampMacro(Exposure, double, 0.0, VTK_DOUBLE_MAX);
+  vtkGetMacro(Exposure, double);
+  ///@}
+
+  ///@{
+  /// How `color` follows radiance: LINEAR, or FILMIC (default).
+  vtkSetClampMacro(ToneCurve, int, LINEAR, FILMIC);
+  vtkGetMacro(ToneCurve, int);
+  ///@}
+
+  ///@{
+  /// Part of the name of the OpenCL device to use, of any case. Default empty: what the variable TYNDALL_DEVICE names, or
+  /// else PoCL's CPU device.
+  vtkSetStdStringFromCharMacro(Device);
+  vtkGetCharFromStdStringMacro(Device);
+  ///@}
+
+  ///@{
+  /// What came of the last update: seconds, the exposure used, the device's name, and what the scene did not need, one a
+  /// line.
+  vtkGetMacro(Seconds, double);
+  vtkGetMacro(UsedExposure, double);
+  vtkGetCharFromStdStringMacro(DeviceName);
+  vtkGetCharFromStdStringMacro(LeftOut);
+  ///@}
+
+protected:
+  vtkMediumRayCaster();
+  ~vtkMediumRayCaster() override;
+
+  int FillInputPortInformation(int port, vtkInformation* information) override;
+  int RequestInformation(
+    vtkInformation* request, vtkInformationVector** inputs, vtkInformationVector* outputs) override;
+  int RequestUpdateExtent(
+    vtkInformation* request, vtkInformationVector** inputs, vtkInformationVector* outputs) override;
+  int RequestData(vtkInformation* request, vtkInformationVector** inputs, vtkInformationVector* outputs) override;
+
+private:
+  vtkMediumRayCaster(const vtkMediumRayCaster&) = delete;
+  void operator=(const vtkMediumRayCaster&) = delete;
+
+  int ImageSize[2] = { 800, 600 };
+  double CameraPosition[3] = { 0.0, 0.0, 0.0 };
+  double CameraFocalPoint[3] = { 0.0, 0.0, 0.0 };
+  double CameraViewUp[3] = { 0.0, 0.0, 1.0 };
+  double CameraViewAngle = 30.0;
+  bool CameraParallelProjection = false;
+  double CameraParallelScale = 1.0;
+  double StepSize = 0.5;
+  bool SingleScatteringOnly = false;
+  bool ShadowRays = false;
+  int RectangleSamples = 3;
+  bool ShowBackground = true;
+  double BackgroundColor[3] = { 0.0, 0.0, 0.0 };
+  int EnvironmentUp = 2;
+  double EnvironmentAzimuth = 0.0;
+  double Exposure = 0.0;
+  int ToneCurve = FILMIC;
+  std::string Device;
+
+  double Seconds = 0.0;
+  double UsedExposure = 0.0;
+  std::string DeviceName;
+  std::string LeftOut;
+};
+
+#endif

@@ -1,0 +1,358 @@
+#include "TestSupport.h"
+
+#include "vtkCallbackCommand.h"
+#include "vtkCellData.h"
+#include "vtkDoubleArray.h"
+#include "vtkFieldData.h"
+#include "vtkFloatArray.h"
+#include "vtkImageData.h"
+#include "vtkLightRig.h"
+#include "vtkMediumRayCaster.h"
+#include "vtkPNGWriter.h"
+#include "vtkPointData.h"
+#include "vtkTestUtilities.h"
+#include "vtkUnsignedCharArray.h"
+#include "vtkVersion.h"
+
+#include <algorithm>
+#include <cmath>
+#include <limits>
+#include <string>
+
+namespace
+{
+constexpr double Pi = 3.14159265358979323846;
+
+/// An array of `values` in every cell, or function(x, y, z, component) of the cell's place in the unit cube.
+template <class Function>
+void AddCells(vtkImageData* image, const char* name, int components, const Function& function)
+{
+  int extent[6];
+  image->GetExtent(extent);
+  const int n[3] = { extent[1] - extent[0], extent[3] - extent[2], extent[5] - extent[4] };
+  vtkNew<vtkFloatArray> array;
+  array->SetName(name);
+  array->SetNumberOfComponents(components);
+  array->SetNumberOfTuples(image->GetNumberOfCells());
+  for (vtkIdType cell = 0; cell < image->GetNumberOfCells(); ++cell)
+  {
+    const double x = (cell % n[0] + 0.5) / n[0];
+    const double y = (cell / n[0] % n[1] + 0.5) / n[1];
+    const double z = (cell / (n[0] * n[1]) + 0.5) / n[2];
+    for (int c = 0; c < components; ++c)
+    {
+      array->SetComponent(cell, c, function(x, y, z, c));
+    }
+  }
+  image->GetCellData()->AddArray(array);
+}
+
+/// A box of uneven extent, far from the origin, filled alike.
+vtkNew<vtkImageData> Homogeneous(double sigma_a, double sigma_s, double fluence)
+{
+  vtkNew<vtkImageData> image;
+  image->SetExtent(3, 13, -2, 6, 1, 13);
+  image->SetSpacing(0.5, 0.5, 0.25);
+  image->SetOrigin(20.0, 0.0, -7.0);
+  AddCells(image, "sigma_a", 1, [&](double, double, double, int) { return sigma_a; });
+  AddCells(image, "sigma_s", 1, [&](double, double, double, int) { return sigma_s; });
+  AddCells(image, "fluence", 3, [&](double, double, double, int c) { return fluence * (c + 1); });
+  return image;
+}
+
+vtkDataArray* Pixels(vtkMediumRayCaster* caster, const char* name)
+{
+  return caster->GetOutput()->GetPointData()->GetArray(name);
+}
+
+double MiddlePixel(vtkMediumRayCaster* caster, const char* name, int component = 0)
+{
+  vtkDataArray* array = Pixels(caster, name);
+  const int* size = caster->GetImageSize();
+  return array ? array->GetComponent((size[1] / 2) * size[0] + size[0] / 2, component)
+               : std::numeric_limits<double>::quiet_NaN();
+}
+
+/// Looks down on the image's middle, parallel.
+void LookDown(vtkMediumRayCaster* caster, vtkImageData* image)
+{
+  const double* centre = image->GetCenter();
+  caster->SetCameraFocalPoint(centre[0], centre[1], centre[2]);
+  caster->SetCameraPosition(centre[0], centre[1], image->GetBounds()[5] + 10.0);
+  caster->SetCameraViewUp(0.0, 1.0, 0.0);
+  caster->SetCameraParallelProjection(true);
+  caster->SetCameraParallelScale(1.0);
+}
+
+void SlabFollowsTheClosedForm(test::Claims& claims)
+{
+  const vtkNew<vtkImageData> image = Homogeneous(0.1, 0.4, 4.0 * Pi);
+  vtkNew<vtkMediumRayCaster> caster;
+  caster->SetInputData(image);
+  caster->SetImageSize(41, 31);
+  LookDown(caster, image);
+  caster->SetBackgroundColor(1.0, 0.0, 0.0);
+  caster->Update();
+  vtkImageData* picture = caster->GetOutput();
+  claims.That(
+    picture->GetDimensions()[0] == 41 && picture->GetDimensions()[1] == 31 && picture->GetDimensions()[2] == 1,
+    "the picture has ImageSize pixels");
+  const double left = std::exp(-0.5 * 3.0);
+  claims.Near(MiddlePixel(caster, "alpha"), 1.0 - left, 1e-5, "alpha");
+  claims.Near(MiddlePixel(caster, "radiance", 0), 0.8 * (1.0 - left) + left, 1e-5, "red radiance with the background");
+  claims.Near(MiddlePixel(caster, "radiance", 2), 3.0 * 0.8 * (1.0 - left), 1e-5, "blue radiance");
+  claims.Near(MiddlePixel(caster, "depth"), 10.0 + std::log(2.0) / 0.5, 1e-3, "depth");
+  auto* color = vtkArrayDownCast<vtkUnsignedCharArray>(picture->GetPointData()->GetScalars());
+  claims.That(color && color->GetName() == std::string("color") && color->GetNumberOfComponents() == 4,
+    "color is the active scalars");
+  claims.Near(MiddlePixel(caster, "color", 3), 255.0, 0.0, "color's alpha with the background");
+  claims.That(picture->GetFieldData()->GetAbstractArray("device") != nullptr, "the device is field data");
+  claims.Near(picture->GetFieldData()->GetArray("exposure")->GetTuple1(0), caster->GetUsedExposure(), 0.0, "exposure");
+
+  caster->ShowBackgroundOff();
+  caster->SetExposure(0.5);
+  caster->SetToneCurve(vtkMediumRayCaster::LINEAR);
+  caster->Update();
+  claims.Near(MiddlePixel(caster, "radiance", 0), 0.8 * (1.0 - left), 1e-5, "red radiance alone");
+  claims.Near(MiddlePixel(caster, "color", 3), 255.0 * (1.0 - left), 0.6, "color's alpha without the background");
+  claims.Near(caster->GetUsedExposure(), 0.5, 0.0, "the exposure that was set");
+}
+
+void PointArraysAndChosenNamesServe(test::Claims& claims)
+{
+  const vtkNew<vtkImageData> image = Homogeneous(0.1, 0.4, 4.0 * Pi);
+  vtkNew<vtkFloatArray> points;
+  points->SetName("haze");
+  points->SetNumberOfTuples(image->GetNumberOfPoints());
+  points->Fill(0.4);
+  image->GetPointData()->AddArray(points);
+  image->GetCellData()->RemoveArray("sigma_s");
+  image->GetCellData()->GetArray("fluence")->SetName("light");
+  vtkNew<vtkMediumRayCaster> caster;
+  caster->SetInputData(image);
+  caster->SetInputArrayToProcess(1, 0, 0, vtkDataObject::FIELD_ASSOCIATION_POINTS, "haze");
+  caster->SetInputArrayToProcess(3, 0, 0, vtkDataObject::FIELD_ASSOCIATION_CELLS, "light");
+  caster->SetImageSize(9, 9);
+  LookDown(caster, image);
+  caster->Update();
+  claims.Near(MiddlePixel(caster, "radiance", 0), 0.8 * (1.0 - std::exp(-1.5)), 1e-5, "radiance of chosen arrays");
+}
+
+void UntouchedCameraSeesTheWholeBox(test::Claims& claims)
+{
+  const vtkNew<vtkImageData> image = Homogeneous(1e3, 0.0, 0.0);
+  vtkNew<vtkMediumRayCaster> caster;
+  caster->SetInputData(image);
+  for (int up = 0; up < 3; ++up)
+  {
+    caster->SetCameraViewUp(up == 0, up == 1, up == 2);
+    caster->SetImageSize(80, 60);
+    caster->Update();
+    vtkDataArray* alpha = Pixels(caster, "alpha");
+    bool edgeIsFree = true;
+    int covered = 0;
+    for (int pixel = 0; pixel < 80 * 60; ++pixel)
+    {
+      const int i = pixel % 80;
+      const int j = pixel / 80;
+      const bool opaque = alpha->GetTuple1(pixel) > 0.5;
+      edgeIsFree = edgeIsFree && !(opaque && (i == 0 || j == 0 || i == 79 || j == 59));
+      covered += opaque;
+    }
+    claims.That(edgeIsFree, "the box is inside the picture");
+    claims.That(covered > 80 * 60 / 4, "the box fills a good part of the picture");
+  }
+}
+
+void LightsServeWhereThereIsNoFluence(test::Claims& claims)
+{
+  const vtkNew<vtkImageData> image = Homogeneous(0.0, 0.01, 0.0);
+  image->GetCellData()->RemoveArray("fluence");
+  vtkNew<vtkLightRig> rig;
+  rig->SetSunElevation(90.0);
+  rig->SetSunPower(2.0, 2.0, 2.0);
+  vtkNew<vtkMediumRayCaster> caster;
+  caster->SetInputData(image);
+  caster->SetLightsConnection(rig->GetOutputPort());
+  caster->SetImageSize(9, 9);
+  LookDown(caster, image);
+  caster->Update();
+  const double expected = 2.0 / (4.0 * Pi) * -std::expm1(-2.0 * 0.01 * 3.0) / 2.0;
+  claims.Near(MiddlePixel(caster, "radiance", 1), expected, 1e-3 * expected, "light that scattered once");
+}
+
+/// Latitude-longitude image of `above` over `below` the horizon.
+vtkNew<vtkImageData> Environment(float above, float below)
+{
+  vtkNew<vtkImageData> environment;
+  environment->SetDimensions(8, 4, 1);
+  vtkNew<vtkFloatArray> radiance;
+  radiance->SetName("radiance");
+  radiance->SetNumberOfComponents(3);
+  for (int pixel = 0; pixel < 32; ++pixel)
+  {
+    const float value = pixel < 16 ? below : above;
+    radiance->InsertNextTuple3(value, value, value);
+  }
+  environment->GetPointData()->SetScalars(radiance);
+  return environment;
+}
+
+void EnvironmentIsTheBackground(test::Claims& claims)
+{
+  const vtkNew<vtkImageData> image = Homogeneous(0.0, 0.0, 0.0);
+  const vtkNew<vtkImageData> environment = Environment(3.0f, 1.0f);
+  vtkNew<vtkMediumRayCaster> caster;
+  caster->SetInputData(image);
+  caster->SetEnvironmentData(environment);
+  caster->SetImageSize(9, 9);
+  LookDown(caster, image);
+  caster->SetBackgroundColor(9.0, 9.0, 9.0);
+  caster->Update();
+  claims.Near(MiddlePixel(caster, "radiance"), 1.0, 1e-5, "what is below");
+  caster->SetCameraPosition(image->GetCenter()[0], image->GetCenter()[1], -100.0);
+  caster->Update();
+  claims.Near(MiddlePixel(caster, "radiance"), 3.0, 1e-5, "what is above");
+}
+
+void BadInputIsAnError(test::Claims& claims)
+{
+  const auto refused = [&](const char* part, auto change) {
+    const vtkNew<vtkImageData> image = Homogeneous(0.1, 0.4, 1.0);
+    vtkNew<vtkMediumRayCaster> caster;
+    caster->SetInputData(image);
+    caster->SetImageSize(9, 9);
+    change(caster.Get(), image.Get());
+    test::Errors errors(caster);
+    caster->Update();
+    claims.That(errors.WasOneWith(part), std::string("refused: ") + part);
+    claims.That(caster->GetOutput()->GetNumberOfPoints() == 0, std::string("empty output after: ") + part);
+    // The application lives on.
+    const vtkNew<vtkImageData> good = Homogeneous(0.1, 0.4, 1.0);
+    vtkNew<vtkMediumRayCaster> next;
+    next->SetInputData(good);
+    next->SetImageSize(9, 9);
+    next->Update();
+    claims.That(next->GetOutput()->GetNumberOfPoints() == 81, "the next picture is right");
+  };
+  refused("sigma_s", [](vtkMediumRayCaster*, vtkImageData* image) { image->GetCellData()->RemoveArray("sigma_s"); });
+  refused("nan", [](vtkMediumRayCaster*, vtkImageData* image) {
+    image->GetCellData()->GetArray("sigma_a")->SetComponent(5, 0, std::nan(""));
+  });
+  refused("fluence", [](vtkMediumRayCaster*, vtkImageData* image) {
+    image->GetCellData()->GetArray("fluence")->SetComponent(5, 0, HUGE_VAL);
+  });
+  refused("components", [](vtkMediumRayCaster*, vtkImageData* image) {
+    image->GetCellData()->RemoveArray("fluence");
+    AddCells(image, "fluence", 2, [](double, double, double, int) { return 1.0; });
+  });
+  refused("fluence_direct", [](vtkMediumRayCaster* caster, vtkImageData*) { caster->SingleScatteringOnlyOn(); });
+  refused("step size", [](vtkMediumRayCaster* caster, vtkImageData*) { caster->SetStepSize(0.0); });
+  refused("view up", [](vtkMediumRayCaster* caster, vtkImageData*) {
+    caster->SetCameraPosition(0, 0, 5);
+    caster->SetCameraViewUp(0, 0, 1);
+  });
+  refused("view angle", [](vtkMediumRayCaster* caster, vtkImageData*) { caster->SetCameraViewAngle(180.0); });
+  refused("0 by 9", [](vtkMediumRayCaster* caster, vtkImageData*) { caster->SetImageSize(0, 9); });
+  refused("no such device", [](vtkMediumRayCaster* caster, vtkImageData*) { caster->SetDevice("no such device"); });
+}
+
+void DarkMediumIsAWarning(test::Claims& claims)
+{
+  const vtkNew<vtkImageData> image = Homogeneous(0.1, 0.4, 1.0);
+  image->GetCellData()->RemoveArray("fluence");
+  vtkNew<vtkMediumRayCaster> caster;
+  caster->SetInputData(image);
+  caster->SetImageSize(9, 9);
+  test::Errors errors(caster);
+  caster->Update();
+  claims.That(errors.WasOneWith("dark"), "a warning says that the medium is dark");
+  claims.That(caster->GetOutput()->GetNumberOfPoints() == 81, "the picture is made all the same");
+}
+
+void Stop(vtkObject* caster, unsigned long, void* calls, void*)
+{
+  ++*static_cast<int*>(calls);
+  static_cast<vtkMediumRayCaster*>(caster)->SetAbortExecute(1);
+}
+
+void AbortStops(test::Claims& claims)
+{
+  const vtkNew<vtkImageData> image = Homogeneous(0.1, 0.4, 1.0);
+  vtkNew<vtkMediumRayCaster> caster;
+  caster->SetInputData(image);
+  caster->SetImageSize(400, 300);
+  vtkNew<vtkCallbackCommand> stop;
+  int calls = 0;
+  stop->SetCallback(Stop);
+  stop->SetClientData(&calls);
+  const unsigned long tag = caster->AddObserver(vtkCommand::ProgressEvent, stop);
+  test::Errors errors(caster);
+  caster->Update();
+  claims.That(calls > 0, "progress is reported");
+  claims.That(errors.None(), "an abort is no error");
+  claims.That(caster->GetOutput()->GetNumberOfPoints() == 0, "after an abort there is no picture");
+  caster->RemoveObserver(tag);
+  caster->SetAbortExecute(0);
+  caster->Modified();
+  caster->Update();
+  claims.That(caster->GetOutput()->GetNumberOfPoints() == 400 * 300, "the next update makes the picture");
+}
+
+/// A cumulus of noise in a clear sky, to be looked at; its numbers are checked elsewhere.
+void PictureOfACloud(test::Claims& claims, const std::string& file)
+{
+  vtkNew<vtkImageData> image;
+  image->SetDimensions(65, 65, 65);
+  const auto density = [](double x, double y, double z) {
+    const double r = std::sqrt((x - 0.5) * (x - 0.5) + (y - 0.5) * (y - 0.5) + 1.5 * (z - 0.45) * (z - 0.45));
+    const double waves = std::sin(13.0 * x + 3.0 * std::sin(9.0 * y)) * std::sin(11.0 * y + 4.0 * std::sin(10.0 * z)) *
+      std::sin(12.0 * z + 2.0 * std::sin(15.0 * x));
+    return std::max(0.0, 0.42 + 0.1 * waves - r);
+  };
+  AddCells(image, "sigma_s", 1, [&](double x, double y, double z, int) { return 6.0 * density(x, y, z); });
+  AddCells(image, "sigma_a", 1, [](double, double, double, int) { return 0.0; });
+  vtkNew<vtkLightRig> rig;
+  rig->SetSunElevation(50.0);
+  rig->SetSunPower(6.0, 5.6, 5.0);
+  vtkNew<vtkMediumRayCaster> caster;
+  caster->SetInputData(image);
+  caster->SetLightsConnection(rig->GetOutputPort());
+  caster->SetBackgroundColor(0.1, 0.2, 0.45);
+  caster->SetImageSize(400, 300);
+  vtkNew<vtkPNGWriter> writer;
+  writer->SetInputConnection(caster->GetOutputPort());
+  writer->SetFileName(file.c_str());
+  writer->Write();
+  claims.That(MiddlePixel(caster, "alpha") > 0.99, "the cloud is in the middle");
+}
+}
+
+int TestMediumRayCaster(int argc, char* argv[])
+{
+  {
+    const vtkNew<vtkImageData> image = Homogeneous(0.1, 0.4, 1.0);
+    vtkNew<vtkMediumRayCaster> caster;
+    caster->SetInputData(image);
+    caster->SetImageSize(4, 4);
+    test::Errors errors(caster);
+    caster->Update();
+    if (!errors.None())
+    {
+      return test::SkippedWithoutDevice("the ray caster makes no picture");
+    }
+  }
+  test::Claims claims;
+  SlabFollowsTheClosedForm(claims);
+  PointArraysAndChosenNamesServe(claims);
+  UntouchedCameraSeesTheWholeBox(claims);
+  LightsServeWhereThereIsNoFluence(claims);
+  EnvironmentIsTheBackground(claims);
+  BadInputIsAnError(claims);
+  DarkMediumIsAWarning(claims);
+  AbortStops(claims);
+  char* folder = vtkTestUtilities::GetArgOrEnvOrDefault("-T", argc, argv, "VTK_TEMP_DIR", "Testing/Temporary");
+  PictureOfACloud(claims, std::string(folder) + "/MediumRayCasterCloud.png");
+  delete[] folder;
+  return claims.Result();
+}
