@@ -92,11 +92,11 @@ int RoundUp(int value, int step)
 struct ParallelPropagation::Implementation
 {
   Implementation(Device& device, const Medium& medium, const Illumination& illumination,
-    const PropagationSettings& settings, std::size_t temporaryBytes)
+    const PropagationSettings& settings, std::size_t temporaryBytes, int channels)
     : TheDevice(device)
     , TheMedium(medium)
     , Settings(settings)
-    , Model(medium, illumination, settings)
+    , Model(medium, illumination, settings, channels)
     , Ledger(medium, this->Model, settings)
     , Channels(this->Model.Channels())
     , Width(device.IsCpu() ? (device.FloatVectorWidth() >= 16 ? 16 : 8) : 1)
@@ -717,8 +717,8 @@ struct ParallelPropagation::Implementation
 };
 
 ParallelPropagation::ParallelPropagation(Device& device, const Medium& medium, const Illumination& illumination,
-  const PropagationSettings& settings, std::size_t temporaryBytes)
-  : Inner(std::make_unique<Implementation>(device, medium, illumination, settings, temporaryBytes))
+  const PropagationSettings& settings, std::size_t temporaryBytes, int channels)
+  : Inner(std::make_unique<Implementation>(device, medium, illumination, settings, temporaryBytes, channels))
 {
 }
 

@@ -202,12 +202,12 @@ std::vector<std::string> LeftOutAsPublished(const Illumination& illumination)
 }
 
 PublishedModel::PublishedModel(
-  const Medium& medium, const Illumination& illumination, const PropagationSettings& settings)
+  const Medium& medium, const Illumination& illumination, const PropagationSettings& settings, int channels)
 {
   Check(medium);
   Check(illumination);
   Check(settings);
-  this->ChannelCount = medium.Channels() == 3 || Coloured(illumination) ? 3 : 1;
+  this->ChannelCount = channels == 3 || medium.Channels() == 3 || Coloured(illumination) ? 3 : 1;
   this->Isotropic = medium.g == 0.0;
   this->Set = PublishedDirections(settings.directionsPerFace);
   this->BoundaryRadiances = BoundaryOf(this->Set, illumination, settings.periodic);

@@ -42,8 +42,10 @@ namespace tyndall
 class PublishedModel
 {
 public:
-  /// @throws InvalidInput what Check() of medium and illumination throw; settings out of range
-  PublishedModel(const Medium& medium, const Illumination& illumination, const PropagationSettings& settings);
+  /// @param channels  3: as if something had colour; 1: as the scene needs
+  /// @throws InvalidInput what Check() of medium, illumination and settings throw; directions that are not a square number
+  PublishedModel(
+    const Medium& medium, const Illumination& illumination, const PropagationSettings& settings, int channels = 1);
 
   int Channels() const { return this->ChannelCount; } ///< 3 where medium or light is coloured, else 1
   const DirectionSet& Directions() const { return this->Set; }

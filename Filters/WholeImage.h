@@ -1,0 +1,41 @@
+#pragma once
+
+#include "vtkImageData.h"
+#include "vtkInformation.h"
+#include "vtkInformationVector.h"
+#include "vtkStreamingDemandDrivenPipeline.h"
+
+/// For filters in parallel pipelines whose light crosses the borders of pieces.
+namespace tyndall
+{
+/// In RequestUpdateExtent: ask an input for all of its image, or all pieces of its polydata.
+inline void AskForAll(vtkInformationVector* input)
+{
+  using Pipeline = vtkStreamingDemandDrivenPipeline;
+  vtkInformation* information = input->GetInformationObject(0);
+  if (!information)
+  {
+    return;
+  }
+  if (information->Has(Pipeline::WHOLE_EXTENT()))
+  {
+    int whole[6];
+    information->Get(Pipeline::WHOLE_EXTENT(), whole);
+    information->Set(Pipeline::UPDATE_EXTENT(), whole, 6);
+  }
+  information->Set(Pipeline::UPDATE_PIECE_NUMBER(), 0);
+  information->Set(Pipeline::UPDATE_NUMBER_OF_PIECES(), 1);
+  information->Set(Pipeline::UPDATE_NUMBER_OF_GHOST_LEVELS(), 0);
+}
+
+/// In RequestData: crop the output to the piece that was asked for; other ranks hold the rest.
+inline void KeepWhatIsAskedFor(vtkInformation* information, vtkImageData* output)
+{
+  int asked[6];
+  information->Get(vtkStreamingDemandDrivenPipeline::UPDATE_EXTENT(), asked);
+  if (asked[0] <= asked[1] && asked[2] <= asked[3] && asked[4] <= asked[5])
+  {
+    output->Crop(asked);
+  }
+}
+}
