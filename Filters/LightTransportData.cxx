@@ -131,7 +131,8 @@ Choice ChoiceOf(vtkAlgorithm* filter, int index, const std::string& otherwise)
   {
     choice.attribute = information->Get(vtkDataObject::FIELD_ATTRIBUTE_TYPE());
   }
-  if (choice.name.empty() && choice.attribute < 0)
+  const bool nothing = choice.name.empty() && choice.attribute <= vtkDataSetAttributes::SCALARS; // VTK's own default
+  if (nothing)
   {
     choice.name = otherwise;
     choice.attribute = otherwise.empty() ? static_cast<int>(vtkDataSetAttributes::SCALARS) : -1;
@@ -584,6 +585,7 @@ int Guarded(vtkAlgorithm* filter, vtkInformationVector* outputs, const std::func
   catch (const Aborted&)
   {
     EmptyOutputs(outputs);
+    filter->AbortExecute = 0; // Newer VTK leaves it set. SetAbortExecute would have the filter run again.
   }
   catch (const cl::Error& error)
   {

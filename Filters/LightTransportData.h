@@ -76,9 +76,9 @@ using Components = std::initializer_list<int>;
 /// @throws InvalidInput naming the array, the components it has, or the arrays that there are
 FloatField ReadCells(vtkImageData* image, const std::string& name, Need need, Components components = { 1, 3 });
 
-/// The same for the array that SetInputArrayToProcess chose as number `index`, by name or by attribute (SCALARS). Where
-/// points were chosen, the point array is preferred to a cell array of the same name. Where nothing was chosen, or "" (as
-/// ParaView does before it knows the input), `otherwise` is read; "" there stands for the active scalars.
+/// The same for the array that SetInputArrayToProcess chose as number `index`, by name or by attribute. Where points were
+/// chosen, the point array is preferred to a cell array of the same name. Where nothing was chosen, which is SCALARS to VTK
+/// and "" to ParaView before it knows the input, `otherwise` is read; "" there stands for the active scalars.
 FloatField ReadChosenCells(vtkAlgorithm* filter, int index, vtkImageData* image, const std::string& otherwise,
   Need need, Components components = { 1, 3 });
 

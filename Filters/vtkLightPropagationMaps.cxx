@@ -5,6 +5,7 @@
 #include "LightPropagation/ParallelPropagation.h"
 #include "LightPropagation/SequentialPropagation.h"
 #include "LightTransportData.h"
+#include "WholeImage.h"
 
 #include "vtkDataObject.h"
 #include "vtkImageData.h"
@@ -12,7 +13,6 @@
 #include "vtkInformationVector.h"
 #include "vtkObjectFactory.h"
 #include "vtkPolyData.h"
-#include "vtkStreamingDemandDrivenPipeline.h"
 #include "vtkTable.h"
 
 #include <algorithm>
@@ -83,37 +83,6 @@ tyndall::LightField Solve(
                    : tyndall::SolveFused(*device, medium, illumination, settings, monitor);
 }
 
-/// All of the image, or all pieces of the polydata: light crosses their borders.
-void AskForAll(vtkInformationVector* input)
-{
-  using Pipeline = vtkStreamingDemandDrivenPipeline;
-  vtkInformation* information = input->GetInformationObject(0);
-  if (!information)
-  {
-    return;
-  }
-  if (information->Has(Pipeline::WHOLE_EXTENT()))
-  {
-    int whole[6];
-    information->Get(Pipeline::WHOLE_EXTENT(), whole);
-    information->Set(Pipeline::UPDATE_EXTENT(), whole, 6);
-  }
-  information->Set(Pipeline::UPDATE_PIECE_NUMBER(), 0);
-  information->Set(Pipeline::UPDATE_NUMBER_OF_PIECES(), 1);
-  information->Set(Pipeline::UPDATE_NUMBER_OF_GHOST_LEVELS(), 0);
-}
-
-/// In a parallel pipeline the others hold the rest.
-void KeepWhatIsAskedFor(vtkInformation* information, vtkImageData* output)
-{
-  int asked[6];
-  information->Get(vtkStreamingDemandDrivenPipeline::UPDATE_EXTENT(), asked);
-  if (asked[0] <= asked[1] && asked[2] <= asked[3] && asked[4] <= asked[5])
-  {
-    output->Crop(asked);
-  }
-}
-
 std::string Lines(const std::vector<std::string>& texts)
 {
   std::string lines;
@@ -175,7 +144,7 @@ int vtkLightPropagationMaps::RequestUpdateExtent(vtkInformation*, vtkInformation
 {
   for (int port = 0; port < InputPortCount; ++port)
   {
-    AskForAll(inputs[port]);
+    tyndall::AskForAll(inputs[port]);
   }
   return 1;
 }
@@ -200,7 +169,7 @@ int vtkLightPropagationMaps::RequestData(vtkInformation*, vtkInformationVector**
     vtkImageData* output = vtkImageData::GetData(outputs, 0);
     output->ShallowCopy(image);
     tyndall::WriteLight(std::move(light), output);
-    KeepWhatIsAskedFor(outputs->GetInformationObject(0), output);
+    tyndall::KeepWhatIsAskedFor(outputs->GetInformationObject(0), output);
   });
 }
 

@@ -1,0 +1,252 @@
+#include "MediumScene.h"
+
+#include "vtkIntArray.h"
+#include "vtkLightPropagationMaps.h"
+#include "vtkLightRig.h"
+#include "vtkPolyData.h"
+#include "vtkStringArray.h"
+#include "vtkTable.h"
+
+#include <cmath>
+#include <limits>
+
+namespace
+{
+const double NotANumber = std::numeric_limits<double>::quiet_NaN();
+const double Infinite = std::numeric_limits<double>::infinity();
+
+vtkSmartPointer<vtkImageData> Good()
+{
+  return test::MakeMedium({ { 3, 4, 5 } }, 0.5, 1.0);
+}
+
+vtkSmartPointer<vtkImageData> With(const char* array, vtkIdType cell, double value)
+{
+  auto medium = Good();
+  medium->GetCellData()->GetArray(array)->SetComponent(cell, 0, value);
+  return medium;
+}
+
+vtkSmartPointer<vtkImageData> Without(const char* array)
+{
+  auto medium = Good();
+  medium->GetCellData()->RemoveArray(array);
+  return medium;
+}
+
+vtkSmartPointer<vtkPolyData> LightsOf(vtkLightRig* rig)
+{
+  rig->Update();
+  auto lights = vtkSmartPointer<vtkPolyData>::New();
+  lights->DeepCopy(rig->GetOutput());
+  return lights;
+}
+
+/// A filter that is wrong in one thing at a time.
+class Refusals
+{
+public:
+  explicit Refusals(test::Claims& claims)
+    : TheClaims(claims)
+    , TheErrors(this->Maps)
+  {
+    this->Maps->SetSkyColor(1.0, 1.0, 1.0);
+    this->Maps->SetInputDataObject(Good());
+  }
+
+  vtkLightPropagationMaps* operator->() { return this->Maps; }
+
+  /// @param part  of the one error that is expected
+  void Says(const std::string& part)
+  {
+    this->Maps->Update();
+    vtkImageData* output = this->Maps->GetOutput();
+    this->TheClaims.That(this->TheErrors.WasOneWith(part), "refused: " + part);
+    this->TheClaims.That(output->GetNumberOfCells() == 0 && output->GetCellData()->GetNumberOfArrays() == 0 &&
+        output->GetFieldData()->GetNumberOfArrays() == 0,
+      "the output is empty: " + part);
+    auto* convergence = vtkTable::SafeDownCast(this->Maps->GetOutputDataObject(1));
+    this->TheClaims.That(convergence && convergence->GetNumberOfRows() == 0, "the table is empty: " + part);
+    this->TheClaims.That(this->Maps->GetOrders() == 0, "no orders are reported: " + part);
+  }
+
+  void OfMedium(vtkImageData* medium, const std::string& part)
+  {
+    this->Maps->SetInputDataObject(medium);
+    this->Says(part);
+    this->Maps->SetInputDataObject(Good());
+  }
+
+  void OfLights(vtkPolyData* lights, const std::string& part)
+  {
+    this->Maps->SetLightsData(lights);
+    this->Says(part);
+    this->Maps->SetLightsData(nullptr);
+  }
+
+  void OfEnvironment(vtkImageData* environment, const std::string& part)
+  {
+    this->Maps->SetEnvironmentData(environment);
+    this->Says(part);
+    this->Maps->SetEnvironmentData(nullptr);
+  }
+
+  void None(const std::string& claim)
+  {
+    this->Maps->Update();
+    this->TheClaims.That(this->TheErrors.None() && this->Maps->GetOutput()->GetNumberOfCells() == 60, claim);
+  }
+
+  bool WasOneWith(const std::string& part) { return this->TheErrors.WasOneWith(part); }
+
+private:
+  test::Claims& TheClaims;
+  vtkNew<vtkLightPropagationMaps> Maps;
+  test::Errors TheErrors;
+};
+
+void BadMedium(Refusals& refusals)
+{
+  refusals.OfMedium(Without("sigma_a"), "no array 'sigma_a'. Its cell arrays: 'sigma_s'; its point arrays: none");
+  refusals.OfMedium(Without("sigma_s"), "no array 'sigma_s'");
+  refusals.OfMedium(With("sigma_a", 0, NotANumber), "sigma_a is nan in voxel (0, 0, 0)");
+  refusals.OfMedium(With("sigma_s", 16, Infinite), "sigma_s is inf in voxel (1, 1, 1)");
+  refusals.OfMedium(With("sigma_s", 59, -0.5), "in voxel (2, 3, 4)");
+  auto medium = Good();
+  test::AddCells(medium, "emission", -1.0);
+  refusals.OfMedium(medium, "emission is -1");
+  medium = Good();
+  test::AddCells(medium, "sigma_a", 1.0, 2);
+  refusals.OfMedium(medium, "'sigma_a' has 2 components; it must have 1 or 3");
+  medium = Good();
+  medium->GetCellData()->GetArray("sigma_a")->Resize(7);
+  refusals.OfMedium(medium, "'sigma_a' has 7 values where the dataset has 60");
+  medium = Without("sigma_a");
+  vtkNew<vtkStringArray> words;
+  words->SetName("sigma_a");
+  words->SetNumberOfValues(60);
+  medium->GetCellData()->AddArray(words);
+  refusals.OfMedium(medium, "no array 'sigma_a'");
+}
+
+void BadGrid(Refusals& refusals)
+{
+  refusals.OfMedium(vtkSmartPointer<vtkImageData>::New(), "is empty");
+  refusals.OfMedium(test::MakeMedium({ { 3, 0, 3 } }, 0.5, 1.0), "single layer of points along y");
+  refusals.OfMedium(test::MakeMedium({ { 2, 2, 2 }, { 1.0, 0.0, 1.0 } }, 0.5, 1.0), "spacing 0");
+  refusals.OfMedium(test::MakeMedium({ { 2, 2, 2 }, { 1.0, 1.0, -1.0 } }, 0.5, 1.0), "spacing -1");
+  refusals.OfMedium(test::MakeMedium({ { 2, 2, 2 }, { NotANumber, 1.0, 1.0 } }, 0.5, 1.0), "along x");
+  refusals.OfMedium(test::MakeMedium({ { 2, 2, 2 }, { 1.0, 1.0, 1.0 }, { Infinite, 0.0, 0.0 } }, 0.5, 1.0), "origin");
+  auto medium = Good();
+  medium->SetDirectionMatrix(0, -1, 0, 1, 0, 0, 0, 0, 1);
+  refusals.OfMedium(medium, "rotated");
+}
+
+void BadMeanCosine(Refusals& refusals)
+{
+  for (double g : { 1.0, -1.0, NotANumber })
+  {
+    auto medium = Good();
+    test::AddValues<vtkDoubleArray>(medium->GetFieldData(), "g", 1, 1, [=](vtkIdType, int) { return g; });
+    refusals.OfMedium(medium, "mean cosine");
+  }
+  auto medium = Good();
+  test::AddValues<vtkDoubleArray>(medium->GetFieldData(), "g", 1, 3, [](vtkIdType, int) { return 0.1; });
+  refusals.OfMedium(medium, "'g' must be one number");
+}
+
+void BadLights(Refusals& refusals)
+{
+  vtkNew<vtkLightRig> rig;
+  for (const char* array : { "light_type", "power" })
+  {
+    auto lights = LightsOf(rig);
+    lights->GetPointData()->RemoveArray(array);
+    refusals.OfLights(lights, "no point array '" + std::string(array) + "'");
+  }
+  auto lights = LightsOf(rig);
+  lights->GetPointData()->RemoveArray("direction");
+  refusals.OfLights(lights, "Light 0 has direction (0, 0, 0)");
+  lights = LightsOf(rig);
+  lights->GetPointData()->GetArray("light_type")->SetComponent(0, 0, 7.0);
+  refusals.OfLights(lights, "Light 0 has light_type 7");
+  lights = LightsOf(rig);
+  lights->GetPointData()->GetArray("power")->SetComponent(0, 1, -2.0);
+  refusals.OfLights(lights, "Light 0 has power -2");
+  lights = LightsOf(rig);
+  test::AddValues<vtkDoubleArray>(lights->GetPointData(), "power", 1, 2, [](vtkIdType, int) { return 1.0; });
+  refusals.OfLights(lights, "'power' has 2 components");
+}
+
+void BadEnvironment(Refusals& refusals)
+{
+  const auto environment = [](std::array<int, 3> cells) { return test::MakeImage({ cells }); };
+  auto image = environment({ 3, 1, 0 });
+  refusals.OfEnvironment(image, "no point array 'radiance'");
+  test::AddPoints(image, "radiance", 1.0, 4);
+  refusals.OfEnvironment(image, "'radiance' has 4 components");
+  test::AddPoints(image, "radiance", 1.0, 3);
+  image->GetPointData()->GetArray("radiance")->SetComponent(5, 1, NotANumber);
+  refusals.OfEnvironment(image, "pixel (1, 1)");
+  image = environment({ 3, 1, 1 });
+  test::AddPoints(image, "radiance", 1.0, 3);
+  refusals.OfEnvironment(image, "flat");
+  refusals.OfEnvironment(vtkSmartPointer<vtkImageData>::New(), "flat");
+}
+
+void BadSettings(Refusals& refusals)
+{
+  refusals->SetDirectionsPerFace(24);
+  refusals.Says("24");
+  refusals->SetDirectionsPerFace(0);
+  refusals.Says("0");
+  refusals->SetDirectionsPerFace(4);
+  refusals->SetMapResolution(0);
+  refusals.Says("MapResolution");
+  refusals->SetMapResolution(1);
+  refusals->SetMaximumOrders(-1);
+  refusals.Says("MaximumOrders");
+  refusals->SetMaximumOrders(0);
+  refusals->SetTolerance(0.0);
+  refusals.Says("Tolerance");
+  refusals->SetTolerance(1e-4);
+  refusals->SetStoredDirections(0);
+  refusals.Says("StoredDirections");
+  refusals->SetStoredDirections(1);
+  refusals->SetSkyColor(1.0, -1.0, 1.0);
+  refusals.Says("sky");
+  refusals->SetSkyColor(1.0, 1.0, 1.0);
+  refusals->SetFaceRadiance(0.0, 0.0, NotANumber, 0.0, 0.0, 0.0);
+  refusals.Says("FaceRadiance of face 2");
+  refusals->SetFaceRadiance(0.0, 0.0, 0.0, 0.0, 0.0, 0.0);
+  refusals->SetEnvironmentAzimuth(Infinite);
+  refusals.Says("finite angle");
+  refusals->SetEnvironmentAzimuth(0.0);
+  refusals->SetDevice("abacus");
+  refusals.Says("abacus");
+  refusals->SetDevice("");
+}
+}
+
+int TestLightPropagationMapsBadInput(int, char*[])
+{
+  if (!test::HasDevice())
+  {
+    return test::SkippedWithoutDevice("LightPropagationMaps gave an error");
+  }
+  test::Claims claims;
+  Refusals refusals(claims);
+  BadMedium(refusals);
+  BadGrid(refusals);
+  BadMeanCosine(refusals);
+  BadLights(refusals);
+  BadEnvironment(refusals);
+  BadSettings(refusals);
+  refusals.None("good input after all the bad is solved");
+
+  refusals->SetSkyColor(0.0, 0.0, 0.0);
+  refusals->Update();
+  claims.That(refusals.WasOneWith("Nothing shines"), "the dark is warned of");
+  claims.That(test::Deviation(refusals->GetOutput(), "fluence", 0.0) == 0.0, "and dark");
+  return claims.Result();
+}
