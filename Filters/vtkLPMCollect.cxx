@@ -7,7 +7,6 @@
 
 #include "vtkCellData.h"
 #include "vtkDataArray.h"
-#include "vtkDataObject.h"
 #include "vtkFieldData.h"
 #include "vtkImageData.h"
 #include "vtkInformation.h"
@@ -116,12 +115,7 @@ void AddBefore(std::vector<float>& values, vtkImageData* image, const char* name
 
 vtkStandardNewMacro(vtkLPMCollect);
 
-vtkLPMCollect::vtkLPMCollect()
-{
-  // vtkImageAlgorithm chooses the active scalars.
-  this->SetInputArrayToProcess(tyndall::SigmaA, 0, 0, vtkDataObject::FIELD_ASSOCIATION_CELLS, "sigma_a");
-}
-
+vtkLPMCollect::vtkLPMCollect() = default;
 vtkLPMCollect::~vtkLPMCollect() = default;
 
 int vtkLPMCollect::RequestData(vtkInformation*, vtkInformationVector** inputs, vtkInformationVector* outputs)

@@ -6,7 +6,6 @@
 #include "LPMBuffers.h"
 #include "WholeImage.h"
 
-#include "vtkDataObject.h"
 #include "vtkImageData.h"
 #include "vtkInformation.h"
 #include "vtkInformationVector.h"
@@ -112,8 +111,6 @@ vtkStandardNewMacro(vtkLPMPropagate);
 vtkLPMPropagate::vtkLPMPropagate()
 {
   this->SetNumberOfInputPorts(InputPortCount);
-  // vtkImageAlgorithm chooses the active scalars.
-  this->SetInputArrayToProcess(tyndall::SigmaA, 0, 0, vtkDataObject::FIELD_ASSOCIATION_CELLS, "sigma_a");
 }
 
 vtkLPMPropagate::~vtkLPMPropagate() = default;
