@@ -172,7 +172,7 @@ struct AxisSweep::Implementation
     const int width = RoundUp(n[this->Axes.u], this->Vector);
     this->Row = RowFloats(width, this->Vector);
     this->Layout = { n[this->Axes.u], n[this->Axes.v], n[this->Axes.axis], step[this->Axes.u], step[this->Axes.v],
-      step[this->Axes.axis], width, this->Axes.u == 0 ? 1 : 16,
+      step[this->Axes.axis], width, this->Axes.u == 0 ? 1 : this->Vector,
       static_cast<float>(std::max(1e-30 / this->LongestSegment(), 1e-37)) };
   }
 

@@ -10,8 +10,12 @@
 
 namespace tyndall
 {
+/// The widest vector of any kernel, floats.
+constexpr std::size_t SweepPadding = 16;
+
 /// The medium and the light on the device while a solver runs. Every array is [channel][stride] with voxels x fastest; the
-/// stride is the voxel count rounded up to whole vectors, what is beyond the voxels is zero.
+/// stride is the voxel count rounded up to whole vectors, what is beyond the voxels is zero. Buffers
+/// are SweepPadding floats longer: a vector that begins in them may be read whole.
 struct SweepVolume
 {
   Grid grid;

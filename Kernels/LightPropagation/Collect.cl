@@ -40,9 +40,9 @@ __kernel void collect(__global float* path, __global float* fluence, __global fl
   {
     const real p = load_real(i, path);
     const real s = load_real(i, sigma_s);
-    const real f = mad(p, (real)per_volume, load_real(i, fluence));
-    absorbed = mad(fmax(load_real(i, sigma_t) - s, (real)0.0f), p, absorbed);
-    scattered = mad(s, p, scattered);
+    const real f = multiply_add(p, (real)per_volume, load_real(i, fluence));
+    absorbed = multiply_add(fmax(load_real(i, sigma_t) - s, (real)0.0f), p, absorbed);
+    scattered = multiply_add(s, p, scattered);
     gathered += p;
     all += f;
     store_real(f, i, fluence);

@@ -17,7 +17,6 @@ namespace tyndall
 namespace
 {
 constexpr double Pi = 3.14159265358979323846;
-constexpr std::size_t Padding = 16;  ///< the widest vector: every channel begins at its border
 constexpr std::size_t Chunk = 4096;  ///< as in Collect.cl
 constexpr int MostOrders = 100000;
 constexpr int ManyPlanes = 8192; ///< a ray goes round a periodic axis before it is given up, or waits for the next order
@@ -40,7 +39,7 @@ public:
     , Directions(SoundDirections(settings.directionsPerFace))
     , Channels(NeededChannels(medium, illumination))
     , SharedExtinction(medium.sigma_a.components == 1 && medium.sigma_s.components == 1)
-    , Stride((medium.grid.VoxelCount() + Padding - 1) / Padding * Padding)
+    , Stride((medium.grid.VoxelCount() + SweepPadding - 1) / SweepPadding * SweepPadding)
   {
   }
 
@@ -165,16 +164,16 @@ void Solver::Load()
   this->FindSharedExtinction();
   const std::size_t voxels = this->TheMedium.grid.VoxelCount();
   const std::size_t extinctions = this->SharedExtinction ? 1 : 3;
-  const std::size_t all = this->Stride * this->Channels;
+  const std::size_t all = this->Stride * this->Channels + SweepPadding;
   Device& device = this->TheDevice;
-  this->Extinction = Buffer<float>(device, this->Stride * extinctions, "sigma_t");
+  this->Extinction = Buffer<float>(device, this->Stride * extinctions + SweepPadding, "sigma_t");
   this->Scattering = Buffer<float>(device, all, "sigma_s");
   this->Source = Buffer<float>(device, all, "the scattered light");
   this->Path = Buffer<float>(device, all, "the light gathered");
   this->Fluence = Buffer<float>(device, all, "fluence");
   if (this->Settings.netFlux)
   {
-    this->Flux = Buffer<float>(device, 3 * all, "net_flux");
+    this->Flux = Buffer<float>(device, 3 * this->Stride * this->Channels + SweepPadding, "net_flux");
     this->Flux.Fill(0.0f);
   }
   this->Path.Fill(0.0f);
@@ -390,7 +389,7 @@ double Solver::Progress(int order, double done) const
 std::vector<float> Solver::Interleaved(const Buffer<float>& planar, double scale) const
 {
   const std::vector<float> values = planar.Read();
-  const std::size_t parts = values.size() / this->Stride;
+  const std::size_t parts = (values.size() - SweepPadding) / this->Stride;
   const std::size_t voxels = this->TheMedium.grid.VoxelCount();
   std::vector<float> interleaved(voxels * parts);
   for (std::size_t p = 0; p < parts; ++p)

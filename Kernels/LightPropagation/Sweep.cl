@@ -20,107 +20,199 @@ typedef struct
   float vacuum; // 1/length, so thin that no float notices
 } plane_layout;
 
-static void zero(__global float* values, int count)
+#if REAL_WIDTH == 16
+#define LANES (int16)(0, 1, 2, 3, 4, 5, 6, 7, 8, 9, 10, 11, 12, 13, 14, 15)
+#define ROUNDS 4
+#elif REAL_WIDTH == 8
+#define LANES (int8)(0, 1, 2, 3, 4, 5, 6, 7)
+#define ROUNDS 3
+#else
+#define LANES (int4)(0, 1, 2, 3)
+#define ROUNDS 2
+#endif
+
+// Exchange rows and columns: interleave the halves as often as rows halve.
+static void transpose(real* rows)
 {
-  for (int i = 0; i < count; i += REAL_WIDTH)
+#pragma unroll
+  for (int round = 0; round < ROUNDS; ++round)
   {
-    store_real((real)0.0f, i, values + 0);
+    real mixed[REAL_WIDTH];
+#pragma unroll
+    for (int i = 0; i < REAL_WIDTH / 2; ++i)
+    {
+      mixed[2 * i].even = rows[i].lo;
+      mixed[2 * i].odd = rows[i + REAL_WIDTH / 2].lo;
+      mixed[2 * i + 1].even = rows[i].hi;
+      mixed[2 * i + 1].odd = rows[i + REAL_WIDTH / 2].hi;
+    }
+#pragma unroll
+    for (int i = 0; i < REAL_WIDTH; ++i)
+    {
+      rows[i] = mixed[i];
+    }
   }
 }
 
-// Copy planes [first, first + count) of the volume into scratch, rows padded by vacuum; clear what is to be summed up.
-static void pack(const plane_layout* layout, __global float* planes, int first, int count, const __global float* sigma,
-  const __global float* source, ulong stride)
+// Copy one quantity of planes [first, first + count) into scratch, rows filled up with zeros. May read, not use, a vector
+// beyond the last voxel.
+static void pack(const plane_layout* layout, __global float* to, int first, int count, const __global float* volume)
 {
-  const int rows = layout->sizeV * ROW;
-  for (int j = 0; j < count; ++j)
-  {
-    zero(planes + j * PLANES * rows, PLANES * rows);
-  }
+  const int plane = PLANES * layout->sizeV * ROW;
   for (int v = 0; v < layout->sizeV; ++v)
   {
-    for (int u = 0; u < layout->sizeU; ++u)
+    for (int u = 0; u < layout->width; u += REAL_WIDTH)
     {
-      const ulong voxel = (ulong)u * layout->stepU + (ulong)v * layout->stepV + (ulong)first * layout->stepP;
-      __global float* to = planes + v * ROW + u;
-      for (int j = 0; j < count; ++j)
+      const integer beyond = LANES >= layout->sizeU - u;
+      const __global float* from =
+        volume + (ulong)u * layout->stepU + (ulong)v * layout->stepV + (ulong)first * layout->stepP;
+      if (layout->block == 1)
       {
-        to[j * PLANES * rows] = sigma[voxel + (ulong)j * layout->stepP];
-#if SOURCE
-        for (int c = 0; c < CHANNELS; ++c)
+        store_real(select(load_real(0, from), (real)0.0f, beyond), v * ROW + u, to);
+        continue;
+      }
+      real columns[REAL_WIDTH];
+#pragma unroll
+      for (int i = 0; i < REAL_WIDTH; ++i)
+      {
+        columns[i] = load_real((ulong)min(i, layout->sizeU - 1 - u) * layout->stepU, from);
+      }
+      transpose(columns);
+#pragma unroll
+      for (int j = 0; j < REAL_WIDTH; ++j)
+      {
+        if (j < count)
         {
-          to[(j * PLANES + PLANE_SOURCE + c) * rows] = source[c * stride + voxel + (ulong)j * layout->stepP];
+          store_real(select(columns[j], (real)0.0f, beyond), j * plane + v * ROW + u, to);
         }
-#endif
       }
     }
   }
+}
+
+// Add one quantity of the planes to the volume; exactly their voxels are touched, as others may be in work elsewhere.
+static void unpack(
+  const plane_layout* layout, const __global float* from, int first, int count, __global float* volume, float sign)
+{
+  const int plane = PLANES * layout->sizeV * ROW;
+  for (int v = 0; v < layout->sizeV; ++v)
+  {
+    for (int u = 0; u < layout->sizeU; u += REAL_WIDTH)
+    {
+      __global float* to = volume + (ulong)u * layout->stepU + (ulong)v * layout->stepV + (ulong)first * layout->stepP;
+      const int used = min(REAL_WIDTH, layout->sizeU - u);
+      if (layout->block == 1 && used == REAL_WIDTH)
+      {
+        store_real(multiply_add(load_real(v * ROW + u, from), (real)sign, load_real(0, to)), 0, to);
+      }
+      else if (layout->block > 1 && count == REAL_WIDTH)
+      {
+        real rows[REAL_WIDTH];
+#pragma unroll
+        for (int j = 0; j < REAL_WIDTH; ++j)
+        {
+          rows[j] = load_real(j * plane + v * ROW + u, from);
+        }
+        transpose(rows);
+#pragma unroll
+        for (int i = 0; i < REAL_WIDTH; ++i)
+        {
+          if (i < used)
+          {
+            __global float* row = to + (ulong)i * layout->stepU;
+            store_real(multiply_add(rows[i], (real)sign, load_real(0, row)), 0, row);
+          }
+        }
+      }
+      else
+      {
+        for (int i = 0; i < used; ++i)
+        {
+          for (int j = 0; j < count; ++j)
+          {
+            to[(ulong)i * layout->stepU + (ulong)j * layout->stepP] += sign * from[j * plane + v * ROW + u + i];
+          }
+        }
+      }
+    }
+  }
+}
+
+// Make planes [first, first + count) ready to be crossed.
+static void begin_planes(const plane_layout* layout, __global float* planes, int first, int count,
+  const __global float* sigma, const __global float* source, ulong stride)
+{
+  const int rows = layout->sizeV * ROW;
+  pack(layout, planes + PLANE_SIGMA * rows, first, count, sigma);
+#if SOURCE
+  for (int c = 0; c < CHANNELS; ++c)
+  {
+    pack(layout, planes + (PLANE_SOURCE + c) * rows, first, count, source + c * stride);
+  }
+#endif
   for (int j = 0; j < count; ++j)
   {
     __global float* plane = planes + j * PLANES * rows;
-    for (int v = 0; v < layout->sizeV; ++v)
+    for (int at = 0; at < rows; at += REAL_WIDTH)
     {
-      for (int x = 0; x < layout->width; x += REAL_WIDTH)
+      // Vacuum is a very thin medium: 0 / 0 never happens.
+      const real s = fmax(load_real(at, plane + PLANE_SIGMA * rows), (real)layout->vacuum);
+      store_real(s, at, plane + PLANE_SIGMA * rows);
+      store_real((real)1.0f / s, at, plane + PLANE_INVERSE * rows);
+      store_real((real)0.0f, at, plane + PLANE_TAKEN * rows);
+      for (int q = PLANE_PATH; q < PLANES; ++q)
       {
-        const int at = v * ROW + x;
-        // Vacuum is a very thin medium: 0 / 0 never happens.
-        const real s = fmax(load_real(at, plane + PLANE_SIGMA * rows), (real)layout->vacuum);
-        store_real(s, at, plane + PLANE_SIGMA * rows);
-        store_real((real)1.0f / s, at, plane + PLANE_INVERSE * rows);
+        store_real((real)0.0f, at, plane + q * rows);
       }
     }
   }
 }
 
-// Add what the planes gathered to the volume. The medium's own light on the way through the voxel where it starts was left
-// out until here: per unit of source it is sum of power (l - p1) / sigma = (lengths.x - taken) / sigma, by series where that
-// would cancel. lengths: sums over all segments of power times l, l^2 / 2, l^3 / 6, l^4 / 24.
-static void unpack(const plane_layout* layout, __global float* planes, int first, int count, __global float* path,
+#if SOURCE
+// The medium's own light on the way through the voxel where it starts, left out until here: per unit of source it is the sum
+// of power (l - p1) / sigma = (lengths.x - taken) / sigma, by series where that would cancel.
+// lengths  sums over all segments of power times l, l^2 / 2, l^3 / 6, l^4 / 24
+static void add_own_light(const plane_layout* layout, __global float* plane, float4 lengths)
+{
+  const int rows = layout->sizeV * ROW;
+  for (int at = 0; at < rows; at += REAL_WIDTH)
+  {
+    const real sigma = load_real(at, plane + PLANE_SIGMA * rows);
+    const real taken = load_real(at, plane + PLANE_TAKEN * rows);
+    const real closed = (lengths.x - taken) * load_real(at, plane + PLANE_INVERSE * rows);
+    const real series =
+      multiply_add(multiply_add((real)lengths.w, sigma, (real)-lengths.z), sigma, (real)lengths.y);
+    const real own = select(closed, series, sigma * lengths.y < 0.01f * lengths.x);
+    for (int c = 0; c < CHANNELS; ++c)
+    {
+      __global float* sum = plane + (PLANE_PATH + c) * rows;
+      store_real(multiply_add(own, load_real(at, plane + (PLANE_SOURCE + c) * rows), load_real(at, sum)), at, sum);
+    }
+  }
+}
+#endif
+
+// Add what the planes gathered to the volume.
+// lengths  [plane from where rays start] of the first plane crossed, see add_own_light
+static void end_planes(const plane_layout* layout, __global float* planes, int first, int count, __global float* path,
   __global float* flux, ulong stride, const __global float4* lengths, int backward, int axis)
 {
   const int rows = layout->sizeV * ROW;
 #if SOURCE
   for (int j = 0; j < count; ++j)
   {
-    __global float* plane = planes + j * PLANES * rows;
-    const float4 l = lengths[backward ? count - 1 - j : j];
-    for (int at = 0; at < rows; at += REAL_WIDTH)
-    {
-      const real sigma = load_real(at, plane + PLANE_SIGMA * rows);
-      const real closed = (l.x - load_real(at, plane + PLANE_TAKEN * rows)) * load_real(at, plane + PLANE_INVERSE * rows);
-      const real series = mad(mad((real)l.w, sigma, (real)-l.z), sigma, (real)l.y);
-      const real own = select(closed, series, sigma * l.y < 0.01f * l.x);
-      for (int c = 0; c < CHANNELS; ++c)
-      {
-        __global float* sum = plane + (PLANE_PATH + c) * rows;
-        store_real(mad(own, load_real(at, plane + (PLANE_SOURCE + c) * rows), load_real(at, sum)), at, sum);
-      }
-    }
+    add_own_light(layout, planes + j * PLANES * rows, lengths[backward ? count - 1 - j : j]);
   }
 #endif
-  for (int v = 0; v < layout->sizeV; ++v)
+  for (int c = 0; c < CHANNELS; ++c)
   {
-    for (int u = 0; u < layout->sizeU; ++u)
-    {
-      const ulong voxel = (ulong)u * layout->stepU + (ulong)v * layout->stepV + (ulong)first * layout->stepP;
-      const __global float* from = planes + v * ROW + u;
-      for (int j = 0; j < count; ++j)
-      {
-        const ulong to = voxel + (ulong)j * layout->stepP;
-        for (int c = 0; c < CHANNELS; ++c)
-        {
-          path[c * stride + to] += from[(j * PLANES + PLANE_PATH + c) * rows];
+    unpack(layout, planes + (PLANE_PATH + c) * rows, first, count, path + c * stride, 1.0f);
 #if NET_FLUX
-          const int u_axis = axis == 0 ? 1 : 0;
-          const int v_axis = axis == 2 ? 1 : 2;
-          const __global float* fluxes = from + (j * PLANES + PLANE_FLUX + 3 * c) * rows;
-          flux[(3 * c + u_axis) * stride + to] += fluxes[0];
-          flux[(3 * c + v_axis) * stride + to] += fluxes[rows];
-          flux[(3 * c + axis) * stride + to] += backward ? -fluxes[2 * rows] : fluxes[2 * rows];
+    const __global float* fluxes = planes + (PLANE_FLUX + 3 * c) * rows;
+    unpack(layout, fluxes, first, count, flux + (3 * c + (axis == 0 ? 1 : 0)) * stride, 1.0f);
+    unpack(layout, fluxes + rows, first, count, flux + (3 * c + (axis == 2 ? 1 : 2)) * stride, 1.0f);
+    unpack(layout, fluxes + 2 * rows, first, count, flux + (3 * c + axis) * stride, backward ? -1.0f : 1.0f);
 #endif
-        }
-      }
-    }
   }
 }
 
@@ -154,7 +246,7 @@ static void cross_plane(sweep_state* state, __global float* maps, const __global
 // maps      rays of both ways; `maps_each_way` floats each
 // outside, radiance   rays that come in, both ways as maps
 // crossings [plane from where rays start][bundle]
-// lengths   [unit][plane from where rays start], see unpack
+// lengths   [unit][plane from where rays start], see add_own_light
 // schedule  [launch][unit] first plane and end, counted from where rays start; beyond the last plane the axis begins anew
 // tally     [plane from where rays start][unit][-u, +u, -v, +v][channel] W that left
 __kernel __attribute__((reqd_work_group_size(1, 1, 1))) void sweep(const __global float* sigma,
@@ -189,7 +281,7 @@ __kernel __attribute__((reqd_work_group_size(1, 1, 1))) void sweep(const __globa
     const int lap = begin / layout.sizeP * layout.sizeP; // planes already marched when the axis began anew
     count = min(min(layout.block, range.y - begin), lap + layout.sizeP - begin);
     const int first = unit.backward ? layout.sizeP - (begin - lap) - count : begin - lap;
-    pack(&layout, planes, first, count, sigma, source, stride);
+    begin_planes(&layout, planes, first, count, sigma, source, stride);
     for (int k = begin; k < begin + count; ++k)
     {
       const int plane = unit.backward ? layout.sizeP - 1 - (k - lap) : k - lap;
@@ -214,6 +306,6 @@ __kernel __attribute__((reqd_work_group_size(1, 1, 1))) void sweep(const __globa
         }
       }
     }
-    unpack(&layout, planes, first, count, path, flux, stride, lengths + u * planes_of_pattern + begin, unit.backward, axis);
+    end_planes(&layout, planes, first, count, path, flux, stride, lengths + u * planes_of_pattern + begin, unit.backward, axis);
   }
 }

@@ -47,7 +47,7 @@ static void STAGE_ROW(sweep_state* state, int y, bool deposit, const __global fl
 #if SOURCE
     if (deposit)
     {
-      store_real(mad(mean_length, (real)(power * MEMBERS), load_real(x, taken_row)), x, taken_row);
+      store_real(multiply_add(mean_length, (real)(power * MEMBERS), load_real(x, taken_row)), x, taken_row);
     }
     const real shine = mean_length * power;
 #endif
@@ -67,24 +67,24 @@ static void STAGE_ROW(sweep_state* state, int y, bool deposit, const __global fl
         const real ray = load_real(x, in[m] + c * ROW);
         sum += ray;
 #if NET_FLUX
-        sum_u = mad(ray, (real)along_u[m], sum_u);
-        sum_v = mad(ray, (real)along_v[m], sum_v);
+        sum_u = multiply_add(ray, (real)along_u[m], sum_u);
+        sum_v = multiply_add(ray, (real)along_v[m], sum_v);
 #endif
 #if SOURCE
-        const real after = mad(ray, change, mad(ray, keep, gain));
+        const real after = multiply_add(ray, change, multiply_add(ray, keep, gain));
 #else
-        const real after = mad(ray, change, ray * keep);
+        const real after = multiply_add(ray, change, ray * keep);
 #endif
         store_real(after, x, out + FIRST(m, c));
       }
       if (deposit)
       {
-        store_real(mad(mean_length, sum, load_real(x, path_row + c * rows)), x, path_row + c * rows);
+        store_real(multiply_add(mean_length, sum, load_real(x, path_row + c * rows)), x, path_row + c * rows);
 #if NET_FLUX
         __global float* flux = flux_row + 3 * c * rows;
-        store_real(mad(mean_length, sum_u, load_real(x, flux)), x, flux);
-        store_real(mad(mean_length, sum_v, load_real(x, flux + rows)), x, flux + rows);
-        store_real(mad(mean_length * bundle->cosine, sum, load_real(x, flux + 2 * rows)), x, flux + 2 * rows);
+        store_real(multiply_add(mean_length, sum_u, load_real(x, flux)), x, flux);
+        store_real(multiply_add(mean_length, sum_v, load_real(x, flux + rows)), x, flux + rows);
+        store_real(multiply_add(mean_length * bundle->cosine, sum, load_real(x, flux + 2 * rows)), x, flux + 2 * rows);
 #endif
       }
     }

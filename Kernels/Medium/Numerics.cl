@@ -20,9 +20,25 @@ typedef TYNDALL_JOIN(int, REAL_WIDTH) integer;
 #define as_real TYNDALL_JOIN(as_float, REAL_WIDTH)
 #define to_integer TYNDALL_JOIN(convert_int, REAL_WIDTH)
 #define to_real TYNDALL_JOIN(convert_float, REAL_WIDTH)
-#define load_real(index, pointer) TYNDALL_JOIN(vload, REAL_WIDTH)(0, (pointer) + (index))
-#define store_real(value, index, pointer) TYNDALL_JOIN(vstore, REAL_WIDTH)(value, 0, (pointer) + (index))
+// Not vload and vstore: PoCL takes a vstore to pieces of four floats.
+typedef real __attribute__((aligned(4))) real_anywhere;
+#define load_real(index, pointer) (*(const __global real_anywhere*)((pointer) + (index)))
+#define store_real(value, index, pointer) (*(__global real_anywhere*)((pointer) + (index)) = (value))
 #endif
+
+// a b + c in one instruction where there is one: PoCL's mad is two.
+#if defined(FP_FAST_FMAF) || defined(__FMA__)
+#define multiply_add fma
+#else
+#define multiply_add mad
+#endif
+
+// To the nearest whole number, for |x| < 2^22: adding 1.5 * 2^23 leaves no room for a fraction. PoCL's rint is fifteen
+// instructions.
+inline real nearest_whole(real x)
+{
+  return (x + (real)12582912.0f) - (real)12582912.0f;
+}
 
 // Fraction extinguished over an optical length, 1 - exp(-tau), to a few units in the last place for every tau >= 0, and the
 // fraction that is left, exp(-tau).
@@ -31,15 +47,15 @@ typedef TYNDALL_JOIN(int, REAL_WIDTH) integer;
 inline real extinguished(real tau, real* left)
 {
   const real t = fmin(tau, (real)87.0f); // 2^-126 is the smallest normal number; beyond it nothing is left
-  const real n = rint(t * (real)-1.44269504f);
-  const real r = mad(n, (real)2.12194440e-4f, mad(n, (real)-0.693359375f, -t));
-  real p = mad(r, (real)1.98412698e-4f, (real)1.38888889e-3f);
-  p = mad(p, r, (real)8.33333333e-3f);
-  p = mad(p, r, (real)4.16666667e-2f);
-  p = mad(p, r, (real)1.66666667e-1f);
-  p = mad(p, r, (real)0.5f);
-  const real q = mad(p * r, r, r);
+  const real n = nearest_whole(t * (real)-1.44269504f);
+  const real r = multiply_add(n, (real)2.12194440e-4f, multiply_add(n, (real)-0.693359375f, -t));
+  real p = multiply_add(r, (real)1.98412698e-4f, (real)1.38888889e-3f);
+  p = multiply_add(p, r, (real)8.33333333e-3f);
+  p = multiply_add(p, r, (real)4.16666667e-2f);
+  p = multiply_add(p, r, (real)1.66666667e-1f);
+  p = multiply_add(p, r, (real)0.5f);
+  const real q = multiply_add(p * r, r, r);
   const real two_n = as_real((to_integer(n) + 127) << 23);
-  *left = mad(two_n, q, two_n);
-  return mad(-two_n, q, (real)1.0f - two_n);
+  *left = multiply_add(two_n, q, two_n);
+  return multiply_add(-two_n, q, (real)1.0f - two_n);
 }
