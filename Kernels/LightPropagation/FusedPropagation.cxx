@@ -9,7 +9,6 @@
 #include <cmath>
 #include <functional>
 #include <memory>
-#include <numeric>
 #include <string>
 
 namespace tyndall
@@ -63,7 +62,7 @@ public:
       this->CollectOrder(order);
       ++order;
     } while (!this->Done(order));
-    this->Unload(order);
+    this->Unload();
     return std::move(this->Result);
   }
 
@@ -89,7 +88,8 @@ private:
   void CollectOrder(int order);
   bool Done(int orders) const;
   double Progress(int order, double done) const;
-  void Unload(int orders);
+  std::vector<std::string> LeftOut() const;
+  void Unload();
 
   std::vector<float> Interleaved(const Buffer<float>& planar, double scale) const;
 
@@ -402,7 +402,47 @@ std::vector<float> Solver::Interleaved(const Buffer<float>& planar, double scale
   return interleaved;
 }
 
-void Solver::Unload(int)
+/// What the scene did not need, in words for the user.
+std::vector<std::string> Solver::LeftOut() const
+{
+  std::vector<std::string> words;
+  if (this->Channels == 1)
+  {
+    words.push_back("colour: medium and light are grey, one channel does");
+  }
+  else if (this->SharedExtinction)
+  {
+    words.push_back("sigma_t a channel: red, green and blue share one, and its transmittance");
+  }
+  if (this->TheMedium.g != 0.0)
+  {
+    words.push_back("anisotropy: solved as isotropic scattering with sigma_s (1 - g), g = " +
+      std::to_string(this->TheMedium.g) + " (similarity relation)");
+  }
+  if (Total(this->Result.balance.emitted) == 0.0)
+  {
+    words.push_back("emission: the medium does not shine");
+  }
+  if (!this->LitFromOutside)
+  {
+    words.push_back("boundary radiance: no environment, sky or face shines");
+  }
+  if (this->Lights.lights.empty())
+  {
+    words.push_back("first-collision source: there are no lights");
+  }
+  if (this->Result.convergence.size() == 1)
+  {
+    words.push_back("scattering orders after the first: nothing is scattered");
+  }
+  if (!this->Settings.netFlux)
+  {
+    words.push_back("net_flux: not asked for");
+  }
+  return words;
+}
+
+void Solver::Unload()
 {
   LightField& light = this->Result;
   light.channels = this->Channels;
@@ -415,6 +455,7 @@ void Solver::Unload(int)
   std::transform(light.fluence.begin(), light.fluence.end(), light.scatteredRadiance.begin(),
     [](float fluence) { return static_cast<float>(fluence / (4.0 * Pi)); });
   light.storedDirections = { { 0.0, 0.0, 0.0 } };
+  light.leftOut = this->LeftOut();
   light.device = this->TheDevice.Name();
 }
 }

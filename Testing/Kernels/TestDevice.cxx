@@ -1,0 +1,128 @@
+#include "DeviceTest.h"
+
+#include "Device/Buffer.h"
+#include "TyndallKernelSources.h"
+
+#include <cmath>
+#include <string>
+#include <vector>
+
+using namespace tyndall;
+
+namespace
+{
+/// What a call complains about; empty if it does not.
+template <class Call>
+std::string ComplaintOf(Call&& call)
+{
+  try
+  {
+    call();
+  }
+  catch (const DeviceError& error)
+  {
+    return error.what();
+  }
+  return {};
+}
+
+bool Contains(const std::string& text, const std::string& part)
+{
+  return text.find(part) != std::string::npos;
+}
+}
+
+class DeviceLayer : public DeviceTest
+{
+};
+
+TEST_F(DeviceLayer, HandsOutTheSameDeviceAgain)
+{
+  EXPECT_EQ(Device::Find().get(), Device::Find().get());
+  EXPECT_EQ(Device::Find(this->GetDevice().Name().substr(2, 5)).get(), this->TheDevice.get()) << "by a part of its name";
+}
+
+TEST_F(DeviceLayer, NamesTheDevicesThereAreWhereTheOneAskedForIsNot)
+{
+  const std::string complaint = ComplaintOf([] { Device::Find("no such device"); });
+  EXPECT_TRUE(Contains(complaint, "no such device"));
+  EXPECT_TRUE(Contains(complaint, this->GetDevice().Name()));
+  EXPECT_TRUE(Contains(complaint, "TYNDALL_DEVICE"));
+}
+
+TEST_F(DeviceLayer, SaysHowManyBytesAreMissing)
+{
+  const std::size_t tooMany = this->GetDevice().MemoryLimit() / sizeof(float) + 1;
+  const std::string complaint = ComplaintOf([&] { Buffer<float>(this->GetDevice(), tooMany, "a test of memory"); });
+  EXPECT_TRUE(Contains(complaint, "a test of memory"));
+  EXPECT_TRUE(Contains(complaint, std::to_string(tooMany * sizeof(float))));
+  EXPECT_TRUE(Contains(complaint, this->GetDevice().Name()));
+}
+
+TEST_F(DeviceLayer, CountsTheMemoryItGives)
+{
+  Device& device = this->GetDevice();
+  const std::size_t before = device.BytesInUse();
+  device.ResetPeak();
+  {
+    Buffer<float> first(device, 1000, "a test");
+    Buffer<float> second(std::move(first));
+    first = Buffer<float>(device, 500, "a test");
+    EXPECT_EQ(device.BytesInUse(), before + 1500 * sizeof(float));
+  }
+  EXPECT_EQ(device.BytesInUse(), before);
+  EXPECT_EQ(device.PeakBytes(), before + 1500 * sizeof(float));
+}
+
+TEST_F(DeviceLayer, ShowsTheBuildLogOfAKernelThatDoesNotBuild)
+{
+  const std::string complaint =
+    ComplaintOf([&] { this->GetDevice().Kernel("broken", { "__kernel void broken() { undeclared = 1; }" }); });
+  EXPECT_TRUE(Contains(complaint, "undeclared"));
+  EXPECT_TRUE(Contains(complaint, "broken"));
+}
+
+/// 1 - exp(-tau) and exp(-tau) as the kernels see them.
+class Extinguished : public DeviceTest, public testing::WithParamInterface<int>
+{
+};
+
+TEST_P(Extinguished, KeepsItsRelativeErrorFromVacuumToOpaque)
+{
+  std::vector<float> tau = { 0.0f };
+  for (double t = 1e-30; t < 1e7; t *= 1.013)
+  {
+    tau.push_back(static_cast<float>(t));
+  }
+  tau.resize((tau.size() + 15) / 16 * 16, 1.0f);
+  const int width = GetParam();
+  const char* text = "__kernel void evaluate(__global float* tau, __global float* lost, __global float* left) {"
+                     " const size_t i = get_global_id(0) * REAL_WIDTH; real rest;"
+                     " const real gone = extinguished(load_real(i, tau), &rest);"
+                     " store_real(gone, i, lost); store_real(rest, i, left); }";
+  Device& device = this->GetDevice();
+  cl::Kernel kernel =
+    device.Kernel("evaluate", { kernel_source::Numerics, text }, "-DREAL_WIDTH=" + std::to_string(width));
+  Buffer<float> in(device, tau, "tau"), lost(device, tau.size(), "lost"), left(device, tau.size(), "left");
+  With(kernel, in, lost, left);
+  device.Queue().enqueueNDRangeKernel(kernel, cl::NullRange, cl::NDRange(tau.size() / width), cl::NullRange);
+  const std::vector<float> gone = lost.Read();
+  const std::vector<float> rest = left.Read();
+  for (std::size_t i = 0; i < tau.size(); ++i)
+  {
+    const double exactGone = -std::expm1(-static_cast<double>(tau[i]));
+    ASSERT_NEAR(gone[i], exactGone, 3e-7 * exactGone) << tau[i];
+    if (tau[i] < 80.0f)
+    {
+      const double exactRest = std::exp(-static_cast<double>(tau[i]));
+      ASSERT_NEAR(rest[i], exactRest, 4e-7 * exactRest) << tau[i];
+    }
+    else
+    {
+      ASSERT_GE(rest[i], 0.0f);
+      ASSERT_LT(rest[i], 1e-34f);
+    }
+  }
+}
+
+INSTANTIATE_TEST_SUITE_P(Widths, Extinguished, testing::Values(1, 4, 8, 16));
