@@ -406,7 +406,7 @@ struct ParallelPropagation::Implementation
 
   void MakeKernels()
   {
-    const std::string common = "-cl-mad-enable -DREAL_WIDTH=" + std::to_string(this->Width) +
+    const std::string common = "-DREAL_WIDTH=" + std::to_string(this->Width) +
       " -DCHANNELS=" + std::to_string(this->Channels) + " -DCOLOURED=" + (this->Coloured ? "1" : "0");
     const auto propagate = [&](const char* name, int source) {
       return this->TheDevice.Kernel(name, { kernel_source::Numerics, kernel_source::PublishedPropagate },

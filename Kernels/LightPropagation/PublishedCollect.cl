@@ -46,7 +46,7 @@ __kernel void AddDirections(const int volume, const int directions, const int ad
     for (int i = 0; i < directions; ++i)
     {
       const real t = load_real((ulong)i * CHANNELS * volume, contributions);
-      sum = mad((real)coefficients[first + k * directions + i], t, sum);
+      sum = multiply_add((real)coefficients[first + k * directions + i], t, sum);
     }
     store_real(sum, (ulong)k * CHANNELS * volume, moments);
   }

@@ -112,7 +112,7 @@ inline real cross_voxel(real radiance, real sigma_t, real source, float length)
   const real tau = sigma_t * length;
   real left;
   const real gone = extinguished(tau, &left);
-  return SOURCE ? mad(radiance, left, source * depth(gone, tau, length)) : radiance * left;
+  return SOURCE ? multiply_add(radiance, left, source * depth(gone, tau, length)) : radiance * left;
 }
 inline real deposit(real radiance, real sigma_s, float length)
 {

@@ -19,6 +19,7 @@ public:
     , Sources(this->Model.SourceDirections().size())
     , OrderMoments(this->Model.MomentCount(), std::vector<float>(this->Values))
     , Moments(this->OrderMoments)
+    , Coefficients(this->OrderMoments.size())
   {
     this->Extinction.resize(this->Values);
     this->Scattering.resize(this->Values);
@@ -72,6 +73,10 @@ private:
   {
     const DirectionSet& set = this->Model.Directions();
     const MapGeometry map(this->TheMedium.grid, this->Settings, set.directions[i], i, set.PerFace());
+    for (std::size_t k = 0; k < this->Coefficients.size(); ++k)
+    {
+      this->Coefficients[k] = static_cast<float>(this->Model.Coefficient(static_cast<int>(k), i));
+    }
     const int resolution = this->Settings.mapResolution;
     const int elementsU = map.sizeU * resolution;
     const int elementsV = map.sizeV * resolution;
@@ -194,8 +199,7 @@ private:
         static_cast<float>(density * radiance * Depth(sigma_s, std::exp(-length * sigma_s), length));
       for (std::size_t k = 0; k < this->OrderMoments.size(); ++k)
       {
-        this->OrderMoments[k][first + c] +=
-          static_cast<float>(this->Model.Coefficient(static_cast<int>(k), ray.direction)) * deposit;
+        this->OrderMoments[k][first + c] += this->Coefficients[k] * deposit;
       }
     }
   }
@@ -276,6 +280,7 @@ private:
   std::vector<std::vector<float>> Source;       ///< U of the order before, by direction
   std::vector<std::vector<float>> OrderMoments; ///< of this order
   std::vector<std::vector<float>> Moments;      ///< of all orders
+  std::vector<float> Coefficients;              ///< of the moments, for the direction that is under way
   std::vector<std::vector<float>> Carried;      ///< by direction: radiance on its way through a periodic axis
 };
 }
