@@ -1,8 +1,10 @@
 #pragma once
 
+#include "vtkExtentTranslator.h"
 #include "vtkImageData.h"
 #include "vtkInformation.h"
 #include "vtkInformationVector.h"
+#include "vtkNew.h"
 #include "vtkStreamingDemandDrivenPipeline.h"
 
 /// For filters in parallel pipelines whose light crosses the borders of pieces.
@@ -28,11 +30,26 @@ inline void AskForAll(vtkInformationVector* input)
   information->Set(Pipeline::UPDATE_NUMBER_OF_GHOST_LEVELS(), 0);
 }
 
-/// In RequestData: crop the output to the piece that was asked for; other ranks hold the rest.
+/// In RequestData: crop the output to the extent, or the piece of it, that was asked for; other ranks hold the rest.
 inline void KeepWhatIsAskedFor(vtkInformation* information, vtkImageData* output)
 {
+  using Pipeline = vtkStreamingDemandDrivenPipeline;
   int asked[6];
-  information->Get(vtkStreamingDemandDrivenPipeline::UPDATE_EXTENT(), asked);
+  information->Get(Pipeline::UPDATE_EXTENT(), asked);
+  if (information->Get(Pipeline::UPDATE_NUMBER_OF_PIECES()) > 1)
+  {
+    vtkNew<vtkExtentTranslator> translator;
+    translator->SetWholeExtent(asked);
+    translator->SetPiece(information->Get(Pipeline::UPDATE_PIECE_NUMBER()));
+    translator->SetNumberOfPieces(information->Get(Pipeline::UPDATE_NUMBER_OF_PIECES()));
+    translator->SetGhostLevel(information->Get(Pipeline::UPDATE_NUMBER_OF_GHOST_LEVELS()));
+    if (!translator->PieceToExtent())
+    {
+      output->Initialize(); // more ranks than voxels
+      return;
+    }
+    translator->GetExtent(asked);
+  }
   if (asked[0] <= asked[1] && asked[2] <= asked[3] && asked[4] <= asked[5])
   {
     output->Crop(asked);

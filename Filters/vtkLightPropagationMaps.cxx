@@ -114,6 +114,11 @@ void vtkLightPropagationMaps::SetLightsData(vtkDataObject* lights)
   this->SetInputDataObject(LightsPort, lights);
 }
 
+void vtkLightPropagationMaps::RemoveLights()
+{
+  this->SetInputConnection(LightsPort, nullptr);
+}
+
 void vtkLightPropagationMaps::SetEnvironmentConnection(vtkAlgorithmOutput* environment)
 {
   this->SetInputConnection(EnvironmentPort, environment);
@@ -122,6 +127,11 @@ void vtkLightPropagationMaps::SetEnvironmentConnection(vtkAlgorithmOutput* envir
 void vtkLightPropagationMaps::SetEnvironmentData(vtkDataObject* environment)
 {
   this->SetInputDataObject(EnvironmentPort, environment);
+}
+
+void vtkLightPropagationMaps::RemoveEnvironment()
+{
+  this->SetInputConnection(EnvironmentPort, nullptr);
 }
 
 int vtkLightPropagationMaps::FillInputPortInformation(int port, vtkInformation* information)

@@ -1,0 +1,70 @@
+"""Density, light rig, light propagation maps: light comes out, with its convergence and what the panel says of it."""
+import os
+
+from paraview import servermanager
+from paraview.simple import *
+from paraview.vtk.util.numpy_support import vtk_to_numpy
+
+LoadPlugin(os.environ["TYNDALL_PLUGIN"], remote=True, ns=globals())
+
+
+def fluence(source):
+    source.UpdatePipeline()
+    source.UpdatePropertyInformation()  # what the panel shows
+    return vtk_to_numpy(servermanager.Fetch(source).GetCellData().GetArray("fluence"))
+
+
+wavelet = Wavelet(WholeExtent=[-6, 6, -6, 6, -6, 6])
+wavelet.UpdatePipeline()
+medium = ParticipatingMedium(Input=wavelet, ExtinctionScale=0.3)
+medium.UpdatePipeline()
+light = LightPropagationMaps(Input=medium, Lights=LightRig())
+assert [light.AbsorptionArray[1], light.ScatteringArray[1], light.EmissionArray[1]] == ["sigma_a", "sigma_s", "emission"]
+
+# With nothing touched, a right picture.
+lit = fluence(light)
+assert lit.shape == (12**3,) and 0.05 < lit.min() and lit.max() < 5, (lit.min(), lit.max())
+assert light.Orders > 3 and 0 < light.Residual <= 1e-4 and light.BalanceError < 1e-5 and light.Seconds > 0
+assert light.DeviceName
+data = servermanager.Fetch(light)
+assert data.GetFieldData().GetAbstractArray("device").GetValue(0) == light.DeviceName
+entered, emitted, absorbed, escaped, left = vtk_to_numpy(data.GetFieldData().GetArray("energy_balance"))
+assert entered > 0 and emitted == 0 and abs(entered - absorbed - escaped - left) < 1e-5 * entered
+
+convergence = servermanager.Fetch(light, idx=1)
+columns = [convergence.GetColumnName(i) for i in range(convergence.GetNumberOfColumns())]
+assert columns == ["iteration", "seconds", "residual", "absorbed", "escaped", "left_over"], columns
+assert convergence.GetNumberOfRows() == light.Orders
+
+# Properties reach the solver.
+light.MaximumOrders = 1
+single = fluence(light)
+assert light.Orders == 1 and (single < lit).all()
+light.MaximumOrders = 0
+light.Lights = None
+light.SkyColor = [1, 1, 2]
+light.NetFlux = 1
+sky = fluence(light)
+assert sky.shape == (12**3, 3)
+assert abs(sky[:, 2] / sky[:, 0] - 2).max() < 1e-4, sky
+assert servermanager.Fetch(light).GetCellData().GetArray("net_flux").GetNumberOfComponents() == 9
+light.Scheme = "As published"
+light.MaximumOrders = 3
+published = fluence(light)
+light.Algorithm = "Sequential (Algorithm 1)"
+assert abs(fluence(light) / published - 1).max() < 1e-3
+
+# What emits later is seen, though the filter was there before.
+light.Scheme = "Sound"
+light.SkyColor = [0, 0, 0]
+medium.EmissionScale = 1
+assert fluence(light).min() > 0
+
+# Another name for an array.
+renamed = Calculator(Input=medium, AttributeType="Cell Data", ResultArrayName="thick", Function="10*sigma_s")
+medium.EmissionScale = 0
+light.SkyColor = [1, 1, 1]
+thin = fluence(light)
+light.Input = renamed
+light.ScatteringArray = ["CELLS", "thick"]
+assert fluence(light).mean() < thin.mean()

@@ -1,0 +1,40 @@
+"""A density becomes a medium: by default one that fits the data, or a real one, in the dataset's unit."""
+import os
+
+from paraview import servermanager
+from paraview.simple import *
+from paraview.vtk.util.numpy_support import vtk_to_numpy
+
+LoadPlugin(os.environ["TYNDALL_PLUGIN"], remote=True, ns=globals())
+
+
+def cells(source, name):
+    return vtk_to_numpy(servermanager.Fetch(source).GetCellData().GetArray(name))
+
+
+wavelet = Wavelet(WholeExtent=[-4, 4, -4, 4, -4, 4])
+
+# Made before the data is known: the active scalars, as they are.
+medium = ParticipatingMedium(Input=wavelet)
+as_is = cells(medium, "sigma_s") / 0.9
+
+# Made after: relative density 1 is the largest density there is.
+wavelet.UpdatePipeline()
+largest = wavelet.PointData["RTData"].GetRange()[1]
+medium = ParticipatingMedium(Input=wavelet)
+assert medium.DensityArray[1] == "RTData" and medium.MinimumDensity == 0, medium.DensityArray
+assert abs(medium.MaximumDensity - largest) < 1e-9 * largest, medium.MaximumDensity
+assert abs(cells(medium, "sigma_s") * largest - 0.9 * as_is).max() < 1e-3
+assert abs(cells(medium, "sigma_a") * largest - 0.1 * as_is).max() < 1e-3
+
+medium.Albedo = [0.9, 0.6, 0.3]
+medium.ExtinctionScale = 2
+medium.EmissionScale = 0.5
+scattering, absorption, emission = (cells(medium, name) for name in ("sigma_s", "sigma_a", "emission"))
+assert scattering.shape == (512, 3) and emission.shape == (512,)
+assert abs(scattering + absorption - 4 * emission[:, None]).max() < 1e-5
+
+medium.Preset = "Skim milk"
+medium.MillimetresPerUnit = 10
+medium.ExtinctionScale = 1
+assert abs(cells(medium, "sigma_s") * largest - as_is[:, None] * [7.0, 12.2, 19.0]).max() < 1e-2
