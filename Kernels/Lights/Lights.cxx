@@ -63,7 +63,7 @@ Environment Shifted(const Environment& environment, int columns)
 /// Mean of what is seen through pixel (i, j), which looks along `axes` of the environment's own frame.
 Rgb SeenThrough(const Environment& environment, int i, int j, int up)
 {
-  constexpr int Parts = 4;
+  constexpr int Parts = 2;
   const double pi = std::acos(-1.0);
   Rgb sum = {};
   double total = 0.0;
