@@ -50,6 +50,13 @@ static void STAGE_ROW(sweep_state* state, int y, bool deposit, const __global fl
       store_real(multiply_add(mean_length, (real)(power * MEMBERS), load_real(x, taken_row)), x, taken_row);
     }
     const real shine = mean_length * power;
+#if NET_FLUX
+    // Path of the light that the voxel's own source adds, (length - mean_length) / sigma. Across the axis mirror images take
+    // it away again, but along it a ray and its opposite may cross the voxel in different parts.
+    const real thin_path = multiply_add(tau, (real)(-length * length / 6.0f), (real)(0.5f * length * length));
+    const real thick_path = (length - mean_length) * load_real(x, inverse_row);
+    const real own_path = select(thick_path, thin_path, tau < (real)1e-2f) * (power * MEMBERS * bundle->cosine);
+#endif
 #endif
 #pragma unroll
     for (int c = 0; c < CHANNELS; ++c)
@@ -84,7 +91,11 @@ static void STAGE_ROW(sweep_state* state, int y, bool deposit, const __global fl
         __global float* flux = flux_row + 3 * c * rows;
         store_real(multiply_add(mean_length, sum_u, load_real(x, flux)), x, flux);
         store_real(multiply_add(mean_length, sum_v, load_real(x, flux + rows)), x, flux + rows);
-        store_real(multiply_add(mean_length * bundle->cosine, sum, load_real(x, flux + 2 * rows)), x, flux + 2 * rows);
+        real sum_w = multiply_add(mean_length * bundle->cosine, sum, load_real(x, flux + 2 * rows));
+#if SOURCE
+        sum_w = multiply_add(own_path, load_real(x, source_row + c * rows), sum_w);
+#endif
+        store_real(sum_w, x, flux + 2 * rows);
 #endif
       }
     }
