@@ -1,0 +1,106 @@
+#ifndef vtkVDBReader_h
+#define vtkVDBReader_h
+
+#include "vtkImageAlgorithm.h"
+#include "vtkNew.h"           // for members
+#include "vtkTyndallModule.h" // for export macro
+
+#include <memory>
+
+class vtkDataArraySelection;
+
+/**
+ * @class vtkVDBReader
+ * @brief reads grids of an OpenVDB file (.vdb) as one image, one cell a voxel
+ *
+ * Output: vtkImageData with a cell array for each chosen grid, named after it.
+ *
+ * | grid                         | cell array                |
+ * |------------------------------|---------------------------|
+ * | float, double (half on disk) | float, double             |
+ * | int32, int64                 | int, 64-bit int           |
+ * | bool, mask                   | uint8, 0 or 1             |
+ * | vec3i, vec3s, vec3d          | int, float, double, 3 each|
+ *
+ * A cell is centred on its voxel's index: index i of OpenVDB is the cell that covers [i - 1/2, i + 1/2] in index space,
+ * and cell i of the image, whose extent starts at the first active voxel and so need not start at 0. Units: spacing
+ * and origin are the grid's world units. A rotated grid becomes an image with a direction matrix.
+ *
+ * The extent is the box of the active voxels of the chosen grids, or the extent that vtkVDBWriter noted. A cell that is
+ * not active has the value that the grid gives it: the background, or inside a level set its negative.
+ * Grids that share the first grid's transform are chosen at first; chosen grids must share one.
+ *
+ * Field data, from which vtkVDBWriter restores them:
+ * `vdb::<key>` the file's metadata; `vdb:<grid>:<key>` a grid's (`class`, `name`, `creator`, ...);
+ * `vdb:<grid>:type` the grid's type as in the table; `vdb:<grid>:background` its background value.
+ * Metadata of types that OpenVDB does not know are left out.
+ *
+ * The file is listed without loading a voxel value, and leaves are loaded where the requested extent needs them only.
+ *
+ * Errors, each one message, with empty output: a file that is not there, truncated or corrupt (see VDBFile.h for what is
+ * noticed), a grid that is not there, a transform that no image has, chosen grids on different transforms, more memory
+ * than MaximumMemory. Versions 222 to 224 of the format are read (OpenVDB 3 to 10).
+ *
+ * @sa vtkVDBWriter
+ */
+class TYNDALL_EXPORT vtkVDBReader : public vtkImageAlgorithm
+{
+public:
+  static vtkVDBReader* New();
+  vtkTypeMacro(vtkVDBReader, vtkImageAlgorithm);
+  void PrintSelf(ostream& os, vtkIndent indent) override;
+
+  ///@{
+  /// The .vdb file.
+  vtkSetFilePathMacro(FileName);
+  vtkGetFilePathMacro(FileName);
+  ///@}
+
+  /// Whether the file begins as an OpenVDB file does.
+  virtual int CanReadFile(const char* fileName);
+
+  ///@{
+  /// The grids of the file, known after UpdateInformation, and which of them to read. A name that is switched on and is
+  /// not in the file is an error.
+  int GetNumberOfGridArrays();
+  const char* GetGridArrayName(int index);
+  int GetGridArrayStatus(const char* name);
+  void SetGridArrayStatus(const char* name, int status);
+  vtkDataArraySelection* GetGridSelection();
+  ///@}
+
+  /// Reads this grid and no other.
+  void SetGridName(const char* name);
+
+  /// The grids, a line each: name, type, active voxels and their box, memory. After UpdateInformation.
+  const char* GetGridSummary();
+
+  ///@{
+  /// Most memory that the image and the tree it is read from may take, MiB. Default 0: half of the machine's memory.
+  vtkSetClampMacro(MaximumMemory, vtkIdType, 0, VTK_ID_MAX >> 20);
+  vtkGetMacro(MaximumMemory, vtkIdType);
+  ///@}
+
+  /// Later than the selection of grids, too.
+  vtkMTimeType GetMTime() override;
+
+protected:
+  vtkVDBReader();
+  ~vtkVDBReader() override;
+
+  int RequestInformation(vtkInformation* request, vtkInformationVector** input, vtkInformationVector* output) override;
+  int RequestData(vtkInformation* request, vtkInformationVector** input, vtkInformationVector* output) override;
+
+private:
+  vtkVDBReader(const vtkVDBReader&) = delete;
+  void operator=(const vtkVDBReader&) = delete;
+
+  char* FileName = nullptr;
+  vtkIdType MaximumMemory = 0;
+  vtkNew<vtkDataArraySelection> GridSelection;
+
+  struct Internals;
+  std::unique_ptr<Internals> Internal;
+};
+
+#endif
