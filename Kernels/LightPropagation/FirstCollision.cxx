@@ -105,17 +105,14 @@ std::vector<glm::dvec3> Points(const Light& light)
   {
     return { Vector(light.position) };
   }
-  const glm::dvec3 normal = glm::normalize(Vector(light.direction));
-  const glm::dvec3 aside = std::abs(normal.z) < 0.9 ? glm::dvec3(0.0, 0.0, 1.0) : glm::dvec3(1.0, 0.0, 0.0);
-  const glm::dvec3 u = glm::normalize(glm::cross(aside, normal));
-  const glm::dvec3 v = glm::cross(normal, u);
+  const std::array<std::array<double, 3>, 2> edges = RectangleEdges(light);
   std::vector<glm::dvec3> points;
   for (int j = 0; j < PointsPerEdge; ++j)
   {
     for (int i = 0; i < PointsPerEdge; ++i)
     {
-      points.push_back(Vector(light.position) + u * (light.size[0] * ((i + 0.5) / PointsPerEdge - 0.5)) +
-        v * (light.size[1] * ((j + 0.5) / PointsPerEdge - 0.5)));
+      points.push_back(Vector(light.position) + Vector(edges[0]) * ((i + 0.5) / PointsPerEdge - 0.5) +
+        Vector(edges[1]) * ((j + 0.5) / PointsPerEdge - 0.5));
     }
   }
   return points;

@@ -1,6 +1,7 @@
 #include "FusedPropagation.h"
 
 #include "AxisSweep.h"
+#include "EnvironmentPeaks.h"
 #include "FirstCollision.h"
 #include "TyndallKernelSources.h"
 
@@ -33,7 +34,7 @@ public:
   Solver(Device& device, const Medium& medium, const Illumination& illumination, const PropagationSettings& settings)
     : TheDevice(device)
     , TheMedium(medium)
-    , Lights(illumination)
+    , Outside(illumination)
     , Settings(settings)
     , Directions(SoundDirections(settings.directionsPerFace))
     , Channels(NeededChannels(medium, illumination))
@@ -95,7 +96,8 @@ private:
 
   Device& TheDevice;
   const Medium& TheMedium;
-  const Illumination& Lights;
+  const Illumination& Outside;
+  std::vector<Light> Lights; ///< those of the scene and the peaks of the environment
   const PropagationSettings& Settings;
   DirectionSet Directions;
   int Channels;
@@ -213,12 +215,15 @@ void Solver::MakeSweeps()
         this->SharedExtinction ? this->Channels : 1, this->Settings.periodic));
     }
   }
-  this->FromFarAway = BoundaryRadiance(this->Directions, this->Lights.environment, this->Lights.sky);
+  const SplitEnvironment environment = Split(this->Outside.environment, this->Directions);
+  this->FromFarAway = BoundaryRadiance(this->Directions, environment.smooth, this->Outside.sky);
+  this->Lights = this->Outside.lights;
+  this->Lights.insert(this->Lights.end(), environment.peaks.begin(), environment.peaks.end());
   for (const Rgb& radiance : this->FromFarAway)
   {
     this->LitFromOutside = this->LitFromOutside || Total(radiance) > 0.0;
   }
-  for (const Rgb& radiance : this->Lights.faces)
+  for (const Rgb& radiance : this->Outside.faces)
   {
     this->LitFromOutside = this->LitFromOutside || Total(radiance) > 0.0;
   }
@@ -234,7 +239,7 @@ AxisSweep::Boundary Solver::BoundaryOfOrder(int order) const
     Rgb radiance = this->FromFarAway[direction];
     for (int c = 0; c < 3; ++c)
     {
-      radiance[c] += this->Lights.faces[face][c];
+      radiance[c] += this->Outside.faces[face][c];
     }
     return radiance;
   };
@@ -283,7 +288,7 @@ Rgb From(const Rgb& rgb, int first)
 
 void Solver::PropagateLights(const Monitor& monitor)
 {
-  for (const Light& light : this->Lights.lights)
+  for (const Light& light : this->Lights)
   {
     this->ForChannels([&](const SweepVolume& volume, int first) {
       Light ofChannels = light;
@@ -427,7 +432,7 @@ std::vector<std::string> Solver::LeftOut() const
   {
     words.push_back("boundary radiance: no environment, sky or face shines");
   }
-  if (this->Lights.lights.empty())
+  if (this->Lights.empty())
   {
     words.push_back("first-collision source: there are no lights");
   }

@@ -1,0 +1,100 @@
+#include "LightPropagation/EnvironmentPeaks.h"
+
+#include "DeviceTest.h"
+#include "MediumScene.h"
+
+#include <gtest/gtest.h>
+
+#include <cmath>
+
+using namespace tyndall;
+
+namespace
+{
+constexpr double Pi = 3.14159265358979323846;
+
+/// A dim sky with one pixel of sun.
+Environment SkyWithSun(float sky, float sun, int column, int row)
+{
+  Environment environment;
+  environment.width = 128;
+  environment.height = 64;
+  environment.radiance.assign(3 * 128 * 64, sky);
+  for (int c = 0; c < 3; ++c)
+  {
+    environment.radiance[3 * (row * 128 + column) + c] = sun * (c + 1);
+  }
+  return environment;
+}
+
+double Power(const Environment& environment, int channel)
+{
+  double sum = 0.0;
+  for (int j = 0; j < environment.height; ++j)
+  {
+    const double solidAngle = (std::cos(Pi * j / environment.height) - std::cos(Pi * (j + 1) / environment.height)) * 2.0 *
+      Pi / environment.width;
+    for (int i = 0; i < environment.width; ++i)
+    {
+      sum += solidAngle * environment.radiance[3 * (j * environment.width + i) + channel];
+    }
+  }
+  return sum;
+}
+}
+
+TEST(EnvironmentPeaks, TheSunBecomesALightAndNoPowerIsLost)
+{
+  const Environment environment = SkyWithSun(0.1f, 1e4f, 20, 48);
+  const SplitEnvironment split = Split(environment, SoundDirections(25));
+  ASSERT_EQ(split.peaks.size(), 1u);
+  for (int c = 0; c < 3; ++c)
+  {
+    EXPECT_NEAR((Power(split.smooth, c) + split.peaks[0].power[c]) / Power(environment, c), 1.0, 1e-6);
+    EXPECT_GT(split.peaks[0].power[c], 0.5 * Power(environment, c));
+  }
+  EXPECT_NEAR(split.peaks[0].power[2] / split.peaks[0].power[0], 3.0, 1e-6) << "it keeps its colour";
+  const std::array<double, 3>& d = split.peaks[0].direction;
+  const double length = std::hypot(d[0], d[1], d[2]);
+  const double polar = Pi * (1.0 - 48.5 / 64.0);
+  EXPECT_NEAR(-d[2] / length, std::cos(polar), 1e-6) << "light travels from the sun";
+  EXPECT_NEAR(std::atan2(-d[1], -d[0]), 2.0 * Pi * 20.5 / 128.0, 1e-6);
+}
+
+TEST(EnvironmentPeaks, ASkyThatVariesSlowlyHasNone)
+{
+  Environment environment = SkyWithSun(1.0f, 1.0f, 0, 0);
+  for (int j = 0; j < 64; ++j)
+  {
+    for (int i = 0; i < 3 * 128; ++i)
+    {
+      environment.radiance[3 * 128 * j + i] = 0.1f + j / 64.0f;
+    }
+  }
+  const SplitEnvironment split = Split(environment, SoundDirections(25));
+  EXPECT_TRUE(split.peaks.empty());
+  EXPECT_EQ(split.smooth.radiance, environment.radiance);
+  EXPECT_TRUE(Split(Environment(), SoundDirections(25)).peaks.empty());
+}
+
+class EnvironmentLight : public DeviceTest
+{
+};
+
+TEST_F(EnvironmentLight, ASunInAPhotographCastsAShadowLikeADirectionalLight)
+{
+  // Behind an opaque plate, seen from a sun at the zenith's neighbour pixel, it is dark but for the sky.
+  Scene scene({ 20, 20, 20 });
+  for (int y = 7; y < 13; ++y)
+  {
+    for (int x = 7; x < 13; ++x)
+    {
+      scene.sigma_a[(static_cast<std::size_t>(15) * 20 + y) * 20 + x] = 1e6f;
+    }
+  }
+  scene.light.environment = SkyWithSun(1e-6f, 1e6f, 20, 63);
+  const LightField light = scene.Solve(this->GetDevice());
+  const auto fluence = [&](int x, int z) { return light.fluence[((static_cast<std::size_t>(z) * 20 + 10) * 20 + x) * 3]; };
+  EXPECT_LT(fluence(10, SoundDirections(25)), 1e-3 * fluence(2, SoundDirections(25))) << "shadow";
+  EXPECT_NEAR(fluence(2, SoundDirections(25)) / fluence(17, SoundDirections(25)), 1.0, 1e-3) << "and even light beside it";
+}
