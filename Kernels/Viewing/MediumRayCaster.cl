@@ -141,18 +141,72 @@ inline real cross_length(real sigma, real length, real* left)
   return weight;
 }
 
-inline void cross_medium(light* l, rgb source, real sigma, rgb sigmas, real length)
+// The step in which half of a ray's light was lost: where it starts, how long it is, and what was left before and after.
+typedef struct
 {
+  real start, length, before, after;
+} crossed;
+
+// What is met in one step: where the step starts and how long it is, and the coefficients in its middle.
+typedef struct
+{
+  real start, length;
+  rgb source;
 #if COLOURED
-  l->radiance.r = fma(source.r, cross_length(sigmas.r, length, &l->left.r), l->radiance.r);
-  l->radiance.g = fma(source.g, cross_length(sigmas.g, length, &l->left.g), l->radiance.g);
-  l->radiance.b = fma(source.b, cross_length(sigmas.b, length, &l->left.b), l->radiance.b);
+  rgb sigma;
 #else
-  const real weight = cross_length(sigma, length, &l->left);
-  l->radiance.r = fma(source.r, weight, l->radiance.r);
-  l->radiance.g = fma(source.g, weight, l->radiance.g);
-  l->radiance.b = fma(source.b, weight, l->radiance.b);
+  real sigma;
 #endif
+} sample;
+
+inline sample take_sample(rays packet, real step, int n, global const float4* samples, global const float4* extinctions,
+  int4 size)
+{
+  sample s;
+  s.start = step * (real)(float)n;
+  s.length = lesser(greater(packet.length - s.start, (real)0.0f), step);
+  corners at;
+  find_corners(along(packet, fma(s.length, (real)0.5f, s.start)), size, &at);
+  real grey;
+  gather(samples, &at, size, &s.source, &grey);
+#if COLOURED
+  real unused;
+  gather(extinctions, &at, size, &s.sigma, &unused);
+#else
+  s.sigma = grey;
+#endif
+  return s;
+}
+
+// Rays that have less light left than `enough` stop.
+inline void cross_sample(sample s, float enough, light* l, crossed* half_way)
+{
+  const real length = most_left(*l) > (real)enough ? s.length : (real)0.0f;
+  const real before = mean_left(*l);
+#if COLOURED
+  l->radiance.r = fma(s.source.r, cross_length(s.sigma.r, length, &l->left.r), l->radiance.r);
+  l->radiance.g = fma(s.source.g, cross_length(s.sigma.g, length, &l->left.g), l->radiance.g);
+  l->radiance.b = fma(s.source.b, cross_length(s.sigma.b, length, &l->left.b), l->radiance.b);
+#else
+  const real weight = cross_length(s.sigma, length, &l->left);
+  l->radiance.r = fma(s.source.r, weight, l->radiance.r);
+  l->radiance.g = fma(s.source.g, weight, l->radiance.g);
+  l->radiance.b = fma(s.source.b, weight, l->radiance.b);
+#endif
+  const real after = mean_left(*l);
+  const integer crossing = (before > (real)0.5f) & (after <= (real)0.5f);
+  half_way->start = crossing ? s.start : half_way->start;
+  half_way->length = crossing ? length : half_way->length;
+  half_way->before = crossing ? before : half_way->before;
+  half_way->after = crossing ? after : half_way->after;
+}
+
+// ln(a/b) = 2 (a-b)/(a+b) but for the third order.
+inline real distance_to_half(crossed c)
+{
+  const real part = (c.before - (real)0.5f) * (c.before + c.after) /
+    ((c.before + (real)0.5f) * greater(c.before - c.after, (real)1e-30f));
+  return fma(part, c.length, c.start);
 }
 
 // samples      red, green, blue of q, W / (length^3 sr), and grey sigma_t, 1/length
@@ -161,7 +215,7 @@ inline void cross_medium(light* l, rgb source, real sigma, rgb sigmas, real leng
 // alpha        1 - mean transmittance
 // depth        where the mean transmittance falls to a half, along the view axis
 kernel void cast_rays(view v, global const float4* restrict samples, global const float4* restrict extinctions,
-  global const uchar* restrict bricks, global const float4* restrict environment, global float* restrict radiance,
+  global const char* restrict bricks, global const float4* restrict environment, global float* restrict radiance,
   global float* restrict alpha, global float* restrict depth)
 {
   // The rays.
@@ -194,9 +248,10 @@ kernel void cast_rays(view v, global const float4* restrict samples, global cons
 
   // The march.
   const real step = step_length(direction, v.marching.x);
+  const real soon = step_length(direction, 5.0f);
   const int steps = (int)ceil(most_lanes(packet.length / step));
 #if SKIP_BRICKS
-  const real3 advance = { direction.x * step, direction.y * step, direction.z * step };
+  const real3 strides = strides_per_voxel(direction, step);
 #endif
   light l;
 #if COLOURED
@@ -205,7 +260,7 @@ kernel void cast_rays(view v, global const float4* restrict samples, global cons
   l.left = (real)1.0f;
 #endif
   l.radiance.r = l.radiance.g = l.radiance.b = (real)0.0f;
-  real half_way = (real)-1.0f;
+  crossed half_way = { (real)0.0f, (real)0.0f, (real)1.0f, (real)1.0f };
   for (int n = 0; n < steps;)
   {
     int stop = steps;
@@ -217,8 +272,8 @@ kernel void cast_rays(view v, global const float4* restrict samples, global cons
     }
 #if SKIP_BRICKS
     int empty;
-    const real3 ahead = along(packet, fma(step, (real)0.5f, so_far), v.size);
-    stop = n + stretch_ahead(bricks, v.bricks, ahead, advance, done, &empty);
+    const real3 ahead = along(packet, fma(step, (real)0.5f, so_far));
+    stop = n + stretch_ahead(bricks, v.bricks, ahead, strides, done, &empty);
     if (empty)
     {
       n = stop;
@@ -230,29 +285,10 @@ kernel void cast_rays(view v, global const float4* restrict samples, global cons
 #endif
     for (; n < stop; ++n)
     {
-      const real start = step * (real)(float)n;
-      const real last = lesser(greater(packet.length - start, (real)0.0f), step);
-      const real length = most_left(l) > (real)v.marching.y ? last : (real)0.0f;
-      const corners at = corners_around(along(packet, fma(length, (real)0.5f, start), v.size), v.size);
-      rgb source;
-      real sigma;
-      rgb sigmas;
-      gather(samples, at, v.size, &source, &sigma);
-#if COLOURED
-      real unused;
-      gather(extinctions, at, v.size, &sigmas, &unused);
-#endif
-      const real left_before = mean_left(l);
-      cross_medium(&l, source, sigma, sigmas, length);
-      const real left_after = mean_left(l);
-      const integer crossing = (left_before > (real)0.5f) & (left_after <= (real)0.5f);
-      if (any_lane(crossing))
-      {
-        // ln(a/b) = 2 (a-b)/(a+b) but for the third order.
-        const real part = (left_before - (real)0.5f) * (left_before + left_after) /
-          ((left_before + (real)0.5f) * greater(left_before - left_after, (real)1e-30f));
-        half_way = crossing ? fma(part, length, start) : half_way;
-      }
+      // What is sampled does not depend on how much light is left, so that the next sample overlaps this one.
+      const sample s = take_sample(packet, step, n, samples, extinctions, v.size);
+      fetch_ahead(samples, along(packet, s.start + soon), v.size);
+      cross_sample(s, v.marching.y, &l, &half_way);
     }
   }
 
@@ -278,7 +314,7 @@ kernel void cast_rays(view v, global const float4* restrict samples, global cons
   l.radiance.g += behind.g;
   l.radiance.b += behind.b;
   const real opaque = (real)1.0f - left;
-  const real where = half_way >= (real)0.0f ? (half_way + before) * cosine : (real)v.marching.z;
+  const real where = left > (real)0.5f ? (real)v.marching.z : (distance_to_half(half_way) + before) * cosine;
   const integer pixel = (integer)(row * v.picture.x + column) + to_integer(UPWARDS) * v.picture.x + to_integer(ACROSS);
   const integer inside = (i < (real)(float)v.picture.x) & (j < (real)(float)v.picture.y);
 #define PAINT(n)                                                                                                         \

@@ -187,11 +187,13 @@ std::vector<cl_float4> ClosedEnvironment(const Environment& environment)
   return pixels;
 }
 
-/// Turns 255 for "empty" into the number of king's moves to the nearest brick that is not; two sweeps find it exactly.
-void FindDistances(std::vector<cl_uchar>& bricks, const std::array<int, 3>& count)
+/// Turns 1 (empty) and -1 (filled) into plus or minus the number of king's moves to the nearest brick of the other sign, at
+/// most 127; two sweeps find it exactly.
+void FindDistances(std::vector<cl_char>& bricks, const std::array<int, 3>& count)
 {
+  std::vector<int> moves(bricks.size(), 127);
   const auto relax = [&](int i, int j, int k, int side) {
-    cl_uchar& here = bricks[(static_cast<std::size_t>(k) * count[1] + j) * count[0] + i];
+    const std::size_t here = (static_cast<std::size_t>(k) * count[1] + j) * count[0] + i;
     for (int neighbour = 0; neighbour < 13; ++neighbour)
     {
       const int x = i + side * (neighbour % 3 - 1);
@@ -199,8 +201,9 @@ void FindDistances(std::vector<cl_uchar>& bricks, const std::array<int, 3>& coun
       const int z = k + side * (neighbour / 9 - 1);
       if (x >= 0 && y >= 0 && z >= 0 && x < count[0] && y < count[1] && z < count[2])
       {
-        const cl_uchar there = bricks[(static_cast<std::size_t>(z) * count[1] + y) * count[0] + x];
-        here = std::min<int>(here, there + 1);
+        const std::size_t there = (static_cast<std::size_t>(z) * count[1] + y) * count[0] + x;
+        const bool other = bricks[there] != bricks[here];
+        moves[here] = std::min(moves[here], other ? 1 : moves[there] + 1);
       }
     }
   };
@@ -212,6 +215,10 @@ void FindDistances(std::vector<cl_uchar>& bricks, const std::array<int, 3>& coun
   for (int n = last; n >= 0; --n)
   {
     relax(n % count[0], n / count[0] % count[1], n / (count[0] * count[1]), -1);
+  }
+  for (std::size_t brick = 0; brick < bricks.size(); ++brick)
+  {
+    bricks[brick] = static_cast<cl_char>(bricks[brick] * moves[brick]);
   }
 }
 
@@ -273,7 +280,7 @@ MediumRayCaster::MediumRayCaster(Device& device, const Medium& medium, const Sol
   this->Extinctions =
     Buffer<cl_float4>(device, this->Coloured ? PaddedCount(medium.grid) : 0, "the ray caster's coloured extinction");
   this->Bricks =
-    Buffer<cl_uchar>(device, static_cast<std::size_t>(this->BrickCount[0]) * this->BrickCount[1] * this->BrickCount[2],
+    Buffer<cl_char>(device, static_cast<std::size_t>(this->BrickCount[0]) * this->BrickCount[1] * this->BrickCount[2],
       "the ray caster's bricks");
   this->Direct =
     Buffer<float>(device, this->LightCount > 0 ? 6 * medium.grid.VoxelCount() : 0, "light found by shadow rays");
@@ -358,7 +365,7 @@ void MediumRayCaster::Pack(bool withShadowRays)
   With(find, size, bricks, this->Samples, this->Extinctions, this->Bricks);
   this->TheDevice.Queue().enqueueNDRangeKernel(
     find, cl::NullRange, cl::NDRange(RoundUp(bricks.s[0], 4), bricks.s[1], bricks.s[2]), cl::NDRange(4, 1, 1));
-  std::vector<cl_uchar> distances = this->Bricks.Read();
+  std::vector<cl_char> distances = this->Bricks.Read();
   FindDistances(distances, this->BrickCount);
   this->Bricks.Write(distances.data());
 }
@@ -446,14 +453,13 @@ Picture MediumRayCaster::Render(const Camera& camera, const Monitor& monitor)
     { kernel_source::Numerics, kernel_source::Sampling, kernel_source::MediumRayCaster },
     "-DREAL_WIDTH=" + std::to_string(width) + " -DCOLOURED=" + (this->Coloured ? "1" : "0") + " -DSKIP_BRICKS=" +
       (this->Settings.skipEmptyBricks ? "1" : "0") + " -DENVIRONMENT=" + (this->EnvironmentSize[0] > 0 ? "1" : "0"));
-  const cl::NDRange local = width == 1 ? cl::NDRange(8, 8) : cl::NDRange(4, 1);
-  const std::size_t across = RoundUp(picture.width, 4 * packet[0] * (width == 1 ? 2 : 1)) / packet[0];
+  const std::size_t across = RoundUp(picture.width, 8 * packet[0]) / packet[0];
   const int rows = static_cast<int>(RoundUp(picture.height, packet[1]) / packet[1]);
   InBatches(this->TheDevice, rows, monitor, seesLights ? 0.5 : 0.0, 1.0, [&](int first, int count) {
     view.Picture.s[2] = first;
     With(cast, view, this->Samples, this->Extinctions, this->Bricks, this->EnvironmentPixels, radiance, alpha, depth);
-    const std::size_t upwards = width == 1 ? RoundUp(count, 8) : count;
-    this->TheDevice.Queue().enqueueNDRangeKernel(cast, cl::NullRange, cl::NDRange(across, upwards), local);
+    this->TheDevice.Queue().enqueueNDRangeKernel(
+      cast, cl::NullRange, cl::NDRange(across, RoundUp(count, 8)), cl::NDRange(8, 8));
   });
   picture.radiance = radiance.Read();
   picture.alpha = alpha.Read();

@@ -32,7 +32,7 @@ struct ViewSettings
   bool showBackground = true;
   Rgb backgroundColor = { 0.0, 0.0, 0.0 }; ///< radiance behind the medium where there is no environment
   bool skipEmptyBricks = true;             ///< leap over what is empty; changes the time and nothing else
-  double minimumTransmittance = 1e-4;      ///< a ray that has less left stops; 0: never
+  double minimumTransmittance = 1e-3;      ///< a ray that has less left stops; 0: never
   int packetWidth = 0; ///< rays marched together: 1, 4, 8 or 16; 0: what the device does best. Changes the time only
 };
 
@@ -108,7 +108,7 @@ private:
   Buffer<float> Direct;      ///< 6 a voxel: what the lights scatter towards the eye, and their irradiance
   Buffer<cl_float4> Samples; ///< source and grey extinction, with a border
   Buffer<cl_float4> Extinctions;
-  Buffer<cl_uchar> Bricks;
+  Buffer<cl_char> Bricks;
   Buffer<cl_float4> EnvironmentPixels;
   Buffer<cl_float4> Lights; ///< three a small_light
   std::vector<std::string> Omitted;

@@ -15,14 +15,8 @@
 #if REAL_WIDTH == 1
 #define EACH_LANE(DO) DO(0)
 #define LANE(v, n) v
-#define any_lane(condition) (condition)
-#define all_lanes(condition) (condition)
-#define least_lane(v) (v)
-#define most_lanes(v) (v)
 #else
 #define LANE(v, n) TYNDALL_JOIN(v.s, n)
-#define any_lane(condition) any(condition)
-#define all_lanes(condition) all(condition)
 #if REAL_WIDTH == 4
 #define EACH_LANE(DO) DO(0) DO(1) DO(2) DO(3)
 #elif REAL_WIDTH == 8
@@ -37,25 +31,37 @@
 #define lesser(a, b) ((a) < (b) ? (a) : (b))
 #define greater(a, b) ((a) > (b) ? (a) : (b))
 
-#if REAL_WIDTH > 1
+// Half the lanes with the other half, until four are left.
+#if REAL_WIDTH == 16
+#define REDUCED_TO_FOUR(type, v, operation)                                                                              \
+  const type##8 eight = operation(v.lo, v.hi);                                                                           \
+  const type##4 four = operation(eight.lo, eight.hi);
+#elif REAL_WIDTH == 8
+#define REDUCED_TO_FOUR(type, v, operation) const type##4 four = operation(v.lo, v.hi);
+#else
+#define REDUCED_TO_FOUR(type, v, operation) const type##4 four = v;
+#endif
+#define either(a, b) ((a) | (b))
+#if REAL_WIDTH == 1
+#define least_lane(v) (v)
+#define any_lane(condition) (condition)
+#else
 inline float least_lane(real v)
 {
-#if REAL_WIDTH == 16
-  const float8 eight = lesser(v.lo, v.hi);
-  const float4 four = lesser(eight.lo, eight.hi);
-#elif REAL_WIDTH == 8
-  const float4 four = lesser(v.lo, v.hi);
-#else
-  const float4 four = v;
-#endif
+  REDUCED_TO_FOUR(float, v, lesser)
   const float2 two = lesser(four.lo, four.hi);
   return lesser(two.x, two.y);
 }
-inline float most_lanes(real v)
+// PoCL's any asks lane by lane.
+inline int any_lane(integer condition)
 {
-  return -least_lane(-v);
+  REDUCED_TO_FOUR(int, condition, either)
+  const int2 two = either(four.lo, four.hi);
+  return either(two.x, two.y) != 0;
 }
 #endif
+#define most_lanes(v) (-least_lane(-(v)))
+#define all_lanes(condition) (!any_lane((condition) == 0))
 
 typedef struct
 {
@@ -82,6 +88,11 @@ inline real at_least_tiny(real v)
   return fabs(v) > tiny ? v : copysign(tiny, v);
 }
 
+inline real within(real v, int size)
+{
+  return lesser(greater(v, (real)0.0f), (real)(float)size);
+}
+
 // The part of each ray from `from`, at most `farthest` long, that lies in the box.
 inline rays clip_to_box(real3 from, real3 direction, real farthest, int4 size, real* before)
 {
@@ -96,13 +107,18 @@ inline rays clip_to_box(real3 from, real3 direction, real farthest, int4 size, r
   const real z1 = ((real)(float)size.z - from.z) * iz;
   const real in = greater(greater(lesser(x0, x1), lesser(y0, y1)), greater(lesser(z0, z1), (real)0.0f));
   const real out = lesser(lesser(greater(x0, x1), greater(y0, y1)), lesser(greater(z0, z1), farthest));
+  // A far camera's rounding errors may not carry a ray out of the box.
   rays result;
   result.direction = direction;
-  result.length = greater(out - in, (real)0.0f);
+  result.entry.x = within(fma(in, direction.x, from.x), size.x);
+  result.entry.y = within(fma(in, direction.y, from.y), size.y);
+  result.entry.z = within(fma(in, direction.z, from.z), size.z);
+  const real left_x = ((ix > (real)0.0f ? (real)(float)size.x : (real)0.0f) - result.entry.x) * ix;
+  const real left_y = ((iy > (real)0.0f ? (real)(float)size.y : (real)0.0f) - result.entry.y) * iy;
+  const real left_z = ((iz > (real)0.0f ? (real)(float)size.z : (real)0.0f) - result.entry.z) * iz;
+  const real left = lesser(lesser(left_x, left_y), lesser(left_z, farthest - in));
+  result.length = out > in ? greater(left, (real)0.0f) : (real)0.0f;
   *before = result.length > (real)0.0f ? in : (real)0.0f;
-  result.entry.x = fma(*before, direction.x, from.x);
-  result.entry.y = fma(*before, direction.y, from.y);
-  result.entry.z = fma(*before, direction.z, from.z);
   return result;
 }
 
@@ -113,103 +129,188 @@ inline real step_length(real3 direction, float step)
     sqrt(fma(direction.x, direction.x, fma(direction.y, direction.y, direction.z * direction.z)));
 }
 
-inline real within(real v, int size)
+inline real3 along(rays packet, real distance)
 {
-  return lesser(greater(v, (real)0.0f), (real)(float)size);
-}
-
-inline real3 along(rays packet, real distance, int4 size)
-{
+  // Rays that have left stay where they left.
+  const real d = lesser(distance, packet.length);
   real3 p;
-  p.x = within(fma(distance, packet.direction.x, packet.entry.x), size.x);
-  p.y = within(fma(distance, packet.direction.y, packet.entry.y), size.y);
-  p.z = within(fma(distance, packet.direction.z, packet.entry.z), size.z);
+  p.x = fma(d, packet.direction.x, packet.entry.x);
+  p.y = fma(d, packet.direction.y, packet.entry.y);
+  p.z = fma(d, packet.direction.z, packet.entry.z);
   return p;
 }
 
-// What eight voxel centres around a point make of it: the first one's index and how far the point is towards the others.
+// The eight voxel centres around each point of a packet: twice the first one's index, and the weights of the four pairs
+// along x and of the upper of a pair. In memory, from where a CPU broadcasts single lanes for nothing.
 typedef struct
 {
-  integer first;
-  real x, y, z;
+  integer twice_first;
+  real near_low, near_high, far_low, far_high;
+  real x;
 } corners;
 
-inline corners corners_around(real3 p, int4 size)
+inline void find_corners(real3 p, int4 size, corners* at)
 {
-  const real x = floor(p.x + (real)0.5f);
-  const real y = floor(p.y + (real)0.5f);
-  const real z = floor(p.z + (real)0.5f);
-  corners c;
-  c.x = p.x + (real)0.5f - x;
-  c.y = p.y + (real)0.5f - y;
-  c.z = p.z + (real)0.5f - z;
-  c.first = (to_integer(z) * (size.y + 2) + to_integer(y)) * (size.x + 2) + to_integer(x);
-  return c;
+  const real px = p.x + (real)0.5f;
+  const real py = p.y + (real)0.5f;
+  const real pz = p.z + (real)0.5f;
+  const real i = floor(px);
+  const real j = floor(py);
+  const real k = floor(pz);
+  const real y = py - j;
+  const real z = pz - k;
+  const real both = y * z;
+  const real z_only = z - both;
+  at->x = px - i;
+  at->far_high = both;
+  at->near_high = y - both;
+  at->far_low = z_only;
+  at->near_low = ((real)1.0f - y) - z_only;
+  // Rows are counted in floats, which hold whole numbers up to 16 million.
+  const integer row = to_integer(fma(k, (real)(float)(size.y + 2), j));
+  at->twice_first = (row * (size.x + 2) + to_integer(i)) * 2;
 }
 
-// One ray's sample, all four values of a voxel at once. Neighbours along x lie side by side in memory, so that four loads
-// of eight floats bring all corners.
-inline float4 interpolate(global const float4* samples, int first, int row, int slice, float x, float y, float z)
-{
-  global const float4* near = samples + first;
-  global const float4* far = near + slice;
-  float8 a = (float8)(near[0], near[1]);
-  float8 b = (float8)(far[0], far[1]);
-  a = fma((float8)y, (float8)(near[row], near[row + 1]) - a, a);
-  b = fma((float8)y, (float8)(far[row], far[row + 1]) - b, b);
-  a = fma((float8)z, b - a, a);
-  return fma((float4)x, a.hi - a.lo, a.lo);
-}
-
-// The same for a packet: colour and w of the sample at each ray's corners.
-inline void gather(global const float4* samples, corners at, int4 size, rgb* colour, real* w)
+#if REAL_WIDTH > 1 && defined(__clang__)
+// Asks for the rows of samples around a point that a packet will come to, before they are needed. May be anything.
+inline void fetch_ahead(global const float4* samples, real3 p, int4 size)
 {
   const int row = size.x + 2;
   const int slice = row * (size.y + 2);
+  const integer j = to_integer(p.y + (real)0.5f);
+  const integer k = to_integer(p.z + (real)0.5f);
+  const integer at = k * slice + j * row + to_integer(p.x + (real)0.5f);
+#define ASK(place) __builtin_prefetch((const void*)(size_t)(samples + (place)))
+#define ASK_AROUND(n)                                                                                                    \
+  ASK(LANE(at, n)), ASK(LANE(at, n) + row), ASK(LANE(at, n) + slice), ASK(LANE(at, n) + slice + row)
+  ASK_AROUND(0);
+  ASK_AROUND(3);
+#if REAL_WIDTH == 16
+  ASK_AROUND(c);
+  ASK_AROUND(f);
+#endif
+#undef ASK_AROUND
+#undef ASK
+}
+#else
+#define fetch_ahead(samples, p, size)
+#endif
+
+inline float8 neighbours(global const float2* row, uint twice_first)
+{
+  global const float4* at = (global const float4*)(row + twice_first);
+  return (float8)(at[0], at[1]); // 16 bytes are aligned, 32 are not
+}
+
+#if REAL_WIDTH == 16
+// Four rays' v = (a at the lower x, a at the upper x), a of four values, in the order 0, 4, 8, c of a quarter each, taken
+// between the two by x: 16 lanes that hold the four values of one ray, of the next, ...
+inline float16 four_between(float8 v0, float8 v4, float8 v8, float8 vc, float16 x)
+{
+  const float16 left = (float16)(v0, v4);
+  const float16 right = (float16)(v8, vc);
+  const float16 lower = (float16)(left.s0123, left.s89ab, right.s0123, right.s89ab);
+  const float16 upper = (float16)(left.s4567, left.scdef, right.s4567, right.scdef);
+  return fma(x, upper - lower, lower);
+}
+#endif
+
+// The samples at each ray's corners, between the voxel centres: colour and w. Neighbours along x lie side by side in memory,
+// so that four loads of eight floats bring all corners of a ray. A function of its own, so that `at` stays in memory.
+#if REAL_WIDTH > 1
+__attribute__((noinline))
+#endif
+void gather(global const float4* samples, const corners* at, int4 size, rgb* colour, real* w)
+{
+  global const float2* near_low = (global const float2*)samples;
+  global const float2* near_high = near_low + 2 * (size.x + 2);
+  global const float2* far_low = near_low + 2 * (size.x + 2) * (size.y + 2);
+  global const float2* far_high = far_low + 2 * (size.x + 2);
+#define FIRST(n) ((const uint*)&at->twice_first)[0x##n]
+#define WEIGHT(part, n) (((const float*)&at->part)[0x##n])
 #define FETCH(n)                                                                                                         \
-  const float4 v##n =                                                                                                    \
-    interpolate(samples, LANE(at.first, n), row, slice, LANE(at.x, n), LANE(at.y, n), LANE(at.z, n));
+  float8 v##n = WEIGHT(near_low, n) * neighbours(near_low, FIRST(n));                                                    \
+  v##n = fma((float8)(WEIGHT(near_high, n)), neighbours(near_high, FIRST(n)), v##n);                                     \
+  v##n = fma((float8)(WEIGHT(far_low, n)), neighbours(far_low, FIRST(n)), v##n);                                         \
+  v##n = fma((float8)(WEIGHT(far_high, n)), neighbours(far_high, FIRST(n)), v##n);
   EACH_LANE(FETCH)
 #undef FETCH
-#if REAL_WIDTH == 1
-#define TRANSPOSED(c) v0.c
-#elif REAL_WIDTH == 4
-#define TRANSPOSED(c) (real)(v0.c, v1.c, v2.c, v3.c)
-#elif REAL_WIDTH == 8
-#define TRANSPOSED(c) (real)(v0.c, v1.c, v2.c, v3.c, v4.c, v5.c, v6.c, v7.c)
+#if REAL_WIDTH == 16
+  const float16 x = at->x;
+  // All that follows stays within quarters of a register but for the first step.
+  const float16 a = four_between(v0, v4, v8, vc, x.s000044448888cccc);
+  const float16 b = four_between(v1, v5, v9, vd, x.s111155559999dddd);
+  const float16 c = four_between(v2, v6, va, ve, x.s22226666aaaaeeee);
+  const float16 d = four_between(v3, v7, vb, vf, x.s33337777bbbbffff);
+  const float16 ab_low = (float16)(a.s0, b.s0, a.s1, b.s1, a.s4, b.s4, a.s5, b.s5, a.s8, b.s8, a.s9, b.s9, a.sc, b.sc,
+    a.sd, b.sd);
+  const float16 cd_low = (float16)(c.s0, d.s0, c.s1, d.s1, c.s4, d.s4, c.s5, d.s5, c.s8, d.s8, c.s9, d.s9, c.sc, d.sc,
+    c.sd, d.sd);
+  const float16 ab_high = (float16)(a.s2, b.s2, a.s3, b.s3, a.s6, b.s6, a.s7, b.s7, a.sa, b.sa, a.sb, b.sb, a.se, b.se,
+    a.sf, b.sf);
+  const float16 cd_high = (float16)(c.s2, d.s2, c.s3, d.s3, c.s6, d.s6, c.s7, d.s7, c.sa, d.sa, c.sb, d.sb, c.se, d.se,
+    c.sf, d.sf);
+  colour->r = (real)(ab_low.s01, cd_low.s01, ab_low.s45, cd_low.s45, ab_low.s89, cd_low.s89, ab_low.scd, cd_low.scd);
+  colour->g = (real)(ab_low.s23, cd_low.s23, ab_low.s67, cd_low.s67, ab_low.sab, cd_low.sab, ab_low.sef, cd_low.sef);
+  colour->b =
+    (real)(ab_high.s01, cd_high.s01, ab_high.s45, cd_high.s45, ab_high.s89, cd_high.s89, ab_high.scd, cd_high.scd);
+  *w = (real)(ab_high.s23, cd_high.s23, ab_high.s67, cd_high.s67, ab_high.sab, cd_high.sab, ab_high.sef, cd_high.sef);
 #else
-#define TRANSPOSED(c)                                                                                                    \
-  (real)(v0.c, v1.c, v2.c, v3.c, v4.c, v5.c, v6.c, v7.c, v8.c, v9.c, va.c, vb.c, vc.c, vd.c, ve.c, vf.c)
+#define BETWEEN(n) const float4 u##n = fma((float4)(WEIGHT(x, n)), v##n.hi - v##n.lo, v##n.lo);
+  EACH_LANE(BETWEEN)
+#undef BETWEEN
+#if REAL_WIDTH == 1
+#define TRANSPOSED(c) u0.c
+#elif REAL_WIDTH == 4
+#define TRANSPOSED(c) (real)(u0.c, u1.c, u2.c, u3.c)
+#else
+#define TRANSPOSED(c) (real)(u0.c, u1.c, u2.c, u3.c, u4.c, u5.c, u6.c, u7.c)
 #endif
   colour->r = TRANSPOSED(x);
   colour->g = TRANSPOSED(y);
   colour->b = TRANSPOSED(z);
   *w = TRANSPOSED(w);
 #undef TRANSPOSED
+#endif
+#undef FIRST
+#undef WEIGHT
 }
 
-// Edge of a brick in voxels. Each brick has a number: how many bricks one has to go (as a chess king does) to one where
-// anything extinguishes or shines; 0 for such a brick itself.
+// Edge of a brick in voxels. Each brick has a number: how many bricks one has to go (as a chess king does) to one of the
+// other kind; positive for a brick that is empty, negative for one where anything extinguishes or shines.
 #define BRICK 8
 
 // How many steps, from the sample at p on, every ray of the packet can take before one of them leaves the bricks around
 // it that are known to be alike; *empty tells whether all those steps are through nothing. Rays that are done do not count.
-inline int stretch_ahead(
-  global const uchar* bricks, int4 brick_count, real3 p, real3 advance, integer done, int* empty)
+__attribute__((always_inline)) inline int stretch_ahead(
+  global const char* bricks, int4 brick_count, real3 p, real3 strides, integer done, int* empty)
 {
   const integer bx = min(to_integer(p.x * (real)(1.0f / BRICK)), brick_count.x - 1);
   const integer by = min(to_integer(p.y * (real)(1.0f / BRICK)), brick_count.y - 1);
   const integer bz = min(to_integer(p.z * (real)(1.0f / BRICK)), brick_count.z - 1);
   const integer brick = (bz * brick_count.y + by) * brick_count.x + bx;
+  integer distance = (integer)(int)bricks[LANE(brick, 0)];
+  if (any_lane(brick != (integer)LANE(brick, 0))) // neighbouring rays are mostly in the same brick
+  {
 #define DISTANCE(n) LANE(distance, n) = bricks[LANE(brick, n)];
-  integer distance;
-  EACH_LANE(DISTANCE)
+    EACH_LANE(DISTANCE)
 #undef DISTANCE
-  const integer reach = distance > 0 ? distance - 1 : 0;
+  }
+  const integer reach = (distance < 0 ? -distance : distance) - 1;
 #define STEPS_LEFT(b, c)                                                                                                 \
-  ((to_real(advance.c > (real)0.0f ? (b + reach + 1) * BRICK : (b - reach) * BRICK) - p.c) / at_least_tiny(advance.c))
+  ((to_real(strides.c > (real)0.0f ? (b + reach + 1) * BRICK : (b - reach) * BRICK) - p.c) * strides.c)
   const real steps = lesser(lesser(STEPS_LEFT(bx, x), STEPS_LEFT(by, y)), STEPS_LEFT(bz, z));
 #undef STEPS_LEFT
   *empty = all_lanes(done | (distance > 0));
   return 1 + (int)lesser(greater(least_lane(done ? (real)1e6f : steps), 0.0f), 1e6f);
+}
+
+// How many steps take a ray on by a voxel along each axis.
+inline real3 strides_per_voxel(real3 direction, real step)
+{
+  real3 strides;
+  strides.x = (real)1.0f / at_least_tiny(direction.x * step);
+  strides.y = (real)1.0f / at_least_tiny(direction.y * step);
+  strides.z = (real)1.0f / at_least_tiny(direction.z * step);
+  return strides;
 }

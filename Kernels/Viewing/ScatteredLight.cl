@@ -72,9 +72,9 @@ kernel void pack_samples(int4 size, int single, global const float* restrict abs
 #endif
 }
 
-// 0 for a brick where anything extinguishes or shines, or does so close enough to be interpolated into it; else 255.
+// -1 for a brick where anything extinguishes or shines, or does so close enough to be interpolated into it; else 1.
 kernel void find_empty_bricks(int4 size, int4 brick_count, global const float4* restrict samples,
-  global const float4* restrict extinctions, global uchar* restrict bricks)
+  global const float4* restrict extinctions, global char* restrict bricks)
 {
   const int i = get_global_id(0);
   const int j = get_global_id(1);
@@ -88,10 +88,10 @@ kernel void find_empty_bricks(int4 size, int4 brick_count, global const float4* 
   const int x0 = i * BRICK, x1 = min(x0 + BRICK + 1, size.x + 1);
   const int y0 = j * BRICK, y1 = min(y0 + BRICK + 1, size.y + 1);
   const int z0 = k * BRICK, z1 = min(z0 + BRICK + 1, size.z + 1);
-  uchar found = 255;
-  for (int z = z0; z <= z1 && found; ++z)
+  int empty = 1;
+  for (int z = z0; z <= z1 && empty; ++z)
   {
-    for (int y = y0; y <= y1 && found; ++y)
+    for (int y = y0; y <= y1 && empty; ++y)
     {
       for (int x = x0; x <= x1; ++x)
       {
@@ -100,11 +100,11 @@ kernel void find_empty_bricks(int4 size, int4 brick_count, global const float4* 
 #if COLOURED
         something |= any(extinctions[place] != (float4)(0.0f));
 #endif
-        found = something ? 0 : found;
+        empty = something ? 0 : empty;
       }
     }
   }
-  bricks[(k * brick_count.y + j) * brick_count.x + i] = found;
+  bricks[(k * brick_count.y + j) * brick_count.x + i] = empty ? 1 : -1;
 }
 
 // A light as the shadow rays see it: parallel light, or a point of one.
@@ -122,7 +122,7 @@ typedef struct
 kernel void see_lights(int4 size, int4 brick_count, float4 spacing, float4 eye, float4 forward, float g, float step,
   float nearest_square, int light_count, global const small_light* restrict lights,
   global const float* restrict scattering, global const float4* restrict samples, global const float4* restrict extinctions,
-  global const uchar* restrict bricks, int first_slice, global float* restrict direct)
+  global const char* restrict bricks, int first_slice, global float* restrict direct)
 {
   // The voxels of this packet, along x.
   const int first = get_global_id(0) * REAL_WIDTH;
@@ -189,7 +189,7 @@ kernel void see_lights(int4 size, int4 brick_count, float4 spacing, float4 eye, 
     const rays packet =
       clip_to_box(centre, direction, point > (real)0.0f ? distance : (real)1e30f, size, &before);
     const real stride = step_length(direction, step);
-    const real3 advance = { direction.x * stride, direction.y * stride, direction.z * stride };
+    const real3 strides = strides_per_voxel(direction, stride);
     const int steps = (int)ceil(most_lanes(arriving > (real)0.0f ? packet.length / stride : (real)0.0f));
     rgb depths = { (real)0.0f, (real)0.0f, (real)0.0f };
     real depth = (real)0.0f;
@@ -207,22 +207,23 @@ kernel void see_lights(int4 size, int4 brick_count, float4 spacing, float4 eye, 
         break;
       }
       int empty;
-      const real3 ahead = along(packet, fma(stride, (real)0.5f, so_far), size);
-      const int stop = min(m + stretch_ahead(bricks, brick_count, ahead, advance, done, &empty), steps);
+      const real3 ahead = along(packet, fma(stride, (real)0.5f, so_far));
+      const int stop = min(m + stretch_ahead(bricks, brick_count, ahead, strides, done, &empty), steps);
       for (m = empty ? stop : m; m < stop; ++m)
       {
         const real start = stride * (real)(float)m;
         const real length = lesser(greater(packet.length - start, (real)0.0f), stride);
-        const corners at = corners_around(along(packet, fma(length, (real)0.5f, start), size), size);
+        corners at;
+        find_corners(along(packet, fma(length, (real)0.5f, start)), size, &at);
         rgb colour;
         real w;
 #if COLOURED
-        gather(extinctions, at, size, &colour, &w);
+        gather(extinctions, &at, size, &colour, &w);
         depths.r = fma(colour.r, length, depths.r);
         depths.g = fma(colour.g, length, depths.g);
         depths.b = fma(colour.b, length, depths.b);
 #else
-        gather(samples, at, size, &colour, &w);
+        gather(samples, &at, size, &colour, &w);
         depth = fma(w, length, depth);
 #endif
       }

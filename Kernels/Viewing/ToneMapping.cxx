@@ -8,30 +8,59 @@ namespace tyndall
 {
 namespace
 {
-constexpr int Levels = 1 << 14;
-
 double EncodeSrgb(double linear)
 {
   return linear <= 0.0031308 ? 12.92 * linear : 1.055 * std::pow(linear, 1.0 / 2.4) - 0.055;
 }
 
-/// sRGB's curve at Levels equal steps of linear light, in units of 1/255.
-const std::vector<float>& SrgbTable()
+double Filmic(double x)
 {
-  static const std::vector<float> table = [] {
-    std::vector<float> values(Levels + 1);
-    for (int i = 0; i <= Levels; ++i)
-    {
-      values[i] = static_cast<float>(255.0 * EncodeSrgb(static_cast<double>(i) / Levels));
-    }
-    return values;
-  }();
-  return table;
+  return x * (2.51 * x + 0.03) / (x * (2.43 * x + 0.59) + 0.14);
 }
 
-float Filmic(float x)
+/// What a screen shows for an exposed radiance, 0 to 255: a table over the leading bits of the float, which has 4096
+/// entries for every doubling between Darkest and Brightest.
+class ScreenValues
 {
-  return x * (2.51f * x + 0.03f) / (x * (2.43f * x + 0.59f) + 0.14f);
+public:
+  explicit ScreenValues(ToneCurve curve)
+  {
+    for (std::uint32_t entry = Index(Darkest); entry <= Index(Brightest); ++entry)
+    {
+      const std::uint32_t middle = (entry << Shift) + (1u << (Shift - 1));
+      float exposed;
+      std::memcpy(&exposed, &middle, sizeof(exposed));
+      const double shown = curve == ToneCurve::Filmic ? Filmic(exposed) : exposed;
+      this->Values.push_back(static_cast<float>(255.0 * EncodeSrgb(std::min(shown, 1.0))));
+    }
+    this->Values.front() = 0.0f;
+  }
+
+  float operator()(float exposed) const
+  {
+    return this->Values[Index(std::min(std::max(exposed, Darkest), Brightest)) - Index(Darkest)];
+  }
+
+private:
+  static constexpr int Shift = 23 - 12;
+  static constexpr float Darkest = 1.0f / (1 << 17); // shown as 0
+  static constexpr float Brightest = 64.0f;          // white by every curve
+
+  static std::uint32_t Index(float value)
+  {
+    std::uint32_t bits;
+    std::memcpy(&bits, &value, sizeof(bits));
+    return bits >> Shift;
+  }
+
+  std::vector<float> Values;
+};
+
+const ScreenValues& ScreenValuesOf(ToneCurve curve)
+{
+  static const ScreenValues linear(ToneCurve::Linear);
+  static const ScreenValues filmic(ToneCurve::Filmic);
+  return curve == ToneCurve::Filmic ? filmic : linear;
 }
 }
 
@@ -44,7 +73,7 @@ double AutomaticExposure(const std::vector<float>& radiance)
     const float luminance = 0.2126f * radiance[i] + 0.7152f * radiance[i + 1] + 0.0722f * radiance[i + 2];
     if (luminance > 0.0f && std::isfinite(luminance))
     {
-      sum += std::log2(luminance);
+      sum += std::log2(luminance); // of a float: faster than of a double
       ++count;
     }
   }
@@ -55,8 +84,7 @@ std::vector<std::uint8_t> ToneMap(
   const std::vector<float>& radiance, const std::vector<float>& alpha, const ToneMapping& settings)
 {
   const float exposure = static_cast<float>(settings.exposure > 0.0 ? settings.exposure : AutomaticExposure(radiance));
-  const bool filmic = settings.curve == ToneCurve::Filmic;
-  const std::vector<float>& table = SrgbTable();
+  const ScreenValues& screen = ScreenValuesOf(settings.curve);
   const std::size_t pixels = radiance.size() / 3;
   std::vector<std::uint8_t> colour(4 * pixels);
   for (std::size_t pixel = 0; pixel < pixels; ++pixel)
@@ -65,10 +93,7 @@ std::vector<std::uint8_t> ToneMap(
     const float scale = opaque > 0.0f ? 1.0f / opaque : 0.0f;
     for (int c = 0; c < 3; ++c)
     {
-      // Beyond 1e6 every curve is white, and the fit's squares would overflow.
-      const float exposed = std::min(radiance[3 * pixel + c] * exposure, 1e6f);
-      const float shown = std::min(filmic ? Filmic(exposed) : exposed, 1.0f);
-      const float encoded = table[static_cast<int>(shown * Levels + 0.5f)];
+      const float encoded = screen(radiance[3 * pixel + c] * exposure);
       colour[4 * pixel + c] = static_cast<std::uint8_t>(std::min(encoded * scale, 255.0f) + 0.5f);
     }
     colour[4 * pixel + 3] = static_cast<std::uint8_t>(255.0f * opaque + 0.5f);
