@@ -2,9 +2,6 @@
 
 #include "Device/Errors.h"
 
-#include <openvdb/io/Compression.h>
-#include <openvdb/io/GridDescriptor.h>
-
 #include <algorithm>
 #include <cmath>
 #include <cstring>

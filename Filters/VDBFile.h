@@ -1,6 +1,6 @@
 #pragma once
 
-#include <openvdb/openvdb.h>
+#include "OpenVDB.h"
 
 #include <array>
 #include <cstdint>

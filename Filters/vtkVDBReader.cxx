@@ -22,8 +22,6 @@
 #include "vtkUnsignedCharArray.h"
 #include "vtksys/SystemTools.hxx"
 
-#include <openvdb/tools/Dense.h>
-
 #include <algorithm>
 #include <cmath>
 #include <cstring>

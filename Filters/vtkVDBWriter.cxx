@@ -22,8 +22,6 @@
 #include "vtkStringArray.h"
 #include "vtkUnsignedCharArray.h"
 
-#include <openvdb/openvdb.h>
-
 #include <algorithm>
 #include <cerrno>
 #include <cmath>
