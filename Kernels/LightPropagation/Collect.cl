@@ -23,9 +23,9 @@ static float sum_of(real values)
 // path     W length; cleared
 // fluence  W / length^2, added to
 // source   W / (length^3 sr), replaced by what was scattered
-// tally    [chunk] absorbed and scattered W, W length of this order and of all
+// tally    [chunk] absorbed and scattered W
 __kernel void collect(__global float* path, __global float* fluence, __global float* source,
-  const __global float* sigma_t, const __global float* sigma_s, __global float4* tally, ulong stride, int channel,
+  const __global float* sigma_t, const __global float* sigma_s, __global float2* tally, ulong stride, int channel,
   int sigma_t_channel, float per_volume)
 {
   const ulong begin = get_global_id(0) * CHUNK;
@@ -35,7 +35,7 @@ __kernel void collect(__global float* path, __global float* fluence, __global fl
   source += channel * stride;
   sigma_s += channel * stride;
   sigma_t += sigma_t_channel * stride;
-  real absorbed = (real)0.0f, scattered = (real)0.0f, gathered = (real)0.0f, all = (real)0.0f;
+  real absorbed = (real)0.0f, scattered = (real)0.0f;
   for (ulong i = begin; i < end; i += REAL_WIDTH)
   {
     const real p = load_real(i, path);
@@ -43,13 +43,11 @@ __kernel void collect(__global float* path, __global float* fluence, __global fl
     const real f = multiply_add(p, (real)per_volume, load_real(i, fluence));
     absorbed = multiply_add(fmax(load_real(i, sigma_t) - s, (real)0.0f), p, absorbed);
     scattered = multiply_add(s, p, scattered);
-    gathered += p;
-    all += f;
     store_real(f, i, fluence);
     store_real(s * p * (per_volume * M_1_PI_F * 0.25f), i, source);
     store_real((real)0.0f, i, path);
   }
-  tally[get_global_id(0)] = (float4)(sum_of(absorbed), sum_of(scattered), sum_of(gathered), sum_of(all));
+  tally[get_global_id(0)] = (float2)(sum_of(absorbed), sum_of(scattered));
 }
 
 // Power of the rays in the maps, a work-item a row of a bundle: what leaves at the far end of an axis.

@@ -87,6 +87,7 @@ private:
   void Count(const SweepTally& tally, int firstChannel, int channels);
   AxisSweep::Boundary BoundaryOfOrder(int order) const;
   void CollectOrder(int order);
+  void EstimateResidual(int order);
   bool Done(int orders) const;
   double Progress(int order, double done) const;
   std::vector<std::string> LeftOut() const;
@@ -115,9 +116,10 @@ private:
   Rgb Scattered = {};     ///< W, by the order just done
   Rgb OnTheWay = {};      ///< W, rays that still go round a periodic axis
   Rgb Stranded = {};      ///< W, of lights whose rays go round a periodic axis without end
-  double Ratio = 0.0;     ///< of this order's light to that of the one before
+  Rgb LastScattered = {}; ///< W, by the order before
+  Rgb AllScattered = {};  ///< W, by all orders so far
+  Rgb Ratio = {};         ///< of this order's scattered power to that of the one before
   double Residual = 1.0;
-  double LastGathered = 0.0;
 };
 
 int Solver::NeededChannels(const Medium& medium, const Illumination& illumination)
@@ -328,9 +330,7 @@ void Solver::CollectOrder(int order)
   cl::Kernel kernel = this->TheDevice.Kernel(
     "collect", { kernel_source::Numerics, kernel_source::Collect }, "-DREAL_WIDTH=" + std::to_string(vector));
   const std::size_t chunks = (this->Stride + Chunk - 1) / Chunk;
-  Buffer<cl_float4> tally(this->TheDevice, chunks, "sums");
-  double gathered = 0.0;
-  double all = 0.0;
+  Buffer<cl_float2> tally(this->TheDevice, chunks, "sums");
   this->Scattered = {};
   for (int c = 0; c < this->Channels; ++c)
   {
@@ -338,29 +338,18 @@ void Solver::CollectOrder(int order)
       cl_ulong(this->Stride), cl_int(c), cl_int(this->SharedExtinction ? 0 : c),
       static_cast<float>(1.0 / this->TheMedium.grid.VoxelVolume()));
     this->TheDevice.Queue().enqueueNDRangeKernel(kernel, cl::NullRange, cl::NDRange(chunks), cl::NDRange(1));
-    for (const cl_float4& sums : tally.Read())
+    for (const cl_float2& sums : tally.Read())
     {
       this->Result.balance.absorbed[c] += sums.s[0];
       this->Scattered[c] += sums.s[1];
-      gathered += sums.s[2];
-      all += sums.s[3];
     }
   }
-  all *= this->TheMedium.grid.VoxelVolume();
   for (int c = 0; c < 3; ++c)
   {
     this->Result.balance.leftOver[c] = this->Scattered[c] + this->OnTheWay[c] + this->Stranded[c];
   }
   this->Shining = Total(this->Scattered) > 0.0;
-  this->Ratio = this->LastGathered > 0.0 ? gathered / this->LastGathered : 0.0;
-  this->LastGathered = gathered;
-  // Orders fall off geometrically in the end; what is still to come is the rest of that series.
-  const double ratio = order > 0 ? std::min(this->Ratio, 1.0 - 1e-12) : 0.5;
-  this->Residual = all > 0.0 ? gathered / all * ratio / (1.0 - ratio) : 0.0;
-  if (!this->Shining && Total(this->OnTheWay) == 0.0)
-  {
-    this->Residual = 0.0;
-  }
+  this->EstimateResidual(order);
   if (order == 0)
   {
     this->Result.fluenceDirect = this->Interleaved(this->Fluence, 1.0);
@@ -370,6 +359,28 @@ void Solver::CollectOrder(int order)
     Total(this->Result.balance.absorbed), Total(this->Result.balance.escaped), Total(this->Result.balance.leftOver) });
 }
 
+/// What the orders to come will add to the light that is scattered, over what there is: the rest of a geometric series, as
+/// orders fall off like one in the end. Its ratio grows towards that, so its last growth is added. The worst channel counts.
+void Solver::EstimateResidual(int order)
+{
+  this->Residual = 0.0;
+  for (int c = 0; c < this->Channels; ++c)
+  {
+    const double now = this->Scattered[c] + this->OnTheWay[c];
+    this->AllScattered[c] += now;
+    if (now == 0.0)
+    {
+      continue;
+    }
+    const double ratio = order > 0 ? now / this->LastScattered[c] : 1.0;
+    const double growth = order > 1 ? std::max(0.0, ratio - this->Ratio[c]) : 0.0;
+    const double limit = std::min(ratio + growth, 1.0 - 1e-9);
+    this->Residual = std::max(this->Residual, now / this->AllScattered[c] * limit / (1.0 - limit));
+    this->Ratio[c] = ratio;
+    this->LastScattered[c] = now;
+  }
+}
+
 bool Solver::Done(int orders) const
 {
   if (this->Residual == 0.0 || orders >= MostOrders)
@@ -377,7 +388,7 @@ bool Solver::Done(int orders) const
     return true;
   }
   return this->Settings.maximumOrders > 0 ? orders >= this->Settings.maximumOrders
-                                          : orders > 1 && this->Residual <= this->Settings.tolerance;
+                                          : orders > 2 && this->Residual <= this->Settings.tolerance;
 }
 
 /// Orders are counted where their number is known, else the logarithm of the residual tells how far the solve is.

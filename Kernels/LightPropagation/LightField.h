@@ -27,7 +27,7 @@ struct ConvergenceRow
 {
   int iteration = 0;
   double seconds = 0.0;  ///< since the start
-  double residual = 0.0; ///< estimated relative error of fluence that stopping here leaves
+  double residual = 0.0; ///< scattered light still to come over all of it: estimate of the error that stopping here leaves
   double absorbed = 0.0; ///< W so far, channels summed
   double escaped = 0.0;
   double leftOver = 0.0;

@@ -448,3 +448,32 @@ TEST_F(FusedPropagation, RefusesWhatHasNoMeaning)
   EXPECT_NE(message([](Scene& s) { s.settings.mapResolution = 0; }).find("MapResolution"), std::string::npos);
   EXPECT_NE(message([](Scene& s) { s.settings.tolerance = 0.0; }).find("Tolerance"), std::string::npos);
 }
+
+TEST_F(FusedPropagation, StopsWhereTheToleranceIsMetNotBefore)
+{
+  // A dense ball in a large vacuum: nearly all light passes by, and says nothing of the orders within the ball.
+  Scene scene({ 24, 24, 24 });
+  for (std::size_t i = 0; i < scene.sigma_s.size(); ++i)
+  {
+    const double r = std::hypot(i % 24 - 11.5, i / 24 % 24 - 11.5, i / 576 - 11.5);
+    scene.sigma_s[i] = r < 5.0 ? 1.98f : 0.0f;
+    scene.sigma_a[i] = r < 5.0 ? 0.02f : 0.0f;
+  }
+  scene.ShineFromEverywhere(1.0);
+  scene.settings.tolerance = 1e-6;
+  const LightField exact = scene.Solve(this->GetDevice());
+  for (double tolerance : { 1e-2, 1e-3 })
+  {
+    scene.settings.tolerance = tolerance;
+    const LightField light = scene.Solve(this->GetDevice());
+    double difference = 0.0;
+    double sum = 0.0;
+    for (std::size_t i = 0; i < scene.sigma_s.size(); ++i)
+    {
+      difference += scene.sigma_s[i] * (exact.fluence[i] - light.fluence[i]);
+      sum += scene.sigma_s[i] * exact.fluence[i];
+    }
+    EXPECT_LT(difference / sum, 2.0 * tolerance);
+    EXPECT_GT(difference / sum, 0.1 * tolerance) << "and no more work than that";
+  }
+}

@@ -1,0 +1,134 @@
+"""From a CT scan under a photographed sky to pictures and data, by Tyndall's proxies alone.
+
+    pvbatch demo.py --data FOLDER --output FOLDER [--grid 96]
+
+FOLDER holds skull_2.9.inr (CGAL's demo data, Debian package libcgal-demo) and sunset.exr (Blender's studio lights, Debian
+package blender-data). `./run demo` fetches both and calls this.
+"""
+import argparse
+import math
+import os
+import time
+
+from paraview.simple import *
+from paraview import servermanager
+
+LoadPlugin(os.environ["TYNDALL_PLUGIN"], remote=True, ns=globals())
+
+arguments = argparse.ArgumentParser()
+arguments.add_argument("--data", required=True)
+arguments.add_argument("--output", required=True)
+arguments.add_argument("--grid", type=int, default=96, help="voxels an axis that the scan is resampled to")
+arguments = arguments.parse_args()
+os.makedirs(arguments.output, exist_ok=True)
+
+stages = []
+
+
+def stage(name, work):
+    """Do some work and note how long it took."""
+    begin = time.perf_counter()
+    result = work()
+    stages.append((name, time.perf_counter() - begin))
+    return result
+
+
+def data(name):
+    return os.path.join(arguments.data, name)
+
+
+def output(name):
+    return os.path.join(arguments.output, name)
+
+
+# The scan: 64^3 floats behind a header of 256 bytes, in which the voxel's edges stand in mm.
+header = dict(line.split("=", 1) for line in open(data("skull_2.9.inr"), "rb").read(256).decode("latin-1").split("\n") if "=" in line)
+scan = ImageReader(registrationName="Scan", FileNames=[data("skull_2.9.inr")], DataScalarType="float",
+                   DataByteOrder="LittleEndian", FileDimensionality=3, ScalarArrayName="density",
+                   DataExtent=[0, int(header["XDIM"]) - 1, 0, int(header["YDIM"]) - 1, 0, int(header["ZDIM"]) - 1],
+                   DataSpacing=[float(header["VX"]), float(header["VY"]), float(header["VZ"])])
+fine = ResampleToImage(registrationName="Finer scan", Input=scan, UseInputBounds=1,
+                       SamplingDimensions=[arguments.grid] * 3)
+stage("read and resample the scan", fine.UpdatePipeline)
+
+# Bone: what the scanner calls 2.9 is its surface. Bone scatters nearly all light and absorbs a little more blue than red.
+# Real bone is some twenty times denser in optics; this is bone as a thin fog would have it, which lets light into the skull.
+medium = ParticipatingMedium(registrationName="Bone", Input=fine, MinimumDensity=2.3, MaximumDensity=3.3,
+                             ExtinctionScale=0.5, Albedo=[0.985, 0.965, 0.92])
+stage("make the medium", medium.UpdatePipeline)
+
+sky = EnvironmentReader(registrationName="Sky", FileName=data("sunset.exr"))
+stage("read the sky", sky.UpdatePipeline)
+
+sun = LightRig(registrationName="Sun", SunElevation=28, SunAzimuth=180, SunPower=[2.4, 1.9, 1.4])
+
+light = LightPropagationMaps(registrationName="Light", Input=medium, Lights=sun, Environment=sky, Tolerance=5e-3)
+stage("solve multiple scattering", light.UpdatePipeline)
+light.UpdatePropertyInformation()
+
+bounds = light.GetDataInformation().GetBounds()
+centre = [0.5 * (bounds[2 * axis] + bounds[2 * axis + 1]) for axis in range(3)]
+
+
+def picture(name, azimuth, elevation, single=0):
+    """Render 800 x 600 pixels from a place on a sphere about the skull."""
+    a, e, distance = math.radians(azimuth), math.radians(elevation), 560.0
+    caster = MediumRayCaster(registrationName=name, Input=light, Lights=sun, Environment=sky, ImageSize=[800, 600],
+                             CameraFocalPoint=centre, SingleScatteringOnly=single, Exposure=0.95,
+                             CameraPosition=[centre[0] + distance * math.cos(a) * math.cos(e),
+                                             centre[1] + distance * math.sin(a) * math.cos(e),
+                                             centre[2] + distance * math.sin(e)])
+    stage("render " + name, caster.UpdatePipeline)
+    SaveData(output(name + ".png"), proxy=caster)
+    return caster
+
+
+picture("skull-multiple-scattering", 245, 6)
+picture("skull-single-scattering", 245, 6, single=1)
+picture("skull-by-the-sea", 300, 10)
+
+
+def slice_through_light():
+    """Light is data: its fluence in a plane through the skull, in ParaView's own view."""
+    view = CreateView("RenderView", ViewSize=[800, 600], OrientationAxesVisibility=0, Background=[0.12, 0.12, 0.14],
+                      UseColorPaletteForBackground=0)
+    cut = Slice(registrationName="Slice", Input=light, SliceType="Plane")
+    cut.SliceType.Origin = centre
+    cut.SliceType.Normal = [1, 0, 0]
+    shown = Show(cut, view)
+    ColorBy(shown, ("CELLS", "fluence", "Magnitude"))
+    table = GetColorTransferFunction("fluence")
+    table.ApplyPreset("Inferno (matplotlib)", True)
+    shown.RescaleTransferFunctionToDataRange()
+    low, high = light.CellData["fluence"].GetRange(-1)
+    table.RescaleTransferFunction(max(low, 2e-3 * high), high)
+    table.MapControlPointsToLogSpace()
+    table.UseLogScale = 1
+    bar = GetScalarBar(table, view)
+    bar.Title, bar.ComponentTitle, bar.Visibility = "fluence, W/mm\u00b2", "", 1
+    bar.TitleColor = bar.LabelColor = [1, 1, 1]
+    view.CameraPosition = [centre[0] + 600, centre[1], centre[2]]
+    view.CameraFocalPoint, view.CameraViewUp, view.CameraParallelProjection = centre, [0, 0, 1], 1
+    view.CameraParallelScale = 0.55 * max(bounds[3] - bounds[2], bounds[5] - bounds[4])
+    SaveScreenshot(output("fluence-slice.png"), view)
+
+
+stage("draw a slice of the light", slice_through_light)
+stage("write light.vti", lambda: SaveData(output("light.vti"), proxy=light))
+stage("write light.vdb", lambda: VDBWriter(Input=light, FileName=output("light.vdb")).UpdatePipeline())
+SaveState(output("skull.pvsm"))
+
+result = servermanager.Fetch(light)
+facts = result.GetFieldData()
+balance = facts.GetArray("energy_balance")
+print("%-34s %9s" % ("stage", "seconds"))
+for name, seconds in stages:
+    print("%-34s %9.2f" % (name, seconds))
+print("%-34s %9d" % ("scattering orders", light.Orders))
+print("%-34s %9.1e" % ("energy balance, relative error", light.BalanceError))
+for i, name in enumerate(("entered", "emitted", "absorbed", "escaped", "left over")):
+    print("%-34s %s" % ("  " + name + ", W (red, green, blue)", "  ".join("%10.1f" % x for x in balance.GetTuple(i))))
+print("%-34s %s" % ("device", facts.GetAbstractArray("device").GetValue(0)))
+left_out = facts.GetAbstractArray("left_out")
+for i in range(left_out.GetNumberOfValues()):
+    print("%-34s %s" % ("left out" if i == 0 else "", left_out.GetValue(i)))
