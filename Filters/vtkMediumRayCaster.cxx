@@ -131,6 +131,11 @@ void vtkMediumRayCaster::SetLightsData(vtkDataObject* lights)
   this->SetInputDataObject(LightsPort, lights);
 }
 
+void vtkMediumRayCaster::RemoveLights()
+{
+  this->SetInputConnection(LightsPort, nullptr);
+}
+
 void vtkMediumRayCaster::SetEnvironmentConnection(vtkAlgorithmOutput* environment)
 {
   this->SetInputConnection(EnvironmentPort, environment);
@@ -139,6 +144,11 @@ void vtkMediumRayCaster::SetEnvironmentConnection(vtkAlgorithmOutput* environmen
 void vtkMediumRayCaster::SetEnvironmentData(vtkDataObject* environment)
 {
   this->SetInputDataObject(EnvironmentPort, environment);
+}
+
+void vtkMediumRayCaster::RemoveEnvironment()
+{
+  this->SetInputConnection(EnvironmentPort, nullptr);
 }
 
 int vtkMediumRayCaster::FillInputPortInformation(int port, vtkInformation* information)

@@ -76,8 +76,10 @@ public:
   /// Lights (vtkPolyData) and environment (vtkImageData) by connection or as data; null: none.
   void SetLightsConnection(vtkAlgorithmOutput* lights);
   void SetLightsData(vtkDataObject* lights);
+  void RemoveLights();
   void SetEnvironmentConnection(vtkAlgorithmOutput* environment);
   void SetEnvironmentData(vtkDataObject* environment);
+  void RemoveEnvironment();
   ///@}
 
   ///@{
@@ -168,7 +170,8 @@ public:
   ///@}
 
   ///@{
-  /// What radiance is multiplied by for `color`. Default 0: so that the picture's logarithmic mean becomes a medium grey.
+  /// What radiance is multiplied by for `color`. Default 0: so that the mean of the picture's lit part becomes a medium
+  /// grey.
   vtkSetClampMacro(Exposure, double, 0.0, VTK_DOUBLE_MAX);
   vtkGetMacro(Exposure, double);
   ///@}

@@ -66,18 +66,46 @@ const ScreenValues& ScreenValuesOf(ToneCurve curve)
 
 double AutomaticExposure(const std::vector<float>& radiance)
 {
-  double sum = 0.0;
-  std::size_t count = 0;
+  // How many pixels have which luminance, by the leading bits of the float: 256 classes for every doubling.
+  constexpr int Shift = 23 - 8;
+  std::vector<std::uint32_t> count((1u << (31 - Shift)), 0);
+  std::uint32_t lit = 0;
   for (std::size_t i = 0; i + 2 < radiance.size(); i += 3)
   {
     const float luminance = 0.2126f * radiance[i] + 0.7152f * radiance[i + 1] + 0.0722f * radiance[i + 2];
     if (luminance > 0.0f && std::isfinite(luminance))
     {
-      sum += std::log2(luminance); // of a float: faster than of a double
-      ++count;
+      std::uint32_t bits;
+      std::memcpy(&bits, &luminance, sizeof(bits));
+      ++count[bits >> Shift];
+      ++lit;
     }
   }
-  return count > 0 ? 0.18 * std::exp2(-sum / static_cast<double>(count)) : 1.0;
+  const auto logarithm = [](std::size_t entry) { // of the class's middle
+    return static_cast<double>(entry >> 8) - 127.0 + std::log2(1.0 + ((entry & 255) + 0.5) / 256.0);
+  };
+
+  // The mean of those that are not much darker than the bright ones.
+  const double darkest = std::log2(1e-3);
+  double sum = 0.0;
+  double counted = 0.0;
+  double seen = 0.0;
+  double bright = 1e300;
+  for (std::size_t entry = count.size(); entry-- > 0;)
+  {
+    if (count[entry] == 0)
+    {
+      continue;
+    }
+    seen += count[entry];
+    bright = bright == 1e300 && seen >= 0.05 * lit ? logarithm(entry) : bright;
+    if (logarithm(entry) > bright + darkest || bright == 1e300)
+    {
+      sum += count[entry] * logarithm(entry);
+      counted += count[entry];
+    }
+  }
+  return counted > 0.0 ? 0.18 * std::exp2(-sum / counted) : 1.0;
 }
 
 std::vector<std::uint8_t> ToneMap(

@@ -20,7 +20,8 @@ struct ToneMapping
   ToneCurve curve = ToneCurve::Filmic;
 };
 
-/// The exposure that `exposure` = 0 stands for. Pixels without light do not count; 1 where no pixel has any.
+/// The exposure that `exposure` = 0 stands for. Pixels do not count that are a thousand times darker than the one which 5%
+/// of all that are lit outshine, or darker still: what is nearly black would make the rest white. 1 where no pixel is lit.
 /// @param radiance  3 a pixel, not negative
 double AutomaticExposure(const std::vector<float>& radiance);
 

@@ -1,0 +1,57 @@
+"""A medium, lit and solved, becomes a picture: its arrays, its camera, its facts on the panel, and how it is shown."""
+import os
+
+from paraview import servermanager
+from paraview.simple import *
+from paraview.vtk.util.numpy_support import vtk_to_numpy
+
+LoadPlugin(os.environ["TYNDALL_PLUGIN"], remote=True, ns=globals())
+
+
+def pixels(caster, name):
+    caster.UpdatePipeline()
+    return vtk_to_numpy(servermanager.Fetch(caster).GetPointData().GetArray(name))
+
+
+def fact(caster, name):
+    caster.UpdatePropertyInformation()
+    return caster.SMProxy.GetProperty(name).GetElement(0)
+
+
+medium = ParticipatingMedium(Input=Wavelet(WholeExtent=[-8, 8, -8, 8, -8, 8]))
+lights = LightRig()
+light = LightPropagationMaps(Input=medium, Lights=lights, DirectionsPerFace=4)
+caster = MediumRayCaster(Input=light, ImageSize=[160, 120], BackgroundColor=[0.1, 0.2, 0.3])
+
+image = servermanager.Fetch(caster)
+assert image.GetDimensions() == (160, 120, 1)
+assert pixels(caster, "color").shape == (160 * 120, 4) and pixels(caster, "color")[:, 3].min() == 255
+assert pixels(caster, "radiance").shape == (160 * 120, 3)
+alpha = pixels(caster, "alpha")
+assert alpha[0] == 0 and alpha[160 * 60 + 80] > 0
+assert abs(pixels(caster, "radiance")[0] - [0.1, 0.2, 0.3]).max() < 1e-6, "the corner shows the background"
+depth = pixels(caster, "depth")
+assert (depth > 0).all() and (depth < 1e4).all()
+assert fact(caster, "Seconds") > 0 and fact(caster, "UsedExposure") > 0
+assert "emission" in fact(caster, "LeftOut")
+
+# Less light in single scattering than in all, with and without shadow rays.
+caster.ShowBackground = 0
+everything = pixels(caster, "radiance").sum()
+caster.SingleScatteringOnly = 1
+once = pixels(caster, "radiance").sum()
+assert 0 < once < everything, (once, everything)
+caster.ShadowRays = 1
+caster.Lights = lights
+shadow_rays = pixels(caster, "radiance").sum()
+assert 0 < shadow_rays < everything, (shadow_rays, everything)
+caster.ShadowRays = 0
+caster.SingleScatteringOnly = 0
+
+# A camera of one's own: from far away the medium is small.
+caster.CameraPosition = [0, -1000, 0]
+assert 0 < (pixels(caster, "alpha") > 0).mean() < 0.05
+
+view = CreateView("RenderView")
+assert Show(caster, view).Representation == "Slice"
+SaveData(os.path.join(os.environ["TYNDALL_TEST_OUTPUT"], "MediumRayCasterMakesPictures.png"), proxy=caster)
