@@ -125,6 +125,11 @@ void vtkLPMPropagate::SetLightsData(vtkDataObject* lights)
   this->SetInputDataObject(LightsPort, lights);
 }
 
+void vtkLPMPropagate::RemoveLights()
+{
+  this->SetInputConnection(LightsPort, nullptr);
+}
+
 void vtkLPMPropagate::SetEnvironmentConnection(vtkAlgorithmOutput* environment)
 {
   this->SetInputConnection(EnvironmentPort, environment);
@@ -133,6 +138,11 @@ void vtkLPMPropagate::SetEnvironmentConnection(vtkAlgorithmOutput* environment)
 void vtkLPMPropagate::SetEnvironmentData(vtkDataObject* environment)
 {
   this->SetInputDataObject(EnvironmentPort, environment);
+}
+
+void vtkLPMPropagate::RemoveEnvironment()
+{
+  this->SetInputConnection(EnvironmentPort, nullptr);
 }
 
 int vtkLPMPropagate::FillInputPortInformation(int port, vtkInformation* information)

@@ -1,0 +1,34 @@
+"""Lights and an environment that were connected can be disconnected again."""
+import os
+
+from paraview import servermanager
+from paraview.simple import *
+from paraview.vtk.util.numpy_support import vtk_to_numpy
+
+LoadPlugin(os.environ["TYNDALL_PLUGIN"], remote=True, ns=globals())
+
+medium = ParticipatingMedium(Input=Wavelet(WholeExtent=[-3, 3, -3, 3, -3, 3]))
+medium.UpdatePipeline()
+lights = LightRig()
+sky = Calculator(Input=Wavelet(WholeExtent=[0, 7, 0, 3, 0, 0]), ResultArrayName="radiance", Function="1+0*RTData")
+sky.UpdatePipeline()
+
+
+def brightness(proxy):
+    """The largest value of the light in a filter's output."""
+    data = servermanager.Fetch(proxy)
+    names = ["radiance", "fluence"] + ["T_" + side for side in ("xmin", "xmax", "ymin", "ymax", "zmin", "zmax")]
+    found = [attributes.GetArray(name) for attributes in (data.GetPointData(), data.GetCellData())
+             for name in names if attributes.HasArray(name)]
+    return max(vtk_to_numpy(array).max() for array in found)
+
+
+for make in (LightPropagationMaps, LPMPropagate, MediumRayCaster):
+    proxy = make(Input=medium)
+    dark = brightness(proxy)
+    assert dark == 0, (make, dark)
+    for name, source in (("Lights", lights), ("Environment", sky)):
+        setattr(proxy, name, source)
+        assert brightness(proxy) > 0, (make, name)
+        setattr(proxy, name, None)
+        assert brightness(proxy) == 0, (make, name)

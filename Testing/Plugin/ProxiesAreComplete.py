@@ -1,0 +1,96 @@
+"""Every property of every proxy: documented, bounded, reachable in Python by its XML name, and its results on the panel."""
+import glob
+import os
+import xml.etree.ElementTree as ElementTree
+
+from paraview import servermanager
+from paraview.simple import *
+
+LoadPlugin(os.environ["TYNDALL_PLUGIN"], remote=True, ns=globals())
+
+faults = []
+
+
+def words(element):
+    return " ".join((element.text or "").split()) if element is not None else ""
+
+
+def is_array_chooser(prop):
+    return prop.find("ArrayListDomain") is not None
+
+
+def is_internal(prop):
+    """What other properties and ParaView itself read, and a user does not."""
+    return prop.find("TimeStepsInformationHelper") is not None or prop.get("name").endswith("Info")
+
+
+def faults_of_proxy(proxy):
+    documentation = proxy.find("Documentation")
+    if len(words(documentation)) < 40:
+        yield "its documentation does not say what it does"
+    for kind in ("short_help", "long_help"):
+        if documentation is None or not documentation.get(kind):
+            yield "no " + kind
+    for port in proxy.findall("OutputPort"):
+        if not port.get("name"):
+            yield "an output port without name"
+    hints = proxy.find("Hints")
+    places = ("ShowInMenu", "ReaderFactory", "WriterFactory")
+    if hints is None or not any(hints.find(place) is not None for place in places):
+        yield "it is in no menu and opens no file"
+
+
+def faults_of_property(prop):
+    name, label = prop.get("name"), prop.get("label", prop.get("name"))
+    if not words(prop.find("Documentation")):
+        yield "no documentation"
+    if label.replace(" ", "") != name:
+        yield "its label '%s' makes another name in Python" % label
+    if prop.get("information_only"):
+        if not is_internal(prop) and not (prop.get("panel_visibility") and prop.get("default_values") is not None):
+            yield "a result that the panel does not show"
+        return
+    if prop.tag == "InputProperty":
+        if prop.find("Hints/Optional") is not None and not prop.get("clean_command"):
+            yield "it cannot be disconnected"
+        return
+    bounded = any(child.tag.endswith("Domain") for child in prop)
+    free = prop.get("repeat_command") or name in ("Device", "FileName")
+    if not bounded and not free:
+        yield "no domain"
+    if is_array_chooser(prop) and prop.get("default_values"):
+        default = prop.get("default_values").split(";")[-1]
+        if prop.find("ArrayListDomain").get("none_string") != default:
+            yield "where there is no array '%s', another one is chosen" % default
+    if not prop.get("repeat_command") and not prop.find("FileListDomain") is not None:
+        chosen = is_array_chooser(prop) or name == "FileName"
+        if not chosen and prop.get("default_values") is None:
+            yield "no default"
+
+
+def check(file, group, proxy):
+    name = proxy.get("name")
+    internal = group.startswith("internal")
+    if not internal:
+        faults.extend("%s: %s" % (name, fault) for fault in faults_of_proxy(proxy))
+        if proxy.get("label", name).replace(" ", "") != name:
+            faults.append("%s: its label makes another name in Python" % name)
+            return
+        reachable = dir(getattr(getattr(servermanager, group), name)())
+    properties = [child for child in proxy if child.tag.endswith("Property")]
+    for prop in properties:
+        faults.extend("%s.%s: %s" % (name, prop.get("name"), fault) for fault in faults_of_property(prop))
+    names = [prop.get("name") for prop in properties if not is_internal(prop)]
+    names += [exposed.get("name") for exposed in proxy.findall("SubProxy/ExposedProperties/Property")
+              if not exposed.get("name").endswith("Info")]
+    if not internal:
+        faults.extend("%s.%s: not reachable in Python" % (name, each) for each in names if each not in reachable)
+
+
+files = glob.glob(os.path.join(os.environ["TYNDALL_SOURCE"], "Plugin/ServerManager/*.xml"))
+assert len(files) >= 9, files
+for file in sorted(files):
+    for group in ElementTree.parse(file).getroot().findall("ProxyGroup"):
+        for proxy in group:
+            check(file, group.get("name"), proxy)
+assert not faults, "\n" + "\n".join(faults)
