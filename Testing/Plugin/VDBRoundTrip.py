@@ -1,0 +1,63 @@
+"""A .vdb file is written, listed, read in part and as a series over time, and damaged, all through proxies."""
+import os
+
+from paraview import servermanager
+from paraview.simple import *
+from paraview.vtk.util.numpy_support import vtk_to_numpy
+
+LoadPlugin(os.environ["TYNDALL_PLUGIN"], remote=True, ns=globals())
+folder = os.path.join(os.environ["TYNDALL_TEST_OUTPUT"], "VDBRoundTrip")
+os.makedirs(folder, exist_ok=True)
+
+wavelet = Wavelet(WholeExtent=[-4, 5, 0, 6, 2, 9])
+cells = PointDatatoCellData(Input=wavelet)
+twice = Calculator(Input=cells, AttributeType="Cell Data", ResultArrayName="twice", Function="2*RTData")
+files = []
+for step in range(3):
+    wavelet.Maximum = 100.0 + 50.0 * step
+    files.append(os.path.join(folder, f"wavelet_{step}.vdb"))
+    SaveData(files[-1], proxy=twice, Compression="Zip")
+expected = servermanager.Fetch(twice)
+
+
+def values(data, name):
+    return vtk_to_numpy(data.GetCellData().GetArray(name))
+
+
+# One file, by the reader ParaView finds for it.
+reader = OpenDataFile(files[2])
+assert reader.SMProxy.GetXMLName() == "VDBReader", reader.SMProxy.GetXMLName()
+reader.UpdatePipeline()
+data = servermanager.Fetch(reader)
+assert data.GetExtent() == (-4, 5, 0, 6, 2, 9), data.GetExtent()
+assert data.GetOrigin() == expected.GetOrigin() and data.GetSpacing() == expected.GetSpacing()
+assert sorted(reader.Grids.Available) == ["RTData", "twice"], reader.Grids.Available
+assert (values(data, "RTData") == values(expected, "RTData")).all()
+assert (values(data, "twice") == values(expected, "twice")).all()
+reader.UpdatePropertyInformation()
+assert "twice: double" in str(reader.GridSummary), reader.GridSummary
+
+reader.Grids = ["twice"]
+reader.UpdatePipeline()
+data = servermanager.Fetch(reader)
+assert [data.GetCellData().GetArrayName(i) for i in range(data.GetCellData().GetNumberOfArrays())] == ["twice"]
+
+# The series.
+series = VDBReader(FileName=files)
+series.UpdatePipelineInformation()
+assert len(series.TimestepValues) == 3, series.TimestepValues
+maxima = []
+for time in series.TimestepValues:
+    series.UpdatePipeline(time)
+    maxima.append(values(servermanager.Fetch(series), "RTData").max())
+assert maxima[0] < maxima[1] < maxima[2], maxima
+
+# A damaged one: no data, and the session lives on.
+damaged = os.path.join(folder, "damaged.vdb")
+with open(files[0], "rb") as whole, open(damaged, "wb") as part:
+    part.write(whole.read()[:-100])
+broken = VDBReader(FileName=[damaged])
+broken.UpdatePipeline()
+assert servermanager.Fetch(broken).GetNumberOfCells() == 0
+series.UpdatePipeline(series.TimestepValues[0])
+assert servermanager.Fetch(series).GetNumberOfCells() == 9 * 6 * 7
