@@ -1,0 +1,9 @@
+#pragma once
+
+#include "LpmTables.h"
+
+namespace bench
+{
+/// The targets for speed, memory and agreement, each with what was measured and whether it is met.
+void PrintTargets(const std::vector<Case>& cases);
+}
