@@ -546,6 +546,14 @@ void WriteConvergence(const std::vector<ConvergenceRow>& rows, vtkTable* table)
   column("left_over", &ConvergenceRow::leftOver);
 }
 
+void PassOn(vtkImageData* input, vtkImageData* output)
+{
+  output->ShallowCopy(input);
+  vtkNew<vtkFieldData> own;
+  own->ShallowCopy(input->GetFieldData());
+  output->SetFieldData(own);
+}
+
 Monitor MonitorOf(vtkAlgorithm* filter)
 {
   return [filter](double fractionDone) {

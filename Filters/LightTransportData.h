@@ -133,6 +133,10 @@ void WriteConvergence(const std::vector<ConvergenceRow>& rows, vtkTable* table);
 /// Reports to the filter's progress; says stop when the filter is asked to abort.
 Monitor MonitorOf(vtkAlgorithm* filter);
 
+/// Make the output the input's arrays, with field data of its own: a shallow copy alone would share that, so that what a
+/// filter adds would appear in its input, and vanish when that is made again.
+void PassOn(vtkImageData* input, vtkImageData* output);
+
 /// Runs the work of a filter's RequestData. Whatever it throws becomes one error of the filter; the outputs are empty then
 /// and after an abort, which is no error.
 /// @return what RequestData is to return: always 1. With 0 the pipeline would add an error that says less, and run the

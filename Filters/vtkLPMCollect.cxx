@@ -134,7 +134,7 @@ int vtkLPMCollect::RequestData(vtkInformation*, vtkInformationVector** inputs, v
     tyndall::LightField light = propagation.Result();
 
     vtkImageData* output = vtkImageData::GetData(outputs, 0);
-    output->ShallowCopy(image);
+    tyndall::PassOn(image, output);
     for (const char* name : tyndall::NamesOfT)
     {
       output->GetCellData()->RemoveArray(name);

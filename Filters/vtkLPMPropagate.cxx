@@ -194,7 +194,7 @@ int vtkLPMPropagate::RequestData(vtkInformation*, vtkInformationVector** inputs,
       PropagateAll(propagation, input.medium.grid.VoxelCount(), tyndall::MonitorOf(this));
 
     vtkImageData* output = vtkImageData::GetData(outputs, 0);
-    output->ShallowCopy(image);
+    tyndall::PassOn(image, output);
     for (int face = 0; face < 6; ++face)
     {
       this->Bytes += faces[face].size() * sizeof(float);

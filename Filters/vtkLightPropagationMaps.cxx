@@ -177,7 +177,7 @@ int vtkLightPropagationMaps::RequestData(vtkInformation*, vtkInformationVector**
     this->Note(light);
     tyndall::WriteConvergence(light.convergence, vtkTable::GetData(outputs, 1));
     vtkImageData* output = vtkImageData::GetData(outputs, 0);
-    output->ShallowCopy(image);
+    tyndall::PassOn(image, output);
     tyndall::WriteLight(std::move(light), output);
     tyndall::KeepWhatIsAskedFor(outputs->GetInformationObject(0), output);
   });

@@ -163,7 +163,7 @@ int vtkParticipatingMedium::RequestData(vtkInformation*, vtkInformationVector** 
       RelativeDensity(density, tyndall::GridOf(input), this->MinimumDensity, this->MaximumDensity);
 
     vtkImageData* output = vtkImageData::GetData(outputs);
-    output->ShallowCopy(input);
+    tyndall::PassOn(input, output);
     AddProduct(output, "sigma_a", relative, recipe.sigma_a);
     AddProduct(output, "sigma_s", relative, recipe.sigma_s);
     if (recipe.emission != Rgb{})

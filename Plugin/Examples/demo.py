@@ -1,6 +1,6 @@
 """From a CT scan under a photographed sky to pictures and data, by Tyndall's proxies alone.
 
-    pvbatch demo.py --data FOLDER --output FOLDER [--grid 96]
+    pvbatch demo.py --data FOLDER --output FOLDER [--grid 88]
 
 FOLDER holds skull_2.9.inr (CGAL's demo data, Debian package libcgal-demo) and sunset.exr (Blender's studio lights, Debian
 package blender-data). `./run demo` fetches both and calls this.
@@ -18,7 +18,7 @@ LoadPlugin(os.environ["TYNDALL_PLUGIN"], remote=True, ns=globals())
 arguments = argparse.ArgumentParser()
 arguments.add_argument("--data", required=True)
 arguments.add_argument("--output", required=True)
-arguments.add_argument("--grid", type=int, default=96, help="voxels an axis that the scan is resampled to")
+arguments.add_argument("--grid", type=int, default=88, help="voxels an axis that the scan is resampled to")
 arguments = arguments.parse_args()
 os.makedirs(arguments.output, exist_ok=True)
 
@@ -54,7 +54,7 @@ stage("read and resample the scan", fine.UpdatePipeline)
 # Bone: what the scanner calls 2.9 is its surface. Bone scatters nearly all light and absorbs a little more blue than red.
 # Real bone is some twenty times denser in optics; this is bone as a thin fog would have it, which lets light into the skull.
 medium = ParticipatingMedium(registrationName="Bone", Input=fine, MinimumDensity=2.3, MaximumDensity=3.3,
-                             ExtinctionScale=0.5, Albedo=[0.985, 0.965, 0.92])
+                             ExtinctionScale=0.4, Albedo=[0.97, 0.95, 0.9])
 stage("make the medium", medium.UpdatePipeline)
 
 sky = EnvironmentReader(registrationName="Sky", FileName=data("sunset.exr"))
@@ -62,9 +62,10 @@ stage("read the sky", sky.UpdatePipeline)
 
 sun = LightRig(registrationName="Sun", SunElevation=28, SunAzimuth=180, SunPower=[2.4, 1.9, 1.4])
 
-light = LightPropagationMaps(registrationName="Light", Input=medium, Lights=sun, Environment=sky, Tolerance=5e-3)
+light = LightPropagationMaps(registrationName="Light", Input=medium, Lights=sun, Environment=sky, Tolerance=1e-2)
 stage("solve multiple scattering", light.UpdatePipeline)
 light.UpdatePropertyInformation()
+facts = servermanager.Fetch(light).GetFieldData()
 
 bounds = light.GetDataInformation().GetBounds()
 centre = [0.5 * (bounds[2 * axis] + bounds[2 * axis + 1]) for axis in range(3)]
@@ -118,8 +119,6 @@ stage("write light.vti", lambda: SaveData(output("light.vti"), proxy=light))
 stage("write light.vdb", lambda: VDBWriter(Input=light, FileName=output("light.vdb")).UpdatePipeline())
 SaveState(output("skull.pvsm"))
 
-result = servermanager.Fetch(light)
-facts = result.GetFieldData()
 balance = facts.GetArray("energy_balance")
 print("%-34s %9s" % ("stage", "seconds"))
 for name, seconds in stages:

@@ -68,3 +68,8 @@ thin = fluence(light)
 light.Input = renamed
 light.ScatteringArray = ["CELLS", "thick"]
 assert fluence(light).mean() < thin.mean()
+
+# What the light adds stays its own: the medium it came from has no balance, and keeps none when it is made again.
+assert servermanager.Fetch(medium).GetFieldData().GetArray("energy_balance") is None
+medium.ExtinctionScale = 2
+assert servermanager.Fetch(light).GetFieldData().GetArray("energy_balance")
