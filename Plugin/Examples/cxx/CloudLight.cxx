@@ -9,7 +9,7 @@
 #include <vtkNew.h>
 #include <vtkParticipatingMedium.h>
 #include <vtkSmartPointer.h>
-#include <vtkXMLImageDataWriter.h>
+#include <vtkVDBWriter.h>
 
 #include <cmath>
 #include <iostream>
@@ -60,8 +60,8 @@ int main(int argc, char* argv[])
             << balance->GetTuple1(3) << " W, left over " << balance->GetTuple1(4) << " W after " << light->GetOrders()
             << " orders\n";
 
-  vtkNew<vtkXMLImageDataWriter> writer;
+  vtkNew<vtkVDBWriter> writer;
   writer->SetInputData(result);
-  writer->SetFileName(argc > 1 ? argv[1] : "light.vti");
+  writer->SetFileName(argc > 1 ? argv[1] : "light.vdb");
   return writer->Write() == 1 && light->GetBalanceError() < 1e-5 ? 0 : 1;
 }
