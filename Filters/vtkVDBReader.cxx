@@ -20,7 +20,6 @@
 #include "vtkStringArray.h"
 #include "vtkTypeInt64Array.h"
 #include "vtkUnsignedCharArray.h"
-#include "vtksys/SystemTools.hxx"
 
 #include <algorithm>
 #include <cmath>
@@ -389,8 +388,6 @@ struct vtkVDBReader::Internals
   /// The file as last listed.
   std::unique_ptr<VDBFile> File;
   std::string Path;
-  long int FileTime = 0;
-  unsigned long FileLength = 0;
   std::string Summary;
   std::set<std::string> Listed; ///< names that came into the selection from a file
   std::string OnlyGrid;         ///< set by SetGridName, not applied yet
@@ -405,24 +402,17 @@ struct vtkVDBReader::Internals
   void CheckMemory(vtkIdType maximum) const;
 };
 
+/// Anew each time: it takes milliseconds, and a file's time and length do not tell that it was written again.
 void vtkVDBReader::Internals::List(const char* path)
 {
   if (path == nullptr || path[0] == '\0')
   {
     throw InvalidInput("No file: set FileName.");
   }
-  const long int time = vtksys::SystemTools::ModifiedTime(path);
-  const unsigned long length = vtksys::SystemTools::FileLength(path);
-  if (this->File && this->Path == path && this->FileTime == time && this->FileLength == length)
-  {
-    return;
-  }
   this->File.reset();
   this->Summary.clear();
   this->File.reset(new VDBFile(path));
   this->Path = path;
-  this->FileTime = time;
-  this->FileLength = length;
   this->Summary = ::Summary(*this->File);
 }
 
