@@ -1,6 +1,7 @@
 #include "LightTransportData.h"
 
 #include "Device/OpenCL.h"
+#include "LastFailure.h"
 
 #include "vtkAlgorithm.h"
 #include "vtkCellData.h"
@@ -117,6 +118,9 @@ struct Choice
   bool pointsFirst = false;
 };
 
+/// What ParaView's panel hands on where the input has no array of the default name (none_string of the proxies).
+const char* const NothingChosen = "(by name)";
+
 Choice ChoiceOf(vtkAlgorithm* filter, int index, const std::string& otherwise)
 {
   vtkInformation* information = filter->GetInputArrayInformation(index);
@@ -131,9 +135,11 @@ Choice ChoiceOf(vtkAlgorithm* filter, int index, const std::string& otherwise)
   {
     choice.attribute = information->Get(vtkDataObject::FIELD_ATTRIBUTE_TYPE());
   }
-  const bool nothing = choice.name.empty() && choice.attribute <= vtkDataSetAttributes::SCALARS; // VTK's own default
+  const bool nothing = choice.name == NothingChosen ||
+    (choice.name.empty() && choice.attribute <= vtkDataSetAttributes::SCALARS); // VTK's own default
   if (nothing)
   {
+    choice.pointsFirst = otherwise.empty();
     choice.name = otherwise;
     choice.attribute = otherwise.empty() ? static_cast<int>(vtkDataSetAttributes::SCALARS) : -1;
   }
@@ -177,6 +183,12 @@ FloatField Read(vtkImageData* image, const Choice& choice, Need need, Components
 }
 }
 
+namespace
+{
+/// Field data of outputs that are empty because their filter was aborted.
+const char* const AbortedFact = "aborted";
+}
+
 Grid GridOf(vtkImageData* image)
 {
   if (!image)
@@ -191,6 +203,10 @@ Grid GridOf(vtkImageData* image)
   {
     grid.size[axis] = extent[2 * axis + 1] - extent[2 * axis];
     grid.spacing[axis] = image->GetSpacing()[axis];
+    if (grid.size[axis] < 0 && ReadFact(image, AbortedFact, 0.0) > 0.0)
+    {
+      throw Aborted();
+    }
     if (grid.size[axis] < 0)
     {
       throw InvalidInput("The input image is empty.");
@@ -232,24 +248,13 @@ FloatField ReadChosenCells(
   return Read(image, ChoiceOf(filter, index, otherwise), need, components);
 }
 
-namespace
-{
-/// By name only: ParaView's panel says "points" of a name that it does not find.
-FloatField ReadOfMedium(vtkAlgorithm* filter, MediumArray number, const char* otherwise, vtkImageData* image, Need need)
-{
-  Choice choice = ChoiceOf(filter, number, otherwise);
-  choice.pointsFirst = false;
-  return Read(image, choice, need, { 1, 3 });
-}
-}
-
 MediumInput ReadMedium(vtkAlgorithm* filter, vtkImageData* image)
 {
   MediumInput input;
   input.medium.grid = GridOf(image);
-  input.sigma_a = ReadOfMedium(filter, SigmaA, "sigma_a", image, Need::Required);
-  input.sigma_s = ReadOfMedium(filter, SigmaS, "sigma_s", image, Need::Required);
-  input.emission = ReadOfMedium(filter, Emission, "emission", image, Need::Optional);
+  input.sigma_a = ReadChosenCells(filter, SigmaA, image, "sigma_a", Need::Required, { 1, 3 });
+  input.sigma_s = ReadChosenCells(filter, SigmaS, image, "sigma_s", Need::Required, { 1, 3 });
+  input.emission = ReadChosenCells(filter, Emission, image, "emission", Need::Optional, { 1, 3 });
   input.medium.sigma_a = input.sigma_a;
   input.medium.sigma_s = input.sigma_s;
   input.medium.emission = input.emission;
@@ -568,23 +573,44 @@ Monitor MonitorOf(vtkAlgorithm* filter)
 
 namespace
 {
-void EmptyOutputs(vtkInformationVector* outputs)
+void EmptyOutputs(vtkInformationVector* outputs, bool aborted = false)
 {
   for (int port = 0; port < outputs->GetNumberOfInformationObjects(); ++port)
   {
     if (vtkDataObject* output = vtkDataObject::GetData(outputs, port))
     {
       output->Initialize();
+      if (aborted)
+      {
+        AddFact(output, AbortedFact, std::vector<double>{ 1.0 });
+      }
     }
   }
+}
+
+/// Newer VTK leaves both set, and would run the filter again with every update until they are reset.
+void ForgetAbort(vtkAlgorithm* filter)
+{
+  filter->AbortExecute = 0;
+#if VTK_VERSION_NUMBER >= VTK_VERSION_CHECK(9, 2, 20220823)
+  filter->SetAbortOutput(false);
+#endif
 }
 }
 
 int Guarded(vtkAlgorithm* filter, vtkInformationVector* outputs, const std::function<void()>& work)
 {
+  LastFailure last(filter);
+  if (last.StillHolds())
+  {
+    EmptyOutputs(outputs, last.WasAbort());
+    return 1;
+  }
+  last.Forget();
   const auto fail = [&](const std::string& why) {
     EmptyOutputs(outputs);
     vtkErrorWithObjectMacro(filter, << why);
+    last.Note(false);
   };
   try
   {
@@ -592,8 +618,9 @@ int Guarded(vtkAlgorithm* filter, vtkInformationVector* outputs, const std::func
   }
   catch (const Aborted&)
   {
-    EmptyOutputs(outputs);
-    filter->AbortExecute = 0; // Newer VTK leaves it set. SetAbortExecute would have the filter run again.
+    EmptyOutputs(outputs, true);
+    ForgetAbort(filter);
+    last.Note(true);
   }
   catch (const cl::Error& error)
   {

@@ -19,7 +19,7 @@ wavelet.UpdatePipeline()
 medium = ParticipatingMedium(Input=wavelet, ExtinctionScale=0.3)
 medium.UpdatePipeline()
 light = LightPropagationMaps(Input=medium, Lights=LightRig())
-assert [light.AbsorptionArray[1], light.ScatteringArray[1], light.EmissionArray[1]] == ["sigma_a", "sigma_s", "emission"]
+assert [light.AbsorptionArray[1], light.ScatteringArray[1], light.EmissionArray[1]] == ["sigma_a", "sigma_s", "(by name)"]
 
 # With nothing touched, a right picture.
 lit = fluence(light)

@@ -11,9 +11,10 @@ LoadPlugin(os.environ["TYNDALL_PLUGIN"], remote=True, ns=globals())
 
 def picture(light):
     caster = MediumRayCaster(Input=light, ImageSize=[80, 60])
-    assert [caster.GetPropertyValue(name)[1] for name in
-            ("AbsorptionArray", "ScatteringArray", "EmissionArray", "FluenceArray", "DirectFluenceArray")] == \
-        ["sigma_a", "sigma_s", "emission", "fluence", "fluence_direct"]
+    chosen = [list(caster.GetPropertyValue(name)) for name in
+              ("AbsorptionArray", "ScatteringArray", "FluenceArray", "DirectFluenceArray")]
+    assert chosen == [["CELLS", name] for name in ("sigma_a", "sigma_s", "fluence", "fluence_direct")], chosen
+    assert caster.EmissionArray[1] == "(by name)", caster.EmissionArray
     return vtk_to_numpy(servermanager.Fetch(caster).GetPointData().GetArray("radiance"))
 
 
@@ -31,6 +32,7 @@ seen = {}
 for name, source in (("all", medium), ("bare", bare)):
     light = LightPropagationMaps(Input=source, SkyColor=[sky] * 3, DirectionsPerFace=9)
     light.UpdatePipeline()
+    assert "sigma_a" not in light.PointData.keys(), "nothing is converted for it"
     seen[name] = picture(light)
     fluence = light.CellData["fluence"].GetRange()
     assert 0 < fluence[0] and fluence[1] < 4 * math.pi * sky * 1.0001, fluence

@@ -59,9 +59,10 @@ def faults_of_property(prop):
     if not bounded and not free:
         yield "no domain"
     if is_array_chooser(prop) and prop.get("default_values"):
-        default = prop.get("default_values").split(";")[-1]
-        if prop.find("ArrayListDomain").get("none_string") != default:
-            yield "where there is no array '%s', another one is chosen" % default
+        # Else ParaView chooses the active scalars, or the first array, where there is no array of the default's name.
+        domain = prop.find("ArrayListDomain")
+        if domain.get("none_string") != "(by name)" or domain.get("attribute_type") != "EdgeFlag":
+            yield "where there is no array of its name, another one is chosen"
     if not prop.get("repeat_command") and not prop.find("FileListDomain") is not None:
         chosen = is_array_chooser(prop) or name == "FileName"
         if not chosen and prop.get("default_values") is None:

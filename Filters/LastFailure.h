@@ -1,0 +1,90 @@
+#ifndef LastFailure_h
+#define LastFailure_h
+
+#include "vtkAbstractArray.h"
+#include "vtkAlgorithm.h"
+#include "vtkDataObject.h"
+#include "vtkDemandDrivenPipeline.h"
+#include "vtkFieldData.h"
+#include "vtkInformation.h"
+#include "vtkInformationIntegerKey.h"
+#include "vtkInformationUnsignedLongKey.h"
+#include "vtkTimeStamp.h"
+
+#include <algorithm>
+
+namespace tyndall
+{
+/// When a filter's last run failed or was aborted, and which of both. VTK runs a filter again with every update while its
+/// output does not cover the extent that was asked for, and that is so while the output is empty; ParaView makes several
+/// updates. They should not each say the same error.
+class LastFailure
+{
+public:
+  explicit LastFailure(vtkAlgorithm* filter)
+    : Filter(filter)
+    , Facts(filter->GetInformation())
+  {
+  }
+
+  bool StillHolds() const
+  {
+    auto* pipeline = vtkDemandDrivenPipeline::SafeDownCast(this->Filter->GetExecutive());
+    const vtkMTimeType time = this->Facts->Has(Time()) ? this->Facts->Get(Time()) : 0;
+    bool holds = pipeline && pipeline->GetPipelineMTime() < time;
+    for (int port = 0; holds && port < this->Filter->GetNumberOfInputPorts(); ++port)
+    {
+      for (int i = 0; holds && i < this->Filter->GetNumberOfInputConnections(port); ++i)
+      {
+        holds = TimeOfArrays(this->Filter->GetInputDataObject(port, i)) < time;
+      }
+    }
+    return holds;
+  }
+
+  bool WasAbort() const { return this->Facts->Get(Abort()) != 0; }
+
+  void Note(bool abort)
+  {
+    vtkTimeStamp now;
+    now.Modified();
+    this->Facts->Set(Time(), now.GetMTime());
+    this->Facts->Set(Abort(), abort);
+  }
+
+  void Forget() { this->Facts->Remove(Time()); }
+
+private:
+  /// Not that of the data: ParaView's filters between filters make it anew, with the same arrays, whenever it is looked at.
+  static vtkMTimeType TimeOfArrays(vtkDataObject* data)
+  {
+    vtkMTimeType latest = 0;
+    for (int kind : { vtkDataObject::POINT, vtkDataObject::CELL, vtkDataObject::FIELD })
+    {
+      vtkFieldData* arrays = data ? data->GetAttributesAsFieldData(kind) : nullptr;
+      for (int i = 0; arrays && i < arrays->GetNumberOfArrays(); ++i)
+      {
+        latest = std::max(latest, arrays->GetAbstractArray(i)->GetMTime());
+      }
+    }
+    return latest;
+  }
+
+  static vtkInformationUnsignedLongKey* Time()
+  {
+    static auto* const key = vtkInformationUnsignedLongKey::MakeKey("FAILURE_TIME", "Tyndall");
+    return key;
+  }
+
+  static vtkInformationIntegerKey* Abort()
+  {
+    static auto* const key = vtkInformationIntegerKey::MakeKey("FAILURE_IS_ABORT", "Tyndall");
+    return key;
+  }
+
+  vtkAlgorithm* Filter;
+  vtkInformation* Facts;
+};
+}
+
+#endif

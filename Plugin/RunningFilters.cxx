@@ -1,0 +1,214 @@
+#include "RunningFilters.h"
+
+#include "vtkAlgorithm.h"
+#include "vtkCallbackCommand.h"
+#include "vtkLogger.h"
+#include "vtkNew.h"
+#include "vtkPVXMLElement.h"
+#include "vtkSMProxy.h"
+#include "vtkSMProxyManager.h"
+#include "vtkWeakPointer.h"
+
+#include <QApplication>
+#include <QElapsedTimer>
+#include <QMouseEvent>
+#include <QPointer>
+#include <QTimer>
+#include <QToolButton>
+
+#include <map>
+
+namespace
+{
+QToolButton* FindButton()
+{
+  for (QWidget* window : QApplication::topLevelWidgets())
+  {
+    for (QToolButton* button : window->findChildren<QToolButton*>("AbortButton"))
+    {
+      if (button->parent()->inherits("pqProgressWidget"))
+      {
+        return button;
+      }
+    }
+  }
+  return nullptr;
+}
+
+bool IsOver(const QWidget* widget, const QPoint& onScreen)
+{
+  return widget->isVisible() && widget->rect().contains(widget->mapFromGlobal(onScreen));
+}
+
+class RunningFilters : public QObject
+{
+public:
+  explicit RunningFilters(QObject* parent)
+    : QObject(parent)
+  {
+    this->Watcher->SetClientData(this);
+    this->Watcher->SetCallback([](vtkObject* caller, unsigned long event, void* self, void*) {
+      static_cast<RunningFilters*>(self)->Notice(vtkAlgorithm::SafeDownCast(caller), event);
+    });
+    vtkSMProxyManager::GetProxyManager()->AddObserver(vtkCommand::RegisterEvent, this, &RunningFilters::Watch);
+  }
+
+private:
+  /// Watches the algorithm of a new proxy, if it stops on abort and is in this process.
+  void Watch(vtkObject*, unsigned long, void* data)
+  {
+    const auto* registered = static_cast<vtkSMProxyManager::RegisteredProxyInformation*>(data);
+    if (registered->Type != vtkSMProxyManager::RegisteredProxyInformation::PROXY || !registered->Proxy)
+    {
+      return;
+    }
+    vtkPVXMLElement* hints = registered->Proxy->GetHints();
+    if (!hints || !hints->FindNestedElementByName("StopsOnAbort"))
+    {
+      return;
+    }
+    auto* algorithm = vtkAlgorithm::SafeDownCast(registered->Proxy->GetClientSideObject());
+    if (algorithm && !algorithm->HasObserver(vtkCommand::StartEvent, this->Watcher))
+    {
+      algorithm->AddObserver(vtkCommand::StartEvent, this->Watcher);
+      algorithm->AddObserver(vtkCommand::ProgressEvent, this->Watcher);
+      algorithm->AddObserver(vtkCommand::EndEvent, this->Watcher);
+      this->Proxies[algorithm] = registered->Proxy;
+    }
+  }
+
+  void Notice(vtkAlgorithm* algorithm, unsigned long event)
+  {
+    switch (event)
+    {
+      case vtkCommand::StartEvent:
+        this->Begin(algorithm);
+        break;
+      case vtkCommand::ProgressEvent:
+        this->HandleWaitingEvents();
+        break;
+      default:
+        this->End();
+        this->ShowResults(algorithm);
+    }
+  }
+
+  void Begin(vtkAlgorithm* algorithm)
+  {
+    if (!this->Button && (this->Button = FindButton()))
+    {
+      connect(this->Button, &QToolButton::pressed, this, [this] { this->Abort(); });
+    }
+    if (this->Button)
+    {
+      this->Running = algorithm;
+      this->Button->setEnabled(true);
+      const QPoint place = this->Button->mapToGlobal(this->Button->rect().center());
+      vtkLogF(TRACE, "%s can be aborted at (%d, %d)", algorithm->GetClassName(), place.x(), place.y());
+    }
+  }
+
+  void Abort()
+  {
+    if (this->Running)
+    {
+      vtkLogF(TRACE, "%s is aborted", this->Running->GetClassName());
+      this->Running->AbortExecute = 1; // SetAbortExecute would have it run again, later
+      this->Button->setDown(true);
+    }
+  }
+
+  void End()
+  {
+    if (this->Running)
+    {
+      vtkLogF(TRACE, "%s has ended", this->Running->GetClassName());
+      this->Running = nullptr;
+      this->Button->setDown(false);
+      this->Button->setEnabled(false);
+    }
+  }
+
+  /// Later, when ParaView is not in the middle of an update any more.
+  void ShowResults(vtkAlgorithm* algorithm)
+  {
+    const vtkWeakPointer<vtkSMProxy> proxy = this->Proxies[algorithm];
+    QTimer::singleShot(0, this, [proxy] {
+      if (proxy)
+      {
+        proxy->UpdatePropertyInformation();
+      }
+    });
+  }
+
+  /// The window is blocked while an algorithm runs in it, so this is called on its progress. Timers do not run, and what the
+  /// user does is dropped, apart from pressing the button: nothing may begin a second update within the first.
+  void HandleWaitingEvents()
+  {
+    const bool soonAfterTheLast = this->SinceLast.isValid() && this->SinceLast.elapsed() < 50;
+    if (!this->Running || this->HandlesEvents || soonAfterTheLast)
+    {
+      return;
+    }
+    this->HandlesEvents = true;
+    qApp->installEventFilter(this);
+    QApplication::processEvents(QEventLoop::ExcludeSocketNotifiers | QEventLoop::X11ExcludeTimers);
+    qApp->removeEventFilter(this);
+    this->HandlesEvents = false;
+    this->SinceLast.start();
+  }
+
+  bool eventFilter(QObject* receiver, QEvent* event) override
+  {
+    switch (event->type())
+    {
+      case QEvent::MouseButtonPress:
+        // It comes to the window before it comes to the button, and ParaView's own filter would stop it there.
+        if (receiver->isWindowType() && IsOver(this->Button, static_cast<QMouseEvent*>(event)->globalPos()))
+        {
+          this->Abort();
+        }
+        return true;
+      case QEvent::MouseButtonRelease:
+      case QEvent::MouseButtonDblClick:
+      case QEvent::MouseMove:
+      case QEvent::Wheel:
+      case QEvent::KeyPress:
+      case QEvent::KeyRelease:
+      case QEvent::Shortcut:
+      case QEvent::ShortcutOverride:
+      case QEvent::ContextMenu:
+      case QEvent::TouchBegin:
+      case QEvent::TouchUpdate:
+      case QEvent::TouchEnd:
+      case QEvent::DragEnter:
+      case QEvent::DragMove:
+      case QEvent::Drop:
+        return true;
+      case QEvent::Close:
+        event->ignore();
+        return true;
+      case QEvent::Paint:
+      case QEvent::UpdateRequest:
+        return receiver->inherits("QOpenGLWidget"); // a view, which may not render now
+      default:
+        return false;
+    }
+  }
+
+  std::map<vtkAlgorithm*, vtkWeakPointer<vtkSMProxy>> Proxies;
+  QPointer<QToolButton> Button;
+  vtkWeakPointer<vtkAlgorithm> Running;
+  vtkNew<vtkCallbackCommand> Watcher;
+  QElapsedTimer SinceLast;
+  bool HandlesEvents = false;
+};
+}
+
+void FollowRunningFilters()
+{
+  if (qobject_cast<QApplication*>(QCoreApplication::instance()))
+  {
+    new RunningFilters(qApp); // which deletes it
+  }
+}

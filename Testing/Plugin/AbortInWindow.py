@@ -1,0 +1,73 @@
+"""In ParaView's window a long solve shows its progress and stops within a second of a click; a short one then ends well.
+
+    python3 AbortInWindow.py paraview [arguments...]    on an X display, with xdotool
+"""
+import ctypes
+import os
+import re
+import subprocess
+import sys
+import time
+
+log = os.path.join(os.environ["TYNDALL_TEST_OUTPUT"], "AbortInWindow.log")
+session = os.path.join(os.path.dirname(os.path.abspath(__file__)), "SolveInWindow.xml")
+
+
+def wait_for(pattern, seconds):
+    """What the log says, as soon as it says it."""
+    end = time.monotonic() + seconds
+    while time.monotonic() < end:
+        if os.path.exists(log):
+            with open(log, errors="replace") as file:
+                found = re.search(pattern, file.read())
+            if found:
+                return found
+        assert paraview.poll() is None, "ParaView has gone"
+        time.sleep(0.005)
+    raise AssertionError("not within %g s: %s" % (seconds, pattern))
+
+
+class Screen:
+    def __init__(self):
+        self.x11 = ctypes.CDLL("libX11.so.6")
+        self.x11.XOpenDisplay.restype = ctypes.c_void_p
+        self.x11.XDefaultRootWindow.argtypes = [ctypes.c_void_p]
+        self.x11.XDefaultRootWindow.restype = ctypes.c_ulong
+        self.x11.XGetImage.argtypes = [ctypes.c_void_p, ctypes.c_ulong, ctypes.c_int, ctypes.c_int, ctypes.c_uint,
+                                       ctypes.c_uint, ctypes.c_ulong, ctypes.c_int]
+        self.x11.XGetImage.restype = ctypes.POINTER(ctypes.c_int * 6)  # width, height, xoffset, format, and data
+        self.display = self.x11.XOpenDisplay(None)
+        self.root = self.x11.XDefaultRootWindow(self.display)
+
+    def pixels(self, x, y, width, height):
+        image = self.x11.XGetImage(self.display, self.root, x, y, width, height, 0xFFFFFFFF, 2)
+        data = ctypes.cast(ctypes.byref(image.contents, 16), ctypes.POINTER(ctypes.c_void_p)).contents.value
+        return ctypes.string_at(data, 4 * width * height)
+
+
+if os.path.exists(log):
+    os.remove(log)
+paraview = subprocess.Popen(sys.argv[1:] + ["--log=%s,TRACE" % log, "--exit", "--test-script=" + session])
+try:
+    x, y = (int(number) for number in wait_for(r"vtkLightPropagationMaps can be aborted at \((\d+), (\d+)\)", 60).groups())
+
+    screen = Screen()
+    progress = set()
+    end = time.monotonic() + 20
+    while len(progress) < 4:
+        assert time.monotonic() < end, "the status bar shows no progress"
+        progress.add(screen.pixels(x + 15, y - 3, 200, 6))
+        time.sleep(0.1)
+
+    begin = time.monotonic()
+    subprocess.run(["xdotool", "mousemove", str(x), str(y), "click", "1"], check=True)
+    wait_for("vtkLightPropagationMaps has ended", 60)
+    seconds = time.monotonic() - begin
+    print("from the click to the end: %.3f s" % seconds)
+    wait_for("vtkLightPropagationMaps is aborted", 1)
+    assert seconds < 1, seconds
+
+    assert paraview.wait(60) == 0, paraview.returncode
+finally:
+    if paraview.poll() is None:
+        paraview.kill()
