@@ -1,0 +1,369 @@
+#include "DeviceTest.h"
+
+#include "Refraction/MinMaxPyramid.h"
+#include "Refraction/RefractionOctree.h"
+
+#include <gmock/gmock.h>
+
+#include <algorithm>
+#include <cmath>
+#include <functional>
+#include <limits>
+#include <random>
+#include <set>
+#include <string>
+#include <vector>
+
+using namespace tyndall;
+using testing::Each;
+using testing::HasSubstr;
+
+namespace
+{
+using Size = std::array<int, 3>;
+
+/// Of any shape: single voxels, rows, layers, powers of two, one more, one less, primes.
+const std::vector<Size> Sizes = { { 1, 1, 1 }, { 2, 1, 1 }, { 1, 5, 1 }, { 1, 1, 64 }, { 1, 9, 7 }, { 33, 1, 4 },
+  { 8, 8, 8 }, { 16, 16, 16 }, { 15, 17, 16 }, { 7, 7, 7 }, { 31, 3, 13 }, { 40, 24, 65 } };
+
+Grid GridOf(const Size& size)
+{
+  Grid grid;
+  grid.size = size;
+  return grid;
+}
+
+/// value(x, y, z) of voxels
+std::vector<float> Fill(const Size& size, const std::function<double(int, int, int)>& value)
+{
+  std::vector<float> values;
+  for (int z = 0; z < size[2]; ++z)
+  {
+    for (int y = 0; y < size[1]; ++y)
+    {
+      for (int x = 0; x < size[0]; ++x)
+      {
+        values.push_back(static_cast<float>(value(x, y, z)));
+      }
+    }
+  }
+  return values;
+}
+
+std::vector<float> Random(const Size& size, unsigned seed = 1)
+{
+  std::mt19937 random(seed);
+  std::uniform_real_distribution<double> index(1.0, 1.5);
+  return Fill(size, [&](int, int, int) { return index(random); });
+}
+
+/// Slow waves, so that nodes of many levels are whole.
+std::vector<float> Smooth(const Size& size)
+{
+  return Fill(size, [](int x, int y, int z) {
+    return 1.3 + 0.2 * std::sin(0.11 * x) * std::cos(0.07 * y) * std::exp(-0.002 * z * z);
+  });
+}
+
+/// A glass ball in air, off the middle.
+std::vector<float> Ball(const Size& size)
+{
+  return Fill(size, [&](int x, int y, int z) {
+    return std::hypot(x - 0.4 * size[0], y - 0.6 * size[1], z - 0.5 * size[2]) < 0.3 * size[0] ? 1.5 : 1.0;
+  });
+}
+
+/// What LevelPyramid says, word by word: no pyramid, each node's range from its voxels.
+/// @param tolerance  (level)
+std::vector<std::uint8_t> BruteForce(
+  const Size& size, const std::vector<float>& values, const std::function<double(int)>& tolerance)
+{
+  std::vector<std::uint8_t> levels(values.size(), 0);
+  const int longest = *std::max_element(size.begin(), size.end());
+  for (int level = 1; (1 << (level - 1)) < longest; ++level)
+  {
+    const auto node = [&](std::size_t i) {
+      const std::size_t x = i % size[0], y = i / size[0] % size[1], z = i / size[0] / size[1];
+      return ((z >> level) * size[1] + (y >> level)) * size[0] + (x >> level);
+    };
+    std::vector<float> lowest(values.size(), std::numeric_limits<float>::infinity());
+    std::vector<float> highest(values.size(), -std::numeric_limits<float>::infinity());
+    for (std::size_t i = 0; i < values.size(); ++i)
+    {
+      lowest[node(i)] = std::min(lowest[node(i)], values[i]);
+      highest[node(i)] = std::max(highest[node(i)], values[i]);
+    }
+    for (std::size_t i = 0; i < values.size(); ++i)
+    {
+      if (highest[node(i)] - lowest[node(i)] < tolerance(level))
+      {
+        levels[i] = static_cast<std::uint8_t>(level);
+      }
+    }
+  }
+  return levels;
+}
+
+Octree Build(const Size& size, const std::vector<float>& index, double tolerance, const std::string& device = {})
+{
+  Medium medium;
+  medium.grid = GridOf(size);
+  OctreeSettings settings;
+  settings.tolerance = tolerance;
+  return BuildOctree(medium, { index.data() }, settings, device);
+}
+
+std::string Named(const Size& size, double tolerance)
+{
+  return std::to_string(size[0]) + " x " + std::to_string(size[1]) + " x " + std::to_string(size[2]) +
+    ", tolerance " + std::to_string(tolerance);
+}
+
+/// What a call complains about; empty if it does not.
+std::string ComplaintOf(const std::function<void()>& call)
+{
+  try
+  {
+    call();
+  }
+  catch (const std::exception& error)
+  {
+    return error.what();
+  }
+  return {};
+}
+}
+
+class RefractionOctree : public DeviceTest
+{
+};
+
+TEST_F(RefractionOctree, MinMaxPyramidHoldsTheRangeOfEachNodesVoxels)
+{
+  for (const Size& size : Sizes)
+  {
+    const std::vector<float> values = Random(size);
+    const Buffer<float> onDevice(this->GetDevice(), values, "a test");
+    const MinMaxPyramid pyramid(this->GetDevice(), GridOf(size), onDevice);
+    const std::vector<cl_float2> nodes = pyramid.Nodes().Read();
+    for (int level = 1; level <= pyramid.Layout().Top(); ++level)
+    {
+      const Size across = pyramid.Layout().sizes[level];
+      for (int z = 0; z < across[2]; ++z)
+      {
+        for (int y = 0; y < across[1]; ++y)
+        {
+          for (int x = 0; x < across[0]; ++x)
+          {
+            float lowest = 9.0f, highest = 0.0f;
+            for (int k = z << level; k < std::min(size[2], (z + 1) << level); ++k)
+            {
+              for (int j = y << level; j < std::min(size[1], (y + 1) << level); ++j)
+              {
+                for (int i = x << level; i < std::min(size[0], (x + 1) << level); ++i)
+                {
+                  lowest = std::min(lowest, values[(k * size[1] + j) * size[0] + i]);
+                  highest = std::max(highest, values[(k * size[1] + j) * size[0] + i]);
+                }
+              }
+            }
+            const cl_float2 node = nodes[pyramid.Layout().offsets[level] + (z * across[1] + y) * across[0] + x];
+            ASSERT_EQ(node.s[0], lowest) << Named(size, 0) << ", level " << level;
+            ASSERT_EQ(node.s[1], highest) << Named(size, 0) << ", level " << level;
+          }
+        }
+      }
+    }
+    EXPECT_EQ(pyramid.Layout().sizes.back(), (Size{ 1, 1, 1 })) << "one node at the top";
+  }
+}
+
+TEST_F(RefractionOctree, LevelsEqualABruteForceConstruction)
+{
+  for (const Size& size : Sizes)
+  {
+    for (double tolerance : { 0.0, 1e-4, 0.01, 0.1, 0.4, 1.0 })
+    {
+      for (const std::vector<float>& index : { Random(size), Smooth(size), Ball(size) })
+      {
+        const bool constant = std::all_of(index.begin(), index.end(), [&](float n) { return n == index[0]; });
+        const Octree octree = Build(size, index, tolerance);
+        const auto expected = BruteForce(size, index, [&](int) { return constant ? 2.0 : tolerance; });
+        EXPECT_EQ(octree.levels, expected) << Named(size, tolerance);
+      }
+    }
+  }
+}
+
+TEST_F(RefractionOctree, VoxelsOfANodeShareItsLevel)
+{
+  const Size size = { 40, 24, 65 };
+  const std::vector<std::uint8_t> levels = Build(size, Smooth(size), 0.05).levels;
+  EXPECT_GE(std::set<std::uint8_t>(levels.begin(), levels.end()).size(), 4u) << "nodes of several levels";
+  for (std::size_t i = 0; i < levels.size(); ++i)
+  {
+    const std::size_t x = i % size[0], y = i / size[0] % size[1], z = i / size[0] / size[1];
+    const int level = levels[i];
+    const std::size_t corner = ((z >> level << level) * size[1] + (y >> level << level)) * size[0] + (x >> level << level);
+    ASSERT_EQ(levels[corner], level) << VoxelName(GridOf(size), i);
+  }
+}
+
+TEST_F(RefractionOctree, ADifferenceOfJustTheToleranceIsTooMuch)
+{
+  const std::vector<float> index = { 1.0f, 1.25f };
+  EXPECT_THAT(Build({ 2, 1, 1 }, index, 0.25).levels, Each(0));
+  EXPECT_THAT(Build({ 2, 1, 1 }, index, std::nextafter(0.25, 1.0)).levels, Each(1));
+  const double apart = static_cast<double>(1.01f) - 1.0; // between two floats near 0.01
+  EXPECT_THAT(Build({ 2, 1, 1 }, { 1.0f, 1.01f }, apart).levels, Each(0));
+  EXPECT_THAT(Build({ 2, 1, 1 }, { 1.0f, 1.01f }, std::nextafter(apart, 1.0)).levels, Each(1));
+}
+
+TEST_F(RefractionOctree, ANodeThatSticksOutOfTheGridIsWholeWhereItsVoxelsAre)
+{
+  // 5 voxels: the node of the last one has 4 voxels an edge, 3 of which are not there.
+  const std::vector<float> index = { 1.0f, 1.5f, 1.0f, 1.0f, 1.2f };
+  EXPECT_EQ(Build({ 5, 1, 1 }, index, 0.1).levels, (std::vector<std::uint8_t>{ 0, 0, 1, 1, 2 }));
+}
+
+TEST(ConstantIndex, IsOneNodeAndRunsNothingOnTheDevice)
+{
+  const std::vector<std::pair<Size, int>> tops = { { { 1, 1, 1 }, 0 }, { { 2, 2, 2 }, 1 }, { { 64, 64, 64 }, 6 },
+    { { 65, 2, 3 }, 7 }, { { 1, 100, 37 }, 7 } };
+  for (const auto& [size, top] : tops)
+  {
+    for (double tolerance : { 0.0, 0.01 })
+    {
+      const std::vector<float> index(GridOf(size).VoxelCount(), 1.33f);
+      const Octree octree = Build(size, index, tolerance, "no such device");
+      EXPECT_THAT(octree.levels, Each(top)) << Named(size, tolerance);
+      EXPECT_EQ(octree.levels.size(), index.size());
+      EXPECT_EQ(octree.topLevel, top);
+      EXPECT_EQ(octree.device, "");
+      ASSERT_EQ(octree.leftOut.size(), 1u);
+      EXPECT_THAT(octree.leftOut[0], HasSubstr("refractive index is constant"));
+    }
+  }
+  EXPECT_THAT(ComplaintOf([] { Build({ 2, 1, 1 }, { 1.0f, 1.5f }, 0.1, "no such device"); }),
+    HasSubstr("no such device"));
+}
+
+class OctreeOfExtinction : public DeviceTest
+{
+protected:
+  Octree Build(const Size& size, double extinctionTolerance, bool include = true)
+  {
+    this->TheMedium.grid = GridOf(size);
+    this->TheMedium.grid.spacing = { 0.5, 1.0, 0.25 };
+    OctreeSettings settings;
+    settings.tolerance = 0.05;
+    settings.includeExtinction = include;
+    settings.extinctionTolerance = extinctionTolerance;
+    return BuildOctree(this->TheMedium, { this->Index.data() }, settings);
+  }
+
+  Medium TheMedium;
+  std::vector<float> Index;
+};
+
+TEST_F(OctreeOfExtinction, RestrictsNodesByTheOpticalThicknessOfTheirDiagonal)
+{
+  for (const Size& size : { Size{ 32, 32, 32 }, Size{ 13, 21, 6 } })
+  {
+    this->Index = Smooth(size);
+    const auto even = Fill(size, [](int, int, int) { return 0.2; });
+    const auto red = Fill(size, [](int x, int, int) { return 0.001 * x; });
+    const auto green = Fill(size, [](int, int y, int z) { return 0.01 + 0.0001 * y * z; });
+    std::vector<float> sigma_s;
+    for (std::size_t i = 0; i < even.size(); ++i)
+    {
+      sigma_s.insert(sigma_s.end(), { red[i], green[i], even[i] });
+    }
+    const auto sigma_a = Ball(size); // grey: added to each channel
+    this->TheMedium.sigma_a = { sigma_a.data(), 1 };
+    this->TheMedium.sigma_s = { sigma_s.data(), 3 };
+    for (double tolerance : { 0.0, 0.02, 0.1, 1.0, 20.0 })
+    {
+      const double diagonal = std::sqrt(0.25 + 1.0 + 0.0625);
+      auto expected = BruteForce(size, this->Index, [](int) { return 0.05; });
+      const auto alone = expected;
+      for (int channel = 0; channel < 3; ++channel)
+      {
+        std::vector<float> extinction = sigma_a;
+        for (std::size_t i = 0; i < extinction.size(); ++i)
+        {
+          extinction[i] += sigma_s[3 * i + channel];
+        }
+        const auto levels =
+          BruteForce(size, extinction, [&](int level) { return tolerance / (diagonal * (1 << level)); });
+        std::transform(levels.begin(), levels.end(), expected.begin(), expected.begin(),
+          [](std::uint8_t a, std::uint8_t b) { return std::min(a, b); });
+      }
+      EXPECT_EQ(this->Build(size, tolerance).levels, expected) << Named(size, tolerance);
+      EXPECT_EQ(this->Build(size, tolerance, false).levels, alone) << "extinction is not asked for";
+    }
+  }
+}
+
+TEST_F(OctreeOfExtinction, RestrictsNodesWhereTheIndexIsConstant)
+{
+  const Size size = { 16, 16, 16 };
+  this->Index.assign(4096, 1.0f);
+  const auto sigma_t = Fill(size, [](int x, int, int) { return x < 8 ? 1.0 : 0.0; });
+  this->TheMedium.sigma_a = { sigma_t.data(), 1 };
+  EXPECT_THAT(this->Build(size, 0.01).levels, Each(3));
+  EXPECT_THAT(this->Build(size, 0.01, false).levels, Each(4));
+  EXPECT_EQ(this->Build(size, 0.01, false).device, "");
+}
+
+TEST_F(OctreeOfExtinction, IsLeftOutWhereItIsConstant)
+{
+  const Size size = { 16, 16, 16 };
+  this->Index.assign(4096, 1.0f);
+  const std::vector<float> sigma_t(4096, 3.0f);
+  this->TheMedium.sigma_s = { sigma_t.data(), 1 };
+  const Octree octree = this->Build(size, 0.0);
+  EXPECT_THAT(octree.levels, Each(4));
+  EXPECT_EQ(octree.device, "");
+  EXPECT_EQ(octree.leftOut.size(), 2u);
+}
+
+TEST(OctreeRefuses, WhatHasNoMeaning)
+{
+  const float nan = std::numeric_limits<float>::quiet_NaN();
+  const float infinite = std::numeric_limits<float>::infinity();
+  for (float wrong : { nan, infinite, -infinite, 0.0f, -1.5f })
+  {
+    std::vector<float> index(60, 1.0f);
+    index[31] = wrong;
+    index[59] = wrong;
+    EXPECT_THAT(ComplaintOf([&] { Build({ 3, 4, 5 }, index, 0.01); }),
+      testing::AllOf(HasSubstr("refractive index is " + std::to_string(wrong)), HasSubstr("voxel (1, 2, 2)")));
+  }
+  const std::vector<float> index = { 1.0f, 1.5f };
+  for (double wrong : { -0.1, 1.1, static_cast<double>(nan) })
+  {
+    EXPECT_THAT(ComplaintOf([&] { Build({ 2, 1, 1 }, index, wrong); }), HasSubstr("Tolerance is"));
+  }
+  EXPECT_THAT(ComplaintOf([&] { Build({ 2, 0, 1 }, index, 0.1); }), HasSubstr("no voxels along y"));
+
+  Medium medium;
+  medium.grid = GridOf({ 2, 1, 1 });
+  OctreeSettings settings;
+  const auto complaint = [&] { return ComplaintOf([&] { BuildOctree(medium, { index.data() }, settings); }); };
+  EXPECT_THAT(ComplaintOf([&] { BuildOctree(medium, {}, settings); }), HasSubstr("must be given"));
+  settings.extinctionTolerance = nan;
+  EXPECT_THAT(complaint(), HasSubstr("ExtinctionTolerance is nan"));
+  settings.extinctionTolerance = 0.1;
+  const std::vector<float> negative = { 0.0f, -1.0f };
+  medium.sigma_s = { negative.data(), 1 };
+  EXPECT_THAT(complaint(), HasSubstr("sigma_s is -1"));
+}
+
+TEST(OctreeStops, WhenItsMonitorSaysSo)
+{
+  const std::vector<float> index = { 1.0f, 1.5f };
+  Medium medium;
+  medium.grid = GridOf({ 2, 1, 1 });
+  EXPECT_THROW(BuildOctree(medium, { index.data() }, {}, {}, [](double) { return false; }), Aborted);
+}
