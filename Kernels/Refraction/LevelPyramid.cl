@@ -24,17 +24,35 @@ __kernel void levels_of_nodes(const __global float2* ranges, __global uchar* lev
   levels[i] = inherited > 0 ? inherited : own;
 }
 
+inline void give(__global uchar* levels, size_t voxel, uchar level, int restrict_it)
+{
+  levels[voxel] = restrict_it ? min(level, levels[voxel]) : level;
+}
+
+// A work-item a node of level 1.
 //   nodes    levels of the pyramid's nodes, level 1 first
 //   levels   of the voxels: written, or where `restrict_them` made smaller
 __kernel void levels_of_voxels(
-  const __global uchar* nodes, int4 above_size, __global uchar* levels, int4 size, int restrict_them)
+  const __global uchar* nodes, int4 nodes_size, __global uchar* levels, int4 size, int restrict_them)
 {
-  const int4 voxel = (int4)(get_global_id(0), get_global_id(1), get_global_id(2), 0);
-  if (voxel.x >= size.x || voxel.y >= size.y || voxel.z >= size.z)
+  const int4 node = (int4)(get_global_id(0), get_global_id(1), get_global_id(2), 0);
+  if (node.x >= nodes_size.x || node.y >= nodes_size.y || node.z >= nodes_size.z)
   {
     return;
   }
+  const uchar level = nodes[index_of(node, nodes_size)];
+  const int4 voxel = 2 * node;
+  // Beyond the grid's end: the neighbour within once more.
+  const size_t x = voxel.x + 1 < size.x ? 1 : 0;
+  const size_t y = voxel.y + 1 < size.y ? size.x : 0;
+  const size_t z = voxel.z + 1 < size.z ? (size_t)size.x * size.y : 0;
   const size_t i = index_of(voxel, size);
-  const uchar level = nodes[index_of(voxel >> 1, above_size)];
-  levels[i] = restrict_them ? min(level, levels[i]) : level;
+  give(levels, i, level, restrict_them);
+  give(levels, i + x, level, restrict_them);
+  give(levels, i + y, level, restrict_them);
+  give(levels, i + y + x, level, restrict_them);
+  give(levels, i + z, level, restrict_them);
+  give(levels, i + z + x, level, restrict_them);
+  give(levels, i + z + y, level, restrict_them);
+  give(levels, i + z + y + x, level, restrict_them);
 }

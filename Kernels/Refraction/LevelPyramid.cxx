@@ -29,7 +29,8 @@ void LevelPyramid::Restrict(const MinMaxPyramid& ranges, const std::vector<float
       sizes[level]);
   }
   cl::Kernel ofVoxels = this->TheDevice.Kernel("levels_of_voxels", { kernel_source::LevelPyramid });
-  run(With(ofVoxels, this->Nodes, Int4(sizes[1]), this->TheLevels, Int4(sizes[0]), this->Restricted ? 1 : 0), sizes[0]);
+  run(With(ofVoxels, this->Nodes, Int4(sizes[1]), this->TheLevels, Int4(sizes[0]), this->Restricted ? 1 : 0),
+    sizes[1]);
   this->Restricted = true;
 }
 }
