@@ -486,6 +486,16 @@ void AddFact(vtkDataObject* data, const char* name, const std::vector<std::strin
   data->GetFieldData()->AddArray(array);
 }
 
+std::string Lines(const std::vector<std::string>& texts)
+{
+  std::string lines;
+  for (const std::string& text : texts)
+  {
+    lines += (lines.empty() ? "" : "\n") + text;
+  }
+  return lines;
+}
+
 void WriteLight(LightField&& light, vtkImageData* output)
 {
   const int channels = light.channels;

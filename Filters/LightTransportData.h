@@ -122,6 +122,9 @@ void AddCells(vtkImageData* image, const char* name, std::vector<float>&& values
 void AddFact(vtkDataObject* data, const char* name, const std::vector<double>& values, int components = 1);
 void AddFact(vtkDataObject* data, const char* name, const std::vector<std::string>& values);
 
+/// Texts one a line, for the panel.
+std::string Lines(const std::vector<std::string>& texts);
+
 /// Everything a solver found but its convergence: cells `fluence` (made the active scalars), `fluence_direct`, `net_flux`,
 /// `scattered_radiance` (channels fastest, then stored directions), those that are not empty; field data `energy_balance`,
 /// `face_power_out`, `stored_directions`, `left_out`, `device`.

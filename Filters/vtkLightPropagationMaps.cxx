@@ -82,16 +82,6 @@ tyndall::LightField Solve(
   return published ? tyndall::SolveParallel(*device, medium, illumination, settings, monitor)
                    : tyndall::SolveFused(*device, medium, illumination, settings, monitor);
 }
-
-std::string Lines(const std::vector<std::string>& texts)
-{
-  std::string lines;
-  for (const std::string& text : texts)
-  {
-    lines += (lines.empty() ? "" : "\n") + text;
-  }
-  return lines;
-}
 }
 
 vtkStandardNewMacro(vtkLightPropagationMaps);
@@ -191,7 +181,7 @@ void vtkLightPropagationMaps::Note(const tyndall::LightField& light)
   this->Seconds = any ? light.convergence.back().seconds : 0.0;
   this->BalanceError = light.balance.RelativeError(light.channels);
   this->DeviceName = light.device;
-  this->LeftOut = Lines(light.leftOut);
+  this->LeftOut = tyndall::Lines(light.leftOut);
 }
 
 void vtkLightPropagationMaps::PrintSelf(ostream& os, vtkIndent indent)

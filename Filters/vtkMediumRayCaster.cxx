@@ -224,10 +224,7 @@ int vtkMediumRayCaster::RequestData(vtkInformation*, vtkInformationVector** inpu
 
     this->UsedExposure = toneMapping.exposure;
     this->DeviceName = device->Name();
-    for (const std::string& omitted : caster.LeftOut())
-    {
-      this->LeftOut += (this->LeftOut.empty() ? "" : "\n") + omitted;
-    }
+    this->LeftOut = tyndall::Lines(caster.LeftOut());
     this->Seconds = std::chrono::duration<double>(Clock::now() - start).count();
   });
 }

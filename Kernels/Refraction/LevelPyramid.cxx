@@ -23,14 +23,13 @@ void LevelPyramid::Restrict(const MinMaxPyramid& ranges, const std::vector<float
   for (int level = top; level >= 1; --level)
   {
     const int above = level < top ? level + 1 : level;
-    run(With(ofNodes, ranges.Nodes(), this->Nodes, static_cast<cl_ulong>(this->Layout.offsets[level]),
-          Int4(sizes[level]), static_cast<cl_ulong>(this->Layout.offsets[above]), Int4(sizes[above]), level, top,
-          tolerances[level]),
+    run(
+      With(ofNodes, ranges.Nodes(), this->Nodes, static_cast<cl_ulong>(this->Layout.offsets[level]), Int4(sizes[level]),
+        static_cast<cl_ulong>(this->Layout.offsets[above]), Int4(sizes[above]), level, top, tolerances[level]),
       sizes[level]);
   }
   cl::Kernel ofVoxels = this->TheDevice.Kernel("levels_of_voxels", { kernel_source::LevelPyramid });
-  run(With(ofVoxels, this->Nodes, Int4(sizes[1]), this->TheLevels, Int4(sizes[0]), this->Restricted ? 1 : 0),
-    sizes[1]);
+  run(With(ofVoxels, this->Nodes, Int4(sizes[1]), this->TheLevels, Int4(sizes[0]), this->Restricted ? 1 : 0), sizes[1]);
   this->Restricted = true;
 }
 }

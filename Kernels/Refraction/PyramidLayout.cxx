@@ -17,7 +17,8 @@ PyramidLayout::PyramidLayout(const Grid& grid)
     }
     this->sizes.push_back(size);
     this->offsets.push_back(this->nodeCount);
-    this->nodeCount += static_cast<std::size_t>(size[0]) * static_cast<std::size_t>(size[1]) * static_cast<std::size_t>(size[2]);
+    this->nodeCount +=
+      static_cast<std::size_t>(size[0]) * static_cast<std::size_t>(size[1]) * static_cast<std::size_t>(size[2]);
   }
 }
 

@@ -2,9 +2,11 @@
 
 #include "LevelPyramid.h"
 
+#include <chrono>
 #include <cmath>
 #include <limits>
 #include <memory>
+#include <utility>
 
 namespace tyndall
 {
@@ -40,7 +42,8 @@ void CheckIndex(const Field& index, const Grid& grid)
     if (!(index.values[i] > 0.0f) || std::isinf(index.values[i]))
     {
       throw InvalidInput("The refractive index is " + std::to_string(index.values[i]) + " in voxel " +
-        VoxelName(grid, i) + " (the first such voxel); it must be finite and above 0. Clean the input, for example with a "
+        VoxelName(grid, i) +
+        " (the first such voxel); it must be finite and above 0. Clean the input, for example with a "
         "Calculator.");
     }
   }
@@ -136,6 +139,8 @@ std::vector<float> ExtinctionTolerances(const Grid& grid, int levelCount, double
 Octree BuildOctree(const Medium& medium, const Field& index, const OctreeSettings& settings, const std::string& device,
   const Monitor& monitor)
 {
+  using Clock = std::chrono::steady_clock;
+  const Clock::time_point start = Clock::now();
   CheckSettings(settings);
   Check(medium);
   CheckIndex(index, medium.grid);
@@ -164,6 +169,7 @@ Octree BuildOctree(const Medium& medium, const Field& index, const OctreeSetting
     octree.leftOut.emplace_back("the extinction is constant: no pyramid of it");
   }
   builder.Result(octree);
+  octree.seconds = std::chrono::duration<double>(Clock::now() - start).count();
   Report(monitor, 1.0);
   return octree;
 }

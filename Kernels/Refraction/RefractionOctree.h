@@ -34,6 +34,7 @@ struct Octree
 {
   std::vector<std::uint8_t> levels; ///< a voxel, x fastest; 0: a single voxel, k: a node of 2^k voxels an edge
   int topLevel = 0;                 ///< ceil(log2(longest edge in voxels))
+  double seconds = 0.0;             ///< of BuildOctree
   std::string device;               ///< that ran; empty: none had to
   std::vector<std::string> leftOut; ///< what the scene did not need
 };

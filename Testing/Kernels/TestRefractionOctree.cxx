@@ -60,9 +60,8 @@ std::vector<float> Random(const Size& size, unsigned seed = 1)
 /// Slow waves, so that nodes of many levels are whole.
 std::vector<float> Smooth(const Size& size)
 {
-  return Fill(size, [](int x, int y, int z) {
-    return 1.3 + 0.2 * std::sin(0.11 * x) * std::cos(0.07 * y) * std::exp(-0.002 * z * z);
-  });
+  return Fill(size,
+    [](int x, int y, int z) { return 1.3 + 0.2 * std::sin(0.11 * x) * std::cos(0.07 * y) * std::exp(-0.002 * z * z); });
 }
 
 /// A glass ball in air, off the middle.
@@ -115,8 +114,8 @@ Octree Build(const Size& size, const std::vector<float>& index, double tolerance
 
 std::string Named(const Size& size, double tolerance)
 {
-  return std::to_string(size[0]) + " x " + std::to_string(size[1]) + " x " + std::to_string(size[2]) +
-    ", tolerance " + std::to_string(tolerance);
+  return std::to_string(size[0]) + " x " + std::to_string(size[1]) + " x " + std::to_string(size[2]) + ", tolerance " +
+    std::to_string(tolerance);
 }
 
 /// What a call complains about; empty if it does not.
@@ -204,7 +203,8 @@ TEST_F(RefractionOctree, VoxelsOfANodeShareItsLevel)
   {
     const std::size_t x = i % size[0], y = i / size[0] % size[1], z = i / size[0] / size[1];
     const int level = levels[i];
-    const std::size_t corner = ((z >> level << level) * size[1] + (y >> level << level)) * size[0] + (x >> level << level);
+    const std::size_t corner =
+      ((z >> level << level) * size[1] + (y >> level << level)) * size[0] + (x >> level << level);
     ASSERT_EQ(levels[corner], level) << VoxelName(GridOf(size), i);
   }
 }
@@ -244,7 +244,9 @@ TEST(ConstantIndex, IsOneNodeAndRunsNothingOnTheDevice)
       EXPECT_THAT(octree.leftOut[0], HasSubstr("refractive index is constant"));
     }
   }
-  EXPECT_THAT(ComplaintOf([] { Build({ 2, 1, 1 }, { 1.0f, 1.5f }, 0.1, "no such device"); }),
+  EXPECT_THAT(ComplaintOf([] {
+    Build({ 2, 1, 1 }, { 1.0f, 1.5f }, 0.1, "no such device");
+  }),
     HasSubstr("no such device"));
 }
 
@@ -337,7 +339,9 @@ TEST(OctreeRefuses, WhatHasNoMeaning)
     std::vector<float> index(60, 1.0f);
     index[31] = wrong;
     index[59] = wrong;
-    EXPECT_THAT(ComplaintOf([&] { Build({ 3, 4, 5 }, index, 0.01); }),
+    EXPECT_THAT(ComplaintOf([&] {
+      Build({ 3, 4, 5 }, index, 0.01);
+    }),
       testing::AllOf(HasSubstr("refractive index is " + std::to_string(wrong)), HasSubstr("voxel (1, 2, 2)")));
   }
   const std::vector<float> index = { 1.0f, 1.5f };

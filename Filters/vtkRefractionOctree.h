@@ -1,0 +1,108 @@
+#ifndef vtkRefractionOctree_h
+#define vtkRefractionOctree_h
+
+#include "vtkImageAlgorithm.h"
+#include "vtkTyndallModule.h" // for export macro
+
+#include <string>
+
+/**
+ * @class vtkRefractionOctree
+ * @brief groups voxels of nearly equal refractive index, so that photons cross them in one step
+ *
+ * Input: vtkImageData with cell array `ior` (refractive index, 1 component, above 0), or that chosen by
+ * SetInputArrayToProcess 0; with IncludeExtinction also `sigma_a` and `sigma_s` (1 or 3 components, 1/length), or those
+ * chosen as 1 and 2. Point arrays are averaged to cells.
+ *
+ * Output 0: the input with cell array `octree_level` (uint8: 0 a single voxel, k a node of 2^k voxels an edge) and field
+ * data `left_out` (what the scene did not need) and `device`.
+ * Output 1: the same octree as vtkHyperTreeGrid, to look at. Its leaves are the nodes, with cell array `octree_level`.
+ *
+ * A node of level k > 0 is the cube of 2^k voxels an edge whose lowest voxel has indices, counted from the image's lower
+ * corner, that are multiples of 2^k. It is kept whole where
+ *
+ *     max(ior) - min(ior) < Tolerance
+ *     (max(sigma_t) - min(sigma_t)) diagonal of the node < ExtinctionTolerance       with IncludeExtinction
+ *
+ * over its voxels (the latter in each channel of sigma_t = sigma_a + sigma_s), and no larger node is. A quantity that is the
+ * same everywhere restricts nothing: where ior is constant the octree is one node and nothing runs on the device.
+ *
+ * A grid whose size is not a power of two is treated as if its last voxel were repeated: nodes at its upper faces may stick
+ * out of it. In output 1 nodes wholly outside are masked.
+ *
+ * In a parallel pipeline nodes cross the borders of pieces, so every rank asks for the whole extent, and hands on the piece
+ * of output 0 that it was asked for; output 1 is on the first rank.
+ *
+ * @sa vtkMeshVoxelizer vtkPhotonMarcher
+ * @par Thanks
+ * M. Pfeuti, Real-time Rendering of Refractive Objects in Participating Media, 2009, section 3.1.3.
+ */
+class TYNDALL_EXPORT vtkRefractionOctree : public vtkImageAlgorithm
+{
+public:
+  static vtkRefractionOctree* New();
+  vtkTypeMacro(vtkRefractionOctree, vtkImageAlgorithm);
+  void PrintSelf(ostream& os, vtkIndent indent) override;
+
+  ///@{
+  /// Largest difference of refractive index within a node. Default 0.01, valid [0, 1]; with 0 every voxel is a node, unless
+  /// the index is constant.
+  vtkSetClampMacro(Tolerance, double, 0.0, 1.0);
+  vtkGetMacro(Tolerance, double);
+  ///@}
+
+  ///@{
+  /// Whether extinction, too, has to be nearly equal within a node. Default off.
+  vtkSetMacro(IncludeExtinction, bool);
+  vtkGetMacro(IncludeExtinction, bool);
+  vtkBooleanMacro(IncludeExtinction, bool);
+  ///@}
+
+  ///@{
+  /// With IncludeExtinction: by how much the optical thickness of a straight way through a node may be off where extinction is
+  /// taken as constant in it. Default 0.1, valid [0, infinity).
+  vtkSetMacro(ExtinctionTolerance, double);
+  vtkGetMacro(ExtinctionTolerance, double);
+  ///@}
+
+  ///@{
+  /// Part of the name of the OpenCL device to use, of any case. Default empty: what the variable TYNDALL_DEVICE names, or
+  /// else PoCL's CPU device.
+  vtkSetStdStringFromCharMacro(Device);
+  vtkGetCharFromStdStringMacro(Device);
+  ///@}
+
+  ///@{
+  /// What came of the last update: the number of nodes, the seconds that their levels took, the name of the device (empty:
+  /// none was needed), and what the scene did not need, one a line.
+  vtkGetMacro(NodeCount, vtkIdType);
+  vtkGetMacro(Seconds, double);
+  vtkGetCharFromStdStringMacro(DeviceName);
+  vtkGetCharFromStdStringMacro(LeftOut);
+  ///@}
+
+protected:
+  vtkRefractionOctree();
+  ~vtkRefractionOctree() override;
+
+  int FillOutputPortInformation(int port, vtkInformation* information) override;
+  int RequestUpdateExtent(
+    vtkInformation* request, vtkInformationVector** inputs, vtkInformationVector* outputs) override;
+  int RequestData(vtkInformation* request, vtkInformationVector** inputs, vtkInformationVector* outputs) override;
+
+private:
+  vtkRefractionOctree(const vtkRefractionOctree&) = delete;
+  void operator=(const vtkRefractionOctree&) = delete;
+
+  double Tolerance = 0.01;
+  bool IncludeExtinction = false;
+  double ExtinctionTolerance = 0.1;
+  std::string Device;
+
+  vtkIdType NodeCount = 0;
+  double Seconds = 0.0;
+  std::string DeviceName;
+  std::string LeftOut;
+};
+
+#endif
