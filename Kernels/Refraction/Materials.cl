@@ -1,0 +1,66 @@
+// From samples inside to the quantities of a medium: each voxel is the mean of the materials in it.
+//
+// Defined before: CHANNELS, 1 or 3, of sigma_a and sigma_s; NOISE, 1 where materials are perturbed, which takes
+// GradientNoise.cl.
+
+inline void add_material(float part, float n, float4 absorption, float4 scattering, ulong i, ulong voxel,
+  __global float* ior, __global float* sigma_a, __global float* sigma_s)
+{
+  const float a[3] = { absorption.x, absorption.y, absorption.z };
+  const float s[3] = { scattering.x, scattering.y, scattering.z };
+  ior[voxel] += part * n;
+  for (int c = 0; c < CHANNELS; ++c)
+  {
+    sigma_a[i * CHANNELS + c] += part * a[c];
+    sigma_s[i * CHANNELS + c] += part * s[c];
+  }
+}
+
+// Adds one material to some of the grid's voxels. A voxel of one material alone has its very values.
+//   first, count   the voxels
+//   inside         samples of a voxel in the material, 0 to `samples`
+//   samples        of a voxel
+//   indexNoise     by how much n is perturbed, +-
+//   scatteringNoise  the same for sigma_s, relative
+//   frequency      1 / size of the noise's features, 1/length; position of the grid's corner and edges of a voxel: length
+//   covered        samples in any material so far
+//   ior            of the whole grid; the other arrays begin at `first`
+__kernel void add_object(ulong first, ulong count, __global const ushort* inside, float samples, float n,
+  float4 absorption, float4 scattering, float indexNoise, float scatteringNoise, uint seed, float frequency,
+  float4 corner, float4 spacing, int nx, int ny, __global float* covered, __global float* ior, __global float* sigma_a,
+  __global float* sigma_s)
+{
+  const ulong i = get_global_id(0);
+  if (i >= count)
+  {
+    return;
+  }
+  const ulong voxel = first + i;
+  const float number = inside[voxel];
+#if NOISE
+  if (number > 0.0f)
+  {
+    const ulong row = voxel / nx;
+    const float3 index = (float3)(voxel % nx, row % ny, row / ny);
+    const float noise = gradient_noise((corner.xyz + (index + 0.5f) * spacing.xyz) * frequency, seed);
+    n += indexNoise * noise;
+    scattering *= 1.0f + scatteringNoise * noise;
+  }
+#endif
+  covered[i] += number;
+  add_material(number / samples, n, absorption, scattering, i, voxel, ior, sigma_a, sigma_s);
+}
+
+// The same for what no mesh covers; `covered` becomes the part that is.
+__kernel void add_outside(ulong first, ulong count, float samples, float n, float4 absorption, float4 scattering,
+  __global float* covered, __global float* ior, __global float* sigma_a, __global float* sigma_s)
+{
+  const ulong i = get_global_id(0);
+  if (i >= count)
+  {
+    return;
+  }
+  const float number = covered[i];
+  covered[i] = number / samples;
+  add_material((samples - number) / samples, n, absorption, scattering, i, first + i, ior, sigma_a, sigma_s);
+}

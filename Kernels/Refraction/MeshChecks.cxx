@@ -1,0 +1,99 @@
+#include "MeshChecks.h"
+
+#include "SampleLattice.h"
+#include "Voxelization.h"
+
+#include <cstdio>
+
+namespace tyndall
+{
+namespace
+{
+std::string Place(const std::array<double, 3>& point)
+{
+  char text[96];
+  std::snprintf(text, sizeof(text), "(%.6g, %.6g, %.6g)", point[0], point[1], point[2]);
+  return text;
+}
+
+std::string Along(const MeshTopology::Edge& edge)
+{
+  return "from " + Place(edge[0]) + " to " + Place(edge[1]);
+}
+
+std::string Counted(std::size_t count, const char* thing)
+{
+  return std::to_string(count) + " " + thing + (count == 1 ? "" : "s");
+}
+
+/// The sentence for a mesh that intersects itself.
+std::string OfWindings(const WindingNumbers& windings, const Grid& grid)
+{
+  std::array<double, 3> centre;
+  for (int axis = 0; axis < 3; ++axis)
+  {
+    centre[axis] = grid.origin[axis] + (windings.firstOddVoxel[axis] + 0.5) * grid.spacing[axis];
+  }
+  return "the mesh intersects itself, or has parts inside out or within each other: it winds from " +
+    std::to_string(windings.lowest) + " to " + std::to_string(windings.highest) +
+    " times about the centres of voxels, not 0 times or once about " + std::to_string(windings.oddVoxels) + " of them" +
+    ", the first at " + Place(centre) + ". What it encloses an even number of times counts as outside.";
+}
+}
+
+MeshTopology CheckClosed(const TriangleMesh& mesh, const std::string& name, const Grid& grid, int samples)
+{
+  MeshTopology topology;
+  try
+  {
+    topology = Examine(mesh);
+  }
+  catch (const InvalidInput& error)
+  {
+    throw InvalidInput(name + ": " + error.what());
+  }
+  if (topology.degenerateTriangles == mesh.triangles.size())
+  {
+    throw InvalidInput(name + ": the mesh has no volume: its " + Counted(mesh.triangles.size(), "triangle") +
+      " have no area (degenerate).");
+  }
+  if (topology.boundaryEdges > 0 && !SampleLattice(grid, samples, { &mesh }).Closes(mesh))
+  {
+    throw InvalidInput(name + ": the mesh is open. It has " + Counted(topology.boundaryEdges, "boundary edge") +
+      " (edges of an odd number of triangles), the first " + Along(topology.firstBoundaryEdge) +
+      ". Only a closed mesh has an inside: fill its holes.");
+  }
+  return topology;
+}
+
+std::vector<std::string> Oddities(Device& device, const TriangleMesh& mesh, const MeshTopology& topology,
+  const std::string& name, const Grid& grid, const Monitor& monitor)
+{
+  std::vector<std::string> oddities;
+  const auto say = [&](const std::string& what) { oddities.push_back(name + ": " + what); };
+  if (topology.degenerateTriangles > 0)
+  {
+    say("the mesh has " + Counted(topology.degenerateTriangles, "triangle") +
+      " without area (degenerate), the first is number " + std::to_string(topology.firstDegenerateTriangle) +
+      "; they make no difference.");
+  }
+  if (topology.disagreeingEdges > 0)
+  {
+    say("the triangles on both sides of " + Counted(topology.disagreeingEdges, "edge") +
+      " disagree about which side of the mesh is outside, the first " + Along(topology.firstDisagreeingEdge) +
+      ". Inside is taken for what it encloses an odd number of times, and whether it intersects itself is not known.");
+    return oddities;
+  }
+  const bool inverted = topology.enclosedVolume < 0.0;
+  if (inverted)
+  {
+    say("the mesh is inverted: its normals point inwards. Inside is taken for what it encloses all the same.");
+  }
+  const WindingNumbers windings = FindWindings(device, grid, mesh, inverted, monitor);
+  if (windings.oddVoxels > 0)
+  {
+    say(OfWindings(windings, grid));
+  }
+  return oddities;
+}
+}

@@ -1,0 +1,317 @@
+// Which samples of a fine grid lie inside a closed mesh (Eisemann and Decoret 2008; Pfeuti 2009, section 3.1.2): a column of
+// samples is a row of words, a bit a sample, and every triangle toggles all samples of its columns that lie before it.
+//
+// Toggling the samples before a crossing is left to the end: a triangle toggles only the last of them, and one scan of the
+// column then does the rest, for all triangles at once.
+//
+// All is whole numbers. Points lie on a lattice (see Voxelization.cxx), samples at odd multiples of half a pitch, and a
+// sample that touches a plane or an edge is decided as if it were moved by (e, e^2, e^3) with e infinitely small. A column so
+// never meets an edge or a corner, and which samples are inside is the same whichever axis the columns run along.
+//
+// Defined before: AXIS, 0 to 2, along which the columns run; SAMPLES, samples an edge of a voxel; FROM_ABOVE, 1 where what
+// lies after a crossing is toggled instead; WINDING, 1 where crossings are counted with their sign instead, see below.
+
+#if AXIS == 0
+#define ALONG(p) ((p).x)
+#define ACROSS(p) ((p).y)
+#define UP(p) ((p).z)
+#elif AXIS == 1
+#define ALONG(p) ((p).y)
+#define ACROSS(p) ((p).x)
+#define UP(p) ((p).z)
+#else
+#define ALONG(p) ((p).z)
+#define ACROSS(p) ((p).x)
+#define UP(p) ((p).y)
+#endif
+
+#if WINDING
+// The winding number of the mesh about the centre of each voxel: a byte counts the crossings between it and the next one, +1
+// for each at which a line along the column leaves the mesh, -1 where it enters.
+#define CELLS 4
+#define BITS 4
+#else
+// Voxels of a word, and bits used of it: a voxel's samples are never in two words.
+#define CELLS (32 / SAMPLES)
+#define BITS (CELLS * SAMPLES)
+#endif
+#define ALL_BITS ((uint)((1UL << BITS) - 1UL))
+#define ONE_CELL ((uint)((1UL << SAMPLES) - 1UL))
+
+// An edge of a triangle, seen along the columns, in a column: >= 0 on the inner side.
+typedef struct
+{
+  long value, across, up; // and what a step to the next column and to the next row adds
+} edge;
+
+inline edge edge_in_column(int3 from, int3 to, long across, long up, int pitch)
+{
+  const long right = (long)UP(from) - UP(to);
+  const long above = (long)ACROSS(to) - ACROSS(from);
+  edge e;
+  e.value = above * (up - UP(from)) + right * (across - ACROSS(from));
+  e.value -= right > 0 || (right == 0 && above > 0) ? 0 : 1; // on the edge: where the sample was moved to
+  e.across = right * pitch;
+  e.up = above * pitch;
+  return e;
+}
+
+// Of samples 0, 1, ..., each `step` above the one before, those that lie before a plane: those with
+// number * step < excess. What lies beyond the column counts as its end.
+inline int samples_before(long excess, long step, int samples)
+{
+  if (excess <= 0)
+  {
+    return 0;
+  }
+  if (excess > step * (samples - 1))
+  {
+    return samples;
+  }
+  // Rounding in float is by less than one, as there are less than 2^20 samples.
+  const long wanted = excess - 1;
+  long number = (long)((float)wanted / (float)step);
+  const long rest = wanted - number * step;
+  number += rest < 0 ? -1 : rest >= step ? 1 : 0;
+  return (int)number + 1;
+}
+
+inline void mark_crossing(__global uint* column, int before, int samples, int leaving)
+{
+#if WINDING
+  if (before > 0)
+  {
+    const int sample = before - 1;
+    atomic_add(column + sample / 4, (uint)leaving << (8 * (sample % 4)));
+  }
+#else
+  const int sample = FROM_ABOVE ? before : before - 1;
+  if (sample >= 0 && sample < samples)
+  {
+    atomic_xor(column + sample / BITS, 1u << (sample % BITS));
+  }
+#endif
+}
+
+// Marks where a triangle crosses the columns of a tile.
+//   tiles          a work-item each: triangle, first column and row, (columns << 16) | rows
+//   pitch          of the samples, in units of the lattice
+//   samples        of a column; columns: of a row; words: of a column
+//   firstRow       the first row of columns in `marks`
+__kernel void mark_crossings(int tileCount, __global const uint4* tiles, __global const int* points,
+  __global const int* triangles, int pitch, int samples, int columns, int words, int firstRow, __global uint* marks)
+{
+  const int id = get_global_id(0);
+  if (id >= tileCount)
+  {
+    return;
+  }
+  const uint4 tile = tiles[id];
+  const int3 corner = vload3(tile.x, triangles);
+  const int3 a = vload3(corner.x, points);
+  int3 b = vload3(corner.y, points);
+  int3 c = vload3(corner.z, points);
+
+  // The plane. Its normal is made to point along the column.
+  const long3 ab = convert_long3(b - a);
+  const long3 ac = convert_long3(c - a);
+  long3 normal = (long3)(ab.y * ac.z - ab.z * ac.y, ab.z * ac.x - ab.x * ac.z, ab.x * ac.y - ab.y * ac.x);
+  if (ALONG(normal) == 0)
+  {
+    return; // no column, moved as they are, crosses it
+  }
+  const int leaving = ALONG(normal) > 0 ? 1 : -1;
+  normal *= leaving;
+  const int towards = normal.x != 0 ? normal.x > 0 : normal.y != 0 ? normal.y > 0 : normal.z > 0;
+
+  // The edges, run counterclockwise in (across, up).
+  if (ACROSS(ab) * UP(ac) - UP(ab) * ACROSS(ac) < 0)
+  {
+    const int3 other = b;
+    b = c;
+    c = other;
+  }
+  const long across = (long)pitch * tile.y + pitch / 2;
+  const long up = (long)pitch * tile.z + pitch / 2;
+  edge e0 = edge_in_column(a, b, across, up, pitch);
+  edge e1 = edge_in_column(b, c, across, up, pitch);
+  edge e2 = edge_in_column(c, a, across, up, pitch);
+
+  // How far the column's first sample is before the plane; one more where a sample on the plane counts as before it.
+  const long step = ALONG(normal) * pitch;
+  long excess = ACROSS(normal) * (ACROSS(a) - across) + UP(normal) * (UP(a) - up) +
+    ALONG(normal) * (ALONG(a) - pitch / 2) + (towards ? 0 : 1);
+  const long excessAcross = ACROSS(normal) * pitch;
+  const long excessUp = UP(normal) * pitch;
+
+  const int tileColumns = tile.w >> 16;
+  const int tileRows = tile.w & 0xffff;
+  __global uint* row = marks + ((ulong)(tile.z - firstRow) * columns + tile.y) * words;
+  for (int j = 0; j < tileRows; ++j)
+  {
+    long v0 = e0.value, v1 = e1.value, v2 = e2.value, x = excess;
+    for (int i = 0; i < tileColumns; ++i)
+    {
+      if ((v0 | v1 | v2) >= 0)
+      {
+        mark_crossing(row + (ulong)i * words, samples_before(x, step, samples), samples, leaving);
+      }
+      v0 += e0.across;
+      v1 += e1.across;
+      v2 += e2.across;
+      x -= excessAcross;
+    }
+    e0.value += e0.up;
+    e1.value += e1.up;
+    e2.value += e2.up;
+    excess -= excessUp;
+    row += (ulong)columns * words;
+  }
+}
+
+#if WINDING
+
+// Winding numbers of one column's voxels: the smallest, the largest, how many are neither 0 nor 1 when multiplied by `sign`,
+// and the first such voxel.
+__kernel void find_windings(
+  int columnCount, int words, int samples, int sign, __global const uint* marks, __global int4* found)
+{
+  const int id = get_global_id(0);
+  if (id >= columnCount)
+  {
+    return;
+  }
+  int winding = 0;
+  int4 of_column = (int4)(0, 0, 0, samples);
+  for (int w = words - 1; w >= 0; --w)
+  {
+    // The bytes were added up as one number: a negative byte has borrowed from the next one.
+    int rest = (int)marks[(ulong)id * words + w];
+    int counts[4];
+    for (int k = 0; k < 4; ++k)
+    {
+      counts[k] = (char)(rest & 0xff);
+      rest = (rest - counts[k]) >> 8;
+    }
+    for (int k = 3; k >= 0; --k)
+    {
+      winding += counts[k];
+      const int oriented = winding * sign;
+      of_column.x = min(of_column.x, oriented);
+      of_column.y = max(of_column.y, oriented);
+      if (oriented != 0 && oriented != 1)
+      {
+        of_column.z += 1;
+        of_column.w = 4 * w + k;
+      }
+    }
+  }
+  found[id] = of_column;
+}
+
+#else
+
+// Turns the marks of each column into bits that say inside or outside.
+__kernel void fill_columns(int columnCount, int words, __global uint* marks)
+{
+  const int id = get_global_id(0);
+  if (id >= columnCount)
+  {
+    return;
+  }
+  __global uint* column = marks + (ulong)id * words;
+  uint carried = 0;
+#if FROM_ABOVE
+  for (int w = 0; w < words; ++w)
+  {
+    uint bits = column[w];
+    bits ^= bits << 1;
+    bits ^= bits << 2;
+    bits ^= bits << 4;
+    bits ^= bits << 8;
+    bits ^= bits << 16;
+    bits = (bits ^ carried) & ALL_BITS;
+    column[w] = bits;
+    carried = (bits >> (BITS - 1)) != 0 ? ALL_BITS : 0;
+  }
+#else
+  for (int w = words - 1; w >= 0; --w)
+  {
+    uint bits = column[w];
+    bits ^= bits >> 1;
+    bits ^= bits >> 2;
+    bits ^= bits >> 4;
+    bits ^= bits >> 8;
+    bits ^= bits >> 16;
+    bits ^= carried;
+    column[w] = bits;
+    carried = (bits & 1) != 0 ? ALL_BITS : 0;
+  }
+#endif
+}
+
+// Counts the samples of each voxel that are inside, and not claimed by an object that comes later. A work-item a column of
+// voxels.
+//   voxels    of a column of voxels; columns, rows: of the columns of voxels that `bits` holds
+//   claimed   as `bits`: samples of later objects; those of this one are added. Not looked at where CLAIMS is 0
+//   counts    the first voxel of the slab; strides: from voxel to voxel along, across and up
+__kernel void count_samples(int voxels, int columns, int rows, int words, __global const uint* bits,
+  __global uint* claimed, int claims, __global ushort* counts, int strideAlong, int strideAcross, int strideUp, ulong first)
+{
+  const int across = get_global_id(0);
+  const int up = get_global_id(1);
+  if (across >= columns || up >= rows)
+  {
+    return;
+  }
+  const ulong rowOfColumns = (ulong)columns * SAMPLES * words;
+  const ulong corner = ((ulong)up * SAMPLES * columns + across) * SAMPLES * words;
+  __global ushort* target = counts + first + (ulong)across * strideAcross + (ulong)up * strideUp;
+  for (int w = 0; w < words; ++w)
+  {
+    uint any = 0;
+    uint every = ALL_BITS;
+    for (int j = 0; j < SAMPLES; ++j)
+    {
+      for (int i = 0; i < SAMPLES; ++i)
+      {
+        const uint word = bits[corner + j * rowOfColumns + i * words + w];
+        any |= word;
+        every &= word;
+      }
+    }
+    int number[CELLS];
+    const int even = any == 0 || (every == ALL_BITS && !claims);
+    for (int cell = 0; cell < CELLS; ++cell)
+    {
+      number[cell] = any != 0 && even ? SAMPLES * SAMPLES * SAMPLES : 0;
+    }
+    if (!even)
+    {
+      for (int j = 0; j < SAMPLES; ++j)
+      {
+        for (int i = 0; i < SAMPLES; ++i)
+        {
+          const ulong place = corner + j * rowOfColumns + i * words + w;
+          uint word = bits[place];
+          if (claims)
+          {
+            const uint taken = claimed[place];
+            claimed[place] = taken | word;
+            word &= ~taken;
+          }
+          for (int cell = 0; cell < CELLS; ++cell)
+          {
+            number[cell] += popcount((word >> (SAMPLES * cell)) & ONE_CELL);
+          }
+        }
+      }
+    }
+    for (int cell = 0; cell < CELLS && w * CELLS + cell < voxels; ++cell)
+    {
+      target[(ulong)(w * CELLS + cell) * strideAlong] = (ushort)number[cell];
+    }
+  }
+}
+
+#endif

@@ -1,0 +1,403 @@
+#include "DeviceTest.h"
+#include "MeshShapes.h"
+
+#include "Refraction/SampleLattice.h"
+#include "Refraction/Voxelization.h"
+
+#include <gmock/gmock.h>
+
+#include <algorithm>
+#include <cmath>
+#include <numeric>
+#include <random>
+
+using namespace tyndall;
+using shapes::Point;
+
+namespace
+{
+using Counts = std::vector<cl_ushort>;
+
+Grid CubeGrid(int size, double low = -1.0, double high = 1.0)
+{
+  const double spacing = (high - low) / size;
+  return { { size, size, size }, { spacing, spacing, spacing }, { low, low, low } };
+}
+
+class MeshVoxelization : public DeviceTest
+{
+protected:
+  Counts Inside(const Grid& grid, const TriangleMesh& mesh, const VoxelizationSettings& settings = {})
+  {
+    return CountSamplesInside(this->GetDevice(), grid, { &mesh }, settings)[0].Read();
+  }
+
+  Counts Inside(const Grid& grid, const TriangleMesh& mesh, int samples)
+  {
+    VoxelizationSettings settings;
+    settings.samples = samples;
+    return this->Inside(grid, mesh, settings);
+  }
+
+  double Volume(const Grid& grid, const TriangleMesh& mesh, int samples = 4)
+  {
+    const Counts counts = this->Inside(grid, mesh, samples);
+    const double sum = std::accumulate(counts.begin(), counts.end(), 0.0);
+    return sum * grid.VoxelVolume() / (samples * samples * samples);
+  }
+
+  void ExpectSameFromAllSides(const Grid& grid, const TriangleMesh& mesh, int samples)
+  {
+    VoxelizationSettings settings;
+    settings.samples = samples;
+    const Counts first = this->Inside(grid, mesh, settings);
+    EXPECT_GT(std::accumulate(first.begin(), first.end(), 0.0), 0.0);
+    for (int axis = 0; axis < 3; ++axis)
+    {
+      for (bool above : { false, true })
+      {
+        settings.columnAxis = axis;
+        settings.fromAbove = above;
+        EXPECT_TRUE(this->Inside(grid, mesh, settings) == first)
+          << samples << " samples, axis " << axis << (above ? " from above" : " from below");
+      }
+    }
+  }
+};
+
+/// How often a mesh winds about a point, from the solid angles of its triangles (Van Oosterom and Strackee 1983): a reference
+/// that knows no columns.
+double Winding(const TriangleMesh& mesh, const Point& centre)
+{
+  const auto dot = [](const Point& a, const Point& b) { return a[0] * b[0] + a[1] * b[1] + a[2] * b[2]; };
+  double angle = 0.0;
+  for (const auto& triangle : mesh.triangles)
+  {
+    std::array<Point, 3> r;
+    std::array<double, 3> length;
+    for (int c = 0; c < 3; ++c)
+    {
+      const Point& p = mesh.points[static_cast<std::size_t>(triangle[c])];
+      r[c] = { p[0] - centre[0], p[1] - centre[1], p[2] - centre[2] };
+      length[c] = std::sqrt(dot(r[c], r[c]));
+    }
+    const auto& [a, b, c] = r;
+    const double box = a[0] * (b[1] * c[2] - b[2] * c[1]) + a[1] * (b[2] * c[0] - b[0] * c[2]) +
+      a[2] * (b[0] * c[1] - b[1] * c[0]);
+    angle += 2.0 *
+      std::atan2(box,
+        length[0] * length[1] * length[2] + dot(a, b) * length[2] + dot(b, c) * length[0] + dot(c, a) * length[1]);
+  }
+  return angle / (4.0 * shapes::Pi);
+}
+
+/// A closed mesh as rough as can be: a torus whose points are thrown about.
+TriangleMesh RoughTorus(unsigned seed, double roughness)
+{
+  TriangleMesh mesh = shapes::Torus({ 0.02, -0.03, 0.01 }, 0.6, 0.25, 24, 12);
+  std::mt19937 generator(seed);
+  std::uniform_real_distribution<double> anywhere(-roughness, roughness);
+  for (Point& point : mesh.points)
+  {
+    for (double& coordinate : point)
+    {
+      coordinate += anywhere(generator);
+    }
+  }
+  return mesh;
+}
+
+/// Points on the lattice of sample points of CubeGrid(16) with 4 samples, so that nothing but ties is left.
+TriangleMesh OnSamples(TriangleMesh mesh)
+{
+  const double pitch = 2.0 / 64.0;
+  for (Point& point : mesh.points)
+  {
+    for (double& coordinate : point)
+    {
+      coordinate = (std::floor(coordinate / pitch) + 0.5) * pitch;
+    }
+  }
+  return mesh;
+}
+
+TEST_F(MeshVoxelization, SphereHasItsVolume)
+{
+  const double exact = 4.0 / 3.0 * shapes::Pi * 0.8 * 0.8 * 0.8;
+  EXPECT_NEAR(this->Volume(CubeGrid(64), shapes::Sphere({ 0.01, 0.02, -0.03 }, 0.8)), exact, 1e-3 * exact);
+}
+
+TEST_F(MeshVoxelization, TorusHasItsVolume)
+{
+  const double exact = 2.0 * shapes::Pi * shapes::Pi * 0.6 * 0.25 * 0.25;
+  EXPECT_NEAR(this->Volume(CubeGrid(64), shapes::Torus({ 0.01, 0.02, -0.03 }, 0.6, 0.25)), exact, 1e-3 * exact);
+}
+
+TEST_F(MeshVoxelization, TurnedBoxHasItsVolume)
+{
+  EXPECT_NEAR(this->Volume(CubeGrid(64), shapes::TurnedBox({ -0.5, -0.4, -0.6 }, { 0.5, 0.4, 0.6 })), 0.96, 5e-4);
+}
+
+TEST_F(MeshVoxelization, BoxOnVoxelsIsExact)
+{
+  const Grid grid = { { 9, 10, 11 }, { 0.5, 0.25, 1.0 }, { -3.0, 7.0, 0.0 } };
+  const Counts counts = this->Inside(grid, shapes::Box({ -2.0, 7.5, 1.0 }, { 0.5, 9.0, 10.0 }));
+  for (std::size_t voxel = 0; voxel < counts.size(); ++voxel)
+  {
+    const std::size_t x = voxel % 9, y = voxel / 9 % 10, z = voxel / 90;
+    const bool inside = x >= 2 && x < 7 && y >= 2 && y < 8 && z >= 1 && z < 10;
+    ASSERT_EQ(counts[voxel], inside ? 64 : 0) << x << " " << y << " " << z;
+  }
+}
+
+TEST_F(MeshVoxelization, SamplesOnFacesCountOnce)
+{
+  // Every face runs through samples; of two opposite faces one has them.
+  const TriangleMesh box = OnSamples(shapes::Box({ -0.5, -0.5, -0.5 }, { 0.5, 0.5, 0.5 }));
+  EXPECT_DOUBLE_EQ(this->Volume(CubeGrid(16), box), 1.0);
+}
+
+TEST_F(MeshVoxelization, ErrorOfOccupancyFallsWithTheFactor)
+{
+  const Grid grid = CubeGrid(32);
+  const TriangleMesh sphere = shapes::Sphere({ 0.01, 0.02, -0.03 }, 0.8);
+  const Counts fine = this->Inside(grid, sphere, 16);
+  std::vector<double> error;
+  for (int samples : { 1, 2, 4, 8 })
+  {
+    const Counts counts = this->Inside(grid, sphere, samples);
+    double sum = 0.0;
+    for (std::size_t i = 0; i < counts.size(); ++i)
+    {
+      const double difference = counts[i] / std::pow(samples, 3.0) - fine[i] / 4096.0;
+      sum += difference * difference;
+    }
+    error.push_back(std::sqrt(sum / counts.size()));
+  }
+  for (std::size_t k = 1; k < error.size(); ++k)
+  {
+    EXPECT_LT(error[k], 0.55 * error[k - 1]); // the part of samples near the border halves, and their errors cancel
+  }
+}
+
+TEST_F(MeshVoxelization, AgreesWithSolidAngles)
+{
+  const Grid grid = { { 13, 11, 9 }, { 0.17, 0.2, 0.25 }, { -1.1, -1.1, -1.1 } };
+  for (unsigned seed : { 1u, 2u, 3u })
+  {
+    const TriangleMesh mesh = RoughTorus(seed, 0.1);
+    const Counts counts = this->Inside(grid, mesh, 1);
+    for (std::size_t voxel = 0; voxel < counts.size(); ++voxel)
+    {
+      const Point centre = { grid.origin[0] + (voxel % 13 + 0.5) * 0.17, grid.origin[1] + (voxel / 13 % 11 + 0.5) * 0.2,
+        grid.origin[2] + (voxel / 143 + 0.5) * 0.25 };
+      const int winding = static_cast<int>(std::lround(Winding(mesh, centre)));
+      ASSERT_EQ(counts[voxel], winding & 1) << "seed " << seed << ", voxel " << voxel << ", winding " << winding;
+    }
+  }
+}
+
+TEST_F(MeshVoxelization, IsTheSameFromAllSides)
+{
+  const Grid grid = { { 37, 22, 29 }, { 0.055, 0.09, 0.07 }, { -1.0, -0.95, -1.05 } };
+  for (int samples : { 1, 3, 4, 16 })
+  {
+    this->ExpectSameFromAllSides(grid, RoughTorus(5, 0.1), samples);
+  }
+}
+
+TEST_F(MeshVoxelization, IsTheSameFromAllSidesWhereEverythingIsATie)
+{
+  const Grid grid = CubeGrid(16);
+  this->ExpectSameFromAllSides(grid, OnSamples(RoughTorus(7, 0.1)), 4);
+  this->ExpectSameFromAllSides(grid, OnSamples(shapes::Sphere({ 0, 0, 0 }, 0.8, 3)), 4);
+  this->ExpectSameFromAllSides(grid, OnSamples(shapes::Torus({ 0, 0, 0 }, 0.6, 0.3, 16, 8)), 4);
+  this->ExpectSameFromAllSides(grid, OnSamples(shapes::Box({ -0.5, -0.7, -0.2 }, { 0.5, 0.5, 0.5 })), 4);
+}
+
+TEST_F(MeshVoxelization, IsTheSameFromAllSidesForMeshesThatStickOut)
+{
+  this->ExpectSameFromAllSides(CubeGrid(21, 0.0, 0.7), RoughTorus(9, 0.05), 4);
+  this->ExpectSameFromAllSides(CubeGrid(8, -0.1, 0.2), shapes::Sphere({ 0.3, 0.1, 0.2 }, 0.4), 4);
+}
+
+TEST_F(MeshVoxelization, IsTheSameInSlabs)
+{
+  const Grid grid = CubeGrid(30);
+  VoxelizationSettings settings;
+  const Counts whole = this->Inside(grid, RoughTorus(3, 0.1), settings);
+  settings.slabBytes = 1;
+  EXPECT_TRUE(this->Inside(grid, RoughTorus(3, 0.1), settings) == whole);
+  settings.slabBytes = 100000;
+  EXPECT_TRUE(this->Inside(grid, RoughTorus(3, 0.1), settings) == whole);
+}
+
+TEST_F(MeshVoxelization, FineGridIsBounded)
+{
+  // As a whole it would take 16 MB.
+  const Grid grid = CubeGrid(128);
+  VoxelizationSettings settings;
+  settings.slabBytes = std::size_t(1) << 20;
+  Device& device = this->GetDevice();
+  device.ResetPeak();
+  const std::size_t before = device.PeakBytes();
+  this->Inside(grid, shapes::Torus({ 0, 0, 0 }, 0.6, 0.25), settings);
+  EXPECT_LT(device.PeakBytes() - before, 2 * grid.VoxelCount() + (std::size_t(5) << 20));
+}
+
+TEST_F(MeshVoxelization, LargeTrianglesAreAsManySmallOnes)
+{
+  // The box's twelve triangles are split into many tiles; those of its division are one each.
+  const TriangleMesh box = shapes::Box({ -0.875, -0.75, -0.625 }, { 0.875, 0.5, 0.75 });
+  TriangleMesh divided = box;
+  for (int d = 0; d < 5; ++d)
+  {
+    TriangleMesh finer;
+    finer.points = divided.points;
+    for (const auto& [a, b, c] : divided.triangles)
+    {
+      std::array<int, 3> middle;
+      const std::array<int, 3> corner = { a, b, c };
+      for (std::size_t side = 0; side < 3; ++side)
+      {
+        const Point& p = divided.points[static_cast<std::size_t>(corner[side])];
+        const Point& q = divided.points[static_cast<std::size_t>(corner[(side + 1) % 3])];
+        middle[side] = static_cast<int>(finer.points.size());
+        finer.points.push_back({ 0.5 * (p[0] + q[0]), 0.5 * (p[1] + q[1]), 0.5 * (p[2] + q[2]) });
+      }
+      finer.triangles.insert(finer.triangles.end(),
+        { { a, middle[0], middle[2] }, { middle[0], b, middle[1] }, { middle[2], middle[1], c }, middle });
+    }
+    divided = std::move(finer);
+  }
+  EXPECT_TRUE(this->Inside(CubeGrid(100), box) == this->Inside(CubeGrid(100), divided));
+}
+
+TEST_F(MeshVoxelization, TilesAreSmallAndFollowTheTriangle)
+{
+  // A sliver across a grid of 1024^2 columns: the box about it has 1024 tiles.
+  const Grid grid = CubeGrid(256);
+  TriangleMesh sliver;
+  sliver.points = { { 0, -0.99, -0.99 }, { 0.1, 0.99, 0.98 }, { 0, 0.98, 0.99 } };
+  sliver.triangles = { { 0, 1, 2 } };
+  const SampleLattice lattice(grid, 4, { &sliver });
+  const SampleColumns columns(grid, 0, 4, lattice.Pitch());
+  const std::vector<cl_uint4> tiles = LatticeMesh(this->GetDevice(), lattice, sliver).Tiles(columns, 0, 1024);
+  EXPECT_LE(tiles.size(), 130u);
+  for (const cl_uint4& tile : tiles)
+  {
+    EXPECT_LE((tile.s[3] >> 16) * (tile.s[3] & 0xffff), 1024u);
+  }
+}
+
+TEST_F(MeshVoxelization, LaterMeshesWin)
+{
+  const Grid grid = CubeGrid(20);
+  const TriangleMesh sphere = shapes::Sphere({ 0, 0, 0 }, 0.8, 4);
+  const TriangleMesh box = shapes::TurnedBox({ -0.3, -0.3, -0.3 }, { 0.9, 0.3, 0.3 });
+  const auto both = CountSamplesInside(this->GetDevice(), grid, { &sphere, &box });
+  const Counts ofSphere = both[0].Read();
+  EXPECT_TRUE(both[1].Read() == this->Inside(grid, box));
+  const Counts alone = this->Inside(grid, sphere);
+  const Counts ofBox = both[1].Read();
+  bool shared = false;
+  for (std::size_t i = 0; i < alone.size(); ++i)
+  {
+    ASSERT_LE(ofSphere[i], alone[i]);
+    ASSERT_LE(ofSphere[i] + ofBox[i], 64);
+    if (alone[i] == 64)
+    {
+      ASSERT_EQ(ofSphere[i] + ofBox[i], 64); // nothing gets lost between them
+      shared = shared || (ofSphere[i] > 0 && ofBox[i] > 0);
+    }
+  }
+  EXPECT_TRUE(shared);
+}
+
+TEST_F(MeshVoxelization, MeshesThatTouchShareTheirBorder)
+{
+  // A cut at an odd place and angle, the same points on both sides: each sample belongs to one of them.
+  const TriangleMesh whole = shapes::Box({ -0.8, -0.8, -0.8 }, { 0.8, 0.8, 0.8 });
+  const auto part = [](bool upper) {
+    TriangleMesh mesh = shapes::Box({ -0.8, -0.8, -0.8 }, { 0.8, 0.8, 0.8 });
+    const double cut[4] = { -0.123, 0.321, 0.057, 0.501 };
+    for (int k = 0; k < 4; ++k)
+    {
+      mesh.points[static_cast<std::size_t>(upper ? k : k + 4)][2] = cut[k];
+    }
+    return mesh;
+  };
+  const TriangleMesh lower = part(false);
+  TriangleMesh upper = part(true);
+  upper.triangles[0] = { 0, 2, 1 }; // the diagonal of the other side
+  upper.triangles[1] = { 1, 2, 3 };
+  TriangleMesh lowerSameDiagonal = lower;
+  lowerSameDiagonal.triangles[2] = { 4, 5, 6 };
+  lowerSameDiagonal.triangles[3] = { 5, 7, 6 };
+  const Counts all = this->Inside(CubeGrid(24), whole);
+  const Counts below = this->Inside(CubeGrid(24), lowerSameDiagonal);
+  const Counts above = this->Inside(CubeGrid(24), upper);
+  for (std::size_t i = 0; i < all.size(); ++i)
+  {
+    ASSERT_EQ(below[i] + above[i], all[i]) << i;
+  }
+}
+
+TEST_F(MeshVoxelization, RefusesSettingsWithoutMeaning)
+{
+  const TriangleMesh box = shapes::Box({ -0.5, -0.5, -0.5 }, { 0.5, 0.5, 0.5 });
+  EXPECT_THROW(this->Inside(CubeGrid(4), box, 0), InvalidInput);
+  EXPECT_THROW(this->Inside(CubeGrid(4), box, 17), InvalidInput);
+  const TriangleMesh huge = shapes::Box({ -1e9, -0.5, -0.5 }, { 1e9, 0.5, 0.5 });
+  try
+  {
+    this->Inside(CubeGrid(4), huge);
+    FAIL() << "the huge mesh was taken";
+  }
+  catch (const InvalidInput& error)
+  {
+    EXPECT_THAT(error.what(), testing::HasSubstr("voxels long"));
+  }
+}
+
+TEST_F(MeshVoxelization, CanBeStopped)
+{
+  VoxelizationSettings settings;
+  settings.slabBytes = 1;
+  int calls = 0;
+  const TriangleMesh sphere = shapes::Sphere({ 0, 0, 0 }, 0.8, 3);
+  EXPECT_THROW(CountSamplesInside(this->GetDevice(), CubeGrid(16), { &sphere }, settings,
+                 [&](double done) {
+                   EXPECT_LE(done, 1.0);
+                   return ++calls < 5;
+                 }),
+    Aborted);
+  EXPECT_EQ(calls, 5);
+}
+
+TEST_F(MeshVoxelization, WindingNumbersOfNestedAndOverlappingMeshes)
+{
+  const Grid grid = CubeGrid(32);
+  const TriangleMesh large = shapes::Sphere({ 0, 0, 0 }, 0.8, 4);
+  const TriangleMesh small = shapes::Sphere({ 0.1, 0, 0 }, 0.4, 4);
+  const auto windings = [&](const TriangleMesh& mesh, bool inverted = false) {
+    return FindWindings(this->GetDevice(), grid, mesh, inverted);
+  };
+  const WindingNumbers once = windings(large);
+  EXPECT_EQ(once.lowest, 0);
+  EXPECT_EQ(once.highest, 1);
+  EXPECT_EQ(once.oddVoxels, 0u);
+
+  const WindingNumbers twice = windings(shapes::Together(large, small));
+  const Counts inSmall = this->Inside(grid, small, 1);
+  EXPECT_EQ(twice.highest, 2);
+  EXPECT_EQ(twice.oddVoxels, static_cast<std::size_t>(std::count(inSmall.begin(), inSmall.end(), 1)));
+  const auto& [x, y, z] = twice.firstOddVoxel;
+  const std::size_t first = static_cast<std::size_t>(std::find(inSmall.begin(), inSmall.end(), 1) - inSmall.begin());
+  EXPECT_EQ(static_cast<std::size_t>((z * 32 + y) * 32 + x), first);
+
+  EXPECT_EQ(windings(shapes::Together(large, shapes::Inverted(small))).oddVoxels, 0u); // a hollow ball
+  EXPECT_EQ(windings(shapes::Inverted(large)).lowest, -1);
+  EXPECT_EQ(windings(shapes::Inverted(large), true).oddVoxels, 0u);
+}
+}
