@@ -43,8 +43,8 @@ void CheckFilterSize(int filterSize)
 {
   if (filterSize < 1 || filterSize > LargestFilter || filterSize % 2 == 0)
   {
-    throw InvalidInput("The filter is " + std::to_string(filterSize) + " voxels wide; it must be an odd number from 1 to " +
-      std::to_string(LargestFilter) + ".");
+    throw InvalidInput("The filter is " + std::to_string(filterSize) +
+      " voxels wide; it must be an odd number from 1 to " + std::to_string(LargestFilter) + ".");
   }
 }
 
@@ -79,8 +79,8 @@ std::vector<float> IndexGradient(Device& device, const Grid& grid, const Buffer<
     "index_gradient", { kernel_source::Numerics, kernel_source::IndexField }, "-DRADIUS=1 -DREAL_WIDTH=1");
   const std::array<int, 3>& size = grid.size;
   const std::size_t layer = 3 * static_cast<std::size_t>(size[0]) * static_cast<std::size_t>(size[1]);
-  const int atOnce =
-    static_cast<int>(std::clamp<std::size_t>(LayerBytes / (layer * sizeof(float)), 1, static_cast<std::size_t>(size[2])));
+  const int atOnce = static_cast<int>(
+    std::clamp<std::size_t>(LayerBytes / (layer * sizeof(float)), 1, static_cast<std::size_t>(size[2])));
   const cl_float4 spacing = { { static_cast<float>(grid.spacing[0]), static_cast<float>(grid.spacing[1]),
     static_cast<float>(grid.spacing[2]), 0.0f } };
   Buffer<float> part(device, layer * static_cast<std::size_t>(atOnce), "ior_gradient");
@@ -93,7 +93,8 @@ std::vector<float> IndexGradient(Device& device, const Grid& grid, const Buffer<
     device.Queue().enqueueNDRangeKernel(
       kernel, cl::NullRange, Rounded(size[0], size[1], layers, 32, 4), cl::NDRange(32, 4, 1));
     device.Queue().enqueueReadBuffer(part.Handle(), CL_TRUE, 0,
-      layer * static_cast<std::size_t>(layers) * sizeof(float), gradient.data() + layer * static_cast<std::size_t>(first));
+      layer * static_cast<std::size_t>(layers) * sizeof(float),
+      gradient.data() + layer * static_cast<std::size_t>(first));
   }
   return gradient;
 }

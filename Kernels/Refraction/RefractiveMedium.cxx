@@ -1,7 +1,7 @@
 #include "RefractiveMedium.h"
 
-#include "IndexField.h"
 #include "../Medium/Medium.h"
+#include "IndexField.h"
 #include "MeshChecks.h"
 #include "TyndallKernelSources.h"
 
@@ -47,8 +47,9 @@ void CheckPerturbation(const Perturbation& perturbation, const std::vector<Solid
   for (const Solid& solid : solids)
   {
     Demand(perturbation.index >= 0.0 && perturbation.index < solid.material.n,
-      "The noise of the index is " + std::to_string(perturbation.index) + "; it must not be negative, and be less than " +
-        std::to_string(solid.material.n) + ", the refractive index of " + solid.name + ".");
+      "The noise of the index is " + std::to_string(perturbation.index) +
+        "; it must not be negative, and be less than " + std::to_string(solid.material.n) +
+        ", the refractive index of " + solid.name + ".");
   }
 }
 
@@ -90,8 +91,8 @@ bool ShareMeanCosine(std::vector<Material*> materials, double& shared)
     return false;
   }
   shared = materials[0]->g;
-  const bool same = std::all_of(
-    materials.begin(), materials.end(), [&](const Material* material) { return material->g == shared; });
+  const bool same =
+    std::all_of(materials.begin(), materials.end(), [&](const Material* material) { return material->g == shared; });
   if (same)
   {
     return false;
@@ -203,13 +204,12 @@ private:
   cl::Kernel AddObject, AddOutside;
 };
 
-/// Whether n is the same in every voxel.
-bool IndexIsEven(const RefractiveMedium& medium, const std::vector<Solid>& solids, const RefractiveMediumSettings& settings)
+/// Whether nothing inside differs in n from the outside.
+bool IndexIsEven(const std::vector<Solid>& solids, const RefractiveMediumSettings& settings)
 {
-  const bool asOutside = std::all_of(solids.begin(), solids.end(),
-    [&](const Solid& solid) { return solid.material.n == settings.outside.n; });
-  return (asOutside && settings.perturbation.index == 0.0) ||
-    std::all_of(medium.occupancy.begin(), medium.occupancy.end(), [](float part) { return part == 0.0f; });
+  return settings.perturbation.index == 0.0 && std::all_of(solids.begin(), solids.end(), [&](const Solid& solid) {
+    return solid.material.n == settings.outside.n;
+  });
 }
 
 /// Reports what is part of a longer work.
@@ -224,10 +224,8 @@ std::vector<std::string> CheckMeshes(
   std::vector<std::string> warnings;
   for (const Solid& solid : solids)
   {
-    const MeshTopology topology =
-      CheckClosed(solid.mesh, solid.name, settings.grid, settings.voxelization.samples);
-    const std::vector<std::string> odd =
-      Oddities(device, solid.mesh, topology, solid.name, settings.grid, monitor);
+    const MeshTopology topology = CheckClosed(solid.mesh, solid.name, settings.grid, settings.voxelization.samples);
+    const std::vector<std::string> odd = Oddities(device, solid.mesh, topology, solid.name, settings.grid, monitor);
     warnings.insert(warnings.end(), odd.begin(), odd.end());
   }
   return warnings;
@@ -272,7 +270,14 @@ RefractiveMedium Voxelize(
   Mixer(device, settings, noise, result.components).Run(solids, outside, inside, index, result);
   Report(monitor, 0.8);
 
-  if (IndexIsEven(result, solids, settings))
+  const bool empty =
+    std::all_of(result.occupancy.begin(), result.occupancy.end(), [](float part) { return part == 0.0f; });
+  if (empty)
+  {
+    result.warnings.push_back("Nothing of the box is inside a mesh, or what is falls between its samples. Compare the "
+                              "box with the meshes' bounds.");
+  }
+  if (empty || IndexIsEven(solids, settings))
   {
     result.leftOut.push_back("ior, ior_gradient: the refractive index is " + std::to_string(outside.n) + " everywhere");
   }

@@ -16,10 +16,10 @@ namespace tyndall
 /// What a place is made of.
 struct Material
 {
-  double n = 1.0;    ///< refractive index, > 0
-  Rgb sigma_a = {};  ///< absorption coefficient, 1/length, >= 0
-  Rgb sigma_s = {};  ///< scattering coefficient, 1/length, >= 0
-  double g = 0.0;    ///< mean cosine of the phase function, in (-1, 1)
+  double n = 1.0;   ///< refractive index, > 0
+  Rgb sigma_a = {}; ///< absorption coefficient, 1/length, >= 0
+  Rgb sigma_s = {}; ///< scattering coefficient, 1/length, >= 0
+  double g = 0.0;   ///< mean cosine of the phase function, in (-1, 1)
 };
 
 /// A solid: what a closed mesh encloses.

@@ -10,7 +10,8 @@ namespace tyndall
 {
 namespace
 {
-constexpr double Longest = 1 << 20; ///< units: three coordinates' products then fit 63 bits, with a sum of three of them
+constexpr double Longest =
+  1 << 20; ///< units: three coordinates' products then fit 63 bits, with a sum of three of them
 constexpr int TileColumns = 64;
 constexpr int TileRows = 16;
 
@@ -27,8 +28,8 @@ struct Interval
 };
 
 /// The interval of `across` that a triangle takes up between two values of `up`; a little wider for rounding.
-Interval AcrossBetween(const std::array<const SampleLattice::Point*, 3>& corners, const SampleColumns& columns, double low,
-  double high)
+Interval AcrossBetween(
+  const std::array<const SampleLattice::Point*, 3>& corners, const SampleColumns& columns, double low, double high)
 {
   Interval interval = { HUGE_VAL, -HUGE_VAL };
   const auto take = [&](double across) {
@@ -115,7 +116,8 @@ bool SampleLattice::Closes(const TriangleMesh& mesh) const
   rounded.points.reserve(mesh.points.size());
   for (const Point& point : this->Rounded(mesh.points))
   {
-    rounded.points.push_back({ static_cast<double>(point[0]), static_cast<double>(point[1]), static_cast<double>(point[2]) });
+    rounded.points.push_back(
+      { static_cast<double>(point[0]), static_cast<double>(point[1]), static_cast<double>(point[2]) });
   }
   return Examine(rounded).boundaryEdges == 0;
 }
@@ -148,8 +150,7 @@ std::vector<cl_uint4> LatticeMesh::Tiles(const SampleColumns& columns, int first
     std::transform(this->HostTriangles[t].begin(), this->HostTriangles[t].end(), corners.begin(),
       [&](int corner) { return &this->HostPoints[static_cast<std::size_t>(corner)]; });
     const auto range = [&](int axis, int limitLow, int limitHigh) {
-      const auto [low, high] =
-        std::minmax({ (*corners[0])[axis], (*corners[1])[axis], (*corners[2])[axis] });
+      const auto [low, high] = std::minmax({ (*corners[0])[axis], (*corners[1])[axis], (*corners[2])[axis] });
       return std::array<int, 2>{ std::max(FirstSampleFrom(low, pitch), limitLow),
         std::min(FirstSampleFrom(high + 1, pitch), limitHigh) };
     };
@@ -172,10 +173,10 @@ std::vector<cl_uint4> LatticeMesh::Tiles(const SampleColumns& columns, int first
     for (int first = row[0]; first < row[1]; first += TileRows)
     {
       const int end = std::min(first + TileRows, row[1]);
-      const Interval interval =
-        AcrossBetween(corners, columns, (first + 0.5) * pitch, (end - 0.5) * pitch);
+      const Interval interval = AcrossBetween(corners, columns, (first + 0.5) * pitch, (end - 0.5) * pitch);
       const int endColumn = std::min(column[1], static_cast<int>(std::floor(interval.high / pitch)) + 1);
-      for (int c = std::max(column[0], static_cast<int>(std::floor(interval.low / pitch))); c < endColumn; c += TileColumns)
+      for (int c = std::max(column[0], static_cast<int>(std::floor(interval.low / pitch))); c < endColumn;
+           c += TileColumns)
       {
         add(c, std::min(c + TileColumns, endColumn), first, end);
       }

@@ -20,13 +20,14 @@ struct MeshTopology
 {
   using Edge = std::array<std::array<double, 3>, 2>; ///< its ends
 
-  std::size_t boundaryEdges = 0;    ///< edges of an odd number of triangles: where there are any, the mesh has no inside
-  Edge firstBoundaryEdge = {};      ///< of those, the one whose corners have the lowest numbers
+  std::size_t boundaryEdges = 0; ///< edges of an odd number of triangles: where there are any, the mesh has no inside
+  Edge firstBoundaryEdge = {};   ///< of those, the one whose corners have the lowest numbers
   std::size_t disagreeingEdges = 0; ///< edges on two sides of which different sides of the mesh are the outer one
   Edge firstDisagreeingEdge = {};
   std::size_t degenerateTriangles = 0; ///< triangles without area
   std::size_t firstDegenerateTriangle = 0;
-  double enclosedVolume = 0.0; ///< length^3, negative where the corners run clockwise; means nothing where edges disagree
+  double enclosedVolume =
+    0.0; ///< length^3, negative where the corners run clockwise; means nothing where edges disagree
 };
 
 /// @throws InvalidInput where the mesh has no triangle, a triangle a corner that is not there, or a point is not finite

@@ -40,7 +40,8 @@ void Check(const VoxelizationSettings& settings);
 /// @throws InvalidInput   where a setting or a mesh's size has no meaning
 /// @throws DeviceError    if 2 bytes a voxel and mesh, the meshes and a slab do not fit the device
 std::vector<Buffer<cl_ushort>> CountSamplesInside(Device& device, const Grid& grid,
-  const std::vector<const TriangleMesh*>& meshes, const VoxelizationSettings& settings = {}, const Monitor& monitor = {});
+  const std::vector<const TriangleMesh*>& meshes, const VoxelizationSettings& settings = {},
+  const Monitor& monitor = {});
 
 /// How often a mesh winds about the centres of voxels: 0 outside and 1 inside of a mesh that encloses everything once.
 struct WindingNumbers

@@ -82,11 +82,11 @@ double Winding(const TriangleMesh& mesh, const Point& centre)
       length[c] = std::sqrt(dot(r[c], r[c]));
     }
     const auto& [a, b, c] = r;
-    const double box = a[0] * (b[1] * c[2] - b[2] * c[1]) + a[1] * (b[2] * c[0] - b[0] * c[2]) +
-      a[2] * (b[0] * c[1] - b[1] * c[0]);
+    const double box =
+      a[0] * (b[1] * c[2] - b[2] * c[1]) + a[1] * (b[2] * c[0] - b[0] * c[2]) + a[2] * (b[0] * c[1] - b[1] * c[0]);
     angle += 2.0 *
-      std::atan2(box,
-        length[0] * length[1] * length[2] + dot(a, b) * length[2] + dot(b, c) * length[0] + dot(c, a) * length[1]);
+      std::atan2(
+        box, length[0] * length[1] * length[2] + dot(a, b) * length[2] + dot(b, c) * length[0] + dot(c, a) * length[1]);
   }
   return angle / (4.0 * shapes::Pi);
 }

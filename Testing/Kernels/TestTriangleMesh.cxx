@@ -14,8 +14,8 @@ namespace
 {
 TEST(TriangleMesh, ClosedMeshesAreClosed)
 {
-  for (const TriangleMesh& mesh :
-    { shapes::Box({ -1, -2, -3 }, { 1, 2, 3 }), shapes::Torus({ 0, 0, 0 }, 2, 1, 12, 7), shapes::Sphere({ 0, 0, 0 }, 1, 3) })
+  for (const TriangleMesh& mesh : { shapes::Box({ -1, -2, -3 }, { 1, 2, 3 }), shapes::Torus({ 0, 0, 0 }, 2, 1, 12, 7),
+         shapes::Sphere({ 0, 0, 0 }, 1, 3) })
   {
     const MeshTopology topology = Examine(mesh);
     EXPECT_EQ(topology.boundaryEdges, 0u);

@@ -1,0 +1,375 @@
+#include "DeviceTest.h"
+#include "MeshShapes.h"
+
+#include "Refraction/IndexField.h"
+#include "Refraction/RefractiveMedium.h"
+
+#include <gmock/gmock.h>
+
+#include <algorithm>
+#include <cmath>
+#include <random>
+
+using namespace tyndall;
+using testing::ElementsAre;
+using testing::HasSubstr;
+using testing::IsEmpty;
+
+namespace
+{
+Grid CubeGrid(int size, double low = -1.0, double high = 1.0)
+{
+  const double spacing = (high - low) / size;
+  return { { size, size, size }, { spacing, spacing, spacing }, { low, low, low } };
+}
+
+Material Glass()
+{
+  return { 1.5, { 0.1, 0.1, 0.1 }, { 0.3, 0.3, 0.3 }, 0.0 };
+}
+
+Solid Ball(double radius = 0.6)
+{
+  return { "Ball", shapes::Sphere({ 0.01, 0.02, 0.03 }, radius, 5), Glass() };
+}
+
+class RefractiveMediumTest : public DeviceTest
+{
+protected:
+  RefractiveMedium Made(std::vector<Solid> solids, const RefractiveMediumSettings& settings)
+  {
+    return Voxelize(this->GetDevice(), std::move(solids), settings);
+  }
+
+  void ExpectRefused(std::vector<Solid> solids, const RefractiveMediumSettings& settings, const char* part)
+  {
+    try
+    {
+      this->Made(std::move(solids), settings);
+      ADD_FAILURE() << "taken, not refused: " << part;
+    }
+    catch (const InvalidInput& error)
+    {
+      EXPECT_THAT(error.what(), HasSubstr(part));
+    }
+  }
+};
+
+RefractiveMediumSettings FogAround(int size = 24)
+{
+  RefractiveMediumSettings settings;
+  settings.grid = CubeGrid(size);
+  settings.outside = { 1.0, { 0.0, 0.0, 0.0 }, { 0.7, 0.7, 0.7 }, 0.0 };
+  return settings;
+}
+
+TEST_F(RefractiveMediumTest, VoxelsAreMeansOfTheirMaterials)
+{
+  RefractiveMediumSettings settings = FogAround();
+  settings.filterSize = 1;
+  const RefractiveMedium medium = this->Made({ Ball() }, settings);
+  ASSERT_EQ(medium.components, 1);
+  int inside = 0, border = 0, outside = 0;
+  for (std::size_t i = 0; i < medium.occupancy.size(); ++i)
+  {
+    const float part = medium.occupancy[i];
+    (part == 1.0f ? inside : part == 0.0f ? outside : border) += 1;
+    ASSERT_FLOAT_EQ(medium.sigma_a[i], part * 0.1f);
+    ASSERT_FLOAT_EQ(medium.sigma_s[i], part * 0.3f + (1.0f - part) * 0.7f);
+    ASSERT_FLOAT_EQ(medium.ior[i], part * 1.5f + (1.0f - part) * 1.0f);
+    if (part == 1.0f || part == 0.0f) // to the last bit
+    {
+      ASSERT_EQ(medium.ior[i], part == 1.0f ? 1.5f : 1.0f);
+      ASSERT_EQ(medium.sigma_s[i], part == 1.0f ? 0.3f : 0.7f);
+    }
+  }
+  EXPECT_GT(inside, 1000);
+  EXPECT_GT(border, 500);
+  EXPECT_GT(outside, 1000);
+  EXPECT_THAT(medium.leftOut, IsEmpty());
+  EXPECT_THAT(medium.warnings, IsEmpty());
+}
+
+TEST_F(RefractiveMediumTest, PureVoxelsAreExactWithAnyFactor)
+{
+  RefractiveMediumSettings settings = FogAround(12);
+  settings.filterSize = 1;
+  settings.voxelization.samples = 3;
+  Solid inner = Ball(0.3);
+  inner.material.n = 1.37;
+  const RefractiveMedium medium = this->Made({ Ball(), inner }, settings);
+  const std::size_t centre = (6 * 12 + 6) * 12 + 6;
+  EXPECT_EQ(medium.ior[centre], 1.37f);
+  EXPECT_EQ(medium.occupancy[centre], 1.0f);
+  EXPECT_EQ(medium.ior[0], 1.0f);
+}
+
+TEST_F(RefractiveMediumTest, ColourMakesThreeComponents)
+{
+  RefractiveMediumSettings settings = FogAround(12);
+  settings.outside.sigma_s = { 0.1, 0.2, 0.3 };
+  const RefractiveMedium medium = this->Made({ Ball() }, settings);
+  ASSERT_EQ(medium.components, 3);
+  EXPECT_EQ(medium.sigma_s[1], 0.2f);
+  EXPECT_EQ(medium.sigma_a.size(), 3 * settings.grid.VoxelCount());
+  const std::size_t centre = 3 * ((6 * 12 + 6) * 12 + 6);
+  EXPECT_EQ(medium.sigma_s[centre + 2], 0.3f);
+  EXPECT_EQ(medium.sigma_a[centre + 2], 0.1f);
+}
+
+TEST_F(RefractiveMediumTest, ConstantIndexIsLeftOut)
+{
+  RefractiveMediumSettings settings = FogAround(12);
+  settings.outside.n = 1.5;
+  const RefractiveMedium medium = this->Made({ Ball() }, settings);
+  EXPECT_THAT(medium.ior, IsEmpty());
+  EXPECT_THAT(medium.iorGradient, IsEmpty());
+  EXPECT_THAT(medium.leftOut, ElementsAre(HasSubstr("ior, ior_gradient")));
+  EXPECT_EQ(medium.occupancy.size(), settings.grid.VoxelCount());
+}
+
+TEST_F(RefractiveMediumTest, NothingInTheBoxIsAWarning)
+{
+  Solid away = Ball();
+  for (shapes::Point& point : away.mesh.points)
+  {
+    point[0] += 5.0;
+  }
+  const RefractiveMedium medium = this->Made({ away }, FogAround(12));
+  EXPECT_THAT(medium.warnings, ElementsAre(HasSubstr("Nothing of the box")));
+  EXPECT_THAT(medium.ior, IsEmpty());
+}
+
+TEST_F(RefractiveMediumTest, OneMeanCosineKeepsReducedScattering)
+{
+  RefractiveMediumSettings settings = FogAround(12);
+  settings.filterSize = 1;
+  settings.outside.g = 0.9;
+  const RefractiveMedium medium = this->Made({ Ball() }, settings);
+  EXPECT_NEAR(medium.g, 0.9 * 0.7 / (0.7 + 0.3), 1e-12);
+  EXPECT_THAT(medium.leftOut, ElementsAre(HasSubstr("g of each material")));
+  const std::size_t centre = (6 * 12 + 6) * 12 + 6;
+  EXPECT_NEAR(medium.sigma_s[0] * (1.0 - medium.g), 0.7 * 0.1, 1e-7);
+  EXPECT_NEAR(medium.sigma_s[centre] * (1.0 - medium.g), 0.3, 1e-7);
+
+  // What does not scatter has no say.
+  settings.outside.sigma_s = {};
+  Solid ball = Ball();
+  ball.material.g = 0.5;
+  const RefractiveMedium clear = this->Made({ ball }, settings);
+  EXPECT_EQ(clear.g, 0.5);
+  EXPECT_THAT(clear.leftOut, IsEmpty());
+}
+
+TEST_F(RefractiveMediumTest, NoiseIsSeededBoundedAndInsideOnly)
+{
+  RefractiveMediumSettings settings = FogAround(32);
+  settings.filterSize = 1;
+  settings.perturbation = { 0.1, 0.5, 0.2, 7 };
+  const Solid box = { "Box", shapes::Box({ -0.75, -0.75, -0.75 }, { 0.75, 0.75, 0.75 }), Glass() };
+  const RefractiveMedium medium = this->Made({ box }, settings);
+  double lowest = 2.0, highest = 0.0, sum = 0.0, steepest = 0.0;
+  int inside = 0;
+  for (std::size_t i = 0; i < medium.ior.size(); ++i)
+  {
+    if (medium.occupancy[i] < 1.0f)
+    {
+      ASSERT_EQ(medium.ior[i], 1.0f);
+      ASSERT_EQ(medium.sigma_s[i], 0.7f);
+      continue;
+    }
+    lowest = std::min<double>(lowest, medium.ior[i]);
+    highest = std::max<double>(highest, medium.ior[i]);
+    sum += medium.ior[i];
+    ++inside;
+    ASSERT_NEAR(medium.sigma_s[i] / 0.3, 1.0 + 5.0 * (medium.ior[i] - 1.5), 1e-5); // the same noise
+    if (medium.occupancy[i + 1] == 1.0f)
+    {
+      steepest = std::max<double>(steepest, std::abs(medium.ior[i + 1] - medium.ior[i]));
+    }
+  }
+  EXPECT_GE(lowest, 1.4);
+  EXPECT_LE(highest, 1.6);
+  EXPECT_LT(lowest, 1.45);
+  EXPECT_GT(highest, 1.55);
+  EXPECT_NEAR(sum / inside, 1.5, 0.01);
+  EXPECT_LT(steepest, 0.1); // features are three voxels wide: no jumps
+
+  EXPECT_EQ(this->Made({ box }, settings).ior, medium.ior);
+  settings.perturbation.seed = 8;
+  EXPECT_NE(this->Made({ box }, settings).ior, medium.ior);
+}
+
+TEST_F(RefractiveMediumTest, GradientOfAGlassBallPointsInwards)
+{
+  const RefractiveMediumSettings settings = FogAround(32);
+  const RefractiveMedium medium = this->Made({ Ball() }, settings);
+  double across = 0.0;
+  for (int x = 16; x < 32; ++x) // from about the centre outwards
+  {
+    const std::size_t voxel = static_cast<std::size_t>((16 * 32 + 16) * 32 + x);
+    across += medium.iorGradient[3 * voxel] * settings.grid.spacing[0];
+    EXPECT_LE(medium.iorGradient[3 * voxel], 1e-6f);
+  }
+  EXPECT_NEAR(across, 1.0 - 1.5, 1e-3); // its integral is the step of n
+}
+
+TEST_F(RefractiveMediumTest, OddMeshesGiveWarnings)
+{
+  const auto warnings = [&](const TriangleMesh& mesh) {
+    return this->Made({ { "Mesh", mesh, Glass() } }, FogAround()).warnings;
+  };
+  const TriangleMesh large = shapes::Sphere({ 0, 0, 0 }, 0.8, 4);
+  const TriangleMesh small = shapes::Sphere({ 0.5, 0, 0 }, 0.4, 4);
+  EXPECT_THAT(warnings(large), IsEmpty());
+  EXPECT_THAT(warnings(shapes::Inverted(large)), ElementsAre(HasSubstr("Mesh: the mesh is inverted")));
+  EXPECT_THAT(warnings(shapes::Together(large, small)),
+    ElementsAre(testing::AllOf(HasSubstr("intersects itself"), HasSubstr("from 0 to 2 times"))));
+  TriangleMesh turned = large;
+  std::swap(turned.triangles[3][0], turned.triangles[3][1]);
+  EXPECT_THAT(warnings(turned), ElementsAre(HasSubstr("of 3 edges disagree")));
+  TriangleMesh degenerate = large;
+  degenerate.triangles.push_back({ 7, 7, 8 });
+  EXPECT_THAT(
+    warnings(degenerate), ElementsAre(HasSubstr("1 triangle without area (degenerate), the first is number 2048")));
+}
+
+TEST_F(RefractiveMediumTest, OpenMeshesAreRefused)
+{
+  Solid open = Ball();
+  open.mesh.triangles.pop_back();
+  this->ExpectRefused({ Ball(), open }, FogAround(), "Ball: the mesh is open. It has 3 boundary edges");
+  open.mesh.triangles.pop_back();
+  this->ExpectRefused({ open }, FogAround(), "the first from (");
+
+  // Seams far narrower than a sample are no holes.
+  Solid seam = Ball();
+  std::mt19937 generator(1);
+  std::uniform_real_distribution<double> anywhere(-1e-12, 1e-12);
+  for (shapes::Point& point : seam.mesh.points)
+  {
+    for (double& coordinate : point)
+    {
+      coordinate = std::round(coordinate * 1e3) / 1e3 + anywhere(generator);
+    }
+  }
+  EXPECT_GT(Examine(seam.mesh).boundaryEdges, 1000u);
+  EXPECT_NO_THROW(this->Made({ seam }, FogAround()));
+}
+
+TEST_F(RefractiveMediumTest, BadInputIsRefused)
+{
+  const RefractiveMediumSettings good = FogAround(8);
+  this->ExpectRefused({}, good, "There is no mesh");
+  this->ExpectRefused({ { "Input 1", {}, Glass() } }, good, "Input 1: The mesh is empty");
+  Solid flat = Ball();
+  for (shapes::Point& point : flat.mesh.points)
+  {
+    point[1] = point[2] = 0.0;
+  }
+  this->ExpectRefused({ flat }, good, "no volume");
+
+  RefractiveMediumSettings bad = good;
+  bad.filterSize = 4;
+  this->ExpectRefused({ Ball() }, bad, "odd number");
+  bad = good;
+  bad.outside.n = 0.0;
+  this->ExpectRefused({ Ball() }, bad, "The outside has the refractive index");
+  bad = good;
+  bad.outside.g = 1.0;
+  this->ExpectRefused({ Ball() }, bad, "mean cosine");
+  bad = good;
+  bad.grid.size[1] = 0;
+  this->ExpectRefused({ Ball() }, bad, "no voxels along y");
+  bad = good;
+  bad.perturbation.index = 1.5;
+  this->ExpectRefused({ Ball() }, bad, "noise of the index");
+  bad = good;
+  bad.perturbation.size = 0.0;
+  this->ExpectRefused({ Ball() }, bad, "noise's size");
+  Solid ball = Ball();
+  ball.material.sigma_s[1] = -1.0;
+  this->ExpectRefused({ ball }, good, "Ball has an absorption or scattering coefficient");
+}
+
+class IndexFieldTest : public DeviceTest
+{
+};
+
+/// The Gaussian as a sum over all of its voxels at once, in double.
+double Smoothed(const std::vector<float>& n, const Grid& grid, int size, const std::array<int, 3>& voxel)
+{
+  const double deviation = size / 6.0;
+  double sum = 0.0, weights = 0.0;
+  for (int dz = -size / 2; dz <= size / 2; ++dz)
+  {
+    for (int dy = -size / 2; dy <= size / 2; ++dy)
+    {
+      for (int dx = -size / 2; dx <= size / 2; ++dx)
+      {
+        const double weight = std::exp(-0.5 * (dx * dx + dy * dy + dz * dz) / (deviation * deviation));
+        const auto clamped = [&](int axis, int d) { return std::clamp(voxel[axis] + d, 0, grid.size[axis] - 1); };
+        sum += weight *
+          n[static_cast<std::size_t>((clamped(2, dz) * grid.size[1] + clamped(1, dy)) * grid.size[0] + clamped(0, dx))];
+        weights += weight;
+      }
+    }
+  }
+  return sum / weights;
+}
+
+TEST_F(IndexFieldTest, SmoothingIsAGaussian)
+{
+  const Grid grid = { { 21, 7, 12 }, { 1, 1, 1 }, { 0, 0, 0 } };
+  std::mt19937 generator(3);
+  std::uniform_real_distribution<float> index(1.0f, 2.0f);
+  std::vector<float> n(grid.VoxelCount());
+  std::generate(n.begin(), n.end(), [&] { return index(generator); });
+  for (int size : { 3, 9, 15 })
+  {
+    Buffer<float> buffer(this->GetDevice(), n, "n");
+    SmoothIndex(this->GetDevice(), grid, size, buffer);
+    const std::vector<float> smooth = buffer.Read();
+    for (std::size_t i = 0; i < n.size(); ++i)
+    {
+      const std::array<int, 3> voxel = { static_cast<int>(i % 21), static_cast<int>(i / 21 % 7),
+        static_cast<int>(i / 147) };
+      ASSERT_NEAR(smooth[i], Smoothed(n, grid, size, voxel), 2e-6) << size << " wide, voxel " << i;
+    }
+  }
+}
+
+TEST_F(IndexFieldTest, EvenIndexStaysToTheLastBit)
+{
+  const Grid grid = { { 19, 11, 10 }, { 1, 1, 1 }, { 0, 0, 0 } };
+  const std::vector<float> n(grid.VoxelCount(), 1.33f);
+  Buffer<float> buffer(this->GetDevice(), n, "n");
+  SmoothIndex(this->GetDevice(), grid, 9, buffer);
+  EXPECT_EQ(buffer.Read(), n);
+}
+
+TEST_F(IndexFieldTest, GradientOfALinearIndexIsExact)
+{
+  const Grid grid = { { 9, 5, 4 }, { 0.5, 0.25, 2.0 }, { 3, 4, 5 } };
+  std::vector<float> n(grid.VoxelCount());
+  for (std::size_t i = 0; i < n.size(); ++i)
+  {
+    n[i] = static_cast<float>(1.0 + 0.5 * (i % 9) * 0.125 + 0.25 * (i / 9 % 5) * 0.5 - 2.0 * (i / 45) * 0.0625);
+  }
+  const std::vector<float> gradient = IndexGradient(this->GetDevice(), grid, Buffer<float>(this->GetDevice(), n, "n"));
+  for (std::size_t i = 0; i < n.size(); ++i)
+  {
+    ASSERT_FLOAT_EQ(gradient[3 * i], 0.125f);
+    ASSERT_FLOAT_EQ(gradient[3 * i + 1], 0.5f);
+    ASSERT_FLOAT_EQ(gradient[3 * i + 2], -0.0625f);
+  }
+}
+
+TEST_F(IndexFieldTest, GradientAlongASingleVoxelIsZero)
+{
+  const Grid grid = { { 1, 1, 3 }, { 1, 1, 1 }, { 0, 0, 0 } };
+  const std::vector<float> n = { 1.0f, 2.0f, 4.0f };
+  EXPECT_THAT(IndexGradient(this->GetDevice(), grid, Buffer<float>(this->GetDevice(), n, "n")),
+    ElementsAre(0.0f, 0.0f, 1.0f, 0.0f, 0.0f, 1.5f, 0.0f, 0.0f, 2.0f));
+}
+}
