@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <cctype>
 #include <cstdlib>
+#include <sys/mman.h>
 #include <unistd.h>
 #include <vector>
 
@@ -175,6 +176,36 @@ cl::Kernel Device::Kernel(
   }
 }
 
+namespace
+{
+constexpr std::size_t HugePage = std::size_t(1) << 21;
+
+/// A buffer of a CPU in pages of 2 MB where the system has them to give: marching across a large grid otherwise waits for the
+/// translation of addresses.
+cl::Buffer InHugePages(const cl::Context& context, cl_mem_flags flags, std::size_t bytes)
+{
+  void* memory = nullptr;
+  if (posix_memalign(&memory, HugePage, (bytes + HugePage - 1) / HugePage * HugePage) != 0)
+  {
+    throw cl::Error(CL_MEM_OBJECT_ALLOCATION_FAILURE, "posix_memalign");
+  }
+#ifdef MADV_HUGEPAGE
+  madvise(memory, bytes, MADV_HUGEPAGE);
+#endif
+  try
+  {
+    cl::Buffer buffer(context, flags | CL_MEM_USE_HOST_PTR, bytes, memory);
+    buffer.setDestructorCallback([](cl_mem, void* held) { std::free(held); }, memory);
+    return buffer;
+  }
+  catch (...)
+  {
+    std::free(memory);
+    throw;
+  }
+}
+}
+
 cl::Buffer Device::Allocate(std::size_t bytes, cl_mem_flags flags, const char* what)
 {
   const auto complain = [&](const std::string& cause) {
@@ -193,7 +224,8 @@ cl::Buffer Device::Allocate(std::size_t bytes, cl_mem_flags flags, const char* w
   cl::Buffer buffer;
   try
   {
-    buffer = cl::Buffer(this->TheContext, flags, bytes, nullptr, &status);
+    buffer = this->Cpu && bytes >= HugePage ? InHugePages(this->TheContext, flags, bytes)
+                                            : cl::Buffer(this->TheContext, flags, bytes, nullptr, &status);
   }
   catch (const cl::Error& error)
   {

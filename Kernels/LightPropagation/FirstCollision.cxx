@@ -165,7 +165,7 @@ private:
 
   cl::Kernel Kernel(const char* name)
   {
-    return this->TheDevice.Kernel(name, { kernel_source::Numerics, kernel_source::LampBeams },
+    return this->TheDevice.Kernel(name, { kernel_source::Numerics, kernel_source::FixedPoint, kernel_source::LampBeams },
       "-DCHANNELS=" + std::to_string(this->Volume.channels) + " -DRAYS=" + std::to_string(RaysPerEdge) +
         " -DATOMICS=" + std::to_string(this->HasAtomics()) +
         " -DLAMBERT=" + std::to_string(this->TheLight.type == LightType::Rectangle) +

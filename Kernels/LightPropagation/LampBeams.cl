@@ -1,4 +1,4 @@
-// Beams from a point lamp through the box. Read after Numerics.cl; the host gives
+// Beams from a point lamp through the box. Read after Numerics.cl and FixedPoint.cl; the host gives
 //   CHANNELS     colours that share sigma_t
 //   ATOMICS      1 where the device has 64-bit atomics, else one work-item does all
 //   LAMBERT, CONE  1 for a rectangle, a spot
@@ -6,10 +6,6 @@
 // Space around the lamp is six pyramids, one for each way along an axis; in a pyramid beams lie on a grid of tangents, so fine
 // that a beam is at most a voxel wide where it leaves the box. It is followed layer by layer; where its square cross-section
 // lies over up to four voxels, each takes its part.
-
-#if ATOMICS
-#pragma OPENCL EXTENSION cl_khr_int64_base_atomics : enable
-#endif
 
 #define STEPS 2 // a layer: a beam moves aside by half a voxel at most
 
@@ -61,16 +57,6 @@ static float solid_angle(float a0, float a1, float b0, float b1, float d)
     sum += inverse * inverse * inverse;
   }
   return 0.25f * sum * width * height * d;
-}
-
-static void deposit(__global long* path, ulong index, float amount, float scale)
-{
-  const long units = convert_long_sat_rte(amount * scale);
-#if ATOMICS
-  atom_add(path + index, units);
-#else
-  path[index] += units;
-#endif
 }
 
 #define INSIDE 0
@@ -165,7 +151,7 @@ static void step_beam(const lamp_info* lamp, const beam_row* row, int layer, boo
       }
       else
       {
-        deposit(path, c * stride + index, power * mean_length, lamp->scale);
+        add_units(path + c * stride + index, convert_long_sat_rte(power * mean_length * lamp->scale));
         after[c] += mean_length * sigma[index] < 0.5f * length * sigma[index] ? power * through : power - power * lost;
       }
     }

@@ -1,0 +1,215 @@
+#include "PhotonPacking.h"
+
+#include "../Device/Errors.h"
+
+#include <algorithm>
+#include <cmath>
+#include <cstdint>
+#include <limits>
+#include <numeric>
+#include <string>
+
+namespace tyndall
+{
+namespace
+{
+constexpr int TileBits = 8; ///< tiles along an axis, by which photons are ordered: a voxel or two of a grid of 128^3
+constexpr double SameColour = 1e-6;
+
+void CheckPhoton(const Photon& photon, std::size_t number)
+{
+  const std::string name = "Photon " + std::to_string(number);
+  float length = 0.0f;
+  for (int a = 0; a < 3; ++a)
+  {
+    if (!std::isfinite(photon.position[a]) || !std::isfinite(photon.direction[a]))
+    {
+      throw InvalidInput(name + " has a position or direction that is not finite.");
+    }
+    if (!(photon.power[a] >= 0.0f) || std::isinf(photon.power[a]))
+    {
+      throw InvalidInput(
+        name + " has power " + std::to_string(photon.power[a]) + "; it must be finite and not negative.");
+    }
+    length = std::max(length, std::abs(photon.direction[a]));
+  }
+  if (length == 0.0f)
+  {
+    throw InvalidInput(name + " has direction (0, 0, 0); say where it goes.");
+  }
+}
+
+/// The colour that all photons have, with mean 1.
+bool HaveOneColour(const std::vector<Photon>& photons, Rgb& colour)
+{
+  const auto sum = [](const Photon& photon) { return double(photon.power[0]) + photon.power[1] + photon.power[2]; };
+  const auto brightest =
+    std::max_element(photons.begin(), photons.end(), [&](const Photon& a, const Photon& b) { return sum(a) < sum(b); });
+  if (brightest == photons.end() || sum(*brightest) == 0.0)
+  {
+    return true;
+  }
+  for (int c = 0; c < 3; ++c)
+  {
+    colour[c] = 3.0 * brightest->power[c] / sum(*brightest);
+    colour[c] = std::abs(colour[c] - 1.0) < SameColour ? 1.0 : colour[c];
+  }
+  return std::all_of(photons.begin(), photons.end(), [&](const Photon& photon) {
+    const double mean = sum(photon) / 3.0;
+    return std::abs(photon.power[0] - mean * colour[0]) + std::abs(photon.power[1] - mean * colour[1]) +
+      std::abs(photon.power[2] - mean * colour[2]) <=
+      SameColour * mean;
+  });
+}
+
+/// Positions and directions in voxels, of those that meet the grid.
+struct Ray
+{
+  std::array<float, 3> position, direction;
+  std::uint32_t tile; ///< its place on a curve through space that keeps neighbours together (Morton)
+};
+
+/// The bits of x, each followed by two zeros.
+std::uint32_t Spread(std::uint32_t x)
+{
+  std::uint32_t spread = 0;
+  for (int bit = 0; bit < TileBits; ++bit)
+  {
+    spread |= (x >> bit & 1u) << 3 * bit;
+  }
+  return spread;
+}
+
+Ray RayOf(const Grid& grid, const Photon& photon, const std::array<double, 3>& position)
+{
+  Ray ray = {};
+  const double length = std::hypot(photon.direction[0], photon.direction[1], photon.direction[2]);
+  const double reach = 0.5 * std::hypot(grid.size[0], grid.size[1], grid.size[2]);
+  for (int a = 0; a < 3; ++a)
+  {
+    const double omega = photon.direction[a] / length;
+    ray.position[a] = static_cast<float>(position[a]);
+    ray.direction[a] = static_cast<float>(omega);
+    // Photons are neighbours when they are so halfway through: those of a lamp in the volume all begin at one place.
+    const double middle = (position[a] + omega * reach + reach) / (grid.size[a] + 2.0 * reach);
+    const int tiles = 1 << TileBits;
+    ray.tile |= Spread(std::min(std::max(static_cast<int>(middle * tiles), 0), tiles - 1)) << a;
+  }
+  return ray;
+}
+
+/// Numbers of the rays in the order of their tiles; those of one tile as they are. Radix sort, by halves of the bits.
+std::vector<std::uint32_t> Order(const std::vector<Ray>& rays)
+{
+  constexpr int Bits = 3 * TileBits / 2;
+  std::vector<std::uint32_t> order(rays.size()), sorted(rays.size());
+  std::iota(order.begin(), order.end(), 0u);
+  for (const int shift : { 0, Bits })
+  {
+    std::vector<std::size_t> begin((1 << Bits) + 1, 0);
+    const auto part = [&](std::uint32_t i) { return rays[i].tile >> shift & ((1u << Bits) - 1); };
+    for (const std::uint32_t i : order)
+    {
+      ++begin[part(i) + 1];
+    }
+    std::partial_sum(begin.begin(), begin.end(), begin.begin());
+    for (const std::uint32_t i : order)
+    {
+      sorted[begin[part(i)]++] = i;
+    }
+    order.swap(sorted);
+  }
+  return order;
+}
+
+/// The largest total of a channel, or of all where one stands for them.
+double Brightness(const std::vector<Photon>& photons)
+{
+  double sum = 0.0;
+  for (const Photon& photon : photons)
+  {
+    sum += double(photon.power[0]) + photon.power[1] + photon.power[2];
+  }
+  return sum;
+}
+}
+
+bool MoveOnto(const Grid& grid, std::array<double, 3>& position, const std::array<double, 3>& direction)
+{
+  double enter = 0.0;
+  double leave = std::numeric_limits<double>::infinity();
+  for (int a = 0; a < 3; ++a)
+  {
+    const double size = grid.size[a];
+    const double slack = 1e-6 * size; // a position on a face may have been rounded
+    if (direction[a] == 0.0)
+    {
+      if (position[a] < -slack || position[a] > size + slack)
+      {
+        return false;
+      }
+      continue;
+    }
+    const double t0 = ((direction[a] > 0.0 ? 0.0 : size) - position[a]) / direction[a];
+    const double t1 = ((direction[a] > 0.0 ? size : 0.0) - position[a]) / direction[a];
+    enter = std::max(enter, t0);
+    leave = std::min(leave, t1 + slack / std::abs(direction[a]));
+  }
+  for (int a = 0; a < 3; ++a)
+  {
+    position[a] = std::min(std::max(position[a] + enter * direction[a], 0.0), static_cast<double>(grid.size[a]));
+  }
+  return enter <= leave;
+}
+
+PackedPhotons Pack(const std::vector<Photon>& photons, const Grid& grid, bool coloured, double creditsAtMost)
+{
+  PackedPhotons packed;
+  packed.channels = HaveOneColour(photons, packed.colour) && !coloured ? 1 : 3;
+  packed.colour = packed.channels == 3 ? Rgb{ 1.0, 1.0, 1.0 } : packed.colour;
+  const double total = Brightness(photons);
+  packed.unit = total > 0.0 ? std::exp2(std::ceil(std::log2(total * creditsAtMost / 0x1p62))) : 1.0;
+
+  std::vector<Ray> rays;
+  std::vector<std::size_t> numbers;
+  rays.reserve(photons.size());
+  numbers.reserve(photons.size());
+  for (std::size_t i = 0; i < photons.size(); ++i)
+  {
+    CheckPhoton(photons[i], i);
+    std::array<double, 3> position, direction;
+    for (int a = 0; a < 3; ++a)
+    {
+      position[a] = (photons[i].position[a] - grid.origin[a]) / grid.spacing[a];
+      direction[a] = photons[i].direction[a] / grid.spacing[a];
+    }
+    if (!MoveOnto(grid, position, direction))
+    {
+      ++packed.missed;
+      continue;
+    }
+    rays.push_back(RayOf(grid, photons[i], position));
+    numbers.push_back(i);
+  }
+
+  const std::vector<std::uint32_t> order = Order(rays);
+  packed.numbers.resize(rays.size());
+  packed.values.resize(rays.size() * packed.FloatsEach());
+  float* values = packed.values.data();
+  for (std::size_t i = 0; i < rays.size(); ++i)
+  {
+    const Ray& ray = rays[order[i]];
+    packed.numbers[i] = numbers[order[i]];
+    values = std::copy(ray.position.begin(), ray.position.end(), values);
+    values = std::copy(ray.direction.begin(), ray.direction.end(), values);
+    const std::array<float, 3>& power = photons[packed.numbers[i]].power;
+    for (int c = 0; c < packed.channels; ++c)
+    {
+      const double watts = packed.channels == 3 ? power[c] : (double(power[0]) + power[1] + power[2]) / 3.0;
+      *values = static_cast<float>(watts / packed.unit);
+      packed.entered[c] += *values++ * packed.unit;
+    }
+  }
+  return packed;
+}
+}

@@ -1,0 +1,64 @@
+#pragma once
+
+#include "../LightPropagation/LightField.h"
+
+#include <array>
+#include <cstdint>
+#include <vector>
+
+namespace tyndall
+{
+/// A packet of light on its way: not a quantum, but a share of a lamp's power.
+struct Photon
+{
+  std::array<double, 3> position = {}; ///< where it enters the volume, or where its lamp in the volume is
+  std::array<float, 3> direction = { 0.0f, 0.0f, 1.0f }; ///< in which it travels, unit length
+  std::array<float, 3> power = {};                       ///< RGB, W
+};
+
+/// How paths are followed, and sums kept.
+struct MarchSettings
+{
+  /// Order of the integrator: 2, the leapfrog; 4, Yoshida's three leapfrogs, which pays where n^2 is smooth over several
+  /// voxels; 1, explicit Euler, to compare with.
+  int order = 2;
+  double stepSize = 1.0; ///< voxels, of a step where the index varies and the octree (if any) has single voxels; > 0
+  bool meanDirection = true;
+
+  /// How the sums of many work-items stay whole. All of them give the same light, bit for bit.
+  enum class Sums
+  {
+    Fitting, ///< private ones on a CPU of up to 8 cores and where there are no 64-bit atomics, else shared ones
+    Shared,  ///< one set, 64-bit fixed point atomics; needs cl_khr_int64_base_atomics
+    Private, ///< a set for each compute unit (as many as fit into memory), added up at the end
+    Unsafe,  ///< one set, plain additions by all: loses some. Only to measure what safety costs
+  };
+  Sums sums = Sums::Fitting;
+};
+
+/// @throws InvalidInput where the order is not 1, 2 or 4, or the step size not positive
+void Check(const MarchSettings& settings);
+
+/// The way of one photon: positions, and the part of its power that is left there.
+struct PhotonPath
+{
+  std::size_t photon = 0; ///< its number
+  std::vector<std::array<double, 3>> points;
+  std::vector<float> left;
+};
+
+/// Light that photons carried into a medium.
+struct PhotonLight
+{
+  /// fluence = fluence_direct: light that was not scattered. Balance: `absorbed` is what the medium absorbed and what it
+  /// scattered, `leftOver` what still went round when the photon was given up (total reflection can trap it).
+  LightField light;
+  Rgb scattered = {};               ///< W, the part of `absorbed` that is scattered
+  std::vector<float> meanDirection; ///< 3 a voxel: sum of power times direction over sum of power; empty: not asked for
+  std::size_t missed = 0;           ///< photons whose ways do not meet the volume; they are not among what entered
+  std::size_t credits = 0;          ///< stretches of path that were credited to voxels
+  std::size_t steps = 0;            ///< of the integrator
+  double secondsMarching = 0.0;     ///< from sorted photons to sums on the device
+  double seconds = 0.0;             ///< from photons to light
+};
+}
