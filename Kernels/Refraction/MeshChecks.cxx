@@ -34,10 +34,10 @@ std::string OfWindings(const WindingNumbers& windings, const Grid& grid)
   {
     centre[axis] = grid.origin[axis] + (windings.firstOddVoxel[axis] + 0.5) * grid.spacing[axis];
   }
-  return "the mesh intersects itself, or has parts inside out or within each other: it winds from " +
-    std::to_string(windings.lowest) + " to " + std::to_string(windings.highest) +
-    " times about the centres of voxels, not 0 times or once about " + std::to_string(windings.oddVoxels) + " of them" +
-    ", the first at " + Place(centre) + ". What it encloses an even number of times counts as outside.";
+  return "intersects itself, or has parts inside out or within each other: about the centres of " +
+    Counted(windings.oddVoxels, "voxel") + " it winds neither 0 times nor once but from " +
+    std::to_string(windings.lowest) + " to " + std::to_string(windings.highest) + " times, the first at " +
+    Place(centre) + ". What it encloses an even number of times counts as outside.";
 }
 }
 
@@ -50,16 +50,16 @@ MeshTopology CheckClosed(const TriangleMesh& mesh, const std::string& name, cons
   }
   catch (const InvalidInput& error)
   {
-    throw InvalidInput(name + ": " + error.what());
+    throw InvalidInput(name + " cannot be used. " + error.what());
   }
   if (topology.degenerateTriangles == mesh.triangles.size())
   {
-    throw InvalidInput(name + ": the mesh has no volume: its " + Counted(mesh.triangles.size(), "triangle") +
-      " have no area (degenerate).");
+    throw InvalidInput(
+      name + " has no volume: all of its " + Counted(mesh.triangles.size(), "triangle") + " are without area (degenerate).");
   }
   if (topology.boundaryEdges > 0 && !SampleLattice(grid, samples, { &mesh }).Closes(mesh))
   {
-    throw InvalidInput(name + ": the mesh is open. It has " + Counted(topology.boundaryEdges, "boundary edge") +
+    throw InvalidInput(name + " is open: it has " + Counted(topology.boundaryEdges, "boundary edge") +
       " (edges of an odd number of triangles), the first " + Along(topology.firstBoundaryEdge) +
       ". Only a closed mesh has an inside: fill its holes.");
   }
@@ -70,24 +70,24 @@ std::vector<std::string> Oddities(Device& device, const TriangleMesh& mesh, cons
   const std::string& name, const Grid& grid, const Monitor& monitor)
 {
   std::vector<std::string> oddities;
-  const auto say = [&](const std::string& what) { oddities.push_back(name + ": " + what); };
+  const auto say = [&](const std::string& what) { oddities.push_back(name + " " + what); };
   if (topology.degenerateTriangles > 0)
   {
-    say("the mesh has " + Counted(topology.degenerateTriangles, "triangle") +
+    say("has " + Counted(topology.degenerateTriangles, "triangle") +
       " without area (degenerate), the first is number " + std::to_string(topology.firstDegenerateTriangle) +
       "; they make no difference.");
   }
   if (topology.disagreeingEdges > 0)
   {
-    say("the triangles on both sides of " + Counted(topology.disagreeingEdges, "edge") +
-      " disagree about which side of the mesh is outside, the first " + Along(topology.firstDisagreeingEdge) +
-      ". Inside is taken for what it encloses an odd number of times, and whether it intersects itself is not known.");
+    say("has triangles that disagree about which side is outside, at " + Counted(topology.disagreeingEdges, "edge") +
+      ", the first " + Along(topology.firstDisagreeingEdge) +
+      ". What it encloses an odd number of times is taken for inside; whether it intersects itself is not known.");
     return oddities;
   }
   const bool inverted = topology.enclosedVolume < 0.0;
   if (inverted)
   {
-    say("the mesh is inverted: its normals point inwards. Inside is taken for what it encloses all the same.");
+    say("is inverted: its normals point inwards. What it encloses is taken for inside all the same.");
   }
   const WindingNumbers windings = FindWindings(device, grid, mesh, inverted, monitor);
   if (windings.oddVoxels > 0)

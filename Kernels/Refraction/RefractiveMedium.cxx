@@ -6,6 +6,7 @@
 #include "TyndallKernelSources.h"
 
 #include <algorithm>
+#include <chrono>
 #include <cmath>
 
 namespace tyndall
@@ -240,9 +241,52 @@ void AddIndex(Device& device, Buffer<float>& index, const RefractiveMediumSettin
 }
 }
 
+Grid GridAround(const std::vector<Solid>& solids, const std::array<int, 3>& size, double margin, int filterSize)
+{
+  std::array<double, 3> low, high;
+  low.fill(HUGE_VAL);
+  high.fill(-HUGE_VAL);
+  double longest = -HUGE_VAL;
+  for (int axis = 0; axis < 3; ++axis)
+  {
+    for (const Solid& solid : solids)
+    {
+      for (const std::array<double, 3>& point : solid.mesh.points)
+      {
+        low[axis] = std::min(low[axis], point[axis]);
+        high[axis] = std::max(high[axis], point[axis]);
+      }
+    }
+    longest = std::max(longest, high[axis] - low[axis]);
+    Demand(size[axis] >= 1, "The grid is to have " + std::to_string(size[axis]) + " voxels along " +
+        std::string(1, "xyz"[axis]) + "; it needs at least one.");
+  }
+  Demand(longest > 0.0 && std::isfinite(longest), "There is no mesh, or none with an extent, to put a box around.");
+  Demand(margin >= 0.0 && std::isfinite(margin),
+    "The margin is " + std::to_string(margin) + "; it must be finite and not negative.");
+
+  const int reach = filterSize / 2 + 1;
+  double edge = 0.0;
+  for (int axis = 0; axis < 3; ++axis)
+  {
+    const double length = high[axis] - low[axis];
+    const int free = size[axis] - 2 * reach;
+    edge = std::max({ edge, (length + 2.0 * margin * longest) / size[axis], length / (free > 0 ? free : size[axis]) });
+  }
+  Grid grid;
+  grid.size = size;
+  grid.spacing.fill(edge);
+  for (int axis = 0; axis < 3; ++axis)
+  {
+    grid.origin[axis] = 0.5 * (low[axis] + high[axis]) - 0.5 * edge * size[axis];
+  }
+  return grid;
+}
+
 RefractiveMedium Voxelize(
   Device& device, std::vector<Solid> solids, const RefractiveMediumSettings& settings, const Monitor& monitor)
 {
+  const auto start = std::chrono::steady_clock::now();
   CheckSettings(settings, solids);
   RefractiveMedium result;
   result.device = device.Name();
@@ -285,6 +329,7 @@ RefractiveMedium Voxelize(
   {
     AddIndex(device, index, settings, PartOf(monitor, 0.8, 1.0), result);
   }
+  result.seconds = std::chrono::duration<double>(std::chrono::steady_clock::now() - start).count();
   return result;
 }
 }

@@ -25,7 +25,7 @@ struct Material
 /// A solid: what a closed mesh encloses.
 struct Solid
 {
-  std::string name; ///< for messages, e.g. "Input 2"
+  std::string name; ///< for messages, e.g. "Mesh 2"
   TriangleMesh mesh;
   Material material;
 };
@@ -61,7 +61,13 @@ struct RefractiveMedium
   std::vector<std::string> leftOut;
   std::vector<std::string> warnings; ///< of what is odd about a mesh, for the user
   std::string device;
+  double seconds = 0.0; ///< that all of it took
 };
+
+/// A box of cubic voxels about solids, in its middle, as close as leaves on each side `margin` times the longest edge of
+/// their bounds, and one voxel more than the filter reaches.
+/// @throws InvalidInput where there is no solid or none with an extent, a size is below 1, or a margin below 0
+Grid GridAround(const std::vector<Solid>& solids, const std::array<int, 3>& size, double margin, int filterSize);
 
 /// Voxelises solids (Pfeuti 2009, section 3.1.2): samples inside are counted, each voxel gets the mean of its materials by
 /// their parts of it, n is smoothed, and its gradient taken. Where solids overlap, the last one is there.

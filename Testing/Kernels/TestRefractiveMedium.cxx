@@ -88,6 +88,7 @@ TEST_F(RefractiveMediumTest, VoxelsAreMeansOfTheirMaterials)
   EXPECT_GT(outside, 1000);
   EXPECT_THAT(medium.leftOut, IsEmpty());
   EXPECT_THAT(medium.warnings, IsEmpty());
+  EXPECT_GT(medium.seconds, 0.0);
 }
 
 TEST_F(RefractiveMediumTest, PureVoxelsAreExactWithAnyFactor)
@@ -222,12 +223,12 @@ TEST_F(RefractiveMediumTest, OddMeshesGiveWarnings)
   const TriangleMesh large = shapes::Sphere({ 0, 0, 0 }, 0.8, 4);
   const TriangleMesh small = shapes::Sphere({ 0.5, 0, 0 }, 0.4, 4);
   EXPECT_THAT(warnings(large), IsEmpty());
-  EXPECT_THAT(warnings(shapes::Inverted(large)), ElementsAre(HasSubstr("Mesh: the mesh is inverted")));
+  EXPECT_THAT(warnings(shapes::Inverted(large)), ElementsAre(HasSubstr("Mesh is inverted")));
   EXPECT_THAT(warnings(shapes::Together(large, small)),
-    ElementsAre(testing::AllOf(HasSubstr("intersects itself"), HasSubstr("from 0 to 2 times"))));
+    ElementsAre(testing::AllOf(HasSubstr("intersects itself"), HasSubstr("but from 0 to 2 times"))));
   TriangleMesh turned = large;
   std::swap(turned.triangles[3][0], turned.triangles[3][1]);
-  EXPECT_THAT(warnings(turned), ElementsAre(HasSubstr("of 3 edges disagree")));
+  EXPECT_THAT(warnings(turned), ElementsAre(HasSubstr("at 3 edges")));
   TriangleMesh degenerate = large;
   degenerate.triangles.push_back({ 7, 7, 8 });
   EXPECT_THAT(
@@ -238,7 +239,7 @@ TEST_F(RefractiveMediumTest, OpenMeshesAreRefused)
 {
   Solid open = Ball();
   open.mesh.triangles.pop_back();
-  this->ExpectRefused({ Ball(), open }, FogAround(), "Ball: the mesh is open. It has 3 boundary edges");
+  this->ExpectRefused({ Ball(), open }, FogAround(), "Ball is open: it has 3 boundary edges");
   open.mesh.triangles.pop_back();
   this->ExpectRefused({ open }, FogAround(), "the first from (");
 
@@ -257,11 +258,28 @@ TEST_F(RefractiveMediumTest, OpenMeshesAreRefused)
   EXPECT_NO_THROW(this->Made({ seam }, FogAround()));
 }
 
+TEST(GridAround, HasCubesAndRoomForTheFilter)
+{
+  const Solid plate = { "Plate", shapes::Box({ 1, 2, 3 }, { 9, 4, 4 }), {} };
+  const Grid grid = GridAround({ plate }, { 200, 200, 100 }, 0.1, 9);
+  for (int axis = 0; axis < 3; ++axis)
+  {
+    EXPECT_DOUBLE_EQ(grid.spacing[axis], (8.0 + 2 * 0.8) / 200);
+    EXPECT_DOUBLE_EQ(grid.origin[axis] + 0.5 * grid.Length(axis), 0.5 * (plate.mesh.points[0][axis] + plate.mesh.points[7][axis]));
+  }
+  EXPECT_DOUBLE_EQ(GridAround({ plate }, { 40, 40, 20 }, 0.0, 9).spacing[0], 8.0 / (40 - 2 * 5));
+  EXPECT_DOUBLE_EQ(GridAround({ plate }, { 40, 40, 20 }, 0.0, 1).spacing[0], 8.0 / (40 - 2));
+  EXPECT_DOUBLE_EQ(GridAround({ plate }, { 4, 4, 4 }, 0.0, 9).spacing[0], 2.0); // no room at all
+  EXPECT_THROW(GridAround({ plate }, { 4, 0, 4 }, 0.1, 9), InvalidInput);
+  EXPECT_THROW(GridAround({ plate }, { 4, 4, 4 }, -0.1, 9), InvalidInput);
+  EXPECT_THROW(GridAround({}, { 4, 4, 4 }, 0.1, 9), InvalidInput);
+}
+
 TEST_F(RefractiveMediumTest, BadInputIsRefused)
 {
   const RefractiveMediumSettings good = FogAround(8);
   this->ExpectRefused({}, good, "There is no mesh");
-  this->ExpectRefused({ { "Input 1", {}, Glass() } }, good, "Input 1: The mesh is empty");
+  this->ExpectRefused({ { "Input 1", {}, Glass() } }, good, "Input 1 cannot be used. The mesh is empty");
   Solid flat = Ball();
   for (shapes::Point& point : flat.mesh.points)
   {
