@@ -75,7 +75,8 @@ public:
     }
     claims.That(std::all_of(this->Covered.begin(), this->Covered.end(), [](int times) { return times == 1; }),
       "every voxel lies in one leaf");
-    claims.That(this->LeafLevels->GetNumberOfValues() == nodes->GetNumberOfVertices(), "every vertex has a level");
+    claims.That(this->LeafLevels->GetNumberOfValues() == nodes->GetNumberOfElements(vtkDataObject::CELL),
+      "every vertex has a level");
     claims.That(filter->GetNodeCount() == this->Leaves, "NodeCount is the number of leaves");
   }
 
@@ -281,8 +282,8 @@ void BadInputIsOneError(test::Claims& claims)
     filter->SetInputDataObject(image);
     filter->Update();
     claims.That(errors.WasOneWith(part), "refused: " + part);
-    claims.That(filter->GetOutput()->GetNumberOfCells() == 0 && NodesOf(filter)->GetNumberOfVertices() == 0 &&
-        filter->GetNodeCount() == 0,
+    claims.That(filter->GetOutput()->GetNumberOfCells() == 0 &&
+        NodesOf(filter)->GetNumberOfElements(vtkDataObject::CELL) == 0 && filter->GetNodeCount() == 0,
       "the outputs are empty: " + part);
   };
   const auto good = WithIndex(box, Waves);
