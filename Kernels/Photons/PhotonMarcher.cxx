@@ -1,5 +1,6 @@
 #include "PhotonMarcher.h"
 
+#include "IndexRange.h"
 #include "PhotonPacking.h"
 #include "TyndallKernelSources.h"
 
@@ -18,7 +19,6 @@ constexpr int RoundsAtMost = 64;        ///< of a photon through the volume, in 
 constexpr int Block = 512;              ///< neighbouring photons that one work-item takes one after the other
 constexpr int PrivateSumsAtMost = 8;    ///< beyond, adding up the copies costs more than atomics do
 constexpr double EventsPerLaunch = 4e7; ///< keeps a launch of two cores below a tenth of a second
-constexpr float ConstantIndex = 1e-6f;  ///< variation that is rounding
 constexpr float DarkUnits = 1e-3f;      ///< power that no sum would show
 
 // As index_grid, march_info, photon_end in the kernels.
@@ -61,29 +61,6 @@ double DiagonalOf(const Grid& grid)
 {
   return std::hypot(grid.spacing[0], grid.spacing[1], grid.spacing[2]);
 }
-
-void CheckIndex(const Field& ior, const Grid& grid)
-{
-  const std::size_t count = ior.values ? grid.VoxelCount() : 0;
-  for (std::size_t i = 0; i < count; ++i)
-  {
-    if (!(ior.values[i] > 0.0f) || std::isinf(ior.values[i]))
-    {
-      throw InvalidInput("ior is " + std::to_string(ior.values[i]) + " in voxel " + VoxelName(grid, i) +
-        " (the first such voxel); a refractive index must be finite and positive.");
-    }
-  }
-}
-
-bool Varies(const Field& ior, const Grid& grid)
-{
-  if (!ior.values)
-  {
-    return false;
-  }
-  const auto range = std::minmax_element(ior.values, ior.values + grid.VoxelCount());
-  return *range.second - *range.first > ConstantIndex * *range.second;
-}
 }
 
 void Check(const MarchSettings& settings)
@@ -107,7 +84,7 @@ public:
     , TheGrid(medium.grid)
     , Settings(settings)
     , MediumChannels(medium.sigma_a.components == 3 || medium.sigma_s.components == 3 ? 3 : 1)
-    , Bends(Varies(ior, medium.grid))
+    , Bends(IndexVaries(ior, medium.grid))
     , HasLevels(levels && this->Bends)
     , AComponents(medium.sigma_a.values ? medium.sigma_a.components : 0)
     , SComponents(medium.sigma_s.values ? medium.sigma_s.components : 0)

@@ -1,0 +1,45 @@
+#pragma once
+
+#include "Photons.h"
+#include "SampleSequence.h"
+
+#include "../Device/Monitor.h"
+#include "../Lights/Lights.h"
+#include "../Medium/Grid.h"
+
+namespace tyndall
+{
+struct EmissionSettings
+{
+  /// Photons that reach the volume, of all lights together; each light has a share in proportion to the power with which it
+  /// reaches the volume, at least one. Spots and rectangles of which a part misses the volume meet it within a percent.
+  std::size_t photonCount = 100000;
+  Sampler sampler = Sampler::Hammersley;
+  std::uint64_t seed = 0;
+};
+
+/// Photons of all lights, where they enter the volume (those of a lamp in the volume: at the lamp), and the number of each
+/// one's light: that in `illumination.lights`, then -1 for the environment and the sky, -2 for the faces.
+struct EmittedPhotons
+{
+  std::vector<Photon> photons;
+  std::vector<int> lights;
+  Rgb power = {}; ///< W, of all photons
+};
+
+/// Makes photons of lights (Pfeuti 2009, section 3.1.4), in double precision on the host. What would miss the volume is not
+/// made, and the power of the others is what really reaches it:
+///
+///  - directional: spread over the outline of the volume on the photon plane across the light's direction
+///  - point: over the solid angle of the faces that the lamp sees, or all around a lamp in the volume
+///  - spot: over its cone or the faces, whichever is smaller, and those that are in the other one
+///  - rectangle: from points of it over the faces that each sees, power by the cosine; in the volume over a half-space
+///  - environment and sky: direction by radiance, solid angle and outline of the volume, then over that outline
+///  - faces: over each face, directions by the cosine
+///
+/// The index outside is taken as constant.
+///
+/// @throws InvalidInput where an illumination means nothing or no photon is asked for; Aborted
+EmittedPhotons EmitPhotons(
+  const Grid& grid, const Illumination& illumination, const EmissionSettings& settings, const Monitor& monitor = {});
+}

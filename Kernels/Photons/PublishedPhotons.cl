@@ -1,0 +1,270 @@
+// Photon marching as published: Pfeuti 2009, section 3.1.5, after Sun et al. 2008. One work-item a photon; explicit Euler
+// (Eq. 2.10, 2.11); the line of each step is rasterised and every voxel of it gets the photon's power, however long the path
+// in it is; colour (RGBe, Ward 1991) and mean direction (10 bits a component) share 64 bits, which compare-and-swap replaces,
+// with ten tries. Read after Numerics.cl. The host gives
+//   BENDS   1: the index varies
+//   LEVELS  1: there are octree levels
+//   A_CHANNELS, S_CHANNELS  components of sigma_a and sigma_s, 0: there is none
+//   TRIES   of compare-and-swap
+
+#pragma OPENCL EXTENSION cl_khr_int64_base_atomics : enable
+
+#define OUT_OF_GRID 6
+
+typedef struct
+{
+  int size[3];
+  float spacing[3];
+  int stepLimit;
+} published_info;
+
+typedef struct
+{
+  int face;    // it left through, or 6: it was given up
+  int credits; // to voxels
+  int givenUp; // of them, after all tries
+  int steps;
+  float power[3];     // that is left
+  float deposited[3]; // sum of all credits
+} published_end;
+
+static float3 from_rgbe(uint packed)
+{
+  const int exponent = (int)(packed >> 24) - 128;
+  const float scale = packed == 0 ? 0.0f : ldexp(1.0f, exponent - 8);
+  return scale * (float3)(packed & 255, packed >> 8 & 255, packed >> 16 & 255);
+}
+
+static uint to_rgbe(float3 colour)
+{
+  const float most = fmax(fmax(colour.x, colour.y), colour.z);
+  if (most < 1e-32f)
+  {
+    return 0;
+  }
+  int exponent;
+  const float scale = frexp(most, &exponent) * 256.0f / most;
+  const uint3 mantissa = convert_uint3(min(colour * scale, 255.0f)); // cut off, as Ward does
+  return mantissa.x | mantissa.y << 8 | mantissa.z << 16 | (uint)(exponent + 128) << 24;
+}
+
+static float3 from_direction(uint packed)
+{
+  const float3 bits = (float3)(packed & 1023, packed >> 10 & 1023, packed >> 20 & 1023);
+  return packed == 0 ? (float3)(0.0f) : bits * (2.0f / 1023.0f) - 1.0f;
+}
+
+static uint to_direction(float3 direction)
+{
+  const uint3 bits = convert_uint3(clamp((direction + 1.0f) * 511.5f + 0.5f, 0.0f, 1023.0f));
+  return bits.x | bits.y << 10 | bits.z << 20;
+}
+
+static float luminance(float3 colour)
+{
+  return dot(colour, (float3)(0.2126f, 0.7152f, 0.0722f));
+}
+
+// Read, unpack, change, pack, and write if nobody else has written meanwhile. Returns whether it succeeded.
+static bool credit_packed(__global ulong* voxel, float3 power, float3 direction)
+{
+  for (int i = 0; i < TRIES; ++i)
+  {
+    const ulong before = *(volatile __global ulong*)voxel;
+    const float3 colour = from_rgbe((uint)before);
+    const float old_weight = luminance(colour), weight = luminance(power);
+    const float3 mean = (from_direction((uint)(before >> 32)) * old_weight + direction * weight) / (old_weight + weight);
+    const ulong after = to_rgbe(colour + power) | (ulong)to_direction(mean) << 32;
+    if (atom_cmpxchg(voxel, before, after) == before)
+    {
+      return true;
+    }
+  }
+  return false;
+}
+
+static int3 size_of(const published_info* info)
+{
+  return (int3)(info->size[0], info->size[1], info->size[2]);
+}
+
+static int index_of(const published_info* info, int3 voxel)
+{
+  const int3 inside = clamp(voxel, (int3)(0), size_of(info) - 1);
+  return (inside.z * info->size[1] + inside.y) * info->size[0] + inside.x;
+}
+
+#if BENDS
+// Linear between voxel centres: gradient of n (x, y, z; by voxels) and n (w).
+static float4 index_at(const published_info* info, const __global float4* index, float3 p)
+{
+  const float3 q = p - 0.5f, base = floor(q), f = q - base;
+  const int3 b = convert_int3(base);
+  float4 sum = 0.0f;
+  for (int corner = 0; corner < 8; ++corner)
+  {
+    const int3 d = (int3)(corner & 1, corner >> 1 & 1, corner >> 2);
+    const float weight = (d.x ? f.x : 1.0f - f.x) * (d.y ? f.y : 1.0f - f.y) * (d.z ? f.z : 1.0f - f.z);
+    sum += weight * index[index_of(info, b + d)];
+  }
+  return sum;
+}
+#endif
+
+// Index and its central differences.
+__kernel void published_index(published_info info, const __global float* ior, __global float4* index)
+{
+  const int3 v = (int3)(get_global_id(0), get_global_id(1), get_global_id(2));
+  float gradient[3];
+  for (int a = 0; a < 3; ++a)
+  {
+    const int3 step = (int3)(a == 0, a == 1, a == 2);
+    const int here = a == 0 ? v.x : a == 1 ? v.y : v.z;
+    const int span = (here > 0) + (here < info.size[a] - 1);
+    gradient[a] = span == 0 ? 0.0f : (ior[index_of(&info, v + step)] - ior[index_of(&info, v - step)]) / span;
+  }
+  index[index_of(&info, v)] = (float4)(gradient[0], gradient[1], gradient[2], ior[index_of(&info, v)]);
+}
+
+#define component(values, count, voxel, c) ((count) == 0 ? 0.0f : (values)[(voxel) * (count) + ((count) == 3 ? (c) : 0)])
+
+static float3 extinction(const __global float* sigma_a, const __global float* sigma_s, int v)
+{
+  return (float3)(component(sigma_a, A_CHANNELS, v, 0) + component(sigma_s, S_CHANNELS, v, 0),
+    component(sigma_a, A_CHANNELS, v, 1) + component(sigma_s, S_CHANNELS, v, 1),
+    component(sigma_a, A_CHANNELS, v, 2) + component(sigma_s, S_CHANNELS, v, 2));
+}
+
+// Length of path, in the dataset's unit, from p along `u` (voxels a length): a voxel, or to the border of the octree's node
+// and a little beyond.
+static float step_length(const published_info* info, const __global uchar* levels, float3 p, float3 u)
+{
+  const float voxel = rsqrt(dot(u, u));
+#if LEVELS
+  const int3 v = convert_int3_rtn(p);
+  const int level = levels[index_of(info, v)];
+  if (level > 0)
+  {
+    const int3 low = (v >> level) << level;
+    const float3 near = convert_float3(low), far = near + (float)(1 << level);
+    const float3 walls = u > 0.0f ? far : near;
+    const float3 out = u == 0.0f ? (float3)(1e30f) : fmax((walls - p) / u, 0.0f);
+    return fmax(1.001f * fmin(fmin(out.x, out.y), out.z), 0.01f * voxel);
+  }
+#endif
+  return voxel;
+}
+
+typedef struct
+{
+  float3 position, velocity, power; // voxels; n times direction; W in units
+} published_photon;
+
+// Credit the voxels whose middles, along the axis of largest change, lie between the two ends.
+static void rasterize(const published_info* info, const published_photon* a, const published_photon* b,
+  __global ulong* packed, __global published_end* end)
+{
+  const float3 change = b->position - a->position;
+  const float3 size = fabs(change);
+  const int axis = size.x >= size.y && size.x >= size.z ? 0 : size.y >= size.z ? 1 : 2;
+  const float from = axis == 0 ? a->position.x : axis == 1 ? a->position.y : a->position.z;
+  const float to = axis == 0 ? b->position.x : axis == 1 ? b->position.y : b->position.z;
+  if (from == to)
+  {
+    return;
+  }
+  const int low = (int)ceil(fmin(from, to) - 0.5f), high = (int)ceil(fmax(from, to) - 0.5f);
+  for (int cell = low; cell < high; ++cell)
+  {
+    const float t = (cell + 0.5f - from) / (to - from);
+    const int3 voxel = convert_int3_rtn(a->position + t * change);
+    if (any(voxel < 0) || any(voxel >= size_of(info)))
+    {
+      continue;
+    }
+    const float3 power = mix(a->power, b->power, t);
+    const float3 direction = normalize(mix(a->velocity, b->velocity, t));
+    ++end->credits;
+    end->givenUp += !credit_packed(packed + index_of(info, voxel), power, direction);
+    for (int c = 0; c < 3; ++c)
+    {
+      end->deposited[c] += c == 0 ? power.x : c == 1 ? power.y : power.z;
+    }
+  }
+}
+
+static int face_left(const published_info* info, float3 p)
+{
+  const float3 size = convert_float3(size_of(info));
+  const float3 before = -p, after = p - size;
+  const float most = fmax(fmax(fmax(before.x, before.y), fmax(before.z, after.x)), fmax(after.y, after.z));
+  return most == before.x ? 0 : most == after.x ? 1 : most == before.y ? 2 : most == after.y ? 3 : most == before.z ? 4 : 5;
+}
+
+__kernel void march_published(published_info info, const __global float4* index, const __global float* sigma_a,
+  const __global float* sigma_s, const __global uchar* levels, const __global float* photons, int first,
+  __global published_end* ends, __global ulong* packed)
+{
+  const int i = first + get_global_id(0);
+  const __global float* given = photons + (ulong)i * 9;
+  const float3 h = (float3)(info.spacing[0], info.spacing[1], info.spacing[2]);
+  published_photon photon = { (float3)(given[0], given[1], given[2]), (float3)(given[3], given[4], given[5]),
+    (float3)(given[6], given[7], given[8]) };
+  __global published_end* end = ends + i;
+  end->credits = end->givenUp = 0;
+  for (int c = 0; c < 3; ++c)
+  {
+    end->deposited[c] = 0.0f;
+  }
+#if BENDS
+  photon.velocity *= index_at(&info, index, photon.position).w;
+#endif
+  int step = 0;
+  for (; step < info.stepLimit; ++step)
+  {
+    published_photon next = photon;
+#if BENDS
+    const float4 n = index_at(&info, index, photon.position);
+    const float3 u = photon.velocity / (n.w * h);
+#else
+    const float3 u = photon.velocity / h;
+#endif
+    const float ds = step_length(&info, levels, photon.position, u);
+    next.position += ds * u;
+#if BENDS
+    next.velocity += ds * n.xyz / h;
+#endif
+    next.power *= exp(-ds * extinction(sigma_a, sigma_s, index_of(&info, convert_int3_rtn(photon.position))));
+    rasterize(&info, &photon, &next, packed, end);
+    photon = next;
+    if (any(photon.position < 0.0f) || any(photon.position >= convert_float3(size_of(&info))))
+    {
+      break;
+    }
+  }
+  end->face = step < info.stepLimit ? face_left(&info, photon.position) : OUT_OF_GRID;
+  end->steps = step + 1;
+  end->power[0] = photon.power.x;
+  end->power[1] = photon.power.y;
+  end->power[2] = photon.power.z;
+}
+
+// fluence  3 a voxel, W / length^2;  direction  3 a voxel
+__kernel void unpack_light(float fluence_of_unit, const __global ulong* packed, __global float* fluence, __global float* direction)
+{
+  const size_t v = get_global_id(0);
+  const float3 colour = from_rgbe((uint)packed[v]) * fluence_of_unit;
+  const float3 mean = from_direction((uint)(packed[v] >> 32));
+  vstore3(colour, v, fluence);
+  vstore3(mean, v, direction);
+}
+
+// The 3x3x3 Gauss filter, one axis of it: 1/4, 1/2, 1/4.
+__kernel void smooth_along(int axis, published_info info, const __global float* from, __global float* to)
+{
+  const int3 v = (int3)(get_global_id(0), get_global_id(1), get_global_id(2));
+  const int3 step = (int3)(axis == 0, axis == 1, axis == 2);
+  const float3 sum = 0.25f * (vload3(index_of(&info, v - step), from) + vload3(index_of(&info, v + step), from)) +
+    0.5f * vload3(index_of(&info, v), from);
+  vstore3(sum, index_of(&info, v), to);
+}
