@@ -10,24 +10,23 @@
 /// For filters in parallel pipelines whose light crosses the borders of pieces.
 namespace tyndall
 {
-/// In RequestUpdateExtent: ask an input for all of its image, or all pieces of its polydata.
-inline void AskForAll(vtkInformationVector* input)
+/// In RequestUpdateExtent: ask the inputs of a port for all of their image, or all pieces of their polydata.
+inline void AskForAll(vtkInformationVector* inputs)
 {
   using Pipeline = vtkStreamingDemandDrivenPipeline;
-  vtkInformation* information = input->GetInformationObject(0);
-  if (!information)
+  for (int i = 0; i < inputs->GetNumberOfInformationObjects(); ++i)
   {
-    return;
+    vtkInformation* information = inputs->GetInformationObject(i);
+    if (information->Has(Pipeline::WHOLE_EXTENT()))
+    {
+      int whole[6];
+      information->Get(Pipeline::WHOLE_EXTENT(), whole);
+      information->Set(Pipeline::UPDATE_EXTENT(), whole, 6);
+    }
+    information->Set(Pipeline::UPDATE_PIECE_NUMBER(), 0);
+    information->Set(Pipeline::UPDATE_NUMBER_OF_PIECES(), 1);
+    information->Set(Pipeline::UPDATE_NUMBER_OF_GHOST_LEVELS(), 0);
   }
-  if (information->Has(Pipeline::WHOLE_EXTENT()))
-  {
-    int whole[6];
-    information->Get(Pipeline::WHOLE_EXTENT(), whole);
-    information->Set(Pipeline::UPDATE_EXTENT(), whole, 6);
-  }
-  information->Set(Pipeline::UPDATE_PIECE_NUMBER(), 0);
-  information->Set(Pipeline::UPDATE_NUMBER_OF_PIECES(), 1);
-  information->Set(Pipeline::UPDATE_NUMBER_OF_GHOST_LEVELS(), 0);
 }
 
 /// In RequestData: crop the output to the extent, or the piece of it, that was asked for; other ranks hold the rest.

@@ -149,10 +149,11 @@ std::vector<cl_uint4> LatticeMesh::Tiles(const SampleColumns& columns, int first
     std::array<const SampleLattice::Point*, 3> corners;
     std::transform(this->HostTriangles[t].begin(), this->HostTriangles[t].end(), corners.begin(),
       [&](int corner) { return &this->HostPoints[static_cast<std::size_t>(corner)]; });
+    // A sample at the upper end is decided as if it were a little further up: outside.
     const auto range = [&](int axis, int limitLow, int limitHigh) {
       const auto [low, high] = std::minmax({ (*corners[0])[axis], (*corners[1])[axis], (*corners[2])[axis] });
       return std::array<int, 2>{ std::max(FirstSampleFrom(low, pitch), limitLow),
-        std::min(FirstSampleFrom(high + 1, pitch), limitHigh) };
+        std::min(FirstSampleFrom(high, pitch), limitHigh) };
     };
     const std::array<int, 2> row = range(columns.up, firstRow, endRow);
     const std::array<int, 2> column = range(columns.across, 0, columns.count[0]);

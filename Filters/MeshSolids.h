@@ -1,0 +1,22 @@
+#pragma once
+
+#include "Refraction/RefractiveMedium.h"
+
+#include <functional>
+#include <string>
+#include <vector>
+
+class vtkPolyData;
+
+/// From VTK's meshes to those of the kernels.
+namespace tyndall
+{
+/// The solids of a mesh: one for each number in a cell array, in ascending order, or one for the whole mesh. Polygons and
+/// strips become triangles; vertices, lines, and points that no triangle has are left behind.
+/// @param name        of the mesh, for messages, e.g. "Mesh 2"
+/// @param numbers     name of the cell array; where it is not there, all cells have the number `otherwise`
+/// @param materialOf  the material of a number
+/// @throws InvalidInput where the array is not of one component
+std::vector<Solid> SolidsOf(vtkPolyData* mesh, const std::string& name, const std::string& numbers, int otherwise,
+  const std::function<Material(int number)>& materialOf);
+}

@@ -1,0 +1,220 @@
+#ifndef vtkMeshVoxelizer_h
+#define vtkMeshVoxelizer_h
+
+#include "vtkImageAlgorithm.h"
+#include "vtkTyndallModule.h" // for export macro
+
+#include <memory>
+#include <string>
+
+/**
+ * @class vtkMeshVoxelizer
+ * @brief turns closed meshes into a medium of voxels, for light that is bent by its refractive index
+ *
+ * Input, repeatable: vtkPolyData, each closed; polygons and strips are triangulated, points at the same place count as one.
+ * Where meshes overlap, the later input is there.
+ *
+ * Optional cell array `material_id` (whole numbers), or that chosen by SetInputArrayToProcess(0, ...): the material of each
+ * cell. The cells of each number must be closed by themselves; where they overlap, the higher number is there. Without it the
+ * number of the input, from 0 on, is its material. Materials are added by AddMaterial; those that are not there have the
+ * Inside properties.
+ *
+ * Output: vtkImageData with the cell arrays
+ *
+ * | array          | components                  | unit     | meaning                                            |
+ * |----------------|-----------------------------|----------|----------------------------------------------------|
+ * | `occupancy`    | 1                           | 1        | part of the voxel inside any mesh, the active scalars |
+ * | `ior`          | 1                           | 1        | refractive index n, smoothed; not where n is constant |
+ * | `ior_gradient` | 3                           | 1/length | its gradient by central differences; not where n is constant |
+ * | `sigma_a`      | 1, or 3 where it has colour | 1/length | absorption coefficient                             |
+ * | `sigma_s`      | 1, or 3 where it has colour | 1/length | scattering coefficient                             |
+ *
+ * and the field data `g` (mean cosine of the phase function), `left_out` (what the scene did not need) and `device`.
+ * Lengths are in the dataset's own unit.
+ *
+ * A voxel is divided into SupersamplingFactor^3 fine voxels, whose centres are inside a mesh or not, decided in whole numbers:
+ * edges and corners count once, a closed mesh never leaks, and the result is the same to the last bit on every run. A voxel's
+ * coefficients and index are the means of its materials. The fine grid is there in slabs of a fixed size.
+ *
+ * There is one g: where materials that scatter have different ones, it is their mean weighed by sigma_s, and each sigma_s is
+ * scaled such that sigma_s (1 - g) stays what it is; `left_out` says so.
+ *
+ * An open or empty mesh is an error that names the number of boundary edges (edges of an odd number of triangles) and the
+ * first; so is one without area. Meshes that intersect themselves, are inverted, have triangles that disagree about which
+ * side is outside, or degenerate ones give a warning that says how many and where; inside is what is enclosed an odd number
+ * of times.
+ *
+ * In a parallel pipeline every rank voxelises the whole box from all pieces of the meshes and keeps its part.
+ *
+ * @sa vtkRefractionOctree vtkPhotonMarcher vtkMediumRayCaster
+ * @par Thanks
+ * E. Eisemann, X. Decoret: Single-Pass GPU Solid Voxelization for Real-Time Applications, Graphics Interface 2008.
+ * M. Pfeuti: Real-time Rendering of Refractive Objects in Participating Media, 2009, section 3.1.2.
+ */
+class TYNDALL_EXPORT vtkMeshVoxelizer : public vtkImageAlgorithm
+{
+public:
+  static vtkMeshVoxelizer* New();
+  vtkTypeMacro(vtkMeshVoxelizer, vtkImageAlgorithm);
+  void PrintSelf(ostream& os, vtkIndent indent) override;
+
+  ///@{
+  /// Voxels along x, y and z. Default (128, 128, 128), valid from 1 on.
+  vtkSetVector3Macro(SampleDimensions, int);
+  vtkGetVector3Macro(SampleDimensions, int);
+  ///@}
+
+  ///@{
+  /// The box, (xmin, xmax, ymin, ymax, zmin, zmax), length. Default all 0: a box of cubic voxels about the meshes, in its
+  /// middle, as close as Margin allows.
+  vtkSetVector6Macro(ModelBounds, double);
+  vtkGetVector6Macro(ModelBounds, double);
+  ///@}
+
+  ///@{
+  /// Room on each side of the meshes where ModelBounds are 0, as a part of the longest edge of their bounds; there is always as
+  /// much as the filter reaches. Default 0.125, valid [0, infinity).
+  vtkSetMacro(Margin, double);
+  vtkGetMacro(Margin, double);
+  ///@}
+
+  ///@{
+  /// Refractive index n inside the meshes and outside. Default 1.5 (glass) and 1, valid (0, infinity).
+  vtkSetMacro(InsideIndex, double);
+  vtkGetMacro(InsideIndex, double);
+  vtkSetMacro(OutsideIndex, double);
+  vtkGetMacro(OutsideIndex, double);
+  ///@}
+
+  ///@{
+  /// Scattering coefficients sigma_s, red, green, blue, 1/length. Default (0, 0, 0) inside and (0.1, 0.1, 0.1) outside, valid
+  /// [0, infinity).
+  vtkSetVector3Macro(InsideScattering, double);
+  vtkGetVector3Macro(InsideScattering, double);
+  vtkSetVector3Macro(OutsideScattering, double);
+  vtkGetVector3Macro(OutsideScattering, double);
+  ///@}
+
+  ///@{
+  /// Absorption coefficients sigma_a, red, green, blue, 1/length. Default (0, 0, 0), valid [0, infinity).
+  vtkSetVector3Macro(InsideAbsorption, double);
+  vtkGetVector3Macro(InsideAbsorption, double);
+  vtkSetVector3Macro(OutsideAbsorption, double);
+  vtkGetVector3Macro(OutsideAbsorption, double);
+  ///@}
+
+  ///@{
+  /// Mean cosine g of the angle by which light is scattered. Default 0, valid (-1, 1).
+  vtkSetMacro(InsideMeanCosine, double);
+  vtkGetMacro(InsideMeanCosine, double);
+  vtkSetMacro(OutsideMeanCosine, double);
+  vtkGetMacro(OutsideMeanCosine, double);
+  ///@}
+
+  ///@{
+  /// A material for the cells of that number instead of the Inside properties: its index n, sigma_s and sigma_a (red, green,
+  /// blue, 1/length), and mean cosine g. Of several with the same number the last one counts.
+  void AddMaterial(double number, double n, double scatteringR, double scatteringG, double scatteringB,
+    double absorptionR, double absorptionG, double absorptionB, double g);
+  void RemoveAllMaterials();
+  int GetNumberOfMaterials() const;
+  ///@}
+
+  ///@{
+  /// Gradient noise on the index inside: n becomes n + IndexNoise times a smooth random number in [-1, 1]. Default 0, valid
+  /// from 0 to less than the index.
+  vtkSetMacro(IndexNoise, double);
+  vtkGetMacro(IndexNoise, double);
+  ///@}
+
+  ///@{
+  /// The same noise on scattering inside: sigma_s becomes sigma_s (1 + ScatteringNoise noise). Default 0, valid [0, 1].
+  vtkSetMacro(ScatteringNoise, double);
+  vtkGetMacro(ScatteringNoise, double);
+  ///@}
+
+  ///@{
+  /// Size of the noise's features, length. Default 1, valid (0, infinity).
+  vtkSetMacro(NoiseSize, double);
+  vtkGetMacro(NoiseSize, double);
+  ///@}
+
+  ///@{
+  /// Which noise: the same seed makes the same noise. Default 0.
+  vtkSetMacro(NoiseSeed, int);
+  vtkGetMacro(NoiseSeed, int);
+  ///@}
+
+  ///@{
+  /// Fine voxels an edge of a voxel: occupancy comes in steps of 1 / SupersamplingFactor^3. Default 4, valid [1, 16].
+  vtkSetMacro(SupersamplingFactor, int);
+  vtkGetMacro(SupersamplingFactor, int);
+  ///@}
+
+  ///@{
+  /// Width of the Gaussian that smooths n, voxels; its standard deviation is a sixth of that. Default 9, valid odd numbers
+  /// from 1 (not smoothed) to 65.
+  vtkSetMacro(FilterSize, int);
+  vtkGetMacro(FilterSize, int);
+  ///@}
+
+  ///@{
+  /// Part of the name of the OpenCL device to use, of any case. Default empty: what the variable TYNDALL_DEVICE names, or
+  /// else PoCL's CPU device.
+  vtkSetStdStringFromCharMacro(Device);
+  vtkGetCharFromStdStringMacro(Device);
+  ///@}
+
+  ///@{
+  /// What came of the last update: the volume inside meshes (length^3; with its discretisation), the seconds that it took,
+  /// the name of the device, and what the scene did not need, one a line.
+  vtkGetMacro(OccupiedVolume, double);
+  vtkGetMacro(Seconds, double);
+  vtkGetCharFromStdStringMacro(DeviceName);
+  vtkGetCharFromStdStringMacro(LeftOut);
+  ///@}
+
+protected:
+  vtkMeshVoxelizer();
+  ~vtkMeshVoxelizer() override;
+
+  int FillInputPortInformation(int port, vtkInformation* information) override;
+  int RequestInformation(
+    vtkInformation* request, vtkInformationVector** inputs, vtkInformationVector* outputs) override;
+  int RequestUpdateExtent(
+    vtkInformation* request, vtkInformationVector** inputs, vtkInformationVector* outputs) override;
+  int RequestData(vtkInformation* request, vtkInformationVector** inputs, vtkInformationVector* outputs) override;
+
+private:
+  vtkMeshVoxelizer(const vtkMeshVoxelizer&) = delete;
+  void operator=(const vtkMeshVoxelizer&) = delete;
+
+  int SampleDimensions[3] = { 128, 128, 128 };
+  double ModelBounds[6] = { 0.0, 0.0, 0.0, 0.0, 0.0, 0.0 };
+  double Margin = 0.125;
+  double InsideIndex = 1.5;
+  double OutsideIndex = 1.0;
+  double InsideScattering[3] = { 0.0, 0.0, 0.0 };
+  double OutsideScattering[3] = { 0.1, 0.1, 0.1 };
+  double InsideAbsorption[3] = { 0.0, 0.0, 0.0 };
+  double OutsideAbsorption[3] = { 0.0, 0.0, 0.0 };
+  double InsideMeanCosine = 0.0;
+  double OutsideMeanCosine = 0.0;
+  double IndexNoise = 0.0;
+  double ScatteringNoise = 0.0;
+  double NoiseSize = 1.0;
+  int NoiseSeed = 0;
+  int SupersamplingFactor = 4;
+  int FilterSize = 9;
+  std::string Device;
+
+  struct AddedMaterials;
+  const std::unique_ptr<AddedMaterials> Added;
+
+  double OccupiedVolume = 0.0;
+  double Seconds = 0.0;
+  std::string DeviceName;
+  std::string LeftOut;
+};
+
+#endif

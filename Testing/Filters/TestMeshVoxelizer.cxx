@@ -1,0 +1,248 @@
+#include "MediumScene.h"
+#include "MeshData.h"
+
+#include "vtkCubeSource.h"
+#include "vtkMeshVoxelizer.h"
+#include "vtkSphereSource.h"
+#include "vtkStringArray.h"
+#include "vtkStripper.h"
+
+#include <cmath>
+#include <limits>
+
+namespace
+{
+vtkSmartPointer<vtkPolyData> Ball(double x, double radius)
+{
+  return test::ToPolyData(shapes::Sphere({ x, 0.0, 0.0 }, radius, 4));
+}
+
+vtkDataArray* Cells(vtkMeshVoxelizer* filter, const char* name)
+{
+  return filter->GetOutput()->GetCellData()->GetArray(name);
+}
+
+/// Of the voxel in which a place lies.
+double At(vtkMeshVoxelizer* filter, const char* name, double x, double y, double z, int component = 0)
+{
+  int index[3];
+  double within[3];
+  const double place[3] = { x, y, z };
+  vtkImageData* image = filter->GetOutput();
+  vtkDataArray* array = Cells(filter, name);
+  return array && image->ComputeStructuredCoordinates(place, index, within)
+    ? array->GetComponent(image->ComputeCellId(index), component)
+    : std::numeric_limits<double>::quiet_NaN();
+}
+
+std::string LeftOut(vtkMeshVoxelizer* filter)
+{
+  auto* fact = vtkArrayDownCast<vtkStringArray>(filter->GetOutput()->GetFieldData()->GetAbstractArray("left_out"));
+  return fact && fact->GetNumberOfValues() > 0 ? fact->GetValue(0) : "";
+}
+
+void GlassBallInFog(test::Claims& claims)
+{
+  vtkNew<vtkMeshVoxelizer> filter;
+  test::Errors errors(filter);
+  filter->SetInputDataObject(Ball(2.0, 1.0));
+  filter->SetSampleDimensions(40, 40, 30);
+  filter->SetInsideAbsorption(0.0, 0.1, 0.2);
+  filter->Update();
+  claims.That(errors.None(), "a ball is taken");
+  vtkImageData* image = filter->GetOutput();
+  claims.That(image->GetNumberOfCells() == 40 * 40 * 30, "SampleDimensions are voxels");
+  claims.Near(image->GetSpacing()[0], image->GetSpacing()[2], 0.0, "edge of a cubic voxel");
+  claims.Near(image->GetCenter()[0], 2.0, 1e-6, "centre of the box");
+  claims.Near(filter->GetOccupiedVolume(), 4.0 / 3.0 * vtkMath::Pi(), 0.03, "OccupiedVolume");
+  claims.That(
+    Cells(filter, "sigma_s")->GetNumberOfComponents() == 3, "one material with colour makes three components");
+  claims.Near(At(filter, "occupancy", 2, 0, 0), 1.0, 0.0, "occupancy inside");
+  claims.Near(At(filter, "ior", 2, 0, 0), 1.5, 1e-6, "n inside");
+  claims.Near(At(filter, "sigma_a", 2, 0, 0, 2), 0.2, 1e-6, "blue sigma_a inside");
+  claims.Near(At(filter, "sigma_s", 2, 0, 0), 0.0, 0.0, "sigma_s inside");
+  claims.Near(At(filter, "ior", 0.1, -1.9, 1.4), 1.0, 0.0, "n outside");
+  claims.Near(At(filter, "sigma_s", 0.1, -1.9, 1.4), 0.1, 1e-7, "sigma_s outside");
+  claims.That(At(filter, "ior_gradient", 1.0, 0, 0) > 1.0 && At(filter, "ior_gradient", 3.0, 0, 0) < -1.0,
+    "n grows into the ball");
+  claims.That(image->GetCellData()->GetScalars() == Cells(filter, "occupancy"), "occupancy is the active array");
+  claims.That(LeftOut(filter).empty(), "nothing is left out");
+  claims.That(filter->GetSeconds() > 0.0 && !std::string(filter->GetDeviceName()).empty(), "the panel has its results");
+}
+
+void ModelBoundsAreTheBox(test::Claims& claims)
+{
+  vtkNew<vtkMeshVoxelizer> filter;
+  test::Errors errors(filter);
+  filter->SetInputDataObject(Ball(0.0, 1.0));
+  filter->SetSampleDimensions(10, 20, 30);
+  filter->SetModelBounds(0.0, 2.0, -2.0, 2.0, -3.0, 3.0);
+  filter->Update();
+  double bounds[6];
+  filter->GetOutput()->GetBounds(bounds);
+  const double expected[6] = { 0.0, 2.0, -2.0, 2.0, -3.0, 3.0 };
+  for (int i = 0; i < 6; ++i)
+  {
+    claims.Near(bounds[i], expected[i], 1e-12, "bounds of the box");
+  }
+  claims.Near(filter->GetOccupiedVolume(), 2.0 / 3.0 * vtkMath::Pi(), 0.02, "half of a ball");
+  claims.That(errors.None(), "a mesh may stick out");
+}
+
+void AnyPolyDataWillDo(test::Claims& claims)
+{
+  vtkNew<vtkMeshVoxelizer> filter;
+  test::Errors errors(filter);
+  filter->SetSampleDimensions(32, 32, 32);
+
+  vtkNew<vtkCubeSource> cube; // quadrilaterals, each face with points of its own
+  cube->SetXLength(2.0);
+  filter->SetInputConnection(cube->GetOutputPort());
+  filter->Update();
+  claims.Near(filter->GetOccupiedVolume(), 2.0, 0.02, "volume of a cube of quadrilaterals");
+
+  vtkNew<vtkSphereSource> sphere;
+  sphere->SetThetaResolution(60);
+  sphere->SetPhiResolution(60);
+  vtkNew<vtkStripper> strips;
+  strips->SetInputConnection(sphere->GetOutputPort());
+  filter->SetInputConnection(strips->GetOutputPort());
+  filter->Update();
+  claims.Near(filter->GetOccupiedVolume(), vtkMath::Pi() / 6.0, 0.005, "volume of a ball of strips");
+
+  // Vertices and lines are no part of a solid; their cell data must not be taken for that of triangles.
+  const auto mixed = Ball(0.0, 1.0);
+  const vtkIdType some[2] = { 0, 1 };
+  vtkNew<vtkCellArray> vertices;
+  vertices->InsertNextCell(1, some);
+  vtkNew<vtkCellArray> lines;
+  lines->InsertNextCell(2, some);
+  mixed->SetVerts(vertices);
+  mixed->SetLines(lines);
+  test::AddValues<vtkFloatArray>(mixed->GetCellData(), "material_id", mixed->GetNumberOfCells(), 1,
+    [](vtkIdType cell, int) { return cell < 2 ? 7.0 : 1.0; });
+  filter->SetInputDataObject(mixed);
+  filter->AddMaterial(1, 1.25, 0, 0, 0, 0, 0, 0, 0);
+  filter->Update();
+  claims.Near(At(filter, "ior", 0, 0, 0), 1.25, 1e-6, "n of material 1");
+  claims.That(errors.None(), "polygons, strips, vertices and lines are taken");
+}
+
+void LaterMeshesWin(test::Claims& claims)
+{
+  vtkNew<vtkMeshVoxelizer> filter;
+  test::Errors errors(filter);
+  filter->SetSampleDimensions(48, 48, 48);
+  filter->SetFilterSize(1);
+  filter->AddInputDataObject(0, Ball(0.0, 1.0));
+  filter->AddInputDataObject(0, Ball(0.3, 0.5));
+  filter->AddMaterial(1, 1.33, 1, 2, 3, 0, 0, 0, 0);
+  filter->Update();
+  claims.Near(At(filter, "ior", 0.3, 0, 0), 1.33, 1e-6, "n of the inner ball");
+  claims.Near(At(filter, "sigma_s", 0.3, 0, 0, 2), 3.0, 1e-6, "blue sigma_s of the inner ball");
+  claims.Near(At(filter, "ior", -0.5, 0, 0), 1.5, 1e-6, "n of the outer ball");
+  claims.Near(filter->GetOccupiedVolume(), 4.0 / 3.0 * vtkMath::Pi(), 0.05, "the inner ball is no more volume");
+
+  // The other way round the large one covers the small one.
+  filter->RemoveAllInputConnections(0);
+  filter->AddInputDataObject(0, Ball(0.3, 0.5));
+  filter->AddInputDataObject(0, Ball(0.0, 1.0));
+  filter->Update();
+  claims.Near(At(filter, "ior", 0.3, 0, 0), 1.33, 1e-6, "n of the second mesh");
+  claims.Near(At(filter, "ior", -0.5, 0, 0), 1.33, 1e-6, "n of the second mesh everywhere");
+
+  // Both in one mesh, with numbers.
+  const tyndall::TriangleMesh outer = shapes::Sphere({ 0, 0, 0 }, 1.0, 4);
+  const auto both = test::ToPolyData(shapes::Together(outer, shapes::Sphere({ 0.3, 0, 0 }, 0.5, 4)));
+  const auto first = static_cast<vtkIdType>(outer.triangles.size());
+  test::AddValues<vtkFloatArray>(both->GetCellData(), "kind", both->GetNumberOfCells(), 1,
+    [&](vtkIdType cell, int) { return cell < first ? 4.0 : 1.0; });
+  filter->RemoveAllInputConnections(0);
+  filter->SetInputDataObject(both);
+  filter->SetInputArrayToProcess(0, 0, 0, vtkDataObject::FIELD_ASSOCIATION_CELLS, "kind");
+  filter->Update();
+  claims.Near(At(filter, "ior", 0.3, 0, 0), 1.5, 1e-6, "n of the higher number");
+  claims.That(errors.None(), "several meshes are taken");
+}
+
+void ConstantIndexIsLeftOut(test::Claims& claims)
+{
+  vtkNew<vtkMeshVoxelizer> filter;
+  filter->SetInputDataObject(Ball(0.0, 1.0));
+  filter->SetSampleDimensions(16, 16, 16);
+  filter->SetInsideIndex(1.0);
+  filter->Update();
+  claims.That(Cells(filter, "occupancy") && !Cells(filter, "ior") && !Cells(filter, "ior_gradient"), "ior is left out");
+  claims.That(LeftOut(filter).find("ior_gradient") != std::string::npos &&
+      std::string(filter->GetLeftOut()).find("ior_gradient") != std::string::npos,
+    "left_out says so");
+}
+
+void BadInputIsOneError(test::Claims& claims)
+{
+  vtkNew<vtkMeshVoxelizer> filter;
+  test::Errors errors(filter);
+  filter->SetSampleDimensions(16, 16, 16);
+  const auto refused = [&](vtkPolyData* mesh, const char* part) {
+    filter->SetInputDataObject(mesh);
+    filter->Update();
+    claims.That(errors.WasOneWith(part), std::string("refused: ") + part);
+    claims.That(filter->GetOutput()->GetNumberOfCells() == 0, "the output is empty after an error");
+  };
+  refused(vtkSmartPointer<vtkPolyData>::New(), "no mesh");
+  tyndall::TriangleMesh open = shapes::Box({ 0, 0, 0 }, { 1, 1, 1 });
+  open.triangles.pop_back();
+  refused(test::ToPolyData(open), "The mesh is open: it has 3 boundary edges");
+
+  const auto refusedSettings = [&](const char* part) { refused(Ball(0.0, 1.0), part); };
+  filter->SetModelBounds(0, 1, 2, 2, 0, 1);
+  refusedSettings("ModelBounds");
+  filter->SetModelBounds(0, 0, 0, 0, 0, 0);
+  filter->SetSampleDimensions(16, 0, 16);
+  refusedSettings("voxels along y");
+  filter->SetSampleDimensions(16, 16, 16);
+  filter->SetSupersamplingFactor(17);
+  refusedSettings("supersampling factor is 17");
+  filter->SetSupersamplingFactor(4);
+  filter->SetFilterSize(8);
+  refusedSettings("filter is 8 voxels");
+  filter->SetFilterSize(9);
+  filter->SetInsideIndex(-1.0);
+  refusedSettings("refractive index -1");
+  filter->SetInsideIndex(1.5);
+  filter->SetDevice("no such device");
+  refusedSettings("no such device");
+  filter->SetDevice("");
+
+  // A warning, with a result.
+  filter->SetInputDataObject(test::ToPolyData(shapes::Inverted(shapes::Sphere({ 0, 0, 0 }, 1.0, 3))));
+  filter->Update();
+  claims.That(errors.WasOneWith("is inverted"), "an inverted mesh is warned of");
+  claims.That(filter->GetOccupiedVolume() > 3.5, "an inverted mesh has its volume");
+
+  filter->SetInputDataObject(Ball(0.0, 1.0));
+  filter->Update();
+  claims.That(errors.None() && filter->GetOutput()->GetNumberOfCells() == 4096, "good input after bad is taken");
+}
+}
+
+int TestMeshVoxelizer(int, char*[])
+{
+  vtkNew<vtkMeshVoxelizer> first;
+  test::Errors errors(first);
+  first->SetInputDataObject(Ball(0.0, 1.0));
+  first->SetSampleDimensions(2, 2, 2);
+  first->Update();
+  if (!errors.None())
+  {
+    return test::SkippedWithoutDevice("the mesh voxelizer has no device");
+  }
+  test::Claims claims;
+  GlassBallInFog(claims);
+  ModelBoundsAreTheBox(claims);
+  AnyPolyDataWillDo(claims);
+  LaterMeshesWin(claims);
+  ConstantIndexIsLeftOut(claims);
+  BadInputIsOneError(claims);
+  return claims.Result();
+}

@@ -1,0 +1,90 @@
+#include "DeviceTest.h"
+#include "PlyFile.h"
+
+#include "Refraction/MeshChecks.h"
+#include "Refraction/RefractiveMedium.h"
+#include "Refraction/Voxelization.h"
+
+#include <gmock/gmock.h>
+
+#include <fstream>
+#include <numeric>
+#include <ostream>
+
+using namespace tyndall;
+
+// Real meshes, of CGAL's demos: `./run test` fetches them; without them these tests are skipped.
+namespace
+{
+std::string FileOf(const std::string& name)
+{
+  return std::string(TYNDALL_FETCHED_DATA) + "/" + name + ".ply";
+}
+
+bool IsThere(const std::string& name)
+{
+  return static_cast<bool>(std::ifstream(FileOf(name)));
+}
+
+struct Case
+{
+  const char* mesh;
+  int size;
+};
+
+class FetchedMesh
+  : public DeviceTest
+  , public testing::WithParamInterface<Case>
+{
+};
+
+TEST_P(FetchedMesh, IsTheSameFromAllSidesAndHasItsVolume)
+{
+  if (!IsThere(GetParam().mesh))
+  {
+    GTEST_SKIP() << FileOf(GetParam().mesh) << " is not there";
+  }
+  const Solid solid = { GetParam().mesh, ReadPly(FileOf(GetParam().mesh)), {} };
+  const int size = GetParam().size;
+  const Grid grid = GridAround({ solid }, { size, size, size }, 0.125, 9);
+  VoxelizationSettings settings;
+  std::vector<cl_ushort> first;
+  for (settings.columnAxis = 0; settings.columnAxis < 3; ++settings.columnAxis)
+  {
+    for (bool above : { false, true })
+    {
+      settings.fromAbove = above;
+      std::vector<cl_ushort> counts = CountSamplesInside(this->GetDevice(), grid, { &solid.mesh }, settings)[0].Read();
+      if (first.empty())
+      {
+        first = std::move(counts);
+        continue;
+      }
+      EXPECT_TRUE(counts == first) << "axis " << settings.columnAxis << (above ? " from above" : " from below");
+    }
+  }
+  const double volume = std::accumulate(first.begin(), first.end(), 0.0) / 64.0 * grid.VoxelVolume();
+  const double exact = Examine(solid.mesh).enclosedVolume;
+  EXPECT_NEAR(volume, exact, 1e-3 * exact);
+  EXPECT_THAT(Oddities(this->GetDevice(), solid.mesh, Examine(solid.mesh), "It", grid), testing::IsEmpty());
+}
+
+INSTANTIATE_TEST_SUITE_P(Meshes, FetchedMesh,
+  testing::Values(Case{ "armadillo", 64 }, Case{ "armadillo", 128 }, Case{ "armadillo", 256 }, Case{ "elephant", 64 },
+    Case{ "elephant", 128 }, Case{ "elephant", 256 }),
+  [](const auto& info) { return std::string(info.param.mesh) + std::to_string(info.param.size); });
+
+TEST(OpenMeshes, HaveTheirNumbersOfBoundaryEdges)
+{
+  const std::pair<const char*, std::size_t> open[] = { { "elephant-with-holes", 1353 }, { "mech-holes-shark", 304 },
+    { "lion-head", 36 } };
+  for (const auto& [name, count] : open)
+  {
+    if (!IsThere(name))
+    {
+      GTEST_SKIP() << FileOf(name) << " is not there";
+    }
+    EXPECT_EQ(Examine(ReadPly(FileOf(name))).boundaryEdges, count) << name;
+  }
+}
+}
