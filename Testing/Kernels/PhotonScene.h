@@ -1,0 +1,120 @@
+#pragma once
+
+#include "Photons/PhotonMarcher.h"
+
+#include <cmath>
+#include <functional>
+#include <vector>
+
+/// A refractive medium that owns its arrays, over a cube from -half to half.
+struct PhotonScene
+{
+  tyndall::Medium medium;
+  std::vector<float> sigma_a, sigma_s, ior;
+  std::vector<std::uint8_t> levels;
+  tyndall::MarchSettings settings;
+
+  explicit PhotonScene(int edge, double half = 1.0, float absorption = 0.0f, float scattering = 0.0f)
+    : PhotonScene({ edge, edge, edge }, 2.0 * half / edge, half, absorption, scattering)
+  {
+  }
+
+  PhotonScene(std::array<int, 3> size, double spacing, double half, float absorption, float scattering)
+  {
+    this->medium.grid.size = size;
+    this->medium.grid.spacing = { spacing, spacing, spacing };
+    this->medium.grid.origin = { -half, -half, -half };
+    this->sigma_a.assign(this->medium.grid.VoxelCount(), absorption);
+    this->sigma_s.assign(this->medium.grid.VoxelCount(), scattering);
+  }
+
+  void SetIndex(const std::function<double(double, double, double)>& n)
+  {
+    this->ior.clear();
+    const tyndall::Grid& grid = this->medium.grid;
+    const auto middle = [&](int a, int i) { return grid.origin[a] + (i + 0.5) * grid.spacing[a]; };
+    for (int k = 0; k < grid.size[2]; ++k)
+    {
+      for (int j = 0; j < grid.size[1]; ++j)
+      {
+        for (int i = 0; i < grid.size[0]; ++i)
+        {
+          this->ior.push_back(static_cast<float>(n(middle(0, i), middle(1, j), middle(2, k))));
+        }
+      }
+    }
+  }
+
+  /// A ball of glass, its border smoothed over `width` voxels (standard deviation).
+  void SetBall(double radius, double index, double width = 1.5)
+  {
+    const double scale = width * this->medium.grid.spacing[0] * std::sqrt(2.0);
+    this->SetIndex([=](double x, double y, double z) {
+      return 1.0 + (index - 1.0) * 0.5 * std::erfc((std::hypot(x, y, z) - radius) / scale);
+    });
+  }
+
+  int ComponentsOf(const std::vector<float>& values) const
+  {
+    return static_cast<int>(values.size() / this->medium.grid.VoxelCount());
+  }
+
+  tyndall::Field Index() const { return { this->ior.empty() ? nullptr : this->ior.data(), 1 }; }
+
+  const tyndall::Medium& Medium()
+  {
+    this->medium.sigma_a = { this->sigma_a.data(), this->ComponentsOf(this->sigma_a) };
+    this->medium.sigma_s = { this->sigma_s.data(), this->ComponentsOf(this->sigma_s) };
+    return this->medium;
+  }
+
+  tyndall::PhotonMarcher Marcher(tyndall::Device& device)
+  {
+    return tyndall::PhotonMarcher(
+      device, this->Medium(), this->Index(), this->settings, this->levels.empty() ? nullptr : this->levels.data());
+  }
+
+  tyndall::PhotonLight March(tyndall::Device& device, const std::vector<tyndall::Photon>& photons)
+  {
+    return this->Marcher(device).March(photons);
+  }
+
+  tyndall::PhotonPath Path(tyndall::Device& device, std::array<double, 3> from, std::array<double, 3> direction)
+  {
+    tyndall::Photon photon;
+    photon.position = from;
+    for (int a = 0; a < 3; ++a)
+    {
+      photon.direction[a] = static_cast<float>(direction[a]);
+    }
+    photon.power = { 1.0f, 1.0f, 1.0f };
+    return this->Marcher(device).Paths({ photon }, { 0 }).at(0);
+  }
+
+  double TotalPathPower(const tyndall::PhotonLight& light) const
+  {
+    double sum = 0.0;
+    for (const float fluence : light.light.fluence)
+    {
+      sum += fluence;
+    }
+    const std::array<double, 3>& h = this->medium.grid.spacing;
+    return sum * h[0] * h[1] * h[2] / light.light.channels;
+  }
+};
+
+/// Unit vector of the last stretch of a path.
+inline std::array<double, 3> LastDirection(const tyndall::PhotonPath& path)
+{
+  const std::array<double, 3>& b = path.points.back();
+  std::size_t i = path.points.size() - 1;
+  double length = 0.0;
+  while (length < 1e-3 && i > 0) // a turn on the border leaves a stretch without a length
+  {
+    --i;
+    const std::array<double, 3>& a = path.points[i];
+    length = std::hypot(b[0] - a[0], b[1] - a[1], b[2] - a[2]);
+  }
+  const std::array<double, 3>& a = path.points[i];
+  return { (b[0] - a[0]) / length, (b[1] - a[1]) / length, (b[2] - a[2]) / length };
+}

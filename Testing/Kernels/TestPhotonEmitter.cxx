@@ -1,0 +1,277 @@
+#include "Device/Errors.h"
+#include "Photons/PhotonEmitter.h"
+
+#include <gtest/gtest.h>
+
+#include <algorithm>
+#include <cmath>
+#include <set>
+
+using namespace tyndall;
+
+namespace
+{
+constexpr double Pi = 3.14159265358979323846;
+
+Grid Box()
+{
+  Grid grid;
+  grid.size = { 8, 10, 12 };
+  grid.spacing = { 0.25, 0.3, 0.5 }; // 2 x 3 x 6
+  grid.origin = { -1.0, 1.0, 2.0 };
+  return grid;
+}
+
+Light Lamp(LightType type, std::array<double, 3> position, std::array<double, 3> direction = { 0.0, 0.0, -1.0 })
+{
+  Light lamp;
+  lamp.type = type;
+  lamp.position = position;
+  lamp.direction = direction;
+  lamp.power = { 10.0, 5.0, 2.0 };
+  lamp.angle = 40.0;
+  lamp.size = { 1.5, 0.5 };
+  return lamp;
+}
+
+EmittedPhotons Emit(const Light& lamp, std::size_t count, Sampler sampler = Sampler::Hammersley, std::uint64_t seed = 0)
+{
+  Illumination light;
+  light.lights = { lamp };
+  return EmitPhotons(Box(), light, { count, sampler, seed });
+}
+
+/// Part of a point lamp's light that meets the box, by brute force.
+double PartThatHits(const std::array<double, 3>& lamp)
+{
+  const Grid grid = Box();
+  const int n = 1000;
+  int hits = 0;
+  for (int i = 0; i < n * n; ++i)
+  {
+    const double z = 1.0 - 2.0 * (i / n + 0.5) / n, turn = 2.0 * Pi * (i % n + 0.5) / n;
+    const double d[3] = { std::sqrt(1.0 - z * z) * std::cos(turn), std::sqrt(1.0 - z * z) * std::sin(turn), z };
+    double enter = 0.0, leave = 1e9;
+    for (int a = 0; a < 3; ++a)
+    {
+      const double t0 = (grid.origin[a] - lamp[a]) / d[a];
+      const double t1 = (grid.origin[a] + grid.size[a] * grid.spacing[a] - lamp[a]) / d[a];
+      enter = std::max(enter, std::min(t0, t1));
+      leave = std::min(leave, std::max(t0, t1));
+    }
+    hits += enter < leave;
+  }
+  return static_cast<double>(hits) / (n * n);
+}
+
+bool OnBox(const Photon& photon)
+{
+  const Grid grid = Box();
+  bool onFace = false;
+  for (int a = 0; a < 3; ++a)
+  {
+    const double low = photon.position[a] - grid.origin[a];
+    const double high = grid.size[a] * grid.spacing[a] - low;
+    if (std::min(low, high) < -1e-9)
+    {
+      return false;
+    }
+    onFace = onFace || std::min(low, high) < 1e-9;
+  }
+  return onFace;
+}
+}
+
+TEST(PhotonEmitter, ADirectionalLightGivesItsIrradianceTimesTheOutline)
+{
+  for (const std::array<double, 3>& direction :
+    { std::array<double, 3>{ 0.0, 0.0, -1.0 }, { 1.0, 0.0, 0.0 }, { 0.3, -0.4, 0.7 }, { -5.0, 1.0, 0.01 } })
+  {
+    const EmittedPhotons emitted = Emit(Lamp(LightType::Directional, {}, direction), 3001);
+    EXPECT_EQ(emitted.photons.size(), 3001u);
+    EXPECT_TRUE(std::all_of(emitted.photons.begin(), emitted.photons.end(), OnBox));
+    const double length = std::hypot(direction[0], direction[1], direction[2]);
+    const double outline =
+      (std::abs(direction[0]) * 18.0 + std::abs(direction[1]) * 12.0 + std::abs(direction[2]) * 6.0) / length;
+    EXPECT_NEAR(emitted.power[0], 10.0 * outline, 1e-4 * outline);
+    EXPECT_NEAR(emitted.power[2], 2.0 * outline, 1e-4 * outline);
+  }
+}
+
+TEST(PhotonEmitter, PhotonsOfADirectionalLightAreSpreadEvenly)
+{
+  // What enters through each face is its part of the outline.
+  const EmittedPhotons emitted = Emit(Lamp(LightType::Directional, {}, { 1.0, 1.0, 1.0 }), 10000);
+  double x = 0.0, y = 0.0;
+  for (const Photon& photon : emitted.photons)
+  {
+    x += std::abs(photon.position[0] + 1.0) < 1e-9 ? 1e-4 : 0.0;
+    y += std::abs(photon.position[1] - 1.0) < 1e-9 ? 1e-4 : 0.0;
+  }
+  EXPECT_NEAR(x, 18.0 / 36.0, 2e-3);
+  EXPECT_NEAR(y, 12.0 / 36.0, 2e-3);
+}
+
+TEST(PhotonEmitter, APointOutsideGivesTheSolidAngleOfTheBox)
+{
+  for (const std::array<double, 3>& place :
+    { std::array<double, 3>{ 0.0, 2.0, 9.0 }, { 3.0, 5.5, 9.0 }, { -1.3, 0.7, 4.0 }, { 4.0, 2.0, 3.0 } })
+  {
+    const EmittedPhotons emitted = Emit(Lamp(LightType::Point, place), 2000);
+    EXPECT_EQ(emitted.photons.size(), 2000u);
+    EXPECT_TRUE(std::all_of(emitted.photons.begin(), emitted.photons.end(), OnBox));
+    EXPECT_NEAR(emitted.power[0] / (10.0 * PartThatHits(place)), 1.0, 0.01);
+    for (const Photon& photon : emitted.photons)
+    {
+      ASSERT_FLOAT_EQ(photon.power[0], emitted.photons[0].power[0]);
+    }
+  }
+}
+
+TEST(PhotonEmitter, APointFarAwayIsADirectionalLight)
+{
+  const double far = 1e7;
+  const EmittedPhotons emitted = Emit(Lamp(LightType::Point, { 0.0, 0.0, far }), 1000);
+  EXPECT_NEAR(emitted.power[0] / (10.0 * 6.0 / (4.0 * Pi * far * far)), 1.0, 1e-4);
+}
+
+TEST(PhotonEmitter, LampsInsideGiveAllTheirPower)
+{
+  for (LightType type : { LightType::Point, LightType::Spot, LightType::Rectangle })
+  {
+    const EmittedPhotons emitted = Emit(Lamp(type, { 0.0, 2.5, 5.0 }), 1500);
+    EXPECT_EQ(emitted.photons.size(), 1500u);
+    EXPECT_NEAR(emitted.power[0], 10.0, 1e-3);
+    double along = 0.0;
+    for (const Photon& photon : emitted.photons)
+    {
+      along -= photon.direction[2] / 1500.0;
+    }
+    // Mean cosine: of a sphere, a cone of 20 degrees, a Lambertian half-space.
+    const double expected = type == LightType::Point ? 0.0
+      : type == LightType::Spot                      ? 0.5 * (1.0 + std::cos(Pi / 9.0))
+                                                     : 2.0 / 3.0;
+    EXPECT_NEAR(along, expected, 2e-3);
+  }
+}
+
+TEST(PhotonEmitter, ASpotThatLightsTheBoxWhollyGivesAllItsPower)
+{
+  Light narrow = Lamp(LightType::Spot, { 0.0, 2.5, 12.0 });
+  narrow.angle = 8.0;
+  EXPECT_NEAR(Emit(narrow, 1000).power[0], 10.0, 1e-3);
+  Light wide = Lamp(LightType::Spot, { 0.0, 2.5, 12.0 });
+  wide.angle = 170.0;
+  const double cone = 2.0 * Pi * (1.0 - std::cos(85.0 * Pi / 180.0));
+  EXPECT_NEAR(Emit(wide, 1000).power[0] / (10.0 * PartThatHits({ 0.0, 2.5, 12.0 }) * 4.0 * Pi / cone), 1.0, 0.01);
+  Light half = Lamp(LightType::Spot, { 0.0, 2.5, 12.0 }, { 0.2, 0.0, -1.0 });
+  half.angle = 20.0;
+  const EmittedPhotons emitted = Emit(half, 5000);
+  EXPECT_NEAR(static_cast<double>(emitted.photons.size()), 5000.0, 50.0);
+  EXPECT_LT(emitted.power[0], 9.0);
+}
+
+TEST(PhotonEmitter, ARectangleFarAwayShinesByTheCosine)
+{
+  const double far = 1000.0;
+  for (double tilt : { 0.0, 1.0 })
+  {
+    const EmittedPhotons emitted =
+      Emit(Lamp(LightType::Rectangle, { 0.0, 2.5, 8.0 + far }, { 0.0, std::sin(tilt), -std::cos(tilt) }), 1000);
+    EXPECT_NEAR(emitted.power[0] / (10.0 / Pi * std::cos(tilt) * 6.0 / (far * far)), 1.0, 0.02) << tilt;
+  }
+  EXPECT_EQ(Emit(Lamp(LightType::Rectangle, { 0.0, 2.5, 20.0 }, { 0.0, 0.0, 1.0 }), 100).photons.size(), 0u);
+}
+
+TEST(PhotonEmitter, AnEvenSkyGivesItsRadianceTimesPiTimesTheSurface)
+{
+  Illumination light;
+  light.sky = { 1.0, 2.0, 3.0 };
+  const EmittedPhotons sky = EmitPhotons(Box(), light, { 20000 });
+  EXPECT_EQ(sky.photons.size(), 20000u);
+  EXPECT_NEAR(sky.power[1] / (2.0 * Pi * 72.0), 1.0, 1e-3);
+  EXPECT_EQ(sky.lights[0], -1);
+
+  light.sky = {};
+  light.faces.fill({ 1.0, 2.0, 3.0 });
+  EXPECT_NEAR(EmitPhotons(Box(), light, { 20000 }).power[1] / (2.0 * Pi * 72.0), 1.0, 1e-3);
+}
+
+TEST(PhotonEmitter, APeakInTheSkyIsSeenAndWeighedRight)
+{
+  Illumination light;
+  light.environment.width = 32;
+  light.environment.height = 16;
+  light.environment.radiance.assign(3 * 32 * 16, 0.0f);
+  light.environment.radiance[3 * (11 * 32 + 5)] = 100.0f;
+  double exact = 0.0; // of the bilinear picture
+  const int n = 2000;
+  for (int i = 0; i < n * n; ++i)
+  {
+    const double z = -1.0 + 2.0 * (i / n + 0.5) / n, turn = 2.0 * Pi * (i % n + 0.5) / n;
+    const std::array<double, 3> seen = { std::sqrt(1.0 - z * z) * std::cos(turn),
+      std::sqrt(1.0 - z * z) * std::sin(turn), z };
+    const double outline = 18.0 * std::abs(seen[0]) + 12.0 * std::abs(seen[1]) + 6.0 * std::abs(seen[2]);
+    exact += Lookup(light.environment, seen)[0] * outline * 4.0 * Pi / (n * n);
+  }
+  for (Sampler sampler : { Sampler::Hammersley, Sampler::Halton, Sampler::Jittered, Sampler::Grid, Sampler::Random })
+  {
+    EXPECT_NEAR(EmitPhotons(Box(), light, { 20000, sampler, 3 }).power[0] / exact, 1.0, 0.015);
+  }
+}
+
+TEST(PhotonEmitter, LightsShareThePhotonsByPower)
+{
+  Illumination light;
+  light.lights = { Lamp(LightType::Point, { 0.0, 2.5, 5.0 }), Lamp(LightType::Point, { 0.0, 2.5, 4.0 }) };
+  light.lights[1].power = { 30.0, 15.0, 6.0 };
+  light.lights.push_back(light.lights[0]);
+  light.lights[2].power = { 1e-9, 0.0, 0.0 };
+  light.lights.push_back(light.lights[0]);
+  light.lights[3].power = { 0.0, 0.0, 0.0 };
+  const EmittedPhotons emitted = EmitPhotons(Box(), light, { 4000 });
+  EXPECT_NEAR(std::count(emitted.lights.begin(), emitted.lights.end(), 1), 3000, 2);
+  EXPECT_EQ(std::count(emitted.lights.begin(), emitted.lights.end(), 2), 1);
+  EXPECT_EQ(std::count(emitted.lights.begin(), emitted.lights.end(), 3), 0);
+  EXPECT_NEAR(emitted.power[0], 40.0, 1e-3);
+}
+
+TEST(PhotonEmitter, IsTheSameForTheSameSeed)
+{
+  for (Sampler sampler : { Sampler::Hammersley, Sampler::Halton, Sampler::Jittered, Sampler::Grid, Sampler::Random })
+  {
+    const Light sun = Lamp(LightType::Directional, {}, { 0.1, 0.2, -1.0 });
+    const auto place = [&](std::uint64_t seed) { return Emit(sun, 100, sampler, seed).photons[42].position; };
+    EXPECT_EQ(place(7), place(7));
+    EXPECT_NE(place(7), place(8));
+  }
+}
+
+TEST(PhotonEmitter, RefusesNoPhotonsAndBadLights)
+{
+  EXPECT_THROW(Emit(Lamp(LightType::Point, { 0.0, 0.0, 0.0 }), 0), InvalidInput);
+  Light bad = Lamp(LightType::Spot, { 0.0, 0.0, 0.0 });
+  bad.angle = 0.0;
+  EXPECT_THROW(Emit(bad, 10), InvalidInput);
+}
+
+TEST(SampleSequence, CellsHaveOnePointEachForAnyCount)
+{
+  for (std::size_t count : { 1u, 2u, 7u, 100u, 1000u, 1013u })
+  {
+    const SampleSequence grid(Sampler::Grid, count);
+    std::set<std::array<double, 2>> first, second;
+    double mean = 0.0;
+    for (std::size_t i = 0; i < count; ++i)
+    {
+      const std::array<double, 4> u = grid[i];
+      first.insert({ u[0], u[1] });
+      second.insert({ u[2], u[3] });
+      mean += u[0] / count;
+      EXPECT_TRUE(std::all_of(u.begin(), u.end(), [](double x) { return x >= 0.0 && x < 1.0; }));
+    }
+    EXPECT_EQ(first.size(), count);
+    EXPECT_EQ(second.size(), count);
+    EXPECT_NEAR(mean, 0.5, 1e-9);
+  }
+}

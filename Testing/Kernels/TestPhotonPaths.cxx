@@ -1,0 +1,259 @@
+// Paths of photons against closed forms. Order of the integrators and closed forms: the project's grin_integrator_errors.csv.
+#include "DeviceTest.h"
+#include "PhotonScene.h"
+
+using namespace tyndall;
+
+namespace
+{
+using Point = std::array<double, 3>;
+
+double DistanceToSegment(const Point& p, const Point& a, const Point& b)
+{
+  double along = 0.0, length = 0.0;
+  for (int c = 0; c < 3; ++c)
+  {
+    along += (p[c] - a[c]) * (b[c] - a[c]);
+    length += (b[c] - a[c]) * (b[c] - a[c]);
+  }
+  const double t = length > 0.0 ? std::min(std::max(along / length, 0.0), 1.0) : 0.0;
+  return std::hypot(p[0] - a[0] - t * (b[0] - a[0]), p[1] - a[1] - t * (b[1] - a[1]), p[2] - a[2] - t * (b[2] - a[2]));
+}
+
+double Miss(const PhotonPath& path, const Point& target)
+{
+  double least = 1e9;
+  for (std::size_t i = 1; i < path.points.size(); ++i)
+  {
+    least = std::min(least, DistanceToSegment(target, path.points[i - 1], path.points[i]));
+  }
+  return least;
+}
+
+/// A photon along +x.
+Photon Ray(const Point& from)
+{
+  Photon photon;
+  photon.position = from;
+  photon.direction = { 1.0f, 0.0f, 0.0f };
+  photon.power = { 1.0f, 1.0f, 1.0f };
+  return photon;
+}
+
+double Luneburg(double x, double y, double z)
+{
+  return std::sqrt(std::max(2.0 - x * x - y * y - z * z, 1.0));
+}
+
+/// The same within the grid's reach of the sphere, so that only the integrator errs.
+double EndlessLuneburg(double x, double y, double z)
+{
+  return std::sqrt(std::max(2.0 - x * x - y * y - z * z, 0.1));
+}
+
+double FishEye(double x, double y, double z)
+{
+  return 2.0 / (1.0 + x * x + y * y + z * z);
+}
+
+/// Largest distance of the path's corners from the ellipse r0 cos t + v0 sin t, 0 <= t <= pi / 2, of the Luneburg lens.
+double LuneburgError(const PhotonPath& path, double b)
+{
+  const double x0 = -std::sqrt(1.0 - b * b);
+  double worst = 0.0;
+  for (const Point& p : path.points)
+  {
+    double nearest = 1e9;
+    double step = 1e-2, middle = 0.785, half = 0.785;
+    for (int level = 0; level < 5; ++level, half = 2.0 * step, step *= 0.02)
+    {
+      double best = middle;
+      for (double t = middle - half; t <= middle + half; t += step)
+      {
+        const double distance = std::hypot(p[0] - x0 * std::cos(t) - std::sin(t), p[1] - b * std::cos(t), p[2]);
+        if (distance < nearest)
+        {
+          nearest = distance;
+          best = t;
+        }
+      }
+      middle = best;
+    }
+    if (p[0] < 0.95)
+    {
+      worst = std::max(worst, nearest);
+    }
+  }
+  return worst;
+}
+
+/// Largest distance of the corners of `path` from the circle through (1, 0) and (-1, 0) with centre (0, c).
+double CircleError(const PhotonPath& path, double c, std::size_t corners)
+{
+  double worst = 0.0;
+  for (std::size_t i = 0; i < std::min(corners, path.points.size()); ++i)
+  {
+    const Point& p = path.points[i];
+    worst = std::max(worst, std::hypot(std::hypot(p[0], p[1] - c) - std::hypot(1.0, c), p[2]));
+  }
+  return worst;
+}
+}
+
+class PhotonPaths : public DeviceTest
+{
+};
+
+TEST_F(PhotonPaths, AreStraightWhereTheIndexIsConstant)
+{
+  PhotonScene scene({ 20, 30, 40 }, 0.1, 1.0, 0.0f, 0.0f);
+  scene.SetIndex([](double, double, double) { return 1.33; });
+  const PhotonPath path = scene.Path(this->GetDevice(), { -1.0, -0.5, -1.0 }, { 0.3, 0.5, 0.7 });
+  ASSERT_EQ(path.points.size(), 2u);
+  const Point direction = LastDirection(path);
+  const double length = std::hypot(0.3, 0.5, 0.7);
+  EXPECT_NEAR(direction[0], 0.3 / length, 1e-6);
+  EXPECT_NEAR(direction[2], 0.7 / length, 1e-6);
+}
+
+TEST_F(PhotonPaths, OfALuneburgLensMeetAtTheFarPoleIn64Steps)
+{
+  // As in the reference: from the surface, and the index goes on beyond it as it is in the lens.
+  PhotonScene scene(128, 1.1);
+  scene.SetIndex(EndlessLuneburg);
+  scene.settings.stepSize = 2.0;
+  PhotonMarcher marcher = scene.Marcher(this->GetDevice());
+  for (double b : { 0.1, 0.3, 0.5, 0.7, 0.85 })
+  {
+    const Photon photon = Ray({ -std::sqrt(1.0 - b * b), b, 0.0 });
+    EXPECT_LE(marcher.March({ photon }).steps, 64u);
+    EXPECT_LT(Miss(marcher.Paths({ photon }, { 0 }).at(0), { 1.0, 0.0, 0.0 }), 2e-4) << b;
+  }
+}
+
+TEST_F(PhotonPaths, OfALensInAirMeetAtTheFarPole)
+{
+  // With the kink of the index at the surface, which voxels smooth; steps of a voxel.
+  PhotonScene scene(128, 1.1);
+  scene.SetIndex(Luneburg);
+  PhotonMarcher marcher = scene.Marcher(this->GetDevice());
+  for (double b : { 0.1, 0.3, 0.5, 0.7, 0.85 })
+  {
+    EXPECT_LT(Miss(marcher.Paths({ Ray({ -1.1, b, 0.0 }) }, { 0 }).at(0), { 1.0, 0.0, 0.0 }), 1e-3) << b;
+  }
+}
+
+TEST_F(PhotonPaths, ConvergeWithTheOrderOfTheIntegrator)
+{
+  PhotonScene scene(128, 1.1);
+  scene.SetIndex(EndlessLuneburg);
+  const double b = 0.5;
+  for (int order : { 1, 2, 4 })
+  {
+    std::vector<double> errors;
+    const double longest = order == 4 ? 24.0 : 8.0; // shorter ones of order 4 are a matter of rounding
+    for (double step : { longest, longest / 2.0, longest / 4.0 })
+    {
+      scene.settings.order = order;
+      scene.settings.stepSize = step;
+      const PhotonPath path = scene.Path(this->GetDevice(), { -std::sqrt(1.0 - b * b), b, 0.0 }, { 1.0, 0.0, 0.0 });
+      errors.push_back(LuneburgError(path, b));
+    }
+    EXPECT_NEAR(std::log2(errors[0] / errors[1]), order, 0.4) << errors[0] << ' ' << errors[1] << ' ' << errors[2];
+    EXPECT_NEAR(std::log2(errors[1] / errors[2]), order, 0.4) << errors[0] << ' ' << errors[1] << ' ' << errors[2];
+  }
+}
+
+TEST_F(PhotonPaths, OfMaxwellsFishEyeAreCirclesThroughTheAntipode)
+{
+  const double angle = 110.0 * 3.14159265358979323846 / 180.0;
+  const double c = std::cos(angle) / std::sin(angle);
+  for (int edge : { 64, 128 })
+  {
+    PhotonScene scene(edge, 2.0);
+    scene.SetIndex(FishEye);
+    scene.settings.order = 4;
+    const PhotonPath path = scene.Path(this->GetDevice(), { 1.0, 0.0, 0.0 }, { std::cos(angle), std::sin(angle), 0.0 });
+    EXPECT_LT(CircleError(path, c, 2 * static_cast<std::size_t>(edge)), 1e-4) << edge;
+    EXPECT_LT(Miss(path, { -1.0, 0.0, 0.0 }), 1e-3) << edge; // the middle of a chord, at worst
+  }
+}
+
+TEST_F(PhotonPaths, GoRoundAFishEyeWithoutSpirallingOut)
+{
+  PhotonScene scene(64, 2.0);
+  scene.SetIndex(FishEye);
+  const PhotonPath path = scene.Path(this->GetDevice(), { 1.0, 0.0, 0.0 }, { 0.0, 1.0, 0.0 });
+  EXPECT_GT(path.points.size(), 4000u); // dozens of rounds
+  EXPECT_LT(CircleError(path, 0.0, path.points.size()), 0.01);
+}
+
+TEST_F(PhotonPaths, InALinearGradientOfNSquaredAreParabolas)
+{
+  PhotonScene scene(32, 1.0);
+  const double slope = 0.4;
+  scene.SetIndex([&](double, double y, double) { return std::sqrt(2.0 + slope * y); });
+  for (int order : { 2, 4 })
+  {
+    scene.settings.order = order;
+    const PhotonPath path = scene.Path(this->GetDevice(), { -1.0, -0.2, 0.0 }, { 1.0, 0.1, 0.0 });
+    const double n = std::sqrt(2.0 - 0.2 * slope), length = std::hypot(1.0, 0.1);
+    const double t = 2.0 / (n / length);
+    const double y = -0.2 + 0.1 * n / length * t + 0.25 * slope * t * t;
+    EXPECT_NEAR(path.points.back()[0], 1.0, 1e-5);
+    EXPECT_NEAR(path.points.back()[1], y, 1e-3);
+  }
+}
+
+TEST_F(PhotonPaths, ObeySnellAcrossASmoothedPlane)
+{
+  // A prism's face: normal at 30 degrees to the ray, glass beyond.
+  const double s = std::sin(0.5235987755982988), c = std::cos(0.5235987755982988);
+  for (double inside : { 1.5, 1.1 })
+  {
+    PhotonScene scene(128, 1.0);
+    const double width = 1.5 * scene.medium.grid.spacing[0] * std::sqrt(2.0);
+    scene.SetIndex(
+      [&](double x, double y, double) { return 1.0 + (inside - 1.0) * 0.5 * std::erfc(-(c * x + s * y) / width); });
+    const Point direction = LastDirection(scene.Path(this->GetDevice(), { -1.0, 0.3, 0.05 }, { 1.0, 0.0, 0.0 }));
+    const double across = -s / inside; // of the unit vector, along the face (-s, c)
+    const double through = std::sqrt(1.0 - across * across);
+    EXPECT_NEAR(direction[0], c * through - s * across, 1e-3) << inside;
+    EXPECT_NEAR(direction[1], s * through + c * across, 1e-3) << inside;
+  }
+}
+
+TEST_F(PhotonPaths, AreReflectedTotallyBeyondTheCriticalAngle)
+{
+  PhotonScene scene(96, 1.0);
+  const double width = 1.5 * scene.medium.grid.spacing[0] * std::sqrt(2.0);
+  scene.SetIndex([&](double, double y, double) { return 1.0 + 0.25 * std::erfc(y / width); });
+  const Point steep = LastDirection(scene.Path(this->GetDevice(), { -1.0, -0.8, 0.0 }, { 0.5, 0.8, 0.0 }));
+  EXPECT_GT(steep[1], 0.0); // 32 degrees from the normal: it gets out
+  const Point flat = LastDirection(scene.Path(this->GetDevice(), { -1.0, -0.8, 0.0 }, { 0.8, 0.6, 0.0 }));
+  EXPECT_NEAR(flat[0], 0.8, 2e-3); // 53 degrees: it does not
+  EXPECT_NEAR(flat[1], -0.6, 2e-3);
+}
+
+TEST_F(PhotonPaths, ThroughAGlassBallTendToSnellAsVoxelsShrink)
+{
+  const double radius = 0.5, index = 1.5;
+  std::vector<double> errors;
+  for (int edge : { 64, 128, 256 })
+  {
+    PhotonScene scene(edge, 0.8);
+    scene.SetBall(radius, index);
+    scene.settings.order = 4;
+    double worst = 0.0;
+    for (double b : { 0.1, 0.2, 0.3 })
+    {
+      const double turn = 2.0 * (std::asin(b / radius) - std::asin(b / radius / index));
+      const Point direction = LastDirection(scene.Path(this->GetDevice(), { -0.8, b, 0.0 }, { 1.0, 0.0, 0.0 }));
+      worst = std::max(worst, std::abs(std::atan2(-direction[1], direction[0]) - turn));
+    }
+    errors.push_back(worst);
+  }
+  EXPECT_LT(errors[2], 0.02);
+  EXPECT_LT(errors[1], 0.75 * errors[0]) << errors[0] << ' ' << errors[1] << ' ' << errors[2];
+  EXPECT_LT(errors[2], 0.75 * errors[1]) << errors[0] << ' ' << errors[1] << ' ' << errors[2];
+}
