@@ -154,7 +154,6 @@ int vtkMeshVoxelizer::RequestInformation(vtkInformation*, vtkInformationVector**
     extent[2 * axis + 1] = std::max(this->SampleDimensions[axis], 1);
   }
   information->Set(vtkStreamingDemandDrivenPipeline::WHOLE_EXTENT(), extent, 6);
-  information->Set(vtkAlgorithm::CAN_PRODUCE_SUB_EXTENT(), 1);
   // Without ModelBounds the box is known when the meshes are.
   double origin[3] = { 0.0, 0.0, 0.0 };
   double spacing[3] = { 1.0, 1.0, 1.0 };
