@@ -1,5 +1,6 @@
 #include "PhotonEmitter.h"
 
+#include "Clock.h"
 #include "PhotonPacking.h"
 #include "PhotonPlane.h"
 
@@ -418,6 +419,7 @@ std::vector<std::size_t> Shares(const std::vector<Pilot>& pilots, std::size_t co
 EmittedPhotons EmitPhotons(
   const Grid& grid, const Illumination& illumination, const EmissionSettings& settings, const Monitor& monitor)
 {
+  const double start = ClockSeconds();
   Check(illumination);
   if (settings.photonCount == 0)
   {
@@ -461,6 +463,7 @@ EmittedPhotons EmitPhotons(
       }
     }
   }
+  emitted.seconds = ClockSeconds() - start;
   return emitted;
 }
 }

@@ -24,7 +24,8 @@ struct EmittedPhotons
 {
   std::vector<Photon> photons;
   std::vector<int> lights;
-  Rgb power = {}; ///< W, of all photons
+  Rgb power = {};       ///< W, of all photons
+  double seconds = 0.0; ///< that it took
 };
 
 /// Makes photons of lights (Pfeuti 2009, section 3.1.4), in double precision on the host. What would miss the volume is not

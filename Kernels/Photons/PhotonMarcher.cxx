@@ -1,11 +1,11 @@
 #include "PhotonMarcher.h"
 
+#include "Clock.h"
 #include "IndexRange.h"
 #include "PhotonPacking.h"
 #include "TyndallKernelSources.h"
 
 #include <algorithm>
-#include <chrono>
 #include <cmath>
 #include <cstring>
 #include <numeric>
@@ -47,11 +47,6 @@ struct EndOnDevice
 constexpr int EndWords = 3;
 constexpr int StillGoing = 6;
 
-double Seconds()
-{
-  return std::chrono::duration<double>(std::chrono::steady_clock::now().time_since_epoch()).count();
-}
-
 std::string Define(const char* name, int value)
 {
   return std::string("-D") + name + "=" + std::to_string(value) + " ";
@@ -88,6 +83,7 @@ public:
     , HasLevels(levels && this->Bends)
     , AComponents(medium.sigma_a.values ? medium.sigma_a.components : 0)
     , SComponents(medium.sigma_s.values ? medium.sigma_s.components : 0)
+    , Emits(medium.emission.values != nullptr)
   {
     this->SigmaA = this->Upload(medium.sigma_a.values, this->AComponents, "sigma_a");
     this->SigmaS = this->Upload(medium.sigma_s.values, this->SComponents, "sigma_s");
@@ -182,6 +178,7 @@ private:
   bool Bends;
   bool HasLevels;
   int AComponents, SComponents;
+  bool Emits;
   bool Shared = false;
   Buffer<float> SigmaA, SigmaS;
   Buffer<float> Sigma;        ///< PhotonSums.cl, pack_extinction
@@ -383,7 +380,7 @@ void PhotonMarcher::Implementation::Finish(const PackedPhotons& packed, PhotonLi
     cl_ulong(this->Copy() * this->RecordOf(packed)), fluence, direction, taken);
   this->Launch(finish, cl::NDRange(rows));
   this->TheDevice.Finish();
-  result.secondsMarching += Seconds();
+  result.secondsMarching += ClockSeconds();
 
   light.fluence = fluence.Read();
   result.meanDirection = direction.Read();
@@ -418,6 +415,7 @@ void PhotonMarcher::Implementation::SayWhatIsLeftOut(const PackedPhotons& packed
     }
   };
   say(true, "scattered light: fluence is what comes from the lights without being scattered");
+  say(this->Emits, "emission: photons carry the light of lights only");
   say(!this->Bends, "refraction: the index is constant");
   say(this->Bends && !this->HasLevels, "octree: none was given, paths go by steps of the same length");
   say(packed.channels == 1, "colours: one channel stands for all");
@@ -427,7 +425,7 @@ void PhotonMarcher::Implementation::SayWhatIsLeftOut(const PackedPhotons& packed
 
 PhotonLight PhotonMarcher::Implementation::March(const std::vector<Photon>& photons, const Monitor& monitor)
 {
-  const double start = Seconds();
+  const double start = ClockSeconds();
   const PackedPhotons packed = Pack(photons, this->TheGrid, this->MediumChannels == 3, this->EventLimit());
   PhotonLight result;
   result.missed = packed.missed;
@@ -439,7 +437,7 @@ PhotonLight PhotonMarcher::Implementation::March(const std::vector<Photon>& phot
   const std::size_t words = EndWords + static_cast<std::size_t>(packed.channels);
   const Buffer<float> values(this->TheDevice, packed.values, "photons");
   const Buffer<cl_int> ends(this->TheDevice, packed.Count() * words, "ends of photons");
-  result.secondsMarching = -Seconds();
+  result.secondsMarching = -ClockSeconds();
   try
   {
     this->MarchAll(packed, values, ends, monitor);
@@ -457,7 +455,7 @@ PhotonLight PhotonMarcher::Implementation::March(const std::vector<Photon>& phot
   }
   this->SayWhatIsLeftOut(packed, result.light);
   result.light.fluenceDirect = result.light.fluence;
-  result.seconds = Seconds() - start;
+  result.seconds = ClockSeconds() - start;
   return result;
 }
 

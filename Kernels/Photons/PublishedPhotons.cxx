@@ -1,5 +1,6 @@
 #include "PublishedPhotons.h"
 
+#include "Clock.h"
 #include "IndexRange.h"
 #include "PhotonPacking.h"
 #include "TyndallKernelSources.h"
@@ -7,7 +8,6 @@
 #include "../Device/Buffer.h"
 
 #include <algorithm>
-#include <chrono>
 #include <cmath>
 #include <string>
 
@@ -30,11 +30,6 @@ struct EndOnDevice
   cl_int face, credits, givenUp, steps;
   cl_float power[3], deposited[3];
 };
-
-double Seconds()
-{
-  return std::chrono::duration<double>(std::chrono::steady_clock::now().time_since_epoch()).count();
-}
 
 class PublishedMarch
 {
@@ -175,7 +170,7 @@ double PackingLoss::Relative() const
 PhotonLight MarchPublished(Device& device, const Medium& medium, const Field& ior, const std::uint8_t* levels,
   const std::vector<Photon>& photons, const PublishedSettings& settings, PackingLoss* loss, const Monitor& monitor)
 {
-  const double start = Seconds();
+  const double start = ClockSeconds();
   Check(medium);
   CheckIndex(ior, medium.grid);
   if (!device.HasExtension("cl_khr_int64_base_atomics"))
@@ -206,7 +201,7 @@ PhotonLight MarchPublished(Device& device, const Medium& medium, const Field& io
   device.Finish();
 
   PhotonLight result;
-  result.secondsMarching = -Seconds();
+  result.secondsMarching = -ClockSeconds();
   cl::Kernel kernel = march.Kernel("march_published");
   for (std::size_t first = 0; first < packed.Count(); first += PhotonsPerLaunch)
   {
@@ -222,7 +217,7 @@ PhotonLight MarchPublished(Device& device, const Medium& medium, const Field& io
   With(unpack, static_cast<float>(unit * std::cbrt(volume) / volume), light, fluence, direction);
   march.Launch(unpack, cl::NDRange(medium.grid.VoxelCount()));
   device.Finish();
-  result.secondsMarching += Seconds();
+  result.secondsMarching += ClockSeconds();
 
   PackingLoss packing;
   packing.kept = march.Total(fluence.Read(), false, false);
@@ -246,7 +241,7 @@ PhotonLight MarchPublished(Device& device, const Medium& medium, const Field& io
   {
     *loss = packing;
   }
-  result.seconds = Seconds() - start;
+  result.seconds = ClockSeconds() - start;
   return result;
 }
 }

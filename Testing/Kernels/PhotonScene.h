@@ -2,6 +2,7 @@
 
 #include "Photons/PhotonMarcher.h"
 
+#include <algorithm>
 #include <cmath>
 #include <functional>
 #include <vector>
@@ -117,4 +118,51 @@ inline std::array<double, 3> LastDirection(const tyndall::PhotonPath& path)
   }
   const std::array<double, 3>& a = path.points[i];
   return { (b[0] - a[0]) / length, (b[1] - a[1]) / length, (b[2] - a[2]) / length };
+}
+
+/// The Luneburg lens of radius 1 about the origin: parallel light along +x meets at (1, 0, 0), on ellipses
+/// r0 cos t + v0 sin t, 0 <= t <= pi / 2, from r0 = (-sqrt(1 - b^2), b, 0) with v0 = (1, 0, 0).
+namespace luneburg
+{
+inline double Index(double x, double y, double z)
+{
+  return std::sqrt(std::max(2.0 - x * x - y * y - z * z, 1.0));
+}
+
+/// The same beyond its surface, as far as voxels reach: only the integrator errs.
+inline double Endless(double x, double y, double z)
+{
+  return std::sqrt(std::max(2.0 - x * x - y * y - z * z, 0.1));
+}
+
+/// Largest distance of the path's corners from that ellipse.
+inline double WorstCorner(const tyndall::PhotonPath& path, double b)
+{
+  const double x0 = -std::sqrt(1.0 - b * b);
+  double worst = 0.0;
+  for (const std::array<double, 3>& p : path.points)
+  {
+    double nearest = 1e9;
+    double step = 1e-2, middle = 0.785, half = 0.785;
+    for (int level = 0; level < 5; ++level, half = 2.0 * step, step *= 0.02)
+    {
+      double best = middle;
+      for (double t = middle - half; t <= middle + half; t += step)
+      {
+        const double distance = std::hypot(p[0] - x0 * std::cos(t) - std::sin(t), p[1] - b * std::cos(t), p[2]);
+        if (distance < nearest)
+        {
+          nearest = distance;
+          best = t;
+        }
+      }
+      middle = best;
+    }
+    if (p[0] < 0.95)
+    {
+      worst = std::max(worst, nearest);
+    }
+  }
+  return worst;
+}
 }

@@ -40,51 +40,9 @@ Photon Ray(const Point& from)
   return photon;
 }
 
-double Luneburg(double x, double y, double z)
-{
-  return std::sqrt(std::max(2.0 - x * x - y * y - z * z, 1.0));
-}
-
-/// The same within the grid's reach of the sphere, so that only the integrator errs.
-double EndlessLuneburg(double x, double y, double z)
-{
-  return std::sqrt(std::max(2.0 - x * x - y * y - z * z, 0.1));
-}
-
 double FishEye(double x, double y, double z)
 {
   return 2.0 / (1.0 + x * x + y * y + z * z);
-}
-
-/// Largest distance of the path's corners from the ellipse r0 cos t + v0 sin t, 0 <= t <= pi / 2, of the Luneburg lens.
-double LuneburgError(const PhotonPath& path, double b)
-{
-  const double x0 = -std::sqrt(1.0 - b * b);
-  double worst = 0.0;
-  for (const Point& p : path.points)
-  {
-    double nearest = 1e9;
-    double step = 1e-2, middle = 0.785, half = 0.785;
-    for (int level = 0; level < 5; ++level, half = 2.0 * step, step *= 0.02)
-    {
-      double best = middle;
-      for (double t = middle - half; t <= middle + half; t += step)
-      {
-        const double distance = std::hypot(p[0] - x0 * std::cos(t) - std::sin(t), p[1] - b * std::cos(t), p[2]);
-        if (distance < nearest)
-        {
-          nearest = distance;
-          best = t;
-        }
-      }
-      middle = best;
-    }
-    if (p[0] < 0.95)
-    {
-      worst = std::max(worst, nearest);
-    }
-  }
-  return worst;
 }
 
 /// Largest distance of the corners of `path` from the circle through (1, 0) and (-1, 0) with centre (0, c).
@@ -120,7 +78,7 @@ TEST_F(PhotonPaths, OfALuneburgLensMeetAtTheFarPoleIn64Steps)
 {
   // As in the reference: from the surface, and the index goes on beyond it as it is in the lens.
   PhotonScene scene(128, 1.1);
-  scene.SetIndex(EndlessLuneburg);
+  scene.SetIndex(luneburg::Endless);
   scene.settings.stepSize = 2.0;
   PhotonMarcher marcher = scene.Marcher(this->GetDevice());
   for (double b : { 0.1, 0.3, 0.5, 0.7, 0.85 })
@@ -135,7 +93,7 @@ TEST_F(PhotonPaths, OfALensInAirMeetAtTheFarPole)
 {
   // With the kink of the index at the surface, which voxels smooth; steps of a voxel.
   PhotonScene scene(128, 1.1);
-  scene.SetIndex(Luneburg);
+  scene.SetIndex(luneburg::Index);
   PhotonMarcher marcher = scene.Marcher(this->GetDevice());
   for (double b : { 0.1, 0.3, 0.5, 0.7, 0.85 })
   {
@@ -146,7 +104,7 @@ TEST_F(PhotonPaths, OfALensInAirMeetAtTheFarPole)
 TEST_F(PhotonPaths, ConvergeWithTheOrderOfTheIntegrator)
 {
   PhotonScene scene(128, 1.1);
-  scene.SetIndex(EndlessLuneburg);
+  scene.SetIndex(luneburg::Endless);
   const double b = 0.5;
   for (int order : { 1, 2, 4 })
   {
@@ -157,7 +115,7 @@ TEST_F(PhotonPaths, ConvergeWithTheOrderOfTheIntegrator)
       scene.settings.order = order;
       scene.settings.stepSize = step;
       const PhotonPath path = scene.Path(this->GetDevice(), { -std::sqrt(1.0 - b * b), b, 0.0 }, { 1.0, 0.0, 0.0 });
-      errors.push_back(LuneburgError(path, b));
+      errors.push_back(luneburg::WorstCorner(path, b));
     }
     EXPECT_NEAR(std::log2(errors[0] / errors[1]), order, 0.4) << errors[0] << ' ' << errors[1] << ' ' << errors[2];
     EXPECT_NEAR(std::log2(errors[1] / errors[2]), order, 0.4) << errors[0] << ' ' << errors[1] << ' ' << errors[2];

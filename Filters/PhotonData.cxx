@@ -1,0 +1,149 @@
+#include "PhotonData.h"
+
+#include "LightTransportData.h"
+
+#include "vtkCellArray.h"
+#include "vtkCellData.h"
+#include "vtkFloatArray.h"
+#include "vtkIdTypeArray.h"
+#include "vtkImageData.h"
+#include "vtkIntArray.h"
+#include "vtkNew.h"
+#include "vtkPointData.h"
+#include "vtkPoints.h"
+#include "vtkPolyData.h"
+
+#include <algorithm>
+#include <string>
+
+namespace tyndall
+{
+namespace
+{
+vtkDataArray* PhotonArray(vtkPolyData* photons, const char* name, std::initializer_list<int> components)
+{
+  vtkDataArray* array = photons->GetPointData()->GetArray(name);
+  if (!array)
+  {
+    throw InvalidInput("The photons have no point array '" + std::string(name) + "'. Make photons with PhotonEmitter.");
+  }
+  const int given = array->GetNumberOfComponents();
+  if (std::find(components.begin(), components.end(), given) == components.end())
+  {
+    throw InvalidInput("The photons' array '" + std::string(name) + "' has " + std::to_string(given) + " components; " +
+      (components.size() > 1 ? "1 or 3" : "3") + " are needed.");
+  }
+  return array;
+}
+
+vtkSmartPointer<vtkFloatArray> NewFloats(const char* name, int components, std::size_t tuples)
+{
+  auto array = vtkSmartPointer<vtkFloatArray>::New();
+  array->SetName(name);
+  array->SetNumberOfComponents(components);
+  array->SetNumberOfTuples(static_cast<vtkIdType>(tuples));
+  return array;
+}
+}
+
+void WritePhotons(const EmittedPhotons& emitted, vtkPolyData* output)
+{
+  const std::size_t count = emitted.photons.size();
+  vtkNew<vtkPoints> points;
+  points->SetDataTypeToDouble();
+  points->SetNumberOfPoints(static_cast<vtkIdType>(count));
+  const vtkSmartPointer<vtkFloatArray> direction = NewFloats("direction", 3, count);
+  const vtkSmartPointer<vtkFloatArray> power = NewFloats("power", 3, count);
+  const vtkSmartPointer<vtkFloatArray> weight = NewFloats("weight", 1, count);
+  vtkNew<vtkIntArray> light;
+  light->SetName("light");
+  light->SetNumberOfTuples(static_cast<vtkIdType>(count));
+  vtkNew<vtkCellArray> vertices;
+  vertices->AllocateEstimate(static_cast<vtkIdType>(count), 1);
+  for (vtkIdType i = 0; i < static_cast<vtkIdType>(count); ++i)
+  {
+    const Photon& photon = emitted.photons[static_cast<std::size_t>(i)];
+    points->SetPoint(i, photon.position.data());
+    direction->SetTypedTuple(i, photon.direction.data());
+    power->SetTypedTuple(i, photon.power.data());
+    weight->SetValue(i, 1.0f);
+    light->SetValue(i, emitted.lights[static_cast<std::size_t>(i)]);
+    vertices->InsertNextCell(1, &i);
+  }
+  output->SetPoints(points);
+  output->SetVerts(vertices);
+  output->GetPointData()->SetVectors(direction);
+  output->GetPointData()->AddArray(power);
+  output->GetPointData()->AddArray(weight);
+  output->GetPointData()->AddArray(light);
+}
+
+std::vector<Photon> ReadPhotons(vtkPolyData* data)
+{
+  if (!data || data->GetNumberOfPoints() == 0)
+  {
+    return {};
+  }
+  vtkDataArray* direction = PhotonArray(data, "direction", { 3 });
+  vtkDataArray* power = PhotonArray(data, "power", { 1, 3 });
+  const int colours = power->GetNumberOfComponents();
+  std::vector<Photon> photons(static_cast<std::size_t>(data->GetNumberOfPoints()));
+  for (vtkIdType i = 0; i < data->GetNumberOfPoints(); ++i)
+  {
+    Photon& photon = photons[static_cast<std::size_t>(i)];
+    data->GetPoint(i, photon.position.data());
+    for (int c = 0; c < 3; ++c)
+    {
+      photon.direction[c] = static_cast<float>(direction->GetComponent(i, c));
+      photon.power[c] = static_cast<float>(power->GetComponent(i, colours == 3 ? c : 0));
+    }
+  }
+  return photons;
+}
+
+void WritePaths(const std::vector<PhotonPath>& paths, vtkPolyData* output)
+{
+  vtkNew<vtkPoints> points;
+  points->SetDataTypeToDouble();
+  vtkNew<vtkCellArray> lines;
+  vtkNew<vtkFloatArray> left;
+  left->SetName("power_left");
+  vtkNew<vtkIdTypeArray> numbers;
+  numbers->SetName("photon");
+  for (const PhotonPath& path : paths)
+  {
+    lines->InsertNextCell(static_cast<int>(path.points.size()));
+    for (std::size_t i = 0; i < path.points.size(); ++i)
+    {
+      lines->InsertCellPoint(points->InsertNextPoint(path.points[i].data()));
+      left->InsertNextValue(path.left[i]);
+    }
+    numbers->InsertNextValue(static_cast<vtkIdType>(path.photon));
+  }
+  output->SetPoints(points);
+  output->SetLines(lines);
+  output->GetPointData()->SetScalars(left);
+  output->GetCellData()->AddArray(numbers);
+}
+
+std::vector<std::uint8_t> ReadLevels(vtkImageData* image)
+{
+  const FloatField field = ReadCells(image, "octree_level", Need::Optional, { 1 });
+  if (!field.IsThere())
+  {
+    return {};
+  }
+  std::vector<std::uint8_t> levels(static_cast<std::size_t>(image->GetNumberOfCells()));
+  for (std::size_t i = 0; i < levels.size(); ++i)
+  {
+    const float level = field.Values()[i];
+    if (!(level >= 0.0f && level <= 30.0f) || level != static_cast<int>(level))
+    {
+      throw InvalidInput("octree_level is " + std::to_string(level) + " in voxel " + VoxelName(GridOf(image), i) +
+        "; it must be a whole number, as RefractionOctree makes it.");
+    }
+    levels[i] = static_cast<std::uint8_t>(level);
+  }
+  return levels;
+}
+}

@@ -1,0 +1,131 @@
+#ifndef vtkPhotonEmitter_h
+#define vtkPhotonEmitter_h
+
+#include "vtkPolyDataAlgorithm.h"
+#include "vtkTyndallModule.h" // for export macro
+
+/**
+ * @class vtkPhotonEmitter
+ * @brief photons of lights and of the sky, where they enter a volume
+ *
+ * Photons are spread over what each light sees of the volume: over the photon plane across a directional light that the
+ * volume's outline is, over the solid angle of the faces that a lamp sees, over the directions and the outline for an environment.
+ * What would miss the volume is not made; the power of all photons is what reaches it. Photons of a lamp in the volume begin
+ * at the lamp.
+ *
+ * Input 0, the medium: vtkImageData, of which only the box counts. Input 1, optional: lights as vtkLightRig makes them.
+ * Input 2, optional: the environment, as vtkEnvironmentReader makes it. The index outside is taken as constant.
+ *
+ * Output: vtkPolyData, a vertex a photon, point data
+ *
+ * | array       | components | unit | meaning                                                           |
+ * |-------------|------------|------|-------------------------------------------------------------------|
+ * | `direction` | 3          | 1    | in which it travels; the active vectors                           |
+ * | `power`     | 3          | W    | red, green, blue                                                  |
+ * | `weight`    | 1          | 1    | how much denser photons are here than spread evenly: 1            |
+ * | `light`     | 1          | 1    | number of its light; -1: the environment or SkyColor              |
+ *
+ * Without lights, environment and SkyColor there are no photons, with a warning. In a parallel pipeline the first piece has
+ * all photons.
+ *
+ * @sa vtkLightRig vtkEnvironmentReader vtkPhotonMarcher
+ * @par Thanks
+ * M. Pfeuti, Real-time Rendering of Refractive Objects in Participating Media, 2009, sections 3.1.4 and 4.1.
+ */
+class TYNDALL_EXPORT vtkPhotonEmitter : public vtkPolyDataAlgorithm
+{
+public:
+  static vtkPhotonEmitter* New();
+  vtkTypeMacro(vtkPhotonEmitter, vtkPolyDataAlgorithm);
+  void PrintSelf(ostream& os, vtkIndent indent) override;
+
+  enum Samplers
+  {
+    HAMMERSLEY = 0,
+    HALTON = 1,
+    JITTERED = 2,
+    GRID = 3,
+    RANDOM = 4
+  };
+
+  ///@{
+  /// Lights (vtkPolyData) and environment (vtkImageData) by connection or as data; null: none.
+  void SetLightsConnection(vtkAlgorithmOutput* lights);
+  void SetLightsData(vtkDataObject* lights);
+  void RemoveLights();
+  void SetEnvironmentConnection(vtkAlgorithmOutput* environment);
+  void SetEnvironmentData(vtkDataObject* environment);
+  void RemoveEnvironment();
+  ///@}
+
+  ///@{
+  /// Photons that reach the volume, of all lights together, which share them in proportion to the power with which they reach
+  /// it. Default 100000, valid [1, infinity). Spots and rectangles of which a part misses the volume meet it within a percent.
+  vtkSetClampMacro(PhotonCount, vtkIdType, 1, VTK_ID_MAX);
+  vtkGetMacro(PhotonCount, vtkIdType);
+  ///@}
+
+  ///@{
+  /// How photons are spread: HAMMERSLEY (default), HALTON, JITTERED, GRID or RANDOM.
+  vtkSetClampMacro(Sampler, int, HAMMERSLEY, RANDOM);
+  vtkGetMacro(Sampler, int);
+  ///@}
+
+  ///@{
+  /// Another seed gives other photons, the same seed the same ones. Default 0.
+  vtkSetClampMacro(Seed, int, 0, VTK_INT_MAX);
+  vtkGetMacro(Seed, int);
+  ///@}
+
+  ///@{
+  /// Radiance from every direction alike, red, green, blue, added to the environment, W/(length^2 sr). Default 0, valid
+  /// [0, infinity).
+  vtkSetVector3Macro(SkyColor, double);
+  vtkGetVector3Macro(SkyColor, double);
+  ///@}
+
+  ///@{
+  /// Axis of the scene along which the environment's up points: 0, 1, 2 for x, y, z. Default 2.
+  vtkSetClampMacro(EnvironmentUp, int, 0, 2);
+  vtkGetMacro(EnvironmentUp, int);
+  ///@}
+
+  ///@{
+  /// By how much the environment is turned about its up, degrees, rounded to whole pixels. Default 0.
+  vtkSetMacro(EnvironmentAzimuth, double);
+  vtkGetMacro(EnvironmentAzimuth, double);
+  ///@}
+
+  ///@{
+  /// What came of the last update: photons made, their power (W, channels summed), seconds.
+  vtkGetMacro(Photons, vtkIdType);
+  vtkGetMacro(Power, double);
+  vtkGetMacro(Seconds, double);
+  ///@}
+
+protected:
+  vtkPhotonEmitter();
+  ~vtkPhotonEmitter() override;
+
+  int FillInputPortInformation(int port, vtkInformation* information) override;
+  int RequestUpdateExtent(
+    vtkInformation* request, vtkInformationVector** inputs, vtkInformationVector* outputs) override;
+  int RequestData(vtkInformation* request, vtkInformationVector** inputs, vtkInformationVector* outputs) override;
+
+private:
+  vtkPhotonEmitter(const vtkPhotonEmitter&) = delete;
+  void operator=(const vtkPhotonEmitter&) = delete;
+
+  vtkIdType PhotonCount = 100000;
+  int Sampler = HAMMERSLEY;
+  int Seed = 0;
+  double SkyColor[3] = { 0.0, 0.0, 0.0 };
+  int EnvironmentUp = 2;
+  double EnvironmentAzimuth = 0.0;
+
+  vtkIdType Photons = 0;
+  double Power = 0.0;
+  double Seconds = 0.0;
+};
+
+#endif

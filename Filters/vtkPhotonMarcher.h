@@ -1,0 +1,155 @@
+#ifndef vtkPhotonMarcher_h
+#define vtkPhotonMarcher_h
+
+#include "vtkImageAlgorithm.h"
+#include "vtkTyndallModule.h" // for export macro
+
+#include <string>
+
+namespace tyndall
+{
+struct PhotonLight;
+}
+
+/**
+ * @class vtkPhotonMarcher
+ * @brief photons along bent rays through a medium: its light before it is scattered
+ *
+ * Paths follow d/ds(n dx/ds) = grad n, so that refraction and total reflection need no surfaces. Power falls along a path by
+ * extinction, exactly; every voxel that a path crosses gains its power times its length in it, so that `fluence` is an unbiased
+ * estimate in W/length^2 whatever the number of photons is. Scattered light is not followed: a viewer gathers single
+ * scattering from `fluence` and `mean_direction`.
+ *
+ * Input 0, the medium: vtkImageData with cell arrays `sigma_a`, `sigma_s` (1 or 3 components, 1/length) and optionally
+ * `ior` (1 component; missing: constant) or those chosen by SetInputArrayToProcess 0, 1 and 3.
+ * Input 1: photons as vtkPhotonEmitter makes them. Input 2, optional: an image of the same size with cell array
+ * `octree_level`, as vtkRefractionOctree makes it; without it that array of the medium, if there is one.
+ *
+ * Output 0: the medium's image with cell arrays
+ *
+ * | array            | components | unit       | meaning                                                          |
+ * |------------------|------------|------------|------------------------------------------------------------------|
+ * | `fluence`        | 1 or 3     | W/length^2 | radiance integrated over all directions, of unscattered light    |
+ * | `fluence_direct` | 1 or 3     | W/length^2 | the same                                                         |
+ * | `mean_direction` | 3          | 1          | power-weighted mean direction; its length is the anisotropy      |
+ *
+ * and field data `energy_balance` (W: entered, emitted, absorbed, escaped, left over; absorbed includes what is scattered),
+ * `scattered` (W), `face_power_out`, `left_out`, `device`.
+ * Output 1: vtkPolyData, the paths of PathCount photons as polylines, point data `power_left` (part of its power), cell data
+ * `photon` (its number).
+ *
+ * In a parallel pipeline every rank marches all photons and hands on its piece; the paths are on the first.
+ *
+ * @sa vtkPhotonEmitter vtkRefractionOctree vtkMediumRayCaster
+ * @par Thanks
+ * M. Pfeuti, Real-time Rendering of Refractive Objects in Participating Media, 2009, section 3.1.5. X. Sun, K. Zhou, E. Stollnitz,
+ * J. Shi, B. Guo: Interactive Relighting of Dynamic Refractive Objects, ACM Trans. Graph. 27 (2008).
+ */
+class TYNDALL_EXPORT vtkPhotonMarcher : public vtkImageAlgorithm
+{
+public:
+  static vtkPhotonMarcher* New();
+  vtkTypeMacro(vtkPhotonMarcher, vtkImageAlgorithm);
+  void PrintSelf(ostream& os, vtkIndent indent) override;
+
+  enum Schemes
+  {
+    PUBLISHED =
+      0,      ///< explicit Euler, power a rasterised voxel, 64 bits a voxel by compare-and-swap, smoothed at the end
+    SOUND = 1 ///< symplectic integrator, power times path, fixed point sums that lose nothing and repeat bit for bit
+  };
+
+  ///@{
+  /// Photons (vtkPolyData) and octree (vtkImageData) by connection or as data; null: none.
+  void SetPhotonsConnection(vtkAlgorithmOutput* photons);
+  void SetPhotonsData(vtkDataObject* photons);
+  void SetOctreeConnection(vtkAlgorithmOutput* octree);
+  void SetOctreeData(vtkDataObject* octree);
+  void RemoveOctree();
+  ///@}
+
+  ///@{
+  /// How to compute: PUBLISHED, or SOUND (default).
+  vtkSetClampMacro(Scheme, int, PUBLISHED, SOUND);
+  vtkGetMacro(Scheme, int);
+  ///@}
+
+  ///@{
+  /// Order of the sound scheme's integrator: 1 (explicit Euler, to compare), 2 (leapfrog; default) or 4 (Yoshida; where the
+  /// index is smooth over several voxels).
+  vtkSetMacro(IntegratorOrder, int);
+  vtkGetMacro(IntegratorOrder, int);
+  ///@}
+
+  ///@{
+  /// Length of a step where the index varies and the octree has single voxels, in voxels. Default 1, valid (0, infinity).
+  vtkSetMacro(StepSize, double);
+  vtkGetMacro(StepSize, double);
+  ///@}
+
+  ///@{
+  /// Number of photons, spread evenly over all, whose paths go to the second output. Default 0, valid [0, infinity).
+  vtkSetClampMacro(PathCount, int, 0, VTK_INT_MAX);
+  vtkGetMacro(PathCount, int);
+  ///@}
+
+  ///@{
+  /// Whether the published scheme ends with its 3x3x3 Gauss filter. Default on.
+  vtkSetMacro(Smoothing, bool);
+  vtkGetMacro(Smoothing, bool);
+  vtkBooleanMacro(Smoothing, bool);
+  ///@}
+
+  ///@{
+  /// Part of the name of the OpenCL device to use, of any case. Default empty: what the variable TYNDALL_DEVICE names, or
+  /// else PoCL's CPU device.
+  vtkSetStdStringFromCharMacro(Device);
+  vtkGetCharFromStdStringMacro(Device);
+  ///@}
+
+  ///@{
+  /// What came of the last update: stretches of path credited to voxels, steps of the integrator, photons that miss the volume,
+  /// relative error of the energy balance (of the published scheme: what its packing loses), seconds, the device's name, and
+  /// what the scene did not need, one a line.
+  vtkGetMacro(Credits, vtkIdType);
+  vtkGetMacro(Steps, vtkIdType);
+  vtkGetMacro(Missed, vtkIdType);
+  vtkGetMacro(BalanceError, double);
+  vtkGetMacro(Seconds, double);
+  vtkGetCharFromStdStringMacro(DeviceName);
+  vtkGetCharFromStdStringMacro(LeftOut);
+  ///@}
+
+protected:
+  vtkPhotonMarcher();
+  ~vtkPhotonMarcher() override;
+
+  int FillInputPortInformation(int port, vtkInformation* information) override;
+  int FillOutputPortInformation(int port, vtkInformation* information) override;
+  int RequestUpdateExtent(
+    vtkInformation* request, vtkInformationVector** inputs, vtkInformationVector* outputs) override;
+  int RequestData(vtkInformation* request, vtkInformationVector** inputs, vtkInformationVector* outputs) override;
+
+private:
+  vtkPhotonMarcher(const vtkPhotonMarcher&) = delete;
+  void operator=(const vtkPhotonMarcher&) = delete;
+
+  void Note(const tyndall::PhotonLight& light);
+
+  int Scheme = SOUND;
+  int IntegratorOrder = 2;
+  double StepSize = 1.0;
+  int PathCount = 0;
+  bool Smoothing = true;
+  std::string Device;
+
+  vtkIdType Credits = 0;
+  vtkIdType Steps = 0;
+  vtkIdType Missed = 0;
+  double BalanceError = 0.0;
+  double Seconds = 0.0;
+  std::string DeviceName;
+  std::string LeftOut;
+};
+
+#endif

@@ -1,0 +1,96 @@
+#include "MediumScene.h"
+
+#include "vtkDataArray.h"
+#include "vtkFloatArray.h"
+#include "vtkLightRig.h"
+#include "vtkPhotonEmitter.h"
+#include "vtkPointData.h"
+#include "vtkPolyData.h"
+
+#include <cmath>
+
+namespace
+{
+double Total(vtkPolyData* photons, int channel)
+{
+  vtkDataArray* power = photons->GetPointData()->GetArray("power");
+  double sum = 0.0;
+  for (vtkIdType i = 0; power && i < power->GetNumberOfTuples(); ++i)
+  {
+    sum += power->GetComponent(i, channel);
+  }
+  return sum;
+}
+
+void ASunGivesItsPhotons(test::Claims& claims)
+{
+  vtkNew<vtkLightRig> rig;
+  rig->SetSunElevation(90.0);
+  rig->SetSunPower(4.0, 2.0, 1.0);
+  for (int sampler = vtkPhotonEmitter::HAMMERSLEY; sampler <= vtkPhotonEmitter::RANDOM; ++sampler)
+  {
+    vtkNew<vtkPhotonEmitter> emitter;
+    // An extent that starts elsewhere: the box is (2, 0, 0) to (6, 4, 4).
+    emitter->SetInputDataObject(test::MakeImage({ { 4, 4, 4 }, { 1.0, 1.0, 1.0 }, { 0.0, 0.0, 0.0 }, { 2, 0, 0 } }));
+    emitter->SetLightsConnection(rig->GetOutputPort());
+    emitter->SetPhotonCount(1000);
+    emitter->SetSampler(sampler);
+    emitter->Update();
+    vtkPolyData* photons = emitter->GetOutput();
+    claims.That(photons->GetNumberOfPoints() == 1000 && photons->GetNumberOfVerts() == 1000, "a thousand photons");
+    claims.Near(Total(photons, 0), 4.0 * 16.0, 1e-3, "red power of the sun on the box");
+    claims.Near(Total(photons, 2), 1.0 * 16.0, 1e-3, "blue power of the sun on the box");
+    claims.Near(emitter->GetPower(), 7.0 * 16.0, 1e-2, "power on the panel");
+    claims.That(photons->GetPointData()->GetVectors() != nullptr, "directions are the active vectors");
+    const double* bounds = photons->GetBounds();
+    claims.That(bounds[0] >= 2.0 && bounds[1] <= 6.0 && bounds[2] >= 0.0 && bounds[3] <= 4.0, "they are on the box");
+    claims.Near(bounds[4], 4.0, 1e-9, "they are on its top");
+    claims.Near(photons->GetPointData()->GetArray("weight")->GetComponent(0, 0), 1.0, 0.0, "weight");
+    claims.Near(photons->GetPointData()->GetArray("light")->GetComponent(0, 0), 0.0, 0.0, "number of the light");
+  }
+}
+
+void ASkyGivesPhotonsFromEverywhere(test::Claims& claims)
+{
+  vtkNew<vtkPhotonEmitter> emitter;
+  emitter->SetInputDataObject(test::MakeImage({}));
+  emitter->SetSkyColor(1.0, 1.0, 1.0);
+  emitter->SetPhotonCount(5000);
+  emitter->Update();
+  claims.Near(Total(emitter->GetOutput(), 1) / (std::acos(-1.0) * 96.0), 1.0, 5e-3, "power of the sky");
+}
+
+void NothingShinesIsAWarning(test::Claims& claims)
+{
+  vtkNew<vtkPhotonEmitter> emitter;
+  test::Errors errors(emitter);
+  emitter->SetInputDataObject(test::MakeImage({}));
+  emitter->Update();
+  claims.That(errors.WasOneWith("Nothing shines"), "a warning where nothing shines");
+  claims.That(emitter->GetOutput()->GetNumberOfPoints() == 0, "no photons");
+}
+
+void BadInputIsOneError(test::Claims& claims)
+{
+  vtkNew<vtkPhotonEmitter> emitter;
+  test::Errors errors(emitter);
+  emitter->SetInputDataObject(test::MakeImage({ { 4, 0, 4 } }));
+  emitter->SetSkyColor(1.0, 1.0, 1.0);
+  emitter->Update();
+  claims.That(errors.WasOneWith("single layer of points along y"), "an image without voxels");
+  emitter->SetInputDataObject(test::MakeImage({}));
+  emitter->SetSkyColor(-1.0, 1.0, 1.0);
+  emitter->Update();
+  claims.That(errors.WasOneWith("finite and not negative"), "a negative sky");
+}
+}
+
+int TestPhotonEmitter(int, char*[])
+{
+  test::Claims claims;
+  ASunGivesItsPhotons(claims);
+  ASkyGivesPhotonsFromEverywhere(claims);
+  NothingShinesIsAWarning(claims);
+  BadInputIsOneError(claims);
+  return claims.Result();
+}
