@@ -18,6 +18,12 @@ constexpr double SecondsPerRay = 1e-9; ///< a ray through a plane of voxels on a
 constexpr int PlanesPerRound = 128; ///< at least, when rays go round a periodic axis: a short one several times
 constexpr double NothingLeft = 1e-7; ///< of what was on the way after the first time: not worth going round again
 
+/// (1 - exp(-t)) / t = 1 + t (MeanLength[0] + t (MeanLength[1] + ...)), to 2e-8 for 0 <= t < Thin: a minimax polynomial.
+constexpr int MeanLengthTerms = 5;
+constexpr double MeanLength[MeanLengthTerms] = { -0.499999036, 0.166648826, -0.0415578957, 0.0080387554,
+  -0.00101435666 };
+constexpr double Thin = 0.75;
+
 // As bundle_info, crossing_info, unit_info, plane_layout in SweepLayout.cl and Sweep.cl.
 struct BundleOnDevice
 {
@@ -38,7 +44,11 @@ struct UnitOnDevice
 struct LayoutOnDevice
 {
   cl_int sizeU, sizeV, sizeP, stepU, stepV, stepP, width, block;
-  cl_float vacuum;
+  cl_float vacuum, thin, meanLength[MeanLengthTerms];
+};
+struct OwnLightOnDevice
+{
+  cl_float length, terms[MeanLengthTerms];
 };
 
 int RoundUp(int value, int multiple)
@@ -118,7 +128,7 @@ struct AxisSweep::Implementation
   Buffer<UnitOnDevice> UnitBuffer;
   Buffer<cl_int2> ScheduleBuffer, RoundScheduleBuffer;
   Buffer<CrossingOnDevice> FirstCrossings;
-  Buffer<cl_float4> FirstLengths;
+  Buffer<OwnLightOnDevice> FirstOwnLight;
 
   Implementation(Device& device, const Grid& grid, int axis, std::vector<Bundle> bundles, int channels,
     const std::array<bool, 3>& periodic)
@@ -173,7 +183,9 @@ struct AxisSweep::Implementation
     this->Row = RowFloats(width, this->Vector);
     this->Layout = { n[this->Axes.u], n[this->Axes.v], n[this->Axes.axis], step[this->Axes.u], step[this->Axes.v],
       step[this->Axes.axis], width, this->Axes.u == 0 ? 1 : this->Vector,
-      static_cast<float>(std::max(1e-30 / this->LongestSegment(), 1e-37)) };
+      static_cast<float>(std::max(1e-30 / this->LongestWay(), 1e-37)), static_cast<float>(Thin / this->LongestSegment()),
+      {} };
+    std::copy(MeanLength, MeanLength + MeanLengthTerms, this->Layout.meanLength);
   }
 
   void LayBundles()
@@ -248,7 +260,8 @@ struct AxisSweep::Implementation
     const std::size_t ring = std::size_t{ 2 } * RingRows * MaxMembers * this->Channels * this->Row + this->Vector;
     const std::size_t planes =
       static_cast<std::size_t>(this->QuantitiesPerPlane(true)) * this->Layout.block * this->Layout.sizeV * this->Row;
-    return ring + planes + 2 * this->Vector;
+    const std::size_t thinRows = static_cast<std::size_t>(this->Layout.block) * this->Layout.sizeV;
+    return ring + planes + thinRows + 2 * this->Vector;
   }
 
   /// Cut the axis into slabs such that units never meet: a group enters two slabs behind the one before it, and forward
@@ -336,7 +349,7 @@ struct AxisSweep::Implementation
     this->ScheduleBuffer = Buffer<cl_int2>(device, this->Schedule, "the schedule");
     this->RoundScheduleBuffer = Buffer<cl_int2>(device, this->RoundSchedule, "the schedule");
     this->FirstCrossings = Buffer<CrossingOnDevice>(device, this->Crossings(0, this->PatternPlanes()), "the ray pattern");
-    this->FirstLengths = Buffer<cl_float4>(device, this->Lengths(), "the ray pattern");
+    this->FirstOwnLight = Buffer<OwnLightOnDevice>(device, this->OwnLight(), "the ray pattern");
     this->Scratch.Fill(0.0f);
     this->Maps.Fill(0.0f);
   }
@@ -364,31 +377,35 @@ struct AxisSweep::Implementation
     return rows;
   }
 
-  /// [unit][plane] sums over a voxel's segments of power times l, l^2 / 2, l^3 / 6, l^4 / 24.
-  std::vector<cl_float4> Lengths() const
+  /// [unit][plane]: (l - p1) / sigma = -l^2 (MeanLength[0] + sigma l (MeanLength[1] + ...)), summed over segments.
+  std::vector<OwnLightOnDevice> OwnLight() const
   {
-    std::vector<cl_float4> rows;
+    std::vector<OwnLightOnDevice> rows;
     for (const UnitOnDevice& unit : this->Units)
     {
       for (int k = 0; k < this->PatternPlanes(); ++k)
       {
-        std::array<double, 4> sum = {};
+        std::array<double, MeanLengthTerms> terms = {};
+        double sum = 0.0;
         for (int b = unit.firstBundle; b < unit.firstBundle + unit.bundles; ++b)
         {
           const Bundle& bundle = this->Bundles[b];
+          const double power = bundle.power * static_cast<double>(bundle.members.size());
           const PlaneCrossing crossing = bundle.Crossing(k);
           for (int s = 0; s < crossing.count; ++s)
           {
-            double term = bundle.power * static_cast<double>(bundle.members.size());
-            for (int power = 0; power < 4; ++power)
+            const double length = crossing.segments[s].length;
+            sum += power * length;
+            double term = -power * length * length;
+            for (int i = 0; i < MeanLengthTerms; ++i, term *= length * this->Layout.thin)
             {
-              term *= crossing.segments[s].length / (power + 1);
-              sum[power] += term;
+              terms[i] += term * MeanLength[i];
             }
           }
         }
-        rows.push_back({ { static_cast<float>(sum[0]), static_cast<float>(sum[1]), static_cast<float>(sum[2]),
-          static_cast<float>(sum[3]) } });
+        OwnLightOnDevice row = { static_cast<float>(sum), {} };
+        std::copy(terms.begin(), terms.end(), row.terms);
+        rows.push_back(row);
       }
     }
     return rows;
@@ -415,12 +432,28 @@ struct AxisSweep::Implementation
       { kernel_source::Numerics, kernel_source::SweepLayout, bundles, kernel_source::Sweep }, options);
   }
 
-  double LongestSegment() const
+  /// Through a plane.
+  double LongestWay() const
   {
     double longest = 0.0;
     for (const Bundle& bundle : this->Bundles)
     {
       longest = std::max(longest, bundle.length);
+    }
+    return longest;
+  }
+
+  /// Through a voxel; of rays that go round it is not known before.
+  double LongestSegment() const
+  {
+    if (this->Periodic[this->Axes.axis])
+    {
+      return this->LongestWay();
+    }
+    double longest = 0.0;
+    for (const CrossingOnDevice& crossing : this->Crossings(0, this->PatternPlanes()))
+    {
+      longest = std::max<double>(longest, *std::max_element(crossing.length, crossing.length + crossing.stages));
     }
     return longest;
   }
@@ -609,7 +642,7 @@ struct AxisSweep::Implementation
       With(kernel, *volume.sigma_t, cl_ulong(volume.sigma_t_first), *volume.source, *volume.path, flux,
         cl_ulong(volume.first), cl_ulong(volume.stride), this->Maps, cl_ulong(this->MapsEachWay), this->Outside,
         cl_uint(this->OutsideEachWay), this->Radiance, cl_uint(this->RadianceEachWay), this->Scratch, this->UnitBuffer,
-        this->BundleBuffer, Int(this->Bundles.size()), crossings, this->FirstLengths,
+        this->BundleBuffer, Int(this->Bundles.size()), crossings, this->FirstOwnLight,
         Int(this->PatternPlanes()), schedule, launch,
         this->Tally, this->Layout, Int(this->Axes.axis));
       device.Queue().enqueueNDRangeKernel(kernel, cl::NullRange, cl::NDRange(this->Units.size()), cl::NDRange(1));
