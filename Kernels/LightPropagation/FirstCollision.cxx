@@ -1,5 +1,6 @@
 #include "FirstCollision.h"
 
+#include "AxisSweep.h"
 #include "TyndallKernelSources.h"
 
 #include <glm/geometric.hpp>

@@ -85,7 +85,7 @@ private:
   void PropagateLights(const Monitor& monitor);
   void ForChannels(const std::function<SweepTally(const SweepVolume&, int)>& act);
   void Count(const SweepTally& tally, int firstChannel, int channels);
-  AxisSweep::Boundary BoundaryOfOrder(int order) const;
+  SweepBoundary BoundaryOfOrder(int order) const;
   void CollectOrder(int order);
   void EstimateResidual(int order);
   bool Done(int orders) const;
@@ -209,11 +209,11 @@ void Solver::MakeSweeps()
 {
   for (int axis = 0; axis < 3; ++axis)
   {
-    std::vector<Bundle> bundles =
+    const std::vector<Bundle> bundles =
       BundlesAlong(axis, this->TheMedium.grid, this->Directions, this->Settings.mapResolution);
     if (!bundles.empty())
     {
-      this->Sweeps.push_back(std::make_unique<AxisSweep>(this->TheDevice, this->TheMedium.grid, axis, std::move(bundles),
+      this->Sweeps.push_back(std::make_unique<AxisSweep>(this->TheDevice, this->TheMedium.grid, axis, bundles,
         this->SharedExtinction ? this->Channels : 1, this->Settings.periodic));
     }
   }
@@ -231,7 +231,7 @@ void Solver::MakeSweeps()
   }
 }
 
-AxisSweep::Boundary Solver::BoundaryOfOrder(int order) const
+SweepBoundary Solver::BoundaryOfOrder(int order) const
 {
   if (order > 0 || !this->LitFromOutside)
   {
@@ -302,7 +302,7 @@ void Solver::PropagateLights(const Monitor& monitor)
 
 void Solver::PropagateOrder(int order, const Monitor& monitor)
 {
-  const AxisSweep::Boundary boundary = this->BoundaryOfOrder(order);
+  const SweepBoundary boundary = this->BoundaryOfOrder(order);
   const bool nothing = !boundary && !this->Shining && Total(this->OnTheWay) == 0.0;
   this->OnTheWay = {};
   if (nothing)
@@ -315,8 +315,8 @@ void Solver::PropagateOrder(int order, const Monitor& monitor)
       ? Monitor([&](double done) { return monitor((static_cast<double>(s) + done) / this->Sweeps.size()); })
       : Monitor();
     this->ForChannels([&](const SweepVolume& volume, int first) {
-      const AxisSweep::Boundary ofChannels = boundary && first > 0
-        ? AxisSweep::Boundary([&](int direction, int face) { return From(boundary(direction, face), first); })
+      const SweepBoundary ofChannels = boundary && first > 0
+        ? SweepBoundary([&](int direction, int face) { return From(boundary(direction, face), first); })
         : boundary;
       return this->Sweeps[s]->Run(volume, ofChannels, this->Shining,
         this->Settings.maximumOrders > 0 ? ManyPlanes : FewPlanes, ofSweep);

@@ -24,7 +24,7 @@
 #define PLANE_FLUX (PLANE_PATH + CHANNELS)
 #define PLANES (PLANE_FLUX + FLUX * CHANNELS)
 
-// As BundleOnDevice, CrossingOnDevice in Sweep.cxx.
+// As BundleOnDevice, PlaneCrossingOnDevice in SweepPlan.h.
 typedef struct
 {
   int members;
