@@ -203,4 +203,19 @@ cl::Buffer Device::Allocate(std::size_t bytes, cl_mem_flags flags, const char* w
   this->Peak = std::max(this->Peak, this->InUse);
   return buffer;
 }
+
+void Device::Finish()
+{
+  this->TheQueue.finish();
+  this->SecondsQueued = 0.0;
+}
+
+void Device::Queued(double seconds)
+{
+  this->SecondsQueued += seconds;
+  if (this->SecondsQueued >= 0.1)
+  {
+    this->Finish();
+  }
+}
 }

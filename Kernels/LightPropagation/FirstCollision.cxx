@@ -1,5 +1,6 @@
 #include "FirstCollision.h"
 
+#include "AxisSweep.h"
 #include "TyndallKernelSources.h"
 
 #include <glm/geometric.hpp>
@@ -56,7 +57,8 @@ SweepTally DepositBeam(Device& device, const SweepVolume& volume, const Light& l
   const int axis = MarchingAxis(volume.grid, omega);
   AxisSweep beam(
     device, volume.grid, axis, BeamAlong(axis, volume.grid, omega, RaysPerEdge), volume.channels, periodic);
-  return beam.Run(volume, [&](int, int) { return light.power; }, false, ManyPlanes, monitor);
+  beam.Start(volume, [&](int, int) { return light.power; }, false, ManyPlanes, monitor);
+  return beam.Finish();
 }
 
 /// Smallest and largest tangent (voxels along `aside` per layer) at which the box is seen from `position` between two depths,

@@ -1,7 +1,8 @@
 #pragma once
 
-#include "AxisSweep.h"
+#include "SweepVolume.h"
 
+#include "../Device/Monitor.h"
 #include "../Lights/Lights.h"
 
 namespace tyndall

@@ -13,7 +13,7 @@
 #define MAX_MEMBERS 8
 #define RING_ROWS 4 // a stage reads rows y - 1 to y + 1 while the stage before writes row y + 2
 #define LAG 2       // rows a stage stays behind the one before
-#define MEAN_LENGTH_TERMS 5 // of (1 - exp(-t)) / t = 1 + t (m0 + t (m1 + ...)) for thin voxels, see AxisSweep.cxx
+#define MEAN_LENGTH_TERMS 5 // of (1 - exp(-t)) / t = 1 + t (m0 + t (m1 + ...)) for thin voxels, see SweepPlan.cxx
 #define FLUX (NET_FLUX ? 3 : 0)
 
 // The quantities of one plane, each [row][ROW].
@@ -25,7 +25,7 @@
 #define PLANE_FLUX (PLANE_PATH + CHANNELS)
 #define PLANES (PLANE_FLUX + FLUX * CHANNELS)
 
-// As BundleOnDevice, CrossingOnDevice in Sweep.cxx.
+// As BundleOnDevice, PlaneCrossingOnDevice in SweepPlan.h.
 typedef struct
 {
   int members;
@@ -51,7 +51,7 @@ typedef struct
   int sizeU, sizeV;        // voxels of the plane
   int width;               // sizeU rounded up to whole vectors
   __global float* planes;  // PLANES quantities of sizeV rows: of the plane that is being crossed
-  __global int* thin;      // [row] of it, 1 where MEAN_LENGTH holds
+  __global int* thin;      // [row] of it, 1 where all voxels are thin
   float meanLength[MEAN_LENGTH_TERMS];
   __global float* ring;    // 2 rings of RING_ROWS rows of MAX_MEMBERS * CHANNELS * ROW floats
   float escaped[4][CHANNELS]; // through -u, +u, -v, +v, W; with the rounding errors
@@ -74,16 +74,7 @@ static float sum_of_row(const __global float* row, int count)
   {
     sum += select(load_real(x, row), (real)0.0f, LANES >= count - x);
   }
-#if REAL_WIDTH == 16
-  const float8 eight = sum.lo + sum.hi;
-  const float4 four = eight.lo + eight.hi;
-#elif REAL_WIDTH == 8
-  const float4 four = sum.lo + sum.hi;
-#else
-  const float4 four = sum;
-#endif
-  const float2 two = four.lo + four.hi;
-  return two.x + two.y;
+  return sum_of(sum);
 }
 
 static void add_exactly(float* sum, float* rounding, float value) // Kahan

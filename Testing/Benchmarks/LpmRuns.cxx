@@ -27,7 +27,7 @@ public:
   {
     return [this](double done) {
       this->Last = { done, CoreSeconds() };
-      if (done * this->Orders < 1.0 - 1e-6 || this->First.done == 0.0)
+      if (done * this->Orders < 1.0 + 1e-6 || this->First.done == 0.0)
       {
         this->First = this->Last;
       }
