@@ -17,10 +17,11 @@ namespace tyndall
 namespace
 {
 constexpr double Pi = 3.14159265358979323846;
-constexpr std::size_t Chunk = 4096;  ///< as in Collect.cl
+constexpr std::size_t Chunk = 4096; ///< as in Collect.cl
 constexpr int MostOrders = 100000;
-constexpr int ManyPlanes = 8192; ///< a ray goes round a periodic axis before it is given up, or waits for the next order
-constexpr int FewPlanes = 256;   ///< the same where there will be more orders as long as it matters
+/// Planes that a ray goes round a periodic axis before it is given up, or waits for the next order.
+constexpr int ManyPlanes = 8192;
+constexpr int FewPlanes = 256; ///< the same where there will be more orders as long as it matters
 
 double Total(const Rgb& values)
 {
@@ -51,9 +52,8 @@ public:
     int order = 0;
     do
     {
-      const Monitor ofOrder = monitor
-        ? Monitor([&](double done) { return monitor(this->Progress(order, done)); })
-        : Monitor();
+      const Monitor ofOrder =
+        monitor ? Monitor([&](double done) { return monitor(this->Progress(order, done)); }) : Monitor();
       if (order == 0)
       {
         this->PropagateLights(ofOrder);
@@ -108,7 +108,7 @@ private:
   Buffer<float> Extinction, Scattering, Source, Path, Flux, Fluence;
   std::vector<std::unique_ptr<AxisSweep>> Sweeps;
   std::vector<Rgb> FromFarAway;
-  bool Shining = false;   ///< the source is not zero
+  bool Shining = false; ///< the source is not zero
   bool LitFromOutside = false;
 
   LightField Result;
@@ -318,8 +318,8 @@ void Solver::PropagateOrder(int order, const Monitor& monitor)
       const SweepBoundary ofChannels = boundary && first > 0
         ? SweepBoundary([&](int direction, int face) { return From(boundary(direction, face), first); })
         : boundary;
-      return this->Sweeps[s]->Run(volume, ofChannels, this->Shining,
-        this->Settings.maximumOrders > 0 ? ManyPlanes : FewPlanes, ofSweep);
+      return this->Sweeps[s]->Run(
+        volume, ofChannels, this->Shining, this->Settings.maximumOrders > 0 ? ManyPlanes : FewPlanes, ofSweep);
     });
   }
 }
