@@ -127,8 +127,7 @@ void AxisSweep::Implementation::EnterNothing()
 }
 
 /// From where rays start to where they leave the axis for the first time, or the last lap ends.
-void AxisSweep::Implementation::CrossOnce(
-  const SweepVolume& volume, bool source, bool border, const Monitor& monitor)
+void AxisSweep::Implementation::CrossOnce(const SweepVolume& volume, bool source, bool border, const Monitor& monitor)
 {
   const Schedule schedule =
     this->Plan.laps == 1 ? Schedule{ this->FirstSchedule, this->Plan.launches } : this->Rounds();
@@ -150,8 +149,7 @@ void AxisSweep::Implementation::GoRound(const SweepVolume& volume, int mostPlane
   {
     const Buffer<PlaneCrossingOnDevice> crossings(
       this->TheDevice, this->Plan.Crossings(gone, planes), "the ray pattern");
-    this->Launch(
-      this->SweepKernel(false, false, volume.flux != nullptr), volume, crossings, this->Rounds(), monitor);
+    this->Launch(this->SweepKernel(false, false, volume.flux != nullptr), volume, crossings, this->Rounds(), monitor);
     this->CountSideways();
     onTheWay = this->PowerOnTheWay();
   }

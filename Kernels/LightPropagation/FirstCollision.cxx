@@ -15,12 +15,12 @@ namespace tyndall
 {
 namespace
 {
-constexpr int RaysPerEdge = 2;      ///< of a voxel, for parallel beams
-constexpr int PointsPerEdge = 4;    ///< of a rectangle
-constexpr double BeamWidth = 0.5;   ///< of a lamp's beams where they leave the box, in voxels; of a rectangle's points twice
-constexpr int RowsPerLaunch = 256;  ///< keeps a launch well below a tenth of a second for rows of a thousand voxels
-constexpr int RoundsAtMost = 64;    ///< of a ray on a periodic axis
-constexpr int ManyPlanes = 8192;    ///< of a beam on a periodic axis
+constexpr int RaysPerEdge = 2;     ///< of a voxel, for parallel beams
+constexpr int PointsPerEdge = 4;   ///< of a rectangle
+constexpr double BeamWidth = 0.5;  ///< of a lamp's beams where they leave the box, voxels; a rectangle's: twice
+constexpr int RowsPerLaunch = 256; ///< keeps a launch well below a tenth of a second for rows of a thousand voxels
+constexpr int RoundsAtMost = 64;   ///< of a ray on a periodic axis
+constexpr int ManyPlanes = 8192;   ///< of a beam on a periodic axis
 
 // As lamp_info, beam_row in LampBeams.cl.
 struct LampOnDevice
@@ -50,14 +50,15 @@ std::array<double, 3> Array(const glm::dvec3& v)
   return { v.x, v.y, v.z };
 }
 
-SweepTally DepositBeam(Device& device, const SweepVolume& volume, const Light& light, const std::array<bool, 3>& periodic,
-  const Monitor& monitor)
+SweepTally DepositBeam(Device& device, const SweepVolume& volume, const Light& light,
+  const std::array<bool, 3>& periodic, const Monitor& monitor)
 {
   const std::array<double, 3> omega = Array(glm::normalize(Vector(light.direction)));
   const int axis = MarchingAxis(volume.grid, omega);
   AxisSweep beam(
     device, volume.grid, axis, BeamAlong(axis, volume.grid, omega, RaysPerEdge), volume.channels, periodic);
-  beam.Start(volume, [&](int, int) { return light.power; }, false, ManyPlanes, monitor);
+  beam.Start(
+    volume, [&](int, int) { return light.power; }, false, ManyPlanes, monitor);
   return beam.Finish();
 }
 
@@ -126,12 +127,9 @@ double Intensity(const Light& light)
   const double pi = glm::pi<double>();
   switch (light.type)
   {
-    case LightType::Spot:
-      return 1.0 / (2.0 * pi * (1.0 - std::cos(0.5 * light.angle * pi / 180.0)));
-    case LightType::Rectangle:
-      return 1.0 / pi;
-    default:
-      return 1.0 / (4.0 * pi);
+    case LightType::Spot: return 1.0 / (2.0 * pi * (1.0 - std::cos(0.5 * light.angle * pi / 180.0)));
+    case LightType::Rectangle: return 1.0 / pi;
+    default: return 1.0 / (4.0 * pi);
   }
 }
 

@@ -17,10 +17,11 @@ namespace tyndall
 namespace
 {
 constexpr double Pi = 3.14159265358979323846;
-constexpr std::size_t Chunk = 4096;  ///< as in Collect.cl
+constexpr std::size_t Chunk = 4096; ///< as in Collect.cl
 constexpr int MostOrders = 100000;
-constexpr int ManyPlanes = 8192; ///< a ray goes round a periodic axis before it is given up, or waits for the next order
-constexpr int FewPlanes = 256;   ///< the same where there will be more orders as long as it matters
+/// Planes that a ray goes round a periodic axis before it is given up, or waits for the next order.
+constexpr int ManyPlanes = 8192;
+constexpr int FewPlanes = 256; ///< the same where there will be more orders as long as it matters
 
 double Total(const Rgb& values)
 {
@@ -51,9 +52,8 @@ public:
     int order = 0;
     do
     {
-      const Monitor ofOrder = monitor
-        ? Monitor([&](double done) { return monitor(this->Progress(order, done)); })
-        : Monitor();
+      const Monitor ofOrder =
+        monitor ? Monitor([&](double done) { return monitor(this->Progress(order, done)); }) : Monitor();
       if (order == 0)
       {
         this->PropagateLights(ofOrder);
@@ -109,7 +109,7 @@ private:
   Buffer<float> Extinction, Scattering, Source, Path, Flux, Fluence;
   std::vector<std::unique_ptr<AxisSweep>> Sweeps;
   std::vector<Rgb> FromFarAway;
-  bool Shining = false;   ///< the source is not zero
+  bool Shining = false; ///< the source is not zero
   bool LitFromOutside = false;
 
   LightField Result;
@@ -320,7 +320,8 @@ void Solver::PropagateOrder(int order, const Monitor& monitor)
     {
       const double before = static_cast<double>(first * this->Sweeps.size() + s);
       const double all = static_cast<double>(this->Sweeps.size()) * this->Channels / volume.channels;
-      const Monitor ofSweep = monitor ? Monitor([&](double done) { return monitor((before + done) / all); }) : Monitor();
+      const Monitor ofSweep =
+        monitor ? Monitor([&](double done) { return monitor((before + done) / all); }) : Monitor();
       this->Sweeps[s]->Start(volume, ofChannels, this->Shining, mostPlanes, ofSweep);
     }
     for (const std::unique_ptr<AxisSweep>& sweep : this->Sweeps)

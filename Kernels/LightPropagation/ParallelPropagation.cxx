@@ -365,6 +365,7 @@ std::vector<std::vector<float>> ParallelPropagation::Contributions(int batch) co
   const Batch& which = this->Inner->Plan.batches[batch];
   const std::size_t size = volumes.LayoutSize(which.Layout());
   std::vector<std::vector<float>> contributions;
+  contributions.reserve(which.count);
   for (int i = 0; i < which.count; ++i)
   {
     contributions.push_back(

@@ -140,8 +140,10 @@ void PublishedPlan::MakePasses(Batch& batch, int order) const
 GridWalk PublishedPlan::Walk(const MapGeometry& map, int subMap, int order) const
 {
   const int resolution = this->Settings.mapResolution;
-  return { map.StartOfOrder((subMap % resolution + 0.5) / resolution, map.slopeU, order),
-    map.StartOfOrder((subMap / resolution + 0.5) / resolution, map.slopeV, order), map.slopeU, map.slopeV, map.planes };
+  const int column = subMap % resolution;
+  const int row = subMap / resolution;
+  return { map.StartOfOrder((column + 0.5) / resolution, map.slopeU, order),
+    map.StartOfOrder((row + 0.5) / resolution, map.slopeV, order), map.slopeU, map.slopeV, map.planes };
 }
 
 /// Adds the crossings of the batch's direction i, and where it ends.

@@ -117,7 +117,7 @@ std::vector<Method> MethodsFor(
   for (const control::Kernels& kernels : control::KernelsHere())
   {
     control("control " + std::string(kernels.name), kernels, true);
-    if (!options.quick)
+    if (!options.quick && !large)
     {
       control("control " + std::string(kernels.name) + ", exp", kernels, false);
     }
@@ -179,7 +179,8 @@ int main(int argc, char* argv[])
     const std::shared_ptr<Device> device = Device::Find();
     const std::vector<Case> cases = RunAll(*device, options);
     PrintTables(cases);
-    return EXIT_SUCCESS;
+    const bool fused = std::all_of(cases.begin(), cases.end(), [](const Case& one) { return one.Find(Fused); });
+    return fused ? EXIT_SUCCESS : EXIT_FAILURE;
   }
   catch (const DeviceError& error)
   {

@@ -6,6 +6,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <cstdio>
 #include <map>
 
 namespace bench
@@ -154,7 +155,8 @@ std::vector<Figures> RunInterleaved(Device& device, const std::vector<Method>& m
       }
       catch (const DeviceError& error)
       {
-        figures.failure = error.what();
+        figures.failure = error.what(); // does not fit; the others may
+        std::fprintf(stderr, "%s: %s\n", method.name.c_str(), error.what());
       }
     }
   }
