@@ -31,12 +31,27 @@ double Total(const Rgb& rgb)
 }
 }
 
+void SweepWorkspace::Reserve(Device& device, std::size_t mapFloats, std::size_t scratchFloats)
+{
+  if (this->maps.Size() < mapFloats)
+  {
+    this->maps = {};
+    this->maps = Buffer<float>(device, mapFloats, "the light propagation maps");
+  }
+  if (this->scratch.Size() < scratchFloats)
+  {
+    this->scratch = {};
+    this->scratch = Buffer<float>(device, scratchFloats, "the planes being crossed");
+  }
+}
+
 struct AxisSweep::Implementation
 {
-  Implementation(Device& device, const Grid& grid, int axis, const std::vector<Bundle>& bundles, int channels,
-    const std::array<bool, 3>& periodic)
+  Implementation(Device& device, const SweepVolume& volume, int axis, const std::vector<Bundle>& bundles,
+    const std::array<bool, 3>& periodic, SweepWorkspace& workspace)
     : TheDevice(device)
-    , Plan(device, grid, axis, bundles, channels, periodic)
+    , Plan(device, volume.grid, axis, bundles, volume.channels, periodic, volume.flux != nullptr)
+    , Workspace(workspace)
   {
     this->MakeBuffers();
   }
@@ -58,6 +73,10 @@ struct AxisSweep::Implementation
     const Schedule& schedule, const Monitor& monitor);
   cl::Kernel SweepKernel(bool source, bool border, bool flux);
 
+  Buffer<float>& Maps()
+  {
+    return this->IsPeriodic() ? this->OwnMaps : this->Workspace.maps;
+  } ///< as SweepBorder has them
   bool IsPeriodic() const { return this->Plan.periodic[this->Plan.axes.axis]; }
   void CountSideways();
   void CountEnds();
@@ -67,11 +86,12 @@ struct AxisSweep::Implementation
 
   Device& TheDevice;
   SweepPlan Plan;
+  SweepWorkspace& Workspace;
 
-  Buffer<float> Maps, Outside, Radiance; ///< as SweepBorder has them
-  Buffer<float> Scratch;                 ///< planes being crossed, by unit
-  Buffer<float> Sideways;                ///< power that left: [unit][plane][-u, +u, -v, +v][channel]
-  Buffer<float> Sums;                    ///< power in the maps: [way][bundle][row][channel]
+  Buffer<float> OwnMaps;           ///< of a periodic axis
+  Buffer<float> Outside, Radiance; ///< as SweepBorder has them
+  Buffer<float> Sideways;          ///< power that left: [unit][plane][-u, +u, -v, +v][channel]
+  Buffer<float> Sums;              ///< power in the maps: [way][bundle][row][channel]
   Buffer<BundleOnDevice> Bundles;
   Buffer<BundleMaps> MapPlaces;
   Buffer<UnitOnDevice> Units;
@@ -87,10 +107,15 @@ void AxisSweep::Implementation::MakeBuffers()
   Device& device = this->TheDevice;
   const SweepPlan& plan = this->Plan;
   const std::size_t channels = static_cast<std::size_t>(plan.channels);
-  this->Maps = Buffer<float>(device, 2 * plan.mapsEachWay, "the light propagation maps");
+  this->Workspace.Reserve(
+    device, this->IsPeriodic() ? 0 : 2 * plan.mapsEachWay, plan.units.size() * plan.ScratchFloats());
+  if (this->IsPeriodic())
+  {
+    this->OwnMaps = Buffer<float>(device, 2 * plan.mapsEachWay, "the light propagation maps");
+    this->OwnMaps.Fill(0.0f);
+  }
   this->Outside = Buffer<float>(device, 2 * plan.outsideEachWay, "the light that comes in sideways");
   this->Radiance = Buffer<float>(device, 2 * plan.radianceEachWay, "the light that comes in sideways");
-  this->Scratch = Buffer<float>(device, plan.units.size() * plan.ScratchFloats(), "the planes being crossed");
   this->Sideways =
     Buffer<float>(device, plan.units.size() * plan.PatternPlanes() * 4 * channels, "the power that leaves sideways");
   this->Sums = Buffer<float>(device, 2 * plan.bundles.size() * plan.plane.sizeV * channels, "sums");
@@ -102,14 +127,12 @@ void AxisSweep::Implementation::MakeBuffers()
   this->FirstCrossings =
     Buffer<PlaneCrossingOnDevice>(device, plan.Crossings(0, plan.PatternPlanes()), "the ray pattern");
   this->FirstOwnLight = Buffer<OwnLightOnDevice>(device, plan.OwnLight(), "the ray pattern");
-  this->Scratch.Fill(0.0f);
-  this->Maps.Fill(0.0f);
 }
 
 void AxisSweep::Implementation::Enter(const SweepBoundary& boundary)
 {
   const SweepBorder border(this->Plan, boundary);
-  this->Maps.Write(border.maps.data());
+  this->Maps().Write(border.maps.data(), border.maps.size());
   this->Outside.Write(border.outside.data());
   this->Radiance.Write(border.radiance.data());
   this->Tally.in = border.powerIn;
@@ -119,11 +142,10 @@ void AxisSweep::Implementation::EnterNothing()
 {
   if (!this->IsPeriodic()) // else they hold what is on the way from the sweep before
   {
-    this->Maps.Fill(0.0f);
+    this->Maps().Fill(0.0f);
   }
   this->Outside.Fill(0.0f);
   this->Radiance.Fill(0.0f);
-  this->Scratch.Fill(0.0f); // the columns beside the rows hold what came in last time
 }
 
 /// From where rays start to where they leave the axis for the first time, or the last lap ends.
@@ -141,7 +163,7 @@ void AxisSweep::Implementation::GoRound(const SweepVolume& volume, int mostPlane
   const int planes = this->Plan.PatternPlanes();
   this->CountSideways();
   this->Outside.Fill(0.0f);
-  this->Scratch.Fill(0.0f);
+  this->Workspace.scratch.Fill(0.0f); // the columns beside the rows hold what came in
   Rgb& onTheWay = this->Tally.onTheWay;
   onTheWay = this->PowerOnTheWay();
   const double atFirst = Total(onTheWay);
@@ -164,8 +186,8 @@ void AxisSweep::Implementation::Launch(cl::Kernel kernel, const SweepVolume& vol
   for (int launch = 0; launch < schedule.launches; ++launch)
   {
     With(kernel, *volume.sigma_t, cl_ulong(volume.sigma_t_first), *volume.source, *volume.path, flux,
-      cl_ulong(volume.first), cl_ulong(volume.stride), this->Maps, cl_ulong(plan.mapsEachWay), this->Outside,
-      cl_uint(plan.outsideEachWay), this->Radiance, cl_uint(plan.radianceEachWay), this->Scratch, this->Units,
+      cl_ulong(volume.first), cl_ulong(volume.stride), this->Maps(), cl_ulong(plan.mapsEachWay), this->Outside,
+      cl_uint(plan.outsideEachWay), this->Radiance, cl_uint(plan.radianceEachWay), this->Workspace.scratch, this->Units,
       this->Bundles, cl_int(plan.bundles.size()), crossings, this->FirstOwnLight, cl_int(plan.PatternPlanes()),
       schedule.planes, cl_int(launch), this->Sideways, plan.plane, cl_int(plan.axes.axis));
     this->TheDevice.Queue().enqueueNDRangeKernel(kernel, cl::NullRange, cl::NDRange(plan.units.size()), cl::NDRange(1));
@@ -242,7 +264,7 @@ void AxisSweep::Implementation::SumMaps()
 {
   const SweepPlan& plan = this->Plan;
   cl::Kernel kernel = this->TheDevice.Kernel("map_power", { kernel_source::Numerics, kernel_source::Collect });
-  With(kernel, this->Maps, cl_ulong(plan.mapsEachWay), this->MapPlaces, plan.plane.sizeV, cl_int(plan.channels),
+  With(kernel, this->Maps(), cl_ulong(plan.mapsEachWay), this->MapPlaces, plan.plane.sizeV, cl_int(plan.channels),
     cl_int(plan.row), cl_int(plan.vector), plan.plane.sizeU, this->Sums);
   this->TheDevice.Queue().enqueueNDRangeKernel(
     kernel, cl::NullRange, cl::NDRange(plan.plane.sizeV, plan.bundles.size(), 2), cl::NDRange(1, 1, 1));
@@ -260,9 +282,9 @@ std::array<Rgb, 2> AxisSweep::Implementation::PowerInMaps() const
   return power;
 }
 
-AxisSweep::AxisSweep(Device& device, const Grid& grid, int axis, const std::vector<Bundle>& bundles, int channels,
-  const std::array<bool, 3>& periodic)
-  : Inner(std::make_unique<Implementation>(device, grid, axis, bundles, channels, periodic))
+AxisSweep::AxisSweep(Device& device, const SweepVolume& volume, int axis, const std::vector<Bundle>& bundles,
+  const std::array<bool, 3>& periodic, SweepWorkspace& workspace)
+  : Inner(std::make_unique<Implementation>(device, volume, axis, bundles, periodic, workspace))
 {
 }
 
@@ -273,6 +295,7 @@ void AxisSweep::Start(
 {
   Implementation& self = *this->Inner;
   self.Tally = {};
+  self.Workspace.scratch.Fill(0.0f); // the columns beside the rows hold what came in last time
   if (boundary)
   {
     self.Enter(boundary);

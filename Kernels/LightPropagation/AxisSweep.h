@@ -12,12 +12,15 @@ namespace tyndall
 /// Carries all rays of a set of bundles through a volume along one axis, and deposits what they lose: propagate and collect
 /// in one, without a buffer a direction (Gruson et al. need one, their section 4.1).
 ///
-/// Memory: the maps, (plane's voxels) floats a direction and channel and way, and a few planes of scratch a unit.
+/// Memory: the maps, (plane's voxels) floats a direction and channel and way, and a few planes of scratch a unit; both in a
+/// workspace, except for a periodic axis, whose rays stay on the way from one sweep to the next.
 class AxisSweep
 {
 public:
-  AxisSweep(Device& device, const Grid& grid, int axis, const std::vector<Bundle>& bundles, int channels,
-    const std::array<bool, 3>& periodic);
+  /// @param volume  its grid, its channels and whether it has a flux count
+  /// @param workspace  must stay; made as large as is needed
+  AxisSweep(Device& device, const SweepVolume& volume, int axis, const std::vector<Bundle>& bundles,
+    const std::array<bool, 3>& periodic, SweepWorkspace& workspace);
   ~AxisSweep();
 
   /// Once through the volume, both ways. Queues the work and, on an open axis, does not wait for it.

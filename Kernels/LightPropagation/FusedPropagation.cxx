@@ -84,6 +84,7 @@ private:
   void MakeSweeps();
   void PropagateOrder(int order, const Monitor& monitor);
   void PropagateLights(const Monitor& monitor);
+  SweepVolume VolumeOf(int firstChannel) const;
   void ForChannels(const std::function<void(const SweepVolume&, int)>& act);
   void Count(const SweepTally& tally, int firstChannel, int channels);
   SweepBoundary BoundaryOfOrder(int order) const;
@@ -107,6 +108,7 @@ private:
   std::size_t Stride;
 
   Buffer<float> Extinction, Scattering, Source, Path, Flux, Fluence;
+  SweepWorkspace Workspace;
   std::vector<std::unique_ptr<AxisSweep>> Sweeps;
   std::vector<Rgb> FromFarAway;
   bool Shining = false; ///< the source is not zero
@@ -214,8 +216,8 @@ void Solver::MakeSweeps()
       BundlesAlong(axis, this->TheMedium.grid, this->Directions, this->Settings.mapResolution);
     if (!bundles.empty())
     {
-      this->Sweeps.push_back(std::make_unique<AxisSweep>(this->TheDevice, this->TheMedium.grid, axis, bundles,
-        this->SharedExtinction ? this->Channels : 1, this->Settings.periodic));
+      this->Sweeps.push_back(std::make_unique<AxisSweep>(
+        this->TheDevice, this->VolumeOf(0), axis, bundles, this->Settings.periodic, this->Workspace));
     }
   }
   const SplitEnvironment environment = Split(this->Outside.environment, this->Directions);
@@ -255,18 +257,24 @@ void Solver::ForChannels(const std::function<void(const SweepVolume&, int)>& act
   const int rounds = this->SharedExtinction ? 1 : this->Channels;
   for (int round = 0; round < rounds; ++round)
   {
-    SweepVolume volume;
-    volume.grid = this->TheMedium.grid;
-    volume.channels = this->SharedExtinction ? this->Channels : 1;
-    volume.stride = this->Stride;
-    volume.sigma_t = &this->Extinction;
-    volume.sigma_t_first = round * this->Stride;
-    volume.source = &this->Source;
-    volume.path = &this->Path;
-    volume.flux = this->Settings.netFlux ? &this->Flux : nullptr;
-    volume.first = round * this->Stride;
-    act(volume, round);
+    act(this->VolumeOf(round), round);
   }
+}
+
+/// The channels from `first` on that share sigma_t.
+SweepVolume Solver::VolumeOf(int first) const
+{
+  SweepVolume volume;
+  volume.grid = this->TheMedium.grid;
+  volume.channels = this->SharedExtinction ? this->Channels : 1;
+  volume.stride = this->Stride;
+  volume.sigma_t = &this->Extinction;
+  volume.sigma_t_first = first * this->Stride;
+  volume.source = &this->Source;
+  volume.path = &this->Path;
+  volume.flux = this->Settings.netFlux ? &this->Flux : nullptr;
+  volume.first = first * this->Stride;
+  return volume;
 }
 
 void Solver::Count(const SweepTally& tally, int firstChannel, int channels)
@@ -296,8 +304,8 @@ void Solver::PropagateLights(const Monitor& monitor)
     this->ForChannels([&](const SweepVolume& volume, int first) {
       Light ofChannels = light;
       ofChannels.power = From(light.power, first);
-      this->Count(
-        DepositLight(this->TheDevice, volume, ofChannels, this->Settings.periodic, monitor), first, volume.channels);
+      this->Count(DepositLight(this->TheDevice, volume, ofChannels, this->Settings.periodic, this->Workspace, monitor),
+        first, volume.channels);
     });
   }
 }

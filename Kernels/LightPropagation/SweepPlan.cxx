@@ -14,7 +14,6 @@ constexpr double SecondsPerLaunch = 0.08;
 constexpr double SecondsPerRay = 1e-9; ///< a ray through a plane of voxels on a slow core: only sizes the launches
 constexpr int PlanesPerRound = 128;    ///< at least, when rays go round a periodic axis: a short one several times
 constexpr int MostGroups = 4;          ///< of bundles that march one behind the other
-constexpr int MostQuantities = 5;      ///< planes of scratch a channel, with net flux
 
 /// (1 - exp(-t)) / t = 1 + t (MeanLength[0] + t (MeanLength[1] + ...)), to 2e-8 for 0 <= t < Thin: a minimax polynomial.
 constexpr double MeanLength[MeanLengthTerms] = { -0.499999036, 0.166648826, -0.0415578957, 0.0080387554,
@@ -75,12 +74,13 @@ double LongestWay(const std::vector<Bundle>& bundles)
 }
 
 SweepPlan::SweepPlan(const Device& device, const Grid& ofGrid, int axis, const std::vector<Bundle>& ofBundles,
-  int channelCount, const std::array<bool, 3>& periodicAxes)
+  int channelCount, const std::array<bool, 3>& periodicAxes, bool wantsNetFlux)
   : grid(ofGrid)
   , axes(AcrossAxis(axis))
   , bundles(InPowersOfTwo(ofBundles))
   , channels(channelCount)
   , periodic(periodicAxes)
+  , netFlux(wantsNetFlux)
 {
   for (const Bundle& bundle : this->bundles)
   {
@@ -210,8 +210,8 @@ void SweepPlan::LayUnits(int computeUnits)
 std::size_t SweepPlan::ScratchFloats() const
 {
   const std::size_t ring = std::size_t{ 2 } * RingRows * MaxMembers * this->channels * this->row + this->vector;
-  const std::size_t planes =
-    static_cast<std::size_t>(3 + MostQuantities * this->channels) * this->plane.block * this->plane.sizeV * this->row;
+  const std::size_t quantities = 3 + (this->netFlux ? 5 : 2) * this->channels; // PLANES of SweepLayout.cl
+  const std::size_t planes = quantities * this->plane.block * this->plane.sizeV * this->row;
   const std::size_t thinRows = static_cast<std::size_t>(this->plane.block) * this->plane.sizeV;
   return ring + planes + thinRows + 2 * this->vector;
 }

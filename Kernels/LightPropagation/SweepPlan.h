@@ -42,14 +42,16 @@ struct OwnLightOnDevice
 /// crosses in which launch. Worked out once on the host.
 struct SweepPlan
 {
+  /// @param netFlux  the net flux is wanted too
   SweepPlan(const Device& device, const Grid& grid, int axis, const std::vector<Bundle>& bundles, int channels,
-    const std::array<bool, 3>& periodic);
+    const std::array<bool, 3>& periodic, bool netFlux);
 
   Grid grid;
   PlaneAxes axes;
   std::vector<Bundle> bundles; ///< of 1, 2, 4 or 8 members: what the kernels are compiled for
   int channels;
   std::array<bool, 3> periodic;
+  bool netFlux;
   bool forward = false; ///< some rays march that way
   bool backward = false;
 

@@ -28,6 +28,16 @@ struct SweepVolume
   std::size_t first = 0; ///< where the first channel of source and path begins (flux: three times that)
 };
 
+/// Memory that sweeps along different axes take turns in. What one leaves there means nothing to the next.
+struct SweepWorkspace
+{
+  Buffer<float> maps;    ///< the rays of an open axis
+  Buffer<float> scratch; ///< planes being crossed
+
+  /// Have room for so many floats. The device must be idle.
+  void Reserve(Device& device, std::size_t mapFloats, std::size_t scratchFloats);
+};
+
 /// Power that came in and went out in a sweep, W per channel and face -x, +x, -y, +y, -z, +z.
 struct SweepTally
 {
