@@ -34,7 +34,7 @@ def stage(name, work):
 
 
 def data(name):
-    return os.path.join(arguments.data, name)
+    return os.path.abspath(os.path.join(arguments.data, name)) # so that the state finds it from anywhere
 
 
 def output(name):
@@ -85,7 +85,7 @@ def picture(name, azimuth, elevation, single=0):
     return caster
 
 
-picture("skull-multiple-scattering", 300, 10)
+hero = picture("skull-multiple-scattering", 300, 10)
 picture("skull-single-scattering", 300, 10, single=1)
 picture("skull-on-the-square", 245, 6)
 
@@ -113,11 +113,25 @@ def slice_through_light():
     view.CameraFocalPoint, view.CameraViewUp, view.CameraParallelProjection = centre, [0, 0, 1], 1
     view.CameraParallelScale = 0.55 * max(bounds[3] - bounds[2], bounds[5] - bounds[4])
     SaveScreenshot(output("fluence-slice.png"), view)
+    return view
 
 
-stage("draw a slice of the light", slice_through_light)
+def show_beside(view, caster):
+    """What the state opens with: the light and a picture of it."""
+    other = CreateView("RenderView", ViewSize=[800, 600], OrientationAxesVisibility=0, InteractionMode="2D",
+                       CameraParallelProjection=1)
+    Show(caster, other)
+    ResetCamera(other)
+    layout = CreateLayout("Light and picture")
+    layout.SplitHorizontal(0, 0.5)
+    layout.AssignView(1, other)
+    layout.AssignView(2, view)
+
+
+slice_view = stage("draw a slice of the light", slice_through_light)
 stage("write light.vti", lambda: SaveData(output("light.vti"), proxy=light))
 stage("write light.vdb", lambda: VDBWriter(Input=light, FileName=output("light.vdb")).UpdatePipeline())
+show_beside(slice_view, hero)
 SaveState(output("skull.pvsm"))
 
 balance = facts.GetArray("energy_balance")
