@@ -138,7 +138,7 @@ Case RunCase(Device& device, const Scene& scene, const MachineLimits& limits, co
   result.channels = scene.channels;
   result.cores = device.ComputeUnits();
   result.updates = static_cast<double>(scene.medium.grid.VoxelCount()) * scene.channels * 6 * DirectionsPerFace;
-  result.work = CountSweepWork(scene.medium.grid, DirectionsPerFace, scene.channels);
+  result.work = CountSweepWork(device, scene.medium, DirectionsPerFace, scene.channels);
   result.limits = limits;
   result.figures = RunInterleaved(device, MethodsFor(device, scene, settings, options), Orders);
   PrintJson(result);
