@@ -59,6 +59,7 @@ struct AxisSweep::Implementation
   void MakeBuffers();
   void Enter(const SweepBoundary& boundary);
   void EnterNothing();
+  void DarkenSides();
   void CrossOnce(const SweepVolume& volume, bool source, bool border, const Monitor& monitor);
   void GoRound(const SweepVolume& volume, int mostPlanes, const Monitor& monitor);
 
@@ -99,7 +100,9 @@ struct AxisSweep::Implementation
   Buffer<PlaneCrossingOnDevice> FirstCrossings;
   Buffer<OwnLightOnDevice> FirstOwnLight;
 
-  SweepTally Tally; ///< of the sweep that goes on
+  bool MapsEmpty = false; ///< whatever is in their memory
+  bool SidesDark = false; ///< Outside and Radiance are zero
+  SweepTally Tally;       ///< of the sweep that goes on
 };
 
 void AxisSweep::Implementation::MakeBuffers()
@@ -136,16 +139,25 @@ void AxisSweep::Implementation::Enter(const SweepBoundary& boundary)
   this->Outside.Write(border.outside.data());
   this->Radiance.Write(border.radiance.data());
   this->Tally.in = border.powerIn;
+  this->MapsEmpty = this->SidesDark = false;
 }
 
+/// On an open axis; the maps of a periodic one hold what is on the way from the sweep before.
 void AxisSweep::Implementation::EnterNothing()
 {
-  if (!this->IsPeriodic()) // else they hold what is on the way from the sweep before
+  this->MapsEmpty = !this->IsPeriodic();
+  this->DarkenSides();
+}
+
+/// Nothing comes in sideways.
+void AxisSweep::Implementation::DarkenSides()
+{
+  if (!this->SidesDark)
   {
-    this->Maps().Fill(0.0f);
+    this->Outside.Fill(0.0f);
+    this->Radiance.Fill(0.0f);
+    this->SidesDark = true;
   }
-  this->Outside.Fill(0.0f);
-  this->Radiance.Fill(0.0f);
 }
 
 /// From where rays start to where they leave the axis for the first time, or the last lap ends.
@@ -162,8 +174,8 @@ void AxisSweep::Implementation::GoRound(const SweepVolume& volume, int mostPlane
 {
   const int planes = this->Plan.PatternPlanes();
   this->CountSideways();
-  this->Outside.Fill(0.0f);
-  this->Workspace.scratch.Fill(0.0f); // the columns beside the rows hold what came in
+  this->DarkenSides();
+  this->MapsEmpty = false;
   Rgb& onTheWay = this->Tally.onTheWay;
   onTheWay = this->PowerOnTheWay();
   const double atFirst = Total(onTheWay);
@@ -182,14 +194,14 @@ void AxisSweep::Implementation::Launch(cl::Kernel kernel, const SweepVolume& vol
 {
   const SweepPlan& plan = this->Plan;
   const Buffer<float>& flux = volume.flux ? *volume.flux : *volume.path;
-  this->Sideways.Fill(0.0f);
   for (int launch = 0; launch < schedule.launches; ++launch)
   {
     With(kernel, *volume.sigma_t, cl_ulong(volume.sigma_t_first), *volume.source, *volume.path, flux,
-      cl_ulong(volume.first), cl_ulong(volume.stride), this->Maps(), cl_ulong(plan.mapsEachWay), this->Outside,
-      cl_uint(plan.outsideEachWay), this->Radiance, cl_uint(plan.radianceEachWay), this->Workspace.scratch, this->Units,
-      this->Bundles, cl_int(plan.bundles.size()), crossings, this->FirstOwnLight, cl_int(plan.PatternPlanes()),
-      schedule.planes, cl_int(launch), this->Sideways, plan.plane, cl_int(plan.axes.axis));
+      cl_ulong(volume.first), cl_ulong(volume.stride), this->Maps(), cl_ulong(plan.mapsEachWay),
+      cl_int(this->MapsEmpty), this->Outside, cl_uint(plan.outsideEachWay), this->Radiance,
+      cl_uint(plan.radianceEachWay), this->Workspace.scratch, this->Units, this->Bundles, cl_int(plan.bundles.size()),
+      crossings, this->FirstOwnLight, cl_int(plan.PatternPlanes()), schedule.planes, cl_int(launch), this->Sideways,
+      plan.plane, cl_int(plan.axes.axis));
     this->TheDevice.Queue().enqueueNDRangeKernel(kernel, cl::NullRange, cl::NDRange(plan.units.size()), cl::NDRange(1));
     this->TheDevice.Queued(plan.secondsPerLaunch);
     Report(monitor, (launch + 1.0) / schedule.launches);
@@ -295,7 +307,6 @@ void AxisSweep::Start(
 {
   Implementation& self = *this->Inner;
   self.Tally = {};
-  self.Workspace.scratch.Fill(0.0f); // the columns beside the rows hold what came in last time
   if (boundary)
   {
     self.Enter(boundary);

@@ -60,6 +60,15 @@ static void transpose(real* rows)
   }
 }
 
+// Set floats, a multiple of a vector, to zero.
+static void clear(__global float* floats, int count)
+{
+  for (int i = 0; i < count; i += REAL_WIDTH)
+  {
+    store_real((real)0.0f, i, floats);
+  }
+}
+
 // Copy one quantity of planes [first, first + count) into scratch, rows filled up with zeros. May read, not use, a vector
 // beyond the last voxel.
 static void pack(const plane_layout* layout, __global float* to, int first, int count, const __global float* volume)
@@ -269,6 +278,7 @@ static void cross_plane(sweep_state* state, __global float* maps, const __global
 // path      W length, [channel][stride] from `first` on, added to
 // flux      W length, [channel][x, y, z][stride] from 3 `first` on, added to
 // maps      rays of both ways; `maps_each_way` floats each
+// empty     1: the maps hold nothing yet, and are cleared where rays start
 // outside, radiance   rays that come in, both ways as maps
 // crossings [plane from where rays start][bundle]
 // own       [unit][plane from where rays start], see add_own_light
@@ -276,7 +286,7 @@ static void cross_plane(sweep_state* state, __global float* maps, const __global
 // tally     [plane from where rays start][unit][-u, +u, -v, +v][channel] W that left
 __kernel __attribute__((reqd_work_group_size(1, 1, 1))) void sweep(const __global float* sigma,
   ulong sigma_first, const __global float* source, __global float* path, __global float* flux, ulong first_value,
-  ulong stride, __global float* maps, ulong maps_each_way, const __global float* outside, uint outside_each_way, const __global float* radiance, uint radiance_each_way,
+  ulong stride, __global float* maps, ulong maps_each_way, int empty, const __global float* outside, uint outside_each_way, const __global float* radiance, uint radiance_each_way,
   __global float* scratch, const __global unit_info* units, const __global bundle_info* bundles, int bundle_count,
   const __global crossing_info* crossings, const __global own_light* own, int planes_of_pattern, const __global int2* schedule, int launch,
   __global float* tally, plane_layout layout, int axis)
@@ -305,6 +315,17 @@ __kernel __attribute__((reqd_work_group_size(1, 1, 1))) void sweep(const __globa
   maps += unit.backward * maps_each_way;
   outside += unit.backward * outside_each_way;
   radiance += unit.backward * radiance_each_way;
+
+#if !BORDER
+  clear(state.ring, 2 * RING_ROWS * MAX_MEMBERS * CHANNELS * ROW + PAD);
+#endif
+  if (empty && range.x == 0 && range.y > 0)
+  {
+    for (int b = unit.firstBundle; b < unit.firstBundle + unit.bundles; ++b)
+    {
+      clear(maps + bundles[b].map, bundles[b].members * CHANNELS * ROW * (layout.sizeV + 2) + PAD);
+    }
+  }
 
   for (int begin = range.x, count; begin < range.y; begin += count)
   {
