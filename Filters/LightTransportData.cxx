@@ -383,6 +383,16 @@ Environment ReadEnvironment(vtkImageData* image)
   return std::move(read.environment);
 }
 
+void AddDiffuse(Illumination& illumination, const double* sky, const double* faceRadiance)
+{
+  std::copy_n(sky, 3, illumination.sky.begin());
+  for (int face = 0; face < 6; ++face)
+  {
+    illumination.faces[face].fill(faceRadiance[face]);
+  }
+  Check(illumination);
+}
+
 namespace
 {
 /// A vtkFloatArray, to the last bit of its name, whose first values live in a vector.
@@ -567,6 +577,16 @@ void PassOn(vtkImageData* input, vtkImageData* output)
   vtkNew<vtkFieldData> own;
   own->ShallowCopy(input->GetFieldData());
   output->SetFieldData(own);
+}
+
+std::string Lines(const std::vector<std::string>& texts)
+{
+  std::string lines;
+  for (const std::string& text : texts)
+  {
+    lines += (lines.empty() ? "" : "\n") + text;
+  }
+  return lines;
 }
 
 Monitor MonitorOf(vtkAlgorithm* filter)

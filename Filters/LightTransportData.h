@@ -113,6 +113,10 @@ std::vector<Light> ReadLights(vtkPolyData* lights);
 /// points. No image: an empty environment. Checked.
 Environment ReadEnvironment(vtkImageData* image);
 
+/// Adds light without a source: radiance from every direction alike (red, green, blue) and through the faces -x, +x, -y, +y,
+/// -z, +z, W/(length^2 sr). Checked.
+void AddDiffuse(Illumination& illumination, const double* sky, const double* faceRadiance);
+
 /// Add values to an image's cells, without copying them.
 /// @param values  `components` a cell, x fastest
 void AddCells(vtkImageData* image, const char* name, std::vector<float>&& values, int components);
@@ -132,6 +136,9 @@ void WriteLight(LightField&& light, vtkImageData* output);
 
 /// One row an iteration: `iteration`, `seconds`, `residual`, `absorbed`, `escaped`, `left_over`.
 void WriteConvergence(const std::vector<ConvergenceRow>& rows, vtkTable* table);
+
+/// Texts as a panel shows them, one a line.
+std::string Lines(const std::vector<std::string>& texts);
 
 /// Reports to the filter's progress; says stop when the filter is asked to abort.
 Monitor MonitorOf(vtkAlgorithm* filter);

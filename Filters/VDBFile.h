@@ -1,15 +1,14 @@
 #pragma once
 
-#include "OpenVDB.h"
+#include "VDBGrid.h"
 
-#include <array>
 #include <cstdint>
-#include <fstream>
 #include <map>
-#include <memory>
 #include <string>
 #include <vector>
 
+namespace tyndall
+{
 /// Reads .vdb files that may be truncated or corrupt.
 ///
 /// OpenVDB trusts its files: the sizes of strings, compressed blocks and masks that it reads decide how much it allocates
@@ -21,38 +20,6 @@
 ///
 /// Limits: the format has no check sums, so a changed voxel value is not noticed (but where zlib's or Blosc's does). A file
 /// that another process changes between walk and load is not defended against.
-namespace tyndall
-{
-/// Voxels, inclusive; wide enough for any corner that a file can name.
-struct VoxelBox
-{
-  std::array<std::int64_t, 3> Min = { INT64_MAX, INT64_MAX, INT64_MAX };
-  std::array<std::int64_t, 3> Max = { INT64_MIN, INT64_MIN, INT64_MIN };
-
-  bool Empty() const { return this->Min[0] > this->Max[0]; }
-  void Add(const VoxelBox& other);
-};
-
-/// One grid of a file, as known without its voxel values.
-struct VDBGrid
-{
-  std::string Name;      ///< unique in the file: grids of the same name are called name[0], name[1], ...
-  std::string Type;      ///< float, double, int32, int64, bool, mask, vec3i, vec3s, vec3d; else OpenVDB's name of it
-  std::string Unusable;  ///< why the grid cannot become an image; empty: it can
-  bool Half = false;     ///< its numbers are stored in 16 bits
-  std::string Background; ///< the background value, its bytes
-  std::array<std::array<double, 3>, 3> Axes = {};   ///< world vectors of a step of one voxel along i, j, k
-  std::array<double, 3> Translation = { 0, 0, 0 };  ///< world position of index (0, 0, 0), the centre of that voxel
-  VoxelBox ActiveBox;
-  std::uint64_t ActiveVoxels = 0; ///< tiles counted by the voxels they stand for; saturates
-  std::uint64_t TreeBytes = 0;    ///< memory that the tree takes with all its leaves loaded
-  openvdb::MetaMap Metadata;      ///< without what describes the file (file_bbox_min, ...)
-
-  // Where it is in the file.
-  std::int64_t TopologyPosition = 0, BufferPosition = 0, EndPosition = 0;
-  std::uint32_t Compression = 0;
-};
-
 class VDBFile
 {
 public:
@@ -79,6 +46,7 @@ private:
   void ReadHeader();
   void ReadDescriptors();
   void ReadGrid(VDBGrid& grid);
+  void ShareTree(VDBGrid& grid, const VDBGrid& with);
 
   std::string FilePath;
   std::uint64_t FileSize = 0;

@@ -10,7 +10,6 @@
 #include "vtkInformation.h"
 #include "vtkInformationVector.h"
 #include "vtkObjectFactory.h"
-#include "vtkPolyData.h"
 
 #include <algorithm>
 #include <memory>
@@ -20,28 +19,6 @@
 
 namespace
 {
-enum InputPort
-{
-  MediumPort,
-  LightsPort,
-  EnvironmentPort,
-  InputPortCount
-};
-
-tyndall::Illumination IlluminationOf(vtkLPMPropagate* filter, vtkInformationVector** inputs)
-{
-  tyndall::Illumination illumination;
-  illumination.lights = tyndall::ReadLights(vtkPolyData::GetData(inputs[LightsPort]));
-  illumination.environment = tyndall::Turned(tyndall::ReadEnvironment(vtkImageData::GetData(inputs[EnvironmentPort])),
-    filter->GetEnvironmentUp(), filter->GetEnvironmentAzimuth());
-  std::copy_n(filter->GetSkyColor(), 3, illumination.sky.begin());
-  for (int face = 0; face < 6; ++face)
-  {
-    illumination.faces[face].fill(filter->GetFaceRadiance()[face]);
-  }
-  return illumination;
-}
-
 tyndall::PropagationSettings SettingsOf(vtkLPMPropagate* filter)
 {
   tyndall::PropagationSettings settings;
@@ -108,77 +85,25 @@ std::vector<double> Flat(const tyndall::DirectionSet& set)
 
 vtkStandardNewMacro(vtkLPMPropagate);
 
-vtkLPMPropagate::vtkLPMPropagate()
-{
-  this->SetNumberOfInputPorts(InputPortCount);
-}
-
+vtkLPMPropagate::vtkLPMPropagate() = default;
 vtkLPMPropagate::~vtkLPMPropagate() = default;
-
-void vtkLPMPropagate::SetLightsConnection(vtkAlgorithmOutput* lights)
-{
-  this->SetInputConnection(LightsPort, lights);
-}
-
-void vtkLPMPropagate::SetLightsData(vtkDataObject* lights)
-{
-  this->SetInputDataObject(LightsPort, lights);
-}
-
-void vtkLPMPropagate::RemoveLights()
-{
-  this->SetInputConnection(LightsPort, nullptr);
-}
-
-void vtkLPMPropagate::SetEnvironmentConnection(vtkAlgorithmOutput* environment)
-{
-  this->SetInputConnection(EnvironmentPort, environment);
-}
-
-void vtkLPMPropagate::SetEnvironmentData(vtkDataObject* environment)
-{
-  this->SetInputDataObject(EnvironmentPort, environment);
-}
-
-void vtkLPMPropagate::RemoveEnvironment()
-{
-  this->SetInputConnection(EnvironmentPort, nullptr);
-}
-
-int vtkLPMPropagate::FillInputPortInformation(int port, vtkInformation* information)
-{
-  information->Set(vtkAlgorithm::INPUT_REQUIRED_DATA_TYPE(), port == LightsPort ? "vtkPolyData" : "vtkImageData");
-  if (port != MediumPort)
-  {
-    information->Set(vtkAlgorithm::INPUT_IS_OPTIONAL(), 1);
-  }
-  return 1;
-}
-
-int vtkLPMPropagate::RequestUpdateExtent(vtkInformation*, vtkInformationVector** inputs, vtkInformationVector*)
-{
-  for (int port = 0; port < InputPortCount; ++port)
-  {
-    tyndall::AskForAll(inputs[port]);
-  }
-  return 1;
-}
 
 int vtkLPMPropagate::RequestData(vtkInformation*, vtkInformationVector** inputs, vtkInformationVector* outputs)
 {
   this->Order = 0;
   this->Bytes = 0.0;
   return tyndall::Guarded(this, outputs, [&] {
-    vtkImageData* image = vtkImageData::GetData(inputs[MediumPort]);
+    vtkImageData* image = vtkImageData::GetData(inputs[MEDIUM]);
     const tyndall::MediumInput input = tyndall::ReadMedium(this, image);
     const tyndall::FloatField unscattered = tyndall::ReadCells(image, "unscattered", tyndall::Need::Optional, {});
     const tyndall::PropagationSettings settings = SettingsOf(this);
     tyndall::Check(settings);
     const int channels = unscattered.IsThere() ? ChannelsOf(unscattered, settings.storedDirections) : 1;
 
+    tyndall::Illumination illumination = this->ReadIllumination(inputs);
+    tyndall::AddDiffuse(illumination, this->SkyColor, this->FaceRadiance);
     const std::shared_ptr<tyndall::Device> device = tyndall::Device::Find(this->Device);
-    tyndall::ParallelPropagation propagation(
-      *device, input.medium, IlluminationOf(this, inputs), settings, 0, channels);
+    tyndall::ParallelPropagation propagation(*device, input.medium, illumination, settings, 0, channels);
     if (unscattered.IsThere())
     {
       if (propagation.Model().Channels() != channels)
@@ -212,20 +137,12 @@ int vtkLPMPropagate::RequestData(vtkInformation*, vtkInformationVector** inputs,
 
 void vtkLPMPropagate::PrintSelf(ostream& os, vtkIndent indent)
 {
-  const auto print = [&](const char* name, const double* values, int count) {
-    os << indent << name << ":";
-    std::for_each(values, values + count, [&](double value) { os << " " << value; });
-    os << "\n";
-  };
   this->Superclass::PrintSelf(os, indent);
   os << indent << "DirectionsPerFace: " << this->DirectionsPerFace << "\n";
   os << indent << "MapResolution: " << this->MapResolution << "\n";
   os << indent << "StoredDirections: " << this->StoredDirections << "\n";
-  print("FaceRadiance", this->FaceRadiance, 6);
-  print("SkyColor", this->SkyColor, 3);
-  os << indent << "EnvironmentUp: " << this->EnvironmentUp << "\n";
-  os << indent << "EnvironmentAzimuth: " << this->EnvironmentAzimuth << "\n";
-  os << indent << "Device: " << this->Device << "\n";
+  PrintNumbers(os, indent, "FaceRadiance", this->FaceRadiance, 6);
+  PrintNumbers(os, indent, "SkyColor", this->SkyColor, 3);
   os << indent << "Order: " << this->Order << "\n";
   os << indent << "Bytes: " << this->Bytes << "\n";
 }

@@ -1,10 +1,8 @@
 #ifndef vtkLPMPropagate_h
 #define vtkLPMPropagate_h
 
-#include "vtkImageAlgorithm.h"
+#include "vtkLitMediumAlgorithm.h"
 #include "vtkTyndallModule.h" // for export macro
-
-#include <string>
 
 /**
  * @class vtkLPMPropagate
@@ -46,22 +44,12 @@
  * A. Gruson, A. Hakke Patil, R. Cozot, K. Bouatouch, S. Pattanaik: Light Propagation Maps on Parallel Graphics Architectures,
  * EGPGV 2012.
  */
-class TYNDALL_EXPORT vtkLPMPropagate : public vtkImageAlgorithm
+class TYNDALL_EXPORT vtkLPMPropagate : public vtkLitMediumAlgorithm
 {
 public:
   static vtkLPMPropagate* New();
-  vtkTypeMacro(vtkLPMPropagate, vtkImageAlgorithm);
+  vtkTypeMacro(vtkLPMPropagate, vtkLitMediumAlgorithm);
   void PrintSelf(ostream& os, vtkIndent indent) override;
-
-  ///@{
-  /// Lights (vtkPolyData) and environment (vtkImageData) by connection or as data; null: none.
-  void SetLightsConnection(vtkAlgorithmOutput* lights);
-  void SetLightsData(vtkDataObject* lights);
-  void RemoveLights();
-  void SetEnvironmentConnection(vtkAlgorithmOutput* environment);
-  void SetEnvironmentData(vtkDataObject* environment);
-  void RemoveEnvironment();
-  ///@}
 
   ///@{
   /// Directions per face of a cube. Default 25, valid square numbers: 1, 4, 9, 16, 25, ...
@@ -97,25 +85,6 @@ public:
   ///@}
 
   ///@{
-  /// Axis of the scene along which the environment's up points: 0, 1, 2 for x, y, z. Default 2.
-  vtkSetClampMacro(EnvironmentUp, int, 0, 2);
-  vtkGetMacro(EnvironmentUp, int);
-  ///@}
-
-  ///@{
-  /// By how much the environment is turned about its up, degrees, rounded to whole pixels. Default 0.
-  vtkSetMacro(EnvironmentAzimuth, double);
-  vtkGetMacro(EnvironmentAzimuth, double);
-  ///@}
-
-  ///@{
-  /// Part of the name of the OpenCL device to use, of any case. Default empty: what the variable TYNDALL_DEVICE names, or
-  /// else PoCL's CPU device.
-  vtkSetStdStringFromCharMacro(Device);
-  vtkGetCharFromStdStringMacro(Device);
-  ///@}
-
-  ///@{
   /// What came of the last update: which scattering order it was, memory of the arrays T in bytes.
   vtkGetMacro(Order, int);
   vtkGetMacro(Bytes, double);
@@ -125,9 +94,6 @@ protected:
   vtkLPMPropagate();
   ~vtkLPMPropagate() override;
 
-  int FillInputPortInformation(int port, vtkInformation* information) override;
-  int RequestUpdateExtent(
-    vtkInformation* request, vtkInformationVector** inputs, vtkInformationVector* outputs) override;
   int RequestData(vtkInformation* request, vtkInformationVector** inputs, vtkInformationVector* outputs) override;
 
 private:
@@ -139,9 +105,6 @@ private:
   int StoredDirections = 1;
   double FaceRadiance[6] = { 0.0, 0.0, 0.0, 0.0, 0.0, 0.0 };
   double SkyColor[3] = { 0.0, 0.0, 0.0 };
-  int EnvironmentUp = 2;
-  double EnvironmentAzimuth = 0.0;
-  std::string Device;
 
   int Order = 0;
   double Bytes = 0.0;

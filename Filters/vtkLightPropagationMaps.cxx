@@ -12,7 +12,6 @@
 #include "vtkInformation.h"
 #include "vtkInformationVector.h"
 #include "vtkObjectFactory.h"
-#include "vtkPolyData.h"
 #include "vtkTable.h"
 
 #include <algorithm>
@@ -23,14 +22,6 @@
 
 namespace
 {
-enum InputPort
-{
-  MediumPort,
-  LightsPort,
-  EnvironmentPort,
-  InputPortCount
-};
-
 tyndall::PropagationSettings SettingsOf(vtkLightPropagationMaps* filter)
 {
   tyndall::PropagationSettings settings;
@@ -42,21 +33,6 @@ tyndall::PropagationSettings SettingsOf(vtkLightPropagationMaps* filter)
   settings.storedDirections = filter->GetStoredDirections();
   settings.netFlux = filter->GetNetFlux();
   return settings;
-}
-
-tyndall::Illumination IlluminationOf(vtkLightPropagationMaps* filter, vtkInformationVector** inputs)
-{
-  tyndall::Illumination illumination;
-  illumination.lights = tyndall::ReadLights(vtkPolyData::GetData(inputs[LightsPort]));
-  illumination.environment = tyndall::Turned(tyndall::ReadEnvironment(vtkImageData::GetData(inputs[EnvironmentPort])),
-    filter->GetEnvironmentUp(), filter->GetEnvironmentAzimuth());
-  std::copy_n(filter->GetSkyColor(), 3, illumination.sky.begin());
-  for (int face = 0; face < 6; ++face)
-  {
-    illumination.faces[face].fill(filter->GetFaceRadiance()[face]);
-  }
-  tyndall::Check(illumination);
-  return illumination;
 }
 
 bool NothingShines(const tyndall::Medium& medium, const tyndall::Illumination& illumination)
@@ -88,51 +64,10 @@ vtkStandardNewMacro(vtkLightPropagationMaps);
 
 vtkLightPropagationMaps::vtkLightPropagationMaps()
 {
-  this->SetNumberOfInputPorts(InputPortCount);
   this->SetNumberOfOutputPorts(2);
 }
 
 vtkLightPropagationMaps::~vtkLightPropagationMaps() = default;
-
-void vtkLightPropagationMaps::SetLightsConnection(vtkAlgorithmOutput* lights)
-{
-  this->SetInputConnection(LightsPort, lights);
-}
-
-void vtkLightPropagationMaps::SetLightsData(vtkDataObject* lights)
-{
-  this->SetInputDataObject(LightsPort, lights);
-}
-
-void vtkLightPropagationMaps::RemoveLights()
-{
-  this->SetInputConnection(LightsPort, nullptr);
-}
-
-void vtkLightPropagationMaps::SetEnvironmentConnection(vtkAlgorithmOutput* environment)
-{
-  this->SetInputConnection(EnvironmentPort, environment);
-}
-
-void vtkLightPropagationMaps::SetEnvironmentData(vtkDataObject* environment)
-{
-  this->SetInputDataObject(EnvironmentPort, environment);
-}
-
-void vtkLightPropagationMaps::RemoveEnvironment()
-{
-  this->SetInputConnection(EnvironmentPort, nullptr);
-}
-
-int vtkLightPropagationMaps::FillInputPortInformation(int port, vtkInformation* information)
-{
-  information->Set(vtkAlgorithm::INPUT_REQUIRED_DATA_TYPE(), port == LightsPort ? "vtkPolyData" : "vtkImageData");
-  if (port != MediumPort)
-  {
-    information->Set(vtkAlgorithm::INPUT_IS_OPTIONAL(), 1);
-  }
-  return 1;
-}
 
 int vtkLightPropagationMaps::FillOutputPortInformation(int port, vtkInformation* information)
 {
@@ -140,22 +75,14 @@ int vtkLightPropagationMaps::FillOutputPortInformation(int port, vtkInformation*
   return 1;
 }
 
-int vtkLightPropagationMaps::RequestUpdateExtent(vtkInformation*, vtkInformationVector** inputs, vtkInformationVector*)
-{
-  for (int port = 0; port < InputPortCount; ++port)
-  {
-    tyndall::AskForAll(inputs[port]);
-  }
-  return 1;
-}
-
 int vtkLightPropagationMaps::RequestData(vtkInformation*, vtkInformationVector** inputs, vtkInformationVector* outputs)
 {
   this->Note({});
   return tyndall::Guarded(this, outputs, [&] {
-    vtkImageData* image = vtkImageData::GetData(inputs[MediumPort]);
+    vtkImageData* image = vtkImageData::GetData(inputs[MEDIUM]);
     const tyndall::MediumInput input = tyndall::ReadMedium(this, image);
-    const tyndall::Illumination illumination = IlluminationOf(this, inputs);
+    tyndall::Illumination illumination = this->ReadIllumination(inputs);
+    tyndall::AddDiffuse(illumination, this->SkyColor, this->FaceRadiance);
     if (NothingShines(input.medium, illumination))
     {
       vtkWarningMacro(
@@ -186,11 +113,6 @@ void vtkLightPropagationMaps::Note(const tyndall::LightField& light)
 
 void vtkLightPropagationMaps::PrintSelf(ostream& os, vtkIndent indent)
 {
-  const auto print = [&](const char* name, const double* values, int count) {
-    os << indent << name << ":";
-    std::for_each(values, values + count, [&](double value) { os << " " << value; });
-    os << "\n";
-  };
   this->Superclass::PrintSelf(os, indent);
   os << indent << "Scheme: " << (this->Scheme == SOUND ? "sound" : "as published") << "\n";
   os << indent << "Algorithm: " << (this->Algorithm == SEQUENTIAL ? "sequential" : "parallel") << "\n";
@@ -199,13 +121,10 @@ void vtkLightPropagationMaps::PrintSelf(ostream& os, vtkIndent indent)
   os << indent << "MaximumOrders: " << this->MaximumOrders << "\n";
   os << indent << "Tolerance: " << this->Tolerance << "\n";
   os << indent << "Periodic: " << this->PeriodicX << " " << this->PeriodicY << " " << this->PeriodicZ << "\n";
-  print("FaceRadiance", this->FaceRadiance, 6);
-  print("SkyColor", this->SkyColor, 3);
-  os << indent << "EnvironmentUp: " << this->EnvironmentUp << "\n";
-  os << indent << "EnvironmentAzimuth: " << this->EnvironmentAzimuth << "\n";
+  PrintNumbers(os, indent, "FaceRadiance", this->FaceRadiance, 6);
+  PrintNumbers(os, indent, "SkyColor", this->SkyColor, 3);
   os << indent << "NetFlux: " << this->NetFlux << "\n";
   os << indent << "StoredDirections: " << this->StoredDirections << "\n";
-  os << indent << "Device: " << this->Device << "\n";
   os << indent << "Orders: " << this->Orders << "\n";
   os << indent << "Residual: " << this->Residual << "\n";
   os << indent << "BalanceError: " << this->BalanceError << "\n";

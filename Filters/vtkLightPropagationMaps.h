@@ -1,7 +1,7 @@
 #ifndef vtkLightPropagationMaps_h
 #define vtkLightPropagationMaps_h
 
-#include "vtkImageAlgorithm.h"
+#include "vtkLitMediumAlgorithm.h"
 #include "vtkTyndallModule.h" // for export macro
 
 #include <string>
@@ -55,11 +55,11 @@ struct LightField;
  * A. Gruson, A. Hakke Patil, R. Cozot, K. Bouatouch, S. Pattanaik: Light Propagation Maps on Parallel Graphics Architectures,
  * EGPGV 2012. R. Fattal: Participating Media Illumination Using Light Propagation Maps, ACM Trans. Graph. 28 (2009).
  */
-class TYNDALL_EXPORT vtkLightPropagationMaps : public vtkImageAlgorithm
+class TYNDALL_EXPORT vtkLightPropagationMaps : public vtkLitMediumAlgorithm
 {
 public:
   static vtkLightPropagationMaps* New();
-  vtkTypeMacro(vtkLightPropagationMaps, vtkImageAlgorithm);
+  vtkTypeMacro(vtkLightPropagationMaps, vtkLitMediumAlgorithm);
   void PrintSelf(ostream& os, vtkIndent indent) override;
 
   enum Schemes
@@ -73,16 +73,6 @@ public:
     SEQUENTIAL = 0, ///< Algorithm 1: one ray after the other, on one core of the host
     PARALLEL = 1    ///< Algorithm 2: propagation and collection on the device
   };
-
-  ///@{
-  /// Lights (vtkPolyData) and environment (vtkImageData) by connection or as data; null: none.
-  void SetLightsConnection(vtkAlgorithmOutput* lights);
-  void SetLightsData(vtkDataObject* lights);
-  void RemoveLights();
-  void SetEnvironmentConnection(vtkAlgorithmOutput* environment);
-  void SetEnvironmentData(vtkDataObject* environment);
-  void RemoveEnvironment();
-  ///@}
 
   ///@{
   /// How to compute: PUBLISHED, or SOUND (default).
@@ -148,18 +138,6 @@ public:
   ///@}
 
   ///@{
-  /// Axis of the scene along which the environment's up points: 0, 1, 2 for x, y, z. Default 2.
-  vtkSetClampMacro(EnvironmentUp, int, 0, 2);
-  vtkGetMacro(EnvironmentUp, int);
-  ///@}
-
-  ///@{
-  /// By how much the environment is turned about its up, degrees, rounded to whole pixels. Default 0.
-  vtkSetMacro(EnvironmentAzimuth, double);
-  vtkGetMacro(EnvironmentAzimuth, double);
-  ///@}
-
-  ///@{
   /// Whether to compute `net_flux` too; it costs time and memory. Default off.
   vtkSetMacro(NetFlux, bool);
   vtkGetMacro(NetFlux, bool);
@@ -170,13 +148,6 @@ public:
   /// Directions for which `scattered_radiance` is kept. Default 1 (enough for isotropic scattering), valid from 1 on.
   vtkSetMacro(StoredDirections, int);
   vtkGetMacro(StoredDirections, int);
-  ///@}
-
-  ///@{
-  /// Part of the name of the OpenCL device to use, of any case. Default empty: what the variable TYNDALL_DEVICE names, or
-  /// else PoCL's CPU device.
-  vtkSetStdStringFromCharMacro(Device);
-  vtkGetCharFromStdStringMacro(Device);
   ///@}
 
   ///@{
@@ -194,10 +165,7 @@ protected:
   vtkLightPropagationMaps();
   ~vtkLightPropagationMaps() override;
 
-  int FillInputPortInformation(int port, vtkInformation* information) override;
   int FillOutputPortInformation(int port, vtkInformation* information) override;
-  int RequestUpdateExtent(
-    vtkInformation* request, vtkInformationVector** inputs, vtkInformationVector* outputs) override;
   int RequestData(vtkInformation* request, vtkInformationVector** inputs, vtkInformationVector* outputs) override;
 
 private:
@@ -217,11 +185,8 @@ private:
   bool PeriodicZ = false;
   double FaceRadiance[6] = { 0.0, 0.0, 0.0, 0.0, 0.0, 0.0 };
   double SkyColor[3] = { 0.0, 0.0, 0.0 };
-  int EnvironmentUp = 2;
-  double EnvironmentAzimuth = 0.0;
   bool NetFlux = false;
   int StoredDirections = 1;
-  std::string Device;
 
   int Orders = 0;
   double Residual = 0.0;

@@ -14,7 +14,6 @@
 #include "vtkNew.h"
 #include "vtkObjectFactory.h"
 #include "vtkPointData.h"
-#include "vtkPolyData.h"
 #include "vtkStreamingDemandDrivenPipeline.h"
 #include "vtkUnsignedCharArray.h"
 
@@ -27,14 +26,6 @@
 
 namespace
 {
-enum InputPort
-{
-  MediumPort,
-  LightsPort,
-  EnvironmentPort,
-  InputPortCount
-};
-
 enum LightArray
 {
   Fluence = 3, ///< after tyndall::MediumArray
@@ -44,15 +35,6 @@ enum LightArray
 tyndall::Rgb ToRgb(const double* values)
 {
   return { values[0], values[1], values[2] };
-}
-
-tyndall::Illumination IlluminationOf(vtkMediumRayCaster* filter, vtkInformationVector** inputs)
-{
-  tyndall::Illumination illumination;
-  illumination.lights = tyndall::ReadLights(vtkPolyData::GetData(inputs[LightsPort]));
-  illumination.environment = tyndall::Turned(tyndall::ReadEnvironment(vtkImageData::GetData(inputs[EnvironmentPort])),
-    filter->GetEnvironmentUp(), filter->GetEnvironmentAzimuth());
-  return illumination;
 }
 
 tyndall::ViewSettings SettingsOf(vtkMediumRayCaster* filter)
@@ -112,54 +94,9 @@ void WritePicture(const tyndall::Picture& picture, const std::vector<std::uint8_
 
 vtkStandardNewMacro(vtkMediumRayCaster);
 
-vtkMediumRayCaster::vtkMediumRayCaster()
-{
-  this->SetNumberOfInputPorts(InputPortCount);
-  // vtkImageAlgorithm chooses the active scalars.
-  this->SetInputArrayToProcess(tyndall::SigmaA, 0, 0, vtkDataObject::FIELD_ASSOCIATION_CELLS, "sigma_a");
-}
+vtkMediumRayCaster::vtkMediumRayCaster() = default;
 
 vtkMediumRayCaster::~vtkMediumRayCaster() = default;
-
-void vtkMediumRayCaster::SetLightsConnection(vtkAlgorithmOutput* lights)
-{
-  this->SetInputConnection(LightsPort, lights);
-}
-
-void vtkMediumRayCaster::SetLightsData(vtkDataObject* lights)
-{
-  this->SetInputDataObject(LightsPort, lights);
-}
-
-void vtkMediumRayCaster::RemoveLights()
-{
-  this->SetInputConnection(LightsPort, nullptr);
-}
-
-void vtkMediumRayCaster::SetEnvironmentConnection(vtkAlgorithmOutput* environment)
-{
-  this->SetInputConnection(EnvironmentPort, environment);
-}
-
-void vtkMediumRayCaster::SetEnvironmentData(vtkDataObject* environment)
-{
-  this->SetInputDataObject(EnvironmentPort, environment);
-}
-
-void vtkMediumRayCaster::RemoveEnvironment()
-{
-  this->SetInputConnection(EnvironmentPort, nullptr);
-}
-
-int vtkMediumRayCaster::FillInputPortInformation(int port, vtkInformation* information)
-{
-  information->Set(vtkAlgorithm::INPUT_REQUIRED_DATA_TYPE(), port == LightsPort ? "vtkPolyData" : "vtkImageData");
-  if (port != MediumPort)
-  {
-    information->Set(vtkAlgorithm::INPUT_IS_OPTIONAL(), 1);
-  }
-  return 1;
-}
 
 int vtkMediumRayCaster::RequestInformation(vtkInformation*, vtkInformationVector**, vtkInformationVector* outputs)
 {
@@ -174,15 +111,6 @@ int vtkMediumRayCaster::RequestInformation(vtkInformation*, vtkInformationVector
   return 1;
 }
 
-int vtkMediumRayCaster::RequestUpdateExtent(vtkInformation*, vtkInformationVector** inputs, vtkInformationVector*)
-{
-  for (int port = 0; port < InputPortCount; ++port)
-  {
-    tyndall::AskForAll(inputs[port]);
-  }
-  return 1;
-}
-
 int vtkMediumRayCaster::RequestData(vtkInformation*, vtkInformationVector** inputs, vtkInformationVector* outputs)
 {
   using Clock = std::chrono::steady_clock;
@@ -191,12 +119,12 @@ int vtkMediumRayCaster::RequestData(vtkInformation*, vtkInformationVector** inpu
   this->DeviceName.clear();
   this->LeftOut.clear();
   return tyndall::Guarded(this, outputs, [&] {
-    vtkImageData* image = vtkImageData::GetData(inputs[MediumPort]);
+    vtkImageData* image = vtkImageData::GetData(inputs[MEDIUM]);
     const tyndall::MediumInput input = tyndall::ReadMedium(this, image);
     using tyndall::Need;
     const auto fluence = tyndall::ReadChosenCells(this, Fluence, image, "fluence", Need::Optional);
     const auto direct = tyndall::ReadChosenCells(this, FluenceDirect, image, "fluence_direct", Need::Optional);
-    const tyndall::Illumination illumination = IlluminationOf(this, inputs);
+    const tyndall::Illumination illumination = this->ReadIllumination(inputs);
     tyndall::ViewSettings settings = SettingsOf(this);
     settings.shadowRays |= !fluence.IsThere() && !illumination.lights.empty();
     if (!fluence.IsThere() && illumination.lights.empty() && !input.emission.IsThere())
@@ -231,14 +159,11 @@ int vtkMediumRayCaster::RequestData(vtkInformation*, vtkInformationVector** inpu
 
 void vtkMediumRayCaster::PrintSelf(ostream& os, vtkIndent indent)
 {
-  const auto print = [&](const char* name, const double* values) {
-    os << indent << name << ": " << values[0] << " " << values[1] << " " << values[2] << "\n";
-  };
   this->Superclass::PrintSelf(os, indent);
   os << indent << "ImageSize: " << this->ImageSize[0] << " " << this->ImageSize[1] << "\n";
-  print("CameraPosition", this->CameraPosition);
-  print("CameraFocalPoint", this->CameraFocalPoint);
-  print("CameraViewUp", this->CameraViewUp);
+  PrintNumbers(os, indent, "CameraPosition", this->CameraPosition, 3);
+  PrintNumbers(os, indent, "CameraFocalPoint", this->CameraFocalPoint, 3);
+  PrintNumbers(os, indent, "CameraViewUp", this->CameraViewUp, 3);
   os << indent << "CameraViewAngle: " << this->CameraViewAngle << "\n";
   os << indent << "CameraParallelProjection: " << this->CameraParallelProjection << "\n";
   os << indent << "CameraParallelScale: " << this->CameraParallelScale << "\n";
@@ -247,12 +172,9 @@ void vtkMediumRayCaster::PrintSelf(ostream& os, vtkIndent indent)
   os << indent << "ShadowRays: " << this->ShadowRays << "\n";
   os << indent << "RectangleSamples: " << this->RectangleSamples << "\n";
   os << indent << "ShowBackground: " << this->ShowBackground << "\n";
-  print("BackgroundColor", this->BackgroundColor);
-  os << indent << "EnvironmentUp: " << this->EnvironmentUp << "\n";
-  os << indent << "EnvironmentAzimuth: " << this->EnvironmentAzimuth << "\n";
+  PrintNumbers(os, indent, "BackgroundColor", this->BackgroundColor, 3);
   os << indent << "Exposure: " << this->Exposure << "\n";
   os << indent << "ToneCurve: " << (this->ToneCurve == LINEAR ? "linear" : "filmic") << "\n";
-  os << indent << "Device: " << this->Device << "\n";
   os << indent << "Seconds: " << this->Seconds << "\n";
   os << indent << "UsedExposure: " << this->UsedExposure << "\n";
   os << indent << "DeviceName: " << this->DeviceName << "\n";

@@ -1,7 +1,7 @@
 #ifndef vtkMediumRayCaster_h
 #define vtkMediumRayCaster_h
 
-#include "vtkImageAlgorithm.h"
+#include "vtkLitMediumAlgorithm.h"
 #include "vtkTyndallModule.h" // for export macro
 
 #include <string>
@@ -59,11 +59,11 @@
  * Tone mapping: K. Narkowicz, ACES Filmic Tone Mapping Curve, 2015; E. Reinhard et al., Photographic Tone Reproduction for
  * Digital Images, SIGGRAPH 2002 (exposure).
  */
-class TYNDALL_EXPORT vtkMediumRayCaster : public vtkImageAlgorithm
+class TYNDALL_EXPORT vtkMediumRayCaster : public vtkLitMediumAlgorithm
 {
 public:
   static vtkMediumRayCaster* New();
-  vtkTypeMacro(vtkMediumRayCaster, vtkImageAlgorithm);
+  vtkTypeMacro(vtkMediumRayCaster, vtkLitMediumAlgorithm);
   void PrintSelf(ostream& os, vtkIndent indent) override;
 
   enum ToneCurves
@@ -71,16 +71,6 @@ public:
     LINEAR = 0, ///< radiance times exposure, cut at white
     FILMIC = 1  ///< bright parts are compressed as film does it
   };
-
-  ///@{
-  /// Lights (vtkPolyData) and environment (vtkImageData) by connection or as data; null: none.
-  void SetLightsConnection(vtkAlgorithmOutput* lights);
-  void SetLightsData(vtkDataObject* lights);
-  void RemoveLights();
-  void SetEnvironmentConnection(vtkAlgorithmOutput* environment);
-  void SetEnvironmentData(vtkDataObject* environment);
-  void RemoveEnvironment();
-  ///@}
 
   ///@{
   /// Columns and rows of the picture, pixels. Default 800 x 600, valid from 1 on.
@@ -161,15 +151,6 @@ public:
   ///@}
 
   ///@{
-  /// Axis of the scene along which the environment's up points (0, 1, 2 for x, y, z; default 2), and by how much it is
-  /// turned about it, degrees (default 0). As in the solver.
-  vtkSetClampMacro(EnvironmentUp, int, 0, 2);
-  vtkGetMacro(EnvironmentUp, int);
-  vtkSetMacro(EnvironmentAzimuth, double);
-  vtkGetMacro(EnvironmentAzimuth, double);
-  ///@}
-
-  ///@{
   /// What radiance is multiplied by for `color`. Default 0: so that the mean of the picture's lit part becomes a medium
   /// grey.
   vtkSetClampMacro(Exposure, double, 0.0, VTK_DOUBLE_MAX);
@@ -180,13 +161,6 @@ public:
   /// How `color` follows radiance: LINEAR, or FILMIC (default).
   vtkSetClampMacro(ToneCurve, int, LINEAR, FILMIC);
   vtkGetMacro(ToneCurve, int);
-  ///@}
-
-  ///@{
-  /// Part of the name of the OpenCL device to use, of any case. Default empty: what the variable TYNDALL_DEVICE names, or
-  /// else PoCL's CPU device.
-  vtkSetStdStringFromCharMacro(Device);
-  vtkGetCharFromStdStringMacro(Device);
   ///@}
 
   ///@{
@@ -202,10 +176,7 @@ protected:
   vtkMediumRayCaster();
   ~vtkMediumRayCaster() override;
 
-  int FillInputPortInformation(int port, vtkInformation* information) override;
   int RequestInformation(
-    vtkInformation* request, vtkInformationVector** inputs, vtkInformationVector* outputs) override;
-  int RequestUpdateExtent(
     vtkInformation* request, vtkInformationVector** inputs, vtkInformationVector* outputs) override;
   int RequestData(vtkInformation* request, vtkInformationVector** inputs, vtkInformationVector* outputs) override;
 
@@ -226,11 +197,8 @@ private:
   int RectangleSamples = 3;
   bool ShowBackground = true;
   double BackgroundColor[3] = { 0.0, 0.0, 0.0 };
-  int EnvironmentUp = 2;
-  double EnvironmentAzimuth = 0.0;
   double Exposure = 0.0;
   int ToneCurve = FILMIC;
-  std::string Device;
 
   double Seconds = 0.0;
   double UsedExposure = 0.0;

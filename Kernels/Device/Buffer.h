@@ -55,11 +55,12 @@ public:
   const cl::Buffer& Handle() const { return this->Memory; }
 
   /// Wait for the device and copy `Size()` values there or back.
-  void Write(const T* values)
+  void Write(const T* values) { this->Write(values, this->Count); }
+  void Write(const T* values, std::size_t count) ///< the first `count` values
   {
-    if (this->Count > 0)
+    if (count > 0)
     {
-      this->Owner->Queue().enqueueWriteBuffer(this->Memory, CL_TRUE, 0, this->Count * sizeof(T), values);
+      this->Owner->Queue().enqueueWriteBuffer(this->Memory, CL_TRUE, 0, count * sizeof(T), values);
     }
   }
   void Read(T* values) const

@@ -79,7 +79,8 @@ std::size_t Choose(const std::vector<Candidate>& candidates, const std::string& 
 
 std::shared_ptr<Device> Device::Find(const std::string& name)
 {
-  static std::map<std::string, std::shared_ptr<Device>> known;
+  // Never destroyed: an OpenCL platform may be gone before our statics are, and must not be called then.
+  static auto& known = *new std::map<std::string, std::shared_ptr<Device>>;
   const char* variable = std::getenv("TYNDALL_DEVICE");
   const std::string wanted = !name.empty() || !variable ? name : std::string(variable);
 
@@ -140,8 +141,7 @@ bool Device::HasExtension(const std::string& name) const
   return (" " + this->Extensions + " ").find(" " + name + " ") != std::string::npos;
 }
 
-cl::Kernel Device::Kernel(
-  const char* name, std::initializer_list<std::string_view> sources, const std::string& options)
+cl::Kernel Device::Kernel(const char* name, std::initializer_list<std::string_view> sources, const std::string& options)
 {
   std::string text;
   for (std::string_view source : sources)
@@ -162,8 +162,8 @@ cl::Kernel Device::Kernel(
       }
       catch (const cl::Error&)
       {
-        throw DeviceError("The kernel " + std::string(name) + " does not build on " + this->DeviceName + " with \"" + all +
-          "\":\n" + program.getBuildInfo<CL_PROGRAM_BUILD_LOG>(this->TheDevice));
+        throw DeviceError("The kernel " + std::string(name) + " does not build on " + this->DeviceName + " with \"" +
+          all + "\":\n" + program.getBuildInfo<CL_PROGRAM_BUILD_LOG>(this->TheDevice));
       }
       known = this->Programs.emplace(key, program).first;
     }
@@ -171,8 +171,8 @@ cl::Kernel Device::Kernel(
   }
   catch (const cl::Error& error)
   {
-    throw DeviceError("The kernel " + std::string(name) + " cannot be made on " + this->DeviceName + ": " + error.what() +
-      " gave " + std::to_string(error.err()) + ".");
+    throw DeviceError("The kernel " + std::string(name) + " cannot be made on " + this->DeviceName + ": " +
+      error.what() + " gave " + std::to_string(error.err()) + ".");
   }
 }
 
@@ -234,5 +234,20 @@ cl::Buffer Device::Allocate(std::size_t bytes, cl_mem_flags flags, const char* w
   this->InUse += bytes;
   this->Peak = std::max(this->Peak, this->InUse);
   return buffer;
+}
+
+void Device::Finish()
+{
+  this->TheQueue.finish();
+  this->SecondsQueued = 0.0;
+}
+
+void Device::Queued(double seconds)
+{
+  this->SecondsQueued += seconds;
+  if (this->SecondsQueued >= 0.1)
+  {
+    this->Finish();
+  }
 }
 }

@@ -53,7 +53,11 @@ public:
 
   const cl::Context& Context() const { return this->TheContext; }
   cl::CommandQueue& Queue() { return this->TheQueue; }
-  void Finish() { this->TheQueue.finish(); }
+  void Finish();
+
+  /// Note that work of about so many seconds was queued, and wait for all of it once that is a tenth of a second: progress is
+  /// told and an abort heard that often, while short kernels follow each other without the host.
+  void Queued(double seconds);
 
 private:
   cl::Device TheDevice;
@@ -68,6 +72,7 @@ private:
   std::size_t LargestAllocation = 0;
   std::size_t InUse = 0;
   std::size_t Peak = 0;
+  double SecondsQueued = 0.0;
   std::map<std::string, cl::Program> Programs;
 };
 }

@@ -3,38 +3,24 @@
 
 #define CHUNK 4096 // voxels a work-item sums up before the host adds the chunks in double
 
-static float sum_of(real values)
-{
-#if REAL_WIDTH == 16
-  const float8 a = values.lo + values.hi;
-  const float4 b = a.lo + a.hi;
-  return (b.x + b.y) + (b.z + b.w);
-#elif REAL_WIDTH == 8
-  const float4 b = values.lo + values.hi;
-  return (b.x + b.y) + (b.z + b.w);
-#elif REAL_WIDTH == 4
-  return (values.x + values.y) + (values.z + values.w);
-#else
-  return values;
-#endif
-}
-
-// One channel; its arrays begin at a vector's border and are filled up with zeros to a whole number of vectors.
+// A work-item a chunk of a channel; a channel's arrays begin at a vector's border and are filled up with zeros to a whole
+// number of vectors.
 // path     W length; cleared
 // fluence  W / length^2, added to
 // source   W / (length^3 sr), replaced by what was scattered
-// tally    [chunk] absorbed and scattered W
+// tally    [channel][chunk] absorbed and scattered W
 __kernel void collect(__global float* path, __global float* fluence, __global float* source,
-  const __global float* sigma_t, const __global float* sigma_s, __global float2* tally, ulong stride, int channel,
-  int sigma_t_channel, float per_volume)
+  const __global float* sigma_t, const __global float* sigma_s, __global float2* tally, ulong stride,
+  int one_sigma_t, float per_volume)
 {
+  const ulong channel = get_global_id(1);
   const ulong begin = get_global_id(0) * CHUNK;
   const ulong end = min(stride, begin + CHUNK);
   path += channel * stride;
   fluence += channel * stride;
   source += channel * stride;
   sigma_s += channel * stride;
-  sigma_t += sigma_t_channel * stride;
+  sigma_t += one_sigma_t ? 0 : channel * stride;
   real absorbed = (real)0.0f, scattered = (real)0.0f;
   for (ulong i = begin; i < end; i += REAL_WIDTH)
   {
@@ -47,19 +33,20 @@ __kernel void collect(__global float* path, __global float* fluence, __global fl
     store_real(s * p * (per_volume * M_1_PI_F * 0.25f), i, source);
     store_real((real)0.0f, i, path);
   }
-  tally[get_global_id(0)] = (float2)(sum_of(absorbed), sum_of(scattered));
+  tally[channel * get_global_size(0) + get_global_id(0)] = (float2)(sum_of(absorbed), sum_of(scattered));
 }
 
-// Power of the rays in the maps, a work-item a row of a bundle: what leaves at the far end of an axis.
-// maps     [bundle][row][member][channel][row_floats], rays in the first `size_u` floats after `border`
+// Power of the rays in the maps, a work-item a row of a bundle and way: what leaves at the far end of an axis.
+// maps     [way][bundle][row][member][channel][row_floats], rays in the first `size_u` floats after `border`
 // bundles  [bundle] members, first float of its maps
-// sums     [bundle][row][channel]
-__kernel void map_power(const __global float* maps, ulong first, const __global int2* bundles, int rows, int channels,
+// sums     [way][bundle][row][channel]
+__kernel void map_power(const __global float* maps, ulong maps_each_way, const __global int2* bundles, int rows, int channels,
   int row_floats, int border, int size_u, __global float* sums)
 {
   const int row = get_global_id(0);
   const int2 bundle = bundles[get_global_id(1)];
-  maps += first + bundle.y + (ulong)row * bundle.x * channels * row_floats + border;
+  const int way = get_global_id(2);
+  maps += way * maps_each_way + bundle.y + (ulong)row * bundle.x * channels * row_floats + border;
   for (int c = 0; c < channels; ++c)
   {
     float total = 0.0f;
@@ -79,6 +66,6 @@ __kernel void map_power(const __global float* maps, ulong first, const __global 
       }
       total += ((partial.x + partial.y) + (partial.z + partial.w)) + rest;
     }
-    sums[(get_global_id(1) * rows + row) * channels + c] = total;
+    sums[((way * get_global_size(1) + get_global_id(1)) * rows + row) * channels + c] = total;
   }
 }

@@ -93,8 +93,8 @@ DirectionSet SoundDirections(int perFace)
     const int j = static_cast<int>(d) / n % n;
     const int u = std::min(std::max(i, n - 1 - i), std::max(j, n - 1 - j));
     const int v = std::max(std::max(i, n - 1 - i), std::max(j, n - 1 - j));
-    set.directions[d].weight =
-      SolidAngle(Tangent(true, n, 2 * u), Tangent(true, n, 2 * u + 2), Tangent(true, n, 2 * v), Tangent(true, n, 2 * v + 2));
+    set.directions[d].weight = SolidAngle(
+      Tangent(true, n, 2 * u), Tangent(true, n, 2 * u + 2), Tangent(true, n, 2 * v), Tangent(true, n, 2 * v + 2));
   }
   return set;
 }

@@ -18,8 +18,8 @@ struct Direction
 /// face the direction points through), cells row by row.
 struct DirectionSet
 {
-  int cellsPerEdge = 0; ///< n
-  bool equiangular = false; ///< cells of equal angle seen from the centre (else of equal size on the face)
+  int cellsPerEdge = 0;              ///< n
+  bool equiangular = false;          ///< cells of equal angle seen from the centre (else of equal size on the face)
   std::vector<Direction> directions; ///< 6 n n
 
   int PerFace() const { return this->cellsPerEdge * this->cellsPerEdge; }

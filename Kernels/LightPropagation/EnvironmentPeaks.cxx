@@ -9,8 +9,8 @@ namespace tyndall
 namespace
 {
 constexpr double Pi = 3.14159265358979323846;
-constexpr double BrightPart = 0.05;    ///< of a cell's solid angle
-constexpr double Outshines = 4.0;      ///< times the mean of the rest
+constexpr double BrightPart = 0.05; ///< of a cell's solid angle
+constexpr double Outshines = 4.0;   ///< times the mean of the rest
 constexpr double LeastPower = 1.0 / 500.0;
 constexpr std::size_t MostPeaks = 64;
 
@@ -32,15 +32,18 @@ struct Peak
 
 std::array<double, 3> DirectionOf(const Environment& environment, std::size_t pixel)
 {
-  const double azimuth = 2.0 * Pi * (pixel % environment.width + 0.5) / environment.width;
-  const double polar = Pi * (1.0 - (pixel / environment.width + 0.5) / environment.height);
+  const std::size_t column = pixel % environment.width;
+  const std::size_t row = pixel / environment.width;
+  const double azimuth = 2.0 * Pi * (column + 0.5) / environment.width;
+  const double polar = Pi * (1.0 - (row + 0.5) / environment.height);
   return { std::sin(polar) * std::cos(azimuth), std::sin(polar) * std::sin(azimuth), std::cos(polar) };
 }
 
 double SolidAngle(const Environment& environment, std::size_t pixel)
 {
-  const double top = Pi * (pixel / environment.width) / environment.height;
-  const double bottom = Pi * (pixel / environment.width + 1) / environment.height;
+  const std::size_t row = pixel / environment.width;
+  const double top = Pi * row / environment.height;
+  const double bottom = Pi * (row + 1) / environment.height;
   return (std::cos(top) - std::cos(bottom)) * 2.0 * Pi / environment.width;
 }
 
@@ -111,7 +114,8 @@ SplitEnvironment Split(const Environment& environment, const DirectionSet& set)
       peaks.push_back(std::move(peak));
     }
   }
-  std::stable_sort(peaks.begin(), peaks.end(), [](const Peak& a, const Peak& b) { return a.brightness > b.brightness; });
+  std::stable_sort(
+    peaks.begin(), peaks.end(), [](const Peak& a, const Peak& b) { return a.brightness > b.brightness; });
   peaks.resize(std::min(peaks.size(), MostPeaks));
   for (const Peak& peak : peaks)
   {

@@ -1,5 +1,6 @@
 #include "FirstCollision.h"
 
+#include "AxisSweep.h"
 #include "TyndallKernelSources.h"
 
 #include <glm/geometric.hpp>
@@ -14,12 +15,12 @@ namespace tyndall
 {
 namespace
 {
-constexpr int RaysPerEdge = 2;      ///< of a voxel, for parallel beams
-constexpr int PointsPerEdge = 4;    ///< of a rectangle
-constexpr double BeamWidth = 0.5;   ///< of a lamp's beams where they leave the box, in voxels; of a rectangle's points twice
-constexpr int RowsPerLaunch = 256;  ///< keeps a launch well below a tenth of a second for rows of a thousand voxels
-constexpr int RoundsAtMost = 64;    ///< of a ray on a periodic axis
-constexpr int ManyPlanes = 8192;    ///< of a beam on a periodic axis
+constexpr int RaysPerEdge = 2;     ///< of a voxel, for parallel beams
+constexpr int PointsPerEdge = 4;   ///< of a rectangle
+constexpr double BeamWidth = 0.5;  ///< of a lamp's beams where they leave the box, voxels; a rectangle's: twice
+constexpr int RowsPerLaunch = 256; ///< keeps a launch well below a tenth of a second for rows of a thousand voxels
+constexpr int RoundsAtMost = 64;   ///< of a ray on a periodic axis
+constexpr int ManyPlanes = 8192;   ///< of a beam on a periodic axis
 
 // As lamp_info, beam_row in LampBeams.cl.
 struct LampOnDevice
@@ -27,7 +28,7 @@ struct LampOnDevice
   cl_int size[3], periodic[3];
   cl_float spacing[3], position[3], direction[3];
   cl_float cosine;
-  cl_float power[3];
+  cl_float intensity;
   cl_float scale;
   cl_int rounds;
 };
@@ -49,14 +50,15 @@ std::array<double, 3> Array(const glm::dvec3& v)
   return { v.x, v.y, v.z };
 }
 
-SweepTally DepositBeam(Device& device, const SweepVolume& volume, const Light& light, const std::array<bool, 3>& periodic,
-  const Monitor& monitor)
+SweepTally DepositBeam(Device& device, const SweepVolume& volume, const Light& light,
+  const std::array<bool, 3>& periodic, SweepWorkspace& workspace, const Monitor& monitor)
 {
   const std::array<double, 3> omega = Array(glm::normalize(Vector(light.direction)));
   const int axis = MarchingAxis(volume.grid, omega);
-  AxisSweep beam(
-    device, volume.grid, axis, BeamAlong(axis, volume.grid, omega, RaysPerEdge), volume.channels, periodic);
-  return beam.Run(volume, [&](int, int) { return light.power; }, false, ManyPlanes, monitor);
+  AxisSweep beam(device, volume, axis, BeamAlong(axis, volume.grid, omega, RaysPerEdge), periodic, workspace);
+  beam.Start(
+    volume, [&](int, int) { return light.power; }, false, ManyPlanes, monitor);
+  return beam.Finish();
 }
 
 /// Smallest and largest tangent (voxels along `aside` per layer) at which the box is seen from `position` between two depths,
@@ -124,12 +126,9 @@ double Intensity(const Light& light)
   const double pi = glm::pi<double>();
   switch (light.type)
   {
-    case LightType::Spot:
-      return 1.0 / (2.0 * pi * (1.0 - std::cos(0.5 * light.angle * pi / 180.0)));
-    case LightType::Rectangle:
-      return 1.0 / pi;
-    default:
-      return 1.0 / (4.0 * pi);
+    case LightType::Spot: return 1.0 / (2.0 * pi * (1.0 - std::cos(0.5 * light.angle * pi / 180.0)));
+    case LightType::Rectangle: return 1.0 / pi;
+    default: return 1.0 / (4.0 * pi);
   }
 }
 
@@ -142,7 +141,7 @@ public:
     , Volume(volume)
     , TheLight(light)
     , Periodic(periodic)
-    , Path(device, volume.stride * volume.channels, "the light of a lamp")
+    , Path(device, volume.stride, "the light of a lamp")
   {
     this->Path.Fill(0);
   }
@@ -155,8 +154,14 @@ public:
       this->Follow(points[p], 1.0 / points.size(), [&](double done) { Report(monitor, (p + done) / points.size()); });
     }
     cl::Kernel add = this->Kernel("add_fixed");
-    With(add, this->Path, *this->Volume.path, cl_ulong(this->Volume.first), static_cast<float>(1.0 / this->Scale()));
-    this->TheDevice.Queue().enqueueNDRangeKernel(add, cl::NullRange, cl::NDRange(this->Path.Size()), cl::NullRange);
+    cl_float4 units = {};
+    for (int c = 0; c < 3; ++c)
+    {
+      units.s[c] = static_cast<float>(this->TheLight.power[c] / this->Scale());
+    }
+    With(add, this->Path, *this->Volume.path, cl_ulong(this->Volume.first), cl_ulong(this->Volume.stride), units);
+    this->TheDevice.Queue().enqueueNDRangeKernel(
+      add, cl::NullRange, cl::NDRange(this->Path.Size(), this->Volume.channels), cl::NullRange);
     return this->Tally;
   }
 
@@ -166,19 +171,17 @@ private:
   cl::Kernel Kernel(const char* name)
   {
     return this->TheDevice.Kernel(name, { kernel_source::Numerics, kernel_source::FixedPoint, kernel_source::LampBeams },
-      "-DCHANNELS=" + std::to_string(this->Volume.channels) + " -DRAYS=" + std::to_string(RaysPerEdge) +
-        " -DATOMICS=" + std::to_string(this->HasAtomics()) +
+      "-DRAYS=" + std::to_string(RaysPerEdge) + " -DATOMICS=" + std::to_string(this->HasAtomics()) +
         " -DLAMBERT=" + std::to_string(this->TheLight.type == LightType::Rectangle) +
         " -DCONE=" + std::to_string(this->TheLight.type == LightType::Spot));
   }
 
-  /// Fixed point units per W length: no voxel can gather more than all power along its diagonal.
+  /// Fixed point units per length: no voxel can gather more than all power along its diagonal.
   double Scale() const
   {
     const std::array<double, 3>& h = this->Volume.grid.spacing;
-    const Rgb& power = this->TheLight.power;
-    const double most = std::max({ power[0], power[1], power[2] }) * std::sqrt(h[0] * h[0] + h[1] * h[1] + h[2] * h[2]);
-    return std::exp2(std::floor(std::log2(0x1p60 / (most * RoundsAtMost))));
+    const double diagonal = std::sqrt(h[0] * h[0] + h[1] * h[1] + h[2] * h[2]);
+    return std::exp2(std::floor(std::log2(0x1p60 / (diagonal * RoundsAtMost))));
   }
 
   LampOnDevice Describe(const glm::dvec3& position, double part) const
@@ -195,8 +198,8 @@ private:
       info.spacing[a] = static_cast<float>(grid.spacing[a]);
       info.position[a] = static_cast<float>(position[a]);
       info.direction[a] = static_cast<float>(direction[a]);
-      info.power[a] = static_cast<float>(this->TheLight.power[a] * Intensity(this->TheLight) * part);
     }
+    info.intensity = static_cast<float>(Intensity(this->TheLight) * part);
     info.cosine = static_cast<float>(std::cos(0.5 * this->TheLight.angle * glm::pi<double>() / 180.0));
     info.scale = static_cast<float>(this->Scale());
     info.rounds = RoundsAtMost;
@@ -214,14 +217,14 @@ private:
     const bool many = this->TheLight.type == LightType::Rectangle;
     const std::vector<BeamRow> rows = Beams(grid, position, many ? 2.0 * BeamWidth : BeamWidth);
     const Buffer<BeamRow> rowBuffer(this->TheDevice, rows, "the beams of a lamp");
-    Buffer<float> sums(this->TheDevice, rows.size() * 8 * this->Volume.channels, "sums");
+    Buffer<float> sums(this->TheDevice, rows.size() * 8, "sums");
     cl::Kernel kernel = this->Kernel("follow_lamp");
     const LampOnDevice info = this->Describe(position, part);
     for (std::size_t first = 0; first < rows.size(); first += RowsPerLaunch)
     {
       const std::size_t count = std::min<std::size_t>(RowsPerLaunch, rows.size() - first);
-      With(kernel, info, *this->Volume.sigma_t, cl_ulong(this->Volume.sigma_t_first), this->Path,
-        cl_ulong(this->Volume.stride), rowBuffer, cl_int(count), cl_int(first), sums);
+      With(kernel, info, *this->Volume.sigma_t, cl_ulong(this->Volume.sigma_t_first), this->Path, rowBuffer,
+        cl_int(count), cl_int(first), sums);
       this->TheDevice.Queue().enqueueNDRangeKernel(
         kernel, cl::NullRange, cl::NDRange(this->HasAtomics() ? count : 1), cl::NDRange(1));
       this->TheDevice.Finish();
@@ -232,18 +235,19 @@ private:
 
   void Count(const std::vector<BeamRow>& rows, const std::vector<float>& sums)
   {
-    const std::size_t channels = this->Volume.channels;
     for (std::size_t r = 0; r < rows.size(); ++r)
     {
-      const float* row = sums.data() + r * 8 * channels;
-      for (std::size_t c = 0; c < channels; ++c)
+      const float* row = sums.data() + r * 8;
+      for (int c = 0; c < this->Volume.channels; ++c)
       {
-        this->Tally.in[2 * rows[r].axis + rows[r].up][c] += row[c]; // by the way it shines: lamps inside pass no face
+        const double power = this->TheLight.power[c];
+        this->Tally.in[2 * rows[r].axis + rows[r].up][c] +=
+          power * row[0]; // by the way it shines: lamps inside pass no face
         for (int face = 0; face < 6; ++face)
         {
-          this->Tally.out[face][c] += row[(1 + face) * channels + c];
+          this->Tally.out[face][c] += power * row[1 + face];
         }
-        this->Tally.onTheWay[c] += row[7 * channels + c];
+        this->Tally.onTheWay[c] += power * row[7];
       }
     }
   }
@@ -258,13 +262,13 @@ private:
 }
 
 SweepTally DepositLight(Device& device, const SweepVolume& volume, const Light& light,
-  const std::array<bool, 3>& periodic, const Monitor& monitor)
+  const std::array<bool, 3>& periodic, SweepWorkspace& workspace, const Monitor& monitor)
 {
   if (light.power[0] + light.power[1] + light.power[2] == 0.0)
   {
     return {};
   }
-  return light.type == LightType::Directional ? DepositBeam(device, volume, light, periodic, monitor)
+  return light.type == LightType::Directional ? DepositBeam(device, volume, light, periodic, workspace, monitor)
                                               : LampBeams(device, volume, light, periodic).Run(monitor);
 }
 }

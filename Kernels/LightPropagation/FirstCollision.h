@@ -1,7 +1,8 @@
 #pragma once
 
-#include "AxisSweep.h"
+#include "SweepVolume.h"
 
+#include "../Device/Monitor.h"
 #include "../Lights/Lights.h"
 
 namespace tyndall
@@ -18,7 +19,8 @@ namespace tyndall
 /// Where an axis is periodic, rays that leave return on the other side; a light outside the box then shines only on
 /// what it sees of the box itself, once for each period.
 ///
+/// @param workspace  of sweeps that are not under way
 /// @return what came in (for a light inside the box: all its power), what left, what still goes round a periodic axis
 SweepTally DepositLight(Device& device, const SweepVolume& volume, const Light& light,
-  const std::array<bool, 3>& periodic, const Monitor& monitor);
+  const std::array<bool, 3>& periodic, SweepWorkspace& workspace, const Monitor& monitor);
 }

@@ -17,10 +17,11 @@ namespace tyndall
 namespace
 {
 constexpr double Pi = 3.14159265358979323846;
-constexpr std::size_t Chunk = 4096;  ///< as in Collect.cl
+constexpr std::size_t Chunk = 4096; ///< as in Collect.cl
 constexpr int MostOrders = 100000;
-constexpr int ManyPlanes = 8192; ///< a ray goes round a periodic axis before it is given up, or waits for the next order
-constexpr int FewPlanes = 256;   ///< the same where there will be more orders as long as it matters
+/// Planes that a ray goes round a periodic axis before it is given up, or waits for the next order.
+constexpr int ManyPlanes = 8192;
+constexpr int FewPlanes = 256; ///< the same where there will be more orders as long as it matters
 
 double Total(const Rgb& values)
 {
@@ -51,9 +52,8 @@ public:
     int order = 0;
     do
     {
-      const Monitor ofOrder = monitor
-        ? Monitor([&](double done) { return monitor(this->Progress(order, done)); })
-        : Monitor();
+      const Monitor ofOrder =
+        monitor ? Monitor([&](double done) { return monitor(this->Progress(order, done)); }) : Monitor();
       if (order == 0)
       {
         this->PropagateLights(ofOrder);
@@ -61,6 +61,7 @@ public:
       }
       this->PropagateOrder(order, ofOrder);
       this->CollectOrder(order);
+      Report(ofOrder, 1.0);
       ++order;
     } while (!this->Done(order));
     this->Unload();
@@ -83,9 +84,10 @@ private:
   void MakeSweeps();
   void PropagateOrder(int order, const Monitor& monitor);
   void PropagateLights(const Monitor& monitor);
-  void ForChannels(const std::function<SweepTally(const SweepVolume&, int)>& act);
+  SweepVolume VolumeOf(int firstChannel) const;
+  void ForChannels(const std::function<void(const SweepVolume&, int)>& act);
   void Count(const SweepTally& tally, int firstChannel, int channels);
-  AxisSweep::Boundary BoundaryOfOrder(int order) const;
+  SweepBoundary BoundaryOfOrder(int order) const;
   void CollectOrder(int order);
   void EstimateResidual(int order);
   bool Done(int orders) const;
@@ -106,9 +108,10 @@ private:
   std::size_t Stride;
 
   Buffer<float> Extinction, Scattering, Source, Path, Flux, Fluence;
+  SweepWorkspace Workspace;
   std::vector<std::unique_ptr<AxisSweep>> Sweeps;
   std::vector<Rgb> FromFarAway;
-  bool Shining = false;   ///< the source is not zero
+  bool Shining = false; ///< the source is not zero
   bool LitFromOutside = false;
 
   LightField Result;
@@ -209,12 +212,12 @@ void Solver::MakeSweeps()
 {
   for (int axis = 0; axis < 3; ++axis)
   {
-    std::vector<Bundle> bundles =
+    const std::vector<Bundle> bundles =
       BundlesAlong(axis, this->TheMedium.grid, this->Directions, this->Settings.mapResolution);
     if (!bundles.empty())
     {
-      this->Sweeps.push_back(std::make_unique<AxisSweep>(this->TheDevice, this->TheMedium.grid, axis, std::move(bundles),
-        this->SharedExtinction ? this->Channels : 1, this->Settings.periodic));
+      this->Sweeps.push_back(std::make_unique<AxisSweep>(
+        this->TheDevice, this->VolumeOf(0), axis, bundles, this->Settings.periodic, this->Workspace));
     }
   }
   const SplitEnvironment environment = Split(this->Outside.environment, this->Directions);
@@ -231,7 +234,7 @@ void Solver::MakeSweeps()
   }
 }
 
-AxisSweep::Boundary Solver::BoundaryOfOrder(int order) const
+SweepBoundary Solver::BoundaryOfOrder(int order) const
 {
   if (order > 0 || !this->LitFromOutside)
   {
@@ -249,23 +252,29 @@ AxisSweep::Boundary Solver::BoundaryOfOrder(int order) const
 
 /// Do something to the volume: for all channels at once where they share sigma_t, else for one after the other. `act`
 /// takes the volume and the first of its channels.
-void Solver::ForChannels(const std::function<SweepTally(const SweepVolume&, int)>& act)
+void Solver::ForChannels(const std::function<void(const SweepVolume&, int)>& act)
 {
   const int rounds = this->SharedExtinction ? 1 : this->Channels;
   for (int round = 0; round < rounds; ++round)
   {
-    SweepVolume volume;
-    volume.grid = this->TheMedium.grid;
-    volume.channels = this->SharedExtinction ? this->Channels : 1;
-    volume.stride = this->Stride;
-    volume.sigma_t = &this->Extinction;
-    volume.sigma_t_first = round * this->Stride;
-    volume.source = &this->Source;
-    volume.path = &this->Path;
-    volume.flux = this->Settings.netFlux ? &this->Flux : nullptr;
-    volume.first = round * this->Stride;
-    this->Count(act(volume, round), round, volume.channels);
+    act(this->VolumeOf(round), round);
   }
+}
+
+/// The channels from `first` on that share sigma_t.
+SweepVolume Solver::VolumeOf(int first) const
+{
+  SweepVolume volume;
+  volume.grid = this->TheMedium.grid;
+  volume.channels = this->SharedExtinction ? this->Channels : 1;
+  volume.stride = this->Stride;
+  volume.sigma_t = &this->Extinction;
+  volume.sigma_t_first = first * this->Stride;
+  volume.source = &this->Source;
+  volume.path = &this->Path;
+  volume.flux = this->Settings.netFlux ? &this->Flux : nullptr;
+  volume.first = first * this->Stride;
+  return volume;
 }
 
 void Solver::Count(const SweepTally& tally, int firstChannel, int channels)
@@ -295,33 +304,39 @@ void Solver::PropagateLights(const Monitor& monitor)
     this->ForChannels([&](const SweepVolume& volume, int first) {
       Light ofChannels = light;
       ofChannels.power = From(light.power, first);
-      return DepositLight(this->TheDevice, volume, ofChannels, this->Settings.periodic, monitor);
+      this->Count(DepositLight(this->TheDevice, volume, ofChannels, this->Settings.periodic, this->Workspace, monitor),
+        first, volume.channels);
     });
   }
 }
 
 void Solver::PropagateOrder(int order, const Monitor& monitor)
 {
-  const AxisSweep::Boundary boundary = this->BoundaryOfOrder(order);
+  const SweepBoundary boundary = this->BoundaryOfOrder(order);
   const bool nothing = !boundary && !this->Shining && Total(this->OnTheWay) == 0.0;
   this->OnTheWay = {};
   if (nothing)
   {
     return;
   }
-  for (std::size_t s = 0; s < this->Sweeps.size(); ++s)
-  {
-    const Monitor ofSweep = monitor
-      ? Monitor([&](double done) { return monitor((static_cast<double>(s) + done) / this->Sweeps.size()); })
-      : Monitor();
-    this->ForChannels([&](const SweepVolume& volume, int first) {
-      const AxisSweep::Boundary ofChannels = boundary && first > 0
-        ? AxisSweep::Boundary([&](int direction, int face) { return From(boundary(direction, face), first); })
-        : boundary;
-      return this->Sweeps[s]->Run(volume, ofChannels, this->Shining,
-        this->Settings.maximumOrders > 0 ? ManyPlanes : FewPlanes, ofSweep);
-    });
-  }
+  const int mostPlanes = this->Settings.maximumOrders > 0 ? ManyPlanes : FewPlanes;
+  this->ForChannels([&](const SweepVolume& volume, int first) {
+    const SweepBoundary ofChannels = boundary && first > 0
+      ? SweepBoundary([&](int direction, int face) { return From(boundary(direction, face), first); })
+      : boundary;
+    for (std::size_t s = 0; s < this->Sweeps.size(); ++s)
+    {
+      const double before = static_cast<double>(first * this->Sweeps.size() + s);
+      const double all = static_cast<double>(this->Sweeps.size()) * this->Channels / volume.channels;
+      const Monitor ofSweep =
+        monitor ? Monitor([&](double done) { return monitor((before + done) / all); }) : Monitor();
+      this->Sweeps[s]->Start(volume, ofChannels, this->Shining, mostPlanes, ofSweep);
+    }
+    for (const std::unique_ptr<AxisSweep>& sweep : this->Sweeps)
+    {
+      this->Count(sweep->Finish(), first, volume.channels);
+    }
+  });
 }
 
 void Solver::CollectOrder(int order)
@@ -330,19 +345,18 @@ void Solver::CollectOrder(int order)
   cl::Kernel kernel = this->TheDevice.Kernel(
     "collect", { kernel_source::Numerics, kernel_source::Collect }, "-DREAL_WIDTH=" + std::to_string(vector));
   const std::size_t chunks = (this->Stride + Chunk - 1) / Chunk;
-  Buffer<cl_float2> tally(this->TheDevice, chunks, "sums");
+  Buffer<cl_float2> tally(this->TheDevice, chunks * this->Channels, "sums");
+  With(kernel, this->Path, this->Fluence, this->Source, this->Extinction, this->Scattering, tally,
+    cl_ulong(this->Stride), cl_int(this->SharedExtinction),
+    static_cast<float>(1.0 / this->TheMedium.grid.VoxelVolume()));
+  this->TheDevice.Queue().enqueueNDRangeKernel(
+    kernel, cl::NullRange, cl::NDRange(chunks, this->Channels), cl::NDRange(1, 1));
   this->Scattered = {};
-  for (int c = 0; c < this->Channels; ++c)
+  const std::vector<cl_float2> sums = tally.Read();
+  for (std::size_t i = 0; i < sums.size(); ++i)
   {
-    With(kernel, this->Path, this->Fluence, this->Source, this->Extinction, this->Scattering, tally,
-      cl_ulong(this->Stride), cl_int(c), cl_int(this->SharedExtinction ? 0 : c),
-      static_cast<float>(1.0 / this->TheMedium.grid.VoxelVolume()));
-    this->TheDevice.Queue().enqueueNDRangeKernel(kernel, cl::NullRange, cl::NDRange(chunks), cl::NDRange(1));
-    for (const cl_float2& sums : tally.Read())
-    {
-      this->Result.balance.absorbed[c] += sums.s[0];
-      this->Scattered[c] += sums.s[1];
-    }
+    this->Result.balance.absorbed[i / chunks] += sums[i].s[0];
+    this->Scattered[i / chunks] += sums[i].s[1];
   }
   for (int c = 0; c < 3; ++c)
   {

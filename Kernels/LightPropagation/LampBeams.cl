@@ -1,11 +1,10 @@
 // Beams from a point lamp through the box. Read after Numerics.cl and FixedPoint.cl; the host gives
-//   CHANNELS     colours that share sigma_t
 //   ATOMICS      1 where the device has 64-bit atomics, else one work-item does all
 //   LAMBERT, CONE  1 for a rectangle, a spot
 //
 // Space around the lamp is six pyramids, one for each way along an axis; in a pyramid beams lie on a grid of tangents, so fine
 // that a beam is at most a voxel wide where it leaves the box. It is followed layer by layer; where its square cross-section
-// lies over up to four voxels, each takes its part.
+// lies over up to four voxels, each takes its part. All is told as parts of the lamp's power: its colours share sigma_t.
 
 #define STEPS 2 // a layer: a beam moves aside by half a voxel at most
 
@@ -18,8 +17,8 @@ typedef struct
   float position[3];  // of the lamp, from the box's corner
   float direction[3]; // unit, in space
   float cosine;       // of the cone's half angle
-  float power[3];     // W per steradian; at normal emission where LAMBERT
-  float scale;        // fixed point units per W length
+  float intensity;    // part of the power, per steradian; at normal emission where LAMBERT
+  float scale;        // fixed point units per length
   int rounds;         // of a beam round a periodic axis
 } lamp_info;
 
@@ -81,7 +80,7 @@ static int place(const lamp_info* lamp, int axis, float tangent, int* i)
 
 typedef struct
 {
-  float entered[CHANNELS], escaped[6][CHANNELS], stranded[CHANNELS];
+  float entered, escaped[6], stranded;
 } lamp_tally;
 
 // The first voxel under a cross-section from low to low + width, and the part of it that lies there.
@@ -93,8 +92,7 @@ static void overlap(float low, float width, int* voxel, float* part)
 
 // One step of a beam: every part of it through its voxel. Changes `left`; returns the part that will never be inside.
 static void step_beam(const lamp_info* lamp, const beam_row* row, int layer, bool first, bool last, float2 tangent,
-  float2 middle, float2 width, float length, const __global float* sigma, __global long* path, ulong stride, float* left,
-  lamp_tally* tally)
+  float2 middle, float2 width, float length, const __global float* sigma, __global long* path, float* left, lamp_tally* tally)
 {
   const int u = (row->axis + 1) % 3;
   const int v = (row->axis + 2) % 3;
@@ -104,11 +102,7 @@ static void step_beam(const lamp_info* lamp, const beam_row* row, int layer, boo
   overlap(middle.x - 0.5f * width.x, width.x, &voxel[0], &part_u);
   overlap(middle.y - 0.5f * width.y, width.y, &voxel[1], &part_v);
   lowest = (int2)(voxel[0], voxel[1]);
-  float after[CHANNELS];
-  for (int c = 0; c < CHANNELS; ++c)
-  {
-    after[c] = 0.0f;
-  }
+  float after = 0.0f;
   for (int q = 0; q < 4; ++q)
   {
     const float part = (q & 1 ? 1.0f - part_u : part_u) * (q & 2 ? 1.0f - part_v : part_v);
@@ -133,38 +127,32 @@ static void step_beam(const lamp_info* lamp, const beam_row* row, int layer, boo
       lost = extinguished(tau, &through);
       mean_length = tau > 1e-20f ? lost / sigma[index] : length;
     }
-    for (int c = 0; c < CHANNELS; ++c)
+    const float power = *left * part;
+    if (missed)
     {
-      const float power = left[c] * part;
-      if (missed)
-      {
-        tally->entered[c] -= power;
-      }
-      else if (gone)
-      {
-        const int face = at_u == AFTER ? 2 * u + (tangent.x > 0.0f) : 2 * v + (tangent.y > 0.0f);
-        tally->escaped[face][c] += power;
-      }
-      else if (outside)
-      {
-        after[c] += power;
-      }
-      else
-      {
-        add_units(path + c * stride + index, convert_long_sat_rte(power * mean_length * lamp->scale));
-        after[c] += mean_length * sigma[index] < 0.5f * length * sigma[index] ? power * through : power - power * lost;
-      }
+      tally->entered -= power;
+    }
+    else if (gone)
+    {
+      const int face = at_u == AFTER ? 2 * u + (tangent.x > 0.0f) : 2 * v + (tangent.y > 0.0f);
+      tally->escaped[face] += power;
+    }
+    else if (outside)
+    {
+      after += power;
+    }
+    else
+    {
+      add_units(path + index, convert_long_sat_rte(power * mean_length * lamp->scale));
+      after += mean_length * sigma[index] < 0.5f * length * sigma[index] ? power * through : power - power * lost;
     }
   }
-  for (int c = 0; c < CHANNELS; ++c)
-  {
-    left[c] = after[c];
-  }
+  *left = after;
 }
 
 // One beam from where it comes into the box's layers to where it leaves them.
-static void follow_beam(const lamp_info* lamp, const beam_row* row, float2 tangent, const float* power,
-  const __global float* sigma, __global long* path, ulong stride, lamp_tally* tally)
+static void follow_beam(const lamp_info* lamp, const beam_row* row, float2 tangent, float power,
+  const __global float* sigma, __global long* path, lamp_tally* tally)
 {
   const int n = lamp->size[row->axis];
   const int u = (row->axis + 1) % 3;
@@ -176,11 +164,7 @@ static void follow_beam(const lamp_info* lamp, const beam_row* row, float2 tange
                                       : clamp((int)(row->up ? floor(start) : ceil(start) - 1.0f), 0, n - 1);
   const int layers = row->up ? n - first : first + 1;
   const int all = lamp->periodic[row->axis] ? layers + n * lamp->rounds : layers;
-  float left[CHANNELS];
-  for (int c = 0; c < CHANNELS; ++c)
-  {
-    left[c] = power[c];
-  }
+  float left = power;
   float now = row->begin;
   for (int k = 0; k < all; ++k)
   {
@@ -193,38 +177,27 @@ static void follow_beam(const lamp_info* lamp, const beam_row* row, float2 tange
       const float t = 0.5f * (t0 + t1);
       const float2 middle = (float2)(lamp->position[u] + tangent.x * t, lamp->position[v] + tangent.y * t);
       step_beam(lamp, row, layer, k == 0 && s == 0, k == all - 1 && s == STEPS - 1, tangent, middle,
-        clamp((float2)(row->widthU, row->widthV) * t, 1e-4f, 1.0f), (t1 - t0) * per_layer, sigma, path, stride, left, tally);
+        clamp((float2)(row->widthU, row->widthV) * t, 1e-4f, 1.0f), (t1 - t0) * per_layer, sigma, path, &left, tally);
     }
     now = end;
   }
-  for (int c = 0; c < CHANNELS; ++c)
+  if (lamp->periodic[row->axis])
   {
-    if (lamp->periodic[row->axis])
-    {
-      tally->stranded[c] += left[c];
-    }
-    else
-    {
-      tally->escaped[2 * row->axis + row->up][c] += left[c];
-    }
+    tally->stranded += left;
+  }
+  else
+  {
+    tally->escaped[2 * row->axis + row->up] += left;
   }
 }
 
 static void follow_row(const lamp_info* lamp, const beam_row* row, const __global float* sigma, __global long* path,
-  ulong stride, __global float* sums)
+  __global float* sums)
 {
   const int u = (row->axis + 1) % 3;
   const int v = (row->axis + 2) % 3;
   const float hu = lamp->spacing[u], hv = lamp->spacing[v], hp = lamp->spacing[row->axis];
-  lamp_tally tally;
-  for (int c = 0; c < CHANNELS; ++c)
-  {
-    tally.entered[c] = tally.stranded[c] = 0.0f;
-    for (int face = 0; face < 6; ++face)
-    {
-      tally.escaped[face][c] = 0.0f;
-    }
-  }
+  lamp_tally tally = { 0.0f, { 0.0f, 0.0f, 0.0f, 0.0f, 0.0f, 0.0f }, 0.0f };
   for (int i = 0; i < row->count; ++i)
   {
     const float2 tangent = (float2)(row->tangentU + i * row->widthU, row->tangentV);
@@ -246,29 +219,22 @@ static void follow_row(const lamp_info* lamp, const beam_row* row, const __globa
 #endif
     if (angle > 0.0f)
     {
-      float power[CHANNELS];
-      for (int c = 0; c < CHANNELS; ++c)
-      {
-        power[c] = lamp->power[c] * angle;
-        tally.entered[c] += power[c];
-      }
-      follow_beam(lamp, row, tangent, power, sigma, path, stride, &tally);
+      const float power = lamp->intensity * angle;
+      tally.entered += power;
+      follow_beam(lamp, row, tangent, power, sigma, path, &tally);
     }
   }
-  for (int c = 0; c < CHANNELS; ++c)
+  sums[0] = tally.entered;
+  for (int face = 0; face < 6; ++face)
   {
-    sums[c] = tally.entered[c];
-    for (int face = 0; face < 6; ++face)
-    {
-      sums[(1 + face) * CHANNELS + c] = tally.escaped[face][c];
-    }
-    sums[7 * CHANNELS + c] = tally.stranded[c];
+    sums[1 + face] = tally.escaped[face];
   }
+  sums[7] = tally.stranded;
 }
 
-// path  W length in fixed point, [channel][stride], added to
-// sums  [row][entered, escaped through -x to +z, stranded][channel] W
-__kernel void follow_lamp(lamp_info lamp, const __global float* sigma, ulong sigma_first, __global long* path, ulong stride,
+// path  part of the power times length, in fixed point, [voxel], added to
+// sums  [row][entered, escaped through -x to +z, stranded], parts of the power
+__kernel void follow_lamp(lamp_info lamp, const __global float* sigma, ulong sigma_first, __global long* path,
   const __global beam_row* rows, int row_count, int first_row, __global float* sums)
 {
 #if ATOMICS
@@ -278,12 +244,16 @@ __kernel void follow_lamp(lamp_info lamp, const __global float* sigma, ulong sig
 #endif
   {
     const beam_row row = rows[r];
-    follow_row(&lamp, &row, sigma + sigma_first, path, stride, sums + r * 8 * CHANNELS);
+    follow_row(&lamp, &row, sigma + sigma_first, path, sums + r * 8);
   }
 }
 
-__kernel void add_fixed(const __global long* fixed_path, __global float* path, ulong first, float unit)
+// path   W length, [channel][stride], added to
+// units  [channel] W length of a fixed point unit
+__kernel void add_fixed(const __global long* fixed_path, __global float* path, ulong first, ulong stride, float4 units)
 {
   const ulong i = get_global_id(0);
-  path[first + i] += (float)fixed_path[i] * unit;
+  const int channel = get_global_id(1);
+  const float unit = channel == 0 ? units.x : channel == 1 ? units.y : units.z;
+  path[first + channel * stride + i] += (float)fixed_path[i] * unit;
 }

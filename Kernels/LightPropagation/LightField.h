@@ -26,8 +26,9 @@ struct EnergyBalance
 struct ConvergenceRow
 {
   int iteration = 0;
-  double seconds = 0.0;  ///< since the start
-  double residual = 0.0; ///< scattered light still to come over all of it: estimate of the error that stopping here leaves
+  double seconds = 0.0; ///< since the start
+  /// Scattered light still to come over all of it: estimate of the error that stopping here leaves.
+  double residual = 0.0;
   double absorbed = 0.0; ///< W so far, channels summed
   double escaped = 0.0;
   double leftOver = 0.0;
@@ -38,10 +39,10 @@ struct ConvergenceRow
 struct LightField
 {
   int channels = 1;
-  std::vector<float> fluence;            ///< W / length^2, `channels` a voxel
-  std::vector<float> fluenceDirect;      ///< its unscattered part
-  std::vector<float> netFlux;            ///< W / length^2, 3 * channels a voxel: (x, y, z) of channel 0, 1, 2
-  std::vector<float> scatteredRadiance;  ///< W / (length^2 sr), channels * storedDirections a voxel
+  std::vector<float> fluence;           ///< W / length^2, `channels` a voxel
+  std::vector<float> fluenceDirect;     ///< its unscattered part
+  std::vector<float> netFlux;           ///< W / length^2, 3 * channels a voxel: (x, y, z) of channel 0, 1, 2
+  std::vector<float> scatteredRadiance; ///< W / (length^2 sr), channels * storedDirections a voxel
   std::vector<std::array<double, 3>> storedDirections; ///< of scatteredRadiance; one (0, 0, 0) where isotropic
   EnergyBalance balance;
   std::array<Rgb, 6> facePowerOut = {}; ///< W, through -x, +x, -y, +y, -z, +z

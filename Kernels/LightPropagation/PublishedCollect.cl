@@ -7,7 +7,7 @@
 // A moment is the sum over directions of a coefficient times T. Directions are added one by one in their order, so that the
 // result does not depend on how they are cut into batches.
 
-// As Volumes in ParallelPropagation.cxx: floats from row to row, plane to plane and channel to channel of the two layouts.
+// As VolumeLayouts in PublishedVolumes.h: floats from row to row, plane to plane and channel to channel of the two layouts.
 // Layout 0 is [z][y][x]; layout 1, for maps that march along x, is [x][z][y].
 typedef struct
 {
@@ -15,7 +15,7 @@ typedef struct
   int row[2], plane[2], volume[2];
 } volume_info;
 
-// As PartOnDevice: a U as a multiple of a moment, and where it goes.
+// As PublishedVolumes::PartOnDevice: a U as a multiple of a moment, and where it goes.
 typedef struct
 {
   int moment;

@@ -11,7 +11,7 @@
 
 #define PAD REAL_WIDTH
 
-// As Map in ParallelPropagation.cxx.
+// As MapOnDevice in ParallelPropagation.cxx.
 typedef struct
 {
   int size_u, size_v;
@@ -22,7 +22,7 @@ typedef struct
   int directions; // in the batch
 } map_info;
 
-// As CrossingOnDevice: what the rays of one direction do in one launch.
+// As PublishedPlan::CrossingOnDevice: what the rays of one direction do in one launch.
 typedef struct
 {
   int direction; // within the batch

@@ -45,8 +45,8 @@ struct Bundle
   double tangentV = 0.0;
   double startU = 0.5; ///< where rays start within a voxel of the first plane, in (0, 1)
   double startV = 0.5;
-  double length = 1.0; ///< of a ray within one plane
-  double power = 1.0;  ///< that a ray carries at radiance 1: weight |cos| area, length^2 sr
+  double length = 1.0;         ///< of a ray within one plane
+  double power = 1.0;          ///< that a ray carries at radiance 1: weight |cos| area, length^2 sr
   std::vector<Member> members; ///< 1, 2, 4 or 8
 
   PlaneCrossing Crossing(int plane) const; ///< planes are counted from where the rays start, without end

@@ -18,16 +18,22 @@ typedef struct
   int width;
   int block;    // planes packed together: 1 where rows are contiguous in memory, else a vector's worth
   float vacuum; // 1/length, so thin that no float notices
+  float thin;   // 1/length, below which meanLength holds on all segments
+  float meanLength[MEAN_LENGTH_TERMS];
 } plane_layout;
 
+// The medium's own light in the voxel where it starts: per unit of source, the sum over segments of power (l - p1) / sigma.
+typedef struct
+{
+  float length;                   // sum of power l
+  float terms[MEAN_LENGTH_TERMS]; // where the voxel is thin, the whole sum as a polynomial of sigma / layout.thin
+} own_light;
+
 #if REAL_WIDTH == 16
-#define LANES (int16)(0, 1, 2, 3, 4, 5, 6, 7, 8, 9, 10, 11, 12, 13, 14, 15)
 #define ROUNDS 4
 #elif REAL_WIDTH == 8
-#define LANES (int8)(0, 1, 2, 3, 4, 5, 6, 7)
 #define ROUNDS 3
 #else
-#define LANES (int4)(0, 1, 2, 3)
 #define ROUNDS 2
 #endif
 
@@ -51,6 +57,15 @@ static void transpose(real* rows)
     {
       rows[i] = mixed[i];
     }
+  }
+}
+
+// Set floats, a multiple of a vector, to zero.
+static void clear(__global float* floats, int count)
+{
+  for (int i = 0; i < count; i += REAL_WIDTH)
+  {
+    store_real((real)0.0f, i, floats);
   }
 }
 
@@ -138,8 +153,22 @@ static void unpack(
   }
 }
 
+// Which rows are thin throughout.
+static void find_thin_rows(const plane_layout* layout, const __global float* sigma, __global int* thin)
+{
+  for (int v = 0; v < layout->sizeV; ++v)
+  {
+    integer thick = (integer)0;
+    for (int u = 0; u < layout->width; u += REAL_WIDTH)
+    {
+      thick |= load_real(v * ROW + u, sigma) >= layout->thin;
+    }
+    thin[v] = !any(thick);
+  }
+}
+
 // Make planes [first, first + count) ready to be crossed.
-static void begin_planes(const plane_layout* layout, __global float* planes, int first, int count,
+static void begin_planes(const plane_layout* layout, __global float* planes, __global int* thin, int first, int count,
   const __global float* sigma, const __global float* source, ulong stride)
 {
   const int rows = layout->sizeV * ROW;
@@ -153,6 +182,7 @@ static void begin_planes(const plane_layout* layout, __global float* planes, int
   for (int j = 0; j < count; ++j)
   {
     __global float* plane = planes + j * PLANES * rows;
+    find_thin_rows(layout, plane + PLANE_SIGMA * rows, thin + j * layout->sizeV);
     for (int at = 0; at < rows; at += REAL_WIDTH)
     {
       // Vacuum is a very thin medium: 0 / 0 never happens.
@@ -169,20 +199,24 @@ static void begin_planes(const plane_layout* layout, __global float* planes, int
 }
 
 #if SOURCE
-// The medium's own light on the way through the voxel where it starts, left out until here: per unit of source it is the sum
-// of power (l - p1) / sigma = (lengths.x - taken) / sigma, by series where that would cancel.
-// lengths  sums over all segments of power times l, l^2 / 2, l^3 / 6, l^4 / 24
-static void add_own_light(const plane_layout* layout, __global float* plane, float4 lengths)
+// The medium's own light on the way through the voxel where it starts, left out until here: (length - taken) / sigma, or a
+// polynomial where that would cancel or `taken` was not kept.
+static void add_own_light(const plane_layout* layout, __global float* plane, const __global own_light* light)
 {
   const int rows = layout->sizeV * ROW;
   for (int at = 0; at < rows; at += REAL_WIDTH)
   {
     const real sigma = load_real(at, plane + PLANE_SIGMA * rows);
     const real taken = load_real(at, plane + PLANE_TAKEN * rows);
-    const real closed = (lengths.x - taken) * load_real(at, plane + PLANE_INVERSE * rows);
-    const real series =
-      multiply_add(multiply_add((real)lengths.w, sigma, (real)-lengths.z), sigma, (real)lengths.y);
-    const real own = select(closed, series, sigma * lengths.y < 0.01f * lengths.x);
+    const real closed = ((real)light->length - taken) * load_real(at, plane + PLANE_INVERSE * rows);
+    const real thinness = sigma / layout->thin;
+    real polynomial = (real)light->terms[MEAN_LENGTH_TERMS - 1];
+#pragma unroll
+    for (int i = MEAN_LENGTH_TERMS - 2; i >= 0; --i)
+    {
+      polynomial = multiply_add(polynomial, thinness, (real)light->terms[i]);
+    }
+    const real own = select(closed, polynomial, sigma < (real)layout->thin);
     for (int c = 0; c < CHANNELS; ++c)
     {
       __global float* sum = plane + (PLANE_PATH + c) * rows;
@@ -193,15 +227,15 @@ static void add_own_light(const plane_layout* layout, __global float* plane, flo
 #endif
 
 // Add what the planes gathered to the volume.
-// lengths  [plane from where rays start] of the first plane crossed, see add_own_light
+// own      [plane from where rays start] of the first plane crossed
 static void end_planes(const plane_layout* layout, __global float* planes, int first, int count, __global float* path,
-  __global float* flux, ulong stride, const __global float4* lengths, int backward, int axis)
+  __global float* flux, ulong stride, const __global own_light* own, int backward, int axis)
 {
   const int rows = layout->sizeV * ROW;
 #if SOURCE
   for (int j = 0; j < count; ++j)
   {
-    add_own_light(layout, planes + j * PLANES * rows, lengths[backward ? count - 1 - j : j]);
+    add_own_light(layout, planes + j * PLANES * rows, own + (backward ? count - 1 - j : j));
   }
 #endif
   for (int c = 0; c < CHANNELS; ++c)
@@ -244,16 +278,17 @@ static void cross_plane(sweep_state* state, __global float* maps, const __global
 // path      W length, [channel][stride] from `first` on, added to
 // flux      W length, [channel][x, y, z][stride] from 3 `first` on, added to
 // maps      rays of both ways; `maps_each_way` floats each
+// empty     1: the maps hold nothing yet, and are cleared where rays start
 // outside, radiance   rays that come in, both ways as maps
 // crossings [plane from where rays start][bundle]
-// lengths   [unit][plane from where rays start], see add_own_light
+// own       [unit][plane from where rays start], see add_own_light
 // schedule  [launch][unit] first plane and end, counted from where rays start; beyond the last plane the axis begins anew
 // tally     [plane from where rays start][unit][-u, +u, -v, +v][channel] W that left
 __kernel __attribute__((reqd_work_group_size(1, 1, 1))) void sweep(const __global float* sigma,
   ulong sigma_first, const __global float* source, __global float* path, __global float* flux, ulong first_value,
-  ulong stride, __global float* maps, ulong maps_each_way, const __global float* outside, uint outside_each_way, const __global float* radiance, uint radiance_each_way,
+  ulong stride, __global float* maps, ulong maps_each_way, int empty, const __global float* outside, uint outside_each_way, const __global float* radiance, uint radiance_each_way,
   __global float* scratch, const __global unit_info* units, const __global bundle_info* bundles, int bundle_count,
-  const __global crossing_info* crossings, const __global float4* lengths, int planes_of_pattern, const __global int2* schedule, int launch,
+  const __global crossing_info* crossings, const __global own_light* own, int planes_of_pattern, const __global int2* schedule, int launch,
   __global float* tally, plane_layout layout, int axis)
 {
   const int u = get_global_id(0);
@@ -268,6 +303,11 @@ __kernel __attribute__((reqd_work_group_size(1, 1, 1))) void sweep(const __globa
   state.width = layout.width;
   state.ring = scratch + unit.scratch;
   __global float* planes = state.ring + 2 * RING_ROWS * MAX_MEMBERS * CHANNELS * ROW + PAD; // past the last row's border
+  __global int* thin = (__global int*)(planes + layout.block * PLANES * rows);
+  for (int i = 0; i < MEAN_LENGTH_TERMS; ++i)
+  {
+    state.meanLength[i] = layout.meanLength[i];
+  }
   sigma += sigma_first;
   source += first_value;
   path += first_value;
@@ -276,16 +316,28 @@ __kernel __attribute__((reqd_work_group_size(1, 1, 1))) void sweep(const __globa
   outside += unit.backward * outside_each_way;
   radiance += unit.backward * radiance_each_way;
 
+#if !BORDER
+  clear(state.ring, 2 * RING_ROWS * MAX_MEMBERS * CHANNELS * ROW + PAD);
+#endif
+  if (empty && range.x == 0 && range.y > 0)
+  {
+    for (int b = unit.firstBundle; b < unit.firstBundle + unit.bundles; ++b)
+    {
+      clear(maps + bundles[b].map, bundles[b].members * CHANNELS * ROW * (layout.sizeV + 2) + PAD);
+    }
+  }
+
   for (int begin = range.x, count; begin < range.y; begin += count)
   {
     const int lap = begin / layout.sizeP * layout.sizeP; // planes already marched when the axis began anew
     count = min(min(layout.block, range.y - begin), lap + layout.sizeP - begin);
     const int first = unit.backward ? layout.sizeP - (begin - lap) - count : begin - lap;
-    begin_planes(&layout, planes, first, count, sigma, source, stride);
+    begin_planes(&layout, planes, thin, first, count, sigma, source, stride);
     for (int k = begin; k < begin + count; ++k)
     {
       const int plane = unit.backward ? layout.sizeP - 1 - (k - lap) : k - lap;
       state.planes = planes + (plane - first) * PLANES * rows;
+      state.thin = thin + (plane - first) * layout.sizeV;
       for (int side = 0; side < 4; ++side)
       {
         for (int c = 0; c < CHANNELS; ++c)
@@ -306,6 +358,6 @@ __kernel __attribute__((reqd_work_group_size(1, 1, 1))) void sweep(const __globa
         }
       }
     }
-    end_planes(&layout, planes, first, count, path, flux, stride, lengths + u * planes_of_pattern + begin, unit.backward, axis);
+    end_planes(&layout, planes, first, count, path, flux, stride, own + u * planes_of_pattern + begin, unit.backward, axis);
   }
 }

@@ -5,6 +5,7 @@
 // a distance of LAG rows, so that what passes between them stays in the cache; the last one writes the map in place.
 
 #define NAME_OF(a, b) TYNDALL_JOIN(a, b)
+#define CROSS_VOXELS NAME_OF(cross_voxels_, MEMBERS)
 #define STAGE_ROW NAME_OF(stage_row_, MEMBERS)
 #define COUNT_ESCAPED NAME_OF(count_escaped_, MEMBERS)
 #define FILL_BORDER NAME_OF(fill_border_, MEMBERS)
@@ -14,9 +15,10 @@
 
 // All rays of a row through one segment each (Gruson et al., Eq. 3, conservative):
 //   path += p1 L,  L' = L - sigma p1 L + q p1,  p1 = (1 - exp(-tau)) / sigma
-// For small tau L' is L less what it loses, for large tau it is L times what is left: neither rounds to a leak.
-static void STAGE_ROW(sweep_state* state, int y, bool deposit, const __global float** in, __global float* out, float length,
-  const __global bundle_info* bundle)
+// For small tau L' is L less what it loses, for large tau it is L times what is left: neither rounds to a leak. Where all of
+// the row is thin, p1 is a polynomial: half the work. `thin` is a constant where this is called.
+static inline __attribute__((always_inline)) void CROSS_VOXELS(sweep_state* state, int y, bool deposit, bool thin,
+  const __global float** in, __global float* out, float length, const __global bundle_info* bundle)
 {
   const int rows = state->sizeV * ROW;
   const __global float* sigma_row = state->planes + PLANE_SIGMA * rows + y * ROW;
@@ -38,14 +40,31 @@ static void STAGE_ROW(sweep_state* state, int y, bool deposit, const __global fl
   for (int x = 0; x < state->width; x += REAL_WIDTH)
   {
     const real tau = load_real(x, sigma_row) * length;
-    real left;
-    const real lost = extinguished(tau, &left);
-    const real mean_length = lost * load_real(x, inverse_row);
-    const integer thin = tau < (real)1.0f;
-    const real keep = select((real)0.0f, (real)1.0f, thin);
-    const real change = select(left, -lost, thin);
+    real mean_length, keep, change;
+    if (thin)
+    {
+      real mean = (real)state->meanLength[MEAN_LENGTH_TERMS - 1];
+#pragma unroll
+      for (int i = MEAN_LENGTH_TERMS - 2; i >= 0; --i)
+      {
+        mean = multiply_add(mean, tau, (real)state->meanLength[i]);
+      }
+      mean = multiply_add(mean, tau, (real)1.0f);
+      mean_length = mean * length;
+      keep = (real)1.0f;
+      change = -tau * mean;
+    }
+    else
+    {
+      real left;
+      const real lost = extinguished(tau, &left);
+      const integer losesLess = tau < (real)1.0f;
+      mean_length = lost * load_real(x, inverse_row);
+      keep = select((real)0.0f, (real)1.0f, losesLess);
+      change = select(left, -lost, losesLess);
+    }
 #if SOURCE
-    if (deposit)
+    if (deposit && !thin)
     {
       store_real(multiply_add(mean_length, (real)(power * MEMBERS), load_real(x, taken_row)), x, taken_row);
     }
@@ -78,10 +97,11 @@ static void STAGE_ROW(sweep_state* state, int y, bool deposit, const __global fl
         sum_v = multiply_add(ray, (real)along_v[m], sum_v);
 #endif
 #if SOURCE
-        const real after = multiply_add(ray, change, multiply_add(ray, keep, gain));
+        const real kept = thin ? ray + gain : multiply_add(ray, keep, gain);
 #else
-        const real after = multiply_add(ray, change, ray * keep);
+        const real kept = thin ? ray : ray * keep;
 #endif
+        const real after = multiply_add(ray, change, kept);
         store_real(after, x, out + FIRST(m, c));
       }
       if (deposit)
@@ -99,6 +119,19 @@ static void STAGE_ROW(sweep_state* state, int y, bool deposit, const __global fl
 #endif
       }
     }
+  }
+}
+
+static void STAGE_ROW(sweep_state* state, int y, bool deposit, const __global float** in, __global float* out, float length,
+  const __global bundle_info* bundle)
+{
+  if (state->thin[y])
+  {
+    CROSS_VOXELS(state, y, deposit, true, in, out, length, bundle);
+  }
+  else
+  {
+    CROSS_VOXELS(state, y, deposit, false, in, out, length, bundle);
   }
 #if PERIODIC_U
   for (int i = 0; i < MEMBERS * CHANNELS; ++i)
@@ -127,11 +160,8 @@ static void COUNT_ESCAPED(sweep_state* state, const __global float* row, int y, 
     {
       const int side = dv > 0 ? 3 : 2;
       const int begin = through_u && du < 0 ? 1 : 0;
-      const int end = through_u && du > 0 ? last : last + 1;
-      for (int x = begin; x < end; ++x)
-      {
-        add_exactly(&state->escaped[side][c], &state->rounding[side][c], rays[x]);
-      }
+      const int count = through_u ? last : last + 1;
+      add_exactly(&state->escaped[side][c], &state->rounding[side][c], sum_of_row(rays + begin, count));
     }
   }
 }
@@ -231,4 +261,5 @@ static void CROSS_PLANE(sweep_state* state, __global float* map, const __global 
 #undef FILL_BORDER
 #undef COUNT_ESCAPED
 #undef STAGE_ROW
+#undef CROSS_VOXELS
 #undef NAME_OF

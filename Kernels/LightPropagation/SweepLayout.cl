@@ -13,6 +13,7 @@
 #define MAX_MEMBERS 8
 #define RING_ROWS 4 // a stage reads rows y - 1 to y + 1 while the stage before writes row y + 2
 #define LAG 2       // rows a stage stays behind the one before
+#define MEAN_LENGTH_TERMS 5 // of (1 - exp(-t)) / t = 1 + t (m0 + t (m1 + ...)) for thin voxels, see SweepPlan.cxx
 #define FLUX (NET_FLUX ? 3 : 0)
 
 // The quantities of one plane, each [row][ROW].
@@ -24,7 +25,7 @@
 #define PLANE_FLUX (PLANE_PATH + CHANNELS)
 #define PLANES (PLANE_FLUX + FLUX * CHANNELS)
 
-// As BundleOnDevice, CrossingOnDevice in Sweep.cxx.
+// As BundleOnDevice, PlaneCrossingOnDevice in SweepPlan.h.
 typedef struct
 {
   int members;
@@ -49,11 +50,32 @@ typedef struct
 {
   int sizeU, sizeV;        // voxels of the plane
   int width;               // sizeU rounded up to whole vectors
-  __global float* planes;  // PLANES planes of sizeV rows
+  __global float* planes;  // PLANES quantities of sizeV rows: of the plane that is being crossed
+  __global int* thin;      // [row] of it, 1 where all voxels are thin
+  float meanLength[MEAN_LENGTH_TERMS];
   __global float* ring;    // 2 rings of RING_ROWS rows of MAX_MEMBERS * CHANNELS * ROW floats
   float escaped[4][CHANNELS]; // through -u, +u, -v, +v, W; with the rounding errors
   float rounding[4][CHANNELS];
 } sweep_state;
+
+#if REAL_WIDTH == 16
+#define LANES (int16)(0, 1, 2, 3, 4, 5, 6, 7, 8, 9, 10, 11, 12, 13, 14, 15)
+#elif REAL_WIDTH == 8
+#define LANES (int8)(0, 1, 2, 3, 4, 5, 6, 7)
+#else
+#define LANES (int4)(0, 1, 2, 3)
+#endif
+
+// Sum of the first `count` floats of a row.
+static float sum_of_row(const __global float* row, int count)
+{
+  real sum = (real)0.0f;
+  for (int x = 0; x < count; x += REAL_WIDTH)
+  {
+    sum += select(load_real(x, row), (real)0.0f, LANES >= count - x);
+  }
+  return sum_of(sum);
+}
 
 static void add_exactly(float* sum, float* rounding, float value) // Kahan
 {

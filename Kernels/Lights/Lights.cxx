@@ -69,8 +69,10 @@ Rgb SeenThrough(const Environment& environment, int i, int j, int up)
   double total = 0.0;
   for (int part = 0; part < Parts * Parts; ++part)
   {
-    const double azimuth = 2.0 * pi * (i + (part % Parts + 0.5) / Parts) / environment.width;
-    const double polar = pi * (1.0 - (j + (part / Parts + 0.5) / Parts) / environment.height);
+    const int column = part % Parts;
+    const int row = part / Parts;
+    const double azimuth = 2.0 * pi * (i + (column + 0.5) / Parts) / environment.width;
+    const double polar = pi * (1.0 - (j + (row + 0.5) / Parts) / environment.height);
     const std::array<double, 3> scene = { std::sin(polar) * std::cos(azimuth), std::sin(polar) * std::sin(azimuth),
       std::cos(polar) };
     const Rgb seen = Lookup(environment, { scene[(up + 1) % 3], scene[(up + 2) % 3], scene[up] });
@@ -91,7 +93,8 @@ Environment StoodUp(const Environment& environment, int up)
     for (int i = 0; i < environment.width; ++i)
     {
       const Rgb seen = SeenThrough(environment, i, j, up);
-      std::copy(seen.begin(), seen.end(), stood.radiance.begin() + 3 * (static_cast<std::size_t>(j) * environment.width + i));
+      std::copy(
+        seen.begin(), seen.end(), stood.radiance.begin() + 3 * (static_cast<std::size_t>(j) * environment.width + i));
     }
   }
   return stood;
@@ -132,7 +135,8 @@ void CheckLight(const Light& light, std::size_t number)
     }
     if (!Usable(light.power[axis]))
     {
-      throw InvalidInput(name + " has power " + std::to_string(light.power[axis]) + "; it must be finite and not negative.");
+      throw InvalidInput(
+        name + " has power " + std::to_string(light.power[axis]) + "; it must be finite and not negative.");
     }
   }
   if (light.type != LightType::Point && std::hypot(light.direction[0], light.direction[1], light.direction[2]) == 0.0)
@@ -141,7 +145,8 @@ void CheckLight(const Light& light, std::size_t number)
   }
   if (light.type == LightType::Spot && !(light.angle > 0.0 && light.angle <= 180.0))
   {
-    throw InvalidInput(name + " is a spot with opening angle " + std::to_string(light.angle) + "; it must be in (0, 180].");
+    throw InvalidInput(
+      name + " is a spot with opening angle " + std::to_string(light.angle) + "; it must be in (0, 180].");
   }
   if (light.type == LightType::Rectangle &&
     !(light.size[0] > 0.0 && light.size[1] > 0.0 && std::isfinite(light.size[0] * light.size[1])))
@@ -169,8 +174,8 @@ void Check(const Illumination& illumination)
     }
     if (!Usable(illumination.sky[c]))
     {
-      throw InvalidInput("The sky's radiance is " + std::to_string(illumination.sky[c]) +
-        "; it must be finite and not negative.");
+      throw InvalidInput(
+        "The sky's radiance is " + std::to_string(illumination.sky[c]) + "; it must be finite and not negative.");
     }
   }
   const Environment& environment = illumination.environment;

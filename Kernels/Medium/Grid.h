@@ -9,7 +9,7 @@ namespace tyndall
 /// have x fastest. Lengths in the dataset's own unit.
 struct Grid
 {
-  std::array<int, 3> size = { 1, 1, 1 };            ///< voxels per axis, at least 1
+  std::array<int, 3> size = { 1, 1, 1 };             ///< voxels per axis, at least 1
   std::array<double, 3> spacing = { 1.0, 1.0, 1.0 }; ///< edges of a voxel, > 0
   std::array<double, 3> origin = { 0.0, 0.0, 0.0 };  ///< the box's lower corner
 

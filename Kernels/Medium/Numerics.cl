@@ -40,6 +40,22 @@ inline real nearest_whole(real x)
   return (x + (real)12582912.0f) - (real)12582912.0f;
 }
 
+inline float sum_of(real values)
+{
+#if REAL_WIDTH == 16
+  const float8 a = values.lo + values.hi;
+  const float4 b = a.lo + a.hi;
+  return (b.x + b.y) + (b.z + b.w);
+#elif REAL_WIDTH == 8
+  const float4 b = values.lo + values.hi;
+  return (b.x + b.y) + (b.z + b.w);
+#elif REAL_WIDTH == 4
+  return (values.x + values.y) + (values.z + values.w);
+#else
+  return values;
+#endif
+}
+
 // Fraction extinguished over an optical length, 1 - exp(-tau), to a few units in the last place for every tau >= 0, and the
 // fraction that is left, exp(-tau).
 //   exp(-tau) = 2^n (1 + q), q = expm1(r), r = -tau - n ln 2 in [-ln 2 / 2, ln 2 / 2]

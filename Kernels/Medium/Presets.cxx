@@ -42,10 +42,12 @@ MediumPreset Fog()
 MediumPreset Smoke()
 {
   const double scattering = 8.7 - 7.5 * 550.0 / 633.0;
-  return { "Smoke", "1 g of soot per cubic metre", PerMillimetre({ scattering, scattering, scattering }, 1e3),
+  return {
+    "Smoke", "1 g of soot per cubic metre", PerMillimetre({ scattering, scattering, scattering }, 1e3),
     PerMillimetre({ 7.5 * 550.0 / 650.0, 7.5, 7.5 * 550.0 / 450.0 }, 1e3), 0.0,
     "Absorption: Bond, Bergstrom: Light absorption by carbonaceous particles, Aerosol Sci. Technol. 40 (2006). "
-    "Extinction: Mulholland, Croarkin: Specific extinction coefficient of flame generated smoke, Fire Mater. 24 (2000)" };
+    "Extinction: Mulholland, Croarkin: Specific extinction coefficient of flame generated smoke, Fire Mater. 24 (2000)"
+  };
 }
 
 /// Measured with a g of each colour, 0.907, 0.896 and 0.880. One g has to do here: their mean, with the reduced scattering

@@ -5,6 +5,7 @@
 // Needs Numerics.cl and Sampling.cl before it. Define besides
 //   SKIP_BRICKS  1: rays leap over bricks in which nothing extinguishes or shines
 //   ENVIRONMENT  1: the background is a picture; 0: one colour
+//   THIN_STEPS   1: no step's optical length is above 2
 
 // Field by field the same as MediumRayCaster.cxx's.
 typedef struct
@@ -130,15 +131,25 @@ inline real most_left(light l)
 }
 
 // Over a length of constant coefficients: what a unit of source adds to the radiance, and what is left of the light behind.
-//   left (1 - exp(-tau)) / sigma = left length (1 - exp(-tau)) / tau; tau = 0 is vacuum, where the fraction is 1.
-inline real cross_length(real sigma, real length, real* left)
+//   length (1 - exp(-tau)) / tau; tau = 0 is vacuum, where the fraction is 1.
+inline real cross_length(real sigma, real length, real* remains)
 {
+#if THIN_STEPS
+  // (1 - exp(-tau)) / tau on [0, 2], to 1e-7.
+  const real tau = sigma * length;
+  real p = fma(tau, (real)-1.17129066e-05f, (real)0.000167222737f);
+  p = fma(p, tau, (real)-0.00134923449f);
+  p = fma(p, tau, (real)0.00830663089f);
+  p = fma(p, tau, (real)-0.0416579582f);
+  p = fma(p, tau, (real)0.166665584f);
+  p = fma(p, tau, (real)-0.49999997f);
+  const real fraction = fma(p, tau, (real)1.0f);
+  *remains = fma(-tau, fraction, (real)1.0f);
+#else
   const real tau = greater(sigma * length, (real)1e-30f);
-  real remains;
-  const real fraction = extinguished(tau, &remains) / tau;
-  const real weight = *left * length * fraction;
-  *left *= remains;
-  return weight;
+  const real fraction = extinguished(tau, remains) / tau;
+#endif
+  return length * fraction;
 }
 
 // The step in which half of a ray's light was lost: where it starts, how long it is, and what was left before and after.
@@ -159,7 +170,7 @@ typedef struct
 #endif
 } sample;
 
-inline sample take_sample(rays packet, real step, int n, global const float4* samples, global const float4* extinctions,
+__attribute__((always_inline)) inline sample take_sample(rays packet, real step, int n, global const float4* samples, global const float4* extinctions,
   int4 size)
 {
   sample s;
@@ -178,25 +189,35 @@ inline sample take_sample(rays packet, real step, int n, global const float4* sa
   return s;
 }
 
-// Rays that have less light left than `enough` stop.
-inline void cross_sample(sample s, float enough, light* l, crossed* half_way)
+// Rays that have less light left than `enough` stop. Nothing but the last product waits for what was left before.
+__attribute__((always_inline)) inline void cross_sample(sample s, float enough, light* l, crossed* half_way)
 {
-  const real length = most_left(*l) > (real)enough ? s.length : (real)0.0f;
+  const integer goes_on = most_left(*l) > (real)enough;
   const real before = mean_left(*l);
 #if COLOURED
-  l->radiance.r = fma(s.source.r, cross_length(s.sigma.r, length, &l->left.r), l->radiance.r);
-  l->radiance.g = fma(s.source.g, cross_length(s.sigma.g, length, &l->left.g), l->radiance.g);
-  l->radiance.b = fma(s.source.b, cross_length(s.sigma.b, length, &l->left.b), l->radiance.b);
+#define CROSS(c)                                                                                                         \
+  {                                                                                                                      \
+    real remains;                                                                                                        \
+    const real weight = cross_length(s.sigma.c, s.length, &remains);                                                     \
+    l->radiance.c = fma(s.source.c * weight, goes_on ? l->left.c : (real)0.0f, l->radiance.c);                           \
+    l->left.c *= goes_on ? remains : (real)1.0f;                                                                         \
+  }
+  CROSS(r)
+  CROSS(g)
+  CROSS(b)
+#undef CROSS
 #else
-  const real weight = cross_length(s.sigma, length, &l->left);
-  l->radiance.r = fma(s.source.r, weight, l->radiance.r);
-  l->radiance.g = fma(s.source.g, weight, l->radiance.g);
-  l->radiance.b = fma(s.source.b, weight, l->radiance.b);
+  real remains;
+  const real weight = cross_length(s.sigma, s.length, &remains) * l->left;
+  l->radiance.r = goes_on ? fma(s.source.r, weight, l->radiance.r) : l->radiance.r;
+  l->radiance.g = goes_on ? fma(s.source.g, weight, l->radiance.g) : l->radiance.g;
+  l->radiance.b = goes_on ? fma(s.source.b, weight, l->radiance.b) : l->radiance.b;
+  l->left = goes_on ? l->left * remains : l->left;
 #endif
   const real after = mean_left(*l);
   const integer crossing = (before > (real)0.5f) & (after <= (real)0.5f);
   half_way->start = crossing ? s.start : half_way->start;
-  half_way->length = crossing ? length : half_way->length;
+  half_way->length = crossing ? s.length : half_way->length;
   half_way->before = crossing ? before : half_way->before;
   half_way->after = crossing ? after : half_way->after;
 }

@@ -80,7 +80,7 @@ void CheckLightField(const Field& field, const char* name, std::size_t voxels)
   }
 }
 
-void CheckSettings(const ViewSettings& settings, const SolvedLight& light)
+void CheckSettings(const ViewSettings& settings)
 {
   if (settings.imageSize[0] < 1 || settings.imageSize[1] < 1)
   {
@@ -107,6 +107,10 @@ void CheckSettings(const ViewSettings& settings, const SolvedLight& light)
   {
     throw InvalidInput("A rectangular light needs at least one sample per edge.");
   }
+}
+
+void CheckWhatIsNeeded(const ViewSettings& settings, const SolvedLight& light)
+{
   const bool separates = settings.shadowRays != settings.singleScatteringOnly; // direct light from the rest
   if (separates && light.fluence.values && !light.fluenceDirect.values)
   {
@@ -119,6 +123,18 @@ void CheckSettings(const ViewSettings& settings, const SolvedLight& light)
 bool IsZero(const Rgb& colour)
 {
   return colour[0] == 0.0 && colour[1] == 0.0 && colour[2] == 0.0;
+}
+
+/// A bound of sigma_t over voxels and channels, 1/length.
+double LargestExtinction(const Medium& medium)
+{
+  double sum = 0.0;
+  for (const Field& field : { medium.sigma_a, medium.sigma_s })
+  {
+    const std::size_t count = field.values ? medium.grid.VoxelCount() * field.components : 0;
+    sum += count > 0 ? *std::max_element(field.values, field.values + count) : 0.0f;
+  }
+  return sum;
 }
 
 /// Points and parallel beams that stand for the lights, as ScatteredLight.cl's small_light: three float4 each, world
@@ -259,7 +275,8 @@ MediumRayCaster::MediumRayCaster(Device& device, const Medium& medium, const Sol
   Check(illumination);
   CheckLightField(light.fluence, "fluence", medium.grid.VoxelCount());
   CheckLightField(light.fluenceDirect, "fluence_direct", medium.grid.VoxelCount());
-  CheckSettings(settings, light);
+  CheckSettings(settings);
+  CheckWhatIsNeeded(settings, light);
 
   // Traits of the scene.
   this->Coloured = medium.sigma_a.components == 3 || medium.sigma_s.components == 3;
@@ -268,8 +285,9 @@ MediumRayCaster::MediumRayCaster(Device& device, const Medium& medium, const Sol
     : std::vector<cl_float4>();
   this->LightCount = static_cast<int>(lights.size() / 3);
   this->SourcesDependOnCamera = this->LightCount > 0 && medium.g != 0.0;
-  this->Background =
-    illumination.environment.Empty() && IsZero(illumination.sky) ? settings.backgroundColor : illumination.sky;
+  this->LargestExtinction = tyndall::LargestExtinction(medium);
+  this->UnderSky = !illumination.environment.Empty() || !IsZero(illumination.sky);
+  this->Background = this->UnderSky ? illumination.sky : settings.backgroundColor;
 
   this->Upload(medium, light);
   for (int axis = 0; axis < 3; ++axis)
@@ -304,6 +322,22 @@ MediumRayCaster::MediumRayCaster(Device& device, const Medium& medium, const Sol
   omit(this->Components[2] > 0, "emission: the medium does not shine");
   omit(this->LightCount > 0, "shadow rays: not asked for, or no light");
   omit(this->EnvironmentSize[0] > 0, "environment: none, or not shown");
+}
+
+bool MediumRayCaster::Adopt(const ViewSettings& settings)
+{
+  CheckSettings(settings);
+  const ViewSettings& now = this->Settings;
+  if (settings.singleScatteringOnly != now.singleScatteringOnly || settings.shadowRays != now.shadowRays ||
+    settings.rectangleSamples != now.rectangleSamples || settings.showBackground != now.showBackground ||
+    settings.packetWidth != now.packetWidth)
+  {
+    return false;
+  }
+  this->SourcesReady &= this->LightCount == 0 || settings.stepSize == now.stepSize; // shadow rays step as well
+  this->Background = this->UnderSky ? this->Background : settings.backgroundColor;
+  this->Settings = settings;
+  return true;
 }
 
 /// On a CPU as wide as its registers; a GPU makes its own packets.
@@ -422,20 +456,58 @@ MediumRayCaster::View MediumRayCaster::MakeView(const Camera& camera) const
   return view;
 }
 
-Picture MediumRayCaster::Render(const Camera& camera, const Monitor& monitor)
+void MediumRayCaster::PrepareSources(const Camera& camera, const Monitor& monitor)
 {
-  View view = this->MakeView(camera);
-  Report(monitor, 0.0);
-  const bool seesLights = this->LightCount > 0 && (!this->SourcesReady || this->SourcesDependOnCamera);
-  if (seesLights)
+  if (this->LightCount > 0)
   {
     this->Pack(false); // shadow rays need the extinction and its bricks
     this->SeeLights(camera, monitor);
   }
-  if (seesLights || !this->SourcesReady)
+  this->Pack(this->LightCount > 0);
+  this->SourcesReady = true;
+  if (this->LightCount == 0)
   {
-    this->Pack(this->LightCount > 0);
-    this->SourcesReady = true;
+    this->Arrays = {};
+  }
+}
+
+std::string MediumRayCaster::CastingOptions() const
+{
+  // Longest optical length of a step; the kernel has a shorter way to cross it up to 2.
+  const double longest = this->LargestExtinction * this->Settings.stepSize *
+    *std::max_element(this->TheGrid.spacing.begin(), this->TheGrid.spacing.end());
+  const auto define = [](const char* name, bool value) { return std::string(" -D") + name + (value ? "=1" : "=0"); };
+  return "-DREAL_WIDTH=" + std::to_string(this->PacketWidth()) + define("COLOURED", this->Coloured) +
+    define("SKIP_BRICKS", this->Settings.skipEmptyBricks) + define("ENVIRONMENT", this->EnvironmentSize[0] > 0) +
+    define("THIN_STEPS", longest <= 2.0);
+}
+
+void MediumRayCaster::CastRays(View& view, double from, const Monitor& monitor)
+{
+  const std::array<int, 2> packet = PacketPixels(this->PacketWidth());
+  cl::Kernel cast = this->TheDevice.Kernel("cast_rays",
+    { kernel_source::Numerics, kernel_source::Sampling, kernel_source::MediumRayCaster }, this->CastingOptions());
+  // Batches of whole work-groups: else the last rows of one would be cast again by the next.
+  const int group = 8;
+  const std::size_t across = RoundUp(view.Picture.s[0], group * packet[0]) / packet[0];
+  const int rows = static_cast<int>(RoundUp(view.Picture.s[1], group * packet[1]) / (group * packet[1]));
+  InBatches(this->TheDevice, rows, monitor, from, 1.0, [&](int first, int count) {
+    view.Picture.s[2] = first * group;
+    With(cast, view, this->Samples, this->Extinctions, this->Bricks, this->EnvironmentPixels, this->Radiance,
+      this->Alpha, this->Depth);
+    this->TheDevice.Queue().enqueueNDRangeKernel(
+      cast, cl::NullRange, cl::NDRange(across, static_cast<std::size_t>(count) * group), cl::NDRange(group, group));
+  });
+}
+
+Picture MediumRayCaster::Render(const Camera& camera, const Monitor& monitor)
+{
+  View view = this->MakeView(camera);
+  Report(monitor, 0.0);
+  const bool prepares = !this->SourcesReady || this->SourcesDependOnCamera;
+  if (prepares)
+  {
+    this->PrepareSources(camera, monitor);
   }
 
   Picture picture;
@@ -443,27 +515,19 @@ Picture MediumRayCaster::Render(const Camera& camera, const Monitor& monitor)
   picture.height = this->Settings.imageSize[1];
   picture.farDepth = view.Marching.s[2];
   const std::size_t pixels = static_cast<std::size_t>(picture.width) * picture.height;
-  Buffer<float> radiance(this->TheDevice, 3 * pixels, "the picture");
-  Buffer<float> alpha(this->TheDevice, pixels, "the picture's alpha");
-  Buffer<float> depth(this->TheDevice, pixels, "the picture's depth");
-
-  const int width = this->PacketWidth();
-  const std::array<int, 2> packet = PacketPixels(width);
-  cl::Kernel cast = this->TheDevice.Kernel("cast_rays",
-    { kernel_source::Numerics, kernel_source::Sampling, kernel_source::MediumRayCaster },
-    "-DREAL_WIDTH=" + std::to_string(width) + " -DCOLOURED=" + (this->Coloured ? "1" : "0") + " -DSKIP_BRICKS=" +
-      (this->Settings.skipEmptyBricks ? "1" : "0") + " -DENVIRONMENT=" + (this->EnvironmentSize[0] > 0 ? "1" : "0"));
-  const std::size_t across = RoundUp(picture.width, 8 * packet[0]) / packet[0];
-  const int rows = static_cast<int>(RoundUp(picture.height, packet[1]) / packet[1]);
-  InBatches(this->TheDevice, rows, monitor, seesLights ? 0.5 : 0.0, 1.0, [&](int first, int count) {
-    view.Picture.s[2] = first;
-    With(cast, view, this->Samples, this->Extinctions, this->Bricks, this->EnvironmentPixels, radiance, alpha, depth);
-    this->TheDevice.Queue().enqueueNDRangeKernel(
-      cast, cl::NullRange, cl::NDRange(across, RoundUp(count, 8)), cl::NDRange(8, 8));
-  });
-  picture.radiance = radiance.Read();
-  picture.alpha = alpha.Read();
-  picture.depth = depth.Read();
+  if (this->Alpha.Size() != pixels)
+  {
+    Buffer<float> radiance(this->TheDevice, 3 * pixels, "the picture");
+    Buffer<float> alpha(this->TheDevice, pixels, "the picture's alpha");
+    Buffer<float> depth(this->TheDevice, pixels, "the picture's depth");
+    this->Radiance.Swap(radiance); // all or none, where one does not fit
+    this->Alpha.Swap(alpha);
+    this->Depth.Swap(depth);
+  }
+  this->CastRays(view, prepares && this->LightCount > 0 ? 0.5 : 0.0, monitor);
+  picture.radiance = this->Radiance.Read();
+  picture.alpha = this->Alpha.Read();
+  picture.depth = this->Depth.Read();
   return picture;
 }
 }

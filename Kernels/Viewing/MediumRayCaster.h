@@ -63,8 +63,13 @@ struct Picture
 ///
 /// E is a light's irradiance behind the medium, p the phase function (Henyey and Greenstein's with the medium's g) from the
 /// light's direction to the camera's. D = min(sum of E, fluenceDirect) is the part of fluence that E shows already, so that
-/// nothing counts twice; what else is in fluenceDirect came straight from an environment or a sky and stays. All light
-/// that is not found by shadow rays scatters evenly in all directions.
+/// nothing counts twice; what else is in fluenceDirect came straight from an environment or a sky and stays. The sum over
+/// lights is found at voxel centres.
+///
+/// Where g is not 0, p shapes only what shadow rays find. All other light, direct light without shadow rays included,
+/// scatters evenly in all directions. sigma_s and sigma_t are the medium's own in every term, also where a solver worked
+/// with sigma_s (1 - g). `scattered_radiance`, which solvers keep for chosen directions, is data to look at and is not
+/// used here: a camera sees along as many directions as it has pixels.
 class MediumRayCaster
 {
 public:
@@ -76,6 +81,13 @@ public:
   MediumRayCaster(Device& device, const Medium& medium, const SolvedLight& light, const Illumination& illumination,
     const ViewSettings& settings);
 
+  /// Takes over what of `settings` needs nothing new on the device, so that a caster can be kept while its medium, light and
+  /// illumination stay as they are: imageSize, stepSize, backgroundColor, skipEmptyBricks, minimumTransmittance.
+  /// @return false, and nothing is changed, where one of the others differs: that needs a new caster
+  /// @throws InvalidInput as the constructor
+  bool Adopt(const ViewSettings& settings);
+
+  /// The first picture packs what the rays meet; where nothing of it depends on the camera, later ones use it again.
   /// @throws InvalidInput for a camera that looks nowhere; Aborted
   Picture Render(const Camera& camera, const Monitor& monitor = {});
 
@@ -86,31 +98,37 @@ private:
   struct View;
 
   std::string PackingOptions() const;
+  std::string CastingOptions() const;
   int PacketWidth() const;
   void Upload(const Medium& medium, const SolvedLight& light);
   void Pack(bool withShadowRays);
   void SeeLights(const Camera& camera, const Monitor& monitor);
+  void PrepareSources(const Camera& camera, const Monitor& monitor);
+  void CastRays(View& view, double from, const Monitor& monitor);
   View MakeView(const Camera& camera) const;
 
   Device& TheDevice;
   Grid TheGrid;
   ViewSettings Settings;
   double G = 0.0;
-  bool Coloured = false;     ///< extinction differs between channels
+  bool Coloured = false; ///< extinction differs between channels
   bool SourcesDependOnCamera = false;
   bool SourcesReady = false;
+  double LargestExtinction = 0.0; ///< at least the largest sigma_t, 1/length
+  bool UnderSky = false;          ///< the background is the illumination's, not the settings'
   Rgb Background = {};
   std::array<int, 2> EnvironmentSize = { 0, 0 };
   std::array<int, 3> BrickCount = {};
   int LightCount = 0;
-  std::array<int, 5> Components = {}; ///< of absorption, scattering, emission, fluence, fluenceDirect
-  std::array<Buffer<float>, 5> Arrays;
-  Buffer<float> Direct;      ///< 6 a voxel: what the lights scatter towards the eye, and their irradiance
-  Buffer<cl_float4> Samples; ///< source and grey extinction, with a border
+  std::array<int, 5> Components = {};  ///< of absorption, scattering, emission, fluence, fluenceDirect
+  std::array<Buffer<float>, 5> Arrays; ///< given back once packed, where nothing will ask for them again
+  Buffer<float> Direct;                ///< 6 a voxel: what the lights scatter towards the eye, and their irradiance
+  Buffer<cl_float4> Samples;           ///< source and grey extinction, with a border
   Buffer<cl_float4> Extinctions;
   Buffer<cl_char> Bricks;
   Buffer<cl_float4> EnvironmentPixels;
-  Buffer<cl_float4> Lights; ///< three a small_light
+  Buffer<cl_float4> Lights;             ///< three a small_light
+  Buffer<float> Radiance, Alpha, Depth; ///< the last picture; kept for the next of its size
   std::vector<std::string> Omitted;
 };
 }

@@ -141,7 +141,7 @@ inline real3 along(rays packet, real distance)
 }
 
 // The eight voxel centres around each point of a packet: twice the first one's index, and the weights of the four pairs
-// along x and of the upper of a pair. In memory, from where a CPU broadcasts single lanes for nothing.
+// along x and of the upper of a pair.
 typedef struct
 {
   integer twice_first;
@@ -149,26 +149,28 @@ typedef struct
   real x;
 } corners;
 
-inline void find_corners(real3 p, int4 size, corners* at)
+__attribute__((always_inline)) inline void find_corners(real3 p, int4 size, corners* at)
 {
+  // Points of the box are at least half a voxel above the border's centres: cutting the fraction off is floor, of which
+  // PoCL makes eleven instructions.
   const real px = p.x + (real)0.5f;
   const real py = p.y + (real)0.5f;
   const real pz = p.z + (real)0.5f;
-  const real i = floor(px);
-  const real j = floor(py);
-  const real k = floor(pz);
+  const integer i = to_integer(px);
+  const real j = to_real(to_integer(py));
+  const real k = to_real(to_integer(pz));
   const real y = py - j;
   const real z = pz - k;
   const real both = y * z;
   const real z_only = z - both;
-  at->x = px - i;
+  at->x = px - to_real(i);
   at->far_high = both;
   at->near_high = y - both;
   at->far_low = z_only;
   at->near_low = ((real)1.0f - y) - z_only;
   // Rows are counted in floats, which hold whole numbers up to 16 million.
   const integer row = to_integer(fma(k, (real)(float)(size.y + 2), j));
-  at->twice_first = (row * (size.x + 2) + to_integer(i)) * 2;
+  at->twice_first = (row * (size.x + 2) + i) * 2;
 }
 
 #if REAL_WIDTH > 1 && defined(__clang__)
@@ -216,32 +218,32 @@ inline float16 four_between(float8 v0, float8 v4, float8 v8, float8 vc, float16 
 #endif
 
 // The samples at each ray's corners, between the voxel centres: colour and w. Neighbours along x lie side by side in memory,
-// so that four loads of eight floats bring all corners of a ray. A function of its own, so that `at` stays in memory.
-#if REAL_WIDTH > 1
-__attribute__((noinline))
-#endif
-void gather(global const float4* samples, const corners* at, int4 size, rgb* colour, real* w)
+// so that four loads of eight floats bring all corners of a ray. size.w is 0, which the compiler cannot know: so `at` stays
+// in memory, from where a CPU broadcasts single lanes for nothing.
+__attribute__((always_inline)) inline void gather(global const float4* samples, const corners* at, int4 size, rgb* colour, real* w)
 {
   global const float2* near_low = (global const float2*)samples;
   global const float2* near_high = near_low + 2 * (size.x + 2);
   global const float2* far_low = near_low + 2 * (size.x + 2) * (size.y + 2);
   global const float2* far_high = far_low + 2 * (size.x + 2);
-#define FIRST(n) ((const uint*)&at->twice_first)[0x##n]
-#define WEIGHT(part, n) (((const float*)&at->part)[0x##n])
+#define FIRST(n) ((const uint*)&at->twice_first)[0x##n + size.w]
+#define WEIGHT(part, n) (((const float*)&at->part)[0x##n + size.w])
 #define FETCH(n)                                                                                                         \
   float8 v##n = WEIGHT(near_low, n) * neighbours(near_low, FIRST(n));                                                    \
   v##n = fma((float8)(WEIGHT(near_high, n)), neighbours(near_high, FIRST(n)), v##n);                                     \
   v##n = fma((float8)(WEIGHT(far_low, n)), neighbours(far_low, FIRST(n)), v##n);                                         \
   v##n = fma((float8)(WEIGHT(far_high, n)), neighbours(far_high, FIRST(n)), v##n);
-  EACH_LANE(FETCH)
-#undef FETCH
 #if REAL_WIDTH == 16
   const float16 x = at->x;
-  // All that follows stays within quarters of a register but for the first step.
+  FETCH(0) FETCH(4) FETCH(8) FETCH(c)
   const float16 a = four_between(v0, v4, v8, vc, x.s000044448888cccc);
+  FETCH(1) FETCH(5) FETCH(9) FETCH(d)
   const float16 b = four_between(v1, v5, v9, vd, x.s111155559999dddd);
+  FETCH(2) FETCH(6) FETCH(a) FETCH(e)
   const float16 c = four_between(v2, v6, va, ve, x.s22226666aaaaeeee);
+  FETCH(3) FETCH(7) FETCH(b) FETCH(f)
   const float16 d = four_between(v3, v7, vb, vf, x.s33337777bbbbffff);
+  // All that follows stays within quarters of a register.
   const float16 ab_low = (float16)(a.s0, b.s0, a.s1, b.s1, a.s4, b.s4, a.s5, b.s5, a.s8, b.s8, a.s9, b.s9, a.sc, b.sc,
     a.sd, b.sd);
   const float16 cd_low = (float16)(c.s0, d.s0, c.s1, d.s1, c.s4, d.s4, c.s5, d.s5, c.s8, d.s8, c.s9, d.s9, c.sc, d.sc,
@@ -250,12 +252,21 @@ void gather(global const float4* samples, const corners* at, int4 size, rgb* col
     a.sf, b.sf);
   const float16 cd_high = (float16)(c.s2, d.s2, c.s3, d.s3, c.s6, d.s6, c.s7, d.s7, c.sa, d.sa, c.sb, d.sb, c.se, d.se,
     c.sf, d.sf);
-  colour->r = (real)(ab_low.s01, cd_low.s01, ab_low.s45, cd_low.s45, ab_low.s89, cd_low.s89, ab_low.scd, cd_low.scd);
-  colour->g = (real)(ab_low.s23, cd_low.s23, ab_low.s67, cd_low.s67, ab_low.sab, cd_low.sab, ab_low.sef, cd_low.sef);
-  colour->b =
-    (real)(ab_high.s01, cd_high.s01, ab_high.s45, cd_high.s45, ab_high.s89, cd_high.s89, ab_high.scd, cd_high.scd);
-  *w = (real)(ab_high.s23, cd_high.s23, ab_high.s67, cd_high.s67, ab_high.sab, cd_high.sab, ab_high.sef, cd_high.sef);
+  // Pairs move as longs: else PoCL makes ten instructions of each of these.
+#define FIRST_PAIRS(p, q)                                                                                                \
+  as_float16((long8)(as_long8(p).s0, as_long8(q).s0, as_long8(p).s2, as_long8(q).s2, as_long8(p).s4, as_long8(q).s4,     \
+    as_long8(p).s6, as_long8(q).s6))
+#define SECOND_PAIRS(p, q)                                                                                               \
+  as_float16((long8)(as_long8(p).s1, as_long8(q).s1, as_long8(p).s3, as_long8(q).s3, as_long8(p).s5, as_long8(q).s5,     \
+    as_long8(p).s7, as_long8(q).s7))
+  colour->r = FIRST_PAIRS(ab_low, cd_low);
+  colour->g = SECOND_PAIRS(ab_low, cd_low);
+  colour->b = FIRST_PAIRS(ab_high, cd_high);
+  *w = SECOND_PAIRS(ab_high, cd_high);
+#undef FIRST_PAIRS
+#undef SECOND_PAIRS
 #else
+  EACH_LANE(FETCH)
 #define BETWEEN(n) const float4 u##n = fma((float4)(WEIGHT(x, n)), v##n.hi - v##n.lo, v##n.lo);
   EACH_LANE(BETWEEN)
 #undef BETWEEN
@@ -272,6 +283,7 @@ void gather(global const float4* samples, const corners* at, int4 size, rgb* col
   *w = TRANSPOSED(w);
 #undef TRANSPOSED
 #endif
+#undef FETCH
 #undef FIRST
 #undef WEIGHT
 }

@@ -1,6 +1,6 @@
 """From a CT scan under a photographed sky to pictures and data, by Tyndall's proxies alone.
 
-    pvbatch demo.py --data FOLDER --output FOLDER [--grid 88]
+    pvbatch demo.py --data FOLDER --output FOLDER [--grid 104]
 
 FOLDER holds skull_2.9.inr (CGAL's demo data, Debian package libcgal-demo) and sunset.exr (Blender's studio lights, Debian
 package blender-data). `./run demo` fetches both and calls this.
@@ -18,7 +18,7 @@ LoadPlugin(os.environ["TYNDALL_PLUGIN"], remote=True, ns=globals())
 arguments = argparse.ArgumentParser()
 arguments.add_argument("--data", required=True)
 arguments.add_argument("--output", required=True)
-arguments.add_argument("--grid", type=int, default=88, help="voxels an axis that the scan is resampled to")
+arguments.add_argument("--grid", type=int, default=104, help="voxels an axis that the scan is resampled to")
 arguments = arguments.parse_args()
 os.makedirs(arguments.output, exist_ok=True)
 
@@ -34,7 +34,7 @@ def stage(name, work):
 
 
 def data(name):
-    return os.path.join(arguments.data, name)
+    return os.path.abspath(os.path.join(arguments.data, name)) # so that the state finds it from anywhere
 
 
 def output(name):
@@ -51,16 +51,17 @@ fine = ResampleToImage(registrationName="Finer scan", Input=scan, UseInputBounds
                        SamplingDimensions=[arguments.grid] * 3)
 stage("read and resample the scan", fine.UpdatePipeline)
 
-# Bone: what the scanner calls 2.9 is its surface. Bone scatters nearly all light and absorbs a little more blue than red.
-# Real bone is some twenty times denser in optics; this is bone as a thin fog would have it, which lets light into the skull.
-medium = ParticipatingMedium(registrationName="Bone", Input=fine, MinimumDensity=2.3, MaximumDensity=3.3,
-                             ExtinctionScale=0.4, Albedo=[0.97, 0.95, 0.9])
+# Bone: what the scanner calls 2.9 is its surface. Bone scatters nearly all light and absorbs more blue than red. Real bone is
+# some twenty times denser in optics; this is bone as a thin fog would have it, which lets light into the skull.
+medium = ParticipatingMedium(registrationName="Bone", Input=fine, MinimumDensity=1.9, MaximumDensity=3.5,
+                             ExtinctionScale=0.3, Albedo=[0.93, 0.87, 0.76])
 stage("make the medium", medium.UpdatePipeline)
 
 sky = EnvironmentReader(registrationName="Sky", FileName=data("sunset.exr"))
 stage("read the sky", sky.UpdatePipeline)
 
-sun = LightRig(registrationName="Sun", SunElevation=28, SunAzimuth=180, SunPower=[2.4, 1.9, 1.4])
+# Low, from the left and behind, so that it shines through the bone.
+sun = LightRig(registrationName="Sun", SunElevation=30, SunAzimuth=130, SunPower=[34, 26, 17])
 
 light = LightPropagationMaps(registrationName="Light", Input=medium, Lights=sun, Environment=sky, Tolerance=1e-2)
 stage("solve multiple scattering", light.UpdatePipeline)
@@ -75,7 +76,7 @@ def picture(name, azimuth, elevation, single=0):
     """Render 800 x 600 pixels from a place on a sphere about the skull."""
     a, e, distance = math.radians(azimuth), math.radians(elevation), 560.0
     caster = MediumRayCaster(registrationName=name, Input=light, Lights=sun, Environment=sky, ImageSize=[800, 600],
-                             CameraFocalPoint=centre, SingleScatteringOnly=single, Exposure=0.95,
+                             CameraFocalPoint=centre, SingleScatteringOnly=single, Exposure=0.45,
                              CameraPosition=[centre[0] + distance * math.cos(a) * math.cos(e),
                                              centre[1] + distance * math.sin(a) * math.cos(e),
                                              centre[2] + distance * math.sin(e)])
@@ -84,9 +85,9 @@ def picture(name, azimuth, elevation, single=0):
     return caster
 
 
-picture("skull-multiple-scattering", 245, 6)
-picture("skull-single-scattering", 245, 6, single=1)
-picture("skull-by-the-sea", 300, 10)
+hero = picture("skull-multiple-scattering", 300, 10)
+picture("skull-single-scattering", 300, 10, single=1)
+picture("skull-on-the-square", 245, 6)
 
 
 def slice_through_light():
@@ -112,11 +113,25 @@ def slice_through_light():
     view.CameraFocalPoint, view.CameraViewUp, view.CameraParallelProjection = centre, [0, 0, 1], 1
     view.CameraParallelScale = 0.55 * max(bounds[3] - bounds[2], bounds[5] - bounds[4])
     SaveScreenshot(output("fluence-slice.png"), view)
+    return view
 
 
-stage("draw a slice of the light", slice_through_light)
+def show_beside(view, caster):
+    """What the state opens with: the light and a picture of it."""
+    other = CreateView("RenderView", ViewSize=[800, 600], OrientationAxesVisibility=0, InteractionMode="2D",
+                       CameraParallelProjection=1)
+    Show(caster, other)
+    ResetCamera(other)
+    layout = CreateLayout("Light and picture")
+    layout.SplitHorizontal(0, 0.5)
+    layout.AssignView(1, other)
+    layout.AssignView(2, view)
+
+
+slice_view = stage("draw a slice of the light", slice_through_light)
 stage("write light.vti", lambda: SaveData(output("light.vti"), proxy=light))
 stage("write light.vdb", lambda: VDBWriter(Input=light, FileName=output("light.vdb")).UpdatePipeline())
+show_beside(slice_view, hero)
 SaveState(output("skull.pvsm"))
 
 balance = facts.GetArray("energy_balance")

@@ -117,7 +117,7 @@ std::vector<Method> MethodsFor(
   for (const control::Kernels& kernels : control::KernelsHere())
   {
     control("control " + std::string(kernels.name), kernels, true);
-    if (!options.quick)
+    if (!options.quick && !large)
     {
       control("control " + std::string(kernels.name) + ", exp", kernels, false);
     }
@@ -138,7 +138,7 @@ Case RunCase(Device& device, const Scene& scene, const MachineLimits& limits, co
   result.channels = scene.channels;
   result.cores = device.ComputeUnits();
   result.updates = static_cast<double>(scene.medium.grid.VoxelCount()) * scene.channels * 6 * DirectionsPerFace;
-  result.work = CountSweepWork(scene.medium.grid, DirectionsPerFace, scene.channels);
+  result.work = CountSweepWork(device, scene.medium, DirectionsPerFace, scene.channels);
   result.limits = limits;
   result.figures = RunInterleaved(device, MethodsFor(device, scene, settings, options), Orders);
   PrintJson(result);
@@ -179,7 +179,8 @@ int main(int argc, char* argv[])
     const std::shared_ptr<Device> device = Device::Find();
     const std::vector<Case> cases = RunAll(*device, options);
     PrintTables(cases);
-    return EXIT_SUCCESS;
+    const bool fused = std::all_of(cases.begin(), cases.end(), [](const Case& one) { return one.Find(Fused); });
+    return fused ? EXIT_SUCCESS : EXIT_FAILURE;
   }
   catch (const DeviceError& error)
   {

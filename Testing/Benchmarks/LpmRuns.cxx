@@ -6,6 +6,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <cstdio>
 #include <map>
 
 namespace bench
@@ -27,7 +28,7 @@ public:
   {
     return [this](double done) {
       this->Last = { done, CoreSeconds() };
-      if (done * this->Orders < 1.0 - 1e-6 || this->First.done == 0.0)
+      if (done * this->Orders < 1.0 + 1e-6 || this->First.done == 0.0)
       {
         this->First = this->Last;
       }
@@ -154,7 +155,8 @@ std::vector<Figures> RunInterleaved(Device& device, const std::vector<Method>& m
       }
       catch (const DeviceError& error)
       {
-        figures.failure = error.what();
+        figures.failure = error.what(); // does not fit; the others may
+        std::fprintf(stderr, "%s: %s\n", method.name.c_str(), error.what());
       }
     }
   }

@@ -94,7 +94,7 @@ std::vector<std::string> MethodRow(const Case& result, const Figures& figures)
 {
   if (!figures.failure.empty())
   {
-    return { result.scene + " " + result.grid, figures.method, "does not run: " + figures.failure };
+    return { result.scene + " " + result.grid, figures.method, "fails" };
   }
   const Times times = figures.Medians();
   const Figures* fused = result.Find(Fused);

@@ -12,7 +12,9 @@ JsonLine& JsonLine::Add(const char* key, const std::string& value)
   this->Text += '"' + std::string(key) + "\": \"";
   for (const char c : value)
   {
-    this->Text += c == '"' || c == '\\' ? std::string{ '\\', c } : std::string{ c };
+    const bool special = c == '"' || c == '\\';
+    const bool control = static_cast<unsigned char>(c) < ' ';
+    this->Text += special ? std::string{ '\\', c } : std::string{ control ? ' ' : c };
   }
   this->Text += '"';
   return *this;

@@ -1,12 +1,13 @@
 #pragma once
 
-#include "Medium/Grid.h"
+#include "Device/Device.h"
+#include "Medium/Medium.h"
 
 namespace bench
 {
 /// What one order of the fused solver has to do for one voxel, direction and channel, counted in the texts of Numerics.cl,
 /// Sweep.cl, SweepBundle.cl and Collect.cl with the rays' real number of segments (Bundle::Crossing). The order is one with
-/// scattered light, without net flux, on an open box.
+/// scattered light, without net flux, on an open box; rows that are thin throughout take the polynomial.
 struct SweepWork
 {
   double operations = 0.0; ///< arithmetic on floats: each addition, multiplication, fused multiply-add, comparison,
@@ -18,5 +19,6 @@ struct SweepWork
   double cached = 0.0; ///< between caches and registers: rays and planes, loads and stores
 };
 
-SweepWork CountSweepWork(const tyndall::Grid& grid, int directionsPerFace, int channels);
+SweepWork CountSweepWork(
+  const tyndall::Device& device, const tyndall::Medium& medium, int directionsPerFace, int channels);
 }

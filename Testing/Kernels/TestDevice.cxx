@@ -39,7 +39,8 @@ class DeviceLayer : public DeviceTest
 TEST_F(DeviceLayer, HandsOutTheSameDeviceAgain)
 {
   EXPECT_EQ(Device::Find().get(), Device::Find().get());
-  EXPECT_EQ(Device::Find(this->GetDevice().Name().substr(2, 5)).get(), this->TheDevice.get()) << "by a part of its name";
+  EXPECT_EQ(Device::Find(this->GetDevice().Name().substr(2, 5)).get(), this->TheDevice.get())
+    << "by a part of its name";
 }
 
 TEST_F(DeviceLayer, NamesTheDevicesThereAreWhereTheOneAskedForIsNot)
@@ -83,7 +84,9 @@ TEST_F(DeviceLayer, ShowsTheBuildLogOfAKernelThatDoesNotBuild)
 }
 
 /// 1 - exp(-tau) and exp(-tau) as the kernels see them.
-class Extinguished : public DeviceTest, public testing::WithParamInterface<int>
+class Extinguished
+  : public DeviceTest
+  , public testing::WithParamInterface<int>
 {
 };
 

@@ -56,7 +56,8 @@ TEST(SoundDirections, IntegrateConstantsDirectionsAndTheirProductsExactly)
 TEST(SoundDirections, LetADiffuseFaceShineWithPiMoreExactlyTheMoreThereAre)
 {
   const auto error = [](int perFace) {
-    return std::abs(HalfRangeFlux(SoundDirections(perFace), 2) / (2.0 * Pi) - 1.0);
+    const double flux = HalfRangeFlux(SoundDirections(perFace), 2);
+    return std::abs(flux / (2.0 * Pi) - 1.0);
   };
   EXPECT_LT(error(25), 1.3e-2);
   EXPECT_LT(error(100), 2e-3);

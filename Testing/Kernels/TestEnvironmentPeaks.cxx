@@ -32,8 +32,8 @@ double Power(const Environment& environment, int channel)
   double sum = 0.0;
   for (int j = 0; j < environment.height; ++j)
   {
-    const double solidAngle = (std::cos(Pi * j / environment.height) - std::cos(Pi * (j + 1) / environment.height)) * 2.0 *
-      Pi / environment.width;
+    const double solidAngle = (std::cos(Pi * j / environment.height) - std::cos(Pi * (j + 1) / environment.height)) *
+      2.0 * Pi / environment.width;
     for (int i = 0; i < environment.width; ++i)
     {
       sum += solidAngle * environment.radiance[3 * (j * environment.width + i) + channel];
@@ -94,7 +94,9 @@ TEST_F(EnvironmentLight, ASunInAPhotographCastsAShadowLikeADirectionalLight)
   }
   scene.light.environment = SkyWithSun(1e-6f, 1e6f, 20, 63);
   const LightField light = scene.Solve(this->GetDevice());
-  const auto fluence = [&](int x, int z) { return light.fluence[((static_cast<std::size_t>(z) * 20 + 10) * 20 + x) * 3]; };
+  const auto fluence = [&](int x, int z) {
+    return light.fluence[((static_cast<std::size_t>(z) * 20 + 10) * 20 + x) * 3];
+  };
   EXPECT_LT(fluence(10, 5), 1e-3 * fluence(2, 5)) << "shadow";
   EXPECT_NEAR(fluence(2, 5) / fluence(17, 5), 1.0, 1e-3) << "and even light beside it";
 }

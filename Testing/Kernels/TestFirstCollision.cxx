@@ -64,7 +64,8 @@ TEST_F(FirstCollision, APointInAbsorberFollowsTheInverseSquareAndTheExponential)
   Scene scene({ 33, 33, 33 }, static_cast<float>(sigma), 0.0f);
   scene.light.lights = { Lamp(LightType::Point, { 16.5, 16.5, 16.5 }) };
   const LightField light = scene.Solve(this->GetDevice());
-  for (const std::array<int, 3>& voxel : { std::array<int, 3>{ 26, 16, 16 }, { 16, 5, 16 }, { 24, 25, 23 }, { 10, 6, 29 } })
+  for (const std::array<int, 3>& voxel :
+    { std::array<int, 3>{ 26, 16, 16 }, { 16, 5, 16 }, { 24, 25, 23 }, { 10, 6, 29 } })
   {
     const double r = std::hypot(voxel[0] - 16.0, voxel[1] - 16.0, voxel[2] - 16.0);
     const double exact = 10.0 * std::exp(-sigma * r) / (4.0 * Pi * r * r);

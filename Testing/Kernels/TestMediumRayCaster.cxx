@@ -441,6 +441,63 @@ TEST_F(MediumRayCasterTest, TheSameAgainToTheLastBit)
   EXPECT_EQ(caster.Render(scene.Framed()).radiance, scene.Seen(this->GetDevice()).radiance);
 }
 
+// A caster that is kept shows what a new one would.
+TEST_F(MediumRayCasterTest, AdoptsWhatNeedsNothingNewOnTheDevice)
+{
+  for (bool shadowRays : { false, true })
+  {
+    Scene scene = Blobs();
+    scene.illumination.sky = { 0.0, 0.0, 0.0 };
+    scene.fluenceDirect = scene.Everywhere(0.1);
+    scene.illumination.lights.resize(1);
+    scene.settings.shadowRays = shadowRays;
+    MediumRayCaster kept = scene.Caster(this->GetDevice());
+    const Picture before = kept.Render(scene.Framed());
+    scene.settings.imageSize = { 40, 52 };
+    scene.settings.stepSize = 0.8;
+    scene.settings.backgroundColor = { 0.1, 0.2, 0.3 };
+    scene.settings.minimumTransmittance = 0.1;
+    ASSERT_TRUE(kept.Adopt(scene.settings));
+    const Picture after = kept.Render(scene.Framed());
+    const Picture fresh = scene.Seen(this->GetDevice());
+    EXPECT_EQ(fresh.radiance, after.radiance);
+    EXPECT_EQ(fresh.alpha, after.alpha);
+    EXPECT_EQ(fresh.depth, after.depth);
+    EXPECT_NE(before.radiance.size(), after.radiance.size());
+
+    ViewSettings other = scene.settings;
+    other.singleScatteringOnly = true;
+    other.imageSize = { 3, 3 };
+    EXPECT_FALSE(kept.Adopt(other));
+    EXPECT_EQ(fresh.radiance, kept.Render(scene.Framed()).radiance);
+    other = scene.settings;
+    other.stepSize = -1.0;
+    EXPECT_THROW(kept.Adopt(other), InvalidInput);
+    EXPECT_EQ(fresh.radiance, kept.Render(scene.Framed()).radiance);
+  }
+}
+
+// Steps of an optical length up to 2 are crossed another way than longer ones, if there are no longer ones: an opaque voxel
+// that nobody sees decides.
+TEST_F(MediumRayCasterTest, ThinAndThickStepsAgree)
+{
+  for (int components : { 1, 3 })
+  {
+    Scene scene(GridOf(20, 20, 20));
+    scene.components = components;
+    scene.settings.stepSize = 1.0;
+    scene.sigma_a = Random(components * scene.grid.VoxelCount(), 1.99f, 6); // of a step: a voxel is 1 long
+    scene.emission = Random(scene.grid.VoxelCount(), 1.0f, 7);
+    const Camera above = FromAbove(scene.grid, 5.0);
+    const Picture thin = scene.Seen(this->GetDevice(), above);
+    scene.sigma_a[0] = 50.0f; // at the bottom
+    const Picture thick = scene.Seen(this->GetDevice(), above);
+    EXPECT_LT(Distance(thin.alpha, thick.alpha), 1e-6);
+    EXPECT_LT(Distance(thin.radiance, thick.radiance), 2e-6);
+    EXPECT_LT(Distance(thin.depth, thick.depth), 1e-4);
+  }
+}
+
 TEST_F(MediumRayCasterTest, GreyAndColouredExtinctionAgree)
 {
   Scene scene = Blobs();

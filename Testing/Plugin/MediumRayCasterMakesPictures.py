@@ -53,5 +53,7 @@ caster.CameraPosition = [0, -1000, 0]
 assert 0 < (pixels(caster, "alpha") > 0).mean() < 0.05
 
 view = CreateView("RenderView")
-assert Show(caster, view).Representation == "Slice"
+shown = Show(caster, view)
+assert shown.Representation == "Slice"
+assert shown.MapScalars == 0, "shown in its own colours"
 SaveData(os.path.join(os.environ["TYNDALL_TEST_OUTPUT"], "MediumRayCasterMakesPictures.png"), proxy=caster)

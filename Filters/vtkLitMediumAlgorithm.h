@@ -1,0 +1,99 @@
+#ifndef vtkLitMediumAlgorithm_h
+#define vtkLitMediumAlgorithm_h
+
+#include "vtkImageAlgorithm.h"
+#include "vtkTyndallModule.h" // for export macro
+
+#include <string>
+
+namespace tyndall
+{
+struct Illumination;
+}
+
+/**
+ * @class vtkLitMediumAlgorithm
+ * @brief superclass of the filters that take a medium and what shines on it, and give an image
+ *
+ * It has their input ports, how the environment stands, and the OpenCL device.
+ *
+ * Input 0, the medium: vtkImageData; see the subclass for its arrays.
+ * Input 1, optional: lights as vtkLightRig makes them, vtkPolyData.
+ * Input 2, optional: the environment, vtkImageData in latitude-longitude layout, point array `radiance` (1 or 3 components,
+ * W/(length^2 sr)), as vtkEnvironmentReader makes it.
+ *
+ * Light crosses the borders of pieces. In a parallel pipeline every rank therefore asks for all of each input and works on
+ * the whole; RequestData of a subclass hands on the piece it was asked for.
+ *
+ * A subclass implements RequestData, and reads there the lights and the environment by ReadIllumination.
+ *
+ * @sa vtkLightPropagationMaps vtkLPMPropagate vtkMediumRayCaster
+ */
+class TYNDALL_EXPORT vtkLitMediumAlgorithm : public vtkImageAlgorithm
+{
+public:
+  vtkTypeMacro(vtkLitMediumAlgorithm, vtkImageAlgorithm);
+  void PrintSelf(ostream& os, vtkIndent indent) override;
+
+  /// Numbers of the input ports.
+  enum InputPorts
+  {
+    MEDIUM = 0,
+    LIGHTS = 1,
+    ENVIRONMENT = 2
+  };
+
+  ///@{
+  /// Lights (vtkPolyData) and environment (vtkImageData) by connection or as data; null: none.
+  void SetLightsConnection(vtkAlgorithmOutput* lights);
+  void SetLightsData(vtkDataObject* lights);
+  void RemoveLights();
+  void SetEnvironmentConnection(vtkAlgorithmOutput* environment);
+  void SetEnvironmentData(vtkDataObject* environment);
+  void RemoveEnvironment();
+  ///@}
+
+  ///@{
+  /// Axis of the scene along which the environment's up points: 0, 1, 2 for x, y, z. Default 2.
+  vtkSetClampMacro(EnvironmentUp, int, 0, 2);
+  vtkGetMacro(EnvironmentUp, int);
+  ///@}
+
+  ///@{
+  /// By how much the environment is turned about its up, degrees, rounded to whole pixels. Default 0.
+  vtkSetMacro(EnvironmentAzimuth, double);
+  vtkGetMacro(EnvironmentAzimuth, double);
+  ///@}
+
+  ///@{
+  /// Part of the name of the OpenCL device to use, of any case. Default empty: what the variable TYNDALL_DEVICE names, or
+  /// else PoCL's CPU device.
+  vtkSetStdStringFromCharMacro(Device);
+  vtkGetCharFromStdStringMacro(Device);
+  ///@}
+
+protected:
+  vtkLitMediumAlgorithm();
+  ~vtkLitMediumAlgorithm() override;
+
+  int FillInputPortInformation(int port, vtkInformation* information) override;
+  int RequestUpdateExtent(
+    vtkInformation* request, vtkInformationVector** inputs, vtkInformationVector* outputs) override;
+  int RequestData(vtkInformation* request, vtkInformationVector** inputs, vtkInformationVector* outputs) override = 0;
+
+  /// The lights, and the environment as it stands in the scene. Checked.
+  tyndall::Illumination ReadIllumination(vtkInformationVector** inputs);
+
+  /// A line of PrintSelf: the name, then the numbers.
+  static void PrintNumbers(ostream& os, vtkIndent indent, const char* name, const double* values, int count);
+
+  int EnvironmentUp = 2;
+  double EnvironmentAzimuth = 0.0;
+  std::string Device;
+
+private:
+  vtkLitMediumAlgorithm(const vtkLitMediumAlgorithm&) = delete;
+  void operator=(const vtkLitMediumAlgorithm&) = delete;
+};
+
+#endif

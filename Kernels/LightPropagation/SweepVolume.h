@@ -1,0 +1,52 @@
+#pragma once
+
+#include "../Device/Buffer.h"
+#include "../Lights/Lights.h"
+#include "../Medium/Grid.h"
+
+#include <array>
+#include <functional>
+
+namespace tyndall
+{
+/// The widest vector of any kernel, floats.
+constexpr std::size_t SweepPadding = 16;
+
+/// The medium and the light on the device while a solver runs. Every array is [channel][stride] with voxels x fastest; the
+/// stride is the voxel count rounded up to whole vectors, what is beyond the voxels is zero. Buffers
+/// are SweepPadding floats longer: a vector that begins in them may be read whole.
+struct SweepVolume
+{
+  Grid grid;
+  int channels = 1; ///< 1 or 3 that share one sigma_t
+  std::size_t stride = 0;
+  const Buffer<float>* sigma_t = nullptr; ///< 1/length
+  std::size_t sigma_t_first = 0;          ///< where its channel begins
+  const Buffer<float>* source = nullptr;  ///< W / (length^3 sr)
+  const Buffer<float>* path = nullptr;    ///< W length, added to
+  const Buffer<float>* flux = nullptr;    ///< W length, [channel][x, y, z][stride], added to; null: not wanted
+  std::size_t first = 0; ///< where the first channel of source and path begins (flux: three times that)
+};
+
+/// Memory that sweeps along different axes take turns in. What one leaves there means nothing to the next.
+struct SweepWorkspace
+{
+  Buffer<float> maps;    ///< the rays of an open axis
+  Buffer<float> scratch; ///< planes being crossed
+
+  /// Have room for so many floats. The device must be idle.
+  void Reserve(Device& device, std::size_t mapFloats, std::size_t scratchFloats);
+};
+
+/// Power that came in and went out in a sweep, W per channel and face -x, +x, -y, +y, -z, +z.
+struct SweepTally
+{
+  std::array<Rgb, 6> in = {};
+  std::array<Rgb, 6> out = {};
+  Rgb onTheWay = {}; ///< left in the maps of a periodic axis
+};
+
+/// Radiance, W / (length^2 sr), of `direction` (an index into the direction set; for beams irradiance and 0) that comes
+/// in through `face`.
+using SweepBoundary = std::function<Rgb(int direction, int face)>;
+}

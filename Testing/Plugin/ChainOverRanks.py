@@ -1,0 +1,35 @@
+"""The whole chain over two ranks: each has its pieces of the light and the picture, equal to those of the whole."""
+import os
+import sys
+
+sys.path.insert(0, os.path.dirname(os.path.abspath(__file__)))
+import whole_chain
+
+from paraview import servermanager
+from paraview.vtk import vtkImageData
+
+rank = servermanager.vtkProcessModule.GetProcessModule().GetPartitionId()
+assert servermanager.vtkProcessModule.GetProcessModule().GetNumberOfLocalPartitions() == 2
+sky = os.path.join(os.environ["TYNDALL_TEST_OUTPUT"], "ChainOverRanks%d.hdr" % rank)
+whole_chain.write_sky(sky)
+
+
+def check(proxy, association, name):
+    algorithm = proxy.GetClientSideObject()
+    piece = vtkImageData()
+    piece.DeepCopy(algorithm.GetOutputDataObject(0))
+    algorithm.UpdateWholeExtent()
+    whole = algorithm.GetOutputDataObject(0)
+    expected = vtkImageData()
+    expected.DeepCopy(whole)
+    expected.Crop(piece.GetExtent())
+    assert 0 < piece.GetNumberOfPoints() < whole.GetNumberOfPoints(), piece.GetExtent()
+    found = piece.GetAttributes(association).GetArray(name)
+    wanted = expected.GetAttributes(association).GetArray(name)
+    assert found.GetNumberOfValues() == wanted.GetNumberOfValues() > 0
+    assert all(found.GetValue(i) == wanted.GetValue(i) for i in range(found.GetNumberOfValues())), name
+
+
+light = whole_chain.solve(sky)
+check(light, vtkImageData.CELL, "fluence")
+check(whole_chain.render(light), vtkImageData.POINT, "radiance")
