@@ -579,16 +579,6 @@ void PassOn(vtkImageData* input, vtkImageData* output)
   output->SetFieldData(own);
 }
 
-std::string Lines(const std::vector<std::string>& texts)
-{
-  std::string lines;
-  for (const std::string& text : texts)
-  {
-    lines += (lines.empty() ? "" : "\n") + text;
-  }
-  return lines;
-}
-
 Monitor MonitorOf(vtkAlgorithm* filter)
 {
   return [filter](double fractionDone) {

@@ -137,9 +137,6 @@ void WriteLight(LightField&& light, vtkImageData* output);
 /// One row an iteration: `iteration`, `seconds`, `residual`, `absorbed`, `escaped`, `left_over`.
 void WriteConvergence(const std::vector<ConvergenceRow>& rows, vtkTable* table);
 
-/// Texts as a panel shows them, one a line.
-std::string Lines(const std::vector<std::string>& texts);
-
 /// Reports to the filter's progress; says stop when the filter is asked to abort.
 Monitor MonitorOf(vtkAlgorithm* filter);
 

@@ -78,6 +78,8 @@ std::vector<std::uint8_t> BruteForce(
   const Size& size, const std::vector<float>& values, const std::function<double(int)>& tolerance)
 {
   std::vector<std::uint8_t> levels(values.size(), 0);
+  std::vector<float> lowest(values.size());
+  std::vector<float> highest(values.size());
   const int longest = *std::max_element(size.begin(), size.end());
   for (int level = 1; (1 << (level - 1)) < longest; ++level)
   {
@@ -85,8 +87,8 @@ std::vector<std::uint8_t> BruteForce(
       const std::size_t x = i % size[0], y = i / size[0] % size[1], z = i / size[0] / size[1];
       return ((z >> level) * size[1] + (y >> level)) * size[0] + (x >> level);
     };
-    std::vector<float> lowest(values.size(), std::numeric_limits<float>::infinity());
-    std::vector<float> highest(values.size(), -std::numeric_limits<float>::infinity());
+    std::fill(lowest.begin(), lowest.end(), std::numeric_limits<float>::infinity());
+    std::fill(highest.begin(), highest.end(), -std::numeric_limits<float>::infinity());
     for (std::size_t i = 0; i < values.size(); ++i)
     {
       lowest[node(i)] = std::min(lowest[node(i)], values[i]);
