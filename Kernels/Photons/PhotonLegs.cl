@@ -14,6 +14,7 @@
 // Positions and velocities are in voxels, lengths in voxel diagonals.
 
 #define NEVER 3e38f
+#define AHEAD 4        // voxels along the axis of fastest change, by which memory is asked for early
 #define OUTSIDE -3e38f // sigma of the padding round the grid
 
 typedef struct
@@ -43,7 +44,7 @@ typedef struct
   const march_info* info;
   const __global float* sigma;        // [MEDIUM_CHANNELS][copy] extinction over a diagonal; its sign bit: the index varies
   const __global float* coefficients; // of n^2
-  const __global uchar* levels;       // of the octree, a voxel of the grid
+  const __global uchar* nodes; // [copy] 0: the index does not vary, 1: it does, in a single voxel, 1 + k: in an octree's node of 2^k
   __global long* sums;                // [copy][RECORD] fixed point
   __global photon_end* ends;
   __global float4* vertices; // of a path: position in voxels, part of the power that is left; null: they are only counted
@@ -60,6 +61,7 @@ typedef struct
   LANES(int, stride_x); // of `at` to the next voxel
   LANES(int, stride_y);
   LANES(int, stride_z);
+  LANES(int, ahead); // of `at` to where the photon will be a few voxels on
   LANES(float, wall_x); // time of the next wall
   LANES(float, wall_y);
   LANES(float, wall_z);
@@ -72,6 +74,8 @@ typedef struct
   LANES(float, pace);    // diagonals per time
   LANES(float, step);    // time of the step under way
   LANES(int, steps);     // taken
+  LANES(int, crossings); // stretches that were credited
+  float power[CHANNELS][REAL_WIDTH] __attribute__((aligned(64)));
   float3 start[REAL_WIDTH];    // of the leg
   float3 velocity[REAL_WIDTH]; // along it
   float3 momentum[REAL_WIDTH]; // T; v of Euler; order 2 has it as the velocity
@@ -137,6 +141,8 @@ static void begin_leg(const march_info* info, photon_lanes* lanes, int k, float3
   lanes->stride_x[k] = strides.x;
   lanes->stride_y[k] = strides.y;
   lanes->stride_z[k] = strides.z;
+  const float3 fast = fabs(u);
+  lanes->ahead[k] = AHEAD * (fast.x > fast.y && fast.x > fast.z ? strides.x : fast.y > fast.z ? strides.y : strides.z);
   const float3 way = u * spacing_of(info);
   const float pace = sqrt(dot(way, way));
   lanes->pace[k] = pace;
@@ -146,26 +152,28 @@ static void begin_leg(const march_info* info, photon_lanes* lanes, int k, float3
 }
 
 #if BENDS
-// Time of a step from `p` where the index varies; 0 where it does not, and beyond the grid.
-static float time_of_step(const march_arrays* arrays, float3 p, float3 u)
+// The voxel of a place anywhere, one of the padding where it is beyond the grid.
+static int3 voxel_of_place(const march_info* info, float3 p)
+{
+  return clamp(convert_int3(floor(p)), (int3)(-1), size_of(info));
+}
+
+// Time of a step from p in `voxel` where the index varies; 0 where it does not.
+static float time_of_step(const march_arrays* arrays, int3 voxel, float3 p, float3 u)
 {
   const march_info* info = arrays->info;
-  const int3 size = size_of(info);
-  const int3 voxel = convert_int3_rtz(p); // from 0 towards -1, too: then there is no index to vary
-  const int3 last = size - 1;
-  if (((voxel.x | voxel.y | voxel.z | (last.x - voxel.x) | (last.y - voxel.y) | (last.z - voxel.z)) < 0) ||
-    as_int(arrays->sigma[padded(info, voxel)]) >= 0)
+  const int node = arrays->nodes[padded(info, voxel)];
+  if (node == 0)
   {
     return 0.0f;
   }
   const float shortest = info->stepSize / sqrt(dot(u, u));
 #if LEVELS
-  const int level = arrays->levels[(voxel.z * size.y + voxel.y) * size.x + voxel.x];
-  if (level > 0)
+  if (node > 1)
   {
     // To where it leaves the octree's node, and a little into the next one.
-    const int3 low = (voxel >> level) << level;
-    const int3 high = min(low + (1 << level), size);
+    const int3 low = (voxel >> (node - 1)) << (node - 1);
+    const int3 high = min(low + (1 << (node - 1)), size_of(info));
     const float3 out = times_to_walls(p, convert_float3(low), convert_float3(high), u, 1.0f / u);
     return fmax(1.001f * fmin(fmin(out.x, out.y), out.z), shortest);
   }
@@ -182,23 +190,23 @@ static float3 pull(const march_arrays* arrays, float3 p)
 
 #if ORDER == 1
 // The step of explicit Euler from p; time is the length of path, in diagonals.
-static float3 take_step(const march_arrays* arrays, photon_lanes* lanes, int k, float3 p, float* step)
+static float3 take_step(const march_arrays* arrays, photon_lanes* lanes, int k, int3 voxel, float3 p, float* step)
 {
   const float3 h = spacing_of(arrays->info);
   const float4 squared = squared_index(&arrays->info->grid, arrays->coefficients, p);
   const float n = sqrt(squared.w);
   const float3 velocity = lanes->momentum[k] / n;
-  *step = time_of_step(arrays, p, velocity);
+  *step = time_of_step(arrays, voxel, p, velocity);
   lanes->momentum[k] += *step * squared.xyz / (2.0f * n * h * h);
   return velocity;
 }
 #elif ORDER == 4
 // Yoshida's step from p: the velocity with which it gets to its end on a straight line.
-static float3 take_step(const march_arrays* arrays, photon_lanes* lanes, int k, float3 p, float* step)
+static float3 take_step(const march_arrays* arrays, photon_lanes* lanes, int k, int3 voxel, float3 p, float* step)
 {
   const float outer = 1.35120719195965763f, inner = -1.70241438391931526f;
   float3 u = lanes->momentum[k];
-  *step = time_of_step(arrays, p, u);
+  *step = time_of_step(arrays, voxel, p, u);
   if (*step == 0.0f)
   {
     return u;
@@ -225,20 +233,21 @@ static void take_turn(const march_arrays* arrays, photon_lanes* lanes, int k)
 #if ORDER == 2
   if (lanes->turn[k] > now)
   {
-    lanes->step[k] = time_of_step(arrays, p, u);
+    lanes->step[k] = time_of_step(arrays, voxel_at(arrays->info, p, lanes->at[k]), p, u);
     lanes->turn[k] = lanes->step[k] > 0.0f ? now + 0.5f * lanes->step[k] : NEVER;
     lanes->settled[k] = now;
     return;
   }
   const float step = lanes->step[k];
   u += step * pull(arrays, p);
-  const float next = time_of_step(arrays, p + 0.5f * step * u, u);
+  const float3 end = p + 0.5f * step * u;
+  const float next = time_of_step(arrays, voxel_of_place(arrays->info, end), end, u);
   lanes->step[k] = next;
   lanes->settled[k] = 0.5f * step;
   lanes->turn[k] = next > 0.0f ? 0.5f * (step + next) : NEVER;
 #else
   float step;
-  u = take_step(arrays, lanes, k, p, &step);
+  u = take_step(arrays, lanes, k, voxel_at(arrays->info, p, lanes->at[k]), p, &step);
   lanes->settled[k] = 0.0f;
   lanes->turn[k] = step > 0.0f ? step : NEVER;
 #endif
@@ -256,6 +265,7 @@ static void rest(photon_lanes* lanes, int k)
   lanes->wall_x[k] = lanes->wall_y[k] = lanes->wall_z[k] = 0.0f;
   lanes->across_x[k] = lanes->across_y[k] = lanes->across_z[k] = 0.0f;
   lanes->now[k] = lanes->pace[k] = 0.0f;
+  lanes->ahead[k] = 0;
   lanes->turn[k] = NEVER;
 }
 

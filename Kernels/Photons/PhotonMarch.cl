@@ -16,6 +16,7 @@
 #if REAL_WIDTH == 1
 #define truth(condition) (-(condition))
 #define anywhere(mask) (mask)
+#define bits_of(mask) ((mask) & 1)
 #define as_integer as_int
 #define gather(values, i) ((values)[i])
 #else
@@ -23,12 +24,16 @@
 #define anywhere(mask) any(mask)
 #define as_integer TYNDALL_JOIN(as_int, REAL_WIDTH)
 #if REAL_WIDTH == 4
+#define bits_of(mask) bits_of_4(mask)
 #define gather(values, i) ((float4)((values)[(i).s0], (values)[(i).s1], (values)[(i).s2], (values)[(i).s3]))
 #elif REAL_WIDTH == 8
+#define bits_of(mask) (bits_of_4((mask).lo) | bits_of_4((mask).hi) << 4)
 #define gather(values, i) \
   ((float8)((values)[(i).s0], (values)[(i).s1], (values)[(i).s2], (values)[(i).s3], (values)[(i).s4], (values)[(i).s5], \
     (values)[(i).s6], (values)[(i).s7]))
 #else
+#define bits_of(mask) \
+  (bits_of_4((mask).lo.lo) | bits_of_4((mask).lo.hi) << 4 | bits_of_4((mask).hi.lo) << 8 | bits_of_4((mask).hi.hi) << 12)
 #define gather(values, i) \
   ((float16)((values)[(i).s0], (values)[(i).s1], (values)[(i).s2], (values)[(i).s3], (values)[(i).s4], (values)[(i).s5], \
     (values)[(i).s6], (values)[(i).s7], (values)[(i).s8], (values)[(i).s9], (values)[(i).sa], (values)[(i).sb], \
@@ -36,6 +41,12 @@
 #endif
 #endif
 #define masked(mask, value) as_real((mask) & as_integer(value))
+
+static int bits_of_4(int4 mask)
+{
+  const int4 bits = mask & (int4)(1, 2, 4, 8);
+  return bits.x | bits.y | bits.z | bits.w;
+}
 
 // The part of the state that changes between two turns, in registers.
 typedef struct
@@ -49,10 +60,15 @@ typedef struct
 static void land(const photon_flight* flight, photon_lanes* lanes)
 {
   *(integer*)lanes->at = flight->at;
+  *(integer*)lanes->crossings = flight->crossings;
   *(real*)lanes->wall_x = flight->wall_x;
   *(real*)lanes->wall_y = flight->wall_y;
   *(real*)lanes->wall_z = flight->wall_z;
   *(real*)lanes->now = flight->now;
+  for (int c = 0; c < CHANNELS; ++c)
+  {
+    *(real*)lanes->power[c] = flight->power[c];
+  }
 }
 
 static void take_off(const march_arrays* arrays, const photon_lanes* lanes, photon_flight* flight)
@@ -109,17 +125,42 @@ static void credit(__global long* record, const float* a, float4 direction)
 #endif
 }
 
-static void credit_all(const march_arrays* arrays, const photon_lanes* lanes, const photon_flight* flight, const real* gained)
+static void credit_all(const march_arrays* arrays, const photon_lanes* lanes, integer at, const real* gained)
 {
+  LANES(int, places);
+  float amounts[CHANNELS][REAL_WIDTH] __attribute__((aligned(64)));
+  *(integer*)places = at;
+  for (int c = 0; c < CHANNELS; ++c)
+  {
+    *(real*)amounts[c] = gained[c];
+  }
   for (int k = 0; k < REAL_WIDTH; ++k)
   {
     float a[CHANNELS];
     for (int c = 0; c < CHANNELS; ++c)
     {
-      a[c] = ((const float*)&gained[c])[k];
+      a[c] = amounts[c][k];
     }
-    credit(arrays->sums + (ulong)((const int*)&flight->at)[k] * RECORD, a, lanes->direction[k]);
+    credit(arrays->sums + (ulong)places[k] * RECORD, a, lanes->direction[k]);
   }
+}
+
+// Most of the time of a march across a large grid is waiting for memory. It is asked for a few voxels ahead of the photons, as
+// far as they go straight on. Whoever compiles this may not know how: then it does without.
+static void ask_ahead(const march_arrays* arrays, const photon_lanes* lanes, integer at)
+{
+#if REAL_WIDTH > 1 && defined(__has_builtin)
+#if __has_builtin(__builtin_prefetch)
+  LANES(int, places);
+  *(integer*)places = at + INTEGERS(lanes->ahead);
+  for (int k = 0; k < REAL_WIDTH; ++k)
+  {
+    const long there = places[k];
+    __builtin_prefetch((const void*)(uintptr_t)(arrays->sums + there * RECORD), 1);
+    __builtin_prefetch((const void*)(uintptr_t)(arrays->sigma + there), 0);
+  }
+#endif
+#endif
 }
 
 // Through the walls that are reached at time `next`.
@@ -159,36 +200,32 @@ static int face_left(const march_info* info, int at)
   return voxel.x < 0 ? 0 : voxel.x >= size.x ? 1 : voxel.y < 0 ? 2 : voxel.y >= size.y ? 3 : voxel.z < 0 ? 4 : 5;
 }
 
-static void end_photon(const photon_lanes* lanes, int k, const photon_flight* flight, int face, __global photon_end* end)
+static void end_photon(const photon_lanes* lanes, int k, int face, __global photon_end* end)
 {
   end->face = face;
-  end->crossings = ((const int*)&flight->crossings)[k];
+  end->crossings = lanes->crossings[k];
   end->steps = lanes->steps[k];
   for (int c = 0; c < CHANNELS; ++c)
   {
-    end->power[c] = ((const float*)&flight->power[c])[k];
+    end->power[c] = lanes->power[c][k];
   }
 }
 
-static void attend(
-  const march_arrays* arrays, photon_lanes* lanes, const photon_flight* flight, const integer* special, int first)
+static void attend(const march_arrays* arrays, photon_lanes* lanes, int special, int first)
 {
-  for (int k = 0; k < REAL_WIDTH; ++k)
+  for (; special; special &= special - 1)
   {
-    if (!((const int*)special)[k])
-    {
-      continue;
-    }
+    const int k = 31 - clz(special & -special);
     const int at = lanes->at[k];
     const bool outside = arrays->sigma[at] == OUTSIDE;
     float most = 0.0f;
     for (int c = 0; c < CHANNELS; ++c)
     {
-      most = fmax(most, ((const float*)&flight->power[c])[k]);
+      most = fmax(most, lanes->power[c][k]);
     }
     if (outside || most < arrays->info->darkness)
     {
-      end_photon(lanes, k, flight, outside ? face_left(arrays->info, at) : DARK, arrays->ends + first + k);
+      end_photon(lanes, k, outside ? face_left(arrays->info, at) : DARK, arrays->ends + first + k);
       rest(lanes, k);
     }
 #if BENDS
@@ -209,7 +246,7 @@ static void load_packet(const march_arrays* arrays, const __global float* photon
     const __global float* photon = photons + (ulong)(there ? first + k : first) * PHOTON_FLOATS;
     for (int c = 0; c < CHANNELS; ++c)
     {
-      ((float*)&flight->power[c])[k] = there ? photon[6 + c] : 0.0f;
+      lanes->power[c][k] = there ? photon[6 + c] : 0.0f;
     }
     set_off(arrays, lanes, k, photon);
     if (!there)
@@ -218,6 +255,10 @@ static void load_packet(const march_arrays* arrays, const __global float* photon
     }
   }
   flight->crossings = 0;
+  for (int c = 0; c < CHANNELS; ++c)
+  {
+    flight->power[c] = *(const real*)lanes->power[c];
+  }
   take_off(arrays, lanes, flight);
 }
 
@@ -253,7 +294,8 @@ static int march_packet(const march_arrays* arrays, const __global float* photon
     attenuate(arrays, &flight, fmax(next - flight.now, (real)0.0f) * VECTOR(lanes.pace), gained);
     flight.crossings -= flight.alive;
 #if !PATHS
-    credit_all(arrays, &lanes, &flight, gained);
+    ask_ahead(arrays, &lanes, flight.at);
+    credit_all(arrays, &lanes, flight.at, gained);
 #endif
     cross_walls(arrays, &lanes, &flight, next);
     const integer special = to_attend(arrays, &lanes, &flight);
@@ -263,7 +305,7 @@ static int march_packet(const march_arrays* arrays, const __global float* photon
 #if PATHS
       add_vertex(arrays, &lanes, next, flight.power[0] / whole, &vertices);
 #endif
-      attend(arrays, &lanes, &flight, &special, first);
+      attend(arrays, &lanes, bits_of(special), first);
       take_off(arrays, &lanes, &flight);
       if (!anywhere(flight.alive))
       {
@@ -271,11 +313,12 @@ static int march_packet(const march_arrays* arrays, const __global float* photon
       }
     }
   }
+  land(&flight, &lanes);
   for (int k = 0; k < REAL_WIDTH; ++k)
   {
     if (lanes.alive[k])
     {
-      end_photon(&lanes, k, &flight, STILL_GOING, arrays->ends + first + k);
+      end_photon(&lanes, k, STILL_GOING, arrays->ends + first + k);
     }
   }
   return vertices;
@@ -285,22 +328,22 @@ static int march_packet(const march_arrays* arrays, const __global float* photon
 // The path of photon i, a work-item each. Its `counts[i]` vertices go to vertices + offsets[i]; with `counting` they are only
 // counted.
 __kernel void trace_paths(march_info info, const __global float* sigma, const __global float* coefficients,
-  const __global uchar* levels, const __global float* photons, __global photon_end* ends, int counting,
+  const __global uchar* nodes, const __global float* photons, __global photon_end* ends, int counting,
   const __global int* offsets, __global float4* vertices, __global int* counts)
 {
   const int i = get_global_id(0);
-  const march_arrays arrays = { &info, sigma, coefficients, levels, 0, ends, counting ? 0 : vertices + offsets[i] };
+  const march_arrays arrays = { &info, sigma, coefficients, nodes, 0, ends, counting ? 0 : vertices + offsets[i] };
   counts[i] = march_packet(&arrays, photons, i, i + 1);
 }
 #else
 // Photons `first` to `first + count`.
 __kernel void march_photons(march_info info, const __global float* sigma, const __global float* coefficients,
-  const __global uchar* levels, const __global float* photons, __global photon_end* ends, __global long* sums,
+  const __global uchar* nodes, const __global float* photons, __global photon_end* ends, __global long* sums,
   ulong copyStride, int first, int count)
 {
 #if WORKERS > 0
   const int worker = get_global_id(0);
-  const march_arrays arrays = { &info, sigma, coefficients, levels, sums + worker * copyStride, ends, 0 };
+  const march_arrays arrays = { &info, sigma, coefficients, nodes, sums + worker * copyStride, ends, 0 };
   // Blocks of neighbours stay together: they share cache lines.
   for (int block = worker * BLOCK; block < count; block += WORKERS * BLOCK)
   {
@@ -310,7 +353,7 @@ __kernel void march_photons(march_info info, const __global float* sigma, const 
     }
   }
 #else
-  const march_arrays arrays = { &info, sigma, coefficients, levels, sums, ends, 0 };
+  const march_arrays arrays = { &info, sigma, coefficients, nodes, sums, ends, 0 };
   march_packet(&arrays, photons, first + get_global_id(0) * REAL_WIDTH, first + count);
 #endif
 }

@@ -87,9 +87,7 @@ public:
   {
     this->SigmaA = this->Upload(medium.sigma_a.values, this->AComponents, "sigma_a");
     this->SigmaS = this->Upload(medium.sigma_s.values, this->SComponents, "sigma_s");
-    this->Levels = this->HasLevels ? Buffer<cl_uchar>(device, levels, medium.grid.VoxelCount(), "octree levels")
-                                   : Buffer<cl_uchar>(device, 0, "octree levels");
-    this->PrepareMedium(ior);
+    this->PrepareMedium(ior, levels);
     this->ChooseWorkers();
   }
 
@@ -125,7 +123,7 @@ private:
     this->TheDevice.Queue().enqueueNDRangeKernel(kernel, cl::NullRange, range, local);
   }
 
-  void PrepareMedium(const Field& ior);
+  void PrepareMedium(const Field& ior, const std::uint8_t* levels);
   void FindRanges(Buffer<float>& low, Buffer<float>& high);
   void ChooseWorkers();
   int Workers(int record);
@@ -137,7 +135,7 @@ private:
   {
     return Define("CHANNELS", channels) + Define("MEDIUM_CHANNELS", this->MediumChannels) +
       Define("DIRECTIONS", this->Settings.meanDirection) + Define("BENDS", this->Bends) +
-      Define("ORDER", this->Settings.order) + Define("LEVELS", this->HasLevels);
+      Define("ORDER", this->Settings.order) + Define("LEVELS", this->HasLevels) + "-cl-mad-enable ";
   }
   std::string FinishOptions(int channels, int colours, int workers) const
   {
@@ -183,8 +181,8 @@ private:
   Buffer<float> SigmaA, SigmaS;
   Buffer<float> Sigma;        ///< PhotonSums.cl, pack_extinction
   Buffer<float> Coefficients; ///< SquaredIndex.cl
-  Buffer<cl_uchar> Levels;
-  Buffer<cl_long> Sums; ///< zero between two runs
+  Buffer<cl_uchar> Nodes;     ///< PhotonSums.cl, pack_extinction
+  Buffer<cl_long> Sums;       ///< zero between two runs
   int SumsWorkers = 0;
 };
 
@@ -209,7 +207,7 @@ void PhotonMarcher::Implementation::FindRanges(Buffer<float>& low, Buffer<float>
   this->TheDevice.Finish();
 }
 
-void PhotonMarcher::Implementation::PrepareMedium(const Field& ior)
+void PhotonMarcher::Implementation::PrepareMedium(const Field& ior, const std::uint8_t* levels)
 {
   Buffer<float> low(this->TheDevice, this->Bends ? Count(this->Padded(4)) : 0, "range of the index");
   Buffer<float> high(this->TheDevice, this->Bends ? Count(this->Padded(4)) : 0, "range of the index");
@@ -224,10 +222,14 @@ void PhotonMarcher::Implementation::PrepareMedium(const Field& ior)
   }
   this->Sigma = Buffer<float>(
     this->TheDevice, Count(this->Padded(2)) * static_cast<std::size_t>(this->MediumChannels), "extinction");
+  this->Nodes = Buffer<cl_uchar>(this->TheDevice, this->Bends ? this->Copy() : 0, "octree nodes");
+  const Buffer<cl_uchar> given = this->HasLevels
+    ? Buffer<cl_uchar>(this->TheDevice, levels, this->TheGrid.VoxelCount(), "octree levels")
+    : Buffer<cl_uchar>(this->TheDevice, 0, "octree levels");
   cl::Kernel pack =
     this->SumsKernel("pack_extinction", this->FinishOptions(this->MediumChannels, this->MediumChannels, 0));
   With(pack, this->DescribeGrid(), static_cast<float>(DiagonalOf(this->TheGrid)), this->SigmaA, this->SigmaS, low, high,
-    this->Sigma);
+    given, this->Sigma, this->Nodes);
   this->Launch(pack, Range(this->Padded(2)));
   this->TheDevice.Finish();
 }
@@ -302,7 +304,7 @@ void PhotonMarcher::Implementation::PrepareSums(int record)
 void PhotonMarcher::Implementation::MarchAll(
   const PackedPhotons& packed, const Buffer<float>& photons, const Buffer<cl_int>& ends, const Monitor& monitor)
 {
-  const int width = this->TheDevice.IsCpu() ? std::min(std::max(this->TheDevice.FloatVectorWidth(), 4), 8) : 1;
+  const int width = this->TheDevice.IsCpu() ? std::min(std::max(this->TheDevice.FloatVectorWidth(), 4), 16) : 1;
   const int workers = this->SumsWorkers;
   const std::size_t record = this->RecordOf(packed);
   const std::size_t stride = this->Sums.Size() > this->Copy() * record ? this->Copy() * record : 0;
@@ -315,7 +317,7 @@ void PhotonMarcher::Implementation::MarchAll(
   for (std::size_t first = 0; first < packed.Count(); first += batch)
   {
     const std::size_t count = std::min(batch, packed.Count() - first);
-    With(march, this->Describe(), this->Sigma, this->Coefficients, this->Levels, photons, ends, this->Sums,
+    With(march, this->Describe(), this->Sigma, this->Coefficients, this->Nodes, photons, ends, this->Sums,
       cl_ulong(stride), cl_int(first), cl_int(count));
     if (workers > 0)
     {
@@ -479,8 +481,8 @@ std::vector<PhotonPath> PhotonMarcher::Implementation::Paths(
   Buffer<cl_int> offsets(this->TheDevice, packed.Count(), "offsets of paths");
   const Buffer<cl_int> counts(this->TheDevice, packed.Count(), "lengths of paths");
   const auto run = [&](bool counting, const Buffer<cl_float4>& vertices) {
-    With(trace, this->Describe(), this->Sigma, this->Coefficients, this->Levels, values, ends, cl_int(counting),
-      offsets, vertices, counts);
+    With(trace, this->Describe(), this->Sigma, this->Coefficients, this->Nodes, values, ends, cl_int(counting), offsets,
+      vertices, counts);
     this->Launch(trace, cl::NDRange(packed.Count()), cl::NDRange(1));
     this->TheDevice.Finish();
   };

@@ -1,6 +1,6 @@
 // Before the photons: the medium as they need it. After them: light from what they left. Read after Numerics.cl and
 // SquaredIndex.cl; the host gives
-//   CHANNELS, MEDIUM_CHANNELS, DIRECTIONS, BENDS, WORKERS  as PhotonMarch.cl wants them
+//   CHANNELS, MEDIUM_CHANNELS, DIRECTIONS, BENDS, LEVELS, WORKERS  as PhotonMarch.cl wants them
 //   A_CHANNELS, S_CHANNELS  components of sigma_a and sigma_s, 0: there is none
 //   COLOURS  channels of what comes out: 3 also where one channel stands for three (CHANNELS 1)
 
@@ -12,24 +12,29 @@
 
 // sigma  [MEDIUM_CHANNELS][padded] extinction over `diagonal`, OUTSIDE in the padding; its sign bit says that n^2 varies
 //        within the reach of interpolation (low, high: the range of coefficients, in their padding)
+// nodes  [padded] 0: it does not vary; else 1 + the voxel's octree level
 __kernel void pack_extinction(index_grid grid, float diagonal, const __global float* sigma_a, const __global float* sigma_s,
-  const __global float* low, const __global float* high, __global float* sigma)
+  const __global float* low, const __global float* high, const __global uchar* levels, __global float* sigma,
+  __global uchar* nodes)
 {
   const int x = get_global_id(0), y = get_global_id(1), z = get_global_id(2);
   const int row = grid.size[0] + 2, layer = row * (grid.size[1] + 2);
   const size_t copy = (size_t)layer * (grid.size[2] + 2), at = (size_t)z * layer + y * row + x;
   const bool inside = x > 0 && x <= grid.size[0] && y > 0 && y <= grid.size[1] && z > 0 && z <= grid.size[2];
   const size_t voxel = ((size_t)(z - 1) * grid.size[1] + y - 1) * grid.size[0] + x - 1;
+  bool varies = false;
+#if BENDS
+  const size_t i = ((size_t)(z + 1) * (grid.size[1] + 4) + y + 1) * (grid.size[0] + 4) + x + 1;
+  varies = inside && high[i] - low[i] > FLAT * high[i];
+  nodes[at] = varies ? 1 + (LEVELS ? levels[voxel] : 0) : 0;
+#endif
   for (int c = 0; c < MEDIUM_CHANNELS; ++c)
   {
     float s = OUTSIDE;
     if (inside)
     {
       s = diagonal * (component(sigma_a, A_CHANNELS, voxel, c) + component(sigma_s, S_CHANNELS, voxel, c));
-#if BENDS
-      const size_t i = ((size_t)(z + 1) * (grid.size[1] + 4) + y + 1) * (grid.size[0] + 4) + x + 1;
-      s = high[i] - low[i] > FLAT * high[i] ? -s : s;
-#endif
+      s = varies ? -s : s;
     }
     sigma[c * copy + at] = s;
   }
