@@ -510,6 +510,12 @@ void WriteLight(LightField&& light, vtkImageData* output)
 {
   const int channels = light.channels;
   vtkCellData* cells = output->GetCellData();
+  for (const char* earlier :
+    { "fluence", "fluence_direct", "fluence_error", "net_flux", "scattered_radiance", "mean_direction" })
+  {
+    cells->RemoveArray(earlier); // of another solve that the input has been through
+  }
+  output->GetFieldData()->RemoveArray("stored_directions");
   AddCells(output, "fluence", std::move(light.fluence), channels);
   cells->SetActiveScalars("fluence");
   AddLightCells(output, "fluence_direct", std::move(light.fluenceDirect), channels);

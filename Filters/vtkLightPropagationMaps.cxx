@@ -44,6 +44,13 @@ bool NothingShines(const tyndall::Medium& medium, const tyndall::Illumination& i
     !medium.emission.values;
 }
 
+/// Whether all light comes in through faces of the box.
+bool OnlyFromFarAway(const tyndall::Illumination& illumination)
+{
+  return std::all_of(illumination.lights.begin(), illumination.lights.end(),
+    [](const tyndall::Light& light) { return light.type == tyndall::LightType::Directional; });
+}
+
 tyndall::LightField Solve(
   vtkLightPropagationMaps* filter, const tyndall::Medium& medium, const tyndall::Illumination& illumination)
 {
@@ -87,6 +94,13 @@ int vtkLightPropagationMaps::RequestData(vtkInformation*, vtkInformationVector**
     {
       vtkWarningMacro(
         "Nothing shines on the medium, so it is dark. Connect Lights or an Environment, or set SkyColor.");
+    }
+    else if (this->PeriodicX && this->PeriodicY && this->PeriodicZ && !input.emission.IsThere() &&
+      OnlyFromFarAway(illumination))
+    {
+      vtkWarningMacro(
+        "With all three axes periodic the box has no face that light of the sky, an environment, faces or a "
+        "directional light could come in through, so it is dark. Leave one axis open.");
     }
 
     tyndall::LightField light = Solve(this, input.medium, illumination);

@@ -93,7 +93,7 @@ public:
   ///@}
 
   ///@{
-  /// Rays of a direction per voxel edge. Default 1, valid from 1 on.
+  /// Rays of a direction per voxel edge. Default 1, valid [1, 16].
   vtkSetMacro(MapResolution, int);
   vtkGetMacro(MapResolution, int);
   ///@}
@@ -105,7 +105,7 @@ public:
   ///@}
 
   ///@{
-  /// Relative error of fluence at which to stop. Default 1e-4, valid (0, 1).
+  /// Relative error of fluence at which to stop. Default 1e-4, valid above 0.
   vtkSetMacro(Tolerance, double);
   vtkGetMacro(Tolerance, double);
   ///@}

@@ -102,9 +102,11 @@ std::vector<float> RelativeDensity(
   });
   for (std::size_t i = 0; i < relative.size(); ++i)
   {
-    Demand(std::isfinite(values[i]),
-      "The density is " + std::to_string(values[i]) + " in voxel " + tyndall::VoxelName(grid, i) +
+    if (!std::isfinite(values[i]))
+    {
+      throw InvalidInput("The density is " + std::to_string(values[i]) + " in voxel " + tyndall::VoxelName(grid, i) +
         " (the first such voxel); it must be finite.");
+    }
   }
   return relative;
 }

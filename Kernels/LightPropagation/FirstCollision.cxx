@@ -18,6 +18,8 @@ namespace
 constexpr int RaysPerEdge = 2;     ///< of a voxel, for parallel beams
 constexpr int PointsPerEdge = 4;   ///< of a rectangle
 constexpr double BeamWidth = 0.5;  ///< of a lamp's beams where they leave the box, voxels; a rectangle's: twice
+constexpr int BeamsAcrossCone = 16; ///< of a spot, at least
+constexpr int RowSums = 9;          ///< SUMS of LampBeams.cl
 constexpr int RowsPerLaunch = 256; ///< keeps a launch well below a tenth of a second for rows of a thousand voxels
 constexpr int RoundsAtMost = 64;   ///< of a ray on a periodic axis
 constexpr int ManyPlanes = 8192;   ///< of a beam on a periodic axis
@@ -71,8 +73,43 @@ std::array<double, 2> Tangents(const Grid& grid, const glm::dvec3& position, int
   return { std::max(-1.0, std::min(low / depth, low / far)), std::min(1.0, std::max(high / depth, high / far)) };
 }
 
-/// The beams from `position` (in voxels), row by row; a beam is `width` voxels wide where it leaves the box.
-std::vector<BeamRow> Beams(const Grid& grid, const glm::dvec3& position, double width)
+/// Tangents towards a cone within a pyramid: smallest and largest along u, then along v. Empty (the largest is smaller) where
+/// the cone is not seen there.
+std::array<std::array<double, 2>, 2> TangentsOfCone(const Grid& grid, int axis, bool up, const Light& light)
+{
+  const glm::dvec3 middle = glm::normalize(Vector(light.direction));
+  const glm::dvec3 aside = glm::normalize(
+    glm::cross(middle, std::abs(middle.x) < 0.5 ? glm::dvec3(1.0, 0.0, 0.0) : glm::dvec3(0.0, 1.0, 0.0)));
+  const double half = 0.5 * light.angle * glm::pi<double>() / 180.0;
+  constexpr int around = 256;
+  std::array<std::array<double, 2>, 2> range = { { { 1.0, -1.0 }, { 1.0, -1.0 } } };
+  for (int i = 0; i <= around; ++i)
+  {
+    const double turn = 2.0 * glm::pi<double>() * i / around;
+    const glm::dvec3 away = aside * std::cos(turn) + glm::cross(middle, aside) * std::sin(turn);
+    const glm::dvec3 ray = i == around ? middle : middle * std::cos(half) + away * std::sin(half);
+    const double forward = (up ? ray[axis] : -ray[axis]) / grid.spacing[axis];
+    if (forward < 1e-3 / grid.spacing[axis] || half > 1.0)
+    {
+      return { { { -1.0, 1.0 }, { -1.0, 1.0 } } }; // wide, or along the pyramid's foot: no bound is worth having
+    }
+    for (int a = 0; a < 2; ++a)
+    {
+      const int along = (axis + 1 + a) % 3;
+      const double tangent = ray[along] / grid.spacing[along] / forward;
+      range[a] = { std::min(range[a][0], tangent), std::max(range[a][1], tangent) };
+    }
+  }
+  for (std::array<double, 2>& ofOne : range)
+  {
+    const double margin = 0.01 * (ofOne[1] - ofOne[0]); // of the polygon to the circle
+    ofOne = { std::max(-1.0, ofOne[0] - margin), std::min(1.0, ofOne[1] + margin) };
+  }
+  return range;
+}
+
+/// The beams of `light` from `position` (in voxels), row by row; a beam is at most `width` voxels wide where it leaves the box.
+std::vector<BeamRow> Beams(const Grid& grid, const Light& light, const glm::dvec3& position, double width)
 {
   std::vector<BeamRow> rows;
   for (int face = 0; face < 6; ++face)
@@ -85,11 +122,23 @@ std::vector<BeamRow> Beams(const Grid& grid, const glm::dvec3& position, double 
     {
       continue;
     }
-    const std::array<double, 2> u = Tangents(grid, position, (axis + 1) % 3, near, far);
-    const std::array<double, 2> v = Tangents(grid, position, (axis + 2) % 3, near, far);
-    const int countU = static_cast<int>(std::ceil((u[1] - u[0]) * far / width));
-    const int countV = static_cast<int>(std::ceil((v[1] - v[0]) * far / width));
-    for (int j = 0; countU > 0 && j < countV; ++j)
+    std::array<double, 2> u = Tangents(grid, position, (axis + 1) % 3, near, far);
+    std::array<double, 2> v = Tangents(grid, position, (axis + 2) % 3, near, far);
+    int fewest = 1;
+    if (light.type == LightType::Spot)
+    {
+      const auto cone = TangentsOfCone(grid, axis, up, light);
+      u = { std::max(u[0], cone[0][0]), std::min(u[1], cone[0][1]) };
+      v = { std::max(v[0], cone[1][0]), std::min(v[1], cone[1][1]) };
+      fewest = BeamsAcrossCone;
+    }
+    if (u[0] >= u[1] || v[0] >= v[1])
+    {
+      continue;
+    }
+    const int countU = std::max(fewest, static_cast<int>(std::ceil((u[1] - u[0]) * far / width)));
+    const int countV = std::max(fewest, static_cast<int>(std::ceil((v[1] - v[0]) * far / width)));
+    for (int j = 0; j < countV; ++j)
     {
       const double widthU = (u[1] - u[0]) / countU;
       const double widthV = (v[1] - v[0]) / countV;
@@ -98,6 +147,16 @@ std::vector<BeamRow> Beams(const Grid& grid, const glm::dvec3& position, double 
     }
   }
   return rows;
+}
+
+bool IsInside(const Grid& grid, const glm::dvec3& position)
+{
+  bool inside = true;
+  for (int a = 0; a < 3; ++a)
+  {
+    inside = inside && position[a] >= 0.0 && position[a] <= grid.size[a];
+  }
+  return inside;
 }
 
 /// Points that stand for the light: one, or the centres of a rectangle's parts.
@@ -154,15 +213,17 @@ public:
       this->Follow(points[p], 1.0 / points.size(), [&](double done) { Report(monitor, (p + done) / points.size()); });
     }
     cl::Kernel add = this->Kernel("add_fixed");
+    // All directions of a lamp inside the box were followed: what beams on the cone's border missed is known.
+    const double correction = this->AllInside && this->Shone > 0.0 ? 1.0 / this->Shone : 1.0;
     cl_float4 units = {};
     for (int c = 0; c < 3; ++c)
     {
-      units.s[c] = static_cast<float>(this->TheLight.power[c] / this->Scale());
+      units.s[c] = static_cast<float>(this->TheLight.power[c] * correction / this->Scale());
     }
     With(add, this->Path, *this->Volume.path, cl_ulong(this->Volume.first), cl_ulong(this->Volume.stride), units);
     this->TheDevice.Queue().enqueueNDRangeKernel(
       add, cl::NullRange, cl::NDRange(this->Path.Size(), this->Volume.channels), cl::NullRange);
-    return this->Tally;
+    return this->TallyTimes(correction);
   }
 
 private:
@@ -215,9 +276,14 @@ private:
       position[a] = (point[a] - grid.origin[a]) / grid.spacing[a];
     }
     const bool many = this->TheLight.type == LightType::Rectangle;
-    const std::vector<BeamRow> rows = Beams(grid, position, many ? 2.0 * BeamWidth : BeamWidth);
+    this->AllInside = this->AllInside && IsInside(grid, position);
+    const std::vector<BeamRow> rows = Beams(grid, this->TheLight, position, many ? 2.0 * BeamWidth : BeamWidth);
+    if (rows.empty())
+    {
+      return;
+    }
     const Buffer<BeamRow> rowBuffer(this->TheDevice, rows, "the beams of a lamp");
-    Buffer<float> sums(this->TheDevice, rows.size() * 8, "sums");
+    Buffer<float> sums(this->TheDevice, rows.size() * RowSums, "sums");
     cl::Kernel kernel = this->Kernel("follow_lamp");
     const LampOnDevice info = this->Describe(position, part);
     for (std::size_t first = 0; first < rows.size(); first += RowsPerLaunch)
@@ -237,19 +303,31 @@ private:
   {
     for (std::size_t r = 0; r < rows.size(); ++r)
     {
-      const float* row = sums.data() + r * 8;
-      for (int c = 0; c < this->Volume.channels; ++c)
+      const float* row = sums.data() + r * RowSums;
+      this->In[2 * rows[r].axis + rows[r].up] += row[0]; // by the way it shines: lamps inside pass no face
+      for (int face = 0; face < 6; ++face)
       {
-        const double power = this->TheLight.power[c];
-        this->Tally.in[2 * rows[r].axis + rows[r].up][c] +=
-          power * row[0]; // by the way it shines: lamps inside pass no face
-        for (int face = 0; face < 6; ++face)
-        {
-          this->Tally.out[face][c] += power * row[1 + face];
-        }
-        this->Tally.onTheWay[c] += power * row[7];
+        this->Out[face] += row[1 + face];
       }
+      this->OnTheWay += row[7];
+      this->Shone += row[8];
     }
+  }
+
+  SweepTally TallyTimes(double factor) const
+  {
+    SweepTally tally;
+    for (int c = 0; c < this->Volume.channels; ++c)
+    {
+      const double power = this->TheLight.power[c] * factor;
+      for (int face = 0; face < 6; ++face)
+      {
+        tally.in[face][c] = power * this->In[face];
+        tally.out[face][c] = power * this->Out[face];
+      }
+      tally.onTheWay[c] = power * this->OnTheWay;
+    }
+    return tally;
   }
 
   Device& TheDevice;
@@ -257,7 +335,10 @@ private:
   const Light& TheLight;
   std::array<bool, 3> Periodic;
   Buffer<cl_long> Path;
-  SweepTally Tally;
+  std::array<double, 6> In = {}, Out = {}; ///< by face; these and the next are parts of the power
+  double OnTheWay = 0.0;
+  double Shone = 0.0; ///< in the directions that were followed
+  bool AllInside = true;
 };
 }
 

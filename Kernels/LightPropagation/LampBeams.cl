@@ -6,6 +6,7 @@
 // that a beam is at most a voxel wide where it leaves the box. It is followed layer by layer; where its square cross-section
 // lies over up to four voxels, each takes its part. All is told as parts of the lamp's power: its colours share sigma_t.
 
+#define SUMS 9  // of a row
 #define STEPS 2 // a layer: a beam moves aside by half a voxel at most
 
 // Lengths along axis a are in voxels of `spacing[a]`.
@@ -164,6 +165,8 @@ static void follow_beam(const lamp_info* lamp, const beam_row* row, float2 tange
                                       : clamp((int)(row->up ? floor(start) : ceil(start) - 1.0f), 0, n - 1);
   const int layers = row->up ? n - first : first + 1;
   const int all = lamp->periodic[row->axis] ? layers + n * lamp->rounds : layers;
+  const bool sideways = lamp->position[u] < 0.0f || lamp->position[u] > lamp->size[u] || lamp->position[v] < 0.0f ||
+    lamp->position[v] > lamp->size[v];
   float left = power;
   float now = row->begin;
   for (int k = 0; k < all; ++k)
@@ -174,9 +177,13 @@ static void follow_beam(const lamp_info* lamp, const beam_row* row, float2 tange
     {
       const float t0 = now + (end - now) * s / STEPS;
       const float t1 = now + (end - now) * (s + 1) / STEPS;
-      const float t = 0.5f * (t0 + t1);
+      // A beam from outside has at the first face, or at the last where it comes in sideways, the cross-section that it
+      // has there, not half a step on: so much power, and no less, enters.
+      const bool first_step = k == 0 && s == 0;
+      const bool last_step = k == all - 1 && s == STEPS - 1;
+      const float t = first_step && row->begin > 0.0f ? t0 : last_step && sideways ? t1 : 0.5f * (t0 + t1);
       const float2 middle = (float2)(lamp->position[u] + tangent.x * t, lamp->position[v] + tangent.y * t);
-      step_beam(lamp, row, layer, k == 0 && s == 0, k == all - 1 && s == STEPS - 1, tangent, middle,
+      step_beam(lamp, row, layer, first_step, last_step, tangent, middle,
         clamp((float2)(row->widthU, row->widthV) * t, 1e-4f, 1.0f), (t1 - t0) * per_layer, sigma, path, &left, tally);
     }
     now = end;
@@ -191,12 +198,42 @@ static void follow_beam(const lamp_info* lamp, const beam_row* row, float2 tange
   }
 }
 
+#if LAMBERT || CONE
+// Of the angle between a ray and the lamp's direction.
+static float cosine_at(const lamp_info* lamp, const beam_row* row, float2 tangent)
+{
+  const int u = (row->axis + 1) % 3;
+  const int v = (row->axis + 2) % 3;
+  float way[3];
+  way[row->axis] = row->up ? lamp->spacing[row->axis] : -lamp->spacing[row->axis];
+  way[u] = tangent.x * lamp->spacing[u];
+  way[v] = tangent.y * lamp->spacing[v];
+  return (way[0] * lamp->direction[0] + way[1] * lamp->direction[1] + way[2] * lamp->direction[2]) *
+    rsqrt(way[0] * way[0] + way[1] * way[1] + way[2] * way[2]);
+}
+#endif
+
+#if CONE
+#define PROBES 4 // an edge of a beam
+static float part_in_cone(const lamp_info* lamp, const beam_row* row, float2 tangent, float2 half_width)
+{
+  int inside = 0;
+  for (int i = 0; i < PROBES * PROBES; ++i)
+  {
+    const float2 probe = ((float2)(i % PROBES, i / PROBES) + 0.5f) * (2.0f / PROBES) - 1.0f;
+    inside += cosine_at(lamp, row, tangent + probe * half_width) >= lamp->cosine ? 1 : 0;
+  }
+  return inside / (float)(PROBES * PROBES);
+}
+#endif
+
 static void follow_row(const lamp_info* lamp, const beam_row* row, const __global float* sigma, __global long* path,
   __global float* sums)
 {
   const int u = (row->axis + 1) % 3;
   const int v = (row->axis + 2) % 3;
   const float hu = lamp->spacing[u], hv = lamp->spacing[v], hp = lamp->spacing[row->axis];
+  float shone = 0.0f;
   lamp_tally tally = { 0.0f, { 0.0f, 0.0f, 0.0f, 0.0f, 0.0f, 0.0f }, 0.0f };
   for (int i = 0; i < row->count; ++i)
   {
@@ -204,23 +241,16 @@ static void follow_row(const lamp_info* lamp, const beam_row* row, const __globa
     const float2 half_width = 0.5f * (float2)(row->widthU, row->widthV);
     float angle = solid_angle((tangent.x - half_width.x) * hu, (tangent.x + half_width.x) * hu, (tangent.y - half_width.y) * hv,
       (tangent.y + half_width.y) * hv, hp);
-#if LAMBERT || CONE
-    float way[3];
-    way[row->axis] = row->up ? hp : -hp;
-    way[u] = tangent.x * hu;
-    way[v] = tangent.y * hv;
-    const float cosine = (way[0] * lamp->direction[0] + way[1] * lamp->direction[1] + way[2] * lamp->direction[2]) *
-      rsqrt(way[0] * way[0] + way[1] * way[1] + way[2] * way[2]);
 #if LAMBERT
-    angle *= fmax(cosine, 0.0f);
-#else
-    angle = cosine >= lamp->cosine ? angle : 0.0f;
-#endif
+    angle *= fmax(cosine_at(lamp, row, tangent), 0.0f);
+#elif CONE
+    angle *= part_in_cone(lamp, row, tangent, half_width);
 #endif
     if (angle > 0.0f)
     {
       const float power = lamp->intensity * angle;
       tally.entered += power;
+      shone += power;
       follow_beam(lamp, row, tangent, power, sigma, path, &tally);
     }
   }
@@ -230,10 +260,11 @@ static void follow_row(const lamp_info* lamp, const beam_row* row, const __globa
     sums[1 + face] = tally.escaped[face];
   }
   sums[7] = tally.stranded;
+  sums[8] = shone;
 }
 
 // path  part of the power times length, in fixed point, [voxel], added to
-// sums  [row][entered, escaped through -x to +z, stranded], parts of the power
+// sums  [row][entered, escaped through -x to +z, stranded, shone in the row's directions], parts of the power
 __kernel void follow_lamp(lamp_info lamp, const __global float* sigma, ulong sigma_first, __global long* path,
   const __global beam_row* rows, int row_count, int first_row, __global float* sums)
 {
@@ -244,7 +275,7 @@ __kernel void follow_lamp(lamp_info lamp, const __global float* sigma, ulong sig
 #endif
   {
     const beam_row row = rows[r];
-    follow_row(&lamp, &row, sigma + sigma_first, path, sums + r * 8);
+    follow_row(&lamp, &row, sigma + sigma_first, path, sums + r * SUMS);
   }
 }
 

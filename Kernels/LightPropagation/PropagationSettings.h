@@ -8,9 +8,9 @@ namespace tyndall
 struct PropagationSettings
 {
   int directionsPerFace = 25; ///< directions per cube face, a square number: 1, 4, 9, 16, 25, ...
-  int mapResolution = 1;      ///< map points per voxel edge, N >= 1
+  int mapResolution = 1;      ///< map points per voxel edge, 1 to 16
   int maximumOrders = 0;      ///< scattering orders at most; 0: until the tolerance is met
-  double tolerance = 1e-4;    ///< relative error of fluence at which to stop
+  double tolerance = 1e-4;    ///< relative error of fluence at which to stop, > 0
   std::array<bool, 3> periodic = { false, false, false }; ///< rays leaving an axis return on the other side
   int storedDirections = 1; ///< directions kept for scattered radiance: 1 (isotropic), 6 (faces), or more
   bool netFlux = false;     ///< compute net_flux too: it costs

@@ -99,6 +99,7 @@ def slice_through_light():
     cut.SliceType.Normal = [1, 0, 0]
     shown = Show(cut, view)
     ColorBy(shown, ("CELLS", "fluence", "Magnitude"))
+    shown.Ambient, shown.Diffuse = 1, 0  # the colours of the bar, unshaded
     table = GetColorTransferFunction("fluence")
     table.ApplyPreset("Inferno (matplotlib)", True)
     shown.RescaleTransferFunctionToDataRange()

@@ -99,6 +99,39 @@ void ColourAndFluxComeOnRequest(test::Claims& claims)
   claims.That(maps->GetOrders() == 1 && Mean(maps->GetOutput(), "fluence", 0) < red, "one order is less than all");
 }
 
+void LightOfAnEarlierSolveGoes(test::Claims& claims)
+{
+  vtkNew<vtkLightPropagationMaps> first;
+  first->SetInputDataObject(test::MakeMedium({ { 4, 4, 4 } }, 0.1, 1.0));
+  first->SetSkyColor(1.0, 1.0, 1.0);
+  first->SetNetFlux(true);
+  first->SetStoredDirections(6);
+  vtkNew<vtkLightPropagationMaps> second;
+  second->SetInputConnection(first->GetOutputPort());
+  second->SetSkyColor(2.0, 2.0, 2.0);
+  second->Update();
+  vtkCellData* cells = second->GetOutput()->GetCellData();
+  claims.That(ComponentsOf(cells, "net_flux") == 0 && ComponentsOf(cells, "scattered_radiance") == 1,
+    "no array of an earlier solve is left");
+  const double once = Mean(first->GetOutput(), "fluence", 0);
+  claims.Near(Mean(second->GetOutput(), "fluence", 0), 2.0 * once, 1e-5 * once, "twice the sky, twice the light");
+}
+
+void ABoxWithoutFacesIsSaidToBeDark(test::Claims& claims)
+{
+  vtkNew<vtkLightPropagationMaps> maps;
+  maps->SetInputDataObject(test::MakeMedium({ { 4, 4, 4 } }, 0.1, 1.0));
+  maps->SetSkyColor(1.0, 1.0, 1.0);
+  maps->SetPeriodicX(true);
+  maps->SetPeriodicY(true);
+  test::Errors errors(maps);
+  maps->Update();
+  claims.That(errors.None(), "one axis is open");
+  maps->SetPeriodicZ(true);
+  maps->Update();
+  claims.That(errors.WasOneWith("three axes periodic"), "three periodic axes keep the sky out: a warning");
+}
+
 /// Fluence of a cube lit by an environment that is bright in one column of pixels or one row.
 vtkSmartPointer<vtkImageData> LitFrom(int brightColumn, int brightRow, int up, double azimuth)
 {
@@ -229,6 +262,8 @@ int TestLightPropagationMapsOutputs(int, char*[])
   test::Claims claims;
   WritesWhatItSays(claims);
   ColourAndFluxComeOnRequest(claims);
+  LightOfAnEarlierSolveGoes(claims);
+  ABoxWithoutFacesIsSaidToBeDark(claims);
   EnvironmentStandsAsTold(claims);
   HandsOnThePieceAskedFor(claims);
   ReportsAndStops(claims);

@@ -45,8 +45,7 @@ TEST_F(FirstCollision, LampsInsideAndOutsideKeepTheirPower)
         EXPECT_LT(light.balance.RelativeError(1), 1e-5) << static_cast<int>(type) << ' ' << sigma << ' ' << z;
         if (z > 0.0)
         {
-          // A cone's edge cuts voxel faces in parts; the others are whole.
-          EXPECT_NEAR(light.balance.entered[0], 10.0, type == LightType::Point ? 1e-3 : 0.3);
+          EXPECT_NEAR(light.balance.entered[0], 10.0, 1e-4);
         }
         else
         {
@@ -54,6 +53,43 @@ TEST_F(FirstCollision, LampsInsideAndOutsideKeepTheirPower)
           EXPECT_GT(light.balance.entered[0], 1.0);
         }
       }
+    }
+  }
+}
+
+TEST_F(FirstCollision, ASpotBringsItsPowerHoweverNarrowItIs)
+{
+  for (int n : { 8, 16, 33 })
+  {
+    for (double angle : { 0.5, 2.0, 5.0, 10.0, 20.0, 40.0, 90.0, 180.0 })
+    {
+      Scene scene({ n, n, n }, 0.01f, 0.0f);
+      Light spot = Lamp(LightType::Spot, { 0.51 * n, 0.52 * n, 0.53 * n });
+      spot.angle = angle;
+      spot.direction = { 0.3, -0.2, 1.0 };
+      scene.light.lights = { spot };
+      EXPECT_NEAR(scene.Solve(this->GetDevice()).balance.entered[0], 10.0, 1e-4) << n << ' ' << angle;
+      if (angle <= 20.0)
+      {
+        spot.position = { 0.35 * n, 0.63 * n, -0.8 * n };
+        scene.light.lights = { spot };
+        EXPECT_NEAR(scene.Solve(this->GetDevice()).balance.entered[0], 10.0, 0.05) << n << ' ' << angle << " outside";
+      }
+    }
+  }
+}
+
+TEST_F(FirstCollision, APointOutsideBringsWhatTheFaceSeesOfIt)
+{
+  for (int n : { 4, 16, 40 })
+  {
+    for (double distance : { 0.3, 1.0, 3.0 }) // of the box's edge
+    {
+      Scene scene({ n, n, n }, 0.0f, 0.0f);
+      scene.light.lights = { Lamp(LightType::Point, { 0.5 * n, 0.5 * n, -distance * n }) };
+      const double seen = 4.0 * std::asin(0.25 / (0.25 + distance * distance)); // solid angle of a square on its axis
+      EXPECT_NEAR(scene.Solve(this->GetDevice()).balance.entered[0] / (10.0 * seen / (4.0 * Pi)), 1.0, 1e-3)
+        << n << ' ' << distance;
     }
   }
 }
