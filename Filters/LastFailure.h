@@ -15,12 +15,19 @@
 
 namespace tyndall
 {
-/// When a filter's last run failed or was aborted, and which of both. VTK runs a filter again with every update while its
+/// When a filter's last run failed, and how. VTK runs a filter again with every update while its
 /// output does not cover the extent that was asked for, and that is so while the output is empty; ParaView makes several
 /// updates. They should not each say the same error.
 class LastFailure
 {
 public:
+  enum Kind
+  {
+    Error,
+    Abort,
+    Information, ///< an error already of RequestInformation
+  };
+
   explicit LastFailure(vtkAlgorithm* filter)
     : Filter(filter)
     , Facts(filter->GetInformation())
@@ -31,7 +38,8 @@ public:
   {
     auto* pipeline = vtkDemandDrivenPipeline::SafeDownCast(this->Filter->GetExecutive());
     const vtkMTimeType time = this->Facts->Has(Time()) ? this->Facts->Get(Time()) : 0;
-    bool holds = pipeline && pipeline->GetPipelineMTime() < time;
+    // The filter's own time, too: ParaView's reader of series calls a reader past its pipeline.
+    bool holds = pipeline && std::max(pipeline->GetPipelineMTime(), this->Filter->GetMTime()) < time;
     for (int port = 0; holds && port < this->Filter->GetNumberOfInputPorts(); ++port)
     {
       for (int i = 0; holds && i < this->Filter->GetNumberOfInputConnections(port); ++i)
@@ -42,14 +50,14 @@ public:
     return holds;
   }
 
-  bool WasAbort() const { return this->Facts->Get(Abort()) != 0; }
+  bool Was(Kind kind) const { return this->Facts->Has(Time()) && this->Facts->Get(How()) == kind; }
 
-  void Note(bool abort)
+  void Note(Kind kind)
   {
     vtkTimeStamp now;
     now.Modified();
     this->Facts->Set(Time(), now.GetMTime());
-    this->Facts->Set(Abort(), abort);
+    this->Facts->Set(How(), kind);
   }
 
   void Forget() { this->Facts->Remove(Time()); }
@@ -76,9 +84,9 @@ private:
     return key;
   }
 
-  static vtkInformationIntegerKey* Abort()
+  static vtkInformationIntegerKey* How()
   {
-    static auto* const key = vtkInformationIntegerKey::MakeKey("FAILURE_IS_ABORT", "Tyndall");
+    static auto* const key = vtkInformationIntegerKey::MakeKey("FAILURE_KIND", "Tyndall");
     return key;
   }
 

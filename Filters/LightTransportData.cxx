@@ -185,8 +185,27 @@ FloatField Read(vtkImageData* image, const Choice& choice, Need need, Components
 
 namespace
 {
-/// Field data of outputs that are empty because their filter was aborted.
+/// Field data of outputs that are empty because their filter was aborted, or failed.
 const char* const AbortedFact = "aborted";
+const char* const FailedFact = "failed";
+
+/// Thrown where an input is empty because the filter before failed, which has said why.
+struct InputFailed
+{
+};
+
+/// To be asked where an input is empty.
+void StopWithFilterBefore(vtkDataObject* input)
+{
+  if (ReadFact(input, AbortedFact, 0.0) > 0.0)
+  {
+    throw Aborted();
+  }
+  if (ReadFact(input, FailedFact, 0.0) > 0.0)
+  {
+    throw InputFailed();
+  }
+}
 }
 
 Grid GridOf(vtkImageData* image)
@@ -203,12 +222,9 @@ Grid GridOf(vtkImageData* image)
   {
     grid.size[axis] = extent[2 * axis + 1] - extent[2 * axis];
     grid.spacing[axis] = image->GetSpacing()[axis];
-    if (grid.size[axis] < 0 && ReadFact(image, AbortedFact, 0.0) > 0.0)
-    {
-      throw Aborted();
-    }
     if (grid.size[axis] < 0)
     {
+      StopWithFilterBefore(image);
       throw InvalidInput("The input image is empty.");
     }
     if (grid.size[axis] == 0)
@@ -320,8 +336,13 @@ LightType TypeOf(double number, vtkIdType light)
 
 std::vector<Light> ReadLights(vtkPolyData* data)
 {
-  if (!data || data->GetNumberOfPoints() == 0)
+  if (!data)
   {
+    return {};
+  }
+  if (data->GetNumberOfPoints() == 0)
+  {
+    StopWithFilterBefore(data);
     return {};
   }
   vtkDataArray* type = LightArray(data, "light_type", Need::Required, { 1 });
@@ -354,6 +375,10 @@ Environment ReadEnvironment(vtkImageData* image)
   }
   int size[3];
   image->GetDimensions(size);
+  if (image->GetNumberOfPoints() == 0)
+  {
+    StopWithFilterBefore(image);
+  }
   if (size[0] < 1 || size[1] < 1 || size[2] != 1)
   {
     throw InvalidInput("The environment has " + std::to_string(size[0]) + " x " + std::to_string(size[1]) + " x " +
@@ -599,17 +624,14 @@ Monitor MonitorOf(vtkAlgorithm* filter)
 
 namespace
 {
-void EmptyOutputs(vtkInformationVector* outputs, bool aborted = false)
+void EmptyOutputs(vtkInformationVector* outputs, const char* why)
 {
   for (int port = 0; port < outputs->GetNumberOfInformationObjects(); ++port)
   {
     if (vtkDataObject* output = vtkDataObject::GetData(outputs, port))
     {
       output->Initialize();
-      if (aborted)
-      {
-        AddFact(output, AbortedFact, std::vector<double>{ 1.0 });
-      }
+      AddFact(output, why, std::vector<double>{ 1.0 });
     }
   }
 }
@@ -629,14 +651,14 @@ int Guarded(vtkAlgorithm* filter, vtkInformationVector* outputs, const std::func
   LastFailure last(filter);
   if (last.StillHolds())
   {
-    EmptyOutputs(outputs, last.WasAbort());
+    EmptyOutputs(outputs, last.Was(LastFailure::Abort) ? AbortedFact : FailedFact);
     return 1;
   }
   last.Forget();
   const auto fail = [&](const std::string& why) {
-    EmptyOutputs(outputs);
+    EmptyOutputs(outputs, FailedFact);
     vtkErrorWithObjectMacro(filter, << why);
-    last.Note(false);
+    last.Note(LastFailure::Error);
   };
   try
   {
@@ -644,9 +666,14 @@ int Guarded(vtkAlgorithm* filter, vtkInformationVector* outputs, const std::func
   }
   catch (const Aborted&)
   {
-    EmptyOutputs(outputs, true);
+    EmptyOutputs(outputs, AbortedFact);
     ForgetAbort(filter);
-    last.Note(true);
+    last.Note(LastFailure::Abort);
+  }
+  catch (const InputFailed&)
+  {
+    EmptyOutputs(outputs, FailedFact);
+    last.Note(LastFailure::Error);
   }
   catch (const cl::Error& error)
   {
@@ -662,5 +689,28 @@ int Guarded(vtkAlgorithm* filter, vtkInformationVector* outputs, const std::func
     fail(error.what());
   }
   return 1;
+}
+
+bool GuardedInformation(vtkAlgorithm* filter, const std::function<void()>& work)
+{
+  LastFailure last(filter);
+  try
+  {
+    work();
+  }
+  catch (const std::exception& error)
+  {
+    if (!last.Was(LastFailure::Information) || !last.StillHolds())
+    {
+      vtkErrorWithObjectMacro(filter, << error.what());
+    }
+    last.Note(LastFailure::Information);
+    return false;
+  }
+  if (last.Was(LastFailure::Information))
+  {
+    last.Forget();
+  }
+  return true;
 }
 }

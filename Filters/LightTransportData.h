@@ -145,9 +145,14 @@ Monitor MonitorOf(vtkAlgorithm* filter);
 void PassOn(vtkImageData* input, vtkImageData* output);
 
 /// Runs the work of a filter's RequestData. Whatever it throws becomes one error of the filter; the outputs are empty then
-/// and after an abort. That is no error: the outputs have field data `aborted`, from which later filters know that they are
-/// aborted, too, and the filter runs again when something has changed.
+/// and after an abort, which is no error, and the filter runs again when something has changed. Empty outputs have field
+/// data `failed` or `aborted`, from which later filters know: they stay empty, too, without an error of their own.
 /// @return what RequestData is to return: always 1. With 0 the pipeline would add an error that says less, and run the
 ///   filter again, in vain, with every update.
 int Guarded(vtkAlgorithm* filter, vtkInformationVector* outputs, const std::function<void()>& work);
+
+/// Runs what may fail in a reader's RequestInformation. What it throws becomes one error, however often ParaView asks, until
+/// the reader is modified; Guarded then leaves the outputs empty.
+/// @return whether it succeeded. RequestInformation is to return 1 all the same, as RequestData.
+bool GuardedInformation(vtkAlgorithm* filter, const std::function<void()>& work);
 }

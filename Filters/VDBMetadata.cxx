@@ -14,6 +14,7 @@
 #include "vtkUnsignedCharArray.h"
 
 #include <algorithm>
+#include <iterator>
 #include <tuple>
 #include <vector>
 
@@ -100,24 +101,55 @@ bool InsertIfLong(MetaMap& map, const std::string& key, vtkAbstractArray* found)
   map.insertMeta(key, Int64Metadata(*static_cast<const Int64*>(array->GetVoidPointer(0))));
   return true;
 }
+
+void AddOne(vtkDataObject* image, const std::string& name, const Metadata& value)
+{
+  if (const auto* text = dynamic_cast<const StringMetadata*>(&value))
+  {
+    AddFact(image, name.c_str(), std::vector<std::string>{ text->value() });
+    return;
+  }
+  ForKinds([&](auto kind) { return AddIfOfKind(kind, image->GetFieldData(), name, value); });
+}
+
+void InsertOne(MetaMap& map, const std::string& key, vtkAbstractArray* array)
+{
+  map.removeMeta(key);
+  if (auto* text = vtkStringArray::SafeDownCast(array))
+  {
+    if (text->GetNumberOfValues() == 1)
+    {
+      map.insertMeta(key, StringMetadata(text->GetValue(0)));
+    }
+  }
+  else if (!InsertIfLong(map, key, array))
+  {
+    ForKinds([&](auto kind) { return InsertIfOfKind(kind, map, key, array); });
+  }
+}
+
+struct MediumFact
+{
+  const char* Field;
+  const char* Key;
+};
+constexpr MediumFact MediumFacts[] = { { "g", "medium_g" } };
+
+bool IsMediumFact(const std::string& key)
+{
+  return std::any_of(
+    std::begin(MediumFacts), std::end(MediumFacts), [&](const MediumFact& fact) { return key == fact.Key; });
+}
 }
 
 void AddMetadata(vtkDataObject* image, const std::string& prefix, const MetaMap& map)
 {
   for (auto entry = map.beginMeta(); entry != map.endMeta(); ++entry)
   {
-    const std::string name = prefix + entry->first;
-    const Metadata& value = *entry->second;
-    if (IsGeometry(entry->first))
+    if (!IsGeometry(entry->first) && !IsMediumFact(entry->first))
     {
-      continue;
+      AddOne(image, prefix + entry->first, *entry->second);
     }
-    if (const auto* text = dynamic_cast<const StringMetadata*>(&value))
-    {
-      AddFact(image, name.c_str(), std::vector<std::string>{ text->value() });
-      continue;
-    }
-    ForKinds([&](auto kind) { return AddIfOfKind(kind, image->GetFieldData(), name, value); });
   }
 }
 
@@ -133,17 +165,28 @@ void RestoreMetadata(MetaMap& map, vtkFieldData* field, const std::string& prefi
     {
       continue;
     }
-    map.removeMeta(key);
-    if (auto* text = vtkStringArray::SafeDownCast(array))
+    InsertOne(map, key, array);
+  }
+}
+
+void AddMediumFacts(vtkDataObject* image, const MetaMap& file)
+{
+  for (const MediumFact& fact : MediumFacts)
+  {
+    if (const Metadata::ConstPtr value = file[fact.Key])
     {
-      if (text->GetNumberOfValues() == 1)
-      {
-        map.insertMeta(key, StringMetadata(text->GetValue(0)));
-      }
+      AddOne(image, fact.Field, *value);
     }
-    else if (!InsertIfLong(map, key, array))
+  }
+}
+
+void NoteMediumFacts(MetaMap& file, vtkFieldData* field)
+{
+  for (const MediumFact& fact : MediumFacts)
+  {
+    if (vtkAbstractArray* array = field->GetAbstractArray(fact.Field))
     {
-      ForKinds([&](auto kind) { return InsertIfOfKind(kind, map, key, array); });
+      InsertOne(file, fact.Key, array);
     }
   }
 }

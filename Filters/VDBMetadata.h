@@ -21,4 +21,8 @@ void AddMetadata(vtkDataObject* image, const std::string& prefix, const openvdb:
 
 /// Metadata from field data whose names begin so, but a grid's type and background.
 void RestoreMetadata(openvdb::MetaMap& map, vtkFieldData* field, const std::string& prefix);
+
+/// Field data that define a medium beside its cells, `g`, and what they are in a file: metadata `medium_g`.
+void AddMediumFacts(vtkDataObject* image, const openvdb::MetaMap& file);
+void NoteMediumFacts(openvdb::MetaMap& file, vtkFieldData* field);
 }

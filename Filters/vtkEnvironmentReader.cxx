@@ -174,23 +174,16 @@ int vtkEnvironmentReader::RequestInformation(vtkInformation*, vtkInformationVect
 {
   vtkInformation* info = outputs->GetInformationObject(0);
   int extent[6] = { 0, -1, 0, -1, 0, -1 };
-  this->Readable = false;
-  try
-  {
+  tyndall::GuardedInformation(this, [&] {
     const bool exr = KindToRead(this->FileName) == Kind::OpenExr;
     const PictureSize size =
       Shrunk(exr ? tyndall::SizeOfExr(this->FileName) : tyndall::SizeOfHdr(this->FileName), this->Width);
     extent[1] = size.Width - 1;
     extent[3] = size.Height - 1;
     extent[5] = 0;
-    this->Readable = true;
-  }
-  catch (const std::exception& error)
-  {
-    vtkErrorMacro(<< error.what());
-  }
+  });
   info->Set(vtkStreamingDemandDrivenPipeline::WHOLE_EXTENT(), extent, 6);
-  return 1; // The output is empty; a failure would make the pipeline add an error that says less.
+  return 1;
 }
 
 int vtkEnvironmentReader::RequestData(vtkInformation*, vtkInformationVector**, vtkInformationVector* outputs)
@@ -198,10 +191,6 @@ int vtkEnvironmentReader::RequestData(vtkInformation*, vtkInformationVector**, v
   return tyndall::Guarded(this, outputs, [&] {
     vtkImageData* image = vtkImageData::GetData(outputs);
     image->Initialize();
-    if (!this->Readable)
-    {
-      return;
-    }
     const bool exr = KindToRead(this->FileName) == Kind::OpenExr;
     RadiancePicture picture = exr ? tyndall::ReadExr(this->FileName) : tyndall::ReadHdr(this->FileName);
     const std::size_t negative = Clean(picture, this->FileName);

@@ -74,7 +74,6 @@ private:
   double Exposure = 0.0;
   double MaximumRadiance = 0.0;
   int Width = 0;
-  bool Readable = false; ///< RequestInformation found no fault
 };
 
 #endif

@@ -1,6 +1,6 @@
 #include "vtkLightRig.h"
 
-#include "Device/Errors.h"
+#include "LightTransportData.h"
 #include "Lights/Lights.h"
 
 #include "vtkCellArray.h"
@@ -209,28 +209,20 @@ int vtkLightRig::GetNumberOfRectangleLights() const
 
 int vtkLightRig::RequestData(vtkInformation*, vtkInformationVector**, vtkInformationVector* outputVector)
 {
-  tyndall::Illumination illumination;
-  if (this->Sun)
-  {
-    illumination.lights.push_back(SunLight(this->SunElevation, this->SunAzimuth, this->SunPower));
-  }
-  for (const auto* kind :
-    { &this->Added->Directional, &this->Added->Point, &this->Added->Spot, &this->Added->Rectangle })
-  {
-    illumination.lights.insert(illumination.lights.end(), kind->begin(), kind->end());
-  }
-
-  try
-  {
+  return tyndall::Guarded(this, outputVector, [&] {
+    tyndall::Illumination illumination;
+    if (this->Sun)
+    {
+      illumination.lights.push_back(SunLight(this->SunElevation, this->SunAzimuth, this->SunPower));
+    }
+    for (const auto* kind :
+      { &this->Added->Directional, &this->Added->Point, &this->Added->Spot, &this->Added->Rectangle })
+    {
+      illumination.lights.insert(illumination.lights.end(), kind->begin(), kind->end());
+    }
     tyndall::Check(illumination);
-  }
-  catch (const tyndall::InvalidInput& error)
-  {
-    vtkErrorMacro(<< error.what());
-    return 1; // The output is empty; a failure would make the pipeline add an error that says less.
-  }
-  Pack(illumination.lights, vtkPolyData::GetData(outputVector));
-  return 1;
+    Pack(illumination.lights, vtkPolyData::GetData(outputVector));
+  });
 }
 
 void vtkLightRig::PrintSelf(ostream& os, vtkIndent indent)

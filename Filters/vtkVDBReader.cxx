@@ -317,18 +317,16 @@ int vtkVDBReader::RequestInformation(vtkInformation*, vtkInformationVector**, vt
   internal.Chosen.clear();
   EmptyExtent(info);
   info->Set(vtkAlgorithm::CAN_PRODUCE_SUB_EXTENT(), 1);
-  try
-  {
+  const bool listed = tyndall::GuardedInformation(this, [&] {
     internal.List(this->FileName);
     internal.Offer(this->GridSelection);
     internal.Choose(this->GridSelection);
     internal.CheckMemory(this->MaximumMemory);
-  }
-  catch (const std::exception& error)
+  });
+  if (!listed)
   {
     internal.Chosen.clear();
-    vtkErrorMacro(<< error.what());
-    return 1; // The output is empty; a failure would make the pipeline add an error that says less.
+    return 1;
   }
   if (internal.IsBare)
   {
@@ -377,6 +375,7 @@ int vtkVDBReader::RequestData(vtkInformation*, vtkInformationVector**, vtkInform
       this->UpdateProgress(++done / static_cast<double>(internal.Chosen.size()));
     }
     tyndall::AddMetadata(image, tyndall::FieldName("", ""), internal.File->Metadata());
+    tyndall::AddMediumFacts(image, internal.File->Metadata());
     image->GetCellData()->SetActiveScalars(internal.Chosen.front()->Name.c_str());
   });
 }

@@ -162,6 +162,7 @@ void vtkVDBWriter::WriteData()
     }
     openvdb::MetaMap metadata;
     tyndall::RestoreMetadata(metadata, field, tyndall::FieldName("", ""));
+    tyndall::NoteMediumFacts(metadata, field);
     this->SetErrorCode(vtkErrorCode::CannotOpenFileError);
     WriteWholeOrNot(this->FileName, grids, metadata, CompressionFlags(this->Compression));
     this->SetErrorCode(vtkErrorCode::NoError);

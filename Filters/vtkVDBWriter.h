@@ -26,7 +26,8 @@ class vtkImageData;
  * direction that is not along the axes the last bit may change, and SaveAsHalf and Tolerance change values.
  *
  * Field data `vdb::<key>`, `vdb:<array>:<key>`, `vdb:<array>:type` and `vdb:<array>:background`, as vtkVDBReader makes
- * them, become metadata, type (bool and mask from uint8) and background. Without them the background is Background, and
+ * them, become metadata, type (bool and mask from uint8) and background; field data `g`, which belong to a medium, become
+ * the file's metadata `medium_g`, and come back as `g`. Other field data are left out. Without them the background is Background, and
  * a grid of one real component with background 0 is a fog volume, any other of unknown class.
  *
  * The file appears whole or not at all: it is written beside its place, read and checked, then renamed.

@@ -78,7 +78,10 @@ vtkSmartPointer<vtkImageData> AwkwardImage()
   vtkNew<vtkFloatArray> background;
   background->SetName("vdb:constant:background");
   background->InsertNextValue(2.5f);
-  for (vtkAbstractArray* array : std::initializer_list<vtkAbstractArray*>{ type, creator, matrix, background })
+  vtkNew<vtkDoubleArray> g;
+  g->SetName("g");
+  g->InsertNextValue(1.0 / 3.0);
+  for (vtkAbstractArray* array : std::initializer_list<vtkAbstractArray*>{ type, creator, matrix, background, g })
   {
     image->GetFieldData()->AddArray(array);
   }
@@ -123,6 +126,8 @@ void ARoundTripKeepsEveryBit(test::Claims& claims, int compression)
   claims.That(
     SameBits(image->GetFieldData()->GetArray("vdb:constant:background"), field->GetArray("vdb:constant:background")),
     "the background");
+  claims.That(SameBits(image->GetFieldData()->GetArray("g"), field->GetArray("g")) && !field->HasArray("vdb::medium_g"),
+    "the medium's mean cosine, under its name only");
 
   // Once more, from what was read: the same grids.
   writer->SetInputConnection(reader->GetOutputPort());
