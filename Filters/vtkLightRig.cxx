@@ -16,6 +16,7 @@
 
 #include <array>
 #include <cmath>
+#include <string>
 #include <vector>
 
 namespace
@@ -59,6 +60,21 @@ vtkNew<vtkDoubleArray> MakeArray(const char* name, std::initializer_list<const c
   return array;
 }
 
+/// What defines a light, in the order of AddDirectionalLight, AddPointLight, ...
+struct NumbersOfLight
+{
+  const char* Kind;
+  std::size_t Count;
+  const char* Names;
+};
+
+constexpr NumbersOfLight NumbersOfLights[] = {
+  { "directional", 6, "dx, dy, dz, red, green, blue" },
+  { "point", 6, "x, y, z, red, green, blue" },
+  { "spot", 10, "x, y, z, dx, dy, dz, red, green, blue, angle" },
+  { "rectangle", 11, "x, y, z, dx, dy, dz, red, green, blue, width, height" },
+};
+
 void Pack(const std::vector<Light>& lights, vtkPolyData* output)
 {
   vtkNew<vtkPoints> points;
@@ -98,6 +114,42 @@ struct vtkLightRig::AddedLights
   std::vector<Light> Point;
   std::vector<Light> Spot;
   std::vector<Light> Rectangle;
+  std::array<std::vector<double>, 4> Numbers; ///< of a light of each type that is not whole yet
+
+  void Clear(LightTypes type, std::vector<Light>& lights)
+  {
+    lights.clear();
+    this->Numbers[type].clear();
+  }
+
+  /// Calls add with the numbers of a light when they are all there.
+  template <typename Add>
+  void Take(LightTypes type, double number, const Add& add)
+  {
+    std::vector<double>& numbers = this->Numbers[type];
+    numbers.push_back(number);
+    if (numbers.size() == NumbersOfLights[type].Count)
+    {
+      add(numbers.data());
+      numbers.clear();
+    }
+  }
+
+  /// @throws InvalidInput where a light lacks numbers
+  void CheckNumbers() const
+  {
+    for (std::size_t type = 0; type < this->Numbers.size(); ++type)
+    {
+      const std::size_t left = this->Numbers[type].size();
+      if (left > 0)
+      {
+        const NumbersOfLight& needed = NumbersOfLights[type];
+        throw tyndall::InvalidInput("The last " + std::string(needed.Kind) + " light has " + std::to_string(left) +
+          (left == 1 ? " number" : " numbers") + "; a light of this kind takes " + std::to_string(needed.Count) + ": " +
+          needed.Names + ".");
+      }
+    }
+  }
 };
 
 vtkStandardNewMacro(vtkLightRig);
@@ -157,27 +209,57 @@ void vtkLightRig::AddRectangleLight(double x, double y, double z, double dx, dou
   this->Modified();
 }
 
+void vtkLightRig::AddDirectionalLightNumber(double number)
+{
+  this->Added->Take(DIRECTIONAL, number,
+    [&](const double* n) { this->AddDirectionalLight(n[0], n[1], n[2], n[3], n[4], n[5]); });
+  this->Modified();
+}
+
+void vtkLightRig::AddPointLightNumber(double number)
+{
+  this->Added->Take(
+    POINT, number, [&](const double* n) { this->AddPointLight(n[0], n[1], n[2], n[3], n[4], n[5]); });
+  this->Modified();
+}
+
+void vtkLightRig::AddSpotLightNumber(double number)
+{
+  this->Added->Take(SPOT, number, [&](const double* n) {
+    this->AddSpotLight(n[0], n[1], n[2], n[3], n[4], n[5], n[6], n[7], n[8], n[9]);
+  });
+  this->Modified();
+}
+
+void vtkLightRig::AddRectangleLightNumber(double number)
+{
+  this->Added->Take(RECTANGLE, number, [&](const double* n) {
+    this->AddRectangleLight(n[0], n[1], n[2], n[3], n[4], n[5], n[6], n[7], n[8], n[9], n[10]);
+  });
+  this->Modified();
+}
+
 void vtkLightRig::RemoveAllDirectionalLights()
 {
-  this->Added->Directional.clear();
+  this->Added->Clear(DIRECTIONAL, this->Added->Directional);
   this->Modified();
 }
 
 void vtkLightRig::RemoveAllPointLights()
 {
-  this->Added->Point.clear();
+  this->Added->Clear(POINT, this->Added->Point);
   this->Modified();
 }
 
 void vtkLightRig::RemoveAllSpotLights()
 {
-  this->Added->Spot.clear();
+  this->Added->Clear(SPOT, this->Added->Spot);
   this->Modified();
 }
 
 void vtkLightRig::RemoveAllRectangleLights()
 {
-  this->Added->Rectangle.clear();
+  this->Added->Clear(RECTANGLE, this->Added->Rectangle);
   this->Modified();
 }
 
@@ -210,6 +292,7 @@ int vtkLightRig::GetNumberOfRectangleLights() const
 int vtkLightRig::RequestData(vtkInformation*, vtkInformationVector**, vtkInformationVector* outputVector)
 {
   return tyndall::Guarded(this, outputVector, [&] {
+    this->Added->CheckNumbers();
     tyndall::Illumination illumination;
     if (this->Sun)
     {

@@ -106,6 +106,15 @@ public:
   /// Removes every light that was added. The sun stays as it is set.
   void RemoveAllLights();
 
+  ///@{
+  /// The same lights number by number, in the order of the arguments above: the last number of a light adds it. A light
+  /// that lacks numbers is an error that says how many it takes. Removing the lights of a kind removes its numbers.
+  void AddDirectionalLightNumber(double number);
+  void AddPointLightNumber(double number);
+  void AddSpotLightNumber(double number);
+  void AddRectangleLightNumber(double number);
+  ///@}
+
 protected:
   vtkLightRig();
   ~vtkLightRig() override;

@@ -178,6 +178,35 @@ void BadLights(Refusals& refusals)
   refusals.OfLights(lights, "'power' has 2 components");
 }
 
+/// A failure of the filter before has been said there.
+void FailedBefore(test::Claims& claims)
+{
+  vtkNew<vtkLightRig> rig;
+  test::Errors rigErrors(rig);
+  vtkNew<vtkLightPropagationMaps> maps;
+  test::Errors errors(maps);
+  maps->SetInputDataObject(Good());
+  maps->SetLightsConnection(rig->GetOutputPort());
+  rig->AddSpotLight(0, 0, 1, 0, 0, -1, 1, 1, 1, 0);
+  for (int update = 0; update < 2; ++update)
+  {
+    maps->Update();
+  }
+  claims.That(rigErrors.WasOneWith("angle"), "lights that fail are one error");
+  claims.That(errors.None() && maps->GetOutput()->GetNumberOfCells() == 0, "and the solver is empty without a word");
+  rig->RemoveAllLights();
+  maps->Update();
+  claims.That(errors.None() && rigErrors.None() && maps->GetOutput()->GetNumberOfCells() == 60, "good lights are solved");
+
+  vtkNew<vtkLightPropagationMaps> second; // behind a medium that fails
+  test::Errors secondErrors(second);
+  second->SetInputConnection(maps->GetOutputPort());
+  maps->SetDirectionsPerFace(24);
+  second->Update();
+  claims.That(errors.WasOneWith("24") && secondErrors.None() && second->GetOutput()->GetNumberOfCells() == 0,
+    "a medium that fails is one error");
+}
+
 void BadEnvironment(Refusals& refusals)
 {
   const auto environment = [](std::array<int, 3> cells) { return test::MakeImage({ cells }); };
@@ -242,6 +271,7 @@ int TestLightPropagationMapsBadInput(int, char*[])
   BadLights(refusals);
   BadEnvironment(refusals);
   BadSettings(refusals);
+  FailedBefore(claims);
   refusals.None("good input after all the bad is solved");
 
   refusals->SetSkyColor(0.0, 0.0, 0.0);

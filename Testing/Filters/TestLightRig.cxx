@@ -55,6 +55,17 @@ void EachKindIsARow(test::Claims& claims)
   claims.Near(Value(rig, "size", vtkLightRig::RECTANGLE, 1), 8.0, 0.0, "height of the rectangle");
   claims.Near(rig->GetOutput()->GetPoint(vtkLightRig::POINT)[2], 3.0, 0.0, "height of the point light");
 
+  for (int number = 1; number <= 11; ++number)
+  {
+    rig->AddRectangleLightNumber(number == 4 || number == 5 ? 0 : number);
+  }
+  rig->Update();
+  claims.That(rig->GetOutput()->GetNumberOfPoints() == 5, "a light was added number by number");
+  claims.Near(Value(rig, "size", 4, 1), 11.0, 0.0, "its last number");
+  claims.Near(Value(rig, "power", 4, 0), 7.0, 0.0, "its seventh");
+  rig->RemoveAllRectangleLights();
+  rig->AddRectangleLight(1, 2, 3, 0, 0, -5, 4, 5, 6, 7, 8);
+
   rig->RemoveAllPointLights();
   rig->Update();
   claims.That(rig->GetOutput()->GetNumberOfPoints() == 3, "the point light was removed");
@@ -89,6 +100,13 @@ void BadLightsAreErrors(test::Claims& claims)
   refused("angle", "a closed spot is refused");
   rig->AddRectangleLight(0, 0, 0, 0, 0, 1, 1, 1, 1, 0, 1);
   refused("size", "a rectangle without width is refused");
+
+  for (double number : { 0.0, 0.0, 0.0, 5.0, 5.0 })
+  {
+    rig->AddPointLightNumber(number);
+  }
+  refused("The last point light has 5 numbers; a light of this kind takes 6: x, y, z, red, green, blue",
+    "a light that lacks a number is refused");
 
   rig->Update();
   claims.That(errors.None(), "a good rig after a bad one has no error");

@@ -3,7 +3,9 @@
 
 #include "vtkDataArray.h"
 #include "vtkDataArraySelection.h"
+#include "vtkDemandDrivenPipeline.h"
 #include "vtkFieldData.h"
+#include "vtkInformation.h"
 #include "vtkMatrix3x3.h"
 #include "vtkNew.h"
 #include "vtkStringArray.h"
@@ -209,7 +211,11 @@ void WrongQuestionsAreErrors(test::Claims& claims)
     claims.That(errors.WasOneWith(part) && IsEmpty(reader->GetOutput()), claim);
   };
   reader->Update();
-  claims.That(errors.WasOneWith("FileName"), "no file name is an error");
+  // Again past the pipeline, as ParaView's reader of series does.
+  vtkNew<vtkInformation> request;
+  request->Set(vtkDemandDrivenPipeline::REQUEST_INFORMATION());
+  reader->ProcessRequest(request, nullptr, reader->GetExecutive()->GetOutputInformation());
+  claims.That(errors.WasOneWith("FileName"), "no file name is an error, once");
   WriteBytes(Path("empty.vdb"), "");
   WriteBytes(Path("text.vdb"), "a text that is no grid at all");
   fails(Path("none.vdb"), "cannot be read", "a missing file is an error");

@@ -38,3 +38,10 @@ rig.PointLights = []
 rig.Sun = 0
 rig.UpdatePipeline()
 assert array(servermanager.Fetch(rig), "light_type") == [0, 2, 3]
+
+rig.PointLights = [0, 0, 0, 5, 5]
+rig.UpdatePipeline()
+assert servermanager.Fetch(rig).GetNumberOfPoints() == 0
+rig.PointLights = [0, 0, 0, 5, 5, 5]
+rig.UpdatePipeline()
+assert array(servermanager.Fetch(rig), "light_type") == [0, 1, 2, 3]
