@@ -61,3 +61,12 @@ broken.UpdatePipeline()
 assert servermanager.Fetch(broken).GetNumberOfCells() == 0
 series.UpdatePipeline(series.TimestepValues[0])
 assert servermanager.Fetch(series).GetNumberOfCells() == 9 * 6 * 7
+
+# A medium keeps its mean cosine.
+medium = ParticipatingMedium(Input=cells, Preset=1)
+medium.UpdatePipeline()
+g = servermanager.Fetch(medium).GetFieldData().GetArray("g").GetValue(0)
+SaveData(os.path.join(folder, "medium.vdb"), proxy=medium)
+again = OpenDataFile(os.path.join(folder, "medium.vdb"))
+again.UpdatePipeline()
+assert g != 0 and servermanager.Fetch(again).GetFieldData().GetArray("g").GetValue(0) == g
