@@ -1,29 +1,21 @@
 #include "LightTransportData.h"
 
-#include "Device/OpenCL.h"
 #include "LastFailure.h"
 
 #include "vtkAlgorithm.h"
 #include "vtkCellData.h"
 #include "vtkDataSetAttributes.h"
-#include "vtkDoubleArray.h"
 #include "vtkFieldData.h"
 #include "vtkImageData.h"
 #include "vtkInformation.h"
-#include "vtkInformationVector.h"
-#include "vtkIntArray.h"
 #include "vtkMatrix3x3.h"
 #include "vtkNew.h"
 #include "vtkPointData.h"
 #include "vtkPointDataToCellData.h"
 #include "vtkPolyData.h"
-#include "vtkStringArray.h"
-#include "vtkTable.h"
-#include "vtkVersionMacros.h"
 
 #include <algorithm>
 #include <cmath>
-#include <new>
 #include <utility>
 
 namespace tyndall
@@ -185,15 +177,6 @@ FloatField Read(vtkImageData* image, const Choice& choice, Need need, Components
 
 namespace
 {
-/// Field data of outputs that are empty because their filter was aborted, or failed.
-const char* const AbortedFact = "aborted";
-const char* const FailedFact = "failed";
-
-/// Thrown where an input is empty because the filter before failed, which has said why.
-struct InputFailed
-{
-};
-
 /// To be asked where an input is empty.
 void StopWithFilterBefore(vtkDataObject* input)
 {
@@ -416,301 +399,5 @@ void AddDiffuse(Illumination& illumination, const double* sky, const double* fac
     illumination.faces[face].fill(faceRadiance[face]);
   }
   Check(illumination);
-}
-
-namespace
-{
-/// A vtkFloatArray, to the last bit of its name, whose first values live in a vector.
-class VectorArray : public vtkFloatArray
-{
-public:
-  static VectorArray* New() { VTK_STANDARD_NEW_BODY(VectorArray); }
-
-  void Take(std::vector<float>&& values)
-  {
-    this->Values = std::move(values);
-    this->SetArray(this->Values.data(), static_cast<vtkIdType>(this->Values.size()), 1);
-  }
-
-private:
-  std::vector<float> Values;
-};
-
-void NameComponents(vtkDataArray* array)
-{
-  const char* const names[] = { "R", "G", "B" };
-  for (int c = 0; c < array->GetNumberOfComponents(); ++c)
-  {
-    array->SetComponentName(c, names[c]);
-  }
-}
-
-void NameFluxComponents(vtkDataArray* array)
-{
-  const char* const grey[] = { "X", "Y", "Z" };
-  const char* const coloured[] = { "R_X", "R_Y", "R_Z", "G_X", "G_Y", "G_Z", "B_X", "B_Y", "B_Z" };
-  const int count = array->GetNumberOfComponents();
-  for (int c = 0; c < count; ++c)
-  {
-    array->SetComponentName(c, count == 3 ? grey[c] : coloured[c]);
-  }
-}
-
-std::vector<double> Channels(std::initializer_list<Rgb> rows, int channels)
-{
-  std::vector<double> values;
-  for (const Rgb& row : rows)
-  {
-    values.insert(values.end(), row.begin(), row.begin() + channels);
-  }
-  return values;
-}
-
-std::vector<double> Flat(const std::vector<std::array<double, 3>>& directions)
-{
-  std::vector<double> values;
-  for (const std::array<double, 3>& direction : directions)
-  {
-    values.insert(values.end(), direction.begin(), direction.end());
-  }
-  return values;
-}
-
-void AddLightCells(vtkImageData* output, const char* name, std::vector<float>&& values, int components)
-{
-  if (!values.empty())
-  {
-    AddCells(output, name, std::move(values), components);
-  }
-}
-}
-
-void AddCells(vtkImageData* image, const char* name, std::vector<float>&& values, int components)
-{
-  const auto needed = static_cast<std::size_t>(image->GetNumberOfCells()) * static_cast<std::size_t>(components);
-  if (values.size() != needed)
-  {
-    throw std::logic_error(std::string(name) + " has " + std::to_string(values.size()) +
-      " values where the image takes " + std::to_string(needed) + ".");
-  }
-  vtkNew<VectorArray> array;
-  array->SetName(name);
-  array->SetNumberOfComponents(components);
-  array->Take(std::move(values));
-  image->GetCellData()->AddArray(array);
-}
-
-void AddFact(vtkDataObject* data, const char* name, const std::vector<double>& values, int components)
-{
-  vtkNew<vtkDoubleArray> array;
-  array->SetName(name);
-  array->SetNumberOfComponents(components);
-  array->SetNumberOfTuples(static_cast<vtkIdType>(values.size()) / components);
-  std::copy(values.begin(), values.end(), array->GetPointer(0));
-  data->GetFieldData()->AddArray(array);
-}
-
-void AddFact(vtkDataObject* data, const char* name, const std::vector<std::string>& values)
-{
-  vtkNew<vtkStringArray> array;
-  array->SetName(name);
-  for (const std::string& value : values)
-  {
-    array->InsertNextValue(value);
-  }
-  data->GetFieldData()->AddArray(array);
-}
-
-std::string Lines(const std::vector<std::string>& texts)
-{
-  std::string lines;
-  for (const std::string& text : texts)
-  {
-    lines += (lines.empty() ? "" : "\n") + text;
-  }
-  return lines;
-}
-
-void WriteLight(LightField&& light, vtkImageData* output)
-{
-  const int channels = light.channels;
-  vtkCellData* cells = output->GetCellData();
-  for (const char* earlier :
-    { "fluence", "fluence_direct", "fluence_error", "net_flux", "scattered_radiance", "mean_direction" })
-  {
-    cells->RemoveArray(earlier); // of another solve that the input has been through
-  }
-  output->GetFieldData()->RemoveArray("stored_directions");
-  AddCells(output, "fluence", std::move(light.fluence), channels);
-  cells->SetActiveScalars("fluence");
-  AddLightCells(output, "fluence_direct", std::move(light.fluenceDirect), channels);
-  AddLightCells(output, "net_flux", std::move(light.netFlux), 3 * channels);
-  const int stored = std::max(1, static_cast<int>(light.storedDirections.size()));
-  AddLightCells(output, "scattered_radiance", std::move(light.scatteredRadiance), channels * stored);
-  if (channels == 3)
-  {
-    for (const char* name : { "fluence", "fluence_direct" })
-    {
-      if (vtkDataArray* array = cells->GetArray(name))
-      {
-        NameComponents(array);
-      }
-    }
-  }
-  if (vtkDataArray* flux = cells->GetArray("net_flux"))
-  {
-    NameFluxComponents(flux);
-  }
-
-  const EnergyBalance& balance = light.balance;
-  AddFact(output, "energy_balance",
-    Channels({ balance.entered, balance.emitted, balance.absorbed, balance.escaped, balance.leftOver }, channels),
-    channels);
-  const std::array<Rgb, 6>& out = light.facePowerOut;
-  AddFact(output, "face_power_out", Channels({ out[0], out[1], out[2], out[3], out[4], out[5] }, channels), channels);
-  if (!light.storedDirections.empty())
-  {
-    AddFact(output, "stored_directions", Flat(light.storedDirections), 3);
-  }
-  AddFact(output, "left_out", light.leftOut);
-  AddFact(output, "device", std::vector<std::string>{ light.device });
-}
-
-void WriteConvergence(const std::vector<ConvergenceRow>& rows, vtkTable* table)
-{
-  vtkNew<vtkIntArray> iteration;
-  iteration->SetName("iteration");
-  for (const ConvergenceRow& row : rows)
-  {
-    iteration->InsertNextValue(row.iteration);
-  }
-  table->AddColumn(iteration);
-
-  const auto column = [&](const char* name, double ConvergenceRow::*quantity) {
-    vtkNew<vtkDoubleArray> values;
-    values->SetName(name);
-    for (const ConvergenceRow& row : rows)
-    {
-      values->InsertNextValue(row.*quantity);
-    }
-    table->AddColumn(values);
-  };
-  column("seconds", &ConvergenceRow::seconds);
-  column("residual", &ConvergenceRow::residual);
-  column("absorbed", &ConvergenceRow::absorbed);
-  column("escaped", &ConvergenceRow::escaped);
-  column("left_over", &ConvergenceRow::leftOver);
-}
-
-void PassOn(vtkImageData* input, vtkImageData* output)
-{
-  output->ShallowCopy(input);
-  vtkNew<vtkFieldData> own;
-  own->ShallowCopy(input->GetFieldData());
-  output->SetFieldData(own);
-}
-
-Monitor MonitorOf(vtkAlgorithm* filter)
-{
-  return [filter](double fractionDone) {
-    filter->UpdateProgress(fractionDone);
-#if VTK_VERSION_NUMBER >= VTK_VERSION_CHECK(9, 2, 20220823)
-    return !filter->CheckAbort();
-#else
-    return filter->GetAbortExecute() == 0;
-#endif
-  };
-}
-
-namespace
-{
-void EmptyOutputs(vtkInformationVector* outputs, const char* why)
-{
-  for (int port = 0; port < outputs->GetNumberOfInformationObjects(); ++port)
-  {
-    if (vtkDataObject* output = vtkDataObject::GetData(outputs, port))
-    {
-      output->Initialize();
-      AddFact(output, why, std::vector<double>{ 1.0 });
-    }
-  }
-}
-
-/// Newer VTK leaves both set, and would run the filter again with every update until they are reset.
-void ForgetAbort(vtkAlgorithm* filter)
-{
-  filter->AbortExecute = 0;
-#if VTK_VERSION_NUMBER >= VTK_VERSION_CHECK(9, 2, 20220823)
-  filter->SetAbortOutput(false);
-#endif
-}
-}
-
-int Guarded(vtkAlgorithm* filter, vtkInformationVector* outputs, const std::function<void()>& work)
-{
-  LastFailure last(filter);
-  if (last.StillHolds())
-  {
-    EmptyOutputs(outputs, last.Was(LastFailure::Abort) ? AbortedFact : FailedFact);
-    return 1;
-  }
-  last.Forget();
-  const auto fail = [&](const std::string& why) {
-    EmptyOutputs(outputs, FailedFact);
-    vtkErrorWithObjectMacro(filter, << why);
-    last.Note(LastFailure::Error);
-  };
-  try
-  {
-    work();
-  }
-  catch (const Aborted&)
-  {
-    EmptyOutputs(outputs, AbortedFact);
-    ForgetAbort(filter);
-    last.Note(LastFailure::Abort);
-  }
-  catch (const InputFailed&)
-  {
-    EmptyOutputs(outputs, FailedFact);
-    last.Note(LastFailure::Error);
-  }
-  catch (const cl::Error& error)
-  {
-    fail(std::string("The OpenCL device failed in ") + error.what() + " (OpenCL error " + std::to_string(error.err()) +
-      "). Try another device (property Device or variable TYNDALL_DEVICE).");
-  }
-  catch (const std::bad_alloc&)
-  {
-    fail("The machine's memory does not suffice. Use a smaller grid, or ask for fewer outputs.");
-  }
-  catch (const std::exception& error)
-  {
-    fail(error.what());
-  }
-  return 1;
-}
-
-bool GuardedInformation(vtkAlgorithm* filter, const std::function<void()>& work)
-{
-  LastFailure last(filter);
-  try
-  {
-    work();
-  }
-  catch (const std::exception& error)
-  {
-    if (!last.Was(LastFailure::Information) || !last.StillHolds())
-    {
-      vtkErrorWithObjectMacro(filter, << error.what());
-    }
-    last.Note(LastFailure::Information);
-    return false;
-  }
-  if (last.Was(LastFailure::Information))
-  {
-    last.Forget();
-  }
-  return true;
 }
 }

@@ -1,0 +1,119 @@
+// How filters do their work, report and fail: see LightTransportData.h.
+#include "LightTransportData.h"
+
+#include "Device/OpenCL.h"
+#include "LastFailure.h"
+
+#include "vtkAlgorithm.h"
+#include "vtkInformation.h"
+#include "vtkInformationVector.h"
+#include "vtkVersionMacros.h"
+
+#include <new>
+
+namespace tyndall
+{
+Monitor MonitorOf(vtkAlgorithm* filter)
+{
+  return [filter](double fractionDone) {
+    filter->UpdateProgress(fractionDone);
+#if VTK_VERSION_NUMBER >= VTK_VERSION_CHECK(9, 2, 20220823)
+    return !filter->CheckAbort();
+#else
+    return filter->GetAbortExecute() == 0;
+#endif
+  };
+}
+
+namespace
+{
+void EmptyOutputs(vtkInformationVector* outputs, const char* why)
+{
+  for (int port = 0; port < outputs->GetNumberOfInformationObjects(); ++port)
+  {
+    if (vtkDataObject* output = vtkDataObject::GetData(outputs, port))
+    {
+      output->Initialize();
+      AddFact(output, why, std::vector<double>{ 1.0 });
+    }
+  }
+}
+
+/// Newer VTK leaves both set, and would run the filter again with every update until they are reset.
+void ForgetAbort(vtkAlgorithm* filter)
+{
+  filter->AbortExecute = 0;
+#if VTK_VERSION_NUMBER >= VTK_VERSION_CHECK(9, 2, 20220823)
+  filter->SetAbortOutput(false);
+#endif
+}
+}
+
+int Guarded(vtkAlgorithm* filter, vtkInformationVector* outputs, const std::function<void()>& work)
+{
+  LastFailure last(filter);
+  if (last.StillHolds())
+  {
+    EmptyOutputs(outputs, last.Was(LastFailure::Abort) ? AbortedFact : FailedFact);
+    return 1;
+  }
+  last.Forget();
+  const auto fail = [&](const std::string& why) {
+    EmptyOutputs(outputs, FailedFact);
+    vtkErrorWithObjectMacro(filter, << why);
+    last.Note(LastFailure::Error);
+  };
+  try
+  {
+    work();
+  }
+  catch (const Aborted&)
+  {
+    EmptyOutputs(outputs, AbortedFact);
+    ForgetAbort(filter);
+    last.Note(LastFailure::Abort);
+  }
+  catch (const InputFailed&)
+  {
+    EmptyOutputs(outputs, FailedFact);
+    last.Note(LastFailure::Error);
+  }
+  catch (const cl::Error& error)
+  {
+    fail(std::string("The OpenCL device failed in ") + error.what() + " (OpenCL error " + std::to_string(error.err()) +
+      "). Try another device (property Device or variable TYNDALL_DEVICE).");
+  }
+  catch (const std::bad_alloc&)
+  {
+    fail("The machine's memory does not suffice. Use a smaller grid, or ask for fewer outputs.");
+  }
+  catch (const std::exception& error)
+  {
+    fail(error.what());
+  }
+  return 1;
+}
+
+bool GuardedInformation(vtkAlgorithm* filter, const std::function<void()>& work)
+{
+  LastFailure last(filter);
+  try
+  {
+    work();
+  }
+  catch (const std::exception& error)
+  {
+    if (!last.Was(LastFailure::Information) || !last.StillHolds())
+    {
+      vtkErrorWithObjectMacro(filter, << error.what());
+    }
+    last.Note(LastFailure::Information);
+    return false;
+  }
+  if (last.Was(LastFailure::Information))
+  {
+    last.Forget();
+  }
+  return true;
+}
+}
