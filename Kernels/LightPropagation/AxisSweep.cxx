@@ -74,10 +74,8 @@ struct AxisSweep::Implementation
     const Schedule& schedule, const Monitor& monitor);
   cl::Kernel SweepKernel(bool source, bool border, bool flux);
 
-  Buffer<float>& Maps()
-  {
-    return this->IsPeriodic() ? this->OwnMaps : this->Workspace.maps;
-  } ///< as SweepBorder has them
+  /// As SweepBorder has them.
+  Buffer<float>& Maps() { return this->IsPeriodic() ? this->OwnMaps : this->Workspace.maps; }
   bool IsPeriodic() const { return this->Plan.periodic[this->Plan.axes.axis]; }
   void CountSideways();
   void CountEnds();

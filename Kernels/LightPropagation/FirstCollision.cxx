@@ -15,14 +15,14 @@ namespace tyndall
 {
 namespace
 {
-constexpr int RaysPerEdge = 2;     ///< of a voxel, for parallel beams
-constexpr int PointsPerEdge = 4;   ///< of a rectangle
-constexpr double BeamWidth = 0.5;  ///< of a lamp's beams where they leave the box, voxels; a rectangle's: twice
+constexpr int RaysPerEdge = 2;      ///< of a voxel, for parallel beams
+constexpr int PointsPerEdge = 4;    ///< of a rectangle
+constexpr double BeamWidth = 0.5;   ///< of a lamp's beams where they leave the box, voxels; a rectangle's: twice
 constexpr int BeamsAcrossCone = 16; ///< of a spot, at least
 constexpr int RowSums = 9;          ///< SUMS of LampBeams.cl
-constexpr int RowsPerLaunch = 256; ///< keeps a launch well below a tenth of a second for rows of a thousand voxels
-constexpr int RoundsAtMost = 64;   ///< of a ray on a periodic axis
-constexpr int ManyPlanes = 8192;   ///< of a beam on a periodic axis
+constexpr int RowsPerLaunch = 256;  ///< keeps a launch well below a tenth of a second for rows of a thousand voxels
+constexpr int RoundsAtMost = 64;    ///< of a ray on a periodic axis
+constexpr int ManyPlanes = 8192;    ///< of a beam on a periodic axis
 
 // As lamp_info, beam_row in LampBeams.cl.
 struct LampOnDevice
@@ -231,8 +231,9 @@ private:
 
   cl::Kernel Kernel(const char* name)
   {
-    return this->TheDevice.Kernel(name, { kernel_source::Numerics, kernel_source::FixedPoint, kernel_source::LampBeams },
-      "-DRAYS=" + std::to_string(RaysPerEdge) + " -DATOMICS=" + std::to_string(this->HasAtomics()) +
+    return this->TheDevice.Kernel(name,
+      { kernel_source::Numerics, kernel_source::FixedPoint, kernel_source::LampBeams },
+      "-DATOMICS=" + std::to_string(this->HasAtomics()) +
         " -DLAMBERT=" + std::to_string(this->TheLight.type == LightType::Rectangle) +
         " -DCONE=" + std::to_string(this->TheLight.type == LightType::Spot));
   }

@@ -11,9 +11,10 @@ namespace tyndall
 /// exact rays, and deposits what they lose as a sweep does. No set of directions could: a small or collimated source seen
 /// through one is a handful of rays (ray effects of 100% and more).
 ///
-/// A directional light is a beam of parallel rays, 2 x 2 a voxel. Point, spot and rectangle lights send rays through
-/// the box's faces towards which they shine, 2 x 2 a voxel face, each with the power of the exact solid angle of its part
-/// of the face; a rectangle does so from 4 x 4 points. Deposits of different rays meet in 64-bit fixed point, so that the sum
+/// A directional light is a beam of parallel rays, 2 x 2 a voxel. Point, spot and rectangle lights send square
+/// beams, at most half a voxel wide (a rectangle's: one) where they leave the box and at least 16 across a spot's cone, each
+/// with the power of its exact solid angle; a rectangle does so from 4 x 4 points. What beams on a cone's border miss of
+/// the power of a light inside the box is made up for. Deposits of different beams meet in 64-bit fixed point, so that the sum
 /// does not depend on their order.
 ///
 /// Where an axis is periodic, rays that leave return on the other side; a light outside the box then shines only on
