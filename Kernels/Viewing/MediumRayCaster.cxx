@@ -265,7 +265,7 @@ void InBatches(Device& device, int rows, const Monitor& monitor, double from, do
 }
 
 MediumRayCaster::MediumRayCaster(Device& device, const Medium& medium, const SolvedLight& light,
-  const Illumination& illumination, const ViewSettings& settings)
+  const Illumination& illumination, const ViewSettings& settings, const Field& /*ior*/)
   : TheDevice(device)
   , TheGrid(medium.grid)
   , Settings(settings)

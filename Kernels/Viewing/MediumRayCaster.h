@@ -19,6 +19,23 @@ struct SolvedLight
 {
   Field fluence;       ///< W / length^2, all of it; null: dark
   Field fluenceDirect; ///< its unscattered part; null: not known
+  /// Mean direction of the light weighted by power, 3 components; its length is the anisotropy, in [0, 1]. Null: not known.
+  Field meanDirection;
+};
+
+/// Angular distribution of scattered light for a mean cosine g.
+enum class PhaseFunction
+{
+  HenyeyGreenstein = 0,
+  Schlick = 1, ///< Blasi et al. 1993, with k = 1.55 g - 0.55 g^3
+};
+
+/// What a surface of refractive objects reflects of the light that meets it from the side of the smaller index.
+enum class SurfaceReflection
+{
+  None = 0,
+  Fresnel = 1, ///< of unpolarised light, for the indices on both sides
+  Fixed = 2,
 };
 
 /// The names are those of the filter's properties.
@@ -33,6 +50,13 @@ struct ViewSettings
   Rgb backgroundColor = { 0.0, 0.0, 0.0 }; ///< radiance behind the medium where there is no environment
   bool skipEmptyBricks = true;             ///< leap over what is empty; changes the time and nothing else
   double minimumTransmittance = 1e-3;      ///< a ray that has less left stops; 0: never
+  PhaseFunction phaseFunction = PhaseFunction::HenyeyGreenstein; ///< of light whose direction is known
+  SurfaceReflection surfaceReflection = SurfaceReflection::None;
+  double surfaceIndex = 0.0;       ///< the surface is where n has this value, >= 1; 0: midway between least and largest n
+  double surfaceReflectance = 0.1; ///< of SurfaceReflection::Fixed, [0, 1]
+  int tableFace = -1; ///< face of the box (-x, +x, -y, +y, -z, +z) that is a table, seen from within; -1: none
+  Rgb tableColor = { 0.6, 0.6, 0.6 }; ///< diffuse reflectance of the table, lit by the light in the voxels on it, [0, 1]
+  double tableReflectance = 0.1;      ///< part that the table mirrors, [0, 1]
   int packetWidth = 0; ///< rays marched together: 1, 4, 8 or 16; 0: what the device does best. Changes the time only
 };
 
@@ -78,8 +102,9 @@ public:
   /// @throws InvalidInput as Check(medium) and Check(illumination); for a light array that is not finite or has not 1 or 3
   ///   components; where settings ask for an array that is not there; for a step or an image that is not positive
   /// @throws DeviceError if the samples (16 bytes a voxel, 32 where extinction is coloured) do not fit
+  /// @param ior  refractive index, one component a voxel; null or constant: rays are straight
   MediumRayCaster(Device& device, const Medium& medium, const SolvedLight& light, const Illumination& illumination,
-    const ViewSettings& settings);
+    const ViewSettings& settings, const Field& ior = {});
 
   /// Takes over what of `settings` needs nothing new on the device, so that a caster can be kept while its medium, light and
   /// illumination stay as they are: imageSize, stepSize, backgroundColor, skipEmptyBricks, minimumTransmittance.
