@@ -1,0 +1,138 @@
+"""Glass in lit fog: two meshes voxelised, photons marched along bent rays, pictures with refraction.
+
+    pvbatch refraction.py --data FOLDER --output FOLDER [--grid 192] [--photons 3000000]
+
+FOLDER holds armadillo.ply and elephant.ply (CGAL's demo data, Debian package libcgal-demo) and sunset.exr (Blender's studio
+lights, Debian package blender-data). `./run demo` fetches all and calls this.
+"""
+import argparse
+import math
+import os
+import time
+
+from paraview.simple import *
+from paraview import servermanager
+
+LoadPlugin(os.environ["TYNDALL_PLUGIN"], remote=True, ns=globals())
+
+arguments = argparse.ArgumentParser()
+arguments.add_argument("--data", required=True)
+arguments.add_argument("--output", required=True)
+arguments.add_argument("--grid", type=int, default=192, help="voxels along the box's longest edge")
+arguments.add_argument("--photons", type=int, default=3000000)
+arguments.add_argument("--scenes", nargs="*", default=["armadillo", "elephant"])
+arguments = arguments.parse_args()
+os.makedirs(arguments.output, exist_ok=True)
+
+stages = []
+
+
+def stage(name, proxy):
+    """Do a filter's work and note how long it took."""
+    begin = time.perf_counter()
+    proxy.UpdatePipeline()
+    stages.append((name, time.perf_counter() - begin))
+    return proxy
+
+
+def data(name):
+    return os.path.abspath(os.path.join(arguments.data, name))
+
+
+def output(name):
+    return os.path.join(arguments.output, name)
+
+
+def standing(name):
+    """A mesh of CGAL's, whose up is y, with z upwards and its bounds."""
+    mesh = PLYReader(registrationName=name, FileNames=[data(name + ".ply")])
+    upright = Transform(registrationName=name + " upright", Input=mesh)
+    upright.Transform.Rotate = [90, 0, 0]
+    stage("read " + name, upright)
+    return upright, upright.GetDataInformation().GetBounds()
+
+
+def voxels(bounds):
+    """Cubic voxels in a box, as many along its longest edge as were asked for."""
+    edges = [bounds[2 * a + 1] - bounds[2 * a] for a in range(3)]
+    return [max(1, round(arguments.grid * edge / max(edges))) for edge in edges]
+
+
+def light_in(name, medium, lights, photons, environment=None):
+    """March photons through a medium."""
+    octree = stage(name + ": octree", RefractionOctree(registrationName=name + " octree", Input=medium))
+    emitter = PhotonEmitter(registrationName=name + " photons", Input=medium, Lights=lights, PhotonCount=photons)
+    if environment:
+        emitter.Environment = environment
+    stage(name + ": photons", emitter)
+    marcher = PhotonMarcher(registrationName=name + " light", Input=medium, Photons=emitter, Octree=octree, PathCount=60)
+    return stage(name + ": march photons", marcher)
+
+
+def around(centre, distance, azimuth, elevation):
+    """A place on a sphere about a centre, angles in degrees."""
+    a, e = math.radians(azimuth), math.radians(elevation)
+    return [centre[0] + distance * math.cos(a) * math.cos(e), centre[1] + distance * math.sin(a) * math.cos(e),
+            centre[2] + distance * math.sin(e)]
+
+
+def picture(name, light, **settings):
+    """Render, and save what a screen shows."""
+    caster = MediumRayCaster(registrationName=name, Input=light, ImageSize=[800, 600], **settings)
+    stage("render " + name, caster)
+    SaveData(output(name + ".png"), proxy=caster)
+    return caster
+
+
+def armadillo(sky):
+    """In glass, on a table, in thin fog: the sun behind it draws a caustic."""
+    mesh, b = standing("armadillo")
+    middle = [0.5 * (b[0] + b[1]), 0.5 * (b[2] + b[3])]
+    box = [middle[0] - 105, middle[0] + 105, middle[1] - 105, middle[1] + 105, b[4] - 6, b[5] + 14]
+    medium = MeshVoxelizer(registrationName="Armadillo in fog", Input=mesh, ModelBounds=box, SampleDimensions=voxels(box),
+                           InsideIndex=1.5, InsideAbsorption=[0.004, 0.0015, 0.002], OutsideScattering=[0.0025] * 3,
+                           OutsideMeanCosine=0.5, InsideMeanCosine=0.5)
+    stage("armadillo: voxels", medium)
+    sun = LightRig(registrationName="Sun", SunElevation=42, SunAzimuth=60, SunPower=[30, 26, 20])
+    light = light_in("armadillo", medium, sun, arguments.photons, sky)
+    centre = [middle[0], middle[1], 0.5 * (box[4] + box[5]) - 18]
+    picture("armadillo-in-glass", light, Environment=sky, CameraPosition=around(centre, 520, 262, 20),
+            CameraFocalPoint=centre, SurfaceReflection="Fresnel", TableFace="-z", TableColor=[0.7, 0.7, 0.7],
+            TableReflectance=0.1)
+    return light
+
+
+def elephant():
+    """Inside a sphere of another material, lit by a spot from behind: figure 8a of Bernabei et al."""
+    mesh, b = standing("elephant")
+    centre = [0.5 * (b[2 * a] + b[2 * a + 1]) for a in range(3)]
+    sphere = Sphere(registrationName="Sphere", Center=centre, Radius=0.78, ThetaResolution=160, PhiResolution=160)
+    box = [c + side for c in centre for side in (-0.9, 0.9)]
+    hue = (0.9, 0.55, 0.2)
+    medium = MeshVoxelizer(registrationName="Elephant in a sphere", Input=[sphere, mesh], ModelBounds=box,
+                           SampleDimensions=voxels(box), OutsideScattering=[0, 0, 0],
+                           Materials=[0, 1.2, *(0.5 * h for h in hue), *(0.3 * (1 - h) for h in hue), 0,
+                                      1, 1.5, *(2.5 * h for h in hue), *(1.5 * (1 - h) for h in hue), 0])
+    stage("elephant: voxels", medium)
+    spot = LightRig(registrationName="Spot", Sun=0)
+    lamp = around(centre, 4, 75, 35)
+    spot.SpotLights = [*lamp, *(c - p for c, p in zip(centre, lamp)), 60, 60, 60, 26]
+    light = light_in("elephant", medium, spot, arguments.photons)
+    picture("elephant-in-a-sphere", light, CameraPosition=around(centre, 5.2, 260, 12), CameraFocalPoint=centre,
+            CameraViewAngle=24, SurfaceReflection="Fresnel")
+    return light
+
+
+sky = EnvironmentReader(registrationName="Sky", FileName=data("sunset.exr"))
+lights = {}
+if "armadillo" in arguments.scenes:
+    lights["armadillo"] = armadillo(sky)
+if "elephant" in arguments.scenes:
+    lights["elephant"] = elephant()
+
+print("%-34s %9s" % ("stage", "seconds"))
+for name, seconds in stages:
+    print("%-34s %9.2f" % (name, seconds))
+for name, light in lights.items():
+    light.UpdatePropertyInformation()
+    print("%-34s %9.1e" % (name + ": balance, relative error", light.BalanceError))
