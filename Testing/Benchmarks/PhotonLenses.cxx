@@ -86,29 +86,6 @@ void Refine(const PhotonBench& bench, const char* name, const char* title, Photo
   table.Print(title);
 }
 
-/// How far from the far pole of the lens light passes that comes to it through air: at worst, of many rays.
-double MissOfLensInAir(Device& device, PhotonScene& scene)
-{
-  PhotonMarcher marcher = scene.Marcher(device);
-  std::vector<Photon> photons;
-  std::vector<std::size_t> all;
-  for (double b = 0.05; b < 0.9; b += 0.05)
-  {
-    Photon photon;
-    photon.position = { -1.1, b, 0.0 };
-    photon.direction = { 1.0f, 0.0f, 0.0f };
-    photon.power = { 1.0f, 1.0f, 1.0f };
-    all.push_back(photons.size());
-    photons.push_back(photon);
-  }
-  double worst = 0.0;
-  for (const PhotonPath& path : marcher.Paths(photons, all))
-  {
-    worst = std::max(worst, Miss(path, { 1.0, 0.0, 0.0 }));
-  }
-  return worst;
-}
-
 void RefineLensInAir(const PhotonBench& bench)
 {
   const std::vector<double> steps =
@@ -130,7 +107,7 @@ void RefineLensInAir(const PhotonBench& bench)
       {
         scene.settings.order = order;
         scene.settings.stepSize = step;
-        const double error = MissOfLensInAir(bench.device, scene);
+        const double error = luneburg::MissInAir(bench.device, scene);
         PhotonLine("luneburg in air", "order " + std::to_string(order), scene.medium.grid)
           .Add("step", step)
           .Add("error_max", error)

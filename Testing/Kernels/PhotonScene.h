@@ -218,4 +218,27 @@ inline double WorstCorner(const tyndall::PhotonPath& path, double b)
   }
   return worst;
 }
+
+/// How far from the far pole light passes that comes to the lens through air: at worst, of many rays.
+inline double MissInAir(tyndall::Device& device, PhotonScene& scene)
+{
+  tyndall::PhotonMarcher marcher = scene.Marcher(device);
+  std::vector<tyndall::Photon> photons;
+  std::vector<std::size_t> all;
+  for (double b = 0.05; b < 0.9; b += 0.05)
+  {
+    tyndall::Photon photon;
+    photon.position = { -1.1, b, 0.0 };
+    photon.direction = { 1.0f, 0.0f, 0.0f };
+    photon.power = { 1.0f, 1.0f, 1.0f };
+    all.push_back(photons.size());
+    photons.push_back(photon);
+  }
+  double worst = 0.0;
+  for (const tyndall::PhotonPath& path : marcher.Paths(photons, all))
+  {
+    worst = std::max(worst, Miss(path, { 1.0, 0.0, 0.0 }));
+  }
+  return worst;
+}
 }
