@@ -28,9 +28,8 @@ Foci FindFoci(const PhotonBench& bench, PhotonMarcher& marcher, const Grid& grid
 {
   const std::size_t count = bench.quick ? 50000 : 1000000;
   const std::vector<float> fluence = marcher.March(Beam(grid, axis, count, Reach)).light.fluence;
-  const bool resolved = grid.size[0] >= 128; // else the stretch reaches into the ball
   return { ParaxialFocus(marcher, axis), Waist(grid, axis, fluence) + Focus - ExpectedWaist(Reach),
-    resolved ? BrightStretch(grid, axis, fluence) : std::nan("") };
+    BrightStretch(grid, axis, fluence) };
 }
 
 void AddFoci(

@@ -180,23 +180,26 @@ inline double ExpectedWaist(double reach)
   return sum / weights;
 }
 
-/// The middle of the stretch behind the ball along which fluence on the axis is above half of its largest value.
+/// The middle between the first and the last place at which brightness along the axis is half of its largest value; NaN
+/// where the stretch goes on beyond the first or last slice.
 inline double MiddleOfTheBright(const std::vector<double>& brightness, double from, double slice)
 {
-  const auto largest = std::max_element(brightness.begin(), brightness.end());
-  const double half = 0.5 * *largest;
-  auto first = largest, last = largest;
-  while (first > brightness.begin() + 1 && *(first - 1) > half)
+  const double half = 0.5 * *std::max_element(brightness.begin(), brightness.end());
+  const int count = static_cast<int>(brightness.size());
+  int first = 0, last = count - 1;
+  for (; brightness[first] < half; ++first)
   {
-    --first;
   }
-  while (last < brightness.end() - 2 && *(last + 1) > half)
+  for (; brightness[last] < half; --last)
   {
-    ++last;
+  }
+  if (first == 0 || last == count - 1)
+  {
+    return std::nan("");
   }
   // Where straight lines between the slices' middles cross one half.
-  const double low = (first - brightness.begin()) - (*first - half) / (*first - *(first - 1));
-  const double high = (last - brightness.begin()) + (*last - half) / (*last - *(last + 1));
+  const double low = first - (brightness[first] - half) / (brightness[first] - brightness[first - 1]);
+  const double high = last + (brightness[last] - half) / (brightness[last] - brightness[last + 1]);
   return from + (0.5 * (low + high) + 0.5) * slice;
 }
 
