@@ -62,8 +62,8 @@ void CompareFoci(const PhotonBench& bench)
 {
   const NamedAxis axes[] = { { "askew", Askew() }, { "along z", AxisAlong(0.0, 0.0, 1.0) } };
   const std::vector<int> edges = bench.quick ? std::vector<int>{ 32 } : std::vector<int>{ 64, 128, 256 };
-  Table table({ "grid", "light", "samples", "border, voxels", "border, R", "smoothed ball", "from paths", "off by",
-    "from waist", "off by", "brightest" });
+  Table table({ "grid", "light", "samples", "border, voxels", "border, R", "smoothed ball", "from paths", "off by, R",
+    "from waist", "off by, R", "brightest" });
   for (const int samples : bench.quick ? std::vector<int>{ 4 } : std::vector<int>{ 4, 16 })
   {
     for (const int edge : edges)
