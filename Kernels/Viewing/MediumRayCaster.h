@@ -55,9 +55,8 @@ struct ViewSettings
   double surfaceIndex = 0.0; ///< the surface is where n has this value, >= 1; 0: midway between least and largest n
   double surfaceReflectance = 0.1; ///< of SurfaceReflection::Fixed, [0, 1]
   int tableFace = -1; ///< face of the box (-x, +x, -y, +y, -z, +z) that is a table, seen from within; -1: none
-  Rgb tableColor = { 0.6, 0.6,
-    0.6 }; ///< diffuse reflectance of the table, lit by the light in the voxels on it, [0, 1]; at most 1
-           ///< together with tableReflectance
+  /// Diffuse reflectance of the table, lit by the light in the voxels on it, [0, 1]; at most 1 together with tableReflectance.
+  Rgb tableColor = { 0.6, 0.6, 0.6 };
   double tableReflectance = 0.1; ///< part that the table mirrors, [0, 1]
   int packetWidth = 0; ///< rays marched together: 1, 4, 8 or 16; 0: what the device does best. Changes the time only
 };
