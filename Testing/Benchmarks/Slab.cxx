@@ -5,20 +5,18 @@
 //   TyndallBenchSlab [--quick]
 
 #include "Measure.h"
+#include "Program.h"
 #include "Report.h"
 
 #include "../Kernels/RandomMedium.h"
 #include "../Kernels/SlabReference.h"
 
 #include "Device/Device.h"
-#include "Device/Errors.h"
 #include "LightPropagation/FusedPropagation.h"
 #include "LightPropagation/SequentialPropagation.h"
 
 #include <cmath>
 #include <cstdio>
-#include <cstdlib>
-#include <cstring>
 #include <functional>
 #include <limits>
 #include <string>
@@ -229,15 +227,5 @@ void RunAll(Device& device, bool quick)
 
 int main(int argc, char* argv[])
 {
-  const bool quick = std::getenv("TYNDALL_BENCH_QUICK") || (argc > 1 && std::strcmp(argv[1], "--quick") == 0);
-  try
-  {
-    RunAll(*Device::Find(), quick);
-    return EXIT_SUCCESS;
-  }
-  catch (const DeviceError& error)
-  {
-    std::fprintf(stderr, "%s\n", error.what());
-    return std::getenv("TYNDALL_REQUIRE_DEVICE") ? EXIT_FAILURE : 125;
-  }
+  return RunOnDevice(argc, argv, [](Device& device, const Arguments& arguments) { RunAll(device, arguments.quick); });
 }

@@ -98,6 +98,24 @@ inline TriangleMesh Box(const Point& low, const Point& high)
   return mesh;
 }
 
+/// An equilateral triangle about the origin, its first corner up along y, drawn out along z.
+inline TriangleMesh Prism(double side, double length)
+{
+  TriangleMesh mesh;
+  const double radius = side / std::sqrt(3.0);
+  for (const double z : { -0.5 * length, 0.5 * length })
+  {
+    for (int corner = 0; corner < 3; ++corner)
+    {
+      const double angle = Pi * (0.5 + corner * 2.0 / 3.0);
+      mesh.points.push_back({ radius * std::cos(angle), radius * std::sin(angle), z });
+    }
+  }
+  mesh.triangles = { { 0, 2, 1 }, { 3, 4, 5 }, { 0, 1, 4 }, { 0, 4, 3 }, { 1, 2, 5 }, { 1, 5, 4 }, { 2, 0, 3 },
+    { 2, 3, 5 } };
+  return mesh;
+}
+
 /// Turned about its middle by odd angles about z and then x.
 inline TriangleMesh TurnedBox(const Point& low, const Point& high, double aboutZ = 0.7, double aboutX = 0.4)
 {

@@ -1,6 +1,7 @@
 #pragma once
 
 #include "Photons/PhotonMarcher.h"
+#include "Refraction/RefractiveMedium.h"
 
 #include <algorithm>
 #include <cmath>
@@ -53,6 +54,17 @@ struct PhotonScene
     this->SetIndex([=](double x, double y, double z) {
       return 1.0 + (index - 1.0) * 0.5 * std::erfc((std::hypot(x, y, z) - radius) / scale);
     });
+  }
+
+  /// Glass in air where the closed mesh is, as the voxeliser makes it: its border smoothed over filterSize / 6 voxels.
+  void Voxelize(
+    tyndall::Device& device, const tyndall::TriangleMesh& mesh, double index, int filterSize = 9, int samples = 4)
+  {
+    tyndall::RefractiveMediumSettings settings;
+    settings.grid = this->medium.grid;
+    settings.filterSize = filterSize;
+    settings.voxelization.samples = samples;
+    this->ior = tyndall::Voxelize(device, { { "glass", mesh, { index, {}, {}, 0.0 } } }, settings).ior;
   }
 
   int ComponentsOf(const std::vector<float>& values) const
@@ -120,6 +132,47 @@ inline std::array<double, 3> LastDirection(const tyndall::PhotonPath& path)
   return { (b[0] - a[0]) / length, (b[1] - a[1]) / length, (b[2] - a[2]) / length };
 }
 
+/// Distance from `target` at which a path passes, taken as straight between its corners.
+inline double Miss(const tyndall::PhotonPath& path, const std::array<double, 3>& target)
+{
+  double least = 1e9;
+  for (std::size_t i = 1; i < path.points.size(); ++i)
+  {
+    const std::array<double, 3>&a = path.points[i - 1], &b = path.points[i];
+    double along = 0.0, length = 0.0;
+    for (int c = 0; c < 3; ++c)
+    {
+      along += (target[c] - a[c]) * (b[c] - a[c]);
+      length += (b[c] - a[c]) * (b[c] - a[c]);
+    }
+    const double t = length > 0.0 ? std::min(std::max(along / length, 0.0), 1.0) : 0.0;
+    const auto off = [&](int c) { return target[c] - a[c] - t * (b[c] - a[c]); };
+    least = std::min(least, std::hypot(off(0), off(1), off(2)));
+  }
+  return least;
+}
+
+/// Maxwell's fish-eye: from (1, 0, 0) light goes round circles through (-1, 0, 0).
+namespace fisheye
+{
+inline double Index(double x, double y, double z)
+{
+  return 2.0 / (1.0 + x * x + y * y + z * z);
+}
+
+/// Largest distance of a path's first `corners` from the circle through these points with centre (0, c).
+inline double WorstCorner(const tyndall::PhotonPath& path, double c, std::size_t corners)
+{
+  double worst = 0.0;
+  for (std::size_t i = 0; i < std::min(corners, path.points.size()); ++i)
+  {
+    const std::array<double, 3>& p = path.points[i];
+    worst = std::max(worst, std::hypot(std::hypot(p[0], p[1] - c) - std::hypot(1.0, c), p[2]));
+  }
+  return worst;
+}
+}
+
 /// The Luneburg lens of radius 1 about the origin: parallel light along +x meets at (1, 0, 0), on ellipses
 /// r0 cos t + v0 sin t, 0 <= t <= pi / 2, from r0 = (-sqrt(1 - b^2), b, 0) with v0 = (1, 0, 0).
 namespace luneburg
@@ -162,6 +215,29 @@ inline double WorstCorner(const tyndall::PhotonPath& path, double b)
     {
       worst = std::max(worst, nearest);
     }
+  }
+  return worst;
+}
+
+/// How far from the far pole light passes that comes to the lens through air: at worst, of many rays.
+inline double MissInAir(tyndall::Device& device, PhotonScene& scene)
+{
+  tyndall::PhotonMarcher marcher = scene.Marcher(device);
+  std::vector<tyndall::Photon> photons;
+  std::vector<std::size_t> all;
+  for (double b = 0.05; b < 0.9; b += 0.05)
+  {
+    tyndall::Photon photon;
+    photon.position = { -1.1, b, 0.0 };
+    photon.direction = { 1.0f, 0.0f, 0.0f };
+    photon.power = { 1.0f, 1.0f, 1.0f };
+    all.push_back(photons.size());
+    photons.push_back(photon);
+  }
+  double worst = 0.0;
+  for (const tyndall::PhotonPath& path : marcher.Paths(photons, all))
+  {
+    worst = std::max(worst, Miss(path, { 1.0, 0.0, 0.0 }));
   }
   return worst;
 }

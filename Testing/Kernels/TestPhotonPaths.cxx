@@ -1,34 +1,13 @@
 // Paths of photons against closed forms. Order of the integrators and closed forms: the project's grin_integrator_errors.csv.
 #include "DeviceTest.h"
 #include "PhotonScene.h"
+#include "Prism.h"
 
 using namespace tyndall;
 
 namespace
 {
 using Point = std::array<double, 3>;
-
-double DistanceToSegment(const Point& p, const Point& a, const Point& b)
-{
-  double along = 0.0, length = 0.0;
-  for (int c = 0; c < 3; ++c)
-  {
-    along += (p[c] - a[c]) * (b[c] - a[c]);
-    length += (b[c] - a[c]) * (b[c] - a[c]);
-  }
-  const double t = length > 0.0 ? std::min(std::max(along / length, 0.0), 1.0) : 0.0;
-  return std::hypot(p[0] - a[0] - t * (b[0] - a[0]), p[1] - a[1] - t * (b[1] - a[1]), p[2] - a[2] - t * (b[2] - a[2]));
-}
-
-double Miss(const PhotonPath& path, const Point& target)
-{
-  double least = 1e9;
-  for (std::size_t i = 1; i < path.points.size(); ++i)
-  {
-    least = std::min(least, DistanceToSegment(target, path.points[i - 1], path.points[i]));
-  }
-  return least;
-}
 
 /// A photon along +x.
 Photon Ray(const Point& from)
@@ -38,23 +17,6 @@ Photon Ray(const Point& from)
   photon.direction = { 1.0f, 0.0f, 0.0f };
   photon.power = { 1.0f, 1.0f, 1.0f };
   return photon;
-}
-
-double FishEye(double x, double y, double z)
-{
-  return 2.0 / (1.0 + x * x + y * y + z * z);
-}
-
-/// Largest distance of the corners of `path` from the circle through (1, 0) and (-1, 0) with centre (0, c).
-double CircleError(const PhotonPath& path, double c, std::size_t corners)
-{
-  double worst = 0.0;
-  for (std::size_t i = 0; i < std::min(corners, path.points.size()); ++i)
-  {
-    const Point& p = path.points[i];
-    worst = std::max(worst, std::hypot(std::hypot(p[0], p[1] - c) - std::hypot(1.0, c), p[2]));
-  }
-  return worst;
 }
 }
 
@@ -101,6 +63,26 @@ TEST_F(PhotonPaths, OfALensInAirMeetAtTheFarPole)
   }
 }
 
+TEST_F(PhotonPaths, OfALensInAirMissTheFarPoleByWhatVoxelsLoseOfTheKink)
+{
+  // Many rays: neither finer steps nor a higher order help, finer voxels do.
+  std::vector<double> misses;
+  for (int edge : { 64, 128, 256 })
+  {
+    PhotonScene scene(edge, 1.1);
+    scene.SetIndex(luneburg::Index);
+    const double miss = luneburg::MissInAir(this->GetDevice(), scene);
+    scene.settings.stepSize = 0.5;
+    EXPECT_NEAR(luneburg::MissInAir(this->GetDevice(), scene), miss, 0.03 * miss) << edge;
+    scene.settings.order = 4;
+    EXPECT_NEAR(luneburg::MissInAir(this->GetDevice(), scene), miss, 0.03 * miss) << edge;
+    misses.push_back(miss);
+  }
+  EXPECT_LT(misses[1], 1e-3);
+  EXPECT_LT(misses[1], 0.8 * misses[0]);
+  EXPECT_LT(misses[2], 0.8 * misses[1]);
+}
+
 TEST_F(PhotonPaths, ConvergeWithTheOrderOfTheIntegrator)
 {
   PhotonScene scene(128, 1.1);
@@ -129,10 +111,10 @@ TEST_F(PhotonPaths, OfMaxwellsFishEyeAreCirclesThroughTheAntipode)
   for (int edge : { 64, 128 })
   {
     PhotonScene scene(edge, 2.0);
-    scene.SetIndex(FishEye);
+    scene.SetIndex(fisheye::Index);
     scene.settings.order = 4;
     const PhotonPath path = scene.Path(this->GetDevice(), { 1.0, 0.0, 0.0 }, { std::cos(angle), std::sin(angle), 0.0 });
-    EXPECT_LT(CircleError(path, c, 2 * static_cast<std::size_t>(edge)), 1e-4) << edge;
+    EXPECT_LT(fisheye::WorstCorner(path, c, 2 * static_cast<std::size_t>(edge)), 1e-4) << edge;
     EXPECT_LT(Miss(path, { -1.0, 0.0, 0.0 }), 1e-3) << edge; // the middle of a chord, at worst
   }
 }
@@ -140,10 +122,10 @@ TEST_F(PhotonPaths, OfMaxwellsFishEyeAreCirclesThroughTheAntipode)
 TEST_F(PhotonPaths, GoRoundAFishEyeWithoutSpirallingOut)
 {
   PhotonScene scene(64, 2.0);
-  scene.SetIndex(FishEye);
+  scene.SetIndex(fisheye::Index);
   const PhotonPath path = scene.Path(this->GetDevice(), { 1.0, 0.0, 0.0 }, { 0.0, 1.0, 0.0 });
   EXPECT_GT(path.points.size(), 4000u); // dozens of rounds
-  EXPECT_LT(CircleError(path, 0.0, path.points.size()), 0.01);
+  EXPECT_LT(fisheye::WorstCorner(path, 0.0, path.points.size()), 0.01);
 }
 
 TEST_F(PhotonPaths, InALinearGradientOfNSquaredAreParabolas)
@@ -178,6 +160,30 @@ TEST_F(PhotonPaths, ObeySnellAcrossASmoothedPlane)
     const double through = std::sqrt(1.0 - across * across);
     EXPECT_NEAR(direction[0], c * through - s * across, 1e-3) << inside;
     EXPECT_NEAR(direction[1], s * through + c * across, 1e-3) << inside;
+  }
+}
+
+TEST_F(PhotonPaths, AreTurnedByAVoxelisedPrismAsByItsTwoFaces)
+{
+  EXPECT_LT(optics::PrismTurn(prism::Index, prism::Apex, prism::Incidences()[1]), 0.649);
+  for (int edge : { 64, 128, 256 })
+  {
+    PhotonScene scene = prism::Scene(this->GetDevice(), edge);
+    PhotonMarcher marcher = scene.Marcher(this->GetDevice());
+    for (double incidence : prism::Incidences())
+    {
+      const prism::Error error = prism::ErrorOf(prism::Turns(marcher, incidence), incidence);
+      EXPECT_LT(std::abs(error.ofMean), 2e-3) << edge << ' ' << incidence;
+      EXPECT_LT(error.largest, 1e-2) << edge << ' ' << incidence; // samples of a quarter voxel make terraces
+    }
+  }
+  // Terraces of a sixteenth of a voxel: what is left is Snell's law.
+  PhotonScene scene = prism::Scene(this->GetDevice(), 128, 16);
+  PhotonMarcher marcher = scene.Marcher(this->GetDevice());
+  for (double incidence : prism::Incidences())
+  {
+    const prism::Error error = prism::ErrorOf(prism::Turns(marcher, incidence), incidence);
+    EXPECT_LT(error.largest, 3e-3) << incidence;
   }
 }
 

@@ -1,0 +1,174 @@
+#include "Measure.h"
+#include "PhotonRuns.h"
+#include "PhotonTables.h"
+
+#include "../Kernels/PhotonScene.h"
+
+#include "Photons/PublishedPhotons.h"
+
+#include <algorithm>
+
+namespace bench
+{
+using namespace tyndall;
+
+namespace
+{
+std::vector<std::string> Row(const std::string& name, const Times& times, const PhotonLight& light, double bandwidth)
+{
+  const double bytes = BytesOfCredits(light) / times.seconds;
+  return { name, "", Text("%.1f", 1e3 * times.seconds), Text("%.1f", 1e3 * times.coreSeconds),
+    std::to_string(light.steps), Text("%.2e", light.credits / times.seconds), Text("%.1f", 1e-9 * bytes),
+    Text("%.2f", bytes / bandwidth), Text("%.1e", light.light.balance.RelativeError(light.light.channels)) };
+}
+
+PaperScene Ready(const PhotonBench& bench, int edge)
+{
+  PaperScene scene = BallInFog(edge);
+  scene.Voxelize(bench.device);
+  scene.Group();
+  scene.Emit(PaperPhotons);
+  return scene;
+}
+}
+
+void TimeWays(const PhotonBench& bench)
+{
+  Device& device = bench.device;
+  const PaperScene scene = Ready(bench, bench.quick ? 32 : 128);
+  Table table({ "marching", "", "ms", "core ms", "steps", "credits/s", "GB/s", "of bandwidth", "balance" });
+  const auto way = [&](const std::string& name, const std::function<PhotonLight()>& march) {
+    PhotonLight light;
+    device.ResetPeak();
+    const Times times = Repeat(device, bench.quick ? 1 : 7, [&] {
+      light = march();
+      return light.secondsMarching;
+    });
+    PrintMarch("marching", name, scene, device, times, light, bench.limits.bytes);
+    table.Add(Row(name, times, light, bench.limits.bytes));
+    return times.seconds;
+  };
+  const auto sound = [&](const std::string& name, const MarchSettings& settings, bool octree) {
+    PhotonMarcher marcher = scene.Marcher(device, settings, octree);
+    return way(name, [&] { return marcher.March(scene.photons); });
+  };
+  MarchSettings settings;
+  const double fitting = sound("sound, octree", settings, true);
+  sound("sound, voxel by voxel", settings, false);
+  settings.order = 4;
+  sound("sound, order 4, octree", settings, true);
+  settings.order = 2;
+  settings.sums = MarchSettings::Sums::Shared;
+  sound("sound, shared sums (atomics)", settings, true);
+  settings.sums = MarchSettings::Sums::Unsafe;
+  const double plain = sound("sound, plain additions that lose some", settings, true);
+  PhotonLine("accumulation", "fitting", scene.settings.grid)
+    .Add("ratio", fitting / plain)
+    .Add("against", "plain")
+    .Print();
+  way("as published", [&] {
+    return MarchPublished(
+      device, scene.Medium(), scene.Index(), scene.octree.levels.data(), scene.photons, { 10, false });
+  });
+  PaperScene straight = scene;
+  std::fill(straight.voxels.ior.begin(), straight.voxels.ior.end(), 1.0f);
+  PhotonMarcher marcher = straight.Marcher(device, {}, false);
+  way("sound, constant index", [&] { return marcher.March(straight.photons); });
+  table.Print("Marching 122000 photons; GB/s: what their credits move, beside the machine's bandwidth of " +
+    Text("%.1f GB/s", 1e-9 * bench.limits.bytes));
+}
+
+void CompareOctrees(const PhotonBench& bench)
+{
+  PaperScene scene = Ready(bench, bench.quick ? 32 : 128);
+  Table table({ "tolerance", "", "steps", "of all", "ms", "core ms", "error L2" });
+  const auto march = [&](PhotonMarcher marcher, PhotonLight& light) {
+    return Repeat(bench.device, bench.quick ? 1 : 5, [&] {
+      light = marcher.March(scene.photons);
+      return light.secondsMarching;
+    });
+  };
+  PhotonLight whole;
+  const auto add = [&](const std::string& name, const Times& times, const PhotonLight& light) {
+    const double error = RelativeL2(light.light.fluence, whole.light.fluence);
+    const double part = static_cast<double>(light.steps) / static_cast<double>(whole.steps);
+    PhotonLine("octree", name, scene.settings.grid)
+      .Add("seconds", times.seconds)
+      .Add("core_seconds", times.coreSeconds)
+      .Add("steps", static_cast<double>(light.steps))
+      .Add("ratio", part)
+      .Add("against", "voxel by voxel")
+      .Add("error_l2", error)
+      .Print();
+    table.Add({ name, "", std::to_string(light.steps), Text("%.3f", part), Text("%.1f", 1e3 * times.seconds),
+      Text("%.1f", 1e3 * times.coreSeconds), Text("%.2e", error) });
+  };
+  const Times all = march(scene.Marcher(bench.device, {}, false), whole);
+  add("voxel by voxel", all, whole);
+  for (const double tolerance :
+    bench.quick ? std::vector<double>{ 0.01 } : std::vector<double>{ 0.001, 0.002, 0.005, 0.01, 0.02, 0.05, 0.1 })
+  {
+    scene.Group(tolerance);
+    PhotonLight light;
+    const Times times = march(scene.Marcher(bench.device), light);
+    add(Text("tolerance %g", tolerance), times, light);
+  }
+  table.Print("Octree: steps, times and fluence against marching voxel by voxel, ball, 122000 photons");
+}
+
+namespace
+{
+void AddLoss(Table& table, const char* where, PhotonScene& scene, Device& device, const std::vector<Photon>& photons)
+{
+  PackingLoss loss;
+  const std::uint8_t* levels = scene.levels.empty() ? nullptr : scene.levels.data();
+  const PhotonLight published =
+    MarchPublished(device, scene.Medium(), scene.Index(), levels, photons, { 10, false }, &loss);
+  const PhotonLight sound = scene.March(device, photons);
+  const double count = static_cast<double>(photons.size());
+  const double givenUp = static_cast<double>(loss.givenUp) / static_cast<double>(loss.credits);
+  const double publishedError = published.light.balance.RelativeError(3);
+  const double soundError = sound.light.balance.RelativeError(sound.light.channels);
+  PhotonLine("power", "as published", scene.medium.grid)
+    .Add("scene", where)
+    .Add("photons", count)
+    .Add("lost", loss.Relative())
+    .Add("given_up", givenUp)
+    .Add("balance", publishedError)
+    .Print();
+  PhotonLine("power", "sound", scene.medium.grid)
+    .Add("scene", where)
+    .Add("photons", count)
+    .Add("balance", soundError)
+    .Print();
+  table.Add({ where, Text("%.0f", count), Text("%.1f %%", 100.0 * loss.Relative()), Text("%.2f %%", 100.0 * givenUp),
+    Text("%.1e", publishedError), Text("%.1e", soundError) });
+}
+}
+
+void LosePower(const PhotonBench& bench)
+{
+  Table table({ "scene", "photons", "published: lost", "given up", "published: balance", "sound: balance" });
+  PhotonScene narrow({ 3, 3, 3 }, 1.0, 1.5, 0.05f, 0.15f);
+  for (const std::size_t count :
+    bench.quick ? std::vector<std::size_t>{ 1000 } : std::vector<std::size_t>{ 1000, 10000, 100000, 1000000 })
+  {
+    Photon photon;
+    photon.position = { -1.5, 0.1, 0.1 };
+    photon.direction = { 1.0f, 0.0f, 0.0f };
+    photon.power.fill(1.0f / static_cast<float>(count));
+    AddLoss(table, "all through one voxel", narrow, bench.device, std::vector<Photon>(count, photon));
+  }
+  const PaperScene paper = Ready(bench, bench.quick ? 32 : 128);
+  PhotonScene ball(1);
+  ball.medium.grid = paper.settings.grid;
+  ball.sigma_a = paper.voxels.sigma_a;
+  ball.sigma_s = paper.voxels.sigma_s;
+  ball.ior = paper.voxels.ior;
+  ball.levels = paper.octree.levels;
+  AddLoss(table, "ball in fog", ball, bench.device, paper.photons);
+  table.Print("Power: what the published packing loses of what was credited, credits given up after ten tries (what "
+              "else is lost\n"
+              "was too small beside what the voxel held), and the balance: (in - out) / in");
+}
+}
