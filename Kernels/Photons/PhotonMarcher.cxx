@@ -150,8 +150,8 @@ private:
   cl::Kernel MarchKernel(const char* name, const std::string& options)
   {
     return this->TheDevice.Kernel(name,
-      { kernel_source::Numerics, kernel_source::FixedPoint, kernel_source::SquaredIndex, kernel_source::PhotonLegs,
-        kernel_source::PhotonMarch },
+      { kernel_source::Numerics, kernel_source::FixedPoint, kernel_source::SquaredIndex, kernel_source::PhotonLanes,
+        kernel_source::PhotonLegs, kernel_source::PhotonMarch },
       options);
   }
 
