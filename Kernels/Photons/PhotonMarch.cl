@@ -1,7 +1,7 @@
 // Photons through a medium (Pfeuti 2009, section 3.1.5, but for the accumulation). Read after Numerics.cl, FixedPoint.cl,
 // SquaredIndex.cl, PhotonLanes.cl and PhotonLegs.cl; the host gives what those ask for, and
 //   CHANNELS         of light; MEDIUM_CHANNELS of sigma_t, 1 or CHANNELS
-//   WORKERS          0: a work-item a packet, all add to the same sums; else so many take packets in turn, each with its sums
+//   WORKERS          0: a work-item a packet, all add to the same sums; else so many take blocks as they come, each to its sums
 //   PATHS            1: nothing is summed, vertices are written
 //
 // A leg is followed from voxel wall to voxel wall (Amanatides and Woo). In a voxel whose extinction over a diagonal is s,
@@ -338,13 +338,12 @@ __kernel void trace_paths(march_info info, const __global float* sigma, const __
 // Photons `first` to `first + count`.
 __kernel void march_photons(march_info info, const __global float* sigma, const __global float* coefficients,
   const __global uchar* nodes, const __global float* photons, __global photon_end* ends, __global long* sums,
-  ulong copyStride, int first, int count)
+  ulong copyStride, volatile __global int* next, int first, int count)
 {
 #if WORKERS > 0
-  const int worker = get_global_id(0);
-  const march_arrays arrays = { &info, sigma, coefficients, nodes, sums + worker * copyStride, ends, 0 };
-  // Blocks of neighbours stay together: they share cache lines.
-  for (int block = worker * BLOCK; block < count; block += WORKERS * BLOCK)
+  const march_arrays arrays = { &info, sigma, coefficients, nodes, sums + get_global_id(0) * copyStride, ends, 0 };
+  // Blocks of neighbours stay together: they share cache lines. Who takes which makes no difference to the sums.
+  for (int block = atomic_add(next, BLOCK); block < count; block = atomic_add(next, BLOCK))
   {
     for (int i = block; i < min(block + BLOCK, count); i += REAL_WIDTH)
     {
