@@ -1,4 +1,4 @@
-// The paths of photons, leg by leg. Read after Numerics.cl and SquaredIndex.cl; the host gives
+// The paths of photons, leg by leg. Read after Numerics.cl, SquaredIndex.cl and PhotonLanes.cl; the host gives
 //   REAL_WIDTH  photons side by side: 1 on a GPU, 4 to 16 on a CPU
 //   BENDS       1: the index varies; ORDER of the integrator then: 1, 2 or 4
 //   LEVELS      1: there are octree levels
@@ -50,24 +50,15 @@ typedef struct
   __global float4* vertices; // of a path: position in voxels, part of the power that is left; null: they are only counted
 } march_arrays;
 
-// The state of REAL_WIDTH photons, for all at once and one by one.
-#define LANES(type, name) type name[REAL_WIDTH] __attribute__((aligned(64)))
-#define VECTOR(array) (*(const real*)(array))
-#define INTEGERS(array) (*(const integer*)(array))
+// The state of REAL_WIDTH photons.
 typedef struct
 {
   LANES(int, at); // voxel, in the padded grid
   LANES(int, alive); // -1 or 0
-  LANES(int, stride_x); // of `at` to the next voxel
-  LANES(int, stride_y);
-  LANES(int, stride_z);
+  LANES_3(int, stride); // of `at` to the next voxel
   LANES(int, ahead); // of `at` to where the photon will be a few voxels on
-  LANES(float, wall_x); // time of the next wall
-  LANES(float, wall_y);
-  LANES(float, wall_z);
-  LANES(float, across_x); // time from wall to wall
-  LANES(float, across_y);
-  LANES(float, across_z);
+  LANES_3(float, wall); // time of the next wall
+  LANES_3(float, across); // time from wall to wall
   LANES(float, now);     // time since the leg began
   LANES(float, turn);    // time when it ends; NEVER: when the index varies again
   LANES(float, settled); // time until which the last turn holds
@@ -76,20 +67,15 @@ typedef struct
   LANES(int, steps);     // taken
   LANES(int, crossings); // stretches that were credited
   float power[CHANNELS][REAL_WIDTH] __attribute__((aligned(64)));
-  float3 start[REAL_WIDTH];    // of the leg
-  float3 velocity[REAL_WIDTH]; // along it
-  float3 momentum[REAL_WIDTH]; // T; v of Euler; order 2 has it as the velocity
+  LANES_3(float, start);    // of the leg
+  LANES_3(float, velocity); // along it
+  LANES_3(float, momentum); // T; v of Euler; order 2 has it as the velocity
   float4 direction[REAL_WIDTH]; // 1, and the direction in space
 } photon_lanes;
 
 static int3 size_of(const march_info* info)
 {
   return (int3)(info->grid.size[0], info->grid.size[1], info->grid.size[2]);
-}
-
-static float3 spacing_of(const march_info* info)
-{
-  return (float3)(info->spacing[0], info->spacing[1], info->spacing[2]);
 }
 
 static int3 voxel_of(const march_info* info, int at)
@@ -100,159 +86,290 @@ static int3 voxel_of(const march_info* info, int at)
   return (int3)(at - z * layer - y * row - 1, y - 1, z - 1);
 }
 
-static int padded(const march_info* info, int3 voxel)
-{
-  const int row = info->grid.size[0] + 2;
-  return ((voxel.z + 1) * (info->grid.size[1] + 2) + voxel.y + 1) * row + voxel.x + 1;
-}
-
-// Where a photon at p is, which on a wall is only known by `at`.
-static int3 voxel_at(const march_info* info, float3 p, int at)
-{
-  const int3 guess = convert_int3_rtz(p);
-  return padded(info, guess) == at ? guess : voxel_of(info, at);
-}
-
-// Times until a photon at p passes the walls of the box from `low` to `high`.
-static float3 times_to_walls(float3 p, float3 low, float3 high, float3 u, float3 inverse)
-{
-  const float3 walls = u > 0.0f ? high : low;
-  return u == 0.0f ? (float3)(NEVER) : fmax((walls - p) * inverse, 0.0f);
-}
-
-// A leg of photon k from `start` in the voxel where it is.
-static void begin_leg(const march_info* info, photon_lanes* lanes, int k, float3 start, float3 u)
+static integer padded(const march_info* info, const integer* voxel)
 {
   const int row = info->grid.size[0] + 2, layer = row * (info->grid.size[1] + 2);
-  const float3 low = convert_float3(voxel_at(info, start, lanes->at[k]));
-  const float3 inverse = 1.0f / u;
-  const float3 walls = times_to_walls(start, low, low + 1.0f, u, inverse);
-  const float3 across = u == 0.0f ? (float3)(0.0f) : fabs(inverse);
-  const int3 strides = u > 0.0f ? (int3)(1, row, layer) : -(int3)(1, row, layer);
-  lanes->start[k] = start;
-  lanes->velocity[k] = u;
-  lanes->now[k] = 0.0f;
-  lanes->wall_x[k] = walls.x;
-  lanes->wall_y[k] = walls.y;
-  lanes->wall_z[k] = walls.z;
-  lanes->across_x[k] = across.x;
-  lanes->across_y[k] = across.y;
-  lanes->across_z[k] = across.z;
-  lanes->stride_x[k] = strides.x;
-  lanes->stride_y[k] = strides.y;
-  lanes->stride_z[k] = strides.z;
-  const float3 fast = fabs(u);
-  lanes->ahead[k] = AHEAD * (fast.x > fast.y && fast.x > fast.z ? strides.x : fast.y > fast.z ? strides.y : strides.z);
-  const float3 way = u * spacing_of(info);
-  const float pace = sqrt(dot(way, way));
-  lanes->pace[k] = pace;
+  return voxel[2] * layer + voxel[1] * row + voxel[0] + (layer + row + 1);
+}
+
+// Where the photons of a mask are: at p, which on a wall only `at` knows.
+static void voxels_at(const march_info* info, integer mask, const real* p, integer at, integer* voxel)
+{
+  FOR_AXES(a)
+  {
+    voxel[a] = to_integer(p[a]);
+  }
+  const integer wrong = mask & truth(padded(info, voxel) != at);
+  if (anywhere(wrong))
+  {
+    LANES_3(int, right);
+    LANES(int, there);
+    PUT_INTEGERS(there, at);
+    FOR_AXES(a)
+    {
+      PUT_INTEGERS(right[a], voxel[a]);
+    }
+    FOR_LANES(k, wrong)
+    {
+      const int3 known = voxel_of(info, there[k]);
+      right[0][k] = known.x;
+      right[1][k] = known.y;
+      right[2][k] = known.z;
+    }
+    FOR_AXES(a)
+    {
+      voxel[a] = INTEGERS(right[a]);
+    }
+  }
+}
+
+// Time until a photon at p passes the wall `low` or `high`.
+static real time_to_wall(real p, real low, real high, real u, real inverse)
+{
+  const real time = ((u > (real)0.0f ? high : low) - p) * inverse;
+  return u == (real)0.0f ? (real)NEVER : greater(time, (real)0.0f);
+}
+
+// Legs of the photons of a mask from p in `voxel`, with velocity u; 1 / u is known.
+static void begin_legs(const march_info* info, photon_lanes* lanes, integer mask, const integer* voxel, const real* p,
+  const real* u, const real* inverse)
+{
+  const int strides[3] = { 1, info->grid.size[0] + 2, (info->grid.size[0] + 2) * (info->grid.size[1] + 2) };
+  real way[3], squares = 0.0f, fastest = 0.0f;
+  integer ahead = 0;
+  FOR_AXES(a)
+  {
+    const real low = to_real(voxel[a]);
+    const integer stride = u[a] > (real)0.0f ? (integer)strides[a] : (integer)-strides[a];
+    const real speed = fabs(u[a]);
+    ahead = speed > fastest ? stride : ahead;
+    fastest = greater(speed, fastest);
+    way[a] = u[a] * info->spacing[a];
+    squares += way[a] * way[a];
+    PUT_WHERE(mask, lanes->start[a], p[a]);
+    PUT_WHERE(mask, lanes->velocity[a], u[a]);
+    PUT_WHERE(mask, lanes->wall[a], time_to_wall(p[a], low, low + (real)1.0f, u[a], inverse[a]));
+    PUT_WHERE(mask, lanes->across[a], u[a] == (real)0.0f ? (real)0.0f : fabs(inverse[a]));
+    PUT_INTEGERS_WHERE(mask, lanes->stride[a], stride);
+  }
+  const real pace = sqrt(squares);
+  PUT_WHERE(mask, lanes->now, (real)0.0f);
+  PUT_WHERE(mask, lanes->pace, pace);
+  PUT_INTEGERS_WHERE(mask, lanes->ahead, AHEAD * ahead);
 #if DIRECTIONS
-  lanes->direction[k] = (float4)(1.0f, way * (1.0f / pace));
+  LANES_3(float, direction);
+  FOR_AXES(a)
+  {
+    PUT(direction[a], way[a] / pace);
+  }
+  FOR_LANES(k, mask)
+  {
+    lanes->direction[k] = (float4)(1.0f, direction[0][k], direction[1][k], direction[2][k]);
+  }
 #endif
 }
 
 #if BENDS
-// The voxel of a place anywhere, one of the padding where it is beyond the grid.
-static int3 voxel_of_place(const march_info* info, float3 p)
+// Of a voxel.
+static integer coefficient_of(const march_info* info, const integer* voxel)
 {
-  return clamp(convert_int3(floor(p)), (int3)(-1), size_of(info));
+  const int row = info->grid.size[0] + 4, layer = row * (info->grid.size[1] + 4);
+  return (voxel[2] + 2) * layer + (voxel[1] + 2) * row + voxel[0] + 2;
 }
 
-// Time of a step from p in `voxel` where the index varies; 0 where it does not.
-static float time_of_step(const march_arrays* arrays, int3 voxel, float3 p, float3 u)
+// n^2 and its gradient where the photons of a mask are.
+static void squared_index_at(const march_arrays* arrays, integer mask, const real* p, real* squared, real* gradient)
+{
+  const index_grid* grid = &arrays->info->grid;
+  const int row = grid->size[0] + 4, layer = row * (grid->size[1] + 4);
+  const int strides[3] = { 1, row, layer };
+  LANES(int, first); // of the coefficients
+  LANES_3(float, fraction);
+  LANES(float, values);
+  LANES_3(float, slopes);
+  integer before = 0;
+  FOR_AXES(a)
+  {
+    const real q = p[a] - (real)0.5f;
+    const integer base = clamp(to_integer(q + (real)1.0f) - 1, (integer)-1, (integer)(grid->size[a] - 1));
+    before += (base + 1) * strides[a];
+    PUT(fraction[a], q - to_real(base));
+    PUT(slopes[a], (real)0.0f);
+  }
+  PUT_INTEGERS(first, before);
+  PUT(values, (real)1.0f);
+  FOR_LANES(k, mask)
+  {
+    const float3 f = (float3)(fraction[0][k], fraction[1][k], fraction[2][k]);
+    const float4 s = squared_index_among(arrays->coefficients + first[k], row, layer, f);
+    slopes[0][k] = s.x;
+    slopes[1][k] = s.y;
+    slopes[2][k] = s.z;
+    values[k] = s.w;
+  }
+  *squared = VECTOR(values);
+  FOR_AXES(a)
+  {
+    gradient[a] = VECTOR(slopes[a]);
+  }
+}
+
+// The voxels of places anywhere; beyond the grid those of the padding.
+static void voxels_of_places(const march_info* info, const real* p, integer* voxel)
+{
+  FOR_AXES(a)
+  {
+    voxel[a] = clamp(to_integer(p[a] + (real)1.0f) - 1, (integer)-1, (integer)info->grid.size[a]);
+  }
+}
+
+// Times of steps of the photons of a mask from p in `voxel`, where the index varies; 0 where it does not.
+static real times_of_steps(
+  const march_arrays* arrays, integer mask, const integer* voxel, const real* p, const real* u, const real* inverse)
 {
   const march_info* info = arrays->info;
-  const int node = arrays->nodes[padded(info, voxel)];
-  if (node == 0)
-  {
-    return 0.0f;
-  }
-  const float shortest = info->stepSize / sqrt(dot(u, u));
+  const integer at = mask & padded(info, voxel); // the others are in the padding
+  const integer node = to_integer(gather(uchar, arrays->nodes, at));
+  const real shortest = (real)info->stepSize / sqrt(u[0] * u[0] + u[1] * u[1] + u[2] * u[2]);
+  real time = shortest;
 #if LEVELS
-  if (node > 1)
+  if (anywhere(truth(node > 1)))
   {
     // To where it leaves the octree's node, and a little into the next one.
-    const int3 low = (voxel >> (node - 1)) << (node - 1);
-    const int3 high = min(low + (1 << (node - 1)), size_of(info));
-    const float3 out = times_to_walls(p, convert_float3(low), convert_float3(high), u, 1.0f / u);
-    return fmax(1.001f * fmin(fmin(out.x, out.y), out.z), shortest);
+    const integer level = max(node, 1) - 1;
+    real out = NEVER;
+    FOR_AXES(a)
+    {
+      const integer low = (voxel[a] >> level) << level;
+      const integer high = min(low + ((integer)1 << level), info->grid.size[a]);
+      const real wall = time_to_wall(p[a], to_real(low), to_real(high), u[a], inverse[a]);
+      out = lesser(out, wall);
+    }
+    time = node > 1 ? greater((real)1.001f * out, shortest) : shortest;
   }
 #endif
-  return shortest;
+  return node == 0 ? (real)0.0f : time;
 }
 
 // dT/dt at p: half the gradient of n^2, which is by voxels, as a change of velocity in voxels.
-static float3 pull(const march_arrays* arrays, float3 p)
+static void pull(const march_arrays* arrays, integer mask, const real* p, real* change)
 {
-  const float3 h = spacing_of(arrays->info);
-  return 0.5f * squared_index(&arrays->info->grid, arrays->coefficients, p).xyz / (h * h);
+  real squared;
+  squared_index_at(arrays, mask, p, &squared, change);
+  FOR_AXES(a)
+  {
+    change[a] *= 0.5f / (arrays->info->spacing[a] * arrays->info->spacing[a]);
+  }
 }
 
 #if ORDER == 1
-// The step of explicit Euler from p; time is the length of path, in diagonals.
-static float3 take_step(const march_arrays* arrays, photon_lanes* lanes, int k, int3 voxel, float3 p, float* step)
+// The step of explicit Euler from p, and its time, which is the length of path in diagonals: velocities u.
+static real take_step(
+  const march_arrays* arrays, photon_lanes* lanes, integer mask, const integer* voxel, const real* p, real* u)
 {
-  const float3 h = spacing_of(arrays->info);
-  const float4 squared = squared_index(&arrays->info->grid, arrays->coefficients, p);
-  const float n = sqrt(squared.w);
-  const float3 velocity = lanes->momentum[k] / n;
-  *step = time_of_step(arrays, voxel, p, velocity);
-  lanes->momentum[k] += *step * squared.xyz / (2.0f * n * h * h);
-  return velocity;
+  real squared, gradient[3], inverse[3];
+  squared_index_at(arrays, mask, p, &squared, gradient);
+  const real n = sqrt(squared);
+  FOR_AXES(a)
+  {
+    u[a] = VECTOR(lanes->momentum[a]) / n;
+    inverse[a] = (real)1.0f / u[a];
+  }
+  const real step = times_of_steps(arrays, mask, voxel, p, u, inverse);
+  FOR_AXES(a)
+  {
+    const float h = arrays->info->spacing[a];
+    PUT_WHERE(mask, lanes->momentum[a], VECTOR(lanes->momentum[a]) + step * gradient[a] / ((2.0f * h * h) * n));
+  }
+  return step;
 }
 #elif ORDER == 4
-// Yoshida's step from p: the velocity with which it gets to its end on a straight line.
-static float3 take_step(const march_arrays* arrays, photon_lanes* lanes, int k, int3 voxel, float3 p, float* step)
+// Yoshida's step from p: the velocity u with which it gets to its end on a straight line, and its time.
+static real take_step(
+  const march_arrays* arrays, photon_lanes* lanes, integer mask, const integer* voxel, const real* p, real* u)
 {
   const float outer = 1.35120719195965763f, inner = -1.70241438391931526f;
-  float3 u = lanes->momentum[k];
-  *step = time_of_step(arrays, voxel, p, u);
-  if (*step == 0.0f)
+  real inverse[3], moved[3], place[3], change[3]; // moved since p, which is too large to gain small steps without loss
+  FOR_AXES(a)
   {
-    return u;
+    u[a] = VECTOR(lanes->momentum[a]);
+    inverse[a] = (real)1.0f / u[a];
+    moved[a] = 0.0f;
   }
-  float3 moved = 0.0f; // since p, which is too large to gain small steps without loss
+  const real step = times_of_steps(arrays, mask, voxel, p, u, inverse);
+  const integer moving = mask & truth(step > (real)0.0f);
   for (int part = 0; part < 3; ++part)
   {
-    const float dt = *step * (part == 1 ? inner : outer);
-    moved += 0.5f * dt * u;
-    u += dt * pull(arrays, p + moved);
-    moved += 0.5f * dt * u;
+    const real dt = step * (part == 1 ? inner : outer);
+    FOR_AXES(a)
+    {
+      moved[a] += (real)0.5f * dt * u[a];
+      place[a] = p[a] + moved[a];
+    }
+    pull(arrays, moving, place, change);
+    FOR_AXES(a)
+    {
+      u[a] += dt * change[a];
+      moved[a] += (real)0.5f * dt * u[a];
+    }
   }
-  lanes->momentum[k] = u;
-  return moved / *step;
+  FOR_AXES(a)
+  {
+    PUT_WHERE(mask, lanes->momentum[a], u[a]);
+    u[a] = step > (real)0.0f ? moved[a] / step : u[a];
+  }
+  return step;
 }
 #endif
 
-// Photon k comes to where the index varies, or to the end of its leg.
-static void take_turn(const march_arrays* arrays, photon_lanes* lanes, int k)
+// The photons of a mask come to where the index varies, or to the end of their leg.
+static void take_turns(const march_arrays* arrays, photon_lanes* lanes, integer mask)
 {
-  const float now = lanes->now[k];
-  const float3 p = lanes->start[k] + lanes->velocity[k] * now;
-  float3 u = lanes->velocity[k];
-#if ORDER == 2
-  if (lanes->turn[k] > now)
+  const march_info* info = arrays->info;
+  const real now = VECTOR(lanes->now);
+  real p[3], u[3], inverse[3];
+  integer voxel[3];
+  FOR_AXES(a)
   {
-    lanes->step[k] = time_of_step(arrays, voxel_at(arrays->info, p, lanes->at[k]), p, u);
-    lanes->turn[k] = lanes->step[k] > 0.0f ? now + 0.5f * lanes->step[k] : NEVER;
-    lanes->settled[k] = now;
-    return;
+    u[a] = VECTOR(lanes->velocity[a]);
+    p[a] = VECTOR(lanes->start[a]) + u[a] * now;
   }
-  const float step = lanes->step[k];
-  u += step * pull(arrays, p);
-  const float3 end = p + 0.5f * step * u;
-  const float next = time_of_step(arrays, voxel_of_place(arrays->info, end), end, u);
-  lanes->step[k] = next;
-  lanes->settled[k] = 0.5f * step;
-  lanes->turn[k] = next > 0.0f ? 0.5f * (step + next) : NEVER;
+  voxels_at(info, mask, p, INTEGERS(lanes->at), voxel);
+#if ORDER == 2
+  // Those that enter drift for half a step; the others are kicked, and drift for halves of two steps.
+  const integer kicked = mask & truth(VECTOR(lanes->turn) <= now);
+  const real step = VECTOR(lanes->step);
+  real change[3], end[3];
+  integer last[3];
+  pull(arrays, kicked, p, change);
+  FOR_AXES(a)
+  {
+    u[a] += masked(kicked, step * change[a]);
+    inverse[a] = (real)1.0f / u[a];
+    end[a] = kicked ? p[a] + (real)0.5f * step * u[a] : p[a];
+  }
+  voxels_of_places(info, end, last);
+  FOR_AXES(a)
+  {
+    last[a] = kicked ? last[a] : voxel[a];
+  }
+  const real next = times_of_steps(arrays, mask, last, end, u, inverse);
+  const real turn = (real)0.5f * (kicked ? step + next : next) + (kicked ? (real)0.0f : now);
+  PUT_WHERE(mask, lanes->settled, kicked ? (real)0.5f * step : now);
 #else
-  float step;
-  u = take_step(arrays, lanes, k, voxel_at(arrays->info, p, lanes->at[k]), p, &step);
-  lanes->settled[k] = 0.0f;
-  lanes->turn[k] = step > 0.0f ? step : NEVER;
+  const integer kicked = mask;
+  const real next = take_step(arrays, lanes, mask, voxel, p, u);
+  const real turn = next;
+  FOR_AXES(a)
+  {
+    inverse[a] = (real)1.0f / u[a];
+  }
+  PUT_WHERE(mask, lanes->settled, (real)0.0f);
 #endif
-  begin_leg(arrays->info, lanes, k, p, u);
-  ++lanes->steps[k];
+  PUT_WHERE(mask, lanes->step, next);
+  PUT_WHERE(mask, lanes->turn, next > (real)0.0f ? turn : (real)NEVER);
+  begin_legs(info, lanes, kicked, voxel, p, u, inverse);
+  PUT_INTEGERS(lanes->steps, INTEGERS(lanes->steps) - kicked);
 }
 #endif
 
@@ -261,35 +378,55 @@ static void rest(photon_lanes* lanes, int k)
 {
   lanes->alive[k] = 0;
   lanes->at[k] = 0;
-  lanes->stride_x[k] = lanes->stride_y[k] = lanes->stride_z[k] = 0;
-  lanes->wall_x[k] = lanes->wall_y[k] = lanes->wall_z[k] = 0.0f;
-  lanes->across_x[k] = lanes->across_y[k] = lanes->across_z[k] = 0.0f;
+  FOR_AXES(a)
+  {
+    lanes->stride[a][k] = 0;
+    lanes->wall[a][k] = lanes->across[a][k] = 0.0f;
+  }
   lanes->now[k] = lanes->pace[k] = 0.0f;
   lanes->ahead[k] = 0;
   lanes->turn[k] = NEVER;
 }
 
-// A photon, from its position (voxels) and unit direction, becomes photon k.
-static void set_off(const march_arrays* arrays, photon_lanes* lanes, int k, const __global float* photon)
+// Photons set off from p (voxels) in unit directions u.
+static void set_off(const march_arrays* arrays, photon_lanes* lanes, real* p, real* u)
 {
   const march_info* info = arrays->info;
-  const float3 p = (float3)(photon[0], photon[1], photon[2]);
-  float3 u = (float3)(photon[3], photon[4], photon[5]) / spacing_of(info);
-  lanes->alive[k] = -1;
-  lanes->at[k] = padded(info, clamp(convert_int3_rtn(p), (int3)(0), size_of(info) - 1));
-  lanes->turn[k] = NEVER;
-  lanes->settled[k] = 0.0f;
-  lanes->step[k] = 0.0f;
-  lanes->steps[k] = 0;
-#if BENDS
-  u *= sqrt(squared_index(&info->grid, arrays->coefficients, p).w);
-  lanes->momentum[k] = u;
-#endif
-  begin_leg(info, lanes, k, p, u);
-#if BENDS
-  if (as_int(arrays->sigma[lanes->at[k]]) < 0)
+  const integer all = (integer)-1;
+  integer voxel[3];
+  real inverse[3];
+  FOR_AXES(a)
   {
-    take_turn(arrays, lanes, k);
+    voxel[a] = clamp(to_integer(p[a]), (integer)0, (integer)(info->grid.size[a] - 1));
+    u[a] /= info->spacing[a];
+  }
+  PUT_INTEGERS(lanes->at, padded(info, voxel));
+  PUT_INTEGERS(lanes->alive, all);
+  PUT_INTEGERS(lanes->steps, (integer)0);
+  PUT(lanes->turn, (real)NEVER);
+  PUT(lanes->settled, (real)0.0f);
+  PUT(lanes->step, (real)0.0f);
+#if BENDS
+  // Where the index does not vary every coefficient is n^2.
+  const integer varies = truth(as_integer(gather(float, arrays->sigma, INTEGERS(lanes->at))) < 0);
+  real squared, gradient[3];
+  squared_index_at(arrays, varies, p, &squared, gradient);
+  squared = varies ? squared : gather(float, arrays->coefficients, coefficient_of(info, voxel));
+  FOR_AXES(a)
+  {
+    u[a] *= sqrt(squared);
+    PUT(lanes->momentum[a], u[a]);
+  }
+#endif
+  FOR_AXES(a)
+  {
+    inverse[a] = (real)1.0f / u[a];
+  }
+  begin_legs(info, lanes, all, voxel, p, u, inverse);
+#if BENDS
+  if (anywhere(varies))
+  {
+    take_turns(arrays, lanes, varies);
   }
 #endif
 }

@@ -1,7 +1,7 @@
 // Photons through a medium (Pfeuti 2009, section 3.1.5, but for the accumulation). Read after Numerics.cl, FixedPoint.cl,
-// SquaredIndex.cl and PhotonLegs.cl; the host gives what those ask for, and
+// SquaredIndex.cl, PhotonLanes.cl and PhotonLegs.cl; the host gives what those ask for, and
 //   CHANNELS         of light; MEDIUM_CHANNELS of sigma_t, 1 or CHANNELS
-//   WORKERS          0: a work-item a packet, all add to the same sums; else so many take packets in turn, each with its sums
+//   WORKERS          0: a work-item a packet, all add to the same sums; else so many take blocks as they come, each to its sums
 //   PATHS            1: nothing is summed, vertices are written
 //
 // A leg is followed from voxel wall to voxel wall (Amanatides and Woo). In a voxel whose extinction over a diagonal is s,
@@ -13,61 +13,27 @@
 #define RECORD (CHANNELS + 3 * DIRECTIONS)
 #define TINY 1e-20f
 
-#if REAL_WIDTH == 1
-#define truth(condition) (-(condition))
-#define anywhere(mask) (mask)
-#define bits_of(mask) ((mask) & 1)
-#define as_integer as_int
-#define gather(values, i) ((values)[i])
-#else
-#define truth(condition) (condition)
-#define anywhere(mask) any(mask)
-#define as_integer TYNDALL_JOIN(as_int, REAL_WIDTH)
-#if REAL_WIDTH == 4
-#define bits_of(mask) bits_of_4(mask)
-#define gather(values, i) ((float4)((values)[(i).s0], (values)[(i).s1], (values)[(i).s2], (values)[(i).s3]))
-#elif REAL_WIDTH == 8
-#define bits_of(mask) (bits_of_4((mask).lo) | bits_of_4((mask).hi) << 4)
-#define gather(values, i) \
-  ((float8)((values)[(i).s0], (values)[(i).s1], (values)[(i).s2], (values)[(i).s3], (values)[(i).s4], (values)[(i).s5], \
-    (values)[(i).s6], (values)[(i).s7]))
-#else
-#define bits_of(mask) \
-  (bits_of_4((mask).lo.lo) | bits_of_4((mask).lo.hi) << 4 | bits_of_4((mask).hi.lo) << 8 | bits_of_4((mask).hi.hi) << 12)
-#define gather(values, i) \
-  ((float16)((values)[(i).s0], (values)[(i).s1], (values)[(i).s2], (values)[(i).s3], (values)[(i).s4], (values)[(i).s5], \
-    (values)[(i).s6], (values)[(i).s7], (values)[(i).s8], (values)[(i).s9], (values)[(i).sa], (values)[(i).sb], \
-    (values)[(i).sc], (values)[(i).sd], (values)[(i).se], (values)[(i).sf]))
-#endif
-#endif
-#define masked(mask, value) as_real((mask) & as_integer(value))
-
-static int bits_of_4(int4 mask)
-{
-  const int4 bits = mask & (int4)(1, 2, 4, 8);
-  return bits.x | bits.y | bits.z | bits.w;
-}
-
 // The part of the state that changes between two turns, in registers.
 typedef struct
 {
   integer at, alive, crossings;
-  real wall_x, wall_y, wall_z, now;
+  real wall[3], now;
   real sigma;
   real power[CHANNELS];
 } photon_flight;
 
 static void land(const photon_flight* flight, photon_lanes* lanes)
 {
-  *(integer*)lanes->at = flight->at;
-  *(integer*)lanes->crossings = flight->crossings;
-  *(real*)lanes->wall_x = flight->wall_x;
-  *(real*)lanes->wall_y = flight->wall_y;
-  *(real*)lanes->wall_z = flight->wall_z;
-  *(real*)lanes->now = flight->now;
-  for (int c = 0; c < CHANNELS; ++c)
+  PUT_INTEGERS(lanes->at, flight->at);
+  PUT_INTEGERS(lanes->crossings, flight->crossings);
+  PUT(lanes->now, flight->now);
+  FOR_AXES(a)
   {
-    *(real*)lanes->power[c] = flight->power[c];
+    PUT(lanes->wall[a], flight->wall[a]);
+  }
+  FOR_CHANNELS(c)
+  {
+    PUT(lanes->power[c], flight->power[c]);
   }
 }
 
@@ -75,11 +41,12 @@ static void take_off(const march_arrays* arrays, const photon_lanes* lanes, phot
 {
   flight->at = INTEGERS(lanes->at);
   flight->alive = INTEGERS(lanes->alive);
-  flight->wall_x = VECTOR(lanes->wall_x);
-  flight->wall_y = VECTOR(lanes->wall_y);
-  flight->wall_z = VECTOR(lanes->wall_z);
+  FOR_AXES(a)
+  {
+    flight->wall[a] = VECTOR(lanes->wall[a]);
+  }
   flight->now = VECTOR(lanes->now);
-  flight->sigma = gather(arrays->sigma, flight->at);
+  flight->sigma = gather(float, arrays->sigma, flight->at);
 }
 
 // What the voxels take of the photons over `length`, and gain.
@@ -87,15 +54,15 @@ static void attenuate(const march_arrays* arrays, photon_flight* flight, real le
 {
   real left, lost, factor;
   integer thick;
-  for (int c = 0; c < CHANNELS; ++c)
+  FOR_CHANNELS(c)
   {
     if (c < MEDIUM_CHANNELS)
     {
-      const real s = fabs(c == 0 ? flight->sigma : gather(arrays->sigma + c * arrays->info->copy, flight->at));
+      const real s = fabs(c == 0 ? flight->sigma : gather(float, arrays->sigma + c * arrays->info->copy, flight->at));
       const real tau = s * length;
       lost = extinguished(tau, &left);
       const real mean = tau > (real)TINY ? lost / tau : (real)1.0f; // transmittance, over the length
-      factor = mean * length * fmax(s, (real)1.0f);
+      factor = mean * length * greater(s, (real)1.0f);
       thick = truth(tau > (real)0.5f);
     }
     gained[c] = flight->power[c] * factor;
@@ -112,7 +79,7 @@ static void credit(__global long* record, const float* a, float4 direction)
   *(__global long4_anywhere*)record += convert_long4(a[0] * direction);
 #else
   float total = 0.0f;
-  for (int c = 0; c < CHANNELS; ++c)
+  FOR_CHANNELS(c)
   {
     total += a[c];
     add_units(record + c, (long)a[c]);
@@ -127,22 +94,17 @@ static void credit(__global long* record, const float* a, float4 direction)
 
 static void credit_all(const march_arrays* arrays, const photon_lanes* lanes, integer at, const real* gained)
 {
-  LANES(int, places);
-  float amounts[CHANNELS][REAL_WIDTH] __attribute__((aligned(64)));
-  *(integer*)places = at;
-  for (int c = 0; c < CHANNELS; ++c)
-  {
-    *(real*)amounts[c] = gained[c];
+#define CREDIT(k, lane) \
+  { \
+    float a[CHANNELS]; \
+    FOR_CHANNELS(c) \
+    { \
+      a[c] = gained[c]lane; \
+    } \
+    credit(arrays->sums + (ulong)at lane * RECORD, a, lanes->direction[k]); \
   }
-  for (int k = 0; k < REAL_WIDTH; ++k)
-  {
-    float a[CHANNELS];
-    for (int c = 0; c < CHANNELS; ++c)
-    {
-      a[c] = amounts[c][k];
-    }
-    credit(arrays->sums + (ulong)places[k] * RECORD, a, lanes->direction[k]);
-  }
+  LANE_BY_LANE(CREDIT)
+#undef CREDIT
 }
 
 // Most of the time of a march across a large grid is waiting for memory. It is asked for a few voxels ahead of the photons, as
@@ -151,14 +113,12 @@ static void ask_ahead(const march_arrays* arrays, const photon_lanes* lanes, int
 {
 #if REAL_WIDTH > 1 && defined(__has_builtin)
 #if __has_builtin(__builtin_prefetch)
-  LANES(int, places);
-  *(integer*)places = at + INTEGERS(lanes->ahead);
-  for (int k = 0; k < REAL_WIDTH; ++k)
-  {
-    const long there = places[k];
-    __builtin_prefetch((const void*)(uintptr_t)(arrays->sums + there * RECORD), 1);
-    __builtin_prefetch((const void*)(uintptr_t)(arrays->sigma + there), 0);
-  }
+  const integer there = at + INTEGERS(lanes->ahead);
+#define ASK(k, lane) \
+  __builtin_prefetch((const void*)(uintptr_t)(arrays->sums + (long)there lane * RECORD), 1); \
+  __builtin_prefetch((const void*)(uintptr_t)(arrays->sigma + (long)there lane), 0);
+  LANE_BY_LANE(ASK)
+#undef ASK
 #endif
 #endif
 }
@@ -166,24 +126,32 @@ static void ask_ahead(const march_arrays* arrays, const photon_lanes* lanes, int
 // Through the walls that are reached at time `next`.
 static void cross_walls(const march_arrays* arrays, const photon_lanes* lanes, photon_flight* flight, real next)
 {
-  const integer x = truth(flight->wall_x <= next), y = truth(flight->wall_y <= next), z = truth(flight->wall_z <= next);
-  flight->at += (x & INTEGERS(lanes->stride_x)) + (y & INTEGERS(lanes->stride_y)) + (z & INTEGERS(lanes->stride_z));
-  flight->wall_x += masked(x, VECTOR(lanes->across_x));
-  flight->wall_y += masked(y, VECTOR(lanes->across_y));
-  flight->wall_z += masked(z, VECTOR(lanes->across_z));
+  FOR_AXES(a)
+  {
+    const integer through = truth(flight->wall[a] <= next);
+    flight->at += through & INTEGERS(lanes->stride[a]);
+    flight->wall[a] += masked(through, VECTOR(lanes->across[a]));
+  }
   flight->now = next;
-  flight->sigma = gather(arrays->sigma, flight->at);
+  flight->sigma = gather(float, arrays->sigma, flight->at);
+}
+
+// The power of a photon's brightest channel.
+static real brightest(const photon_flight* flight)
+{
+  real most = flight->power[0];
+  for (int c = 1; c < CHANNELS; ++c)
+  {
+    most = greater(most, flight->power[c]);
+  }
+  return most;
 }
 
 // The photons that have come to an end or to a turn.
 static integer to_attend(const march_arrays* arrays, const photon_lanes* lanes, const photon_flight* flight)
 {
-  real most = flight->power[0];
-  for (int c = 1; c < CHANNELS; ++c)
-  {
-    most = fmax(most, flight->power[c]);
-  }
-  integer special = truth(flight->sigma == (real)OUTSIDE) | truth(most < (real)arrays->info->darkness);
+  integer special =
+    truth(flight->sigma == (real)OUTSIDE) | truth(brightest(flight) < (real)arrays->info->darkness);
 #if BENDS
   const real turn = VECTOR(lanes->turn);
   special |= truth(turn <= flight->now) |
@@ -205,59 +173,70 @@ static void end_photon(const photon_lanes* lanes, int k, int face, __global phot
   end->face = face;
   end->crossings = lanes->crossings[k];
   end->steps = lanes->steps[k];
-  for (int c = 0; c < CHANNELS; ++c)
+  FOR_CHANNELS(c)
   {
     end->power[c] = lanes->power[c][k];
   }
 }
 
-static void attend(const march_arrays* arrays, photon_lanes* lanes, int special, int first)
+// The photons of a mask end or turn.
+static void attend(const march_arrays* arrays, photon_lanes* lanes, const photon_flight* flight, integer mask, int first)
 {
-  for (; special; special &= special - 1)
+  const integer outside = truth(flight->sigma == (real)OUTSIDE);
+  const integer ended = mask & (outside | truth(brightest(flight) < (real)arrays->info->darkness));
+  if (anywhere(ended))
   {
-    const int k = 31 - clz(special & -special);
-    const int at = lanes->at[k];
-    const bool outside = arrays->sigma[at] == OUTSIDE;
-    float most = 0.0f;
-    for (int c = 0; c < CHANNELS; ++c)
+    const int beyond = bits_of(outside);
+    FOR_LANES(k, ended)
     {
-      most = fmax(most, lanes->power[c][k]);
-    }
-    if (outside || most < arrays->info->darkness)
-    {
-      end_photon(lanes, k, outside ? face_left(arrays->info, at) : DARK, arrays->ends + first + k);
+      const int face = beyond >> k & 1 ? face_left(arrays->info, lanes->at[k]) : DARK;
+      end_photon(lanes, k, face, arrays->ends + first + k);
       rest(lanes, k);
     }
-#if BENDS
-    else
-    {
-      take_turn(arrays, lanes, k);
-    }
-#endif
   }
+#if BENDS
+  const integer turning = mask & ~ended;
+  if (anywhere(turning))
+  {
+    take_turns(arrays, lanes, turning);
+  }
+#endif
 }
 
 static void load_packet(const march_arrays* arrays, const __global float* photons, int first, int end,
   photon_lanes* lanes, photon_flight* flight)
 {
+  LANES_3(float, position);
+  LANES_3(float, direction);
   for (int k = 0; k < REAL_WIDTH; ++k)
   {
     const bool there = first + k < end;
     const __global float* photon = photons + (ulong)(there ? first + k : first) * PHOTON_FLOATS;
-    for (int c = 0; c < CHANNELS; ++c)
+    FOR_AXES(a)
+    {
+      position[a][k] = photon[a];
+      direction[a][k] = photon[3 + a];
+    }
+    FOR_CHANNELS(c)
     {
       lanes->power[c][k] = there ? photon[6 + c] : 0.0f;
     }
-    set_off(arrays, lanes, k, photon);
-    if (!there)
-    {
-      rest(lanes, k);
-    }
+  }
+  real p[3], u[3];
+  FOR_AXES(a)
+  {
+    p[a] = VECTOR(position[a]);
+    u[a] = VECTOR(direction[a]);
+  }
+  set_off(arrays, lanes, p, u);
+  for (int k = end - first; k < REAL_WIDTH; ++k)
+  {
+    rest(lanes, k);
   }
   flight->crossings = 0;
-  for (int c = 0; c < CHANNELS; ++c)
+  FOR_CHANNELS(c)
   {
-    flight->power[c] = *(const real*)lanes->power[c];
+    flight->power[c] = VECTOR(lanes->power[c]);
   }
   take_off(arrays, lanes, flight);
 }
@@ -267,7 +246,9 @@ static void add_vertex(const march_arrays* arrays, const photon_lanes* lanes, fl
 {
   if (arrays->vertices)
   {
-    arrays->vertices[*count] = (float4)(lanes->start[0] + lanes->velocity[0] * now, left);
+    const float3 start = (float3)(lanes->start[0][0], lanes->start[1][0], lanes->start[2][0]);
+    const float3 velocity = (float3)(lanes->velocity[0][0], lanes->velocity[1][0], lanes->velocity[2][0]);
+    arrays->vertices[*count] = (float4)(start + velocity * now, left);
   }
   ++*count;
 }
@@ -284,28 +265,40 @@ static int march_packet(const march_arrays* arrays, const __global float* photon
   const float whole = flight.power[0];
   add_vertex(arrays, &lanes, 0.0f, 1.0f, &vertices);
 #endif
+  // What voxels gain is credited a stretch later, while that one's extinction is on its way from memory.
+  integer gaining = 0;
+  real gained[CHANNELS];
+  bool owed = false;
   for (int event = 0; event < arrays->info->eventLimit; ++event)
   {
-    real next = fmin(fmin(flight.wall_x, flight.wall_y), flight.wall_z);
+    real next = lesser(lesser(flight.wall[0], flight.wall[1]), flight.wall[2]);
 #if BENDS
-    next = fmin(next, VECTOR(lanes.turn));
+    next = lesser(next, VECTOR(lanes.turn));
 #endif
-    real gained[CHANNELS];
-    attenuate(arrays, &flight, fmax(next - flight.now, (real)0.0f) * VECTOR(lanes.pace), gained);
-    flight.crossings -= flight.alive;
 #if !PATHS
+    if (owed)
+    {
+      credit_all(arrays, &lanes, gaining, gained);
+    }
     ask_ahead(arrays, &lanes, flight.at);
-    credit_all(arrays, &lanes, flight.at, gained);
 #endif
+    attenuate(arrays, &flight, greater(next - flight.now, (real)0.0f) * VECTOR(lanes.pace), gained);
+    flight.crossings -= flight.alive;
+    gaining = flight.at;
+    owed = true;
     cross_walls(arrays, &lanes, &flight, next);
     const integer special = to_attend(arrays, &lanes, &flight);
     if (anywhere(special))
     {
+#if !PATHS
+      credit_all(arrays, &lanes, gaining, gained); // before directions change
+      owed = false;
+#endif
       land(&flight, &lanes);
 #if PATHS
       add_vertex(arrays, &lanes, next, flight.power[0] / whole, &vertices);
 #endif
-      attend(arrays, &lanes, bits_of(special), first);
+      attend(arrays, &lanes, &flight, special, first);
       take_off(arrays, &lanes, &flight);
       if (!anywhere(flight.alive))
       {
@@ -313,6 +306,12 @@ static int march_packet(const march_arrays* arrays, const __global float* photon
       }
     }
   }
+#if !PATHS
+  if (owed)
+  {
+    credit_all(arrays, &lanes, gaining, gained);
+  }
+#endif
   land(&flight, &lanes);
   for (int k = 0; k < REAL_WIDTH; ++k)
   {
@@ -339,13 +338,12 @@ __kernel void trace_paths(march_info info, const __global float* sigma, const __
 // Photons `first` to `first + count`.
 __kernel void march_photons(march_info info, const __global float* sigma, const __global float* coefficients,
   const __global uchar* nodes, const __global float* photons, __global photon_end* ends, __global long* sums,
-  ulong copyStride, int first, int count)
+  ulong copyStride, volatile __global int* next, int first, int count)
 {
 #if WORKERS > 0
-  const int worker = get_global_id(0);
-  const march_arrays arrays = { &info, sigma, coefficients, nodes, sums + worker * copyStride, ends, 0 };
-  // Blocks of neighbours stay together: they share cache lines.
-  for (int block = worker * BLOCK; block < count; block += WORKERS * BLOCK)
+  const march_arrays arrays = { &info, sigma, coefficients, nodes, sums + get_global_id(0) * copyStride, ends, 0 };
+  // Blocks of neighbours stay together: they share cache lines. Who takes which makes no difference to the sums.
+  for (int block = atomic_add(next, BLOCK); block < count; block = atomic_add(next, BLOCK))
   {
     for (int i = block; i < min(block + BLOCK, count); i += REAL_WIDTH)
     {

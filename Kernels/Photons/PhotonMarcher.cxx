@@ -150,8 +150,8 @@ private:
   cl::Kernel MarchKernel(const char* name, const std::string& options)
   {
     return this->TheDevice.Kernel(name,
-      { kernel_source::Numerics, kernel_source::FixedPoint, kernel_source::SquaredIndex, kernel_source::PhotonLegs,
-        kernel_source::PhotonMarch },
+      { kernel_source::Numerics, kernel_source::FixedPoint, kernel_source::SquaredIndex, kernel_source::PhotonLanes,
+        kernel_source::PhotonLegs, kernel_source::PhotonMarch },
       options);
   }
 
@@ -314,11 +314,13 @@ void PhotonMarcher::Implementation::MarchAll(
   const double edges = (this->TheGrid.size[0] + this->TheGrid.size[1] + this->TheGrid.size[2]) / 3.0;
   const std::size_t whole = static_cast<std::size_t>(Block) * std::max(workers, 1);
   const std::size_t batch = std::max<std::size_t>(static_cast<std::size_t>(EventsPerLaunch / edges) / whole, 1) * whole;
+  Buffer<cl_int> next(this->TheDevice, 1, "number of the next photon");
   for (std::size_t first = 0; first < packed.Count(); first += batch)
   {
     const std::size_t count = std::min(batch, packed.Count() - first);
+    next.Fill(0);
     With(march, this->Describe(), this->Sigma, this->Coefficients, this->Nodes, photons, ends, this->Sums,
-      cl_ulong(stride), cl_int(first), cl_int(count));
+      cl_ulong(stride), next, cl_int(first), cl_int(count));
     if (workers > 0)
     {
       this->Launch(march, cl::NDRange(static_cast<std::size_t>(workers)), cl::NDRange(1));

@@ -76,10 +76,18 @@ __kernel void finish_light(light_info info, const __global float* sigma_a, const
     for (int w = 0; w < COPIES; ++w)
     {
       __global long* record = sums + w * copyStride + (first + x) * RECORD;
+      long bits = 0;
       for (int c = 0; c < RECORD; ++c)
       {
         sum[c] += record[c];
-        record[c] = 0;
+        bits |= record[c];
+      }
+      if (bits != 0) // half of the memory need not be written
+      {
+        for (int c = 0; c < RECORD; ++c)
+        {
+          record[c] = 0;
+        }
       }
     }
     float total = 0.0f;

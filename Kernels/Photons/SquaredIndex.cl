@@ -67,27 +67,57 @@ __kernel void widen_range(int stride, const __global float* low, const __global 
     fmax(fmax(fmax(high[i - 2 * stride], high[i - stride]), fmax(high[i + stride], high[i + 2 * stride])), high[i]);
 }
 
-typedef struct
+// The four basis functions at a place f beyond the second coefficient, from the first coefficient's to the last one's, and
+// their slopes.
+static float4 spline_values(float f)
 {
-  float4 value, slope; // of the four basis functions, from the first coefficient's
-} spline_weights;
+  const float4 squares = (float4)(0.5f, -1.0f, 0.5f, 0.0f) + f * (float4)(-1.0f / 6.0f, 0.5f, -0.5f, 1.0f / 6.0f);
+  return (float4)(1.0f / 6.0f, 2.0f / 3.0f, 1.0f / 6.0f, 0.0f) + f * ((float4)(-0.5f, 0.0f, 0.5f, 0.0f) + f * squares);
+}
 
-static spline_weights weights_at(float f)
+static float4 spline_slopes(float f)
 {
-  const float g = 1.0f - f;
-  spline_weights w;
-  w.value.s0 = g * g * g * (1.0f / 6.0f);
-  w.value.s1 = f * f * (0.5f * f - 1.0f) + (2.0f / 3.0f);
-  w.value.s2 = g * g * (0.5f * g - 1.0f) + (2.0f / 3.0f);
-  w.value.s3 = f * f * f * (1.0f / 6.0f);
-  w.slope.s0 = -0.5f * g * g;
-  w.slope.s1 = f * (1.5f * f - 2.0f);
-  w.slope.s2 = -g * (1.5f * g - 2.0f);
-  w.slope.s3 = 0.5f * f * f;
-  return w;
+  return (float4)(-0.5f, 0.0f, 0.5f, 0.0f) +
+    f * ((float4)(1.0f, -2.0f, 1.0f, 0.0f) + f * (float4)(-0.5f, 1.5f, -1.5f, 0.5f));
 }
 
 typedef float4 __attribute__((aligned(4))) float4_anywhere;
+
+// The sums of a, of b, of c and of d.
+static float4 four_sums(float4 a, float4 b, float4 c, float4 d)
+{
+  const float4 ab = (float4)(a.x, b.x, a.y, b.y) + (float4)(a.z, b.z, a.w, b.w);
+  const float4 cd = (float4)(c.x, d.x, c.y, d.y) + (float4)(c.z, d.z, c.w, d.w);
+  return (float4)(ab.lo, cd.lo) + (float4)(ab.hi, cd.hi);
+}
+
+// n^2 (w) and its gradient (x, y, z) in the middle of 4^3 coefficients from `first` on, at f in [0, 1] between the second
+// and the third of each axis. Summed over layers first, then over rows: most of it is done for sixteen at once.
+static float4 squared_index_among(const __global float* first, int row, int layer, float3 f)
+{
+  const float4 z = spline_values(f.z), z_slope = spline_slopes(f.z);
+  const float middle = first[layer + row + 1]; // only differences from it are summed, so that rounding makes no gradient of it
+  float16 value = 0.0f, along_z = 0.0f;
+#define ROW(k, j) (*(const __global float4_anywhere*)(first + (k) * layer + (j) * row))
+#define ADD_LAYER(k, s) \
+  { \
+    const float16 c = (float16)(ROW(k, 0), ROW(k, 1), ROW(k, 2), ROW(k, 3)) - middle; \
+    value += z.s * c; \
+    along_z += z_slope.s * c; \
+  }
+  ADD_LAYER(0, s0)
+  ADD_LAYER(1, s1)
+  ADD_LAYER(2, s2)
+  ADD_LAYER(3, s3)
+#define SUM_OF_ROWS(a) (((a).s0123 + (a).s4567) + ((a).s89ab + (a).scdef))
+  const float16 y = spline_values(f.y).s0000111122223333;
+  const float16 along_y = value * spline_slopes(f.y).s0000111122223333;
+  value *= y;
+  along_z *= y;
+  const float4 x = spline_values(f.x), rows = SUM_OF_ROWS(value);
+  const float4 sums = four_sums(rows * spline_slopes(f.x), SUM_OF_ROWS(along_y) * x, SUM_OF_ROWS(along_z) * x, rows * x);
+  return (float4)(sums.xyz, middle + sums.w);
+}
 
 // n^2 (w) and its gradient (x, y, z) at voxel coordinates `p`.
 static float4 squared_index(const index_grid* grid, const __global float* coefficients, float3 p)
@@ -96,22 +126,6 @@ static float4 squared_index(const index_grid* grid, const __global float* coeffi
   const float3 q = p - 0.5f;
   const float3 base = clamp(
     floor(q), (float3)(-1.0f), (float3)(grid->size[0] - 1.0f, grid->size[1] - 1.0f, grid->size[2] - 1.0f));
-  const spline_weights x = weights_at(q.x - base.x), y = weights_at(q.y - base.y), z = weights_at(q.z - base.z);
   const __global float* first = coefficients + ((int)base.z + 1) * layer + ((int)base.y + 1) * row + (int)base.x + 1;
-  float4 value = 0.0f, along_y = 0.0f, along_z = 0.0f;
-#define ADD_LAYER(k, s) \
-  { \
-    const __global float* at = first + (k) * layer; \
-    const float4 c0 = *(const __global float4_anywhere*)at, c1 = *(const __global float4_anywhere*)(at + row); \
-    const float4 c2 = *(const __global float4_anywhere*)(at + 2 * row), c3 = *(const __global float4_anywhere*)(at + 3 * row); \
-    const float4 rows = y.value.s0 * c0 + y.value.s1 * c1 + y.value.s2 * c2 + y.value.s3 * c3; \
-    along_y += z.value.s * (y.slope.s0 * c0 + y.slope.s1 * c1 + y.slope.s2 * c2 + y.slope.s3 * c3); \
-    value += z.value.s * rows; \
-    along_z += z.slope.s * rows; \
-  }
-  ADD_LAYER(0, s0)
-  ADD_LAYER(1, s1)
-  ADD_LAYER(2, s2)
-  ADD_LAYER(3, s3)
-  return (float4)(dot(value, x.slope), dot(along_y, x.value), dot(along_z, x.value), dot(value, x.value));
+  return squared_index_among(first, row, layer, q - base);
 }

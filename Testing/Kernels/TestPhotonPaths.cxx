@@ -87,7 +87,6 @@ TEST_F(PhotonPaths, ConvergeWithTheOrderOfTheIntegrator)
 {
   PhotonScene scene(128, 1.1);
   scene.SetIndex(luneburg::Endless);
-  const double b = 0.5;
   for (int order : { 1, 2, 4 })
   {
     std::vector<double> errors;
@@ -96,8 +95,13 @@ TEST_F(PhotonPaths, ConvergeWithTheOrderOfTheIntegrator)
     {
       scene.settings.order = order;
       scene.settings.stepSize = step;
-      const PhotonPath path = scene.Path(this->GetDevice(), { -std::sqrt(1.0 - b * b), b, 0.0 }, { 1.0, 0.0, 0.0 });
-      errors.push_back(luneburg::WorstCorner(path, b));
+      double worst = 0.0; // of several paths: in one alone, rounding shows at 6 voxels a step of order 4
+      for (double b : { 0.3, 0.5, 0.7 })
+      {
+        const PhotonPath path = scene.Path(this->GetDevice(), { -std::sqrt(1.0 - b * b), b, 0.0 }, { 1.0, 0.0, 0.0 });
+        worst = std::max(worst, luneburg::WorstCorner(path, b));
+      }
+      errors.push_back(worst);
     }
     EXPECT_NEAR(std::log2(errors[0] / errors[1]), order, 0.4) << errors[0] << ' ' << errors[1] << ' ' << errors[2];
     EXPECT_NEAR(std::log2(errors[1] / errors[2]), order, 0.4) << errors[0] << ' ' << errors[1] << ' ' << errors[2];
