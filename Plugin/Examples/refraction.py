@@ -85,41 +85,44 @@ def picture(name, light, **settings):
 
 
 def armadillo(sky):
-    """In glass, on a table, in thin fog: the sun behind it draws a caustic."""
+    """Of green glass, on a table, in thin fog by the sea: the sun behind it draws a caustic."""
     mesh, b = standing("armadillo")
     middle = [0.5 * (b[0] + b[1]), 0.5 * (b[2] + b[3])]
-    box = [middle[0] - 105, middle[0] + 105, middle[1] - 105, middle[1] + 105, b[4] - 6, b[5] + 14]
+    box = [middle[0] - 125, middle[0] + 125, middle[1] - 85, middle[1] + 165, b[4] - 6, b[5] + 14]
     medium = MeshVoxelizer(registrationName="Armadillo in fog", Input=mesh, ModelBounds=box, SampleDimensions=voxels(box),
-                           InsideIndex=1.5, InsideAbsorption=[0.004, 0.0015, 0.002], OutsideScattering=[0.0025] * 3,
-                           OutsideMeanCosine=0.5, InsideMeanCosine=0.5)
+                           InsideIndex=1.5, InsideAbsorption=[0.02, 0.005, 0.009], OutsideScattering=[0.0006] * 3,
+                           InsideMeanCosine=0.7, OutsideMeanCosine=0.7)
     stage("armadillo: voxels", medium)
-    sun = LightRig(registrationName="Sun", SunElevation=42, SunAzimuth=60, SunPower=[30, 26, 20])
+    sun = LightRig(registrationName="Sun", SunElevation=52, SunAzimuth=262, SunPower=[26, 22.6, 16])
     light = light_in("armadillo", medium, sun, arguments.photons, sky)
-    centre = [middle[0], middle[1], 0.5 * (box[4] + box[5]) - 18]
-    picture("armadillo-in-glass", light, Environment=sky, CameraPosition=around(centre, 520, 262, 20),
-            CameraFocalPoint=centre, SurfaceReflection="Fresnel", TableFace="-z", TableColor=[0.7, 0.7, 0.7],
-            TableReflectance=0.1)
+    centre = [middle[0] + 10, middle[1] + 35, 0.5 * (box[4] + box[5]) - 24]
+    picture("armadillo-in-glass", light, Environment=sky, CameraPosition=around(centre, 560, 70, 11),
+            CameraFocalPoint=centre, SurfaceReflection="Fresnel", TableFace="-z", TableColor=[0.16, 0.13, 0.11],
+            TableReflectance=0.06, Exposure=0.7)
     return light
 
 
 def elephant():
-    """Inside a sphere of another material, lit by a spot from behind: figure 8a of Bernabei et al."""
+    """Inside a sphere of another material, lit by a spot from behind (Bernabei et al., figure 8a): one hue, and only the
+    refractive index and the density differ."""
     mesh, b = standing("elephant")
     centre = [0.5 * (b[2 * a] + b[2 * a + 1]) for a in range(3)]
-    sphere = Sphere(registrationName="Sphere", Center=centre, Radius=0.78, ThetaResolution=160, PhiResolution=160)
-    box = [c + side for c in centre for side in (-0.9, 0.9)]
-    hue = (0.9, 0.55, 0.2)
+    sphere = Sphere(registrationName="Sphere", Center=centre, Radius=0.72, ThetaResolution=160, PhiResolution=160)
+    box = [c + side for c in centre for side in (-0.82, 0.82)]
+
+    def material(number, index, density):
+        return [number, index, *(density * h for h in (0.9, 0.55, 0.2)), *(density * h for h in (0.05, 0.225, 0.4)), 0]
+
     medium = MeshVoxelizer(registrationName="Elephant in a sphere", Input=[sphere, mesh], ModelBounds=box,
                            SampleDimensions=voxels(box), OutsideScattering=[0, 0, 0],
-                           Materials=[0, 1.2, *(0.5 * h for h in hue), *(0.3 * (1 - h) for h in hue), 0,
-                                      1, 1.5, *(2.5 * h for h in hue), *(1.5 * (1 - h) for h in hue), 0])
+                           Materials=material(0, 1.1, 0.35) + material(1, 1.4, 5))
     stage("elephant: voxels", medium)
-    spot = LightRig(registrationName="Spot", Sun=0)
     lamp = around(centre, 4, 75, 35)
-    spot.SpotLights = [*lamp, *(c - p for c, p in zip(centre, lamp)), 60, 60, 60, 26]
+    spot = LightRig(registrationName="Spot", Sun=0,
+                    SpotLights=[*lamp, *(c - p for c, p in zip(centre, lamp)), 60, 60, 60, 24])
     light = light_in("elephant", medium, spot, arguments.photons)
-    picture("elephant-in-a-sphere", light, CameraPosition=around(centre, 5.2, 260, 12), CameraFocalPoint=centre,
-            CameraViewAngle=24, SurfaceReflection="Fresnel")
+    picture("elephant-in-a-sphere", light, CameraPosition=around(centre, 5, 260, 10), CameraFocalPoint=centre,
+            CameraViewAngle=19, SurfaceReflection="Fresnel")
     return light
 
 
