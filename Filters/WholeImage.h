@@ -29,6 +29,13 @@ inline void AskForAll(vtkInformationVector* inputs)
   }
 }
 
+/// Whether the output asked for is the first piece: the one that has what is not divided.
+inline bool IsFirstPiece(vtkInformation* output)
+{
+  auto* piece = vtkStreamingDemandDrivenPipeline::UPDATE_PIECE_NUMBER();
+  return !output->Has(piece) || output->Get(piece) <= 0;
+}
+
 /// In RequestData: crop the output to the extent, or the piece of it, that was asked for; other ranks hold the rest.
 inline void KeepWhatIsAskedFor(vtkInformation* information, vtkImageData* output)
 {

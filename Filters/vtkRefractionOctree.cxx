@@ -66,12 +66,6 @@ void AddLevels(vtkImageData* output, const std::vector<std::uint8_t>& levels)
   std::copy(levels.begin(), levels.end(), array->GetPointer(0));
   output->GetCellData()->SetScalars(array);
 }
-
-bool IsFirstPiece(vtkInformation* output)
-{
-  auto* piece = vtkStreamingDemandDrivenPipeline::UPDATE_PIECE_NUMBER();
-  return !output->Has(piece) || output->Get(piece) <= 0;
-}
 }
 
 vtkStandardNewMacro(vtkRefractionOctree);
@@ -112,7 +106,7 @@ int vtkRefractionOctree::RequestData(vtkInformation*, vtkInformationVector** inp
     tyndall::AddFact(output, "device", std::vector<std::string>{ octree.device });
     tyndall::KeepWhatIsAskedFor(outputs->GetInformationObject(0), output);
 
-    if (IsFirstPiece(outputs->GetInformationObject(1)))
+    if (tyndall::IsFirstPiece(outputs->GetInformationObject(1)))
     {
       this->NodeCount = tyndall::FillWithNodes(tyndall::GridOf(image), octree, vtkHyperTreeGrid::GetData(outputs, 1));
     }
