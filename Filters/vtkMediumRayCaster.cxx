@@ -160,21 +160,28 @@ void vtkMediumRayCaster::SetInputConnection(int port, vtkAlgorithmOutput* input)
   this->Superclass::SetInputConnection(port, input);
 }
 
-/// A scene that will not be right any more is given back before the filters before run again, which may need its memory.
-int vtkMediumRayCaster::RequestUpdateExtent(
-  vtkInformation* request, vtkInformationVector** inputs, vtkInformationVector* outputs)
+/// Where the filters before will run again, or have. Their data do not tell: ParaView's filters between filters make them anew,
+/// with the same arrays, whenever they are looked at; and values may be changed without telling their array.
+void vtkMediumRayCaster::ForgetOldScene()
 {
   for (int port = 0; port < this->GetNumberOfInputPorts(); ++port)
   {
     for (int i = 0; this->Kept && i < this->GetNumberOfInputConnections(port); ++i)
     {
       auto* const before = vtkDemandDrivenPipeline::SafeDownCast(this->GetInputExecutive(port, i));
-      if (before && before->GetPipelineMTime() > this->Kept->made.GetMTime())
+      if (!before || before->GetPipelineMTime() > this->Kept->made.GetMTime())
       {
         this->Kept.reset();
       }
     }
   }
+}
+
+/// The memory of an old scene is given back before the filters before run, which may need it.
+int vtkMediumRayCaster::RequestUpdateExtent(
+  vtkInformation* request, vtkInformationVector** inputs, vtkInformationVector* outputs)
+{
+  this->ForgetOldScene();
   return this->Superclass::RequestUpdateExtent(request, inputs, outputs);
 }
 
@@ -198,15 +205,15 @@ vtkMediumRayCaster::SceneKey vtkMediumRayCaster::KeyOf(vtkInformationVector** in
   }
   for (int port : { LIGHTS, ENVIRONMENT })
   {
-    if (vtkDataObject* const data = vtkDataObject::GetData(inputs[port]))
-    {
-      const std::vector<vtkMTimeType> times = tyndall::TimesOfArrays(data);
-      key.times.insert(key.times.end(), times.begin(), times.end());
-      key.times.push_back(data->GetMTime()); // the environment's size; and that something is there
-    }
-    key.times.push_back(0); // where one ends and the other begins
+    const std::vector<vtkMTimeType> times = tyndall::TimesOfArrays(vtkDataObject::GetData(inputs[port]));
+    key.times.push_back(times.size());
+    key.times.insert(key.times.end(), times.begin(), times.end());
   }
-  key.times.push_back(image->GetMTime()); // values may have been changed without telling their array
+  if (vtkImageData* const environment = vtkImageData::GetData(inputs[ENVIRONMENT]))
+  {
+    const int* size = environment->GetDimensions();
+    key.numbers.insert(key.numbers.end(), size, size + 3);
+  }
   return key;
 }
 
@@ -242,6 +249,7 @@ std::unique_ptr<vtkMediumRayCaster::Scene> vtkMediumRayCaster::MakeScene(
 
 std::unique_ptr<vtkMediumRayCaster::Scene> vtkMediumRayCaster::FindScene(vtkInformationVector** inputs)
 {
+  this->ForgetOldScene();
   std::unique_ptr<Scene> kept = std::move(this->Kept); // it comes back after a good picture
   const SceneKey key = this->KeyOf(inputs);
   const tyndall::ViewSettings settings = SettingsOf(this);

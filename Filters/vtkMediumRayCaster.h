@@ -270,6 +270,7 @@ private:
 
   struct SceneKey;
   struct Scene;
+  void ForgetOldScene();
   SceneKey KeyOf(vtkInformationVector** inputs);
   std::unique_ptr<Scene> MakeScene(vtkInformationVector** inputs, const SceneKey& key, tyndall::ViewSettings settings);
   std::unique_ptr<Scene> FindScene(vtkInformationVector** inputs);
