@@ -1,6 +1,10 @@
 #include "MediumRayCaster.h"
 
+#include "../Photons/IndexRange.h"
+#include "Bricks.h"
 #include "TyndallKernelSources.h"
+#include "ViewChecks.h"
+#include "ViewLights.h"
 
 #include <algorithm>
 #include <chrono>
@@ -11,16 +15,28 @@
 
 namespace tyndall
 {
-/// Field by field the same as MediumRayCaster.cl's.
+/// Field by field the same as View.cl's.
 struct MediumRayCaster::View
 {
   cl_float4 Eye, Forward, Right, Up, InverseSpacing, Background, Marching;
   cl_int4 Picture, Size, Bricks, Environment;
 };
 
+/// Field by field the same as BentRays.cl's.
+struct MediumRayCaster::Optics
+{
+  cl_float4 Spacing, Surface, Table;
+  cl_int4 Face;
+  cl_float4 Flip;
+  cl_int4 Limits;
+};
+
 namespace
 {
-constexpr int Brick = 8; ///< as in Sampling.cl
+constexpr int RoundsAtMost = 16;            ///< of a ray through the volume, in sums of its edges
+constexpr double BentStretch = 4.0;         ///< voxels, before it is asked whether rays still bend
+constexpr double BesideSurface = 5.0;       ///< voxels from a surface, beyond its smoothing (9 voxels wide) by default
+constexpr double SurfacePrecision = 1.0e-3; ///< voxels
 constexpr double Pi = 3.14159265358979323846;
 
 using Clock = std::chrono::steady_clock;
@@ -45,84 +61,23 @@ cl_int4 Int4(int x, int y, int z)
   return { { x, y, z, 0 } };
 }
 
+std::string Define(const char* name, int value)
+{
+  return std::string(" -D") + name + "=" + std::to_string(value);
+}
+
 std::size_t RoundUp(std::size_t count, std::size_t multiple)
 {
   return (count + multiple - 1) / multiple * multiple;
 }
 
-/// Columns and rows of pixels in a packet, as in MediumRayCaster.cl.
+/// Columns and rows of pixels in a packet, as in View.cl.
 std::array<int, 2> PacketPixels(int width)
 {
   return width == 16 ? std::array<int, 2>{ 4, 4 }
     : width == 8     ? std::array<int, 2>{ 4, 2 }
     : width == 4     ? std::array<int, 2>{ 2, 2 }
                      : std::array<int, 2>{ 1, 1 };
-}
-
-void CheckLightField(const Field& field, const char* name, std::size_t voxels)
-{
-  if (!field.values)
-  {
-    return;
-  }
-  if (field.components != 1 && field.components != 3)
-  {
-    throw InvalidInput(std::string(name) + " has " + std::to_string(field.components) +
-      " components a voxel; give it 1 (grey) or 3 (red, green, blue).");
-  }
-  for (std::size_t i = 0; i < voxels * field.components; ++i)
-  {
-    if (!std::isfinite(field.values[i]))
-    {
-      throw InvalidInput(std::string(name) + " is not finite in voxel number " + std::to_string(i / field.components) +
-        " (the first such voxel).");
-    }
-  }
-}
-
-void CheckSettings(const ViewSettings& settings)
-{
-  if (settings.imageSize[0] < 1 || settings.imageSize[1] < 1)
-  {
-    throw InvalidInput("The image is " + std::to_string(settings.imageSize[0]) + " by " +
-      std::to_string(settings.imageSize[1]) + " pixels; it needs at least one each way.");
-  }
-  if (!(settings.stepSize > 0.0) || !std::isfinite(settings.stepSize))
-  {
-    throw InvalidInput(
-      "The step size is " + std::to_string(settings.stepSize) + " voxels; it must be a positive number.");
-  }
-  const std::array<int, 5> widths = { 0, 1, 4, 8, 16 };
-  if (std::find(widths.begin(), widths.end(), settings.packetWidth) == widths.end())
-  {
-    throw InvalidInput(
-      "Packets of " + std::to_string(settings.packetWidth) + " rays do not exist; use 0, 1, 4, 8 or 16.");
-  }
-  if (!(settings.minimumTransmittance >= 0.0 && settings.minimumTransmittance < 1.0))
-  {
-    throw InvalidInput("The transmittance at which rays stop is " + std::to_string(settings.minimumTransmittance) +
-      "; it must be at least 0 and below 1.");
-  }
-  if (settings.shadowRays && settings.rectangleSamples < 1)
-  {
-    throw InvalidInput("A rectangular light needs at least one sample per edge.");
-  }
-}
-
-void CheckWhatIsNeeded(const ViewSettings& settings, const SolvedLight& light)
-{
-  const bool separates = settings.shadowRays != settings.singleScatteringOnly; // direct light from the rest
-  if (separates && light.fluence.values && !light.fluenceDirect.values)
-  {
-    throw InvalidInput(
-      "fluence_direct is missing: without it, light that scattered once cannot be told from the rest of "
-      "fluence. Let the solver write it, or use neither or both of shadow rays and single scattering only.");
-  }
-}
-
-bool IsZero(const Rgb& colour)
-{
-  return colour[0] == 0.0 && colour[1] == 0.0 && colour[2] == 0.0;
 }
 
 /// A bound of sigma_t over voxels and channels, 1/length.
@@ -135,107 +90,6 @@ double LargestExtinction(const Medium& medium)
     sum += count > 0 ? *std::max_element(field.values, field.values + count) : 0.0f;
   }
   return sum;
-}
-
-/// Points and parallel beams that stand for the lights, as ScatteredLight.cl's small_light: three float4 each, world
-/// coordinates from the box's lower corner.
-std::vector<cl_float4> SmallLights(const std::vector<Light>& lights, const Grid& grid, int rectangleSamples)
-{
-  std::vector<cl_float4> small;
-  const auto add = [&](const glm::dvec3& place, bool point, const glm::dvec3& axis, double cone, const Rgb& power,
-                     double scale, bool cosine) {
-    small.push_back(Float4(place, point ? 1.0 : 0.0));
-    small.push_back(Float4(axis, cone));
-    small.push_back(Float4(scale * Vector(power), cosine ? 1.0 : 0.0));
-  };
-  for (const Light& light : lights)
-  {
-    const double length = glm::length(Vector(light.direction));
-    const glm::dvec3 axis = length > 0.0 ? Vector(light.direction) / length : glm::dvec3(0.0, 0.0, -1.0);
-    const glm::dvec3 place = Vector(light.position) - Vector(grid.origin);
-    if (IsZero(light.power))
-    {
-      continue;
-    }
-    if (light.type == LightType::Directional)
-    {
-      add({ 0.0, 0.0, 0.0 }, false, axis, -2.0, light.power, 1.0, false);
-    }
-    else if (light.type == LightType::Point)
-    {
-      add(place, true, axis, -2.0, light.power, 1.0 / (4.0 * Pi), false);
-    }
-    else if (light.type == LightType::Spot)
-    {
-      const double cone = std::cos(light.angle * Pi / 360.0);
-      add(place, true, axis, cone, light.power, 1.0 / (2.0 * Pi * (1.0 - cone)), false);
-    }
-    else
-    {
-      // Lambertian: radiant intensity along the axis is power / pi.
-      const auto edges = RectangleEdges(light);
-      const int n = rectangleSamples;
-      for (int sample = 0; sample < n * n; ++sample)
-      {
-        const glm::dvec3 offset =
-          ((sample % n + 0.5) / n - 0.5) * Vector(edges[0]) + ((sample / n + 0.5) / n - 0.5) * Vector(edges[1]);
-        add(place + offset, true, axis, -2.0, light.power, 1.0 / (Pi * n * n), true);
-      }
-    }
-  }
-  return small;
-}
-
-/// Pixels of the environment with a column more on both sides, so that it closes.
-std::vector<cl_float4> ClosedEnvironment(const Environment& environment)
-{
-  const int width = environment.width;
-  std::vector<cl_float4> pixels(static_cast<std::size_t>(width + 2) * environment.height);
-  for (int j = 0; j < environment.height; ++j)
-  {
-    for (int i = 0; i < width + 2; ++i)
-    {
-      const std::size_t from = 3 * (static_cast<std::size_t>(j) * width + (i + width - 1) % width);
-      pixels[static_cast<std::size_t>(j) * (width + 2) + i] = { { environment.radiance[from],
-        environment.radiance[from + 1], environment.radiance[from + 2], 0.0f } };
-    }
-  }
-  return pixels;
-}
-
-/// Turns 1 (empty) and -1 (filled) into plus or minus the number of king's moves to the nearest brick of the other sign, at
-/// most 127; two sweeps find it exactly.
-void FindDistances(std::vector<cl_char>& bricks, const std::array<int, 3>& count)
-{
-  std::vector<int> moves(bricks.size(), 127);
-  const auto relax = [&](int i, int j, int k, int side) {
-    const std::size_t here = (static_cast<std::size_t>(k) * count[1] + j) * count[0] + i;
-    for (int neighbour = 0; neighbour < 13; ++neighbour)
-    {
-      const int x = i + side * (neighbour % 3 - 1);
-      const int y = j + side * (neighbour / 3 % 3 - 1);
-      const int z = k + side * (neighbour / 9 - 1);
-      if (x >= 0 && y >= 0 && z >= 0 && x < count[0] && y < count[1] && z < count[2])
-      {
-        const std::size_t there = (static_cast<std::size_t>(z) * count[1] + y) * count[0] + x;
-        const bool other = bricks[there] != bricks[here];
-        moves[here] = std::min(moves[here], other ? 1 : moves[there] + 1);
-      }
-    }
-  };
-  const int last = count[0] * count[1] * count[2] - 1;
-  for (int n = 0; n <= last; ++n)
-  {
-    relax(n % count[0], n / count[0] % count[1], n / (count[0] * count[1]), 1);
-  }
-  for (int n = last; n >= 0; --n)
-  {
-    relax(n % count[0], n / count[0] % count[1], n / (count[0] * count[1]), -1);
-  }
-  for (std::size_t brick = 0; brick < bricks.size(); ++brick)
-  {
-    bricks[brick] = static_cast<cl_char>(bricks[brick] * moves[brick]);
-  }
 }
 
 std::size_t PaddedCount(const Grid& grid)
@@ -265,7 +119,7 @@ void InBatches(Device& device, int rows, const Monitor& monitor, double from, do
 }
 
 MediumRayCaster::MediumRayCaster(Device& device, const Medium& medium, const SolvedLight& light,
-  const Illumination& illumination, const ViewSettings& settings, const Field& /*ior*/)
+  const Illumination& illumination, const ViewSettings& settings, const Field& ior)
   : TheDevice(device)
   , TheGrid(medium.grid)
   , Settings(settings)
@@ -273,12 +127,13 @@ MediumRayCaster::MediumRayCaster(Device& device, const Medium& medium, const Sol
 {
   Check(medium);
   Check(illumination);
-  CheckLightField(light.fluence, "fluence", medium.grid.VoxelCount());
-  CheckLightField(light.fluenceDirect, "fluence_direct", medium.grid.VoxelCount());
-  CheckSettings(settings);
-  CheckWhatIsNeeded(settings, light);
+  Check(settings);
+  Check(light, medium.grid, settings);
+  CheckViewedIndex(ior, medium.grid);
 
   // Traits of the scene.
+  this->Bends = IndexVaries(ior, medium.grid);
+  this->KnowsFlow = medium.g != 0.0 && light.meanDirection.values && light.fluence.values && !settings.shadowRays;
   this->Coloured = medium.sigma_a.components == 3 || medium.sigma_s.components == 3;
   const std::vector<cl_float4> lights = settings.shadowRays
     ? SmallLights(illumination.lights, medium.grid, settings.rectangleSamples)
@@ -289,19 +144,8 @@ MediumRayCaster::MediumRayCaster(Device& device, const Medium& medium, const Sol
   this->UnderSky = !illumination.environment.Empty() || !IsZero(illumination.sky);
   this->Background = this->UnderSky ? illumination.sky : settings.backgroundColor;
 
-  this->Upload(medium, light);
-  for (int axis = 0; axis < 3; ++axis)
-  {
-    this->BrickCount[axis] = (medium.grid.size[axis] + Brick - 1) / Brick;
-  }
-  this->Samples = Buffer<cl_float4>(device, PaddedCount(medium.grid), "the ray caster's samples");
-  this->Extinctions =
-    Buffer<cl_float4>(device, this->Coloured ? PaddedCount(medium.grid) : 0, "the ray caster's coloured extinction");
-  this->Bricks =
-    Buffer<cl_char>(device, static_cast<std::size_t>(this->BrickCount[0]) * this->BrickCount[1] * this->BrickCount[2],
-      "the ray caster's bricks");
-  this->Direct =
-    Buffer<float>(device, this->LightCount > 0 ? 6 * medium.grid.VoxelCount() : 0, "light found by shadow rays");
+  this->Upload(medium, light, ior);
+  this->Reserve();
   this->Lights = Buffer<cl_float4>(device, lights, "the lights");
   if (!illumination.environment.Empty() && settings.showBackground)
   {
@@ -310,8 +154,66 @@ MediumRayCaster::MediumRayCaster(Device& device, const Medium& medium, const Sol
   this->EnvironmentPixels = Buffer<cl_float4>(device,
     this->EnvironmentSize[0] > 0 ? ClosedEnvironment(illumination.environment) : std::vector<cl_float4>(),
     "the environment");
+  if (this->Bends)
+  {
+    this->PrepareBending(ior);
+  }
+  if (settings.tableFace >= 0)
+  {
+    const bool single = settings.singleScatteringOnly && light.fluenceDirect.values;
+    this->Table = Buffer<cl_float4>(device,
+      TableLight(medium.grid, single ? light.fluenceDirect : light.fluence, light.meanDirection,
+        this->Bends ? ior : Field{}, settings.tableFace),
+      "light on the table");
+  }
+  this->SayWhatIsLeftOut();
+}
 
-  // What is not needed.
+/// What rays meet, a border of one voxel around.
+void MediumRayCaster::Reserve()
+{
+  Device& device = this->TheDevice;
+  for (int axis = 0; axis < 3; ++axis)
+  {
+    this->BrickCount[axis] = (this->TheGrid.size[axis] + BrickEdge - 1) / BrickEdge;
+  }
+  const std::size_t count = PaddedCount(this->TheGrid);
+  this->Samples = Buffer<cl_float4>(device, count, "the ray caster's samples");
+  this->Extinctions = Buffer<cl_float4>(device, this->Coloured ? count : 0, "the ray caster's coloured extinction");
+  this->Flow = Buffer<cl_float4>(device, this->KnowsFlow ? count : 0, "the ray caster's directions of light");
+  this->Glow = Buffer<cl_float4>(device, this->GlowsApart() ? count : 0, "the ray caster's emission");
+  this->Bending = Buffer<cl_float4>(device, this->Bends ? count : 0, "the ray caster's refraction");
+  this->Bricks =
+    Buffer<cl_char>(device, static_cast<std::size_t>(this->BrickCount[0]) * this->BrickCount[1] * this->BrickCount[2],
+      "the ray caster's bricks");
+  this->Direct =
+    Buffer<float>(device, this->LightCount > 0 ? 6 * this->TheGrid.VoxelCount() : 0, "light found by shadow rays");
+}
+
+void MediumRayCaster::PrepareBending(const Field& ior)
+{
+  struct
+  {
+    cl_int size[3];
+  } const grid = { { this->TheGrid.size[0], this->TheGrid.size[1], this->TheGrid.size[2] } };
+  const std::size_t x = grid.size[0], y = grid.size[1], z = grid.size[2];
+  const auto range = std::minmax_element(ior.values, ior.values + this->TheGrid.VoxelCount());
+  this->MiddleIndex = 0.5 * (*range.first + *range.second);
+
+  const Buffer<float> coefficients(this->TheDevice, (x + 4) * (y + 4) * (z + 4), "squared index");
+  cl::Kernel prepare = this->TheDevice.Kernel("squared_index_coefficients", { kernel_source::SquaredIndex });
+  With(prepare, grid, this->Ior, coefficients);
+  this->TheDevice.Queue().enqueueNDRangeKernel(prepare, cl::NullRange, cl::NDRange(x + 4, y + 4, z + 4));
+  cl::Kernel pack =
+    this->TheDevice.Kernel("pack_bending", { kernel_source::SquaredIndex, kernel_source::BendingField });
+  With(pack, grid, Float4(1.0 / Vector(this->TheGrid.spacing), 0.0), coefficients, this->Bending);
+  this->TheDevice.Queue().enqueueNDRangeKernel(pack, cl::NullRange, cl::NDRange(x + 2, y + 2, z + 2));
+  this->TheDevice.Finish();
+}
+
+void MediumRayCaster::SayWhatIsLeftOut()
+{
+  this->Omitted.clear();
   const auto omit = [this](bool needed, const char* what) {
     if (!needed)
     {
@@ -322,21 +224,28 @@ MediumRayCaster::MediumRayCaster(Device& device, const Medium& medium, const Sol
   omit(this->Components[2] > 0, "emission: the medium does not shine");
   omit(this->LightCount > 0, "shadow rays: not asked for, or no light");
   omit(this->EnvironmentSize[0] > 0, "environment: none, or not shown");
+  omit(this->KnowsFlow || this->LightCount > 0,
+    "phase function: g is 0, or the direction of the light is not known");
+  omit(this->Bends, "bent rays: the refractive index is constant");
+  omit(this->Reflects(),
+    this->Bends ? "surface reflection: not asked for" : "surface reflection: the refractive index is constant");
+  omit(this->Settings.tableFace >= 0, "table: none");
 }
 
 bool MediumRayCaster::Adopt(const ViewSettings& settings)
 {
-  CheckSettings(settings);
+  Check(settings);
   const ViewSettings& now = this->Settings;
   if (settings.singleScatteringOnly != now.singleScatteringOnly || settings.shadowRays != now.shadowRays ||
     settings.rectangleSamples != now.rectangleSamples || settings.showBackground != now.showBackground ||
-    settings.packetWidth != now.packetWidth)
+    settings.packetWidth != now.packetWidth || settings.tableFace != now.tableFace)
   {
     return false;
   }
   this->SourcesReady &= this->LightCount == 0 || settings.stepSize == now.stepSize; // shadow rays step as well
   this->Background = this->UnderSky ? this->Background : settings.backgroundColor;
   this->Settings = settings;
+  this->SayWhatIsLeftOut();
   return true;
 }
 
@@ -351,7 +260,7 @@ int MediumRayCaster::PacketWidth() const
                                             : 16;
 }
 
-void MediumRayCaster::Upload(const Medium& medium, const SolvedLight& light)
+void MediumRayCaster::Upload(const Medium& medium, const SolvedLight& light, const Field& ior)
 {
   const std::array<Field, 5> fields = { medium.sigma_a, medium.sigma_s, medium.emission, light.fluence,
     light.fluenceDirect };
@@ -360,12 +269,15 @@ void MediumRayCaster::Upload(const Medium& medium, const SolvedLight& light)
   const bool single = this->Settings.singleScatteringOnly;
   const std::array<bool, 5> used = { true, true, true, !single, shadows != single };
   const std::array<const char*, 5> names = { "sigma_a", "sigma_s", "emission", "fluence", "fluence_direct" };
+  const std::size_t voxels = medium.grid.VoxelCount();
   for (std::size_t i = 0; i < fields.size(); ++i)
   {
     this->Components[i] = used[i] && fields[i].values ? fields[i].components : 0;
-    const std::size_t count = medium.grid.VoxelCount() * this->Components[i];
-    this->Arrays[i] = Buffer<float>(this->TheDevice, fields[i].values, count, names[i]);
+    this->Arrays[i] = Buffer<float>(this->TheDevice, fields[i].values, voxels * this->Components[i], names[i]);
   }
+  this->MeanDirection =
+    Buffer<float>(this->TheDevice, light.meanDirection.values, this->KnowsFlow ? 3 * voxels : 0, "mean_direction");
+  this->Ior = Buffer<float>(this->TheDevice, ior.values, this->Bends ? voxels : 0, "ior");
 }
 
 std::string MediumRayCaster::PackingOptions() const
@@ -377,26 +289,30 @@ std::string MediumRayCaster::PackingOptions() const
   {
     options += std::string(" -D") + names[i] + "=" + std::to_string(this->Components[i]);
   }
-  return options;
+  return options + Define("FLOW", this->KnowsFlow) + Define("GLOW", this->GlowsApart());
 }
 
-void MediumRayCaster::Pack(bool withShadowRays)
+/// @param forShadowRays  what these need; else what the camera's rays do
+void MediumRayCaster::Pack(bool forShadowRays)
 {
+  const bool bends = this->Bends && !forShadowRays; // shadow rays go straight on
   const std::initializer_list<std::string_view> sources = { kernel_source::Numerics, kernel_source::Sampling,
     kernel_source::ScatteredLight };
-  const std::string options = this->PackingOptions() + " -DSHADOW_RAYS=" + (withShadowRays ? "1" : "0");
+  const std::string options = this->PackingOptions() +
+    Define("SHADOW_RAYS", this->LightCount > 0 && !forShadowRays) + Define("BENDS", bends);
   const cl_int4 size = Int4(this->TheGrid.size[0], this->TheGrid.size[1], this->TheGrid.size[2]);
   const cl_int4 bricks = Int4(this->BrickCount[0], this->BrickCount[1], this->BrickCount[2]);
   const cl_int single = this->Settings.singleScatteringOnly ? 1 : 0;
 
   cl::Kernel pack = this->TheDevice.Kernel("pack_samples", sources, options);
-  With(pack, size, single, this->Arrays[0], this->Arrays[1], this->Arrays[2], this->Arrays[3], this->Arrays[4],
-    this->Direct, this->Samples, this->Extinctions);
+  With(pack, size, single, static_cast<float>(this->G), this->Arrays[0], this->Arrays[1], this->Arrays[2],
+    this->Arrays[3], this->Arrays[4], this->Direct, this->MeanDirection, this->Ior, this->Samples, this->Extinctions,
+    this->Flow, this->Glow);
   this->TheDevice.Queue().enqueueNDRangeKernel(
     pack, cl::NullRange, cl::NDRange(RoundUp(size.s[0] + 2, 64), size.s[1] + 2, size.s[2] + 2), cl::NDRange(64, 1, 1));
 
   cl::Kernel find = this->TheDevice.Kernel("find_empty_bricks", sources, options);
-  With(find, size, bricks, this->Samples, this->Extinctions, this->Bricks);
+  With(find, size, bricks, this->Samples, this->Extinctions, this->Glow, this->Bending, this->Bricks);
   this->TheDevice.Queue().enqueueNDRangeKernel(
     find, cl::NullRange, cl::NDRange(RoundUp(bricks.s[0], 4), bricks.s[1], bricks.s[2]), cl::NDRange(4, 1, 1));
   std::vector<cl_char> distances = this->Bricks.Read();
@@ -412,7 +328,7 @@ void MediumRayCaster::SeeLights(const Camera& camera, const Monitor& monitor)
   const double radius = std::cbrt(3.0 * this->TheGrid.VoxelVolume() / (4.0 * Pi));
   cl::Kernel see = this->TheDevice.Kernel("see_lights",
     { kernel_source::Numerics, kernel_source::Sampling, kernel_source::ScatteredLight },
-    this->PackingOptions() + " -DSHADOW_RAYS=1");
+    this->PackingOptions() + Define("SHADOW_RAYS", true) + Define("BENDS", false));
   const std::size_t across = RoundUp(this->TheGrid.size[0], 4 * this->PacketWidth()) / this->PacketWidth();
   InBatches(this->TheDevice, this->TheGrid.size[2], monitor, 0.0, 0.5, [&](int first, int count) {
     With(see, size, bricks, Float4(Vector(this->TheGrid.spacing), 0.0),
@@ -460,41 +376,91 @@ void MediumRayCaster::PrepareSources(const Camera& camera, const Monitor& monito
 {
   if (this->LightCount > 0)
   {
-    this->Pack(false); // shadow rays need the extinction and its bricks
+    this->Pack(true);
     this->SeeLights(camera, monitor);
   }
-  this->Pack(this->LightCount > 0);
+  this->Pack(false);
   this->SourcesReady = true;
   if (this->LightCount == 0)
   {
     this->Arrays = {};
+    this->MeanDirection = {};
+    this->Ior = {};
   }
+}
+
+MediumRayCaster::Optics MediumRayCaster::MakeOptics() const
+{
+  const ViewSettings& settings = this->Settings;
+  const Grid& grid = this->TheGrid;
+  const double index = settings.surfaceIndex > 0.0 ? settings.surfaceIndex : this->MiddleIndex;
+  const int face = std::max(settings.tableFace, 0);
+  const double edges = 1.0 * grid.size[0] + grid.size[1] + grid.size[2];
+  const double halvings = std::log2(settings.stepSize / SurfacePrecision);
+  Optics optics;
+  optics.Spacing = Float4(Vector(grid.spacing), 0.0);
+  optics.Surface = Float4({ index * index, settings.surfaceReflectance, BesideSurface }, 0.0);
+  optics.Table = Float4(Vector(settings.tableColor), settings.tableReflectance);
+  optics.Face = Int4(face / 2, face % 2, FaceSize(grid, face)[0]);
+  optics.Flip = { { face / 2 == 0 ? -1.0f : 1.0f, face / 2 == 1 ? -1.0f : 1.0f, face / 2 == 2 ? -1.0f : 1.0f, 0.0f } };
+  optics.Limits = Int4(static_cast<int>(std::min(1e9, std::ceil(RoundsAtMost * edges / settings.stepSize))),
+    static_cast<int>(std::clamp(BentStretch / settings.stepSize, 1.0, 1e3)),
+    static_cast<int>(std::ceil(std::max(halvings, 1.0))));
+  return optics;
 }
 
 std::string MediumRayCaster::CastingOptions() const
 {
-  // Longest optical length of a step; the kernel has a shorter way to cross it up to 2.
+  // Longest optical length of a step; the kernel has a shorter way to cross it up to 2. Bent steps can be a little longer.
   const double longest = this->LargestExtinction * this->Settings.stepSize *
     *std::max_element(this->TheGrid.spacing.begin(), this->TheGrid.spacing.end());
-  const auto define = [](const char* name, bool value) { return std::string(" -D") + name + (value ? "=1" : "=0"); };
-  return "-DREAL_WIDTH=" + std::to_string(this->PacketWidth()) + define("COLOURED", this->Coloured) +
-    define("SKIP_BRICKS", this->Settings.skipEmptyBricks) + define("ENVIRONMENT", this->EnvironmentSize[0] > 0) +
-    define("THIN_STEPS", longest <= 2.0);
+  const int phase = this->KnowsFlow ? 1 + static_cast<int>(this->Settings.phaseFunction) : 0;
+  return "-DREAL_WIDTH=" + std::to_string(this->PacketWidth()) + Define("COLOURED", this->Coloured) +
+    Define("SKIP_BRICKS", this->Settings.skipEmptyBricks) + Define("ENVIRONMENT", this->EnvironmentSize[0] > 0) +
+    Define("THIN_STEPS", longest <= (this->Bends ? 1.5 : 2.0)) + Define("PHASE", phase) +
+    Define("GLOW", this->GlowsApart());
+}
+
+/// Rays that cannot but go straight on have a kernel of their own.
+cl::Kernel MediumRayCaster::CastingKernel()
+{
+  if (!this->Bends && this->Settings.tableFace < 0)
+  {
+    return this->TheDevice.Kernel("cast_rays",
+      { kernel_source::Numerics, kernel_source::Sampling, kernel_source::View, kernel_source::Background,
+        kernel_source::Crossing, kernel_source::MediumRayCaster },
+      this->CastingOptions());
+  }
+  const int surface = this->Reflects() ? static_cast<int>(this->Settings.surfaceReflection) : 0;
+  return this->TheDevice.Kernel("cast_bent_rays",
+    { kernel_source::Numerics, kernel_source::Sampling, kernel_source::View, kernel_source::Background,
+      kernel_source::Crossing, kernel_source::BentRays },
+    this->CastingOptions() + Define("BENDS", this->Bends) + Define("SURFACE", surface) +
+      Define("TABLE", this->Settings.tableFace >= 0));
 }
 
 void MediumRayCaster::CastRays(View& view, double from, const Monitor& monitor)
 {
   const std::array<int, 2> packet = PacketPixels(this->PacketWidth());
-  cl::Kernel cast = this->TheDevice.Kernel("cast_rays",
-    { kernel_source::Numerics, kernel_source::Sampling, kernel_source::MediumRayCaster }, this->CastingOptions());
+  const bool straight = !this->Bends && this->Settings.tableFace < 0;
+  const Optics optics = this->MakeOptics();
+  cl::Kernel cast = this->CastingKernel();
   // Batches of whole work-groups: else the last rows of one would be cast again by the next.
   const int group = 8;
   const std::size_t across = RoundUp(view.Picture.s[0], group * packet[0]) / packet[0];
   const int rows = static_cast<int>(RoundUp(view.Picture.s[1], group * packet[1]) / (group * packet[1]));
   InBatches(this->TheDevice, rows, monitor, from, 1.0, [&](int first, int count) {
     view.Picture.s[2] = first * group;
-    With(cast, view, this->Samples, this->Extinctions, this->Bricks, this->EnvironmentPixels, this->Radiance,
-      this->Alpha, this->Depth);
+    if (straight)
+    {
+      With(cast, view, this->Samples, this->Extinctions, this->Flow, this->Glow, this->Bricks, this->EnvironmentPixels,
+        this->Radiance, this->Alpha, this->Depth);
+    }
+    else
+    {
+      With(cast, view, optics, this->Samples, this->Extinctions, this->Flow, this->Glow, this->Bending, this->Table,
+        this->Bricks, this->EnvironmentPixels, this->Radiance, this->Alpha, this->Depth);
+    }
     this->TheDevice.Queue().enqueueNDRangeKernel(
       cast, cl::NullRange, cl::NDRange(across, static_cast<std::size_t>(count) * group), cl::NDRange(group, group));
   });

@@ -121,22 +121,33 @@ public:
 
 private:
   struct View;
+  struct Optics;
 
   std::string PackingOptions() const;
   std::string CastingOptions() const;
   int PacketWidth() const;
-  void Upload(const Medium& medium, const SolvedLight& light);
-  void Pack(bool withShadowRays);
+  bool GlowsApart() const { return this->KnowsFlow && this->Components[2] > 0; } ///< emission is not scattered
+  bool Reflects() const { return this->Bends && this->Settings.surfaceReflection != SurfaceReflection::None; }
+  void Upload(const Medium& medium, const SolvedLight& light, const Field& ior);
+  void Reserve();
+  void PrepareBending(const Field& ior);
+  void SayWhatIsLeftOut();
+  void Pack(bool forShadowRays);
   void SeeLights(const Camera& camera, const Monitor& monitor);
   void PrepareSources(const Camera& camera, const Monitor& monitor);
   void CastRays(View& view, double from, const Monitor& monitor);
+  cl::Kernel CastingKernel();
   View MakeView(const Camera& camera) const;
+  Optics MakeOptics() const;
 
   Device& TheDevice;
   Grid TheGrid;
   ViewSettings Settings;
   double G = 0.0;
   bool Coloured = false; ///< extinction differs between channels
+  bool Bends = false;     ///< the refractive index varies
+  bool KnowsFlow = false; ///< the light's direction is known and scattering depends on it
+  double MiddleIndex = 1.0; ///< midway between the least and the largest
   bool SourcesDependOnCamera = false;
   bool SourcesReady = false;
   double LargestExtinction = 0.0; ///< at least the largest sigma_t, 1/length
@@ -147,9 +158,14 @@ private:
   int LightCount = 0;
   std::array<int, 5> Components = {};  ///< of absorption, scattering, emission, fluence, fluenceDirect
   std::array<Buffer<float>, 5> Arrays; ///< given back once packed, where nothing will ask for them again
+  Buffer<float> MeanDirection, Ior;    ///< as Arrays
   Buffer<float> Direct;                ///< 6 a voxel: what the lights scatter towards the eye, and their irradiance
   Buffer<cl_float4> Samples;           ///< source and grey extinction, with a border
   Buffer<cl_float4> Extinctions;
+  Buffer<cl_float4> Flow;    ///< mean direction times g
+  Buffer<cl_float4> Glow;    ///< emission, where Flow is there
+  Buffer<cl_float4> Bending; ///< gradient of n^2, and n^2
+  Buffer<cl_float4> Table;   ///< light on the table
   Buffer<cl_char> Bricks;
   Buffer<cl_float4> EnvironmentPixels;
   Buffer<cl_float4> Lights;             ///< three a small_light

@@ -288,14 +288,20 @@ __attribute__((always_inline)) inline void gather(global const float4* samples, 
 #undef WEIGHT
 }
 
-// Edge of a brick in voxels. Each brick has a number: how many bricks one has to go (as a chess king does) to one of the
-// other kind; positive for a brick that is empty, negative for one where anything extinguishes or shines.
+// Edge of a brick in voxels. Each brick has a number: how many bricks one has to go (as a chess king does) to one of another
+// kind; positive for a brick that is empty, negative for one where anything extinguishes or shines. It is 0 where rays bend.
 #define BRICK 8
 
-// How many steps, from the sample at p on, every ray of the packet can take before one of them leaves the bricks around
-// it that are known to be alike; *empty tells whether all those steps are through nothing. Rays that are done do not count.
-__attribute__((always_inline)) inline int stretch_ahead(
-  global const char* bricks, int4 brick_count, real3 p, real3 strides, integer done, int* empty)
+// What is ahead of a packet: how many steps, from the sample at p on, every ray can take before one of them leaves the bricks
+// around it that are known to be alike; whether all those steps are through nothing; whether a ray bends. Rays that are done do
+// not count.
+typedef struct
+{
+  int steps, empty, bends;
+} stretch;
+
+__attribute__((always_inline)) inline stretch stretch_ahead(
+  global const char* bricks, int4 brick_count, real3 p, real3 strides, integer done)
 {
   const integer bx = min(to_integer(p.x * (real)(1.0f / BRICK)), brick_count.x - 1);
   const integer by = min(to_integer(p.y * (real)(1.0f / BRICK)), brick_count.y - 1);
@@ -313,8 +319,11 @@ __attribute__((always_inline)) inline int stretch_ahead(
   ((to_real(strides.c > (real)0.0f ? (b + reach + 1) * BRICK : (b - reach) * BRICK) - p.c) * strides.c)
   const real steps = lesser(lesser(STEPS_LEFT(bx, x), STEPS_LEFT(by, y)), STEPS_LEFT(bz, z));
 #undef STEPS_LEFT
-  *empty = all_lanes(done | (distance > 0));
-  return 1 + (int)lesser(greater(least_lane(done ? (real)1e6f : steps), 0.0f), 1e6f);
+  stretch s;
+  s.empty = all_lanes(done | (distance > 0));
+  s.bends = any_lane((done == 0) & (distance == 0));
+  s.steps = 1 + (int)lesser(greater(least_lane(done ? (real)1e6f : steps), 0.0f), 1e6f);
+  return s;
 }
 
 // How many steps take a ray on by a voxel along each axis.

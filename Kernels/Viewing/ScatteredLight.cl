@@ -4,8 +4,12 @@
 // Needs Numerics.cl and Sampling.cl before it. Define besides
 //   ABSORPTION, SCATTERING, EMISSION, FLUENCE, UNSCATTERED   components of each array: 0 (there is none), 1 or 3
 //   SHADOW_RAYS  1: `direct` holds what the lights scatter towards the eye
+//   FLOW         1: the light's mean direction is packed
+//   GLOW         1: emission is packed apart
+//   BENDS        1: the refractive index varies
 
 #define PER_SPHERE 0.0795774715f // 1 / (4 pi)
+#define LARGEST_FLOW 0.9999f
 
 inline float channel_of(global const float* values, int voxel, int components, int channel)
 {
@@ -41,11 +45,16 @@ inline float in_scattered(global const float* fluence, global const float* unsca
 #endif
 }
 
-// single  1: only light that scatters once
-kernel void pack_samples(int4 size, int single, global const float* restrict absorption,
+// single   1: only light that scatters once
+// flow     with FLOW: the light's mean direction times g, at most LARGEST_FLOW long
+// glow     with GLOW: emission, which is then no part of `samples`
+// ior      with BENDS: sources are divided by n^2
+kernel void pack_samples(int4 size, int single, float g, global const float* restrict absorption,
   global const float* restrict scattering, global const float* restrict emission,
   global const float* restrict fluence, global const float* restrict unscattered,
-  global const float* restrict direct, global float4* restrict samples, global float4* restrict extinctions)
+  global const float* restrict direct, global const float* restrict direction, global const float* restrict ior,
+  global float4* restrict samples, global float4* restrict extinctions, global float4* restrict flow,
+  global float4* restrict glow)
 {
   if (get_global_id(0) >= size.x + 2)
   {
@@ -56,25 +65,43 @@ kernel void pack_samples(int4 size, int single, global const float* restrict abs
   float4 sigma_s = (float4)(0.0f);
   float4 sigma_t = (float4)(0.0f);
   float4 source = (float4)(0.0f);
+  float4 emitted = (float4)(0.0f);
 #define CHANNEL(c, n)                                                                                                    \
   sigma_s.c = channel_of(scattering, voxel, SCATTERING, n);                                                              \
   sigma_t.c = sigma_s.c + channel_of(absorption, voxel, ABSORPTION, n);                                                  \
-  source.c = sigma_s.c * in_scattered(fluence, unscattered, direct, voxel, n, single) +                                  \
-    channel_of(emission, voxel, EMISSION, n);
+  emitted.c = channel_of(emission, voxel, EMISSION, n);                                                                  \
+  source.c = sigma_s.c * in_scattered(fluence, unscattered, direct, voxel, n, single);
   CHANNEL(x, 0)
   CHANNEL(y, 1)
   CHANNEL(z, 2)
 #undef CHANNEL
+#if !GLOW
+  source += emitted;
+#endif
+#if BENDS
+  const float square = ior[voxel] * ior[voxel];
+  source /= square;
+  emitted /= square;
+#endif
   source.w = sigma_t.x;
   samples[place] = source;
 #if COLOURED
   extinctions[place] = sigma_t;
 #endif
+#if FLOW
+  const float3 mean = (float3)(direction[3 * voxel], direction[3 * voxel + 1], direction[3 * voxel + 2]);
+  flow[place] = (float4)(mean * (g * fmin(1.0f, LARGEST_FLOW / fmax(fabs(g) * length(mean), 1e-30f))), 0.0f);
+#endif
+#if GLOW
+  glow[place] = emitted;
+#endif
 }
 
-// -1 for a brick where anything extinguishes or shines, or does so close enough to be interpolated into it; else 1.
+// Whether anything extinguishes or shines in a brick, or bends with BENDS, or does so close enough to be interpolated into it:
+// 1 it is empty, -1 it is not, 0 rays bend.
 kernel void find_empty_bricks(int4 size, int4 brick_count, global const float4* restrict samples,
-  global const float4* restrict extinctions, global char* restrict bricks)
+  global const float4* restrict extinctions, global const float4* restrict glow, global const float4* restrict bending,
+  global char* restrict bricks)
 {
   const int i = get_global_id(0);
   const int j = get_global_id(1);
@@ -88,23 +115,29 @@ kernel void find_empty_bricks(int4 size, int4 brick_count, global const float4* 
   const int x0 = i * BRICK, x1 = min(x0 + BRICK + 1, size.x + 1);
   const int y0 = j * BRICK, y1 = min(y0 + BRICK + 1, size.y + 1);
   const int z0 = k * BRICK, z1 = min(z0 + BRICK + 1, size.z + 1);
-  int empty = 1;
-  for (int z = z0; z <= z1 && empty; ++z)
+  int filled = 0;
+  int bends = 0;
+  for (int z = z0; z <= z1 && (!filled || (BENDS && !bends)); ++z)
   {
-    for (int y = y0; y <= y1 && empty; ++y)
+    for (int y = y0; y <= y1 && (!filled || (BENDS && !bends)); ++y)
     {
       for (int x = x0; x <= x1; ++x)
       {
         const int place = z * slice + y * row + x;
-        int something = any(samples[place] != (float4)(0.0f));
+        filled |= any(samples[place] != (float4)(0.0f));
 #if COLOURED
-        something |= any(extinctions[place] != (float4)(0.0f));
+        filled |= any(extinctions[place] != (float4)(0.0f));
 #endif
-        empty = something ? 0 : empty;
+#if GLOW
+        filled |= any(glow[place] != (float4)(0.0f));
+#endif
+#if BENDS
+        bends |= any(bending[place].xyz != (float3)(0.0f));
+#endif
       }
     }
   }
-  bricks[(k * brick_count.y + j) * brick_count.x + i] = empty ? 1 : -1;
+  bricks[(k * brick_count.y + j) * brick_count.x + i] = bends ? 0 : filled ? -1 : 1;
 }
 
 // A light as the shadow rays see it: parallel light, or a point of one.
@@ -206,10 +239,10 @@ kernel void see_lights(int4 size, int4 brick_count, float4 spacing, float4 eye, 
       {
         break;
       }
-      int empty;
-      const real3 ahead = along(packet, fma(stride, (real)0.5f, so_far));
-      const int stop = min(m + stretch_ahead(bricks, brick_count, ahead, strides, done, &empty), steps);
-      for (m = empty ? stop : m; m < stop; ++m)
+      const stretch ahead =
+        stretch_ahead(bricks, brick_count, along(packet, fma(stride, (real)0.5f, so_far)), strides, done);
+      const int stop = min(m + ahead.steps, steps);
+      for (m = ahead.empty ? stop : m; m < stop; ++m)
       {
         const real start = stride * (real)(float)m;
         const real length = lesser(greater(packet.length - start, (real)0.0f), stride);

@@ -1,0 +1,72 @@
+// What is behind the medium: an environment, a colour, or nothing.
+//
+// Needs Numerics.cl, Sampling.cl and View.cl before it. Define besides
+//   ENVIRONMENT  1: the background is a picture; 0: one colour
+
+#if ENVIRONMENT
+// Angle of (x, y) from +x, in [-pi, pi], to 1e-7. PoCL's atan2 is scalar and costs ten times this.
+inline real angle_of(real y, real x)
+{
+  const real ax = fabs(x);
+  const real ay = fabs(y);
+  const real a = lesser(ax, ay) / greater(greater(ax, ay), (real)1e-30f);
+  const real s = a * a;
+  real p = fma((real)-0.00466877331f, s, (real)0.0241661895f);
+  p = fma(p, s, (real)-0.0593671008f);
+  p = fma(p, s, (real)0.099060969f);
+  p = fma(p, s, (real)-0.14016585f);
+  p = fma(p, s, (real)0.199692354f);
+  p = fma(p, s, (real)-0.333319597f);
+  p = fma(p, s, (real)0.999999898f) * a;
+  p = ay > ax ? (real)M_PI_2_F - p : p;
+  p = x < (real)0.0f ? (real)M_PI_F - p : p;
+  return copysign(p, y);
+}
+
+// Radiance seen along each (world) direction, as Lookup in Lights.h has it. The picture has a column more on both sides,
+// so that it closes around z.
+inline rgb look_up(global const float4* environment, real3 d, int4 size)
+{
+  const real polar = angle_of(sqrt(fma(d.x, d.x, d.y * d.y)), d.z);
+  real turn = angle_of(d.y, d.x) * (real)(0.5f * M_1_PI_F);
+  turn = turn < (real)0.0f ? turn + (real)1.0f : turn;
+  const real column = fma(turn, (real)(float)size.x, (real)-0.5f);
+  const real row = fma(polar, (real)(-M_1_PI_F * (float)size.y), (real)((float)size.y - 0.5f));
+  const real left = floor(column);
+  const real below = floor(row);
+  const real x = column - left;
+  const real y = row - below;
+  const integer i = to_integer(lesser(greater(left, (real)-1.0f), (real)(float)(size.x - 1))) + 1;
+  const real last = (real)(float)(size.y - 1);
+  const integer j0 = to_integer(lesser(greater(below, (real)0.0f), last)) * (size.x + 2) + i;
+  const integer j1 = to_integer(lesser(greater(below + (real)1.0f, (real)0.0f), last)) * (size.x + 2) + i;
+  rgb seen;
+#define SEE(n)                                                                                                           \
+  {                                                                                                                      \
+    global const float4* lower = environment + LANE(j0, n);                                                              \
+    global const float4* upper = environment + LANE(j1, n);                                                              \
+    const float4 a = fma((float4)LANE(x, n), lower[1] - lower[0], lower[0]);                                             \
+    const float4 b = fma((float4)LANE(x, n), upper[1] - upper[0], upper[0]);                                             \
+    const float4 c = fma((float4)LANE(y, n), b - a, a);                                                                  \
+    LANE(seen.r, n) = c.x;                                                                                               \
+    LANE(seen.g, n) = c.y;                                                                                               \
+    LANE(seen.b, n) = c.z;                                                                                               \
+  }
+  EACH_LANE(SEE)
+#undef SEE
+  return seen;
+}
+#endif
+
+// Radiance that comes from behind against each (world) direction.
+inline rgb look_behind(const view* v, real3 d, global const float4* environment)
+{
+  rgb behind = { (real)v->background.x, (real)v->background.y, (real)v->background.z };
+#if ENVIRONMENT
+  const rgb seen = look_up(environment, d, v->environment);
+  behind.r += seen.r;
+  behind.g += seen.g;
+  behind.b += seen.b;
+#endif
+  return behind;
+}

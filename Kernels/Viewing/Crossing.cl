@@ -1,0 +1,223 @@
+// What rays meet on their way and what it does to them:
+//   radiance = integral over the ray of T(t) q(t) dt + T(end) background,  T(t) = exp(-integral of sigma_t)
+// with q = sigma_s times in-scattered radiance plus emission, both interpolated between voxel centres.
+//
+// Needs Numerics.cl and Sampling.cl before it. Define besides
+//   THIN_STEPS  1: no step's optical length is above 2
+//   PHASE       how light of a known direction scatters: 0 evenly, 1 Henyey and Greenstein, 2 Schlick
+//   GLOW        1 (with PHASE): emission is kept apart from what is scattered
+
+#if COLOURED
+typedef rgb spectrum;
+#else
+typedef real spectrum;
+#endif
+
+// What is packed of the medium and its light, with a border of one voxel.
+typedef struct
+{
+  global const float4* samples;     // red, green, blue of q, W / (length^3 sr), and grey sigma_t, 1/length
+  global const float4* extinctions; // coloured sigma_t
+  global const float4* flow;        // x, y, z of the light's mean direction times g
+  global const float4* glow;        // emission
+} scenery;
+
+inline real product(real3 a, real3 b)
+{
+  return fma(a.x, b.x, fma(a.y, b.y, a.z * b.z));
+}
+
+// What is left of a ray's light, and what it has gathered.
+typedef struct
+{
+  spectrum left;
+  rgb radiance;
+} light;
+
+inline real mean_left(light l)
+{
+#if COLOURED
+  return (l.left.r + l.left.g + l.left.b) * (real)(1.0f / 3.0f);
+#else
+  return l.left;
+#endif
+}
+
+inline real most_left(light l)
+{
+#if COLOURED
+  return greater(greater(l.left.r, l.left.g), l.left.b);
+#else
+  return l.left;
+#endif
+}
+
+inline light unlit(real left)
+{
+  light l;
+#if COLOURED
+  l.left.r = l.left.g = l.left.b = left;
+#else
+  l.left = left;
+#endif
+  l.radiance.r = l.radiance.g = l.radiance.b = (real)0.0f;
+  return l;
+}
+
+inline spectrum scaled(spectrum s, real factor)
+{
+#if COLOURED
+  s.r *= factor;
+  s.g *= factor;
+  s.b *= factor;
+  return s;
+#else
+  return s * factor;
+#endif
+}
+
+// What comes through from behind, `part` of it.
+inline void add_background(rgb behind, real part, light* l)
+{
+#if COLOURED
+  l->radiance.r += behind.r * (l->left.r * part);
+  l->radiance.g += behind.g * (l->left.g * part);
+  l->radiance.b += behind.b * (l->left.b * part);
+#else
+  const real left = l->left * part;
+  l->radiance.r += behind.r * left;
+  l->radiance.g += behind.g * left;
+  l->radiance.b += behind.b * left;
+#endif
+}
+
+// Over a length of constant coefficients: what a unit of source adds to the radiance, and what is left of the light behind.
+//   length (1 - exp(-tau)) / tau; tau = 0 is vacuum, where the fraction is 1.
+inline real cross_length(real sigma, real length, real* remains)
+{
+#if THIN_STEPS
+  // (1 - exp(-tau)) / tau on [0, 2], to 1e-7.
+  const real tau = sigma * length;
+  real p = fma(tau, (real)-1.17129066e-05f, (real)0.000167222737f);
+  p = fma(p, tau, (real)-0.00134923449f);
+  p = fma(p, tau, (real)0.00830663089f);
+  p = fma(p, tau, (real)-0.0416579582f);
+  p = fma(p, tau, (real)0.166665584f);
+  p = fma(p, tau, (real)-0.49999997f);
+  const real fraction = fma(p, tau, (real)1.0f);
+  *remains = fma(-tau, fraction, (real)1.0f);
+#else
+  const real tau = greater(sigma * length, (real)1e-30f);
+  const real fraction = extinguished(tau, remains) / tau;
+#endif
+  return length * fraction;
+}
+
+// The step in which half of a ray's light was lost: where it starts, how far it goes, and what was left before and after.
+// Where: along the ray, or along the view.
+typedef struct
+{
+  real start, length, before, after;
+} crossed;
+
+// The coefficients in the middle of a step.
+typedef struct
+{
+  rgb source;
+  spectrum sigma;
+} sample;
+
+#if PHASE
+// 4 pi times the phase function of light that is itself spread about its mean direction, seen along unit vectors v away from the
+// eye. b is that direction times g and the anisotropy: Legendre moments of two distributions multiply, so that light which is
+// spread as Henyey and Greenstein's function of mean cosine a is scattered by that of g into that of g a, exactly.
+inline real scattered_towards_eye(real3 b, real3 v)
+{
+  const real square = product(b, b);
+  const real cosine = product(b, v); // times |b|
+#if PHASE == 1
+  const real base = greater(fma((real)2.0f, cosine, (real)1.0f + square), (real)1e-8f);
+  return ((real)1.0f - square) / (base * sqrt(base));
+#else
+  const real k = fma((real)-0.55f, square, (real)1.55f); // times |b|
+  const real base = greater(fma(k, cosine, (real)1.0f), (real)1e-4f);
+  return fma(-square * k, k, (real)1.0f) / (base * base);
+#endif
+}
+#endif
+
+// v  unit vectors of the rays, away from the eye
+__attribute__((always_inline)) inline sample take_sample(const scenery* scene, const corners* at, int4 size, real3 v)
+{
+  sample s;
+  real grey;
+  gather(scene->samples, at, size, &s.source, &grey);
+#if COLOURED
+  real unused;
+  gather(scene->extinctions, at, size, &s.sigma, &unused);
+#else
+  s.sigma = grey;
+#endif
+#if PHASE
+  rgb flow;
+  real none;
+  gather(scene->flow, at, size, &flow, &none);
+  const real3 b = { flow.r, flow.g, flow.b };
+  const real part = scattered_towards_eye(b, v);
+#if GLOW
+  rgb glow;
+  gather(scene->glow, at, size, &glow, &none);
+  s.source.r = fma(s.source.r, part, glow.r);
+  s.source.g = fma(s.source.g, part, glow.g);
+  s.source.b = fma(s.source.b, part, glow.b);
+#else
+  s.source.r *= part;
+  s.source.g *= part;
+  s.source.b *= part;
+#endif
+#endif
+  return s;
+}
+
+// Over `length` from place `start`, along which the ray goes on by `gain`. Rays that have less light left than `enough` stop.
+// Nothing but the last product waits for what was left before.
+__attribute__((always_inline)) inline void cross_sample(
+  sample s, real length, real start, real gain, float enough, light* l, crossed* half_way)
+{
+  const integer goes_on = most_left(*l) > (real)enough;
+  const real before = mean_left(*l);
+#if COLOURED
+#define CROSS(c)                                                                                                         \
+  {                                                                                                                      \
+    real remains;                                                                                                        \
+    const real weight = cross_length(s.sigma.c, length, &remains);                                                     \
+    l->radiance.c = fma(s.source.c * weight, goes_on ? l->left.c : (real)0.0f, l->radiance.c);                           \
+    l->left.c *= goes_on ? remains : (real)1.0f;                                                                         \
+  }
+  CROSS(r)
+  CROSS(g)
+  CROSS(b)
+#undef CROSS
+#else
+  real remains;
+  const real weight = cross_length(s.sigma, length, &remains) * l->left;
+  l->radiance.r = goes_on ? fma(s.source.r, weight, l->radiance.r) : l->radiance.r;
+  l->radiance.g = goes_on ? fma(s.source.g, weight, l->radiance.g) : l->radiance.g;
+  l->radiance.b = goes_on ? fma(s.source.b, weight, l->radiance.b) : l->radiance.b;
+  l->left = goes_on ? l->left * remains : l->left;
+#endif
+  const real after = mean_left(*l);
+  const integer crossing = (before > (real)0.5f) & (after <= (real)0.5f);
+  half_way->start = crossing ? start : half_way->start;
+  half_way->length = crossing ? gain : half_way->length;
+  half_way->before = crossing ? before : half_way->before;
+  half_way->after = crossing ? after : half_way->after;
+}
+
+// ln(a/b) = 2 (a-b)/(a+b) but for the third order.
+inline real distance_to_half(crossed c)
+{
+  const real part = (c.before - (real)0.5f) * (c.before + c.after) /
+    ((c.before + (real)0.5f) * greater(c.before - c.after, (real)1e-30f));
+  return fma(part, c.length, c.start);
+}

@@ -1,0 +1,162 @@
+#include "ViewChecks.h"
+
+#include "../Photons/IndexRange.h"
+
+#include <algorithm>
+#include <cmath>
+#include <string>
+
+namespace tyndall
+{
+namespace
+{
+constexpr float LeastIndex = 1e-3f;
+
+void CheckFinite(const Field& field, const char* name, const Grid& grid)
+{
+  for (std::size_t i = 0; i < grid.VoxelCount() * field.components; ++i)
+  {
+    if (!std::isfinite(field.values[i]))
+    {
+      throw InvalidInput(std::string(name) + " is not finite in voxel " + VoxelName(grid, i / field.components) +
+        " (the first such voxel).");
+    }
+  }
+}
+
+void CheckLightField(const Field& field, const char* name, const Grid& grid)
+{
+  if (!field.values)
+  {
+    return;
+  }
+  if (field.components != 1 && field.components != 3)
+  {
+    throw InvalidInput(std::string(name) + " has " + std::to_string(field.components) +
+      " components a voxel; give it 1 (grey) or 3 (red, green, blue).");
+  }
+  CheckFinite(field, name, grid);
+}
+
+void CheckPart(double part, const char* what)
+{
+  if (!(part >= 0.0 && part <= 1.0))
+  {
+    throw InvalidInput(
+      std::string(what) + " is " + std::to_string(part) + "; it is a part of the light, from 0 to 1.");
+  }
+}
+
+void CheckSurface(const ViewSettings& settings)
+{
+  const int reflection = static_cast<int>(settings.surfaceReflection);
+  if (reflection < 0 || reflection > 2)
+  {
+    throw InvalidInput("Surface reflection " + std::to_string(reflection) +
+      " does not exist; use 0 (none), 1 (Fresnel) or 2 (fixed).");
+  }
+  if (settings.surfaceIndex != 0.0 && !(settings.surfaceIndex >= 1.0 && std::isfinite(settings.surfaceIndex)))
+  {
+    throw InvalidInput("The refractive index of the surface is " + std::to_string(settings.surfaceIndex) +
+      "; it must be at least 1, or 0 for the middle of the grid's range.");
+  }
+  CheckPart(settings.surfaceReflectance, "The surface's reflectance");
+}
+
+void CheckTable(const ViewSettings& settings)
+{
+  if (settings.tableFace < -1 || settings.tableFace > 5)
+  {
+    throw InvalidInput("The table is face " + std::to_string(settings.tableFace) +
+      " of the box; use 0 to 5 for -x, +x, -y, +y, -z, +z, or -1 for none.");
+  }
+  CheckPart(settings.tableReflectance, "The part that the table mirrors");
+  for (const double colour : settings.tableColor)
+  {
+    CheckPart(colour, "A channel of the table's colour");
+    if (colour + settings.tableReflectance > 1.0 + 1e-9)
+    {
+      throw InvalidInput("The table scatters " + std::to_string(colour) + " and mirrors " +
+        std::to_string(settings.tableReflectance) +
+        " of the light, together more than all of it; lower its colour or its reflectance.");
+    }
+  }
+}
+}
+
+void Check(const ViewSettings& settings)
+{
+  if (settings.imageSize[0] < 1 || settings.imageSize[1] < 1)
+  {
+    throw InvalidInput("The image is " + std::to_string(settings.imageSize[0]) + " by " +
+      std::to_string(settings.imageSize[1]) + " pixels; it needs at least one each way.");
+  }
+  if (!(settings.stepSize > 0.0) || !std::isfinite(settings.stepSize))
+  {
+    throw InvalidInput(
+      "The step size is " + std::to_string(settings.stepSize) + " voxels; it must be a positive number.");
+  }
+  const std::array<int, 5> widths = { 0, 1, 4, 8, 16 };
+  if (std::find(widths.begin(), widths.end(), settings.packetWidth) == widths.end())
+  {
+    throw InvalidInput(
+      "Packets of " + std::to_string(settings.packetWidth) + " rays do not exist; use 0, 1, 4, 8 or 16.");
+  }
+  if (!(settings.minimumTransmittance >= 0.0 && settings.minimumTransmittance < 1.0))
+  {
+    throw InvalidInput("The transmittance at which rays stop is " + std::to_string(settings.minimumTransmittance) +
+      "; it must be at least 0 and below 1.");
+  }
+  if (settings.shadowRays && settings.rectangleSamples < 1)
+  {
+    throw InvalidInput("A rectangular light needs at least one sample per edge.");
+  }
+  if (settings.phaseFunction != PhaseFunction::HenyeyGreenstein && settings.phaseFunction != PhaseFunction::Schlick)
+  {
+    throw InvalidInput("Phase function " + std::to_string(static_cast<int>(settings.phaseFunction)) +
+      " does not exist; use 0 (Henyey-Greenstein) or 1 (Schlick).");
+  }
+  CheckSurface(settings);
+  CheckTable(settings);
+}
+
+void Check(const SolvedLight& light, const Grid& grid, const ViewSettings& settings)
+{
+  CheckLightField(light.fluence, "fluence", grid);
+  CheckLightField(light.fluenceDirect, "fluence_direct", grid);
+  if (light.meanDirection.values)
+  {
+    if (light.meanDirection.components != 3)
+    {
+      throw InvalidInput("mean_direction has " + std::to_string(light.meanDirection.components) +
+        " components a voxel; a direction has 3.");
+    }
+    CheckFinite(light.meanDirection, "mean_direction", grid);
+  }
+  const bool separates = settings.shadowRays != settings.singleScatteringOnly; // direct light from the rest
+  if (separates && light.fluence.values && !light.fluenceDirect.values)
+  {
+    throw InvalidInput(
+      "fluence_direct is missing: without it, light that scattered once cannot be told from the rest of "
+      "fluence. Let the solver write it, or use neither or both of shadow rays and single scattering only.");
+  }
+}
+
+void CheckViewedIndex(const Field& ior, const Grid& grid)
+{
+  if (ior.values && ior.components != 1)
+  {
+    throw InvalidInput(
+      "ior has " + std::to_string(ior.components) + " components a voxel; a refractive index has 1.");
+  }
+  CheckIndex(ior, grid);
+  for (std::size_t i = 0; ior.values && i < grid.VoxelCount(); ++i)
+  {
+    if (ior.values[i] < LeastIndex)
+    {
+      throw InvalidInput("ior is " + std::to_string(ior.values[i]) + " in voxel " + VoxelName(grid, i) +
+        " (the first such voxel); rays are followed where it is at least 0.001.");
+    }
+  }
+}
+}

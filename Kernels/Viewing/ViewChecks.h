@@ -1,0 +1,16 @@
+#pragma once
+
+#include "MediumRayCaster.h"
+
+namespace tyndall
+{
+/// @throws InvalidInput for a setting that has no meaning, whatever the scene
+void Check(const ViewSettings& settings);
+
+/// @throws InvalidInput for an array of light that is not finite or has components of another number, and where the settings ask
+///   for one that is not there
+void Check(const SolvedLight& light, const Grid& grid, const ViewSettings& settings);
+
+/// @throws InvalidInput for an index that has not one component, is not finite or below 1e-3
+void CheckViewedIndex(const Field& ior, const Grid& grid);
+}

@@ -1,0 +1,120 @@
+#include "ViewLights.h"
+
+#include <algorithm>
+#include <cmath>
+
+#include <glm/geometric.hpp>
+#include <glm/vec3.hpp>
+
+namespace tyndall
+{
+namespace
+{
+constexpr double Pi = 3.14159265358979323846;
+
+glm::dvec3 Vector(const std::array<double, 3>& v)
+{
+  return { v[0], v[1], v[2] };
+}
+
+cl_float4 Float4(const glm::dvec3& v, double w)
+{
+  return { { static_cast<float>(v.x), static_cast<float>(v.y), static_cast<float>(v.z), static_cast<float>(w) } };
+}
+}
+
+std::vector<cl_float4> SmallLights(const std::vector<Light>& lights, const Grid& grid, int rectangleSamples)
+{
+  std::vector<cl_float4> small;
+  const auto add = [&](const glm::dvec3& place, bool point, const glm::dvec3& axis, double cone, const Rgb& power,
+                     double scale, bool cosine) {
+    small.push_back(Float4(place, point ? 1.0 : 0.0));
+    small.push_back(Float4(axis, cone));
+    small.push_back(Float4(scale * Vector(power), cosine ? 1.0 : 0.0));
+  };
+  for (const Light& light : lights)
+  {
+    const double length = glm::length(Vector(light.direction));
+    const glm::dvec3 axis = length > 0.0 ? Vector(light.direction) / length : glm::dvec3(0.0, 0.0, -1.0);
+    const glm::dvec3 place = Vector(light.position) - Vector(grid.origin);
+    if (IsZero(light.power))
+    {
+      continue;
+    }
+    if (light.type == LightType::Directional)
+    {
+      add({ 0.0, 0.0, 0.0 }, false, axis, -2.0, light.power, 1.0, false);
+    }
+    else if (light.type == LightType::Point)
+    {
+      add(place, true, axis, -2.0, light.power, 1.0 / (4.0 * Pi), false);
+    }
+    else if (light.type == LightType::Spot)
+    {
+      const double cone = std::cos(light.angle * Pi / 360.0);
+      add(place, true, axis, cone, light.power, 1.0 / (2.0 * Pi * (1.0 - cone)), false);
+    }
+    else
+    {
+      // Lambertian: radiant intensity along the axis is power / pi.
+      const auto edges = RectangleEdges(light);
+      const int n = rectangleSamples;
+      for (int sample = 0; sample < n * n; ++sample)
+      {
+        const glm::dvec3 offset =
+          ((sample % n + 0.5) / n - 0.5) * Vector(edges[0]) + ((sample / n + 0.5) / n - 0.5) * Vector(edges[1]);
+        add(place + offset, true, axis, -2.0, light.power, 1.0 / (Pi * n * n), true);
+      }
+    }
+  }
+  return small;
+}
+
+std::vector<cl_float4> ClosedEnvironment(const Environment& environment)
+{
+  const int width = environment.width;
+  std::vector<cl_float4> pixels(static_cast<std::size_t>(width + 2) * environment.height);
+  for (int j = 0; j < environment.height; ++j)
+  {
+    for (int i = 0; i < width + 2; ++i)
+    {
+      const std::size_t from = 3 * (static_cast<std::size_t>(j) * width + (i + width - 1) % width);
+      pixels[static_cast<std::size_t>(j) * (width + 2) + i] = { { environment.radiance[from],
+        environment.radiance[from + 1], environment.radiance[from + 2], 0.0f } };
+    }
+  }
+  return pixels;
+}
+
+std::array<int, 2> FaceSize(const Grid& grid, int face)
+{
+  return { grid.size[face / 2 == 0 ? 1 : 0], grid.size[face / 2 == 2 ? 1 : 2] };
+}
+
+std::vector<cl_float4> TableLight(
+  const Grid& grid, const Field& fluence, const Field& meanDirection, const Field& ior, int face)
+{
+  const int axis = face / 2;
+  const double outwards = face % 2 ? 1.0 : -1.0;
+  const std::array<int, 2> size = FaceSize(grid, face);
+  const std::array<std::size_t, 3> strides = { 1, static_cast<std::size_t>(grid.size[0]),
+    static_cast<std::size_t>(grid.size[0]) * grid.size[1] };
+  std::vector<cl_float4> lit;
+  lit.reserve(static_cast<std::size_t>(size[0] + 2) * (size[1] + 2));
+  for (int j = -1; j <= size[1]; ++j)
+  {
+    for (int i = -1; i <= size[0]; ++i)
+    {
+      const std::size_t voxel = std::clamp(i, 0, size[0] - 1) * strides[axis == 0 ? 1 : 0] +
+        std::clamp(j, 0, size[1] - 1) * strides[axis == 2 ? 1 : 2] +
+        (face % 2 ? grid.size[axis] - 1 : 0) * strides[axis];
+      const double n = ior.values ? ior.values[voxel] : 1.0;
+      const double part =
+        meanDirection.values ? std::clamp(outwards * meanDirection.values[3 * voxel + axis], 0.0, 1.0) : 0.25;
+      const glm::dvec3 all(fluence.At(voxel, 0), fluence.At(voxel, 1), fluence.At(voxel, 2));
+      lit.push_back(Float4(all * (part / (Pi * n * n)), 0.0));
+    }
+  }
+  return lit;
+}
+}

@@ -1,0 +1,32 @@
+#pragma once
+
+#include "MediumRayCaster.h"
+
+#include <vector>
+
+namespace tyndall
+{
+inline bool IsZero(const Rgb& colour)
+{
+  return colour[0] == 0.0 && colour[1] == 0.0 && colour[2] == 0.0;
+}
+
+/// Points and parallel beams that stand for the lights, as ScatteredLight.cl's small_light: three float4 each, world
+/// coordinates from the box's lower corner.
+std::vector<cl_float4> SmallLights(const std::vector<Light>& lights, const Grid& grid, int rectangleSamples);
+
+/// Pixels of the environment with a column more on both sides, so that it closes.
+std::vector<cl_float4> ClosedEnvironment(const Environment& environment);
+
+/// Voxels of a face's rows, and how many rows it has: along y and z, x and z, or x and y.
+std::array<int, 2> FaceSize(const Grid& grid, int face);
+
+/// Irradiance on a face of the box by the light in the voxels on it, by pi and n^2: what a white table shines. With a border of
+/// one voxel that repeats the outermost ones.
+///
+/// Where the light's direction is known that is its net flux through the face, fluence max(0, mean direction . normal): all of
+/// it where no light comes back from the table's side. Else light is taken to come evenly from all sides: fluence / 4.
+/// @param ior  null: 1
+std::vector<cl_float4> TableLight(
+  const Grid& grid, const Field& fluence, const Field& meanDirection, const Field& ior, int face);
+}
