@@ -38,7 +38,7 @@ int vtkPhotonEmitter::FillOutputPortInformation(int, vtkInformation* information
   return 1;
 }
 
-int vtkPhotonEmitter::RequestData(vtkInformation*, vtkInformationVector** inputs, vtkInformationVector* outputs)
+int vtkPhotonEmitter::RequestData(vtkInformation* request, vtkInformationVector** inputs, vtkInformationVector* outputs)
 {
   this->Photons = 0;
   this->Power = 0.0;
@@ -52,7 +52,7 @@ int vtkPhotonEmitter::RequestData(vtkInformation*, vtkInformationVector** inputs
       vtkWarningMacro(
         "Nothing shines on the volume, so there are no photons. Connect Lights or an Environment, or set SkyColor.");
     }
-    if (!tyndall::IsFirstPiece(outputs->GetInformationObject(0)))
+    if (!tyndall::IsFirstPiece(request, outputs))
     {
       return;
     }

@@ -89,7 +89,8 @@ int vtkRefractionOctree::RequestUpdateExtent(vtkInformation*, vtkInformationVect
   return 1;
 }
 
-int vtkRefractionOctree::RequestData(vtkInformation*, vtkInformationVector** inputs, vtkInformationVector* outputs)
+int vtkRefractionOctree::RequestData(
+  vtkInformation* request, vtkInformationVector** inputs, vtkInformationVector* outputs)
 {
   this->NodeCount = 0;
   this->Seconds = 0.0;
@@ -106,7 +107,7 @@ int vtkRefractionOctree::RequestData(vtkInformation*, vtkInformationVector** inp
     tyndall::AddFact(output, "device", std::vector<std::string>{ octree.device });
     tyndall::KeepWhatIsAskedFor(outputs->GetInformationObject(0), output);
 
-    if (tyndall::IsFirstPiece(outputs->GetInformationObject(1)))
+    if (tyndall::IsFirstPiece(request, outputs))
     {
       this->NodeCount = tyndall::FillWithNodes(tyndall::GridOf(image), octree, vtkHyperTreeGrid::GetData(outputs, 1));
     }
