@@ -75,7 +75,8 @@ inline real3 chosen(integer first, real3 a, real3 b)
 // Until each ray that goes straight on leaves the box.
 inline real time_to_face(real3 p, real3 velocity, int4 size)
 {
-#define TO_FACE(c) (((velocity.c > (real)0.0f ? (real)(float)size.c : (real)0.0f) - p.c) / at_least_tiny(velocity.c))
+  const real3 v = { at_least_tiny(velocity.x), at_least_tiny(velocity.y), at_least_tiny(velocity.z) };
+#define TO_FACE(c) (((v.c > (real)0.0f ? (real)(float)size.c : (real)0.0f) - p.c) / v.c)
   return greater(lesser(lesser(TO_FACE(x), TO_FACE(y)), TO_FACE(z)), (real)0.0f);
 #undef TO_FACE
 }
@@ -169,14 +170,16 @@ inline void split_at_surface(
   // Light.
   corners around;
   find_corners(at, size, &around);
-  const real pace = sqrt(product(t, t));
-  const real3 towards = { t.x / pace, t.y / pace, t.z / pace };
+  const real speed = sqrt(product(t, t));
+  const real3 towards = { t.x / speed, t.y / speed, t.z / speed };
+  const real3 until_there = stretched(step->velocity, spacing);
+  const real way = fabs(after_start) * sqrt(product(until_there, until_there));
   const sample there = take_sample(&s->scene, &around, size, towards);
   const real whole = mean_left(*l);
   const integer behind = after_start >= (real)0.0f;
 #define SPLIT(sigma, left, later, EACH_SOURCE)                                                                           \
   {                                                                                                                      \
-    const real length = lesser(fabs(after_start) * pace, (real)1.0f / greater(sigma, (real)1e-20f));                     \
+    const real length = lesser(way, (real)1.0f / greater(sigma, (real)1e-20f));                                          \
     real remains;                                                                                                        \
     const real weight = cross_length(sigma, length, &remains);                                                           \
     const real at_surface = left * (behind ? remains : (real)1.0f / remains);                                            \
@@ -451,7 +454,8 @@ kernel void cast_bent_rays(view v, optics o, global const float4* restrict sampl
 #endif
   light l = unlit((real)1.0f);
   crossed half_way = { (real)0.0f, (real)0.0f, (real)1.0f, (real)1.0f };
-  real left = (real)1.0f;
+  real left = (real)1.0f;                  // of primary rays
+  real where = (real)v.marching.z;
 #if SURFACE
   watch w = { (integer)0, (real)0.0f, (real)0.0f, 1 };
   waiting reflected = { t.at, t.velocity, unlit((real)0.0f).left };
@@ -531,14 +535,17 @@ kernel void cast_bent_rays(view v, optics o, global const float4* restrict sampl
       }
     }
 #endif
-    left = pass == 0 ? through : left;
+    if (pass == 0)
+    {
+      left = through;
+      where = left > (real)0.5f ? (real)v.marching.z : distance_to_half(half_way);
+    }
     add_background(look_behind(&v, towards, environment), part * (real)v.background.w / square, &l);
   }
 
   l.radiance.r *= entry_square;
   l.radiance.g *= entry_square;
   l.radiance.b *= entry_square;
-  const real where = left > (real)0.5f ? (real)v.marching.z : distance_to_half(half_way);
   const canvas picture = { radiance, alpha, depth };
   paint(&v, picture, column, row, l.radiance, (real)1.0f - left, where);
 }

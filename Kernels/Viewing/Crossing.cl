@@ -139,7 +139,8 @@ inline real scattered_towards_eye(real3 b, real3 v)
   const real base = greater(fma((real)2.0f, cosine, (real)1.0f + square), (real)1e-8f);
   return ((real)1.0f - square) / (base * sqrt(base));
 #else
-  const real k = fma((real)-0.55f, square, (real)1.55f); // times |b|
+  // The fit exceeds 1 from |b| = 0.94 on.
+  const real k = lesser(fma((real)-0.55f, square, (real)1.55f), (real)0.9999f / sqrt(greater(square, (real)1e-20f))); // times |b|
   const real base = greater(fma(k, cosine, (real)1.0f), (real)1e-4f);
   return fma(-square * k, k, (real)1.0f) / (base * base);
 #endif

@@ -1,0 +1,43 @@
+#include "ViewScene.h"
+
+using namespace tyndall;
+using namespace viewing;
+
+namespace
+{
+TEST(Camera, FramesTheWholeBoxTightly)
+{
+  for (const Grid& grid : { GridOf(64, 64, 64), GridOf(200, 3, 10), GridOf(1, 1, 500, { 1, 1, 0.1 }, { 70, 0, -9 }) })
+  {
+    for (double aspect : { 4.0 / 3.0, 0.5 })
+    {
+      for (const Vec& towards : { Vec{ 0.55, -1.0, 0.5 }, Vec{ 0.0, 0.0, 1.0 }, Vec{ 1.0, 0.0, 0.0 } })
+      {
+        Camera camera = FrameGrid(grid, aspect, 40.0, towards);
+        const auto axes = Axes(camera);
+        double edge = 0.0;
+        double parallelEdge = 0.0;
+        for (int corner = 0; corner < 8; ++corner)
+        {
+          Vec seen = {};
+          for (int axis = 0; axis < 3; ++axis)
+          {
+            const double at =
+              grid.origin[axis] + (corner >> axis & 1 ? grid.Length(axis) : 0.0) - camera.position[axis];
+            for (int c = 0; c < 3; ++c)
+            {
+              seen[c] += at * axes[c][axis];
+            }
+          }
+          ASSERT_GT(seen[2], 0.0);
+          const double farthest = std::max(std::abs(seen[0]) / aspect, std::abs(seen[1]));
+          edge = std::max(edge, farthest / (seen[2] * std::tan(20.0 * Pi / 180.0)));
+          parallelEdge = std::max(parallelEdge, farthest / camera.parallelScale);
+        }
+        EXPECT_NEAR(1.0 / 1.05, edge, 1e-9);
+        EXPECT_NEAR(1.0 / 1.05, parallelEdge, 1e-9);
+      }
+    }
+  }
+}
+}

@@ -1,0 +1,127 @@
+#include "ViewScene.h"
+
+using namespace tyndall;
+using namespace viewing;
+
+namespace
+{
+class ShadowRays : public DeviceTest
+{
+};
+
+// Light from above through a slab that is looked at from above: J = E exp(-sigma z) p, seen through exp(-sigma z).
+TEST_F(ShadowRays, ScatterOnceAsTheClosedFormSays)
+{
+  for (double g : { 0.0, 0.6, -0.4 })
+  {
+    for (int components : { 1, 3 })
+    {
+      Scene scene(GridOf(6, 6, 64));
+      const double sigma_a = 0.01;
+      const double sigma_s = 0.03;
+      scene.components = components;
+      scene.sigma_a.assign(components * scene.grid.VoxelCount(), static_cast<float>(sigma_a));
+      scene.sigma_s.assign(components * scene.grid.VoxelCount(), static_cast<float>(sigma_s));
+      scene.g = g;
+      Light sun;
+      sun.direction = { 0.0, 0.0, -2.0 };
+      sun.power = { 1.0, 2.0, 3.0 };
+      scene.illumination.lights = { sun };
+      scene.settings.shadowRays = true;
+      const Picture picture = scene.Seen(this->GetDevice(), FromAbove(scene.grid, 10.0));
+      const double sigma = sigma_a + sigma_s;
+      const double phase = (1.0 - g * g) / (4.0 * Pi * std::pow(1.0 + g, 3.0)); // straight back
+      const double expected = sigma_s * phase * -std::expm1(-2.0 * sigma * 64.0) / (2.0 * sigma);
+      for (int c = 0; c < 3; ++c)
+      {
+        EXPECT_NEAR(expected * (c + 1), picture.radiance[3 * Middle(picture) + c], 5e-4 * expected * (c + 1)) << g;
+      }
+    }
+  }
+}
+
+TEST_F(ShadowRays, FarLightsOfEveryKindLookAlike)
+{
+  Scene scene = Blobs();
+  scene.fluence.clear();
+  scene.g = 0.3;
+  scene.settings.shadowRays = true;
+  const Vec centre = { 25.0, 20.5, 18.5 };
+  const double r = 1e4;
+  const Vec direction = { -0.6, 0.0, -0.8 };
+  Light light;
+  light.direction = direction;
+  for (int axis = 0; axis < 3; ++axis)
+  {
+    light.position[axis] = centre[axis] - r * direction[axis];
+  }
+  light.angle = 2.0;
+  light.size = { 3.0, 5.0 };
+  const auto seenBy = [&](LightType type, double power) {
+    light.type = type;
+    light.power = { power, power, power };
+    scene.illumination.lights = { light };
+    return scene.Seen(this->GetDevice()).radiance;
+  };
+  const std::vector<float> sun = seenBy(LightType::Directional, 10.0);
+  EXPECT_GT(*std::max_element(sun.begin(), sun.end()), 0.1f);
+  const double sphere = r * r * 10.0;
+  EXPECT_LT(Distance(sun, seenBy(LightType::Point, 4.0 * Pi * sphere)), 0.01);
+  EXPECT_LT(Distance(sun, seenBy(LightType::Spot, 2.0 * Pi * (1.0 - std::cos(Pi / 180.0)) * sphere)), 0.01);
+  EXPECT_LT(Distance(sun, seenBy(LightType::Rectangle, Pi * sphere)), 0.01);
+}
+
+TEST_F(ShadowRays, SpotAndRectangleShineToOneSide)
+{
+  Scene scene(GridOf(20, 20, 20));
+  scene.sigma_s = scene.Everywhere(1e-3);
+  scene.settings.shadowRays = true;
+  scene.settings.showBackground = false;
+  Light light;
+  light.position = { 10.0, 10.0, 10.0 };
+  light.direction = { 1.0, 0.0, 0.0 };
+  light.size = { 1.0, 1.0 };
+  light.angle = 60.0;
+  for (LightType type : { LightType::Spot, LightType::Rectangle })
+  {
+    light.type = type;
+    scene.illumination.lights = { light };
+    const Picture picture = scene.Seen(this->GetDevice(), FromAbove(scene.grid, 5.0));
+    const std::size_t middle = Middle(picture);
+    EXPECT_GT(picture.radiance[3 * (middle + 8)], 0.0f);
+    EXPECT_EQ(0.0f, picture.radiance[3 * (middle - 8)]);
+    EXPECT_TRUE(
+      std::all_of(picture.radiance.begin(), picture.radiance.end(), [](float v) { return std::isfinite(v); }));
+  }
+}
+
+// A medium so thin that every voxel gets 3 of the sun, 5 that was scattered and 2 straight from an environment.
+TEST_F(ShadowRays, DirectLightCountsOnce)
+{
+  Scene scene(GridOf(8, 8, 8));
+  scene.sigma_s = scene.Everywhere(1e-6);
+  scene.settings.showBackground = false;
+  Light sun;
+  sun.power = { 3.0, 3.0, 3.0 };
+  scene.illumination.lights = { sun };
+  const auto seen = [&](bool shadowRays, bool single) {
+    scene.settings.shadowRays = shadowRays;
+    scene.settings.singleScatteringOnly = single;
+    const Picture picture = scene.Seen(this->GetDevice(), FromAbove(scene.grid, 5.0));
+    return picture.radiance[3 * Middle(picture)] * 4.0 * Pi / (8.0 * 1e-6);
+  };
+  scene.fluence = scene.Everywhere(8.0);
+  scene.fluenceDirect = scene.Everywhere(3.0);
+  EXPECT_NEAR(8.0, seen(false, false), 1e-3);
+  EXPECT_NEAR(8.0, seen(true, false), 1e-3);
+  EXPECT_NEAR(3.0, seen(false, true), 1e-3);
+  EXPECT_NEAR(3.0, seen(true, true), 1e-3);
+
+  scene.fluence = scene.Everywhere(10.0);
+  scene.fluenceDirect = scene.Everywhere(5.0);
+  scene.illumination.environment = SmoothEnvironment();
+  EXPECT_NEAR(10.0, seen(false, false), 1e-3);
+  EXPECT_NEAR(10.0, seen(true, false), 1e-3);
+  EXPECT_NEAR(5.0, seen(false, true), 1e-3);
+}
+}

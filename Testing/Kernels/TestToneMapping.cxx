@@ -1,0 +1,65 @@
+#include "Viewing/ToneMapping.h"
+
+#include <gtest/gtest.h>
+
+#include <algorithm>
+#include <cmath>
+
+using namespace tyndall;
+
+namespace
+{
+TEST(ToneMapping, FollowsSrgb)
+{
+  ToneMapping linear;
+  linear.exposure = 2.0;
+  linear.curve = ToneCurve::Linear;
+  const auto colour = ToneMap({ 0.0f, 0.25f, 0.0015f, 0.1f, 0.5f, 1e30f }, {}, linear);
+  const std::vector<std::uint8_t> expected = { 0, 188, 10, 255, 124, 255, 255, 255 };
+  EXPECT_EQ(expected, colour);
+}
+
+TEST(ToneMapping, IsMonotonousAndEndsAtWhite)
+{
+  for (ToneCurve curve : { ToneCurve::Linear, ToneCurve::Filmic })
+  {
+    ToneMapping settings;
+    settings.exposure = 1.0;
+    settings.curve = curve;
+    int last = 0;
+    for (double x = 0.0; x < 100.0; x += 0.01)
+    {
+      const float value = static_cast<float>(x);
+      const int shown = ToneMap({ value, value, value }, {}, settings)[0];
+      EXPECT_GE(shown, last);
+      last = shown;
+    }
+    EXPECT_EQ(255, last);
+  }
+}
+
+TEST(ToneMapping, ExposesTheMeanAsAGreyCard)
+{
+  EXPECT_NEAR(0.18 / 3.0, AutomaticExposure({ 1.0f, 1.0f, 1.0f, 9.0f, 9.0f, 9.0f, 0.0f, 0.0f, 0.0f }), 2e-4);
+  EXPECT_EQ(1.0, AutomaticExposure({ 0.0f, 0.0f, 0.0f }));
+}
+
+TEST(ToneMapping, IsNotBlindedByWhatIsNearlyBlack)
+{
+  std::vector<float> radiance(300, 1e-20f);
+  std::fill_n(radiance.begin(), 60, 2.0f);
+  EXPECT_NEAR(0.09, AutomaticExposure(radiance), 3e-4);
+  std::fill_n(radiance.begin(), 6, 1e5f); // a sun
+  EXPECT_NEAR(0.09, AutomaticExposure(radiance), 0.07);
+}
+
+TEST(ToneMapping, ColoursLaidOverBlackAreThePicture)
+{
+  ToneMapping settings;
+  settings.exposure = 1.0;
+  const int opaque = ToneMap({ 0.1f, 0.1f, 0.1f }, {}, settings)[0];
+  const auto half = ToneMap({ 0.1f, 0.1f, 0.1f }, { 0.5f }, settings);
+  EXPECT_EQ(128, half[3]);
+  EXPECT_NEAR(opaque, half[0] * half[3] / 255.0, 1.0);
+}
+}
