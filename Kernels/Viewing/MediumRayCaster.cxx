@@ -224,8 +224,7 @@ void MediumRayCaster::SayWhatIsLeftOut()
   omit(this->Components[2] > 0, "emission: the medium does not shine");
   omit(this->LightCount > 0, "shadow rays: not asked for, or no light");
   omit(this->EnvironmentSize[0] > 0, "environment: none, or not shown");
-  omit(this->KnowsFlow || this->LightCount > 0,
-    "phase function: g is 0, or the direction of the light is not known");
+  omit(this->KnowsFlow || this->LightCount > 0, "phase function: g is 0, or the direction of the light is not known");
   omit(this->Bends, "bent rays: the refractive index is constant");
   omit(this->Reflects(),
     this->Bends ? "surface reflection: not asked for" : "surface reflection: the refractive index is constant");
@@ -298,8 +297,8 @@ void MediumRayCaster::Pack(bool forShadowRays)
   const bool bends = this->Bends && !forShadowRays; // shadow rays go straight on
   const std::initializer_list<std::string_view> sources = { kernel_source::Numerics, kernel_source::Sampling,
     kernel_source::ScatteredLight };
-  const std::string options = this->PackingOptions() +
-    Define("SHADOW_RAYS", this->LightCount > 0 && !forShadowRays) + Define("BENDS", bends);
+  const std::string options =
+    this->PackingOptions() + Define("SHADOW_RAYS", this->LightCount > 0 && !forShadowRays) + Define("BENDS", bends);
   const cl_int4 size = Int4(this->TheGrid.size[0], this->TheGrid.size[1], this->TheGrid.size[2]);
   const cl_int4 bricks = Int4(this->BrickCount[0], this->BrickCount[1], this->BrickCount[2]);
   const cl_int single = this->Settings.singleScatteringOnly ? 1 : 0;
@@ -446,7 +445,7 @@ void MediumRayCaster::CastRays(View& view, double from, const Monitor& monitor)
   const Optics optics = this->MakeOptics();
   cl::Kernel cast = this->CastingKernel();
   // Batches of whole work-groups: else the last rows of one would be cast again by the next.
-  const int group = 8;
+  const int group = 4;
   const std::size_t across = RoundUp(view.Picture.s[0], group * packet[0]) / packet[0];
   const int rows = static_cast<int>(RoundUp(view.Picture.s[1], group * packet[1]) / (group * packet[1]));
   InBatches(this->TheDevice, rows, monitor, from, 1.0, [&](int first, int count) {

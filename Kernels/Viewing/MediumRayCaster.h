@@ -27,7 +27,7 @@ struct SolvedLight
 enum class PhaseFunction
 {
   HenyeyGreenstein = 0,
-  Schlick = 1, ///< Blasi et al. 1993, with k = 1.55 g - 0.55 g^3
+  Schlick = 1, ///< Blasi et al. 1993, with k = 1.55 g - 0.55 g^3, at most 0.9999
 };
 
 /// What a surface of refractive objects reflects of the light that meets it from the side of the smaller index.
@@ -44,19 +44,20 @@ struct ViewSettings
   std::array<int, 2> imageSize = { 800, 600 }; ///< pixels
   double stepSize = 0.5;                       ///< voxels a ray advances between samples, > 0
   bool singleScatteringOnly = false;           ///< show only light that was scattered once
-  bool shadowRays = false;  ///< find the lights' direct light by shadow rays, with the medium's phase function
-  int rectangleSamples = 3; ///< per edge of a rectangular light, for shadow rays
-  bool showBackground = true;
+  bool shadowRays = false;    ///< find the lights' direct light by shadow rays, with the medium's phase function
+  int rectangleSamples = 3;   ///< per edge of a rectangular light, for shadow rays
+  bool showBackground = true; ///< also in what surface and table reflect
   Rgb backgroundColor = { 0.0, 0.0, 0.0 }; ///< radiance behind the medium where there is no environment
   bool skipEmptyBricks = true;             ///< leap over what is empty; changes the time and nothing else
   double minimumTransmittance = 1e-3;      ///< a ray that has less left stops; 0: never
   PhaseFunction phaseFunction = PhaseFunction::HenyeyGreenstein; ///< of light whose direction is known
   SurfaceReflection surfaceReflection = SurfaceReflection::None;
-  double surfaceIndex = 0.0;       ///< the surface is where n has this value, >= 1; 0: midway between least and largest n
+  double surfaceIndex = 0.0; ///< the surface is where n has this value, >= 1; 0: midway between least and largest n
   double surfaceReflectance = 0.1; ///< of SurfaceReflection::Fixed, [0, 1]
   int tableFace = -1; ///< face of the box (-x, +x, -y, +y, -z, +z) that is a table, seen from within; -1: none
-  Rgb tableColor = { 0.6, 0.6, 0.6 }; ///< diffuse reflectance of the table, lit by the light in the voxels on it, [0, 1]
-  double tableReflectance = 0.1;      ///< part that the table mirrors, [0, 1]
+  /// Diffuse reflectance of the table, lit by the light in the voxels on it, [0, 1]; at most 1 together with tableReflectance.
+  Rgb tableColor = { 0.6, 0.6, 0.6 };
+  double tableReflectance = 0.1; ///< part that the table mirrors, [0, 1]
   int packetWidth = 0; ///< rays marched together: 1, 4, 8 or 16; 0: what the device does best. Changes the time only
 };
 
@@ -66,9 +67,11 @@ struct Picture
   int width = 0;
   int height = 0;
   std::vector<float> radiance; ///< 3 a pixel, W / (length^2 sr)
-  std::vector<float> alpha;    ///< 1 - transmittance, its mean over the channels
-  /// Distance from the camera along the view axis to where transmittance (its mean over the channels) falls to 1/2.
-  /// `farDepth` where it never does.
+  /// 1 - transmittance, its mean over the channels: what the medium, and a surface's reflection, let through of what is behind. 1
+  /// where the table is seen.
+  std::vector<float> alpha;
+  /// Distance from the camera along the view axis to where transmittance (its mean over the channels) falls to 1/2, on rays that
+  /// bend as well. `farDepth` where it never does.
   std::vector<float> depth;
   float farDepth = 0.0f; ///< beyond every point of the box
 };
@@ -80,34 +83,62 @@ struct Picture
 ///
 /// J, the in-scattered radiance, is
 ///
-///   |                     | single scattering only | all |
+///   |                     | single scattering only   | all                               |
 ///   |---|---|---|
-///   | without shadow rays | fluenceDirect / 4 pi   | fluence / 4 pi |
-///   | with shadow rays    | sum over lights of E p | that + max(fluence - D, 0) / 4 pi |
+///   | without shadow rays | f fluenceDirect / (4 pi) | f fluence / (4 pi)                |
+///   | with shadow rays    | sum over lights of E p   | that + max(fluence - D, 0) / 4 pi |
+///
+/// f is 4 pi times the phase function of the mean cosine g, averaged over the directions from which the light comes; 1, light
+/// scatters evenly, where g is 0 or meanDirection is not given. Light is taken to be spread about its mean direction as Henyey
+/// and Greenstein's function of mean cosine |meanDirection| is: scattering then makes that function of mean cosine
+/// g |meanDirection| of it, exactly. Schlick's function is taken for the same product, which is a fit. One direction a voxel
+/// stands for all its light, in single scattering as well (Pfeuti 2009, section 3.1.6, has no anisotropy: all light comes from the
+/// mean direction).
 ///
 /// E is a light's irradiance behind the medium, p the phase function (Henyey and Greenstein's with the medium's g) from the
 /// light's direction to the camera's. D = min(sum of E, fluenceDirect) is the part of fluence that E shows already, so that
 /// nothing counts twice; what else is in fluenceDirect came straight from an environment or a sky and stays. The sum over
-/// lights is found at voxel centres.
+/// lights is found at voxel centres. With shadow rays all other light scatters evenly. Shadow rays go straight on, through glass
+/// as well.
 ///
-/// Where g is not 0, p shapes only what shadow rays find. All other light, direct light without shadow rays included,
-/// scatters evenly in all directions. sigma_s and sigma_t are the medium's own in every term, also where a solver worked
-/// with sigma_s (1 - g). `scattered_radiance`, which solvers keep for chosen directions, is data to look at and is not
-/// used here: a camera sees along as many directions as it has pixels.
+/// sigma_s and sigma_t are the medium's own in every term, also where a solver worked with sigma_s (1 - g).
+/// `scattered_radiance`, which solvers keep for chosen directions, is data to look at and is not used here: a camera sees along
+/// as many directions as it has pixels.
+///
+/// Refraction (Pfeuti 2009, section 3.1.6 and listing A.4, who steps by Euler's method). Where the refractive index n varies
+/// rays follow dr/dt = T, dT/dt = grad(n^2)/2 with dt = ds/n, by a leapfrog of order 2. n^2 is the tricubic spline that photons
+/// follow too; its gradient is taken at voxel centres and interpolated linearly. L / n^2 is what stays the same along a ray, so
+/// that glass in a furnace cannot be told from the rest. The index is taken to go on beyond the box's faces as it is there: no
+/// light is bent at a face. A ray that does not find out of the box within 16 times the sum of its edges (total reflection can
+/// trap light) sees the background along the direction that it has then.
+///
+/// Surface. On its way from the camera a ray is split where n first rises through surfaceIndex (found by bisection to 1e-3
+/// voxel): the reflected part is marched through the medium as well, and reflects no further. Fresnel's equations take the
+/// indices five voxels before and behind; a sheet thinner than that reflects as if it were thicker.
+///
+/// Table. Where a ray leaves the box through tableFace it sees
+///   tableColor / pi  irradiance  +  tableReflectance  mirrored light,
+/// the irradiance being fluence times max(0, meanDirection . outward normal) of the voxels on the table (all that arrives, where no
+/// light comes back), or fluence / 4 without meanDirection; with singleScatteringOnly, of fluenceDirect. What rays from the camera
+/// mirror there is marched through the medium; where that, or what a surface reflected, meets the table (again), the background
+/// stands for what the table mirrors of it. From outside the table is not seen.
 class MediumRayCaster
 {
 public:
   /// Brings medium and light to the device.
   /// @param illumination  its lights are used by shadow rays, environment and sky as background
-  /// @throws InvalidInput as Check(medium) and Check(illumination); for a light array that is not finite or has not 1 or 3
-  ///   components; where settings ask for an array that is not there; for a step or an image that is not positive
-  /// @throws DeviceError if the samples (16 bytes a voxel, 32 where extinction is coloured) do not fit
   /// @param ior  refractive index, one component a voxel; null or constant: rays are straight
+  /// @throws InvalidInput as Check(medium) and Check(illumination); for a light array that is not finite or has not 1 or 3
+  ///   components (a direction 3); for an index that is not finite, below 1e-3 or has not one component; where settings ask for an
+  ///   array that is not there; for a setting out of its range
+  /// @throws DeviceError if the samples do not fit: 16 bytes a voxel, and as many again for each of coloured extinction, the
+  ///   light's direction, emission beside it, and a refractive index that varies
   MediumRayCaster(Device& device, const Medium& medium, const SolvedLight& light, const Illumination& illumination,
     const ViewSettings& settings, const Field& ior = {});
 
   /// Takes over what of `settings` needs nothing new on the device, so that a caster can be kept while its medium, light and
-  /// illumination stay as they are: imageSize, stepSize, backgroundColor, skipEmptyBricks, minimumTransmittance.
+  /// illumination stay as they are: imageSize, stepSize, backgroundColor, skipEmptyBricks, minimumTransmittance,
+  /// phaseFunction, those of the surface, tableColor, tableReflectance.
   /// @return false, and nothing is changed, where one of the others differs: that needs a new caster
   /// @throws InvalidInput as the constructor
   bool Adopt(const ViewSettings& settings);
@@ -144,9 +175,9 @@ private:
   Grid TheGrid;
   ViewSettings Settings;
   double G = 0.0;
-  bool Coloured = false; ///< extinction differs between channels
-  bool Bends = false;     ///< the refractive index varies
-  bool KnowsFlow = false; ///< the light's direction is known and scattering depends on it
+  bool Coloured = false;    ///< extinction differs between channels
+  bool Bends = false;       ///< the refractive index varies
+  bool KnowsFlow = false;   ///< the light's direction is known and scattering depends on it
   double MiddleIndex = 1.0; ///< midway between the least and the largest
   bool SourcesDependOnCamera = false;
   bool SourcesReady = false;

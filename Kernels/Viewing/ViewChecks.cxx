@@ -42,8 +42,7 @@ void CheckPart(double part, const char* what)
 {
   if (!(part >= 0.0 && part <= 1.0))
   {
-    throw InvalidInput(
-      std::string(what) + " is " + std::to_string(part) + "; it is a part of the light, from 0 to 1.");
+    throw InvalidInput(std::string(what) + " is " + std::to_string(part) + "; it is a part of the light, from 0 to 1.");
   }
 }
 
@@ -52,8 +51,8 @@ void CheckSurface(const ViewSettings& settings)
   const int reflection = static_cast<int>(settings.surfaceReflection);
   if (reflection < 0 || reflection > 2)
   {
-    throw InvalidInput("Surface reflection " + std::to_string(reflection) +
-      " does not exist; use 0 (none), 1 (Fresnel) or 2 (fixed).");
+    throw InvalidInput(
+      "Surface reflection " + std::to_string(reflection) + " does not exist; use 0 (none), 1 (Fresnel) or 2 (fixed).");
   }
   if (settings.surfaceIndex != 0.0 && !(settings.surfaceIndex >= 1.0 && std::isfinite(settings.surfaceIndex)))
   {
@@ -146,8 +145,7 @@ void CheckViewedIndex(const Field& ior, const Grid& grid)
 {
   if (ior.values && ior.components != 1)
   {
-    throw InvalidInput(
-      "ior has " + std::to_string(ior.components) + " components a voxel; a refractive index has 1.");
+    throw InvalidInput("ior has " + std::to_string(ior.components) + " components a voxel; a refractive index has 1.");
   }
   CheckIndex(ior, grid);
   for (std::size_t i = 0; ior.values && i < grid.VoxelCount(); ++i)

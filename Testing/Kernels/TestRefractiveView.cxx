@@ -15,7 +15,8 @@ Scene GlassInFog()
   Scene scene(GridOf(40, 33, 36));
   scene.ior = AtCentres(scene.grid, [](double x, double y, double z) {
     const double r = std::hypot(x - 0.5, y - 0.45, z - 0.55);
-    return 1.0 + 0.4 * std::exp(-40.0 * r * r) * (r < 0.35) * std::pow(std::cos(std::min(r / 0.35, 1.0) * Pi / 2.0), 2.0);
+    return 1.0 +
+      0.4 * std::exp(-40.0 * r * r) * (r < 0.35) * std::pow(std::cos(std::min(r / 0.35, 1.0) * Pi / 2.0), 2.0);
   });
   scene.sigma_s = AtCentres(scene.grid, [](double x, double y, double z) {
     return 0.03 * (1.2 + std::sin(7.0 * x) * std::sin(5.0 * y + 1.0) * std::sin(6.0 * z));
@@ -240,8 +241,8 @@ TEST_F(RefractiveView, GlassBallTurnsTheEnvironmentUpsideDownAsSnellSays)
   for (const int edge : { 32, 64, 128 })
   {
     errors.push_back(DeflectionError(this->GetDevice(), edge, 1.5));
-    std::printf("glass ball on %d^3, error of a direction: mean %.4f, largest %.4f\n", edge, errors.back()[0],
-      errors.back()[1]);
+    std::printf(
+      "glass ball on %d^3, error of a direction: mean %.4f, largest %.4f\n", edge, errors.back()[0], errors.back()[1]);
   }
   EXPECT_LT(errors[1][0], 0.7 * errors[0][0]);
   EXPECT_LT(errors[2][0], 0.7 * errors[1][0]);

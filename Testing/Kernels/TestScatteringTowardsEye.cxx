@@ -56,8 +56,7 @@ TEST_F(ScatteringTowardsEye, FollowsThePhaseFunction)
         const double expected = HenyeyGreensteinOf(g * a, cosine);
         EXPECT_NEAR(expected, Seen(this->GetDevice(), Haze(g, a), cosine), 2e-4 * expected) << g << " " << a;
         const double schlick = SchlickOf(g * a, cosine);
-        EXPECT_NEAR(
-          schlick, Seen(this->GetDevice(), Haze(g, a, PhaseFunction::Schlick), cosine), 2e-4 * schlick);
+        EXPECT_NEAR(schlick, Seen(this->GetDevice(), Haze(g, a, PhaseFunction::Schlick), cosine), 2e-4 * schlick);
       }
     }
   }
@@ -66,7 +65,8 @@ TEST_F(ScatteringTowardsEye, FollowsThePhaseFunction)
 // Gauss and Legendre's rule with eight points.
 TEST_F(ScatteringTowardsEye, IsNormalisedAndHasTheMeanCosine)
 {
-  const std::array<double, 4> points = { 0.1834346424956498, 0.5255324099163290, 0.7966664774136267, 0.9602898564975363 };
+  const std::array<double, 4> points = { 0.1834346424956498, 0.5255324099163290, 0.7966664774136267,
+    0.9602898564975363 };
   const std::array<double, 4> weights = { 0.3626837833783620, 0.3137066458778873, 0.2223810344533745,
     0.1012285362903763 };
   const double g = 0.6, a = 0.5;

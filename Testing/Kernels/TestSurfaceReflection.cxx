@@ -138,8 +138,10 @@ TEST_F(SurfaceReflects, HalvingTheStepQuartersTheError)
   scene.settings.imageSize = { 40, 5 };
   scene.settings.surfaceReflection = SurfaceReflection::Fixed;
   scene.settings.surfaceReflectance = 0.5;
-  scene.emission = AtCentres(scene.grid, [](double x, double, double z) { return 0.1 + 0.05 * std::sin(9.0 * x + 8.0 * z); });
-  scene.sigma_a = AtCentres(scene.grid, [](double x, double, double z) { return 0.05 + 0.02 * std::cos(7.0 * x - 6.0 * z); });
+  scene.emission =
+    AtCentres(scene.grid, [](double x, double, double z) { return 0.1 + 0.05 * std::sin(9.0 * x + 8.0 * z); });
+  scene.sigma_a =
+    AtCentres(scene.grid, [](double x, double, double z) { return 0.05 + 0.02 * std::cos(7.0 * x - 6.0 * z); });
   Camera camera = Down(scene, 30.0);
   camera.parallelScale = 2.0;
   const auto seenWith = [&](double step) {

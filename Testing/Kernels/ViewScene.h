@@ -52,9 +52,8 @@ struct Scene
     medium.sigma_s = See(this->sigma_s, this->components);
     medium.emission = See(this->emission, 1);
     medium.g = this->g;
-    return { device, medium,
-      { See(this->fluence, 1), See(this->fluenceDirect, 1), See(this->meanDirection, 3) }, this->illumination,
-      this->settings, See(this->ior, 1) };
+    return { device, medium, { See(this->fluence, 1), See(this->fluenceDirect, 1), See(this->meanDirection, 3) },
+      this->illumination, this->settings, See(this->ior, 1) };
   }
 
   double Aspect() const { return static_cast<double>(this->settings.imageSize[0]) / this->settings.imageSize[1]; }
