@@ -47,8 +47,8 @@ struct ViewSettings;
  *
  * Where there is `mean_direction` m, what is divided by 4 pi is multiplied by f: 4 pi times PhaseFunction of mean cosine g |m|,
  * for the angle from m to the direction towards the camera. So light that all travels one way (|m| = 1) is scattered by the
- * medium's phase function, light from everywhere alike (|m| = 0) evenly, and as much on the whole. Without `mean_direction`, or
- * where g is 0, f is 1.
+ * medium's phase function, light from everywhere alike (|m| = 0) evenly, and as much on the whole. Without `mean_direction`, with
+ * ShadowRays, or where g is 0, f is 1.
  *
  * The rest of `fluence` is what the shadow rays do not show already, so that no light counts twice. Where there is no
  * `fluence` but there are lights, shadow rays are used without being asked for.
