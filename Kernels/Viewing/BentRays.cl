@@ -249,7 +249,11 @@ __attribute__((always_inline)) inline void bend(const surroundings* s, integer d
   real start = depth_of(t->at, s->v, spacing);
   for (int n = 0; n < steps; ++n)
   {
-    real time = moves ? (real)stride / sqrt(greater(product(t->velocity, t->velocity), (real)1e-30f)) : (real)0.0f;
+    const real per_voxel = (real)1.0f / sqrt(greater(product(t->velocity, t->velocity), (real)1e-30f));
+    real time = moves ? (real)stride * per_voxel : (real)0.0f;
+    const real3 soon = further(t->at, (real)5.0f * per_voxel, t->velocity);
+    fetch_ahead(s->bending, soon, size);
+    fetch_ahead(s->scene.samples, soon, size);
     integer last = (integer)0;
     if (may_leave)
     {
