@@ -5,10 +5,12 @@
 #include "vtkMediumRayCaster.h"
 
 #include <algorithm>
+#include <chrono>
 #include <cmath>
 #include <fstream>
 #include <functional>
 #include <string>
+#include <thread>
 #include <vector>
 
 namespace
@@ -262,7 +264,12 @@ void MemoryIsGivenBack(test::Claims& claims)
     }
     const double kept = ResidentBytes();
     end(caster);
-    claims.Near(kept - ResidentBytes(), 68e6, 8e6, std::string("memory of the device given back when ") + when);
+    for (int n = 0; n < 200 && kept - ResidentBytes() < 60e6;
+         ++n) // PoCL lets go in a thread of its own, of uploads as well
+    {
+      std::this_thread::sleep_for(std::chrono::milliseconds(10));
+    }
+    claims.That(kept - ResidentBytes() > 60e6, std::string("memory of the device is given back when ") + when);
   };
   given("the filter goes", [](auto& caster) { caster = nullptr; });
   given("the input goes", [](auto& caster) { caster->SetInputConnection(0, nullptr); });
