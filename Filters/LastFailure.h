@@ -1,17 +1,18 @@
 #ifndef LastFailure_h
 #define LastFailure_h
 
-#include "vtkAbstractArray.h"
+#include "ArrayTimes.h"
+
 #include "vtkAlgorithm.h"
 #include "vtkDataObject.h"
 #include "vtkDemandDrivenPipeline.h"
-#include "vtkFieldData.h"
 #include "vtkInformation.h"
 #include "vtkInformationIntegerKey.h"
 #include "vtkInformationUnsignedLongKey.h"
 #include "vtkTimeStamp.h"
 
 #include <algorithm>
+#include <vector>
 
 namespace tyndall
 {
@@ -53,7 +54,7 @@ public:
     {
       for (int i = 0; holds && i < this->Filter->GetNumberOfInputConnections(port); ++i)
       {
-        holds = TimeOfArrays(this->Filter->GetInputDataObject(port, i)) < time;
+        holds = TimeOf(this->Filter->GetInputDataObject(port, i)) < time;
       }
     }
     return holds;
@@ -73,18 +74,10 @@ public:
 
 private:
   /// Not that of the data: ParaView's filters between filters make it anew, with the same arrays, whenever it is looked at.
-  static vtkMTimeType TimeOfArrays(vtkDataObject* data)
+  static vtkMTimeType TimeOf(vtkDataObject* data)
   {
-    vtkMTimeType latest = 0;
-    for (int kind : { vtkDataObject::POINT, vtkDataObject::CELL, vtkDataObject::FIELD })
-    {
-      vtkFieldData* arrays = data ? data->GetAttributesAsFieldData(kind) : nullptr;
-      for (int i = 0; arrays && i < arrays->GetNumberOfArrays(); ++i)
-      {
-        latest = std::max(latest, arrays->GetAbstractArray(i)->GetMTime());
-      }
-    }
-    return latest;
+    const std::vector<vtkMTimeType> times = TimesOfArrays(data);
+    return times.empty() ? 0 : *std::max_element(times.begin(), times.end());
   }
 
   static vtkInformationUnsignedLongKey* Time()

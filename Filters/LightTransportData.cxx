@@ -175,9 +175,6 @@ FloatField Read(vtkImageData* image, const Choice& choice, Need need, Components
 }
 }
 
-namespace
-{
-/// To be asked where an input is empty.
 void StopWithFilterBefore(vtkDataObject* input)
 {
   if (ReadFact(input, AbortedFact, 0.0) > 0.0)
@@ -188,7 +185,6 @@ void StopWithFilterBefore(vtkDataObject* input)
   {
     throw InputFailed();
   }
-}
 }
 
 Grid GridOf(vtkImageData* image)
@@ -245,6 +241,11 @@ FloatField ReadChosenCells(
   vtkAlgorithm* filter, int index, vtkImageData* image, const std::string& otherwise, Need need, Components components)
 {
   return Read(image, ChoiceOf(filter, index, otherwise), need, components);
+}
+
+vtkDataArray* ChosenArray(vtkAlgorithm* filter, int index, vtkImageData* image, const std::string& otherwise)
+{
+  return Find(image, ChoiceOf(filter, index, otherwise)).array;
 }
 
 MediumInput ReadMedium(vtkAlgorithm* filter, vtkImageData* image)

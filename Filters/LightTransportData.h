@@ -15,6 +15,7 @@
 #include <vector>
 
 class vtkAlgorithm;
+class vtkDataArray;
 class vtkDataObject;
 class vtkImageData;
 class vtkInformationVector;
@@ -82,6 +83,9 @@ FloatField ReadCells(vtkImageData* image, const std::string& name, Need need, Co
 FloatField ReadChosenCells(vtkAlgorithm* filter, int index, vtkImageData* image, const std::string& otherwise,
   Need need, Components components = { 1, 3 });
 
+/// The array that ReadChosenCells would read, or null; it is not looked at.
+vtkDataArray* ChosenArray(vtkAlgorithm* filter, int index, vtkImageData* image, const std::string& otherwise);
+
 /// Numbers of SetInputArrayToProcess for the filters that take a medium at port 0.
 enum MediumArray
 {
@@ -136,6 +140,9 @@ void WriteLight(LightField&& light, vtkImageData* output);
 
 /// One row an iteration: `iteration`, `seconds`, `residual`, `absorbed`, `escaped`, `left_over`.
 void WriteConvergence(const std::vector<ConvergenceRow>& rows, vtkTable* table);
+
+/// To be asked where an input is empty: ends the work of Guarded without an error where the filter before failed or was aborted.
+void StopWithFilterBefore(vtkDataObject* input);
 
 /// Reports to the filter's progress; says stop when the filter is asked to abort.
 Monitor MonitorOf(vtkAlgorithm* filter);

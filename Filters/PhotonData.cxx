@@ -80,8 +80,13 @@ void WritePhotons(const EmittedPhotons& emitted, vtkPolyData* output)
 
 std::vector<Photon> ReadPhotons(vtkPolyData* data)
 {
-  if (!data || data->GetNumberOfPoints() == 0)
+  if (!data)
   {
+    return {};
+  }
+  if (data->GetNumberOfPoints() == 0)
+  {
+    StopWithFilterBefore(data);
     return {};
   }
   vtkDataArray* direction = PhotonArray(data, "direction", { 3 });

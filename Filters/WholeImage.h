@@ -1,11 +1,14 @@
 #pragma once
 
+#include "vtkExecutive.h"
 #include "vtkExtentTranslator.h"
 #include "vtkImageData.h"
 #include "vtkInformation.h"
 #include "vtkInformationVector.h"
 #include "vtkNew.h"
 #include "vtkStreamingDemandDrivenPipeline.h"
+
+#include <algorithm>
 
 /// For filters in parallel pipelines whose light crosses the borders of pieces.
 namespace tyndall
@@ -27,6 +30,16 @@ inline void AskForAll(vtkInformationVector* inputs)
     information->Set(Pipeline::UPDATE_NUMBER_OF_PIECES(), 1);
     information->Set(Pipeline::UPDATE_NUMBER_OF_GHOST_LEVELS(), 0);
   }
+}
+
+/// In RequestData: whether the piece that is asked for is the first, the one that has what is not divided. The port that asks
+/// says so; other ports may not know their piece yet.
+inline bool IsFirstPiece(vtkInformation* request, vtkInformationVector* outputs)
+{
+  auto* const piece = vtkStreamingDemandDrivenPipeline::UPDATE_PIECE_NUMBER();
+  const int port = std::max(request->Get(vtkExecutive::FROM_OUTPUT_PORT()), 0); // -1: no port, but the filter itself
+  vtkInformation* const asking = outputs->GetInformationObject(port);
+  return !asking->Has(piece) || asking->Get(piece) <= 0;
 }
 
 /// In RequestData: crop the output to the extent, or the piece of it, that was asked for; other ranks hold the rest.

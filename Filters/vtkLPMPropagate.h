@@ -1,7 +1,7 @@
 #ifndef vtkLPMPropagate_h
 #define vtkLPMPropagate_h
 
-#include "vtkLitMediumAlgorithm.h"
+#include "vtkLitImageAlgorithm.h"
 #include "vtkTyndallModule.h" // for export macro
 
 /**
@@ -44,11 +44,11 @@
  * A. Gruson, A. Hakke Patil, R. Cozot, K. Bouatouch, S. Pattanaik: Light Propagation Maps on Parallel Graphics Architectures,
  * EGPGV 2012.
  */
-class TYNDALL_EXPORT vtkLPMPropagate : public vtkLitMediumAlgorithm
+class TYNDALL_EXPORT vtkLPMPropagate : public vtkLitImageAlgorithm
 {
 public:
   static vtkLPMPropagate* New();
-  vtkTypeMacro(vtkLPMPropagate, vtkLitMediumAlgorithm);
+  vtkTypeMacro(vtkLPMPropagate, vtkLitImageAlgorithm);
   void PrintSelf(ostream& os, vtkIndent indent) override;
 
   ///@{

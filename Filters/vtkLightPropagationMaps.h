@@ -1,7 +1,7 @@
 #ifndef vtkLightPropagationMaps_h
 #define vtkLightPropagationMaps_h
 
-#include "vtkLitMediumAlgorithm.h"
+#include "vtkLitImageAlgorithm.h"
 #include "vtkTyndallModule.h" // for export macro
 
 #include <string>
@@ -55,11 +55,11 @@ struct LightField;
  * A. Gruson, A. Hakke Patil, R. Cozot, K. Bouatouch, S. Pattanaik: Light Propagation Maps on Parallel Graphics Architectures,
  * EGPGV 2012. R. Fattal: Participating Media Illumination Using Light Propagation Maps, ACM Trans. Graph. 28 (2009).
  */
-class TYNDALL_EXPORT vtkLightPropagationMaps : public vtkLitMediumAlgorithm
+class TYNDALL_EXPORT vtkLightPropagationMaps : public vtkLitImageAlgorithm
 {
 public:
   static vtkLightPropagationMaps* New();
-  vtkTypeMacro(vtkLightPropagationMaps, vtkLitMediumAlgorithm);
+  vtkTypeMacro(vtkLightPropagationMaps, vtkLitImageAlgorithm);
   void PrintSelf(ostream& os, vtkIndent indent) override;
 
   enum Schemes

@@ -90,5 +90,4 @@ void vtkLitMediumAlgorithm::PrintSelf(ostream& os, vtkIndent indent)
   this->Superclass::PrintSelf(os, indent);
   os << indent << "EnvironmentUp: " << this->EnvironmentUp << "\n";
   os << indent << "EnvironmentAzimuth: " << this->EnvironmentAzimuth << "\n";
-  os << indent << "Device: " << this->Device << "\n";
 }

@@ -1,10 +1,8 @@
 #ifndef vtkLitMediumAlgorithm_h
 #define vtkLitMediumAlgorithm_h
 
-#include "vtkImageAlgorithm.h"
+#include "vtkDataObjectAlgorithm.h"
 #include "vtkTyndallModule.h" // for export macro
-
-#include <string>
 
 namespace tyndall
 {
@@ -13,9 +11,10 @@ struct Illumination;
 
 /**
  * @class vtkLitMediumAlgorithm
- * @brief superclass of the filters that take a medium and what shines on it, and give an image
+ * @brief superclass of the filters that take a medium and what shines on it
  *
- * It has their input ports, how the environment stands, and the OpenCL device.
+ * It has their input ports and how the environment stands, whatever they make of them; vtkLitImageAlgorithm is for those that
+ * make an image on an OpenCL device.
  *
  * Input 0, the medium: vtkImageData; see the subclass for its arrays.
  * Input 1, optional: lights as vtkLightRig makes them, vtkPolyData.
@@ -25,14 +24,15 @@ struct Illumination;
  * Light crosses the borders of pieces. In a parallel pipeline every rank therefore asks for all of each input and works on
  * the whole; RequestData of a subclass hands on the piece it was asked for.
  *
- * A subclass implements RequestData, and reads there the lights and the environment by ReadIllumination.
+ * A subclass says the type of its outputs and implements RequestData, and reads there the lights and the environment by
+ * ReadIllumination.
  *
- * @sa vtkLightPropagationMaps vtkLPMPropagate vtkMediumRayCaster
+ * @sa vtkLitImageAlgorithm vtkPhotonEmitter
  */
-class TYNDALL_EXPORT vtkLitMediumAlgorithm : public vtkImageAlgorithm
+class TYNDALL_EXPORT vtkLitMediumAlgorithm : public vtkDataObjectAlgorithm
 {
 public:
-  vtkTypeMacro(vtkLitMediumAlgorithm, vtkImageAlgorithm);
+  vtkTypeMacro(vtkLitMediumAlgorithm, vtkDataObjectAlgorithm);
   void PrintSelf(ostream& os, vtkIndent indent) override;
 
   /// Numbers of the input ports.
@@ -65,13 +65,6 @@ public:
   vtkGetMacro(EnvironmentAzimuth, double);
   ///@}
 
-  ///@{
-  /// Part of the name of the OpenCL device to use, of any case. Default empty: what the variable TYNDALL_DEVICE names, or
-  /// else PoCL's CPU device.
-  vtkSetStdStringFromCharMacro(Device);
-  vtkGetCharFromStdStringMacro(Device);
-  ///@}
-
 protected:
   vtkLitMediumAlgorithm();
   ~vtkLitMediumAlgorithm() override;
@@ -89,7 +82,6 @@ protected:
 
   int EnvironmentUp = 2;
   double EnvironmentAzimuth = 0.0;
-  std::string Device;
 
 private:
   vtkLitMediumAlgorithm(const vtkLitMediumAlgorithm&) = delete;

@@ -1,12 +1,15 @@
 #include "vtkMediumRayCaster.h"
 
+#include "ArrayTimes.h"
 #include "Device/Device.h"
 #include "LightTransportData.h"
 #include "Viewing/MediumRayCaster.h"
 #include "Viewing/ToneMapping.h"
 #include "WholeImage.h"
 
+#include "vtkDataArray.h"
 #include "vtkDataObject.h"
+#include "vtkDemandDrivenPipeline.h"
 #include "vtkFloatArray.h"
 #include "vtkImageData.h"
 #include "vtkInformation.h"
@@ -15,6 +18,7 @@
 #include "vtkObjectFactory.h"
 #include "vtkPointData.h"
 #include "vtkStreamingDemandDrivenPipeline.h"
+#include "vtkTimeStamp.h"
 #include "vtkUnsignedCharArray.h"
 
 #include <algorithm>
@@ -30,7 +34,13 @@ enum LightArray
 {
   Fluence = 3, ///< after tyndall::MediumArray
   FluenceDirect = 4,
+  RefractiveIndex = 5,
+  MeanDirection = 6,
 };
+
+/// The arrays it reads, by their number.
+constexpr const char* ArrayNames[] = { "sigma_a", "sigma_s", "emission", "fluence", "fluence_direct", "ior",
+  "mean_direction" };
 
 tyndall::Rgb ToRgb(const double* values)
 {
@@ -47,6 +57,13 @@ tyndall::ViewSettings SettingsOf(vtkMediumRayCaster* filter)
   settings.rectangleSamples = filter->GetRectangleSamples();
   settings.showBackground = filter->GetShowBackground();
   settings.backgroundColor = ToRgb(filter->GetBackgroundColor());
+  settings.phaseFunction = static_cast<tyndall::PhaseFunction>(filter->GetPhaseFunction());
+  settings.surfaceReflection = static_cast<tyndall::SurfaceReflection>(filter->GetSurfaceReflection());
+  settings.surfaceIndex = filter->GetSurfaceIndex();
+  settings.surfaceReflectance = filter->GetSurfaceReflectance();
+  settings.tableFace = filter->GetTableFace();
+  settings.tableColor = ToRgb(filter->GetTableColor());
+  settings.tableReflectance = filter->GetTableReflectance();
   return settings;
 }
 
@@ -92,6 +109,29 @@ void WritePicture(const tyndall::Picture& picture, const std::vector<std::uint8_
 }
 }
 
+/// By what a scene on the device is known to be still that of the inputs. No two objects of VTK have the same time.
+struct vtkMediumRayCaster::SceneKey
+{
+  std::shared_ptr<tyndall::Device> device;
+  std::vector<vtkMTimeType> times;
+  std::vector<double> numbers;
+
+  bool operator==(const SceneKey& other) const
+  {
+    return this->device == other.device && this->times == other.times && this->numbers == other.numbers;
+  }
+};
+
+/// Medium, light and illumination as they are on the device, ready for pictures.
+struct vtkMediumRayCaster::Scene
+{
+  SceneKey key;
+  vtkTimeStamp made;
+  tyndall::Grid grid;
+  bool lightsAlone = false; ///< there is no fluence, so shadow rays are needed
+  std::unique_ptr<tyndall::MediumRayCaster> caster;
+};
+
 vtkStandardNewMacro(vtkMediumRayCaster);
 
 vtkMediumRayCaster::vtkMediumRayCaster() = default;
@@ -111,32 +151,133 @@ int vtkMediumRayCaster::RequestInformation(vtkInformation*, vtkInformationVector
   return 1;
 }
 
+void vtkMediumRayCaster::SetInputConnection(int port, vtkAlgorithmOutput* input)
+{
+  if (input != this->GetInputConnection(port, 0))
+  {
+    this->Kept.reset();
+  }
+  this->Superclass::SetInputConnection(port, input);
+}
+
+/// Where the filters before will run again, or have. Their data do not tell: ParaView's filters between filters make them anew,
+/// with the same arrays, whenever they are looked at; and values may be changed without telling their array.
+void vtkMediumRayCaster::ForgetOldScene()
+{
+  for (int port = 0; port < this->GetNumberOfInputPorts(); ++port)
+  {
+    for (int i = 0; this->Kept && i < this->GetNumberOfInputConnections(port); ++i)
+    {
+      auto* const before = vtkDemandDrivenPipeline::SafeDownCast(this->GetInputExecutive(port, i));
+      if (!before || before->GetPipelineMTime() > this->Kept->made.GetMTime())
+      {
+        this->Kept.reset();
+      }
+    }
+  }
+}
+
+/// The memory of an old scene is given back before the filters before run, which may need it.
+int vtkMediumRayCaster::RequestUpdateExtent(
+  vtkInformation* request, vtkInformationVector** inputs, vtkInformationVector* outputs)
+{
+  this->ForgetOldScene();
+  return this->Superclass::RequestUpdateExtent(request, inputs, outputs);
+}
+
+vtkMediumRayCaster::SceneKey vtkMediumRayCaster::KeyOf(vtkInformationVector** inputs)
+{
+  SceneKey key;
+  key.device = tyndall::Device::Find(this->Device);
+  vtkImageData* const image = vtkImageData::GetData(inputs[MEDIUM]);
+  const tyndall::Grid grid = tyndall::GridOf(image);
+  for (int axis = 0; axis < 3; ++axis)
+  {
+    key.numbers.insert(
+      key.numbers.end(), { static_cast<double>(grid.size[axis]), grid.spacing[axis], grid.origin[axis] });
+  }
+  key.numbers.insert(
+    key.numbers.end(), { tyndall::ReadFact(image, "g", 0.0), 1.0 * this->EnvironmentUp, this->EnvironmentAzimuth });
+  for (int number = tyndall::SigmaA; number <= MeanDirection; ++number)
+  {
+    vtkDataArray* const array = tyndall::ChosenArray(this, number, image, ArrayNames[number]);
+    key.times.push_back(array ? array->GetMTime() : 0);
+  }
+  for (int port : { LIGHTS, ENVIRONMENT })
+  {
+    const std::vector<vtkMTimeType> times = tyndall::TimesOfArrays(vtkDataObject::GetData(inputs[port]));
+    key.times.push_back(times.size());
+    key.times.insert(key.times.end(), times.begin(), times.end());
+  }
+  if (vtkImageData* const environment = vtkImageData::GetData(inputs[ENVIRONMENT]))
+  {
+    const int* size = environment->GetDimensions();
+    key.numbers.insert(key.numbers.end(), size, size + 3);
+  }
+  return key;
+}
+
+std::unique_ptr<vtkMediumRayCaster::Scene> vtkMediumRayCaster::MakeScene(
+  vtkInformationVector** inputs, const SceneKey& key, tyndall::ViewSettings settings)
+{
+  using tyndall::Need;
+  vtkImageData* const image = vtkImageData::GetData(inputs[MEDIUM]);
+  const tyndall::MediumInput input = tyndall::ReadMedium(this, image);
+  const auto read = [&](int number, tyndall::Components components) {
+    return tyndall::ReadChosenCells(this, number, image, ArrayNames[number], Need::Optional, components);
+  };
+  const tyndall::FloatField fluence = read(Fluence, { 1, 3 });
+  const tyndall::FloatField direct = read(FluenceDirect, { 1, 3 });
+  const tyndall::FloatField ior = read(RefractiveIndex, { 1 });
+  const tyndall::FloatField meanDirection = read(MeanDirection, { 3 });
+  const tyndall::Illumination illumination = this->ReadIllumination(inputs);
+  if (!fluence.IsThere() && illumination.lights.empty() && !input.emission.IsThere())
+  {
+    vtkWarningMacro("The medium is dark: it has no array fluence (a solver makes it, e.g. LightPropagationMaps), there "
+                    "are no Lights, and it does not emit.");
+  }
+  auto scene = std::make_unique<Scene>();
+  scene->key = key;
+  scene->grid = input.medium.grid;
+  scene->lightsAlone = !fluence.IsThere() && !illumination.lights.empty();
+  settings.shadowRays |= scene->lightsAlone;
+  scene->caster = std::make_unique<tyndall::MediumRayCaster>(
+    *key.device, input.medium, tyndall::SolvedLight{ fluence, direct, meanDirection }, illumination, settings, ior);
+  scene->made.Modified();
+  return scene;
+}
+
+std::unique_ptr<vtkMediumRayCaster::Scene> vtkMediumRayCaster::FindScene(vtkInformationVector** inputs)
+{
+  this->ForgetOldScene();
+  std::unique_ptr<Scene> kept = std::move(this->Kept); // it comes back after a good picture
+  const SceneKey key = this->KeyOf(inputs);
+  const tyndall::ViewSettings settings = SettingsOf(this);
+  if (kept && kept->key == key)
+  {
+    tyndall::ViewSettings asked = settings;
+    asked.shadowRays |= kept->lightsAlone;
+    this->SceneKept = kept->caster->Adopt(asked);
+  }
+  if (this->SceneKept)
+  {
+    return kept;
+  }
+  kept.reset(); // before the next one needs the memory
+  return this->MakeScene(inputs, key, settings);
+}
+
 int vtkMediumRayCaster::RequestData(vtkInformation*, vtkInformationVector** inputs, vtkInformationVector* outputs)
 {
   using Clock = std::chrono::steady_clock;
   const Clock::time_point start = Clock::now();
   this->Seconds = this->UsedExposure = 0.0;
+  this->SceneKept = false;
   this->DeviceName.clear();
   this->LeftOut.clear();
   return tyndall::Guarded(this, outputs, [&] {
-    vtkImageData* image = vtkImageData::GetData(inputs[MEDIUM]);
-    const tyndall::MediumInput input = tyndall::ReadMedium(this, image);
-    using tyndall::Need;
-    const auto fluence = tyndall::ReadChosenCells(this, Fluence, image, "fluence", Need::Optional);
-    const auto direct = tyndall::ReadChosenCells(this, FluenceDirect, image, "fluence_direct", Need::Optional);
-    const tyndall::Illumination illumination = this->ReadIllumination(inputs);
-    tyndall::ViewSettings settings = SettingsOf(this);
-    settings.shadowRays |= !fluence.IsThere() && !illumination.lights.empty();
-    if (!fluence.IsThere() && illumination.lights.empty() && !input.emission.IsThere())
-    {
-      vtkWarningMacro(
-        "The medium is dark: it has no array fluence (a solver makes it, e.g. LightPropagationMaps), there "
-        "are no Lights, and it does not emit.");
-    }
-
-    const std::shared_ptr<tyndall::Device> device = tyndall::Device::Find(this->Device);
-    tyndall::MediumRayCaster caster(*device, input.medium, { fluence, direct }, illumination, settings);
-    const tyndall::Picture picture = caster.Render(CameraOf(this, input.medium.grid), tyndall::MonitorOf(this));
+    std::unique_ptr<Scene> scene = this->FindScene(inputs);
+    const tyndall::Picture picture = scene->caster->Render(CameraOf(this, scene->grid), tyndall::MonitorOf(this));
     tyndall::ToneMapping toneMapping;
     toneMapping.exposure = this->Exposure > 0.0 ? this->Exposure : tyndall::AutomaticExposure(picture.radiance);
     toneMapping.curve = static_cast<tyndall::ToneCurve>(this->ToneCurve);
@@ -145,14 +286,17 @@ int vtkMediumRayCaster::RequestData(vtkInformation*, vtkInformationVector** inpu
 
     vtkImageData* output = vtkImageData::GetData(outputs);
     WritePicture(picture, color, output);
+    const std::string device = scene->key.device->Name();
+    const std::vector<std::string>& leftOut = scene->caster->LeftOut();
     tyndall::AddFact(output, "exposure", std::vector<double>{ toneMapping.exposure });
-    tyndall::AddFact(output, "left_out", caster.LeftOut());
-    tyndall::AddFact(output, "device", std::vector<std::string>{ device->Name() });
+    tyndall::AddFact(output, "left_out", leftOut);
+    tyndall::AddFact(output, "device", std::vector<std::string>{ device });
     tyndall::KeepWhatIsAskedFor(outputs->GetInformationObject(0), output);
 
     this->UsedExposure = toneMapping.exposure;
-    this->DeviceName = device->Name();
-    this->LeftOut = tyndall::Lines(caster.LeftOut());
+    this->DeviceName = device;
+    this->LeftOut = tyndall::Lines(leftOut);
+    this->Kept = std::move(scene);
     this->Seconds = std::chrono::duration<double>(Clock::now() - start).count();
   });
 }
@@ -175,8 +319,16 @@ void vtkMediumRayCaster::PrintSelf(ostream& os, vtkIndent indent)
   PrintNumbers(os, indent, "BackgroundColor", this->BackgroundColor, 3);
   os << indent << "Exposure: " << this->Exposure << "\n";
   os << indent << "ToneCurve: " << (this->ToneCurve == LINEAR ? "linear" : "filmic") << "\n";
+  os << indent << "PhaseFunction: " << (this->PhaseFunction == SCHLICK ? "Schlick" : "Henyey-Greenstein") << "\n";
+  os << indent << "SurfaceReflection: " << this->SurfaceReflection << "\n";
+  os << indent << "SurfaceIndex: " << this->SurfaceIndex << "\n";
+  os << indent << "SurfaceReflectance: " << this->SurfaceReflectance << "\n";
+  os << indent << "TableFace: " << this->TableFace << "\n";
+  PrintNumbers(os, indent, "TableColor", this->TableColor, 3);
+  os << indent << "TableReflectance: " << this->TableReflectance << "\n";
   os << indent << "Seconds: " << this->Seconds << "\n";
   os << indent << "UsedExposure: " << this->UsedExposure << "\n";
+  os << indent << "SceneKept: " << this->SceneKept << "\n";
   os << indent << "DeviceName: " << this->DeviceName << "\n";
   os << indent << "LeftOut: " << this->LeftOut << "\n";
 }

@@ -1,10 +1,16 @@
 #ifndef vtkMediumRayCaster_h
 #define vtkMediumRayCaster_h
 
-#include "vtkLitMediumAlgorithm.h"
+#include "vtkLitImageAlgorithm.h"
 #include "vtkTyndallModule.h" // for export macro
 
+#include <memory>
 #include <string>
+
+namespace tyndall
+{
+struct ViewSettings;
+}
 
 /**
  * @class vtkMediumRayCaster
@@ -12,7 +18,9 @@
  *
  * Marches a ray through every pixel of the picture, and gathers along it the light that the medium scatters towards the
  * camera and the light it emits, each dimmed by the medium before it; behind the medium the background is seen through it.
- * The source is interpolated linearly between voxel centres.
+ * The source is interpolated linearly between voxel centres. Where the refractive index varies, rays bend as
+ * d/ds(n dx/ds) = grad n says, surfaces of refractive objects may mirror, and the background is looked up along the direction
+ * in which a ray leaves. Where it is constant none of that is computed.
  *
  * Input 0, the medium with its light: vtkImageData with cell arrays (point arrays are averaged to cells)
  *
@@ -23,17 +31,24 @@
  * | `emission`       | 1 or 3     | W/(length^3 sr)  | emitted radiance per unit length; optional       |
  * | `fluence`        | 1 or 3     | W/length^2       | light, as every solver writes it; optional       |
  * | `fluence_direct` | 1 or 3     | W/length^2       | its unscattered part; needed only to separate it |
+ * | `ior`            | 1          | 1                | refractive index n, above 0; optional            |
+ * | `mean_direction` | 3          | 1                | power-weighted mean direction of the light, its length the anisotropy, as vtkPhotonMarcher writes it; optional |
  *
- * or those chosen by SetInputArrayToProcess 0 to 4, and field data `g` (default 0).
+ * or those chosen by SetInputArrayToProcess 0 to 6, and field data `g` (default 0).
  * Input 1, optional: lights as vtkLightRig makes them, for shadow rays.
  * Input 2, optional: the environment behind the medium, vtkImageData in latitude-longitude layout, point array `radiance`.
  *
- * What is scattered towards the camera:
+ * What is scattered towards the camera, of the light in a voxel:
  *
  * |                     | SingleScatteringOnly                                 | else                       |
  * |---------------------|------------------------------------------------------|----------------------------|
  * | without ShadowRays  | `fluence_direct` / 4 pi                              | `fluence` / 4 pi           |
  * | with ShadowRays     | the lights behind the medium, with its phase function | that, and the rest of `fluence` / 4 pi |
+ *
+ * Where there is `mean_direction` m, what is divided by 4 pi is multiplied by f: 4 pi times PhaseFunction of mean cosine g |m|,
+ * for the angle from m to the direction towards the camera. So light that all travels one way (|m| = 1) is scattered by the
+ * medium's phase function, light from everywhere alike (|m| = 0) evenly, and as much on the whole. Without `mean_direction`, with
+ * ShadowRays, or where g is 0, f is 1.
  *
  * The rest of `fluence` is what the shadow rays do not show already, so that no light counts twice. Where there is no
  * `fluence` but there are lights, shadow rays are used without being asked for.
@@ -49,27 +64,46 @@
  *
  * and field data `exposure` (what radiance was multiplied by), `left_out` (what the scene did not need), `device`.
  *
+ * Medium, light and illumination stay on the device, so that a picture from another camera, of another size, or of other
+ * colours on the screen only casts its rays: until an input changes, another one is connected, a setting needs it, the device is
+ * another one, or the filter goes. Then their memory is given back.
+ *
  * While CameraPosition and CameraFocalPoint are equal, as they are untouched, the camera frames the whole medium, from
  * above, z upwards.
  *
  * In a parallel pipeline every rank renders the whole picture and hands on the piece it was asked for.
  *
- * @sa vtkLightPropagationMaps vtkLightRig vtkEnvironmentReader
+ * @sa vtkLightPropagationMaps vtkPhotonMarcher vtkLightRig vtkEnvironmentReader
  * @par Thanks
+ * M. Pfeuti, Real-time Rendering of Refractive Objects in Participating Media, 2009, section 3.1.6 (bent rays). P. Blasi,
+ * B. Le Saec, C. Schlick: A Rendering Algorithm for Discrete Volume Density Objects, Computer Graphics Forum 12 (1993).
  * Tone mapping: K. Narkowicz, ACES Filmic Tone Mapping Curve, 2015; E. Reinhard et al., Photographic Tone Reproduction for
  * Digital Images, SIGGRAPH 2002 (exposure).
  */
-class TYNDALL_EXPORT vtkMediumRayCaster : public vtkLitMediumAlgorithm
+class TYNDALL_EXPORT vtkMediumRayCaster : public vtkLitImageAlgorithm
 {
 public:
   static vtkMediumRayCaster* New();
-  vtkTypeMacro(vtkMediumRayCaster, vtkLitMediumAlgorithm);
+  vtkTypeMacro(vtkMediumRayCaster, vtkLitImageAlgorithm);
   void PrintSelf(ostream& os, vtkIndent indent) override;
 
   enum ToneCurves
   {
     LINEAR = 0, ///< radiance times exposure, cut at white
     FILMIC = 1  ///< bright parts are compressed as film does it
+  };
+
+  enum PhaseFunctions
+  {
+    HENYEY_GREENSTEIN = 0,
+    SCHLICK = 1 ///< Blasi et al. 1993, k = 1.55 g - 0.55 g^3: cheaper, and close to it
+  };
+
+  enum SurfaceReflections
+  {
+    NONE = 0,
+    FRESNEL = 1, ///< of unpolarised light
+    FIXED = 2    ///< SurfaceReflectance
   };
 
   ///@{
@@ -151,6 +185,50 @@ public:
   ///@}
 
   ///@{
+  /// How light whose direction is known is scattered, by the medium's g: HENYEY_GREENSTEIN (default) or SCHLICK.
+  vtkSetClampMacro(PhaseFunction, int, HENYEY_GREENSTEIN, SCHLICK);
+  vtkGetMacro(PhaseFunction, int);
+  ///@}
+
+  ///@{
+  /// What the surface of refractive objects mirrors of a ray that meets it from the side of the smaller index: NONE (default),
+  /// FRESNEL or FIXED. Without an `ior` that varies there is no surface.
+  vtkSetClampMacro(SurfaceReflection, int, NONE, FIXED);
+  vtkGetMacro(SurfaceReflection, int);
+  ///@}
+
+  ///@{
+  /// The surface is where n has this value. Default 0: midway between the least and the largest n. Valid 0 and [1, infinity).
+  vtkSetMacro(SurfaceIndex, double);
+  vtkGetMacro(SurfaceIndex, double);
+  ///@}
+
+  ///@{
+  /// Part that the surface mirrors if SurfaceReflection is FIXED. Default 0.1, valid [0, 1].
+  vtkSetMacro(SurfaceReflectance, double);
+  vtkGetMacro(SurfaceReflectance, double);
+  ///@}
+
+  ///@{
+  /// Face of the box that is a table, seen from within: 0 to 5 for -x, +x, -y, +y, -z, +z. Default -1: none.
+  vtkSetClampMacro(TableFace, int, -1, 5);
+  vtkGetMacro(TableFace, int);
+  ///@}
+
+  ///@{
+  /// Diffuse reflectance of the table, red, green, blue, lit by the light in the voxels on it. Default (0.6, 0.6, 0.6), valid
+  /// [0, 1].
+  vtkSetVector3Macro(TableColor, double);
+  vtkGetVector3Macro(TableColor, double);
+  ///@}
+
+  ///@{
+  /// Part that the table mirrors. Default 0.1, valid from 0 to 1 less TableColor.
+  vtkSetMacro(TableReflectance, double);
+  vtkGetMacro(TableReflectance, double);
+  ///@}
+
+  ///@{
   /// What radiance is multiplied by for `color`. Default 0: so that the mean of the picture's lit part becomes a medium
   /// grey.
   vtkSetClampMacro(Exposure, double, 0.0, VTK_DOUBLE_MAX);
@@ -164,13 +242,17 @@ public:
   ///@}
 
   ///@{
-  /// What came of the last update: seconds, the exposure used, the device's name, and what the scene did not need, one a
-  /// line.
+  /// What came of the last update: seconds, the exposure used, whether medium and light were on the device from an earlier
+  /// picture, the device's name, and what the scene did not need, one a line.
   vtkGetMacro(Seconds, double);
   vtkGetMacro(UsedExposure, double);
+  vtkGetMacro(SceneKept, bool);
   vtkGetCharFromStdStringMacro(DeviceName);
   vtkGetCharFromStdStringMacro(LeftOut);
   ///@}
+
+  using Superclass::SetInputConnection;
+  void SetInputConnection(int port, vtkAlgorithmOutput* input) override;
 
 protected:
   vtkMediumRayCaster();
@@ -178,11 +260,20 @@ protected:
 
   int RequestInformation(
     vtkInformation* request, vtkInformationVector** inputs, vtkInformationVector* outputs) override;
+  int RequestUpdateExtent(
+    vtkInformation* request, vtkInformationVector** inputs, vtkInformationVector* outputs) override;
   int RequestData(vtkInformation* request, vtkInformationVector** inputs, vtkInformationVector* outputs) override;
 
 private:
   vtkMediumRayCaster(const vtkMediumRayCaster&) = delete;
   void operator=(const vtkMediumRayCaster&) = delete;
+
+  struct SceneKey;
+  struct Scene;
+  void ForgetOldScene();
+  SceneKey KeyOf(vtkInformationVector** inputs);
+  std::unique_ptr<Scene> MakeScene(vtkInformationVector** inputs, const SceneKey& key, tyndall::ViewSettings settings);
+  std::unique_ptr<Scene> FindScene(vtkInformationVector** inputs);
 
   int ImageSize[2] = { 800, 600 };
   double CameraPosition[3] = { 0.0, 0.0, 0.0 };
@@ -199,9 +290,19 @@ private:
   double BackgroundColor[3] = { 0.0, 0.0, 0.0 };
   double Exposure = 0.0;
   int ToneCurve = FILMIC;
+  int PhaseFunction = HENYEY_GREENSTEIN;
+  int SurfaceReflection = NONE;
+  double SurfaceIndex = 0.0;
+  double SurfaceReflectance = 0.1;
+  int TableFace = -1;
+  double TableColor[3] = { 0.6, 0.6, 0.6 };
+  double TableReflectance = 0.1;
+
+  std::unique_ptr<Scene> Kept; ///< of the last picture, if it succeeded
 
   double Seconds = 0.0;
   double UsedExposure = 0.0;
+  bool SceneKept = false;
   std::string DeviceName;
   std::string LeftOut;
 };

@@ -66,6 +66,20 @@ tyndall::Grid GridIn(const double bounds[6], const int size[3])
   return grid;
 }
 
+double LongestEdge(const tyndall::Grid& grid)
+{
+  return std::max({ grid.Length(0), grid.Length(1), grid.Length(2) });
+}
+
+/// The scattering asked for, or such that light which crosses the box shows and is not lost.
+Rgb OutsideScattering(const double asked[3], const tyndall::Grid& grid)
+{
+  const bool automatic = std::all_of(asked, asked + 3, [](double value) { return value < 0.0; });
+  const double edge = LongestEdge(grid); // 0 where there are no voxels, which the kernels refuse
+  const double suiting = edge > 0.0 ? 0.5 / edge : 0.0;
+  return automatic ? Rgb{ suiting, suiting, suiting } : RgbOf(asked);
+}
+
 tyndall::RefractiveMediumSettings SettingsOf(vtkMeshVoxelizer* filter, const std::vector<Solid>& solids)
 {
   tyndall::RefractiveMediumSettings settings;
@@ -74,8 +88,9 @@ tyndall::RefractiveMediumSettings SettingsOf(vtkMeshVoxelizer* filter, const std
     ? GridIn(filter->GetModelBounds(), size)
     : tyndall::GridAround(solids, { size[0], size[1], size[2] }, filter->GetMargin(), filter->GetFilterSize());
   settings.outside = { filter->GetOutsideIndex(), RgbOf(filter->GetOutsideAbsorption()),
-    RgbOf(filter->GetOutsideScattering()), filter->GetOutsideMeanCosine() };
-  settings.perturbation = { filter->GetIndexNoise(), filter->GetScatteringNoise(), filter->GetNoiseSize(),
+    OutsideScattering(filter->GetOutsideScattering(), settings.grid), filter->GetOutsideMeanCosine() };
+  const double noiseSize = filter->GetNoiseSize() == 0.0 ? LongestEdge(settings.grid) / 8.0 : filter->GetNoiseSize();
+  settings.perturbation = { filter->GetIndexNoise(), filter->GetScatteringNoise(), noiseSize,
     static_cast<std::uint32_t>(filter->GetNoiseSeed()) };
   settings.voxelization.samples = filter->GetSupersamplingFactor();
   settings.filterSize = filter->GetFilterSize();
@@ -146,24 +161,23 @@ int vtkMeshVoxelizer::FillInputPortInformation(int, vtkInformation* information)
 
 int vtkMeshVoxelizer::RequestInformation(vtkInformation*, vtkInformationVector**, vtkInformationVector* outputs)
 {
-  vtkInformation* information = outputs->GetInformationObject(0);
+  tyndall::Grid grid; // without ModelBounds the box is known when the meshes are
+  tyndall::GuardedInformation(this, [&] {
+    if (IsOn(this->ModelBounds))
+    {
+      grid = GridIn(this->ModelBounds, this->SampleDimensions);
+    }
+  });
   int extent[6];
   for (int axis = 0; axis < 3; ++axis)
   {
     extent[2 * axis] = 0;
     extent[2 * axis + 1] = std::max(this->SampleDimensions[axis], 1);
   }
+  vtkInformation* information = outputs->GetInformationObject(0);
   information->Set(vtkStreamingDemandDrivenPipeline::WHOLE_EXTENT(), extent, 6);
-  // Without ModelBounds the box is known when the meshes are.
-  double origin[3] = { 0.0, 0.0, 0.0 };
-  double spacing[3] = { 1.0, 1.0, 1.0 };
-  for (int axis = 0; axis < 3 && IsOn(this->ModelBounds); ++axis)
-  {
-    origin[axis] = this->ModelBounds[2 * axis];
-    spacing[axis] = (this->ModelBounds[2 * axis + 1] - origin[axis]) / extent[2 * axis + 1];
-  }
-  information->Set(vtkDataObject::ORIGIN(), origin, 3);
-  information->Set(vtkDataObject::SPACING(), spacing, 3);
+  information->Set(vtkDataObject::ORIGIN(), grid.origin.data(), 3);
+  information->Set(vtkDataObject::SPACING(), grid.spacing.data(), 3);
   return 1;
 }
 
@@ -176,6 +190,7 @@ int vtkMeshVoxelizer::RequestUpdateExtent(vtkInformation*, vtkInformationVector*
 int vtkMeshVoxelizer::RequestData(vtkInformation*, vtkInformationVector** inputs, vtkInformationVector* outputs)
 {
   this->OccupiedVolume = 0.0;
+  std::fill_n(this->UsedOutsideScattering, 3, 0.0);
   this->Seconds = 0.0;
   this->DeviceName.clear();
   this->LeftOut.clear();
@@ -192,9 +207,13 @@ int vtkMeshVoxelizer::RequestData(vtkInformation*, vtkInformationVector** inputs
     const int meshes = inputs[0]->GetNumberOfInformationObjects();
     for (int i = 0; i < meshes; ++i)
     {
+      vtkPolyData* const mesh = vtkPolyData::GetData(inputs[0], i);
+      if (mesh->GetNumberOfCells() == 0)
+      {
+        tyndall::StopWithFilterBefore(mesh);
+      }
       const std::string name = meshes == 1 ? "The mesh" : "Mesh " + std::to_string(i);
-      std::vector<Solid> ofMesh =
-        tyndall::SolidsOf(vtkPolyData::GetData(inputs[0], i), name, NumbersArray(this), i, materialOf);
+      std::vector<Solid> ofMesh = tyndall::SolidsOf(mesh, name, NumbersArray(this), i, materialOf);
       std::move(ofMesh.begin(), ofMesh.end(), std::back_inserter(solids));
     }
 
@@ -208,6 +227,7 @@ int vtkMeshVoxelizer::RequestData(vtkInformation*, vtkInformationVector** inputs
     }
     this->OccupiedVolume =
       settings.grid.VoxelVolume() * std::accumulate(medium.occupancy.begin(), medium.occupancy.end(), 0.0);
+    std::copy_n(settings.outside.sigma_s.begin(), 3, this->UsedOutsideScattering);
     this->Seconds = medium.seconds;
     this->DeviceName = medium.device;
     this->LeftOut = tyndall::Lines(medium.leftOut);
@@ -246,6 +266,7 @@ void vtkMeshVoxelizer::PrintSelf(ostream& os, vtkIndent indent)
   print("FilterSize", &this->FilterSize, 1);
   print("Device", &this->Device, 1);
   print("OccupiedVolume", &this->OccupiedVolume, 1);
+  print("UsedOutsideScattering", this->UsedOutsideScattering, 3);
   print("Seconds", &this->Seconds, 1);
   print("DeviceName", &this->DeviceName, 1);
   print("LeftOut", &this->LeftOut, 1);

@@ -87,8 +87,9 @@ public:
   ///@}
 
   ///@{
-  /// Scattering coefficients sigma_s, red, green, blue, 1/length. Default (0, 0, 0) inside and (0.1, 0.1, 0.1) outside, valid
-  /// [0, infinity).
+  /// Scattering coefficients sigma_s, red, green, blue, 1/length, valid [0, infinity). Default (0, 0, 0) inside. Outside
+  /// (-1, -1, -1): where all three are below 0, the scattering that suits the box, such that half an optical length is scattered
+  /// along its longest edge; see UsedOutsideScattering.
   vtkSetVector3Macro(InsideScattering, double);
   vtkGetVector3Macro(InsideScattering, double);
   vtkSetVector3Macro(OutsideScattering, double);
@@ -134,7 +135,7 @@ public:
   ///@}
 
   ///@{
-  /// Size of the noise's features, length. Default 1, valid (0, infinity).
+  /// Size of the noise's features, length. Default 0: an eighth of the box's longest edge. Valid [0, infinity).
   vtkSetMacro(NoiseSize, double);
   vtkGetMacro(NoiseSize, double);
   ///@}
@@ -166,9 +167,10 @@ public:
   ///@}
 
   ///@{
-  /// What came of the last update: the volume inside meshes (length^3; with its discretisation), the seconds that it took,
-  /// the name of the device, and what the scene did not need, one a line.
+  /// What came of the last update: the volume inside meshes (length^3; with its discretisation), sigma_s outside (red, green,
+  /// blue, 1/length), the seconds that it took, the name of the device, and what the scene did not need, one a line.
   vtkGetMacro(OccupiedVolume, double);
+  vtkGetVector3Macro(UsedOutsideScattering, double);
   vtkGetMacro(Seconds, double);
   vtkGetCharFromStdStringMacro(DeviceName);
   vtkGetCharFromStdStringMacro(LeftOut);
@@ -195,14 +197,14 @@ private:
   double InsideIndex = 1.5;
   double OutsideIndex = 1.0;
   double InsideScattering[3] = { 0.0, 0.0, 0.0 };
-  double OutsideScattering[3] = { 0.1, 0.1, 0.1 };
+  double OutsideScattering[3] = { -1.0, -1.0, -1.0 };
   double InsideAbsorption[3] = { 0.0, 0.0, 0.0 };
   double OutsideAbsorption[3] = { 0.0, 0.0, 0.0 };
   double InsideMeanCosine = 0.0;
   double OutsideMeanCosine = 0.0;
   double IndexNoise = 0.0;
   double ScatteringNoise = 0.0;
-  double NoiseSize = 1.0;
+  double NoiseSize = 0.0;
   int NoiseSeed = 0;
   int SupersamplingFactor = 4;
   int FilterSize = 9;
@@ -212,6 +214,7 @@ private:
   const std::unique_ptr<AddedMaterials> Added;
 
   double OccupiedVolume = 0.0;
+  double UsedOutsideScattering[3] = { 0.0, 0.0, 0.0 };
   double Seconds = 0.0;
   std::string DeviceName;
   std::string LeftOut;

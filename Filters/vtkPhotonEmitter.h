@@ -1,8 +1,10 @@
 #ifndef vtkPhotonEmitter_h
 #define vtkPhotonEmitter_h
 
-#include "vtkPolyDataAlgorithm.h"
+#include "vtkLitMediumAlgorithm.h"
 #include "vtkTyndallModule.h" // for export macro
+
+class vtkPolyData;
 
 /**
  * @class vtkPhotonEmitter
@@ -32,11 +34,11 @@
  * @par Thanks
  * M. Pfeuti, Real-time Rendering of Refractive Objects in Participating Media, 2009, sections 3.1.4 and 4.1.
  */
-class TYNDALL_EXPORT vtkPhotonEmitter : public vtkPolyDataAlgorithm
+class TYNDALL_EXPORT vtkPhotonEmitter : public vtkLitMediumAlgorithm
 {
 public:
   static vtkPhotonEmitter* New();
-  vtkTypeMacro(vtkPhotonEmitter, vtkPolyDataAlgorithm);
+  vtkTypeMacro(vtkPhotonEmitter, vtkLitMediumAlgorithm);
   void PrintSelf(ostream& os, vtkIndent indent) override;
 
   enum Samplers
@@ -48,15 +50,7 @@ public:
     RANDOM = 4
   };
 
-  ///@{
-  /// Lights (vtkPolyData) and environment (vtkImageData) by connection or as data; null: none.
-  void SetLightsConnection(vtkAlgorithmOutput* lights);
-  void SetLightsData(vtkDataObject* lights);
-  void RemoveLights();
-  void SetEnvironmentConnection(vtkAlgorithmOutput* environment);
-  void SetEnvironmentData(vtkDataObject* environment);
-  void RemoveEnvironment();
-  ///@}
+  vtkPolyData* GetOutput();
 
   ///@{
   /// Photons that reach the volume, of all lights together, which share them in proportion to the power with which they reach
@@ -85,18 +79,6 @@ public:
   ///@}
 
   ///@{
-  /// Axis of the scene along which the environment's up points: 0, 1, 2 for x, y, z. Default 2.
-  vtkSetClampMacro(EnvironmentUp, int, 0, 2);
-  vtkGetMacro(EnvironmentUp, int);
-  ///@}
-
-  ///@{
-  /// By how much the environment is turned about its up, degrees, rounded to whole pixels. Default 0.
-  vtkSetMacro(EnvironmentAzimuth, double);
-  vtkGetMacro(EnvironmentAzimuth, double);
-  ///@}
-
-  ///@{
   /// What came of the last update: photons made, their power (W, channels summed), seconds.
   vtkGetMacro(Photons, vtkIdType);
   vtkGetMacro(Power, double);
@@ -107,9 +89,7 @@ protected:
   vtkPhotonEmitter();
   ~vtkPhotonEmitter() override;
 
-  int FillInputPortInformation(int port, vtkInformation* information) override;
-  int RequestUpdateExtent(
-    vtkInformation* request, vtkInformationVector** inputs, vtkInformationVector* outputs) override;
+  int FillOutputPortInformation(int port, vtkInformation* information) override;
   int RequestData(vtkInformation* request, vtkInformationVector** inputs, vtkInformationVector* outputs) override;
 
 private:
@@ -120,8 +100,6 @@ private:
   int Sampler = HAMMERSLEY;
   int Seed = 0;
   double SkyColor[3] = { 0.0, 0.0, 0.0 };
-  int EnvironmentUp = 2;
-  double EnvironmentAzimuth = 0.0;
 
   vtkIdType Photons = 0;
   double Power = 0.0;

@@ -87,12 +87,6 @@ Marched March(vtkPhotonMarcher* filter, const tyndall::Medium& medium, const tyn
   }
   return marched;
 }
-
-bool IsFirstPiece(vtkInformation* output)
-{
-  auto* piece = vtkStreamingDemandDrivenPipeline::UPDATE_PIECE_NUMBER();
-  return !output->Has(piece) || output->Get(piece) <= 0;
-}
 }
 
 vtkStandardNewMacro(vtkPhotonMarcher);
@@ -155,7 +149,7 @@ int vtkPhotonMarcher::RequestUpdateExtent(vtkInformation*, vtkInformationVector*
   return 1;
 }
 
-int vtkPhotonMarcher::RequestData(vtkInformation*, vtkInformationVector** inputs, vtkInformationVector* outputs)
+int vtkPhotonMarcher::RequestData(vtkInformation* request, vtkInformationVector** inputs, vtkInformationVector* outputs)
 {
   this->Note({});
   return tyndall::Guarded(this, outputs, [&] {
@@ -183,7 +177,7 @@ int vtkPhotonMarcher::RequestData(vtkInformation*, vtkInformationVector** inputs
     tyndall::AddCells(output, "mean_direction", std::move(marched.light.meanDirection), 3);
     tyndall::AddFact(output, "scattered", { scattered.begin(), scattered.begin() + channels }, channels);
     tyndall::KeepWhatIsAskedFor(outputs->GetInformationObject(0), output);
-    if (IsFirstPiece(outputs->GetInformationObject(1)))
+    if (tyndall::IsFirstPiece(request, outputs))
     {
       tyndall::WritePaths(marched.paths, vtkPolyData::GetData(outputs, 1));
     }

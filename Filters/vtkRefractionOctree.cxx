@@ -66,12 +66,6 @@ void AddLevels(vtkImageData* output, const std::vector<std::uint8_t>& levels)
   std::copy(levels.begin(), levels.end(), array->GetPointer(0));
   output->GetCellData()->SetScalars(array);
 }
-
-bool IsFirstPiece(vtkInformation* output)
-{
-  auto* piece = vtkStreamingDemandDrivenPipeline::UPDATE_PIECE_NUMBER();
-  return !output->Has(piece) || output->Get(piece) <= 0;
-}
 }
 
 vtkStandardNewMacro(vtkRefractionOctree);
@@ -95,7 +89,8 @@ int vtkRefractionOctree::RequestUpdateExtent(vtkInformation*, vtkInformationVect
   return 1;
 }
 
-int vtkRefractionOctree::RequestData(vtkInformation*, vtkInformationVector** inputs, vtkInformationVector* outputs)
+int vtkRefractionOctree::RequestData(
+  vtkInformation* request, vtkInformationVector** inputs, vtkInformationVector* outputs)
 {
   this->NodeCount = 0;
   this->Seconds = 0.0;
@@ -112,7 +107,7 @@ int vtkRefractionOctree::RequestData(vtkInformation*, vtkInformationVector** inp
     tyndall::AddFact(output, "device", std::vector<std::string>{ octree.device });
     tyndall::KeepWhatIsAskedFor(outputs->GetInformationObject(0), output);
 
-    if (IsFirstPiece(outputs->GetInformationObject(1)))
+    if (tyndall::IsFirstPiece(request, outputs))
     {
       this->NodeCount = tyndall::FillWithNodes(tyndall::GridOf(image), octree, vtkHyperTreeGrid::GetData(outputs, 1));
     }

@@ -215,6 +215,15 @@ __attribute__((always_inline)) inline void cross_sample(
   half_way->after = crossing ? after : half_way->after;
 }
 
+// Half of the light is lost at one place.
+inline void lose_half(integer where, real place, crossed* half_way)
+{
+  half_way->start = where ? place : half_way->start;
+  half_way->length = where ? (real)0.0f : half_way->length;
+  half_way->before = where ? (real)1.0f : half_way->before;
+  half_way->after = where ? (real)0.0f : half_way->after;
+}
+
 // ln(a/b) = 2 (a-b)/(a+b) but for the third order.
 inline real distance_to_half(crossed c)
 {

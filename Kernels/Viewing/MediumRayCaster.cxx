@@ -22,7 +22,7 @@ struct MediumRayCaster::View
   cl_int4 Picture, Size, Bricks, Environment;
 };
 
-/// Field by field the same as BentRays.cl's.
+/// Field by field the same as Travellers.cl's.
 struct MediumRayCaster::Optics
 {
   cl_float4 Spacing, Surface, Table;
@@ -433,7 +433,8 @@ cl::Kernel MediumRayCaster::CastingKernel()
   const int surface = this->Reflects() ? static_cast<int>(this->Settings.surfaceReflection) : 0;
   return this->TheDevice.Kernel("cast_bent_rays",
     { kernel_source::Numerics, kernel_source::Sampling, kernel_source::View, kernel_source::Background,
-      kernel_source::Crossing, kernel_source::BentRays },
+      kernel_source::Crossing, kernel_source::Travellers, kernel_source::SurfaceReflection, kernel_source::BentRays,
+      kernel_source::Table, kernel_source::BentView },
     this->CastingOptions() + Define("BENDS", this->Bends) + Define("SURFACE", surface) +
       Define("TABLE", this->Settings.tableFace >= 0));
 }

@@ -129,8 +129,8 @@ public:
   /// @param illumination  its lights are used by shadow rays, environment and sky as background
   /// @param ior  refractive index, one component a voxel; null or constant: rays are straight
   /// @throws InvalidInput as Check(medium) and Check(illumination); for a light array that is not finite or has not 1 or 3
-  ///   components (a direction 3); for an index that is not finite, below 1e-3 or has not one component; where settings ask for an
-  ///   array that is not there; for a setting out of its range
+  ///   components (a direction 3); for an index that is not within [1e-3, 1e3] or has not one component; where settings
+  ///   ask for an array that is not there; for a setting out of its range
   /// @throws DeviceError if the samples do not fit: 16 bytes a voxel, and as many again for each of coloured extinction, the
   ///   light's direction, emission beside it, and a refractive index that varies
   MediumRayCaster(Device& device, const Medium& medium, const SolvedLight& light, const Illumination& illumination,

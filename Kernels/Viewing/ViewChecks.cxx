@@ -11,6 +11,7 @@ namespace tyndall
 namespace
 {
 constexpr float LeastIndex = 1e-3f;
+constexpr float LargestIndex = 1e3f;
 
 void CheckFinite(const Field& field, const char* name, const Grid& grid)
 {
@@ -150,10 +151,10 @@ void CheckViewedIndex(const Field& ior, const Grid& grid)
   CheckIndex(ior, grid);
   for (std::size_t i = 0; ior.values && i < grid.VoxelCount(); ++i)
   {
-    if (ior.values[i] < LeastIndex)
+    if (ior.values[i] < LeastIndex || ior.values[i] > LargestIndex)
     {
       throw InvalidInput("ior is " + std::to_string(ior.values[i]) + " in voxel " + VoxelName(grid, i) +
-        " (the first such voxel); rays are followed where it is at least 0.001.");
+        " (the first such voxel); rays are followed where it is from 0.001 to 1000.");
     }
   }
 }

@@ -11,6 +11,6 @@ void Check(const ViewSettings& settings);
 ///   for one that is not there
 void Check(const SolvedLight& light, const Grid& grid, const ViewSettings& settings);
 
-/// @throws InvalidInput for an index that has not one component, is not finite or below 1e-3
+/// @throws InvalidInput for an index that has not one component, is not finite, below 1e-3 or above 1e3
 void CheckViewedIndex(const Field& ior, const Grid& grid);
 }

@@ -89,6 +89,9 @@ void GlassBendsTheLight(test::Claims& claims)
     claims.That(fluence->GetComponent((2 * 24 + 11) * 24 + 6, 0) < 0.8, "round that it is missing");
     claims.That(pipeline.Paths()->GetNumberOfLines() == 2, "two paths");
   }
+  vtkCellData* cells = pipeline.Light()->GetCellData();
+  claims.That(cells->GetArray("ior") && cells->GetArray("ior") == medium->GetCellData()->GetArray("ior"),
+    "the index goes on to who looks at the light");
   const vtkIdType steps = pipeline.marcher->GetSteps();
   claims.That(pipeline.marcher->GetBalanceError() < 1e-6, "balance");
 

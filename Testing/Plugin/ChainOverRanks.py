@@ -1,17 +1,22 @@
-"""The whole chain over two ranks: each has its pieces of the light and the picture, equal to those of the whole."""
+"""A whole chain over two ranks: each has its pieces of the light and the picture, equal to those of the whole.
+
+    pvbatch --symmetric ChainOverRanks.py [MODULE]    the module that makes the chain; whole_chain if it is not said
+"""
+import importlib
 import os
 import sys
 
 sys.path.insert(0, os.path.dirname(os.path.abspath(__file__)))
-import whole_chain
 
 from paraview import servermanager
 from paraview.vtk import vtkImageData
 
 rank = servermanager.vtkProcessModule.GetProcessModule().GetPartitionId()
 assert servermanager.vtkProcessModule.GetProcessModule().GetNumberOfLocalPartitions() == 2
-sky = os.path.join(os.environ["TYNDALL_TEST_OUTPUT"], "ChainOverRanks%d.hdr" % rank)
-whole_chain.write_sky(sky)
+name = sys.argv[1] if len(sys.argv) > 1 else "whole_chain"
+chain = importlib.import_module(name)
+sky = os.path.join(os.environ["TYNDALL_TEST_OUTPUT"], "ChainOverRanks%d%s.hdr" % (rank, name))
+chain.write_sky(sky)
 
 
 def check(proxy, association, name):
@@ -30,6 +35,6 @@ def check(proxy, association, name):
     assert all(found.GetValue(i) == wanted.GetValue(i) for i in range(found.GetNumberOfValues())), name
 
 
-light = whole_chain.solve(sky)
+light = chain.solve(sky)
 check(light, vtkImageData.CELL, "fluence")
-check(whole_chain.render(light), vtkImageData.POINT, "radiance")
+check(chain.render(light), vtkImageData.POINT, "radiance")

@@ -24,7 +24,10 @@ n, occupancy = cells(medium, "ior"), cells(medium, "occupancy")
 assert n.shape == (24 ** 3,) and n.min() == 1 and abs(n.max() - 1.5) < 1e-3
 assert cells(medium, "ior_gradient").shape == (24 ** 3, 3)
 assert occupancy.min() == 0 and occupancy.max() == 1 and ((occupancy > 0) & (occupancy < 1)).any()
-assert abs(cells(medium, "sigma_s") - 0.1 * (1 - occupancy)).max() < 1e-6
+edge = medium.GetDataInformation().GetBounds()[1] - medium.GetDataInformation().GetBounds()[0]
+fog = 0.5 / edge  # untouched, what suits the box
+assert numpy.allclose(medium.UsedOutsideScattering, fog, rtol=1e-9), (medium.UsedOutsideScattering, edge)
+assert abs(cells(medium, "sigma_s") - fog * (1 - occupancy)).max() < 1e-6
 
 # What later filters take: the octree, and a volume on the screen.
 octree = RefractionOctree(Input=medium)

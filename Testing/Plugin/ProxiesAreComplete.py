@@ -1,6 +1,7 @@
 """Every property of every proxy: documented, bounded, reachable in Python by its XML name, and its results on the panel."""
 import glob
 import os
+import re
 import xml.etree.ElementTree as ElementTree
 
 from paraview import servermanager
@@ -24,6 +25,61 @@ def is_internal(prop):
     return prop.find("TimeStepsInformationHelper") is not None or prop.get("name").endswith("Info")
 
 
+# What a real number may be measured in; as the documentation says it.
+UNITS = re.compile(r"length|\bW\b|degree|[Vv]oxel|pixel|[Mm]illimet|, s\b|bytes|[Nn]o unit|unit of|[Nn]umber of")
+
+
+def numbers(text):
+    return [float(word) for word in (text or "").split()]
+
+
+def faults_of_number(prop):
+    """A number's unit, range and default: in the documentation what ParaView's help does not make of the domain."""
+    text = words(prop.find("Documentation"))
+    if prop.tag == "DoubleVectorProperty" and not is_internal(prop) and not UNITS.search(text):
+        yield "its documentation does not say its unit"
+    domain = next((child for child in prop if child.tag in ("DoubleRangeDomain", "IntRangeDomain")), None)
+    if domain is None or prop.get("information_only") or prop.get("default_values") is None:
+        return
+    count = int(prop.get("number_of_elements", 1))
+    default, low, high = numbers(prop.get("default_values")), numbers(domain.get("min")), numbers(domain.get("max"))
+    if len(default) != count:
+        yield "%d defaults for %d numbers" % (len(default), count)
+    for bound, name in ((low, "min"), (high, "max")):
+        if bound and len(bound) != count:
+            yield "%d numbers in %s for %d" % (len(bound), name, count)
+    if any(d < l for d, l in zip(default, low)) or any(d > h for d, h in zip(default, high)):
+        yield "its default is not in its range"
+
+
+def faults_of_choice(prop):
+    """An enumeration's entries: with texts, and the default among them."""
+    domain = prop.find("EnumerationDomain")
+    if domain is None:
+        return
+    values = [entry.get("value") for entry in domain.findall("Entry")]
+    if prop.get("default_values") not in values:
+        yield "its default is none of its choices"
+    if len(set(values)) < len(values) or any(not entry.get("text") for entry in domain.findall("Entry")):
+        yield "choices that are the same or have no text"
+
+
+def faults_of_groups(proxy):
+    """Groups and decorators name what there is, and a property is in one group."""
+    groups = proxy.findall("PropertyGroup")
+    grouped = [each.get("name") for group in groups for each in group.findall("Property")]
+    names = {child.get("name") for child in proxy if child.tag.endswith("Property")}
+    exposed = {each.get("name") for each in proxy.findall("SubProxy/ExposedProperties/Property")}
+    for name in grouped:
+        if name not in names | exposed:
+            yield "a group has '%s', which there is not" % name
+        if grouped.count(name) > 1:
+            yield "'%s' is in several groups" % name
+    for widget in proxy.iter("PropertyWidgetDecorator"):
+        if widget.get("property") not in names:
+            yield "a decorator looks at '%s', which there is not" % widget.get("property")
+
+
 def faults_of_proxy(proxy):
     documentation = proxy.find("Documentation")
     if len(words(documentation)) < 40:
@@ -34,6 +90,7 @@ def faults_of_proxy(proxy):
     for port in proxy.findall("OutputPort"):
         if not port.get("name"):
             yield "an output port without name"
+    yield from faults_of_groups(proxy)
     hints = proxy.find("Hints")
     places = ("ShowInMenu", "ReaderFactory", "WriterFactory")
     if hints is None or not any(hints.find(place) is not None for place in places):
@@ -42,8 +99,12 @@ def faults_of_proxy(proxy):
 
 def faults_of_property(prop):
     name, label = prop.get("name"), prop.get("label", prop.get("name"))
-    if not words(prop.find("Documentation")):
+    if len(words(prop.find("Documentation"))) < 10:
         yield "no documentation"
+    if prop.tag == "IdTypeVectorProperty":
+        yield "ParaView's panel does not show numbers of this kind"
+    yield from faults_of_number(prop)
+    yield from faults_of_choice(prop)
     if label.replace(" ", "") != name:
         yield "its label '%s' makes another name in Python" % label
     if prop.get("information_only"):
