@@ -16,7 +16,7 @@ typedef real spectrum;
 // What is packed of the medium and its light, with a border of one voxel.
 typedef struct
 {
-  global const float4* samples;     // red, green, blue of q, W / (length^3 sr), and grey sigma_t, 1/length
+  global const float4* samples;     // red, green, blue of q, W / (length^3 sr), and grey sigma_t, 1/length; with GREY see there
   global const float4* extinctions; // coloured sigma_t
   global const float4* flow;        // x, y, z of the light's mean direction times g
   global const float4* glow;        // emission
@@ -152,7 +152,7 @@ __attribute__((always_inline)) inline sample take_sample(const scenery* scene, c
 {
   sample s;
   real grey;
-  gather(scene->samples, at, size, &s.source, &grey);
+  gather_samples(scene->samples, at, size, &s.source, &grey);
 #if COLOURED
   real unused;
   gather(scene->extinctions, at, size, &s.sigma, &unused);

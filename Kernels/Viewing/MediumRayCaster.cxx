@@ -139,6 +139,9 @@ MediumRayCaster::MediumRayCaster(Device& device, const Medium& medium, const Sol
     ? SmallLights(illumination.lights, medium.grid, settings.rectangleSamples)
     : std::vector<cl_float4>();
   this->LightCount = static_cast<int>(lights.size() / 3);
+  // Beside directions of the light it does not pay to have sources by one channel.
+  this->Grey = !this->Coloured && !this->KnowsFlow && this->LightCount == 0 && light.fluence.components == 1 &&
+    light.fluenceDirect.components == 1 && medium.emission.components == 1;
   this->SourcesDependOnCamera = this->LightCount > 0 && medium.g != 0.0;
   this->LargestExtinction = tyndall::LargestExtinction(medium);
   this->UnderSky = !illumination.environment.Empty() || !IsZero(illumination.sky);
@@ -207,7 +210,8 @@ void MediumRayCaster::PrepareBending(const Field& ior)
   cl::Kernel pack =
     this->TheDevice.Kernel("pack_bending", { kernel_source::SquaredIndex, kernel_source::BendingField });
   With(pack, grid, Float4(1.0 / Vector(this->TheGrid.spacing), 0.0), coefficients, this->Bending);
-  this->TheDevice.Queue().enqueueNDRangeKernel(pack, cl::NullRange, cl::NDRange(x + 2, y + 2, z + 2));
+  this->TheDevice.Queue().enqueueNDRangeKernel(
+    pack, cl::NullRange, cl::NDRange(RoundUp(x + 2, 64), y + 2, z + 2), cl::NDRange(64, 1, 1));
   this->TheDevice.Finish();
 }
 
@@ -221,6 +225,7 @@ void MediumRayCaster::SayWhatIsLeftOut()
     }
   };
   omit(this->Coloured, "transmittance per channel: extinction is grey");
+  omit(!this->Grey, "sources per channel: the medium and its light are grey");
   omit(this->Components[2] > 0, "emission: the medium does not shine");
   omit(this->LightCount > 0, "shadow rays: not asked for, or no light");
   omit(this->EnvironmentSize[0] > 0, "environment: none, or not shown");
@@ -283,7 +288,7 @@ std::string MediumRayCaster::PackingOptions() const
 {
   const std::array<const char*, 5> names = { "ABSORPTION", "SCATTERING", "EMISSION", "FLUENCE", "UNSCATTERED" };
   std::string options =
-    "-DREAL_WIDTH=" + std::to_string(this->PacketWidth()) + " -DCOLOURED=" + std::to_string(this->Coloured ? 1 : 0);
+    "-DREAL_WIDTH=" + std::to_string(this->PacketWidth()) + Define("COLOURED", this->Coloured) + Define("GREY", this->Grey);
   for (std::size_t i = 0; i < names.size(); ++i)
   {
     options += std::string(" -D") + names[i] + "=" + std::to_string(this->Components[i]);
@@ -415,7 +420,7 @@ std::string MediumRayCaster::CastingOptions() const
     *std::max_element(this->TheGrid.spacing.begin(), this->TheGrid.spacing.end());
   const int phase = this->KnowsFlow ? 1 + static_cast<int>(this->Settings.phaseFunction) : 0;
   return "-DREAL_WIDTH=" + std::to_string(this->PacketWidth()) + Define("COLOURED", this->Coloured) +
-    Define("SKIP_BRICKS", this->Settings.skipEmptyBricks) + Define("ENVIRONMENT", this->EnvironmentSize[0] > 0) +
+    Define("GREY", this->Grey) + Define("SKIP_BRICKS", this->Settings.skipEmptyBricks) + Define("ENVIRONMENT", this->EnvironmentSize[0] > 0) +
     Define("THIN_STEPS", longest <= (this->Bends ? 1.5 : 2.0)) + Define("PHASE", phase) +
     Define("GLOW", this->GlowsApart());
 }

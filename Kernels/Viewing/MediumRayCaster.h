@@ -176,6 +176,7 @@ private:
   ViewSettings Settings;
   double G = 0.0;
   bool Coloured = false;    ///< extinction differs between channels
+  bool Grey = false;        ///< nor does the source
   bool Bends = false;       ///< the refractive index varies
   bool KnowsFlow = false;   ///< the light's direction is known and scattering depends on it
   double MiddleIndex = 1.0; ///< midway between the least and the largest
@@ -191,7 +192,7 @@ private:
   std::array<Buffer<float>, 5> Arrays; ///< given back once packed, where nothing will ask for them again
   Buffer<float> MeanDirection, Ior;    ///< as Arrays
   Buffer<float> Direct;                ///< 6 a voxel: what the lights scatter towards the eye, and their irradiance
-  Buffer<cl_float4> Samples;           ///< source and grey extinction, with a border
+  Buffer<cl_float4> Samples;           ///< source and grey extinction, with a border; see ScatteredLight.cl
   Buffer<cl_float4> Extinctions;
   Buffer<cl_float4> Flow;    ///< mean direction times g
   Buffer<cl_float4> Glow;    ///< emission, where Flow is there

@@ -2,6 +2,7 @@
 //
 // Needs Numerics.cl before it. Define
 //   COLOURED  1: extinction differs between red, green and blue; 0: one extinction serves all three
+//   GREY      1: so do sources; `samples` then hold source and extinction of a voxel, and those of the next one along y
 //
 // Every result is rounded as written: else the compiler fuses multiply and add here but not there, and two variants of a
 // kernel (skipping bricks or not) would give pictures that differ in the last place.
@@ -147,6 +148,9 @@ typedef struct
   integer twice_first;
   real near_low, near_high, far_low, far_high;
   real x;
+#if GREY
+  real y, near, far; // weights of the upper along y, and of the two along z
+#endif
 } corners;
 
 __attribute__((always_inline)) inline void find_corners(real3 p, int4 size, corners* at)
@@ -168,6 +172,11 @@ __attribute__((always_inline)) inline void find_corners(real3 p, int4 size, corn
   at->near_high = y - both;
   at->far_low = z_only;
   at->near_low = ((real)1.0f - y) - z_only;
+#if GREY
+  at->y = y;
+  at->near = (real)1.0f - z;
+  at->far = z;
+#endif
   // Rows are counted in floats, which hold whole numbers up to 16 million.
   const integer row = to_integer(fma(k, (real)(float)(size.y + 2), j));
   at->twice_first = (row * (size.x + 2) + i) * 2;
@@ -217,22 +226,41 @@ inline float16 four_between(float8 v0, float8 v4, float8 v8, float8 vc, float16 
 }
 #endif
 
-// The samples at each ray's corners, between the voxel centres: colour and w. Neighbours along x lie side by side in memory,
-// so that four loads of eight floats bring all corners of a ray. size.w is 0, which the compiler cannot know: so `at` stays
+// The values at each ray's corners, between the voxel centres: colour and w. Neighbours along x lie side by side in memory,
+// so that four loads of eight floats bring all corners of a ray; two, and nothing is taken between along y, where values hold
+// two numbers and those of the next voxel along y (`paired`, a constant). size.w is 0, which the compiler cannot know: so `at` stays
 // in memory, from where a CPU broadcasts single lanes for nothing.
-__attribute__((always_inline)) inline void gather(global const float4* samples, const corners* at, int4 size, rgb* colour, real* w)
+__attribute__((always_inline)) inline void gather_values(
+  global const float4* values, const corners* at, int4 size, const int paired, rgb* colour, real* w)
 {
-  global const float2* near_low = (global const float2*)samples;
+  global const float2* near_low = (global const float2*)values;
   global const float2* near_high = near_low + 2 * (size.x + 2);
   global const float2* far_low = near_low + 2 * (size.x + 2) * (size.y + 2);
   global const float2* far_high = far_low + 2 * (size.x + 2);
 #define FIRST(n) ((const uint*)&at->twice_first)[0x##n + size.w]
 #define WEIGHT(part, n) (((const float*)&at->part)[0x##n + size.w])
-#define FETCH(n)                                                                                                         \
-  float8 v##n = WEIGHT(near_low, n) * neighbours(near_low, FIRST(n));                                                    \
+#define FETCH_FOUR(n)                                                                                                    \
+  v##n = WEIGHT(near_low, n) * neighbours(near_low, FIRST(n));                                                           \
   v##n = fma((float8)(WEIGHT(near_high, n)), neighbours(near_high, FIRST(n)), v##n);                                     \
   v##n = fma((float8)(WEIGHT(far_low, n)), neighbours(far_low, FIRST(n)), v##n);                                         \
   v##n = fma((float8)(WEIGHT(far_high, n)), neighbours(far_high, FIRST(n)), v##n);
+#if GREY
+#define FETCH(n)                                                                                                         \
+  float8 v##n;                                                                                                           \
+  if (paired)                                                                                                            \
+  {                                                                                                                      \
+    v##n = WEIGHT(near, n) * neighbours(near_low, FIRST(n));                                                             \
+    v##n = fma((float8)(WEIGHT(far, n)), neighbours(far_low, FIRST(n)), v##n);                                           \
+  }                                                                                                                      \
+  else                                                                                                                   \
+  {                                                                                                                      \
+    FETCH_FOUR(n)                                                                                                        \
+  }
+#else
+#define FETCH(n)                                                                                                         \
+  float8 v##n;                                                                                                           \
+  FETCH_FOUR(n)
+#endif
 #if REAL_WIDTH == 16
   const float16 x = at->x;
   FETCH(0) FETCH(4) FETCH(8) FETCH(c)
@@ -284,8 +312,28 @@ __attribute__((always_inline)) inline void gather(global const float4* samples, 
 #undef TRANSPOSED
 #endif
 #undef FETCH
+#undef FETCH_FOUR
 #undef FIRST
 #undef WEIGHT
+}
+
+inline void gather(global const float4* values, const corners* at, int4 size, rgb* colour, real* w)
+{
+  gather_values(values, at, size, 0, colour, w);
+}
+
+// Sources and grey extinction.
+inline void gather_samples(global const float4* samples, const corners* at, int4 size, rgb* source, real* sigma)
+{
+#if GREY
+  rgb low;
+  real high;
+  gather_values(samples, at, size, 1, &low, &high);
+  source->r = source->g = source->b = fma(at->y, low.b - low.r, low.r);
+  *sigma = fma(at->y, high - low.g, low.g);
+#else
+  gather_values(samples, at, size, 0, source, sigma);
+#endif
 }
 
 // Edge of a brick in voxels. Each brick has a number: how many bricks one has to go (as a chess king does) to one of another

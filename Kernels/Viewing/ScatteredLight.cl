@@ -45,7 +45,48 @@ inline float in_scattered(global const float* fluence, global const float* unsca
 #endif
 }
 
+// What the medium and its light are made of, as the kernels' arguments.
+typedef struct
+{
+  global const float* absorption;
+  global const float* scattering;
+  global const float* emission;
+  global const float* fluence;
+  global const float* unscattered;
+  global const float* direct;
+  global const float* ior;
+} ingredients;
+
+// Source of a voxel, by n^2 with BENDS: red, green, blue, and grey extinction; besides all of the extinction, and what is emitted,
+// which with GLOW is no part of the source.
+inline float4 source_of(const ingredients* from, int voxel, int single, float4* sigma_t, float4* emitted)
+{
+  float4 sigma_s = (float4)(0.0f);
+  float4 source = (float4)(0.0f);
+  *sigma_t = *emitted = (float4)(0.0f);
+#define CHANNEL(c, n)                                                                                                    \
+  sigma_s.c = channel_of(from->scattering, voxel, SCATTERING, n);                                                        \
+  sigma_t->c = sigma_s.c + channel_of(from->absorption, voxel, ABSORPTION, n);                                           \
+  emitted->c = channel_of(from->emission, voxel, EMISSION, n);                                                           \
+  source.c = sigma_s.c * in_scattered(from->fluence, from->unscattered, from->direct, voxel, n, single);
+  CHANNEL(x, 0)
+  CHANNEL(y, 1)
+  CHANNEL(z, 2)
+#undef CHANNEL
+#if !GLOW
+  source += *emitted;
+#endif
+#if BENDS
+  const float square = from->ior[voxel] * from->ior[voxel];
+  source /= square;
+  *emitted /= square;
+#endif
+  source.w = sigma_t->x;
+  return source;
+}
+
 // single   1: only light that scatters once
+// samples  red, green, blue of the source, and grey extinction; with GREY source and extinction here and at the next voxel along y
 // flow     with FLOW: the light's mean direction times g, at most LARGEST_FLOW long
 // glow     with GLOW: emission, which is then no part of `samples`
 // ior      with BENDS: sources are divided by n^2
@@ -62,29 +103,18 @@ kernel void pack_samples(int4 size, int single, float g, global const float* res
   }
   const int voxel = voxel_index(size);
   const int place = padded_index(size);
-  float4 sigma_s = (float4)(0.0f);
-  float4 sigma_t = (float4)(0.0f);
-  float4 source = (float4)(0.0f);
-  float4 emitted = (float4)(0.0f);
-#define CHANNEL(c, n)                                                                                                    \
-  sigma_s.c = channel_of(scattering, voxel, SCATTERING, n);                                                              \
-  sigma_t.c = sigma_s.c + channel_of(absorption, voxel, ABSORPTION, n);                                                  \
-  emitted.c = channel_of(emission, voxel, EMISSION, n);                                                                  \
-  source.c = sigma_s.c * in_scattered(fluence, unscattered, direct, voxel, n, single);
-  CHANNEL(x, 0)
-  CHANNEL(y, 1)
-  CHANNEL(z, 2)
-#undef CHANNEL
-#if !GLOW
-  source += emitted;
-#endif
-#if BENDS
-  const float square = ior[voxel] * ior[voxel];
-  source /= square;
-  emitted /= square;
-#endif
-  source.w = sigma_t.x;
+  const ingredients from = { absorption, scattering, emission, fluence, unscattered, direct, ior };
+  float4 sigma_t, emitted;
+  const float4 source = source_of(&from, voxel, single, &sigma_t, &emitted);
+#if GREY
+  const int row = get_global_id(1);
+  float4 unused, also_unused;
+  const float4 next = source_of(
+    &from, row > 0 && row < size.y ? voxel + size.x : voxel, single, &unused, &also_unused);
+  samples[place] = (float4)(source.x, source.w, next.x, next.w);
+#else
   samples[place] = source;
+#endif
 #if COLOURED
   extinctions[place] = sigma_t;
 #endif
@@ -124,7 +154,11 @@ kernel void find_empty_bricks(int4 size, int4 brick_count, global const float4* 
       for (int x = x0; x <= x1; ++x)
       {
         const int place = z * slice + y * row + x;
+#if GREY
+        filled |= any(samples[place].xy != (float2)(0.0f));
+#else
         filled |= any(samples[place] != (float4)(0.0f));
+#endif
 #if COLOURED
         filled |= any(extinctions[place] != (float4)(0.0f));
 #endif
@@ -256,7 +290,7 @@ kernel void see_lights(int4 size, int4 brick_count, float4 spacing, float4 eye, 
         depths.g = fma(colour.g, length, depths.g);
         depths.b = fma(colour.b, length, depths.b);
 #else
-        gather(samples, &at, size, &colour, &w);
+        gather_samples(samples, &at, size, &colour, &w);
         depth = fma(w, length, depth);
 #endif
       }
