@@ -1,10 +1,11 @@
 #include "Device.h"
 
+#include "HostMemory.h"
+
 #include <algorithm>
 #include <cctype>
 #include <cstdlib>
 #include <sys/mman.h>
-#include <unistd.h>
 #include <vector>
 
 namespace tyndall
@@ -56,11 +57,6 @@ std::vector<Candidate> AllDevices(std::string& troubles)
     }
   }
   return found;
-}
-
-std::size_t MachineMemory()
-{
-  return static_cast<std::size_t>(sysconf(_SC_PHYS_PAGES)) * static_cast<std::size_t>(sysconf(_SC_PAGE_SIZE));
 }
 
 std::size_t Choose(const std::vector<Candidate>& candidates, const std::string& name)
@@ -122,7 +118,7 @@ Device::Device(const cl::Platform& platform, const cl::Device& device)
 {
   if (this->Cpu)
   {
-    this->Limit = std::max<std::size_t>(this->Limit, MachineMemory() / 4 * 3);
+    this->Limit = std::max<std::size_t>(this->Limit, HostMemory() / 4 * 3);
   }
   try
   {

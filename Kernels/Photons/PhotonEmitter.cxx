@@ -5,6 +5,7 @@
 #include "PhotonPlane.h"
 
 #include "../Device/Errors.h"
+#include "../Device/HostMemory.h"
 
 #include <glm/geometric.hpp>
 #include <glm/gtc/constants.hpp>
@@ -53,18 +54,6 @@ Rgb Times(const Rgb& a, double b)
 double Sum(const Rgb& a)
 {
   return a[0] + a[1] + a[2];
-}
-
-bool Contains(const Grid& grid, const glm::dvec3& point)
-{
-  for (int a = 0; a < 3; ++a)
-  {
-    if (point[a] < grid.origin[a] || point[a] > grid.origin[a] + grid.size[a] * grid.spacing[a])
-    {
-      return false;
-    }
-  }
-  return true;
 }
 
 /// Two axes across a unit vector (Duff et al. 2017).
@@ -118,41 +107,26 @@ Source Directional(const Grid& grid, const Light& light)
 
 Source Point(const Grid& grid, const Light& light)
 {
-  const glm::dvec3 lamp = Vector(light.position);
-  if (Contains(grid, lamp))
-  {
-    return { 0, [=](const Sample& u) {
-              return Shot{ lamp, Around({ 0.0, 0.0, 1.0 }, 1.0 - 2.0 * u[0], u[1]), light.power };
-            } };
-  }
-  const auto faces = std::make_shared<VisibleFaces>(grid, lamp);
-  return { 0, [=](const Sample& u) {
-            return Shot{ lamp, glm::normalize(faces->At(u[0], u[1]) - lamp),
-              Times(light.power, faces->SolidAngle() / (4.0 * Pi)) };
-          } };
+  const auto view = std::make_shared<LampView>(grid, Vector(light.position));
+  return { 0,
+    [=](const Sample& u) {
+      return Shot{ view->Lamp(), view->Direction(u[0], u[1]), Times(light.power, view->SolidAngle() / (4.0 * Pi)) };
+    } };
 }
 
 Source Spot(const Grid& grid, const Light& light)
 {
-  const glm::dvec3 lamp = Vector(light.position);
   const glm::dvec3 axis = glm::normalize(Vector(light.direction));
   const double edge = std::cos(0.5 * light.angle * Pi / 180.0);
   const double cone = 2.0 * Pi * (1.0 - edge);
-  const bool inside = Contains(grid, lamp);
-  const auto faces = inside ? nullptr : std::make_shared<VisibleFaces>(grid, lamp);
-  if (inside || faces->SolidAngle() > cone)
-  {
-    return { 0, [=](const Sample& u) {
-              return Shot{ lamp, Around(axis, 1.0 - (1.0 - edge) * u[0], u[1]), light.power };
-            } };
-  }
+  const auto view = std::make_shared<LampView>(grid, Vector(light.position));
+  const bool fromCone = view->SolidAngle() > cone;
+  const Rgb power = fromCone ? light.power : Times(light.power, view->SolidAngle() / cone);
   return { 0, [=](const Sample& u) -> std::optional<Shot> {
-            const glm::dvec3 direction = glm::normalize(faces->At(u[0], u[1]) - lamp);
-            if (glm::dot(direction, axis) < edge)
-            {
-              return {};
-            }
-            return Shot{ lamp, direction, Times(light.power, faces->SolidAngle() / cone) };
+            const glm::dvec3 direction =
+              fromCone ? Around(axis, 1.0 - (1.0 - edge) * u[0], u[1]) : view->Direction(u[0], u[1]);
+            const bool isThere = fromCone ? view->Enters(direction) : glm::dot(direction, axis) >= edge;
+            return isThere ? std::optional<Shot>({ view->Lamp(), direction, power }) : std::nullopt;
           } };
 }
 
@@ -162,19 +136,16 @@ Source Rectangle(const Grid& grid, const Light& light)
   const glm::dvec3 normal = glm::normalize(Vector(light.direction));
   const auto edges = RectangleEdges(light);
   return { 0, [=](const Sample& u) -> std::optional<Shot> {
-            const glm::dvec3 from = middle + Vector(edges[0]) * (u[2] - 0.5) + Vector(edges[1]) * (u[3] - 0.5);
-            if (Contains(grid, from))
-            {
-              return Shot{ from, Around(normal, std::sqrt(1.0 - u[0]), u[1]), light.power };
-            }
-            const VisibleFaces faces(grid, from);
-            const glm::dvec3 direction = glm::normalize(faces.At(u[0], u[1]) - from);
+            const LampView view(grid, middle + Vector(edges[0]) * (u[2] - 0.5) + Vector(edges[1]) * (u[3] - 0.5));
+            const glm::dvec3 direction =
+              view.Outside() ? view.Direction(u[0], u[1]) : Around(normal, std::sqrt(1.0 - u[0]), u[1]);
             const double cosine = glm::dot(direction, normal);
-            if (cosine <= 0.0)
+            if (cosine <= 0.0 || !view.Enters(direction))
             {
               return {};
             }
-            return Shot{ from, direction, Times(light.power, cosine * faces.SolidAngle() / Pi) };
+            return Shot{ view.Lamp(), direction,
+              view.Outside() ? Times(light.power, cosine * view.SolidAngle() / Pi) : light.power };
           } };
 }
 
@@ -425,6 +396,10 @@ EmittedPhotons EmitPhotons(
   {
     throw InvalidInput("The number of photons is 0; ask for at least one.");
   }
+  constexpr std::size_t bytesEach = sizeof(Photon) + sizeof(int);
+  RequireHostMemory(static_cast<double>(settings.photonCount) * bytesEach,
+    std::to_string(settings.photonCount) + " photons of " + std::to_string(bytesEach) + " bytes each: that",
+    "Ask for fewer photons (PhotonCount).");
   const std::vector<Source> sources = SourcesOf(grid, illumination);
   std::vector<Pilot> pilots;
   for (const Source& source : sources)

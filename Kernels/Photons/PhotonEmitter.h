@@ -32,15 +32,17 @@ struct EmittedPhotons
 /// made, and the power of the others is what really reaches it:
 ///
 ///  - directional: spread over the outline of the volume on the photon plane across the light's direction
-///  - point: over the solid angle of the faces that the lamp sees, or all around a lamp in the volume
-///  - spot: over its cone or the faces, whichever is smaller, and those that are in the other one
+///  - point: over the solid angle of the faces that the lamp sees, or all around a lamp in the volume; what a lamp on a
+///    face, an edge or a corner shines outwards is not made (LampView)
+///  - spot: over its cone or what the lamp sees, whichever is smaller, and those that are in the other one
 ///  - rectangle: from points of it over the faces that each sees, power by the cosine; in the volume over a half-space
 ///  - environment and sky: direction by radiance, solid angle and outline of the volume, then over that outline
 ///  - faces: over each face, directions by the cosine
 ///
 /// The index outside is taken as constant.
 ///
-/// @throws InvalidInput where an illumination means nothing or no photon is asked for; Aborted
+/// @throws InvalidInput where an illumination means nothing or no photon is asked for; DeviceError where the machine's memory
+///   does not suffice for the photons (52 bytes each); Aborted
 EmittedPhotons EmitPhotons(
   const Grid& grid, const Illumination& illumination, const EmissionSettings& settings, const Monitor& monitor = {});
 }

@@ -200,7 +200,7 @@ glm::dvec3 SphericalRectangle::At(double u, double v) const
     const double h0 = this->Y0 / std::hypot(d, this->Y0);
     const double h1 = this->Y1 / std::hypot(d, this->Y1);
     const double h = h0 + v * (h1 - h0);
-    y = h * h < 1.0 - 1e-12 ? h * d / std::sqrt(1.0 - h * h) : this->Y1;
+    y = h * h < 1.0 - 1e-12 ? h * d / std::sqrt(1.0 - h * h) : h > 0.0 ? this->Y1 : this->Y0;
   }
   return this->Eye + this->X * x + this->Y * y + this->Z * this->Z0;
 }
@@ -230,5 +230,62 @@ glm::dvec3 VisibleFaces::At(double u, double v) const
   double part;
   const std::size_t face = Choose(this->Below, u, part);
   return this->Faces[face].At(part, v);
+}
+
+LampView::LampView(const Grid& grid, const glm::dvec3& lamp)
+  : Place(lamp)
+{
+  const glm::dvec3 low = Corner(grid, 0), high = Corner(grid, 7);
+  bool outside = false;
+  for (int axis = 0; axis < 3; ++axis)
+  {
+    const double slack = 1e-6 * (high[axis] - low[axis]);
+    const bool atLow = std::abs(lamp[axis] - low[axis]) <= slack;
+    const bool atHigh = std::abs(lamp[axis] - high[axis]) <= slack;
+    outside = outside || lamp[axis] < low[axis] - slack || lamp[axis] > high[axis] + slack;
+    this->Inwards[axis] = atLow ? 1 : atHigh ? -1 : 0;
+    this->Place[axis] = atLow ? low[axis] : atHigh ? high[axis] : lamp[axis];
+  }
+  if (outside)
+  {
+    this->Inwards = { 0, 0, 0 };
+    this->Faces.emplace(grid, this->Place);
+  }
+}
+
+double LampView::SolidAngle() const
+{
+  const auto faces = std::count_if(this->Inwards.begin(), this->Inwards.end(), [](int side) { return side != 0; });
+  return this->Faces ? this->Faces->SolidAngle() : std::ldexp(4.0 * glm::pi<double>(), -static_cast<int>(faces));
+}
+
+glm::dvec3 LampView::Direction(double u, double v) const
+{
+  if (this->Faces)
+  {
+    return glm::normalize(this->Faces->At(u, v) - this->Place);
+  }
+  // Around the axis of a face that it is on, turned from another one.
+  std::array<int, 3> axes = { 2, 0, 1 };
+  std::stable_partition(axes.begin(), axes.end(), [this](int axis) { return this->Inwards[axis] != 0; });
+  const auto& [pole, first, second] = axes;
+  const auto side = [this](int axis) { return this->Inwards[axis] < 0 ? -1.0 : 1.0; };
+  const double pi = glm::pi<double>();
+  const double cosine = this->Inwards[pole] != 0 ? 1.0 - u : 1.0 - 2.0 * u;
+  const double sine = std::sqrt(std::max(1.0 - cosine * cosine, 0.0));
+  const double turn = this->Inwards[second] != 0 ? 0.5 * pi * v
+    : this->Inwards[first] != 0                  ? pi * (v - 0.5)
+                                                 : 2.0 * pi * v;
+  glm::dvec3 direction;
+  direction[pole] = side(pole) * cosine;
+  direction[first] = side(first) * sine * std::cos(turn);
+  direction[second] = side(second) * sine * std::sin(turn);
+  return direction;
+}
+
+bool LampView::Enters(const glm::dvec3& direction) const
+{
+  return direction.x * this->Inwards[0] >= 0.0 && direction.y * this->Inwards[1] >= 0.0 &&
+    direction.z * this->Inwards[2] >= 0.0;
 }
 }

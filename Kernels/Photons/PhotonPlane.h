@@ -5,6 +5,7 @@
 #include <array>
 #include <glm/vec2.hpp>
 #include <glm/vec3.hpp>
+#include <optional>
 #include <vector>
 
 namespace tyndall
@@ -75,5 +76,27 @@ public:
 private:
   std::vector<SphericalRectangle> Faces;
   std::vector<double> Below; ///< solid angle up to each
+};
+
+/// What a lamp sees of the volume: all around it inside, half of that on a face, a quarter on an edge, an eighth at a corner,
+/// the faces from outside. On a face is what is off it by no more than a position may have been rounded, a millionth of the
+/// volume's edge.
+class LampView
+{
+public:
+  LampView(const Grid& grid, const glm::dvec3& lamp);
+
+  const glm::dvec3& Lamp() const { return this->Place; } ///< where it is; put onto the face that it is on
+  bool Outside() const { return this->Faces.has_value(); }
+  double SolidAngle() const;
+  glm::dvec3 Direction(double u, double v) const; ///< into the volume, unit length, by solid angle
+
+  /// Whether a direction does not lead away from a face that the lamp is on.
+  bool Enters(const glm::dvec3& direction) const;
+
+private:
+  glm::dvec3 Place;
+  std::array<int, 3> Inwards = { 0, 0, 0 }; ///< -1 or 1 along an axis where it is on a face, else 0
+  std::optional<VisibleFaces> Faces;
 };
 }

@@ -9,7 +9,7 @@ inline size_t index_of(int4 node, int4 size)
 //   ranges        (min, max) of the nodes of all levels
 //   first, size   of this level: first node, nodes per axis
 //   above         the same of the level above; unused at the top
-//   tolerance     a node is whole where max - min is less
+//   tolerance     a node is whole where max - min is no more
 __kernel void levels_of_nodes(const __global float2* ranges, __global uchar* levels, ulong first, int4 size,
   ulong above, int4 above_size, int level, int top, float tolerance)
 {
@@ -20,7 +20,7 @@ __kernel void levels_of_nodes(const __global float2* ranges, __global uchar* lev
   }
   const size_t i = first + index_of(node, size);
   const uchar inherited = level < top ? levels[above + index_of(node >> 1, above_size)] : 0;
-  const uchar own = ranges[i].y - ranges[i].x < tolerance ? level : 0;
+  const uchar own = ranges[i].y - ranges[i].x <= tolerance ? level : 0;
   levels[i] = inherited > 0 ? inherited : own;
 }
 

@@ -9,7 +9,7 @@ namespace tyndall
 /// Octree levels of a grid's voxels, found from the top of min-max pyramids down (Pfeuti 2009, section 3.1.3).
 ///
 /// A voxel's level is the largest k for which its node, the cube of 2^k voxels an edge that begins at multiples of 2^k,
-/// has max - min < tolerance in every pyramid; 0, a single voxel, where there is none.
+/// has max - min <= tolerance in every pyramid; 0, a single voxel, where there is none.
 class LevelPyramid
 {
 public:

@@ -3,6 +3,9 @@
 // Defined before: CHANNELS, 1 or 3, of sigma_a and sigma_s; NOISE, 1 where materials are perturbed, which takes
 // GradientNoise.cl.
 
+// A slab's voxels are runs of `length` of the grid's, the first from `first` on, each `stride` further: a work-item a voxel
+// (i of the slab), a row of work-items a run.
+
 inline void add_material(float part, float n, float4 absorption, float4 scattering, ulong i, ulong voxel,
   __global float* ior, __global float* sigma_a, __global float* sigma_s)
 {
@@ -16,27 +19,26 @@ inline void add_material(float part, float n, float4 absorption, float4 scatteri
   }
 }
 
-// Adds one material to some of the grid's voxels. A voxel of one material alone has its very values.
-//   first, count   the voxels
+// Adds one material to a slab's voxels. A voxel of one material alone has its very values.
 //   inside         samples of a voxel in the material, 0 to `samples`
 //   samples        of a voxel
 //   indexNoise     by how much n is perturbed, +-
 //   scatteringNoise  the same for sigma_s, relative
 //   frequency      1 / size of the noise's features, 1/length; position of the grid's corner and edges of a voxel: length
 //   covered        samples in any material so far
-//   ior            of the whole grid; the other arrays begin at `first`
-__kernel void add_object(ulong first, ulong count, __global const ushort* inside, float samples, float n,
+//   ior            of the whole grid; the other arrays are the slab's
+__kernel void add_object(ulong first, ulong length, ulong stride, __global const ushort* inside, float samples, float n,
   float4 absorption, float4 scattering, float indexNoise, float scatteringNoise, uint seed, float frequency,
   float4 corner, float4 spacing, int nx, int ny, __global float* covered, __global float* ior, __global float* sigma_a,
   __global float* sigma_s)
 {
-  const ulong i = get_global_id(0);
-  if (i >= count)
+  if (get_global_id(0) >= length)
   {
     return;
   }
-  const ulong voxel = first + i;
-  const float number = inside[voxel];
+  const ulong i = get_global_id(1) * length + get_global_id(0);
+  const ulong voxel = first + get_global_id(1) * stride + get_global_id(0);
+  const float number = inside[i];
 #if NOISE
   if (number > 0.0f)
   {
@@ -52,15 +54,16 @@ __kernel void add_object(ulong first, ulong count, __global const ushort* inside
 }
 
 // The same for what no mesh covers; `covered` becomes the part that is.
-__kernel void add_outside(ulong first, ulong count, float samples, float n, float4 absorption, float4 scattering,
-  __global float* covered, __global float* ior, __global float* sigma_a, __global float* sigma_s)
+__kernel void add_outside(ulong first, ulong length, ulong stride, float samples, float n, float4 absorption,
+  float4 scattering, __global float* covered, __global float* ior, __global float* sigma_a, __global float* sigma_s)
 {
-  const ulong i = get_global_id(0);
-  if (i >= count)
+  if (get_global_id(0) >= length)
   {
     return;
   }
+  const ulong i = get_global_id(1) * length + get_global_id(0);
+  const ulong voxel = first + get_global_id(1) * stride + get_global_id(0);
   const float number = covered[i];
   covered[i] = number / samples;
-  add_material((samples - number) / samples, n, absorption, scattering, i, first + i, ior, sigma_a, sigma_s);
+  add_material((samples - number) / samples, n, absorption, scattering, i, voxel, ior, sigma_a, sigma_s);
 }

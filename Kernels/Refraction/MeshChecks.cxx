@@ -1,7 +1,7 @@
 #include "MeshChecks.h"
 
+#include "../Device/Errors.h"
 #include "SampleLattice.h"
-#include "Voxelization.h"
 
 #include <cstdio>
 
@@ -27,17 +27,17 @@ std::string Counted(std::size_t count, const char* thing)
 }
 
 /// The sentence for a mesh that intersects itself.
-std::string OfWindings(const WindingNumbers& windings, const Grid& grid)
+std::string OfWindings(const WindingNumbers& windings, const Grid& grid, int samples)
 {
-  std::array<double, 3> centre;
-  for (int axis = 0; axis < 3; ++axis)
-  {
-    centre[axis] = grid.origin[axis] + (windings.firstOddVoxel[axis] + 0.5) * grid.spacing[axis];
-  }
-  return "intersects itself, or has parts inside out or within each other: about the centres of " +
-    Counted(windings.oddVoxels, "voxel") + " it winds neither 0 times nor once but from " +
-    std::to_string(windings.lowest) + " to " + std::to_string(windings.highest) + " times, the first at " +
-    Place(centre) + ". What it encloses an even number of times counts as outside.";
+  const int ofVoxel = samples * samples * samples;
+  char volume[32];
+  std::snprintf(
+    volume, sizeof(volume), "%.3g", static_cast<double>(windings.oddSamples) * grid.VoxelVolume() / ofVoxel);
+  return "intersects itself, or has parts inside out or within each other: about " +
+    Counted(windings.oddSamples, "sample") + " (" + std::to_string(ofVoxel) + " a voxel; a volume of " + volume +
+    ") it winds neither 0 times nor once but from " + std::to_string(windings.lowest) + " to " +
+    std::to_string(windings.highest) + " times, the first at " + Place(windings.firstOddSample) +
+    ". What it encloses an even number of times counts as outside.";
 }
 }
 
@@ -54,8 +54,8 @@ MeshTopology CheckClosed(const TriangleMesh& mesh, const std::string& name, cons
   }
   if (topology.degenerateTriangles == mesh.triangles.size())
   {
-    throw InvalidInput(
-      name + " has no volume: all of its " + Counted(mesh.triangles.size(), "triangle") + " are without area (degenerate).");
+    throw InvalidInput(name + " has no volume: " + Counted(mesh.triangles.size(), "triangle") +
+      ", all without area (degenerate), and " + Counted(topology.boundaryEdges, "boundary edge") + ".");
   }
   if (topology.boundaryEdges > 0 && !SampleLattice(grid, samples, { &mesh }).Closes(mesh))
   {
@@ -66,8 +66,13 @@ MeshTopology CheckClosed(const TriangleMesh& mesh, const std::string& name, cons
   return topology;
 }
 
-std::vector<std::string> Oddities(Device& device, const TriangleMesh& mesh, const MeshTopology& topology,
-  const std::string& name, const Grid& grid, const Monitor& monitor)
+int Orientation(const MeshTopology& topology)
+{
+  return topology.disagreeingEdges > 0 ? 0 : topology.enclosedVolume < 0.0 ? -1 : 1;
+}
+
+std::vector<std::string> Oddities(
+  const MeshTopology& topology, const WindingNumbers& windings, const std::string& name, const Grid& grid, int samples)
 {
   std::vector<std::string> oddities;
   const auto say = [&](const std::string& what) { oddities.push_back(name + " " + what); };
@@ -82,17 +87,14 @@ std::vector<std::string> Oddities(Device& device, const TriangleMesh& mesh, cons
     say("has triangles that disagree about which side is outside, at " + Counted(topology.disagreeingEdges, "edge") +
       ", the first " + Along(topology.firstDisagreeingEdge) +
       ". What it encloses an odd number of times is taken for inside; whether it intersects itself is not known.");
-    return oddities;
   }
-  const bool inverted = topology.enclosedVolume < 0.0;
-  if (inverted)
+  if (Orientation(topology) < 0)
   {
     say("is inverted: its normals point inwards. What it encloses is taken for inside all the same.");
   }
-  const WindingNumbers windings = FindWindings(device, grid, mesh, inverted, monitor);
-  if (windings.oddVoxels > 0)
+  if (windings.oddSamples > 0)
   {
-    say(OfWindings(windings, grid));
+    say(OfWindings(windings, grid, samples));
   }
   return oddities;
 }

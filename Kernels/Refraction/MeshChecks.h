@@ -1,9 +1,8 @@
 #pragma once
 
-#include "../Device/Device.h"
-#include "../Device/Monitor.h"
 #include "../Medium/Grid.h"
 #include "TriangleMesh.h"
+#include "WindingNumbers.h"
 
 #include <string>
 #include <vector>
@@ -16,9 +15,11 @@ namespace tyndall
 /// @throws InvalidInput where the mesh is empty, has no area, or is open: names the count of boundary edges, and the first
 MeshTopology CheckClosed(const TriangleMesh& mesh, const std::string& name, const Grid& grid, int samples);
 
+/// How the corners of a closed mesh's triangles run, see OrientedMesh.
+int Orientation(const MeshTopology& topology);
+
 /// What is odd about a closed mesh, a sentence each: triangles without area, edges that disagree about what is outside,
-/// normals that point inwards, and voxels about whose centres it winds neither 0 times nor once, as where it intersects
-/// itself.
-std::vector<std::string> Oddities(Device& device, const TriangleMesh& mesh, const MeshTopology& topology,
-  const std::string& name, const Grid& grid, const Monitor& monitor = {});
+/// normals that point inwards, and samples about which it winds neither 0 times nor once, as where it intersects itself.
+std::vector<std::string> Oddities(
+  const MeshTopology& topology, const WindingNumbers& windings, const std::string& name, const Grid& grid, int samples);
 }

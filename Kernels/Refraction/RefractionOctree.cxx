@@ -70,11 +70,11 @@ std::vector<float> Extinction(const Medium& medium, int channel)
   return extinction;
 }
 
-/// The float for which float < AsBound(bound) says the same as float < bound.
+/// The float for which float <= AsBound(bound) says the same as float <= bound.
 float AsBound(double bound)
 {
   const float nearest = static_cast<float>(bound);
-  return nearest < bound ? std::nextafter(nearest, std::numeric_limits<float>::infinity()) : nearest;
+  return nearest > bound ? std::nextafter(nearest, -std::numeric_limits<float>::infinity()) : nearest;
 }
 
 /// Builds on a device, which it looks for when the first quantity comes that is not constant.

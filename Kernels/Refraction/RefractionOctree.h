@@ -21,12 +21,12 @@ struct OctreeSettings
 ///
 /// What a level k promises: the voxel lies in a node, the cube of 2^k voxels an edge whose lowest voxel has indices that
 /// are multiples of 2^k, and all voxels of that node have level k and
-///  - max(n) - min(n) < tolerance over the node's voxels, where k > 0;
+///  - max(n) - min(n) <= tolerance over the node's voxels, where k > 0;
 ///  - with includeExtinction, for every channel of sigma_t = sigma_a + sigma_s,
-///    (max(sigma_t) - min(sigma_t)) times the node's diagonal < extinctionTolerance, where k > 0: whichever of the node's
-///    sigma_t is taken for a straight way through it, the way's optical thickness is off by less.
-/// No larger node would keep the promise. A quantity that is the same in all of the grid does not restrict the nodes, so
-/// that with a tolerance of 0, where no node but a single voxel is whole, a constant index still makes one node.
+///    (max(sigma_t) - min(sigma_t)) times the node's diagonal <= extinctionTolerance, where k > 0: whichever of the
+///    node's sigma_t is taken for a straight way through it, the way's optical thickness is off by no more.
+/// No larger node would keep the promise. The paper's listing has <, after which nothing would be whole at a tolerance of 0;
+/// with <=, equal voxels are one node then.
 ///
 /// A grid whose size is not a power of two is treated as if its last voxel were repeated: nodes at its upper faces may stick
 /// out of it, up to the top level, the smallest k whose node holds the whole grid. Ranges are compared in float.

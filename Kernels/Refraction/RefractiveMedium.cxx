@@ -1,5 +1,7 @@
 #include "RefractiveMedium.h"
 
+#include "../Device/HostMemory.h"
+#include "../Device/Sizes.h"
 #include "../Medium/Medium.h"
 #include "IndexField.h"
 #include "MeshChecks.h"
@@ -8,13 +10,14 @@
 #include <algorithm>
 #include <chrono>
 #include <cmath>
+#include <cstdio>
 
 namespace tyndall
 {
 namespace
 {
 constexpr std::size_t WorkGroup = 256;
-constexpr std::size_t ChunkVoxels = std::size_t(4) << 20; ///< whose coefficients are on the device at a time
+constexpr double ShortestEdge = 1e-18; ///< of a voxel, length
 
 void Demand(bool holds, const std::string& what)
 {
@@ -54,11 +57,27 @@ void CheckPerturbation(const Perturbation& perturbation, const std::vector<Solid
   }
 }
 
+/// Quantities of an area or a volume of voxels are in single precision: 1/edge^2 has to be.
+void CheckSpacing(const Grid& grid)
+{
+  for (int axis = 0; axis < 3; ++axis)
+  {
+    const double edge = grid.spacing[axis];
+    char text[32];
+    std::snprintf(text, sizeof(text), "%.3g", edge);
+    Demand(edge >= ShortestEdge && edge <= 1.0 / ShortestEdge,
+      "The voxels' edge along " + std::string(1, "xyz"[axis]) + " is " + text +
+        "; it must be from 1e-18 to 1e18, or fluence (W/length^2) is beyond single precision. Scale the mesh, "
+        "and the box with it: use another unit of length.");
+  }
+}
+
 void CheckSettings(const RefractiveMediumSettings& settings, const std::vector<Solid>& solids)
 {
   Medium box;
   box.grid = settings.grid;
   Check(box);
+  CheckSpacing(settings.grid);
   Check(settings.voxelization);
   CheckFilterSize(settings.filterSize);
   Demand(!solids.empty(), "There is no mesh.");
@@ -68,6 +87,29 @@ void CheckSettings(const RefractiveMediumSettings& settings, const std::vector<S
     CheckMaterial(solid.material, solid.name);
   }
   CheckPerturbation(settings.perturbation, solids);
+}
+
+/// @param indexVaries  whether there is an index to smooth and take the gradient of
+void CheckMemory(const Device& device, const RefractiveMediumSettings& settings, int components, bool indexVaries)
+{
+  const std::array<int, 3>& size = settings.grid.size;
+  const double voxels = static_cast<double>(size[0]) * size[1] * size[2];
+  const int ofResult = static_cast<int>(sizeof(float)) * (1 + 2 * components + (indexVaries ? 4 : 0));
+  const int onDevice = static_cast<int>(sizeof(float)) * (indexVaries && settings.filterSize > 1 ? 2 : 1);
+  const std::string box = "A box of " + std::to_string(size[0]) + " x " + std::to_string(size[1]) + " x " +
+    std::to_string(size[2]) + " voxels (SampleDimensions)";
+  RequireHostMemory((ofResult + (device.IsCpu() ? onDevice : 0)) * voxels,
+    box + ", " + std::to_string(ofResult) + " bytes each and " + std::to_string(onDevice) + " on the device,",
+    "Ask for fewer voxels.");
+  const double left = static_cast<double>(device.MemoryLimit() - device.BytesInUse());
+  const double most = std::min(left, static_cast<double>(device.AllocationLimit()) * onDevice / sizeof(float));
+  if (onDevice * voxels > most)
+  {
+    char bytes[64];
+    std::snprintf(bytes, sizeof(bytes), "%.0f bytes on ", onDevice * voxels);
+    throw DeviceError(box + " needs " + bytes + device.Name() + ", which can give " +
+      std::to_string(static_cast<std::size_t>(most)) + ". Ask for fewer voxels, or use a device with more memory.");
+  }
 }
 
 bool IsGrey(const Material& material)
@@ -121,87 +163,114 @@ cl_float4 Float4(const std::array<double, 3>& values)
   return { { static_cast<float>(values[0]), static_cast<float>(values[1]), static_cast<float>(values[2]), 0.0f } };
 }
 
-/// Mixes the materials in each voxel, some voxels at a time.
+/// Mixes the materials in each voxel, slab by slab.
 class Mixer
 {
 public:
-  Mixer(Device& device, const RefractiveMediumSettings& settings, bool noise, int components)
+  /// @param index  filled with n, not smoothed
+  Mixer(Device& device, const std::vector<Solid>& solids, const Material& outside,
+    const RefractiveMediumSettings& settings, Buffer<float>& index, RefractiveMedium& result)
     : TheDevice(device)
+    , Solids(solids)
+    , Outside(outside)
     , Settings(settings)
-    , Components(components)
-    , AtOnce(std::min(ChunkVoxels, settings.grid.VoxelCount()))
-    , Covered(device, this->AtOnce, "occupancy")
-    , SigmaA(device, this->AtOnce * components, "sigma_a")
-    , SigmaS(device, this->AtOnce * components, "sigma_s")
+    , Index(index)
+    , Result(result)
   {
-    const std::string options = "-DCHANNELS=" + std::to_string(components) + " -DNOISE=" + std::to_string(noise);
+    const bool noise = settings.perturbation.index > 0.0 || settings.perturbation.scattering > 0.0;
+    const std::string options = "-DCHANNELS=" + std::to_string(result.components) + " -DNOISE=" + std::to_string(noise);
     const auto sources = { kernel_source::GradientNoise, kernel_source::Materials };
     this->AddObject = device.Kernel("add_object", sources, options);
     this->AddOutside = device.Kernel("add_outside", sources, options);
+    const std::size_t voxels = settings.grid.VoxelCount();
+    result.occupancy.resize(voxels);
+    result.sigma_a.resize(voxels * result.components);
+    result.sigma_s.resize(voxels * result.components);
+    index.Fill(0.0f);
   }
 
-  /// @param index  filled with n, not smoothed
-  void Run(const std::vector<Solid>& solids, const Material& outside, const std::vector<Buffer<cl_ushort>>& inside,
-    Buffer<float>& index, RefractiveMedium& result)
+  /// What CountSamplesInside hands out.
+  void Take(const SamplesInside& inside)
   {
-    const std::size_t voxels = this->Settings.grid.VoxelCount();
-    result.occupancy.resize(voxels);
-    result.sigma_a.resize(voxels * this->Components);
-    result.sigma_s.resize(voxels * this->Components);
-    index.Fill(0.0f);
-    for (std::size_t first = 0; first < voxels; first += this->AtOnce)
+    if (inside.mesh + 1 == this->Solids.size())
     {
-      const std::size_t count = std::min(this->AtOnce, voxels - first);
-      this->Mix(solids, outside, inside, index, first, count);
-      this->Copy(this->Covered, result.occupancy, first, count);
-      this->Copy(this->SigmaA, result.sigma_a, first * this->Components, count * this->Components);
-      this->Copy(this->SigmaS, result.sigma_s, first * this->Components, count * this->Components);
+      this->Begin(inside.VoxelCount());
+    }
+    this->Add(inside);
+    if (inside.mesh == 0)
+    {
+      this->End(inside);
     }
   }
 
 private:
-  void Mix(const std::vector<Solid>& solids, const Material& outside, const std::vector<Buffer<cl_ushort>>& inside,
-    Buffer<float>& index, std::size_t first, std::size_t count)
+  void Begin(std::size_t voxels)
   {
-    const Perturbation& noise = this->Settings.perturbation;
-    const Grid& grid = this->Settings.grid;
-    const int edge = this->Settings.voxelization.samples;
-    const float samples = static_cast<float>(edge * edge * edge);
-    const cl_ulong begin = first;
-    const cl_ulong number = count;
+    if (this->Covered.Size() < voxels)
+    {
+      const std::size_t values = voxels * this->Result.components;
+      this->Covered = Buffer<float>(this->TheDevice, voxels, "occupancy");
+      this->SigmaA = Buffer<float>(this->TheDevice, values, "sigma_a");
+      this->SigmaS = Buffer<float>(this->TheDevice, values, "sigma_s");
+    }
     this->Covered.Fill(0.0f);
     this->SigmaA.Fill(0.0f);
     this->SigmaS.Fill(0.0f);
-    for (std::size_t s = 0; s < solids.size(); ++s)
-    {
-      const Material& material = solids[s].material;
-      With(this->AddObject, begin, number, inside[s], samples, static_cast<float>(material.n), Float4(material.sigma_a),
-        Float4(material.sigma_s), static_cast<float>(noise.index), static_cast<float>(noise.scattering), noise.seed,
-        static_cast<float>(1.0 / noise.size), Float4(grid.origin), Float4(grid.spacing), grid.size[0], grid.size[1],
-        this->Covered, index, this->SigmaA, this->SigmaS);
-      this->Launch(this->AddObject, count);
-    }
-    With(this->AddOutside, begin, number, samples, static_cast<float>(outside.n), Float4(outside.sigma_a),
-      Float4(outside.sigma_s), this->Covered, index, this->SigmaA, this->SigmaS);
-    this->Launch(this->AddOutside, count);
   }
 
-  void Launch(cl::Kernel& kernel, std::size_t count)
+  void Add(const SamplesInside& inside)
+  {
+    const Perturbation& noise = this->Settings.perturbation;
+    const Grid& grid = this->Settings.grid;
+    const Material& material = this->Solids[inside.mesh].material;
+    With(this->AddObject, cl_ulong(inside.first), cl_ulong(inside.length), cl_ulong(inside.stride), inside.counts,
+      this->SamplesOfVoxel(), static_cast<float>(material.n), Float4(material.sigma_a), Float4(material.sigma_s),
+      static_cast<float>(noise.index), static_cast<float>(noise.scattering), noise.seed,
+      static_cast<float>(1.0 / noise.size), Float4(grid.origin), Float4(grid.spacing), grid.size[0], grid.size[1],
+      this->Covered, this->Index, this->SigmaA, this->SigmaS);
+    this->Launch(this->AddObject, inside);
+  }
+
+  void End(const SamplesInside& inside)
+  {
+    With(this->AddOutside, cl_ulong(inside.first), cl_ulong(inside.length), cl_ulong(inside.stride),
+      this->SamplesOfVoxel(), static_cast<float>(this->Outside.n), Float4(this->Outside.sigma_a),
+      Float4(this->Outside.sigma_s), this->Covered, this->Index, this->SigmaA, this->SigmaS);
+    this->Launch(this->AddOutside, inside);
+    this->Copy(this->Covered, inside, 1, this->Result.occupancy);
+    this->Copy(this->SigmaA, inside, this->Result.components, this->Result.sigma_a);
+    this->Copy(this->SigmaS, inside, this->Result.components, this->Result.sigma_s);
+  }
+
+  float SamplesOfVoxel() const
+  {
+    const int edge = this->Settings.voxelization.samples;
+    return static_cast<float>(edge * edge * edge);
+  }
+
+  void Launch(cl::Kernel& kernel, const SamplesInside& inside)
   {
     this->TheDevice.Queue().enqueueNDRangeKernel(
-      kernel, cl::NullRange, cl::NDRange((count + WorkGroup - 1) / WorkGroup * WorkGroup), cl::NDRange(WorkGroup));
+      kernel, cl::NullRange, cl::NDRange(RoundUp(inside.length, WorkGroup), inside.runs), cl::NDRange(WorkGroup, 1));
   }
 
-  void Copy(const Buffer<float>& from, std::vector<float>& to, std::size_t first, std::size_t count)
+  void Copy(const Buffer<float>& from, const SamplesInside& inside, int components, std::vector<float>& to)
   {
-    this->TheDevice.Queue().enqueueReadBuffer(from.Handle(), CL_TRUE, 0, count * sizeof(float), to.data() + first);
+    const std::size_t bytes = inside.length * components * sizeof(float);
+    for (std::size_t run = 0; run < inside.runs; ++run)
+    {
+      this->TheDevice.Queue().enqueueReadBuffer(
+        from.Handle(), CL_TRUE, run * bytes, bytes, to.data() + (inside.first + run * inside.stride) * components);
+    }
   }
 
   Device& TheDevice;
+  const std::vector<Solid>& Solids;
+  const Material& Outside;
   const RefractiveMediumSettings& Settings;
-  int Components;
-  std::size_t AtOnce;
-  Buffer<float> Covered, SigmaA, SigmaS;
+  Buffer<float>& Index;
+  RefractiveMedium& Result;
+  Buffer<float> Covered, SigmaA, SigmaS; ///< of a slab
   cl::Kernel AddObject, AddOutside;
 };
 
@@ -219,17 +288,62 @@ Monitor PartOf(const Monitor& monitor, double begin, double end)
   return [&monitor, begin, end](double done) { return !monitor || monitor(begin + done * (end - begin)); };
 }
 
-std::vector<std::string> CheckMeshes(
-  Device& device, const std::vector<Solid>& solids, const RefractiveMediumSettings& settings, const Monitor& monitor)
+std::vector<MeshTopology> CheckMeshes(
+  const std::vector<Solid>& solids, const RefractiveMediumSettings& settings, const Monitor& monitor)
 {
-  std::vector<std::string> warnings;
+  std::vector<MeshTopology> topologies;
   for (const Solid& solid : solids)
   {
-    const MeshTopology topology = CheckClosed(solid.mesh, solid.name, settings.grid, settings.voxelization.samples);
-    const std::vector<std::string> odd = Oddities(device, solid.mesh, topology, solid.name, settings.grid, monitor);
-    warnings.insert(warnings.end(), odd.begin(), odd.end());
+    Report(monitor, static_cast<double>(topologies.size()) / solids.size());
+    topologies.push_back(CheckClosed(solid.mesh, solid.name, settings.grid, settings.voxelization.samples));
   }
-  return warnings;
+  return topologies;
+}
+
+/// Voxelises the meshes into everything but what comes of the smoothed index.
+void FillVoxels(Device& device, const std::vector<Solid>& solids, const std::vector<MeshTopology>& topologies,
+  const RefractiveMediumSettings& settings, Mixer& mixer, const Monitor& monitor, RefractiveMedium& result)
+{
+  std::vector<OrientedMesh> meshes;
+  for (std::size_t s = 0; s < solids.size(); ++s)
+  {
+    meshes.push_back({ &solids[s].mesh, Orientation(topologies[s]) });
+  }
+  const std::vector<WindingNumbers> windings = CountSamplesInside(
+    device, settings.grid, meshes, settings.voxelization, [&](const SamplesInside& inside) { mixer.Take(inside); },
+    monitor);
+  for (std::size_t s = 0; s < solids.size(); ++s)
+  {
+    const std::vector<std::string> odd =
+      Oddities(topologies[s], windings[s], solids[s].name, settings.grid, settings.voxelization.samples);
+    result.warnings.insert(result.warnings.end(), odd.begin(), odd.end());
+  }
+}
+
+void CheckPointsOf(const Solid& solid)
+{
+  try
+  {
+    CheckPoints(solid.mesh);
+  }
+  catch (const InvalidInput& error)
+  {
+    throw InvalidInput(solid.name + " cannot be used. " + error.what());
+  }
+}
+
+/// What there is of meshes that have no extent, for a message.
+std::string WithoutExtent(const std::vector<Solid>& solids)
+{
+  std::string text;
+  for (const Solid& solid : solids)
+  {
+    const std::size_t triangles = solid.mesh.triangles.size();
+    const std::size_t edges = triangles > 0 ? Examine(solid.mesh).boundaryEdges : 0;
+    text += " " + solid.name + " has " + std::to_string(triangles) + " triangles and " + std::to_string(edges) +
+      " boundary edges.";
+  }
+  return text;
 }
 
 void AddIndex(Device& device, Buffer<float>& index, const RefractiveMediumSettings& settings, const Monitor& monitor,
@@ -243,6 +357,10 @@ void AddIndex(Device& device, Buffer<float>& index, const RefractiveMediumSettin
 
 Grid GridAround(const std::vector<Solid>& solids, const std::array<int, 3>& size, double margin, int filterSize)
 {
+  for (const Solid& solid : solids)
+  {
+    CheckPointsOf(solid);
+  }
   std::array<double, 3> low, high;
   low.fill(HUGE_VAL);
   high.fill(-HUGE_VAL);
@@ -258,10 +376,12 @@ Grid GridAround(const std::vector<Solid>& solids, const std::array<int, 3>& size
       }
     }
     longest = std::max(longest, high[axis] - low[axis]);
-    Demand(size[axis] >= 1, "The grid is to have " + std::to_string(size[axis]) + " voxels along " +
-        std::string(1, "xyz"[axis]) + "; it needs at least one.");
+    Demand(size[axis] >= 1,
+      "The grid is to have " + std::to_string(size[axis]) + " voxels along " + std::string(1, "xyz"[axis]) +
+        "; it needs at least one.");
   }
-  Demand(longest > 0.0 && std::isfinite(longest), "There is no mesh, or none with an extent, to put a box around.");
+  Demand(longest > 0.0, "There is no mesh, or none with an extent, to put a box around." + WithoutExtent(solids));
+  Demand(std::isfinite(longest), "The meshes reach further than a number can say. Scale them.");
   Demand(margin >= 0.0 && std::isfinite(margin),
     "The margin is " + std::to_string(margin) + "; it must be finite and not negative.");
 
@@ -290,14 +410,10 @@ RefractiveMedium Voxelize(
   CheckSettings(settings, solids);
   RefractiveMedium result;
   result.device = device.Name();
-  result.warnings = CheckMeshes(device, solids, settings, PartOf(monitor, 0.0, 0.2));
-
-  std::vector<const TriangleMesh*> meshes;
   Material outside = settings.outside;
   std::vector<Material*> materials = { &outside };
   for (Solid& solid : solids)
   {
-    meshes.push_back(&solid.mesh);
     materials.push_back(&solid.material);
   }
   if (ShareMeanCosine(materials, result.g))
@@ -306,13 +422,13 @@ RefractiveMedium Voxelize(
   }
   const bool grey = std::all_of(materials.begin(), materials.end(), [](const Material* m) { return IsGrey(*m); });
   result.components = grey ? 1 : 3;
+  const bool even = IndexIsEven(solids, settings);
+  CheckMemory(device, settings, result.components, !even);
 
-  const std::vector<Buffer<cl_ushort>> inside =
-    CountSamplesInside(device, settings.grid, meshes, settings.voxelization, PartOf(monitor, 0.2, 0.6));
+  const std::vector<MeshTopology> topologies = CheckMeshes(solids, settings, PartOf(monitor, 0.0, 0.2));
   Buffer<float> index(device, settings.grid.VoxelCount(), "ior");
-  const bool noise = settings.perturbation.index > 0.0 || settings.perturbation.scattering > 0.0;
-  Mixer(device, settings, noise, result.components).Run(solids, outside, inside, index, result);
-  Report(monitor, 0.8);
+  Mixer mixer(device, solids, outside, settings, index, result);
+  FillVoxels(device, solids, topologies, settings, mixer, PartOf(monitor, 0.2, 0.8), result);
 
   const bool empty =
     std::all_of(result.occupancy.begin(), result.occupancy.end(), [](float part) { return part == 0.0f; });
@@ -321,7 +437,7 @@ RefractiveMedium Voxelize(
     result.warnings.push_back("Nothing of the box is inside a mesh, or what is falls between its samples. Compare the "
                               "box with the meshes' bounds.");
   }
-  if (empty || IndexIsEven(solids, settings))
+  if (empty || even)
   {
     result.leftOut.push_back("ior, ior_gradient: the refractive index is " + std::to_string(outside.n) + " everywhere");
   }

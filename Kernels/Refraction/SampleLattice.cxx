@@ -81,7 +81,7 @@ SampleLattice::SampleLattice(const Grid& grid, int samples, const std::vector<co
   if (!(longest < Longest / 2.0))
   {
     throw InvalidInput("The mesh is " + std::to_string(longest / samples) + " voxels long. With " +
-      std::to_string(samples) + " samples an edge of a voxel it can be " +
+      std::to_string(samples) + (samples == 1 ? " sample" : " samples") + " an edge of a voxel it can be " +
       std::to_string(static_cast<int>(Longest / 2.0) / samples) +
       " at most. Make the box larger, or cut away what is far outside of it.");
   }
@@ -126,6 +126,7 @@ SampleColumns::SampleColumns(const Grid& grid, int axis, int samplesOfVoxel, int
   : axis(axis)
   , across(axis == 0 ? 1 : 0)
   , up(axis == 2 ? 1 : 2)
+  , samplesOfVoxel(samplesOfVoxel)
   , samples(grid.size[axis] * samplesOfVoxel)
   , count{ grid.size[this->across] * samplesOfVoxel, grid.size[this->up] * samplesOfVoxel }
   , pitch(unitsOfSample)

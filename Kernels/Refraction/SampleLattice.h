@@ -46,7 +46,8 @@ struct SampleColumns
 
   int axis;
   int across, up; ///< the other axes: the lower one, the higher one
-  int samples;    ///< of a column
+  int samplesOfVoxel;
+  int samples; ///< of a column
   std::array<int, 2> count;
   int pitch; ///< units from sample to sample; the first one is half of that inside the grid
 };

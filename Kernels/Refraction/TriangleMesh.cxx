@@ -14,11 +14,22 @@ namespace
 {
 using Point = std::array<double, 3>;
 
+void CheckPoint(const TriangleMesh& mesh, std::size_t number)
+{
+  const Point& p = mesh.points[number];
+  if (!std::isfinite(p[0]) || !std::isfinite(p[1]) || !std::isfinite(p[2]))
+  {
+    const std::size_t known = number < mesh.pointNumbers.size() ? mesh.pointNumbers[number] : number;
+    throw InvalidInput("Point " + std::to_string(known) + " of the mesh is at (" + std::to_string(p[0]) + ", " +
+      std::to_string(p[1]) + ", " + std::to_string(p[2]) + "), which is not finite. Clean the mesh.");
+  }
+}
+
 void CheckNumbers(const TriangleMesh& mesh)
 {
   if (mesh.triangles.empty())
   {
-    throw InvalidInput("The mesh is empty: it has no triangles.");
+    throw InvalidInput("The mesh is empty: it has 0 triangles, and 0 boundary edges.");
   }
   const int points = static_cast<int>(mesh.points.size());
   for (std::size_t t = 0; t < mesh.triangles.size(); ++t)
@@ -30,11 +41,7 @@ void CheckNumbers(const TriangleMesh& mesh)
         throw InvalidInput("Triangle " + std::to_string(t) + " of the mesh has the corner " + std::to_string(corner) +
           ", but the mesh has " + std::to_string(points) + " points.");
       }
-      const Point& p = mesh.points[static_cast<std::size_t>(corner)];
-      if (!std::isfinite(p[0]) || !std::isfinite(p[1]) || !std::isfinite(p[2]))
-      {
-        throw InvalidInput("Point " + std::to_string(corner) + " of the mesh has a coordinate that is not finite.");
-      }
+      CheckPoint(mesh, static_cast<std::size_t>(corner));
     }
   }
 }
@@ -180,6 +187,14 @@ void MeasureTriangles(const TriangleMesh& mesh, MeshTopology& topology)
     topology.enclosedVolume += (r[0] * n[0] + r[1] * n[1] + r[2] * n[2]) / 6.0;
   }
 }
+}
+
+void CheckPoints(const TriangleMesh& mesh)
+{
+  for (std::size_t i = 0; i < mesh.points.size(); ++i)
+  {
+    CheckPoint(mesh, i);
+  }
 }
 
 MeshTopology Examine(const TriangleMesh& mesh)

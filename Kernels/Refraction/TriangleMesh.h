@@ -11,7 +11,13 @@ struct TriangleMesh
 {
   std::vector<std::array<double, 3>> points;
   std::vector<std::array<int, 3>> triangles;
+
+  /// Of each point in the mesh that it was taken from, for messages; empty: their own.
+  std::vector<std::size_t> pointNumbers;
 };
+
+/// @throws InvalidInput where a point is not finite: names the first
+void CheckPoints(const TriangleMesh& mesh);
 
 /// What can be wrong with the surface of a solid.
 ///

@@ -9,7 +9,7 @@
 // never meets an edge or a corner, and which samples are inside is the same whichever axis the columns run along.
 //
 // Defined before: AXIS, 0 to 2, along which the columns run; SAMPLES, samples an edge of a voxel; FROM_ABOVE, 1 where what
-// lies after a crossing is toggled instead; WINDING, 1 where crossings are counted with their sign instead, see below.
+// lies after a crossing is toggled instead; WINDING, 1 where crossings are counted with their sign instead.
 
 #if AXIS == 0
 #define ALONG(p) ((p).x)
@@ -26,7 +26,7 @@
 #endif
 
 #if WINDING
-// The winding number of the mesh about the centre of each voxel: a byte counts the crossings between it and the next one, +1
+// The winding number of the mesh about each sample: a byte counts the crossings between it and the next one, +1
 // for each at which a line along the column leaves the mesh, -1 where it enters.
 #define CELLS 4
 #define BITS 4
@@ -76,7 +76,18 @@ inline int samples_before(long excess, long step, int samples)
   return (int)number + 1;
 }
 
-inline void mark_crossing(__global uint* column, int before, int samples, int leaving)
+#if !WINDING
+// A random number a sample, by which crossings are summed.
+inline uint weight_of(int sample)
+{
+  uint h = (uint)sample * 0x9e3779b1u + 0x7f4a7c15u;
+  h = (h ^ (h >> 15)) * 0x85ebca6bu;
+  h = (h ^ (h >> 13)) * 0xc2b2ae35u;
+  return h ^ (h >> 16);
+}
+#endif
+
+inline void mark_crossing(__global uint* column, __global uint* sum, int before, int samples, int leaving)
 {
 #if WINDING
   if (before > 0)
@@ -89,6 +100,7 @@ inline void mark_crossing(__global uint* column, int before, int samples, int le
   if (sample >= 0 && sample < samples)
   {
     atomic_xor(column + sample / BITS, 1u << (sample % BITS));
+    atomic_add(sum, (uint)leaving * weight_of(sample));
   }
 #endif
 }
@@ -98,8 +110,10 @@ inline void mark_crossing(__global uint* column, int before, int samples, int le
 //   pitch          of the samples, in units of the lattice
 //   samples        of a column; columns: of a row; words: of a column
 //   firstRow       the first row of columns in `marks`
+//   sums           of the weights of a column's crossings, each with its sign, see fill_columns; not used with WINDING
 __kernel void mark_crossings(int tileCount, __global const uint4* tiles, __global const int* points,
-  __global const int* triangles, int pitch, int samples, int columns, int words, int firstRow, __global uint* marks)
+  __global const int* triangles, int pitch, int samples, int columns, int words, int firstRow, __global uint* marks,
+  __global uint* sums)
 {
   const int id = get_global_id(0);
   if (id >= tileCount)
@@ -146,7 +160,13 @@ __kernel void mark_crossings(int tileCount, __global const uint4* tiles, __globa
 
   const int tileColumns = tile.w >> 16;
   const int tileRows = tile.w & 0xffff;
-  __global uint* row = marks + ((ulong)(tile.z - firstRow) * columns + tile.y) * words;
+  const ulong firstColumn = (ulong)(tile.z - firstRow) * columns + tile.y;
+  __global uint* row = marks + firstColumn * words;
+#if WINDING
+  __global uint* rowOfSums = sums;
+#else
+  __global uint* rowOfSums = sums + firstColumn;
+#endif
   for (int j = 0; j < tileRows; ++j)
   {
     long v0 = e0.value, v1 = e1.value, v2 = e2.value, x = excess;
@@ -154,7 +174,7 @@ __kernel void mark_crossings(int tileCount, __global const uint4* tiles, __globa
     {
       if ((v0 | v1 | v2) >= 0)
       {
-        mark_crossing(row + (ulong)i * words, samples_before(x, step, samples), samples, leaving);
+        mark_crossing(row + (ulong)i * words, rowOfSums + i, samples_before(x, step, samples), samples, leaving);
       }
       v0 += e0.across;
       v1 += e1.across;
@@ -166,13 +186,16 @@ __kernel void mark_crossings(int tileCount, __global const uint4* tiles, __globa
     e2.value += e2.up;
     excess -= excessUp;
     row += (ulong)columns * words;
+#if !WINDING
+    rowOfSums += columns;
+#endif
   }
 }
 
 #if WINDING
 
-// Winding numbers of one column's voxels: the smallest, the largest, how many are neither 0 nor 1 when multiplied by `sign`,
-// and the first such voxel.
+// Winding numbers of one column's samples: the smallest, the largest, how many are neither 0 nor 1 when multiplied by `sign`,
+// and the first such sample.
 __kernel void find_windings(
   int columnCount, int words, int samples, int sign, __global const uint* marks, __global int4* found)
 {
@@ -211,8 +234,18 @@ __kernel void find_windings(
 
 #else
 
-// Turns the marks of each column into bits that say inside or outside.
-__kernel void fill_columns(int columnCount, int words, __global uint* marks)
+// Turns the marks of each column into bits that say inside or outside, and finds the columns with a sample about which the
+// mesh winds neither 0 times nor once.
+//
+// Where it winds about all samples of a column 0 times or once, lines along the column leave and enter the mesh by turns,
+// and the crossings' weights with their signs add up to those of the marks that are left, with signs by turns. Weights are
+// random: other crossings have another sum, but for one in 2^32.
+//   columns   of a row
+//   sums      of mark_crossings
+//   sign      1, -1 where the mesh is inside out, 0 where nothing is to be found
+//   odd       a number for each row of voxels, from that of the first row of columns on: set where it has such a column
+__kernel void fill_columns(int columnCount, int columns, int words, __global uint* marks, __global const uint* sums,
+  int sign, __global int* odd, int firstOdd)
 {
   const int id = get_global_id(0);
   if (id >= columnCount)
@@ -221,10 +254,17 @@ __kernel void fill_columns(int columnCount, int words, __global uint* marks)
   }
   __global uint* column = marks + (ulong)id * words;
   uint carried = 0;
+  uint sum = 0;
 #if FROM_ABOVE
+  uint turn = (uint)-1;
   for (int w = 0; w < words; ++w)
   {
     uint bits = column[w];
+    for (uint rest = bits; rest != 0; rest &= rest - 1)
+    {
+      sum += turn * weight_of(w * BITS + popcount(~rest & (rest - 1)));
+      turn = -turn;
+    }
     bits ^= bits << 1;
     bits ^= bits << 2;
     bits ^= bits << 4;
@@ -235,9 +275,17 @@ __kernel void fill_columns(int columnCount, int words, __global uint* marks)
     carried = (bits >> (BITS - 1)) != 0 ? ALL_BITS : 0;
   }
 #else
+  uint turn = 1;
   for (int w = words - 1; w >= 0; --w)
   {
     uint bits = column[w];
+    for (uint rest = bits; rest != 0;)
+    {
+      const int bit = 31 - (int)clz(rest);
+      sum += turn * weight_of(w * BITS + bit);
+      turn = -turn;
+      rest ^= 1u << bit;
+    }
     bits ^= bits >> 1;
     bits ^= bits >> 2;
     bits ^= bits >> 4;
@@ -248,15 +296,19 @@ __kernel void fill_columns(int columnCount, int words, __global uint* marks)
     carried = (bits & 1) != 0 ? ALL_BITS : 0;
   }
 #endif
+  if (sign != 0 && sums[id] != (uint)sign * sum)
+  {
+    atomic_or(odd + firstOdd + id / columns / SAMPLES, 1);
+  }
 }
 
 // Counts the samples of each voxel that are inside, and not claimed by an object that comes later. A work-item a column of
 // voxels.
 //   voxels    of a column of voxels; columns, rows: of the columns of voxels that `bits` holds
 //   claimed   as `bits`: samples of later objects; those of this one are added. Not looked at where CLAIMS is 0
-//   counts    the first voxel of the slab; strides: from voxel to voxel along, across and up
+//   counts    of the slab's voxels; strides: from voxel to voxel along, across and up
 __kernel void count_samples(int voxels, int columns, int rows, int words, __global const uint* bits,
-  __global uint* claimed, int claims, __global ushort* counts, int strideAlong, int strideAcross, int strideUp, ulong first)
+  __global uint* claimed, int claims, __global ushort* counts, int strideAlong, int strideAcross, int strideUp)
 {
   const int across = get_global_id(0);
   const int up = get_global_id(1);
@@ -266,7 +318,7 @@ __kernel void count_samples(int voxels, int columns, int rows, int words, __glob
   }
   const ulong rowOfColumns = (ulong)columns * SAMPLES * words;
   const ulong corner = ((ulong)up * SAMPLES * columns + across) * SAMPLES * words;
-  __global ushort* target = counts + first + (ulong)across * strideAcross + (ulong)up * strideUp;
+  __global ushort* target = counts + (ulong)across * strideAcross + (ulong)up * strideUp;
   for (int w = 0; w < words; ++w)
   {
     uint any = 0;

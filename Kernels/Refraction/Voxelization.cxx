@@ -1,11 +1,12 @@
 #include "Voxelization.h"
 
+#include "../Device/Sizes.h"
+#include "CrossingMarker.h"
 #include "SampleLattice.h"
 #include "TyndallKernelSources.h"
 
 #include <algorithm>
 #include <array>
-#include <memory>
 #include <string>
 
 namespace tyndall
@@ -13,12 +14,7 @@ namespace tyndall
 namespace
 {
 constexpr int LargestSampleCount = 16;
-constexpr std::size_t WorkGroup = 64;
-
-cl::NDRange Groups(std::size_t items)
-{
-  return cl::NDRange((items + WorkGroup - 1) / WorkGroup * WorkGroup);
-}
+constexpr std::size_t SlabVoxels = std::size_t(4) << 20; ///< at most, where a row has fewer
 
 /// Words of 32 bits in a column.
 int WordsOf(const Grid& grid, int axis, int voxelsOfWord)
@@ -26,105 +22,93 @@ int WordsOf(const Grid& grid, int axis, int voxelsOfWord)
   return (grid.size[axis] + voxelsOfWord - 1) / voxelsOfWord;
 }
 
-/// Rows of voxels whose columns of samples take about `bytes`.
-int VoxelsOfSlab(const SampleColumns& columns, int voxels, int words, std::size_t bytes)
+std::vector<const TriangleMesh*> TrianglesOf(const std::vector<OrientedMesh>& meshes)
 {
-  const std::size_t rowsOfVoxel = static_cast<std::size_t>(columns.count[1] / voxels);
-  const std::size_t row = static_cast<std::size_t>(columns.count[0]) * words * sizeof(cl_uint);
-  return static_cast<int>(std::clamp<std::size_t>(bytes / (row * rowsOfVoxel), 1, voxels));
+  std::vector<const TriangleMesh*> triangles;
+  for (const OrientedMesh& mesh : meshes)
+  {
+    triangles.push_back(mesh.mesh);
+  }
+  return triangles;
 }
 
-/// Puts the crossings of meshes with some rows of columns into a buffer.
-class CrossingMarker
+std::size_t VoxelsOfRow(const SampleColumns& columns, const Grid& grid)
 {
-public:
-  CrossingMarker(Device& device, const SampleColumns& columns, int words, const std::string& options)
-    : TheDevice(device)
-    , Columns(columns)
-    , Words(words)
-    , Kernel(device.Kernel("mark_crossings", { kernel_source::Voxelization }, options))
-  {
-  }
+  return grid.VoxelCount() / grid.size[columns.up];
+}
 
-  void Mark(const LatticeMesh& mesh, int firstRow, int endRow, Buffer<cl_uint>& marks)
-  {
-    marks.Fill(0);
-    const std::vector<cl_uint4> tiles = mesh.Tiles(this->Columns, firstRow, endRow);
-    if (tiles.empty())
-    {
-      return;
-    }
-    if (this->Tiles.Size() < tiles.size())
-    {
-      this->Tiles = Buffer<cl_uint4>(this->TheDevice, tiles.size() + tiles.size() / 4, "pieces of the mesh");
-    }
-    this->TheDevice.Queue().enqueueWriteBuffer(
-      this->Tiles.Handle(), CL_TRUE, 0, tiles.size() * sizeof(cl_uint4), tiles.data());
-    With(this->Kernel, static_cast<cl_int>(tiles.size()), this->Tiles, mesh.Points(), mesh.Triangles(),
-      this->Columns.pitch, this->Columns.samples, this->Columns.count[0], this->Words, firstRow, marks);
-    this->TheDevice.Queue().enqueueNDRangeKernel(
-      this->Kernel, cl::NullRange, Groups(tiles.size()), cl::NDRange(WorkGroup));
-  }
-
-private:
-  Device& TheDevice;
-  SampleColumns Columns;
-  int Words;
-  cl::Kernel Kernel;
-  Buffer<cl_uint4> Tiles;
-};
-
-std::string OptionsOf(int axis, int samples, bool fromAbove, bool winding)
+/// Rows of voxels whose columns of samples take about `bytes`.
+int RowsOfSlab(const SampleColumns& columns, const Grid& grid, int words, std::size_t bytes)
 {
-  return "-DAXIS=" + std::to_string(axis) + " -DSAMPLES=" + std::to_string(samples) +
-    " -DFROM_ABOVE=" + std::to_string(fromAbove) + " -DWINDING=" + std::to_string(winding);
+  const std::size_t row = static_cast<std::size_t>(columns.count[0]) * columns.samplesOfVoxel * words * sizeof(cl_uint);
+  const std::size_t rows = std::min(bytes / row, SlabVoxels / VoxelsOfRow(columns, grid));
+  return static_cast<int>(std::clamp<std::size_t>(rows, 1, static_cast<std::size_t>(grid.size[columns.up])));
 }
 
 /// How many samples of each voxel are in each mesh, slab by slab.
 class Voxelization
 {
 public:
-  Voxelization(Device& device, const Grid& grid, const std::vector<const TriangleMesh*>& meshes,
-    const VoxelizationSettings& settings)
+  Voxelization(
+    Device& device, const Grid& grid, const std::vector<OrientedMesh>& meshes, const VoxelizationSettings& settings)
     : TheDevice(device)
     , TheGrid(grid)
     , Samples(settings.samples)
-    , Lattice(grid, settings.samples, meshes)
+    , Lattice(grid, settings.samples, TrianglesOf(meshes))
     , Columns(grid, settings.columnAxis, settings.samples, this->Lattice.Pitch())
     , Words(WordsOf(grid, settings.columnAxis, 32 / settings.samples))
-    , Rows(VoxelsOfSlab(this->Columns, grid.size[this->Columns.up], this->Words, settings.slabBytes))
-    , Options(OptionsOf(settings.columnAxis, settings.samples, settings.fromAbove, false))
+    , Rows(RowsOfSlab(this->Columns, grid, this->Words, settings.slabBytes))
+    , Options(CrossingOptions(settings.columnAxis, settings.samples, settings.fromAbove, false))
     , Marker(device, this->Columns, this->Words, this->Options)
     , Fill(device.Kernel("fill_columns", { kernel_source::Voxelization }, this->Options))
     , Count(device.Kernel("count_samples", { kernel_source::Voxelization }, this->Options))
+    , Oriented(meshes)
+    , Odd(device, meshes.size() * grid.size[this->Columns.up], "rows of voxels with samples that a mesh encloses twice")
   {
-    for (const TriangleMesh* mesh : meshes)
+    for (const OrientedMesh& mesh : meshes)
     {
-      this->Meshes.emplace_back(device, this->Lattice, *mesh);
-      this->Counts.emplace_back(device, grid.VoxelCount(), "the voxels' samples inside");
+      this->Meshes.emplace_back(device, this->Lattice, *mesh.mesh);
     }
-    const std::size_t words = static_cast<std::size_t>(this->ColumnCount(this->Rows)) * this->Words;
-    this->Bits = Buffer<cl_uint>(device, words, "a slab of the fine grid");
+    const auto columns = static_cast<std::size_t>(this->ColumnCount(this->Rows));
+    this->Bits = Buffer<cl_uint>(device, columns * this->Words, "a slab of the fine grid");
+    this->Sums = Buffer<cl_uint>(device, columns, "sums of crossings");
     // Without a second mesh nothing is ever claimed, and the kernel is handed an empty buffer.
-    this->Claimed = Buffer<cl_uint>(device, meshes.size() > 1 ? words : 0, "samples of later meshes");
+    this->Claimed = Buffer<cl_uint>(device, meshes.size() > 1 ? columns * this->Words : 0, "samples of later meshes");
+    this->Counts =
+      Buffer<cl_ushort>(device, this->Rows * VoxelsOfRow(this->Columns, grid), "a slab of the voxels' samples inside");
+    this->Odd.Fill(0);
   }
 
-  std::vector<Buffer<cl_ushort>> Run(const Monitor& monitor)
+  void Run(const std::function<void(const SamplesInside&)>& take, const Monitor& monitor)
   {
     const int rows = this->TheGrid.size[this->Columns.up];
     for (int first = 0; first < rows; first += this->Rows)
     {
       Report(monitor, static_cast<double>(first) / rows);
-      this->RunSlab(first, std::min(first + this->Rows, rows));
+      this->RunSlab(first, std::min(first + this->Rows, rows), take);
       this->TheDevice.Finish();
     }
-    return std::move(this->Counts);
+  }
+
+  std::vector<WindingNumbers> Windings(const Monitor& monitor) const
+  {
+    const std::vector<cl_int> odd = this->Odd.Read();
+    std::vector<WindingNumbers> windings;
+    auto begin = odd.begin();
+    for (std::size_t m = 0; m < this->Meshes.size(); ++m)
+    {
+      const std::vector<cl_int> rows(begin, begin + this->TheGrid.size[this->Columns.up]);
+      begin += this->TheGrid.size[this->Columns.up];
+      windings.push_back(FindWindings(this->TheDevice, this->TheGrid, this->Meshes[m], this->Columns, rows,
+        this->Oriented[m].orientation < 0, monitor));
+    }
+    return windings;
   }
 
 private:
   int ColumnCount(int rowsOfVoxels) const { return this->Columns.count[0] * rowsOfVoxels * this->Samples; }
 
-  void RunSlab(int first, int end)
+  void RunSlab(int first, int end, const std::function<void(const SamplesInside&)>& take)
   {
     if (this->Claimed.Size() > 0)
     {
@@ -132,27 +116,39 @@ private:
     }
     for (std::size_t m = this->Meshes.size(); m-- > 0;)
     {
-      this->Marker.Mark(this->Meshes[m], first * this->Samples, end * this->Samples, this->Bits);
+      this->Marker.Mark(this->Meshes[m], first * this->Samples, end * this->Samples, this->Bits, this->Sums);
       const int columns = this->ColumnCount(end - first);
-      With(this->Fill, columns, this->Words, this->Bits);
+      const int firstOdd = static_cast<int>(m) * this->TheGrid.size[this->Columns.up] + first;
+      With(this->Fill, columns, this->Columns.count[0], this->Words, this->Bits, this->Sums,
+        this->Oriented[m].orientation, this->Odd, firstOdd);
       this->TheDevice.Queue().enqueueNDRangeKernel(
-        this->Fill, cl::NullRange, Groups(static_cast<std::size_t>(columns)), cl::NDRange(WorkGroup));
-      this->CountSlab(first, end, this->Counts[m]);
+        this->Fill, cl::NullRange, CrossingRange(static_cast<std::size_t>(columns)), CrossingGroup());
+      this->CountSlab(end - first);
+      take(this->SlabOf(m, first, end));
     }
   }
 
-  void CountSlab(int first, int end, Buffer<cl_ushort>& counts)
+  void CountSlab(int rows)
   {
     const std::array<int, 3>& size = this->TheGrid.size;
-    const std::array<int, 3> stride = { 1, size[0], size[0] * size[1] };
+    const std::array<int, 3> stride = { 1, size[0], size[0] * (this->Columns.up == 1 ? rows : size[1]) };
     const int columns = size[this->Columns.across];
-    const cl_ulong voxel = static_cast<cl_ulong>(first) * static_cast<cl_ulong>(stride[this->Columns.up]);
-    With(this->Count, size[this->Columns.axis], columns, end - first, this->Words, this->Bits, this->Claimed,
-      static_cast<cl_int>(this->Claimed.Size() > 0), counts, stride[this->Columns.axis], stride[this->Columns.across],
-      stride[this->Columns.up], voxel);
-    const std::size_t across = (static_cast<std::size_t>(columns) + WorkGroup - 1) / WorkGroup * WorkGroup;
+    With(this->Count, size[this->Columns.axis], columns, rows, this->Words, this->Bits, this->Claimed,
+      static_cast<cl_int>(this->Claimed.Size() > 0), this->Counts, stride[this->Columns.axis],
+      stride[this->Columns.across], stride[this->Columns.up]);
+    const std::size_t group = CrossingGroup().get()[0];
     this->TheDevice.Queue().enqueueNDRangeKernel(this->Count, cl::NullRange,
-      cl::NDRange(across, static_cast<std::size_t>(end - first)), cl::NDRange(WorkGroup, 1));
+      cl::NDRange(RoundUp(static_cast<std::size_t>(columns), group), static_cast<std::size_t>(rows)),
+      cl::NDRange(group, 1));
+  }
+
+  SamplesInside SlabOf(std::size_t mesh, int first, int end) const
+  {
+    const std::size_t row = this->TheGrid.size[0];
+    const std::size_t layer = row * this->TheGrid.size[1];
+    const std::size_t layers = this->TheGrid.size[2];
+    return this->Columns.up == 2 ? SamplesInside{ mesh, this->Counts, first * layer, (end - first) * layer, 0, 1 }
+                                 : SamplesInside{ mesh, this->Counts, first * row, (end - first) * row, layer, layers };
   }
 
   Device& TheDevice;
@@ -165,21 +161,12 @@ private:
   std::string Options;
   CrossingMarker Marker;
   cl::Kernel Fill, Count;
+  std::vector<OrientedMesh> Oriented;
   std::vector<LatticeMesh> Meshes;
-  std::vector<Buffer<cl_ushort>> Counts;
-  Buffer<cl_uint> Bits, Claimed;
+  Buffer<cl_uint> Bits, Sums, Claimed;
+  Buffer<cl_ushort> Counts;
+  Buffer<cl_int> Odd; ///< not 0 for each mesh's rows of voxels that FindWindings is to look at
 };
-
-void Merge(WindingNumbers& windings, const cl_int4& ofColumn, const std::array<int, 3>& voxel)
-{
-  windings.lowest = std::min(windings.lowest, ofColumn.s[0]);
-  windings.highest = std::max(windings.highest, ofColumn.s[1]);
-  if (windings.oddVoxels == 0 && ofColumn.s[2] > 0)
-  {
-    windings.firstOddVoxel = voxel;
-  }
-  windings.oddVoxels += static_cast<std::size_t>(ofColumn.s[2]);
-}
 }
 
 void Check(const VoxelizationSettings& settings)
@@ -195,46 +182,13 @@ void Check(const VoxelizationSettings& settings)
   }
 }
 
-std::vector<Buffer<cl_ushort>> CountSamplesInside(Device& device, const Grid& grid,
-  const std::vector<const TriangleMesh*>& meshes, const VoxelizationSettings& settings, const Monitor& monitor)
+std::vector<WindingNumbers> CountSamplesInside(Device& device, const Grid& grid,
+  const std::vector<OrientedMesh>& meshes, const VoxelizationSettings& settings,
+  const std::function<void(const SamplesInside&)>& take, const Monitor& monitor)
 {
   Check(settings);
-  return Voxelization(device, grid, meshes, settings).Run(monitor);
-}
-
-WindingNumbers FindWindings(
-  Device& device, const Grid& grid, const TriangleMesh& mesh, bool inverted, const Monitor& monitor)
-{
-  const SampleLattice lattice(grid, 1, { &mesh });
-  const SampleColumns columns(grid, 0, 1, lattice.Pitch());
-  const LatticeMesh onLattice(device, lattice, mesh);
-  const int words = WordsOf(grid, 0, 4);
-  const int slab = VoxelsOfSlab(columns, grid.size[2], words, VoxelizationSettings().slabBytes);
-  const std::string options = OptionsOf(0, 1, false, true);
-  CrossingMarker marker(device, columns, words, options);
-  cl::Kernel find = device.Kernel("find_windings", { kernel_source::Voxelization }, options);
-  const std::size_t most = static_cast<std::size_t>(columns.count[0]) * slab;
-  Buffer<cl_uint> marks(device, most * words, "crossings of the mesh");
-  Buffer<cl_int4> found(device, most, "winding numbers");
-  std::vector<cl_int4> ofColumns(most);
-
-  WindingNumbers windings;
-  for (int first = 0; first < grid.size[2]; first += slab)
-  {
-    Report(monitor, static_cast<double>(first) / grid.size[2]);
-    const int end = std::min(first + slab, grid.size[2]);
-    const int count = columns.count[0] * (end - first);
-    marker.Mark(onLattice, first, end, marks);
-    With(find, count, words, grid.size[0], inverted ? -1 : 1, marks, found);
-    device.Queue().enqueueNDRangeKernel(
-      find, cl::NullRange, Groups(static_cast<std::size_t>(count)), cl::NDRange(WorkGroup));
-    found.Read(ofColumns.data());
-    for (int c = 0; c < count; ++c)
-    {
-      Merge(windings, ofColumns[static_cast<std::size_t>(c)],
-        { ofColumns[static_cast<std::size_t>(c)].s[3], c % columns.count[0], first + c / columns.count[0] });
-    }
-  }
-  return windings;
+  Voxelization voxelization(device, grid, meshes, settings);
+  voxelization.Run(take, monitor);
+  return voxelization.Windings(monitor ? [&monitor](double) { return monitor(1.0); } : Monitor());
 }
 }

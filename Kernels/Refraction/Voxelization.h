@@ -4,8 +4,10 @@
 #include "../Device/Monitor.h"
 #include "../Medium/Grid.h"
 #include "TriangleMesh.h"
+#include "WindingNumbers.h"
 
 #include <cstddef>
+#include <functional>
 #include <vector>
 
 namespace tyndall
@@ -26,6 +28,25 @@ struct VoxelizationSettings
 /// @throws InvalidInput
 void Check(const VoxelizationSettings& settings);
 
+/// A closed mesh, and how its corners run.
+struct OrientedMesh
+{
+  const TriangleMesh* mesh =
+    nullptr;           ///< closed, or closed when rounded; see Examine. A triangle without area does nothing
+  int orientation = 1; ///< 1: counterclockwise seen from outside; -1: clockwise; 0: its triangles disagree
+};
+
+/// Samples of the voxels of a slab that lie in one of several meshes.
+struct SamplesInside
+{
+  std::size_t mesh;                ///< number of the mesh
+  const Buffer<cl_ushort>& counts; ///< 0 to samples^3; a voxel, x fastest. Written again for the next mesh
+
+  /// The slab's voxels are `runs` runs of `length` of the grid's: the first begins at voxel `first`, the next `stride` later.
+  std::size_t first, length, stride, runs;
+  std::size_t VoxelCount() const { return this->length * this->runs; }
+};
+
 /// Number of samples of each voxel that lie in each of several closed meshes. Where meshes overlap, the last of them has
 /// the samples.
 ///
@@ -35,23 +56,13 @@ void Check(const VoxelizationSettings& settings);
 /// millionth of the box wide (SampleLattice), and from there on everything is exact: a column through an edge or a corner
 /// is counted once, a closed mesh never leaks, and a sample is inside or not whichever way its column runs.
 ///
-/// @param meshes  closed, or closed when rounded; see Examine. A triangle without area does nothing
-/// @return        a buffer a mesh, x fastest: 0 to samples^3
+/// @param take  handed what is found slab by slab, and of each slab mesh by mesh from the last to the first, so that what is
+///   on the device at a time does not grow with the grid or the number of meshes
+/// @return a mesh: whether it winds about all samples 0 times or once. Where it does not the samples inside are those about
+///   which it winds an odd number of times. Not known where the orientation is 0: the numbers are those of a sound mesh
 /// @throws InvalidInput   where a setting or a mesh's size has no meaning
-/// @throws DeviceError    if 2 bytes a voxel and mesh, the meshes and a slab do not fit the device
-std::vector<Buffer<cl_ushort>> CountSamplesInside(Device& device, const Grid& grid,
-  const std::vector<const TriangleMesh*>& meshes, const VoxelizationSettings& settings = {},
-  const Monitor& monitor = {});
-
-/// How often a mesh winds about the centres of voxels: 0 outside and 1 inside of a mesh that encloses everything once.
-struct WindingNumbers
-{
-  int lowest = 0, highest = 0;
-  std::size_t oddVoxels = 0;                      ///< voxels about which it winds neither 0 times nor once
-  std::array<int, 3> firstOddVoxel = { 0, 0, 0 }; ///< of those the first in the order z, y, x
-};
-
-/// @param mesh  closed, corners counterclockwise seen from outside, or where `inverted` from inside
-WindingNumbers FindWindings(
-  Device& device, const Grid& grid, const TriangleMesh& mesh, bool inverted, const Monitor& monitor = {});
+/// @throws DeviceError    if the meshes and a slab do not fit the device
+std::vector<WindingNumbers> CountSamplesInside(Device& device, const Grid& grid,
+  const std::vector<OrientedMesh>& meshes, const VoxelizationSettings& settings,
+  const std::function<void(const SamplesInside&)>& take, const Monitor& monitor = {});
 }

@@ -1,9 +1,9 @@
 #include "DeviceTest.h"
 #include "PlyFile.h"
+#include "WholeCounts.h"
 
 #include "Refraction/MeshChecks.h"
 #include "Refraction/RefractiveMedium.h"
-#include "Refraction/Voxelization.h"
 
 #include <gmock/gmock.h>
 
@@ -54,7 +54,9 @@ TEST_P(FetchedMesh, IsTheSameFromAllSidesAndHasItsVolume)
     for (bool above : { false, true })
     {
       settings.fromAbove = above;
-      std::vector<cl_ushort> counts = CountSamplesInside(this->GetDevice(), grid, { &solid.mesh }, settings)[0].Read();
+      WholeCounts whole = CountWhole(this->GetDevice(), grid, { { &solid.mesh } }, settings);
+      EXPECT_EQ(whole.windings[0].oddSamples, 0u);
+      std::vector<cl_ushort> counts = std::move(whole.counts[0]);
       if (first.empty())
       {
         first = std::move(counts);
@@ -64,9 +66,9 @@ TEST_P(FetchedMesh, IsTheSameFromAllSidesAndHasItsVolume)
     }
   }
   const double volume = std::accumulate(first.begin(), first.end(), 0.0) / 64.0 * grid.VoxelVolume();
-  const double exact = Examine(solid.mesh).enclosedVolume;
-  EXPECT_NEAR(volume, exact, 1e-3 * exact);
-  EXPECT_THAT(Oddities(this->GetDevice(), solid.mesh, Examine(solid.mesh), "It", grid), testing::IsEmpty());
+  const MeshTopology topology = Examine(solid.mesh);
+  EXPECT_NEAR(volume, topology.enclosedVolume, 1e-3 * topology.enclosedVolume);
+  EXPECT_THAT(Oddities(topology, {}, "It", grid, 4), testing::IsEmpty());
 }
 
 INSTANTIATE_TEST_SUITE_P(Meshes, FetchedMesh,

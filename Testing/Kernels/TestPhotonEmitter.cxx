@@ -6,6 +6,9 @@
 #include <algorithm>
 #include <cmath>
 #include <set>
+#include <string>
+#include <utility>
+#include <vector>
 
 using namespace tyndall;
 
@@ -80,6 +83,23 @@ bool OnBox(const Photon& photon)
   }
   return onFace;
 }
+
+/// Whether photons go into the box: all but the first sample of a sequence, which may meet a corner of it.
+bool AllGoIn(const std::vector<Photon>& photons)
+{
+  const Grid grid = Box();
+  const auto goesOut = [&](const Photon& photon) {
+    bool out = !OnBox(photon);
+    for (int a = 0; a < 3; ++a)
+    {
+      const double low = photon.position[a] - grid.origin[a];
+      const double high = grid.Length(a) - low;
+      out = out || (low < 1e-9 && photon.direction[a] < 0.0f) || (high < 1e-9 && photon.direction[a] > 0.0f);
+    }
+    return out;
+  };
+  return std::count_if(photons.begin(), photons.end(), goesOut) <= 1;
+}
 }
 
 TEST(PhotonEmitter, ADirectionalLightGivesItsIrradianceTimesTheOutline)
@@ -152,6 +172,108 @@ TEST(PhotonEmitter, LampsInsideGiveAllTheirPower)
       : type == LightType::Spot                      ? 0.5 * (1.0 + std::cos(Pi / 9.0))
                                                      : 2.0 / 3.0;
     EXPECT_NEAR(along, expected, 2e-3);
+  }
+}
+
+TEST(PhotonEmitter, ALampOnAFaceGivesWhatItShinesIntoTheBox)
+{
+  const std::pair<std::array<double, 3>, double> places[] = { { { 0.0, 2.5, 8.0 }, 0.5 }, { { -1.0, 2.5, 5.0 }, 0.5 },
+    { { 0.0, 4.0, 5.0 }, 0.5 }, { { 1.0, 2.5, 8.0 }, 0.25 }, { { -1.0, 1.0, 3.0 }, 0.25 }, { { 0.2, 1.0, 8.0 }, 0.25 },
+    { { 1.0, 4.0, 8.0 }, 0.125 }, { { -1.0, 4.0, 2.0 }, 0.125 } };
+  for (const auto& [place, part] : places)
+  {
+    // On the face, rounded off it to either side, and a little outside.
+    for (double away : { 0.0, -1e-12, 1e-12, 1e-7, 1e-4 })
+    {
+      std::array<double, 3> lamp = place;
+      for (int a = 0; a < 3; ++a)
+      {
+        const double low = Box().origin[a], high = low + Box().Length(a);
+        lamp[a] += place[a] == low ? -away : place[a] == high ? away : 0.0;
+      }
+      const EmittedPhotons emitted = Emit(Lamp(LightType::Point, lamp), 4000);
+      EXPECT_EQ(emitted.photons.size(), 4000u);
+      EXPECT_NEAR(emitted.power[0], 10.0 * part, 1e-3 + 2.0 * std::abs(away)) << away << " off " << place[2];
+      EXPECT_TRUE(AllGoIn(emitted.photons)) << away << " off " << place[2];
+    }
+  }
+}
+
+TEST(PhotonEmitter, LightOfALampOnAFaceIsSpreadBySolidAngle)
+{
+  // Mean direction: half of a sphere (0, 0, -1/2), a quarter twice that, an eighth thrice.
+  const std::pair<std::array<double, 3>, std::array<double, 3>> places[] = { { { 0.0, 2.5, 8.0 }, { 0.0, 0.0, -0.5 } },
+    { { -1.0, 2.5, 8.0 }, { 0.5, 0.0, -0.5 } }, { { -1.0, 1.0, 8.0 }, { 0.5, 0.5, -0.5 } } };
+  for (const auto& [place, expected] : places)
+  {
+    std::array<double, 3> mean = {};
+    for (const Photon& photon : Emit(Lamp(LightType::Point, place), 5000).photons)
+    {
+      for (int a = 0; a < 3; ++a)
+      {
+        mean[a] += photon.direction[a] / 5000.0;
+      }
+    }
+    for (int a = 0; a < 3; ++a)
+    {
+      EXPECT_NEAR(mean[a], expected[a], 2e-3) << place[0] << ", axis " << a;
+    }
+  }
+}
+
+TEST(PhotonEmitter, SpotsOnAFaceGiveWhatTheyShineIntoTheBox)
+{
+  const auto power = [](const std::array<double, 3>& place, const std::array<double, 3>& direction, double angle) {
+    Light spot = Lamp(LightType::Spot, place, direction);
+    spot.angle = angle;
+    const EmittedPhotons emitted = Emit(spot, 4000);
+    EXPECT_TRUE(AllGoIn(emitted.photons));
+    return emitted.power[0];
+  };
+  EXPECT_NEAR(power({ 0.0, 2.5, 8.0 }, { 0.0, 0.0, -1.0 }, 40.0), 10.0, 1e-3);
+  EXPECT_NEAR(power({ 0.0, 2.5, 8.0 }, { 0.0, 0.0, -1.0 }, 180.0), 10.0, 1e-3);
+  EXPECT_EQ(power({ 0.0, 2.5, 8.0 }, { 0.0, 0.0, 1.0 }, 40.0), 0.0);
+  EXPECT_NEAR(power({ 0.0, 2.5, 8.0 }, { 1.0, 0.0, 0.0 }, 40.0), 5.0, 0.05); // along the face
+  EXPECT_NEAR(
+    power({ 1.0, 4.0, 8.0 }, { -1.0, -1.0, -1.0 }, 180.0), 2.5, 0.025); // an eighth of the half it shines into
+  for (double away : { 1e-9, 1e-5, 1e-4 })
+  {
+    EXPECT_NEAR(power({ 0.0, 2.5, 8.0 + away }, { 1.0, 0.0, -0.2 }, 40.0),
+      power({ 0.0, 2.5, 8.0 }, { 1.0, 0.0, -0.2 }, 40.0), 0.05);
+  }
+}
+
+TEST(PhotonEmitter, RectanglesOnAFaceGiveWhatTheyShineIntoTheBox)
+{
+  const auto power = [](const std::array<double, 3>& place, const std::array<double, 3>& direction) {
+    const EmittedPhotons emitted = Emit(Lamp(LightType::Rectangle, place, direction), 4000);
+    EXPECT_TRUE(AllGoIn(emitted.photons));
+    return emitted.power[0];
+  };
+  EXPECT_NEAR(power({ 0.0, 2.5, 8.0 }, { 0.0, 0.0, -1.0 }), 10.0, 1e-3);
+  EXPECT_NEAR(power({ 0.0, 2.5, 8.0 + 1e-9 }, { 0.0, 0.0, -1.0 }), 10.0, 1e-3);
+  EXPECT_EQ(power({ 0.0, 2.5, 8.0 }, { 0.0, 0.0, 1.0 }), 0.0);
+  EXPECT_NEAR(power({ -1.0, 2.5, 5.0 }, { 1.0, 0.0, 0.0 }), 10.0, 1e-3);
+  // Half of it sticks out over an edge, and lights the box over the other face a little.
+  EXPECT_NEAR(power({ 1.0, 2.5, 8.0 }, { 0.0, 0.0, -1.0 }), power({ 1.0, 2.5, 8.0 + 1e-4 }, { 0.0, 0.0, -1.0 }), 0.03);
+}
+
+TEST(PhotonEmitter, TooManyPhotonsAreRefusedAtOnce)
+{
+  for (std::size_t count : { std::size_t(1000000000000), std::size_t(1) << 62 })
+  {
+    try
+    {
+      Emit(Lamp(LightType::Point, { 0.0, 2.5, 5.0 }), count);
+      ADD_FAILURE() << count << " photons were made";
+    }
+    catch (const DeviceError& error)
+    {
+      const std::string text = error.what();
+      EXPECT_NE(text.find(std::to_string(count) + " photons"), std::string::npos) << text;
+      EXPECT_NE(text.find("bytes each"), std::string::npos) << text;
+      EXPECT_NE(text.find("Ask for fewer photons"), std::string::npos) << text;
+    }
   }
 }
 

@@ -105,6 +105,25 @@ TEST_F(RefractiveMediumTest, PureVoxelsAreExactWithAnyFactor)
   EXPECT_EQ(medium.ior[0], 1.0f);
 }
 
+TEST_F(RefractiveMediumTest, ThePartOutsideIsNotADifferenceOfRoundedParts)
+{
+  // With 27 samples a voxel 1 - k / 27 is off by up to 10 units in the last place of a small part; (27 - k) / 27 is not.
+  RefractiveMediumSettings settings = FogAround(24);
+  settings.filterSize = 1;
+  settings.voxelization.samples = 3;
+  Solid clear = Ball();
+  clear.material.sigma_s = {};
+  const RefractiveMedium medium = this->Made({ clear }, settings);
+  int small = 0;
+  for (std::size_t i = 0; i < medium.sigma_s.size(); ++i)
+  {
+    const double outside = std::round(27.0 * (1.0 - medium.occupancy[i]));
+    ASSERT_FLOAT_EQ(medium.sigma_s[i], static_cast<float>(0.7 * outside / 27.0)) << outside << " samples outside";
+    small += outside > 0.0 && outside < 4.0;
+  }
+  EXPECT_GT(small, 50);
+}
+
 TEST_F(RefractiveMediumTest, ColourMakesThreeComponents)
 {
   RefractiveMediumSettings settings = FogAround(12);
@@ -235,6 +254,84 @@ TEST_F(RefractiveMediumTest, OddMeshesGiveWarnings)
     warnings(degenerate), ElementsAre(HasSubstr("1 triangle without area (degenerate), the first is number 2048")));
 }
 
+TEST_F(RefractiveMediumTest, IntersectionsThinnerThanAVoxelGiveAWarning)
+{
+  // Two unit boxes that overlap by 0.04: no voxel's centre is where they do, but a sample of four is.
+  const Solid boxes = { "Mesh",
+    shapes::Together(shapes::Box({ 0, 0, 0 }, { 1, 1, 1 }), shapes::Box({ 0.96, 0, 0 }, { 1.9, 1, 1 })), Glass() };
+  for (int size : { 8, 12, 16, 24, 32, 48 })
+  {
+    RefractiveMediumSettings settings = FogAround();
+    settings.filterSize = 1;
+    settings.grid.size = { 2 * size, size, size };
+    settings.grid.spacing = { 2.0 / (2 * size), 1.2 / size, 1.2 / size };
+    settings.grid.origin = { -0.05, -0.1, -0.1 };
+    EXPECT_THAT(this->Made({ boxes }, settings).warnings, ElementsAre(HasSubstr("Mesh intersects itself"))) << size;
+  }
+}
+
+TEST_F(RefractiveMediumTest, MemoryDoesNotGrowWithTheNumberOfSolids)
+{
+  RefractiveMediumSettings settings = FogAround(96);
+  settings.voxelization.slabBytes = std::size_t(1) << 20;
+  const auto peak = [&](int count) {
+    std::vector<Solid> solids;
+    for (int i = 0; i < count; ++i)
+    {
+      solids.push_back({ "Box", shapes::TurnedBox({ -0.5, -0.4, -0.3 }, { 0.5, 0.4, 0.1 * i }), Glass() });
+    }
+    this->GetDevice().ResetPeak();
+    const std::size_t before = this->GetDevice().PeakBytes();
+    this->Made(solids, settings);
+    return this->GetDevice().PeakBytes() - before;
+  };
+  EXPECT_LT(peak(10), peak(2) + 10000);
+}
+
+TEST_F(RefractiveMediumTest, WhatDoesNotFitIsRefusedAtOnce)
+{
+  const auto complaint = [&](int size) {
+    RefractiveMediumSettings settings = FogAround(24);
+    settings.grid.size = { size, size, size };
+    try
+    {
+      this->Made({ Ball() }, settings);
+    }
+    catch (const DeviceError& error)
+    {
+      return std::string(error.what());
+    }
+    return std::string();
+  };
+  for (int size : { 4000, 100000, 2000000000 })
+  {
+    const std::string number = std::to_string(size);
+    EXPECT_THAT(complaint(size), HasSubstr("A box of " + number + " x " + number + " x " + number + " voxels"));
+    EXPECT_THAT(complaint(size), HasSubstr("28 bytes each"));
+    EXPECT_THAT(complaint(size), HasSubstr("Ask for fewer voxels"));
+  }
+  EXPECT_THAT(complaint(4000), HasSubstr(" needs ")) << "bytes";
+  EXPECT_EQ(complaint(24), "");
+}
+
+TEST_F(RefractiveMediumTest, LengthsBeyondSinglePrecisionAreRefused)
+{
+  for (double scale : { 1e-30, 1e30 })
+  {
+    Solid ball = Ball();
+    for (shapes::Point& point : ball.mesh.points)
+    {
+      for (double& coordinate : point)
+      {
+        coordinate *= scale;
+      }
+    }
+    RefractiveMediumSettings settings = FogAround(12);
+    settings.grid = CubeGrid(12, -scale, scale);
+    this->ExpectRefused({ ball }, settings, "use another unit of length");
+  }
+}
+
 TEST_F(RefractiveMediumTest, OpenMeshesAreRefused)
 {
   Solid open = Ball();
@@ -265,7 +362,8 @@ TEST(GridAround, HasCubesAndRoomForTheFilter)
   for (int axis = 0; axis < 3; ++axis)
   {
     EXPECT_DOUBLE_EQ(grid.spacing[axis], (8.0 + 2 * 0.8) / 200);
-    EXPECT_DOUBLE_EQ(grid.origin[axis] + 0.5 * grid.Length(axis), 0.5 * (plate.mesh.points[0][axis] + plate.mesh.points[7][axis]));
+    EXPECT_DOUBLE_EQ(
+      grid.origin[axis] + 0.5 * grid.Length(axis), 0.5 * (plate.mesh.points[0][axis] + plate.mesh.points[7][axis]));
   }
   EXPECT_DOUBLE_EQ(GridAround({ plate }, { 40, 40, 20 }, 0.0, 9).spacing[0], 8.0 / (40 - 2 * 5));
   EXPECT_DOUBLE_EQ(GridAround({ plate }, { 40, 40, 20 }, 0.0, 1).spacing[0], 8.0 / (40 - 2));
@@ -273,6 +371,33 @@ TEST(GridAround, HasCubesAndRoomForTheFilter)
   EXPECT_THROW(GridAround({ plate }, { 4, 0, 4 }, 0.1, 9), InvalidInput);
   EXPECT_THROW(GridAround({ plate }, { 4, 4, 4 }, -0.1, 9), InvalidInput);
   EXPECT_THROW(GridAround({}, { 4, 4, 4 }, 0.1, 9), InvalidInput);
+}
+
+TEST(GridAround, NamesWhatIsWrongWithAMesh)
+{
+  const auto complaint = [](const TriangleMesh& mesh) {
+    try
+    {
+      GridAround({ { "Mesh 2", mesh, {} } }, { 8, 8, 8 }, 0.1, 9);
+    }
+    catch (const InvalidInput& error)
+    {
+      return std::string(error.what());
+    }
+    return std::string();
+  };
+  for (double wrong : { HUGE_VAL, -HUGE_VAL, std::nan("") })
+  {
+    TriangleMesh mesh = shapes::Box({ 0, 0, 0 }, { 1, 1, 1 });
+    mesh.points[3][1] = wrong;
+    EXPECT_THAT(complaint(mesh), HasSubstr("Mesh 2 cannot be used. Point 3 of the mesh is at (1.000000, "));
+    mesh.pointNumbers = { 5, 6, 7, 88, 9, 10, 11, 12 };
+    EXPECT_THAT(complaint(mesh), HasSubstr("Point 88 of the mesh"));
+  }
+  EXPECT_THAT(complaint({}), HasSubstr("There is no mesh, or none with an extent"));
+  EXPECT_THAT(complaint({}), HasSubstr("Mesh 2 has 0 triangles and 0 boundary edges"));
+  TriangleMesh point = shapes::Box({ 1, 2, 3 }, { 1, 2, 3 });
+  EXPECT_THAT(complaint(point), HasSubstr("Mesh 2 has 12 triangles and 0 boundary edges"));
 }
 
 TEST_F(RefractiveMediumTest, BadInputIsRefused)
@@ -286,6 +411,8 @@ TEST_F(RefractiveMediumTest, BadInputIsRefused)
     point[1] = point[2] = 0.0;
   }
   this->ExpectRefused({ flat }, good, "no volume");
+  flat.mesh = { { { 0, 0, 0 }, { 1, 1, 1 }, { 2, 2, 2 } }, { { 0, 1, 2 } }, {} };
+  this->ExpectRefused({ flat }, good, "1 triangle, all without area (degenerate), and 3 boundary edges");
 
   RefractiveMediumSettings bad = good;
   bad.filterSize = 4;

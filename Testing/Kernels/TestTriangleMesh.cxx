@@ -100,7 +100,7 @@ TEST(TriangleMesh, RefusesNumbersWithoutMeaning)
       EXPECT_THAT(error.what(), testing::HasSubstr(part));
     }
   };
-  refused({}, "empty");
+  refused({}, "empty: it has 0 triangles, and 0 boundary edges");
   TriangleMesh mesh = shapes::Box({ 0, 0, 0 }, { 1, 1, 1 });
   mesh.triangles[4][1] = 8;
   refused(mesh, "Triangle 4 of the mesh has the corner 8");
@@ -108,6 +108,8 @@ TEST(TriangleMesh, RefusesNumbersWithoutMeaning)
   refused(mesh, "the corner -1");
   mesh = shapes::Box({ 0, 0, 0 }, { 1, 1, 1 });
   mesh.points[6][2] = std::numeric_limits<double>::quiet_NaN();
-  refused(mesh, "Point 6");
+  refused(mesh, "Point 6 of the mesh is at (");
+  mesh.pointNumbers = { 10, 11, 12, 13, 14, 15, 1006, 17 };
+  refused(mesh, "Point 1006 of the mesh is at (");
 }
 }

@@ -1,0 +1,17 @@
+#pragma once
+
+#include <cstddef>
+#include <string>
+
+namespace tyndall
+{
+/// Bytes of memory that the machine has.
+std::size_t HostMemory();
+
+/// Ask whether arrays fit before they are made: a machine that swaps does not say that they do not.
+/// @param bytes   of all of them
+/// @param what    they are, e.g. "A medium of 4 x 4 x 4 voxels (28 bytes each)"
+/// @param advice  a sentence: what to do where they do not fit
+/// @throws DeviceError where they exceed three quarters of the machine's memory
+void RequireHostMemory(double bytes, const std::string& what, const std::string& advice);
+}
