@@ -415,6 +415,9 @@ TEST_F(RefractiveMediumTest, BadInputIsRefused)
   flat.mesh = { { { 0, 0, 0 }, { 1, 1, 1 }, { 2, 2, 2 } }, { { 0, 1, 2 } }, {} };
   this->ExpectRefused({ flat }, good, "1 triangle, all without area (degenerate), and 3 boundary edges");
 
+  const Solid endless = { "Bar", shapes::Box({ -0.5, -0.5, -0.5 }, { 0.5, 0.5, 1e6 }), Glass() };
+  this->ExpectRefused({ endless }, good, "With 4 samples an edge of a voxel it can be 131072 at most");
+
   RefractiveMediumSettings bad = good;
   bad.filterSize = 4;
   this->ExpectRefused({ Ball() }, bad, "odd number");
