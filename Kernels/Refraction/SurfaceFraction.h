@@ -38,8 +38,7 @@ public:
 
   /// Queues it: from samples of the slab's voxels to 1 / UnitsOfSample. The mesh is that measured last. Claims the samples
   /// of those rows that are not the voxels'.
-  void Refine(
-    const SampleSlab& slab, const Buffer<cl_uint>& bits, Buffer<cl_uint>& claimed, Buffer<cl_ushort>& counts);
+  void Refine(const SampleSlab& slab, const Buffer<cl_uint>& bits, Buffer<cl_uint>& claimed, Buffer<cl_ushort>& counts);
 
 private:
   void Claim(const SampleSlab& slab, int row, const Buffer<cl_uint>& bits, Buffer<cl_uint>& claimed);

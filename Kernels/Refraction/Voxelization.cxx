@@ -197,7 +197,7 @@ private:
   Buffer<cl_uint> Bits, Sums, Claimed;
   Buffer<cl_ushort> Counts;
   std::optional<SurfaceFraction> Fractions; ///< where the settings ask for them
-  Buffer<cl_int> Odd; ///< not 0 for each mesh's rows of voxels that FindWindings is to look at
+  Buffer<cl_int> Odd;                       ///< not 0 for each mesh's rows of voxels that FindWindings is to look at
 };
 }
 

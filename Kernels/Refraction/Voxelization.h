@@ -49,8 +49,9 @@ struct OrientedMesh
 /// Samples of the voxels of a slab that lie in one of several meshes.
 struct SamplesInside
 {
-  std::size_t mesh;                ///< number of the mesh
-  const Buffer<cl_ushort>& counts; ///< 0 to samples^3 UnitsOfSample(samples); a voxel, x fastest. Written again for the next mesh
+  std::size_t mesh; ///< number of the mesh
+  /// A voxel 0 to samples^3 UnitsOfSample(samples), x fastest. Written again for the next mesh.
+  const Buffer<cl_ushort>& counts;
 
   /// The slab's voxels are `runs` runs of `length` of the grid's: the first begins at voxel `first`, the next `stride` later.
   std::size_t first, length, stride, runs;

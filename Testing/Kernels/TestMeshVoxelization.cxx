@@ -193,7 +193,8 @@ TEST_F(MeshVoxelization, ErrorOfOccupancyFallsWithTheFactor)
     double sum = 0.0;
     for (std::size_t i = 0; i < counts.size(); ++i)
     {
-      const double difference = counts[i] / (std::pow(samples, 3.0) * UnitsOfSample(samples)) - fine[i] / (4096.0 * UnitsOfSample(16));
+      const double difference =
+        counts[i] / (std::pow(samples, 3.0) * UnitsOfSample(samples)) - fine[i] / (4096.0 * UnitsOfSample(16));
       sum += difference * difference;
     }
     error.push_back(std::sqrt(sum / counts.size()));

@@ -155,7 +155,8 @@ TEST_F(SurfaceFractionTest, TurnsAndMirrorsWithTheMesh)
           turned.points[p][axis] = (mirrors >> axis & 1 ? -1.0 : 1.0) * mesh.points[p][order[axis]];
         }
       }
-      const bool odd = (order[1] != (order[0] + 1) % 3) != (mirrors == 1 || mirrors == 2 || mirrors == 4 || mirrors == 7);
+      const bool odd =
+        (order[1] != (order[0] + 1) % 3) != (mirrors == 1 || mirrors == 2 || mirrors == 4 || mirrors == 7);
       const std::vector<double> there = this->Parts(grid, { { &turned, odd ? -1 : 1 } })[0];
       std::vector<double> back(parts.size());
       for (std::size_t i = 0; i < there.size(); ++i)
