@@ -33,8 +33,9 @@
  * Lengths are in the dataset's own unit.
  *
  * A voxel is divided into SupersamplingFactor^3 fine voxels, whose centres are inside a mesh or not, decided in whole numbers:
- * edges and corners count once, a closed mesh never leaks, and the result is the same to the last bit on every run. A voxel's
- * coefficients and index are the means of its materials. The fine grid is there in slabs of a fixed size.
+ * edges and corners count once, a closed mesh never leaks, and the result is the same to the last bit on every run. Where
+ * exactly the surface lies between the centres is then added in fractions of fine voxels. A voxel's coefficients and index are
+ * the means of its materials. The fine grid is there in slabs of a fixed size.
  *
  * There is one g: where materials that scatter have different ones, it is their mean weighed by sigma_s, and each sigma_s is
  * scaled such that sigma_s (1 - g) stays what it is; `left_out` says so.
@@ -147,7 +148,8 @@ public:
   ///@}
 
   ///@{
-  /// Fine voxels an edge of a voxel: occupancy comes in steps of 1 / SupersamplingFactor^3. Default 4, valid [1, 16].
+  /// Fine voxels an edge of a voxel. Occupancy has no steps: where the surface lies between their centres counts too. The
+  /// factor sets how well it follows edges and bends. Default 4, valid [1, 16].
   vtkSetMacro(SupersamplingFactor, int);
   vtkGetMacro(SupersamplingFactor, int);
   ///@}

@@ -20,7 +20,7 @@ inline void add_material(float part, float n, float4 absorption, float4 scatteri
 }
 
 // Adds one material to a slab's voxels. A voxel of one material alone has its very values.
-//   inside         samples of a voxel in the material, 0 to `samples`
+//   inside         samples of a voxel in the material, in parts of a sample: 0 to `samples`
 //   samples        of a voxel
 //   indexNoise     by how much n is perturbed, +-
 //   scatteringNoise  the same for sigma_s, relative

@@ -245,7 +245,7 @@ private:
   float SamplesOfVoxel() const
   {
     const int edge = this->Settings.voxelization.samples;
-    return static_cast<float>(edge * edge * edge);
+    return static_cast<float>(edge * edge * edge * UnitsOfSample(edge));
   }
 
   void Launch(cl::Kernel& kernel, const SamplesInside& inside)

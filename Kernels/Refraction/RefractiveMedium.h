@@ -51,7 +51,7 @@ struct RefractiveMediumSettings
 /// Solids in a box, as a medium of voxels. Arrays have x fastest; those that are empty are told of in leftOut.
 struct RefractiveMedium
 {
-  std::vector<float> occupancy;   ///< part of the voxel's samples inside any solid, [0, 1]
+  std::vector<float> occupancy;   ///< part of the voxel inside any solid, [0, 1]
   std::vector<float> ior;         ///< n, smoothed; empty where n is the same everywhere
   std::vector<float> iorGradient; ///< its gradient, 1/length, 3 a voxel; empty where ior is
   std::vector<float> sigma_a;     ///< 1/length, `components` a voxel

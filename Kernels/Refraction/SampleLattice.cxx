@@ -143,6 +143,18 @@ LatticeMesh::LatticeMesh(Device& device, const SampleLattice& lattice, const Tri
 
 std::vector<cl_uint4> LatticeMesh::Tiles(const SampleColumns& columns, int firstRow, int endRow) const
 {
+  SampleBox rows;
+  rows.first[columns.axis] = 0; // whatever lies beyond the columns' ends counts as there
+  rows.end[columns.axis] = 0;
+  rows.first[columns.across] = 0;
+  rows.end[columns.across] = columns.count[0];
+  rows.first[columns.up] = firstRow;
+  rows.end[columns.up] = endRow;
+  return this->Tiles(columns, rows);
+}
+
+std::vector<cl_uint4> LatticeMesh::Tiles(const SampleColumns& columns, const SampleBox& box) const
+{
   std::vector<cl_uint4> tiles;
   const int pitch = columns.pitch;
   for (std::size_t t = 0; t < this->HostTriangles.size(); ++t)
@@ -150,14 +162,21 @@ std::vector<cl_uint4> LatticeMesh::Tiles(const SampleColumns& columns, int first
     std::array<const SampleLattice::Point*, 3> corners;
     std::transform(this->HostTriangles[t].begin(), this->HostTriangles[t].end(), corners.begin(),
       [&](int corner) { return &this->HostPoints[static_cast<std::size_t>(corner)]; });
+    const bool anyDepth = box.first[columns.axis] == box.end[columns.axis];
+    const auto [lowest, highest] =
+      std::minmax({ (*corners[0])[columns.axis], (*corners[1])[columns.axis], (*corners[2])[columns.axis] });
+    if (!anyDepth && (highest < box.first[columns.axis] * pitch || lowest > box.end[columns.axis] * pitch))
+    {
+      continue;
+    }
     // A sample at the upper end is decided as if it were a little further up: outside.
     const auto range = [&](int axis, int limitLow, int limitHigh) {
       const auto [low, high] = std::minmax({ (*corners[0])[axis], (*corners[1])[axis], (*corners[2])[axis] });
       return std::array<int, 2>{ std::max(FirstSampleFrom(low, pitch), limitLow),
         std::min(FirstSampleFrom(high, pitch), limitHigh) };
     };
-    const std::array<int, 2> row = range(columns.up, firstRow, endRow);
-    const std::array<int, 2> column = range(columns.across, 0, columns.count[0]);
+    const std::array<int, 2> row = range(columns.up, box.first[columns.up], box.end[columns.up]);
+    const std::array<int, 2> column = range(columns.across, box.first[columns.across], box.end[columns.across]);
     const bool small = column[1] - column[0] <= TileColumns && row[1] - row[0] <= TileRows;
     const auto add = [&](int firstColumn, int endColumn, int first, int end) {
       tiles.push_back({ { static_cast<cl_uint>(t), static_cast<cl_uint>(firstColumn), static_cast<cl_uint>(first),

@@ -52,6 +52,12 @@ struct SampleColumns
   int pitch; ///< units from sample to sample; the first one is half of that inside the grid
 };
 
+/// Samples of a box of fine voxels: from `first` on to before `end`.
+struct SampleBox
+{
+  std::array<int, 3> first, end;
+};
+
 /// A mesh on a lattice, and how its triangles are dealt out to work-items.
 class LatticeMesh
 {
@@ -64,6 +70,9 @@ public:
   /// Pieces of triangles to look for crossings in, as mark_crossings of Voxelization.cl takes them: few enough columns each
   /// that a large triangle does not hold up a work-item while the others wait.
   std::vector<cl_uint4> Tiles(const SampleColumns& columns, int firstRow, int endRow) const;
+
+  /// The same for crossings in a box.
+  std::vector<cl_uint4> Tiles(const SampleColumns& columns, const SampleBox& box) const;
 
 private:
   std::vector<SampleLattice::Point> HostPoints;

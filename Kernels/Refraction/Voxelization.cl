@@ -105,6 +105,69 @@ inline void mark_crossing(__global uint* column, __global uint* sum, int before,
 #endif
 }
 
+// A triangle over the columns of a tile: which of them its edges enclose, and where its plane crosses them.
+typedef struct
+{
+  edge e0, e1, e2; // in the first column of a row
+  long3 normal;    // of the plane, made to point along the columns
+  int leaving;     // 1 where it did before: a line along a column leaves the mesh; -1 where it enters
+  long step;       // from sample to sample, as `excess` measures
+  long excess;     // how far the column's first sample is before the plane, and `tie`
+  int tie;         // 1 where a sample on the plane counts as before it
+  long excessAcross, excessUp; // what is taken off in the next column and in the next row
+} sheet;
+
+// Returns 0 where the triangle crosses no column.
+inline int start_sheet(
+  sheet* s, uint4 tile, __global const int* points, __global const int* triangles, int pitch)
+{
+  const int3 corner = vload3(tile.x, triangles);
+  const int3 a = vload3(corner.x, points);
+  int3 b = vload3(corner.y, points);
+  int3 c = vload3(corner.z, points);
+
+  const long3 ab = convert_long3(b - a);
+  const long3 ac = convert_long3(c - a);
+  long3 normal = (long3)(ab.y * ac.z - ab.z * ac.y, ab.z * ac.x - ab.x * ac.z, ab.x * ac.y - ab.y * ac.x);
+  if (ALONG(normal) == 0)
+  {
+    return 0; // no column, moved as they are, crosses it
+  }
+  s->leaving = ALONG(normal) > 0 ? 1 : -1;
+  normal *= s->leaving;
+  s->normal = normal;
+  const int towards = normal.x != 0 ? normal.x > 0 : normal.y != 0 ? normal.y > 0 : normal.z > 0;
+  s->tie = towards ? 0 : 1;
+
+  // The edges, run counterclockwise in (across, up).
+  if (ACROSS(ab) * UP(ac) - UP(ab) * ACROSS(ac) < 0)
+  {
+    const int3 other = b;
+    b = c;
+    c = other;
+  }
+  const long across = (long)pitch * tile.y + pitch / 2;
+  const long up = (long)pitch * tile.z + pitch / 2;
+  s->e0 = edge_in_column(a, b, across, up, pitch);
+  s->e1 = edge_in_column(b, c, across, up, pitch);
+  s->e2 = edge_in_column(c, a, across, up, pitch);
+
+  s->step = ALONG(normal) * pitch;
+  s->excess = ACROSS(normal) * (ACROSS(a) - across) + UP(normal) * (UP(a) - up) +
+    ALONG(normal) * (ALONG(a) - pitch / 2) + s->tie;
+  s->excessAcross = ACROSS(normal) * pitch;
+  s->excessUp = UP(normal) * pitch;
+  return 1;
+}
+
+inline void next_row(sheet* s)
+{
+  s->e0.value += s->e0.up;
+  s->e1.value += s->e1.up;
+  s->e2.value += s->e2.up;
+  s->excess -= s->excessUp;
+}
+
 // Marks where a triangle crosses the columns of a tile.
 //   tiles          a work-item each: triangle, first column and row, (columns << 16) | rows
 //   pitch          of the samples, in units of the lattice
@@ -121,43 +184,11 @@ __kernel void mark_crossings(int tileCount, __global const uint4* tiles, __globa
     return;
   }
   const uint4 tile = tiles[id];
-  const int3 corner = vload3(tile.x, triangles);
-  const int3 a = vload3(corner.x, points);
-  int3 b = vload3(corner.y, points);
-  int3 c = vload3(corner.z, points);
-
-  // The plane. Its normal is made to point along the column.
-  const long3 ab = convert_long3(b - a);
-  const long3 ac = convert_long3(c - a);
-  long3 normal = (long3)(ab.y * ac.z - ab.z * ac.y, ab.z * ac.x - ab.x * ac.z, ab.x * ac.y - ab.y * ac.x);
-  if (ALONG(normal) == 0)
+  sheet s;
+  if (!start_sheet(&s, tile, points, triangles, pitch))
   {
-    return; // no column, moved as they are, crosses it
+    return;
   }
-  const int leaving = ALONG(normal) > 0 ? 1 : -1;
-  normal *= leaving;
-  const int towards = normal.x != 0 ? normal.x > 0 : normal.y != 0 ? normal.y > 0 : normal.z > 0;
-
-  // The edges, run counterclockwise in (across, up).
-  if (ACROSS(ab) * UP(ac) - UP(ab) * ACROSS(ac) < 0)
-  {
-    const int3 other = b;
-    b = c;
-    c = other;
-  }
-  const long across = (long)pitch * tile.y + pitch / 2;
-  const long up = (long)pitch * tile.z + pitch / 2;
-  edge e0 = edge_in_column(a, b, across, up, pitch);
-  edge e1 = edge_in_column(b, c, across, up, pitch);
-  edge e2 = edge_in_column(c, a, across, up, pitch);
-
-  // How far the column's first sample is before the plane; one more where a sample on the plane counts as before it.
-  const long step = ALONG(normal) * pitch;
-  long excess = ACROSS(normal) * (ACROSS(a) - across) + UP(normal) * (UP(a) - up) +
-    ALONG(normal) * (ALONG(a) - pitch / 2) + (towards ? 0 : 1);
-  const long excessAcross = ACROSS(normal) * pitch;
-  const long excessUp = UP(normal) * pitch;
-
   const int tileColumns = tile.w >> 16;
   const int tileRows = tile.w & 0xffff;
   const ulong firstColumn = (ulong)(tile.z - firstRow) * columns + tile.y;
@@ -169,22 +200,20 @@ __kernel void mark_crossings(int tileCount, __global const uint4* tiles, __globa
 #endif
   for (int j = 0; j < tileRows; ++j)
   {
-    long v0 = e0.value, v1 = e1.value, v2 = e2.value, x = excess;
+    long v0 = s.e0.value, v1 = s.e1.value, v2 = s.e2.value, excess = s.excess;
     for (int i = 0; i < tileColumns; ++i)
     {
       if ((v0 | v1 | v2) >= 0)
       {
-        mark_crossing(row + (ulong)i * words, rowOfSums + i, samples_before(x, step, samples), samples, leaving);
+        mark_crossing(
+          row + (ulong)i * words, rowOfSums + i, samples_before(excess, s.step, samples), samples, s.leaving);
       }
-      v0 += e0.across;
-      v1 += e1.across;
-      v2 += e2.across;
-      x -= excessAcross;
+      v0 += s.e0.across;
+      v1 += s.e1.across;
+      v2 += s.e2.across;
+      excess -= s.excessAcross;
     }
-    e0.value += e0.up;
-    e1.value += e1.up;
-    e2.value += e2.up;
-    excess -= excessUp;
+    next_row(&s);
     row += (ulong)columns * words;
 #if !WINDING
     rowOfSums += columns;
@@ -243,9 +272,10 @@ __kernel void find_windings(
 //   columns   of a row
 //   sums      of mark_crossings
 //   sign      1, -1 where the mesh is inside out, 0 where nothing is to be found
-//   odd       a number for each row of voxels, from that of the first row of columns on: set where it has such a column
+//   odd       from firstOdd on a number for each row of voxels of the grid: set where it has such a column
+//   firstRow  of the columns
 __kernel void fill_columns(int columnCount, int columns, int words, __global uint* marks, __global const uint* sums,
-  int sign, __global int* odd, int firstOdd)
+  int sign, __global int* odd, int firstOdd, int firstRow)
 {
   const int id = get_global_id(0);
   if (id >= columnCount)
@@ -298,17 +328,18 @@ __kernel void fill_columns(int columnCount, int columns, int words, __global uin
 #endif
   if (sign != 0 && sums[id] != (uint)sign * sum)
   {
-    atomic_or(odd + firstOdd + id / columns / SAMPLES, 1);
+    atomic_or(odd + firstOdd + (firstRow + id / columns) / SAMPLES, 1);
   }
 }
 
 // Counts the samples of each voxel that are inside, and not claimed by an object that comes later. A work-item a column of
 // voxels.
 //   voxels    of a column of voxels; columns, rows: of the columns of voxels that `bits` holds
-//   claimed   as `bits`: samples of later objects; those of this one are added. Not looked at where CLAIMS is 0
-//   counts    of the slab's voxels; strides: from voxel to voxel along, across and up
-__kernel void count_samples(int voxels, int columns, int rows, int words, __global const uint* bits,
-  __global uint* claimed, int claims, __global ushort* counts, int strideAlong, int strideAcross, int strideUp)
+//   skipped   rows of samples in `bits` before those of the first voxels
+//   claimed   as `bits`: samples of later objects; those of this one are added. Not looked at where claims is 0
+//   counts    of the slab's voxels, times `units`; strides: from voxel to voxel along, across and up
+__kernel void count_samples(int voxels, int columns, int rows, int words, int skipped, __global const uint* bits,
+  __global uint* claimed, int claims, __global ushort* counts, int units, int strideAlong, int strideAcross, int strideUp)
 {
   const int across = get_global_id(0);
   const int up = get_global_id(1);
@@ -317,7 +348,7 @@ __kernel void count_samples(int voxels, int columns, int rows, int words, __glob
     return;
   }
   const ulong rowOfColumns = (ulong)columns * SAMPLES * words;
-  const ulong corner = ((ulong)up * SAMPLES * columns + across) * SAMPLES * words;
+  const ulong corner = (((ulong)up * SAMPLES + skipped) * columns + across) * SAMPLES * words;
   __global ushort* target = counts + (ulong)across * strideAcross + (ulong)up * strideUp;
   for (int w = 0; w < words; ++w)
   {
@@ -361,7 +392,7 @@ __kernel void count_samples(int voxels, int columns, int rows, int words, __glob
     }
     for (int cell = 0; cell < CELLS && w * CELLS + cell < voxels; ++cell)
     {
-      target[(ulong)(w * CELLS + cell) * strideAlong] = (ushort)number[cell];
+      target[(ulong)(w * CELLS + cell) * strideAlong] = (ushort)(number[cell] * units);
     }
   }
 }

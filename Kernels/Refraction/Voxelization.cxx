@@ -3,10 +3,12 @@
 #include "../Device/Sizes.h"
 #include "CrossingMarker.h"
 #include "SampleLattice.h"
+#include "SurfaceFraction.h"
 #include "TyndallKernelSources.h"
 
 #include <algorithm>
 #include <array>
+#include <optional>
 #include <string>
 
 namespace tyndall
@@ -69,13 +71,18 @@ public:
     {
       this->Meshes.emplace_back(device, this->Lattice, *mesh.mesh);
     }
-    const auto columns = static_cast<std::size_t>(this->ColumnCount(this->Rows));
+    const std::size_t voxels = this->Rows * VoxelsOfRow(this->Columns, grid);
+    const auto columns =
+      static_cast<std::size_t>(this->Columns.count[0]) * (this->Rows * this->Samples + 2 * RowsAround(settings));
     this->Bits = Buffer<cl_uint>(device, columns * this->Words, "a slab of the fine grid");
     this->Sums = Buffer<cl_uint>(device, columns, "sums of crossings");
     // Without a second mesh nothing is ever claimed, and the kernel is handed an empty buffer.
     this->Claimed = Buffer<cl_uint>(device, meshes.size() > 1 ? columns * this->Words : 0, "samples of later meshes");
-    this->Counts =
-      Buffer<cl_ushort>(device, this->Rows * VoxelsOfRow(this->Columns, grid), "a slab of the voxels' samples inside");
+    this->Counts = Buffer<cl_ushort>(device, voxels, "a slab of the voxels' samples inside");
+    if (settings.fractions)
+    {
+      this->Fractions.emplace(device, grid, this->Columns, this->Words, voxels, meshes.size() > 1);
+    }
     this->Odd.Fill(0);
   }
 
@@ -106,7 +113,15 @@ public:
   }
 
 private:
-  int ColumnCount(int rowsOfVoxels) const { return this->Columns.count[0] * rowsOfVoxels * this->Samples; }
+  /// Of samples, on either side of a slab.
+  static int RowsAround(const VoxelizationSettings& settings) { return settings.fractions ? 1 : 0; }
+
+  SampleSlab RowsOf(int first, int end) const
+  {
+    const int around = this->Fractions ? 1 : 0;
+    return { first, end, std::max(first * this->Samples - around, 0),
+      std::min(end * this->Samples + around, this->Columns.count[1]) };
+  }
 
   void RunSlab(int first, int end, const std::function<void(const SamplesInside&)>& take)
   {
@@ -114,27 +129,43 @@ private:
     {
       this->Claimed.Fill(0);
     }
+    if (this->Fractions)
+    {
+      this->Fractions->Begin();
+    }
+    const SampleSlab slab = this->RowsOf(first, end);
     for (std::size_t m = this->Meshes.size(); m-- > 0;)
     {
-      this->Marker.Mark(this->Meshes[m], first * this->Samples, end * this->Samples, this->Bits, this->Sums);
-      const int columns = this->ColumnCount(end - first);
-      const int firstOdd = static_cast<int>(m) * this->TheGrid.size[this->Columns.up] + first;
+      this->Marker.Mark(this->Meshes[m], slab.firstRow, slab.endRow, this->Bits, this->Sums);
+      const int columns = this->Columns.count[0] * (slab.endRow - slab.firstRow);
+      const int firstOdd = static_cast<int>(m) * this->TheGrid.size[this->Columns.up];
       With(this->Fill, columns, this->Columns.count[0], this->Words, this->Bits, this->Sums,
-        this->Oriented[m].orientation, this->Odd, firstOdd);
+        this->Oriented[m].orientation, this->Odd, firstOdd, slab.firstRow);
       this->TheDevice.Queue().enqueueNDRangeKernel(
         this->Fill, cl::NullRange, CrossingRange(static_cast<std::size_t>(columns)), CrossingGroup());
-      this->CountSlab(end - first);
+      if (this->Fractions)
+      {
+        this->Fractions->Measure(this->Meshes[m], this->Oriented[m].orientation, slab, this->Bits, this->Claimed);
+      }
+      this->CountSlab(slab);
+      if (this->Fractions)
+      {
+        this->Fractions->Refine(slab, this->Bits, this->Claimed, this->Counts);
+      }
       take(this->SlabOf(m, first, end));
     }
   }
 
-  void CountSlab(int rows)
+  void CountSlab(const SampleSlab& slab)
   {
+    const int rows = slab.endVoxel - slab.firstVoxel;
+    const int skipped = slab.firstVoxel * this->Samples - slab.firstRow;
+    const int units = this->Fractions ? 1 : UnitsOfSample(this->Samples);
     const std::array<int, 3>& size = this->TheGrid.size;
     const std::array<int, 3> stride = { 1, size[0], size[0] * (this->Columns.up == 1 ? rows : size[1]) };
     const int columns = size[this->Columns.across];
-    With(this->Count, size[this->Columns.axis], columns, rows, this->Words, this->Bits, this->Claimed,
-      static_cast<cl_int>(this->Claimed.Size() > 0), this->Counts, stride[this->Columns.axis],
+    With(this->Count, size[this->Columns.axis], columns, rows, this->Words, skipped, this->Bits, this->Claimed,
+      static_cast<cl_int>(this->Claimed.Size() > 0), this->Counts, units, stride[this->Columns.axis],
       stride[this->Columns.across], stride[this->Columns.up]);
     const std::size_t group = CrossingGroup().get()[0];
     this->TheDevice.Queue().enqueueNDRangeKernel(this->Count, cl::NullRange,
@@ -165,7 +196,8 @@ private:
   std::vector<LatticeMesh> Meshes;
   Buffer<cl_uint> Bits, Sums, Claimed;
   Buffer<cl_ushort> Counts;
-  Buffer<cl_int> Odd; ///< not 0 for each mesh's rows of voxels that FindWindings is to look at
+  std::optional<SurfaceFraction> Fractions; ///< where the settings ask for them
+  Buffer<cl_int> Odd;                       ///< not 0 for each mesh's rows of voxels that FindWindings is to look at
 };
 }
 

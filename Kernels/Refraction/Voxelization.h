@@ -14,7 +14,11 @@ namespace tyndall
 {
 struct VoxelizationSettings
 {
-  int samples = 4; ///< fine voxels an edge of a voxel, 1 to 16: occupancy comes in steps of 1 / samples^3
+  int samples = 4; ///< fine voxels an edge of a voxel, 1 to 16
+
+  /// Whether counts tell of fractions of samples, from where the surface lies between them. Else occupancy comes in steps of
+  /// 1 / samples^3, as published.
+  bool fractions = true;
 
   /// Which way the columns run: along axis 0, 1 or 2, toggling what lies before a crossing or, from above, what lies after it.
   /// It makes no difference to the result, to the last bit.
@@ -24,6 +28,12 @@ struct VoxelizationSettings
   /// Bytes of the fine grid, a bit a sample, that are there at a time: a slab of voxels, of one layer at least.
   std::size_t slabBytes = std::size_t(16) << 20;
 };
+
+/// Counts are in parts of a sample: so many of them are one.
+constexpr int UnitsOfSample(int samples)
+{
+  return 65535 / (samples * samples * samples);
+}
 
 /// @throws InvalidInput
 void Check(const VoxelizationSettings& settings);
@@ -39,8 +49,9 @@ struct OrientedMesh
 /// Samples of the voxels of a slab that lie in one of several meshes.
 struct SamplesInside
 {
-  std::size_t mesh;                ///< number of the mesh
-  const Buffer<cl_ushort>& counts; ///< 0 to samples^3; a voxel, x fastest. Written again for the next mesh
+  std::size_t mesh; ///< number of the mesh
+  /// A voxel 0 to samples^3 UnitsOfSample(samples), x fastest. Written again for the next mesh.
+  const Buffer<cl_ushort>& counts;
 
   /// The slab's voxels are `runs` runs of `length` of the grid's: the first begins at voxel `first`, the next `stride` later.
   std::size_t first, length, stride, runs;
@@ -54,7 +65,9 @@ struct SamplesInside
 /// Graphics Interface 2008; Pfeuti 2009, section 3.1.2): a column of samples is a row of bits, and every triangle toggles
 /// those that lie before it. Samples are the centres of fine voxels. Points of the mesh are rounded to a lattice a
 /// millionth of the box wide (SampleLattice), and from there on everything is exact: a column through an edge or a corner
-/// is counted once, a closed mesh never leaks, and a sample is inside or not whichever way its column runs.
+/// is counted once, a closed mesh never leaks, and a sample is inside or not whichever way its column runs. Then fractions of
+/// samples are added or taken away by where the surface crosses columns along x, y and z (SurfaceFraction); a voxel through
+/// which no surface goes is all inside or all outside.
 ///
 /// @param take  handed what is found slab by slab, and of each slab mesh by mesh from the last to the first, so that what is
 ///   on the device at a time does not grow with the grid or the number of meshes

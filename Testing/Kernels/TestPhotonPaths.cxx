@@ -178,16 +178,8 @@ TEST_F(PhotonPaths, AreTurnedByAVoxelisedPrismAsByItsTwoFaces)
     {
       const prism::Error error = prism::ErrorOf(prism::Turns(marcher, incidence), incidence);
       EXPECT_LT(std::abs(error.ofMean), 2e-3) << edge << ' ' << incidence;
-      EXPECT_LT(error.largest, 1e-2) << edge << ' ' << incidence; // samples of a quarter voxel make terraces
+      EXPECT_LT(error.largest, 3e-3) << edge << ' ' << incidence; // terraces of a quarter voxel would make 8e-3
     }
-  }
-  // Terraces of a sixteenth of a voxel: what is left is Snell's law.
-  PhotonScene scene = prism::Scene(this->GetDevice(), 128, 16);
-  PhotonMarcher marcher = scene.Marcher(this->GetDevice());
-  for (double incidence : prism::Incidences())
-  {
-    const prism::Error error = prism::ErrorOf(prism::Turns(marcher, incidence), incidence);
-    EXPECT_LT(error.largest, 3e-3) << incidence;
   }
 }
 

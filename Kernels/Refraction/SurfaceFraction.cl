@@ -1,0 +1,250 @@
+// Where between two samples the surface lies: a voxel's occupancy to a fraction of a sample. Read Voxelization.cl before.
+//
+// Along columns of samples, where a surface crosses is known exactly; the samples say which is the last one before it. What
+// lies between the crossing and the border of that sample's fine voxel is added to the voxel it is in, or taken away. Of a
+// plane across the columns this leaves no terraces, along them it does: it is done for columns along x, y and z, each
+// crossing weighed by how much the surface faces that way, all weights of a surface adding up to 1.
+//
+// Numbers are added up as whole ones, each with its sign changed where the mesh is mirrored: a turned or mirrored mesh has the
+// turned or mirrored voxels.
+//
+// Defined before, but for what Voxelization.cl takes: BIT_AXIS, along which the columns of `bits` run.
+
+#if BIT_AXIS == 0
+#define BIT_ALONG(p) ((p).x)
+#define BIT_ACROSS(p) ((p).y)
+#define BIT_UP(p) ((p).z)
+#elif BIT_AXIS == 1
+#define BIT_ALONG(p) ((p).y)
+#define BIT_ACROSS(p) ((p).x)
+#define BIT_UP(p) ((p).z)
+#else
+#define BIT_ALONG(p) ((p).z)
+#define BIT_ACROSS(p) ((p).x)
+#define BIT_UP(p) ((p).y)
+#endif
+
+#define SAMPLES_OF_VOXEL (SAMPLES * SAMPLES * SAMPLES)
+// Units of corrections in a sample; 80 surfaces through a voxel fit an int at 16 samples an edge, more at fewer.
+#define UNITS 65536
+// Of what is handed out: see UnitsOfSample.
+#define UNITS_OF_COUNT (65535 / SAMPLES_OF_VOXEL)
+#define LEAST_WEIGHT (1.0f / 1024.0f)
+
+// Rows of samples that are there, a bit a sample.
+typedef struct
+{
+  int words, columns; // of a column; of a row
+  int firstRow;
+} bit_rows;
+
+inline uint is_set(__global const uint* bits, bit_rows rows, int3 sample)
+{
+  const ulong column = (ulong)(BIT_UP(sample) - rows.firstRow) * rows.columns + BIT_ACROSS(sample);
+  return (bits[column * rows.words + BIT_ALONG(sample) / BITS] >> (BIT_ALONG(sample) % BITS)) & 1;
+}
+
+inline int3 place(int along, int across, int up)
+{
+#if AXIS == 0
+  return (int3)(along, across, up);
+#elif AXIS == 1
+  return (int3)(across, along, up);
+#else
+  return (int3)(across, up, along);
+#endif
+}
+
+// How much a surface faces along the columns: the fourth power of its normal's component, as a part of the sum of all
+// three. The order of the sum is that of their sizes, so that turning the surface does not change a bit.
+inline float weight_along(long3 normal)
+{
+  float3 n = fabs(convert_float3(normal));
+  n /= fmax(fmax(n.x, n.y), n.z);
+  n *= n;
+  n *= n;
+  const float least = fmin(fmin(n.x, n.y), n.z);
+  const float middle = fmax(fmin(n.x, n.y), fmin(fmax(n.x, n.y), n.z));
+  return ALONG(n) / ((least + middle) + 1.0f);
+}
+
+// Whether a crossing is hidden: next to a sample that a later mesh has.
+inline int is_hidden(
+  __global const uint* claimed, bit_rows rows, int3 before, int3 after, int first, int last)
+{
+  return (!first && is_set(claimed, rows, before)) || (!last && is_set(claimed, rows, after));
+}
+
+// 1 where a line along the column leaves the mesh, -1 where it enters. Parity
+// says so where the samples before and after differ; where they do not, two crossings or more are between them, a sliver too
+// thin for samples, and it is left to how the triangle's corners run.
+//   turned   `leaving` of the triangle, -1 or 1, times the mesh's orientation, 0 where that is not known
+//   first, last  whether the column begins after the crossing, or ends before it
+inline int side_of(
+  __global const uint* bits, bit_rows rows, int3 before, int3 after, int first, int last, int turned)
+{
+  const uint inBefore = first ? 1 - is_set(bits, rows, after) : is_set(bits, rows, before);
+  const uint inAfter = last ? 1 - inBefore : is_set(bits, rows, after);
+  return inBefore == inAfter ? turned : inBefore ? 1 : -1;
+}
+
+// Adds up the corrections of a slab's voxels.
+//   tiles          as in mark_crossings
+//   samples        of a column
+//   bits, claimed  samples in this mesh, and in later ones; claimed and taken are not looked at where several is 0
+//   taken          see refine_counts: in voxels that later meshes have wholly, crossings count though they are hidden
+//   firstVoxel     of the slab along BIT_UP; voxels: of the slab
+//   orientation    of the mesh: 1, -1 or 0, see OrientedMesh
+//   corrections    of the slab's voxels, x fastest: UNITS a sample
+__kernel void measure_crossings(int tileCount, __global const uint4* tiles, __global const int* points,
+  __global const int* triangles, int pitch, int samples, __global const uint* bits, int several,
+  __global const uint* claimed, __global const ushort2* taken, int words, int columns, int firstRow, int firstVoxel,
+  int4 voxels, int orientation, __global int* corrections)
+{
+  const int id = get_global_id(0);
+  if (id >= tileCount)
+  {
+    return;
+  }
+  const uint4 tile = tiles[id];
+  sheet s;
+  if (!start_sheet(&s, tile, points, triangles, pitch))
+  {
+    return;
+  }
+  const float weight = weight_along(s.normal);
+  if (weight < LEAST_WEIGHT)
+  {
+    return;
+  }
+  const float scale = weight * (0.5f * UNITS) / (float)s.step;
+  const int turned = s.leaving * orientation;
+  const bit_rows rows = { words, columns, firstRow };
+  const int tileColumns = tile.w >> 16;
+  const int tileRows = tile.w & 0xffff;
+  int target = -1; // the voxel of the last crossing, and what is to be added to it
+  int sum = 0;
+  for (int j = 0; j < tileRows; ++j)
+  {
+    long v0 = s.e0.value, v1 = s.e1.value, v2 = s.e2.value, excess = s.excess;
+    for (int i = 0; i < tileColumns; ++i)
+    {
+      if ((v0 | v1 | v2) >= 0)
+      {
+        const int number = samples_before(excess, s.step, samples);
+        const long rest = excess - s.tie - number * s.step; // from the sample after the crossing back to the crossing
+        const long twice = 2 * rest + s.step;                 // from the border between both samples, twice
+        const int cell = number - (twice < 0 ? 1 : 0);
+        if (rest >= -s.step && rest <= 0 && cell >= 0 && cell < samples)
+        {
+          const int across = (int)tile.y + i;
+          const int up = (int)tile.z + j;
+          int3 voxel = place(cell / SAMPLES, across / SAMPLES, up / SAMPLES);
+          BIT_UP(voxel) -= firstVoxel;
+          if (BIT_UP(voxel) >= 0 && BIT_UP(voxel) < BIT_UP(voxels))
+          {
+            const int index = (voxel.z * voxels.y + voxel.y) * voxels.x + voxel.x;
+            const int3 before = place(number - 1, across, up);
+            const int3 after = place(number, across, up);
+            const int first = number == 0;
+            const int last = number == samples;
+            const int counts = !several || taken[index].x == SAMPLES_OF_VOXEL ||
+              !is_hidden(claimed, rows, before, after, first, last);
+            if (index != target)
+            {
+              if (sum != 0)
+              {
+                atomic_add(corrections + target, sum);
+              }
+              target = index;
+              sum = 0;
+            }
+            if (counts)
+            {
+              sum += side_of(bits, rows, before, after, first, last, turned) * convert_int_rte(scale * (float)twice);
+            }
+          }
+        }
+      }
+      v0 += s.e0.across;
+      v1 += s.e1.across;
+      v2 += s.e2.across;
+      excess -= s.excessAcross;
+    }
+    next_row(&s);
+  }
+  if (sum != 0)
+  {
+    atomic_add(corrections + target, sum);
+  }
+}
+
+// Samples of a voxel that lie in the mesh, whatever lies over it there.
+inline int samples_in_voxel(__global const uint* bits, bit_rows rows, int3 voxel)
+{
+  int number = 0;
+  for (int k = 0; k < SAMPLES_OF_VOXEL; ++k)
+  {
+    const int3 sample = (int3)(k % SAMPLES, k / SAMPLES % SAMPLES, k / (SAMPLES * SAMPLES));
+    number += is_set(bits, rows, voxel * SAMPLES + sample);
+  }
+  return number;
+}
+
+// Rounded to the nearest, halves away from 0.
+inline long divided(long number, long by)
+{
+  return (number + (number < 0 ? -by : by) / 2) / by;
+}
+
+// From counts of samples to the same in units of 1 / UNITS_OF_COUNT, with the corrections.
+//
+// Where there are several meshes, what the borders of later ones take of the rest of the voxel or leave to it is shared out:
+// a mesh gets the part of it that it has of the samples which are left. Where none are left, what later ones have is taken from
+// it as far as their samples are its own: one that they lie in gets the rest, and so does one that touches them.
+//   taken    of the later meshes: samples and units. Not looked at where several is 0
+//   counts   of the slab's voxels
+__kernel void refine_counts(int4 voxels, __global const int* corrections, int several, __global ushort2* taken,
+  __global const uint* bits, int words, int columns, int firstRow, int firstVoxel, __global ushort* counts)
+{
+  const int id = get_global_id(0);
+  if (id >= voxels.x * voxels.y * voxels.z)
+  {
+    return;
+  }
+  const int number = counts[id];
+  long units = (long)number * UNITS_OF_COUNT + divided((long)corrections[id] * UNITS_OF_COUNT, UNITS);
+  long room = SAMPLES_OF_VOXEL * UNITS_OF_COUNT;
+  if (several)
+  {
+    const ushort2 later = taken[id];
+    const int left = SAMPLES_OF_VOXEL - later.x;
+    const int left_over = left * UNITS_OF_COUNT;
+    room -= later.y;
+    if (left > 0)
+    {
+      units += divided((room - left_over) * number, left);
+    }
+    else if (room > 0)
+    {
+      int3 voxel = (int3)(id % voxels.x, id / voxels.x % voxels.y, id / voxels.x / voxels.y);
+      BIT_UP(voxel) += firstVoxel;
+      const bit_rows rows = { words, columns, firstRow };
+      const long own = samples_in_voxel(bits, rows, voxel);
+      units += own * UNITS_OF_COUNT - divided(own * later.y, SAMPLES_OF_VOXEL);
+    }
+    units = clamp(units, 0L, room);
+    taken[id] = (ushort2)(later.x + number, later.y + (ushort)units);
+  }
+  counts[id] = (ushort)clamp(units, 0L, room);
+}
+
+// Adds samples to the claimed ones.
+__kernel void claim_samples(ulong first, int words, __global const uint* bits, __global uint* claimed)
+{
+  const int id = get_global_id(0);
+  if (id < words)
+  {
+    claimed[first + id] |= bits[first + id];
+  }
+}
