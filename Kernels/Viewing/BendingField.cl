@@ -9,8 +9,8 @@
 #define FLAT 2e-6f // of n^2: what rounding makes of a constant
 
 // The spline along a row of three coefficients, in the middle: its value and its slope.
-#define VALUE(low, middle, high) (((low) + (high)) * (1.0f / 6.0f) + (middle) * (2.0f / 3.0f))
-#define SLOPE(low, high) (0.5f * ((high) - (low)))
+#define SPLINE_VALUE(low, middle, high) (((low) + (high)) * (1.0f / 6.0f) + (middle) * (2.0f / 3.0f))
+#define SPLINE_SLOPE(low, high) (0.5f * ((high) - (low)))
 
 // bending  x, y, z: half the gradient in voxels by squared spacing: what a velocity in voxels gains per time; w: n^2
 // No loops and no branches, so that PoCL takes voxels side by side.
@@ -25,25 +25,25 @@ kernel void pack_bending(
   const int row = grid.size[0] + 4, layer = row * (grid.size[1] + 4);
   global const float* c = coefficients + ((clamp(z - 1, 0, grid.size[2] - 1) + 2) * layer +
     (clamp(y - 1, 0, grid.size[1] - 1) + 2) * row + clamp(x - 1, 0, grid.size[0] - 1) + 2);
-#define ROW(name, at)                                                                                                    \
-  const float name = VALUE((at)[-1], (at)[0], (at)[1]);                                                                  \
-  const float name##_x = SLOPE((at)[-1], (at)[1]);
-#define LAYER(name, at)                                                                                                  \
-  ROW(name##_low, (at) - row)                                                                                            \
-  ROW(name##_middle, at)                                                                                                 \
-  ROW(name##_high, (at) + row)                                                                                           \
-  const float name = VALUE(name##_low, name##_middle, name##_high);                                                      \
-  const float name##_x = VALUE(name##_low_x, name##_middle_x, name##_high_x);                                            \
-  const float name##_y = SLOPE(name##_low, name##_high);
-  LAYER(below, c - layer)
-  LAYER(here, c)
-  LAYER(above, c + layer)
-#undef LAYER
-#undef ROW
-  const float square = VALUE(below, here, above);
-  const float along_x = VALUE(below_x, here_x, above_x);
-  const float along_y = VALUE(below_y, here_y, above_y);
-  const float along_z = SLOPE(below, above);
+#define SPLINE_ROW(name, at)                                                                                             \
+  const float name = SPLINE_VALUE((at)[-1], (at)[0], (at)[1]);                                                           \
+  const float name##_x = SPLINE_SLOPE((at)[-1], (at)[1]);
+#define SPLINE_LAYER(name, at)                                                                                           \
+  SPLINE_ROW(name##_low, (at) - row)                                                                                     \
+  SPLINE_ROW(name##_middle, at)                                                                                          \
+  SPLINE_ROW(name##_high, (at) + row)                                                                                    \
+  const float name = SPLINE_VALUE(name##_low, name##_middle, name##_high);                                               \
+  const float name##_x = SPLINE_VALUE(name##_low_x, name##_middle_x, name##_high_x);                                     \
+  const float name##_y = SPLINE_SLOPE(name##_low, name##_high);
+  SPLINE_LAYER(below, c - layer)
+  SPLINE_LAYER(here, c)
+  SPLINE_LAYER(above, c + layer)
+#undef SPLINE_LAYER
+#undef SPLINE_ROW
+  const float square = SPLINE_VALUE(below, here, above);
+  const float along_x = SPLINE_VALUE(below_x, here_x, above_x);
+  const float along_y = SPLINE_VALUE(below_y, here_y, above_y);
+  const float along_z = SPLINE_SLOPE(below, above);
   const float kept = fabs(along_x) + fabs(along_y) + fabs(along_z) <= FLAT * square ? 0.0f : 0.5f;
   bending[((size_t)z * (grid.size[1] + 2) + y) * (grid.size[0] + 2) + x] =
     (float4)(kept * along_x * inverse_spacing.x * inverse_spacing.x, kept * along_y * inverse_spacing.y * inverse_spacing.y,

@@ -147,9 +147,14 @@ kernel void find_empty_bricks(int4 size, int4 brick_count, global const float4* 
   const int z0 = k * BRICK, z1 = min(z0 + BRICK + 1, size.z + 1);
   int filled = 0;
   int bends = 0;
-  for (int z = z0; z <= z1 && (!filled || (BENDS && !bends)); ++z)
+#if BENDS
+#define LOOK_ON (!filled || !bends)
+#else
+#define LOOK_ON (!filled)
+#endif
+  for (int z = z0; z <= z1 && LOOK_ON; ++z)
   {
-    for (int y = y0; y <= y1 && (!filled || (BENDS && !bends)); ++y)
+    for (int y = y0; y <= y1 && LOOK_ON; ++y)
     {
       for (int x = x0; x <= x1; ++x)
       {
@@ -171,6 +176,7 @@ kernel void find_empty_bricks(int4 size, int4 brick_count, global const float4* 
       }
     }
   }
+#undef LOOK_ON
   bricks[(k * brick_count.y + j) * brick_count.x + i] = bends ? 0 : filled ? -1 : 1;
 }
 
