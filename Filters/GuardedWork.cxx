@@ -10,6 +10,7 @@
 #include "vtkVersionMacros.h"
 
 #include <new>
+#include <stdexcept>
 
 namespace tyndall
 {
@@ -27,6 +28,9 @@ Monitor MonitorOf(vtkAlgorithm* filter)
 
 namespace
 {
+const char* const NoMemory =
+  "The machine's memory does not suffice. Ask for less: fewer photons, a smaller grid, or fewer outputs.";
+
 void EmptyOutputs(vtkInformationVector* outputs, const char* why)
 {
   for (int port = 0; port < outputs->GetNumberOfInformationObjects(); ++port)
@@ -85,7 +89,11 @@ int Guarded(vtkAlgorithm* filter, vtkInformationVector* outputs, const std::func
   }
   catch (const std::bad_alloc&)
   {
-    fail("The machine's memory does not suffice. Use a smaller grid, or ask for fewer outputs.");
+    fail(NoMemory);
+  }
+  catch (const std::length_error&) // more than any memory has
+  {
+    fail(NoMemory);
   }
   catch (const std::exception& error)
   {

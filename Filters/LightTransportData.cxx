@@ -27,17 +27,6 @@ std::string Quoted(const std::string& name)
   return "'" + name + "'";
 }
 
-std::string NamesOf(vtkDataSetAttributes* attributes)
-{
-  std::string names;
-  for (int i = 0; i < attributes->GetNumberOfArrays(); ++i)
-  {
-    const char* name = attributes->GetArrayName(i);
-    names += (i > 0 ? ", " : "") + Quoted(name ? name : "");
-  }
-  return names.empty() ? "none" : names;
-}
-
 std::string Listed(Components components)
 {
   std::string text;
@@ -108,6 +97,7 @@ struct Choice
   std::string name;   ///< of an array
   int attribute = -1; ///< or the attribute it is, e.g. SCALARS
   bool pointsFirst = false;
+  bool made = false; ///< by a user: not the default, and not the default's name
 };
 
 /// What ParaView's panel hands on where the input has no array of the default name (none_string of the proxies).
@@ -129,6 +119,7 @@ Choice ChoiceOf(vtkAlgorithm* filter, int index, const std::string& otherwise)
   }
   const bool nothing = choice.name == NothingChosen ||
     (choice.name.empty() && choice.attribute <= vtkDataSetAttributes::SCALARS); // VTK's own default
+  choice.made = !nothing && choice.name != otherwise;
   if (nothing)
   {
     choice.pointsFirst = otherwise.empty();
@@ -141,6 +132,16 @@ Choice ChoiceOf(vtkAlgorithm* filter, int index, const std::string& otherwise)
 vtkDataArray* ArrayOf(vtkDataSetAttributes* attributes, const Choice& choice)
 {
   return choice.attribute >= 0 ? attributes->GetAttribute(choice.attribute) : attributes->GetArray(choice.name.c_str());
+}
+
+/// @throws InvalidInput where the array is not of numbers
+void CheckNumeric(vtkDataSetAttributes* attributes, const Choice& choice)
+{
+  vtkAbstractArray* array = attributes->GetAbstractArray(choice.name.c_str());
+  if (choice.attribute < 0 && array && !vtkArrayDownCast<vtkDataArray>(array))
+  {
+    throw InvalidInput("Array " + Quoted(choice.name) + " is text; it must be of numbers.");
+  }
 }
 
 Found Find(vtkImageData* image, const Choice& choice)
@@ -163,7 +164,9 @@ FloatField Read(vtkImageData* image, const Choice& choice, Need need, Components
     const char* name = found.array->GetName();
     return ToField(image, found, name ? name : "", components);
   }
-  if (need == Need::Required)
+  CheckNumeric(image->GetCellData(), choice);
+  CheckNumeric(image->GetPointData(), choice);
+  if (need == Need::Required || choice.made)
   {
     throw InvalidInput((choice.attribute >= 0 ? "The input has no active " +
                              std::string(vtkDataSetAttributes::GetAttributeTypeAsString(choice.attribute))
@@ -173,6 +176,17 @@ FloatField Read(vtkImageData* image, const Choice& choice, Need need, Components
   }
   return {};
 }
+}
+
+std::string NamesOf(vtkDataSetAttributes* attributes)
+{
+  std::string names;
+  for (int i = 0; i < attributes->GetNumberOfArrays(); ++i)
+  {
+    const char* name = attributes->GetArrayName(i);
+    names += (i > 0 ? ", " : "") + Quoted(name ? name : "");
+  }
+  return names.empty() ? "none" : names;
 }
 
 void StopWithFilterBefore(vtkDataObject* input)

@@ -17,6 +17,7 @@
 class vtkAlgorithm;
 class vtkDataArray;
 class vtkDataObject;
+class vtkDataSetAttributes;
 class vtkImageData;
 class vtkInformationVector;
 class vtkPolyData;
@@ -66,8 +67,11 @@ private:
 enum class Need
 {
   Required, ///< a missing array is an error
-  Optional, ///< a missing array is a FloatField that is not there
+  Optional, ///< a missing array is a FloatField that is not there, unless it was chosen
 };
+
+/// Names of arrays for messages: 'a', 'b', or none.
+std::string NamesOf(vtkDataSetAttributes* attributes);
 
 /// Shapes an array may have; empty: any.
 using Components = std::initializer_list<int>;
@@ -79,7 +83,8 @@ FloatField ReadCells(vtkImageData* image, const std::string& name, Need need, Co
 
 /// The same for the array that SetInputArrayToProcess chose as number `index`, by name or by attribute. Where points were
 /// chosen, the point array is preferred to a cell array of the same name. Where nothing was chosen, which is SCALARS to VTK
-/// and "" to ParaView before it knows the input, `otherwise` is read; "" there stands for the active scalars.
+/// and "" to ParaView before it knows the input, `otherwise` is read; "" there stands for the active scalars. An array of
+/// another name that was chosen is never optional.
 FloatField ReadChosenCells(vtkAlgorithm* filter, int index, vtkImageData* image, const std::string& otherwise,
   Need need, Components components = { 1, 3 });
 

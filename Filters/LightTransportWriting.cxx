@@ -138,7 +138,10 @@ void WriteLight(LightField&& light, vtkImageData* output)
   {
     cells->RemoveArray(earlier); // of another solve that the input has been through
   }
-  output->GetFieldData()->RemoveArray("stored_directions");
+  for (const char* earlier : { "stored_directions", "scattered", "packing_loss" })
+  {
+    output->GetFieldData()->RemoveArray(earlier);
+  }
   AddCells(output, "fluence", std::move(light.fluence), channels);
   cells->SetActiveScalars("fluence");
   AddLightCells(output, "fluence_direct", std::move(light.fluenceDirect), channels);

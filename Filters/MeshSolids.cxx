@@ -12,12 +12,19 @@
 #include "vtkTriangleFilter.h"
 
 #include <cmath>
+#include <limits>
 #include <map>
 
 namespace tyndall
 {
 namespace
 {
+bool IsMaterialNumber(double value)
+{
+  return value >= std::numeric_limits<int>::min() && value <= std::numeric_limits<int>::max() &&
+    value == std::trunc(value);
+}
+
 bool HasOnlyTriangles(vtkPolyData* mesh)
 {
   return mesh->GetNumberOfCells() == mesh->GetNumberOfPolys() && mesh->GetPolys()->GetMaxCellSize() <= 3;
@@ -59,6 +66,7 @@ public:
       {
         number = static_cast<int>(this->Mesh.points.size());
         this->Mesh.points.emplace_back();
+        this->Mesh.pointNumbers.push_back(static_cast<std::size_t>(corners[c]));
         this->Points->GetPoint(corners[c], this->Mesh.points.back().data());
       }
       triangle[static_cast<std::size_t>(c)] = number;
@@ -73,23 +81,58 @@ private:
   std::vector<int> NewNumbers;
 };
 
-vtkDataArray* NumbersOf(vtkPolyData* mesh, const std::string& array)
+/// Says what is wrong with an array of numbers of materials, in the mesh's own cells. Those of vertices and lines do not count.
+void CheckNumbers(vtkPolyData* mesh, const std::string& name, const std::string& array)
 {
-  vtkDataArray* numbers = mesh->GetCellData()->GetArray(array.c_str());
-  if (numbers && numbers->GetNumberOfComponents() != 1)
+  vtkAbstractArray* const found = mesh->GetCellData()->GetAbstractArray(array.c_str());
+  if (!found)
   {
-    throw InvalidInput("Array '" + array + "' has " + std::to_string(numbers->GetNumberOfComponents()) +
+    return;
+  }
+  const std::string which = name + "'s cell array '" + array + "'";
+  auto* const numbers = vtkArrayDownCast<vtkDataArray>(found);
+  if (!numbers)
+  {
+    throw InvalidInput(which + " is text; the numbers of materials must be whole numbers.");
+  }
+  if (numbers->GetNumberOfComponents() != 1)
+  {
+    throw InvalidInput(which + " has " + std::to_string(numbers->GetNumberOfComponents()) +
       " components; the numbers of materials must have 1.");
   }
-  return numbers;
+  if (numbers->GetNumberOfTuples() != mesh->GetNumberOfCells())
+  {
+    throw InvalidInput(which + " has " + std::to_string(numbers->GetNumberOfTuples()) + " values where the mesh has " +
+      std::to_string(mesh->GetNumberOfCells()) + " cells.");
+  }
+  for (vtkIdType cell = mesh->GetNumberOfVerts() + mesh->GetNumberOfLines(); cell < mesh->GetNumberOfCells(); ++cell)
+  {
+    const double number = numbers->GetComponent(cell, 0);
+    if (!IsMaterialNumber(number))
+    {
+      MaterialNumber(number, which + " in cell " + std::to_string(cell));
+    }
+  }
 }
+}
+
+int MaterialNumber(double value, const std::string& what)
+{
+  if (!IsMaterialNumber(value))
+  {
+    throw InvalidInput(what + " is " + std::to_string(value) +
+      "; the number of a material must be a whole number from " + std::to_string(std::numeric_limits<int>::min()) +
+      " to " + std::to_string(std::numeric_limits<int>::max()) + ".");
+  }
+  return static_cast<int>(value);
 }
 
 std::vector<Solid> SolidsOf(vtkPolyData* given, const std::string& name, const std::string& array, int otherwise,
   const std::function<Material(int)>& materialOf)
 {
+  CheckNumbers(given, name, array);
   const vtkSmartPointer<vtkPolyData> mesh = Triangulated(given);
-  vtkDataArray* const numbers = NumbersOf(mesh, array);
+  vtkDataArray* const numbers = mesh->GetCellData()->GetArray(array.c_str());
   std::map<int, SolidBuilder> builders;
   const auto cells = vtkSmartPointer<vtkCellArrayIterator>::Take(mesh->GetPolys()->NewIterator());
   for (cells->GoToFirstCell(); !cells->IsDoneWithTraversal(); cells->GoToNextCell())
@@ -99,8 +142,7 @@ std::vector<Solid> SolidsOf(vtkPolyData* given, const std::string& name, const s
     cells->GetCurrentCell(count, corners);
     if (count == 3)
     {
-      const int number =
-        numbers ? static_cast<int>(std::lround(numbers->GetComponent(cells->GetCurrentCellId(), 0))) : otherwise;
+      const int number = numbers ? static_cast<int>(numbers->GetComponent(cells->GetCurrentCellId(), 0)) : otherwise;
       builders.try_emplace(number, mesh).first->second.Add(corners);
     }
   }

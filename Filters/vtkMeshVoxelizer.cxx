@@ -28,6 +28,7 @@ using tyndall::Rgb;
 using tyndall::Solid;
 
 const char* const DefaultNumbers = "material_id";
+constexpr std::size_t NumbersOfMaterial = 9;
 
 Rgb RgbOf(const double values[3])
 {
@@ -35,11 +36,42 @@ Rgb RgbOf(const double values[3])
 }
 
 /// Name of the cell array with the numbers of materials; "(by name)" is what ParaView's panel sends for the default one.
-std::string NumbersArray(vtkMeshVoxelizer* filter)
+/// @throws InvalidInput where another one was chosen that no mesh has
+std::string NumbersArray(vtkMeshVoxelizer* filter, const std::vector<vtkPolyData*>& meshes)
 {
   vtkInformation* chosen = filter->GetInputArrayInformation(0);
   const std::string name = chosen->Has(vtkDataObject::FIELD_NAME()) ? chosen->Get(vtkDataObject::FIELD_NAME()) : "";
-  return name.empty() || name == "(by name)" ? DefaultNumbers : name;
+  if (name.empty() || name == "(by name)")
+  {
+    return DefaultNumbers;
+  }
+  if (chosen->Get(vtkDataObject::FIELD_ASSOCIATION()) == vtkDataObject::FIELD_ASSOCIATION_POINTS)
+  {
+    throw tyndall::InvalidInput(
+      "The numbers of materials are to be '" + name + "' of points; they must be an array of cells.");
+  }
+  const auto hasIt = [&](vtkPolyData* mesh) { return mesh->GetCellData()->HasArray(name.c_str()) != 0; };
+  if (name != DefaultNumbers && !meshes.empty() && std::none_of(meshes.begin(), meshes.end(), hasIt))
+  {
+    throw tyndall::InvalidInput((meshes.size() == 1 ? "The mesh has" : "The meshes have") +
+      std::string(" no cell array '") + name +
+      "' with numbers of materials. Cell arrays: " + tyndall::NamesOf(meshes.front()->GetCellData()) + ".");
+  }
+  return name;
+}
+
+std::vector<vtkPolyData*> MeshesOf(vtkInformationVector* inputs)
+{
+  std::vector<vtkPolyData*> meshes;
+  for (int i = 0; i < inputs->GetNumberOfInformationObjects(); ++i)
+  {
+    meshes.push_back(vtkPolyData::GetData(inputs, i));
+    if (meshes.back()->GetNumberOfCells() == 0)
+    {
+      tyndall::StopWithFilterBefore(meshes.back());
+    }
+  }
+  return meshes;
 }
 
 bool IsOn(const double bounds[6])
@@ -119,7 +151,25 @@ void Pack(const tyndall::Grid& grid, tyndall::RefractiveMedium&& medium, vtkImag
 
 struct vtkMeshVoxelizer::AddedMaterials
 {
-  std::vector<std::pair<int, Material>> InOrder;
+  std::vector<std::pair<double, Material>> InOrder; ///< with their numbers
+  std::vector<double> Numbers;                      ///< of a material that is not whole yet
+
+  /// @throws InvalidInput where a material lacks numbers, or is none
+  void Check() const
+  {
+    if (!this->Numbers.empty())
+    {
+      throw tyndall::InvalidInput("The last material has " + std::to_string(this->Numbers.size()) +
+        (this->Numbers.size() == 1 ? " number" : " numbers") + "; a material takes " +
+        std::to_string(NumbersOfMaterial) +
+        ": number, index, scattering red, green, blue, absorption red, green, blue, mean cosine.");
+    }
+    for (const auto& [number, material] : this->InOrder)
+    {
+      tyndall::Check(
+        material, "Material " + std::to_string(tyndall::MaterialNumber(number, "The number of a material")));
+    }
+  }
 };
 
 vtkStandardNewMacro(vtkMeshVoxelizer);
@@ -136,14 +186,27 @@ vtkMeshVoxelizer::~vtkMeshVoxelizer() = default;
 void vtkMeshVoxelizer::AddMaterial(double number, double n, double scatteringR, double scatteringG, double scatteringB,
   double absorptionR, double absorptionG, double absorptionB, double g)
 {
-  this->Added->InOrder.push_back({ static_cast<int>(number),
-    { n, { absorptionR, absorptionG, absorptionB }, { scatteringR, scatteringG, scatteringB }, g } });
+  this->Added->InOrder.push_back(
+    { number, { n, { absorptionR, absorptionG, absorptionB }, { scatteringR, scatteringG, scatteringB }, g } });
+  this->Modified();
+}
+
+void vtkMeshVoxelizer::AddMaterialNumber(double number)
+{
+  std::vector<double>& n = this->Added->Numbers;
+  n.push_back(number);
+  if (n.size() == NumbersOfMaterial)
+  {
+    this->AddMaterial(n[0], n[1], n[2], n[3], n[4], n[5], n[6], n[7], n[8]);
+    n.clear();
+  }
   this->Modified();
 }
 
 void vtkMeshVoxelizer::RemoveAllMaterials()
 {
   this->Added->InOrder.clear();
+  this->Added->Numbers.clear();
   this->Modified();
 }
 
@@ -195,6 +258,7 @@ int vtkMeshVoxelizer::RequestData(vtkInformation*, vtkInformationVector** inputs
   this->DeviceName.clear();
   this->LeftOut.clear();
   return tyndall::Guarded(this, outputs, [&] {
+    this->Added->Check();
     const Material inside = { this->InsideIndex, RgbOf(this->InsideAbsorption), RgbOf(this->InsideScattering),
       this->InsideMeanCosine };
     const auto materialOf = [&](int number) {
@@ -203,17 +267,13 @@ int vtkMeshVoxelizer::RequestData(vtkInformation*, vtkInformationVector** inputs
         std::find_if(added.rbegin(), added.rend(), [number](const auto& material) { return material.first == number; });
       return found == added.rend() ? inside : found->second;
     };
+    const std::vector<vtkPolyData*> meshes = MeshesOf(inputs[0]);
+    const std::string numbers = NumbersArray(this, meshes);
     std::vector<Solid> solids;
-    const int meshes = inputs[0]->GetNumberOfInformationObjects();
-    for (int i = 0; i < meshes; ++i)
+    for (std::size_t i = 0; i < meshes.size(); ++i)
     {
-      vtkPolyData* const mesh = vtkPolyData::GetData(inputs[0], i);
-      if (mesh->GetNumberOfCells() == 0)
-      {
-        tyndall::StopWithFilterBefore(mesh);
-      }
-      const std::string name = meshes == 1 ? "The mesh" : "Mesh " + std::to_string(i);
-      std::vector<Solid> ofMesh = tyndall::SolidsOf(mesh, name, NumbersArray(this), i, materialOf);
+      const std::string name = meshes.size() == 1 ? "The mesh" : "Mesh " + std::to_string(i);
+      std::vector<Solid> ofMesh = tyndall::SolidsOf(meshes[i], name, numbers, static_cast<int>(i), materialOf);
       std::move(ofMesh.begin(), ofMesh.end(), std::back_inserter(solids));
     }
 

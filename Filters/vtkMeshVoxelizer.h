@@ -16,7 +16,7 @@
  *
  * Optional cell array `material_id` (whole numbers), or that chosen by SetInputArrayToProcess(0, ...): the material of each
  * cell. The cells of each number must be closed by themselves; where they overlap, the higher number is there. Without it the
- * number of the input, from 0 on, is its material. Materials are added by AddMaterial; those that are not there have the
+ * number of the input, from 0 on, is its material; one that was chosen must be there in one input at least. Materials are added by AddMaterial; those that are not there have the
  * Inside properties.
  *
  * Output: vtkImageData with the cell arrays
@@ -115,9 +115,11 @@ public:
 
   ///@{
   /// A material for the cells of that number instead of the Inside properties: its index n, sigma_s and sigma_a (red, green,
-  /// blue, 1/length), and mean cosine g. Of several with the same number the last one counts.
+  /// blue, 1/length), and mean cosine g. Of several with the same number the last one counts. AddMaterialNumber takes the same
+  /// nine one by one. Materials that are not whole or not valid are an error of the update, used or not.
   void AddMaterial(double number, double n, double scatteringR, double scatteringG, double scatteringB,
     double absorptionR, double absorptionG, double absorptionB, double g);
+  void AddMaterialNumber(double number);
   void RemoveAllMaterials();
   int GetNumberOfMaterials() const;
   ///@}

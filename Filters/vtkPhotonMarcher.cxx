@@ -13,6 +13,10 @@
 #include "vtkObjectFactory.h"
 #include "vtkPolyData.h"
 
+#include <algorithm>
+#include <array>
+#include <cmath>
+#include <cstdio>
 #include <memory>
 #include <string>
 #include <utility>
@@ -31,6 +35,34 @@ enum InputPort
 /// Number of SetInputArrayToProcess, after those of ReadMedium.
 constexpr int RefractiveIndex = 3;
 
+std::string Triple(const std::array<double, 3>& values)
+{
+  char text[96];
+  std::snprintf(text, sizeof(text), "(%.9g, %.9g, %.9g)", values[0], values[1], values[2]);
+  return text;
+}
+
+std::string Described(const tyndall::Grid& grid)
+{
+  const std::array<int, 3>& size = grid.size;
+  return std::to_string(size[0]) + " x " + std::to_string(size[1]) + " x " + std::to_string(size[2]) +
+    " voxels of spacing " + Triple(grid.spacing) + " from origin " + Triple(grid.origin);
+}
+
+/// Whether voxels have the same corners, but for rounding.
+bool Agree(const tyndall::Grid& a, const tyndall::Grid& b)
+{
+  constexpr double part = 1e-3; // of a voxel
+  bool agree = a.size == b.size;
+  for (int axis = 0; axis < 3; ++axis)
+  {
+    const double low = std::abs(a.origin[axis] - b.origin[axis]);
+    const double high = std::abs(a.origin[axis] + a.Length(axis) - b.origin[axis] - b.Length(axis));
+    agree = agree && std::max(low, high) <= part * b.spacing[axis];
+  }
+  return agree;
+}
+
 /// The octree's levels, of its own image or of the medium's.
 std::vector<std::uint8_t> LevelsOf(vtkImageData* octree, vtkImageData* medium)
 {
@@ -38,9 +70,12 @@ std::vector<std::uint8_t> LevelsOf(vtkImageData* octree, vtkImageData* medium)
   {
     return tyndall::ReadLevels(medium);
   }
-  if (tyndall::GridOf(octree).size != tyndall::GridOf(medium).size)
+  const tyndall::Grid ofOctree = tyndall::GridOf(octree);
+  const tyndall::Grid ofMedium = tyndall::GridOf(medium);
+  if (!Agree(ofOctree, ofMedium))
   {
-    throw tyndall::InvalidInput("The octree's image has another size than the medium. Make it of the same medium.");
+    throw tyndall::InvalidInput("The octree has " + Described(ofOctree) + ", the medium " + Described(ofMedium) +
+      ". Make the octree of the same medium.");
   }
   std::vector<std::uint8_t> levels = tyndall::ReadLevels(octree);
   if (levels.empty())
@@ -50,10 +85,11 @@ std::vector<std::uint8_t> LevelsOf(vtkImageData* octree, vtkImageData* medium)
   return levels;
 }
 
-/// Light and, of the sound scheme's integrator, paths.
+/// Light, of the published scheme what its packing lost, and, of the sound scheme's integrator, paths.
 struct Marched
 {
   tyndall::PhotonLight light;
+  double packingLoss = 0.0;
   std::vector<tyndall::PhotonPath> paths;
 };
 
@@ -83,9 +119,16 @@ Marched March(vtkPhotonMarcher* filter, const tyndall::Medium& medium, const tyn
   {
     tyndall::PublishedSettings asPublished;
     asPublished.smooth = filter->GetSmoothing();
-    marched.light = tyndall::MarchPublished(*device, medium, ior, nodes, photons, asPublished, nullptr, monitor);
+    tyndall::PackingLoss loss;
+    marched.light = tyndall::MarchPublished(*device, medium, ior, nodes, photons, asPublished, &loss, monitor);
+    marched.packingLoss = loss.Relative();
   }
   return marched;
+}
+
+double Sum(const tyndall::Rgb& rgb)
+{
+  return rgb[0] + rgb[1] + rgb[2];
 }
 }
 
@@ -152,6 +195,7 @@ int vtkPhotonMarcher::RequestUpdateExtent(vtkInformation*, vtkInformationVector*
 int vtkPhotonMarcher::RequestData(vtkInformation* request, vtkInformationVector** inputs, vtkInformationVector* outputs)
 {
   this->Note({});
+  this->PackingLoss = 0.0;
   return tyndall::Guarded(this, outputs, [&] {
     vtkImageData* image = vtkImageData::GetData(inputs[MediumPort]);
     const tyndall::MediumInput input = tyndall::ReadMedium(this, image);
@@ -163,12 +207,8 @@ int vtkPhotonMarcher::RequestData(vtkInformation* request, vtkInformationVector*
     Marched marched = March(this, input.medium, ior, levels, photons);
 
     this->Note(marched.light);
-    if (this->Missed > 0)
-    {
-      vtkWarningMacro(
-        << this->Missed << " of " << photons.size()
-        << " photons do not meet the medium, so their power is not in it. Give PhotonEmitter the same medium.");
-    }
+    this->PackingLoss = marched.packingLoss;
+    this->Warn(marched.light, photons.size());
     vtkImageData* output = vtkImageData::GetData(outputs, 0);
     tyndall::PassOn(image, output);
     const tyndall::Rgb scattered = marched.light.scattered;
@@ -176,6 +216,10 @@ int vtkPhotonMarcher::RequestData(vtkInformation* request, vtkInformationVector*
     tyndall::WriteLight(std::move(marched.light.light), output);
     tyndall::AddCells(output, "mean_direction", std::move(marched.light.meanDirection), 3);
     tyndall::AddFact(output, "scattered", { scattered.begin(), scattered.begin() + channels }, channels);
+    if (this->Scheme == PUBLISHED)
+    {
+      tyndall::AddFact(output, "packing_loss", std::vector<double>{ marched.packingLoss });
+    }
     tyndall::KeepWhatIsAskedFor(outputs->GetInformationObject(0), output);
     if (tyndall::IsFirstPiece(request, outputs))
     {
@@ -195,6 +239,26 @@ void vtkPhotonMarcher::Note(const tyndall::PhotonLight& light)
   this->LeftOut = tyndall::Lines(light.light.leftOut);
 }
 
+void vtkPhotonMarcher::Warn(const tyndall::PhotonLight& light, std::size_t photons)
+{
+  if (this->Missed > 0)
+  {
+    vtkWarningMacro(
+      << this->Missed << " of " << photons
+      << " photons do not meet the medium, so their power is not in it. Give PhotonEmitter the same medium.");
+  }
+  const tyndall::EnergyBalance& balance = light.light.balance;
+  const double trapped = Sum(balance.entered) > 0.0 ? Sum(balance.leftOver) / Sum(balance.entered) : 0.0;
+  if (trapped > 0.01)
+  {
+    vtkWarningMacro(
+      << std::lround(100.0 * trapped)
+      << "% of the power that entered still went round when its photons were given up, and is missing from "
+         "fluence: total reflection traps it, as that of a lamp in a ball of a high index. Absorption would "
+         "end it.");
+  }
+}
+
 void vtkPhotonMarcher::PrintSelf(ostream& os, vtkIndent indent)
 {
   this->Superclass::PrintSelf(os, indent);
@@ -208,6 +272,7 @@ void vtkPhotonMarcher::PrintSelf(ostream& os, vtkIndent indent)
   os << indent << "Steps: " << this->Steps << "\n";
   os << indent << "Missed: " << this->Missed << "\n";
   os << indent << "BalanceError: " << this->BalanceError << "\n";
+  os << indent << "PackingLoss: " << this->PackingLoss << "\n";
   os << indent << "Seconds: " << this->Seconds << "\n";
   os << indent << "DeviceName: " << this->DeviceName << "\n";
   os << indent << "LeftOut: " << this->LeftOut << "\n";

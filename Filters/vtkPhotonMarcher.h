@@ -4,6 +4,7 @@
 #include "vtkImageAlgorithm.h"
 #include "vtkTyndallModule.h" // for export macro
 
+#include <cstddef>
 #include <string>
 
 namespace tyndall
@@ -22,7 +23,7 @@ struct PhotonLight;
  *
  * Input 0, the medium: vtkImageData with cell arrays `sigma_a`, `sigma_s` (1 or 3 components, 1/length) and optionally
  * `ior` (1 component; missing: constant) or those chosen by SetInputArrayToProcess 0, 1 and 3.
- * Input 1: photons as vtkPhotonEmitter makes them. Input 2, optional: an image of the same size with cell array
+ * Input 1: photons as vtkPhotonEmitter makes them. Input 2, optional: an image of the same voxels with cell array
  * `octree_level`, as vtkRefractionOctree makes it; without it that array of the medium, if there is one.
  *
  * Output 0: the medium's image with cell arrays
@@ -34,7 +35,7 @@ struct PhotonLight;
  * | `mean_direction` | 3          | 1          | power-weighted mean direction; its length is the anisotropy      |
  *
  * and field data `energy_balance` (W: entered, emitted, absorbed, escaped, left over; absorbed includes what is scattered),
- * `scattered` (W), `face_power_out`, `left_out`, `device`.
+ * `scattered` (W), `face_power_out`, `left_out`, `device`; of the published scheme also `packing_loss` (see PackingLoss).
  * Output 1: vtkPolyData, the paths of PathCount photons as polylines, point data `power_left` (part of its power), cell data
  * `photon` (its number).
  *
@@ -109,12 +110,17 @@ public:
 
   ///@{
   /// What came of the last update: stretches of path credited to voxels, steps of the integrator, photons that miss the volume,
-  /// relative error of the energy balance (of the published scheme: what its packing loses), seconds, the device's name, and
-  /// what the scene did not need, one a line.
+  /// relative error of the energy balance, seconds, the device's name, and what the scene did not need, one a line.
+  ///
+  /// The sound scheme's balance closes to rounding. That of the published scheme does not, even where packing loses nothing: it
+  /// credits a photon's power to a voxel however long the path in it is, so the extinction of its light is not what the
+  /// photons lost. PackingLoss is apart from that: the part of the power credited to voxels that their 64 bits did not keep
+  /// (rounding, saturation, tries of compare-and-swap that ran out), before smoothing; 0 of the sound scheme.
   vtkGetMacro(Credits, vtkIdType);
   vtkGetMacro(Steps, vtkIdType);
   vtkGetMacro(Missed, vtkIdType);
   vtkGetMacro(BalanceError, double);
+  vtkGetMacro(PackingLoss, double);
   vtkGetMacro(Seconds, double);
   vtkGetCharFromStdStringMacro(DeviceName);
   vtkGetCharFromStdStringMacro(LeftOut);
@@ -135,6 +141,7 @@ private:
   void operator=(const vtkPhotonMarcher&) = delete;
 
   void Note(const tyndall::PhotonLight& light);
+  void Warn(const tyndall::PhotonLight& light, std::size_t photons);
 
   int Scheme = SOUND;
   int IntegratorOrder = 2;
@@ -147,6 +154,7 @@ private:
   vtkIdType Steps = 0;
   vtkIdType Missed = 0;
   double BalanceError = 0.0;
+  double PackingLoss = 0.0;
   double Seconds = 0.0;
   std::string DeviceName;
   std::string LeftOut;

@@ -64,7 +64,8 @@ void AddLevels(vtkImageData* output, const std::vector<std::uint8_t>& levels)
   array->SetName("octree_level");
   array->SetNumberOfTuples(static_cast<vtkIdType>(levels.size()));
   std::copy(levels.begin(), levels.end(), array->GetPointer(0));
-  output->GetCellData()->SetScalars(array);
+  output->GetCellData()->AddArray(array); // not SetScalars, which takes away what was active before
+  output->GetCellData()->SetActiveScalars("octree_level");
 }
 }
 

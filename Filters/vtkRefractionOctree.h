@@ -21,8 +21,8 @@
  * A node of level k > 0 is the cube of 2^k voxels an edge whose lowest voxel has indices, counted from the image's lower
  * corner, that are multiples of 2^k. It is kept whole where
  *
- *     max(ior) - min(ior) < Tolerance
- *     (max(sigma_t) - min(sigma_t)) diagonal of the node < ExtinctionTolerance       with IncludeExtinction
+ *     max(ior) - min(ior) <= Tolerance
+ *     (max(sigma_t) - min(sigma_t)) diagonal of the node <= ExtinctionTolerance       with IncludeExtinction
  *
  * over its voxels (the latter in each channel of sigma_t = sigma_a + sigma_s), and no larger node is. A quantity that is the
  * same everywhere restricts nothing: where ior is constant the octree is one node and nothing runs on the device.
@@ -45,8 +45,8 @@ public:
   void PrintSelf(ostream& os, vtkIndent indent) override;
 
   ///@{
-  /// Largest difference of refractive index within a node. Default 0.01, valid [0, 1]; with 0 every voxel is a node, unless
-  /// the index is constant.
+  /// Largest difference of refractive index within a node. Default 0.01, valid [0, 1]; with 0 only voxels of the
+  /// very same index are one node.
   vtkSetClampMacro(Tolerance, double, 0.0, 1.0);
   vtkGetMacro(Tolerance, double);
   ///@}

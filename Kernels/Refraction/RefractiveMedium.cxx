@@ -26,8 +26,9 @@ void Demand(bool holds, const std::string& what)
     throw InvalidInput(what);
   }
 }
+}
 
-void CheckMaterial(const Material& material, const std::string& name)
+void Check(const Material& material, const std::string& name)
 {
   Demand(material.n > 0.0 && std::isfinite(material.n),
     name + " has the refractive index " + std::to_string(material.n) + "; it must be finite and above 0.");
@@ -42,6 +43,8 @@ void CheckMaterial(const Material& material, const std::string& name)
     name + " has the mean cosine " + std::to_string(material.g) + "; it must lie between -1 and 1.");
 }
 
+namespace
+{
 void CheckPerturbation(const Perturbation& perturbation, const std::vector<Solid>& solids)
 {
   Demand(perturbation.size > 0.0 && std::isfinite(perturbation.size),
@@ -81,10 +84,10 @@ void CheckSettings(const RefractiveMediumSettings& settings, const std::vector<S
   Check(settings.voxelization);
   CheckFilterSize(settings.filterSize);
   Demand(!solids.empty(), "There is no mesh.");
-  CheckMaterial(settings.outside, "The outside");
+  Check(settings.outside, "The outside");
   for (const Solid& solid : solids)
   {
-    CheckMaterial(solid.material, solid.name);
+    Check(solid.material, solid.name);
   }
   CheckPerturbation(settings.perturbation, solids);
 }

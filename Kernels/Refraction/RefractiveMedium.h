@@ -22,6 +22,10 @@ struct Material
   double g = 0.0;   ///< mean cosine of the phase function, in (-1, 1)
 };
 
+/// @param name  of what is made of it, for the message
+/// @throws InvalidInput where a value is out of its range
+void Check(const Material& material, const std::string& name);
+
 /// A solid: what a closed mesh encloses.
 struct Solid
 {

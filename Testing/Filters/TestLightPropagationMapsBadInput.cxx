@@ -126,7 +126,7 @@ void BadMedium(Refusals& refusals)
   words->SetName("sigma_a");
   words->SetNumberOfValues(60);
   medium->GetCellData()->AddArray(words);
-  refusals.OfMedium(medium, "no array 'sigma_a'");
+  refusals.OfMedium(medium, "'sigma_a' is text");
 }
 
 void BadGrid(Refusals& refusals)
@@ -196,7 +196,8 @@ void FailedBefore(test::Claims& claims)
   claims.That(errors.None() && maps->GetOutput()->GetNumberOfCells() == 0, "and the solver is empty without a word");
   rig->RemoveAllLights();
   maps->Update();
-  claims.That(errors.None() && rigErrors.None() && maps->GetOutput()->GetNumberOfCells() == 60, "good lights are solved");
+  claims.That(
+    errors.None() && rigErrors.None() && maps->GetOutput()->GetNumberOfCells() == 60, "good lights are solved");
 
   vtkNew<vtkLightPropagationMaps> second; // behind a medium that fails
   test::Errors secondErrors(second);

@@ -247,6 +247,9 @@ void BadInputIsAnError(test::Claims& claims)
     AddCells(image, "fluence", 2, [](double, double, double, int) { return 1.0; });
   });
   refused("fluence_direct", [](vtkMediumRayCaster* caster, vtkImageData*) { caster->SingleScatteringOnlyOn(); });
+  refused("no array 'foo'", [](vtkMediumRayCaster* caster, vtkImageData*) {
+    caster->SetInputArrayToProcess(5, 0, 0, vtkDataObject::FIELD_ASSOCIATION_CELLS, "foo");
+  });
   refused("step size", [](vtkMediumRayCaster* caster, vtkImageData*) { caster->SetStepSize(0.0); });
   refused("view up", [](vtkMediumRayCaster* caster, vtkImageData*) {
     caster->SetCameraPosition(0, 0, 5);

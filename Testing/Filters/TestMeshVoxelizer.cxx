@@ -197,6 +197,87 @@ void LaterMeshesWin(test::Claims& claims)
   claims.That(errors.None(), "several meshes are taken");
 }
 
+/// The ball with a number in every cell, of which one is not 1.
+vtkSmartPointer<vtkPolyData> NumberedBall(const char* array, double odd)
+{
+  const auto ball = Ball(0.0, 1.0);
+  test::AddValues<vtkDoubleArray>(ball->GetCellData(), array, ball->GetNumberOfCells(), 1,
+    [&](vtkIdType cell, int) { return cell == 5 ? odd : 1.0; });
+  return ball;
+}
+
+void NumbersOfMaterialsAreWhole(test::Claims& claims)
+{
+  vtkNew<vtkMeshVoxelizer> filter;
+  test::Errors errors(filter);
+  filter->SetSampleDimensions(16, 16, 16);
+  const auto refused = [&](vtkPolyData* mesh, const std::string& part) {
+    filter->SetInputDataObject(mesh);
+    filter->Update();
+    claims.That(errors.WasOneWith(part), "refused: " + part);
+    claims.That(filter->GetOutput()->GetNumberOfCells() == 0, "the output is empty after an error");
+  };
+  for (double odd : { 1.4, 1e18, -1e18, std::numeric_limits<double>::quiet_NaN() })
+  {
+    refused(
+      NumberedBall("material_id", odd), "The mesh's cell array 'material_id' in cell 5 is " + std::to_string(odd));
+  }
+  const auto text = Ball(0.0, 1.0);
+  vtkNew<vtkStringArray> names;
+  names->SetName("material_id");
+  names->SetNumberOfValues(text->GetNumberOfCells());
+  text->GetCellData()->AddArray(names);
+  refused(text, "The mesh's cell array 'material_id' is text");
+  const auto tooShort = Ball(0.0, 1.0);
+  test::AddValues<vtkDoubleArray>(tooShort->GetCellData(), "material_id", 3, 1, [](vtkIdType, int) { return 1.0; });
+  refused(tooShort, "The mesh's cell array 'material_id' has 3 values");
+
+  filter->SetInputArrayToProcess(0, 0, 0, vtkDataObject::FIELD_ASSOCIATION_CELLS, "foo");
+  refused(NumberedBall("kind", 1.0), "no cell array 'foo'");
+  filter->SetInputArrayToProcess(0, 0, 0, vtkDataObject::FIELD_ASSOCIATION_POINTS, "kind");
+  refused(NumberedBall("kind", 1.0), "'kind' of points");
+  filter->SetInputArrayToProcess(0, 0, 0, vtkDataObject::FIELD_ASSOCIATION_CELLS, "kind");
+  filter->RemoveAllInputConnections(0);
+  filter->AddInputDataObject(0, NumberedBall("kind", 1.0));
+  filter->AddInputDataObject(0, Ball(0.3, 0.5));
+  filter->Update();
+  claims.That(errors.None(), "one of several meshes has the array");
+}
+
+void MaterialsAreChecked(test::Claims& claims)
+{
+  vtkNew<vtkMeshVoxelizer> filter;
+  filter->SetFilterSize(1);
+  test::Errors errors(filter);
+  filter->SetInputDataObject(Ball(0.0, 1.0));
+  filter->SetSampleDimensions(16, 16, 16);
+  const auto refused = [&](double number, double n, double g, const char* part) {
+    filter->RemoveAllMaterials();
+    filter->AddMaterial(number, n, 0, 0, 0, 0, 0, 0, g);
+    filter->Update();
+    claims.That(errors.WasOneWith(part), std::string("refused: ") + part);
+  };
+  refused(7, -1.0, 0.0, "Material 7 has the refractive index -1");
+  refused(7, 1.5, 1.0, "Material 7 has the mean cosine 1");
+  refused(0.5, 1.5, 0.0, "The number of a material is 0.5");
+  refused(std::numeric_limits<double>::quiet_NaN(), 1.5, 0.0, "The number of a material is nan");
+  refused(1e12, 1.5, 0.0, "The number of a material is 1000000000000");
+  filter->RemoveAllMaterials();
+  for (double number : { 0.0, 1.25, 0.0, 0.0 })
+  {
+    filter->AddMaterialNumber(number);
+  }
+  filter->Update();
+  claims.That(errors.WasOneWith("The last material has 4 numbers"), "a row that is not whole is refused");
+  for (int i = 0; i < 5; ++i)
+  {
+    filter->AddMaterialNumber(0.0);
+  }
+  filter->Update();
+  claims.That(errors.None() && filter->GetNumberOfMaterials() == 1, "one that is whole is taken");
+  claims.Near(At(filter, "ior", 0, 0, 0), 1.25, 1e-6, "n of it");
+}
+
 void ConstantIndexIsLeftOut(test::Claims& claims)
 {
   vtkNew<vtkMeshVoxelizer> filter;
@@ -245,6 +326,31 @@ void BadInputIsOneError(test::Claims& claims)
   filter->SetDevice("no such device");
   refusedSettings("no such device");
   filter->SetDevice("");
+  const auto far = Ball(0.0, 1.0);
+  const vtkIdType unused = far->GetPoints()->InsertNextPoint(0.0, 0.0, 0.0);
+  vtkNew<vtkPoints> shifted; // so that the mesh's own numbers are not those of the triangles' points
+  shifted->InsertNextPoint(far->GetPoint(unused));
+  for (vtkIdType i = 0; i < unused; ++i)
+  {
+    shifted->InsertNextPoint(far->GetPoint(i));
+  }
+  vtkNew<vtkCellArray> triangles;
+  for (vtkIdType cell = 0; cell < far->GetNumberOfCells(); ++cell)
+  {
+    vtkIdType count = 0;
+    const vtkIdType* corners = nullptr;
+    far->GetCellPoints(cell, count, corners);
+    const vtkIdType next[3] = { corners[0] + 1, corners[1] + 1, corners[2] + 1 };
+    triangles->InsertNextCell(3, next);
+  }
+  far->SetPoints(shifted);
+  far->SetPolys(triangles);
+  for (double wrong : { std::numeric_limits<double>::infinity(), std::numeric_limits<double>::quiet_NaN() })
+  {
+    shifted->SetPoint(9, wrong, 0.0, 0.0);
+    shifted->Modified();
+    refused(far, "Point 9 of the mesh is at");
+  }
 
   // A warning, with a result.
   filter->SetInputDataObject(test::ToPolyData(shapes::Inverted(shapes::Sphere({ 0, 0, 0 }, 1.0, 3))));
@@ -275,6 +381,8 @@ int TestMeshVoxelizer(int, char*[])
   ModelBoundsAreTheBox(claims);
   AnyPolyDataWillDo(claims);
   LaterMeshesWin(claims);
+  NumbersOfMaterialsAreWhole(claims);
+  MaterialsAreChecked(claims);
   ConstantIndexIsLeftOut(claims);
   BadInputIsOneError(claims);
   return claims.Result();

@@ -8,6 +8,9 @@
 #include "vtkPolyData.h"
 
 #include <cmath>
+#include <fstream>
+#include <sys/resource.h>
+#include <unistd.h>
 
 namespace
 {
@@ -82,7 +85,35 @@ void BadInputIsOneError(test::Claims& claims)
   emitter->SetSkyColor(-1.0, 1.0, 1.0);
   emitter->Update();
   claims.That(errors.WasOneWith("finite and not negative"), "a negative sky");
+  emitter->SetSkyColor(1.0, 1.0, 1.0);
+  for (vtkIdType count : { vtkIdType(1) << 62, vtkIdType(1) << 44 })
+  {
+    emitter->SetPhotonCount(count);
+    emitter->Update();
+    claims.That(errors.WasOneWith("Ask for fewer photons (PhotonCount)"), "more photons than there is memory");
+  }
 }
+
+#ifndef __SANITIZE_ADDRESS__ // which ends the program where memory does
+void MemoryThatEndsIsAnError(test::Claims& claims)
+{
+  vtkNew<vtkPhotonEmitter> emitter;
+  test::Errors errors(emitter);
+  emitter->SetInputDataObject(test::MakeImage({}));
+  emitter->SetSkyColor(1.0, 1.0, 1.0);
+  emitter->SetPhotonCount(10'000'000);
+  long pages = 0;
+  std::ifstream("/proc/self/statm") >> pages;
+  rlimit before;
+  getrlimit(RLIMIT_AS, &before);
+  const rlimit little = { static_cast<rlim_t>(pages * sysconf(_SC_PAGESIZE) + (64 << 20)), before.rlim_max };
+  setrlimit(RLIMIT_AS, &little);
+  emitter->Update();
+  setrlimit(RLIMIT_AS, &before);
+  claims.That(errors.WasOneWith("memory does not suffice. Ask for less: fewer photons"), "memory that ends");
+  claims.That(emitter->GetOutput()->GetNumberOfPoints() == 0, "and no photons");
+}
+#endif
 }
 
 int TestPhotonEmitter(int, char*[])
@@ -92,5 +123,8 @@ int TestPhotonEmitter(int, char*[])
   ASkyGivesPhotonsFromEverywhere(claims);
   NothingShinesIsAWarning(claims);
   BadInputIsOneError(claims);
+#ifndef __SANITIZE_ADDRESS__
+  MemoryThatEndsIsAnError(claims);
+#endif
   return claims.Result();
 }

@@ -8,6 +8,7 @@
 #include "vtkPhotonMarcher.h"
 #include "vtkPointData.h"
 #include "vtkPolyData.h"
+#include "vtkStringArray.h"
 #include "vtkUnsignedCharArray.h"
 
 #include <cmath>
@@ -103,6 +104,71 @@ void GlassBendsTheLight(test::Claims& claims)
   claims.That(pipeline.marcher->GetSteps() < steps, "an octree saves steps");
 }
 
+/// One photon across the volume's diagonal: each voxel gets all of its power, though its way through them is longer.
+void PackingLossIsToldApart(test::Claims& claims)
+{
+  const auto medium = test::MakeMedium({ { 16, 16, 16 } }, 0.1, 0.0);
+  vtkNew<vtkPoints> start;
+  start->InsertNextPoint(0.0, 0.0, 0.0);
+  vtkNew<vtkPolyData> photons;
+  photons->SetPoints(start);
+  test::AddValues<vtkFloatArray>(photons->GetPointData(), "direction", 1, 3, [](vtkIdType, int) { return 1.0; });
+  test::AddValues<vtkFloatArray>(photons->GetPointData(), "power", 1, 1, [](vtkIdType, int) { return 1.0; });
+  vtkNew<vtkPhotonMarcher> marcher;
+  marcher->SetInputDataObject(medium);
+  marcher->SetPhotonsData(photons);
+  marcher->SetScheme(vtkPhotonMarcher::PUBLISHED);
+  marcher->Update();
+  auto* light = vtkImageData::SafeDownCast(marcher->GetOutputDataObject(0));
+  vtkDataArray* loss = light->GetFieldData()->GetArray("packing_loss");
+  if (claims.That(loss && loss->GetNumberOfValues() == 1, "packing_loss is a number"))
+  {
+    claims.Near(loss->GetComponent(0, 0), marcher->GetPackingLoss(), 0.0, "PackingLoss is it");
+  }
+  claims.That(std::abs(marcher->GetPackingLoss()) < 0.02, "a photon alone loses what rounding to 8 bits takes");
+  claims.That(marcher->GetBalanceError() > 0.1, "the balance shows that power is no path");
+
+  // The light of many at one place does not fit into 8 bits of each.
+  photons->GetPointData()->Initialize();
+  start->SetNumberOfPoints(20000);
+  for (vtkIdType i = 0; i < 20000; ++i)
+  {
+    start->SetPoint(i, 0.0, 8.5, 8.5);
+  }
+  start->Modified();
+  test::AddValues<vtkFloatArray>(
+    photons->GetPointData(), "direction", 20000, 3, [](vtkIdType, int c) { return c == 0 ? 1.0 : 0.0; });
+  test::AddValues<vtkFloatArray>(photons->GetPointData(), "power", 20000, 1, [](vtkIdType, int) { return 1e-4; });
+  photons->Modified();
+  marcher->Update();
+  claims.That(marcher->GetPackingLoss() > 0.2, "many photons at one place lose light");
+
+  vtkNew<vtkImageData> marched;
+  marched->ShallowCopy(light);
+  marcher->SetScheme(vtkPhotonMarcher::SOUND);
+  marcher->SetInputDataObject(marched);
+  marcher->Update();
+  claims.That(!light->GetFieldData()->HasArray("packing_loss") && marcher->GetPackingLoss() == 0.0,
+    "the sound scheme has none, not even that of a march before");
+}
+
+void TrappedLightIsAWarning(test::Claims& claims)
+{
+  auto medium = test::MakeMedium({ { 24, 24, 24 } }, 0.0, 0.0);
+  test::AddValues<vtkDoubleArray>(medium->GetCellData(), "ior", medium->GetNumberOfCells(), 1, [](vtkIdType i, int) {
+    const double r = std::hypot(i % 24 - 11.5, i / 24 % 24 - 11.5, i / 576 - 11.5);
+    return 1.0 + 1.5 * std::erfc((r - 7.0) / 2.0);
+  });
+  Pipeline pipeline(medium, 1000);
+  pipeline.rig->SunOff();
+  pipeline.rig->AddPointLight(16.0, 12.0, 12.0, 1.0, 1.0, 1.0);
+  test::Errors errors(pipeline.marcher);
+  pipeline.marcher->Update();
+  claims.That(pipeline.Fact("energy_balance", 4) > 0.01 * pipeline.Fact("energy_balance", 0), "light is trapped");
+  claims.That(errors.WasOneWith("% of the power that entered"), "trapped light is warned of");
+  claims.That(pipeline.Light()->GetNumberOfCells() > 0, "there is light all the same");
+}
+
 void BadInputIsOneError(test::Claims& claims)
 {
   auto medium = test::MakeMedium({}, 0.1, 0.1);
@@ -114,12 +180,36 @@ void BadInputIsOneError(test::Claims& claims)
   claims.That(pipeline.Light()->GetNumberOfCells() == 0, "and no light");
   pipeline.marcher->SetIntegratorOrder(2);
 
-  vtkNew<vtkImageData> other;
-  other->SetDimensions(3, 3, 3);
-  pipeline.marcher->SetOctreeData(other);
+  const auto octreeRefused = [&](const test::Box& box, const char* part) {
+    const auto octree = test::MakeImage(box);
+    test::AddCells<vtkUnsignedCharArray>(octree, "octree_level", 0.0);
+    pipeline.marcher->SetOctreeData(octree);
+    pipeline.marcher->Update();
+    claims.That(errors.WasOneWith(part), std::string("an octree of something else: ") + part);
+  };
+  octreeRefused({ { 2, 2, 2 } }, "The octree has 2 x 2 x 2 voxels");
+  octreeRefused({ { 4, 4, 4 }, { 2.0, 2.0, 2.0 } }, "spacing (2, 2, 2)");
+  octreeRefused({ { 4, 4, 4 }, { 1.0, 1.0, 1.0 }, { 50.0, 0.0, 0.0 } }, "origin (50, 0, 0)");
+  octreeRefused({ { 4, 4, 4 }, { 1.0, 1.0, 1.0 }, { 50.0, 0.0, 0.0 } },
+    "the medium 4 x 4 x 4 voxels of spacing (1, 1, 1) from origin (0, 0, 0)");
+  const auto same = test::MakeImage({ { 4, 4, 4 }, { 1.0, 1.0, 1.0 }, { -2.0, 0.0, 0.0 }, { 2, 0, 0 } });
+  test::AddCells<vtkUnsignedCharArray>(same, "octree_level", 0.0);
+  pipeline.marcher->SetOctreeData(same);
   pipeline.marcher->Update();
-  claims.That(errors.WasOneWith("another size"), "an octree of something else");
+  claims.That(errors.None(), "the same grid by another extent is taken");
   pipeline.marcher->RemoveOctree();
+
+  pipeline.marcher->SetInputArrayToProcess(3, 0, 0, vtkDataObject::FIELD_ASSOCIATION_CELLS, "foo");
+  pipeline.marcher->Update();
+  claims.That(errors.WasOneWith("no array 'foo'"), "an index that is not there");
+  pipeline.marcher->SetInputArrayToProcess(3, 0, 0, vtkDataObject::FIELD_ASSOCIATION_CELLS, "ior");
+  vtkNew<vtkStringArray> text;
+  text->SetName("ior");
+  text->SetNumberOfValues(64);
+  medium->GetCellData()->AddArray(text);
+  medium->Modified();
+  pipeline.marcher->Update();
+  claims.That(errors.WasOneWith("'ior' is text"), "an index of text");
 
   test::AddCells(medium, "ior", 0.0);
   medium->Modified();
@@ -146,6 +236,8 @@ int TestPhotonMarcher(int, char*[])
   test::Claims claims;
   ABeamFallsOffAndItsPowerIsKept(claims);
   GlassBendsTheLight(claims);
+  PackingLossIsToldApart(claims);
+  TrappedLightIsAWarning(claims);
   BadInputIsOneError(claims);
   return claims.Result();
 }

@@ -294,6 +294,9 @@ void BadInputIsOneError(test::Claims& claims)
   auto image = test::MakeImage(box);
   test::AddCells(image, "density", 1.0);
   refused(image, "no array 'ior'. Its cell arrays: 'density'");
+  filter->SetInputArrayToProcess(0, 0, 0, vtkDataObject::FIELD_ASSOCIATION_CELLS, "foo");
+  refused(WithIndex(box, Waves), "no array 'foo'. Its cell arrays: 'ior'");
+  filter->SetInputArrayToProcess(0, 0, 0, vtkDataObject::FIELD_ASSOCIATION_CELLS, "ior");
   image = test::MakeImage(box);
   test::AddCells(image, "ior", 1.0, 3);
   refused(image, "'ior' has 3 components; it must have 1");

@@ -43,8 +43,15 @@ both = MeshVoxelizer(Input=[ball, box], SampleDimensions=[24, 24, 24], FilterSiz
 n = cells(both, "ior").reshape(24, 24, 24)
 assert abs(n[12, 12, 12] - 1.33) < 1e-6 and abs(n[12, 12, 6] - 1.5) < 1e-6, (n[12, 12, 12], n[12, 12, 6])
 assert cells(both, "sigma_s").shape == (24 ** 3, 3)
-both.Input = ball
+both.Materials = [1, 1.33, 0.2, 0.4]  # not whole: an error, and no medium
+both.UpdatePipeline()
+assert both.GetDataInformation().GetNumberOfCells() == 0
 both.Materials = []
+both.MaterialArray = ["CELLS", "foo"]
+both.UpdatePipeline()
+assert both.GetDataInformation().GetNumberOfCells() == 0
+both.MaterialArray = ["CELLS", "material_id"]
+both.Input = ball
 n = cells(both, "ior").reshape(24, 24, 24)
 assert abs(n[12, 12, 12] - 1.5) < 1e-6, n[12, 12, 12]
 

@@ -45,3 +45,6 @@ marcher.Octree = None
 marcher.Scheme = "As published"
 light = servermanager.Fetch(marcher)
 assert vtk_to_numpy(light.GetCellData().GetArray("fluence")).max() > 0
+marcher.UpdatePropertyInformation()
+assert 0 < marcher.PackingLoss < 1, marcher.PackingLoss
+assert light.GetFieldData().GetArray("packing_loss").GetValue(0) == marcher.PackingLoss
