@@ -129,15 +129,21 @@ tyndall::RefractiveMediumSettings SettingsOf(vtkMeshVoxelizer* filter, const std
   return settings;
 }
 
-void Pack(const tyndall::Grid& grid, tyndall::RefractiveMedium&& medium, vtkImageData* output)
+void Pack(const tyndall::RefractiveMediumSettings& settings, tyndall::RefractiveMedium&& medium, vtkImageData* output)
 {
+  const tyndall::Grid& grid = settings.grid;
   output->SetExtent(0, grid.size[0], 0, grid.size[1], 0, grid.size[2]);
   output->SetOrigin(grid.origin.data());
   output->SetSpacing(grid.spacing.data());
   tyndall::AddCells(output, "occupancy", std::move(medium.occupancy), 1);
-  if (!medium.ior.empty())
+  const bool constant = medium.ior.empty();
+  if (constant)
   {
-    tyndall::AddCells(output, "ior", std::move(medium.ior), 1);
+    medium.ior.assign(grid.VoxelCount(), static_cast<float>(settings.outside.n)); // who asks for n is told
+  }
+  tyndall::AddCells(output, "ior", std::move(medium.ior), 1);
+  if (!constant)
+  {
     tyndall::AddCells(output, "ior_gradient", std::move(medium.iorGradient), 3);
   }
   tyndall::AddCells(output, "sigma_a", std::move(medium.sigma_a), medium.components);
@@ -293,7 +299,7 @@ int vtkMeshVoxelizer::RequestData(vtkInformation*, vtkInformationVector** inputs
     this->LeftOut = tyndall::Lines(medium.leftOut);
 
     vtkImageData* output = vtkImageData::GetData(outputs);
-    Pack(settings.grid, std::move(medium), output);
+    Pack(settings, std::move(medium), output);
     tyndall::KeepWhatIsAskedFor(outputs->GetInformationObject(0), output);
   });
 }

@@ -24,7 +24,7 @@
  * | array          | components                  | unit     | meaning                                            |
  * |----------------|-----------------------------|----------|----------------------------------------------------|
  * | `occupancy`    | 1                           | 1        | part of the voxel inside any mesh, the active scalars |
- * | `ior`          | 1                           | 1        | refractive index n, smoothed; not where n is constant |
+ * | `ior`          | 1                           | 1        | refractive index n, smoothed                          |
  * | `ior_gradient` | 3                           | 1/length | its gradient by central differences; not where n is constant |
  * | `sigma_a`      | 1, or 3 where it has colour | 1/length | absorption coefficient                             |
  * | `sigma_s`      | 1, or 3 where it has colour | 1/length | scattering coefficient                             |

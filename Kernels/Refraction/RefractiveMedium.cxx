@@ -442,7 +442,8 @@ RefractiveMedium Voxelize(
   }
   if (empty || even)
   {
-    result.leftOut.push_back("ior, ior_gradient: the refractive index is " + std::to_string(outside.n) + " everywhere");
+    result.leftOut.push_back(
+      "smoothing of n, ior_gradient: the refractive index is " + std::to_string(outside.n) + " everywhere");
   }
   else
   {

@@ -287,8 +287,8 @@ void MediumRayCaster::Upload(const Medium& medium, const SolvedLight& light, con
 std::string MediumRayCaster::PackingOptions() const
 {
   const std::array<const char*, 5> names = { "ABSORPTION", "SCATTERING", "EMISSION", "FLUENCE", "UNSCATTERED" };
-  std::string options =
-    "-DREAL_WIDTH=" + std::to_string(this->PacketWidth()) + Define("COLOURED", this->Coloured) + Define("GREY", this->Grey);
+  std::string options = "-DREAL_WIDTH=" + std::to_string(this->PacketWidth()) + Define("COLOURED", this->Coloured) +
+    Define("GREY", this->Grey);
   for (std::size_t i = 0; i < names.size(); ++i)
   {
     options += std::string(" -D") + names[i] + "=" + std::to_string(this->Components[i]);
@@ -420,9 +420,9 @@ std::string MediumRayCaster::CastingOptions() const
     *std::max_element(this->TheGrid.spacing.begin(), this->TheGrid.spacing.end());
   const int phase = this->KnowsFlow ? 1 + static_cast<int>(this->Settings.phaseFunction) : 0;
   return "-DREAL_WIDTH=" + std::to_string(this->PacketWidth()) + Define("COLOURED", this->Coloured) +
-    Define("GREY", this->Grey) + Define("SKIP_BRICKS", this->Settings.skipEmptyBricks) + Define("ENVIRONMENT", this->EnvironmentSize[0] > 0) +
-    Define("THIN_STEPS", longest <= (this->Bends ? 1.5 : 2.0)) + Define("PHASE", phase) +
-    Define("GLOW", this->GlowsApart());
+    Define("GREY", this->Grey) + Define("SKIP_BRICKS", this->Settings.skipEmptyBricks) +
+    Define("ENVIRONMENT", this->EnvironmentSize[0] > 0) + Define("THIN_STEPS", longest <= (this->Bends ? 1.5 : 2.0)) +
+    Define("PHASE", phase) + Define("GLOW", this->GlowsApart());
 }
 
 /// Rays that cannot but go straight on have a kernel of their own.

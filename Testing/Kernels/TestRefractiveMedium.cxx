@@ -145,7 +145,7 @@ TEST_F(RefractiveMediumTest, ConstantIndexIsLeftOut)
   const RefractiveMedium medium = this->Made({ Ball() }, settings);
   EXPECT_THAT(medium.ior, IsEmpty());
   EXPECT_THAT(medium.iorGradient, IsEmpty());
-  EXPECT_THAT(medium.leftOut, ElementsAre(HasSubstr("ior, ior_gradient")));
+  EXPECT_THAT(medium.leftOut, ElementsAre(HasSubstr("smoothing of n, ior_gradient")));
   EXPECT_EQ(medium.occupancy.size(), settings.grid.VoxelCount());
 }
 
