@@ -39,37 +39,49 @@ static float squared_index_of(const index_grid* grid, const __global float* ior,
 
 #define OVERSHOOT 0.125f // of a coefficient beyond its voxels' range, relative
 
+// Not fmin and fmax, which look for values that are no numbers.
+static float lesser_of(float a, float b)
+{
+  return a < b ? a : b;
+}
+
+static float greater_of(float a, float b)
+{
+  return a > b ? a : b;
+}
+
 __kernel void squared_index_coefficients(index_grid grid, const __global float* ior, __global float* coefficients)
 {
   const int x = get_global_id(0), y = get_global_id(1), z = get_global_id(2);
   const int i = x - 2, j = y - 2, k = z - 2;
-  float f, before[3], after[3];
+  float f, x0, x1, y0, y1, z0, z1; // not in arrays, which PoCL does not keep in registers
   if (i > 0 && i < grid.size[0] - 1 && j > 0 && j < grid.size[1] - 1 && k > 0 && k < grid.size[2] - 1)
   {
-    const int strides[3] = { 1, grid.size[0], grid.size[0] * grid.size[1] };
-    const __global float* n = ior + (k * strides[2] + j * strides[1] + i);
+    const int row = grid.size[0], layer = row * grid.size[1];
+    const __global float* n = ior + (k * layer + j * row + i);
     f = n[0] * n[0];
-    for (int a = 0; a < 3; ++a)
-    {
-      before[a] = n[-strides[a]] * n[-strides[a]];
-      after[a] = n[strides[a]] * n[strides[a]];
-    }
+    x0 = n[-1] * n[-1];
+    x1 = n[1] * n[1];
+    y0 = n[-row] * n[-row];
+    y1 = n[row] * n[row];
+    z0 = n[-layer] * n[-layer];
+    z1 = n[layer] * n[layer];
   }
   else
   {
     f = squared_index_of(&grid, ior, i, j, k);
-    for (int a = 0; a < 3; ++a)
-    {
-      const int x1 = a == 0, y1 = a == 1, z1 = a == 2;
-      before[a] = squared_index_of(&grid, ior, i - x1, j - y1, k - z1);
-      after[a] = squared_index_of(&grid, ior, i + x1, j + y1, k + z1);
-    }
+    x0 = squared_index_of(&grid, ior, i - 1, j, k);
+    x1 = squared_index_of(&grid, ior, i + 1, j, k);
+    y0 = squared_index_of(&grid, ior, i, j - 1, k);
+    y1 = squared_index_of(&grid, ior, i, j + 1, k);
+    z0 = squared_index_of(&grid, ior, i, j, k - 1);
+    z1 = squared_index_of(&grid, ior, i, j, k + 1);
   }
-  const float low = fmin(f, fmin(fmin(fmin(before[0], after[0]), fmin(before[1], after[1])), fmin(before[2], after[2])));
-  const float high = fmax(f, fmax(fmax(fmax(before[0], after[0]), fmax(before[1], after[1])), fmax(before[2], after[2])));
-  const float others = before[0] + after[0] + before[1] + after[1] + before[2] + after[2];
-  const float c = clamp(2.0f * f - others / 6.0f, low - OVERSHOOT * low, high + OVERSHOOT * high);
-  coefficients[(z * (grid.size[1] + 4) + y) * (grid.size[0] + 4) + x] = c;
+  const float low = lesser_of(f, lesser_of(lesser_of(lesser_of(x0, x1), lesser_of(y0, y1)), lesser_of(z0, z1)));
+  const float high = greater_of(f, greater_of(greater_of(greater_of(x0, x1), greater_of(y0, y1)), greater_of(z0, z1)));
+  const float c = 2.0f * f - (x0 + x1 + y0 + y1 + z0 + z1) / 6.0f;
+  const float held = lesser_of(greater_of(c, low - OVERSHOOT * low), high + OVERSHOOT * high);
+  coefficients[(z * (grid.size[1] + 4) + y) * (grid.size[0] + 4) + x] = held;
 }
 
 // Least and largest coefficient within two of each along one axis; what is beyond the array's ends is not asked for.
