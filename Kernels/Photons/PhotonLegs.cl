@@ -12,6 +12,8 @@
 // Where n does not vary within the reach of interpolation nothing is evaluated, and a leg is as long as that is so.
 //
 // Positions and velocities are in voxels, lengths in voxel diagonals.
+//
+// A photon whose velocity is no number, none at all or endless (n^2 beyond float) is given up.
 
 #define NEVER 3e38f
 #define AHEAD 4        // voxels along the axis of fastest change, by which memory is asked for early
@@ -22,6 +24,7 @@ typedef struct
   index_grid grid;
   float spacing[3]; // over the voxel's diagonal
   float stepSize;   // voxels, of a step where the octree has single voxels
+  float slowest;    // voxels per time that a photon keeps to wherever n is its least; steps are no longer than for it
   float darkness;   // power below which nothing is left of a photon
   int eventLimit;   // walls and turns of a photon at most
   ulong copy;       // voxels of the padded grid
@@ -230,7 +233,8 @@ static real times_of_steps(
   const march_info* info = arrays->info;
   const integer at = mask & padded(info, voxel); // the others are in the padding
   const integer node = to_integer(gather(uchar, arrays->nodes, at));
-  const real shortest = (real)info->stepSize / sqrt(u[0] * u[0] + u[1] * u[1] + u[2] * u[2]);
+  // Where n jumps within a step a kick may leave a photon almost without velocity.
+  const real shortest = (real)info->stepSize / greater(sqrt(u[0] * u[0] + u[1] * u[1] + u[2] * u[2]), (real)info->slowest);
   real time = shortest;
 #if LEVELS
   if (anywhere(truth(node > 1)))

@@ -12,6 +12,8 @@
 #define PHOTON_FLOATS (6 + CHANNELS) // position, unit direction, power in units
 #define RECORD (CHANNELS + 3 * DIRECTIONS)
 #define TINY 1e-20f
+#define SLOWEST_PACE 1e-12f // diagonals per time, which is n but for rounding and steps across jumps of n
+#define FASTEST_PACE 1e12f
 
 // The part of the state that changes between two turns, in registers.
 typedef struct
@@ -20,6 +22,7 @@ typedef struct
   real wall[3], now;
   real sigma;
   real power[CHANNELS];
+  real owed[CHANNELS]; // what rounding has left of what the voxels were to take: the power is `power + owed`
 } photon_flight;
 
 static void land(const photon_flight* flight, photon_lanes* lanes)
@@ -66,7 +69,11 @@ static void attenuate(const march_arrays* arrays, photon_flight* flight, real le
       thick = truth(tau > (real)0.5f);
     }
     gained[c] = flight->power[c] * factor;
-    flight->power[c] = thick ? flight->power[c] * left : flight->power[c] - flight->power[c] * lost;
+    // Through many thin voxels, rounding goes the same way in each (Kahan's sum).
+    const real taken = flight->power[c] * lost - flight->owed[c];
+    const real rest = thick ? flight->power[c] * left : flight->power[c] - taken;
+    flight->owed[c] = thick ? (real)0.0f : (flight->power[c] - rest) - taken;
+    flight->power[c] = rest;
   }
 }
 
@@ -179,6 +186,23 @@ static void end_photon(const photon_lanes* lanes, int k, int face, __global phot
   }
 }
 
+#if BENDS
+// The photons of a mask whose velocity means nothing, after a turn.
+static void give_up_lost(const march_arrays* arrays, photon_lanes* lanes, integer mask, int first)
+{
+  const real pace = VECTOR(lanes->pace);
+  const integer lost = mask & ~(truth(pace > (real)SLOWEST_PACE) & truth(pace < (real)FASTEST_PACE));
+  if (anywhere(lost))
+  {
+    FOR_LANES(k, lost)
+    {
+      end_photon(lanes, k, STILL_GOING, arrays->ends + first + k);
+      rest(lanes, k);
+    }
+  }
+}
+#endif
+
 // The photons of a mask end or turn.
 static void attend(const march_arrays* arrays, photon_lanes* lanes, const photon_flight* flight, integer mask, int first)
 {
@@ -199,6 +223,7 @@ static void attend(const march_arrays* arrays, photon_lanes* lanes, const photon
   if (anywhere(turning))
   {
     take_turns(arrays, lanes, turning);
+    give_up_lost(arrays, lanes, turning, first);
   }
 #endif
 }
@@ -233,15 +258,30 @@ static void load_packet(const march_arrays* arrays, const __global float* photon
   {
     rest(lanes, k);
   }
+  PUT_INTEGERS(lanes->crossings, (integer)0);
+#if BENDS
+  give_up_lost(arrays, lanes, INTEGERS(lanes->alive), first);
+#endif
   flight->crossings = 0;
   FOR_CHANNELS(c)
   {
     flight->power[c] = VECTOR(lanes->power[c]);
+    flight->owed[c] = 0.0f;
   }
   take_off(arrays, lanes, flight);
 }
 
 #if PATHS
+static float total_power(const photon_flight* flight)
+{
+  float sum = 0.0f;
+  FOR_CHANNELS(c)
+  {
+    sum += flight->power[c];
+  }
+  return sum;
+}
+
 static void add_vertex(const march_arrays* arrays, const photon_lanes* lanes, float now, float left, int* count)
 {
   if (arrays->vertices)
@@ -262,9 +302,13 @@ static int march_packet(const march_arrays* arrays, const __global float* photon
   load_packet(arrays, photons, first, end, &lanes, &flight);
   int vertices = 0;
 #if PATHS
-  const float whole = flight.power[0];
+  const float whole = total_power(&flight);
   add_vertex(arrays, &lanes, 0.0f, 1.0f, &vertices);
 #endif
+  if (!anywhere(flight.alive))
+  {
+    return vertices;
+  }
   // What voxels gain is credited a stretch later, while that one's extinction is on its way from memory.
   integer gaining = 0;
   real gained[CHANNELS];
@@ -296,7 +340,7 @@ static int march_packet(const march_arrays* arrays, const __global float* photon
 #endif
       land(&flight, &lanes);
 #if PATHS
-      add_vertex(arrays, &lanes, next, flight.power[0] / whole, &vertices);
+      add_vertex(arrays, &lanes, next, whole > 0.0f ? total_power(&flight) / whole : 1.0f, &vertices);
 #endif
       attend(arrays, &lanes, &flight, special, first);
       take_off(arrays, &lanes, &flight);

@@ -5,6 +5,8 @@
 #include "PhotonPacking.h"
 #include "TyndallKernelSources.h"
 
+#include "../Device/Batches.h"
+
 #include <algorithm>
 #include <cmath>
 #include <cstring>
@@ -15,10 +17,14 @@ namespace tyndall
 {
 namespace
 {
-constexpr int RoundsAtMost = 64;        ///< of a photon through the volume, in sums of its edges
-constexpr int Block = 512;              ///< neighbouring photons that one work-item takes one after the other
-constexpr int PrivateSumsAtMost = 8;    ///< beyond, adding up the copies costs more than atomics do
-constexpr double EventsPerLaunch = 4e7; ///< keeps a launch of two cores below a tenth of a second
+constexpr int RoundsAtMost = 64;     ///< of a photon through the volume, in sums of its edges
+constexpr int Block = 512;           ///< neighbouring photons that one work-item takes one after the other
+constexpr int PrivateSumsAtMost = 8; ///< beyond, adding up the copies costs more than atomics do
+constexpr double SecondsPerLaunch = 0.1;
+constexpr double EventsPerLaunch = 4e7; ///< of straight ways, which two cores follow in less
+constexpr double FirstBent = 16384;     ///< photons on bent ways in the first launch
+constexpr double ShortestStep = 0.05;   ///< voxels; below, rounding of positions counts
+constexpr double LongestStep = 1e4;     ///< voxels
 constexpr float DarkUnits = 1e-3f;      ///< power that no sum would show
 
 // As index_grid, march_info, photon_end in the kernels.
@@ -30,7 +36,7 @@ struct MarchOnDevice
 {
   GridOnDevice grid;
   cl_float spacing[3];
-  cl_float stepSize, darkness;
+  cl_float stepSize, slowest, darkness;
   cl_int eventLimit;
   alignas(8) cl_ulong copy;
 };
@@ -64,9 +70,10 @@ void Check(const MarchSettings& settings)
   {
     throw InvalidInput("The integrator's order is " + std::to_string(settings.order) + "; there are 1, 2 and 4.");
   }
-  if (!(settings.stepSize > 0.0) || std::isinf(settings.stepSize))
+  if (!(settings.stepSize >= ShortestStep && settings.stepSize <= LongestStep))
   {
-    throw InvalidInput("The step size is " + std::to_string(settings.stepSize) + " voxels; it must be positive.");
+    throw InvalidInput("The step size is " + std::to_string(settings.stepSize) + " voxels; it must be " +
+      std::to_string(ShortestStep) + " to " + std::to_string(LongestStep) + ".");
   }
 }
 
@@ -79,7 +86,8 @@ public:
     , TheGrid(medium.grid)
     , Settings(settings)
     , MediumChannels(medium.sigma_a.components == 3 || medium.sigma_s.components == 3 ? 3 : 1)
-    , Bends(IndexVaries(ior, medium.grid))
+    , Index(IndexRangeOf(ior, medium.grid))
+    , Bends(this->Index.Varies())
     , HasLevels(levels && this->Bends)
     , AComponents(medium.sigma_a.values ? medium.sigma_a.components : 0)
     , SComponents(medium.sigma_s.values ? medium.sigma_s.components : 0)
@@ -157,6 +165,7 @@ private:
 
   void MarchAll(
     const PackedPhotons& packed, const Buffer<float>& photons, const Buffer<cl_int>& ends, const Monitor& monitor);
+  Batches BatchesOf(std::size_t photons) const;
   void Tally(const PackedPhotons& packed, const std::vector<cl_int>& ends, PhotonLight& result) const;
   void Finish(const PackedPhotons& packed, PhotonLight& result);
   void SayWhatIsLeftOut(const PackedPhotons& packed, LightField& light) const;
@@ -173,6 +182,7 @@ private:
   Grid TheGrid;
   MarchSettings Settings;
   int MediumChannels;
+  IndexRange Index;
   bool Bends;
   bool HasLevels;
   int AComponents, SComponents;
@@ -281,6 +291,7 @@ MarchOnDevice PhotonMarcher::Implementation::Describe() const
     info.spacing[a] = static_cast<float>(this->TheGrid.spacing[a] / DiagonalOf(this->TheGrid));
   }
   info.stepSize = static_cast<float>(this->Settings.stepSize);
+  info.slowest = 0.5f * this->Index.least / *std::max_element(info.spacing, info.spacing + 3);
   info.darkness = DarkUnits;
   info.eventLimit = this->EventLimit();
   info.copy = Count(this->Padded(2));
@@ -311,13 +322,8 @@ void PhotonMarcher::Implementation::MarchAll(
   cl::Kernel march = this->MarchKernel("march_photons",
     this->MediumOptions(packed.channels) + Define("REAL_WIDTH", width) + Define("ATOMICS", this->Shared) +
       Define("WORKERS", workers) + Define("BLOCK", Block) + "-DPATHS=0");
-  const double edges = (this->TheGrid.size[0] + this->TheGrid.size[1] + this->TheGrid.size[2]) / 3.0;
-  const std::size_t whole = static_cast<std::size_t>(Block) * std::max(workers, 1);
-  const std::size_t batch = std::max<std::size_t>(static_cast<std::size_t>(EventsPerLaunch / edges) / whole, 1) * whole;
   Buffer<cl_int> next(this->TheDevice, 1, "number of the next photon");
-  for (std::size_t first = 0; first < packed.Count(); first += batch)
-  {
-    const std::size_t count = std::min(batch, packed.Count() - first);
+  InBatches(this->TheDevice, this->BatchesOf(packed.Count()), monitor, [&](std::size_t first, std::size_t count) {
     next.Fill(0);
     With(march, this->Describe(), this->Sigma, this->Coefficients, this->Nodes, photons, ends, this->Sums,
       cl_ulong(stride), next, cl_int(first), cl_int(count));
@@ -329,9 +335,22 @@ void PhotonMarcher::Implementation::MarchAll(
     {
       this->Launch(march, cl::NDRange((count + width - 1) / width));
     }
-    this->TheDevice.Finish();
-    Report(monitor, static_cast<double>(first + count) / packed.Count());
-  }
+  });
+}
+
+/// Straight ways cost what their voxels do; of bent ones the first tell. Few launches: at the end of each, work-items wait.
+Batches PhotonMarcher::Implementation::BatchesOf(std::size_t photons) const
+{
+  const double edges = (this->TheGrid.size[0] + this->TheGrid.size[1] + this->TheGrid.size[2]) / 3.0;
+  const double straight = EventsPerLaunch / edges;
+  Batches batches;
+  batches.count = photons;
+  batches.whole = static_cast<std::size_t>(Block) * std::max(this->SumsWorkers, 1);
+  batches.first = static_cast<std::size_t>(
+    this->Bends ? std::min(straight, FirstBent * std::min(this->Settings.stepSize, 1.0)) : straight);
+  batches.seconds = SecondsPerLaunch;
+  batches.growth = 8.0;
+  return batches;
 }
 
 void PhotonMarcher::Implementation::Tally(
@@ -527,6 +546,7 @@ PhotonMarcher::PhotonMarcher(
   tyndall::Check(medium);
   tyndall::Check(settings);
   CheckIndex(ior, medium.grid);
+  CheckLevels(levels, medium.grid);
   this->Inside = std::make_unique<Implementation>(device, medium, ior, settings, levels);
 }
 

@@ -13,8 +13,9 @@ namespace tyndall
 /// Marches photons along bent rays through a medium, and credits every voxel that they cross.
 ///
 /// Paths follow d/ds(n dx/ds) = grad n (Pfeuti 2009, Eq. 2.7) as dr/dt = T, dT/dt = grad(n^2) / 2, dt = ds / n, by a symplectic
-/// integrator on a tricubic B-spline of n^2 through the voxels' centres; total reflection is part of it. There is no
-/// refraction at the faces of the volume: outside, the index is that of the voxels there.
+/// integrator on a tricubic B-spline of n^2 through the voxels' centres; total reflection is part of it. The spline stays
+/// positive wherever n jumps from voxel to voxel. There is no refraction at the faces of the volume: outside, the index is that
+/// of the voxels there.
 ///
 /// Power falls as exp(-tau) along a path, exactly for coefficients constant in each voxel. A voxel gains power times path
 /// integral of transmittance; over its volume that is an unbiased estimate of `fluence`, W / length^2, whatever the number of
@@ -30,7 +31,7 @@ public:
   /// @param ior     refractive index, one component a voxel; null values: 1 everywhere
   /// @param levels  octree level of each voxel (0: itself, k: in a node of 2^k voxels an edge), which path steps may take
   ///                whole; null: step by step. Read in the constructor only, as all arrays are.
-  /// @throws InvalidInput for a medium or an index that means nothing (names the voxel); DeviceError
+  /// @throws InvalidInput for a medium, an index or a level that means nothing (names the voxel); DeviceError
   PhotonMarcher(Device& device, const Medium& medium, const Field& ior, const MarchSettings& settings = {},
     const std::uint8_t* levels = nullptr);
   ~PhotonMarcher();

@@ -33,7 +33,8 @@ __kernel void pack_extinction(index_grid grid, float diagonal, const __global fl
     float s = OUTSIDE;
     if (inside)
     {
-      s = diagonal * (component(sigma_a, A_CHANNELS, voxel, c) + component(sigma_s, S_CHANNELS, voxel, c));
+      const float extinction = component(sigma_a, A_CHANNELS, voxel, c) + component(sigma_s, S_CHANNELS, voxel, c);
+      s = fmin(diagonal * extinction, 1e30f); // endless, and times no length, it would be no number
       s = varies ? -s : s;
     }
     sigma[c * copy + at] = s;
@@ -50,7 +51,7 @@ typedef struct
 
 // Row by row: the copies of the sums are added up, and are zero afterwards.
 //   fluence         COLOURS a voxel
-//   mean_direction  3 a voxel: sum of power times direction over sum of power, 0 where it is dark
+//   mean_direction  3 a voxel: sum of power times direction over sum of power, no longer than 1; 0 where it is dark
 //   taken           [row][absorbed, scattered][CHANNELS] units of power
 __kernel void finish_light(light_info info, const __global float* sigma_a, const __global float* sigma_s,
   const __global float* sigma, __global long* sums, ulong copyStride, __global float* fluence,
@@ -109,7 +110,10 @@ __kernel void finish_light(light_info info, const __global float* sigma_a, const
       scattered[c] += (long)(path * (info.diagonal * component(sigma_s, S_CHANNELS, voxel, c)));
     }
 #if DIRECTIONS
-    const float part = total > 0.0f ? 1.0f / total : 0.0f;
+    // Of a few units of power, whose fractions are lost, directions are coarse, and could be longer than the power.
+    const float3 flow = (float3)(sum[CHANNELS], sum[CHANNELS + 1], sum[CHANNELS + 2]);
+    const float most = fmax(total, length(flow));
+    const float part = total > 0.0f ? 1.0f / most : 0.0f;
     for (int a = 0; a < 3; ++a)
     {
       mean_direction[voxel * 3 + a] = sum[CHANNELS + a] * part;

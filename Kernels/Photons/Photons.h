@@ -22,7 +22,8 @@ struct MarchSettings
   /// Order of the integrator: 2, the leapfrog; 4, Yoshida's three leapfrogs, which pays where n^2 is smooth over several
   /// voxels; 1, explicit Euler, to compare with.
   int order = 2;
-  double stepSize = 1.0; ///< voxels, of a step where the index varies and the octree (if any) has single voxels; > 0
+  double stepSize =
+    1.0; ///< voxels, of a step where the index varies and the octree (if any) has single voxels; 0.05 to 1e4
   bool meanDirection = true;
 
   /// How the sums of many work-items stay whole. All of them give the same light, bit for bit.
@@ -36,10 +37,10 @@ struct MarchSettings
   Sums sums = Sums::Fitting;
 };
 
-/// @throws InvalidInput where the order is not 1, 2 or 4, or the step size not positive
+/// @throws InvalidInput where the order is not 1, 2 or 4, or the step size not 0.05 to 1e4 voxels
 void Check(const MarchSettings& settings);
 
-/// The way of one photon: positions, and the part of its power that is left there.
+/// The way of one photon: positions, and the part of its power (all channels together) that is left there; 1 where it had none.
 struct PhotonPath
 {
   std::size_t photon = 0; ///< its number
@@ -53,12 +54,14 @@ struct PhotonLight
   /// fluence = fluence_direct: light that was not scattered. Balance: `absorbed` is what the medium absorbed and what it
   /// scattered, `leftOver` what still went round when the photon was given up (total reflection can trap it).
   LightField light;
-  Rgb scattered = {};               ///< W, the part of `absorbed` that is scattered
-  std::vector<float> meanDirection; ///< 3 a voxel: sum of power times direction over sum of power; empty: not asked for
-  std::size_t missed = 0;           ///< photons whose ways do not meet the volume; they are not among what entered
-  std::size_t credits = 0;          ///< stretches of path that were credited to voxels
-  std::size_t steps = 0;            ///< of the integrator
-  double secondsMarching = 0.0;     ///< from sorted photons to sums on the device
-  double seconds = 0.0;             ///< from photons to light
+  Rgb scattered = {}; ///< W, the part of `absorbed` that is scattered
+  /// 3 a voxel: sum of power times direction over sum of power, at most 1 long; empty: not asked for. Coarse in voxels so dark
+  /// that they gained a few units of fixed point only, some 2^-62 of all power times the longest path.
+  std::vector<float> meanDirection;
+  std::size_t missed = 0;       ///< photons whose ways do not meet the volume; they are not among what entered
+  std::size_t credits = 0;      ///< stretches of path that were credited to voxels
+  std::size_t steps = 0;        ///< of the integrator
+  double secondsMarching = 0.0; ///< from sorted photons to sums on the device
+  double seconds = 0.0;         ///< from photons to light
 };
 }

@@ -173,6 +173,7 @@ PhotonLight MarchPublished(Device& device, const Medium& medium, const Field& io
   const double start = ClockSeconds();
   Check(medium);
   CheckIndex(ior, medium.grid);
+  CheckLevels(levels, medium.grid);
   if (!device.HasExtension("cl_khr_int64_base_atomics"))
   {
     throw DeviceError(device.Name() +

@@ -3,7 +3,9 @@
 // n^2 is a tricubic B-spline, so that its gradient is continuous and is that of one function: a symplectic integrator then
 // keeps its order and its Hamiltonian |T|^2 - n^2. The coefficients c = f - (d_x^2 + d_y^2 + d_z^2) f / 6, second differences of
 // the voxels' f = n^2, make the spline meet f to fourth order (quadratic fields exactly) without a recursive filter.
-// Beyond the grid f goes on linearly. The coefficient of voxel (i, j, k) stands at (i + 2, j + 2, k + 2) of an array that is
+// Where f jumps, differences overshoot: a coefficient is held within an eighth of the least and the largest of its voxels. The
+// spline's weights are positive with sum 1, so that it is positive as f is. Smooth fields overshoot by less, at extremes only.
+// Beyond the grid f goes on linearly, but never below a quarter of the border's. The coefficient of voxel (i, j, k) stands at (i + 2, j + 2, k + 2) of an array that is
 // four longer along each axis.
 
 typedef struct
@@ -21,7 +23,7 @@ static float squared_index_of(const index_grid* grid, const __global float* ior,
   {
     nearest += stride[a] * clamp(voxel[a], 0, grid->size[a] - 1);
   }
-  const float n = ior[nearest];
+  const float n = ior[nearest], least = 0.25f * n * n;
   float value = n * n;
   for (int a = 0; a < 3; ++a)
   {
@@ -32,29 +34,54 @@ static float squared_index_of(const index_grid* grid, const __global float* ior,
       value += beyond * (n - inner) * (n + inner);
     }
   }
-  return value;
+  return fmax(value, least);
+}
+
+#define OVERSHOOT 0.125f // of a coefficient beyond its voxels' range, relative
+
+// Not fmin and fmax, which look for values that are no numbers.
+static float lesser_of(float a, float b)
+{
+  return a < b ? a : b;
+}
+
+static float greater_of(float a, float b)
+{
+  return a > b ? a : b;
 }
 
 __kernel void squared_index_coefficients(index_grid grid, const __global float* ior, __global float* coefficients)
 {
   const int x = get_global_id(0), y = get_global_id(1), z = get_global_id(2);
   const int i = x - 2, j = y - 2, k = z - 2;
-  float f, others;
+  float f, x0, x1, y0, y1, z0, z1; // not in arrays, which PoCL does not keep in registers
   if (i > 0 && i < grid.size[0] - 1 && j > 0 && j < grid.size[1] - 1 && k > 0 && k < grid.size[2] - 1)
   {
     const int row = grid.size[0], layer = row * grid.size[1];
     const __global float* n = ior + (k * layer + j * row + i);
     f = n[0] * n[0];
-    others = n[-1] * n[-1] + n[1] * n[1] + n[-row] * n[-row] + n[row] * n[row] + n[-layer] * n[-layer] + n[layer] * n[layer];
+    x0 = n[-1] * n[-1];
+    x1 = n[1] * n[1];
+    y0 = n[-row] * n[-row];
+    y1 = n[row] * n[row];
+    z0 = n[-layer] * n[-layer];
+    z1 = n[layer] * n[layer];
   }
   else
   {
     f = squared_index_of(&grid, ior, i, j, k);
-    others = squared_index_of(&grid, ior, i - 1, j, k) + squared_index_of(&grid, ior, i + 1, j, k) +
-      squared_index_of(&grid, ior, i, j - 1, k) + squared_index_of(&grid, ior, i, j + 1, k) +
-      squared_index_of(&grid, ior, i, j, k - 1) + squared_index_of(&grid, ior, i, j, k + 1);
+    x0 = squared_index_of(&grid, ior, i - 1, j, k);
+    x1 = squared_index_of(&grid, ior, i + 1, j, k);
+    y0 = squared_index_of(&grid, ior, i, j - 1, k);
+    y1 = squared_index_of(&grid, ior, i, j + 1, k);
+    z0 = squared_index_of(&grid, ior, i, j, k - 1);
+    z1 = squared_index_of(&grid, ior, i, j, k + 1);
   }
-  coefficients[(z * (grid.size[1] + 4) + y) * (grid.size[0] + 4) + x] = 2.0f * f - others / 6.0f;
+  const float low = lesser_of(f, lesser_of(lesser_of(lesser_of(x0, x1), lesser_of(y0, y1)), lesser_of(z0, z1)));
+  const float high = greater_of(f, greater_of(greater_of(greater_of(x0, x1), greater_of(y0, y1)), greater_of(z0, z1)));
+  const float c = 2.0f * f - (x0 + x1 + y0 + y1 + z0 + z1) / 6.0f;
+  const float held = lesser_of(greater_of(c, low - OVERSHOOT * low), high + OVERSHOOT * high);
+  coefficients[(z * (grid.size[1] + 4) + y) * (grid.size[0] + 4) + x] = held;
 }
 
 // Least and largest coefficient within two of each along one axis; what is beyond the array's ends is not asked for.

@@ -1,5 +1,6 @@
 #include "MediumRayCaster.h"
 
+#include "../Device/Batches.h"
 #include "../Photons/IndexRange.h"
 #include "Bricks.h"
 #include "TyndallKernelSources.h"
@@ -7,7 +8,6 @@
 #include "ViewLights.h"
 
 #include <algorithm>
-#include <chrono>
 #include <cmath>
 
 #include <glm/geometric.hpp>
@@ -38,13 +38,6 @@ constexpr double BentStretch = 4.0;         ///< voxels, before it is asked whet
 constexpr double BesideSurface = 5.0;       ///< voxels from a surface, beyond its smoothing (9 voxels wide) by default
 constexpr double SurfacePrecision = 1.0e-3; ///< voxels
 constexpr double Pi = 3.14159265358979323846;
-
-using Clock = std::chrono::steady_clock;
-
-double SecondsSince(Clock::time_point start)
-{
-  return std::chrono::duration<double>(Clock::now() - start).count();
-}
 
 glm::dvec3 Vector(const std::array<double, 3>& v)
 {
@@ -99,22 +92,15 @@ std::size_t PaddedCount(const Grid& grid)
 
 /// Work-groups have fixed shapes throughout: PoCL compiles a kernel anew for every shape.
 ///
-/// Queues rows of work (slices, rows of packets) in batches of roughly 50 ms, as long as the last one suggests.
-template <class QueueRows>
-void InBatches(Device& device, int rows, const Monitor& monitor, double from, double to, const QueueRows& queueRows)
+/// Of rows of work: slices, rows of packets.
+Batches BatchesOfRows(int rows, double from, double to)
 {
-  int batch = std::max(1, rows / 8);
-  for (int first = 0; first < rows;)
-  {
-    const int count = std::min(batch, rows - first);
-    const Clock::time_point start = Clock::now();
-    queueRows(first, count);
-    device.Finish();
-    first += count;
-    Report(monitor, from + (to - from) * first / rows);
-    const double fitting = 0.05 * count / std::max(SecondsSince(start), 1e-6);
-    batch = static_cast<int>(std::min(std::max(fitting, 1.0), 4.0 * count));
-  }
+  Batches batches;
+  batches.count = static_cast<std::size_t>(rows);
+  batches.first = std::max<std::size_t>(1, batches.count / 8);
+  batches.from = from;
+  batches.to = to;
+  return batches;
 }
 }
 
@@ -334,7 +320,7 @@ void MediumRayCaster::SeeLights(const Camera& camera, const Monitor& monitor)
     { kernel_source::Numerics, kernel_source::Sampling, kernel_source::ScatteredLight },
     this->PackingOptions() + Define("SHADOW_RAYS", true) + Define("BENDS", false));
   const std::size_t across = RoundUp(this->TheGrid.size[0], 4 * this->PacketWidth()) / this->PacketWidth();
-  InBatches(this->TheDevice, this->TheGrid.size[2], monitor, 0.0, 0.5, [&](int first, int count) {
+  InBatches(this->TheDevice, BatchesOfRows(this->TheGrid.size[2], 0.0, 0.5), monitor, [&](int first, int count) {
     With(see, size, bricks, Float4(Vector(this->TheGrid.spacing), 0.0),
       Float4(eye, camera.parallelProjection ? 1.0 : 0.0), Float4(Vector(Axes(camera)[2]), 0.0),
       static_cast<float>(this->G), static_cast<float>(this->Settings.stepSize),
@@ -454,7 +440,7 @@ void MediumRayCaster::CastRays(View& view, double from, const Monitor& monitor)
   const int group = 4;
   const std::size_t across = RoundUp(view.Picture.s[0], group * packet[0]) / packet[0];
   const int rows = static_cast<int>(RoundUp(view.Picture.s[1], group * packet[1]) / (group * packet[1]));
-  InBatches(this->TheDevice, rows, monitor, from, 1.0, [&](int first, int count) {
+  InBatches(this->TheDevice, BatchesOfRows(rows, from, 1.0), monitor, [&](int first, int count) {
     view.Picture.s[2] = first * group;
     if (straight)
     {

@@ -2,11 +2,14 @@
 #include "MediumScene.h"
 #include "PhotonScene.h"
 
+#include "Photons/Clock.h"
 #include "Photons/PhotonEmitter.h"
 #include "Photons/PublishedPhotons.h"
 
 #include <algorithm>
+#include <functional>
 #include <numeric>
+#include <string>
 
 using namespace tyndall;
 
@@ -26,6 +29,23 @@ std::vector<Photon> Beam(const Grid& grid, std::array<double, 3> direction, std:
 double BalanceError(const PhotonLight& light)
 {
   return light.light.balance.RelativeError(light.light.channels);
+}
+
+/// Every voxel an index of its own: nothing steeper can be given.
+void JumbleIndex(PhotonScene& scene, const std::function<double(double)>& ofRandom)
+{
+  std::mt19937 random(7);
+  std::uniform_real_distribution<double> uniform(0.0, 1.0);
+  scene.SetIndex([&](double, double, double) { return ofRandom(uniform(random)); });
+}
+
+void ExpectSoundLight(const PhotonLight& light, const std::string& what)
+{
+  for (const float fluence : light.light.fluence)
+  {
+    ASSERT_TRUE(fluence >= 0.0f && std::isfinite(fluence)) << what << ": " << fluence;
+  }
+  EXPECT_LT(BalanceError(light), 1e-6) << what;
 }
 
 void Randomise(PhotonScene& scene, double thickest, double decades)
@@ -114,6 +134,63 @@ TEST_F(PhotonMarcherTest, PowerInIsPowerOut)
         EXPECT_LT(BalanceError(light), 1e-6) << thickest << ' ' << bends << ' ' << count;
         EXPECT_EQ(light.missed, 0u);
       }
+    }
+  }
+}
+
+TEST_F(PhotonMarcherTest, StaysSoundWhereTheIndexJumps)
+{
+  for (int order : { 1, 2, 4 })
+  {
+    PhotonScene scene(32, 1.0, 0.1f, 0.0f);
+    scene.settings.order = order;
+    const std::vector<Photon> photons = Beam(scene.medium.grid, { 1.0, 0.0, 0.0 }, 2000);
+    for (double highest : { 1.5, 2.4, 4.0 })
+    {
+      const std::string what = "order " + std::to_string(order) + ", up to " + std::to_string(highest);
+      JumbleIndex(scene, [&](double x) { return x < 0.5 ? 1.0 : highest; });
+      ExpectSoundLight(scene.March(this->GetDevice(), photons), what + ", two");
+      JumbleIndex(scene, [&](double x) { return 1.0 + (highest - 1.0) * x; });
+      ExpectSoundLight(scene.March(this->GetDevice(), photons), what + ", any");
+      // The volume's faces cut a ball with a sharp border.
+      scene.SetIndex([&](double x, double y, double z) { return std::hypot(x - 1.0, y, z) < 0.9 ? highest : 1.0; });
+      ExpectSoundLight(scene.March(this->GetDevice(), photons), what + ", ball");
+    }
+    JumbleIndex(scene, [](double x) { return std::exp(6.0 * x - 3.0); });
+    ExpectSoundLight(scene.March(this->GetDevice(), photons), "order " + std::to_string(order) + ", exponential");
+  }
+}
+
+TEST_F(PhotonMarcherTest, PhotonsThatAreLostAreLeftOver)
+{
+  // A step that begins at the least index ends with a velocity that means nothing.
+  PhotonScene scene(8, 1.0, 0.1f, 0.0f);
+  scene.SetIndex([](double x, double, double) { return x < 0.0 ? 1e-6 : 1e6; });
+  const std::vector<Photon> photons = Beam(scene.medium.grid, { 1.0, 0.0, 0.0 }, 1000);
+  for (int order : { 1, 2, 4 })
+  {
+    scene.settings.order = order;
+    const PhotonLight light = scene.March(this->GetDevice(), photons);
+    ExpectSoundLight(light, "order " + std::to_string(order));
+    if (order > 1) // Euler's velocity is over n, which is large where it ends
+    {
+      EXPECT_GT(light.light.balance.leftOver[0], 0.0) << order;
+    }
+  }
+}
+
+TEST_F(PhotonMarcherTest, ThinMediaTakeWhatTheyAreCredited)
+{
+  for (int edge : { 128, 512, 2048 })
+  {
+    for (double depth : { 1e-7, 2e-6, 1e-5, 1e-3 })
+    {
+      const double sigma = depth / 0.25;
+      PhotonScene scene({ edge, 4, 4 }, 0.25, 0.5, 0.0f, static_cast<float>(sigma));
+      const PhotonLight light = scene.March(this->GetDevice(), Beam(scene.medium.grid, { 1.0, 0.0, 0.0 }, 3000));
+      EXPECT_LT(BalanceError(light), 1e-6) << edge << " voxels of optical thickness " << depth;
+      const double absorbed = light.light.balance.absorbed[0] / light.light.balance.entered[0];
+      EXPECT_NEAR(absorbed, -std::expm1(-edge * depth), 5e-7) << edge << ' ' << depth;
     }
   }
 }
@@ -225,6 +302,25 @@ TEST_F(PhotonMarcherTest, MeanDirectionIsWhereTheLightGoes)
   EXPECT_TRUE(scene.March(this->GetDevice(), photons).meanDirection.empty());
 }
 
+TEST_F(PhotonMarcherTest, MeanDirectionIsNeverLongerThanOne)
+{
+  // Behind a thick wall a voxel gains a few units of power, and rounding of them counts.
+  PhotonScene scene({ 32, 32, 32 }, 1.0, 16.0, 1.3f, 0.0f);
+  for (const Rgb& colour : { Rgb{ 1.0, 1.0, 1.0 }, Rgb{ 1.0, 0.7, 0.2 } })
+  {
+    std::vector<Photon> photons = Beam(scene.medium.grid, { 0.3, 0.5, 0.8 }, 500, Sampler::Hammersley, colour);
+    photons.front().power[1] *= 1.5f; // three channels then
+    const std::vector<float> mean = scene.March(this->GetDevice(), photons).meanDirection;
+    double longest = 0.0;
+    for (std::size_t i = 0; i < mean.size(); i += 3)
+    {
+      longest = std::max(longest, std::hypot(double(mean[i]), double(mean[i + 1]), double(mean[i + 2])));
+    }
+    EXPECT_LE(longest, 1.0 + 1e-6);
+    EXPECT_GT(longest, 0.999);
+  }
+}
+
 TEST_F(PhotonMarcherTest, AnOctreeTakesFewerStepsToTheSameLight)
 {
   PhotonScene scene(32, 1.0, 0.1f, 0.2f);
@@ -289,14 +385,66 @@ TEST_F(PhotonMarcherTest, RefusesWhatMeansNothing)
   photon.power = { 1.0f, 1.0f, 1.0f };
   photon.direction = { 0.0f, 0.0f, 0.0f };
   EXPECT_THROW(scene.March(this->GetDevice(), { photon }), InvalidInput);
-  scene.settings.stepSize = 0.0;
-  EXPECT_THROW(scene.Marcher(this->GetDevice()), InvalidInput);
+  for (double step : { 0.0, 0.049, 1e9 })
+  {
+    scene.settings.stepSize = step;
+    EXPECT_THROW(scene.Marcher(this->GetDevice()), InvalidInput) << step;
+  }
   scene.settings = {};
   scene.settings.order = 3;
   EXPECT_THROW(scene.Marcher(this->GetDevice()), InvalidInput);
   scene.settings = {};
   scene.SetIndex([](double x, double, double) { return x; });
   EXPECT_THROW(scene.Marcher(this->GetDevice()), InvalidInput);
+  for (double index : { 1e-7, 1e7 })
+  {
+    scene.SetIndex([&](double x, double, double) { return x > 0.0 ? index : 1.0; });
+    EXPECT_THROW(scene.Marcher(this->GetDevice()), InvalidInput) << index;
+  }
+}
+
+TEST_F(PhotonMarcherTest, RefusesLevelsThatTheGridCannotHave)
+{
+  PhotonScene scene({ 16, 9, 4 }, 0.5, 1.0, 0.1f, 0.1f);
+  scene.SetBall(0.5, 1.5);
+  Photon photon;
+  photon.power = { 1.0f, 1.0f, 1.0f };
+  scene.levels.assign(scene.medium.grid.VoxelCount(), 4);
+  EXPECT_NO_THROW(scene.Marcher(this->GetDevice()));
+  scene.levels[16 * 9 + 16 + 3] = 5;
+  const auto expectRefusal = [](const auto& march) {
+    try
+    {
+      march();
+      ADD_FAILURE() << "Nothing was refused.";
+    }
+    catch (const InvalidInput& error)
+    {
+      EXPECT_NE(std::string(error.what()).find("(3, 1, 1)"), std::string::npos) << error.what();
+      EXPECT_NE(std::string(error.what()).find(" 5"), std::string::npos) << error.what();
+    }
+  };
+  expectRefusal([&] { scene.Marcher(this->GetDevice()); });
+  expectRefusal(
+    [&] { MarchPublished(this->GetDevice(), scene.Medium(), scene.Index(), scene.levels.data(), { photon }, {}); });
+}
+
+TEST_F(PhotonMarcherTest, ReportsOftenWhereEveryVoxelBends)
+{
+  PhotonScene scene(64, 1.0, 0.0f, 0.1f);
+  JumbleIndex(scene, [](double x) { return 1.0 + 0.2 * x; });
+  scene.settings.stepSize = 0.1;
+  PhotonMarcher marcher = scene.Marcher(this->GetDevice());
+  const std::vector<Photon> photons = Beam(scene.medium.grid, { 1.0, 0.0, 0.0 }, 60000);
+  double last = ClockSeconds(), longest = 0.0;
+  marcher.March({ photons.front() }); // compiles
+  marcher.March(photons, [&](double done) {
+    const double now = ClockSeconds();
+    longest = done > 0.0 ? std::max(longest, now - last) : longest;
+    last = now;
+    return true;
+  });
+  EXPECT_LT(longest, 0.5); // a tenth of a second is aimed at, on an idle machine
 }
 
 TEST_F(PhotonMarcherTest, StopsWhenItIsTold)

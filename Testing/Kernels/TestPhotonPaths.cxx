@@ -36,6 +36,26 @@ TEST_F(PhotonPaths, AreStraightWhereTheIndexIsConstant)
   EXPECT_NEAR(direction[2], 0.7 / length, 1e-6);
 }
 
+TEST_F(PhotonPaths, KnowWhatIsLeftOfAllColours)
+{
+  PhotonScene scene(8, 1.0);
+  const auto left = [&](std::array<float, 3> sigma, std::array<float, 3> power) {
+    scene.sigma_a.clear();
+    for (std::size_t i = 0; i < scene.medium.grid.VoxelCount(); ++i)
+    {
+      scene.sigma_a.insert(scene.sigma_a.end(), sigma.begin(), sigma.end());
+    }
+    Photon photon = Ray({ -1.0, 0.1, 0.1 });
+    photon.power = power;
+    return scene.Marcher(this->GetDevice()).Paths({ photon }, { 0 }).at(0).left;
+  };
+  const std::array<float, 3> clear = { 0.0f, 0.0f, 0.0f }, eatsRed = { 50.0f, 0.0f, 0.0f };
+  EXPECT_FLOAT_EQ(left(clear, { 0.0f, 1.0f, 1.0f }).front(), 1.0f);
+  EXPECT_FLOAT_EQ(left(clear, { 0.0f, 1.0f, 1.0f }).back(), 1.0f);
+  EXPECT_NEAR(left(eatsRed, { 1.0f, 1.0f, 2.0f }).back(), 0.75f, 1e-6f);
+  EXPECT_FLOAT_EQ(left(clear, { 0.0f, 0.0f, 0.0f }).back(), 1.0f);
+}
+
 TEST_F(PhotonPaths, OfALuneburgLensMeetAtTheFarPoleIn64Steps)
 {
   // As in the reference: from the surface, and the index goes on beyond it as it is in the lens.
