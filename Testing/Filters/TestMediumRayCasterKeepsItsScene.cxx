@@ -146,8 +146,9 @@ void WhatTheSceneDoesNotNeedKeepsIt(Follows follows)
   follows.A(
     "the size of the picture", Scene::Kept, Nothing, [](vtkMediumRayCaster* caster) { caster->SetImageSize(30, 20); });
   follows.A("the step", Scene::Kept, Nothing, [](vtkMediumRayCaster* caster) { caster->SetStepSize(0.9); });
-  follows.A("lights alone, and then a move", Scene::Kept, Nothing, move,
-    [](vtkMediumRayCaster* caster) { caster->SetInputArrayToProcess(3, 0, 0, 1, "no such array"); });
+  follows.A("lights alone, and then a move", Scene::Kept, Nothing, move, [](vtkMediumRayCaster* caster) {
+    vtkImageData::SafeDownCast(caster->GetInputDataObject(0, 0))->GetCellData()->RemoveArray("fluence");
+  });
 }
 
 void WhatIsChangedIsSeen(Follows follows)
