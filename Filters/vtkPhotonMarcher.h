@@ -83,7 +83,7 @@ public:
   ///@}
 
   ///@{
-  /// Length of a step where the index varies and the octree has single voxels, in voxels. Default 1, valid (0, infinity).
+  /// Length of a step where the index varies and the octree has single voxels, in voxels. Default 1, valid [0.05, 1e4].
   vtkSetMacro(StepSize, double);
   vtkGetMacro(StepSize, double);
   ///@}
