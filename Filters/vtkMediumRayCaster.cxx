@@ -231,7 +231,8 @@ std::unique_ptr<vtkMediumRayCaster::Scene> vtkMediumRayCaster::MakeScene(
   const tyndall::FloatField ior = read(RefractiveIndex, { 1 });
   const tyndall::FloatField meanDirection = read(MeanDirection, { 3 });
   const tyndall::Illumination illumination = this->ReadIllumination(inputs);
-  if (!fluence.IsThere() && illumination.lights.empty() && !input.emission.IsThere())
+  const bool sky = !illumination.environment.Empty() || illumination.sky != tyndall::Rgb{};
+  if (!fluence.IsThere() && illumination.lights.empty() && !input.emission.IsThere() && !(sky && ior.IsThere()))
   {
     vtkWarningMacro("The medium is dark: it has no array fluence (a solver makes it, e.g. LightPropagationMaps), there "
                     "are no Lights, and it does not emit.");
@@ -243,6 +244,10 @@ std::unique_ptr<vtkMediumRayCaster::Scene> vtkMediumRayCaster::MakeScene(
   settings.shadowRays |= scene->lightsAlone;
   scene->caster = std::make_unique<tyndall::MediumRayCaster>(
     *key.device, input.medium, tyndall::SolvedLight{ fluence, direct, meanDirection }, illumination, settings, ior);
+  for (const std::string& doubt : scene->caster->Warnings())
+  {
+    vtkWarningMacro(<< doubt);
+  }
   scene->made.Modified();
   return scene;
 }

@@ -158,7 +158,7 @@ public:
 
   ///@{
   /// Whether to follow the lights' direct light by shadow rays, scattered by the medium's phase function. Default off: it is
-  /// in `fluence`, scattered evenly.
+  /// in `fluence`, scattered evenly or as `mean_direction` says.
   vtkSetMacro(ShadowRays, bool);
   vtkGetMacro(ShadowRays, bool);
   vtkBooleanMacro(ShadowRays, bool);
@@ -198,7 +198,7 @@ public:
   ///@}
 
   ///@{
-  /// The surface is where n has this value. Default 0: midway between the least and the largest n. Valid 0 and [1, infinity).
+  /// The surface is where n has this value. Default 0: midway between the least and the largest n. Valid [0, infinity).
   vtkSetMacro(SurfaceIndex, double);
   vtkGetMacro(SurfaceIndex, double);
   ///@}

@@ -147,12 +147,13 @@ MediumRayCaster::MediumRayCaster(Device& device, const Medium& medium, const Sol
   {
     this->PrepareBending(ior);
   }
+  this->Doubts = DoubtsAbout(settings, light, this->Bends ? ior : Field{}, medium.grid);
   if (settings.tableFace >= 0)
   {
     const bool single = settings.singleScatteringOnly && light.fluenceDirect.values;
     this->Table = Buffer<cl_float4>(device,
       TableLight(medium.grid, single ? light.fluenceDirect : light.fluence, light.meanDirection,
-        this->Bends ? ior : Field{}, settings.tableFace),
+        this->Bends ? ior : Field{}, settings.tableFace, this->UnderSky),
       "light on the table");
   }
   this->SayWhatIsLeftOut();
@@ -187,7 +188,7 @@ void MediumRayCaster::PrepareBending(const Field& ior)
   } const grid = { { this->TheGrid.size[0], this->TheGrid.size[1], this->TheGrid.size[2] } };
   const std::size_t x = grid.size[0], y = grid.size[1], z = grid.size[2];
   const auto range = std::minmax_element(ior.values, ior.values + this->TheGrid.VoxelCount());
-  this->MiddleIndex = 0.5 * (*range.first + *range.second);
+  this->IndexRange = { *range.first, *range.second };
 
   const Buffer<float> coefficients(this->TheDevice, (x + 4) * (y + 4) * (z + 4), "squared index");
   cl::Kernel prepare = this->TheDevice.Kernel("squared_index_coefficients", { kernel_source::SquaredIndex });
@@ -218,7 +219,11 @@ void MediumRayCaster::SayWhatIsLeftOut()
   omit(this->KnowsFlow || this->LightCount > 0, "phase function: g is 0, or the direction of the light is not known");
   omit(this->Bends, "bent rays: the refractive index is constant");
   omit(this->Reflects(),
-    this->Bends ? "surface reflection: not asked for" : "surface reflection: the refractive index is constant");
+    !this->Bends ? "surface reflection: the refractive index is constant"
+      : this->Settings.surfaceReflection == SurfaceReflection::None
+      ? "surface reflection: not asked for"
+      : "surface reflection: no refractive index is as large "
+        "as the surface's, or none is smaller");
   omit(this->Settings.tableFace >= 0, "table: none");
 }
 
@@ -383,7 +388,7 @@ MediumRayCaster::Optics MediumRayCaster::MakeOptics() const
 {
   const ViewSettings& settings = this->Settings;
   const Grid& grid = this->TheGrid;
-  const double index = settings.surfaceIndex > 0.0 ? settings.surfaceIndex : this->MiddleIndex;
+  const double index = this->SurfaceIndex();
   const int face = std::max(settings.tableFace, 0);
   const double edges = 1.0 * grid.size[0] + grid.size[1] + grid.size[2];
   const double halvings = std::log2(settings.stepSize / SurfacePrecision);

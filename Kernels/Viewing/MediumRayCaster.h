@@ -52,7 +52,7 @@ struct ViewSettings
   double minimumTransmittance = 1e-3;      ///< a ray that has less left stops; 0: never
   PhaseFunction phaseFunction = PhaseFunction::HenyeyGreenstein; ///< of light whose direction is known
   SurfaceReflection surfaceReflection = SurfaceReflection::None;
-  double surfaceIndex = 0.0; ///< the surface is where n has this value, >= 1; 0: midway between least and largest n
+  double surfaceIndex = 0.0; ///< the surface is where n has this value, > 0; 0: midway between least and largest n
   double surfaceReflectance = 0.1; ///< of SurfaceReflection::Fixed, [0, 1]
   int tableFace = -1; ///< face of the box (-x, +x, -y, +y, -z, +z) that is a table, seen from within; -1: none
   /// Diffuse reflectance of the table, lit by the light in the voxels on it, [0, 1]; at most 1 together with tableReflectance.
@@ -118,8 +118,10 @@ struct Picture
 ///
 /// Table. Where a ray leaves the box through tableFace it sees
 ///   tableColor / pi  irradiance  +  tableReflectance  mirrored light,
-/// the irradiance being fluence times max(0, meanDirection . outward normal) of the voxels on the table (all that arrives, where no
-/// light comes back), or fluence / 4 without meanDirection; with singleScatteringOnly, of fluenceDirect. What rays from the camera
+/// the irradiance being fluence times max(0, m . outward normal) of the voxels on the table, m = meanDirection: all that arrives,
+/// where no light comes from the table's side. Under an environment or a sky, which shine from there as well, light is taken to be one
+/// beam and the same from all sides, as m says, fluence ((1 - |m|) / 4 + max(0, m . normal)); m = 0 where it is not given. With
+/// singleScatteringOnly, of fluenceDirect. What rays from the camera
 /// mirror there is marched through the medium; where that, or what a surface reflected, meets the table (again), the background
 /// stands for what the table mirrors of it. From outside the table is not seen.
 class MediumRayCaster
@@ -150,6 +152,9 @@ public:
   /// What the scene did not need, in words.
   const std::vector<std::string>& LeftOut() const { return this->Omitted; }
 
+  /// What of the scene may not look as it was meant to, in sentences.
+  const std::vector<std::string>& Warnings() const { return this->Doubts; }
+
 private:
   struct View;
   struct Optics;
@@ -158,7 +163,16 @@ private:
   std::string CastingOptions() const;
   int PacketWidth() const;
   bool GlowsApart() const { return this->KnowsFlow && this->Components[2] > 0; } ///< emission is not scattered
-  bool Reflects() const { return this->Bends && this->Settings.surfaceReflection != SurfaceReflection::None; }
+  double SurfaceIndex() const
+  {
+    return this->Settings.surfaceIndex > 0.0 ? this->Settings.surfaceIndex
+                                             : 0.5 * (this->IndexRange[0] + this->IndexRange[1]);
+  }
+  bool Reflects() const
+  {
+    return this->Bends && this->Settings.surfaceReflection != SurfaceReflection::None &&
+      this->SurfaceIndex() > this->IndexRange[0] && this->SurfaceIndex() <= this->IndexRange[1];
+  }
   void Upload(const Medium& medium, const SolvedLight& light, const Field& ior);
   void Reserve();
   void PrepareBending(const Field& ior);
@@ -175,11 +189,11 @@ private:
   Grid TheGrid;
   ViewSettings Settings;
   double G = 0.0;
-  bool Coloured = false;    ///< extinction differs between channels
-  bool Grey = false;        ///< nor does the source
-  bool Bends = false;       ///< the refractive index varies
-  bool KnowsFlow = false;   ///< the light's direction is known and scattering depends on it
-  double MiddleIndex = 1.0; ///< midway between the least and the largest
+  bool Coloured = false;  ///< extinction differs between channels
+  bool Grey = false;      ///< nor does the source
+  bool Bends = false;     ///< the refractive index varies
+  bool KnowsFlow = false; ///< the light's direction is known and scattering depends on it
+  std::array<double, 2> IndexRange = { 1.0, 1.0 };
   bool SourcesDependOnCamera = false;
   bool SourcesReady = false;
   double LargestExtinction = 0.0; ///< at least the largest sigma_t, 1/length
@@ -202,6 +216,6 @@ private:
   Buffer<cl_float4> EnvironmentPixels;
   Buffer<cl_float4> Lights;             ///< three a small_light
   Buffer<float> Radiance, Alpha, Depth; ///< the last picture; kept for the next of its size
-  std::vector<std::string> Omitted;
+  std::vector<std::string> Omitted, Doubts;
 };
 }

@@ -120,7 +120,9 @@ kernel void pack_samples(int4 size, int single, float g, global const float* res
 #endif
 #if FLOW
   const float3 mean = (float3)(direction[3 * voxel], direction[3 * voxel + 1], direction[3 * voxel + 2]);
-  flow[place] = (float4)(mean * (g * fmin(1.0f, LARGEST_FLOW / fmax(fabs(g) * length(mean), 1e-30f))), 0.0f);
+  // No light is more than one beam.
+  const float3 held = mean / fmax(length(mean), 1.0f);
+  flow[place] = (float4)(held * (g * fmin(1.0f, LARGEST_FLOW / fmax(fabs(g) * length(held), 1e-30f))), 0.0f);
 #endif
 #if GLOW
   glow[place] = emitted;

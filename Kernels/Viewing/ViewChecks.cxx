@@ -12,6 +12,31 @@ namespace
 {
 constexpr float LeastIndex = 1e-3f;
 constexpr float LargestIndex = 1e3f;
+constexpr float FacesAlike = 1e-3f; ///< relative; what smoothing leaves of a border nearby
+
+struct Range
+{
+  float low, high;
+};
+
+Range RangeOf(const Field& ior, const Grid& grid, bool onFaces)
+{
+  Range range = { ior.values[0], ior.values[0] };
+  const std::array<int, 3>& size = grid.size;
+  for (std::size_t voxel = 0; voxel < grid.VoxelCount(); ++voxel)
+  {
+    const int i = static_cast<int>(voxel % size[0]);
+    const int j = static_cast<int>(voxel / size[0] % size[1]);
+    const int k = static_cast<int>(voxel / size[0] / size[1]);
+    const bool onFace = i == 0 || j == 0 || k == 0 || i == size[0] - 1 || j == size[1] - 1 || k == size[2] - 1;
+    if (!onFaces || onFace)
+    {
+      range.low = std::min(range.low, ior.values[voxel]);
+      range.high = std::max(range.high, ior.values[voxel]);
+    }
+  }
+  return range;
+}
 
 void CheckFinite(const Field& field, const char* name, const Grid& grid)
 {
@@ -55,10 +80,10 @@ void CheckSurface(const ViewSettings& settings)
     throw InvalidInput(
       "Surface reflection " + std::to_string(reflection) + " does not exist; use 0 (none), 1 (Fresnel) or 2 (fixed).");
   }
-  if (settings.surfaceIndex != 0.0 && !(settings.surfaceIndex >= 1.0 && std::isfinite(settings.surfaceIndex)))
+  if (settings.surfaceIndex != 0.0 && !(settings.surfaceIndex > 0.0 && std::isfinite(settings.surfaceIndex)))
   {
     throw InvalidInput("The refractive index of the surface is " + std::to_string(settings.surfaceIndex) +
-      "; it must be at least 1, or 0 for the middle of the grid's range.");
+      "; it must be above 0, or 0 for the middle of the grid's range.");
   }
   CheckPart(settings.surfaceReflectance, "The surface's reflectance");
 }
@@ -140,6 +165,36 @@ void Check(const SolvedLight& light, const Grid& grid, const ViewSettings& setti
       "fluence_direct is missing: without it, light that scattered once cannot be told from the rest of "
       "fluence. Let the solver write it, or use neither or both of shadow rays and single scattering only.");
   }
+}
+
+std::vector<std::string> DoubtsAbout(
+  const ViewSettings& settings, const SolvedLight& light, const Field& ior, const Grid& grid)
+{
+  std::vector<std::string> doubts;
+  if (settings.tableFace >= 0 && !light.fluence.values)
+  {
+    doubts.push_back(
+      "The table is dark: it is lit by fluence, which is missing. PhotonMarcher and other solvers make it.");
+  }
+  if (!ior.values)
+  {
+    return doubts;
+  }
+  const Range all = RangeOf(ior, grid, false);
+  if (settings.surfaceReflection != SurfaceReflection::None && settings.surfaceIndex > 0.0 &&
+    !(settings.surfaceIndex > all.low && settings.surfaceIndex <= all.high))
+  {
+    doubts.push_back("No surface reflects: its index is " + std::to_string(settings.surfaceIndex) +
+      ", those of the grid are from " + std::to_string(all.low) + " to " + std::to_string(all.high) + ".");
+  }
+  const Range faces = RangeOf(ior, grid, true);
+  if (faces.high - faces.low > FacesAlike * faces.high)
+  {
+    doubts.push_back("The refractive index varies over the faces of the box, from " + std::to_string(faces.low) +
+      " to " + std::to_string(faces.high) +
+      ": light is not bent there, and looks brighter or darker by n^2. Give the box a margin.");
+  }
+  return doubts;
 }
 
 void CheckViewedIndex(const Field& ior, const Grid& grid)

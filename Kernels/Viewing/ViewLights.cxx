@@ -92,7 +92,7 @@ std::array<int, 2> FaceSize(const Grid& grid, int face)
 }
 
 std::vector<cl_float4> TableLight(
-  const Grid& grid, const Field& fluence, const Field& meanDirection, const Field& ior, int face)
+  const Grid& grid, const Field& fluence, const Field& meanDirection, const Field& ior, int face, bool fromBelow)
 {
   const int axis = face / 2;
   const double outwards = face % 2 ? 1.0 : -1.0;
@@ -109,8 +109,14 @@ std::vector<cl_float4> TableLight(
         std::clamp(j, 0, size[1] - 1) * strides[axis == 2 ? 1 : 2] +
         (face % 2 ? grid.size[axis] - 1 : 0) * strides[axis];
       const double n = ior.values ? ior.values[voxel] : 1.0;
-      const double part =
-        meanDirection.values ? std::clamp(outwards * meanDirection.values[3 * voxel + axis], 0.0, 1.0) : 0.25;
+      glm::dvec3 mean(0.0);
+      if (meanDirection.values)
+      {
+        const float* m = meanDirection.values + 3 * voxel;
+        mean = glm::dvec3(m[0], m[1], m[2]) / std::max(1.0, glm::length(glm::dvec3(m[0], m[1], m[2])));
+      }
+      const double even = fromBelow || !meanDirection.values ? 0.25 * (1.0 - glm::length(mean)) : 0.0;
+      const double part = even + std::max(outwards * mean[axis], 0.0);
       const glm::dvec3 all(fluence.At(voxel, 0), fluence.At(voxel, 1), fluence.At(voxel, 2));
       lit.push_back(Float4(all * (part / (Pi * n * n)), 0.0));
     }

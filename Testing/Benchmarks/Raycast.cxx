@@ -224,7 +224,8 @@ Seconds TimeOurs(Device& device, const Case& what, bool single, std::size_t* pea
   settings.singleScatteringOnly = single;
   device.ResetPeak();
   MediumRayCaster caster(device, MediumOf(what.scene),
-    { { what.scene.fluence.data(), what.scene.channels }, { what.scene.fluenceDirect.data(), what.scene.channels } },
+    { { what.scene.fluence.data(), what.scene.channels }, { what.scene.fluenceDirect.data(), what.scene.channels },
+      {} },
     {}, settings);
   std::vector<std::uint8_t> color;
   const Seconds seconds = Median(what.views, [&](int view) {
@@ -247,7 +248,7 @@ Seconds TimeFirst(Device& device, const Case& what)
   settings.stepSize = what.step;
   return Median(what.views, [&](int view) {
     MediumRayCaster caster(
-      device, MediumOf(what.scene), { { what.scene.fluence.data(), what.scene.channels }, {} }, {}, settings);
+      device, MediumOf(what.scene), { { what.scene.fluence.data(), what.scene.channels }, {}, {} }, {}, settings);
     caster.Render(CameraOf(what.scene, view));
   });
 }

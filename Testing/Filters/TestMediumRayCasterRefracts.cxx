@@ -149,7 +149,7 @@ void BadSettingsAreOneError(test::Claims& claims)
   const auto mirror = [](Slab& slab) { slab.caster->SetSurfaceReflection(vtkMediumRayCaster::FIXED); };
   refused("surface", [&](Slab& slab) {
     mirror(slab);
-    slab.caster->SetSurfaceIndex(0.5);
+    slab.caster->SetSurfaceIndex(-0.5);
   });
   refused("surface", [&](Slab& slab) {
     mirror(slab);

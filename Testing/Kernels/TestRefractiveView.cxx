@@ -376,7 +376,7 @@ TEST_F(RefractiveView, RefusesWhatHasNoMeaning)
     scene.meanDirection.assign(3 * scene.grid.VoxelCount(), 0.0f);
     scene.meanDirection[10] = NAN;
   });
-  refused("surface", [](Scene& scene) { scene.settings.surfaceIndex = 0.5; });
+  refused("surface", [](Scene& scene) { scene.settings.surfaceIndex = -0.5; });
   refused("surface", [](Scene& scene) { scene.settings.surfaceIndex = NAN; });
   refused("surface", [](Scene& scene) { scene.settings.surfaceReflectance = 1.5; });
   refused("Surface", [](Scene& scene) { scene.settings.surfaceReflection = static_cast<SurfaceReflection>(7); });

@@ -51,6 +51,27 @@ TEST_F(Table, ShinesAsItsIrradianceSays)
   ExpectColour(unknown, unknown.Seen(this->GetDevice(), oblique), 5.0 / (4.0 * Pi));
 }
 
+TEST_F(Table, UnderASkyIsLitByOneBeamAndEvenLight)
+{
+  const double share = 0.3; // of the beam
+  Scene scene = LitTable(5.0, { 0.0, 0.0, -share });
+  const Camera oblique = Along(scene.grid, { 0.3, 0.2, -1.0 }, 2.0);
+  ExpectColour(scene, scene.Seen(this->GetDevice(), oblique), 5.0 * share / Pi);
+  scene.illumination.sky = { 1e-9, 1e-9, 1e-9 };
+  ExpectColour(scene, scene.Seen(this->GetDevice(), oblique), 5.0 * ((1.0 - share) / 4.0 + share) / Pi);
+  Scene even = LitTable(5.0, {});
+  even.illumination.sky = { 1e-9, 1e-9, 1e-9 };
+  ExpectColour(even, even.Seen(this->GetDevice(), oblique), 5.0 / (4.0 * Pi));
+}
+
+TEST_F(Table, WithoutLightIsDoubted)
+{
+  Scene scene = LitTable(5.0, { 0.0, 0.0, -1.0 });
+  EXPECT_TRUE(scene.Caster(this->GetDevice()).Warnings().empty());
+  scene.fluence.clear();
+  EXPECT_EQ(1u, scene.Caster(this->GetDevice()).Warnings().size());
+}
+
 TEST_F(Table, IsTheChosenFace)
 {
   for (int face = 0; face < 6; ++face)
