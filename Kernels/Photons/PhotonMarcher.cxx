@@ -1,5 +1,6 @@
 #include "PhotonMarcher.h"
 
+#include "../Device/Defines.h"
 #include "Clock.h"
 #include "IndexRange.h"
 #include "PhotonPacking.h"
@@ -52,11 +53,6 @@ struct EndOnDevice
 };
 constexpr int EndWords = 3;
 constexpr int StillGoing = 6;
-
-std::string Define(const char* name, int value)
-{
-  return std::string("-D") + name + "=" + std::to_string(value) + " ";
-}
 
 double DiagonalOf(const Grid& grid)
 {
@@ -143,7 +139,7 @@ private:
   {
     return Define("CHANNELS", channels) + Define("MEDIUM_CHANNELS", this->MediumChannels) +
       Define("DIRECTIONS", this->Settings.meanDirection) + Define("BENDS", this->Bends) +
-      Define("ORDER", this->Settings.order) + Define("LEVELS", this->HasLevels) + "-cl-mad-enable ";
+      Define("ORDER", this->Settings.order) + Define("LEVELS", this->HasLevels) + " -cl-mad-enable";
   }
   std::string FinishOptions(int channels, int colours, int workers) const
   {
@@ -321,7 +317,7 @@ void PhotonMarcher::Implementation::MarchAll(
   const std::size_t stride = this->Sums.Size() > this->Copy() * record ? this->Copy() * record : 0;
   cl::Kernel march = this->MarchKernel("march_photons",
     this->MediumOptions(packed.channels) + Define("REAL_WIDTH", width) + Define("ATOMICS", this->Shared) +
-      Define("WORKERS", workers) + Define("BLOCK", Block) + "-DPATHS=0");
+      Define("WORKERS", workers) + Define("BLOCK", Block) + Define("PATHS", 0));
   Buffer<cl_int> next(this->TheDevice, 1, "number of the next photon");
   InBatches(this->TheDevice, this->BatchesOf(packed.Count()), monitor, [&](std::size_t first, std::size_t count) {
     next.Fill(0);
@@ -495,8 +491,9 @@ std::vector<PhotonPath> PhotonMarcher::Implementation::Paths(
   {
     return {};
   }
-  cl::Kernel trace =
-    this->MarchKernel("trace_paths", this->MediumOptions(3) + "-DREAL_WIDTH=1 -DATOMICS=0 -DWORKERS=0 -DPATHS=1");
+  cl::Kernel trace = this->MarchKernel("trace_paths",
+    this->MediumOptions(3) + Define("REAL_WIDTH", 1) + Define("ATOMICS", 0) + Define("WORKERS", 0) +
+      Define("PATHS", 1));
   const Buffer<float> values(this->TheDevice, packed.values, "photons");
   const Buffer<cl_int> ends(this->TheDevice, packed.Count() * (EndWords + 3), "ends of photons");
   Buffer<cl_int> offsets(this->TheDevice, packed.Count(), "offsets of paths");

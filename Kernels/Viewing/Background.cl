@@ -40,21 +40,7 @@ inline rgb look_up(global const float4* environment, real3 d, int4 size)
   const real last = (real)(float)(size.y - 1);
   const integer j0 = to_integer(lesser(greater(below, (real)0.0f), last)) * (size.x + 2) + i;
   const integer j1 = to_integer(lesser(greater(below + (real)1.0f, (real)0.0f), last)) * (size.x + 2) + i;
-  rgb seen;
-#define SEE(n)                                                                                                           \
-  {                                                                                                                      \
-    global const float4* lower = environment + LANE(j0, n);                                                              \
-    global const float4* upper = environment + LANE(j1, n);                                                              \
-    const float4 a = fma((float4)LANE(x, n), lower[1] - lower[0], lower[0]);                                             \
-    const float4 b = fma((float4)LANE(x, n), upper[1] - upper[0], upper[0]);                                             \
-    const float4 c = fma((float4)LANE(y, n), b - a, a);                                                                  \
-    LANE(seen.r, n) = c.x;                                                                                               \
-    LANE(seen.g, n) = c.y;                                                                                               \
-    LANE(seen.b, n) = c.z;                                                                                               \
-  }
-  EACH_LANE(SEE)
-#undef SEE
-  return seen;
+  return between_four(environment, j0, j1, x, y);
 }
 #endif
 

@@ -1,7 +1,8 @@
 #include "MediumRayCaster.h"
 
 #include "../Device/Batches.h"
-#include "../Photons/IndexRange.h"
+#include "../Device/Defines.h"
+#include "../Device/Sizes.h"
 #include "Bricks.h"
 #include "TyndallKernelSources.h"
 #include "ViewChecks.h"
@@ -52,16 +53,6 @@ cl_float4 Float4(const glm::dvec3& v, double w)
 cl_int4 Int4(int x, int y, int z)
 {
   return { { x, y, z, 0 } };
-}
-
-std::string Define(const char* name, int value)
-{
-  return std::string(" -D") + name + "=" + std::to_string(value);
-}
-
-std::size_t RoundUp(std::size_t count, std::size_t multiple)
-{
-  return (count + multiple - 1) / multiple * multiple;
 }
 
 /// Columns and rows of pixels in a packet, as in View.cl.
@@ -118,7 +109,8 @@ MediumRayCaster::MediumRayCaster(Device& device, const Medium& medium, const Sol
   CheckViewedIndex(ior, medium.grid);
 
   // Traits of the scene.
-  this->Bends = IndexVaries(ior, medium.grid);
+  this->Index = IndexRangeOf(ior, medium.grid);
+  this->Bends = this->Index.Varies();
   this->KnowsFlow = medium.g != 0.0 && light.meanDirection.values && light.fluence.values && !settings.shadowRays;
   this->Coloured = medium.sigma_a.components == 3 || medium.sigma_s.components == 3;
   const std::vector<cl_float4> lights = settings.shadowRays
@@ -145,9 +137,9 @@ MediumRayCaster::MediumRayCaster(Device& device, const Medium& medium, const Sol
     "the environment");
   if (this->Bends)
   {
-    this->PrepareBending(ior);
+    this->PrepareBending();
   }
-  this->Doubts = DoubtsAbout(settings, light, this->Bends ? ior : Field{}, medium.grid);
+  this->Doubts = DoubtsAbout(settings, light, this->Bends ? ior : Field{}, this->Index, medium.grid);
   if (settings.tableFace >= 0)
   {
     const bool single = settings.singleScatteringOnly && light.fluenceDirect.values;
@@ -180,16 +172,13 @@ void MediumRayCaster::Reserve()
     Buffer<float>(device, this->LightCount > 0 ? 6 * this->TheGrid.VoxelCount() : 0, "light found by shadow rays");
 }
 
-void MediumRayCaster::PrepareBending(const Field& ior)
+void MediumRayCaster::PrepareBending()
 {
   struct
   {
     cl_int size[3];
   } const grid = { { this->TheGrid.size[0], this->TheGrid.size[1], this->TheGrid.size[2] } };
   const std::size_t x = grid.size[0], y = grid.size[1], z = grid.size[2];
-  const auto range = std::minmax_element(ior.values, ior.values + this->TheGrid.VoxelCount());
-  this->IndexRange = { *range.first, *range.second };
-
   const Buffer<float> coefficients(this->TheDevice, (x + 4) * (y + 4) * (z + 4), "squared index");
   cl::Kernel prepare = this->TheDevice.Kernel("squared_index_coefficients", { kernel_source::SquaredIndex });
   With(prepare, grid, this->Ior, coefficients);
@@ -198,7 +187,7 @@ void MediumRayCaster::PrepareBending(const Field& ior)
     this->TheDevice.Kernel("pack_bending", { kernel_source::SquaredIndex, kernel_source::BendingField });
   With(pack, grid, Float4(1.0 / Vector(this->TheGrid.spacing), 0.0), coefficients, this->Bending);
   this->TheDevice.Queue().enqueueNDRangeKernel(
-    pack, cl::NullRange, cl::NDRange(RoundUp(x + 2, 64), y + 2, z + 2), cl::NDRange(64, 1, 1));
+    pack, cl::NullRange, cl::NDRange(RoundUp<std::size_t>(x + 2, 64), y + 2, z + 2), cl::NDRange(64, 1, 1));
   this->TheDevice.Finish();
 }
 
@@ -278,8 +267,8 @@ void MediumRayCaster::Upload(const Medium& medium, const SolvedLight& light, con
 std::string MediumRayCaster::PackingOptions() const
 {
   const std::array<const char*, 5> names = { "ABSORPTION", "SCATTERING", "EMISSION", "FLUENCE", "UNSCATTERED" };
-  std::string options = "-DREAL_WIDTH=" + std::to_string(this->PacketWidth()) + Define("COLOURED", this->Coloured) +
-    Define("GREY", this->Grey);
+  std::string options =
+    Define("REAL_WIDTH", this->PacketWidth()) + Define("COLOURED", this->Coloured) + Define("GREY", this->Grey);
   for (std::size_t i = 0; i < names.size(); ++i)
   {
     options += std::string(" -D") + names[i] + "=" + std::to_string(this->Components[i]);
@@ -303,13 +292,13 @@ void MediumRayCaster::Pack(bool forShadowRays)
   With(pack, size, single, static_cast<float>(this->G), this->Arrays[0], this->Arrays[1], this->Arrays[2],
     this->Arrays[3], this->Arrays[4], this->Direct, this->MeanDirection, this->Ior, this->Samples, this->Extinctions,
     this->Flow, this->Glow);
-  this->TheDevice.Queue().enqueueNDRangeKernel(
-    pack, cl::NullRange, cl::NDRange(RoundUp(size.s[0] + 2, 64), size.s[1] + 2, size.s[2] + 2), cl::NDRange(64, 1, 1));
+  this->TheDevice.Queue().enqueueNDRangeKernel(pack, cl::NullRange,
+    cl::NDRange(RoundUp<std::size_t>(size.s[0] + 2, 64), size.s[1] + 2, size.s[2] + 2), cl::NDRange(64, 1, 1));
 
   cl::Kernel find = this->TheDevice.Kernel("find_empty_bricks", sources, options);
   With(find, size, bricks, this->Samples, this->Extinctions, this->Glow, this->Bending, this->Bricks);
-  this->TheDevice.Queue().enqueueNDRangeKernel(
-    find, cl::NullRange, cl::NDRange(RoundUp(bricks.s[0], 4), bricks.s[1], bricks.s[2]), cl::NDRange(4, 1, 1));
+  this->TheDevice.Queue().enqueueNDRangeKernel(find, cl::NullRange,
+    cl::NDRange(RoundUp<std::size_t>(bricks.s[0], 4), bricks.s[1], bricks.s[2]), cl::NDRange(4, 1, 1));
   std::vector<cl_char> distances = this->Bricks.Read();
   FindDistances(distances, this->BrickCount);
   this->Bricks.Write(distances.data());
@@ -324,7 +313,7 @@ void MediumRayCaster::SeeLights(const Camera& camera, const Monitor& monitor)
   cl::Kernel see = this->TheDevice.Kernel("see_lights",
     { kernel_source::Numerics, kernel_source::Sampling, kernel_source::ScatteredLight },
     this->PackingOptions() + Define("SHADOW_RAYS", true) + Define("BENDS", false));
-  const std::size_t across = RoundUp(this->TheGrid.size[0], 4 * this->PacketWidth()) / this->PacketWidth();
+  const std::size_t across = RoundUp<std::size_t>(this->TheGrid.size[0], 4 * this->PacketWidth()) / this->PacketWidth();
   InBatches(this->TheDevice, BatchesOfRows(this->TheGrid.size[2], 0.0, 0.5), monitor, [&](int first, int count) {
     With(see, size, bricks, Float4(Vector(this->TheGrid.spacing), 0.0),
       Float4(eye, camera.parallelProjection ? 1.0 : 0.0), Float4(Vector(Axes(camera)[2]), 0.0),
@@ -410,10 +399,10 @@ std::string MediumRayCaster::CastingOptions() const
   const double longest = this->LargestExtinction * this->Settings.stepSize *
     *std::max_element(this->TheGrid.spacing.begin(), this->TheGrid.spacing.end());
   const int phase = this->KnowsFlow ? 1 + static_cast<int>(this->Settings.phaseFunction) : 0;
-  return "-DREAL_WIDTH=" + std::to_string(this->PacketWidth()) + Define("COLOURED", this->Coloured) +
-    Define("GREY", this->Grey) + Define("SKIP_BRICKS", this->Settings.skipEmptyBricks) +
-    Define("ENVIRONMENT", this->EnvironmentSize[0] > 0) + Define("THIN_STEPS", longest <= (this->Bends ? 1.5 : 2.0)) +
-    Define("PHASE", phase) + Define("GLOW", this->GlowsApart());
+  return Define("REAL_WIDTH", this->PacketWidth()) + Define("COLOURED", this->Coloured) + Define("GREY", this->Grey) +
+    Define("SKIP_BRICKS", this->Settings.skipEmptyBricks) + Define("ENVIRONMENT", this->EnvironmentSize[0] > 0) +
+    Define("THIN_STEPS", longest <= (this->Bends ? 1.5 : 2.0)) + Define("PHASE", phase) +
+    Define("GLOW", this->GlowsApart());
 }
 
 /// Rays that cannot but go straight on have a kernel of their own.
@@ -443,8 +432,8 @@ void MediumRayCaster::CastRays(View& view, double from, const Monitor& monitor)
   cl::Kernel cast = this->CastingKernel();
   // Batches of whole work-groups: else the last rows of one would be cast again by the next.
   const int group = 4;
-  const std::size_t across = RoundUp(view.Picture.s[0], group * packet[0]) / packet[0];
-  const int rows = static_cast<int>(RoundUp(view.Picture.s[1], group * packet[1]) / (group * packet[1]));
+  const std::size_t across = RoundUp<std::size_t>(view.Picture.s[0], group * packet[0]) / packet[0];
+  const int rows = static_cast<int>(RoundUp<std::size_t>(view.Picture.s[1], group * packet[1]) / (group * packet[1]));
   InBatches(this->TheDevice, BatchesOfRows(rows, from, 1.0), monitor, [&](int first, int count) {
     view.Picture.s[2] = first * group;
     if (straight)

@@ -5,6 +5,7 @@
 #include "../Device/Monitor.h"
 #include "../Lights/Lights.h"
 #include "../Medium/Medium.h"
+#include "../Photons/IndexRange.h"
 #include "Camera.h"
 
 #include <array>
@@ -166,16 +167,16 @@ private:
   double SurfaceIndex() const
   {
     return this->Settings.surfaceIndex > 0.0 ? this->Settings.surfaceIndex
-                                             : 0.5 * (this->IndexRange[0] + this->IndexRange[1]);
+                                             : 0.5 * (this->Index.least + this->Index.largest);
   }
   bool Reflects() const
   {
     return this->Bends && this->Settings.surfaceReflection != SurfaceReflection::None &&
-      this->SurfaceIndex() > this->IndexRange[0] && this->SurfaceIndex() <= this->IndexRange[1];
+      this->SurfaceIndex() > this->Index.least && this->SurfaceIndex() <= this->Index.largest;
   }
   void Upload(const Medium& medium, const SolvedLight& light, const Field& ior);
   void Reserve();
-  void PrepareBending(const Field& ior);
+  void PrepareBending();
   void SayWhatIsLeftOut();
   void Pack(bool forShadowRays);
   void SeeLights(const Camera& camera, const Monitor& monitor);
@@ -193,7 +194,7 @@ private:
   bool Grey = false;      ///< nor does the source
   bool Bends = false;     ///< the refractive index varies
   bool KnowsFlow = false; ///< the light's direction is known and scattering depends on it
-  std::array<double, 2> IndexRange = { 1.0, 1.0 };
+  IndexRange Index;
   bool SourcesDependOnCamera = false;
   bool SourcesReady = false;
   double LargestExtinction = 0.0; ///< at least the largest sigma_t, 1/length

@@ -336,6 +336,27 @@ inline void gather_samples(global const float4* samples, const corners* at, int4
 #endif
 }
 
+// Between four values of a picture for each ray: two side by side from `lower` on and two from `upper`; x goes from the first of two to
+// the second, y from the lower to the upper.
+inline rgb between_four(global const float4* values, integer lower, integer upper, real x, real y)
+{
+  rgb seen;
+#define SEE(n)                                                                                                           \
+  {                                                                                                                      \
+    global const float4* below = values + LANE(lower, n);                                                                \
+    global const float4* above = values + LANE(upper, n);                                                                \
+    const float4 a = fma((float4)LANE(x, n), below[1] - below[0], below[0]);                                             \
+    const float4 b = fma((float4)LANE(x, n), above[1] - above[0], above[0]);                                             \
+    const float4 c = fma((float4)LANE(y, n), b - a, a);                                                                  \
+    LANE(seen.r, n) = c.x;                                                                                               \
+    LANE(seen.g, n) = c.y;                                                                                               \
+    LANE(seen.b, n) = c.z;                                                                                               \
+  }
+  EACH_LANE(SEE)
+#undef SEE
+  return seen;
+}
+
 // Edge of a brick in voxels. Each brick has a number: how many bricks one has to go (as a chess king does) to one of another
 // kind; positive for a brick that is empty, negative for one where anything extinguishes or shines. It is 0 where rays bend.
 #define BRICK 8

@@ -18,21 +18,7 @@ inline rgb table_light(const surroundings* s, global const float4* lit, real3 p)
   const real across = x - to_real(i);
   const real up = y - to_real(j);
   const integer first = j * row + i;
-  rgb seen;
-#define SEE(n)                                                                                                           \
-  {                                                                                                                      \
-    global const float4* lower = lit + LANE(first, n);                                                                   \
-    global const float4* upper = lower + row;                                                                            \
-    const float4 a = fma((float4)LANE(across, n), lower[1] - lower[0], lower[0]);                                        \
-    const float4 b = fma((float4)LANE(across, n), upper[1] - upper[0], upper[0]);                                        \
-    const float4 c = fma((float4)LANE(up, n), b - a, a);                                                                 \
-    LANE(seen.r, n) = c.x;                                                                                               \
-    LANE(seen.g, n) = c.y;                                                                                               \
-    LANE(seen.b, n) = c.z;                                                                                               \
-  }
-  EACH_LANE(SEE)
-#undef SEE
-  return seen;
+  return between_four(lit, first, first + row, across, up);
 }
 
 // Rays that leave the box through the table.

@@ -14,25 +14,22 @@ constexpr float LeastIndex = 1e-3f;
 constexpr float LargestIndex = 1e3f;
 constexpr float FacesAlike = 1e-3f; ///< relative; what smoothing leaves of a border nearby
 
-struct Range
+IndexRange RangeOnFaces(const Field& ior, const Grid& grid)
 {
-  float low, high;
-};
-
-Range RangeOf(const Field& ior, const Grid& grid, bool onFaces)
-{
-  Range range = { ior.values[0], ior.values[0] };
+  IndexRange range = { ior.values[0], ior.values[0] };
   const std::array<int, 3>& size = grid.size;
-  for (std::size_t voxel = 0; voxel < grid.VoxelCount(); ++voxel)
+  for (int k = 0; k < size[2]; ++k)
   {
-    const int i = static_cast<int>(voxel % size[0]);
-    const int j = static_cast<int>(voxel / size[0] % size[1]);
-    const int k = static_cast<int>(voxel / size[0] / size[1]);
-    const bool onFace = i == 0 || j == 0 || k == 0 || i == size[0] - 1 || j == size[1] - 1 || k == size[2] - 1;
-    if (!onFaces || onFace)
+    for (int j = 0; j < size[1]; ++j)
     {
-      range.low = std::min(range.low, ior.values[voxel]);
-      range.high = std::max(range.high, ior.values[voxel]);
+      const bool wholeRow = k == 0 || k == size[2] - 1 || j == 0 || j == size[1] - 1;
+      const float* row = ior.values + (static_cast<std::size_t>(k) * size[1] + j) * size[0];
+      const int step = wholeRow ? 1 : std::max(size[0] - 1, 1); // else its two ends
+      for (int i = 0; i < size[0]; i += step)
+      {
+        range.least = std::min(range.least, row[i]);
+        range.largest = std::max(range.largest, row[i]);
+      }
     }
   }
   return range;
@@ -168,7 +165,7 @@ void Check(const SolvedLight& light, const Grid& grid, const ViewSettings& setti
 }
 
 std::vector<std::string> DoubtsAbout(
-  const ViewSettings& settings, const SolvedLight& light, const Field& ior, const Grid& grid)
+  const ViewSettings& settings, const SolvedLight& light, const Field& ior, const IndexRange& index, const Grid& grid)
 {
   std::vector<std::string> doubts;
   if (settings.tableFace >= 0 && !light.fluence.values)
@@ -180,18 +177,17 @@ std::vector<std::string> DoubtsAbout(
   {
     return doubts;
   }
-  const Range all = RangeOf(ior, grid, false);
   if (settings.surfaceReflection != SurfaceReflection::None && settings.surfaceIndex > 0.0 &&
-    !(settings.surfaceIndex > all.low && settings.surfaceIndex <= all.high))
+    !(settings.surfaceIndex > index.least && settings.surfaceIndex <= index.largest))
   {
     doubts.push_back("No surface reflects: its index is " + std::to_string(settings.surfaceIndex) +
-      ", those of the grid are from " + std::to_string(all.low) + " to " + std::to_string(all.high) + ".");
+      ", those of the grid are from " + std::to_string(index.least) + " to " + std::to_string(index.largest) + ".");
   }
-  const Range faces = RangeOf(ior, grid, true);
-  if (faces.high - faces.low > FacesAlike * faces.high)
+  const IndexRange faces = RangeOnFaces(ior, grid);
+  if (faces.largest - faces.least > FacesAlike * faces.largest)
   {
-    doubts.push_back("The refractive index varies over the faces of the box, from " + std::to_string(faces.low) +
-      " to " + std::to_string(faces.high) +
+    doubts.push_back("The refractive index varies over the faces of the box, from " + std::to_string(faces.least) +
+      " to " + std::to_string(faces.largest) +
       ": light is not bent there, and looks brighter or darker by n^2. Give the box a margin.");
   }
   return doubts;

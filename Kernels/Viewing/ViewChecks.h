@@ -13,9 +13,10 @@ void Check(const SolvedLight& light, const Grid& grid, const ViewSettings& setti
 
 /// What may not look as it was meant to, in sentences: a table without light, a surface where the index is never, an index that
 /// varies over the box's faces.
-/// @param ior  null: constant
+/// @param ior    null: constant
+/// @param index  its range
 std::vector<std::string> DoubtsAbout(
-  const ViewSettings& settings, const SolvedLight& light, const Field& ior, const Grid& grid);
+  const ViewSettings& settings, const SolvedLight& light, const Field& ior, const IndexRange& index, const Grid& grid);
 
 /// @throws InvalidInput for an index that has not one component, is not finite, below 1e-3 or above 1e3
 void CheckViewedIndex(const Field& ior, const Grid& grid);

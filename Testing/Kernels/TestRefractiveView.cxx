@@ -273,17 +273,9 @@ TEST_F(RefractiveView, HalvingTheStepQuartersTheError)
     scene.settings.stepSize = step;
     return scene.Seen(this->GetDevice()).radiance;
   };
-  const auto mean = [](const std::vector<float>& a, const std::vector<float>& b) {
-    double sum = 0.0;
-    for (std::size_t i = 0; i < a.size(); ++i)
-    {
-      sum += std::abs(a[i] - b[i]);
-    }
-    return sum / a.size();
-  };
   const std::vector<float> exact = seenWith(0.0625);
-  const double coarse = mean(exact, seenWith(4.0));
-  const double fine = mean(exact, seenWith(1.0));
+  const double coarse = MeanDistance(exact, seenWith(4.0));
+  const double fine = MeanDistance(exact, seenWith(1.0));
   const double order = 0.5 * std::log2(coarse / fine);
   std::printf("order of convergence %.2f, mean error at one voxel a step %.2g\n", order, fine);
   EXPECT_GT(order, 1.8);

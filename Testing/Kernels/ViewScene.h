@@ -62,6 +62,17 @@ struct Scene
   Picture Seen(Device& device) const { return this->Seen(device, this->Framed()); }
 };
 
+/// On the average of pixels and channels.
+inline double MeanDistance(const std::vector<float>& a, const std::vector<float>& b)
+{
+  double sum = 0.0;
+  for (std::size_t i = 0; i < a.size(); ++i)
+  {
+    sum += std::abs(a[i] - b[i]);
+  }
+  return sum / a.size();
+}
+
 inline Grid GridOf(int nx, int ny, int nz, Vec spacing = { 1.0, 1.0, 1.0 }, Vec origin = { 0.0, 0.0, 0.0 })
 {
   Grid grid;
