@@ -1,5 +1,6 @@
 #pragma once
 
+#include "ImportanceMap.h"
 #include "Photons.h"
 #include "SampleSequence.h"
 
@@ -16,6 +17,12 @@ struct EmissionSettings
   std::size_t photonCount = 100000;
   Sampler sampler = Sampler::Hammersley;
   std::uint64_t seed = 0;
+  /// Independent sets that the photons are made of, 1 to 16. Each has its own shift; every second one has its first two
+  /// coordinates changed for each other, and Hammersley's base 3 for 2, so that the patterns of two sets have nothing in common.
+  int batches = 1;
+  /// Where photons are dense; null or empty: spread evenly. A light that it has no square for is spread evenly.
+  const ImportanceMap* map = nullptr;
+  double densestAtMost = 8.0; ///< density that the map may ask for, in those of photons spread evenly; at least 1
 };
 
 /// Photons of all lights, where they enter the volume (those of a lamp in the volume: at the lamp), and the number of each

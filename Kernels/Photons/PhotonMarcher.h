@@ -2,6 +2,8 @@
 
 #include "Photons.h"
 
+#include "PilotLight.h"
+
 #include "../Device/Buffer.h"
 #include "../Device/Monitor.h"
 #include "../Medium/Medium.h"
@@ -40,6 +42,14 @@ public:
   /// Photons outside the volume are first moved to where they enter it.
   /// @throws InvalidInput where a photon's position, direction or power is not finite or its power negative; Aborted
   PhotonLight March(const std::vector<Photon>& photons, const Monitor& monitor = {});
+
+  /// Light of few photons in coarse cells, and where those of each cell came from (Pfeuti 2009, section 3.2.2). Paths are those
+  /// of March, through the medium's own voxels.
+  /// @param origins  of each photon: column and row of the cell of the photon plane that it was made in, 0 to 65535
+  /// @param cells    along each axis, 1 to the medium's voxels (more are cut to them)
+  /// @throws InvalidInput as March, or where there are not as many origins as photons; Aborted
+  PilotLight Gather(const std::vector<Photon>& photons, const std::vector<std::array<int, 2>>& origins,
+    const std::array<int, 3>& cells, const Monitor& monitor = {});
 
   /// The ways of every photon in `chosen`, corner by corner; those that miss the volume are left out.
   std::vector<PhotonPath> Paths(const std::vector<Photon>& photons, const std::vector<std::size_t>& chosen);

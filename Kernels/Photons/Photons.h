@@ -14,6 +14,9 @@ struct Photon
   std::array<double, 3> position = {}; ///< where it enters the volume, or where its lamp in the volume is
   std::array<float, 3> direction = { 0.0f, 0.0f, 1.0f }; ///< in which it travels, unit length
   std::array<float, 3> power = {};                       ///< RGB, W
+  float weight =
+    1.0f; ///< its power over what it had if its light's photons were spread evenly: large where they are sparse
+  std::int32_t batch = 0; ///< which of the independent sets it belongs to, from 0; each set is a part of all the power
 };
 
 /// How paths are followed, and sums kept.
@@ -25,6 +28,8 @@ struct MarchSettings
   double stepSize =
     1.0; ///< voxels, of a step where the index varies and the octree (if any) has single voxels; 0.05 to 1e4
   bool meanDirection = true;
+  bool counts = false;  ///< also photonCount and photonWeight: one more number a voxel, in the same pass
+  bool batches = false; ///< also batchFluence: sums of each batch apart, on as many copies as there are batches
 
   /// How the sums of many work-items stay whole. All of them give the same light, bit for bit.
   enum class Sums
@@ -58,6 +63,13 @@ struct PhotonLight
   /// 3 a voxel: sum of power times direction over sum of power, at most 1 long; empty: not asked for. Coarse in voxels so dark
   /// that they gained a few units of fixed point only, some 2^-62 of all power times the longest path.
   std::vector<float> meanDirection;
+  std::vector<float> photonCount; ///< photons that crossed each voxel, each once; empty: not asked for
+  std::vector<float>
+    photonWeight;  ///< their mean `weight`, 0 where there is none, to 1e-4 of the largest; empty: not asked for
+  int batches = 1; ///< that the photons have: the largest `batch` and one
+  /// fluence by each batch alone, [batch][voxel][channel], as if it was all the light: their mean is `fluence`. Empty: not
+  /// asked for.
+  std::vector<float> batchFluence;
   std::size_t missed = 0;       ///< photons whose ways do not meet the volume; they are not among what entered
   std::size_t credits = 0;      ///< stretches of path that were credited to voxels
   std::size_t steps = 0;        ///< of the integrator

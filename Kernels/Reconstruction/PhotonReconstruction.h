@@ -1,0 +1,59 @@
+#pragma once
+
+#include "../Device/Device.h"
+#include "../Device/Monitor.h"
+#include "../Medium/Grid.h"
+
+#include <string>
+#include <vector>
+
+namespace tyndall
+{
+/// Light as photons left it, not filtered. Arrays are over the grid's voxels, x fastest; null where there is none.
+struct NoisyLight
+{
+  Grid grid;
+  int channels = 1;                     ///< of fluence: 1 or 3
+  const float* fluence = nullptr;       ///< W / length^2
+  const float* meanDirection = nullptr; ///< 3 a voxel; optional
+  const float* photonCount = nullptr;   ///< photons in each voxel; for the published and the nearest estimator
+  const float* photonWeight = nullptr;  ///< their mean weight; for the published one
+  int batches = 1;
+  const float* batchFluence = nullptr; ///< [batch][voxel][channel]; for the sound estimator, at least two
+};
+
+struct ReconstructionSettings
+{
+  enum class Estimator
+  {
+    Published,      ///< level by centre-surround and photon weight, the lower of the two (Pfeuti 2009, section 3.2.4)
+    Sound,          ///< each level's detail is kept as far as independent batches agree on it; tells its error
+    ConstantRadius, ///< one level everywhere (section 4.2)
+    NearestPhotons, ///< the lowest level that holds `nearest` photons (section 4.2)
+  };
+  Estimator estimator = Estimator::Sound;
+  int levels = 5;          ///< of the pyramid above the grid, at most; 1 to 8, and no more than the grid has
+  double weightStep = 0.0; ///< published: weight of photons from a level to the next; 0: the mean weight of lit voxels
+  int level = 1;           ///< constant radius: which
+  int nearest = 20;        ///< nearest photons: how many, at least 1
+  bool conserve = true;    ///< scale the light such that the volume's total is what it was
+};
+
+struct ReconstructedLight
+{
+  std::vector<float> fluence;       ///< as many channels as there were, >= 0
+  std::vector<float> meanDirection; ///< 3 a voxel, at most 1 long; empty where there was none
+  std::vector<float>
+    mipLevel; ///< a voxel: level of the pyramid that the light was taken from; between two where blended
+  std::vector<float> fluenceError; ///< standard error, `channels` a voxel, W / length^2; sound only, else empty
+  double bias = 0.0; ///< total of the light, all channels, over what it was, less 1: before it was conserved, if it was
+  std::vector<std::string> leftOut;
+  std::string device;
+  double seconds = 0.0;
+};
+
+/// @throws InvalidInput where what the estimator needs is missing (says what), a setting is out of its range, or a number of the
+///   light is not finite (names the voxel); DeviceError; Aborted
+ReconstructedLight Reconstruct(
+  Device& device, const NoisyLight& light, const ReconstructionSettings& settings = {}, const Monitor& monitor = {});
+}
