@@ -5,6 +5,7 @@
 #include "TyndallKernelSources.h"
 
 #include <algorithm>
+#include <map>
 #include <string>
 
 namespace tyndall
@@ -50,14 +51,15 @@ struct AxisSweep::Implementation
   Implementation(Device& device, const SweepVolume& volume, int axis, const std::vector<Bundle>& bundles,
     const std::array<bool, 3>& periodic, SweepWorkspace& workspace)
     : TheDevice(device)
-    , Plan(device, volume.grid, axis, bundles, volume.channels, periodic, volume.flux != nullptr)
+    , Plan(device, volume.grid, axis, bundles, volume.channels, periodic, volume.flux != nullptr,
+        volume.entering != nullptr)
     , Workspace(workspace)
   {
     this->MakeBuffers();
   }
 
   void MakeBuffers();
-  void Enter(const SweepBoundary& boundary);
+  void Enter(const SweepBoundary& boundary, std::size_t firstChannel);
   void EnterNothing();
   void DarkenSides();
   void CrossOnce(const SweepVolume& volume, bool source, bool border, const Monitor& monitor);
@@ -98,6 +100,7 @@ struct AxisSweep::Implementation
   Buffer<PlaneCrossingOnDevice> FirstCrossings;
   Buffer<OwnLightOnDevice> FirstOwnLight;
 
+  std::map<std::size_t, std::unique_ptr<SweepBorder>> Borders; ///< by a volume's first value
   bool MapsEmpty = false; ///< whatever is in their memory
   bool SidesDark = false; ///< Outside and Radiance are zero
   SweepTally Tally;       ///< of the sweep that goes on
@@ -130,14 +133,24 @@ void AxisSweep::Implementation::MakeBuffers()
   this->FirstOwnLight = Buffer<OwnLightOnDevice>(device, plan.OwnLight(), "the ray pattern");
 }
 
-void AxisSweep::Implementation::Enter(const SweepBoundary& boundary)
+/// A sweep that is done again and again enters the same light each time: its border is kept.
+void AxisSweep::Implementation::Enter(const SweepBoundary& boundary, std::size_t firstChannel)
 {
-  const SweepBorder border(this->Plan, boundary);
+  std::unique_ptr<SweepBorder>& kept = this->Borders[firstChannel];
+  if (!kept)
+  {
+    kept = std::make_unique<SweepBorder>(this->Plan, boundary);
+  }
+  const SweepBorder& border = *kept;
   this->Maps().Write(border.maps.data(), border.maps.size());
   this->Outside.Write(border.outside.data());
   this->Radiance.Write(border.radiance.data());
   this->Tally.in = border.powerIn;
   this->MapsEmpty = this->SidesDark = false;
+  if (!this->Plan.entering)
+  {
+    kept.reset();
+  }
 }
 
 /// On an open axis; the maps of a periodic one hold what is on the way from the sweep before.
@@ -192,9 +205,10 @@ void AxisSweep::Implementation::Launch(cl::Kernel kernel, const SweepVolume& vol
 {
   const SweepPlan& plan = this->Plan;
   const Buffer<float>& flux = volume.flux ? *volume.flux : *volume.path;
+  const Buffer<float>& entering = volume.entering ? *volume.entering : *volume.path;
   for (int launch = 0; launch < schedule.launches; ++launch)
   {
-    With(kernel, *volume.sigma_t, cl_ulong(volume.sigma_t_first), *volume.source, *volume.path, flux,
+    With(kernel, *volume.sigma_t, cl_ulong(volume.sigma_t_first), *volume.source, *volume.path, flux, entering,
       cl_ulong(volume.first), cl_ulong(volume.stride), this->Maps(), cl_ulong(plan.mapsEachWay),
       cl_int(this->MapsEmpty), this->Outside, cl_uint(plan.outsideEachWay), this->Radiance,
       cl_uint(plan.radianceEachWay), this->Workspace.scratch, this->Units, this->Bundles, cl_int(plan.bundles.size()),
@@ -222,6 +236,7 @@ cl::Kernel AxisSweep::Implementation::SweepKernel(bool source, bool border, bool
   define("SOURCE", source);
   define("BORDER", border);
   define("NET_FLUX", flux);
+  define("ENTERING", plan.entering);
   define("PERIODIC_U", plan.periodic[plan.axes.u]);
   define("PERIODIC_V", plan.periodic[plan.axes.v]);
   std::string bundles; // SweepBundle.cl once for each number of members there is
@@ -236,7 +251,7 @@ cl::Kernel AxisSweep::Implementation::SweepKernel(bool source, bool border, bool
     }
   }
   return this->TheDevice.Kernel(
-    "sweep", { kernel_source::Numerics, kernel_source::SweepLayout, bundles, kernel_source::Sweep }, options);
+    "sweep", { kernel_source::Numerics, kernel_source::SweepLayout, kernel_source::SweepEntering, bundles, kernel_source::Sweep }, options);
 }
 
 void AxisSweep::Implementation::CountSideways()
@@ -307,7 +322,7 @@ void AxisSweep::Start(
   self.Tally = {};
   if (boundary)
   {
-    self.Enter(boundary);
+    self.Enter(boundary, volume.first);
   }
   else
   {
@@ -321,6 +336,14 @@ void AxisSweep::Start(
   else
   {
     self.SumMaps();
+  }
+}
+
+void AxisSweep::Forget()
+{
+  if (this->Inner->IsPeriodic())
+  {
+    this->Inner->OwnMaps.Fill(0.0f);
   }
 }
 

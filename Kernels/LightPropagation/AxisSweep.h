@@ -31,6 +31,9 @@ public:
   void Start(
     const SweepVolume& volume, const SweepBoundary& boundary, bool hasSource, int mostPlanes, const Monitor& monitor);
 
+  /// Rays that are still on the way round a periodic axis are given up.
+  void Forget();
+
   /// Wait for the sweep that was started.
   SweepTally Finish();
 

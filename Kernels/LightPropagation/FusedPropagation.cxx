@@ -1,6 +1,5 @@
-#include "FusedPropagation.h"
+#include "FusedSolver.h"
 
-#include "AxisSweep.h"
 #include "EnvironmentPeaks.h"
 #include "FirstCollision.h"
 #include "TyndallKernelSources.h"
@@ -23,109 +22,47 @@ constexpr int MostOrders = 100000;
 constexpr int ManyPlanes = 8192;
 constexpr int FewPlanes = 256; ///< the same where there will be more orders as long as it matters
 
-double Total(const Rgb& values)
-{
-  return values[0] + values[1] + values[2];
 }
 
-/// One solve, from the arrays of the medium to those of the light.
-class Solver
+LightField FusedSolver::Run(const Monitor& monitor)
 {
-public:
-  Solver(Device& device, const Medium& medium, const Illumination& illumination, const PropagationSettings& settings)
-    : TheDevice(device)
-    , TheMedium(medium)
-    , Outside(illumination)
-    , Settings(settings)
-    , Directions(SoundDirections(settings.directionsPerFace))
-    , Channels(NeededChannels(medium, illumination))
-    , SharedExtinction(medium.sigma_a.components == 1 && medium.sigma_s.components == 1)
-    , Stride((medium.grid.VoxelCount() + SweepPadding - 1) / SweepPadding * SweepPadding)
+  this->Start = std::chrono::steady_clock::now();
+  this->ChooseAcceleration();
+  this->Load();
+  this->Iterating = this->Accelerated;
+  this->MakeSweeps();
+  if (this->Accelerated)
   {
+    this->RunAccelerated(monitor);
   }
-
-  LightField Run(const Monitor& monitor)
+  else
   {
-    this->Start = std::chrono::steady_clock::now();
-    this->Load();
-    this->MakeSweeps();
-    int order = 0;
-    do
+    this->RunOrders(monitor);
+  }
+  this->Unload();
+  return std::move(this->Result);
+}
+
+void FusedSolver::RunOrders(const Monitor& monitor)
+{
+  int order = 0;
+  do
+  {
+    const Monitor ofOrder =
+      monitor ? Monitor([&](double done) { return monitor(this->Progress(order, done)); }) : Monitor();
+    if (order == 0)
     {
-      const Monitor ofOrder =
-        monitor ? Monitor([&](double done) { return monitor(this->Progress(order, done)); }) : Monitor();
-      if (order == 0)
-      {
-        this->PropagateLights(ofOrder);
-        this->Stranded = this->OnTheWay;
-      }
-      this->PropagateOrder(order, ofOrder);
-      this->CollectOrder(order);
-      Report(ofOrder, 1.0);
-      ++order;
-    } while (!this->Done(order));
-    this->Unload();
-    return std::move(this->Result);
-  }
+      this->PropagateLights(ofOrder);
+      this->Stranded = this->OnTheWay;
+    }
+    this->PropagateOrder(order, ofOrder);
+    this->CollectOrder(order);
+    Report(ofOrder, 1.0);
+    ++order;
+  } while (!this->Done(order));
+}
 
-private:
-  static int NeededChannels(const Medium& medium, const Illumination& illumination);
-  float SigmaS(std::size_t voxel, int channel) const
-  {
-    return static_cast<float>(this->TheMedium.sigma_s.At(voxel, channel) * (1.0 - this->TheMedium.g));
-  }
-  float SigmaT(std::size_t voxel, int channel) const
-  {
-    return this->TheMedium.sigma_a.At(voxel, channel) + this->SigmaS(voxel, channel);
-  }
-
-  void Load();
-  void FindSharedExtinction();
-  void MakeSweeps();
-  void PropagateOrder(int order, const Monitor& monitor);
-  void PropagateLights(const Monitor& monitor);
-  SweepVolume VolumeOf(int firstChannel) const;
-  void ForChannels(const std::function<void(const SweepVolume&, int)>& act);
-  void Count(const SweepTally& tally, int firstChannel, int channels);
-  SweepBoundary BoundaryOfOrder(int order) const;
-  void CollectOrder(int order);
-  void EstimateResidual(int order);
-  bool Done(int orders) const;
-  double Progress(int order, double done) const;
-  std::vector<std::string> LeftOut() const;
-  void Unload();
-
-  std::vector<float> Interleaved(const Buffer<float>& planar, double scale) const;
-
-  Device& TheDevice;
-  const Medium& TheMedium;
-  const Illumination& Outside;
-  std::vector<Light> Lights; ///< those of the scene and the peaks of the environment
-  const PropagationSettings& Settings;
-  DirectionSet Directions;
-  int Channels;
-  bool SharedExtinction;
-  std::size_t Stride;
-
-  Buffer<float> Extinction, Scattering, Source, Path, Flux, Fluence;
-  SweepWorkspace Workspace;
-  std::vector<std::unique_ptr<AxisSweep>> Sweeps;
-  std::vector<Rgb> FromFarAway;
-  bool Shining = false; ///< the source is not zero
-  bool LitFromOutside = false;
-
-  LightField Result;
-  std::chrono::steady_clock::time_point Start;
-  Rgb Scattered = {};     ///< W, by the order just done
-  Rgb OnTheWay = {};      ///< W, rays that still go round a periodic axis
-  Rgb Stranded = {};      ///< W, of lights whose rays go round a periodic axis without end
-  Rgb LastScattered = {}; ///< W, by the order before
-  Rgb AllScattered = {};  ///< W, by all orders so far
-  Rgb Ratio = {};         ///< of this order's scattered power to that of the one before
-  double Residual = 1.0;
-};
-
-int Solver::NeededChannels(const Medium& medium, const Illumination& illumination)
+int FusedSolver::NeededChannels(const Medium& medium, const Illumination& illumination)
 {
   const auto coloured = [](const Rgb& rgb) { return rgb[0] != rgb[1] || rgb[1] != rgb[2]; };
   bool colour = medium.Channels() == 3 || coloured(illumination.sky);
@@ -146,7 +83,7 @@ int Solver::NeededChannels(const Medium& medium, const Illumination& illuminatio
 }
 
 /// A coloured medium often has a grey sigma_t all the same: the same density, only the albedo has colour.
-void Solver::FindSharedExtinction()
+void FusedSolver::FindSharedExtinction()
 {
   if (this->Channels == 1 || this->SharedExtinction)
   {
@@ -166,7 +103,7 @@ void Solver::FindSharedExtinction()
   this->SharedExtinction = true;
 }
 
-void Solver::Load()
+void FusedSolver::Load()
 {
   this->FindSharedExtinction();
   const std::size_t voxels = this->TheMedium.grid.VoxelCount();
@@ -208,7 +145,7 @@ void Solver::Load()
   this->Shining = Total(this->Result.balance.emitted) > 0.0;
 }
 
-void Solver::MakeSweeps()
+void FusedSolver::MakeSweeps()
 {
   for (int axis = 0; axis < 3; ++axis)
   {
@@ -234,7 +171,7 @@ void Solver::MakeSweeps()
   }
 }
 
-SweepBoundary Solver::BoundaryOfOrder(int order) const
+SweepBoundary FusedSolver::BoundaryOfOrder(int order) const
 {
   if (order > 0 || !this->LitFromOutside)
   {
@@ -252,7 +189,7 @@ SweepBoundary Solver::BoundaryOfOrder(int order) const
 
 /// Do something to the volume: for all channels at once where they share sigma_t, else for one after the other. `act`
 /// takes the volume and the first of its channels.
-void Solver::ForChannels(const std::function<void(const SweepVolume&, int)>& act)
+void FusedSolver::ForChannels(const std::function<void(const SweepVolume&, int)>& act)
 {
   const int rounds = this->SharedExtinction ? 1 : this->Channels;
   for (int round = 0; round < rounds; ++round)
@@ -262,7 +199,7 @@ void Solver::ForChannels(const std::function<void(const SweepVolume&, int)>& act
 }
 
 /// The channels from `first` on that share sigma_t.
-SweepVolume Solver::VolumeOf(int first) const
+SweepVolume FusedSolver::VolumeOf(int first) const
 {
   SweepVolume volume;
   volume.grid = this->TheMedium.grid;
@@ -272,17 +209,19 @@ SweepVolume Solver::VolumeOf(int first) const
   volume.sigma_t_first = first * this->Stride;
   volume.source = &this->Source;
   volume.path = &this->Path;
-  volume.flux = this->Settings.netFlux ? &this->Flux : nullptr;
+  volume.flux = this->Settings.netFlux && !this->Iterating ? &this->Flux : nullptr;
+  volume.entering = this->Iterating ? &this->Entering : nullptr;
   volume.first = first * this->Stride;
   return volume;
 }
 
-void Solver::Count(const SweepTally& tally, int firstChannel, int channels)
+void FusedSolver::Count(const SweepTally& tally, int firstChannel, int channels)
 {
   for (int c = 0; c < channels; ++c)
   {
     for (int face = 0; face < 6; ++face)
     {
+      this->FacePowerIn[face][firstChannel + c] += tally.in[face][c];
       this->Result.balance.entered[firstChannel + c] += tally.in[face][c];
       this->Result.balance.escaped[firstChannel + c] += tally.out[face][c];
       this->Result.facePowerOut[face][firstChannel + c] += tally.out[face][c];
@@ -291,13 +230,7 @@ void Solver::Count(const SweepTally& tally, int firstChannel, int channels)
   }
 }
 
-/// The channels from `first` on.
-Rgb From(const Rgb& rgb, int first)
-{
-  return first == 0 ? rgb : Rgb{ rgb[first], 0.0, 0.0 };
-}
-
-void Solver::PropagateLights(const Monitor& monitor)
+void FusedSolver::PropagateLights(const Monitor& monitor)
 {
   for (const Light& light : this->Lights)
   {
@@ -310,7 +243,7 @@ void Solver::PropagateLights(const Monitor& monitor)
   }
 }
 
-void Solver::PropagateOrder(int order, const Monitor& monitor)
+void FusedSolver::PropagateOrder(int order, const Monitor& monitor)
 {
   const SweepBoundary boundary = this->BoundaryOfOrder(order);
   const bool nothing = !boundary && !this->Shining && Total(this->OnTheWay) == 0.0;
@@ -319,7 +252,11 @@ void Solver::PropagateOrder(int order, const Monitor& monitor)
   {
     return;
   }
-  const int mostPlanes = this->Settings.maximumOrders > 0 ? ManyPlanes : FewPlanes;
+  this->PropagateSweeps(boundary, this->Settings.maximumOrders > 0 ? ManyPlanes : FewPlanes, monitor);
+}
+
+void FusedSolver::PropagateSweeps(const SweepBoundary& boundary, int mostPlanes, const Monitor& monitor)
+{
   this->ForChannels([&](const SweepVolume& volume, int first) {
     const SweepBoundary ofChannels = boundary && first > 0
       ? SweepBoundary([&](int direction, int face) { return From(boundary(direction, face), first); })
@@ -339,7 +276,7 @@ void Solver::PropagateOrder(int order, const Monitor& monitor)
   });
 }
 
-void Solver::CollectOrder(int order)
+void FusedSolver::CollectOrder(int order)
 {
   const int vector = this->TheDevice.FloatVectorWidth() >= 8 ? 8 : 4;
   cl::Kernel kernel = this->TheDevice.Kernel(
@@ -368,14 +305,19 @@ void Solver::CollectOrder(int order)
   {
     this->Result.fluenceDirect = this->Interleaved(this->Fluence, 1.0);
   }
-  this->Result.convergence.push_back({ order,
-    std::chrono::duration<double>(std::chrono::steady_clock::now() - this->Start).count(), this->Residual,
+  this->AddRow(order, Total(this->AllScattered) > 0.0 ? Total(this->Scattered) / Total(this->AllScattered) : 0.0);
+}
+
+void FusedSolver::AddRow(int iteration, double change)
+{
+  this->Result.convergence.push_back({ iteration,
+    std::chrono::duration<double>(std::chrono::steady_clock::now() - this->Start).count(), this->Residual, change,
     Total(this->Result.balance.absorbed), Total(this->Result.balance.escaped), Total(this->Result.balance.leftOver) });
 }
 
 /// What the orders to come will add to the light that is scattered, over what there is: the rest of a geometric series, as
 /// orders fall off like one in the end. Its ratio grows towards that, so its last growth is added. The worst channel counts.
-void Solver::EstimateResidual(int order)
+void FusedSolver::EstimateResidual(int order)
 {
   this->Residual = 0.0;
   for (int c = 0; c < this->Channels; ++c)
@@ -395,7 +337,7 @@ void Solver::EstimateResidual(int order)
   }
 }
 
-bool Solver::Done(int orders) const
+bool FusedSolver::Done(int orders) const
 {
   if (this->Residual == 0.0 || orders >= MostOrders)
   {
@@ -406,7 +348,7 @@ bool Solver::Done(int orders) const
 }
 
 /// Orders are counted where their number is known, else the logarithm of the residual tells how far the solve is.
-double Solver::Progress(int order, double done) const
+double FusedSolver::Progress(int order, double done) const
 {
   if (this->Settings.maximumOrders > 0)
   {
@@ -416,7 +358,7 @@ double Solver::Progress(int order, double done) const
   return std::clamp(std::max(way, 1.0 - 1.0 / (1.0 + 0.05 * (order + done))), 0.0, 0.99);
 }
 
-std::vector<float> Solver::Interleaved(const Buffer<float>& planar, double scale) const
+std::vector<float> FusedSolver::Interleaved(const Buffer<float>& planar, double scale) const
 {
   const std::vector<float> values = planar.Read();
   const std::size_t parts = (values.size() - SweepPadding) / this->Stride;
@@ -433,7 +375,7 @@ std::vector<float> Solver::Interleaved(const Buffer<float>& planar, double scale
 }
 
 /// What the scene did not need, in words for the user.
-std::vector<std::string> Solver::LeftOut() const
+std::vector<std::string> FusedSolver::LeftOut() const
 {
   std::vector<std::string> words;
   if (this->Channels == 1)
@@ -465,6 +407,10 @@ std::vector<std::string> Solver::LeftOut() const
   {
     words.push_back("scattering orders after the first: nothing is scattered");
   }
+  if (!this->Accelerated)
+  {
+    words.push_back("acceleration: few scattering orders do");
+  }
   if (!this->Settings.netFlux)
   {
     words.push_back("net_flux: not asked for");
@@ -472,7 +418,7 @@ std::vector<std::string> Solver::LeftOut() const
   return words;
 }
 
-void Solver::Unload()
+void FusedSolver::Unload()
 {
   LightField& light = this->Result;
   light.channels = this->Channels;
@@ -487,7 +433,6 @@ void Solver::Unload()
   light.storedDirections = { { 0.0, 0.0, 0.0 } };
   light.leftOut = this->LeftOut();
   light.device = this->TheDevice.Name();
-}
 }
 
 double EnergyBalance::RelativeError(int channels) const
@@ -508,6 +453,6 @@ LightField SolveFused(Device& device, const Medium& medium, const Illumination& 
   Check(medium);
   Check(illumination);
   Check(settings);
-  return Solver(device, medium, illumination, settings).Run(monitor);
+  return FusedSolver(device, medium, illumination, settings).Run(monitor);
 }
 }

@@ -22,13 +22,14 @@ struct EnergyBalance
   double RelativeError(int channels) const;
 };
 
-/// A row of the `convergence` table: one scattering order.
+/// A row of the `convergence` table: one scattering order, or one sweep where orders are accelerated.
 struct ConvergenceRow
 {
   int iteration = 0;
   double seconds = 0.0; ///< since the start
-  /// Scattered light still to come over all of it: estimate of the error that stopping here leaves.
+  /// Estimate of the relative error that stopping here leaves: scattered light still to come over all of it.
   double residual = 0.0;
+  double change = 0.0;   ///< of the light by this row, relative: says little where light is scattered very often
   double absorbed = 0.0; ///< W so far, channels summed
   double escaped = 0.0;
   double leftOver = 0.0;

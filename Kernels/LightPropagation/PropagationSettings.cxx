@@ -22,6 +22,11 @@ void Check(const PropagationSettings& settings)
   {
     throw InvalidInput("Tolerance is " + std::to_string(settings.tolerance) + "; it must be positive.");
   }
+  if (settings.source == PropagationSource::Linear && settings.acceleration == PropagationAcceleration::None)
+  {
+    throw InvalidInput("Source is linear and Acceleration is none; the linear source is that of the accelerated solve: choose "
+                       "Acceleration automatic, or Source constant.");
+  }
   if (settings.storedDirections < 1)
   {
     throw InvalidInput("StoredDirections is " + std::to_string(settings.storedDirections) + "; it must be at least 1.");

@@ -4,15 +4,32 @@
 
 namespace tyndall
 {
+/// How the light that a voxel sends out is spread over it.
+enum class PropagationSource
+{
+  Automatic, ///< constant, or linear where orders are accelerated
+  Constant,  ///< as published
+  Linear     ///< from voxel centre to voxel centre (by the low-order system, see LowOrder.h): right however thick voxels are
+};
+
+/// How scattering orders are added up.
+enum class PropagationAcceleration
+{
+  Automatic, ///< one after the other where a few tens do, else by a low-order system between sweeps
+  None       ///< one after the other, as published
+};
+
 /// What the light propagation solvers can be told; the names are those of the filter's properties.
 struct PropagationSettings
 {
   int directionsPerFace = 25; ///< directions per cube face, a square number: 1, 4, 9, 16, 25, ...
   int mapResolution = 1;      ///< map points per voxel edge, 1 to 16
-  int maximumOrders = 0;      ///< scattering orders at most; 0: until the tolerance is met
+  int maximumOrders = 0;      ///< scattering orders (accelerated: sweeps) at most; 0: until the tolerance is met
   double tolerance = 1e-4;    ///< relative error of fluence at which to stop, > 0
   std::array<bool, 3> periodic = { false, false, false }; ///< rays leaving an axis return on the other side
   int storedDirections = 1; ///< directions kept for scattered radiance: 1 (isotropic), 6 (faces), or more
+  PropagationSource source = PropagationSource::Automatic;
+  PropagationAcceleration acceleration = PropagationAcceleration::Automatic; ///< not where maximumOrders is given
   bool netFlux = false;     ///< compute net_flux too: it costs
 };
 

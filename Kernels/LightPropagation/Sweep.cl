@@ -229,7 +229,7 @@ static void add_own_light(const plane_layout* layout, __global float* plane, con
 // Add what the planes gathered to the volume.
 // own      [plane from where rays start] of the first plane crossed
 static void end_planes(const plane_layout* layout, __global float* planes, int first, int count, __global float* path,
-  __global float* flux, ulong stride, const __global own_light* own, int backward, int axis)
+  __global float* flux, __global float* entering, ulong stride, const __global own_light* own, int backward, int axis)
 {
   const int rows = layout->sizeV * ROW;
 #if SOURCE
@@ -246,6 +246,17 @@ static void end_planes(const plane_layout* layout, __global float* planes, int f
     unpack(layout, fluxes, first, count, flux + (3 * c + (axis == 0 ? 1 : 0)) * stride, 1.0f);
     unpack(layout, fluxes + rows, first, count, flux + (3 * c + (axis == 2 ? 1 : 2)) * stride, 1.0f);
     unpack(layout, fluxes + 2 * rows, first, count, flux + (3 * c + axis) * stride, backward ? -1.0f : 1.0f);
+#endif
+#if ENTERING
+    const int aside[2] = { axis == 0 ? 1 : 0, axis == 2 ? 1 : 2 };
+    const __global float* entered = planes + (PLANE_ENTERING + ENTERING_FACES * c) * rows;
+    __global float* faces = entering + 6 * c * stride;
+    unpack(layout, entered, first, count, faces + (2 * axis + backward) * stride, 1.0f);
+    for (int side = 0; side < 4; ++side)
+    {
+      unpack(layout, entered + (ENTERING_LOW_U + side) * rows, first, count,
+        faces + (2 * aside[side / 2] + side % 2) * stride, 1.0f);
+    }
 #endif
   }
 }
@@ -277,6 +288,7 @@ static void cross_plane(sweep_state* state, __global float* maps, const __global
 // source    W / (length^3 sr), [channel][stride] from `first` on
 // path      W length, [channel][stride] from `first` on, added to
 // flux      W length, [channel][x, y, z][stride] from 3 `first` on, added to
+// entering  W, [channel][-x, +x, -y, +y, -z, +z][stride] from 6 `first` on, added to: through that face into the voxel
 // maps      rays of both ways; `maps_each_way` floats each
 // empty     1: the maps hold nothing yet, and are cleared where rays start
 // outside, radiance   rays that come in, both ways as maps
@@ -285,8 +297,8 @@ static void cross_plane(sweep_state* state, __global float* maps, const __global
 // schedule  [launch][unit] first plane and end, counted from where rays start; beyond the last plane the axis begins anew
 // tally     [plane from where rays start][unit][-u, +u, -v, +v][channel] W that left
 __kernel __attribute__((reqd_work_group_size(1, 1, 1))) void sweep(const __global float* sigma,
-  ulong sigma_first, const __global float* source, __global float* path, __global float* flux, ulong first_value,
-  ulong stride, __global float* maps, ulong maps_each_way, int empty, const __global float* outside, uint outside_each_way, const __global float* radiance, uint radiance_each_way,
+  ulong sigma_first, const __global float* source, __global float* path, __global float* flux, __global float* entering,
+  ulong first_value, ulong stride, __global float* maps, ulong maps_each_way, int empty, const __global float* outside, uint outside_each_way, const __global float* radiance, uint radiance_each_way,
   __global float* scratch, const __global unit_info* units, const __global bundle_info* bundles, int bundle_count,
   const __global crossing_info* crossings, const __global own_light* own, int planes_of_pattern, const __global int2* schedule, int launch,
   __global float* tally, plane_layout layout, int axis)
@@ -312,6 +324,7 @@ __kernel __attribute__((reqd_work_group_size(1, 1, 1))) void sweep(const __globa
   source += first_value;
   path += first_value;
   flux += 3 * first_value;
+  entering += 6 * first_value;
   maps += unit.backward * maps_each_way;
   outside += unit.backward * outside_each_way;
   radiance += unit.backward * radiance_each_way;
@@ -358,6 +371,6 @@ __kernel __attribute__((reqd_work_group_size(1, 1, 1))) void sweep(const __globa
         }
       }
     }
-    end_planes(&layout, planes, first, count, path, flux, stride, own + u * planes_of_pattern + begin, unit.backward, axis);
+    end_planes(&layout, planes, first, count, path, flux, entering, stride, own + u * planes_of_pattern + begin, unit.backward, axis);
   }
 }

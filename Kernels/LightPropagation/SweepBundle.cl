@@ -10,6 +10,7 @@
 #define COUNT_ESCAPED NAME_OF(count_escaped_, MEMBERS)
 #define FILL_BORDER NAME_OF(fill_border_, MEMBERS)
 #define CROSS_PLANE NAME_OF(cross_plane_, MEMBERS)
+#define COUNT_ENTERING NAME_OF(count_entering_, MEMBERS)
 #define BLOCK (MEMBERS * CHANNELS * ROW)
 #define FIRST(member, channel) (((member) * CHANNELS + (channel)) * ROW + PAD)
 
@@ -182,6 +183,36 @@ static void FILL_BORDER(sweep_state* state, const __global float* radiance)
 }
 #endif
 
+#if ENTERING
+// The rays of row y by the face they come through, see SweepEntering.cl.
+static void COUNT_ENTERING(sweep_state* state, int y, bool first, const __global float** in,
+  const __global bundle_info* bundle, int moveU, int moveV)
+{
+  for (int m = 0; m < MEMBERS; ++m)
+  {
+    if (first)
+    {
+      add_entering(state, y, ENTERING_AXIS, in[m], 1.0f);
+      continue;
+    }
+    const int du = bundle->move[m][0] * moveU + bundle->move[m][1] * moveV;
+    const int dv = bundle->move[m][2] * moveU + bundle->move[m][3] * moveV;
+    if (du != 0 && dv != 0)
+    {
+      add_through_edge(state, y, du, dv, in[m]);
+    }
+    else if (du != 0)
+    {
+      add_entering(state, y, du > 0 ? ENTERING_LOW_U : ENTERING_HIGH_U, in[m], 1.0f);
+    }
+    else
+    {
+      add_entering(state, y, dv > 0 ? ENTERING_LOW_V : ENTERING_HIGH_V, in[m], 1.0f);
+    }
+  }
+}
+#endif
+
 // @param map      rays of the bundle, [row][member][channel][ROW], two rows more than the plane has
 // @param outside  a row of rays that come in through the faces across v, [member][channel][ROW]
 // @param radiance of rays that come in through the faces across u, [member][channel]
@@ -250,6 +281,12 @@ static void CROSS_PLANE(sweep_state* state, __global float* map, const __global 
       __global float* out = s == stages - 1 ? map + y * BLOCK
                                             : state->ring + (s & 1) * (RING_ROWS * MAX_MEMBERS * CHANNELS * ROW) +
           (y & (RING_ROWS - 1)) * (MAX_MEMBERS * CHANNELS * ROW);
+#if ENTERING
+      if (inside)
+      {
+        COUNT_ENTERING(state, y, s == 0, in, bundle, crossing->moveU[s], crossing->moveV[s]);
+      }
+#endif
       STAGE_ROW(state, wrapped, inside, in, out, crossing->length[s], bundle);
     }
   }
@@ -257,6 +294,7 @@ static void CROSS_PLANE(sweep_state* state, __global float* map, const __global 
 
 #undef FIRST
 #undef BLOCK
+#undef COUNT_ENTERING
 #undef CROSS_PLANE
 #undef FILL_BORDER
 #undef COUNT_ESCAPED

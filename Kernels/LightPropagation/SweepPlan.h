@@ -43,8 +43,9 @@ struct OwnLightOnDevice
 struct SweepPlan
 {
   /// @param netFlux  the net flux is wanted too
+  /// @param entering  and the power that enters voxels by face
   SweepPlan(const Device& device, const Grid& grid, int axis, const std::vector<Bundle>& bundles, int channels,
-    const std::array<bool, 3>& periodic, bool netFlux);
+    const std::array<bool, 3>& periodic, bool netFlux, bool entering);
 
   Grid grid;
   PlaneAxes axes;
@@ -52,6 +53,7 @@ struct SweepPlan
   int channels;
   std::array<bool, 3> periodic;
   bool netFlux;
+  bool entering;
   bool forward = false; ///< some rays march that way
   bool backward = false;
 

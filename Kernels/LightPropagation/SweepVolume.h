@@ -25,7 +25,10 @@ struct SweepVolume
   const Buffer<float>* source = nullptr;  ///< W / (length^3 sr)
   const Buffer<float>* path = nullptr;    ///< W length, added to
   const Buffer<float>* flux = nullptr;    ///< W length, [channel][x, y, z][stride], added to; null: not wanted
-  std::size_t first = 0; ///< where the first channel of source and path begins (flux: three times that)
+  /// W, [channel][-x, +x, -y, +y, -z, +z][stride], added to: power that enters each voxel through each of its faces; null:
+  /// not wanted
+  const Buffer<float>* entering = nullptr;
+  std::size_t first = 0; ///< where the first channel of source and path begins (flux: three times that, entering: six times)
 };
 
 /// Memory that sweeps along different axes take turns in. What one leaves there means nothing to the next.

@@ -477,7 +477,7 @@ void Solver::CollectOrder(int order)
     this->Light.fluenceDirect = this->Interleaved(this->Fluence);
   }
   this->Light.convergence.push_back(
-    { order, std::chrono::duration<double>(std::chrono::steady_clock::now() - this->Start).count(), 0.0, absorbed,
+    { order, std::chrono::duration<double>(std::chrono::steady_clock::now() - this->Start).count(), 0.0, 0.0, absorbed,
       balance.escaped[0] + balance.escaped[1] + balance.escaped[2],
       balance.leftOver[0] + balance.leftOver[1] + balance.leftOver[2] });
 }

@@ -1,0 +1,132 @@
+#pragma once
+
+#include "AxisSweep.h"
+#include "FusedPropagation.h"
+#include "LowOrder.h"
+
+#include <chrono>
+#include <functional>
+#include <memory>
+#include <string>
+#include <vector>
+
+namespace tyndall
+{
+inline double Total(const Rgb& values)
+{
+  return values[0] + values[1] + values[2];
+}
+
+/// The channels from `first` on.
+inline Rgb From(const Rgb& rgb, int first)
+{
+  return first == 0 ? rgb : Rgb{ rgb[first], 0.0, 0.0 };
+}
+
+/// One solve, from the arrays of the medium to those of the light.
+class FusedSolver
+{
+public:
+  FusedSolver(Device& device, const Medium& medium, const Illumination& illumination, const PropagationSettings& settings)
+    : TheDevice(device)
+    , TheMedium(medium)
+    , Outside(illumination)
+    , Settings(settings)
+    , Directions(SoundDirections(settings.directionsPerFace))
+    , Channels(NeededChannels(medium, illumination))
+    , SharedExtinction(medium.sigma_a.components == 1 && medium.sigma_s.components == 1)
+    , Stride((medium.grid.VoxelCount() + SweepPadding - 1) / SweepPadding * SweepPadding)
+  {
+  }
+
+  LightField Run(const Monitor& monitor);
+
+private:
+  static int NeededChannels(const Medium& medium, const Illumination& illumination);
+  float SigmaS(std::size_t voxel, int channel) const
+  {
+    return static_cast<float>(this->TheMedium.sigma_s.At(voxel, channel) * (1.0 - this->TheMedium.g));
+  }
+  float SigmaT(std::size_t voxel, int channel) const
+  {
+    return this->TheMedium.sigma_a.At(voxel, channel) + this->SigmaS(voxel, channel);
+  }
+
+  void RunOrders(const Monitor& monitor);
+  void Load();
+  void FindSharedExtinction();
+  void MakeSweeps();
+  void PropagateOrder(int order, const Monitor& monitor);
+  void PropagateSweeps(const SweepBoundary& boundary, int mostPlanes, const Monitor& monitor);
+  void PropagateLights(const Monitor& monitor);
+  SweepVolume VolumeOf(int firstChannel) const;
+  void ForChannels(const std::function<void(const SweepVolume&, int)>& act);
+  void Count(const SweepTally& tally, int firstChannel, int channels);
+  SweepBoundary BoundaryOfOrder(int order) const;
+  void CollectOrder(int order);
+  void EstimateResidual(int order);
+  bool Done(int orders) const;
+  void AddRow(int iteration, double change);
+
+  // Accelerated, see AcceleratedPropagation.cxx.
+  void ChooseAcceleration();
+  double OrdersNeeded() const;
+  void RunAccelerated(const Monitor& monitor);
+  void LoadAccelerated();
+  std::vector<float> WithLamps(const Buffer<float>& planar, double scale) const;
+  void SweepAll(int sweepNumber, const Monitor& monitor);
+  void MakeSystems();
+  void Correct(int sweep);
+  void CountLight();
+  void CountEscaped(int channel);
+  bool DoneAccelerated(int sweeps) const;
+  void UnloadAccelerated();
+
+  double Progress(int order, double done) const;
+  std::vector<std::string> LeftOut() const;
+  void Unload();
+
+  std::vector<float> Interleaved(const Buffer<float>& planar, double scale) const;
+
+  Device& TheDevice;
+  const Medium& TheMedium;
+  const Illumination& Outside;
+  std::vector<Light> Lights; ///< those of the scene and the peaks of the environment
+  const PropagationSettings& Settings;
+  DirectionSet Directions;
+  int Channels;
+  bool SharedExtinction;
+  std::size_t Stride;
+
+  Buffer<float> Extinction, Scattering, Source, Path, Flux, Fluence;
+  SweepWorkspace Workspace;
+  std::vector<std::unique_ptr<AxisSweep>> Sweeps;
+  std::vector<Rgb> FromFarAway;
+  bool Shining = false; ///< the source is not zero
+  bool LitFromOutside = false;
+
+  // Accelerated: what the low-order systems have, by channel
+  bool Accelerated = false;
+  bool LinearSource = false;
+  bool Iterating = false;                         ///< sweeps tell what enters voxels, and no net flux
+  Buffer<float> Absorption, Given, Entering;      ///< as LowOrder::Arrays has them
+  std::vector<std::unique_ptr<LowOrder>> Systems;
+  std::vector<std::vector<double>> Found;         ///< W / length^2, without lights' own
+  std::vector<float> Lamps;                       ///< W / length^2, lights' own, [channel][stride]
+  EnergyBalance LampBalance;                      ///< of lights' own light
+  std::array<Rgb, 6> LampFaces = {};
+  Rgb GivenPower = {}, PowerIn = {};              ///< W, emitted or first scattered; through faces
+  std::array<Rgb, 6> FacePowerIn = {};            ///< W, in a sweep
+  double Change = 1.0, LastRatio = 1.0;
+
+  LightField Result;
+  std::chrono::steady_clock::time_point Start;
+  Rgb Scattered = {};     ///< W, by the order just done
+  Rgb OnTheWay = {};      ///< W, rays that still go round a periodic axis
+  Rgb Stranded = {};      ///< W, of lights whose rays go round a periodic axis without end
+  Rgb LastScattered = {}; ///< W, by the order before
+  Rgb AllScattered = {};  ///< W, by all orders so far
+  Rgb Ratio = {};         ///< of this order's scattered power to that of the one before
+  double Residual = 1.0;
+};
+}

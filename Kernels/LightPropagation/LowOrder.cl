@@ -1,0 +1,308 @@
+// The low-order system of a channel, see LowOrder.h: what a sweep found becomes its right-hand side. Read after
+// LowOrderLayout.cl.
+//
+// Face d of a voxel is -x, +x, -y, +y, -z, +z. tau is the optical length of a voxel along an axis.
+
+// Outflow of a half-space whose source is constant in each voxel and falls by one from mean free path to mean free path:
+// sum over mu of mu (tau / 2) coth(tau / (2 mu)) (Gauss, 4 points). 1/6 where voxels are thin, as it should be; tau / 8 where
+// they are thick.
+static float stair(float tau)
+{
+  const float mu[4] = { 0.0694318442f, 0.3300094782f, 0.6699905218f, 0.9305681558f };
+  const float half_weight[4] = { 0.0869637113f, 0.1630362887f, 0.1630362887f, 0.0869637113f };
+  float sum = 0.0f;
+  for (int k = 0; k < 4; ++k)
+  {
+    const float x = 0.5f * tau / mu[k];
+    sum += half_weight[k] * mu[k] * mu[k] * (x < 0.02f ? 1.0f + x * x / 3.0f : x / tanh(x));
+  }
+  return sum;
+}
+
+// Half of a voxel in units of the diffusion length, y = tau sqrt(3 (1 - albedo)) / 2.
+static float half_diffusion_length(float tau, float sigma_t, float sigma_a)
+{
+  return sigma_t > 0.0f ? 0.5f * tau * sqrt(3.0f * fmin(sigma_a / sigma_t, 1.0f)) : 0.0f;
+}
+
+// How much better than tau / 2 a half voxel conducts whose light dies away on the way: at a border...
+static float at_border(float y)
+{
+  return y < 0.01f ? 1.0f : y / tanh(y);
+}
+// ...and between voxels of the same kind, where hyperbolic functions are met exactly.
+static float among_equals(float y)
+{
+  const float x = y < 40.0f ? y / sinh(fmax(y, 1e-3f)) : 0.0f;
+  return y < 0.01f ? 1.0f : fmax(x * x, 1e-20f);
+}
+
+// What a face passes per difference of fluence and area.
+static float pass_face(const low_order_layout* layout, float tau0, float tau1, float y0, float y1, float stairs)
+{
+  const float mean = 0.5f * (tau0 + tau1);
+  if (!layout->linear)
+  {
+    return stairs / fmax(mean, layout->floor);
+  }
+  const float sum = tau0 + tau1;
+  const float equal = sum > 0.0f ? 1.0f - fabs(tau0 - tau1) / sum : 1.0f;
+  const float same = equal * equal;
+  const float way0 = tau0 / mix(at_border(y0), among_equals(y0), same);
+  const float way1 = tau1 / mix(at_border(y1), among_equals(y1), same);
+  return 1.0f / (3.0f * fmax(0.5f * (way0 + way1), layout->floor));
+}
+
+static float face_area(const low_order_layout* layout, int axis)
+{
+  return layout->spacing[(axis + 1) % 3] * layout->spacing[(axis + 2) % 3];
+}
+static float volume_of(const low_order_layout* layout)
+{
+  return layout->spacing[0] * layout->spacing[1] * layout->spacing[2];
+}
+
+// Optical length from the voxel's middle to a face of the box, as the light's way counts.
+static float way_to_boundary(const low_order_layout* layout, float tau, float sigma_t, float sigma_a)
+{
+  return layout->linear ? tau / at_border(half_diffusion_length(tau, sigma_t, sigma_a)) : tau;
+}
+static float pass_boundary(const low_order_layout* layout, float way)
+{
+  const float x = 3.0f * layout->half_range * way;
+  return 2.0f * layout->half_range / (1.0f + (layout->linear ? x : x / (1.0f + x)));
+}
+
+// stairs  [axis][stride]
+__kernel void low_order_stairs(low_order_layout layout, const __global float* sigma_t, __global float* stairs)
+{
+  VOXEL(layout.size)
+  sigma_t += layout.first_t;
+  for (int axis = 0; axis < 3; ++axis)
+  {
+    stairs[(ulong)axis * layout.stride + i] = stair(sigma_t[i] * layout.spacing[axis]);
+  }
+}
+
+// conductance  [axis][voxel] of the voxel's low face, length^2; 0 on the box's border
+// loss         what absorption and the border take per fluence
+__kernel void low_order_conductance(low_order_layout layout, const __global float* sigma_t, const __global float* sigma_a,
+  const __global float* stairs, __global float* conductance, __global float* loss)
+{
+  VOXEL(layout.size)
+  sigma_t += layout.first_t;
+  sigma_a += layout.first;
+  const ulong stride = layout.stride;
+  const int count = layout.size[0] * layout.size[1] * layout.size[2];
+  int next[6];
+  find_neighbours(layout.size, x, y, z, i, next);
+  float taken = sigma_a[i] * volume_of(&layout);
+  for (int axis = 0; axis < 3; ++axis)
+  {
+    const float h = layout.spacing[axis];
+    const float area = face_area(&layout, axis);
+    const int at = axis == 0 ? x : axis == 1 ? y : z;
+    const int j = next[2 * axis];
+    const bool open = !layout.periodic[axis];
+    const float tau0 = sigma_t[j] * h, tau1 = sigma_t[i] * h;
+    const float y0 = half_diffusion_length(tau0, sigma_t[j], sigma_a[j]);
+    const float y1 = half_diffusion_length(tau1, sigma_t[i], sigma_a[i]);
+    const float passes = area * pass_face(&layout, tau0, tau1, y0, y1, stairs[axis * stride + i] + stairs[axis * stride + j]);
+    conductance[axis * count + i] = (at == 0 && open) || layout.size[axis] == 1 ? 0.0f : passes;
+    const int borders = open ? (at == 0) + (at == layout.size[axis] - 1) : 0;
+    taken += borders * area * pass_boundary(&layout, way_to_boundary(&layout, tau1, sigma_t[i], sigma_a[i]));
+  }
+  loss[i] = taken;
+}
+
+// What the sweep's light is compared with: the light it found where voxels are thin, the light it was given where they are
+// thick and it only repeats that.
+__kernel void low_order_model(low_order_layout layout, const __global float* sigma_t, const __global float* path,
+  const __global exact* fluence, __global float* model)
+{
+  VOXEL(layout.size)
+  sigma_t += layout.first_t;
+  path += layout.first;
+  const float longest = sigma_t[i] * fmax(layout.spacing[0], fmax(layout.spacing[1], layout.spacing[2]));
+  const float found = path[i] / volume_of(&layout);
+  const float thick = layout.linear ? longest * longest / (1.0f + longest * longest) : 0.0f;
+  model[i] = longest > 1e9f ? (float)fluence[i] : found + thick * ((float)fluence[i] - found);
+}
+
+typedef struct
+{
+  const __global float* sigma_t;
+  const __global float* sigma_a;
+  const __global float* stairs;
+  const __global float* conductance;
+  const __global float* entering;
+  const __global float* model;
+  const __global float* pattern;
+  ulong stride;
+  int count;
+} low_order_arrays;
+
+// Rays that cross a face, over those that should: what a repeated pattern of few rays has too many or too few.
+static float pattern_at(const low_order_layout* layout, const low_order_arrays* arrays, int axis, const int* at, float tau)
+{
+  const int b = axis == 0 ? 1 : 0;
+  const int c = axis == 2 ? 1 : 2;
+  const float crossing = arrays->pattern[layout->pattern[2 * axis] + at[b]] + arrays->pattern[layout->pattern[2 * axis + 1] + at[c]];
+  const float thick = tau * tau / (1.0f + tau * tau); // in thin voxels it is in the light too
+  return 1.0f + thick * (crossing - 1.0f);
+}
+
+// How much of what a sweep knows better than diffusion is believed: little where voxels are thick and it knows nothing.
+static float belief(const low_order_layout* layout, float tau)
+{
+  return layout->linear ? 1.0f / (1.0f + 0.25f * tau * tau) : 1.0f;
+}
+
+// Power through inner face d out of voxel i, that of the sweep less that of the model.
+static float remainder_of_face(
+  const low_order_layout* layout, const low_order_arrays* arrays, int d, int i, int j, const int* at)
+{
+  const int axis = d / 2;
+  const ulong stride = arrays->stride;
+  const float tau = 0.5f * layout->spacing[axis] * (arrays->sigma_t[i] + arrays->sigma_t[j]);
+  const float passes = arrays->conductance[axis * arrays->count + (d & 1 ? j : i)];
+  const float net = arrays->entering[(d ^ 1) * stride + j] - arrays->entering[d * stride + i];
+  const float stairs = arrays->stairs[axis * stride + i] + arrays->stairs[axis * stride + j];
+  const float spread =
+    layout->linear ? 3.0f * passes * stairs * pattern_at(layout, arrays, axis, at, tau) : passes;
+  const float believed = belief(layout, tau);
+  return believed > 1e-12f ? believed * (net - spread * (arrays->model[i] - arrays->model[j])) : 0.0f;
+}
+
+// Power through a face of the box, out less in, that the model expects; what it expects without any light in the voxel.
+static float model_of_boundary(
+  const low_order_layout* layout, const low_order_arrays* arrays, int d, int i, const int* at, float* dark)
+{
+  const int axis = d / 2;
+  const float a = layout->half_range;
+  const float tau = arrays->sigma_t[i] * layout->spacing[axis];
+  const float way = way_to_boundary(layout, tau, arrays->sigma_t[i], arrays->sigma_a[i]);
+  const float passes = pass_boundary(layout, way);
+  const float incoming = layout->incoming[d];
+  const float area = face_area(layout, axis);
+  const float light = arrays->model[i];
+  *dark = -passes / a * incoming * area;
+  const float net = passes * (light - incoming / a);
+  if (!layout->linear)
+  {
+    return net * area;
+  }
+  const float at_face = light - 1.5f * way * net;
+  const float spread = a * at_face + 3.0f * net * arrays->stairs[axis * arrays->stride + i] - incoming;
+  return pattern_at(layout, arrays, axis, at, tau) * spread * area;
+}
+
+// The right-hand side, W.
+// given    emitted and first scattered light of lights, W / (length^3 sr)
+// source   of the sweep, W / (length^3 sr)
+// remainder  through the voxel's faces that are the box's, W
+__kernel void low_order_balance(low_order_layout layout, const __global float* sigma_t, const __global float* sigma_a,
+  const __global float* stairs, const __global float* conductance, const __global float* entering,
+  const __global float* model, const __global float* pattern, const __global float* given,
+  const __global float* source, const __global float* path, __global exact* right, __global float* remainder)
+{
+  VOXEL(layout.size)
+  sigma_t += layout.first_t;
+  sigma_a += layout.first;
+  entering += 6 * (ulong)layout.first;
+  given += layout.first;
+  source += layout.first;
+  path += layout.first;
+  const ulong stride = layout.stride;
+  const int count = layout.size[0] * layout.size[1] * layout.size[2];
+  const low_order_arrays arrays = { sigma_t, sigma_a, stairs, conductance, entering, model, pattern, stride, count };
+  const int at[3] = { x, y, z };
+  int next[6];
+  find_neighbours(layout.size, x, y, z, i, next);
+  const float per_radiance = 4.0f * M_PI_F * volume_of(&layout);
+  float power = given[i] * per_radiance;
+  float left = source[i] * per_radiance - sigma_t[i] * path[i]; // of the sweep, through the box's faces, out less in
+  float expected = 0.0f;
+  float thickest = 0.0f;
+  for (int d = 0; d < 6; ++d)
+  {
+    const int axis = d / 2;
+    const bool border = !layout.periodic[axis] && at[axis] == (d & 1 ? layout.size[axis] - 1 : 0);
+    if (border)
+    {
+      float dark;
+      expected += model_of_boundary(&layout, &arrays, d, i, at, &dark);
+      power -= dark;
+      thickest = fmax(thickest, sigma_t[i] * layout.spacing[axis]);
+    }
+    else if (layout.size[axis] > 1)
+    {
+      power -= remainder_of_face(&layout, &arrays, d, i, next[d], at);
+      left -= entering[(d ^ 1) * stride + next[d]] - entering[d * stride + i];
+    }
+  }
+  const bool outermost = IS_OUTERMOST(layout, at);
+  const float believed = belief(&layout, thickest);
+  const float rest = outermost && believed > 1e-12f ? believed * (left - expected) : 0.0f;
+  remainder[i] = rest;
+  right[i] = power - rest;
+}
+
+// Net flux, W / length^2 times volume, [x, y, z][stride], added to.
+__kernel void low_order_flux(low_order_layout layout, const __global float* sigma_t, const __global float* sigma_a,
+  const __global float* stairs, const __global float* conductance, const __global float* entering,
+  const __global float* model, const __global float* pattern, const __global exact* fluence,
+  const __global float* remainder, __global float* flux)
+{
+  VOXEL(layout.size)
+  sigma_t += layout.first_t;
+  sigma_a += layout.first;
+  entering += 6 * (ulong)layout.first;
+  flux += 3 * (ulong)layout.first;
+  const ulong stride = layout.stride;
+  const int count = layout.size[0] * layout.size[1] * layout.size[2];
+  const low_order_arrays arrays = { sigma_t, sigma_a, stairs, conductance, entering, model, pattern, stride, count };
+  const int at[3] = { x, y, z };
+  int next[6];
+  find_neighbours(layout.size, x, y, z, i, next);
+  float out[6];
+  float border_area = 0.0f;
+  for (int d = 0; d < 6; ++d)
+  {
+    const int axis = d / 2;
+    const bool border = !layout.periodic[axis] && at[axis] == (d & 1 ? layout.size[axis] - 1 : 0);
+    border_area += border ? face_area(&layout, axis) : 0.0f;
+  }
+  for (int d = 0; d < 6; ++d)
+  {
+    const int axis = d / 2;
+    const float area = face_area(&layout, axis);
+    const bool border = !layout.periodic[axis] && at[axis] == (d & 1 ? layout.size[axis] - 1 : 0);
+    if (border)
+    {
+      const float tau = sigma_t[i] * layout.spacing[axis];
+      const float passes = pass_boundary(&layout, way_to_boundary(&layout, tau, sigma_t[i], sigma_a[i]));
+      out[d] = passes * area * ((float)fluence[i] - layout.incoming[d] / layout.half_range) +
+        remainder[i] * area / border_area;
+    }
+    else
+    {
+      const float passes = conductance[axis * count + (d & 1 ? next[d] : i)];
+      out[d] = passes * (float)(fluence[i] - fluence[next[d]]) +
+        (layout.size[axis] > 1 ? remainder_of_face(&layout, &arrays, d, i, next[d], at) : 0.0f);
+    }
+  }
+  for (int axis = 0; axis < 3; ++axis)
+  {
+    flux[axis * stride + i] += 0.5f * (out[2 * axis + 1] - out[2 * axis]) * layout.spacing[axis];
+  }
+}
+
+// The next sweep's source: what the medium shines and what it scatters.
+__kernel void low_order_source(low_order_layout layout, const __global float* given, const __global float* sigma_s,
+  const __global exact* fluence, __global float* source)
+{
+  VOXEL(layout.size)
+  const ulong at = (ulong)layout.first + i;
+  source[at] = given[at] + sigma_s[at] * (float)fluence[i] * (0.25f * M_1_PI_F);
+}

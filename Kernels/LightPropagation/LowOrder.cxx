@@ -1,0 +1,246 @@
+#include "LowOrder.h"
+
+#include "TyndallKernelSources.h"
+
+#include <algorithm>
+#include <cmath>
+#include <cstdlib>
+
+namespace tyndall
+{
+namespace
+{
+constexpr double Pi = 3.14159265358979323846;
+constexpr int Chunk = 4096;         ///< as in LowOrderSolve.cl
+constexpr int Sums_ = 8;            ///< SUMS there
+constexpr double Floor = 0.05;      ///< optical length between centres of voxels that pass light as if it were that long
+constexpr double Reduction = 1e-3;  ///< of the residual in one correction: sweeps gain less than that
+
+int OtherAxis(int axis, int which)
+{
+  const PlaneAxes axes = AcrossAxis(axis);
+  return which == 0 ? axes.u : axes.v;
+}
+
+double FaceArea(const Grid& grid, int axis)
+{
+  return grid.spacing[(axis + 1) % 3] * grid.spacing[(axis + 2) % 3];
+}
+
+/// sum over directions of w mu, mu > 0, that march along `marching`.
+double HalfRange(const Grid& grid, const DirectionSet& set, int axis, int marching)
+{
+  double sum = 0.0;
+  for (const Direction& direction : set.directions)
+  {
+    sum += direction.omega[axis] > 0.0 && MarchingAxis(grid, direction.omega) == marching
+      ? direction.weight * direction.omega[axis]
+      : 0.0;
+  }
+  return sum;
+}
+
+/// Power at radiance 1 that crosses faces across `axis` upwards in each plane, per area, of rays that march along `marching`.
+std::vector<double> CrossingsIn(const Grid& grid, const DirectionSet& set, int mapResolution, int axis, int marching)
+{
+  const int planes = grid.size[marching];
+  const bool isU = AcrossAxis(marching).u == axis;
+  std::vector<double> power(planes, 0.0);
+  for (const Bundle& bundle : BundlesAlong(marching, grid, set, mapResolution))
+  {
+    for (int k = 0; k < planes; ++k)
+    {
+      const PlaneCrossing crossing = bundle.Crossing(k);
+      for (int s = 1; s < crossing.count; ++s)
+      {
+        for (const Member& member : bundle.members)
+        {
+          const int fromU = isU ? member.uFromU : member.vFromU;
+          const int fromV = isU ? member.uFromV : member.vFromV;
+          const int move = fromU * crossing.segments[s].moveU + fromV * crossing.segments[s].moveV;
+          if (move > 0)
+          {
+            power[k] += bundle.power / FaceArea(grid, axis);
+            power[planes - 1 - k] += bundle.power / FaceArea(grid, axis);
+          }
+        }
+      }
+    }
+  }
+  return power;
+}
+}
+
+CrossingPattern FindCrossingPattern(
+  const Grid& grid, const DirectionSet& set, int mapResolution, const std::array<bool, 3>& periodic)
+{
+  CrossingPattern pattern;
+  for (int axis = 0; axis < 3; ++axis)
+  {
+    const double straight = HalfRange(grid, set, axis, axis);
+    double all = straight;
+    for (int which = 0; which < 2; ++which)
+    {
+      all += HalfRange(grid, set, axis, OtherAxis(axis, which));
+    }
+    for (int which = 0; which < 2; ++which)
+    {
+      const int marching = OtherAxis(axis, which);
+      std::vector<double> power = CrossingsIn(grid, set, mapResolution, axis, marching);
+      if (periodic[marching]) // rays go round and round: the mean is what counts
+      {
+        std::fill(power.begin(), power.end(), HalfRange(grid, set, axis, marching));
+      }
+      pattern.first[2 * axis + which] = static_cast<int>(pattern.values.size());
+      for (double crossing : power)
+      {
+        pattern.values.push_back(static_cast<float>((crossing + (which == 0 ? straight : 0.0)) / all));
+      }
+    }
+  }
+  return pattern;
+}
+
+LowOrder::LowOrder(Device& device, const Grid& grid, const std::array<bool, 3>& periodic,
+  const DirectionSet& directions, const CrossingPattern& pattern, const Arrays& arrays,
+  const std::array<double, 6>& incoming, bool linear)
+  : TheDevice(device)
+  , The(arrays)
+  , Count(grid.VoxelCount())
+  , Solver(device, grid.size, grid.spacing)
+{
+  double halfRange = 0.0;
+  for (int marching = 0; marching < 3; ++marching)
+  {
+    halfRange += HalfRange(grid, directions, 0, marching) / (4.0 * Pi);
+  }
+  for (int axis = 0; axis < 3; ++axis)
+  {
+    this->Layout.size[axis] = grid.size[axis];
+    this->Layout.periodic[axis] = periodic[axis];
+    this->Layout.spacing[axis] = static_cast<float>(grid.spacing[axis]);
+  }
+  this->Layout.linear = linear;
+  this->Layout.stride = static_cast<cl_int>(arrays.stride);
+  this->Layout.firstT = static_cast<cl_int>(arrays.firstT);
+  this->Layout.first = static_cast<cl_int>(arrays.first);
+  std::copy(pattern.first.begin(), pattern.first.end(), this->Layout.pattern);
+  this->Layout.halfRange = static_cast<float>(halfRange);
+  this->Layout.floor = static_cast<float>(Floor);
+  std::copy(incoming.begin(), incoming.end(), this->Layout.incoming);
+
+  const char* what = "the low-order system";
+  this->Pattern = Buffer<float>(device, pattern.values, what);
+  this->Stairs = Buffer<float>(device, 3 * arrays.stride, what);
+  this->Model = Buffer<float>(device, this->Count, what);
+  this->RemainderOfFaces = Buffer<float>(device, this->Count, what);
+  this->Right = ExactValues(device, this->Count, what);
+  this->Given = ExactValues(device, this->Count, what);
+  this->Solution = ExactValues(device, this->Count, what);
+  this->Sums = ExactValues(device, Sums_ * ((this->Count + Chunk - 1) / Chunk), "sums");
+  for (int i = 0; i < 2; ++i)
+  {
+    this->FoundBefore[i] = Buffer<float>(device, this->Count, what);
+    this->ChangeBefore[i] = Buffer<float>(device, this->Count, what);
+    this->FoundBefore[i].Fill(0.0f);
+    this->ChangeBefore[i].Fill(0.0f);
+  }
+
+  cl::Kernel stairs = this->Kernel("low_order_stairs");
+  With(stairs, this->Layout, *arrays.sigma_t, this->Stairs);
+  this->Run(stairs);
+  cl::Kernel conductance = this->Kernel("low_order_conductance");
+  With(conductance, this->Layout, *arrays.sigma_t, *arrays.sigma_a, this->Stairs,
+    this->Solver.Conductance(), this->Solver.Loss());
+  this->Run(conductance);
+  this->Solver.Coarsen();
+}
+
+cl::Kernel LowOrder::Kernel(const char* name) const
+{
+  return this->TheDevice.Kernel(
+    name, { kernel_source::LowOrderLayout, kernel_source::LowOrder, kernel_source::LowOrderSolve }, ExactOption(this->TheDevice));
+}
+
+void LowOrder::Run(cl::Kernel& kernel)
+{
+  this->TheDevice.Queue().enqueueNDRangeKernel(
+    kernel, cl::NullRange, this->Solver.Range(this->Layout.size), LowOrderSolver::Group());
+}
+
+void LowOrder::WriteSource()
+{
+  cl::Kernel kernel = this->Kernel("low_order_source");
+  With(kernel, this->Layout, *this->The.given, *this->The.sigma_s, this->Given.Handle(), *this->The.source);
+  this->Run(kernel);
+}
+
+double LowOrder::Correct(double unit)
+{
+  const Arrays& the = this->The;
+  cl::Kernel model = this->Kernel("low_order_model");
+  With(model, this->Layout, *the.sigma_t, *the.path, this->Given.Handle(), this->Model);
+  this->Run(model);
+  cl::Kernel balance = this->Kernel("low_order_balance");
+  With(balance, this->Layout, *the.sigma_t, *the.sigma_a, this->Stairs, this->Solver.Conductance(), *the.entering,
+    this->Model, this->Pattern, *the.given, *the.source, *the.path, this->Right.Handle(), this->RemainderOfFaces);
+  this->Run(balance);
+  this->Solver.Solve(this->Right, this->Solution, unit, Reduction);
+
+  double change = 0.0;
+  const std::array<double, 2> weights = this->Weights(&change);
+  cl::Kernel step = this->Kernel("anderson_step");
+  std::swap(this->FoundBefore[0], this->FoundBefore[1]);
+  std::swap(this->ChangeBefore[0], this->ChangeBefore[1]);
+  // What was the last is now the second before, and its place is taken: the kernel reads before it writes.
+  With(step, this->Given.Handle(), this->Solution.Handle(), this->FoundBefore[1], this->FoundBefore[0],
+    this->ChangeBefore[0], static_cast<float>(weights[0]), static_cast<float>(weights[1]), *the.path, cl_int(the.first),
+    static_cast<float>(1.0 / (static_cast<double>(this->Layout.spacing[0]) * this->Layout.spacing[1] * this->Layout.spacing[2])));
+  this->TheDevice.Queue().enqueueNDRangeKernel(step, cl::NullRange, cl::NDRange(this->Count), cl::NullRange);
+  ++this->Corrections;
+  return change;
+}
+
+/// Of the last correction but one and the one before that in Anderson's mix: least squares of the change.
+std::array<double, 2> LowOrder::Weights(double* change)
+{
+  cl::Kernel kernel = this->Kernel("anderson_sums");
+  With(kernel, this->Given.Handle(), this->Solution.Handle(), this->ChangeBefore[0], this->ChangeBefore[1],
+    cl_int(this->Count), this->Sums.Handle());
+  const std::size_t chunks = (this->Count + Chunk - 1) / Chunk;
+  this->TheDevice.Queue().enqueueNDRangeKernel(kernel, cl::NullRange, cl::NDRange(chunks), cl::NDRange(1));
+  std::array<double, Sums_> sums = {};
+  const std::vector<double> parts = this->Sums.Read();
+  for (std::size_t i = 0; i < parts.size(); ++i)
+  {
+    sums[i % Sums_] += parts[i];
+  }
+  const auto& [ff, all, aa, ab, bb, af, bf, unused] = sums;
+  *change = all > 0.0 ? std::sqrt(ff / all) : 0.0;
+  const double determinant = aa * bb - ab * ab;
+  if (this->Corrections >= 2 && determinant > 1e-8 * aa * bb)
+  {
+    return { (af * bb - bf * ab) / determinant, (bf * aa - af * ab) / determinant };
+  }
+  return { this->Corrections >= 1 && aa > 0.0 ? af / aa : 0.0, 0.0 };
+}
+
+double LowOrder::Outflow(int face, double found, double sigma_t, double sigma_a) const
+{
+  const double tau = sigma_t * this->Layout.spacing[face / 2];
+  const double y = sigma_t > 0.0 ? 0.5 * tau * std::sqrt(3.0 * std::min(sigma_a / sigma_t, 1.0)) : 0.0;
+  const double a = this->Layout.halfRange;
+  const double x = 3.0 * a * (this->Layout.linear && y >= 0.01 ? tau * std::tanh(y) / y : tau);
+  const double passes = 2.0 * a / (1.0 + (this->Layout.linear ? x : x / (1.0 + x)));
+  return passes * (found - this->Layout.incoming[face] / a);
+}
+
+void LowOrder::AddFlux(const Buffer<float>& flux)
+{
+  const Arrays& the = this->The;
+  cl::Kernel kernel = this->Kernel("low_order_flux");
+  With(kernel, this->Layout, *the.sigma_t, *the.sigma_a, this->Stairs, this->Solver.Conductance(), *the.entering,
+    this->Model, this->Pattern, this->Solution.Handle(), this->RemainderOfFaces, flux);
+  this->Run(kernel);
+}
+}

@@ -1,0 +1,55 @@
+// Power that enters voxels through their faces: what goes from one to the next, for the balance of a low-order system. Read
+// after SweepLayout.cl, before SweepBundle.cl.
+
+#if ENTERING
+// Part of the rays of row y that come through one kind of face.
+static void add_entering(sweep_state* state, int y, int face, const __global float* rays, float part)
+{
+  const int rows = state->sizeV * ROW;
+  for (int c = 0; c < CHANNELS; ++c)
+  {
+    __global float* sum = state->planes + (PLANE_ENTERING + ENTERING_FACES * c + face) * rows + y * ROW;
+    for (int x = 0; x < state->width; x += REAL_WIDTH)
+    {
+      store_real(multiply_add(load_real(x, rays + c * ROW), (real)part, load_real(x, sum)), x, sum);
+    }
+  }
+}
+
+// Half of the rays that come from column x - du into column x - du of row y: what enters x itself comes through u after that.
+static void add_beside(sweep_state* state, int y, int du, int face, const __global float* rays)
+{
+  const int rows = state->sizeV * ROW;
+  const int size = state->sizeU;
+  for (int c = 0; c < CHANNELS; ++c)
+  {
+    const __global float* from = rays + c * ROW;
+    __global float* sum = state->planes + (PLANE_ENTERING + ENTERING_FACES * c + face) * rows + y * ROW;
+    for (int x = 0; x < state->width; x += REAL_WIDTH)
+    {
+      // A row's last floats and what is before its first are never looked at.
+      const real ray = select(load_real(x, from), (real)0.0f, LANES >= size - x);
+      store_real(multiply_add(ray, (real)0.5f, load_real(x - du, sum)), x - du, sum);
+    }
+#if PERIODIC_U
+    sum[du > 0 ? size - 1 : 0] += 0.5f * from[du > 0 ? 0 : size - 1];
+#endif
+  }
+}
+
+// Rays that go through the edge between four voxels: half pass the voxel beside, half the one before.
+static void add_through_edge(sweep_state* state, int y, int du, int dv, const __global float* rays)
+{
+  const int u_face = du > 0 ? ENTERING_LOW_U : ENTERING_HIGH_U;
+  const int v_face = dv > 0 ? ENTERING_LOW_V : ENTERING_HIGH_V;
+  const int height = state->sizeV;
+  const int before = PERIODIC_V ? (y - dv + height) % height : y - dv;
+  if (before >= 0 && before < height)
+  {
+    add_entering(state, before, u_face, rays, 0.5f);
+  }
+  add_entering(state, y, v_face, rays, 0.5f);
+  add_beside(state, y, du, v_face, rays);
+  add_entering(state, y, u_face, rays, 0.5f);
+}
+#endif
