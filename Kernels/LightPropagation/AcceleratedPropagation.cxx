@@ -142,6 +142,10 @@ std::vector<float> FusedSolver::WithLamps(const Buffer<float>& planar, double sc
 /// From the source that is there to path and entering power. The light that comes in from outside comes in every time.
 void FusedSolver::SweepAll(int sweepNumber, const Monitor& monitor)
 {
+  for (const std::unique_ptr<LowOrder>& system : this->Systems)
+  {
+    system->WriteSource();
+  }
   this->Path.Fill(0.0f);
   this->Entering.Fill(0.0f);
   for (const std::unique_ptr<AxisSweep>& sweep : this->Sweeps)
@@ -205,7 +209,6 @@ void FusedSolver::Correct(int sweep)
     {
       change = std::max(
         change, this->Systems[c]->Correct(power / static_cast<double>(this->TheMedium.grid.VoxelCount())));
-      this->Systems[c]->WriteSource();
     }
   }
   const double ratio = sweep > 0 && this->Change > 0.0 ? change / this->Change : 1.0;
@@ -233,54 +236,14 @@ void FusedSolver::CountLight()
       this->Result.balance.absorbed[c] +=
         static_cast<double>(this->TheMedium.sigma_a.At(i, c)) * this->Found[c][i] * grid.VoxelVolume();
     }
-    this->CountEscaped(c);
-    this->Result.balance.leftOver[c] = this->Stranded[c];
-  }
-}
-
-void FusedSolver::CountEscaped(int c)
-{
-  const Grid& grid = this->TheMedium.grid;
-  const std::vector<float> remainder = this->Systems[c]->Remainder();
-  std::array<double, 6> area = {};
-  for (int face = 0; face < 6; ++face)
-  {
-    const PlaneAxes axes = AcrossAxis(face / 2);
-    area[face] = this->Settings.periodic[face / 2] ? 0.0 : grid.spacing[axes.u] * grid.spacing[axes.v];
-  }
-  std::size_t i = 0;
-  for (int z = 0; z < grid.size[2]; ++z)
-  {
-    for (int y = 0; y < grid.size[1]; ++y)
+    const std::array<double, 6> outflow = this->Systems[c]->Outflow(); // less what came in
+    for (int face = 0; face < 6; ++face)
     {
-      for (int x = 0; x < grid.size[0]; ++x, ++i)
-      {
-        const std::array<bool, 6> at = { x == 0, x == grid.size[0] - 1, y == 0, y == grid.size[1] - 1, z == 0,
-          z == grid.size[2] - 1 };
-        double border = 0.0;
-        for (int face = 0; face < 6; ++face)
-        {
-          border += at[face] ? area[face] : 0.0;
-        }
-        for (int face = 0; border > 0.0 && face < 6; ++face)
-        {
-          if (at[face] && area[face] > 0.0)
-          {
-            const double net =
-              this->Systems[c]->Outflow(face, this->Found[c][i], this->SigmaT(i, c), this->TheMedium.sigma_a.At(i, c));
-            const double power = area[face] * (net + remainder[i] / border);
-            this->Result.facePowerOut[face][c] += power;
-            this->Result.balance.escaped[c] += power;
-          }
-        }
-      }
+      const double out = outflow[face] + this->FacePowerIn[face][c];
+      this->Result.facePowerOut[face][c] += out;
+      this->Result.balance.escaped[c] += out;
     }
-  }
-  // Net is less what came in.
-  for (int face = 0; face < 6; ++face)
-  {
-    this->Result.facePowerOut[face][c] += this->FacePowerIn[face][c];
-    this->Result.balance.escaped[c] += this->FacePowerIn[face][c];
+    this->Result.balance.leftOver[c] = this->Stranded[c];
   }
 }
 

@@ -78,7 +78,6 @@ private:
   void MakeSystems();
   void Correct(int sweep);
   void CountLight();
-  void CountEscaped(int channel);
   bool DoneAccelerated(int sweeps) const;
   void UnloadAccelerated();
 

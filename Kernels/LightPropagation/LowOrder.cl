@@ -197,104 +197,166 @@ static float model_of_boundary(
   return pattern_at(layout, arrays, axis, at, tau) * spread * area;
 }
 
-// The right-hand side, W.
-// given    emitted and first scattered light of lights, W / (length^3 sr)
-// source   of the sweep, W / (length^3 sr)
-// remainder  through the voxel's faces that are the box's, W
-__kernel void low_order_balance(low_order_layout layout, const __global float* sigma_t, const __global float* sigma_a,
-  const __global float* stairs, const __global float* conductance, const __global float* entering,
-  const __global float* model, const __global float* pattern, const __global float* given,
-  const __global float* source, const __global float* path, __global exact* right, __global float* remainder)
+static bool is_border(const low_order_layout* layout, const int* at, int d)
 {
-  VOXEL(layout.size)
-  sigma_t += layout.first_t;
-  sigma_a += layout.first;
-  entering += 6 * (ulong)layout.first;
-  given += layout.first;
-  source += layout.first;
-  path += layout.first;
-  const ulong stride = layout.stride;
-  const int count = layout.size[0] * layout.size[1] * layout.size[2];
-  const low_order_arrays arrays = { sigma_t, sigma_a, stairs, conductance, entering, model, pattern, stride, count };
-  const int at[3] = { x, y, z };
-  int next[6];
-  find_neighbours(layout.size, x, y, z, i, next);
-  const float per_radiance = 4.0f * M_PI_F * volume_of(&layout);
-  float power = given[i] * per_radiance;
-  float left = source[i] * per_radiance - sigma_t[i] * path[i]; // of the sweep, through the box's faces, out less in
-  float expected = 0.0f;
-  float thickest = 0.0f;
+  const int axis = d / 2;
+  return !layout->periodic[axis] && at[axis] == (d & 1 ? layout->size[axis] - 1 : 0);
+}
+
+// What a sweep knows better about the faces of the box at voxel i, W out of it less in, in all.
+//   power  what the medium shines there, in the sweep, less what it takes of the light
+//   share  [face] its part for each face: as the sweep's light seems to leave through them
+static float remainder_of_borders(const low_order_layout* layout, const low_order_arrays* arrays, int i, const int* next,
+  const int* at, float power, float* share)
+{
+  float left = power; // through the box's faces, out less in
+  float in = 0.0f, expected = 0.0f, thickest = 0.0f, seeming = 0.0f;
+  float model[6];
   for (int d = 0; d < 6; ++d)
   {
     const int axis = d / 2;
-    const bool border = !layout.periodic[axis] && at[axis] == (d & 1 ? layout.size[axis] - 1 : 0);
-    if (border)
+    const float entered = arrays->entering[d * arrays->stride + i];
+    model[d] = share[d] = 0.0f;
+    if (is_border(layout, at, d))
     {
       float dark;
-      expected += model_of_boundary(&layout, &arrays, d, i, at, &dark);
-      power -= dark;
-      thickest = fmax(thickest, sigma_t[i] * layout.spacing[axis]);
+      model[d] = model_of_boundary(layout, arrays, d, i, at, &dark);
+      const float tau = arrays->sigma_t[i] * layout->spacing[axis];
+      const float through = exp(-fmin(tau, 80.0f));
+      share[d] = through * arrays->entering[(d ^ 1) * arrays->stride + i] +
+        (1.0f - through) * layout->half_range * face_area(layout, axis) * fmax(arrays->model[i], 0.0f);
+      expected += model[d];
+      seeming += share[d];
+      in += entered;
+      thickest = fmax(thickest, tau);
     }
-    else if (layout.size[axis] > 1)
+    else if (layout->size[axis] > 1)
     {
-      power -= remainder_of_face(&layout, &arrays, d, i, next[d], at);
-      left -= entering[(d ^ 1) * stride + next[d]] - entering[d * stride + i];
+      left -= arrays->entering[(d ^ 1) * arrays->stride + next[d]] - entered;
     }
   }
-  const bool outermost = IS_OUTERMOST(layout, at);
-  const float believed = belief(&layout, thickest);
-  const float rest = outermost && believed > 1e-12f ? believed * (left - expected) : 0.0f;
-  remainder[i] = rest;
-  right[i] = power - rest;
+  const float believed = belief(layout, thickest);
+  const float rest = believed > 1e-12f ? believed * (left - expected) : 0.0f;
+  for (int d = 0; d < 6; ++d)
+  {
+    const float out = seeming > 0.0f ? (left + in) * share[d] / seeming : 0.0f;
+    share[d] = believed > 1e-12f && is_border(layout, at, d)
+      ? believed * (out - arrays->entering[d * arrays->stride + i] - model[d])
+      : 0.0f;
+  }
+  return rest;
+}
+
+// Power through face d out of voxel i, less what comes in, by the solution; `share` of its remainder where it is the box's.
+static exact power_of_face(const low_order_layout* layout, const low_order_arrays* arrays, const __global exact* fluence,
+  int d, int i, const int* next, const int* at, const float* share)
+{
+  const int axis = d / 2;
+  if (is_border(layout, at, d))
+  {
+    const float tau = arrays->sigma_t[i] * layout->spacing[axis];
+    const float passes = pass_boundary(layout, way_to_boundary(layout, tau, arrays->sigma_t[i], arrays->sigma_a[i]));
+    return passes * face_area(layout, axis) * (fluence[i] - layout->incoming[d] / layout->half_range) + share[d];
+  }
+  if (layout->size[axis] == 1)
+  {
+    return 0;
+  }
+  const exact passes = arrays->conductance[axis * arrays->count + (d & 1 ? next[d] : i)];
+  return passes * (fluence[i] - fluence[next[d]]) + remainder_of_face(layout, arrays, d, i, next[d], at);
+}
+
+#define ARRAYS_OF_CHANNEL                                                      \
+  sigma_t += layout.first_t;                                                   \
+  sigma_a += layout.first;                                                     \
+  entering += 6 * (ulong)layout.first;                                         \
+  source += layout.first;                                                      \
+  path += layout.first;                                                        \
+  const ulong stride = layout.stride;                                          \
+  const int count = layout.size[0] * layout.size[1] * layout.size[2];          \
+  const low_order_arrays arrays = { sigma_t, sigma_a, stairs, conductance, entering, model, pattern, stride, count }; \
+  const int at[3] = { x, y, z };                                               \
+  int next[6];                                                                 \
+  find_neighbours(layout.size, x, y, z, i, next);                              \
+  const float per_radiance = 4.0f * M_PI_F * volume_of(&layout);               \
+  float share[6];
+
+// The right-hand side, W.
+// given    emitted and first scattered light of lights, W / (length^3 sr)
+// source   of the sweep, W / (length^3 sr)
+__kernel void low_order_balance(low_order_layout layout, const __global float* sigma_t, const __global float* sigma_a,
+  const __global float* stairs, const __global float* conductance, const __global float* entering,
+  const __global float* model, const __global float* pattern, const __global float* source,
+  const __global float* path, const __global float* given, __global exact* right)
+{
+  VOXEL(layout.size)
+  ARRAYS_OF_CHANNEL
+  float power = given[layout.first + i] * per_radiance;
+  for (int d = 0; d < 6; ++d)
+  {
+    if (is_border(&layout, at, d))
+    {
+      float dark;
+      model_of_boundary(&layout, &arrays, d, i, at, &dark);
+      power -= dark;
+    }
+    else if (layout.size[d / 2] > 1)
+    {
+      power -= remainder_of_face(&layout, &arrays, d, i, next[d], at);
+    }
+  }
+  if (IS_OUTERMOST(layout, at))
+  {
+    power -= remainder_of_borders(&layout, &arrays, i, next, at, source[i] * per_radiance - sigma_t[i] * path[i], share);
+  }
+  right[i] = power;
+}
+
+// Power out of the box less in, a voxel's faces at its border: [face][row][voxel of the row], W.
+__kernel void low_order_outflow(low_order_layout layout, const __global float* sigma_t, const __global float* sigma_a,
+  const __global float* stairs, const __global float* conductance, const __global float* entering,
+  const __global float* model, const __global float* pattern, const __global float* source,
+  const __global float* path, const __global exact* fluence, __global exact* outflow)
+{
+  VOXEL(layout.size)
+  if (!IS_OUTERMOST(layout, ((int[3]){ x, y, z })))
+  {
+    return;
+  }
+  ARRAYS_OF_CHANNEL
+  remainder_of_borders(&layout, &arrays, i, next, at, source[i] * per_radiance - sigma_t[i] * path[i], share);
+  int begin = 0;
+  for (int d = 0; d < 6; ++d)
+  {
+    const int u = d / 2 == 0 ? 1 : 0;
+    const int v = d / 2 == 2 ? 1 : 2;
+    if (is_border(&layout, at, d))
+    {
+      outflow[begin + at[v] * layout.size[u] + at[u]] =
+        power_of_face(&layout, &arrays, fluence, d, i, next, at, share);
+    }
+    begin += layout.size[u] * layout.size[v];
+  }
 }
 
 // Net flux, W / length^2 times volume, [x, y, z][stride], added to.
 __kernel void low_order_flux(low_order_layout layout, const __global float* sigma_t, const __global float* sigma_a,
   const __global float* stairs, const __global float* conductance, const __global float* entering,
-  const __global float* model, const __global float* pattern, const __global exact* fluence,
-  const __global float* remainder, __global float* flux)
+  const __global float* model, const __global float* pattern, const __global float* source,
+  const __global float* path, const __global exact* fluence, __global float* flux)
 {
   VOXEL(layout.size)
-  sigma_t += layout.first_t;
-  sigma_a += layout.first;
-  entering += 6 * (ulong)layout.first;
+  ARRAYS_OF_CHANNEL
   flux += 3 * (ulong)layout.first;
-  const ulong stride = layout.stride;
-  const int count = layout.size[0] * layout.size[1] * layout.size[2];
-  const low_order_arrays arrays = { sigma_t, sigma_a, stairs, conductance, entering, model, pattern, stride, count };
-  const int at[3] = { x, y, z };
-  int next[6];
-  find_neighbours(layout.size, x, y, z, i, next);
-  float out[6];
-  float border_area = 0.0f;
-  for (int d = 0; d < 6; ++d)
+  if (IS_OUTERMOST(layout, at))
   {
-    const int axis = d / 2;
-    const bool border = !layout.periodic[axis] && at[axis] == (d & 1 ? layout.size[axis] - 1 : 0);
-    border_area += border ? face_area(&layout, axis) : 0.0f;
-  }
-  for (int d = 0; d < 6; ++d)
-  {
-    const int axis = d / 2;
-    const float area = face_area(&layout, axis);
-    const bool border = !layout.periodic[axis] && at[axis] == (d & 1 ? layout.size[axis] - 1 : 0);
-    if (border)
-    {
-      const float tau = sigma_t[i] * layout.spacing[axis];
-      const float passes = pass_boundary(&layout, way_to_boundary(&layout, tau, sigma_t[i], sigma_a[i]));
-      out[d] = passes * area * ((float)fluence[i] - layout.incoming[d] / layout.half_range) +
-        remainder[i] * area / border_area;
-    }
-    else
-    {
-      const float passes = conductance[axis * count + (d & 1 ? next[d] : i)];
-      out[d] = passes * (float)(fluence[i] - fluence[next[d]]) +
-        (layout.size[axis] > 1 ? remainder_of_face(&layout, &arrays, d, i, next[d], at) : 0.0f);
-    }
+    remainder_of_borders(&layout, &arrays, i, next, at, source[i] * per_radiance - sigma_t[i] * path[i], share);
   }
   for (int axis = 0; axis < 3; ++axis)
   {
-    flux[axis * stride + i] += 0.5f * (out[2 * axis + 1] - out[2 * axis]) * layout.spacing[axis];
+    const exact up = power_of_face(&layout, &arrays, fluence, 2 * axis + 1, i, next, at, share);
+    const exact down = power_of_face(&layout, &arrays, fluence, 2 * axis, i, next, at, share);
+    flux[axis * stride + i] += (float)(0.5f * (up - down) * layout.spacing[axis]);
   }
 }
 
@@ -304,5 +366,5 @@ __kernel void low_order_source(low_order_layout layout, const __global float* gi
 {
   VOXEL(layout.size)
   const ulong at = (ulong)layout.first + i;
-  source[at] = given[at] + sigma_s[at] * (float)fluence[i] * (0.25f * M_1_PI_F);
+  source[at] = given[at] + sigma_s[at] * fmax((float)fluence[i], 0.0f) * (0.25f * M_1_PI_F);
 }

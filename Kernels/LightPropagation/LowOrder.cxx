@@ -133,11 +133,14 @@ LowOrder::LowOrder(Device& device, const Grid& grid, const std::array<bool, 3>& 
   this->Pattern = Buffer<float>(device, pattern.values, what);
   this->Stairs = Buffer<float>(device, 3 * arrays.stride, what);
   this->Model = Buffer<float>(device, this->Count, what);
-  this->RemainderOfFaces = Buffer<float>(device, this->Count, what);
   this->Right = ExactValues(device, this->Count, what);
   this->Given = ExactValues(device, this->Count, what);
   this->Solution = ExactValues(device, this->Count, what);
   this->Sums = ExactValues(device, Sums_ * ((this->Count + Chunk - 1) / Chunk), "sums");
+  const std::array<int, 3>& n = grid.size;
+  const std::size_t faces = 2 * (static_cast<std::size_t>(n[0]) * n[1] + static_cast<std::size_t>(n[1]) * n[2] +
+    static_cast<std::size_t>(n[2]) * n[0]);
+  this->Borders = ExactValues(device, faces, what);
   for (int i = 0; i < 2; ++i)
   {
     this->FoundBefore[i] = Buffer<float>(device, this->Count, what);
@@ -168,6 +171,16 @@ void LowOrder::Run(cl::Kernel& kernel)
     kernel, cl::NullRange, this->Solver.Range(this->Layout.size), LowOrderSolver::Group());
 }
 
+template <class... More>
+void LowOrder::RunOnArrays(const char* name, const More&... more)
+{
+  const Arrays& the = this->The;
+  cl::Kernel kernel = this->Kernel(name);
+  With(kernel, this->Layout, *the.sigma_t, *the.sigma_a, this->Stairs, this->Solver.Conductance(), *the.entering,
+    this->Model, this->Pattern, *the.source, *the.path, more...);
+  this->Run(kernel);
+}
+
 void LowOrder::WriteSource()
 {
   cl::Kernel kernel = this->Kernel("low_order_source");
@@ -181,10 +194,7 @@ double LowOrder::Correct(double unit)
   cl::Kernel model = this->Kernel("low_order_model");
   With(model, this->Layout, *the.sigma_t, *the.path, this->Given.Handle(), this->Model);
   this->Run(model);
-  cl::Kernel balance = this->Kernel("low_order_balance");
-  With(balance, this->Layout, *the.sigma_t, *the.sigma_a, this->Stairs, this->Solver.Conductance(), *the.entering,
-    this->Model, this->Pattern, *the.given, *the.source, *the.path, this->Right.Handle(), this->RemainderOfFaces);
-  this->Run(balance);
+  this->RunOnArrays("low_order_balance", *the.given, this->Right.Handle());
   this->Solver.Solve(this->Right, this->Solution, unit, Reduction);
 
   double change = 0.0;
@@ -194,8 +204,7 @@ double LowOrder::Correct(double unit)
   std::swap(this->ChangeBefore[0], this->ChangeBefore[1]);
   // What was the last is now the second before, and its place is taken: the kernel reads before it writes.
   With(step, this->Given.Handle(), this->Solution.Handle(), this->FoundBefore[1], this->FoundBefore[0],
-    this->ChangeBefore[0], static_cast<float>(weights[0]), static_cast<float>(weights[1]), *the.path, cl_int(the.first),
-    static_cast<float>(1.0 / (static_cast<double>(this->Layout.spacing[0]) * this->Layout.spacing[1] * this->Layout.spacing[2])));
+    this->ChangeBefore[0], static_cast<float>(weights[0]), static_cast<float>(weights[1]));
   this->TheDevice.Queue().enqueueNDRangeKernel(step, cl::NullRange, cl::NDRange(this->Count), cl::NullRange);
   ++this->Corrections;
   return change;
@@ -225,22 +234,25 @@ std::array<double, 2> LowOrder::Weights(double* change)
   return { this->Corrections >= 1 && aa > 0.0 ? af / aa : 0.0, 0.0 };
 }
 
-double LowOrder::Outflow(int face, double found, double sigma_t, double sigma_a) const
+std::array<double, 6> LowOrder::Outflow()
 {
-  const double tau = sigma_t * this->Layout.spacing[face / 2];
-  const double y = sigma_t > 0.0 ? 0.5 * tau * std::sqrt(3.0 * std::min(sigma_a / sigma_t, 1.0)) : 0.0;
-  const double a = this->Layout.halfRange;
-  const double x = 3.0 * a * (this->Layout.linear && y >= 0.01 ? tau * std::tanh(y) / y : tau);
-  const double passes = 2.0 * a / (1.0 + (this->Layout.linear ? x : x / (1.0 + x)));
-  return passes * (found - this->Layout.incoming[face] / a);
+  this->RunOnArrays("low_order_outflow", this->Solution.Handle(), this->Borders.Handle());
+  const std::vector<double> borders = this->Borders.Read();
+  std::array<double, 6> outflow = {};
+  std::size_t at = 0;
+  for (int face = 0; face < 6; ++face)
+  {
+    const PlaneAxes axes = AcrossAxis(face / 2);
+    for (int i = 0; i < this->Layout.size[axes.u] * this->Layout.size[axes.v]; ++i)
+    {
+      outflow[face] += borders[at++];
+    }
+  }
+  return outflow;
 }
 
 void LowOrder::AddFlux(const Buffer<float>& flux)
 {
-  const Arrays& the = this->The;
-  cl::Kernel kernel = this->Kernel("low_order_flux");
-  With(kernel, this->Layout, *the.sigma_t, *the.sigma_a, this->Stairs, this->Solver.Conductance(), *the.entering,
-    this->Model, this->Pattern, this->Solution.Handle(), this->RemainderOfFaces, flux);
-  this->Run(kernel);
+  this->RunOnArrays("low_order_flux", this->Solution.Handle(), flux);
 }
 }

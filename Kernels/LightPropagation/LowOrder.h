@@ -79,10 +79,8 @@ public:
 
   /// W / length^2, what the last correction found.
   std::vector<double> Found() const { return this->Solution.Read(); }
-  /// W out of the box through each voxel's faces beyond what Outflow says, by the last correction.
-  std::vector<float> Remainder() const { return this->RemainderOfFaces.Read(); }
-  /// W / length^2 through a face of the box, out less in, at fluence `found` of the voxel there.
-  double Outflow(int face, double found, double sigma_t, double sigma_a) const;
+  /// W out of the box less in through each of its faces, by the last correction; 0 where it is periodic.
+  std::array<double, 6> Outflow();
 
   /// Add the net flux times the voxel's volume to [channel][x, y, z][stride].
   void AddFlux(const Buffer<float>& flux);
@@ -90,6 +88,9 @@ public:
 private:
   cl::Kernel Kernel(const char* name) const;
   void Run(cl::Kernel& kernel);
+  /// The arguments that the kernels share, then `more`.
+  template <class... More>
+  void RunOnArrays(const char* kernel, const More&... more);
   std::array<double, 2> Weights(double* change);
 
   Device& TheDevice;
@@ -97,8 +98,8 @@ private:
   Arrays The;
   std::size_t Count;
   LowOrderSolver Solver;
-  Buffer<float> Stairs, Pattern, Model, RemainderOfFaces;
-  ExactValues Right, Given, Solution, Sums;
+  Buffer<float> Stairs, Pattern, Model;
+  ExactValues Right, Given, Solution, Sums, Borders;
   std::array<Buffer<float>, 2> FoundBefore, ChangeBefore; ///< of the last correction and the one before
   int Corrections = 0;
 };

@@ -266,16 +266,15 @@ __kernel void anderson_sums(const __global exact* given, const __global exact* f
   }
 }
 
-// given = found - w1 (found - found1) - w2 (found - found2), where that is negative what the sweep found; remembers found and
-// found - given in the place of the second iteration before.
+// given = found - w1 (found - found1) - w2 (found - found2); remembers found and found - given in the place of the second
+// iteration before.
 __kernel void anderson_step(__global exact* given, const __global exact* found, const __global float* found1,
-  __global float* found2, __global float* change2, float w1, float w2, const __global float* path, int first, float per_volume)
+  __global float* found2, __global float* change2, float w1, float w2)
 {
   const int i = get_global_id(0);
   const exact now = found[i];
-  const exact next = now - w1 * (now - found1[i]) - w2 * (now - found2[i]);
   const exact f = now - given[i];
-  given[i] = next >= 0 ? next : (exact)(path[first + i] * per_volume);
+  given[i] = now - w1 * (now - found1[i]) - w2 * (now - found2[i]);
   found2[i] = (float)now;
   change2[i] = (float)f;
 }
