@@ -10,6 +10,7 @@ namespace
 constexpr double Pi = 3.14159265358979323846;
 constexpr int MostSweeps = 200;
 constexpr int ManyPlanes = 8192;    ///< that a ray goes round a periodic axis before it is given up
+constexpr double UsualTolerance = 1e-4; ///< the method must not depend on the tolerance
 constexpr double ManyOrders = 40.0; ///< plain iteration that is dearer than an acceleration
 
 }
@@ -56,7 +57,7 @@ double FusedSolver::OrdersNeeded() const
   }
   return slowest <= 0.0 ? 0.0
     : slowest >= 1.0    ? 1e30
-                        : std::log(std::min(this->Settings.tolerance, 0.5)) / std::log(slowest);
+                        : std::log(UsualTolerance) / std::log(slowest);
 }
 
 void FusedSolver::ChooseAcceleration()
@@ -154,10 +155,16 @@ void FusedSolver::SweepAll(int sweepNumber, const Monitor& monitor)
   }
   this->Result.balance = this->LampBalance;
   this->Result.facePowerOut = this->LampFaces;
-  this->FacePowerIn = {};
   this->Shining = sweepNumber > 0 || this->Shining;
   this->PropagateSweeps(this->BoundaryOfOrder(0), ManyPlanes, monitor);
   this->OnTheWay = {};
+  for (int face = 0; face < 6; ++face)
+  {
+    for (int c = 0; c < 3; ++c)
+    {
+      this->FacePowerOut[face][c] = this->Result.facePowerOut[face][c] - this->LampFaces[face][c];
+    }
+  }
   // What went out is for the low-order system to say.
   for (int c = 0; c < this->Channels; ++c)
   {
@@ -236,12 +243,16 @@ void FusedSolver::CountLight()
       this->Result.balance.absorbed[c] +=
         static_cast<double>(this->TheMedium.sigma_a.At(i, c)) * this->Found[c][i] * grid.VoxelVolume();
     }
-    const std::array<double, 6> outflow = this->Systems[c]->Outflow(); // less what came in
+    std::array<double, 6> ofSweep;
     for (int face = 0; face < 6; ++face)
     {
-      const double out = outflow[face] + this->FacePowerIn[face][c];
-      this->Result.facePowerOut[face][c] += out;
-      this->Result.balance.escaped[c] += out;
+      ofSweep[face] = this->FacePowerOut[face][c];
+    }
+    const std::array<double, 6> outflow = this->Systems[c]->Outflow(ofSweep);
+    for (int face = 0; face < 6; ++face)
+    {
+      this->Result.facePowerOut[face][c] += outflow[face];
+      this->Result.balance.escaped[c] += outflow[face];
     }
     this->Result.balance.leftOver[c] = this->Stranded[c];
   }

@@ -221,7 +221,6 @@ void FusedSolver::Count(const SweepTally& tally, int firstChannel, int channels)
   {
     for (int face = 0; face < 6; ++face)
     {
-      this->FacePowerIn[face][firstChannel + c] += tally.in[face][c];
       this->Result.balance.entered[firstChannel + c] += tally.in[face][c];
       this->Result.balance.escaped[firstChannel + c] += tally.out[face][c];
       this->Result.facePowerOut[face][firstChannel + c] += tally.out[face][c];

@@ -115,7 +115,7 @@ private:
   EnergyBalance LampBalance;                      ///< of lights' own light
   std::array<Rgb, 6> LampFaces = {};
   Rgb GivenPower = {}, PowerIn = {};              ///< W, emitted or first scattered; through faces
-  std::array<Rgb, 6> FacePowerIn = {};            ///< W, in a sweep
+  std::array<Rgb, 6> FacePowerOut = {};    ///< W, in a sweep
   double Change = 1.0, LastRatio = 1.0;
 
   LightField Result;

@@ -25,10 +25,11 @@ static float half_diffusion_length(float tau, float sigma_t, float sigma_a)
   return sigma_t > 0.0f ? 0.5f * tau * sqrt(3.0f * fmin(sigma_a / sigma_t, 1.0f)) : 0.0f;
 }
 
-// How much better than tau / 2 a half voxel conducts whose light dies away on the way: at a border...
+// How much better than tau / 2 a half voxel conducts whose light dies away on the way: exactly that of light that falls off
+// from a border...
 static float at_border(float y)
 {
-  return y < 0.01f ? 1.0f : y / tanh(y);
+  return y < 0.02f ? 1.0f + y * (2.0f / 3.0f) : 2.0f * y * y / (2.0f * y - 1.0f + exp(-2.0f * y));
 }
 // ...and between voxels of the same kind, where hyperbolic functions are met exactly.
 static float among_equals(float y)
@@ -152,10 +153,11 @@ static float pattern_at(const low_order_layout* layout, const low_order_arrays* 
   return 1.0f + thick * (crossing - 1.0f);
 }
 
-// How much of what a sweep knows better than diffusion is believed: little where voxels are thick and it knows nothing.
-static float belief(const low_order_layout* layout, float tau)
+// How much of what a sweep knows better than diffusion is believed: little where voxels are thick, or the light dies away within
+// one, and it knows nothing.
+static float belief(const low_order_layout* layout, float tau, float absorbing)
 {
-  return layout->linear ? 1.0f / (1.0f + 0.25f * tau * tau) : 1.0f;
+  return layout->linear ? 1.0f / (1.0f + tau * (0.25f * tau + 3.0f * absorbing)) : 1.0f;
 }
 
 // Power through inner face d out of voxel i, that of the sweep less that of the model.
@@ -170,7 +172,8 @@ static float remainder_of_face(
   const float stairs = arrays->stairs[axis * stride + i] + arrays->stairs[axis * stride + j];
   const float spread =
     layout->linear ? 3.0f * passes * stairs * pattern_at(layout, arrays, axis, at, tau) : passes;
-  const float believed = belief(layout, tau);
+  const float absorbing = 0.5f * layout->spacing[axis] * (arrays->sigma_a[i] + arrays->sigma_a[j]);
+  const float believed = belief(layout, tau, absorbing);
   return believed > 1e-12f ? believed * (net - spread * (arrays->model[i] - arrays->model[j])) : 0.0f;
 }
 
@@ -204,47 +207,48 @@ static bool is_border(const low_order_layout* layout, const int* at, int d)
 }
 
 // What a sweep knows better about the faces of the box at voxel i, W out of it less in, in all.
-//   power  what the medium shines there, in the sweep, less what it takes of the light
-//   share  [face] its part for each face: as the sweep's light seems to leave through them
+//   power    what the medium shines there, in the sweep, less what it takes of the light
+//   share    [face] its part for each face: as the sweep's light seems to leave through them
+//   seeming  [face] power out, of the sweep, that seems to leave through each
+//   believed  how much of it counts
 static float remainder_of_borders(const low_order_layout* layout, const low_order_arrays* arrays, int i, const int* next,
-  const int* at, float power, float* share)
+  const int* at, float power, float* share, float* seeming, float* believed)
 {
   float left = power; // through the box's faces, out less in
-  float in = 0.0f, expected = 0.0f, thickest = 0.0f, seeming = 0.0f;
+  float in = 0.0f, expected = 0.0f, longest = 0.0f, sum = 0.0f;
   float model[6];
   for (int d = 0; d < 6; ++d)
   {
     const int axis = d / 2;
     const float entered = arrays->entering[d * arrays->stride + i];
-    model[d] = share[d] = 0.0f;
+    model[d] = share[d] = seeming[d] = 0.0f;
     if (is_border(layout, at, d))
     {
       float dark;
       model[d] = model_of_boundary(layout, arrays, d, i, at, &dark);
       const float tau = arrays->sigma_t[i] * layout->spacing[axis];
       const float through = exp(-fmin(tau, 80.0f));
-      share[d] = through * arrays->entering[(d ^ 1) * arrays->stride + i] +
+      seeming[d] = through * arrays->entering[(d ^ 1) * arrays->stride + i] +
         (1.0f - through) * layout->half_range * face_area(layout, axis) * fmax(arrays->model[i], 0.0f);
       expected += model[d];
-      seeming += share[d];
+      sum += seeming[d];
       in += entered;
-      thickest = fmax(thickest, tau);
+      longest = fmax(longest, layout->spacing[axis]);
     }
     else if (layout->size[axis] > 1)
     {
       left -= arrays->entering[(d ^ 1) * arrays->stride + next[d]] - entered;
     }
   }
-  const float believed = belief(layout, thickest);
-  const float rest = believed > 1e-12f ? believed * (left - expected) : 0.0f;
+  *believed = belief(layout, longest * arrays->sigma_t[i], longest * arrays->sigma_a[i]);
+  *believed = *believed > 1e-12f ? *believed : 0.0f;
   for (int d = 0; d < 6; ++d)
   {
-    const float out = seeming > 0.0f ? (left + in) * share[d] / seeming : 0.0f;
-    share[d] = believed > 1e-12f && is_border(layout, at, d)
-      ? believed * (out - arrays->entering[d * arrays->stride + i] - model[d])
-      : 0.0f;
+    seeming[d] = sum > 0.0f ? (left + in) * seeming[d] / sum : 0.0f;
+    const float net = seeming[d] - arrays->entering[d * arrays->stride + i] - model[d];
+    share[d] = *believed > 0.0f && is_border(layout, at, d) ? *believed * net : 0.0f;
   }
-  return rest;
+  return *believed > 0.0f ? *believed * (left - expected) : 0.0f;
 }
 
 // Power through face d out of voxel i, less what comes in, by the solution; `share` of its remainder where it is the box's.
@@ -279,7 +283,7 @@ static exact power_of_face(const low_order_layout* layout, const low_order_array
   int next[6];                                                                 \
   find_neighbours(layout.size, x, y, z, i, next);                              \
   const float per_radiance = 4.0f * M_PI_F * volume_of(&layout);               \
-  float share[6];
+  float share[6], seeming[6], believed;
 
 // The right-hand side, W.
 // given    emitted and first scattered light of lights, W / (length^3 sr)
@@ -307,12 +311,14 @@ __kernel void low_order_balance(low_order_layout layout, const __global float* s
   }
   if (IS_OUTERMOST(layout, at))
   {
-    power -= remainder_of_borders(&layout, &arrays, i, next, at, source[i] * per_radiance - sigma_t[i] * path[i], share);
+    power -= remainder_of_borders(&layout, &arrays, i, next, at, source[i] * per_radiance - sigma_t[i] * path[i], share,
+      seeming, &believed);
   }
   right[i] = power;
 }
 
-// Power out of the box less in, a voxel's faces at its border: [face][row][voxel of the row], W.
+// A voxel's faces at the box's border, [face][row][voxel of the row]: power out of the box, W; power out that seems to
+// leave there in the sweep, W; for voxels with several such faces how much that counts, else -1.
 __kernel void low_order_outflow(low_order_layout layout, const __global float* sigma_t, const __global float* sigma_a,
   const __global float* stairs, const __global float* conductance, const __global float* entering,
   const __global float* model, const __global float* pattern, const __global float* source,
@@ -324,7 +330,13 @@ __kernel void low_order_outflow(low_order_layout layout, const __global float* s
     return;
   }
   ARRAYS_OF_CHANNEL
-  remainder_of_borders(&layout, &arrays, i, next, at, source[i] * per_radiance - sigma_t[i] * path[i], share);
+  remainder_of_borders(&layout, &arrays, i, next, at, source[i] * per_radiance - sigma_t[i] * path[i], share,
+      seeming, &believed);
+  int borders = 0;
+  for (int d = 0; d < 6; ++d)
+  {
+    borders += is_border(&layout, at, d);
+  }
   int begin = 0;
   for (int d = 0; d < 6; ++d)
   {
@@ -332,8 +344,11 @@ __kernel void low_order_outflow(low_order_layout layout, const __global float* s
     const int v = d / 2 == 2 ? 1 : 2;
     if (is_border(&layout, at, d))
     {
-      outflow[begin + at[v] * layout.size[u] + at[u]] =
-        power_of_face(&layout, &arrays, fluence, d, i, next, at, share);
+      __global exact* face = outflow + 3 * (begin + at[v] * layout.size[u] + at[u]);
+      face[0] = power_of_face(&layout, &arrays, fluence, d, i, next, at, share) +
+        entering[d * stride + i];
+      face[1] = seeming[d];
+      face[2] = borders > 1 ? believed : -1.0f;
     }
     begin += layout.size[u] * layout.size[v];
   }
@@ -350,7 +365,8 @@ __kernel void low_order_flux(low_order_layout layout, const __global float* sigm
   flux += 3 * (ulong)layout.first;
   if (IS_OUTERMOST(layout, at))
   {
-    remainder_of_borders(&layout, &arrays, i, next, at, source[i] * per_radiance - sigma_t[i] * path[i], share);
+    remainder_of_borders(&layout, &arrays, i, next, at, source[i] * per_radiance - sigma_t[i] * path[i], share,
+      seeming, &believed);
   }
   for (int axis = 0; axis < 3; ++axis)
   {

@@ -140,7 +140,7 @@ LowOrder::LowOrder(Device& device, const Grid& grid, const std::array<bool, 3>& 
   const std::array<int, 3>& n = grid.size;
   const std::size_t faces = 2 * (static_cast<std::size_t>(n[0]) * n[1] + static_cast<std::size_t>(n[1]) * n[2] +
     static_cast<std::size_t>(n[2]) * n[0]);
-  this->Borders = ExactValues(device, faces, what);
+  this->Borders = ExactValues(device, 3 * faces, what);
   for (int i = 0; i < 2; ++i)
   {
     this->FoundBefore[i] = Buffer<float>(device, this->Count, what);
@@ -214,8 +214,8 @@ double LowOrder::Correct(double unit)
 std::array<double, 2> LowOrder::Weights(double* change)
 {
   cl::Kernel kernel = this->Kernel("anderson_sums");
-  With(kernel, this->Given.Handle(), this->Solution.Handle(), this->ChangeBefore[0], this->ChangeBefore[1],
-    cl_int(this->Count), this->Sums.Handle());
+  With(kernel, this->Given.Handle(), this->Solution.Handle(), this->ChangeBefore[0], this->ChangeBefore[1], *this->The.sigma_s,
+    cl_int(this->The.first), this->Layout.spacing[0], cl_int(this->Count), this->Sums.Handle());
   const std::size_t chunks = (this->Count + Chunk - 1) / Chunk;
   this->TheDevice.Queue().enqueueNDRangeKernel(kernel, cl::NullRange, cl::NDRange(chunks), cl::NDRange(1));
   std::array<double, Sums_> sums = {};
@@ -234,19 +234,34 @@ std::array<double, 2> LowOrder::Weights(double* change)
   return { this->Corrections >= 1 && aa > 0.0 ? af / aa : 0.0, 0.0 };
 }
 
-std::array<double, 6> LowOrder::Outflow()
+std::array<double, 6> LowOrder::Outflow(const std::array<double, 6>& ofSweep)
 {
   this->RunOnArrays("low_order_outflow", this->Solution.Handle(), this->Borders.Handle());
   const std::vector<double> borders = this->Borders.Read();
   std::array<double, 6> outflow = {};
+  std::array<double, 6> missing = ofSweep; // of what seems to leave
+  double believed = 0.0, shared = 0.0;
   std::size_t at = 0;
   for (int face = 0; face < 6; ++face)
   {
     const PlaneAxes axes = AcrossAxis(face / 2);
-    for (int i = 0; i < this->Layout.size[axes.u] * this->Layout.size[axes.v]; ++i)
+    for (int i = 0; i < this->Layout.size[axes.u] * this->Layout.size[axes.v]; ++i, at += 3)
     {
-      outflow[face] += borders[at++];
+      outflow[face] += borders[at];
+      missing[face] -= borders[at + 1];
+      const bool several = borders[at + 2] > 0.0;
+      believed += several ? borders[at + 2] : 0.0;
+      shared += several ? 1.0 : 0.0;
     }
+  }
+  double all = 0.0;
+  for (double power : missing)
+  {
+    all += power;
+  }
+  for (int face = 0; face < 6 && shared > 0.0; ++face)
+  {
+    outflow[face] += this->Layout.periodic[face / 2] ? 0.0 : believed / shared * (missing[face] - all / 6.0);
   }
   return outflow;
 }

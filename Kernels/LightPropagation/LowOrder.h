@@ -32,10 +32,10 @@ CrossingPattern FindCrossingPattern(
 ///
 /// A sweep with fluence `phi` as its source finds the net power F through every face, and the fluence that goes with it. Were the
 /// light's angular distribution linear and its course linear from voxel centre to voxel centre, the true power through the face
-/// between voxels L and R were D (phi_L - phi_R), D = area / (3 tau), tau the optical length between their centres; but a sweep
+/// between voxels L and R were D (phi_L - phi_R), D = area / (3 tau), tau the optical length between their centres (tau_a of absorption only); but a sweep
 /// whose source is constant in each voxel finds M(phi) = 3 D (s_L + s_R) (phi_L - phi_R), where s = sum mu tau / 2 coth(tau / 2 mu)
 /// is what a flight of such stairs radiates (1/6 for thin voxels, tau / 8 for thick: there F is nearly all error). So
-///   sum over faces of [D (x_L - x_R) + w (F - M(m))] + sigma_a V x = emission,   w = 1 / (1 + tau^2 / 4),
+///   sum over faces of [D (x_L - x_R) + w (F - M(m))] + sigma_a V x = emission,   w = 1 / (1 + tau^2 / 4 + 3 tau tau_a),
 /// is right for thin voxels, in vacuum and next to walls and borders, where F - M is transport that diffusion does not know,
 /// and has the diffusion limit, however thick voxels are. m is the sweep's own fluence in thin voxels (then the solution is
 /// the sweep's) and phi in thick ones. Borders of the box: Marshak's condition for D, the same kind of correction.
@@ -44,8 +44,8 @@ CrossingPattern FindCrossingPattern(
 /// Kin of coarse-mesh finite differences (Smith 1983) with an additive, linear correction (Cho et al. 2003, `optimally
 /// diffusive` there: the larger D of thick voxels; here the stairs' excess is taken out of the correction instead) and of
 /// the second-moment method (Lewis and Miller 1976), which takes the correction from second moments instead of face powers.
-/// Light that dies away within a voxel (y = half its size in diffusion lengths): D's half voxels conduct y coth y better at a border
-/// between unlike voxels and (y / sinh y)^2 among equals, where hyperbolic functions are then met exactly.
+/// Light that dies away within a voxel (y = half its size in diffusion lengths): D's half voxels conduct 2 y^2 / (2 y - 1 + exp(-2 y)) better at a border
+/// between unlike voxels and (y / sinh y)^2 among equals: light that falls off exponentially is then met exactly.
 ///
 /// With `linear` false, D = area (s_L + s_R) / tau, w = 1, m the sweep's fluence: the solution is the sweep's own, with all the
 /// errors of a constant source, only sooner.
@@ -79,8 +79,9 @@ public:
 
   /// W / length^2, what the last correction found.
   std::vector<double> Found() const { return this->Solution.Read(); }
-  /// W out of the box less in through each of its faces, by the last correction; 0 where it is periodic.
-  std::array<double, 6> Outflow();
+  /// W out of the box through each of its faces, by the last correction; 0 where it is periodic.
+  /// @param ofSweep  W that left through each face in the sweep: tells how to share out what leaves at the box's edges
+  std::array<double, 6> Outflow(const std::array<double, 6>& ofSweep);
 
   /// Add the net flux times the voxel's volume to [channel][x, y, z][stride].
   void AddFlux(const Buffer<float>& flux);

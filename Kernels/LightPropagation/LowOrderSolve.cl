@@ -240,9 +240,9 @@ __kernel void low_order_turn(__global exact* direction, const __global float* pr
 
 #define SUMS 8
 // Sums for Anderson's method, with f = found - given and differences to those of two iterations before:
-// f f, found found, d1 d1, d1 d2, d2 d2, d1 f, d2 f
+// f f, found found (both where light is scattered: what passes through vacuum says nothing of that), d1 d1, d1 d2, d2 d2, d1 f, d2 f
 __kernel void anderson_sums(const __global exact* given, const __global exact* found, const __global float* change1,
-  const __global float* change2, int count, __global exact* sums)
+  const __global float* change2, const __global float* sigma_s, int first, float length, int count, __global exact* sums)
 {
   const int begin = get_global_id(0) * CHUNK;
   const int end = min(count, begin + CHUNK);
@@ -252,8 +252,10 @@ __kernel void anderson_sums(const __global exact* given, const __global exact* f
     const exact f = found[i] - given[i];
     const exact d1 = f - change1[i];
     const exact d2 = f - change2[i];
-    sum[0] += f * f;
-    sum[1] += found[i] * found[i];
+    const exact tau = sigma_s[first + i] * length;
+    const exact weight = tau / (1 + tau);
+    sum[0] += weight * f * f;
+    sum[1] += weight * found[i] * found[i];
     sum[2] += d1 * d1;
     sum[3] += d1 * d2;
     sum[4] += d2 * d2;

@@ -460,6 +460,8 @@ TEST_F(FusedPropagation, StopsWhereTheToleranceIsMetNotBefore)
     scene.sigma_a[i] = r < 5.0 ? 0.02f : 0.0f;
   }
   scene.ShineFromEverywhere(1.0);
+  scene.settings.acceleration = PropagationAcceleration::None;
+  scene.settings.source = PropagationSource::Constant;
   scene.settings.tolerance = 1e-6;
   const LightField exact = scene.Solve(this->GetDevice());
   for (double tolerance : { 1e-2, 1e-3 })
