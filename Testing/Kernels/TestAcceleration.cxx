@@ -1,0 +1,277 @@
+#include "DeviceTest.h"
+#include "MediumScene.h"
+
+#include "Device/Errors.h"
+
+#include <algorithm>
+#include <cmath>
+
+using namespace tyndall;
+
+namespace
+{
+double Difference(const std::vector<float>& a, const std::vector<float>& b)
+{
+  double difference = 0.0, sum = 0.0;
+  for (std::size_t i = 0; i < a.size(); ++i)
+  {
+    difference += (static_cast<double>(a[i]) - b[i]) * (static_cast<double>(a[i]) - b[i]);
+    sum += static_cast<double>(b[i]) * b[i];
+  }
+  return std::sqrt(difference / sum);
+}
+
+void ExpectNear(const std::vector<float>& a, const std::vector<float>& b, double tolerance)
+{
+  ASSERT_EQ(a.size(), b.size());
+  for (std::size_t i = 0; i < a.size(); ++i)
+  {
+    ASSERT_NEAR(a[i], b[i], tolerance * std::abs(b[i])) << i;
+  }
+}
+
+/// sigma_t of every voxel of a cube of n voxels, at albedo.
+template <class Density>
+Scene Cube(int n, double albedo, Density&& density)
+{
+  Scene scene({ n, n, n });
+  for (int z = 0, i = 0; z < n; ++z)
+  {
+    for (int y = 0; y < n; ++y)
+    {
+      for (int x = 0; x < n; ++x, ++i)
+      {
+        const double sigma_t = density(x, y, z);
+        scene.sigma_s[i] = static_cast<float>(sigma_t * albedo);
+        scene.sigma_a[i] = static_cast<float>(sigma_t * (1.0 - albedo));
+      }
+    }
+  }
+  scene.light.faces[4] = { 1.0, 1.0, 1.0 };
+  return scene;
+}
+
+/// A smooth random field in [0, 1].
+std::vector<double> SmoothNoise(int n)
+{
+  std::mt19937 random(1);
+  std::normal_distribution<double> normal;
+  std::vector<double> field(static_cast<std::size_t>(n) * n * n);
+  std::generate(field.begin(), field.end(), [&] { return normal(random); });
+  for (int round = 0; round < 3; ++round)
+  {
+    const std::vector<double> rough = field;
+    for (int z = 0, i = 0; z < n; ++z)
+    {
+      for (int y = 0; y < n; ++y)
+      {
+        for (int x = 0; x < n; ++x, ++i)
+        {
+          field[i] = 0.0;
+          for (int d = n - 1; d <= n + 1; ++d)
+          {
+            field[i] += rough[(z * n + y) * n + (x + d) % n] + rough[(z * n + (y + d) % n) * n + x] +
+              rough[((z + d) % n * n + y) * n + x];
+          }
+        }
+      }
+    }
+  }
+  const auto [least, most] = std::minmax_element(field.begin(), field.end());
+  const double low = *least, range = *most - *least;
+  for (double& value : field)
+  {
+    value = (value - low) / range;
+  }
+  return field;
+}
+
+Scene Plain(Scene scene)
+{
+  scene.settings.acceleration = PropagationAcceleration::None;
+  scene.settings.source = PropagationSource::Constant;
+  return scene;
+}
+}
+
+class Acceleration : public DeviceTest
+{
+protected:
+  /// At most 20 sweeps to a true error of 1e-4, which the residual does not flatter; nothing negative, nothing lost.
+  void ExpectFewSweeps(Scene scene, const char* name)
+  {
+    scene.settings.tolerance = 1e-8;
+    const LightField exact = scene.Solve(this->GetDevice());
+    scene.settings.tolerance = 1e-4;
+    const LightField light = scene.Solve(this->GetDevice());
+    const double error = Difference(light.fluence, exact.fluence);
+    EXPECT_LE(light.convergence.size(), 20u) << name;
+    EXPECT_LT(error, 1e-4) << name;
+    EXPECT_LT(error, 2.0 * light.convergence.back().residual + 1e-7) << name;
+    EXPECT_LT(light.balance.RelativeError(1), 1e-4) << name;
+    EXPECT_GE(*std::min_element(light.fluence.begin(), light.fluence.end()), 0.0f) << name;
+    EXPECT_GT(light.convergence.size(), 1u) << name;
+    this->RecordProperty(name, std::to_string(light.convergence.size()) + " sweeps, error " + std::to_string(error));
+  }
+};
+
+TEST_F(Acceleration, NeedsFewSweepsInHomogeneousCubes)
+{
+  this->ExpectFewSweeps(Cube(32, 1.0, [](int, int, int) { return 100.0 / 32.0; }), "100");
+  this->ExpectFewSweeps(Cube(32, 0.99, [](int, int, int) { return 100.0 / 32.0; }), "100, albedo 0.99");
+  this->ExpectFewSweeps(Cube(32, 1.0, [](int, int, int) { return 1e4 / 32.0; }), "10000");
+}
+
+TEST_F(Acceleration, NeedsFewSweepsInCheckerboards)
+{
+  const auto board = [](int x, int y, int z) { return (x + y + z) % 2 ? 1e4 : 1e-4; };
+  this->ExpectFewSweeps(Cube(32, 1.0, board), "checkerboard");
+  this->ExpectFewSweeps(Cube(32, 0.99, board), "checkerboard, albedo 0.99");
+}
+
+TEST_F(Acceleration, NeedsFewSweepsAlongAVoidDuct)
+{
+  const auto duct = [](int x, int y, int) { return x >= 12 && x < 20 && y >= 12 && y < 20 ? 0.0 : 100.0 / 32.0; };
+  this->ExpectFewSweeps(Cube(32, 1.0, duct), "duct");
+}
+
+TEST_F(Acceleration, NeedsFewSweepsInACloudWithAContrastOfAHundredMillion)
+{
+  const std::vector<double> noise = SmoothNoise(32);
+  const auto cloud = [&](int x, int y, int z) { return std::pow(10.0, -4.0 + 8.0 * noise[(z * 32 + y) * 32 + x]); };
+  this->ExpectFewSweeps(Cube(32, 1.0, cloud), "cloud");
+  this->ExpectFewSweeps(Cube(32, 0.999, cloud), "cloud, albedo 0.999");
+}
+
+TEST_F(Acceleration, OfAConstantSourceEndsAtTheLightOfManyOrders)
+{
+  for (bool periodic : { false, true })
+  {
+    Scene scene({ 12, 11, 10 });
+    scene.Randomise(20.0, 2.0, 0.99);
+    scene.ShineFromEverywhere(1.0);
+    scene.ShineAlong({ 0.3, -0.5, -0.8 }, 2.0);
+    scene.emission.assign(scene.sigma_a.size(), 0.01f);
+    scene.settings.periodic = { periodic, false, false };
+    scene.settings.tolerance = 1e-6;
+    scene.settings.source = PropagationSource::Constant;
+    const LightField light = scene.Solve(this->GetDevice());
+    const LightField exact = Plain(scene).Solve(this->GetDevice());
+    EXPECT_GT(exact.convergence.size(), 100u);
+    EXPECT_LT(light.convergence.size(), 12u);
+    ExpectNear(light.fluence, exact.fluence, 5e-5);
+    ExpectNear(light.fluenceDirect, exact.fluenceDirect, 1e-5);
+    EXPECT_LT(light.balance.RelativeError(1), 1e-5);
+    for (int face = 0; face < 6; ++face)
+    {
+      EXPECT_NEAR(light.facePowerOut[face][0], exact.facePowerOut[face][0], 1e-4 * exact.facePowerOut[face][0]) << face;
+    }
+  }
+}
+
+TEST_F(Acceleration, SolvesEveryColourAsItSolvesItAlone)
+{
+  Scene grey({ 9, 8, 10 });
+  grey.Randomise(30.0, 3.0, 0.999);
+  grey.ShineFromEverywhere(1.0);
+  grey.ShineAlong({ 0.3, -0.5, -0.8 }, 2.0);
+  grey.settings.source = PropagationSource::Linear;
+  grey.settings.tolerance = 1e-6;
+  for (bool shared : { true, false })
+  {
+    std::array<Scene, 3> alone = { grey, grey, grey };
+    Scene colour = grey;
+    const std::size_t voxels = grey.sigma_s.size();
+    colour.sigma_s.resize(3 * voxels);
+    colour.sigma_a.resize(3 * voxels);
+    for (std::size_t i = 0; i < voxels; ++i)
+    {
+      for (int c = 0; c < 3; ++c)
+      {
+        const float sigma_t = grey.sigma_s[i] * (shared ? 1.0f : 1.0f + c);
+        const float albedo = 1.0f - 0.25f * c * c * 0.01f;
+        alone[c].sigma_s[i] = colour.sigma_s[3 * i + c] = sigma_t * albedo;
+        alone[c].sigma_a[i] = colour.sigma_a[3 * i + c] = sigma_t - sigma_t * albedo;
+      }
+    }
+    const LightField light = colour.Solve(this->GetDevice());
+    ASSERT_EQ(light.channels, 3);
+    for (int c = 0; c < 3; ++c)
+    {
+      const LightField one = alone[c].Solve(this->GetDevice());
+      for (std::size_t i = 0; i < voxels; ++i)
+      {
+        ASSERT_NEAR(light.fluence[3 * i + c] / one.fluence[i], 1.0, 1e-4) << "channel " << c << ", shared " << shared;
+      }
+    }
+  }
+}
+
+TEST_F(Acceleration, NetFluxHasTheSourcesAndSinksOfTheMedium)
+{
+  Scene scene = Cube(14, 0.999, [](int x, int y, int z) { return 3.0 + 0.1 * (x + y - z); });
+  scene.settings.netFlux = true;
+  scene.settings.tolerance = 1e-6;
+  const LightField light = scene.Solve(this->GetDevice());
+  // Through the plane between slices 6 and 7 of z goes what is absorbed beyond and what leaves there.
+  double through = 0.0, taken = light.facePowerOut[5][0];
+  for (int z = 0, i = 0; z < 14; ++z)
+  {
+    for (int slice = 0; slice < 196; ++slice, ++i)
+    {
+      through += z == 6 || z == 7 ? 0.5 * light.netFlux[3 * i + 2] : 0.0;
+      taken += z >= 7 ? scene.sigma_a[i] * light.fluence[i] : 0.0;
+      const int x = slice % 14, y = slice / 14;
+      const bool side = x == 0 || x == 13 || y == 0 || y == 13;
+      EXPECT_TRUE(side || std::isfinite(light.netFlux[3 * i]));
+    }
+  }
+  EXPECT_GT(through, taken) << "some leaves through the sides";
+  EXPECT_LT(through, 1.6 * taken + light.facePowerOut[0][0] * 4.0);
+  // Light flows away from the shining face.
+  EXPECT_GT(light.netFlux[3 * (7 * 196 + 7 * 14 + 7) + 2], 0.0f);
+}
+
+TEST_F(Acceleration, LeavesThinMediaAsTheyAre)
+{
+  const auto thin = [](int, int, int) { return 0.05; };
+  const Scene scene = Cube(16, 0.9, thin);
+  Scene automatic = scene;
+  EXPECT_EQ(automatic.Solve(this->GetDevice()).fluence, Plain(scene).Solve(this->GetDevice()).fluence);
+}
+
+TEST_F(Acceleration, IsTheSameBitForBitTheSecondTime)
+{
+  Scene scene({ 13, 9, 11 });
+  scene.Randomise(1e3, 6.0, 0.999);
+  scene.ShineFromEverywhere(1.0);
+  scene.settings.source = PropagationSource::Linear;
+  EXPECT_EQ(scene.Solve(this->GetDevice()).fluence, scene.Solve(this->GetDevice()).fluence);
+}
+
+TEST_F(Acceleration, TakesAnyGrid)
+{
+  for (const std::array<int, 3>& size : { std::array<int, 3>{ 1, 1, 1 }, { 1, 1, 200 }, { 40, 1, 3 }, { 2, 3, 5 } })
+  {
+    for (bool periodic : { false, true })
+    {
+      Scene scene(size, 0.001f, 3.0f);
+      scene.medium.grid.spacing = { 0.5, 1.0, 2.0 };
+      scene.ShineFromEverywhere(1.0);
+      scene.ShineAlong({ 0.3, -0.5, -0.8 }, 2.0);
+      scene.settings.periodic = { periodic, false, false };
+      scene.settings.source = PropagationSource::Linear;
+      const LightField light = scene.Solve(this->GetDevice());
+      EXPECT_LT(light.balance.RelativeError(1), 1e-4) << size[0] << " " << size[1] << " " << size[2];
+      EXPECT_LE(light.convergence.size(), 20u);
+    }
+  }
+}
+
+TEST_F(Acceleration, RefusesALinearSourceWithoutIt)
+{
+  Scene scene({ 2, 2, 2 }, 1.0f, 1.0f);
+  scene.settings.source = PropagationSource::Linear;
+  scene.settings.acceleration = PropagationAcceleration::None;
+  EXPECT_THROW(scene.Solve(this->GetDevice()), InvalidInput);
+}
