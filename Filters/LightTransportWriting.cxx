@@ -198,6 +198,7 @@ void WriteConvergence(const std::vector<ConvergenceRow>& rows, vtkTable* table)
   };
   column("seconds", &ConvergenceRow::seconds);
   column("residual", &ConvergenceRow::residual);
+  column("change", &ConvergenceRow::change);
   column("absorbed", &ConvergenceRow::absorbed);
   column("escaped", &ConvergenceRow::escaped);
   column("left_over", &ConvergenceRow::leftOver);

@@ -9,9 +9,9 @@ namespace
 {
 constexpr double Pi = 3.14159265358979323846;
 constexpr int MostSweeps = 200;
-constexpr int ManyPlanes = 8192;    ///< that a ray goes round a periodic axis before it is given up
+constexpr int ManyPlanes = 8192;        ///< that a ray goes round a periodic axis before it is given up
 constexpr double UsualTolerance = 1e-4; ///< the method must not depend on the tolerance
-constexpr double ManyOrders = 40.0; ///< plain iteration that is dearer than an acceleration
+constexpr double ManyOrders = 40.0;     ///< plain iteration that is dearer than an acceleration
 
 }
 
@@ -55,9 +55,7 @@ double FusedSolver::OrdersNeeded() const
     const double ratio = scattering > 0.0 ? albedo / scattering / (1.0 + leak) : 0.0;
     slowest = std::max(slowest, ratio);
   }
-  return slowest <= 0.0 ? 0.0
-    : slowest >= 1.0    ? 1e30
-                        : std::log(UsualTolerance) / std::log(slowest);
+  return slowest <= 0.0 ? 0.0 : slowest >= 1.0 ? 1e30 : std::log(UsualTolerance) / std::log(slowest);
 }
 
 void FusedSolver::ChooseAcceleration()
@@ -126,7 +124,8 @@ void FusedSolver::LoadAccelerated()
   }
   this->Absorption = Buffer<float>(device, absorption, "sigma_a");
   this->Given = Buffer<float>(device, given, "the light given");
-  this->Entering = Buffer<float>(device, 6 * this->Stride * this->Channels + SweepPadding, "the power from voxel to voxel");
+  this->Entering =
+    Buffer<float>(device, 6 * this->Stride * this->Channels + SweepPadding, "the power from voxel to voxel");
 }
 
 /// A quantity of the sweep and what lights add to it, planar.
@@ -190,8 +189,7 @@ void FusedSolver::MakeSystems()
         const int face = 2 * axis + (direction.omega[axis] > 0.0 ? 0 : 1);
         if (!this->Settings.periodic[axis])
         {
-          incoming[face] +=
-            direction.weight * std::abs(direction.omega[axis]) * boundary(static_cast<int>(d), face)[c];
+          incoming[face] += direction.weight * std::abs(direction.omega[axis]) * boundary(static_cast<int>(d), face)[c];
         }
       }
     }
@@ -199,8 +197,8 @@ void FusedSolver::MakeSystems()
     const std::size_t first = c * this->Stride;
     const LowOrder::Arrays arrays = { this->Stride, this->SharedExtinction ? 0 : first, first, &this->Extinction,
       &this->Absorption, &this->Scattering, &this->Given, &this->Source, &this->Path, &this->Entering };
-    this->Systems.push_back(std::make_unique<LowOrder>(this->TheDevice, grid, this->Settings.periodic, this->Directions,
-      pattern, arrays, incoming, this->LinearSource));
+    this->Systems.push_back(std::make_unique<LowOrder>(
+      this->TheDevice, grid, this->Settings.periodic, this->Directions, pattern, arrays, incoming, this->LinearSource));
   }
 }
 
@@ -214,12 +212,12 @@ void FusedSolver::Correct(int sweep)
     const double power = this->GivenPower[c] + this->PowerIn[c];
     if (power > 0.0)
     {
-      change = std::max(
-        change, this->Systems[c]->Correct(power / static_cast<double>(this->TheMedium.grid.VoxelCount())));
+      change =
+        std::max(change, this->Systems[c]->Correct(power / static_cast<double>(this->TheMedium.grid.VoxelCount())));
     }
   }
   const double ratio = sweep > 0 && this->Change > 0.0 ? change / this->Change : 1.0;
-  const double fall = std::clamp(sweep > 1 ? std::max(ratio, this->LastRatio) : ratio, 0.1, 0.95);
+  const double fall = std::clamp(sweep > 1 ? std::max(ratio, this->LastRatio) : ratio, 0.5, 0.95);
   this->Residual = sweep > 0 || change == 0.0 ? change * fall / (1.0 - fall) : 1.0;
   this->LastRatio = ratio;
   this->Change = change;

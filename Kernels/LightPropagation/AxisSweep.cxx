@@ -62,6 +62,7 @@ struct AxisSweep::Implementation
   void Enter(const SweepBoundary& boundary, std::size_t firstChannel);
   void EnterNothing();
   void DarkenSides();
+  void DarkenBeside();
   void CrossOnce(const SweepVolume& volume, bool source, bool border, const Monitor& monitor);
   void GoRound(const SweepVolume& volume, int mostPlanes, const Monitor& monitor);
 
@@ -101,9 +102,9 @@ struct AxisSweep::Implementation
   Buffer<OwnLightOnDevice> FirstOwnLight;
 
   std::map<std::size_t, std::unique_ptr<SweepBorder>> Borders; ///< by a volume's first value
-  bool MapsEmpty = false; ///< whatever is in their memory
-  bool SidesDark = false; ///< Outside and Radiance are zero
-  SweepTally Tally;       ///< of the sweep that goes on
+  bool MapsEmpty = false;                                      ///< whatever is in their memory
+  bool SidesDark = false;                                      ///< Outside and Radiance are zero
+  SweepTally Tally;                                            ///< of the sweep that goes on
 };
 
 void AxisSweep::Implementation::MakeBuffers()
@@ -171,6 +172,21 @@ void AxisSweep::Implementation::DarkenSides()
   }
 }
 
+/// In the maps of a periodic axis: the light beside the rows has come in, and does not again when rays go round.
+void AxisSweep::Implementation::DarkenBeside()
+{
+  const SweepPlan& plan = this->Plan;
+  if (this->SidesDark)
+  {
+    return;
+  }
+  cl::Kernel kernel = this->TheDevice.Kernel("darken_beside", { kernel_source::Numerics, kernel_source::Collect });
+  With(kernel, this->OwnMaps, cl_ulong(plan.mapsEachWay), this->MapPlaces, cl_int(plan.channels), cl_int(plan.row),
+    cl_int(plan.vector), plan.plane.sizeU, plan.plane.width);
+  this->TheDevice.Queue().enqueueNDRangeKernel(
+    kernel, cl::NullRange, cl::NDRange(plan.plane.sizeV, plan.bundles.size(), 2), cl::NDRange(1, 1, 1));
+}
+
 /// From where rays start to where they leave the axis for the first time, or the last lap ends.
 void AxisSweep::Implementation::CrossOnce(const SweepVolume& volume, bool source, bool border, const Monitor& monitor)
 {
@@ -185,6 +201,7 @@ void AxisSweep::Implementation::GoRound(const SweepVolume& volume, int mostPlane
 {
   const int planes = this->Plan.PatternPlanes();
   this->CountSideways();
+  this->DarkenBeside();
   this->DarkenSides();
   this->MapsEmpty = false;
   Rgb& onTheWay = this->Tally.onTheWay;
@@ -250,8 +267,10 @@ cl::Kernel AxisSweep::Implementation::SweepKernel(bool source, bool border, bool
         "#undef MEMBERS\n";
     }
   }
-  return this->TheDevice.Kernel(
-    "sweep", { kernel_source::Numerics, kernel_source::SweepLayout, kernel_source::SweepEntering, bundles, kernel_source::Sweep }, options);
+  return this->TheDevice.Kernel("sweep",
+    { kernel_source::Numerics, kernel_source::SweepLayout, kernel_source::SweepEntering, bundles,
+      kernel_source::Sweep },
+    options);
 }
 
 void AxisSweep::Implementation::CountSideways()

@@ -69,3 +69,19 @@ __kernel void map_power(const __global float* maps, ulong maps_each_way, const _
     sums[((way * get_global_size(1) + get_global_id(1)) * rows + row) * channels + c] = total;
   }
 }
+
+// The columns beside a row's voxels hold what comes in through u's face: nothing, once rays go round a periodic axis. A work-item
+// a row of a bundle and way; arguments as of map_power.
+__kernel void darken_beside(__global float* maps, ulong maps_each_way, const __global int2* bundles, int channels,
+  int row_floats, int border, int size_u, int width)
+{
+  const int2 bundle = bundles[get_global_id(1)];
+  maps += get_global_id(2) * maps_each_way + bundle.y + (ulong)get_global_id(0) * bundle.x * channels * row_floats + border;
+  for (int r = 0; r < bundle.x * channels; ++r)
+  {
+    for (int x = size_u; x < width; ++x)
+    {
+      maps[r * row_floats + x] = 0.0f;
+    }
+  }
+}

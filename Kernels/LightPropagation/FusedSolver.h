@@ -27,7 +27,8 @@ inline Rgb From(const Rgb& rgb, int first)
 class FusedSolver
 {
 public:
-  FusedSolver(Device& device, const Medium& medium, const Illumination& illumination, const PropagationSettings& settings)
+  FusedSolver(
+    Device& device, const Medium& medium, const Illumination& illumination, const PropagationSettings& settings)
     : TheDevice(device)
     , TheMedium(medium)
     , Outside(illumination)
@@ -107,15 +108,15 @@ private:
   // Accelerated: what the low-order systems have, by channel
   bool Accelerated = false;
   bool LinearSource = false;
-  bool Iterating = false;                         ///< sweeps tell what enters voxels, and no net flux
-  Buffer<float> Absorption, Given, Entering;      ///< as LowOrder::Arrays has them
+  bool Iterating = false;                    ///< sweeps tell what enters voxels, and no net flux
+  Buffer<float> Absorption, Given, Entering; ///< as LowOrder::Arrays has them
   std::vector<std::unique_ptr<LowOrder>> Systems;
-  std::vector<std::vector<double>> Found;         ///< W / length^2, without lights' own
-  std::vector<float> Lamps;                       ///< W / length^2, lights' own, [channel][stride]
-  EnergyBalance LampBalance;                      ///< of lights' own light
+  std::vector<std::vector<double>> Found; ///< W / length^2, without lights' own
+  std::vector<float> Lamps;               ///< W / length^2, lights' own, [channel][stride]
+  EnergyBalance LampBalance;              ///< of lights' own light
   std::array<Rgb, 6> LampFaces = {};
-  Rgb GivenPower = {}, PowerIn = {};              ///< W, emitted or first scattered; through faces
-  std::array<Rgb, 6> FacePowerOut = {};    ///< W, in a sweep
+  Rgb GivenPower = {}, PowerIn = {};    ///< W, emitted or first scattered; through faces
+  std::array<Rgb, 6> FacePowerOut = {}; ///< W, in a sweep
   double Change = 1.0, LastRatio = 1.0;
 
   LightField Result;

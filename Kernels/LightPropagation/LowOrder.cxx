@@ -11,10 +11,10 @@ namespace tyndall
 namespace
 {
 constexpr double Pi = 3.14159265358979323846;
-constexpr int Chunk = 4096;         ///< as in LowOrderSolve.cl
-constexpr int Sums_ = 8;            ///< SUMS there
-constexpr double Floor = 0.05;      ///< optical length between centres of voxels that pass light as if it were that long
-constexpr double Reduction = 1e-3;  ///< of the residual in one correction: sweeps gain less than that
+constexpr int Chunk = 4096;        ///< as in LowOrderSolve.cl
+constexpr int Sums_ = 8;           ///< SUMS there
+constexpr double Floor = 0.05;     ///< optical length between centres of voxels that pass light as if it were that long
+constexpr double Reduction = 1e-3; ///< of the residual in one correction: sweeps gain less than that
 
 int OtherAxis(int axis, int which)
 {
@@ -138,8 +138,9 @@ LowOrder::LowOrder(Device& device, const Grid& grid, const std::array<bool, 3>& 
   this->Solution = ExactValues(device, this->Count, what);
   this->Sums = ExactValues(device, Sums_ * ((this->Count + Chunk - 1) / Chunk), "sums");
   const std::array<int, 3>& n = grid.size;
-  const std::size_t faces = 2 * (static_cast<std::size_t>(n[0]) * n[1] + static_cast<std::size_t>(n[1]) * n[2] +
-    static_cast<std::size_t>(n[2]) * n[0]);
+  const std::size_t faces = 2 *
+    (static_cast<std::size_t>(n[0]) * n[1] + static_cast<std::size_t>(n[1]) * n[2] +
+      static_cast<std::size_t>(n[2]) * n[0]);
   this->Borders = ExactValues(device, 3 * faces, what);
   for (int i = 0; i < 2; ++i)
   {
@@ -153,16 +154,17 @@ LowOrder::LowOrder(Device& device, const Grid& grid, const std::array<bool, 3>& 
   With(stairs, this->Layout, *arrays.sigma_t, this->Stairs);
   this->Run(stairs);
   cl::Kernel conductance = this->Kernel("low_order_conductance");
-  With(conductance, this->Layout, *arrays.sigma_t, *arrays.sigma_a, this->Stairs,
-    this->Solver.Conductance(), this->Solver.Loss());
+  With(conductance, this->Layout, *arrays.sigma_t, *arrays.sigma_a, this->Stairs, this->Solver.Conductance(),
+    this->Solver.Loss());
   this->Run(conductance);
   this->Solver.Coarsen();
 }
 
 cl::Kernel LowOrder::Kernel(const char* name) const
 {
-  return this->TheDevice.Kernel(
-    name, { kernel_source::LowOrderLayout, kernel_source::LowOrder, kernel_source::LowOrderSolve }, ExactOption(this->TheDevice));
+  return this->TheDevice.Kernel(name,
+    { kernel_source::LowOrderLayout, kernel_source::LowOrder, kernel_source::LowOrderSolve },
+    ExactOption(this->TheDevice));
 }
 
 void LowOrder::Run(cl::Kernel& kernel)
@@ -214,8 +216,8 @@ double LowOrder::Correct(double unit)
 std::array<double, 2> LowOrder::Weights(double* change)
 {
   cl::Kernel kernel = this->Kernel("anderson_sums");
-  With(kernel, this->Given.Handle(), this->Solution.Handle(), this->ChangeBefore[0], this->ChangeBefore[1], *this->The.sigma_s,
-    cl_int(this->The.first), this->Layout.spacing[0], cl_int(this->Count), this->Sums.Handle());
+  With(kernel, this->Given.Handle(), this->Solution.Handle(), this->ChangeBefore[0], this->ChangeBefore[1],
+    *this->The.sigma_s, cl_int(this->The.first), this->Layout.spacing[0], cl_int(this->Count), this->Sums.Handle());
   const std::size_t chunks = (this->Count + Chunk - 1) / Chunk;
   this->TheDevice.Queue().enqueueNDRangeKernel(kernel, cl::NullRange, cl::NDRange(chunks), cl::NDRange(1));
   std::array<double, Sums_> sums = {};

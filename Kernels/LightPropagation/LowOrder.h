@@ -55,14 +55,14 @@ public:
   /// The solver's arrays; those of all channels, one after the other, `stride` voxels each.
   struct Arrays
   {
-    std::size_t stride, firstT, first;  ///< where this channel begins, in sigma_t and in the others
-    const Buffer<float>* sigma_t;       ///< 1/length
-    const Buffer<float>* sigma_a;       ///< 1/length
-    const Buffer<float>* sigma_s;       ///< 1/length
-    const Buffer<float>* given;         ///< emitted, and of lights first scattered, W / (length^3 sr)
-    const Buffer<float>* source;        ///< of a sweep, W / (length^3 sr)
-    const Buffer<float>* path;          ///< W length, that it found
-    const Buffer<float>* entering;      ///< W, [channel][-x, +x, -y, +y, -z, +z][stride], that it found
+    std::size_t stride, firstT, first; ///< where this channel begins, in sigma_t and in the others
+    const Buffer<float>* sigma_t;      ///< 1/length
+    const Buffer<float>* sigma_a;      ///< 1/length
+    const Buffer<float>* sigma_s;      ///< 1/length
+    const Buffer<float>* given;        ///< emitted, and of lights first scattered, W / (length^3 sr)
+    const Buffer<float>* source;       ///< of a sweep, W / (length^3 sr)
+    const Buffer<float>* path;         ///< W length, that it found
+    const Buffer<float>* entering;     ///< W, [channel][-x, +x, -y, +y, -z, +z][stride], that it found
   };
 
   /// @param incoming  W / length^2 through the box's faces, but that of lights

@@ -11,11 +11,11 @@ namespace tyndall
 {
 namespace
 {
-constexpr int Chunk = 4096;        ///< as in LowOrderSolve.cl
-constexpr int FewVoxels = 64;      ///< of the coarsest level
-constexpr int FinishRounds = 12;   ///< on it
+constexpr int Chunk = 4096;      ///< as in LowOrderSolve.cl
+constexpr int FewVoxels = 64;    ///< of the coarsest level
+constexpr int FinishRounds = 12; ///< on it
 constexpr int MostIterations = 300;
-constexpr float Damping = 0.8f;    ///< of Jacobi's method, about the best for seven points
+constexpr float Damping = 0.8f;      ///< of Jacobi's method, about the best for seven points
 constexpr double Negligible = 1e-12; ///< residual, of the first one
 }
 
@@ -217,7 +217,8 @@ int LowOrderSolver::Solve(const ExactValues& right, ExactValues& values, double 
     }
   };
   const auto multiply = [&](const ExactValues& by, bool subtract, const ExactValues& into) {
-    With(apply, finest.layout, finest.conductance, finest.loss, by.Handle(), right.Handle(), cl_int(subtract), into.Handle());
+    With(apply, finest.layout, finest.conductance, finest.loss, by.Handle(), right.Handle(), cl_int(subtract),
+      into.Handle());
     this->Run(apply, finest.layout.size);
   };
   const cl::NDRange all(this->Count);

@@ -44,7 +44,10 @@ public:
   /// @param spacing  of voxels: an axis along which they are far shorter is coarsened first
   LowOrderSolver(Device& device, const std::array<int, 3>& size, const std::array<double, 3>& spacing);
 
-  Buffer<float>& Conductance() { return this->Levels.front().conductance; } ///< [axis][voxel] of low faces, 0 at the box's end
+  Buffer<float>& Conductance()
+  {
+    return this->Levels.front().conductance;
+  } ///< [axis][voxel] of low faces, 0 at the box's end
   Buffer<float>& Loss() { return this->Levels.front().loss; }
   /// After the two were written.
   void Coarsen();

@@ -24,8 +24,9 @@ void Check(const PropagationSettings& settings)
   }
   if (settings.source == PropagationSource::Linear && settings.acceleration == PropagationAcceleration::None)
   {
-    throw InvalidInput("Source is linear and Acceleration is none; the linear source is that of the accelerated solve: choose "
-                       "Acceleration automatic, or Source constant.");
+    throw InvalidInput(
+      "Source is linear and Acceleration is none; the linear source is that of the accelerated solve: choose "
+      "Acceleration automatic, or Source constant.");
   }
   if (settings.storedDirections < 1)
   {

@@ -9,7 +9,7 @@ enum class PropagationSource
 {
   Automatic, ///< constant, or linear where orders are accelerated
   Constant,  ///< as published
-  Linear     ///< from voxel centre to voxel centre (by the low-order system, see LowOrder.h): right however thick voxels are
+  Linear ///< from voxel centre to voxel centre (by the low-order system, see LowOrder.h): right however thick voxels are
 };
 
 /// How scattering orders are added up.
@@ -30,7 +30,7 @@ struct PropagationSettings
   int storedDirections = 1; ///< directions kept for scattered radiance: 1 (isotropic), 6 (faces), or more
   PropagationSource source = PropagationSource::Automatic;
   PropagationAcceleration acceleration = PropagationAcceleration::Automatic; ///< not where maximumOrders is given
-  bool netFlux = false;     ///< compute net_flux too: it costs
+  bool netFlux = false;                                                      ///< compute net_flux too: it costs
 };
 
 /// @throws InvalidInput where a number is out of its range (directionsPerFace is looked at by the direction sets)

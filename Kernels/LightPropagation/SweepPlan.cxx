@@ -74,8 +74,7 @@ double LongestWay(const std::vector<Bundle>& bundles)
 }
 
 SweepPlan::SweepPlan(const Device& device, const Grid& ofGrid, int axis, const std::vector<Bundle>& ofBundles,
-  int channelCount, const std::array<bool, 3>& periodicAxes, bool wantsNetFlux,
-  bool wantsEntering)
+  int channelCount, const std::array<bool, 3>& periodicAxes, bool wantsNetFlux, bool wantsEntering)
   : grid(ofGrid)
   , axes(AcrossAxis(axis))
   , bundles(InPowersOfTwo(ofBundles))
@@ -212,7 +211,8 @@ void SweepPlan::LayUnits(int computeUnits)
 std::size_t SweepPlan::ScratchFloats() const
 {
   const std::size_t ring = std::size_t{ 2 } * RingRows * MaxMembers * this->channels * this->row + this->vector;
-  const std::size_t quantities = 3 + ((this->netFlux ? 5 : 2) + (this->entering ? 5 : 0)) * this->channels; // PLANES of SweepLayout.cl
+  const std::size_t quantities =
+    3 + ((this->netFlux ? 5 : 2) + (this->entering ? 5 : 0)) * this->channels; // PLANES of SweepLayout.cl
   const std::size_t planes = quantities * this->plane.block * this->plane.sizeV * this->row;
   const std::size_t thinRows = static_cast<std::size_t>(this->plane.block) * this->plane.sizeV;
   return ring + planes + thinRows + 2 * this->vector;

@@ -28,7 +28,8 @@ struct SweepVolume
   /// W, [channel][-x, +x, -y, +y, -z, +z][stride], added to: power that enters each voxel through each of its faces; null:
   /// not wanted
   const Buffer<float>* entering = nullptr;
-  std::size_t first = 0; ///< where the first channel of source and path begins (flux: three times that, entering: six times)
+  std::size_t first =
+    0; ///< where the first channel of source and path begins (flux: three times that, entering: six times)
 };
 
 /// Memory that sweeps along different axes take turns in. What one leaves there means nothing to the next.

@@ -72,7 +72,7 @@ void WritesWhatItSays(test::Claims& claims)
 
   auto* convergence = vtkTable::SafeDownCast(maps->GetOutputDataObject(1));
   claims.That(convergence->GetNumberOfRows() == maps->GetOrders() && maps->GetOrders() > 2, "a row an order");
-  for (const char* column : { "iteration", "seconds", "residual", "absorbed", "escaped", "left_over" })
+  for (const char* column : { "iteration", "seconds", "residual", "change", "absorbed", "escaped", "left_over" })
   {
     claims.That(convergence->GetColumnByName(column) != nullptr, std::string("column ") + column);
   }

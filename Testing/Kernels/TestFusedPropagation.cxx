@@ -89,6 +89,16 @@ TEST_F(FusedPropagation, GivesBackEveryWattItTakes)
   }
 }
 
+TEST_F(FusedPropagation, LetsLightInOnceWhereRaysGoRoundOneAxis)
+{
+  // Rows of no whole number of vectors: what waits beside them comes in on the first round only.
+  Scene scene({ 10, 5, 9 }, 0.001f, 3.0f);
+  scene.ShineFromEverywhere(1.0);
+  scene.settings.maximumOrders = 3;
+  scene.settings.periodic = { true, false, false };
+  EXPECT_LT(scene.Solve(this->GetDevice()).balance.RelativeError(1), 1e-5);
+}
+
 TEST_F(FusedPropagation, CountsEnteringPowerAsTheSurfaceIntegralOfRadiance)
 {
   Scene scene({ 40, 40, 40 }, 0.01f, 0.0f);

@@ -33,7 +33,7 @@ assert entered > 0 and emitted == 0 and abs(entered - absorbed - escaped - left)
 
 convergence = servermanager.Fetch(light, idx=1)
 columns = [convergence.GetColumnName(i) for i in range(convergence.GetNumberOfColumns())]
-assert columns == ["iteration", "seconds", "residual", "absorbed", "escaped", "left_over"], columns
+assert columns == ["iteration", "seconds", "residual", "change", "absorbed", "escaped", "left_over"], columns
 assert convergence.GetNumberOfRows() == light.Orders
 
 # Properties reach the solver.
