@@ -143,7 +143,7 @@ std::string Lines(const std::vector<std::string>& texts);
 /// `face_power_out`, `stored_directions`, `left_out`, `device`. Light that the output already has is taken away.
 void WriteLight(LightField&& light, vtkImageData* output);
 
-/// One row an iteration: `iteration`, `seconds`, `residual`, `absorbed`, `escaped`, `left_over`.
+/// One row an iteration: `iteration`, `seconds`, `residual`, `change`, `absorbed`, `escaped`, `left_over`.
 void WriteConvergence(const std::vector<ConvergenceRow>& rows, vtkTable* table);
 
 /// To be asked where an input is empty: ends the work of Guarded without an error where the filter before failed or was aborted.

@@ -43,7 +43,7 @@ struct LightField;
  *
  * and field data `energy_balance` (W: entered, emitted, absorbed, escaped, left over), `face_power_out` (W through -x, +x,
  * -y, +y, -z, +z), `left_out` (what the scene did not need), `device`, `stored_directions`.
- * Output 1: vtkTable, one row a scattering order: `iteration`, `seconds`, `residual`, `absorbed`, `escaped`, `left_over`.
+ * Output 1: vtkTable, one row a scattering order: `iteration`, `seconds`, `residual`, `change`, `absorbed`, `escaped`, `left_over`.
  *
  * Without lights, environment, SkyColor, FaceRadiance and emission the result is dark, with a warning.
  *
