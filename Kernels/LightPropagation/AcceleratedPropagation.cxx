@@ -202,6 +202,12 @@ void FusedSolver::MakeSystems()
   }
 }
 
+/// W of a voxel, about.
+double FusedSolver::UnitPower(int c) const
+{
+  return (this->GivenPower[c] + this->PowerIn[c]) / static_cast<double>(this->TheMedium.grid.VoxelCount());
+}
+
 /// Solve for the light of each channel and estimate how far it is from the truth of an endless iteration: changes fall
 /// off like a geometric series, so the rest of it is the change times q / (1 - q). The worst channel counts.
 void FusedSolver::Correct(int sweep)
@@ -209,11 +215,10 @@ void FusedSolver::Correct(int sweep)
   double change = 0.0;
   for (int c = 0; c < this->Channels; ++c)
   {
-    const double power = this->GivenPower[c] + this->PowerIn[c];
-    if (power > 0.0)
+    const double unit = this->UnitPower(c);
+    if (unit > 0.0)
     {
-      change =
-        std::max(change, this->Systems[c]->Correct(power / static_cast<double>(this->TheMedium.grid.VoxelCount())));
+      change = std::max(change, this->Systems[c]->Correct(unit));
     }
   }
   const double ratio = sweep > 0 && this->Change > 0.0 ? change / this->Change : 1.0;
@@ -266,6 +271,14 @@ bool FusedSolver::DoneAccelerated(int sweeps) const
 /// Where the system found less than nothing, what the last sweep found stands.
 void FusedSolver::UnloadAccelerated()
 {
+  for (int c = 0; c < this->Channels; ++c)
+  {
+    if (this->UnitPower(c) > 0.0)
+    {
+      this->Systems[c]->Refine(this->UnitPower(c));
+    }
+  }
+  this->CountLight();
   const double perVolume = 1.0 / this->TheMedium.grid.VoxelVolume();
   const std::vector<float> path = this->Path.Read();
   std::vector<float> fluence(path.size(), 0.0f);

@@ -79,6 +79,7 @@ private:
   void MakeSystems();
   void Correct(int sweep);
   void CountLight();
+  double UnitPower(int channel) const;
   bool DoneAccelerated(int sweeps) const;
   void UnloadAccelerated();
 

@@ -47,6 +47,10 @@ CrossingPattern FindCrossingPattern(
 /// Light that dies away within a voxel (y = half its size in diffusion lengths): D's half voxels conduct 2 y^2 / (2 y - 1 + exp(-2 y)) better at a border
 /// between unlike voxels and (y / sinh y)^2 among equals: light that falls off exponentially is then met exactly.
 ///
+/// Light of lamps is not carried by this system until it is scattered for the first time, and that is taken to happen evenly over each
+/// voxel: a beam into voxels thicker than a mean free path goes too deep (transmittance of a slab of 32 voxels lit by a beam:
+/// 0.6% too much at optical thickness 10, 43% at 100; diffuse light has no such error).
+///
 /// With `linear` false, D = area (s_L + s_R) / tau, w = 1, m the sweep's fluence: the solution is the sweep's own, with all the
 /// errors of a constant source, only sooner.
 class LowOrder
@@ -76,6 +80,9 @@ public:
   /// @param unit  W of a voxel, about
   /// @return |found - given| / |found|
   double Correct(double unit);
+
+  /// Solve once more, for what the last correction found to more digits.
+  void Refine(double unit) { this->Solver.Solve(this->Right, this->Solution, unit, 1e-3); }
 
   /// W / length^2, what the last correction found.
   std::vector<double> Found() const { return this->Solution.Read(); }

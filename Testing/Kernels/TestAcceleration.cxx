@@ -207,29 +207,30 @@ TEST_F(Acceleration, SolvesEveryColourAsItSolvesItAlone)
   }
 }
 
-TEST_F(Acceleration, NetFluxHasTheSourcesAndSinksOfTheMedium)
+TEST_F(Acceleration, NetFluxIsTheSameThroughEveryPlaneOfASlabThatTakesNothing)
 {
-  Scene scene = Cube(14, 0.999, [](int x, int y, int z) { return 3.0 + 0.1 * (x + y - z); });
+  Scene scene({ 3, 2, 20 }, 0.0f, 2.0f);
+  scene.settings.periodic = { true, true, false };
+  scene.light.faces[4] = { 1.0, 1.0, 1.0 };
   scene.settings.netFlux = true;
   scene.settings.tolerance = 1e-6;
   const LightField light = scene.Solve(this->GetDevice());
-  // Through the plane between slices 6 and 7 of z goes what is absorbed beyond and what leaves there.
-  double through = 0.0, taken = light.facePowerOut[5][0];
-  for (int z = 0, i = 0; z < 14; ++z)
+  ASSERT_LT(light.convergence.size(), 20u) << "accelerated";
+  // In the mean over a plane: which rays cross which of its voxels differs by half a percent.
+  for (int z = 0; z < 20; ++z)
   {
-    for (int slice = 0; slice < 196; ++slice, ++i)
+    std::array<double, 3> sum = {};
+    for (int i = 6 * z; i < 6 * z + 6; ++i)
     {
-      through += z == 6 || z == 7 ? 0.5 * light.netFlux[3 * i + 2] : 0.0;
-      taken += z >= 7 ? scene.sigma_a[i] * light.fluence[i] : 0.0;
-      const int x = slice % 14, y = slice / 14;
-      const bool side = x == 0 || x == 13 || y == 0 || y == 13;
-      EXPECT_TRUE(side || std::isfinite(light.netFlux[3 * i]));
+      for (int axis = 0; axis < 3; ++axis)
+      {
+        sum[axis] += light.netFlux[3 * i + axis];
+      }
     }
+    EXPECT_NEAR(sum[2] / light.facePowerOut[5][0], 1.0, 1e-4) << z;
+    EXPECT_NEAR(sum[0] / light.facePowerOut[5][0], 0.0, 1e-4) << z;
+    EXPECT_NEAR(sum[1] / light.facePowerOut[5][0], 0.0, 1e-4) << z;
   }
-  EXPECT_GT(through, taken) << "some leaves through the sides";
-  EXPECT_LT(through, 1.6 * taken + light.facePowerOut[0][0] * 4.0);
-  // Light flows away from the shining face.
-  EXPECT_GT(light.netFlux[3 * (7 * 196 + 7 * 14 + 7) + 2], 0.0f);
 }
 
 TEST_F(Acceleration, LeavesThinMediaAsTheyAre)
