@@ -251,6 +251,26 @@ TEST(AdaptiveEmission, PowerIsThatOfTheLightWhateverTheMap)
   }
 }
 
+TEST(AdaptiveEmission, EachPlaceSendsThePowerThatItHas)
+{
+  const ImportanceMap map = MapOf(Hills());
+  EmissionSettings settings = { 100000, Sampler::Hammersley, 5 };
+  settings.map = &map;
+  double power[4][4] = {};
+  for (const Photon& photon : EmitPhotons(Box(), Sun(), settings).photons)
+  {
+    power[static_cast<int>(photon.position[1] * 2.0) & 3][static_cast<int>(photon.position[0] * 2.0) & 3] +=
+      photon.power[0];
+  }
+  for (const auto& row : power)
+  {
+    for (const double watts : row)
+    {
+      EXPECT_NEAR(watts, 1.0, 0.02);
+    }
+  }
+}
+
 TEST(AdaptiveEmission, WeightIsPowerOverThatOfPhotonsSpreadEvenly)
 {
   const ImportanceMap map = MapOf(Hills());
