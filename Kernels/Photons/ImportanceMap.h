@@ -6,15 +6,20 @@
 
 namespace tyndall
 {
+/// Number of the environment and the sky among lights; lights of their own are numbered from 0.
+constexpr int EnvironmentLight = -1;
+
 /// How densely photons are to set out: a square picture for each light, of its photon plane or of what stands for it (the first
 /// two coordinates of the samples that its photons are made of).
 struct ImportanceMap
 {
-  int size = 0;               ///< cells along an edge of each square
-  std::vector<int> lights;    ///< number of the light of each square, as EmittedPhotons has it
-  std::vector<float> density; ///< size*size of each light, columns fastest; >= 0, any scale
+  int size = 0;            ///< cells along an edge of each square
+  std::vector<int> lights; ///< number of the light of each square, as EmittedPhotons has it
+  std::vector<float>
+    density; ///< size*size of each light, columns fastest; >= 0, any scale; where it is 0 no photons set out, and
+             ///< the light that would is missing
 
-  bool Empty() const { return this->lights.empty(); }
+  int SquareOf(int light) const; ///< which square is a light's; -1: it has none
   std::size_t Cells() const { return static_cast<std::size_t>(this->size) * static_cast<std::size_t>(this->size); }
 };
 
