@@ -90,7 +90,7 @@ void WriteImportanceMap(const Importance& importance, vtkImageData* output)
 {
   const ImportanceMap& map = importance.map;
   AddFact(output, EvenName, std::vector<double>{ importance.even ? 1.0 : 0.0 });
-  if (map.Empty())
+  if (map.lights.empty())
   {
     return; // no light reaches the volume
   }

@@ -68,8 +68,8 @@ public:
   };
 
   ///@{
-  /// Pilot photons of each light; the largest square number that is not above it is made. Default 4096, valid [1, 2^24].
-  vtkSetClampMacro(PilotCount, int, 1, 1 << 24);
+  /// Pilot photons of each light; the largest square number that is not above it is made. Default 4096, valid [1, 2^20].
+  vtkSetClampMacro(PilotCount, int, 1, 1 << 20);
   vtkGetMacro(PilotCount, int);
   ///@}
 
