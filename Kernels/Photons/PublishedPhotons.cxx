@@ -1,11 +1,11 @@
 #include "PublishedPhotons.h"
 
 #include "Clock.h"
-#include "IndexRange.h"
 #include "PhotonPacking.h"
 #include "TyndallKernelSources.h"
 
 #include "../Device/Buffer.h"
+#include "../Refraction/IndexRange.h"
 
 #include <algorithm>
 #include <cmath>
