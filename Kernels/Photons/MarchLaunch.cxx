@@ -128,13 +128,14 @@ void MarchPhotons(const MarchMedium& medium, const PackedPhotons& packed, const 
     {
       medium.Launch(march, cl::NDRange(static_cast<std::size_t>(shares.workers)), cl::NDRange(1));
     }
-    else if (shares.batches > 1)
+    else if (device.IsCpu())
     {
-      medium.Launch(march, cl::NDRange(packets, static_cast<std::size_t>(shares.batches)));
+      // One by one: PoCL would keep the packets of a whole work-group on one stack.
+      medium.Launch(march, cl::NDRange(packets, static_cast<std::size_t>(shares.batches)), cl::NDRange(1, 1));
     }
     else
     {
-      medium.Launch(march, cl::NDRange(packets));
+      medium.Launch(march, cl::NDRange(packets, static_cast<std::size_t>(shares.batches)));
     }
   });
 }

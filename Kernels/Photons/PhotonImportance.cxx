@@ -238,14 +238,23 @@ std::vector<double> Smooth(const std::vector<double>& map, int size)
   return pass(pass(map, 1, row), row, 1);
 }
 
-double DeviationOf(const std::vector<double>& map)
+/// Deviation from 1 of means over blocks, eight along an edge: circles of cells next to each other leave gaps, which tell nothing.
+double DeviationOf(const std::vector<double>& map, int size)
 {
-  double squares = 0.0;
-  for (const double d : map)
+  const int blocks = std::min(size, 8);
+  std::vector<double> sums(static_cast<std::size_t>(blocks) * blocks, 0.0), cells(sums.size(), 0.0);
+  for (std::size_t i = 0; i < map.size(); ++i)
   {
-    squares += (d - 1.0) * (d - 1.0);
+    const std::size_t column = i % size * blocks / size, row = i / size * blocks / size;
+    sums[row * blocks + column] += map[i];
+    cells[row * blocks + column] += 1.0;
   }
-  return std::sqrt(squares / static_cast<double>(map.size()));
+  double squares = 0.0;
+  for (std::size_t b = 0; b < sums.size(); ++b)
+  {
+    squares += std::pow(sums[b] / cells[b] - 1.0, 2);
+  }
+  return std::sqrt(squares / static_cast<double>(sums.size()));
 }
 
 /// The map of one light, mean 1. Empty: nothing is gained by it.
@@ -257,7 +266,7 @@ std::vector<double> MapOf(const Importance& importance, const PilotLight& light,
     return {};
   }
   map = Smooth(map, importance.map.size);
-  if (settings.automatic && DeviationOf(map) < EvenMap)
+  if (settings.automatic && DeviationOf(map, importance.map.size) < EvenMap)
   {
     return {};
   }
