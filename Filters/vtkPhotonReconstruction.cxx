@@ -14,6 +14,7 @@
 #include "vtkObjectFactory.h"
 #include "vtkStringArray.h"
 
+#include <algorithm>
 #include <cmath>
 #include <string>
 #include <utility>
@@ -48,6 +49,14 @@ tyndall::ReconstructionSettings SettingsOf(vtkPhotonReconstruction* filter)
   return settings;
 }
 
+/// Light of no photons, which have no batches: as many as are needed are as dark as it is.
+std::vector<float> DarkBatches(const FloatField& light, std::size_t voxels, int batches)
+{
+  const std::size_t count = voxels * static_cast<std::size_t>(light.Components());
+  const bool dark = std::all_of(light.Values(), light.Values() + count, [](float value) { return value == 0.0f; });
+  return std::vector<float>(dark ? count * static_cast<std::size_t>(batches) : 0, 0.0f);
+}
+
 /// [voxel][batch][channel] as [batch][voxel][channel].
 std::vector<float> BatchByBatch(const FloatField& light, std::size_t voxels, int channels)
 {
@@ -57,7 +66,7 @@ std::vector<float> BatchByBatch(const FloatField& light, std::size_t voxels, int
     throw tyndall::InvalidInput("The array 'fluence_batches' has " + std::to_string(components) +
       " components; it must have " + std::to_string(channels) + " for each batch, as 'fluence' has.");
   }
-  std::vector<float> byBatch(light.IsThere() ? voxels * static_cast<std::size_t>(components) : 0);
+  std::vector<float> byBatch(voxels * static_cast<std::size_t>(components));
   auto to = byBatch.begin();
   for (int batch = 0; to != byBatch.end(); ++batch)
   {
@@ -82,23 +91,25 @@ tyndall::ReconstructedLight Reconstruct(vtkPhotonReconstruction* filter, vtkImag
   const FloatField direction = read(MeanDirection, "mean_direction", { 3 });
   const FloatField count = read(PhotonCount, "photon_count", { 1 });
   const FloatField weight = read(PhotonWeight, "photon_weight", { 1 });
-  FloatField batches;
-  if (filter->GetScheme() == vtkPhotonReconstruction::SOUND)
-  {
-    batches = read(FluenceBatches, "fluence_batches", {});
-  }
+  const bool sound = filter->GetScheme() == vtkPhotonReconstruction::SOUND;
+  const FloatField batches = sound ? read(FluenceBatches, "fluence_batches", {}) : FloatField();
   light.channels = fluence.Components();
-  const std::vector<float> byBatch =
-    batches.IsThere() ? BatchByBatch(batches, light.grid.VoxelCount(), light.channels) : std::vector<float>{};
+  std::vector<float> byBatch;
+  if (batches.IsThere())
+  {
+    byBatch = BatchByBatch(batches, light.grid.VoxelCount(), light.channels);
+    light.batches = batches.Components() / light.channels;
+  }
+  else if (sound)
+  {
+    light.batches = 2;
+    byBatch = DarkBatches(fluence, light.grid.VoxelCount(), light.batches);
+  }
   light.fluence = fluence.Values();
   light.meanDirection = direction.Values();
   light.photonCount = count.Values();
   light.photonWeight = weight.Values();
-  if (!byBatch.empty())
-  {
-    light.batches = batches.Components() / light.channels;
-    light.batchFluence = byBatch.data();
-  }
+  light.batchFluence = byBatch.empty() ? nullptr : byBatch.data();
   return tyndall::Reconstruct(
     *tyndall::Device::Find(filter->GetDevice()), light, SettingsOf(filter), tyndall::MonitorOf(filter));
 }

@@ -118,7 +118,8 @@ void EverySchemeGivesLight(test::Claims& claims)
   {
     scene.reconstruction->SetLevel(level);
     scene.reconstruction->Update();
-    claims.Near(test::Deviation(scene.Smooth(), "mip_level", level), 0.0, 0.0, "the level that is asked for, less it");
+    claims.Near(
+      test::Deviation(scene.Smooth(), "mip_level", level), 0.0, 0.0, "levels, less the one that is asked for");
   }
 }
 
