@@ -67,4 +67,15 @@ inline void KeepWhatIsAskedFor(vtkInformation* information, vtkImageData* output
     output->Crop(asked);
   }
 }
+
+/// The same for an output whose extent shows only when it is made: the pipeline, which had to guess, is told of it first.
+inline void TellExtentAndKeepWhatIsAskedFor(vtkInformation* information, vtkImageData* output)
+{
+  using Pipeline = vtkStreamingDemandDrivenPipeline;
+  int extent[6];
+  output->GetExtent(extent);
+  information->Set(Pipeline::WHOLE_EXTENT(), extent, 6);
+  information->Set(Pipeline::UPDATE_EXTENT(), extent, 6);
+  KeepWhatIsAskedFor(information, output);
+}
 }

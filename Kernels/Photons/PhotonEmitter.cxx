@@ -171,7 +171,7 @@ void EmitFrom(const Grid& grid, const SpreadSource& light, std::size_t tries, st
         emitted.photons.push_back(*photon);
         emitted.lights.push_back(light.source.light);
       }
-      if (i % ReportEvery == ReportEvery - 1)
+      if ((b * tries / batches + i) % ReportEvery == ReportEvery - 1)
       {
         Report(monitor, std::min(1.0, static_cast<double>(emitted.photons.size()) / settings.photonCount));
       }
