@@ -29,7 +29,7 @@ arguments = arguments.parse_args()
 os.makedirs(arguments.output, exist_ok=True)
 
 ball = Sphere(registrationName="Ball", Radius=0.5, ThetaResolution=160, PhiResolution=160)
-box = [-1, 1, -1, 1, -0.56, 1.44]
+box = [-1, 1, -1, 1, -0.6, 1.4]
 medium = MeshVoxelizer(registrationName="Ball in fog", Input=ball, ModelBounds=box, SampleDimensions=[arguments.grid] * 3,
                        InsideIndex=1.5, InsideScattering=[0.02] * 3, OutsideScattering=[0.35] * 3, OutsideAbsorption=[0.03] * 3)
 octree = RefractionOctree(registrationName="Octree", Input=medium)
