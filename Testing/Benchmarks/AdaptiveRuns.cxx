@@ -39,6 +39,18 @@ std::vector<float> Gauss3(std::vector<float> values, const Grid& grid)
   return values;
 }
 
+/// The first channel: light of these scenes is grey.
+std::vector<float> FirstChannel(std::vector<float> values, int channels)
+{
+  const std::size_t step = static_cast<std::size_t>(channels), count = values.size() / step;
+  for (std::size_t i = 0; i < count; ++i)
+  {
+    values[i] = values[i * step];
+  }
+  values.resize(count);
+  return values;
+}
+
 ReconstructedLight Rebuild(Device& device, Way way, const PhotonLight& light, const Grid& grid)
 {
   NoisyLight noisy;
@@ -140,7 +152,11 @@ WayLight WayRunner::Run(Way way, std::size_t photons, std::uint64_t seed)
     result.mipLevel = std::move(rebuilt.mipLevel);
     return result;
   }
-  result.fluence = way == Way::Smoothed ? Gauss3(std::move(light.light.fluence), grid) : std::move(light.light.fluence);
+  result.fluence = FirstChannel(std::move(light.light.fluence), light.light.channels);
+  if (way == Way::Smoothed)
+  {
+    result.fluence = Gauss3(std::move(result.fluence), grid);
+  }
   result.meanDirection = std::move(light.meanDirection);
   return result;
 }
