@@ -32,11 +32,21 @@ std::size_t FieldStride(const std::array<int, 3>& size, int stride)
 }
 }
 
+cl_int4 LightRows::LayoutOf(const std::array<int, 3>& size, int width)
+{
+  return { { size[0], size[1], size[2], WholeVectors(size[0], width) + 2 * (width > 1 ? width : 2) } };
+}
+
+std::size_t LightRows::CountOf(const std::array<int, 3>& size, int fields, int width)
+{
+  return FieldStride(size, LayoutOf(size, width).s[3]) * Count(fields);
+}
+
 LightRows::LightRows(Device& device, const std::array<int, 3>& size, int fields, int width, const char* what)
   : Size(size)
   , FieldCount(fields)
-  , Stride(WholeVectors(size[0], width) + 2 * (width > 1 ? width : 2))
-  , Memory(device, FieldStride(size, this->Stride) * Count(fields), what)
+  , Stride(LayoutOf(size, width).s[3])
+  , Memory(device, CountOf(size, fields, width), what)
 {
 }
 
