@@ -134,7 +134,8 @@ tyndall::Importance vtkPhotonImportance::Find(vtkInformationVector** inputs)
   return importance;
 }
 
-int vtkPhotonImportance::RequestData(vtkInformation*, vtkInformationVector** inputs, vtkInformationVector* outputs)
+int vtkPhotonImportance::RequestData(
+  vtkInformation* request, vtkInformationVector** inputs, vtkInformationVector* outputs)
 {
   this->DeviceName.clear();
   this->Note({});
@@ -149,12 +150,13 @@ int vtkPhotonImportance::RequestData(vtkInformation*, vtkInformationVector** inp
     {
       tyndall::WritePilotLight(std::move(importance), pilot);
     }
+    vtkInformation* const asking = tyndall::AskingPort(request, outputs);
     for (int port = 0; port < 2; ++port)
     {
       vtkImageData* const output = vtkImageData::GetData(outputs, port);
       tyndall::AddFact(output, "left_out", leftOut);
       tyndall::AddFact(output, "device", std::vector<std::string>{ this->DeviceName });
-      tyndall::TellExtentAndKeepWhatIsAskedFor(outputs->GetInformationObject(port), output);
+      tyndall::TellExtentAndKeepWhatIsAskedFor(asking, outputs->GetInformationObject(port), output);
     }
   });
 }

@@ -1,7 +1,6 @@
 """Two ranks: each finds the whole map and smooths the whole light, and hands on its piece."""
 import os
 
-import numpy
 from paraview import servermanager
 from paraview.simple import *
 from paraview.vtk import vtkImageData
@@ -20,32 +19,37 @@ marcher = PhotonMarcher(Input=medium, Photons=emitter, PhotonCounts=1)
 light = PhotonReconstruction(Input=marcher)
 
 
-def check(proxy, port, names, size):
-    """Whether the rank's piece is that of the whole."""
+def copies(algorithm):
+    """The images on all ports of a filter."""
+    images = [vtkImageData() for port in range(algorithm.GetNumberOfOutputPorts())]
+    for port, image in enumerate(images):
+        image.DeepCopy(algorithm.GetOutputDataObject(port))
+    return images
+
+
+def check(proxy, names, sizes):
+    """Whether the rank's pieces are those of the whole: arrays and voxels of each port."""
+    proxy.UpdatePipeline()  # in pieces, as a view of ParaView asks for them
     algorithm = proxy.GetClientSideObject()
-    piece, whole = vtkImageData(), vtkImageData()
-    piece.DeepCopy(algorithm.GetOutputDataObject(port))
-    assert 0 < piece.GetNumberOfCells() < numpy.prod(size), (names, piece.GetExtent())
-    asked = algorithm.GetOutputInformation(port)
-    asked.Set(Pipeline.UPDATE_PIECE_NUMBER(), 0)
-    asked.Set(Pipeline.UPDATE_NUMBER_OF_PIECES(), 1)
-    algorithm.GetExecutive().Update(port)
-    whole.DeepCopy(algorithm.GetOutputDataObject(port))
-    assert [d - 1 for d in whole.GetDimensions()] == list(size), (names, whole.GetDimensions())
-    whole.Crop(piece.GetExtent())
-    for name in names:
-        found, wanted = (vtk_to_numpy(image.GetCellData().GetArray(name)) for image in (piece, whole))
-        assert found.size and (found == wanted).all(), name
+    pieces = copies(algorithm)
+    for asking in range(len(pieces)):  # all ports follow the one that asks
+        asked = algorithm.GetOutputInformation(asking)
+        asked.Set(Pipeline.UPDATE_PIECE_NUMBER(), 0)
+        asked.Set(Pipeline.UPDATE_NUMBER_OF_PIECES(), 1)
+        algorithm.Modified()
+        algorithm.GetExecutive().Update(asking)
+        for port, whole in enumerate(copies(algorithm)):
+            what = names[port], pieces[port].GetExtent(), whole.GetExtent()
+            assert [d - 1 for d in whole.GetDimensions()] == sizes[port], what
+            assert 0 < pieces[port].GetNumberOfCells() < whole.GetNumberOfCells(), what
+            whole.Crop(pieces[port].GetExtent())
+            for name in names[port]:
+                found, wanted = (vtk_to_numpy(image.GetCellData().GetArray(name)) for image in (pieces[port], whole))
+                assert found.size and (found == wanted).all(), (name, what)
 
 
-# In pieces, as a view of ParaView asks for them: the map's layers are known only when it is made.
-importance.UpdatePipeline()
-check(importance, 0, ["importance"], (32, 32, 2))
-pilot = OutputPort(importance, 1)
-pilot.UpdatePipeline()
-check(importance, 1, ["fluence", "photon_count", "origin_mean", "chosen"], (8, 8, 6))
-light.UpdatePipeline()
-check(light, 0, ["fluence", "fluence_error", "mean_direction", "mip_level"], (20, 16, 12))
+check(importance, [["importance"], ["fluence", "photon_count", "origin_mean", "chosen"]], [[32, 32, 2], [8, 8, 6]])
+check(light, [["fluence", "fluence_error", "mean_direction", "mip_level"]], [[20, 16, 12]])
 own = emitter.GetClientSideObject().GetOutputDataObject(0).GetNumberOfPoints()
 assert own > 7900, own  # each rank's marcher asks for all
 light.UpdatePropertyInformation()
