@@ -16,6 +16,12 @@ typedef struct
 // A voxel on the grid's border or beyond it goes on as the two last ones of its row do.
 static float squared_index_of(const index_grid* grid, const __global float* ior, int i, int j, int k)
 {
+  const bool inside = i >= 0 && i < grid->size[0] && j >= 0 && j < grid->size[1] && k >= 0 && k < grid->size[2];
+  if (inside)
+  {
+    const float n = ior[(k * grid->size[1] + j) * grid->size[0] + i];
+    return n * n;
+  }
   const int voxel[3] = { i, j, k };
   const int stride[3] = { 1, grid->size[0], grid->size[0] * grid->size[1] };
   int nearest = 0;
@@ -89,9 +95,12 @@ __kernel void widen_range(int stride, const __global float* low, const __global 
   __global float* high_out)
 {
   const int i = get_global_id(0) + 2 * stride;
-  low_out[i] = fmin(fmin(fmin(low[i - 2 * stride], low[i - stride]), fmin(low[i + stride], low[i + 2 * stride])), low[i]);
-  high_out[i] =
-    fmax(fmax(fmax(high[i - 2 * stride], high[i - stride]), fmax(high[i + stride], high[i + 2 * stride])), high[i]);
+  const __global float* l = low + i;
+  const __global float* h = high + i;
+  low_out[i] = lesser_of(
+    lesser_of(lesser_of(l[-2 * stride], l[-stride]), lesser_of(l[stride], l[2 * stride])), l[0]);
+  high_out[i] = greater_of(
+    greater_of(greater_of(h[-2 * stride], h[-stride]), greater_of(h[stride], h[2 * stride])), h[0]);
 }
 
 // The four basis functions at a place f beyond the second coefficient, from the first coefficient's to the last one's, and
