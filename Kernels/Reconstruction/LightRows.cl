@@ -46,15 +46,26 @@ typedef struct
   pair x, y, z;
 } pair_of_three;
 
+#if REAL_WIDTH == 8
+// Lanes 0, 3, 6 of the first, 1, 4, 7 of the second, 2, 5 of the third. In three vectors of eight voxels each component has every
+// lane once, so that this and one permutation sort them; written as one shuffle they become sixteen moves.
+inline float8 lanes_of(float8 a, float8 b, float8 c)
+{
+  const int8 second = (int8)(0, -1, 0, 0, -1, 0, 0, -1), third = (int8)(0, 0, -1, 0, 0, -1, 0, 0);
+  return third ? c : second ? b : a;
+}
+#endif
+
 inline pair_of_three load_three(size_t voxel, const __global float* values)
 {
   const __global float* from = values + 3 * voxel;
   pair_of_three r;
 #if REAL_WIDTH == 8
-  const float16 a = load_pair(0, from), b = load_pair(16, from), c = load_pair(32, from);
-  r.x = (float16)(a.s0, a.s3, a.s6, a.s9, a.sc, a.sf, b.s2, b.s5, b.s8, b.sb, b.se, c.s1, c.s4, c.s7, c.sa, c.sd);
-  r.y = (float16)(a.s1, a.s4, a.s7, a.sa, a.sd, b.s0, b.s3, b.s6, b.s9, b.sc, b.sf, c.s2, c.s5, c.s8, c.sb, c.se);
-  r.z = (float16)(a.s2, a.s5, a.s8, a.sb, a.se, b.s1, b.s4, b.s7, b.sa, b.sd, c.s0, c.s3, c.s6, c.s9, c.sc, c.sf);
+  const float8 a = load_real(0, from), b = load_real(8, from), c = load_real(16, from);
+  const float8 d = load_real(24, from), e = load_real(32, from), f = load_real(40, from);
+  r.x = (float16)(lanes_of(a, b, c).s03614725, lanes_of(d, e, f).s03614725);
+  r.y = (float16)(lanes_of(c, a, b).s14725036, lanes_of(f, d, e).s14725036);
+  r.z = (float16)(lanes_of(b, c, a).s25036147, lanes_of(e, f, d).s25036147);
 #else
   r.x = (float2)(from[0], from[3]);
   r.y = (float2)(from[1], from[4]);
@@ -63,13 +74,22 @@ inline pair_of_three load_three(size_t voxel, const __global float* values)
   return r;
 }
 
+#if REAL_WIDTH == 8
+inline void store_eight(float8 x, float8 y, float8 z, __global float* to)
+{
+  const float8 a = x.s03614725, b = y.s50361472, c = z.s25036147;
+  store_real(lanes_of(a, b, c), 0, to);
+  store_real(lanes_of(c, a, b), 8, to);
+  store_real(lanes_of(b, c, a), 16, to);
+}
+#endif
+
 inline void store_three(pair x, pair y, pair z, size_t voxel, __global float* values)
 {
   __global float* to = values + 3 * voxel;
 #if REAL_WIDTH == 8
-  store_pair((float16)(x.s0, y.s0, z.s0, x.s1, y.s1, z.s1, x.s2, y.s2, z.s2, x.s3, y.s3, z.s3, x.s4, y.s4, z.s4, x.s5), 0, to);
-  store_pair((float16)(y.s5, z.s5, x.s6, y.s6, z.s6, x.s7, y.s7, z.s7, x.s8, y.s8, z.s8, x.s9, y.s9, z.s9, x.sa, y.sa), 16, to);
-  store_pair((float16)(z.sa, x.sb, y.sb, z.sb, x.sc, y.sc, z.sc, x.sd, y.sd, z.sd, x.se, y.se, z.se, x.sf, y.sf, z.sf), 32, to);
+  store_eight(x.lo, y.lo, z.lo, to);
+  store_eight(x.hi, y.hi, z.hi, to + 24);
 #else
   to[0] = x.x;
   to[1] = y.x;
@@ -80,6 +100,12 @@ inline void store_three(pair x, pair y, pair z, size_t voxel, __global float* va
 #endif
 }
 
+#if REAL_WIDTH == 1
+#define any_of(condition) (condition)
+#else
+#define any_of(condition) any(condition)
+#endif
+
 // Not fmax, which looks for NaN.
 #define positive_part(x) ((x) > 0.0f ? (x) : 0.0f)
 
@@ -88,14 +114,23 @@ inline int within(int i, int count)
   return i < 0 ? 0 : i < count ? i : count - 1;
 }
 
-// First value of a row of a level, from the level's beginning. y and z beyond the ends: the end's row.
-inline size_t row_of(int4 size, int field, int y, int z)
+// Floats from a layer of rows to the next, and from a quantity to the next. Not multiples of 4 kB, where they would push each
+// other out of the cache: see LightRows.cxx.
+inline size_t layer_of(int4 size)
 {
-  return (((size_t)field * size.z + within(z, size.z)) * size.y + within(y, size.y)) * size.w + GUARD;
+  const size_t layer = (size_t)size.y * size.w;
+  return layer < 1024 ? layer : layer + 48;
 }
 inline size_t field_of(int4 size)
 {
-  return (size_t)size.w * size.y * size.z;
+  const size_t field = layer_of(size) * size.z;
+  return field < 1024 ? field : field + 656;
+}
+
+// First value of a row of a level, from the level's beginning. y and z beyond the ends: the end's row.
+inline size_t row_of(int4 size, int field, int y, int z)
+{
+  return field * field_of(size) + within(z, size.z) * layer_of(size) + (size_t)within(y, size.y) * size.w + GUARD;
 }
 
 // After `width` cells from x on were written: repeat the row's ends if they are among them.

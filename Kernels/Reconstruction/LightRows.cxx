@@ -19,17 +19,35 @@ int RowWidth(const Device& device, const Grid& grid)
   return device.IsCpu() && grid.size[0] >= 16 ? 8 : 1;
 }
 
+namespace
+{
+/// As layer_of and field_of in LightRows.cl. Rows of one place in all layers and quantities are used together; with strides that
+/// are multiples of 4 kB they would all want the same few places of the cache. So a
+/// layer ends with 3 and a quantity with 41 lines of 64 bytes that are not used.
+std::size_t FieldStride(const std::array<int, 3>& size, int stride)
+{
+  const std::size_t layer = Count(size[1]) * Count(stride);
+  const std::size_t field = (layer < 1024 ? layer : layer + 48) * Count(size[2]);
+  return field < 1024 ? field : field + 656;
+}
+}
+
+cl_int4 LightRows::LayoutOf(const std::array<int, 3>& size, int width)
+{
+  return { { size[0], size[1], size[2], WholeVectors(size[0], width) + 2 * (width > 1 ? width : 2) } };
+}
+
+std::size_t LightRows::CountOf(const std::array<int, 3>& size, int fields, int width)
+{
+  return FieldStride(size, LayoutOf(size, width).s[3]) * Count(fields);
+}
+
 LightRows::LightRows(Device& device, const std::array<int, 3>& size, int fields, int width, const char* what)
   : Size(size)
   , FieldCount(fields)
-  , Stride(StrideOf(size[0], width))
-  , Memory(device, Count(this->Stride) * Count(size[1]) * Count(size[2]) * Count(fields), what)
+  , Stride(LayoutOf(size, width).s[3])
+  , Memory(device, CountOf(size, fields, width), what)
 {
-}
-
-double LightRows::Bytes(const std::array<int, 3>& size, int fields, int width)
-{
-  return 1.0 * sizeof(float) * StrideOf(size[0], width) * size[1] * size[2] * fields;
 }
 
 RowKernels::RowKernels(Device& device, int width, const std::string& options)

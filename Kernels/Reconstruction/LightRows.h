@@ -30,11 +30,11 @@ public:
   int Fields() const { return this->FieldCount; }
   const Buffer<float>& Values() const { return this->Memory; }
 
-  static double Bytes(const std::array<int, 3>& size, int fields, int width);
+  /// Cells and floats a row, as kernels are told them; floats that all fields take.
+  static cl_int4 LayoutOf(const std::array<int, 3>& size, int width);
+  static std::size_t CountOf(const std::array<int, 3>& size, int fields, int width);
 
 private:
-  static int StrideOf(int cells, int width) { return WholeVectors(cells, width) + 2 * (width > 1 ? width : 2); }
-
   std::array<int, 3> Size;
   int FieldCount;
   int Stride;

@@ -147,15 +147,23 @@ __kernel void voxels_down(const __global float* batches, const __global float* d
   }
 }
 
-// The light of a level: at FINEST the grid's voxels, else rows.
-inline light_pair load_light(const __global float* fine, const __global float* directions, int4 size, int x, int y, int z, float scale)
+// The same, [0] of even and [1] of odd places. Not pairs: what is kept on the stack is then read as it was written.
+typedef struct
 {
+  real batch[BATCHES][2];
+  real carried[CARRIED][2];
+} split_light;
+
+// The light of a level: at FINEST the grid's voxels, else rows.
+inline split_light load_light(
+  const __global float* fine, const __global float* directions, int4 size, int x, int y, int z, float scale)
+{
+  light_pair light;
 #if FINEST
-  return load_voxels(fine, directions, size, ((size_t)z * size.y + y) * size.w + x, scale);
+  light = load_voxels(fine, directions, size, ((size_t)z * size.y + y) * size.w + x, scale);
 #else
   const __global float* row = fine + row_of(size, 0, y, z) + x;
   const size_t field = field_of(size);
-  light_pair light;
 #pragma unroll
   for (int b = 0; b < BATCHES; ++b)
   {
@@ -166,8 +174,21 @@ inline light_pair load_light(const __global float* fine, const __global float* d
   {
     light.carried[c] = load_pair((BATCHES + c) * field, row);
   }
-  return light;
 #endif
+  split_light split;
+#pragma unroll
+  for (int b = 0; b < BATCHES; ++b)
+  {
+    split.batch[b][0] = light.batch[b].even;
+    split.batch[b][1] = light.batch[b].odd;
+  }
+#pragma unroll
+  for (int c = 0; c < CARRIED; ++c)
+  {
+    split.carried[c][0] = light.carried[c].even;
+    split.carried[c][1] = light.carried[c].odd;
+  }
+  return split;
 }
 
 // How much the details of the batches agree, in cells of 2 x 2 x 2: field 0 the noise that their mean d has,
@@ -189,8 +210,8 @@ __kernel void measure_details(const __global float* fine, const __global float* 
       for (int k = 0; k < 4; ++k)
       {
         const int fy = min(2 * y + k % 2, fine_size.y - 1), fz = min(2 * z + k / 2, fine_size.z - 1);
-        const light_pair light = load_light(fine, directions, fine_size, 2 * x, fy, fz, scale);
-        const real even = light.batch[b].even - finer[2 * k], odd = light.batch[b].odd - finer[2 * k + 1];
+        const split_light light = load_light(fine, directions, fine_size, 2 * x, fy, fz, scale);
+        const real even = light.batch[b][0] - finer[2 * k], odd = light.batch[b][1] - finer[2 * k + 1];
         if (b == 0)
         {
           first[2 * k] = even;
@@ -228,19 +249,26 @@ __kernel void smooth_across(const __global float* from, int4 size, __global floa
 {
   const float weights[5] = { 0.0625f, 0.25f, 0.375f, 0.25f, 0.0625f };
   const int y = ROW_Y, z = ROW_Z;
+  size_t rows[25];
+  for (int k = 0; k < 25; ++k)
+  {
+    rows[k] = row_of(size, first, y + k % 5 - 2, z + k / 5 - 2);
+  }
   for (int f = 0; f < fields; ++f)
   {
+    const __global float* cells = from + f * field_of(size);
     __global float* row = to + row_of(size, f, y, z);
     FOR_CELLS(x, size.x)
     {
       real sum = 0.0f;
+#pragma unroll
       for (int dz = 0; dz < 5; ++dz)
       {
         real along = 0.0f;
 #pragma unroll
         for (int dy = 0; dy < 5; ++dy)
         {
-          along += weights[dy] * load_real(row_of(size, first + f, y + dy - 2, z + dz - 2) + x, from);
+          along += weights[dy] * load_real(rows[5 * dz + dy] + x, cells);
         }
         sum += weights[dz] * along;
       }
@@ -340,6 +368,7 @@ __kernel void blend_level(const __global float* fine, const __global float* dire
   const int y = ROW_Y, z = ROW_Z;
   const rows_around rows = rows_about(size, y, z);
   const size_t field = field_of(size);
+  const float unit = 1.0f / scale;
   FOR_CELLS(x, size.x)
   {
     real gain[8], finer[8], kept[CARRIED][8], mean[8];
@@ -349,7 +378,7 @@ __kernel void blend_level(const __global float* fine, const __global float* dire
     {
       mean[i] = 0.0f;
     }
-    light_pair light[4];
+    split_light light[4];
 #pragma unroll
     for (int k = 0; k < 4; ++k)
     {
@@ -364,7 +393,7 @@ __kernel void blend_level(const __global float* fine, const __global float* dire
 #pragma unroll
       for (int k = 0; k < 4; ++k)
       {
-        const real even = light[k].carried[c].even - finer[2 * k], odd = light[k].carried[c].odd - finer[2 * k + 1];
+        const real even = light[k].carried[c][0] - finer[2 * k], odd = light[k].carried[c][1] - finer[2 * k + 1];
         kept[c][2 * k] = multiply_add(gain[2 * k], even, kept[c][2 * k]);
         kept[c][2 * k + 1] = multiply_add(gain[2 * k + 1], odd, kept[c][2 * k + 1]);
         if (c < CHANNELS)
@@ -385,8 +414,8 @@ __kernel void blend_level(const __global float* fine, const __global float* dire
 #pragma unroll
       for (int k = 0; k < 4; ++k)
       {
-        const real even = light[k].batch[b].even - finer[2 * k] - mean[2 * k];
-        const real odd = light[k].batch[b].odd - finer[2 * k + 1] - mean[2 * k + 1];
+        const real even = light[k].batch[b][0] - finer[2 * k] - mean[2 * k];
+        const real odd = light[k].batch[b][1] - finer[2 * k + 1] - mean[2 * k + 1];
         own[2 * k] = multiply_add(gain[2 * k], even, own[2 * k]);
         own[2 * k + 1] = multiply_add(gain[2 * k + 1], odd, own[2 * k + 1]);
 #if FINEST
@@ -413,33 +442,49 @@ __kernel void blend_level(const __global float* fine, const __global float* dire
       const int fy = 2 * y + k % 2, fz = 2 * z + k / 2;
       if (fy < fine_size.y && fz < fine_size.z)
       {
-        const pair part = woven(gain[2 * k], gain[2 * k + 1]);
-        const pair height = woven(level[2 * k], level[2 * k + 1]);
-        const pair number_here = height + part * (number - height);
+        real here[2];
+#pragma unroll
+        for (int p = 0; p < 2; ++p)
+        {
+          here[p] = level[2 * k + p] + gain[2 * k + p] * (number - level[2 * k + p]);
+        }
 #if FINEST
         const size_t voxel = ((size_t)fz * fine_size.y + fy) * fine_size.w + 2 * x;
-        store_pair(number_here, voxel, blended);
-        pair total = 0.0f, light_here[CHANNELS];
+        store_pair(woven(here[0], here[1]), voxel, blended);
+        real out[CHANNELS + 3][2];
 #pragma unroll
-        for (int c = 0; c < CHANNELS; ++c)
+        for (int p = 0; p < 2; ++p)
         {
-          light_here[c] = positive_part(woven(kept[c][2 * k], kept[c][2 * k + 1]));
-          total += light_here[c];
+          const int i = 2 * k + p;
+          real total = 0.0f;
+#pragma unroll
+          for (int c = 0; c < CHANNELS; ++c)
+          {
+            const real lit = positive_part(kept[c][i]);
+            total += lit;
+            out[c][p] = lit * unit;
+          }
+#if DIRECTIONS
+          real cut = select((real)0.0f, 1.0f / total, total > 0.0f);
+          const real dx = kept[CHANNELS][i], dy = kept[CHANNELS + 1][i], dz = kept[CHANNELS + 2][i];
+          const real square = (dx * cut) * (dx * cut) + (dy * cut) * (dy * cut) + (dz * cut) * (dz * cut);
+          if (any_of(square > 1.0f)) // which is rare
+          {
+            cut = select(cut, cut / sqrt(square), square > 1.0f);
+          }
+          out[CHANNELS][p] = dx * cut;
+          out[CHANNELS + 1][p] = dy * cut;
+          out[CHANNELS + 2][p] = dz * cut;
+#endif
         }
-        const float unit = 1.0f / scale;
 #if CHANNELS == 1
-        store_pair(light_here[0] * unit, voxel, fluence);
+        store_pair(woven(out[0][0], out[0][1]), voxel, fluence);
 #else
-        store_three(light_here[0] * unit, light_here[1] * unit, light_here[2] * unit, voxel, fluence);
+        store_three(woven(out[0][0], out[0][1]), woven(out[1][0], out[1][1]), woven(out[2][0], out[2][1]), voxel, fluence);
 #endif
 #if DIRECTIONS
-        const pair inverse = select((pair)0.0f, 1.0f / total, total > 0.0f);
-        const pair dx = woven(kept[CHANNELS][2 * k], kept[CHANNELS][2 * k + 1]) * inverse;
-        const pair dy = woven(kept[CHANNELS + 1][2 * k], kept[CHANNELS + 1][2 * k + 1]) * inverse;
-        const pair dz = woven(kept[CHANNELS + 2][2 * k], kept[CHANNELS + 2][2 * k + 1]) * inverse;
-        const pair length = sqrt(dx * dx + dy * dy + dz * dz);
-        const pair cut = select((pair)1.0f, 1.0f / length, length > 1.0f);
-        store_three(dx * cut, dy * cut, dz * cut, voxel, mean_direction);
+        store_three(woven(out[CHANNELS][0], out[CHANNELS][1]), woven(out[CHANNELS + 1][0], out[CHANNELS + 1][1]),
+          woven(out[CHANNELS + 2][0], out[CHANNELS + 2][1]), voxel, mean_direction);
 #endif
 #else
         __global float* row = to + row_of(fine_size, 0, fy, fz);
@@ -449,7 +494,7 @@ __kernel void blend_level(const __global float* fine, const __global float* dire
         {
           store_pair(woven(kept[c][2 * k], kept[c][2 * k + 1]), c * fine_field + 2 * x, row);
         }
-        store_pair(number_here, BLENDED * fine_field + 2 * x, row);
+        store_pair(woven(here[0], here[1]), BLENDED * fine_field + 2 * x, row);
         store_pair(woven(omitted[2 * k], omitted[2 * k + 1]), OMITTED * fine_field + 2 * x, row);
 #endif
       }
@@ -459,14 +504,14 @@ __kernel void blend_level(const __global float* fine, const __global float* dire
     store_real(0.125f * squares, x, row);
     repeat_ends(row, x, REAL_WIDTH, size.x);
 #else
-    for (int f = 0; f < RESULTS; ++f)
+    if (x == 0 || x + REAL_WIDTH >= size.x)
     {
-      for (int k = 0; k < 4; ++k)
+      for (int i = 0; i < 4 * RESULTS; ++i)
       {
-        const int fy = 2 * y + k % 2, fz = 2 * z + k / 2;
+        const int fy = 2 * y + i % 2, fz = 2 * z + i / 2 % 2;
         if (fy < fine_size.y && fz < fine_size.z)
         {
-          repeat_ends(to + row_of(fine_size, f, fy, fz), 2 * x, 2 * REAL_WIDTH, fine_size.x);
+          repeat_ends(to + row_of(fine_size, i / 4, fy, fz), 2 * x, 2 * REAL_WIDTH, fine_size.x);
         }
       }
     }
