@@ -89,7 +89,10 @@ void ThePilotLightIsThere(test::Claims& claims)
   test::FiniteCells(claims, pilot, "fluence", 1);
   if (vtkDataArray* count = test::FiniteCells(claims, pilot, "photon_count", 1))
   {
-    claims.That(count->GetRange()[0] > 0.0, "a sun's pilot photons are in every cell");
+    for (vtkIdType i = 3 * 7 * 12; i < 4 * 7 * 12; ++i)
+    {
+      claims.That(count->GetComponent(i, 0) > 0.0, "a sun's pilot photons are in every cell at the top");
+    }
   }
   vtkDataArray* mean = test::FiniteCells(claims, pilot, "origin_mean", 2);
   claims.That(mean && mean->GetRange(0)[0] >= 0.0 && mean->GetRange(0)[1] < 64.0, "origins are columns of the map");
