@@ -1,6 +1,7 @@
 #include "MarchMedium.h"
 
 #include "../Device/Defines.h"
+#include "../Refraction/SquaredIndex.h"
 #include "TyndallKernelSources.h"
 
 #include <algorithm>
@@ -31,13 +32,10 @@ MarchMedium::MarchMedium(
   this->sigmaS = this->Upload(medium.sigma_s.values, this->SComponents, "sigma_s");
   Buffer<float> low(this->device, this->bends ? Count(this->Padded(4)) : 0, "range of the index");
   Buffer<float> high(this->device, this->bends ? Count(this->Padded(4)) : 0, "range of the index");
-  this->coefficients = Buffer<float>(this->device, this->bends ? Count(this->Padded(4)) : 0, "squared index");
+  this->coefficients = Buffer<float>(this->device, 0, "squared index");
   if (this->bends)
   {
-    const Buffer<float> n = this->Upload(ior.values, 1, "ior");
-    cl::Kernel squares = this->MediumKernel("squared_index_coefficients");
-    With(squares, this->DescribeGrid(), n, this->coefficients);
-    this->Launch(squares, Range(this->Padded(4)));
+    this->coefficients = SquaredIndexCoefficients(this->device, this->grid, this->Upload(ior.values, 1, "ior"));
     this->FindRanges(low, high);
   }
   this->sigma =

@@ -39,7 +39,7 @@ void Colour(const Rgb& colour, PhotonLight& result)
   std::for_each(result.light.facePowerOut.begin(), result.light.facePowerOut.end(), spread);
 }
 
-/// A photon's weight, of one unit that voxels sum up.
+/// Weight of one of the units that voxels sum up.
 float WeightUnit(const std::vector<Photon>& photons)
 {
   float largest = 0.0f;
