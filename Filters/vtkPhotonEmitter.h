@@ -88,7 +88,8 @@ public:
 
   ///@{
   /// Independent sets that the photons are made of, each with its part of all the power: their differences tell
-  /// vtkPhotonReconstruction the error of the light. Default 0: two with an importance map, one without; valid [0, 16].
+  /// vtkPhotonReconstruction the error of the light. Default 0: two with an importance map (even if that is even), one without; valid
+  /// [0, 16].
   vtkSetClampMacro(Batches, int, 0, 16);
   vtkGetMacro(Batches, int);
   ///@}

@@ -29,14 +29,6 @@ enum InputPort
   InputPortCount
 };
 
-/// Light, of the published scheme what its packing lost, and, of the sound scheme's integrator, paths.
-struct Marched
-{
-  tyndall::PhotonLight light;
-  double packingLoss = 0.0;
-  std::vector<tyndall::PhotonPath> paths;
-};
-
 tyndall::MarchSettings SettingsOf(vtkPhotonMarcher* filter, const std::vector<tyndall::Photon>& photons)
 {
   const bool published = filter->GetScheme() == vtkPhotonMarcher::PUBLISHED;
@@ -55,20 +47,6 @@ tyndall::MarchSettings SettingsOf(vtkPhotonMarcher* filter, const std::vector<ty
   return settings;
 }
 
-Marched MarchAsPublished(vtkPhotonMarcher* filter, vtkImageData* medium, vtkImageData* octree,
-  const std::vector<tyndall::Photon>& photons, tyndall::Device& device)
-{
-  const tyndall::RefractiveInput read = tyndall::ReadRefractiveMedium(filter, medium, octree);
-  tyndall::PublishedSettings settings;
-  settings.smooth = filter->GetSmoothing();
-  tyndall::PackingLoss loss;
-  Marched marched;
-  marched.light = tyndall::MarchPublished(
-    device, read.input.medium, read.ior, read.Levels(), photons, settings, &loss, tyndall::MonitorOf(filter));
-  marched.packingLoss = loss.Relative();
-  return marched;
-}
-
 /// [batch][voxel][channel] as [voxel][batch][channel].
 std::vector<float> VoxelByVoxel(const std::vector<float>& light, int batches, int channels)
 {
@@ -85,9 +63,8 @@ std::vector<float> VoxelByVoxel(const std::vector<float>& light, int batches, in
   return byVoxel;
 }
 
-void Write(Marched&& marched, vtkImageData* output)
+void Write(tyndall::PhotonLight&& photons, vtkImageData* output)
 {
-  tyndall::PhotonLight& photons = marched.light;
   const int channels = photons.light.channels;
   tyndall::WriteLight(std::move(photons.light), output);
   tyndall::AddCells(output, "mean_direction", std::move(photons.meanDirection), 3);
@@ -109,6 +86,14 @@ double Sum(const tyndall::Rgb& rgb)
   return rgb[0] + rgb[1] + rgb[2];
 }
 }
+
+/// Light, of the published scheme what its packing lost, and, of the sound scheme's integrator, paths.
+struct vtkPhotonMarcher::Marched
+{
+  tyndall::PhotonLight light;
+  double packingLoss = 0.0;
+  std::vector<tyndall::PhotonPath> paths;
+};
 
 vtkStandardNewMacro(vtkPhotonMarcher);
 
@@ -182,57 +167,74 @@ int vtkPhotonMarcher::RequestUpdateExtent(vtkInformation*, vtkInformationVector*
   return 1;
 }
 
+vtkPhotonMarcher::Marched vtkPhotonMarcher::MarchAsPublished(
+  vtkInformationVector** inputs, const std::vector<tyndall::Photon>& photons)
+{
+  const tyndall::RefractiveInput read = tyndall::ReadRefractiveMedium(
+    this, vtkImageData::GetData(inputs[MediumPort]), vtkImageData::GetData(inputs[OctreePort]));
+  tyndall::PublishedSettings settings;
+  settings.smooth = this->Smoothing;
+  tyndall::PackingLoss loss;
+  Marched marched;
+  marched.light = tyndall::MarchPublished(*tyndall::Device::Find(this->Device), read.input.medium, read.ior,
+    read.Levels(), photons, settings, &loss, tyndall::MonitorOf(this));
+  marched.packingLoss = loss.Relative();
+  return marched;
+}
+
+vtkPhotonMarcher::Marched vtkPhotonMarcher::March(
+  vtkInformationVector** inputs, const std::vector<tyndall::Photon>& photons)
+{
+  this->Kept->ForgetIfRan(this, { MediumPort, OctreePort });
+  const tyndall::MarchSettings settings = SettingsOf(this, photons);
+  const bool published = this->Scheme == PUBLISHED;
+  Marched marched;
+  if (published)
+  {
+    marched = this->MarchAsPublished(inputs, photons);
+    if (this->PathCount == 0)
+    {
+      this->Kept->Forget();
+      return marched;
+    }
+  }
+  tyndall::KeptMarcher::Found found = this->Kept->Find(this, tyndall::Device::Find(this->Device),
+    vtkImageData::GetData(inputs[MediumPort]), vtkImageData::GetData(inputs[OctreePort]), settings);
+  if (!published)
+  {
+    marched.light = found.marcher->March(photons, tyndall::MonitorOf(this));
+  }
+  marched.paths =
+    found.marcher->Paths(photons, tyndall::ChooseEvenly(photons.size(), static_cast<std::size_t>(this->PathCount)));
+  this->MediumKept = found.kept;
+  this->Kept->Keep(std::move(found));
+  return marched;
+}
+
 int vtkPhotonMarcher::RequestData(vtkInformation* request, vtkInformationVector** inputs, vtkInformationVector* outputs)
 {
   this->Note({});
   this->PackingLoss = 0.0;
   this->MediumKept = false;
   return tyndall::Guarded(this, outputs, [&] {
-    this->Kept->ForgetIfRan(this, { MediumPort, OctreePort });
-    vtkImageData* const image = vtkImageData::GetData(inputs[MediumPort]);
-    vtkImageData* const octree = vtkImageData::GetData(inputs[OctreePort]);
     const std::vector<tyndall::Photon> photons = tyndall::ReadPhotons(vtkPolyData::GetData(inputs[PhotonsPort]));
-    const tyndall::MarchSettings settings = SettingsOf(this, photons);
-    const std::shared_ptr<tyndall::Device> device = tyndall::Device::Find(this->Device);
-
-    const bool published = this->Scheme == PUBLISHED;
-    Marched marched;
-    if (published)
-    {
-      marched = MarchAsPublished(this, image, octree, photons, *device);
-    }
-    if (!published || this->PathCount > 0)
-    {
-      tyndall::KeptMarcher::Found found = this->Kept->Find(this, device, image, octree, settings);
-      if (!published)
-      {
-        marched.light = found.marcher->March(photons, tyndall::MonitorOf(this));
-      }
-      marched.paths =
-        found.marcher->Paths(photons, tyndall::ChooseEvenly(photons.size(), static_cast<std::size_t>(this->PathCount)));
-      this->MediumKept = found.kept;
-      this->Kept->Keep(std::move(found));
-    }
-    else
-    {
-      this->Kept->Forget();
-    }
+    Marched marched = this->March(inputs, photons);
 
     this->Note(marched.light);
     this->PackingLoss = marched.packingLoss;
     this->Warn(marched.light, photons.size());
+    vtkImageData* output = vtkImageData::GetData(outputs, 0);
+    tyndall::PassOn(vtkImageData::GetData(inputs[MediumPort]), output);
+    Write(std::move(marched.light), output);
+    if (this->Scheme == PUBLISHED)
+    {
+      tyndall::AddFact(output, "packing_loss", std::vector<double>{ marched.packingLoss });
+    }
+    tyndall::KeepWhatIsAskedFor(outputs->GetInformationObject(0), output);
     if (tyndall::IsFirstPiece(request, outputs))
     {
       tyndall::WritePaths(marched.paths, vtkPolyData::GetData(outputs, 1));
     }
-    vtkImageData* output = vtkImageData::GetData(outputs, 0);
-    tyndall::PassOn(image, output);
-    Write(std::move(marched), output);
-    if (published)
-    {
-      tyndall::AddFact(output, "packing_loss", std::vector<double>{ this->PackingLoss });
-    }
-    tyndall::KeepWhatIsAskedFor(outputs->GetInformationObject(0), output);
   });
 }
 

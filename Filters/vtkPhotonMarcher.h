@@ -7,10 +7,12 @@
 #include <cstddef>
 #include <memory>
 #include <string>
+#include <vector>
 
 namespace tyndall
 {
 class KeptMarcher;
+struct Photon;
 struct PhotonLight;
 }
 
@@ -161,6 +163,9 @@ private:
   vtkPhotonMarcher(const vtkPhotonMarcher&) = delete;
   void operator=(const vtkPhotonMarcher&) = delete;
 
+  struct Marched;
+  Marched March(vtkInformationVector** inputs, const std::vector<tyndall::Photon>& photons);
+  Marched MarchAsPublished(vtkInformationVector** inputs, const std::vector<tyndall::Photon>& photons);
   void Note(const tyndall::PhotonLight& light);
   void Warn(const tyndall::PhotonLight& light, std::size_t photons);
 

@@ -86,7 +86,7 @@ void CheckPresence(const NoisyLight& light, Estimator estimator)
     return;
   }
   RequireArray(light.fluence, estimator, "fluence", "Give it the light of PhotonMarcher.");
-  const char* advice = "Switch on Gather Counts of PhotonMarcher, or choose another estimator.";
+  const char* advice = "Switch on PhotonCounts of PhotonMarcher, or choose another estimator.";
   if (NeedsCounts(estimator))
   {
     RequireArray(light.photonCount, estimator, "photon_count", advice);

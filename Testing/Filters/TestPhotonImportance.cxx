@@ -1,5 +1,7 @@
 #include "AdaptiveScene.h"
 
+#include "vtkInformation.h"
+#include "vtkStreamingDemandDrivenPipeline.h"
 #include "vtkStringArray.h"
 
 #include <vector>
@@ -181,6 +183,9 @@ void AnotherNumberOfLightsIsFollowed(test::Claims& claims)
   const auto layersAre = [&](int count, const std::string& when) {
     scene.emitter->Update();
     claims.Near(scene.Map()->GetDimensions()[2], count + 1, 0.0, "layers " + when);
+    int whole[6];
+    scene.importance->GetOutputInformation(0)->Get(vtkStreamingDemandDrivenPipeline::WHOLE_EXTENT(), whole);
+    claims.Near(whole[5], count, 0.0, "layers that the pipeline knows of " + when);
     claims.That(scene.Photons()->GetNumberOfPoints() > 19000, "photons " + when);
     const vtkMTimeType made = scene.Map()->GetMTime();
     scene.emitter->SetSeed(scene.emitter->GetSeed() + 1);
