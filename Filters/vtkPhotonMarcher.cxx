@@ -89,6 +89,7 @@ void Write(Marched&& marched, vtkImageData* output)
 {
   tyndall::PhotonLight& photons = marched.light;
   const int channels = photons.light.channels;
+  photons.light.fluenceDirect = photons.light.fluence; // none of it was scattered
   tyndall::WriteLight(std::move(photons.light), output);
   tyndall::AddCells(output, "mean_direction", std::move(photons.meanDirection), 3);
   if (!photons.photonCount.empty())
