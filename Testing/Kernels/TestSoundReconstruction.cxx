@@ -1,3 +1,4 @@
+#include "Caustic.h"
 #include "DeviceTest.h"
 #include "ReconstructionScene.h"
 
@@ -163,4 +164,41 @@ TEST_F(SoundReconstruction, ALineIsFilteredAlikeAlongEachAxis)
     ASSERT_NEAR(a.fluence[i], b.fluence[i], 1e-5) << i;
     ASSERT_NEAR(a.fluenceError[i], b.fluenceError[i], 1e-5) << i;
   }
+}
+
+TEST_F(SoundReconstruction, ACausticOfFewPhotonsComesNearerToThatOfMany)
+{
+  const int edge = 48;
+  PhotonScene ball = caustic::BallScene(this->GetDevice(), edge);
+  PhotonMarcher marcher = ball.Marcher(this->GetDevice());
+  Illumination sun;
+  sun.lights = { Light() };
+  sun.lights[0].direction = caustic::Askew().along;
+  const auto march = [&](std::size_t count, std::uint64_t seed) {
+    return marcher.March(EmitPhotons(ball.medium.grid, sun, { count, Sampler::Random, seed }).photons);
+  };
+  const std::vector<float> truth = march(1000000, 1).light.fluence;
+  ReconstructionScene scene({ edge, edge, edge });
+  scene.batchFluence.clear();
+  for (std::uint64_t seed : { 2, 3 })
+  {
+    const PhotonLight batch = march(8000, seed);
+    scene.batchFluence.insert(scene.batchFluence.end(), batch.light.fluence.begin(), batch.light.fluence.end());
+    scene.direction = batch.meanDirection;
+  }
+  ASSERT_EQ(scene.batchFluence.size(), 2 * truth.size());
+  scene.Average();
+  const ReconstructedLight light = this->Of(scene);
+  const auto error = [&](const std::vector<float>& values) {
+    double sum = 0.0;
+    for (std::size_t i = 0; i < truth.size(); ++i)
+    {
+      sum += (values[i] - truth[i]) * (values[i] - truth[i]);
+    }
+    return std::sqrt(sum);
+  };
+  EXPECT_LT(2.0 * error(light.fluence), error(scene.fluence));
+  const ReconstructedLight wide =
+    Reconstruct(this->GetDevice(), scene.Seen(), By(ReconstructionSettings::Estimator::ConstantRadius));
+  EXPECT_LT(error(light.fluence), error(wide.fluence));
 }
