@@ -66,6 +66,7 @@ std::vector<float> VoxelByVoxel(const std::vector<float>& light, int batches, in
 void Write(tyndall::PhotonLight&& photons, vtkImageData* output)
 {
   const int channels = photons.light.channels;
+  photons.light.fluenceDirect = photons.light.fluence; // none of it was scattered
   tyndall::WriteLight(std::move(photons.light), output);
   tyndall::AddCells(output, "mean_direction", std::move(photons.meanDirection), 3);
   if (!photons.photonCount.empty())

@@ -1,6 +1,7 @@
 #include "PhotonMarcher.h"
 
 #include "../Device/Defines.h"
+#include "../Device/LentArray.h"
 #include "Clock.h"
 #include "MarchLaunch.h"
 #include "PhotonPaths.h"
@@ -164,11 +165,16 @@ void PhotonMarcher::Implementation::Finish(
   const std::size_t batches = static_cast<std::size_t>(target.shares.batches);
   const std::size_t colours = static_cast<std::size_t>(light.channels);
   const std::size_t channels = static_cast<std::size_t>(packed.channels);
-  const Buffer<float> fluence(device, voxels * colours, "fluence");
-  const Buffer<float> direction(device, target.directions ? 3 * voxels : 0, "mean direction");
-  const Buffer<float> count(device, target.counts ? voxels : 0, "photon count");
-  const Buffer<float> weight(device, target.counts ? voxels : 0, "photon weight");
-  const Buffer<float> batchFluence(device, batches > 1 ? batches * voxels * colours : 0, "fluence by batches");
+  const auto lend = [&](std::vector<float>& values, std::size_t size, const char* what) {
+    values.resize(size);
+    return LentArray<float>(device, values.data(), size, what);
+  };
+  const LentArray<float> fluence = lend(light.fluence, voxels * colours, "fluence");
+  const LentArray<float> direction = lend(result.meanDirection, target.directions ? 3 * voxels : 0, "mean direction");
+  const LentArray<float> count = lend(result.photonCount, target.counts ? voxels : 0, "photon count");
+  const LentArray<float> weight = lend(result.photonWeight, target.counts ? voxels : 0, "photon weight");
+  const LentArray<float> batchFluence =
+    lend(result.batchFluence, batches > 1 ? batches * voxels * colours : 0, "fluence by batches");
   const Buffer<cl_long> taken(device, rows * 2 * channels, "tallies");
 
   LightOnDevice info = {};
@@ -182,17 +188,15 @@ void PhotonMarcher::Implementation::Finish(
       Define("COLOURS", light.channels) + Define("COPIES", target.shares.copies) +
       Define("BATCHES", target.shares.batches));
   With(finish, info, this->medium.sigmaA, this->medium.sigmaS, this->medium.sigma, this->Sums,
-    cl_ulong(target.records * static_cast<std::size_t>(target.numbers)), fluence, direction, count, weight,
-    batchFluence, taken);
+    cl_ulong(target.records * static_cast<std::size_t>(target.numbers)), fluence.Handle(), direction.Handle(),
+    count.Handle(), weight.Handle(), batchFluence.Handle(), taken);
   this->medium.Launch(finish, cl::NDRange(rows));
-  device.Finish();
+  for (const LentArray<float>* array : { &fluence, &direction, &count, &weight, &batchFluence })
+  {
+    array->Fetch();
+  }
   result.secondsMarching += ClockSeconds();
 
-  light.fluence = fluence.Read();
-  result.meanDirection = direction.Read();
-  result.photonCount = count.Read();
-  result.photonWeight = weight.Read();
-  result.batchFluence = batchFluence.Read();
   const std::vector<cl_long> units = taken.Read();
   for (std::size_t i = 0; i < units.size(); ++i)
   {
@@ -257,7 +261,6 @@ PhotonLight PhotonMarcher::Implementation::March(const std::vector<Photon>& phot
     Colour(packed.colour, result);
   }
   this->SayWhatIsLeftOut(packed, result.light);
-  result.light.fluenceDirect = result.light.fluence;
   if (settings.batches && packed.Batches() == 1)
   {
     result.batchFluence = result.light.fluence;

@@ -60,7 +60,7 @@ struct PhotonPath
 /// Light that photons carried into a medium.
 struct PhotonLight
 {
-  /// fluence = fluence_direct: light that was not scattered. Balance: `absorbed` is what the medium absorbed and what it
+  /// Light that was not scattered, so that fluenceDirect would be the same and is left empty. Balance: `absorbed` is what the medium absorbed and what it
   /// scattered, `leftOver` what still went round when the photon was given up (total reflection can trap it).
   LightField light;
   Rgb scattered = {}; ///< W, the part of `absorbed` that is scattered

@@ -147,48 +147,42 @@ __kernel void voxels_down(const __global float* batches, const __global float* d
   }
 }
 
-// The same, [0] of even and [1] of odd places. Not pairs: what is kept on the stack is then read as it was written.
-typedef struct
+// The light of two rows' pairs of cells as children 2 k and 2 k + 1, at FINEST from the grid's voxels, else from rows.
+inline void load_light(const __global float* fine, const __global float* directions, int4 size, int x, int y, int z, float scale,
+  int k, real (*batch)[8], real (*carried)[8])
 {
-  real batch[BATCHES][2];
-  real carried[CARRIED][2];
-} split_light;
-
-// The light of a level: at FINEST the grid's voxels, else rows.
-inline split_light load_light(
-  const __global float* fine, const __global float* directions, int4 size, int x, int y, int z, float scale)
-{
-  light_pair light;
 #if FINEST
-  light = load_voxels(fine, directions, size, ((size_t)z * size.y + y) * size.w + x, scale);
+  const light_pair light = load_voxels(fine, directions, size, ((size_t)z * size.y + y) * size.w + x, scale);
+#pragma unroll
+  for (int b = 0; b < BATCHES; ++b)
+  {
+    batch[b][2 * k] = light.batch[b].even;
+    batch[b][2 * k + 1] = light.batch[b].odd;
+  }
+#pragma unroll
+  for (int c = 0; c < CARRIED; ++c)
+  {
+    carried[c][2 * k] = light.carried[c].even;
+    carried[c][2 * k + 1] = light.carried[c].odd;
+  }
 #else
   const __global float* row = fine + row_of(size, 0, y, z) + x;
   const size_t field = field_of(size);
 #pragma unroll
   for (int b = 0; b < BATCHES; ++b)
   {
-    light.batch[b] = load_pair(b * field, row);
+    const pair cells = load_pair(b * field, row);
+    batch[b][2 * k] = cells.even;
+    batch[b][2 * k + 1] = cells.odd;
   }
 #pragma unroll
   for (int c = 0; c < CARRIED; ++c)
   {
-    light.carried[c] = load_pair((BATCHES + c) * field, row);
+    const pair cells = load_pair((BATCHES + c) * field, row);
+    carried[c][2 * k] = cells.even;
+    carried[c][2 * k + 1] = cells.odd;
   }
 #endif
-  split_light split;
-#pragma unroll
-  for (int b = 0; b < BATCHES; ++b)
-  {
-    split.batch[b][0] = light.batch[b].even;
-    split.batch[b][1] = light.batch[b].odd;
-  }
-#pragma unroll
-  for (int c = 0; c < CARRIED; ++c)
-  {
-    split.carried[c][0] = light.carried[c].even;
-    split.carried[c][1] = light.carried[c].odd;
-  }
-  return split;
 }
 
 // How much the details of the batches agree, in cells of 2 x 2 x 2: field 0 the noise that their mean d has,
@@ -201,29 +195,31 @@ __kernel void measure_details(const __global float* fine, const __global float* 
   const size_t field = field_of(size);
   FOR_CELLS(x, size.x)
   {
-    real first[8], sum[8], squares = 0.0f, finer[8];
+    real first[8], sum[8], squares = 0.0f, finer[8], batch[BATCHES][8], carried[CARRIED][8];
+#pragma unroll
+    for (int k = 0; k < 4; ++k)
+    {
+      const int fy = min(2 * y + k % 2, fine_size.y - 1), fz = min(2 * z + k / 2, fine_size.z - 1);
+      load_light(fine, directions, fine_size, 2 * x, fy, fz, scale, k, batch, carried);
+    }
 #pragma unroll
     for (int b = 0; b < BATCHES; ++b)
     {
       interpolate(coarse + b * field, rows, x, finer);
 #pragma unroll
-      for (int k = 0; k < 4; ++k)
+      for (int i = 0; i < 8; ++i)
       {
-        const int fy = min(2 * y + k % 2, fine_size.y - 1), fz = min(2 * z + k / 2, fine_size.z - 1);
-        const split_light light = load_light(fine, directions, fine_size, 2 * x, fy, fz, scale);
-        const real even = light.batch[b][0] - finer[2 * k], odd = light.batch[b][1] - finer[2 * k + 1];
+        const real detail = batch[b][i] - finer[i];
         if (b == 0)
         {
-          first[2 * k] = even;
-          first[2 * k + 1] = odd;
-          sum[2 * k] = 0.0f;
-          sum[2 * k + 1] = 0.0f;
+          first[i] = detail;
+          sum[i] = 0.0f;
         }
         else // of differences from the first batch: nothing cancels
         {
-          sum[2 * k] += even - first[2 * k];
-          sum[2 * k + 1] += odd - first[2 * k + 1];
-          squares += (even - first[2 * k]) * (even - first[2 * k]) + (odd - first[2 * k + 1]) * (odd - first[2 * k + 1]);
+          const real other = detail - first[i];
+          sum[i] += other;
+          squares += other * other;
         }
       }
     }
@@ -378,12 +374,12 @@ __kernel void blend_level(const __global float* fine, const __global float* dire
     {
       mean[i] = 0.0f;
     }
-    split_light light[4];
+    real batch[BATCHES][8], carried[CARRIED][8];
 #pragma unroll
     for (int k = 0; k < 4; ++k)
     {
       const int fy = min(2 * y + k % 2, fine_size.y - 1), fz = min(2 * z + k / 2, fine_size.z - 1);
-      light[k] = load_light(fine, directions, fine_size, 2 * x, fy, fz, scale);
+      load_light(fine, directions, fine_size, 2 * x, fy, fz, scale, k, batch, carried);
     }
 #pragma unroll
     for (int c = 0; c < CARRIED; ++c)
@@ -391,15 +387,13 @@ __kernel void blend_level(const __global float* fine, const __global float* dire
       interpolate(coarse + (BATCHES + c) * field, rows, x, finer);
       interpolate(results + c * field, rows, x, kept[c]);
 #pragma unroll
-      for (int k = 0; k < 4; ++k)
+      for (int i = 0; i < 8; ++i)
       {
-        const real even = light[k].carried[c][0] - finer[2 * k], odd = light[k].carried[c][1] - finer[2 * k + 1];
-        kept[c][2 * k] = multiply_add(gain[2 * k], even, kept[c][2 * k]);
-        kept[c][2 * k + 1] = multiply_add(gain[2 * k + 1], odd, kept[c][2 * k + 1]);
+        const real detail = carried[c][i] - finer[i];
+        kept[c][i] = multiply_add(gain[i], detail, kept[c][i]);
         if (c < CHANNELS)
         {
-          mean[2 * k] += even;
-          mean[2 * k + 1] += odd;
+          mean[i] += detail;
         }
       }
     }
@@ -414,8 +408,8 @@ __kernel void blend_level(const __global float* fine, const __global float* dire
 #pragma unroll
       for (int k = 0; k < 4; ++k)
       {
-        const real even = light[k].batch[b][0] - finer[2 * k] - mean[2 * k];
-        const real odd = light[k].batch[b][1] - finer[2 * k + 1] - mean[2 * k + 1];
+        const real even = batch[b][2 * k] - finer[2 * k] - mean[2 * k];
+        const real odd = batch[b][2 * k + 1] - finer[2 * k + 1] - mean[2 * k + 1];
         own[2 * k] = multiply_add(gain[2 * k], even, own[2 * k]);
         own[2 * k + 1] = multiply_add(gain[2 * k + 1], odd, own[2 * k + 1]);
 #if FINEST
