@@ -68,7 +68,7 @@ public:
   };
 
   ///@{
-  /// Pilot photons of each light; the largest square number that is not above it is made. Default 4096, valid [1, 2^20].
+  /// Pilot photons of each light; the largest square number that is not above it is made. Default 1024, valid [1, 2^20].
   vtkSetClampMacro(PilotCount, int, 1, 1 << 20);
   vtkGetMacro(PilotCount, int);
   ///@}
@@ -147,7 +147,7 @@ private:
   tyndall::Importance Find(vtkInformationVector** inputs);
   void Note(const tyndall::Importance& importance);
 
-  int PilotCount = 4096;
+  int PilotCount = 1024;
   int PilotDimensions[3] = { 16, 16, 16 };
   int Thresholds = AUTOMATIC;
   double GradientThreshold = 0.0;

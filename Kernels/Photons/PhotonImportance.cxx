@@ -132,17 +132,21 @@ double Quantile(std::vector<double> values, double part)
 
 void ChooseThresholds(const std::vector<double>& luminance, Importance& importance)
 {
-  std::vector<double> lit, steepness;
+  std::vector<double> lit, steepness, counts;
   for (std::size_t i = 0; i < luminance.size(); ++i)
   {
     if (importance.pilot.count[i] > 0.0f)
     {
       lit.push_back(luminance[i]);
       steepness.push_back(importance.gradient[i]);
+      counts.push_back(importance.pilot.count[i]);
     }
   }
   const double median = Quantile(lit, 0.5);
-  importance.gradientThreshold = std::max(Quantile(steepness, 1.0 - SteepPart), SteepAtLeast * median);
+  // Cells of few photons differ by chance: by a photon in each row that crosses a cell.
+  const double chance = 1.0 / std::sqrt(std::max(Quantile(counts, 0.5), 1.0));
+  importance.gradientThreshold =
+    std::max(Quantile(steepness, 1.0 - SteepPart), std::max(SteepAtLeast, chance) * median);
   importance.luminanceThreshold = DimBelow * median;
 }
 
@@ -189,17 +193,29 @@ void Splat(double x, double y, double diameter, int size, std::vector<double>& m
   }
 }
 
-/// A circle about the mean origin of each chosen cell's photons, as wide as their deviations along both axes together (Listing
-/// B.1), mean 1. Empty where no chosen cell has photons of this light.
-std::vector<double> CirclesOf(const std::vector<float>& chosen, const PilotLight& light, int size)
+/// Diameter of a cell's circle. As published it is the origins' deviations along both axes together (Listing B.1), which leaves
+/// gaps between the circles of neighbours; else it spans the square that has these deviations, what a place is within its cell
+/// included.
+double DiameterOf(const float* deviation, bool asPublished)
+{
+  if (asPublished)
+  {
+    return std::max<double>(deviation[0] + deviation[1], 1.0);
+  }
+  const auto whole = [](double d) { return std::sqrt(d * d + 1.0 / 12.0); };
+  return 2.0 * (whole(deviation[0]) + whole(deviation[1]));
+}
+
+/// A circle about the mean origin of each chosen cell's photons, mean 1. Empty where no chosen cell has photons of this light.
+std::vector<double> CirclesOf(const std::vector<float>& chosen, const PilotLight& light, int size, bool asPublished)
 {
   std::vector<double> map(static_cast<std::size_t>(size) * static_cast<std::size_t>(size), 0.0);
   for (std::size_t i = 0; i < chosen.size(); ++i)
   {
     if (chosen[i] > 0.0f && light.count[i] > 0.0f)
     {
-      const double wide = light.originDeviation[2 * i] + light.originDeviation[2 * i + 1];
-      Splat(light.originMean[2 * i] + 0.5, light.originMean[2 * i + 1] + 0.5, std::max(wide, 1.0), size, map);
+      const double diameter = DiameterOf(light.originDeviation.data() + 2 * i, asPublished);
+      Splat(light.originMean[2 * i] + 0.5, light.originMean[2 * i + 1] + 0.5, diameter, size, map);
     }
   }
   const double sum = std::accumulate(map.begin(), map.end(), 0.0);
@@ -260,7 +276,7 @@ double DeviationOf(const std::vector<double>& map, int size)
 /// The map of one light, mean 1. Empty: nothing is gained by it.
 std::vector<double> MapOf(const Importance& importance, const PilotLight& light, const ImportanceSettings& settings)
 {
-  std::vector<double> map = CirclesOf(importance.chosen, light, importance.map.size);
+  std::vector<double> map = CirclesOf(importance.chosen, light, importance.map.size, !settings.automatic);
   if (map.empty())
   {
     return {};

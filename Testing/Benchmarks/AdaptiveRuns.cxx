@@ -14,7 +14,7 @@ using namespace tyndall;
 
 namespace
 {
-constexpr std::size_t Pilots = 4096; ///< as the paper has them
+constexpr std::size_t Pilots = 1024; ///< at most; PhotonImportance's default
 
 bool IsAdaptive(Way way)
 {
@@ -129,7 +129,7 @@ WayLight WayRunner::Run(Way way, std::size_t photons, std::uint64_t seed)
   if (IsAdaptive(way))
   {
     ImportanceSettings settings;
-    settings.pilotCount = std::min(Pilots, std::max<std::size_t>(photons / 4, 1));
+    settings.pilotCount = std::min(Pilots, std::max<std::size_t>(photons / 10, 1));
     settings.seed = seed;
     result.passes.pilot =
       Timed([&] { result.importance = FindImportance(marcher, grid, this->Scene.light, settings); });
