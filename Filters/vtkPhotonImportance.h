@@ -95,7 +95,7 @@ public:
   ///@}
 
   ///@{
-  /// Part of the photons that are spread evenly all the same. Default 0.4, valid (0, 1].
+  /// Part of the photons that are spread evenly all the same. Default 0.3, valid (0, 1].
   vtkSetMacro(Background, double);
   vtkGetMacro(Background, double);
   ///@}
@@ -152,7 +152,7 @@ private:
   int Thresholds = AUTOMATIC;
   double GradientThreshold = 0.0;
   double LuminanceThreshold = 0.0;
-  double Background = 0.4;
+  double Background = 0.3;
   int Seed = 0;
   double SkyColor[3] = { 0.0, 0.0, 0.0 };
 

@@ -21,7 +21,7 @@ struct ImportanceSettings
   bool automatic = true;
   double gradientThreshold = 0.0;  ///< W / length^2 from a cell to the next: cells at or above it are chosen
   double luminanceThreshold = 0.0; ///< W / length^2: lit cells at or below it are chosen
-  double background = 0.4;         ///< part of the photons that are spread evenly, (0, 1]
+  double background = 0.3;         ///< part of the photons that are spread evenly, (0, 1]
 };
 
 struct Importance
