@@ -1,6 +1,7 @@
 #include "PhotonMarcher.h"
 
 #include "../Device/Defines.h"
+#include "../Device/HostMemory.h"
 #include "../Device/LentArray.h"
 #include "Clock.h"
 #include "MarchLaunch.h"
@@ -166,7 +167,7 @@ void PhotonMarcher::Implementation::Finish(
   const std::size_t colours = static_cast<std::size_t>(light.channels);
   const std::size_t channels = static_cast<std::size_t>(packed.channels);
   const auto lend = [&](std::vector<float>& values, std::size_t size, const char* what) {
-    values.resize(size);
+    values = Zeros(size);
     return LentArray<float>(device, values.data(), size, what);
   };
   const LentArray<float> fluence = lend(light.fluence, voxels * colours, "fluence");
