@@ -25,9 +25,9 @@ sun = LightRig(SunElevation=60)
 
 importance = PhotonImportance(Input=octree, Lights=sun)
 map_ = servermanager.Fetch(importance)
-assert map_.GetDimensions() == (65, 65, 2), map_.GetDimensions()
+assert map_.GetDimensions() == (33, 33, 2), map_.GetDimensions()
 density = cells(map_, "importance")
-assert abs(density.mean() - 1) < 1e-5 and density.min() >= 0.39 and density.max() > 1.5, (density.min(), density.max())
+assert abs(density.mean() - 1) < 1e-5 and density.min() >= 0.29 and density.max() > 1.5, (density.min(), density.max())
 assert list(fact(map_, "light")) == [0] and list(fact(map_, "even")) == [0]
 pilot = servermanager.Fetch(importance, idx=1)
 assert pilot.GetDimensions() == (17, 17, 17), pilot.GetDimensions()
@@ -40,14 +40,14 @@ emitter = PhotonEmitter(Input=octree, Lights=sun, ImportanceMap=importance, Phot
 photons = servermanager.Fetch(emitter)
 weight = vtk_to_numpy(photons.GetPointData().GetArray("weight"))
 batch = vtk_to_numpy(photons.GetPointData().GetArray("batch"))
-assert 0 < weight.min() < 0.9 and 1.1 < weight.max() < 2.6, (weight.min(), weight.max())
+assert 0 < weight.min() < 0.9 and 1.1 < weight.max() < 3.5, (weight.min(), weight.max())
 assert set(batch) == {0, 1}, set(batch)
 emitter.UpdatePropertyInformation()
 power = emitter.Power
 
 marcher = PhotonMarcher(Input=octree, Photons=emitter, PhotonCounts=1)
 noisy = servermanager.Fetch(marcher)
-assert cells(noisy, "photon_count").max() > 20 and cells(noisy, "photon_weight").max() < 2.6
+assert cells(noisy, "photon_count").max() > 20 and cells(noisy, "photon_weight").max() < 3.5
 batches = cells(noisy, "fluence_batches")
 assert numpy.allclose(batches.reshape(len(batches), -1).mean(1), cells(noisy, "fluence"), rtol=1e-4, atol=1e-6)
 
