@@ -67,8 +67,8 @@ def fluence(light):
 def picture(name, light):
     """What a screen shows: rows x columns x 3, 0 to 255."""
     caster = MediumRayCaster(registrationName="Picture, " + name, Input=light, ImageSize=arguments.size,
-                             CameraPosition=[0.3, -4.4, 1.3], CameraFocalPoint=[0.0, 0.0, 0.2], CameraViewAngle=32,
-                             SurfaceReflection="Fresnel", TableFace="-z", TableColor=[0.7, 0.68, 0.65], Exposure=1.6)
+                             CameraPosition=[0.3, -4.4, 1.3], CameraFocalPoint=[0.0, 0.0, 0.15], CameraViewAngle=27,
+                             SurfaceReflection="Fresnel", TableFace="-z", TableColor=[0.7, 0.68, 0.65], Exposure=3)
     image = servermanager.Fetch(caster)
     return vtk_to_numpy(image.GetPointData().GetScalars()).reshape(arguments.size[1], arguments.size[0], -1)[:, :, :3].astype(int)
 
@@ -123,5 +123,5 @@ def side_by_side(names):
 save("adaptive", pictures["adaptive"])
 save("adaptive-against-even", side_by_side(["spread evenly", "adaptive"]))
 save("estimators", numpy.concatenate([
-    side_by_side(["constant radius, level 1", "constant radius, level 4", "adaptive, as published"]),
-    side_by_side(["nearest photon", "20 nearest photons", "adaptive"])]))
+    side_by_side(["nearest photon", "20 nearest photons", "adaptive"]),
+    side_by_side(["constant radius, level 1", "constant radius, level 4", "adaptive, as published"])]))
