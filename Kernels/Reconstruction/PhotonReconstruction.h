@@ -60,9 +60,9 @@ struct ReconstructedLight
 /// Sound: a Laplacian pyramid of each batch (down by 1 3 3 1 along each axis, up trilinear). On a level the batches' details d_b
 /// have mean d; sum (d_b - d)^2 / (B (B - 1)) is the noise of d, d^2 less that noise is light, for batches agree on light and
 /// not on noise: Wiener's gain says how much of d to keep. Both are means over 2x2x2 cells, smoothed by 1 4 6 4 1; the noise is
-/// taken off twice, lest chance pass for light. The error is the batches' own deviations, led through the same gains, and 0.6 of
-/// the square of the light that was held for noise (SoundReconstruction.cxx says why 0.6). Light below 0 becomes 0. Mean
-/// directions are smoothed as flux, fluence times direction, with the same gains. Colours: gains and error come from the sum of
+/// taken off twice, lest chance pass for light. The squared error is the sum over the levels of the noise that was kept and of
+/// 0.4 of the light that was held for noise (SoundReconstruction.cxx says why 0.4). Light below 0 becomes 0. Mean directions
+/// are smoothed as flux, fluence times direction, with the same gains. Colours: gains and error come from the sum of
 /// the channels, which share the error as they share the voxel's light.
 ///
 /// Published (Pfeuti 2009, section 3.2.4, listings B.2, B.3): the lower of the level up to which the difference of two successive

@@ -8,16 +8,15 @@
 // flux (light times mean direction).
 #define CARRIED (CHANNELS + 3 * DIRECTIONS)
 #define FIELDS (BATCHES + CARRIED)
-// Fields of a level of the result: what is smoothed, each batch's deviation from it, the level it was taken from, and the
-// squared error of what was left out.
-#define DEVIATION CARRIED
-#define BLENDED (DEVIATION + BATCHES)
-#define OMITTED (BLENDED + 1)
-#define RESULTS (OMITTED + 1)
+// Fields of a level of the result: what is smoothed, the level it was taken from, and the squared error.
+#define BLENDED CARRIED
+#define SQUARED (BLENDED + 1)
+#define RESULTS (SQUARED + 1)
 // Fields of the gains, a cell for 2 x 2 x 2 of the finer level.
 #define GAIN 0
 #define REMOVED 1
-#define ERROR 2
+#define KEPT 2
+#define ERROR 3
 
 typedef struct
 {
@@ -295,35 +294,40 @@ __kernel void find_gains(const __global float* measured, int4 size, __global flo
     const real gain = select((real)0.0f, sure / (sure + noise), sure > 0.0f);
     store_real(gain, x, to + GAIN * field);
     store_real((1.0f - gain) * (1.0f - gain) * (total - noise), x, to + REMOVED * field);
+    store_real(gain * gain * noise, x, to + KEPT * field);
     repeat_ends(to + GAIN * field, x, REAL_WIDTH, size.x);
     repeat_ends(to + REMOVED * field, x, REAL_WIDTH, size.x);
   }
 }
 
-// Squared error of the light that was taken for noise, on this level and, from `results`, above.
-__kernel void add_omitted(const __global float* removed, int4 size, const __global float* results, __global float* gains)
+// Squared error of the details: noise that was kept, light that was taken for noise (times `honesty`), and what there is from
+// the levels above.
+__kernel void add_errors(const __global float* removed, int4 size, float honesty, const __global float* results, __global float* gains)
 {
   const int y = ROW_Y, z = ROW_Z;
+  const size_t field = field_of(size);
   const __global float* row = removed + row_of(size, 0, y, z);
-  const __global float* above = results + row_of(size, OMITTED, y, z);
-  __global float* to = gains + row_of(size, ERROR, y, z);
+  const __global float* above = results + row_of(size, SQUARED, y, z);
+  __global float* cells = gains + row_of(size, 0, y, z);
   FOR_CELLS(x, size.x)
   {
-    store_real(load_real(x, above) + positive_part(smoothed(row, x)), x, to);
-    repeat_ends(to, x, REAL_WIDTH, size.x);
+    const real here = multiply_add((real)honesty, positive_part(smoothed(row, x)), load_real(KEPT * field + x, cells));
+    store_real(load_real(x, above) + here, ERROR * field + x, cells);
+    repeat_ends(cells + ERROR * field, x, REAL_WIDTH, size.x);
   }
 }
 
-// The top of the pyramid: taken whole.
-__kernel void begin_results(const __global float* level, int4 size, __global float* results, float top)
+// The top of the pyramid: taken whole. Its noise is smoothed before it counts.
+__kernel void begin_results(const __global float* level, int4 size, __global float* results, float top, __global float* noise)
 {
   const int y = ROW_Y, z = ROW_Z;
   const size_t field = field_of(size);
   const __global float* from = level + row_of(size, 0, y, z);
   __global float* to = results + row_of(size, 0, y, z);
+  __global float* deviation = noise + row_of(size, 0, y, z);
   FOR_CELLS(x, size.x)
   {
-    real mean = 0.0f;
+    real mean = 0.0f, squares = 0.0f;
 #pragma unroll
     for (int b = 0; b < BATCHES; ++b)
     {
@@ -333,7 +337,8 @@ __kernel void begin_results(const __global float* level, int4 size, __global flo
 #pragma unroll
     for (int b = 0; b < BATCHES; ++b)
     {
-      store_real(load_real(b * field + x, from) - mean, (DEVIATION + b) * field + x, to);
+      const real off = load_real(b * field + x, from) - mean;
+      squares += off * off;
     }
 #pragma unroll
     for (int c = 0; c < CARRIED; ++c)
@@ -341,11 +346,24 @@ __kernel void begin_results(const __global float* level, int4 size, __global flo
       store_real(load_real((BATCHES + c) * field + x, from), c * field + x, to);
     }
     store_real((real)top, BLENDED * field + x, to);
-    store_real((real)0.0f, OMITTED * field + x, to);
-    for (int f = 0; f < RESULTS; ++f)
+    store_real(squares * (1.0f / (BATCHES * (BATCHES - 1))), x, deviation);
+    repeat_ends(deviation, x, REAL_WIDTH, size.x);
+    for (int f = 0; f < SQUARED; ++f)
     {
       repeat_ends(to + f * field, x, REAL_WIDTH, size.x);
     }
+  }
+}
+
+__kernel void begin_errors(const __global float* noise, int4 size, __global float* results)
+{
+  const int y = ROW_Y, z = ROW_Z;
+  const __global float* row = noise + row_of(size, 0, y, z);
+  __global float* to = results + row_of(size, SQUARED, y, z);
+  FOR_CELLS(x, size.x)
+  {
+    store_real(smoothed(row, x), x, to);
+    repeat_ends(to, x, REAL_WIDTH, size.x);
   }
 }
 
@@ -355,11 +373,9 @@ __kernel void begin_results(const __global float* level, int4 size, __global flo
 //   to          rows of RESULTS fields of this level; at FINEST not used
 //   number      of this level
 //   fluence, mean_direction, blended     FINEST: of the grid's voxels
-//   deviations  FINEST: one field of `size`, mean squared deviation of the batches
 __kernel void blend_level(const __global float* fine, const __global float* directions, int4 fine_size, float scale,
   const __global float* coarse, const __global float* results, const __global float* gains, int4 size, float number,
-  __global float* to, __global float* fluence, __global float* mean_direction, __global float* blended,
-  __global float* deviations)
+  __global float* to, __global float* fluence, __global float* mean_direction, __global float* blended)
 {
   const int y = ROW_Y, z = ROW_Z;
   const rows_around rows = rows_about(size, y, z);
@@ -367,13 +383,8 @@ __kernel void blend_level(const __global float* fine, const __global float* dire
   const float unit = 1.0f / scale;
   FOR_CELLS(x, size.x)
   {
-    real gain[8], finer[8], kept[CARRIED][8], mean[8];
+    real gain[8], finer[8], kept[CARRIED][8];
     interpolate(gains + GAIN * field, rows, x, gain);
-#pragma unroll
-    for (int i = 0; i < 8; ++i)
-    {
-      mean[i] = 0.0f;
-    }
     real batch[BATCHES][8], carried[CARRIED][8];
 #pragma unroll
     for (int k = 0; k < 4; ++k)
@@ -389,46 +400,14 @@ __kernel void blend_level(const __global float* fine, const __global float* dire
 #pragma unroll
       for (int i = 0; i < 8; ++i)
       {
-        const real detail = carried[c][i] - finer[i];
-        kept[c][i] = multiply_add(gain[i], detail, kept[c][i]);
-        if (c < CHANNELS)
-        {
-          mean[i] += detail;
-        }
-      }
-    }
-    // A batch's deviation goes the way of the light: D = up(D) + gain (d_b - d).
-    real squares = 0.0f;
-#pragma unroll
-    for (int b = 0; b < BATCHES; ++b)
-    {
-      real own[8];
-      interpolate(coarse + b * field, rows, x, finer);
-      interpolate(results + (DEVIATION + b) * field, rows, x, own);
-#pragma unroll
-      for (int k = 0; k < 4; ++k)
-      {
-        const real even = batch[b][2 * k] - finer[2 * k] - mean[2 * k];
-        const real odd = batch[b][2 * k + 1] - finer[2 * k + 1] - mean[2 * k + 1];
-        own[2 * k] = multiply_add(gain[2 * k], even, own[2 * k]);
-        own[2 * k + 1] = multiply_add(gain[2 * k + 1], odd, own[2 * k + 1]);
-#if FINEST
-        squares += own[2 * k] * own[2 * k] + own[2 * k + 1] * own[2 * k + 1];
-#else
-        const int fy = min(2 * y + k % 2, fine_size.y - 1), fz = min(2 * z + k / 2, fine_size.z - 1);
-        __global float* row = to + row_of(fine_size, DEVIATION + b, fy, fz);
-        if (fy == 2 * y + k % 2 && fz == 2 * z + k / 2)
-        {
-          store_pair(woven(own[2 * k], own[2 * k + 1]), 2 * x, row);
-        }
-#endif
+        kept[c][i] = multiply_add(gain[i], carried[c][i] - finer[i], kept[c][i]);
       }
     }
     real level[8];
     interpolate(results + BLENDED * field, rows, x, level);
 #if !FINEST
-    real omitted[8];
-    interpolate(gains + ERROR * field, rows, x, omitted);
+    real squared[8];
+    interpolate(gains + ERROR * field, rows, x, squared);
 #endif
 #pragma unroll
     for (int k = 0; k < 4; ++k)
@@ -489,15 +468,11 @@ __kernel void blend_level(const __global float* fine, const __global float* dire
           store_pair(woven(kept[c][2 * k], kept[c][2 * k + 1]), c * fine_field + 2 * x, row);
         }
         store_pair(woven(here[0], here[1]), BLENDED * fine_field + 2 * x, row);
-        store_pair(woven(omitted[2 * k], omitted[2 * k + 1]), OMITTED * fine_field + 2 * x, row);
+        store_pair(woven(squared[2 * k], squared[2 * k + 1]), SQUARED * fine_field + 2 * x, row);
 #endif
       }
     }
-#if FINEST
-    __global float* row = deviations + row_of(size, 0, y, z);
-    store_real(0.125f * squares, x, row);
-    repeat_ends(row, x, REAL_WIDTH, size.x);
-#else
+#if !FINEST
     if (x == 0 || x + REAL_WIDTH >= size.x)
     {
       for (int i = 0; i < 4 * RESULTS; ++i)
@@ -513,23 +488,8 @@ __kernel void blend_level(const __global float* fine, const __global float* dire
   }
 }
 
-// Squared standard error of the light: of the batches' mean, and of what was left out times `honesty`.
-__kernel void join_errors(const __global float* deviations, int4 size, float honesty, const __global float* gains, __global float* squared)
-{
-  const int y = ROW_Y, z = ROW_Z;
-  const __global float* row = deviations + row_of(size, 0, y, z);
-  const __global float* omitted = gains + row_of(size, ERROR, y, z);
-  __global float* to = squared + row_of(size, 0, y, z);
-  FOR_CELLS(x, size.x)
-  {
-    const real variance = smoothed(row, x) * (1.0f / (BATCHES * (BATCHES - 1)));
-    store_real(multiply_add((real)honesty, load_real(x, omitted), variance), x, to);
-    repeat_ends(to, x, REAL_WIDTH, size.x);
-  }
-}
-
 // The last pass: light so that each channel's total is what it was, and its error, which channels share as they share the light.
-__kernel void finish_light(const __global float* squared, int4 size, float4 conserve, float unit, __global float* fluence,
+__kernel void finish_light(const __global float* gains, int4 size, float4 conserve, float unit, __global float* fluence,
   __global float* errors, int4 fine_size)
 {
   const int y = ROW_Y, z = ROW_Z;
@@ -537,7 +497,7 @@ __kernel void finish_light(const __global float* squared, int4 size, float4 cons
   FOR_CELLS(x, size.x)
   {
     real error[8];
-    interpolate(squared, rows, x, error);
+    interpolate(gains + ERROR * field_of(size), rows, x, error);
 #pragma unroll
     for (int k = 0; k < 4; ++k)
     {
