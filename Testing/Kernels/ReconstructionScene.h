@@ -44,6 +44,26 @@ struct ReconstructionScene
     return this->Average();
   }
 
+  /// The same, but noise is that of photons along z: one for each column of a batch, and smaller than 1 by the chance that
+  /// `photons` of them cross it.
+  ReconstructionScene& LightAlongRays(
+    const std::function<double(std::size_t)>& truth, double photons, unsigned seed = 1)
+  {
+    std::mt19937 random(seed);
+    std::poisson_distribution<int> crossing(photons);
+    const std::size_t columns =
+      static_cast<std::size_t>(this->grid.size[0]) * static_cast<std::size_t>(this->grid.size[1]);
+    std::vector<double> noise(columns * static_cast<std::size_t>(this->batches));
+    std::generate(noise.begin(), noise.end(), [&] { return crossing(random) / photons; });
+    for (std::size_t i = 0; i < this->batchFluence.size(); ++i)
+    {
+      const std::size_t batch = i / this->Values(),
+                        voxel = i % this->Values() / static_cast<std::size_t>(this->channels);
+      this->batchFluence[i] = static_cast<float>(truth(i % this->Values()) * noise[batch * columns + voxel % columns]);
+    }
+    return this->Average();
+  }
+
   ReconstructionScene& Average()
   {
     this->fluence.assign(this->Values(), 0.0f);

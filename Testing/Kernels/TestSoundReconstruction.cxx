@@ -83,21 +83,44 @@ TEST_F(SoundReconstruction, TheTotalOfEachChannelStays)
   }
 }
 
-TEST_F(SoundReconstruction, TwoStandardErrorsHoldTheTruthInNineteenVoxelsOfTwenty)
+/// Part of the voxels whose error is within two standard errors, where the truth is a beam.
+double HeldBy(const ReconstructionScene& scene, const ReconstructedLight& light)
 {
-  for (int batches : { 2, 4 })
+  double held = 0.0;
+  for (std::size_t i = 0; i < light.fluence.size(); ++i)
+  {
+    held += std::abs(light.fluence[i] - Beam(scene, i)) <= 2.0 * light.fluenceError[i];
+  }
+  return held / static_cast<double>(light.fluence.size());
+}
+
+/// Photons at random, whose noise is the same along rays. Those of real scenes are spread better: see TestAdaptivePhotons.
+TEST_F(SoundReconstruction, TwoStandardErrorsHoldTheTruthInAboutNineteenVoxelsOfTwenty)
+{
+  constexpr unsigned seeds = 5;
+  for (const int batches : { 2, 4 })
+  {
+    for (const double photons : { 1.0, 4.0, 16.0 })
+    {
+      double held = 0.0;
+      for (unsigned seed = 1; seed <= seeds; ++seed)
+      {
+        ReconstructionScene scene({ 64, 64, 64 }, 1, batches);
+        scene.LightAlongRays([&](std::size_t i) { return Beam(scene, i); }, photons, seed);
+        held += HeldBy(scene, this->Of(scene)) / seeds;
+      }
+      EXPECT_NEAR(held, 0.95, 0.03) << batches << " batches, " << photons << " photons";
+    }
+  }
+}
+
+TEST_F(SoundReconstruction, TheErrorIsOnTheSafeSideWhereVoxelsHaveNoiseOfTheirOwn)
+{
+  for (const int batches : { 2, 4 })
   {
     ReconstructionScene scene({ 64, 64, 64 }, 1, batches);
     scene.Light([&](std::size_t i) { return Beam(scene, i); }, 0.55);
-    const ReconstructedLight light = this->Of(scene);
-    double held = 0.0;
-    for (std::size_t i = 0; i < light.fluence.size(); ++i)
-    {
-      held += std::abs(light.fluence[i] - Beam(scene, i)) <= 2.0 * light.fluenceError[i];
-    }
-    held /= static_cast<double>(light.fluence.size());
-    EXPECT_GT(held, 0.93) << batches;
-    EXPECT_LT(held, 0.97) << batches;
+    EXPECT_GT(HeldBy(scene, this->Of(scene)), 0.95) << batches;
   }
 }
 
