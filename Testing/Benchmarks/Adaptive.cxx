@@ -224,7 +224,6 @@ void PrintFallBack(tyndall::Device& device, bool quick)
 {
   PaperScene scene = EvenFog(quick ? 16 : 128);
   scene.Voxelize(device);
-  scene.Group();
   WayRunner runner(device, scene);
   const std::size_t photons = quick ? 2000 : PaperPhotons;
   const Passes uniform = runner.Time(Way::Uniform, photons, quick ? 1 : 7).passes;
