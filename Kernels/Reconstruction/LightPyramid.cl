@@ -9,23 +9,30 @@
 #define FAR 0.125f
 #endif
 
-// Voxels as the host has them to rows of a level's fields `first` and on.
+// Voxels of 1 or 3 components as the host has them, rows of `pitch`, to rows of a level's fields `first` and on.
 __kernel void split_voxels(
-  const __global float* voxels, int components, __global float* level, int4 size, int first)
+  const __global float* voxels, int components, int pitch, __global float* level, int4 size, int first)
 {
   const int y = ROW_Y, z = ROW_Z;
-  const size_t from = ((size_t)z * size.y + y) * size.x;
-  for (int c = 0; c < components; ++c)
+  const size_t from = ((size_t)z * size.y + y) * pitch, field = field_of(size);
+  __global float* row = level + row_of(size, first, y, z);
+  FOR_CELLS(x, size.x)
   {
-    __global float* row = level + row_of(size, first + c, y, z);
-    FOR_CELLS(x, size.x)
+    if (components == 1)
     {
-      const int end = min(x + REAL_WIDTH, size.x);
-      for (int i = x; i < end; ++i)
-      {
-        row[i] = voxels[(from + i) * components + c];
-      }
+      store_real(load_real(from + x, voxels), x, row);
       repeat_ends(row, x, REAL_WIDTH, size.x);
+    }
+    else
+    {
+      const real_of_three vectors = load_reals_of_three(from + x, voxels);
+      store_real(vectors.x, x, row);
+      store_real(vectors.y, x, row + field);
+      store_real(vectors.z, x, row + 2 * field);
+      for (int c = 0; c < 3; ++c)
+      {
+        repeat_ends(row + c * field, x, REAL_WIDTH, size.x);
+      }
     }
   }
 }

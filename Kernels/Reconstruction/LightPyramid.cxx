@@ -39,10 +39,11 @@ LightPyramid::LightPyramid(const RowKernels& kernels, const Grid& grid, int fiel
   }
 }
 
-void LightPyramid::Fill(const LentArray<float>& voxels, int components, int first)
+void LightPyramid::Fill(const WholeRows& voxels, int components, int first)
 {
   cl::Kernel split = this->Kernels.Kernel("split_voxels", kernel_source::LightPyramid);
-  With(split, voxels.Handle(), cl_int(components), this->Parts[0], this->Where.size[0], cl_int(first));
+  const cl_int pitch = VoxelLayout(this->Sizes[0], this->Kernels.Width()).s[3];
+  With(split, voxels.Handle(), cl_int(components), pitch, this->Parts[0], this->Where.size[0], cl_int(first));
   this->Kernels.Run(split, this->Sizes[0]);
 }
 

@@ -1,8 +1,6 @@
 #pragma once
 
-#include "LightRows.h"
-
-#include "../Device/LentArray.h"
+#include "WholeRows.h"
 
 #include <vector>
 
@@ -31,8 +29,8 @@ public:
   /// @param levels  above the grid, at most 8
   LightPyramid(const RowKernels& kernels, const Grid& grid, int fields, int levels, const char* what);
 
-  /// Put an array of voxels into fields `first` and on of level 0.
-  void Fill(const LentArray<float>& voxels, int components, int first);
+  /// Put an array of voxels of 1 or 3 components into fields `first` and on of level 0.
+  void Fill(const WholeRows& voxels, int components, int first);
 
   /// Queue the making of all levels from level 0.
   void Build(Down down);

@@ -40,7 +40,11 @@ inline pair woven(real even, real odd)
 #endif
 }
 
-// 2 REAL_WIDTH voxels of three components from `values`, split into components, and back.
+// Voxels of three components from `values`, split into components, and back.
+typedef struct
+{
+  real x, y, z;
+} real_of_three;
 typedef struct
 {
   pair x, y, z;
@@ -56,48 +60,56 @@ inline float8 lanes_of(float8 a, float8 b, float8 c)
 }
 #endif
 
-inline pair_of_three load_three(size_t voxel, const __global float* values)
+inline real_of_three load_reals_of_three(size_t voxel, const __global float* values)
 {
   const __global float* from = values + 3 * voxel;
-  pair_of_three r;
+  real_of_three r;
 #if REAL_WIDTH == 8
   const float8 a = load_real(0, from), b = load_real(8, from), c = load_real(16, from);
-  const float8 d = load_real(24, from), e = load_real(32, from), f = load_real(40, from);
-  r.x = (float16)(lanes_of(a, b, c).s03614725, lanes_of(d, e, f).s03614725);
-  r.y = (float16)(lanes_of(c, a, b).s14725036, lanes_of(f, d, e).s14725036);
-  r.z = (float16)(lanes_of(b, c, a).s25036147, lanes_of(e, f, d).s25036147);
+  r.x = lanes_of(a, b, c).s03614725;
+  r.y = lanes_of(c, a, b).s14725036;
+  r.z = lanes_of(b, c, a).s25036147;
 #else
-  r.x = (float2)(from[0], from[3]);
-  r.y = (float2)(from[1], from[4]);
-  r.z = (float2)(from[2], from[5]);
+  r.x = from[0];
+  r.y = from[1];
+  r.z = from[2];
 #endif
   return r;
 }
 
-#if REAL_WIDTH == 8
-inline void store_eight(float8 x, float8 y, float8 z, __global float* to)
+inline void store_reals_of_three(real x, real y, real z, size_t voxel, __global float* values)
 {
+  __global float* to = values + 3 * voxel;
+#if REAL_WIDTH == 8
   const float8 a = x.s03614725, b = y.s50361472, c = z.s25036147;
   store_real(lanes_of(a, b, c), 0, to);
   store_real(lanes_of(c, a, b), 8, to);
   store_real(lanes_of(b, c, a), 16, to);
-}
+#else
+  to[0] = x;
+  to[1] = y;
+  to[2] = z;
 #endif
+}
+
+// 2 REAL_WIDTH of them.
+inline pair_of_three load_three(size_t voxel, const __global float* values)
+{
+  const real_of_three low = load_reals_of_three(voxel, values), high = load_reals_of_three(voxel + REAL_WIDTH, values);
+  pair_of_three r;
+  r.x.lo = low.x;
+  r.x.hi = high.x;
+  r.y.lo = low.y;
+  r.y.hi = high.y;
+  r.z.lo = low.z;
+  r.z.hi = high.z;
+  return r;
+}
 
 inline void store_three(pair x, pair y, pair z, size_t voxel, __global float* values)
 {
-  __global float* to = values + 3 * voxel;
-#if REAL_WIDTH == 8
-  store_eight(x.lo, y.lo, z.lo, to);
-  store_eight(x.hi, y.hi, z.hi, to + 24);
-#else
-  to[0] = x.x;
-  to[1] = y.x;
-  to[2] = z.x;
-  to[3] = x.y;
-  to[4] = y.y;
-  to[5] = z.y;
-#endif
+  store_reals_of_three(x.lo, y.lo, z.lo, voxel, values);
+  store_reals_of_three(x.hi, y.hi, z.hi, voxel + REAL_WIDTH, values);
 }
 
 #if REAL_WIDTH == 1
