@@ -73,7 +73,7 @@ int vtkPhotonEmitter::RequestData(vtkInformation* request, vtkInformationVector*
     settings.photonCount = static_cast<std::size_t>(this->PhotonCount);
     settings.sampler = static_cast<tyndall::Sampler>(this->Sampler);
     settings.seed = static_cast<std::uint64_t>(this->Seed);
-    settings.batches = this->Batches > 0 ? this->Batches : mapped ? 2 : 1;
+    settings.batches = this->Batches != 0 ? this->Batches : mapped ? 2 : 1;
     settings.map = &map;
     settings.densestAtMost = this->MaximumDensity;
     const tyndall::EmittedPhotons emitted =

@@ -90,14 +90,14 @@ public:
   /// Independent sets that the photons are made of, each with its part of all the power: their differences tell
   /// vtkPhotonReconstruction the error of the light. Default 0: two with an importance map (even if that is even), one without; valid
   /// [0, 16].
-  vtkSetClampMacro(Batches, int, 0, 16);
+  vtkSetMacro(Batches, int);
   vtkGetMacro(Batches, int);
   ///@}
 
   ///@{
   /// How dense photons may become by the importance map, in those spread evenly: what it asks for above that goes to other
   /// places. Default 8, valid [1, infinity).
-  vtkSetClampMacro(MaximumDensity, double, 1.0, VTK_DOUBLE_MAX);
+  vtkSetMacro(MaximumDensity, double);
   vtkGetMacro(MaximumDensity, double);
   ///@}
 

@@ -22,7 +22,7 @@ namespace
 tyndall::ImportanceSettings SettingsOf(vtkPhotonImportance* filter)
 {
   tyndall::ImportanceSettings settings;
-  settings.pilotCount = static_cast<std::size_t>(filter->GetPilotCount());
+  settings.pilotCount = static_cast<std::size_t>(std::max(filter->GetPilotCount(), 0));
   std::copy_n(filter->GetPilotDimensions(), 3, settings.cells.begin());
   settings.seed = static_cast<std::uint64_t>(filter->GetSeed());
   settings.automatic = filter->GetThresholds() == vtkPhotonImportance::AUTOMATIC;
@@ -43,7 +43,7 @@ void SetGrid(vtkInformation* information, const tyndall::Grid& grid)
 /// The map as far as it is known before there are lights: of one.
 tyndall::Grid MapGrid(int pilotCount)
 {
-  const int edge = static_cast<int>(std::sqrt(static_cast<double>(pilotCount)));
+  const int edge = static_cast<int>(std::sqrt(std::max(pilotCount, 1)));
   tyndall::Grid grid;
   grid.size = { edge, edge, 1 };
   grid.spacing = { 1.0 / edge, 1.0 / edge, 1.0 };
@@ -156,7 +156,10 @@ int vtkPhotonImportance::RequestData(
       vtkImageData* const output = vtkImageData::GetData(outputs, port);
       tyndall::AddFact(output, "left_out", leftOut);
       tyndall::AddFact(output, "device", std::vector<std::string>{ this->DeviceName });
-      tyndall::TellExtentAndKeepWhatIsAskedFor(asking, outputs->GetInformationObject(port), output);
+      if (output->GetNumberOfCells() > 0) // else what was told before stands, and the next update asks for that
+      {
+        tyndall::TellExtentAndKeepWhatIsAskedFor(asking, outputs->GetInformationObject(port), output);
+      }
     }
   });
 }

@@ -69,7 +69,7 @@ public:
 
   ///@{
   /// Pilot photons of each light; the largest square number that is not above it is made. Default 1024, valid [1, 2^20].
-  vtkSetClampMacro(PilotCount, int, 1, 1 << 20);
+  vtkSetMacro(PilotCount, int);
   vtkGetMacro(PilotCount, int);
   ///@}
 

@@ -23,22 +23,31 @@ std::string LightName(int light)
 void CheckSquare(const ImportanceMap& map, std::size_t square)
 {
   const float* density = map.density.data() + square * map.Cells();
-  bool any = false;
-  for (std::size_t i = 0; i < map.Cells(); ++i)
+  const std::size_t size = static_cast<std::size_t>(map.size);
+  const auto place = [&](std::size_t i) {
+    return "column " + std::to_string(i % size) + ", row " + std::to_string(i / size);
+  };
+  std::size_t zeros = 0, firstZero = 0;
+  for (std::size_t i = map.Cells(); i-- > 0;)
   {
     if (!(density[i] >= 0.0f) || std::isinf(density[i]))
     {
-      const std::size_t size = static_cast<std::size_t>(map.size);
       throw InvalidInput("The importance of " + LightName(map.lights[square]) + " is " + std::to_string(density[i]) +
-        " in column " + std::to_string(i % size) + ", row " + std::to_string(i / size) +
-        "; it must be finite and not negative.");
+        " in " + place(i) + "; it must be finite and not negative.");
     }
-    any = any || density[i] > 0.0f;
+    zeros += density[i] == 0.0f ? 1 : 0;
+    firstZero = density[i] == 0.0f ? i : firstZero;
   }
-  if (!any)
+  if (zeros == map.Cells())
   {
     throw InvalidInput("The importance of " + LightName(map.lights[square]) +
       " is 0 everywhere, so no photon could set out. Leave the map out to spread photons evenly.");
+  }
+  if (zeros > 0)
+  {
+    throw InvalidInput("The importance of " + LightName(map.lights[square]) + " is 0 in " + std::to_string(zeros) +
+      " cells, first in " + place(firstZero) +
+      ": no photon would set out there, and its light would be missing. Give " + "every cell some importance.");
   }
 }
 

@@ -12,6 +12,7 @@
 #include <cmath>
 #include <future>
 #include <limits>
+#include <numeric>
 
 namespace tyndall
 {
@@ -75,9 +76,9 @@ void CheckPresence(const NoisyLight& light, Estimator estimator)
   }
   if (estimator == Estimator::Sound)
   {
-    const char* advice =
-      "Let PhotonEmitter make at least two Batches and PhotonMarcher gather them, or choose another estimator.";
-    RequireArray(light.batchFluence, estimator, "fluence by batches", advice);
+    const char* advice = "Let PhotonEmitter make at least two Batches and PhotonMarcher's sound scheme gather them, or "
+                         "choose another estimator.";
+    RequireArray(light.batchFluence, estimator, "fluence_batches", advice);
     if (light.batches < 2 || light.batches > 16)
     {
       throw InvalidInput("The photons are one set of " + std::to_string(light.batches) +
@@ -107,7 +108,7 @@ ArrayRange Checked(Device& device, const LentArray<float>& array, const float* v
     const std::size_t voxel = *range.unfit / static_cast<std::size_t>(components) % grid.VoxelCount();
     throw InvalidInput(std::string(name) + " is " + std::to_string(values[*range.unfit]) + " in voxel " +
       VoxelName(grid, voxel) + " (the first such voxel); it must be finite and " +
-      (low < 0.0f ? "no longer than 1." : "not negative.") + " Clean the input, for example with a Calculator.");
+      (low < 0.0f ? "no longer than 1." : "not negative.") + " Clean the light, or march the photons anew.");
   }
   return range;
 }
@@ -157,6 +158,66 @@ void SayWhatIsLeftOut(const NoisyLight& light, ReconstructedLight& result)
 }
 }
 
+namespace
+{
+/// Whether the light is of one colour everywhere, so that its channels share their noise.
+bool OneColour(const NoisyLight& light)
+{
+  constexpr float part = 1e-4f;
+  const std::size_t count = light.grid.VoxelCount() * static_cast<std::size_t>(light.batches);
+  const float* brightest = light.batchFluence;
+  const auto sum = [](const float* rgb) { return rgb[0] + rgb[1] + rgb[2]; };
+  for (std::size_t i = 0; i < count; ++i)
+  {
+    const float* rgb = light.batchFluence + 3 * i;
+    brightest = sum(rgb) > sum(brightest) ? rgb : brightest;
+  }
+  const float whole = sum(brightest);
+  for (std::size_t i = 0; i < count && whole > 0.0f; ++i)
+  {
+    const float* rgb = light.batchFluence + 3 * i;
+    for (int c = 0; c < 3; ++c)
+    {
+      if (std::abs(rgb[c] - sum(rgb) * (brightest[c] / whole)) > part * sum(rgb))
+      {
+        return false;
+      }
+    }
+  }
+  return true;
+}
+
+/// Each channel as grey light by itself: gains and errors of its own. Directions and levels stay those of all together.
+void ReconstructChannels(Device& device, const NoisyLight& light, const ReconstructionSettings& settings,
+  const Monitor& monitor, ReconstructedLight& result)
+{
+  const std::size_t voxels = light.grid.VoxelCount();
+  std::vector<float> values(voxels * static_cast<std::size_t>(light.batches));
+  NoisyLight one = light;
+  one.channels = 1;
+  one.fluence = one.meanDirection = nullptr;
+  one.batchFluence = values.data();
+  double before = 0.0, after = 0.0;
+  for (std::size_t c = 0; c < 3; ++c)
+  {
+    for (std::size_t i = 0; i < values.size(); ++i)
+    {
+      values[i] = light.batchFluence[3 * i + c];
+    }
+    const double total = std::accumulate(values.begin(), values.end(), 0.0);
+    const ReconstructedLight channel = Reconstruct(device, one, settings, monitor);
+    before += total;
+    after += total * (1.0 + channel.bias);
+    for (std::size_t i = 0; i < voxels; ++i)
+    {
+      result.fluence[3 * i + c] = channel.fluence[i];
+      result.fluenceError[3 * i + c] = channel.fluenceError[i];
+    }
+  }
+  result.bias = before > 0.0 ? after / before - 1.0 : 0.0;
+}
+}
+
 std::array<float, 3> Reconstruction::Conserve(const std::array<double, 3>& total, ReconstructedLight& result) const
 {
   const double sets = this->settings.estimator == Estimator::Sound ? this->light.batches : 1.0;
@@ -203,7 +264,7 @@ ReconstructedLight Reconstruct(
   const LentArray<float> fluence(device, given, count, "fluence");
   const LentArray<float> direction(device, light.meanDirection, vectors, "mean directions");
   const ArrayRange range =
-    Checked(device, fluence, given, count, light.channels, grid, sound ? "batch_fluence" : "fluence", 0.0f, Most);
+    Checked(device, fluence, given, count, light.channels, grid, sound ? "fluence_batches" : "fluence", 0.0f, Most);
   if (vectors > 0)
   {
     Checked(
@@ -214,6 +275,10 @@ ReconstructedLight Reconstruct(
   if (sound)
   {
     ReconstructSound(task, result);
+    if (light.channels == 3 && !OneColour(light))
+    {
+      ReconstructChannels(device, light, settings, monitor, result);
+    }
   }
   else
   {

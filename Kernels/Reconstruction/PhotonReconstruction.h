@@ -62,8 +62,9 @@ struct ReconstructedLight
 /// not on noise: Wiener's gain says how much of d to keep. Both are means over 2x2x2 cells, smoothed by 1 4 6 4 1; the noise is
 /// taken off twice, lest chance pass for light. The squared error is the sum over the levels of the noise that was kept and of
 /// 0.4 of the light that was held for noise (SoundReconstruction.cxx says why 0.4). Light below 0 becomes 0. Mean directions
-/// are smoothed as flux, fluence times direction, with the same gains. Colours: gains and error come from the sum of
-/// the channels, which share the error as they share the voxel's light.
+/// are smoothed as flux, fluence times direction, with the same gains. Light of three channels and one colour
+/// everywhere is smoothed by their sum, whose error they share; where colours differ each channel is smoothed by itself, and has an
+/// error of its own.
 ///
 /// Published (Pfeuti 2009, section 3.2.4, listings B.2, B.3): the lower of the level up to which the difference of two successive
 /// levels does not grow, and the weight over `weightStep`, the weight from the first level with at least one photon. Its light and

@@ -410,6 +410,9 @@ TEST(ImportanceMapCheck, NamesWhatIsWrongAndWhere)
   EXPECT_NE(message(map).find("column 5, row 3"), std::string::npos) << message(map);
   map = MapOf(std::vector<float>(Cells, 0.0f), EnvironmentLight);
   EXPECT_NE(message(map).find("the environment is 0 everywhere"), std::string::npos) << message(map);
+  map = MapOf(Hills());
+  map.density[2 * Size + 9] = map.density[7 * Size] = 0.0f;
+  EXPECT_NE(message(map).find("is 0 in 2 cells, first in column 9, row 2"), std::string::npos) << message(map);
   map = MapOf(std::vector<float>(7, 1.0f));
   EXPECT_NE(message(map).find("has 7 cells"), std::string::npos) << message(map);
 }

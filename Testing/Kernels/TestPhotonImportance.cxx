@@ -149,6 +149,22 @@ TEST_F(PhotonImportance, OfThickEvenFogIsEvenToo)
   }
 }
 
+TEST_F(PhotonImportance, OfFogUnderASlantingSunOrALampIsEvenToo)
+{
+  PhotonScene fog(Edge, 1.0, 0.1f, 0.4f);
+  for (const double slope : { 0.1, 0.6, 1.7 })
+  {
+    Illumination light = Sun();
+    light.lights[0].direction = { -slope, 0.1, -1.0 };
+    EXPECT_TRUE(this->Find(fog, light).even) << slope;
+  }
+  Illumination light;
+  light.lights = { Lamp({ 0.7, 0.4, 4.0 }) };
+  EXPECT_TRUE(this->Find(fog, light).even);
+  light.lights = { Lamp({ 0.2, 0.1, 0.3 }) };
+  EXPECT_TRUE(this->Find(fog, light).even);
+}
+
 TEST_F(PhotonImportance, TakesThresholdsOfItsUser)
 {
   ImportanceSettings settings;
@@ -202,6 +218,7 @@ TEST_F(PhotonImportance, OfALightThatMissesIsEven)
   light.lights = { spot };
   const Importance importance = this->Find(this->Ball, light);
   EXPECT_TRUE(importance.even);
+  EXPECT_NE(importance.leftOut.back().find("no pilot photon meets"), std::string::npos);
   EXPECT_EQ(*std::max_element(importance.pilot.fluence.begin(), importance.pilot.fluence.end()), 0.0f);
 }
 
