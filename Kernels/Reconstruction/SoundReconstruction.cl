@@ -147,41 +147,26 @@ __kernel void voxels_down(const __global float* batches, const __global float* d
   }
 }
 
-// The light of two rows' pairs of cells as children 2 k and 2 k + 1, at FINEST from the grid's voxels, else from rows.
-inline void load_light(const __global float* fine, const __global float* directions, int4 size, int x, int y, int z, float scale,
-  int k, real (*batch)[8], real (*carried)[8])
+// The light of a row's pairs of cells, at FINEST from the grid's voxels, else from rows.
+inline light_pair load_light(const __global float* fine, const __global float* directions, int4 size, int x, int y, int z, float scale)
 {
 #if FINEST
-  const light_pair light = load_voxels(fine, directions, size, ((size_t)z * size.y + y) * size.w + x, scale);
-#pragma unroll
-  for (int b = 0; b < BATCHES; ++b)
-  {
-    batch[b][2 * k] = light.batch[b].even;
-    batch[b][2 * k + 1] = light.batch[b].odd;
-  }
-#pragma unroll
-  for (int c = 0; c < CARRIED; ++c)
-  {
-    carried[c][2 * k] = light.carried[c].even;
-    carried[c][2 * k + 1] = light.carried[c].odd;
-  }
+  return load_voxels(fine, directions, size, ((size_t)z * size.y + y) * size.w + x, scale);
 #else
   const __global float* row = fine + row_of(size, 0, y, z) + x;
   const size_t field = field_of(size);
+  light_pair light;
 #pragma unroll
   for (int b = 0; b < BATCHES; ++b)
   {
-    const pair cells = load_pair(b * field, row);
-    batch[b][2 * k] = cells.even;
-    batch[b][2 * k + 1] = cells.odd;
+    light.batch[b] = load_pair(b * field, row);
   }
 #pragma unroll
   for (int c = 0; c < CARRIED; ++c)
   {
-    const pair cells = load_pair((BATCHES + c) * field, row);
-    carried[c][2 * k] = cells.even;
-    carried[c][2 * k + 1] = cells.odd;
+    light.carried[c] = load_pair((BATCHES + c) * field, row);
   }
+  return light;
 #endif
 }
 
@@ -191,45 +176,47 @@ __kernel void measure_details(const __global float* fine, const __global float* 
   const __global float* coarse, int4 size, __global float* measured)
 {
   const int y = ROW_Y, z = ROW_Z;
-  const rows_around rows = rows_about(size, y, z);
+  rows_about rows[4];
+  for (int k = 0; k < 4; ++k)
+  {
+    rows[k] = rows_for_children(size, y, z, k);
+  }
   const size_t field = field_of(size);
   FOR_CELLS(x, size.x)
   {
-    real first[8], sum[8], squares = 0.0f, finer[8], batch[BATCHES][8], carried[CARRIED][8];
-#pragma unroll
+    real squares = 0.0f, total = 0.0f, common = 0.0f;
     for (int k = 0; k < 4; ++k)
     {
       const int fy = min(2 * y + k % 2, fine_size.y - 1), fz = min(2 * z + k / 2, fine_size.z - 1);
-      load_light(fine, directions, fine_size, 2 * x, fy, fz, scale, k, batch, carried);
-    }
+      const light_pair light = load_light(fine, directions, fine_size, 2 * x, fy, fz, scale);
+      real first[2], sum[2] = { 0.0f, 0.0f };
 #pragma unroll
-    for (int b = 0; b < BATCHES; ++b)
-    {
-      interpolate(coarse + b * field, rows, x, finer);
-#pragma unroll
-      for (int i = 0; i < 8; ++i)
+      for (int b = 0; b < BATCHES; ++b)
       {
-        const real detail = batch[b][i] - finer[i];
-        if (b == 0)
+        const children finer = interpolate(coarse + b * field, &rows[k], x);
+        const real detail[2] = { light.batch[b].even - finer.even, light.batch[b].odd - finer.odd };
+#pragma unroll
+        for (int i = 0; i < 2; ++i)
         {
-          first[i] = detail;
-          sum[i] = 0.0f;
-        }
-        else // of differences from the first batch: nothing cancels
-        {
-          const real other = detail - first[i];
-          sum[i] += other;
-          squares += other * other;
+          if (b == 0)
+          {
+            first[i] = detail[i];
+          }
+          else // of differences from the first batch: nothing cancels
+          {
+            const real other = detail[i] - first[i];
+            sum[i] += other;
+            squares += other * other;
+          }
         }
       }
-    }
-    real total = 0.0f, common = 0.0f;
 #pragma unroll
-    for (int i = 0; i < 8; ++i)
-    {
-      const real mean = first[i] + sum[i] * (1.0f / BATCHES);
-      total += mean * mean;
-      common += sum[i] * sum[i];
+      for (int i = 0; i < 2; ++i)
+      {
+        const real mean = first[i] + sum[i] * (1.0f / BATCHES);
+        total += mean * mean;
+        common += sum[i] * sum[i];
+      }
     }
     const real noise = (squares - common * (1.0f / BATCHES)) * (0.125f / (BATCHES * (BATCHES - 1)));
     __global float* row = measured + row_of(size, 0, y, z);
@@ -349,6 +336,47 @@ __kernel void begin_results(const __global float* level, int4 size, __global flo
   }
 }
 
+#if DIRECTIONS
+// What brings a flux to the mean direction of light `total`: no longer than 1, 0 where there is no light.
+inline real direction_of(real total, real x, real y, real z)
+{
+  const real cut = select((real)0.0f, 1.0f / total, total > 0.0f);
+  const real square = (x * cut) * (x * cut) + (y * cut) * (y * cut) + (z * cut) * (z * cut);
+  if (any_of(square > 1.0f)) // which is rare
+  {
+    return select(cut, cut / sqrt(square), square > 1.0f);
+  }
+  return cut;
+}
+#endif
+
+// The light of two vectors of voxels and its direction, from what is smoothed.
+inline __attribute__((always_inline)) void store_voxels(const children* smooth, float unit, size_t voxel, __global float* fluence, __global float* mean_direction)
+{
+  children total = { 0.0f, 0.0f };
+  pair light[3];
+#pragma unroll
+  for (int c = 0; c < CHANNELS; ++c)
+  {
+    const real even = positive_part(smooth[c].even), odd = positive_part(smooth[c].odd);
+    total.even += even;
+    total.odd += odd;
+    light[c] = woven(even * unit, odd * unit);
+  }
+#if CHANNELS == 1
+  store_pair(light[0], voxel, fluence);
+#else
+  store_three(light[0], light[1], light[2], voxel, fluence);
+#endif
+#if DIRECTIONS
+  const children *x = smooth + CHANNELS, *y = x + 1, *z = x + 2;
+  const real even = direction_of(total.even, x->even, y->even, z->even);
+  const real odd = direction_of(total.odd, x->odd, y->odd, z->odd);
+  store_three(woven(x->even * even, x->odd * odd), woven(y->even * even, y->odd * odd),
+    woven(z->even * even, z->odd * odd), voxel, mean_direction);
+#endif
+}
+
 // Interpolated results of the level above, and what of this level's details is kept.
 //   fine, fine_size, directions, scale   this level's light
 //   coarse, results, gains               of the level above, `size`
@@ -362,154 +390,93 @@ __kernel void blend_level(const __global float* fine, const __global float* dire
   __global float* deviations)
 {
   const int y = ROW_Y, z = ROW_Z;
-  const rows_around rows = rows_about(size, y, z);
   const size_t field = field_of(size);
+#if FINEST
   const float unit = 1.0f / scale;
-  FOR_CELLS(x, size.x)
+#else
+  const size_t fine_field = field_of(fine_size);
+#endif
+  for (int k = 0; k < 4; ++k) // outside: memory is read ahead for a few rows, not for four of every quantity
   {
-    real gain[8], finer[8], kept[CARRIED][8], mean[8];
-    interpolate(gains + GAIN * field, rows, x, gain);
-#pragma unroll
-    for (int i = 0; i < 8; ++i)
+    const rows_about rows = rows_for_children(size, y, z, k);
+    const int fy = min(2 * y + k % 2, fine_size.y - 1), fz = min(2 * z + k / 2, fine_size.z - 1);
+    const bool outside = fy < 2 * y + k % 2 || fz < 2 * z + k / 2;
+    FOR_CELLS(x, size.x)
     {
-      mean[i] = 0.0f;
-    }
-    real batch[BATCHES][8], carried[CARRIED][8];
+      const light_pair light = load_light(fine, directions, fine_size, 2 * x, fy, fz, scale);
+      const children gain = interpolate(gains + GAIN * field, &rows, x);
+      children mean = { 0.0f, 0.0f }, kept[CARRIED];
 #pragma unroll
-    for (int k = 0; k < 4; ++k)
-    {
-      const int fy = min(2 * y + k % 2, fine_size.y - 1), fz = min(2 * z + k / 2, fine_size.z - 1);
-      load_light(fine, directions, fine_size, 2 * x, fy, fz, scale, k, batch, carried);
-    }
-#pragma unroll
-    for (int c = 0; c < CARRIED; ++c)
-    {
-      interpolate(coarse + (BATCHES + c) * field, rows, x, finer);
-      interpolate(results + c * field, rows, x, kept[c]);
-#pragma unroll
-      for (int i = 0; i < 8; ++i)
+      for (int c = 0; c < CARRIED; ++c)
       {
-        const real detail = carried[c][i] - finer[i];
-        kept[c][i] = multiply_add(gain[i], detail, kept[c][i]);
+        const children finer = interpolate(coarse + (BATCHES + c) * field, &rows, x);
+        kept[c] = interpolate(results + c * field, &rows, x);
+        const real even = light.carried[c].even - finer.even, odd = light.carried[c].odd - finer.odd;
+        kept[c].even = multiply_add(gain.even, even, kept[c].even);
+        kept[c].odd = multiply_add(gain.odd, odd, kept[c].odd);
         if (c < CHANNELS)
         {
-          mean[i] += detail;
+          mean.even += even;
+          mean.odd += odd;
         }
       }
-    }
-    // A batch's deviation goes the way of the light: D = up(D) + gain (d_b - d).
-    real squares = 0.0f;
-#pragma unroll
-    for (int b = 0; b < BATCHES; ++b)
-    {
-      real own[8];
-      interpolate(coarse + b * field, rows, x, finer);
-      interpolate(results + (DEVIATION + b) * field, rows, x, own);
-#pragma unroll
-      for (int k = 0; k < 4; ++k)
-      {
-        const real even = batch[b][2 * k] - finer[2 * k] - mean[2 * k];
-        const real odd = batch[b][2 * k + 1] - finer[2 * k + 1] - mean[2 * k + 1];
-        own[2 * k] = multiply_add(gain[2 * k], even, own[2 * k]);
-        own[2 * k + 1] = multiply_add(gain[2 * k + 1], odd, own[2 * k + 1]);
 #if FINEST
-        squares += own[2 * k] * own[2 * k] + own[2 * k + 1] * own[2 * k + 1];
+      real squares = 0.0f;
 #else
-        const int fy = min(2 * y + k % 2, fine_size.y - 1), fz = min(2 * z + k / 2, fine_size.z - 1);
-        __global float* row = to + row_of(fine_size, DEVIATION + b, fy, fz);
-        if (fy == 2 * y + k % 2 && fz == 2 * z + k / 2)
-        {
-          store_pair(woven(own[2 * k], own[2 * k + 1]), 2 * x, row);
-        }
+      __global float* row = to + row_of(fine_size, 0, fy, fz) + 2 * x;
 #endif
-      }
-    }
-    real level[8];
-    interpolate(results + BLENDED * field, rows, x, level);
-#if !FINEST
-    real omitted[8];
-    interpolate(gains + ERROR * field, rows, x, omitted);
-#endif
+      // A batch's deviation goes the way of the light: D = up(D) + gain (d_b - d).
 #pragma unroll
-    for (int k = 0; k < 4; ++k)
-    {
-      const int fy = 2 * y + k % 2, fz = 2 * z + k / 2;
-      if (fy < fine_size.y && fz < fine_size.z)
+      for (int b = 0; b < BATCHES; ++b)
       {
-        real here[2];
-#pragma unroll
-        for (int p = 0; p < 2; ++p)
-        {
-          here[p] = level[2 * k + p] + gain[2 * k + p] * (number - level[2 * k + p]);
-        }
+        const children finer = interpolate(coarse + b * field, &rows, x);
+        const children above = interpolate(results + (DEVIATION + b) * field, &rows, x);
+        const real even = multiply_add(gain.even, light.batch[b].even - finer.even - mean.even, above.even);
+        const real odd = multiply_add(gain.odd, light.batch[b].odd - finer.odd - mean.odd, above.odd);
 #if FINEST
-        const size_t voxel = ((size_t)fz * fine_size.y + fy) * fine_size.w + 2 * x;
-        store_pair(woven(here[0], here[1]), voxel, blended);
-        real out[CHANNELS + 3][2];
-#pragma unroll
-        for (int p = 0; p < 2; ++p)
-        {
-          const int i = 2 * k + p;
-          real total = 0.0f;
-#pragma unroll
-          for (int c = 0; c < CHANNELS; ++c)
-          {
-            const real lit = positive_part(kept[c][i]);
-            total += lit;
-            out[c][p] = lit * unit;
-          }
-#if DIRECTIONS
-          real cut = select((real)0.0f, 1.0f / total, total > 0.0f);
-          const real dx = kept[CHANNELS][i], dy = kept[CHANNELS + 1][i], dz = kept[CHANNELS + 2][i];
-          const real square = (dx * cut) * (dx * cut) + (dy * cut) * (dy * cut) + (dz * cut) * (dz * cut);
-          if (any_of(square > 1.0f)) // which is rare
-          {
-            cut = select(cut, cut / sqrt(square), square > 1.0f);
-          }
-          out[CHANNELS][p] = dx * cut;
-          out[CHANNELS + 1][p] = dy * cut;
-          out[CHANNELS + 2][p] = dz * cut;
-#endif
-        }
-#if CHANNELS == 1
-        store_pair(woven(out[0][0], out[0][1]), voxel, fluence);
+        squares += even * even + odd * odd;
 #else
-        store_three(woven(out[0][0], out[0][1]), woven(out[1][0], out[1][1]), woven(out[2][0], out[2][1]), voxel, fluence);
-#endif
-#if DIRECTIONS
-        store_three(woven(out[CHANNELS][0], out[CHANNELS][1]), woven(out[CHANNELS + 1][0], out[CHANNELS + 1][1]),
-          woven(out[CHANNELS + 2][0], out[CHANNELS + 2][1]), voxel, mean_direction);
-#endif
-#else
-        __global float* row = to + row_of(fine_size, 0, fy, fz);
-        const size_t fine_field = field_of(fine_size);
-#pragma unroll
-        for (int c = 0; c < CARRIED; ++c)
+        if (!outside)
         {
-          store_pair(woven(kept[c][2 * k], kept[c][2 * k + 1]), c * fine_field + 2 * x, row);
+          store_pair(woven(even, odd), (DEVIATION + b) * fine_field, row);
         }
-        store_pair(woven(here[0], here[1]), BLENDED * fine_field + 2 * x, row);
-        store_pair(woven(omitted[2 * k], omitted[2 * k + 1]), OMITTED * fine_field + 2 * x, row);
 #endif
       }
-    }
 #if FINEST
-    __global float* row = deviations + row_of(size, 0, y, z);
-    store_real(0.125f * squares, x, row);
-    repeat_ends(row, x, REAL_WIDTH, size.x);
-#else
-    if (x == 0 || x + REAL_WIDTH >= size.x)
-    {
-      for (int i = 0; i < 4 * RESULTS; ++i)
+      __global float* sum = deviations + row_of(size, 0, y, z);
+      squares *= 0.125f;
+      if (k > 0)
       {
-        const int fy = 2 * y + i % 2, fz = 2 * z + i / 2 % 2;
-        if (fy < fine_size.y && fz < fine_size.z)
-        {
-          repeat_ends(to + row_of(fine_size, i / 4, fy, fz), 2 * x, 2 * REAL_WIDTH, fine_size.x);
-        }
+        squares += load_real(x, sum);
       }
-    }
+      store_real(squares, x, sum);
+      repeat_ends(sum, x, REAL_WIDTH, size.x);
 #endif
+      if (outside)
+      {
+        continue;
+      }
+      const children above = interpolate(results + BLENDED * field, &rows, x);
+      const pair level = woven(
+        above.even + gain.even * (number - above.even), above.odd + gain.odd * (number - above.odd));
+#if FINEST
+      store_voxels(kept, unit, ((size_t)fz * fine_size.y + fy) * fine_size.w + 2 * x, fluence, mean_direction);
+      store_pair(level, ((size_t)fz * fine_size.y + fy) * fine_size.w + 2 * x, blended);
+#else
+      const children omitted = interpolate(gains + ERROR * field, &rows, x);
+#pragma unroll
+      for (int c = 0; c < CARRIED; ++c)
+      {
+        store_pair(woven(kept[c].even, kept[c].odd), c * fine_field, row);
+      }
+      store_pair(level, BLENDED * fine_field, row);
+      store_pair(woven(omitted.even, omitted.odd), OMITTED * fine_field, row);
+      for (int f = 0; f < RESULTS; ++f)
+      {
+        repeat_ends(row - 2 * x + f * fine_field, 2 * x, 2 * REAL_WIDTH, fine_size.x);
+      }
+#endif
+    }
   }
 }
 
@@ -533,19 +500,21 @@ __kernel void finish_light(const __global float* squared, int4 size, float4 cons
   __global float* errors, int4 fine_size)
 {
   const int y = ROW_Y, z = ROW_Z;
-  const rows_around rows = rows_about(size, y, z);
+  rows_about rows[4];
+  for (int k = 0; k < 4; ++k)
+  {
+    rows[k] = rows_for_children(size, y, z, k);
+  }
   FOR_CELLS(x, size.x)
   {
-    real error[8];
-    interpolate(squared, rows, x, error);
-#pragma unroll
     for (int k = 0; k < 4; ++k)
     {
       const int fy = 2 * y + k % 2, fz = 2 * z + k / 2;
       if (fy < fine_size.y && fz < fine_size.z)
       {
+        const children error = interpolate(squared, &rows[k], x);
         const size_t voxel = ((size_t)fz * fine_size.y + fy) * fine_size.w + 2 * x;
-        const pair deviation = unit * sqrt(positive_part(woven(error[2 * k], error[2 * k + 1])));
+        const pair deviation = unit * sqrt(positive_part(woven(error.even, error.odd)));
 #if CHANNELS == 1
         store_pair(load_pair(voxel, fluence) * conserve.x, voxel, fluence);
         store_pair(deviation * conserve.x, voxel, errors);

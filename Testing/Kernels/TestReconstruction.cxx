@@ -85,7 +85,7 @@ TEST_F(Reconstruction, SaysWhatIsMissingAndWhoMakesIt)
   const ReconstructionScene scene = ReconstructionScene({ 4, 4, 4 }).Light([](std::size_t) { return 1.0; }, 0.0);
   NoisyLight light = scene.Seen();
   light.photonCount = nullptr;
-  EXPECT_THAT(this->Complaint(light, By(Estimator::NearestPhotons)), HasSubstr("Gather Counts"));
+  EXPECT_THAT(this->Complaint(light, By(Estimator::NearestPhotons)), HasSubstr("PhotonCounts"));
   EXPECT_THAT(this->Complaint(light, By(Estimator::Published)), HasSubstr("photon_count"));
   light.batches = 1;
   EXPECT_THAT(this->Complaint(light, By(Estimator::Sound)), HasSubstr("1 batches"));
