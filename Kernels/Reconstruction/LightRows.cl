@@ -164,55 +164,43 @@ inline void repeat_ends(__global float* row, int x, int width, int count)
   }
 }
 
-// The cells of a level that interpolation needs around row (y, z): begins of 3 x 3 rows of field 0, y fastest.
-typedef struct
-{
-  size_t at[9];
-} rows_around;
-
-inline rows_around rows_about(int4 size, int y, int z)
-{
-  rows_around r;
-#pragma unroll
-  for (int k = 0; k < 9; ++k)
-  {
-    r.at[k] = row_of(size, 0, y + k % 3 - 1, z + k / 3 - 1);
-  }
-  return r;
-}
-
 inline real nearer(real near, real far)
 {
   return multiply_add((real)0.25f, far, (real)0.75f * near);
 }
 
-// Trilinear interpolation of REAL_WIDTH cells from x on to their eight children each: finer[4 z + 2 y + x].
-inline void interpolate(const __global float* field, rows_around rows, int x, real* finer)
+// Cells have eight children, four rows of pairs; row k is at y = k % 2, z = k / 2. Of the cells' level, from field 0 on: the rows
+// that row k of the children of row (y, z) lies between.
+typedef struct
 {
-  real even[9], odd[9];
-#pragma unroll
-  for (int k = 0; k < 9; ++k)
-  {
-    const __global float* row = field + rows.at[k] + x;
-    const real middle = load_real(0, row);
-    even[k] = nearer(middle, load_real(-1, row));
-    odd[k] = nearer(middle, load_real(1, row));
-  }
-#pragma unroll
-  for (int y = 0; y < 2; ++y)
-  {
-    real e[3], o[3];
-#pragma unroll
-    for (int z = 0; z < 3; ++z)
-    {
-      e[z] = nearer(even[3 * z + 1], even[3 * z + 2 * y]);
-      o[z] = nearer(odd[3 * z + 1], odd[3 * z + 2 * y]);
-    }
-#pragma unroll
-    for (int z = 0; z < 2; ++z)
-    {
-      finer[4 * z + 2 * y] = nearer(e[1], e[2 * z]);
-      finer[4 * z + 2 * y + 1] = nearer(o[1], o[2 * z]);
-    }
-  }
+  size_t here, beside, behind, opposite;
+} rows_about;
+
+inline rows_about rows_for_children(int4 size, int y, int z, int k)
+{
+  const int other_y = y - 1 + 2 * (k % 2), other_z = z - 1 + 2 * (k / 2);
+  const rows_about r = { row_of(size, 0, y, z), row_of(size, 0, other_y, z), row_of(size, 0, y, other_z),
+    row_of(size, 0, other_y, other_z) };
+  return r;
+}
+
+typedef struct
+{
+  real even, odd;
+} children;
+
+inline real cells_for_children(const __global float* field, const rows_about* rows, int x)
+{
+  return nearer(nearer(load_real(rows->here + x, field), load_real(rows->beside + x, field)),
+    nearer(load_real(rows->behind + x, field), load_real(rows->opposite + x, field)));
+}
+
+// Trilinear interpolation of REAL_WIDTH cells from x on to a row of their children. A row at a time, for all eight children of
+// several quantities do not fit into a CPU's registers.
+inline children interpolate(const __global float* field, const rows_about* rows, int x)
+{
+  const real middle = cells_for_children(field, rows, x);
+  const children c = { nearer(middle, cells_for_children(field, rows, x - 1)),
+    nearer(middle, cells_for_children(field, rows, x + 1)) };
+  return c;
 }

@@ -146,41 +146,26 @@ __kernel void voxels_down(const __global float* batches, const __global float* d
   }
 }
 
-// The light of two rows' pairs of cells as children 2 k and 2 k + 1, at FINEST from the grid's voxels, else from rows.
-inline void load_light(const __global float* fine, const __global float* directions, int4 size, int x, int y, int z, float scale,
-  int k, real (*batch)[8], real (*carried)[8])
+// The light of a row's pairs of cells, at FINEST from the grid's voxels, else from rows.
+inline light_pair load_light(const __global float* fine, const __global float* directions, int4 size, int x, int y, int z, float scale)
 {
 #if FINEST
-  const light_pair light = load_voxels(fine, directions, size, ((size_t)z * size.y + y) * size.w + x, scale);
-#pragma unroll
-  for (int b = 0; b < BATCHES; ++b)
-  {
-    batch[b][2 * k] = light.batch[b].even;
-    batch[b][2 * k + 1] = light.batch[b].odd;
-  }
-#pragma unroll
-  for (int c = 0; c < CARRIED; ++c)
-  {
-    carried[c][2 * k] = light.carried[c].even;
-    carried[c][2 * k + 1] = light.carried[c].odd;
-  }
+  return load_voxels(fine, directions, size, ((size_t)z * size.y + y) * size.w + x, scale);
 #else
   const __global float* row = fine + row_of(size, 0, y, z) + x;
   const size_t field = field_of(size);
+  light_pair light;
 #pragma unroll
   for (int b = 0; b < BATCHES; ++b)
   {
-    const pair cells = load_pair(b * field, row);
-    batch[b][2 * k] = cells.even;
-    batch[b][2 * k + 1] = cells.odd;
+    light.batch[b] = load_pair(b * field, row);
   }
 #pragma unroll
   for (int c = 0; c < CARRIED; ++c)
   {
-    const pair cells = load_pair((BATCHES + c) * field, row);
-    carried[c][2 * k] = cells.even;
-    carried[c][2 * k + 1] = cells.odd;
+    light.carried[c] = load_pair((BATCHES + c) * field, row);
   }
+  return light;
 #endif
 }
 
@@ -190,45 +175,47 @@ __kernel void measure_details(const __global float* fine, const __global float* 
   const __global float* coarse, int4 size, __global float* measured)
 {
   const int y = ROW_Y, z = ROW_Z;
-  const rows_around rows = rows_about(size, y, z);
+  rows_about rows[4];
+  for (int k = 0; k < 4; ++k)
+  {
+    rows[k] = rows_for_children(size, y, z, k);
+  }
   const size_t field = field_of(size);
   FOR_CELLS(x, size.x)
   {
-    real first[8], sum[8], squares = 0.0f, finer[8], batch[BATCHES][8], carried[CARRIED][8];
-#pragma unroll
+    real squares = 0.0f, total = 0.0f, common = 0.0f;
     for (int k = 0; k < 4; ++k)
     {
       const int fy = min(2 * y + k % 2, fine_size.y - 1), fz = min(2 * z + k / 2, fine_size.z - 1);
-      load_light(fine, directions, fine_size, 2 * x, fy, fz, scale, k, batch, carried);
-    }
+      const light_pair light = load_light(fine, directions, fine_size, 2 * x, fy, fz, scale);
+      real first[2], sum[2] = { 0.0f, 0.0f };
 #pragma unroll
-    for (int b = 0; b < BATCHES; ++b)
-    {
-      interpolate(coarse + b * field, rows, x, finer);
-#pragma unroll
-      for (int i = 0; i < 8; ++i)
+      for (int b = 0; b < BATCHES; ++b)
       {
-        const real detail = batch[b][i] - finer[i];
-        if (b == 0)
+        const children finer = interpolate(coarse + b * field, &rows[k], x);
+        const real detail[2] = { light.batch[b].even - finer.even, light.batch[b].odd - finer.odd };
+#pragma unroll
+        for (int i = 0; i < 2; ++i)
         {
-          first[i] = detail;
-          sum[i] = 0.0f;
-        }
-        else // of differences from the first batch: nothing cancels
-        {
-          const real other = detail - first[i];
-          sum[i] += other;
-          squares += other * other;
+          if (b == 0)
+          {
+            first[i] = detail[i];
+          }
+          else // of differences from the first batch: nothing cancels
+          {
+            const real other = detail[i] - first[i];
+            sum[i] += other;
+            squares += other * other;
+          }
         }
       }
-    }
-    real total = 0.0f, common = 0.0f;
 #pragma unroll
-    for (int i = 0; i < 8; ++i)
-    {
-      const real mean = first[i] + sum[i] * (1.0f / BATCHES);
-      total += mean * mean;
-      common += sum[i] * sum[i];
+      for (int i = 0; i < 2; ++i)
+      {
+        const real mean = first[i] + sum[i] * (1.0f / BATCHES);
+        total += mean * mean;
+        common += sum[i] * sum[i];
+      }
     }
     const real noise = (squares - common * (1.0f / BATCHES)) * (0.125f / (BATCHES * (BATCHES - 1)));
     __global float* row = measured + row_of(size, 0, y, z);
@@ -367,6 +354,47 @@ __kernel void begin_errors(const __global float* noise, int4 size, __global floa
   }
 }
 
+#if DIRECTIONS
+// What brings a flux to the mean direction of light `total`: no longer than 1, 0 where there is no light.
+inline real direction_of(real total, real x, real y, real z)
+{
+  const real cut = select((real)0.0f, 1.0f / total, total > 0.0f);
+  const real square = (x * cut) * (x * cut) + (y * cut) * (y * cut) + (z * cut) * (z * cut);
+  if (any_of(square > 1.0f)) // which is rare
+  {
+    return select(cut, cut / sqrt(square), square > 1.0f);
+  }
+  return cut;
+}
+#endif
+
+// The light of two vectors of voxels and its direction, from what is smoothed.
+inline __attribute__((always_inline)) void store_voxels(const children* smooth, float unit, size_t voxel, __global float* fluence, __global float* mean_direction)
+{
+  children total = { 0.0f, 0.0f };
+  pair light[3];
+#pragma unroll
+  for (int c = 0; c < CHANNELS; ++c)
+  {
+    const real even = positive_part(smooth[c].even), odd = positive_part(smooth[c].odd);
+    total.even += even;
+    total.odd += odd;
+    light[c] = woven(even * unit, odd * unit);
+  }
+#if CHANNELS == 1
+  store_pair(light[0], voxel, fluence);
+#else
+  store_three(light[0], light[1], light[2], voxel, fluence);
+#endif
+#if DIRECTIONS
+  const children *x = smooth + CHANNELS, *y = x + 1, *z = x + 2;
+  const real even = direction_of(total.even, x->even, y->even, z->even);
+  const real odd = direction_of(total.odd, x->odd, y->odd, z->odd);
+  store_three(woven(x->even * even, x->odd * odd), woven(y->even * even, y->odd * odd),
+    woven(z->even * even, z->odd * odd), voxel, mean_direction);
+#endif
+}
+
 // Interpolated results of the level above, and what of this level's details is kept.
 //   fine, fine_size, directions, scale   this level's light
 //   coarse, results, gains               of the level above, `size`
@@ -378,113 +406,56 @@ __kernel void blend_level(const __global float* fine, const __global float* dire
   __global float* to, __global float* fluence, __global float* mean_direction, __global float* blended)
 {
   const int y = ROW_Y, z = ROW_Z;
-  const rows_around rows = rows_about(size, y, z);
   const size_t field = field_of(size);
-  const float unit = 1.0f / scale;
-  FOR_CELLS(x, size.x)
-  {
-    real gain[8], finer[8], kept[CARRIED][8];
-    interpolate(gains + GAIN * field, rows, x, gain);
-    real batch[BATCHES][8], carried[CARRIED][8];
-#pragma unroll
-    for (int k = 0; k < 4; ++k)
-    {
-      const int fy = min(2 * y + k % 2, fine_size.y - 1), fz = min(2 * z + k / 2, fine_size.z - 1);
-      load_light(fine, directions, fine_size, 2 * x, fy, fz, scale, k, batch, carried);
-    }
-#pragma unroll
-    for (int c = 0; c < CARRIED; ++c)
-    {
-      interpolate(coarse + (BATCHES + c) * field, rows, x, finer);
-      interpolate(results + c * field, rows, x, kept[c]);
-#pragma unroll
-      for (int i = 0; i < 8; ++i)
-      {
-        kept[c][i] = multiply_add(gain[i], carried[c][i] - finer[i], kept[c][i]);
-      }
-    }
-    real level[8];
-    interpolate(results + BLENDED * field, rows, x, level);
-#if !FINEST
-    real squared[8];
-    interpolate(gains + ERROR * field, rows, x, squared);
-#endif
-#pragma unroll
-    for (int k = 0; k < 4; ++k)
-    {
-      const int fy = 2 * y + k % 2, fz = 2 * z + k / 2;
-      if (fy < fine_size.y && fz < fine_size.z)
-      {
-        real here[2];
-#pragma unroll
-        for (int p = 0; p < 2; ++p)
-        {
-          here[p] = level[2 * k + p] + gain[2 * k + p] * (number - level[2 * k + p]);
-        }
 #if FINEST
-        const size_t voxel = ((size_t)fz * fine_size.y + fy) * fine_size.w + 2 * x;
-        store_pair(woven(here[0], here[1]), voxel, blended);
-        real out[CHANNELS + 3][2];
-#pragma unroll
-        for (int p = 0; p < 2; ++p)
-        {
-          const int i = 2 * k + p;
-          real total = 0.0f;
-#pragma unroll
-          for (int c = 0; c < CHANNELS; ++c)
-          {
-            const real lit = positive_part(kept[c][i]);
-            total += lit;
-            out[c][p] = lit * unit;
-          }
-#if DIRECTIONS
-          real cut = select((real)0.0f, 1.0f / total, total > 0.0f);
-          const real dx = kept[CHANNELS][i], dy = kept[CHANNELS + 1][i], dz = kept[CHANNELS + 2][i];
-          const real square = (dx * cut) * (dx * cut) + (dy * cut) * (dy * cut) + (dz * cut) * (dz * cut);
-          if (any_of(square > 1.0f)) // which is rare
-          {
-            cut = select(cut, cut / sqrt(square), square > 1.0f);
-          }
-          out[CHANNELS][p] = dx * cut;
-          out[CHANNELS + 1][p] = dy * cut;
-          out[CHANNELS + 2][p] = dz * cut;
-#endif
-        }
-#if CHANNELS == 1
-        store_pair(woven(out[0][0], out[0][1]), voxel, fluence);
+  const float unit = 1.0f / scale;
 #else
-        store_three(woven(out[0][0], out[0][1]), woven(out[1][0], out[1][1]), woven(out[2][0], out[2][1]), voxel, fluence);
+  const size_t fine_field = field_of(fine_size);
 #endif
-#if DIRECTIONS
-        store_three(woven(out[CHANNELS][0], out[CHANNELS][1]), woven(out[CHANNELS + 1][0], out[CHANNELS + 1][1]),
-          woven(out[CHANNELS + 2][0], out[CHANNELS + 2][1]), voxel, mean_direction);
-#endif
-#else
-        __global float* row = to + row_of(fine_size, 0, fy, fz);
-        const size_t fine_field = field_of(fine_size);
-#pragma unroll
-        for (int c = 0; c < CARRIED; ++c)
-        {
-          store_pair(woven(kept[c][2 * k], kept[c][2 * k + 1]), c * fine_field + 2 * x, row);
-        }
-        store_pair(woven(here[0], here[1]), BLENDED * fine_field + 2 * x, row);
-        store_pair(woven(squared[2 * k], squared[2 * k + 1]), SQUARED * fine_field + 2 * x, row);
-#endif
-      }
-    }
-#if !FINEST
-    if (x == 0 || x + REAL_WIDTH >= size.x)
+  for (int k = 0; k < 4; ++k) // outside: memory is read ahead for a few rows, not for four of every quantity
+  {
+    const rows_about rows = rows_for_children(size, y, z, k);
+    const int fy = min(2 * y + k % 2, fine_size.y - 1), fz = min(2 * z + k / 2, fine_size.z - 1);
+    const bool outside = fy < 2 * y + k % 2 || fz < 2 * z + k / 2;
+    FOR_CELLS(x, size.x)
     {
-      for (int i = 0; i < 4 * RESULTS; ++i)
+      const light_pair light = load_light(fine, directions, fine_size, 2 * x, fy, fz, scale);
+      const children gain = interpolate(gains + GAIN * field, &rows, x);
+      children kept[CARRIED];
+#pragma unroll
+      for (int c = 0; c < CARRIED; ++c)
       {
-        const int fy = 2 * y + i % 2, fz = 2 * z + i / 2 % 2;
-        if (fy < fine_size.y && fz < fine_size.z)
-        {
-          repeat_ends(to + row_of(fine_size, i / 4, fy, fz), 2 * x, 2 * REAL_WIDTH, fine_size.x);
-        }
+        const children finer = interpolate(coarse + (BATCHES + c) * field, &rows, x);
+        kept[c] = interpolate(results + c * field, &rows, x);
+        kept[c].even = multiply_add(gain.even, light.carried[c].even - finer.even, kept[c].even);
+        kept[c].odd = multiply_add(gain.odd, light.carried[c].odd - finer.odd, kept[c].odd);
       }
-    }
+      if (outside)
+      {
+        continue;
+      }
+      const children above = interpolate(results + BLENDED * field, &rows, x);
+      const pair level = woven(
+        above.even + gain.even * (number - above.even), above.odd + gain.odd * (number - above.odd));
+#if FINEST
+      store_voxels(kept, unit, ((size_t)fz * fine_size.y + fy) * fine_size.w + 2 * x, fluence, mean_direction);
+      store_pair(level, ((size_t)fz * fine_size.y + fy) * fine_size.w + 2 * x, blended);
+#else
+      __global float* row = to + row_of(fine_size, 0, fy, fz) + 2 * x;
+      const children squared = interpolate(gains + ERROR * field, &rows, x);
+#pragma unroll
+      for (int c = 0; c < CARRIED; ++c)
+      {
+        store_pair(woven(kept[c].even, kept[c].odd), c * fine_field, row);
+      }
+      store_pair(level, BLENDED * fine_field, row);
+      store_pair(woven(squared.even, squared.odd), SQUARED * fine_field, row);
+      for (int f = 0; f < RESULTS; ++f)
+      {
+        repeat_ends(row - 2 * x + f * fine_field, 2 * x, 2 * REAL_WIDTH, fine_size.x);
+      }
 #endif
+    }
   }
 }
 
@@ -493,19 +464,21 @@ __kernel void finish_light(const __global float* gains, int4 size, float4 conser
   __global float* errors, int4 fine_size)
 {
   const int y = ROW_Y, z = ROW_Z;
-  const rows_around rows = rows_about(size, y, z);
+  rows_about rows[4];
+  for (int k = 0; k < 4; ++k)
+  {
+    rows[k] = rows_for_children(size, y, z, k);
+  }
   FOR_CELLS(x, size.x)
   {
-    real error[8];
-    interpolate(gains + ERROR * field_of(size), rows, x, error);
-#pragma unroll
     for (int k = 0; k < 4; ++k)
     {
       const int fy = 2 * y + k % 2, fz = 2 * z + k / 2;
       if (fy < fine_size.y && fz < fine_size.z)
       {
+        const children error = interpolate(gains + ERROR * field_of(size), &rows[k], x);
         const size_t voxel = ((size_t)fz * fine_size.y + fy) * fine_size.w + 2 * x;
-        const pair deviation = unit * sqrt(positive_part(woven(error[2 * k], error[2 * k + 1])));
+        const pair deviation = unit * sqrt(positive_part(woven(error.even, error.odd)));
 #if CHANNELS == 1
         store_pair(load_pair(voxel, fluence) * conserve.x, voxel, fluence);
         store_pair(deviation * conserve.x, voxel, errors);
