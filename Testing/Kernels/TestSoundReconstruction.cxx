@@ -124,6 +124,33 @@ TEST_F(SoundReconstruction, TheErrorIsOnTheSafeSideWhereVoxelsHaveNoiseOfTheirOw
   }
 }
 
+TEST_F(SoundReconstruction, ColoursThatDifferHaveErrorsOfTheirOwn)
+{
+  ReconstructionScene scene({ 48, 48, 48 }, 3);
+  scene.Light([&](std::size_t i) { return i % 3 == 0 ? 0.2 * Beam(scene, i / 3) : Beam(scene, i / 3); }, 0.55);
+  for (std::size_t i = 0; i < scene.batchFluence.size(); ++i)
+  {
+    if (i % 3 == 2)
+    {
+      scene.batchFluence[i] = static_cast<float>(Beam(scene, i % scene.Values() / 3)); // blue has no noise
+    }
+  }
+  scene.Average();
+  const ReconstructedLight light = this->Of(scene);
+  for (std::size_t c = 0; c < 3; ++c)
+  {
+    double held = 0.0, error = 0.0;
+    for (std::size_t i = c; i < light.fluence.size(); i += 3)
+    {
+      const double truth = (c == 0 ? 0.2 : 1.0) * Beam(scene, i / 3);
+      held += std::abs(light.fluence[i] - truth) <= 2.0 * light.fluenceError[i] + 1e-5;
+      error += light.fluenceError[i] / (c == 0 ? 0.2 : 1.0);
+    }
+    EXPECT_GT(held / (light.fluence.size() / 3), 0.93) << c;
+    EXPECT_EQ(error / (light.fluence.size() / 3) < 1e-3, c == 2) << c;
+  }
+}
+
 TEST_F(SoundReconstruction, LightOfAnyPowerIsTheSameLight)
 {
   ReconstructionScene scene({ 32, 20, 17 });
