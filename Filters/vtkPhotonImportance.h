@@ -68,7 +68,7 @@ public:
   };
 
   ///@{
-  /// Pilot photons of each light; the largest square number that is not above it is made. Default 1024, valid [1, 2^20].
+  /// Pilot photons of each light; the largest square number that is not above it is made. Default 1024, valid [1, 2^20]; below it is an error.
   vtkSetMacro(PilotCount, int);
   vtkGetMacro(PilotCount, int);
   ///@}

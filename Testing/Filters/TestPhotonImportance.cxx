@@ -199,10 +199,10 @@ void AnotherNumberOfLightsIsFollowed(test::Claims& claims)
   layersAre(1, "of the lamp alone");
 }
 
-/// One pilot photon tells nothing, and none is made one.
+/// One pilot photon tells nothing.
 void FewPilotPhotonsAreEnough(test::Claims& claims)
 {
-  for (int count : { 0, 1, 2, 5 })
+  for (int count : { 1, 2, 5 })
   {
     Pipeline scene(test::GlassBall(16));
     scene.importance->SetPilotCount(count);
@@ -214,6 +214,19 @@ void FewPilotPhotonsAreEnough(test::Claims& claims)
     claims.Near(test::Total(importance), edge * edge, 1e-5, "its total");
     test::FiniteCells(claims, scene.Pilot(), "origin_deviation", 2);
     claims.That(scene.Photons()->GetNumberOfPoints() == 20000, "photons of it");
+  }
+}
+
+void NoPilotPhotonsAreAnError(test::Claims& claims)
+{
+  for (int count : { 0, -3 })
+  {
+    Pipeline scene(test::GlassBall(16));
+    scene.importance->SetPilotCount(count);
+    test::Errors errors(scene.importance);
+    scene.importance->Update();
+    claims.That(errors.WasOneWith("pilot photons is 0"), "one error that says that there are no pilot photons");
+    claims.That(scene.Map()->GetNumberOfCells() == 0, "no map");
   }
 }
 
@@ -259,6 +272,7 @@ int TestPhotonImportance(int, char*[])
   EvenLightIsSaid(claims);
   AnotherNumberOfLightsIsFollowed(claims);
   FewPilotPhotonsAreEnough(claims);
+  NoPilotPhotonsAreAnError(claims);
   ALightThatMissesIsNoLight(claims);
   NothingShinesIsAWarning(claims);
   return claims.Result();
