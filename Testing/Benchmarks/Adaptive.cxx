@@ -6,6 +6,7 @@
 //   TyndallBenchAdaptive [--quick] [ball] [cube] [armadillo] [even]
 
 #include "AdaptiveRuns.h"
+#include "Measure.h"
 #include "Program.h"
 
 #include "../Kernels/PlyFile.h"
@@ -28,6 +29,13 @@ struct Curve
 {
   Way way;
   std::vector<double> photons, seconds, errors;
+
+  /// The error of a number of photons that was run.
+  double At(double count) const
+  {
+    return this->errors[static_cast<std::size_t>(
+      std::find(this->photons.begin(), this->photons.end(), count) - this->photons.begin())];
+  }
 
   /// What `values` are where the error is `wanted`: straight between points in logarithms. NaN: it is not among them.
   double At(double wanted, const std::vector<double>& values) const
@@ -119,6 +127,7 @@ public:
     table.Print("Error of fluence (relative L2) against run time, " + this->Scene.name +
       "; \"honest\": part of the lit voxels within two of fluence_error");
     this->PrintEqualError(curves);
+    this->TakeTurns(curves.back(), curves[2]);
   }
 
 private:
@@ -153,9 +162,7 @@ private:
   {
     const auto uniform =
       std::find_if(curves.begin(), curves.end(), [](const Curve& curve) { return curve.way == Way::Uniform; });
-    const auto setting = std::find(uniform->photons.begin(), uniform->photons.end(), static_cast<double>(this->Most));
-    const std::size_t at = static_cast<std::size_t>(setting - uniform->photons.begin());
-    const double error = uniform->errors[at], seconds = uniform->seconds[at];
+    const double error = uniform->At(static_cast<double>(this->Most)), seconds = uniform->At(error, uniform->seconds);
     Table table({ "way", "", "photons", "part", "ms", "part", "speed-up" });
     for (const Curve& curve : curves)
     {
@@ -174,6 +181,39 @@ private:
     table.Print(this->Scene.name + ": at the error of " + std::to_string(this->Most) + " photons spread evenly, " +
       Text("%.4f", error) + Text("; goals of the adaptive way: %.2f of the photons", PhotonsGoal) +
       Text(" and %.2f of the time", TimeGoal));
+  }
+
+  /// The adaptive way at equal error, with photons spread evenly, in turns: what the machine does meanwhile meets both.
+  void TakeTurns(const Curve& adaptive, const Curve& uniform)
+  {
+    const double most = static_cast<double>(this->Most);
+    const double photons = adaptive.At(uniform.At(most), adaptive.photons);
+    if (!(photons > 0.0))
+    {
+      return;
+    }
+    const auto count = static_cast<std::size_t>(1.02 * photons);
+    std::vector<double> even, sent, ratios;
+    double error = 0.0;
+    for (int i = 0; i < (this->Quick ? 1 : 15); ++i)
+    {
+      even.push_back(this->Runner.Run(Way::Uniform, this->Most).passes.Whole());
+      const WayLight light = this->Runner.Run(Way::Adaptive, count);
+      sent.push_back(light.passes.Whole());
+      ratios.push_back(sent.back() / even.back());
+      error = RelativeL2(light.fluence, this->Reference);
+    }
+    AdaptiveLine(this->Scene, "adaptive, in turns with uniform")
+      .Add("photons", static_cast<double>(count))
+      .Add("error_l2", error)
+      .Add("seconds", Median(sent))
+      .Add("against", "uniform")
+      .Add("against_seconds", Median(even))
+      .Add("ratio", Median(ratios))
+      .Print();
+    std::printf("In turns, medians of %zu: %s %.1f ms, %.0f adaptive photons %.1f ms, error %.4f: %.2f of the time\n",
+      ratios.size(), (std::to_string(this->Most) + " spread evenly").c_str(), 1e3 * Median(even),
+      static_cast<double>(count), 1e3 * Median(sent), error, Median(ratios));
   }
 
   tyndall::Device& Device;
