@@ -130,6 +130,9 @@ void AddDiffuse(Illumination& illumination, const double* sky, const double* fac
 /// @param values  `components` a cell, x fastest
 void AddCells(vtkImageData* image, const char* name, std::vector<float>&& values, int components);
 
+/// The same of light: of 3 channels they are named R, G, B.
+void AddLight(vtkImageData* image, const char* name, std::vector<float>&& values, int channels);
+
 /// Add field data.
 /// @param values  tuples of `components` one after the other
 void AddFact(vtkDataObject* data, const char* name, const std::vector<double>& values, int components = 1);

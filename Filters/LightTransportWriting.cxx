@@ -34,7 +34,7 @@ private:
   std::vector<float> Values;
 };
 
-void NameComponents(vtkDataArray* array)
+void NameChannels(vtkDataArray* array)
 {
   const char* const names[] = { "R", "G", "B" };
   for (int c = 0; c < array->GetNumberOfComponents(); ++c)
@@ -98,6 +98,15 @@ void AddCells(vtkImageData* image, const char* name, std::vector<float>&& values
   image->GetCellData()->AddArray(array);
 }
 
+void AddLight(vtkImageData* image, const char* name, std::vector<float>&& values, int channels)
+{
+  AddCells(image, name, std::move(values), channels);
+  if (channels == 3)
+  {
+    NameChannels(image->GetCellData()->GetArray(name));
+  }
+}
+
 void AddFact(vtkDataObject* data, const char* name, const std::vector<double>& values, int components)
 {
   vtkNew<vtkDoubleArray> array;
@@ -133,31 +142,24 @@ void WriteLight(LightField&& light, vtkImageData* output)
 {
   const int channels = light.channels;
   vtkCellData* cells = output->GetCellData();
-  for (const char* earlier :
-    { "fluence", "fluence_direct", "fluence_error", "net_flux", "scattered_radiance", "mean_direction" })
+  for (const char* earlier : { "fluence", "fluence_direct", "fluence_error", "fluence_batches", "net_flux",
+         "scattered_radiance", "mean_direction", "photon_count", "photon_weight", "mip_level" })
   {
     cells->RemoveArray(earlier); // of another solve that the input has been through
   }
-  for (const char* earlier : { "stored_directions", "scattered", "packing_loss" })
+  for (const char* earlier : { "stored_directions", "scattered", "packing_loss", "fluence_bias" })
   {
     output->GetFieldData()->RemoveArray(earlier);
   }
-  AddCells(output, "fluence", std::move(light.fluence), channels);
+  AddLight(output, "fluence", std::move(light.fluence), channels);
   cells->SetActiveScalars("fluence");
-  AddLightCells(output, "fluence_direct", std::move(light.fluenceDirect), channels);
+  if (!light.fluenceDirect.empty())
+  {
+    AddLight(output, "fluence_direct", std::move(light.fluenceDirect), channels);
+  }
   AddLightCells(output, "net_flux", std::move(light.netFlux), 3 * channels);
   const int stored = std::max(1, static_cast<int>(light.storedDirections.size()));
   AddLightCells(output, "scattered_radiance", std::move(light.scatteredRadiance), channels * stored);
-  if (channels == 3)
-  {
-    for (const char* name : { "fluence", "fluence_direct" })
-    {
-      if (vtkDataArray* array = cells->GetArray(name))
-      {
-        NameComponents(array);
-      }
-    }
-  }
   if (vtkDataArray* flux = cells->GetArray("net_flux"))
   {
     NameFluxComponents(flux);

@@ -14,26 +14,42 @@
 #include "vtkPolyData.h"
 
 #include <algorithm>
+#include <cmath>
 #include <string>
 
 namespace tyndall
 {
 namespace
 {
-vtkDataArray* PhotonArray(vtkPolyData* photons, const char* name, std::initializer_list<int> components)
+vtkDataArray* PhotonArray(vtkPolyData* photons, const char* name, Need need, Components components)
 {
   vtkDataArray* array = photons->GetPointData()->GetArray(name);
   if (!array)
   {
+    if (need == Need::Optional && !photons->GetPointData()->HasArray(name))
+    {
+      return nullptr;
+    }
     throw InvalidInput("The photons have no point array '" + std::string(name) + "'. Make photons with PhotonEmitter.");
   }
   const int given = array->GetNumberOfComponents();
   if (std::find(components.begin(), components.end(), given) == components.end())
   {
     throw InvalidInput("The photons' array '" + std::string(name) + "' has " + std::to_string(given) + " components; " +
-      (components.size() > 1 ? "1 or 3" : "3") + " are needed.");
+      (components.size() > 1 ? "1 or 3" : std::to_string(*components.begin())) + " are needed.");
   }
   return array;
+}
+
+std::int32_t BatchOf(double number, vtkIdType photon)
+{
+  constexpr int most = 64;
+  if (!(number >= 0.0 && number < most) || number != std::floor(number))
+  {
+    throw InvalidInput("Photon " + std::to_string(photon) + " has batch " + std::to_string(number) +
+      "; it must be a whole number of 0 to 63, as PhotonEmitter makes it.");
+  }
+  return static_cast<std::int32_t>(number);
 }
 
 vtkSmartPointer<vtkFloatArray> NewFloats(const char* name, int components, std::size_t tuples)
@@ -44,6 +60,11 @@ vtkSmartPointer<vtkFloatArray> NewFloats(const char* name, int components, std::
   array->SetNumberOfTuples(static_cast<vtkIdType>(tuples));
   return array;
 }
+}
+
+bool NothingShines(const Illumination& illumination)
+{
+  return illumination.lights.empty() && illumination.environment.Empty() && illumination.sky == Rgb{};
 }
 
 void WritePhotons(const EmittedPhotons& emitted, vtkPolyData* output)
@@ -58,6 +79,9 @@ void WritePhotons(const EmittedPhotons& emitted, vtkPolyData* output)
   vtkNew<vtkIntArray> light;
   light->SetName("light");
   light->SetNumberOfTuples(static_cast<vtkIdType>(count));
+  vtkNew<vtkIntArray> batch;
+  batch->SetName("batch");
+  batch->SetNumberOfTuples(static_cast<vtkIdType>(count));
   vtkNew<vtkCellArray> vertices;
   vertices->AllocateEstimate(static_cast<vtkIdType>(count), 1);
   for (vtkIdType i = 0; i < static_cast<vtkIdType>(count); ++i)
@@ -66,8 +90,9 @@ void WritePhotons(const EmittedPhotons& emitted, vtkPolyData* output)
     points->SetPoint(i, photon.position.data());
     direction->SetTypedTuple(i, photon.direction.data());
     power->SetTypedTuple(i, photon.power.data());
-    weight->SetValue(i, 1.0f);
+    weight->SetValue(i, photon.weight);
     light->SetValue(i, emitted.lights[static_cast<std::size_t>(i)]);
+    batch->SetValue(i, photon.batch);
     vertices->InsertNextCell(1, &i);
   }
   output->SetPoints(points);
@@ -76,6 +101,7 @@ void WritePhotons(const EmittedPhotons& emitted, vtkPolyData* output)
   output->GetPointData()->AddArray(power);
   output->GetPointData()->AddArray(weight);
   output->GetPointData()->AddArray(light);
+  output->GetPointData()->AddArray(batch);
 }
 
 std::vector<Photon> ReadPhotons(vtkPolyData* data)
@@ -89,8 +115,10 @@ std::vector<Photon> ReadPhotons(vtkPolyData* data)
     StopWithFilterBefore(data);
     return {};
   }
-  vtkDataArray* direction = PhotonArray(data, "direction", { 3 });
-  vtkDataArray* power = PhotonArray(data, "power", { 1, 3 });
+  vtkDataArray* direction = PhotonArray(data, "direction", Need::Required, { 3 });
+  vtkDataArray* power = PhotonArray(data, "power", Need::Required, { 1, 3 });
+  vtkDataArray* weight = PhotonArray(data, "weight", Need::Optional, { 1 });
+  vtkDataArray* batch = PhotonArray(data, "batch", Need::Optional, { 1 });
   const int colours = power->GetNumberOfComponents();
   std::vector<Photon> photons(static_cast<std::size_t>(data->GetNumberOfPoints()));
   for (vtkIdType i = 0; i < data->GetNumberOfPoints(); ++i)
@@ -102,6 +130,8 @@ std::vector<Photon> ReadPhotons(vtkPolyData* data)
       photon.direction[c] = static_cast<float>(direction->GetComponent(i, c));
       photon.power[c] = static_cast<float>(power->GetComponent(i, colours == 3 ? c : 0));
     }
+    photon.weight = weight ? static_cast<float>(weight->GetComponent(i, 0)) : 1.0f;
+    photon.batch = batch ? BatchOf(batch->GetComponent(i, 0), i) : 0;
   }
   return photons;
 }

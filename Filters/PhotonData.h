@@ -8,13 +8,17 @@ class vtkPolyData;
 /// How photons flow between filters.
 namespace tyndall
 {
-/// Photons as polydata: points (double), a vertex each, point data `direction` (3, unit), `power` (3, RGB, W), `weight`
-/// (1: share of the light's photons that its place got, 1 where all places are alike) and `light` (1: number of its light, -1 the
-/// environment or sky). `direction` is the active vectors, so that glyphs point along it.
+/// Whether there is neither a light nor an environment nor a sky.
+bool NothingShines(const Illumination& illumination);
+
+/// Photons as polydata: points (double), a vertex each, point data `direction` (3, unit), `power` (3, RGB, W), `weight` (1: its
+/// power over what it had if its light's photons were spread evenly), `light` (1: number of its light, -1 the environment or sky)
+/// and `batch` (1: of which of the independent sets it is). `direction` is the active vectors, so that glyphs point along it.
 void WritePhotons(const EmittedPhotons& emitted, vtkPolyData* output);
 
-/// Photons of polydata: points, and point data `direction` (3) and `power` (1 or 3 components, W).
-/// @throws InvalidInput where an array is missing or has another shape
+/// Photons of polydata: points, and point data `direction` (3), `power` (1 or 3 components, W), `weight` (missing: 1) and `batch`
+/// (missing: 0).
+/// @throws InvalidInput where an array is missing or has another shape, or a batch is not a whole number of 0 to 63
 std::vector<Photon> ReadPhotons(vtkPolyData* photons);
 
 /// Polylines with point data `power_left` (part of the photon's power that is left there) and cell data `photon` (its number).

@@ -4,6 +4,7 @@
 #include "vtkExtentTranslator.h"
 #include "vtkImageData.h"
 #include "vtkInformation.h"
+#include "vtkInformationIntegerKey.h"
 #include "vtkInformationVector.h"
 #include "vtkNew.h"
 #include "vtkStreamingDemandDrivenPipeline.h"
@@ -32,13 +33,19 @@ inline void AskForAll(vtkInformationVector* inputs)
   }
 }
 
+/// In RequestData: the output port that asks.
+inline vtkInformation* AskingPort(vtkInformation* request, vtkInformationVector* outputs)
+{
+  const int port = std::max(request->Get(vtkExecutive::FROM_OUTPUT_PORT()), 0); // -1: no port, but the filter itself
+  return outputs->GetInformationObject(port);
+}
+
 /// In RequestData: whether the piece that is asked for is the first, the one that has what is not divided. The port that asks
 /// says so; other ports may not know their piece yet.
 inline bool IsFirstPiece(vtkInformation* request, vtkInformationVector* outputs)
 {
   auto* const piece = vtkStreamingDemandDrivenPipeline::UPDATE_PIECE_NUMBER();
-  const int port = std::max(request->Get(vtkExecutive::FROM_OUTPUT_PORT()), 0); // -1: no port, but the filter itself
-  vtkInformation* const asking = outputs->GetInformationObject(port);
+  vtkInformation* const asking = AskingPort(request, outputs);
   return !asking->Has(piece) || asking->Get(piece) <= 0;
 }
 
@@ -66,5 +73,22 @@ inline void KeepWhatIsAskedFor(vtkInformation* information, vtkImageData* output
   {
     output->Crop(asked);
   }
+}
+
+/// The same for an output whose extent shows only when it is made: the pipeline, which had to guess, is told of it first.
+/// @param asking  the port that asks: VTK takes it that all ports then have its piece
+inline void TellExtentAndKeepWhatIsAskedFor(vtkInformation* asking, vtkInformation* information, vtkImageData* output)
+{
+  using Pipeline = vtkStreamingDemandDrivenPipeline;
+  int extent[6];
+  output->GetExtent(extent);
+  information->Set(Pipeline::WHOLE_EXTENT(), extent, 6);
+  information->Set(Pipeline::UPDATE_EXTENT(), extent, 6);
+  for (vtkInformationIntegerKey* key :
+    { Pipeline::UPDATE_PIECE_NUMBER(), Pipeline::UPDATE_NUMBER_OF_PIECES(), Pipeline::UPDATE_NUMBER_OF_GHOST_LEVELS() })
+  {
+    information->CopyEntry(asking, key);
+  }
+  KeepWhatIsAskedFor(information, output);
 }
 }

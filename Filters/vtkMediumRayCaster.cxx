@@ -1,7 +1,7 @@
 #include "vtkMediumRayCaster.h"
 
-#include "ArrayTimes.h"
 #include "Device/Device.h"
+#include "InputsKey.h"
 #include "LightTransportData.h"
 #include "Viewing/MediumRayCaster.h"
 #include "Viewing/ToneMapping.h"
@@ -9,7 +9,6 @@
 
 #include "vtkDataArray.h"
 #include "vtkDataObject.h"
-#include "vtkDemandDrivenPipeline.h"
 #include "vtkFloatArray.h"
 #include "vtkImageData.h"
 #include "vtkInformation.h"
@@ -109,23 +108,10 @@ void WritePicture(const tyndall::Picture& picture, const std::vector<std::uint8_
 }
 }
 
-/// By what a scene on the device is known to be still that of the inputs. No two objects of VTK have the same time.
-struct vtkMediumRayCaster::SceneKey
-{
-  std::shared_ptr<tyndall::Device> device;
-  std::vector<vtkMTimeType> times;
-  std::vector<double> numbers;
-
-  bool operator==(const SceneKey& other) const
-  {
-    return this->device == other.device && this->times == other.times && this->numbers == other.numbers;
-  }
-};
-
 /// Medium, light and illumination as they are on the device, ready for pictures.
 struct vtkMediumRayCaster::Scene
 {
-  SceneKey key;
+  tyndall::InputsKey key;
   vtkTimeStamp made;
   tyndall::Grid grid;
   bool lightsAlone = false; ///< there is no fluence, so shadow rays are needed
@@ -160,19 +146,13 @@ void vtkMediumRayCaster::SetInputConnection(int port, vtkAlgorithmOutput* input)
   this->Superclass::SetInputConnection(port, input);
 }
 
-/// Where the filters before will run again, or have. Their data do not tell: ParaView's filters between filters make them anew,
-/// with the same arrays, whenever they are looked at; and values may be changed without telling their array.
 void vtkMediumRayCaster::ForgetOldScene()
 {
   for (int port = 0; port < this->GetNumberOfInputPorts(); ++port)
   {
-    for (int i = 0; this->Kept && i < this->GetNumberOfInputConnections(port); ++i)
+    if (this->Kept && tyndall::RanSince(this, port, this->Kept->made))
     {
-      auto* const before = vtkDemandDrivenPipeline::SafeDownCast(this->GetInputExecutive(port, i));
-      if (!before || before->GetPipelineMTime() > this->Kept->made.GetMTime())
-      {
-        this->Kept.reset();
-      }
+      this->Kept.reset();
     }
   }
 }
@@ -185,40 +165,31 @@ int vtkMediumRayCaster::RequestUpdateExtent(
   return this->Superclass::RequestUpdateExtent(request, inputs, outputs);
 }
 
-vtkMediumRayCaster::SceneKey vtkMediumRayCaster::KeyOf(vtkInformationVector** inputs)
+tyndall::InputsKey vtkMediumRayCaster::KeyOf(vtkInformationVector** inputs)
 {
-  SceneKey key;
+  tyndall::InputsKey key;
   key.device = tyndall::Device::Find(this->Device);
   vtkImageData* const image = vtkImageData::GetData(inputs[MEDIUM]);
-  const tyndall::Grid grid = tyndall::GridOf(image);
-  for (int axis = 0; axis < 3; ++axis)
-  {
-    key.numbers.insert(
-      key.numbers.end(), { static_cast<double>(grid.size[axis]), grid.spacing[axis], grid.origin[axis] });
-  }
-  key.numbers.insert(
-    key.numbers.end(), { tyndall::ReadFact(image, "g", 0.0), 1.0 * this->EnvironmentUp, this->EnvironmentAzimuth });
+  key.Add(tyndall::GridOf(image));
+  key.Add({ tyndall::ReadFact(image, "g", 0.0), 1.0 * this->EnvironmentUp, this->EnvironmentAzimuth });
   for (int number = tyndall::SigmaA; number <= MeanDirection; ++number)
   {
-    vtkDataArray* const array = tyndall::ChosenArray(this, number, image, ArrayNames[number]);
-    key.times.push_back(array ? array->GetMTime() : 0);
+    key.Add(tyndall::ChosenArray(this, number, image, ArrayNames[number]));
   }
   for (int port : { LIGHTS, ENVIRONMENT })
   {
-    const std::vector<vtkMTimeType> times = tyndall::TimesOfArrays(vtkDataObject::GetData(inputs[port]));
-    key.times.push_back(times.size());
-    key.times.insert(key.times.end(), times.begin(), times.end());
+    key.Add(vtkDataObject::GetData(inputs[port]));
   }
   if (vtkImageData* const environment = vtkImageData::GetData(inputs[ENVIRONMENT]))
   {
     const int* size = environment->GetDimensions();
-    key.numbers.insert(key.numbers.end(), size, size + 3);
+    key.Add({ 1.0 * size[0], 1.0 * size[1], 1.0 * size[2] });
   }
   return key;
 }
 
 std::unique_ptr<vtkMediumRayCaster::Scene> vtkMediumRayCaster::MakeScene(
-  vtkInformationVector** inputs, const SceneKey& key, tyndall::ViewSettings settings)
+  vtkInformationVector** inputs, const tyndall::InputsKey& key, tyndall::ViewSettings settings)
 {
   using tyndall::Need;
   vtkImageData* const image = vtkImageData::GetData(inputs[MEDIUM]);
@@ -256,7 +227,7 @@ std::unique_ptr<vtkMediumRayCaster::Scene> vtkMediumRayCaster::FindScene(vtkInfo
 {
   this->ForgetOldScene();
   std::unique_ptr<Scene> kept = std::move(this->Kept); // it comes back after a good picture
-  const SceneKey key = this->KeyOf(inputs);
+  const tyndall::InputsKey key = this->KeyOf(inputs);
   const tyndall::ViewSettings settings = SettingsOf(this);
   if (kept && kept->key == key)
   {

@@ -9,6 +9,7 @@
 
 namespace tyndall
 {
+struct InputsKey;
 struct ViewSettings;
 }
 
@@ -268,11 +269,11 @@ private:
   vtkMediumRayCaster(const vtkMediumRayCaster&) = delete;
   void operator=(const vtkMediumRayCaster&) = delete;
 
-  struct SceneKey;
   struct Scene;
   void ForgetOldScene();
-  SceneKey KeyOf(vtkInformationVector** inputs);
-  std::unique_ptr<Scene> MakeScene(vtkInformationVector** inputs, const SceneKey& key, tyndall::ViewSettings settings);
+  tyndall::InputsKey KeyOf(vtkInformationVector** inputs);
+  std::unique_ptr<Scene> MakeScene(
+    vtkInformationVector** inputs, const tyndall::InputsKey& key, tyndall::ViewSettings settings);
   std::unique_ptr<Scene> FindScene(vtkInformationVector** inputs);
 
   int ImageSize[2] = { 800, 600 };

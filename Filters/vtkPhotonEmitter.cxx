@@ -1,5 +1,6 @@
 #include "vtkPhotonEmitter.h"
 
+#include "ImportanceData.h"
 #include "LightTransportData.h"
 #include "PhotonData.h"
 #include "WholeImage.h"
@@ -13,19 +14,29 @@
 
 #include <algorithm>
 
-namespace
-{
-bool NothingShines(const tyndall::Illumination& illumination)
-{
-  return illumination.lights.empty() && illumination.environment.Empty() && illumination.sky == tyndall::Rgb{};
-}
-}
-
 vtkStandardNewMacro(vtkPhotonEmitter);
 
-vtkPhotonEmitter::vtkPhotonEmitter() = default;
+vtkPhotonEmitter::vtkPhotonEmitter()
+{
+  this->SetNumberOfInputPorts(4);
+}
 
 vtkPhotonEmitter::~vtkPhotonEmitter() = default;
+
+void vtkPhotonEmitter::SetImportanceMapConnection(vtkAlgorithmOutput* map)
+{
+  this->SetInputConnection(IMPORTANCE_MAP, map);
+}
+
+void vtkPhotonEmitter::SetImportanceMapData(vtkDataObject* map)
+{
+  this->SetInputDataObject(IMPORTANCE_MAP, map);
+}
+
+void vtkPhotonEmitter::RemoveImportanceMap()
+{
+  this->SetInputConnection(IMPORTANCE_MAP, nullptr);
+}
 
 vtkPolyData* vtkPhotonEmitter::GetOutput()
 {
@@ -47,11 +58,13 @@ int vtkPhotonEmitter::RequestData(vtkInformation* request, vtkInformationVector*
     const tyndall::Grid grid = tyndall::GridOf(vtkImageData::GetData(inputs[MEDIUM]));
     tyndall::Illumination illumination = this->ReadIllumination(inputs);
     std::copy_n(this->SkyColor, 3, illumination.sky.begin());
-    if (NothingShines(illumination))
+    if (tyndall::NothingShines(illumination))
     {
       vtkWarningMacro(
         "Nothing shines on the volume, so there are no photons. Connect Lights or an Environment, or set SkyColor.");
     }
+    vtkImageData* const mapped = vtkImageData::GetData(inputs[IMPORTANCE_MAP]);
+    const tyndall::ImportanceMap map = tyndall::ReadImportanceMap(mapped, illumination);
     if (!tyndall::IsFirstPiece(request, outputs))
     {
       return;
@@ -60,6 +73,9 @@ int vtkPhotonEmitter::RequestData(vtkInformation* request, vtkInformationVector*
     settings.photonCount = static_cast<std::size_t>(this->PhotonCount);
     settings.sampler = static_cast<tyndall::Sampler>(this->Sampler);
     settings.seed = static_cast<std::uint64_t>(this->Seed);
+    settings.batches = this->Batches != 0 ? this->Batches : mapped ? 2 : 1;
+    settings.map = &map;
+    settings.densestAtMost = this->MaximumDensity;
     const tyndall::EmittedPhotons emitted =
       tyndall::EmitPhotons(grid, illumination, settings, tyndall::MonitorOf(this));
     tyndall::WritePhotons(emitted, vtkPolyData::GetData(outputs));
@@ -75,6 +91,8 @@ void vtkPhotonEmitter::PrintSelf(ostream& os, vtkIndent indent)
   os << indent << "PhotonCount: " << this->PhotonCount << "\n";
   os << indent << "Sampler: " << this->Sampler << "\n";
   os << indent << "Seed: " << this->Seed << "\n";
+  os << indent << "Batches: " << this->Batches << "\n";
+  os << indent << "MaximumDensity: " << this->MaximumDensity << "\n";
   PrintNumbers(os, indent, "SkyColor", this->SkyColor, 3);
   os << indent << "Photons: " << this->Photons << "\n";
   os << indent << "Power: " << this->Power << "\n";

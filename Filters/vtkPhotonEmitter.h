@@ -17,6 +17,10 @@ class vtkPolyData;
  *
  * Input 0, the medium: vtkImageData, of which only the box counts. Input 1, optional: lights as vtkLightRig makes them.
  * Input 2, optional: the environment, as vtkEnvironmentReader makes it. The index outside is taken as constant.
+ * Input 3, optional: where photons are to be dense, as vtkPhotonImportance makes it: vtkImageData of n x n x lights cells, cell
+ * array `importance` (1 component, >= 0, of any scale), field data `light` (number of the light of each layer; missing: 0, 1,
+ * ...). A light without a layer is spread evenly, and so are all where field data `even` is 1. Where photons are denser each has
+ * less power, so that what they add up to is the same.
  *
  * Output: vtkPolyData, a vertex a photon, point data
  *
@@ -24,15 +28,16 @@ class vtkPolyData;
  * |-------------|------------|------|-------------------------------------------------------------------|
  * | `direction` | 3          | 1    | in which it travels; the active vectors                           |
  * | `power`     | 3          | W    | red, green, blue                                                  |
- * | `weight`    | 1          | 1    | how much denser photons are here than spread evenly: 1            |
+ * | `weight`    | 1          | 1    | its power over what it had if photons were spread evenly          |
  * | `light`     | 1          | 1    | number of its light; -1: the environment or SkyColor              |
+ * | `batch`     | 1          | 1    | of which of the independent sets it is, from 0                    |
  *
  * Without lights, environment and SkyColor there are no photons, with a warning. In a parallel pipeline the first piece has
  * all photons.
  *
- * @sa vtkLightRig vtkEnvironmentReader vtkPhotonMarcher
+ * @sa vtkLightRig vtkEnvironmentReader vtkPhotonImportance vtkPhotonMarcher
  * @par Thanks
- * M. Pfeuti, Real-time Rendering of Refractive Objects in Participating Media, 2009, sections 3.1.4 and 4.1.
+ * M. Pfeuti, Real-time Rendering of Refractive Objects in Participating Media, 2009, sections 3.1.4, 3.2.3 and 4.1.
  */
 class TYNDALL_EXPORT vtkPhotonEmitter : public vtkLitMediumAlgorithm
 {
@@ -50,7 +55,17 @@ public:
     RANDOM = 4
   };
 
+  /// Number of the input port after those of vtkLitMediumAlgorithm.
+  static constexpr int IMPORTANCE_MAP = 3;
+
   vtkPolyData* GetOutput();
+
+  ///@{
+  /// The importance map (vtkImageData) by connection or as data; null: none.
+  void SetImportanceMapConnection(vtkAlgorithmOutput* map);
+  void SetImportanceMapData(vtkDataObject* map);
+  void RemoveImportanceMap();
+  ///@}
 
   ///@{
   /// Photons that reach the volume, of all lights together, which share them in proportion to the power with which they reach
@@ -69,6 +84,21 @@ public:
   /// Another seed gives other photons, the same seed the same ones. Default 0.
   vtkSetClampMacro(Seed, int, 0, VTK_INT_MAX);
   vtkGetMacro(Seed, int);
+  ///@}
+
+  ///@{
+  /// Independent sets that the photons are made of, each with its part of all the power: their differences tell
+  /// vtkPhotonReconstruction the error of the light. Default 0: two with an importance map (even if that is even), one without; valid
+  /// [0, 16].
+  vtkSetMacro(Batches, int);
+  vtkGetMacro(Batches, int);
+  ///@}
+
+  ///@{
+  /// How dense photons may become by the importance map, in those spread evenly: what it asks for above that goes to other
+  /// places. Default 8, valid [1, infinity).
+  vtkSetMacro(MaximumDensity, double);
+  vtkGetMacro(MaximumDensity, double);
   ///@}
 
   ///@{
@@ -99,6 +129,8 @@ private:
   vtkIdType PhotonCount = 100000;
   int Sampler = HAMMERSLEY;
   int Seed = 0;
+  int Batches = 0;
+  double MaximumDensity = 8.0;
   double SkyColor[3] = { 0.0, 0.0, 0.0 };
 
   vtkIdType Photons = 0;

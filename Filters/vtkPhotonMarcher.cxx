@@ -3,8 +3,8 @@
 #include "Device/Device.h"
 #include "LightTransportData.h"
 #include "PhotonData.h"
-#include "Photons/PhotonMarcher.h"
 #include "Photons/PublishedPhotons.h"
+#include "RefractiveInput.h"
 #include "WholeImage.h"
 
 #include "vtkImageData.h"
@@ -14,11 +14,8 @@
 #include "vtkPolyData.h"
 
 #include <algorithm>
-#include <array>
 #include <cmath>
-#include <cstdio>
 #include <memory>
-#include <string>
 #include <utility>
 #include <vector>
 
@@ -32,98 +29,57 @@ enum InputPort
   InputPortCount
 };
 
-/// Number of SetInputArrayToProcess, after those of ReadMedium.
-constexpr int RefractiveIndex = 3;
-
-std::string Triple(const std::array<double, 3>& values)
+tyndall::MarchSettings SettingsOf(vtkPhotonMarcher* filter, const std::vector<tyndall::Photon>& photons)
 {
-  char text[96];
-  std::snprintf(text, sizeof(text), "(%.9g, %.9g, %.9g)", values[0], values[1], values[2]);
-  return text;
-}
-
-std::string Described(const tyndall::Grid& grid)
-{
-  const std::array<int, 3>& size = grid.size;
-  return std::to_string(size[0]) + " x " + std::to_string(size[1]) + " x " + std::to_string(size[2]) +
-    " voxels of spacing " + Triple(grid.spacing) + " from origin " + Triple(grid.origin);
-}
-
-/// Whether voxels have the same corners, but for rounding.
-bool Agree(const tyndall::Grid& a, const tyndall::Grid& b)
-{
-  constexpr double part = 1e-3; // of a voxel
-  bool agree = a.size == b.size;
-  for (int axis = 0; axis < 3; ++axis)
-  {
-    const double low = std::abs(a.origin[axis] - b.origin[axis]);
-    const double high = std::abs(a.origin[axis] + a.Length(axis) - b.origin[axis] - b.Length(axis));
-    agree = agree && std::max(low, high) <= part * b.spacing[axis];
-  }
-  return agree;
-}
-
-/// The octree's levels, of its own image or of the medium's.
-std::vector<std::uint8_t> LevelsOf(vtkImageData* octree, vtkImageData* medium)
-{
-  if (!octree)
-  {
-    return tyndall::ReadLevels(medium);
-  }
-  const tyndall::Grid ofOctree = tyndall::GridOf(octree);
-  const tyndall::Grid ofMedium = tyndall::GridOf(medium);
-  if (!Agree(ofOctree, ofMedium))
-  {
-    throw tyndall::InvalidInput("The octree has " + Described(ofOctree) + ", the medium " + Described(ofMedium) +
-      ". Make the octree of the same medium.");
-  }
-  std::vector<std::uint8_t> levels = tyndall::ReadLevels(octree);
-  if (levels.empty())
-  {
-    throw tyndall::InvalidInput("The octree's image has no cell array 'octree_level'. Make it with RefractionOctree.");
-  }
-  return levels;
-}
-
-/// Light, of the published scheme what its packing lost, and, of the sound scheme's integrator, paths.
-struct Marched
-{
-  tyndall::PhotonLight light;
-  double packingLoss = 0.0;
-  std::vector<tyndall::PhotonPath> paths;
-};
-
-Marched March(vtkPhotonMarcher* filter, const tyndall::Medium& medium, const tyndall::Field& ior,
-  const std::vector<std::uint8_t>& levels, const std::vector<tyndall::Photon>& photons)
-{
-  const std::shared_ptr<tyndall::Device> device = tyndall::Device::Find(filter->GetDevice());
-  const std::uint8_t* nodes = levels.empty() ? nullptr : levels.data();
-  const tyndall::Monitor monitor = tyndall::MonitorOf(filter);
   const bool published = filter->GetScheme() == vtkPhotonMarcher::PUBLISHED;
+  if (published && filter->GetPhotonCounts())
+  {
+    throw tyndall::InvalidInput(
+      "The published scheme packs all that it keeps of a voxel into 64 bits, and does not count "
+      "photons. Choose the sound scheme (Scheme 1), or switch PhotonCounts off.");
+  }
   tyndall::MarchSettings settings;
   settings.order = published ? 1 : filter->GetIntegratorOrder();
   settings.stepSize = published ? 1.0 : filter->GetStepSize();
+  settings.counts = filter->GetPhotonCounts();
+  settings.batches = !published &&
+    std::any_of(photons.begin(), photons.end(), [](const tyndall::Photon& photon) { return photon.batch > 0; });
+  return settings;
+}
 
-  Marched marched;
-  if (!published || filter->GetPathCount() > 0)
+/// [batch][voxel][channel] as [voxel][batch][channel].
+std::vector<float> VoxelByVoxel(const std::vector<float>& light, int batches, int channels)
+{
+  const auto ofBatch = light.size() / static_cast<std::size_t>(batches);
+  std::vector<float> byVoxel(light.size());
+  auto to = byVoxel.begin();
+  for (std::size_t voxel = 0; voxel < ofBatch; voxel += static_cast<std::size_t>(channels))
   {
-    tyndall::PhotonMarcher marcher(*device, medium, ior, settings, nodes);
-    if (!published)
+    for (int batch = 0; batch < batches; ++batch)
     {
-      marched.light = marcher.March(photons, monitor);
+      to = std::copy_n(light.begin() + static_cast<std::ptrdiff_t>(batch * ofBatch + voxel), channels, to);
     }
-    marched.paths =
-      marcher.Paths(photons, tyndall::ChooseEvenly(photons.size(), static_cast<std::size_t>(filter->GetPathCount())));
   }
-  if (published)
+  return byVoxel;
+}
+
+void Write(tyndall::PhotonLight&& photons, vtkImageData* output)
+{
+  const int channels = photons.light.channels;
+  photons.light.fluenceDirect = photons.light.fluence; // none of it was scattered
+  tyndall::WriteLight(std::move(photons.light), output);
+  tyndall::AddCells(output, "mean_direction", std::move(photons.meanDirection), 3);
+  if (!photons.photonCount.empty())
   {
-    tyndall::PublishedSettings asPublished;
-    asPublished.smooth = filter->GetSmoothing();
-    tyndall::PackingLoss loss;
-    marched.light = tyndall::MarchPublished(*device, medium, ior, nodes, photons, asPublished, &loss, monitor);
-    marched.packingLoss = loss.Relative();
+    tyndall::AddCells(output, "photon_count", std::move(photons.photonCount), 1);
+    tyndall::AddCells(output, "photon_weight", std::move(photons.photonWeight), 1);
   }
-  return marched;
+  if (!photons.batchFluence.empty())
+  {
+    tyndall::AddCells(output, "fluence_batches", VoxelByVoxel(photons.batchFluence, photons.batches, channels),
+      photons.batches * channels);
+  }
+  tyndall::AddFact(output, "scattered", { photons.scattered.begin(), photons.scattered.begin() + channels }, channels);
 }
 
 double Sum(const tyndall::Rgb& rgb)
@@ -132,9 +88,18 @@ double Sum(const tyndall::Rgb& rgb)
 }
 }
 
+/// Light, of the published scheme what its packing lost, and, of the sound scheme's integrator, paths.
+struct vtkPhotonMarcher::Marched
+{
+  tyndall::PhotonLight light;
+  double packingLoss = 0.0;
+  std::vector<tyndall::PhotonPath> paths;
+};
+
 vtkStandardNewMacro(vtkPhotonMarcher);
 
 vtkPhotonMarcher::vtkPhotonMarcher()
+  : Kept(std::make_unique<tyndall::KeptMarcher>())
 {
   this->SetNumberOfInputPorts(InputPortCount);
   this->SetNumberOfOutputPorts(2);
@@ -183,8 +148,19 @@ int vtkPhotonMarcher::FillOutputPortInformation(int port, vtkInformation* inform
   return 1;
 }
 
+void vtkPhotonMarcher::SetInputConnection(int port, vtkAlgorithmOutput* input)
+{
+  if (port != PhotonsPort && input != this->GetInputConnection(port, 0))
+  {
+    this->Kept->Forget();
+  }
+  this->Superclass::SetInputConnection(port, input);
+}
+
+/// The memory of an old medium is given back before the filters before run, which may need it.
 int vtkPhotonMarcher::RequestUpdateExtent(vtkInformation*, vtkInformationVector** inputs, vtkInformationVector*)
 {
+  this->Kept->ForgetIfRan(this, { MediumPort, OctreePort });
   for (int port = 0; port < InputPortCount; ++port)
   {
     tyndall::AskForAll(inputs[port]);
@@ -192,30 +168,65 @@ int vtkPhotonMarcher::RequestUpdateExtent(vtkInformation*, vtkInformationVector*
   return 1;
 }
 
+vtkPhotonMarcher::Marched vtkPhotonMarcher::MarchAsPublished(
+  vtkInformationVector** inputs, const std::vector<tyndall::Photon>& photons)
+{
+  const tyndall::RefractiveInput read = tyndall::ReadRefractiveMedium(
+    this, vtkImageData::GetData(inputs[MediumPort]), vtkImageData::GetData(inputs[OctreePort]));
+  tyndall::PublishedSettings settings;
+  settings.smooth = this->Smoothing;
+  tyndall::PackingLoss loss;
+  Marched marched;
+  marched.light = tyndall::MarchPublished(*tyndall::Device::Find(this->Device), read.input.medium, read.ior,
+    read.Levels(), photons, settings, &loss, tyndall::MonitorOf(this));
+  marched.packingLoss = loss.Relative();
+  return marched;
+}
+
+vtkPhotonMarcher::Marched vtkPhotonMarcher::March(
+  vtkInformationVector** inputs, const std::vector<tyndall::Photon>& photons)
+{
+  this->Kept->ForgetIfRan(this, { MediumPort, OctreePort });
+  const tyndall::MarchSettings settings = SettingsOf(this, photons);
+  const bool published = this->Scheme == PUBLISHED;
+  Marched marched;
+  if (published)
+  {
+    marched = this->MarchAsPublished(inputs, photons);
+    if (this->PathCount == 0)
+    {
+      this->Kept->Forget();
+      return marched;
+    }
+  }
+  tyndall::KeptMarcher::Found found = this->Kept->Find(this, tyndall::Device::Find(this->Device),
+    vtkImageData::GetData(inputs[MediumPort]), vtkImageData::GetData(inputs[OctreePort]), settings);
+  if (!published)
+  {
+    marched.light = found.marcher->March(photons, tyndall::MonitorOf(this));
+  }
+  marched.paths =
+    found.marcher->Paths(photons, tyndall::ChooseEvenly(photons.size(), static_cast<std::size_t>(this->PathCount)));
+  this->MediumKept = found.kept;
+  this->Kept->Keep(std::move(found));
+  return marched;
+}
+
 int vtkPhotonMarcher::RequestData(vtkInformation* request, vtkInformationVector** inputs, vtkInformationVector* outputs)
 {
   this->Note({});
   this->PackingLoss = 0.0;
+  this->MediumKept = false;
   return tyndall::Guarded(this, outputs, [&] {
-    vtkImageData* image = vtkImageData::GetData(inputs[MediumPort]);
-    const tyndall::MediumInput input = tyndall::ReadMedium(this, image);
-    const tyndall::FloatField ior =
-      tyndall::ReadChosenCells(this, RefractiveIndex, image, "ior", tyndall::Need::Optional, { 1 });
-    const std::vector<std::uint8_t> levels = LevelsOf(vtkImageData::GetData(inputs[OctreePort]), image);
     const std::vector<tyndall::Photon> photons = tyndall::ReadPhotons(vtkPolyData::GetData(inputs[PhotonsPort]));
-
-    Marched marched = March(this, input.medium, ior, levels, photons);
+    Marched marched = this->March(inputs, photons);
 
     this->Note(marched.light);
     this->PackingLoss = marched.packingLoss;
     this->Warn(marched.light, photons.size());
     vtkImageData* output = vtkImageData::GetData(outputs, 0);
-    tyndall::PassOn(image, output);
-    const tyndall::Rgb scattered = marched.light.scattered;
-    const int channels = marched.light.light.channels;
-    tyndall::WriteLight(std::move(marched.light.light), output);
-    tyndall::AddCells(output, "mean_direction", std::move(marched.light.meanDirection), 3);
-    tyndall::AddFact(output, "scattered", { scattered.begin(), scattered.begin() + channels }, channels);
+    tyndall::PassOn(vtkImageData::GetData(inputs[MediumPort]), output);
+    Write(std::move(marched.light), output);
     if (this->Scheme == PUBLISHED)
     {
       tyndall::AddFact(output, "packing_loss", std::vector<double>{ marched.packingLoss });
@@ -265,6 +276,7 @@ void vtkPhotonMarcher::PrintSelf(ostream& os, vtkIndent indent)
   os << indent << "Scheme: " << this->Scheme << "\n";
   os << indent << "IntegratorOrder: " << this->IntegratorOrder << "\n";
   os << indent << "StepSize: " << this->StepSize << "\n";
+  os << indent << "PhotonCounts: " << this->PhotonCounts << "\n";
   os << indent << "PathCount: " << this->PathCount << "\n";
   os << indent << "Smoothing: " << this->Smoothing << "\n";
   os << indent << "Device: " << this->Device << "\n";
@@ -273,6 +285,7 @@ void vtkPhotonMarcher::PrintSelf(ostream& os, vtkIndent indent)
   os << indent << "Missed: " << this->Missed << "\n";
   os << indent << "BalanceError: " << this->BalanceError << "\n";
   os << indent << "PackingLoss: " << this->PackingLoss << "\n";
+  os << indent << "MediumKept: " << this->MediumKept << "\n";
   os << indent << "Seconds: " << this->Seconds << "\n";
   os << indent << "DeviceName: " << this->DeviceName << "\n";
   os << indent << "LeftOut: " << this->LeftOut << "\n";

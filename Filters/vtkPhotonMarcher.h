@@ -5,10 +5,14 @@
 #include "vtkTyndallModule.h" // for export macro
 
 #include <cstddef>
+#include <memory>
 #include <string>
+#include <vector>
 
 namespace tyndall
 {
+class KeptMarcher;
+struct Photon;
 struct PhotonLight;
 }
 
@@ -33,15 +37,21 @@ struct PhotonLight;
  * | `fluence`        | 1 or 3     | W/length^2 | radiance integrated over all directions, of unscattered light    |
  * | `fluence_direct` | 1 or 3     | W/length^2 | the same                                                         |
  * | `mean_direction` | 3          | 1          | power-weighted mean direction; its length is the anisotropy      |
+ * | `photon_count`   | 1          | 1          | photons that crossed the voxel, each once; with PhotonCounts     |
+ * | `photon_weight`  | 1          | 1          | their mean `weight`, 0 where there is none; with PhotonCounts    |
+ * | `fluence_batches` | (1 or 3) x batches | W/length^2 | fluence by each batch alone, one after the other, as if it was all the light: their mean is `fluence`; where photons have several batches |
  *
- * and field data `energy_balance` (W: entered, emitted, absorbed, escaped, left over; absorbed includes what is scattered),
+ * the last three of the sound scheme only, as vtkPhotonReconstruction wants them, and field data `energy_balance` (W: entered, emitted, absorbed, escaped, left over; absorbed includes what is scattered),
  * `scattered` (W), `face_power_out`, `left_out`, `device`; of the published scheme also `packing_loss` (see PackingLoss).
  * Output 1: vtkPolyData, the paths of PathCount photons as polylines, point data `power_left` (part of its power), cell data
  * `photon` (its number).
  *
+ * The medium stays prepared on the device, so that new light or other photons only cost their march: until the medium or the
+ * octree changes, another one is connected, a setting needs it, the device is another one, or the filter goes.
+ *
  * In a parallel pipeline every rank marches all photons and hands on its piece; the paths are on the first.
  *
- * @sa vtkPhotonEmitter vtkRefractionOctree vtkMediumRayCaster
+ * @sa vtkPhotonEmitter vtkRefractionOctree vtkPhotonReconstruction vtkMediumRayCaster
  * @par Thanks
  * M. Pfeuti, Real-time Rendering of Refractive Objects in Participating Media, 2009, section 3.1.5. X. Sun, K. Zhou, E. Stollnitz,
  * J. Shi, B. Guo: Interactive Relighting of Dynamic Refractive Objects, ACM Trans. Graph. 27 (2008).
@@ -89,6 +99,14 @@ public:
   ///@}
 
   ///@{
+  /// Whether to count photons: `photon_count` and `photon_weight`, one number a voxel more in the same pass. Default off. The
+  /// published scheme cannot: an error.
+  vtkSetMacro(PhotonCounts, bool);
+  vtkGetMacro(PhotonCounts, bool);
+  vtkBooleanMacro(PhotonCounts, bool);
+  ///@}
+
+  ///@{
   /// Number of photons, spread evenly over all, whose paths go to the second output. Default 0, valid [0, infinity).
   vtkSetClampMacro(PathCount, int, 0, VTK_INT_MAX);
   vtkGetMacro(PathCount, int);
@@ -110,7 +128,7 @@ public:
 
   ///@{
   /// What came of the last update: stretches of path credited to voxels, steps of the integrator, photons that miss the volume,
-  /// relative error of the energy balance, seconds, the device's name, and what the scene did not need, one a line.
+  /// relative error of the energy balance, whether the medium was still prepared, seconds, the device's name, and what the scene did not need, one a line.
   ///
   /// The sound scheme's balance closes to rounding. That of the published scheme does not, even where packing loses nothing: it
   /// credits a photon's power to a voxel however long the path in it is, so the extinction of its light is not what the
@@ -121,10 +139,15 @@ public:
   vtkGetMacro(Missed, vtkIdType);
   vtkGetMacro(BalanceError, double);
   vtkGetMacro(PackingLoss, double);
+  vtkGetMacro(MediumKept, bool);
   vtkGetMacro(Seconds, double);
   vtkGetCharFromStdStringMacro(DeviceName);
   vtkGetCharFromStdStringMacro(LeftOut);
   ///@}
+
+  using Superclass::SetInputConnection;
+  /// Another medium or octree: what was kept of the one before is given back.
+  void SetInputConnection(int port, vtkAlgorithmOutput* input) override;
 
 protected:
   vtkPhotonMarcher();
@@ -140,21 +163,28 @@ private:
   vtkPhotonMarcher(const vtkPhotonMarcher&) = delete;
   void operator=(const vtkPhotonMarcher&) = delete;
 
+  struct Marched;
+  Marched March(vtkInformationVector** inputs, const std::vector<tyndall::Photon>& photons);
+  Marched MarchAsPublished(vtkInformationVector** inputs, const std::vector<tyndall::Photon>& photons);
   void Note(const tyndall::PhotonLight& light);
   void Warn(const tyndall::PhotonLight& light, std::size_t photons);
 
   int Scheme = SOUND;
   int IntegratorOrder = 2;
   double StepSize = 1.0;
+  bool PhotonCounts = false;
   int PathCount = 0;
   bool Smoothing = true;
   std::string Device;
+
+  std::unique_ptr<tyndall::KeptMarcher> Kept;
 
   vtkIdType Credits = 0;
   vtkIdType Steps = 0;
   vtkIdType Missed = 0;
   double BalanceError = 0.0;
   double PackingLoss = 0.0;
+  bool MediumKept = false;
   double Seconds = 0.0;
   std::string DeviceName;
   std::string LeftOut;

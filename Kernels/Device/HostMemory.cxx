@@ -2,7 +2,9 @@
 
 #include "Errors.h"
 
+#include <cstdint>
 #include <cstdio>
+#include <sys/mman.h>
 #include <unistd.h>
 
 namespace tyndall
@@ -22,5 +24,22 @@ void RequireHostMemory(double bytes, const std::string& what, const std::string&
       numbers, sizeof(numbers), " needs %.0f bytes; %.0f of this machine's memory can be used. ", bytes, usable);
     throw DeviceError(what + numbers + advice);
   }
+}
+
+std::vector<float> Zeros(std::size_t count)
+{
+  std::vector<float> values;
+  values.reserve(count);
+#ifdef MADV_HUGEPAGE
+  constexpr std::uintptr_t page = std::uintptr_t(1) << 21;
+  const std::uintptr_t begin = (reinterpret_cast<std::uintptr_t>(values.data()) + page - 1) / page * page;
+  const std::uintptr_t end = (reinterpret_cast<std::uintptr_t>(values.data()) + count * sizeof(float)) / page * page;
+  if (end > begin)
+  {
+    madvise(reinterpret_cast<void*>(begin), end - begin, MADV_HUGEPAGE); // may be refused: then it is slower
+  }
+#endif
+  values.resize(count);
+  return values;
 }
 }

@@ -2,6 +2,7 @@
 
 #include <cstddef>
 #include <string>
+#include <vector>
 
 namespace tyndall
 {
@@ -14,4 +15,8 @@ std::size_t HostMemory();
 /// @param advice  a sentence: what to do where they do not fit
 /// @throws DeviceError where they exceed three quarters of the machine's memory
 void RequireHostMemory(double bytes, const std::string& what, const std::string& advice);
+
+/// `count` zeros, in pages of 2 MB where the system has them: to take a large array page by page of 4 kB can cost more than to
+/// fill it.
+std::vector<float> Zeros(std::size_t count);
 }

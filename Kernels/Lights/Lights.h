@@ -7,6 +7,11 @@ namespace tyndall
 {
 using Rgb = std::array<double, 3>;
 
+inline double Sum(const Rgb& rgb)
+{
+  return rgb[0] + rgb[1] + rgb[2];
+}
+
 enum class LightType
 {
   Directional = 0, ///< parallel light through all of space

@@ -6,20 +6,23 @@
 
 namespace tyndall
 {
+/// Number of the environment and the sky among lights; lights of their own are numbered from 0.
+constexpr int EnvironmentLight = -1;
+
 /// How densely photons are to set out: a square picture for each light, of its photon plane or of what stands for it (the first
 /// two coordinates of the samples that its photons are made of).
 struct ImportanceMap
 {
   int size = 0;               ///< cells along an edge of each square
   std::vector<int> lights;    ///< number of the light of each square, as EmittedPhotons has it
-  std::vector<float> density; ///< size*size of each light, columns fastest; >= 0, any scale
+  std::vector<float> density; ///< size*size of each light, columns fastest; > 0, any scale
 
-  bool Empty() const { return this->lights.empty(); }
+  int SquareOf(int light) const; ///< which square is a light's; -1: it has none
   std::size_t Cells() const { return static_cast<std::size_t>(this->size) * static_cast<std::size_t>(this->size); }
 };
 
-/// @throws InvalidInput where a density is negative or not finite (names light, column and row), a light's are all zero, or their
-///   number is not that of the cells
+/// @throws InvalidInput where a density is negative, 0 (then the light that sets out there would be missing) or not finite (names
+///   light, column and row), or their number is not that of the cells
 void Check(const ImportanceMap& map);
 
 /// One light's square of a map: the unit square is mapped onto itself such that what is spread evenly over it becomes as dense

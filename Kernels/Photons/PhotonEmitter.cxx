@@ -1,389 +1,182 @@
 #include "PhotonEmitter.h"
 
 #include "Clock.h"
-#include "PhotonPacking.h"
-#include "PhotonPlane.h"
+#include "PhotonSources.h"
 
 #include "../Device/Errors.h"
 #include "../Device/HostMemory.h"
 
-#include <glm/geometric.hpp>
-#include <glm/gtc/constants.hpp>
-
 #include <algorithm>
 #include <cmath>
-#include <functional>
-#include <memory>
-#include <optional>
 #include <string>
 
 namespace tyndall
 {
 namespace
 {
-constexpr double Pi = glm::pi<double>();
-constexpr std::size_t PilotSamples = 4096; ///< to learn what part of a light's photons meets the volume
+constexpr std::size_t TrySamples = 4096; ///< to learn what part of a light's photons meets the volume
 constexpr std::size_t ReportEvery = 100000;
+constexpr int BatchesAtMost = 16;
 
-using Sample = std::array<double, 4>;
-
-/// A photon as it leaves its light.
-struct Shot
+/// A light, and where its photons are dense.
+struct SpreadSource
 {
-  glm::dvec3 from, direction;
-  Rgb power; ///< W, if it was the only one of its light
-};
+  PhotonSource source;
+  std::optional<ImportanceSampler> sampler;
 
-/// What makes the photons of a light out of samples. Nothing: none is to be made of that one.
-struct Source
-{
-  int light = 0;
-  std::function<std::optional<Shot>(const Sample&)> shoot;
-};
-
-glm::dvec3 Vector(const std::array<double, 3>& v)
-{
-  return { v[0], v[1], v[2] };
-}
-
-Rgb Times(const Rgb& a, double b)
-{
-  return { a[0] * b, a[1] * b, a[2] * b };
-}
-
-double Sum(const Rgb& a)
-{
-  return a[0] + a[1] + a[2];
-}
-
-/// Two axes across a unit vector (Duff et al. 2017).
-std::array<glm::dvec3, 2> Across(const glm::dvec3& n)
-{
-  const double sign = std::copysign(1.0, n.z);
-  const double a = -1.0 / (sign + n.z);
-  const double b = n.x * n.y * a;
-  return { glm::dvec3(1.0 + sign * n.x * n.x * a, sign * b, -sign * n.x), glm::dvec3(b, sign + n.y * n.y * a, -n.y) };
-}
-
-glm::dvec3 Around(const glm::dvec3& axis, double cosine, double turn)
-{
-  const std::array<glm::dvec3, 2> across = Across(axis);
-  const double sine = std::sqrt(std::max(1.0 - cosine * cosine, 0.0));
-  return axis * cosine + across[0] * (sine * std::cos(2.0 * Pi * turn)) +
-    across[1] * (sine * std::sin(2.0 * Pi * turn));
-}
-
-/// Puts the shot onto the volume; nothing where it misses.
-std::optional<Photon> Land(const Grid& grid, const Shot& shot)
-{
-  std::array<double, 3> position, direction;
-  for (int a = 0; a < 3; ++a)
+  /// @param weight  of the photon: its power over what it had if all were spread evenly
+  std::optional<Shot> Shoot(PhotonSample sample, double& weight) const
   {
-    position[a] = (shot.from[a] - grid.origin[a]) / grid.spacing[a];
-    direction[a] = shot.direction[a] / grid.spacing[a];
-  }
-  if (!MoveOnto(grid, position, direction))
-  {
-    return {};
-  }
-  Photon photon;
-  for (int a = 0; a < 3; ++a)
-  {
-    photon.position[a] = grid.origin[a] + position[a] * grid.spacing[a];
-    photon.direction[a] = static_cast<float>(shot.direction[a]);
-    photon.power[a] = static_cast<float>(shot.power[a]);
-  }
-  return photon;
-}
-
-Source Directional(const Grid& grid, const Light& light)
-{
-  const glm::dvec3 direction = glm::normalize(Vector(light.direction));
-  const auto plane = std::make_shared<PhotonPlane>(grid, direction);
-  return { 0, [=](const Sample& u) {
-            return Shot{ plane->At(u[0], u[1]), direction, Times(light.power, plane->Area()) };
-          } };
-}
-
-Source Point(const Grid& grid, const Light& light)
-{
-  const auto view = std::make_shared<LampView>(grid, Vector(light.position));
-  return { 0,
-    [=](const Sample& u) {
-      return Shot{ view->Lamp(), view->Direction(u[0], u[1]), Times(light.power, view->SolidAngle() / (4.0 * Pi)) };
-    } };
-}
-
-Source Spot(const Grid& grid, const Light& light)
-{
-  const glm::dvec3 axis = glm::normalize(Vector(light.direction));
-  const double edge = std::cos(0.5 * light.angle * Pi / 180.0);
-  const double cone = 2.0 * Pi * (1.0 - edge);
-  const auto view = std::make_shared<LampView>(grid, Vector(light.position));
-  const bool fromCone = view->SolidAngle() > cone;
-  const Rgb power = fromCone ? light.power : Times(light.power, view->SolidAngle() / cone);
-  return { 0, [=](const Sample& u) -> std::optional<Shot> {
-            const glm::dvec3 direction =
-              fromCone ? Around(axis, 1.0 - (1.0 - edge) * u[0], u[1]) : view->Direction(u[0], u[1]);
-            const bool isThere = fromCone ? view->Enters(direction) : glm::dot(direction, axis) >= edge;
-            return isThere ? std::optional<Shot>({ view->Lamp(), direction, power }) : std::nullopt;
-          } };
-}
-
-Source Rectangle(const Grid& grid, const Light& light)
-{
-  const glm::dvec3 middle = Vector(light.position);
-  const glm::dvec3 normal = glm::normalize(Vector(light.direction));
-  const auto edges = RectangleEdges(light);
-  return { 0, [=](const Sample& u) -> std::optional<Shot> {
-            const LampView view(grid, middle + Vector(edges[0]) * (u[2] - 0.5) + Vector(edges[1]) * (u[3] - 0.5));
-            const glm::dvec3 direction =
-              view.Outside() ? view.Direction(u[0], u[1]) : Around(normal, std::sqrt(1.0 - u[0]), u[1]);
-            const double cosine = glm::dot(direction, normal);
-            if (cosine <= 0.0 || !view.Enters(direction))
-            {
-              return {};
-            }
-            return Shot{ view.Lamp(), direction,
-              view.Outside() ? Times(light.power, cosine * view.SolidAngle() / Pi) : light.power };
-          } };
-}
-
-/// A face of the volume, and a point of it.
-struct FaceOfGrid
-{
-  const Grid& grid;
-  int axis;
-  bool up;
-
-  double Area() const
-  {
-    const int b = (this->axis + 1) % 3, c = (this->axis + 2) % 3;
-    return this->grid.size[b] * this->grid.spacing[b] * this->grid.size[c] * this->grid.spacing[c];
-  }
-  glm::dvec3 At(double u, double v) const
-  {
-    glm::dvec3 point;
-    for (int a = 0; a < 3; ++a)
+    weight = 1.0;
+    if (this->sampler)
     {
-      const double part = a == this->axis ? (this->up ? 1.0 : 0.0) : a == (this->axis + 1) % 3 ? u : v;
-      point[a] = this->grid.origin[a] + part * this->grid.size[a] * this->grid.spacing[a];
+      const ImportanceSampler::Place place = this->sampler->At(sample[0], sample[1]);
+      sample[0] = place.u;
+      sample[1] = place.v;
+      weight = 1.0 / place.density;
     }
-    return point;
+    return this->source.shoot(sample);
   }
 };
 
-Source DiffuseFace(const Grid& grid, int face, const Rgb& radiance)
+std::vector<SpreadSource> SpreadSources(std::vector<PhotonSource> sources, const EmissionSettings& settings)
 {
-  const int axis = face / 2;
-  const bool up = face % 2 == 1;
-  glm::dvec3 inwards(0.0);
-  inwards[axis] = up ? -1.0 : 1.0;
-  return { -2,
-    [=](const Sample& u) {
-      const FaceOfGrid at = { grid, axis, up };
-      return Shot{ at.At(u[0], u[1]), Around(inwards, std::sqrt(1.0 - u[2]), u[3]), Times(radiance, Pi * at.Area()) };
-    } };
-}
-
-/// Directions of an environment, by what comes from them onto the volume.
-class Sky
-{
-public:
-  Sky(const Grid& grid, const Environment& environment, const Rgb& sky)
-    : TheGrid(grid)
-    , Picture(environment)
-    , Constant(sky)
-    , Width(environment.Empty() ? 64 : environment.width)
-    , Height(environment.Empty() ? 32 : environment.height)
+  std::vector<SpreadSource> spread;
+  for (PhotonSource& source : sources)
   {
-    const std::vector<double> weights = this->Weights();
-    this->Rows.assign(this->Height + 1, 0.0);
-    this->Pixels.assign(static_cast<std::size_t>(this->Height) * (this->Width + 1), 0.0);
-    for (int j = 0; j < this->Height; ++j)
+    spread.push_back({ std::move(source), {} });
+    const int square = settings.map ? settings.map->SquareOf(spread.back().source.light) : -1;
+    if (square >= 0)
     {
-      double* row = this->Pixels.data() + static_cast<std::size_t>(j) * (this->Width + 1);
-      for (int i = 0; i < this->Width; ++i)
-      {
-        row[i + 1] = row[i] + weights[static_cast<std::size_t>(j) * this->Width + i];
-      }
-      this->Rows[j + 1] = this->Rows[j] + row[this->Width];
+      const float* density = settings.map->density.data() + static_cast<std::size_t>(square) * settings.map->Cells();
+      spread.back().sampler.emplace(density, settings.map->size, settings.densestAtMost);
     }
   }
-
-  std::optional<Shot> Shoot(const Sample& u) const
-  {
-    if (this->Rows.back() == 0.0)
-    {
-      return {};
-    }
-    double v, h;
-    const int j = Find(this->Rows.data(), this->Height, u[2], v);
-    const double* row = this->Pixels.data() + static_cast<std::size_t>(j) * (this->Width + 1);
-    const int i = Find(row, this->Width, u[3], h);
-    const double bottom = this->CosineBelow(j), top = this->CosineBelow(j + 1);
-    const double cosine = bottom + v * (top - bottom);
-    const double sine = std::sqrt(std::max(1.0 - cosine * cosine, 0.0));
-    const double azimuth = 2.0 * Pi * (i + h) / this->Width;
-    const glm::dvec3 seen(sine * std::cos(azimuth), sine * std::sin(azimuth), cosine);
-
-    const double angle = 2.0 * Pi / this->Width * (top - bottom);
-    const double density = (row[i + 1] - row[i]) / (this->Rows.back() * angle);
-    return Shot{ this->OnOutline(seen, u), -seen, Times(this->Radiance(seen), this->Outline(seen) / density) };
-  }
-
-private:
-  double CosineBelow(int row) const { return -std::cos(Pi * row / this->Height); }
-
-  Rgb Radiance(const glm::dvec3& seen) const
-  {
-    const Rgb picture = this->Picture.Empty() ? Rgb{} : Lookup(this->Picture, { seen.x, seen.y, seen.z });
-    return { picture[0] + this->Constant[0], picture[1] + this->Constant[1], picture[2] + this->Constant[2] };
-  }
-
-  double FaceOutline(int axis, const glm::dvec3& seen) const
-  {
-    return FaceOfGrid{ this->TheGrid, axis, true }.Area() * std::abs(seen[axis]);
-  }
-
-  double Outline(const glm::dvec3& seen) const
-  {
-    return this->FaceOutline(0, seen) + this->FaceOutline(1, seen) + this->FaceOutline(2, seen);
-  }
-
-  /// A point on one of the three faces that look that way.
-  glm::dvec3 OnOutline(const glm::dvec3& seen, const Sample& u) const
-  {
-    double wanted = u[0] * this->Outline(seen);
-    int axis = 0;
-    while (axis < 2 && wanted >= this->FaceOutline(axis, seen))
-    {
-      wanted -= this->FaceOutline(axis, seen);
-      ++axis;
-    }
-    const double part = std::min(wanted / std::max(this->FaceOutline(axis, seen), 1e-300), 1.0);
-    return FaceOfGrid{ this->TheGrid, axis, seen[axis] > 0.0 }.At(part, u[1]);
-  }
-
-  /// Of pixels: what a bilinear picture has in them, by solid angle and outline.
-  std::vector<double> Weights() const
-  {
-    std::vector<double> weights(static_cast<std::size_t>(this->Width) * this->Height);
-    const auto brightness = [&](int i, int j) {
-      if (this->Picture.Empty())
-      {
-        return Sum(this->Constant);
-      }
-      const int row = std::min(std::max(j, 0), this->Height - 1);
-      const int column = (i + this->Width) % this->Width;
-      const float* pixel = this->Picture.radiance.data() + 3 * (static_cast<std::size_t>(row) * this->Width + column);
-      return double(pixel[0]) + pixel[1] + pixel[2] + Sum(this->Constant);
-    };
-    for (int j = 0; j < this->Height; ++j)
-    {
-      for (int i = 0; i < this->Width; ++i)
-      {
-        double sum = 0.0;
-        for (int k = 0; k < 9; ++k)
-        {
-          sum += (k % 3 == 1 ? 6.0 : 1.0) * (k / 3 == 1 ? 6.0 : 1.0) / 64.0 * brightness(i + k % 3 - 1, j + k / 3 - 1);
-        }
-        const double polar = Pi * (1.0 - (j + 0.5) / this->Height);
-        const double azimuth = 2.0 * Pi * (i + 0.5) / this->Width;
-        const glm::dvec3 seen(
-          std::sin(polar) * std::cos(azimuth), std::sin(polar) * std::sin(azimuth), std::cos(polar));
-        weights[static_cast<std::size_t>(j) * this->Width + i] =
-          sum * this->Outline(seen) * (this->CosineBelow(j + 1) - this->CosineBelow(j));
-      }
-    }
-    return weights;
-  }
-
-  /// The step of a cumulative table of `count` in which u of the whole is reached, and where in that step.
-  static int Find(const double* table, int count, double u, double& part)
-  {
-    const double wanted = u * table[count];
-    const double* above = std::upper_bound(table + 1, table + count, wanted);
-    const int step = static_cast<int>(above - table) - 1;
-    part = std::min((wanted - table[step]) / (table[step + 1] - table[step]), 1.0);
-    return step;
-  }
-
-  Grid TheGrid;
-  Environment Picture;
-  Rgb Constant;
-  int Width, Height;
-  std::vector<double> Rows, Pixels; ///< cumulative, each with a zero before
-};
-
-std::vector<Source> SourcesOf(const Grid& grid, const Illumination& illumination)
-{
-  std::vector<Source> sources;
-  for (std::size_t i = 0; i < illumination.lights.size(); ++i)
-  {
-    const Light& light = illumination.lights[i];
-    sources.push_back(light.type == LightType::Directional ? Directional(grid, light)
-        : light.type == LightType::Point                   ? Point(grid, light)
-        : light.type == LightType::Spot                    ? Spot(grid, light)
-                                                           : Rectangle(grid, light));
-    sources.back().light = static_cast<int>(i);
-  }
-  if (!illumination.environment.Empty() || Sum(illumination.sky) > 0.0)
-  {
-    const auto sky = std::make_shared<Sky>(grid, illumination.environment, illumination.sky);
-    sources.push_back({ -1, [sky](const Sample& u) { return sky->Shoot(u); } });
-  }
-  for (int face = 0; face < 6; ++face)
-  {
-    if (Sum(illumination.faces[face]) > 0.0)
-    {
-      sources.push_back(DiffuseFace(grid, face, illumination.faces[face]));
-    }
-  }
-  return sources;
+  return spread;
 }
 
 /// What a few photons of a light tell of it.
-struct Pilot
+struct Tried
 {
   double power = 0.0; ///< that reaches the volume, channels summed
   double hits = 0.0;  ///< part of its photons that do
 };
 
-Pilot Try(const Grid& grid, const Source& source)
+Tried Try(const Grid& grid, const SpreadSource& light)
 {
-  const SampleSequence samples(Sampler::Halton, PilotSamples);
-  Pilot pilot;
-  for (std::size_t i = 0; i < PilotSamples; ++i)
+  const SampleSequence samples(Sampler::Halton, TrySamples);
+  if (light.source.alike)
   {
-    const std::optional<Shot> shot = source.shoot(samples[i]);
+    const std::optional<Shot> shot = light.source.shoot(samples[0]);
+    return shot && Sum(shot->power) > 0.0 ? Tried{ Sum(shot->power), 1.0 } : Tried{};
+  }
+  Tried tried;
+  for (std::size_t i = 0; i < TrySamples; ++i)
+  {
+    double weight;
+    const std::optional<Shot> shot = light.Shoot(samples[i], weight);
     if (shot && Sum(shot->power) > 0.0 && Land(grid, *shot))
     {
-      pilot.power += Sum(shot->power) / PilotSamples;
-      pilot.hits += 1.0 / PilotSamples;
+      tried.power += weight * Sum(shot->power) / TrySamples;
+      tried.hits += 1.0 / TrySamples;
     }
   }
-  return pilot;
+  return tried;
 }
 
 /// Shares of `count` in proportion to power, at least one of each light that reaches the volume.
-std::vector<std::size_t> Shares(const std::vector<Pilot>& pilots, std::size_t count)
+std::vector<std::size_t> Shares(const std::vector<Tried>& tried, std::size_t count)
 {
   double left = 0.0;
-  for (const Pilot& pilot : pilots)
+  for (const Tried& light : tried)
   {
-    left += pilot.power;
+    left += light.power;
   }
   std::vector<std::size_t> shares;
-  for (const Pilot& pilot : pilots)
+  for (const Tried& light : tried)
   {
     const auto share =
-      static_cast<std::size_t>(std::lround(left > 0.0 ? count * std::min(pilot.power / left, 1.0) : 0.0));
-    shares.push_back(pilot.power > 0.0 ? std::max<std::size_t>(share, 1) : 0);
+      static_cast<std::size_t>(std::lround(left > 0.0 ? count * std::min(light.power / left, 1.0) : 0.0));
+    shares.push_back(light.power > 0.0 ? std::max<std::size_t>(share, 1) : 0);
     count -= std::min(count, shares.back());
-    left -= pilot.power;
+    left -= light.power;
   }
   return shares;
+}
+
+/// The photon of a sample; nothing where there is none.
+/// @param weight  as it is spread
+/// @param part    of its light's power that it carries, where all are spread evenly
+std::optional<Photon> PhotonOf(const Grid& grid, const std::optional<Shot>& shot, double weight, double part)
+{
+  std::optional<Photon> photon = shot && Sum(shot->power) > 0.0 ? Land(grid, *shot) : std::optional<Photon>();
+  if (photon)
+  {
+    photon->weight = static_cast<float>(weight);
+    for (int c = 0; c < 3; ++c)
+    {
+      photon->power[c] = static_cast<float>(shot->power[c] * weight * part);
+    }
+  }
+  return photon;
+}
+
+void Check(const EmissionSettings& settings)
+{
+  if (settings.photonCount == 0)
+  {
+    throw InvalidInput("The number of photons is 0; ask for at least one.");
+  }
+  if (settings.batches < 1 || settings.batches > BatchesAtMost)
+  {
+    throw InvalidInput("The number of batches is " + std::to_string(settings.batches) + "; it must be 1 to " +
+      std::to_string(BatchesAtMost) + ".");
+  }
+  if (!(settings.densestAtMost >= 1.0))
+  {
+    throw InvalidInput("The density of photons at most is " + std::to_string(settings.densestAtMost) +
+      " times that of photons spread evenly; it must be at least 1.");
+  }
+  if (settings.map)
+  {
+    Check(*settings.map);
+  }
+  constexpr std::size_t bytesEach = sizeof(Photon) + sizeof(int);
+  RequireHostMemory(static_cast<double>(settings.photonCount) * bytesEach,
+    std::to_string(settings.photonCount) + " photons of " + std::to_string(bytesEach) + " bytes each: that",
+    "Ask for fewer photons (PhotonCount).");
+}
+
+/// Makes the photons of one light, batch by batch.
+void EmitFrom(const Grid& grid, const SpreadSource& light, std::size_t tries, std::uint64_t seed,
+  const EmissionSettings& settings, const Monitor& monitor, EmittedPhotons& emitted)
+{
+  const auto batches = static_cast<std::size_t>(settings.batches);
+  for (std::size_t b = 0; b < batches; ++b)
+  {
+    const std::size_t count = (b + 1) * tries / batches - b * tries / batches;
+    const SampleSequence samples(settings.sampler, count, seed, settings.batches > 1 ? static_cast<int>(b) : 0);
+    for (std::size_t i = 0; i < count; ++i)
+    {
+      double weight;
+      const std::optional<Shot> shot = light.Shoot(samples[i], weight);
+      std::optional<Photon> photon = PhotonOf(grid, shot, weight, 1.0 / (static_cast<double>(batches) * count));
+      if (photon)
+      {
+        photon->batch = static_cast<std::int32_t>(b);
+        for (int c = 0; c < 3; ++c)
+        {
+          emitted.power[c] += photon->power[c];
+        }
+        emitted.photons.push_back(*photon);
+        emitted.lights.push_back(light.source.light);
+      }
+      if ((b * tries / batches + i) % ReportEvery == ReportEvery - 1)
+      {
+        Report(monitor, std::min(1.0, static_cast<double>(emitted.photons.size()) / settings.photonCount));
+      }
+    }
+  }
 }
 }
 
@@ -391,54 +184,57 @@ EmittedPhotons EmitPhotons(
   const Grid& grid, const Illumination& illumination, const EmissionSettings& settings, const Monitor& monitor)
 {
   const double start = ClockSeconds();
-  Check(illumination);
-  if (settings.photonCount == 0)
+  tyndall::Check(illumination);
+  Check(settings);
+  const std::vector<SpreadSource> lights = SpreadSources(PhotonSourcesOf(grid, illumination), settings);
+  std::vector<Tried> tried;
+  for (const SpreadSource& light : lights)
   {
-    throw InvalidInput("The number of photons is 0; ask for at least one.");
+    tried.push_back(Try(grid, light));
   }
-  constexpr std::size_t bytesEach = sizeof(Photon) + sizeof(int);
-  RequireHostMemory(static_cast<double>(settings.photonCount) * bytesEach,
-    std::to_string(settings.photonCount) + " photons of " + std::to_string(bytesEach) + " bytes each: that",
-    "Ask for fewer photons (PhotonCount).");
-  const std::vector<Source> sources = SourcesOf(grid, illumination);
-  std::vector<Pilot> pilots;
-  for (const Source& source : sources)
-  {
-    pilots.push_back(Try(grid, source));
-  }
-  const std::vector<std::size_t> shares = Shares(pilots, settings.photonCount);
+  const std::vector<std::size_t> shares = Shares(tried, settings.photonCount);
 
   EmittedPhotons emitted;
   emitted.photons.reserve(settings.photonCount);
-  for (std::size_t s = 0; s < sources.size(); ++s)
+  for (std::size_t s = 0; s < lights.size(); ++s)
   {
-    if (shares[s] == 0)
+    if (shares[s] > 0)
     {
-      continue;
-    }
-    const auto tries = static_cast<std::size_t>(std::lround(shares[s] / pilots[s].hits));
-    const SampleSequence samples(settings.sampler, tries, settings.seed == 0 ? 0 : settings.seed + s);
-    for (std::size_t i = 0; i < tries; ++i)
-    {
-      const std::optional<Shot> shot = sources[s].shoot(samples[i]);
-      std::optional<Photon> photon = shot ? Land(grid, *shot) : std::optional<Photon>();
-      if (photon && Sum(shot->power) > 0.0)
-      {
-        for (int c = 0; c < 3; ++c)
-        {
-          photon->power[c] = static_cast<float>(shot->power[c] / tries);
-          emitted.power[c] += photon->power[c];
-        }
-        emitted.photons.push_back(*photon);
-        emitted.lights.push_back(sources[s].light);
-      }
-      if (i % ReportEvery == ReportEvery - 1)
-      {
-        Report(monitor, std::min(1.0, static_cast<double>(emitted.photons.size()) / settings.photonCount));
-      }
+      // Every batch has a photon of every light, or it would not be all the light.
+      const auto tries = static_cast<std::size_t>(std::lround(shares[s] / tried[s].hits));
+      EmitFrom(grid, lights[s], std::max(tries, static_cast<std::size_t>(settings.batches)),
+        settings.seed == 0 ? 0 : settings.seed + s, settings, monitor, emitted);
     }
   }
   emitted.seconds = ClockSeconds() - start;
   return emitted;
+}
+
+std::vector<PilotPhotons> EmitPilots(const Grid& grid, const Illumination& illumination, int edge, std::uint64_t seed)
+{
+  tyndall::Check(illumination);
+  const auto rows = static_cast<std::size_t>(edge);
+  const SampleSequence samples(Sampler::Jittered, rows * rows, seed);
+  std::vector<PilotPhotons> pilots;
+  for (const PhotonSource& source : PhotonSourcesOf(grid, illumination))
+  {
+    if (source.light < EnvironmentLight)
+    {
+      continue;
+    }
+    pilots.emplace_back();
+    pilots.back().light = source.light;
+    for (std::size_t i = 0; i < rows * rows; ++i)
+    {
+      const std::optional<Photon> photon =
+        PhotonOf(grid, source.shoot(samples[i]), 1.0, 1.0 / static_cast<double>(rows * rows));
+      if (photon)
+      {
+        pilots.back().photons.push_back(*photon);
+        pilots.back().origins.push_back({ static_cast<int>(i % rows), static_cast<int>(i / rows) });
+      }
+    }
+  }
+  return pilots;
 }
 }

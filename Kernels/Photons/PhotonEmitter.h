@@ -26,7 +26,7 @@ struct EmissionSettings
 };
 
 /// Photons of all lights, where they enter the volume (those of a lamp in the volume: at the lamp), and the number of each
-/// one's light: that in `illumination.lights`, then -1 for the environment and the sky, -2 for the faces.
+/// one's light: that in `illumination.lights`, then EnvironmentLight for the environment and the sky, -2 for the faces.
 struct EmittedPhotons
 {
   std::vector<Photon> photons;
@@ -49,7 +49,22 @@ struct EmittedPhotons
 /// The index outside is taken as constant.
 ///
 /// @throws InvalidInput where an illumination means nothing or no photon is asked for; DeviceError where the machine's memory
-///   does not suffice for the photons (52 bytes each); Aborted
+///   does not suffice for the photons (60 bytes each); Aborted
 EmittedPhotons EmitPhotons(
   const Grid& grid, const Illumination& illumination, const EmissionSettings& settings, const Monitor& monitor = {});
+
+/// Pilot photons of a light.
+struct PilotPhotons
+{
+  int light = 0;                           ///< its number
+  std::vector<Photon> photons;             ///< those of edge*edge that reach the volume
+  std::vector<std::array<int, 2>> origins; ///< column and row of the cell of its photon plane that each was made in
+};
+
+/// Photons of every light, the environment and the sky, not of the faces: one in each cell of a square grid, at a random place
+/// in it (Pfeuti 2009, section 3.2.2).
+/// @param edge  cells along an edge of the grid, at least 1
+/// @throws InvalidInput where an illumination means nothing
+std::vector<PilotPhotons> EmitPilots(
+  const Grid& grid, const Illumination& illumination, int edge, std::uint64_t seed = 0);
 }

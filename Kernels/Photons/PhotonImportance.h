@@ -12,7 +12,8 @@ namespace tyndall
 struct ImportanceSettings
 {
   /// Photons of each light; the largest square number that is not above it is made, its root is the map's size. At least 1.
-  std::size_t pilotCount = 4096;
+  /// Some tenth of the photons to follow. Best a multiple of the cells along an axis, squared: else even light looks striped.
+  std::size_t pilotCount = 1024;
   std::array<int, 3> cells = { 16, 16, 16 }; ///< of the coarse grid, each at least 1
   std::uint64_t seed = 0;
 
@@ -20,7 +21,7 @@ struct ImportanceSettings
   bool automatic = true;
   double gradientThreshold = 0.0;  ///< W / length^2 from a cell to the next: cells at or above it are chosen
   double luminanceThreshold = 0.0; ///< W / length^2: lit cells at or below it are chosen
-  double background = 0.4;         ///< part of the photons that are spread evenly, (0, 1]
+  double background = 0.3;         ///< part of the photons that are spread evenly, (0, 1]
 };
 
 struct Importance

@@ -3,6 +3,7 @@
 //   BENDS       1: the index varies; ORDER of the integrator then: 1, 2 or 4
 //   LEVELS      1: there are octree levels
 //   DIRECTIONS  1: directions are asked for
+//   COUNTS, CELLS  1: photons bear marks (PhotonMarch.cl)
 //
 // A path obeys dr/dt = T, dT/dt = grad(n^2) / 2 with dt = ds / n, so that |T| = n. It becomes legs, straight lines of constant
 // velocity:
@@ -51,6 +52,8 @@ typedef struct
   __global long* sums;                // [copy][RECORD] fixed point
   __global photon_end* ends;
   __global float4* vertices; // of a path: position in voxels, part of the power that is left; null: they are only counted
+  const __global ulong* marks; // of photons, with COUNTS or CELLS
+  const __global int* cells;   // [copy] of voxels, with CELLS
 } march_arrays;
 
 // The state of REAL_WIDTH photons.
@@ -74,6 +77,9 @@ typedef struct
   LANES_3(float, velocity); // along it
   LANES_3(float, momentum); // T; v of Euler; order 2 has it as the velocity
   float4 direction[REAL_WIDTH]; // 1, and the direction in space
+#if COUNTS || CELLS
+  LANES(ulong, mark);
+#endif
 } photon_lanes;
 
 static int3 size_of(const march_info* info)

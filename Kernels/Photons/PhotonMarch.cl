@@ -2,15 +2,25 @@
 // SquaredIndex.cl, PhotonLanes.cl and PhotonLegs.cl; the host gives what those ask for, and
 //   CHANNELS         of light; MEDIUM_CHANNELS of sigma_t, 1 or CHANNELS
 //   WORKERS          0: a work-item a packet, all add to the same sums; else so many take blocks as they come, each to its sums
+//   COUNTS           1: voxels also count photons and their weights, by photons' marks: 1 << COUNT_SHIFT and units of weight
+//   CELLS            1: what is credited are coarse cells, which also count photons, and sum up the columns and rows that these
+//                    set out from, by their marks: column and row << 16
 //   PATHS            1: nothing is summed, vertices are written
 //
 // A leg is followed from voxel wall to voxel wall (Amanatides and Woo). In a voxel whose extinction over a diagonal is s,
 // with b = max(s, 1), the sums gain
 //   a = power b (path integral of transmittance, in diagonals),   0 <= a <= power,
 // which is the power lost where a voxel is thick and the path where it is thin: neither loses digits in fixed point.
+// Cells, whose voxels differ, gain power times path in diagonals.
+//
+// A photon counts where it enters a voxel (a cell), however many stretches it crosses it in; once more where it comes back.
 
 #define PHOTON_FLOATS (6 + CHANNELS) // position, unit direction, power in units
-#define RECORD (CHANNELS + 3 * DIRECTIONS)
+#if CELLS
+#define RECORD (CHANNELS + 5) // photons, sums of column, row and their squares
+#else
+#define RECORD (CHANNELS + 3 * DIRECTIONS + COUNTS)
+#endif
 #define TINY 1e-20f
 #define SLOWEST_PACE 1e-12f // diagonals per time, which is n but for rounding and steps across jumps of n
 #define FASTEST_PACE 1e12f
@@ -23,7 +33,20 @@ typedef struct
   real sigma;
   real power[CHANNELS];
   real owed[CHANNELS]; // what rounding has left of what the voxels were to take: the power is `power + owed`
+#if COUNTS || CELLS
+  integer counted; // place where the photon was counted last
+#endif
 } photon_flight;
+
+// What a stretch leaves where.
+typedef struct
+{
+  integer at; // record of the sums
+  real amount[CHANNELS];
+#if COUNTS || CELLS
+  integer entered; // a mask: those that were not there before
+#endif
+} photon_gain;
 
 static void land(const photon_flight* flight, photon_lanes* lanes)
 {
@@ -65,7 +88,10 @@ static void attenuate(const march_arrays* arrays, photon_flight* flight, real le
       const real tau = s * length;
       lost = extinguished(tau, &left);
       const real mean = tau > (real)TINY ? lost / tau : (real)1.0f; // transmittance, over the length
-      factor = mean * length * greater(s, (real)1.0f);
+      factor = mean * length;
+#if !CELLS
+      factor *= greater(s, (real)1.0f);
+#endif
       thick = truth(tau > (real)0.5f);
     }
     gained[c] = flight->power[c] * factor;
@@ -82,7 +108,7 @@ typedef long4 __attribute__((aligned(8))) long4_anywhere;
 // Add what one photon left in one voxel, `a` of each channel.
 static void credit(__global long* record, const float* a, float4 direction)
 {
-#if RECORD == 4 && !ATOMICS
+#if CHANNELS == 1 && DIRECTIONS && !ATOMICS
   *(__global long4_anywhere*)record += convert_long4(a[0] * direction);
 #else
   float total = 0.0f;
@@ -99,16 +125,46 @@ static void credit(__global long* record, const float* a, float4 direction)
 #endif
 }
 
-static void credit_all(const march_arrays* arrays, const photon_lanes* lanes, integer at, const real* gained)
+#if COUNTS || CELLS
+// One photon more in a voxel or a cell, where it entered (-1, else 0).
+static void count_photon(__global long* record, ulong mark, int entered)
+{
+#if COUNTS
+#if ATOMICS
+  if (entered)
+#endif
+  {
+    add_units(record + RECORD - 1, (long)mark & entered);
+  }
+#else
+  if (entered)
+  {
+    const long column = mark & 0xffff, row = mark >> 16;
+    add_units(record + CHANNELS, 1);
+    add_units(record + CHANNELS + 1, column);
+    add_units(record + CHANNELS + 2, row);
+    add_units(record + CHANNELS + 3, column * column);
+    add_units(record + CHANNELS + 4, row * row);
+  }
+#endif
+}
+#define COUNT(record, k, lane) count_photon(record, lanes->mark[k], gain->entered lane);
+#else
+#define COUNT(record, k, lane)
+#endif
+
+static void credit_all(const march_arrays* arrays, const photon_lanes* lanes, const photon_gain* gain)
 {
 #define CREDIT(k, lane) \
   { \
     float a[CHANNELS]; \
     FOR_CHANNELS(c) \
     { \
-      a[c] = gained[c]lane; \
+      a[c] = gain->amount[c]lane; \
     } \
-    credit(arrays->sums + (ulong)at lane * RECORD, a, lanes->direction[k]); \
+    __global long* record = arrays->sums + (ulong)gain->at lane * RECORD; \
+    credit(record, a, lanes->direction[k]); \
+    COUNT(record, k, lane) \
   }
   LANE_BY_LANE(CREDIT)
 #undef CREDIT
@@ -121,12 +177,33 @@ static void ask_ahead(const march_arrays* arrays, const photon_lanes* lanes, int
 #if REAL_WIDTH > 1 && defined(__has_builtin)
 #if __has_builtin(__builtin_prefetch)
   const integer there = at + INTEGERS(lanes->ahead);
+#if CELLS // few, whose sums are near already
+#define ASK_FOR_RECORD(lane) __builtin_prefetch((const void*)(uintptr_t)(arrays->cells + (long)there lane), 0);
+#else
+#define ASK_FOR_RECORD(lane) __builtin_prefetch((const void*)(uintptr_t)(arrays->sums + (long)there lane * RECORD), 1);
+#endif
 #define ASK(k, lane) \
-  __builtin_prefetch((const void*)(uintptr_t)(arrays->sums + (long)there lane * RECORD), 1); \
+  ASK_FOR_RECORD(lane) \
   __builtin_prefetch((const void*)(uintptr_t)(arrays->sigma + (long)there lane), 0);
   LANE_BY_LANE(ASK)
 #undef ASK
 #endif
+#endif
+}
+
+// What the photons leave over `length` in the voxels where they are.
+static void leave_light(const march_arrays* arrays, photon_flight* flight, real length, photon_gain* gain)
+{
+  attenuate(arrays, flight, length, gain->amount);
+#if CELLS
+  gain->at = gather(int, arrays->cells, flight->at);
+#else
+  gain->at = flight->at;
+#endif
+#if COUNTS || CELLS
+  // Of no length are stretches of photons that set out from a wall, and of those that have ended.
+  gain->entered = truth(gain->at != flight->counted) & truth(length > (real)0.0f);
+  flight->counted = gain->entered ? gain->at : flight->counted;
 #endif
 }
 
@@ -246,6 +323,9 @@ static void load_packet(const march_arrays* arrays, const __global float* photon
     {
       lanes->power[c][k] = there ? photon[6 + c] : 0.0f;
     }
+#if COUNTS || CELLS
+    lanes->mark[k] = there ? arrays->marks[first + k] : 0;
+#endif
   }
   real p[3], u[3];
   FOR_AXES(a)
@@ -263,6 +343,9 @@ static void load_packet(const march_arrays* arrays, const __global float* photon
   give_up_lost(arrays, lanes, INTEGERS(lanes->alive), first);
 #endif
   flight->crossings = 0;
+#if COUNTS || CELLS
+  flight->counted = -1;
+#endif
   FOR_CHANNELS(c)
   {
     flight->power[c] = VECTOR(lanes->power[c]);
@@ -310,8 +393,7 @@ static int march_packet(const march_arrays* arrays, const __global float* photon
     return vertices;
   }
   // What voxels gain is credited a stretch later, while that one's extinction is on its way from memory.
-  integer gaining = 0;
-  real gained[CHANNELS];
+  photon_gain gain;
   bool owed = false;
   for (int event = 0; event < arrays->info->eventLimit; ++event)
   {
@@ -322,20 +404,19 @@ static int march_packet(const march_arrays* arrays, const __global float* photon
 #if !PATHS
     if (owed)
     {
-      credit_all(arrays, &lanes, gaining, gained);
+      credit_all(arrays, &lanes, &gain);
     }
     ask_ahead(arrays, &lanes, flight.at);
 #endif
-    attenuate(arrays, &flight, greater(next - flight.now, (real)0.0f) * VECTOR(lanes.pace), gained);
+    leave_light(arrays, &flight, greater(next - flight.now, (real)0.0f) * VECTOR(lanes.pace), &gain);
     flight.crossings -= flight.alive;
-    gaining = flight.at;
     owed = true;
     cross_walls(arrays, &lanes, &flight, next);
     const integer special = to_attend(arrays, &lanes, &flight);
     if (anywhere(special))
     {
 #if !PATHS
-      credit_all(arrays, &lanes, gaining, gained); // before directions change
+      credit_all(arrays, &lanes, &gain); // before directions change
       owed = false;
 #endif
       land(&flight, &lanes);
@@ -353,7 +434,7 @@ static int march_packet(const march_arrays* arrays, const __global float* photon
 #if !PATHS
   if (owed)
   {
-    credit_all(arrays, &lanes, gaining, gained);
+    credit_all(arrays, &lanes, &gain);
   }
 #endif
   land(&flight, &lanes);
@@ -375,28 +456,44 @@ __kernel void trace_paths(march_info info, const __global float* sigma, const __
   const __global int* offsets, __global float4* vertices, __global int* counts)
 {
   const int i = get_global_id(0);
-  const march_arrays arrays = { &info, sigma, coefficients, nodes, 0, ends, counting ? 0 : vertices + offsets[i] };
+  const march_arrays arrays = { &info, sigma, coefficients, nodes, 0, ends, counting ? 0 : vertices + offsets[i], 0, 0 };
   counts[i] = march_packet(&arrays, photons, i, i + 1);
 }
 #else
-// Photons `first` to `first + count`.
+// Of each batch, photons `first` to `first + count`: those of batch b begin at batch_begin[b], and end where the next ones
+// begin. There are `copies` of the sums, at least as many as batches; copy c is for batch c modulo their number.
 __kernel void march_photons(march_info info, const __global float* sigma, const __global float* coefficients,
-  const __global uchar* nodes, const __global float* photons, __global photon_end* ends, __global long* sums,
-  ulong copyStride, volatile __global int* next, int first, int count)
+  const __global uchar* nodes, const __global float* photons, const __global ulong* marks, const __global int* cells,
+  __global photon_end* ends, __global long* sums, ulong copyStride, int copies, int batches,
+  const __global int* batch_begin, volatile __global int* next, int first, int count)
 {
 #if WORKERS > 0
-  const march_arrays arrays = { &info, sigma, coefficients, nodes, sums + get_global_id(0) * copyStride, ends, 0 };
-  // Blocks of neighbours stay together: they share cache lines. Who takes which makes no difference to the sums.
-  for (int block = atomic_add(next, BLOCK); block < count; block = atomic_add(next, BLOCK))
+  for (int copy = get_global_id(0); copy < copies; copy += WORKERS)
   {
-    for (int i = block; i < min(block + BLOCK, count); i += REAL_WIDTH)
+    const int batch = copy % batches;
+    const int begin = batch_begin[batch] + first, left = min(count, batch_begin[batch + 1] - begin);
+    const march_arrays arrays = {
+      &info, sigma, coefficients, nodes, sums + copy * copyStride, ends, 0, marks, cells
+    };
+    // Blocks of neighbours stay together: they share cache lines. Who takes which makes no difference to the sums.
+    for (int block = atomic_add(next + batch, BLOCK); block < left; block = atomic_add(next + batch, BLOCK))
     {
-      march_packet(&arrays, photons, first + i, first + count);
+      for (int i = block; i < min(block + BLOCK, left); i += REAL_WIDTH)
+      {
+        march_packet(&arrays, photons, begin + i, begin + left);
+      }
     }
   }
 #else
-  const march_arrays arrays = { &info, sigma, coefficients, nodes, sums, ends, 0 };
-  march_packet(&arrays, photons, first + get_global_id(0) * REAL_WIDTH, first + count);
+  const int batch = get_global_id(1), begin = batch_begin[batch] + first;
+  const int left = min(count, batch_begin[batch + 1] - begin), i = get_global_id(0) * REAL_WIDTH;
+  if (i < left)
+  {
+    const march_arrays arrays = {
+      &info, sigma, coefficients, nodes, sums + batch * copyStride, ends, 0, marks, cells
+    };
+    march_packet(&arrays, photons, begin + i, begin + left);
+  }
 #endif
 }
 #endif

@@ -40,14 +40,17 @@ public:
   PhotonMarcher(PhotonMarcher&&) noexcept;
 
   /// Photons outside the volume are first moved to where they enter it.
-  /// @throws InvalidInput where a photon's position, direction or power is not finite or its power negative; Aborted
+  /// @throws InvalidInput where a photon's position, direction, power or weight is not finite, its power or weight negative,
+  ///   or (where they are asked for) its batch not 0 to 63, or where there are more photons than voxels can count;
+  ///   DeviceError where the sums of all batches do not fit; Aborted
   PhotonLight March(const std::vector<Photon>& photons, const Monitor& monitor = {});
 
   /// Light of few photons in coarse cells, and where those of each cell came from (Pfeuti 2009, section 3.2.2). Paths are those
-  /// of March, through the medium's own voxels.
+  /// of March, through the medium's own voxels. Voxel i of an axis belongs to cell i * cells / voxels, rounded down.
   /// @param origins  of each photon: column and row of the cell of the photon plane that it was made in, 0 to 65535
   /// @param cells    along each axis, 1 to the medium's voxels (more are cut to them)
-  /// @throws InvalidInput as March, or where there are not as many origins as photons; Aborted
+  /// @throws InvalidInput as March, or where there are not as many origins as photons, one is out of its range, or there are
+  ///   no cells; Aborted
   PilotLight Gather(const std::vector<Photon>& photons, const std::vector<std::array<int, 2>>& origins,
     const std::array<int, 3>& cells, const Monitor& monitor = {});
 

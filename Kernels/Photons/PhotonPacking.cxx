@@ -37,6 +37,11 @@ void CheckPhoton(const Photon& photon, std::size_t number)
   {
     throw InvalidInput(name + " has direction (0, 0, 0); say where it goes.");
   }
+  if (!(photon.weight >= 0.0f) || std::isinf(photon.weight))
+  {
+    throw InvalidInput(
+      name + " has weight " + std::to_string(photon.weight) + "; it must be finite and not negative, 1 as a rule.");
+  }
 }
 
 /// The colour that all photons have, with mean 1.
@@ -122,6 +127,35 @@ std::vector<std::uint32_t> Order(const std::vector<Ray>& rays)
   return order;
 }
 
+/// Those of a batch together, in the order that they have; `begin` becomes the place of each batch's first, and beyond.
+std::vector<std::uint32_t> ByBatch(const std::vector<std::uint32_t>& order, const std::vector<Photon>& photons,
+  const std::vector<std::size_t>& numbers, std::vector<int>& begin)
+{
+  const auto batch = [&](std::uint32_t i) { return static_cast<std::size_t>(photons[numbers[i]].batch); };
+  begin.assign(static_cast<std::size_t>(BatchesOf(photons)) + 1, 0);
+  for (const std::uint32_t i : order)
+  {
+    ++begin[batch(i) + 1];
+  }
+  std::partial_sum(begin.begin(), begin.end(), begin.begin());
+  std::vector<int> next = begin;
+  std::vector<std::uint32_t> sorted(order.size());
+  for (const std::uint32_t i : order)
+  {
+    sorted[static_cast<std::size_t>(next[batch(i)]++)] = i;
+  }
+  return sorted;
+}
+
+void CheckBatch(const Photon& photon, std::size_t number)
+{
+  if (photon.batch < 0 || photon.batch >= BatchesAtMost)
+  {
+    throw InvalidInput("Photon " + std::to_string(number) + " is of batch " + std::to_string(photon.batch) +
+      "; there are 0 to " + std::to_string(BatchesAtMost - 1) + ".");
+  }
+}
+
 /// The largest total of a channel, or of all where one stands for them.
 double Brightness(const std::vector<Photon>& photons)
 {
@@ -162,7 +196,28 @@ bool MoveOnto(const Grid& grid, std::array<double, 3>& position, const std::arra
   return enter <= leave;
 }
 
-PackedPhotons Pack(const std::vector<Photon>& photons, const Grid& grid, bool coloured, double creditsAtMost)
+int BatchesOf(const std::vector<Photon>& photons)
+{
+  std::int32_t last = 0;
+  for (const Photon& photon : photons)
+  {
+    last = std::max(last, photon.batch);
+  }
+  return last + 1;
+}
+
+std::size_t PackedPhotons::LargestBatch() const
+{
+  int largest = 0;
+  for (std::size_t b = 1; b < this->batchBegin.size(); ++b)
+  {
+    largest = std::max(largest, this->batchBegin[b] - this->batchBegin[b - 1]);
+  }
+  return static_cast<std::size_t>(largest);
+}
+
+PackedPhotons Pack(
+  const std::vector<Photon>& photons, const Grid& grid, bool coloured, double creditsAtMost, bool batches)
 {
   PackedPhotons packed;
   packed.channels = HaveOneColour(photons, packed.colour) && !coloured ? 1 : 3;
@@ -177,6 +232,10 @@ PackedPhotons Pack(const std::vector<Photon>& photons, const Grid& grid, bool co
   for (std::size_t i = 0; i < photons.size(); ++i)
   {
     CheckPhoton(photons[i], i);
+    if (batches)
+    {
+      CheckBatch(photons[i], i);
+    }
     std::array<double, 3> position, direction;
     for (int a = 0; a < 3; ++a)
     {
@@ -192,10 +251,16 @@ PackedPhotons Pack(const std::vector<Photon>& photons, const Grid& grid, bool co
     numbers.push_back(i);
   }
 
-  const std::vector<std::uint32_t> order = Order(rays);
+  std::vector<std::uint32_t> order = Order(rays);
+  packed.batchBegin = { 0, static_cast<int>(rays.size()) };
+  if (batches && BatchesOf(photons) > 1)
+  {
+    order = ByBatch(order, photons, numbers, packed.batchBegin);
+  }
   packed.numbers.resize(rays.size());
   packed.values.resize(rays.size() * packed.FloatsEach());
   float* values = packed.values.data();
+  std::array<std::int64_t, 3> entered = {};
   for (std::size_t i = 0; i < rays.size(); ++i)
   {
     const Ray& ray = rays[order[i]];
@@ -207,8 +272,12 @@ PackedPhotons Pack(const std::vector<Photon>& photons, const Grid& grid, bool co
     {
       const double watts = packed.channels == 3 ? power[c] : (double(power[0]) + power[1] + power[2]) / 3.0;
       *values = static_cast<float>(watts / packed.unit);
-      packed.entered[c] += *values++ * packed.unit;
+      entered[c] += WholeUnits(*values++);
     }
+  }
+  for (int c = 0; c < 3; ++c)
+  {
+    packed.entered[c] = static_cast<double>(entered[c]) * packed.unit;
   }
   return packed;
 }

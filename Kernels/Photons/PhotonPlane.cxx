@@ -5,6 +5,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <utility>
 
 namespace tyndall
 {
@@ -29,6 +30,28 @@ std::vector<glm::dvec2> Chain(const std::vector<glm::dvec2>& sorted, double side
     chain.push_back(point);
   }
   return chain;
+}
+
+bool IsBefore(const glm::dvec2& a, const glm::dvec2& b)
+{
+  return a.x < b.x || (a.x == b.x && a.y < b.y);
+}
+
+/// Sorted, those one above the other at the very same x: rounding parts the corners of a box that is seen squarely, and the hull
+/// would take the sliver between them for a side of its own.
+std::vector<glm::dvec2> Sorted(std::vector<glm::dvec2> points)
+{
+  std::sort(points.begin(), points.end(), IsBefore);
+  const double sliver = 1e-12 * (points.back().x - points.front().x);
+  for (std::size_t i = 1; i < points.size(); ++i)
+  {
+    if (points[i].x - points[i - 1].x <= sliver)
+    {
+      points[i].x = points[i - 1].x;
+    }
+  }
+  std::sort(points.begin(), points.end(), IsBefore);
+  return points;
 }
 
 double HeightAt(const std::vector<glm::dvec2>& chain, double x, bool fromLeft)
@@ -89,15 +112,13 @@ std::vector<glm::dvec2> Project(const Grid& grid, const glm::dvec3& across, cons
 
 ConvexPolygon::ConvexPolygon(std::vector<glm::dvec2> points)
 {
-  std::sort(points.begin(), points.end(),
-    [](const glm::dvec2& a, const glm::dvec2& b) { return a.x < b.x || (a.x == b.x && a.y < b.y); });
+  points = Sorted(std::move(points));
   const std::vector<glm::dvec2> low = Chain(points, 1.0);
   const std::vector<glm::dvec2> high = Chain(points, -1.0);
-  const double width = points.back().x - points.front().x;
   std::vector<double> xs;
   for (const glm::dvec2& point : points)
   {
-    if (xs.empty() || point.x - xs.back() > 1e-12 * width) // rounding makes slivers of corners one above the other
+    if (xs.empty() || point.x > xs.back())
     {
       xs.push_back(point.x);
     }

@@ -28,8 +28,11 @@ struct MarchSettings
   double stepSize =
     1.0; ///< voxels, of a step where the index varies and the octree (if any) has single voxels; 0.05 to 1e4
   bool meanDirection = true;
-  bool counts = false;  ///< also photonCount and photonWeight: one more number a voxel, in the same pass
-  bool batches = false; ///< also batchFluence: sums of each batch apart, on as many copies as there are batches
+  /// Also photonCount and photonWeight, of up to 16777215 photons: one more number a voxel, in the same pass.
+  bool counts = false;
+  /// Also batchFluence: sums of each of up to 64 batches apart, on as many copies at least. Private sums are shared out by
+  /// whole copies: batches that are as large as each other, and as many as compute units or a multiple, keep all of them busy.
+  bool batches = false;
 
   /// How the sums of many work-items stay whole. All of them give the same light, bit for bit.
   enum class Sums
@@ -37,12 +40,13 @@ struct MarchSettings
     Fitting, ///< private ones on a CPU of up to 8 cores and where there are no 64-bit atomics, else shared ones
     Shared,  ///< one set, 64-bit fixed point atomics; needs cl_khr_int64_base_atomics
     Private, ///< a set for each compute unit (as many as fit into memory), added up at the end
-    Unsafe,  ///< one set, plain additions by all: loses some. Only to measure what safety costs
+    Unsafe,  ///< one set, plain additions by all: loses some. Only to measure what safety costs, and not by batches
   };
   Sums sums = Sums::Fitting;
 };
 
-/// @throws InvalidInput where the order is not 1, 2 or 4, or the step size not 0.05 to 1e4 voxels
+/// @throws InvalidInput where the order is not 1, 2 or 4, the step size not 0.05 to 1e4 voxels, or sums are Unsafe and batches
+///   asked for
 void Check(const MarchSettings& settings);
 
 /// The way of one photon: positions, and the part of its power (all channels together) that is left there; 1 where it had none.
@@ -56,14 +60,15 @@ struct PhotonPath
 /// Light that photons carried into a medium.
 struct PhotonLight
 {
-  /// fluence = fluence_direct: light that was not scattered. Balance: `absorbed` is what the medium absorbed and what it
+  /// Light that was not scattered, so that fluenceDirect would be the same and is left empty. Balance: `absorbed` is what the medium absorbed and what it
   /// scattered, `leftOver` what still went round when the photon was given up (total reflection can trap it).
   LightField light;
   Rgb scattered = {}; ///< W, the part of `absorbed` that is scattered
   /// 3 a voxel: sum of power times direction over sum of power, at most 1 long; empty: not asked for. Coarse in voxels so dark
   /// that they gained a few units of fixed point only, some 2^-62 of all power times the longest path.
   std::vector<float> meanDirection;
-  std::vector<float> photonCount; ///< photons that crossed each voxel, each once; empty: not asked for
+  /// Photons that crossed each voxel, until they were dark; each once, and once more where it comes back. Empty: not asked for.
+  std::vector<float> photonCount;
   std::vector<float>
     photonWeight;  ///< their mean `weight`, 0 where there is none, to 1e-4 of the largest; empty: not asked for
   int batches = 1; ///< that the photons have: the largest `batch` and one

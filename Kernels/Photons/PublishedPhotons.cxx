@@ -1,11 +1,11 @@
 #include "PublishedPhotons.h"
 
 #include "Clock.h"
-#include "IndexRange.h"
 #include "PhotonPacking.h"
 #include "TyndallKernelSources.h"
 
 #include "../Device/Buffer.h"
+#include "../Refraction/IndexRange.h"
 
 #include <algorithm>
 #include <cmath>
@@ -230,7 +230,6 @@ PhotonLight MarchPublished(Device& device, const Medium& medium, const Field& io
   result.light.channels = 3;
   result.light.device = device.Name();
   result.light.fluence = fluence.Read();
-  result.light.fluenceDirect = result.light.fluence;
   result.meanDirection = direction.Read();
   result.missed = packed.missed;
   result.light.balance.entered = packed.entered;

@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <cmath>
 #include <numeric>
+#include <utility>
 
 namespace tyndall
 {
@@ -44,16 +45,17 @@ std::size_t Scatter(std::size_t count)
 }
 }
 
-SampleSequence::SampleSequence(Sampler sampler, std::size_t count, std::uint64_t seed)
+SampleSequence::SampleSequence(Sampler sampler, std::size_t count, std::uint64_t seed, int batch)
   : Kind(sampler)
   , Count(std::max<std::size_t>(count, 1))
-  , Seed(seed)
+  , Seed(batch == 0 ? seed : Mix(seed) + static_cast<std::uint64_t>(batch))
+  , Turned(batch % 2 == 1)
   , Rows(static_cast<std::size_t>(std::lround(std::sqrt(static_cast<double>(this->Count)))))
   , Stride(Scatter(this->Count))
 {
-  for (int d = 0; d < 4 && seed != 0; ++d)
+  for (int d = 0; d < 4 && this->Seed != 0; ++d)
   {
-    this->Shift[d] = Unit(Mix(Mix(seed) + d));
+    this->Shift[d] = Unit(Mix(Mix(this->Seed) + d));
   }
 }
 
@@ -87,12 +89,14 @@ std::array<double, 4> SampleSequence::operator[](std::size_t i) const
   else
   {
     constexpr std::size_t Bases[] = { 2, 3, 5, 7 };
+    const bool otherBases = this->Turned && this->Kind == Sampler::Hammersley;
+    const auto base = [&](int number) { return Bases[otherBases && number < 2 ? 1 - number : number]; };
     for (int d = 0; d < 4; ++d)
     {
       point[d] = this->Kind == Sampler::Random ? this->Random(i, d)
         : this->Kind == Sampler::Halton        ? RadicalInverse(i + 1, Bases[d])
         : d == 0                               ? (i + 0.5) / static_cast<double>(this->Count)
-                                               : RadicalInverse(i, Bases[d - 1]);
+                                               : RadicalInverse(i, base(d - 1));
     }
   }
   const bool shifted = this->Kind != Sampler::Random && this->Kind != Sampler::Jittered;
@@ -100,6 +104,10 @@ std::array<double, 4> SampleSequence::operator[](std::size_t i) const
   {
     point[d] += this->Shift[d];
     point[d] -= std::floor(point[d]);
+  }
+  if (this->Turned)
+  {
+    std::swap(point[0], point[1]);
   }
   return point;
 }

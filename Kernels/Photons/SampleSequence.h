@@ -20,10 +20,13 @@ enum class Sampler
 ///
 /// Cells of Grid and Jittered have equal areas whatever the count is; in dimensions 2 and 3 they are a second grid, in another
 /// order. A seed other than 0 shifts Hammersley, Halton and Grid as a whole, round the edges.
+///
+/// Batches of one seed are independent sets: each above 0 has a shift of its own; in odd ones dimensions 0 and 1 change places, and
+/// Hammersley has base 3 for 2 and 2 for 3, so that errors of an even and an odd one have nothing in common.
 class SampleSequence
 {
 public:
-  SampleSequence(Sampler sampler, std::size_t count, std::uint64_t seed = 0);
+  SampleSequence(Sampler sampler, std::size_t count, std::uint64_t seed = 0, int batch = 0);
 
   std::array<double, 4> operator[](std::size_t i) const;
 
@@ -34,6 +37,7 @@ private:
   Sampler Kind;
   std::size_t Count;
   std::uint64_t Seed;
+  bool Turned; ///< dimensions 0 and 1 change places
   std::size_t Rows;
   std::size_t Stride; ///< from cell to cell of the second grid
   std::array<double, 4> Shift = {};

@@ -14,12 +14,13 @@ struct NoisyLight
 {
   Grid grid;
   int channels = 1;                     ///< of fluence: 1 or 3
-  const float* fluence = nullptr;       ///< W / length^2
+  const float* fluence = nullptr;       ///< W / length^2; not read by the sound estimator
   const float* meanDirection = nullptr; ///< 3 a voxel; optional
   const float* photonCount = nullptr;   ///< photons in each voxel; for the published and the nearest estimator
   const float* photonWeight = nullptr;  ///< their mean weight; for the published one
   int batches = 1;
-  const float* batchFluence = nullptr; ///< [batch][voxel][channel]; for the sound estimator, at least two
+  const float* batchFluence =
+    nullptr; ///< [batch][voxel][channel]; for the sound estimator, 2 to 16 whose mean is fluence
 };
 
 struct ReconstructionSettings
@@ -32,11 +33,12 @@ struct ReconstructionSettings
     NearestPhotons, ///< the lowest level that holds `nearest` photons (section 4.2)
   };
   Estimator estimator = Estimator::Sound;
-  int levels = 5;          ///< of the pyramid above the grid, at most; 1 to 8, and no more than the grid has
-  double weightStep = 0.0; ///< published: weight of photons from a level to the next; 0: the mean weight of lit voxels
-  int level = 1;           ///< constant radius: which
-  int nearest = 20;        ///< nearest photons: how many, at least 1
-  bool conserve = true;    ///< scale the light such that the volume's total is what it was
+  int levels = 5; ///< of the pyramid above the grid, at most; 1 to 8, and no more than the grid has
+  double weightStep =
+    0.0;         ///< published: weight of photons from a level to the next; 0: the mean weight of lit voxels, less 1e-3
+  int level = 1; ///< constant radius: which
+  int nearest = 20;     ///< nearest photons: how many, at least 1
+  bool conserve = true; ///< scale the light such that the volume's total is what it was
 };
 
 struct ReconstructedLight
@@ -52,6 +54,22 @@ struct ReconstructedLight
   double seconds = 0.0;
 };
 
+/// Light without most of its noise, over pyramids in voxels (spacing does not matter); grids of odd sizes as if their last voxel
+/// was repeated.
+///
+/// Sound: a Laplacian pyramid of each batch (down by 1 3 3 1 along each axis, up trilinear). On a level the batches' details d_b
+/// have mean d; sum (d_b - d)^2 / (B (B - 1)) is the noise of d, d^2 less that noise is light, for batches agree on light and
+/// not on noise: Wiener's gain says how much of d to keep. Both are means over 2x2x2 cells, smoothed by 1 4 6 4 1; the noise is
+/// taken off twice, lest chance pass for light. The squared error is the sum over the levels of the noise that was kept and of
+/// 0.4 of the light that was held for noise (SoundReconstruction.cxx says why 0.4). Light below 0 becomes 0. Mean directions
+/// are smoothed as flux, fluence times direction, with the same gains. Light of three channels and one colour
+/// everywhere is smoothed by their sum, whose error they share; where colours differ each channel is smoothed by itself, and has an
+/// error of its own.
+///
+/// Published (Pfeuti 2009, section 3.2.4, listings B.2, B.3): the lower of the level up to which the difference of two successive
+/// levels does not grow, and the weight over `weightStep`, the weight from the first level with at least one photon. Its light and
+/// directions, those of constant radius and of nearest photons are trilinear in a pyramid by a Gauss kernel of 4x4x4.
+///
 /// @throws InvalidInput where what the estimator needs is missing (says what), a setting is out of its range, or a number of the
 ///   light is not finite (names the voxel); DeviceError; Aborted
 ReconstructedLight Reconstruct(

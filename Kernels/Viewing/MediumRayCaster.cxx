@@ -3,6 +3,7 @@
 #include "../Device/Batches.h"
 #include "../Device/Defines.h"
 #include "../Device/Sizes.h"
+#include "../Refraction/SquaredIndex.h"
 #include "Bricks.h"
 #include "TyndallKernelSources.h"
 #include "ViewChecks.h"
@@ -179,10 +180,7 @@ void MediumRayCaster::PrepareBending()
     cl_int size[3];
   } const grid = { { this->TheGrid.size[0], this->TheGrid.size[1], this->TheGrid.size[2] } };
   const std::size_t x = grid.size[0], y = grid.size[1], z = grid.size[2];
-  const Buffer<float> coefficients(this->TheDevice, (x + 4) * (y + 4) * (z + 4), "squared index");
-  cl::Kernel prepare = this->TheDevice.Kernel("squared_index_coefficients", { kernel_source::SquaredIndex });
-  With(prepare, grid, this->Ior, coefficients);
-  this->TheDevice.Queue().enqueueNDRangeKernel(prepare, cl::NullRange, cl::NDRange(x + 4, y + 4, z + 4));
+  const Buffer<float> coefficients = SquaredIndexCoefficients(this->TheDevice, this->TheGrid, this->Ior);
   cl::Kernel pack =
     this->TheDevice.Kernel("pack_bending", { kernel_source::SquaredIndex, kernel_source::BendingField });
   With(pack, grid, Float4(1.0 / Vector(this->TheGrid.spacing), 0.0), coefficients, this->Bending);

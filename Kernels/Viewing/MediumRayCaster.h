@@ -5,7 +5,7 @@
 #include "../Device/Monitor.h"
 #include "../Lights/Lights.h"
 #include "../Medium/Medium.h"
-#include "../Photons/IndexRange.h"
+#include "../Refraction/IndexRange.h"
 #include "Camera.h"
 
 #include <array>

@@ -1,6 +1,6 @@
 #include "ViewChecks.h"
 
-#include "../Photons/IndexRange.h"
+#include "../Refraction/IndexRange.h"
 
 #include <algorithm>
 #include <cmath>

@@ -28,7 +28,36 @@ PaperScene Ready(const PhotonBench& bench, int edge)
   scene.Voxelize(bench.device);
   scene.Group();
   scene.Emit(PaperPhotons);
+  for (std::size_t i = 0; i < scene.photons.size(); ++i)
+  {
+    scene.photons[i].batch = static_cast<std::int32_t>(i % 2);
+  }
   return scene;
+}
+}
+
+namespace
+{
+/// What adaptive photons do first: few of them, into coarse cells.
+void TimePilots(const PhotonBench& bench, const PaperScene& paper)
+{
+  PaperScene scene = paper;
+  scene.Emit(bench.quick ? 256 : 4096);
+  PhotonMarcher marcher = scene.Marcher(bench.device);
+  Table table({ "pilot photons", "", "ms", "core ms" });
+  const auto time = [&](const std::string& name, const std::function<double()>& run) {
+    const Times times = Repeat(bench.device, bench.quick ? 1 : 15, run);
+    PhotonLine("pilots", name, scene.settings.grid)
+      .Add("photons", static_cast<double>(scene.photons.size()))
+      .Add("seconds", times.seconds)
+      .Add("core_seconds", times.coreSeconds)
+      .Print();
+    table.Add({ name, "", Text("%.2f", 1e3 * times.seconds), Text("%.2f", 1e3 * times.coreSeconds) });
+  };
+  const std::vector<std::array<int, 2>> origins(scene.photons.size(), { 7, 9 });
+  time("gathered in 16^3 cells", [&] { return marcher.Gather(scene.photons, origins, { 16, 16, 16 }).seconds; });
+  time("marched into all voxels", [&] { return marcher.March(scene.photons).seconds; });
+  table.Print("Pilot photons, with sorting and copies");
 }
 }
 
@@ -55,6 +84,13 @@ void TimeWays(const PhotonBench& bench)
   MarchSettings settings;
   const double fitting = sound("sound, octree", settings, true);
   sound("sound, voxel by voxel", settings, false);
+  settings.counts = true;
+  sound("sound, octree, counts", settings, true);
+  settings.batches = true;
+  sound("sound, octree, counts, 2 batches", settings, true);
+  settings.counts = false;
+  sound("sound, octree, 2 batches", settings, true);
+  settings.batches = false;
   settings.order = 4;
   sound("sound, order 4, octree", settings, true);
   settings.order = 2;
@@ -72,6 +108,7 @@ void TimeWays(const PhotonBench& bench)
   });
   PaperScene straight = scene;
   std::fill(straight.voxels.ior.begin(), straight.voxels.ior.end(), 1.0f);
+  TimePilots(bench, scene);
   PhotonMarcher marcher = straight.Marcher(device, {}, false);
   way("sound, constant index", [&] { return marcher.March(straight.photons); });
   table.Print("Marching 122000 photons; GB/s: what their credits move, beside the machine's bandwidth of " +

@@ -7,6 +7,7 @@
 #include "vtkParticipatingMedium.h"
 #include "vtkPhotonEmitter.h"
 #include "vtkPhotonMarcher.h"
+#include "vtkPhotonReconstruction.h"
 #include "vtkRefractionOctree.h"
 
 namespace
@@ -67,6 +68,16 @@ int TestArraysArePassedOn(int, char*[])
     vtkNew<vtkPhotonMarcher> marcher;
     marcher->SetPhotonsConnection(emitter->GetOutputPort());
     Check(claims, marcher, active);
+
+    vtkNew<vtkPhotonReconstruction> reconstruction;
+    reconstruction->SetScheme(vtkPhotonReconstruction::CONSTANT_RADIUS);
+    reconstruction->SetInputConnection(marcher->GetOutputPort());
+    reconstruction->Update();
+    for (const char* name : CellNames)
+    {
+      claims.That(reconstruction->GetOutput()->GetCellData()->HasArray(name),
+        std::string(name) + " goes through vtkPhotonReconstruction where " + active + " is active");
+    }
 
     vtkNew<vtkLightPropagationMaps> maps;
     maps->SetSkyColor(1.0, 1.0, 1.0);

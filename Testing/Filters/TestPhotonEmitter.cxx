@@ -1,7 +1,9 @@
 #include "MediumScene.h"
 
 #include "vtkDataArray.h"
+#include "vtkFieldData.h"
 #include "vtkFloatArray.h"
+#include "vtkIntArray.h"
 #include "vtkLightRig.h"
 #include "vtkPhotonEmitter.h"
 #include "vtkPointData.h"
@@ -63,6 +65,76 @@ void ASkyGivesPhotonsFromEverywhere(test::Claims& claims)
   claims.Near(Total(emitter->GetOutput(), 1) / (std::acos(-1.0) * 96.0), 1.0, 5e-3, "power of the sky");
 }
 
+/// A map of two halves of the outline's square, one three times as dense as the other, that belongs to a light.
+vtkSmartPointer<vtkImageData> TwoHalves(int light)
+{
+  auto map = test::MakeImage({ { 8, 8, 1 } });
+  test::AddValues<vtkFloatArray>(
+    map->GetCellData(), "importance", 64, 1, [](vtkIdType i, int) { return i % 8 < 4 ? 1.5 : 0.5; });
+  test::AddValues<vtkIntArray>(map->GetFieldData(), "light", 1, 1, [=](vtkIdType, int) { return light; });
+  return map;
+}
+
+void AMapMakesPhotonsDense(test::Claims& claims)
+{
+  vtkNew<vtkLightRig> rig;
+  rig->SetSunElevation(90.0);
+  vtkNew<vtkPhotonEmitter> emitter;
+  test::Errors errors(emitter);
+  emitter->SetInputDataObject(test::MakeImage({}));
+  emitter->SetLightsConnection(rig->GetOutputPort());
+  emitter->SetPhotonCount(8000);
+  emitter->SetImportanceMapData(TwoHalves(0));
+  emitter->Update();
+  vtkPointData* data = emitter->GetOutput()->GetPointData();
+  vtkDataArray* weight = data->GetArray("weight");
+  vtkDataArray* batch = data->GetArray("batch");
+  if (!claims.That(errors.None() && weight && batch && weight->GetNumberOfTuples() == 8000, "photons of a map"))
+  {
+    return;
+  }
+  claims.Near(Total(emitter->GetOutput(), 0), 16.0, 1e-3, "power of the sun, all the same");
+  claims.Near(emitter->GetPower(), 48.0, 1e-2, "power on the panel");
+  vtkIdType dense = 0, first = 0;
+  double product = 0.0;
+  for (vtkIdType i = 0; i < 8000; ++i)
+  {
+    dense += weight->GetComponent(i, 0) < 1.0;
+    first += batch->GetComponent(i, 0) == 0.0;
+    product = std::max(product,
+      std::abs(data->GetArray("power")->GetComponent(i, 0) / weight->GetComponent(i, 0) * 8000.0 / 16.0 - 1.0));
+  }
+  claims.Near(dense / 8000.0, 0.75, 2e-3, "part of the photons in the denser half");
+  claims.Near(first, 4000.0, 0.0, "photons of the first of two batches");
+  claims.Near(product, 0.0, 1e-4, "power over weight is that of photons spread evenly");
+  claims.Near(weight->GetRange()[0], 1.0 / 1.5, 1e-5, "weight where photons are dense");
+  claims.Near(weight->GetRange()[1], 2.0, 1e-5, "weight where they are sparse");
+
+  emitter->SetMaximumDensity(1.0);
+  emitter->Update();
+  claims.Near(data->GetArray("weight")->GetRange()[1], 1.0, 1e-5, "no density above 1: photons are spread evenly");
+  emitter->SetMaximumDensity(8.0);
+  emitter->SetBatches(16);
+  emitter->Update();
+  claims.Near(data->GetArray("batch")->GetRange()[1], 15.0, 0.0, "the last of sixteen batches");
+  emitter->SetBatches(0);
+  emitter->RemoveImportanceMap();
+  emitter->Update();
+  claims.Near(data->GetArray("batch")->GetRange()[1], 0.0, 0.0, "one batch without a map");
+  claims.Near(data->GetArray("weight")->GetRange()[1], 1.0, 0.0, "weight of photons spread evenly");
+
+  emitter->SetSkyColor(1.0, 1.0, 1.0);
+  emitter->SetImportanceMapData(TwoHalves(-1));
+  emitter->Update();
+  double heaviest = 0.0;
+  for (vtkIdType i = 0; i < data->GetArray("weight")->GetNumberOfTuples(); ++i)
+  {
+    const bool sun = data->GetArray("light")->GetComponent(i, 0) == 0.0;
+    heaviest = std::max(heaviest, sun ? data->GetArray("weight")->GetComponent(i, 0) : 0.0);
+  }
+  claims.Near(heaviest, 1.0, 0.0, "a map of the sky leaves the sun alone");
+}
+
 void NothingShinesIsAWarning(test::Claims& claims)
 {
   vtkNew<vtkPhotonEmitter> emitter;
@@ -121,6 +193,7 @@ int TestPhotonEmitter(int, char*[])
   test::Claims claims;
   ASunGivesItsPhotons(claims);
   ASkyGivesPhotonsFromEverywhere(claims);
+  AMapMakesPhotonsDense(claims);
   NothingShinesIsAWarning(claims);
   BadInputIsOneError(claims);
 #ifndef __SANITIZE_ADDRESS__

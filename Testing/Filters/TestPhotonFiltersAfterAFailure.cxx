@@ -7,7 +7,9 @@
 #include "vtkMediumRayCaster.h"
 #include "vtkMeshVoxelizer.h"
 #include "vtkPhotonEmitter.h"
+#include "vtkPhotonImportance.h"
 #include "vtkPhotonMarcher.h"
+#include "vtkPhotonReconstruction.h"
 #include "vtkRefractionOctree.h"
 
 #include <memory>
@@ -28,10 +30,12 @@ struct Chain
   vtkNew<vtkMeshVoxelizer> voxelizer;
   vtkNew<vtkRefractionOctree> octree;
   vtkNew<vtkLightRig> rig;
+  vtkNew<vtkPhotonImportance> importance;
   vtkNew<vtkPhotonEmitter> emitter;
   vtkNew<vtkPhotonMarcher> marcher;
+  vtkNew<vtkPhotonReconstruction> reconstruction;
   vtkNew<vtkMediumRayCaster> caster;
-  std::vector<vtkAlgorithm*> filters = { voxelizer, octree, rig, emitter, marcher, caster };
+  std::vector<vtkAlgorithm*> filters = { voxelizer, octree, rig, importance, emitter, marcher, reconstruction, caster };
   std::vector<std::unique_ptr<test::Errors>> errors;
 
   Chain()
@@ -39,13 +43,17 @@ struct Chain
     this->voxelizer->SetInputDataObject(Ball(false));
     this->voxelizer->SetSampleDimensions(12, 12, 12);
     this->octree->SetInputConnection(this->voxelizer->GetOutputPort());
+    this->importance->SetInputConnection(this->voxelizer->GetOutputPort());
+    this->importance->SetLightsConnection(this->rig->GetOutputPort());
+    this->emitter->SetImportanceMapConnection(this->importance->GetOutputPort());
     this->emitter->SetInputConnection(this->voxelizer->GetOutputPort());
     this->emitter->SetLightsConnection(this->rig->GetOutputPort());
     this->emitter->SetPhotonCount(500);
     this->marcher->SetInputConnection(this->voxelizer->GetOutputPort());
     this->marcher->SetOctreeConnection(this->octree->GetOutputPort());
     this->marcher->SetPhotonsConnection(this->emitter->GetOutputPort());
-    this->caster->SetInputConnection(this->marcher->GetOutputPort());
+    this->reconstruction->SetInputConnection(this->marcher->GetOutputPort());
+    this->caster->SetInputConnection(this->reconstruction->GetOutputPort());
     this->caster->SetImageSize(9, 9);
     for (vtkAlgorithm* filter : this->filters)
     {
@@ -88,7 +96,9 @@ void AnOpenMeshIsOneErrorInAll(test::Claims& claims)
   chain.caster->Update();
   claims.That(chain.ErrorsOf(chain.voxelizer).WasOneWith("boundary edges"), "the mesh is refused once");
   claims.That(chain.NoErrors(), "later filters say nothing of an open mesh");
-  claims.That(chain.AreEmpty({ chain.voxelizer, chain.octree, chain.emitter, chain.marcher, chain.caster }, "failed"),
+  claims.That(chain.AreEmpty({ chain.voxelizer, chain.octree, chain.importance, chain.emitter, chain.marcher,
+                               chain.reconstruction, chain.caster },
+                "failed"),
     "everything after an open mesh is empty");
   chain.caster->Update();
   claims.That(chain.NoErrors(), "nothing is said a second time");
@@ -129,6 +139,18 @@ void LightsThatFailedAreNoErrorOfTheEmitter(test::Claims& claims)
   claims.That(
     chain.ErrorsOf(chain.emitter).None() && chain.ErrorsOf(chain.marcher).None(), "photons of it are no error");
   claims.That(chain.AreEmpty({ chain.emitter, chain.marcher, chain.caster }, "failed"), "there is no light");
+}
+
+void AMapThatFailedIsNoErrorOfTheEmitter(test::Claims& claims)
+{
+  Chain chain;
+  chain.importance->SetBackground(-1.0);
+  chain.caster->Update();
+  claims.That(chain.ErrorsOf(chain.importance).WasOneWith("background"), "a negative background is refused once");
+  claims.That(chain.NoErrors(), "later filters say nothing of a map that failed");
+  claims.That(
+    chain.AreEmpty({ chain.importance, chain.emitter, chain.marcher, chain.reconstruction, chain.caster }, "failed"),
+    "and are empty");
 }
 
 void AMeshThatFailedIsNoErrorOfTheVoxelizer(test::Claims& claims)
@@ -180,6 +202,7 @@ int TestPhotonFiltersAfterAFailure(int, char*[])
   BadBoundsAreOneErrorInAll(claims);
   PhotonsThatFailedAreNoErrorOfTheMarcher(claims);
   LightsThatFailedAreNoErrorOfTheEmitter(claims);
+  AMapThatFailedIsNoErrorOfTheEmitter(claims);
   AMeshThatFailedIsNoErrorOfTheVoxelizer(claims);
   AnAbortEmptiesWhatFollows(claims);
   return claims.Result();

@@ -118,6 +118,35 @@ TEST(PhotonEmitter, ADirectionalLightGivesItsIrradianceTimesTheOutline)
   }
 }
 
+TEST(PhotonEmitter, AFaceSeenSquarelyIsLitWhollyWhereverTheBoxIs)
+{
+  const double tilt = std::cos(0.5 * Pi); // 6e-17: a sun straight above
+  for (double corner : { 0.0, -2.0, 1.0, 1e6 })
+  {
+    for (const std::array<double, 3>& direction : { std::array<double, 3>{ 0.0, 0.0, -1.0 }, { tilt, tilt, -1.0 },
+           { -tilt, tilt, -1.0 }, { tilt, -tilt, -1.0 }, { -1.0, tilt, -tilt }, { tilt, 1.0, tilt } })
+    {
+      Grid grid;
+      grid.size = { 4, 4, 4 };
+      grid.origin = { corner, corner, corner };
+      Illumination light;
+      light.lights = { Lamp(LightType::Directional, {}, direction) };
+      const EmittedPhotons emitted = EmitPhotons(grid, light, { 1000 });
+      EXPECT_NEAR(emitted.power[0], 16.0 * 10.0, 1e-3) << corner << " " << direction[0] << " " << direction[1];
+      int quarters[4] = {};
+      for (const Photon& photon : emitted.photons)
+      {
+        const int a = std::abs(direction[0]) > 0.5 ? 1 : 0, b = std::abs(direction[2]) > 0.5 ? 1 : 2;
+        ++quarters[2 * (photon.position[a] > corner + 2.0) + (photon.position[b] > corner + 2.0)];
+      }
+      for (int quarter : quarters)
+      {
+        EXPECT_NEAR(quarter, 250, 10) << corner << " " << direction[0] << " " << direction[1];
+      }
+    }
+  }
+}
+
 TEST(PhotonEmitter, PhotonsOfADirectionalLightAreSpreadEvenly)
 {
   // What enters through each face is its part of the outline.

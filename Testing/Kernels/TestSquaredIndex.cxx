@@ -1,7 +1,8 @@
 // The spline of n^2 that photons and rays follow: exact for smooth fields, and positive whatever the voxels hold.
 #include "DeviceTest.h"
 #include "PhotonScene.h"
-#include "TyndallKernelSources.h"
+
+#include "Refraction/SquaredIndex.h"
 
 #include <random>
 
@@ -18,17 +19,8 @@ struct Spline
   Spline(Device& device, const PhotonScene& scene)
     : size(scene.medium.grid.size)
   {
-    struct
-    {
-      cl_int size[3];
-    } grid = { { this->size[0], this->size[1], this->size[2] } };
-    const std::size_t nx = this->size[0] + 4, ny = this->size[1] + 4, nz = this->size[2] + 4;
     const Buffer<float> index(device, scene.ior.data(), scene.ior.size(), "ior");
-    const Buffer<float> values(device, nx * ny * nz, "coefficients");
-    cl::Kernel prepare = device.Kernel("squared_index_coefficients", { kernel_source::SquaredIndex });
-    With(prepare, grid, index, values);
-    device.Queue().enqueueNDRangeKernel(prepare, cl::NullRange, cl::NDRange(nx, ny, nz));
-    this->coefficients = values.Read();
+    this->coefficients = SquaredIndexCoefficients(device, scene.medium.grid, index).Read();
     for (const float n : scene.ior)
     {
       this->squared.push_back(n * n);

@@ -1,4 +1,4 @@
-"""Lights and an environment that were connected can be disconnected again."""
+"""Lights, an environment and a map that were connected can be disconnected again."""
 import os
 
 from paraview import servermanager
@@ -32,3 +32,20 @@ for make in (LightPropagationMaps, LPMPropagate, MediumRayCaster):
         assert brightness(proxy) > 0, (make, name)
         setattr(proxy, name, None)
         assert brightness(proxy) == 0, (make, name)
+
+emitter = PhotonEmitter(Input=medium, SkyColor=[1, 1, 1], PhotonCount=2000)
+
+
+def batches():
+    return servermanager.Fetch(emitter).GetPointData().GetArray("batch").GetRange()[1] + 1
+
+
+assert batches() == 1, batches()
+importance = PhotonImportance(Input=medium, Lights=lights)
+for name, source in (("Environment", sky), ("Lights", None)):
+    setattr(importance, name, source)
+emitter.ImportanceMap = importance  # of the sky alone
+assert batches() == 2, batches()
+assert list(vtk_to_numpy(servermanager.Fetch(importance).GetFieldData().GetArray("light"))) == [-1]
+emitter.ImportanceMap = None
+assert batches() == 1, batches()

@@ -16,6 +16,12 @@ typedef struct
 // A voxel on the grid's border or beyond it goes on as the two last ones of its row do.
 static float squared_index_of(const index_grid* grid, const __global float* ior, int i, int j, int k)
 {
+  const bool inside = i >= 0 && i < grid->size[0] && j >= 0 && j < grid->size[1] && k >= 0 && k < grid->size[2];
+  if (inside)
+  {
+    const float n = ior[(k * grid->size[1] + j) * grid->size[0] + i];
+    return n * n;
+  }
   const int voxel[3] = { i, j, k };
   const int stride[3] = { 1, grid->size[0], grid->size[0] * grid->size[1] };
   int nearest = 0;
@@ -50,33 +56,20 @@ static float greater_of(float a, float b)
   return a > b ? a : b;
 }
 
-__kernel void squared_index_coefficients(index_grid grid, const __global float* ior, __global float* coefficients)
+// squares  f of each voxel and of three more at either end of each axis
+__kernel void extend_squared_index(index_grid grid, const __global float* ior, __global float* squares)
 {
   const int x = get_global_id(0), y = get_global_id(1), z = get_global_id(2);
-  const int i = x - 2, j = y - 2, k = z - 2;
-  float f, x0, x1, y0, y1, z0, z1; // not in arrays, which PoCL does not keep in registers
-  if (i > 0 && i < grid.size[0] - 1 && j > 0 && j < grid.size[1] - 1 && k > 0 && k < grid.size[2] - 1)
-  {
-    const int row = grid.size[0], layer = row * grid.size[1];
-    const __global float* n = ior + (k * layer + j * row + i);
-    f = n[0] * n[0];
-    x0 = n[-1] * n[-1];
-    x1 = n[1] * n[1];
-    y0 = n[-row] * n[-row];
-    y1 = n[row] * n[row];
-    z0 = n[-layer] * n[-layer];
-    z1 = n[layer] * n[layer];
-  }
-  else
-  {
-    f = squared_index_of(&grid, ior, i, j, k);
-    x0 = squared_index_of(&grid, ior, i - 1, j, k);
-    x1 = squared_index_of(&grid, ior, i + 1, j, k);
-    y0 = squared_index_of(&grid, ior, i, j - 1, k);
-    y1 = squared_index_of(&grid, ior, i, j + 1, k);
-    z0 = squared_index_of(&grid, ior, i, j, k - 1);
-    z1 = squared_index_of(&grid, ior, i, j, k + 1);
-  }
+  squares[(z * (grid.size[1] + 6) + y) * (grid.size[0] + 6) + x] = squared_index_of(&grid, ior, x - 3, y - 3, z - 3);
+}
+
+__kernel void squared_index_coefficients(index_grid grid, const __global float* squares, __global float* coefficients)
+{
+  const int x = get_global_id(0), y = get_global_id(1), z = get_global_id(2);
+  const int row = grid.size[0] + 6, layer = row * (grid.size[1] + 6);
+  const __global float* here = squares + ((z + 1) * layer + (y + 1) * row + x + 1);
+  // Not in arrays, which PoCL does not keep in registers.
+  const float f = here[0], x0 = here[-1], x1 = here[1], y0 = here[-row], y1 = here[row], z0 = here[-layer], z1 = here[layer];
   const float low = lesser_of(f, lesser_of(lesser_of(lesser_of(x0, x1), lesser_of(y0, y1)), lesser_of(z0, z1)));
   const float high = greater_of(f, greater_of(greater_of(greater_of(x0, x1), greater_of(y0, y1)), greater_of(z0, z1)));
   const float c = 2.0f * f - (x0 + x1 + y0 + y1 + z0 + z1) / 6.0f;
@@ -89,9 +82,12 @@ __kernel void widen_range(int stride, const __global float* low, const __global 
   __global float* high_out)
 {
   const int i = get_global_id(0) + 2 * stride;
-  low_out[i] = fmin(fmin(fmin(low[i - 2 * stride], low[i - stride]), fmin(low[i + stride], low[i + 2 * stride])), low[i]);
-  high_out[i] =
-    fmax(fmax(fmax(high[i - 2 * stride], high[i - stride]), fmax(high[i + stride], high[i + 2 * stride])), high[i]);
+  const __global float* l = low + i;
+  const __global float* h = high + i;
+  low_out[i] = lesser_of(
+    lesser_of(lesser_of(l[-2 * stride], l[-stride]), lesser_of(l[stride], l[2 * stride])), l[0]);
+  high_out[i] = greater_of(
+    greater_of(greater_of(h[-2 * stride], h[-stride]), greater_of(h[stride], h[2 * stride])), h[0]);
 }
 
 // The four basis functions at a place f beyond the second coefficient, from the first coefficient's to the last one's, and

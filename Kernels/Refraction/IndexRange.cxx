@@ -1,7 +1,7 @@
 #include "IndexRange.h"
 
 #include "../Device/Errors.h"
-#include "../Refraction/PyramidLayout.h"
+#include "PyramidLayout.h"
 
 #include <algorithm>
 #include <cmath>

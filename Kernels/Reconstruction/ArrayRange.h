@@ -1,0 +1,21 @@
+#pragma once
+
+#include "../Device/LentArray.h"
+
+#include <array>
+#include <optional>
+
+namespace tyndall
+{
+/// What an array over voxels holds.
+struct ArrayRange
+{
+  std::optional<std::size_t> unfit; ///< the first value that is not a number or outside what was asked for
+  float largest = 0.0f;             ///< magnitude
+  std::array<double, 3> total = {}; ///< of each component; [0] only if there is one
+};
+
+/// @param values  also `array`'s, where the host looks for an unfit one
+ArrayRange RangeOf(Device& device, const LentArray<float>& array, const float* values, std::size_t count,
+  int components, float low, float high);
+}

@@ -1,0 +1,31 @@
+#pragma once
+
+#include "ArrayRange.h"
+#include "PhotonReconstruction.h"
+
+namespace tyndall
+{
+/// Light that was checked, and what reconstructs it.
+struct Reconstruction
+{
+  Device& device;
+  const NoisyLight& light;
+  const ReconstructionSettings& settings;
+  const Monitor& monitor;
+  const LentArray<float>& fluence;   ///< light.batchFluence for the sound estimator, else light.fluence
+  const LentArray<float>& direction; ///< empty where there is none
+  ArrayRange range;                  ///< of `fluence`
+  int levels;                        ///< of the pyramid above the grid
+
+  /// What the light, whose totals are now `total`, is to be scaled by in each channel; sets result.bias.
+  std::array<float, 3> Conserve(const std::array<double, 3>& total, ReconstructedLight& result) const;
+};
+
+/// Light of all batches, of each level's detail what they agree on (Estimator::Sound). The result's arrays have their sizes.
+void ReconstructSound(const Reconstruction& task, ReconstructedLight& result);
+
+/// Light of one level for each voxel (the other estimators).
+/// @param counts, weights  empty where there are none
+void ReconstructByLevel(const Reconstruction& task, const LentArray<float>& counts, const LentArray<float>& weights,
+  double weightStep, ReconstructedLight& result);
+}

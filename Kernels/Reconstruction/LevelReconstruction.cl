@@ -1,0 +1,261 @@
+// A level of the pyramid for each voxel, after LightRows.cl: a work-item a row (or a voxel). Compiled with
+//   ESTIMATOR   0 published, 1 constant radius, 2 nearest photons
+//   CHANNELS, DIRECTIONS  of the light; fields of its pyramid are its channels, then the mean direction
+//   TOP         the highest level
+//
+// Voxels of a row that are next to each other lie between the same cells of a level. So levels are taken one after the other,
+// and each voxel keeps what it took so far: nothing is gathered.
+
+typedef struct
+{
+  int4 size[9];
+  ulong offset[9];
+} pyramid;
+
+// The four rows of a level that a row of voxels lies between, y fastest, and where between them.
+typedef struct
+{
+  size_t at[4];
+  size_t field;
+  float y, z;
+} rows_between;
+
+inline rows_between rows_beside(const __global pyramid* where, int level, int y, int z)
+{
+  const int4 size = where->size[level];
+  const float cell = 1.0f / (float)(1 << level);
+  const float at_y = ((float)y + 0.5f) * cell - 0.5f, at_z = ((float)z + 0.5f) * cell - 0.5f;
+  const float low_y = floor(at_y), low_z = floor(at_z);
+  rows_between r;
+#pragma unroll
+  for (int k = 0; k < 4; ++k)
+  {
+    r.at[k] = where->offset[level] + row_of(size, 0, (int)low_y + k % 2, (int)low_z + k / 2);
+  }
+  r.field = field_of(size);
+  r.y = at_y - low_y;
+  r.z = at_z - low_z;
+  return r;
+}
+
+inline real between(real low, real high, real part)
+{
+  return multiply_add(part, high - low, low);
+}
+
+// REAL_WIDTH cells of a level from x on, interpolated across the row.
+inline real cells_across(const __global float* values, const rows_between* rows, int x)
+{
+  const real low = between(load_real(x, values + rows->at[0]), load_real(x, values + rows->at[1]), (real)rows->y);
+  const real high = between(load_real(x, values + rows->at[2]), load_real(x, values + rows->at[3]), (real)rows->y);
+  return between(low, high, (real)rows->z);
+}
+
+// Trilinear interpolation between the cells of a level where REAL_WIDTH voxels from x on are: getInterpolatedValue of listing B.3.
+// `level` is known when this is compiled.
+inline real sample(const __global float* values, const rows_between* rows, int level, int x)
+{
+  if (level == 0)
+  {
+    return load_real(x, values + rows->at[0]);
+  }
+  const int first = (x - (1 << level) / 2) >> level; // cell left of the first voxel
+#if REAL_WIDTH == 8
+  const float8 cells = cells_across(values, rows, first);
+  if (level == 1)
+  {
+    const float8 part = (float8)(0.75f, 0.25f, 0.75f, 0.25f, 0.75f, 0.25f, 0.75f, 0.25f);
+    return between(cells.s01122334, cells.s12233445, part);
+  }
+  if (level == 2)
+  {
+    const float8 part = (float8)(0.625f, 0.875f, 0.125f, 0.375f, 0.625f, 0.875f, 0.125f, 0.375f);
+    return between(cells.s00111122, cells.s11222233, part);
+  }
+  if (level == 3)
+  {
+    const float8 part = (float8)(0.5625f, 0.6875f, 0.8125f, 0.9375f, 0.0625f, 0.1875f, 0.3125f, 0.4375f);
+    return between(cells.s00001111, cells.s11112222, part);
+  }
+  const float8 voxels = (float8)(0.5f, 1.5f, 2.5f, 3.5f, 4.5f, 5.5f, 6.5f, 7.5f);
+  const float begin = (float)(x - (1 << level) / 2 - (first << level));
+  return between(cells.s00000000, cells.s11111111, (begin + voxels) * (1.0f / (float)(1 << level)));
+#else
+  const float part = ((float)(x - (1 << level) / 2 - (first << level)) + 0.5f) * (1.0f / (float)(1 << level));
+  return between(cells_across(values, rows, first), cells_across(values, rows, first + 1), part);
+#endif
+}
+
+inline void sample_light(const __global float* light, const rows_between* rows, int level, int x, real* channels)
+{
+#pragma unroll
+  for (int c = 0; c < CHANNELS; ++c)
+  {
+    channels[c] = sample(light + c * rows->field, rows, level, x);
+  }
+}
+
+inline real sum_of_channels(const real* channels)
+{
+#if CHANNELS == 3
+  return channels[0] + channels[1] + channels[2];
+#else
+  return channels[0];
+#endif
+}
+
+inline void take(real* taken, const real* channels, integer where)
+{
+#pragma unroll
+  for (int c = 0; c < CHANNELS; ++c)
+  {
+    taken[c] = select(taken[c], channels[c], where);
+  }
+}
+
+// The first level at which `least` photons are found, the top where none has so many, and what `wanted` is there: the light
+// (its channels) or the photons' weight.
+inline real populated(const __global float* counts, const rows_between* rows_of_counts, float least,
+  const __global float* wanted, const rows_between* rows, int x, real* found)
+{
+  real level = 0.0f;
+  integer open = -1; // all
+#pragma unroll
+  for (int l = 0; l <= TOP; ++l)
+  {
+    if (any_of(open))
+    {
+      const integer more = l < TOP ? open & (sample(counts, rows_of_counts + l, l, x) < least) : (integer)0;
+      const integer here = open & (more == 0);
+      level = select(level, (real)l, here);
+      if (any_of(here))
+      {
+#if ESTIMATOR == 0
+        found[0] = select(found[0], sample(wanted, rows + l, l, x), here);
+#else
+        real channels[CHANNELS];
+        sample_light(wanted, rows + l, l, x, channels);
+        take(found, channels, here);
+#endif
+      }
+      open = more;
+    }
+  }
+  return level;
+}
+
+// Up as long as the difference of two levels does not grow (listing B.3), and no higher than `highest`; `taken` is the light there.
+inline real by_surround(const __global float* light, const rows_between* rows, real highest, int x, real* taken)
+{
+  real level = 0.0f;
+  sample_light(light, rows, 0, x, taken);
+#if TOP > 2
+  integer climbing = highest >= 1.0f;
+  if (!any_of(climbing))
+  {
+    return level;
+  }
+  real surround[CHANNELS];
+  sample_light(light, rows + 1, 1, x, surround);
+  real difference = fabs(sum_of_channels(taken) - sum_of_channels(surround));
+#pragma unroll
+  for (int l = 2; l < TOP; ++l)
+  {
+    if (any_of(climbing))
+    {
+      real next[CHANNELS];
+      sample_light(light, rows + l, l, x, next);
+      const real next_difference = fabs(sum_of_channels(surround) - sum_of_channels(next));
+      climbing = climbing & (next_difference <= difference) & (highest >= (real)(l - 1));
+      level = select(level, (real)(l - 1), climbing);
+      take(taken, surround, climbing);
+#pragma unroll
+      for (int c = 0; c < CHANNELS; ++c)
+      {
+        surround[c] = next[c];
+      }
+      difference = next_difference;
+    }
+  }
+#endif
+  return level;
+}
+
+inline void store_direction(const __global float* light, const rows_between* rows, real level, int x, size_t voxel,
+  __global float* direction)
+{
+  real way[3] = { 0.0f, 0.0f, 0.0f };
+#pragma unroll
+  for (int l = ESTIMATOR == 1 ? TOP : 0; l <= TOP; ++l)
+  {
+    const integer here = level == (real)l;
+    if (any_of(here))
+    {
+#pragma unroll
+      for (int c = 0; c < 3; ++c)
+      {
+        way[c] = select(way[c], sample(light + (CHANNELS + c) * rows[l].field, rows + l, l, x), here);
+      }
+    }
+  }
+  const real square = way[0] * way[0] + way[1] * way[1] + way[2] * way[2];
+  real cut = 1.0f;
+  if (any_of(square > 1.0f)) // which is rare
+  {
+    cut = select(cut, 1.0f / sqrt(square), square > 1.0f);
+  }
+  store_reals_of_three(way[0] * cut, way[1] * cut, way[2] * cut, voxel, direction);
+}
+
+//   voxels   the grid's, and from a row of them to the next
+__kernel void choose_level(const __global float* light, const __global pyramid* where, const __global float* counts, const __global float* weights,
+  const __global pyramid* where_counts, float parameter, __global float* fluence, __global float* direction, __global float* chosen, int4 voxels)
+{
+  const int y = ROW_Y, z = ROW_Z;
+  rows_between rows[TOP + 1], rows_of_counts[TOP + 1];
+#pragma unroll
+  for (int l = 0; l <= TOP; ++l)
+  {
+    rows[l] = rows_beside(where, l, y, z);
+#if ESTIMATOR != 1
+    rows_of_counts[l] = rows_beside(where_counts, l, y, z);
+#endif
+  }
+  const size_t begin = ((size_t)z * voxels.y + y) * voxels.w;
+  FOR_CELLS(x, voxels.x)
+  {
+    real taken[CHANNELS] = { 0.0f };
+#if ESTIMATOR == 0
+    real weight = 0.0f;
+    populated(counts, rows_of_counts, 1.0f, weights, rows_of_counts, x, &weight);
+    const real level = by_surround(light, rows, weight / parameter, x, taken);
+#elif ESTIMATOR == 1
+    const real level = TOP;
+    sample_light(light, rows + TOP, TOP, x, taken);
+#else
+    const real level = populated(counts, rows_of_counts, parameter, light, rows, x, taken);
+#endif
+#if CHANNELS == 3
+    store_reals_of_three(taken[0], taken[1], taken[2], begin + x, fluence);
+#else
+    store_real(taken[0], begin + x, fluence);
+#endif
+#if DIRECTIONS
+    store_direction(light, rows, level, x, begin + x, direction);
+#endif
+    store_real(level, begin + x, chosen);
+  }
+}
+
+// Light so that each channel's total is what it was.
+__kernel void scale_light(__global float* fluence, float4 factors)
+{
+  const size_t at = get_global_id(0);
+#if CHANNELS == 3
+  fluence[3 * at] *= factors.x;
+  fluence[3 * at + 1] *= factors.y;
+  fluence[3 * at + 2] *= factors.z;
+#else
+  fluence[at] *= factors.x;
+#endif
+}

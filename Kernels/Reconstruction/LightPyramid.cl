@@ -1,0 +1,128 @@
+// From a level of a light pyramid to the next, a work-item a row (or a cell), after LightRows.cl.
+
+#if GAUSS
+// exp(-x^2 / (2 * 4)) at 0.5 and 1.5, so that four add up to 1 (Pfeuti 2009, section 3.2.4)
+#define NEAR 0.281088549f
+#define FAR 0.218911451f
+#else
+#define NEAR 0.375f
+#define FAR 0.125f
+#endif
+
+// Voxels of 1 or 3 components as the host has them, rows of `pitch`, to rows of a level's fields `first` and on.
+__kernel void split_voxels(
+  const __global float* voxels, int components, int pitch, __global float* level, int4 size, int first)
+{
+  const int y = ROW_Y, z = ROW_Z;
+  const size_t from = ((size_t)z * size.y + y) * pitch, field = field_of(size);
+  __global float* row = level + row_of(size, first, y, z);
+  FOR_CELLS(x, size.x)
+  {
+    if (components == 1)
+    {
+      store_real(load_real(from + x, voxels), x, row);
+      repeat_ends(row, x, REAL_WIDTH, size.x);
+    }
+    else
+    {
+      const real_of_three vectors = load_reals_of_three(from + x, voxels);
+      store_real(vectors.x, x, row);
+      store_real(vectors.y, x, row + field);
+      store_real(vectors.z, x, row + 2 * field);
+      for (int c = 0; c < 3; ++c)
+      {
+        repeat_ends(row + c * field, x, REAL_WIDTH, size.x);
+      }
+    }
+  }
+}
+
+// 4 x 4 x 4 finer cells by a separable kernel.
+__kernel void smooth_down(const __global float* fine, int4 fine_size, __global float* coarse, int4 size, int fields)
+{
+  const float weights[4] = { FAR, NEAR, NEAR, FAR };
+  const int y = ROW_Y, z = ROW_Z;
+  size_t rows[16];
+  for (int k = 0; k < 16; ++k)
+  {
+    rows[k] = row_of(fine_size, 0, 2 * y + k % 4 - 1, 2 * z + k / 4 - 1);
+  }
+  for (int f = 0; f < fields; ++f)
+  {
+    const __global float* from = fine + f * field_of(fine_size);
+    __global float* row = coarse + row_of(size, f, y, z);
+    FOR_CELLS(x, size.x)
+    {
+      pair left = 0.0f, right = 0.0f;
+#pragma unroll
+      for (int k = 0; k < 16; ++k)
+      {
+        const __global float* cells = from + rows[k] + 2 * x;
+        const float w = weights[k % 4] * weights[k / 4];
+        left += w * load_pair(-1, cells);
+        right += w * load_pair(1, cells);
+      }
+      store_real((real)FAR * (left.even + right.odd) + (real)NEAR * (left.odd + right.even), x, row);
+      repeat_ends(row, x, REAL_WIDTH, size.x);
+    }
+  }
+}
+
+// 2 x 2 x 2 finer cells: their sum, or (MEAN_OF_LIT) the mean of those that are not 0 (listing B.2).
+__kernel void join_down(const __global float* fine, int4 fine_size, __global float* coarse, int4 size, int fields)
+{
+  const int y = ROW_Y, z = ROW_Z;
+  for (int f = 0; f < fields; ++f)
+  {
+    __global float* row = coarse + row_of(size, f, y, z);
+    FOR_CELLS(x, size.x)
+    {
+      real sum = 0.0f, lit = 0.0f;
+      for (int k = 0; k < 4; ++k)
+      {
+        const int fy = 2 * y + k % 2, fz = 2 * z + k / 2;
+        if (fy < fine_size.y && fz < fine_size.z)
+        {
+          const pair cells = load_pair(2 * x, fine + row_of(fine_size, f, fy, fz));
+          sum += cells.even + cells.odd;
+          lit += select((real)0.0f, (real)1.0f, cells.even > 0.0f) + select((real)0.0f, (real)1.0f, cells.odd > 0.0f);
+        }
+      }
+#if MEAN_OF_LIT
+      sum = select((real)0.0f, sum / lit, lit > 0.0f);
+#endif
+      store_real(sum, x, row);
+#if !MEAN_OF_LIT
+      if (x + REAL_WIDTH >= size.x && 2 * size.x > fine_size.x) // the last cell once, not with its repetition
+      {
+        float last = 0.0f;
+        for (int k = 0; k < 4; ++k)
+        {
+          const int fy = 2 * y + k % 2, fz = 2 * z + k / 2;
+          if (fy < fine_size.y && fz < fine_size.z)
+          {
+            last += fine[row_of(fine_size, f, fy, fz) + fine_size.x - 1];
+          }
+        }
+        row[size.x - 1] = last;
+      }
+#endif
+      repeat_ends(row, x, REAL_WIDTH, size.x);
+    }
+  }
+}
+
+// Rows of voxels as the host has them, with `components` each, to rows of another length; what is too long repeats the last.
+__kernel void copy_rows(
+  const __global float* from, int count, int from_row, __global float* to, int to_row, int components)
+{
+  const __global float* values = from + get_global_id(0) * (size_t)from_row * components;
+  __global float* out = to + get_global_id(0) * (size_t)to_row * components;
+  for (int x = 0; x < to_row; ++x)
+  {
+    for (int c = 0; c < components; ++c)
+    {
+      out[x * components + c] = values[min(x, count - 1) * components + c];
+    }
+  }
+}

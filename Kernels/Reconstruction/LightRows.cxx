@@ -1,0 +1,80 @@
+#include "LightRows.h"
+
+#include "TyndallKernelSources.h"
+
+#include "../Device/Defines.h"
+
+namespace tyndall
+{
+namespace
+{
+std::size_t Count(int number)
+{
+  return static_cast<std::size_t>(number);
+}
+}
+
+int RowWidth(const Device& device, const Grid& grid)
+{
+  return device.IsCpu() && grid.size[0] >= 16 ? 8 : 1;
+}
+
+namespace
+{
+/// As layer_of and field_of in LightRows.cl. Rows of one place in all layers and quantities are used together; with strides that
+/// are multiples of 4 kB they would all want the same few places of the cache. So a
+/// layer ends with 3 and a quantity with 41 lines of 64 bytes that are not used.
+std::size_t FieldStride(const std::array<int, 3>& size, int stride)
+{
+  const std::size_t layer = Count(size[1]) * Count(stride);
+  const std::size_t field = (layer < 1024 ? layer : layer + 48) * Count(size[2]);
+  return field < 1024 ? field : field + 656;
+}
+}
+
+cl_int4 LightRows::LayoutOf(const std::array<int, 3>& size, int width)
+{
+  return { { size[0], size[1], size[2], WholeVectors(size[0], width) + 2 * (width > 1 ? width : 2) } };
+}
+
+std::size_t LightRows::CountOf(const std::array<int, 3>& size, int fields, int width)
+{
+  return FieldStride(size, LayoutOf(size, width).s[3]) * Count(fields);
+}
+
+LightRows::LightRows(Device& device, const std::array<int, 3>& size, int fields, int width, const char* what)
+  : Size(size)
+  , FieldCount(fields)
+  , Stride(LayoutOf(size, width).s[3])
+  , Memory(device, CountOf(size, fields, width), what)
+{
+}
+
+RowKernels::RowKernels(Device& device, int width, const std::string& options)
+  : TheDevice(device)
+  , RowWidth(width)
+  , Options(Define("REAL_WIDTH", width) + options)
+{
+}
+
+cl::Kernel RowKernels::Kernel(const char* name, std::string_view source, const std::string& options) const
+{
+  return this->TheDevice.Kernel(
+    name, { kernel_source::Numerics, kernel_source::LightRows, source }, this->Options + options);
+}
+
+void RowKernels::Run(
+  const cl::Kernel& kernel, const std::array<int, 3>& cells, std::size_t first, std::size_t layers) const
+{
+  if (this->RowWidth > 1)
+  {
+    this->TheDevice.Queue().enqueueNDRangeKernel(
+      kernel, cl::NDRange(0, first), cl::NDRange(Count(cells[1]), layers), cl::NDRange(1, 1));
+  }
+  else
+  {
+    this->TheDevice.Queue().enqueueNDRangeKernel(
+      kernel, cl::NDRange(0, 0, first), cl::NDRange(Count(cells[0]), Count(cells[1]), layers), cl::NullRange);
+  }
+}
+}

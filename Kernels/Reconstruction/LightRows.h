@@ -1,0 +1,65 @@
+#pragma once
+
+#include "../Device/Buffer.h"
+#include "../Device/Sizes.h"
+#include "../Medium/Grid.h"
+
+#include <array>
+#include <string>
+#include <string_view>
+
+namespace tyndall
+{
+/// How wide the vectors are that the reconstruction's kernels work on: 8 on a CPU, 1 on a GPU and where rows are short.
+int RowWidth(const Device& device, const Grid& grid);
+
+/// Voxels from a row to the next that these kernels need of arrays as the host has them: no more than there are if it fits.
+inline int WholeVectors(int voxels, int width)
+{
+  return RoundUp(voxels, 2 * width);
+}
+
+/// Volumes of rows, one for each of `fields` quantities, laid out as LightRows.cl has it.
+class LightRows
+{
+public:
+  LightRows(Device& device, const std::array<int, 3>& size, int fields, int width, const char* what);
+
+  const std::array<int, 3>& Cells() const { return this->Size; }
+  cl_int4 Layout() const { return { { this->Size[0], this->Size[1], this->Size[2], this->Stride } }; }
+  int Fields() const { return this->FieldCount; }
+  const Buffer<float>& Values() const { return this->Memory; }
+
+  /// Cells and floats a row, as kernels are told them; floats that all fields take.
+  static cl_int4 LayoutOf(const std::array<int, 3>& size, int width);
+  static std::size_t CountOf(const std::array<int, 3>& size, int fields, int width);
+
+private:
+  std::array<int, 3> Size;
+  int FieldCount;
+  int Stride;
+  Buffer<float> Memory;
+};
+
+/// Makes and runs the kernels that work on rows.
+class RowKernels
+{
+public:
+  RowKernels(Device& device, int width, const std::string& options = {});
+
+  int Width() const { return this->RowWidth; }
+  Device& On() const { return this->TheDevice; }
+
+  /// A kernel of `source`, after Numerics.cl and LightRows.cl.
+  cl::Kernel Kernel(const char* name, std::string_view source, const std::string& options = {}) const;
+
+  /// Queue it for all cells of these rows, or for `layers` of them from z = `first` on.
+  void Run(const cl::Kernel& kernel, const std::array<int, 3>& cells) const { this->Run(kernel, cells, 0, cells[2]); }
+  void Run(const cl::Kernel& kernel, const std::array<int, 3>& cells, std::size_t first, std::size_t layers) const;
+
+private:
+  Device& TheDevice;
+  int RowWidth;
+  std::string Options;
+};
+}

@@ -1,0 +1,306 @@
+#include "PhotonReconstruction.h"
+
+#include "Estimators.h"
+#include "LightRows.h"
+
+#include "../Device/HostMemory.h"
+#include "../Medium/Medium.h"
+#include "../Photons/Clock.h"
+#include "../Refraction/PyramidLayout.h"
+
+#include <algorithm>
+#include <cmath>
+#include <future>
+#include <limits>
+#include <numeric>
+
+namespace tyndall
+{
+namespace
+{
+using Estimator = ReconstructionSettings::Estimator;
+
+constexpr float Most = std::numeric_limits<float>::max();
+constexpr float LongestDirection = 1.001f; // rounding may make a unit vector's component a little longer than 1
+
+const char* NameOf(Estimator estimator)
+{
+  switch (estimator)
+  {
+    case Estimator::Published: return "published";
+    case Estimator::Sound: return "sound";
+    case Estimator::ConstantRadius: return "constant radius";
+    default: return "nearest photons";
+  }
+}
+
+bool NeedsCounts(Estimator estimator)
+{
+  return estimator == Estimator::Published || estimator == Estimator::NearestPhotons;
+}
+
+void Check(const ReconstructionSettings& settings)
+{
+  const auto require = [](bool fits, const std::string& what, double value, const char* range) {
+    if (!fits)
+    {
+      throw InvalidInput(what + " is " + std::to_string(value) + "; it must be " + range + ".");
+    }
+  };
+  require(settings.levels >= 1 && settings.levels <= 8, "The number of levels", settings.levels, "1 to 8");
+  require(settings.level >= 0 && settings.level <= 8, "The level of the constant radius", settings.level, "0 to 8");
+  require(settings.nearest >= 1, "The number of nearest photons", settings.nearest, "at least 1");
+  require(settings.weightStep >= 0.0 && std::isfinite(settings.weightStep), "The weight of photons from level to level",
+    settings.weightStep, "a number of 0 (found from the photons) or more");
+}
+
+void RequireArray(const float* values, Estimator estimator, const char* what, const char* advice)
+{
+  if (!values)
+  {
+    throw InvalidInput(
+      "There is no " + std::string(what) + ", which the " + NameOf(estimator) + " estimator needs. " + advice);
+  }
+}
+
+/// That what the estimator needs is there.
+void CheckPresence(const NoisyLight& light, Estimator estimator)
+{
+  tyndall::Medium volume;
+  volume.grid = light.grid;
+  tyndall::Check(volume); // of its grid
+  if (light.channels != 1 && light.channels != 3)
+  {
+    throw InvalidInput(
+      "The light has " + std::to_string(light.channels) + " channels; it must have 1 (grey) or 3 (RGB).");
+  }
+  if (estimator == Estimator::Sound)
+  {
+    const char* advice = "Let PhotonEmitter make at least two Batches and PhotonMarcher's sound scheme gather them, or "
+                         "choose another estimator.";
+    RequireArray(light.batchFluence, estimator, "fluence_batches", advice);
+    if (light.batches < 2 || light.batches > 16)
+    {
+      throw InvalidInput("The photons are one set of " + std::to_string(light.batches) +
+        " batches; the sound estimator compares 2 to 16 of them. " + advice);
+    }
+    return;
+  }
+  RequireArray(light.fluence, estimator, "fluence", "Give it the light of PhotonMarcher.");
+  const char* advice = "Switch on PhotonCounts of PhotonMarcher, or choose another estimator.";
+  if (NeedsCounts(estimator))
+  {
+    RequireArray(light.photonCount, estimator, "photon_count", advice);
+  }
+  if (estimator == Estimator::Published)
+  {
+    RequireArray(light.photonWeight, estimator, "photon_weight", advice);
+  }
+}
+
+/// What an array holds, once it is known that all of it means something.
+ArrayRange Checked(Device& device, const LentArray<float>& array, const float* values, std::size_t count,
+  int components, const Grid& grid, const char* name, float low, float high)
+{
+  const ArrayRange range = RangeOf(device, array, values, count, components, low, high);
+  if (range.unfit)
+  {
+    const std::size_t voxel = *range.unfit / static_cast<std::size_t>(components) % grid.VoxelCount();
+    throw InvalidInput(std::string(name) + " is " + std::to_string(values[*range.unfit]) + " in voxel " +
+      VoxelName(grid, voxel) + " (the first such voxel); it must be finite and " +
+      (low < 0.0f ? "no longer than 1." : "not negative.") + " Clean the light, or march the photons anew.");
+  }
+  return range;
+}
+
+int LevelsOf(const Grid& grid, int levels)
+{
+  return std::max(std::min(levels, PyramidLayout(grid).Top()), 1); // above a single voxel: itself
+}
+
+/// Of the result and of what is made on the way, roughly.
+void RequireMemory(const Device& device, const NoisyLight& light, bool sound)
+{
+  const double direction = light.meanDirection ? 3.0 : 0.0;
+  const double result = light.channels * (sound ? 2.0 : 1.0) + direction + 1.0;
+  const double made =
+    sound ? 2.0 * (light.batches + light.channels + direction) + 9.0 : 8.0 * (light.channels + direction + 2.0);
+  const double voxels = static_cast<double>(light.grid.VoxelCount());
+  RequireHostMemory(sizeof(float) * voxels * (result + (device.IsCpu() ? made / 7.0 : 0.0)),
+    "Reconstructing light on " + std::to_string(light.grid.VoxelCount()) + " voxels",
+    "Use a coarser grid or fewer batches.");
+}
+
+/// The weight of photons from a level to the next: the mean weight of lit voxels, less than marching rounds weights to, so that
+/// equal ones all reach the first step.
+double WeightStep(const NoisyLight& light, const ReconstructionSettings& settings, double total)
+{
+  if (settings.weightStep > 0.0)
+  {
+    return settings.weightStep;
+  }
+  const std::size_t voxels = light.grid.VoxelCount();
+  const std::ptrdiff_t dark = std::count(light.photonWeight, light.photonWeight + voxels, 0.0f);
+  const double lit = static_cast<double>(voxels) - static_cast<double>(dark);
+  return total > 0.0 ? 0.999 * total / lit : 1.0;
+}
+
+void SayWhatIsLeftOut(const NoisyLight& light, ReconstructedLight& result)
+{
+  if (!light.meanDirection)
+  {
+    result.leftOut.push_back("mean direction: there is none");
+  }
+  if (light.channels == 1)
+  {
+    result.leftOut.push_back("colours: light is grey");
+  }
+}
+}
+
+namespace
+{
+/// Whether the light is of one colour everywhere, so that its channels share their noise.
+bool OneColour(const NoisyLight& light)
+{
+  constexpr float part = 1e-4f;
+  const std::size_t count = light.grid.VoxelCount() * static_cast<std::size_t>(light.batches);
+  const float* brightest = light.batchFluence;
+  const auto sum = [](const float* rgb) { return rgb[0] + rgb[1] + rgb[2]; };
+  for (std::size_t i = 0; i < count; ++i)
+  {
+    const float* rgb = light.batchFluence + 3 * i;
+    brightest = sum(rgb) > sum(brightest) ? rgb : brightest;
+  }
+  const float whole = sum(brightest);
+  for (std::size_t i = 0; i < count && whole > 0.0f; ++i)
+  {
+    const float* rgb = light.batchFluence + 3 * i;
+    for (int c = 0; c < 3; ++c)
+    {
+      if (std::abs(rgb[c] - sum(rgb) * (brightest[c] / whole)) > part * sum(rgb))
+      {
+        return false;
+      }
+    }
+  }
+  return true;
+}
+
+/// Each channel as grey light by itself: gains and errors of its own. Directions and levels stay those of all together.
+void ReconstructChannels(Device& device, const NoisyLight& light, const ReconstructionSettings& settings,
+  const Monitor& monitor, ReconstructedLight& result)
+{
+  const std::size_t voxels = light.grid.VoxelCount();
+  std::vector<float> values(voxels * static_cast<std::size_t>(light.batches));
+  NoisyLight one = light;
+  one.channels = 1;
+  one.fluence = one.meanDirection = nullptr;
+  one.batchFluence = values.data();
+  double before = 0.0, after = 0.0;
+  for (std::size_t c = 0; c < 3; ++c)
+  {
+    for (std::size_t i = 0; i < values.size(); ++i)
+    {
+      values[i] = light.batchFluence[3 * i + c];
+    }
+    const double total = std::accumulate(values.begin(), values.end(), 0.0);
+    const ReconstructedLight channel = Reconstruct(device, one, settings, monitor);
+    before += total;
+    after += total * (1.0 + channel.bias);
+    for (std::size_t i = 0; i < voxels; ++i)
+    {
+      result.fluence[3 * i + c] = channel.fluence[i];
+      result.fluenceError[3 * i + c] = channel.fluenceError[i];
+    }
+  }
+  result.bias = before > 0.0 ? after / before - 1.0 : 0.0;
+}
+}
+
+std::array<float, 3> Reconstruction::Conserve(const std::array<double, 3>& total, ReconstructedLight& result) const
+{
+  const double sets = this->settings.estimator == Estimator::Sound ? this->light.batches : 1.0;
+  std::array<float, 3> factors = { 1.0f, 1.0f, 1.0f };
+  double before = 0.0, after = 0.0;
+  for (int c = 0; c < this->light.channels; ++c)
+  {
+    const double was = this->range.total[c] / sets;
+    before += was;
+    after += total[c];
+    if (this->settings.conserve && total[c] > 0.0)
+    {
+      factors[c] = static_cast<float>(was / total[c]);
+    }
+  }
+  result.bias = before > 0.0 ? after / before - 1.0 : 0.0;
+  return factors;
+}
+
+ReconstructedLight Reconstruct(
+  Device& device, const NoisyLight& light, const ReconstructionSettings& settings, const Monitor& monitor)
+{
+  const double start = ClockSeconds();
+  const bool sound = settings.estimator == Estimator::Sound;
+  Check(settings);
+  CheckPresence(light, settings.estimator);
+  RequireMemory(device, light, sound);
+  Report(monitor, 0.0);
+
+  const Grid& grid = light.grid;
+  const std::size_t voxels = grid.VoxelCount();
+  const std::size_t channels = static_cast<std::size_t>(light.channels);
+  const std::size_t values = voxels * channels;
+  const std::size_t vectors = light.meanDirection ? 3 * voxels : 0;
+  ReconstructedLight result;
+  std::future<void> room = std::async(std::launch::async, [&] { result.meanDirection = Zeros(vectors); });
+  result.fluence = Zeros(values);
+  result.mipLevel = Zeros(voxels);
+  result.fluenceError = Zeros(sound ? values : 0);
+  room.get();
+
+  const float* given = sound ? light.batchFluence : light.fluence;
+  const std::size_t count = values * static_cast<std::size_t>(sound ? light.batches : 1);
+  const LentArray<float> fluence(device, given, count, "fluence");
+  const LentArray<float> direction(device, light.meanDirection, vectors, "mean directions");
+  const ArrayRange range =
+    Checked(device, fluence, given, count, light.channels, grid, sound ? "fluence_batches" : "fluence", 0.0f, Most);
+  if (vectors > 0)
+  {
+    Checked(
+      device, direction, light.meanDirection, vectors, 3, grid, "mean_direction", -LongestDirection, LongestDirection);
+  }
+  const Reconstruction task = { device, light, settings, monitor, fluence, direction, range,
+    LevelsOf(grid, settings.levels) };
+  if (sound)
+  {
+    ReconstructSound(task, result);
+    if (light.channels == 3 && !OneColour(light))
+    {
+      ReconstructChannels(device, light, settings, monitor, result);
+    }
+  }
+  else
+  {
+    const bool published = settings.estimator == Estimator::Published;
+    const LentArray<float> counts(
+      device, light.photonCount, NeedsCounts(settings.estimator) ? voxels : 0, "photon_count");
+    const LentArray<float> weights(device, light.photonWeight, published ? voxels : 0, "photon_weight");
+    double step = 1.0;
+    if (NeedsCounts(settings.estimator))
+    {
+      Checked(device, counts, light.photonCount, voxels, 1, grid, "photon_count", 0.0f, Most);
+    }
+    if (published)
+    {
+      step = WeightStep(light, settings,
+        Checked(device, weights, light.photonWeight, voxels, 1, grid, "photon_weight", 0.0f, Most).total[0]);
+    }
+    ReconstructByLevel(task, counts, weights, step, result);
+  }
+  SayWhatIsLeftOut(light, result);
+  result.device = device.Name();
+  result.seconds = ClockSeconds() - start;
+  return result;
+}
+}

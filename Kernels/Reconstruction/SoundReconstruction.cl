@@ -1,0 +1,498 @@
+// The sound estimator, after LightRows.cl. Compiled with
+//   BATCHES     independent ones, at least 2
+//   CHANNELS    of the light, 1 or 3
+//   DIRECTIONS  1: there are mean directions
+//   FINEST      1: the finer level is the grid itself, as the host has it; 0: rows of a level
+//
+// Fields of a level of the pyramid: each batch's light (sum of channels), then what is smoothed: the light's channels, then its
+// flux (light times mean direction).
+#define CARRIED (CHANNELS + 3 * DIRECTIONS)
+#define FIELDS (BATCHES + CARRIED)
+// Fields of a level of the result: what is smoothed, the level it was taken from, and the squared error.
+#define BLENDED CARRIED
+#define SQUARED (BLENDED + 1)
+#define RESULTS (SQUARED + 1)
+// Fields of the gains, a cell for 2 x 2 x 2 of the finer level.
+#define GAIN 0
+#define REMOVED 1
+#define KEPT 2
+#define ERROR 3
+
+typedef struct
+{
+  pair batch[BATCHES];
+  pair carried[CARRIED];
+} light_pair;
+
+// Two vectors of voxels of the grid, in units of 1 / scale.
+inline light_pair load_voxels(const __global float* batches, const __global float* directions, int4 size, size_t voxel, float scale)
+{
+  const size_t all = (size_t)size.w * size.y * size.z;
+  light_pair light;
+#pragma unroll
+  for (int c = 0; c < CARRIED; ++c)
+  {
+    light.carried[c] = 0.0f;
+  }
+#pragma unroll
+  for (int b = 0; b < BATCHES; ++b)
+  {
+#if CHANNELS == 1
+    light.batch[b] = scale * load_pair(b * all + voxel, batches);
+    light.carried[0] += light.batch[b];
+#else
+    const pair_of_three colour = load_three(b * all + voxel, batches);
+    light.carried[0] += scale * colour.x;
+    light.carried[1] += scale * colour.y;
+    light.carried[2] += scale * colour.z;
+    light.batch[b] = scale * colour.x + scale * colour.y + scale * colour.z;
+#endif
+  }
+  pair total = 0.0f;
+#pragma unroll
+  for (int c = 0; c < CHANNELS; ++c)
+  {
+    light.carried[c] *= 1.0f / BATCHES;
+    total += light.carried[c];
+  }
+#if DIRECTIONS
+  const pair_of_three direction = load_three(voxel, directions);
+  light.carried[CHANNELS] = total * direction.x;
+  light.carried[CHANNELS + 1] = total * direction.y;
+  light.carried[CHANNELS + 2] = total * direction.z;
+#endif
+  return light;
+}
+
+inline void add_voxels(pair* sum, const __global float* batches, const __global float* directions, int4 size, const size_t* rows,
+  int x, float scale)
+{
+  const float weights[4] = { 0.125f, 0.375f, 0.375f, 0.125f };
+#pragma unroll
+  for (int f = 0; f < FIELDS; ++f)
+  {
+    sum[f] = 0.0f;
+  }
+  for (int k = 0; k < 16; ++k)
+  {
+    const light_pair light = load_voxels(batches, directions, size, rows[k] + x, scale);
+    const float w = weights[k % 4] * weights[k / 4];
+#pragma unroll
+    for (int b = 0; b < BATCHES; ++b)
+    {
+      sum[b] += w * light.batch[b];
+    }
+#pragma unroll
+    for (int c = 0; c < CARRIED; ++c)
+    {
+      sum[BATCHES + c] += w * light.carried[c];
+    }
+  }
+}
+
+#if REAL_WIDTH == 8
+#define shifted_up(before, values) (float8)((before).sf, (values).s0, (values).s1, (values).s2, (values).s3, (values).s4, (values).s5, (values).s6)
+#define shifted_down(values, after) (float8)((values).s1, (values).s2, (values).s3, (values).s4, (values).s5, (values).s6, (values).s7, (after).s0)
+#define first_of(p) ((p).s0)
+#define last_of(p) ((p).sf)
+#else
+#define shifted_up(before, values) ((before).y)
+#define shifted_down(values, after) ((after).x)
+#define first_of(p) ((p).x)
+#define last_of(p) ((p).y)
+#endif
+
+// The grid's voxels to level 1: all fields in one pass, by weights 1 3 3 1 along each axis.
+__kernel void voxels_down(const __global float* batches, const __global float* directions, int4 fine_size,
+  __global float* coarse, int4 size, float scale)
+{
+  const int y = ROW_Y, z = ROW_Z;
+  size_t rows[16];
+  for (int k = 0; k < 16; ++k)
+  {
+    rows[k] = ((size_t)within(2 * z + k / 4 - 1, fine_size.z) * fine_size.y + within(2 * y + k % 4 - 1, fine_size.y)) * fine_size.w;
+  }
+  const int wide = 2 * REAL_WIDTH;
+  pair before[FIELDS], here[FIELDS], after[FIELDS];
+#if REAL_WIDTH > 1
+  add_voxels(here, batches, directions, fine_size, rows, 0, scale);
+#pragma unroll
+  for (int f = 0; f < FIELDS; ++f)
+  {
+    before[f] = (pair)first_of(here[f]);
+  }
+#endif
+  FOR_CELLS(x, size.x)
+  {
+    const int at = 2 * x;
+#if REAL_WIDTH == 1
+    add_voxels(here, batches, directions, fine_size, rows, at, scale);
+    add_voxels(before, batches, directions, fine_size, rows, max(at - wide, 0), scale);
+#endif
+    add_voxels(after, batches, directions, fine_size, rows, min(at + wide, fine_size.w - wide), scale);
+#pragma unroll
+    for (int f = 0; f < FIELDS; ++f)
+    {
+      const pair left = x > 0 ? before[f] : (pair)first_of(here[f]);
+      const pair right = at + wide < fine_size.w ? after[f] : (pair)last_of(here[f]);
+      const real even = here[f].even, odd = here[f].odd;
+      const real cells = 0.375f * (even + odd) + 0.125f * (shifted_up(left, odd) + shifted_down(even, right));
+      __global float* row = coarse + row_of(size, f, y, z);
+      store_real(cells, x, row);
+      repeat_ends(row, x, REAL_WIDTH, size.x);
+      before[f] = here[f];
+      here[f] = after[f];
+    }
+  }
+}
+
+// The light of a row's pairs of cells, at FINEST from the grid's voxels, else from rows.
+inline light_pair load_light(const __global float* fine, const __global float* directions, int4 size, int x, int y, int z, float scale)
+{
+#if FINEST
+  return load_voxels(fine, directions, size, ((size_t)z * size.y + y) * size.w + x, scale);
+#else
+  const __global float* row = fine + row_of(size, 0, y, z) + x;
+  const size_t field = field_of(size);
+  light_pair light;
+#pragma unroll
+  for (int b = 0; b < BATCHES; ++b)
+  {
+    light.batch[b] = load_pair(b * field, row);
+  }
+#pragma unroll
+  for (int c = 0; c < CARRIED; ++c)
+  {
+    light.carried[c] = load_pair((BATCHES + c) * field, row);
+  }
+  return light;
+#endif
+}
+
+// How much the details of the batches agree, in cells of 2 x 2 x 2: field 0 the noise that their mean d has,
+// sum (d_b - d)^2 / (B (B - 1)), field 1 its square d^2.
+__kernel void measure_details(const __global float* fine, const __global float* directions, int4 fine_size, float scale,
+  const __global float* coarse, int4 size, __global float* measured)
+{
+  const int y = ROW_Y, z = ROW_Z;
+  rows_about rows[4];
+  for (int k = 0; k < 4; ++k)
+  {
+    rows[k] = rows_for_children(size, y, z, k);
+  }
+  const size_t field = field_of(size);
+  FOR_CELLS(x, size.x)
+  {
+    real squares = 0.0f, total = 0.0f, common = 0.0f;
+    for (int k = 0; k < 4; ++k)
+    {
+      const int fy = min(2 * y + k % 2, fine_size.y - 1), fz = min(2 * z + k / 2, fine_size.z - 1);
+      const light_pair light = load_light(fine, directions, fine_size, 2 * x, fy, fz, scale);
+      real first[2], sum[2] = { 0.0f, 0.0f };
+#pragma unroll
+      for (int b = 0; b < BATCHES; ++b)
+      {
+        const children finer = interpolate(coarse + b * field, &rows[k], x);
+        const real detail[2] = { light.batch[b].even - finer.even, light.batch[b].odd - finer.odd };
+#pragma unroll
+        for (int i = 0; i < 2; ++i)
+        {
+          if (b == 0)
+          {
+            first[i] = detail[i];
+          }
+          else // of differences from the first batch: nothing cancels
+          {
+            const real other = detail[i] - first[i];
+            sum[i] += other;
+            squares += other * other;
+          }
+        }
+      }
+#pragma unroll
+      for (int i = 0; i < 2; ++i)
+      {
+        const real mean = first[i] + sum[i] * (1.0f / BATCHES);
+        total += mean * mean;
+        common += sum[i] * sum[i];
+      }
+    }
+    const real noise = (squares - common * (1.0f / BATCHES)) * (0.125f / (BATCHES * (BATCHES - 1)));
+    __global float* row = measured + row_of(size, 0, y, z);
+    store_real(positive_part(noise), x, row);
+    store_real(0.125f * total, x, row + field);
+    repeat_ends(row, x, REAL_WIDTH, size.x);
+    repeat_ends(row + field, x, REAL_WIDTH, size.x);
+  }
+}
+
+// Binomial smoothing by 1 4 6 4 1, along y and z here, along x where the result is used.
+__kernel void smooth_across(const __global float* from, int4 size, __global float* to, int first, int fields)
+{
+  const float weights[5] = { 0.0625f, 0.25f, 0.375f, 0.25f, 0.0625f };
+  const int y = ROW_Y, z = ROW_Z;
+  size_t rows[25];
+  for (int k = 0; k < 25; ++k)
+  {
+    rows[k] = row_of(size, first, y + k % 5 - 2, z + k / 5 - 2);
+  }
+  for (int f = 0; f < fields; ++f)
+  {
+    const __global float* cells = from + f * field_of(size);
+    __global float* row = to + row_of(size, f, y, z);
+    FOR_CELLS(x, size.x)
+    {
+      real sum = 0.0f;
+#pragma unroll
+      for (int dz = 0; dz < 5; ++dz)
+      {
+        real along = 0.0f;
+#pragma unroll
+        for (int dy = 0; dy < 5; ++dy)
+        {
+          along += weights[dy] * load_real(rows[5 * dz + dy] + x, cells);
+        }
+        sum += weights[dz] * along;
+      }
+      store_real(sum, x, row);
+      repeat_ends(row, x, REAL_WIDTH, size.x);
+    }
+  }
+}
+
+inline real smoothed(const __global float* row, int x)
+{
+  return 0.375f * load_real(x, row) + 0.25f * (load_real(x - 1, row) + load_real(x + 1, row)) +
+    0.0625f * (load_real(x - 2, row) + load_real(x + 2, row));
+}
+
+// How much of the details is kept (Wiener's filter): where two batches agree it is light, where they do not it is noise. The
+// noise is taken off twice, so that what is left by chance is not taken for light.
+__kernel void find_gains(const __global float* measured, int4 size, __global float* gains)
+{
+  const int y = ROW_Y, z = ROW_Z;
+  const size_t field = field_of(size);
+  const __global float* row = measured + row_of(size, 0, y, z);
+  __global float* to = gains + row_of(size, 0, y, z);
+  FOR_CELLS(x, size.x)
+  {
+    const real noise = smoothed(row, x), total = smoothed(row + field, x);
+    const real sure = positive_part(total - 2.0f * noise);
+    const real gain = select((real)0.0f, sure / (sure + noise), sure > 0.0f);
+    store_real(gain, x, to + GAIN * field);
+    store_real((1.0f - gain) * (1.0f - gain) * (total - noise), x, to + REMOVED * field);
+    store_real(gain * gain * noise, x, to + KEPT * field);
+    repeat_ends(to + GAIN * field, x, REAL_WIDTH, size.x);
+    repeat_ends(to + REMOVED * field, x, REAL_WIDTH, size.x);
+  }
+}
+
+// Squared error of the details: noise that was kept, light that was taken for noise (times `honesty`), and what there is from
+// the levels above.
+__kernel void add_errors(const __global float* removed, int4 size, float honesty, const __global float* results, __global float* gains)
+{
+  const int y = ROW_Y, z = ROW_Z;
+  const size_t field = field_of(size);
+  const __global float* row = removed + row_of(size, 0, y, z);
+  const __global float* above = results + row_of(size, SQUARED, y, z);
+  __global float* cells = gains + row_of(size, 0, y, z);
+  FOR_CELLS(x, size.x)
+  {
+    const real here = multiply_add((real)honesty, positive_part(smoothed(row, x)), load_real(KEPT * field + x, cells));
+    store_real(load_real(x, above) + here, ERROR * field + x, cells);
+    repeat_ends(cells + ERROR * field, x, REAL_WIDTH, size.x);
+  }
+}
+
+// The top of the pyramid: taken whole. Its noise is smoothed before it counts.
+__kernel void begin_results(const __global float* level, int4 size, __global float* results, float top, __global float* noise)
+{
+  const int y = ROW_Y, z = ROW_Z;
+  const size_t field = field_of(size);
+  const __global float* from = level + row_of(size, 0, y, z);
+  __global float* to = results + row_of(size, 0, y, z);
+  __global float* deviation = noise + row_of(size, 0, y, z);
+  FOR_CELLS(x, size.x)
+  {
+    real mean = 0.0f, squares = 0.0f;
+#pragma unroll
+    for (int b = 0; b < BATCHES; ++b)
+    {
+      mean += load_real(b * field + x, from);
+    }
+    mean *= 1.0f / BATCHES;
+#pragma unroll
+    for (int b = 0; b < BATCHES; ++b)
+    {
+      const real off = load_real(b * field + x, from) - mean;
+      squares += off * off;
+    }
+#pragma unroll
+    for (int c = 0; c < CARRIED; ++c)
+    {
+      store_real(load_real((BATCHES + c) * field + x, from), c * field + x, to);
+    }
+    store_real((real)top, BLENDED * field + x, to);
+    store_real(squares * (1.0f / (BATCHES * (BATCHES - 1))), x, deviation);
+    repeat_ends(deviation, x, REAL_WIDTH, size.x);
+    for (int f = 0; f < SQUARED; ++f)
+    {
+      repeat_ends(to + f * field, x, REAL_WIDTH, size.x);
+    }
+  }
+}
+
+__kernel void begin_errors(const __global float* noise, int4 size, __global float* results)
+{
+  const int y = ROW_Y, z = ROW_Z;
+  const __global float* row = noise + row_of(size, 0, y, z);
+  __global float* to = results + row_of(size, SQUARED, y, z);
+  FOR_CELLS(x, size.x)
+  {
+    store_real(smoothed(row, x), x, to);
+    repeat_ends(to, x, REAL_WIDTH, size.x);
+  }
+}
+
+#if DIRECTIONS
+// What brings a flux to the mean direction of light `total`: no longer than 1, 0 where there is no light.
+inline real direction_of(real total, real x, real y, real z)
+{
+  const real cut = select((real)0.0f, 1.0f / total, total > 0.0f);
+  const real square = (x * cut) * (x * cut) + (y * cut) * (y * cut) + (z * cut) * (z * cut);
+  if (any_of(square > 1.0f)) // which is rare
+  {
+    return select(cut, cut / sqrt(square), square > 1.0f);
+  }
+  return cut;
+}
+#endif
+
+// The light of two vectors of voxels and its direction, from what is smoothed.
+inline __attribute__((always_inline)) void store_voxels(const children* smooth, float unit, size_t voxel, __global float* fluence, __global float* mean_direction)
+{
+  children total = { 0.0f, 0.0f };
+  pair light[3];
+#pragma unroll
+  for (int c = 0; c < CHANNELS; ++c)
+  {
+    const real even = positive_part(smooth[c].even), odd = positive_part(smooth[c].odd);
+    total.even += even;
+    total.odd += odd;
+    light[c] = woven(even * unit, odd * unit);
+  }
+#if CHANNELS == 1
+  store_pair(light[0], voxel, fluence);
+#else
+  store_three(light[0], light[1], light[2], voxel, fluence);
+#endif
+#if DIRECTIONS
+  const children *x = smooth + CHANNELS, *y = x + 1, *z = x + 2;
+  const real even = direction_of(total.even, x->even, y->even, z->even);
+  const real odd = direction_of(total.odd, x->odd, y->odd, z->odd);
+  store_three(woven(x->even * even, x->odd * odd), woven(y->even * even, y->odd * odd),
+    woven(z->even * even, z->odd * odd), voxel, mean_direction);
+#endif
+}
+
+// Interpolated results of the level above, and what of this level's details is kept.
+//   fine, fine_size, directions, scale   this level's light
+//   coarse, results, gains               of the level above, `size`
+//   to          rows of RESULTS fields of this level; at FINEST not used
+//   number      of this level
+//   fluence, mean_direction, blended     FINEST: of the grid's voxels
+__kernel void blend_level(const __global float* fine, const __global float* directions, int4 fine_size, float scale,
+  const __global float* coarse, const __global float* results, const __global float* gains, int4 size, float number,
+  __global float* to, __global float* fluence, __global float* mean_direction, __global float* blended)
+{
+  const int y = ROW_Y, z = ROW_Z;
+  const size_t field = field_of(size);
+#if FINEST
+  const float unit = 1.0f / scale;
+#else
+  const size_t fine_field = field_of(fine_size);
+#endif
+  for (int k = 0; k < 4; ++k) // outside: memory is read ahead for a few rows, not for four of every quantity
+  {
+    const rows_about rows = rows_for_children(size, y, z, k);
+    const int fy = min(2 * y + k % 2, fine_size.y - 1), fz = min(2 * z + k / 2, fine_size.z - 1);
+    const bool outside = fy < 2 * y + k % 2 || fz < 2 * z + k / 2;
+    FOR_CELLS(x, size.x)
+    {
+      const light_pair light = load_light(fine, directions, fine_size, 2 * x, fy, fz, scale);
+      const children gain = interpolate(gains + GAIN * field, &rows, x);
+      children kept[CARRIED];
+#pragma unroll
+      for (int c = 0; c < CARRIED; ++c)
+      {
+        const children finer = interpolate(coarse + (BATCHES + c) * field, &rows, x);
+        kept[c] = interpolate(results + c * field, &rows, x);
+        kept[c].even = multiply_add(gain.even, light.carried[c].even - finer.even, kept[c].even);
+        kept[c].odd = multiply_add(gain.odd, light.carried[c].odd - finer.odd, kept[c].odd);
+      }
+      if (outside)
+      {
+        continue;
+      }
+      const children above = interpolate(results + BLENDED * field, &rows, x);
+      const pair level = woven(
+        above.even + gain.even * (number - above.even), above.odd + gain.odd * (number - above.odd));
+#if FINEST
+      store_voxels(kept, unit, ((size_t)fz * fine_size.y + fy) * fine_size.w + 2 * x, fluence, mean_direction);
+      store_pair(level, ((size_t)fz * fine_size.y + fy) * fine_size.w + 2 * x, blended);
+#else
+      __global float* row = to + row_of(fine_size, 0, fy, fz) + 2 * x;
+      const children squared = interpolate(gains + ERROR * field, &rows, x);
+#pragma unroll
+      for (int c = 0; c < CARRIED; ++c)
+      {
+        store_pair(woven(kept[c].even, kept[c].odd), c * fine_field, row);
+      }
+      store_pair(level, BLENDED * fine_field, row);
+      store_pair(woven(squared.even, squared.odd), SQUARED * fine_field, row);
+      for (int f = 0; f < RESULTS; ++f)
+      {
+        repeat_ends(row - 2 * x + f * fine_field, 2 * x, 2 * REAL_WIDTH, fine_size.x);
+      }
+#endif
+    }
+  }
+}
+
+// The last pass: light so that each channel's total is what it was, and its error, which channels share as they share the light.
+__kernel void finish_light(const __global float* gains, int4 size, float4 conserve, float unit, __global float* fluence,
+  __global float* errors, int4 fine_size)
+{
+  const int y = ROW_Y, z = ROW_Z;
+  rows_about rows[4];
+  for (int k = 0; k < 4; ++k)
+  {
+    rows[k] = rows_for_children(size, y, z, k);
+  }
+  FOR_CELLS(x, size.x)
+  {
+    for (int k = 0; k < 4; ++k)
+    {
+      const int fy = 2 * y + k % 2, fz = 2 * z + k / 2;
+      if (fy < fine_size.y && fz < fine_size.z)
+      {
+        const children error = interpolate(gains + ERROR * field_of(size), &rows[k], x);
+        const size_t voxel = ((size_t)fz * fine_size.y + fy) * fine_size.w + 2 * x;
+        const pair deviation = unit * sqrt(positive_part(woven(error.even, error.odd)));
+#if CHANNELS == 1
+        store_pair(load_pair(voxel, fluence) * conserve.x, voxel, fluence);
+        store_pair(deviation * conserve.x, voxel, errors);
+#else
+        const pair_of_three light = load_three(voxel, fluence);
+        const pair_of_three scaled = { light.x / unit, light.y / unit, light.z / unit };
+        const pair total = scaled.x + scaled.y + scaled.z;
+        const pair share = select((pair)0.0f, deviation / total, total > 0.0f);
+        const pair even_share = select(deviation * (1.0f / 3.0f), (pair)0.0f, total > 0.0f);
+        store_three(light.x * conserve.x, light.y * conserve.y, light.z * conserve.z, voxel, fluence);
+        store_three((scaled.x * share + even_share) * conserve.x, (scaled.y * share + even_share) * conserve.y,
+          (scaled.z * share + even_share) * conserve.z, voxel, errors);
+#endif
+      }
+    }
+  }
+}

@@ -1,0 +1,98 @@
+#pragma once
+
+#include "Photons/PhotonMarcher.h"
+
+#include <algorithm>
+#include <cmath>
+#include <random>
+#include <vector>
+
+/// Photons anywhere in the box, that go anywhere.
+inline std::vector<tyndall::Photon> AnyPhotons(const tyndall::Grid& grid, std::size_t count, unsigned seed = 1)
+{
+  std::mt19937 random(seed);
+  std::uniform_real_distribution<double> uniform(0.0, 1.0);
+  std::normal_distribution<float> normal;
+  std::vector<tyndall::Photon> photons(count);
+  for (tyndall::Photon& photon : photons)
+  {
+    for (int a = 0; a < 3; ++a)
+    {
+      photon.position[a] = grid.origin[a] + uniform(random) * grid.Length(a);
+      photon.direction[a] = normal(random);
+    }
+    const float length = std::hypot(photon.direction[0], photon.direction[1], photon.direction[2]);
+    for (float& component : photon.direction)
+    {
+      component /= length;
+    }
+    photon.power.fill(static_cast<float>(0.5 + uniform(random)));
+    photon.weight = static_cast<float>(4.0 * uniform(random));
+  }
+  return photons;
+}
+
+/// The voxels that a path crosses, one after the other: each stretch is cut at the planes between voxels.
+inline std::vector<std::size_t> VoxelsCrossed(const tyndall::PhotonPath& path, const tyndall::Grid& grid)
+{
+  std::vector<std::size_t> crossed;
+  for (std::size_t i = 1; i < path.points.size(); ++i)
+  {
+    double from[3], to[3];
+    std::vector<double> cuts = { 0.0, 1.0 };
+    for (int a = 0; a < 3; ++a)
+    {
+      from[a] = (path.points[i - 1][a] - grid.origin[a]) / grid.spacing[a];
+      to[a] = (path.points[i][a] - grid.origin[a]) / grid.spacing[a];
+      for (int plane = 0; plane <= grid.size[a]; ++plane)
+      {
+        const double t = (plane - from[a]) / (to[a] - from[a]);
+        if (t > 0.0 && t < 1.0)
+        {
+          cuts.push_back(t);
+        }
+      }
+    }
+    std::sort(cuts.begin(), cuts.end());
+    const double length = std::hypot(to[0] - from[0], to[1] - from[1], to[2] - from[2]);
+    for (std::size_t c = 1; c < cuts.size(); ++c)
+    {
+      if ((cuts[c] - cuts[c - 1]) * length < 3e-6) // rounding of the path's corners, which are floats
+      {
+        continue;
+      }
+      std::size_t voxel = 0;
+      for (int a = 2; a >= 0; --a)
+      {
+        const double middle = from[a] + 0.5 * (cuts[c] + cuts[c - 1]) * (to[a] - from[a]);
+        const int at = std::min(std::max(static_cast<int>(std::floor(middle)), 0), grid.size[a] - 1);
+        voxel = voxel * static_cast<std::size_t>(grid.size[a]) + static_cast<std::size_t>(at);
+      }
+      if (crossed.empty() || crossed.back() != voxel)
+      {
+        crossed.push_back(voxel);
+      }
+    }
+  }
+  return crossed;
+}
+
+/// The ways of all photons.
+inline std::vector<tyndall::PhotonPath> AllPaths(
+  tyndall::PhotonMarcher& marcher, const std::vector<tyndall::Photon>& photons)
+{
+  return marcher.Paths(photons, tyndall::ChooseEvenly(photons.size(), photons.size()));
+}
+
+/// Sum of differences over the sum of the second.
+template <class Numbers, class Others>
+double DifferenceOf(const Numbers& numbers, const Others& others)
+{
+  double difference = 0.0, sum = 0.0;
+  for (std::size_t i = 0; i < others.size(); ++i)
+  {
+    difference += std::abs(static_cast<double>(numbers[i]) - static_cast<double>(others[i]));
+    sum += std::abs(static_cast<double>(others[i]));
+  }
+  return difference / sum;
+}
