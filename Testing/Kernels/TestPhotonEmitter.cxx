@@ -130,7 +130,7 @@ TEST(PhotonEmitter, AFaceSeenSquarelyIsLitWhollyWhereverTheBoxIs)
       grid.size = { 4, 4, 4 };
       grid.origin = { corner, corner, corner };
       Illumination light;
-      light.lights = { Lamp(LightType::Directional, {}, direction) };
+      light.lights.push_back(Lamp(LightType::Directional, {}, direction));
       const EmittedPhotons emitted = EmitPhotons(grid, light, { 1000 });
       EXPECT_NEAR(emitted.power[0], 16.0 * 10.0, 1e-3) << corner << " " << direction[0] << " " << direction[1];
       int quarters[4] = {};
