@@ -82,10 +82,6 @@ void Write(tyndall::PhotonLight&& photons, vtkImageData* output)
   tyndall::AddFact(output, "scattered", { photons.scattered.begin(), photons.scattered.begin() + channels }, channels);
 }
 
-double Sum(const tyndall::Rgb& rgb)
-{
-  return rgb[0] + rgb[1] + rgb[2];
-}
 }
 
 /// Light, of the published scheme what its packing lost, and, of the sound scheme's integrator, paths.
@@ -259,7 +255,8 @@ void vtkPhotonMarcher::Warn(const tyndall::PhotonLight& light, std::size_t photo
       << " photons do not meet the medium, so their power is not in it. Give PhotonEmitter the same medium.");
   }
   const tyndall::EnergyBalance& balance = light.light.balance;
-  const double trapped = Sum(balance.entered) > 0.0 ? Sum(balance.leftOver) / Sum(balance.entered) : 0.0;
+  const double trapped =
+    tyndall::Sum(balance.entered) > 0.0 ? tyndall::Sum(balance.leftOver) / tyndall::Sum(balance.entered) : 0.0;
   if (trapped > 0.01)
   {
     vtkWarningMacro(

@@ -184,44 +184,29 @@ __kernel void level_finish(level_layout level, const __global float* conductance
 }
 
 // Chunks of the sum of a b; a work-item a chunk.
-__kernel void low_order_dot(const __global exact* a, const __global exact* b, int count, __global exact* sums)
-{
-  const int begin = get_global_id(0) * CHUNK;
-  const int end = min(count, begin + CHUNK);
-  exact part[4] = { 0, 0, 0, 0 };
-  int i = begin;
-  for (; i + 4 <= end; i += 4)
-  {
-    for (int k = 0; k < 4; ++k)
-    {
-      part[k] += a[i + k] * b[i + k];
-    }
-  }
-  for (; i < end; ++i)
-  {
-    part[0] += a[i] * b[i];
-  }
-  sums[get_global_id(0)] = (part[0] + part[1]) + (part[2] + part[3]);
+#define DOT(name, type)                                                                              \
+__kernel void name(const __global exact* a, const __global type* b, int count, __global exact* sums) \
+{                                                                                                    \
+  const int begin = get_global_id(0) * CHUNK;                                                        \
+  const int end = min(count, begin + CHUNK);                                                         \
+  exact part[4] = { 0, 0, 0, 0 };                                                                    \
+  int i = begin;                                                                                     \
+  for (; i + 4 <= end; i += 4)                                                                       \
+  {                                                                                                  \
+    for (int k = 0; k < 4; ++k)                                                                      \
+    {                                                                                                \
+      part[k] += a[i + k] * b[i + k];                                                                \
+    }                                                                                                \
+  }                                                                                                  \
+  for (; i < end; ++i)                                                                               \
+  {                                                                                                  \
+    part[0] += a[i] * b[i];                                                                          \
+  }                                                                                                  \
+  sums[get_global_id(0)] = (part[0] + part[1]) + (part[2] + part[3]);                                \
 }
-__kernel void low_order_dot_float(const __global exact* a, const __global float* b, int count, __global exact* sums)
-{
-  const int begin = get_global_id(0) * CHUNK;
-  const int end = min(count, begin + CHUNK);
-  exact part[4] = { 0, 0, 0, 0 };
-  int i = begin;
-  for (; i + 4 <= end; i += 4)
-  {
-    for (int k = 0; k < 4; ++k)
-    {
-      part[k] += a[i + k] * b[i + k];
-    }
-  }
-  for (; i < end; ++i)
-  {
-    part[0] += a[i] * b[i];
-  }
-  sums[get_global_id(0)] = (part[0] + part[1]) + (part[2] + part[3]);
-}
+DOT(low_order_dot, exact)
+DOT(low_order_dot_float, float)
+#undef DOT
 
 // x += step p, r -= step q
 __kernel void low_order_step(
