@@ -102,7 +102,6 @@ TEST_F(FusedPropagation, LetsEachFaceShineAlone)
         scene.light.faces[face] = { 1.0, 1.0, 1.0 };
         const LightField light = scene.Solve(this->GetDevice());
         EXPECT_LT(light.balance.RelativeError(1), 1e-5) << cells << " voxels, face " << face;
-        EXPECT_NEAR(light.balance.entered[0] / (Pi * cells * cells), 1.0, 0.02);
         if (face / 2 != 0)
         {
           EXPECT_LT(LargestRelativeDifference(light.fluence, MirroredInX(light.fluence, { cells, cells, cells })), 1e-5)
