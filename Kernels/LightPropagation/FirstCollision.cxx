@@ -32,6 +32,7 @@ struct LampOnDevice
   cl_float cosine;
   cl_float intensity;
   cl_float scale;
+  cl_float diagonal;
   cl_int rounds;
 };
 struct BeamRow
@@ -136,8 +137,9 @@ std::vector<BeamRow> Beams(const Grid& grid, const Light& light, const glm::dvec
     {
       continue;
     }
-    const int countU = std::max(fewest, static_cast<int>(std::ceil((u[1] - u[0]) * far / width)));
-    const int countV = std::max(fewest, static_cast<int>(std::ceil((v[1] - v[0]) * far / width)));
+    const auto parts = [=](double tangents) { return static_cast<int>(std::ceil(tangents * far / width - 1e-6)); };
+    const int countU = std::max({ fewest, 1, parts(u[1] - u[0]) }); // rounding must not decide on one more
+    const int countV = std::max({ fewest, 1, parts(v[1] - v[0]) });
     for (int j = 0; j < countV; ++j)
     {
       const double widthU = (u[1] - u[0]) / countU;
@@ -220,7 +222,8 @@ public:
     {
       units.s[c] = static_cast<float>(this->TheLight.power[c] * correction / this->Scale());
     }
-    With(add, this->Path, *this->Volume.path, cl_ulong(this->Volume.first), cl_ulong(this->Volume.stride), units);
+    With(add, this->Path, *this->Volume.path, cl_ulong(this->Volume.first), cl_ulong(this->Volume.stride), units,
+      *this->Volume.sigma_t, cl_ulong(this->Volume.sigma_t_first), static_cast<float>(this->Diagonal()));
     this->TheDevice.Queue().enqueueNDRangeKernel(
       add, cl::NullRange, cl::NDRange(this->Path.Size(), this->Volume.channels), cl::NullRange);
     return this->TallyTimes(correction);
@@ -239,11 +242,12 @@ private:
   }
 
   /// Fixed point units per length: no voxel can gather more than all power along its diagonal.
-  double Scale() const
+  double Scale() const { return std::exp2(std::floor(std::log2(0x1p60 / (this->Diagonal() * RoundsAtMost)))); }
+
+  double Diagonal() const
   {
     const std::array<double, 3>& h = this->Volume.grid.spacing;
-    const double diagonal = std::sqrt(h[0] * h[0] + h[1] * h[1] + h[2] * h[2]);
-    return std::exp2(std::floor(std::log2(0x1p60 / (diagonal * RoundsAtMost))));
+    return std::sqrt(h[0] * h[0] + h[1] * h[1] + h[2] * h[2]);
   }
 
   LampOnDevice Describe(const glm::dvec3& position, double part) const
@@ -264,6 +268,7 @@ private:
     info.intensity = static_cast<float>(Intensity(this->TheLight) * part);
     info.cosine = static_cast<float>(std::cos(0.5 * this->TheLight.angle * glm::pi<double>() / 180.0));
     info.scale = static_cast<float>(this->Scale());
+    info.diagonal = static_cast<float>(this->Diagonal());
     info.rounds = RoundsAtMost;
     return info;
   }

@@ -20,6 +20,7 @@ typedef struct
   float cosine;       // of the cone's half angle
   float intensity;    // part of the power, per steradian; at normal emission where LAMBERT
   float scale;        // fixed point units per length
+  float diagonal;     // of a voxel
   int rounds;         // of a beam round a periodic axis
 } lamp_info;
 
@@ -84,6 +85,12 @@ typedef struct
   float entered, escaped[6], stranded;
 } lamp_tally;
 
+// How many of them a path in a voxel counts: what is thick is crossed by little path, of which fixed point must not lose any.
+static float units_of(float sigma, float diagonal)
+{
+  return fmax(sigma * diagonal, 1.0f);
+}
+
 // The first voxel under a cross-section from low to low + width, and the part of it that lies there.
 static void overlap(float low, float width, int* voxel, float* part)
 {
@@ -144,7 +151,7 @@ static void step_beam(const lamp_info* lamp, const beam_row* row, int layer, boo
     }
     else
     {
-      add_units(path + index, convert_long_sat_rte(power * mean_length * lamp->scale));
+      add_units(path + index, convert_long_sat_rte(power * (mean_length * units_of(sigma[index], lamp->diagonal)) * lamp->scale));
       after += mean_length * sigma[index] < 0.5f * length * sigma[index] ? power * through : power - power * lost;
     }
   }
@@ -281,10 +288,12 @@ __kernel void follow_lamp(lamp_info lamp, const __global float* sigma, ulong sig
 
 // path   W length, [channel][stride], added to
 // units  [channel] W length of a fixed point unit
-__kernel void add_fixed(const __global long* fixed_path, __global float* path, ulong first, ulong stride, float4 units)
+// sigma  1/length, shared by the channels
+__kernel void add_fixed(const __global long* fixed_path, __global float* path, ulong first, ulong stride, float4 units,
+  const __global float* sigma, ulong sigma_first, float diagonal)
 {
   const ulong i = get_global_id(0);
   const int channel = get_global_id(1);
   const float unit = channel == 0 ? units.x : channel == 1 ? units.y : units.z;
-  path[first + channel * stride + i] += (float)fixed_path[i] * unit;
+  path[first + channel * stride + i] += (float)fixed_path[i] * unit / units_of(sigma[sigma_first + i], diagonal);
 }
