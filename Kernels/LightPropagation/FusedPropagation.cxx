@@ -2,6 +2,7 @@
 
 #include "EnvironmentPeaks.h"
 #include "FirstCollision.h"
+#include "PowerUnit.h"
 #include "TyndallKernelSources.h"
 
 #include <algorithm>
@@ -452,6 +453,14 @@ LightField SolveFused(Device& device, const Medium& medium, const Illumination& 
   Check(medium);
   Check(illumination);
   Check(settings);
-  return FusedSolver(device, medium, illumination, settings).Run(monitor);
+  const double unit = PowerUnitOf(medium, illumination);
+  if (unit == 1.0)
+  {
+    return FusedSolver(device, medium, illumination, settings).Run(monitor);
+  }
+  const SceneInUnits scene(medium, illumination, unit);
+  LightField light = FusedSolver(device, scene.medium, scene.illumination, settings).Run(monitor);
+  ToWatts(light, unit);
+  return light;
 }
 }
