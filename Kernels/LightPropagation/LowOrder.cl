@@ -137,6 +137,7 @@ typedef struct
   const __global float* stairs;
   const __global float* conductance;
   const __global float* entering;
+  const __global float* passed;
   const __global float* model;
   const __global float* pattern;
   ulong stride;
@@ -200,6 +201,16 @@ static float model_of_boundary(
   return pattern_at(layout, arrays, axis, at, tau) * spread * area;
 }
 
+// Lamps' light that is scattered near face d of voxel i and passes it at once, less what comes the other way.
+static float passing(const low_order_layout* layout, const low_order_arrays* arrays, int d, int i, const int* next, bool border)
+{
+#if PASSING
+  return arrays->passed[d * arrays->stride + i] - (border ? 0.0f : arrays->passed[(d ^ 1) * arrays->stride + next[d]]);
+#else
+  return 0.0f;
+#endif
+}
+
 static bool is_border(const low_order_layout* layout, const int* at, int d)
 {
   const int axis = d / 2;
@@ -260,14 +271,16 @@ static exact power_of_face(const low_order_layout* layout, const low_order_array
   {
     const float tau = arrays->sigma_t[i] * layout->spacing[axis];
     const float passes = pass_boundary(layout, way_to_boundary(layout, tau, arrays->sigma_t[i], arrays->sigma_a[i]));
-    return passes * face_area(layout, axis) * (fluence[i] - layout->incoming[d] / layout->half_range) + share[d];
+    return passes * face_area(layout, axis) * (fluence[i] - layout->incoming[d] / layout->half_range) + share[d] +
+      passing(layout, arrays, d, i, next, true);
   }
   if (layout->size[axis] == 1)
   {
     return 0;
   }
   const exact passes = arrays->conductance[axis * arrays->count + (d & 1 ? next[d] : i)];
-  return passes * (fluence[i] - fluence[next[d]]) + remainder_of_face(layout, arrays, d, i, next[d], at);
+  return passes * (fluence[i] - fluence[next[d]]) + remainder_of_face(layout, arrays, d, i, next[d], at) +
+    passing(layout, arrays, d, i, next, false);
 }
 
 #define ARRAYS_OF_CHANNEL                                                      \
@@ -278,7 +291,7 @@ static exact power_of_face(const low_order_layout* layout, const low_order_array
   path += layout.first;                                                        \
   const ulong stride = layout.stride;                                          \
   const int count = layout.size[0] * layout.size[1] * layout.size[2];          \
-  const low_order_arrays arrays = { sigma_t, sigma_a, stairs, conductance, entering, model, pattern, stride, count }; \
+  const low_order_arrays arrays = { sigma_t, sigma_a, stairs, conductance, entering, passed, model, pattern, stride, count }; \
   const int at[3] = { x, y, z };                                               \
   int next[6];                                                                 \
   find_neighbours(layout.size, x, y, z, i, next);                              \
@@ -289,7 +302,7 @@ static exact power_of_face(const low_order_layout* layout, const low_order_array
 // given    emitted and first scattered light of lights, W / (length^3 sr)
 // source   of the sweep, W / (length^3 sr)
 __kernel void low_order_balance(low_order_layout layout, const __global float* sigma_t, const __global float* sigma_a,
-  const __global float* stairs, const __global float* conductance, const __global float* entering,
+  const __global float* stairs, const __global float* conductance, const __global float* entering, const __global float* passed,
   const __global float* model, const __global float* pattern, const __global float* source,
   const __global float* path, const __global float* given, __global exact* right)
 {
@@ -302,11 +315,11 @@ __kernel void low_order_balance(low_order_layout layout, const __global float* s
     {
       float dark;
       model_of_boundary(&layout, &arrays, d, i, at, &dark);
-      power -= dark;
+      power -= dark + passing(&layout, &arrays, d, i, next, true);
     }
     else if (layout.size[d / 2] > 1)
     {
-      power -= remainder_of_face(&layout, &arrays, d, i, next[d], at);
+      power -= remainder_of_face(&layout, &arrays, d, i, next[d], at) + passing(&layout, &arrays, d, i, next, false);
     }
   }
   if (IS_OUTERMOST(layout, at))
@@ -320,7 +333,7 @@ __kernel void low_order_balance(low_order_layout layout, const __global float* s
 // A voxel's faces at the box's border, [face][row][voxel of the row]: power out of the box, W; power out that seems to
 // leave there in the sweep, W; for voxels with several such faces how much that counts, else -1.
 __kernel void low_order_outflow(low_order_layout layout, const __global float* sigma_t, const __global float* sigma_a,
-  const __global float* stairs, const __global float* conductance, const __global float* entering,
+  const __global float* stairs, const __global float* conductance, const __global float* entering, const __global float* passed,
   const __global float* model, const __global float* pattern, const __global float* source,
   const __global float* path, const __global exact* fluence, __global exact* outflow)
 {
@@ -356,7 +369,7 @@ __kernel void low_order_outflow(low_order_layout layout, const __global float* s
 
 // Net flux, W / length^2 times volume, [x, y, z][stride], added to.
 __kernel void low_order_flux(low_order_layout layout, const __global float* sigma_t, const __global float* sigma_a,
-  const __global float* stairs, const __global float* conductance, const __global float* entering,
+  const __global float* stairs, const __global float* conductance, const __global float* entering, const __global float* passed,
   const __global float* model, const __global float* pattern, const __global float* source,
   const __global float* path, const __global exact* fluence, __global float* flux)
 {
@@ -384,3 +397,53 @@ __kernel void low_order_source(low_order_layout layout, const __global float* gi
   const ulong at = (ulong)layout.first + i;
   source[at] = given[at] + sigma_s[at] * fmax((float)fluence[i], 0.0f) * (0.25f * M_1_PI_F);
 }
+
+#if PASSING
+// path      W length, of lamps
+// nearness  of it, as in SweepVolume.h, [channel][face][stride]
+// passed    [face][stride] W
+__kernel void low_order_pass(low_order_layout layout, const __global float* sigma_t, const __global float* sigma_a,
+  const __global float* sigma_s, const __global float* path, const __global float* nearness, __global float* passed)
+{
+  VOXEL(layout.size)
+  const int at[3] = { x, y, z };
+  int next[6];
+  find_neighbours(layout.size, x, y, z, i, next);
+  const ulong stride = layout.stride;
+  sigma_t += layout.first_t;
+  sigma_a += layout.first;
+  nearness += 6 * (ulong)layout.first;
+  const float length = path[layout.first + i];
+  const float k = sigma_t[i] > 0.0f ? sqrt(3.0f * fmin(sigma_a[i] / sigma_t[i], 1.0f)) : 0.0f;
+  float part[6], sum = 0.0f;
+  for (int d = 0; d < 6; ++d)
+  {
+    const int axis = d / 2;
+    const float h = layout.spacing[axis];
+    const float tau = sigma_t[i] * h;
+    const float r = length > 0.0f ? fmin(2.0f * nearness[d * stride + i] / length, 1.0f) : 0.0f;
+    part[d] = 0.0f;
+    if (tau <= 0.0f || r <= 0.0f)
+    {
+      continue;
+    }
+    if (is_border(&layout, at, d))
+    {
+      part[d] = passes_border(tau, r, k);
+    }
+    else if (layout.size[axis] > 1)
+    {
+      const int j = next[d];
+      const float way = way_to_boundary(&layout, tau, sigma_t[i], sigma_a[i]);
+      const float beyond = way_to_boundary(&layout, sigma_t[j] * h, sigma_t[j], sigma_a[j]);
+      part[d] = passes_inside(tau, r, k) * way / (way + beyond);
+    }
+    sum += part[d];
+  }
+  const float power = sigma_s[layout.first + i] * length / fmax(sum, 1.0f); // a corner cannot pass more than there is
+  for (int d = 0; d < 6; ++d)
+  {
+    passed[d * stride + i] = part[d] * power;
+  }
+}
+#endif

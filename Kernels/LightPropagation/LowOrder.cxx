@@ -158,13 +158,23 @@ LowOrder::LowOrder(Device& device, const Grid& grid, const std::array<bool, 3>& 
     this->Solver.Loss());
   this->Run(conductance);
   this->Solver.Coarsen();
+  if (arrays.nearness)
+  {
+    this->Passed = Buffer<float>(device, 6 * arrays.stride, what);
+    cl::Kernel pass = this->Kernel("low_order_pass");
+    With(pass, this->Layout, *arrays.sigma_t, *arrays.sigma_a, *arrays.sigma_s, *arrays.lampPath, *arrays.nearness,
+      this->Passed);
+    this->Run(pass);
+    device.Finish(); // what it reads goes
+  }
 }
 
 cl::Kernel LowOrder::Kernel(const char* name) const
 {
   return this->TheDevice.Kernel(name,
-    { kernel_source::LowOrderLayout, kernel_source::LowOrder, kernel_source::LowOrderSolve },
-    ExactOption(this->TheDevice));
+    { kernel_source::LowOrderLayout, kernel_source::LampPassing, kernel_source::LowOrder,
+      kernel_source::LowOrderSolve },
+    ExactOption(this->TheDevice) + " -DPASSING=" + std::to_string(this->The.nearness != nullptr));
 }
 
 void LowOrder::Run(cl::Kernel& kernel)
@@ -179,7 +189,7 @@ void LowOrder::RunOnArrays(const char* name, const More&... more)
   const Arrays& the = this->The;
   cl::Kernel kernel = this->Kernel(name);
   With(kernel, this->Layout, *the.sigma_t, *the.sigma_a, this->Stairs, this->Solver.Conductance(), *the.entering,
-    this->Model, this->Pattern, *the.source, *the.path, more...);
+    this->Passed.Size() > 0 ? this->Passed : this->Model, this->Model, this->Pattern, *the.source, *the.path, more...);
   this->Run(kernel);
 }
 
