@@ -157,6 +157,10 @@ void WriteLight(LightField&& light, vtkImageData* output)
   {
     AddLight(output, "fluence_direct", std::move(light.fluenceDirect), channels);
   }
+  if (!light.fluenceError.empty())
+  {
+    AddLight(output, "fluence_error", std::move(light.fluenceError), channels);
+  }
   AddLightCells(output, "net_flux", std::move(light.netFlux), 3 * channels);
   const int stored = std::max(1, static_cast<int>(light.storedDirections.size()));
   AddLightCells(output, "scattered_radiance", std::move(light.scatteredRadiance), channels * stored);

@@ -22,9 +22,23 @@
 
 namespace
 {
+tyndall::PropagationSource SourceOf(int source)
+{
+  switch (source)
+  {
+    case vtkLightPropagationMaps::CONSTANT: return tyndall::PropagationSource::Constant;
+    case vtkLightPropagationMaps::LINEAR: return tyndall::PropagationSource::Linear;
+    default: return tyndall::PropagationSource::Automatic;
+  }
+}
+
 tyndall::PropagationSettings SettingsOf(vtkLightPropagationMaps* filter)
 {
   tyndall::PropagationSettings settings;
+  settings.source = SourceOf(filter->GetSource());
+  settings.acceleration = filter->GetAcceleration() == vtkLightPropagationMaps::NONE
+    ? tyndall::PropagationAcceleration::None
+    : tyndall::PropagationAcceleration::Automatic;
   settings.directionsPerFace = filter->GetDirectionsPerFace();
   settings.mapResolution = filter->GetMapResolution();
   settings.maximumOrders = filter->GetMaximumOrders();
@@ -32,6 +46,8 @@ tyndall::PropagationSettings SettingsOf(vtkLightPropagationMaps* filter)
   settings.periodic = { filter->GetPeriodicX(), filter->GetPeriodicY(), filter->GetPeriodicZ() };
   settings.storedDirections = filter->GetStoredDirections();
   settings.netFlux = filter->GetNetFlux();
+  settings.errorEstimate = filter->GetEstimateError();
+  settings.leaveOut = filter->GetLeaveOut();
   return settings;
 }
 
@@ -120,6 +136,7 @@ void vtkLightPropagationMaps::Note(const tyndall::LightField& light)
   this->Orders = static_cast<int>(light.convergence.size());
   this->Residual = any ? light.convergence.back().residual : 0.0;
   this->Seconds = any ? light.convergence.back().seconds : 0.0;
+  this->EstimatedError = light.relativeError;
   this->BalanceError = light.balance.RelativeError(light.channels);
   this->DeviceName = light.device;
   this->LeftOut = tyndall::Lines(light.leftOut);
@@ -130,6 +147,8 @@ void vtkLightPropagationMaps::PrintSelf(ostream& os, vtkIndent indent)
   this->Superclass::PrintSelf(os, indent);
   os << indent << "Scheme: " << (this->Scheme == SOUND ? "sound" : "as published") << "\n";
   os << indent << "Algorithm: " << (this->Algorithm == SEQUENTIAL ? "sequential" : "parallel") << "\n";
+  os << indent << "Source: " << this->Source << "\n";
+  os << indent << "Acceleration: " << this->Acceleration << "\n";
   os << indent << "DirectionsPerFace: " << this->DirectionsPerFace << "\n";
   os << indent << "MapResolution: " << this->MapResolution << "\n";
   os << indent << "MaximumOrders: " << this->MaximumOrders << "\n";
@@ -138,9 +157,12 @@ void vtkLightPropagationMaps::PrintSelf(ostream& os, vtkIndent indent)
   PrintNumbers(os, indent, "FaceRadiance", this->FaceRadiance, 6);
   PrintNumbers(os, indent, "SkyColor", this->SkyColor, 3);
   os << indent << "NetFlux: " << this->NetFlux << "\n";
+  os << indent << "EstimateError: " << this->EstimateError << "\n";
+  os << indent << "LeaveOut: " << this->LeaveOut << "\n";
   os << indent << "StoredDirections: " << this->StoredDirections << "\n";
   os << indent << "Orders: " << this->Orders << "\n";
   os << indent << "Residual: " << this->Residual << "\n";
+  os << indent << "EstimatedError: " << this->EstimatedError << "\n";
   os << indent << "BalanceError: " << this->BalanceError << "\n";
   os << indent << "Seconds: " << this->Seconds << "\n";
   os << indent << "DeviceName: " << this->DeviceName << "\n";

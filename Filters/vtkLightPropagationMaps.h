@@ -38,6 +38,7 @@ struct LightField;
  * |----------------------|----------------------|-----------------|---------------------------------------------------|
  * | `fluence`            | 1 or 3               | W/length^2      | radiance integrated over all directions           |
  * | `fluence_direct`     | 1 or 3               | W/length^2      | its unscattered part                              |
+ * | `fluence_error`      | 1 or 3               | W/length^2      | its standard error (if EstimateError)             |
  * | `net_flux`           | 3 or 9               | W/length^2      | radiance times direction, integrated (if NetFlux) |
  * | `scattered_radiance` | StoredDirections x 1 or 3 | W/(length^2 sr) | radiance scattered into each stored direction |
  *
@@ -68,6 +69,19 @@ public:
     SOUND = 1      ///< conservative deposit, directions by solid angle, lights followed exactly
   };
 
+  enum Sources
+  {
+    CONSTANT = 0,        ///< in each voxel, as published
+    LINEAR = 1,          ///< from voxel centre to voxel centre: right however thick voxels are
+    AUTOMATIC_SOURCE = 2 ///< linear where orders are accelerated
+  };
+
+  enum Accelerations
+  {
+    NONE = 0,                  ///< scattering orders one after the other, as published
+    AUTOMATIC_ACCELERATION = 1 ///< a low-order system between sweeps where orders would be many
+  };
+
   enum Algorithms
   {
     SEQUENTIAL = 0, ///< Algorithm 1: one ray after the other, on one core of the host
@@ -84,6 +98,19 @@ public:
   /// Which algorithm of the published scheme: SEQUENTIAL, or PARALLEL (default). The sound scheme has one only.
   vtkSetClampMacro(Algorithm, int, SEQUENTIAL, PARALLEL);
   vtkGetMacro(Algorithm, int);
+  ///@}
+
+  ///@{
+  /// How the light that a voxel sends out is spread over it (sound scheme): CONSTANT, LINEAR, or AUTOMATIC_SOURCE (default).
+  vtkSetClampMacro(Source, int, CONSTANT, AUTOMATIC_SOURCE);
+  vtkGetMacro(Source, int);
+  ///@}
+
+  ///@{
+  /// How scattering orders are added up (sound scheme, where MaximumOrders is 0): NONE, or AUTOMATIC_ACCELERATION (default).
+  /// LINEAR needs it.
+  vtkSetClampMacro(Acceleration, int, NONE, AUTOMATIC_ACCELERATION);
+  vtkGetMacro(Acceleration, int);
   ///@}
 
   ///@{
@@ -145,16 +172,33 @@ public:
   ///@}
 
   ///@{
+  /// Whether to estimate the error of fluence from coarser solves, as `fluence_error` and EstimatedError; it takes about a
+  /// third more time. Default off.
+  vtkSetMacro(EstimateError, bool);
+  vtkGetMacro(EstimateError, bool);
+  vtkBooleanMacro(EstimateError, bool);
+  ///@}
+
+  ///@{
+  /// Whether to leave out what the scene does not need. Default on; off computes everything, for comparison: the same light,
+  /// later.
+  vtkSetMacro(LeaveOut, bool);
+  vtkGetMacro(LeaveOut, bool);
+  vtkBooleanMacro(LeaveOut, bool);
+  ///@}
+
+  ///@{
   /// Directions for which `scattered_radiance` is kept. Default 1 (enough for isotropic scattering), valid from 1 on.
   vtkSetMacro(StoredDirections, int);
   vtkGetMacro(StoredDirections, int);
   ///@}
 
   ///@{
-  /// What came of the last update: scattering orders done, estimated relative error of fluence left, relative error of the
-  /// energy balance, seconds, the device's name, and what the scene did not need, one a line.
+  /// What came of the last update: scattering orders done, estimated relative error of fluence left by those that were not
+  /// done, estimated relative error of fluence altogether (0 without EstimateError), relative error of the energy balance, seconds, the device's name, and what the scene did not need, one a line.
   vtkGetMacro(Orders, int);
   vtkGetMacro(Residual, double);
+  vtkGetMacro(EstimatedError, double);
   vtkGetMacro(BalanceError, double);
   vtkGetMacro(Seconds, double);
   vtkGetCharFromStdStringMacro(DeviceName);
@@ -176,6 +220,8 @@ private:
 
   int Scheme = SOUND;
   int Algorithm = PARALLEL;
+  int Source = AUTOMATIC_SOURCE;
+  int Acceleration = AUTOMATIC_ACCELERATION;
   int DirectionsPerFace = 25;
   int MapResolution = 1;
   int MaximumOrders = 0;
@@ -186,10 +232,13 @@ private:
   double FaceRadiance[6] = { 0.0, 0.0, 0.0, 0.0, 0.0, 0.0 };
   double SkyColor[3] = { 0.0, 0.0, 0.0 };
   bool NetFlux = false;
+  bool EstimateError = false;
+  bool LeaveOut = true;
   int StoredDirections = 1;
 
   int Orders = 0;
   double Residual = 0.0;
+  double EstimatedError = 0.0;
   double BalanceError = 0.0;
   double Seconds = 0.0;
   std::string DeviceName;

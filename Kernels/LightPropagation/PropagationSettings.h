@@ -28,9 +28,11 @@ struct PropagationSettings
   double tolerance = 1e-4;    ///< relative error of fluence at which to stop, > 0
   std::array<bool, 3> periodic = { false, false, false }; ///< rays leaving an axis return on the other side
   int storedDirections = 1; ///< directions kept for scattered radiance: 1 (isotropic), 6 (faces), or more
-  PropagationSource source = PropagationSource::Constant;
-  PropagationAcceleration acceleration = PropagationAcceleration::None; ///< not where maximumOrders is given
+  PropagationSource source = PropagationSource::Automatic;
+  PropagationAcceleration acceleration = PropagationAcceleration::Automatic; ///< not where maximumOrders is given
   bool netFlux = false;                                                      ///< compute net_flux too: it costs
+  bool errorEstimate = false; ///< estimate the error of fluence: about a third more time
+  bool leaveOut = true;       ///< what the scene does not need; false: all is computed, to see what leaving out saves
 };
 
 /// @throws InvalidInput where a number is out of its range (directionsPerFace is looked at by the direction sets)

@@ -10,12 +10,6 @@ using namespace tyndall;
 
 namespace
 {
-void ChooseByScene(PropagationSettings& settings)
-{
-  settings.source = PropagationSource::Automatic;
-  settings.acceleration = PropagationAcceleration::Automatic;
-}
-
 double Difference(const std::vector<float>& a, const std::vector<float>& b)
 {
   double difference = 0.0, sum = 0.0;
@@ -41,7 +35,6 @@ template <class Density>
 Scene Cube(int n, double albedo, Density&& density)
 {
   Scene scene({ n, n, n });
-  ChooseByScene(scene.settings);
   for (int z = 0, i = 0; z < n; ++z)
   {
     for (int y = 0; y < n; ++y)
@@ -155,7 +148,6 @@ TEST_F(Acceleration, OfAConstantSourceEndsAtTheLightOfManyOrders)
   for (bool periodic : { false, true })
   {
     Scene scene({ 12, 11, 10 });
-    ChooseByScene(scene.settings);
     scene.Randomise(20.0, 2.0, 0.99);
     scene.ShineFromEverywhere(1.0);
     scene.ShineAlong({ 0.3, -0.5, -0.8 }, 2.0);
@@ -180,7 +172,6 @@ TEST_F(Acceleration, OfAConstantSourceEndsAtTheLightOfManyOrders)
 TEST_F(Acceleration, SolvesEveryColourAsItSolvesItAlone)
 {
   Scene grey({ 9, 8, 10 });
-  ChooseByScene(grey.settings);
   grey.Randomise(30.0, 3.0, 0.999);
   grey.ShineFromEverywhere(1.0);
   grey.ShineAlong({ 0.3, -0.5, -0.8 }, 2.0);
@@ -219,7 +210,6 @@ TEST_F(Acceleration, SolvesEveryColourAsItSolvesItAlone)
 TEST_F(Acceleration, NetFluxIsTheSameThroughEveryPlaneOfASlabThatTakesNothing)
 {
   Scene scene({ 3, 2, 20 }, 0.0f, 2.0f);
-  ChooseByScene(scene.settings);
   scene.settings.periodic = { true, true, false };
   scene.light.faces[4] = { 1.0, 1.0, 1.0 };
   scene.settings.netFlux = true;
@@ -254,7 +244,6 @@ TEST_F(Acceleration, LeavesThinMediaAsTheyAre)
 TEST_F(Acceleration, IsTheSameBitForBitTheSecondTime)
 {
   Scene scene({ 13, 9, 11 });
-  ChooseByScene(scene.settings);
   scene.Randomise(1e3, 6.0, 0.999);
   scene.ShineFromEverywhere(1.0);
   scene.settings.source = PropagationSource::Linear;
@@ -268,7 +257,6 @@ TEST_F(Acceleration, TakesAnyGrid)
     for (bool periodic : { false, true })
     {
       Scene scene(size, 0.001f, 3.0f);
-      ChooseByScene(scene.settings);
       scene.medium.grid.spacing = { 0.5, 1.0, 2.0 };
       scene.ShineFromEverywhere(1.0);
       scene.ShineAlong({ 0.3, -0.5, -0.8 }, 2.0);
@@ -284,7 +272,6 @@ TEST_F(Acceleration, TakesAnyGrid)
 TEST_F(Acceleration, RefusesALinearSourceWithoutIt)
 {
   Scene scene({ 2, 2, 2 }, 1.0f, 1.0f);
-  ChooseByScene(scene.settings);
   scene.settings.source = PropagationSource::Linear;
   scene.settings.acceleration = PropagationAcceleration::None;
   EXPECT_THROW(scene.Solve(this->GetDevice()), InvalidInput);

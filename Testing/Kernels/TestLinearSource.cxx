@@ -11,12 +11,6 @@ using namespace tyndall;
 
 namespace
 {
-void ChooseByScene(PropagationSettings& settings)
-{
-  settings.source = PropagationSource::Automatic;
-  settings.acceleration = PropagationAcceleration::Automatic;
-}
-
 constexpr double Pi = 3.14159265358979323846;
 
 /// A slab across z of 32 voxels, diffuse light of power 1 on its lower face.
@@ -24,7 +18,6 @@ Scene Slab(double tau, double albedo, int voxels = 32)
 {
   Scene scene(
     { 1, 1, voxels }, static_cast<float>(tau / voxels * (1.0 - albedo)), static_cast<float>(tau / voxels * albedo));
-  ChooseByScene(scene.settings);
   scene.settings.periodic = { true, true, false };
   scene.settings.directionsPerFace = 100;
   scene.settings.source = PropagationSource::Linear;
@@ -35,7 +28,6 @@ Scene Slab(double tau, double albedo, int voxels = 32)
 Scene Cube(int n, double tau, double albedo)
 {
   Scene scene({ n, n, n }, static_cast<float>(tau / n * (1.0 - albedo)), static_cast<float>(tau / n * albedo));
-  ChooseByScene(scene.settings);
   scene.settings.source = PropagationSource::Linear;
   return scene;
 }
@@ -161,7 +153,6 @@ TEST_F(LinearSource, OneShiningFaceIsASixthAtTheCentreOfACube)
 TEST_F(LinearSource, KeepsTheFurnaceWithVoidsAndAContrastOfAHundredMillion)
 {
   Scene scene({ 20, 21, 19 });
-  ChooseByScene(scene.settings);
   scene.Randomise(1e4, 8.0, 1.0);
   for (std::size_t i = 0; i < scene.sigma_s.size(); i += 5)
   {
