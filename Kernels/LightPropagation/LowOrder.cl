@@ -116,18 +116,54 @@ __kernel void low_order_conductance(low_order_layout layout, const __global floa
   loss[i] = taken;
 }
 
+static bool is_border(const low_order_layout* layout, const int* at, int d)
+{
+  const int axis = d / 2;
+  return !layout->periodic[axis] && at[axis] == (d & 1 ? layout->size[axis] - 1 : 0);
+}
+
+// How much a voxel of optical length tau is a thick one beside one of length beyond.
+static float contrast(float tau, float beyond)
+{
+  const float thick = 0.8f * tau * tau;
+  return thick * thick / ((1.0f + thick * thick) * (1.0f + beyond * beyond));
+}
+
+// Of a thick voxel beside thinner ones those see only the skin: how much that counts, and for each inner face.
+static float openness(const low_order_layout* layout, const __global float* sigma_t, int i, const int* next, const int* at, float* open)
+{
+  float most = 0.0f;
+  for (int d = 0; d < 6; ++d)
+  {
+    const int axis = d / 2;
+    const float tau = sigma_t[i] * layout->spacing[axis];
+    const float beyond = sigma_t[next[d]] * layout->spacing[axis];
+    const bool inner = layout->linear && layout->size[axis] > 1 && !is_border(layout, at, d);
+    open[d] = inner ? contrast(tau, beyond) : 0.0f;
+    most = fmax(most, open[d]);
+  }
+  return most > 0.01f ? most : 0.0f;
+}
+
 // What the sweep's light is compared with: the light it found where voxels are thin, the light it was given where they are
 // thick and it only repeats that.
 __kernel void low_order_model(low_order_layout layout, const __global float* sigma_t, const __global float* path,
-  const __global exact* fluence, __global float* model)
+  const __global exact* fluence, const __global float* source, __global float* model)
 {
   VOXEL(layout.size)
   sigma_t += layout.first_t;
   path += layout.first;
+  source += layout.first;
+  const int at[3] = { x, y, z };
+  int next[6];
+  find_neighbours(layout.size, x, y, z, i, next);
+  float open[6];
+  const float skin = openness(&layout, sigma_t, i, next, at, open);
   const float longest = sigma_t[i] * fmax(layout.spacing[0], fmax(layout.spacing[1], layout.spacing[2]));
   const float found = path[i] / volume_of(&layout);
   const float thick = layout.linear ? longest * longest / (1.0f + longest * longest) : 0.0f;
-  model[i] = longest > 1e9f ? (float)fluence[i] : found + thick * ((float)fluence[i] - found);
+  const float given = skin > 0.0f ? mix((float)fluence[i], 4.0f * M_PI_F * source[i] / sigma_t[i], skin) : (float)fluence[i];
+  model[i] = longest > 1e9f ? given : found + thick * (given - found);
 }
 
 typedef struct
@@ -174,7 +210,10 @@ static float remainder_of_face(
   const float spread =
     layout->linear ? 3.0f * passes * stairs * pattern_at(layout, arrays, axis, at, tau) : passes;
   const float absorbing = 0.5f * layout->spacing[axis] * (arrays->sigma_a[i] + arrays->sigma_a[j]);
-  const float believed = belief(layout, tau, absorbing);
+  const float h = layout->spacing[axis];
+  const float tau0 = h * arrays->sigma_t[i], tau1 = h * arrays->sigma_t[j];
+  const float skin = layout->linear ? contrast(fmax(tau0, tau1), fmin(tau0, tau1)) : 0.0f;
+  const float believed = belief(layout, tau, absorbing) * (1.0f - skin);
   return believed > 1e-12f ? believed * (net - spread * (arrays->model[i] - arrays->model[j])) : 0.0f;
 }
 
@@ -209,12 +248,6 @@ static float passing(const low_order_layout* layout, const low_order_arrays* arr
 #else
   return 0.0f;
 #endif
-}
-
-static bool is_border(const low_order_layout* layout, const int* at, int d)
-{
-  const int axis = d / 2;
-  return !layout->periodic[axis] && at[axis] == (d & 1 ? layout->size[axis] - 1 : 0);
 }
 
 // What a sweep knows better about the faces of the box at voxel i, W out of it less in, in all.
@@ -389,13 +422,44 @@ __kernel void low_order_flux(low_order_layout layout, const __global float* sigm
   }
 }
 
-// The next sweep's source: what the medium shines and what it scatters.
+// The next sweep's source: what the medium shines and what it scatters; of voxels with a skin, what makes that shine as the light
+// there and the power through it want: 4 J+ = fluence + 2 J.
 __kernel void low_order_source(low_order_layout layout, const __global float* given, const __global float* sigma_s,
-  const __global exact* fluence, __global float* source)
+  const __global exact* fluence, const __global float* sigma_t, const __global float* sigma_a,
+  const __global float* conductance, const __global float* passed, __global float* source)
 {
   VOXEL(layout.size)
-  const ulong at = (ulong)layout.first + i;
-  source[at] = given[at] + sigma_s[at] * fmax((float)fluence[i], 0.0f) * (0.25f * M_1_PI_F);
+  const ulong stride = layout.stride;
+  const int count = layout.size[0] * layout.size[1] * layout.size[2];
+  const ulong begin = layout.first;
+  sigma_t += layout.first_t;
+  sigma_a += layout.first;
+  const int at[3] = { x, y, z };
+  int next[6];
+  find_neighbours(layout.size, x, y, z, i, next);
+  float open[6];
+  const float skin = openness(&layout, sigma_t, i, next, at, open);
+  const float even = given[begin + i] + sigma_s[begin + i] * fmax((float)fluence[i], 0.0f) * (0.25f * M_1_PI_F);
+  float shining = 0.0f, sum = 0.0f;
+  for (int d = 0; d < 6; ++d)
+  {
+    if (open[d] > 0.0f && skin > 0.0f)
+    {
+      const int j = next[d];
+      const float area = face_area(&layout, d / 2);
+      const float beyond = sigma_t[j] * layout.spacing[d / 2];
+      float out = conductance[d / 2 * count + (d & 1 ? j : i)] * (float)(fluence[i] - fluence[j]) / area;
+#if PASSING
+      out += (passed[d * stride + i] - passed[(d ^ 1) * stride + j]) / area;
+#endif
+      const float weight = open[d] * area;
+      const float there = (float)fluence[j] + 1.5f * out * way_to_boundary(&layout, beyond, sigma_t[j], sigma_a[j]);
+      shining += weight * (there + 2.0f * out);
+      sum += weight;
+    }
+  }
+  const float there = sum > 0.0f ? fmax(shining / sum, 0.0f) * sigma_t[i] * (0.25f * M_1_PI_F) : 0.0f;
+  source[begin + i] = mix(even, there, skin);
 }
 
 #if PASSING
@@ -429,14 +493,14 @@ __kernel void low_order_pass(low_order_layout layout, const __global float* sigm
     }
     if (is_border(&layout, at, d))
     {
-      part[d] = passes_border(tau, r, k);
+      part[d] = passes_border(tau, r, k) * beside_sweeps(tau);
     }
     else if (layout.size[axis] > 1)
     {
       const int j = next[d];
       const float way = way_to_boundary(&layout, tau, sigma_t[i], sigma_a[i]);
       const float beyond = way_to_boundary(&layout, sigma_t[j] * h, sigma_t[j], sigma_a[j]);
-      part[d] = passes_inside(tau, r, k) * way / (way + beyond);
+      part[d] = passes_inside(tau, r, k) * way / (way + beyond) * beside_sweeps(tau);
     }
     sum += part[d];
   }

@@ -196,7 +196,9 @@ void LowOrder::RunOnArrays(const char* name, const More&... more)
 void LowOrder::WriteSource()
 {
   cl::Kernel kernel = this->Kernel("low_order_source");
-  With(kernel, this->Layout, *this->The.given, *this->The.sigma_s, this->Given.Handle(), *this->The.source);
+  With(kernel, this->Layout, *this->The.given, *this->The.sigma_s, this->Given.Handle(), *this->The.sigma_t,
+    *this->The.sigma_a, this->Solver.Conductance(), this->Passed.Size() > 0 ? this->Passed : this->Model,
+    *this->The.source);
   this->Run(kernel);
 }
 
@@ -204,7 +206,7 @@ double LowOrder::Correct(double unit)
 {
   const Arrays& the = this->The;
   cl::Kernel model = this->Kernel("low_order_model");
-  With(model, this->Layout, *the.sigma_t, *the.path, this->Given.Handle(), this->Model);
+  With(model, this->Layout, *the.sigma_t, *the.path, this->Given.Handle(), *the.source, this->Model);
   this->Run(model);
   this->RunOnArrays("low_order_balance", *the.given, this->Right.Handle());
   this->Solver.Solve(this->Right, this->Solution, unit, Reduction);
