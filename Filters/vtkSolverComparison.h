@@ -53,8 +53,8 @@ struct ComparisonSettings;
  * and field data `reference` (what it is), `left_out` (what was not compared, and why) and `device`.
  *
  * The settings that are tried: of propagation, all Directions on all Coarsenings of the grid (those that do not divide it are left
- * out); MapResolutions above 1 where directions are 25 or more; limited Orders with 25 directions. Of photons, all PhotonCounts
- * by Sampler, and without AllSamplers no others.
+ * out); MapResolutions above 1 where directions are 25 or more; limited Orders with the number of Directions nearest to 25. Of photons,
+ * all PhotonCounts by Hammersley's sampler, and with AllSamplers the largest but one by the others.
  *
  * In a parallel pipeline every rank asks for all; the table is on the first.
  *
@@ -133,7 +133,7 @@ public:
   ///@}
 
   ///@{
-  /// Whether photons are tried by all samplers, the others with the largest number but one. Default off.
+  /// Whether photons are tried by all samplers. Default off.
   vtkSetMacro(AllSamplers, bool);
   vtkGetMacro(AllSamplers, bool);
   vtkBooleanMacro(AllSamplers, bool);
@@ -210,7 +210,6 @@ protected:
   vtkSolverComparison();
   ~vtkSolverComparison() override;
 
-  int FillInputPortInformation(int port, vtkInformation* information) override;
   int FillOutputPortInformation(int port, vtkInformation* information) override;
   int RequestData(vtkInformation* request, vtkInformationVector** inputs, vtkInformationVector* outputs) override;
 

@@ -30,13 +30,14 @@ const char* NameOf(ComparedMethod method);
 bool IsDirectOnly(ComparedMethod method);
 
 /// The settings that are tried: of propagation all directions on all grids; finer maps where there are 25 directions or more;
-/// limited orders with 25 directions; of photons all counts by the first sampler, and the largest but one by the others.
+/// limited orders with the number of directions nearest to 25; of photons all counts by the first sampler, and the largest but one by the others.
 struct ComparedSettings
 {
   std::vector<int> directionsPerFace = { 4, 9, 25, 64, 100 };
   std::vector<int> mapResolutions = { 1, 2 };
-  std::vector<int> coarsenings = { 1, 2, 4 }; ///< voxels' edges, in the scene's; what does not divide the grid is not tried
-  std::vector<int> orders = { 1, 3, 10 };     ///< besides all
+  std::vector<int> coarsenings = { 1, 2,
+    4 };                                  ///< voxels' edges, in the scene's; what does not divide the grid is not tried
+  std::vector<int> orders = { 1, 3, 10 }; ///< besides all
   std::vector<int> photonCounts = { 10000, 100000, 1000000 };
   std::vector<Sampler> samplers = { Sampler::Hammersley };
   double tolerance = 1e-4; ///< of propagation
@@ -61,11 +62,11 @@ std::vector<ComparedRun> RunsOf(
   ComparedMethod method, Device& device, const ComparedScene& scene, const ComparedSettings& settings);
 
 /// Light of `photons` photons without a filter, for a reference.
-LightField MarchEvenly(Device& device, const ComparedScene& scene, std::size_t photons, const Monitor& monitor);
+LightField MarchEvenly(
+  Device& device, const ComparedScene& scene, std::size_t photons, std::uint64_t seed, const Monitor& monitor);
 
 /// Propagation by the sound scheme.
-LightField Propagate(
-  Device& device, const ComparedScene& scene, PropagationSettings settings, const Monitor& monitor);
+LightField Propagate(Device& device, const ComparedScene& scene, PropagationSettings settings, const Monitor& monitor);
 
 /// @throws InvalidInput where a setting is out of its range (names it)
 void Check(const ComparedSettings& settings);

@@ -20,7 +20,7 @@ bool ComparedScene::Emits() const
 
 std::vector<float> RescaledScene::Rescaled(const Field& field, To to, const Factors& factors, const Grid& from) const
 {
-  return !field.values ? std::vector<float>()
+  return !field.values  ? std::vector<float>()
     : to == To::Coarser ? Averaged(field.values, field.components, from, factors)
                         : Repeated(field.values, field.components, from, factors);
 }

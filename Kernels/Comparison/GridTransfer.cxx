@@ -73,8 +73,7 @@ std::optional<Factors> FactorsBetween(const Grid& fine, const Grid& coarse)
   for (int axis = 0; axis < 3; ++axis)
   {
     const double low = std::abs(fine.origin[axis] - coarse.origin[axis]);
-    const double high =
-      std::abs(fine.origin[axis] + fine.Length(axis) - coarse.origin[axis] - coarse.Length(axis));
+    const double high = std::abs(fine.origin[axis] + fine.Length(axis) - coarse.origin[axis] - coarse.Length(axis));
     if (fine.size[axis] % coarse.size[axis] != 0 || std::max(low, high) > part * fine.spacing[axis])
     {
       return std::nullopt;

@@ -15,7 +15,7 @@ struct ReferenceLight
 {
   Grid grid; ///< the scene's, or one finer or coarser by whole factors: compared on the coarser of both
   int channels = 1;
-  std::vector<float> fluence;       ///< W / length^2, `channels` a voxel; empty: not known; NaN: not known in this voxel
+  std::vector<float> fluence; ///< W / length^2, `channels` a voxel; empty: not known; NaN: not known in this voxel
   std::vector<float> fluenceDirect; ///< its unscattered part
   std::string text;                 ///< what it is
 };
@@ -42,14 +42,15 @@ struct ComparisonRow
   Grid grid;
   double seconds = Unknown;   ///< median, from arrays in memory to light in memory
   double peakBytes = Unknown; ///< most bytes of buffers on the device
-  double errorL2 = Unknown;   ///< root of the sum over voxels and channels of squared differences, over that of the reference
-  double errorMax = Unknown;  ///< largest difference of a voxel's channel, over the largest of the reference
-  double balance = Unknown;   ///< relative error of the energy balance
-  int iterations = 0;         ///< sweeps or orders; 1 for photons
-  double estimatedError = Unknown;          ///< of errorL2 by the solver itself
-  std::array<double, 6> facePowerOut = {};  ///< W, all channels, through -x, +x, -y, +y, -z, +z
-  double powerIn = 0.0;                     ///< W, entered and emitted, all channels
-  bool pareto = false;                      ///< no other row of the same quantity is faster and better
+  double errorL2 =
+    Unknown; ///< root of the sum over voxels and channels of squared differences, over that of the reference
+  double errorMax = Unknown;       ///< largest difference of a voxel's channel, over the largest of the reference
+  double balance = Unknown;        ///< relative error of the energy balance
+  int iterations = 0;              ///< sweeps or orders; 1 for photons
+  double estimatedError = Unknown; ///< of errorL2 by the solver itself
+  std::array<double, 6> facePowerOut = {}; ///< W, all channels, through -x, +x, -y, +y, -z, +z
+  double powerIn = 0.0;                    ///< W, entered and emitted, all channels
+  bool pareto = false;                     ///< no other row of the same quantity is faster and better
 };
 
 struct Comparison
@@ -73,8 +74,8 @@ RelativeErrors ErrorsOf(const std::vector<float>& light, const std::vector<float
 
 /// A converged run of the best method: 256 directions a face, two rays a voxel's edge, tolerance 1e-6, on the doubled grid; less
 /// of it where that would take more than `seconds`. Where light is bent, photons.
-ReferenceLight ConvergedLight(Device& device, const ComparedScene& scene, const ComparedSettings& settings, double seconds,
-  const Monitor& monitor = {});
+ReferenceLight ConvergedLight(Device& device, const ComparedScene& scene, const ComparedSettings& settings,
+  double seconds, const Monitor& monitor = {});
 
 /// Runs all methods at all settings.
 /// @param reference  null: ConvergedLight
