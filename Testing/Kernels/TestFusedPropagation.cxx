@@ -99,6 +99,26 @@ TEST_F(FusedPropagation, LetsLightInOnceWhereRaysGoRoundOneAxis)
   EXPECT_LT(scene.Solve(this->GetDevice()).balance.RelativeError(1), 1e-5);
 }
 
+TEST_F(FusedPropagation, LetsEachFaceShineThroughItselfAloneOnAnyGrid)
+{
+  // Rows that are not whole vectors have columns beside them, which the light of other faces must not come in through.
+  for (const std::array<int, 3>& size : { std::array<int, 3>{ 32, 32, 32 }, { 20, 32, 17 }, { 7, 9, 24 }, { 5, 1, 6 } })
+  {
+    for (int face = 0; face < 6; ++face)
+    {
+      for (bool periodic : { false, true })
+      {
+        Scene scene(size, 0.02f, 0.0f);
+        scene.settings.periodic = { periodic && face / 2 != 0, periodic && face / 2 == 0, false };
+        scene.light.faces[face] = { 1.0, 1.0, 1.0 };
+        const LightField light = scene.Solve(this->GetDevice());
+        EXPECT_LT(light.balance.RelativeError(1), 2e-6)
+          << size[0] << " " << size[1] << " " << size[2] << " face " << face;
+      }
+    }
+  }
+}
+
 TEST_F(FusedPropagation, CountsEnteringPowerAsTheSurfaceIntegralOfRadiance)
 {
   Scene scene({ 40, 40, 40 }, 0.01f, 0.0f);
