@@ -87,6 +87,7 @@ void Write(const tyndall::Comparison& comparison, vtkTable* table)
   AddNumbers(table, "peak_bytes", rows, [](const Row& row) { return row.peakBytes; });
   AddNumbers(table, "error_l2", rows, [](const Row& row) { return row.errorL2; });
   AddNumbers(table, "error_max", rows, [](const Row& row) { return row.errorMax; });
+  AddNumbers(table, "error_relative", rows, [](const Row& row) { return row.errorRelative; });
   AddNumbers(table, "balance", rows, [](const Row& row) { return row.balance; });
   AddNumbers<vtkIntArray>(table, "iterations", rows, [](const Row& row) { return row.iterations; });
   AddNumbers(table, "estimated_error", rows, [](const Row& row) { return row.estimatedError; });

@@ -43,6 +43,7 @@ struct ComparisonSettings;
  * | `peak_bytes`      | byte | most memory that was taken on the device at one time; NaN of a method on the host            |
  * | `error_l2`        | 1    | root of the sum of squared differences over voxels and channels, over that of the reference   |
  * | `error_max`       | 1    | largest difference in a voxel, over the largest fluence of the reference                      |
+ * | `error_relative`  | 1    | root of the mean square of voxels' own relative errors, where the reference is above 0          |
  * | `balance`         | 1    | relative error of the energy balance                                                          |
  * | `iterations`      | 1    | scattering orders or sweeps; 1 for photons                                                    |
  * | `estimated_error` | 1    | of `error_l2`, by the solver itself, without the reference (if EstimateError); NaN where it cannot |

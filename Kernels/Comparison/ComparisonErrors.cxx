@@ -8,7 +8,8 @@ namespace tyndall
 {
 RelativeErrors ErrorsOf(const std::vector<float>& light, const std::vector<float>& reference)
 {
-  double differences = 0.0, squares = 0.0, farthest = 0.0, largest = 0.0;
+  double differences = 0.0, squares = 0.0, farthest = 0.0, largest = 0.0, relative = 0.0;
+  std::size_t lit = 0;
   for (std::size_t i = 0; i < reference.size(); ++i)
   {
     if (std::isnan(reference[i]))
@@ -18,12 +19,18 @@ RelativeErrors ErrorsOf(const std::vector<float>& light, const std::vector<float
     const double difference = std::abs(static_cast<double>(light[i]) - reference[i]);
     differences += difference * difference;
     squares += static_cast<double>(reference[i]) * reference[i];
+    if (reference[i] > 0.0f)
+    {
+      relative += std::pow(difference / reference[i], 2.0);
+      ++lit;
+    }
     // Not std::max: light that is not a number must show.
     farthest = difference <= farthest ? farthest : difference;
     largest = std::max(largest, static_cast<double>(reference[i]));
   }
-  return squares > 0.0 ? RelativeErrors{ std::sqrt(differences / squares), farthest / largest }
-                       : RelativeErrors{ ComparisonRow::Unknown, ComparisonRow::Unknown };
+  return squares > 0.0 ? RelativeErrors{ std::sqrt(differences / squares), farthest / largest,
+    std::sqrt(relative / static_cast<double>(lit)) }
+                       : RelativeErrors{ ComparisonRow::Unknown, ComparisonRow::Unknown, ComparisonRow::Unknown };
 }
 
 void MarkPareto(std::vector<ComparisonRow>& rows)

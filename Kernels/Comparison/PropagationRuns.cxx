@@ -1,5 +1,6 @@
 #include "RunKinds.h"
 
+#include "../LightPropagation/ErrorEstimate.h"
 #include "../LightPropagation/FusedPropagation.h"
 #include "../LightPropagation/ParallelPropagation.h"
 #include "../LightPropagation/SequentialPropagation.h"
@@ -53,16 +54,18 @@ std::vector<Setting> SettingsToTry(const ComparedSettings& settings)
   return all;
 }
 
-LightField Solve(ComparedMethod method, Device& device, const ComparedScene& scene, const PropagationSettings& settings,
-  const Monitor& monitor)
+/// The solver of a method, in the scene's light.
+/// @param device, scene  must stay
+PropagationSolver SolverOf(ComparedMethod method, Device& device, const ComparedScene& scene)
 {
-  switch (method)
-  {
-    case ComparedMethod::Published: return SolveParallel(device, scene.medium, scene.illumination, settings, monitor);
-    case ComparedMethod::PublishedSequential:
-      return SolveSequential(scene.medium, scene.illumination, settings, monitor);
-    default: return SolveFused(device, scene.medium, scene.illumination, settings, monitor);
-  }
+  return [method, &device, &scene](const Medium& medium, const PropagationSettings& settings, const Monitor& monitor) {
+    switch (method)
+    {
+      case ComparedMethod::Published: return SolveParallel(device, medium, scene.illumination, settings, monitor);
+      case ComparedMethod::PublishedSequential: return SolveSequential(medium, scene.illumination, settings, monitor);
+      default: return SolveFused(device, medium, scene.illumination, settings, monitor);
+    }
+  };
 }
 
 PropagationSettings SettingsOf(ComparedMethod method, const Setting& setting, const ComparedSettings& settings)
@@ -84,6 +87,7 @@ PropagationSettings SettingsOf(ComparedMethod method, const Setting& setting, co
 std::vector<ComparedRun> PropagationRunsOf(
   ComparedMethod method, Device& device, const ComparedScene& scene, const ComparedSettings& settings)
 {
+  const PropagationSolver solver = SolverOf(method, device, scene);
   std::vector<ComparedRun> runs;
   for (const Setting& setting : SettingsToTry(settings))
   {
@@ -101,13 +105,12 @@ std::vector<ComparedRun> PropagationRunsOf(
     run.grid = scaled ? scaled->Scene().medium.grid : scene.medium.grid;
     run.cost = static_cast<double>(run.grid.VoxelCount()) * setting.directions * setting.map * setting.map;
     run.allOrders = setting.orders == 0;
-    run.estimates = method == ComparedMethod::LightPropagationMaps || method == ComparedMethod::ConstantSource;
-    run.solve = [=, &device, &scene](bool estimate, const Monitor& monitor) {
+    run.estimates = true;
+    run.solve = [=, &scene](bool estimate, const Monitor& monitor) {
       PropagationSettings now = of;
-      const ComparedScene& solved = scaled ? scaled->Scene() : scene;
-      now.periodic = solved.periodic;
-      now.errorEstimate = estimate;
-      return Solve(method, device, solved, now, monitor);
+      now.periodic = scene.periodic;
+      const Medium& medium = scaled ? scaled->Scene().medium : scene.medium;
+      return estimate ? SolveWithErrorEstimate(medium, now, monitor, solver) : solver(medium, now, monitor);
     };
     runs.push_back(std::move(run));
   }

@@ -202,6 +202,7 @@ private:
     const RelativeErrors errors = this->TheComparator.ErrorsOf(light, run);
     row.errorL2 = errors.l2;
     row.errorMax = errors.max;
+    row.errorRelative = errors.relative;
     row.balance = light.balance.RelativeError(light.channels);
     row.iterations = std::max<int>(1, static_cast<int>(light.convergence.size()));
     row.powerIn = Sum(light.balance.entered) + Sum(light.balance.emitted);

@@ -44,10 +44,12 @@ struct ComparisonRow
   double peakBytes = Unknown; ///< most bytes of buffers on the device
   double errorL2 =
     Unknown; ///< root of the sum over voxels and channels of squared differences, over that of the reference
-  double errorMax = Unknown;       ///< largest difference of a voxel's channel, over the largest of the reference
-  double balance = Unknown;        ///< relative error of the energy balance
-  int iterations = 0;              ///< sweeps or orders; 1 for photons
-  double estimatedError = Unknown; ///< of errorL2 by the solver itself
+  double errorMax = Unknown; ///< largest difference of a voxel's channel, over the largest of the reference
+  double errorRelative =
+    Unknown;                ///< root of the mean square of voxels' own relative errors, where the reference is above 0
+  double balance = Unknown; ///< relative error of the energy balance
+  int iterations = 0;       ///< sweeps or orders; 1 for photons
+  double estimatedError = Unknown;         ///< of errorL2 by the solver itself
   std::array<double, 6> facePowerOut = {}; ///< W, all channels, through -x, +x, -y, +y, -z, +z
   double powerIn = 0.0;                    ///< W, entered and emitted, all channels
   bool pareto = false;                     ///< no other row of the same quantity is faster and better
@@ -67,7 +69,7 @@ void MarkPareto(std::vector<ComparisonRow>& rows);
 
 struct RelativeErrors
 {
-  double l2 = 0.0, max = 0.0;
+  double l2 = 0.0, max = 0.0, relative = 0.0;
 };
 /// See ComparisonRow. Voxels in which the reference is NaN do not count; NaN where there are none or the reference is dark.
 RelativeErrors ErrorsOf(const std::vector<float>& light, const std::vector<float>& reference);

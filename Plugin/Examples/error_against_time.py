@@ -250,6 +250,11 @@ def print_table(rows):
             row["estimated_error"], "*" if row["pareto"] else ""))
 
 
+def load():
+    """The plugin, and its proxies as functions of this module."""
+    LoadPlugin(os.environ["TYNDALL_PLUGIN"], remote=True, ns=globals())
+
+
 def parse():
     parser = argparse.ArgumentParser(description="Error against run time of all solvers on a scene.")
     parser.add_argument("medium", help=".vti or .vdb")
@@ -313,7 +318,7 @@ def lights_of(arguments):
 
 def main():
     arguments = parse()
-    LoadPlugin(os.environ["TYNDALL_PLUGIN"], remote=True, ns=globals())
+    load()
     os.makedirs(arguments.output, exist_ok=True)
     inputs = {
         "Lights": lights_of(arguments),

@@ -42,6 +42,7 @@ TEST(SolverComparison, MeasuresErrorsAgainstTheReferenceAlone)
   const RelativeErrors errors = ErrorsOf({ 3.0f, 4.5f, 7.0f }, { 3.0f, 4.0f, std::nanf("") });
   EXPECT_NEAR(errors.l2, 0.5 / 5.0, 1e-12);
   EXPECT_NEAR(errors.max, 0.5 / 4.0, 1e-12);
+  EXPECT_NEAR(errors.relative, 0.125 / std::sqrt(2.0), 1e-12);
   EXPECT_TRUE(std::isnan(ErrorsOf({ 1.0f }, { 0.0f }).l2)) << "there is no error relative to the dark";
   EXPECT_TRUE(std::isnan(ErrorsOf({ 1.0f, std::nanf("") }, { 1.0f, 1.0f }).max)) << "light that is no number shows";
 }
