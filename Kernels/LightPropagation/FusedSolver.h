@@ -83,6 +83,7 @@ private:
   double UnitPower(int channel) const;
   bool DoneAccelerated(int sweeps) const;
   void UnloadAccelerated();
+  void LimitFlux(const std::vector<float>& fluence);
 
   double Progress(int order, double done) const;
   std::vector<std::string> LeftOut() const;

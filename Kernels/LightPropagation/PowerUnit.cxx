@@ -124,6 +124,7 @@ void ToWatts(LightField& light, double unit)
 {
   Multiply(light.fluence, unit, "fluence");
   Multiply(light.fluenceDirect, unit, "fluence_direct");
+  Multiply(light.fluenceError, unit, "fluence_error");
   Multiply(light.netFlux, unit, "net_flux");
   Multiply(light.scatteredRadiance, unit, "scattered_radiance");
   EnergyBalance& balance = light.balance;

@@ -175,7 +175,7 @@ private:
     this->Add("entered", this->Worst([&](int c) {
       return this->Shining(c) == 0.0 ? 0.0 : std::abs(this->Fact(Entered, c) / this->Shining(c) - 1.0);
     }),
-      diffuse && !photons ? (few ? 0.15 : 0.02) : 1e-3);
+      diffuse && !photons ? (few ? 0.25 : 0.02) : 1e-3);
     if (!photons && !this->Scene.emission.empty())
     {
       this->Add("emitted", this->Worst([&](int c) {
@@ -340,7 +340,8 @@ private:
         depth[column] += tau;
         deepest = std::max(deepest, depth[column]);
       }
-      if (photons && layer > 1e-9 * static_cast<double>(light.size()))
+      // Their fixed point ends some ten decades below the brightest.
+      if (photons && layer > 1e-6 * static_cast<double>(light.size()))
       {
         const double error = std::abs(foundLayer / layer - 1.0) / (1.0 + deepest);
         worst = error <= worst ? worst : error;
