@@ -56,6 +56,17 @@ def rows_of(comparison):
     return rows, facts
 
 
+def print_left_out(lines):
+    """What was not compared; settings of a method in one line."""
+    together = {}
+    for line in lines:
+        method = next((name for name in sorted(STYLES, key=len, reverse=True) if line.startswith(name + ", ")), None)
+        setting, _, why = line[len(method) + 2:].partition(": ") if method else ("", "", line)
+        together.setdefault((method, why), []).append(setting)
+    for (method, why), settings in together.items():
+        print("left out: " + (why if method is None else "%s (%s): %s" % (method, "; ".join(settings), why)))
+
+
 def shown(value):
     return [shown(each) for each in value] if isinstance(value, list) else float("%.6g" % value) if isinstance(value, float) else value
 
@@ -271,6 +282,7 @@ def parse():
     parser.add_argument("--sky", type=float, nargs=3, default=[0, 0, 0], help="W/(length^2 sr)")
     parser.add_argument("--environment", help=".exr or .hdr")
     parser.add_argument("--reference", help=".vti with fluence, fluence_direct or both; default: a converged run")
+    parser.add_argument("--save-reference", metavar="FILE.vti", help="keep the converged run for the next time")
     parser.add_argument("--extinction", type=float, default=1.0, help="per density, 1/length, where the medium has no sigma_a")
     parser.add_argument("--albedo", type=float, nargs=3, default=[0.99] * 3, help="where the medium has no sigma_a")
     parser.add_argument("--methods", nargs="+", choices=list(STYLES), default=["light propagation maps", "constant source, not accelerated", "as published", "photons"])
@@ -295,12 +307,16 @@ SWITCHES = {
 }
 
 
-def compare(methods, **settings):
-    """Rows and facts of a comparison of these methods."""
+def compare(methods, save_reference=None, **settings):
+    """Rows and facts of a comparison of these methods.
+
+    save_reference: file, .vti, for the light that was compared with."""
     switches = {switch: int(name in methods) for name, switch in SWITCHES.items()}
     comparison = SolverComparison(**switches, **settings)
     comparison.UpdatePipeline()
-    result = rows_of(comparison)
+    result = rows_of(OutputPort(comparison, 0))
+    if save_reference and result[0]:
+        SaveData(save_reference, proxy=OutputPort(comparison, 1))
     Delete(comparison)
     return result
 
@@ -332,7 +348,7 @@ def main():
         "Environment": EnvironmentReader(FileName=arguments.environment) if arguments.environment else None,
         "Reference": XMLImageDataReader(FileName=[arguments.reference]) if arguments.reference else None,
     }
-    rows, facts = compare(arguments.methods, Input=medium_of(arguments), SkyColor=arguments.sky, Directions=arguments.directions,
+    rows, facts = compare(arguments.methods, arguments.save_reference, Input=medium_of(arguments), SkyColor=arguments.sky, Directions=arguments.directions,
                           Coarsenings=arguments.coarsenings, PhotonCounts=arguments.photons, Repeats=arguments.repeats,
                           TimeBudget=arguments.budget, **{name: proxy for name, proxy in inputs.items() if proxy})
     if not rows:
@@ -344,8 +360,7 @@ def main():
     plot(rows, path + ".png", "Error against run time: " + name)
     print_table(rows)
     print("reference: " + "; ".join(facts["reference"]))
-    for line in facts["left_out"]:
-        print("left out: " + line)
+    print_left_out(facts["left_out"])
     for line in advice(rows):
         print(line)
 
