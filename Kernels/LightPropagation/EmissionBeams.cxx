@@ -150,7 +150,7 @@ private:
   {
     return this->TheDevice.Kernel(name,
       { kernel_source::Numerics, kernel_source::FixedPoint, kernel_source::LampBeams, kernel_source::EmissionBeams },
-      "-DLAMBERT=0 -DCONE=0 -DATOMICS=" + std::to_string(this->HasAtomics()) +
+      "-DLAMBERT=0 -DCONE=0 -DNEARNESS=0 -DATOMICS=" + std::to_string(this->HasAtomics()) +
         " -DNET_FLUX=" + std::to_string(this->Volume.flux != nullptr));
   }
 

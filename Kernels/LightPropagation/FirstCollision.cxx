@@ -24,6 +24,13 @@ constexpr int RowsPerLaunch = 256;  ///< keeps a launch well below a tenth of a 
 constexpr int RoundsAtMost = 64;    ///< of a ray on a periodic axis
 constexpr int ManyPlanes = 8192;    ///< of a beam on a periodic axis
 
+// As beam_info in BeamNearness.cl.
+struct BeamInfo
+{
+  cl_int size[3], periodic[3], up[3];
+  cl_float spacing[3], lengths[3], thin;
+};
+
 // As lamp_info, beam_row in LampBeams.cl.
 struct LampOnDevice
 {
@@ -57,10 +64,43 @@ SweepTally DepositBeam(Device& device, const SweepVolume& volume, const Light& l
 {
   const std::array<double, 3> omega = Array(glm::normalize(Vector(light.direction)));
   const int axis = MarchingAxis(volume.grid, omega);
-  AxisSweep beam(device, volume, axis, BeamAlong(axis, volume.grid, omega, RaysPerEdge), periodic, workspace);
+  // How near to voxels' faces the light is lost is told by the faces that it enters through.
+  SweepVolume own = volume;
+  Buffer<float> path, entering;
+  if (volume.nearness)
+  {
+    const std::size_t all = volume.first + volume.channels * volume.stride;
+    path = Buffer<float>(device, all + SweepPadding, "the light of a beam");
+    entering = Buffer<float>(device, 6 * all + SweepPadding, "the light of a beam");
+    path.Fill(0.0f);
+    entering.Fill(0.0f);
+    own.path = &path;
+    own.entering = &entering;
+  }
+  AxisSweep beam(device, own, axis, BeamAlong(axis, volume.grid, omega, RaysPerEdge), periodic, workspace);
   beam.Start(
-    volume, [&](int, int) { return light.power; }, false, ManyPlanes, monitor);
-  return beam.Finish();
+    own, [&](int, int) { return light.power; }, false, ManyPlanes, monitor);
+  const SweepTally tally = beam.Finish();
+  if (volume.nearness)
+  {
+    BeamInfo info = {};
+    for (int a = 0; a < 3; ++a)
+    {
+      info.size[a] = volume.grid.size[a];
+      info.periodic[a] = periodic[a];
+      info.up[a] = omega[a] >= 0.0;
+      info.spacing[a] = static_cast<float>(volume.grid.spacing[a]);
+      info.lengths[a] = static_cast<float>(volume.grid.spacing[a] / std::max(std::abs(omega[a]), 1e-6));
+    }
+    info.thin = ThinForNearness;
+    cl::Kernel add = device.Kernel("add_beam", { kernel_source::BeamNearness });
+    With(add, info, *volume.sigma_t, cl_ulong(volume.sigma_t_first), path, entering, *volume.path, *volume.nearness,
+      cl_ulong(volume.first), cl_ulong(volume.stride));
+    device.Queue().enqueueNDRangeKernel(
+      add, cl::NullRange, cl::NDRange(volume.grid.VoxelCount(), volume.channels), cl::NullRange);
+    device.Finish();
+  }
+  return tally;
 }
 
 /// Smallest and largest tangent (voxels along `aside` per layer) at which the box is seen from `position` between two depths,
@@ -200,7 +240,7 @@ public:
     , Volume(volume)
     , TheLight(light)
     , Periodic(periodic)
-    , Path(device, volume.stride, "the light of a lamp")
+    , Path(device, (volume.nearness ? 4 : 1) * volume.stride, "the light of a lamp")
   {
     this->Path.Fill(0);
   }
@@ -221,8 +261,15 @@ public:
       units.s[c] = static_cast<float>(this->TheLight.power[c] * correction / this->Scale());
     }
     With(add, this->Path, *this->Volume.path, cl_ulong(this->Volume.first), cl_ulong(this->Volume.stride), units);
-    this->TheDevice.Queue().enqueueNDRangeKernel(
-      add, cl::NullRange, cl::NDRange(this->Path.Size(), this->Volume.channels), cl::NullRange);
+    const cl::NDRange voxels(this->Volume.stride, this->Volume.channels);
+    this->TheDevice.Queue().enqueueNDRangeKernel(add, cl::NullRange, voxels, cl::NullRange);
+    if (this->Volume.nearness)
+    {
+      cl::Kernel addNearness = this->Kernel("add_fixed_nearness");
+      With(addNearness, this->Path, *this->Volume.nearness, cl_ulong(this->Volume.first),
+        cl_ulong(this->Volume.stride), units);
+      this->TheDevice.Queue().enqueueNDRangeKernel(addNearness, cl::NullRange, voxels, cl::NullRange);
+    }
     return this->TallyTimes(correction);
   }
 
@@ -235,7 +282,9 @@ private:
       { kernel_source::Numerics, kernel_source::FixedPoint, kernel_source::LampBeams },
       "-DATOMICS=" + std::to_string(this->HasAtomics()) +
         " -DLAMBERT=" + std::to_string(this->TheLight.type == LightType::Rectangle) +
-        " -DCONE=" + std::to_string(this->TheLight.type == LightType::Spot));
+        " -DCONE=" + std::to_string(this->TheLight.type == LightType::Spot) +
+        " -DNEARNESS=" + std::to_string(this->Volume.nearness != nullptr) +
+        " -DTHIN=" + std::to_string(ThinForNearness) + "f");
   }
 
   /// Fixed point units per length: no voxel can gather more than all power along its diagonal.
@@ -290,8 +339,8 @@ private:
     for (std::size_t first = 0; first < rows.size(); first += RowsPerLaunch)
     {
       const std::size_t count = std::min<std::size_t>(RowsPerLaunch, rows.size() - first);
-      With(kernel, info, *this->Volume.sigma_t, cl_ulong(this->Volume.sigma_t_first), this->Path, rowBuffer,
-        cl_int(count), cl_int(first), sums);
+      With(kernel, info, *this->Volume.sigma_t, cl_ulong(this->Volume.sigma_t_first), this->Path,
+        cl_ulong(this->Volume.stride), rowBuffer, cl_int(count), cl_int(first), sums);
       this->TheDevice.Queue().enqueueNDRangeKernel(
         kernel, cl::NullRange, cl::NDRange(this->HasAtomics() ? count : 1), cl::NDRange(1));
       this->TheDevice.Finish();

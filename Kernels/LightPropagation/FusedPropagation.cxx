@@ -217,6 +217,7 @@ SweepVolume FusedSolver::VolumeOf(int first) const
   volume.path = &this->Path;
   volume.flux = this->Settings.netFlux && !this->Iterating ? &this->Flux : nullptr;
   volume.entering = this->Iterating ? &this->Entering : nullptr;
+  volume.nearness = this->Nearness.Size() > 0 ? &this->Nearness : nullptr;
   volume.first = first * this->Stride;
   return volume;
 }

@@ -74,6 +74,7 @@ private:
   // Accelerated, see AcceleratedPropagation.cxx.
   void ChooseAcceleration();
   double OrdersNeeded() const;
+  void ChooseNearness();
   void RunAccelerated(const Monitor& monitor);
   void LoadAccelerated();
   std::vector<float> WithLamps(const Buffer<float>& planar, double scale) const;
@@ -114,6 +115,7 @@ private:
   bool LinearSource = false;
   bool Iterating = false;                    ///< sweeps tell what enters voxels, and no net flux
   Buffer<float> Absorption, Given, Entering; ///< as LowOrder::Arrays has them
+  Buffer<float> Nearness;                    ///< of lamps, as SweepVolume has it; empty where voxels are thin
   std::vector<std::unique_ptr<LowOrder>> Systems;
   std::vector<std::vector<double>> Found; ///< W / length^2, without lights' own
   std::vector<float> Lamps;               ///< W / length^2, lights' own, [channel][stride]

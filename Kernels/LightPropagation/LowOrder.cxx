@@ -158,13 +158,23 @@ LowOrder::LowOrder(Device& device, const Grid& grid, const std::array<bool, 3>& 
     this->Solver.Loss());
   this->Run(conductance);
   this->Solver.Coarsen();
+  if (arrays.nearness)
+  {
+    this->Passed = Buffer<float>(device, 6 * arrays.stride, what);
+    cl::Kernel pass = this->Kernel("low_order_pass");
+    With(pass, this->Layout, *arrays.sigma_t, *arrays.sigma_a, *arrays.sigma_s, *arrays.lampPath, *arrays.nearness,
+      this->Passed);
+    this->Run(pass);
+    device.Finish(); // what it reads goes
+  }
 }
 
 cl::Kernel LowOrder::Kernel(const char* name) const
 {
   return this->TheDevice.Kernel(name,
-    { kernel_source::LowOrderLayout, kernel_source::LowOrder, kernel_source::LowOrderSolve },
-    ExactOption(this->TheDevice));
+    { kernel_source::LowOrderLayout, kernel_source::LampPassing, kernel_source::LowOrder,
+      kernel_source::LowOrderSolve },
+    ExactOption(this->TheDevice) + " -DPASSING=" + std::to_string(this->The.nearness != nullptr));
 }
 
 void LowOrder::Run(cl::Kernel& kernel)
@@ -179,14 +189,16 @@ void LowOrder::RunOnArrays(const char* name, const More&... more)
   const Arrays& the = this->The;
   cl::Kernel kernel = this->Kernel(name);
   With(kernel, this->Layout, *the.sigma_t, *the.sigma_a, this->Stairs, this->Solver.Conductance(), *the.entering,
-    this->Model, this->Pattern, *the.source, *the.path, more...);
+    this->Passed.Size() > 0 ? this->Passed : this->Model, this->Model, this->Pattern, *the.source, *the.path, more...);
   this->Run(kernel);
 }
 
 void LowOrder::WriteSource()
 {
   cl::Kernel kernel = this->Kernel("low_order_source");
-  With(kernel, this->Layout, *this->The.given, *this->The.sigma_s, this->Given.Handle(), *this->The.source);
+  With(kernel, this->Layout, *this->The.given, *this->The.sigma_s, this->Given.Handle(), *this->The.sigma_t,
+    *this->The.sigma_a, this->Solver.Conductance(), this->Passed.Size() > 0 ? this->Passed : this->Model,
+    *this->The.source);
   this->Run(kernel);
 }
 
@@ -194,7 +206,7 @@ double LowOrder::Correct(double unit)
 {
   const Arrays& the = this->The;
   cl::Kernel model = this->Kernel("low_order_model");
-  With(model, this->Layout, *the.sigma_t, *the.path, this->Given.Handle(), this->Model);
+  With(model, this->Layout, *the.sigma_t, *the.path, this->Given.Handle(), *the.source, this->Model);
   this->Run(model);
   this->RunOnArrays("low_order_balance", *the.given, this->Right.Handle());
   this->Solver.Solve(this->Right, this->Solution, unit, Reduction);

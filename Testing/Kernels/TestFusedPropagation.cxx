@@ -89,6 +89,29 @@ TEST_F(FusedPropagation, GivesBackEveryWattItTakes)
   }
 }
 
+TEST_F(FusedPropagation, LetsEachFaceShineAlone)
+{
+  for (int cells : { 5, 9, 16 }) // rows of no whole number of vectors, and of one
+  {
+    for (bool periodic : { false, true })
+    {
+      for (int face = 0; face < 6; ++face)
+      {
+        Scene scene({ cells, cells, cells }, 0.05f, 0.0f);
+        scene.settings.periodic[(face / 2 + 1) % 3] = periodic;
+        scene.light.faces[face] = { 1.0, 1.0, 1.0 };
+        const LightField light = scene.Solve(this->GetDevice());
+        EXPECT_LT(light.balance.RelativeError(1), 1e-5) << cells << " voxels, face " << face;
+        if (face / 2 != 0)
+        {
+          EXPECT_LT(LargestRelativeDifference(light.fluence, MirroredInX(light.fluence, { cells, cells, cells })), 1e-5)
+            << cells << " voxels, face " << face;
+        }
+      }
+    }
+  }
+}
+
 TEST_F(FusedPropagation, LetsLightInOnceWhereRaysGoRoundOneAxis)
 {
   // Rows of no whole number of vectors: what waits beside them comes in on the first round only.
