@@ -3,6 +3,7 @@
 #include "../Device/Buffer.h"
 #include "../Lights/Lights.h"
 #include "../Medium/Grid.h"
+#include "../Medium/Traits.h"
 
 #include <array>
 #include <functional>
@@ -18,6 +19,7 @@ constexpr std::size_t SweepPadding = 16;
 struct SweepVolume
 {
   Grid grid;
+  VoxelBox box;     ///< the part that is swept: rays start at its faces, where they would have come in; empty: all
   int channels = 1; ///< 1 or 3 that share one sigma_t
   std::size_t stride = 0;
   const Buffer<float>* sigma_t = nullptr; ///< 1/length
