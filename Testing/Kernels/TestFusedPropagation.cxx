@@ -89,6 +89,17 @@ TEST_F(FusedPropagation, GivesBackEveryWattItTakes)
   }
 }
 
+TEST_F(FusedPropagation, LetsInWhatEachFaceShines)
+{
+  for (int face = 0; face < 6; ++face) // rows of no whole number of vectors: what waits beside them is that face's light
+  {
+    Scene scene({ 21, 9, 13 }, 0.05f, 0.2f);
+    scene.light.faces[face] = { 2.0, 2.0, 2.0 };
+    scene.settings.maximumOrders = 2;
+    EXPECT_LT(scene.Solve(this->GetDevice()).balance.RelativeError(1), 1e-5) << "face " << face;
+  }
+}
+
 TEST_F(FusedPropagation, LetsLightInOnceWhereRaysGoRoundOneAxis)
 {
   // Rows of no whole number of vectors: what waits beside them comes in on the first round only.
