@@ -515,7 +515,7 @@ std::vector<std::string> FusedSolver::LeftOut() const
   }
   if (!this->Settings.netFlux)
   {
-    words.push_back("net_flux: not asked for");
+    words.push_back(left_out::NetFlux);
   }
   return words;
 }
@@ -536,7 +536,7 @@ void FusedSolver::SayWhatIsLeftOut(std::vector<std::string>& words) const
   say(!this->Traits.emits, left_out::NoEmission);
   say(!this->LitFromOutside, left_out::DarkOutside);
   say(this->Lights.empty(), left_out::NoLights);
-  say(this->Result.convergence.size() == 1 && this->Traits.scatters, "scattering orders after the first: nothing is scattered");
+  say(this->Traits.scatters && this->Result.convergence.size() == 1, left_out::OneOrder);
   say(!this->FilledSweeps.empty(), left_out::EmptySlabs(this->Traits.filled, this->TheMedium.grid));
   say(this->LitPart < 1.0, left_out::DarkDirections(this->LitPart));
   say(this->MergesMirrors() && this->Mirrors.Any(),

@@ -70,6 +70,8 @@ extern const char* const GreyExtinction; ///< one transmittance for three channe
 extern const char* const NoScattering;
 extern const char* const NoAbsorption;
 extern const char* const NoEmission;
+extern const char* const OneOrder; ///< nothing is scattered though the medium could
+extern const char* const NetFlux;
 extern const char* const Isotropic;
 extern const char* const ConstantIndex;
 extern const char* const NoOctree;

@@ -356,3 +356,47 @@ TEST_F(Traits, AcceleratedColourIsOneChannel)
   scene.light.sky = { 0.2, 0.8, 0.1 };
   this->ExpectLeftOut(scene, "all light has one colour");
 }
+
+TEST_F(Traits, AsPublishedOneChannelStandsForThree)
+{
+  Scene scene = Cloud();
+  scene.light.sky = { 0.2, 0.8, 0.1 };
+  scene.ShineAlong({ 0.2, 0.3, 0.8 });
+  scene.light.lights[0].power = { 0.2, 0.8, 0.1 };
+  scene.emission = Coloured(scene.sigma_a, { 0.1, 0.4, 0.05 });
+  scene.settings.netFlux = true;
+  scene.settings.storedDirections = 6;
+  scene.settings.maximumOrders = 3;
+  scene.medium.g = 0.3;
+  scene.medium.sigma_a.values = scene.sigma_a.data();
+  scene.medium.sigma_s.values = scene.sigma_s.data();
+  scene.medium.emission = { scene.emission.data(), 3 };
+  using Solve = std::function<LightField()>;
+  const Solve sequential = [&] { return SolveSequential(scene.medium, scene.light, scene.settings); };
+  const Solve parallel = [&] { return SolveParallel(this->GetDevice(), scene.medium, scene.light, scene.settings); };
+  for (const Solve& solve : { sequential, parallel })
+  {
+    scene.settings.leaveOut = false;
+    const LightField all = solve();
+    scene.settings.leaveOut = true;
+    const LightField less = solve();
+    EXPECT_THAT(less.leftOut, Contains(HasSubstr("all light has one colour")));
+    EXPECT_THAT(all.leftOut, Not(Contains(HasSubstr("colour"))));
+    ExpectSameLight(less, all);
+  }
+}
+
+TEST_F(Traits, AsPublishedSaysWhatIsLeftOut)
+{
+  Scene scene = Cloud();
+  scene.medium.sigma_a.values = scene.sigma_a.data();
+  scene.settings.maximumOrders = 1;
+  scene.ShineFromEverywhere(1.0);
+  for (const LightField& light : { SolveSequential(scene.medium, scene.light, scene.settings),
+         SolveParallel(this->GetDevice(), scene.medium, scene.light, scene.settings) })
+  {
+    EXPECT_THAT(light.leftOut, Contains(left_out::Grey));
+    EXPECT_THAT(light.leftOut, Contains(left_out::NoScattering));
+    EXPECT_THAT(light.leftOut, Contains(left_out::NoEmission));
+  }
+}
