@@ -114,6 +114,11 @@ void Spread(LightField& light, const Rgb& colour)
     light, [&](Rgb& watts) { watts = { watts[0] * colour[0], watts[0] * colour[1], watts[0] * colour[2] }; }, Sum(colour));
 }
 
+void KeepOneChannel(std::vector<float>& interleaved)
+{
+  KeepOne(interleaved, 1);
+}
+
 void KeepOneChannel(LightField& light)
 {
   light.channels = 1;

@@ -40,6 +40,7 @@ void Spread(LightField& light, const Rgb& colour);
 
 /// Of three channels that are the same the first.
 void KeepOneChannel(LightField& light);
+void KeepOneChannel(std::vector<float>& interleaved);
 
 template <class Solve>
 LightField SolveChannels(

@@ -244,7 +244,7 @@ const char* const OneOrder = "scattering orders after the first: nothing is scat
 const char* const NetFlux = "net_flux: not asked for";
 const char* const Isotropic = "anisotropy: light is scattered evenly";
 const char* const ConstantIndex = "refraction: the refractive index is constant, rays are straight";
-const char* const NoOctree = "octree: none was given, or the refractive index is constant";
+const char* const EmptyBricks = "empty bricks: rays leap over 8x8x8 voxels that are empty";
 const char* const NoLights = "first-collision source: there are no lights";
 const char* const DarkOutside = "boundary radiance: no environment, sky or face shines";
 

@@ -74,7 +74,7 @@ extern const char* const OneOrder; ///< nothing is scattered though the medium c
 extern const char* const NetFlux;
 extern const char* const Isotropic;
 extern const char* const ConstantIndex;
-extern const char* const NoOctree;
+extern const char* const EmptyBricks;
 extern const char* const NoLights;
 extern const char* const DarkOutside; ///< neither environment nor sky nor faces shine
 std::string EmptySlabs(const VoxelBox& filled, const Grid& grid);
