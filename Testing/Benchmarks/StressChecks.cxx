@@ -165,8 +165,7 @@ private:
     };
     if (this->Published)
     {
-      // The published deposit, L sigma l of the radiance that enters, takes more than the ray loses: of a voxel's own emission
-      // up to a quarter more is absorbed and escapes than is emitted.
+      // The published deposit knows of scattering only: of what a voxel shines itself up to a quarter more is absorbed and escapes.
       const double made = this->Scene.emission.empty() ? 1e-3 : 0.3;
       this->Add("energy_made", this->Solver == StressSolver::PhotonsPublished ? 0.0 : this->Worst(imbalance), made);
       return;
