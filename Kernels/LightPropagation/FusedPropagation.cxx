@@ -45,6 +45,7 @@ LightField FusedSolver::Run(const Monitor& monitor)
   {
     this->RunOrders(monitor);
   }
+  this->CheckBalance();
   this->Unload();
   return std::move(this->Result);
 }
@@ -61,7 +62,12 @@ void FusedSolver::RunOrders(const Monitor& monitor)
       this->PropagateLights(ofOrder);
       this->Stranded = this->OnTheWay;
     }
+    const Rgb ofLamps = this->Result.balance.entered;
     this->PropagateOrder(order, ofOrder);
+    if (order == 0)
+    {
+      this->CheckEntering(ofLamps);
+    }
     this->CollectOrder(order);
     Report(ofOrder, 1.0);
     ++order;

@@ -60,6 +60,11 @@ private:
   }
 
   void RunOrders(const Monitor& monitor);
+  /// @param ofLamps  W that entered before, of lights
+  /// @throws InvalidInput where sweeps bring far less or more of the light from outside than there is
+  void CheckEntering(const Rgb& ofLamps) const;
+  /// @throws InvalidInput where the energy balance is off by a hundredth
+  void CheckBalance() const;
   void Load();
   template <class Loader>
   void LoadEmission(const Loader& load);

@@ -186,7 +186,7 @@ static float pattern_at(const low_order_layout* layout, const low_order_arrays* 
   const int b = axis == 0 ? 1 : 0;
   const int c = axis == 2 ? 1 : 2;
   const float crossing = arrays->pattern[layout->pattern[2 * axis] + at[b]] + arrays->pattern[layout->pattern[2 * axis + 1] + at[c]];
-  const float thick = tau * tau / (1.0f + tau * tau); // in thin voxels it is in the light too
+  const float thick = 1.0f - 1.0f / (1.0f + tau * tau); // in thin voxels it is in the light too
   return 1.0f + thick * (crossing - 1.0f);
 }
 
@@ -286,9 +286,12 @@ static float remainder_of_borders(const low_order_layout* layout, const low_orde
   }
   *believed = belief(layout, longest * arrays->sigma_t[i], longest * arrays->sigma_a[i]);
   *believed = *believed > 1e-12f ? *believed : 0.0f;
+  // Of a thick voxel what is left is a small difference of what it shines and takes.
+  const float rounding = 1e-6f * arrays->sigma_t[i] * volume_of(layout) * fmax(arrays->model[i], 0.0f);
+  const float whole = rounding < 0.01f * sum ? left + in : sum;
   for (int d = 0; d < 6; ++d)
   {
-    seeming[d] = sum > 0.0f ? (left + in) * seeming[d] / sum : 0.0f;
+    seeming[d] = sum > 0.0f ? whole * seeming[d] / sum : 0.0f;
     const float net = seeming[d] - arrays->entering[d * arrays->stride + i] - model[d];
     share[d] = *believed > 0.0f && is_border(layout, at, d) ? *believed * net : 0.0f;
   }

@@ -165,7 +165,9 @@ private:
     };
     if (this->Published)
     {
-      this->Add("energy_made", this->Solver == StressSolver::PhotonsPublished ? 0.0 : this->Worst(imbalance), 1e-3);
+      // The published deposit knows of scattering only: of what a voxel shines itself up to a quarter more is absorbed and escapes.
+      const double made = this->Scene.emission.empty() ? 1e-3 : 0.3;
+      this->Add("energy_made", this->Solver == StressSolver::PhotonsPublished ? 0.0 : this->Worst(imbalance), made);
       return;
     }
     this->Add("balance", this->Worst([&](int c) { return std::abs(imbalance(c)); }), 1e-4);
@@ -243,6 +245,7 @@ private:
     {
       if (this->Case.mirrored[axis])
       {
+        this->Add(std::string("faces_" + std::string(1, "xyz"[axis])).c_str(), this->FaceAsymmetry(axis), 0.01);
         this->Add(std::string("mirrored_" + std::string(1, "xyz"[axis])).c_str(), this->Asymmetry(axis), 1e-3);
       }
     }
@@ -250,6 +253,15 @@ private:
     {
       this->Add("residual_by_tolerance", this->Outcome.warnings.empty() ? this->Outcome.residual : 0.0, 1.0);
     }
+  }
+
+  /// Of the power out through the two faces across an axis, in parts of what came in.
+  double FaceAsymmetry(int axis) const
+  {
+    const std::size_t low = static_cast<std::size_t>(2 * axis * this->Outcome.channels);
+    const std::vector<double>& out = this->Outcome.facePowerOut;
+    return this->Worst(
+      [&](int c) { return std::abs(out[low + c] - out[low + this->Outcome.channels + c]) / this->In(c); });
   }
 
   double Asymmetry(int axis) const
@@ -433,7 +445,8 @@ std::vector<StressCheck> CheckView(const StressScene& scene, const StressOutcome
     {
       worst = std::max(worst, std::abs(radiance - 1.0));
     }
-    found.push_back({ "furnace", worst, 5e-3 });
+    // Steps of half a voxel do not resolve an index that steps from voxel to voxel.
+    found.push_back({ "furnace", worst, scene.index.empty() ? 5e-3 : 0.02 });
   }
   if (IsEven(scene.absorption) && IsEven(scene.scattering) && scene.channels == 1 && scene.index.empty() &&
     *std::max_element(scene.spacing.begin(), scene.spacing.end()) <= 2.0 *

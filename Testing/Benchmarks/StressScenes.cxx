@@ -306,6 +306,10 @@ void AddLampsInside(std::vector<StressCase>& cases)
           std::string(names[kind]) + (white ? ", white " : ", black ") + Number(sigma), scene);
         made.mirrored = { kind == Lamp::Point, kind == Lamp::Point, false };
         made.quick = kind == Lamp::Point && sigma == 1e12;
+        if (white && sigma == 1e12)
+        {
+          made.refusals = { { "maps", "Its thickest voxel, (4, 4, 4), has optical thickness 1e+12" } };
+        }
         cases.push_back(made);
       }
     }
@@ -399,7 +403,12 @@ void AddSpacings(std::vector<StressCase>& cases)
         AddMedium(cases, "spacing", std::string(1, "xyz"[axis]) + " " + Number(ratio) + ", albedo " + Number(albedo),
           scene, false);
         cases.back().quick = axis == 2 && albedo == 1.0;
-        cases[cases.size() - 2].middle = 0.0; // that is of a cube
+        StressCase& face = cases[cases.size() - 2];
+        face.middle = 0.0;                         // that is of a cube
+        if (axis == 2 ? ratio > 1.0 : ratio < 1.0) // the face that shines is a thin side of the box
+        {
+          face.refusals = { { "maps", "of the light that shines through the box's faces: too few" } };
+        }
       }
     }
   }

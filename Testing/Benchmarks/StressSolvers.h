@@ -59,7 +59,7 @@ StressOutcome RunStress(StressSolver solver, const StressScene& scene);
 std::vector<float> IndexToView(const StressScene& scene);
 
 /// Scattering orders at most, of the maps that are not accelerated; as published they are slow where voxels are 1:1000.
-constexpr int StressOrders = 30, StressOrdersPublished = 2;
+constexpr int StressOrders = 10, StressOrdersPublished = 1;
 /// Photons of each chain.
 constexpr int StressPhotons = 20000;
 }

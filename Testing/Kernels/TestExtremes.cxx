@@ -1,0 +1,205 @@
+#include "DeviceTest.h"
+#include "MediumScene.h"
+#include "PhotonScene.h"
+
+#include <algorithm>
+#include <cmath>
+#include <string>
+
+using namespace tyndall;
+
+// What the extreme matrix (./run bench stress) found, each with the least scene that shows it.
+class Extremes : public DeviceTest
+{
+};
+
+namespace
+{
+std::string WhyRefused(Device& device, Scene& scene)
+{
+  try
+  {
+    scene.Solve(device);
+  }
+  catch (const InvalidInput& error)
+  {
+    return error.what();
+  }
+  return "";
+}
+
+std::size_t Middle(const Scene& scene)
+{
+  return scene.medium.grid.VoxelCount() / 2; // of odd sizes
+}
+
+Light LampAt(std::array<double, 3> position)
+{
+  Light lamp;
+  lamp.type = LightType::Point;
+  lamp.position = position;
+  lamp.power = { 1.0, 1.0, 1.0 };
+  return lamp;
+}
+}
+
+TEST_F(Extremes, LightIsInProportionToPowerWhateverThatIs)
+{
+  const auto solve = [&](double power) {
+    Scene scene({ 7, 7, 7 }, 0.1f, 0.3f);
+    scene.ShineFromEverywhere(power);
+    scene.light.lights = { LampAt({ 3.2, 2.9, 4.1 }) };
+    scene.light.lights[0].power = { 100.0 * power, 100.0 * power, 100.0 * power };
+    scene.emission.assign(scene.sigma_a.size(), static_cast<float>(0.01 * power));
+    return scene.Solve(this->GetDevice());
+  };
+  const LightField usual = solve(1.0);
+  for (const double power : { 1e-36, 1e-30, 1e30, 1e35 })
+  {
+    const LightField light = solve(power);
+    EXPECT_LT(light.balance.RelativeError(1), 1e-5) << power;
+    EXPECT_NEAR(light.balance.absorbed[0] / power / usual.balance.absorbed[0], 1.0, 1e-4) << power;
+    for (std::size_t i = 0; i < light.fluence.size(); ++i)
+    {
+      ASSERT_NEAR(light.fluence[i] / power / usual.fluence[i], 1.0, 1e-3) << power;
+    }
+  }
+}
+
+TEST_F(Extremes, FluenceBeyondFloatIsRefused)
+{
+  Scene scene({ 3, 3, 3 });
+  scene.ShineFromEverywhere(1e38);
+  EXPECT_NE(WhyRefused(this->GetDevice(), scene).find("fluence would be 1.2566"), std::string::npos);
+}
+
+TEST_F(Extremes, ExtinctionWhoseInverseIsNoFloatIsRefused)
+{
+  Scene scene({ 3, 3, 3 }, 0.0f, 1.0f);
+  scene.ShineFromEverywhere(1.0);
+  scene.sigma_a[5] = scene.sigma_s[5] = 3e38f;
+  EXPECT_NE(WhyRefused(this->GetDevice(), scene).find("add up to 6e+38 in voxel (2, 1, 0)"), std::string::npos);
+  scene.sigma_a[5] = scene.sigma_s[5] = 1e36f;
+  const LightField light = scene.Solve(this->GetDevice());
+  EXPECT_LT(light.balance.RelativeError(1), 1e-5);
+}
+
+TEST_F(Extremes, LampsGiveAllTheirPowerToAnOpaqueVoxel)
+{
+  for (const LightType type : { LightType::Point, LightType::Spot, LightType::Rectangle })
+  {
+    for (const float sigma : { 1e6f, 1e12f, 1e30f })
+    {
+      Scene scene({ 9, 9, 9 });
+      scene.sigma_a[Middle(scene)] = sigma;
+      Light lamp = LampAt({ 4.5, 4.5, 4.5 });
+      lamp.type = type;
+      lamp.angle = 60.0;
+      lamp.size = { 0.5, 0.5 };
+      scene.light.lights = { lamp };
+      const LightField light = scene.Solve(this->GetDevice());
+      EXPECT_NEAR(light.balance.absorbed[0], 1.0, 1e-4) << sigma;
+      EXPECT_NEAR(light.fluence[Middle(scene)] * sigma, 1.0, 1e-4) << sigma;
+    }
+  }
+}
+
+TEST_F(Extremes, WhiteVoxelsInVacuumGiveLightBack)
+{
+  for (const float sigma : { 1e3f, 1e8f, 1e12f, 1e30f })
+  {
+    Scene scene({ 9, 9, 9 });
+    scene.sigma_s[Middle(scene)] = sigma;
+    scene.ShineAlong({ 0.0, 0.0, -1.0 });
+    scene.settings.source = PropagationSource::Automatic;
+    scene.settings.acceleration = PropagationAcceleration::Automatic;
+    const LightField light = scene.Solve(this->GetDevice());
+    EXPECT_LT(light.balance.RelativeError(1), 1e-4) << sigma;
+    for (const Rgb& power : light.facePowerOut)
+    {
+      EXPECT_GE(power[0], 0.0) << sigma;
+    }
+  }
+}
+
+TEST_F(Extremes, FacesOfACheckerboardInAFurnaceShineAlike)
+{
+  Scene scene({ 9, 9, 9 });
+  for (std::size_t i = 0; i < scene.sigma_s.size(); i += 2)
+  {
+    scene.sigma_s[i] = 1e8f;
+  }
+  scene.ShineFromEverywhere(1.0);
+  scene.settings.source = PropagationSource::Automatic;
+  scene.settings.acceleration = PropagationAcceleration::Automatic;
+  const LightField light = scene.Solve(this->GetDevice());
+  for (const Rgb& power : light.facePowerOut)
+  {
+    EXPECT_NEAR(power[0] / light.balance.entered[0], 1.0 / 6.0, 0.005);
+  }
+}
+
+TEST_F(Extremes, WhatDoesNotBalanceIsRefused)
+{
+  Scene scene({ 9, 9, 9 });
+  scene.sigma_s[Middle(scene)] = 1e12f;
+  scene.light.lights = { LampAt({ 4.5, 4.5, 4.5 }) };
+  scene.settings.source = PropagationSource::Automatic;
+  scene.settings.acceleration = PropagationAcceleration::Automatic;
+  const std::string why = WhyRefused(this->GetDevice(), scene);
+  EXPECT_NE(why.find("Its thickest voxel, (4, 4, 4), has optical thickness 1e+12"), std::string::npos) << why;
+}
+
+TEST_F(Extremes, FacesThatFewRaysMeetAreRefused)
+{
+  Scene scene({ 9, 9, 9 }, 0.1f, 0.1f);
+  scene.medium.grid.spacing = { 1.0, 1.0, 1000.0 };
+  scene.light.faces[4] = { 1.0, 1.0, 1.0 };
+  const std::string why = WhyRefused(this->GetDevice(), scene);
+  EXPECT_NE(why.find("voxels of 1 x 1 x 1000 are too unequal"), std::string::npos) << why;
+  scene.light.faces.fill({ 1.0, 1.0, 1.0 }); // where all shine, those few do not matter
+  EXPECT_EQ(WhyRefused(this->GetDevice(), scene), "");
+}
+
+TEST_F(Extremes, PhotonsKeepTheirPowerInOpaqueVoxels)
+{
+  for (const float sigma : { 1e12f, 1e30f, 1e36f })
+  {
+    PhotonScene scene(9, 1.0, 0.0f, 0.0f);
+    scene.sigma_a[scene.sigma_a.size() / 2] = sigma;
+    scene.sigma_s[scene.sigma_s.size() / 2] = sigma;
+    PhotonMarcher marcher(this->GetDevice(), scene.Medium(), scene.Index(), scene.settings, nullptr);
+    std::vector<Photon> photons(100);
+    for (std::size_t i = 0; i < photons.size(); ++i)
+    {
+      photons[i].position = { -0.1 + 0.002 * static_cast<double>(i), 0.01, 1.0 };
+      photons[i].direction = { 0.0f, 0.0f, -1.0f };
+      photons[i].power = { 1.0f, 1.0f, 1.0f };
+    }
+    const PhotonLight found = marcher.March(photons);
+    EXPECT_LT(found.light.balance.RelativeError(1), 1e-5) << sigma;
+    EXPECT_NEAR(found.scattered[0] / found.light.balance.absorbed[0], 0.5, 1e-4) << sigma;
+  }
+}
+
+TEST_F(Extremes, PhotonsLightIsInProportionToTheirPower)
+{
+  const auto march = [&](float power) {
+    PhotonScene scene(9, 1.0, 0.3f, 0.3f);
+    PhotonMarcher marcher(this->GetDevice(), scene.Medium(), scene.Index(), scene.settings, nullptr);
+    Photon photon;
+    photon.position = { 0.3, 0.01, 1.0 };
+    photon.direction = { 0.1f, 0.2f, -1.0f };
+    photon.power = { power, power, power };
+    return marcher.March({ photon }).light.fluence;
+  };
+  const std::vector<float> usual = march(1.0f);
+  for (const float power : { 1e-36f, 1e-30f, 1e30f, 1e36f })
+  {
+    const std::vector<float> fluence = march(power);
+    for (std::size_t i = 0; i < fluence.size(); ++i)
+    {
+      ASSERT_NEAR(fluence[i] / power, usual[i], 1e-3 * usual[i]) << power;
+    }
+  }
+}
