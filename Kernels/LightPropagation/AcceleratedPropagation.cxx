@@ -9,10 +9,10 @@ namespace
 {
 constexpr double Pi = 3.14159265358979323846;
 constexpr int MostSweeps = 200;
-constexpr int ManyPlanes = 8192;        ///< that a ray goes round a periodic axis before it is given up
-constexpr double UsualTolerance = 1e-4; ///< the method must not depend on the tolerance
+constexpr int ManyPlanes = 8192;         ///< that a ray goes round a periodic axis before it is given up
+constexpr double UsualTolerance = 1e-4;  ///< the method must not depend on the tolerance
 constexpr double ThickForNearness = 0.1; ///< mean free paths a voxel
-constexpr double ManyOrders = 40.0;     ///< plain iteration that is dearer than an acceleration
+constexpr double ManyOrders = 40.0;      ///< plain iteration that is dearer than an acceleration
 
 }
 

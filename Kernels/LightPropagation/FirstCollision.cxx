@@ -266,8 +266,8 @@ public:
     if (this->Volume.nearness)
     {
       cl::Kernel addNearness = this->Kernel("add_fixed_nearness");
-      With(addNearness, this->Path, *this->Volume.nearness, cl_ulong(this->Volume.first),
-        cl_ulong(this->Volume.stride), units);
+      With(addNearness, this->Path, *this->Volume.nearness, cl_ulong(this->Volume.first), cl_ulong(this->Volume.stride),
+        units);
       this->TheDevice.Queue().enqueueNDRangeKernel(addNearness, cl::NullRange, voxels, cl::NullRange);
     }
     return this->TallyTimes(correction);
@@ -282,9 +282,8 @@ private:
       { kernel_source::Numerics, kernel_source::FixedPoint, kernel_source::LampBeams },
       "-DATOMICS=" + std::to_string(this->HasAtomics()) +
         " -DLAMBERT=" + std::to_string(this->TheLight.type == LightType::Rectangle) +
-        " -DCONE=" + std::to_string(this->TheLight.type == LightType::Spot) +
-        " -DNEARNESS=" + std::to_string(this->Volume.nearness != nullptr) +
-        " -DTHIN=" + std::to_string(ThinForNearness) + "f");
+        " -DCONE=" + std::to_string(this->TheLight.type == LightType::Spot) + " -DNEARNESS=" +
+        std::to_string(this->Volume.nearness != nullptr) + " -DTHIN=" + std::to_string(ThinForNearness) + "f");
   }
 
   /// Fixed point units per length: no voxel can gather more than all power along its diagonal.

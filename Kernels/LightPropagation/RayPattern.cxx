@@ -141,8 +141,8 @@ void SpreadStarts(std::vector<Bundle>& bundles)
     const double small = std::fmod(0.5 + i / (plastic * plastic), 1.0);
     bundle.startU = bundle.tangentU >= bundle.tangentV ? large : small;
     bundle.startV = Same(bundle.tangentU, bundle.tangentV) ? bundle.startU
-      : bundle.tangentU >= bundle.tangentV               ? small
-                                                         : large;
+      : bundle.tangentU >= bundle.tangentV                 ? small
+                                                           : large;
   }
 }
 }
