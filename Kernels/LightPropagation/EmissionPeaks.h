@@ -19,7 +19,8 @@ struct EmissionPeak
 
   double Width(const Grid& grid) const ///< longest edge of the box
   {
-    return std::max({ this->size[0] * grid.spacing[0], this->size[1] * grid.spacing[1], this->size[2] * grid.spacing[2] });
+    return std::max(
+      { this->size[0] * grid.spacing[0], this->size[1] * grid.spacing[1], this->size[2] * grid.spacing[2] });
   }
 };
 
@@ -28,7 +29,7 @@ struct EmissionPeak
 struct SplitEmission
 {
   std::vector<EmissionPeak> peaks; ///< at most 16
-  std::vector<float> smooth; ///< the rest, in the layout of the medium's emission; empty where there are no peaks
+  std::vector<float> smooth;       ///< the rest, in the layout of the medium's emission; empty where there are no peaks
 
   /// The part without the peaks.
   Field Smooth(const Medium& medium) const
