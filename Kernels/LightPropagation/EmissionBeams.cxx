@@ -15,7 +15,7 @@ namespace
 {
 constexpr int CellsPerEdge = 42;       ///< of the direction set near the peak
 constexpr int RaysPerEdge = 4;         ///< of a voxel there
-constexpr double BeamWidth = 1.0;      ///< voxels, where beams leave the box
+constexpr double BeamWidth = 0.5;      ///< voxels, where beams leave the box
 constexpr double BeamTangent = 0.0625; ///< at most
 constexpr int RowSums = 11;            ///< EMISSION_SUMS of EmissionBeams.cl
 constexpr int RowsPerLaunch = 256;     ///< keeps a launch well below a tenth of a second for rows of a thousand voxels
@@ -374,7 +374,8 @@ private:
         patch.size[1] = static_cast<float>(stage.rule.parts[j] * source.size[v]);
         position[u] = source.first[u] + stage.rule.nodes[i] * source.size[u];
         position[v] = source.first[v] + stage.rule.nodes[j] * source.size[v];
-        this->FollowPatch({ source, stage.inner, stage.outer, static_cast<float>(stage.focus) }, patch, position, emission, deposit, tally);
+        this->FollowPatch({ source, stage.inner, stage.outer, static_cast<float>(stage.focus) }, patch, position,
+          emission, deposit, tally);
         ++patch.number;
         lowU += stage.rule.parts[i];
       }

@@ -8,16 +8,16 @@ namespace tyndall
 {
 namespace
 {
-constexpr std::size_t BrightPart = 64;  ///< one voxel in so many may be part of a peak
-constexpr double Outshines = 4.0;       ///< times the mean of the rest
-constexpr double PartOfAll = 0.5;       ///< that all peaks carry, at least
-constexpr double PartOfOne = 0.01;      ///< that each carries, at least
+constexpr std::size_t BrightPart = 64; ///< one voxel in so many may be part of a peak
+constexpr double Outshines = 4.0;      ///< times the mean of the rest
+constexpr double PartOfAll = 0.5;      ///< that all peaks carry, at least
+constexpr double PartOfOne = 0.01;     ///< that each carries, at least
 constexpr std::size_t MostPeaks = 16;
-constexpr double Widest = 0.125;        ///< of the box's longest edge
-constexpr double Hidden = 4.6;          ///< mean free paths beyond which a peak is not seen: 1% is left
-constexpr double Clear = 1.5;           ///< times a peak's width that light must go to be followed
-constexpr double NearMargin = 0.75;     ///< times a peak's width
-constexpr int LeastMargin = 3;          ///< voxels
+constexpr double Widest = 0.125;    ///< of the box's longest edge
+constexpr double Hidden = 4.6;      ///< mean free paths beyond which a peak is not seen: 1% is left
+constexpr double Clear = 1.5;       ///< times a peak's width that light must go to be followed
+constexpr double NearMargin = 0.75; ///< times a peak's width
+constexpr int LeastMargin = 3;      ///< voxels
 
 using Voxel = std::array<int, 3>;
 
@@ -113,7 +113,8 @@ std::vector<std::vector<std::size_t>> Groups(const Grid& grid, const std::vector
         {
           inside = inside && beside[a] >= 0 && beside[a] < grid.size[a];
         }
-        const auto found = inside ? std::lower_bound(voxels.begin(), voxels.end(), IndexOf(grid, beside)) : voxels.end();
+        const auto found =
+          inside ? std::lower_bound(voxels.begin(), voxels.end(), IndexOf(grid, beside)) : voxels.end();
         const std::size_t place = found - voxels.begin();
         if (found != voxels.end() && *found == IndexOf(grid, beside) && !taken[place])
         {
