@@ -217,7 +217,7 @@ def cloud(bench):
     extinction = 100.0 * lognormal(edge, numpy.random.default_rng(5))
     medium = image({"sigma_a": 1e-4 * extinction, "sigma_s": (1.0 - 1e-4) * extinction}, (1, 1, 1), (edge,) * 3)
     sun = eat.LightRig(SunElevation=50, SunAzimuth=130, SunPower=[3, 3, 3])
-    rows, facts = bench.compare_converged("thick-cloud", PROPAGATION, 150.0, Input=medium, Lights=sun, SkyColor=[0.2, 0.2, 0.2],
+    rows, facts = bench.compare_converged("thick-cloud", PROPAGATION, 5.0 if bench.quick else 150.0, Input=medium, Lights=sun, SkyColor=[0.2, 0.2, 0.2],
                                 Orders=[3] if bench.quick else [10, 30, 100, 300, 1000])
     bench.report("thick-cloud", "Log-normal cloud of optical thickness 100, albedo 0.9999, %d voxels an edge" % edge, rows, facts)
 
@@ -247,15 +247,20 @@ def print_speedups(bench):
             continue
         ends = min(theirs, key=lambda row: row["error_l2"])
         print("\nEqual-error speed-up of the default over 'as published': " + bench.titles[case])
-        for target in (0.5, 0.2, 0.1, 0.05, 0.02, 0.01, 0.005, ends["error_l2"]):
+        for target in sorted((0.5, 0.2, 0.1, 0.05, 0.02, 0.01, 0.005, ends["error_l2"]), reverse=True):
             fast, slow = (eat.seconds_for(rows, target) for rows in (ours, theirs))
+            if math.isnan(fast):
+                least = min(ours, key=lambda row: row["error_l2"])
+                print("  error %7s: not with these settings; the default ends at %s after %.3g s" % (
+                    percent(target), percent(least["error_l2"]), least["seconds"]))
+                break
             if math.isnan(slow):
                 print("  error %7s: default %8.3g s, as published never: it ends at %s after %.3g s" % (
                     percent(target), fast, percent(ends["error_l2"]), ends["seconds"]))
             else:
                 print("  error %7s: default %8.3g s, as published %8.3g s: %.3g times" % (percent(target), fast, slow, slow / fast))
                 print(json.dumps({"bench": "error", "case": case, "method": DEFAULT, "against": PUBLISHED, "error_l2": target,
-                                  "seconds": fast, **({"ratio": slow / fast} if fast == fast else {})}))
+                                  "seconds": fast, "ratio": slow / fast}))
 
 
 def print_advice(bench):
