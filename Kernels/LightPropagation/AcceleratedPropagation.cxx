@@ -9,10 +9,10 @@ namespace
 {
 constexpr double Pi = 3.14159265358979323846;
 constexpr int MostSweeps = 200;
-constexpr int ManyPlanes = 8192;        ///< that a ray goes round a periodic axis before it is given up
-constexpr double UsualTolerance = 1e-4; ///< the method must not depend on the tolerance
+constexpr int ManyPlanes = 8192;         ///< that a ray goes round a periodic axis before it is given up
+constexpr double UsualTolerance = 1e-4;  ///< the method must not depend on the tolerance
 constexpr double ThickForNearness = 0.1; ///< mean free paths a voxel
-constexpr double ManyOrders = 40.0;     ///< plain iteration that is dearer than an acceleration
+constexpr double ManyOrders = 40.0;      ///< plain iteration that is dearer than an acceleration
 
 }
 
@@ -327,5 +327,33 @@ void FusedSolver::UnloadAccelerated()
     }
   }
   this->Fluence.Write(fluence.data());
+  if (this->Settings.netFlux)
+  {
+    this->LimitFlux(fluence);
+  }
+}
+
+/// The mean of what goes through a voxel's faces is more than what flows in it where light dies away within it. No light flows
+/// more than there is.
+void FusedSolver::LimitFlux(const std::vector<float>& fluence)
+{
+  std::vector<float> flux = this->Flux.Read();
+  const double volume = this->TheMedium.grid.VoxelVolume();
+  for (int c = 0; c < this->Channels; ++c)
+  {
+    for (std::size_t i = 0; i < this->TheMedium.grid.VoxelCount(); ++i)
+    {
+      float* const x = flux.data() + 3 * c * this->Stride + i;
+      float* const y = x + this->Stride;
+      float* const z = y + this->Stride;
+      const double most = fluence[c * this->Stride + i] * volume;
+      const double flows = std::hypot(*x, *y, *z);
+      const auto part = static_cast<float>(flows > most ? most / flows : 1.0);
+      *x *= part;
+      *y *= part;
+      *z *= part;
+    }
+  }
+  this->Flux.Write(flux.data());
 }
 }

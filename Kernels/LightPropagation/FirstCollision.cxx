@@ -39,6 +39,7 @@ struct LampOnDevice
   cl_float cosine;
   cl_float intensity;
   cl_float scale;
+  cl_float diagonal;
   cl_int rounds;
 };
 struct BeamRow
@@ -176,8 +177,9 @@ std::vector<BeamRow> Beams(const Grid& grid, const Light& light, const glm::dvec
     {
       continue;
     }
-    const int countU = std::max(fewest, static_cast<int>(std::ceil((u[1] - u[0]) * far / width)));
-    const int countV = std::max(fewest, static_cast<int>(std::ceil((v[1] - v[0]) * far / width)));
+    const auto parts = [=](double tangents) { return static_cast<int>(std::ceil(tangents * far / width - 1e-6)); };
+    const int countU = std::max({ fewest, 1, parts(u[1] - u[0]) }); // rounding must not decide on one more
+    const int countV = std::max({ fewest, 1, parts(v[1] - v[0]) });
     for (int j = 0; j < countV; ++j)
     {
       const double widthU = (u[1] - u[0]) / countU;
@@ -260,15 +262,17 @@ public:
     {
       units.s[c] = static_cast<float>(this->TheLight.power[c] * correction / this->Scale());
     }
-    With(add, this->Path, *this->Volume.path, cl_ulong(this->Volume.first), cl_ulong(this->Volume.stride), units);
-    const cl::NDRange voxels(this->Volume.stride, this->Volume.channels);
-    this->TheDevice.Queue().enqueueNDRangeKernel(add, cl::NullRange, voxels, cl::NullRange);
+    const auto finish = [&](cl::Kernel& kernel, const Buffer<float>& sum) {
+      With(kernel, this->Path, sum, cl_ulong(this->Volume.first), cl_ulong(this->Volume.stride), units,
+        *this->Volume.sigma_t, cl_ulong(this->Volume.sigma_t_first), static_cast<float>(this->Diagonal()));
+      const cl::NDRange voxels(this->Volume.stride, this->Volume.channels);
+      this->TheDevice.Queue().enqueueNDRangeKernel(kernel, cl::NullRange, voxels, cl::NullRange);
+    };
+    finish(add, *this->Volume.path);
     if (this->Volume.nearness)
     {
       cl::Kernel addNearness = this->Kernel("add_fixed_nearness");
-      With(addNearness, this->Path, *this->Volume.nearness, cl_ulong(this->Volume.first),
-        cl_ulong(this->Volume.stride), units);
-      this->TheDevice.Queue().enqueueNDRangeKernel(addNearness, cl::NullRange, voxels, cl::NullRange);
+      finish(addNearness, *this->Volume.nearness);
     }
     return this->TallyTimes(correction);
   }
@@ -282,17 +286,17 @@ private:
       { kernel_source::Numerics, kernel_source::FixedPoint, kernel_source::LampBeams },
       "-DATOMICS=" + std::to_string(this->HasAtomics()) +
         " -DLAMBERT=" + std::to_string(this->TheLight.type == LightType::Rectangle) +
-        " -DCONE=" + std::to_string(this->TheLight.type == LightType::Spot) +
-        " -DNEARNESS=" + std::to_string(this->Volume.nearness != nullptr) +
-        " -DTHIN=" + std::to_string(ThinForNearness) + "f");
+        " -DCONE=" + std::to_string(this->TheLight.type == LightType::Spot) + " -DNEARNESS=" +
+        std::to_string(this->Volume.nearness != nullptr) + " -DTHIN=" + std::to_string(ThinForNearness) + "f");
   }
 
   /// Fixed point units per length: no voxel can gather more than all power along its diagonal.
-  double Scale() const
+  double Scale() const { return std::exp2(std::floor(std::log2(0x1p60 / (this->Diagonal() * RoundsAtMost)))); }
+
+  double Diagonal() const
   {
     const std::array<double, 3>& h = this->Volume.grid.spacing;
-    const double diagonal = std::sqrt(h[0] * h[0] + h[1] * h[1] + h[2] * h[2]);
-    return std::exp2(std::floor(std::log2(0x1p60 / (diagonal * RoundsAtMost))));
+    return std::sqrt(h[0] * h[0] + h[1] * h[1] + h[2] * h[2]);
   }
 
   LampOnDevice Describe(const glm::dvec3& position, double part) const
@@ -313,6 +317,7 @@ private:
     info.intensity = static_cast<float>(Intensity(this->TheLight) * part);
     info.cosine = static_cast<float>(std::cos(0.5 * this->TheLight.angle * glm::pi<double>() / 180.0));
     info.scale = static_cast<float>(this->Scale());
+    info.diagonal = static_cast<float>(this->Diagonal());
     info.rounds = RoundsAtMost;
     return info;
   }

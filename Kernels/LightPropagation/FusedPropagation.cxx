@@ -1,7 +1,9 @@
 #include "FusedSolver.h"
 
+#include "EmissionBeams.h"
 #include "EnvironmentPeaks.h"
 #include "FirstCollision.h"
+#include "PowerUnit.h"
 #include "TyndallKernelSources.h"
 
 #include <algorithm>
@@ -137,12 +139,17 @@ void FusedSolver::Load()
   };
   load(this->Extinction, extinctions, [&](std::size_t i, int c) { return this->SigmaT(i, c); });
   load(this->Scattering, this->Channels, [&](std::size_t i, int c) { return this->SigmaS(i, c); });
+  if (this->Settings.emissionRays)
+  {
+    this->Emission = Split(this->TheMedium, this->Settings.periodic);
+  }
+  const Field smooth = this->Emission.Smooth(this->TheMedium);
   load(this->Source, this->Channels, [&](std::size_t i, int c) {
     const float emission = this->TheMedium.emission.At(i, c);
     this->Result.balance.emitted[c] += 4.0 * Pi * emission * this->TheMedium.grid.VoxelVolume();
-    return emission;
+    this->Shining = this->Shining || smooth.At(i, c) > 0.0f;
+    return smooth.At(i, c);
   });
-  this->Shining = Total(this->Result.balance.emitted) > 0.0;
 }
 
 void FusedSolver::MakeSweeps()
@@ -239,6 +246,19 @@ void FusedSolver::PropagateLights(const Monitor& monitor)
       ofChannels.power = From(light.power, first);
       this->Count(DepositLight(this->TheDevice, volume, ofChannels, this->Settings.periodic, this->Workspace, monitor),
         first, volume.channels);
+    });
+  }
+  this->PropagatePeaks(monitor);
+}
+
+/// Small bright parts of the medium.
+void FusedSolver::PropagatePeaks(const Monitor& monitor)
+{
+  for (const EmissionPeak& peak : this->Emission.peaks)
+  {
+    this->ForChannels([&](const SweepVolume& volume, int first) {
+      this->Count(DepositEmission(this->TheDevice, volume, first, peak, this->Settings.periodic, monitor), first,
+        volume.channels);
     });
   }
 }
@@ -403,6 +423,10 @@ std::vector<std::string> FusedSolver::LeftOut() const
   {
     words.push_back("first-collision source: there are no lights");
   }
+  if (Total(this->Result.balance.emitted) > 0.0 && this->Emission.peaks.empty())
+  {
+    words.push_back("first-collision source of emission: no small bright part stands out");
+  }
   if (this->Result.convergence.size() == 1)
   {
     words.push_back("scattering orders after the first: nothing is scattered");
@@ -453,6 +477,14 @@ LightField SolveFused(Device& device, const Medium& medium, const Illumination& 
   Check(medium);
   Check(illumination);
   Check(settings);
-  return FusedSolver(device, medium, illumination, settings).Run(monitor);
+  const double unit = PowerUnitOf(medium, illumination);
+  if (unit == 1.0)
+  {
+    return FusedSolver(device, medium, illumination, settings).Run(monitor);
+  }
+  const SceneInUnits scene(medium, illumination, unit);
+  LightField light = FusedSolver(device, scene.medium, scene.illumination, settings).Run(monitor);
+  ToWatts(light, unit);
+  return light;
 }
 }

@@ -1,6 +1,7 @@
 #pragma once
 
 #include "AxisSweep.h"
+#include "EmissionPeaks.h"
 #include "FusedPropagation.h"
 #include "LowOrder.h"
 
@@ -60,6 +61,7 @@ private:
   void PropagateOrder(int order, const Monitor& monitor);
   void PropagateSweeps(const SweepBoundary& boundary, int mostPlanes, const Monitor& monitor);
   void PropagateLights(const Monitor& monitor);
+  void PropagatePeaks(const Monitor& monitor);
   SweepVolume VolumeOf(int firstChannel) const;
   void ForChannels(const std::function<void(const SweepVolume&, int)>& act);
   void Count(const SweepTally& tally, int firstChannel, int channels);
@@ -83,6 +85,7 @@ private:
   double UnitPower(int channel) const;
   bool DoneAccelerated(int sweeps) const;
   void UnloadAccelerated();
+  void LimitFlux(const std::vector<float>& fluence);
 
   double Progress(int order, double done) const;
   std::vector<std::string> LeftOut() const;
@@ -94,6 +97,7 @@ private:
   const Medium& TheMedium;
   const Illumination& Outside;
   std::vector<Light> Lights; ///< those of the scene and the peaks of the environment
+  SplitEmission Emission;    ///< of the medium
   const PropagationSettings& Settings;
   DirectionSet Directions;
   int Channels;

@@ -21,6 +21,7 @@ typedef struct
   float cosine;       // of the cone's half angle
   float intensity;    // part of the power, per steradian; at normal emission where LAMBERT
   float scale;        // fixed point units per length
+  float diagonal;     // of a voxel
   int rounds;         // of a beam round a periodic axis
 } lamp_info;
 
@@ -84,6 +85,12 @@ typedef struct
 {
   float entered, escaped[6], stranded;
 } lamp_tally;
+
+// How many of them a path in a voxel counts: what is thick is crossed by little path, of which fixed point must not lose any.
+static float units_of(float sigma, float diagonal)
+{
+  return fmax(sigma * diagonal, 1.0f);
+}
 
 // The first voxel under a cross-section from low to low + width, and the part of it that lies there.
 static void overlap(float low, float width, int* voxel, float* part)
@@ -169,13 +176,14 @@ static void step_beam(const lamp_info* lamp, const beam_row* row, int layer, boo
     }
     else
     {
-      add_units(path + index, convert_long_sat_rte(power * mean_length * lamp->scale));
+      const float counted = power * (mean_length * units_of(sigma[index], lamp->diagonal));
+      add_units(path + index, convert_long_sat_rte(counted * lamp->scale));
 #if NEARNESS
       if (sigma[index] * length > 0.5f * THIN)
       {
         const float2 mean = (float2)(q & 1 ? 0.5f * (middle.x + 0.5f * width.x - lowest.x - 1.0f) : 0.5f * (fmin(middle.x + 0.5f * width.x - lowest.x, 1.0f) + middle.x - 0.5f * width.x - lowest.x),
           q & 2 ? 0.5f * (middle.y + 0.5f * width.y - lowest.y - 1.0f) : 0.5f * (fmin(middle.y + 0.5f * width.y - lowest.y, 1.0f) + middle.y - 0.5f * width.y - lowest.y));
-        add_nearness(lamp, row, voxel, way, mean, tangent, sigma[index] * length, lost, power * mean_length,
+        add_nearness(lamp, row, voxel, way, mean, tangent, sigma[index] * length, lost, counted,
           path + stride + index, stride);
       }
 #endif
@@ -316,26 +324,29 @@ __kernel void follow_lamp(lamp_info lamp, const __global float* sigma, ulong sig
 
 // path   W length, [channel][stride], added to
 // units  [channel] W length of a fixed point unit
-__kernel void add_fixed(const __global long* fixed_path, __global float* path, ulong first, ulong stride, float4 units)
+// sigma  1/length, shared by the channels
+__kernel void add_fixed(const __global long* fixed_path, __global float* path, ulong first, ulong stride, float4 units,
+  const __global float* sigma, ulong sigma_first, float diagonal)
 {
   const ulong i = get_global_id(0);
   const int channel = get_global_id(1);
   const float unit = channel == 0 ? units.x : channel == 1 ? units.y : units.z;
-  path[first + channel * stride + i] += (float)fixed_path[i] * unit;
+  path[first + channel * stride + i] += (float)fixed_path[i] * unit / units_of(sigma[sigma_first + i], diagonal);
 }
 
 #if NEARNESS
 // fixed_path  as in follow_lamp
 // nearness    W length, [channel][-x, +x, -y, +y, -z, +z][stride], added to
-__kernel void add_fixed_nearness(
-  const __global long* fixed_path, __global float* nearness, ulong first, ulong stride, float4 units)
+__kernel void add_fixed_nearness(const __global long* fixed_path, __global float* nearness, ulong first, ulong stride,
+  float4 units, const __global float* sigma, ulong sigma_first, float diagonal)
 {
   const ulong i = get_global_id(0);
   const int channel = get_global_id(1);
   const float unit = channel == 0 ? units.x : channel == 1 ? units.y : units.z;
   for (int axis = 0; axis < 3; ++axis)
   {
-    const float towards = (float)fixed_path[(1 + axis) * stride + i] * unit;
+    const float towards =
+      (float)fixed_path[(1 + axis) * stride + i] * unit / units_of(sigma[sigma_first + i], diagonal);
     __global float* of_axis = nearness + 6 * (first + channel * stride) + 2 * axis * stride + i;
     of_axis[0] += fmax(-towards, 0.0f);
     of_axis[stride] += fmax(towards, 0.0f);

@@ -5,6 +5,7 @@
 #include <algorithm>
 #include <cmath>
 #include <cstdlib>
+#include <numeric>
 
 namespace tyndall
 {
@@ -25,6 +26,23 @@ int OtherAxis(int axis, int which)
 double FaceArea(const Grid& grid, int axis)
 {
   return grid.spacing[(axis + 1) % 3] * grid.spacing[(axis + 2) % 3];
+}
+
+/// Rounding leaves dark faces a little less than nothing: that is for the others to bear, so that the sum stays.
+std::array<double, 6> NotNegative(std::array<double, 6> powers)
+{
+  const double sum = std::accumulate(powers.begin(), powers.end(), 0.0);
+  double positive = 0.0;
+  for (double& power : powers)
+  {
+    power = std::max(power, 0.0);
+    positive += power;
+  }
+  for (double& power : powers)
+  {
+    power *= positive > 0.0 ? std::max(sum, 0.0) / positive : 0.0;
+  }
+  return powers;
 }
 
 /// sum over directions of w mu, mu > 0, that march along `marching`.
@@ -268,16 +286,14 @@ std::array<double, 6> LowOrder::Outflow(const std::array<double, 6>& ofSweep)
       shared += several ? 1.0 : 0.0;
     }
   }
-  double all = 0.0;
-  for (double power : missing)
+  const double all = std::accumulate(missing.begin(), missing.end(), 0.0);
+  const double left = std::accumulate(ofSweep.begin(), ofSweep.end(), 0.0);
+  for (int face = 0; face < 6 && shared > 0.0 && left > 0.0; ++face)
   {
-    all += power;
+    outflow[face] +=
+      this->Layout.periodic[face / 2] ? 0.0 : believed / shared * (missing[face] - all * ofSweep[face] / left);
   }
-  for (int face = 0; face < 6 && shared > 0.0; ++face)
-  {
-    outflow[face] += this->Layout.periodic[face / 2] ? 0.0 : believed / shared * (missing[face] - all / 6.0);
-  }
-  return outflow;
+  return NotNegative(outflow);
 }
 
 void LowOrder::AddFlux(const Buffer<float>& flux)

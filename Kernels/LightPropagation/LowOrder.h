@@ -84,7 +84,7 @@ public:
   double Correct(double unit);
 
   /// Solve once more, for what the last correction found to more digits.
-  void Refine(double unit) { this->Solver.Solve(this->Right, this->Solution, unit, 1e-3); }
+  void Refine(double unit) { this->Solver.Solve(this->Right, this->Solution, unit, 1e-3, 1e-6); }
 
   /// W / length^2, what the last correction found.
   std::vector<double> Found() const { return this->Solution.Read(); }

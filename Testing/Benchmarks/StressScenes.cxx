@@ -171,25 +171,28 @@ void AddMeanCosines(std::vector<StressCase>& cases)
     {
       sigma = static_cast<float>(sigma * (1.0 - g));
     }
-    made.twinOfPhotons = false; // whose extinction is the medium's own
+    made.similarity = true;
     made.quick = g == 0.99;
     cases.push_back(made);
     cases.push_back(Furnace("|g| to 0.99", "g " + Number(g), scene));
   }
 }
 
-/// n = `inside` in a ball or block of voxels, 1 about it, without any smooth border.
+/// n = `inside` in a ball or in voxels by turns, 1 about them, without any smooth border. Two layers about it are the spline's.
 StressScene Glass(double inside, bool checkered)
 {
-  StressScene scene = OfAlbedo(0.1, 0.5);
+  StressScene scene;
+  scene.cells = { 11, 11, 11 };
+  scene.absorption.assign(scene.VoxelCount(), 0.05f);
+  scene.scattering = scene.absorption;
   scene.index.assign(scene.VoxelCount(), 1.0f);
-  for (int k = 1; k < scene.cells[2] - 1; ++k)
+  for (int k = 2; k < 9; ++k)
   {
-    for (int j = 1; j < scene.cells[1] - 1; ++j)
+    for (int j = 2; j < 9; ++j)
     {
-      for (int i = 1; i < scene.cells[0] - 1; ++i)
+      for (int i = 2; i < 9; ++i)
       {
-        const bool glass = checkered ? (i + j + k) % 2 == 0 : std::hypot(i - 4, j - 4, k - 4) < 3.1;
+        const bool glass = checkered ? (i + j + k) % 2 == 0 : std::hypot(i - 5, j - 5, k - 5) < 3.1;
         scene.index[scene.Voxel(i, j, k)] = glass ? static_cast<float>(inside) : 1.0f;
       }
     }
@@ -221,7 +224,12 @@ void AddCoefficients(std::vector<StressCase>& cases)
   AddMedium(cases, row, "absorption 1e30", Uniform(1e30, 0.0), false);
   AddMedium(cases, row, "scattering 1e30", Uniform(0.0, 1e30), true);
   AddMedium(cases, row, "both 1e30", Uniform(1e30, 1e30), false);
+  AddMedium(cases, row, "both 1e36", Uniform(1e36, 1e36), false);
   AddMedium(cases, row, "both 3e38, more than a float together", Uniform(3e38, 3e38), true);
+  for (std::size_t i = cases.size() - 3; i < cases.size(); ++i)
+  {
+    cases[i].refusals = { { "", "sigma_a and sigma_s add up to 6e+38 in voxel (0, 0, 0)" } };
+  }
   AddMedium(cases, row, "1e-30 of white", Uniform(1e-30, 1.0), false);
 }
 
@@ -407,7 +415,7 @@ void AddShapes(std::vector<StressCase>& cases)
     {
       AddMedium(cases, "shape", name + ", albedo " + Number(albedo), Uniform(0.1 * (1.0 - albedo), 0.1 * albedo, shape),
         albedo == 0.9);
-      cases[cases.size() - 2].middle = shape[0] * shape[1] * shape[2] == 1 && albedo == 1.0 ? 1.0 / 6.0 : 0.0;
+      cases[cases.size() - 2].middle = 0.0; // that is of a cube that many rays enter
     }
   }
   // A slab, of 1 x 1 x 1000 voxels with periodic sides: T of diffuse light by the diffusion limit, whose extrapolation length

@@ -73,7 +73,7 @@ struct StressCase
   std::shared_ptr<StressScene> twin; ///< a scene that is easy, whose light is the same but for `scale`
   double scale = 1.0;                ///< fluence here is that of the twin times this
   int twinChannel = -1;              ///< the twin is grey: this channel alone
-  bool twinOfPhotons = true;         ///< holds for light before it is scattered, too
+  bool similarity = false;           ///< the twin is one by the similarity relation, for scattered light
   std::vector<Refusal> refusals;
 };
 

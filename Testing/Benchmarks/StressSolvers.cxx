@@ -158,7 +158,7 @@ void RunMaps(StressSolver solver, const StressScene& scene, Listener* listener, 
   {
     maps->SetSource(vtkLightPropagationMaps::CONSTANT);
     maps->SetAcceleration(vtkLightPropagationMaps::NONE);
-    maps->SetMaximumOrders(StressOrders);
+    maps->SetMaximumOrders(solver == StressSolver::MapsByOrders ? StressOrders : StressOrdersPublished);
   }
   maps->Update();
   outcome.residual = maps->GetResidual() / maps->GetTolerance();

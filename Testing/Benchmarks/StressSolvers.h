@@ -58,8 +58,8 @@ StressOutcome RunStress(StressSolver solver, const StressScene& scene);
 /// Index of each voxel as the bent view sees it: the scene's own, or that of a soft ball.
 std::vector<float> IndexToView(const StressScene& scene);
 
-/// Scattering orders at most, of the maps that are not accelerated.
-constexpr int StressOrders = 30;
+/// Scattering orders at most, of the maps that are not accelerated; as published they are slow where voxels are 1:1000.
+constexpr int StressOrders = 30, StressOrdersPublished = 2;
 /// Photons of each chain.
 constexpr int StressPhotons = 20000;
 }
