@@ -1,4 +1,4 @@
-"""Error against run time of every solver, scene by scene.    ./run bench error [SCENE...] [--output FOLDER] [--quick]
+"""Error against run time of every solver, scene by scene.    ./run bench error [SCENE...] [--output FOLDER] [--references FOLDER] [--patience 1] [--quick]
 
 Scenes: slabs and cubes with trusted reference values, Kobayashi's void and shield, the CT scan under a photographed sky and a thick cloud
 against converged runs, and the caustic of a glass ball. Prints a JSON line a method and setting; writes FOLDER/error.csv and
@@ -53,8 +53,8 @@ def image(arrays, length, size):
 class Bench:
     """What all scenes share: where figures go, and whether there are but few seconds."""
 
-    def __init__(self, quick, output, references):
-        self.quick, self.output, self.references = quick, output, references
+    def __init__(self, quick, output, references=None, patience=1.0):
+        self.quick, self.output, self.references, self.patience = quick, output, references, patience
         self.rows = []      # of all scenes, with `case`
         self.titles = {}    # of scenes, in their order
         self.errors = {}    # which column is the error of a scene; else error_l2
@@ -65,7 +65,7 @@ class Bench:
         settings.setdefault("Coarsenings", [1, 2] if self.quick else [1, 2, 4])
         settings.setdefault("Orders", [3] if self.quick else [1, 3, 10, 30, 100])
         settings.setdefault("Repeats", 1 if self.quick else 3)
-        return eat.compare(methods, TimeBudget=min(seconds, 20.0) if self.quick else seconds, **settings)
+        return eat.compare(methods, TimeBudget=min(seconds, 20.0) if self.quick else self.patience * seconds, **settings)
 
     def compare_converged(self, case, methods, seconds, **settings):
         """The same against a converged run, which may have been kept."""
@@ -197,7 +197,7 @@ def scan(bench):
     sky = eat.EnvironmentReader(FileName=os.path.join(data, "sunset.exr"))
     sun = eat.LightRig(SunElevation=30, SunAzimuth=130, SunPower=[34, 26, 17])
     rows, facts = bench.compare_converged("ct-scan", PROPAGATION + ("photons",), 200.0, Input=bone, Lights=sun, Environment=sky,
-                                **({} if bench.quick else {"Directions": [4, 9, 25, 100], "Orders": [1, 3, 10]}))
+                                **({} if bench.quick else {"Directions": [4, 25, 100], "Orders": [1, 3, 10]}))
     bench.report("ct-scan", "CT scan under a sky, %d voxels an edge" % edge, rows, facts)
 
 
@@ -217,7 +217,7 @@ def cloud(bench):
     extinction = 100.0 * lognormal(edge, numpy.random.default_rng(5))
     medium = image({"sigma_a": 1e-4 * extinction, "sigma_s": (1.0 - 1e-4) * extinction}, (1, 1, 1), (edge,) * 3)
     sun = eat.LightRig(SunElevation=50, SunAzimuth=130, SunPower=[3, 3, 3])
-    rows, facts = bench.compare_converged("thick-cloud", PROPAGATION, 150.0, Input=medium, Lights=sun, SkyColor=[0.2, 0.2, 0.2],
+    rows, facts = bench.compare_converged("thick-cloud", PROPAGATION, 5.0 if bench.quick else 150.0, Input=medium, Lights=sun, SkyColor=[0.2, 0.2, 0.2],
                                 Orders=[3] if bench.quick else [10, 30, 100, 300, 1000])
     bench.report("thick-cloud", "Log-normal cloud of optical thickness 100, albedo 0.9999, %d voxels an edge" % edge, rows, facts)
 
@@ -247,15 +247,20 @@ def print_speedups(bench):
             continue
         ends = min(theirs, key=lambda row: row["error_l2"])
         print("\nEqual-error speed-up of the default over 'as published': " + bench.titles[case])
-        for target in (0.5, 0.2, 0.1, 0.05, 0.02, 0.01, 0.005, ends["error_l2"]):
+        for target in sorted((0.5, 0.2, 0.1, 0.05, 0.02, 0.01, 0.005, ends["error_l2"]), reverse=True):
             fast, slow = (eat.seconds_for(rows, target) for rows in (ours, theirs))
+            if math.isnan(fast):
+                least = min(ours, key=lambda row: row["error_l2"])
+                print("  error %7s: not with these settings; the default ends at %s after %.3g s" % (
+                    percent(target), percent(least["error_l2"]), least["seconds"]))
+                break
             if math.isnan(slow):
                 print("  error %7s: default %8.3g s, as published never: it ends at %s after %.3g s" % (
                     percent(target), fast, percent(ends["error_l2"]), ends["seconds"]))
             else:
                 print("  error %7s: default %8.3g s, as published %8.3g s: %.3g times" % (percent(target), fast, slow, slow / fast))
                 print(json.dumps({"bench": "error", "case": case, "method": DEFAULT, "against": PUBLISHED, "error_l2": target,
-                                  "seconds": fast, **({"ratio": slow / fast} if fast == fast else {})}))
+                                  "seconds": fast, "ratio": slow / fast}))
 
 
 def print_advice(bench):
@@ -284,6 +289,7 @@ def main():
     parser.add_argument("scenes", nargs="*", metavar="SCENE", help=", ".join(scenes))
     parser.add_argument("--output", default=os.path.join(root, "build", "bench"))
     parser.add_argument("--references", metavar="FOLDER", help="keep converged runs there, and take those that are there")
+    parser.add_argument("--patience", type=float, default=1.0, help="times the seconds that scenes may take")
     parser.add_argument("--quick", action="store_true", default="TYNDALL_BENCH_QUICK" in os.environ)
     arguments = parser.parse_args()
     unknown = [name for name in arguments.scenes if name not in scenes]
@@ -292,7 +298,7 @@ def main():
     eat.load()
     for folder in filter(None, (arguments.output, arguments.references)):
         os.makedirs(folder, exist_ok=True)
-    bench = Bench(arguments.quick, arguments.output, arguments.references)
+    bench = Bench(arguments.quick, arguments.output, arguments.references, arguments.patience)
     for name in arguments.scenes or scenes:
         scenes[name](bench)
     eat.write_csv(bench.rows, os.path.join(arguments.output, "error.csv"))
@@ -301,4 +307,5 @@ def main():
     print("Plots and error.csv: " + arguments.output)
 
 
-main()
+if __name__ == "__main__":
+    main()
