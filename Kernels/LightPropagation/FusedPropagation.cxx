@@ -1,8 +1,8 @@
 #include "FusedSolver.h"
 
+#include "../Device/Sizes.h"
 #include "EnvironmentPeaks.h"
 #include "FirstCollision.h"
-#include "../Device/Sizes.h"
 #include "TyndallKernelSources.h"
 
 #include <algorithm>
@@ -21,7 +21,7 @@ constexpr std::size_t Chunk = 4096; ///< as in Collect.cl
 constexpr int MostOrders = 100000;
 /// Planes that a ray goes round a periodic axis before it is given up, or waits for the next order.
 constexpr int ManyPlanes = 8192;
-constexpr int FewPlanes = 256; ///< the same where there will be more orders as long as it matters
+constexpr int FewPlanes = 256;        ///< the same where there will be more orders as long as it matters
 constexpr double MostlyLit = 0.75;    ///< part of the rays from which on sweeps of their own do not pay
 constexpr double MostlyFilled = 0.75; ///< the same of voxels
 constexpr int OrdersExpected = 6;     ///< to tell whether it pays to sweep empty slabs at the end only
@@ -190,7 +190,8 @@ void FusedSolver::MakeSweeps()
 bool FusedSolver::LeavesSlabsOut() const
 {
   const std::array<bool, 3>& periodic = this->Settings.periodic;
-  if (!this->Settings.leaveOut || this->Accelerated || !this->Traits.scatters || periodic[0] || periodic[1] || periodic[2])
+  if (!this->Settings.leaveOut || this->Accelerated || !this->Traits.scatters || periodic[0] || periodic[1] ||
+    periodic[2])
   {
     return false;
   }
@@ -399,8 +400,7 @@ std::array<std::size_t, 2> FusedSolver::SweptValues() const
 void FusedSolver::CollectOrder(int order)
 {
   const int vector = this->TheDevice.FloatVectorWidth() >= 8 ? 8 : 4;
-  cl::Kernel kernel = this->TheDevice.Kernel(
-    "collect", { kernel_source::Numerics, kernel_source::Collect },
+  cl::Kernel kernel = this->TheDevice.Kernel("collect", { kernel_source::Numerics, kernel_source::Collect },
     "-DREAL_WIDTH=" + std::to_string(vector) + " -DSCATTERS=" + std::to_string(this->ScattersAtAll()));
   const auto [begin, end] = this->SweptValues();
   const std::size_t chunks = (end - begin + Chunk - 1) / Chunk;

@@ -80,8 +80,7 @@ private:
   std::array<std::size_t, 2> SweptValues() const;
   void SweepEmptySlabs(const Monitor& monitor);
   void PropagateOrder(int order, const Monitor& monitor);
-  void PropagateSweeps(
-    const AxisSweeps& sweeps, const SweepBoundary& boundary, int mostPlanes, const Monitor& monitor);
+  void PropagateSweeps(const AxisSweeps& sweeps, const SweepBoundary& boundary, int mostPlanes, const Monitor& monitor);
   void PropagateLights(const Monitor& monitor);
   SweepVolume VolumeOf(int firstChannel, Part part) const;
   void ForChannels(const std::function<void(const SweepVolume&, int)>& act);

@@ -7,7 +7,7 @@ namespace tyndall
 {
 namespace
 {
-constexpr double SameColour = 3e-7;    ///< relative: what rounding to float leaves of multiples of one colour
+constexpr double SameColour = 3e-7;     ///< relative: what rounding to float leaves of multiples of one colour
 constexpr float SameExtinction = 2e-7f; ///< the same of sums
 
 bool Grey(const Rgb& rgb)

@@ -16,10 +16,10 @@ public:
   void Add(const Rgb& rgb);
   void Add(const float* rgb, std::size_t count); ///< `count` colours, interleaved
 
-  bool IsOne() const { return this->One; }         ///< all are multiples of one, to rounding (3e-7, each component)
-  bool IsGrey() const;                             ///< of white, exactly
-  int Brightest() const;                           ///< the channel that has most
-  Rgb Relative() const;                            ///< that colour, its brightest channel 1; white where all are black
+  bool IsOne() const { return this->One; } ///< all are multiples of one, to rounding (3e-7, each component)
+  bool IsGrey() const;                     ///< of white, exactly
+  int Brightest() const;                   ///< the channel that has most
+  Rgb Relative() const;                    ///< that colour, its brightest channel 1; white where all are black
   bool IsBlack() const { return this->Sum == Rgb{}; } ///< none of them shines
 
 private:
@@ -45,11 +45,11 @@ struct VoxelBox
 /// voxels), whoever needs it.
 struct MediumTraits
 {
-  bool absorbs = false;     ///< sigma_a is not zero everywhere
-  bool scatters = false;    ///< sigma_s
-  bool emits = false;       ///< emission
-  bool isotropic = true;    ///< g is 0, or nothing scatters
-  bool grey = true;         ///< sigma_a and sigma_s are the same in all channels (to 2e-7)
+  bool absorbs = false;       ///< sigma_a is not zero everywhere
+  bool scatters = false;      ///< sigma_s
+  bool emits = false;         ///< emission
+  bool isotropic = true;      ///< g is 0, or nothing scatters
+  bool grey = true;           ///< sigma_a and sigma_s are the same in all channels (to 2e-7)
   bool greyExtinction = true; ///< their sum is; always where `grey` is
   CommonColour emission;
   VoxelBox filled; ///< the smallest box outside of which there is no medium: neither sigma_t nor emission
@@ -64,8 +64,8 @@ CommonColour ColourOf(const Illumination& illumination);
 /// The words for what is left out, the same in every solver.
 namespace left_out
 {
-extern const char* const Grey;          ///< neither medium nor light has colour
-extern const char* const OneColour;     ///< the medium is grey, and light has one colour
+extern const char* const Grey;           ///< neither medium nor light has colour
+extern const char* const OneColour;      ///< the medium is grey, and light has one colour
 extern const char* const GreyExtinction; ///< one transmittance for three channels
 extern const char* const NoScattering;
 extern const char* const NoAbsorption;

@@ -38,8 +38,7 @@ TraitScene::TraitScene(std::array<int, 3> size)
     {
       for (int i = 0; i < size[0]; ++i)
       {
-        const double density =
-          0.05 + Density((i + 0.5) / size[0], (j + 0.5) / size[1], (k + 0.5) / size[2]);
+        const double density = 0.05 + Density((i + 0.5) / size[0], (j + 0.5) / size[1], (k + 0.5) / size[2]);
         for (const double colour : { 0.8, 1.0, 1.25 })
         {
           this->sigma_s.push_back(static_cast<float>(Thickness * 0.9 * density * colour));
@@ -122,8 +121,7 @@ constexpr const char* Everything = "everything computed";
 
 using Change = std::function<void(TraitScene&)>;
 
-TraitCase Propagation(
-  Device& device, const std::string& name, const std::array<int, 3>& size, const Change& change)
+TraitCase Propagation(Device& device, const std::string& name, const std::array<int, 3>& size, const Change& change)
 {
   const auto scene = std::make_shared<TraitScene>(size);
   change(*scene);
@@ -154,10 +152,11 @@ TraitCase GreyBesideSharedExtinction(Device& device, const std::array<int, 3>& s
   const auto coloured = std::make_shared<TraitScene>(size);
   coloured->BeGrey();
   coloured->light.faces[0] = { 1e-6, 0.0, 0.0 };
-  return { "grey", "LightPropagationMaps", grey->GridName(), "in colour, one sigma_t", [&device, grey, coloured](bool leaveOut) {
-            const TraitScene& scene = leaveOut ? *grey : *coloured;
-            return SolveFused(device, scene.medium, scene.light, scene.settings).fluence;
-          } };
+  return { "grey", "LightPropagationMaps", grey->GridName(), "in colour, one sigma_t",
+    [&device, grey, coloured](bool leaveOut) {
+      const TraitScene& scene = leaveOut ? *grey : *coloured;
+      return SolveFused(device, scene.medium, scene.light, scene.settings).fluence;
+    } };
 }
 
 void NoScattering(TraitScene& scene)
@@ -192,7 +191,9 @@ std::vector<TraitCase> PropagationCases(Device& device, int edge)
         scene.light.faces[4] = { 0.8, 1.0, 1.3 };
       }),
     Propagation(device, "one periodic voxel along x", { 1, edge, edge },
-      [](TraitScene& scene) { scene.settings.periodic = { true, false, false }; }),
+      [](TraitScene& scene) {
+        scene.settings.periodic = { true, false, false };
+      }),
     Propagation(device, "one periodic voxel along x and y", { 1, 1, edge },
       [](TraitScene& scene) {
         scene.settings.periodic = { true, true, false };
@@ -213,8 +214,8 @@ std::vector<float> Ball(const Grid& grid)
     {
       for (int i = 0; i < grid.size[0]; ++i)
       {
-        const double r = std::hypot(
-          (i + 0.5) / grid.size[0] - 0.5, (j + 0.5) / grid.size[1] - 0.5, (k + 0.5) / grid.size[2] - 0.5);
+        const double r =
+          std::hypot((i + 0.5) / grid.size[0] - 0.5, (j + 0.5) / grid.size[1] - 0.5, (k + 0.5) / grid.size[2] - 0.5);
         ior.push_back(static_cast<float>(1.0 + 0.3 / (1.0 + std::exp(80.0 * (r - 0.3)))));
       }
     }
@@ -252,8 +253,7 @@ TraitCase Marching(Device& device, const std::string& name, int edge, bool glass
   return { name, "PhotonMarcher", scene->GridName(), Everything, [&device, scene, ior, photons](bool leaveOut) {
             MarchSettings settings;
             settings.leaveOut = leaveOut;
-            PhotonMarcher marcher(
-              device, scene->medium, { ior->empty() ? nullptr : ior->data(), 1 }, settings);
+            PhotonMarcher marcher(device, scene->medium, { ior->empty() ? nullptr : ior->data(), 1 }, settings);
             return marcher.March(*photons).light.fluence;
           } };
 }
@@ -278,8 +278,8 @@ TraitCase Viewing(Device& device, const std::string& name, int edge, bool glass,
             settings.leaveOut = leaveOut;
             SolvedLight light;
             light.fluence = { fluence->data(), grey ? 1 : 3 };
-            MediumRayCaster caster(device, scene->medium, light, scene->light, settings,
-              { ior->empty() ? nullptr : ior->data(), 1 });
+            MediumRayCaster caster(
+              device, scene->medium, light, scene->light, settings, { ior->empty() ? nullptr : ior->data(), 1 });
             return caster.Render(FrameGrid(scene->medium.grid, 4.0 / 3.0)).radiance;
           } };
 }

@@ -91,7 +91,8 @@ TEST_F(FusedPropagation, GivesBackEveryWattItTakes)
 
 TEST_F(FusedPropagation, LetsInWhatEachFaceShines)
 {
-  for (int face = 0; face < 6; ++face) // rows of no whole number of vectors: what waits beside them is that face's light
+  for (int face = 0; face < 6;
+       ++face) // rows of no whole number of vectors: what waits beside them is that face's light
   {
     Scene scene({ 21, 9, 13 }, 0.05f, 0.2f);
     scene.light.faces[face] = { 2.0, 2.0, 2.0 };
