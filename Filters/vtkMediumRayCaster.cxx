@@ -63,6 +63,7 @@ tyndall::ViewSettings SettingsOf(vtkMediumRayCaster* filter)
   settings.tableFace = filter->GetTableFace();
   settings.tableColor = ToRgb(filter->GetTableColor());
   settings.tableReflectance = filter->GetTableReflectance();
+  settings.leaveOut = filter->GetLeaveOut();
   return settings;
 }
 
@@ -302,6 +303,7 @@ void vtkMediumRayCaster::PrintSelf(ostream& os, vtkIndent indent)
   os << indent << "TableFace: " << this->TableFace << "\n";
   PrintNumbers(os, indent, "TableColor", this->TableColor, 3);
   os << indent << "TableReflectance: " << this->TableReflectance << "\n";
+  os << indent << "LeaveOut: " << this->LeaveOut << "\n";
   os << indent << "Seconds: " << this->Seconds << "\n";
   os << indent << "UsedExposure: " << this->UsedExposure << "\n";
   os << indent << "SceneKept: " << this->SceneKept << "\n";

@@ -230,6 +230,14 @@ public:
   ///@}
 
   ///@{
+  /// Whether to leave out what the scene does not need. Default on; off computes everything, for comparison: the same picture,
+  /// later.
+  vtkSetMacro(LeaveOut, bool);
+  vtkGetMacro(LeaveOut, bool);
+  vtkBooleanMacro(LeaveOut, bool);
+  ///@}
+
+  ///@{
   /// What radiance is multiplied by for `color`. Default 0: so that the mean of the picture's lit part becomes a medium
   /// grey.
   vtkSetClampMacro(Exposure, double, 0.0, VTK_DOUBLE_MAX);
@@ -298,6 +306,7 @@ private:
   int TableFace = -1;
   double TableColor[3] = { 0.6, 0.6, 0.6 };
   double TableReflectance = 0.1;
+  bool LeaveOut = true;
 
   std::unique_ptr<Scene> Kept; ///< of the last picture, if it succeeded
 

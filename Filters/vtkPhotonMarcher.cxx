@@ -42,6 +42,7 @@ tyndall::MarchSettings SettingsOf(vtkPhotonMarcher* filter, const std::vector<ty
   settings.order = published ? 1 : filter->GetIntegratorOrder();
   settings.stepSize = published ? 1.0 : filter->GetStepSize();
   settings.counts = filter->GetPhotonCounts();
+  settings.leaveOut = filter->GetLeaveOut();
   settings.batches = !published &&
     std::any_of(photons.begin(), photons.end(), [](const tyndall::Photon& photon) { return photon.batch > 0; });
   return settings;
@@ -273,6 +274,7 @@ void vtkPhotonMarcher::PrintSelf(ostream& os, vtkIndent indent)
   os << indent << "Scheme: " << this->Scheme << "\n";
   os << indent << "IntegratorOrder: " << this->IntegratorOrder << "\n";
   os << indent << "StepSize: " << this->StepSize << "\n";
+  os << indent << "LeaveOut: " << this->LeaveOut << "\n";
   os << indent << "PhotonCounts: " << this->PhotonCounts << "\n";
   os << indent << "PathCount: " << this->PathCount << "\n";
   os << indent << "Smoothing: " << this->Smoothing << "\n";

@@ -107,6 +107,14 @@ public:
   ///@}
 
   ///@{
+  /// Whether to leave out what the scene does not need. Default on; off computes everything, for comparison: the same light,
+  /// later. Of the sound scheme.
+  vtkSetMacro(LeaveOut, bool);
+  vtkGetMacro(LeaveOut, bool);
+  vtkBooleanMacro(LeaveOut, bool);
+  ///@}
+
+  ///@{
   /// Number of photons, spread evenly over all, whose paths go to the second output. Default 0, valid [0, infinity).
   vtkSetClampMacro(PathCount, int, 0, VTK_INT_MAX);
   vtkGetMacro(PathCount, int);
@@ -173,6 +181,7 @@ private:
   int IntegratorOrder = 2;
   double StepSize = 1.0;
   bool PhotonCounts = false;
+  bool LeaveOut = true;
   int PathCount = 0;
   bool Smoothing = true;
   std::string Device;

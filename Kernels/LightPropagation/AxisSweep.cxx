@@ -46,6 +46,15 @@ void SweepWorkspace::Reserve(Device& device, std::size_t mapFloats, std::size_t 
   }
 }
 
+void SweepWorkspace::ReserveLost(Device& device, std::size_t floats)
+{
+  if (this->lost.Size() < floats)
+  {
+    this->lost = {};
+    this->lost = Buffer<float>(device, floats, "what rounding takes from the light gathered");
+  }
+}
+
 struct AxisSweep::Implementation
 {
   Implementation(Device& device, const SweepVolume& volume, int axis, const std::vector<Bundle>& bundles,
@@ -223,9 +232,10 @@ void AxisSweep::Implementation::Launch(cl::Kernel kernel, const SweepVolume& vol
   const SweepPlan& plan = this->Plan;
   const Buffer<float>& flux = volume.flux ? *volume.flux : *volume.path;
   const Buffer<float>& entering = volume.entering ? *volume.entering : *volume.path;
+  const Buffer<float>& lost = this->IsPeriodic() ? this->Workspace.lost : *volume.path;
   for (int launch = 0; launch < schedule.launches; ++launch)
   {
-    With(kernel, *volume.sigma_t, cl_ulong(volume.sigma_t_first), *volume.source, *volume.path, flux, entering,
+    With(kernel, *volume.sigma_t, cl_ulong(volume.sigma_t_first), *volume.source, *volume.path, lost, flux, entering,
       cl_ulong(volume.first), cl_ulong(volume.stride), this->Maps(), cl_ulong(plan.mapsEachWay),
       cl_int(this->MapsEmpty), this->Outside, cl_uint(plan.outsideEachWay), this->Radiance,
       cl_uint(plan.radianceEachWay), this->Workspace.scratch, this->Units, this->Bundles, cl_int(plan.bundles.size()),
@@ -254,6 +264,7 @@ cl::Kernel AxisSweep::Implementation::SweepKernel(bool source, bool border, bool
   define("BORDER", border);
   define("NET_FLUX", flux);
   define("ENTERING", plan.entering);
+  define("PERIODIC_P", this->IsPeriodic());
   define("PERIODIC_U", plan.periodic[plan.axes.u]);
   define("PERIODIC_V", plan.periodic[plan.axes.v]);
   std::string bundles; // SweepBundle.cl once for each number of members there is
@@ -339,6 +350,11 @@ void AxisSweep::Start(
 {
   Implementation& self = *this->Inner;
   self.Tally = {};
+  if (self.IsPeriodic())
+  {
+    self.Workspace.ReserveLost(self.TheDevice, volume.path->Size());
+    self.Workspace.lost.Fill(0.0f);
+  }
   if (boundary)
   {
     self.Enter(boundary, volume.first);

@@ -17,7 +17,7 @@ public:
   MirrorClasses(const Grid& grid, const std::array<bool, 3>& periodic, const DirectionSet& set);
 
   bool Any() const { return this->Count() < static_cast<int>(this->ClassOf.size()); } ///< has more than one direction
-  int Count() const; ///< of classes
+  int Count() const;                                                                  ///< of classes
 
   /// The bundles with the directions that stand for others alone, and with the power of all they stand for.
   std::vector<Bundle> Standing(const std::vector<Bundle>& bundles) const;

@@ -55,7 +55,8 @@ void ChangePowers(LightField& light, const Change& change, double scale)
 template <class Act>
 void ForArrays(LightField& light, const Act& act)
 {
-  for (std::vector<float>* values : { &light.fluence, &light.fluenceDirect, &light.fluenceError, &light.scatteredRadiance })
+  for (std::vector<float>* values :
+    { &light.fluence, &light.fluenceDirect, &light.fluenceError, &light.scatteredRadiance })
   {
     act(*values, std::size_t{ 1 });
   }
@@ -111,7 +112,11 @@ void Spread(LightField& light, const Rgb& colour)
   light.channels = 3;
   ForArrays(light, [&](std::vector<float>& values, std::size_t width) { Spread(values, width, colour); });
   ChangePowers(
-    light, [&](Rgb& watts) { watts = { watts[0] * colour[0], watts[0] * colour[1], watts[0] * colour[2] }; }, Sum(colour));
+    light,
+    [&](Rgb& watts) {
+      watts = { watts[0] * colour[0], watts[0] * colour[1], watts[0] * colour[2] };
+    },
+    Sum(colour));
 }
 
 void KeepOneChannel(std::vector<float>& interleaved)
@@ -124,6 +129,10 @@ void KeepOneChannel(LightField& light)
   light.channels = 1;
   ForArrays(light, KeepOne);
   ChangePowers(
-    light, [](Rgb& watts) { watts = { watts[0], 0.0, 0.0 }; }, 1.0 / 3.0);
+    light,
+    [](Rgb& watts) {
+      watts = { watts[0], 0.0, 0.0 };
+    },
+    1.0 / 3.0);
 }
 }

@@ -32,8 +32,8 @@ struct OneChannelScene
 /// given, either way.
 /// @param solve  takes a medium, its illumination and the number of channels
 template <class Solve>
-LightField SolveChannels(
-  bool leaveOut, const SceneChannels& channels, const Medium& medium, const Illumination& illumination, const Solve& solve);
+LightField SolveChannels(bool leaveOut, const SceneChannels& channels, const Medium& medium,
+  const Illumination& illumination, const Solve& solve);
 
 /// The light of one channel as that of three, which are multiples of it.
 void Spread(LightField& light, const Rgb& colour);
@@ -43,8 +43,8 @@ void KeepOneChannel(LightField& light);
 void KeepOneChannel(std::vector<float>& interleaved);
 
 template <class Solve>
-LightField SolveChannels(
-  bool leaveOut, const SceneChannels& channels, const Medium& medium, const Illumination& illumination, const Solve& solve)
+LightField SolveChannels(bool leaveOut, const SceneChannels& channels, const Medium& medium,
+  const Illumination& illumination, const Solve& solve)
 {
   if (!leaveOut || !channels.one)
   {

@@ -161,6 +161,69 @@ static void unpack(
   }
 }
 
+#if PERIODIC_P
+static void add_real_exactly(real value, __global float* sum, __global float* lost) // Kahan
+{
+  const real before = load_real(0, sum);
+  const real y = value - load_real(0, lost);
+  const real t = before + y;
+  store_real((t - before) - y, 0, lost);
+  store_real(t, 0, sum);
+}
+
+// As unpack, and what rounding loses of the sums is kept in `lost`.
+static void unpack_exactly(const plane_layout* layout, const __global float* from, int first, int count,
+  __global float* volume, __global float* lost)
+{
+  const int plane = PLANES * layout->sizeV * ROW;
+  for (int v = 0; v < layout->sizeV; ++v)
+  {
+    for (int u = 0; u < layout->sizeU; u += REAL_WIDTH)
+    {
+      const ulong at = place_of(layout, u, v, first);
+      const int used = min(REAL_WIDTH, layout->sizeU - u);
+      if (layout->block == 1 && used == REAL_WIDTH)
+      {
+        add_real_exactly(load_real(v * ROW + u, from), volume + at, lost + at);
+      }
+      else if (layout->block > 1 && count == REAL_WIDTH)
+      {
+        real rows[REAL_WIDTH];
+#pragma unroll
+        for (int j = 0; j < REAL_WIDTH; ++j)
+        {
+          rows[j] = load_real(j * plane + v * ROW + u, from);
+        }
+        transpose(rows);
+#pragma unroll
+        for (int i = 0; i < REAL_WIDTH; ++i)
+        {
+          if (i < used)
+          {
+            const ulong row = at + (ulong)i * layout->stepU;
+            add_real_exactly(rows[i], volume + row, lost + row);
+          }
+        }
+      }
+      else
+      {
+        for (int i = 0; i < used; ++i)
+        {
+          for (int j = 0; j < count; ++j)
+          {
+            const ulong voxel = at + (ulong)i * layout->stepU + (ulong)j * layout->stepP;
+            float sum = volume[voxel], rounding = lost[voxel];
+            add_exactly(&sum, &rounding, from[j * plane + v * ROW + u + i]);
+            volume[voxel] = sum;
+            lost[voxel] = rounding;
+          }
+        }
+      }
+    }
+  }
+}
+#endif
+
 // Which rows are thin throughout.
 static void find_thin_rows(const plane_layout* layout, const __global float* sigma, __global int* thin)
 {
@@ -237,7 +300,7 @@ static void add_own_light(const plane_layout* layout, __global float* plane, con
 // Add what the planes gathered to the volume.
 // own      [plane from where rays start] of the first plane crossed
 static void end_planes(const plane_layout* layout, __global float* planes, int first, int count, __global float* path,
-  __global float* flux, __global float* entering, ulong stride, const __global own_light* own, int backward, int axis)
+  __global float* lost, __global float* flux, __global float* entering, ulong stride, const __global own_light* own, int backward, int axis)
 {
   const int rows = layout->sizeV * ROW;
 #if SOURCE
@@ -248,7 +311,11 @@ static void end_planes(const plane_layout* layout, __global float* planes, int f
 #endif
   for (int c = 0; c < CHANNELS; ++c)
   {
+#if PERIODIC_P
+    unpack_exactly(layout, planes + (PLANE_PATH + c) * rows, first, count, path + c * stride, lost + c * stride);
+#else
     unpack(layout, planes + (PLANE_PATH + c) * rows, first, count, path + c * stride, 1.0f);
+#endif
 #if NET_FLUX
     const __global float* fluxes = planes + (PLANE_FLUX + 3 * c) * rows;
     unpack(layout, fluxes, first, count, flux + (3 * c + (axis == 0 ? 1 : 0)) * stride, 1.0f);
@@ -295,6 +362,7 @@ static void cross_plane(sweep_state* state, __global float* maps, const __global
 // sigma     1/length, [voxel] from sigma_first on
 // source    W / (length^3 sr), [channel][stride] from `first` on
 // path      W length, [channel][stride] from `first` on, added to
+// lost      as path: what rounding took from it in this sweep, where PERIODIC_P
 // flux      W length, [channel][x, y, z][stride] from 3 `first` on, added to
 // entering  W, [channel][-x, +x, -y, +y, -z, +z][stride] from 6 `first` on, added to: through that face into the voxel
 // maps      rays of both ways; `maps_each_way` floats each
@@ -305,8 +373,8 @@ static void cross_plane(sweep_state* state, __global float* maps, const __global
 // schedule  [launch][unit] first plane and end, counted from where rays start; beyond the last plane the axis begins anew
 // tally     [plane from where rays start][unit][-u, +u, -v, +v][channel] W that left
 __kernel __attribute__((reqd_work_group_size(1, 1, 1))) void sweep(const __global float* sigma,
-  ulong sigma_first, const __global float* source, __global float* path, __global float* flux, __global float* entering,
-  ulong first_value, ulong stride, __global float* maps, ulong maps_each_way, int empty, const __global float* outside, uint outside_each_way, const __global float* radiance, uint radiance_each_way,
+  ulong sigma_first, const __global float* source, __global float* path, __global float* lost, __global float* flux,
+  __global float* entering, ulong first_value, ulong stride, __global float* maps, ulong maps_each_way, int empty, const __global float* outside, uint outside_each_way, const __global float* radiance, uint radiance_each_way,
   __global float* scratch, const __global unit_info* units, const __global bundle_info* bundles, int bundle_count,
   const __global crossing_info* crossings, const __global own_light* own, int planes_of_pattern, const __global int2* schedule, int launch,
   __global float* tally, plane_layout layout, int axis)
@@ -331,6 +399,7 @@ __kernel __attribute__((reqd_work_group_size(1, 1, 1))) void sweep(const __globa
   sigma += sigma_first;
   source += first_value;
   path += first_value;
+  lost += first_value;
   flux += 3 * first_value;
   entering += 6 * first_value;
   maps += unit.backward * maps_each_way;
@@ -379,6 +448,6 @@ __kernel __attribute__((reqd_work_group_size(1, 1, 1))) void sweep(const __globa
         }
       }
     }
-    end_planes(&layout, planes, first, count, path, flux, entering, stride, own + u * planes_of_pattern + begin, unit.backward, axis);
+    end_planes(&layout, planes, first, count, path, lost, flux, entering, stride, own + u * planes_of_pattern + begin, unit.backward, axis);
   }
 }

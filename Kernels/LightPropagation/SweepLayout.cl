@@ -5,6 +5,7 @@
 //   NET_FLUX  1 where the net flux is wanted
 //   ENTERING  1 where the power that enters each voxel through each face is wanted
 //   BORDER    1 where light comes in through the faces that rays pass sideways
+//   PERIODIC_P  1 where rays go round the axis: planes are added to many times, and what rounding loses is kept
 //   PERIODIC_U, PERIODIC_V  1 where rays come back on the other side
 //
 // Rays carry power (W), so that leaving through any face needs no further factor. A map row holds the rays by the voxel they

@@ -124,8 +124,8 @@ void SweepPlan::LayPlane(const Device& device)
   const int width = RoundUp(n[this->axes.u], this->vector);
   this->row = RowFloats(width, this->vector);
   this->plane = { n[this->axes.u], n[this->axes.v], n[this->axes.axis], first[this->axes.u], first[this->axes.v],
-    first[this->axes.axis], step[this->axes.u], step[this->axes.v], step[this->axes.axis], width, this->axes.u == 0 ? 1 : this->vector,
-    static_cast<float>(std::max(1e-30 / LongestWay(this->bundles), 1e-37)),
+    first[this->axes.axis], step[this->axes.u], step[this->axes.v], step[this->axes.axis], width,
+    this->axes.u == 0 ? 1 : this->vector, static_cast<float>(std::max(1e-30 / LongestWay(this->bundles), 1e-37)),
     static_cast<float>(Thin / this->LongestSegment()), {} };
   std::copy(MeanLength, MeanLength + MeanLengthTerms, this->plane.meanLength);
 }

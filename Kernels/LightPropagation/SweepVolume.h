@@ -46,9 +46,11 @@ struct SweepWorkspace
 {
   Buffer<float> maps;    ///< the rays of an open axis
   Buffer<float> scratch; ///< planes being crossed
+  Buffer<float> lost;    ///< what rounding takes from `path` in a sweep round a periodic axis
 
   /// Have room for so many floats. The device must be idle.
   void Reserve(Device& device, std::size_t mapFloats, std::size_t scratchFloats);
+  void ReserveLost(Device& device, std::size_t floats);
 };
 
 /// Power that came in and went out in a sweep, W per channel and face -x, +x, -y, +y, -z, +z.

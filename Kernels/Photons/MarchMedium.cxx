@@ -43,8 +43,8 @@ MarchMedium::MarchMedium(
   if (this->bends)
   {
     const std::vector<float> even(ior.values ? 0 : this->grid.VoxelCount(), 1.0f);
-    this->coefficients = SquaredIndexCoefficients(
-      this->device, this->grid, this->Upload(ior.values ? ior.values : even.data(), 1, "ior"));
+    this->coefficients =
+      SquaredIndexCoefficients(this->device, this->grid, this->Upload(ior.values ? ior.values : even.data(), 1, "ior"));
     this->FindRanges(low, high);
   }
   this->sigma =

@@ -57,7 +57,7 @@ public:
   Grid grid;
   MarchSettings settings;
   MediumTraits traits;
-  int channels; ///< of extinction, 1 or 3
+  int channels;  ///< of extinction, 1 or 3
   bool coloured; ///< coefficients have three components, as data
   IndexRange index;
   bool bends, hasLevels;

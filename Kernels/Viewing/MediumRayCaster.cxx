@@ -123,8 +123,7 @@ MediumRayCaster::MediumRayCaster(Device& device, const Medium& medium, const Sol
   this->LightCount = static_cast<int>(lights.size() / 3);
   // Beside directions of the light it does not pay to have sources by one channel.
   this->Grey = !this->Coloured && traits.grey && !this->KnowsFlow && this->LightCount == 0 &&
-    light.fluence.components == 1 && light.fluenceDirect.components == 1 &&
-    (!traits.emits || traits.emission.IsGrey());
+    light.fluence.components == 1 && light.fluenceDirect.components == 1 && (!traits.emits || traits.emission.IsGrey());
   this->SourcesDependOnCamera = this->LightCount > 0 && medium.g != 0.0;
   this->LargestExtinction = tyndall::LargestExtinction(medium);
   this->UnderSky = !illumination.environment.Empty() || !IsZero(illumination.sky);

@@ -53,7 +53,7 @@ struct ViewSettings
   bool skipEmptyBricks = true;             ///< leap over what is empty; changes the time and nothing else
   /// What the scene does not need; false: three channels, rays that could bend and no leaps, to see what it saves.
   bool leaveOut = true;
-  double minimumTransmittance = 1e-3;      ///< a ray that has less left stops; 0: never
+  double minimumTransmittance = 1e-3;                            ///< a ray that has less left stops; 0: never
   PhaseFunction phaseFunction = PhaseFunction::HenyeyGreenstein; ///< of light whose direction is known
   SurfaceReflection surfaceReflection = SurfaceReflection::None;
   double surfaceIndex = 0.0; ///< the surface is where n has this value, > 0; 0: midway between least and largest n

@@ -59,8 +59,10 @@ void Compare(Device& device, const TraitCase& trait, int repetitions, Table& tab
   Run less, all;
   for (int round = -1; round < repetitions; ++round) // in turns; the first compiles
   {
-    RunOnce(device, [&] { return trait.solve(true); }, less, round >= 0);
-    RunOnce(device, [&] { return trait.solve(false); }, all, round >= 0);
+    RunOnce(
+      device, [&] { return trait.solve(true); }, less, round >= 0);
+    RunOnce(
+      device, [&] { return trait.solve(false); }, all, round >= 0);
   }
   const double ratio = Median(less.core) / Median(all.core);
   const double difference = Difference(less.light, all.light);
@@ -116,8 +118,10 @@ void RunAll(Device& device, const Arguments& arguments)
     }
   }
   MeasureScan(2 * edge, repetitions);
-  table.Print("What it saves to leave out what a scene does not need: everything computed and not, medians; the ratio is that of\n"
-              "core seconds, memory the most that the device's buffers take, the difference the largest over the largest value");
+  table.Print(
+    "What it saves to leave out what a scene does not need: everything computed and not, medians; the ratio is that "
+    "of\n"
+    "core seconds, memory the most that the device's buffers take, the difference the largest over the largest value");
 }
 }
 

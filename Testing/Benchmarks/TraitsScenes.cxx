@@ -2,6 +2,8 @@
 
 #include "LightPropagation/FusedPropagation.h"
 #include "LightPropagation/ParallelPropagation.h"
+#include "Photons/PhotonMarcher.h"
+#include "Viewing/MediumRayCaster.h"
 
 #include <algorithm>
 #include <cmath>
@@ -36,8 +38,7 @@ TraitScene::TraitScene(std::array<int, 3> size)
     {
       for (int i = 0; i < size[0]; ++i)
       {
-        const double density =
-          0.05 + Density((i + 0.5) / size[0], (j + 0.5) / size[1], (k + 0.5) / size[2]);
+        const double density = 0.05 + Density((i + 0.5) / size[0], (j + 0.5) / size[1], (k + 0.5) / size[2]);
         for (const double colour : { 0.8, 1.0, 1.25 })
         {
           this->sigma_s.push_back(static_cast<float>(Thickness * 0.9 * density * colour));
@@ -120,8 +121,7 @@ constexpr const char* Everything = "everything computed";
 
 using Change = std::function<void(TraitScene&)>;
 
-TraitCase Propagation(
-  Device& device, const std::string& name, const std::array<int, 3>& size, const Change& change)
+TraitCase Propagation(Device& device, const std::string& name, const std::array<int, 3>& size, const Change& change)
 {
   const auto scene = std::make_shared<TraitScene>(size);
   change(*scene);
@@ -152,10 +152,11 @@ TraitCase GreyBesideSharedExtinction(Device& device, const std::array<int, 3>& s
   const auto coloured = std::make_shared<TraitScene>(size);
   coloured->BeGrey();
   coloured->light.faces[0] = { 1e-6, 0.0, 0.0 };
-  return { "grey", "LightPropagationMaps", grey->GridName(), "in colour, one sigma_t", [&device, grey, coloured](bool leaveOut) {
-            const TraitScene& scene = leaveOut ? *grey : *coloured;
-            return SolveFused(device, scene.medium, scene.light, scene.settings).fluence;
-          } };
+  return { "grey", "LightPropagationMaps", grey->GridName(), "in colour, one sigma_t",
+    [&device, grey, coloured](bool leaveOut) {
+      const TraitScene& scene = leaveOut ? *grey : *coloured;
+      return SolveFused(device, scene.medium, scene.light, scene.settings).fluence;
+    } };
 }
 
 void NoScattering(TraitScene& scene)
@@ -190,7 +191,9 @@ std::vector<TraitCase> PropagationCases(Device& device, int edge)
         scene.light.faces[4] = { 0.8, 1.0, 1.3 };
       }),
     Propagation(device, "one periodic voxel along x", { 1, edge, edge },
-      [](TraitScene& scene) { scene.settings.periodic = { true, false, false }; }),
+      [](TraitScene& scene) {
+        scene.settings.periodic = { true, false, false };
+      }),
     Propagation(device, "one periodic voxel along x and y", { 1, 1, edge },
       [](TraitScene& scene) {
         scene.settings.periodic = { true, true, false };
@@ -200,10 +203,108 @@ std::vector<TraitCase> PropagationCases(Device& device, int edge)
     AsPublished(device, "one colour of light", cube, [](TraitScene& scene) { scene.LightInOneColour(); }),
   };
 }
+
+/// A ball of glass in the box's middle.
+std::vector<float> Ball(const Grid& grid)
+{
+  std::vector<float> ior;
+  for (int k = 0; k < grid.size[2]; ++k)
+  {
+    for (int j = 0; j < grid.size[1]; ++j)
+    {
+      for (int i = 0; i < grid.size[0]; ++i)
+      {
+        const double r =
+          std::hypot((i + 0.5) / grid.size[0] - 0.5, (j + 0.5) / grid.size[1] - 0.5, (k + 0.5) / grid.size[2] - 0.5);
+        ior.push_back(static_cast<float>(1.0 + 0.3 / (1.0 + std::exp(80.0 * (r - 0.3)))));
+      }
+    }
+  }
+  return ior;
+}
+
+/// Parallel light from above, as many photons as lie on a square grid.
+std::vector<Photon> Rain(int edge, const std::array<float, 3>& power)
+{
+  std::vector<Photon> photons;
+  for (int j = 0; j < edge; ++j)
+  {
+    for (int i = 0; i < edge; ++i)
+    {
+      Photon photon;
+      photon.position = { (i + 0.5) / edge, (j + 0.5) / edge, 1.0 };
+      photon.direction = { 0.28f, 0.0f, -0.96f };
+      photon.power = power;
+      photons.push_back(photon);
+    }
+  }
+  return photons;
+}
+
+/// @param glass  whether the refractive index varies
+TraitCase Marching(Device& device, const std::string& name, int edge, bool glass, const std::array<float, 3>& power,
+  const Change& change)
+{
+  const auto scene = std::make_shared<TraitScene>(std::array<int, 3>{ edge, edge, edge });
+  change(*scene);
+  const auto ior = std::make_shared<std::vector<float>>(glass ? Ball(scene->medium.grid) : std::vector<float>());
+  const auto photons = std::make_shared<std::vector<Photon>>(Rain(6 * edge, power));
+  photons->front().power = { 1.0f, 1.0f, 1.0f }; // another colour, but where power is white
+  return { name, "PhotonMarcher", scene->GridName(), Everything, [&device, scene, ior, photons](bool leaveOut) {
+            MarchSettings settings;
+            settings.leaveOut = leaveOut;
+            PhotonMarcher marcher(device, scene->medium, { ior->empty() ? nullptr : ior->data(), 1 }, settings);
+            return marcher.March(*photons).light.fluence;
+          } };
+}
+
+TraitCase Viewing(Device& device, const std::string& name, int edge, bool glass, bool grey, const Change& change)
+{
+  const auto scene = std::make_shared<TraitScene>(std::array<int, 3>{ edge, edge, edge });
+  change(*scene);
+  const auto ior = std::make_shared<std::vector<float>>(glass ? Ball(scene->medium.grid) : std::vector<float>());
+  const auto fluence = std::make_shared<std::vector<float>>(scene->sigma_s);
+  if (grey)
+  {
+    fluence->resize(scene->medium.grid.VoxelCount());
+    for (std::size_t i = 0; i < fluence->size(); ++i)
+    {
+      (*fluence)[i] = scene->sigma_s[3 * i];
+    }
+  }
+  return { name, "MediumRayCaster", scene->GridName(), Everything, [&device, scene, ior, fluence, grey](bool leaveOut) {
+            ViewSettings settings;
+            settings.imageSize = { 8 * scene->medium.grid.size[0], 6 * scene->medium.grid.size[0] };
+            settings.leaveOut = leaveOut;
+            SolvedLight light;
+            light.fluence = { fluence->data(), grey ? 1 : 3 };
+            MediumRayCaster caster(
+              device, scene->medium, light, scene->light, settings, { ior->empty() ? nullptr : ior->data(), 1 });
+            return caster.Render(FrameGrid(scene->medium.grid, 4.0 / 3.0)).radiance;
+          } };
+}
+
+std::vector<TraitCase> RayCases(Device& device, int edge)
+{
+  const auto grey = [](TraitScene& scene) { scene.BeGrey(); };
+  const auto same = [](TraitScene&) {};
+  const std::array<float, 3> white = { 1.0f, 1.0f, 1.0f }, bluish = { 0.8f, 1.0f, 1.3f };
+  return {
+    Marching(device, "grey", edge, true, white, grey),
+    Marching(device, "shared extinction", edge, true, bluish, grey),
+    Marching(device, "constant index", edge, false, bluish, same),
+    Viewing(device, "grey", edge, true, true, grey),
+    Viewing(device, "constant index", edge, false, false, same),
+    Viewing(device, "empty bricks", edge, true, false, [](TraitScene& scene) { scene.LeaveEmpty(0.5); }),
+  };
+}
 }
 
 std::vector<TraitCase> TraitCases(Device& device, int edge)
 {
-  return PropagationCases(device, edge);
+  std::vector<TraitCase> cases = PropagationCases(device, edge);
+  const std::vector<TraitCase> ofRays = RayCases(device, edge);
+  cases.insert(cases.end(), ofRays.begin(), ofRays.end());
+  return cases;
 }
 }

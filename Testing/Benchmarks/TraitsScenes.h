@@ -21,7 +21,7 @@ struct TraitScene
   explicit TraitScene(std::array<int, 3> size);
   TraitScene(TraitScene&&) = default;
 
-  void BeGrey();         ///< medium and light
+  void BeGrey();          ///< medium and light
   void ShareExtinction(); ///< only the albedo is coloured
   void LightInOneColour();
   /// The medium is within this part of the box along each axis, in its middle; else vacuum.

@@ -72,6 +72,22 @@ void ABeamFallsOffAndItsPowerIsKept(test::Claims& claims)
   claims.Near(left->GetComponent(1, 0), std::exp(-8.0 * tau), 1e-5, "what is left at a path's end");
 }
 
+void WhatIsNotNeededCanBeComputedAllTheSame(test::Claims& claims)
+{
+  Pipeline pipeline(test::MakeMedium({ { 4, 4, 8 }, { 0.5, 0.5, 0.5 }, { -1.0, -1.0, 3.0 }, { 0, 2, 0 } }, 0.1, 0.5));
+  const auto says = [&](const char* word) {
+    return std::string(pipeline.marcher->GetLeftOut()).find(word) != std::string::npos;
+  };
+  pipeline.marcher->Update();
+  const double less = pipeline.Fact("energy_balance", 2);
+  claims.That(says("refraction:") && says("colour:"), "a constant index and colours are left out");
+  pipeline.marcher->LeaveOutOff();
+  pipeline.marcher->Update();
+  claims.That(!pipeline.marcher->GetMediumKept(), "the medium is prepared anew");
+  claims.That(!says("refraction:") && !says("colour:"), "and are not, where all is to be computed");
+  claims.Near(pipeline.Fact("energy_balance", 2) / less, 1.0, 1e-6, "the same light");
+}
+
 void GlassBendsTheLight(test::Claims& claims)
 {
   auto medium = test::MakeMedium({ { 24, 24, 24 } }, 0.0, 0.01);
@@ -283,6 +299,7 @@ int TestPhotonMarcher(int, char*[])
   }
   test::Claims claims;
   ABeamFallsOffAndItsPowerIsKept(claims);
+  WhatIsNotNeededCanBeComputedAllTheSame(claims);
   GlassBendsTheLight(claims);
   PackingLossIsToldApart(claims);
   CountsAndBatchesAddUp(claims);

@@ -20,9 +20,9 @@ using testing::Not;
 namespace
 {
 constexpr double Same = 1e-6; ///< of the largest
-/// The same where rays that start in 128 laps of a periodic axis are added up in float, and thick voxels make more of what
-/// rounding leaves: 1.15e-6 was measured. It is the solve with all directions that has more of it.
-constexpr double SameAfterLaps = 2e-6;
+/// The same where orders are accelerated in a slab of 100 mean free paths: what rounding leaves in the power that enters voxels
+/// counts many times there. 1.9e-6 was measured.
+constexpr double SameInThickSlab = 5e-6;
 
 /// A cloud in a box: its voxels are empty outside of [first, first + size).
 Scene Cloud(std::array<int, 3> grid, std::array<int, 3> first, std::array<int, 3> size, double thickest = 1.0)
@@ -36,7 +36,8 @@ Scene Cloud(std::array<int, 3> grid, std::array<int, 3> first, std::array<int, 3
       for (int x = 0; x < grid[0]; ++x, ++i)
       {
         const std::array<int, 3> at = { x - first[0], y - first[1], z - first[2] };
-        const bool inside = at[0] >= 0 && at[1] >= 0 && at[2] >= 0 && at[0] < size[0] && at[1] < size[1] && at[2] < size[2];
+        const bool inside =
+          at[0] >= 0 && at[1] >= 0 && at[2] >= 0 && at[0] < size[0] && at[1] < size[1] && at[2] < size[2];
         scene.sigma_a[i] *= inside ? 1.0f : 0.0f;
         scene.sigma_s[i] *= inside ? 1.0f : 0.0f;
       }
@@ -347,7 +348,7 @@ TEST_F(Traits, MirrorImagesAreOneDirectionWhereOrdersAreAccelerated)
   Scene scene({ 1, 1, 20 }, 0.001f, 5.0f);
   scene.light.faces[4] = { 1.0, 1.0, 1.0 };
   scene.settings.periodic = { true, true, false };
-  this->ExpectLeftOut(scene, "mirror images", SameAfterLaps);
+  this->ExpectLeftOut(scene, "mirror images", SameInThickSlab);
 }
 
 TEST_F(Traits, AcceleratedColourIsOneChannel)

@@ -17,7 +17,7 @@ using testing::Not;
 
 namespace
 {
-constexpr double Same = 1e-6;                ///< of the largest
+constexpr double Same = 1e-6;               ///< of the largest
 constexpr double SameWhereRaysAddUp = 5e-5; ///< 2.1e-5 was measured, see there
 
 double LargestDifference(const std::vector<float>& a, const std::vector<float>& b)
@@ -154,9 +154,8 @@ viewing::Scene CloudWithLens()
 {
   viewing::Scene scene = viewing::Blobs();
   scene.illumination.sky = { 0.5, 0.5, 0.5 };
-  scene.ior = viewing::AtCentres(scene.grid, [](double x, double y, double z) {
-    return std::hypot(x - 0.5, y - 0.5, z - 0.5) < 0.1 ? 1.2 : 1.0;
-  });
+  scene.ior = viewing::AtCentres(
+    scene.grid, [](double x, double y, double z) { return std::hypot(x - 0.5, y - 0.5, z - 0.5) < 0.1 ? 1.2 : 1.0; });
   return scene;
 }
 
