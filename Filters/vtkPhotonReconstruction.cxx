@@ -16,6 +16,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <iterator>
 #include <string>
 #include <utility>
 #include <vector>
@@ -123,7 +124,8 @@ std::vector<std::string> Joined(vtkImageData* image, const std::vector<std::stri
   {
     all.push_back(before->GetValue(i));
   }
-  all.insert(all.end(), more.begin(), more.end());
+  const auto isNew = [&](const std::string& word) { return std::find(all.begin(), all.end(), word) == all.end(); };
+  std::copy_if(more.begin(), more.end(), std::back_inserter(all), isNew);
   return all;
 }
 

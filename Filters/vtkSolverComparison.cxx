@@ -8,6 +8,7 @@
 
 #include "vtkDataObject.h"
 #include "vtkDoubleArray.h"
+#include "vtkFieldData.h"
 #include "vtkImageData.h"
 #include "vtkInformation.h"
 #include "vtkInformationVector.h"
@@ -99,6 +100,24 @@ void Write(const tyndall::Comparison& comparison, vtkTable* table)
   tyndall::AddFact(table, "device", std::vector<std::string>{ comparison.device });
 }
 
+void Write(tyndall::ReferenceLight&& reference, vtkImageData* image)
+{
+  const std::array<int, 3>& size = reference.grid.size;
+  image->SetExtent(0, size[0], 0, size[1], 0, size[2]);
+  image->SetSpacing(reference.grid.spacing.data());
+  image->SetOrigin(reference.grid.origin.data());
+  const std::pair<const char*, std::vector<float>*> arrays[] = { { "fluence", &reference.fluence },
+    { "fluence_direct", &reference.fluenceDirect } };
+  for (const auto& [name, values] : arrays)
+  {
+    if (!values->empty())
+    {
+      tyndall::AddLight(image, name, std::move(*values), reference.channels);
+    }
+  }
+  tyndall::AddFact(image, "reference", std::vector<std::string>{ reference.text });
+}
+
 std::vector<float> Copied(const tyndall::FloatField& field, std::size_t voxels)
 {
   return field.IsThere()
@@ -131,7 +150,8 @@ std::optional<tyndall::ReferenceLight> ReadReference(vtkImageData* image)
   reference.channels = (fluence.IsThere() ? fluence : direct).Components();
   reference.fluence = Copied(fluence, reference.grid.VoxelCount());
   reference.fluenceDirect = Copied(direct, reference.grid.VoxelCount());
-  reference.text = "the image that is connected";
+  auto* const text = vtkArrayDownCast<vtkStringArray>(image->GetFieldData()->GetAbstractArray("reference"));
+  reference.text = text && text->GetNumberOfValues() == 1 ? text->GetValue(0) : "the image that is connected";
   return reference;
 }
 
@@ -151,6 +171,7 @@ vtkStandardNewMacro(vtkSolverComparison);
 vtkSolverComparison::vtkSolverComparison()
 {
   this->SetNumberOfInputPorts(4);
+  this->SetNumberOfOutputPorts(2);
 }
 
 vtkSolverComparison::~vtkSolverComparison() = default;
@@ -194,9 +215,9 @@ LIST_OF_NUMBERS(AddOrders, RemoveAllOrders, Orders)
 LIST_OF_NUMBERS(AddPhotonCount, RemoveAllPhotonCounts, PhotonCounts)
 #undef LIST_OF_NUMBERS
 
-int vtkSolverComparison::FillOutputPortInformation(int, vtkInformation* information)
+int vtkSolverComparison::FillOutputPortInformation(int port, vtkInformation* information)
 {
-  information->Set(vtkDataObject::DATA_TYPE_NAME(), "vtkTable");
+  information->Set(vtkDataObject::DATA_TYPE_NAME(), port == 0 ? "vtkTable" : "vtkImageData");
   return 1;
 }
 
@@ -258,10 +279,14 @@ int vtkSolverComparison::RequestData(
     {
       return; // times that ranks take from each other mean nothing
     }
-    const tyndall::Comparison comparison = tyndall::CompareSolvers(*tyndall::Device::Find(this->Device), scene,
+    tyndall::Comparison comparison = tyndall::CompareSolvers(*tyndall::Device::Find(this->Device), scene,
       this->Settings(), reference ? &*reference : nullptr, tyndall::MonitorOf(this));
     Write(comparison, this->GetOutput());
     this->Note(comparison, tyndall::ClockSeconds() - start);
+    vtkImageData* const output = vtkImageData::GetData(outputs, REFERENCE_OUTPUT);
+    Write(std::move(comparison.reference), output);
+    tyndall::TellExtentAndKeepWhatIsAskedFor(
+      tyndall::AskingPort(request, outputs), outputs->GetInformationObject(REFERENCE_OUTPUT), output);
   });
 }
 

@@ -31,7 +31,7 @@ struct ComparisonSettings;
  * as the light has). Where it is NaN nothing is compared. Light and reference are compared on the coarser grid of both, by voxel
  * means; light of a coarsened medium is taken to be constant in its voxels.
  *
- * Output: vtkTable `error_against_time`, a row a method and setting:
+ * Output 0: vtkTable `error_against_time`, a row a method and setting:
  *
  * | column            | unit | meaning                                                                                       |
  * |-------------------|------|-----------------------------------------------------------------------------------------------|
@@ -53,11 +53,14 @@ struct ComparisonSettings;
  *
  * and field data `reference` (what it is), `left_out` (what was not compared, and why) and `device`.
  *
+ * Output 1: the reference, vtkImageData with cell arrays `fluence` and `fluence_direct`, those that are known: to look at, or to
+ * connect as input 3 of the next comparison of the same scene.
+ *
  * The settings that are tried: of propagation, all Directions on all Coarsenings of the grid (those that do not divide it are left
  * out); MapResolutions above 1 where directions are 25 or more; limited Orders with the number of Directions nearest to 25. Of photons,
  * all PhotonCounts by Hammersley's sampler, and with AllSamplers the largest but one by the others.
  *
- * In a parallel pipeline every rank asks for all; the table is on the first.
+ * In a parallel pipeline every rank asks for all; the outputs are on the first.
  *
  * @sa vtkLightPropagationMaps vtkPhotonMarcher vtkPhotonReconstruction
  */
@@ -70,6 +73,8 @@ public:
 
   /// Number of the input port after those of vtkLitMediumAlgorithm.
   static constexpr int REFERENCE = 3;
+  /// Number of the output port of the reference.
+  static constexpr int REFERENCE_OUTPUT = 1;
 
   vtkTable* GetOutput();
 

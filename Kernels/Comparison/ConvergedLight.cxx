@@ -67,22 +67,47 @@ ReferenceLight Climb(Device& device, const ComparedScene& scene, const Rung& run
   return reference;
 }
 
+/// Seconds that settings take, from two poorer ones: a part for what does not depend on the rays, and one for each ray.
+class Forecast
+{
+public:
+  Forecast(Device& device, const ComparedScene& scene, const Monitor& monitor)
+    : VoxelGrid(scene.medium.grid)
+  {
+    constexpr Rung few = { 1, 25, 1 }, more = { 1, 100, 1 };
+    const auto run = [&](const Rung& rung, double from, double to) {
+      const double start = ClockSeconds();
+      Propagate(device, scene, SettingsOf(rung), PartWithin(HUGE_VAL, monitor, from, to));
+      return ClockSeconds() - start;
+    };
+    run(few, 0.0, 0.2); // compiles
+    const double ofFew = run(few, 0.2, 0.4), ofMore = run(more, 0.4, 1.0);
+    this->OfRay = std::max(ofMore - ofFew, 0.1 * ofMore) / (Rays(more) - Rays(few));
+    this->Fixed = std::max(0.0, ofMore - this->OfRay * Rays(more));
+  }
+
+  double Seconds(const Rung& rung) const
+  {
+    const Factors factors = RefinementBy(rung.refinement, this->VoxelGrid);
+    return (this->Fixed + this->OfRay * Rays(rung)) * factors[0] * factors[1] * factors[2];
+  }
+
+private:
+  static double Rays(const Rung& rung) { return 1.0 * rung.directions * rung.map * rung.map; }
+
+  Grid VoxelGrid;
+  double OfRay = 0.0, Fixed = 0.0;
+};
+
 ReferenceLight ByPropagation(Device& device, const ComparedScene& scene, double seconds, const Monitor& monitor)
 {
   const double start = ClockSeconds();
-  const Rung first = { 1, 25, 1 };
-  Propagate(device, scene, SettingsOf(first), PartWithin(HUGE_VAL, monitor, 0.0, 0.1)); // compiles
-  const double begun = ClockSeconds();
-  Propagate(device, scene, SettingsOf(first), PartWithin(HUGE_VAL, monitor, 0.1, 0.2));
-  const double ofFirst = ClockSeconds() - begun;
+  const Forecast forecast(device, scene, PartWithin(HUGE_VAL, monitor, 0.0, 0.2));
   for (const Rung& rung : Ladder)
   {
-    const Factors factors = RefinementBy(rung.refinement, scene.medium.grid);
-    const double rays = 1.0 * rung.directions / first.directions * rung.map * rung.map;
-    const double expected = ofFirst * rays * factors[0] * factors[1] * factors[2];
     const bool last = &rung == std::end(Ladder) - 1;
     const double left = seconds - (ClockSeconds() - start);
-    if (!last && expected > left)
+    if (!last && forecast.Seconds(rung) > left)
     {
       continue;
     }

@@ -109,11 +109,21 @@ std::string WhyNot(ComparedMethod method, const ComparedScene& scene, const Comp
                               : "";
 }
 
-/// The runs of one method, within its time.
-class MethodRunner
+/// The runs of one method, cheap ones first, and how long they take.
+struct Lane
+{
+  std::vector<ComparedRun> runs;
+  std::size_t next = 0;
+  double secondsOfCost = 0.0; ///< of the last one with all orders
+
+  bool Done() const { return this->next == this->runs.size(); }
+};
+
+/// Runs, measures and compares.
+class Runner
 {
 public:
-  MethodRunner(Device& device, const ComparisonSettings& settings, const Comparator& comparator, Comparison& result)
+  Runner(Device& device, const ComparisonSettings& settings, const Comparator& comparator, Comparison& result)
     : TheDevice(device)
     , Settings(settings)
     , TheComparator(comparator)
@@ -121,36 +131,31 @@ public:
   {
   }
 
-  /// @param seconds  that all runs may take
-  void RunAll(const std::vector<ComparedRun>& runs, double seconds, const Monitor& monitor)
+  /// The next run of a method.
+  /// @param left  seconds that it may take
+  void RunNext(Lane& lane, double left, const Monitor& monitor)
   {
-    const double end = ClockSeconds() + seconds;
-    double secondsOfCost = 0.0;
-    for (std::size_t i = 0; i < runs.size(); ++i)
+    const ComparedRun& run = lane.runs[lane.next++];
+    if (left <= 0.0 || (run.allOrders && lane.secondsOfCost * run.cost > left))
     {
-      const ComparedRun& run = runs[i];
-      const double left = end - ClockSeconds();
-      if (left <= 0.0 || (run.allOrders && secondsOfCost * run.cost > left))
-      {
-        this->LeaveOut(run, "was not begun, for its time was not left");
-        continue;
-      }
-      try
-      {
-        const double from = 1.0 * i / runs.size();
-        const double first = this->Run(run, left, PartWithin(left, monitor, from, from + 1.0 / runs.size()));
-        secondsOfCost = run.allOrders ? first / run.cost : secondsOfCost;
-      }
-      catch (const TimeIsUp&)
-      {
-        this->LeaveOut(run, "was stopped when its time was up");
-        secondsOfCost = run.allOrders ? left / run.cost : secondsOfCost;
-      }
-      catch (const DeviceError& error)
-      {
-        this->LeaveOut(run, error.what());
-      }
+      this->LeaveOut(run, "was not begun, for its time was not left");
+      return;
     }
+    double seconds = left;
+    try
+    {
+      seconds = this->Run(run, left, PartWithin(left, monitor, 0.0, 1.0));
+    }
+    catch (const TimeIsUp&)
+    {
+      this->LeaveOut(run, "was stopped when its time was up");
+    }
+    catch (const DeviceError& error)
+    {
+      this->LeaveOut(run, error.what());
+      return;
+    }
+    lane.secondsOfCost = run.allOrders ? seconds / run.cost : lane.secondsOfCost;
   }
 
 private:
@@ -169,26 +174,23 @@ private:
   /// @return its seconds. The first run, which compiles, does not count where the time allows others.
   double Run(const ComparedRun& run, double left, const Monitor& monitor)
   {
-    constexpr double partForRepeats = 0.1;
+    constexpr double partForRepeats = 0.2;
     this->TheDevice.ResetPeak();
     const std::size_t before = this->TheDevice.BytesInUse();
     LightField light;
     const double first = this->Timed(run, light, monitor);
     const bool host = run.method == ComparedMethod::PublishedSequential;
-    std::vector<double> seconds = { first };
-    if (first * this->Settings.repeats < partForRepeats * left)
+    const double fitting = partForRepeats * left / first;
+    std::vector<double> seconds;
+    for (int i = 0; i < this->Settings.repeats && i + 1.0 <= fitting; ++i)
     {
-      seconds.clear();
-      for (int i = 0; i < this->Settings.repeats; ++i)
-      {
-        seconds.push_back(this->Timed(run, light, monitor));
-      }
+      seconds.push_back(this->Timed(run, light, monitor));
     }
     ComparisonRow row;
     row.method = run.method;
     row.setting = run.setting;
     row.grid = run.grid;
-    row.seconds = Median(seconds);
+    row.seconds = seconds.empty() ? first : Median(seconds);
     row.peakBytes = host ? ComparisonRow::Unknown : static_cast<double>(this->TheDevice.PeakBytes() - before);
     this->Compare(row, run, light);
     this->Estimate(row, run, light, monitor);
@@ -213,7 +215,14 @@ private:
   {
     if (this->Settings.estimates && run.estimates)
     {
-      light = run.solve(true, monitor);
+      try
+      {
+        light = run.solve(true, monitor);
+      }
+      catch (const TimeIsUp&) // the row is there all the same
+      {
+        return;
+      }
     }
     row.estimatedError = light.relativeError > 0.0 ? light.relativeError : ComparisonRow::Unknown;
   }
@@ -223,6 +232,50 @@ private:
   const Comparator& TheComparator;
   Comparison& Result;
 };
+
+/// The runs of the methods that the scene allows; what the others lack is left out.
+std::vector<Lane> LanesOf(Device& device, const ComparedScene& scene, const ComparisonSettings& settings,
+  const Comparator& comparator, Comparison& result)
+{
+  std::vector<Lane> lanes;
+  for (ComparedMethod method : settings.methods)
+  {
+    const std::string why = WhyNot(method, scene, comparator);
+    if (why.empty())
+    {
+      lanes.push_back({ RunsOf(method, device, scene, settings.tried) });
+    }
+    else
+    {
+      result.leftOut.push_back(std::string(NameOf(method)) + ": " + why);
+    }
+  }
+  return lanes;
+}
+
+/// A run of each method in turn, so that what else the machine does falls on all alike, and time that one does not need is left for
+/// the others.
+void RunInTurns(std::vector<Lane>& lanes, Runner& runner, double end, const Monitor& monitor)
+{
+  std::size_t count = 0, done = 0;
+  for (const Lane& lane : lanes)
+  {
+    count += lane.runs.size();
+  }
+  while (done < count)
+  {
+    for (Lane& lane : lanes)
+    {
+      if (!lane.Done())
+      {
+        const auto active = std::count_if(lanes.begin(), lanes.end(), [](const Lane& other) { return !other.Done(); });
+        const double share = (end - ClockSeconds()) / static_cast<double>(active);
+        runner.RunNext(lane, share, PartWithin(HUGE_VAL, monitor, 1.0 * done / count, (done + 1.0) / count));
+        ++done;
+      }
+    }
+  }
+}
 
 void Check(const ComparisonSettings& settings)
 {
@@ -252,22 +305,11 @@ Comparison CompareSolvers(Device& device, const ComparedScene& scene, const Comp
                                : ConvergedLight(device, scene, settings.tried, 0.5 * settings.timeBudget,
                                    PartWithin(HUGE_VAL, monitor, 0.0, begun));
   const Comparator comparator(scene.medium.grid, result.reference);
-  MethodRunner runner(device, settings, comparator, result);
-  const std::size_t count = settings.methods.size();
-  for (std::size_t i = 0; i < count; ++i)
-  {
-    const ComparedMethod method = settings.methods[i];
-    const std::string why = WhyNot(method, scene, comparator);
-    if (!why.empty())
-    {
-      result.leftOut.push_back(std::string(NameOf(method)) + ": " + why);
-      continue;
-    }
-    const double from = begun + (1.0 - begun) * i / count;
-    runner.RunAll(RunsOf(method, device, scene, settings.tried),
-      std::max(0.0, end - ClockSeconds()) / static_cast<double>(count - i),
-      PartWithin(HUGE_VAL, monitor, from, from + (1.0 - begun) / count));
-  }
+  std::vector<Lane> lanes = LanesOf(device, scene, settings, comparator, result);
+  Runner runner(device, settings, comparator, result);
+  RunInTurns(lanes, runner, end, PartWithin(HUGE_VAL, monitor, begun, 1.0));
+  std::stable_sort(result.rows.begin(), result.rows.end(),
+    [](const ComparisonRow& a, const ComparisonRow& b) { return a.method < b.method; });
   MarkPareto(result.rows);
   return result;
 }

@@ -69,7 +69,7 @@ void FusedSolver::ChooseAcceleration()
     return;
   }
   this->Accelerated = this->Settings.acceleration == PropagationAcceleration::Automatic &&
-    this->Settings.maximumOrders == 0 && this->OrdersNeeded() > ManyOrders;
+    this->Settings.maximumOrders == 0 && this->Traits.scatters && this->OrdersNeeded() > ManyOrders;
 }
 
 void FusedSolver::RunAccelerated(const Monitor& monitor)
@@ -177,7 +177,7 @@ void FusedSolver::SweepAll(int sweepNumber, const Monitor& monitor)
   this->Result.balance = this->LampBalance;
   this->Result.facePowerOut = this->LampFaces;
   this->Shining = sweepNumber > 0 || this->Shining;
-  this->PropagateSweeps(this->BoundaryOfOrder(0), ManyPlanes, monitor);
+  this->PropagateSweeps(this->Sweeps, this->BoundaryOfOrder(0), ManyPlanes, monitor);
   this->OnTheWay = {};
   for (int face = 0; face < 6; ++face)
   {
@@ -226,7 +226,7 @@ void FusedSolver::MakeSystems()
     this->PowerIn[c] = this->Result.balance.entered[c] - this->LampBalance.entered[c];
     const std::size_t first = c * this->Stride;
     const LowOrder::Arrays arrays = { this->Stride, this->SharedExtinction ? 0 : first, first, &this->Extinction,
-      &this->Absorption, &this->Scattering, &this->Given, &this->Source, &this->Path, &this->Entering,
+      &this->Absorption, &this->SigmaSOnDevice(), &this->Given, &this->Source, &this->Path, &this->Entering,
       this->Nearness.Size() > 0 ? &lampPath : nullptr, this->Nearness.Size() > 0 ? &this->Nearness : nullptr };
     this->Systems.push_back(std::make_unique<LowOrder>(
       this->TheDevice, grid, this->Settings.periodic, this->Directions, pattern, arrays, incoming, this->LinearSource));

@@ -51,7 +51,7 @@ struct AxisSweep::Implementation
   Implementation(Device& device, const SweepVolume& volume, int axis, const std::vector<Bundle>& bundles,
     const std::array<bool, 3>& periodic, SweepWorkspace& workspace)
     : TheDevice(device)
-    , Plan(device, volume.grid, axis, bundles, volume.channels, periodic, volume.flux != nullptr,
+    , Plan(device, volume.grid, volume.box, axis, bundles, volume.channels, periodic, volume.flux != nullptr,
         volume.entering != nullptr)
     , Workspace(workspace)
   {
@@ -130,7 +130,7 @@ void AxisSweep::Implementation::MakeBuffers()
   this->FirstSchedule = Buffer<cl_int2>(device, plan.schedule, "the schedule");
   this->RoundSchedule = Buffer<cl_int2>(device, plan.roundSchedule, "the schedule");
   this->FirstCrossings =
-    Buffer<PlaneCrossingOnDevice>(device, plan.Crossings(0, plan.PatternPlanes()), "the ray pattern");
+    Buffer<PlaneCrossingOnDevice>(device, plan.Crossings(0, plan.CrossingPlanes()), "the ray pattern");
   this->FirstOwnLight = Buffer<OwnLightOnDevice>(device, plan.OwnLight(), "the ray pattern");
 }
 

@@ -1,5 +1,7 @@
 #include "FusedSolver.h"
 
+#include "../Device/Sizes.h"
+#include "EmissionBeams.h"
 #include "EnvironmentPeaks.h"
 #include "FirstCollision.h"
 #include "PowerUnit.h"
@@ -21,7 +23,10 @@ constexpr std::size_t Chunk = 4096; ///< as in Collect.cl
 constexpr int MostOrders = 100000;
 /// Planes that a ray goes round a periodic axis before it is given up, or waits for the next order.
 constexpr int ManyPlanes = 8192;
-constexpr int FewPlanes = 256; ///< the same where there will be more orders as long as it matters
+constexpr int FewPlanes = 256;        ///< the same where there will be more orders as long as it matters
+constexpr double MostlyLit = 0.75;    ///< part of the rays from which on sweeps of their own do not pay
+constexpr double MostlyFilled = 0.75; ///< the same of voxels
+constexpr int OrdersExpected = 6;     ///< to tell whether it pays to sweep empty slabs at the end only
 
 }
 
@@ -66,60 +71,24 @@ void FusedSolver::RunOrders(const Monitor& monitor)
     this->CollectOrder(order);
     Report(ofOrder, 1.0);
     ++order;
+    this->LitSweeps.clear();
+    this->Swept = this->FilledSweeps.empty() ? Part::All : Part::Filled;
   } while (!this->Done(order));
-}
-
-int FusedSolver::NeededChannels(const Medium& medium, const Illumination& illumination)
-{
-  const auto coloured = [](const Rgb& rgb) { return rgb[0] != rgb[1] || rgb[1] != rgb[2]; };
-  bool colour = medium.Channels() == 3 || coloured(illumination.sky);
-  for (const Light& light : illumination.lights)
+  if (this->Swept == Part::Filled && order > 1)
   {
-    colour = colour || coloured(light.power);
+    this->SweepEmptySlabs(monitor);
   }
-  for (const Rgb& face : illumination.faces)
-  {
-    colour = colour || coloured(face);
-  }
-  const std::vector<float>& radiance = illumination.environment.radiance;
-  for (std::size_t i = 0; i + 2 < radiance.size() && !colour; i += 3)
-  {
-    colour = radiance[i] != radiance[i + 1] || radiance[i + 1] != radiance[i + 2];
-  }
-  return colour ? 3 : 1;
-}
-
-/// A coloured medium often has a grey sigma_t all the same: the same density, only the albedo has colour.
-void FusedSolver::FindSharedExtinction()
-{
-  if (this->Channels == 1 || this->SharedExtinction)
-  {
-    this->SharedExtinction = true;
-    return;
-  }
-  const std::size_t voxels = this->TheMedium.grid.VoxelCount();
-  for (std::size_t i = 0; i < voxels; ++i)
-  {
-    const float grey = this->SigmaT(i, 0);
-    const float tolerance = 2e-7f * grey;
-    if (std::abs(this->SigmaT(i, 1) - grey) > tolerance || std::abs(this->SigmaT(i, 2) - grey) > tolerance)
-    {
-      return;
-    }
-  }
-  this->SharedExtinction = true;
 }
 
 void FusedSolver::Load()
 {
-  this->FindSharedExtinction();
   const std::size_t voxels = this->TheMedium.grid.VoxelCount();
   const std::size_t extinctions = this->SharedExtinction ? 1 : 3;
   const std::size_t all = this->Stride * this->Channels + SweepPadding;
   Device& device = this->TheDevice;
   this->Extinction = Buffer<float>(device, this->Stride * extinctions + SweepPadding, "sigma_t");
-  this->Scattering = Buffer<float>(device, all, "sigma_s");
-  this->Source = Buffer<float>(device, all, "the scattered light");
+  const bool sourceNeeded = this->ScattersAtAll() || this->Traits.emits || this->Accelerated;
+  this->Source = Buffer<float>(device, sourceNeeded ? all : SweepPadding, "the scattered light");
   this->Path = Buffer<float>(device, all, "the light gathered");
   this->Fluence = Buffer<float>(device, all, "fluence");
   if (this->Settings.netFlux)
@@ -143,27 +112,49 @@ void FusedSolver::Load()
     buffer.Write(values.data());
   };
   load(this->Extinction, extinctions, [&](std::size_t i, int c) { return this->SigmaT(i, c); });
-  load(this->Scattering, this->Channels, [&](std::size_t i, int c) { return this->SigmaS(i, c); });
+  if (&this->SigmaSOnDevice() == &this->Scattering)
+  {
+    this->Scattering = Buffer<float>(device, all, "sigma_s");
+    load(this->Scattering, this->Channels, [&](std::size_t i, int c) { return this->SigmaS(i, c); });
+  }
+  if (this->Traits.emits)
+  {
+    this->LoadEmission(load);
+  }
+  else
+  {
+    this->Source.Fill(0.0f);
+  }
+  this->Shining = this->Shining || !this->Settings.leaveOut;
+}
+
+/// What the coarse directions carry of it is the source; small bright parts go along rays of their own.
+template <class Loader>
+void FusedSolver::LoadEmission(const Loader& load)
+{
+  if (this->Settings.emissionRays)
+  {
+    this->Emission = Split(this->TheMedium, this->Settings.periodic);
+  }
+  const Field smooth = this->Emission.Smooth(this->TheMedium);
   load(this->Source, this->Channels, [&](std::size_t i, int c) {
     const float emission = this->TheMedium.emission.At(i, c);
     this->Result.balance.emitted[c] += 4.0 * Pi * emission * this->TheMedium.grid.VoxelVolume();
-    return emission;
+    this->Shining = this->Shining || smooth.At(i, c) > 0.0f;
+    return smooth.At(i, c);
   });
-  this->Shining = Total(this->Result.balance.emitted) > 0.0;
 }
 
-void FusedSolver::MakeSweeps()
+/// Without absorption sigma_t is sigma_s; without scattering nobody asks.
+const Buffer<float>& FusedSolver::SigmaSOnDevice() const
 {
-  for (int axis = 0; axis < 3; ++axis)
-  {
-    const std::vector<Bundle> bundles =
-      BundlesAlong(axis, this->TheMedium.grid, this->Directions, this->Settings.mapResolution);
-    if (!bundles.empty())
-    {
-      this->Sweeps.push_back(std::make_unique<AxisSweep>(
-        this->TheDevice, this->VolumeOf(0), axis, bundles, this->Settings.periodic, this->Workspace));
-    }
-  }
+  const bool alike = !this->Traits.absorbs && (this->Channels == 1 || !this->SharedExtinction);
+  const bool unused = !this->Traits.scatters && !this->Accelerated;
+  return this->Settings.leaveOut && (alike || unused) ? this->Extinction : this->Scattering;
+}
+
+void FusedSolver::FindOutsideLight()
+{
   const SplitEnvironment environment = Split(this->Outside.environment, this->Directions);
   this->FromFarAway = BoundaryRadiance(this->Directions, environment.smooth, this->Outside.sky);
   this->Lights = this->Outside.lights;
@@ -178,20 +169,124 @@ void FusedSolver::MakeSweeps()
   }
 }
 
+/// Directions that are the same by symmetry are one; net flux tells them apart.
+std::vector<Bundle> FusedSolver::BundlesOf(int axis) const
+{
+  const std::vector<Bundle> bundles =
+    BundlesAlong(axis, this->TheMedium.grid, this->Directions, this->Settings.mapResolution);
+  return this->MergesMirrors() ? this->Mirrors.Standing(bundles) : bundles;
+}
+
+FusedSolver::AxisSweeps FusedSolver::SweepsThrough(Part part)
+{
+  AxisSweeps sweeps;
+  for (int axis = 0; axis < 3; ++axis)
+  {
+    const std::vector<Bundle> bundles = this->BundlesOf(axis);
+    if (!bundles.empty())
+    {
+      sweeps.push_back(std::make_unique<AxisSweep>(
+        this->TheDevice, this->VolumeOf(0, part), axis, bundles, this->Settings.periodic, this->Workspace));
+    }
+  }
+  return sweeps;
+}
+
+void FusedSolver::MakeSweeps()
+{
+  this->FindOutsideLight();
+  this->Sweeps = this->SweepsThrough(Part::All);
+  if (this->LeavesSlabsOut())
+  {
+    this->FilledSweeps = this->SweepsThrough(Part::Filled);
+  }
+  if (this->Settings.leaveOut && this->LitFromOutside && !this->Shining && !this->Accelerated)
+  {
+    this->MakeLitSweeps();
+  }
+}
+
+/// Orders after the first go through the box that the medium fills alone: what leaves it does not come back. What they
+/// are outside of it is found at the end, for all of them in one sweep. Rays round a periodic axis would be on the way in both.
+bool FusedSolver::LeavesSlabsOut() const
+{
+  const std::array<bool, 3>& periodic = this->Settings.periodic;
+  if (!this->Settings.leaveOut || this->Accelerated || !this->Traits.scatters || periodic[0] || periodic[1] ||
+    periodic[2])
+  {
+    return false;
+  }
+  const double filled =
+    static_cast<double>(this->Traits.filled.VoxelCount()) / static_cast<double>(this->TheMedium.grid.VoxelCount());
+  const int later = (this->Settings.maximumOrders > 0 ? this->Settings.maximumOrders : OrdersExpected) - 1;
+  return filled < MostlyFilled && later * (1.0 - filled) > 1.0;
+}
+
+/// Sweeps of the directions alone from which light comes. Those of a periodic axis stay as they are: rays wait in them for the
+/// next order.
+void FusedSolver::MakeLitSweeps()
+{
+  const auto isLit = [this](int direction) {
+    double most = 0.0;
+    for (int axis = 0; axis < 3; ++axis)
+    {
+      const int face = 2 * axis + (this->Directions.directions[direction].omega[axis] > 0.0 ? 0 : 1);
+      most = std::max(most, this->Settings.periodic[axis] ? 0.0 : Total(this->Incoming(direction, face)));
+    }
+    return most > 0.0;
+  };
+  double all = 0.0, lit = 0.0;
+  AxisSweeps sweeps;
+  for (int axis = 0; axis < 3; ++axis)
+  {
+    const std::vector<Bundle> bundles = this->BundlesOf(axis);
+    if (this->Settings.periodic[axis])
+    {
+      return;
+    }
+    all += CountRays(bundles);
+    for (int way = 0; way < 2; ++way)
+    {
+      const std::vector<Bundle> ofWay = LitRays(bundles, way, isLit);
+      lit += CountRays(ofWay);
+      if (!ofWay.empty())
+      {
+        sweeps.push_back(std::make_unique<AxisSweep>(
+          this->TheDevice, this->VolumeOf(0, Part::All), axis, ofWay, this->Settings.periodic, this->Workspace));
+      }
+    }
+  }
+  if (lit <= MostlyLit * all)
+  {
+    this->LitPart = lit / all;
+    this->LitSweeps = std::move(sweeps);
+  }
+}
+
+/// Radiance, in the mean over the directions that this one stands for.
+Rgb FusedSolver::Incoming(int direction, int face) const
+{
+  Rgb radiance = this->Outside.faces[face];
+  const std::vector<int> itself = { direction };
+  const std::vector<int>& all = this->MergesMirrors() ? this->Mirrors.AllOf(direction) : itself;
+  for (const int one : all)
+  {
+    for (int c = 0; c < 3; ++c)
+    {
+      radiance[c] += this->FromFarAway[one][c] / static_cast<double>(all.size());
+    }
+  }
+  return radiance;
+}
+
 SweepBoundary FusedSolver::BoundaryOfOrder(int order) const
 {
-  if (order > 0 || !this->LitFromOutside)
+  const bool dark = !this->LitFromOutside && this->Settings.leaveOut;
+  if (order > 0 || dark)
   {
     return {};
   }
-  return [this](int direction, int face) {
-    Rgb radiance = this->FromFarAway[direction];
-    for (int c = 0; c < 3; ++c)
-    {
-      radiance[c] += this->Outside.faces[face][c];
-    }
-    return radiance;
-  };
+  return [this](int direction, int face) { return this->Incoming(direction, face); };
 }
 
 /// Do something to the volume: for all channels at once where they share sigma_t, else for one after the other. `act`
@@ -201,22 +296,24 @@ void FusedSolver::ForChannels(const std::function<void(const SweepVolume&, int)>
   const int rounds = this->SharedExtinction ? 1 : this->Channels;
   for (int round = 0; round < rounds; ++round)
   {
-    act(this->VolumeOf(round), round);
+    act(this->VolumeOf(round, this->Swept), round);
   }
 }
 
 /// The channels from `first` on that share sigma_t.
-SweepVolume FusedSolver::VolumeOf(int first) const
+SweepVolume FusedSolver::VolumeOf(int first, Part part) const
 {
   SweepVolume volume;
   volume.grid = this->TheMedium.grid;
+  volume.box = part == Part::Filled ? this->Traits.filled : VoxelBox{};
   volume.channels = this->SharedExtinction ? this->Channels : 1;
   volume.stride = this->Stride;
   volume.sigma_t = &this->Extinction;
   volume.sigma_t_first = first * this->Stride;
   volume.source = &this->Source;
   volume.path = &this->Path;
-  volume.flux = this->Settings.netFlux && !this->Iterating ? &this->Flux : nullptr;
+  const bool flux = this->Settings.netFlux && !this->Iterating && part != Part::Filled; // the sweep at the end knows it
+  volume.flux = flux ? &this->Flux : nullptr;
   volume.entering = this->Iterating ? &this->Entering : nullptr;
   volume.nearness = this->Nearness.Size() > 0 ? &this->Nearness : nullptr;
   volume.first = first * this->Stride;
@@ -230,8 +327,8 @@ void FusedSolver::Count(const SweepTally& tally, int firstChannel, int channels)
     for (int face = 0; face < 6; ++face)
     {
       this->Result.balance.entered[firstChannel + c] += tally.in[face][c];
-      this->Result.balance.escaped[firstChannel + c] += tally.out[face][c];
-      this->Result.facePowerOut[face][firstChannel + c] += tally.out[face][c];
+      this->Result.balance.escaped[firstChannel + c] += this->Swept == Part::Empty ? 0.0 : tally.out[face][c];
+      this->Result.facePowerOut[face][firstChannel + c] += this->Swept == Part::Filled ? 0.0 : tally.out[face][c];
     }
     this->OnTheWay[firstChannel + c] += tally.onTheWay[c];
   }
@@ -248,6 +345,19 @@ void FusedSolver::PropagateLights(const Monitor& monitor)
         first, volume.channels);
     });
   }
+  this->PropagatePeaks(monitor);
+}
+
+/// Small bright parts of the medium.
+void FusedSolver::PropagatePeaks(const Monitor& monitor)
+{
+  for (const EmissionPeak& peak : this->Emission.peaks)
+  {
+    this->ForChannels([&](const SweepVolume& volume, int first) {
+      this->Count(DepositEmission(this->TheDevice, volume, first, peak, this->Settings.periodic, monitor), first,
+        volume.channels);
+    });
+  }
 }
 
 void FusedSolver::PropagateOrder(int order, const Monitor& monitor)
@@ -259,39 +369,79 @@ void FusedSolver::PropagateOrder(int order, const Monitor& monitor)
   {
     return;
   }
-  this->PropagateSweeps(boundary, this->Settings.maximumOrders > 0 ? ManyPlanes : FewPlanes, monitor);
+  const AxisSweeps& sweeps = this->Swept == Part::Filled ? this->FilledSweeps
+    : order == 0 && !this->LitSweeps.empty()             ? this->LitSweeps
+                                                         : this->Sweeps;
+  this->PropagateSweeps(sweeps, boundary, this->Settings.maximumOrders > 0 ? ManyPlanes : FewPlanes, monitor);
 }
 
-void FusedSolver::PropagateSweeps(const SweepBoundary& boundary, int mostPlanes, const Monitor& monitor)
+/// What the orders after the first are in the voxels around the medium, and through which faces it leaves: one sweep of all
+/// that was scattered but what the last order left over.
+void FusedSolver::SweepEmptySlabs(const Monitor& monitor)
+{
+  const double perVolume = 1.0 / this->TheMedium.grid.VoxelVolume();
+  const VoxelBox& filled = this->Traits.filled;
+  const auto run = [&](cl::Kernel kernel) {
+    this->TheDevice.Queue().enqueueNDRangeKernel(kernel, cl::NullRange, cl::NDRange(this->Stride, this->Channels));
+  };
+  cl::Kernel gather = this->TheDevice.Kernel("gather_scattered", { kernel_source::Numerics, kernel_source::Collect });
+  run(With(gather, this->Fluence, this->Source, this->SigmaSOnDevice(), cl_ulong(this->Stride)));
+  this->Swept = Part::Empty;
+  this->Shining = true;
+  this->PropagateSweeps(this->Sweeps, {}, ManyPlanes, monitor);
+  cl::Kernel add = this->TheDevice.Kernel("add_outside", { kernel_source::Numerics, kernel_source::Collect });
+  const std::array<int, 3>& n = this->TheMedium.grid.size;
+  run(With(add, this->Path, this->Fluence, cl_ulong(this->Stride), static_cast<float>(perVolume),
+    cl_int3{ { n[0], n[1], n[2] } }, cl_int3{ { filled.first[0], filled.first[1], filled.first[2] } },
+    cl_int3{ { filled.size[0], filled.size[1], filled.size[2] } }));
+}
+
+void FusedSolver::PropagateSweeps(
+  const AxisSweeps& sweeps, const SweepBoundary& boundary, int mostPlanes, const Monitor& monitor)
 {
   this->ForChannels([&](const SweepVolume& volume, int first) {
     const SweepBoundary ofChannels = boundary && first > 0
       ? SweepBoundary([&](int direction, int face) { return From(boundary(direction, face), first); })
       : boundary;
-    for (std::size_t s = 0; s < this->Sweeps.size(); ++s)
+    for (std::size_t s = 0; s < sweeps.size(); ++s)
     {
-      const double before = static_cast<double>(first * this->Sweeps.size() + s);
-      const double all = static_cast<double>(this->Sweeps.size()) * this->Channels / volume.channels;
+      const double before = static_cast<double>(first * sweeps.size() + s);
+      const double all = static_cast<double>(sweeps.size()) * this->Channels / volume.channels;
       const Monitor ofSweep =
         monitor ? Monitor([&](double done) { return monitor((before + done) / all); }) : Monitor();
-      this->Sweeps[s]->Start(volume, ofChannels, this->Shining, mostPlanes, ofSweep);
+      sweeps[s]->Start(volume, ofChannels, this->Shining, mostPlanes, ofSweep);
     }
-    for (const std::unique_ptr<AxisSweep>& sweep : this->Sweeps)
+    for (const std::unique_ptr<AxisSweep>& sweep : sweeps)
     {
       this->Count(sweep->Finish(), first, volume.channels);
     }
   });
 }
 
+/// The values of a channel that a sweep may have changed: whole vectors.
+std::array<std::size_t, 2> FusedSolver::SweptValues() const
+{
+  if (this->Swept != Part::Filled)
+  {
+    return { 0, this->Stride };
+  }
+  const std::array<int, 3>& n = this->TheMedium.grid.size;
+  const std::size_t layer = static_cast<std::size_t>(n[0]) * n[1];
+  const VoxelBox& filled = this->Traits.filled;
+  return { layer * filled.first[2] / SweepPadding * SweepPadding,
+    RoundUp(layer * (filled.first[2] + filled.size[2]), SweepPadding) };
+}
+
 void FusedSolver::CollectOrder(int order)
 {
   const int vector = this->TheDevice.FloatVectorWidth() >= 8 ? 8 : 4;
-  cl::Kernel kernel = this->TheDevice.Kernel(
-    "collect", { kernel_source::Numerics, kernel_source::Collect }, "-DREAL_WIDTH=" + std::to_string(vector));
-  const std::size_t chunks = (this->Stride + Chunk - 1) / Chunk;
+  cl::Kernel kernel = this->TheDevice.Kernel("collect", { kernel_source::Numerics, kernel_source::Collect },
+    "-DREAL_WIDTH=" + std::to_string(vector) + " -DSCATTERS=" + std::to_string(this->ScattersAtAll()));
+  const auto [begin, end] = this->SweptValues();
+  const std::size_t chunks = (end - begin + Chunk - 1) / Chunk;
   Buffer<cl_float2> tally(this->TheDevice, chunks * this->Channels, "sums");
-  With(kernel, this->Path, this->Fluence, this->Source, this->Extinction, this->Scattering, tally,
-    cl_ulong(this->Stride), cl_int(this->SharedExtinction),
+  With(kernel, this->Path, this->Fluence, this->Source, this->Extinction, this->SigmaSOnDevice(), tally,
+    cl_ulong(this->Stride), cl_ulong(begin), cl_ulong(end), cl_int(this->SharedExtinction),
     static_cast<float>(1.0 / this->TheMedium.grid.VoxelVolume()));
   this->TheDevice.Queue().enqueueNDRangeKernel(
     kernel, cl::NullRange, cl::NDRange(chunks, this->Channels), cl::NDRange(1, 1));
@@ -385,34 +535,14 @@ std::vector<float> FusedSolver::Interleaved(const Buffer<float>& planar, double 
 std::vector<std::string> FusedSolver::LeftOut() const
 {
   std::vector<std::string> words;
-  if (this->Channels == 1)
-  {
-    words.push_back("colour: medium and light are grey, one channel does");
-  }
-  else if (this->SharedExtinction)
-  {
-    words.push_back("sigma_t a channel: red, green and blue share one, and its transmittance");
-  }
-  if (this->TheMedium.g != 0.0)
+  if (this->TheMedium.g != 0.0 && this->Traits.scatters)
   {
     words.push_back("anisotropy: solved as isotropic scattering with sigma_s (1 - g), g = " +
       std::to_string(this->TheMedium.g) + " (similarity relation)");
   }
-  if (Total(this->Result.balance.emitted) == 0.0)
+  if (this->Settings.leaveOut)
   {
-    words.push_back("emission: the medium does not shine");
-  }
-  if (!this->LitFromOutside)
-  {
-    words.push_back("boundary radiance: no environment, sky or face shines");
-  }
-  if (this->Lights.empty())
-  {
-    words.push_back("first-collision source: there are no lights");
-  }
-  if (this->Result.convergence.size() == 1)
-  {
-    words.push_back("scattering orders after the first: nothing is scattered");
+    this->SayWhatIsLeftOut(words);
   }
   if (!this->Accelerated)
   {
@@ -420,9 +550,33 @@ std::vector<std::string> FusedSolver::LeftOut() const
   }
   if (!this->Settings.netFlux)
   {
-    words.push_back("net_flux: not asked for");
+    words.push_back(left_out::NetFlux);
   }
   return words;
+}
+
+/// Of the scene's traits, but that one channel does for three.
+void FusedSolver::SayWhatIsLeftOut(std::vector<std::string>& words) const
+{
+  const auto say = [&](bool condition, const std::string& text) {
+    if (condition)
+    {
+      words.push_back(text);
+    }
+  };
+  say(this->Channels == 3 && this->SharedExtinction, left_out::GreyExtinction);
+  say(this->TheMedium.g == 0.0 && this->Traits.scatters, left_out::Isotropic);
+  say(!this->Traits.scatters, left_out::NoScattering);
+  say(!this->Traits.absorbs, left_out::NoAbsorption);
+  say(!this->Traits.emits, left_out::NoEmission);
+  say(!this->LitFromOutside, left_out::DarkOutside);
+  say(this->Lights.empty(), left_out::NoLights);
+  say(this->Traits.emits && this->Emission.peaks.empty(), left_out::NoEmissionPeaks);
+  say(this->Traits.scatters && this->Result.convergence.size() == 1, left_out::OneOrder);
+  say(!this->FilledSweeps.empty(), left_out::EmptySlabs(this->Traits.filled, this->TheMedium.grid));
+  say(this->LitPart < 1.0, left_out::DarkDirections(this->LitPart));
+  say(this->MergesMirrors() && this->Mirrors.Any(),
+    left_out::MirrorImages(this->Mirrors.Count(), static_cast<int>(this->Directions.directions.size())));
 }
 
 void FusedSolver::Unload()
@@ -455,6 +609,20 @@ double EnergyBalance::RelativeError(int channels) const
   return worst;
 }
 
+namespace
+{
+LightField SolveInUnit(Device& device, const Medium& medium, const Illumination& illumination,
+  const PropagationSettings& settings, const Monitor& monitor)
+{
+  const MediumTraits traits = TraitsOf(medium, 1.0 - medium.g);
+  const SceneChannels channels(medium, traits, illumination);
+  return SolveChannels(settings.leaveOut, channels, medium, illumination,
+    [&](const Medium& ofChannels, const Illumination& light, int count) {
+      return FusedSolver(device, ofChannels, traits, light, settings, count).Run(monitor);
+    });
+}
+}
+
 LightField SolveFused(Device& device, const Medium& medium, const Illumination& illumination,
   const PropagationSettings& settings, const Monitor& monitor)
 {
@@ -464,10 +632,10 @@ LightField SolveFused(Device& device, const Medium& medium, const Illumination& 
   const double unit = PowerUnitOf(medium, illumination);
   if (unit == 1.0)
   {
-    return FusedSolver(device, medium, illumination, settings).Run(monitor);
+    return SolveInUnit(device, medium, illumination, settings, monitor);
   }
   const SceneInUnits scene(medium, illumination, unit);
-  LightField light = FusedSolver(device, scene.medium, scene.illumination, settings).Run(monitor);
+  LightField light = SolveInUnit(device, scene.medium, scene.illumination, settings, monitor);
   ToWatts(light, unit);
   return light;
 }

@@ -1,8 +1,11 @@
 #pragma once
 
 #include "AxisSweep.h"
+#include "EmissionPeaks.h"
 #include "FusedPropagation.h"
 #include "LowOrder.h"
+#include "NeededRays.h"
+#include "OneChannel.h"
 
 #include <chrono>
 #include <functional>
@@ -27,15 +30,19 @@ inline Rgb From(const Rgb& rgb, int first)
 class FusedSolver
 {
 public:
-  FusedSolver(
-    Device& device, const Medium& medium, const Illumination& illumination, const PropagationSettings& settings)
+  /// @param traits  of the medium; all must stay
+  /// @param channels  to solve for
+  FusedSolver(Device& device, const Medium& medium, const MediumTraits& traits, const Illumination& illumination,
+    const PropagationSettings& settings, int channels)
     : TheDevice(device)
     , TheMedium(medium)
+    , Traits(traits)
     , Outside(illumination)
     , Settings(settings)
     , Directions(SoundDirections(settings.directionsPerFace))
-    , Channels(NeededChannels(medium, illumination))
-    , SharedExtinction(medium.sigma_a.components == 1 && medium.sigma_s.components == 1)
+    , Mirrors(medium.grid, settings.periodic, this->Directions)
+    , Channels(channels)
+    , SharedExtinction(channels == 1 || (settings.leaveOut && traits.greyExtinction))
     , Stride((medium.grid.VoxelCount() + SweepPadding - 1) / SweepPadding * SweepPadding)
   {
   }
@@ -43,7 +50,6 @@ public:
   LightField Run(const Monitor& monitor);
 
 private:
-  static int NeededChannels(const Medium& medium, const Illumination& illumination);
   float SigmaS(std::size_t voxel, int channel) const
   {
     return static_cast<float>(this->TheMedium.sigma_s.At(voxel, channel) * (1.0 - this->TheMedium.g));
@@ -60,15 +66,36 @@ private:
   /// @throws InvalidInput where the energy balance is off by a hundredth
   void CheckBalance() const;
   void Load();
-  void FindSharedExtinction();
+  template <class Loader>
+  void LoadEmission(const Loader& load);
+  using AxisSweeps = std::vector<std::unique_ptr<AxisSweep>>;
+  /// A part of the volume, and which of the tallies count what leaves it.
+  enum class Part
+  {
+    All,
+    Filled, ///< the box that the medium fills; what leaves it has escaped, through which face is not known
+    Empty   ///< all, to know what is outside that box, and through which faces what has escaped leaves
+  };
+  bool ScattersAtAll() const { return !this->Settings.leaveOut || this->Traits.scatters; }
+  const Buffer<float>& SigmaSOnDevice() const;
+  void FindOutsideLight();
   void MakeSweeps();
+  void MakeLitSweeps();
+  AxisSweeps SweepsThrough(Part part);
+  std::vector<Bundle> BundlesOf(int axis) const;
+  bool LeavesSlabsOut() const;
+  bool MergesMirrors() const { return this->Settings.leaveOut && !this->Settings.netFlux; }
+  std::array<std::size_t, 2> SweptValues() const;
+  void SweepEmptySlabs(const Monitor& monitor);
   void PropagateOrder(int order, const Monitor& monitor);
-  void PropagateSweeps(const SweepBoundary& boundary, int mostPlanes, const Monitor& monitor);
+  void PropagateSweeps(const AxisSweeps& sweeps, const SweepBoundary& boundary, int mostPlanes, const Monitor& monitor);
   void PropagateLights(const Monitor& monitor);
-  SweepVolume VolumeOf(int firstChannel) const;
+  void PropagatePeaks(const Monitor& monitor);
+  SweepVolume VolumeOf(int firstChannel, Part part) const;
   void ForChannels(const std::function<void(const SweepVolume&, int)>& act);
   void Count(const SweepTally& tally, int firstChannel, int channels);
   SweepBoundary BoundaryOfOrder(int order) const;
+  Rgb Incoming(int direction, int face) const;
   void CollectOrder(int order);
   void EstimateResidual(int order);
   bool Done(int orders) const;
@@ -92,23 +119,31 @@ private:
 
   double Progress(int order, double done) const;
   std::vector<std::string> LeftOut() const;
+  void SayWhatIsLeftOut(std::vector<std::string>& words) const;
   void Unload();
 
   std::vector<float> Interleaved(const Buffer<float>& planar, double scale) const;
 
   Device& TheDevice;
   const Medium& TheMedium;
+  const MediumTraits& Traits;
   const Illumination& Outside;
   std::vector<Light> Lights; ///< those of the scene and the peaks of the environment
+  SplitEmission Emission;    ///< of the medium
   const PropagationSettings& Settings;
   DirectionSet Directions;
+  MirrorClasses Mirrors;
   int Channels;
   bool SharedExtinction;
   std::size_t Stride;
 
   Buffer<float> Extinction, Scattering, Source, Path, Flux, Fluence;
   SweepWorkspace Workspace;
-  std::vector<std::unique_ptr<AxisSweep>> Sweeps;
+  AxisSweeps Sweeps;
+  AxisSweeps LitSweeps;    ///< of the first order, where much of the outside is dark and the medium too; else empty
+  AxisSweeps FilledSweeps; ///< of the orders after it, where the medium leaves much of the volume empty; else empty
+  Part Swept = Part::All;
+  double LitPart = 1.0; ///< of all rays, in the first order
   std::vector<Rgb> FromFarAway;
   bool Shining = false; ///< the source is not zero
   bool LitFromOutside = false;

@@ -126,7 +126,8 @@ static bool is_border(const low_order_layout* layout, const int* at, int d)
 static float contrast(float tau, float beyond)
 {
   const float thick = 0.8f * tau * tau;
-  return thick * thick / ((1.0f + thick * thick) * (1.0f + beyond * beyond));
+  const float unlike = tau > beyond ? 1.0f - beyond / tau : 0.0f;
+  return unlike * unlike * thick * thick / ((1.0f + thick * thick) * (1.0f + beyond * beyond));
 }
 
 // Of a thick voxel beside thinner ones those see only the skin: how much that counts, and for each inner face.

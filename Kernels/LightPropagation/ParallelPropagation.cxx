@@ -1,5 +1,6 @@
 #include "ParallelPropagation.h"
 
+#include "OneChannel.h"
 #include "PublishedBorders.h"
 #include "PublishedPlan.h"
 #include "PublishedVolumes.h"
@@ -39,15 +40,16 @@ struct ParallelPropagation::Implementation
     const PropagationSettings& settings, std::size_t temporaryBytes, int channels)
     : TheDevice(device)
     , TheMedium(medium)
+    , Outside(illumination)
     , Settings(settings)
     , Model(medium, illumination, settings, channels)
+    , Traits(TraitsOf(medium))
     , Ledger(medium, this->Model, settings)
     , Channels(this->Model.Channels())
     , Volumes(device, medium, this->Model, VectorWidth(device))
     , Plan(device, medium.grid, this->Model, settings, this->Volumes, temporaryBytes)
     , Borders(this->Model, settings, this->Plan)
-    , Emits(medium.emission.values != nullptr)
-    , LeftOut(LeftOutAsPublished(illumination))
+    , Emits(this->Traits.emits || !settings.leaveOut)
   {
     this->MakeBuffers();
     this->MakeKernels();
@@ -74,8 +76,10 @@ struct ParallelPropagation::Implementation
 
   Device& TheDevice;
   const Medium& TheMedium;
+  Illumination Outside;
   PropagationSettings Settings;
   PublishedModel Model;
+  MediumTraits Traits;
   OrderLedger Ledger;
   int Channels;
   PublishedVolumes Volumes;
@@ -83,7 +87,6 @@ struct ParallelPropagation::Implementation
   PublishedBorders Borders;
   bool Emits; ///< U is not zero
   bool SourceGiven = false;
-  std::vector<std::string> LeftOut;
   std::vector<float> FluenceDirect;
 
   Buffer<float> Coefficients, Rays, Escaped, Contributions, Boundary;
@@ -269,7 +272,8 @@ LightField ParallelPropagation::Implementation::Result() const
     field.netFlux = this->NetFlux();
   }
   this->Ledger.WriteTo(field);
-  field.leftOut = this->LeftOut;
+  field.leftOut =
+    LeftOutAsPublished(this->TheMedium, this->Traits, this->Outside, this->Settings, this->Ledger.Orders());
   field.device = this->TheDevice.Name();
   return field;
 }
@@ -405,11 +409,17 @@ LightField ParallelPropagation::Result() const
 LightField SolveParallel(Device& device, const Medium& medium, const Illumination& illumination,
   const PropagationSettings& settings, const Monitor& monitor, std::size_t temporaryBytes)
 {
-  ParallelPropagation propagation(device, medium, illumination, settings, temporaryBytes);
-  do
-  {
-    propagation.RunOrder(monitor);
-  } while (!propagation.Done());
-  return propagation.Result();
+  Check(medium);
+  Check(illumination);
+  const SceneChannels channels(medium, TraitsOf(medium), illumination);
+  return SolveChannels(settings.leaveOut, channels, medium, illumination,
+    [&](const Medium& ofChannels, const Illumination& light, int count) {
+      ParallelPropagation propagation(device, ofChannels, light, settings, temporaryBytes, count);
+      do
+      {
+        propagation.RunOrder(monitor);
+      } while (!propagation.Done());
+      return propagation.Result();
+    });
 }
 }

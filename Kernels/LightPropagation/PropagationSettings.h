@@ -31,6 +31,7 @@ struct PropagationSettings
   PropagationSource source = PropagationSource::Automatic;
   PropagationAcceleration acceleration = PropagationAcceleration::Automatic; ///< not where maximumOrders is given
   bool netFlux = false;                                                      ///< compute net_flux too: it costs
+  bool emissionRays = true; ///< follow what shines in small bright parts of the medium along exact rays (EmissionPeaks.h)
   bool leaveOut = true; ///< what the scene does not need; false: all is computed, to see what leaving out saves
 };
 

@@ -18,30 +18,6 @@ constexpr double FourPi = 4.0 * glm::pi<double>();
 /// No problem that converges at all needs more; those that do not must end.
 constexpr int MostOrders = 10000;
 
-bool Coloured(const Rgb& rgb)
-{
-  return rgb[0] != rgb[1] || rgb[0] != rgb[2];
-}
-
-bool Coloured(const Illumination& illumination)
-{
-  bool coloured = Coloured(illumination.sky);
-  for (const Rgb& face : illumination.faces)
-  {
-    coloured = coloured || Coloured(face);
-  }
-  for (const Light& light : illumination.lights)
-  {
-    coloured = coloured || Coloured(light.power);
-  }
-  const std::vector<float>& pixels = illumination.environment.radiance;
-  for (std::size_t i = 0; i + 2 < pixels.size() && !coloured; i += 3)
-  {
-    coloured = pixels[i] != pixels[i + 1] || pixels[i] != pixels[i + 2];
-  }
-  return coloured;
-}
-
 glm::dvec3 Vector(const std::array<double, 3>& v)
 {
   return { v[0], v[1], v[2] };
@@ -201,13 +177,32 @@ std::vector<std::string> LeftOutAsPublished(const Illumination& illumination)
   };
 }
 
+std::vector<std::string> LeftOutAsPublished(const Medium& medium, const MediumTraits& traits,
+  const Illumination& illumination, const PropagationSettings& settings, int orders)
+{
+  std::vector<std::string> words = LeftOutAsPublished(illumination);
+  const auto say = [&](bool condition, const char* text) {
+    if (condition)
+    {
+      words.push_back(text);
+    }
+  };
+  const bool leaveOut = settings.leaveOut;
+  say(leaveOut && medium.g == 0.0 && traits.scatters, left_out::Isotropic);
+  say(leaveOut && !traits.scatters, left_out::NoScattering);
+  say(leaveOut && !traits.emits, left_out::NoEmission);
+  say(leaveOut && traits.scatters && orders == 1, left_out::OneOrder);
+  say(!settings.netFlux, left_out::NetFlux);
+  return words;
+}
+
 PublishedModel::PublishedModel(
   const Medium& medium, const Illumination& illumination, const PropagationSettings& settings, int channels)
 {
   Check(medium);
   Check(illumination);
   Check(settings);
-  this->ChannelCount = channels == 3 || medium.Channels() == 3 || Coloured(illumination) ? 3 : 1;
+  this->ChannelCount = channels == 3 || medium.Channels() == 3 || !ColourOf(illumination).IsGrey() ? 3 : 1;
   this->Isotropic = medium.g == 0.0;
   this->Set = PublishedDirections(settings.directionsPerFace);
   this->BoundaryRadiances = BoundaryOf(this->Set, illumination, settings.periodic);

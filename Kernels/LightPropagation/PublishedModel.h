@@ -5,6 +5,7 @@
 #include "PropagationSettings.h"
 
 #include "../Medium/Medium.h"
+#include "../Medium/Traits.h"
 
 #include <array>
 #include <chrono>
@@ -92,6 +93,11 @@ std::vector<std::array<double, 3>> EvenDirections(int count);
 
 /// What of the illumination the published method cannot carry, in words; empty if nothing.
 std::vector<std::string> LeftOutAsPublished(const Illumination& illumination);
+
+/// That, and what the scene did not need but that one channel does for three.
+/// @param orders  that were propagated
+std::vector<std::string> LeftOutAsPublished(const Medium& medium, const MediumTraits& traits,
+  const Illumination& illumination, const PropagationSettings& settings, int orders);
 
 /// The rays of a direction as its map goes through the grid plane by plane along the axis of its face.
 struct MapGeometry

@@ -49,7 +49,7 @@ std::size_t VolumeLayouts::Index(int layout, int x, int y, int z) const
 PublishedVolumes::PublishedVolumes(Device& device, const Medium& medium, const PublishedModel& model, int width)
   : Width(width)
   , Layouts(Addressable(device, medium.grid, width), width)
-  , Coloured(medium.sigma_a.components == 3 || medium.sigma_s.components == 3)
+  , Coloured(medium.sigma_a.HasColour() || medium.sigma_s.HasColour())
   , TheDevice(device)
   , TheMedium(medium)
   , Model(model)

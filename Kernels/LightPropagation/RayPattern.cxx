@@ -93,6 +93,15 @@ void Sort(std::vector<Bundle>& bundles, const PlaneAxes& axes, const Grid& grid,
   bundles.push_back(fresh);
 }
 
+/// By tangents alone, the larger first: bundles along different axes, and those with u and v exchanged, are ordered alike.
+bool IsBefore(const Bundle& a, const Bundle& b)
+{
+  const double largestA = std::max(a.tangentU, a.tangentV);
+  const double largestB = std::max(b.tangentU, b.tangentV);
+  return Same(largestA, largestB) ? std::min(a.tangentU, a.tangentV) < std::min(b.tangentU, b.tangentV)
+                                  : largestA < largestB;
+}
+
 /// Each bundle once for every point of the map's finer lattice.
 std::vector<Bundle> OnLattice(const std::vector<Bundle>& bundles, int mapResolution)
 {
@@ -104,14 +113,37 @@ std::vector<Bundle> OnLattice(const std::vector<Bundle>& bundles, int mapResolut
       for (int i = 0; i < mapResolution; ++i)
       {
         Bundle shifted = bundle;
-        shifted.startU = (i + 0.5) / mapResolution;
-        shifted.startV = (j + 0.5) / mapResolution;
+        shifted.startU = (i + bundle.startU) / mapResolution;
+        shifted.startV = (j + bundle.startV) / mapResolution;
         shifted.power /= static_cast<double>(mapResolution) * mapResolution;
         all.push_back(shifted);
       }
     }
   }
   return all;
+}
+
+/// Rays of all bundles from the middles of voxels would cross the first planes side by side: starts are spread evenly instead
+/// (Roberts's sequence, of the plastic number). Directions with equal tangents stay on the diagonal: u and v remain exchangeable.
+void SpreadStarts(std::vector<Bundle>& bundles)
+{
+  std::vector<Bundle*> inOrder;
+  for (Bundle& bundle : bundles)
+  {
+    inOrder.push_back(&bundle);
+  }
+  std::stable_sort(inOrder.begin(), inOrder.end(), [](const Bundle* a, const Bundle* b) { return IsBefore(*a, *b); });
+  constexpr double plastic = 1.32471795724474602596;
+  for (std::size_t i = 0; i < inOrder.size(); ++i)
+  {
+    Bundle& bundle = *inOrder[i];
+    const double large = std::fmod(0.5 + i / plastic, 1.0);
+    const double small = std::fmod(0.5 + i / (plastic * plastic), 1.0);
+    bundle.startU = bundle.tangentU >= bundle.tangentV ? large : small;
+    bundle.startV = Same(bundle.tangentU, bundle.tangentV) ? bundle.startU
+      : bundle.tangentU >= bundle.tangentV                 ? small
+                                                           : large;
+  }
 }
 }
 
@@ -179,6 +211,7 @@ std::vector<Bundle> BundlesAlong(int axis, const Grid& grid, const DirectionSet&
       Sort(bundles, axes, grid, set, static_cast<int>(d));
     }
   }
+  SpreadStarts(bundles);
   return OnLattice(bundles, mapResolution);
 }
 

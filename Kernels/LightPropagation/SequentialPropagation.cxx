@@ -1,5 +1,7 @@
 #include "SequentialPropagation.h"
 
+#include "OneChannel.h"
+
 #include <cmath>
 
 namespace tyndall
@@ -9,10 +11,11 @@ namespace
 class SequentialPropagation
 {
 public:
-  SequentialPropagation(const Medium& medium, const Illumination& illumination, const PropagationSettings& settings)
+  SequentialPropagation(
+    const Medium& medium, const Illumination& illumination, const PropagationSettings& settings, int channels)
     : TheMedium(medium)
     , Settings(settings)
-    , Model(medium, illumination, settings)
+    , Model(medium, illumination, settings, channels)
     , Ledger(medium, this->Model, settings)
     , Channels(this->Model.Channels())
     , Values(medium.grid.VoxelCount() * this->Channels)
@@ -288,8 +291,16 @@ private:
 LightField SolveSequential(
   const Medium& medium, const Illumination& illumination, const PropagationSettings& settings, const Monitor& monitor)
 {
-  LightField field = SequentialPropagation(medium, illumination, settings).Solve(monitor);
-  field.leftOut = LeftOutAsPublished(illumination);
-  return field;
+  Check(medium);
+  Check(illumination);
+  const MediumTraits traits = TraitsOf(medium);
+  const SceneChannels channels(medium, traits, illumination);
+  return SolveChannels(settings.leaveOut, channels, medium, illumination,
+    [&](const Medium& ofChannels, const Illumination& light, int count) {
+      LightField field = SequentialPropagation(ofChannels, light, settings, count).Solve(monitor);
+      field.leftOut =
+        LeftOutAsPublished(medium, traits, illumination, settings, static_cast<int>(field.convergence.size()));
+      return field;
+    });
 }
 }

@@ -8,12 +8,14 @@ typedef struct
   int backward; // 0 marches from the lower end of the axis, 1 from the upper
   int firstBundle, bundles;
   int scratch;  // where its scratch begins, in floats
+  int planesBefore; // of the ray pattern, that its rays have crossed before their first plane here
 } unit_info;
 
-// How a plane lies in the volume: voxel (u, v) of plane p is u * stepU + v * stepV + p * stepP.
+// How a plane lies in the volume: voxel (u, v) of plane p is (firstU + u) * stepU + (firstV + v) * stepV + (firstP + p) * stepP.
 typedef struct
 {
   int sizeU, sizeV, sizeP;
+  int firstU, firstV, firstP;
   int stepU, stepV, stepP;
   int width;
   int block;    // planes packed together: 1 where rows are contiguous in memory, else a vector's worth
@@ -60,6 +62,13 @@ static void transpose(real* rows)
   }
 }
 
+// Where voxel (u, v) of a plane is.
+static ulong place_of(const plane_layout* layout, int u, int v, int plane)
+{
+  return (ulong)(layout->firstU + u) * layout->stepU + (ulong)(layout->firstV + v) * layout->stepV +
+    (ulong)(layout->firstP + plane) * layout->stepP;
+}
+
 // Set floats, a multiple of a vector, to zero.
 static void clear(__global float* floats, int count)
 {
@@ -79,8 +88,7 @@ static void pack(const plane_layout* layout, __global float* to, int first, int 
     for (int u = 0; u < layout->width; u += REAL_WIDTH)
     {
       const integer beyond = LANES >= layout->sizeU - u;
-      const __global float* from =
-        volume + (ulong)u * layout->stepU + (ulong)v * layout->stepV + (ulong)first * layout->stepP;
+      const __global float* from = volume + place_of(layout, u, v, first);
       if (layout->block == 1)
       {
         store_real(select(load_real(0, from), (real)0.0f, beyond), v * ROW + u, to);
@@ -114,7 +122,7 @@ static void unpack(
   {
     for (int u = 0; u < layout->sizeU; u += REAL_WIDTH)
     {
-      __global float* to = volume + (ulong)u * layout->stepU + (ulong)v * layout->stepV + (ulong)first * layout->stepP;
+      __global float* to = volume + place_of(layout, u, v, first);
       const int used = min(REAL_WIDTH, layout->sizeU - u);
       if (layout->block == 1 && used == REAL_WIDTH)
       {
@@ -292,7 +300,7 @@ static void cross_plane(sweep_state* state, __global float* maps, const __global
 // maps      rays of both ways; `maps_each_way` floats each
 // empty     1: the maps hold nothing yet, and are cleared where rays start
 // outside, radiance   rays that come in, both ways as maps
-// crossings [plane from where rays start][bundle]
+// crossings [plane of the ray pattern][bundle]
 // own       [unit][plane from where rays start], see add_own_light
 // schedule  [launch][unit] first plane and end, counted from where rays start; beyond the last plane the axis begins anew
 // tally     [plane from where rays start][unit][-u, +u, -v, +v][channel] W that left
@@ -361,7 +369,7 @@ __kernel __attribute__((reqd_work_group_size(1, 1, 1))) void sweep(const __globa
       }
       for (int b = unit.firstBundle; b < unit.firstBundle + unit.bundles; ++b)
       {
-        cross_plane(&state, maps, outside, radiance, bundles + b, crossings + k * bundle_count + b);
+        cross_plane(&state, maps, outside, radiance, bundles + b, crossings + (unit.planesBefore + k) * bundle_count + b);
       }
       for (int side = 0; side < 4; ++side)
       {

@@ -73,9 +73,11 @@ double LongestWay(const std::vector<Bundle>& bundles)
 }
 }
 
-SweepPlan::SweepPlan(const Device& device, const Grid& ofGrid, int axis, const std::vector<Bundle>& ofBundles,
-  int channelCount, const std::array<bool, 3>& periodicAxes, bool wantsNetFlux, bool wantsEntering)
+SweepPlan::SweepPlan(const Device& device, const Grid& ofGrid, const VoxelBox& ofBox, int axis,
+  const std::vector<Bundle>& ofBundles, int channelCount, const std::array<bool, 3>& periodicAxes, bool wantsNetFlux,
+  bool wantsEntering)
   : grid(ofGrid)
+  , box(ofBox.VoxelCount() > 0 ? ofBox : VoxelBox{ { 0, 0, 0 }, ofGrid.size })
   , axes(AcrossAxis(axis))
   , bundles(InPowersOfTwo(ofBundles))
   , channels(channelCount)
@@ -116,12 +118,13 @@ void SweepPlan::LayLaps()
 void SweepPlan::LayPlane(const Device& device)
 {
   this->vector = device.FloatVectorWidth() >= 16 ? 16 : device.FloatVectorWidth() >= 8 ? 8 : 4;
-  const std::array<int, 3>& n = this->grid.size;
-  const std::array<int, 3> step = { 1, n[0], n[0] * n[1] };
+  const std::array<int, 3>& n = this->box.size;
+  const std::array<int, 3>& first = this->box.first;
+  const std::array<int, 3> step = { 1, this->grid.size[0], this->grid.size[0] * this->grid.size[1] };
   const int width = RoundUp(n[this->axes.u], this->vector);
   this->row = RowFloats(width, this->vector);
-  this->plane = { n[this->axes.u], n[this->axes.v], n[this->axes.axis], step[this->axes.u], step[this->axes.v],
-    step[this->axes.axis], width, this->axes.u == 0 ? 1 : this->vector,
+  this->plane = { n[this->axes.u], n[this->axes.v], n[this->axes.axis], first[this->axes.u], first[this->axes.v],
+    first[this->axes.axis], step[this->axes.u], step[this->axes.v], step[this->axes.axis], width, this->axes.u == 0 ? 1 : this->vector,
     static_cast<float>(std::max(1e-30 / LongestWay(this->bundles), 1e-37)),
     static_cast<float>(Thin / this->LongestSegment()), {} };
   std::copy(MeanLength, MeanLength + MeanLengthTerms, this->plane.meanLength);
@@ -135,7 +138,7 @@ double SweepPlan::LongestSegment() const
     return LongestWay(this->bundles);
   }
   double longest = 0.0;
-  for (const PlaneCrossingOnDevice& crossing : this->Crossings(0, this->PatternPlanes()))
+  for (const PlaneCrossingOnDevice& crossing : this->Crossings(0, this->CrossingPlanes()))
   {
     longest = std::max<double>(longest, *std::max_element(crossing.length, crossing.length + crossing.stages));
   }
@@ -201,11 +204,23 @@ void SweepPlan::LayUnits(int computeUnits)
     {
       if (way == 0 ? this->forward : this->backward)
       {
-        this->units.push_back({ way, first, end - first, Int(this->units.size() * this->ScratchFloats()) });
+        this->units.push_back(
+          { way, first, end - first, Int(this->units.size() * this->ScratchFloats()), this->PlanesBefore(way) });
       }
     }
     first = end;
   }
+}
+
+int SweepPlan::PlanesBefore(int way) const
+{
+  const int axis = this->axes.axis;
+  return way == 0 ? this->box.first[axis] : this->grid.size[axis] - this->box.first[axis] - this->box.size[axis];
+}
+
+int SweepPlan::CrossingPlanes() const
+{
+  return this->PatternPlanes() + std::max(this->PlanesBefore(0), this->PlanesBefore(1));
 }
 
 std::size_t SweepPlan::ScratchFloats() const
@@ -324,7 +339,7 @@ std::vector<OwnLightOnDevice> SweepPlan::OwnLight() const
   {
     for (int k = 0; k < this->PatternPlanes(); ++k)
     {
-      rows.push_back(this->OwnLightOf(unit, k));
+      rows.push_back(this->OwnLightOf(unit, unit.planesBefore + k));
     }
   }
   return rows;

@@ -1,6 +1,7 @@
 #pragma once
 
 #include "RayPattern.h"
+#include "SweepVolume.h"
 
 #include "../Device/Device.h"
 
@@ -26,11 +27,11 @@ struct PlaneCrossingOnDevice
 };
 struct UnitOnDevice
 {
-  cl_int backward, firstBundle, bundles, scratch;
+  cl_int backward, firstBundle, bundles, scratch, planesBefore;
 };
 struct PlaneOnDevice
 {
-  cl_int sizeU, sizeV, sizeP, stepU, stepV, stepP, width, block;
+  cl_int sizeU, sizeV, sizeP, firstU, firstV, firstP, stepU, stepV, stepP, width, block;
   cl_float vacuum, thin, meanLength[MeanLengthTerms];
 };
 struct OwnLightOnDevice
@@ -42,12 +43,14 @@ struct OwnLightOnDevice
 /// crosses in which launch. Worked out once on the host.
 struct SweepPlan
 {
+  /// @param box  the part of the grid that is swept; all of it, or no axis is periodic
   /// @param netFlux  the net flux is wanted too
   /// @param entering  and the power that enters voxels by face
-  SweepPlan(const Device& device, const Grid& grid, int axis, const std::vector<Bundle>& bundles, int channels,
-    const std::array<bool, 3>& periodic, bool netFlux, bool entering);
+  SweepPlan(const Device& device, const Grid& grid, const VoxelBox& box, int axis, const std::vector<Bundle>& bundles,
+    int channels, const std::array<bool, 3>& periodic, bool netFlux, bool entering);
 
   Grid grid;
+  VoxelBox box;
   PlaneAxes axes;
   std::vector<Bundle> bundles; ///< of 1, 2, 4 or 8 members: what the kernels are compiled for
   int channels;
@@ -72,9 +75,11 @@ struct SweepPlan
   int laps = 1; ///< times that a sweep's rays start anew on a short periodic axis, so that their pattern has room
   std::vector<cl_int2> roundSchedule; ///< for going round a periodic axis, one unit at a time
 
-  int Planes() const { return this->grid.size[this->axes.axis]; }
+  int Planes() const { return this->box.size[this->axes.axis]; }
   int PatternPlanes() const { return this->Planes() * this->laps; } ///< that the rays of a sweep start in
-  std::size_t ScratchFloats() const;                                ///< of one unit
+  int PlanesBefore(int way) const; ///< of the grid, that rays of that way (0 forward) have crossed before they come to the box
+  int CrossingPlanes() const;      ///< that rays cross to the box's end, either way: of the pattern, from its beginning
+  std::size_t ScratchFloats() const; ///< of one unit
 
   /// [plane][bundle], planes counted on from `firstPlane`.
   std::vector<PlaneCrossingOnDevice> Crossings(int firstPlane, int planes) const;

@@ -3,6 +3,7 @@
 #include "../Device/Buffer.h"
 #include "../Lights/Lights.h"
 #include "../Medium/Grid.h"
+#include "../Medium/Traits.h"
 
 #include <array>
 #include <functional>
@@ -21,6 +22,7 @@ constexpr float ThinForNearness = 0.02f;
 struct SweepVolume
 {
   Grid grid;
+  VoxelBox box;     ///< the part that is swept: rays start at its faces, where they would have come in; empty: all
   int channels = 1; ///< 1 or 3 that share one sigma_t
   std::size_t stride = 0;
   const Buffer<float>* sigma_t = nullptr; ///< 1/length

@@ -11,10 +11,13 @@ struct Field
 {
   const float* values = nullptr; ///< null: the quantity is zero everywhere
   int components = 1;
+  int standsForAll = -1; ///< the component of three that is seen in every channel; -1: each in its own
 
+  bool HasColour() const { return this->components == 3 && this->standsForAll < 0; }
   float At(std::size_t voxel, int channel) const
   {
-    return this->values ? this->values[voxel * this->components + (this->components == 3 ? channel : 0)] : 0.0f;
+    const int component = this->components != 3 ? 0 : this->standsForAll >= 0 ? this->standsForAll : channel;
+    return this->values ? this->values[voxel * this->components + component] : 0.0f;
   }
 };
 
@@ -30,7 +33,7 @@ struct Medium
   /// 3 where any quantity is coloured, else 1.
   int Channels() const
   {
-    return this->sigma_a.components == 3 || this->sigma_s.components == 3 || this->emission.components == 3 ? 3 : 1;
+    return this->sigma_a.HasColour() || this->sigma_s.HasColour() || this->emission.HasColour() ? 3 : 1;
   }
 };
 

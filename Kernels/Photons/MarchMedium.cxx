@@ -13,6 +13,12 @@ namespace
 {
 constexpr int RoundsAtMost = 64;   ///< of a photon through the volume, in sums of its edges
 constexpr float DarkUnits = 1e-3f; ///< power that no sum would show
+
+/// Components to upload: 0 where a coefficient is zero everywhere.
+int ComponentsOf(const Field& field, bool needed)
+{
+  return field.values && needed ? field.components : 0;
+}
 }
 
 MarchMedium::MarchMedium(
@@ -20,13 +26,14 @@ MarchMedium::MarchMedium(
   : device(onDevice)
   , grid(medium.grid)
   , settings(with)
-  , channels(medium.sigma_a.components == 3 || medium.sigma_s.components == 3 ? 3 : 1)
+  , traits(TraitsOf(medium))
+  , channels(with.leaveOut && this->traits.grey ? 1 : 3)
+  , coloured(medium.sigma_a.HasColour() || medium.sigma_s.HasColour())
   , index(IndexRangeOf(ior, medium.grid))
-  , bends(this->index.Varies())
+  , bends(!with.leaveOut || this->index.Varies())
   , hasLevels(levels && this->bends)
-  , emits(medium.emission.values != nullptr)
-  , AComponents(medium.sigma_a.values ? medium.sigma_a.components : 0)
-  , SComponents(medium.sigma_s.values ? medium.sigma_s.components : 0)
+  , AComponents(ComponentsOf(medium.sigma_a, !with.leaveOut || this->traits.absorbs))
+  , SComponents(ComponentsOf(medium.sigma_s, !with.leaveOut || this->traits.scatters))
 {
   this->sigmaA = this->Upload(medium.sigma_a.values, this->AComponents, "sigma_a");
   this->sigmaS = this->Upload(medium.sigma_s.values, this->SComponents, "sigma_s");
@@ -35,7 +42,9 @@ MarchMedium::MarchMedium(
   this->coefficients = Buffer<float>(this->device, 0, "squared index");
   if (this->bends)
   {
-    this->coefficients = SquaredIndexCoefficients(this->device, this->grid, this->Upload(ior.values, 1, "ior"));
+    const std::vector<float> even(ior.values ? 0 : this->grid.VoxelCount(), 1.0f);
+    this->coefficients = SquaredIndexCoefficients(
+      this->device, this->grid, this->Upload(ior.values ? ior.values : even.data(), 1, "ior"));
     this->FindRanges(low, high);
   }
   this->sigma =

@@ -4,7 +4,9 @@
 
 #include "../Device/Buffer.h"
 #include "../Medium/Medium.h"
+#include "../Medium/Traits.h"
 #include "../Refraction/IndexRange.h"
+#include "PhotonPacking.h"
 
 #include <string>
 
@@ -54,9 +56,14 @@ public:
   Device& device;
   Grid grid;
   MarchSettings settings;
+  MediumTraits traits;
   int channels; ///< of extinction, 1 or 3
+  bool coloured; ///< coefficients have three components, as data
   IndexRange index;
-  bool bends, hasLevels, emits;
+  bool bends, hasLevels;
+
+  /// Channels of the light that so many photons leave.
+  int ColoursOf(const PackedPhotons& packed) const { return packed.grey && !this->coloured ? 1 : 3; }
   Buffer<float> sigmaA, sigmaS;
   Buffer<float> sigma;        ///< PhotonMedium.cl, pack_extinction
   Buffer<float> coefficients; ///< SquaredIndex.cl

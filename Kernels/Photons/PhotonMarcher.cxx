@@ -3,6 +3,7 @@
 #include "../Device/Defines.h"
 #include "../Device/HostMemory.h"
 #include "../Device/LentArray.h"
+#include "../LightPropagation/OneChannel.h"
 #include "Clock.h"
 #include "MarchLaunch.h"
 #include "PhotonPaths.h"
@@ -219,12 +220,16 @@ void PhotonMarcher::Implementation::SayWhatIsLeftOut(const PackedPhotons& packed
     }
   };
   say(true, "scattered light: fluence is what comes from the lights without being scattered");
-  say(this->medium.emits, "emission: photons carry the light of lights only");
-  say(!this->medium.bends, "refraction: the index is constant");
-  say(this->medium.bends && !this->medium.hasLevels, "octree: none was given, paths go by steps of the same length");
-  say(packed.channels == 1, "colours: one channel stands for all");
-  say(packed.channels == 3 && this->medium.channels == 1, "coloured extinction: the medium is grey");
-  say(!this->medium.settings.meanDirection, "mean direction: it was not asked for");
+  const MarchMedium& through = this->medium;
+  const bool leaveOut = through.settings.leaveOut;
+  say(through.traits.emits, "emission: photons carry the light of lights only");
+  say(!through.bends, left_out::ConstantIndex);
+  say(through.bends && !through.hasLevels, "octree: none was given, paths go by steps of the same length");
+  say(packed.channels == 1, packed.grey ? left_out::Grey : left_out::OneColour);
+  say(packed.channels == 3 && through.channels == 1, left_out::GreyExtinction);
+  say(leaveOut && !through.traits.scatters, left_out::NoScattering);
+  say(leaveOut && !through.traits.absorbs, left_out::NoAbsorption);
+  say(!through.settings.meanDirection, "mean direction: it was not asked for");
 }
 
 PhotonLight PhotonMarcher::Implementation::March(const std::vector<Photon>& photons, const Monitor& monitor)
@@ -241,7 +246,8 @@ PhotonLight PhotonMarcher::Implementation::March(const std::vector<Photon>& phot
   PhotonLight result;
   result.missed = packed.missed;
   result.batches = BatchesOf(photons);
-  result.light.channels = packed.channels == 1 && packed.colour == Rgb{ 1.0, 1.0, 1.0 } ? 1 : 3;
+  const int colours = this->medium.ColoursOf(packed);
+  result.light.channels = std::max(packed.channels, colours);
   result.light.device = this->medium.device.Name();
   result.light.balance.entered = packed.entered;
 
@@ -263,6 +269,12 @@ PhotonLight PhotonMarcher::Implementation::March(const std::vector<Photon>& phot
   if (packed.channels == 1 && result.light.channels == 3)
   {
     Colour(packed.colour, result);
+  }
+  if (colours < result.light.channels)
+  {
+    KeepOneChannel(result.light);
+    KeepOneChannel(result.batchFluence);
+    result.scattered = { result.scattered[0], 0.0, 0.0 };
   }
   this->SayWhatIsLeftOut(packed, result.light);
   if (settings.batches && packed.Batches() == 1)

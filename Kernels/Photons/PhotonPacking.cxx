@@ -1,6 +1,7 @@
 #include "PhotonPacking.h"
 
 #include "../Device/Errors.h"
+#include "../Medium/Traits.h"
 
 #include <algorithm>
 #include <cmath>
@@ -47,24 +48,18 @@ void CheckPhoton(const Photon& photon, std::size_t number)
 /// The colour that all photons have, with mean 1.
 bool HaveOneColour(const std::vector<Photon>& photons, Rgb& colour)
 {
-  const auto sum = [](const Photon& photon) { return double(photon.power[0]) + photon.power[1] + photon.power[2]; };
-  const auto brightest =
-    std::max_element(photons.begin(), photons.end(), [&](const Photon& a, const Photon& b) { return sum(a) < sum(b); });
-  if (brightest == photons.end() || sum(*brightest) == 0.0)
+  CommonColour common;
+  for (std::size_t i = 0; i < photons.size() && common.IsOne(); ++i)
   {
-    return true;
+    common.Add(photons[i].power.data(), 1);
   }
+  const Rgb relative = common.Relative();
   for (int c = 0; c < 3; ++c)
   {
-    colour[c] = 3.0 * brightest->power[c] / sum(*brightest);
+    colour[c] = 3.0 * relative[c] / Sum(relative);
     colour[c] = std::abs(colour[c] - 1.0) < SameColour ? 1.0 : colour[c];
   }
-  return std::all_of(photons.begin(), photons.end(), [&](const Photon& photon) {
-    const double mean = sum(photon) / 3.0;
-    return std::abs(photon.power[0] - mean * colour[0]) + std::abs(photon.power[1] - mean * colour[1]) +
-      std::abs(photon.power[2] - mean * colour[2]) <=
-      SameColour * mean;
-  });
+  return common.IsOne();
 }
 
 /// Positions and directions in voxels, of those that meet the grid.
@@ -220,7 +215,9 @@ PackedPhotons Pack(
   const std::vector<Photon>& photons, const Grid& grid, bool coloured, double creditsAtMost, bool batches)
 {
   PackedPhotons packed;
-  packed.channels = HaveOneColour(photons, packed.colour) && !coloured ? 1 : 3;
+  const bool oneColour = HaveOneColour(photons, packed.colour);
+  packed.grey = oneColour && packed.colour == Rgb{ 1.0, 1.0, 1.0 };
+  packed.channels = oneColour && !coloured ? 1 : 3;
   packed.colour = packed.channels == 3 ? Rgb{ 1.0, 1.0, 1.0 } : packed.colour;
   const double total = Brightness(photons);
   packed.unit = total > 0.0 ? std::exp2(std::ceil(std::log2(total * creditsAtMost / 0x1p62))) : 1.0;

@@ -10,6 +10,7 @@ namespace tyndall
 struct PackedPhotons
 {
   int channels = 1;                 ///< 1 where all photons have the same colour and one is enough, else 3
+  bool grey = true;                 ///< all photons are
   Rgb colour = { 1.0, 1.0, 1.0 };   ///< that the one channel stands for; white: (1, 1, 1)
   double unit = 1.0;                ///< W of one unit of power, a power of two
   std::vector<float> values;        ///< position (voxels), unit direction, `channels` of power (units) of each photon

@@ -33,6 +33,7 @@ struct MarchSettings
   /// Also batchFluence: sums of each of up to 64 batches apart, on as many copies at least. Private sums are shared out by
   /// whole copies: batches that are as large as each other, and as many as compute units or a multiple, keep all of them busy.
   bool batches = false;
+  bool leaveOut = true; ///< what the scene does not need; false: three channels and the integrator, to see what it saves
 
   /// How the sums of many work-items stay whole. All of them give the same light, bit for bit.
   enum class Sums

@@ -143,7 +143,7 @@ PilotLight PilotGathering::Gather(const std::vector<Photon>& photons, const std:
   {
     light.grid.spacing[a] = medium.grid.Length(a) / cells[a];
   }
-  light.channels = packed.channels == 1 && packed.colour == Rgb{ 1.0, 1.0, 1.0 } ? 1 : 3;
+  light.channels = medium.ColoursOf(packed);
   const std::size_t count = light.grid.VoxelCount();
   light.fluence.resize(count * static_cast<std::size_t>(light.channels));
   light.count.resize(count);

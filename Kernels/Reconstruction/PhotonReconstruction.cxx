@@ -5,6 +5,7 @@
 
 #include "../Device/HostMemory.h"
 #include "../Medium/Medium.h"
+#include "../Medium/Traits.h"
 #include "../Photons/Clock.h"
 #include "../Refraction/PyramidLayout.h"
 
@@ -153,7 +154,7 @@ void SayWhatIsLeftOut(const NoisyLight& light, ReconstructedLight& result)
   }
   if (light.channels == 1)
   {
-    result.leftOut.push_back("colours: light is grey");
+    result.leftOut.push_back(left_out::Grey);
   }
 }
 }

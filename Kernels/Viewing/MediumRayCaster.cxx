@@ -3,6 +3,7 @@
 #include "../Device/Batches.h"
 #include "../Device/Defines.h"
 #include "../Device/Sizes.h"
+#include "../Medium/Traits.h"
 #include "../Refraction/SquaredIndex.h"
 #include "Bricks.h"
 #include "TyndallKernelSources.h"
@@ -111,16 +112,19 @@ MediumRayCaster::MediumRayCaster(Device& device, const Medium& medium, const Sol
 
   // Traits of the scene.
   this->Index = IndexRangeOf(ior, medium.grid);
-  this->Bends = this->Index.Varies();
+  this->Traits = TraitsOf(medium);
+  const MediumTraits& traits = this->Traits;
+  this->Bends = !settings.leaveOut || this->Index.Varies();
   this->KnowsFlow = medium.g != 0.0 && light.meanDirection.values && light.fluence.values && !settings.shadowRays;
-  this->Coloured = medium.sigma_a.components == 3 || medium.sigma_s.components == 3;
+  this->Coloured = !settings.leaveOut || !traits.greyExtinction;
   const std::vector<cl_float4> lights = settings.shadowRays
     ? SmallLights(illumination.lights, medium.grid, settings.rectangleSamples)
     : std::vector<cl_float4>();
   this->LightCount = static_cast<int>(lights.size() / 3);
   // Beside directions of the light it does not pay to have sources by one channel.
-  this->Grey = !this->Coloured && !this->KnowsFlow && this->LightCount == 0 && light.fluence.components == 1 &&
-    light.fluenceDirect.components == 1 && medium.emission.components == 1;
+  this->Grey = !this->Coloured && traits.grey && !this->KnowsFlow && this->LightCount == 0 &&
+    light.fluence.components == 1 && light.fluenceDirect.components == 1 &&
+    (!traits.emits || traits.emission.IsGrey());
   this->SourcesDependOnCamera = this->LightCount > 0 && medium.g != 0.0;
   this->LargestExtinction = tyndall::LargestExtinction(medium);
   this->UnderSky = !illumination.environment.Empty() || !IsZero(illumination.sky);
@@ -198,15 +202,16 @@ void MediumRayCaster::SayWhatIsLeftOut()
       this->Omitted.push_back(what);
     }
   };
-  omit(this->Coloured, "transmittance per channel: extinction is grey");
-  omit(!this->Grey, "sources per channel: the medium and its light are grey");
-  omit(this->Components[2] > 0, "emission: the medium does not shine");
+  omit(this->Coloured || this->Grey, left_out::GreyExtinction);
+  omit(!this->Grey, left_out::Grey);
+  omit(this->Components[2] > 0, left_out::NoEmission);
   omit(this->LightCount > 0, "shadow rays: not asked for, or no light");
   omit(this->EnvironmentSize[0] > 0, "environment: none, or not shown");
   omit(this->KnowsFlow || this->LightCount > 0, "phase function: g is 0, or the direction of the light is not known");
-  omit(this->Bends, "bent rays: the refractive index is constant");
+  omit(this->Bends, left_out::ConstantIndex);
+  omit(!this->SkipsBricks() || !this->HasEmptyBricks, left_out::EmptyBricks);
   omit(this->Reflects(),
-    !this->Bends ? "surface reflection: the refractive index is constant"
+    !this->Index.Varies() ? "surface reflection: the refractive index is constant"
       : this->Settings.surfaceReflection == SurfaceReflection::None
       ? "surface reflection: not asked for"
       : "surface reflection: no refractive index is as large "
@@ -220,7 +225,7 @@ bool MediumRayCaster::Adopt(const ViewSettings& settings)
   const ViewSettings& now = this->Settings;
   if (settings.singleScatteringOnly != now.singleScatteringOnly || settings.shadowRays != now.shadowRays ||
     settings.rectangleSamples != now.rectangleSamples || settings.showBackground != now.showBackground ||
-    settings.packetWidth != now.packetWidth || settings.tableFace != now.tableFace)
+    settings.packetWidth != now.packetWidth || settings.tableFace != now.tableFace || settings.leaveOut != now.leaveOut)
   {
     return false;
   }
@@ -249,7 +254,9 @@ void MediumRayCaster::Upload(const Medium& medium, const SolvedLight& light, con
   // What the mode does not look at stays away.
   const bool shadows = this->Settings.shadowRays;
   const bool single = this->Settings.singleScatteringOnly;
-  const std::array<bool, 5> used = { true, true, true, !single, shadows != single };
+  const bool all = !this->Settings.leaveOut;
+  const std::array<bool, 5> used = { all || this->Traits.absorbs, all || this->Traits.scatters,
+    all || this->Traits.emits, !single, shadows != single };
   const std::array<const char*, 5> names = { "sigma_a", "sigma_s", "emission", "fluence", "fluence_direct" };
   const std::size_t voxels = medium.grid.VoxelCount();
   for (std::size_t i = 0; i < fields.size(); ++i)
@@ -259,7 +266,8 @@ void MediumRayCaster::Upload(const Medium& medium, const SolvedLight& light, con
   }
   this->MeanDirection =
     Buffer<float>(this->TheDevice, light.meanDirection.values, this->KnowsFlow ? 3 * voxels : 0, "mean_direction");
-  this->Ior = Buffer<float>(this->TheDevice, ior.values, this->Bends ? voxels : 0, "ior");
+  const std::vector<float> even(this->Bends && !ior.values ? voxels : 0, 1.0f);
+  this->Ior = Buffer<float>(this->TheDevice, ior.values ? ior.values : even.data(), this->Bends ? voxels : 0, "ior");
 }
 
 std::string MediumRayCaster::PackingOptions() const
@@ -298,6 +306,7 @@ void MediumRayCaster::Pack(bool forShadowRays)
   this->TheDevice.Queue().enqueueNDRangeKernel(find, cl::NullRange,
     cl::NDRange(RoundUp<std::size_t>(bricks.s[0], 4), bricks.s[1], bricks.s[2]), cl::NDRange(4, 1, 1));
   std::vector<cl_char> distances = this->Bricks.Read();
+  this->HasEmptyBricks = std::find(distances.begin(), distances.end(), 1) != distances.end();
   FindDistances(distances, this->BrickCount);
   this->Bricks.Write(distances.data());
 }
@@ -362,6 +371,7 @@ void MediumRayCaster::PrepareSources(const Camera& camera, const Monitor& monito
     this->SeeLights(camera, monitor);
   }
   this->Pack(false);
+  this->SayWhatIsLeftOut(); // now empty bricks are known
   this->SourcesReady = true;
   if (this->LightCount == 0)
   {
@@ -398,7 +408,7 @@ std::string MediumRayCaster::CastingOptions() const
     *std::max_element(this->TheGrid.spacing.begin(), this->TheGrid.spacing.end());
   const int phase = this->KnowsFlow ? 1 + static_cast<int>(this->Settings.phaseFunction) : 0;
   return Define("REAL_WIDTH", this->PacketWidth()) + Define("COLOURED", this->Coloured) + Define("GREY", this->Grey) +
-    Define("SKIP_BRICKS", this->Settings.skipEmptyBricks) + Define("ENVIRONMENT", this->EnvironmentSize[0] > 0) +
+    Define("SKIP_BRICKS", this->SkipsBricks()) + Define("ENVIRONMENT", this->EnvironmentSize[0] > 0) +
     Define("THIN_STEPS", longest <= (this->Bends ? 1.5 : 2.0)) + Define("PHASE", phase) +
     Define("GLOW", this->GlowsApart());
 }

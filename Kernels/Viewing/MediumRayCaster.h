@@ -5,6 +5,7 @@
 #include "../Device/Monitor.h"
 #include "../Lights/Lights.h"
 #include "../Medium/Medium.h"
+#include "../Medium/Traits.h"
 #include "../Refraction/IndexRange.h"
 #include "Camera.h"
 
@@ -50,6 +51,8 @@ struct ViewSettings
   bool showBackground = true; ///< also in what surface and table reflect
   Rgb backgroundColor = { 0.0, 0.0, 0.0 }; ///< radiance behind the medium where there is no environment
   bool skipEmptyBricks = true;             ///< leap over what is empty; changes the time and nothing else
+  /// What the scene does not need; false: three channels, rays that could bend and no leaps, to see what it saves.
+  bool leaveOut = true;
   double minimumTransmittance = 1e-3;      ///< a ray that has less left stops; 0: never
   PhaseFunction phaseFunction = PhaseFunction::HenyeyGreenstein; ///< of light whose direction is known
   SurfaceReflection surfaceReflection = SurfaceReflection::None;
@@ -163,6 +166,7 @@ private:
   std::string PackingOptions() const;
   std::string CastingOptions() const;
   int PacketWidth() const;
+  bool SkipsBricks() const { return this->Settings.skipEmptyBricks && this->Settings.leaveOut; }
   bool GlowsApart() const { return this->KnowsFlow && this->Components[2] > 0; } ///< emission is not scattered
   double SurfaceIndex() const
   {
@@ -190,6 +194,8 @@ private:
   Grid TheGrid;
   ViewSettings Settings;
   double G = 0.0;
+  MediumTraits Traits;
+  bool HasEmptyBricks = false;
   bool Coloured = false;  ///< extinction differs between channels
   bool Grey = false;      ///< nor does the source
   bool Bends = false;     ///< the refractive index varies

@@ -30,9 +30,9 @@ STYLES = {
     "constant source, not accelerated": ((230, 159, 0), vtkPlotPoints.SQUARE),
     "as published": ((213, 94, 0), vtkPlotPoints.DIAMOND),
     "as published, sequential": ((204, 121, 167), vtkPlotPoints.DIAMOND),
-    "photons": ((0, 158, 115), vtkPlotPoints.CROSS),
-    "adaptive photons": ((86, 180, 233), vtkPlotPoints.PLUS),
-    "photons as published": ((110, 110, 110), vtkPlotPoints.CROSS),
+    "photons": ((0, 158, 115), vtkPlotPoints.CIRCLE),
+    "adaptive photons": ((86, 180, 233), vtkPlotPoints.SQUARE),
+    "photons as published": ((110, 110, 110), vtkPlotPoints.DIAMOND),
 }
 
 
@@ -54,6 +54,17 @@ def rows_of(comparison):
         array = table.GetFieldData().GetAbstractArray(name)
         facts[name] = [array.GetValue(i) for i in range(array.GetNumberOfValues())] if array else []
     return rows, facts
+
+
+def print_left_out(lines):
+    """What was not compared; settings of a method in one line."""
+    together = {}
+    for line in lines:
+        method = next((name for name in sorted(STYLES, key=len, reverse=True) if line.startswith(name + ", ")), None)
+        setting, _, why = line[len(method) + 2:].partition(": ") if method else ("", "", line)
+        together.setdefault((method, why), []).append(setting)
+    for (method, why), settings in together.items():
+        print("left out: " + (why if method is None else "%s (%s): %s" % (method, "; ".join(settings), why)))
 
 
 def shown(value):
@@ -129,8 +140,14 @@ def advice(rows):
                     quantity, 100 * target, least["method"], least["setting"], least["seconds"], 100 * least["error_l2"])
 
 
-def decades(values):
-    return math.floor(math.log10(min(values)) - 0.05), math.ceil(math.log10(max(values)) + 0.05)
+def around(values):
+    """Logarithms of the ends of an axis, and the numbers on it: powers of ten, or more of them on a short one."""
+    low, high = math.log10(min(values)), math.log10(max(values))
+    margin = max(0.06 * (high - low), 0.12)
+    low, high = low - margin, high + margin
+    steps = (1,) if high - low > 2.5 else (1, 3) if high - low > 1.2 else (1, 2, 5)
+    powers = range(math.floor(low), math.ceil(high) + 1)
+    return low, high, [step * 10.0 ** power for power in powers for step in steps if low <= power + math.log10(step) <= high]
 
 
 class Plot:
@@ -139,20 +156,20 @@ class Plot:
     def __init__(self, title, error_title):
         self.view = vtkContextView()
         self.view.GetRenderer().SetBackground(1, 1, 1)
-        self.view.GetRenderWindow().SetSize(1400, 1000)
+        self.view.GetRenderWindow().SetSize(1600, 900)
         self.view.GetRenderWindow().SetMultiSamples(8)
         self.view.GetRenderWindow().SetOffScreenRendering(True)
         self.chart = vtkChartXY()
         self.view.GetScene().AddItem(self.chart)
-        self.chart.SetTitle(title)
+        self.chart.SetTitle(title + "\n ")  # some room below it
         self.chart.GetTitleProperties().SetFontSize(26)
         self.chart.GetTitleProperties().SetBold(True)
         self.chart.SetShowLegend(True)
         legend = self.chart.GetLegend()
         legend.SetLabelSize(19)
         legend.SetInline(False)
-        legend.SetHorizontalAlignment(vtkChartLegend.CENTER)
-        legend.SetVerticalAlignment(vtkChartLegend.BOTTOM)
+        legend.SetHorizontalAlignment(vtkChartLegend.RIGHT)
+        legend.SetVerticalAlignment(vtkChartLegend.TOP)
         self.axis(vtkAxis.BOTTOM, "Run time (s)")
         self.axis(vtkAxis.LEFT, error_title)
         self.tables = []
@@ -167,15 +184,15 @@ class Plot:
 
     def limits(self, which, values):
         axis = self.chart.GetAxis(which)
-        low, high = decades(values)
+        low, high, ticks = around(values)
         axis.SetBehavior(vtkAxis.FIXED)
         axis.SetUnscaledMinimum(10.0 ** low)
         axis.SetUnscaledMaximum(10.0 ** high)
         axis.LogScaleOn()
         positions, labels = vtkDoubleArray(), vtkStringArray()
-        for power in range(low, high + 1):
-            positions.InsertNextValue(10.0 ** power)
-            labels.InsertNextValue("%g%%" % (100.0 * 10.0 ** power) if which == vtkAxis.LEFT else "%g" % 10.0 ** power)
+        for tick in ticks:
+            positions.InsertNextValue(math.log10(tick))  # of the axis, which is logarithmic
+            labels.InsertNextValue("%g%%" % (100.0 * tick) if which == vtkAxis.LEFT else "%g" % tick)
         axis.SetCustomTickPositions(positions, labels)
 
     def table(self, rows, label, error):
@@ -234,20 +251,21 @@ def plot(rows, path, title, error="error_l2", error_title="Relative error of flu
         of = [row for row in rows if row["method"] == name]
         color, marker = STYLES[name]
         direct = of[0]["quantity"] == "fluence_direct"
-        line = chart.line(front(of, error), name, error, color, 2.5)
-        line.LegendVisibilityOff()
-        chart.points(of, name + (" (unscattered light)" if direct else ""), error, color, marker, 11.0)
+        if len(front(of, error)) > 1:
+            chart.line(front(of, error), name, error, color, 2.5).LegendVisibilityOff()
+        chart.points(of, name + (" (unscattered light)" if direct else ""), error, color, marker, 13.0)
     chart.limits(vtkAxis.BOTTOM, [row["seconds"] for row in rows])
     chart.limits(vtkAxis.LEFT, [row[error] for row in rows])
     chart.save(path)
 
 
-def print_table(rows):
+def print_table(rows, error="error_l2"):
+    best = front([row for row in rows if not math.isnan(row[error])], error)
     print("%-34s %-38s %-12s %9s %9s %9s %9s %6s" % ("method", "setting", "grid", "seconds", "MiB", "error", "estimate", "front"))
     for row in rows:
         print("%-34s %-38s %-12s %9.3g %9.3g %9.2e %9.2e %6s" % (
-            row["method"], row["setting"], row["grid"], row["seconds"], row["peak_bytes"] / 2 ** 20, row["error_l2"],
-            row["estimated_error"], "*" if row["pareto"] else ""))
+            row["method"], row["setting"], row["grid"], row["seconds"], row["peak_bytes"] / 2 ** 20, row[error],
+            row["estimated_error"], "*" if (row["pareto"] if error == "error_l2" else row in best) else ""))
 
 
 def load():
@@ -264,6 +282,7 @@ def parse():
     parser.add_argument("--sky", type=float, nargs=3, default=[0, 0, 0], help="W/(length^2 sr)")
     parser.add_argument("--environment", help=".exr or .hdr")
     parser.add_argument("--reference", help=".vti with fluence, fluence_direct or both; default: a converged run")
+    parser.add_argument("--save-reference", metavar="FILE.vti", help="keep the converged run for the next time")
     parser.add_argument("--extinction", type=float, default=1.0, help="per density, 1/length, where the medium has no sigma_a")
     parser.add_argument("--albedo", type=float, nargs=3, default=[0.99] * 3, help="where the medium has no sigma_a")
     parser.add_argument("--methods", nargs="+", choices=list(STYLES), default=["light propagation maps", "constant source, not accelerated", "as published", "photons"])
@@ -288,12 +307,16 @@ SWITCHES = {
 }
 
 
-def compare(methods, **settings):
-    """Rows and facts of a comparison of these methods."""
+def compare(methods, save_reference=None, **settings):
+    """Rows and facts of a comparison of these methods.
+
+    save_reference: file, .vti, for the light that was compared with."""
     switches = {switch: int(name in methods) for name, switch in SWITCHES.items()}
     comparison = SolverComparison(**switches, **settings)
     comparison.UpdatePipeline()
-    result = rows_of(comparison)
+    result = rows_of(OutputPort(comparison, 0))
+    if save_reference and result[0]:
+        SaveData(save_reference, proxy=OutputPort(comparison, 1))
     Delete(comparison)
     return result
 
@@ -325,7 +348,7 @@ def main():
         "Environment": EnvironmentReader(FileName=arguments.environment) if arguments.environment else None,
         "Reference": XMLImageDataReader(FileName=[arguments.reference]) if arguments.reference else None,
     }
-    rows, facts = compare(arguments.methods, Input=medium_of(arguments), SkyColor=arguments.sky, Directions=arguments.directions,
+    rows, facts = compare(arguments.methods, arguments.save_reference, Input=medium_of(arguments), SkyColor=arguments.sky, Directions=arguments.directions,
                           Coarsenings=arguments.coarsenings, PhotonCounts=arguments.photons, Repeats=arguments.repeats,
                           TimeBudget=arguments.budget, **{name: proxy for name, proxy in inputs.items() if proxy})
     if not rows:
@@ -337,8 +360,7 @@ def main():
     plot(rows, path + ".png", "Error against run time: " + name)
     print_table(rows)
     print("reference: " + "; ".join(facts["reference"]))
-    for line in facts["left_out"]:
-        print("left out: " + line)
+    print_left_out(facts["left_out"])
     for line in advice(rows):
         print(line)
 

@@ -85,6 +85,10 @@ void WhatWasLeftOutBeforeIsStillSaid(test::Claims& claims)
   {
     claims.That(after->LookupValue(before->GetValue(i)) >= 0, "still said: " + before->GetValue(i));
   }
+  for (vtkIdType i = 0; i < after->GetNumberOfValues(); ++i)
+  {
+    claims.That(after->LookupValue(after->GetValue(i)) == i, "said once: " + after->GetValue(i));
+  }
 }
 
 void EverySchemeGivesLight(test::Claims& claims)

@@ -73,6 +73,13 @@ void LightIsNoErrorOfItself(test::Claims& claims)
     claims.That(Number(table, 0, "seconds") > 0.0 && Number(table, 0, "peak_bytes") > 8 * 8 * 8 * 4, "time and memory");
     claims.That(Number(table, 0, "iterations") == maps->GetOrders(), "as many orders as the solver tells");
     claims.Near(Number(table, 0, "balance"), maps->GetBalanceError(), 1e-12, "balance");
+    auto* again = vtkImageData::SafeDownCast(comparison->GetOutputDataObject(1));
+    vtkDataArray* light = again->GetCellData()->GetArray("fluence");
+    claims.That(light && light->GetNumberOfTuples() == 512 && again->GetCellData()->GetArray("fluence_direct"),
+      "the reference comes out");
+    claims.That(
+      light && light->GetComponent(77, 0) == maps->GetOutput()->GetCellData()->GetArray("fluence")->GetComponent(77, 0),
+      "as it was");
     claims.That(Text(table, 0, "setting") == "25 directions" && Text(table, 0, "grid") == "8x8x8", "what was run");
   }
 }
@@ -265,7 +272,8 @@ void ReportsAndStops(test::Claims& claims)
   comparison->Update();
   claims.That(
     errors.None() && comparison->GetOutput()->GetNumberOfRows() == 0, "an abort is no error and gives no table");
-  claims.That(stopper->Reports >= 10 && stopper->Reports <= 12, "it stops at once: " + std::to_string(stopper->Reports));
+  claims.That(
+    stopper->Reports >= 10 && stopper->Reports <= 12, "it stops at once: " + std::to_string(stopper->Reports));
   claims.That(comparison->GetOutput()->GetFieldData()->HasArray("aborted"), "and says so");
 
   stopper->StopAt = 0;

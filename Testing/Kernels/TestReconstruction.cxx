@@ -141,7 +141,7 @@ TEST_F(Reconstruction, SaysWhatIsLeftOut)
   scene.direction.clear();
   const ReconstructedLight light = Reconstruct(this->GetDevice(), scene.Seen());
   EXPECT_THAT(light.leftOut, Contains(HasSubstr("mean direction")));
-  EXPECT_THAT(light.leftOut, Contains(HasSubstr("colours")));
+  EXPECT_THAT(light.leftOut, Contains(HasSubstr("colour:")));
   EXPECT_TRUE(light.meanDirection.empty());
 }
 

@@ -1,0 +1,209 @@
+#include "TraitsScenes.h"
+
+#include "LightPropagation/FusedPropagation.h"
+#include "LightPropagation/ParallelPropagation.h"
+
+#include <algorithm>
+#include <cmath>
+#include <random>
+
+namespace bench
+{
+namespace
+{
+using namespace tyndall;
+
+constexpr double Pi = 3.14159265358979323846;
+constexpr double Thickness = 8.0; ///< of the cloud across the box, mean free paths
+
+/// A few waves: lumps some voxels wide, a good third of the box between them.
+double Density(double x, double y, double z)
+{
+  const double wave =
+    std::sin(2.0 * Pi * 2.0 * x + 0.3) + std::sin(2.0 * Pi * 3.0 * y + 1.0) + std::sin(2.0 * Pi * 2.0 * z + 2.0);
+  return std::max(0.0, 0.6 + 0.5 * wave);
+}
+}
+
+TraitScene::TraitScene(std::array<int, 3> size)
+{
+  const double longest = *std::max_element(size.begin(), size.end());
+  this->medium.grid.size = size;
+  this->medium.grid.spacing = { 1.0 / longest, 1.0 / longest, 1.0 / longest };
+  for (int k = 0; k < size[2]; ++k)
+  {
+    for (int j = 0; j < size[1]; ++j)
+    {
+      for (int i = 0; i < size[0]; ++i)
+      {
+        const double density =
+          0.05 + Density((i + 0.5) / size[0], (j + 0.5) / size[1], (k + 0.5) / size[2]);
+        for (const double colour : { 0.8, 1.0, 1.25 })
+        {
+          this->sigma_s.push_back(static_cast<float>(Thickness * 0.9 * density * colour));
+          this->sigma_a.push_back(static_cast<float>(Thickness * 0.1 * density / colour));
+          this->emission.push_back(static_cast<float>(0.1 * density * colour));
+        }
+      }
+    }
+  }
+  this->medium.sigma_a = { this->sigma_a.data(), 3 };
+  this->medium.sigma_s = { this->sigma_s.data(), 3 };
+  this->medium.emission = { this->emission.data(), 3 };
+  this->light.sky = { 0.8, 1.0, 1.3 };
+  this->settings.acceleration = PropagationAcceleration::None; // the same orders for all
+}
+
+void TraitScene::BeGrey()
+{
+  for (std::vector<float>* values : { &this->sigma_a, &this->sigma_s, &this->emission })
+  {
+    for (std::size_t i = 0; i < values->size(); i += 3)
+    {
+      (*values)[i] = (*values)[i + 2] = (*values)[i + 1];
+    }
+  }
+  this->light.sky = { 1.0, 1.0, 1.0 };
+}
+
+void TraitScene::LightInOneColour()
+{
+  this->BeGrey();
+  this->light.sky = { 0.8, 1.0, 1.3 };
+  this->medium.emission = {};
+}
+
+void TraitScene::ShareExtinction()
+{
+  for (std::size_t i = 0; i < this->sigma_s.size(); i += 3)
+  {
+    const float sigma_t = this->sigma_a[i + 1] + this->sigma_s[i + 1];
+    for (int c = 0; c < 3; ++c)
+    {
+      this->sigma_s[i + c] = sigma_t * (0.75f + 0.0625f * c);
+      this->sigma_a[i + c] = sigma_t - this->sigma_s[i + c];
+    }
+  }
+}
+
+void TraitScene::LeaveEmpty(double filled)
+{
+  const std::array<int, 3>& n = this->medium.grid.size;
+  const auto inside = [&](int a, int i) { return std::abs((i + 0.5) / n[a] - 0.5) < 0.5 * filled; };
+  std::size_t at = 0;
+  for (int k = 0; k < n[2]; ++k)
+  {
+    for (int j = 0; j < n[1]; ++j)
+    {
+      for (int i = 0; i < n[0]; ++i, at += 3)
+      {
+        if (!inside(0, i) || !inside(1, j) || !inside(2, k))
+        {
+          std::fill_n(this->sigma_a.begin() + at, 3, 0.0f);
+          std::fill_n(this->sigma_s.begin() + at, 3, 0.0f);
+          std::fill_n(this->emission.begin() + at, 3, 0.0f);
+        }
+      }
+    }
+  }
+}
+
+std::string TraitScene::GridName() const
+{
+  const std::array<int, 3>& n = this->medium.grid.size;
+  return std::to_string(n[0]) + "x" + std::to_string(n[1]) + "x" + std::to_string(n[2]);
+}
+
+namespace
+{
+constexpr const char* Everything = "everything computed";
+
+using Change = std::function<void(TraitScene&)>;
+
+TraitCase Propagation(
+  Device& device, const std::string& name, const std::array<int, 3>& size, const Change& change)
+{
+  const auto scene = std::make_shared<TraitScene>(size);
+  change(*scene);
+  return { name, "LightPropagationMaps", scene->GridName(), Everything, [&device, scene](bool leaveOut) {
+            PropagationSettings settings = scene->settings;
+            settings.leaveOut = leaveOut;
+            return SolveFused(device, scene->medium, scene->light, settings).fluence;
+          } };
+}
+
+TraitCase AsPublished(Device& device, const std::string& name, const std::array<int, 3>& size, const Change& change)
+{
+  const auto scene = std::make_shared<TraitScene>(size);
+  change(*scene);
+  scene->settings.maximumOrders = 3;
+  return { name, "LightPropagationMaps as published", scene->GridName(), Everything, [&device, scene](bool leaveOut) {
+            PropagationSettings settings = scene->settings;
+            settings.leaveOut = leaveOut;
+            return SolveParallel(device, scene->medium, scene->light, settings).fluence;
+          } };
+}
+
+/// The grey cloud in one channel beside three that share sigma_t: what colour costs where the sky has two colours.
+TraitCase GreyBesideSharedExtinction(Device& device, const std::array<int, 3>& size)
+{
+  const auto grey = std::make_shared<TraitScene>(size);
+  grey->BeGrey();
+  const auto coloured = std::make_shared<TraitScene>(size);
+  coloured->BeGrey();
+  coloured->light.faces[0] = { 1e-6, 0.0, 0.0 };
+  return { "grey", "LightPropagationMaps", grey->GridName(), "in colour, one sigma_t", [&device, grey, coloured](bool leaveOut) {
+            const TraitScene& scene = leaveOut ? *grey : *coloured;
+            return SolveFused(device, scene.medium, scene.light, scene.settings).fluence;
+          } };
+}
+
+void NoScattering(TraitScene& scene)
+{
+  std::fill(scene.sigma_s.begin(), scene.sigma_s.end(), 0.0f);
+  scene.medium.emission = {};
+}
+
+std::vector<TraitCase> PropagationCases(Device& device, int edge)
+{
+  const std::array<int, 3> cube = { edge, edge, edge };
+  const auto noEmission = [](TraitScene& scene) { scene.medium.emission = {}; };
+  return {
+    Propagation(device, "grey", cube, [](TraitScene& scene) { scene.BeGrey(); }),
+    GreyBesideSharedExtinction(device, cube),
+    Propagation(device, "one colour of light", cube, [](TraitScene& scene) { scene.LightInOneColour(); }),
+    Propagation(device, "shared extinction", cube, [](TraitScene& scene) { scene.ShareExtinction(); }),
+    Propagation(device, "no scattering", cube, NoScattering),
+    Propagation(device, "no absorption", cube,
+      [](TraitScene& scene) {
+        std::fill(scene.sigma_a.begin(), scene.sigma_a.end(), 0.0f);
+        scene.settings.maximumOrders = 12;
+      }),
+    Propagation(device, "no emission", cube, noEmission),
+    Propagation(device, "empty slabs, 1/2 filled", cube, [](TraitScene& scene) { scene.LeaveEmpty(0.8); }),
+    Propagation(device, "empty slabs, 1/8 filled", cube, [](TraitScene& scene) { scene.LeaveEmpty(0.5); }),
+    Propagation(device, "empty slabs, 1/64 filled", cube, [](TraitScene& scene) { scene.LeaveEmpty(0.25); }),
+    Propagation(device, "dark directions, one face shines", cube,
+      [](TraitScene& scene) {
+        NoScattering(scene);
+        scene.light = {};
+        scene.light.faces[4] = { 0.8, 1.0, 1.3 };
+      }),
+    Propagation(device, "one periodic voxel along x", { 1, edge, edge },
+      [](TraitScene& scene) { scene.settings.periodic = { true, false, false }; }),
+    Propagation(device, "one periodic voxel along x and y", { 1, 1, edge },
+      [](TraitScene& scene) {
+        scene.settings.periodic = { true, true, false };
+        scene.settings.maximumOrders = 8;
+      }),
+    AsPublished(device, "grey", cube, [](TraitScene& scene) { scene.BeGrey(); }),
+    AsPublished(device, "one colour of light", cube, [](TraitScene& scene) { scene.LightInOneColour(); }),
+  };
+}
+}
+
+std::vector<TraitCase> TraitCases(Device& device, int edge)
+{
+  return PropagationCases(device, edge);
+}
+}
