@@ -4,6 +4,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <cstdio>
 #include <string>
 
 namespace tyndall
@@ -52,7 +53,9 @@ void Multiply(std::vector<float>& values, double unit, const char* name)
     value = static_cast<float>(watts);
     if (std::isinf(value))
     {
-      throw InvalidInput("The " + std::string(name) + " would be " + std::to_string(watts) +
+      char text[32];
+      std::snprintf(text, sizeof(text), "%.5g", watts);
+      throw InvalidInput("The " + std::string(name) + " would be " + text +
         ", which is more than a float holds. Give lights, sky and emission less power: light is in proportion to it.");
     }
   }

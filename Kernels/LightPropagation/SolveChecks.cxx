@@ -84,8 +84,10 @@ void FusedSolver::CheckBalance() const
     }
   }
   const double tau = largest * *std::max_element(grid.spacing.begin(), grid.spacing.end());
-  throw InvalidInput("The light does not balance: " + Text("%.2g", error) +
-    " of the power is lost or made, more than floats can carry through this medium. Its thickest voxel, " +
+  const std::string what = std::isfinite(error)
+    ? "The light does not balance: " + Text("%.2g", error) + " of the power is lost or made"
+    : std::string("The light is not a number");
+  throw InvalidInput(what + ", more than floats can carry through this medium. Its thickest voxel, " +
     VoxelName(grid, thickest) + ", has optical thickness " + Text("%.3g", tau) +
     "; beyond some hundred it is opaque, so give it less.");
 }

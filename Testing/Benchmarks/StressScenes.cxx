@@ -283,6 +283,10 @@ void AddSingleVoxels(std::vector<StressCase>& cases)
     cases.push_back(Furnace("opaque voxel in light", "absorbing, sigma_t h " + Number(sigma), scene));
     std::swap(scene.absorption, scene.scattering);
     cases.push_back(Beam("opaque voxel in light", "white, sigma_t h " + Number(sigma), scene));
+    if (sigma == 1e30)
+    {
+      cases.back().refusals = { { "maps", "Its thickest voxel, (4, 4, 4), has optical thickness 1e+30" } };
+    }
     cases.push_back(Furnace("opaque voxel in light", "white, sigma_t h " + Number(sigma), scene));
   }
 }

@@ -106,7 +106,7 @@ TEST_F(Extremes, LampsGiveAllTheirPowerToAnOpaqueVoxel)
 
 TEST_F(Extremes, WhiteVoxelsInVacuumGiveLightBack)
 {
-  for (const float sigma : { 1e3f, 1e8f, 1e12f, 1e30f })
+  for (const float sigma : { 1e3f, 1e8f, 1e12f })
   {
     Scene scene({ 9, 9, 9 });
     scene.sigma_s[Middle(scene)] = sigma;
@@ -148,6 +148,11 @@ TEST_F(Extremes, WhatDoesNotBalanceIsRefused)
   scene.settings.acceleration = PropagationAcceleration::Automatic;
   const std::string why = WhyRefused(this->GetDevice(), scene);
   EXPECT_NE(why.find("Its thickest voxel, (4, 4, 4), has optical thickness 1e+12"), std::string::npos) << why;
+  scene.sigma_s[Middle(scene)] = 1e30f;
+  scene.light.lights.clear();
+  scene.ShineAlong({ 0.0, 0.0, -1.0 });
+  const std::string whyNumber = WhyRefused(this->GetDevice(), scene);
+  EXPECT_NE(whyNumber.find("The light is not a number"), std::string::npos) << whyNumber;
 }
 
 TEST_F(Extremes, FacesThatFewRaysMeetAreRefused)
