@@ -1,6 +1,7 @@
 #include "vtkLightPropagationMaps.h"
 
 #include "Device/Device.h"
+#include "LightPropagation/ErrorEstimate.h"
 #include "LightPropagation/FusedPropagation.h"
 #include "LightPropagation/ParallelPropagation.h"
 #include "LightPropagation/SequentialPropagation.h"
@@ -46,7 +47,6 @@ tyndall::PropagationSettings SettingsOf(vtkLightPropagationMaps* filter)
   settings.periodic = { filter->GetPeriodicX(), filter->GetPeriodicY(), filter->GetPeriodicZ() };
   settings.storedDirections = filter->GetStoredDirections();
   settings.netFlux = filter->GetNetFlux();
-  settings.errorEstimate = filter->GetEstimateError();
   settings.leaveOut = filter->GetLeaveOut();
   return settings;
 }
@@ -73,13 +73,16 @@ tyndall::LightField Solve(
   const tyndall::PropagationSettings settings = SettingsOf(filter);
   const tyndall::Monitor monitor = tyndall::MonitorOf(filter);
   const bool published = filter->GetScheme() == vtkLightPropagationMaps::PUBLISHED;
-  if (published && filter->GetAlgorithm() == vtkLightPropagationMaps::SEQUENTIAL)
-  {
-    return tyndall::SolveSequential(medium, illumination, settings, monitor);
-  }
-  const std::shared_ptr<tyndall::Device> device = tyndall::Device::Find(filter->GetDevice());
-  return published ? tyndall::SolveParallel(*device, medium, illumination, settings, monitor)
-                   : tyndall::SolveFused(*device, medium, illumination, settings, monitor);
+  const bool sequential = published && filter->GetAlgorithm() == vtkLightPropagationMaps::SEQUENTIAL;
+  const std::shared_ptr<tyndall::Device> device = sequential ? nullptr : tyndall::Device::Find(filter->GetDevice());
+  const tyndall::PropagationSolver solve = [&](const tyndall::Medium& inside, const tyndall::PropagationSettings& how,
+                                             const tyndall::Monitor& watch) {
+    return sequential ? tyndall::SolveSequential(inside, illumination, how, watch)
+      : published     ? tyndall::SolveParallel(*device, inside, illumination, how, watch)
+                      : tyndall::SolveFused(*device, inside, illumination, how, watch);
+  };
+  return filter->GetEstimateError() ? tyndall::SolveWithErrorEstimate(medium, settings, monitor, solve)
+                                    : solve(medium, settings, monitor);
 }
 }
 

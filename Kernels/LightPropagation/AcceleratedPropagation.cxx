@@ -9,9 +9,10 @@ namespace
 {
 constexpr double Pi = 3.14159265358979323846;
 constexpr int MostSweeps = 200;
-constexpr int ManyPlanes = 8192;        ///< that a ray goes round a periodic axis before it is given up
-constexpr double UsualTolerance = 1e-4; ///< the method must not depend on the tolerance
-constexpr double ManyOrders = 40.0;     ///< plain iteration that is dearer than an acceleration
+constexpr int ManyPlanes = 8192;         ///< that a ray goes round a periodic axis before it is given up
+constexpr double UsualTolerance = 1e-4;  ///< the method must not depend on the tolerance
+constexpr double ThickForNearness = 0.1; ///< mean free paths a voxel
+constexpr double ManyOrders = 40.0;      ///< plain iteration that is dearer than an acceleration
 
 }
 
@@ -74,6 +75,7 @@ void FusedSolver::ChooseAcceleration()
 void FusedSolver::RunAccelerated(const Monitor& monitor)
 {
   this->Iterating = false;
+  this->ChooseNearness();
   this->PropagateLights(monitor);
   this->Iterating = true;
   this->Stranded = this->OnTheWay;
@@ -95,6 +97,25 @@ void FusedSolver::RunAccelerated(const Monitor& monitor)
     ++sweep;
   } while (!this->DoneAccelerated(sweep));
   this->UnloadAccelerated();
+}
+
+/// Where lamps' light is scattered first within a voxel matters where one is thick.
+void FusedSolver::ChooseNearness()
+{
+  const Grid& grid = this->TheMedium.grid;
+  bool thick = false;
+  for (std::size_t i = 0; i < grid.VoxelCount() && !thick; ++i)
+  {
+    for (int c = 0; c < this->Channels && !thick; ++c)
+    {
+      thick = this->SigmaT(i, c) * *std::max_element(grid.spacing.begin(), grid.spacing.end()) > ThickForNearness;
+    }
+  }
+  if (this->LinearSource && thick && !this->Lights.empty())
+  {
+    this->Nearness = Buffer<float>(this->TheDevice, 6 * this->Stride * this->Channels + SweepPadding, "light of lamps");
+    this->Nearness.Fill(0.0f);
+  }
 }
 
 /// The lights' unscattered light is known: what of it is scattered is given to the medium, like what it shines itself.
@@ -178,6 +199,14 @@ void FusedSolver::MakeSystems()
   const CrossingPattern pattern =
     FindCrossingPattern(grid, this->Directions, this->Settings.mapResolution, this->Settings.periodic);
   const SweepBoundary boundary = this->BoundaryOfOrder(0);
+  Buffer<float> lampPath;
+  if (this->Nearness.Size() > 0)
+  {
+    std::vector<float> paths = this->Lamps;
+    std::transform(paths.begin(), paths.end(), paths.begin(),
+      [&](float fluence) { return static_cast<float>(fluence * grid.VoxelVolume()); });
+    lampPath = Buffer<float>(this->TheDevice, paths, "light of lamps");
+  }
   for (int c = 0; c < this->Channels; ++c)
   {
     std::array<double, 6> incoming = {};
@@ -196,10 +225,12 @@ void FusedSolver::MakeSystems()
     this->PowerIn[c] = this->Result.balance.entered[c] - this->LampBalance.entered[c];
     const std::size_t first = c * this->Stride;
     const LowOrder::Arrays arrays = { this->Stride, this->SharedExtinction ? 0 : first, first, &this->Extinction,
-      &this->Absorption, &this->SigmaSOnDevice(), &this->Given, &this->Source, &this->Path, &this->Entering };
+      &this->Absorption, &this->SigmaSOnDevice(), &this->Given, &this->Source, &this->Path, &this->Entering,
+      this->Nearness.Size() > 0 ? &lampPath : nullptr, this->Nearness.Size() > 0 ? &this->Nearness : nullptr };
     this->Systems.push_back(std::make_unique<LowOrder>(
       this->TheDevice, grid, this->Settings.periodic, this->Directions, pattern, arrays, incoming, this->LinearSource));
   }
+  this->Nearness = {};
 }
 
 /// W of a voxel, about.
@@ -296,5 +327,33 @@ void FusedSolver::UnloadAccelerated()
     }
   }
   this->Fluence.Write(fluence.data());
+  if (this->Settings.netFlux)
+  {
+    this->LimitFlux(fluence);
+  }
+}
+
+/// The mean of what goes through a voxel's faces is more than what flows in it where light dies away within it. No light flows
+/// more than there is.
+void FusedSolver::LimitFlux(const std::vector<float>& fluence)
+{
+  std::vector<float> flux = this->Flux.Read();
+  const double volume = this->TheMedium.grid.VoxelVolume();
+  for (int c = 0; c < this->Channels; ++c)
+  {
+    for (std::size_t i = 0; i < this->TheMedium.grid.VoxelCount(); ++i)
+    {
+      float* const x = flux.data() + 3 * c * this->Stride + i;
+      float* const y = x + this->Stride;
+      float* const z = y + this->Stride;
+      const double most = fluence[c * this->Stride + i] * volume;
+      const double flows = std::hypot(*x, *y, *z);
+      const auto part = static_cast<float>(flows > most ? most / flows : 1.0);
+      *x *= part;
+      *y *= part;
+      *z *= part;
+    }
+  }
+  this->Flux.Write(flux.data());
 }
 }

@@ -24,6 +24,13 @@ constexpr int RowsPerLaunch = 256;  ///< keeps a launch well below a tenth of a 
 constexpr int RoundsAtMost = 64;    ///< of a ray on a periodic axis
 constexpr int ManyPlanes = 8192;    ///< of a beam on a periodic axis
 
+// As beam_info in BeamNearness.cl.
+struct BeamInfo
+{
+  cl_int size[3], periodic[3], up[3];
+  cl_float spacing[3], lengths[3], thin;
+};
+
 // As lamp_info, beam_row in LampBeams.cl.
 struct LampOnDevice
 {
@@ -32,6 +39,7 @@ struct LampOnDevice
   cl_float cosine;
   cl_float intensity;
   cl_float scale;
+  cl_float diagonal;
   cl_int rounds;
 };
 struct BeamRow
@@ -57,10 +65,43 @@ SweepTally DepositBeam(Device& device, const SweepVolume& volume, const Light& l
 {
   const std::array<double, 3> omega = Array(glm::normalize(Vector(light.direction)));
   const int axis = MarchingAxis(volume.grid, omega);
-  AxisSweep beam(device, volume, axis, BeamAlong(axis, volume.grid, omega, RaysPerEdge), periodic, workspace);
+  // How near to voxels' faces the light is lost is told by the faces that it enters through.
+  SweepVolume own = volume;
+  Buffer<float> path, entering;
+  if (volume.nearness)
+  {
+    const std::size_t all = volume.first + volume.channels * volume.stride;
+    path = Buffer<float>(device, all + SweepPadding, "the light of a beam");
+    entering = Buffer<float>(device, 6 * all + SweepPadding, "the light of a beam");
+    path.Fill(0.0f);
+    entering.Fill(0.0f);
+    own.path = &path;
+    own.entering = &entering;
+  }
+  AxisSweep beam(device, own, axis, BeamAlong(axis, volume.grid, omega, RaysPerEdge), periodic, workspace);
   beam.Start(
-    volume, [&](int, int) { return light.power; }, false, ManyPlanes, monitor);
-  return beam.Finish();
+    own, [&](int, int) { return light.power; }, false, ManyPlanes, monitor);
+  const SweepTally tally = beam.Finish();
+  if (volume.nearness)
+  {
+    BeamInfo info = {};
+    for (int a = 0; a < 3; ++a)
+    {
+      info.size[a] = volume.grid.size[a];
+      info.periodic[a] = periodic[a];
+      info.up[a] = omega[a] >= 0.0;
+      info.spacing[a] = static_cast<float>(volume.grid.spacing[a]);
+      info.lengths[a] = static_cast<float>(volume.grid.spacing[a] / std::max(std::abs(omega[a]), 1e-6));
+    }
+    info.thin = ThinForNearness;
+    cl::Kernel add = device.Kernel("add_beam", { kernel_source::BeamNearness });
+    With(add, info, *volume.sigma_t, cl_ulong(volume.sigma_t_first), path, entering, *volume.path, *volume.nearness,
+      cl_ulong(volume.first), cl_ulong(volume.stride));
+    device.Queue().enqueueNDRangeKernel(
+      add, cl::NullRange, cl::NDRange(volume.grid.VoxelCount(), volume.channels), cl::NullRange);
+    device.Finish();
+  }
+  return tally;
 }
 
 /// Smallest and largest tangent (voxels along `aside` per layer) at which the box is seen from `position` between two depths,
@@ -136,8 +177,9 @@ std::vector<BeamRow> Beams(const Grid& grid, const Light& light, const glm::dvec
     {
       continue;
     }
-    const int countU = std::max(fewest, static_cast<int>(std::ceil((u[1] - u[0]) * far / width)));
-    const int countV = std::max(fewest, static_cast<int>(std::ceil((v[1] - v[0]) * far / width)));
+    const auto parts = [=](double tangents) { return static_cast<int>(std::ceil(tangents * far / width - 1e-6)); };
+    const int countU = std::max({ fewest, 1, parts(u[1] - u[0]) }); // rounding must not decide on one more
+    const int countV = std::max({ fewest, 1, parts(v[1] - v[0]) });
     for (int j = 0; j < countV; ++j)
     {
       const double widthU = (u[1] - u[0]) / countU;
@@ -200,7 +242,7 @@ public:
     , Volume(volume)
     , TheLight(light)
     , Periodic(periodic)
-    , Path(device, volume.stride, "the light of a lamp")
+    , Path(device, (volume.nearness ? 4 : 1) * volume.stride, "the light of a lamp")
   {
     this->Path.Fill(0);
   }
@@ -220,9 +262,18 @@ public:
     {
       units.s[c] = static_cast<float>(this->TheLight.power[c] * correction / this->Scale());
     }
-    With(add, this->Path, *this->Volume.path, cl_ulong(this->Volume.first), cl_ulong(this->Volume.stride), units);
-    this->TheDevice.Queue().enqueueNDRangeKernel(
-      add, cl::NullRange, cl::NDRange(this->Path.Size(), this->Volume.channels), cl::NullRange);
+    const auto finish = [&](cl::Kernel& kernel, const Buffer<float>& sum) {
+      With(kernel, this->Path, sum, cl_ulong(this->Volume.first), cl_ulong(this->Volume.stride), units,
+        *this->Volume.sigma_t, cl_ulong(this->Volume.sigma_t_first), static_cast<float>(this->Diagonal()));
+      const cl::NDRange voxels(this->Volume.stride, this->Volume.channels);
+      this->TheDevice.Queue().enqueueNDRangeKernel(kernel, cl::NullRange, voxels, cl::NullRange);
+    };
+    finish(add, *this->Volume.path);
+    if (this->Volume.nearness)
+    {
+      cl::Kernel addNearness = this->Kernel("add_fixed_nearness");
+      finish(addNearness, *this->Volume.nearness);
+    }
     return this->TallyTimes(correction);
   }
 
@@ -235,15 +286,17 @@ private:
       { kernel_source::Numerics, kernel_source::FixedPoint, kernel_source::LampBeams },
       "-DATOMICS=" + std::to_string(this->HasAtomics()) +
         " -DLAMBERT=" + std::to_string(this->TheLight.type == LightType::Rectangle) +
-        " -DCONE=" + std::to_string(this->TheLight.type == LightType::Spot));
+        " -DCONE=" + std::to_string(this->TheLight.type == LightType::Spot) + " -DNEARNESS=" +
+        std::to_string(this->Volume.nearness != nullptr) + " -DTHIN=" + std::to_string(ThinForNearness) + "f");
   }
 
   /// Fixed point units per length: no voxel can gather more than all power along its diagonal.
-  double Scale() const
+  double Scale() const { return std::exp2(std::floor(std::log2(0x1p60 / (this->Diagonal() * RoundsAtMost)))); }
+
+  double Diagonal() const
   {
     const std::array<double, 3>& h = this->Volume.grid.spacing;
-    const double diagonal = std::sqrt(h[0] * h[0] + h[1] * h[1] + h[2] * h[2]);
-    return std::exp2(std::floor(std::log2(0x1p60 / (diagonal * RoundsAtMost))));
+    return std::sqrt(h[0] * h[0] + h[1] * h[1] + h[2] * h[2]);
   }
 
   LampOnDevice Describe(const glm::dvec3& position, double part) const
@@ -264,6 +317,7 @@ private:
     info.intensity = static_cast<float>(Intensity(this->TheLight) * part);
     info.cosine = static_cast<float>(std::cos(0.5 * this->TheLight.angle * glm::pi<double>() / 180.0));
     info.scale = static_cast<float>(this->Scale());
+    info.diagonal = static_cast<float>(this->Diagonal());
     info.rounds = RoundsAtMost;
     return info;
   }
@@ -290,8 +344,8 @@ private:
     for (std::size_t first = 0; first < rows.size(); first += RowsPerLaunch)
     {
       const std::size_t count = std::min<std::size_t>(RowsPerLaunch, rows.size() - first);
-      With(kernel, info, *this->Volume.sigma_t, cl_ulong(this->Volume.sigma_t_first), this->Path, rowBuffer,
-        cl_int(count), cl_int(first), sums);
+      With(kernel, info, *this->Volume.sigma_t, cl_ulong(this->Volume.sigma_t_first), this->Path,
+        cl_ulong(this->Volume.stride), rowBuffer, cl_int(count), cl_int(first), sums);
       this->TheDevice.Queue().enqueueNDRangeKernel(
         kernel, cl::NullRange, cl::NDRange(this->HasAtomics() ? count : 1), cl::NDRange(1));
       this->TheDevice.Finish();

@@ -1,8 +1,10 @@
 #include "FusedSolver.h"
 
 #include "../Device/Sizes.h"
+#include "EmissionBeams.h"
 #include "EnvironmentPeaks.h"
 #include "FirstCollision.h"
+#include "PowerUnit.h"
 #include "TyndallKernelSources.h"
 
 #include <algorithm>
@@ -109,19 +111,23 @@ void FusedSolver::Load()
     this->Scattering = Buffer<float>(device, all, "sigma_s");
     load(this->Scattering, this->Channels, [&](std::size_t i, int c) { return this->SigmaS(i, c); });
   }
-  if (this->Traits.emits)
-  {
-    load(this->Source, this->Channels, [&](std::size_t i, int c) {
-      const float emission = this->TheMedium.emission.At(i, c);
-      this->Result.balance.emitted[c] += 4.0 * Pi * emission * this->TheMedium.grid.VoxelVolume();
-      return emission;
-    });
-  }
-  else
+  this->Shining = !this->Settings.leaveOut;
+  if (!this->Traits.emits)
   {
     this->Source.Fill(0.0f);
+    return;
   }
-  this->Shining = this->Traits.emits || !this->Settings.leaveOut;
+  if (this->Settings.emissionRays)
+  {
+    this->Emission = Split(this->TheMedium, this->Settings.periodic);
+  }
+  const Field smooth = this->Emission.Smooth(this->TheMedium);
+  load(this->Source, this->Channels, [&](std::size_t i, int c) {
+    const float emission = this->TheMedium.emission.At(i, c);
+    this->Result.balance.emitted[c] += 4.0 * Pi * emission * this->TheMedium.grid.VoxelVolume();
+    this->Shining = this->Shining || smooth.At(i, c) > 0.0f;
+    return smooth.At(i, c);
+  });
 }
 
 /// Without absorption sigma_t is sigma_s; without scattering nobody asks.
@@ -294,6 +300,7 @@ SweepVolume FusedSolver::VolumeOf(int first, Part part) const
   const bool flux = this->Settings.netFlux && !this->Iterating && part != Part::Filled; // the sweep at the end knows it
   volume.flux = flux ? &this->Flux : nullptr;
   volume.entering = this->Iterating ? &this->Entering : nullptr;
+  volume.nearness = this->Nearness.Size() > 0 ? &this->Nearness : nullptr;
   volume.first = first * this->Stride;
   return volume;
 }
@@ -321,6 +328,19 @@ void FusedSolver::PropagateLights(const Monitor& monitor)
       ofChannels.power = From(light.power, first);
       this->Count(DepositLight(this->TheDevice, volume, ofChannels, this->Settings.periodic, this->Workspace, monitor),
         first, volume.channels);
+    });
+  }
+  this->PropagatePeaks(monitor);
+}
+
+/// Small bright parts of the medium.
+void FusedSolver::PropagatePeaks(const Monitor& monitor)
+{
+  for (const EmissionPeak& peak : this->Emission.peaks)
+  {
+    this->ForChannels([&](const SweepVolume& volume, int first) {
+      this->Count(DepositEmission(this->TheDevice, volume, first, peak, this->Settings.periodic, monitor), first,
+        volume.channels);
     });
   }
 }
@@ -534,6 +554,8 @@ void FusedSolver::SayWhatIsLeftOut(std::vector<std::string>& words) const
   say(!this->Traits.scatters, left_out::NoScattering);
   say(!this->Traits.absorbs, left_out::NoAbsorption);
   say(!this->Traits.emits, left_out::NoEmission);
+  say(this->Traits.emits && this->Emission.peaks.empty(),
+    "first-collision source of emission: no small bright part stands out");
   say(!this->LitFromOutside, left_out::DarkOutside);
   say(this->Lights.empty(), left_out::NoLights);
   say(this->Traits.scatters && this->Result.convergence.size() == 1, left_out::OneOrder);
@@ -572,17 +594,35 @@ double EnergyBalance::RelativeError(int channels) const
   return worst;
 }
 
-LightField SolveFused(Device& device, const Medium& medium, const Illumination& illumination,
+namespace
+{
+/// In as many channels as the scene needs.
+LightField SolveNeeded(Device& device, const Medium& medium, const Illumination& illumination,
   const PropagationSettings& settings, const Monitor& monitor)
 {
-  Check(medium);
-  Check(illumination);
-  Check(settings);
   const MediumTraits traits = TraitsOf(medium, 1.0 - medium.g);
   const SceneChannels channels(medium, traits, illumination);
   return SolveChannels(settings.leaveOut, channels, medium, illumination,
     [&](const Medium& ofChannels, const Illumination& light, int count) {
       return FusedSolver(device, ofChannels, traits, light, settings, count).Run(monitor);
     });
+}
+}
+
+LightField SolveFused(Device& device, const Medium& medium, const Illumination& illumination,
+  const PropagationSettings& settings, const Monitor& monitor)
+{
+  Check(medium);
+  Check(illumination);
+  Check(settings);
+  const double unit = PowerUnitOf(medium, illumination);
+  if (unit == 1.0)
+  {
+    return SolveNeeded(device, medium, illumination, settings, monitor);
+  }
+  const SceneInUnits scene(medium, illumination, unit);
+  LightField light = SolveNeeded(device, scene.medium, scene.illumination, settings, monitor);
+  ToWatts(light, unit);
+  return light;
 }
 }

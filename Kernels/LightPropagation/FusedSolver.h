@@ -1,6 +1,7 @@
 #pragma once
 
 #include "AxisSweep.h"
+#include "EmissionPeaks.h"
 #include "FusedPropagation.h"
 #include "LowOrder.h"
 #include "NeededRays.h"
@@ -83,6 +84,7 @@ private:
   void PropagateSweeps(const AxisSweeps& sweeps, const SweepBoundary& boundary, int mostPlanes, const Monitor& monitor);
   void PropagateLights(const Monitor& monitor);
   SweepVolume VolumeOf(int firstChannel, Part part) const;
+  void PropagatePeaks(const Monitor& monitor);
   void ForChannels(const std::function<void(const SweepVolume&, int)>& act);
   void Count(const SweepTally& tally, int firstChannel, int channels);
   SweepBoundary BoundaryOfOrder(int order) const;
@@ -95,6 +97,7 @@ private:
   // Accelerated, see AcceleratedPropagation.cxx.
   void ChooseAcceleration();
   double OrdersNeeded() const;
+  void ChooseNearness();
   void RunAccelerated(const Monitor& monitor);
   void LoadAccelerated();
   std::vector<float> WithLamps(const Buffer<float>& planar, double scale) const;
@@ -105,6 +108,7 @@ private:
   double UnitPower(int channel) const;
   bool DoneAccelerated(int sweeps) const;
   void UnloadAccelerated();
+  void LimitFlux(const std::vector<float>& fluence);
 
   double Progress(int order, double done) const;
   std::vector<std::string> LeftOut() const;
@@ -118,6 +122,7 @@ private:
   const MediumTraits& Traits;
   const Illumination& Outside;
   std::vector<Light> Lights; ///< those of the scene and the peaks of the environment
+  SplitEmission Emission;    ///< of the medium
   const PropagationSettings& Settings;
   DirectionSet Directions;
   MirrorClasses Mirrors;
@@ -141,6 +146,7 @@ private:
   bool LinearSource = false;
   bool Iterating = false;                    ///< sweeps tell what enters voxels, and no net flux
   Buffer<float> Absorption, Given, Entering; ///< as LowOrder::Arrays has them
+  Buffer<float> Nearness;                    ///< of lamps, as SweepVolume has it; empty where voxels are thin
   std::vector<std::unique_ptr<LowOrder>> Systems;
   std::vector<std::vector<double>> Found; ///< W / length^2, without lights' own
   std::vector<float> Lamps;               ///< W / length^2, lights' own, [channel][stride]

@@ -1,6 +1,7 @@
 // Beams from a point lamp through the box. Read after Numerics.cl and FixedPoint.cl; the host gives
 //   ATOMICS      1 where the device has 64-bit atomics, else one work-item does all
 //   LAMBERT, CONE  1 for a rectangle, a spot
+//   NEARNESS     1: how near to which faces of a voxel light is lost is wanted
 //
 // Space around the lamp is six pyramids, one for each way along an axis; in a pyramid beams lie on a grid of tangents, so fine
 // that a beam is at most a voxel wide where it leaves the box. It is followed layer by layer; where its square cross-section
@@ -20,6 +21,7 @@ typedef struct
   float cosine;       // of the cone's half angle
   float intensity;    // part of the power, per steradian; at normal emission where LAMBERT
   float scale;        // fixed point units per length
+  float diagonal;     // of a voxel
   int rounds;         // of a beam round a periodic axis
 } lamp_info;
 
@@ -84,6 +86,12 @@ typedef struct
   float entered, escaped[6], stranded;
 } lamp_tally;
 
+// How many of them a path in a voxel counts: what is thick is crossed by little path, of which fixed point must not lose any.
+static float units_of(float sigma, float diagonal)
+{
+  return fmax(sigma * diagonal, 1.0f);
+}
+
 // The first voxel under a cross-section from low to low + width, and the part of it that lies there.
 static void overlap(float low, float width, int* voxel, float* part)
 {
@@ -91,9 +99,33 @@ static void overlap(float low, float width, int* voxel, float* part)
   *part = clamp((*voxel + 1 - low) / width, 0.0f, 1.0f);
 }
 
+#if NEARNESS
+// Path that light has in a voxel, times how far from its middle it is lost in the mean: along the beam's axis and aside.
+//   way   of the step, from begin to end, layers from the lamp
+//   mean  middle of the part of the cross-section in the voxel, half way through the step
+static void add_nearness(const lamp_info* lamp, const beam_row* row, const int* voxel, float2 way, float2 mean, float2 tangent,
+  float tau, float lost, float path, __global long* nearness, ulong stride)
+{
+  const float part = tau < 0.05f ? 0.5f - tau / 12.0f : 1.0f / tau - (1.0f - lost) / lost;
+  const float at = mix(way.x, way.y, part);
+  const float aside = at - 0.5f * (way.x + way.y);
+  float from_middle[3];
+  const float along = lamp->position[row->axis] + (row->up ? at : -at);
+  from_middle[0] = along - floor(along) - 0.5f; // laps of a periodic axis
+  from_middle[1] = mean.x + aside * tangent.x - 0.5f;
+  from_middle[2] = mean.y + aside * tangent.y - 0.5f;
+  for (int a = 0; a < 3; ++a)
+  {
+    const float distance = clamp(from_middle[a], -0.5f, 0.5f);
+    add_units(nearness + ((row->axis + a) % 3) * stride, convert_long_sat_rte(path * distance * lamp->scale));
+  }
+}
+#endif
+
 // One step of a beam: every part of it through its voxel. Changes `left`; returns the part that will never be inside.
 static void step_beam(const lamp_info* lamp, const beam_row* row, int layer, bool first, bool last, float2 tangent,
-  float2 middle, float2 width, float length, const __global float* sigma, __global long* path, float* left, lamp_tally* tally)
+  float2 middle, float2 width, float2 way, float length, const __global float* sigma, __global long* path, ulong stride, float* left,
+  lamp_tally* tally)
 {
   const int u = (row->axis + 1) % 3;
   const int v = (row->axis + 2) % 3;
@@ -144,7 +176,17 @@ static void step_beam(const lamp_info* lamp, const beam_row* row, int layer, boo
     }
     else
     {
-      add_units(path + index, convert_long_sat_rte(power * mean_length * lamp->scale));
+      const float counted = power * (mean_length * units_of(sigma[index], lamp->diagonal));
+      add_units(path + index, convert_long_sat_rte(counted * lamp->scale));
+#if NEARNESS
+      if (sigma[index] * length > 0.5f * THIN)
+      {
+        const float2 mean = (float2)(q & 1 ? 0.5f * (middle.x + 0.5f * width.x - lowest.x - 1.0f) : 0.5f * (fmin(middle.x + 0.5f * width.x - lowest.x, 1.0f) + middle.x - 0.5f * width.x - lowest.x),
+          q & 2 ? 0.5f * (middle.y + 0.5f * width.y - lowest.y - 1.0f) : 0.5f * (fmin(middle.y + 0.5f * width.y - lowest.y, 1.0f) + middle.y - 0.5f * width.y - lowest.y));
+        add_nearness(lamp, row, voxel, way, mean, tangent, sigma[index] * length, lost, counted,
+          path + stride + index, stride);
+      }
+#endif
       after += mean_length * sigma[index] < 0.5f * length * sigma[index] ? power * through : power - power * lost;
     }
   }
@@ -153,7 +195,7 @@ static void step_beam(const lamp_info* lamp, const beam_row* row, int layer, boo
 
 // One beam from where it comes into the box's layers to where it leaves them.
 static void follow_beam(const lamp_info* lamp, const beam_row* row, float2 tangent, float power,
-  const __global float* sigma, __global long* path, lamp_tally* tally)
+  const __global float* sigma, __global long* path, ulong stride, lamp_tally* tally)
 {
   const int n = lamp->size[row->axis];
   const int u = (row->axis + 1) % 3;
@@ -184,7 +226,8 @@ static void follow_beam(const lamp_info* lamp, const beam_row* row, float2 tange
       const float t = first_step && row->begin > 0.0f ? t0 : last_step && sideways ? t1 : 0.5f * (t0 + t1);
       const float2 middle = (float2)(lamp->position[u] + tangent.x * t, lamp->position[v] + tangent.y * t);
       step_beam(lamp, row, layer, first_step, last_step, tangent, middle,
-        clamp((float2)(row->widthU, row->widthV) * t, 1e-4f, 1.0f), (t1 - t0) * per_layer, sigma, path, &left, tally);
+        clamp((float2)(row->widthU, row->widthV) * t, 1e-4f, 1.0f), (float2)(t0, t1), (t1 - t0) * per_layer, sigma, path, stride,
+        &left, tally);
     }
     now = end;
   }
@@ -228,7 +271,7 @@ static float part_in_cone(const lamp_info* lamp, const beam_row* row, float2 tan
 #endif
 
 static void follow_row(const lamp_info* lamp, const beam_row* row, const __global float* sigma, __global long* path,
-  __global float* sums)
+  ulong stride, __global float* sums)
 {
   const int u = (row->axis + 1) % 3;
   const int v = (row->axis + 2) % 3;
@@ -251,7 +294,7 @@ static void follow_row(const lamp_info* lamp, const beam_row* row, const __globa
       const float power = lamp->intensity * angle;
       tally.entered += power;
       shone += power;
-      follow_beam(lamp, row, tangent, power, sigma, path, &tally);
+      follow_beam(lamp, row, tangent, power, sigma, path, stride, &tally);
     }
   }
   sums[0] = tally.entered;
@@ -263,10 +306,10 @@ static void follow_row(const lamp_info* lamp, const beam_row* row, const __globa
   sums[8] = shone;
 }
 
-// path  part of the power times length, in fixed point, [voxel], added to
+// path  part of the power times length, in fixed point, [voxel], added to; NEARNESS: [path, times distance along x, y, z][stride]
 // sums  [row][entered, escaped through -x to +z, stranded, shone in the row's directions], parts of the power
 __kernel void follow_lamp(lamp_info lamp, const __global float* sigma, ulong sigma_first, __global long* path,
-  const __global beam_row* rows, int row_count, int first_row, __global float* sums)
+  ulong stride, const __global beam_row* rows, int row_count, int first_row, __global float* sums)
 {
 #if ATOMICS
   const int r = first_row + get_global_id(0);
@@ -275,16 +318,38 @@ __kernel void follow_lamp(lamp_info lamp, const __global float* sigma, ulong sig
 #endif
   {
     const beam_row row = rows[r];
-    follow_row(&lamp, &row, sigma + sigma_first, path, sums + r * SUMS);
+    follow_row(&lamp, &row, sigma + sigma_first, path, stride, sums + r * SUMS);
   }
 }
 
 // path   W length, [channel][stride], added to
 // units  [channel] W length of a fixed point unit
-__kernel void add_fixed(const __global long* fixed_path, __global float* path, ulong first, ulong stride, float4 units)
+// sigma  1/length, shared by the channels
+__kernel void add_fixed(const __global long* fixed_path, __global float* path, ulong first, ulong stride, float4 units,
+  const __global float* sigma, ulong sigma_first, float diagonal)
 {
   const ulong i = get_global_id(0);
   const int channel = get_global_id(1);
   const float unit = channel == 0 ? units.x : channel == 1 ? units.y : units.z;
-  path[first + channel * stride + i] += (float)fixed_path[i] * unit;
+  path[first + channel * stride + i] += (float)fixed_path[i] * unit / units_of(sigma[sigma_first + i], diagonal);
 }
+
+#if NEARNESS
+// fixed_path  as in follow_lamp
+// nearness    W length, [channel][-x, +x, -y, +y, -z, +z][stride], added to
+__kernel void add_fixed_nearness(const __global long* fixed_path, __global float* nearness, ulong first, ulong stride,
+  float4 units, const __global float* sigma, ulong sigma_first, float diagonal)
+{
+  const ulong i = get_global_id(0);
+  const int channel = get_global_id(1);
+  const float unit = channel == 0 ? units.x : channel == 1 ? units.y : units.z;
+  for (int axis = 0; axis < 3; ++axis)
+  {
+    const float towards =
+      (float)fixed_path[(1 + axis) * stride + i] * unit / units_of(sigma[sigma_first + i], diagonal);
+    __global float* of_axis = nearness + 6 * (first + channel * stride) + 2 * axis * stride + i;
+    of_axis[0] += fmax(-towards, 0.0f);
+    of_axis[stride] += fmax(towards, 0.0f);
+  }
+}
+#endif

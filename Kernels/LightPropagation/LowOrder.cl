@@ -116,18 +116,54 @@ __kernel void low_order_conductance(low_order_layout layout, const __global floa
   loss[i] = taken;
 }
 
+static bool is_border(const low_order_layout* layout, const int* at, int d)
+{
+  const int axis = d / 2;
+  return !layout->periodic[axis] && at[axis] == (d & 1 ? layout->size[axis] - 1 : 0);
+}
+
+// How much a voxel of optical length tau is a thick one beside one of length beyond.
+static float contrast(float tau, float beyond)
+{
+  const float thick = 0.8f * tau * tau;
+  return thick * thick / ((1.0f + thick * thick) * (1.0f + beyond * beyond));
+}
+
+// Of a thick voxel beside thinner ones those see only the skin: how much that counts, and for each inner face.
+static float openness(const low_order_layout* layout, const __global float* sigma_t, int i, const int* next, const int* at, float* open)
+{
+  float most = 0.0f;
+  for (int d = 0; d < 6; ++d)
+  {
+    const int axis = d / 2;
+    const float tau = sigma_t[i] * layout->spacing[axis];
+    const float beyond = sigma_t[next[d]] * layout->spacing[axis];
+    const bool inner = layout->linear && layout->size[axis] > 1 && !is_border(layout, at, d);
+    open[d] = inner ? contrast(tau, beyond) : 0.0f;
+    most = fmax(most, open[d]);
+  }
+  return most > 0.01f ? most : 0.0f;
+}
+
 // What the sweep's light is compared with: the light it found where voxels are thin, the light it was given where they are
 // thick and it only repeats that.
 __kernel void low_order_model(low_order_layout layout, const __global float* sigma_t, const __global float* path,
-  const __global exact* fluence, __global float* model)
+  const __global exact* fluence, const __global float* source, __global float* model)
 {
   VOXEL(layout.size)
   sigma_t += layout.first_t;
   path += layout.first;
+  source += layout.first;
+  const int at[3] = { x, y, z };
+  int next[6];
+  find_neighbours(layout.size, x, y, z, i, next);
+  float open[6];
+  const float skin = openness(&layout, sigma_t, i, next, at, open);
   const float longest = sigma_t[i] * fmax(layout.spacing[0], fmax(layout.spacing[1], layout.spacing[2]));
   const float found = path[i] / volume_of(&layout);
   const float thick = layout.linear ? longest * longest / (1.0f + longest * longest) : 0.0f;
-  model[i] = longest > 1e9f ? (float)fluence[i] : found + thick * ((float)fluence[i] - found);
+  const float given = skin > 0.0f ? mix((float)fluence[i], 4.0f * M_PI_F * source[i] / sigma_t[i], skin) : (float)fluence[i];
+  model[i] = longest > 1e9f ? given : found + thick * (given - found);
 }
 
 typedef struct
@@ -137,6 +173,7 @@ typedef struct
   const __global float* stairs;
   const __global float* conductance;
   const __global float* entering;
+  const __global float* passed;
   const __global float* model;
   const __global float* pattern;
   ulong stride;
@@ -173,7 +210,10 @@ static float remainder_of_face(
   const float spread =
     layout->linear ? 3.0f * passes * stairs * pattern_at(layout, arrays, axis, at, tau) : passes;
   const float absorbing = 0.5f * layout->spacing[axis] * (arrays->sigma_a[i] + arrays->sigma_a[j]);
-  const float believed = belief(layout, tau, absorbing);
+  const float h = layout->spacing[axis];
+  const float tau0 = h * arrays->sigma_t[i], tau1 = h * arrays->sigma_t[j];
+  const float skin = layout->linear ? contrast(fmax(tau0, tau1), fmin(tau0, tau1)) : 0.0f;
+  const float believed = belief(layout, tau, absorbing) * (1.0f - skin);
   return believed > 1e-12f ? believed * (net - spread * (arrays->model[i] - arrays->model[j])) : 0.0f;
 }
 
@@ -200,10 +240,14 @@ static float model_of_boundary(
   return pattern_at(layout, arrays, axis, at, tau) * spread * area;
 }
 
-static bool is_border(const low_order_layout* layout, const int* at, int d)
+// Lamps' light that is scattered near face d of voxel i and passes it at once, less what comes the other way.
+static float passing(const low_order_layout* layout, const low_order_arrays* arrays, int d, int i, const int* next, bool border)
 {
-  const int axis = d / 2;
-  return !layout->periodic[axis] && at[axis] == (d & 1 ? layout->size[axis] - 1 : 0);
+#if PASSING
+  return arrays->passed[d * arrays->stride + i] - (border ? 0.0f : arrays->passed[(d ^ 1) * arrays->stride + next[d]]);
+#else
+  return 0.0f;
+#endif
 }
 
 // What a sweep knows better about the faces of the box at voxel i, W out of it less in, in all.
@@ -260,14 +304,16 @@ static exact power_of_face(const low_order_layout* layout, const low_order_array
   {
     const float tau = arrays->sigma_t[i] * layout->spacing[axis];
     const float passes = pass_boundary(layout, way_to_boundary(layout, tau, arrays->sigma_t[i], arrays->sigma_a[i]));
-    return passes * face_area(layout, axis) * (fluence[i] - layout->incoming[d] / layout->half_range) + share[d];
+    return passes * face_area(layout, axis) * (fluence[i] - layout->incoming[d] / layout->half_range) + share[d] +
+      passing(layout, arrays, d, i, next, true);
   }
   if (layout->size[axis] == 1)
   {
     return 0;
   }
   const exact passes = arrays->conductance[axis * arrays->count + (d & 1 ? next[d] : i)];
-  return passes * (fluence[i] - fluence[next[d]]) + remainder_of_face(layout, arrays, d, i, next[d], at);
+  return passes * (fluence[i] - fluence[next[d]]) + remainder_of_face(layout, arrays, d, i, next[d], at) +
+    passing(layout, arrays, d, i, next, false);
 }
 
 #define ARRAYS_OF_CHANNEL                                                      \
@@ -278,7 +324,7 @@ static exact power_of_face(const low_order_layout* layout, const low_order_array
   path += layout.first;                                                        \
   const ulong stride = layout.stride;                                          \
   const int count = layout.size[0] * layout.size[1] * layout.size[2];          \
-  const low_order_arrays arrays = { sigma_t, sigma_a, stairs, conductance, entering, model, pattern, stride, count }; \
+  const low_order_arrays arrays = { sigma_t, sigma_a, stairs, conductance, entering, passed, model, pattern, stride, count }; \
   const int at[3] = { x, y, z };                                               \
   int next[6];                                                                 \
   find_neighbours(layout.size, x, y, z, i, next);                              \
@@ -289,7 +335,7 @@ static exact power_of_face(const low_order_layout* layout, const low_order_array
 // given    emitted and first scattered light of lights, W / (length^3 sr)
 // source   of the sweep, W / (length^3 sr)
 __kernel void low_order_balance(low_order_layout layout, const __global float* sigma_t, const __global float* sigma_a,
-  const __global float* stairs, const __global float* conductance, const __global float* entering,
+  const __global float* stairs, const __global float* conductance, const __global float* entering, const __global float* passed,
   const __global float* model, const __global float* pattern, const __global float* source,
   const __global float* path, const __global float* given, __global exact* right)
 {
@@ -302,11 +348,11 @@ __kernel void low_order_balance(low_order_layout layout, const __global float* s
     {
       float dark;
       model_of_boundary(&layout, &arrays, d, i, at, &dark);
-      power -= dark;
+      power -= dark + passing(&layout, &arrays, d, i, next, true);
     }
     else if (layout.size[d / 2] > 1)
     {
-      power -= remainder_of_face(&layout, &arrays, d, i, next[d], at);
+      power -= remainder_of_face(&layout, &arrays, d, i, next[d], at) + passing(&layout, &arrays, d, i, next, false);
     }
   }
   if (IS_OUTERMOST(layout, at))
@@ -320,7 +366,7 @@ __kernel void low_order_balance(low_order_layout layout, const __global float* s
 // A voxel's faces at the box's border, [face][row][voxel of the row]: power out of the box, W; power out that seems to
 // leave there in the sweep, W; for voxels with several such faces how much that counts, else -1.
 __kernel void low_order_outflow(low_order_layout layout, const __global float* sigma_t, const __global float* sigma_a,
-  const __global float* stairs, const __global float* conductance, const __global float* entering,
+  const __global float* stairs, const __global float* conductance, const __global float* entering, const __global float* passed,
   const __global float* model, const __global float* pattern, const __global float* source,
   const __global float* path, const __global exact* fluence, __global exact* outflow)
 {
@@ -356,7 +402,7 @@ __kernel void low_order_outflow(low_order_layout layout, const __global float* s
 
 // Net flux, W / length^2 times volume, [x, y, z][stride], added to.
 __kernel void low_order_flux(low_order_layout layout, const __global float* sigma_t, const __global float* sigma_a,
-  const __global float* stairs, const __global float* conductance, const __global float* entering,
+  const __global float* stairs, const __global float* conductance, const __global float* entering, const __global float* passed,
   const __global float* model, const __global float* pattern, const __global float* source,
   const __global float* path, const __global exact* fluence, __global float* flux)
 {
@@ -376,11 +422,92 @@ __kernel void low_order_flux(low_order_layout layout, const __global float* sigm
   }
 }
 
-// The next sweep's source: what the medium shines and what it scatters.
+// The next sweep's source: what the medium shines and what it scatters; of voxels with a skin, what makes that shine as the light
+// there and the power through it want: 4 J+ = fluence + 2 J.
 __kernel void low_order_source(low_order_layout layout, const __global float* given, const __global float* sigma_s,
-  const __global exact* fluence, __global float* source)
+  const __global exact* fluence, const __global float* sigma_t, const __global float* sigma_a,
+  const __global float* conductance, const __global float* passed, __global float* source)
 {
   VOXEL(layout.size)
-  const ulong at = (ulong)layout.first + i;
-  source[at] = given[at] + sigma_s[at] * fmax((float)fluence[i], 0.0f) * (0.25f * M_1_PI_F);
+  const ulong stride = layout.stride;
+  const int count = layout.size[0] * layout.size[1] * layout.size[2];
+  const ulong begin = layout.first;
+  sigma_t += layout.first_t;
+  sigma_a += layout.first;
+  const int at[3] = { x, y, z };
+  int next[6];
+  find_neighbours(layout.size, x, y, z, i, next);
+  float open[6];
+  const float skin = openness(&layout, sigma_t, i, next, at, open);
+  const float even = given[begin + i] + sigma_s[begin + i] * fmax((float)fluence[i], 0.0f) * (0.25f * M_1_PI_F);
+  float shining = 0.0f, sum = 0.0f;
+  for (int d = 0; d < 6; ++d)
+  {
+    if (open[d] > 0.0f && skin > 0.0f)
+    {
+      const int j = next[d];
+      const float area = face_area(&layout, d / 2);
+      const float beyond = sigma_t[j] * layout.spacing[d / 2];
+      float out = conductance[d / 2 * count + (d & 1 ? j : i)] * (float)(fluence[i] - fluence[j]) / area;
+#if PASSING
+      out += (passed[d * stride + i] - passed[(d ^ 1) * stride + j]) / area;
+#endif
+      const float weight = open[d] * area;
+      const float there = (float)fluence[j] + 1.5f * out * way_to_boundary(&layout, beyond, sigma_t[j], sigma_a[j]);
+      shining += weight * (there + 2.0f * out);
+      sum += weight;
+    }
+  }
+  const float there = sum > 0.0f ? fmax(shining / sum, 0.0f) * sigma_t[i] * (0.25f * M_1_PI_F) : 0.0f;
+  source[begin + i] = mix(even, there, skin);
 }
+
+#if PASSING
+// path      W length, of lamps
+// nearness  of it, as in SweepVolume.h, [channel][face][stride]
+// passed    [face][stride] W
+__kernel void low_order_pass(low_order_layout layout, const __global float* sigma_t, const __global float* sigma_a,
+  const __global float* sigma_s, const __global float* path, const __global float* nearness, __global float* passed)
+{
+  VOXEL(layout.size)
+  const int at[3] = { x, y, z };
+  int next[6];
+  find_neighbours(layout.size, x, y, z, i, next);
+  const ulong stride = layout.stride;
+  sigma_t += layout.first_t;
+  sigma_a += layout.first;
+  nearness += 6 * (ulong)layout.first;
+  const float length = path[layout.first + i];
+  const float k = sigma_t[i] > 0.0f ? sqrt(3.0f * fmin(sigma_a[i] / sigma_t[i], 1.0f)) : 0.0f;
+  float part[6], sum = 0.0f;
+  for (int d = 0; d < 6; ++d)
+  {
+    const int axis = d / 2;
+    const float h = layout.spacing[axis];
+    const float tau = sigma_t[i] * h;
+    const float r = length > 0.0f ? fmin(2.0f * nearness[d * stride + i] / length, 1.0f) : 0.0f;
+    part[d] = 0.0f;
+    if (tau <= 0.0f || r <= 0.0f)
+    {
+      continue;
+    }
+    if (is_border(&layout, at, d))
+    {
+      part[d] = passes_border(tau, r, k) * beside_sweeps(tau);
+    }
+    else if (layout.size[axis] > 1)
+    {
+      const int j = next[d];
+      const float way = way_to_boundary(&layout, tau, sigma_t[i], sigma_a[i]);
+      const float beyond = way_to_boundary(&layout, sigma_t[j] * h, sigma_t[j], sigma_a[j]);
+      part[d] = passes_inside(tau, r, k) * way / (way + beyond) * beside_sweeps(tau);
+    }
+    sum += part[d];
+  }
+  const float power = sigma_s[layout.first + i] * length / fmax(sum, 1.0f); // a corner cannot pass more than there is
+  for (int d = 0; d < 6; ++d)
+  {
+    passed[d * stride + i] = part[d] * power;
+  }
+}
+#endif

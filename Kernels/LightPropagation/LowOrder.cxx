@@ -5,6 +5,7 @@
 #include <algorithm>
 #include <cmath>
 #include <cstdlib>
+#include <numeric>
 
 namespace tyndall
 {
@@ -25,6 +26,23 @@ int OtherAxis(int axis, int which)
 double FaceArea(const Grid& grid, int axis)
 {
   return grid.spacing[(axis + 1) % 3] * grid.spacing[(axis + 2) % 3];
+}
+
+/// Rounding leaves dark faces a little less than nothing: that is for the others to bear, so that the sum stays.
+std::array<double, 6> NotNegative(std::array<double, 6> powers)
+{
+  const double sum = std::accumulate(powers.begin(), powers.end(), 0.0);
+  double positive = 0.0;
+  for (double& power : powers)
+  {
+    power = std::max(power, 0.0);
+    positive += power;
+  }
+  for (double& power : powers)
+  {
+    power *= positive > 0.0 ? std::max(sum, 0.0) / positive : 0.0;
+  }
+  return powers;
 }
 
 /// sum over directions of w mu, mu > 0, that march along `marching`.
@@ -158,13 +176,23 @@ LowOrder::LowOrder(Device& device, const Grid& grid, const std::array<bool, 3>& 
     this->Solver.Loss());
   this->Run(conductance);
   this->Solver.Coarsen();
+  if (arrays.nearness)
+  {
+    this->Passed = Buffer<float>(device, 6 * arrays.stride, what);
+    cl::Kernel pass = this->Kernel("low_order_pass");
+    With(pass, this->Layout, *arrays.sigma_t, *arrays.sigma_a, *arrays.sigma_s, *arrays.lampPath, *arrays.nearness,
+      this->Passed);
+    this->Run(pass);
+    device.Finish(); // what it reads goes
+  }
 }
 
 cl::Kernel LowOrder::Kernel(const char* name) const
 {
   return this->TheDevice.Kernel(name,
-    { kernel_source::LowOrderLayout, kernel_source::LowOrder, kernel_source::LowOrderSolve },
-    ExactOption(this->TheDevice));
+    { kernel_source::LowOrderLayout, kernel_source::LampPassing, kernel_source::LowOrder,
+      kernel_source::LowOrderSolve },
+    ExactOption(this->TheDevice) + " -DPASSING=" + std::to_string(this->The.nearness != nullptr));
 }
 
 void LowOrder::Run(cl::Kernel& kernel)
@@ -179,14 +207,16 @@ void LowOrder::RunOnArrays(const char* name, const More&... more)
   const Arrays& the = this->The;
   cl::Kernel kernel = this->Kernel(name);
   With(kernel, this->Layout, *the.sigma_t, *the.sigma_a, this->Stairs, this->Solver.Conductance(), *the.entering,
-    this->Model, this->Pattern, *the.source, *the.path, more...);
+    this->Passed.Size() > 0 ? this->Passed : this->Model, this->Model, this->Pattern, *the.source, *the.path, more...);
   this->Run(kernel);
 }
 
 void LowOrder::WriteSource()
 {
   cl::Kernel kernel = this->Kernel("low_order_source");
-  With(kernel, this->Layout, *this->The.given, *this->The.sigma_s, this->Given.Handle(), *this->The.source);
+  With(kernel, this->Layout, *this->The.given, *this->The.sigma_s, this->Given.Handle(), *this->The.sigma_t,
+    *this->The.sigma_a, this->Solver.Conductance(), this->Passed.Size() > 0 ? this->Passed : this->Model,
+    *this->The.source);
   this->Run(kernel);
 }
 
@@ -194,7 +224,7 @@ double LowOrder::Correct(double unit)
 {
   const Arrays& the = this->The;
   cl::Kernel model = this->Kernel("low_order_model");
-  With(model, this->Layout, *the.sigma_t, *the.path, this->Given.Handle(), this->Model);
+  With(model, this->Layout, *the.sigma_t, *the.path, this->Given.Handle(), *the.source, this->Model);
   this->Run(model);
   this->RunOnArrays("low_order_balance", *the.given, this->Right.Handle());
   this->Solver.Solve(this->Right, this->Solution, unit, Reduction);
@@ -256,16 +286,14 @@ std::array<double, 6> LowOrder::Outflow(const std::array<double, 6>& ofSweep)
       shared += several ? 1.0 : 0.0;
     }
   }
-  double all = 0.0;
-  for (double power : missing)
+  const double all = std::accumulate(missing.begin(), missing.end(), 0.0);
+  const double left = std::accumulate(ofSweep.begin(), ofSweep.end(), 0.0);
+  for (int face = 0; face < 6 && shared > 0.0 && left > 0.0; ++face)
   {
-    all += power;
+    outflow[face] +=
+      this->Layout.periodic[face / 2] ? 0.0 : believed / shared * (missing[face] - all * ofSweep[face] / left);
   }
-  for (int face = 0; face < 6 && shared > 0.0; ++face)
-  {
-    outflow[face] += this->Layout.periodic[face / 2] ? 0.0 : believed / shared * (missing[face] - all / 6.0);
-  }
-  return outflow;
+  return NotNegative(outflow);
 }
 
 void LowOrder::AddFlux(const Buffer<float>& flux)

@@ -67,6 +67,8 @@ public:
     const Buffer<float>* source;       ///< of a sweep, W / (length^3 sr)
     const Buffer<float>* path;         ///< W length, that it found
     const Buffer<float>* entering;     ///< W, [channel][-x, +x, -y, +y, -z, +z][stride], that it found
+    const Buffer<float>* lampPath;     ///< W length, of lamps' light; these two null: voxels are thin, or there are no lamps
+    const Buffer<float>* nearness;     ///< of it, as in SweepVolume.h; read only while this is made
   };
 
   /// @param incoming  W / length^2 through the box's faces, but that of lights
@@ -82,7 +84,7 @@ public:
   double Correct(double unit);
 
   /// Solve once more, for what the last correction found to more digits.
-  void Refine(double unit) { this->Solver.Solve(this->Right, this->Solution, unit, 1e-3); }
+  void Refine(double unit) { this->Solver.Solve(this->Right, this->Solution, unit, 1e-3, 1e-6); }
 
   /// W / length^2, what the last correction found.
   std::vector<double> Found() const { return this->Solution.Read(); }
@@ -107,6 +109,7 @@ private:
   std::size_t Count;
   LowOrderSolver Solver;
   Buffer<float> Stairs, Pattern, Model;
+  Buffer<float> Passed; ///< W, [face][stride]: lamps' light that passes a face at once where it is scattered
   ExactValues Right, Given, Solution, Sums, Borders;
   std::array<Buffer<float>, 2> FoundBefore, ChangeBefore; ///< of the last correction and the one before
   int Corrections = 0;

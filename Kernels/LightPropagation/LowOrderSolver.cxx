@@ -200,7 +200,8 @@ double LowOrderSolver::Dot(const ExactValues& a, const cl::Buffer& b, bool ofFlo
   return sum;
 }
 
-int LowOrderSolver::Solve(const ExactValues& right, ExactValues& values, double unit, double reduction)
+int LowOrderSolver::Solve(
+  const ExactValues& right, ExactValues& values, double unit, double reduction, double leftAtMost)
 {
   Level& finest = this->Levels.front();
   cl::Kernel apply = this->Kernel("low_order_apply");
@@ -228,9 +229,14 @@ int LowOrderSolver::Solve(const ExactValues& right, ExactValues& values, double 
   this->FirstResidual = std::max(this->FirstResidual, rz);
   const double enough = std::max(rz * reduction * reduction, this->FirstResidual * Negligible * Negligible);
   this->Direction.Fill(0.0);
+  const auto isLeft = [&] {
+    return std::isfinite(leftAtMost) &&
+      this->Dot(this->Residual, this->Residual.Handle(), false) >
+      leftAtMost * leftAtMost * unit * unit * static_cast<double>(this->Count);
+  };
   double part = 0.0;
   int iteration = 0;
-  while (iteration < MostIterations && rz > enough && std::isfinite(rz))
+  while (iteration < MostIterations && rz > 0.0 && std::isfinite(rz) && (rz > enough || isLeft()))
   {
     With(turn, this->Direction.Handle(), finest.values);
     exact(turn, 2, part);

@@ -3,6 +3,7 @@
 #include "../Device/Buffer.h"
 
 #include <array>
+#include <limits>
 #include <string>
 #include <vector>
 
@@ -54,8 +55,11 @@ public:
 
   /// Make the residual of `values`, in the norm of the preconditioner, smaller by `reduction`.
   /// @param unit  about as large as the entries of b
+  /// @param leftAtMost  and, so that thin voxels beside thick ones, of which that norm sees little, are solved as well: root mean
+  ///   square of the residual, in units
   /// @return iterations
-  int Solve(const ExactValues& right, ExactValues& values, double unit, double reduction);
+  int Solve(const ExactValues& right, ExactValues& values, double unit, double reduction,
+    double leftAtMost = std::numeric_limits<double>::infinity());
 
   cl::NDRange Range(const cl_int* size) const;
   static cl::NDRange Group() { return { 32, 8, 1 }; }

@@ -31,8 +31,8 @@ struct PropagationSettings
   PropagationSource source = PropagationSource::Automatic;
   PropagationAcceleration acceleration = PropagationAcceleration::Automatic; ///< not where maximumOrders is given
   bool netFlux = false;                                                      ///< compute net_flux too: it costs
-  bool errorEstimate = false; ///< estimate the error of fluence: about a third more time
-  bool leaveOut = true;       ///< what the scene does not need; false: all is computed, to see what leaving out saves
+  bool emissionRays = true; ///< follow what shines in small bright parts of the medium along exact rays (EmissionPeaks.h)
+  bool leaveOut = true; ///< what the scene does not need; false: all is computed, to see what leaving out saves
 };
 
 /// @throws InvalidInput where a number is out of its range (directionsPerFace is looked at by the direction sets)

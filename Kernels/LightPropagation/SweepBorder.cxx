@@ -50,7 +50,7 @@ SweepBorder::Moves SweepBorder::MovesOf(const Bundle& bundle) const
 }
 
 /// Rays come in where they start, and where others left: one a row for each move along u, one a column for each move along v. A
-/// ray that moves both ways at once comes in through u's face where it starts beside the plane, else through v's.
+/// ray that moves both ways at once through the corner of a plane comes in through u's face.
 void SweepBorder::EnterMember(std::size_t b, int way, int m, const Moves& moves)
 {
   const Bundle& bundle = this->Plan.bundles[b];
@@ -80,7 +80,7 @@ void SweepBorder::EnterMember(std::size_t b, int way, int m, const Moves& moves)
     this->powerIn[faceP][c] += p * sizeU * sizeV;
     this->powerIn[faceU][c] += (swapped ? moves.v : moves.u) * sizeV * u;
     this->powerIn[faceV][c] += (swapped ? moves.u : moves.v) * sizeU * v;
-    this->powerIn[faceV][c] -= open ? moves.both * v : 0.0; // the corner is one voxel, and takes u's light
+    this->powerIn[faceV][c] -= open ? moves.both * v : 0.0; // the corner is one voxel
   }
 }
 
@@ -108,9 +108,9 @@ void SweepBorder::Write(std::size_t b, int way, int slot, float fromU, float fro
     std::fill(map, map + this->Plan.plane.sizeU, fromP);
     std::fill(map + this->Plan.plane.sizeU, map + width, fromU);
   }
-  float* beyond = this->outside.data() + way * this->Plan.outsideEachWay + bundle.outside + inBlock;
-  // Columns beside the plane hold what comes in through u, in all rows: those beyond it become rows of it.
+  // The columns beside it go on waiting there for a move along u, as those of the map do.
   const float beside = this->Plan.periodic[this->Plan.axes.u] ? fromV : fromU;
+  float* beyond = this->outside.data() + way * this->Plan.outsideEachWay + bundle.outside + inBlock;
   std::fill(beyond - 1, beyond + width + 1, beside);
   std::fill(beyond, beyond + this->Plan.plane.sizeU, fromV);
   this->radiance[way * this->Plan.radianceEachWay + bundle.border + slot] = fromU;

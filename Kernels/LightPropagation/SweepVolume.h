@@ -13,6 +13,9 @@ namespace tyndall
 /// The widest vector of any kernel, floats.
 constexpr std::size_t SweepPadding = 16;
 
+/// Optical length of voxels that lamps' light is lost in evenly, near enough.
+constexpr float ThinForNearness = 0.02f;
+
 /// The medium and the light on the device while a solver runs. Every array is [channel][stride] with voxels x fastest; the
 /// stride is the voxel count rounded up to whole vectors, what is beyond the voxels is zero. Buffers
 /// are SweepPadding floats longer: a vector that begins in them may be read whole.
@@ -30,8 +33,12 @@ struct SweepVolume
   /// W, [channel][-x, +x, -y, +y, -z, +z][stride], added to: power that enters each voxel through each of its faces; null:
   /// not wanted
   const Buffer<float>* entering = nullptr;
+  /// W length, [channel][-x, +x, -y, +y, -z, +z][stride], added to by lamps: how near to each face of a voxel the light is lost that
+  /// `path` stands for, its distance from the middle towards the face in the mean (0 to 1/2 of the voxel) times its path; null: not
+  /// wanted. Voxels thinner than ThinForNearness mean free paths have none.
+  const Buffer<float>* nearness = nullptr;
   std::size_t first =
-    0; ///< where the first channel of source and path begins (flux: three times that, entering: six times)
+    0; ///< where the first channel of source and path begins (flux: three times that, entering and nearness: six times)
 };
 
 /// Memory that sweeps along different axes take turns in. What one leaves there means nothing to the next.

@@ -2,7 +2,9 @@
 
 #include "../Device/Errors.h"
 
+#include <algorithm>
 #include <cmath>
+#include <cstdio>
 
 namespace tyndall
 {
@@ -16,6 +18,15 @@ std::string VoxelName(const Grid& grid, std::size_t voxel)
 
 namespace
 {
+constexpr double LargestExtinction = 1e37; ///< 1/length; the inverse of more is not a normal float
+
+std::string Scientific(double value)
+{
+  char text[32];
+  std::snprintf(text, sizeof(text), "%.3g", value);
+  return text;
+}
+
 void CheckField(const Field& field, const char* name, const Grid& grid)
 {
   if (!field.values)
@@ -35,6 +46,26 @@ void CheckField(const Field& field, const char* name, const Grid& grid)
       throw InvalidInput(std::string(name) + " is " + std::to_string(field.values[i]) + " in voxel " +
         VoxelName(grid, i / static_cast<std::size_t>(field.components)) +
         " (the first such voxel); it must be finite and not negative. Clean the input, for example with a Calculator.");
+    }
+  }
+}
+
+/// Their sum is what dims light; floats end at 3.4e38.
+void CheckExtinction(const Medium& medium)
+{
+  const int channels = std::max(medium.sigma_a.components, medium.sigma_s.components);
+  for (std::size_t i = 0; i < medium.grid.VoxelCount(); ++i)
+  {
+    for (int c = 0; c < channels; ++c)
+    {
+      const double g = std::abs(medium.g);
+      const double sigma_t = medium.sigma_a.At(i, c) + (1.0 + g) * medium.sigma_s.At(i, c);
+      if (sigma_t > LargestExtinction)
+      {
+        throw InvalidInput("sigma_a and sigma_s add up to " + Scientific(sigma_t) + " in voxel " +
+          VoxelName(medium.grid, i) + " (the first such voxel), more than solvers can do (" +
+          Scientific(LargestExtinction) + "). From a thickness of some hundred on a voxel is opaque: give it less.");
+      }
     }
   }
 }
@@ -61,6 +92,7 @@ void Check(const Medium& medium)
   }
   CheckField(medium.sigma_a, "sigma_a", medium.grid);
   CheckField(medium.sigma_s, "sigma_s", medium.grid);
+  CheckExtinction(medium);
   CheckField(medium.emission, "emission", medium.grid);
 }
 }

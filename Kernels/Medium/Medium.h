@@ -41,6 +41,7 @@ struct Medium
 std::string VoxelName(const Grid& grid, std::size_t voxel);
 
 /// @throws InvalidInput where the grid is empty or has a spacing that is not a positive number, where a coefficient is
-///   negative or not finite (names the array and the first such voxel), or where g is outside (-1, 1)
+///   negative or not finite, or sigma_a and sigma_s add up to more than 1e37 (names the first such voxel), or where g is outside
+///   (-1, 1)
 void Check(const Medium& medium);
 }

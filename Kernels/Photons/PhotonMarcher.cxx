@@ -27,7 +27,9 @@ constexpr double WeightUnits = 65536.0; ///< of the largest weight
 struct LightOnDevice
 {
   GridOnDevice grid;
-  cl_float diagonal, fluence, colour[3], weight;
+  cl_float diagonal, fluence;
+  cl_int exponent;
+  cl_float colour[3], weight;
 };
 
 /// Tallies of the one channel, for the three that it stands for.
@@ -182,14 +184,15 @@ void PhotonMarcher::Implementation::Finish(
   LightOnDevice info = {};
   info.grid = this->medium.DescribeGrid();
   info.diagonal = static_cast<float>(this->medium.Diagonal());
-  info.fluence = static_cast<float>(packed.unit * this->medium.Diagonal() / grid.VoxelVolume());
+  info.fluence =
+    static_cast<float>(std::frexp(packed.unit * this->medium.Diagonal() / grid.VoxelVolume(), &info.exponent));
   std::copy(packed.colour.begin(), packed.colour.end(), info.colour);
   info.weight = weightUnit;
   cl::Kernel finish = this->medium.SumsKernel("finish_light", packed.channels,
     Define("DIRECTIONS", target.directions) + Define("COUNTS", target.counts) + Define("COUNT_SHIFT", CountShift) +
       Define("COLOURS", light.channels) + Define("COPIES", target.shares.copies) +
       Define("BATCHES", target.shares.batches));
-  With(finish, info, this->medium.sigmaA, this->medium.sigmaS, this->medium.sigma, this->Sums,
+  With(finish, info, this->medium.sigmaA, this->medium.sigmaS, this->Sums,
     cl_ulong(target.records * static_cast<std::size_t>(target.numbers)), fluence.Handle(), direction.Handle(),
     count.Handle(), weight.Handle(), batchFluence.Handle(), taken);
   this->medium.Launch(finish, cl::NDRange(rows));

@@ -12,7 +12,8 @@ typedef struct
 {
   index_grid grid;
   float diagonal;  // of a voxel
-  float fluence;   // W / length^2 of a unit of power that goes along a voxel's diagonal
+  float fluence;   // W / length^2 of a unit of power that goes along a voxel's diagonal, over 2 to the power of
+  int exponent;    // this one: it may be less than a float holds
   float colour[3]; // of what CHANNELS 1 stands for
   float weight;    // of a photon, one unit
 } light_info;
@@ -21,13 +22,21 @@ typedef struct
 static void put_fluence(const light_info* info, __global float* voxel, int c, float path)
 {
 #if CHANNELS == COLOURS
-  voxel[c] = path * info->fluence;
+  voxel[c] = ldexp(path * info->fluence, info->exponent);
 #else
   for (int out = 0; out < COLOURS; ++out)
   {
-    voxel[out] = path * info->fluence * info->colour[out];
+    voxel[out] = ldexp(path * info->fluence * info->colour[out], info->exponent);
   }
 #endif
+}
+
+// Units of power that a coefficient, which is part of the extinction, took of a voxel's sum. Of a thick voxel that is what the
+// photons lost.
+static long taken_by(const light_info* info, float sum, float coefficient, float extinction)
+{
+  const float thickness = info->diagonal * extinction;
+  return (long)(sum * (thickness > 1.0f ? coefficient / extinction : info->diagonal * coefficient));
 }
 
 // The sum over a batch's copies of a voxel's record, which is zero afterwards.
@@ -63,7 +72,7 @@ static void take_batch(__global long* record, ulong copyStride, int batch, long*
 //   batch_fluence   [batch][voxel][COLOURS] of each batch as if it was all the light
 //   taken           [row][absorbed, scattered][CHANNELS] units of power
 __kernel void finish_light(light_info info, const __global float* sigma_a, const __global float* sigma_s,
-  const __global float* sigma, __global long* sums, ulong copyStride, __global float* fluence,
+  __global long* sums, ulong copyStride, __global float* fluence,
   __global float* mean_direction, __global float* photon_count, __global float* photon_weight,
   __global float* batch_fluence, __global long* taken)
 {
@@ -80,10 +89,11 @@ __kernel void finish_light(light_info info, const __global float* sigma_a, const
   {
     const size_t voxel = (size_t)r * nx + x;
     __global long* record = sums + (first + x) * RECORD;
-    float thickness[CHANNELS];
+    float extinction[CHANNELS], thickness[CHANNELS]; // the medium's own: photons met one cut to what they can follow
     for (int c = 0; c < CHANNELS; ++c)
     {
-      thickness[c] = fmax(fabs(sigma[(MEDIUM_CHANNELS == 1 ? 0 : c) * copy + first + x]), 1.0f);
+      extinction[c] = component(sigma_a, A_CHANNELS, voxel, c) + component(sigma_s, S_CHANNELS, voxel, c);
+      thickness[c] = fmax(info.diagonal * extinction[c], 1.0f);
     }
     long sum[RECORD];
 #if BATCHES == 1
@@ -114,8 +124,8 @@ __kernel void finish_light(light_info info, const __global float* sigma_a, const
       const float path = (float)sum[c] / thickness[c]; // power times diagonals
       total += sum[c];
       put_fluence(&info, fluence + voxel * COLOURS, c, path);
-      absorbed[c] += (long)(path * (info.diagonal * component(sigma_a, A_CHANNELS, voxel, c)));
-      scattered[c] += (long)(path * (info.diagonal * component(sigma_s, S_CHANNELS, voxel, c)));
+      absorbed[c] += taken_by(&info, sum[c], component(sigma_a, A_CHANNELS, voxel, c), extinction[c]);
+      scattered[c] += taken_by(&info, sum[c], component(sigma_s, S_CHANNELS, voxel, c), extinction[c]);
     }
 #if DIRECTIONS
     // Of a few units of power, whose fractions are lost, directions are coarse, and could be longer than the power.

@@ -99,6 +99,62 @@ void ColourAndFluxComeOnRequest(test::Claims& claims)
   claims.That(maps->GetOrders() == 1 && Mean(maps->GetOutput(), "fluence", 0) < red, "one order is less than all");
 }
 
+void TellsItsErrorOnRequest(test::Claims& claims)
+{
+  vtkNew<vtkLightPropagationMaps> maps;
+  maps->SetInputDataObject(test::MakeMedium({ { 8, 6, 4 } }, 0.1, 1.0));
+  maps->SetSkyColor(1.0, 2.0, 4.0);
+  maps->Update();
+  claims.That(maps->GetEstimatedError() == 0.0 && ComponentsOf(maps->GetOutput()->GetCellData(), "fluence_error") == 0,
+    "no error is estimated unasked");
+  const double red = Mean(maps->GetOutput(), "fluence", 0);
+  for (int scheme : { vtkLightPropagationMaps::SOUND, vtkLightPropagationMaps::PUBLISHED })
+  {
+    maps->SetScheme(scheme);
+    maps->EstimateErrorOn();
+    maps->Update();
+    const double error = Mean(maps->GetOutput(), "fluence_error", 0);
+    claims.That(maps->GetEstimatedError() > 1e-4 && maps->GetEstimatedError() < 0.5, "an error of sense");
+    claims.That(error > 0.2 * maps->GetEstimatedError() * red && error < 5.0 * maps->GetEstimatedError() * red,
+      "the number and the array agree");
+    claims.Near(Mean(maps->GetOutput(), "fluence_error", 2), 4.0 * error, 1e-3 * error, "each colour has its own");
+  }
+  maps->SetScheme(vtkLightPropagationMaps::SOUND);
+  maps->Update();
+  claims.Near(Mean(maps->GetOutput(), "fluence", 0), red, 1e-12, "the light is the same with the estimate");
+  maps->EstimateErrorOff();
+  maps->Update();
+  claims.That(ComponentsOf(maps->GetOutput()->GetCellData(), "fluence_error") == 0, "the estimate goes again");
+}
+
+void SourceAndAccelerationReachTheSolver(test::Claims& claims)
+{
+  vtkNew<vtkLightPropagationMaps> maps;
+  test::Errors errors(maps);
+  maps->SetInputDataObject(test::MakeMedium({ { 1, 1, 16 } }, 0.0, 10.0));
+  maps->SetFaceRadiance(0, 0, 0, 0, 1.0, 0);
+  maps->PeriodicXOn();
+  maps->PeriodicYOn();
+  const auto transmitted = [&] {
+    maps->Update();
+    return maps->GetOutput()->GetFieldData()->GetArray("face_power_out")->GetComponent(5, 0) /
+      maps->GetOutput()->GetFieldData()->GetArray("energy_balance")->GetComponent(0, 0);
+  };
+  const double exact = 4.0 / (3.0 * (160.0 + 1.4208922)); // thick, albedo 1
+  claims.Near(transmitted(), exact, 0.01 * exact, "by default thick voxels transmit as they should");
+  const int sweeps = maps->GetOrders();
+  claims.That(sweeps <= 15, "in a few sweeps");
+  maps->SetSource(vtkLightPropagationMaps::CONSTANT);
+  claims.That(transmitted() > 1.5 * exact && maps->GetOrders() <= 15, "a constant source transmits too much, as soon");
+  maps->SetAcceleration(vtkLightPropagationMaps::NONE);
+  maps->SetTolerance(1e-2);
+  claims.That(transmitted() > 1.2 * exact && maps->GetOrders() > 100, "one order after the other takes many");
+  claims.That(errors.None(), "nothing to complain about");
+  maps->SetSource(vtkLightPropagationMaps::LINEAR);
+  maps->Update();
+  claims.That(errors.WasOneWith("Acceleration"), "the linear source needs the acceleration");
+}
+
 void LightOfAnEarlierSolveGoes(test::Claims& claims)
 {
   vtkNew<vtkLightPropagationMaps> first;
@@ -262,6 +318,8 @@ int TestLightPropagationMapsOutputs(int, char*[])
   test::Claims claims;
   WritesWhatItSays(claims);
   ColourAndFluxComeOnRequest(claims);
+  TellsItsErrorOnRequest(claims);
+  SourceAndAccelerationReachTheSolver(claims);
   LightOfAnEarlierSolveGoes(claims);
   ABoxWithoutFacesIsSaidToBeDark(claims);
   EnvironmentStandsAsTold(claims);

@@ -89,15 +89,26 @@ TEST_F(FusedPropagation, GivesBackEveryWattItTakes)
   }
 }
 
-TEST_F(FusedPropagation, LetsInWhatEachFaceShines)
+TEST_F(FusedPropagation, LetsEachFaceShineAlone)
 {
-  for (int face = 0; face < 6;
-       ++face) // rows of no whole number of vectors: what waits beside them is that face's light
+  for (int cells : { 5, 9, 16 }) // rows of no whole number of vectors, and of one
   {
-    Scene scene({ 21, 9, 13 }, 0.05f, 0.2f);
-    scene.light.faces[face] = { 2.0, 2.0, 2.0 };
-    scene.settings.maximumOrders = 2;
-    EXPECT_LT(scene.Solve(this->GetDevice()).balance.RelativeError(1), 1e-5) << "face " << face;
+    for (bool periodic : { false, true })
+    {
+      for (int face = 0; face < 6; ++face)
+      {
+        Scene scene({ cells, cells, cells }, 0.05f, 0.0f);
+        scene.settings.periodic[(face / 2 + 1) % 3] = periodic;
+        scene.light.faces[face] = { 1.0, 1.0, 1.0 };
+        const LightField light = scene.Solve(this->GetDevice());
+        EXPECT_LT(light.balance.RelativeError(1), 1e-5) << cells << " voxels, face " << face;
+        if (face / 2 != 0)
+        {
+          EXPECT_LT(LargestRelativeDifference(light.fluence, MirroredInX(light.fluence, { cells, cells, cells })), 1e-5)
+            << cells << " voxels, face " << face;
+        }
+      }
+    }
   }
 }
 

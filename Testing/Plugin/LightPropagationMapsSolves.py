@@ -36,7 +36,20 @@ columns = [convergence.GetColumnName(i) for i in range(convergence.GetNumberOfCo
 assert columns == ["iteration", "seconds", "residual", "change", "absorbed", "escaped", "left_over"], columns
 assert convergence.GetNumberOfRows() == light.Orders
 
+# How far it may be off, on the panel and as an array.
+light.EstimateError = 1
+assert abs(fluence(light) - lit).max() == 0
+assert 1e-4 < light.EstimatedError < 0.3, light.EstimatedError
+error = vtk_to_numpy(servermanager.Fetch(light).GetCellData().GetArray("fluence_error"))
+assert error.shape == lit.shape and abs((error**2).mean() / (lit**2).mean() / light.EstimatedError**2 - 1) < 1e-3
+light.EstimateError = 0
+fluence(light)
+assert light.EstimatedError == 0
+
 # Properties reach the solver.
+light.Source, light.Acceleration = "Constant (as published)", "None (as published)"
+assert abs(fluence(light) / lit - 1).max() < 0.05
+light.Source, light.Acceleration = "Automatic", "Automatic"
 light.MaximumOrders = 1
 single = fluence(light)
 assert light.Orders == 1 and (single < lit).all()

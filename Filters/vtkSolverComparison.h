@@ -1,0 +1,259 @@
+#ifndef vtkSolverComparison_h
+#define vtkSolverComparison_h
+
+#include "vtkLitMediumAlgorithm.h"
+#include "vtkTyndallModule.h" // for export macro
+
+#include <string>
+#include <vector>
+
+class vtkTable;
+
+namespace tyndall
+{
+struct Comparison;
+struct ComparisonSettings;
+}
+
+/**
+ * @class vtkSolverComparison
+ * @brief error against run time: which solver at which setting is best for a scene
+ *
+ * Runs the chosen methods at several settings each on one scene, and compares their light with a reference: that of input 3, or
+ * a converged run of the best method.
+ *
+ * Input 0, the medium: vtkImageData as vtkLightPropagationMaps and vtkPhotonMarcher read it: cell arrays `sigma_a`, `sigma_s` (1
+ * or 3 components, 1/length), optionally `emission` (W/(length^3 sr)), `ior` and `octree_level` (photons only), or those chosen
+ * by SetInputArrayToProcess 0, 1, 2 and 3, and field data `g`.
+ * Input 1, optional: lights as vtkLightRig makes them. Input 2, optional: the environment, as vtkEnvironmentReader makes it.
+ * Input 3, optional: the reference, vtkImageData of the same box, its voxels as large as the medium's or a whole number of
+ * times smaller or larger, with cell array `fluence`, or `fluence_direct` for photons, or both (W/length^2; as many components
+ * as the light has). Where it is NaN nothing is compared. Light and reference are compared on the coarser grid of both, by voxel
+ * means; light of a coarsened medium is taken to be constant in its voxels.
+ *
+ * Output 0: vtkTable `error_against_time`, a row a method and setting:
+ *
+ * | column            | unit | meaning                                                                                       |
+ * |-------------------|------|-----------------------------------------------------------------------------------------------|
+ * | `method`          |      | its name                                                                                      |
+ * | `setting`         |      | in words                                                                                      |
+ * | `quantity`        |      | what is compared: `fluence`, or `fluence_direct` for photons, which do not follow scattered light |
+ * | `grid`            |      | voxels, as 64x64x64                                                                           |
+ * | `seconds`         | s    | median of Repeats, from arrays to arrays, kernels compiled                                    |
+ * | `peak_bytes`      | byte | most memory that was taken on the device at one time; NaN of a method on the host            |
+ * | `error_l2`        | 1    | root of the sum of squared differences over voxels and channels, over that of the reference   |
+ * | `error_max`       | 1    | largest difference in a voxel, over the largest fluence of the reference                      |
+ * | `error_relative`  | 1    | root of the mean square of voxels' own relative errors, where the reference is above 0          |
+ * | `balance`         | 1    | relative error of the energy balance                                                          |
+ * | `iterations`      | 1    | scattering orders or sweeps; 1 for photons                                                    |
+ * | `estimated_error` | 1    | of `error_l2`, by the solver itself, without the reference (if EstimateError); NaN where it cannot |
+ * | `face_power_out`  | W    | 6 components: through -x, +x, -y, +y, -z, +z, channels summed                                  |
+ * | `power_in`        | W    | entered and emitted, channels summed                                                          |
+ * | `pareto`          | 1    | 1 where no other row of the same quantity is both faster and better                           |
+ *
+ * and field data `reference` (what it is), `left_out` (what was not compared, and why) and `device`.
+ *
+ * Output 1: the reference, vtkImageData with cell arrays `fluence` and `fluence_direct`, those that are known: to look at, or to
+ * connect as input 3 of the next comparison of the same scene.
+ *
+ * The settings that are tried: of propagation, all Directions on all Coarsenings of the grid (those that do not divide it are left
+ * out); MapResolutions above 1 where directions are 25 or more; limited Orders with the number of Directions nearest to 25. Of photons,
+ * all PhotonCounts by Hammersley's sampler, and with AllSamplers the largest but one by the others.
+ *
+ * In a parallel pipeline every rank asks for all; the outputs are on the first.
+ *
+ * @sa vtkLightPropagationMaps vtkPhotonMarcher vtkPhotonReconstruction
+ */
+class TYNDALL_EXPORT vtkSolverComparison : public vtkLitMediumAlgorithm
+{
+public:
+  static vtkSolverComparison* New();
+  vtkTypeMacro(vtkSolverComparison, vtkLitMediumAlgorithm);
+  void PrintSelf(ostream& os, vtkIndent indent) override;
+
+  /// Number of the input port after those of vtkLitMediumAlgorithm.
+  static constexpr int REFERENCE = 3;
+  /// Number of the output port of the reference.
+  static constexpr int REFERENCE_OUTPUT = 1;
+
+  vtkTable* GetOutput();
+
+  ///@{
+  /// The reference (vtkImageData) by connection or as data; null: a converged run.
+  void SetReferenceConnection(vtkAlgorithmOutput* reference);
+  void SetReferenceData(vtkDataObject* reference);
+  void RemoveReference();
+  ///@}
+
+  ///@{
+  /// Methods: light propagation maps as they are by default (default on); with a constant source and no acceleration (on); as
+  /// published, on the device (on), and one ray after the other (off: slow); photons with reconstruction (on), with an importance
+  /// map (off), and as published (off).
+  vtkSetMacro(LightPropagationMaps, bool);
+  vtkGetMacro(LightPropagationMaps, bool);
+  vtkBooleanMacro(LightPropagationMaps, bool);
+  vtkSetMacro(ConstantSource, bool);
+  vtkGetMacro(ConstantSource, bool);
+  vtkBooleanMacro(ConstantSource, bool);
+  vtkSetMacro(AsPublished, bool);
+  vtkGetMacro(AsPublished, bool);
+  vtkBooleanMacro(AsPublished, bool);
+  vtkSetMacro(AsPublishedSequential, bool);
+  vtkGetMacro(AsPublishedSequential, bool);
+  vtkBooleanMacro(AsPublishedSequential, bool);
+  vtkSetMacro(Photons, bool);
+  vtkGetMacro(Photons, bool);
+  vtkBooleanMacro(Photons, bool);
+  vtkSetMacro(AdaptivePhotons, bool);
+  vtkGetMacro(AdaptivePhotons, bool);
+  vtkBooleanMacro(AdaptivePhotons, bool);
+  vtkSetMacro(PublishedPhotons, bool);
+  vtkGetMacro(PublishedPhotons, bool);
+  vtkBooleanMacro(PublishedPhotons, bool);
+  ///@}
+
+  ///@{
+  /// Directions per face that are tried. Default 4, 9, 25, 64, 100; valid square numbers.
+  void AddDirections(int perFace);
+  void RemoveAllDirections();
+  ///@}
+  ///@{
+  /// Map resolutions that are tried. Default 1, 2; valid [1, 16].
+  void AddMapResolution(int raysPerEdge);
+  void RemoveAllMapResolutions();
+  ///@}
+  ///@{
+  /// Edges of the voxels that are tried, in the medium's. Default 1, 2, 4; valid from 1 on.
+  void AddCoarsening(int factor);
+  void RemoveAllCoarsenings();
+  ///@}
+  ///@{
+  /// Largest scattering orders that are tried besides all. Default 1, 3, 10; valid from 1 on.
+  void AddOrders(int orders);
+  void RemoveAllOrders();
+  ///@}
+  ///@{
+  /// Numbers of photons that are tried. Default 10000, 100000, 1000000; valid from 1 on.
+  void AddPhotonCount(int photons);
+  void RemoveAllPhotonCounts();
+  ///@}
+
+  ///@{
+  /// Whether photons are tried by all samplers. Default off.
+  vtkSetMacro(AllSamplers, bool);
+  vtkGetMacro(AllSamplers, bool);
+  vtkBooleanMacro(AllSamplers, bool);
+  ///@}
+
+  ///@{
+  /// Relative error of fluence at which propagation stops. Default 1e-4, valid above 0.
+  vtkSetMacro(Tolerance, double);
+  vtkGetMacro(Tolerance, double);
+  ///@}
+
+  ///@{
+  /// Runs whose median is the time, after one that does not count; fewer where TimeBudget does not allow them. Default 3, valid [1, 100].
+  vtkSetClampMacro(Repeats, int, 1, 100);
+  vtkGetMacro(Repeats, int);
+  ///@}
+
+  ///@{
+  /// Seconds that all may take: half of it for a converged run, the rest shared by the methods. Runs that do not fit are not
+  /// begun, or stopped; field data `left_out` names them. Default 300, valid above 0.
+  vtkSetMacro(TimeBudget, double);
+  vtkGetMacro(TimeBudget, double);
+  ///@}
+
+  ///@{
+  /// Whether solvers estimate their own errors, by a run more whose time does not count. Default on.
+  vtkSetMacro(EstimateError, bool);
+  vtkGetMacro(EstimateError, bool);
+  vtkBooleanMacro(EstimateError, bool);
+  ///@}
+
+  ///@{
+  /// Whether rays that leave along an axis return on the other side. Default off. Photons do not; they are left out then.
+  vtkSetMacro(PeriodicX, bool);
+  vtkGetMacro(PeriodicX, bool);
+  vtkBooleanMacro(PeriodicX, bool);
+  vtkSetMacro(PeriodicY, bool);
+  vtkGetMacro(PeriodicY, bool);
+  vtkBooleanMacro(PeriodicY, bool);
+  vtkSetMacro(PeriodicZ, bool);
+  vtkGetMacro(PeriodicZ, bool);
+  vtkBooleanMacro(PeriodicZ, bool);
+  ///@}
+
+  ///@{
+  /// Diffuse radiance that enters through the faces -x, +x, -y, +y, -z, +z, W/(length^2 sr). Default 0, valid [0, infinity).
+  vtkSetVector6Macro(FaceRadiance, double);
+  vtkGetVector6Macro(FaceRadiance, double);
+  ///@}
+
+  ///@{
+  /// Radiance from every direction alike, red, green, blue, added to the environment, W/(length^2 sr). Default 0, valid
+  /// [0, infinity).
+  vtkSetVector3Macro(SkyColor, double);
+  vtkGetVector3Macro(SkyColor, double);
+  ///@}
+
+  ///@{
+  /// Part of the name of the OpenCL device to use, of any case. Default empty: what the variable TYNDALL_DEVICE names, or
+  /// else PoCL's CPU device.
+  vtkSetStdStringFromCharMacro(Device);
+  vtkGetCharFromStdStringMacro(Device);
+  ///@}
+
+  ///@{
+  /// What came of the last update: what the reference is, seconds, the device's name, and what was not compared, one a line.
+  vtkGetCharFromStdStringMacro(ReferenceText);
+  vtkGetMacro(Seconds, double);
+  vtkGetCharFromStdStringMacro(DeviceName);
+  vtkGetCharFromStdStringMacro(LeftOut);
+  ///@}
+
+protected:
+  vtkSolverComparison();
+  ~vtkSolverComparison() override;
+
+  int FillOutputPortInformation(int port, vtkInformation* information) override;
+  int RequestData(vtkInformation* request, vtkInformationVector** inputs, vtkInformationVector* outputs) override;
+
+private:
+  vtkSolverComparison(const vtkSolverComparison&) = delete;
+  void operator=(const vtkSolverComparison&) = delete;
+
+  tyndall::ComparisonSettings Settings() const;
+  void Note(const tyndall::Comparison& comparison, double seconds);
+
+  bool LightPropagationMaps = true;
+  bool ConstantSource = true;
+  bool AsPublished = true;
+  bool AsPublishedSequential = false;
+  bool Photons = true;
+  bool AdaptivePhotons = false;
+  bool PublishedPhotons = false;
+  std::vector<int> Directions = { 4, 9, 25, 64, 100 };
+  std::vector<int> MapResolutions = { 1, 2 };
+  std::vector<int> Coarsenings = { 1, 2, 4 };
+  std::vector<int> Orders = { 1, 3, 10 };
+  std::vector<int> PhotonCounts = { 10000, 100000, 1000000 };
+  bool AllSamplers = false;
+  double Tolerance = 1e-4;
+  int Repeats = 3;
+  double TimeBudget = 300.0;
+  bool EstimateError = true;
+  bool PeriodicX = false;
+  bool PeriodicY = false;
+  bool PeriodicZ = false;
+  double FaceRadiance[6] = { 0.0, 0.0, 0.0, 0.0, 0.0, 0.0 };
+  double SkyColor[3] = { 0.0, 0.0, 0.0 };
+  std::string Device;
+
+  std::string ReferenceText;
+  double Seconds = 0.0;
+  std::string DeviceName;
+  std::string LeftOut;
+};
+
+#endif

@@ -1,0 +1,73 @@
+#pragma once
+
+#include "ComparedScene.h"
+
+#include "../Device/Device.h"
+#include "../Device/Monitor.h"
+#include "../LightPropagation/LightField.h"
+#include "../LightPropagation/PropagationSettings.h"
+#include "../Photons/SampleSequence.h"
+
+#include <functional>
+#include <string>
+#include <vector>
+
+namespace tyndall
+{
+enum class ComparedMethod
+{
+  LightPropagationMaps, ///< the default: sound, source and acceleration by scene
+  ConstantSource,       ///< sound, constant source, no acceleration
+  Published,            ///< light propagation maps as published, Algorithm 2
+  PublishedSequential,  ///< the same, Algorithm 1: slow
+  Photons,              ///< spread evenly, sound marching and reconstruction
+  AdaptivePhotons,      ///< the same with an importance map
+  PublishedPhotons,     ///< marching and Gauss filter as published
+};
+const char* NameOf(ComparedMethod method);
+
+/// Whether a method finds unscattered light only, which is compared with `fluence_direct`.
+bool IsDirectOnly(ComparedMethod method);
+
+/// The settings that are tried: of propagation all directions on all grids; finer maps where there are 25 directions or more;
+/// limited orders with the number of directions nearest to 25; of photons all counts by the first sampler, and the largest but one by the others.
+struct ComparedSettings
+{
+  std::vector<int> directionsPerFace = { 4, 9, 25, 64, 100 };
+  std::vector<int> mapResolutions = { 1, 2 };
+  std::vector<int> coarsenings = { 1, 2,
+    4 };                                  ///< voxels' edges, in the scene's; what does not divide the grid is not tried
+  std::vector<int> orders = { 1, 3, 10 }; ///< besides all
+  std::vector<int> photonCounts = { 10000, 100000, 1000000 };
+  std::vector<Sampler> samplers = { Sampler::Hammersley };
+  double tolerance = 1e-4; ///< of propagation
+};
+
+/// A method with a setting, ready to run.
+struct ComparedRun
+{
+  ComparedMethod method = ComparedMethod::LightPropagationMaps;
+  std::string setting; ///< in words
+  Grid grid;           ///< of its light
+  double cost = 1.0;   ///< relative to others of the method: rays times voxels, or photons
+  bool allOrders = true;
+  bool estimates = false; ///< whether it can estimate its error
+  /// @param estimate  whether to estimate the error, too
+  std::function<LightField(bool estimate, const Monitor& monitor)> solve;
+};
+
+/// The runs of a method, cheap ones first.
+/// @param device, scene  must stay
+std::vector<ComparedRun> RunsOf(
+  ComparedMethod method, Device& device, const ComparedScene& scene, const ComparedSettings& settings);
+
+/// Light of `photons` photons without a filter, for a reference.
+LightField MarchEvenly(
+  Device& device, const ComparedScene& scene, std::size_t photons, std::uint64_t seed, const Monitor& monitor);
+
+/// Propagation by the sound scheme.
+LightField Propagate(Device& device, const ComparedScene& scene, PropagationSettings settings, const Monitor& monitor);
+
+/// @throws InvalidInput where a setting is out of its range (names it)
+void Check(const ComparedSettings& settings);
+}

@@ -1,0 +1,44 @@
+#include "ComparedScene.h"
+
+#include <algorithm>
+
+namespace tyndall
+{
+bool ComparedScene::BendsLight() const
+{
+  const float* const ior = this->ior.values;
+  return ior && std::any_of(ior, ior + this->medium.grid.VoxelCount(), [=](float index) { return index != ior[0]; });
+}
+
+bool ComparedScene::Emits() const
+{
+  const Field& emission = this->medium.emission;
+  const std::size_t count = this->medium.grid.VoxelCount() * static_cast<std::size_t>(emission.components);
+  return emission.values &&
+    std::any_of(emission.values, emission.values + count, [](float value) { return value > 0.0f; });
+}
+
+std::vector<float> RescaledScene::Rescaled(const Field& field, To to, const Factors& factors, const Grid& from) const
+{
+  return !field.values  ? std::vector<float>()
+    : to == To::Coarser ? Averaged(field.values, field.components, from, factors)
+                        : Repeated(field.values, field.components, from, factors);
+}
+
+RescaledScene::RescaledScene(const ComparedScene& scene, To to, const Factors& factors)
+  : TheScene(scene)
+{
+  Medium& medium = this->TheScene.medium;
+  const Grid& from = scene.medium.grid;
+  const auto rescale = [&](Field& field, std::vector<float>& values) {
+    values = this->Rescaled(field, to, factors, from);
+    field.values = values.empty() ? nullptr : values.data();
+  };
+  rescale(medium.sigma_a, this->SigmaA);
+  rescale(medium.sigma_s, this->SigmaS);
+  rescale(medium.emission, this->Emission);
+  medium.grid = to == To::Coarser ? Coarsened(from, factors) : Refined(from, factors);
+  this->TheScene.ior = {}; // photons march through the scene's own voxels only
+  this->TheScene.levels = nullptr;
+}
+}

@@ -1,0 +1,47 @@
+#pragma once
+
+#include "GridTransfer.h"
+
+#include "../Lights/Lights.h"
+#include "../Medium/Medium.h"
+
+#include <array>
+#include <cstdint>
+#include <vector>
+
+namespace tyndall
+{
+/// What every solver is given. Seen, not owned.
+struct ComparedScene
+{
+  Medium medium;
+  Illumination illumination;
+  Field ior;                            ///< null values: 1 everywhere
+  const std::uint8_t* levels = nullptr; ///< of an octree, for photons; null: none
+  std::array<bool, 3> periodic = { false, false, false };
+
+  bool BendsLight() const; ///< whether the index is not the same everywhere
+  bool Emits() const;      ///< whether any voxel emits
+};
+
+/// The same scene on a coarser or a finer grid: coefficients are means over the voxels, or repeated.
+class RescaledScene
+{
+public:
+  enum class To
+  {
+    Coarser,
+    Finer
+  };
+  RescaledScene(const ComparedScene& scene, To to, const Factors& factors);
+  RescaledScene(const RescaledScene&) = delete;
+
+  const ComparedScene& Scene() const { return this->TheScene; }
+
+private:
+  std::vector<float> Rescaled(const Field& field, To to, const Factors& factors, const Grid& from) const;
+
+  std::vector<float> SigmaA, SigmaS, Emission;
+  ComparedScene TheScene;
+};
+}

@@ -1,0 +1,112 @@
+#include "GridTransfer.h"
+
+#include <algorithm>
+#include <cmath>
+
+namespace tyndall
+{
+namespace
+{
+/// Calls visit(fine voxel, coarse voxel) for all fine voxels in their order.
+template <class Visit>
+void ForAllPairs(const Grid& fine, const Factors& factors, const Visit& visit)
+{
+  const Grid coarse = Coarsened(fine, factors);
+  const auto size = [](const Grid& grid, int axis) { return static_cast<std::size_t>(grid.size[axis]); };
+  std::size_t voxel = 0;
+  for (int k = 0; k < fine.size[2]; ++k)
+  {
+    for (int j = 0; j < fine.size[1]; ++j)
+    {
+      const std::size_t row =
+        (static_cast<std::size_t>(k / factors[2]) * size(coarse, 1) + static_cast<std::size_t>(j / factors[1])) *
+        size(coarse, 0);
+      for (int i = 0; i < fine.size[0]; ++i, ++voxel)
+      {
+        visit(voxel, row + static_cast<std::size_t>(i / factors[0]));
+      }
+    }
+  }
+}
+}
+
+std::optional<Factors> CoarseningBy(int factor, const Grid& grid)
+{
+  Factors factors;
+  for (int axis = 0; axis < 3; ++axis)
+  {
+    factors[axis] = grid.size[axis] == 1 ? 1 : factor;
+    if (grid.size[axis] % factors[axis] != 0)
+    {
+      return std::nullopt;
+    }
+  }
+  return factors;
+}
+
+Grid Coarsened(const Grid& fine, const Factors& factors)
+{
+  Grid coarse = fine;
+  for (int axis = 0; axis < 3; ++axis)
+  {
+    coarse.size[axis] = fine.size[axis] / factors[axis];
+    coarse.spacing[axis] = fine.spacing[axis] * factors[axis];
+  }
+  return coarse;
+}
+
+Grid Refined(const Grid& coarse, const Factors& factors)
+{
+  Grid fine = coarse;
+  for (int axis = 0; axis < 3; ++axis)
+  {
+    fine.size[axis] = coarse.size[axis] * factors[axis];
+    fine.spacing[axis] = coarse.spacing[axis] / factors[axis];
+  }
+  return fine;
+}
+
+std::optional<Factors> FactorsBetween(const Grid& fine, const Grid& coarse)
+{
+  constexpr double part = 1e-3;
+  Factors factors;
+  for (int axis = 0; axis < 3; ++axis)
+  {
+    const double low = std::abs(fine.origin[axis] - coarse.origin[axis]);
+    const double high = std::abs(fine.origin[axis] + fine.Length(axis) - coarse.origin[axis] - coarse.Length(axis));
+    if (fine.size[axis] % coarse.size[axis] != 0 || std::max(low, high) > part * fine.spacing[axis])
+    {
+      return std::nullopt;
+    }
+    factors[axis] = fine.size[axis] / coarse.size[axis];
+  }
+  return factors;
+}
+
+std::vector<float> Averaged(const float* values, int components, const Grid& fine, const Factors& factors)
+{
+  const std::size_t channels = static_cast<std::size_t>(components);
+  std::vector<double> sums(Coarsened(fine, factors).VoxelCount() * channels, 0.0);
+  ForAllPairs(fine, factors, [&](std::size_t from, std::size_t to) {
+    for (std::size_t c = 0; c < channels; ++c)
+    {
+      sums[to * channels + c] += values[from * channels + c];
+    }
+  });
+  const double count = static_cast<double>(factors[0]) * factors[1] * factors[2];
+  std::vector<float> means(sums.size());
+  std::transform(sums.begin(), sums.end(), means.begin(), [=](double sum) { return static_cast<float>(sum / count); });
+  return means;
+}
+
+std::vector<float> Repeated(const float* values, int components, const Grid& coarse, const Factors& factors)
+{
+  const Grid fine = Refined(coarse, factors);
+  const std::size_t channels = static_cast<std::size_t>(components);
+  std::vector<float> repeated(fine.VoxelCount() * channels);
+  ForAllPairs(fine, factors, [&](std::size_t to, std::size_t from) {
+    std::copy_n(values + from * channels, channels, repeated.begin() + static_cast<std::ptrdiff_t>(to * channels));
+  });
+  return repeated;
+}
+}

@@ -1,0 +1,133 @@
+#include "RunKinds.h"
+
+#include "../Photons/PhotonEmitter.h"
+#include "../Photons/PhotonImportance.h"
+#include "../Photons/PhotonMarcher.h"
+#include "../Photons/PublishedPhotons.h"
+#include "../Reconstruction/PhotonReconstruction.h"
+
+#include <algorithm>
+#include <cmath>
+
+namespace tyndall
+{
+namespace
+{
+const char* NameOf(Sampler sampler)
+{
+  switch (sampler)
+  {
+    case Sampler::Hammersley: return "Hammersley";
+    case Sampler::Halton: return "Halton";
+    case Sampler::Jittered: return "jittered";
+    case Sampler::Grid: return "grid";
+    default: return "random";
+  }
+}
+
+/// Progress of a part of the work.
+Monitor Part(const Monitor& monitor, double from, double to)
+{
+  return [&monitor, from, to](double done) { return !monitor || monitor(from + (to - from) * done); };
+}
+
+double RootOfSquares(const std::vector<float>& values)
+{
+  double sum = 0.0;
+  for (float value : values)
+  {
+    sum += static_cast<double>(value) * value;
+  }
+  return std::sqrt(sum);
+}
+
+LightField Rebuilt(Device& device, const Grid& grid, PhotonLight&& photons, const Monitor& monitor)
+{
+  NoisyLight noisy;
+  noisy.grid = grid;
+  noisy.channels = photons.light.channels;
+  noisy.fluence = photons.light.fluence.data();
+  noisy.meanDirection = photons.meanDirection.empty() ? nullptr : photons.meanDirection.data();
+  noisy.batches = photons.batches;
+  noisy.batchFluence = photons.batchFluence.data();
+  ReconstructedLight rebuilt = Reconstruct(device, noisy, {}, monitor);
+  LightField light = std::move(photons.light);
+  const double size = RootOfSquares(rebuilt.fluence);
+  light.relativeError = size > 0.0 ? RootOfSquares(rebuilt.fluenceError) / size : 0.0;
+  light.fluence = std::move(rebuilt.fluence);
+  return light;
+}
+
+/// Photons of the method, from lights to light: all that a user waits for.
+LightField Trace(
+  Device& device, const ComparedScene& scene, ComparedMethod method, EmissionSettings emission, const Monitor& monitor)
+{
+  const Grid& grid = scene.medium.grid;
+  if (method == ComparedMethod::PublishedPhotons)
+  {
+    const EmittedPhotons emitted = EmitPhotons(grid, scene.illumination, emission, Part(monitor, 0.0, 0.3));
+    return MarchPublished(
+      device, scene.medium, scene.ior, scene.levels, emitted.photons, {}, nullptr, Part(monitor, 0.3, 1.0))
+      .light;
+  }
+  MarchSettings marching;
+  marching.batches = true;
+  PhotonMarcher marcher(device, scene.medium, scene.ior, marching, scene.levels);
+  Importance importance;
+  if (method == ComparedMethod::AdaptivePhotons)
+  {
+    ImportanceSettings settings;
+    settings.pilotCount = std::min(settings.pilotCount, std::max<std::size_t>(emission.photonCount / 10, 1));
+    importance = FindImportance(marcher, grid, scene.illumination, settings, Part(monitor, 0.0, 0.1));
+    const std::size_t pilots = importance.map.Cells() * importance.map.lights.size();
+    emission.photonCount -= std::min(emission.photonCount - 1, pilots); // they count as photons, too
+    emission.map = importance.even ? nullptr : &importance.map;
+  }
+  emission.batches = 2;
+  const EmittedPhotons emitted = EmitPhotons(grid, scene.illumination, emission, Part(monitor, 0.1, 0.3));
+  return Rebuilt(device, grid, marcher.March(emitted.photons, Part(monitor, 0.3, 0.9)), Part(monitor, 0.9, 1.0));
+}
+}
+
+std::vector<ComparedRun> PhotonRunsOf(
+  ComparedMethod method, Device& device, const ComparedScene& scene, const ComparedSettings& settings)
+{
+  std::vector<int> counts = settings.photonCounts;
+  std::sort(counts.begin(), counts.end());
+  const int forSamplers = counts.size() > 1 ? counts[counts.size() - 2] : counts.front();
+  std::vector<ComparedRun> runs;
+  for (Sampler sampler : settings.samplers)
+  {
+    for (int count : counts)
+    {
+      if (sampler != settings.samplers.front() && count != forSamplers)
+      {
+        continue;
+      }
+      EmissionSettings emission;
+      emission.photonCount = static_cast<std::size_t>(count);
+      emission.sampler = sampler;
+      ComparedRun run;
+      run.method = method;
+      run.setting = std::to_string(count) + " photons, " + NameOf(sampler);
+      run.grid = scene.medium.grid;
+      run.cost = count;
+      run.solve = [=, &device, &scene](
+                    bool, const Monitor& monitor) { return Trace(device, scene, method, emission, monitor); };
+      runs.push_back(std::move(run));
+    }
+  }
+  return runs;
+}
+
+LightField MarchEvenly(
+  Device& device, const ComparedScene& scene, std::size_t photons, std::uint64_t seed, const Monitor& monitor)
+{
+  EmissionSettings emission;
+  emission.photonCount = photons;
+  emission.seed = seed;
+  PhotonMarcher marcher(device, scene.medium, scene.ior, {}, scene.levels);
+  const EmittedPhotons emitted = EmitPhotons(scene.medium.grid, scene.illumination, emission, Part(monitor, 0.0, 0.3));
+  return marcher.March(emitted.photons, Part(monitor, 0.3, 1.0)).light;
+}
+}

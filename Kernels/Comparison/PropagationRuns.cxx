@@ -1,0 +1,125 @@
+#include "RunKinds.h"
+
+#include "../LightPropagation/ErrorEstimate.h"
+#include "../LightPropagation/FusedPropagation.h"
+#include "../LightPropagation/ParallelPropagation.h"
+#include "../LightPropagation/SequentialPropagation.h"
+
+#include <algorithm>
+#include <cstdlib>
+#include <memory>
+
+namespace tyndall
+{
+namespace
+{
+/// What is changed from run to run.
+struct Setting
+{
+  int directions = 25, map = 1, coarsening = 1, orders = 0;
+};
+
+std::string InWords(const Setting& setting)
+{
+  std::string words = std::to_string(setting.directions) + " directions";
+  words += setting.map > 1 ? ", map resolution " + std::to_string(setting.map) : "";
+  words += setting.coarsening > 1 ? ", voxels x " + std::to_string(setting.coarsening) : "";
+  words += setting.orders == 1 ? ", 1 order" : "";
+  words += setting.orders > 1 ? ", " + std::to_string(setting.orders) + " orders" : "";
+  return words;
+}
+
+std::vector<Setting> SettingsToTry(const ComparedSettings& settings)
+{
+  std::vector<Setting> all;
+  for (int coarsening : settings.coarsenings)
+  {
+    for (int directions : settings.directionsPerFace)
+    {
+      for (int map : settings.mapResolutions)
+      {
+        if (map == 1 || (directions >= 25 && coarsening == 1))
+        {
+          all.push_back({ directions, map, coarsening, 0 });
+        }
+      }
+    }
+  }
+  const auto nearest = std::min_element(settings.directionsPerFace.begin(), settings.directionsPerFace.end(),
+    [](int a, int b) { return std::abs(a - 25) < std::abs(b - 25); });
+  for (int orders : settings.orders)
+  {
+    all.push_back({ *nearest, 1, 1, orders });
+  }
+  return all;
+}
+
+/// The solver of a method, in the scene's light.
+/// @param device, scene  must stay
+PropagationSolver SolverOf(ComparedMethod method, Device& device, const ComparedScene& scene)
+{
+  return [method, &device, &scene](const Medium& medium, const PropagationSettings& settings, const Monitor& monitor) {
+    switch (method)
+    {
+      case ComparedMethod::Published: return SolveParallel(device, medium, scene.illumination, settings, monitor);
+      case ComparedMethod::PublishedSequential: return SolveSequential(medium, scene.illumination, settings, monitor);
+      default: return SolveFused(device, medium, scene.illumination, settings, monitor);
+    }
+  };
+}
+
+PropagationSettings SettingsOf(ComparedMethod method, const Setting& setting, const ComparedSettings& settings)
+{
+  PropagationSettings of;
+  of.directionsPerFace = setting.directions;
+  of.mapResolution = setting.map;
+  of.maximumOrders = setting.orders;
+  of.tolerance = settings.tolerance;
+  if (method == ComparedMethod::ConstantSource)
+  {
+    of.source = PropagationSource::Constant;
+    of.acceleration = PropagationAcceleration::None;
+  }
+  return of;
+}
+}
+
+std::vector<ComparedRun> PropagationRunsOf(
+  ComparedMethod method, Device& device, const ComparedScene& scene, const ComparedSettings& settings)
+{
+  const PropagationSolver solver = SolverOf(method, device, scene);
+  std::vector<ComparedRun> runs;
+  for (const Setting& setting : SettingsToTry(settings))
+  {
+    const std::optional<Factors> factors = CoarseningBy(setting.coarsening, scene.medium.grid);
+    if (!factors)
+    {
+      continue;
+    }
+    const bool coarse = setting.coarsening > 1;
+    const auto scaled = coarse ? std::make_shared<RescaledScene>(scene, RescaledScene::To::Coarser, *factors) : nullptr;
+    const PropagationSettings of = SettingsOf(method, setting, settings);
+    ComparedRun run;
+    run.method = method;
+    run.setting = InWords(setting);
+    run.grid = scaled ? scaled->Scene().medium.grid : scene.medium.grid;
+    run.cost = static_cast<double>(run.grid.VoxelCount()) * setting.directions * setting.map * setting.map;
+    run.allOrders = setting.orders == 0;
+    run.estimates = true;
+    run.solve = [=, &scene](bool estimate, const Monitor& monitor) {
+      PropagationSettings now = of;
+      now.periodic = scene.periodic;
+      const Medium& medium = scaled ? scaled->Scene().medium : scene.medium;
+      return estimate ? SolveWithErrorEstimate(medium, now, monitor, solver) : solver(medium, now, monitor);
+    };
+    runs.push_back(std::move(run));
+  }
+  return runs;
+}
+
+LightField Propagate(Device& device, const ComparedScene& scene, PropagationSettings settings, const Monitor& monitor)
+{
+  settings.periodic = scene.periodic;
+  return SolveFused(device, scene.medium, scene.illumination, settings, monitor);
+}
+}

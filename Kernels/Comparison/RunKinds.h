@@ -1,0 +1,12 @@
+#pragma once
+
+#include "ComparedRun.h"
+
+/// The runs of RunsOf by their kinds.
+namespace tyndall
+{
+std::vector<ComparedRun> PropagationRunsOf(
+  ComparedMethod method, Device& device, const ComparedScene& scene, const ComparedSettings& settings);
+std::vector<ComparedRun> PhotonRunsOf(
+  ComparedMethod method, Device& device, const ComparedScene& scene, const ComparedSettings& settings);
+}

@@ -1,0 +1,316 @@
+#include "SolverComparison.h"
+
+#include "TimeLimit.h"
+
+#include "../Device/Errors.h"
+
+#include <algorithm>
+#include <cmath>
+#include <utility>
+
+namespace tyndall
+{
+namespace
+{
+std::string Text(const Grid& grid)
+{
+  return std::to_string(grid.size[0]) + "x" + std::to_string(grid.size[1]) + "x" + std::to_string(grid.size[2]);
+}
+
+double Median(std::vector<double> values)
+{
+  std::sort(values.begin(), values.end());
+  const std::size_t middle = values.size() / 2;
+  return values.size() % 2 == 1 ? values[middle] : 0.5 * (values[middle - 1] + values[middle]);
+}
+
+/// Grey values in three channels, where the others have three.
+std::vector<float> InChannels(std::vector<float> values, int has, int wanted)
+{
+  if (has == wanted)
+  {
+    return values;
+  }
+  std::vector<float> inAll(values.size() * 3);
+  for (std::size_t i = 0; i < inAll.size(); ++i)
+  {
+    inAll[i] = values[i / 3];
+  }
+  return inAll;
+}
+
+/// Brings light to the coarser of the scene's grid and the reference's, and compares it there.
+class Comparator
+{
+public:
+  Comparator(const Grid& scene, const ReferenceLight& reference)
+    : SceneGrid(scene)
+    , Reference(reference)
+    , ToReference(FactorsBetween(scene, reference.grid))
+  {
+    const std::optional<Factors> fromReference = FactorsBetween(reference.grid, scene);
+    if (!this->ToReference && !fromReference)
+    {
+      throw InvalidInput("The reference has " + Text(reference.grid) + " voxels, the medium " + Text(scene) +
+        ". They must fill the same box, with a whole number of voxels of one in each of the other. Resample the "
+        "reference.");
+    }
+    this->Fluence = this->AsCompared(reference.fluence, fromReference);
+    this->FluenceDirect = this->AsCompared(reference.fluenceDirect, fromReference);
+  }
+
+  bool Has(ComparedMethod method) const { return !this->For(method).empty(); }
+
+  RelativeErrors ErrorsOf(const LightField& light, const ComparedRun& run) const
+  {
+    const std::optional<Factors> coarsening = FactorsBetween(this->SceneGrid, run.grid);
+    std::vector<float> values = Repeated(light.fluence.data(), light.channels, run.grid, *coarsening);
+    if (this->ToReference)
+    {
+      values = Averaged(values.data(), light.channels, this->SceneGrid, *this->ToReference);
+    }
+    const int channels = std::max(light.channels, this->Reference.channels);
+    return tyndall::ErrorsOf(InChannels(std::move(values), light.channels, channels),
+      InChannels(this->For(run.method), this->Reference.channels, channels));
+  }
+
+private:
+  const std::vector<float>& For(ComparedMethod method) const
+  {
+    return IsDirectOnly(method) ? this->FluenceDirect : this->Fluence;
+  }
+
+  std::vector<float> AsCompared(const std::vector<float>& values, const std::optional<Factors>& fromReference) const
+  {
+    return this->ToReference || values.empty()
+      ? values
+      : Averaged(values.data(), this->Reference.channels, this->Reference.grid, *fromReference);
+  }
+
+  Grid SceneGrid;
+  const ReferenceLight& Reference;
+  std::optional<Factors> ToReference; ///< where the reference is as coarse as the scene or coarser
+  std::vector<float> Fluence, FluenceDirect;
+};
+
+/// Why a method is not compared on a scene; empty: it is.
+std::string WhyNot(ComparedMethod method, const ComparedScene& scene, const Comparator& comparator)
+{
+  const bool periodic = scene.periodic[0] || scene.periodic[1] || scene.periodic[2];
+  if (IsDirectOnly(method))
+  {
+    return scene.Emits()        ? "photons are made of lights, and this medium emits"
+      : periodic                ? "photons do not return on the other side of periodic axes"
+      : !comparator.Has(method) ? "the reference has no 'fluence_direct'"
+                                : "";
+  }
+  return scene.BendsLight()   ? "it does not bend light, and the index of this medium varies"
+    : !comparator.Has(method) ? "the reference has no 'fluence'"
+                              : "";
+}
+
+/// The runs of one method, cheap ones first, and how long they take.
+struct Lane
+{
+  std::vector<ComparedRun> runs;
+  std::size_t next = 0;
+  double secondsOfCost = 0.0; ///< of the last one with all orders
+
+  bool Done() const { return this->next == this->runs.size(); }
+};
+
+/// Runs, measures and compares.
+class Runner
+{
+public:
+  Runner(Device& device, const ComparisonSettings& settings, const Comparator& comparator, Comparison& result)
+    : TheDevice(device)
+    , Settings(settings)
+    , TheComparator(comparator)
+    , Result(result)
+  {
+  }
+
+  /// The next run of a method.
+  /// @param left  seconds that it may take
+  void RunNext(Lane& lane, double left, const Monitor& monitor)
+  {
+    const ComparedRun& run = lane.runs[lane.next++];
+    if (left <= 0.0 || (run.allOrders && lane.secondsOfCost * run.cost > left))
+    {
+      this->LeaveOut(run, "was not begun, for its time was not left");
+      return;
+    }
+    double seconds = left;
+    try
+    {
+      seconds = this->Run(run, left, PartWithin(left, monitor, 0.0, 1.0));
+    }
+    catch (const TimeIsUp&)
+    {
+      this->LeaveOut(run, "was stopped when its time was up");
+    }
+    catch (const DeviceError& error)
+    {
+      this->LeaveOut(run, error.what());
+      return;
+    }
+    lane.secondsOfCost = run.allOrders ? seconds / run.cost : lane.secondsOfCost;
+  }
+
+private:
+  void LeaveOut(const ComparedRun& run, const std::string& why)
+  {
+    this->Result.leftOut.push_back(std::string(NameOf(run.method)) + ", " + run.setting + ": " + why);
+  }
+
+  double Timed(const ComparedRun& run, LightField& light, const Monitor& monitor)
+  {
+    const double start = ClockSeconds();
+    light = run.solve(false, monitor);
+    return ClockSeconds() - start;
+  }
+
+  /// @return its seconds. The first run, which compiles, does not count where the time allows others.
+  double Run(const ComparedRun& run, double left, const Monitor& monitor)
+  {
+    constexpr double partForRepeats = 0.2;
+    this->TheDevice.ResetPeak();
+    const std::size_t before = this->TheDevice.BytesInUse();
+    LightField light;
+    const double first = this->Timed(run, light, monitor);
+    const bool host = run.method == ComparedMethod::PublishedSequential;
+    const double fitting = partForRepeats * left / first;
+    std::vector<double> seconds;
+    for (int i = 0; i < this->Settings.repeats && i + 1.0 <= fitting; ++i)
+    {
+      seconds.push_back(this->Timed(run, light, monitor));
+    }
+    ComparisonRow row;
+    row.method = run.method;
+    row.setting = run.setting;
+    row.grid = run.grid;
+    row.seconds = seconds.empty() ? first : Median(seconds);
+    row.peakBytes = host ? ComparisonRow::Unknown : static_cast<double>(this->TheDevice.PeakBytes() - before);
+    this->Compare(row, run, light);
+    this->Estimate(row, run, light, monitor);
+    const double median = row.seconds;
+    this->Result.rows.push_back(std::move(row));
+    return median;
+  }
+
+  void Compare(ComparisonRow& row, const ComparedRun& run, const LightField& light) const
+  {
+    const RelativeErrors errors = this->TheComparator.ErrorsOf(light, run);
+    row.errorL2 = errors.l2;
+    row.errorMax = errors.max;
+    row.errorRelative = errors.relative;
+    row.balance = light.balance.RelativeError(light.channels);
+    row.iterations = std::max<int>(1, static_cast<int>(light.convergence.size()));
+    row.powerIn = Sum(light.balance.entered) + Sum(light.balance.emitted);
+    std::transform(light.facePowerOut.begin(), light.facePowerOut.end(), row.facePowerOut.begin(), Sum);
+  }
+
+  void Estimate(ComparisonRow& row, const ComparedRun& run, LightField& light, const Monitor& monitor) const
+  {
+    if (this->Settings.estimates && run.estimates)
+    {
+      try
+      {
+        light = run.solve(true, monitor);
+      }
+      catch (const TimeIsUp&) // the row is there all the same
+      {
+        return;
+      }
+    }
+    row.estimatedError = light.relativeError > 0.0 ? light.relativeError : ComparisonRow::Unknown;
+  }
+
+  Device& TheDevice;
+  const ComparisonSettings& Settings;
+  const Comparator& TheComparator;
+  Comparison& Result;
+};
+
+/// The runs of the methods that the scene allows; what the others lack is left out.
+std::vector<Lane> LanesOf(Device& device, const ComparedScene& scene, const ComparisonSettings& settings,
+  const Comparator& comparator, Comparison& result)
+{
+  std::vector<Lane> lanes;
+  for (ComparedMethod method : settings.methods)
+  {
+    const std::string why = WhyNot(method, scene, comparator);
+    if (why.empty())
+    {
+      lanes.push_back({ RunsOf(method, device, scene, settings.tried) });
+    }
+    else
+    {
+      result.leftOut.push_back(std::string(NameOf(method)) + ": " + why);
+    }
+  }
+  return lanes;
+}
+
+/// A run of each method in turn, so that what else the machine does falls on all alike, and time that one does not need is left for
+/// the others.
+void RunInTurns(std::vector<Lane>& lanes, Runner& runner, double end, const Monitor& monitor)
+{
+  std::size_t count = 0, done = 0;
+  for (const Lane& lane : lanes)
+  {
+    count += lane.runs.size();
+  }
+  while (done < count)
+  {
+    for (Lane& lane : lanes)
+    {
+      if (!lane.Done())
+      {
+        const auto active = std::count_if(lanes.begin(), lanes.end(), [](const Lane& other) { return !other.Done(); });
+        const double share = (end - ClockSeconds()) / static_cast<double>(active);
+        runner.RunNext(lane, share, PartWithin(HUGE_VAL, monitor, 1.0 * done / count, (done + 1.0) / count));
+        ++done;
+      }
+    }
+  }
+}
+
+void Check(const ComparisonSettings& settings)
+{
+  Check(settings.tried);
+  if (settings.methods.empty())
+  {
+    throw InvalidInput("No method is chosen. Switch on at least one.");
+  }
+  if (settings.repeats < 1 || !(settings.timeBudget > 0.0))
+  {
+    throw InvalidInput("Repeats must be at least 1, TimeBudget above 0 s.");
+  }
+}
+}
+
+Comparison CompareSolvers(Device& device, const ComparedScene& scene, const ComparisonSettings& settings,
+  const ReferenceLight* reference, const Monitor& monitor)
+{
+  Check(settings);
+  Check(scene.medium);
+  Check(scene.illumination);
+  const double end = ClockSeconds() + settings.timeBudget;
+  const double begun = reference ? 0.0 : 0.4; // part of the progress
+  Comparison result;
+  result.device = device.Name();
+  result.reference = reference ? *reference
+                               : ConvergedLight(device, scene, settings.tried, 0.5 * settings.timeBudget,
+                                   PartWithin(HUGE_VAL, monitor, 0.0, begun));
+  const Comparator comparator(scene.medium.grid, result.reference);
+  std::vector<Lane> lanes = LanesOf(device, scene, settings, comparator, result);
+  Runner runner(device, settings, comparator, result);
+  RunInTurns(lanes, runner, end, PartWithin(HUGE_VAL, monitor, begun, 1.0));
+  std::stable_sort(result.rows.begin(), result.rows.end(),
+    [](const ComparisonRow& a, const ComparisonRow& b) { return a.method < b.method; });
+  MarkPareto(result.rows);
+  return result;
+}
+}

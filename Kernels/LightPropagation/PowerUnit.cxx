@@ -1,0 +1,146 @@
+#include "PowerUnit.h"
+
+#include "../Device/Errors.h"
+
+#include <algorithm>
+#include <cmath>
+#include <string>
+
+namespace tyndall
+{
+namespace
+{
+constexpr double Pi = 3.14159265358979323846;
+constexpr int UsualExponent = 40; ///< powers up to 2^40 W, and down to 2^-40 W, are solved as they are
+
+double Largest(const Rgb& values)
+{
+  return std::max({ values[0], values[1], values[2] });
+}
+
+double PowerOf(const Light& light, const std::array<double, 3>& area)
+{
+  if (light.type != LightType::Directional)
+  {
+    return Largest(light.power);
+  }
+  const std::array<double, 3>& d = light.direction;
+  const double across = std::abs(d[0]) * area[0] + std::abs(d[1]) * area[1] + std::abs(d[2]) * area[2];
+  return Largest(light.power) * across / std::hypot(d[0], d[1], d[2]);
+}
+
+double LargestEmission(const Medium& medium)
+{
+  const std::size_t count = medium.grid.VoxelCount() * static_cast<std::size_t>(medium.emission.components);
+  const float* values = medium.emission.values;
+  return values ? *std::max_element(values, values + count) : 0.0;
+}
+
+void Divide(Rgb& values, double unit)
+{
+  for (double& value : values)
+  {
+    value /= unit;
+  }
+}
+
+void Multiply(std::vector<float>& values, double unit, const char* name)
+{
+  for (float& value : values)
+  {
+    const double watts = value * unit;
+    value = static_cast<float>(watts);
+    if (std::isinf(value))
+    {
+      throw InvalidInput("The " + std::string(name) + " would be " + std::to_string(watts) +
+        ", which is more than a float holds. Give lights, sky and emission less power: light is in proportion to it.");
+    }
+  }
+}
+
+void Multiply(Rgb& values, double unit)
+{
+  Divide(values, 1.0 / unit);
+}
+}
+
+double PowerUnitOf(const Medium& medium, const Illumination& illumination)
+{
+  const Grid& grid = medium.grid;
+  const std::array<double, 3> area = { grid.Length(1) * grid.Length(2), grid.Length(2) * grid.Length(0),
+    grid.Length(0) * grid.Length(1) };
+  double power = 4.0 * Pi * LargestEmission(medium) * grid.VoxelVolume() * static_cast<double>(grid.VoxelCount());
+  for (const Light& light : illumination.lights)
+  {
+    power += PowerOf(light, area);
+  }
+  double radiance = Largest(illumination.sky);
+  for (const Rgb& face : illumination.faces)
+  {
+    radiance = std::max(radiance, Largest(face));
+  }
+  const std::vector<float>& pixels = illumination.environment.radiance;
+  if (!pixels.empty())
+  {
+    radiance += *std::max_element(pixels.begin(), pixels.end());
+  }
+  power += 2.0 * Pi * radiance * (area[0] + area[1] + area[2]);
+  if (!(power > 0.0) || std::isinf(power))
+  {
+    return 1.0;
+  }
+  const int exponent = std::ilogb(power);
+  return std::abs(exponent) <= UsualExponent ? 1.0 : std::exp2(exponent);
+}
+
+SceneInUnits::SceneInUnits(const Medium& inWatts, const Illumination& shining, double unit)
+  : medium(inWatts)
+  , illumination(shining)
+{
+  if (inWatts.emission.values)
+  {
+    const std::size_t count = inWatts.grid.VoxelCount() * static_cast<std::size_t>(inWatts.emission.components);
+    this->emission.resize(count);
+    std::transform(inWatts.emission.values, inWatts.emission.values + count, this->emission.begin(),
+      [=](float value) { return static_cast<float>(value / unit); });
+    this->medium.emission.values = this->emission.data();
+  }
+  for (Light& light : this->illumination.lights)
+  {
+    Divide(light.power, unit);
+  }
+  Divide(this->illumination.sky, unit);
+  for (Rgb& face : this->illumination.faces)
+  {
+    Divide(face, unit);
+  }
+  for (float& pixel : this->illumination.environment.radiance)
+  {
+    pixel = static_cast<float>(pixel / unit);
+  }
+}
+
+void ToWatts(LightField& light, double unit)
+{
+  Multiply(light.fluence, unit, "fluence");
+  Multiply(light.fluenceDirect, unit, "fluence_direct");
+  Multiply(light.fluenceError, unit, "fluence_error");
+  Multiply(light.netFlux, unit, "net_flux");
+  Multiply(light.scatteredRadiance, unit, "scattered_radiance");
+  EnergyBalance& balance = light.balance;
+  for (Rgb* watts : { &balance.entered, &balance.emitted, &balance.absorbed, &balance.escaped, &balance.leftOver })
+  {
+    Multiply(*watts, unit);
+  }
+  for (Rgb& watts : light.facePowerOut)
+  {
+    Multiply(watts, unit);
+  }
+  for (ConvergenceRow& row : light.convergence)
+  {
+    row.absorbed *= unit;
+    row.escaped *= unit;
+    row.leftOver *= unit;
+  }
+}
+}

@@ -1,0 +1,29 @@
+#pragma once
+
+#include "../Medium/Medium.h"
+#include "LightField.h"
+
+#include <vector>
+
+namespace tyndall
+{
+/// Light is linear in its power, but floats are not endless: rays carry W, path integrals W length. Scenes of powers far from 1 W
+/// are solved in a unit of their own, a power of two, so that they lose nothing.
+
+/// W to solve a scene in: 1 where the power of all that shines is not far from that.
+double PowerUnitOf(const Medium& medium, const Illumination& illumination);
+
+/// A scene in another unit of power.
+struct SceneInUnits
+{
+  SceneInUnits(const Medium& medium, const Illumination& illumination, double unit);
+
+  std::vector<float> emission;
+  Medium medium; ///< sees `emission`
+  Illumination illumination;
+};
+
+/// Light in units back to W.
+/// @throws InvalidInput where it is more than a float holds
+void ToWatts(LightField& light, double unit);
+}

@@ -1,0 +1,31 @@
+#pragma once
+
+#include "Grid.h"
+
+#include <array>
+#include <vector>
+
+namespace tyndall
+{
+/// A grid of half as many voxels an axis (rounded down, at least one) over the same box, and averages over its voxels.
+class Coarsening
+{
+public:
+  explicit Coarsening(const Grid& fine);
+
+  const Grid& Fine() const { return this->FineGrid; }
+  const Grid& Coarse() const { return this->CoarseGrid; }
+  /// Smallest ratio of coarse to fine spacing among the axes that have several voxels; 1 where none has.
+  double Ratio() const;
+
+  /// Means over coarse voxels: every fine voxel counts by the part of it that lies inside, so that the sum is kept.
+  /// @param values  `components` a fine voxel, x fastest
+  std::vector<float> Average(const float* values, int components) const;
+
+  /// The coarse voxel in which the centre of a fine one lies.
+  std::size_t Parent(std::size_t fineVoxel) const;
+
+private:
+  Grid FineGrid, CoarseGrid;
+};
+}

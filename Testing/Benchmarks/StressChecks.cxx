@@ -1,0 +1,472 @@
+#include "StressChecks.h"
+
+#include <algorithm>
+#include <cmath>
+#include <functional>
+
+namespace bench
+{
+namespace
+{
+constexpr double Pi = 3.14159265358979323846;
+
+/// The quantities of `energy_balance`.
+enum Balance
+{
+  Entered,
+  Emitted,
+  Absorbed,
+  Escaped,
+  LeftOver
+};
+
+/// One solver's light in one scene, channel by channel.
+class LightChecks
+{
+public:
+  LightChecks(
+    StressSolver solver, const StressCase& stressCase, const StressOutcome& outcome, const StressOutcome* twin)
+    : Solver(solver)
+    , Case(stressCase)
+    , Scene(stressCase.scene)
+    , Outcome(outcome)
+    , Twin(twin)
+    , Published(solver == StressSolver::MapsParallel || solver == StressSolver::MapsSequential ||
+        solver == StressSolver::PhotonsPublished || solver == StressSolver::RebuiltPublished)
+    , Rebuilt(solver == StressSolver::Rebuilt || solver == StressSolver::RebuiltPublished)
+  {
+  }
+
+  std::vector<StressCheck> All()
+  {
+    this->Numbers();
+    if (!this->Rebuilt)
+    {
+      this->Energy();
+    }
+    else if (this->Solver == StressSolver::Rebuilt)
+    {
+      this->Conserves();
+    }
+    if (IsMaps(this->Solver) && !this->Published)
+    {
+      this->Bounds();
+      this->Exact();
+    }
+    if (this->Case.beam && !this->Published && !this->Rebuilt)
+    {
+      this->Beam();
+    }
+    if (this->Twin && this->TwinHolds())
+    {
+      this->SameAsTwin();
+    }
+    if (this->Solver == StressSolver::Octree)
+    {
+      this->Levels();
+    }
+    return std::move(this->Found);
+  }
+
+private:
+  void Add(const char* name, double value, double atMost) { this->Found.push_back({ name, value, atMost }); }
+
+  double Fact(Balance which, int c) const
+  {
+    const std::size_t i = static_cast<std::size_t>(which * this->Outcome.channels + c);
+    return i < this->Outcome.balance.size() ? this->Outcome.balance[i] : std::nan("");
+  }
+  double In(int c) const { return this->Fact(Entered, c) + this->Fact(Emitted, c); }
+
+  double Largest(const std::vector<float>& values) const
+  {
+    return values.empty() ? 0.0 : *std::max_element(values.begin(), values.end());
+  }
+
+  /// The worst channel of what `deviation` finds; 0 in the dark.
+  double Worst(const std::function<double(int)>& deviation) const
+  {
+    double worst = 0.0;
+    for (int c = 0; c < this->Outcome.channels; ++c)
+    {
+      const double one = this->In(c) == 0.0 ? 0.0 : deviation(c);
+      worst = one <= worst ? worst : one; // NaN stays
+    }
+    return worst;
+  }
+
+  double Sum(const std::function<double(std::size_t)>& ofVoxel) const
+  {
+    double sum = 0.0;
+    for (std::size_t i = 0; i < this->Scene.VoxelCount(); ++i)
+    {
+      sum += ofVoxel(i);
+    }
+    return sum;
+  }
+  double Fluence(std::size_t voxel, int c) const { return this->Outcome.fluence[voxel * this->Outcome.channels + c]; }
+  int SceneChannel(int c) const { return std::min(c, this->Scene.channels - 1); }
+
+  /// Nothing negative, nothing that is not a number.
+  void Numbers()
+  {
+    const StressOutcome& o = this->Outcome;
+    auto bad = static_cast<std::ptrdiff_t>(o.fluence.size() == this->Scene.VoxelCount() * o.channels ? 0 : 1);
+    for (const std::vector<float>* field : { &o.fluence, &o.fluenceDirect, &o.fluenceError })
+    {
+      bad += std::count_if(field->begin(), field->end(), [](float x) { return !(x >= 0.0f && std::isfinite(x)); });
+    }
+    this->Add("bad_fluence", static_cast<double>(bad), 0.0);
+    bad = 0;
+    for (const std::vector<float>* field : { &o.netFlux, &o.directions })
+    {
+      bad += std::count_if(field->begin(), field->end(), [](float x) { return !std::isfinite(x); });
+    }
+    this->Add("bad_directions", static_cast<double>(bad), 0.0);
+    bad = 0;
+    for (const std::vector<double>* facts : { &o.balance, &o.facePowerOut })
+    {
+      bad += std::count_if(facts->begin(), facts->end(), [](double x) { return !(x >= 0.0 && std::isfinite(x)); });
+    }
+    this->Add("bad_powers", static_cast<double>(bad), 0.0);
+    double excess = 0.0;
+    for (std::size_t i = 0; i < std::min(o.fluenceDirect.size(), o.fluence.size()); ++i)
+    {
+      excess = std::max(excess, static_cast<double>(o.fluenceDirect[i]) - o.fluence[i]);
+    }
+    this->Add("direct_above_all", excess == 0.0 ? 0.0 : excess / this->Largest(o.fluence), 1e-4);
+  }
+
+  /// Power that shines on the box, by the scene alone.
+  double Shining(int c) const
+  {
+    const Vector& h = this->Scene.spacing;
+    double area[3], power = 0.0;
+    for (int axis = 0; axis < 3; ++axis)
+    {
+      const int a = (axis + 1) % 3, b = (axis + 2) % 3;
+      area[axis] = this->Scene.cells[a] * h[a] * this->Scene.cells[b] * h[b];
+      power += this->Scene.periodic[axis]
+        ? 0.0
+        : Pi * area[axis] * (2.0 * this->Scene.sky[c] + this->Scene.faces[2 * axis] + this->Scene.faces[2 * axis + 1]);
+    }
+    for (const Lamp& lamp : this->Scene.lamps)
+    {
+      power += lamp.power[c] * (lamp.kind == Lamp::Sun ? area[2] : 1.0);
+    }
+    return power;
+  }
+
+  void Energy()
+  {
+    const bool photons = IsPhotons(this->Solver);
+    const auto imbalance = [&](int c) {
+      return (this->Fact(Absorbed, c) + this->Fact(Escaped, c) + this->Fact(LeftOver, c)) / this->In(c) - 1.0;
+    };
+    if (this->Published)
+    {
+      this->Add("energy_made", this->Solver == StressSolver::PhotonsPublished ? 0.0 : this->Worst(imbalance), 1e-3);
+      return;
+    }
+    this->Add("balance", this->Worst([&](int c) { return std::abs(imbalance(c)); }), 1e-4);
+    // Directions' half-range flux is off by 1.2%, and few voxels are entered by few rays.
+    const bool diffuse = this->Scene.sky != Vector{} || this->Scene.faces != std::array<double, 6>{};
+    const bool few = *std::min_element(this->Scene.cells.begin(), this->Scene.cells.end()) < 8;
+    this->Add("entered", this->Worst([&](int c) {
+      return this->Shining(c) == 0.0 ? 0.0 : std::abs(this->Fact(Entered, c) / this->Shining(c) - 1.0);
+    }),
+      diffuse && !photons ? (few ? 0.25 : 0.02) : 1e-3);
+    if (!photons && !this->Scene.emission.empty())
+    {
+      this->Add("emitted", this->Worst([&](int c) {
+        const double emitted = 4.0 * Pi * this->Scene.VoxelVolume() *
+          this->Sum([&](std::size_t i) { return this->Scene.At(this->Scene.emission, i, this->SceneChannel(c)); });
+        return std::abs(this->Fact(Emitted, c) - emitted) / this->In(c);
+      }),
+        1e-4);
+    }
+    this->Add("escaped_by_faces", this->Worst([&](int c) {
+      double out = 0.0;
+      for (std::size_t i = c; i < this->Outcome.facePowerOut.size(); i += this->Outcome.channels)
+      {
+        out += this->Outcome.facePowerOut[i];
+      }
+      return std::abs(out - this->Fact(Escaped, c)) / this->In(c);
+    }),
+      1e-4);
+    // Photons are taken away by scattering as well.
+    this->Add("absorbed_by_fluence", this->Worst([&](int c) {
+      const int s = this->SceneChannel(c);
+      const double lost = this->Scene.VoxelVolume() * this->Sum([&](std::size_t i) {
+        const double sigma = static_cast<double>(this->Scene.At(this->Scene.absorption, i, s)) +
+          (photons ? this->Scene.At(this->Scene.scattering, i, s) : 0.0f);
+        return sigma * this->Fluence(i, c);
+      });
+      return std::abs(lost - this->Fact(Absorbed, c)) / this->In(c);
+    }),
+      1e-3);
+    if (photons)
+    {
+      this->Add("left_over",
+        this->Outcome.warnings.empty() ? this->Worst([&](int c) { return this->Fact(LeftOver, c) / this->In(c); })
+                                       : 0.0,
+        0.01);
+    }
+  }
+
+  void Conserves()
+  {
+    double total = 0.0;
+    for (const float fluence : this->Outcome.fluence)
+    {
+      total += fluence;
+    }
+    this->Add(
+      "total_kept", this->Outcome.rawTotal == 0.0 ? total : std::abs(total / this->Outcome.rawTotal - 1.0), 1e-4);
+  }
+
+  void Bounds()
+  {
+    const std::vector<float>& fluence = this->Outcome.fluence;
+    const std::vector<float>& flux = this->Outcome.netFlux;
+    double excess = 0.0;
+    for (std::size_t i = 0; 3 * i + 2 < flux.size() && i < fluence.size(); ++i)
+    {
+      excess = std::max<double>(excess, std::hypot(flux[3 * i], flux[3 * i + 1], flux[3 * i + 2]) - fluence[i]);
+    }
+    this->Add("flux_above_fluence", excess == 0.0 ? 0.0 : excess / this->Largest(fluence), 1e-3);
+    if (std::isfinite(this->Case.bound))
+    {
+      this->Add("above_bound", this->Largest(fluence) / (4.0 * Pi * this->Case.bound) - 1.0, 1e-3);
+    }
+    for (int axis = 0; axis < 3; ++axis)
+    {
+      if (this->Case.mirrored[axis])
+      {
+        this->Add(std::string("mirrored_" + std::string(1, "xyz"[axis])).c_str(), this->Asymmetry(axis), 1e-3);
+      }
+    }
+    if (this->Solver != StressSolver::MapsByOrders)
+    {
+      this->Add("residual_by_tolerance", this->Outcome.warnings.empty() ? this->Outcome.residual : 0.0, 1.0);
+    }
+  }
+
+  double Asymmetry(int axis) const
+  {
+    double worst = 0.0;
+    const std::array<int, 3>& n = this->Scene.cells;
+    for (int k = 0; k < n[2]; ++k)
+    {
+      for (int j = 0; j < n[1]; ++j)
+      {
+        for (int i = 0; i < n[0]; ++i)
+        {
+          std::array<int, 3> other = { i, j, k };
+          other[axis] = n[axis] - 1 - other[axis];
+          worst = std::max(worst,
+            std::abs(this->Fluence(this->Scene.Voxel(i, j, k), 0) -
+              this->Fluence(this->Scene.Voxel(other[0], other[1], other[2]), 0)));
+        }
+      }
+    }
+    return worst == 0.0 ? 0.0 : worst / this->Largest(this->Outcome.fluence);
+  }
+
+  /// What is known exactly. Orders that are not all done do not tell.
+  void Exact()
+  {
+    const double left = this->Worst([&](int c) { return this->Fact(LeftOver, c) / this->In(c); });
+    if (this->Solver == StressSolver::MapsByOrders && !(left < 1e-5))
+    {
+      return;
+    }
+    if (this->Case.furnace > 0.0)
+    {
+      double worst = 0.0;
+      for (const float fluence : this->Outcome.fluence)
+      {
+        worst = std::max(worst, std::abs(fluence / (4.0 * Pi * this->Case.furnace) - 1.0));
+      }
+      this->Add("furnace", worst, 1e-3);
+    }
+    if (this->Case.middle > 0.0)
+    {
+      const std::array<int, 3>& n = this->Scene.cells;
+      const double fluence = this->Fluence(this->Scene.Voxel(n[0] / 2, n[1] / 2, n[2] / 2), 0);
+      this->Add("middle", std::abs(fluence / (4.0 * Pi * this->Case.middle) - 1.0), 2e-3);
+    }
+    const bool linear = this->Solver != StressSolver::MapsByOrders; // a constant source has no diffusion limit
+    if (this->Case.transmitted >= 0.0 && linear)
+    {
+      const double part = this->Outcome.facePowerOut[5] / this->Fact(Entered, 0);
+      this->Add("transmitted", std::abs(part / this->Case.transmitted - 1.0), 0.02);
+    }
+    if (this->Case.pathInBox > 0.0)
+    {
+      const double path =
+        this->Scene.VoxelVolume() * this->Sum([&](std::size_t i) { return this->Fluence(i, 0); }) / this->In(0);
+      this->Add("path_in_box", std::abs(path / this->Case.pathInBox - 1.0), 0.03);
+    }
+  }
+
+  /// A sun along -z through an absorber: means of exp(-tau) over voxels. Photons are spread within columns, and counted by layers.
+  void Beam()
+  {
+    const bool photons = IsPhotons(this->Solver);
+    const std::array<int, 3>& n = this->Scene.cells;
+    std::vector<double> light(static_cast<std::size_t>(n[0] * n[1]), this->Scene.lamps[0].power[0]);
+    std::vector<double> depth(light.size(), 0.0);
+    const std::vector<float>& sigma = this->Scene.absorption;
+    const bool even = std::all_of(sigma.begin(), sigma.end(), [&](float one) { return one == sigma[0]; });
+    double worst = 0.0;
+    for (int k = n[2] - 1; k >= 0; --k)
+    {
+      double layer = 0.0, foundLayer = 0.0, deepest = 0.0;
+      for (std::size_t column = 0; column < light.size(); ++column)
+      {
+        const std::size_t voxel = static_cast<std::size_t>(k) * light.size() + column;
+        const double tau = sigma[voxel] * this->Scene.spacing[2];
+        const double mean = light[column] * (tau > 1e-12 ? -std::expm1(-tau) / tau : 1.0);
+        const double found = this->Fluence(voxel, 0);
+        if (!photons && (mean == 0.0 || mean > 1e-25))
+        {
+          const double error = mean == 0.0 ? found : std::abs(found / mean - 1.0) / (1.0 + depth[column]);
+          worst = error <= worst ? worst : error;
+        }
+        layer += mean;
+        foundLayer += found;
+        light[column] *= std::exp(-tau);
+        depth[column] += tau;
+        deepest = std::max(deepest, depth[column]);
+      }
+      // Their fixed point ends some ten decades below the brightest.
+      if (photons && layer > 1e-6 * static_cast<double>(light.size()))
+      {
+        const double error = std::abs(foundLayer / layer - 1.0) / (1.0 + deepest);
+        worst = error <= worst ? worst : error;
+      }
+    }
+    this->Add("beam", worst, !photons ? 1e-4 : even ? 1e-3 : 0.05);
+  }
+
+  bool TwinHolds() const
+  {
+    const bool colours = this->Case.twinChannel >= 0;
+    // As published photons lose some of their power by chance, and mean cosines are not solved by similarity.
+    const bool known = this->Case.similarity ? !this->Published && !IsPhotons(this->Solver)
+                                             : this->Solver != StressSolver::PhotonsPublished;
+    return known && !(colours && (this->Rebuilt || this->Solver == StressSolver::Octree));
+  }
+
+  void SameAsTwin()
+  {
+    const int channel = std::max(this->Case.twinChannel, 0);
+    const std::size_t channels = static_cast<std::size_t>(this->Twin->channels); // as published: always three
+    double worst = this->Twin->fluence.size() == channels * this->Scene.VoxelCount() ? 0.0 : std::nan("");
+    const double largest = std::max(this->Largest(this->Twin->fluence), 1e-30); // that of lamps as published is none
+    for (std::size_t i = 0; i < this->Scene.VoxelCount() && worst == worst; ++i)
+    {
+      const double error =
+        std::abs(this->Fluence(i, channel) / this->Case.scale - this->Twin->fluence[channels * i]) / largest;
+      worst = error <= worst ? worst : error;
+    }
+    this->Add("as_its_twin", worst, 1e-3);
+  }
+
+  /// Nodes as RefractionOctree's documentation has them.
+  void Levels()
+  {
+    const std::array<int, 3>& n = this->Scene.cells;
+    double broken = this->Outcome.levels.size() == this->Scene.VoxelCount() ? 0.0 : 1.0;
+    for (std::size_t i = 0; i < this->Outcome.levels.size() && !this->Scene.index.empty(); ++i)
+    {
+      const int at[3] = { static_cast<int>(i) % n[0], static_cast<int>(i) / n[0] % n[1],
+        static_cast<int>(i) / (n[0] * n[1]) };
+      const int edge = 1 << static_cast<int>(this->Outcome.levels[i]);
+      float least = 1e30f, most = 0.0f;
+      for (int z = at[2] / edge * edge; z < std::min(n[2], (at[2] / edge + 1) * edge); ++z)
+      {
+        for (int y = at[1] / edge * edge; y < std::min(n[1], (at[1] / edge + 1) * edge); ++y)
+        {
+          for (int x = at[0] / edge * edge; x < std::min(n[0], (at[0] / edge + 1) * edge); ++x)
+          {
+            least = std::min(least, this->Scene.index[this->Scene.Voxel(x, y, z)]);
+            most = std::max(most, this->Scene.index[this->Scene.Voxel(x, y, z)]);
+          }
+        }
+      }
+      broken += most - least > 0.01f ? 1.0 : 0.0;
+    }
+    this->Add("broken_nodes", broken, 0.0);
+    this->Add("no_nodes", this->Outcome.nodes > 0.0 ? 0.0 : 1.0, 0.0);
+  }
+
+  StressSolver Solver;
+  const StressCase& Case;
+  const StressScene& Scene;
+  const StressOutcome& Outcome;
+  const StressOutcome* Twin;
+  bool Published, Rebuilt;
+  std::vector<StressCheck> Found;
+};
+
+bool IsEven(const std::vector<float>& values)
+{
+  return std::all_of(values.begin(), values.end(), [&](float value) { return value == values[0]; });
+}
+
+std::vector<StressCheck> CheckView(const StressScene& scene, const StressOutcome& outcome)
+{
+  std::vector<StressCheck> found;
+  double bad = outcome.radiance.empty() || outcome.through.empty() ? 1.0 : 0.0;
+  for (const std::vector<float>* picture : { &outcome.radiance, &outcome.through, &outcome.alpha })
+  {
+    bad += std::count_if(picture->begin(), picture->end(), [](float x) { return !(x >= 0.0f && std::isfinite(x)); });
+  }
+  bad += std::count_if(outcome.alpha.begin(), outcome.alpha.end(), [](float alpha) { return alpha > 1.0f; });
+  found.push_back({ "bad_numbers", bad, 0.0 });
+  if (scene.emission == scene.absorption)
+  {
+    double worst = 0.0;
+    for (const float radiance : outcome.radiance)
+    {
+      worst = std::max(worst, std::abs(radiance - 1.0));
+    }
+    found.push_back({ "furnace", worst, 5e-3 });
+  }
+  if (IsEven(scene.absorption) && IsEven(scene.scattering) && scene.channels == 1 && scene.index.empty() &&
+    *std::max_element(scene.spacing.begin(), scene.spacing.end()) <= 2.0 *
+        *std::min_element(scene.spacing.begin(), scene.spacing.end())) // or a soft ball of glass bends rays out of it
+  {
+    const double tau =
+      (static_cast<double>(scene.absorption[0]) + scene.scattering[0]) * scene.cells[2] * scene.spacing[2];
+    double mean = 0.0;
+    for (const float radiance : outcome.through)
+    {
+      mean += radiance / static_cast<double>(outcome.through.size());
+    }
+    // Rays that bend are a little longer.
+    found.push_back({ "through", std::abs(mean - std::exp(-tau)), 0.02 });
+  }
+  found.push_back({ "through_above_1",
+    outcome.through.empty() ? 0.0 : *std::max_element(outcome.through.begin(), outcome.through.end()) - 1.0, 1e-3 });
+  return found;
+}
+}
+
+std::vector<StressCheck> CheckOutcome(
+  StressSolver solver, const StressCase& stressCase, const StressOutcome& outcome, const StressOutcome* twin)
+{
+  return IsView(solver) ? CheckView(stressCase.scene, outcome) : LightChecks(solver, stressCase, outcome, twin).All();
+}
+
+bool MayRefuse(StressSolver solver, const StressCase& stressCase, const std::string& error)
+{
+  const std::string name = NameOf(solver);
+  return std::any_of(stressCase.refusals.begin(), stressCase.refusals.end(), [&](const Refusal& refusal) {
+    return name.compare(0, refusal.method.size(), refusal.method) == 0 &&
+      error.find(refusal.words) != std::string::npos;
+  });
+}
+}

@@ -1,0 +1,26 @@
+#pragma once
+
+#include "StressSolvers.h"
+
+#include <string>
+#include <vector>
+
+/// Whether an outcome is right, by all that is known of its scene.
+namespace bench
+{
+struct StressCheck
+{
+  std::string name;
+  double value = 0.0; ///< a deviation, or a part
+  double atMost = 0.0;
+  bool Holds() const { return this->value <= this->atMost; } ///< not where it is not a number
+};
+
+/// Every claim that this case and this solver admit, with what was found.
+/// @param twin  what the same solver gives for the case's twin; null where there is none
+std::vector<StressCheck> CheckOutcome(
+  StressSolver solver, const StressCase& stressCase, const StressOutcome& outcome, const StressOutcome* twin);
+
+/// Whether a solver may refuse this case, in these words.
+bool MayRefuse(StressSolver solver, const StressCase& stressCase, const std::string& error);
+}

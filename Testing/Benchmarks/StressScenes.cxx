@@ -1,0 +1,484 @@
+#include "StressScenes.h"
+
+#include <algorithm>
+#include <cmath>
+#include <cstdio>
+
+namespace bench
+{
+std::size_t StressScene::VoxelCount() const
+{
+  return static_cast<std::size_t>(this->cells[0]) * this->cells[1] * this->cells[2];
+}
+
+std::size_t StressScene::Voxel(int i, int j, int k) const
+{
+  return (static_cast<std::size_t>(k) * this->cells[1] + j) * this->cells[0] + i;
+}
+
+Vector StressScene::Middle() const
+{
+  Vector middle;
+  for (int axis = 0; axis < 3; ++axis)
+  {
+    middle[axis] = (this->cells[axis] / 2 + 0.5) * this->spacing[axis];
+  }
+  return middle;
+}
+
+float StressScene::At(const std::vector<float>& field, std::size_t voxel, int channel) const
+{
+  return field.empty() ? 0.0f : field[voxel * this->channels + channel];
+}
+
+namespace
+{
+const double NearlyWhite = 1.0 - 1e-7;
+
+std::string Number(double value)
+{
+  char text[32];
+  std::snprintf(text, sizeof(text), "%g", value);
+  return text;
+}
+
+std::size_t MiddleVoxel(const StressScene& scene)
+{
+  return scene.Voxel(scene.cells[0] / 2, scene.cells[1] / 2, scene.cells[2] / 2);
+}
+
+/// The same medium everywhere.
+StressScene Uniform(
+  double sigma_a, double sigma_s, std::array<int, 3> cells = { 9, 9, 9 }, Vector spacing = { 1, 1, 1 })
+{
+  StressScene scene;
+  scene.cells = cells;
+  scene.spacing = spacing;
+  scene.absorption.assign(scene.VoxelCount(), static_cast<float>(sigma_a));
+  scene.scattering.assign(scene.VoxelCount(), static_cast<float>(sigma_s));
+  return scene;
+}
+
+/// (1 - albedo) keeps what float would lose near 1.
+StressScene OfAlbedo(double sigma_t, double albedo)
+{
+  return Uniform((1.0 - albedo) * sigma_t, albedo * sigma_t);
+}
+
+/// Two media by turns.
+StressScene Checkerboard(double thin, double thick, double albedo)
+{
+  StressScene scene;
+  scene.absorption.resize(scene.VoxelCount());
+  scene.scattering.resize(scene.VoxelCount());
+  for (int k = 0; k < scene.cells[2]; ++k)
+  {
+    for (int j = 0; j < scene.cells[1]; ++j)
+    {
+      for (int i = 0; i < scene.cells[0]; ++i)
+      {
+        const double sigma = (i + j + k) % 2 == 0 ? thin : thick;
+        scene.absorption[scene.Voxel(i, j, k)] = static_cast<float>((1.0 - albedo) * sigma);
+        scene.scattering[scene.Voxel(i, j, k)] = static_cast<float>(albedo * sigma);
+      }
+    }
+  }
+  return scene;
+}
+
+StressCase Named(const std::string& row, const std::string& name, StressScene scene)
+{
+  StressCase made;
+  made.row = row;
+  made.name = name;
+  made.scene = std::move(scene);
+  return made;
+}
+
+/// In equilibrium with a sky: radiance is the sky's everywhere.
+StressCase Furnace(const std::string& row, const std::string& name, StressScene scene)
+{
+  scene.emission = scene.absorption;
+  scene.sky = { 1.0, 1.0, 1.0 };
+  StressCase made = Named(row, name + ", furnace", std::move(scene));
+  made.furnace = made.bound = 1.0;
+  made.mirrored = { true, true, true };
+  return made;
+}
+
+/// Lit by a sun along -z.
+StressCase Beam(const std::string& row, const std::string& name, StressScene scene)
+{
+  scene.lamps = { Lamp() };
+  StressCase made = Named(row, name + ", beam", std::move(scene));
+  made.beam =
+    std::all_of(made.scene.scattering.begin(), made.scene.scattering.end(), [](float sigma) { return sigma == 0.0f; });
+  made.mirrored = { true, true, false };
+  return made;
+}
+
+/// A cube with one face that shines. Where nothing is absorbed the six faces together are a furnace, so each gives its middle
+/// a sixth.
+StressCase OneFace(const std::string& row, const std::string& name, StressScene scene)
+{
+  scene.faces[4] = 1.0;
+  StressCase made = Named(row, name + ", one face", std::move(scene));
+  made.bound = 1.0;
+  const std::vector<float>& absorption = made.scene.absorption;
+  if (std::all_of(absorption.begin(), absorption.end(), [](float sigma) { return sigma == 0.0f; }))
+  {
+    made.middle = 1.0 / 6.0;
+  }
+  made.mirrored = { true, true, false };
+  return made;
+}
+
+/// All that fits a medium with these coefficients.
+void AddMedium(
+  std::vector<StressCase>& cases, const std::string& row, const std::string& name, const StressScene& scene, bool quick)
+{
+  cases.push_back(Furnace(row, name, scene));
+  cases.back().quick = quick;
+  cases.push_back(OneFace(row, name, scene));
+  cases.back().quick = quick;
+  cases.push_back(Beam(row, name, scene));
+}
+
+void AddThicknesses(std::vector<StressCase>& cases)
+{
+  for (const double albedo : { 0.0, 0.5, NearlyWhite, 1.0 })
+  {
+    for (int decade = -12; decade <= 12; decade += 3)
+    {
+      const std::string name =
+        "1e" + std::to_string(decade) + ", albedo " + (albedo == NearlyWhite ? "1 - 1e-7" : Number(albedo));
+      AddMedium(cases, "sigma_t h", name, OfAlbedo(std::pow(10.0, decade), albedo),
+        decade == 6 && (albedo == 0.5 || albedo == 1.0));
+    }
+  }
+}
+
+void AddMeanCosines(std::vector<StressCase>& cases)
+{
+  for (const double g : { -0.99, -0.5, 0.5, 0.99 })
+  {
+    StressScene scene = OfAlbedo(1.0, 0.9);
+    scene.g = g;
+    StressCase made = Beam("|g| to 0.99", "g " + Number(g), scene);
+    made.twin = std::make_shared<StressScene>(made.scene);
+    made.twin->g = 0.0;
+    for (float& sigma : made.twin->scattering)
+    {
+      sigma = static_cast<float>(sigma * (1.0 - g));
+    }
+    made.similarity = true;
+    made.quick = g == 0.99;
+    cases.push_back(made);
+    cases.push_back(Furnace("|g| to 0.99", "g " + Number(g), scene));
+  }
+}
+
+/// n = `inside` in a ball or in voxels by turns, 1 about them, without any smooth border. Two layers about it are the spline's.
+StressScene Glass(double inside, bool checkered)
+{
+  StressScene scene;
+  scene.cells = { 11, 11, 11 };
+  scene.absorption.assign(scene.VoxelCount(), 0.05f);
+  scene.scattering = scene.absorption;
+  scene.index.assign(scene.VoxelCount(), 1.0f);
+  for (int k = 2; k < 9; ++k)
+  {
+    for (int j = 2; j < 9; ++j)
+    {
+      for (int i = 2; i < 9; ++i)
+      {
+        const bool glass = checkered ? (i + j + k) % 2 == 0 : std::hypot(i - 5, j - 5, k - 5) < 3.1;
+        scene.index[scene.Voxel(i, j, k)] = glass ? static_cast<float>(inside) : 1.0f;
+      }
+    }
+  }
+  return scene;
+}
+
+void AddIndices(std::vector<StressCase>& cases)
+{
+  for (const bool checkered : { false, true })
+  {
+    for (const double n : { 1.0 + 1e-6, 1.5, 4.0 })
+    {
+      const std::string name = std::string(checkered ? "checkerboard of 1 and " : "ball of ") + Number(n);
+      cases.push_back(Beam("n 1 to 4", name, Glass(n, checkered)));
+      cases.back().quick = n == 4.0;
+      cases.push_back(Furnace("n 1 to 4", name, Glass(n, checkered)));
+      cases.back().furnace = 0.0; // for solvers that do not bend light; the viewer's furnace is its own
+      cases.back().bound = 17.0;  // n^2
+    }
+  }
+}
+
+void AddCoefficients(std::vector<StressCase>& cases)
+{
+  const std::string row = "coefficients";
+  AddMedium(cases, row, "0", Uniform(0.0, 0.0), true);
+  AddMedium(cases, row, "denormal", Uniform(1e-40, 1e-40), false);
+  AddMedium(cases, row, "absorption 1e30", Uniform(1e30, 0.0), false);
+  AddMedium(cases, row, "scattering 1e30", Uniform(0.0, 1e30), true);
+  AddMedium(cases, row, "both 1e30", Uniform(1e30, 1e30), false);
+  AddMedium(cases, row, "both 1e36", Uniform(1e36, 1e36), false);
+  AddMedium(cases, row, "both 3e38, more than a float together", Uniform(3e38, 3e38), true);
+  for (std::size_t i = cases.size() - 3; i < cases.size(); ++i)
+  {
+    cases[i].refusals = { { "", "sigma_a and sigma_s add up to 6e+38 in voxel (0, 0, 0)" } };
+  }
+  AddMedium(cases, row, "1e-30 of white", Uniform(1e-30, 1.0), false);
+}
+
+void AddContrasts(std::vector<StressCase>& cases)
+{
+  for (const double albedo : { 0.0, 0.5, NearlyWhite, 1.0 })
+  {
+    const std::string name = "1e-4 and 1e4, albedo " + (albedo == NearlyWhite ? "1 - 1e-7" : Number(albedo));
+    AddMedium(cases, "checkerboard 1e8", name, Checkerboard(1e-4, 1e4, albedo), albedo == 1.0);
+  }
+  AddMedium(cases, "checkerboard 1e8", "0 and 1e8, albedo 1", Checkerboard(0.0, 1e8, 1.0), false);
+}
+
+/// Mean length of the way from the middle of a cube of edge 1 to its surface, over all directions.
+double MeanWayOutOfACube()
+{
+  const int n = 400;
+  double sum = 0.0;
+  for (int j = 0; j < n; ++j)
+  {
+    for (int i = 0; i < n; ++i)
+    {
+      const double u = (2.0 * i + 1.0) / n - 1.0, v = (2.0 * j + 1.0) / n - 1.0;
+      sum += 1.0 / (1.0 + u * u + v * v);
+    }
+  }
+  return 0.5 * 6.0 * sum * (2.0 / n) * (2.0 / n) / (4.0 * std::acos(-1.0));
+}
+
+void AddSingleVoxels(std::vector<StressCase>& cases)
+{
+  for (const double sigma : { 0.0, 1e-6, 1.0, 1e6 })
+  {
+    StressScene scene = Uniform(0.0, 0.0);
+    scene.absorption[MiddleVoxel(scene)] = static_cast<float>(sigma);
+    scene.emission.assign(scene.VoxelCount(), 0.0f);
+    scene.emission[MiddleVoxel(scene)] = static_cast<float>(std::max(sigma, 1.0));
+    StressCase made = Named("hot voxel in vacuum", "sigma_a h " + Number(sigma), scene);
+    made.mirrored = { true, true, true };
+    made.quick = sigma == 1.0;
+    made.bound = sigma >= 1.0 ? 1.0 : made.bound;
+    made.pathInBox = sigma == 0.0 ? 9.0 * MeanWayOutOfACube() : 0.0;
+    cases.push_back(made);
+  }
+  for (const double sigma : { 1e3, 1e12, 1e30 })
+  {
+    StressScene scene = Uniform(0.0, 0.0);
+    scene.absorption[MiddleVoxel(scene)] = static_cast<float>(sigma);
+    cases.push_back(Beam("opaque voxel in light", "absorbing, sigma_t h " + Number(sigma), scene));
+    cases.back().quick = sigma == 1e12;
+    cases.push_back(Furnace("opaque voxel in light", "absorbing, sigma_t h " + Number(sigma), scene));
+    std::swap(scene.absorption, scene.scattering);
+    cases.push_back(Beam("opaque voxel in light", "white, sigma_t h " + Number(sigma), scene));
+    cases.push_back(Furnace("opaque voxel in light", "white, sigma_t h " + Number(sigma), scene));
+  }
+}
+
+void AddLampsInside(std::vector<StressCase>& cases)
+{
+  const char* const names[] = { "sun", "point", "spot", "rectangle" };
+  for (const Lamp::Kind kind : { Lamp::Point, Lamp::Spot, Lamp::Rectangle })
+  {
+    for (const double sigma : { 1e3, 1e12 })
+    {
+      for (const bool white : { false, true })
+      {
+        StressScene scene = Uniform(0.0, 0.0);
+        (white ? scene.scattering : scene.absorption)[MiddleVoxel(scene)] = static_cast<float>(sigma);
+        Lamp lamp;
+        lamp.kind = kind;
+        lamp.at = scene.Middle();
+        scene.lamps = { lamp };
+        StressCase made = Named("light in an opaque voxel",
+          std::string(names[kind]) + (white ? ", white " : ", black ") + Number(sigma), scene);
+        made.mirrored = { kind == Lamp::Point, kind == Lamp::Point, false };
+        made.quick = kind == Lamp::Point && sigma == 1e12;
+        cases.push_back(made);
+      }
+    }
+  }
+}
+
+void Scale(StressScene& scene, double by)
+{
+  for (Lamp& lamp : scene.lamps)
+  {
+    for (double& power : lamp.power)
+    {
+      power *= by;
+    }
+  }
+  for (double& radiance : scene.sky)
+  {
+    radiance *= by;
+  }
+  for (double& radiance : scene.faces)
+  {
+    radiance *= by;
+  }
+  for (float& emission : scene.emission)
+  {
+    emission = static_cast<float>(emission * by);
+  }
+}
+
+void AddPowers(std::vector<StressCase>& cases)
+{
+  const StressScene medium = OfAlbedo(0.3, 0.8);
+  StressScene sun = medium, sky = medium, lamp = medium, glow = medium, face = medium;
+  sun.lamps = { Lamp() };
+  sky.sky = { 1.0, 1.0, 1.0 };
+  lamp.lamps = { Lamp() };
+  lamp.lamps[0].kind = Lamp::Point;
+  lamp.lamps[0].at = { 3.3, 4.4, 5.2 };
+  glow.emission = glow.absorption;
+  face.faces[4] = 1.0;
+  const std::pair<const char*, const StressScene*> lit[] = { { "sun", &sun }, { "sky", &sky }, { "lamp", &lamp },
+    { "emission", &glow }, { "face", &face } };
+  for (const double power : { 1e-36, 1e-30, 1e30, 1e36 })
+  {
+    for (const auto& [name, scene] : lit)
+    {
+      StressCase made = Named("power", std::string(name) + " of " + Number(power), *scene);
+      made.twin = std::make_shared<StressScene>(made.scene);
+      made.scale = power;
+      Scale(made.scene, power);
+      made.quick = power == 1e30 && scene == &sun;
+      cases.push_back(made);
+    }
+  }
+}
+
+void AddSpacings(std::vector<StressCase>& cases)
+{
+  for (const double edge : { 1e-9, 1e9 })
+  {
+    StressScene scene = OfAlbedo(0.3, 0.9);
+    scene.lamps = { Lamp() };
+    scene.lamps.push_back({ Lamp::Point, { 3.3, 4.4, 5.2 }, {}, { 1.0, 1.0, 1.0 } });
+    StressCase made = Named("spacing", "all " + Number(edge), scene);
+    made.twin = std::make_shared<StressScene>(scene);
+    made.scene.spacing.fill(edge);
+    for (double& x : made.scene.lamps[1].at)
+    {
+      x *= edge;
+    }
+    for (double& power : made.scene.lamps[1].power)
+    {
+      power *= edge * edge;
+    }
+    for (std::vector<float>* field : { &made.scene.absorption, &made.scene.scattering })
+    {
+      std::transform(
+        field->begin(), field->end(), field->begin(), [=](float sigma) { return static_cast<float>(sigma / edge); });
+    }
+    made.quick = true;
+    cases.push_back(made);
+  }
+  for (int axis = 0; axis < 3; ++axis)
+  {
+    for (const double ratio : { 1e-3, 1e3 })
+    {
+      for (const double albedo : { 0.0, 0.9, 1.0 })
+      {
+        StressScene scene = OfAlbedo(1.0, albedo);
+        scene.spacing[axis] = ratio;
+        AddMedium(cases, "spacing", std::string(1, "xyz"[axis]) + " " + Number(ratio) + ", albedo " + Number(albedo),
+          scene, false);
+        cases.back().quick = axis == 2 && albedo == 1.0;
+        cases[cases.size() - 2].middle = 0.0; // that is of a cube
+      }
+    }
+  }
+}
+
+void AddShapes(std::vector<StressCase>& cases)
+{
+  const std::array<int, 3> shapes[] = { { 1, 1, 1 }, { 1, 1, 1000 }, { 1000, 1, 1 }, { 1, 1000, 1 } };
+  for (const std::array<int, 3>& shape : shapes)
+  {
+    const std::string name = std::to_string(shape[0]) + "x" + std::to_string(shape[1]) + "x" + std::to_string(shape[2]);
+    for (const double albedo : { 0.0, 0.9, 1.0 })
+    {
+      AddMedium(cases, "shape", name + ", albedo " + Number(albedo), Uniform(0.1 * (1.0 - albedo), 0.1 * albedo, shape),
+        albedo == 0.9);
+      cases[cases.size() - 2].middle = 0.0; // that is of a cube that many rays enter
+    }
+  }
+  // A slab, of 1 x 1 x 1000 voxels with periodic sides: T of diffuse light by the diffusion limit, whose extrapolation length
+  // is Hopf's (0.7104 on both sides).
+  for (const double tau : { 100.0, 1e4, 1e6 })
+  {
+    StressScene slab = Uniform(0.0, tau / 1000.0, { 1, 1, 1000 });
+    slab.periodic = { true, true, false };
+    slab.faces[4] = 1.0;
+    StressCase made = Named("shape", "slab of 1x1x1000, albedo 1, tau " + Number(tau), slab);
+    made.transmitted = 4.0 / 3.0 / (tau + 2.0 * 0.710446);
+    made.bound = 1.0;
+    cases.push_back(made);
+  }
+}
+
+/// Colours that differ by six orders in extinction and in light.
+void AddColours(std::vector<StressCase>& cases)
+{
+  const Vector sigma = { 1.0, 1e-3, 1e3 }, power = { 1e-6, 1.0, 1e-3 };
+  StressScene scene;
+  scene.channels = 3;
+  scene.lamps = { Lamp() };
+  scene.lamps[0].power = power;
+  scene.sky = power;
+  for (std::size_t i = 0; i < scene.VoxelCount(); ++i)
+  {
+    for (int c = 0; c < 3; ++c)
+    {
+      scene.absorption.push_back(static_cast<float>(0.1 * sigma[c]));
+      scene.scattering.push_back(static_cast<float>(0.9 * sigma[c]));
+    }
+  }
+  for (int c = 0; c < 3; ++c)
+  {
+    StressCase made = Named("colours 1e6 apart", std::string("channel ") + "rgb"[c], scene);
+    StressScene alone = Uniform(0.1 * sigma[c], 0.9 * sigma[c]);
+    alone.lamps = { Lamp() };
+    alone.lamps[0].power.fill(power[c]);
+    alone.sky.fill(power[c]);
+    made.twin = std::make_shared<StressScene>(alone);
+    made.twinChannel = c;
+    made.mirrored = { true, true, false };
+    made.quick = c == 0;
+    cases.push_back(made);
+  }
+}
+}
+
+std::vector<StressCase> StressCases()
+{
+  std::vector<StressCase> cases;
+  AddThicknesses(cases);
+  AddMeanCosines(cases);
+  AddIndices(cases);
+  AddCoefficients(cases);
+  AddContrasts(cases);
+  AddSingleVoxels(cases);
+  AddLampsInside(cases);
+  AddPowers(cases);
+  AddSpacings(cases);
+  AddShapes(cases);
+  AddColours(cases);
+  return cases;
+}
+}

@@ -1,0 +1,402 @@
+#include "StressSolvers.h"
+
+#include "Measure.h"
+
+#include "../Filters/MediumScene.h"
+
+#include "vtkFieldData.h"
+#include "vtkLightRig.h"
+#include "vtkMediumRayCaster.h"
+#include "vtkPhotonEmitter.h"
+#include "vtkPhotonImportance.h"
+#include "vtkPhotonMarcher.h"
+#include "vtkPhotonReconstruction.h"
+#include "vtkPolyData.h"
+#include "vtkRefractionOctree.h"
+
+#include <algorithm>
+#include <cmath>
+
+namespace bench
+{
+namespace
+{
+constexpr double Pi = 3.14159265358979323846;
+constexpr int ViewEdge = 12; ///< pixels
+
+/// Keeps what a filter says.
+class Listener : public vtkCommand
+{
+public:
+  static Listener* New() { return new Listener; }
+  void Execute(vtkObject*, unsigned long event, void* text) override
+  {
+    (event == vtkCommand::ErrorEvent ? this->Outcome->errors : this->Outcome->warnings)
+      .emplace_back(static_cast<const char*>(text));
+  }
+  void Hear(vtkAlgorithm* filter)
+  {
+    for (const unsigned long event : { vtkCommand::ErrorEvent, vtkCommand::WarningEvent })
+    {
+      filter->AddObserver(event, this);
+      filter->GetExecutive()->AddObserver(event, this);
+    }
+  }
+  StressOutcome* Outcome = nullptr;
+};
+
+void AddField(vtkImageData* image, const char* name, const std::vector<float>& values, int components)
+{
+  if (!values.empty())
+  {
+    test::AddValues<vtkFloatArray>(image->GetCellData(), name, image->GetNumberOfCells(), components,
+      [&](vtkIdType i, int c) { return values[static_cast<std::size_t>(i * components + c)]; });
+  }
+}
+
+vtkSmartPointer<vtkImageData> ImageOf(const StressScene& scene)
+{
+  test::Box box;
+  box.cells = scene.cells;
+  box.spacing = scene.spacing;
+  const vtkSmartPointer<vtkImageData> image = test::MakeImage(box);
+  AddField(image, "sigma_a", scene.absorption, scene.channels);
+  AddField(image, "sigma_s", scene.scattering, scene.channels);
+  AddField(image, "emission", scene.emission, scene.channels);
+  AddField(image, "ior", scene.index, 1);
+  test::AddValues<vtkDoubleArray>(image->GetFieldData(), "g", 1, 1, [&](vtkIdType, int) { return scene.g; });
+  return image;
+}
+
+void AddLamp(vtkLightRig* rig, const Lamp& lamp, const StressScene& scene)
+{
+  const Vector &at = lamp.at, &to = lamp.along, &p = lamp.power;
+  switch (lamp.kind)
+  {
+    case Lamp::Sun: rig->AddDirectionalLight(to[0], to[1], to[2], p[0], p[1], p[2]); break;
+    case Lamp::Point: rig->AddPointLight(at[0], at[1], at[2], p[0], p[1], p[2]); break;
+    case Lamp::Spot: rig->AddSpotLight(at[0], at[1], at[2], to[0], to[1], to[2], p[0], p[1], p[2], 60.0); break;
+    case Lamp::Rectangle:
+      rig->AddRectangleLight(
+        at[0], at[1], at[2], to[0], to[1], to[2], p[0], p[1], p[2], 0.5 * scene.spacing[0], 0.5 * scene.spacing[0]);
+      break;
+  }
+}
+
+void SetRig(vtkLightRig* rig, const StressScene& scene)
+{
+  rig->SetSun(false);
+  for (const Lamp& lamp : scene.lamps)
+  {
+    AddLamp(rig, lamp, scene);
+  }
+}
+
+std::vector<float> Floats(vtkDataSetAttributes* attributes, const char* name)
+{
+  std::vector<float> values;
+  vtkDataArray* array = attributes->GetArray(name);
+  for (vtkIdType i = 0; array && i < array->GetNumberOfValues(); ++i)
+  {
+    const int components = array->GetNumberOfComponents();
+    values.push_back(static_cast<float>(array->GetComponent(i / components, static_cast<int>(i % components))));
+  }
+  return values;
+}
+
+std::vector<double> Facts(vtkDataObject* data, const char* name)
+{
+  std::vector<double> values;
+  vtkDataArray* array = data->GetFieldData()->GetArray(name);
+  for (vtkIdType i = 0; array && i < array->GetNumberOfValues(); ++i)
+  {
+    const int components = array->GetNumberOfComponents();
+    values.push_back(array->GetComponent(i / components, static_cast<int>(i % components)));
+  }
+  return values;
+}
+
+void ReadLight(vtkImageData* image, StressOutcome& outcome)
+{
+  vtkCellData* cells = image->GetCellData();
+  outcome.empty = image->GetNumberOfCells() == 0;
+  outcome.fluence = Floats(cells, "fluence");
+  outcome.fluenceDirect = Floats(cells, "fluence_direct");
+  outcome.fluenceError = Floats(cells, "fluence_error");
+  outcome.netFlux = Floats(cells, "net_flux");
+  outcome.directions = Floats(cells, "mean_direction");
+  outcome.balance = Facts(image, "energy_balance");
+  outcome.facePowerOut = Facts(image, "face_power_out");
+  outcome.scattered = Facts(image, "scattered");
+  vtkDataArray* fluence = cells->GetArray("fluence");
+  outcome.channels = fluence ? fluence->GetNumberOfComponents() : 1;
+}
+
+void RunMaps(StressSolver solver, const StressScene& scene, Listener* listener, StressOutcome& outcome)
+{
+  vtkNew<vtkLightRig> rig;
+  SetRig(rig, scene);
+  vtkNew<vtkLightPropagationMaps> maps;
+  listener->Hear(rig);
+  listener->Hear(maps);
+  maps->SetInputDataObject(ImageOf(scene));
+  maps->SetLightsConnection(rig->GetOutputPort());
+  maps->SetSkyColor(scene.sky.data());
+  maps->SetFaceRadiance(scene.faces.data());
+  maps->SetPeriodicX(scene.periodic[0]);
+  maps->SetPeriodicY(scene.periodic[1]);
+  maps->SetPeriodicZ(scene.periodic[2]);
+  maps->SetNetFlux(true);
+  const bool sequential = solver == StressSolver::MapsSequential;
+  if (sequential || solver == StressSolver::MapsParallel)
+  {
+    maps->SetScheme(vtkLightPropagationMaps::PUBLISHED);
+    maps->SetAlgorithm(sequential ? vtkLightPropagationMaps::SEQUENTIAL : vtkLightPropagationMaps::PARALLEL);
+  }
+  maps->SetLeaveOut(solver != StressSolver::MapsAll);
+  if (solver != StressSolver::Maps && solver != StressSolver::MapsAll)
+  {
+    maps->SetSource(vtkLightPropagationMaps::CONSTANT);
+    maps->SetAcceleration(vtkLightPropagationMaps::NONE);
+    maps->SetMaximumOrders(solver == StressSolver::MapsByOrders ? StressOrders : StressOrdersPublished);
+  }
+  maps->Update();
+  outcome.residual = maps->GetResidual() / maps->GetTolerance();
+  ReadLight(maps->GetOutput(), outcome);
+}
+
+/// Emitter and marcher, and what may stand before and after them.
+struct PhotonChain
+{
+  vtkNew<vtkLightRig> rig;
+  vtkNew<vtkPhotonImportance> importance;
+  vtkNew<vtkPhotonEmitter> emitter;
+  vtkNew<vtkRefractionOctree> octree;
+  vtkNew<vtkPhotonMarcher> marcher;
+  vtkNew<vtkPhotonReconstruction> reconstruction;
+
+  PhotonChain(StressSolver solver, StressScene scene, Listener* listener)
+  {
+    SetRig(this->rig, scene);
+    if (solver == StressSolver::Octree && scene.index.empty())
+    {
+      scene.index.assign(scene.VoxelCount(), 1.0f); // which it groups by extinction then
+    }
+    const vtkSmartPointer<vtkImageData> medium = ImageOf(scene);
+    for (vtkAlgorithm* filter : std::initializer_list<vtkAlgorithm*>{
+           this->rig, this->importance, this->emitter, this->octree, this->marcher, this->reconstruction })
+    {
+      listener->Hear(filter);
+    }
+    this->importance->SetInputDataObject(medium);
+    this->importance->SetLightsConnection(this->rig->GetOutputPort());
+    this->importance->SetSkyColor(scene.sky[0], scene.sky[1], scene.sky[2]);
+    this->emitter->SetInputDataObject(medium);
+    this->emitter->SetLightsConnection(this->rig->GetOutputPort());
+    this->emitter->SetSkyColor(scene.sky[0], scene.sky[1], scene.sky[2]);
+    this->emitter->SetPhotonCount(StressPhotons);
+    this->octree->SetInputDataObject(medium);
+    this->octree->SetIncludeExtinction(true);
+    this->marcher->SetInputDataObject(medium);
+    this->marcher->SetPhotonsConnection(this->emitter->GetOutputPort());
+    this->reconstruction->SetInputConnection(this->marcher->GetOutputPort());
+  }
+
+  void March(bool published, StressOutcome& outcome)
+  {
+    this->marcher->SetScheme(published ? vtkPhotonMarcher::PUBLISHED : vtkPhotonMarcher::SOUND);
+    this->marcher->Update();
+    ReadLight(vtkImageData::SafeDownCast(this->marcher->GetOutputDataObject(0)), outcome);
+  }
+
+  void Rebuild(bool published, StressOutcome& outcome)
+  {
+    this->emitter->SetImportanceMapConnection(this->importance->GetOutputPort());
+    this->marcher->SetPhotonCounts(published);
+    this->reconstruction->SetScheme(published ? vtkPhotonReconstruction::PUBLISHED : vtkPhotonReconstruction::SOUND);
+    this->reconstruction->Update();
+    ReadLight(this->reconstruction->GetOutput(), outcome);
+    const std::vector<float> raw =
+      Floats(vtkImageData::SafeDownCast(this->marcher->GetOutputDataObject(0))->GetCellData(), "fluence");
+    for (const float fluence : raw)
+    {
+      outcome.rawTotal += fluence;
+    }
+  }
+
+  void MarchThroughOctree(StressOutcome& outcome)
+  {
+    this->marcher->SetOctreeConnection(this->octree->GetOutputPort());
+    this->March(false, outcome);
+    outcome.levels =
+      Floats(vtkImageData::SafeDownCast(this->octree->GetOutputDataObject(0))->GetCellData(), "octree_level");
+    outcome.nodes = static_cast<double>(this->octree->GetNodeCount());
+  }
+};
+
+/// The medium in a light of 4 pi everywhere, so that where it is in equilibrium with that all is 1 to the eye. Where rays bend
+/// radiance is n^2 of that.
+vtkSmartPointer<vtkImageData> ImageToView(const StressScene& scene, bool bent, bool lit)
+{
+  StressScene seen = scene;
+  seen.index = bent ? IndexToView(scene) : std::vector<float>();
+  std::vector<float> fluence(scene.VoxelCount(), static_cast<float>(4.0 * Pi));
+  if (!lit)
+  {
+    seen.emission.clear();
+  }
+  for (std::size_t i = 0; bent && i < fluence.size(); ++i)
+  {
+    const float square = seen.index[i] * seen.index[i];
+    fluence[i] *= square;
+    for (int c = 0; c < seen.channels && !seen.emission.empty(); ++c)
+    {
+      seen.emission[i * seen.channels + c] *= square;
+    }
+  }
+  const vtkSmartPointer<vtkImageData> image = ImageOf(seen);
+  if (lit)
+  {
+    AddField(image, "fluence", fluence, 1);
+  }
+  return image;
+}
+
+/// Parallel rays along -z that all meet the box well within its sides.
+void LookDown(vtkMediumRayCaster* caster, const StressScene& scene)
+{
+  double middle[3], length[3];
+  for (int axis = 0; axis < 3; ++axis)
+  {
+    length[axis] = scene.cells[axis] * scene.spacing[axis];
+    middle[axis] = 0.5 * length[axis];
+  }
+  caster->SetCameraFocalPoint(middle);
+  caster->SetCameraPosition(middle[0], middle[1], middle[2] + length[2]);
+  caster->SetCameraViewUp(0.0, 1.0, 0.0);
+  caster->SetCameraParallelProjection(true);
+  caster->SetCameraParallelScale(0.3 * std::min(length[0], length[1]));
+}
+
+void RunView(bool bent, const StressScene& scene, Listener* listener, StressOutcome& outcome)
+{
+  for (const bool lit : { true, false })
+  {
+    vtkNew<vtkMediumRayCaster> caster;
+    listener->Hear(caster);
+    caster->SetInputDataObject(ImageToView(scene, bent, lit));
+    caster->SetImageSize(ViewEdge, ViewEdge);
+    caster->SetBackgroundColor(1.0, 1.0, 1.0);
+    if (!lit)
+    {
+      LookDown(caster, scene);
+    }
+    caster->Update();
+    vtkPointData* pixels = caster->GetOutput()->GetPointData();
+    outcome.empty = caster->GetOutput()->GetNumberOfPoints() == 0;
+    (lit ? outcome.radiance : outcome.through) = Floats(pixels, "radiance");
+    const std::vector<float> alpha = Floats(pixels, "alpha");
+    outcome.alpha.insert(outcome.alpha.end(), alpha.begin(), alpha.end());
+    if (!outcome.errors.empty())
+    {
+      return;
+    }
+  }
+}
+}
+
+const char* NameOf(StressSolver solver)
+{
+  static const char* const names[] = { "maps", "maps, all", "maps, orders", "maps, parallel", "maps, sequential",
+    "photons", "photons, published", "rebuilt", "rebuilt, published", "octree", "view", "view, bent" };
+  return names[static_cast<int>(solver)];
+}
+
+bool IsMaps(StressSolver solver)
+{
+  return solver <= StressSolver::MapsSequential;
+}
+
+bool IsPhotons(StressSolver solver)
+{
+  return solver >= StressSolver::Photons && solver <= StressSolver::Octree;
+}
+
+bool IsView(StressSolver solver)
+{
+  return solver >= StressSolver::View;
+}
+
+bool Concerns(StressSolver solver, const StressCase& stressCase)
+{
+  const StressScene& scene = stressCase.scene;
+  if (IsPhotons(solver))
+  {
+    return !scene.lamps.empty() || scene.sky != Vector{};
+  }
+  if (IsView(solver))
+  {
+    const bool thin = *std::min_element(scene.cells.begin(), scene.cells.end()) < 3; // no room for a ball of glass
+    return !(thin && solver == StressSolver::ViewBent) &&
+      (stressCase.furnace > 0.0 || !scene.index.empty() || scene.g != 0.0 || stressCase.row == "colours 1e6 apart" ||
+        stressCase.row == "hot voxel in vacuum" || (stressCase.row == "power" && !scene.emission.empty()));
+  }
+  return true;
+}
+
+std::vector<float> IndexToView(const StressScene& scene)
+{
+  if (!scene.index.empty())
+  {
+    return scene.index;
+  }
+  std::vector<float> index(scene.VoxelCount(), 1.0f);
+  for (int k = 0; k < scene.cells[2]; ++k)
+  {
+    for (int j = 0; j < scene.cells[1]; ++j)
+    {
+      for (int i = 0; i < scene.cells[0]; ++i)
+      {
+        double square = 0.0;
+        const std::array<int, 3> at = { i, j, k };
+        for (int axis = 0; axis < 3; ++axis)
+        {
+          const double x = (at[axis] + 0.5) / scene.cells[axis] - 0.5;
+          square += scene.cells[axis] > 1 ? x * x : 0.0;
+        }
+        index[scene.Voxel(i, j, k)] += static_cast<float>(0.5 * std::exp(-60.0 * square));
+      }
+    }
+  }
+  return index;
+}
+
+StressOutcome RunStress(StressSolver solver, const StressScene& scene)
+{
+  StressOutcome outcome;
+  vtkNew<Listener> listener;
+  listener->Outcome = &outcome;
+  const double start = WallSeconds();
+  if (IsMaps(solver))
+  {
+    RunMaps(solver, scene, listener, outcome);
+  }
+  else if (IsView(solver))
+  {
+    RunView(solver == StressSolver::ViewBent, scene, listener, outcome);
+  }
+  else
+  {
+    PhotonChain chain(solver, scene, listener);
+    switch (solver)
+    {
+      case StressSolver::Rebuilt:
+      case StressSolver::RebuiltPublished: chain.Rebuild(solver == StressSolver::RebuiltPublished, outcome); break;
+      case StressSolver::Octree: chain.MarchThroughOctree(outcome); break;
+      default: chain.March(solver == StressSolver::PhotonsPublished, outcome);
+    }
+  }
+  outcome.seconds = WallSeconds() - start;
+  return outcome;
+}
+}

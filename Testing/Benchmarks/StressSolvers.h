@@ -1,0 +1,65 @@
+#pragma once
+
+#include "StressScenes.h"
+
+#include <string>
+#include <vector>
+
+/// The filters that are put under stress, each as a user would chain them.
+namespace bench
+{
+enum class StressSolver
+{
+  Maps,             ///< light propagation maps, sound, untouched
+  MapsAll,          ///< the same, with nothing left out
+  MapsByOrders,     ///< sound, one scattering order after the other, a constant source
+  MapsParallel,     ///< as published, Algorithm 2
+  MapsSequential,   ///< as published, Algorithm 1
+  Photons,          ///< emitter and marcher, sound
+  PhotonsPublished, ///< as published
+  Rebuilt,          ///< importance, emitter, marcher, reconstruction, sound
+  RebuiltPublished, ///< as published
+  Octree,           ///< octree, and photons through it
+  View,             ///< ray caster, straight rays
+  ViewBent,         ///< ray caster, an index that varies
+  Count
+};
+
+const char* NameOf(StressSolver solver);
+bool IsMaps(StressSolver solver);
+bool IsPhotons(StressSolver solver); ///< photons, reconstructed or not
+bool IsView(StressSolver solver);
+
+/// Whether a solver has anything to do with a case: photons come from lamps and skies only, a viewer sees no lamps, ...
+bool Concerns(StressSolver solver, const StressCase& stressCase);
+
+/// What a chain of filters gave.
+struct StressOutcome
+{
+  std::vector<std::string> errors, warnings; ///< by VTK's channel
+  bool empty = true;                         ///< all outputs of the last filter
+  double seconds = 0.0;
+  int channels = 1;
+  std::vector<float> fluence, fluenceDirect, netFlux, fluenceError;
+  std::vector<double> balance;      ///< entered, emitted, absorbed, escaped, left over; `channels` each
+  std::vector<double> facePowerOut; ///< -x, +x, -y, +y, -z, +z; `channels` each
+  std::vector<double> scattered;    ///< W, of photons
+  std::vector<float> directions;    ///< mean directions, 3 a voxel, of photons
+  double residual = 0.0;            ///< of maps, what the solver says is left
+  double rawTotal = 0.0;            ///< of reconstructions: the sum of the noisy fluence
+  std::vector<float> levels;        ///< of the octree
+  double nodes = 0.0;
+  std::vector<float> radiance, alpha; ///< of views, 3 and 1 a pixel: in a furnace
+  std::vector<float> through;         ///< of views, 3 a pixel: a background of 1 seen through the unlit medium along -z
+};
+
+StressOutcome RunStress(StressSolver solver, const StressScene& scene);
+
+/// Index of each voxel as the bent view sees it: the scene's own, or that of a soft ball.
+std::vector<float> IndexToView(const StressScene& scene);
+
+/// Scattering orders at most, of the maps that are not accelerated; as published they are slow where voxels are 1:1000.
+constexpr int StressOrders = 30, StressOrdersPublished = 2;
+/// Photons of each chain.
+constexpr int StressPhotons = 20000;
+}

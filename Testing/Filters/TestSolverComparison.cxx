@@ -1,0 +1,303 @@
+#include "MediumScene.h"
+
+#include "vtkLightRig.h"
+#include "vtkSolverComparison.h"
+#include "vtkStringArray.h"
+#include "vtkTable.h"
+#include "vtkVariant.h"
+
+#include <cmath>
+#include <limits>
+
+namespace
+{
+constexpr double Pi = 3.14159265358979323846;
+
+double Number(vtkTable* table, vtkIdType row, const char* column)
+{
+  return table->GetValueByName(row, column).ToDouble();
+}
+
+std::string Text(vtkTable* table, vtkIdType row, const char* column)
+{
+  return table->GetValueByName(row, column).ToString();
+}
+
+/// Only the default method, at one setting.
+void AskForOne(vtkSolverComparison* comparison)
+{
+  comparison->ConstantSourceOff();
+  comparison->AsPublishedOff();
+  comparison->PhotonsOff();
+  comparison->RemoveAllDirections();
+  comparison->AddDirections(25);
+  comparison->RemoveAllMapResolutions();
+  comparison->AddMapResolution(1);
+  comparison->RemoveAllCoarsenings();
+  comparison->AddCoarsening(1);
+  comparison->RemoveAllOrders();
+  comparison->SetRepeats(1);
+}
+
+/// A cloud whose density varies from voxel to voxel.
+vtkSmartPointer<vtkImageData> Cloud(int edge)
+{
+  auto medium = test::MakeMedium({ { edge, edge, edge }, { 1.0 / edge, 1.0 / edge, 1.0 / edge } }, 0.2, 4.0);
+  vtkDataArray* scattering = medium->GetCellData()->GetArray("sigma_s");
+  for (vtkIdType i = 0; i < scattering->GetNumberOfTuples(); ++i)
+  {
+    scattering->SetComponent(i, 0, 4.0 * (1.0 + std::sin(0.7 * (i % edge)) * std::cos(0.5 * (i / edge % edge))));
+  }
+  return medium;
+}
+
+void LightIsNoErrorOfItself(test::Claims& claims)
+{
+  const auto medium = Cloud(8);
+  vtkNew<vtkLightPropagationMaps> maps;
+  maps->SetInputDataObject(medium);
+  maps->SetSkyColor(1.0, 1.0, 1.0);
+  vtkNew<vtkSolverComparison> comparison;
+  test::Errors errors(comparison);
+  AskForOne(comparison);
+  comparison->SetInputDataObject(medium);
+  comparison->SetSkyColor(1.0, 1.0, 1.0);
+  comparison->SetReferenceConnection(maps->GetOutputPort());
+  comparison->Update();
+  vtkTable* table = comparison->GetOutput();
+  if (claims.That(errors.None() && table->GetNumberOfRows() == 1, "a row a setting"))
+  {
+    claims.That(
+      Number(table, 0, "error_l2") == 0.0 && Number(table, 0, "error_max") == 0.0, "the same light has no error");
+    claims.That(Number(table, 0, "pareto") == 1.0, "and nothing is better");
+    claims.That(Number(table, 0, "seconds") > 0.0 && Number(table, 0, "peak_bytes") > 8 * 8 * 8 * 4, "time and memory");
+    claims.That(Number(table, 0, "iterations") == maps->GetOrders(), "as many orders as the solver tells");
+    claims.Near(Number(table, 0, "balance"), maps->GetBalanceError(), 1e-12, "balance");
+    auto* again = vtkImageData::SafeDownCast(comparison->GetOutputDataObject(1));
+    vtkDataArray* light = again->GetCellData()->GetArray("fluence");
+    claims.That(light && light->GetNumberOfTuples() == 512 && again->GetCellData()->GetArray("fluence_direct"),
+      "the reference comes out");
+    claims.That(
+      light && light->GetComponent(77, 0) == maps->GetOutput()->GetCellData()->GetArray("fluence")->GetComponent(77, 0),
+      "as it was");
+    claims.That(Text(table, 0, "setting") == "25 directions" && Text(table, 0, "grid") == "8x8x8", "what was run");
+  }
+}
+
+void CoarserIsWorse(test::Claims& claims)
+{
+  vtkNew<vtkLightRig> rig;
+  vtkNew<vtkSolverComparison> comparison;
+  test::Errors errors(comparison);
+  AskForOne(comparison);
+  comparison->SetInputDataObject(Cloud(16));
+  comparison->SetLightsConnection(rig->GetOutputPort());
+  comparison->SetSkyColor(0.2, 0.2, 0.2);
+  comparison->RemoveAllDirections();
+  comparison->AddDirections(1);
+  comparison->AddDirections(25);
+  comparison->AddCoarsening(2);
+  comparison->AddCoarsening(4);
+  comparison->AddCoarsening(5); // does not divide
+  comparison->AddOrders(1);
+  comparison->SetTimeBudget(20.0);
+  comparison->Update();
+  vtkTable* table = comparison->GetOutput();
+  claims.That(errors.None() && table->GetNumberOfRows() == 7, "two sets of directions on three grids, and one order");
+  const auto error = [&](const std::string& setting) {
+    for (vtkIdType row = 0; row < table->GetNumberOfRows(); ++row)
+    {
+      if (Text(table, row, "setting") == setting)
+      {
+        return Number(table, row, "error_l2");
+      }
+    }
+    claims.That(false, "there is a row " + setting);
+    return std::nan("");
+  };
+  const double fine = error("25 directions");
+  claims.That(fine < 0.05, "the finest is near the converged run");
+  claims.That(fine < error("1 directions"), "few directions are worse");
+  claims.That(fine < error("25 directions, voxels x 2"), "coarse voxels are worse");
+  claims.That(error("25 directions, voxels x 2") < error("25 directions, voxels x 4"), "the coarser the worse");
+  claims.That(10.0 * fine < error("25 directions, 1 order"), "light of one order is far too dark");
+  auto* reference = vtkStringArray::SafeDownCast(table->GetFieldData()->GetAbstractArray("reference"));
+  claims.That(reference && reference->GetValue(0).find("32x32x32") != std::string::npos, "the reference is named");
+}
+
+/// Albedo 1 between faces of radiance 1: fluence is 4 pi, on any grid.
+void GridsAreMatched(test::Claims& claims)
+{
+  for (int edge : { 2, 4, 8, 16 })
+  {
+    const double spacing = 8.0 / edge;
+    auto reference = test::MakeImage({ { edge, edge, edge }, { spacing, spacing, spacing } });
+    test::AddCells(reference, "fluence", 4.0 * Pi);
+    reference->GetCellData()->GetArray("fluence")->SetComponent(0, 0, std::numeric_limits<double>::quiet_NaN());
+    vtkNew<vtkSolverComparison> comparison;
+    test::Errors errors(comparison);
+    AskForOne(comparison);
+    comparison->AddCoarsening(2);
+    comparison->SetInputDataObject(test::MakeMedium({ { 8, 8, 8 } }, 0.0, 0.3));
+    comparison->SetFaceRadiance(1, 1, 1, 1, 1, 1);
+    comparison->SetTolerance(1e-6);
+    comparison->SetReferenceData(reference);
+    comparison->Update();
+    vtkTable* table = comparison->GetOutput();
+    const std::string name = "a reference of " + std::to_string(edge) + " voxels an edge";
+    claims.That(errors.None() && table->GetNumberOfRows() == 2, name);
+    for (vtkIdType row = 0; row < table->GetNumberOfRows(); ++row)
+    {
+      claims.Near(Number(table, row, "error_max"), 0.0, 1e-4, "the furnace against " + name);
+    }
+    test::AddCells(reference, "fluence", 8.0 * Pi);
+    comparison->Update();
+    claims.Near(table->GetNumberOfRows() > 0 ? Number(table, 0, "error_l2") : -1.0, 0.5, 1e-4, "half of " + name);
+  }
+}
+
+void PhotonsAreComparedWithDirectLight(test::Claims& claims)
+{
+  vtkNew<vtkLightRig> rig;
+  vtkNew<vtkSolverComparison> comparison;
+  test::Errors errors(comparison);
+  AskForOne(comparison);
+  comparison->PhotonsOn();
+  comparison->RemoveAllPhotonCounts();
+  comparison->AddPhotonCount(1000);
+  comparison->AddPhotonCount(100000);
+  comparison->SetInputDataObject(test::MakeMedium({ { 8, 8, 8 } }, 0.1, 0.2));
+  comparison->SetLightsConnection(rig->GetOutputPort());
+  comparison->SetTimeBudget(20.0);
+  comparison->Update();
+  vtkTable* table = comparison->GetOutput();
+  if (claims.That(errors.None() && table->GetNumberOfRows() == 3, "propagation and two numbers of photons"))
+  {
+    claims.That(
+      Text(table, 1, "quantity") == "fluence_direct" && Text(table, 0, "quantity") == "fluence", "quantities");
+    claims.That(Number(table, 2, "error_l2") < 0.02, "many photons find the direct light");
+    claims.That(Number(table, 2, "error_l2") < Number(table, 1, "error_l2"), "few are worse");
+    claims.That(Number(table, 1, "pareto") == 1.0, "quantities do not compete");
+  }
+
+  auto bent = test::MakeMedium({ { 8, 8, 8 } }, 0.1, 0.2);
+  test::AddCells(bent, "ior", 1.0);
+  bent->GetCellData()->GetArray("ior")->SetComponent(200, 0, 1.2);
+  comparison->SetInputDataObject(bent);
+  comparison->Update();
+  claims.That(errors.None() && table->GetNumberOfRows() == 2 && Text(table, 0, "method") == "photons",
+    "bent light is a matter of photons");
+  claims.That(std::string(comparison->GetLeftOut()).find("does not bend") != std::string::npos, "and it is said");
+}
+
+vtkSmartPointer<vtkImageData> Reference(std::array<int, 3> cells, const char* array)
+{
+  auto image = test::MakeImage({ cells });
+  test::AddCells(image, array, 1.0);
+  return image;
+}
+
+void BadInput(test::Claims& claims)
+{
+  vtkNew<vtkSolverComparison> comparison;
+  test::Errors errors(comparison);
+  AskForOne(comparison);
+  comparison->SetInputDataObject(test::MakeMedium({ { 4, 4, 4 } }, 0.5, 1.0));
+  comparison->SetSkyColor(1.0, 1.0, 1.0);
+  comparison->SetReferenceData(Reference({ 4, 4, 4 }, "fluence"));
+  const auto says = [&](const std::string& part) {
+    comparison->Update();
+    claims.That(errors.WasOneWith(part), "refused: " + part);
+    claims.That(comparison->GetOutput()->GetNumberOfRows() == 0, "the table is empty: " + part);
+  };
+  comparison->SetReferenceData(Reference({ 4, 4, 5 }, "fluence"));
+  says("4x4x5");
+  comparison->SetReferenceData(Reference({ 4, 4, 4 }, "light"));
+  says("neither an array 'fluence' nor 'fluence_direct'");
+  comparison->SetReferenceData(Reference({ 4, 4, 4 }, "fluence"));
+  comparison->LightPropagationMapsOff();
+  says("No method");
+  comparison->LightPropagationMapsOn();
+  comparison->AddDirections(24);
+  says("24");
+  comparison->RemoveAllDirections();
+  says("Directions is empty");
+  comparison->AddDirections(4);
+  comparison->AddCoarsening(0);
+  says("Coarsenings has 0");
+  comparison->RemoveAllCoarsenings();
+  comparison->AddCoarsening(1);
+  comparison->SetTimeBudget(0.0);
+  says("TimeBudget");
+  comparison->SetTimeBudget(10.0);
+  comparison->SetTolerance(0.0);
+  says("Tolerance");
+  comparison->SetTolerance(1e-3);
+  comparison->SetDevice("abacus");
+  says("abacus");
+  comparison->SetDevice("");
+  comparison->Update();
+  claims.That(
+    errors.None() && comparison->GetOutput()->GetNumberOfRows() == 1, "good input after all the bad is compared");
+}
+
+/// Asks to stop at a report of progress.
+struct Stopper : vtkCommand
+{
+  static Stopper* New() { return new Stopper; }
+  void Execute(vtkObject* caller, unsigned long, void*) override
+  {
+    auto* filter = static_cast<vtkAlgorithm*>(caller);
+    this->Last = filter->GetProgress();
+    if (++this->Reports == this->StopAt)
+    {
+      filter->SetAbortExecute(1);
+    }
+  }
+  int Reports = 0;
+  int StopAt = 0;
+  double Last = 0.0;
+};
+
+void ReportsAndStops(test::Claims& claims)
+{
+  vtkNew<vtkSolverComparison> comparison;
+  test::Errors errors(comparison);
+  vtkNew<Stopper> stopper;
+  comparison->AddObserver(vtkCommand::ProgressEvent, stopper);
+  AskForOne(comparison);
+  comparison->SetInputDataObject(test::MakeMedium({ { 16, 16, 16 } }, 0.0, 1.0));
+  comparison->SetSkyColor(1.0, 1.0, 1.0);
+  stopper->StopAt = 10;
+  comparison->Update();
+  claims.That(
+    errors.None() && comparison->GetOutput()->GetNumberOfRows() == 0, "an abort is no error and gives no table");
+  claims.That(
+    stopper->Reports >= 10 && stopper->Reports <= 12, "it stops at once: " + std::to_string(stopper->Reports));
+  claims.That(comparison->GetOutput()->GetFieldData()->HasArray("aborted"), "and says so");
+
+  stopper->StopAt = 0;
+  comparison->SetTimeBudget(0.01);
+  comparison->SetReferenceData(Reference({ 16, 16, 16 }, "fluence"));
+  comparison->AddDirections(10000);
+  comparison->Update();
+  claims.That(errors.None() && std::string(comparison->GetLeftOut()).find("10000 directions") != std::string::npos,
+    "what takes longer than the budget is named");
+}
+}
+
+int TestSolverComparison(int, char*[])
+{
+  if (!test::HasDevice())
+  {
+    return test::SkippedWithoutDevice("LightPropagationMaps gave an error");
+  }
+  test::Claims claims;
+  LightIsNoErrorOfItself(claims);
+  CoarserIsWorse(claims);
+  GridsAreMatched(claims);
+  PhotonsAreComparedWithDirectLight(claims);
+  BadInput(claims);
+  ReportsAndStops(claims);
+  return claims.Result();
+}
