@@ -13,9 +13,9 @@ namespace tyndall
 {
 namespace
 {
-constexpr int CellsPerEdge = 42;       ///< of the direction set near the peak
-constexpr int RaysPerEdge = 4;         ///< of a voxel there
-constexpr double BeamWidth = 0.5;      ///< voxels, where beams leave the box
+constexpr int CellsPerEdge = 20;       ///< of the direction set near the peak
+constexpr int RaysPerEdge = 2;         ///< of a voxel there
+constexpr double BeamWidth = 1.0;      ///< voxels, where beams leave the box
 constexpr double BeamTangent = 0.0625; ///< at most
 constexpr int RowSums = 11;            ///< EMISSION_SUMS of EmissionBeams.cl
 constexpr int RowsPerLaunch = 256;     ///< keeps a launch well below a tenth of a second for rows of a thousand voxels
