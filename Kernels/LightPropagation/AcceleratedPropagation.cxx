@@ -12,6 +12,7 @@ constexpr int MostSweeps = 200;
 constexpr int ManyPlanes = 8192;         ///< that a ray goes round a periodic axis before it is given up
 constexpr double UsualTolerance = 1e-4;  ///< the method must not depend on the tolerance
 constexpr double ThickForNearness = 0.1; ///< mean free paths a voxel
+constexpr double Margin = 1.5;           ///< of the estimated error: changes do not fall off evenly
 constexpr double ManyOrders = 40.0;      ///< plain iteration that is dearer than an acceleration
 
 }
@@ -255,7 +256,7 @@ void FusedSolver::Correct(int sweep)
   }
   const double ratio = sweep > 0 && this->Change > 0.0 ? change / this->Change : 1.0;
   const double fall = std::clamp(sweep > 1 ? std::max(ratio, this->LastRatio) : ratio, 0.5, 0.95);
-  this->Residual = sweep > 0 || change == 0.0 ? change * fall / (1.0 - fall) : 1.0;
+  this->Residual = sweep > 0 || change == 0.0 ? Margin * change * fall / (1.0 - fall) : 1.0;
   this->LastRatio = ratio;
   this->Change = change;
   this->CountLight();

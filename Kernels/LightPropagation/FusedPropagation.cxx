@@ -132,7 +132,8 @@ void FusedSolver::Load()
 template <class Loader>
 void FusedSolver::LoadEmission(const Loader& load)
 {
-  if (this->Settings.emissionRays)
+  const std::array<bool, 3>& periodic = this->Settings.periodic;
+  if (this->Settings.emissionRays && !periodic[0] && !periodic[1] && !periodic[2])
   {
     this->Emission = Split(this->TheMedium, this->Settings.periodic);
   }
