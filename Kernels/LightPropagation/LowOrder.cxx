@@ -154,6 +154,7 @@ LowOrder::LowOrder(Device& device, const Grid& grid, const std::array<bool, 3>& 
   this->Right = ExactValues(device, this->Count, what);
   this->Given = ExactValues(device, this->Count, what);
   this->Solution = ExactValues(device, this->Count, what);
+  this->Solution.Fill(0.0); // a dark channel is never solved for
   this->Sums = ExactValues(device, Sums_ * ((this->Count + Chunk - 1) / Chunk), "sums");
   const std::array<int, 3>& n = grid.size;
   const std::size_t faces = 2 *

@@ -122,7 +122,7 @@ void CoarserIsWorse(test::Claims& claims)
   claims.That(error("25 directions, voxels x 2") < error("25 directions, voxels x 4"), "the coarser the worse");
   claims.That(10.0 * fine < error("25 directions, 1 order"), "light of one order is far too dark");
   auto* reference = vtkStringArray::SafeDownCast(table->GetFieldData()->GetAbstractArray("reference"));
-  claims.That(reference && reference->GetValue(0).find("32x32x32") != std::string::npos, "the reference is named");
+  claims.That(reference && reference->GetValue(0).find("directions") != std::string::npos, "the reference is named");
 }
 
 /// Albedo 1 between faces of radiance 1: fluence is 4 pi, on any grid.

@@ -261,12 +261,14 @@ TEST_F(LinearSource, LightsACubeAsPhotonsDo)
   // The light that comes straight from the face needs many directions: its shadows have edges.
   Scene lit = Cube(30, 1.0, 0.9);
   lit.settings.directionsPerFace = 900;
+  lit.settings.mapResolution = 2;
   lit.light.faces[4] = { 1.0, 1.0, 1.0 };
   const LightField light = lit.Solve(this->GetDevice());
   ExpectAsPhotonsDo(CubeInDiffuseLight, lit, light, 900.0 / light.balance.entered[0]); // of flux 1, side 1
 
   Scene shining = Cube(30, 5.0, 0.9);
   shining.settings.directionsPerFace = 100;
+  shining.settings.mapResolution = 2;
   shining.emission.assign(27000, static_cast<float>(1.0 / (4.0 * Pi * 27000.0)));
   ExpectAsPhotonsDo(ShiningCube, shining, shining.Solve(this->GetDevice()), 900.0);
 }
