@@ -125,6 +125,13 @@ int vtkLightPropagationMaps::RequestData(vtkInformation*, vtkInformationVector**
     tyndall::LightField light = Solve(this, input.medium, illumination);
 
     this->Note(light);
+    if (this->MaximumOrders == 0 && this->Residual > this->Tolerance)
+    {
+      vtkWarningMacro("The light has not converged: after "
+        << this->Orders << " sweeps its estimated relative error is " << this->Residual << ", Tolerance is "
+        << this->Tolerance
+        << ". Set a larger Tolerance, or Acceleration to none, or resample to voxels of more equal edges.");
+    }
     tyndall::WriteConvergence(light.convergence, vtkTable::GetData(outputs, 1));
     vtkImageData* output = vtkImageData::GetData(outputs, 0);
     tyndall::PassOn(image, output);

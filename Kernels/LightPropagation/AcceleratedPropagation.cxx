@@ -165,9 +165,12 @@ std::vector<float> FusedSolver::WithLamps(const Buffer<float>& planar, double sc
 /// From the source that is there to path and entering power. The light that comes in from outside comes in every time.
 void FusedSolver::SweepAll(int sweepNumber, const Monitor& monitor)
 {
-  for (const std::unique_ptr<LowOrder>& system : this->Systems)
+  for (std::size_t c = 0; c < this->Systems.size(); ++c)
   {
-    system->WriteSource();
+    if (this->UnitPower(static_cast<int>(c)) > 0.0)
+    {
+      this->Systems[c]->WriteSource();
+    }
   }
   this->Path.Fill(0.0f);
   this->Entering.Fill(0.0f);
@@ -273,6 +276,12 @@ void FusedSolver::CountLight()
   this->Found.clear();
   for (int c = 0; c < this->Channels; ++c)
   {
+    this->Result.balance.leftOver[c] = this->Stranded[c];
+    if (!(this->UnitPower(c) > 0.0))
+    {
+      this->Found.emplace_back(grid.VoxelCount(), 0.0); // dark: never solved for
+      continue;
+    }
     this->Found.push_back(this->Systems[c]->Found());
     for (std::size_t i = 0; i < grid.VoxelCount(); ++i)
     {
@@ -290,7 +299,6 @@ void FusedSolver::CountLight()
       this->Result.facePowerOut[face][c] += outflow[face];
       this->Result.balance.escaped[c] += outflow[face];
     }
-    this->Result.balance.leftOver[c] = this->Stranded[c];
   }
 }
 
@@ -323,7 +331,7 @@ void FusedSolver::UnloadAccelerated()
       const double found = this->Found[c][i];
       fluence[at] = static_cast<float>((found >= 0.0 ? found : path[at] * perVolume) + this->Lamps[at]);
     }
-    if (this->Settings.netFlux)
+    if (this->Settings.netFlux && this->UnitPower(c) > 0.0)
     {
       this->Systems[c]->AddFlux(this->Flux);
     }
