@@ -1,5 +1,7 @@
 #include "GridTransfer.h"
 
+#include "../Medium/Coarsening.h"
+
 #include <algorithm>
 #include <cmath>
 
@@ -85,18 +87,7 @@ std::optional<Factors> FactorsBetween(const Grid& fine, const Grid& coarse)
 
 std::vector<float> Averaged(const float* values, int components, const Grid& fine, const Factors& factors)
 {
-  const std::size_t channels = static_cast<std::size_t>(components);
-  std::vector<double> sums(Coarsened(fine, factors).VoxelCount() * channels, 0.0);
-  ForAllPairs(fine, factors, [&](std::size_t from, std::size_t to) {
-    for (std::size_t c = 0; c < channels; ++c)
-    {
-      sums[to * channels + c] += values[from * channels + c];
-    }
-  });
-  const double count = static_cast<double>(factors[0]) * factors[1] * factors[2];
-  std::vector<float> means(sums.size());
-  std::transform(sums.begin(), sums.end(), means.begin(), [=](double sum) { return static_cast<float>(sum / count); });
-  return means;
+  return Coarsening(fine, Coarsened(fine, factors)).Average(values, components);
 }
 
 std::vector<float> Repeated(const float* values, int components, const Grid& coarse, const Factors& factors)

@@ -62,6 +62,9 @@ private:
   void RunOrders(const Monitor& monitor);
   /// @param ofLamps  W that entered before, of lights
   /// @throws InvalidInput where sweeps bring far less or more of the light from outside than there is
+  Rgb PowerFromOutside() const;
+  double PowerSeen(const EmissionPeak& peak) const;
+  bool PeaksOutshineOthers() const;
   void CheckEntering(const Rgb& ofLamps) const;
   /// @throws InvalidInput where the energy balance is off by a hundredth
   void CheckBalance() const;

@@ -19,15 +19,9 @@ double Largest(const Rgb& values)
   return std::max({ values[0], values[1], values[2] });
 }
 
-double PowerOf(const Light& light, const std::array<double, 3>& area)
+std::array<double, 3> FaceAreas(const Grid& grid)
 {
-  if (light.type != LightType::Directional)
-  {
-    return Largest(light.power);
-  }
-  const std::array<double, 3>& d = light.direction;
-  const double across = std::abs(d[0]) * area[0] + std::abs(d[1]) * area[1] + std::abs(d[2]) * area[2];
-  return Largest(light.power) * across / std::hypot(d[0], d[1], d[2]);
+  return { grid.Length(1) * grid.Length(2), grid.Length(2) * grid.Length(0), grid.Length(0) * grid.Length(1) };
 }
 
 double LargestEmission(const Medium& medium)
@@ -67,15 +61,26 @@ void Multiply(Rgb& values, double unit)
 }
 }
 
+double PowerInto(const Grid& grid, const Light& light)
+{
+  if (light.type != LightType::Directional)
+  {
+    return Sum(light.power);
+  }
+  const std::array<double, 3> area = FaceAreas(grid);
+  const std::array<double, 3>& d = light.direction;
+  const double across = std::abs(d[0]) * area[0] + std::abs(d[1]) * area[1] + std::abs(d[2]) * area[2];
+  return Sum(light.power) * across / std::hypot(d[0], d[1], d[2]);
+}
+
 double PowerUnitOf(const Medium& medium, const Illumination& illumination)
 {
   const Grid& grid = medium.grid;
-  const std::array<double, 3> area = { grid.Length(1) * grid.Length(2), grid.Length(2) * grid.Length(0),
-    grid.Length(0) * grid.Length(1) };
+  const std::array<double, 3> area = FaceAreas(grid);
   double power = 4.0 * Pi * LargestEmission(medium) * grid.VoxelVolume() * static_cast<double>(grid.VoxelCount());
   for (const Light& light : illumination.lights)
   {
-    power += PowerOf(light, area);
+    power += PowerInto(grid, light);
   }
   double radiance = Largest(illumination.sky);
   for (const Rgb& face : illumination.faces)

@@ -24,17 +24,13 @@ std::string Text(const char* format, double value)
 }
 }
 
-/// Rays start on the lattice of the voxels. Through sides that are thin for the planes they march by hardly one comes.
-void FusedSolver::CheckEntering(const Rgb& ofLamps) const
+/// W that the sky, the environment and shining faces send into the box.
+Rgb FusedSolver::PowerFromOutside() const
 {
-  const SweepBoundary boundary = this->BoundaryOfOrder(0);
-  if (!boundary)
-  {
-    return;
-  }
-  const Grid& grid = this->TheMedium.grid;
   Rgb expected = {};
-  for (std::size_t d = 0; d < this->Directions.directions.size(); ++d)
+  const SweepBoundary boundary = this->BoundaryOfOrder(0);
+  const Grid& grid = this->TheMedium.grid;
+  for (std::size_t d = 0; boundary && d < this->Directions.directions.size(); ++d)
   {
     const Direction& direction = this->Directions.directions[d];
     for (int axis = 0; axis < 3; ++axis)
@@ -48,6 +44,14 @@ void FusedSolver::CheckEntering(const Rgb& ofLamps) const
       }
     }
   }
+  return expected;
+}
+
+/// Rays start on the lattice of the voxels. Through sides that are thin for the planes they march by hardly one comes.
+void FusedSolver::CheckEntering(const Rgb& ofLamps) const
+{
+  const Grid& grid = this->TheMedium.grid;
+  const Rgb expected = this->PowerFromOutside();
   for (int c = 0; c < this->Channels; ++c)
   {
     const double part = expected[c] > 0.0 ? (this->Result.balance.entered[c] - ofLamps[c]) / expected[c] : 1.0;

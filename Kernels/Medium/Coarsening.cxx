@@ -39,6 +39,12 @@ std::vector<float> AverageAlong(
 }
 }
 
+Coarsening::Coarsening(const Grid& fine, const Grid& coarse)
+  : FineGrid(fine)
+  , CoarseGrid(coarse)
+{
+}
+
 Coarsening::Coarsening(const Grid& fine)
   : FineGrid(fine)
   , CoarseGrid(fine)

@@ -7,18 +7,22 @@
 
 namespace tyndall
 {
-/// A grid of half as many voxels an axis (rounded down, at least one) over the same box, and averages over its voxels.
+/// A coarser grid over the same box, and averages over its voxels.
 class Coarsening
 {
 public:
+  /// Half as many voxels an axis, rounded down, at least one.
   explicit Coarsening(const Grid& fine);
+  /// @param coarse  the same box, nowhere finer
+  Coarsening(const Grid& fine, const Grid& coarse);
 
   const Grid& Fine() const { return this->FineGrid; }
   const Grid& Coarse() const { return this->CoarseGrid; }
   /// Smallest ratio of coarse to fine spacing among the axes that have several voxels; 1 where none has.
   double Ratio() const;
 
-  /// Means over coarse voxels: every fine voxel counts by the part of it that lies inside, so that the sum is kept.
+  /// Means over coarse voxels: every fine voxel counts by the part of it that lies inside, so that the sum is kept. NaN where
+  /// one of them is.
   /// @param values  `components` a fine voxel, x fastest
   std::vector<float> Average(const float* values, int components) const;
 

@@ -306,7 +306,8 @@ private:
     {
       const std::array<int, 3>& n = this->Scene.cells;
       const double fluence = this->Fluence(this->Scene.Voxel(n[0] / 2, n[1] / 2, n[2] / 2), 0);
-      this->Add("middle", std::abs(fluence / (4.0 * Pi * this->Case.middle) - 1.0), 2e-3);
+      // On 32 voxels it is within 2e-3 (LinearSource.OneShiningFaceIsASixthAtTheCentreOfACube); these few are a mean free path each.
+      this->Add("middle", std::abs(fluence / (4.0 * Pi * this->Case.middle) - 1.0), 5e-3);
     }
     const bool linear = this->Solver != StressSolver::MapsByOrders; // a constant source has no diffusion limit
     if (this->Case.transmitted >= 0.0 && linear)
