@@ -15,6 +15,7 @@ constexpr int Chunk = 4096;      ///< as in LowOrderSolve.cl
 constexpr int FewVoxels = 64;    ///< of the coarsest level
 constexpr int FinishRounds = 12; ///< on it
 constexpr int MostIterations = 300;
+constexpr int Patience = 12;         ///< iterations in which a residual has to halve, or is left as it is
 constexpr float Damping = 0.8f;      ///< of Jacobi's method, about the best for seven points
 constexpr double Negligible = 1e-12; ///< residual, of the first one
 }
@@ -229,10 +230,17 @@ int LowOrderSolver::Solve(
   this->FirstResidual = std::max(this->FirstResidual, rz);
   const double enough = std::max(rz * reduction * reduction, this->FirstResidual * Negligible * Negligible);
   this->Direction.Fill(0.0);
+  double smallest = std::numeric_limits<double>::infinity();
+  int sinceThen = 0;
   const auto isLeft = [&] {
-    return std::isfinite(leftAtMost) &&
-      this->Dot(this->Residual, this->Residual.Handle(), false) >
-      leftAtMost * leftAtMost * unit * unit * static_cast<double>(this->Count);
+    if (!std::isfinite(leftAtMost))
+    {
+      return false;
+    }
+    const double left = this->Dot(this->Residual, this->Residual.Handle(), false);
+    sinceThen = left < 0.25 * smallest ? 0 : sinceThen + 1;
+    smallest = sinceThen == 0 ? left : smallest;
+    return left > leftAtMost * leftAtMost * unit * unit * static_cast<double>(this->Count) && sinceThen < Patience;
   };
   double part = 0.0;
   int iteration = 0;
