@@ -1,7 +1,7 @@
 #include "FusedSolver.h"
 
 #include "../Device/Sizes.h"
-#include "EmissionBeams.h"
+#include "EmissionRays.h"
 #include "EnvironmentPeaks.h"
 #include "FirstCollision.h"
 #include "PowerUnit.h"
@@ -132,9 +132,10 @@ void FusedSolver::Load()
 template <class Loader>
 void FusedSolver::LoadEmission(const Loader& load)
 {
-  if (this->Settings.emissionRays)
+  const std::array<bool, 3>& periodic = this->Settings.periodic;
+  if (this->Settings.emissionRays && !(periodic[0] || periodic[1] || periodic[2])) // of whose images there is no end
   {
-    this->Emission = Split(this->TheMedium, this->Settings.periodic);
+    this->Emission = Split(this->TheMedium);
   }
   const Field smooth = this->Emission.Smooth(this->TheMedium);
   load(this->Source, this->Channels, [&](std::size_t i, int c) {
@@ -354,8 +355,7 @@ void FusedSolver::PropagatePeaks(const Monitor& monitor)
   for (const EmissionPeak& peak : this->Emission.peaks)
   {
     this->ForChannels([&](const SweepVolume& volume, int first) {
-      this->Count(DepositEmission(this->TheDevice, volume, first, peak, this->Settings.periodic, monitor), first,
-        volume.channels);
+      this->Count(DepositEmission(this->TheDevice, volume, first, peak, monitor), first, volume.channels);
     });
   }
 }
