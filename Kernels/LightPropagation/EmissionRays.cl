@@ -4,7 +4,7 @@
 //   CELLS     of a side of the tables of escaping light, along an edge
 
 #define OPAQUE 80.0f   // mean free paths that nothing comes through
-#define UNEVEN 0.002f  // part by which halves of the rays may differ
+#define UNEVEN 0.005f  // part by which halves of the rays may differ
 #define LINES 4        // an edge of a part's face; half as many where there are many parts
 
 typedef struct
@@ -132,20 +132,17 @@ static float2 escape_of(const __global float2* table, const float* way)
   return mix(mix(at[0], at[1], u - i), mix(at[CELLS + 1], at[CELLS + 2], u - i), v - j);
 }
 
-// How far into a segment light shines, in the mean, that comes back out of its beginning; part of its length.
-static float where_left(float tau)
+// What shines on a ray: what of it comes back to the ray's beginning, all; and both times their length from there.
+typedef struct
 {
-  real left;
-  const real lost = extinguished(tau, &left);
-  return tau < 0.05f ? 0.5f - tau / 12.0f : 1.0f / tau - first_of(left) / first_of(lost);
-}
+  float out, all, out_at, all_at;
+} shining_sums;
 
 // A ray through the voxels of the source's box from `from` (voxels of the box) along `rate` (voxels per length), to its border
 // or until so far. Returns its optical length.
-//   out, all  what shines on the way: what of it comes back to the ray's beginning, and all; added to
-//   moment    of both: length from the beginning; added to
+//   sums  added to; null: not wanted
 static float cross_source(const emission_scene* s, const float* from, const float* rate, float until, const __global float* sigma,
-  const __global float* grey, float* out, float* all, float* moment)
+  const __global float* grey, shining_sums* sums)
 {
   float next[3], step[3], now = 0.0f, tau = 0.0f;
   for (int a = 0; a < 3; ++a)
@@ -168,18 +165,29 @@ static float cross_source(const emission_scene* s, const float* from, const floa
     }
     const float length = end - now;
     const float through = sigma[in_grid] * length;
-    const float shines = grey[in_box] * length;
-    real left;
-    extinguished(tau, &left);
-    const float gets_out = shines * first_of(left) * first_of(mean_left(through));
-    *out += gets_out;
-    moment[0] += gets_out * (now + length * where_left(through));
-    moment[1] += shines * 0.5f * (now + end);
-    *all += shines;
+    if (sums)
+    {
+      real left, left_here;
+      extinguished(tau, &left);
+      const real lost = extinguished(through, &left_here);
+      const float shines = grey[in_box] * length;
+      const float gets_out = shines * first_of(left) * (through > 1e-6f ? first_of(lost) / through : 1.0f);
+      const float where = through < 0.05f ? 0.5f - through / 12.0f : 1.0f / through - first_of(left_here) / first_of(lost);
+      sums->out += gets_out;
+      sums->all += shines;
+      sums->out_at += gets_out * (now + length * where);
+      sums->all_at += shines * 0.5f * (now + end);
+    }
     tau += through;
     now = end;
   }
   return tau;
+}
+
+// Of an even number, by Gauss's rule of two points.
+static float line_at(int i, int lines)
+{
+  return (i / 2 * 2 + (i & 1 ? 1.577350269f : 0.422649731f)) / lines;
 }
 
 // Fills in the tables, [node][ESCAPES], from lines through the faces of each part.
@@ -221,29 +229,27 @@ __kernel void find_escapes(emission_scene s, const __global float* sigma, ulong 
     {
       float from[3];
       from[a] = low[a] + (way[a] > 0.0f ? size[a] : 0.0f);
-      from[u] = low[u] + (k % lines + 0.5f) / lines * size[u];
-      from[v] = low[v] + (k / lines + 0.5f) / lines * size[v];
+      from[u] = low[u] + line_at(k % lines, lines) * size[u];
+      from[v] = low[v] + line_at(k / lines, lines) * size[v];
       float until = 1e30f;
       for (int b = 0; b < 3; ++b)
       {
         until = fmin(until, (way[b] > 0.0f ? from[b] - low[b] : low[b] + size[b] - from[b]) / fmax(fabs(rate[b]), 1e-20f));
       }
-      float shines = 0.0f, nothing = 0.0f;
-      float sum_all = 0.0f, none[2] = { 0.0f, 0.0f }, moment[2] = { 0.0f, 0.0f };
-      const float tau = cross_source(&s, from, rate, 1e30f, sigma, grey, &nothing, &nothing, none);
-      cross_source(&s, from, back, until, sigma, grey, &shines, &sum_all, moment);
+      shining_sums sums = { 0.0f, 0.0f, 0.0f, 0.0f };
       real left;
-      extinguished(tau, &left);
-      out += area * first_of(left) * shines;
-      all += area * sum_all;
+      extinguished(cross_source(&s, from, rate, 1e30f, sigma, grey, 0), &left);
+      cross_source(&s, from, back, until, sigma, grey, &sums);
+      out += area * first_of(left) * sums.out;
+      all += area * sums.all;
       // Positions along the way, from the middle of the box on.
       float start = 0.0f;
       for (int b = 0; b < 3; ++b)
       {
         start += (from[b] - 0.5f * s.source_size[b]) * s.spacing[b] * way[b];
       }
-      out_at += area * first_of(left) * (start * shines - moment[0]);
-      all_at += area * (start * sum_all - moment[1]);
+      out_at += area * first_of(left) * (start * sums.out - sums.out_at);
+      all_at += area * (start * sums.all - sums.all_at);
     }
   }
   escapes[i] = out > 0.0f ? (float2)(out / all, out_at / out - all_at / all) : (float2)(0.0f);
