@@ -13,11 +13,10 @@ constexpr double Outshines = 4.0;      ///< times the mean of the rest
 constexpr double PartOfAll = 0.5;      ///< that all peaks carry, at least
 constexpr double PartOfOne = 0.01;     ///< that each carries, at least
 constexpr std::size_t MostPeaks = 16;
-constexpr double Widest = 0.125;    ///< of the box's longest edge
-constexpr double Hidden = 4.6;      ///< mean free paths beyond which a peak is not seen: 1% is left
-constexpr double Clear = 1.5;       ///< times a peak's width that light must go to be followed
-constexpr double NearMargin = 0.75; ///< times a peak's width
-constexpr int LeastMargin = 3;      ///< voxels
+constexpr double Widest = 0.125; ///< of the box's longest edge
+constexpr double Hidden = 4.6;   ///< mean free paths beyond which a peak is not seen: 1% is left
+constexpr double Clear = 1.5;    ///< times a peak's width that light must go to be followed
+constexpr int NearMargin = 3;    ///< voxels
 
 using Voxel = std::array<int, 3>;
 
@@ -129,7 +128,7 @@ std::vector<std::vector<std::size_t>> Groups(const Grid& grid, const std::vector
 }
 
 /// The box around a group and the one that is near.
-EmissionPeak BoxAround(const Grid& grid, const std::array<bool, 3>& periodic, const std::vector<std::size_t>& group)
+EmissionPeak BoxAround(const Grid& grid, const std::vector<std::size_t>& group)
 {
   EmissionPeak peak;
   Voxel last = VoxelAt(grid, group[0]);
@@ -147,39 +146,26 @@ EmissionPeak BoxAround(const Grid& grid, const std::array<bool, 3>& periodic, co
   {
     peak.size[a] = last[a] - peak.first[a] + 1;
   }
-  const double width = peak.Width(grid);
   for (int a = 0; a < 3; ++a)
   {
-    const double margin = std::min(std::ceil(NearMargin * width / grid.spacing[a] - 1e-6), 1.0 * grid.size[a]);
-    const int voxels = std::max(LeastMargin, static_cast<int>(margin));
-    const int from = peak.first[a] - voxels;
-    const int to = last[a] + voxels + 1;
-    peak.nearFirst[a] = periodic[a] ? from : std::max(from, 0);
-    peak.nearSize[a] = (periodic[a] ? to : std::min(to, grid.size[a])) - peak.nearFirst[a];
+    peak.nearFirst[a] = std::max(peak.first[a] - NearMargin, 0);
+    peak.nearSize[a] = std::min(last[a] + 1 + NearMargin, grid.size[a]) - peak.nearFirst[a];
   }
   return peak;
 }
 
-/// Compared with the box, and where an axis is periodic with the period.
-bool IsSmall(const Grid& grid, const std::array<bool, 3>& periodic, const EmissionPeak& peak)
+/// Compared with the box.
+bool IsSmall(const Grid& grid, const EmissionPeak& peak)
 {
-  double longest = 0.0;
-  bool small = true;
-  for (int a = 0; a < 3; ++a)
-  {
-    longest = std::max(longest, grid.Length(a));
-    small = small && (!periodic[a] || peak.nearSize[a] <= grid.size[a]);
-  }
-  return small && peak.Width(grid) <= Widest * longest;
+  return peak.Width(grid) <= Widest * std::max({ grid.Length(0), grid.Length(1), grid.Length(2) });
 }
 
 /// Optical lengths of a medium, in the clearest channel or the least clear one.
 class OpticalLength
 {
 public:
-  OpticalLength(const Medium& medium, const std::array<bool, 3>& periodic)
+  explicit OpticalLength(const Medium& medium)
     : TheMedium(medium)
-    , Periodic(periodic)
   {
   }
 
@@ -195,8 +181,7 @@ public:
       Voxel at;
       for (int a = 0; a < 3; ++a)
       {
-        const int i = static_cast<int>(std::floor(from[a] + way[a] / grid.spacing[a] * reach * (s + 0.5) / steps));
-        at[a] = this->Periodic[a] ? (i % grid.size[a] + grid.size[a]) % grid.size[a] : i;
+        at[a] = static_cast<int>(std::floor(from[a] + way[a] / grid.spacing[a] * reach * (s + 0.5) / steps));
         if (at[a] < 0 || at[a] >= grid.size[a])
         {
           return length;
@@ -218,14 +203,13 @@ private:
   }
 
   const Medium& TheMedium;
-  const std::array<bool, 3>& Periodic;
 };
 
 /// In clear surroundings.
-bool IsSeen(const Medium& medium, const std::array<bool, 3>& periodic, const EmissionPeak& peak)
+bool IsSeen(const Medium& medium, const EmissionPeak& peak)
 {
   const Grid& grid = medium.grid;
-  const OpticalLength optical(medium, periodic);
+  const OpticalLength optical(medium);
   std::array<double, 3> middle;
   for (int a = 0; a < 3; ++a)
   {
@@ -284,7 +268,7 @@ void Take(const Medium& medium, const BrightVoxels& bright, const std::vector<st
 }
 }
 
-SplitEmission Split(const Medium& medium, const std::array<bool, 3>& periodic)
+SplitEmission Split(const Medium& medium)
 {
   struct Candidate
   {
@@ -305,8 +289,8 @@ SplitEmission Split(const Medium& medium, const std::array<bool, 3>& periodic)
     {
       continue;
     }
-    const EmissionPeak peak = BoxAround(medium.grid, periodic, group);
-    if (IsSmall(medium.grid, periodic, peak) && IsSeen(medium, periodic, peak))
+    const EmissionPeak peak = BoxAround(medium.grid, group);
+    if (IsSmall(medium.grid, peak) && IsSeen(medium, peak))
     {
       candidates.push_back({ power, std::move(group), peak });
     }

@@ -13,7 +13,7 @@ struct EmissionPeak
 {
   std::array<int, 3> first = {};     ///< lowest voxel of the box around it
   std::array<int, 3> size = {};      ///< of the box, voxels
-  std::array<int, 3> nearFirst = {}; ///< of the box that is near it; on a periodic axis it may reach across the border
+  std::array<int, 3> nearFirst = {}; ///< of the box that is near it, within the grid
   std::array<int, 3> nearSize = {};
   std::vector<float> emission; ///< [channel of 3][voxel of the box, x fastest], W / (length^3 sr)
 
@@ -45,5 +45,5 @@ struct SplitEmission
 /// box's longest edge wide, and to be seen: light that leaves it in the clearest of 26 directions must go further than one
 /// and a half times its width before all but a hundredth has met the medium. All peaks
 /// together have to carry half of the power; else (a cloud that shines, a flame) there are none.
-SplitEmission Split(const Medium& medium, const std::array<bool, 3>& periodic);
+SplitEmission Split(const Medium& medium);
 }

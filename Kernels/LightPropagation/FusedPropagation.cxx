@@ -1,7 +1,7 @@
 #include "FusedSolver.h"
 
 #include "../Device/Sizes.h"
-#include "EmissionBeams.h"
+#include "EmissionRays.h"
 #include "EnvironmentPeaks.h"
 #include "FirstCollision.h"
 #include "PowerUnit.h"
@@ -170,9 +170,9 @@ template <class Loader>
 void FusedSolver::LoadEmission(const Loader& load)
 {
   const std::array<bool, 3>& periodic = this->Settings.periodic;
-  if (this->Settings.emissionRays && !periodic[0] && !periodic[1] && !periodic[2])
+  if (this->Settings.emissionRays && !(periodic[0] || periodic[1] || periodic[2])) // of whose images there is no end
   {
-    this->Emission = Split(this->TheMedium, this->Settings.periodic);
+    this->Emission = Split(this->TheMedium);
     if (!this->PeaksOutshineOthers())
     {
       this->Emission = {};
@@ -395,8 +395,7 @@ void FusedSolver::PropagatePeaks(const Monitor& monitor)
   for (const EmissionPeak& peak : this->Emission.peaks)
   {
     this->ForChannels([&](const SweepVolume& volume, int first) {
-      this->Count(DepositEmission(this->TheDevice, volume, first, peak, this->Settings.periodic, monitor), first,
-        volume.channels);
+      this->Count(DepositEmission(this->TheDevice, volume, first, peak, monitor), first, volume.channels);
     });
   }
 }

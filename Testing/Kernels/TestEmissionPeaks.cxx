@@ -50,7 +50,7 @@ class EmissionPeaks : public DeviceTest
 
 TEST_F(EmissionPeaks, KeepTheirPower)
 {
-  for (float sigma_t : { 0.0f, 0.1f, 3.0f, 1e4f })
+  for (float sigma_t : { 0.0f, 3.0f, 1e4f })
   {
     for (const std::array<int, 3>& first :
       { std::array<int, 3>{ 11, 12, 10 }, { 0, 5, 21 } }) // in the middle, in a corner
@@ -89,21 +89,30 @@ TEST_F(EmissionPeaks, AreLeftToDirectionsWhereMuchShinesOrNothingIsSeen)
   }
 }
 
-TEST_F(EmissionPeaks, ShineAcrossAPeriodicBorder)
+TEST_F(EmissionPeaks, AreLeftToDirectionsWhereAnAxisIsPeriodic)
 {
-  Scene middle = Hearth({ 11, 11, 11 }, { 2, 2, 2 }, 0.5f);
-  Scene border = Hearth({ 23, 11, 11 }, { 2, 2, 2 }, 0.5f);
-  for (Scene* scene : { &middle, &border })
+  Scene scene = Hearth({ 23, 11, 11 }, { 2, 2, 2 }, 0.5f);
+  EXPECT_FALSE(LeavesOutRays(scene.Solve(this->GetDevice())));
+  scene.settings.periodic = { true, false, false };
+  scene.settings.maximumOrders = 1;
+  const LightField light = scene.Solve(this->GetDevice());
+  EXPECT_TRUE(LeavesOutRays(light));
+  scene.settings.emissionRays = false;
+  EXPECT_EQ(scene.Solve(this->GetDevice()).fluence, light.fluence);
+}
+
+TEST_F(EmissionPeaks, ShineAsAPointDoesFarAway)
+{
+  Scene scene = Hearth({ 11, 11, 11 }, { 2, 2, 2 }, 0.0f);
+  std::fill(scene.sigma_a.begin(), scene.sigma_a.end(), 0.0f);
+  std::fill(scene.sigma_s.begin(), scene.sigma_s.end(), 0.0f);
+  const LightField light = scene.Solve(this->GetDevice());
+  for (const std::array<int, 3>& v : { std::array<int, 3>{ 20, 12, 12 }, { 4, 20, 9 }, { 13, 12, 23 }, { 0, 0, 23 } })
   {
-    scene->settings.periodic = { true, false, false };
-    scene->settings.maximumOrders = 1;
-  }
-  const LightField a = middle.Solve(this->GetDevice());
-  const LightField b = border.Solve(this->GetDevice());
-  EXPECT_LT(b.balance.RelativeError(1), 1e-5);
-  for (const std::array<int, 3>& v : { std::array<int, 3>{ 12, 12, 20 }, { 20, 14, 3 }, { 3, 11, 11 }, { 9, 18, 12 } })
-  {
-    EXPECT_NEAR(At(b, (v[0] + 12) % 24, v[1], v[2]) / At(a, v[0], v[1], v[2]), 1.0, 0.02);
+    const double squared = std::pow(v[0] - 11.5, 2) + std::pow(v[1] - 11.5, 2) + std::pow(v[2] - 11.5, 2);
+    const double asPoint =
+      8.0 / squared * (1.0 + 2.0 * (2 * 2 + 1) / (24.0 * squared)); // and the size of box and voxel
+    EXPECT_NEAR(At(light, v[0], v[1], v[2]) / asPoint, 1.0, 0.005);
   }
 }
 
@@ -167,7 +176,7 @@ TEST_F(EmissionPeaks, HaveTheirNetFlux)
   scene.settings.netFlux = true;
   scene.settings.maximumOrders = 1;
   const LightField light = scene.Solve(this->GetDevice());
-  for (const std::array<int, 3>& v : { std::array<int, 3>{ 20, 12, 12 }, { 4, 20, 9 }, { 13, 12, 9 } })
+  for (const std::array<int, 3>& v : { std::array<int, 3>{ 20, 12, 12 }, { 4, 20, 9 }, { 13, 12, 1 } })
   {
     const std::size_t i = (static_cast<std::size_t>(v[2]) * 24 + v[1]) * 24 + v[0];
     const double r = std::hypot(v[0] - 11.5, v[1] - 11.5, v[2] - 11.5);
@@ -180,27 +189,16 @@ TEST_F(EmissionPeaks, HaveTheirNetFlux)
 
 TEST_F(EmissionPeaks, LightKobayashisVoid)
 {
-  // Voxels of 10 cm, against the means of the reference over such voxels.
-  Scene scene = KobayashiScene(20, 0.0);
-  double worst[2] = {};
-  for (bool rays : { true, false })
+  // Voxels of 10/3 cm, against the means of the reference over such voxels (known to 2e-4). Measured: 0.5% at most, but behind the
+  // void's corner, where three walls shade the source in parts, 2.4%.
+  Scene scene = KobayashiScene(60, 0.0);
+  const LightField light = scene.Solve(this->GetDevice());
+  EXPECT_LT(light.balance.RelativeError(1), 1e-5);
+  for (const KobayashiReference& reference : KobayashiProblem1)
   {
-    scene.settings.emissionRays = rays;
-    const LightField light = scene.Solve(this->GetDevice());
-    EXPECT_LT(light.balance.RelativeError(1), 1e-5);
-    for (const KobayashiReference& reference : KobayashiProblem1)
-    {
-      const double error = KobayashiFluence(scene, light.fluence, reference.point, false) / reference.mean10 - 1.0;
-      worst[rays] = std::max(worst[rays], std::abs(error));
-      const bool corner =
-        reference.point[2] > 60.0; // the void's corner is blurred by beams that are as wide as a voxel
-      if (rays)
-      {
-        EXPECT_LT(std::abs(error), corner ? 0.06 : 0.03)
-          << reference.point[0] << ' ' << reference.point[1] << ' ' << reference.point[2];
-      }
-    }
-    this->RecordProperty(rays ? "worst with rays" : "worst without", std::to_string(worst[rays]));
+    const double error = KobayashiFluence(scene, light.fluence, reference.point, false) / reference.mean3 - 1.0;
+    const bool behindCorner = reference.point[2] > 60.0;
+    EXPECT_LT(std::abs(error), behindCorner ? 0.03 : 0.006)
+      << reference.point[0] << ' ' << reference.point[1] << ' ' << reference.point[2];
   }
-  EXPECT_LT(worst[true], 0.1 * worst[false]);
 }
