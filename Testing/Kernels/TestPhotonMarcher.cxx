@@ -2,7 +2,6 @@
 #include "MediumScene.h"
 #include "PhotonScene.h"
 
-#include "Photons/Clock.h"
 #include "Photons/PhotonEmitter.h"
 #include "Photons/PublishedPhotons.h"
 
@@ -435,15 +434,12 @@ TEST_F(PhotonMarcherTest, ReportsOftenWhereEveryVoxelBends)
   scene.settings.stepSize = 0.1;
   PhotonMarcher marcher = scene.Marcher(this->GetDevice());
   const std::vector<Photon> photons = Beam(scene.medium.grid, { 1.0, 0.0, 0.0 }, 60000);
-  double last = ClockSeconds(), longest = 0.0;
-  marcher.March({ photons.front() }); // compiles
-  marcher.March(photons, [&](double done) {
-    const double now = ClockSeconds();
-    longest = done > 0.0 ? std::max(longest, now - last) : longest;
-    last = now;
+  int reports = 0;
+  marcher.March(photons, [&](double) {
+    ++reports;
     return true;
   });
-  EXPECT_LT(longest, 0.5); // a tenth of a second is aimed at, on an idle machine
+  EXPECT_GE(reports, 8); // these photons take a second or more on two cores: a launch has a small part of them
 }
 
 TEST_F(PhotonMarcherTest, StopsWhenItIsTold)
