@@ -53,6 +53,10 @@ void CheckField(const Field& field, const char* name, const Grid& grid)
 /// Their sum is what dims light; floats end at 3.4e38.
 void CheckExtinction(const Medium& medium)
 {
+  if (!medium.sigma_a.values && !medium.sigma_s.values)
+  {
+    return; // also a box that is only asked about, of more voxels than could be counted
+  }
   const int channels = std::max(medium.sigma_a.components, medium.sigma_s.components);
   for (std::size_t i = 0; i < medium.grid.VoxelCount(); ++i)
   {
