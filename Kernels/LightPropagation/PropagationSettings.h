@@ -22,16 +22,18 @@ enum class PropagationAcceleration
 /// What the light propagation solvers can be told; the names are those of the filter's properties.
 struct PropagationSettings
 {
-  int directionsPerFace = 25; ///< directions per cube face, a square number: 1, 4, 9, 16, 25, ...
-  int mapResolution = 1;      ///< map points per voxel edge, 1 to 16
-  int maximumOrders = 0;      ///< scattering orders (accelerated: sweeps) at most; 0: until the tolerance is met
-  double tolerance = 1e-4;    ///< relative error of fluence at which to stop, > 0
+  int directionsPerFace = 25;  ///< directions per cube face, a square number: 1, 4, 9, 16, 25, ...
+  bool adaptDirections = true; ///< more of them for slabs (UnvaryingAxes.h); false: as many as told
+  int mapResolution = 1;       ///< map points per voxel edge, 1 to 16
+  int maximumOrders = 0;       ///< scattering orders (accelerated: sweeps) at most; 0: until the tolerance is met
+  double tolerance = 1e-4;     ///< relative error of fluence at which to stop, > 0
   std::array<bool, 3> periodic = { false, false, false }; ///< rays leaving an axis return on the other side
   int storedDirections = 1; ///< directions kept for scattered radiance: 1 (isotropic), 6 (faces), or more
   PropagationSource source = PropagationSource::Automatic;
   PropagationAcceleration acceleration = PropagationAcceleration::Automatic; ///< not where maximumOrders is given
   bool netFlux = false;                                                      ///< compute net_flux too: it costs
-  bool emissionRays = true; ///< follow what shines in small bright parts of the medium along exact rays (EmissionPeaks.h)
+  bool emissionRays =
+    true;               ///< follow what shines in small bright parts of the medium along exact rays (EmissionPeaks.h)
   bool leaveOut = true; ///< what the scene does not need; false: all is computed, to see what leaving out saves
 };
 

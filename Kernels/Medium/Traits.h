@@ -81,5 +81,6 @@ extern const char* const DarkOutside;     ///< neither environment nor sky nor f
 std::string EmptySlabs(const VoxelBox& filled, const Grid& grid);
 std::string DarkDirections(double lit); ///< part of the rays
 std::string MirrorImages(int classes, int directions);
+std::string DirectionsAlongSlab(int perFace); ///< solved with instead
 }
 }
