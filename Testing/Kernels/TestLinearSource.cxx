@@ -4,6 +4,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <cstdlib>
 #include <string>
 #include <vector>
 
@@ -321,6 +322,24 @@ TEST_F(LinearSource, SendsThroughACubesFacesWhatPhotonsDo)
     EXPECT_NEAR((Out(light, 0) + Out(light, 1) + Out(light, 2) + Out(light, 3)) / row.sides, 1.0, 0.01) << row.tau;
     EXPECT_NEAR(light.balance.absorbed[0] / light.balance.entered[0], row.absorbed, 0.01 * row.absorbed + 1e-6)
       << row.tau;
+  }
+}
+
+TEST_F(LinearSource, NeedsNoDoublePrecision)
+{
+  for (double tau : { 1.0, 100.0, 1e4 })
+  {
+    Scene scene = Slab(tau, 1.0);
+    scene.ShineAlong({ 0.0, 0.0, 1.0 });
+    const LightField exact = scene.Solve(this->GetDevice());
+    setenv("TYNDALL_WITHOUT", "cl_khr_fp64", 1);
+    const LightField light = scene.Solve(this->GetDevice());
+    unsetenv("TYNDALL_WITHOUT");
+    EXPECT_NE(light.fluence, exact.fluence) << "the variable is heeded";
+    EXPECT_NEAR(Out(light, 5) / Out(exact, 5), 1.0, 1e-3) << "optical thickness " << tau;
+    EXPECT_NEAR(Out(light, 4) + Out(light, 5), 1.0, 1e-3) << "optical thickness " << tau;
+    EXPECT_LE(light.convergence.size(), 20u);
+    this->RecordProperty("T at " + std::to_string(tau), std::to_string(Out(light, 5) / Out(exact, 5) - 1.0));
   }
 }
 
