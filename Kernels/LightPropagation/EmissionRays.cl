@@ -1,8 +1,7 @@
 // The light of a small bright part of the medium, gathered along straight rays. Read after Numerics.cl; the host gives
 //   CHANNELS  1 or 3 that share sigma_t
 //   NET_FLUX  1 where net flux is wanted
-//   FEWEST    rays of a voxel to a face of the box around what shines, at first
-//   MOST      the same, at last
+//   MOST      rays of a voxel to a side of the box around what shines, at most
 
 #define OPAQUE 80.0f  // mean free paths that nothing comes through
 #define UNEVEN 0.005f // part by which halves of the rays may differ
@@ -12,6 +11,7 @@ typedef struct
   int size[3];
   float spacing[3];
   int source_first[3], source_size[3]; // the box of what shines
+  int fewest;                          // rays of a voxel to a side of it, at first; a power of two, at least 8 REAL_WIDTH
 } emission_scene;
 
 typedef struct
@@ -262,9 +262,9 @@ static void gather(const emission_scene* s, lit_voxel* voxel, const __global flo
       voxel->inside && voxel->at[a] >= s->source_first[a] && voxel->at[a] < s->source_first[a] + s->source_size[a];
   }
   find_sides(s, voxel, solid_angles);
-  gather_rays(s, voxel, solid_angles, 0, FEWEST / 2, points, sigma, emission, sums);
+  gather_rays(s, voxel, solid_angles, 0, s->fewest / 2, points, sigma, emission, sums);
   bool even = false;
-  for (int count = FEWEST / 2; count < MOST && !even; count *= 2)
+  for (int count = s->fewest / 2; count < MOST && !even; count *= 2)
   {
     gather_rays(s, voxel, solid_angles, count, 2 * count, points, sigma, emission, others);
     float whole = 0.0f, difference = 0.0f;

@@ -16,8 +16,10 @@ namespace tyndall
 {
 namespace
 {
-constexpr int FewestRays = 128; ///< of a voxel to a side of the peak's box, at first
-constexpr int MostRays = 2048;  ///< the same, at last
+constexpr int FewestRays = 128;    ///< of a voxel to a side of the peak's box, at first
+constexpr int MostAtFirst = 1024;  ///< the same where voxels are few, and large
+constexpr int MostRays = 2048;     ///< the same, at last
+constexpr double AllRays = 0x1p25; ///< at first, about: some seconds
 
 /// Of a lattice of points in five dimensions, found component by component for 32 to 2048 points. Every 2^n first points, in the
 /// order of their reversed bits, are a lattice of their own.
@@ -29,6 +31,7 @@ struct SceneOnDevice
   cl_int size[3];
   cl_float spacing[3];
   cl_int sourceFirst[3], sourceSize[3];
+  cl_int fewest;
 };
 
 /// [dimension][MostRays], 0 to 1.
@@ -77,7 +80,7 @@ private:
   {
     return this->TheDevice.Kernel(name, { kernel_source::Numerics, kernel_source::EmissionRays },
       Define("REAL_WIDTH", width) + Define("CHANNELS", this->Volume.channels) +
-        Define("NET_FLUX", this->Volume.flux != nullptr) + Define("FEWEST", FewestRays) + Define("MOST", MostRays));
+        Define("NET_FLUX", this->Volume.flux != nullptr) + Define("MOST", MostRays));
   }
 
   /// Lanes of a packet of rays.
@@ -96,6 +99,11 @@ private:
       this->Scene.spacing[a] = static_cast<float>(grid.spacing[a]);
       this->Scene.sourceFirst[a] = this->Peak.first[a];
       this->Scene.sourceSize[a] = this->Peak.size[a];
+    }
+    this->Scene.fewest = MostAtFirst;
+    while (this->Scene.fewest > FewestRays && this->Scene.fewest * static_cast<double>(grid.VoxelCount()) > AllRays)
+    {
+      this->Scene.fewest /= 2;
     }
     const std::size_t voxels = this->Peak.emission.size() / 3;
     const auto begin = this->Peak.emission.begin() + this->FirstChannel * voxels;
