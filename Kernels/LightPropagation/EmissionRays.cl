@@ -3,15 +3,15 @@
 //   NET_FLUX  1 where net flux is wanted
 //   MOST      rays of a voxel to a side of the box around what shines, at most
 
-#define OPAQUE 80.0f  // mean free paths that nothing comes through
-#define UNEVEN 0.005f // part by which halves of the rays may differ
+#define OPAQUE 80.0f // mean free paths that nothing comes through
 
 typedef struct
 {
   int size[3];
   float spacing[3];
   int source_first[3], source_size[3]; // the box of what shines
-  int fewest;                          // rays of a voxel to a side of it, at first; a power of two, at least 8 REAL_WIDTH
+  int fewest;                          // rays of a voxel to a side of it, at first; a power of two, at least 64
+  float uneven;                        // difference of two halves of them, to their sum, that will do
 } emission_scene;
 
 typedef struct
@@ -242,7 +242,8 @@ static void gather_rays(const emission_scene* s, const lit_voxel* voxel, const f
   }
   for (int side = 0; side < 6; ++side)
   {
-    const int part = 4.0f * solid_angles[side] < largest ? 4 : 2.0f * solid_angles[side] < largest ? 2 : 1;
+    const int small = 4.0f * solid_angles[side] < largest ? 4 : 2.0f * solid_angles[side] < largest ? 2 : 1;
+    const int part = min(small, s->fewest / 32); // rays of whole packets
     if (solid_angles[side] > 0.0f)
     {
       gather_side(s, voxel, side, from / part, (end - from) / part, points, sigma, emission, sums);
@@ -274,7 +275,7 @@ static void gather(const emission_scene* s, lit_voxel* voxel, const __global flo
       difference += k % 4 == 0 ? sums[k] - others[k] : 0.0f;
       sums[k] = 0.5f * (sums[k] + others[k]);
     }
-    even = fabs(difference) <= UNEVEN * whole;
+    even = fabs(difference) <= s->uneven * whole;
   }
 }
 

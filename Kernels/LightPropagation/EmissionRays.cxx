@@ -16,7 +16,7 @@ namespace tyndall
 {
 namespace
 {
-constexpr int FewestRays = 128;    ///< of a voxel to a side of the peak's box, at first
+constexpr int FewestRays = 64;     ///< of a voxel to a side of the peak's box, at first
 constexpr int MostAtFirst = 1024;  ///< the same where voxels are few, and large
 constexpr int MostRays = 2048;     ///< the same, at last
 constexpr double AllRays = 0x1p25; ///< at first, about: some seconds
@@ -32,6 +32,7 @@ struct SceneOnDevice
   cl_float spacing[3];
   cl_int sourceFirst[3], sourceSize[3];
   cl_int fewest;
+  cl_float uneven;
 };
 
 /// [dimension][MostRays], 0 to 1.
@@ -105,6 +106,7 @@ private:
     {
       this->Scene.fewest /= 2;
     }
+    this->Scene.uneven = this->Scene.fewest > FewestRays ? 0.005f : 0.01f;
     const std::size_t voxels = this->Peak.emission.size() / 3;
     const auto begin = this->Peak.emission.begin() + this->FirstChannel * voxels;
     const std::vector<float> emission(begin, begin + this->Volume.channels * voxels);
