@@ -16,7 +16,6 @@ constexpr std::size_t MostPeaks = 16;
 constexpr double Widest = 0.125; ///< of the box's longest edge
 constexpr double Hidden = 4.6;   ///< mean free paths beyond which a peak is not seen: 1% is left
 constexpr double Clear = 1.5;    ///< times a peak's width that light must go to be followed
-constexpr int NearMargin = 3;    ///< voxels
 
 using Voxel = std::array<int, 3>;
 
@@ -127,7 +126,7 @@ std::vector<std::vector<std::size_t>> Groups(const Grid& grid, const std::vector
   return groups;
 }
 
-/// The box around a group and the one that is near.
+/// The box around a group.
 EmissionPeak BoxAround(const Grid& grid, const std::vector<std::size_t>& group)
 {
   EmissionPeak peak;
@@ -145,11 +144,6 @@ EmissionPeak BoxAround(const Grid& grid, const std::vector<std::size_t>& group)
   for (int a = 0; a < 3; ++a)
   {
     peak.size[a] = last[a] - peak.first[a] + 1;
-  }
-  for (int a = 0; a < 3; ++a)
-  {
-    peak.nearFirst[a] = std::max(peak.first[a] - NearMargin, 0);
-    peak.nearSize[a] = std::min(last[a] + 1 + NearMargin, grid.size[a]) - peak.nearFirst[a];
   }
   return peak;
 }

@@ -11,11 +11,9 @@ namespace tyndall
 /// A small bright part of what a medium emits.
 struct EmissionPeak
 {
-  std::array<int, 3> first = {};     ///< lowest voxel of the box around it
-  std::array<int, 3> size = {};      ///< of the box, voxels
-  std::array<int, 3> nearFirst = {}; ///< of the box that is near it, within the grid
-  std::array<int, 3> nearSize = {};
-  std::vector<float> emission; ///< [channel of 3][voxel of the box, x fastest], W / (length^3 sr)
+  std::array<int, 3> first = {}; ///< lowest voxel of the box around it
+  std::array<int, 3> size = {};  ///< of the box, voxels
+  std::vector<float> emission;   ///< [channel of 3][voxel of the box, x fastest], W / (length^3 sr)
 
   double Width(const Grid& grid) const ///< longest edge of the box
   {

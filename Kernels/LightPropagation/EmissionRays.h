@@ -10,13 +10,15 @@ namespace tyndall
 /// The first-collision source of what a medium emits itself: the unscattered light of a peak, gathered along straight rays by every
 /// voxel (Kobayashi et al. 2001, problem 1, shows what a coarse set of directions makes of it).
 ///
-/// Near the peak (three voxels around it), sweeps as for scattered light, of that box alone, with 2400 directions and 2 x 2
-/// rays a voxel: it is seen as it is, and absorbs its own light. Beyond, the mean over a voxel of
-///   integral of q exp(-tau) / r^2 dV  over the peak's box
-/// with exact optical lengths tau through the voxels: between 4 x 4 x 4 parts of the box, by Gauss's rule, and Gauss's points of the
-/// voxel in turn; where two halves of these rays differ, 8 x 8 x 8 parts. What a part loses in the peak's box is looked up in
-/// a table by direction, made from the exact lengths of lines through it. A factor makes all of it the power that leaves the near
-/// box; it is the method's own error (0.4% for Kobayashi's problem).
+/// The mean over a voxel of
+///   integral of radiance exp(-tau) over the solid angle of the box around the peak
+/// along straight rays from points in the voxel through the sides of that box: radiance is what shines on the line within it, and
+/// optical lengths are exact, there and on the way. Points and directions together are a lattice in five dimensions (of rank 1):
+/// 128 rays for each side of the box that is seen, a half or a quarter for small ones; 256 to 1024 where the grid has less than 2^17
+/// voxels, 64 where it has more than 2^18. Where two halves of them differ by more than a hundredth (of 64: by two), twice as
+/// many, up to 2048. A factor makes all of it the power emitted.
+///
+/// Measured, Kobayashi's absorber, 28 points: within 0.2% of exact means over voxels at 20^3, within 0.5% at 60^3.
 ///
 /// No axis may be periodic. Voxels' nearness (SweepVolume) is not told: their light is taken as lost evenly.
 ///

@@ -12,11 +12,15 @@ struct KobayashiReference
   double absorber; ///< no scattering: quadrature over the source's faces (equals the published analytic values to 3e-6)
   double mean10,
     mean3; ///< of it over a voxel of 10 cm and of 10/3 cm around the point: by the same quadrature, to 2e-4
+           ///< (in the source, 5 5 5: along rays over solid angle)
   double half, halfError; ///< half of the extinction scatters: the project's own Monte Carlo, its standard error
   double published, publishedError; ///< the same, published (GMVP), relative standard error
+
+  /// The one that is better known by its own error. At 95 95 95 the published one is 11% higher, three of the own one's errors.
+  double BestHalf() const { return this->halfError < this->publishedError * this->half ? this->half : this->published; }
 };
 const std::vector<KobayashiReference> KobayashiProblem1 = {
-  { { 5, 5, 5 }, 5.9565942e+00, 5.17092e+00, 5.88471e+00, 8.294898e+00, 1.9e-03, 8.29260e+00, 0.00021 },
+  { { 5, 5, 5 }, 5.9565942e+00, 5.14940e+00, 5.88471e+00, 8.294898e+00, 1.9e-03, 8.29260e+00, 0.00021 },
   { { 5, 15, 5 }, 1.3718491e+00, 1.44661e+00, 1.37908e+00, 1.870030e+00, 1.4e-04, 1.87028e+00, 5e-05 },
   { { 5, 25, 5 }, 5.0087067e-01, 5.05777e-01, 5.01501e-01, 7.139276e-01, 5.0e-05, 7.13986e-01, 3e-05 },
   { { 5, 35, 5 }, 2.5242862e-01, 2.53554e-01, 2.52600e-01, 3.846580e-01, 2.7e-05, 3.84685e-01, 4e-05 },

@@ -189,16 +189,33 @@ TEST_F(EmissionPeaks, HaveTheirNetFlux)
 
 TEST_F(EmissionPeaks, LightKobayashisVoid)
 {
-  // Voxels of 10/3 cm, against the means of the reference over such voxels (known to 2e-4). Measured: 0.5% at most, but behind the
-  // void's corner, where three walls shade the source in parts, 2.4%.
-  Scene scene = KobayashiScene(60, 0.0);
+  // Against means of the reference over voxels (known to 2e-4). Measured: 0.2% and 0.5% at most.
+  for (int voxels : { 20, 60 })
+  {
+    Scene scene = KobayashiScene(voxels, 0.0);
+    const LightField light = scene.Solve(this->GetDevice());
+    EXPECT_LT(light.balance.RelativeError(1), 1e-5);
+    for (const KobayashiReference& reference : KobayashiProblem1)
+    {
+      const double mean = voxels == 20 ? reference.mean10 : reference.mean3;
+      EXPECT_NEAR(KobayashiFluence(scene, light.fluence, reference.point, false) / mean, 1.0, 0.005)
+        << voxels << ": " << reference.point[0] << ' ' << reference.point[1] << ' ' << reference.point[2];
+    }
+  }
+}
+
+TEST_F(EmissionPeaks, LightKobayashisVoidThatScatters)
+{
+  // Voxels of 10/3 cm, the cheapest of the direction sets tried that does it. Measured: 2.5% at most, in 17 s on two cores; with 900
+  // directions too. With one ray a voxel edge 3.6%, with 225 directions 7.8%: ray effects of scattered light.
+  Scene scene = KobayashiScene(60, 0.5);
+  scene.settings.directionsPerFace = 400;
+  scene.settings.mapResolution = 2;
   const LightField light = scene.Solve(this->GetDevice());
   EXPECT_LT(light.balance.RelativeError(1), 1e-5);
   for (const KobayashiReference& reference : KobayashiProblem1)
   {
-    const double error = KobayashiFluence(scene, light.fluence, reference.point, false) / reference.mean3 - 1.0;
-    const bool behindCorner = reference.point[2] > 60.0;
-    EXPECT_LT(std::abs(error), behindCorner ? 0.03 : 0.006)
+    EXPECT_NEAR(KobayashiFluence(scene, light.fluence, reference.point, true) / reference.BestHalf(), 1.0, 0.03)
       << reference.point[0] << ' ' << reference.point[1] << ' ' << reference.point[2];
   }
 }
