@@ -89,7 +89,8 @@ void FusedSolver::RunAccelerated(const Monitor& monitor)
     this->SweepAll(sweep, ofSweep);
     if (sweep == 0)
     {
-      this->CheckEntering(this->LampBalance.entered);
+      this->CheckEntering(
+        Minus(this->Result.balance.entered, this->LampBalance.entered), this->PowerInSweeps());
       this->Fluence.Write(this->WithLamps(this->Path, 1.0 / this->TheMedium.grid.VoxelVolume()).data());
       this->Result.fluenceDirect = this->Interleaved(this->Fluence, 1.0);
       this->MakeSystems();
@@ -101,7 +102,7 @@ void FusedSolver::RunAccelerated(const Monitor& monitor)
   this->UnloadAccelerated();
 }
 
-/// Where lamps' light is scattered first within a voxel matters where one is thick.
+/// Where the light of lamps, or of a first flight, is scattered first within a voxel matters where one is thick.
 void FusedSolver::ChooseNearness()
 {
   const Grid& grid = this->TheMedium.grid;
@@ -113,7 +114,7 @@ void FusedSolver::ChooseNearness()
       thick = this->SigmaT(i, c) * *std::max_element(grid.spacing.begin(), grid.spacing.end()) > ThickForNearness;
     }
   }
-  if (this->LinearSource && thick && !this->Lights.empty())
+  if (this->LinearSource && thick && (!this->Lights.empty() || this->Flight))
   {
     this->Nearness = Buffer<float>(this->TheDevice, 6 * this->Stride * this->Channels + SweepPadding, "light of lamps");
     this->Nearness.Fill(0.0f);

@@ -127,6 +127,10 @@ LightField SolveWithErrorEstimate(
   plain.storedDirections = 1;
   const std::vector<float> many = solve(coarse.Get(), plain, part(FinePart, 0.95)).fluence;
   plain.directionsPerFace = OtherDirections(settings.directionsPerFace);
+  if (settings.firstFlightDirections > 0)
+  {
+    plain.firstFlightDirections = OtherDirections(settings.firstFlightDirections);
+  }
   const std::vector<float> few = solve(coarse.Get(), plain, part(0.95, 1.0)).fluence;
 
   const double ratio = coarsening.Ratio();

@@ -67,7 +67,7 @@ void FusedSolver::RunOrders(const Monitor& monitor)
     this->PropagateOrder(order, ofOrder);
     if (order == 0)
     {
-      this->CheckEntering(ofLamps);
+      this->CheckEntering(Minus(this->Result.balance.entered, ofLamps), this->PowerInSweeps());
     }
     this->CollectOrder(order);
     Report(ofOrder, 1.0);
@@ -195,17 +195,36 @@ const Buffer<float>& FusedSolver::SigmaSOnDevice() const
   return this->Settings.leaveOut && (alike || unused) ? this->Extinction : this->Scattering;
 }
 
+/// What is small and bright becomes lights, what is not even has a first flight of its own where that is wanted.
 void FusedSolver::FindOutsideLight()
 {
-  const SplitEnvironment environment = Split(this->Outside.environment, this->Directions);
+  const bool flies = this->Settings.firstFlightDirections > 0;
+  if (flies)
+  {
+    this->FineDirections = SoundDirections(this->Settings.firstFlightDirections, "FirstFlightDirections");
+  }
+  const SplitEnvironment environment =
+    Split(this->Outside.environment, flies ? this->FineDirections : this->Directions);
   this->FromFarAway = BoundaryRadiance(this->Directions, environment.smooth, this->Outside.sky);
+  this->Faces = this->Outside.faces;
   this->Lights = this->Outside.lights;
   this->Lights.insert(this->Lights.end(), environment.peaks.begin(), environment.peaks.end());
+  if (flies)
+  {
+    this->Flight.emplace(
+      this->TheMedium.grid, this->Settings, this->FineDirections, this->Outside, environment.smooth);
+    this->FromFarAway.assign(this->FromFarAway.size(), this->Flight->Even());
+    this->Faces = {};
+  }
+  if (flies && !this->Flight->Shines())
+  {
+    this->Flight.reset();
+  }
   for (const Rgb& radiance : this->FromFarAway)
   {
     this->LitFromOutside = this->LitFromOutside || Total(radiance) > 0.0;
   }
-  for (const Rgb& radiance : this->Outside.faces)
+  for (const Rgb& radiance : this->Faces)
   {
     this->LitFromOutside = this->LitFromOutside || Total(radiance) > 0.0;
   }
@@ -307,7 +326,7 @@ void FusedSolver::MakeLitSweeps()
 /// Radiance, in the mean over the directions that this one stands for.
 Rgb FusedSolver::Incoming(int direction, int face) const
 {
-  Rgb radiance = this->Outside.faces[face];
+  Rgb radiance = this->Faces[face];
   const std::vector<int> itself = { direction };
   const std::vector<int>& all = this->MergesMirrors() ? this->Mirrors.AllOf(direction) : itself;
   for (const int one : all)
@@ -386,7 +405,23 @@ void FusedSolver::PropagateLights(const Monitor& monitor)
         first, volume.channels);
     });
   }
+  this->PropagateFirstFlight(monitor);
   this->PropagatePeaks(monitor);
+}
+
+/// The unscattered light of faces, sky and environment.
+void FusedSolver::PropagateFirstFlight(const Monitor& monitor)
+{
+  if (!this->Flight)
+  {
+    return;
+  }
+  const Rgb before = this->Result.balance.entered;
+  this->ForChannels([&](const SweepVolume& volume, int first) {
+    this->Count(
+      this->Flight->Deposit(this->TheDevice, volume, first, this->Workspace, monitor), first, volume.channels);
+  });
+  this->CheckEntering(Minus(this->Result.balance.entered, before), this->Flight->PowerIn());
 }
 
 /// Small bright parts of the medium.
@@ -609,7 +644,8 @@ void FusedSolver::SayWhatIsLeftOut(std::vector<std::string>& words) const
   say(!this->Traits.scatters, left_out::NoScattering);
   say(!this->Traits.absorbs, left_out::NoAbsorption);
   say(!this->Traits.emits, left_out::NoEmission);
-  say(!this->LitFromOutside, left_out::DarkOutside);
+  say(!this->LitFromOutside && !this->Flight, left_out::DarkOutside);
+  say(this->Settings.firstFlightDirections > 0 && this->LitFromOutside && !this->Flight, left_out::EvenOutside);
   say(this->Lights.empty(), left_out::NoLights);
   say(this->Traits.emits && this->Emission.peaks.empty(), left_out::NoEmissionPeaks);
   say(this->Traits.scatters && this->Result.convergence.size() == 1, left_out::OneOrder);

@@ -2,6 +2,7 @@
 
 #include "AxisSweep.h"
 #include "EmissionPeaks.h"
+#include "FirstFlight.h"
 #include "FusedPropagation.h"
 #include "LowOrder.h"
 #include "NeededRays.h"
@@ -10,6 +11,7 @@
 #include <chrono>
 #include <functional>
 #include <memory>
+#include <optional>
 #include <string>
 #include <vector>
 
@@ -20,10 +22,9 @@ inline double Total(const Rgb& values)
   return values[0] + values[1] + values[2];
 }
 
-/// The channels from `first` on.
-inline Rgb From(const Rgb& rgb, int first)
+inline Rgb Minus(const Rgb& a, const Rgb& b)
 {
-  return first == 0 ? rgb : Rgb{ rgb[first], 0.0, 0.0 };
+  return { a[0] - b[0], a[1] - b[1], a[2] - b[2] };
 }
 
 /// One solve, from the arrays of the medium to those of the light.
@@ -60,12 +61,12 @@ private:
   }
 
   void RunOrders(const Monitor& monitor);
-  /// @param ofLamps  W that entered before, of lights
-  /// @throws InvalidInput where sweeps bring far less or more of the light from outside than there is
+  Rgb PowerInSweeps() const;
   Rgb PowerFromOutside() const;
   double PowerSeen(const EmissionPeak& peak) const;
   bool PeaksOutshineOthers() const;
-  void CheckEntering(const Rgb& ofLamps) const;
+  /// @throws InvalidInput where rays bring far less or more of the light from outside than there is
+  void CheckEntering(const Rgb& entered, const Rgb& expected) const;
   /// @throws InvalidInput where the energy balance is off by a hundredth
   void CheckBalance() const;
   void Load();
@@ -93,6 +94,7 @@ private:
   void PropagateOrder(int order, const Monitor& monitor);
   void PropagateSweeps(const AxisSweeps& sweeps, const SweepBoundary& boundary, int mostPlanes, const Monitor& monitor);
   void PropagateLights(const Monitor& monitor);
+  void PropagateFirstFlight(const Monitor& monitor);
   void PropagatePeaks(const Monitor& monitor);
   SweepVolume VolumeOf(int firstChannel, Part part) const;
   void ForChannels(const std::function<void(const SweepVolume&, int)>& act);
@@ -147,9 +149,12 @@ private:
   AxisSweeps FilledSweeps; ///< of the orders after it, where the medium leaves much of the volume empty; else empty
   Part Swept = Part::All;
   double LitPart = 1.0; ///< of all rays, in the first order
-  std::vector<Rgb> FromFarAway;
+  DirectionSet FineDirections;       ///< of the first flight
+  std::optional<FirstFlight> Flight; ///< where light from outside has one of its own
+  std::vector<Rgb> FromFarAway;      ///< but that
+  std::array<Rgb, 6> Faces = {};     ///< the same of the faces
   bool Shining = false; ///< the source is not zero
-  bool LitFromOutside = false;
+  bool LitFromOutside = false; ///< in sweeps
 
   // Accelerated: what the low-order systems have, by channel
   bool Accelerated = false;
