@@ -80,7 +80,7 @@ void FusedSolver::RunAccelerated(const Monitor& monitor)
   this->PropagateLights(monitor);
   this->Iterating = true;
   this->Stranded = this->OnTheWay;
-  this->LoadAccelerated();
+  this->LoadAccelerated(monitor);
   int sweep = 0;
   do
   {
@@ -102,7 +102,7 @@ void FusedSolver::RunAccelerated(const Monitor& monitor)
   this->UnloadAccelerated();
 }
 
-/// Where the light of lamps, or of a first flight, is scattered first within a voxel matters where one is thick.
+/// Where lamps' light is scattered first within a voxel matters where one is thick.
 void FusedSolver::ChooseNearness()
 {
   const Grid& grid = this->TheMedium.grid;
@@ -114,7 +114,7 @@ void FusedSolver::ChooseNearness()
       thick = this->SigmaT(i, c) * *std::max_element(grid.spacing.begin(), grid.spacing.end()) > ThickForNearness;
     }
   }
-  if (this->LinearSource && thick && (!this->Lights.empty() || this->Flight))
+  if (this->LinearSource && thick && !this->Lights.empty())
   {
     this->Nearness = Buffer<float>(this->TheDevice, 6 * this->Stride * this->Channels + SweepPadding, "light of lamps");
     this->Nearness.Fill(0.0f);
@@ -122,7 +122,7 @@ void FusedSolver::ChooseNearness()
 }
 
 /// The lights' unscattered light is known: what of it is scattered is given to the medium, like what it shines itself.
-void FusedSolver::LoadAccelerated()
+void FusedSolver::LoadAccelerated(const Monitor& monitor)
 {
   const std::size_t voxels = this->TheMedium.grid.VoxelCount();
   const double volume = this->TheMedium.grid.VoxelVolume();
@@ -130,6 +130,14 @@ void FusedSolver::LoadAccelerated()
   this->Lamps = this->Path.Read();
   this->LampBalance = this->Result.balance;
   this->LampFaces = this->Result.facePowerOut;
+  if (this->Nearness.Size() > 0)
+  {
+    this->LampPath = this->Lamps;
+  }
+  if (this->Flight)
+  {
+    this->AddFlightDifference(monitor);
+  }
   std::vector<float> given = this->Source.Read();
   std::vector<float> absorption(given.size(), 0.0f);
   this->GivenPower = this->Result.balance.emitted;
@@ -158,7 +166,7 @@ std::vector<float> FusedSolver::WithLamps(const Buffer<float>& planar, double sc
   std::vector<float> values = planar.Read();
   for (std::size_t i = 0; i < values.size(); ++i)
   {
-    values[i] = static_cast<float>(values[i] * scale + this->Lamps[i]);
+    values[i] = std::max(static_cast<float>(values[i] * scale + this->Lamps[i]), 0.0f);
   }
   return values;
 }
@@ -203,15 +211,12 @@ void FusedSolver::MakeSystems()
 {
   const Grid& grid = this->TheMedium.grid;
   const CrossingPattern pattern =
-    FindCrossingPattern(grid, this->Directions, this->Settings.mapResolution, this->Settings.periodic);
+    FindCrossingPattern(grid, this->Directions, this->Settings.mapResolution, this->Starts(), this->Settings.periodic);
   const SweepBoundary boundary = this->BoundaryOfOrder(0);
   Buffer<float> lampPath;
   if (this->Nearness.Size() > 0)
   {
-    std::vector<float> paths = this->Lamps;
-    std::transform(paths.begin(), paths.end(), paths.begin(),
-      [&](float fluence) { return static_cast<float>(fluence * grid.VoxelVolume()); });
-    lampPath = Buffer<float>(this->TheDevice, paths, "light of lamps");
+    lampPath = Buffer<float>(this->TheDevice, this->LampPath, "light of lamps");
   }
   for (int c = 0; c < this->Channels; ++c)
   {
@@ -330,7 +335,8 @@ void FusedSolver::UnloadAccelerated()
     {
       const std::size_t at = c * this->Stride + i;
       const double found = this->Found[c][i];
-      fluence[at] = static_cast<float>((found >= 0.0 ? found : path[at] * perVolume) + this->Lamps[at]);
+      const double swept = found >= 0.0 ? found : path[at] * perVolume;
+      fluence[at] = std::max(static_cast<float>(swept + this->Lamps[at]), 0.0f);
     }
     if (this->Settings.netFlux && this->UnitPower(c) > 0.0)
     {

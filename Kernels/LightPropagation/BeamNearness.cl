@@ -1,7 +1,4 @@
 // A beam of parallel light, after it was followed: its path is added to that of all lights, and how near to voxels' faces it is lost.
-// The host gives
-//   OCTANT    1: it is many beams, in one octant of directions, and `flux` is their net flux
-//   NET_FLUX  1: that is wanted too
 
 // As BeamInfo in FirstCollision.cxx.
 typedef struct
@@ -10,7 +7,7 @@ typedef struct
   int periodic[3];
   int up[3];         // the way it goes along each axis
   float spacing[3];
-  float lengths[3];  // of a ray from face to face; not of an octant
+  float lengths[3];  // of a ray from face to face
   float thin;        // optical length of voxels whose light is lost evenly, near enough
 } beam_info;
 
@@ -22,11 +19,10 @@ static float distance_to_face(float tau)
 
 // The first moment of what is lost is by Gauss's theorem that of the power through the faces, plus the net flux: exact where as much
 // goes in as comes out of the faces beside; never more than if all came in through the face.
-// path, entering, flux  of the beam, as in SweepVolume.h
-// all_path, nearness, all_flux  of all lamps
+// path, entering      of the beam, as in SweepVolume.h
+// all_path, nearness  of all lamps
 __kernel void add_beam(beam_info beam, const __global float* sigma, ulong sigma_first, const __global float* path,
-  const __global float* entering, const __global float* flux, __global float* all_path, __global float* nearness,
-  __global float* all_flux, ulong first, ulong stride)
+  const __global float* entering, __global float* all_path, __global float* nearness, ulong first, ulong stride)
 {
   const ulong i = get_global_id(0);
   const ulong begin = first + get_global_id(1) * stride;
@@ -35,7 +31,6 @@ __kernel void add_beam(beam_info beam, const __global float* sigma, ulong sigma_
   const float s = sigma[sigma_first + i];
   entering += 6 * begin;
   nearness += 6 * begin;
-  flux += 3 * begin;
   const int at[3] = { i % beam.size[0], i / beam.size[0] % beam.size[1], i / ((ulong)beam.size[0] * beam.size[1]) };
   float in[3], out[3], rest = -s * length, leaving = 0.0f;
   bool border[3];
@@ -52,22 +47,13 @@ __kernel void add_beam(beam_info beam, const __global float* sigma, ulong sigma_
   }
   for (int a = 0; a < 3; ++a)
   {
-#if OCTANT
-    const float crossings = fabs(flux[a * stride + i]) / beam.spacing[a];
-    const float tau = s * length / fmax(crossings, 1e-30f);
-#if NET_FLUX
-    all_flux[3 * begin + a * stride + i] += flux[a * stride + i];
-#endif
-#else
-    const float crossings = length / beam.lengths[a];
     const float tau = s * beam.lengths[a];
-#endif
     if (s * beam.spacing[a] < beam.thin || length <= 0.0f)
     {
       continue;
     }
     out[a] = border[a] && leaving > 0.0f ? fmax(rest, 0.0f) * in[a] / leaving : out[a];
-    const float onwards = (crossings - 0.5f * (in[a] + out[a])) / s;
+    const float onwards = (length / beam.lengths[a] - 0.5f * (in[a] + out[a])) / s;
     const float most = length * distance_to_face(tau);
     const int ahead = 2 * a + beam.up[a];
     nearness[ahead * stride + i] += clamp(onwards, 0.0f, most);

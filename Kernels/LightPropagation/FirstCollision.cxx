@@ -1,7 +1,6 @@
 #include "FirstCollision.h"
 
 #include "AxisSweep.h"
-#include "BeamNearness.h"
 #include "TyndallKernelSources.h"
 
 #include <glm/geometric.hpp>
@@ -24,6 +23,13 @@ constexpr int RowSums = 9;          ///< SUMS of LampBeams.cl
 constexpr int RowsPerLaunch = 256;  ///< keeps a launch well below a tenth of a second for rows of a thousand voxels
 constexpr int RoundsAtMost = 64;    ///< of a ray on a periodic axis
 constexpr int ManyPlanes = 8192;    ///< of a beam on a periodic axis
+
+// As beam_info in BeamNearness.cl.
+struct BeamInfo
+{
+  cl_int size[3], periodic[3], up[3];
+  cl_float spacing[3], lengths[3], thin;
+};
 
 // As lamp_info, beam_row in LampBeams.cl.
 struct LampOnDevice
@@ -59,20 +65,42 @@ SweepTally DepositBeam(Device& device, const SweepVolume& volume, const Light& l
 {
   const std::array<double, 3> omega = Array(glm::normalize(Vector(light.direction)));
   const int axis = MarchingAxis(volume.grid, omega);
-  const std::vector<Bundle> bundles = BeamAlong(axis, volume.grid, omega, RaysPerEdge);
-  const auto sweep = [&](const SweepVolume& swept) {
-    AxisSweep beam(device, swept, axis, bundles, periodic, workspace);
-    beam.Start(
-      swept, [&](int, int) { return light.power; }, false, ManyPlanes, monitor);
-    return beam.Finish();
-  };
-  if (!volume.nearness)
+  // How near to voxels' faces the light is lost is told by the faces that it enters through.
+  SweepVolume own = volume;
+  Buffer<float> path, entering;
+  if (volume.nearness)
   {
-    return sweep(volume);
+    const std::size_t all = volume.first + volume.channels * volume.stride;
+    path = Buffer<float>(device, all + SweepPadding, "the light of a beam");
+    entering = Buffer<float>(device, 6 * all + SweepPadding, "the light of a beam");
+    path.Fill(0.0f);
+    entering.Fill(0.0f);
+    own.path = &path;
+    own.entering = &entering;
   }
-  BeamNearness nearness(device, volume, BeamNearness::Kind::Parallel);
-  const SweepTally tally = sweep(nearness.Own());
-  nearness.Add(omega, periodic);
+  AxisSweep beam(device, own, axis, BeamAlong(axis, volume.grid, omega, RaysPerEdge), periodic, workspace);
+  beam.Start(
+    own, [&](int, int) { return light.power; }, false, ManyPlanes, monitor);
+  const SweepTally tally = beam.Finish();
+  if (volume.nearness)
+  {
+    BeamInfo info = {};
+    for (int a = 0; a < 3; ++a)
+    {
+      info.size[a] = volume.grid.size[a];
+      info.periodic[a] = periodic[a];
+      info.up[a] = omega[a] >= 0.0;
+      info.spacing[a] = static_cast<float>(volume.grid.spacing[a]);
+      info.lengths[a] = static_cast<float>(volume.grid.spacing[a] / std::max(std::abs(omega[a]), 1e-6));
+    }
+    info.thin = ThinForNearness;
+    cl::Kernel add = device.Kernel("add_beam", { kernel_source::BeamNearness });
+    With(add, info, *volume.sigma_t, cl_ulong(volume.sigma_t_first), path, entering, *volume.path, *volume.nearness,
+      cl_ulong(volume.first), cl_ulong(volume.stride));
+    device.Queue().enqueueNDRangeKernel(
+      add, cl::NullRange, cl::NDRange(volume.grid.VoxelCount(), volume.channels), cl::NullRange);
+    device.Finish();
+  }
   return tally;
 }
 

@@ -1,7 +1,6 @@
 #include "FirstFlight.h"
 
 #include "AxisSweep.h"
-#include "BeamNearness.h"
 #include "SweepPlan.h"
 
 #include <algorithm>
@@ -13,6 +12,7 @@ namespace tyndall
 namespace
 {
 constexpr int ManyPlanes = 8192; ///< that a ray goes round a periodic axis before it is given up
+constexpr double Rounding = 1e-6; ///< of radiance that is meant to be even
 constexpr std::size_t MostRays = std::size_t(1) << 25; ///< in the maps of a sweep, one way: 128 MiB of floats
 
 /// Through which face light of that way along the axis comes in.
@@ -41,16 +41,17 @@ double FaceArea(const Grid& grid, int axis)
 }
 
 FirstFlight::FirstFlight(const Grid& grid, const PropagationSettings& settings, const DirectionSet& directions,
-  const Illumination& illumination, const Environment& farAway)
+  RayStarts starts, const Illumination& illumination, const Environment& farAway)
   : TheGrid(grid)
   , Settings(settings)
   , Directions(directions)
+  , Starts(starts)
   , Mirrors(grid, settings.periodic, directions)
   , MergesMirrors(settings.leaveOut && !settings.netFlux)
   , Faces(illumination.faces)
+  , FromFarAway(directions.directions.size())
 {
   const std::vector<Rgb> radiance = BoundaryRadiance(directions, farAway, illumination.sky);
-  this->FromFarAway.assign(radiance.size(), {});
   for (std::size_t d = 0; d < radiance.size(); ++d)
   {
     const std::vector<int> itself = { static_cast<int>(d) };
@@ -63,15 +64,27 @@ FirstFlight::FirstFlight(const Grid& grid, const PropagationSettings& settings, 
       }
     }
   }
+  this->FindEvenPart();
+}
+
+FirstFlight::FirstFlight(const FirstFlight& other, const DirectionSet& directions, RayStarts starts,
+  const Illumination& illumination, const Environment& farAway)
+  : FirstFlight(other.TheGrid, other.Settings, directions, starts, illumination, farAway)
+{
+  this->EvenPart = other.EvenPart;
+}
+
+void FirstFlight::FindEvenPart()
+{
   Rgb least, most = {};
   least.fill(std::numeric_limits<double>::max());
-  for (std::size_t d = 0; d < radiance.size(); ++d)
+  for (std::size_t d = 0; d < this->FromFarAway.size(); ++d)
   {
     for (int axis = 0; axis < 3; ++axis)
     {
       const Rgb in =
         this->Incoming(static_cast<int>(d), FaceOf(axis, this->Directions.directions[d].omega[axis] > 0.0));
-      for (int c = 0; c < 3 && !settings.periodic[axis]; ++c)
+      for (int c = 0; c < 3 && !this->Settings.periodic[axis]; ++c)
       {
         least[c] = std::min(least[c], in[c]);
         most[c] = std::max(most[c], in[c]);
@@ -80,13 +93,12 @@ FirstFlight::FirstFlight(const Grid& grid, const PropagationSettings& settings, 
   }
   for (int c = 0; c < 3; ++c)
   {
-    const bool even = most[c] - least[c] <= 1e-6 * most[c]; // rounding
+    const bool even = most[c] <= 0.0 || most[c] - least[c] <= Rounding * most[c];
     this->AnyLight = this->AnyLight || !even;
     this->EvenPart[c] = even ? most[c] : least[c];
   }
 }
 
-/// Radiance but for the even part.
 Rgb FirstFlight::Incoming(int direction, int face) const
 {
   Rgb radiance = this->Faces[face];
@@ -127,71 +139,38 @@ bool FirstFlight::IsLit(int direction) const
   return lit;
 }
 
-bool FirstFlight::IsOf(const Part& part, int direction) const
-{
-  bool of = true;
-  for (int axis = 0; axis < 3 && part.octant >= 0; ++axis)
-  {
-    const bool upwards = this->Directions.directions[direction].omega[axis] > 0.0;
-    of = of && upwards == ((part.octant >> axis & 1) != 0);
-  }
-  return of && this->IsLit(direction);
-}
-
-SweepTally FirstFlight::Sweep(Device& device, const SweepVolume& volume, int firstChannel, const Part& part,
-  SweepWorkspace& workspace, const Monitor& monitor) const
+/// Those that march one way along the axis.
+std::vector<Bundle> FirstFlight::LitBundles(int axis, int way) const
 {
   std::vector<Bundle> bundles =
-    BundlesAlong(part.axis, this->TheGrid, this->Directions, this->Settings.mapResolution);
+    BundlesAlong(axis, this->TheGrid, this->Directions, this->Settings.mapResolution, this->Starts);
   if (this->MergesMirrors)
   {
     bundles = this->Mirrors.Standing(bundles);
   }
-  bundles = LitRays(bundles, part.way, [&](int direction) { return this->IsOf(part, direction); });
-  const PlaneAxes axes = AcrossAxis(part.axis);
-  const std::size_t plane = static_cast<std::size_t>(volume.grid.size[axes.u]) * volume.grid.size[axes.v];
-  const std::size_t most = std::max<std::size_t>(MostRays / (MaxMembers * plane * volume.channels), 8);
-  SweepTally tally;
-  for (std::size_t first = 0; first < bundles.size(); first += most)
-  {
-    const auto end = bundles.begin() + static_cast<std::ptrdiff_t>(std::min(first + most, bundles.size()));
-    AxisSweep sweep(device, volume, part.axis,
-      std::vector<Bundle>(bundles.begin() + static_cast<std::ptrdiff_t>(first), end), this->Settings.periodic,
-      workspace);
-    const auto incoming = [&](int direction, int face) { return From(this->Incoming(direction, face), firstChannel); };
-    sweep.Start(volume, incoming, false, ManyPlanes, monitor);
-    Add(tally, sweep.Finish());
-  }
-  return tally;
-}
-
-SweepTally FirstFlight::SweepOctant(Device& device, const SweepVolume& volume, int firstChannel, int octant,
-  SweepWorkspace& workspace, const Monitor& monitor) const
-{
-  const std::array<bool, 3> up = { (octant & 1) != 0, (octant & 2) != 0, (octant & 4) != 0 };
-  BeamNearness nearness(device, volume, BeamNearness::Kind::Octant);
-  SweepTally tally;
-  for (int axis = 0; axis < 3; ++axis)
-  {
-    const Part part = { axis, up[axis] ? 0 : 1, octant };
-    Add(tally, this->Sweep(device, nearness.Own(), firstChannel, part, workspace, monitor));
-  }
-  nearness.Add({ up[0] ? 1.0 : -1.0, up[1] ? 1.0 : -1.0, up[2] ? 1.0 : -1.0 }, this->Settings.periodic);
-  return tally;
+  return LitRays(bundles, way, [this](int direction) { return this->IsLit(direction); });
 }
 
 SweepTally FirstFlight::Deposit(
   Device& device, const SweepVolume& volume, int firstChannel, SweepWorkspace& workspace, const Monitor& monitor) const
 {
+  const auto incoming = [&](int direction, int face) { return From(this->Incoming(direction, face), firstChannel); };
   SweepTally tally;
-  const int parts = volume.nearness ? 8 : 6;
-  for (int p = 0; p < parts; ++p)
+  for (int part = 0; part < 6; ++part)
   {
-    const Monitor ofPart = monitor ? Monitor([&](double done) { return monitor((p + done) / parts); }) : Monitor();
-    Add(tally,
-      volume.nearness
-        ? this->SweepOctant(device, volume, firstChannel, p, workspace, ofPart)
-        : this->Sweep(device, volume, firstChannel, { p / 2, p % 2, -1 }, workspace, ofPart));
+    const Monitor ofPart = monitor ? Monitor([&](double done) { return monitor((part + done) / 6.0); }) : Monitor();
+    const std::vector<Bundle> bundles = this->LitBundles(part / 2, part % 2);
+    const PlaneAxes axes = AcrossAxis(part / 2);
+    const std::size_t plane = static_cast<std::size_t>(volume.grid.size[axes.u]) * volume.grid.size[axes.v];
+    const std::size_t most = std::max<std::size_t>(MostRays / (MaxMembers * plane * volume.channels), 8);
+    for (std::size_t first = 0; first < bundles.size(); first += most)
+    {
+      const std::vector<Bundle> some(
+        bundles.begin() + first, bundles.begin() + std::min(first + most, bundles.size()));
+      AxisSweep sweep(device, volume, part / 2, some, this->Settings.periodic, workspace);
+      sweep.Start(volume, incoming, false, ManyPlanes, ofPart);
+      Add(tally, sweep.Finish());
+    }
   }
   return tally;
 }

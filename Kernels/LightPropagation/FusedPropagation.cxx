@@ -195,38 +195,28 @@ const Buffer<float>& FusedSolver::SigmaSOnDevice() const
   return this->Settings.leaveOut && (alike || unused) ? this->Extinction : this->Scattering;
 }
 
-/// What is small and bright becomes lights, what is not even has a first flight of its own where that is wanted.
 void FusedSolver::FindOutsideLight()
 {
-  const bool flies = this->Settings.firstFlightDirections > 0;
-  if (flies)
+  const int fine = this->Settings.firstFlightDirections;
+  if (fine > 0)
   {
-    this->FineDirections = SoundDirections(this->Settings.firstFlightDirections, "FirstFlightDirections");
+    this->FineDirections = SoundDirections(fine, "FirstFlightDirections");
   }
   const SplitEnvironment environment =
-    Split(this->Outside.environment, flies ? this->FineDirections : this->Directions);
+    Split(this->Outside.environment, fine > 0 ? this->FineDirections : this->Directions);
   this->FromFarAway = BoundaryRadiance(this->Directions, environment.smooth, this->Outside.sky);
-  this->Faces = this->Outside.faces;
   this->Lights = this->Outside.lights;
   this->Lights.insert(this->Lights.end(), environment.peaks.begin(), environment.peaks.end());
-  if (flies)
+  if (fine > 0)
   {
-    this->Flight.emplace(
-      this->TheMedium.grid, this->Settings, this->FineDirections, this->Outside, environment.smooth);
-    this->FromFarAway.assign(this->FromFarAway.size(), this->Flight->Even());
-    this->Faces = {};
+    this->FindFlight(environment.smooth);
   }
-  if (flies && !this->Flight->Shines())
+  for (std::size_t d = 0; d < this->FromFarAway.size(); ++d)
   {
-    this->Flight.reset();
-  }
-  for (const Rgb& radiance : this->FromFarAway)
-  {
-    this->LitFromOutside = this->LitFromOutside || Total(radiance) > 0.0;
-  }
-  for (const Rgb& radiance : this->Faces)
-  {
-    this->LitFromOutside = this->LitFromOutside || Total(radiance) > 0.0;
+    for (int face = 0; face < 6; ++face)
+    {
+      this->LitFromOutside = this->LitFromOutside || Total(this->Incoming(static_cast<int>(d), face)) > 0.0;
+    }
   }
 }
 
@@ -234,7 +224,7 @@ void FusedSolver::FindOutsideLight()
 std::vector<Bundle> FusedSolver::BundlesOf(int axis) const
 {
   const std::vector<Bundle> bundles =
-    BundlesAlong(axis, this->TheMedium.grid, this->Directions, this->Settings.mapResolution);
+    BundlesAlong(axis, this->TheMedium.grid, this->Directions, this->Settings.mapResolution, this->Starts());
   return this->MergesMirrors() ? this->Mirrors.Standing(bundles) : bundles;
 }
 
@@ -326,7 +316,17 @@ void FusedSolver::MakeLitSweeps()
 /// Radiance, in the mean over the directions that this one stands for.
 Rgb FusedSolver::Incoming(int direction, int face) const
 {
-  Rgb radiance = this->Faces[face];
+  if (this->Flight)
+  {
+    Rgb radiance = this->Flight->Even();
+    const Rgb rest = this->UsualFlight ? this->UsualFlight->Incoming(direction, face) : Rgb{};
+    for (int c = 0; c < 3; ++c)
+    {
+      radiance[c] += this->FlightScale[c] * rest[c];
+    }
+    return radiance;
+  }
+  Rgb radiance = this->Outside.faces[face];
   const std::vector<int> itself = { direction };
   const std::vector<int>& all = this->MergesMirrors() ? this->Mirrors.AllOf(direction) : itself;
   for (const int one : all)
@@ -405,23 +405,8 @@ void FusedSolver::PropagateLights(const Monitor& monitor)
         first, volume.channels);
     });
   }
-  this->PropagateFirstFlight(monitor);
+  this->PropagateFlight(monitor);
   this->PropagatePeaks(monitor);
-}
-
-/// The unscattered light of faces, sky and environment.
-void FusedSolver::PropagateFirstFlight(const Monitor& monitor)
-{
-  if (!this->Flight)
-  {
-    return;
-  }
-  const Rgb before = this->Result.balance.entered;
-  this->ForChannels([&](const SweepVolume& volume, int first) {
-    this->Count(
-      this->Flight->Deposit(this->TheDevice, volume, first, this->Workspace, monitor), first, volume.channels);
-  });
-  this->CheckEntering(Minus(this->Result.balance.entered, before), this->Flight->PowerIn());
 }
 
 /// Small bright parts of the medium.

@@ -87,6 +87,7 @@ private:
   void MakeLitSweeps();
   AxisSweeps SweepsThrough(Part part);
   std::vector<Bundle> BundlesOf(int axis) const;
+  RayStarts Starts() const { return this->Settings.staggeredRays ? RayStarts::Staggered : RayStarts::Middle; }
   bool LeavesSlabsOut() const;
   bool MergesMirrors() const { return this->Settings.leaveOut && !this->Settings.netFlux; }
   std::array<std::size_t, 2> SweptValues() const;
@@ -94,7 +95,16 @@ private:
   void PropagateOrder(int order, const Monitor& monitor);
   void PropagateSweeps(const AxisSweeps& sweeps, const SweepBoundary& boundary, int mostPlanes, const Monitor& monitor);
   void PropagateLights(const Monitor& monitor);
-  void PropagateFirstFlight(const Monitor& monitor);
+  void FindFlight(const Environment& farAway);
+  void PropagateFlight(const Monitor& monitor);
+  struct FlightLight
+  {
+    std::vector<float> path, flux; ///< as in SweepVolume
+    SweepTally tally;
+  };
+  FlightLight LightOf(const FirstFlight& flight, const Monitor& monitor);
+  void AddFlightDifference(const Monitor& monitor);
+  double PartOfDifference(std::size_t voxel, int channel) const;
   void PropagatePeaks(const Monitor& monitor);
   SweepVolume VolumeOf(int firstChannel, Part part) const;
   void ForChannels(const std::function<void(const SweepVolume&, int)>& act);
@@ -111,7 +121,7 @@ private:
   double OrdersNeeded() const;
   void ChooseNearness();
   void RunAccelerated(const Monitor& monitor);
-  void LoadAccelerated();
+  void LoadAccelerated(const Monitor& monitor);
   std::vector<float> WithLamps(const Buffer<float>& planar, double scale) const;
   void SweepAll(int sweepNumber, const Monitor& monitor);
   void MakeSystems();
@@ -149,10 +159,7 @@ private:
   AxisSweeps FilledSweeps; ///< of the orders after it, where the medium leaves much of the volume empty; else empty
   Part Swept = Part::All;
   double LitPart = 1.0; ///< of all rays, in the first order
-  DirectionSet FineDirections;       ///< of the first flight
-  std::optional<FirstFlight> Flight; ///< where light from outside has one of its own
-  std::vector<Rgb> FromFarAway;      ///< but that
-  std::array<Rgb, 6> Faces = {};     ///< the same of the faces
+  std::vector<Rgb> FromFarAway;
   bool Shining = false; ///< the source is not zero
   bool LitFromOutside = false; ///< in sweeps
 
@@ -165,11 +172,18 @@ private:
   std::vector<std::unique_ptr<LowOrder>> Systems;
   std::vector<std::vector<double>> Found; ///< W / length^2, without lights' own
   std::vector<float> Lamps;               ///< W / length^2, lights' own, [channel][stride]
+  std::vector<float> LampPath;            ///< W length, the same where Nearness is there
   EnergyBalance LampBalance;              ///< of lights' own light
   std::array<Rgb, 6> LampFaces = {};
   Rgb GivenPower = {}, PowerIn = {};    ///< W, emitted or first scattered; through faces
   std::array<Rgb, 6> FacePowerOut = {}; ///< W, in a sweep
   double Change = 1.0, LastRatio = 1.0;
+
+  // Where unscattered light from outside has directions of its own, see FlightOfSolver.cxx.
+  DirectionSet FineDirections;
+  std::optional<FirstFlight> Flight;
+  std::optional<FirstFlight> UsualFlight; ///< accelerated: the same light along the usual directions, as the sweeps carry it
+  Rgb FlightScale = { 1.0, 1.0, 1.0 };    ///< of that, so that as much power comes in
 
   LightField Result;
   std::chrono::steady_clock::time_point Start;

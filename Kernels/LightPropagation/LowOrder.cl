@@ -443,7 +443,9 @@ __kernel void low_order_source(low_order_layout layout, const __global float* gi
   find_neighbours(layout.size, x, y, z, i, next);
   float open[6];
   const float skin = openness(&layout, sigma_t, i, next, at, open);
-  const float even = given[begin + i] + sigma_s[begin + i] * fmax((float)fluence[i], 0.0f) * (0.25f * M_1_PI_F);
+  // `given` is less than nothing where unscattered light on directions of its own is less than in the sweep.
+  const float even =
+    fmax(given[begin + i] + sigma_s[begin + i] * fmax((float)fluence[i], 0.0f) * (0.25f * M_1_PI_F), 0.0f);
   float shining = 0.0f, sum = 0.0f;
   for (int d = 0; d < 6; ++d)
   {

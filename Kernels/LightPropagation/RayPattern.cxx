@@ -93,10 +93,9 @@ void Sort(std::vector<Bundle>& bundles, const PlaneAxes& axes, const Grid& grid,
   bundles.push_back(fresh);
 }
 
-/// Where rays start within a voxel: each bundle's in a place of its own. Rays that all start in the middle come through the box's sides
-/// in the same pattern, and as many directions as there may be do not take it away. Steps of two irrational numbers, those
-/// of the plastic number, fill a square evenly (Roberts 2018). Bundles take them in the order of their tangents, the same
-/// along every axis.
+/// Rays that all start in the middle come through the box's sides in the same pattern, and as many directions as there may be do not take
+/// it away. Steps of two irrational numbers, those of the plastic number, fill a square evenly (Roberts 2018). Bundles
+/// take them in the order of their tangents, the same along every axis.
 void Stagger(std::vector<Bundle>& bundles)
 {
   std::vector<Bundle*> inOrder;
@@ -111,9 +110,9 @@ void Stagger(std::vector<Bundle>& bundles)
   double first = 0.5, second = 0.5;
   for (Bundle* bundle : inOrder)
   {
-    const bool uIsLess = bundle->tangentU < bundle->tangentV;
-    bundle->startU = uIsLess ? first : second;
-    bundle->startV = uIsLess ? second : first;
+    const bool diagonal = Same(bundle->tangentU, bundle->tangentV); // neither axis comes first
+    bundle->startU = diagonal || bundle->tangentU < bundle->tangentV ? first : second;
+    bundle->startV = diagonal || bundle->tangentU > bundle->tangentV ? first : second;
     first = std::fmod(first + 0.7548776662466927, 1.0);
     second = std::fmod(second + 0.5698402909980532, 1.0);
   }
@@ -193,7 +192,8 @@ int MarchingAxis(const Grid& grid, const std::array<double, 3>& omega)
   return axis;
 }
 
-std::vector<Bundle> BundlesAlong(int axis, const Grid& grid, const DirectionSet& set, int mapResolution)
+std::vector<Bundle> BundlesAlong(
+  int axis, const Grid& grid, const DirectionSet& set, int mapResolution, RayStarts starts)
 {
   const PlaneAxes axes = AcrossAxis(axis);
   std::vector<Bundle> bundles;
@@ -205,7 +205,10 @@ std::vector<Bundle> BundlesAlong(int axis, const Grid& grid, const DirectionSet&
       Sort(bundles, axes, grid, set, static_cast<int>(d));
     }
   }
-  Stagger(bundles);
+  if (starts == RayStarts::Staggered)
+  {
+    Stagger(bundles);
+  }
   return OnLattice(bundles, mapResolution);
 }
 

@@ -28,7 +28,7 @@ std::string Text(const char* format, double value)
 Rgb FusedSolver::PowerFromOutside() const
 {
   Rgb power = this->PowerInSweeps();
-  const Rgb ofFlight = this->Flight ? this->Flight->PowerIn() : Rgb{};
+  const Rgb ofFlight = this->Flight && !this->UsualFlight ? this->Flight->PowerIn() : Rgb{};
   for (int c = 0; c < this->Channels; ++c)
   {
     power[c] += ofFlight[c];
@@ -36,7 +36,7 @@ Rgb FusedSolver::PowerFromOutside() const
   return power;
 }
 
-/// The part of it that comes in along the directions of scattered light.
+/// The part of it that sweeps bring, along the directions of scattered light.
 Rgb FusedSolver::PowerInSweeps() const
 {
   Rgb expected = {};
