@@ -11,8 +11,8 @@ namespace tyndall
 {
 namespace
 {
-constexpr int ManyPlanes = 8192; ///< that a ray goes round a periodic axis before it is given up
-constexpr double Rounding = 1e-6; ///< of radiance that is meant to be even
+constexpr int ManyPlanes = 8192;                       ///< that a ray goes round a periodic axis before it is given up
+constexpr double Rounding = 1e-6;                      ///< of radiance that is meant to be even
 constexpr std::size_t MostRays = std::size_t(1) << 25; ///< in the maps of a sweep, one way: 128 MiB of floats
 
 /// Through which face light of that way along the axis comes in.
@@ -165,8 +165,7 @@ SweepTally FirstFlight::Deposit(
     const std::size_t most = std::max<std::size_t>(MostRays / (MaxMembers * plane * volume.channels), 8);
     for (std::size_t first = 0; first < bundles.size(); first += most)
     {
-      const std::vector<Bundle> some(
-        bundles.begin() + first, bundles.begin() + std::min(first + most, bundles.size()));
+      const std::vector<Bundle> some(bundles.begin() + first, bundles.begin() + std::min(first + most, bundles.size()));
       AxisSweep sweep(device, volume, part / 2, some, this->Settings.periodic, workspace);
       sweep.Start(volume, incoming, false, ManyPlanes, ofPart);
       Add(tally, sweep.Finish());

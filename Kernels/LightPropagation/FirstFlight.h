@@ -40,8 +40,8 @@ public:
   /// @param firstChannel  of the three, that is the volume's first
   /// @param workspace  of sweeps that are not under way
   /// @return what came in, what left, what still goes round a periodic axis
-  SweepTally Deposit(
-    Device& device, const SweepVolume& volume, int firstChannel, SweepWorkspace& workspace, const Monitor& monitor) const;
+  SweepTally Deposit(Device& device, const SweepVolume& volume, int firstChannel, SweepWorkspace& workspace,
+    const Monitor& monitor) const;
 
 private:
   void FindEvenPart();

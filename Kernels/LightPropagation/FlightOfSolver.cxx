@@ -9,8 +9,7 @@ namespace tyndall
 void FusedSolver::FindFlight(const Environment& farAway)
 {
   const Grid& grid = this->TheMedium.grid;
-  const FirstFlight flight(
-    grid, this->Settings, this->FineDirections, RayStarts::Staggered, this->Outside, farAway);
+  const FirstFlight flight(grid, this->Settings, this->FineDirections, RayStarts::Staggered, this->Outside, farAway);
   if (!flight.Shines())
   {
     return;
@@ -73,7 +72,8 @@ double FusedSolver::PartOfDifference(std::size_t voxel, int channel) const
   const double longest = std::max({ h[0], h[1], h[2] });
   const double tau = longest * this->SigmaT(voxel, channel);
   const double absorbing = longest * this->TheMedium.sigma_a.At(voxel, channel);
-  return this->LinearSource ? 1.0 / (1.0 + tau * (0.25 * tau + 3.0 * absorbing)) : 1.0; // as LowOrder.cl believes in sweeps
+  return this->LinearSource ? 1.0 / (1.0 + tau * (0.25 * tau + 3.0 * absorbing))
+                            : 1.0; // as LowOrder.cl believes in sweeps
 }
 
 /// Where orders are accelerated, sweeps carry all light along the usual directions, as the low-order system wants it. What the finer ones
@@ -81,8 +81,9 @@ double FusedSolver::PartOfDifference(std::size_t voxel, int channel) const
 /// voxels or takes from them is made up for by what leaves the box.
 void FusedSolver::AddFlightDifference(const Monitor& monitor)
 {
-  const FlightLight fine = this->LightOf(*this->Flight, monitor);
-  const FlightLight usual = this->LightOf(*this->UsualFlight, monitor);
+  const Monitor ofFlight = monitor ? Monitor([&](double done) { return monitor(this->Progress(0, done)); }) : Monitor();
+  const FlightLight fine = this->LightOf(*this->Flight, ofFlight);
+  const FlightLight usual = this->LightOf(*this->UsualFlight, ofFlight);
   std::vector<float> flux = this->Settings.netFlux ? this->Flux.Read() : std::vector<float>();
   Rgb in = {}, usualIn = {};
   for (int c = 0; c < this->Channels; ++c)

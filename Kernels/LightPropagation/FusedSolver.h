@@ -160,7 +160,7 @@ private:
   Part Swept = Part::All;
   double LitPart = 1.0; ///< of all rays, in the first order
   std::vector<Rgb> FromFarAway;
-  bool Shining = false; ///< the source is not zero
+  bool Shining = false;        ///< the source is not zero
   bool LitFromOutside = false; ///< in sweeps
 
   // Accelerated: what the low-order systems have, by channel
@@ -182,8 +182,9 @@ private:
   // Where unscattered light from outside has directions of its own, see FlightOfSolver.cxx.
   DirectionSet FineDirections;
   std::optional<FirstFlight> Flight;
-  std::optional<FirstFlight> UsualFlight; ///< accelerated: the same light along the usual directions, as the sweeps carry it
-  Rgb FlightScale = { 1.0, 1.0, 1.0 };    ///< of that, so that as much power comes in
+  std::optional<FirstFlight>
+    UsualFlight; ///< accelerated: the same light along the usual directions, as the sweeps carry it
+  Rgb FlightScale = { 1.0, 1.0, 1.0 }; ///< of that, so that as much power comes in
 
   LightField Result;
   std::chrono::steady_clock::time_point Start;

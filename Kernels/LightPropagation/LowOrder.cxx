@@ -90,8 +90,8 @@ std::vector<double> CrossingsIn(
 }
 }
 
-CrossingPattern FindCrossingPattern(const Grid& grid, const DirectionSet& set, int mapResolution, RayStarts starts,
-  const std::array<bool, 3>& periodic)
+CrossingPattern FindCrossingPattern(
+  const Grid& grid, const DirectionSet& set, int mapResolution, RayStarts starts, const std::array<bool, 3>& periodic)
 {
   CrossingPattern pattern;
   for (int axis = 0; axis < 3; ++axis)

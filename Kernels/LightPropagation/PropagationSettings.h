@@ -30,14 +30,15 @@ struct PropagationSettings
   /// Rays of each direction start in a place of their own within a voxel, those of a first flight always (RayPattern.h). From some 64
   /// directions a face on, half the error or less.
   bool staggeredRays = false;
-  int maximumOrders = 0;      ///< scattering orders (accelerated: sweeps) at most; 0: until the tolerance is met
-  double tolerance = 1e-4;    ///< relative error of fluence at which to stop, > 0
+  int maximumOrders = 0;   ///< scattering orders (accelerated: sweeps) at most; 0: until the tolerance is met
+  double tolerance = 1e-4; ///< relative error of fluence at which to stop, > 0
   std::array<bool, 3> periodic = { false, false, false }; ///< rays leaving an axis return on the other side
   int storedDirections = 1; ///< directions kept for scattered radiance: 1 (isotropic), 6 (faces), or more
   PropagationSource source = PropagationSource::Automatic;
   PropagationAcceleration acceleration = PropagationAcceleration::Automatic; ///< not where maximumOrders is given
   bool netFlux = false;                                                      ///< compute net_flux too: it costs
-  bool emissionRays = true; ///< follow what shines in small bright parts of the medium along exact rays (EmissionPeaks.h)
+  bool emissionRays =
+    true;               ///< follow what shines in small bright parts of the medium along exact rays (EmissionPeaks.h)
   bool leaveOut = true; ///< what the scene does not need; false: all is computed, to see what leaving out saves
 };
 
