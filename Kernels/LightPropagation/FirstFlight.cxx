@@ -41,7 +41,7 @@ double FaceArea(const Grid& grid, int axis)
 }
 
 FirstFlight::FirstFlight(const Grid& grid, const PropagationSettings& settings, const DirectionSet& directions,
-  RayStarts starts, const Illumination& illumination, const Environment& farAway)
+  RayStarts starts, const Illumination& illumination, const Environment& farAway, bool leavesEven)
   : TheGrid(grid)
   , Settings(settings)
   , Directions(directions)
@@ -64,17 +64,17 @@ FirstFlight::FirstFlight(const Grid& grid, const PropagationSettings& settings, 
       }
     }
   }
-  this->FindEvenPart();
+  this->FindEvenPart(leavesEven);
 }
 
 FirstFlight::FirstFlight(const FirstFlight& other, const DirectionSet& directions, RayStarts starts,
   const Illumination& illumination, const Environment& farAway)
-  : FirstFlight(other.TheGrid, other.Settings, directions, starts, illumination, farAway)
+  : FirstFlight(other.TheGrid, other.Settings, directions, starts, illumination, farAway, false)
 {
   this->EvenPart = other.EvenPart;
 }
 
-void FirstFlight::FindEvenPart()
+void FirstFlight::FindEvenPart(bool leavesEven)
 {
   Rgb least, most = {};
   least.fill(std::numeric_limits<double>::max());
@@ -93,9 +93,9 @@ void FirstFlight::FindEvenPart()
   }
   for (int c = 0; c < 3; ++c)
   {
-    const bool even = most[c] <= 0.0 || most[c] - least[c] <= Rounding * most[c];
+    const bool even = most[c] <= 0.0 || (leavesEven && most[c] - least[c] <= Rounding * most[c]);
     this->AnyLight = this->AnyLight || !even;
-    this->EvenPart[c] = even ? most[c] : least[c];
+    this->EvenPart[c] = !leavesEven ? 0.0 : even ? most[c] : least[c];
   }
 }
 

@@ -15,7 +15,7 @@ namespace tyndall
 /// of directions. Shadows have edges, which want many directions; scattered light is smooth and does with few: so the many
 /// are swept once and not once an order.
 ///
-/// What comes in evenly from everywhere is not its business: in a medium that only scatters, unscattered and scattered light
+/// What comes in evenly from everywhere may be left to others: in a medium that only scatters, unscattered and scattered light
 /// then add up to the same radiance everywhere, and do so in a solver only along the same directions.
 class FirstFlight
 {
@@ -23,8 +23,9 @@ public:
   /// @param settings, directions  must stay
   /// @param illumination  its faces and sky
   /// @param farAway  its environment without peaks
+  /// @param leavesEven  what comes in evenly is left to others
   FirstFlight(const Grid& grid, const PropagationSettings& settings, const DirectionSet& directions, RayStarts starts,
-    const Illumination& illumination, const Environment& farAway);
+    const Illumination& illumination, const Environment& farAway, bool leavesEven);
   /// The same light along other directions.
   FirstFlight(const FirstFlight& other, const DirectionSet& directions, RayStarts starts,
     const Illumination& illumination, const Environment& farAway);
@@ -44,7 +45,7 @@ public:
     const Monitor& monitor) const;
 
 private:
-  void FindEvenPart();
+  void FindEvenPart(bool leavesEven);
   bool IsLit(int direction) const;
   std::vector<Bundle> LitBundles(int axis, int way) const;
 

@@ -6,10 +6,28 @@
 
 namespace tyndall
 {
+/// All channels and voxels together.
+bool FusedSolver::ScattersMoreThanItAbsorbs() const
+{
+  double scattered = 0.0, absorbed = 0.0;
+  for (std::size_t i = 0; i < this->TheMedium.grid.VoxelCount(); ++i)
+  {
+    for (int c = 0; c < this->Channels; ++c)
+    {
+      scattered += this->SigmaS(i, c);
+      absorbed += this->TheMedium.sigma_a.At(i, c);
+    }
+  }
+  return scattered > absorbed;
+}
+
+/// What comes in evenly has the error of the usual directions times the part that is absorbed along these, and times the part that is
+/// scattered along finer ones.
 void FusedSolver::FindFlight(const Environment& farAway)
 {
   const Grid& grid = this->TheMedium.grid;
-  const FirstFlight flight(grid, this->Settings, this->FineDirections, RayStarts::Staggered, this->Outside, farAway);
+  const FirstFlight flight(grid, this->Settings, this->FineDirections, RayStarts::Staggered, this->Outside, farAway,
+    this->ScattersMoreThanItAbsorbs());
   if (!flight.Shines())
   {
     return;

@@ -95,6 +95,7 @@ private:
   void PropagateOrder(int order, const Monitor& monitor);
   void PropagateSweeps(const AxisSweeps& sweeps, const SweepBoundary& boundary, int mostPlanes, const Monitor& monitor);
   void PropagateLights(const Monitor& monitor);
+  bool ScattersMoreThanItAbsorbs() const;
   void FindFlight(const Environment& farAway);
   void PropagateFlight(const Monitor& monitor);
   struct FlightLight

@@ -95,10 +95,12 @@ TEST_F(FirstFlight, SeesAShiningFaceAsLargeAsItIs)
 
 TEST_F(FirstFlight, AlongTheUsualDirectionsChangesNothing)
 {
-  // The rays are the same, only carried in two parts: one by one, accelerated with thin and with thick voxels.
-  for (const double tau : { 2.0, 20.0, 2000.0 })
+  // The rays are the same, only carried in two parts: orders one by one, accelerated with thin and with thick voxels, as published.
+  const auto linear = PropagationSource::Automatic, constant = PropagationSource::Constant;
+  for (const auto& [tau, source] : { std::pair(2.0, linear), { 20.0, linear }, { 2000.0, linear }, { 20.0, constant } })
   {
-    Scene scene = LitCube(16, tau, 0.9);
+    Scene scene = LitCube(16, tau, tau == 2.0 ? 0.9 : 0.999);
+    scene.settings.source = source;
     scene.light.faces[0] = { 0.5, 0.5, 0.5 };
     scene.settings.staggeredRays = true;
     scene.settings.tolerance = 1e-6;
@@ -198,6 +200,25 @@ TEST_F(FirstFlight, GivesBackEveryWattInColour)
       EXPECT_LT(LargestDifference(scene.Solve(this->GetDevice()).fluence, light.fluence), 1e-4) << tau;
     }
   }
+}
+
+TEST_F(FirstFlight, TakesAnEvenSkyWhereTheMediumAbsorbs)
+{
+  // Against many directions throughout.
+  std::vector<std::vector<float>> fluences;
+  for (const int directions : { 900, 25, 0 })
+  {
+    Scene scene = LitCube(16, 5.0, 0.0);
+    scene.light.faces = {};
+    scene.ShineFromEverywhere(1.0);
+    scene.settings.directionsPerFace = std::max(directions, 25);
+    scene.settings.firstFlightDirections = directions == 0 ? 400 : 0;
+    scene.settings.staggeredRays = true;
+    const LightField light = scene.Solve(this->GetDevice());
+    fluences.push_back(light.fluence);
+    EXPECT_LT(light.balance.RelativeError(1), 1e-5);
+  }
+  EXPECT_LT(LargestDifference(fluences[2], fluences[0]), 0.3 * LargestDifference(fluences[1], fluences[0]));
 }
 
 TEST_F(FirstFlight, DiesAwayInAPeriodicAbsorberAsItShould)
