@@ -309,23 +309,41 @@ TEST_F(LinearSource, LightsAllVoxelsOfAShiningCubeAsPhotonsDo)
 
 TEST_F(LinearSource, SendsThroughACubesFacesWhatPhotonsDo)
 {
-  // cube_RTSA.csv, albedo, diffuse light on one face: reflected, through four sides, absorbed, to 1%; transmitted is less than
-  // a hundredth of it all and left to the sum.
+  // cube_RTSA.csv, isotropic, diffuse light on one face: reflected, transmitted, through four sides, absorbed, with their standard
+  // errors. Left out is what wants finer voxels: albedo 0.5 from optical thickness 5 on (reflected 3% too little), 1 at 50 (1.3% too
+  // little through the sides).
   struct Row
   {
-    double tau, albedo, reflected, sides, absorbed;
+    double tau, albedo;
+    std::array<double, 4> part, error;
   };
-  for (const Row& row : { Row{ 5.0, 0.9, 0.307663, 0.435358, 0.245893 }, Row{ 10.0, 0.9, 0.380822, 0.264722, 0.353452 },
-         Row{ 10.0, 1.0, 0.551624, 0.437810, 0.0 } })
+  for (const Row& row :
+    { Row{ 0.1, 0.5, { 0.007756, 0.182494, 0.777093, 0.032657 }, { 2.1e-05, 1.0e-04, 9.4e-05, 3.8e-05 } },
+      Row{ 1.0, 0.5, { 0.055774, 0.080696, 0.596952, 0.266579 }, { 5.7e-05, 7.9e-05, 1.6e-04, 1.1e-04 } },
+      Row{ 0.1, 0.9, { 0.014169, 0.185503, 0.793678, 0.006649 }, { 3.8e-05, 1.1e-04, 1.0e-04, 7.8e-06 } },
+      Row{ 1.0, 0.9, { 0.114652, 0.099095, 0.722803, 0.063449 }, { 1.1e-04, 8.3e-05, 1.4e-04, 2.9e-05 } },
+      Row{ 5.0, 0.9, { 0.307663, 0.011085, 0.435358, 0.245893 }, { 9.6e-05, 2.5e-05, 1.1e-04, 6.5e-05 } },
+      Row{ 10.0, 0.9, { 0.380822, 0.001002, 0.264722, 0.353452 }, { 1.1e-04, 5.7e-06, 1.3e-04, 9.8e-05 } },
+      Row{ 50.0, 0.9, { 0.456063, 0.000000, 0.060279, 0.483659 }, { 3.5e-04, 0.0, 2.6e-04, 4.0e-04 } },
+      Row{ 0.1, 1.0, { 0.015803, 0.186275, 0.797922, 0.000000 }, { 4.2e-05, 1.1e-04, 1.0e-04, 0.0 } },
+      Row{ 1.0, 1.0, { 0.132254, 0.105242, 0.762505, 0.000000 }, { 1.2e-04, 8.8e-05, 1.4e-04, 0.0 } },
+      Row{ 5.0, 1.0, { 0.402589, 0.023612, 0.573800, 0.000000 }, { 1.2e-04, 4.9e-05, 1.3e-04, 0.0 } },
+      Row{ 10.0, 1.0, { 0.551624, 0.010566, 0.437810, 0.000000 }, { 1.6e-04, 3.7e-05, 1.6e-04, 0.0 } } })
   {
-    Scene scene = Cube(48, row.tau, row.albedo);
+    Scene scene = Cube(32, row.tau, row.albedo);
     scene.settings.directionsPerFace = 100;
+    scene.settings.firstFlightDirections = 900;
+    scene.settings.staggeredRays = true;
     scene.light.faces[4] = { 1.0, 1.0, 1.0 };
     const LightField light = scene.Solve(this->GetDevice());
-    EXPECT_NEAR(Out(light, 4) / row.reflected, 1.0, 0.01) << row.tau;
-    EXPECT_NEAR((Out(light, 0) + Out(light, 1) + Out(light, 2) + Out(light, 3)) / row.sides, 1.0, 0.01) << row.tau;
-    EXPECT_NEAR(light.balance.absorbed[0] / light.balance.entered[0], row.absorbed, 0.01 * row.absorbed + 1e-6)
-      << row.tau;
+    const std::array<double, 4> part = { Out(light, 4), Out(light, 5),
+      Out(light, 0) + Out(light, 1) + Out(light, 2) + Out(light, 3),
+      light.balance.absorbed[0] / light.balance.entered[0] };
+    for (int i = 0; i < 4; ++i)
+    {
+      EXPECT_NEAR(part[i], row.part[i], std::max({ 0.01 * row.part[i], 3.0 * row.error[i], 1e-6 }))
+        << "thickness " << row.tau << " albedo " << row.albedo << ' ' << "RTSA"[i];
+    }
   }
 }
 
