@@ -114,7 +114,8 @@ public:
   ///@}
 
   ///@{
-  /// Directions per face of a cube. Default 25, valid square numbers: 1, 4, 9, 16, 25, ...
+  /// Directions per face of a cube. Default 25, valid square numbers: 1, 4, 9, 16, 25, ... Slabs are solved with more
+  /// (UnvaryingAxes.h).
   vtkSetMacro(DirectionsPerFace, int);
   vtkGetMacro(DirectionsPerFace, int);
   ///@}

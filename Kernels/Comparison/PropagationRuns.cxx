@@ -72,6 +72,7 @@ PropagationSettings SettingsOf(ComparedMethod method, const Setting& setting, co
 {
   PropagationSettings of;
   of.directionsPerFace = setting.directions;
+  of.adaptDirections = false;
   of.mapResolution = setting.map;
   of.maximumOrders = setting.orders;
   of.tolerance = settings.tolerance;

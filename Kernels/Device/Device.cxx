@@ -134,6 +134,11 @@ Device::Device(const cl::Platform& platform, const cl::Device& device)
 
 bool Device::HasExtension(const std::string& name) const
 {
+  const char* hidden = std::getenv("TYNDALL_WITHOUT");
+  if (hidden && (" " + std::string(hidden) + " ").find(" " + name + " ") != std::string::npos)
+  {
+    return false;
+  }
   return (" " + this->Extensions + " ").find(" " + name + " ") != std::string::npos;
 }
 

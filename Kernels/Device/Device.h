@@ -30,6 +30,7 @@ public:
   bool IsCpu() const { return this->Cpu; }
   int ComputeUnits() const { return this->Units; }
   int FloatVectorWidth() const { return this->VectorWidth; } ///< 1 on GPUs, 4 to 16 on CPUs
+  /// Not those that the environment variable TYNDALL_WITHOUT names (with blanks between): to try what devices without them get.
   bool HasExtension(const std::string& name) const;
 
   /// Bytes that buffers on this device may take together. What OpenCL reports, on a CPU at least three quarters of the

@@ -1,4 +1,5 @@
 #include "FusedSolver.h"
+#include "UnvaryingAxes.h"
 
 #include <algorithm>
 #include <cmath>
@@ -9,12 +10,12 @@ namespace
 {
 constexpr double Pi = 3.14159265358979323846;
 constexpr int MostSweeps = 200;
-constexpr int ManyPlanes = 8192;         ///< that a ray goes round a periodic axis before it is given up
-constexpr double UsualTolerance = 1e-4;  ///< the method must not depend on the tolerance
-constexpr double ThickForNearness = 0.1; ///< mean free paths a voxel
-constexpr double Margin = 1.5;           ///< of the estimated error: changes do not fall off evenly
-constexpr double ManyOrders = 40.0;      ///< plain iteration that is dearer than an acceleration
-
+constexpr int ManyPlanes = 8192;          ///< that a ray goes round a periodic axis before it is given up
+constexpr double UsualTolerance = 1e-4;   ///< the method must not depend on the tolerance
+constexpr double ThickForNearness = 0.1;  ///< mean free paths a voxel
+constexpr double Margin = 1.5;            ///< of the estimated error: changes do not fall off evenly
+constexpr double ManyOrders = 40.0;       ///< plain iteration that is dearer than an acceleration
+constexpr double ManyOrdersInSlab = 12.0; ///< the same in a slab, whose low-order system is small
 }
 
 /// As many as plain iteration would need. In a slab of optical thickness tau orders fall off like
@@ -69,8 +70,10 @@ void FusedSolver::ChooseAcceleration()
     this->Accelerated = true;
     return;
   }
+  const bool slab = UnvaryingAxes(this->TheMedium.grid, this->Outside, this->Settings).IsSlab();
   this->Accelerated = this->Settings.acceleration == PropagationAcceleration::Automatic &&
-    this->Settings.maximumOrders == 0 && this->Traits.scatters && this->OrdersNeeded() > ManyOrders;
+    this->Settings.maximumOrders == 0 && this->Traits.scatters &&
+    this->OrdersNeeded() > (slab ? ManyOrdersInSlab : ManyOrders);
 }
 
 void FusedSolver::RunAccelerated(const Monitor& monitor)

@@ -43,11 +43,12 @@ private:
   std::array<std::vector<float>, 3> Arrays;
 };
 
-/// Another number of directions a face: fewer, but for a single one.
+/// Another number of directions a face: fewer, but for a single one; rows are even in number where `directionsPerFace` has such.
 int OtherDirections(int directionsPerFace)
 {
   const int edge = static_cast<int>(std::lround(std::sqrt(static_cast<double>(directionsPerFace))));
-  const int other = edge == 1 ? 2 : std::max(1, static_cast<int>(std::lround(0.6 * edge)));
+  const int step = edge % 2 == 0 && edge > 2 ? 2 : 1;
+  const int other = edge == 1 ? 2 : step * std::max(1, static_cast<int>(std::lround(0.6 * edge / step)));
   return other * other;
 }
 
@@ -126,7 +127,9 @@ LightField SolveWithErrorEstimate(
   plain.netFlux = false;
   plain.storedDirections = 1;
   const std::vector<float> many = solve(coarse.Get(), plain, part(FinePart, 0.95)).fluence;
-  plain.directionsPerFace = OtherDirections(settings.directionsPerFace);
+  const int directions = light.directionsPerFace > 0 ? light.directionsPerFace : settings.directionsPerFace;
+  plain.directionsPerFace = OtherDirections(directions);
+  plain.adaptDirections = false;
   if (settings.firstFlightDirections > 0)
   {
     plain.firstFlightDirections = OtherDirections(settings.firstFlightDirections);
@@ -135,7 +138,7 @@ LightField SolveWithErrorEstimate(
 
   const double ratio = coarsening.Ratio();
   const double inSpace = ratio > 1.0 ? 1.0 / (ratio * ratio - 1.0) : 0.0;
-  const double inDirections = PartOfDifference(settings.directionsPerFace, plain.directionsPerFace);
+  const double inDirections = PartOfDifference(directions, plain.directionsPerFace);
   const std::vector<float> fine = coarsening.Average(light.fluence.data(), light.channels);
   std::vector<double> variance(fine.size());
   for (std::size_t i = 0; i < fine.size(); ++i)

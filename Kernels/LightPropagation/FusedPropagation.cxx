@@ -656,48 +656,4 @@ void FusedSolver::Unload()
   light.leftOut = this->LeftOut();
   light.device = this->TheDevice.Name();
 }
-
-double EnergyBalance::RelativeError(int channels) const
-{
-  double worst = 0.0;
-  for (int c = 0; c < channels; ++c)
-  {
-    const double in = this->entered[c] + this->emitted[c];
-    const double out = this->absorbed[c] + this->escaped[c] + this->leftOver[c];
-    const double error = in > 0.0 ? std::abs(in - out) / in : std::abs(out);
-    worst = error <= worst ? worst : error; // what is not a number stays
-  }
-  return worst;
-}
-
-namespace
-{
-LightField SolveInUnit(Device& device, const Medium& medium, const Illumination& illumination,
-  const PropagationSettings& settings, const Monitor& monitor)
-{
-  const MediumTraits traits = TraitsOf(medium, 1.0 - medium.g);
-  const SceneChannels channels(medium, traits, illumination);
-  return SolveChannels(settings.leaveOut, channels, medium, illumination,
-    [&](const Medium& ofChannels, const Illumination& light, int count) {
-      return FusedSolver(device, ofChannels, traits, light, settings, count).Run(monitor);
-    });
-}
-}
-
-LightField SolveFused(Device& device, const Medium& medium, const Illumination& illumination,
-  const PropagationSettings& settings, const Monitor& monitor)
-{
-  Check(medium);
-  Check(illumination);
-  Check(settings);
-  const double unit = PowerUnitOf(medium, illumination);
-  if (unit == 1.0)
-  {
-    return SolveInUnit(device, medium, illumination, settings, monitor);
-  }
-  const SceneInUnits scene(medium, illumination, unit);
-  LightField light = SolveInUnit(device, scene.medium, scene.illumination, settings, monitor);
-  ToWatts(light, unit);
-  return light;
-}
 }

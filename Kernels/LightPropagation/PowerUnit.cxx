@@ -135,20 +135,25 @@ void ToWatts(LightField& light, double unit)
   Multiply(light.fluenceError, unit, "fluence_error");
   Multiply(light.netFlux, unit, "net_flux");
   Multiply(light.scatteredRadiance, unit, "scattered_radiance");
+  MultiplyPowers(light, unit);
+}
+
+void MultiplyPowers(LightField& light, double factor)
+{
   EnergyBalance& balance = light.balance;
   for (Rgb* watts : { &balance.entered, &balance.emitted, &balance.absorbed, &balance.escaped, &balance.leftOver })
   {
-    Multiply(*watts, unit);
+    Multiply(*watts, factor);
   }
   for (Rgb& watts : light.facePowerOut)
   {
-    Multiply(watts, unit);
+    Multiply(watts, factor);
   }
   for (ConvergenceRow& row : light.convergence)
   {
-    row.absorbed *= unit;
-    row.escaped *= unit;
-    row.leftOver *= unit;
+    row.absorbed *= factor;
+    row.escaped *= factor;
+    row.leftOver *= factor;
   }
 }
 }

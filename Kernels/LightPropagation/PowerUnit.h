@@ -29,4 +29,7 @@ struct SceneInUnits
 /// Light in units back to W.
 /// @throws InvalidInput where it is more than a float holds
 void ToWatts(LightField& light, double unit);
+
+/// What is counted in W, times `factor`: the same light in a box so many times as large.
+void MultiplyPowers(LightField& light, double factor);
 }

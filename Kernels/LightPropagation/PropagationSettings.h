@@ -22,14 +22,15 @@ enum class PropagationAcceleration
 /// What the light propagation solvers can be told; the names are those of the filter's properties.
 struct PropagationSettings
 {
-  int directionsPerFace = 25; ///< directions per cube face, a square number: 1, 4, 9, 16, 25, ...
-  int mapResolution = 1;      ///< map points per voxel edge, 1 to 16
+  int directionsPerFace = 25;  ///< directions per cube face, a square number: 1, 4, 9, 16, 25, ...
+  bool adaptDirections = true; ///< more of them for slabs (UnvaryingAxes.h); false: as many as told
   /// Directions per cube face, a square number, of the unscattered light of shining faces, sky and environment (FirstFlight.h);
   /// 0: the same as for scattered light.
   int firstFlightDirections = 0;
   /// Rays of each direction start in a place of their own within a voxel, those of a first flight always (RayPattern.h). From some 64
   /// directions a face on, half the error or less.
   bool staggeredRays = false;
+  int mapResolution = 1;   ///< map points per voxel edge, 1 to 16
   int maximumOrders = 0;   ///< scattering orders (accelerated: sweeps) at most; 0: until the tolerance is met
   double tolerance = 1e-4; ///< relative error of fluence at which to stop, > 0
   std::array<bool, 3> periodic = { false, false, false }; ///< rays leaving an axis return on the other side

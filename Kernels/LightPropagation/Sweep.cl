@@ -113,66 +113,34 @@ static void pack(const plane_layout* layout, __global float* to, int first, int 
   }
 }
 
-// Add one quantity of the planes to the volume; exactly their voxels are touched, as others may be in work elsewhere.
-static void unpack(
-  const plane_layout* layout, const __global float* from, int first, int count, __global float* volume, float sign)
-{
-  const int plane = PLANES * layout->sizeV * ROW;
-  for (int v = 0; v < layout->sizeV; ++v)
-  {
-    for (int u = 0; u < layout->sizeU; u += REAL_WIDTH)
-    {
-      __global float* to = volume + place_of(layout, u, v, first);
-      const int used = min(REAL_WIDTH, layout->sizeU - u);
-      if (layout->block == 1 && used == REAL_WIDTH)
-      {
-        store_real(multiply_add(load_real(v * ROW + u, from), (real)sign, load_real(0, to)), 0, to);
-      }
-      else if (layout->block > 1 && count == REAL_WIDTH)
-      {
-        real rows[REAL_WIDTH];
-#pragma unroll
-        for (int j = 0; j < REAL_WIDTH; ++j)
-        {
-          rows[j] = load_real(j * plane + v * ROW + u, from);
-        }
-        transpose(rows);
-#pragma unroll
-        for (int i = 0; i < REAL_WIDTH; ++i)
-        {
-          if (i < used)
-          {
-            __global float* row = to + (ulong)i * layout->stepU;
-            store_real(multiply_add(rows[i], (real)sign, load_real(0, row)), 0, row);
-          }
-        }
-      }
-      else
-      {
-        for (int i = 0; i < used; ++i)
-        {
-          for (int j = 0; j < count; ++j)
-          {
-            to[(ulong)i * layout->stepU + (ulong)j * layout->stepP] += sign * from[j * plane + v * ROW + u + i];
-          }
-        }
-      }
-    }
-  }
-}
-
-#if PERIODIC_P
-static void add_real_exactly(real value, __global float* sum, __global float* lost) // Kahan
+// Add to sums; what rounding loses of them is kept in `lost` (Kahan) where there is one.
+static void add_real(real value, __global float* sum, __global float* lost)
 {
   const real before = load_real(0, sum);
+  if (!lost)
+  {
+    store_real(before + value, 0, sum);
+    return;
+  }
   const real y = value - load_real(0, lost);
   const real t = before + y;
   store_real((t - before) - y, 0, lost);
   store_real(t, 0, sum);
 }
 
-// As unpack, and what rounding loses of the sums is kept in `lost`.
-static void unpack_exactly(const plane_layout* layout, const __global float* from, int first, int count,
+static void add_one(float value, __global float* sum, __global float* lost)
+{
+  float total = *sum, rounding = lost ? *lost : 0.0f;
+  add_exactly(&total, &rounding, value);
+  *sum = total;
+  if (lost)
+  {
+    *lost = rounding;
+  }
+}
+
+// Add one quantity of the planes, with a sign, to the volume; exactly their voxels are touched, as others may be in work elsewhere.
+static void unpack(const plane_layout* layout, const __global float* from, int first, int count, float sign,
   __global float* volume, __global float* lost)
 {
   const int plane = PLANES * layout->sizeV * ROW;
@@ -184,7 +152,7 @@ static void unpack_exactly(const plane_layout* layout, const __global float* fro
       const int used = min(REAL_WIDTH, layout->sizeU - u);
       if (layout->block == 1 && used == REAL_WIDTH)
       {
-        add_real_exactly(load_real(v * ROW + u, from), volume + at, lost + at);
+        add_real(sign * load_real(v * ROW + u, from), volume + at, lost ? lost + at : 0);
       }
       else if (layout->block > 1 && count == REAL_WIDTH)
       {
@@ -192,7 +160,7 @@ static void unpack_exactly(const plane_layout* layout, const __global float* fro
 #pragma unroll
         for (int j = 0; j < REAL_WIDTH; ++j)
         {
-          rows[j] = load_real(j * plane + v * ROW + u, from);
+          rows[j] = sign * load_real(j * plane + v * ROW + u, from);
         }
         transpose(rows);
 #pragma unroll
@@ -201,7 +169,7 @@ static void unpack_exactly(const plane_layout* layout, const __global float* fro
           if (i < used)
           {
             const ulong row = at + (ulong)i * layout->stepU;
-            add_real_exactly(rows[i], volume + row, lost + row);
+            add_real(rows[i], volume + row, lost ? lost + row : 0);
           }
         }
       }
@@ -212,17 +180,13 @@ static void unpack_exactly(const plane_layout* layout, const __global float* fro
           for (int j = 0; j < count; ++j)
           {
             const ulong voxel = at + (ulong)i * layout->stepU + (ulong)j * layout->stepP;
-            float sum = volume[voxel], rounding = lost[voxel];
-            add_exactly(&sum, &rounding, from[j * plane + v * ROW + u + i]);
-            volume[voxel] = sum;
-            lost[voxel] = rounding;
+            add_one(sign * from[j * plane + v * ROW + u + i], volume + voxel, lost ? lost + voxel : 0);
           }
         }
       }
     }
   }
 }
-#endif
 
 // Which rows are thin throughout.
 static void find_thin_rows(const plane_layout* layout, const __global float* sigma, __global int* thin)
@@ -311,26 +275,23 @@ static void end_planes(const plane_layout* layout, __global float* planes, int f
 #endif
   for (int c = 0; c < CHANNELS; ++c)
   {
-#if PERIODIC_P
-    unpack_exactly(layout, planes + (PLANE_PATH + c) * rows, first, count, path + c * stride, lost + c * stride);
-#else
-    unpack(layout, planes + (PLANE_PATH + c) * rows, first, count, path + c * stride, 1.0f);
-#endif
+    unpack(layout, planes + (PLANE_PATH + c) * rows, first, count, 1.0f, path + c * stride,
+      PERIODIC_P ? lost + c * stride : 0);
 #if NET_FLUX
     const __global float* fluxes = planes + (PLANE_FLUX + 3 * c) * rows;
-    unpack(layout, fluxes, first, count, flux + (3 * c + (axis == 0 ? 1 : 0)) * stride, 1.0f);
-    unpack(layout, fluxes + rows, first, count, flux + (3 * c + (axis == 2 ? 1 : 2)) * stride, 1.0f);
-    unpack(layout, fluxes + 2 * rows, first, count, flux + (3 * c + axis) * stride, backward ? -1.0f : 1.0f);
+    unpack(layout, fluxes, first, count, 1.0f, flux + (3 * c + (axis == 0 ? 1 : 0)) * stride, 0);
+    unpack(layout, fluxes + rows, first, count, 1.0f, flux + (3 * c + (axis == 2 ? 1 : 2)) * stride, 0);
+    unpack(layout, fluxes + 2 * rows, first, count, backward ? -1.0f : 1.0f, flux + (3 * c + axis) * stride, 0);
 #endif
 #if ENTERING
     const int aside[2] = { axis == 0 ? 1 : 0, axis == 2 ? 1 : 2 };
     const __global float* entered = planes + (PLANE_ENTERING + ENTERING_FACES * c) * rows;
     __global float* faces = entering + 6 * c * stride;
-    unpack(layout, entered, first, count, faces + (2 * axis + backward) * stride, 1.0f);
+    unpack(layout, entered, first, count, 1.0f, faces + (2 * axis + backward) * stride, 0);
     for (int side = 0; side < 4; ++side)
     {
-      unpack(layout, entered + (ENTERING_LOW_U + side) * rows, first, count,
-        faces + (2 * aside[side / 2] + side % 2) * stride, 1.0f);
+      unpack(layout, entered + (ENTERING_LOW_U + side) * rows, first, count, 1.0f,
+        faces + (2 * aside[side / 2] + side % 2) * stride, 0);
     }
 #endif
   }

@@ -270,5 +270,10 @@ std::string MirrorImages(int classes, int directions)
   return "mirror images: nothing changes along periodic axes of one voxel, " + std::to_string(classes) + " of " +
     std::to_string(directions) + " directions stand for all";
 }
+
+std::string DirectionsAlongSlab(int perFace)
+{
+  return "directions along the slab, whose light would never leave: solved with " + std::to_string(perFace) + " a face";
+}
 }
 }

@@ -82,5 +82,6 @@ extern const char* const EvenOutside;     ///< they shine evenly: a first flight
 std::string EmptySlabs(const VoxelBox& filled, const Grid& grid);
 std::string DarkDirections(double lit); ///< part of the rays
 std::string MirrorImages(int classes, int directions);
+std::string DirectionsAlongSlab(int perFace); ///< solved with instead
 }
 }

@@ -1,4 +1,5 @@
 #include "DeviceTest.h"
+#include "Difference.h"
 #include "PhotonScene.h"
 
 #include "Device/Errors.h"
@@ -76,16 +77,6 @@ double MeanInRing(const ImportanceMap& map, double from, double to)
     }
   }
   return sum / cells;
-}
-
-double LargestDifference(const std::vector<float>& a, const std::vector<float>& b)
-{
-  double most = a.size() == b.size() ? 0.0 : 1e9;
-  for (std::size_t i = 0; i < std::min(a.size(), b.size()); ++i)
-  {
-    most = std::max(most, std::abs(double(a[i]) - b[i]));
-  }
-  return most;
 }
 
 std::string MessageOf(const std::function<void()>& work)

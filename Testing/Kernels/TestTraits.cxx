@@ -1,4 +1,5 @@
 #include "DeviceTest.h"
+#include "Difference.h"
 #include "MediumScene.h"
 
 #include "LightPropagation/ParallelPropagation.h"
@@ -74,18 +75,6 @@ std::vector<float> Coloured(const std::vector<float>& grey, const Rgb& colour)
   return rgb;
 }
 
-double LargestDifference(const std::vector<float>& a, const std::vector<float>& b)
-{
-  EXPECT_EQ(a.size(), b.size());
-  double largest = 0.0, difference = 0.0;
-  for (std::size_t i = 0; i < std::min(a.size(), b.size()); ++i)
-  {
-    largest = std::max<double>(largest, std::abs(b[i]));
-    difference = std::max(difference, std::abs(static_cast<double>(a[i]) - b[i]));
-  }
-  return difference == 0.0 ? 0.0 : difference / largest;
-}
-
 void ExpectSamePower(const Rgb& a, const Rgb& b, double tolerance, const char* what)
 {
   for (int c = 0; c < 3; ++c)
@@ -98,10 +87,10 @@ void ExpectSameLight(const LightField& less, const LightField& all, double same 
 {
   ASSERT_EQ(less.channels, all.channels);
   EXPECT_EQ(less.convergence.size(), all.convergence.size());
-  EXPECT_LT(LargestDifference(less.fluence, all.fluence), same);
-  EXPECT_LT(LargestDifference(less.fluenceDirect, all.fluenceDirect), same);
-  EXPECT_LT(LargestDifference(less.scatteredRadiance, all.scatteredRadiance), same);
-  EXPECT_LT(LargestDifference(less.netFlux, all.netFlux), same);
+  EXPECT_LT(RelativeDifference(less.fluence, all.fluence), same);
+  EXPECT_LT(RelativeDifference(less.fluenceDirect, all.fluenceDirect), same);
+  EXPECT_LT(RelativeDifference(less.scatteredRadiance, all.scatteredRadiance), same);
+  EXPECT_LT(RelativeDifference(less.netFlux, all.netFlux), same);
   const EnergyBalance& a = less.balance;
   const EnergyBalance& b = all.balance;
   const double of = same * (Sum(b.entered) + Sum(b.emitted));

@@ -1,4 +1,5 @@
 #include "DeviceTest.h"
+#include "Difference.h"
 #include "PhotonScene.h"
 #include "ViewScene.h"
 
@@ -19,18 +20,6 @@ namespace
 {
 constexpr double Same = 1e-6;               ///< of the largest
 constexpr double SameWhereRaysAddUp = 5e-5; ///< 2.1e-5 was measured, see there
-
-double LargestDifference(const std::vector<float>& a, const std::vector<float>& b)
-{
-  EXPECT_EQ(a.size(), b.size());
-  double largest = 0.0, difference = 0.0;
-  for (std::size_t i = 0; i < std::min(a.size(), b.size()); ++i)
-  {
-    largest = std::max<double>(largest, std::abs(b[i]));
-    difference = std::max(difference, std::abs(static_cast<double>(a[i]) - b[i]));
-  }
-  return difference > 0.0 ? difference / largest : 0.0;
-}
 
 /// Photons of one colour from above, many ways.
 std::vector<Photon> Rain(const std::array<float, 3>& power, int count = 5000)
@@ -73,8 +62,8 @@ protected:
     EXPECT_THAT(less.light.leftOut, Contains(HasSubstr(word)));
     EXPECT_THAT(all.light.leftOut, Not(Contains(HasSubstr(word))));
     EXPECT_EQ(less.light.channels, all.light.channels);
-    EXPECT_LT(LargestDifference(less.light.fluence, all.light.fluence), Same);
-    EXPECT_LT(LargestDifference(less.meanDirection, all.meanDirection), Same);
+    EXPECT_LT(RelativeDifference(less.light.fluence, all.light.fluence), Same);
+    EXPECT_LT(RelativeDifference(less.meanDirection, all.meanDirection), Same);
     const double entered = Sum(all.light.balance.entered);
     for (int c = 0; c < 3; ++c)
     {
@@ -95,8 +84,8 @@ protected:
     const Picture less = caster.Render(scene.Framed());
     EXPECT_THAT(caster.LeftOut(), Contains(HasSubstr(word)));
     EXPECT_THAT(general.LeftOut(), Not(Contains(HasSubstr(word))));
-    EXPECT_LT(LargestDifference(less.radiance, all.radiance), same);
-    EXPECT_LT(LargestDifference(less.alpha, all.alpha), same);
+    EXPECT_LT(RelativeDifference(less.radiance, all.radiance), same);
+    EXPECT_LT(RelativeDifference(less.alpha, all.alpha), same);
   }
 };
 

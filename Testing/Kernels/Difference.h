@@ -1,0 +1,31 @@
+#pragma once
+
+#include <gtest/gtest.h>
+
+#include <algorithm>
+#include <cmath>
+#include <vector>
+
+/// Largest difference of two arrays of one size.
+inline double LargestDifference(const std::vector<float>& a, const std::vector<float>& b)
+{
+  EXPECT_EQ(a.size(), b.size());
+  double difference = 0.0;
+  for (std::size_t i = 0; i < std::min(a.size(), b.size()); ++i)
+  {
+    difference = std::max(difference, std::abs(static_cast<double>(a[i]) - b[i]));
+  }
+  return difference;
+}
+
+/// The same over the largest value of `b`.
+inline double RelativeDifference(const std::vector<float>& a, const std::vector<float>& b)
+{
+  double largest = 0.0;
+  for (float value : b)
+  {
+    largest = std::max<double>(largest, std::abs(value));
+  }
+  const double difference = LargestDifference(a, b);
+  return difference == 0.0 ? 0.0 : difference / largest;
+}
