@@ -41,6 +41,8 @@ tyndall::PropagationSettings SettingsOf(vtkLightPropagationMaps* filter)
     ? tyndall::PropagationAcceleration::None
     : tyndall::PropagationAcceleration::Automatic;
   settings.directionsPerFace = filter->GetDirectionsPerFace();
+  settings.firstFlightDirections = filter->GetFirstFlightDirections();
+  settings.staggeredRays = filter->GetStaggeredRays();
   settings.mapResolution = filter->GetMapResolution();
   settings.maximumOrders = filter->GetMaximumOrders();
   settings.tolerance = filter->GetTolerance();
@@ -160,6 +162,8 @@ void vtkLightPropagationMaps::PrintSelf(ostream& os, vtkIndent indent)
   os << indent << "Source: " << this->Source << "\n";
   os << indent << "Acceleration: " << this->Acceleration << "\n";
   os << indent << "DirectionsPerFace: " << this->DirectionsPerFace << "\n";
+  os << indent << "FirstFlightDirections: " << this->FirstFlightDirections << "\n";
+  os << indent << "StaggeredRays: " << this->StaggeredRays << "\n";
   os << indent << "MapResolution: " << this->MapResolution << "\n";
   os << indent << "MaximumOrders: " << this->MaximumOrders << "\n";
   os << indent << "Tolerance: " << this->Tolerance << "\n";

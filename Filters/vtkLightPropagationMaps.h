@@ -121,6 +121,22 @@ public:
   ///@}
 
   ///@{
+  /// Directions per face of a cube for unscattered light of shining faces, sky and environment (sound scheme). It has shadows with
+  /// edges and is swept once: it may have many while scattered light does with few. Default 0: as
+  /// DirectionsPerFace; else square numbers up to 4096.
+  vtkSetMacro(FirstFlightDirections, int);
+  vtkGetMacro(FirstFlightDirections, int);
+  ///@}
+
+  ///@{
+  /// Whether rays of each direction start in a place of their own within a voxel (sound scheme), those of FirstFlightDirections
+  /// always. From some 64 directions per face on, half the error or less. Default off.
+  vtkSetMacro(StaggeredRays, bool);
+  vtkGetMacro(StaggeredRays, bool);
+  vtkBooleanMacro(StaggeredRays, bool);
+  ///@}
+
+  ///@{
   /// Rays of a direction per voxel edge. Default 1, valid [1, 16].
   vtkSetMacro(MapResolution, int);
   vtkGetMacro(MapResolution, int);
@@ -224,6 +240,8 @@ private:
   int Source = AUTOMATIC_SOURCE;
   int Acceleration = AUTOMATIC_ACCELERATION;
   int DirectionsPerFace = 25;
+  int FirstFlightDirections = 0;
+  bool StaggeredRays = false;
   int MapResolution = 1;
   int MaximumOrders = 0;
   double Tolerance = 1e-4;

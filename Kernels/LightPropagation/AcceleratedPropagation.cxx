@@ -83,7 +83,7 @@ void FusedSolver::RunAccelerated(const Monitor& monitor)
   this->PropagateLights(monitor);
   this->Iterating = true;
   this->Stranded = this->OnTheWay;
-  this->LoadAccelerated();
+  this->LoadAccelerated(monitor);
   int sweep = 0;
   do
   {
@@ -92,7 +92,7 @@ void FusedSolver::RunAccelerated(const Monitor& monitor)
     this->SweepAll(sweep, ofSweep);
     if (sweep == 0)
     {
-      this->CheckEntering(this->LampBalance.entered);
+      this->CheckEntering(Minus(this->Result.balance.entered, this->LampBalance.entered), this->PowerInSweeps());
       this->Fluence.Write(this->WithLamps(this->Path, 1.0 / this->TheMedium.grid.VoxelVolume()).data());
       this->Result.fluenceDirect = this->Interleaved(this->Fluence, 1.0);
       this->MakeSystems();
@@ -124,7 +124,7 @@ void FusedSolver::ChooseNearness()
 }
 
 /// The lights' unscattered light is known: what of it is scattered is given to the medium, like what it shines itself.
-void FusedSolver::LoadAccelerated()
+void FusedSolver::LoadAccelerated(const Monitor& monitor)
 {
   const std::size_t voxels = this->TheMedium.grid.VoxelCount();
   const double volume = this->TheMedium.grid.VoxelVolume();
@@ -132,6 +132,14 @@ void FusedSolver::LoadAccelerated()
   this->Lamps = this->Path.Read();
   this->LampBalance = this->Result.balance;
   this->LampFaces = this->Result.facePowerOut;
+  if (this->Nearness.Size() > 0)
+  {
+    this->LampPath = this->Lamps;
+  }
+  if (this->Flight)
+  {
+    this->AddFlightDifference(monitor);
+  }
   std::vector<float> given = this->Source.Read();
   std::vector<float> absorption(given.size(), 0.0f);
   this->GivenPower = this->Result.balance.emitted;
@@ -160,7 +168,7 @@ std::vector<float> FusedSolver::WithLamps(const Buffer<float>& planar, double sc
   std::vector<float> values = planar.Read();
   for (std::size_t i = 0; i < values.size(); ++i)
   {
-    values[i] = static_cast<float>(values[i] * scale + this->Lamps[i]);
+    values[i] = std::max(static_cast<float>(values[i] * scale + this->Lamps[i]), 0.0f);
   }
   return values;
 }
@@ -205,15 +213,12 @@ void FusedSolver::MakeSystems()
 {
   const Grid& grid = this->TheMedium.grid;
   const CrossingPattern pattern =
-    FindCrossingPattern(grid, this->Directions, this->Settings.mapResolution, this->Settings.periodic);
+    FindCrossingPattern(grid, this->Directions, this->Settings.mapResolution, this->Starts(), this->Settings.periodic);
   const SweepBoundary boundary = this->BoundaryOfOrder(0);
   Buffer<float> lampPath;
   if (this->Nearness.Size() > 0)
   {
-    std::vector<float> paths = this->Lamps;
-    std::transform(paths.begin(), paths.end(), paths.begin(),
-      [&](float fluence) { return static_cast<float>(fluence * grid.VoxelVolume()); });
-    lampPath = Buffer<float>(this->TheDevice, paths, "light of lamps");
+    lampPath = Buffer<float>(this->TheDevice, this->LampPath, "light of lamps");
   }
   for (int c = 0; c < this->Channels; ++c)
   {
@@ -332,7 +337,8 @@ void FusedSolver::UnloadAccelerated()
     {
       const std::size_t at = c * this->Stride + i;
       const double found = this->Found[c][i];
-      fluence[at] = static_cast<float>((found >= 0.0 ? found : path[at] * perVolume) + this->Lamps[at]);
+      const double swept = found >= 0.0 ? found : path[at] * perVolume;
+      fluence[at] = std::max(static_cast<float>(swept + this->Lamps[at]), 0.0f);
     }
     if (this->Settings.netFlux && this->UnitPower(c) > 0.0)
     {

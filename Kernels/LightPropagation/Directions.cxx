@@ -14,12 +14,12 @@ namespace
 {
 constexpr double Pi = glm::pi<double>();
 
-int CellsPerEdge(int perFace)
+int CellsPerEdge(int perFace, const std::string& name)
 {
   const int n = static_cast<int>(std::lround(std::sqrt(static_cast<double>(std::max(perFace, 0)))));
   if (n < 1 || n * n != perFace || n > 64)
   {
-    throw InvalidInput("DirectionsPerFace is " + std::to_string(perFace) +
+    throw InvalidInput(name + " is " + std::to_string(perFace) +
       "; directions fill a square grid on each face: choose 1, 4, 9, 16, 25, 36, ... at most 4096.");
   }
   return n;
@@ -56,10 +56,10 @@ double SolidAngle(double s0, double s1, double t0, double t1)
   return CornerSolidAngle(s1, t1) - CornerSolidAngle(s0, t1) - CornerSolidAngle(s1, t0) + CornerSolidAngle(s0, t0);
 }
 
-DirectionSet CubeDirections(int perFace, bool equiangular)
+DirectionSet CubeDirections(int perFace, bool equiangular, const std::string& name)
 {
   DirectionSet set;
-  const int n = set.cellsPerEdge = CellsPerEdge(perFace);
+  const int n = set.cellsPerEdge = CellsPerEdge(perFace, name);
   set.equiangular = equiangular;
   for (int face = 0; face < 6; ++face)
   {
@@ -79,12 +79,12 @@ DirectionSet CubeDirections(int perFace, bool equiangular)
 
 DirectionSet PublishedDirections(int perFace)
 {
-  return CubeDirections(perFace, false);
+  return CubeDirections(perFace, false, "DirectionsPerFace");
 }
 
-DirectionSet SoundDirections(int perFace)
+DirectionSet SoundDirections(int perFace, const std::string& name)
 {
-  DirectionSet set = CubeDirections(perFace, true);
+  DirectionSet set = CubeDirections(perFace, true, name);
   const int n = set.cellsPerEdge;
   for (std::size_t d = 0; d < set.directions.size(); ++d)
   {

@@ -3,6 +3,7 @@
 #include "../Lights/Lights.h"
 
 #include <array>
+#include <string>
 #include <vector>
 
 namespace tyndall
@@ -35,7 +36,8 @@ DirectionSet PublishedDirections(int perFace);
 /// weights corrected to make it (and omega_x^4) exact were tried and lose more than they gain: the transmission of diffuse
 /// light through slabs, 2 E3(tau), had five to ten times the error.
 /// The set is unchanged by every rotation and mirroring of the cube, to the last bit.
-DirectionSet SoundDirections(int perFace);
+/// @param perFace  directions per face, a square number, else InvalidInput that calls it `name`
+DirectionSet SoundDirections(int perFace, const std::string& name = "DirectionsPerFace");
 
 /// Which direction's cell holds `omega` (any length but 0).
 int Nearest(const DirectionSet& set, const std::array<double, 3>& omega);

@@ -130,6 +130,10 @@ LightField SolveWithErrorEstimate(
   const int directions = light.directionsPerFace > 0 ? light.directionsPerFace : settings.directionsPerFace;
   plain.directionsPerFace = OtherDirections(directions);
   plain.adaptDirections = false;
+  if (settings.firstFlightDirections > 0)
+  {
+    plain.firstFlightDirections = OtherDirections(settings.firstFlightDirections);
+  }
   const std::vector<float> few = solve(coarse.Get(), plain, part(0.95, 1.0)).fluence;
 
   const double ratio = coarsening.Ratio();

@@ -67,7 +67,7 @@ void FusedSolver::RunOrders(const Monitor& monitor)
     this->PropagateOrder(order, ofOrder);
     if (order == 0)
     {
-      this->CheckEntering(ofLamps);
+      this->CheckEntering(Minus(this->Result.balance.entered, ofLamps), this->PowerInSweeps());
     }
     this->CollectOrder(order);
     Report(ofOrder, 1.0);
@@ -197,17 +197,26 @@ const Buffer<float>& FusedSolver::SigmaSOnDevice() const
 
 void FusedSolver::FindOutsideLight()
 {
-  const SplitEnvironment environment = Split(this->Outside.environment, this->Directions);
+  const int fine = this->Settings.firstFlightDirections;
+  if (fine > 0)
+  {
+    this->FineDirections = SoundDirections(fine, "FirstFlightDirections");
+  }
+  const SplitEnvironment environment =
+    Split(this->Outside.environment, fine > 0 ? this->FineDirections : this->Directions);
   this->FromFarAway = BoundaryRadiance(this->Directions, environment.smooth, this->Outside.sky);
   this->Lights = this->Outside.lights;
   this->Lights.insert(this->Lights.end(), environment.peaks.begin(), environment.peaks.end());
-  for (const Rgb& radiance : this->FromFarAway)
+  if (fine > 0)
   {
-    this->LitFromOutside = this->LitFromOutside || Total(radiance) > 0.0;
+    this->FindFlight(environment.smooth);
   }
-  for (const Rgb& radiance : this->Outside.faces)
+  for (std::size_t d = 0; d < this->FromFarAway.size(); ++d)
   {
-    this->LitFromOutside = this->LitFromOutside || Total(radiance) > 0.0;
+    for (int face = 0; face < 6; ++face)
+    {
+      this->LitFromOutside = this->LitFromOutside || Total(this->Incoming(static_cast<int>(d), face)) > 0.0;
+    }
   }
 }
 
@@ -215,7 +224,7 @@ void FusedSolver::FindOutsideLight()
 std::vector<Bundle> FusedSolver::BundlesOf(int axis) const
 {
   const std::vector<Bundle> bundles =
-    BundlesAlong(axis, this->TheMedium.grid, this->Directions, this->Settings.mapResolution);
+    BundlesAlong(axis, this->TheMedium.grid, this->Directions, this->Settings.mapResolution, this->Starts());
   return this->MergesMirrors() ? this->Mirrors.Standing(bundles) : bundles;
 }
 
@@ -307,6 +316,16 @@ void FusedSolver::MakeLitSweeps()
 /// Radiance, in the mean over the directions that this one stands for.
 Rgb FusedSolver::Incoming(int direction, int face) const
 {
+  if (this->Flight)
+  {
+    Rgb radiance = this->Flight->Even();
+    const Rgb rest = this->UsualFlight ? this->UsualFlight->Incoming(direction, face) : Rgb{};
+    for (int c = 0; c < 3; ++c)
+    {
+      radiance[c] += this->FlightScale[c] * rest[c];
+    }
+    return radiance;
+  }
   Rgb radiance = this->Outside.faces[face];
   const std::vector<int> itself = { direction };
   const std::vector<int>& all = this->MergesMirrors() ? this->Mirrors.AllOf(direction) : itself;
@@ -386,6 +405,7 @@ void FusedSolver::PropagateLights(const Monitor& monitor)
         first, volume.channels);
     });
   }
+  this->PropagateFlight(monitor);
   this->PropagatePeaks(monitor);
 }
 
@@ -609,7 +629,8 @@ void FusedSolver::SayWhatIsLeftOut(std::vector<std::string>& words) const
   say(!this->Traits.scatters, left_out::NoScattering);
   say(!this->Traits.absorbs, left_out::NoAbsorption);
   say(!this->Traits.emits, left_out::NoEmission);
-  say(!this->LitFromOutside, left_out::DarkOutside);
+  say(!this->LitFromOutside && !this->Flight, left_out::DarkOutside);
+  say(this->Settings.firstFlightDirections > 0 && this->LitFromOutside && !this->Flight, left_out::EvenOutside);
   say(this->Lights.empty(), left_out::NoLights);
   say(this->Traits.emits && this->Emission.peaks.empty(), left_out::NoEmissionPeaks);
   say(this->Traits.scatters && this->Result.convergence.size() == 1, left_out::OneOrder);

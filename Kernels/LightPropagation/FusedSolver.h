@@ -2,6 +2,7 @@
 
 #include "AxisSweep.h"
 #include "EmissionPeaks.h"
+#include "FirstFlight.h"
 #include "FusedPropagation.h"
 #include "LowOrder.h"
 #include "NeededRays.h"
@@ -10,6 +11,7 @@
 #include <chrono>
 #include <functional>
 #include <memory>
+#include <optional>
 #include <string>
 #include <vector>
 
@@ -20,10 +22,9 @@ inline double Total(const Rgb& values)
   return values[0] + values[1] + values[2];
 }
 
-/// The channels from `first` on.
-inline Rgb From(const Rgb& rgb, int first)
+inline Rgb Minus(const Rgb& a, const Rgb& b)
 {
-  return first == 0 ? rgb : Rgb{ rgb[first], 0.0, 0.0 };
+  return { a[0] - b[0], a[1] - b[1], a[2] - b[2] };
 }
 
 /// One solve, from the arrays of the medium to those of the light.
@@ -60,12 +61,12 @@ private:
   }
 
   void RunOrders(const Monitor& monitor);
-  /// @param ofLamps  W that entered before, of lights
-  /// @throws InvalidInput where sweeps bring far less or more of the light from outside than there is
+  Rgb PowerInSweeps() const;
   Rgb PowerFromOutside() const;
   double PowerSeen(const EmissionPeak& peak) const;
   bool PeaksOutshineOthers() const;
-  void CheckEntering(const Rgb& ofLamps) const;
+  /// @throws InvalidInput where rays bring far less or more of the light from outside than there is
+  void CheckEntering(const Rgb& entered, const Rgb& expected) const;
   /// @throws InvalidInput where the energy balance is off by a hundredth
   void CheckBalance() const;
   void Load();
@@ -86,6 +87,7 @@ private:
   void MakeLitSweeps();
   AxisSweeps SweepsThrough(Part part);
   std::vector<Bundle> BundlesOf(int axis) const;
+  RayStarts Starts() const { return this->Settings.staggeredRays ? RayStarts::Staggered : RayStarts::Middle; }
   bool LeavesSlabsOut() const;
   bool MergesMirrors() const { return this->Settings.leaveOut && !this->Settings.netFlux; }
   std::array<std::size_t, 2> SweptValues() const;
@@ -93,6 +95,17 @@ private:
   void PropagateOrder(int order, const Monitor& monitor);
   void PropagateSweeps(const AxisSweeps& sweeps, const SweepBoundary& boundary, int mostPlanes, const Monitor& monitor);
   void PropagateLights(const Monitor& monitor);
+  bool ScattersMoreThanItAbsorbs() const;
+  void FindFlight(const Environment& farAway);
+  void PropagateFlight(const Monitor& monitor);
+  struct FlightLight
+  {
+    std::vector<float> path, flux; ///< as in SweepVolume
+    SweepTally tally;
+  };
+  FlightLight LightOf(const FirstFlight& flight, const Monitor& monitor);
+  void AddFlightDifference(const Monitor& monitor);
+  double PartOfDifference(std::size_t voxel, int channel) const;
   void PropagatePeaks(const Monitor& monitor);
   SweepVolume VolumeOf(int firstChannel, Part part) const;
   void ForChannels(const std::function<void(const SweepVolume&, int)>& act);
@@ -109,7 +122,7 @@ private:
   double OrdersNeeded() const;
   void ChooseNearness();
   void RunAccelerated(const Monitor& monitor);
-  void LoadAccelerated();
+  void LoadAccelerated(const Monitor& monitor);
   std::vector<float> WithLamps(const Buffer<float>& planar, double scale) const;
   void SweepAll(int sweepNumber, const Monitor& monitor);
   void MakeSystems();
@@ -148,8 +161,8 @@ private:
   Part Swept = Part::All;
   double LitPart = 1.0; ///< of all rays, in the first order
   std::vector<Rgb> FromFarAway;
-  bool Shining = false; ///< the source is not zero
-  bool LitFromOutside = false;
+  bool Shining = false;        ///< the source is not zero
+  bool LitFromOutside = false; ///< in sweeps
 
   // Accelerated: what the low-order systems have, by channel
   bool Accelerated = false;
@@ -160,11 +173,19 @@ private:
   std::vector<std::unique_ptr<LowOrder>> Systems;
   std::vector<std::vector<double>> Found; ///< W / length^2, without lights' own
   std::vector<float> Lamps;               ///< W / length^2, lights' own, [channel][stride]
+  std::vector<float> LampPath;            ///< W length, the same where Nearness is there
   EnergyBalance LampBalance;              ///< of lights' own light
   std::array<Rgb, 6> LampFaces = {};
   Rgb GivenPower = {}, PowerIn = {};    ///< W, emitted or first scattered; through faces
   std::array<Rgb, 6> FacePowerOut = {}; ///< W, in a sweep
   double Change = 1.0, LastRatio = 1.0;
+
+  // Where unscattered light from outside has directions of its own, see FlightOfSolver.cxx.
+  DirectionSet FineDirections;
+  std::optional<FirstFlight> Flight;
+  std::optional<FirstFlight>
+    UsualFlight; ///< accelerated: the same light along the usual directions, as the sweeps carry it
+  Rgb FlightScale = { 1.0, 1.0, 1.0 }; ///< of that, so that as much power comes in
 
   LightField Result;
   std::chrono::steady_clock::time_point Start;

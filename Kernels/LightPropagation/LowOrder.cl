@@ -260,7 +260,7 @@ static float remainder_of_borders(const low_order_layout* layout, const low_orde
   const int* at, float power, float* share, float* seeming, float* believed)
 {
   float left = power; // through the box's faces, out less in
-  float in = 0.0f, expected = 0.0f, longest = 0.0f, sum = 0.0f;
+  float in = 0.0f, expected = 0.0f, longest = 0.0f, sum = 0.0f, borders = 0.0f;
   float model[6];
   for (int d = 0; d < 6; ++d)
   {
@@ -279,6 +279,7 @@ static float remainder_of_borders(const low_order_layout* layout, const low_orde
       sum += seeming[d];
       in += entered;
       longest = fmax(longest, layout->spacing[axis]);
+      borders += 1.0f;
     }
     else if (layout->size[axis] > 1)
     {
@@ -289,10 +290,12 @@ static float remainder_of_borders(const low_order_layout* layout, const low_orde
   *believed = *believed > 1e-12f ? *believed : 0.0f;
   // Of a thick voxel what is left is a small difference of what it shines and takes.
   const float rounding = 1e-6f * arrays->sigma_t[i] * volume_of(layout) * fmax(arrays->model[i], 0.0f);
-  const float whole = rounding < 0.01f * sum ? left + in : sum;
+  const float whole = rounding < 0.01f * sum || sum <= 0.0f ? left + in : sum;
   for (int d = 0; d < 6; ++d)
   {
-    seeming[d] = sum > 0.0f ? whole * seeming[d] / sum : 0.0f;
+    // Where nothing goes straight through, what comes in through faces beside leaves all the same.
+    const float part = sum > 0.0f ? seeming[d] / sum : is_border(layout, at, d) ? 1.0f / borders : 0.0f;
+    seeming[d] = whole * part;
     const float net = seeming[d] - arrays->entering[d * arrays->stride + i] - model[d];
     share[d] = *believed > 0.0f && is_border(layout, at, d) ? *believed * net : 0.0f;
   }
@@ -443,7 +446,9 @@ __kernel void low_order_source(low_order_layout layout, const __global float* gi
   find_neighbours(layout.size, x, y, z, i, next);
   float open[6];
   const float skin = openness(&layout, sigma_t, i, next, at, open);
-  const float even = given[begin + i] + sigma_s[begin + i] * fmax((float)fluence[i], 0.0f) * (0.25f * M_1_PI_F);
+  // `given` is less than nothing where unscattered light on directions of its own is less than in the sweep.
+  const float even =
+    fmax(given[begin + i] + sigma_s[begin + i] * fmax((float)fluence[i], 0.0f) * (0.25f * M_1_PI_F), 0.0f);
   float shining = 0.0f, sum = 0.0f;
   for (int d = 0; d < 6; ++d)
   {

@@ -59,12 +59,13 @@ double HalfRange(const Grid& grid, const DirectionSet& set, int axis, int marchi
 }
 
 /// Power at radiance 1 that crosses faces across `axis` upwards in each plane, per area, of rays that march along `marching`.
-std::vector<double> CrossingsIn(const Grid& grid, const DirectionSet& set, int mapResolution, int axis, int marching)
+std::vector<double> CrossingsIn(
+  const Grid& grid, const DirectionSet& set, int mapResolution, RayStarts starts, int axis, int marching)
 {
   const int planes = grid.size[marching];
   const bool isU = AcrossAxis(marching).u == axis;
   std::vector<double> power(planes, 0.0);
-  for (const Bundle& bundle : BundlesAlong(marching, grid, set, mapResolution))
+  for (const Bundle& bundle : BundlesAlong(marching, grid, set, mapResolution, starts))
   {
     for (int k = 0; k < planes; ++k)
     {
@@ -90,7 +91,7 @@ std::vector<double> CrossingsIn(const Grid& grid, const DirectionSet& set, int m
 }
 
 CrossingPattern FindCrossingPattern(
-  const Grid& grid, const DirectionSet& set, int mapResolution, const std::array<bool, 3>& periodic)
+  const Grid& grid, const DirectionSet& set, int mapResolution, RayStarts starts, const std::array<bool, 3>& periodic)
 {
   CrossingPattern pattern;
   for (int axis = 0; axis < 3; ++axis)
@@ -104,7 +105,7 @@ CrossingPattern FindCrossingPattern(
     for (int which = 0; which < 2; ++which)
     {
       const int marching = OtherAxis(axis, which);
-      std::vector<double> power = CrossingsIn(grid, set, mapResolution, axis, marching);
+      std::vector<double> power = CrossingsIn(grid, set, mapResolution, starts, axis, marching);
       if (periodic[marching]) // rays go round and round: the mean is what counts
       {
         std::fill(power.begin(), power.end(), HalfRange(grid, set, axis, marching));

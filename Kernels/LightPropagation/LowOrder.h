@@ -25,8 +25,8 @@ struct CrossingPattern
   std::vector<float> values;
   std::array<int, 6> first = {}; ///< [axis][other axes in order]
 };
-CrossingPattern FindCrossingPattern(
-  const Grid& grid, const DirectionSet& directions, int mapResolution, const std::array<bool, 3>& periodic);
+CrossingPattern FindCrossingPattern(const Grid& grid, const DirectionSet& directions, int mapResolution,
+  RayStarts starts, const std::array<bool, 3>& periodic);
 
 /// The second, diffusion-like equation that carries light far in one step, where sweeps carry it from voxel to voxel.
 ///

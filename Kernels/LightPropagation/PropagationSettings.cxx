@@ -13,6 +13,11 @@ void Check(const PropagationSettings& settings)
     throw InvalidInput(
       "MapResolution is " + std::to_string(settings.mapResolution) + "; it must be at least 1 and at most 16.");
   }
+  if (settings.firstFlightDirections < 0)
+  {
+    throw InvalidInput("FirstFlightDirections is " + std::to_string(settings.firstFlightDirections) +
+      "; give a square number of directions per face, or 0 for the same as DirectionsPerFace.");
+  }
   if (settings.maximumOrders < 0)
   {
     throw InvalidInput("MaximumOrders is " + std::to_string(settings.maximumOrders) +

@@ -24,9 +24,15 @@ struct PropagationSettings
 {
   int directionsPerFace = 25;  ///< directions per cube face, a square number: 1, 4, 9, 16, 25, ...
   bool adaptDirections = true; ///< more of them for slabs (UnvaryingAxes.h); false: as many as told
-  int mapResolution = 1;       ///< map points per voxel edge, 1 to 16
-  int maximumOrders = 0;       ///< scattering orders (accelerated: sweeps) at most; 0: until the tolerance is met
-  double tolerance = 1e-4;     ///< relative error of fluence at which to stop, > 0
+  /// Directions per cube face, a square number, of the unscattered light of shining faces, sky and environment (FirstFlight.h);
+  /// 0: the same as for scattered light.
+  int firstFlightDirections = 0;
+  /// Rays of each direction start in a place of their own within a voxel, those of a first flight always (RayPattern.h). From some 64
+  /// directions a face on, half the error or less.
+  bool staggeredRays = false;
+  int mapResolution = 1;   ///< map points per voxel edge, 1 to 16
+  int maximumOrders = 0;   ///< scattering orders (accelerated: sweeps) at most; 0: until the tolerance is met
+  double tolerance = 1e-4; ///< relative error of fluence at which to stop, > 0
   std::array<bool, 3> periodic = { false, false, false }; ///< rays leaving an axis return on the other side
   int storedDirections = 1; ///< directions kept for scattered radiance: 1 (isotropic), 6 (faces), or more
   PropagationSource source = PropagationSource::Automatic;
@@ -37,6 +43,6 @@ struct PropagationSettings
   bool leaveOut = true; ///< what the scene does not need; false: all is computed, to see what leaving out saves
 };
 
-/// @throws InvalidInput where a number is out of its range (directionsPerFace is looked at by the direction sets)
+/// @throws InvalidInput where a number is out of its range (numbers of directions are looked at by the direction sets)
 void Check(const PropagationSettings& settings);
 }

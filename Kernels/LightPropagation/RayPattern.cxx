@@ -93,6 +93,31 @@ void Sort(std::vector<Bundle>& bundles, const PlaneAxes& axes, const Grid& grid,
   bundles.push_back(fresh);
 }
 
+/// Rays that all start in the middle come through the box's sides in the same pattern, and as many directions as there may be do not take
+/// it away. Steps of two irrational numbers, those of the plastic number, fill a square evenly (Roberts 2018). Bundles
+/// take them in the order of their tangents, the same along every axis.
+void Stagger(std::vector<Bundle>& bundles)
+{
+  std::vector<Bundle*> inOrder;
+  for (Bundle& bundle : bundles)
+  {
+    inOrder.push_back(&bundle);
+  }
+  const auto less = [](const Bundle* a, const Bundle* b) {
+    return std::minmax(a->tangentU, a->tangentV) < std::minmax(b->tangentU, b->tangentV);
+  };
+  std::stable_sort(inOrder.begin(), inOrder.end(), less);
+  double first = 0.5, second = 0.5;
+  for (Bundle* bundle : inOrder)
+  {
+    const bool diagonal = Same(bundle->tangentU, bundle->tangentV); // neither axis comes first
+    bundle->startU = diagonal || bundle->tangentU < bundle->tangentV ? first : second;
+    bundle->startV = diagonal || bundle->tangentU > bundle->tangentV ? first : second;
+    first = std::fmod(first + 0.7548776662466927, 1.0);
+    second = std::fmod(second + 0.5698402909980532, 1.0);
+  }
+}
+
 /// Each bundle once for every point of the map's finer lattice.
 std::vector<Bundle> OnLattice(const std::vector<Bundle>& bundles, int mapResolution)
 {
@@ -104,8 +129,8 @@ std::vector<Bundle> OnLattice(const std::vector<Bundle>& bundles, int mapResolut
       for (int i = 0; i < mapResolution; ++i)
       {
         Bundle shifted = bundle;
-        shifted.startU = (i + 0.5) / mapResolution;
-        shifted.startV = (j + 0.5) / mapResolution;
+        shifted.startU = (i + bundle.startU) / mapResolution;
+        shifted.startV = (j + bundle.startV) / mapResolution;
         shifted.power /= static_cast<double>(mapResolution) * mapResolution;
         all.push_back(shifted);
       }
@@ -167,7 +192,8 @@ int MarchingAxis(const Grid& grid, const std::array<double, 3>& omega)
   return axis;
 }
 
-std::vector<Bundle> BundlesAlong(int axis, const Grid& grid, const DirectionSet& set, int mapResolution)
+std::vector<Bundle> BundlesAlong(
+  int axis, const Grid& grid, const DirectionSet& set, int mapResolution, RayStarts starts)
 {
   const PlaneAxes axes = AcrossAxis(axis);
   std::vector<Bundle> bundles;
@@ -178,6 +204,10 @@ std::vector<Bundle> BundlesAlong(int axis, const Grid& grid, const DirectionSet&
     {
       Sort(bundles, axes, grid, set, static_cast<int>(d));
     }
+  }
+  if (starts == RayStarts::Staggered)
+  {
+    Stagger(bundles);
   }
   return OnLattice(bundles, mapResolution);
 }

@@ -63,8 +63,16 @@ PlaneAxes AcrossAxis(int axis);
 /// moves more than one voxel aside.
 int MarchingAxis(const Grid& grid, const std::array<double, 3>& omega);
 
+/// Where the rays of a bundle start within a voxel of the first plane, or within its part on a finer lattice.
+enum class RayStarts
+{
+  Middle,   ///< all alike
+  Staggered ///< each bundle's in a place of its own: patterns at the box's sides even out the more bundles there are
+};
+
 /// The bundles that march along `axis`, both ways, with mapResolution x mapResolution rays a voxel and direction.
-std::vector<Bundle> BundlesAlong(int axis, const Grid& grid, const DirectionSet& set, int mapResolution);
+std::vector<Bundle> BundlesAlong(
+  int axis, const Grid& grid, const DirectionSet& set, int mapResolution, RayStarts starts = RayStarts::Middle);
 
 /// Rays of one collimated beam: a bundle with one member for each of the mapResolution^2 lattices. Its `direction` is 0
 /// where the beam runs forward along the axis, else `opposite` is 0; the other is -1. Power is that of irradiance 1.

@@ -27,6 +27,18 @@ std::string Text(const char* format, double value)
 /// W that the sky, the environment and shining faces send into the box.
 Rgb FusedSolver::PowerFromOutside() const
 {
+  Rgb power = this->PowerInSweeps();
+  const Rgb ofFlight = this->Flight && !this->UsualFlight ? this->Flight->PowerIn() : Rgb{};
+  for (int c = 0; c < this->Channels; ++c)
+  {
+    power[c] += ofFlight[c];
+  }
+  return power;
+}
+
+/// The part of it that sweeps bring, along the directions of scattered light.
+Rgb FusedSolver::PowerInSweeps() const
+{
   Rgb expected = {};
   const SweepBoundary boundary = this->BoundaryOfOrder(0);
   const Grid& grid = this->TheMedium.grid;
@@ -48,13 +60,12 @@ Rgb FusedSolver::PowerFromOutside() const
 }
 
 /// Rays start on the lattice of the voxels. Through sides that are thin for the planes they march by hardly one comes.
-void FusedSolver::CheckEntering(const Rgb& ofLamps) const
+void FusedSolver::CheckEntering(const Rgb& entered, const Rgb& expected) const
 {
   const Grid& grid = this->TheMedium.grid;
-  const Rgb expected = this->PowerFromOutside();
   for (int c = 0; c < this->Channels; ++c)
   {
-    const double part = expected[c] > 0.0 ? (this->Result.balance.entered[c] - ofLamps[c]) / expected[c] : 1.0;
+    const double part = expected[c] > 0.0 ? entered[c] / expected[c] : 1.0;
     if (!(std::abs(part - 1.0) <= MissedAtMost))
     {
       throw InvalidInput("Rays bring " + Text("%.3g", 100.0 * part) +

@@ -10,6 +10,12 @@
 
 namespace tyndall
 {
+/// The channels from `first` on: those of a volume that begins there.
+inline Rgb From(const Rgb& rgb, int first)
+{
+  return first == 0 ? rgb : Rgb{ rgb[first], 0.0, 0.0 };
+}
+
 /// The widest vector of any kernel, floats.
 constexpr std::size_t SweepPadding = 16;
 

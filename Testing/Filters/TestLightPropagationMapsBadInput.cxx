@@ -231,6 +231,9 @@ void BadSettings(Refusals& refusals)
   refusals->SetDirectionsPerFace(0);
   refusals.Says("0");
   refusals->SetDirectionsPerFace(4);
+  refusals->SetFirstFlightDirections(24);
+  refusals.Says("FirstFlightDirections is 24");
+  refusals->SetFirstFlightDirections(0);
   refusals->SetMapResolution(0);
   refusals.Says("MapResolution");
   refusals->SetMapResolution(1);

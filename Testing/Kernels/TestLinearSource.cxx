@@ -61,35 +61,61 @@ double MeanRadianceAtCentre(const Scene& scene, const LightField& light)
   return sum / 8.0 / (4.0 * Pi);
 }
 
-/// Mean over a voxel of the reference, which is a few of the scene's.
-double MeanFluence(const CubeReference& row, const Scene& scene, const LightField& light)
+/// Parts of a row of n voxels in the mean over each tenth of it, light being linear within voxels: [tenth][voxel].
+std::vector<std::array<double, 10>> TenthsOf(int n)
 {
-  const int n = scene.medium.grid.size[0];
-  const int part = n / 10;
-  double fluence = 0.0;
-  for (int z = 0; z < part; ++z)
+  std::vector<std::array<double, 10>> parts(n, std::array<double, 10>{});
+  for (int tenth = 0; tenth < 10; ++tenth)
   {
-    for (int y = 0; y < part; ++y)
+    for (int i = 0; i < n; ++i)
     {
-      for (int x = 0; x < part; ++x)
+      const double begin = std::max<double>(i, tenth * n / 10.0), end = std::min(i + 1.0, (tenth + 1) * n / 10.0);
+      const double part = std::max(end - begin, 0.0) * 10.0 / n;
+      const int below = std::max(i - 1, 0), above = std::min(i + 1, n - 1);
+      const double slope = part * (0.5 * (begin + end) - (i + 0.5)) / (above - below);
+      parts[i][tenth] += part;
+      parts[above][tenth] += slope;
+      parts[below][tenth] -= slope;
+    }
+  }
+  return parts;
+}
+
+/// Means over the voxels of the reference.
+std::array<double, 1000> MeanFluence(int n, const LightField& light)
+{
+  const std::vector<std::array<double, 10>> parts = TenthsOf(n);
+  std::array<double, 1000> means = {};
+  for (int v = 0; v < 1000; ++v)
+  {
+    for (int z = 0; z < n; ++z)
+    {
+      for (int y = 0; y < n; ++y)
       {
-        fluence += light.fluence[((row.z * part + z) * n + row.y * part + y) * n + row.x * part + x];
+        const double part = parts[z][v / 100] * parts[y][v / 10 % 10];
+        for (int x = 0; x < n && part != 0.0; ++x)
+        {
+          means[v] += part * parts[x][v % 10] * light.fluence[(z * n + y) * n + x];
+        }
       }
     }
   }
-  return fluence / (part * part * part);
+  return means;
 }
 
 /// Three standard errors or 1%, whichever is larger, voxel by voxel.
-void ExpectAsPhotonsDo(
-  const std::vector<CubeReference>& reference, const Scene& scene, const LightField& light, double unit)
+void ExpectAsPhotonsDo(const CubeReference& reference, int n, const LightField& light, double unit)
 {
-  for (const CubeReference& row : reference)
+  const std::array<double, 1000> means = MeanFluence(n, light);
+  double squares = 0.0;
+  for (int v = 0; v < 1000; ++v)
   {
-    const double fluence = MeanFluence(row, scene, light) * unit;
-    EXPECT_NEAR(fluence / row.fluence, 1.0, std::max(0.01, 3.0 * row.error / row.fluence))
-      << row.x << ' ' << row.y << ' ' << row.z;
+    const double error = means[v] * unit / reference[v].fluence - 1.0;
+    EXPECT_LE(std::abs(error), std::max(0.01, 3.0 * reference[v].error / reference[v].fluence))
+      << v % 10 << ' ' << v / 10 % 10 << ' ' << v / 100;
+    squares += error * error;
   }
+  EXPECT_LT(std::sqrt(squares / 1000.0), 0.0028); // 0.0019 of that is the reference's own
 }
 struct Transmittance
 {
@@ -286,42 +312,68 @@ TEST_F(LinearSource, KeepsTheFurnaceWithVoidsAndAContrastOfAHundredMillion)
   }
 }
 
-TEST_F(LinearSource, LightsACubeAsPhotonsDo)
+TEST_F(LinearSource, LightsAllVoxelsOfACubeAsPhotonsDo)
 {
-  // The light that comes straight from the face needs many directions: its shadows have edges.
-  Scene lit = Cube(30, 1.0, 0.9);
-  lit.settings.directionsPerFace = 900;
-  lit.settings.mapResolution = 2;
-  lit.light.faces[4] = { 1.0, 1.0, 1.0 };
-  const LightField light = lit.Solve(this->GetDevice());
-  ExpectAsPhotonsDo(CubeInDiffuseLight, lit, light, 900.0 / light.balance.entered[0]); // of flux 1, side 1
+  // The light that comes straight from the face has shadows with edges: it needs many directions, scattered light few.
+  for (const PropagationSource source : { PropagationSource::Automatic, PropagationSource::Linear })
+  {
+    Scene lit = Cube(32, 1.0, 0.9);
+    lit.settings.source = source;
+    lit.settings.directionsPerFace = 64;
+    lit.settings.firstFlightDirections = 900;
+    lit.settings.staggeredRays = true;
+    lit.light.faces[4] = { 1.0, 1.0, 1.0 };
+    const LightField light = lit.Solve(this->GetDevice());
+    ExpectAsPhotonsDo(CubeInDiffuseLight, 32, light, 32.0 * 32.0 / light.balance.entered[0]); // of flux 1, side 1
+  }
+}
 
-  Scene shining = Cube(30, 5.0, 0.9);
-  shining.settings.directionsPerFace = 100;
-  shining.settings.mapResolution = 2;
-  shining.emission.assign(27000, static_cast<float>(1.0 / (4.0 * Pi * 27000.0)));
-  ExpectAsPhotonsDo(ShiningCube, shining, shining.Solve(this->GetDevice()), 900.0);
+TEST_F(LinearSource, LightsAllVoxelsOfAShiningCubeAsPhotonsDo)
+{
+  Scene shining = Cube(32, 5.0, 0.9);
+  shining.settings.directionsPerFace = 196;
+  shining.settings.staggeredRays = true;
+  shining.emission.assign(32768, static_cast<float>(1.0 / (4.0 * Pi * 32768.0)));
+  ExpectAsPhotonsDo(ShiningCube, 32, shining.Solve(this->GetDevice()), 32.0 * 32.0);
 }
 
 TEST_F(LinearSource, SendsThroughACubesFacesWhatPhotonsDo)
 {
-  // cube_RTSA.csv, albedo, diffuse light on one face: reflected, through four sides, absorbed, to 1%; transmitted is less than
-  // a hundredth of it all and left to the sum.
+  // cube_RTSA.csv, isotropic, diffuse light on one face: reflected, transmitted, through four sides, absorbed, with their standard
+  // errors. Left out is what wants finer voxels: albedo 0.5 from optical thickness 5 on (reflected 3% too little), 1 at 50 (1.3% too
+  // little through the sides).
   struct Row
   {
-    double tau, albedo, reflected, sides, absorbed;
+    double tau, albedo;
+    std::array<double, 4> part, error;
   };
-  for (const Row& row : { Row{ 5.0, 0.9, 0.307663, 0.435358, 0.245893 }, Row{ 10.0, 0.9, 0.380822, 0.264722, 0.353452 },
-         Row{ 10.0, 1.0, 0.551624, 0.437810, 0.0 } })
+  for (const Row& row :
+    { Row{ 0.1, 0.5, { 0.007756, 0.182494, 0.777093, 0.032657 }, { 2.1e-05, 1.0e-04, 9.4e-05, 3.8e-05 } },
+      Row{ 1.0, 0.5, { 0.055774, 0.080696, 0.596952, 0.266579 }, { 5.7e-05, 7.9e-05, 1.6e-04, 1.1e-04 } },
+      Row{ 0.1, 0.9, { 0.014169, 0.185503, 0.793678, 0.006649 }, { 3.8e-05, 1.1e-04, 1.0e-04, 7.8e-06 } },
+      Row{ 1.0, 0.9, { 0.114652, 0.099095, 0.722803, 0.063449 }, { 1.1e-04, 8.3e-05, 1.4e-04, 2.9e-05 } },
+      Row{ 5.0, 0.9, { 0.307663, 0.011085, 0.435358, 0.245893 }, { 9.6e-05, 2.5e-05, 1.1e-04, 6.5e-05 } },
+      Row{ 10.0, 0.9, { 0.380822, 0.001002, 0.264722, 0.353452 }, { 1.1e-04, 5.7e-06, 1.3e-04, 9.8e-05 } },
+      Row{ 50.0, 0.9, { 0.456063, 0.000000, 0.060279, 0.483659 }, { 3.5e-04, 0.0, 2.6e-04, 4.0e-04 } },
+      Row{ 0.1, 1.0, { 0.015803, 0.186275, 0.797922, 0.000000 }, { 4.2e-05, 1.1e-04, 1.0e-04, 0.0 } },
+      Row{ 1.0, 1.0, { 0.132254, 0.105242, 0.762505, 0.000000 }, { 1.2e-04, 8.8e-05, 1.4e-04, 0.0 } },
+      Row{ 5.0, 1.0, { 0.402589, 0.023612, 0.573800, 0.000000 }, { 1.2e-04, 4.9e-05, 1.3e-04, 0.0 } },
+      Row{ 10.0, 1.0, { 0.551624, 0.010566, 0.437810, 0.000000 }, { 1.6e-04, 3.7e-05, 1.6e-04, 0.0 } } })
   {
-    Scene scene = Cube(48, row.tau, row.albedo);
+    Scene scene = Cube(32, row.tau, row.albedo);
     scene.settings.directionsPerFace = 100;
+    scene.settings.firstFlightDirections = 900;
+    scene.settings.staggeredRays = true;
     scene.light.faces[4] = { 1.0, 1.0, 1.0 };
     const LightField light = scene.Solve(this->GetDevice());
-    EXPECT_NEAR(Out(light, 4) / row.reflected, 1.0, 0.01) << row.tau;
-    EXPECT_NEAR((Out(light, 0) + Out(light, 1) + Out(light, 2) + Out(light, 3)) / row.sides, 1.0, 0.01) << row.tau;
-    EXPECT_NEAR(light.balance.absorbed[0] / light.balance.entered[0], row.absorbed, 0.01 * row.absorbed + 1e-6)
-      << row.tau;
+    const std::array<double, 4> part = { Out(light, 4), Out(light, 5),
+      Out(light, 0) + Out(light, 1) + Out(light, 2) + Out(light, 3),
+      light.balance.absorbed[0] / light.balance.entered[0] };
+    for (int i = 0; i < 4; ++i)
+    {
+      EXPECT_NEAR(part[i], row.part[i], std::max({ 0.01 * row.part[i], 3.0 * row.error[i], 1e-6 }))
+        << "thickness " << row.tau << " albedo " << row.albedo << ' ' << "RTSA"[i];
+    }
   }
 }
 

@@ -1,0 +1,176 @@
+#include "FirstFlight.h"
+
+#include "AxisSweep.h"
+#include "SweepPlan.h"
+
+#include <algorithm>
+#include <cmath>
+#include <limits>
+
+namespace tyndall
+{
+namespace
+{
+constexpr int ManyPlanes = 8192;                       ///< that a ray goes round a periodic axis before it is given up
+constexpr double Rounding = 1e-6;                      ///< of radiance that is meant to be even
+constexpr std::size_t MostRays = std::size_t(1) << 25; ///< in the maps of a sweep, one way: 128 MiB of floats
+
+/// Through which face light of that way along the axis comes in.
+int FaceOf(int axis, bool upwards)
+{
+  return 2 * axis + (upwards ? 0 : 1);
+}
+
+void Add(SweepTally& sum, const SweepTally& tally)
+{
+  for (int c = 0; c < 3; ++c)
+  {
+    for (int face = 0; face < 6; ++face)
+    {
+      sum.in[face][c] += tally.in[face][c];
+      sum.out[face][c] += tally.out[face][c];
+    }
+    sum.onTheWay[c] += tally.onTheWay[c];
+  }
+}
+
+double FaceArea(const Grid& grid, int axis)
+{
+  return grid.Length((axis + 1) % 3) * grid.Length((axis + 2) % 3);
+}
+}
+
+FirstFlight::FirstFlight(const Grid& grid, const PropagationSettings& settings, const DirectionSet& directions,
+  RayStarts starts, const Illumination& illumination, const Environment& farAway, bool leavesEven)
+  : TheGrid(grid)
+  , Settings(settings)
+  , Directions(directions)
+  , Starts(starts)
+  , Mirrors(grid, settings.periodic, directions)
+  , MergesMirrors(settings.leaveOut && !settings.netFlux)
+  , Faces(illumination.faces)
+  , FromFarAway(directions.directions.size())
+{
+  const std::vector<Rgb> radiance = BoundaryRadiance(directions, farAway, illumination.sky);
+  for (std::size_t d = 0; d < radiance.size(); ++d)
+  {
+    const std::vector<int> itself = { static_cast<int>(d) };
+    const std::vector<int>& all = this->MergesMirrors ? this->Mirrors.AllOf(static_cast<int>(d)) : itself;
+    for (const int one : all)
+    {
+      for (int c = 0; c < 3; ++c)
+      {
+        this->FromFarAway[d][c] += radiance[one][c] / static_cast<double>(all.size());
+      }
+    }
+  }
+  this->FindEvenPart(leavesEven);
+}
+
+FirstFlight::FirstFlight(const FirstFlight& other, const DirectionSet& directions, RayStarts starts,
+  const Illumination& illumination, const Environment& farAway)
+  : FirstFlight(other.TheGrid, other.Settings, directions, starts, illumination, farAway, false)
+{
+  this->EvenPart = other.EvenPart;
+}
+
+void FirstFlight::FindEvenPart(bool leavesEven)
+{
+  Rgb least, most = {};
+  least.fill(std::numeric_limits<double>::max());
+  for (std::size_t d = 0; d < this->FromFarAway.size(); ++d)
+  {
+    for (int axis = 0; axis < 3; ++axis)
+    {
+      const Rgb in =
+        this->Incoming(static_cast<int>(d), FaceOf(axis, this->Directions.directions[d].omega[axis] > 0.0));
+      for (int c = 0; c < 3 && !this->Settings.periodic[axis]; ++c)
+      {
+        least[c] = std::min(least[c], in[c]);
+        most[c] = std::max(most[c], in[c]);
+      }
+    }
+  }
+  for (int c = 0; c < 3; ++c)
+  {
+    const bool even = most[c] <= 0.0 || (leavesEven && most[c] - least[c] <= Rounding * most[c]);
+    this->AnyLight = this->AnyLight || !even;
+    this->EvenPart[c] = !leavesEven ? 0.0 : even ? most[c] : least[c];
+  }
+}
+
+Rgb FirstFlight::Incoming(int direction, int face) const
+{
+  Rgb radiance = this->Faces[face];
+  for (int c = 0; c < 3; ++c)
+  {
+    radiance[c] = std::max(radiance[c] + this->FromFarAway[direction][c] - this->EvenPart[c], 0.0);
+  }
+  return radiance;
+}
+
+Rgb FirstFlight::PowerIn() const
+{
+  Rgb power = {};
+  for (std::size_t d = 0; d < this->Directions.directions.size(); ++d)
+  {
+    const Direction& direction = this->Directions.directions[d];
+    for (int axis = 0; axis < 3; ++axis)
+    {
+      const Rgb radiance = this->Incoming(static_cast<int>(d), FaceOf(axis, direction.omega[axis] > 0.0));
+      const double area = this->Settings.periodic[axis] ? 0.0 : FaceArea(this->TheGrid, axis);
+      for (int c = 0; c < 3; ++c)
+      {
+        power[c] += direction.weight * std::abs(direction.omega[axis]) * area * radiance[c];
+      }
+    }
+  }
+  return power;
+}
+
+bool FirstFlight::IsLit(int direction) const
+{
+  bool lit = !this->Settings.leaveOut;
+  for (int axis = 0; axis < 3; ++axis)
+  {
+    const Rgb in = this->Incoming(direction, FaceOf(axis, this->Directions.directions[direction].omega[axis] > 0.0));
+    lit = lit || (!this->Settings.periodic[axis] && in[0] + in[1] + in[2] > 0.0);
+  }
+  return lit;
+}
+
+/// Those that march one way along the axis.
+std::vector<Bundle> FirstFlight::LitBundles(int axis, int way) const
+{
+  std::vector<Bundle> bundles =
+    BundlesAlong(axis, this->TheGrid, this->Directions, this->Settings.mapResolution, this->Starts);
+  if (this->MergesMirrors)
+  {
+    bundles = this->Mirrors.Standing(bundles);
+  }
+  return LitRays(bundles, way, [this](int direction) { return this->IsLit(direction); });
+}
+
+SweepTally FirstFlight::Deposit(
+  Device& device, const SweepVolume& volume, int firstChannel, SweepWorkspace& workspace, const Monitor& monitor) const
+{
+  const auto incoming = [&](int direction, int face) { return From(this->Incoming(direction, face), firstChannel); };
+  SweepTally tally;
+  for (int part = 0; part < 6; ++part)
+  {
+    const Monitor ofPart = monitor ? Monitor([&](double done) { return monitor((part + done) / 6.0); }) : Monitor();
+    const std::vector<Bundle> bundles = this->LitBundles(part / 2, part % 2);
+    const PlaneAxes axes = AcrossAxis(part / 2);
+    const std::size_t plane = static_cast<std::size_t>(volume.grid.size[axes.u]) * volume.grid.size[axes.v];
+    const std::size_t most = std::max<std::size_t>(MostRays / (MaxMembers * plane * volume.channels), 8);
+    for (std::size_t first = 0; first < bundles.size(); first += most)
+    {
+      const std::vector<Bundle> some(bundles.begin() + first, bundles.begin() + std::min(first + most, bundles.size()));
+      AxisSweep sweep(device, volume, part / 2, some, this->Settings.periodic, workspace);
+      sweep.Start(volume, incoming, false, ManyPlanes, ofPart);
+      Add(tally, sweep.Finish());
+    }
+  }
+  return tally;
+}
+}

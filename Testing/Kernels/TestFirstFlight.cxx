@@ -1,0 +1,274 @@
+#include "DeviceTest.h"
+#include "Difference.h"
+#include "MediumScene.h"
+
+#include "LightPropagation/ErrorEstimate.h"
+
+#include <gmock/gmock.h>
+
+#include <algorithm>
+#include <cmath>
+#include <string>
+#include <vector>
+
+using namespace tyndall;
+using testing::Contains;
+using testing::HasSubstr;
+
+namespace
+{
+constexpr double Pi = 3.14159265358979323846;
+
+/// A cube lit from below.
+Scene LitCube(int n, double tau, double albedo)
+{
+  Scene scene({ n, n, n }, static_cast<float>(tau / n * (1.0 - albedo)), static_cast<float>(tau / n * albedo));
+  scene.light.faces[4] = { 1.0, 1.0, 1.0 };
+  return scene;
+}
+
+/// Solid angle of a rectangle at distance 1, from its corner.
+double CornerSolidAngle(double s, double t)
+{
+  return std::atan2(s * t, std::sqrt(1.0 + s * s + t * t));
+}
+
+/// Of the cube's lower face, seen from a voxel's middle.
+double SolidAngleOfFloor(int n, int x, int y, int z)
+{
+  const double h = z + 0.5;
+  const double x0 = (x + 0.5) / h, x1 = (n - x - 0.5) / h, y0 = (y + 0.5) / h, y1 = (n - y - 0.5) / h;
+  return CornerSolidAngle(x0, y0) + CornerSolidAngle(x0, y1) + CornerSolidAngle(x1, y0) + CornerSolidAngle(x1, y1);
+}
+
+double Out(const LightField& light, int channel)
+{
+  double power = 0.0;
+  for (const Rgb& face : light.facePowerOut)
+  {
+    power += face[channel];
+  }
+  return power;
+}
+}
+
+class FirstFlight : public DeviceTest
+{
+};
+
+TEST_F(FirstFlight, SeesAShiningFaceAsLargeAsItIs)
+{
+  constexpr int n = 16;
+  std::array<double, 2> squares = {};
+  for (const int fine : { 0, 900 })
+  {
+    Scene scene = LitCube(n, 0.0, 0.0);
+    scene.settings.firstFlightDirections = fine;
+    const LightField light = scene.Solve(this->GetDevice());
+    std::size_t i = 0;
+    for (int z = 0; z < n; ++z)
+    {
+      for (int y = 0; y < n; ++y)
+      {
+        for (int x = 0; x < n; ++x, ++i)
+        {
+          const double exact = SolidAngleOfFloor(n, x, y, z);
+          squares[fine > 0] += z > 0 ? std::pow(light.fluence[i] / exact - 1.0, 2) / (n * n * (n - 1)) : 0.0;
+          EXPECT_NEAR(light.fluenceDirect[i], light.fluence[i], 1e-6);
+        }
+      }
+    }
+  }
+  EXPECT_GT(std::sqrt(squares[0]), 0.05); // or the test shows nothing
+  EXPECT_LT(std::sqrt(squares[1]), 0.008);
+}
+
+TEST_F(FirstFlight, AlongTheUsualDirectionsChangesNothing)
+{
+  // The rays are the same, only carried in two parts: orders one by one, accelerated with thin and with thick voxels, as published.
+  const auto linear = PropagationSource::Automatic, constant = PropagationSource::Constant;
+  for (const auto& [tau, source] : { std::pair(2.0, linear), { 20.0, linear }, { 2000.0, linear }, { 20.0, constant } })
+  {
+    Scene scene = LitCube(16, tau, tau == 2.0 ? 0.9 : 0.999);
+    scene.settings.source = source;
+    scene.light.faces[0] = { 0.5, 0.5, 0.5 };
+    scene.settings.staggeredRays = true;
+    scene.settings.tolerance = 1e-6;
+    const LightField usual = scene.Solve(this->GetDevice());
+    scene.settings.firstFlightDirections = scene.settings.directionsPerFace;
+    const LightField light = scene.Solve(this->GetDevice());
+    EXPECT_LT(RelativeDifference(light.fluence, usual.fluence), 1e-5) << tau;
+    EXPECT_LT(RelativeDifference(light.fluenceDirect, usual.fluenceDirect), 1e-5) << tau;
+    for (int face = 0; face < 6; ++face)
+    {
+      EXPECT_NEAR(light.facePowerOut[face][0], usual.facePowerOut[face][0], 1e-5 * usual.balance.entered[0]) << tau;
+    }
+  }
+}
+
+TEST_F(FirstFlight, KeepsTheFurnaceWithVoidsAndAContrastOfAHundredMillion)
+{
+  for (const bool asFaces : { false, true })
+  {
+    Scene scene({ 20, 21, 19 });
+    scene.Randomise(1e4, 8.0, 1.0);
+    for (std::size_t i = 0; i < scene.sigma_s.size(); i += 5)
+    {
+      scene.sigma_s[i] = 0.0f;
+    }
+    asFaces ? scene.light.faces.fill({ 1.0, 1.0, 1.0 }) : scene.ShineFromEverywhere(1.0);
+    scene.settings.firstFlightDirections = 100;
+    scene.settings.tolerance = 1e-6;
+    const LightField light = scene.Solve(this->GetDevice());
+    for (float fluence : light.fluence)
+    {
+      ASSERT_NEAR(fluence / (4.0 * Pi), 1.0, 1e-5);
+    }
+    EXPECT_THAT(light.leftOut, Contains(HasSubstr("first flight")));
+  }
+}
+
+TEST_F(FirstFlight, IsNeverBrighterThanWhatShines)
+{
+  // Albedo 1, voids, contrast up to a hundred million.
+  for (const double thickest : { 0.1, 10.0, 1e4 })
+  {
+    Scene scene({ 15, 16, 14 });
+    scene.Randomise(thickest, 8.0, 1.0);
+    for (std::size_t i = 0; i < scene.sigma_s.size(); i += 5)
+    {
+      scene.sigma_s[i] = 0.0f;
+    }
+    scene.light.faces[4] = { 1.0, 1.0, 1.0 };
+    scene.light.faces[0] = { 0.3, 0.3, 0.3 };
+    scene.settings.firstFlightDirections = 225;
+    const LightField light = scene.Solve(this->GetDevice());
+    const auto [least, most] = std::minmax_element(light.fluence.begin(), light.fluence.end());
+    EXPECT_GE(*least, 0.0f) << thickest;
+    EXPECT_LE(*most, 4.0 * Pi) << thickest;
+    EXPECT_LT(light.balance.RelativeError(1), 1e-5) << thickest;
+    EXPECT_NEAR(Out(light, 0) / light.balance.entered[0], 1.0, 1e-4) << thickest;
+  }
+}
+
+TEST_F(FirstFlight, GivesBackEveryWattInColour)
+{
+  // Sky, faces and medium with a colour each, no red from outside; channels share sigma_t or not; one by one and accelerated.
+  for (const bool shared : { false, true })
+  {
+    for (const double tau : { 1.0, 50.0 })
+    {
+      Scene scene({ 12, 10, 11 });
+      scene.sigma_a.resize(3 * scene.sigma_s.size());
+      scene.sigma_s.resize(scene.sigma_a.size());
+      for (std::size_t i = 0; i < scene.sigma_s.size(); ++i)
+      {
+        const double albedo = 0.6 + 0.1 * (i % 3);
+        const double sigma_t = tau / 11.0 * (shared ? 1.0 : 1.0 + 0.5 * (i % 3));
+        scene.sigma_s[i] = static_cast<float>(albedo * sigma_t);
+        scene.sigma_a[i] = static_cast<float>(sigma_t) - scene.sigma_s[i];
+      }
+      scene.light.sky = { 0.0, 0.2, 0.4 };
+      scene.light.faces[1] = { 0.0, 0.0, 1.0 };
+      scene.light.faces[5] = { 0.0, 1.0, 0.5 };
+      scene.settings.netFlux = true;
+      scene.settings.firstFlightDirections = 100;
+      const LightField light = scene.Solve(this->GetDevice());
+      ASSERT_EQ(light.channels, 3);
+      EXPECT_LT(light.balance.RelativeError(3), 1e-5) << tau;
+      EXPECT_EQ(light.balance.entered[0], 0.0) << tau;
+      for (int c = 1; c < 3; ++c)
+      {
+        EXPECT_GT(light.balance.entered[c], 0.0) << tau;
+        EXPECT_NEAR(Out(light, c) / light.balance.escaped[c], 1.0, 1e-5) << tau;
+      }
+      for (std::size_t i = 0; i < light.fluence.size(); i += 3)
+      {
+        ASSERT_EQ(light.fluence[i], 0.0f);
+      }
+      scene.settings.leaveOut = false;
+      EXPECT_LT(RelativeDifference(scene.Solve(this->GetDevice()).fluence, light.fluence), 1e-4) << tau;
+    }
+  }
+}
+
+TEST_F(FirstFlight, TakesAnEvenSkyWhereTheMediumAbsorbs)
+{
+  // Against many directions throughout.
+  std::vector<std::vector<float>> fluences;
+  for (const int directions : { 900, 25, 0 })
+  {
+    Scene scene = LitCube(16, 5.0, 0.0);
+    scene.light.faces = {};
+    scene.ShineFromEverywhere(1.0);
+    scene.settings.directionsPerFace = std::max(directions, 25);
+    scene.settings.firstFlightDirections = directions == 0 ? 400 : 0;
+    scene.settings.staggeredRays = true;
+    const LightField light = scene.Solve(this->GetDevice());
+    fluences.push_back(light.fluence);
+    EXPECT_LT(light.balance.RelativeError(1), 1e-5);
+  }
+  EXPECT_LT(RelativeDifference(fluences[2], fluences[0]), 0.3 * RelativeDifference(fluences[1], fluences[0]));
+}
+
+TEST_F(FirstFlight, DiesAwayInAPeriodicAbsorberAsItShould)
+{
+  // Transmittance of diffuse light: 2 E3(1).
+  Scene scene({ 4, 1, 16 }, 1.0f / 16.0f);
+  scene.settings.periodic = { true, true, false };
+  scene.light.faces[4] = { 1.0, 1.0, 1.0 };
+  scene.settings.directionsPerFace = 9;
+  scene.settings.firstFlightDirections = 900;
+  const LightField light = scene.Solve(this->GetDevice());
+  EXPECT_NEAR(light.facePowerOut[5][0] / light.balance.entered[0], 0.2193839344, 2e-4);
+  EXPECT_LT(light.balance.RelativeError(1), 1e-5);
+}
+
+TEST_F(FirstFlight, TransmitsAsSlabsDoHoweverThickVoxelsAre)
+{
+  for (const double tau : { 10.0, 30.0, 100.0, 1e3, 1e6 })
+  {
+    Scene scene({ 1, 1, 32 }, 0.0f, static_cast<float>(tau / 32.0));
+    scene.settings.periodic = { true, true, false };
+    scene.settings.firstFlightDirections = 225;
+    scene.light.faces[4] = { 1.0, 1.0, 1.0 };
+    const LightField light = scene.Solve(this->GetDevice());
+    const double transmitted = light.facePowerOut[5][0] / light.balance.entered[0];
+    EXPECT_NEAR(transmitted * 3.0 / 4.0 * (tau + 1.4208922), 1.0, 0.005) << tau;
+  }
+}
+
+TEST_F(FirstFlight, TakesPartInTheErrorEstimate)
+{
+  std::array<double, 2> errors = {};
+  for (const int fine : { 0, 400 })
+  {
+    Scene scene = LitCube(24, 1.0, 0.9);
+    scene.settings.firstFlightDirections = fine;
+    scene.Solve(this->GetDevice()); // lets the medium see its arrays
+    errors[fine > 0] = SolveWithErrorEstimate(scene.medium, scene.settings, {},
+      [&](const Medium& medium, const PropagationSettings& settings, const Monitor& monitor) {
+        return SolveFused(this->GetDevice(), medium, scene.light, settings, monitor);
+      }).relativeError;
+  }
+  EXPECT_LT(errors[1], 0.5 * errors[0]);
+  EXPECT_GT(errors[1], 0.0005);
+}
+
+TEST_F(FirstFlight, RefusesANumberThatIsNoSquare)
+{
+  Scene scene = LitCube(4, 1.0, 0.9);
+  for (const int wrong : { -1, 24, 65 * 65 })
+  {
+    scene.settings.firstFlightDirections = wrong;
+    try
+    {
+      scene.Solve(this->GetDevice());
+      ADD_FAILURE() << wrong;
+    }
+    catch (const InvalidInput& error)
+    {
+      EXPECT_THAT(error.what(), HasSubstr("FirstFlightDirections is " + std::to_string(wrong)));
+    }
+  }
+}
