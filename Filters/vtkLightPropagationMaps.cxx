@@ -42,6 +42,7 @@ tyndall::PropagationSettings SettingsOf(vtkLightPropagationMaps* filter)
     : tyndall::PropagationAcceleration::Automatic;
   settings.directionsPerFace = filter->GetDirectionsPerFace();
   settings.firstFlightDirections = filter->GetFirstFlightDirections();
+  settings.emissionError = filter->GetEmissionError();
   settings.staggeredRays = filter->GetStaggeredRays();
   settings.mapResolution = filter->GetMapResolution();
   settings.maximumOrders = filter->GetMaximumOrders();
@@ -163,6 +164,7 @@ void vtkLightPropagationMaps::PrintSelf(ostream& os, vtkIndent indent)
   os << indent << "Acceleration: " << this->Acceleration << "\n";
   os << indent << "DirectionsPerFace: " << this->DirectionsPerFace << "\n";
   os << indent << "FirstFlightDirections: " << this->FirstFlightDirections << "\n";
+  os << indent << "EmissionError: " << this->EmissionError << "\n";
   os << indent << "StaggeredRays: " << this->StaggeredRays << "\n";
   os << indent << "MapResolution: " << this->MapResolution << "\n";
   os << indent << "MaximumOrders: " << this->MaximumOrders << "\n";

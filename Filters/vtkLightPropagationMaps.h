@@ -129,6 +129,13 @@ public:
   ///@}
 
   ///@{
+  /// Relative error, voxel by voxel, of the unscattered light of small bright parts of the medium, which is followed along exact rays
+  /// (sound scheme, no periodic axis). Default 0.02; 0.005 costs some five times as much; 0: they are swept like all else.
+  vtkSetMacro(EmissionError, double);
+  vtkGetMacro(EmissionError, double);
+  ///@}
+
+  ///@{
   /// Whether rays of each direction start in a place of their own within a voxel (sound scheme), those of FirstFlightDirections
   /// always. From some 64 directions per face on, half the error or less. Default off.
   vtkSetMacro(StaggeredRays, bool);
@@ -241,6 +248,7 @@ private:
   int Acceleration = AUTOMATIC_ACCELERATION;
   int DirectionsPerFace = 25;
   int FirstFlightDirections = 0;
+  double EmissionError = 0.02;
   bool StaggeredRays = false;
   int MapResolution = 1;
   int MaximumOrders = 0;

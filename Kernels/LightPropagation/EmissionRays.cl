@@ -1,7 +1,7 @@
 // The light of a small bright part of the medium, gathered along straight rays. Read after Numerics.cl; the host gives
 //   CHANNELS  1 or 3 that share sigma_t
 //   NET_FLUX  1 where net flux is wanted
-//   MOST      rays of a voxel to a side of the box around what shines, at most
+//   MOST      rays of a voxel to the box around what shines, at most
 
 #define OPAQUE 80.0f // mean free paths that nothing comes through
 
@@ -10,7 +10,7 @@ typedef struct
   int size[3];
   float spacing[3];
   int source_first[3], source_size[3]; // the box of what shines
-  int fewest;                          // rays of a voxel to a side of it, at first; a power of two, at least 64
+  int fewest;                          // rays of a voxel to it, at first; a power of two, at least 32
   float uneven;                        // difference of two halves of them, to their sum, that will do
 } emission_scene;
 
@@ -149,66 +149,11 @@ static void trace(const emission_scene* s, const lit_voxel* voxel, const real* p
   }
 }
 
-// Rays to a face of the box, along directions from a lattice of points in the voxel that are spread evenly over the solid angle of
-// the face: (u, v) from 0 to 1 stand for the angles' tan(x / 2) and sin.
-//   side    of the box: -x, +x, -y, +y, -z, +z
-//   from    the first ray, of `count`, a multiple of REAL_WIDTH
-//   points  [u, v, x, y, z][MOST]
-//   sums    the mean is added to them, [channel][fluence, net flux along x, y, z]
-static void gather_side(const emission_scene* s, const lit_voxel* voxel, int side, int from, int count, const __global float* points,
-  const __global float* sigma, const __global float* emission, float* sums)
-{
-  const int axis = side / 2;
-  const float ahead = side % 2 != voxel->inside ? -1.0f : 1.0f;
-  real all[CHANNELS * 4];
-  for (int k = 0; k < CHANNELS * 4; ++k)
-  {
-    all[k] = 0.0f;
-  }
-  for (int i = from; i < from + count; i += REAL_WIDTH)
-  {
-    real point[3], low[3], high[3], way[3], radiance[CHANNELS];
-    for (int a = 0; a < 3; ++a)
-    {
-      point[a] = voxel->at[a] + (a == voxel->across ? (real)voxel->up : load_real(i, points + (2 + a) * MOST));
-      low[a] = (s->source_first[a] - point[a]) * s->spacing[a];
-      high[a] = low[a] + s->source_size[a] * s->spacing[a];
-    }
-    const int u = (axis + 1) % 3, v = (axis + 2) % 3;
-    const real away = fmax(fabs(side % 2 ? high[axis] : low[axis]), (real)1e-4f * s->spacing[axis]);
-    const real half_low = low[u] / (away + sqrt(away * away + low[u] * low[u]));
-    const real half_range = high[u] / (away + sqrt(away * away + high[u] * high[u])) - half_low;
-    const real tangent = half_low + half_range * load_real(i, points); // of half the angle
-    const real squared = tangent * tangent;
-    const real across_u = away * (1.0f + squared) / (1.0f - squared); // from the point to the line that v runs along
-    const real sin_low = low[v] * rsqrt(across_u * across_u + low[v] * low[v]);
-    const real sin_range = high[v] * rsqrt(across_u * across_u + high[v] * high[v]) - sin_low;
-    const real sine = sin_low + sin_range * load_real(i, points + MOST);
-    const real solid_angle = half_range * 2.0f / (1.0f + squared) * sin_range;
-    const real cosine = sqrt(fmax(1.0f - sine * sine, (real)1e-12f)); // 0 would be a way past the side
-    way[axis] = ahead * cosine * (1.0f - squared) / (1.0f + squared);
-    way[u] = cosine * 2.0f * tangent / (1.0f + squared);
-    way[v] = sine;
-    trace(s, voxel, point, way, sigma, emission, radiance);
-    for (int c = 0; c < CHANNELS; ++c)
-    {
-      radiance[c] *= solid_angle;
-      all[4 * c] += radiance[c];
-      for (int a = 0; a < 3; ++a)
-      {
-        all[4 * c + 1 + a] -= radiance[c] * way[a];
-      }
-    }
-  }
-  for (int k = 0; k < CHANNELS * 4; ++k)
-  {
-    sums[k] += sum_of(all[k]) / count;
-  }
-}
-
-// Solid angle of each side of the box that light comes through, from the voxel's middle; 0 where it does not.
+// Solid angle of each side of the box that light comes through, from the voxel's middle, but no less than an eighth of the largest: from
+// other points they are larger; 0 where no light comes through.
 static void find_sides(const emission_scene* s, const lit_voxel* voxel, float* solid_angles)
 {
+  float largest = 0.0f;
   for (int side = 0; side < 6; ++side)
   {
     const int axis = side / 2, u = (axis + 1) % 3, v = (axis + 2) % 3;
@@ -224,30 +169,96 @@ static void find_sides(const emission_scene* s, const lit_voxel* voxel, float* s
       const float part = atan(x * y / (away * sqrt(x * x + y * y + away * away)));
       solid_angles[side] += corner == 0 || corner == 3 ? part : -part;
     }
+    largest = fmax(largest, solid_angles[side]);
+  }
+  for (int side = 0; side < 6; ++side)
+  {
+    solid_angles[side] = solid_angles[side] > 0.0f ? fmax(solid_angles[side], 0.125f * largest) : 0.0f;
   }
 }
 
-// Rays from..end - 1 of each side, fewer for sides that are small: half or a quarter of them.
+// values[axis + shift], lane by lane.
+static inline real along(const real* values, integer axis, int shift)
+{
+  const real other = select(values[(2 + shift) % 3], values[(1 + shift) % 3], axis == (integer)1);
+  return select(other, values[shift % 3], axis == (integer)0);
+}
+
+// Rays to the box, along directions from a lattice of points in the voxel that are spread evenly over the solid angles of the box's
+// sides: the first coordinate chooses the side, in proportion to its solid angle; what is left of it and the second, (u, v) from 0 to
+// 1, stand for the angles' tan(x / 2) and sin.
+//   from, end  the rays, a multiple of REAL_WIDTH
+//   points     [u, v, x, y, z][MOST]
+//   sums       their mean, [channel][fluence, net flux along x, y, z]
 static void gather_rays(const emission_scene* s, const lit_voxel* voxel, const float* solid_angles, int from, int end,
   const __global float* points, const __global float* sigma, const __global float* emission, float* sums)
 {
-  float largest = 0.0f;
+  real all[CHANNELS * 4];
+  for (int k = 0; k < CHANNELS * 4; ++k)
+  {
+    all[k] = 0.0f;
+  }
+  float total = 0.0f;
   for (int side = 0; side < 6; ++side)
   {
-    largest = fmax(largest, solid_angles[side]);
+    total += solid_angles[side];
+  }
+  for (int i = from; i < end && total > 0.0f; i += REAL_WIDTH)
+  {
+    const real choice = load_real(i, points) * total;
+    integer axis = 0, high_side = 0;
+    real part = 0.0f, share = 1.0f;
+    float before = 0.0f;
+    for (int side = 0; side < 6; ++side)
+    {
+      const integer chosen = choice >= (real)(solid_angles[side] > 0.0f ? before : 1e30f);
+      axis = select(axis, (integer)(side / 2), chosen);
+      high_side = select(high_side, (integer)(-(side % 2)), chosen);
+      part = select(part, (choice - before) / fmax(solid_angles[side], 1e-30f), chosen);
+      share = select(share, (real)(solid_angles[side] / total), chosen);
+      before += solid_angles[side];
+    }
+    part = clamp(part, (real)0.0f, (real)1.0f);
+    real point[3], low[3], high[3], edge[3], radiance[CHANNELS];
+    for (int a = 0; a < 3; ++a)
+    {
+      point[a] = voxel->at[a] + (a == voxel->across ? (real)voxel->up : load_real(i, points + (2 + a) * MOST));
+      low[a] = (s->source_first[a] - point[a]) * s->spacing[a];
+      high[a] = low[a] + s->source_size[a] * s->spacing[a];
+      edge[a] = s->spacing[a];
+    }
+    const real low_u = along(low, axis, 1), high_u = along(high, axis, 1);
+    const real low_v = along(low, axis, 2), high_v = along(high, axis, 2);
+    const real away = fmax(fabs(select(along(low, axis, 0), along(high, axis, 0), high_side)), 1e-4f * along(edge, axis, 0));
+    const real half_low = low_u / (away + sqrt(away * away + low_u * low_u));
+    const real half_range = high_u / (away + sqrt(away * away + high_u * high_u)) - half_low;
+    const real tangent = half_low + half_range * part; // of half the angle
+    const real squared = tangent * tangent;
+    const real across_u = away * (1.0f + squared) / (1.0f - squared); // from the point to the line that v runs along
+    const real sin_low = low_v * rsqrt(across_u * across_u + low_v * low_v);
+    const real sin_range = high_v * rsqrt(across_u * across_u + high_v * high_v) - sin_low;
+    const real sine = sin_low + sin_range * load_real(i, points + MOST);
+    const real solid_angle = half_range * 2.0f / (1.0f + squared) * sin_range / share;
+    const real cosine = sqrt(fmax(1.0f - sine * sine, (real)1e-12f)); // 0 would be a way past the side
+    const integer ahead = voxel->inside ? high_side : ~high_side;
+    const real forward = cosine * (1.0f - squared) / (1.0f + squared);
+    const real turned[3] = { select(-forward, forward, ahead), cosine * 2.0f * tangent / (1.0f + squared), sine };
+    const integer back = select((integer)0, 3 - axis, axis > (integer)0);
+    const real way[3] = { along(turned, back, 0), along(turned, back, 1), along(turned, back, 2) };
+    trace(s, voxel, point, way, sigma, emission, radiance);
+    for (int c = 0; c < CHANNELS; ++c)
+    {
+      radiance[c] *= solid_angle;
+      all[4 * c] += radiance[c];
+      for (int a = 0; a < 3; ++a)
+      {
+        all[4 * c + 1 + a] -= radiance[c] * way[a];
+      }
+    }
   }
   for (int k = 0; k < CHANNELS * 4; ++k)
   {
-    sums[k] = 0.0f;
-  }
-  for (int side = 0; side < 6; ++side)
-  {
-    const int small = 4.0f * solid_angles[side] < largest ? 4 : 2.0f * solid_angles[side] < largest ? 2 : 1;
-    const int part = min(small, s->fewest / 32); // rays of whole packets
-    if (solid_angles[side] > 0.0f)
-    {
-      gather_side(s, voxel, side, from / part, (end - from) / part, points, sigma, emission, sums);
-    }
+    sums[k] = sum_of(all[k]) / (end - from);
   }
 }
 

@@ -16,10 +16,10 @@ namespace tyndall
 {
 namespace
 {
-constexpr int FewestRays = 64;     ///< of a voxel to a side of the peak's box, at first
-constexpr int MostAtFirst = 1024;  ///< the same where voxels are few, and large
+constexpr int FewestRays = 32;     ///< of a voxel to the peak's box, at first
 constexpr int MostRays = 2048;     ///< the same, at last
-constexpr double AllRays = 0x1p25; ///< at first, about: some seconds
+constexpr double AllRays = 0x1p22; ///< at first, about, for the usual error: a second
+constexpr double UsualError = 0.02;
 
 /// Of a lattice of points in five dimensions, found component by component for 32 to 2048 points. Every 2^n first points, in the
 /// order of their reversed bits, are a lattice of their own.
@@ -59,11 +59,12 @@ std::vector<float> LatticePoints()
 class PeakLight
 {
 public:
-  PeakLight(Device& device, const SweepVolume& volume, int firstChannel, const EmissionPeak& peak)
+  PeakLight(Device& device, const SweepVolume& volume, int firstChannel, const EmissionPeak& peak, double error)
     : TheDevice(device)
     , Volume(volume)
     , FirstChannel(firstChannel)
     , Peak(peak)
+    , Error(error)
   {
   }
 
@@ -101,12 +102,13 @@ private:
       this->Scene.sourceFirst[a] = this->Peak.first[a];
       this->Scene.sourceSize[a] = this->Peak.size[a];
     }
-    this->Scene.fewest = MostAtFirst;
-    while (this->Scene.fewest > FewestRays && this->Scene.fewest * static_cast<double>(grid.VoxelCount()) > AllRays)
+    const double all = AllRays * (UsualError / this->Error) * (UsualError / this->Error);
+    this->Scene.fewest = MostRays;
+    while (this->Scene.fewest > FewestRays && this->Scene.fewest * static_cast<double>(grid.VoxelCount()) > all)
     {
       this->Scene.fewest /= 2;
     }
-    this->Scene.uneven = this->Scene.fewest > FewestRays ? 0.005f : 0.01f;
+    this->Scene.uneven = static_cast<float>(this->Error);
     const std::size_t voxels = this->Peak.emission.size() / 3;
     const auto begin = this->Peak.emission.begin() + this->FirstChannel * voxels;
     const std::vector<float> emission(begin, begin + this->Volume.channels * voxels);
@@ -218,6 +220,7 @@ private:
   const SweepVolume& Volume;
   int FirstChannel;
   const EmissionPeak& Peak;
+  double Error;
   SceneOnDevice Scene = {};
 
   Buffer<float> Points, Emission; ///< as in EmissionRays.cl
@@ -229,9 +232,9 @@ private:
 };
 }
 
-SweepTally DepositEmission(
-  Device& device, const SweepVolume& volume, int firstChannel, const EmissionPeak& peak, const Monitor& monitor)
+SweepTally DepositEmission(Device& device, const SweepVolume& volume, int firstChannel, const EmissionPeak& peak,
+  double error, const Monitor& monitor)
 {
-  return PeakLight(device, volume, firstChannel, peak).Run(monitor);
+  return PeakLight(device, volume, firstChannel, peak, error).Run(monitor);
 }
 }

@@ -33,6 +33,11 @@ void Check(const PropagationSettings& settings)
       "Source is linear and Acceleration is none; the linear source is that of the accelerated solve: choose "
       "Acceleration automatic, or Source constant.");
   }
+  if (!(settings.emissionError >= 0.0))
+  {
+    throw InvalidInput("EmissionError is " + std::to_string(settings.emissionError) +
+      "; it must not be negative: 0 is for no rays of their own, 0.005 for exact light.");
+  }
   if (settings.storedDirections < 1)
   {
     throw InvalidInput("StoredDirections is " + std::to_string(settings.storedDirections) + "; it must be at least 1.");

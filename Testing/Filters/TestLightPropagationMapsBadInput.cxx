@@ -231,6 +231,9 @@ void BadSettings(Refusals& refusals)
   refusals->SetDirectionsPerFace(0);
   refusals.Says("0");
   refusals->SetDirectionsPerFace(4);
+  refusals->SetEmissionError(-0.1);
+  refusals.Says("EmissionError is -0.1");
+  refusals->SetEmissionError(0.02);
   refusals->SetFirstFlightDirections(24);
   refusals.Says("FirstFlightDirections is 24");
   refusals->SetFirstFlightDirections(0);
