@@ -52,12 +52,12 @@ CrossingPattern FindCrossingPattern(const Grid& grid, const DirectionSet& direct
 ///   part = (1 - 2 t / tau) tau_i / (tau_i + tau_j)                              goes on to the voxel beyond at once,
 ///   part = 1 - (t + q) / (tau / 2 + 2 / 3), q = H(t) / sqrt(3) - t (Hopf)       leaves the box,
 /// as from a source there by diffusion (with absorption: the same for exp(-k t)); it counts as power through the face, so none is
-/// lost. t is from the first moment of what lamps' rays lose, see SweepVolume::nearness. Slabs of 32 voxels under beams.
-/// albedo 1: transmittance to 0.4% from optical thickness 0.01 to 1e6.
+/// lost. t is from the first moment of what lamps' rays lose, see SweepVolume::nearness. Slabs of 32 voxels under beams,
+/// albedo 1: transmittance to 0.5% from optical thickness 0.01 to 1e6.
 ///
 /// What lies in vacuum sees of a thick voxel the skin, which need not be as bright as its middle: as a sweep's source such a voxel
 /// shines so that 4 J+ = fluence at the face + 2 J, J the net flux through it by this system. A slab between clear voxels transmits
-/// a beam to 1.5%, but 4% too little where its voxels are 2 mean free paths.
+/// a beam to 2%, but 6% too little where its voxels are 2 mean free paths.
 ///
 /// With `linear` false, D = area (s_L + s_R) / tau, w = 1, m the sweep's fluence: the solution is the sweep's own, with all the
 /// errors of a constant source, only sooner.
