@@ -163,8 +163,8 @@ TEST_F(MediumRayCasterTest, HalvingTheStepQuartersTheError)
     return scene.Seen(this->GetDevice()).radiance;
   };
   const std::vector<float> exact = seenWith(0.05);
-  const double coarse = Distance(exact, seenWith(4.0));
-  const double fine = Distance(exact, seenWith(1.0));
+  const double coarse = LargestDifference(exact, seenWith(4.0));
+  const double fine = LargestDifference(exact, seenWith(1.0));
   const double order = 0.5 * std::log2(coarse / fine);
   std::printf("order of convergence %.2f, error at one voxel a step %.2g of %.2g\n", order, fine,
     static_cast<double>(*std::max_element(exact.begin(), exact.end())));
@@ -224,9 +224,9 @@ TEST_F(MediumRayCasterTest, PacketsOfEveryWidthGiveTheSamePicture)
   {
     scene.settings.packetWidth = width;
     const Picture picture = scene.Seen(this->GetDevice());
-    EXPECT_LT(Distance(best.radiance, picture.radiance), 1e-6) << width;
-    EXPECT_LT(Distance(best.alpha, picture.alpha), 1e-6) << width;
-    EXPECT_LT(Distance(best.depth, picture.depth), 1e-3) << width;
+    EXPECT_LT(LargestDifference(best.radiance, picture.radiance), 1e-6) << width;
+    EXPECT_LT(LargestDifference(best.alpha, picture.alpha), 1e-6) << width;
+    EXPECT_LT(LargestDifference(best.depth, picture.depth), 1e-3) << width;
   }
 }
 
@@ -289,9 +289,9 @@ TEST_F(MediumRayCasterTest, ThinAndThickStepsAgree)
     const Picture thin = scene.Seen(this->GetDevice(), above);
     scene.sigma_a[0] = 50.0f; // at the bottom
     const Picture thick = scene.Seen(this->GetDevice(), above);
-    EXPECT_LT(Distance(thin.alpha, thick.alpha), 1e-6);
-    EXPECT_LT(Distance(thin.radiance, thick.radiance), 2e-6);
-    EXPECT_LT(Distance(thin.depth, thick.depth), 1e-4);
+    EXPECT_LT(LargestDifference(thin.alpha, thick.alpha), 1e-6);
+    EXPECT_LT(LargestDifference(thin.radiance, thick.radiance), 2e-6);
+    EXPECT_LT(LargestDifference(thin.depth, thick.depth), 1e-4);
   }
 }
 
@@ -314,9 +314,9 @@ TEST_F(MediumRayCasterTest, GreyAndColouredExtinctionAgree)
   scene.components = 3;
   scene.sigma_s = scene.sigma_a = colour(scattering, { 1.0, 1.0, 1.0 });
   const Picture same = scene.Seen(this->GetDevice());
-  EXPECT_LT(Distance(grey.radiance, same.radiance), 1e-6);
-  EXPECT_LT(Distance(grey.alpha, same.alpha), 1e-6);
-  EXPECT_LT(Distance(grey.depth, same.depth), 1e-3);
+  EXPECT_LT(LargestDifference(grey.radiance, same.radiance), 1e-6);
+  EXPECT_LT(LargestDifference(grey.alpha, same.alpha), 1e-6);
+  EXPECT_LT(LargestDifference(grey.depth, same.depth), 1e-3);
 
   // Each channel sees its own extinction, as if it were alone.
   scene.sigma_s = scene.sigma_a = colour(scattering, { 0.5, 1.0, 4.0 });
@@ -360,7 +360,7 @@ TEST_F(MediumRayCasterTest, StoppingOpaqueRaysChangesLittle)
   const Picture whole = scene.Seen(this->GetDevice());
   scene.settings.minimumTransmittance = 1e-3;
   const Picture stopped = scene.Seen(this->GetDevice());
-  EXPECT_LT(Distance(whole.radiance, stopped.radiance), 1e-3);
+  EXPECT_LT(LargestDifference(whole.radiance, stopped.radiance), 1e-3);
 }
 
 TEST_F(MediumRayCasterTest, ReportsProgressAndStops)

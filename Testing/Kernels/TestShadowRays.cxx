@@ -66,9 +66,9 @@ TEST_F(ShadowRays, FarLightsOfEveryKindLookAlike)
   const std::vector<float> sun = seenBy(LightType::Directional, 10.0);
   EXPECT_GT(*std::max_element(sun.begin(), sun.end()), 0.1f);
   const double sphere = r * r * 10.0;
-  EXPECT_LT(Distance(sun, seenBy(LightType::Point, 4.0 * Pi * sphere)), 0.01);
-  EXPECT_LT(Distance(sun, seenBy(LightType::Spot, 2.0 * Pi * (1.0 - std::cos(Pi / 180.0)) * sphere)), 0.01);
-  EXPECT_LT(Distance(sun, seenBy(LightType::Rectangle, Pi * sphere)), 0.01);
+  EXPECT_LT(LargestDifference(sun, seenBy(LightType::Point, 4.0 * Pi * sphere)), 0.01);
+  EXPECT_LT(LargestDifference(sun, seenBy(LightType::Spot, 2.0 * Pi * (1.0 - std::cos(Pi / 180.0)) * sphere)), 0.01);
+  EXPECT_LT(LargestDifference(sun, seenBy(LightType::Rectangle, Pi * sphere)), 0.01);
 }
 
 TEST_F(ShadowRays, SpotAndRectangleShineToOneSide)

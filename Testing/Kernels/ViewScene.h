@@ -1,6 +1,7 @@
 #pragma once
 
 #include "DeviceTest.h"
+#include "Difference.h"
 
 #include "Viewing/MediumRayCaster.h"
 
@@ -133,18 +134,6 @@ void ForEveryPixel(const Picture& picture, const Camera& camera, const Check& ch
       check(static_cast<std::size_t>(j) * picture.width + i, RayThrough(camera, picture, i, j));
     }
   }
-}
-
-/// The largest difference of two arrays.
-inline double Distance(const std::vector<float>& a, const std::vector<float>& b)
-{
-  EXPECT_EQ(a.size(), b.size());
-  double largest = 0.0;
-  for (std::size_t i = 0; i < std::min(a.size(), b.size()); ++i)
-  {
-    largest = std::max(largest, std::abs(static_cast<double>(a[i]) - b[i]));
-  }
-  return largest;
 }
 
 inline std::vector<float> Random(std::size_t count, float largest, unsigned seed)
