@@ -130,7 +130,8 @@ public:
 
   ///@{
   /// Relative error, voxel by voxel, of the unscattered light of small bright parts of the medium, which is followed along exact rays
-  /// (sound scheme, no periodic axis). Default 0.02; 0.005 costs some five times as much; 0: they are swept like all else.
+  /// (sound scheme, no periodic axis). Default 0.02; 0.005 costs five to ten times as much, less gains nothing; 0: they are swept like all else, as they are
+  /// where other light has more power.
   vtkSetMacro(EmissionError, double);
   vtkGetMacro(EmissionError, double);
   ///@}

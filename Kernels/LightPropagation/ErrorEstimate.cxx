@@ -126,10 +126,11 @@ LightField SolveWithErrorEstimate(
   PropagationSettings plain = settings;
   plain.netFlux = false;
   plain.storedDirections = 1;
-  const std::vector<float> many = solve(coarse.Get(), plain, part(FinePart, 0.95)).fluence;
   const int directions = light.directionsPerFace > 0 ? light.directionsPerFace : settings.directionsPerFace;
-  plain.directionsPerFace = OtherDirections(directions);
+  plain.directionsPerFace = directions;
   plain.adaptDirections = false;
+  const std::vector<float> many = solve(coarse.Get(), plain, part(FinePart, 0.95)).fluence;
+  plain.directionsPerFace = OtherDirections(directions);
   if (settings.firstFlightDirections > 0)
   {
     plain.firstFlightDirections = OtherDirections(settings.firstFlightDirections);

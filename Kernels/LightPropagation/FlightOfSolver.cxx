@@ -113,28 +113,28 @@ void FusedSolver::AddFlightDifference(const Monitor& monitor)
       usualIn[c] += usual.tally.in[face][c];
       out += fine.tally.out[face][c];
     }
-    const double scale = usualIn[c] > 0.0 ? in[c] / usualIn[c] : 1.0;
-    this->FlightScale[c] = scale;
+    const double scale =
+      in[c] > 0.0 ? usualIn[c] / in[c] : 1.0; // the sweeps' radiance is right, in thick media to their end
     for (std::size_t i = 0; i < this->TheMedium.grid.VoxelCount(); ++i)
     {
       const std::size_t at = c * this->Stride + i;
       const double part = this->PartOfDifference(i, c);
-      const double difference = part * (fine.path[at] - scale * usual.path[at]);
+      const double difference = part * (scale * fine.path[at] - usual.path[at]);
       this->Lamps[at] += static_cast<float>(difference);
       more += this->SigmaT(i, c) * difference;
       for (int a = 0; a < 3 && !flux.empty(); ++a)
       {
         const std::size_t along = (3 * c + a) * this->Stride + i;
-        flux[along] += static_cast<float>(part * (fine.flux[along] - scale * usual.flux[along]));
+        flux[along] += static_cast<float>(part * (scale * fine.flux[along] - usual.flux[along]));
       }
     }
     for (int face = 0; face < 6; ++face)
     {
-      more += fine.tally.out[face][c] - scale * usual.tally.out[face][c];
+      more += scale * fine.tally.out[face][c] - usual.tally.out[face][c];
     }
     for (int face = 0; face < 6 && out > 0.0; ++face)
     {
-      const double leaves = fine.tally.out[face][c] - scale * usual.tally.out[face][c];
+      const double leaves = scale * fine.tally.out[face][c] - usual.tally.out[face][c];
       const double power = leaves - more * fine.tally.out[face][c] / out;
       this->LampFaces[face][c] += power;
       this->LampBalance.escaped[c] += power;

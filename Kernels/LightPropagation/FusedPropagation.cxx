@@ -170,7 +170,8 @@ template <class Loader>
 void FusedSolver::LoadEmission(const Loader& load)
 {
   const std::array<bool, 3>& periodic = this->Settings.periodic;
-  if (this->Settings.emissionError > 0.0 && !(periodic[0] || periodic[1] || periodic[2])) // of whose images there is no end
+  if (this->Settings.emissionError > 0.0 &&
+    !(periodic[0] || periodic[1] || periodic[2])) // of whose images there is no end
   {
     this->Emission = Split(this->TheMedium);
     if (!this->PeaksOutshineOthers())
@@ -322,7 +323,7 @@ Rgb FusedSolver::Incoming(int direction, int face) const
     const Rgb rest = this->UsualFlight ? this->UsualFlight->Incoming(direction, face) : Rgb{};
     for (int c = 0; c < 3; ++c)
     {
-      radiance[c] += this->FlightScale[c] * rest[c];
+      radiance[c] += rest[c];
     }
     return radiance;
   }
@@ -415,7 +416,8 @@ void FusedSolver::PropagatePeaks(const Monitor& monitor)
   for (const EmissionPeak& peak : this->Emission.peaks)
   {
     this->ForChannels([&](const SweepVolume& volume, int first) {
-      this->Count(DepositEmission(this->TheDevice, volume, first, peak, this->Settings.emissionError, monitor), first, volume.channels);
+      this->Count(DepositEmission(this->TheDevice, volume, first, peak, this->Settings.emissionError, monitor), first,
+        volume.channels);
     });
   }
 }

@@ -185,7 +185,6 @@ private:
   std::optional<FirstFlight> Flight;
   std::optional<FirstFlight>
     UsualFlight; ///< accelerated: the same light along the usual directions, as the sweeps carry it
-  Rgb FlightScale = { 1.0, 1.0, 1.0 }; ///< of that, so that as much power comes in
 
   LightField Result;
   std::chrono::steady_clock::time_point Start;

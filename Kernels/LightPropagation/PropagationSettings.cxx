@@ -36,7 +36,7 @@ void Check(const PropagationSettings& settings)
   if (!(settings.emissionError >= 0.0))
   {
     throw InvalidInput("EmissionError is " + std::to_string(settings.emissionError) +
-      "; it must not be negative: 0 is for no rays of their own, 0.005 for exact light.");
+      "; it must not be negative: 0 is for no rays of their own, 0.02 is usual, 0.005 accurate.");
   }
   if (settings.storedDirections < 1)
   {

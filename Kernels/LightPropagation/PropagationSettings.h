@@ -39,7 +39,8 @@ struct PropagationSettings
   PropagationAcceleration acceleration = PropagationAcceleration::Automatic; ///< not where maximumOrders is given
   bool netFlux = false;                                                      ///< compute net_flux too: it costs
   /// Relative error, voxel by voxel, of the unscattered light of small bright parts of the medium, which is followed along exact rays
-  /// (EmissionRays.h); 0.005 costs some five times as much; 0: not followed
+  /// (EmissionRays.h), about: a twentieth of the voxels may be off by more; 0.005 costs five to ten times as much, and less than that
+  /// gains nothing; 0: not followed
   double emissionError = 0.02;
   bool leaveOut = true; ///< what the scene does not need; false: all is computed, to see what leaving out saves
 };

@@ -72,7 +72,8 @@ void FusedSolver::CheckEntering(const Rgb& entered, const Rgb& expected) const
         "% of the light that shines through the box's faces: too few of them meet the faces that shine, for voxels "
         "of " +
         Text("%g", grid.spacing[0]) + " x " + Text("%g", grid.spacing[1]) + " x " + Text("%g", grid.spacing[2]) +
-        " are too unequal. Resample to voxels of more equal edges, or raise MapResolution.");
+        " are too unequal, or directions too few. Resample to voxels of more equal edges, or raise MapResolution, "
+        "DirectionsPerFace or FirstFlightDirections.");
     }
   }
 }

@@ -35,12 +35,12 @@ Grid UnvaryingAxes::Widened(const Grid& grid) const
   double width = 0.0;
   for (int axis = 0; axis < 3; ++axis)
   {
-    width = std::max(width, (this->Single[axis] ? 1.0 : Width) * grid.spacing[axis]);
+    width = std::max(width, this->Single[axis] ? 0.0 : Width * grid.spacing[axis]);
   }
   Grid wide = grid;
   for (int axis = 0; axis < 3; ++axis)
   {
-    wide.spacing[axis] = this->Single[axis] ? width : grid.spacing[axis];
+    wide.spacing[axis] = this->Single[axis] && width > 0.0 ? width : grid.spacing[axis];
   }
   return wide;
 }

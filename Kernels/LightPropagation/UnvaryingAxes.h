@@ -17,8 +17,8 @@ public:
 
   bool IsSlab() const { return this->Single[0] + this->Single[1] + this->Single[2] == 2; }
 
-  /// The grid with voxels along these axes as wide as makes no difference to light but saves most of the times that rays would go
-  /// round them: ten edges of the other axes.
+  /// The grid with voxels along these axes ten edges of the other axes wide. It makes no difference to light; narrower ones rays would
+  /// go round many times, and wider ones take more sweeps.
   Grid Widened(const Grid& grid) const;
 
 private:

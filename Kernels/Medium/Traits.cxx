@@ -246,8 +246,8 @@ const char* const Isotropic = "anisotropy: light is scattered evenly";
 const char* const ConstantIndex = "refraction: the refractive index is constant, rays are straight";
 const char* const EmptyBricks = "empty bricks: rays leap over 8x8x8 voxels that are empty";
 const char* const NoLights = "first-collision source: there are no lights";
-const char* const NoEmissionPeaks =
-  "first-collision source of emission: no small bright part stands out, or an axis is periodic";
+const char* const NoEmissionPeaks = "first-collision source of emission: no small bright part outshines all else, or "
+                                    "an axis is periodic, or EmissionError is 0";
 const char* const DarkOutside = "boundary radiance: no environment, sky or face shines";
 const char* const EvenOutside =
   "first flight: what comes from outside is the same from everywhere and goes with scattered light";
@@ -273,7 +273,7 @@ std::string MirrorImages(int classes, int directions)
 
 std::string DirectionsAlongSlab(int perFace)
 {
-  return "directions along the slab, whose light would never leave: solved with " + std::to_string(perFace) + " a face";
+  return "directions too few for a slab, or along it: solved with " + std::to_string(perFace) + " a face";
 }
 }
 }

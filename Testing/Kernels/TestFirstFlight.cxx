@@ -272,3 +272,16 @@ TEST_F(FirstFlight, RefusesANumberThatIsNoSquare)
     }
   }
 }
+
+TEST_F(FirstFlight, LeavesThickCubesAsTheyAre)
+{
+  // Albedo 1, one face shines: 1/6 in the middle. Without a flight 0.1%; with one 0.5% at most, at 10 mean free paths.
+  for (double tau : { 10.0, 100.0, 1e4 })
+  {
+    Scene scene({ 31, 31, 31 }, 0.0f, static_cast<float>(tau / 31.0));
+    scene.light.faces[4] = { 1.0, 1.0, 1.0 };
+    scene.settings.firstFlightDirections = 400;
+    const LightField light = scene.Solve(this->GetDevice());
+    EXPECT_NEAR(light.fluence[(15 * 31 + 15) * 31 + 15] / (4.0 * 3.14159265358979323846) * 6.0, 1.0, 0.006) << tau;
+  }
+}

@@ -176,6 +176,26 @@ TEST_F(LinearSource, SlabsAreRightAsSettingsAreByDefault)
   }
 }
 
+TEST_F(LinearSource, SlabsAreTheSameHoweverWideTheirVoxelsAre)
+{
+  for (double tau : { 1.0, 10.0 })
+  {
+    LightField usual;
+    for (double width : { 1.0, 1e-3, 32.0, 1e3 })
+    {
+      Scene scene({ 1, 1, 32 }, 0.0f, static_cast<float>(tau / 32.0));
+      scene.medium.grid.spacing = { width, width, 1.0 };
+      scene.settings.periodic = { true, true, false };
+      scene.light.faces[4] = { 1.0, 1.0, 1.0 };
+      const LightField light = scene.Solve(this->GetDevice());
+      usual = width == 1.0 ? light : usual;
+      EXPECT_EQ(light.fluence, usual.fluence) << width;
+      EXPECT_EQ(light.convergence.size(), usual.convergence.size());
+      EXPECT_NEAR(light.balance.entered[0] / (width * width * usual.balance.entered[0]), 1.0, 1e-9) << width;
+    }
+  }
+}
+
 TEST_F(LinearSource, TransmitsBeamsAsSlabsDoHoweverThickVoxelsAre)
 {
   // Albedo 1, beams at cosine 1 and 0.5: slab.csv; between and beyond its rows the diffusion limit H(mu) / sqrt(3) / (tau + 1.4208922)
