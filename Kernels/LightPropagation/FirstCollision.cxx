@@ -78,7 +78,7 @@ SweepTally DepositBeam(Device& device, const SweepVolume& volume, const Light& l
     own.path = &path;
     own.entering = &entering;
   }
-  AxisSweep beam(device, own, axis, BeamAlong(axis, volume.grid, omega, RaysPerEdge), periodic, workspace);
+  AxisSweep beam(device, own, axis, BeamAlong(axis, volume.grid, periodic, omega, RaysPerEdge), periodic, workspace);
   beam.Start(
     own, [&](int, int) { return light.power; }, false, ManyPlanes, monitor);
   const SweepTally tally = beam.Finish();

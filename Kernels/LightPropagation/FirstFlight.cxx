@@ -143,7 +143,8 @@ bool FirstFlight::IsLit(int direction) const
 std::vector<Bundle> FirstFlight::LitBundles(int axis, int way) const
 {
   std::vector<Bundle> bundles =
-    BundlesAlong(axis, this->TheGrid, this->Directions, this->Settings.mapResolution, this->Starts);
+    BundlesAlong(axis, this->TheGrid, this->Settings.periodic, this->Directions, this->Settings.mapResolution,
+      this->Starts);
   if (this->MergesMirrors)
   {
     bundles = this->Mirrors.Standing(bundles);

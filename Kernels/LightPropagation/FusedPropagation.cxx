@@ -225,7 +225,8 @@ void FusedSolver::FindOutsideLight()
 std::vector<Bundle> FusedSolver::BundlesOf(int axis) const
 {
   const std::vector<Bundle> bundles =
-    BundlesAlong(axis, this->TheMedium.grid, this->Directions, this->Settings.mapResolution, this->Starts());
+    BundlesAlong(axis, this->TheMedium.grid, this->Settings.periodic, this->Directions, this->Settings.mapResolution,
+      this->Starts());
   return this->MergesMirrors() ? this->Mirrors.Standing(bundles) : bundles;
 }
 

@@ -65,7 +65,7 @@ std::vector<double> CrossingsIn(
   const int planes = grid.size[marching];
   const bool isU = AcrossAxis(marching).u == axis;
   std::vector<double> power(planes, 0.0);
-  for (const Bundle& bundle : BundlesAlong(marching, grid, set, mapResolution, starts))
+  for (const Bundle& bundle : BundlesAlong(marching, grid, {}, set, mapResolution, starts))
   {
     for (int k = 0; k < planes; ++k)
     {
@@ -79,8 +79,9 @@ std::vector<double> CrossingsIn(
           const int move = fromU * crossing.segments[s].moveU + fromV * crossing.segments[s].moveV;
           if (move > 0)
           {
-            power[k] += bundle.power / FaceArea(grid, axis);
-            power[planes - 1 - k] += bundle.power / FaceArea(grid, axis);
+            const double crosses = crossing.segments[s].part * bundle.power / FaceArea(grid, axis);
+            power[k] += crosses;
+            power[planes - 1 - k] += crosses;
           }
         }
       }

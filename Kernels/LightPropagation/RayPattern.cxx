@@ -9,6 +9,8 @@ namespace
 {
 /// Positions closer than this to a voxel's border lie on it: rounding must not decide which way a tie goes.
 constexpr double OnBorder = 1e-9;
+/// Fewer planes of a periodic axis are crossed several times before its pattern begins anew.
+constexpr int FewestPlanes = 128;
 
 /// A coordinate as whole voxels and the rest in [0, 1).
 struct Position
@@ -118,12 +120,89 @@ void Stagger(std::vector<Bundle>& bundles)
   }
 }
 
-/// Each bundle once for every point of the map's finer lattice.
-std::vector<Bundle> OnLattice(const std::vector<Bundle>& bundles, int mapResolution)
+/// The moves of rays that start at `start` and move by `tangent` voxels a plane.
+std::vector<Move> WholeMoves(double start, double tangent, int planes)
+{
+  std::vector<Move> moves(planes);
+  for (int k = 0; k < planes; ++k)
+  {
+    moves[k].depth = CrossingDepth(start, tangent, k);
+  }
+  return moves;
+}
+
+bool IsMove(const Move& move)
+{
+  return move.depth <= 1.0;
+}
+
+/// Add a move in a plane; those that are in its way come a plane earlier, just at its end.
+void Insert(std::vector<Move>& moves, int plane, Move move)
+{
+  while (plane >= 0 && IsMove(moves[plane]))
+  {
+    std::swap(moves[plane], move);
+    move.depth = 1.0;
+    --plane;
+  }
+  if (plane >= 0)
+  {
+    moves[plane] = move;
+    return;
+  }
+  // All planes before have one: the last of these goes to the first plane that has none.
+  const auto free = std::find_if_not(moves.begin(), moves.end(), IsMove);
+  if (free != moves.end())
+  {
+    std::rotate(moves.begin(), free, free + 1);
+    moves.front() = move;
+  }
+}
+
+/// How far rays have come after the last plane, in voxels.
+double EndOf(double start, double tangent, int planes)
+{
+  return start + tangent * planes;
+}
+
+/// The moves along one axis of rays that start at `parts` points of a voxel, (i + start) / parts. All of them together move
+/// `parts` x tangent x planes times: the ray that has just moved, or is next to, makes up for what whole moves miss.
+std::vector<std::vector<Move>> MovesOfLattice(double start, double tangent, int planes, int parts)
+{
+  std::vector<std::vector<Move>> moves;
+  double missing = parts * tangent * planes;
+  int latest = 0, next = 0; // of the points, to have moved and to move
+  const auto rest = [&](int i) { return Position(EndOf((i + start) / parts, tangent, planes)).rest; };
+  for (int i = 0; i < parts; ++i)
+  {
+    moves.push_back(WholeMoves((i + start) / parts, tangent, planes));
+    missing -= static_cast<double>(std::count_if(moves[i].begin(), moves[i].end(), IsMove));
+    latest = rest(i) < rest(latest) ? i : latest;
+    next = rest(i) > rest(next) ? i : next;
+  }
+  if (missing < -OnBorder)
+  {
+    const auto last = std::find_if(moves[latest].rbegin(), moves[latest].rend(), IsMove);
+    last->part += missing;
+  }
+  else if (missing > OnBorder)
+  {
+    // As the middle of the power that would still come in.
+    const double at = std::max(0.0, planes - 0.5 * missing / (parts * tangent));
+    const int plane = std::min(static_cast<int>(at), planes - 1);
+    Insert(moves[next], plane, { at - plane, missing });
+  }
+  return moves;
+}
+
+/// Each bundle once for every point of the map's finer lattice, with its moves.
+std::vector<Bundle> OnLattice(const std::vector<Bundle>& bundles, int mapResolution, int planes)
 {
   std::vector<Bundle> all;
   for (const Bundle& bundle : bundles)
   {
+    const auto movesU = MovesOfLattice(bundle.startU, bundle.tangentU, planes, mapResolution);
+    const auto movesV = MovesOfLattice(bundle.startV, bundle.tangentV, planes, mapResolution);
     for (int j = 0; j < mapResolution; ++j)
     {
       for (int i = 0; i < mapResolution; ++i)
@@ -131,6 +210,8 @@ std::vector<Bundle> OnLattice(const std::vector<Bundle>& bundles, int mapResolut
         Bundle shifted = bundle;
         shifted.startU = (i + bundle.startU) / mapResolution;
         shifted.startV = (j + bundle.startV) / mapResolution;
+        shifted.movesU = movesU[i];
+        shifted.movesV = movesV[j];
         shifted.power /= static_cast<double>(mapResolution) * mapResolution;
         all.push_back(shifted);
       }
@@ -140,38 +221,48 @@ std::vector<Bundle> OnLattice(const std::vector<Bundle>& bundles, int mapResolut
 }
 }
 
+bool Bundle::MovesBothWaysAtOnce() const
+{
+  return Same(this->tangentU, this->tangentV) && Same(this->startU, this->startV);
+}
+
+/// Moves at the same time are one where nothing tells the axes apart, else the one of the larger tangent comes first: whatever
+/// way the bundle lies.
 PlaneCrossing Bundle::Crossing(int plane) const
 {
-  const double u = CrossingDepth(this->startU, this->tangentU, plane);
-  const double v = CrossingDepth(this->startV, this->tangentV, plane);
-  const bool together = std::abs(u - v) < OnBorder;
+  const std::size_t at = static_cast<std::size_t>(plane) % this->movesU.size();
+  const Move& u = this->movesU[at];
+  const Move& v = this->movesV[at];
+  const bool tie = std::abs(u.depth - v.depth) < OnBorder;
+  const bool uFirst = tie ? this->tangentU > this->tangentV : u.depth < v.depth;
   PlaneCrossing crossing;
   double depth = 0.0;
-  const auto cross = [&](double at, int moveU, int moveV) {
-    crossing.segments[crossing.count - 1].length = std::max(0.0, at - depth) * this->length;
-    crossing.segments[crossing.count] = { moveU, moveV, 0.0 };
+  const auto cross = [&](const Move& move, int moveU, int moveV) {
+    if (!IsMove(move))
+    {
+      return;
+    }
+    crossing.segments[crossing.count - 1].length = std::max(0.0, move.depth - depth) * this->length;
+    crossing.segments[crossing.count] = { moveU, moveV, move.part, 0.0 };
     ++crossing.count;
-    depth = at;
+    depth = move.depth;
   };
-  if (together && u <= 1.0)
+  if (this->MovesBothWaysAtOnce())
   {
     cross(u, 1, 1);
   }
   else
   {
-    const double first = std::min(u, v);
-    const double second = std::max(u, v);
-    if (first <= 1.0)
-    {
-      cross(first, u < v ? 1 : 0, u < v ? 0 : 1);
-    }
-    if (second <= 1.0)
-    {
-      cross(second, u < v ? 0 : 1, u < v ? 1 : 0);
-    }
+    cross(uFirst ? u : v, uFirst ? 1 : 0, uFirst ? 0 : 1);
+    cross(uFirst ? v : u, uFirst ? 0 : 1, uFirst ? 1 : 0);
   }
   crossing.segments[crossing.count - 1].length = std::max(0.0, 1.0 - depth) * this->length;
   return crossing;
+}
+
+int PlanesOfPattern(int size, bool periodic)
+{
+  return periodic ? (FewestPlanes + size - 1) / size * size : size;
 }
 
 PlaneAxes AcrossAxis(int axis)
@@ -192,8 +283,8 @@ int MarchingAxis(const Grid& grid, const std::array<double, 3>& omega)
   return axis;
 }
 
-std::vector<Bundle> BundlesAlong(
-  int axis, const Grid& grid, const DirectionSet& set, int mapResolution, RayStarts starts)
+std::vector<Bundle> BundlesAlong(int axis, const Grid& grid, const std::array<bool, 3>& periodic,
+  const DirectionSet& set, int mapResolution, RayStarts starts)
 {
   const PlaneAxes axes = AcrossAxis(axis);
   std::vector<Bundle> bundles;
@@ -209,15 +300,16 @@ std::vector<Bundle> BundlesAlong(
   {
     Stagger(bundles);
   }
-  return OnLattice(bundles, mapResolution);
+  return OnLattice(bundles, mapResolution, PlanesOfPattern(grid.size[axis], periodic[axis]));
 }
 
-std::vector<Bundle> BeamAlong(int axis, const Grid& grid, const std::array<double, 3>& omega, int mapResolution)
+std::vector<Bundle> BeamAlong(int axis, const Grid& grid, const std::array<bool, 3>& periodic,
+  const std::array<double, 3>& omega, int mapResolution)
 {
   const PlaneAxes axes = AcrossAxis(axis);
   Bundle beam = EmptyBundle(axes, grid, omega);
   const bool forward = omega[axis] > 0.0;
   beam.members.push_back({ forward ? 0 : -1, forward ? -1 : 0, Sign(omega[axes.u]), 0, 0, Sign(omega[axes.v]) });
-  return OnLattice({ beam }, mapResolution);
+  return OnLattice({ beam }, mapResolution, PlanesOfPattern(grid.size[axis], periodic[axis]));
 }
 }

@@ -15,12 +15,18 @@ namespace tyndall
 /// they cross every plane in the same pattern: at most three voxels, one shift of the whole map. Directions that are
 /// mirror images of each other (and, where voxels are square across the axis, those with both tangents swapped) share
 /// the lengths of all segments: they make a Bundle, and transmittance is computed once for it.
+///
+/// Rays that move aside by a voxel enter through a side of the box, and others leave on the far side. Over n planes that is
+/// tangent x n moves, which need not be a whole number. So that neither more nor less power enters than a direction
+/// carries, one move of the pattern is made by a part of each ray's power only; the rest stays in its voxel. What is even
+/// stays even, and nothing is lost.
 
 /// The part of a plane that a ray crosses in one voxel.
 struct Segment
 {
   int moveU = 0; ///< voxels moved since the segment before, in the bundle's own frame (both tangents positive): 0 or 1
   int moveV = 0;
+  double part = 1.0;   ///< of each ray's power that moves; the rest stays
   double length = 0.0; ///< along the ray, in the dataset's unit
 };
 
@@ -39,6 +45,13 @@ struct Member
   int uFromU = 1, uFromV = 0, vFromU = 0, vFromV = 1; ///< a signed permutation
 };
 
+/// A move aside by one voxel within a plane.
+struct Move
+{
+  double depth = 2.0; ///< where, 0 the plane's entry, 1 its exit; above 1: there is none
+  double part = 1.0;  ///< of each ray's power
+};
+
 struct Bundle
 {
   double tangentU = 0.0; ///< voxels moved per plane, 0 <= tangent <= 1
@@ -47,10 +60,18 @@ struct Bundle
   double startV = 0.5;
   double length = 1.0;         ///< of a ray within one plane
   double power = 1.0;          ///< that a ray carries at radiance 1: weight |cos| area, length^2 sr
-  std::vector<Member> members; ///< 1, 2, 4 or 8
+  std::vector<Move> movesU, movesV; ///< by plane of the pattern, from where rays start
+  std::vector<Member> members;
 
-  PlaneCrossing Crossing(int plane) const; ///< planes are counted from where the rays start, without end
+  /// Planes are counted from where the rays start; behind the last one the pattern begins anew.
+  PlaneCrossing Crossing(int plane) const;
+  /// All moves are along both axes at once: tangents and starts are equal.
+  bool MovesBothWaysAtOnce() const;
 };
+
+/// Planes after which a pattern along an axis of `size` voxels begins anew: as many as there are, or several times those of
+/// a short periodic axis, where rays go round.
+int PlanesOfPattern(int size, bool periodic);
 
 /// The axes of a plane across `axis`: u runs along rows in memory.
 struct PlaneAxes
@@ -71,10 +92,11 @@ enum class RayStarts
 };
 
 /// The bundles that march along `axis`, both ways, with mapResolution x mapResolution rays a voxel and direction.
-std::vector<Bundle> BundlesAlong(
-  int axis, const Grid& grid, const DirectionSet& set, int mapResolution, RayStarts starts = RayStarts::Middle);
+std::vector<Bundle> BundlesAlong(int axis, const Grid& grid, const std::array<bool, 3>& periodic,
+  const DirectionSet& set, int mapResolution, RayStarts starts = RayStarts::Middle);
 
 /// Rays of one collimated beam: a bundle with one member for each of the mapResolution^2 lattices. Its `direction` is 0
 /// where the beam runs forward along the axis, else `opposite` is 0; the other is -1. Power is that of irradiance 1.
-std::vector<Bundle> BeamAlong(int axis, const Grid& grid, const std::array<double, 3>& omega, int mapResolution);
+std::vector<Bundle> BeamAlong(int axis, const Grid& grid, const std::array<bool, 3>& periodic,
+  const std::array<double, 3>& omega, int mapResolution);
 }

@@ -351,7 +351,8 @@ __kernel __attribute__((reqd_work_group_size(1, 1, 1))) void sweep(const __globa
   state.sizeV = layout.sizeV;
   state.width = layout.width;
   state.ring = scratch + unit.scratch;
-  __global float* planes = state.ring + 2 * RING_ROWS * MAX_MEMBERS * CHANNELS * ROW + PAD; // past the last row's border
+  state.moving = state.ring + 2 * RING_ROWS * MAX_MEMBERS * CHANNELS * ROW;
+  __global float* planes = state.moving + MAX_MEMBERS * CHANNELS * ROW + PAD; // past the last row's border
   __global int* thin = (__global int*)(planes + layout.block * PLANES * rows);
   for (int i = 0; i < MEAN_LENGTH_TERMS; ++i)
   {
@@ -368,7 +369,7 @@ __kernel __attribute__((reqd_work_group_size(1, 1, 1))) void sweep(const __globa
   radiance += unit.backward * radiance_each_way;
 
 #if !BORDER
-  clear(state.ring, 2 * RING_ROWS * MAX_MEMBERS * CHANNELS * ROW + PAD);
+  clear(state.ring, (2 * RING_ROWS + 1) * MAX_MEMBERS * CHANNELS * ROW + PAD);
 #endif
   if (empty && range.x == 0 && range.y > 0)
   {

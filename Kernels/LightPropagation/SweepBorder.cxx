@@ -41,16 +41,15 @@ SweepBorder::Moves SweepBorder::MovesOf(const Bundle& bundle) const
     const PlaneCrossing crossing = bundle.Crossing(k);
     for (int s = 1; s < crossing.count; ++s)
     {
-      moves.u += crossing.segments[s].moveU;
-      moves.v += crossing.segments[s].moveV;
-      moves.both += crossing.segments[s].moveU * crossing.segments[s].moveV;
+      moves.u += crossing.segments[s].part * crossing.segments[s].moveU;
+      moves.v += crossing.segments[s].part * crossing.segments[s].moveV;
     }
   }
   return moves;
 }
 
-/// Rays come in where they start, and where others left: one a row for each move along u, one a column for each move along v. A
-/// ray that moves both ways at once through the corner of a plane comes in through u's face.
+/// Rays come in where they start, and where others left: one a row for each move along u, one a column for each move along v.
+/// Of those that move both ways at once half come in through u's face where the plane has its corner, half through v's.
 void SweepBorder::EnterMember(std::size_t b, int way, int m, const Moves& moves)
 {
   const Bundle& bundle = this->Plan.bundles[b];
@@ -68,7 +67,6 @@ void SweepBorder::EnterMember(std::size_t b, int way, int m, const Moves& moves)
   const Rgb fromV = this->PowerOfRay(bundle, direction, faceV);
   const Rgb fromP = this->PowerOfRay(bundle, direction, faceP);
   const bool swapped = member.uFromU == 0;
-  const bool open = !this->Plan.periodic[axes.u] && !this->Plan.periodic[axes.v];
   const double sizeU = this->Plan.plane.sizeU;
   const double sizeV = this->Plan.plane.sizeV;
   for (int c = 0; c < this->Plan.channels; ++c)
@@ -80,7 +78,6 @@ void SweepBorder::EnterMember(std::size_t b, int way, int m, const Moves& moves)
     this->powerIn[faceP][c] += p * sizeU * sizeV;
     this->powerIn[faceU][c] += (swapped ? moves.v : moves.u) * sizeV * u;
     this->powerIn[faceV][c] += (swapped ? moves.u : moves.v) * sizeU * v;
-    this->powerIn[faceV][c] -= open ? moves.both * v : 0.0; // the corner is one voxel
   }
 }
 
@@ -108,11 +105,17 @@ void SweepBorder::Write(std::size_t b, int way, int slot, float fromU, float fro
     std::fill(map, map + this->Plan.plane.sizeU, fromP);
     std::fill(map + this->Plan.plane.sizeU, map + width, fromU);
   }
-  // The columns beside it go on waiting there for a move along u, as those of the map do.
-  const float beside = this->Plan.periodic[this->Plan.axes.u] ? fromV : fromU;
+  // The columns beside it go on waiting there for a move along u, as those of the map do. What moves both ways at once comes
+  // from the next ones.
+  const bool periodicU = this->Plan.periodic[this->Plan.axes.u];
+  const float beside = periodicU ? fromV : fromU;
   float* beyond = this->outside.data() + way * this->Plan.outsideEachWay + bundle.outside + inBlock;
   std::fill(beyond - 1, beyond + width + 1, beside);
   std::fill(beyond, beyond + this->Plan.plane.sizeU, fromV);
+  if (!periodicU && this->Plan.bundles[b].MovesBothWaysAtOnce())
+  {
+    beyond[-1] = beyond[this->Plan.plane.sizeU] = 0.5f * (fromU + fromV);
+  }
   this->radiance[way * this->Plan.radianceEachWay + bundle.border + slot] = fromU;
 }
 }

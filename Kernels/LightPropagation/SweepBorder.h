@@ -25,7 +25,7 @@ private:
   /// Voxels that a bundle's rays move aside over all planes, in its own frame.
   struct Moves
   {
-    double u = 0.0, v = 0.0, both = 0.0; ///< both: at once
+    double u = 0.0, v = 0.0;
   };
   Moves MovesOf(const Bundle& bundle) const;
   void EnterMember(std::size_t bundle, int way, int member, const Moves& moves);

@@ -11,6 +11,7 @@
 #define FILL_BORDER NAME_OF(fill_border_, MEMBERS)
 #define CROSS_PLANE NAME_OF(cross_plane_, MEMBERS)
 #define COUNT_ENTERING NAME_OF(count_entering_, MEMBERS)
+#define MOVE_PART NAME_OF(move_part_, MEMBERS)
 #define BLOCK (MEMBERS * CHANNELS * ROW)
 #define FIRST(member, channel) (((member) * CHANNELS + (channel)) * ROW + PAD)
 
@@ -143,27 +144,53 @@ static void STAGE_ROW(sweep_state* state, int y, bool deposit, const __global fl
 #endif
 }
 
-// Power of the rays that leave row y of `row` by a move of (du, dv), through u first.
-static void COUNT_ESCAPED(sweep_state* state, const __global float* row, int y, int m, int du, int dv)
+// Power of the rays that leave row y of `row` by a move of (du, dv), of which `part` moves. Rays that move both ways at once go
+// through u first and through v first in equal parts: half of those in the box's edge leave through each of its faces, and half of
+// what comes in beside it goes straight through.
+// across_u, across_v  rays that come in through the faces across u and v, at [FIRST(m, c)] of the row and at [m][c]
+static void COUNT_ESCAPED(sweep_state* state, const __global float* row, int y, int m, int du, int dv, float part,
+  const __global float* across_u, const __global float* across_v)
 {
   const bool through_v = !PERIODIC_V && ((dv < 0 && y == 0) || (dv > 0 && y == state->sizeV - 1));
   const bool through_u = !PERIODIC_U && du != 0;
-  const int last = state->sizeU - 1;
+  const int edge = du > 0 ? state->sizeU - 1 : 0;
   for (int c = 0; c < CHANNELS; ++c)
   {
     const __global float* rays = row + FIRST(m, c);
+    const float turned = through_u && through_v ? 0.5f : 0.0f;
     if (through_u)
     {
       const int side = du > 0 ? 1 : 0;
-      add_exactly(&state->escaped[side][c], &state->rounding[side][c], rays[du > 0 ? last : 0]);
+      const float beyond = across_v[FIRST(m, c)];
+      add_exactly(&state->escaped[side][c], &state->rounding[side][c], part * (rays[edge] - turned * (rays[edge] - beyond)));
     }
     if (through_v)
     {
       const int side = dv > 0 ? 3 : 2;
-      const int begin = through_u && du < 0 ? 1 : 0;
-      const int count = through_u ? last : last + 1;
-      add_exactly(&state->escaped[side][c], &state->rounding[side][c], sum_of_row(rays + begin, count));
+      const float beyond = across_u[m * CHANNELS + c];
+      const float all = sum_of_row(rays, state->sizeU);
+      add_exactly(&state->escaped[side][c], &state->rounding[side][c], part * (all - turned * (rays[edge] - beyond)));
     }
+  }
+}
+
+// Rays of a row of which a part moves: `in` is where they come from, `own` the row itself.
+static void MOVE_PART(sweep_state* state, float part, const __global float* own, const __global float** in)
+{
+  for (int m = 0; m < MEMBERS; ++m)
+  {
+    for (int c = 0; c < CHANNELS; ++c)
+    {
+      const __global float* stay = own + FIRST(m, c);
+      const __global float* come = in[m] + c * ROW;
+      __global float* out = state->moving + FIRST(m, c);
+      for (int x = 0; x < state->width; x += REAL_WIDTH)
+      {
+        const real stays = load_real(x, stay);
+        store_real(multiply_add(load_real(x, come) - stays, (real)part, stays), x, out);
+      }
+    }
+    in[m] = state->moving + FIRST(m, 0);
   }
 }
 
@@ -186,7 +213,7 @@ static void FILL_BORDER(sweep_state* state, const __global float* radiance)
 #if ENTERING
 // The rays of row y by the face they come through, see SweepEntering.cl.
 static void COUNT_ENTERING(sweep_state* state, int y, bool first, const __global float** in,
-  const __global bundle_info* bundle, int moveU, int moveV)
+  const __global bundle_info* bundle, int moveU, int moveV, float part)
 {
   for (int m = 0; m < MEMBERS; ++m)
   {
@@ -199,15 +226,15 @@ static void COUNT_ENTERING(sweep_state* state, int y, bool first, const __global
     const int dv = bundle->move[m][2] * moveU + bundle->move[m][3] * moveV;
     if (du != 0 && dv != 0)
     {
-      add_through_edge(state, y, du, dv, in[m]);
+      add_through_edge(state, y, du, dv, in[m], part);
     }
     else if (du != 0)
     {
-      add_entering(state, y, du > 0 ? ENTERING_LOW_U : ENTERING_HIGH_U, in[m], 1.0f);
+      add_entering(state, y, du > 0 ? ENTERING_LOW_U : ENTERING_HIGH_U, in[m], part);
     }
     else
     {
-      add_entering(state, y, dv > 0 ? ENTERING_LOW_V : ENTERING_HIGH_V, in[m], 1.0f);
+      add_entering(state, y, dv > 0 ? ENTERING_LOW_V : ENTERING_HIGH_V, in[m], part);
     }
   }
 }
@@ -251,6 +278,7 @@ static void CROSS_PLANE(sweep_state* state, __global float* map, const __global 
       }
       const bool inside = y >= 0 && y < height;
       const int wrapped = inside ? y : (y % height + height) % height;
+      const float part = crossing->part[s];
       const __global float* in[MEMBERS];
 #pragma unroll
       for (int m = 0; m < MEMBERS; ++m)
@@ -269,7 +297,8 @@ static void CROSS_PLANE(sweep_state* state, __global float* map, const __global 
           row = ring + (from & (RING_ROWS - 1)) * (MAX_MEMBERS * CHANNELS * ROW);
           if (inside && (du != 0 || dv != 0))
           {
-            COUNT_ESCAPED(state, ring + (y & (RING_ROWS - 1)) * (MAX_MEMBERS * CHANNELS * ROW), y, m, du, dv);
+            COUNT_ESCAPED(state, ring + (y & (RING_ROWS - 1)) * (MAX_MEMBERS * CHANNELS * ROW), y, m, du, dv, part,
+              radiance, outside);
           }
         }
         if (!PERIODIC_V && (from < 0 || from >= height))
@@ -284,9 +313,16 @@ static void CROSS_PLANE(sweep_state* state, __global float* map, const __global 
 #if ENTERING
       if (inside)
       {
-        COUNT_ENTERING(state, y, s == 0, in, bundle, crossing->moveU[s], crossing->moveV[s]);
+        COUNT_ENTERING(state, y, s == 0, in, bundle, crossing->moveU[s], crossing->moveV[s], part);
       }
 #endif
+      if (part < 1.0f)
+      {
+        MOVE_PART(state, part,
+          state->ring + ((s - 1) & 1) * (RING_ROWS * MAX_MEMBERS * CHANNELS * ROW) +
+            (y & (RING_ROWS - 1)) * (MAX_MEMBERS * CHANNELS * ROW),
+          in);
+      }
       STAGE_ROW(state, wrapped, inside, in, out, crossing->length[s], bundle);
     }
   }
@@ -295,6 +331,7 @@ static void CROSS_PLANE(sweep_state* state, __global float* map, const __global 
 #undef FIRST
 #undef BLOCK
 #undef COUNT_ENTERING
+#undef MOVE_PART
 #undef CROSS_PLANE
 #undef FILL_BORDER
 #undef COUNT_ESCAPED

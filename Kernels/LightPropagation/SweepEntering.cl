@@ -16,8 +16,8 @@ static void add_entering(sweep_state* state, int y, int face, const __global flo
   }
 }
 
-// Half of the rays that come from column x - du into column x - du of row y: what enters x itself comes through u after that.
-static void add_beside(sweep_state* state, int y, int du, int face, const __global float* rays)
+// Part of the rays that come from column x - du into column x - du of row y: what enters x itself comes through u after that.
+static void add_beside(sweep_state* state, int y, int du, int face, const __global float* rays, float part)
 {
   const int rows = state->sizeV * ROW;
   const int size = state->sizeU;
@@ -29,27 +29,28 @@ static void add_beside(sweep_state* state, int y, int du, int face, const __glob
     {
       // A row's last floats and what is before its first are never looked at.
       const real ray = select(load_real(x, from), (real)0.0f, LANES >= size - x);
-      store_real(multiply_add(ray, (real)0.5f, load_real(x - du, sum)), x - du, sum);
+      store_real(multiply_add(ray, (real)part, load_real(x - du, sum)), x - du, sum);
     }
 #if PERIODIC_U
-    sum[du > 0 ? size - 1 : 0] += 0.5f * from[du > 0 ? 0 : size - 1];
+    sum[du > 0 ? size - 1 : 0] += part * from[du > 0 ? 0 : size - 1];
 #endif
   }
 }
 
-// Rays that go through the edge between four voxels: half pass the voxel beside, half the one before.
-static void add_through_edge(sweep_state* state, int y, int du, int dv, const __global float* rays)
+// Part of the rays that go through the edge between four voxels: half of it passes the voxel beside, half the one before.
+static void add_through_edge(sweep_state* state, int y, int du, int dv, const __global float* rays, float part)
 {
+  const float half_part = 0.5f * part;
   const int u_face = du > 0 ? ENTERING_LOW_U : ENTERING_HIGH_U;
   const int v_face = dv > 0 ? ENTERING_LOW_V : ENTERING_HIGH_V;
   const int height = state->sizeV;
   const int before = PERIODIC_V ? (y - dv + height) % height : y - dv;
   if (before >= 0 && before < height)
   {
-    add_entering(state, before, u_face, rays, 0.5f);
+    add_entering(state, before, u_face, rays, half_part);
   }
-  add_entering(state, y, v_face, rays, 0.5f);
-  add_beside(state, y, du, v_face, rays);
-  add_entering(state, y, u_face, rays, 0.5f);
+  add_entering(state, y, v_face, rays, half_part);
+  add_beside(state, y, du, v_face, rays, half_part);
+  add_entering(state, y, u_face, rays, half_part);
 }
 #endif

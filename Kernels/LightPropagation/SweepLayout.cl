@@ -53,6 +53,7 @@ typedef struct
 {
   int stages;
   int moveU[3], moveV[3];
+  float part[3];   // of each ray's power that moves; the rest stays
   float length[3];
 } crossing_info;
 
@@ -64,7 +65,8 @@ typedef struct
   __global float* planes;  // PLANES quantities of sizeV rows: of the plane that is being crossed
   __global int* thin;      // [row] of it, 1 where all voxels are thin
   float meanLength[MEAN_LENGTH_TERMS];
-  __global float* ring;    // 2 rings of RING_ROWS rows of MAX_MEMBERS * CHANNELS * ROW floats
+  __global float* ring;    // 2 rings of RING_ROWS rows of MAX_MEMBERS * CHANNELS * ROW floats, and one row more: `moving`
+  __global float* moving;  // the rays of a row of which a part moves
   float escaped[4][CHANNELS]; // through -u, +u, -v, +v, W; with the rounding errors
   float rounding[4][CHANNELS];
 } sweep_state;

@@ -12,7 +12,6 @@ namespace
 constexpr int RingRows = 4; ///< RING_ROWS of SweepLayout.cl
 constexpr double SecondsPerLaunch = 0.08;
 constexpr double SecondsPerRay = 1e-9; ///< a ray through a plane of voxels on a slow core: only sizes the launches
-constexpr int PlanesPerRound = 128;    ///< at least, when rays go round a periodic axis: a short one several times
 constexpr int MostGroups = 4;          ///< of bundles that march one behind the other
 
 /// (1 - exp(-t)) / t = 1 + t (MeanLength[0] + t (MeanLength[1] + ...)), to 2e-8 for 0 <= t < Thin: a minimax polynomial.
@@ -105,10 +104,7 @@ SweepPlan::SweepPlan(const Device& device, const Grid& ofGrid, const VoxelBox& o
 /// in several laps instead, each with its part of the power.
 void SweepPlan::LayLaps()
 {
-  if (this->periodic[this->axes.axis])
-  {
-    this->laps = (PlanesPerRound + this->Planes() - 1) / this->Planes();
-  }
+  this->laps = PlanesOfPattern(this->Planes(), this->periodic[this->axes.axis]) / this->Planes();
   for (Bundle& bundle : this->bundles)
   {
     bundle.power /= this->laps;
@@ -225,7 +221,8 @@ int SweepPlan::CrossingPlanes() const
 
 std::size_t SweepPlan::ScratchFloats() const
 {
-  const std::size_t ring = std::size_t{ 2 } * RingRows * MaxMembers * this->channels * this->row + this->vector;
+  // Two rings and the rays of a row of which a part moves.
+  const std::size_t ring = (std::size_t{ 2 } * RingRows + 1) * MaxMembers * this->channels * this->row + this->vector;
   const std::size_t quantities =
     3 + ((this->netFlux ? 5 : 2) + (this->entering ? 5 : 0)) * this->channels; // PLANES of SweepLayout.cl
   const std::size_t planes = quantities * this->plane.block * this->plane.sizeV * this->row;
@@ -324,6 +321,7 @@ std::vector<PlaneCrossingOnDevice> SweepPlan::Crossings(int firstPlane, int plan
       {
         onDevice.moveU[s] = crossing.segments[s].moveU;
         onDevice.moveV[s] = crossing.segments[s].moveV;
+        onDevice.part[s] = static_cast<float>(crossing.segments[s].part);
         onDevice.length[s] = static_cast<float>(crossing.segments[s].length);
       }
       rows.push_back(onDevice);

@@ -23,7 +23,7 @@ struct BundleOnDevice
 struct PlaneCrossingOnDevice
 {
   cl_int stages, moveU[3], moveV[3];
-  cl_float length[3];
+  cl_float part[3], length[3];
 };
 struct UnitOnDevice
 {

@@ -207,7 +207,7 @@ void Solver::MakeAxis(int index)
 {
   Axis axis;
   axis.axes = AcrossAxis(index);
-  axis.patterns = BundlesAlong(index, this->TheGrid, this->Directions, this->Settings.mapResolution);
+  axis.patterns = BundlesAlong(index, this->TheGrid, {}, this->Directions, this->Settings.mapResolution);
   this->LayBundles(axis);
   this->LayCrossings(axis);
   for (int way = 0; way < Threads; ++way)

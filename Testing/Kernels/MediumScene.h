@@ -34,12 +34,18 @@ struct Scene
     }
   }
 
-  tyndall::LightField Solve(tyndall::Device& device, const tyndall::Monitor& monitor = {})
+  /// Lets the medium see its arrays as they are now.
+  void Attach()
   {
     this->medium.sigma_a = { this->sigma_a.data(), this->ComponentsOf(this->sigma_a) };
     this->medium.sigma_s = { this->sigma_s.data(), this->ComponentsOf(this->sigma_s) };
     this->medium.emission = { this->emission.empty() ? nullptr : this->emission.data(),
       this->emission.empty() ? 1 : this->ComponentsOf(this->emission) };
+  }
+
+  tyndall::LightField Solve(tyndall::Device& device, const tyndall::Monitor& monitor = {})
+  {
+    this->Attach();
     return tyndall::SolveFused(device, this->medium, this->light, this->settings, monitor);
   }
 

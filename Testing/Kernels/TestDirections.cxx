@@ -155,40 +155,54 @@ TEST(BoundaryRadiance, KeepsTheIrradianceOfASkyThatIsBrightAbove)
 
 TEST(RayPattern, SegmentsFillThePlaneAndMovesFollowTheTangent)
 {
-  Grid grid;
-  grid.spacing = { 1.0, 1.5, 0.8 };
   const DirectionSet set = SoundDirections(25);
-  std::size_t families = 0;
-  for (int axis = 0; axis < 3; ++axis)
+  for (const std::array<int, 3>& size : { std::array<int, 3>{ 1, 2, 3 }, { 7, 10, 8 }, { 40, 64, 33 } })
   {
-    for (const Bundle& bundle : BundlesAlong(axis, grid, set, 2))
+    for (const RayStarts starts : { RayStarts::Middle, RayStarts::Staggered })
     {
-      families += 2 * bundle.members.size();
-      int movedU = 0;
-      int movedV = 0;
-      const int planes = 1000;
-      for (int k = 0; k < planes; ++k)
+      Grid grid;
+      grid.size = size;
+      grid.spacing = { 1.0, 1.5, 0.8 };
+      std::size_t families = 0;
+      for (int axis = 0; axis < 3; ++axis)
       {
-        const PlaneCrossing crossing = bundle.Crossing(k);
-        double length = 0.0;
-        for (int s = 0; s < crossing.count; ++s)
+        double missingU = 0.0, missingV = 0.0, largest = 0.0;
+        for (const Bundle& bundle : BundlesAlong(axis, grid, {}, set, 2, starts))
         {
-          length += crossing.segments[s].length;
-          movedU += crossing.segments[s].moveU;
-          movedV += crossing.segments[s].moveV;
+          families += 2 * bundle.members.size();
+          double movedU = 0.0, movedV = 0.0;
+          for (int k = 0; k < size[axis]; ++k)
+          {
+            const PlaneCrossing crossing = bundle.Crossing(k);
+            double length = 0.0;
+            for (int s = 0; s < crossing.count; ++s)
+            {
+              const Segment& segment = crossing.segments[s];
+              length += segment.length;
+              movedU += segment.part * segment.moveU;
+              movedV += segment.part * segment.moveV;
+              EXPECT_GT(segment.part, 0.0);
+              EXPECT_LE(segment.part, 1.0);
+            }
+            EXPECT_NEAR(length, bundle.length, 1e-9 * bundle.length);
+          }
+          EXPECT_NEAR(movedU, bundle.tangentU * size[axis], 1.0);
+          EXPECT_NEAR(movedV, bundle.tangentV * size[axis], 1.0);
+          missingU += bundle.power * bundle.members.size() * (bundle.tangentU * size[axis] - movedU);
+          missingV += bundle.power * bundle.members.size() * (bundle.tangentV * size[axis] - movedV);
+          largest = std::max(largest, bundle.power);
         }
-        EXPECT_NEAR(length, bundle.length, 1e-9 * bundle.length);
+        EXPECT_NEAR(missingU, 0.0, 1e-9 * largest) << "what enters through the sides is what the directions carry";
+        EXPECT_NEAR(missingV, 0.0, 1e-9 * largest);
       }
-      EXPECT_NEAR(movedU, bundle.tangentU * planes, 1.0);
-      EXPECT_NEAR(movedV, bundle.tangentV * planes, 1.0);
+      EXPECT_EQ(families, 4 * set.directions.size()) << "four map points a voxel and direction";
     }
   }
-  EXPECT_EQ(families, 4 * set.directions.size()) << "four map points a voxel and direction";
 }
 
 TEST(RayPattern, CubicVoxelsNeedSixBundlesForTwentyFiveDirections)
 {
-  const std::vector<Bundle> bundles = BundlesAlong(2, Grid(), SoundDirections(25), 1);
+  const std::vector<Bundle> bundles = BundlesAlong(2, Grid(), {}, SoundDirections(25), 1);
   EXPECT_EQ(bundles.size(), 6u);
 }
 
@@ -197,7 +211,7 @@ TEST(RayPattern, EveryMemberHasItsMirrorImage)
   const DirectionSet set = SoundDirections(25);
   for (int axis = 0; axis < 3; ++axis)
   {
-    for (const Bundle& bundle : BundlesAlong(axis, Grid(), set, 1))
+    for (const Bundle& bundle : BundlesAlong(axis, Grid(), {}, set, 1))
     {
       for (const Member& member : bundle.members)
       {

@@ -1,0 +1,279 @@
+// A scene that is turned or mirrored has its light turned or mirrored: all 48 symmetries of the cube, under each kind of light
+// by itself.
+#include "DeviceTest.h"
+#include "MediumScene.h"
+
+#include "LightPropagation/ParallelPropagation.h"
+#include "LightPropagation/SequentialPropagation.h"
+
+#include <algorithm>
+#include <cmath>
+#include <functional>
+#include <random>
+#include <string>
+#include <vector>
+
+using namespace tyndall;
+
+namespace
+{
+/// Where axis a of the scene comes to lie, and whether it is turned round.
+struct Turn
+{
+  std::array<int, 3> to;
+  std::array<bool, 3> flipped;
+
+  template <class T>
+  std::array<T, 3> Moved(const std::array<T, 3>& values) const
+  {
+    std::array<T, 3> moved = {};
+    for (int a = 0; a < 3; ++a)
+    {
+      moved[this->to[a]] = values[a];
+    }
+    return moved;
+  }
+  std::array<double, 3> Direction(const std::array<double, 3>& direction) const
+  {
+    std::array<double, 3> turned = direction;
+    for (int a = 0; a < 3; ++a)
+    {
+      turned[a] = this->flipped[a] ? -turned[a] : turned[a];
+    }
+    return this->Moved(turned);
+  }
+  std::array<double, 3> Position(const std::array<double, 3>& position, const Grid& grid) const
+  {
+    std::array<double, 3> turned = position;
+    for (int a = 0; a < 3; ++a)
+    {
+      turned[a] = this->flipped[a] ? grid.Length(a) - turned[a] : turned[a];
+    }
+    return this->Moved(turned);
+  }
+  int Face(int face) const { return 2 * this->to[face / 2] + ((face % 2 == 1) != this->flipped[face / 2] ? 1 : 0); }
+};
+
+std::vector<Turn> AllTurns()
+{
+  std::vector<Turn> turns;
+  std::array<int, 3> to = { 0, 1, 2 };
+  do
+  {
+    for (int flips = 0; flips < 8; ++flips)
+    {
+      turns.push_back({ to, { (flips & 1) != 0, (flips & 2) != 0, (flips & 4) != 0 } });
+    }
+  } while (std::next_permutation(to.begin(), to.end()));
+  return turns;
+}
+
+std::vector<float> Turned(const std::vector<float>& values, const std::array<int, 3>& size, const Turn& turn)
+{
+  std::vector<float> turned(values.size());
+  const std::array<int, 3> n = turn.Moved(size);
+  for (int z = 0; z < size[2]; ++z)
+  {
+    for (int y = 0; y < size[1]; ++y)
+    {
+      for (int x = 0; x < size[0]; ++x)
+      {
+        std::array<int, 3> at = { x, y, z };
+        for (int a = 0; a < 3; ++a)
+        {
+          at[a] = turn.flipped[a] ? size[a] - 1 - at[a] : at[a];
+        }
+        at = turn.Moved(at);
+        turned[(static_cast<std::size_t>(at[2]) * n[1] + at[1]) * n[0] + at[0]] =
+          values[(static_cast<std::size_t>(z) * size[1] + y) * size[0] + x];
+      }
+    }
+  }
+  return turned;
+}
+
+Scene Turned(const Scene& scene, const Turn& turn)
+{
+  Scene turned(turn.Moved(scene.medium.grid.size));
+  turned.medium.grid.spacing = turn.Moved(scene.medium.grid.spacing);
+  turned.settings = scene.settings;
+  turned.settings.periodic = turn.Moved(scene.settings.periodic);
+  turned.sigma_a = Turned(scene.sigma_a, scene.medium.grid.size, turn);
+  turned.sigma_s = Turned(scene.sigma_s, scene.medium.grid.size, turn);
+  if (!scene.emission.empty())
+  {
+    turned.emission = Turned(scene.emission, scene.medium.grid.size, turn);
+  }
+  turned.light = scene.light;
+  for (int face = 0; face < 6; ++face)
+  {
+    turned.light.faces[turn.Face(face)] = scene.light.faces[face];
+  }
+  for (Light& light : turned.light.lights)
+  {
+    light.direction = turn.Direction(light.direction);
+    light.position = turn.Position(light.position, scene.medium.grid);
+  }
+  return turned;
+}
+
+/// Of the largest value.
+double LargestDifference(const std::vector<float>& a, const std::vector<float>& b)
+{
+  double largest = 0.0, difference = 0.0;
+  for (std::size_t i = 0; i < a.size(); ++i)
+  {
+    largest = std::max<double>(largest, std::abs(a[i]));
+    difference = std::max<double>(difference, std::abs(static_cast<double>(a[i]) - b[i]));
+  }
+  return difference / largest;
+}
+
+/// Uneven in every voxel; absorbs some.
+Scene UnevenMedium(std::array<int, 3> size, std::array<double, 3> spacing, double thickest)
+{
+  Scene scene(size);
+  scene.medium.grid.spacing = spacing;
+  scene.Randomise(thickest, 2.0, 0.8, 20261122);
+  scene.settings.tolerance = 1e-6;
+  return scene;
+}
+
+struct KindOfLight
+{
+  std::string name;
+  std::function<void(Scene&)> shine;
+};
+
+Light LampAt(const Grid& grid, LightType type, std::array<double, 3> place)
+{
+  Light lamp;
+  lamp.type = type;
+  for (int a = 0; a < 3; ++a)
+  {
+    lamp.position[a] = place[a] * grid.Length(a);
+  }
+  return lamp;
+}
+
+const std::vector<KindOfLight> Kinds = {
+  { "face", [](Scene& scene) { scene.light.faces[4] = { 1.0, 1.0, 1.0 }; } },
+  { "sky", [](Scene& scene) { scene.ShineFromEverywhere(1.0); } },
+  { "sun", [](Scene& scene) { scene.ShineAlong({ 0.3, -0.5, -0.8 }); } },
+  { "sun along a diagonal", [](Scene& scene) { scene.ShineAlong({ 1.0, 1.0, 1.0 }); } },
+  { "lamp inside",
+    [](Scene& scene) { scene.light.lights = { LampAt(scene.medium.grid, LightType::Point, { 0.3, 0.45, 0.71 }) }; } },
+  { "lamp outside",
+    [](Scene& scene) { scene.light.lights = { LampAt(scene.medium.grid, LightType::Point, { -0.3, 0.4, 1.7 }) }; } },
+  { "spot",
+    [](Scene& scene) {
+      Light spot = LampAt(scene.medium.grid, LightType::Spot, { 0.6, 1.5, 0.4 });
+      spot.direction = { 0.2, -1.0, 0.3 };
+      spot.angle = 40.0;
+      scene.light.lights = { spot };
+    } },
+  { "rectangle",
+    [](Scene& scene) {
+      Light rectangle = LampAt(scene.medium.grid, LightType::Rectangle, { 0.5, 0.4, 1.5 });
+      rectangle.direction = { 0.0, 0.0, -1.0 };
+      rectangle.size = { 2.0, 2.0 };
+      scene.light.lights = { rectangle };
+    } },
+  { "emission",
+    [](Scene& scene) {
+      std::mt19937 random(7);
+      scene.emission.resize(scene.sigma_a.size());
+      for (float& value : scene.emission)
+      {
+        value = static_cast<float>(random() % 1000) * 1e-3f;
+      }
+    } },
+  { "a bright spot",
+    [](Scene& scene) {
+      const Grid& grid = scene.medium.grid;
+      scene.emission.assign(scene.sigma_a.size(), 0.0f);
+      scene.emission[(static_cast<std::size_t>(grid.size[2] / 3) * grid.size[1] + grid.size[1] / 2) * grid.size[0] + 2] = 1.0f;
+    } },
+};
+
+using Solver = std::function<LightField(Scene&)>;
+
+void ExpectSymmetric(const Scene& scene, const std::string& what, double limit, const Solver& solve)
+{
+  Scene asItIs = scene;
+  const LightField light = solve(asItIs);
+  double worst = 0.0, power = 0.0;
+  for (const Turn& turn : AllTurns())
+  {
+    Scene turned = Turned(scene, turn);
+    const LightField turnedLight = solve(turned);
+    worst = std::max(
+      worst, LargestDifference(turnedLight.fluence, Turned(light.fluence, scene.medium.grid.size, turn)));
+    power = std::max(power, std::abs(turnedLight.balance.entered[0] - light.balance.entered[0]));
+    for (int face = 0; face < 6; ++face)
+    {
+      power = std::max(power, std::abs(turnedLight.facePowerOut[turn.Face(face)][0] - light.facePowerOut[face][0]));
+    }
+  }
+  EXPECT_LT(worst, limit) << what;
+  EXPECT_LT(power, limit * std::max(light.balance.entered[0] + light.balance.emitted[0], 1e-30)) << what;
+}
+}
+
+class Symmetry : public DeviceTest
+{
+};
+
+TEST_F(Symmetry, OfEveryKindOfLight)
+{
+  for (const KindOfLight& kind : Kinds)
+  {
+    Scene scene = UnevenMedium({ 8, 8, 8 }, { 0.1, 0.1, 0.1 }, 10.0);
+    kind.shine(scene);
+    ExpectSymmetric(scene, kind.name, 1e-5, [&](Scene& turned) { return turned.Solve(this->GetDevice()); });
+  }
+}
+
+TEST_F(Symmetry, OfUnequalVoxels)
+{
+  for (const KindOfLight& kind : Kinds)
+  {
+    Scene scene = UnevenMedium({ 7, 10, 12 }, { 1.0, 0.7, 0.5 }, 1.0);
+    scene.settings.staggeredRays = true;
+    scene.settings.mapResolution = 2;
+    kind.shine(scene);
+    ExpectSymmetric(scene, kind.name, 1e-5, [&](Scene& turned) { return turned.Solve(this->GetDevice()); });
+  }
+}
+
+TEST_F(Symmetry, WhereOrdersAreAccelerated)
+{
+  for (const KindOfLight& kind : Kinds)
+  {
+    Scene scene = UnevenMedium({ 9, 9, 9 }, { 1.0, 1.0, 1.0 }, 20.0);
+    for (float& sigma_a : scene.sigma_a)
+    {
+      sigma_a *= 0.01f;
+    }
+    kind.shine(scene);
+    ExpectSymmetric(scene, kind.name, 1e-5, [&](Scene& turned) { return turned.Solve(this->GetDevice()); });
+  }
+}
+
+TEST_F(Symmetry, AsPublished)
+{
+  for (const KindOfLight& kind : Kinds)
+  {
+    Scene scene = UnevenMedium({ 7, 7, 7 }, { 1.0, 1.0, 1.0 }, 1.0);
+    scene.settings.maximumOrders = 3;
+    kind.shine(scene);
+    ExpectSymmetric(scene, kind.name + ", sequential", 1e-5, [&](Scene& turned) {
+      turned.Attach();
+      return SolveSequential(turned.medium, turned.light, turned.settings, {});
+    });
+    ExpectSymmetric(scene, kind.name + ", parallel", 1e-5, [&](Scene& turned) {
+      turned.Attach();
+      return SolveParallel(this->GetDevice(), turned.medium, turned.light, turned.settings, {});
+    });
+  }
+}
