@@ -22,6 +22,19 @@ typedef struct
   bool inside; // of the box of what shines
 } lit_voxel;
 
+// The scene with its axes in another order, some of them turned round, so that every voxel sees what shines in the same way
+// whatever way the scene lies: the light then has the symmetries of the scene.
+typedef struct
+{
+  float spacing[3];
+  int source_first[3], source_size[3];
+  int strides[3], base;               // of sigma: voxel (0, 0, 0) is at `base`
+  int source_strides[3], source_base; // of emission
+  int last, source_last;              // the highest index of each
+  int axis[3];                        // of the scene, that each axis here is
+  float sign[3];
+} turned_scene;
+
 #if REAL_WIDTH == 1
 #define any_of(condition) (condition)
 #define take(from, index) ((from)[index])
@@ -53,14 +66,13 @@ static real mean_left(real tau, real* left)
 //   sigma      of the grid
 //   emission   of the box, W / (length^3 sr), [CHANNELS][voxel]
 // What the voxel itself extinguishes is the mean over all that the line has of it.
-static void trace(const emission_scene* s, const lit_voxel* voxel, const real* point, const real* way, const __global float* sigma,
+static void trace(const turned_scene* s, const lit_voxel* voxel, const real* point, const real* way, const __global float* sigma,
   const __global float* emission, real* radiance)
 {
-  const int strides[3] = { 1, s->size[0], s->size[0] * s->size[1] };
-  const int source_strides[3] = { 1, s->source_size[0], s->source_size[0] * s->source_size[1] };
-  const int last = s->size[2] * strides[2] - 1;
-  const int source_voxels = s->source_size[2] * source_strides[2];
-  const int begin = voxel->at[0] + voxel->at[1] * strides[1] + voxel->at[2] * strides[2];
+  const int* strides = s->strides;
+  const int* source_strides = s->source_strides;
+  const int source_voxels = s->source_last + 1;
+  const int begin = s->base + voxel->at[0] * strides[0] + voxel->at[1] * strides[1] + voxel->at[2] * strides[2];
   real rate[3], step[3], next[3];
   integer up[3];
   real enter = 0.0f, leave = 1e30f, behind = 1e30f;
@@ -107,8 +119,8 @@ static void trace(const emission_scene* s, const lit_voxel* voxel, const real* p
   extinguished(tau, &left);
   received *= left;
 
-  integer shining = 0;
-  index = 0;
+  integer shining = s->source_base;
+  index = s->base;
   for (int a = 0; a < 3; ++a)
   {
     const int first = s->source_first[a];
@@ -142,8 +154,8 @@ static void trace(const emission_scene* s, const lit_voxel* voxel, const real* p
       shining += select((integer)0, select((integer)-source_strides[a], (integer)source_strides[a], up[a]), crossed);
       next[a] += select((real)0.0f, step[a], crossed);
     }
-    index = clamp(index, (integer)0, (integer)last); // rounding: a step of no length past the box
-    shining = clamp(shining, (integer)0, (integer)(source_voxels - 1));
+    index = clamp(index, (integer)0, (integer)s->last); // rounding: a step of no length past the box
+    shining = clamp(shining, (integer)0, (integer)s->source_last);
     now = end;
     under_way = now < leave && received > (real)1e-35f;
   }
@@ -151,7 +163,7 @@ static void trace(const emission_scene* s, const lit_voxel* voxel, const real* p
 
 // Solid angle of each side of the box that light comes through, from the voxel's middle, but no less than an eighth of the largest: from
 // other points they are larger; 0 where no light comes through.
-static void find_sides(const emission_scene* s, const lit_voxel* voxel, float* solid_angles)
+static void find_sides(const turned_scene* s, const lit_voxel* voxel, float* solid_angles)
 {
   float largest = 0.0f;
   for (int side = 0; side < 6; ++side)
@@ -190,7 +202,7 @@ static inline real along(const real* values, integer axis, int shift)
 //   from, end  the rays, a multiple of REAL_WIDTH
 //   points     [u, v, x, y, z][MOST]
 //   sums       their mean, [channel][fluence, net flux along x, y, z]
-static void gather_rays(const emission_scene* s, const lit_voxel* voxel, const float* solid_angles, int from, int end,
+static void gather_rays(const turned_scene* s, const lit_voxel* voxel, const float* solid_angles, int from, int end,
   const __global float* points, const __global float* sigma, const __global float* emission, float* sums)
 {
   real all[CHANNELS * 4];
@@ -262,23 +274,151 @@ static void gather_rays(const emission_scene* s, const lit_voxel* voxel, const f
   }
 }
 
-// With as many rays as it takes.
+// The ways to turn the scene in which voxels and faces that are alike see it alike: one, but for those that lie evenly to what shines.
+typedef struct
+{
+  int permutations[6][3]; // axes of the scene in their new order
+  int count;
+  int turned, either;     // bits of axes that are turned round, and that are both ways
+} ways_to_turn;
+
+// Order of the axes: that across a lit face first, then by distance from the middle of what shines, its size, the voxel's size.
+static bool goes_before(const emission_scene* s, const lit_voxel* voxel, const int* distance, int a, int b)
+{
+  if ((a == voxel->across) != (b == voxel->across))
+  {
+    return a == voxel->across;
+  }
+  const float far_a = abs(distance[a]) * s->spacing[a], far_b = abs(distance[b]) * s->spacing[b];
+  const float wide_a = s->source_size[a] * s->spacing[a], wide_b = s->source_size[b] * s->spacing[b];
+  return far_a != far_b ? far_a > far_b : wide_a != wide_b ? wide_a > wide_b : s->spacing[a] > s->spacing[b];
+}
+
+static void find_ways(const emission_scene* s, const lit_voxel* voxel, ways_to_turn* ways)
+{
+  const int all[6][3] = { { 0, 1, 2 }, { 0, 2, 1 }, { 1, 0, 2 }, { 1, 2, 0 }, { 2, 0, 1 }, { 2, 1, 0 } };
+  int distance[3]; // half voxels
+  ways->count = ways->turned = ways->either = 0;
+  for (int a = 0; a < 3; ++a)
+  {
+    const int place = 2 * voxel->at[a] + (a == voxel->across ? 2 * voxel->up : 1);
+    distance[a] = place - 2 * s->source_first[a] - s->source_size[a];
+    ways->turned |= (distance[a] < 0) << a;
+    ways->either |= (distance[a] == 0) << a;
+  }
+  for (int p = 0; p < 6; ++p)
+  {
+    const int* order = all[p];
+    if (goes_before(s, voxel, distance, order[1], order[0]) || goes_before(s, voxel, distance, order[2], order[1]))
+    {
+      continue;
+    }
+    for (int a = 0; a < 3; ++a)
+    {
+      ways->permutations[ways->count][a] = order[a];
+    }
+    ++ways->count;
+  }
+}
+
+static void turn_scene(const emission_scene* s, const lit_voxel* voxel, const int* order, int turned, turned_scene* to, lit_voxel* turned_voxel)
+{
+  const int strides[3] = { 1, s->size[0], s->size[0] * s->size[1] };
+  const int source_strides[3] = { 1, s->source_size[0], s->source_size[0] * s->source_size[1] };
+  to->base = to->source_base = 0;
+  to->last = s->size[2] * strides[2] - 1;
+  to->source_last = s->source_size[2] * source_strides[2] - 1;
+  turned_voxel->across = 3;
+  turned_voxel->up = 0;
+  turned_voxel->inside = voxel->inside;
+  for (int k = 0; k < 3; ++k)
+  {
+    const int a = order[k];
+    const bool round = (turned >> a & 1) != 0;
+    const int size = s->size[a], source_size = s->source_size[a];
+    to->axis[k] = a;
+    to->sign[k] = round ? -1.0f : 1.0f;
+    to->spacing[k] = s->spacing[a];
+    to->source_size[k] = source_size;
+    to->source_first[k] = round ? size - s->source_first[a] - source_size : s->source_first[a];
+    to->strides[k] = round ? -strides[a] : strides[a];
+    to->base += round ? (size - 1) * strides[a] : 0;
+    to->source_strides[k] = round ? -source_strides[a] : source_strides[a];
+    to->source_base += round ? (source_size - 1) * source_strides[a] : 0;
+    turned_voxel->at[k] = round ? size - 1 - voxel->at[a] : voxel->at[a];
+    if (a == voxel->across)
+    {
+      turned_voxel->across = k;
+      turned_voxel->up = round ? 1 - voxel->up : voxel->up;
+    }
+  }
+}
+
+// Rays [from, end) of the lattice in every way to turn the scene: their mean.
+static void gather_ways(const emission_scene* s, const lit_voxel* voxel, const ways_to_turn* ways, int from, int end,
+  const __global float* points, const __global float* sigma, const __global float* emission, float* sums)
+{
+  int count = 0;
+  for (int k = 0; k < CHANNELS * 4; ++k)
+  {
+    sums[k] = 0.0f;
+  }
+  for (int p = 0; p < ways->count; ++p)
+  {
+    for (int mask = 0; mask < 8; ++mask)
+    {
+      if ((mask & ~ways->either) != 0)
+      {
+        continue;
+      }
+      turned_scene turned;
+      lit_voxel from_here;
+      float solid_angles[6], of_way[CHANNELS * 4];
+      turn_scene(s, voxel, ways->permutations[p], ways->turned | mask, &turned, &from_here);
+      find_sides(&turned, &from_here, solid_angles);
+      gather_rays(&turned, &from_here, solid_angles, from, end, points, sigma, emission, of_way);
+      for (int c = 0; c < CHANNELS; ++c)
+      {
+        sums[4 * c] += of_way[4 * c];
+        for (int k = 0; k < 3; ++k)
+        {
+          sums[4 * c + 1 + turned.axis[k]] += turned.sign[k] * of_way[4 * c + 1 + k];
+        }
+      }
+      ++count;
+    }
+  }
+  for (int k = 0; k < CHANNELS * 4; ++k)
+  {
+    sums[k] /= count;
+  }
+}
+
+// With as many rays as it takes, shared out among the ways to turn the scene.
 static void gather(const emission_scene* s, lit_voxel* voxel, const __global float* points, const __global float* sigma,
   const __global float* emission, float* sums)
 {
-  float solid_angles[6], others[CHANNELS * 4];
+  float others[CHANNELS * 4];
+  ways_to_turn ways;
   voxel->inside = true;
   for (int a = 0; a < 3; ++a)
   {
     voxel->inside =
       voxel->inside && voxel->at[a] >= s->source_first[a] && voxel->at[a] < s->source_first[a] + s->source_size[a];
   }
-  find_sides(s, voxel, solid_angles);
-  gather_rays(s, voxel, solid_angles, 0, s->fewest / 2, points, sigma, emission, sums);
-  bool even = false;
-  for (int count = s->fewest / 2; count < MOST && !even; count *= 2)
+  find_ways(s, voxel, &ways);
+  const int all = ways.count << popcount(ways.either);
+  int begin = s->fewest / 2, most = MOST;
+  for (int shared = 1; shared < all && begin > 16; shared *= 2)
   {
-    gather_rays(s, voxel, solid_angles, count, 2 * count, points, sigma, emission, others);
+    begin /= 2;
+    most /= 2;
+  }
+  gather_ways(s, voxel, &ways, 0, begin, points, sigma, emission, sums);
+  bool even = false;
+  for (int count = begin; count < most && !even; count *= 2)
+  {
+    gather_ways(s, voxel, &ways, count, 2 * count, points, sigma, emission, others);
     float whole = 0.0f, difference = 0.0f;
     for (int k = 0; k < CHANNELS * 4; ++k)
     {

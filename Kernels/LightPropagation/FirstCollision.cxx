@@ -64,7 +64,6 @@ SweepTally DepositBeam(Device& device, const SweepVolume& volume, const Light& l
   const std::array<bool, 3>& periodic, SweepWorkspace& workspace, const Monitor& monitor)
 {
   const std::array<double, 3> omega = Array(glm::normalize(Vector(light.direction)));
-  const int axis = MarchingAxis(volume.grid, omega);
   // How near to voxels' faces the light is lost is told by the faces that it enters through.
   SweepVolume own = volume;
   Buffer<float> path, entering;
@@ -78,10 +77,20 @@ SweepTally DepositBeam(Device& device, const SweepVolume& volume, const Light& l
     own.path = &path;
     own.entering = &entering;
   }
-  AxisSweep beam(device, own, axis, BeamAlong(axis, volume.grid, periodic, omega, RaysPerEdge), periodic, workspace);
-  beam.Start(
-    own, [&](int, int) { return light.power; }, false, ManyPlanes, monitor);
-  const SweepTally tally = beam.Finish();
+  SweepTally tally;
+  const std::vector<int> axes = MarchingAxes(volume.grid, omega);
+  for (const int axis : axes) // each carries its part of the beam
+  {
+    Rgb power = light.power;
+    for (double& ofChannel : power)
+    {
+      ofChannel /= static_cast<double>(axes.size());
+    }
+    AxisSweep beam(device, own, axis, BeamAlong(axis, volume.grid, periodic, omega, RaysPerEdge), periodic, workspace);
+    beam.Start(
+      own, [&](int, int) { return power; }, false, ManyPlanes, monitor);
+    Add(tally, beam.Finish());
+  }
   if (volume.nearness)
   {
     BeamInfo info = {};
@@ -114,39 +123,32 @@ std::array<double, 2> Tangents(const Grid& grid, const glm::dvec3& position, int
   return { std::max(-1.0, std::min(low / depth, low / far)), std::min(1.0, std::max(high / depth, high / far)) };
 }
 
-/// Tangents towards a cone within a pyramid: smallest and largest along u, then along v. Empty (the largest is smaller) where
-/// the cone is not seen there.
-std::array<std::array<double, 2>, 2> TangentsOfCone(const Grid& grid, int axis, bool up, const Light& light)
+/// Tangents (voxels along `aside` per layer) between which a spot's cone is seen in the pyramid along `axis`. The planes that touch
+/// the cone and hold the third axis are turned by asin(sin(half angle) / R) from its middle, R the length of that in the plane of
+/// the two axes. The first is larger than the second where the cone is not seen there.
+std::array<double, 2> TangentsOfCone(const Grid& grid, int axis, bool up, int aside, const Light& light)
 {
+  constexpr double rightAngle = 0.5 * glm::pi<double>();
+  constexpr double margin = 1e-6; // rounding must not cut the cone
   const glm::dvec3 middle = glm::normalize(Vector(light.direction));
-  const glm::dvec3 aside = glm::normalize(
-    glm::cross(middle, std::abs(middle.x) < 0.5 ? glm::dvec3(1.0, 0.0, 0.0) : glm::dvec3(0.0, 1.0, 0.0)));
+  const double forward = up ? middle[axis] : -middle[axis];
   const double half = 0.5 * light.angle * glm::pi<double>() / 180.0;
-  constexpr int around = 256;
-  std::array<std::array<double, 2>, 2> range = { { { 1.0, -1.0 }, { 1.0, -1.0 } } };
-  for (int i = 0; i <= around; ++i)
+  const double inPlane = std::hypot(forward, middle[aside]);
+  if (half >= rightAngle || std::sin(half) >= inPlane)
   {
-    const double turn = 2.0 * glm::pi<double>() * i / around;
-    const glm::dvec3 away = aside * std::cos(turn) + glm::cross(middle, aside) * std::sin(turn);
-    const glm::dvec3 ray = i == around ? middle : middle * std::cos(half) + away * std::sin(half);
-    const double forward = (up ? ray[axis] : -ray[axis]) / grid.spacing[axis];
-    if (forward < 1e-3 / grid.spacing[axis] || half > 1.0)
-    {
-      return { { { -1.0, 1.0 }, { -1.0, 1.0 } } }; // wide, or along the pyramid's foot: no bound is worth having
-    }
-    for (int a = 0; a < 2; ++a)
-    {
-      const int along = (axis + 1 + a) % 3;
-      const double tangent = ray[along] / grid.spacing[along] / forward;
-      range[a] = { std::min(range[a][0], tangent), std::max(range[a][1], tangent) };
-    }
+    return { -1.0, 1.0 };
   }
-  for (std::array<double, 2>& ofOne : range)
+  const double turn = std::atan2(middle[aside], forward);
+  const double reach = std::asin(std::sin(half) / inPlane) + margin;
+  if (turn - reach >= rightAngle || turn + reach <= -rightAngle)
   {
-    const double margin = 0.01 * (ofOne[1] - ofOne[0]); // of the polygon to the circle
-    ofOne = { std::max(-1.0, ofOne[0] - margin), std::min(1.0, ofOne[1] + margin) };
+    return { 1.0, -1.0 };
   }
-  return range;
+  const auto tangent = [&](double angle) {
+    return std::abs(angle) >= rightAngle ? std::copysign(1.0, angle)
+                                         : std::tan(angle) * grid.spacing[axis] / grid.spacing[aside];
+  };
+  return { std::max(tangent(turn - reach), -1.0), std::min(tangent(turn + reach), 1.0) };
 }
 
 /// The beams of `light` from `position` (in voxels), row by row; a beam is at most `width` voxels wide where it leaves the box.
@@ -168,9 +170,10 @@ std::vector<BeamRow> Beams(const Grid& grid, const Light& light, const glm::dvec
     int fewest = 1;
     if (light.type == LightType::Spot)
     {
-      const auto cone = TangentsOfCone(grid, axis, up, light);
-      u = { std::max(u[0], cone[0][0]), std::min(u[1], cone[0][1]) };
-      v = { std::max(v[0], cone[1][0]), std::min(v[1], cone[1][1]) };
+      const std::array<double, 2> coneU = TangentsOfCone(grid, axis, up, (axis + 1) % 3, light);
+      const std::array<double, 2> coneV = TangentsOfCone(grid, axis, up, (axis + 2) % 3, light);
+      u = { std::max(u[0], coneU[0]), std::min(u[1], coneU[1]) };
+      v = { std::max(v[0], coneV[0]), std::min(v[1], coneV[1]) };
       fewest = BeamsAcrossCone;
     }
     if (u[0] >= u[1] || v[0] >= v[1])

@@ -21,19 +21,6 @@ int FaceOf(int axis, bool upwards)
   return 2 * axis + (upwards ? 0 : 1);
 }
 
-void Add(SweepTally& sum, const SweepTally& tally)
-{
-  for (int c = 0; c < 3; ++c)
-  {
-    for (int face = 0; face < 6; ++face)
-    {
-      sum.in[face][c] += tally.in[face][c];
-      sum.out[face][c] += tally.out[face][c];
-    }
-    sum.onTheWay[c] += tally.onTheWay[c];
-  }
-}
-
 double FaceArea(const Grid& grid, int axis)
 {
   return grid.Length((axis + 1) % 3) * grid.Length((axis + 2) % 3);

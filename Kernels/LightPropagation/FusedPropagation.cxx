@@ -129,42 +129,6 @@ void FusedSolver::Load()
   this->Shining = this->Shining || !this->Settings.leaveOut;
 }
 
-/// W of a peak that get out of its voxels, about: no surface shines brighter than emission / sigma_t.
-double FusedSolver::PowerSeen(const EmissionPeak& peak) const
-{
-  const Grid& grid = this->TheMedium.grid;
-  const std::array<double, 3>& h = grid.spacing;
-  const double surface = 2.0 * (h[0] * h[1] + h[1] * h[2] + h[2] * h[0]);
-  const std::size_t count = peak.emission.size() / 3;
-  double power = 0.0;
-  for (std::size_t i = 0; i < peak.emission.size(); ++i)
-  {
-    const std::size_t place = i % count;
-    const std::size_t x = peak.first[0] + place % peak.size[0];
-    const std::size_t y = peak.first[1] + place / peak.size[0] % peak.size[1];
-    const std::size_t z = peak.first[2] + place / peak.size[0] / peak.size[1];
-    const double sigma = this->SigmaT((z * grid.size[1] + y) * grid.size[0] + x, static_cast<int>(i / count));
-    power += Pi * peak.emission[i] * std::min(4.0 * grid.VoxelVolume(), surface / std::max(sigma, 1e-30));
-  }
-  return power;
-}
-
-/// Where most light comes from elsewhere, its shadows and what shines in them have to go along the same directions.
-bool FusedSolver::PeaksOutshineOthers() const
-{
-  double others = Total(this->PowerFromOutside()) * 3.0 / this->Channels; // lights and peaks have three channels always
-  for (const Light& light : this->Lights)
-  {
-    others += PowerInto(this->TheMedium.grid, light);
-  }
-  double peaks = 0.0;
-  for (const EmissionPeak& peak : this->Emission.peaks)
-  {
-    peaks += this->PowerSeen(peak);
-  }
-  return peaks > others;
-}
-
 /// What the coarse directions carry of it is the source; small bright parts go along rays of their own.
 template <class Loader>
 void FusedSolver::LoadEmission(const Loader& load)
@@ -174,10 +138,6 @@ void FusedSolver::LoadEmission(const Loader& load)
     !(periodic[0] || periodic[1] || periodic[2])) // of whose images there is no end
   {
     this->Emission = Split(this->TheMedium);
-    if (!this->PeaksOutshineOthers())
-    {
-      this->Emission = {};
-    }
   }
   const Field smooth = this->Emission.Smooth(this->TheMedium);
   load(this->Source, this->Channels, [&](std::size_t i, int c) {

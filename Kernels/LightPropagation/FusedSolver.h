@@ -62,9 +62,6 @@ private:
 
   void RunOrders(const Monitor& monitor);
   Rgb PowerInSweeps() const;
-  Rgb PowerFromOutside() const;
-  double PowerSeen(const EmissionPeak& peak) const;
-  bool PeaksOutshineOthers() const;
   /// @throws InvalidInput where rays bring far less or more of the light from outside than there is
   void CheckEntering(const Rgb& entered, const Rgb& expected) const;
   /// @throws InvalidInput where the energy balance is off by a hundredth

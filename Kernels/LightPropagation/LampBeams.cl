@@ -167,8 +167,10 @@ static void step_beam(const lamp_info* lamp, const beam_row* row, int layer, boo
     }
     else if (gone)
     {
-      const int face = at_u == AFTER ? 2 * u + (tangent.x > 0.0f) : 2 * v + (tangent.y > 0.0f);
-      tally->escaped[face] += power;
+      // Past an edge of the box: half through either side.
+      const float both = at_u == AFTER && at_v == AFTER ? 0.5f : 1.0f;
+      tally->escaped[2 * u + (tangent.x > 0.0f)] += at_u == AFTER ? both * power : 0.0f;
+      tally->escaped[2 * v + (tangent.y > 0.0f)] += at_v == AFTER ? both * power : 0.0f;
     }
     else if (outside)
     {

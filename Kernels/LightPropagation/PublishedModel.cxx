@@ -39,6 +39,28 @@ int NearestOf(const std::vector<std::array<double, 3>>& directions, const std::a
   return best;
 }
 
+/// The directions nearest to omega, by their index: each once for every tiny push that leads to it, of the 48 that the cube's
+/// symmetries make of one. All the same, but for what lies between cells.
+std::vector<int> NearestAround(const DirectionSet& set, const std::array<double, 3>& omega)
+{
+  const double length = glm::length(Vector(omega));
+  std::array<double, 3> push = { 1e-9 * length, 2e-9 * length, 3e-9 * length };
+  std::vector<int> nearest;
+  do
+  {
+    for (int signs = 0; signs < 8; ++signs)
+    {
+      std::array<double, 3> pushed = omega;
+      for (int a = 0; a < 3; ++a)
+      {
+        pushed[a] += (signs >> a & 1) != 0 ? -push[a] : push[a];
+      }
+      nearest.push_back(Nearest(set, pushed));
+    }
+  } while (std::next_permutation(push.begin(), push.end()));
+  return nearest;
+}
+
 std::vector<std::array<Rgb, 3>> BoundaryOf(
   const DirectionSet& set, const Illumination& illumination, const std::array<bool, 3>& periodic)
 {
@@ -47,10 +69,13 @@ std::vector<std::array<Rgb, 3>> BoundaryOf(
   {
     if (light.type == LightType::Directional)
     {
-      const int i = Nearest(set, light.direction);
-      for (int c = 0; c < 3; ++c)
+      const std::vector<int> nearest = NearestAround(set, light.direction);
+      for (const int i : nearest)
       {
-        distant[i][c] += light.power[c] / set.directions[i].weight;
+        for (int c = 0; c < 3; ++c)
+        {
+          distant[i][c] += light.power[c] / (set.directions[i].weight * static_cast<double>(nearest.size()));
+        }
       }
     }
   }

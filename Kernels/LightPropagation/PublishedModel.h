@@ -34,8 +34,8 @@ namespace tyndall
 ///    side (Fig. 2); in later orders rays start with nothing.
 ///  - One scattering order is one propagation of all maps followed by Eq. (4); 3 orders are 3 propagations, and I then
 ///    holds light that was scattered up to 3 times.
-///  - Directional lights shine along the nearest direction of the set, with radiance irradiance / w_i. Point, spot and
-///    rectangle lights are not part of the method.
+///  - Directional lights shine along the nearest direction of the set, with radiance irradiance / w_i; in equal parts along
+///    several that are equally near. Point, spot and rectangle lights are not part of the method.
 ///  - A ray that leaves through an edge leaves half through either side, and enters with the mean of both.
 ///  - Periodic axes are ours: a ray that leaves through a side goes on with its own radiance; one that is behind the last
 ///    plane goes on from the first in the next order, and is left over until then. Light that enters sideways starts on

@@ -283,6 +283,21 @@ int MarchingAxis(const Grid& grid, const std::array<double, 3>& omega)
   return axis;
 }
 
+std::vector<int> MarchingAxes(const Grid& grid, const std::array<double, 3>& omega)
+{
+  const int first = MarchingAxis(grid, omega);
+  const double crossings = std::abs(omega[first]) / grid.spacing[first];
+  std::vector<int> axes;
+  for (int axis = 0; axis < 3; ++axis)
+  {
+    if (std::abs(omega[axis]) / grid.spacing[axis] >= (1.0 - OnBorder) * crossings)
+    {
+      axes.push_back(axis);
+    }
+  }
+  return axes;
+}
+
 std::vector<Bundle> BundlesAlong(int axis, const Grid& grid, const std::array<bool, 3>& periodic,
   const DirectionSet& set, int mapResolution, RayStarts starts)
 {

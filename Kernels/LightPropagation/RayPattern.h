@@ -84,6 +84,9 @@ PlaneAxes AcrossAxis(int axis);
 /// moves more than one voxel aside.
 int MarchingAxis(const Grid& grid, const std::array<double, 3>& omega);
 
+/// All of them, where a direction crosses the planes of several axes alike.
+std::vector<int> MarchingAxes(const Grid& grid, const std::array<double, 3>& omega);
+
 /// Where the rays of a bundle start within a voxel of the first plane, or within its part on a finer lattice.
 enum class RayStarts
 {

@@ -24,19 +24,7 @@ std::string Text(const char* format, double value)
 }
 }
 
-/// W that the sky, the environment and shining faces send into the box.
-Rgb FusedSolver::PowerFromOutside() const
-{
-  Rgb power = this->PowerInSweeps();
-  const Rgb ofFlight = this->Flight && !this->UsualFlight ? this->Flight->PowerIn() : Rgb{};
-  for (int c = 0; c < this->Channels; ++c)
-  {
-    power[c] += ofFlight[c];
-  }
-  return power;
-}
-
-/// The part of it that sweeps bring, along the directions of scattered light.
+/// W that sweeps bring along the directions of scattered light.
 Rgb FusedSolver::PowerInSweeps() const
 {
   Rgb expected = {};

@@ -67,6 +67,19 @@ struct SweepTally
   Rgb onTheWay = {}; ///< left in the maps of a periodic axis
 };
 
+inline void Add(SweepTally& sum, const SweepTally& tally)
+{
+  for (int c = 0; c < 3; ++c)
+  {
+    for (int face = 0; face < 6; ++face)
+    {
+      sum.in[face][c] += tally.in[face][c];
+      sum.out[face][c] += tally.out[face][c];
+    }
+    sum.onTheWay[c] += tally.onTheWay[c];
+  }
+}
+
 /// Radiance, W / (length^2 sr), of `direction` (an index into the direction set; for beams irradiance and 0) that comes
 /// in through `face`.
 using SweepBoundary = std::function<Rgb(int direction, int face)>;
