@@ -211,8 +211,8 @@ static void FILL_BORDER(sweep_state* state, const __global float* radiance)
 #endif
 
 #if ENTERING
-// The rays of row y by the face they come through, see SweepEntering.cl.
-static void COUNT_ENTERING(sweep_state* state, int y, bool first, const __global float** in,
+// The rays of row y by the face they come through, see SweepEntering.cl. `own` is the row itself, where rays come from.
+static void COUNT_ENTERING(sweep_state* state, int y, bool first, const __global float** in, const __global float* own,
   const __global bundle_info* bundle, int moveU, int moveV, float part)
 {
   for (int m = 0; m < MEMBERS; ++m)
@@ -226,7 +226,7 @@ static void COUNT_ENTERING(sweep_state* state, int y, bool first, const __global
     const int dv = bundle->move[m][2] * moveU + bundle->move[m][3] * moveV;
     if (du != 0 && dv != 0)
     {
-      add_through_edge(state, y, du, dv, in[m], part);
+      add_through_edge(state, y, du, dv, in[m], own + FIRST(m, 0), part);
     }
     else if (du != 0)
     {
@@ -279,6 +279,8 @@ static void CROSS_PLANE(sweep_state* state, __global float* map, const __global 
       const bool inside = y >= 0 && y < height;
       const int wrapped = inside ? y : (y % height + height) % height;
       const float part = crossing->part[s];
+      const __global float* before = state->ring + ((s - 1) & 1) * (RING_ROWS * MAX_MEMBERS * CHANNELS * ROW);
+      const __global float* own = before + (y & (RING_ROWS - 1)) * (MAX_MEMBERS * CHANNELS * ROW); // where s > 0
       const __global float* in[MEMBERS];
 #pragma unroll
       for (int m = 0; m < MEMBERS; ++m)
@@ -293,12 +295,10 @@ static void CROSS_PLANE(sweep_state* state, __global float* map, const __global 
         }
         else
         {
-          const __global float* ring = state->ring + ((s - 1) & 1) * (RING_ROWS * MAX_MEMBERS * CHANNELS * ROW);
-          row = ring + (from & (RING_ROWS - 1)) * (MAX_MEMBERS * CHANNELS * ROW);
+          row = before + (from & (RING_ROWS - 1)) * (MAX_MEMBERS * CHANNELS * ROW);
           if (inside && (du != 0 || dv != 0))
           {
-            COUNT_ESCAPED(state, ring + (y & (RING_ROWS - 1)) * (MAX_MEMBERS * CHANNELS * ROW), y, m, du, dv, part,
-              radiance, outside);
+            COUNT_ESCAPED(state, own, y, m, du, dv, part, radiance, outside);
           }
         }
         if (!PERIODIC_V && (from < 0 || from >= height))
@@ -313,15 +313,12 @@ static void CROSS_PLANE(sweep_state* state, __global float* map, const __global 
 #if ENTERING
       if (inside)
       {
-        COUNT_ENTERING(state, y, s == 0, in, bundle, crossing->moveU[s], crossing->moveV[s], part);
+        COUNT_ENTERING(state, y, s == 0, in, own, bundle, crossing->moveU[s], crossing->moveV[s], part);
       }
 #endif
       if (part < 1.0f)
       {
-        MOVE_PART(state, part,
-          state->ring + ((s - 1) & 1) * (RING_ROWS * MAX_MEMBERS * CHANNELS * ROW) +
-            (y & (RING_ROWS - 1)) * (MAX_MEMBERS * CHANNELS * ROW),
-          in);
+        MOVE_PART(state, part, own, in);
       }
       STAGE_ROW(state, wrapped, inside, in, out, crossing->length[s], bundle);
     }

@@ -16,7 +16,8 @@ static void add_entering(sweep_state* state, int y, int face, const __global flo
   }
 }
 
-// Part of the rays that come from column x - du into column x - du of row y: what enters x itself comes through u after that.
+// Part of the rays that come from column x - du into column x - du of row y: what enters x itself comes through u after that, or
+// leaves the box.
 static void add_beside(sweep_state* state, int y, int du, int face, const __global float* rays, float part)
 {
   const int rows = state->sizeV * ROW;
@@ -27,18 +28,23 @@ static void add_beside(sweep_state* state, int y, int du, int face, const __glob
     __global float* sum = state->planes + (PLANE_ENTERING + ENTERING_FACES * c + face) * rows + y * ROW;
     for (int x = 0; x < state->width; x += REAL_WIDTH)
     {
-      // A row's last floats and what is before its first are never looked at.
+      // A row's last floats and what is before its first are never read.
       const real ray = select(load_real(x, from), (real)0.0f, LANES >= size - x);
       store_real(multiply_add(ray, (real)part, load_real(x - du, sum)), x - du, sum);
     }
 #if PERIODIC_U
     sum[du > 0 ? size - 1 : 0] += part * from[du > 0 ? 0 : size - 1];
+#else
+    sum[du > 0 ? size - 1 : 0] += part * from[du > 0 ? size : -1];
 #endif
   }
 }
 
 // Part of the rays that go through the edge between four voxels: half of it passes the voxel beside, half the one before.
-static void add_through_edge(sweep_state* state, int y, int du, int dv, const __global float* rays, float part)
+//   rays  by where they come to
+//   own   row y, by where they come from
+static void add_through_edge(
+  sweep_state* state, int y, int du, int dv, const __global float* rays, const __global float* own, float part)
 {
   const float half_part = 0.5f * part;
   const int u_face = du > 0 ? ENTERING_LOW_U : ENTERING_HIGH_U;
@@ -52,5 +58,9 @@ static void add_through_edge(sweep_state* state, int y, int du, int dv, const __
   add_entering(state, y, v_face, rays, half_part);
   add_beside(state, y, du, v_face, rays, half_part);
   add_entering(state, y, u_face, rays, half_part);
+  if (!PERIODIC_V && y == (dv > 0 ? height - 1 : 0))
+  {
+    add_entering(state, y, u_face, own - du, half_part); // on their way out of the box
+  }
 }
 #endif
