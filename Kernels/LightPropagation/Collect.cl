@@ -46,6 +46,30 @@ __kernel void collect(__global float* path, __global float* fluence, __global fl
   tally[channel * get_global_size(0) + get_global_id(0)] = (float2)(sum_of(absorbed), sum_of(scattered));
 }
 
+// What gets out of the box of the light that sets out from each voxel, more than the sweep said: not more than half of what there is.
+// extra  of a source of 1, W length
+// tally  [channel][chunk] W
+__kernel void let_escape(__global float* path, const __global float* source, const __global float* extra,
+  const __global float* sigma_t, __global float* tally, ulong stride, int one_sigma_t)
+{
+  const ulong channel = get_global_id(1);
+  const ulong begin = get_global_id(0) * CHUNK;
+  const ulong end = min(stride, begin + CHUNK);
+  path += channel * stride;
+  source += channel * stride;
+  extra += channel * stride;
+  sigma_t += one_sigma_t ? 0 : channel * stride;
+  float sum = 0.0f;
+  for (ulong i = begin; i < end; ++i)
+  {
+    const float most = 0.5f * path[i];
+    const float escapes = clamp(source[i] * extra[i], -most, most);
+    path[i] -= escapes;
+    sum += sigma_t[i] * escapes;
+  }
+  tally[channel * get_global_size(0) + get_global_id(0)] = sum;
+}
+
 // All that was scattered but what the last order left over: from that, in `source`, and the fluence of all orders. A work-item a
 // value of a channel.
 __kernel void gather_scattered(const __global float* fluence, __global float* source, const __global float* sigma_s, ulong stride)

@@ -28,7 +28,7 @@ double FaceArea(const Grid& grid, int axis)
 }
 
 FirstFlight::FirstFlight(const Grid& grid, const PropagationSettings& settings, const DirectionSet& directions,
-  RayStarts starts, const Illumination& illumination, const Environment& farAway, bool leavesEven)
+  RayStarts starts, const Illumination& illumination, const Environment& farAway)
   : TheGrid(grid)
   , Settings(settings)
   , Directions(directions)
@@ -51,17 +51,10 @@ FirstFlight::FirstFlight(const Grid& grid, const PropagationSettings& settings, 
       }
     }
   }
-  this->FindEvenPart(leavesEven);
+  this->FindRange();
 }
 
-FirstFlight::FirstFlight(const FirstFlight& other, const DirectionSet& directions, RayStarts starts,
-  const Illumination& illumination, const Environment& farAway)
-  : FirstFlight(other.TheGrid, other.Settings, directions, starts, illumination, farAway, false)
-{
-  this->EvenPart = other.EvenPart;
-}
-
-void FirstFlight::FindEvenPart(bool leavesEven)
+void FirstFlight::FindRange()
 {
   Rgb least, most = {};
   least.fill(std::numeric_limits<double>::max());
@@ -80,9 +73,8 @@ void FirstFlight::FindEvenPart(bool leavesEven)
   }
   for (int c = 0; c < 3; ++c)
   {
-    const bool even = most[c] <= 0.0 || (leavesEven && most[c] - least[c] <= Rounding * most[c]);
-    this->AnyLight = this->AnyLight || !even;
-    this->EvenPart[c] = !leavesEven ? 0.0 : even ? most[c] : least[c];
+    this->AnyLight = this->AnyLight || most[c] > 0.0;
+    this->AllAlike = this->AllAlike && (most[c] <= 0.0 || most[c] - least[c] <= Rounding * most[c]);
   }
 }
 
@@ -91,7 +83,7 @@ Rgb FirstFlight::Incoming(int direction, int face) const
   Rgb radiance = this->Faces[face];
   for (int c = 0; c < 3; ++c)
   {
-    radiance[c] = std::max(radiance[c] + this->FromFarAway[direction][c] - this->EvenPart[c], 0.0);
+    radiance[c] += this->FromFarAway[direction][c];
   }
   return radiance;
 }

@@ -14,26 +14,18 @@ namespace tyndall
 /// The unscattered light of shining faces, sky and environment, from where it comes in to where it first meets the medium, along a set
 /// of directions. Shadows have edges, which want many directions; scattered light is smooth and does with few: so the many
 /// are swept once and not once an order.
-///
-/// What comes in evenly from everywhere may be left to others: in a medium that only scatters, unscattered and scattered light
-/// then add up to the same radiance everywhere, and do so in a solver only along the same directions.
 class FirstFlight
 {
 public:
   /// @param settings, directions  must stay
   /// @param illumination  its faces and sky
   /// @param farAway  its environment without peaks
-  /// @param leavesEven  what comes in evenly is left to others
   FirstFlight(const Grid& grid, const PropagationSettings& settings, const DirectionSet& directions, RayStarts starts,
-    const Illumination& illumination, const Environment& farAway, bool leavesEven);
-  /// The same light along other directions.
-  FirstFlight(const FirstFlight& other, const DirectionSet& directions, RayStarts starts,
     const Illumination& illumination, const Environment& farAway);
 
-  /// Radiance that comes in along every direction through every open face, and is left to others. W / (length^2 sr)
-  const Rgb& Even() const { return this->EvenPart; }
-  bool Shines() const { return this->AnyLight; } ///< there is more than that
-  /// Radiance but for that, in the mean over the directions that this one stands for.
+  bool Shines() const { return this->AnyLight; }
+  bool IsEven() const { return this->AllAlike; } ///< the same comes in along every direction through every open face
+  /// Radiance, in the mean over the directions that this one stands for. W / (length^2 sr)
   Rgb Incoming(int direction, int face) const;
   Rgb PowerIn() const; ///< W through the box's faces, were there rays everywhere
 
@@ -45,7 +37,7 @@ public:
     const Monitor& monitor) const;
 
 private:
-  void FindEvenPart(bool leavesEven);
+  void FindRange();
   bool IsLit(int direction) const;
   std::vector<Bundle> LitBundles(int axis, int way) const;
 
@@ -57,7 +49,7 @@ private:
   bool MergesMirrors;
   std::array<Rgb, 6> Faces;
   std::vector<Rgb> FromFarAway; ///< by direction, in the mean over those that it stands for
-  Rgb EvenPart = {};
   bool AnyLight = false;
+  bool AllAlike = true;
 };
 }

@@ -1,45 +1,43 @@
 // Unscattered light from outside along directions of its own, in the solver.
 #include "FusedSolver.h"
 
+#include "TyndallKernelSources.h"
+
 #include <algorithm>
 #include <cmath>
 
 namespace tyndall
 {
-/// All channels and voxels together.
-bool FusedSolver::ScattersMoreThanItAbsorbs() const
-{
-  double scattered = 0.0, absorbed = 0.0;
-  for (std::size_t i = 0; i < this->TheMedium.grid.VoxelCount(); ++i)
-  {
-    for (int c = 0; c < this->Channels; ++c)
-    {
-      scattered += this->SigmaS(i, c);
-      absorbed += this->TheMedium.sigma_a.At(i, c);
-    }
-  }
-  return scattered > absorbed;
-}
-
-/// What comes in evenly has the error of the usual directions times the part that is absorbed along these, and times the part that is
-/// scattered along finer ones.
+/// What comes in evenly from everywhere is what accelerated orders carry already.
 void FusedSolver::FindFlight(const Environment& farAway)
 {
-  const Grid& grid = this->TheMedium.grid;
-  const FirstFlight flight(grid, this->Settings, this->FineDirections, RayStarts::Staggered, this->Outside, farAway,
-    this->ScattersMoreThanItAbsorbs());
-  if (!flight.Shines())
+  const FirstFlight flight(
+    this->TheMedium.grid, this->Settings, this->FineDirections, this->FineStarts(), this->Outside, farAway);
+  if (!flight.Shines() || (this->Accelerated && flight.IsEven()))
   {
     return;
   }
   this->Flight.emplace(flight);
   if (this->Accelerated)
   {
-    this->UsualFlight.emplace(flight, this->Directions, this->Starts(), this->Outside, farAway);
+    this->UsualFlight.emplace(
+      this->TheMedium.grid, this->Settings, this->Directions, this->Starts(), this->Outside, farAway);
   }
 }
 
-/// Where orders are added up one by one, the sweeps after it carry scattered light and what comes in evenly.
+/// What a sky of radiance 1 is before it is scattered, along the finer directions and along the usual ones. Read as how much of
+/// the light that sets out from a voxel gets out of the box (reciprocity), it tells how far scattered light is off.
+std::array<FusedSolver::FlightLight, 2> FusedSolver::LightOfEvenSky(const Monitor& monitor)
+{
+  Illumination evenly;
+  evenly.sky = { 1.0, 1.0, 1.0 };
+  const Grid& grid = this->TheMedium.grid;
+  const FirstFlight fine(grid, this->Settings, this->FineDirections, this->FineStarts(), evenly, {});
+  const FirstFlight usual(grid, this->Settings, this->Directions, this->Starts(), evenly, {});
+  return { this->LightOf(fine, monitor), this->LightOf(usual, monitor) };
+}
+
+/// Where orders are added up one by one, the sweeps after it carry scattered light.
 void FusedSolver::PropagateFlight(const Monitor& monitor)
 {
   if (!this->Flight || this->UsualFlight)
@@ -52,6 +50,60 @@ void FusedSolver::PropagateFlight(const Monitor& monitor)
       this->Flight->Deposit(this->TheDevice, volume, first, this->Workspace, monitor), first, volume.channels);
   });
   this->CheckEntering(Minus(this->Result.balance.entered, before), this->Flight->PowerIn());
+  this->FindExtraEscape(monitor);
+}
+
+/// More, or less, of what sets out from a voxel gets out of the box along the finer directions than along the usual ones. With that put
+/// right, light that is the same everywhere stays so whatever comes in along the finer directions.
+void FusedSolver::FindExtraEscape(const Monitor& monitor)
+{
+  const auto [fine, usual] = this->LightOfEvenSky(monitor);
+  std::vector<float> extra(this->Stride * this->Channels, 0.0f);
+  for (int c = 0; c < this->Channels; ++c)
+  {
+    for (std::size_t i = 0; i < this->TheMedium.grid.VoxelCount(); ++i)
+    {
+      const std::size_t at = c * this->Stride + i;
+      const double sigma_t = this->SigmaT(i, c);
+      extra[at] = sigma_t > 0.0 ? static_cast<float>((fine.path[at] - usual.path[at]) / sigma_t) : 0.0f;
+    }
+  }
+  this->ExtraEscape = Buffer<float>(this->TheDevice, extra, "what escapes of scattered light");
+}
+
+/// After a sweep, from the source that it had.
+void FusedSolver::LetEscape()
+{
+  cl::Kernel kernel = this->TheDevice.Kernel("let_escape", { kernel_source::Numerics, kernel_source::Collect });
+  const std::size_t chunks = (this->Stride + CollectChunk - 1) / CollectChunk;
+  Buffer<float> tally(this->TheDevice, chunks * this->Channels, "sums");
+  With(kernel, this->Path, this->Source, this->ExtraEscape, this->Extinction, tally, cl_ulong(this->Stride),
+    cl_int(this->SharedExtinction));
+  this->TheDevice.Queue().enqueueNDRangeKernel(
+    kernel, cl::NullRange, cl::NDRange(chunks, this->Channels), cl::NDRange(1, 1));
+  const std::vector<float> sums = tally.Read();
+  for (std::size_t i = 0; i < sums.size(); ++i)
+  {
+    this->Escaped[i / chunks] += sums[i];
+    this->Result.balance.escaped[i / chunks] += sums[i];
+  }
+}
+
+/// Through which faces that was is not known: as the rest.
+void FusedSolver::ShareEscape()
+{
+  for (int c = 0; c < this->Channels; ++c)
+  {
+    double through = 0.0;
+    for (const Rgb& face : this->Result.facePowerOut)
+    {
+      through += face[c];
+    }
+    for (Rgb& face : this->Result.facePowerOut)
+    {
+      face[c] *= through > 0.0 ? 1.0 + this->Escaped[c] / through : 1.0;
+    }
+  }
 }
 
 FusedSolver::FlightLight FusedSolver::LightOf(const FirstFlight& flight, const Monitor& monitor)
@@ -95,30 +147,26 @@ double FusedSolver::PartOfDifference(std::size_t voxel, int channel) const
 }
 
 /// Where orders are accelerated, sweeps carry all light along the usual directions, as the low-order system wants it. What the finer ones
-/// see of the unscattered light more, or less, is added like the light of lamps. Power that this adds to
+/// see of the unscattered light more, or less, is added like the light of lamps: of the part that they see of an even sky, so that
+/// power is as in the sweeps, in every voxel and through every face, and what is even stays so. Power that this adds to
 /// voxels or takes from them is made up for by what leaves the box.
 void FusedSolver::AddFlightDifference(const Monitor& monitor)
 {
   const Monitor ofFlight = monitor ? Monitor([&](double done) { return monitor(this->Progress(0, done)); }) : Monitor();
   const FlightLight fine = this->LightOf(*this->Flight, ofFlight);
   const FlightLight usual = this->LightOf(*this->UsualFlight, ofFlight);
+  const auto [evenFine, evenUsual] = this->LightOfEvenSky(ofFlight);
+  const auto ratio = [](double of, double to) { return to > 0.0 ? of / to : 1.0; };
   std::vector<float> flux = this->Settings.netFlux ? this->Flux.Read() : std::vector<float>();
-  Rgb in = {}, usualIn = {};
+  Rgb in = {};
   for (int c = 0; c < this->Channels; ++c)
   {
-    double out = 0.0, more = 0.0;
-    for (int face = 0; face < 6; ++face)
-    {
-      in[c] += fine.tally.in[face][c];
-      usualIn[c] += usual.tally.in[face][c];
-      out += fine.tally.out[face][c];
-    }
-    const double scale =
-      in[c] > 0.0 ? usualIn[c] / in[c] : 1.0; // the sweeps' radiance is right, in thick media to their end
+    double more = 0.0, out = 0.0;
     for (std::size_t i = 0; i < this->TheMedium.grid.VoxelCount(); ++i)
     {
       const std::size_t at = c * this->Stride + i;
       const double part = this->PartOfDifference(i, c);
+      const double scale = ratio(evenUsual.path[at], evenFine.path[at]);
       const double difference = part * (scale * fine.path[at] - usual.path[at]);
       this->Lamps[at] += static_cast<float>(difference);
       more += this->SigmaT(i, c) * difference;
@@ -128,14 +176,18 @@ void FusedSolver::AddFlightDifference(const Monitor& monitor)
         flux[along] += static_cast<float>(part * (scale * fine.flux[along] - usual.flux[along]));
       }
     }
+    std::array<double, 6> leaves;
     for (int face = 0; face < 6; ++face)
     {
-      more += scale * fine.tally.out[face][c] - usual.tally.out[face][c];
+      in[c] += fine.tally.in[face][c];
+      const double scale = ratio(evenUsual.tally.out[face][c], evenFine.tally.out[face][c]);
+      leaves[face] = scale * fine.tally.out[face][c] - usual.tally.out[face][c];
+      more += leaves[face];
+      out += fine.tally.out[face][c];
     }
     for (int face = 0; face < 6 && out > 0.0; ++face)
     {
-      const double leaves = scale * fine.tally.out[face][c] - usual.tally.out[face][c];
-      const double power = leaves - more * fine.tally.out[face][c] / out;
+      const double power = leaves[face] - more * fine.tally.out[face][c] / out;
       this->LampFaces[face][c] += power;
       this->LampBalance.escaped[c] += power;
     }

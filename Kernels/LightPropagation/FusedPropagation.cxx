@@ -19,7 +19,6 @@ namespace tyndall
 namespace
 {
 constexpr double Pi = 3.14159265358979323846;
-constexpr std::size_t Chunk = 4096; ///< as in Collect.cl
 constexpr int MostOrders = 100000;
 /// Planes that a ray goes round a periodic axis before it is given up, or waits for the next order.
 constexpr int ManyPlanes = 8192;
@@ -64,7 +63,12 @@ void FusedSolver::RunOrders(const Monitor& monitor)
       this->Stranded = this->OnTheWay;
     }
     const Rgb ofLamps = this->Result.balance.entered;
+    const bool shone = this->Shining;
     this->PropagateOrder(order, ofOrder);
+    if (shone && this->ExtraEscape.Size() > 0)
+    {
+      this->LetEscape();
+    }
     if (order == 0)
     {
       this->CheckEntering(Minus(this->Result.balance.entered, ofLamps), this->PowerInSweeps());
@@ -79,6 +83,7 @@ void FusedSolver::RunOrders(const Monitor& monitor)
   {
     this->SweepEmptySlabs(monitor);
   }
+  this->ShareEscape();
 }
 
 void FusedSolver::Load()
@@ -280,13 +285,7 @@ Rgb FusedSolver::Incoming(int direction, int face) const
 {
   if (this->Flight)
   {
-    Rgb radiance = this->Flight->Even();
-    const Rgb rest = this->UsualFlight ? this->UsualFlight->Incoming(direction, face) : Rgb{};
-    for (int c = 0; c < 3; ++c)
-    {
-      radiance[c] += rest[c];
-    }
-    return radiance;
+    return this->UsualFlight ? this->UsualFlight->Incoming(direction, face) : Rgb{};
   }
   Rgb radiance = this->Outside.faces[face];
   const std::vector<int> itself = { direction };
@@ -461,7 +460,7 @@ void FusedSolver::CollectOrder(int order)
   cl::Kernel kernel = this->TheDevice.Kernel("collect", { kernel_source::Numerics, kernel_source::Collect },
     "-DREAL_WIDTH=" + std::to_string(vector) + " -DSCATTERS=" + std::to_string(this->ScattersAtAll()));
   const auto [begin, end] = this->SweptValues();
-  const std::size_t chunks = (end - begin + Chunk - 1) / Chunk;
+  const std::size_t chunks = (end - begin + CollectChunk - 1) / CollectChunk;
   Buffer<cl_float2> tally(this->TheDevice, chunks * this->Channels, "sums");
   With(kernel, this->Path, this->Fluence, this->Source, this->Extinction, this->SigmaSOnDevice(), tally,
     cl_ulong(this->Stride), cl_ulong(begin), cl_ulong(end), cl_int(this->SharedExtinction),

@@ -27,6 +27,8 @@ inline Rgb Minus(const Rgb& a, const Rgb& b)
   return { a[0] - b[0], a[1] - b[1], a[2] - b[2] };
 }
 
+constexpr std::size_t CollectChunk = 4096; ///< CHUNK of Collect.cl
+
 /// One solve, from the arrays of the medium to those of the light.
 class FusedSolver
 {
@@ -92,7 +94,6 @@ private:
   void PropagateOrder(int order, const Monitor& monitor);
   void PropagateSweeps(const AxisSweeps& sweeps, const SweepBoundary& boundary, int mostPlanes, const Monitor& monitor);
   void PropagateLights(const Monitor& monitor);
-  bool ScattersMoreThanItAbsorbs() const;
   void FindFlight(const Environment& farAway);
   void PropagateFlight(const Monitor& monitor);
   struct FlightLight
@@ -101,6 +102,11 @@ private:
     SweepTally tally;
   };
   FlightLight LightOf(const FirstFlight& flight, const Monitor& monitor);
+  std::array<FlightLight, 2> LightOfEvenSky(const Monitor& monitor);
+  RayStarts FineStarts() const { return this->Accelerated ? this->Starts() : RayStarts::Staggered; }
+  void FindExtraEscape(const Monitor& monitor);
+  void LetEscape();
+  void ShareEscape();
   void AddFlightDifference(const Monitor& monitor);
   double PartOfDifference(std::size_t voxel, int channel) const;
   void PropagatePeaks(const Monitor& monitor);
@@ -182,6 +188,8 @@ private:
   std::optional<FirstFlight> Flight;
   std::optional<FirstFlight>
     UsualFlight; ///< accelerated: the same light along the usual directions, as the sweeps carry it
+  Buffer<float> ExtraEscape; ///< not accelerated: what escapes of a source, more than sweeps say, W length
+  Rgb Escaped = {};          ///< W, that way
 
   LightField Result;
   std::chrono::steady_clock::time_point Start;
