@@ -147,7 +147,7 @@ void WriteLight(LightField&& light, vtkImageData* output)
   {
     cells->RemoveArray(earlier); // of another solve that the input has been through
   }
-  for (const char* earlier : { "stored_directions", "scattered", "packing_loss", "fluence_bias" })
+  for (const char* earlier : { "stored_directions", "scattered", "packing_loss", "fluence_bias", "half_range_flux" })
   {
     output->GetFieldData()->RemoveArray(earlier);
   }
@@ -175,6 +175,10 @@ void WriteLight(LightField&& light, vtkImageData* output)
     channels);
   const std::array<Rgb, 6>& out = light.facePowerOut;
   AddFact(output, "face_power_out", Channels({ out[0], out[1], out[2], out[3], out[4], out[5] }, channels), channels);
+  if (light.halfRangeFlux > 0.0)
+  {
+    AddFact(output, "half_range_flux", std::vector<double>{ light.halfRangeFlux }, 1);
+  }
   if (!light.storedDirections.empty())
   {
     AddFact(output, "stored_directions", Flat(light.storedDirections), 3);

@@ -167,6 +167,7 @@ void vtkLightPropagationMaps::Note(const tyndall::LightField& light)
   this->Seconds = any ? light.convergence.back().seconds : 0.0;
   this->EstimatedError = light.relativeError;
   this->BalanceError = light.balance.RelativeError(light.channels);
+  this->HalfRangeFlux = light.halfRangeFlux;
   this->DeviceName = light.device;
   this->LeftOut = tyndall::Lines(light.leftOut);
 }
@@ -196,6 +197,7 @@ void vtkLightPropagationMaps::PrintSelf(ostream& os, vtkIndent indent)
   os << indent << "Residual: " << this->Residual << "\n";
   os << indent << "EstimatedError: " << this->EstimatedError << "\n";
   os << indent << "BalanceError: " << this->BalanceError << "\n";
+  os << indent << "HalfRangeFlux: " << this->HalfRangeFlux << "\n";
   os << indent << "Seconds: " << this->Seconds << "\n";
   os << indent << "DeviceName: " << this->DeviceName << "\n";
   os << indent << "LeftOut: " << this->LeftOut << "\n";

@@ -43,7 +43,7 @@ struct LightField;
  * | `scattered_radiance` | StoredDirections x 1 or 3 | W/(length^2 sr) | radiance scattered into each stored direction |
  *
  * and field data `energy_balance` (W: entered, emitted, absorbed, escaped, left over), `face_power_out` (W through -x, +x,
- * -y, +y, -z, +z), `left_out` (what the scene did not need), `device`, `stored_directions`.
+ * -y, +y, -z, +z), `half_range_flux` (see HalfRangeFlux), `left_out` (what the scene did not need), `device`, `stored_directions`.
  * Output 1: vtkTable, one row a scattering order: `iteration`, `seconds`, `residual`, `change`, `absorbed`, `escaped`, `left_over`.
  *
  * Without lights, environment, SkyColor, FaceRadiance and emission the result is dark, with a warning.
@@ -220,11 +220,14 @@ public:
 
   ///@{
   /// What came of the last update: scattering orders done, estimated relative error of fluence left by those that were not
-  /// done, estimated relative error of fluence altogether (0 without EstimateError), relative error of the energy balance, seconds, the device's name, and what the scene did not need, one a line.
+  /// done, estimated relative error of fluence altogether (0 without EstimateError), relative error of the energy balance, what the
+  /// directions carry of the power that even light brings through a face, over the exact value (0.9875 with 25 directions per face: light
+  /// that enters from faces and sky is off by as much), seconds, the device's name, and what the scene did not need, one a line.
   vtkGetMacro(Orders, int);
   vtkGetMacro(Residual, double);
   vtkGetMacro(EstimatedError, double);
   vtkGetMacro(BalanceError, double);
+  vtkGetMacro(HalfRangeFlux, double);
   vtkGetMacro(Seconds, double);
   vtkGetCharFromStdStringMacro(DeviceName);
   vtkGetCharFromStdStringMacro(LeftOut);
@@ -268,6 +271,7 @@ private:
   double Residual = 0.0;
   double EstimatedError = 0.0;
   double BalanceError = 0.0;
+  double HalfRangeFlux = 0.0;
   double Seconds = 0.0;
   std::string DeviceName;
   std::string LeftOut;

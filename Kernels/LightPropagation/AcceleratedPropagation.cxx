@@ -92,7 +92,6 @@ void FusedSolver::RunAccelerated(const Monitor& monitor)
     this->SweepAll(sweep, ofSweep);
     if (sweep == 0)
     {
-      this->CheckEntering(Minus(this->Result.balance.entered, this->LampBalance.entered), this->PowerInSweeps());
       this->Fluence.Write(this->WithLamps(this->Path, 1.0 / this->TheMedium.grid.VoxelVolume()).data());
       this->Result.fluenceDirect = this->Interleaved(this->Fluence, 1.0);
       this->MakeSystems();

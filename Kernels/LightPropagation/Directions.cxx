@@ -99,6 +99,16 @@ DirectionSet SoundDirections(int perFace, const std::string& name)
   return set;
 }
 
+double HalfRangeFlux(const DirectionSet& set)
+{
+  double flux = 0.0;
+  for (const Direction& direction : set.directions)
+  {
+    flux += direction.weight * std::max(direction.omega[2], 0.0) / Pi;
+  }
+  return flux;
+}
+
 int Nearest(const DirectionSet& set, const std::array<double, 3>& omega)
 {
   int axis = 0;

@@ -39,6 +39,10 @@ DirectionSet PublishedDirections(int perFace);
 /// @param perFace  directions per face, a square number, else InvalidInput that calls it `name`
 DirectionSet SoundDirections(int perFace, const std::string& name = "DirectionsPerFace");
 
+/// What a set carries of the flux of even light through a face, over the exact pi: the kink of |mu| at grazing directions makes it
+/// 0.9875 with 25 directions per face, 1.0019 with 100. Light that enters is off by as much.
+double HalfRangeFlux(const DirectionSet& set);
+
 /// Which direction's cell holds `omega` (any length but 0).
 int Nearest(const DirectionSet& set, const std::array<double, 3>& omega);
 

@@ -394,7 +394,7 @@ static void gather_ways(const emission_scene* s, const lit_voxel* voxel, const w
   }
 }
 
-// With as many rays as it takes, shared out among the ways to turn the scene.
+// With as many rays as it takes, in each way to turn the scene: half of a lattice in two ways is not as good as all of it in one.
 static void gather(const emission_scene* s, lit_voxel* voxel, const __global float* points, const __global float* sigma,
   const __global float* emission, float* sums)
 {
@@ -407,16 +407,9 @@ static void gather(const emission_scene* s, lit_voxel* voxel, const __global flo
       voxel->inside && voxel->at[a] >= s->source_first[a] && voxel->at[a] < s->source_first[a] + s->source_size[a];
   }
   find_ways(s, voxel, &ways);
-  const int all = ways.count << popcount(ways.either);
-  int begin = s->fewest / 2, most = MOST;
-  for (int shared = 1; shared < all && begin > 16; shared *= 2)
-  {
-    begin /= 2;
-    most /= 2;
-  }
-  gather_ways(s, voxel, &ways, 0, begin, points, sigma, emission, sums);
+  gather_ways(s, voxel, &ways, 0, s->fewest / 2, points, sigma, emission, sums);
   bool even = false;
-  for (int count = begin; count < most && !even; count *= 2)
+  for (int count = s->fewest / 2; count < MOST && !even; count *= 2)
   {
     gather_ways(s, voxel, &ways, count, 2 * count, points, sigma, emission, others);
     float whole = 0.0f, difference = 0.0f;

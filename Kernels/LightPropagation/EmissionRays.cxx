@@ -17,7 +17,7 @@ namespace tyndall
 namespace
 {
 constexpr int FewestRays = 32;     ///< of a voxel to the peak's box, at first
-constexpr int MostRays = 2048;     ///< the same, at last
+constexpr int MostRays = 4096;     ///< the same, at last
 constexpr double AllRays = 0x1p22; ///< at first, about, for the usual error: a second
 constexpr double UsualError = 0.02;
 

@@ -20,11 +20,6 @@ int FaceOf(int axis, bool upwards)
 {
   return 2 * axis + (upwards ? 0 : 1);
 }
-
-double FaceArea(const Grid& grid, int axis)
-{
-  return grid.Length((axis + 1) % 3) * grid.Length((axis + 2) % 3);
-}
 }
 
 FirstFlight::FirstFlight(const Grid& grid, const PropagationSettings& settings, const DirectionSet& directions,
@@ -86,25 +81,6 @@ Rgb FirstFlight::Incoming(int direction, int face) const
     radiance[c] += this->FromFarAway[direction][c];
   }
   return radiance;
-}
-
-Rgb FirstFlight::PowerIn() const
-{
-  Rgb power = {};
-  for (std::size_t d = 0; d < this->Directions.directions.size(); ++d)
-  {
-    const Direction& direction = this->Directions.directions[d];
-    for (int axis = 0; axis < 3; ++axis)
-    {
-      const Rgb radiance = this->Incoming(static_cast<int>(d), FaceOf(axis, direction.omega[axis] > 0.0));
-      const double area = this->Settings.periodic[axis] ? 0.0 : FaceArea(this->TheGrid, axis);
-      for (int c = 0; c < 3; ++c)
-      {
-        power[c] += direction.weight * std::abs(direction.omega[axis]) * area * radiance[c];
-      }
-    }
-  }
-  return power;
 }
 
 bool FirstFlight::IsLit(int direction) const

@@ -27,7 +27,6 @@ public:
   bool IsEven() const { return this->AllAlike; } ///< the same comes in along every direction through every open face
   /// Radiance, in the mean over the directions that this one stands for. W / (length^2 sr)
   Rgb Incoming(int direction, int face) const;
-  Rgb PowerIn() const; ///< W through the box's faces, were there rays everywhere
 
   /// Adds its light to the volume's path, and to its flux where that is wanted.
   /// @param firstChannel  of the three, that is the volume's first

@@ -44,12 +44,10 @@ void FusedSolver::PropagateFlight(const Monitor& monitor)
   {
     return;
   }
-  const Rgb before = this->Result.balance.entered;
   this->ForChannels([&](const SweepVolume& volume, int first) {
     this->Count(
       this->Flight->Deposit(this->TheDevice, volume, first, this->Workspace, monitor), first, volume.channels);
   });
-  this->CheckEntering(Minus(this->Result.balance.entered, before), this->Flight->PowerIn());
   this->FindExtraEscape(monitor);
 }
 
@@ -158,7 +156,6 @@ void FusedSolver::AddFlightDifference(const Monitor& monitor)
   const auto [evenFine, evenUsual] = this->LightOfEvenSky(ofFlight);
   const auto ratio = [](double of, double to) { return to > 0.0 ? of / to : 1.0; };
   std::vector<float> flux = this->Settings.netFlux ? this->Flux.Read() : std::vector<float>();
-  Rgb in = {};
   for (int c = 0; c < this->Channels; ++c)
   {
     double more = 0.0, out = 0.0;
@@ -179,7 +176,6 @@ void FusedSolver::AddFlightDifference(const Monitor& monitor)
     std::array<double, 6> leaves;
     for (int face = 0; face < 6; ++face)
     {
-      in[c] += fine.tally.in[face][c];
       const double scale = ratio(evenUsual.tally.out[face][c], evenFine.tally.out[face][c]);
       leaves[face] = scale * fine.tally.out[face][c] - usual.tally.out[face][c];
       more += leaves[face];
@@ -196,6 +192,5 @@ void FusedSolver::AddFlightDifference(const Monitor& monitor)
   {
     this->Flux.Write(flux.data());
   }
-  this->CheckEntering(in, this->Flight->PowerIn());
 }
 }

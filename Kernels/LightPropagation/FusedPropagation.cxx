@@ -62,16 +62,11 @@ void FusedSolver::RunOrders(const Monitor& monitor)
       this->PropagateLights(ofOrder);
       this->Stranded = this->OnTheWay;
     }
-    const Rgb ofLamps = this->Result.balance.entered;
     const bool shone = this->Shining;
     this->PropagateOrder(order, ofOrder);
     if (shone && this->ExtraEscape.Size() > 0)
     {
       this->LetEscape();
-    }
-    if (order == 0)
-    {
-      this->CheckEntering(Minus(this->Result.balance.entered, ofLamps), this->PowerInSweeps());
     }
     this->CollectOrder(order);
     Report(ofOrder, 1.0);
@@ -183,6 +178,15 @@ void FusedSolver::FindOutsideLight()
     {
       this->LitFromOutside = this->LitFromOutside || Total(this->Incoming(static_cast<int>(d), face)) > 0.0;
     }
+  }
+  if (this->LitFromOutside)
+  {
+    this->CheckRays(this->Directions, this->Starts(), this->BoundaryOfOrder(0));
+  }
+  if (this->Flight)
+  {
+    this->CheckRays(this->FineDirections, this->FineStarts(),
+      [this](int direction, int face) { return this->Flight->Incoming(direction, face); });
   }
 }
 
@@ -616,6 +620,7 @@ void FusedSolver::Unload()
     [](float fluence) { return static_cast<float>(fluence / (4.0 * Pi)); });
   light.storedDirections = { { 0.0, 0.0, 0.0 } };
   light.leftOut = this->LeftOut();
+  light.halfRangeFlux = HalfRangeFlux(this->Flight && !this->UsualFlight ? this->FineDirections : this->Directions);
   light.device = this->TheDevice.Name();
 }
 }

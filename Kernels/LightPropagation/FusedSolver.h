@@ -22,11 +22,6 @@ inline double Total(const Rgb& values)
   return values[0] + values[1] + values[2];
 }
 
-inline Rgb Minus(const Rgb& a, const Rgb& b)
-{
-  return { a[0] - b[0], a[1] - b[1], a[2] - b[2] };
-}
-
 constexpr std::size_t CollectChunk = 4096; ///< CHUNK of Collect.cl
 
 /// One solve, from the arrays of the medium to those of the light.
@@ -63,9 +58,8 @@ private:
   }
 
   void RunOrders(const Monitor& monitor);
-  Rgb PowerInSweeps() const;
-  /// @throws InvalidInput where rays bring far less or more of the light from outside than there is
-  void CheckEntering(const Rgb& entered, const Rgb& expected) const;
+  /// @throws InvalidInput where rays along a set of directions are too few to tell where light comes in through the box's faces
+  void CheckRays(const DirectionSet& set, RayStarts starts, const SweepBoundary& boundary) const;
   /// @throws InvalidInput where the energy balance is off by a hundredth
   void CheckBalance() const;
   void Load();

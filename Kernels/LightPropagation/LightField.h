@@ -49,6 +49,7 @@ struct LightField
   double relativeError = 0.0; ///< of fluence, estimated, root mean square over that of fluence; 0 where not asked for
   EnergyBalance balance;
   std::array<Rgb, 6> facePowerOut = {}; ///< W, through -x, +x, -y, +y, -z, +z
+  double halfRangeFlux = 0.0; ///< of the directions that light from outside came along (Directions.h); 0: there are none
   std::vector<ConvergenceRow> convergence;
   int directionsPerFace = 0;        ///< solved with, where a solver chooses (PropagationSettings::adaptDirections)
   std::vector<std::string> leftOut; ///< what the scene did not need, in words

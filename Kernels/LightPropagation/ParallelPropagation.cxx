@@ -274,6 +274,7 @@ LightField ParallelPropagation::Implementation::Result() const
   this->Ledger.WriteTo(field);
   field.leftOut =
     LeftOutAsPublished(this->TheMedium, this->Traits, this->Outside, this->Settings, this->Ledger.Orders());
+  field.halfRangeFlux = HalfRangeFlux(this->Model.Directions());
   field.device = this->TheDevice.Name();
   return field;
 }

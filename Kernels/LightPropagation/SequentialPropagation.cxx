@@ -269,6 +269,7 @@ private:
       }
     }
     this->Ledger.WriteTo(field);
+    field.halfRangeFlux = HalfRangeFlux(this->Model.Directions());
     field.device = "host, one core";
   }
 

@@ -12,8 +12,7 @@ namespace tyndall
 {
 namespace
 {
-constexpr double MissedAtMost =
-  0.3; ///< of the light that enters; a box of one voxel misses up to a fifth of one face's
+constexpr double MissedAtMost = 0.3; ///< by whole rays; a box of one voxel misses up to a fifth of one face's
 constexpr double ImbalanceAtMost = 1e-2; ///< beyond any rounding
 
 std::string Text(const char* format, double value)
@@ -24,39 +23,49 @@ std::string Text(const char* format, double value)
 }
 }
 
-/// W that sweeps bring along the directions of scattered light.
-Rgb FusedSolver::PowerInSweeps() const
+/// What enters a face along rays that march along another axis is few rays where the box is thin for the planes that they march by.
+/// Their power is right, but not where they enter.
+void FusedSolver::CheckRays(const DirectionSet& set, RayStarts starts, const SweepBoundary& boundary) const
 {
-  Rgb expected = {};
-  const SweepBoundary boundary = this->BoundaryOfOrder(0);
   const Grid& grid = this->TheMedium.grid;
-  for (std::size_t d = 0; boundary && d < this->Directions.directions.size(); ++d)
+  const std::array<bool, 3>& periodic = this->Settings.periodic;
+  Rgb whole = {}, exact = {};
+  for (int axis = 0; axis < 3; ++axis)
   {
-    const Direction& direction = this->Directions.directions[d];
-    for (int axis = 0; axis < 3; ++axis)
+    const PlaneAxes axes = AcrossAxis(axis);
+    const double planes = PlanesOfPattern(grid.size[axis], periodic[axis]);
+    for (const Bundle& bundle : BundlesAlong(axis, grid, periodic, set, this->Settings.mapResolution, starts))
     {
-      const Rgb radiance = boundary(static_cast<int>(d), 2 * axis + (direction.omega[axis] > 0.0 ? 0 : 1));
-      const double area =
-        this->Settings.periodic[axis] ? 0.0 : grid.Length((axis + 1) % 3) * grid.Length((axis + 2) % 3);
-      for (int c = 0; c < this->Channels; ++c)
+      const std::array<double, 2> moves = { bundle.tangentU * planes, bundle.tangentV * planes };
+      const std::array<double, 2> wholeMoves = { std::floor(bundle.startU + moves[0] + 1e-9),
+        std::floor(bundle.startV + moves[1] + 1e-9) };
+      for (const Member& member : bundle.members)
       {
-        expected[c] += direction.weight * std::abs(direction.omega[axis]) * area * radiance[c];
+        for (const int direction : { member.direction, member.opposite })
+        {
+          const bool swapped = member.uFromU == 0;
+          const auto add = [&](int through, double exactRays, double wholeRays) {
+            const bool upwards = set.directions[direction].omega[through] > 0.0;
+            const Rgb radiance = boundary(direction, 2 * through + (upwards ? 0 : 1));
+            for (int c = 0; c < this->Channels && !periodic[through]; ++c)
+            {
+              exact[c] += exactRays * radiance[c] * bundle.power;
+              whole[c] += wholeRays * radiance[c] * bundle.power;
+            }
+          };
+          const double across = static_cast<double>(grid.size[axes.u]) * grid.size[axes.v];
+          add(axis, across, across);
+          add(axes.u, moves[swapped] * grid.size[axes.v], wholeMoves[swapped] * grid.size[axes.v]);
+          add(axes.v, moves[!swapped] * grid.size[axes.u], wholeMoves[!swapped] * grid.size[axes.u]);
+        }
       }
     }
   }
-  return expected;
-}
-
-/// Rays start on the lattice of the voxels. Through sides that are thin for the planes they march by hardly one comes.
-void FusedSolver::CheckEntering(const Rgb& entered, const Rgb& expected) const
-{
-  const Grid& grid = this->TheMedium.grid;
   for (int c = 0; c < this->Channels; ++c)
   {
-    const double part = expected[c] > 0.0 ? entered[c] / expected[c] : 1.0;
-    if (!(std::abs(part - 1.0) <= MissedAtMost))
+    if (std::abs(whole[c] - exact[c]) > MissedAtMost * exact[c])
     {
-      throw InvalidInput("Rays bring " + Text("%.3g", 100.0 * part) +
+      throw InvalidInput("Whole rays bring " + Text("%.3g", 100.0 * whole[c] / exact[c]) +
         "% of the light that shines through the box's faces: too few of them meet the faces that shine, for voxels "
         "of " +
         Text("%g", grid.spacing[0]) + " x " + Text("%g", grid.spacing[1]) + " x " + Text("%g", grid.spacing[2]) +

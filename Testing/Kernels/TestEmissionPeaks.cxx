@@ -190,11 +190,12 @@ TEST_F(EmissionPeaks, HaveTheirNetFlux)
 
 TEST_F(EmissionPeaks, LightKobayashisVoid)
 {
-  // Against means of the reference over voxels (known to 2e-4). Measured: 0.2% and 0.4% at most.
+  // Against means of the reference over voxels (known to 2e-4). Measured: 0.33% and 0.12% at most; 1.5% at 60^3 with 0.005. The eight
+  // octants are alike, so that their mean is no better than each.
   for (int voxels : { 20, 60 })
   {
     Scene scene = KobayashiScene(voxels, 0.0);
-    scene.settings.emissionError = 0.005;
+    scene.settings.emissionError = voxels == 20 ? 0.005 : 0.0025;
     const LightField light = scene.Solve(this->GetDevice());
     EXPECT_LT(light.balance.RelativeError(1), 1e-5);
     for (const KobayashiReference& reference : KobayashiProblem1)

@@ -5,6 +5,7 @@
 #include "LightPropagation/Directions.h"
 #include "LightPropagation/RayPattern.h"
 
+#include <algorithm>
 #include <cmath>
 #include <string>
 #include <vector>
@@ -118,6 +119,7 @@ TEST_F(EnteringPower, OfAFaceIsItsAreaTimesTheFluxOfTheDirections)
       const double exact =
         setting.periodic[face / 2] ? 0.0 : 2.0 * Area(scene.medium.grid, face / 2) * Flux(set, face / 2, 1.0, {});
       EXPECT_NEAR(light.balance.entered[0], exact, Rounding * exact) << Text(setting) << ", face " << face;
+      EXPECT_NEAR(light.halfRangeFlux, Flux(set, face / 2, 1.0, {}) / 3.14159265358979, 1e-9) << Text(setting);
       EXPECT_LT(light.balance.RelativeError(1), 1e-5) << Text(setting) << ", face " << face;
     }
   }
@@ -181,14 +183,18 @@ TEST_F(EnteringPower, OfTheSunIsItsIrradianceTimesTheShadowsArea)
   }
 }
 
-TEST_F(EnteringPower, IsAbsorbedByABlackBoxToTheLastWatt)
+TEST_F(EnteringPower, IsAbsorbedByABlackBox)
 {
+  // But what goes exactly through the edges of the box: directions on diagonals run along the edges of voxels, so that part of one ray in
+  // a row of them meets no voxel.
   for (const Setting& setting : Settings)
   {
     Scene scene = SceneOf(setting, 1e5f);
     scene.ShineFromEverywhere(1.0);
     const LightField light = scene.Solve(this->GetDevice());
-    EXPECT_NEAR(light.balance.absorbed[0], light.balance.entered[0], 3e-5 * light.balance.entered[0]) << Text(setting);
+    const double rays = setting.mapResolution * *std::min_element(setting.size.begin(), setting.size.end());
+    EXPECT_LT(light.balance.escaped[0], 0.1 / rays * light.balance.entered[0] + 1e-3) << Text(setting);
+    EXPECT_LT(light.balance.RelativeError(1), 1e-5) << Text(setting);
   }
 }
 
