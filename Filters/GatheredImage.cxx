@@ -299,8 +299,8 @@ void GatheredImage::MakeWhole(int first)
   this->Whole->SetDirectionMatrix(one.Place.data() + 6);
 }
 
-/// Calls act with the number of each of a piece's cells in the piece, and in the whole. A piece without thickness has none
-/// where the whole has some.
+/// Calls act with the number of each of a piece's cells in the piece, and in the whole. A piece without thickness has
+/// none where the whole has some.
 template <typename Do>
 void GatheredImage::ForCells(const Piece& piece, const Do& act) const
 {

@@ -20,12 +20,14 @@ namespace tyndall
 /// @throws InvalidInput on every rank, with the same words, where it threw on any of them
 void OnAllRanks(vtkMultiProcessController* controller, const std::function<void()>& act);
 
-/// An image whose pieces lie on several ranks, put together on the first: one array after the other, so that no more than one
-/// is there twice.
+/// An image whose pieces lie on several ranks, put together on the first: one array after the other, so that no more
+/// than one is there twice.
 ///
-/// A cell is taken from the first rank that does not flag it as a duplicate (vtkGhostType). With one rank nothing is copied.
+/// A cell is taken from the first rank that does not flag it as a duplicate (vtkGhostType). With one rank nothing is
+/// copied.
 ///
-/// All ranks have to construct it and to ask for the arrays in the same order; what fails on one throws InvalidInput on all.
+/// All ranks have to construct it and to ask for the arrays in the same order; what fails on one throws InvalidInput on
+/// all.
 class GatheredImage
 {
 public:

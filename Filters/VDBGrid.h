@@ -32,8 +32,8 @@ struct VDBGrid
   VDBPlace Place;
 };
 
-/// Whether metadata of this name describes how a file stores a grid (in 16 bits, in how many bytes), rather than the grid;
-/// OpenVDB writes it anew.
+/// Whether metadata of this name describes how a file stores a grid (in 16 bits, in how many bytes), rather than the
+/// grid; OpenVDB writes it anew.
 bool DescribesTheFile(const std::string& key);
 
 /// Metadata of types that OpenVDB knows; others (and what describes the file) are passed over.

@@ -12,8 +12,8 @@
 /// What numbers of 16 bits can hold.
 namespace tyndall
 {
-/// Most that a number may change in 16 bits, relative to itself: twice what 11 significant bits round, so it is exceeded
-/// only below 2^-14, where fewer bits are left.
+/// Most that a number may change in 16 bits, relative to itself: twice what 11 significant bits round, so it is
+/// exceeded only below 2^-14, where fewer bits are left.
 constexpr double LargestHalfLoss = 1e-3;
 
 /// Whether a real number survives 16 bits, as OpenVDB rounds it: not as infinity, nor with a loss. Infinity and NaN do.

@@ -7,11 +7,11 @@ namespace tyndall
 {
 /// A file that takes the place of another when it is whole, or never.
 ///
-/// Symbolic links are followed, so that what they lead to is replaced. Mode and, where the system allows it, owner of a file
-/// that was there are kept; a new file has mode 0666 but what umask forbids. Where the file system knows files without a
-/// name (O_TMPFILE), even a killed process leaves nothing; else it may leave `.tyndall-<process>-<number>`, a name that is
-/// short however long the file's own is. A file that was there under several names (hard links) keeps what it was under the
-/// others.
+/// Symbolic links are followed, so that what they lead to is replaced. Mode and, where the system allows it, owner of a
+/// file that was there are kept; a new file has mode 0666 but what umask forbids. Where the file system knows files
+/// without a name (O_TMPFILE), even a killed process leaves nothing; else it may leave `.tyndall-<process>-<number>`, a
+/// name that is short however long the file's own is. A file that was there under several names (hard links) keeps what
+/// it was under the others.
 ///
 /// All of it throws InvalidInput that names the file and the cause.
 class WholeFile

@@ -93,7 +93,8 @@ void WriteWholeOrNot(const std::string& path, const openvdb::GridPtrVec& grids, 
   whole.Finish();
 }
 
-/// The arrays that become grids: those of cells, and those of points averaged to cells where none of cells has the name.
+/// The arrays that become grids: those of cells, and those of points averaged to cells where none of cells has the
+/// name.
 std::vector<vtkSmartPointer<vtkDataArray>> CellArraysOf(vtkImageData* image)
 {
   std::vector<vtkSmartPointer<vtkDataArray>> arrays;

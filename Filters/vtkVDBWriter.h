@@ -22,27 +22,30 @@ class vtkMultiProcessController;
  *
  * Cells that equal the background become inactive voxels and take no room; every other one is active. The image's extent,
  * spacing, origin and direction become the grid's index space and transform (see vtkVDBReader: a voxel's index is the
- * cell's), and what a grid cannot say becomes its metadata image_extent_min, image_extent_max, image_origin and image_spacing,
- * so that vtkVDBReader gives the image back bit for bit: values (NaN, infinity and -0 too), extent, origin, spacing. Of a
- * direction that is not along the axes the last bit may change, and SaveAsHalf and Tolerance change values.
+ * cell's), and what a grid cannot say becomes its metadata image_extent_min, image_extent_max, image_cells, image_origin
+ * and image_spacing, so that vtkVDBReader gives the image back bit for bit: values (NaN, infinity and -0 too), extent,
+ * origin, spacing. Of a direction that is not along the axes the last bit may change, and SaveAsHalf and Tolerance change
+ * values.
  *
  * Field data `vdb::<key>`, `vdb:<array>:<key>`, `vdb:<array>:type` and `vdb:<array>:background`, as vtkVDBReader makes
  * them, become metadata, type (bool and mask from uint8) and background; field data `g`, which belong to a medium, become
  * the file's metadata `medium_g`, and come back as `g`. Other field data are left out. Without them the background is Background, and
  * a grid of one real component with background 0 is a fog volume, any other of unknown class.
  *
- * Cells that vtkGhostType hides are no part of the image: their voxels are inactive. vtkGhostType itself is not written.
+ * Cells that vtkGhostType hides are no part of the image: their voxels are inactive. vtkGhostType itself is not
+ * written.
  *
  * The file appears whole or not at all: it is written without a name where the file system can do that, else beside its
  * place, read and checked, then put in its place. Of a symbolic link the target is replaced; mode and, where the system
  * allows it, owner of a file that was there stay. Read-only files are not replaced. A hard link keeps the old file.
  *
- * In parallel each rank's piece of the image is gathered on the first rank, array by array, so that one array and all trees
- * have to fit its memory. A cell that several ranks have is taken from the first that does not flag it as a duplicate.
+ * In parallel each rank's piece of the image is gathered on the first rank, array by array, so that one array and all
+ * trees have to fit its memory. A cell that several ranks have is taken from the first that does not flag it as a
+ * duplicate. Field data are those of the first rank that has cells.
  *
- * Errors, each one message (on every rank), and the file that was there stays: no file name, nothing to write, an unsigned
- * 64-bit integer above 2^63 - 1, a number that 16 bits do not hold where SaveAsHalf is on (names array, voxel, value), a
- * file that cannot be written (names the file and the cause), pieces that are not of one image.
+ * Errors, each one message (on every rank), and the file that was there stays: no file name, nothing to write, an
+ * unsigned 64-bit integer above 2^63 - 1, a number that 16 bits do not hold where SaveAsHalf is on (names array, voxel,
+ * value), a file that cannot be written (names the file and the cause), pieces that are not of one image.
  *
  * @sa vtkVDBReader
  */
@@ -101,8 +104,8 @@ public:
   vtkImageData* GetImageInput();
 
   ///@{
-  /// Whose ranks have the pieces of the image. At first the global controller; null: this process has the whole image, and
-  /// no other takes part.
+  /// Whose ranks have the pieces of the image. At first the global controller; null: this process has the whole image,
+  /// and no other takes part.
   virtual void SetController(vtkMultiProcessController* controller);
   vtkGetObjectMacro(Controller, vtkMultiProcessController);
   ///@}

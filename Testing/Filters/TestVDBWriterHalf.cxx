@@ -116,8 +116,8 @@ struct Case
   bool Fits;
 };
 
-/// Of numbers in 16 bits: the largest is 65504, 65520 would become infinite, the smallest normal one is 2^-14, and below
-/// that they are multiples of 2^-24.
+/// Of numbers in 16 bits: the largest is 65504, 65520 would become infinite, the smallest normal one is 2^-14, and
+/// below that they are multiples of 2^-24.
 const Case Cases[] = {
   { 65504.0, true },
   { -65504.0, true },

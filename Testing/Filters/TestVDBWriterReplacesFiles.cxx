@@ -186,6 +186,17 @@ void WhatMayNotBeWrittenStays(test::Claims& claims)
   claims.That(!write.To(shut + "new.vdb") && write.Errors.WasOneWith("new.vdb"), "for new files too");
   claims.That(!root || seteuid(0) == 0, "root again");
   claims.That(ReadBytes(shut + "there.vdb") == "old" && CountIn(shut) == 1, "and the file stays");
+
+  // The same user where it may write. A process that changed its user does not reach files without a name.
+  chmod(place, 0777);
+  chmod((shut + "there.vdb").c_str(), 0646);
+  const std::string longest = shut + std::string(251, 'n') + ".vdb";
+  claims.That(!root || seteuid(65534) == 0, "another user");
+  claims.That(write.To(shut + "there.vdb") && write.Errors.None(), "a file that others may write is written");
+  claims.That(write.To(longest) && write.Errors.None(), "under a long name too");
+  claims.That(!root || seteuid(0) == 0, "root again");
+  claims.That(IsWhole(shut + "there.vdb") && IsWhole(longest) && CountIn(shut) == 2, "whole, with nothing else left");
+  claims.That(ModeOf(shut + "there.vdb") == 0646, "with its mode");
   vtksys::SystemTools::RemoveADirectory(place);
 }
 
@@ -197,7 +208,8 @@ void AKilledProcessLeavesNothing(test::Claims& claims)
   const pid_t child = fork();
   if (child == 0)
   {
-    // The disk is full after 1 MB, which kills by SIGXFSZ: in the middle of the file, wherever the machine's speed puts it.
+    // The disk is full after 1 MB, which kills by SIGXFSZ: in the middle of the file, wherever the machine's speed puts
+    // it.
     struct rlimit small = { 1 << 20, 1 << 20 };
     setrlimit(RLIMIT_FSIZE, &small);
     std::signal(SIGXFSZ, SIG_DFL);

@@ -1,9 +1,10 @@
 """Two clients at once on a server with --multi-clients: both use the plugin, and get the same light.
 
-ParaView loads a plugin into a server once. A client that asks for it again, with LoadPlugin(..., remote=True), is told
-"Plugin load failed: No plugin loaded yet.", whatever the plugin: vtkPVPluginLoader returns early for a file that the process
-has, and leaves its flag Loaded as it was. The server has it all the same, and so has the client, after it has loaded the
-plugin for itself with remote=False. A server that is started with the plugin (--plugins) needs no remote=True at all.
+ParaView loads a plugin into a server once. A client that asks for it again, with LoadPlugin(..., remote=True), is
+told "Plugin load failed: No plugin loaded yet.", whatever the plugin: vtkPVPluginLoader returns early for a file that
+the process has, and leaves its flag Loaded as it was. The server has it all the same, and so has the client after it
+has loaded the plugin for itself with remote=False. On a server that is started with the plugin (--plugins) no client
+needs remote=True.
 
     python3 TwoClientsOnServer.py
     pvpython TwoClientsOnServer.py PORT NAME    a client, which waits for a line before it goes
@@ -19,7 +20,6 @@ plugin = os.environ["TYNDALL_PLUGIN"]
 def be_client(port, name):
     from paraview import servermanager
     from paraview.simple import Connect, LoadPlugin, Wavelet
-    import paraview.simple as simple
 
     Connect("localhost", port)
     plugins = servermanager.vtkSMProxyManager.GetProxyManager().GetPluginManager()
@@ -30,8 +30,8 @@ def be_client(port, name):
         LoadPlugin(plugin, remote=True, ns=globals())
     LoadPlugin(plugin, remote=False, ns=globals())
     waves = Wavelet(WholeExtent=[0, 4, 0, 4, 0, 4])
-    medium = simple.ParticipatingMedium(Input=waves, ExtinctionScale=0.3)
-    light = simple.LightPropagationMaps(Input=medium, SkyColor=[1, 1, 1])
+    medium = ParticipatingMedium(Input=waves, ExtinctionScale=0.3)
+    light = LightPropagationMaps(Input=medium, SkyColor=[1, 1, 1])
     light.UpdatePipeline()
     fluence = light.CellData["fluence"].GetRange()
     print("%s: the server %s the plugin, fluence %r" % (name, "has" if loaded else "had not", fluence), flush=True)

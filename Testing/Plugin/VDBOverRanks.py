@@ -47,7 +47,7 @@ def on_server(ranks):
     server = subprocess.Popen(mpiexec + [str(ranks), "pvserver", "--server-port=%d" % port], stdout=subprocess.PIPE,
                               stderr=log, text=True)
     try:
-        assert any("Accepting connection" in line for line in server.stdout), "the server does not start, see " + log.name
+        assert any("Accepting connection" in line for line in server.stdout), "no server, see " + log.name
         done = subprocess.run(["pvpython", script, folder, str(port)], stdout=subprocess.PIPE, stderr=subprocess.STDOUT,
                               text=True, timeout=240)
         assert done.returncode == 0 and "is done" in done.stdout, done.stdout

@@ -33,7 +33,8 @@ level = Calculator(Input=cells, AttributeType="Cell Data", ResultArrayName="leve
 SaveData(path("points.vdb"), proxy=gradient)
 SaveData(path("cells.vdb"), proxy=level, Compression="Zip", Background=3.0)
 SaveData(path("medium.vdb"), proxy=ParticipatingMedium(Input=cells, Preset=1,
-                                                        DensityArray=["CELLS", "RTData"]))
+                                                        DensityArray=["CELLS", "RTData"], MinimumDensity=0,
+                                                        MaximumDensity=260))
 half = Calculator(Input=cells, AttributeType="Cell Data", ResultArrayName="small", Function="RTData / 1000")
 SaveData(path("half.vdb"), proxy=half, SaveAsHalf=1, Tolerance=0.01)
 
