@@ -189,14 +189,14 @@ void WhatMayNotBeWrittenStays(test::Claims& claims)
 
   // The same user where it may write. A process that changed its user does not reach files without a name.
   chmod(place, 0777);
-  chmod((shut + "there.vdb").c_str(), 0646);
+  chmod((shut + "there.vdb").c_str(), 0666);
   const std::string longest = shut + std::string(251, 'n') + ".vdb";
   claims.That(!root || seteuid(65534) == 0, "another user");
   claims.That(write.To(shut + "there.vdb") && write.Errors.None(), "a file that others may write is written");
   claims.That(write.To(longest) && write.Errors.None(), "under a long name too");
   claims.That(!root || seteuid(0) == 0, "root again");
   claims.That(IsWhole(shut + "there.vdb") && IsWhole(longest) && CountIn(shut) == 2, "whole, with nothing else left");
-  claims.That(ModeOf(shut + "there.vdb") == 0646, "with its mode");
+  claims.That(ModeOf(shut + "there.vdb") == 0666, "with its mode");
   vtksys::SystemTools::RemoveADirectory(place);
 }
 
