@@ -162,7 +162,7 @@ int ReadMutations(const std::string& whole, int kind, int count, unsigned seed)
 
 void NoMutationTakesMemory(test::Claims& claims)
 {
-  constexpr int kinds = 7, rounds = 8, atOnce = 20;
+  constexpr int kinds = 7, rounds = 5, atOnce = 20;
   std::array<double, kinds> worst = {};
   int files = 0, errors = 0;
   bool allHeld = true;

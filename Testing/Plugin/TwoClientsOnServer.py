@@ -3,8 +3,8 @@
 ParaView loads a plugin into a server once. A client that asks for it again, with LoadPlugin(..., remote=True), is
 told "Plugin load failed: No plugin loaded yet.", whatever the plugin: vtkPVPluginLoader returns early for a file that
 the process has, and leaves its flag Loaded as it was. The server has it all the same, and so has the client after it
-has loaded the plugin for itself with remote=False. On a server that is started with the plugin (--plugins) no client
-needs remote=True.
+has loaded the plugin for itself with remote=False. On a server that is started with the plugin (PV_PLUGIN_PATH, and
+--plugins) no client needs remote=True.
 
     python3 TwoClientsOnServer.py
     pvpython TwoClientsOnServer.py PORT NAME    a client, which waits for a line before it goes
@@ -44,10 +44,11 @@ def free_port():
         return probe.getsockname()[1]
 
 
-def light_of_two(options, first_word):
+def light_of_two(environment, options, first_word):
     port = free_port()
     server = subprocess.Popen(["pvserver", "--multi-clients", "--server-port=%d" % port, *options],
-                              stdout=subprocess.PIPE, stderr=subprocess.STDOUT, text=True)
+                              stdout=subprocess.PIPE, stderr=subprocess.STDOUT, text=True,
+                              env={**os.environ, **environment})
     clients = []
     try:
         assert any("Accepting connection" in line for line in server.stdout), "the server does not start"
@@ -65,7 +66,7 @@ def light_of_two(options, first_word):
             said.append(lines[-1].split("fluence")[1])
         assert said[0] == said[1] and "(0.0, 0.0)" not in said[0], said
         for client in clients:
-            rest, _ = client.communicate("go\n", timeout=60)
+            rest, _ = client.communicate("go\n")
             assert client.returncode == 0, rest
     finally:
         for process in clients + [server]:
@@ -75,5 +76,5 @@ def light_of_two(options, first_word):
 if len(sys.argv) > 1:
     be_client(int(sys.argv[1]), sys.argv[2])
 else:
-    light_of_two([], "had not")
-    light_of_two(["--plugin-search-paths=" + os.path.dirname(plugin), "--plugins=Tyndall"], "has")
+    light_of_two({}, [], "had not")
+    light_of_two({"PV_PLUGIN_PATH": os.path.dirname(plugin)}, ["--plugins=Tyndall"], "has")

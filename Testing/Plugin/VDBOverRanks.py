@@ -25,7 +25,7 @@ def new_folder(name):
 def batch(ranks, *options):
     folder = new_folder("batch%d%s" % (ranks, "".join(options)))
     done = subprocess.run(mpiexec + [str(ranks), "pvbatch", *options, script, folder], stdout=subprocess.PIPE,
-                          stderr=subprocess.STDOUT, text=True, timeout=240)
+                          stderr=subprocess.STDOUT, text=True)
     assert done.returncode == 0, done.stdout
     speaking = ranks if options else 1
     assert done.stdout.count("is done") == speaking, done.stdout
@@ -49,7 +49,7 @@ def on_server(ranks):
     try:
         assert any("Accepting connection" in line for line in server.stdout), "no server, see " + log.name
         done = subprocess.run(["pvpython", script, folder, str(port)], stdout=subprocess.PIPE, stderr=subprocess.STDOUT,
-                              text=True, timeout=240)
+                              text=True)
         assert done.returncode == 0 and "is done" in done.stdout, done.stdout
     finally:
         server.terminate()
