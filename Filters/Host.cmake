@@ -11,7 +11,8 @@ if (ParaView_FOUND)
   set(wrapping ON) # for the client-server streams of the plugin
 else ()
   find_package(VTK 9.1 REQUIRED COMPONENTS
-    CommonCore CommonDataModel CommonExecutionModel CommonMath FiltersCore IOCore IOImage IOLegacy IOXML TestingCore)
+    CommonCore CommonDataModel CommonExecutionModel CommonMath FiltersCore IOCore IOImage IOLegacy IOXML ParallelCore
+    TestingCore)
   set(TYNDALL_HOST "VTK ${VTK_VERSION}")
 endif ()
 

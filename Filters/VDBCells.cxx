@@ -2,6 +2,7 @@
 
 #include "Device/Errors.h"
 #include "LightTransportData.h"
+#include "VDBHalf.h"
 #include "VDBMetadata.h"
 #include "VDBValues.h"
 
@@ -159,15 +160,20 @@ bool Near(const T& a, const T& b, double tolerance)
   }
 }
 
+std::string ToString(const openvdb::Coord& voxel)
+{
+  return "(" + std::to_string(voxel[0]) + ", " + std::to_string(voxel[1]) + ", " + std::to_string(voxel[2]) + ")";
+}
+
 /// Fills one block of a tree, a leaf at most: left out where it is background, a tile where all of it is one value.
 /// @param valueAt  of a voxel
 template <typename TreeT, typename ValueAt>
-void FillBlock(
-  TreeT& tree, openvdb::CoordBBox block, const openvdb::CoordBBox& voxels, double tolerance, const ValueAt& valueAt)
+void FillBlock(TreeT& tree, openvdb::CoordBBox block, const openvdb::CoordBBox& voxels, const VoxelOptions& options,
+  const ValueAt& valueAt)
 {
   using Value = typename TreeT::ValueType;
   const auto same = [&](const Value& a, const Value& b) {
-    return SameBits(a, b) || (tolerance > 0.0 && Near(a, b, tolerance));
+    return SameBits(a, b) || (options.Tolerance > 0.0 && Near(a, b, options.Tolerance));
   };
   const openvdb::Coord corner = block.min();
   const Value background = tree.background();
@@ -188,6 +194,10 @@ void FillBlock(
       leaf = tree.touchLeaf(corner);
       one = value;
     }
+    if (options.Half)
+    {
+      RequireHalf(value, [&] { return "in voxel " + ToString(voxel); });
+    }
     constant = constant && same(value, one);
     leaf->setValueOn(voxel, value);
   }
@@ -199,14 +209,19 @@ void FillBlock(
 
 /// Fills a tree block by block, so that only blocks that are not background are made.
 template <typename TreeT, typename Number>
-void FillTree(TreeT& tree, const Numbers<Number>& numbers, const openvdb::CoordBBox& voxels, double tolerance)
+void FillTree(
+  TreeT& tree, const Numbers<Number>& numbers, const openvdb::CoordBBox& voxels, const VoxelOptions& options)
 {
   constexpr std::int64_t size = TreeT::LeafNodeType::DIM;
   const openvdb::Coord &low = voxels.min(), &high = voxels.max(), cells = voxels.dim();
-  const auto valueAt = [&](const openvdb::Coord& voxel) {
+  const auto valueAt = [&](const openvdb::Coord& voxel) -> typename TreeT::ValueType {
     const openvdb::Coord at = voxel - low;
     const vtkIdType cell =
       at[0] + static_cast<vtkIdType>(cells[0]) * (at[1] + static_cast<vtkIdType>(cells[1]) * at[2]);
+    if (options.Hidden && (*options.Hidden)[static_cast<std::size_t>(cell)])
+    {
+      return tree.background();
+    }
     return VoxelFrom<typename TreeT::ValueType>([&](int component) { return numbers.At(cell, component); });
   };
   const auto blockStart = [&](int axis) { return static_cast<std::int64_t>(low[axis] & ~(int(size) - 1)); };
@@ -217,7 +232,7 @@ void FillTree(TreeT& tree, const Numbers<Number>& numbers, const openvdb::CoordB
       for (std::int64_t z = blockStart(2); z <= high[2]; z += size)
       {
         const openvdb::Coord corner(static_cast<int>(x), static_cast<int>(y), static_cast<int>(z));
-        FillBlock(tree, openvdb::CoordBBox::createCube(corner, size), voxels, tolerance, valueAt);
+        FillBlock(tree, openvdb::CoordBBox::createCube(corner, size), voxels, options, valueAt);
       }
     }
   }
@@ -281,7 +296,11 @@ openvdb::GridBase::Ptr MakeGrid(K kind, vtkDataArray* array, int first, const st
   auto& tree = static_cast<typename K::Grid&>(*grid).tree();
   const Value background = BackgroundOf(kind, array->GetName() ? array->GetName() : "", field, options.Background);
   tree.root().setBackground(background, /*updateChildNodes=*/false);
-  FillTree(tree, Numbers<typename K::Number>(array, first), voxels, options.Tolerance);
+  if (options.Half)
+  {
+    RequireHalf(background, [] { return "as background"; });
+  }
+  FillTree(tree, Numbers<typename K::Number>(array, first), voxels, options);
   if (std::is_floating_point<Value>::value && background == openvdb::zeroVal<Value>())
   {
     grid->setGridClass(openvdb::GRID_FOG_VOLUME);

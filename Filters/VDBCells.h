@@ -3,6 +3,7 @@
 #include "OpenVDB.h"
 
 #include <string>
+#include <vector>
 
 class vtkDataArray;
 class vtkFieldData;
@@ -26,13 +27,14 @@ struct VoxelOptions
   double Background = 0.0; ///< where field data `background` of the array does not say another
   double Tolerance =
     0.0;             ///< of each number: cells so near to the background, or to each other in a block, are equal to it
-  bool Half = false; ///< store real numbers in 16 bits
+  bool Half = false; ///< store real numbers in 16 bits; an error where they do not fit
+  const std::vector<unsigned char>* Hidden = nullptr; ///< a flag for each cell: it is background, whatever it holds
 };
 
 /// The grids of one array: one, or one a component, named after it. Cells that equal the background, to the last bit or to
 /// the tolerance, are inactive.
 /// @param field  may have `background` and `type` of the array
-/// @throws InvalidInput naming the array, where its numbers are none of a grid
+/// @throws InvalidInput naming the array, where its numbers are none of a grid, or do not fit 16 bits
 openvdb::GridPtrVec MakeGrids(
   vtkDataArray* array, vtkFieldData* field, const openvdb::CoordBBox& voxels, const VoxelOptions& options);
 }

@@ -31,6 +31,7 @@ public:
   explicit VDBFile(const std::string& path);
 
   const std::string& Path() const { return this->FilePath; }
+  std::uint64_t Size() const { return this->FileSize; }
   const openvdb::MetaMap& Metadata() const { return this->FileMetadata; }
   const std::vector<VDBGrid>& Grids() const { return this->AllGrids; }
   const VDBGrid* Find(const std::string& name) const;

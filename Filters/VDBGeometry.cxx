@@ -14,6 +14,7 @@ namespace
 {
 constexpr const char* ExtentMinKey = "image_extent_min";
 constexpr const char* ExtentMaxKey = "image_extent_max";
+constexpr const char* CellsKey = "image_cells";
 constexpr const char* OriginKey = "image_origin";
 constexpr const char* SpacingKey = "image_spacing";
 
@@ -96,7 +97,7 @@ void ApplyNotes(VDBGeometry& geometry, const VDBGrid& grid, bool aligned)
 
 bool IsGeometry(const std::string& key)
 {
-  return key == ExtentMinKey || key == ExtentMaxKey || key == OriginKey || key == SpacingKey;
+  return key == ExtentMinKey || key == ExtentMaxKey || key == CellsKey || key == OriginKey || key == SpacingKey;
 }
 
 VoxelBox VoxelsOf(const std::array<std::int64_t, 6>& extent)
@@ -137,6 +138,13 @@ std::array<std::int64_t, 6> ExtentOf(const VDBGrid& grid)
     extent[2 * axis + 1] = active.Empty() ? -1 : active.Max[axis] + 1;
   }
   return extent;
+}
+
+bool NotesExtent(const VDBGrid& grid, const std::array<std::int64_t, 6>& extent)
+{
+  const auto* cells = NoteOf<openvdb::Int64>(grid, CellsKey);
+  return cells && static_cast<double>(*cells) == CellsOf(extent) && ExtentOf(grid) == extent &&
+    NoteOf<openvdb::Vec3i>(grid, ExtentMinKey) && NoteOf<openvdb::Vec3i>(grid, ExtentMaxKey);
 }
 
 bool SharesTransform(const VDBGrid& a, const VDBGrid& b)
@@ -228,6 +236,7 @@ VDBPlacement PlacementOf(vtkImageData* image)
   place.Transform.reset(new openvdb::math::Transform(map));
   place.Notes.insertMeta(ExtentMinKey, openvdb::Vec3IMetadata(openvdb::Vec3i(extent[0], extent[2], extent[4])));
   place.Notes.insertMeta(ExtentMaxKey, openvdb::Vec3IMetadata(openvdb::Vec3i(extent[1], extent[3], extent[5])));
+  place.Notes.insertMeta(CellsKey, openvdb::Int64Metadata(image->GetNumberOfCells()));
   place.Notes.insertMeta(OriginKey, openvdb::Vec3DMetadata(openvdb::Vec3d(origin)));
   place.Notes.insertMeta(SpacingKey, openvdb::Vec3DMetadata(openvdb::Vec3d(spacing)));
   return place;

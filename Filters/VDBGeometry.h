@@ -13,8 +13,8 @@ class vtkImageData;
 ///
 /// A cell is centred on its voxel's index: voxel i is the cell that covers [i - 1/2, i + 1/2] of index space. A grid that was
 /// an image notes in its metadata what it does not say itself: the extent of points (voxels may be background up to the
-/// border), and origin and spacing to the last bit (OpenVDB computes the scale of a transform as the difference of two
-/// positions).
+/// border) with the number of cells in it, and origin and spacing to the last bit (OpenVDB computes the scale of a
+/// transform as the difference of two positions).
 namespace tyndall
 {
 /// Whether metadata of this name is such a note.
@@ -40,6 +40,10 @@ double CellsOf(const std::array<std::int64_t, 6>& extent);
 /// The extent of points that a grid covers: the noted one, as long as that still holds every active voxel, or else that of
 /// the active voxels.
 std::array<std::int64_t, 6> ExtentOf(const VDBGrid& grid);
+
+/// Whether a grid notes that it was an image of this extent, and of as many cells: then the extent is no accident of a
+/// corrupt file, however few voxels are active.
+bool NotesExtent(const VDBGrid& grid, const std::array<std::int64_t, 6>& extent);
 
 /// Whether a grid's voxels lie where another's do, to rounding.
 bool SharesTransform(const VDBGrid& a, const VDBGrid& b);

@@ -7,16 +7,16 @@
 
 namespace tyndall
 {
-namespace
-{
-/// What OpenVDB writes about the file rather than the grid; it writes it anew.
 bool DescribesTheFile(const std::string& key)
 {
   using Grid = openvdb::GridBase;
-  return key == Grid::META_FILE_BBOX_MIN || key == Grid::META_FILE_BBOX_MAX || key == Grid::META_FILE_COMPRESSION ||
-    key == Grid::META_FILE_MEM_BYTES || key == Grid::META_FILE_VOXEL_COUNT || key == Grid::META_FILE_DELAYED_LOAD;
+  return key == Grid::META_SAVE_HALF_FLOAT || key == Grid::META_FILE_BBOX_MIN || key == Grid::META_FILE_BBOX_MAX ||
+    key == Grid::META_FILE_COMPRESSION || key == Grid::META_FILE_MEM_BYTES || key == Grid::META_FILE_VOXEL_COUNT ||
+    key == Grid::META_FILE_DELAYED_LOAD;
 }
 
+namespace
+{
 /// The linear maps of OpenVDB.
 /// @return whether the type is one of them
 bool ReadLinearMap(VDBBytes& bytes, const std::string& type, VDBGrid& grid)

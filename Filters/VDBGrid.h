@@ -32,6 +32,10 @@ struct VDBGrid
   VDBPlace Place;
 };
 
+/// Whether metadata of this name describes how a file stores a grid (in 16 bits, in how many bytes), rather than the
+/// grid; OpenVDB writes it anew.
+bool DescribesTheFile(const std::string& key);
+
 /// Metadata of types that OpenVDB knows; others (and what describes the file) are passed over.
 /// @throws InvalidInput where there are none at this place of the file
 openvdb::MetaMap ReadMetadata(VDBBytes& bytes);

@@ -2,6 +2,7 @@
 
 #include "LightTransportData.h"
 #include "VDBGeometry.h"
+#include "VDBGrid.h"
 
 #include "vtkDataObject.h"
 #include "vtkDoubleArray.h"
@@ -161,7 +162,7 @@ void RestoreMetadata(MetaMap& map, vtkFieldData* field, const std::string& prefi
     const std::string name = array->GetName() ? array->GetName() : "";
     const bool ours = name.size() > prefix.size() && name.compare(0, prefix.size(), prefix) == 0;
     const std::string key = ours ? name.substr(prefix.size()) : std::string();
-    if (!ours || key == "background" || key == "type")
+    if (!ours || key == "background" || key == "type" || DescribesTheFile(key))
     {
       continue;
     }

@@ -19,7 +19,8 @@ inline std::string FieldName(const std::string& grid, const std::string& key)
 /// Field data `<prefix><key>` for all metadata of types that VTK has too, but what an image says itself.
 void AddMetadata(vtkDataObject* image, const std::string& prefix, const openvdb::MetaMap& map);
 
-/// Metadata from field data whose names begin so, but a grid's type and background.
+/// Metadata from field data whose names begin so, but a grid's type and background, and what
+/// describes the file that it was in.
 void RestoreMetadata(openvdb::MetaMap& map, vtkFieldData* field, const std::string& prefix);
 
 /// Field data that define a medium beside its cells, `g`, and what they are in a file: metadata `medium_g`.

@@ -1,5 +1,7 @@
 #include "vtkVDBReader.h"
 
+#include "AvailableMemory.h"
+#include "Device/HostMemory.h"
 #include "LightTransportData.h"
 #include "VDBCells.h"
 #include "VDBFile.h"
@@ -19,7 +21,6 @@
 #include <iomanip>
 #include <set>
 #include <sstream>
-#include <unistd.h>
 
 using tyndall::InvalidInput;
 using tyndall::VDBFile;
@@ -39,14 +40,14 @@ std::string ToString(const VoxelBox& box)
 std::string Bytes(double bytes)
 {
   std::ostringstream text;
-  text.precision(3);
   const char* units[] = { "B", "KiB", "MiB", "GiB", "TiB", "PiB", "EiB" };
   int unit = 0;
   for (; bytes >= 1024.0 && unit < 6; ++unit)
   {
     bytes /= 1024.0;
   }
-  text << (bytes >= 1000.0 ? std::round(bytes) : bytes) << " " << units[unit];
+  text.precision(bytes >= 999.5 ? 4 : 3);
+  text << bytes << " " << units[unit];
   return text.str();
 }
 
@@ -78,6 +79,11 @@ std::string Summary(const VDBFile& file)
   }
   return lines.str();
 }
+
+/// Without a MaximumMemory, an image takes no more than the larger of these, bytes and bytes for each of its file,
+/// unless the file notes that it was an image of that size. Clouds with a sparse outline take 10 to 300 bytes for one
+/// of their file; one changed bit of a small file can say terabytes.
+constexpr double SmallImage = 1073741824.0, MostOfFile = 1000.0;
 
 openvdb::CoordBBox CellsIn(const int* extent)
 {
@@ -117,6 +123,13 @@ struct vtkVDBReader::Internals
   void Offer(vtkDataArraySelection* selection);
   void Choose(vtkDataArraySelection* selection);
   void CheckMemory(vtkIdType maximum) const;
+
+  struct Limit
+  {
+    double Bytes;
+    std::string Why;
+  };
+  Limit LimitOfMemory(vtkIdType maximum) const;
 };
 
 /// Anew each time: it takes milliseconds, and a file's time and length do not tell that it was written again.
@@ -236,19 +249,41 @@ void vtkVDBReader::Internals::CheckMemory(vtkIdType maximum) const
     image += BytesAsImage(*grid, extent);
     tree = std::max(tree, static_cast<double>(grid->Tree.TreeBytes));
   }
-  const double limit = maximum > 0
-    ? static_cast<double>(maximum) * 1048576.0
-    : 0.5 * static_cast<double>(sysconf(_SC_PHYS_PAGES)) * static_cast<double>(sysconf(_SC_PAGESIZE));
-  if (image + tree > limit)
+  const Limit limit = this->LimitOfMemory(maximum);
+  if (image + tree > limit.Bytes)
   {
     std::ostringstream text;
     text << "The chosen grids of \"" << this->Path << "\" need " << Bytes(image + tree) << " (" << std::fixed
          << std::setprecision(0) << image + tree << " bytes) as an image of voxels "
-         << ToString(tyndall::VoxelsOf(extent)) << "; the limit is " << Bytes(limit)
-         << ". Choose fewer grids, resample or crop the file, or raise MaximumMemory ("
-         << (maximum > 0 ? "" : "untouched it is half of this machine's memory; ") << "in MiB).";
+         << ToString(tyndall::VoxelsOf(extent)) << "; the limit is " << Bytes(limit.Bytes) << limit.Why
+         << ". Choose fewer grids, resample or crop the file, or " << (maximum > 0 ? "raise" : "set")
+         << " MaximumMemory (in MiB).";
     throw InvalidInput(text.str());
   }
+}
+
+vtkVDBReader::Internals::Limit vtkVDBReader::Internals::LimitOfMemory(vtkIdType maximum) const
+{
+  if (maximum > 0)
+  {
+    return { static_cast<double>(maximum) * 1048576.0, "" };
+  }
+  Limit limit = { 0.5 * static_cast<double>(tyndall::HostMemory()), ", half of this machine's memory" };
+  const double available = 0.9 * tyndall::AvailableMemory();
+  if (available < limit.Bytes)
+  {
+    limit = { available, ", of the memory that is available now" };
+  }
+  const double file = static_cast<double>(this->File->Size()), ofFile = std::max(SmallImage, MostOfFile * file);
+  const bool noted = std::all_of(this->Chosen.begin(), this->Chosen.end(),
+    [this](const VDBGrid* grid) { return tyndall::NotesExtent(*grid, this->Image.Extent); });
+  if (!noted && ofFile < limit.Bytes)
+  {
+    limit = { ofFile,
+      " for a file of " + Bytes(file) +
+        " that does not come from an image of that size: a corrupt file may say so too" };
+  }
+  return limit;
 }
 
 vtkStandardNewMacro(vtkVDBReader);

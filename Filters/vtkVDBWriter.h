@@ -5,6 +5,7 @@
 #include "vtkWriter.h"
 
 class vtkImageData;
+class vtkMultiProcessController;
 
 /**
  * @class vtkVDBWriter
@@ -21,19 +22,30 @@ class vtkImageData;
  *
  * Cells that equal the background become inactive voxels and take no room; every other one is active. The image's extent,
  * spacing, origin and direction become the grid's index space and transform (see vtkVDBReader: a voxel's index is the
- * cell's), and what a grid cannot say becomes its metadata image_extent_min, image_extent_max, image_origin and image_spacing,
- * so that vtkVDBReader gives the image back bit for bit: values (NaN, infinity and -0 too), extent, origin, spacing. Of a
- * direction that is not along the axes the last bit may change, and SaveAsHalf and Tolerance change values.
+ * cell's), and what a grid cannot say becomes its metadata image_extent_min, image_extent_max, image_cells, image_origin
+ * and image_spacing, so that vtkVDBReader gives the image back bit for bit: values (NaN, infinity and -0 too), extent,
+ * origin, spacing. Of a direction that is not along the axes the last bit may change, and SaveAsHalf and Tolerance change
+ * values.
  *
  * Field data `vdb::<key>`, `vdb:<array>:<key>`, `vdb:<array>:type` and `vdb:<array>:background`, as vtkVDBReader makes
  * them, become metadata, type (bool and mask from uint8) and background; field data `g`, which belong to a medium, become
  * the file's metadata `medium_g`, and come back as `g`. Other field data are left out. Without them the background is Background, and
  * a grid of one real component with background 0 is a fog volume, any other of unknown class.
  *
- * The file appears whole or not at all: it is written beside its place, read and checked, then renamed.
+ * Cells that vtkGhostType hides are no part of the image: their voxels are inactive. vtkGhostType itself is not
+ * written.
  *
- * Errors, each one message: no file name, nothing to write, an unsigned 64-bit integer above 2^63 - 1, a file that cannot
- * be written (names the folder and the cause).
+ * The file appears whole or not at all: it is written without a name where the file system can do that, else beside its
+ * place, read and checked, then put in its place. Of a symbolic link the target is replaced; mode and, where the system
+ * allows it, owner of a file that was there stay. Read-only files are not replaced. A hard link keeps the old file.
+ *
+ * In parallel each rank's piece of the image is gathered on the first rank, array by array, so that one array and all
+ * trees have to fit its memory. A cell that several ranks have is taken from the first that does not flag it as a
+ * duplicate. Field data are those of the first rank that has cells.
+ *
+ * Errors, each one message (on every rank), and the file that was there stays: no file name, nothing to write, an
+ * unsigned 64-bit integer above 2^63 - 1, a number that 16 bits do not hold where SaveAsHalf is on (names array, voxel,
+ * value), a file that cannot be written (names the file and the cause), pieces that are not of one image.
  *
  * @sa vtkVDBReader
  */
@@ -80,7 +92,9 @@ public:
   ///@}
 
   ///@{
-  /// Stores real numbers in 16 bits: 11 significant bits, at most 65504. Default off.
+  /// Stores real numbers in 16 bits: 11 significant bits, at most 65504 (65520 and more are an error), and below 6.1e-5
+  /// fewer bits: a number that would lose more than 0.1% is an error, the background too. Infinity and NaN are kept.
+  /// Default off; off or on, how the file that an image was read from stored its numbers is of no account.
   vtkSetMacro(SaveAsHalf, bool);
   vtkGetMacro(SaveAsHalf, bool);
   vtkBooleanMacro(SaveAsHalf, bool);
@@ -89,11 +103,24 @@ public:
   /// The image to write.
   vtkImageData* GetImageInput();
 
+  ///@{
+  /// Whose ranks have the pieces of the image. At first the global controller; null: this process has the whole image,
+  /// and no other takes part.
+  virtual void SetController(vtkMultiProcessController* controller);
+  vtkGetObjectMacro(Controller, vtkMultiProcessController);
+  ///@}
+
+  /// Writes the file. With several ranks all of them have to call it.
+  /// @return 1 where the file is written, or else 0: on all ranks the same
+  int Write() override;
+
 protected:
-  vtkVDBWriter() = default;
+  vtkVDBWriter();
   ~vtkVDBWriter() override;
 
   void WriteData() override;
+  vtkTypeBool ProcessRequest(
+    vtkInformation* request, vtkInformationVector** inputs, vtkInformationVector* outputs) override;
   int FillInputPortInformation(int port, vtkInformation* info) override;
 
 private:
@@ -105,6 +132,8 @@ private:
   double Background = 0.0;
   double Tolerance = 0.0;
   bool SaveAsHalf = false;
+  vtkMultiProcessController* Controller = nullptr;
+  bool HasTakenPart = false; ///< in what the ranks do together
 };
 
 #endif
