@@ -96,8 +96,9 @@ std::vector<Candidate> AllDevices(Shared& shared, std::string& troubles)
     }
     catch (const cl::Error& error)
     {
-      troubles += " The platform " + name + " is installed and gives none (OpenCL error " + std::to_string(error.err()) +
-        ").";
+      troubles += " The platform " + name + " is installed and gives none (OpenCL error " +
+        std::to_string(error.err()) + "). Start the program anew" +
+        (IsPocl(platform) ? " with POCL_CACHE_DIR a folder that can be written" : "") + ", or install another driver.";
     }
     catch (const DeviceError& error)
     {

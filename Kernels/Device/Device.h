@@ -19,8 +19,8 @@ namespace tyndall
 {
 /// One OpenCL device: its context, one in-order queue, the programs built for it, and a count of the memory taken on it.
 ///
-/// Safe for several threads at once, each with buffers and kernels of its own: what they queue is done in some order, one after
-/// the other. A thread that waits may wait for the work of others too, and PeakBytes is of all of them.
+/// Safe for several threads at once, each with buffers and kernels of its own: what they queue is done in some order, one
+/// after the other. A thread that waits may wait for the work of others too, and PeakBytes is of all of them.
 class Device
 {
 public:
@@ -30,10 +30,11 @@ public:
   /// @throws DeviceError if there is no such device; the text lists those there are
   static std::shared_ptr<Device> Find(const std::string& name = {});
 
-  /// What users should know of how devices were opened, e.g. that programs are kept elsewhere than they said. Each is given out once.
+  /// What users should know of how devices were opened, e.g. that programs are kept elsewhere than they said. Each is
+  /// given out once.
   static std::vector<std::string> TakeWarnings();
 
-  /// @param cacheFolder  where the platform writes what it compiles, where that is known: looked at for room before it does
+  /// @param cacheFolder  where the platform writes what it compiles, if that is known: looked at for room before it does
   Device(const cl::Platform& platform, const cl::Device& device, std::string cacheFolder = {});
 
   const std::string& Name() const { return this->DeviceName; }
@@ -52,8 +53,8 @@ public:
   void ResetPeak() { this->Memory.ResetPeak(); }
 
   /// A kernel of the program that the given sources make one after the other. Programs are kept, so that asking again
-  /// with the same sources and options costs nothing. The kernel is the caller's own: two threads that ask for one get two, for
-  /// OpenCL does not let them set arguments of the same.
+  /// with the same sources and options costs nothing. The kernel is the caller's own: two threads that ask for one get two,
+  /// for OpenCL does not let them set arguments of the same.
   /// @param sources  texts of .cl files (kernel_source::...), in the order they are to be read
   /// @param options  compiler options, e.g. "-DCHANNELS=3"
   /// @throws DeviceError with the build log
@@ -71,7 +72,7 @@ public:
   /// told and an abort heard that often, while short kernels follow each other without the host.
   void Queued(double seconds);
 
-  /// Seconds by the clock that work is shared out by: the machine's, or that of a test, which must be set before work begins.
+  /// Seconds by the clock that work is shared out by: the machine's, or that of a test, set before work begins.
   double Now() const { return this->TheClock(); }
   void SetClock(Clock clock) { this->TheClock = std::move(clock); }
 

@@ -29,7 +29,8 @@ public:
   LentArray(const LentArray&) = delete;
   LentArray& operator=(const LentArray&) = delete;
 
-  /// Waits: where work failed halfway, kernels that were queued before may still be at the array, which is the caller's again now.
+  /// Waits: where work failed halfway, kernels that were queued before may still be at the array, which is the caller's
+  /// again now.
   ~LentArray()
   {
     if (this->Count > 0 && this->Copy.Size() == 0)

@@ -201,8 +201,8 @@ void RequireRoom(const std::string& folder)
   struct statvfs disk = {};
   if (statvfs(folder.c_str(), &disk) == 0 && disk.f_bavail * disk.f_frsize < PoclCache::Room)
   {
-    throw DeviceError("PoCL, which runs OpenCL on the CPU, cannot keep what it compiles in \"" + folder + "\": " +
-      std::to_string(disk.f_bavail * disk.f_frsize) + " bytes are left there, " + Megabytes(PoclCache::Room) +
+    throw DeviceError("PoCL, which runs OpenCL on the CPU, cannot keep what it compiles in \"" + folder +
+      "\": " + std::to_string(disk.f_bavail * disk.f_frsize) + " bytes are left there, " + Megabytes(PoclCache::Room) +
       " are needed." + Advice());
   }
 }

@@ -14,7 +14,8 @@ using namespace tyndall;
 
 namespace
 {
-std::vector<std::string> Row(const std::string& name, const PhotonTimes& times, const PhotonLight& light, double bandwidth)
+std::vector<std::string> Row(
+  const std::string& name, const PhotonTimes& times, const PhotonLight& light, double bandwidth)
 {
   const double bytes = BytesOfCredits(light) / times.seconds;
   return { name, "", Text("%.1f", 1e3 * times.seconds), Text("%.1f", 1e3 * times.coreSeconds),

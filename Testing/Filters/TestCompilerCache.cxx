@@ -137,8 +137,8 @@ void Nowhere(test::Claims& claims, const fs::path& folder)
   claims.That(setrlimit(RLIMIT_FSIZE, &small) == 0, "files can be limited");
   Solve solve;
   claims.That(!solve.GivesLight(), "there is no light");
-  claims.That(solve.errors.WasOneWith("cache\" (chosen by POCL_CACHE_DIR): File too large; nor in \"" +
-                (folder / "tyndall-pocl-").string()),
+  claims.That(solve.errors.WasOneWith(
+                "cache\" (chosen by POCL_CACHE_DIR): File too large; nor in \"" + (folder / "tyndall-pocl-").string()),
     "one error names both folders");
   setrlimit(RLIMIT_FSIZE, &before);
   claims.That(solve.GivesLight() && solve.errors.None(), "it goes on when files can be written again");

@@ -434,7 +434,7 @@ TEST_F(PhotonMarcherTest, ReportsOftenWhereEveryVoxelBends)
   scene.settings.stepSize = 0.1;
   PhotonMarcher marcher = scene.Marcher(this->GetDevice());
   const std::vector<Photon> photons = Beam(scene.medium.grid, { 1.0, 0.0, 0.0 }, 60000);
-  // The launches are shared out by the device's clock, here one by which each takes so long, however fast the machine is.
+  // Launches are shared out by the device's clock, here one by which each takes so long, however fast the machine is.
   const auto reportsWhereEachTakes = [&](double seconds) {
     double now = 0.0;
     this->GetDevice().SetClock([&] { return now; });

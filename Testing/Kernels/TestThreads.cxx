@@ -147,8 +147,8 @@ TEST_F(DeviceInThreads, BuildsAProgramOnceForAll)
   InThreads([&](int t) {
     for (int i = 0; i < 12; ++i)
     {
-      const std::string text = "__kernel void fill(__global float* v, float f) { v[get_global_id(0)] = f + " +
-        std::to_string(i % 3) + "; }";
+      const std::string text =
+        "__kernel void fill(__global float* v, float f) { v[get_global_id(0)] = f + " + std::to_string(i % 3) + "; }";
       cl::Kernel fill = device.Kernel("fill", { text });
       Buffer<float> values(device, 64, "a test");
       With(fill, values, cl_float(10 * t));
@@ -281,6 +281,5 @@ TEST_P(Stopped, GivesBackWhatItTookWhereMemoryEnds)
   EXPECT_NO_THROW(work(device, {}));
 }
 
-INSTANTIATE_TEST_SUITE_P(
-  Solvers, Stopped, testing::Values("fused", "by_orders", "published", "photons", "viewed"),
+INSTANTIATE_TEST_SUITE_P(Solvers, Stopped, testing::Values("fused", "by_orders", "published", "photons", "viewed"),
   [](const auto& info) { return std::string(info.param); });

@@ -1,15 +1,16 @@
 #!/usr/bin/env python3
 """Finds types that one program has two of under one name.
 
-    types_have_one_meaning.py [--with PATH...] PROGRAM...
+    types_have_one_meaning.py PROGRAM...
 
 A PROGRAM is a list of files and folders with a comma between them, those of one program and its libraries. C++ has one
-definition of a name in a program: where two files define another `tyndall::VoxelBox` each, the linker takes one constructor for
-both, and what it does to the other's memory depends on the optimiser. Neither compiler nor linker says anything. Types in
-unnamed namespaces and in functions are a file's own and may be called what they like. So are those that two files of a program
-define alike: keep them in one header.
+definition of a name in a program: where two files define another `tyndall::VoxelBox` each, the linker takes one
+constructor for both, and what it does to the other's memory depends on the optimiser. Neither compiler nor linker says
+anything. Types in unnamed namespaces and in functions are a file's own and may be called what they like. What two files
+define alike is told as well: it belongs in one header.
 
-Read are the sources, not object files: those of an optimised build hold no types. A preprocessor's conditions are not followed.
+Read are the sources, not object files: those of an optimised build hold no types. The preprocessor's conditions are not
+followed.
 """
 import collections
 import os
@@ -30,7 +31,7 @@ def words_of(text):
 
 
 def without_templates(words):
-    """Without the parameters of templates, whose `class T` defines nothing, and without what is in round brackets: macros, alignas."""
+    """Without the parameters of templates, whose `class T` defines nothing, and without what is in round brackets."""
     left, depth = [], 0
     for at, word in enumerate(words):
         if depth == 0 and not (word == "<" and at > 0 and words[at - 1] == "template") and word != "(":
@@ -43,7 +44,7 @@ def without_templates(words):
 
 
 def scope_of(head):
-    """What a brace opens after these words: ("namespace" or "type", name), or None for anything else. A namespace may have no name."""
+    """What a brace opens after these words: ("namespace" or "type", name), or None. A namespace may have no name."""
     head = without_templates(head)
     if "namespace" in head:
         return "namespace", "".join(head[head.index("namespace") + 1:])

@@ -2,8 +2,8 @@
 
     python3 AbortInWindow.py paraview [arguments...]    on an X display, with xdotool
 
-That it stops at once is measured in reports of progress, which come some ten times a second wherever the machine is not too
-busy: from when the filter heard of the click there may be one more. How long that takes is printed, and no claim.
+That it stops at once is measured in reports of progress, of which there may be one more from when the filter heard of the
+click. How long that takes is printed, and no claim: it depends on the machine.
 """
 import ctypes
 import os
