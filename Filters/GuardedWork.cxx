@@ -1,7 +1,7 @@
 // How filters do their work, report and fail: see LightTransportData.h.
 #include "LightTransportData.h"
 
-#include "Device/OpenCL.h"
+#include "Device/Device.h"
 #include "LastFailure.h"
 
 #include "vtkAlgorithm.h"
@@ -53,6 +53,18 @@ void ForgetAbort(vtkAlgorithm* filter)
 }
 }
 
+namespace
+{
+/// By whichever filter opened the device, once in a process.
+void WarnOfDevices(vtkAlgorithm* filter)
+{
+  for (const std::string& warning : Device::TakeWarnings())
+  {
+    vtkWarningWithObjectMacro(filter, << warning);
+  }
+}
+}
+
 int Guarded(vtkAlgorithm* filter, vtkInformationVector* outputs, const std::function<void()>& work)
 {
   LastFailure last(filter);
@@ -99,6 +111,7 @@ int Guarded(vtkAlgorithm* filter, vtkInformationVector* outputs, const std::func
   {
     fail(error.what());
   }
+  WarnOfDevices(filter);
   return 1;
 }
 

@@ -100,7 +100,7 @@ bool IsGeometry(const std::string& key)
   return key == ExtentMinKey || key == ExtentMaxKey || key == CellsKey || key == OriginKey || key == SpacingKey;
 }
 
-VoxelBox VoxelsOf(const std::array<std::int64_t, 6>& extent)
+VDBBox VoxelsOf(const std::array<std::int64_t, 6>& extent)
 {
   return { { extent[0], extent[2], extent[4] },
     { LastVoxel(extent[0], extent[1]), LastVoxel(extent[2], extent[3]), LastVoxel(extent[4], extent[5]) } };
@@ -108,7 +108,7 @@ VoxelBox VoxelsOf(const std::array<std::int64_t, 6>& extent)
 
 double CellsOf(const std::array<std::int64_t, 6>& extent)
 {
-  const VoxelBox box = VoxelsOf(extent);
+  const VDBBox box = VoxelsOf(extent);
   double cells = extent[0] > extent[1] ? 0.0 : 1.0;
   for (int axis = 0; axis < 3; ++axis)
   {
@@ -120,7 +120,7 @@ double CellsOf(const std::array<std::int64_t, 6>& extent)
 std::array<std::int64_t, 6> ExtentOf(const VDBGrid& grid)
 {
   std::array<std::int64_t, 6> extent = { 0, -1, 0, -1, 0, -1 };
-  const VoxelBox& active = grid.Tree.ActiveBox;
+  const VDBBox& active = grid.Tree.ActiveBox;
   const auto* min = NoteOf<openvdb::Vec3i>(grid, ExtentMinKey);
   const auto* max = NoteOf<openvdb::Vec3i>(grid, ExtentMaxKey);
   bool noted = min && max;

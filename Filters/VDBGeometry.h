@@ -32,7 +32,7 @@ struct VDBGeometry
 };
 
 /// Voxels for the cells of an extent of points: a flat image has one layer.
-VoxelBox VoxelsOf(const std::array<std::int64_t, 6>& extent);
+VDBBox VoxelsOf(const std::array<std::int64_t, 6>& extent);
 
 /// Number of them, 0 in an empty extent.
 double CellsOf(const std::array<std::int64_t, 6>& extent);

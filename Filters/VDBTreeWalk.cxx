@@ -11,7 +11,7 @@ namespace
 {
 constexpr int LeafEdge = 8, UpperEdge = 4096; ///< voxels: 2^3, 2^(3+4+5)
 
-VoxelBox BoxOf(const VoxelCorner& corner, std::int64_t edge)
+VDBBox BoxOf(const VoxelCorner& corner, std::int64_t edge)
 {
   return { corner, { corner[0] + edge - 1, corner[1] + edge - 1, corner[2] + edge - 1 } };
 }
@@ -34,7 +34,7 @@ VoxelCorner ChildCorner(const VoxelCorner& corner, int bit, int childEdge)
 }
 
 /// The smallest box of a leaf's active voxels; at least one of them is.
-VoxelBox ActiveBoxOf(const VDBLeafMask& mask, const VoxelCorner& corner)
+VDBBox ActiveBoxOf(const VDBLeafMask& mask, const VoxelCorner& corner)
 {
   // Bit 64 x + 8 y + z: a word is one x, its byte one y.
   std::uint64_t yz = 0;
@@ -58,7 +58,7 @@ VoxelBox ActiveBoxOf(const VDBLeafMask& mask, const VoxelCorner& corner)
 }
 }
 
-void VoxelBox::Add(const VoxelBox& other)
+void VDBBox::Add(const VDBBox& other)
 {
   for (int axis = 0; axis < 3; ++axis)
   {

@@ -14,20 +14,20 @@ class VDBBytes;
 /// Index of a voxel; wide enough for any corner that a file can name.
 using VoxelCorner = std::array<std::int64_t, 3>;
 
-/// Voxels, inclusive.
-struct VoxelBox
+/// Voxels of a .vdb, inclusive, of any size. Not the kernels' VoxelBox, which is a part of a grid.
+struct VDBBox
 {
   VoxelCorner Min = { INT64_MAX, INT64_MAX, INT64_MAX };
   VoxelCorner Max = { INT64_MIN, INT64_MIN, INT64_MIN };
 
   bool Empty() const { return this->Min[0] > this->Max[0]; }
-  void Add(const VoxelBox& other);
+  void Add(const VDBBox& other);
 };
 
 /// What a tree's topology says, without voxel values.
 struct VDBTopology
 {
-  VoxelBox ActiveBox;
+  VDBBox ActiveBox;
   std::uint64_t ActiveVoxels = 0; ///< tiles counted by the voxels they stand for; saturates
   std::uint64_t TreeBytes = 0;    ///< memory that the tree takes with all its leaves loaded
 

@@ -1,8 +1,8 @@
 #include "vtkSolverComparison.h"
 
 #include "Comparison/SolverComparison.h"
+#include "Device/Clock.h"
 #include "LightTransportData.h"
-#include "Photons/Clock.h"
 #include "RefractiveInput.h"
 #include "WholeImage.h"
 

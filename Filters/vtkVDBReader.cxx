@@ -23,13 +23,13 @@
 #include <sstream>
 
 using tyndall::InvalidInput;
+using tyndall::VDBBox;
 using tyndall::VDBFile;
 using tyndall::VDBGrid;
-using tyndall::VoxelBox;
 
 namespace
 {
-std::string ToString(const VoxelBox& box)
+std::string ToString(const VDBBox& box)
 {
   std::ostringstream text;
   text << "[" << box.Min[0] << ", " << box.Min[1] << ", " << box.Min[2] << "] to [" << box.Max[0] << ", " << box.Max[1]
@@ -89,7 +89,7 @@ openvdb::CoordBBox CellsIn(const int* extent)
 {
   std::array<std::int64_t, 6> points;
   std::copy_n(extent, 6, points.begin());
-  const VoxelBox voxels = tyndall::VoxelsOf(points);
+  const VDBBox voxels = tyndall::VoxelsOf(points);
   openvdb::CoordBBox box;
   for (int axis = 0; axis < 3; ++axis)
   {

@@ -85,6 +85,7 @@ private:
         this->Begin(algorithm);
         break;
       case vtkCommand::ProgressEvent:
+        vtkLogF(TRACE, "%s is %.3g done", algorithm->GetClassName(), algorithm->GetProgress());
         this->HandleWaitingEvents();
         break;
       default:

@@ -4,11 +4,10 @@
 #include "Monitor.h"
 
 #include <algorithm>
-#include <chrono>
 
 namespace tyndall
 {
-/// A long computation in parts, so that it can report and be stopped about ten times a second.
+/// A long computation in parts, so that it can report and be stopped about ten times a second by the device's clock.
 struct Batches
 {
   std::size_t count = 0;       ///< of what is to be computed
@@ -23,7 +22,6 @@ struct Batches
 template <class Queue>
 void InBatches(Device& device, const Batches& batches, const Monitor& monitor, const Queue& queue)
 {
-  using Clock = std::chrono::steady_clock;
   const auto rounded = [&](double size) {
     const std::size_t parts = static_cast<std::size_t>(size / batches.whole);
     return std::max<std::size_t>(parts, 1) * batches.whole;
@@ -32,12 +30,12 @@ void InBatches(Device& device, const Batches& batches, const Monitor& monitor, c
   for (std::size_t begin = 0; begin < batches.count;)
   {
     const std::size_t size = std::min(batch, batches.count - begin);
-    const Clock::time_point start = Clock::now();
+    const double start = device.Now();
     queue(begin, size);
     device.Finish();
     begin += size;
     Report(monitor, batches.from + (batches.to - batches.from) * begin / batches.count);
-    const double took = std::chrono::duration<double>(Clock::now() - start).count();
+    const double took = device.Now() - start;
     batch = rounded(size * std::min(batches.seconds / std::max(took, 1e-6), batches.growth));
   }
 }

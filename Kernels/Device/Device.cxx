@@ -1,17 +1,21 @@
 #include "Device.h"
 
 #include "HostMemory.h"
+#include "PoclCache.h"
 
 #include <algorithm>
 #include <cctype>
 #include <cstdlib>
+#include <optional>
 #include <sys/mman.h>
-#include <vector>
+#include <utility>
 
 namespace tyndall
 {
 namespace
 {
+const char* const Pocl = "portable computing language"; ///< in the name of its platform
+
 std::string Lower(std::string text)
 {
   std::transform(text.begin(), text.end(), text.begin(), [](unsigned char c) { return std::tolower(c); });
@@ -25,35 +29,80 @@ struct Candidate
   std::string Label;
 };
 
+/// What all of the process shares.
+struct Shared
+{
+  std::mutex Guard; ///< of all of it
+  std::map<std::string, std::shared_ptr<Device>> Devices;
+  std::optional<PoclCache> Cache; ///< as soon as PoCL was asked for devices
+  std::vector<std::string> Warnings;
+};
+
+/// Never destroyed: an OpenCL platform may be gone before our statics are, and must not be called then.
+Shared& TheShared()
+{
+  static auto& shared = *new Shared;
+  return shared;
+}
+
+bool IsPocl(const cl::Platform& platform)
+{
+  return Lower(platform.getInfo<CL_PLATFORM_NAME>()).find(Pocl) != std::string::npos;
+}
+
+/// Devices of a platform.
+/// @throws cl::Error; DeviceError where PoCL has no folder to write to: it must not be used then
+std::vector<cl::Device> DevicesOf(const cl::Platform& platform, Shared& shared)
+{
+  if (IsPocl(platform) && !shared.Cache)
+  {
+    shared.Cache = ChoosePoclCache();
+    if (!shared.Cache->warning.empty())
+    {
+      shared.Warnings.push_back(shared.Cache->warning);
+    }
+  }
+  std::vector<cl::Device> devices;
+  platform.getDevices(CL_DEVICE_TYPE_ALL, &devices);
+  return devices;
+}
+
 /// Every device of every platform. A platform whose driver fails is passed over, not fatal: others may work.
-std::vector<Candidate> AllDevices(std::string& troubles)
+/// @param troubles  gets a sentence for each of those
+std::vector<Candidate> AllDevices(Shared& shared, std::string& troubles)
 {
   std::vector<cl::Platform> platforms;
   try
   {
     cl::Platform::get(&platforms);
   }
-  catch (const cl::Error& error)
+  catch (const cl::Error&) // no driver is installed
   {
-    troubles += " (" + std::string(error.what()) + " gave " + std::to_string(error.err()) + ")";
+  }
+  if (platforms.empty())
+  {
+    troubles += " Install one: Debian's package pocl-opencl-icd runs OpenCL on the CPU.";
   }
   std::vector<Candidate> found;
   for (const cl::Platform& platform : platforms)
   {
-    std::vector<cl::Device> devices;
+    const std::string name = platform.getInfo<CL_PLATFORM_NAME>();
     try
     {
-      platform.getDevices(CL_DEVICE_TYPE_ALL, &devices);
+      for (const cl::Device& device : DevicesOf(platform, shared))
+      {
+        found.push_back({ platform, device, device.getInfo<CL_DEVICE_NAME>() + " [" + name + "]" });
+      }
     }
     catch (const cl::Error& error)
     {
-      troubles += " (platform " + platform.getInfo<CL_PLATFORM_NAME>() + " gave " + std::to_string(error.err()) +
-        "; is POCL_CACHE_DIR a folder that can be written?)";
+      troubles += " The platform " + name + " is installed and gives none (OpenCL error " +
+        std::to_string(error.err()) + "). Start the program anew" +
+        (IsPocl(platform) ? " with POCL_CACHE_DIR a folder that can be written" : "") + ", or install another driver.";
     }
-    for (const cl::Device& device : devices)
+    catch (const DeviceError& error)
     {
-      found.push_back(
-        { platform, device, device.getInfo<CL_DEVICE_NAME>() + " [" + platform.getInfo<CL_PLATFORM_NAME>() + "]" });
+      troubles += std::string(" ") + error.what();
     }
   }
   return found;
@@ -61,7 +110,7 @@ std::vector<Candidate> AllDevices(std::string& troubles)
 
 std::size_t Choose(const std::vector<Candidate>& candidates, const std::string& name)
 {
-  const std::string wanted = Lower(name.empty() ? "portable computing language" : name);
+  const std::string wanted = Lower(name.empty() ? Pocl : name);
   for (std::size_t i = 0; i < candidates.size(); ++i)
   {
     if (Lower(candidates[i].Label).find(wanted) != std::string::npos)
@@ -75,17 +124,16 @@ std::size_t Choose(const std::vector<Candidate>& candidates, const std::string& 
 
 std::shared_ptr<Device> Device::Find(const std::string& name)
 {
-  // Never destroyed: an OpenCL platform may be gone before our statics are, and must not be called then.
-  static auto& known = *new std::map<std::string, std::shared_ptr<Device>>;
+  Shared& shared = TheShared();
+  const std::lock_guard<std::mutex> lock(shared.Guard);
   const char* variable = std::getenv("TYNDALL_DEVICE");
   const std::string wanted = !name.empty() || !variable ? name : std::string(variable);
 
   std::string troubles;
-  const std::vector<Candidate> candidates = AllDevices(troubles);
+  const std::vector<Candidate> candidates = AllDevices(shared, troubles);
   if (candidates.empty())
   {
-    throw DeviceError("There is no OpenCL device on this machine" + troubles +
-      ". Install one: Debian's package pocl-opencl-icd runs OpenCL on the CPU.");
+    throw DeviceError("There is no OpenCL device to work on." + troubles);
   }
   const std::size_t chosen = Choose(candidates, wanted);
   if (chosen == candidates.size())
@@ -96,30 +144,47 @@ std::shared_ptr<Device> Device::Find(const std::string& name)
       there += (there.empty() ? "" : ", ") + candidate.Label;
     }
     throw DeviceError("No OpenCL device has \"" + wanted + "\" in its name. There are: " + there +
-      ". Choose a part of one of these names (Device property or TYNDALL_DEVICE), or leave it empty.");
+      ". Choose a part of one of these names (Device property or TYNDALL_DEVICE), or leave it empty." + troubles);
   }
-  std::shared_ptr<Device>& device = known[candidates[chosen].Label];
+  std::shared_ptr<Device>& device = shared.Devices[candidates[chosen].Label];
   if (!device)
   {
-    device = std::make_shared<Device>(candidates[chosen].Platform, candidates[chosen].Device);
+    const cl::Platform& platform = candidates[chosen].Platform;
+    device = std::make_shared<Device>(
+      platform, candidates[chosen].Device, IsPocl(platform) ? shared.Cache->folder : std::string());
   }
   return device;
 }
 
-Device::Device(const cl::Platform& platform, const cl::Device& device)
+std::vector<std::string> Device::TakeWarnings()
+{
+  Shared& shared = TheShared();
+  const std::lock_guard<std::mutex> lock(shared.Guard);
+  return std::exchange(shared.Warnings, {});
+}
+
+namespace
+{
+/// Bytes that all buffers on a device may take together.
+std::size_t MemoryOf(const cl::Device& device)
+{
+  const std::size_t said = device.getInfo<CL_DEVICE_GLOBAL_MEM_SIZE>();
+  const bool cpu = (device.getInfo<CL_DEVICE_TYPE>() & CL_DEVICE_TYPE_CPU) != 0;
+  return cpu ? std::max<std::size_t>(said, HostMemory() / 4 * 3) : said;
+}
+}
+
+Device::Device(const cl::Platform& platform, const cl::Device& device, std::string cacheFolder)
   : TheDevice(device)
   , DeviceName(device.getInfo<CL_DEVICE_NAME>() + " [" + platform.getInfo<CL_PLATFORM_NAME>() + "]")
   , Extensions(device.getInfo<CL_DEVICE_EXTENSIONS>())
+  , CacheFolder(std::move(cacheFolder))
   , Cpu((device.getInfo<CL_DEVICE_TYPE>() & CL_DEVICE_TYPE_CPU) != 0)
   , Units(static_cast<int>(device.getInfo<CL_DEVICE_MAX_COMPUTE_UNITS>()))
   , VectorWidth(static_cast<int>(device.getInfo<CL_DEVICE_NATIVE_VECTOR_WIDTH_FLOAT>()))
-  , Limit(device.getInfo<CL_DEVICE_GLOBAL_MEM_SIZE>())
   , LargestAllocation(device.getInfo<CL_DEVICE_MAX_MEM_ALLOC_SIZE>())
+  , Memory(MemoryOf(device))
 {
-  if (this->Cpu)
-  {
-    this->Limit = std::max<std::size_t>(this->Limit, HostMemory() / 4 * 3);
-  }
   try
   {
     this->TheContext = cl::Context(device);
@@ -149,32 +214,55 @@ cl::Kernel Device::Kernel(const char* name, std::initializer_list<std::string_vi
   {
     text += source;
   }
-  const std::string all = "-cl-std=CL1.2 " + options;
-  const std::string key = all + '\n' + text;
-  auto known = this->Programs.find(key);
   try
   {
-    if (known == this->Programs.end())
-    {
-      cl::Program program(this->TheContext, text);
-      try
-      {
-        program.build({ this->TheDevice }, all.c_str());
-      }
-      catch (const cl::Error&)
-      {
-        throw DeviceError("The kernel " + std::string(name) + " does not build on " + this->DeviceName + " with \"" +
-          all + "\":\n" + program.getBuildInfo<CL_PROGRAM_BUILD_LOG>(this->TheDevice));
-      }
-      known = this->Programs.emplace(key, program).first;
-    }
-    return cl::Kernel(known->second, name);
+    return cl::Kernel(this->ProgramOf(name, text, "-cl-std=CL1.2 " + options), name);
   }
   catch (const cl::Error& error)
   {
     throw DeviceError("The kernel " + std::string(name) + " cannot be made on " + this->DeviceName + ": " +
       error.what() + " gave " + std::to_string(error.err()) + ".");
   }
+}
+
+cl::Program Device::ProgramOf(const char* kernel, const std::string& text, const std::string& options)
+{
+  std::shared_ptr<KeptProgram> kept;
+  {
+    const std::lock_guard<std::mutex> lock(this->ProgramsGuard);
+    std::shared_ptr<KeptProgram>& known = this->Programs[options + '\n' + text];
+    if (!known)
+    {
+      known = std::make_shared<KeptProgram>();
+    }
+    kept = known;
+  }
+  const std::lock_guard<std::mutex> lock(kept->Building);
+  if (!kept->IsBuilt)
+  {
+    kept->Program = this->Build(kernel, text, options);
+    kept->IsBuilt = true;
+  }
+  return kept->Program;
+}
+
+cl::Program Device::Build(const char* kernel, const std::string& text, const std::string& options) const
+{
+  if (!this->CacheFolder.empty())
+  {
+    RequireRoom(this->CacheFolder);
+  }
+  cl::Program program(this->TheContext, text);
+  try
+  {
+    program.build({ this->TheDevice }, options.c_str());
+  }
+  catch (const cl::Error&)
+  {
+    throw DeviceError("The kernel " + std::string(kernel) + " does not build on " + this->DeviceName + " with \"" +
+      options + "\":\n" + program.getBuildInfo<CL_PROGRAM_BUILD_LOG>(this->TheDevice));
+  }
+  return program;
 }
 
 namespace
@@ -217,36 +305,36 @@ cl::Buffer Device::Allocate(std::size_t bytes, cl_mem_flags flags, const char* w
   {
     complain("the largest single allocation is " + std::to_string(this->LargestAllocation));
   }
-  if (this->InUse + bytes > this->Limit)
+  if (!this->Memory.Take(bytes)) // before it is asked for: another thread must not count on the same bytes
   {
-    complain(std::to_string(this->Limit - this->InUse) + " of " + std::to_string(this->Limit) + " are left");
+    complain(std::to_string(this->Memory.Left()) + " of " + std::to_string(this->Memory.Limit()) + " are left");
   }
-  cl_int status = CL_SUCCESS;
-  cl::Buffer buffer;
   try
   {
-    buffer = this->Cpu && bytes >= HugePage ? InHugePages(this->TheContext, flags, bytes)
-                                            : cl::Buffer(this->TheContext, flags, bytes, nullptr, &status);
+    return this->Cpu && bytes >= HugePage ? InHugePages(this->TheContext, flags, bytes)
+                                          : cl::Buffer(this->TheContext, flags, bytes);
   }
   catch (const cl::Error& error)
   {
+    this->Memory.GiveBack(bytes);
     complain("the driver refused them (" + std::to_string(error.err()) + ")");
   }
-  this->InUse += bytes;
-  this->Peak = std::max(this->Peak, this->InUse);
-  return buffer;
+  return {};
 }
 
 void Device::Finish()
 {
+  this->SecondsQueued = 0.0; // first: what other threads queue meanwhile is counted anew
   this->TheQueue.finish();
-  this->SecondsQueued = 0.0;
 }
 
 void Device::Queued(double seconds)
 {
-  this->SecondsQueued += seconds;
-  if (this->SecondsQueued >= 0.1)
+  double before = this->SecondsQueued;
+  while (!this->SecondsQueued.compare_exchange_weak(before, before + seconds))
+  {
+  }
+  if (before + seconds >= 0.1)
   {
     this->Finish();
   }

@@ -1,20 +1,26 @@
 #pragma once
 
+#include "Clock.h"
 #include "Errors.h"
+#include "MemoryCount.h"
 #include "OpenCL.h"
 
+#include <atomic>
 #include <cstddef>
 #include <initializer_list>
 #include <map>
 #include <memory>
+#include <mutex>
 #include <string>
 #include <string_view>
+#include <vector>
 
 namespace tyndall
 {
 /// One OpenCL device: its context, one in-order queue, the programs built for it, and a count of the memory taken on it.
 ///
-/// Not safe for use by several threads at once.
+/// Safe for several threads at once, each with buffers and kernels of its own: what they queue is done in some order, one
+/// after the other. A thread that waits may wait for the work of others too, and PeakBytes is of all of them.
 class Device
 {
 public:
@@ -24,7 +30,12 @@ public:
   /// @throws DeviceError if there is no such device; the text lists those there are
   static std::shared_ptr<Device> Find(const std::string& name = {});
 
-  Device(const cl::Platform& platform, const cl::Device& device);
+  /// What users should know of how devices were opened, e.g. that programs are kept elsewhere than they said. Each is
+  /// given out once.
+  static std::vector<std::string> TakeWarnings();
+
+  /// @param cacheFolder  where the platform writes what it compiles, if that is known: looked at for room before it does
+  Device(const cl::Platform& platform, const cl::Device& device, std::string cacheFolder = {});
 
   const std::string& Name() const { return this->DeviceName; }
   bool IsCpu() const { return this->Cpu; }
@@ -35,14 +46,15 @@ public:
 
   /// Bytes that buffers on this device may take together. What OpenCL reports, on a CPU at least three quarters of the
   /// machine's memory (PoCL reports only a part of what can be had).
-  std::size_t MemoryLimit() const { return this->Limit; }
+  std::size_t MemoryLimit() const { return this->Memory.Limit(); }
   std::size_t AllocationLimit() const { return this->LargestAllocation; } ///< largest single buffer, bytes
-  std::size_t BytesInUse() const { return this->InUse; }
-  std::size_t PeakBytes() const { return this->Peak; } ///< largest BytesInUse since ResetPeak
-  void ResetPeak() { this->Peak = this->InUse; }
+  std::size_t BytesInUse() const { return this->Memory.InUse(); }
+  std::size_t PeakBytes() const { return this->Memory.Peak(); } ///< largest BytesInUse since ResetPeak
+  void ResetPeak() { this->Memory.ResetPeak(); }
 
   /// A kernel of the program that the given sources make one after the other. Programs are kept, so that asking again
-  /// with the same sources and options costs nothing.
+  /// with the same sources and options costs nothing. The kernel is the caller's own: two threads that ask for one get two,
+  /// for OpenCL does not let them set arguments of the same.
   /// @param sources  texts of .cl files (kernel_source::...), in the order they are to be read
   /// @param options  compiler options, e.g. "-DCHANNELS=3"
   /// @throws DeviceError with the build log
@@ -50,7 +62,7 @@ public:
 
   /// @throws DeviceError if `bytes` more do not fit; `what` says what they are for
   cl::Buffer Allocate(std::size_t bytes, cl_mem_flags flags, const char* what);
-  void Release(std::size_t bytes) { this->InUse -= bytes; }
+  void Release(std::size_t bytes) { this->Memory.GiveBack(bytes); }
 
   const cl::Context& Context() const { return this->TheContext; }
   cl::CommandQueue& Queue() { return this->TheQueue; }
@@ -60,20 +72,36 @@ public:
   /// told and an abort heard that often, while short kernels follow each other without the host.
   void Queued(double seconds);
 
+  /// Seconds by the clock that work is shared out by: the machine's, or that of a test, set before work begins.
+  double Now() const { return this->TheClock(); }
+  void SetClock(Clock clock) { this->TheClock = std::move(clock); }
+
 private:
+  /// A program, built by whichever thread needs it first. Others who need the same wait, and nobody else.
+  struct KeptProgram
+  {
+    std::mutex Building;
+    cl::Program Program;
+    bool IsBuilt = false;
+  };
+
+  cl::Program ProgramOf(const char* kernel, const std::string& text, const std::string& options);
+  cl::Program Build(const char* kernel, const std::string& text, const std::string& options) const;
+
   cl::Device TheDevice;
   cl::Context TheContext;
   cl::CommandQueue TheQueue;
   std::string DeviceName;
   std::string Extensions;
+  std::string CacheFolder;
   bool Cpu = true;
   int Units = 1;
   int VectorWidth = 1;
-  std::size_t Limit = 0;
   std::size_t LargestAllocation = 0;
-  std::size_t InUse = 0;
-  std::size_t Peak = 0;
-  double SecondsQueued = 0.0;
-  std::map<std::string, cl::Program> Programs;
+  MemoryCount Memory;
+  std::atomic<double> SecondsQueued{ 0.0 };
+  Clock TheClock = ClockSeconds;
+  std::mutex ProgramsGuard; ///< of the map, not of what is in it
+  std::map<std::string, std::shared_ptr<KeptProgram>> Programs;
 };
 }

@@ -26,6 +26,25 @@ public:
   {
   }
 
+  LentArray(const LentArray&) = delete;
+  LentArray& operator=(const LentArray&) = delete;
+
+  /// Waits: where work failed halfway, kernels that were queued before may still be at the array, which is the caller's
+  /// again now.
+  ~LentArray()
+  {
+    if (this->Count > 0 && this->Copy.Size() == 0)
+    {
+      try
+      {
+        this->Owner->Finish();
+      }
+      catch (const cl::Error&) // it will fail again where it can be told
+      {
+      }
+    }
+  }
+
   const cl::Buffer& Handle() const { return this->Copy.Size() > 0 ? this->Copy.Handle() : this->Memory; }
 
   /// Wait for the device; then the array holds what kernels wrote.

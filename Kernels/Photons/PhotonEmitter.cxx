@@ -1,8 +1,8 @@
 #include "PhotonEmitter.h"
 
-#include "Clock.h"
 #include "PhotonSources.h"
 
+#include "../Device/Clock.h"
 #include "../Device/Errors.h"
 #include "../Device/HostMemory.h"
 

@@ -1,8 +1,8 @@
 #include "PhotonImportance.h"
 
-#include "Clock.h"
 #include "PhotonEmitter.h"
 
+#include "../Device/Clock.h"
 #include "../Device/Errors.h"
 
 #include <algorithm>

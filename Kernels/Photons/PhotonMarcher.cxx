@@ -1,10 +1,10 @@
 #include "PhotonMarcher.h"
 
+#include "../Device/Clock.h"
 #include "../Device/Defines.h"
 #include "../Device/HostMemory.h"
 #include "../Device/LentArray.h"
 #include "../LightPropagation/OneChannel.h"
-#include "Clock.h"
 #include "MarchLaunch.h"
 #include "PhotonPaths.h"
 #include "PilotGathering.h"

@@ -1,7 +1,8 @@
 #include "PilotGathering.h"
 
-#include "Clock.h"
 #include "MarchLaunch.h"
+
+#include "../Device/Clock.h"
 
 #include <algorithm>
 #include <cmath>

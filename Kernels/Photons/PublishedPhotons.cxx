@@ -1,10 +1,10 @@
 #include "PublishedPhotons.h"
 
-#include "Clock.h"
 #include "PhotonPacking.h"
 #include "TyndallKernelSources.h"
 
 #include "../Device/Buffer.h"
+#include "../Device/Clock.h"
 #include "../Refraction/IndexRange.h"
 
 #include <algorithm>

@@ -3,10 +3,10 @@
 #include "Estimators.h"
 #include "LightRows.h"
 
+#include "../Device/Clock.h"
 #include "../Device/HostMemory.h"
 #include "../Medium/Medium.h"
 #include "../Medium/Traits.h"
-#include "../Photons/Clock.h"
 #include "../Refraction/PyramidLayout.h"
 
 #include <algorithm>

@@ -14,7 +14,8 @@ using namespace tyndall;
 
 namespace
 {
-std::vector<std::string> Row(const std::string& name, const Times& times, const PhotonLight& light, double bandwidth)
+std::vector<std::string> Row(
+  const std::string& name, const PhotonTimes& times, const PhotonLight& light, double bandwidth)
 {
   const double bytes = BytesOfCredits(light) / times.seconds;
   return { name, "", Text("%.1f", 1e3 * times.seconds), Text("%.1f", 1e3 * times.coreSeconds),
@@ -46,7 +47,7 @@ void TimePilots(const PhotonBench& bench, const PaperScene& paper)
   PhotonMarcher marcher = scene.Marcher(bench.device);
   Table table({ "pilot photons", "", "ms", "core ms" });
   const auto time = [&](const std::string& name, const std::function<double()>& run) {
-    const Times times = Repeat(bench.device, bench.quick ? 1 : 15, run);
+    const PhotonTimes times = Repeat(bench.device, bench.quick ? 1 : 15, run);
     PhotonLine("pilots", name, scene.settings.grid)
       .Add("photons", static_cast<double>(scene.photons.size()))
       .Add("seconds", times.seconds)
@@ -69,7 +70,7 @@ void TimeWays(const PhotonBench& bench)
   const auto way = [&](const std::string& name, const std::function<PhotonLight()>& march) {
     PhotonLight light;
     device.ResetPeak();
-    const Times times = Repeat(device, bench.quick ? 1 : 7, [&] {
+    const PhotonTimes times = Repeat(device, bench.quick ? 1 : 7, [&] {
       light = march();
       return light.secondsMarching;
     });
@@ -126,7 +127,7 @@ void CompareOctrees(const PhotonBench& bench)
     });
   };
   PhotonLight whole;
-  const auto add = [&](const std::string& name, const Times& times, const PhotonLight& light) {
+  const auto add = [&](const std::string& name, const PhotonTimes& times, const PhotonLight& light) {
     const double error = RelativeL2(light.light.fluence, whole.light.fluence);
     const double part = static_cast<double>(light.steps) / static_cast<double>(whole.steps);
     PhotonLine("octree", name, scene.settings.grid)
@@ -140,14 +141,14 @@ void CompareOctrees(const PhotonBench& bench)
     table.Add({ name, "", std::to_string(light.steps), Text("%.3f", part), Text("%.1f", 1e3 * times.seconds),
       Text("%.1f", 1e3 * times.coreSeconds), Text("%.2e", error) });
   };
-  const Times all = march(scene.Marcher(bench.device, {}, false), whole);
+  const PhotonTimes all = march(scene.Marcher(bench.device, {}, false), whole);
   add("voxel by voxel", all, whole);
   for (const double tolerance :
     bench.quick ? std::vector<double>{ 0.01 } : std::vector<double>{ 0.001, 0.002, 0.005, 0.01, 0.02, 0.05, 0.1 })
   {
     scene.Group(tolerance);
     PhotonLight light;
-    const Times times = march(scene.Marcher(bench.device), light);
+    const PhotonTimes times = march(scene.Marcher(bench.device), light);
     add(Text("tolerance %g", tolerance), times, light);
   }
   table.Print("Octree: steps, times and fluence against marching voxel by voxel, ball, 122000 photons");

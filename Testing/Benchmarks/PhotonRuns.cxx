@@ -20,7 +20,7 @@ std::string GridName(const Grid& grid)
 }
 }
 
-Times Repeat(Device& device, int runs, const std::function<double()>& run)
+PhotonTimes Repeat(Device& device, int runs, const std::function<double()>& run)
 {
   run();
   std::vector<double> wall, core;
@@ -109,7 +109,7 @@ double BytesOfCredits(const PhotonLight& light)
 }
 
 void PrintMarch(const char* what, const std::string& method, const PaperScene& scene, Device& device,
-  const Times& times, const PhotonLight& light, double bandwidth)
+  const PhotonTimes& times, const PhotonLight& light, double bandwidth)
 {
   PhotonLine(what, method, scene.settings.grid)
     .Add("photons", static_cast<double>(scene.photons.size()))

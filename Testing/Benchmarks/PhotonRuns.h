@@ -19,14 +19,14 @@ namespace bench
 constexpr std::size_t PaperPhotons = 122000;
 
 /// Medians of several runs, seconds.
-struct Times
+struct PhotonTimes
 {
   double seconds = 0.0;     ///< of the part that the run itself tells
   double coreSeconds = 0.0; ///< of all of it, a compute unit
 };
 
 /// @param run  tells the seconds of the part of it that counts. It runs once before: compiles, and takes the memory
-Times Repeat(tyndall::Device& device, int runs, const std::function<double()>& run);
+PhotonTimes Repeat(tyndall::Device& device, int runs, const std::function<double()>& run);
 
 double Timed(const std::function<void()>& work);
 
@@ -63,7 +63,7 @@ double BytesOfCredits(const tyndall::PhotonLight& light);
 
 /// Time, steps and credits of a march. @param bandwidth  of the machine, bytes / s
 void PrintMarch(const char* what, const std::string& method, const PaperScene& scene, tyndall::Device& device,
-  const Times& times, const tyndall::PhotonLight& light, double bandwidth);
+  const PhotonTimes& times, const tyndall::PhotonLight& light, double bandwidth);
 
 /// Root of the sum of squared differences, over that of the reference.
 double RelativeL2(const std::vector<float>& values, const std::vector<float>& reference);

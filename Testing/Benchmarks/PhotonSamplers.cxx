@@ -65,7 +65,7 @@ void CompareSamplers(const PhotonBench& bench)
   {
     std::vector<std::string> row = { sampler.name, "" };
     std::vector<double> errors;
-    Times times, whole;
+    PhotonTimes times, whole;
     for (const std::size_t count : counts)
     {
       scene.Emit(count, sampler.sampler, 1);

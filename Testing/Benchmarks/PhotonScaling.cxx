@@ -9,7 +9,7 @@ namespace
 {
 struct Marched
 {
-  Times times;
+  PhotonTimes times;
   PhotonLight light;
 };
 

@@ -36,7 +36,7 @@ public:
 
   void Time(const std::string& name, double paper, const std::function<double()>& run)
   {
-    const Times times = Repeat(this->Bench.device, this->Bench.quick ? 1 : 7, run);
+    const PhotonTimes times = Repeat(this->Bench.device, this->Bench.quick ? 1 : 7, run);
     const double none = std::numeric_limits<double>::quiet_NaN();
     const double paperSeconds = paper > 0.0 ? 1e-3 * paper : none;
     PhotonLine("stages", name, this->Scene.settings.grid)

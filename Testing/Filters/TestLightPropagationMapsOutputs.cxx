@@ -8,7 +8,6 @@
 #include "vtkTable.h"
 
 #include <algorithm>
-#include <chrono>
 #include <cmath>
 #include <vector>
 
@@ -269,7 +268,6 @@ struct Watcher : vtkCommand
     this->Last = filter->GetProgress();
     if (++this->Reports == this->StopAt)
     {
-      this->Stopped = std::chrono::steady_clock::now();
       filter->SetAbortExecute(1);
     }
   }
@@ -277,7 +275,6 @@ struct Watcher : vtkCommand
   int StopAt = 0;
   double Last = 0.0;
   bool Grows = true;
-  std::chrono::steady_clock::time_point Stopped;
 };
 
 void ReportsAndStops(test::Claims& claims)
@@ -296,9 +293,7 @@ void ReportsAndStops(test::Claims& claims)
   maps->SetDirectionsPerFace(100);
   maps->SetTolerance(1e-6);
   maps->Update();
-  const std::chrono::duration<double> took = std::chrono::steady_clock::now() - watcher->Stopped;
-  claims.That(watcher->Reports >= 5 && watcher->Reports < 10, "it stops when told");
-  claims.That(took.count() < 1.0, "within a second");
+  claims.That(watcher->Reports >= 5 && watcher->Reports <= 6, "it stops when told, at once");
   claims.That(maps->GetOutput()->GetNumberOfCells() == 0, "the output is empty then");
   claims.That(errors.None(), "and that is no error");
 

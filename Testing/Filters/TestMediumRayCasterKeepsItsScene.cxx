@@ -265,8 +265,8 @@ void MemoryIsGivenBack(test::Claims& claims)
     }
     const double kept = ResidentBytes();
     end(caster);
-    for (int n = 0; n < 200 && kept - ResidentBytes() < 60e6;
-         ++n) // PoCL lets go in a thread of its own, of uploads as well
+    // PoCL lets go in a thread of its own, of uploads as well, whenever that gets its turn.
+    for (int n = 0; n < 30000 && kept - ResidentBytes() < 60e6; ++n)
     {
       std::this_thread::sleep_for(std::chrono::milliseconds(10));
     }

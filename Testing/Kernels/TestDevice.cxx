@@ -1,5 +1,6 @@
 #include "DeviceTest.h"
 
+#include "Device/Batches.h"
 #include "Device/Buffer.h"
 #include "TyndallKernelSources.h"
 
@@ -81,6 +82,37 @@ TEST_F(DeviceLayer, ShowsTheBuildLogOfAKernelThatDoesNotBuild)
     ComplaintOf([&] { this->GetDevice().Kernel("broken", { "__kernel void broken() { undeclared = 1; }" }); });
   EXPECT_TRUE(Contains(complaint, "undeclared"));
   EXPECT_TRUE(Contains(complaint, "broken"));
+}
+
+/// What the sizes of batches are on a machine that does so many things a second.
+std::vector<std::size_t> SizesAt(Device& device, const Batches& batches, double thingsPerSecond)
+{
+  double now = 0.0;
+  device.SetClock([&] { return now; });
+  std::vector<std::size_t> sizes;
+  InBatches(device, batches, {}, [&](std::size_t, std::size_t size) {
+    sizes.push_back(size);
+    now += static_cast<double>(size) / thingsPerSecond;
+  });
+  device.SetClock(ClockSeconds);
+  return sizes;
+}
+
+TEST_F(DeviceLayer, SharesWorkOutByItsClock)
+{
+  Batches batches;
+  batches.count = 1000;
+  batches.first = 10;
+  batches.whole = 5;
+  batches.seconds = 0.1;
+  batches.growth = 4.0;
+  using Sizes = std::vector<std::size_t>;
+  EXPECT_EQ(SizesAt(this->GetDevice(), batches, 2001.0), (Sizes{ 10, 40, 160, 200, 200, 200, 190 }))
+    << "parts grow fourfold, until they take a tenth of a second";
+  EXPECT_EQ(SizesAt(this->GetDevice(), batches, 1e12), (Sizes{ 10, 40, 160, 640, 150 })) << "a fast machine";
+  const Sizes slow = SizesAt(this->GetDevice(), batches, 1.0);
+  EXPECT_EQ(slow.size(), 199u) << "a slow machine: all but the first are as small as they can be";
+  EXPECT_EQ(slow[1], 5u);
 }
 
 /// 1 - exp(-tau) and exp(-tau) as the kernels see them.

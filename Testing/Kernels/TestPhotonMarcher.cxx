@@ -434,12 +434,22 @@ TEST_F(PhotonMarcherTest, ReportsOftenWhereEveryVoxelBends)
   scene.settings.stepSize = 0.1;
   PhotonMarcher marcher = scene.Marcher(this->GetDevice());
   const std::vector<Photon> photons = Beam(scene.medium.grid, { 1.0, 0.0, 0.0 }, 60000);
-  int reports = 0;
-  marcher.March(photons, [&](double) {
-    ++reports;
-    return true;
-  });
-  EXPECT_GE(reports, 8); // these photons take a second or more on two cores: a launch has a small part of them
+  // Launches are shared out by the device's clock, here one by which each takes so long, however fast the machine is.
+  const auto reportsWhereEachTakes = [&](double seconds) {
+    double now = 0.0;
+    this->GetDevice().SetClock([&] { return now; });
+    int reports = 0;
+    marcher.March(photons, [&](double) {
+      now += seconds;
+      ++reports;
+      return true;
+    });
+    this->GetDevice().SetClock(ClockSeconds);
+    return reports;
+  };
+  EXPECT_GE(reportsWhereEachTakes(0.1), 8) << "the first launch has a small part of the photons";
+  EXPECT_GE(reportsWhereEachTakes(10.0), reportsWhereEachTakes(0.1)) << "too long: no launch is larger than the first";
+  EXPECT_GE(reportsWhereEachTakes(0.0), 3) << "too short: the next one grows, but not to all that is left";
 }
 
 TEST_F(PhotonMarcherTest, StopsWhenItIsTold)

@@ -1,6 +1,9 @@
-"""In ParaView's window a long solve shows its progress and stops within a second of a click; a short one then ends well.
+"""In ParaView's window a long solve shows its progress and stops at a click; a short one then ends well.
 
     python3 AbortInWindow.py paraview [arguments...]    on an X display, with xdotool
+
+That it stops at once is measured in reports of progress, of which there may be one more from when the filter heard of the
+click. How long that takes is printed, and no claim: it depends on the machine.
 """
 import ctypes
 import os
@@ -13,18 +16,21 @@ log = os.path.join(os.environ["TYNDALL_TEST_OUTPUT"], "AbortInWindow.log")
 session = os.path.join(os.path.dirname(os.path.abspath(__file__)), "SolveInWindow.xml")
 
 
-def wait_for(pattern, seconds):
+PATIENCE = 300  # seconds after which something hangs, on the slowest machine
+
+
+def wait_for(pattern):
     """What the log says, as soon as it says it."""
-    end = time.monotonic() + seconds
+    end = time.monotonic() + PATIENCE
     while time.monotonic() < end:
         if os.path.exists(log):
             with open(log, errors="replace") as file:
-                found = re.search(pattern, file.read())
+                found = re.search(pattern, file.read(), re.DOTALL)
             if found:
                 return found
         assert paraview.poll() is None, "ParaView has gone"
         time.sleep(0.005)
-    raise AssertionError("not within %g s: %s" % (seconds, pattern))
+    raise AssertionError("not within %g s: %s" % (PATIENCE, pattern))
 
 
 class Screen:
@@ -49,11 +55,11 @@ if os.path.exists(log):
     os.remove(log)
 paraview = subprocess.Popen(sys.argv[1:] + ["--log=%s,TRACE" % log, "--exit", "--test-script=" + session])
 try:
-    x, y = (int(number) for number in wait_for(r"vtkLightPropagationMaps can be aborted at \((\d+), (\d+)\)", 60).groups())
+    x, y = (int(number) for number in wait_for(r"vtkLightPropagationMaps can be aborted at \((\d+), (\d+)\)").groups())
 
     screen = Screen()
     progress = set()
-    end = time.monotonic() + 20
+    end = time.monotonic() + PATIENCE
     while len(progress) < 4:
         assert time.monotonic() < end, "the status bar shows no progress"
         progress.add(screen.pixels(x + 15, y - 3, 200, 6))
@@ -61,13 +67,12 @@ try:
 
     begin = time.monotonic()
     subprocess.run(["xdotool", "mousemove", str(x), str(y), "click", "1"], check=True)
-    wait_for("vtkLightPropagationMaps has ended", 60)
-    seconds = time.monotonic() - begin
-    print("from the click to the end: %.3f s" % seconds)
-    wait_for("vtkLightPropagationMaps is aborted", 1)
-    assert seconds < 1, seconds
+    heard = wait_for("vtkLightPropagationMaps is aborted(.*?)vtkLightPropagationMaps has ended").group(1)
+    print("from the click to the end: %.3f s" % (time.monotonic() - begin))
+    reports = heard.count("vtkLightPropagationMaps is ")
+    assert reports <= 1, "%d reports of progress after the abort:%s" % (reports, heard)
 
-    assert paraview.wait(60) == 0, paraview.returncode
+    assert paraview.wait(PATIENCE) == 0, paraview.returncode
 finally:
     if paraview.poll() is None:
         paraview.kill()

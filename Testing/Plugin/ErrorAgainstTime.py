@@ -26,7 +26,7 @@ script = os.path.join(os.environ["TYNDALL_SOURCE"], "Plugin/Examples/error_again
 sys.path.insert(0, os.path.dirname(script))
 sys.dont_write_bytecode = True
 sys.argv = [script, output("waves.vti"), "--lights", output("sun.vtp"), "--sky", "0.1", "0.1", "0.1", "--directions", "4", "25",
-            "--coarsenings", "1", "2", "--photons", "1000", "10000", "--budget", "10", "--repeats", "1", "--output", folder]
+            "--coarsenings", "1", "2", "--photons", "1000", "10000", "--budget", "1e6", "--repeats", "1", "--output", folder]
 for name in ("waves.csv", "waves.jsonl", "waves.png"):
     if os.path.exists(output(name)):
         os.remove(output(name))

@@ -1,0 +1,49 @@
+#pragma once
+
+#include <algorithm>
+#include <atomic>
+#include <cstddef>
+
+namespace tyndall
+{
+/// Bytes that are taken of a limit. Safe for threads, without locks: what one takes, no other can take as well.
+class MemoryCount
+{
+public:
+  explicit MemoryCount(std::size_t limit)
+    : Most(limit)
+  {
+  }
+
+  std::size_t Limit() const { return this->Most; }
+  std::size_t InUse() const { return this->Taken; }
+  std::size_t Left() const { return this->Most - this->Taken; }
+  std::size_t Peak() const { return this->Largest; } ///< largest InUse since ResetPeak
+  void ResetPeak() { this->Largest = this->InUse(); }
+
+  /// @return whether they were left; nothing is taken where not
+  bool Take(std::size_t bytes)
+  {
+    std::size_t before = this->Taken;
+    do
+    {
+      if (bytes > this->Most - before)
+      {
+        return false;
+      }
+    } while (!this->Taken.compare_exchange_weak(before, before + bytes));
+    for (std::size_t peak = this->Largest; peak < before + bytes;)
+    {
+      this->Largest.compare_exchange_weak(peak, before + bytes);
+    }
+    return true;
+  }
+
+  /// Of what Take gave.
+  void GiveBack(std::size_t bytes) { this->Taken -= bytes; }
+
+private:
+  const std::size_t Most;
+  std::atomic<std::size_t> Taken{ 0 }, Largest{ 0 };
+};
+}

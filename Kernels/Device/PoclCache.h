@@ -1,0 +1,30 @@
+#pragma once
+
+#include <cstddef>
+#include <string>
+
+namespace tyndall
+{
+/// The folder to which PoCL writes what it compiles. It is looked at before PoCL does: that finds no device where it cannot
+/// make the folder, and ends the process where the folder's disk is full.
+struct PoclCache
+{
+  /// Bytes that are asked for: kernels of a scene take a part of it.
+  static constexpr std::size_t Room = std::size_t(8) << 20;
+
+  std::string folder;
+  std::string warning; ///< why it is not the one that PoCL takes by itself, and what to do; else empty
+};
+
+/// The folder that PoCL takes by itself: POCL_CACHE_DIR, or one of the user's. Where that cannot be written, a private one in
+/// the temporary directory: POCL_CACHE_DIR is set to it, so PoCL must not have been asked for devices before.
+/// @throws DeviceError where neither can be written
+PoclCache ChoosePoclCache();
+
+/// Why `bytes` cannot be written to files in a folder, which is made where it is missing; empty: they can.
+std::string WhyNotWritable(const std::string& folder, std::size_t bytes = PoclCache::Room);
+
+/// Quick enough to be asked before every program that is built.
+/// @throws DeviceError where the disk of the folder, in which PoCL writes already, has become full
+void RequireRoom(const std::string& folder);
+}
