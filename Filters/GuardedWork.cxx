@@ -2,7 +2,9 @@
 #include "LightTransportData.h"
 
 #include "Device/OpenCL.h"
+#include "GhostFlags.h"
 #include "LastFailure.h"
+#include "PropertyRange.h"
 
 #include "vtkAlgorithm.h"
 #include "vtkInformation.h"
@@ -69,6 +71,8 @@ int Guarded(vtkAlgorithm* filter, vtkInformationVector* outputs, const std::func
   };
   try
   {
+    CheckProperties(filter);
+    CheckDuplicates(filter, outputs);
     work();
   }
   catch (const Aborted&)
@@ -107,6 +111,10 @@ bool GuardedInformation(vtkAlgorithm* filter, const std::function<void()>& work)
   LastFailure last(filter);
   try
   {
+    if (filter->GetNumberOfInputPorts() == 0) // others are told by Guarded: what they read may be newer than this
+    {
+      CheckProperties(filter);
+    }
     work();
   }
   catch (const std::exception& error)

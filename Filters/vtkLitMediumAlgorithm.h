@@ -1,6 +1,7 @@
 #ifndef vtkLitMediumAlgorithm_h
 #define vtkLitMediumAlgorithm_h
 
+#include "PropertyRange.h"
 #include "vtkDataObjectAlgorithm.h"
 #include "vtkTyndallModule.h" // for export macro
 
@@ -55,13 +56,13 @@ public:
 
   ///@{
   /// Axis of the scene along which the environment's up points: 0, 1, 2 for x, y, z. Default 2.
-  vtkSetClampMacro(EnvironmentUp, int, 0, 2);
+  tyndallSetRangeMacro(EnvironmentUp, int, 0, 2);
   vtkGetMacro(EnvironmentUp, int);
   ///@}
 
   ///@{
   /// By how much the environment is turned about its up, degrees, rounded to whole pixels. Default 0.
-  vtkSetMacro(EnvironmentAzimuth, double);
+  tyndallSetRangeMacro(EnvironmentAzimuth, double, tyndall::AnyLow, tyndall::AnyHigh);
   vtkGetMacro(EnvironmentAzimuth, double);
   ///@}
 

@@ -1,6 +1,7 @@
 #ifndef vtkVDBReader_h
 #define vtkVDBReader_h
 
+#include "PropertyRange.h"
 #include "vtkImageAlgorithm.h"
 #include "vtkNew.h"           // for members
 #include "vtkTyndallModule.h" // for export macro
@@ -77,7 +78,7 @@ public:
 
   ///@{
   /// Most memory that the image and the tree it is read from may take, MiB. Default 0: half of the machine's memory.
-  vtkSetClampMacro(MaximumMemory, vtkIdType, 0, VTK_ID_MAX >> 20);
+  tyndallSetRangeMacro(MaximumMemory, vtkIdType, 0, VTK_ID_MAX >> 20);
   vtkGetMacro(MaximumMemory, vtkIdType);
   ///@}
 

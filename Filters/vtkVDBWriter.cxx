@@ -114,6 +114,7 @@ void vtkVDBWriter::WriteData()
 {
   try
   {
+    tyndall::CheckProperties(this);
     if (this->FileName == nullptr || this->FileName[0] == '\0')
     {
       this->SetErrorCode(vtkErrorCode::NoFileNameError);
