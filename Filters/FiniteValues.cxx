@@ -19,7 +19,8 @@ namespace
 constexpr std::size_t BlockSize = 16384; ///< values looked at before the next question whether any was found
 
 constexpr const char* UsualAdvice =
-  "Something is beyond what floats carry (3.4e+38): give lights, sky and emission less power (light is in proportion to it), "
+  "Something is beyond what floats carry (3.4e+38): give lights, sky and emission less power (light is in proportion "
+  "to it), "
   "the medium smaller coefficients, or choose a unit of length in which voxels are neither tiny nor huge.";
 
 /// Whether any exponent is all ones, which that of infinity and of NaN is. A loop that compilers vectorise.
@@ -66,13 +67,15 @@ void RequireFinite(const char* array, const float* values, std::size_t count, in
     return;
   }
   const std::string where = place(first / static_cast<std::size_t>(components));
-  const std::string value = std::isnan(values[first]) ? "not a number" : values[first] > 0.0f ? "infinite" : "-infinite";
+  const std::string value = std::isnan(values[first]) ? "not a number"
+    : values[first] > 0.0f                            ? "infinite"
+                                                      : "-infinite";
   throw InvalidInput("The output's '" + std::string(array) + "' would be " + value + " in " + where +
     " (the first such one), so there is no output. " + (advice ? advice : UsualAdvice));
 }
 
-void RequireFiniteCells(vtkImageData* image, const char* array, const float* values, std::size_t count, int components,
-  const char* advice)
+void RequireFiniteCells(
+  vtkImageData* image, const char* array, const float* values, std::size_t count, int components, const char* advice)
 {
   Grid grid;
   for (int axis = 0; axis < 3; ++axis)

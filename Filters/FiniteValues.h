@@ -6,8 +6,8 @@
 
 class vtkImageData;
 
-/// What leaves a filter is finite. Whoever packs an output's array asks here, once, before the array leaves: AddCells does it for
-/// all cells. The look costs one pass over the memory, a thousandth of a solve.
+/// What leaves a filter is finite. Whoever packs an output's array asks here, once, before the array leaves: AddCells
+/// does it for all cells. The look costs one pass over the memory, a thousandth of a solve.
 namespace tyndall
 {
 /// Number of the first value that is not finite; `count` where all are.

@@ -9,6 +9,7 @@
 #include "vtkInformation.h"
 #include "vtkInformationVector.h"
 #include "vtkPointData.h"
+#include "vtkPolyData.h"
 #include "vtkStreamingDemandDrivenPipeline.h"
 #include "vtkUnsignedCharArray.h"
 
@@ -79,6 +80,22 @@ std::vector<unsigned char> HiddenCells(vtkImageData* image)
   return hidden;
 }
 
+std::vector<long long> PointsThatCount(vtkPolyData* data)
+{
+  constexpr unsigned char leftOut = vtkDataSetAttributes::HIDDENPOINT | vtkDataSetAttributes::DUPLICATEPOINT;
+  vtkUnsignedCharArray* const flags = Flags(data->GetPointData(), data->GetNumberOfPoints());
+  std::vector<long long> points;
+  points.reserve(static_cast<std::size_t>(data->GetNumberOfPoints()));
+  for (vtkIdType i = 0; i < data->GetNumberOfPoints(); ++i)
+  {
+    if (!flags || (flags->GetValue(i) & leftOut) == 0)
+    {
+      points.push_back(i);
+    }
+  }
+  return points;
+}
+
 void CheckDuplicates(vtkAlgorithm* filter, vtkInformationVector* outputs)
 {
   auto* const pieces = vtkStreamingDemandDrivenPipeline::UPDATE_NUMBER_OF_PIECES();
@@ -95,9 +112,10 @@ void CheckDuplicates(vtkAlgorithm* filter, vtkInformationVector* outputs)
       auto* const image = vtkImageData::SafeDownCast(filter->GetInputDataObject(port, i));
       if (image && Any(Flags(image->GetCellData(), image->GetNumberOfCells()), vtkDataSetAttributes::DUPLICATECELL))
       {
-        throw InvalidInput("Cells of the input image are marked as duplicates of another rank's (vtkGhostType). Light "
-                           "crosses the borders of pieces, so every rank works on the whole image, and would count them twice. "
-                           "Give it the whole image on every rank, without ghost cells.");
+        throw InvalidInput(
+          "Cells of the input image are marked as duplicates of another rank's (vtkGhostType). Light "
+          "crosses the borders of pieces, so every rank works on the whole image, and would count them twice. "
+          "Give it the whole image on every rank, without ghost cells.");
       }
     }
   }

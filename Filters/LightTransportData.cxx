@@ -180,8 +180,7 @@ Found Find(vtkImageData* image, const Choice& choice)
   return { ofCells, false };
 }
 
-FloatField Read(
-  vtkImageData* image, const Choice& choice, Need need, Components components, float empty = 0.0f)
+FloatField Read(vtkImageData* image, const Choice& choice, Need need, Components components, float empty = 0.0f)
 {
   GridOf(image); // says what is wrong with an image that has no cells
   const Found found = Find(image, choice);
@@ -378,10 +377,10 @@ std::vector<Light> ReadLights(vtkPolyData* data)
   vtkDataArray* angle = LightArray(data, "angle", Need::Optional, { 1 });
 
   Illumination read;
-  read.lights.resize(static_cast<std::size_t>(data->GetNumberOfPoints()));
-  for (vtkIdType i = 0; i < data->GetNumberOfPoints(); ++i)
+  for (const vtkIdType i : PointsThatCount(data))
   {
-    Light& light = read.lights[static_cast<std::size_t>(i)];
+    read.lights.emplace_back();
+    Light& light = read.lights.back();
     light.type = TypeOf(type->GetComponent(i, 0), i);
     data->GetPoint(i, light.position.data());
     light.power = Row<3>(power, i);

@@ -115,7 +115,8 @@ MediumInput ReadMedium(vtkAlgorithm* filter, vtkImageData* image);
 double ReadFact(vtkDataObject* data, const char* name, double missing);
 
 /// Lights as LightRig makes them: point data `light_type` and `power` (1 or 3 components); `direction`, `size` and `angle`
-/// where the types need them. No polydata or one without points: no lights. Checked.
+/// where the types need them. Hidden and duplicate points are left out. No polydata or one without points: no lights.
+/// Checked.
 std::vector<Light> ReadLights(vtkPolyData* lights);
 
 /// The environment of a latitude-longitude image: point data `radiance`, 1 (grey) or 3 components, of width x height x 1
@@ -130,8 +131,8 @@ void AddDiffuse(Illumination& illumination, const double* sky, const double* fac
 /// @param values  `components` a cell, x fastest
 /// @param advice  see RequireFinite
 /// @throws InvalidInput where a value is not finite
-void AddCells(vtkImageData* image, const char* name, std::vector<float>&& values, int components,
-  const char* advice = nullptr);
+void AddCells(
+  vtkImageData* image, const char* name, std::vector<float>&& values, int components, const char* advice = nullptr);
 
 /// The same of light: of 3 channels they are named R, G, B.
 void AddLight(vtkImageData* image, const char* name, std::vector<float>&& values, int channels);

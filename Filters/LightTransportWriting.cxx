@@ -103,8 +103,7 @@ void AddCellsAsTheyAre(vtkImageData* image, const char* name, std::vector<float>
 
 }
 
-void AddCells(
-  vtkImageData* image, const char* name, std::vector<float>&& values, int components, const char* advice)
+void AddCells(vtkImageData* image, const char* name, std::vector<float>&& values, int components, const char* advice)
 {
   RequireFiniteCells(image, name, values.data(), values.size(), components, advice);
   AddCellsAsTheyAre(image, name, std::move(values), components);

@@ -1,6 +1,7 @@
 #include "PhotonData.h"
 
 #include "FiniteValues.h"
+#include "GhostFlags.h"
 #include "LightTransportData.h"
 
 #include "vtkCellArray.h"
@@ -176,10 +177,12 @@ std::vector<Photon> ReadPhotons(vtkPolyData* data)
   vtkDataArray* weight = PhotonArray(data, "weight", Need::Optional, { 1 });
   vtkDataArray* batch = PhotonArray(data, "batch", Need::Optional, { 1 });
   const int colours = power->GetNumberOfComponents();
-  std::vector<Photon> photons(static_cast<std::size_t>(data->GetNumberOfPoints()));
-  for (vtkIdType i = 0; i < data->GetNumberOfPoints(); ++i)
+  const std::vector<long long> points = PointsThatCount(data);
+  std::vector<Photon> photons(points.size());
+  auto next = photons.begin();
+  for (const vtkIdType i : points)
   {
-    Photon& photon = photons[static_cast<std::size_t>(i)];
+    Photon& photon = *next++;
     data->GetPoint(i, photon.position.data());
     for (int c = 0; c < 3; ++c)
     {

@@ -25,7 +25,7 @@ void WritePhotons(const EmittedPhotons& emitted, const Grid& box, vtkPolyData* o
 std::string DoubtOfBox(vtkPolyData* photons, const Grid& medium);
 
 /// Photons of polydata: points, and point data `direction` (3), `power` (1 or 3 components, W), `weight` (missing: 1) and `batch`
-/// (missing: 0).
+/// (missing: 0). Hidden and duplicate points are left out.
 /// @throws InvalidInput where an array is missing or has another shape, or a batch is not a whole number of 0 to 63
 std::vector<Photon> ReadPhotons(vtkPolyData* photons);
 

@@ -221,7 +221,7 @@ public:
 
   ///@{
   /// What came of the last update: scattering orders done, estimated relative error of fluence left by those that were not
-  /// done, estimated relative error of fluence altogether (0 without EstimateError), relative error of the energy balance, seconds, the device's name, and what the scene did not need, one a line.
+  /// done, estimated relative error of fluence altogether (0 without EstimateError; NaN, not known, after one order), relative error of the energy balance, seconds, the device's name, and what the scene did not need, one a line.
   vtkGetMacro(Orders, int);
   vtkGetMacro(Residual, double);
   vtkGetMacro(EstimatedError, double);

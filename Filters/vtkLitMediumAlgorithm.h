@@ -22,6 +22,8 @@ struct Illumination;
  * Input 2, optional: the environment, vtkImageData in latitude-longitude layout, point array `radiance` (1 or 3 components,
  * W/(length^2 sr)), as vtkEnvironmentReader makes it.
  *
+ * Cells of the medium that are hidden by `vtkGhostType` are empty, hidden pixels of the environment black.
+ *
  * Light crosses the borders of pieces. In a parallel pipeline every rank therefore asks for all of each input and works on
  * the whole; RequestData of a subclass hands on the piece it was asked for.
  *

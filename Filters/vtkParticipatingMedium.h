@@ -32,6 +32,8 @@
  * ExtinctionScale then multiplies them, 1 being the medium as it was measured, and MillimetresPerUnit says how long a unit
  * of the dataset is.
  *
+ * Cells that are hidden by `vtkGhostType` are empty.
+ *
  * @sa vtkLightPropagationMaps
  */
 class TYNDALL_EXPORT vtkParticipatingMedium : public vtkImageAlgorithm

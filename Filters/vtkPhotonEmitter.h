@@ -33,6 +33,9 @@ class vtkPolyData;
  * | `light`     | 1          | 1    | number of its light; -1: the environment or SkyColor              |
  * | `batch`     | 1          | 1    | of which of the independent sets it is, from 0                    |
  *
+ * and field data `photon_box`, the bounds of the box that they were made for (6 numbers): vtkPhotonMarcher warns where its medium
+ * fills another one.
+ *
  * Without lights, environment and SkyColor there are no photons, with a warning. In a parallel pipeline the first piece has
  * all photons.
  *

@@ -218,8 +218,7 @@ int vtkPhotonMarcher::RequestData(vtkInformation* request, vtkInformationVector*
   return tyndall::Guarded(this, outputs, [&] {
     vtkPolyData* const given = vtkPolyData::GetData(inputs[PhotonsPort]);
     const std::vector<tyndall::Photon> photons = tyndall::ReadPhotons(given);
-    const std::string doubt =
-      tyndall::DoubtOfBox(given, tyndall::GridOf(vtkImageData::GetData(inputs[MediumPort])));
+    const std::string doubt = tyndall::DoubtOfBox(given, tyndall::GridOf(vtkImageData::GetData(inputs[MediumPort])));
     if (!doubt.empty())
     {
       vtkWarningMacro(<< doubt);

@@ -52,6 +52,8 @@ struct PhotonLight;
  *
  * In a parallel pipeline every rank marches all photons and hands on its piece; the paths are on the first.
  *
+ * Cells that are hidden by `vtkGhostType` are empty.
+ *
  * @sa vtkPhotonEmitter vtkRefractionOctree vtkPhotonReconstruction vtkMediumRayCaster
  * @par Thanks
  * M. Pfeuti, Real-time Rendering of Refractive Objects in Participating Media, 2009, section 3.1.5. X. Sun, K. Zhou, E. Stollnitz,

@@ -43,6 +43,8 @@ struct ReconstructedLight;
  * gains what was not needed here, `device` is the one that computed. In a parallel pipeline every rank works on the whole
  * and hands on its piece.
  *
+ * Cells that are hidden by `vtkGhostType` are empty.
+ *
  * @sa vtkPhotonMarcher vtkPhotonEmitter vtkPhotonImportance vtkMediumRayCaster
  * @par Thanks
  * M. Pfeuti, Real-time Rendering of Refractive Objects in Participating Media, 2009, sections 3.2.4 and 4.2.

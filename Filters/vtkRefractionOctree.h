@@ -34,6 +34,8 @@
  * In a parallel pipeline nodes cross the borders of pieces, so every rank asks for the whole extent, and hands on the piece
  * of output 0 that it was asked for; output 1 is on the first rank.
  *
+ * Cells that are hidden by `vtkGhostType` are empty.
+ *
  * @sa vtkMeshVoxelizer vtkPhotonMarcher
  * @par Thanks
  * M. Pfeuti, Real-time Rendering of Refractive Objects in Participating Media, 2009, section 3.1.3.

@@ -47,7 +47,7 @@ struct ComparisonSettings;
  * | `error_relative`  | 1    | root of the mean square of voxels' own relative errors, where the reference is above 0          |
  * | `balance`         | 1    | relative error of the energy balance                                                          |
  * | `iterations`      | 1    | scattering orders or sweeps; 1 for photons                                                    |
- * | `estimated_error` | 1    | of `error_l2`, by the solver itself, without the reference (if EstimateError); NaN where it cannot |
+ * | `estimated_error` | 1    | of `error_l2`, by the solver itself, without the reference (if EstimateError); NaN where it is not known: after one order, which does not tell how fast orders shrink, and of methods that cannot |
  * | `face_power_out`  | W    | 6 components: through -x, +x, -y, +y, -z, +z, channels summed                                  |
  * | `power_in`        | W    | entered and emitted, channels summed                                                          |
  * | `pareto`          | 1    | 1 where no other row of the same quantity is both faster and better                           |

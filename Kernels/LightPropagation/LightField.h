@@ -47,7 +47,8 @@ struct LightField
   std::vector<float> netFlux;           ///< W / length^2, 3 * channels a voxel: (x, y, z) of channel 0, 1, 2
   std::vector<float> scatteredRadiance; ///< W / (length^2 sr), channels * storedDirections a voxel
   std::vector<std::array<double, 3>> storedDirections; ///< of scatteredRadiance; one (0, 0, 0) where isotropic
-  double relativeError = 0.0; ///< of fluence, estimated, root mean square over that of fluence; 0 where not asked for, NaN: not known
+  double relativeError =
+    0.0; ///< of fluence, estimated, root mean square over that of fluence; 0 where not asked for, NaN: not known
   EnergyBalance balance;
   std::array<Rgb, 6> facePowerOut = {}; ///< W, through -x, +x, -y, +y, -z, +z
   std::vector<ConvergenceRow> convergence;

@@ -172,7 +172,8 @@ bool Shines(const Illumination& illumination)
   return Sum(illumination.sky) > 0.0 ||
     std::any_of(illumination.lights.begin(), illumination.lights.end(),
       [](const Light& light) { return Sum(light.power) > 0.0; }) ||
-    std::any_of(illumination.faces.begin(), illumination.faces.end(), [](const Rgb& face) { return Sum(face) > 0.0; }) ||
+    std::any_of(
+      illumination.faces.begin(), illumination.faces.end(), [](const Rgb& face) { return Sum(face) > 0.0; }) ||
     std::any_of(pixels.begin(), pixels.end(), [](float pixel) { return pixel > 0.0f; });
 }
 

@@ -95,8 +95,8 @@ void Check(const Grid& grid)
   const auto [shortest, longest] = std::minmax_element(grid.spacing.begin(), grid.spacing.end());
   if (*longest > MostUnequal * *shortest)
   {
-    throw InvalidInput("The grid's spacing is " + Scientific(grid.spacing[0]) + ", " + Scientific(grid.spacing[1]) + ", " +
-      Scientific(grid.spacing[2]) + ": one is more than " + Scientific(MostUnequal) +
+    throw InvalidInput("The grid's spacing is " + Scientific(grid.spacing[0]) + ", " + Scientific(grid.spacing[1]) +
+      ", " + Scientific(grid.spacing[2]) + ": one is more than " + Scientific(MostUnequal) +
       " times another, which floats cannot follow rays through. Resample to voxels of more equal edges.");
   }
 }

@@ -145,8 +145,11 @@ void CheckPowers(const EmittedPhotons& emitted)
     return;
   }
   const int light = emitted.lights[brightest];
-  const std::string name = light >= 0 ? "light " + std::to_string(light) : light == EnvironmentLight ? "the environment or sky" : "the faces";
-  throw InvalidInput("A photon of " + name + " would carry " + (tooLarge ? "more power than 3.4e+38 W" : "less power than 1.2e-38 W") +
+  const std::string name = light >= 0 ? "light " + std::to_string(light)
+    : light == EnvironmentLight       ? "the environment or sky"
+                                      : "the faces";
+  throw InvalidInput("A photon of " + name + " would carry " +
+    (tooLarge ? "more power than 3.4e+38 W" : "less power than 1.2e-38 W") +
     ", beyond what a float holds. Give lights " + (tooLarge ? "less power, ask for more photons" : "more power") +
     ", or choose another unit of length: power goes with the area of the volume.");
 }

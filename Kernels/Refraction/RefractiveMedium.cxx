@@ -41,14 +41,16 @@ void Demand(bool holds, const std::string& what)
 void Check(const Material& material, const std::string& name)
 {
   Demand(material.n >= LeastIndex && material.n <= LargestIndex,
-    name + " has the refractive index " + Scientific(material.n) + "; it must be finite and above 0, from 1e-6 to 1e6.");
+    name + " has the refractive index " + Scientific(material.n) +
+      "; it must be finite and above 0, from 1e-6 to 1e6.");
   for (int c = 0; c < 3; ++c)
   {
     const double least = std::min(material.sigma_a[c], material.sigma_s[c]);
     const double sum = material.sigma_a[c] + material.sigma_s[c];
     Demand(least >= 0.0 && sum <= LargestExtinction,
-      name + " has an absorption or scattering coefficient that is negative or not finite, or both add up to more than "
-             "1e37: " +
+      name +
+        " has an absorption or scattering coefficient that is negative or not finite, or both add up to more than "
+        "1e37: " +
         Scientific(material.sigma_a[c]) + " and " + Scientific(material.sigma_s[c]) + ".");
   }
   Demand(std::abs(material.g) < 1.0,

@@ -3,12 +3,13 @@
 
 #include "vtkDataSetAttributes.h"
 #include "vtkFieldData.h"
-#include "vtkLPMPropagate.h"
 #include "vtkLightRig.h"
+#include "vtkLPMPropagate.h"
 #include "vtkMediumRayCaster.h"
 #include "vtkParticipatingMedium.h"
 #include "vtkPhotonEmitter.h"
 #include "vtkPhotonMarcher.h"
+#include "vtkPolyData.h"
 #include "vtkStreamingDemandDrivenPipeline.h"
 #include "vtkUnsignedCharArray.h"
 
@@ -38,8 +39,8 @@ bool AroundMiddle(vtkIdType cell)
 
 void Flag(vtkDataSetAttributes* of, vtkIdType count, unsigned char flag, const IsHidden& flagged)
 {
-  test::AddValues<vtkUnsignedCharArray>(of, vtkDataSetAttributes::GhostArrayName(), count, 1,
-    [&](vtkIdType i, int) { return flagged(i) ? flag : 0.0; });
+  test::AddValues<vtkUnsignedCharArray>(
+    of, vtkDataSetAttributes::GhostArrayName(), count, 1, [&](vtkIdType i, int) { return flagged(i) ? flag : 0.0; });
 }
 
 /// A medium with a block in it of other values.
@@ -202,6 +203,85 @@ void HiddenSkyIsBlack(test::Claims& claims)
   claims.Near(entered() / all, 0.5, 0.05, "power of a sky of which half is hidden, over that of the whole");
 }
 
+/// Lights and photons that are hidden, or another rank's, are left out.
+void PointsAreLeftOut(test::Claims& claims)
+{
+  const auto medium = Medium(InBlock, 0.2);
+  const auto lit = [&](const IsHidden& hidden, const IsHidden& duplicate) {
+    vtkNew<vtkLightRig> rig;
+    for (int i = 0; i < 3; ++i)
+    {
+      rig->AddPointLight(1.0 + i, 2.0, 3.0, 1.0, 1.0, 1.0);
+    }
+    rig->SunOff();
+    rig->Update();
+    auto lights = vtkSmartPointer<vtkPolyData>::New();
+    lights->ShallowCopy(rig->GetOutput());
+    test::AddValues<vtkUnsignedCharArray>(lights->GetPointData(), vtkDataSetAttributes::GhostArrayName(), 3, 1,
+      [&](vtkIdType i, int) {
+        return hidden(i) ? vtkDataSetAttributes::HIDDENPOINT : duplicate(i) ? vtkDataSetAttributes::DUPLICATEPOINT : 0;
+      });
+    vtkNew<vtkLightPropagationMaps> maps;
+    maps->SetInputDataObject(medium);
+    maps->SetLightsData(lights);
+    maps->Update();
+    return maps->GetOutput()->GetFieldData()->GetArray("energy_balance")->GetComponent(0, 0);
+  };
+  const auto none = [](vtkIdType) { return false; };
+  claims.Near(lit(none, none), 3.0, 1e-4, "power of three lamps");
+  claims.Near(lit([](vtkIdType i) { return i == 1; }, [](vtkIdType i) { return i == 2; }), 1.0, 1e-4,
+    "power of three lamps, of which one is hidden and one a duplicate");
+
+  vtkNew<vtkLightRig> rig;
+  vtkNew<vtkPhotonEmitter> emitter;
+  emitter->SetInputDataObject(medium);
+  emitter->SetLightsConnection(rig->GetOutputPort());
+  emitter->SetPhotonCount(1000);
+  emitter->Update();
+  auto photons = vtkSmartPointer<vtkPolyData>::New();
+  photons->ShallowCopy(emitter->GetOutput());
+  vtkNew<vtkPhotonMarcher> marcher;
+  marcher->SetInputDataObject(medium);
+  marcher->SetPhotonsData(photons);
+  const auto entered = [&] {
+    marcher->Update();
+    vtkDataObject* const light = marcher->GetOutputDataObject(0);
+    return light->GetFieldData()->GetArray("energy_balance")->GetComponent(0, 0);
+  };
+  const double all = entered();
+  Flag(photons->GetPointData(), photons->GetNumberOfPoints(), vtkDataSetAttributes::DUPLICATEPOINT,
+    [](vtkIdType i) { return i % 2 == 1; });
+  photons->Modified();
+  claims.Near(entered() / all, 0.5, 1e-4, "power of photons of which half are duplicates");
+}
+
+/// What a neighbour has, too, is marked in a piece with ghost cells, so that sums over ranks have it once.
+void GhostsOfPiecesAreMarked(test::Claims& claims)
+{
+  vtkNew<vtkLightPropagationMaps> maps;
+  maps->SetInputDataObject(Medium(InBlock, 0.2));
+  maps->SetSkyColor(1.0, 1.0, 1.0);
+  maps->Update();
+  double whole = 0.0, ofPieces = 0.0;
+  const auto add = [&](double& sum) {
+    vtkImageData* const piece = maps->GetOutput();
+    vtkUnsignedCharArray* const flags = piece->GetCellGhostArray();
+    for (vtkIdType i = 0; i < piece->GetNumberOfCells(); ++i)
+    {
+      const bool duplicate = flags && (flags->GetValue(i) & vtkDataSetAttributes::DUPLICATECELL);
+      sum += duplicate ? 0.0 : piece->GetCellData()->GetArray("fluence")->GetComponent(i, 0);
+    }
+    return piece->GetNumberOfCells();
+  };
+  add(whole);
+  maps->UpdatePiece(0, 2, 1);
+  vtkIdType cells = add(ofPieces);
+  maps->UpdatePiece(1, 2, 1);
+  cells += add(ofPieces);
+  claims.That(cells > Edge * Edge * Edge, "pieces with ghost cells overlap");
+  claims.Near(ofPieces / whole, 1.0, 1e-6, "sum over pieces with ghost cells, over that of the whole");
+}
+
 void DuplicatesCountOnce(test::Claims& claims)
 {
   const auto medium = Medium(InBlock, 0.2);
@@ -231,5 +311,7 @@ int TestGhostFlags(int, char*[])
   ViewsFollowFlags(claims);
   HiddenSkyIsBlack(claims);
   DuplicatesCountOnce(claims);
+  PointsAreLeftOut(claims);
+  GhostsOfPiecesAreMarked(claims);
   return claims.Result();
 }

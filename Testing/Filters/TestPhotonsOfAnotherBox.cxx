@@ -29,8 +29,9 @@ int TestPhotonsOfAnotherBox(int, char*[])
   marchIn({ { 4, 4, 4 }, { 1.0, 1.0, 1.0 + 1e-8 }, { 2.0, 2.0, 2.0 } });
   claims.That(errors.None(), "the same box is no matter, whatever its voxels are");
   marchIn({ { 8, 8, 8 }, { 1.0, 1.0, 1.0 }, { 0.0, 0.0, 0.0 } });
-  claims.That(errors.WasOneWith("made for the box x from 2 to 6, y from 2 to 6, z from 2 to 6, the medium fills the box x "
-                                "from 0 to 8, y from 0 to 8, z from 0 to 8"),
+  claims.That(
+    errors.WasOneWith("made for the box x from 2 to 6, y from 2 to 6, z from 2 to 6, the medium fills the box x "
+                      "from 0 to 8, y from 0 to 8, z from 0 to 8"),
     "a larger box");
   claims.That(marcher->GetOutputDataObject(0)->GetNumberOfElements(vtkDataObject::CELL) == 512, "a warning only");
   marchIn({ { 4, 4, 4 }, { 1.0, 1.0, 1.01 }, { 2.0, 2.0, 2.0 } });

@@ -4,9 +4,9 @@
 #include "vtkCellArray.h"
 #include "vtkEnvironmentReader.h"
 #include "vtkIntArray.h"
+#include "vtkLightRig.h"
 #include "vtkLPMCollect.h"
 #include "vtkLPMPropagate.h"
-#include "vtkLightRig.h"
 #include "vtkMeshVoxelizer.h"
 #include "vtkParticipatingMedium.h"
 #include "vtkPhotonEmitter.h"
@@ -192,8 +192,7 @@ void PicturesAreRefused(test::Claims& claims, const std::string& folder)
 int TestValuesBeyondFloat(int argc, char* argv[])
 {
   test::Claims claims;
-  char* const folder =
-    vtkTestUtilities::GetArgOrEnvOrDefault("-T", argc, argv, "VTK_TEMP_DIR", "Testing/Temporary");
+  char* const folder = vtkTestUtilities::GetArgOrEnvOrDefault("-T", argc, argv, "VTK_TEMP_DIR", "Testing/Temporary");
   PicturesAreRefused(claims, folder);
   delete[] folder;
   if (!test::HasDevice())

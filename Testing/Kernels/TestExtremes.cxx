@@ -102,7 +102,8 @@ TEST_F(Extremes, GridsThatFloatsCannotFollowAreRefused)
     scene.medium.grid.spacing = spacing;
     return WhyRefused(this->GetDevice(), scene);
   };
-  EXPECT_NE(why({ 1e-31, 1.0, 1.0 }).find("spacing along x is 1e-31; it must be from 1e-30 to 1e30"), std::string::npos);
+  EXPECT_NE(
+    why({ 1e-31, 1.0, 1.0 }).find("spacing along x is 1e-31; it must be from 1e-30 to 1e30"), std::string::npos);
   EXPECT_NE(why({ 1.0, 1.0, 1e160 }).find("spacing along z is 1e+160"), std::string::npos);
   EXPECT_NE(why({ 1.0, 1e-10, 1.0 }).find("1, 1e-10, 1: one is more than 1e+09 times another"), std::string::npos);
   EXPECT_EQ(why({ 1e-30, 1e-30, 1e-30 }), "");

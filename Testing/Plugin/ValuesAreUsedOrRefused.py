@@ -1,5 +1,6 @@
-"""Every number of every proxy, beyond the range that its XML says: never replaced in silence by another value. The filter refuses it
-with one error that names the property, and empty outputs, and works again with a value in the range."""
+"""Every number of every proxy, at the ends of the range that its XML says and beyond: never replaced in silence by another
+value. What is beyond is refused with one error that names the property, and empty outputs, and a value in the range heals it; the
+ends are taken."""
 import glob
 import math
 import os
@@ -42,6 +43,10 @@ WIDER = {
     "TimeBudget": "below",
     "FirstFlightDirections": "above",  # any square number
     "PhotonImportance.Background": "below",  # above 0
+}
+# The ends of what only says how a slider goes, or need something else set with them.
+AT_THE_END = {
+    "PilotCount",  # a million photons
 }
 NARROWER = {"RefractionOctree.Tolerance", "VDBWriter.Tolerance"}
 
@@ -196,6 +201,31 @@ def bad_values(name, prop):
             yield 1e308, component, False
 
 
+def ends(prop):
+    """The numbers at both ends of the range, one list for all components each."""
+    choices = [int(entry.get("value")) for entry in prop.findall("EnumerationDomain/Entry")]
+    if choices:
+        return [[min(choices)], [max(choices)]]
+    ranges = prop.findall("IntRangeDomain") + prop.findall("DoubleRangeDomain")
+    return [numbers(ranges[0].get(end)) for end in ("min", "max") if ranges and ranges[0].get(end)]
+
+
+def set_numbers(worker, handle, prop, values):
+    for i, value in enumerate(values):
+        handle.SetElement(i, int(value) if prop.tag == "IntVectorProperty" else value)
+    worker.proxy.UpdateVTKObjects()
+
+
+def try_end(worker, prop, values, what):
+    handle = worker.proxy.GetProperty(prop.get("name")).SMProperty
+    sound = [handle.GetElement(i) for i in range(handle.GetNumberOfElements())]
+    set_numbers(worker, handle, prop, values)
+    found, data = worker.run()
+    if found or worker.empty(data):
+        faults.append("%s: it is in the range, and refused: %s" % (what, found))
+    set_numbers(worker, handle, prop, sound)
+
+
 def try_value(worker, prop, value, component, must_be_refused, what):
     handle = worker.proxy.GetProperty(prop.get("name")).SMProperty
     sound = [handle.GetElement(i) for i in range(handle.GetNumberOfElements())]
@@ -212,9 +242,7 @@ def try_value(worker, prop, value, component, must_be_refused, what):
             faults.append("%s: an error, and an output" % what)
     elif data is not None and not is_finite(data):
         faults.append("%s: no error, and an output that is not finite" % what)
-    for i, element in enumerate(sound):
-        handle.SetElement(i, element)
-    worker.proxy.UpdateVTKObjects()
+    set_numbers(worker, handle, prop, sound)
     return bool(found)
 
 
@@ -233,6 +261,10 @@ def check(name, proxy):
             what = "%s.%s[%d] = %g" % (name, prop.get("name"), component, value)
             refused = try_value(worker, prop, value, component, must_be_refused, what) or refused
             tried += 1
+        for values in ends(prop):
+            if prop.get("name") not in AT_THE_END:
+                try_end(worker, prop, values, "%s.%s = %s" % (name, prop.get("name"), values))
+                tried += 1
         if refused:
             found, data = worker.run()
             if found or worker.empty(data):
