@@ -47,6 +47,8 @@ WIDER = {
 # The ends of what only says how a slider goes, or need something else set with them.
 AT_THE_END = {
     "PilotCount",  # a million photons
+    "TableColor", "TableReflectance",  # both together are at most 1
+    "TimeBudget",  # no time for a row
 }
 NARROWER = {"RefractionOctree.Tolerance", "VDBWriter.Tolerance"}
 
