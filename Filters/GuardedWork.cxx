@@ -2,7 +2,10 @@
 #include "LightTransportData.h"
 
 #include "Device/Device.h"
+#include "Device/OpenCL.h"
+#include "GhostFlags.h"
 #include "LastFailure.h"
+#include "PropertyRange.h"
 
 #include "vtkAlgorithm.h"
 #include "vtkInformation.h"
@@ -81,6 +84,8 @@ int Guarded(vtkAlgorithm* filter, vtkInformationVector* outputs, const std::func
   };
   try
   {
+    CheckProperties(filter);
+    CheckDuplicates(filter, outputs);
     work();
   }
   catch (const Aborted&)
@@ -120,6 +125,10 @@ bool GuardedInformation(vtkAlgorithm* filter, const std::function<void()>& work)
   LastFailure last(filter);
   try
   {
+    if (filter->GetNumberOfInputPorts() == 0) // others are told by Guarded: what they read may be newer than this
+    {
+      CheckProperties(filter);
+    }
     work();
   }
   catch (const std::exception& error)

@@ -7,6 +7,8 @@
 #include "vtkAlgorithm.h"
 #include "vtkDataArray.h"
 #include "vtkDemandDrivenPipeline.h"
+#include "vtkImageData.h"
+#include "vtkUnsignedCharArray.h"
 
 #include <initializer_list>
 #include <memory>
@@ -30,6 +32,13 @@ struct InputsKey
     {
       this->Add({ static_cast<double>(grid.size[axis]), grid.spacing[axis], grid.origin[axis] });
     }
+  }
+
+  /// Which cells of an image are hidden (GhostFlags.h).
+  void AddGhosts(vtkImageData* image)
+  {
+    this->Add(image->GetCellGhostArray());
+    this->Add(image->GetPointGhostArray());
   }
 
   /// @param array  null: that there is none

@@ -1,5 +1,6 @@
 #include "LightTransportData.h"
 
+#include "GhostFlags.h"
 #include "LastFailure.h"
 
 #include "vtkAlgorithm.h"
@@ -13,6 +14,7 @@
 #include "vtkPointData.h"
 #include "vtkPointDataToCellData.h"
 #include "vtkPolyData.h"
+#include "vtkUnsignedCharArray.h"
 
 #include <algorithm>
 #include <cmath>
@@ -84,11 +86,34 @@ struct Found
   bool ofPoints = false;
 };
 
-FloatField ToField(vtkImageData* image, const Found& found, const std::string& name, Components components)
+/// The same array, or a copy of it that has `empty` in hidden cells.
+vtkSmartPointer<vtkFloatArray> WithoutHidden(
+  vtkImageData* image, const vtkSmartPointer<vtkFloatArray>& ofCells, float empty)
+{
+  const std::vector<unsigned char> hidden = HiddenCells(image);
+  if (hidden.empty())
+  {
+    return ofCells;
+  }
+  auto visible = vtkSmartPointer<vtkFloatArray>::New();
+  visible->DeepCopy(ofCells);
+  const int components = visible->GetNumberOfComponents();
+  for (std::size_t i = 0; i < hidden.size(); ++i)
+  {
+    if (hidden[i])
+    {
+      std::fill_n(visible->GetPointer(static_cast<vtkIdType>(i) * components), components, empty);
+    }
+  }
+  return visible;
+}
+
+/// @param empty  of hidden cells
+FloatField ToField(vtkImageData* image, const Found& found, const std::string& name, Components components, float empty)
 {
   CheckShape(found.array, name, found.ofPoints ? image->GetNumberOfPoints() : image->GetNumberOfCells(), components);
   const vtkSmartPointer<vtkFloatArray> floats = AsFloats(found.array);
-  return FloatField(found.ofPoints ? AveragedToCells(image, floats) : floats);
+  return FloatField(WithoutHidden(image, found.ofPoints ? AveragedToCells(image, floats) : floats, empty));
 }
 
 /// What SetInputArrayToProcess was told.
@@ -155,14 +180,14 @@ Found Find(vtkImageData* image, const Choice& choice)
   return { ofCells, false };
 }
 
-FloatField Read(vtkImageData* image, const Choice& choice, Need need, Components components)
+FloatField Read(vtkImageData* image, const Choice& choice, Need need, Components components, float empty = 0.0f)
 {
   GridOf(image); // says what is wrong with an image that has no cells
   const Found found = Find(image, choice);
   if (found.array)
   {
     const char* name = found.array->GetName();
-    return ToField(image, found, name ? name : "", components);
+    return ToField(image, found, name ? name : "", components, empty);
   }
   CheckNumeric(image->GetCellData(), choice);
   CheckNumeric(image->GetPointData(), choice);
@@ -241,6 +266,7 @@ Grid GridOf(vtkImageData* image)
     throw InvalidInput("The input image is rotated by its direction matrix, which is not supported. Resample it, for "
                        "example with ResampleToImage.");
   }
+  Check(grid);
   return grid;
 }
 
@@ -254,7 +280,8 @@ FloatField ReadCells(vtkImageData* image, const std::string& name, Need need, Co
 FloatField ReadChosenCells(
   vtkAlgorithm* filter, int index, vtkImageData* image, const std::string& otherwise, Need need, Components components)
 {
-  return Read(image, ChoiceOf(filter, index, otherwise), need, components);
+  const float empty = otherwise == "ior" ? 1.0f : 0.0f; // what a hidden cell has of it
+  return Read(image, ChoiceOf(filter, index, otherwise), need, components, empty);
 }
 
 vtkDataArray* ChosenArray(vtkAlgorithm* filter, int index, vtkImageData* image, const std::string& otherwise)
@@ -350,10 +377,10 @@ std::vector<Light> ReadLights(vtkPolyData* data)
   vtkDataArray* angle = LightArray(data, "angle", Need::Optional, { 1 });
 
   Illumination read;
-  read.lights.resize(static_cast<std::size_t>(data->GetNumberOfPoints()));
-  for (vtkIdType i = 0; i < data->GetNumberOfPoints(); ++i)
+  for (const vtkIdType i : PointsThatCount(data))
   {
-    Light& light = read.lights[static_cast<std::size_t>(i)];
+    read.lights.emplace_back();
+    Light& light = read.lights.back();
     light.type = TypeOf(type->GetComponent(i, 0), i);
     data->GetPoint(i, light.position.data());
     light.power = Row<3>(power, i);
@@ -363,6 +390,22 @@ std::vector<Light> ReadLights(vtkPolyData* data)
   }
   Check(read);
   return read.lights;
+}
+
+namespace
+{
+/// Hidden pixels are black.
+void DarkenHidden(vtkImageData* image, std::vector<float>& rgb)
+{
+  vtkUnsignedCharArray* const flags = image->GetPointGhostArray();
+  for (vtkIdType i = 0; flags && i < image->GetNumberOfPoints(); ++i)
+  {
+    if (flags->GetValue(i) & vtkDataSetAttributes::HIDDENPOINT)
+    {
+      std::fill_n(rgb.begin() + 3 * i, 3, 0.0f);
+    }
+  }
+}
 }
 
 Environment ReadEnvironment(vtkImageData* image)
@@ -402,6 +445,7 @@ Environment ReadEnvironment(vtkImageData* image)
   {
     read.environment.radiance[i] = components == 3 ? values[i] : values[i / 3];
   }
+  DarkenHidden(image, read.environment.radiance);
   Check(read);
   return std::move(read.environment);
 }

@@ -77,7 +77,7 @@ std::string NamesOf(vtkDataSetAttributes* attributes);
 using Components = std::initializer_list<int>;
 
 /// Values of the image's cells: the cell array of that name, or its point array averaged to cells. Float arrays are used
-/// where they are, others are converted.
+/// where they are, others are converted. Hidden cells (GhostFlags.h) have 0, of the refractive index 1.
 /// @throws InvalidInput naming the array, the components it has, or the arrays that there are
 FloatField ReadCells(vtkImageData* image, const std::string& name, Need need, Components components = { 1, 3 });
 
@@ -115,11 +115,12 @@ MediumInput ReadMedium(vtkAlgorithm* filter, vtkImageData* image);
 double ReadFact(vtkDataObject* data, const char* name, double missing);
 
 /// Lights as LightRig makes them: point data `light_type` and `power` (1 or 3 components); `direction`, `size` and `angle`
-/// where the types need them. No polydata or one without points: no lights. Checked.
+/// where the types need them. Hidden and duplicate points are left out. No polydata or one without points: no lights.
+/// Checked.
 std::vector<Light> ReadLights(vtkPolyData* lights);
 
 /// The environment of a latitude-longitude image: point data `radiance`, 1 (grey) or 3 components, of width x height x 1
-/// points. No image: an empty environment. Checked.
+/// points; hidden ones are black. No image: an empty environment. Checked.
 Environment ReadEnvironment(vtkImageData* image);
 
 /// Adds light without a source: radiance from every direction alike (red, green, blue) and through the faces -x, +x, -y, +y,
@@ -128,10 +129,16 @@ void AddDiffuse(Illumination& illumination, const double* sky, const double* fac
 
 /// Add values to an image's cells, without copying them.
 /// @param values  `components` a cell, x fastest
-void AddCells(vtkImageData* image, const char* name, std::vector<float>&& values, int components);
+/// @param advice  see RequireFinite
+/// @throws InvalidInput where a value is not finite
+void AddCells(
+  vtkImageData* image, const char* name, std::vector<float>&& values, int components, const char* advice = nullptr);
 
 /// The same of light: of 3 channels they are named R, G, B.
 void AddLight(vtkImageData* image, const char* name, std::vector<float>&& values, int channels);
+
+/// The same of light that a user gave, NaN where it is not known: not looked at.
+void AddGivenLight(vtkImageData* image, const char* name, std::vector<float>&& values, int channels);
 
 /// Add field data.
 /// @param values  tuples of `components` one after the other

@@ -1,4 +1,5 @@
 // What filters write: see LightTransportData.h.
+#include "FiniteValues.h"
 #include "LightTransportData.h"
 
 #include "vtkCellData.h"
@@ -83,7 +84,9 @@ void AddLightCells(vtkImageData* output, const char* name, std::vector<float>&& 
 }
 }
 
-void AddCells(vtkImageData* image, const char* name, std::vector<float>&& values, int components)
+namespace
+{
+void AddCellsAsTheyAre(vtkImageData* image, const char* name, std::vector<float>&& values, int components)
 {
   const auto needed = static_cast<std::size_t>(image->GetNumberOfCells()) * static_cast<std::size_t>(components);
   if (values.size() != needed)
@@ -98,9 +101,23 @@ void AddCells(vtkImageData* image, const char* name, std::vector<float>&& values
   image->GetCellData()->AddArray(array);
 }
 
+}
+
+void AddCells(vtkImageData* image, const char* name, std::vector<float>&& values, int components, const char* advice)
+{
+  RequireFiniteCells(image, name, values.data(), values.size(), components, advice);
+  AddCellsAsTheyAre(image, name, std::move(values), components);
+}
+
 void AddLight(vtkImageData* image, const char* name, std::vector<float>&& values, int channels)
 {
-  AddCells(image, name, std::move(values), channels);
+  RequireFiniteCells(image, name, values.data(), values.size(), channels);
+  AddGivenLight(image, name, std::move(values), channels);
+}
+
+void AddGivenLight(vtkImageData* image, const char* name, std::vector<float>&& values, int channels)
+{
+  AddCellsAsTheyAre(image, name, std::move(values), channels);
   if (channels == 3)
   {
     NameChannels(image->GetCellData()->GetArray(name));

@@ -1,9 +1,12 @@
 #include "PhotonData.h"
 
+#include "FiniteValues.h"
+#include "GhostFlags.h"
 #include "LightTransportData.h"
 
 #include "vtkCellArray.h"
 #include "vtkCellData.h"
+#include "vtkFieldData.h"
 #include "vtkFloatArray.h"
 #include "vtkIdTypeArray.h"
 #include "vtkImageData.h"
@@ -15,6 +18,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <cstdio>
 #include <string>
 
 namespace tyndall
@@ -60,6 +64,51 @@ vtkSmartPointer<vtkFloatArray> NewFloats(const char* name, int components, std::
   array->SetNumberOfTuples(static_cast<vtkIdType>(tuples));
   return array;
 }
+
+constexpr const char* BoxName = "photon_box";
+constexpr double SameBox = 1e-6; ///< of its longest edge
+
+using Box = std::array<double, 6>;
+
+Box BoxOf(const Grid& grid)
+{
+  Box box;
+  for (int axis = 0; axis < 3; ++axis)
+  {
+    box[2 * axis] = grid.origin[axis];
+    box[2 * axis + 1] = grid.origin[axis] + grid.Length(axis);
+  }
+  return box;
+}
+
+std::string Text(const Box& box)
+{
+  char text[160];
+  std::snprintf(text, sizeof(text), "x from %.9g to %.9g, y from %.9g to %.9g, z from %.9g to %.9g", box[0], box[1],
+    box[2], box[3], box[4], box[5]);
+  return text;
+}
+}
+
+std::string DoubtOfBox(vtkPolyData* photons, const Grid& medium)
+{
+  vtkDataArray* const found = photons ? photons->GetFieldData()->GetArray(BoxName) : nullptr;
+  if (!found || found->GetNumberOfValues() != 6)
+  {
+    return {};
+  }
+  Box made;
+  const Box box = BoxOf(medium);
+  bool same = true;
+  const double tolerance = SameBox * std::max({ medium.Length(0), medium.Length(1), medium.Length(2) });
+  for (int i = 0; i < 6; ++i)
+  {
+    made[i] = found->GetVariantValue(i).ToDouble();
+    same = same && std::abs(made[i] - box[i]) <= tolerance;
+  }
+  return same ? ""
+              : "The photons were made for the box " + Text(made) + ", the medium fills the box " + Text(box) +
+      ": where they differ, light is missing or too much. Give PhotonEmitter the same medium.";
 }
 
 bool NothingShines(const Illumination& illumination)
@@ -67,7 +116,7 @@ bool NothingShines(const Illumination& illumination)
   return illumination.lights.empty() && illumination.environment.Empty() && illumination.sky == Rgb{};
 }
 
-void WritePhotons(const EmittedPhotons& emitted, vtkPolyData* output)
+void WritePhotons(const EmittedPhotons& emitted, const Grid& box, vtkPolyData* output)
 {
   const std::size_t count = emitted.photons.size();
   vtkNew<vtkPoints> points;
@@ -95,6 +144,14 @@ void WritePhotons(const EmittedPhotons& emitted, vtkPolyData* output)
     batch->SetValue(i, photon.batch);
     vertices->InsertNextCell(1, &i);
   }
+  const auto photonName = [](std::size_t photon) { return "photon " + std::to_string(photon); };
+  for (vtkFloatArray* array : { direction.Get(), power.Get(), weight.Get() })
+  {
+    RequireFinite(array->GetName(), array->GetPointer(0), static_cast<std::size_t>(array->GetNumberOfValues()),
+      array->GetNumberOfComponents(), photonName);
+  }
+  const Box bounds = BoxOf(box);
+  AddFact(output, BoxName, std::vector<double>(bounds.begin(), bounds.end()));
   output->SetPoints(points);
   output->SetVerts(vertices);
   output->GetPointData()->SetVectors(direction);
@@ -120,10 +177,12 @@ std::vector<Photon> ReadPhotons(vtkPolyData* data)
   vtkDataArray* weight = PhotonArray(data, "weight", Need::Optional, { 1 });
   vtkDataArray* batch = PhotonArray(data, "batch", Need::Optional, { 1 });
   const int colours = power->GetNumberOfComponents();
-  std::vector<Photon> photons(static_cast<std::size_t>(data->GetNumberOfPoints()));
-  for (vtkIdType i = 0; i < data->GetNumberOfPoints(); ++i)
+  const std::vector<long long> points = PointsThatCount(data);
+  std::vector<Photon> photons(points.size());
+  auto next = photons.begin();
+  for (const vtkIdType i : points)
   {
-    Photon& photon = photons[static_cast<std::size_t>(i)];
+    Photon& photon = *next++;
     data->GetPoint(i, photon.position.data());
     for (int c = 0; c < 3; ++c)
     {
@@ -155,6 +214,8 @@ void WritePaths(const std::vector<PhotonPath>& paths, vtkPolyData* output)
     }
     numbers->InsertNextValue(static_cast<vtkIdType>(path.photon));
   }
+  RequireFinite("power_left", left->GetPointer(0), static_cast<std::size_t>(left->GetNumberOfValues()), 1,
+    [](std::size_t point) { return "point " + std::to_string(point) + " of the paths"; });
   output->SetPoints(points);
   output->SetLines(lines);
   output->GetPointData()->SetScalars(left);

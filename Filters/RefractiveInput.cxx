@@ -76,12 +76,14 @@ InputsKey KeyOf(vtkAlgorithm* filter, const std::shared_ptr<Device>& device, vtk
   InputsKey key;
   key.device = device;
   key.Add(GridOf(medium));
+  key.AddGhosts(medium);
   for (int number = SigmaA; number <= RefractiveIndex; ++number)
   {
     key.Add(ChosenArray(filter, number, medium, names[number]));
   }
   vtkImageData* const ofLevels = octree ? octree : medium;
   key.Add(GridOf(ofLevels));
+  key.AddGhosts(ofLevels);
   key.Add(ofLevels->GetCellData()->GetArray(LevelsName));
   key.Add(ofLevels->GetPointData()->GetArray(LevelsName));
   key.Add({ octree ? 1.0 : 0.0, ReadFact(medium, "g", 0.0), 1.0 * settings.order, settings.stepSize,

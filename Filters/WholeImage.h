@@ -1,5 +1,7 @@
 #pragma once
 
+#include "vtkCellData.h"
+#include "vtkDataSetAttributes.h"
 #include "vtkExecutive.h"
 #include "vtkExtentTranslator.h"
 #include "vtkImageData.h"
@@ -7,7 +9,9 @@
 #include "vtkInformationIntegerKey.h"
 #include "vtkInformationVector.h"
 #include "vtkNew.h"
+#include "vtkPointData.h"
 #include "vtkStreamingDemandDrivenPipeline.h"
+#include "vtkUnsignedCharArray.h"
 
 #include <algorithm>
 
@@ -49,11 +53,46 @@ inline bool IsFirstPiece(vtkInformation* request, vtkInformationVector* outputs)
   return !asking->Has(piece) || asking->Get(piece) <= 0;
 }
 
+/// Marks the cells and points of an image that a neighbouring piece has, too (vtkGhostType), so that sums over pieces
+/// have them once. Other flags stay, and so do the arrays of the input, which the image may share.
+/// @param own  extent of the piece without ghost cells
+inline void MarkDuplicates(vtkImageData* image, const int own[6])
+{
+  const auto mark = [&](vtkDataSetAttributes* of, int fromPoints, unsigned char flag) {
+    int extent[6];
+    image->GetExtent(extent);
+    auto* const before =
+      vtkArrayDownCast<vtkUnsignedCharArray>(of->GetAbstractArray(vtkDataSetAttributes::GhostArrayName()));
+    vtkNew<vtkUnsignedCharArray> flags;
+    flags->SetName(vtkDataSetAttributes::GhostArrayName());
+    vtkIdType number = 0;
+    for (int k = extent[4]; k <= extent[5] - fromPoints; ++k)
+    {
+      for (int j = extent[2]; j <= extent[3] - fromPoints; ++j)
+      {
+        for (int i = extent[0]; i <= extent[1] - fromPoints; ++i, ++number)
+        {
+          const bool inside = i >= own[0] && i <= own[1] - fromPoints && j >= own[2] && j <= own[3] - fromPoints &&
+            k >= own[4] && k <= own[5] - fromPoints;
+          const unsigned char kept = before ? before->GetValue(number) : 0;
+          flags->InsertNextValue(inside ? kept : kept | flag);
+        }
+      }
+    }
+    of->RemoveArray(vtkDataSetAttributes::GhostArrayName());
+    of->AddArray(flags);
+  };
+  mark(image->GetCellData(), 1, vtkDataSetAttributes::DUPLICATECELL);
+  mark(image->GetPointData(), 0, vtkDataSetAttributes::DUPLICATEPOINT);
+}
+
 /// In RequestData: crop the output to the extent, or the piece of it, that was asked for; other ranks hold the rest.
 inline void KeepWhatIsAskedFor(vtkInformation* information, vtkImageData* output)
 {
   using Pipeline = vtkStreamingDemandDrivenPipeline;
   int asked[6];
+  int own[6]; // without ghost cells
+  bool ghosts = false;
   information->Get(Pipeline::UPDATE_EXTENT(), asked);
   if (information->Get(Pipeline::UPDATE_NUMBER_OF_PIECES()) > 1)
   {
@@ -68,10 +107,17 @@ inline void KeepWhatIsAskedFor(vtkInformation* information, vtkImageData* output
       return;
     }
     translator->GetExtent(asked);
+    translator->SetGhostLevel(0);
+    ghosts = information->Get(Pipeline::UPDATE_NUMBER_OF_GHOST_LEVELS()) > 0 && translator->PieceToExtent();
+    translator->GetExtent(own);
   }
   if (asked[0] <= asked[1] && asked[2] <= asked[3] && asked[4] <= asked[5])
   {
     output->Crop(asked);
+  }
+  if (ghosts)
+  {
+    MarkDuplicates(output, own);
   }
 }
 

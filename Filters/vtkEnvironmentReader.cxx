@@ -1,5 +1,6 @@
 #include "vtkEnvironmentReader.h"
 
+#include "FiniteValues.h"
 #include "LightTransportData.h"
 #include "RadianceFile.h"
 
@@ -200,6 +201,13 @@ int vtkEnvironmentReader::RequestData(vtkInformation*, vtkInformationVector**, v
     {
       picture = Shrink(picture, size);
     }
+    const auto pixelName = [&](std::size_t pixel) {
+      const auto width = static_cast<std::size_t>(picture.Width);
+      return "pixel (" + std::to_string(pixel % width) + ", " + std::to_string(pixel / width) + ") from below";
+    };
+    tyndall::RequireFinite("radiance", picture.Rgb.data(), picture.Rgb.size(), 3, pixelName,
+      "The picture, brightened by Exposure, is more than a float holds (3.4e+38): give Exposure less, or set "
+      "MaximumRadiance.");
 
     image->SetDimensions(picture.Width, picture.Height, 1);
     vtkNew<vtkFloatArray> radiance;

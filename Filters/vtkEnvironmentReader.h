@@ -1,6 +1,7 @@
 #ifndef vtkEnvironmentReader_h
 #define vtkEnvironmentReader_h
 
+#include "PropertyRange.h"
 #include "vtkImageAlgorithm.h"
 #include "vtkTyndallModule.h" // for export macro
 
@@ -41,21 +42,21 @@ public:
 
   ///@{
   /// Stops by which the light is brightened: radiance times 2^Exposure. Default 0, valid [-64, 64].
-  vtkSetClampMacro(Exposure, double, -64.0, 64.0);
+  tyndallSetRangeMacro(Exposure, double, -64.0, 64.0);
   vtkGetMacro(Exposure, double);
   ///@}
 
   ///@{
   /// Pixels whose brightest channel is above this are scaled down to it (the hue stays), after Exposure,
   /// W / (length^2 sr). Tames a sun that is a few pixels. Default 0: no limit. Valid [0, infinity).
-  vtkSetClampMacro(MaximumRadiance, double, 0.0, VTK_DOUBLE_MAX);
+  tyndallSetRangeMacro(MaximumRadiance, double, 0.0, tyndall::AnyHigh);
   vtkGetMacro(MaximumRadiance, double);
   ///@}
 
   ///@{
   /// Most pixels around. A wider picture is averaged over the solid angle of the wider pixels, so that the power from every
   /// part of the sky stays. Default 0: no limit.
-  vtkSetClampMacro(Width, int, 0, VTK_INT_MAX);
+  tyndallSetRangeMacro(Width, int, 0, VTK_INT_MAX);
   vtkGetMacro(Width, int);
   ///@}
 

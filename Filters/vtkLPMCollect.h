@@ -29,6 +29,8 @@
  * channels fastest, then directions, and field data `left_over` (W a channel: power that U holds). Give it to vtkLPMPropagate
  * for the next order.
  *
+ * Cells that are hidden by `vtkGhostType` are empty.
+ *
  * @sa vtkLPMPropagate vtkLightPropagationMaps
  * @par Thanks
  * A. Gruson, A. Hakke Patil, R. Cozot, K. Bouatouch, S. Pattanaik: Light Propagation Maps on Parallel Graphics Architectures,

@@ -1,6 +1,7 @@
 #ifndef vtkLPMPropagate_h
 #define vtkLPMPropagate_h
 
+#include "PropertyRange.h"
 #include "vtkLitImageAlgorithm.h"
 #include "vtkTyndallModule.h" // for export macro
 
@@ -53,34 +54,34 @@ public:
 
   ///@{
   /// Directions per face of a cube. Default 25, valid square numbers: 1, 4, 9, 16, 25, ...
-  vtkSetMacro(DirectionsPerFace, int);
+  tyndallSetRangeMacro(DirectionsPerFace, int, 1, VTK_INT_MAX);
   vtkGetMacro(DirectionsPerFace, int);
   ///@}
 
   ///@{
   /// Rays of a direction per voxel edge. Default 1, valid from 1 on.
-  vtkSetMacro(MapResolution, int);
+  tyndallSetRangeMacro(MapResolution, int, 1, 16);
   vtkGetMacro(MapResolution, int);
   ///@}
 
   ///@{
   /// Directions of `scattered_radiance`, and, if not 1, of `unscattered`. Default 1 (enough for isotropic scattering), valid
   /// from 1 on.
-  vtkSetMacro(StoredDirections, int);
+  tyndallSetRangeMacro(StoredDirections, int, 1, VTK_INT_MAX);
   vtkGetMacro(StoredDirections, int);
   ///@}
 
   ///@{
   /// Diffuse radiance that enters through the faces -x, +x, -y, +y, -z, +z in order 0, W/(length^2 sr). Default 0, valid
   /// [0, infinity).
-  vtkSetVector6Macro(FaceRadiance, double);
+  tyndallSetRange6Macro(FaceRadiance, double, 0.0, tyndall::LargestFloat);
   vtkGetVector6Macro(FaceRadiance, double);
   ///@}
 
   ///@{
   /// Radiance from every direction alike in order 0, red, green, blue, added to the environment, W/(length^2 sr). Default 0,
   /// valid [0, infinity).
-  vtkSetVector3Macro(SkyColor, double);
+  tyndallSetRange3Macro(SkyColor, double, 0.0, tyndall::LargestFloat);
   vtkGetVector3Macro(SkyColor, double);
   ///@}
 

@@ -136,6 +136,11 @@ int vtkLightPropagationMaps::RequestData(vtkInformation*, vtkInformationVector**
     tyndall::LightField light = Solve(this, input.medium, illumination);
 
     this->Note(light);
+    const double left = LeftOver(light.balance);
+    tyndall::WriteConvergence(light.convergence, vtkTable::GetData(outputs, 1));
+    vtkImageData* output = vtkImageData::GetData(outputs, 0);
+    tyndall::PassOn(image, output);
+    tyndall::WriteLight(std::move(light), output); // light that is not finite is an error, with no warnings before
     if (this->MaximumOrders == 0 && this->Residual > this->Tolerance)
     {
       vtkWarningMacro("The light has not converged: after "
@@ -143,7 +148,6 @@ int vtkLightPropagationMaps::RequestData(vtkInformation*, vtkInformationVector**
         << this->Tolerance
         << ". Set a larger Tolerance, or Acceleration to none, or resample to voxels of more equal edges.");
     }
-    const double left = LeftOver(light.balance);
     if (this->MaximumOrders == 0 && left > std::max(0.01, this->Tolerance))
     {
       vtkWarningMacro("Of the light's power "
@@ -151,10 +155,6 @@ int vtkLightPropagationMaps::RequestData(vtkInformation*, vtkInformationVector**
         << "% is left over: its rays still go round periodic axes. A light inside a thin periodic box has images "
            "without end: make the box wider, or its axes not periodic.");
     }
-    tyndall::WriteConvergence(light.convergence, vtkTable::GetData(outputs, 1));
-    vtkImageData* output = vtkImageData::GetData(outputs, 0);
-    tyndall::PassOn(image, output);
-    tyndall::WriteLight(std::move(light), output);
     tyndall::KeepWhatIsAskedFor(outputs->GetInformationObject(0), output);
   });
 }

@@ -1,6 +1,7 @@
 #ifndef vtkLightPropagationMaps_h
 #define vtkLightPropagationMaps_h
 
+#include "PropertyRange.h"
 #include "vtkLitImageAlgorithm.h"
 #include "vtkTyndallModule.h" // for export macro
 
@@ -90,33 +91,33 @@ public:
 
   ///@{
   /// How to compute: PUBLISHED, or SOUND (default).
-  vtkSetClampMacro(Scheme, int, PUBLISHED, SOUND);
+  tyndallSetRangeMacro(Scheme, int, PUBLISHED, SOUND);
   vtkGetMacro(Scheme, int);
   ///@}
 
   ///@{
   /// Which algorithm of the published scheme: SEQUENTIAL, or PARALLEL (default). The sound scheme has one only.
-  vtkSetClampMacro(Algorithm, int, SEQUENTIAL, PARALLEL);
+  tyndallSetRangeMacro(Algorithm, int, SEQUENTIAL, PARALLEL);
   vtkGetMacro(Algorithm, int);
   ///@}
 
   ///@{
   /// How the light that a voxel sends out is spread over it (sound scheme): CONSTANT, LINEAR, or AUTOMATIC_SOURCE (default).
-  vtkSetClampMacro(Source, int, CONSTANT, AUTOMATIC_SOURCE);
+  tyndallSetRangeMacro(Source, int, CONSTANT, AUTOMATIC_SOURCE);
   vtkGetMacro(Source, int);
   ///@}
 
   ///@{
   /// How scattering orders are added up (sound scheme, where MaximumOrders is 0): NONE, or AUTOMATIC_ACCELERATION (default).
   /// LINEAR needs it.
-  vtkSetClampMacro(Acceleration, int, NONE, AUTOMATIC_ACCELERATION);
+  tyndallSetRangeMacro(Acceleration, int, NONE, AUTOMATIC_ACCELERATION);
   vtkGetMacro(Acceleration, int);
   ///@}
 
   ///@{
   /// Directions per face of a cube. Default 25, valid square numbers: 1, 4, 9, 16, 25, ... Slabs are solved with more
   /// (UnvaryingAxes.h).
-  vtkSetMacro(DirectionsPerFace, int);
+  tyndallSetRangeMacro(DirectionsPerFace, int, 1, VTK_INT_MAX);
   vtkGetMacro(DirectionsPerFace, int);
   ///@}
 
@@ -124,7 +125,7 @@ public:
   /// Directions per face of a cube for unscattered light of shining faces, sky and environment (sound scheme). It has shadows with
   /// edges and is swept once: it may have many while scattered light does with few. Default 0: as
   /// DirectionsPerFace; else square numbers up to 4096.
-  vtkSetMacro(FirstFlightDirections, int);
+  tyndallSetRangeMacro(FirstFlightDirections, int, 0, VTK_INT_MAX);
   vtkGetMacro(FirstFlightDirections, int);
   ///@}
 
@@ -132,7 +133,7 @@ public:
   /// Relative error, voxel by voxel, of the unscattered light of small bright parts of the medium, which is followed along exact rays
   /// (sound scheme, no periodic axis). Default 0.02; 0.005 costs five to ten times as much, less gains nothing; 0: they are swept like all else, as they are
   /// where other light has more power.
-  vtkSetMacro(EmissionError, double);
+  tyndallSetRangeMacro(EmissionError, double, 0.0, tyndall::AnyHigh);
   vtkGetMacro(EmissionError, double);
   ///@}
 
@@ -146,19 +147,19 @@ public:
 
   ///@{
   /// Rays of a direction per voxel edge. Default 1, valid [1, 16].
-  vtkSetMacro(MapResolution, int);
+  tyndallSetRangeMacro(MapResolution, int, 1, 16);
   vtkGetMacro(MapResolution, int);
   ///@}
 
   ///@{
   /// Scattering orders at most. Default 0: as many as Tolerance takes.
-  vtkSetMacro(MaximumOrders, int);
+  tyndallSetRangeMacro(MaximumOrders, int, 0, VTK_INT_MAX);
   vtkGetMacro(MaximumOrders, int);
   ///@}
 
   ///@{
   /// Relative error of fluence at which to stop. Default 1e-4, valid above 0.
-  vtkSetMacro(Tolerance, double);
+  tyndallSetRangeMacro(Tolerance, double, tyndall::AboveZero, tyndall::AnyHigh);
   vtkGetMacro(Tolerance, double);
   ///@}
 
@@ -178,14 +179,14 @@ public:
   ///@{
   /// Diffuse radiance that enters through the faces -x, +x, -y, +y, -z, +z, W/(length^2 sr). Default 0, valid
   /// [0, infinity).
-  vtkSetVector6Macro(FaceRadiance, double);
+  tyndallSetRange6Macro(FaceRadiance, double, 0.0, tyndall::LargestFloat);
   vtkGetVector6Macro(FaceRadiance, double);
   ///@}
 
   ///@{
   /// Radiance from every direction alike, red, green, blue, added to the environment, W/(length^2 sr). Default 0, valid
   /// [0, infinity).
-  vtkSetVector3Macro(SkyColor, double);
+  tyndallSetRange3Macro(SkyColor, double, 0.0, tyndall::LargestFloat);
   vtkGetVector3Macro(SkyColor, double);
   ///@}
 
@@ -214,13 +215,13 @@ public:
 
   ///@{
   /// Directions for which `scattered_radiance` is kept. Default 1 (enough for isotropic scattering), valid from 1 on.
-  vtkSetMacro(StoredDirections, int);
+  tyndallSetRangeMacro(StoredDirections, int, 1, VTK_INT_MAX);
   vtkGetMacro(StoredDirections, int);
   ///@}
 
   ///@{
   /// What came of the last update: scattering orders done, estimated relative error of fluence left by those that were not
-  /// done, estimated relative error of fluence altogether (0 without EstimateError), relative error of the energy balance, what the
+  /// done, estimated relative error of fluence altogether (0 without EstimateError; NaN, not known, after one order), relative error of the energy balance, what the
   /// directions carry of the power that even light brings through a face, over the exact value (0.9875 with 25 directions per face: light
   /// that enters from faces and sky is off by as much), seconds, the device's name, and what the scene did not need, one a line.
   vtkGetMacro(Orders, int);

@@ -1,6 +1,7 @@
 #ifndef vtkLightRig_h
 #define vtkLightRig_h
 
+#include "PropertyRange.h"
 #include "vtkPolyDataAlgorithm.h"
 #include "vtkTyndallModule.h" // for export macro
 
@@ -54,19 +55,19 @@ public:
 
   ///@{
   /// Height of the sun above the x-y plane, degrees. Default 45, valid [-90, 90]; 90 is overhead (+z).
-  vtkSetClampMacro(SunElevation, double, -90.0, 90.0);
+  tyndallSetRangeMacro(SunElevation, double, -90.0, 90.0);
   vtkGetMacro(SunElevation, double);
   ///@}
 
   ///@{
   /// Where the sun stands, degrees about +z from +x (towards +y). Default 225.
-  vtkSetMacro(SunAzimuth, double);
+  tyndallSetRangeMacro(SunAzimuth, double, tyndall::AnyLow, tyndall::AnyHigh);
   vtkGetMacro(SunAzimuth, double);
   ///@}
 
   ///@{
   /// The sun's irradiance on a plane that faces it, RGB, W/length^2. Default (1, 1, 1), valid [0, infinity).
-  vtkSetVector3Macro(SunPower, double);
+  tyndallSetRange3Macro(SunPower, double, 0.0, tyndall::LargestFloat);
   vtkGetVector3Macro(SunPower, double);
   ///@}
 

@@ -1,6 +1,7 @@
 #ifndef vtkLitMediumAlgorithm_h
 #define vtkLitMediumAlgorithm_h
 
+#include "PropertyRange.h"
 #include "vtkDataObjectAlgorithm.h"
 #include "vtkTyndallModule.h" // for export macro
 
@@ -20,6 +21,8 @@ struct Illumination;
  * Input 1, optional: lights as vtkLightRig makes them, vtkPolyData.
  * Input 2, optional: the environment, vtkImageData in latitude-longitude layout, point array `radiance` (1 or 3 components,
  * W/(length^2 sr)), as vtkEnvironmentReader makes it.
+ *
+ * Cells of the medium that are hidden by `vtkGhostType` are empty, hidden pixels of the environment black.
  *
  * Light crosses the borders of pieces. In a parallel pipeline every rank therefore asks for all of each input and works on
  * the whole; RequestData of a subclass hands on the piece it was asked for.
@@ -55,13 +58,13 @@ public:
 
   ///@{
   /// Axis of the scene along which the environment's up points: 0, 1, 2 for x, y, z. Default 2.
-  vtkSetClampMacro(EnvironmentUp, int, 0, 2);
+  tyndallSetRangeMacro(EnvironmentUp, int, 0, 2);
   vtkGetMacro(EnvironmentUp, int);
   ///@}
 
   ///@{
   /// By how much the environment is turned about its up, degrees, rounded to whole pixels. Default 0.
-  vtkSetMacro(EnvironmentAzimuth, double);
+  tyndallSetRangeMacro(EnvironmentAzimuth, double, tyndall::AnyLow, tyndall::AnyHigh);
   vtkGetMacro(EnvironmentAzimuth, double);
   ///@}
 

@@ -1,6 +1,7 @@
 #include "vtkMediumRayCaster.h"
 
 #include "Device/Device.h"
+#include "FiniteValues.h"
 #include "InputsKey.h"
 #include "LightTransportData.h"
 #include "Viewing/MediumRayCaster.h"
@@ -25,6 +26,7 @@
 #include <cstdint>
 #include <memory>
 #include <string>
+#include <tuple>
 #include <vector>
 
 namespace
@@ -101,6 +103,15 @@ void WritePicture(const tyndall::Picture& picture, const std::vector<std::uint8_
   output->SetExtent(0, picture.width - 1, 0, picture.height - 1, 0, 0);
   output->SetOrigin(0.0, 0.0, 0.0);
   output->SetSpacing(1.0, 1.0, 1.0);
+  const auto pixelName = [&](std::size_t pixel) {
+    const auto width = static_cast<std::size_t>(picture.width);
+    return "pixel (" + std::to_string(pixel % width) + ", " + std::to_string(pixel / width) + ") from below";
+  };
+  for (const auto& [name, values, components] : { std::tuple("radiance", &picture.radiance, 3),
+         std::tuple("alpha", &picture.alpha, 1), std::tuple("depth", &picture.depth, 1) })
+  {
+    tyndall::RequireFinite(name, values->data(), values->size(), components, pixelName);
+  }
   vtkPointData* pixels = output->GetPointData();
   pixels->SetScalars(PixelArray<vtkUnsignedCharArray>("color", color, 4));
   pixels->AddArray(PixelArray<vtkFloatArray>("radiance", picture.radiance, 3));
@@ -172,6 +183,7 @@ tyndall::InputsKey vtkMediumRayCaster::KeyOf(vtkInformationVector** inputs)
   key.device = tyndall::Device::Find(this->Device);
   vtkImageData* const image = vtkImageData::GetData(inputs[MEDIUM]);
   key.Add(tyndall::GridOf(image));
+  key.AddGhosts(image);
   key.Add({ tyndall::ReadFact(image, "g", 0.0), 1.0 * this->EnvironmentUp, this->EnvironmentAzimuth });
   for (int number = tyndall::SigmaA; number <= MeanDirection; ++number)
   {

@@ -1,6 +1,7 @@
 #ifndef vtkMediumRayCaster_h
 #define vtkMediumRayCaster_h
 
+#include "PropertyRange.h"
 #include "vtkLitImageAlgorithm.h"
 #include "vtkTyndallModule.h" // for export macro
 
@@ -109,28 +110,28 @@ public:
 
   ///@{
   /// Columns and rows of the picture, pixels. Default 800 x 600, valid from 1 on.
-  vtkSetVector2Macro(ImageSize, int);
+  tyndallSetRange2Macro(ImageSize, int, 1, VTK_INT_MAX);
   vtkGetVector2Macro(ImageSize, int);
   ///@}
 
   ///@{
   /// Where the camera is and what it looks at, as vtkCamera has it. Default (0, 0, 0) both: while they are equal, the
   /// camera frames the medium.
-  vtkSetVector3Macro(CameraPosition, double);
+  tyndallSetRange3Macro(CameraPosition, double, tyndall::AnyLow, tyndall::AnyHigh);
   vtkGetVector3Macro(CameraPosition, double);
-  vtkSetVector3Macro(CameraFocalPoint, double);
+  tyndallSetRange3Macro(CameraFocalPoint, double, tyndall::AnyLow, tyndall::AnyHigh);
   vtkGetVector3Macro(CameraFocalPoint, double);
   ///@}
 
   ///@{
   /// What is upwards in the picture. Default (0, 0, 1), valid what is not along the view.
-  vtkSetVector3Macro(CameraViewUp, double);
+  tyndallSetRange3Macro(CameraViewUp, double, tyndall::AnyLow, tyndall::AnyHigh);
   vtkGetVector3Macro(CameraViewUp, double);
   ///@}
 
   ///@{
   /// Angle between the picture's lower and upper edge, degrees. Default 30, valid (0, 180).
-  vtkSetMacro(CameraViewAngle, double);
+  tyndallSetRangeMacro(CameraViewAngle, double, tyndall::AboveZero, 180.0);
   vtkGetMacro(CameraViewAngle, double);
   ///@}
 
@@ -140,13 +141,13 @@ public:
   vtkSetMacro(CameraParallelProjection, bool);
   vtkGetMacro(CameraParallelProjection, bool);
   vtkBooleanMacro(CameraParallelProjection, bool);
-  vtkSetMacro(CameraParallelScale, double);
+  tyndallSetRangeMacro(CameraParallelScale, double, 0.0, tyndall::AnyHigh);
   vtkGetMacro(CameraParallelScale, double);
   ///@}
 
   ///@{
   /// Voxels that a ray advances between two samples. Default 0.5, valid (0, infinity). The error falls with its square.
-  vtkSetMacro(StepSize, double);
+  tyndallSetRangeMacro(StepSize, double, tyndall::AboveZero, tyndall::AnyHigh);
   vtkGetMacro(StepSize, double);
   ///@}
 
@@ -167,7 +168,7 @@ public:
 
   ///@{
   /// Samples along each edge of a rectangular light. Default 3, valid [1, 32].
-  vtkSetClampMacro(RectangleSamples, int, 1, 32);
+  tyndallSetRangeMacro(RectangleSamples, int, 1, 32);
   vtkGetMacro(RectangleSamples, int);
   ///@}
 
@@ -181,51 +182,51 @@ public:
   ///@{
   /// Radiance behind the medium where there is no environment, red, green, blue, W/(length^2 sr). Default 0, valid
   /// [0, infinity).
-  vtkSetVector3Macro(BackgroundColor, double);
+  tyndallSetRange3Macro(BackgroundColor, double, 0.0, tyndall::LargestFloat);
   vtkGetVector3Macro(BackgroundColor, double);
   ///@}
 
   ///@{
   /// How light whose direction is known is scattered, by the medium's g: HENYEY_GREENSTEIN (default) or SCHLICK.
-  vtkSetClampMacro(PhaseFunction, int, HENYEY_GREENSTEIN, SCHLICK);
+  tyndallSetRangeMacro(PhaseFunction, int, HENYEY_GREENSTEIN, SCHLICK);
   vtkGetMacro(PhaseFunction, int);
   ///@}
 
   ///@{
   /// What the surface of refractive objects mirrors of a ray that meets it from the side of the smaller index: NONE (default),
   /// FRESNEL or FIXED. Without an `ior` that varies there is no surface.
-  vtkSetClampMacro(SurfaceReflection, int, NONE, FIXED);
+  tyndallSetRangeMacro(SurfaceReflection, int, NONE, FIXED);
   vtkGetMacro(SurfaceReflection, int);
   ///@}
 
   ///@{
   /// The surface is where n has this value. Default 0: midway between the least and the largest n. Valid [0, infinity).
-  vtkSetMacro(SurfaceIndex, double);
+  tyndallSetRangeMacro(SurfaceIndex, double, 0.0, tyndall::AnyHigh);
   vtkGetMacro(SurfaceIndex, double);
   ///@}
 
   ///@{
   /// Part that the surface mirrors if SurfaceReflection is FIXED. Default 0.1, valid [0, 1].
-  vtkSetMacro(SurfaceReflectance, double);
+  tyndallSetRangeMacro(SurfaceReflectance, double, 0.0, 1.0);
   vtkGetMacro(SurfaceReflectance, double);
   ///@}
 
   ///@{
   /// Face of the box that is a table, seen from within: 0 to 5 for -x, +x, -y, +y, -z, +z. Default -1: none.
-  vtkSetClampMacro(TableFace, int, -1, 5);
+  tyndallSetRangeMacro(TableFace, int, -1, 5);
   vtkGetMacro(TableFace, int);
   ///@}
 
   ///@{
   /// Diffuse reflectance of the table, red, green, blue, lit by the light in the voxels on it. Default (0.6, 0.6, 0.6), valid
   /// [0, 1].
-  vtkSetVector3Macro(TableColor, double);
+  tyndallSetRange3Macro(TableColor, double, 0.0, 1.0);
   vtkGetVector3Macro(TableColor, double);
   ///@}
 
   ///@{
   /// Part that the table mirrors. Default 0.1, valid from 0 to 1 less TableColor.
-  vtkSetMacro(TableReflectance, double);
+  tyndallSetRangeMacro(TableReflectance, double, 0.0, 1.0);
   vtkGetMacro(TableReflectance, double);
   ///@}
 
@@ -240,13 +241,13 @@ public:
   ///@{
   /// What radiance is multiplied by for `color`. Default 0: so that the mean of the picture's lit part becomes a medium
   /// grey.
-  vtkSetClampMacro(Exposure, double, 0.0, VTK_DOUBLE_MAX);
+  tyndallSetRangeMacro(Exposure, double, 0.0, tyndall::AnyHigh);
   vtkGetMacro(Exposure, double);
   ///@}
 
   ///@{
   /// How `color` follows radiance: LINEAR, or FILMIC (default).
-  vtkSetClampMacro(ToneCurve, int, LINEAR, FILMIC);
+  tyndallSetRangeMacro(ToneCurve, int, LINEAR, FILMIC);
   vtkGetMacro(ToneCurve, int);
   ///@}
 

@@ -1,6 +1,7 @@
 #ifndef vtkMeshVoxelizer_h
 #define vtkMeshVoxelizer_h
 
+#include "PropertyRange.h"
 #include "vtkImageAlgorithm.h"
 #include "vtkTyndallModule.h" // for export macro
 
@@ -61,29 +62,29 @@ public:
 
   ///@{
   /// Voxels along x, y and z. Default (128, 128, 128), valid from 1 on.
-  vtkSetVector3Macro(SampleDimensions, int);
+  tyndallSetRange3Macro(SampleDimensions, int, 1, VTK_INT_MAX);
   vtkGetVector3Macro(SampleDimensions, int);
   ///@}
 
   ///@{
   /// The box, (xmin, xmax, ymin, ymax, zmin, zmax), length. Default all 0: a box of cubic voxels about the meshes, in its
   /// middle, as close as Margin allows.
-  vtkSetVector6Macro(ModelBounds, double);
+  tyndallSetRange6Macro(ModelBounds, double, tyndall::AnyLow, tyndall::AnyHigh);
   vtkGetVector6Macro(ModelBounds, double);
   ///@}
 
   ///@{
   /// Room on each side of the meshes where ModelBounds are 0, as a part of the longest edge of their bounds; there is always as
   /// much as the filter reaches. Default 0.125, valid [0, infinity).
-  vtkSetMacro(Margin, double);
+  tyndallSetRangeMacro(Margin, double, 0.0, tyndall::AnyHigh);
   vtkGetMacro(Margin, double);
   ///@}
 
   ///@{
   /// Refractive index n inside the meshes and outside. Default 1.5 (glass) and 1, valid (0, infinity).
-  vtkSetMacro(InsideIndex, double);
+  tyndallSetRangeMacro(InsideIndex, double, tyndall::AboveZero, 1e6);
   vtkGetMacro(InsideIndex, double);
-  vtkSetMacro(OutsideIndex, double);
+  tyndallSetRangeMacro(OutsideIndex, double, tyndall::AboveZero, 1e6);
   vtkGetMacro(OutsideIndex, double);
   ///@}
 
@@ -91,25 +92,25 @@ public:
   /// Scattering coefficients sigma_s, red, green, blue, 1/length, valid [0, infinity). Default (0, 0, 0) inside. Outside
   /// (-1, -1, -1): where all three are below 0, the scattering that suits the box, such that half an optical length is scattered
   /// along its longest edge; see UsedOutsideScattering.
-  vtkSetVector3Macro(InsideScattering, double);
+  tyndallSetRange3Macro(InsideScattering, double, 0.0, tyndall::LargestFloat);
   vtkGetVector3Macro(InsideScattering, double);
-  vtkSetVector3Macro(OutsideScattering, double);
+  tyndallSetRange3Macro(OutsideScattering, double, tyndall::AnyLow, tyndall::LargestFloat);
   vtkGetVector3Macro(OutsideScattering, double);
   ///@}
 
   ///@{
   /// Absorption coefficients sigma_a, red, green, blue, 1/length. Default (0, 0, 0), valid [0, infinity).
-  vtkSetVector3Macro(InsideAbsorption, double);
+  tyndallSetRange3Macro(InsideAbsorption, double, 0.0, tyndall::LargestFloat);
   vtkGetVector3Macro(InsideAbsorption, double);
-  vtkSetVector3Macro(OutsideAbsorption, double);
+  tyndallSetRange3Macro(OutsideAbsorption, double, 0.0, tyndall::LargestFloat);
   vtkGetVector3Macro(OutsideAbsorption, double);
   ///@}
 
   ///@{
   /// Mean cosine g of the angle by which light is scattered. Default 0, valid (-1, 1).
-  vtkSetMacro(InsideMeanCosine, double);
+  tyndallSetRangeMacro(InsideMeanCosine, double, -1.0, 1.0);
   vtkGetMacro(InsideMeanCosine, double);
-  vtkSetMacro(OutsideMeanCosine, double);
+  tyndallSetRangeMacro(OutsideMeanCosine, double, -1.0, 1.0);
   vtkGetMacro(OutsideMeanCosine, double);
   ///@}
 
@@ -127,19 +128,19 @@ public:
   ///@{
   /// Gradient noise on the index inside: n becomes n + IndexNoise times a smooth random number in [-1, 1]. Default 0, valid
   /// from 0 to less than the index.
-  vtkSetMacro(IndexNoise, double);
+  tyndallSetRangeMacro(IndexNoise, double, 0.0, tyndall::AnyHigh);
   vtkGetMacro(IndexNoise, double);
   ///@}
 
   ///@{
   /// The same noise on scattering inside: sigma_s becomes sigma_s (1 + ScatteringNoise noise). Default 0, valid [0, 1].
-  vtkSetMacro(ScatteringNoise, double);
+  tyndallSetRangeMacro(ScatteringNoise, double, 0.0, 1.0);
   vtkGetMacro(ScatteringNoise, double);
   ///@}
 
   ///@{
   /// Size of the noise's features, length. Default 0: an eighth of the box's longest edge. Valid [0, infinity).
-  vtkSetMacro(NoiseSize, double);
+  tyndallSetRangeMacro(NoiseSize, double, 0.0, tyndall::AnyHigh);
   vtkGetMacro(NoiseSize, double);
   ///@}
 
@@ -152,14 +153,14 @@ public:
   ///@{
   /// Fine voxels an edge of a voxel. Occupancy has no steps: where the surface lies between their centres counts too. The
   /// factor sets how well it follows edges and bends. Default 4, valid [1, 16].
-  vtkSetMacro(SupersamplingFactor, int);
+  tyndallSetRangeMacro(SupersamplingFactor, int, 1, 16);
   vtkGetMacro(SupersamplingFactor, int);
   ///@}
 
   ///@{
   /// Width of the Gaussian that smooths n, voxels; its standard deviation is a sixth of that. Default 9, valid odd numbers
   /// from 1 (not smoothed) to 65.
-  vtkSetMacro(FilterSize, int);
+  tyndallSetRangeMacro(FilterSize, int, 1, 65);
   vtkGetMacro(FilterSize, int);
   ///@}
 

@@ -1,5 +1,7 @@
 #include "vtkParticipatingMedium.h"
 
+#include "FiniteValues.h"
+#include "GhostFlags.h"
 #include "LightTransportData.h"
 #include "Medium/Presets.h"
 
@@ -108,7 +110,21 @@ std::vector<float> RelativeDensity(
         " (the first such voxel); it must be finite.");
     }
   }
+  tyndall::RequireFinite(
+    "relative density", relative.data(), relative.size(), 1,
+    [&](std::size_t voxel) { return "voxel " + tyndall::VoxelName(grid, voxel); },
+    "MaximumDensity less MinimumDensity is too small for the densities that there are: raise MaximumDensity.");
   return relative;
+}
+
+/// Hidden cells have nothing of the medium, wherever MinimumDensity is.
+void EmptyHidden(vtkImageData* image, std::vector<float>& relative)
+{
+  const std::vector<unsigned char> hidden = tyndall::HiddenCells(image);
+  for (std::size_t i = 0; i < hidden.size(); ++i)
+  {
+    relative[i] = hidden[i] ? 0.0f : relative[i];
+  }
 }
 
 void AddProduct(vtkImageData* output, const char* name, const std::vector<float>& density, const Rgb& factor)
@@ -124,7 +140,9 @@ void AddProduct(vtkImageData* output, const char* name, const std::vector<float>
       }
     }
   });
-  tyndall::AddCells(output, name, std::move(values), components);
+  tyndall::AddCells(output, name, std::move(values), components,
+    "Density times scale is more than a float holds (3.4e+38): give ExtinctionScale or EmissionScale less, or "
+    "MaximumDensity more.");
 }
 
 const tyndall::MediumPreset* PresetOf(int preset)
@@ -161,8 +179,10 @@ int vtkParticipatingMedium::RequestData(vtkInformation*, vtkInformationVector** 
     vtkImageData* input = vtkImageData::GetData(inputs[0]);
     const Recipe recipe = RecipeOf(this);
     const tyndall::FloatField density = tyndall::ReadChosenCells(this, 0, input, "", tyndall::Need::Required, { 1 });
-    const std::vector<float> relative =
+    std::vector<float> relative =
       RelativeDensity(density, tyndall::GridOf(input), this->MinimumDensity, this->MaximumDensity);
+
+    EmptyHidden(input, relative);
 
     vtkImageData* output = vtkImageData::GetData(outputs);
     tyndall::PassOn(input, output);

@@ -1,6 +1,7 @@
 #ifndef vtkParticipatingMedium_h
 #define vtkParticipatingMedium_h
 
+#include "PropertyRange.h"
 #include "vtkImageAlgorithm.h"
 #include "vtkTyndallModule.h" // for export macro
 
@@ -31,6 +32,8 @@
  * ExtinctionScale then multiplies them, 1 being the medium as it was measured, and MillimetresPerUnit says how long a unit
  * of the dataset is.
  *
+ * Cells that are hidden by `vtkGhostType` are empty.
+ *
  * @sa vtkLightPropagationMaps
  */
 class TYNDALL_EXPORT vtkParticipatingMedium : public vtkImageAlgorithm
@@ -59,7 +62,7 @@ public:
 
   ///@{
   /// The medium, one of Presets. Default CUSTOM: Albedo and MeanCosine.
-  vtkSetClampMacro(Preset, int, CUSTOM, SKIN_2);
+  tyndallSetRangeMacro(Preset, int, CUSTOM, SKIN_2);
   vtkGetMacro(Preset, int);
   ///@}
 
@@ -72,55 +75,55 @@ public:
 
   ///@{
   /// Density that is vacuum, as is what lies below it. Default 0.
-  vtkSetMacro(MinimumDensity, double);
+  tyndallSetRangeMacro(MinimumDensity, double, tyndall::AnyLow, tyndall::AnyHigh);
   vtkGetMacro(MinimumDensity, double);
   ///@}
 
   ///@{
   /// Density with relative density 1; what lies above it is denser in proportion. Default 1, valid from MinimumDensity on;
   /// if equal to it, everything above it has relative density 1.
-  vtkSetMacro(MaximumDensity, double);
+  tyndallSetRangeMacro(MaximumDensity, double, tyndall::AnyLow, tyndall::AnyHigh);
   vtkGetMacro(MaximumDensity, double);
   ///@}
 
   ///@{
   /// Extinction coefficient sigma_t at relative density 1, 1/length; with a preset the multiple of its coefficients.
   /// Default 1, valid [0, infinity).
-  vtkSetMacro(ExtinctionScale, double);
+  tyndallSetRangeMacro(ExtinctionScale, double, 0.0, tyndall::LargestFloat);
   vtkGetMacro(ExtinctionScale, double);
   ///@}
 
   ///@{
   /// Part of the extinguished light that is scattered, not absorbed; red, green, blue. Default (0.9, 0.9, 0.9), valid
   /// [0, 1]. Not used with a preset.
-  vtkSetVector3Macro(Albedo, double);
+  tyndallSetRange3Macro(Albedo, double, 0.0, 1.0);
   vtkGetVector3Macro(Albedo, double);
   ///@}
 
   ///@{
   /// Mean cosine g of the angle by which light is scattered (Henyey-Greenstein): 0 isotropic, near 1 forward. Default 0,
   /// valid (-1, 1). Not used with a preset.
-  vtkSetMacro(MeanCosine, double);
+  tyndallSetRangeMacro(MeanCosine, double, -1.0, 1.0);
   vtkGetMacro(MeanCosine, double);
   ///@}
 
   ///@{
   /// Radiance emitted per unit length at relative density 1, W/(length^3 sr), times EmissionColor. Default 0, valid
   /// [0, infinity).
-  vtkSetMacro(EmissionScale, double);
+  tyndallSetRangeMacro(EmissionScale, double, 0.0, tyndall::AnyHigh);
   vtkGetMacro(EmissionScale, double);
   ///@}
 
   ///@{
   /// Red, green and blue part of EmissionScale. Default (1, 1, 1), valid [0, infinity).
-  vtkSetVector3Macro(EmissionColor, double);
+  tyndallSetRange3Macro(EmissionColor, double, 0.0, tyndall::LargestFloat);
   vtkGetVector3Macro(EmissionColor, double);
   ///@}
 
   ///@{
   /// Length of the dataset's unit in millimetres, for presets: 1 for a scan in mm, 1000 for metres. Default 1, valid
   /// (0, infinity).
-  vtkSetMacro(MillimetresPerUnit, double);
+  tyndallSetRangeMacro(MillimetresPerUnit, double, tyndall::AboveZero, tyndall::AnyHigh);
   vtkGetMacro(MillimetresPerUnit, double);
   ///@}
 

@@ -78,7 +78,7 @@ int vtkPhotonEmitter::RequestData(vtkInformation* request, vtkInformationVector*
     settings.densestAtMost = this->MaximumDensity;
     const tyndall::EmittedPhotons emitted =
       tyndall::EmitPhotons(grid, illumination, settings, tyndall::MonitorOf(this));
-    tyndall::WritePhotons(emitted, vtkPolyData::GetData(outputs));
+    tyndall::WritePhotons(emitted, grid, vtkPolyData::GetData(outputs));
     this->Photons = static_cast<vtkIdType>(emitted.photons.size());
     this->Power = emitted.power[0] + emitted.power[1] + emitted.power[2];
     this->Seconds = emitted.seconds;

@@ -1,6 +1,7 @@
 #ifndef vtkPhotonEmitter_h
 #define vtkPhotonEmitter_h
 
+#include "PropertyRange.h"
 #include "vtkLitMediumAlgorithm.h"
 #include "vtkTyndallModule.h" // for export macro
 
@@ -31,6 +32,9 @@ class vtkPolyData;
  * | `weight`    | 1          | 1    | its power over what it had if photons were spread evenly          |
  * | `light`     | 1          | 1    | number of its light; -1: the environment or SkyColor              |
  * | `batch`     | 1          | 1    | of which of the independent sets it is, from 0                    |
+ *
+ * and field data `photon_box`, the bounds of the box that they were made for (6 numbers): vtkPhotonMarcher warns where its medium
+ * fills another one.
  *
  * Without lights, environment and SkyColor there are no photons, with a warning. In a parallel pipeline the first piece has
  * all photons.
@@ -70,19 +74,19 @@ public:
   ///@{
   /// Photons that reach the volume, of all lights together, which share them in proportion to the power with which they reach
   /// it. Default 100000, valid [1, infinity). Spots and rectangles of which a part misses the volume meet it within a percent.
-  vtkSetClampMacro(PhotonCount, vtkIdType, 1, VTK_ID_MAX);
+  tyndallSetRangeMacro(PhotonCount, vtkIdType, 1, VTK_ID_MAX);
   vtkGetMacro(PhotonCount, vtkIdType);
   ///@}
 
   ///@{
   /// How photons are spread: HAMMERSLEY (default), HALTON, JITTERED, GRID or RANDOM.
-  vtkSetClampMacro(Sampler, int, HAMMERSLEY, RANDOM);
+  tyndallSetRangeMacro(Sampler, int, HAMMERSLEY, RANDOM);
   vtkGetMacro(Sampler, int);
   ///@}
 
   ///@{
   /// Another seed gives other photons, the same seed the same ones. Default 0.
-  vtkSetClampMacro(Seed, int, 0, VTK_INT_MAX);
+  tyndallSetRangeMacro(Seed, int, 0, VTK_INT_MAX);
   vtkGetMacro(Seed, int);
   ///@}
 
@@ -90,21 +94,21 @@ public:
   /// Independent sets that the photons are made of, each with its part of all the power: their differences tell
   /// vtkPhotonReconstruction the error of the light. Default 0: two with an importance map (even if that is even), one without; valid
   /// [0, 16].
-  vtkSetMacro(Batches, int);
+  tyndallSetRangeMacro(Batches, int, 0, 16);
   vtkGetMacro(Batches, int);
   ///@}
 
   ///@{
   /// How dense photons may become by the importance map, in those spread evenly: what it asks for above that goes to other
   /// places. Default 8, valid [1, infinity).
-  vtkSetMacro(MaximumDensity, double);
+  tyndallSetRangeMacro(MaximumDensity, double, 1.0, tyndall::AnyHigh);
   vtkGetMacro(MaximumDensity, double);
   ///@}
 
   ///@{
   /// Radiance from every direction alike, red, green, blue, added to the environment, W/(length^2 sr). Default 0, valid
   /// [0, infinity).
-  vtkSetVector3Macro(SkyColor, double);
+  tyndallSetRange3Macro(SkyColor, double, 0.0, tyndall::LargestFloat);
   vtkGetVector3Macro(SkyColor, double);
   ///@}
 

@@ -1,6 +1,7 @@
 #ifndef vtkPhotonImportance_h
 #define vtkPhotonImportance_h
 
+#include "PropertyRange.h"
 #include "vtkLitImageAlgorithm.h"
 #include "vtkTyndallModule.h" // for export macro
 
@@ -69,47 +70,47 @@ public:
 
   ///@{
   /// Pilot photons of each light; the largest square number that is not above it is made. Default 1024, valid [1, 2^20]; below it is an error.
-  vtkSetMacro(PilotCount, int);
+  tyndallSetRangeMacro(PilotCount, int, 1, VTK_INT_MAX);
   vtkGetMacro(PilotCount, int);
   ///@}
 
   ///@{
   /// Coarse cells along each axis. Default 16 each, valid from 1 on; more than the medium has voxels are cut to those.
-  vtkSetVector3Macro(PilotDimensions, int);
+  tyndallSetRange3Macro(PilotDimensions, int, 1, VTK_INT_MAX);
   vtkGetVector3Macro(PilotDimensions, int);
   ///@}
 
   ///@{
   /// Where the thresholds come from: OWN or AUTOMATIC (default).
-  vtkSetClampMacro(Thresholds, int, OWN, AUTOMATIC);
+  tyndallSetRangeMacro(Thresholds, int, OWN, AUTOMATIC);
   vtkGetMacro(Thresholds, int);
   ///@}
 
   ///@{
   /// With own thresholds: cells whose light changes by this or more to the next are chosen, and lit cells of this light or less.
   /// W/length^2, default 0, valid [0, infinity).
-  vtkSetMacro(GradientThreshold, double);
+  tyndallSetRangeMacro(GradientThreshold, double, 0.0, tyndall::AnyHigh);
   vtkGetMacro(GradientThreshold, double);
-  vtkSetMacro(LuminanceThreshold, double);
+  tyndallSetRangeMacro(LuminanceThreshold, double, 0.0, tyndall::AnyHigh);
   vtkGetMacro(LuminanceThreshold, double);
   ///@}
 
   ///@{
   /// Part of the photons that are spread evenly all the same. Default 0.3, valid (0, 1].
-  vtkSetMacro(Background, double);
+  tyndallSetRangeMacro(Background, double, tyndall::AboveZero, 1.0);
   vtkGetMacro(Background, double);
   ///@}
 
   ///@{
   /// Another seed gives other pilot photons, the same seed the same ones. Default 0.
-  vtkSetClampMacro(Seed, int, 0, VTK_INT_MAX);
+  tyndallSetRangeMacro(Seed, int, 0, VTK_INT_MAX);
   vtkGetMacro(Seed, int);
   ///@}
 
   ///@{
   /// Radiance from every direction alike, red, green, blue, added to the environment, W/(length^2 sr). Default 0, valid
   /// [0, infinity).
-  vtkSetVector3Macro(SkyColor, double);
+  tyndallSetRange3Macro(SkyColor, double, 0.0, tyndall::LargestFloat);
   vtkGetVector3Macro(SkyColor, double);
   ///@}
 

@@ -16,6 +16,7 @@
 #include <algorithm>
 #include <cmath>
 #include <memory>
+#include <string>
 #include <utility>
 #include <vector>
 
@@ -215,7 +216,13 @@ int vtkPhotonMarcher::RequestData(vtkInformation* request, vtkInformationVector*
   this->PackingLoss = 0.0;
   this->MediumKept = false;
   return tyndall::Guarded(this, outputs, [&] {
-    const std::vector<tyndall::Photon> photons = tyndall::ReadPhotons(vtkPolyData::GetData(inputs[PhotonsPort]));
+    vtkPolyData* const given = vtkPolyData::GetData(inputs[PhotonsPort]);
+    const std::vector<tyndall::Photon> photons = tyndall::ReadPhotons(given);
+    const std::string doubt = tyndall::DoubtOfBox(given, tyndall::GridOf(vtkImageData::GetData(inputs[MediumPort])));
+    if (!doubt.empty())
+    {
+      vtkWarningMacro(<< doubt);
+    }
     Marched marched = this->March(inputs, photons);
 
     this->Note(marched.light);

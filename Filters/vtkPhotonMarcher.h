@@ -1,6 +1,7 @@
 #ifndef vtkPhotonMarcher_h
 #define vtkPhotonMarcher_h
 
+#include "PropertyRange.h"
 #include "vtkImageAlgorithm.h"
 #include "vtkTyndallModule.h" // for export macro
 
@@ -51,6 +52,8 @@ struct PhotonLight;
  *
  * In a parallel pipeline every rank marches all photons and hands on its piece; the paths are on the first.
  *
+ * Cells that are hidden by `vtkGhostType` are empty.
+ *
  * @sa vtkPhotonEmitter vtkRefractionOctree vtkPhotonReconstruction vtkMediumRayCaster
  * @par Thanks
  * M. Pfeuti, Real-time Rendering of Refractive Objects in Participating Media, 2009, section 3.1.5. X. Sun, K. Zhou, E. Stollnitz,
@@ -81,20 +84,20 @@ public:
 
   ///@{
   /// How to compute: PUBLISHED, or SOUND (default).
-  vtkSetClampMacro(Scheme, int, PUBLISHED, SOUND);
+  tyndallSetRangeMacro(Scheme, int, PUBLISHED, SOUND);
   vtkGetMacro(Scheme, int);
   ///@}
 
   ///@{
   /// Order of the sound scheme's integrator: 1 (explicit Euler, to compare), 2 (leapfrog; default) or 4 (Yoshida; where the
   /// index is smooth over several voxels).
-  vtkSetMacro(IntegratorOrder, int);
+  tyndallSetRangeMacro(IntegratorOrder, int, 1, 4);
   vtkGetMacro(IntegratorOrder, int);
   ///@}
 
   ///@{
   /// Length of a step where the index varies and the octree has single voxels, in voxels. Default 1, valid [0.05, 1e4].
-  vtkSetMacro(StepSize, double);
+  tyndallSetRangeMacro(StepSize, double, 0.05, 1e4);
   vtkGetMacro(StepSize, double);
   ///@}
 
@@ -116,7 +119,7 @@ public:
 
   ///@{
   /// Number of photons, spread evenly over all, whose paths go to the second output. Default 0, valid [0, infinity).
-  vtkSetClampMacro(PathCount, int, 0, VTK_INT_MAX);
+  tyndallSetRangeMacro(PathCount, int, 0, VTK_INT_MAX);
   vtkGetMacro(PathCount, int);
   ///@}
 

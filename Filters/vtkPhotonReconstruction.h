@@ -1,6 +1,7 @@
 #ifndef vtkPhotonReconstruction_h
 #define vtkPhotonReconstruction_h
 
+#include "PropertyRange.h"
 #include "vtkImageAlgorithm.h"
 #include "vtkTyndallModule.h" // for export macro
 
@@ -42,6 +43,8 @@ struct ReconstructedLight;
  * gains what was not needed here, `device` is the one that computed. In a parallel pipeline every rank works on the whole
  * and hands on its piece.
  *
+ * Cells that are hidden by `vtkGhostType` are empty.
+ *
  * @sa vtkPhotonMarcher vtkPhotonEmitter vtkPhotonImportance vtkMediumRayCaster
  * @par Thanks
  * M. Pfeuti, Real-time Rendering of Refractive Objects in Participating Media, 2009, sections 3.2.4 and 4.2.
@@ -70,39 +73,39 @@ public:
 
   ///@{
   /// How the level is chosen: PUBLISHED, SOUND (default), CONSTANT_RADIUS or NEAREST_PHOTONS.
-  vtkSetClampMacro(Scheme, int, PUBLISHED, NEAREST_PHOTONS);
+  tyndallSetRangeMacro(Scheme, int, PUBLISHED, NEAREST_PHOTONS);
   vtkGetMacro(Scheme, int);
   ///@}
 
   ///@{
   /// Levels of the pyramid above the voxels, at most; no more than the grid has are made. Default 5, valid [1, 8].
-  vtkSetClampMacro(Levels, int, 1, 8);
+  tyndallSetRangeMacro(Levels, int, 1, 8);
   vtkGetMacro(Levels, int);
   ///@}
 
   ///@{
   /// Published scheme: weight of photons from a level to the next. Default 0: the mean weight of lit voxels; valid
   /// [0, infinity).
-  vtkSetMacro(WeightStep, double);
+  tyndallSetRangeMacro(WeightStep, double, 0.0, tyndall::AnyHigh);
   vtkGetMacro(WeightStep, double);
   ///@}
 
   ///@{
   /// Constant radius: the level. Default 1, valid [0, 8].
-  vtkSetClampMacro(Level, int, 0, 8);
+  tyndallSetRangeMacro(Level, int, 0, 8);
   vtkGetMacro(Level, int);
   ///@}
 
   ///@{
   /// Nearest photons: how many. Default 20, valid [1, infinity).
-  vtkSetClampMacro(NearestPhotons, int, 1, VTK_INT_MAX);
+  tyndallSetRangeMacro(NearestPhotons, int, 1, VTK_INT_MAX);
   vtkGetMacro(NearestPhotons, int);
   ///@}
 
   ///@{
   /// Whether the light is scaled such that that of all voxels together is what it was: NEVER, ALWAYS, or BY_SCHEME
   /// (default).
-  vtkSetClampMacro(ConserveFluence, int, NEVER, BY_SCHEME);
+  tyndallSetRangeMacro(ConserveFluence, int, NEVER, BY_SCHEME);
   vtkGetMacro(ConserveFluence, int);
   ///@}
 

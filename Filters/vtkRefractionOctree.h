@@ -1,6 +1,7 @@
 #ifndef vtkRefractionOctree_h
 #define vtkRefractionOctree_h
 
+#include "PropertyRange.h"
 #include "vtkImageAlgorithm.h"
 #include "vtkTyndallModule.h" // for export macro
 
@@ -33,6 +34,8 @@
  * In a parallel pipeline nodes cross the borders of pieces, so every rank asks for the whole extent, and hands on the piece
  * of output 0 that it was asked for; output 1 is on the first rank.
  *
+ * Cells that are hidden by `vtkGhostType` are empty.
+ *
  * @sa vtkMeshVoxelizer vtkPhotonMarcher
  * @par Thanks
  * M. Pfeuti, Real-time Rendering of Refractive Objects in Participating Media, 2009, section 3.1.3.
@@ -47,7 +50,7 @@ public:
   ///@{
   /// Largest difference of refractive index within a node. Default 0.01, valid [0, 1]; with 0 only voxels of the
   /// very same index are one node.
-  vtkSetClampMacro(Tolerance, double, 0.0, 1.0);
+  tyndallSetRangeMacro(Tolerance, double, 0.0, 1.0);
   vtkGetMacro(Tolerance, double);
   ///@}
 
@@ -61,7 +64,7 @@ public:
   ///@{
   /// With IncludeExtinction: by how much the optical thickness of a straight way through a node may be off where extinction is
   /// taken as constant in it. Default 0.1, valid [0, infinity).
-  vtkSetMacro(ExtinctionTolerance, double);
+  tyndallSetRangeMacro(ExtinctionTolerance, double, 0.0, tyndall::AnyHigh);
   vtkGetMacro(ExtinctionTolerance, double);
   ///@}
 

@@ -2,6 +2,7 @@
 
 #include "Comparison/SolverComparison.h"
 #include "Device/Clock.h"
+#include "GhostFlags.h"
 #include "LightTransportData.h"
 #include "RefractiveInput.h"
 #include "WholeImage.h"
@@ -20,6 +21,7 @@
 #include "vtkTable.h"
 
 #include <functional>
+#include <limits>
 #include <memory>
 #include <optional>
 #include <utility>
@@ -100,7 +102,8 @@ void Write(const tyndall::Comparison& comparison, vtkTable* table)
   tyndall::AddFact(table, "device", std::vector<std::string>{ comparison.device });
 }
 
-void Write(tyndall::ReferenceLight&& reference, vtkImageData* image)
+/// @param given  by the user: it may be NaN where it is not known
+void Write(tyndall::ReferenceLight&& reference, bool given, vtkImageData* image)
 {
   const std::array<int, 3>& size = reference.grid.size;
   image->SetExtent(0, size[0], 0, size[1], 0, size[2]);
@@ -112,17 +115,29 @@ void Write(tyndall::ReferenceLight&& reference, vtkImageData* image)
   {
     if (!values->empty())
     {
-      tyndall::AddLight(image, name, std::move(*values), reference.channels);
+      const auto add = given ? tyndall::AddGivenLight : tyndall::AddLight;
+      add(image, name, std::move(*values), reference.channels);
     }
   }
   tyndall::AddFact(image, "reference", std::vector<std::string>{ reference.text });
 }
 
-std::vector<float> Copied(const tyndall::FloatField& field, std::size_t voxels)
+/// NaN, which is not compared, where cells are hidden.
+std::vector<float> Copied(const tyndall::FloatField& field, vtkImageData* image)
 {
-  return field.IsThere()
-    ? std::vector<float>(field.Values(), field.Values() + voxels * static_cast<std::size_t>(field.Components()))
-    : std::vector<float>();
+  if (!field.IsThere())
+  {
+    return {};
+  }
+  const auto components = static_cast<std::size_t>(field.Components());
+  const auto voxels = static_cast<std::size_t>(image->GetNumberOfCells());
+  std::vector<float> values(field.Values(), field.Values() + voxels * components);
+  const std::vector<unsigned char> hidden = tyndall::HiddenCells(image);
+  for (std::size_t i = 0; i < hidden.size() * components; ++i)
+  {
+    values[i] = hidden[i / components] ? std::numeric_limits<float>::quiet_NaN() : values[i];
+  }
+  return values;
 }
 
 /// The reference of an image; nothing where there is no image.
@@ -148,8 +163,8 @@ std::optional<tyndall::ReferenceLight> ReadReference(vtkImageData* image)
   tyndall::ReferenceLight reference;
   reference.grid = tyndall::GridOf(image);
   reference.channels = (fluence.IsThere() ? fluence : direct).Components();
-  reference.fluence = Copied(fluence, reference.grid.VoxelCount());
-  reference.fluenceDirect = Copied(direct, reference.grid.VoxelCount());
+  reference.fluence = Copied(fluence, image);
+  reference.fluenceDirect = Copied(direct, image);
   auto* const text = vtkArrayDownCast<vtkStringArray>(image->GetFieldData()->GetAbstractArray("reference"));
   reference.text = text && text->GetNumberOfValues() == 1 ? text->GetValue(0) : "the image that is connected";
   return reference;
@@ -284,7 +299,7 @@ int vtkSolverComparison::RequestData(
     Write(comparison, this->GetOutput());
     this->Note(comparison, tyndall::ClockSeconds() - start);
     vtkImageData* const output = vtkImageData::GetData(outputs, REFERENCE_OUTPUT);
-    Write(std::move(comparison.reference), output);
+    Write(std::move(comparison.reference), reference.has_value(), output);
     tyndall::TellExtentAndKeepWhatIsAskedFor(
       tyndall::AskingPort(request, outputs), outputs->GetInformationObject(REFERENCE_OUTPUT), output);
   });

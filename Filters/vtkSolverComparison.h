@@ -1,6 +1,7 @@
 #ifndef vtkSolverComparison_h
 #define vtkSolverComparison_h
 
+#include "PropertyRange.h"
 #include "vtkLitMediumAlgorithm.h"
 #include "vtkTyndallModule.h" // for export macro
 
@@ -46,7 +47,7 @@ struct ComparisonSettings;
  * | `error_relative`  | 1    | root of the mean square of voxels' own relative errors, where the reference is above 0          |
  * | `balance`         | 1    | relative error of the energy balance                                                          |
  * | `iterations`      | 1    | scattering orders or sweeps; 1 for photons                                                    |
- * | `estimated_error` | 1    | of `error_l2`, by the solver itself, without the reference (if EstimateError); NaN where it cannot |
+ * | `estimated_error` | 1    | of `error_l2`, by the solver itself, without the reference (if EstimateError); NaN where it is not known: after one order, which does not tell how fast orders shrink, and of methods that cannot |
  * | `face_power_out`  | W    | 6 components: through -x, +x, -y, +y, -z, +z, channels summed                                  |
  * | `power_in`        | W    | entered and emitted, channels summed                                                          |
  * | `pareto`          | 1    | 1 where no other row of the same quantity is both faster and better                           |
@@ -147,20 +148,20 @@ public:
 
   ///@{
   /// Relative error of fluence at which propagation stops. Default 1e-4, valid above 0.
-  vtkSetMacro(Tolerance, double);
+  tyndallSetRangeMacro(Tolerance, double, tyndall::AboveZero, tyndall::AnyHigh);
   vtkGetMacro(Tolerance, double);
   ///@}
 
   ///@{
   /// Runs whose median is the time, after one that does not count; fewer where TimeBudget does not allow them. Default 3, valid [1, 100].
-  vtkSetClampMacro(Repeats, int, 1, 100);
+  tyndallSetRangeMacro(Repeats, int, 1, 100);
   vtkGetMacro(Repeats, int);
   ///@}
 
   ///@{
   /// Seconds that all may take: half of it for a converged run, the rest shared by the methods. Runs that do not fit are not
   /// begun, or stopped; field data `left_out` names them. Default 300, valid above 0.
-  vtkSetMacro(TimeBudget, double);
+  tyndallSetRangeMacro(TimeBudget, double, tyndall::AboveZero, tyndall::AnyHigh);
   vtkGetMacro(TimeBudget, double);
   ///@}
 
@@ -186,14 +187,14 @@ public:
 
   ///@{
   /// Diffuse radiance that enters through the faces -x, +x, -y, +y, -z, +z, W/(length^2 sr). Default 0, valid [0, infinity).
-  vtkSetVector6Macro(FaceRadiance, double);
+  tyndallSetRange6Macro(FaceRadiance, double, 0.0, tyndall::LargestFloat);
   vtkGetVector6Macro(FaceRadiance, double);
   ///@}
 
   ///@{
   /// Radiance from every direction alike, red, green, blue, added to the environment, W/(length^2 sr). Default 0, valid
   /// [0, infinity).
-  vtkSetVector3Macro(SkyColor, double);
+  tyndallSetRange3Macro(SkyColor, double, 0.0, tyndall::LargestFloat);
   vtkGetVector3Macro(SkyColor, double);
   ///@}
 

@@ -1,6 +1,7 @@
 #ifndef vtkVDBReader_h
 #define vtkVDBReader_h
 
+#include "PropertyRange.h"
 #include "vtkImageAlgorithm.h"
 #include "vtkNew.h"           // for members
 #include "vtkTyndallModule.h" // for export macro
@@ -79,7 +80,7 @@ public:
   /// Most memory that the image and the tree it is read from may take, MiB. Default 0: half of the machine's memory, 90%
   /// of what is available, and, unless vtkVDBWriter noted that the file was an image of that size, 1 GiB or 1000 times the
   /// file's length, whichever is more: one changed bit of a small file can put a voxel thousands of voxels away.
-  vtkSetClampMacro(MaximumMemory, vtkIdType, 0, VTK_ID_MAX >> 20);
+  tyndallSetRangeMacro(MaximumMemory, vtkIdType, 0, VTK_ID_MAX >> 20);
   vtkGetMacro(MaximumMemory, vtkIdType);
   ///@}
 

@@ -214,6 +214,7 @@ void vtkVDBWriter::WriteData()
   {
     this->SetErrorCode(vtkErrorCode::NoFileNameError);
     tyndall::OnAllRanks(this->Controller, [this] {
+      tyndall::CheckProperties(this);
       if (this->FileName == nullptr || this->FileName[0] == '\0')
       {
         throw InvalidInput("No file: set FileName.");

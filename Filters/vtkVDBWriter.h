@@ -1,6 +1,7 @@
 #ifndef vtkVDBWriter_h
 #define vtkVDBWriter_h
 
+#include "PropertyRange.h"
 #include "vtkTyndallModule.h" // for export macro
 #include "vtkWriter.h"
 
@@ -73,21 +74,21 @@ public:
   ///@{
   /// How blocks of values are compressed, without loss. Default BLOSC; where OpenVDB was built without it, ZIP. OpenVDB
   /// does not apply ZIP to fog volumes and level sets.
-  vtkSetClampMacro(Compression, int, NONE, BLOSC);
+  tyndallSetRangeMacro(Compression, int, NONE, BLOSC);
   vtkGetMacro(Compression, int);
   ///@}
 
   ///@{
   /// Value of voxels that take no room, in the unit of the array; every component of a vector. Default 0. Field data
   /// `vdb:<array>:background` come first.
-  vtkSetMacro(Background, double);
+  tyndallSetRangeMacro(Background, double, tyndall::AnyLow, tyndall::AnyHigh);
   vtkGetMacro(Background, double);
   ///@}
 
   ///@{
   /// Values this near to the background become background, and blocks of 8^3 voxels that are this near to their first one
   /// become one value; in the unit of the array. Default 0: nothing is changed. Valid [0, infinity).
-  vtkSetClampMacro(Tolerance, double, 0.0, VTK_DOUBLE_MAX);
+  tyndallSetRangeMacro(Tolerance, double, 0.0, tyndall::AnyHigh);
   vtkGetMacro(Tolerance, double);
   ///@}
 

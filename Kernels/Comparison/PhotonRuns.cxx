@@ -41,8 +41,13 @@ double RootOfSquares(const std::vector<float>& values)
   return std::sqrt(sum);
 }
 
+/// @param photons  of a light that none of them brought into the volume are all there is: dark, with nothing to rebuild
 LightField Rebuilt(Device& device, const Grid& grid, PhotonLight&& photons, const Monitor& monitor)
 {
+  if (photons.batches < 2)
+  {
+    return std::move(photons.light);
+  }
   NoisyLight noisy;
   noisy.grid = grid;
   noisy.channels = photons.light.channels;

@@ -99,10 +99,11 @@ std::string WhyNot(ComparedMethod method, const ComparedScene& scene, const Comp
   const bool periodic = scene.periodic[0] || scene.periodic[1] || scene.periodic[2];
   if (IsDirectOnly(method))
   {
-    return scene.Emits()        ? "photons are made of lights, and this medium emits"
-      : periodic                ? "photons do not return on the other side of periodic axes"
-      : !comparator.Has(method) ? "the reference has no 'fluence_direct'"
-                                : "";
+    return !Shines(scene.illumination) ? "photons are made of lights, and nothing shines on this medium"
+      : scene.Emits()                  ? "photons are made of lights, and this medium emits"
+      : periodic                       ? "photons do not return on the other side of periodic axes"
+      : !comparator.Has(method)        ? "the reference has no 'fluence_direct'"
+                                       : "";
   }
   return scene.BendsLight()   ? "it does not bend light, and the index of this medium varies"
     : !comparator.Has(method) ? "the reference has no 'fluence'"

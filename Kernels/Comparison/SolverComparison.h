@@ -49,7 +49,7 @@ struct ComparisonRow
     Unknown;                ///< root of the mean square of voxels' own relative errors, where the reference is above 0
   double balance = Unknown; ///< relative error of the energy balance
   int iterations = 0;       ///< sweeps or orders; 1 for photons
-  double estimatedError = Unknown;         ///< of errorL2 by the solver itself
+  double estimatedError = Unknown; ///< of errorL2 by the solver itself; not known after one order (ErrorEstimate.h)
   std::array<double, 6> facePowerOut = {}; ///< W, all channels, through -x, +x, -y, +y, -z, +z
   double powerIn = 0.0;                    ///< W, entered and emitted, all channels
   bool pareto = false;                     ///< no other row of the same quantity is faster and better

@@ -5,6 +5,7 @@
 #include <algorithm>
 #include <array>
 #include <cmath>
+#include <limits>
 #include <vector>
 
 namespace tyndall
@@ -92,6 +93,12 @@ void Smooth(std::vector<double>& values, const Grid& grid, int channels)
   }
 }
 
+/// Whether the solve was stopped after its first order, which does not tell how much light is still to come.
+bool IsStoppedTooSoonToTell(const LightField& light)
+{
+  return light.convergence.size() == 1 && light.convergence.front().residual > 0.0;
+}
+
 /// Fills in fluenceError and relativeError.
 /// @param variance  of the coarse voxels' fluence
 void WriteError(LightField& light, const std::vector<double>& variance, const Coarsening& coarsening)
@@ -120,6 +127,11 @@ LightField SolveWithErrorEstimate(
     return monitor ? Monitor([=](double done) { return monitor(begin + done * (end - begin)); }) : Monitor();
   };
   LightField light = solve(medium, settings, part(0.0, FinePart));
+  if (IsStoppedTooSoonToTell(light))
+  {
+    light.relativeError = std::numeric_limits<double>::quiet_NaN();
+    return light;
+  }
 
   const Coarsening coarsening(medium.grid);
   const CoarseMedium coarse(medium, coarsening);

@@ -23,6 +23,9 @@ using PropagationSolver = std::function<LightField(const Medium&, const Propagat
 /// two, and relativeError is 0.65 to 2.2 times the true one. It is too large where the medium has edges as sharp as a voxel
 /// (coarsening blurs them), too small next to a lamp.
 ///
+/// Not known of a solve that was stopped after its first order while light was left: one order does not tell how fast orders shrink.
+/// relativeError is NaN then, and fluenceError empty.
+///
 /// Takes 1 / 8 + 1 / 20 of the sweeps' time, more where the grid is small. An axis of a single voxel is not coarsened, and its error in
 /// voxel size not seen.
 LightField SolveWithErrorEstimate(

@@ -518,6 +518,8 @@ void FusedSolver::EstimateResidual(int order)
     this->Ratio[c] = ratio;
     this->LastScattered[c] = now;
   }
+  this->Residual =
+    order == 0 ? std::min(this->Residual, 1.0) : this->Residual; // one order says nothing of those to come
 }
 
 bool FusedSolver::Done(int orders) const

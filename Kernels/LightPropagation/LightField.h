@@ -27,7 +27,8 @@ struct ConvergenceRow
 {
   int iteration = 0;
   double seconds = 0.0; ///< since the start
-  /// Estimate of the relative error that stopping here leaves: scattered light still to come over all of it.
+  /// Estimate of the relative error that stopping here leaves: scattered light still to come over all of it. 1 after the first row
+  /// where more is to come: it is not known then, for one order does not tell how fast they shrink.
   double residual = 0.0;
   double change = 0.0;   ///< of the light by this row, relative: says little where light is scattered very often
   double absorbed = 0.0; ///< W so far, channels summed
@@ -46,7 +47,8 @@ struct LightField
   std::vector<float> netFlux;           ///< W / length^2, 3 * channels a voxel: (x, y, z) of channel 0, 1, 2
   std::vector<float> scatteredRadiance; ///< W / (length^2 sr), channels * storedDirections a voxel
   std::vector<std::array<double, 3>> storedDirections; ///< of scatteredRadiance; one (0, 0, 0) where isotropic
-  double relativeError = 0.0; ///< of fluence, estimated, root mean square over that of fluence; 0 where not asked for
+  double relativeError =
+    0.0; ///< of fluence, estimated, root mean square over that of fluence; 0 where not asked for, NaN: not known
   EnergyBalance balance;
   std::array<Rgb, 6> facePowerOut = {}; ///< W, through -x, +x, -y, +y, -z, +z
   double halfRangeFlux = 0.0; ///< of the directions that light from outside came along (Directions.h); 0: there are none

@@ -13,6 +13,7 @@ namespace
 {
 constexpr double Pi = 3.14159265358979323846;
 constexpr int UsualExponent = 40; ///< powers up to 2^40 W, and down to 2^-40 W, are solved as they are
+constexpr int UsualLengthExponent = 20; ///< the same of spacings
 
 double Largest(const Rgb& values)
 {
@@ -125,6 +126,46 @@ SceneInUnits::SceneInUnits(const Medium& inWatts, const Illumination& shining, d
   for (float& pixel : this->illumination.environment.radiance)
   {
     pixel = static_cast<float>(pixel / unit);
+  }
+}
+
+double LengthUnitOf(const Grid& grid)
+{
+  const int exponent = std::ilogb(*std::max_element(grid.spacing.begin(), grid.spacing.end()));
+  return std::abs(exponent) <= UsualLengthExponent ? 1.0 : std::exp2(exponent);
+}
+
+SceneInLengths::SceneInLengths(const Medium& inLengths, const Illumination& shining, double unit)
+  : medium(inLengths)
+  , illumination(shining)
+{
+  Grid& grid = this->medium.grid;
+  for (int axis = 0; axis < 3; ++axis)
+  {
+    grid.spacing[axis] /= unit;
+    grid.origin[axis] /= unit;
+  }
+  const auto scale = [&](Field& field, std::vector<float>& values) {
+    if (field.values)
+    {
+      values.resize(grid.VoxelCount() * static_cast<std::size_t>(field.components));
+      std::transform(field.values, field.values + values.size(), values.begin(),
+        [=](float perLength) { return static_cast<float>(perLength * unit); });
+      field.values = values.data();
+    }
+  };
+  scale(this->medium.sigma_a, this->sigma_a);
+  scale(this->medium.sigma_s, this->sigma_s);
+  scale(this->medium.emission, this->emission);
+  Check(this->medium); // they may be beyond floats now
+  for (Light& light : this->illumination.lights)
+  {
+    std::for_each(light.position.begin(), light.position.end(), [=](double& length) { length /= unit; });
+    std::for_each(light.size.begin(), light.size.end(), [=](double& length) { length /= unit; });
+    if (light.type != LightType::Directional) // whose power is that of an area already
+    {
+      Divide(light.power, unit * unit);
+    }
   }
 }
 

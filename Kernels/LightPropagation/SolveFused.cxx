@@ -30,6 +30,20 @@ LightField SolveInOwnUnit(Device& device, const Medium& medium, const Illuminati
   ToWatts(light, unit);
   return light;
 }
+
+LightField SolveInOwnLengths(Device& device, const Medium& medium, const Illumination& illumination,
+  const PropagationSettings& settings, const Monitor& monitor)
+{
+  const double unit = LengthUnitOf(medium.grid);
+  if (unit == 1.0)
+  {
+    return SolveInOwnUnit(device, medium, illumination, settings, monitor);
+  }
+  const SceneInLengths scene(medium, illumination, unit);
+  LightField light = SolveInOwnUnit(device, scene.medium, scene.illumination, settings, monitor);
+  MultiplyPowers(light, unit * unit);
+  return light;
+}
 }
 
 LightField SolveFused(Device& device, const Medium& medium, const Illumination& illumination,
@@ -43,7 +57,7 @@ LightField SolveFused(Device& device, const Medium& medium, const Illumination& 
   wide.grid = unvarying.Widened(medium.grid);
   PropagationSettings adapted = settings;
   adapted.directionsPerFace = DirectionsPerFaceFor(settings, unvarying);
-  LightField light = SolveInOwnUnit(device, wide, illumination, adapted, monitor);
+  LightField light = SolveInOwnLengths(device, wide, illumination, adapted, monitor);
   light.directionsPerFace = adapted.directionsPerFace;
   if (adapted.directionsPerFace != settings.directionsPerFace)
   {

@@ -4,6 +4,8 @@
 
 #include <algorithm>
 #include <cmath>
+#include <cstdio>
+#include <limits>
 #include <string>
 
 namespace tyndall
@@ -119,9 +121,18 @@ Environment Turned(const Environment& environment, int up, double degrees)
 
 namespace
 {
+/// Light is worked with as floats.
 bool Usable(double value)
 {
-  return value >= 0.0 && std::isfinite(value);
+  return value >= 0.0 && value <= std::numeric_limits<float>::max();
+}
+
+/// "1e+39; it must be ..."
+std::string Refusal(double value)
+{
+  char text[32];
+  std::snprintf(text, sizeof(text), "%.6g", value);
+  return std::string(text) + "; it must be finite and not negative, at most 3.40282e+38, as floats are.";
 }
 
 void CheckLight(const Light& light, std::size_t number)
@@ -135,8 +146,7 @@ void CheckLight(const Light& light, std::size_t number)
     }
     if (!Usable(light.power[axis]))
     {
-      throw InvalidInput(
-        name + " has power " + std::to_string(light.power[axis]) + "; it must be finite and not negative.");
+      throw InvalidInput(name + " has power " + Refusal(light.power[axis]));
     }
   }
   if (light.type != LightType::Point && std::hypot(light.direction[0], light.direction[1], light.direction[2]) == 0.0)
@@ -156,6 +166,17 @@ void CheckLight(const Light& light, std::size_t number)
 }
 }
 
+bool Shines(const Illumination& illumination)
+{
+  const std::vector<float>& pixels = illumination.environment.radiance;
+  return Sum(illumination.sky) > 0.0 ||
+    std::any_of(illumination.lights.begin(), illumination.lights.end(),
+      [](const Light& light) { return Sum(light.power) > 0.0; }) ||
+    std::any_of(
+      illumination.faces.begin(), illumination.faces.end(), [](const Rgb& face) { return Sum(face) > 0.0; }) ||
+    std::any_of(pixels.begin(), pixels.end(), [](float pixel) { return pixel > 0.0f; });
+}
+
 void Check(const Illumination& illumination)
 {
   for (std::size_t i = 0; i < illumination.lights.size(); ++i)
@@ -169,13 +190,12 @@ void Check(const Illumination& illumination)
       if (!Usable(illumination.faces[face][c]))
       {
         throw InvalidInput("FaceRadiance of face " + std::to_string(face) + " (-x, +x, -y, +y, -z, +z) is " +
-          std::to_string(illumination.faces[face][c]) + "; it must be finite and not negative.");
+          Refusal(illumination.faces[face][c]));
       }
     }
     if (!Usable(illumination.sky[c]))
     {
-      throw InvalidInput(
-        "The sky's radiance is " + std::to_string(illumination.sky[c]) + "; it must be finite and not negative.");
+      throw InvalidInput("The sky's radiance (SkyColor) is " + Refusal(illumination.sky[c]));
     }
   }
   const Environment& environment = illumination.environment;

@@ -66,7 +66,10 @@ Rgb Lookup(const Environment& environment, const std::array<double, 3>& directio
 /// nothing is lost; other axes are resampled.
 Environment Turned(const Environment& environment, int up, double degrees);
 
-/// @throws InvalidInput where a light has a zero direction, a negative or infinite power, no size; an environment has a
-///   negative or infinite pixel (names the first)
+/// Whether anything of it shines: has a power or a radiance above 0.
+bool Shines(const Illumination& illumination);
+
+/// @throws InvalidInput where a light has a zero direction, a power that is negative or beyond float, no size; an environment has a
+///   negative or infinite pixel (names the first); a sky or a face a radiance that is negative or beyond float
 void Check(const Illumination& illumination);
 }

@@ -19,6 +19,8 @@ std::string VoxelName(const Grid& grid, std::size_t voxel)
 namespace
 {
 constexpr double LargestExtinction = 1e37; ///< 1/length; the inverse of more is not a normal float
+constexpr double LongestSpacing = 1e30;    ///< and the shortest is its inverse: products of several areas stay doubles
+constexpr double MostUnequal = 1e9;        ///< longest spacing over shortest
 
 std::string Scientific(double value)
 {
@@ -75,21 +77,33 @@ void CheckExtinction(const Medium& medium)
 }
 }
 
-void Check(const Medium& medium)
+void Check(const Grid& grid)
 {
   for (int axis = 0; axis < 3; ++axis)
   {
-    const double spacing = medium.grid.spacing[axis];
-    if (medium.grid.size[axis] < 1)
+    const double spacing = grid.spacing[axis];
+    if (grid.size[axis] < 1)
     {
       throw InvalidInput("The grid has no voxels along " + std::string(1, "xyz"[axis]) + "; it needs at least one.");
     }
-    if (!(spacing > 0.0) || std::isinf(spacing))
+    if (!(spacing >= 1.0 / LongestSpacing && spacing <= LongestSpacing))
     {
-      throw InvalidInput("The grid's spacing along " + std::string(1, "xyz"[axis]) + " is " + std::to_string(spacing) +
-        "; it must be a positive number.");
+      throw InvalidInput("The grid's spacing along " + std::string(1, "xyz"[axis]) + " is " + Scientific(spacing) +
+        "; it must be from 1e-30 to 1e30. Use another unit of length.");
     }
   }
+  const auto [shortest, longest] = std::minmax_element(grid.spacing.begin(), grid.spacing.end());
+  if (*longest > MostUnequal * *shortest)
+  {
+    throw InvalidInput("The grid's spacing is " + Scientific(grid.spacing[0]) + ", " + Scientific(grid.spacing[1]) +
+      ", " + Scientific(grid.spacing[2]) + ": one is more than " + Scientific(MostUnequal) +
+      " times another, which floats cannot follow rays through. Resample to voxels of more equal edges.");
+  }
+}
+
+void Check(const Medium& medium)
+{
+  Check(medium.grid);
   if (!(std::abs(medium.g) < 1.0))
   {
     throw InvalidInput("The mean cosine g is " + std::to_string(medium.g) + "; it must lie between -1 and 1.");

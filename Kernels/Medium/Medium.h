@@ -40,7 +40,11 @@ struct Medium
 /// "(i, j, k)" of the voxel that is `voxel`th in an array.
 std::string VoxelName(const Grid& grid, std::size_t voxel);
 
-/// @throws InvalidInput where the grid is empty or has a spacing that is not a positive number, where a coefficient is
+/// @throws InvalidInput where the grid is empty, has a spacing that is not from 1e-30 to 1e30, or one that is more than 1e9 times
+///   another
+void Check(const Grid& grid);
+
+/// @throws InvalidInput where the grid is not as above, where a coefficient is
 ///   negative or not finite, or sigma_a and sigma_s add up to more than 1e37 (names the first such voxel), or where g is outside
 ///   (-1, 1)
 void Check(const Medium& medium);

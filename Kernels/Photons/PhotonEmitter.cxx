@@ -5,9 +5,12 @@
 #include "../Device/Clock.h"
 #include "../Device/Errors.h"
 #include "../Device/HostMemory.h"
+#include "../Medium/Medium.h"
 
 #include <algorithm>
 #include <cmath>
+#include <cstdio>
+#include <limits>
 #include <string>
 
 namespace tyndall
@@ -121,6 +124,36 @@ std::optional<Photon> PhotonOf(const Grid& grid, const std::optional<Shot>& shot
   return photon;
 }
 
+/// Photons are floats: their power must be one that is not 0, nor endless, nor so small that digits are lost.
+void CheckPowers(const EmittedPhotons& emitted)
+{
+  float largest = 0.0f;
+  std::size_t brightest = 0;
+  for (std::size_t i = 0; i < emitted.photons.size(); ++i)
+  {
+    const std::array<float, 3>& power = emitted.photons[i].power;
+    const float most = std::max({ power[0], power[1], power[2] });
+    if (most > largest)
+    {
+      largest = most;
+      brightest = i;
+    }
+  }
+  const bool tooLarge = std::isinf(largest);
+  if (emitted.photons.empty() || (!tooLarge && largest >= std::numeric_limits<float>::min()))
+  {
+    return;
+  }
+  const int light = emitted.lights[brightest];
+  const std::string name = light >= 0 ? "light " + std::to_string(light)
+    : light == EnvironmentLight       ? "the environment or sky"
+                                      : "the faces";
+  throw InvalidInput("A photon of " + name + " would carry " +
+    (tooLarge ? "more power than 3.4e+38 W" : "less power than 1.2e-38 W") +
+    ", beyond what a float holds. Give lights " + (tooLarge ? "less power, ask for more photons" : "more power") +
+    ", or choose another unit of length: power goes with the area of the volume.");
+}
+
 void Check(const EmissionSettings& settings)
 {
   if (settings.photonCount == 0)
@@ -184,6 +217,7 @@ EmittedPhotons EmitPhotons(
   const Grid& grid, const Illumination& illumination, const EmissionSettings& settings, const Monitor& monitor)
 {
   const double start = ClockSeconds();
+  tyndall::Check(grid);
   tyndall::Check(illumination);
   Check(settings);
   const std::vector<SpreadSource> lights = SpreadSources(PhotonSourcesOf(grid, illumination), settings);
@@ -206,6 +240,7 @@ EmittedPhotons EmitPhotons(
         settings.seed == 0 ? 0 : settings.seed + s, settings, monitor, emitted);
     }
   }
+  CheckPowers(emitted);
   emitted.seconds = ClockSeconds() - start;
   return emitted;
 }

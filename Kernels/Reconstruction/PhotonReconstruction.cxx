@@ -82,8 +82,8 @@ void CheckPresence(const NoisyLight& light, Estimator estimator)
     RequireArray(light.batchFluence, estimator, "fluence_batches", advice);
     if (light.batches < 2 || light.batches > 16)
     {
-      throw InvalidInput("The photons are one set of " + std::to_string(light.batches) +
-        " batches; the sound estimator compares 2 to 16 of them. " + advice);
+      throw InvalidInput("The photons are of " + std::to_string(light.batches) +
+        (light.batches == 1 ? " batch" : " batches") + "; the sound estimator compares 2 to 16 of them. " + advice);
     }
     return;
   }

@@ -18,6 +18,16 @@ namespace
 {
 constexpr std::size_t WorkGroup = 256;
 constexpr double ShortestEdge = 1e-18; ///< of a voxel, length
+constexpr double LeastIndex = 1e-6;    ///< as CheckIndex wants it
+constexpr double LargestIndex = 1e6;
+constexpr double LargestExtinction = 1e37; ///< as Check of a medium wants it
+
+std::string Scientific(double value)
+{
+  char text[32];
+  std::snprintf(text, sizeof(text), "%.6g", value);
+  return text;
+}
 
 void Demand(bool holds, const std::string& what)
 {
@@ -30,14 +40,18 @@ void Demand(bool holds, const std::string& what)
 
 void Check(const Material& material, const std::string& name)
 {
-  Demand(material.n > 0.0 && std::isfinite(material.n),
-    name + " has the refractive index " + std::to_string(material.n) + "; it must be finite and above 0.");
+  Demand(material.n >= LeastIndex && material.n <= LargestIndex,
+    name + " has the refractive index " + Scientific(material.n) +
+      "; it must be finite and above 0, from 1e-6 to 1e6.");
   for (int c = 0; c < 3; ++c)
   {
     const double least = std::min(material.sigma_a[c], material.sigma_s[c]);
     const double sum = material.sigma_a[c] + material.sigma_s[c];
-    Demand(least >= 0.0 && std::isfinite(sum),
-      name + " has an absorption or scattering coefficient that is negative or not finite.");
+    Demand(least >= 0.0 && sum <= LargestExtinction,
+      name +
+        " has an absorption or scattering coefficient that is negative or not finite, or both add up to more than "
+        "1e37: " +
+        Scientific(material.sigma_a[c]) + " and " + Scientific(material.sigma_s[c]) + ".");
   }
   Demand(std::abs(material.g) < 1.0,
     name + " has the mean cosine " + std::to_string(material.g) + "; it must lie between -1 and 1.");
@@ -66,10 +80,8 @@ void CheckSpacing(const Grid& grid)
   for (int axis = 0; axis < 3; ++axis)
   {
     const double edge = grid.spacing[axis];
-    char text[32];
-    std::snprintf(text, sizeof(text), "%.3g", edge);
     Demand(edge >= ShortestEdge && edge <= 1.0 / ShortestEdge,
-      "The voxels' edge along " + std::string(1, "xyz"[axis]) + " is " + text +
+      "The voxels' edge along " + std::string(1, "xyz"[axis]) + " is " + Scientific(edge) +
         "; it must be from 1e-18 to 1e18, or fluence (W/length^2) is beyond single precision. Scale the mesh, "
         "and the box with it: use another unit of length.");
   }

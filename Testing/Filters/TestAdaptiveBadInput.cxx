@@ -80,19 +80,21 @@ void SettingsThatMeanNothingAreRefused(test::Claims& claims)
     claims.That(ofEmitter.None() && test::AreEmpty({ scene.importance, scene.emitter }), "no photons after: " + part);
   };
   scene.importance->SetBackground(0.0);
-  refused("background is 0");
+  refused("Background is 0; it must be above 0 and at most 1");
   scene.importance->SetBackground(1.5);
-  refused("background is 1.5");
+  refused("Background is 1.5");
   scene.importance->SetBackground(0.4);
   scene.importance->SetPilotDimensions(16, 0, 16);
-  refused("0 cells along axis 1");
+  refused("PilotDimensions is (16, 0, 16); each number must be at least 1");
   scene.importance->SetPilotDimensions(16, 16, 16);
   scene.importance->SetThresholds(vtkPhotonImportance::OWN);
   scene.importance->SetGradientThreshold(-1.0);
-  refused("must not be negative");
+  refused("GradientThreshold is -1; it must be finite and at least 0");
   scene.importance->SetThresholds(vtkPhotonImportance::AUTOMATIC);
+  refused("GradientThreshold is -1"); // whether it is needed or not
+  scene.importance->SetGradientThreshold(0.0);
   scene.importance->SetSkyColor(-1.0, 0.0, 0.0);
-  refused("finite and not negative");
+  refused("SkyColor is (-1, 0, 0)");
   scene.importance->SetSkyColor(0.0, 0.0, 0.0);
   scene.emitter->Update();
   claims.That(errors.None() && scene.Photons()->GetNumberOfPoints() == 20000, "and works again");

@@ -250,13 +250,13 @@ void BadSettings(Refusals& refusals)
   refusals.Says("StoredDirections");
   refusals->SetStoredDirections(1);
   refusals->SetSkyColor(1.0, -1.0, 1.0);
-  refusals.Says("sky");
+  refusals.Says("SkyColor is (1, -1, 1)");
   refusals->SetSkyColor(1.0, 1.0, 1.0);
   refusals->SetFaceRadiance(0.0, 0.0, NotANumber, 0.0, 0.0, 0.0);
-  refusals.Says("FaceRadiance of face 2");
+  refusals.Says("FaceRadiance is (0, 0, nan, 0, 0, 0)");
   refusals->SetFaceRadiance(0.0, 0.0, 0.0, 0.0, 0.0, 0.0);
   refusals->SetEnvironmentAzimuth(Infinite);
-  refusals.Says("finite angle");
+  refusals.Says("EnvironmentAzimuth is inf; it must be finite");
   refusals->SetEnvironmentAzimuth(0.0);
   refusals->SetDevice("abacus");
   refusals.Says("abacus");

@@ -95,7 +95,7 @@ void BadLightsAreErrors(test::Claims& claims)
   rig->AddPointLight(0, 0, 0, 1, -1, 1);
   refused("power", "a light that takes power is refused");
   rig->SetSunPower(std::numeric_limits<double>::infinity(), 1, 1);
-  refused("Light 0 has power", "an infinite sun is refused");
+  refused("SunPower is (inf, 1, 1)", "an infinite sun is refused");
   rig->AddSpotLight(0, 0, 0, 0, 0, 1, 1, 1, 1, 0);
   refused("angle", "a closed spot is refused");
   rig->AddRectangleLight(0, 0, 0, 0, 0, 1, 1, 1, 1, 0, 1);

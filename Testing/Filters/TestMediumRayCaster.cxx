@@ -250,13 +250,13 @@ void BadInputIsAnError(test::Claims& claims)
   refused("no array 'foo'", [](vtkMediumRayCaster* caster, vtkImageData*) {
     caster->SetInputArrayToProcess(5, 0, 0, vtkDataObject::FIELD_ASSOCIATION_CELLS, "foo");
   });
-  refused("step size", [](vtkMediumRayCaster* caster, vtkImageData*) { caster->SetStepSize(0.0); });
+  refused("StepSize is 0", [](vtkMediumRayCaster* caster, vtkImageData*) { caster->SetStepSize(0.0); });
   refused("view up", [](vtkMediumRayCaster* caster, vtkImageData*) {
     caster->SetCameraPosition(0, 0, 5);
     caster->SetCameraViewUp(0, 0, 1);
   });
   refused("view angle", [](vtkMediumRayCaster* caster, vtkImageData*) { caster->SetCameraViewAngle(180.0); });
-  refused("0 by 9", [](vtkMediumRayCaster* caster, vtkImageData*) { caster->SetImageSize(0, 9); });
+  refused("ImageSize is (0, 9)", [](vtkMediumRayCaster* caster, vtkImageData*) { caster->SetImageSize(0, 9); });
   refused("no such device", [](vtkMediumRayCaster* caster, vtkImageData*) { caster->SetDevice("no such device"); });
 }
 

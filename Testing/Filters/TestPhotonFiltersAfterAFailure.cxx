@@ -125,7 +125,7 @@ void PhotonsThatFailedAreNoErrorOfTheMarcher(test::Claims& claims)
   Chain chain;
   chain.emitter->SetSkyColor(-1.0, 0.0, 0.0);
   chain.caster->Update();
-  claims.That(chain.ErrorsOf(chain.emitter).WasOneWith("not negative"), "a negative sky is refused once");
+  claims.That(chain.ErrorsOf(chain.emitter).WasOneWith("SkyColor is (-1, 0, 0)"), "a negative sky is refused once");
   claims.That(chain.NoErrors(), "the marcher says nothing of photons that failed");
   claims.That(chain.AreEmpty({ chain.emitter, chain.marcher, chain.caster }, "failed"), "and is empty");
 }
@@ -146,7 +146,7 @@ void AMapThatFailedIsNoErrorOfTheEmitter(test::Claims& claims)
   Chain chain;
   chain.importance->SetBackground(-1.0);
   chain.caster->Update();
-  claims.That(chain.ErrorsOf(chain.importance).WasOneWith("background"), "a negative background is refused once");
+  claims.That(chain.ErrorsOf(chain.importance).WasOneWith("Background is -1"), "a negative background is refused once");
   claims.That(chain.NoErrors(), "later filters say nothing of a map that failed");
   claims.That(
     chain.AreEmpty({ chain.importance, chain.emitter, chain.marcher, chain.reconstruction, chain.caster }, "failed"),

@@ -225,7 +225,7 @@ void NoPilotPhotonsAreAnError(test::Claims& claims)
     scene.importance->SetPilotCount(count);
     test::Errors errors(scene.importance);
     scene.importance->Update();
-    claims.That(errors.WasOneWith("pilot photons is 0"), "one error that says that there are no pilot photons");
+    claims.That(errors.WasOneWith("PilotCount is "), "one error that says that there are no pilot photons");
     claims.That(scene.Map()->GetNumberOfCells() == 0, "no map");
   }
 }

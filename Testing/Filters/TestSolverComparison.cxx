@@ -240,6 +240,36 @@ void BadInput(test::Claims& claims)
     errors.None() && comparison->GetOutput()->GetNumberOfRows() == 1, "good input after all the bad is compared");
 }
 
+/// What is not known, or not there, is said so.
+void UnknownIsSaid(test::Claims& claims)
+{
+  vtkNew<vtkSolverComparison> comparison;
+  test::Errors errors(comparison);
+  AskForOne(comparison);
+  comparison->SetInputDataObject(Cloud(8));
+  const auto reference = Cloud(8);
+  test::AddCells(reference, "fluence", 1.0);
+  test::AddCells(reference, "fluence_direct", 1.0);
+  comparison->SetReferenceData(reference);
+  comparison->SetSkyColor(1.0, 1.0, 1.0);
+  comparison->AddOrders(1);
+  comparison->Update();
+  vtkTable* const table = comparison->GetOutput();
+  if (claims.That(errors.None() && table->GetNumberOfRows() == 2, "all orders, and one"))
+  {
+    claims.That(Number(table, 0, "estimated_error") < 1.0, "the error of all orders is estimated");
+    claims.That(std::isnan(Number(table, 1, "estimated_error")),
+      "that of one order is not known: " + std::to_string(Number(table, 1, "estimated_error")));
+  }
+
+  comparison->SetSkyColor(0.0, 0.0, 0.0);
+  comparison->PhotonsOn();
+  comparison->Update();
+  claims.That(errors.None() &&
+      std::string(comparison->GetLeftOut()).find("photons are made of lights, and nothing shines") != std::string::npos,
+    std::string("photons without light: ") + comparison->GetLeftOut());
+}
+
 /// Asks to stop at a report of progress.
 struct Stopper : vtkCommand
 {
@@ -297,6 +327,7 @@ int TestSolverComparison(int, char*[])
   GridsAreMatched(claims);
   PhotonsAreComparedWithDirectLight(claims);
   BadInput(claims);
+  UnknownIsSaid(claims);
   ReportsAndStops(claims);
   return claims.Result();
 }

@@ -186,6 +186,22 @@ TEST_F(ErrorEstimate, OfEachColourIsThatOfItsLightAlone)
   }
 }
 
+TEST_F(ErrorEstimate, IsNotKnownAfterOneOrder)
+{
+  Scene scene = Cube(0.9, [](double, double, double) { return 5.0; });
+  scene.ShineFromEverywhere(1.0);
+  scene.settings.maximumOrders = 1;
+  const LightField one = Estimate(this->GetDevice(), scene);
+  EXPECT_TRUE(std::isnan(one.relativeError)) << one.relativeError;
+  EXPECT_TRUE(one.fluenceError.empty());
+  ASSERT_EQ(one.convergence.size(), 1u);
+  EXPECT_EQ(one.convergence[0].residual, 1.0);
+  scene.settings.maximumOrders = 2;
+  const LightField two = Estimate(this->GetDevice(), scene);
+  EXPECT_GT(two.relativeError, 0.1);
+  EXPECT_LT(two.relativeError, 20.0);
+}
+
 TEST(Coarsening, KeepsTheSumOfOddGrids)
 {
   Grid grid;

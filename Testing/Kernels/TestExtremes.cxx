@@ -2,6 +2,8 @@
 #include "MediumScene.h"
 #include "PhotonScene.h"
 
+#include "Photons/PhotonEmitter.h"
+
 #include <algorithm>
 #include <cmath>
 #include <string>
@@ -63,6 +65,83 @@ TEST_F(Extremes, LightIsInProportionToPowerWhateverThatIs)
     {
       ASSERT_NEAR(light.fluence[i] / power / usual.fluence[i], 1.0, 1e-3) << power;
     }
+  }
+}
+
+TEST_F(Extremes, FluenceDoesNotDependOnTheUnitOfLength)
+{
+  const auto solve = [&](double unit) {
+    Scene scene({ 7, 7, 7 }, static_cast<float>(0.1 / unit), static_cast<float>(0.3 / unit));
+    scene.medium.grid.spacing = { unit, unit, unit };
+    scene.medium.grid.origin = { 2.0 * unit, 0.0, -unit };
+    scene.ShineFromEverywhere(1.0);
+    scene.light.lights = { LampAt({ 5.2 * unit, 2.9 * unit, 3.1 * unit }) };
+    scene.light.lights[0].power = { 100.0 * unit * unit, 0.0, 0.0 };
+    scene.emission.assign(scene.sigma_a.size(), static_cast<float>(0.01 / unit));
+    return scene.Solve(this->GetDevice());
+  };
+  const LightField usual = solve(1.0);
+  for (const double unit : { 1e-17, 1e-12, 1e-6, 1e9, 1e12, 1e17 })
+  {
+    const LightField light = solve(unit);
+    EXPECT_LT(light.balance.RelativeError(light.channels), 1e-5) << unit;
+    EXPECT_NEAR(light.balance.absorbed[0] / unit / unit / usual.balance.absorbed[0], 1.0, 1e-4) << unit;
+    ASSERT_EQ(light.fluence.size(), usual.fluence.size());
+    for (std::size_t i = 0; i < light.fluence.size(); ++i)
+    {
+      ASSERT_NEAR(light.fluence[i] / usual.fluence[i], 1.0, 1e-3) << unit;
+    }
+  }
+}
+
+TEST_F(Extremes, GridsThatFloatsCannotFollowAreRefused)
+{
+  const auto why = [&](std::array<double, 3> spacing) {
+    Scene scene({ 3, 3, 3 });
+    scene.ShineFromEverywhere(1.0);
+    scene.medium.grid.spacing = spacing;
+    return WhyRefused(this->GetDevice(), scene);
+  };
+  EXPECT_NE(
+    why({ 1e-31, 1.0, 1.0 }).find("spacing along x is 1e-31; it must be from 1e-30 to 1e30"), std::string::npos);
+  EXPECT_NE(why({ 1.0, 1.0, 1e160 }).find("spacing along z is 1e+160"), std::string::npos);
+  EXPECT_NE(why({ 1.0, 1e-10, 1.0 }).find("1, 1e-10, 1: one is more than 1e+09 times another"), std::string::npos);
+  EXPECT_EQ(why({ 1e-30, 1e-30, 1e-30 }), "");
+}
+
+TEST_F(Extremes, LightBeyondFloatIsRefusedByName)
+{
+  Scene scene({ 3, 3, 3 });
+  scene.ShineFromEverywhere(1e308);
+  EXPECT_EQ(WhyRefused(this->GetDevice(), scene),
+    "The sky's radiance (SkyColor) is 1e+308; it must be finite and not negative, at most 3.40282e+38, as floats are.");
+  scene.ShineFromEverywhere(0.0);
+  scene.light.faces[3] = { 0.0, 1e39, 0.0 };
+  EXPECT_NE(WhyRefused(this->GetDevice(), scene).find("FaceRadiance of face 3"), std::string::npos);
+  scene.light.faces[3] = {};
+  scene.ShineAlong({ 0.0, 0.0, -1.0 }, 1e39);
+  EXPECT_NE(WhyRefused(this->GetDevice(), scene).find("Light 0 has power 1e+39"), std::string::npos);
+}
+
+TEST_F(Extremes, PhotonsBeyondFloatAreRefused)
+{
+  Grid grid;
+  grid.spacing = { 1e29, 1e29, 1e29 };
+  grid.size = { 1000, 1000, 1000 };
+  Light sun;
+  sun.power = { 3e38, 3e38, 3e38 };
+  Illumination light;
+  light.lights = { sun, sun };
+  EmissionSettings settings;
+  settings.photonCount = 10;
+  try
+  {
+    EmitPhotons(grid, light, settings);
+    FAIL() << "no error";
+  }
+  catch (const InvalidInput& error)
+  {
+    EXPECT_NE(std::string(error.what()).find("beyond what a float holds"), std::string::npos) << error.what();
   }
 }
 

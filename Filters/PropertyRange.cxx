@@ -1,0 +1,104 @@
+#include "PropertyRange.h"
+
+#include "Device/Errors.h"
+
+#include "vtkAlgorithm.h"
+#include "vtkInformation.h"
+#include "vtkInformationStringVectorKey.h"
+
+#include <cstdio>
+#include <string>
+#include <vector>
+
+namespace tyndall
+{
+namespace
+{
+/// One text for each property that is out of its range; it begins with the property's name and a blank.
+vtkInformationStringVectorKey* Refused()
+{
+  static auto* const key = vtkInformationStringVectorKey::MakeKey("REFUSED_PROPERTIES", "Tyndall");
+  return key;
+}
+
+std::string Number(double value)
+{
+  char text[32];
+  std::snprintf(text, sizeof(text), "%.9g", value);
+  return text;
+}
+
+std::string Numbers(const double* values, int count)
+{
+  std::string text;
+  for (int i = 0; i < count; ++i)
+  {
+    text += (i > 0 ? ", " : "") + Number(values[i]);
+  }
+  return count == 1 ? text : "(" + text + ")";
+}
+
+std::string RangeText(double low, double high)
+{
+  const std::string least = low == AnyLow ? "" : low == AboveZero ? "above 0" : "at least " + Number(low);
+  const bool open = high >= AnyHigh || high == VTK_INT_MAX || high == static_cast<double>(VTK_ID_MAX);
+  const std::string most = open ? "" : "at most " + Number(high) + (high == LargestFloat ? ", as floats are" : "");
+  const std::string both = least + (least.empty() || most.empty() ? "" : " and ") + most;
+  return both.empty() ? "finite" : high == AnyHigh ? "finite and " + both : both;
+}
+
+std::vector<std::string> TextsOf(vtkAlgorithm* filter)
+{
+  std::vector<std::string> texts;
+  vtkInformation* const information = filter->GetInformation();
+  for (int i = 0; i < information->Length(Refused()); ++i)
+  {
+    texts.emplace_back(information->Get(Refused(), i));
+  }
+  return texts;
+}
+}
+
+void NoteProperty(vtkAlgorithm* filter, const char* property, const double* values, int count, double low, double high)
+{
+  bool refused = false;
+  for (int i = 0; i < count; ++i)
+  {
+    refused = refused || !(values[i] >= low && values[i] <= high);
+  }
+  const std::vector<std::string> before = TextsOf(filter);
+  if (before.empty() && !refused)
+  {
+    return;
+  }
+  vtkInformation* const information = filter->GetInformation();
+  information->Remove(Refused());
+  const std::string name = std::string(property) + " ";
+  for (const std::string& text : before)
+  {
+    if (text.compare(0, name.size(), name) != 0)
+    {
+      information->Append(Refused(), text.c_str());
+    }
+  }
+  if (refused)
+  {
+    const std::string text = name + "is " + Numbers(values, count) + "; " + (count == 1 ? "it" : "each number") +
+      " must be " + RangeText(low, high) + ".";
+    information->Append(Refused(), text.c_str());
+  }
+}
+
+void CheckProperties(vtkAlgorithm* filter)
+{
+  std::string all;
+  for (const std::string& text : TextsOf(filter))
+  {
+    all += (all.empty() ? "" : " ") + text;
+  }
+  if (!all.empty())
+  {
+    throw InvalidInput(all);
+  }
+}
+}
