@@ -138,8 +138,10 @@ private:
   }
 
   /// Power that shines on the box, by the scene alone.
+  /// Sky and faces by what the directions carry of them.
   double Shining(int c) const
   {
+    const double carried = this->Outcome.halfRangeFlux.empty() ? 1.0 : this->Outcome.halfRangeFlux[0];
     const Vector& h = this->Scene.spacing;
     double area[3], power = 0.0;
     for (int axis = 0; axis < 3; ++axis)
@@ -148,7 +150,7 @@ private:
       area[axis] = this->Scene.cells[a] * h[a] * this->Scene.cells[b] * h[b];
       power += this->Scene.periodic[axis]
         ? 0.0
-        : Pi * area[axis] * (2.0 * this->Scene.sky[c] + this->Scene.faces[2 * axis] + this->Scene.faces[2 * axis + 1]);
+        : carried * Pi * area[axis] * (2.0 * this->Scene.sky[c] + this->Scene.faces[2 * axis] + this->Scene.faces[2 * axis + 1]);
     }
     for (const Lamp& lamp : this->Scene.lamps)
     {
@@ -171,13 +173,13 @@ private:
       return;
     }
     this->Add("balance", this->Worst([&](int c) { return std::abs(imbalance(c)); }), 1e-4);
-    // Directions' half-range flux is off by 1.2%, and few voxels are entered by few rays.
-    const bool diffuse = this->Scene.sky != Vector{} || this->Scene.faces != std::array<double, 6>{};
-    const bool few = *std::min_element(this->Scene.cells.begin(), this->Scene.cells.end()) < 8;
+    // Lamps outside the box are seen by beams, and photons come by chance.
+    const bool exact = !photons &&
+      std::all_of(this->Scene.lamps.begin(), this->Scene.lamps.end(), [](const Lamp& lamp) { return lamp.kind == Lamp::Sun; });
     this->Add("entered", this->Worst([&](int c) {
       return this->Shining(c) == 0.0 ? 0.0 : std::abs(this->Fact(Entered, c) / this->Shining(c) - 1.0);
     }),
-      diffuse && !photons ? (few ? 0.25 : 0.02) : 1e-3);
+      exact ? 1e-6 : 1e-3);
     if (!photons && !this->Scene.emission.empty())
     {
       this->Add("emitted", this->Worst([&](int c) {
@@ -475,6 +477,20 @@ std::vector<StressCheck> CheckOutcome(
   StressSolver solver, const StressCase& stressCase, const StressOutcome& outcome, const StressOutcome* twin)
 {
   return IsView(solver) ? CheckView(stressCase.scene, outcome) : LightChecks(solver, stressCase, outcome, twin).All();
+}
+
+StressCheck CheckTurned(
+  const StressCase& stressCase, const StressOutcome& outcome, const CubeTurn& turn, const StressOutcome& turned)
+{
+  const std::vector<float> expected = turn.Field(outcome.fluence, stressCase.scene.cells, outcome.channels);
+  double worst = expected.size() == turned.fluence.size() ? 0.0 : std::nan(""), largest = 0.0;
+  for (std::size_t i = 0; i < std::min(expected.size(), turned.fluence.size()); ++i)
+  {
+    const double error = std::abs(static_cast<double>(expected[i]) - turned.fluence[i]);
+    worst = error <= worst ? worst : error;
+    largest = std::max<double>(largest, expected[i]);
+  }
+  return { "as_its_turned_self", worst == 0.0 ? 0.0 : worst / largest, 1e-5 };
 }
 
 bool MayRefuse(StressSolver solver, const StressCase& stressCase, const std::string& error)

@@ -21,6 +21,10 @@ struct StressCheck
 std::vector<StressCheck> CheckOutcome(
   StressSolver solver, const StressCase& stressCase, const StressOutcome& outcome, const StressOutcome* twin);
 
+/// Whether the light of the turned scene is the turned light.
+StressCheck CheckTurned(
+  const StressCase& stressCase, const StressOutcome& outcome, const CubeTurn& turn, const StressOutcome& turned);
+
 /// Whether a solver may refuse this case, in these words.
 bool MayRefuse(StressSolver solver, const StressCase& stressCase, const std::string& error);
 }

@@ -31,6 +31,30 @@ float StressScene::At(const std::vector<float>& field, std::size_t voxel, int ch
   return field.empty() ? 0.0f : field[voxel * this->channels + channel];
 }
 
+StressScene Turned(const StressScene& scene, const CubeTurn& turn)
+{
+  StressScene turned = scene;
+  turned.cells = turn.Moved(scene.cells);
+  turned.spacing = turn.Moved(scene.spacing);
+  turned.periodic = turn.Moved(scene.periodic);
+  turned.absorption = turn.Field(scene.absorption, scene.cells, scene.channels);
+  turned.scattering = turn.Field(scene.scattering, scene.cells, scene.channels);
+  turned.emission = turn.Field(scene.emission, scene.cells, scene.channels);
+  turned.index = turn.Field(scene.index, scene.cells);
+  for (Lamp& lamp : turned.lamps)
+  {
+    lamp.along = turn.Direction(lamp.along);
+    lamp.at = turn.Position(lamp.at,
+      { scene.cells[0] * scene.spacing[0], scene.cells[1] * scene.spacing[1], scene.cells[2] * scene.spacing[2] });
+    lamp.width = lamp.width > 0.0 ? lamp.width : 0.5 * scene.spacing[0];
+  }
+  for (int face = 0; face < 6; ++face)
+  {
+    turned.faces[turn.Face(face)] = scene.faces[face];
+  }
+  return turned;
+}
+
 namespace
 {
 const double NearlyWhite = 1.0 - 1e-7;

@@ -1,5 +1,7 @@
 #pragma once
 
+#include "../Kernels/CubeTurns.h"
+
 #include <array>
 #include <cstddef>
 #include <limits>
@@ -19,12 +21,13 @@ struct Lamp
     Sun,
     Point,
     Spot,     ///< 60 degrees
-    Rectangle ///< as wide as half a voxel along x
+    Rectangle
   };
   Kind kind = Sun;
   Vector at = {};
   Vector along = { 0.0, 0.0, -1.0 };
   Vector power = { 1.0, 1.0, 1.0 }; ///< W; of a sun W/length^2
+  double width = 0.0;               ///< of a rectangle's edges; 0: half a voxel along x
 };
 
 /// A medium and what shines on it. Arrays are over the voxels, x fastest, `channels` floats a voxel; empty: 0 everywhere.
@@ -47,6 +50,9 @@ struct StressScene
   Vector Middle() const; ///< of the middle voxel (of two, the upper one)
   float At(const std::vector<float>& field, std::size_t voxel, int channel) const;
 };
+
+/// The scene turned or mirrored.
+StressScene Turned(const StressScene& scene, const CubeTurn& turn);
 
 /// What a solver has to say to refuse a case that it cannot do.
 struct Refusal

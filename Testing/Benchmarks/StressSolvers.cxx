@@ -71,6 +71,7 @@ vtkSmartPointer<vtkImageData> ImageOf(const StressScene& scene)
 void AddLamp(vtkLightRig* rig, const Lamp& lamp, const StressScene& scene)
 {
   const Vector &at = lamp.at, &to = lamp.along, &p = lamp.power;
+  const double width = lamp.width > 0.0 ? lamp.width : 0.5 * scene.spacing[0];
   switch (lamp.kind)
   {
     case Lamp::Sun: rig->AddDirectionalLight(to[0], to[1], to[2], p[0], p[1], p[2]); break;
@@ -78,7 +79,7 @@ void AddLamp(vtkLightRig* rig, const Lamp& lamp, const StressScene& scene)
     case Lamp::Spot: rig->AddSpotLight(at[0], at[1], at[2], to[0], to[1], to[2], p[0], p[1], p[2], 60.0); break;
     case Lamp::Rectangle:
       rig->AddRectangleLight(
-        at[0], at[1], at[2], to[0], to[1], to[2], p[0], p[1], p[2], 0.5 * scene.spacing[0], 0.5 * scene.spacing[0]);
+        at[0], at[1], at[2], to[0], to[1], to[2], p[0], p[1], p[2], width, width);
       break;
   }
 }
@@ -127,6 +128,7 @@ void ReadLight(vtkImageData* image, StressOutcome& outcome)
   outcome.directions = Floats(cells, "mean_direction");
   outcome.balance = Facts(image, "energy_balance");
   outcome.facePowerOut = Facts(image, "face_power_out");
+  outcome.halfRangeFlux = Facts(image, "half_range_flux");
   outcome.scattered = Facts(image, "scattered");
   vtkDataArray* fluence = cells->GetArray("fluence");
   outcome.channels = fluence ? fluence->GetNumberOfComponents() : 1;

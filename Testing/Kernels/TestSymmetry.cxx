@@ -1,5 +1,6 @@
 // A scene that is turned or mirrored has its light turned or mirrored: all 48 symmetries of the cube, under each kind of light
 // by itself.
+#include "CubeTurns.h"
 #include "DeviceTest.h"
 #include "MediumScene.h"
 
@@ -17,92 +18,17 @@ using namespace tyndall;
 
 namespace
 {
-/// Where axis a of the scene comes to lie, and whether it is turned round.
-struct Turn
-{
-  std::array<int, 3> to;
-  std::array<bool, 3> flipped;
-
-  template <class T>
-  std::array<T, 3> Moved(const std::array<T, 3>& values) const
-  {
-    std::array<T, 3> moved = {};
-    for (int a = 0; a < 3; ++a)
-    {
-      moved[this->to[a]] = values[a];
-    }
-    return moved;
-  }
-  std::array<double, 3> Direction(const std::array<double, 3>& direction) const
-  {
-    std::array<double, 3> turned = direction;
-    for (int a = 0; a < 3; ++a)
-    {
-      turned[a] = this->flipped[a] ? -turned[a] : turned[a];
-    }
-    return this->Moved(turned);
-  }
-  std::array<double, 3> Position(const std::array<double, 3>& position, const Grid& grid) const
-  {
-    std::array<double, 3> turned = position;
-    for (int a = 0; a < 3; ++a)
-    {
-      turned[a] = this->flipped[a] ? grid.Length(a) - turned[a] : turned[a];
-    }
-    return this->Moved(turned);
-  }
-  int Face(int face) const { return 2 * this->to[face / 2] + ((face % 2 == 1) != this->flipped[face / 2] ? 1 : 0); }
-};
-
-std::vector<Turn> AllTurns()
-{
-  std::vector<Turn> turns;
-  std::array<int, 3> to = { 0, 1, 2 };
-  do
-  {
-    for (int flips = 0; flips < 8; ++flips)
-    {
-      turns.push_back({ to, { (flips & 1) != 0, (flips & 2) != 0, (flips & 4) != 0 } });
-    }
-  } while (std::next_permutation(to.begin(), to.end()));
-  return turns;
-}
-
-std::vector<float> Turned(const std::vector<float>& values, const std::array<int, 3>& size, const Turn& turn)
-{
-  std::vector<float> turned(values.size());
-  const std::array<int, 3> n = turn.Moved(size);
-  for (int z = 0; z < size[2]; ++z)
-  {
-    for (int y = 0; y < size[1]; ++y)
-    {
-      for (int x = 0; x < size[0]; ++x)
-      {
-        std::array<int, 3> at = { x, y, z };
-        for (int a = 0; a < 3; ++a)
-        {
-          at[a] = turn.flipped[a] ? size[a] - 1 - at[a] : at[a];
-        }
-        at = turn.Moved(at);
-        turned[(static_cast<std::size_t>(at[2]) * n[1] + at[1]) * n[0] + at[0]] =
-          values[(static_cast<std::size_t>(z) * size[1] + y) * size[0] + x];
-      }
-    }
-  }
-  return turned;
-}
-
-Scene Turned(const Scene& scene, const Turn& turn)
+Scene Turned(const Scene& scene, const CubeTurn& turn)
 {
   Scene turned(turn.Moved(scene.medium.grid.size));
   turned.medium.grid.spacing = turn.Moved(scene.medium.grid.spacing);
   turned.settings = scene.settings;
   turned.settings.periodic = turn.Moved(scene.settings.periodic);
-  turned.sigma_a = Turned(scene.sigma_a, scene.medium.grid.size, turn);
-  turned.sigma_s = Turned(scene.sigma_s, scene.medium.grid.size, turn);
+  turned.sigma_a = turn.Field(scene.sigma_a, scene.medium.grid.size);
+  turned.sigma_s = turn.Field(scene.sigma_s, scene.medium.grid.size);
   if (!scene.emission.empty())
   {
-    turned.emission = Turned(scene.emission, scene.medium.grid.size, turn);
+    turned.emission = turn.Field(scene.emission, scene.medium.grid.size);
   }
   turned.light = scene.light;
   for (int face = 0; face < 6; ++face)
@@ -112,7 +38,8 @@ Scene Turned(const Scene& scene, const Turn& turn)
   for (Light& light : turned.light.lights)
   {
     light.direction = turn.Direction(light.direction);
-    light.position = turn.Position(light.position, scene.medium.grid);
+    light.position = turn.Position(light.position,
+      { scene.medium.grid.Length(0), scene.medium.grid.Length(1), scene.medium.grid.Length(2) });
   }
   return turned;
 }
@@ -203,12 +130,12 @@ void ExpectSymmetric(const Scene& scene, const std::string& what, double limit, 
   Scene asItIs = scene;
   const LightField light = solve(asItIs);
   double worst = 0.0, power = 0.0;
-  for (const Turn& turn : AllTurns())
+  for (const CubeTurn& turn : AllCubeTurns())
   {
     Scene turned = Turned(scene, turn);
     const LightField turnedLight = solve(turned);
     worst = std::max(
-      worst, LargestDifference(turnedLight.fluence, Turned(light.fluence, scene.medium.grid.size, turn)));
+      worst, LargestDifference(turnedLight.fluence, turn.Field(light.fluence, scene.medium.grid.size)));
     power = std::max(power, std::abs(turnedLight.balance.entered[0] - light.balance.entered[0]));
     for (int face = 0; face < 6; ++face)
     {
@@ -232,6 +159,52 @@ TEST_F(Symmetry, OfEveryKindOfLight)
     kind.shine(scene);
     ExpectSymmetric(scene, kind.name, 1e-5, [&](Scene& turned) { return turned.Solve(this->GetDevice()); });
   }
+}
+
+TEST_F(Symmetry, OfAnEnvironmentAboutItsAxis)
+{
+  // Turns about z by whole quarters, and mirrorings, move whole pixels of a latitude-longitude image.
+  constexpr int width = 32, height = 16;
+  const auto radianceAt = [](double x, double y, double z) { return 1.2 + 0.7 * z + 0.3 * x - 0.2 * x * y + 0.1 * y; };
+  const auto skyOf = [&](const CubeTurn& turn) {
+    Environment sky;
+    sky.width = width;
+    sky.height = height;
+    for (int j = 0; j < height; ++j)
+    {
+      for (int i = 0; i < width; ++i)
+      {
+        const double azimuth = 2.0 * 3.14159265358979323846 * (i + 0.5) / width;
+        const double polar = 3.14159265358979323846 * (1.0 - (j + 0.5) / height);
+        const std::array<double, 3> seen = { std::sin(polar) * std::cos(azimuth), std::sin(polar) * std::sin(azimuth),
+          std::cos(polar) };
+        std::array<double, 3> before; // where it was in the scene that is not turned
+        for (int a = 0; a < 3; ++a)
+        {
+          before[a] = turn.turned[a] ? -seen[turn.to[a]] : seen[turn.to[a]];
+        }
+        sky.radiance.insert(sky.radiance.end(), 3, static_cast<float>(radianceAt(before[0], before[1], before[2])));
+      }
+    }
+    return sky;
+  };
+  Scene scene = UnevenMedium({ 8, 8, 8 }, { 0.1, 0.1, 0.1 }, 10.0);
+  scene.light.environment = skyOf({});
+  const LightField light = scene.Solve(this->GetDevice());
+  int turns = 0;
+  for (const CubeTurn& turn : AllCubeTurns())
+  {
+    if (turn.to[2] == 2)
+    {
+      Scene turned = Turned(scene, turn);
+      turned.light.environment = skyOf(turn);
+      const LightField turnedLight = turned.Solve(this->GetDevice());
+      EXPECT_LT(LargestDifference(turnedLight.fluence, turn.Field(light.fluence, scene.medium.grid.size)), 1e-5);
+      EXPECT_NEAR(turnedLight.balance.entered[0], light.balance.entered[0], 1e-6 * light.balance.entered[0]);
+      ++turns;
+    }
+  }
+  EXPECT_EQ(turns, 16);
 }
 
 TEST_F(Symmetry, OfUnequalVoxels)

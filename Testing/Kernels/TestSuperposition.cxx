@@ -1,0 +1,131 @@
+// Light is linear: what several lights do together is the sum of what each does alone.
+#include "DeviceTest.h"
+#include "MediumScene.h"
+
+#include <algorithm>
+#include <cmath>
+#include <functional>
+#include <random>
+#include <string>
+#include <vector>
+
+using namespace tyndall;
+
+namespace
+{
+using Shine = std::function<void(Scene&)>;
+
+void GlowAt(Scene& scene, std::array<int, 3> voxel, float emission)
+{
+  const std::array<int, 3>& n = scene.medium.grid.size;
+  scene.emission.resize(scene.sigma_a.size());
+  scene.emission[(static_cast<std::size_t>(voxel[2]) * n[1] + voxel[1]) * n[0] + voxel[0]] += emission;
+}
+
+const std::vector<Shine> Lights = {
+  [](Scene& scene) { scene.ShineAlong({ 0.3, -0.5, -0.8 }, 0.5); },
+  [](Scene& scene) { GlowAt(scene, { 11, 6, 9 }, 3.0f); },
+  [](Scene& scene) { scene.light.faces[1] = { 0.2, 0.2, 0.2 }; },
+  [](Scene& scene) { scene.ShineFromEverywhere(0.1); },
+  [](Scene& scene) {
+    Light lamp;
+    lamp.type = LightType::Point;
+    lamp.position = { 4.2, 7.1, 30.0 };
+    lamp.power = { 90.0, 90.0, 90.0 };
+    scene.light.lights.push_back(lamp);
+  },
+};
+
+Scene UnevenMedium(double thickest, double albedo)
+{
+  Scene scene({ 22, 18, 26 });
+  scene.Randomise(thickest, 2.0, albedo, 22);
+  scene.settings.tolerance = 1e-7;
+  return scene;
+}
+
+/// Of the largest fluence of all together.
+double Nonlinearity(Device& device, const Scene& medium)
+{
+  Scene together = medium;
+  std::vector<double> sum(medium.sigma_a.size(), 0.0);
+  for (const Shine& shine : Lights)
+  {
+    Scene alone = medium;
+    shine(alone);
+    shine(together);
+    const LightField light = alone.Solve(device);
+    std::transform(sum.begin(), sum.end(), light.fluence.begin(), sum.begin(), std::plus<>());
+  }
+  const LightField all = together.Solve(device);
+  double worst = 0.0;
+  for (std::size_t i = 0; i < sum.size(); ++i)
+  {
+    worst = std::max(worst, std::abs(sum[i] - all.fluence[i]));
+  }
+  return worst / *std::max_element(all.fluence.begin(), all.fluence.end());
+}
+}
+
+class Superposition : public DeviceTest
+{
+};
+
+TEST_F(Superposition, OfOrdersOneByOne)
+{
+  const double worst = Nonlinearity(this->GetDevice(), UnevenMedium(1.0, 0.7));
+  EXPECT_LT(worst, 1e-5);
+  this->RecordProperty("of the largest", std::to_string(worst));
+}
+
+TEST_F(Superposition, OfAcceleratedOrders)
+{
+  const double worst = Nonlinearity(this->GetDevice(), UnevenMedium(20.0, 0.999));
+  EXPECT_LT(worst, 1e-3);
+  this->RecordProperty("of the largest", std::to_string(worst));
+}
+
+TEST_F(Superposition, OfFacesAlongFinerDirections)
+{
+  for (const double thickest : { 1.0, 20.0 })
+  {
+    Scene medium = UnevenMedium(thickest, thickest == 1.0 ? 0.7 : 0.999);
+    medium.settings.firstFlightDirections = 100;
+    EXPECT_LT(Nonlinearity(this->GetDevice(), medium), 1e-3) << thickest;
+  }
+}
+
+TEST_F(Superposition, ReciprocityIsTheBetterTheMoreDirectionsThereAre)
+{
+  // What a glowing voxel sends to another, that one sends back: off by what a handful of directions does to light of one voxel.
+  const std::array<std::array<int, 3>, 4> places = { { { 2, 3, 4 }, { 9, 8, 3 }, { 5, 9, 9 }, { 10, 2, 8 } } };
+  std::vector<double> errors;
+  for (const int directions : { 25, 100, 400 })
+  {
+    std::vector<std::vector<float>> fluences;
+    Scene medium({ 12, 12, 12 });
+    medium.Randomise(1.0, 1.0, 0.9, 5);
+    medium.settings.directionsPerFace = directions;
+    medium.settings.emissionError = 0.0; // along sweeps
+    const auto index = [](const std::array<int, 3>& at) { return (at[2] * 12 + at[1]) * 12 + at[0]; };
+    for (const std::array<int, 3>& place : places)
+    {
+      Scene glowing = medium;
+      GlowAt(glowing, place, 1.0f);
+      fluences.push_back(glowing.Solve(this->GetDevice()).fluence);
+    }
+    double squares = 0.0;
+    for (std::size_t a = 0; a < places.size(); ++a)
+    {
+      for (std::size_t b = 0; b < a; ++b)
+      {
+        const double there = fluences[a][index(places[b])], back = fluences[b][index(places[a])];
+        squares += std::pow(2.0 * (there - back) / (there + back), 2);
+      }
+    }
+    errors.push_back(std::sqrt(squares / 6.0));
+    this->RecordProperty(std::to_string(directions) + " directions", std::to_string(errors.back()));
+  }
+  EXPECT_LT(errors[1], 0.7 * errors[0]);
+  EXPECT_LT(errors[2], 0.7 * errors[1]);
+}
