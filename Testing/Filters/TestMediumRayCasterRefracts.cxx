@@ -147,11 +147,11 @@ void BadSettingsAreOneError(test::Claims& claims)
     claims.That(slab.caster->GetOutput()->GetNumberOfPoints() == 0, std::string("empty output after: ") + part);
   };
   const auto mirror = [](Slab& slab) { slab.caster->SetSurfaceReflection(vtkMediumRayCaster::FIXED); };
-  refused("surface", [&](Slab& slab) {
+  refused("SurfaceIndex is -0.5", [&](Slab& slab) {
     mirror(slab);
     slab.caster->SetSurfaceIndex(-0.5);
   });
-  refused("surface", [&](Slab& slab) {
+  refused("SurfaceReflectance is 1.5", [&](Slab& slab) {
     mirror(slab);
     slab.caster->SetSurfaceReflectance(1.5);
   });
@@ -159,7 +159,7 @@ void BadSettingsAreOneError(test::Claims& claims)
     slab.caster->SetTableFace(0);
     slab.caster->SetTableReflectance(0.7);
   });
-  refused("table", [](Slab& slab) {
+  refused("TableColor is (-0.1, 0, 0)", [](Slab& slab) {
     slab.caster->SetTableFace(0);
     slab.caster->SetTableColor(-0.1, 0.0, 0.0);
   });

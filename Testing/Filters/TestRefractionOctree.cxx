@@ -205,8 +205,12 @@ void LevelsAreThoseOfTheIndex(test::Claims& claims)
   filter->SetTolerance(0.15);
   filter->Update();
   claims.That(LevelsOf(filter)->GetRange()[0] == 2 && LevelsOf(filter)->GetRange()[1] == 2, "a checkerboard of 0.1");
+  test::Errors errors(filter);
   filter->SetTolerance(2.0);
-  claims.That(filter->GetTolerance() == 1.0, "Tolerance is clamped");
+  filter->Update();
+  claims.That(filter->GetTolerance() == 2.0 && errors.WasOneWith("Tolerance is 2; it must be at least 0 and at most 1"),
+    "Tolerance is not clamped, but refused");
+  filter->SetTolerance(1.0);
   filter->Update();
   claims.That(filter->GetNodeCount() == 1 && LevelsOf(filter)->GetRange()[0] == 3, "one node of 8^3 voxels");
 }
