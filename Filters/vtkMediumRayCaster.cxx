@@ -253,11 +253,16 @@ int vtkMediumRayCaster::RequestData(vtkInformation*, vtkInformationVector** inpu
   this->DeviceName.clear();
   this->LeftOut.clear();
   return tyndall::Guarded(this, outputs, [&] {
+    tyndall::ToneMapping toneMapping;
+    toneMapping.exposure = this->Exposure;
+    toneMapping.curve = static_cast<tyndall::ToneCurve>(this->ToneCurve);
+    tyndall::Check(toneMapping);
     std::unique_ptr<Scene> scene = this->FindScene(inputs);
     const tyndall::Picture picture = scene->caster->Render(CameraOf(this, scene->grid), tyndall::MonitorOf(this));
-    tyndall::ToneMapping toneMapping;
-    toneMapping.exposure = this->Exposure > 0.0 ? this->Exposure : tyndall::AutomaticExposure(picture.radiance);
-    toneMapping.curve = static_cast<tyndall::ToneCurve>(this->ToneCurve);
+    if (toneMapping.exposure == 0.0)
+    {
+      toneMapping.exposure = tyndall::AutomaticExposure(picture.radiance);
+    }
     const std::vector<float> opaque;
     const auto color = tyndall::ToneMap(picture.radiance, this->ShowBackground ? opaque : picture.alpha, toneMapping);
 

@@ -115,7 +115,7 @@ public:
 
   ///@{
   /// Where the camera is and what it looks at, as vtkCamera has it. Default (0, 0, 0) both: while they are equal, the
-  /// camera frames the medium.
+  /// camera frames the medium. Valid up to 1e15 voxels from it.
   vtkSetVector3Macro(CameraPosition, double);
   vtkGetVector3Macro(CameraPosition, double);
   vtkSetVector3Macro(CameraFocalPoint, double);
@@ -145,7 +145,8 @@ public:
   ///@}
 
   ///@{
-  /// Voxels that a ray advances between two samples. Default 0.5, valid (0, infinity). The error falls with its square.
+  /// Voxels that a ray advances between two samples. Default 0.5, valid [0.01, 10]: others are refused. The error falls with its
+  /// square.
   vtkSetMacro(StepSize, double);
   vtkGetMacro(StepSize, double);
   ///@}
@@ -159,7 +160,8 @@ public:
 
   ///@{
   /// Whether to follow the lights' direct light by shadow rays, scattered by the medium's phase function. Default off: it is
-  /// in `fluence`, scattered evenly or as `mean_direction` says.
+  /// in `fluence`, scattered evenly or as `mean_direction` says. Where no lamp and no sun shines the picture is the same and no time
+  /// goes into it; `left_out` says so.
   vtkSetMacro(ShadowRays, bool);
   vtkGetMacro(ShadowRays, bool);
   vtkBooleanMacro(ShadowRays, bool);
@@ -180,7 +182,7 @@ public:
 
   ///@{
   /// Radiance behind the medium where there is no environment, red, green, blue, W/(length^2 sr). Default 0, valid
-  /// [0, infinity).
+  /// [0, 1e37]: others are refused.
   vtkSetVector3Macro(BackgroundColor, double);
   vtkGetVector3Macro(BackgroundColor, double);
   ///@}
@@ -239,8 +241,8 @@ public:
 
   ///@{
   /// What radiance is multiplied by for `color`. Default 0: so that the mean of the picture's lit part becomes a medium
-  /// grey.
-  vtkSetClampMacro(Exposure, double, 0.0, VTK_DOUBLE_MAX);
+  /// grey. Valid [0, 1e30]: others are refused.
+  vtkSetMacro(Exposure, double);
   vtkGetMacro(Exposure, double);
   ///@}
 

@@ -5,6 +5,7 @@
 
 #include <algorithm>
 #include <chrono>
+#include <limits>
 
 namespace tyndall
 {
@@ -16,6 +17,7 @@ struct Batches
   std::size_t whole = 1;       ///< parts are multiples of this
   double seconds = 0.05;       ///< that a part is to take
   double growth = 4.0;         ///< of a part over the last one, at most
+  std::size_t most = std::numeric_limits<std::size_t>::max(); ///< in a part, however soon the last one was done
   double from = 0.0, to = 1.0; ///< fractions done that are reported
 };
 
@@ -25,7 +27,8 @@ void InBatches(Device& device, const Batches& batches, const Monitor& monitor, c
 {
   using Clock = std::chrono::steady_clock;
   const auto rounded = [&](double size) {
-    const std::size_t parts = static_cast<std::size_t>(size / batches.whole);
+    const double within = std::min(size, static_cast<double>(batches.most));
+    const std::size_t parts = static_cast<std::size_t>(within / batches.whole);
     return std::max<std::size_t>(parts, 1) * batches.whole;
   };
   std::size_t batch = rounded(static_cast<double>(batches.first));

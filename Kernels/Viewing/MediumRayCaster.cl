@@ -8,7 +8,7 @@ kernel void cast_rays(view v, global const float4* restrict samples, global cons
   global const float4* restrict environment, global float* restrict radiance, global float* restrict alpha,
   global float* restrict depth)
 {
-  const int column = get_global_id(0) * PACKET_WIDTH;
+  const int column = (get_global_id(0) + v.picture.w) * PACKET_WIDTH;
   const int row = (get_global_id(1) + v.picture.z) * PACKET_HEIGHT;
   if (column >= v.picture.x || row >= v.picture.y)
   {

@@ -44,12 +44,13 @@ enum class SurfaceReflection
 struct ViewSettings
 {
   std::array<int, 2> imageSize = { 800, 600 }; ///< pixels
-  double stepSize = 0.5;                       ///< voxels a ray advances between samples, > 0
+  double stepSize = 0.5;                       ///< voxels a ray advances between samples, [0.01, 10]
   bool singleScatteringOnly = false;           ///< show only light that was scattered once
-  bool shadowRays = false;    ///< find the lights' direct light by shadow rays, with the medium's phase function
+  /// Find the lights' direct light by shadow rays, with the medium's phase function; without lamps and suns nothing changes.
+  bool shadowRays = false;
   int rectangleSamples = 3;   ///< per edge of a rectangular light, for shadow rays
   bool showBackground = true; ///< also in what surface and table reflect
-  Rgb backgroundColor = { 0.0, 0.0, 0.0 }; ///< radiance behind the medium where there is no environment
+  Rgb backgroundColor = { 0.0, 0.0, 0.0 }; ///< radiance behind the medium where there is no environment, [0, 1e37]
   bool skipEmptyBricks = true;             ///< leap over what is empty; changes the time and nothing else
   /// What the scene does not need; false: three channels, rays that could bend and no leaps, to see what it saves.
   bool leaveOut = true;
@@ -163,6 +164,9 @@ private:
   struct View;
   struct Optics;
 
+  ViewSettings Needed(ViewSettings asked) const;
+  double LongestSteps() const;
+  std::string StepOption() const;
   std::string PackingOptions() const;
   std::string CastingOptions() const;
   int PacketWidth() const;
@@ -192,7 +196,9 @@ private:
 
   Device& TheDevice;
   Grid TheGrid;
-  ViewSettings Settings;
+  bool LampsShine = false;
+  bool AskedForShadowRays = false; ///< though there may be no lamp
+  ViewSettings Settings;           ///< as far as the scene needs them
   double G = 0.0;
   MediumTraits Traits;
   bool HasEmptyBricks = false;

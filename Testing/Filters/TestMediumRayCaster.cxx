@@ -251,6 +251,26 @@ void BadInputIsAnError(test::Claims& claims)
     caster->SetInputArrayToProcess(5, 0, 0, vtkDataObject::FIELD_ASSOCIATION_CELLS, "foo");
   });
   refused("step size", [](vtkMediumRayCaster* caster, vtkImageData*) { caster->SetStepSize(0.0); });
+  for (double step : { 1e-30, 1e-6, 1e300, std::nan("") })
+  {
+    refused("StepSize", [=](vtkMediumRayCaster* caster, vtkImageData*) { caster->SetStepSize(step); });
+  }
+  for (double colour : { -1.0, 1e39, HUGE_VAL, std::nan("") })
+  {
+    refused("BackgroundColor",
+      [=](vtkMediumRayCaster* caster, vtkImageData*) { caster->SetBackgroundColor(0.1, colour, 0.2); });
+  }
+  for (double exposure : { -1.0, 1e39, HUGE_VAL, std::nan("") })
+  {
+    refused("Exposure", [=](vtkMediumRayCaster* caster, vtkImageData*) { caster->SetExposure(exposure); });
+  }
+  refused("too far", [](vtkMediumRayCaster* caster, vtkImageData*) { caster->SetCameraPosition(1e308, 0, 0); });
+  refused("pixels", [](vtkMediumRayCaster* caster, vtkImageData*) { caster->SetImageSize(50000, 50000); });
+  refused("parallel scale", [](vtkMediumRayCaster* caster, vtkImageData*) {
+    caster->SetCameraPosition(0, -5, 0.1);
+    caster->SetCameraParallelProjection(true);
+    caster->SetCameraParallelScale(1e300);
+  });
   refused("view up", [](vtkMediumRayCaster* caster, vtkImageData*) {
     caster->SetCameraPosition(0, 0, 5);
     caster->SetCameraViewUp(0, 0, 1);
