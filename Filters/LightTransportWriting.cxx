@@ -1,5 +1,6 @@
 // What filters write: see LightTransportData.h.
 #include "LightTransportData.h"
+#include "Medium/BoxFaces.h"
 
 #include "vtkCellData.h"
 #include "vtkDoubleArray.h"
@@ -147,7 +148,7 @@ void WriteLight(LightField&& light, vtkImageData* output)
   {
     cells->RemoveArray(earlier); // of another solve that the input has been through
   }
-  for (const char* earlier : { "stored_directions", "scattered", "packing_loss", "fluence_bias" })
+  for (const char* earlier : { "stored_directions", "scattered", "packing_loss", "fluence_bias", SurfaceRadianceFact })
   {
     output->GetFieldData()->RemoveArray(earlier);
   }
@@ -178,6 +179,11 @@ void WriteLight(LightField&& light, vtkImageData* output)
   if (!light.storedDirections.empty())
   {
     AddFact(output, "stored_directions", Flat(light.storedDirections), 3);
+  }
+  if (!light.surfaceRadiance.empty())
+  {
+    AddFact(output, SurfaceRadianceFact, { light.surfaceRadiance.begin(), light.surfaceRadiance.end() },
+      static_cast<int>(SurfaceCosines.size()) * channels);
   }
   AddFact(output, "left_out", light.leftOut);
   AddFact(output, "device", std::vector<std::string>{ light.device });

@@ -35,7 +35,10 @@ struct ViewSettings;
  * | `ior`            | 1          | 1                | refractive index n, above 0; optional            |
  * | `mean_direction` | 3          | 1                | power-weighted mean direction of the light, its length the anisotropy, as vtkPhotonMarcher writes it; optional |
  *
- * or those chosen by SetInputArrayToProcess 0 to 6, and field data `g` (default 0).
+ * or those chosen by SetInputArrayToProcess 0 to 6, and field data `g` (default 0) and, optional, `surface_radiance`,
+ * as vtkLightPropagationMaps writes it where voxels at the faces of the box are thick: rays that come in there show it,
+ * instead of the light at the voxels' centres (not with ShadowRays and lights, SingleScatteringOnly, `mean_direction`,
+ * a table, or where rays bend). It belongs to the array `fluence` beside it; where another is chosen it is not used.
  * Input 1, optional: lights as vtkLightRig makes them, for shadow rays.
  * Input 2, optional: the environment behind the medium, vtkImageData in latitude-longitude layout, point array `radiance`.
  *
@@ -145,8 +148,8 @@ public:
   ///@}
 
   ///@{
-  /// Voxels that a ray advances between two samples. Default 0.5, valid [0.01, 10]: others are refused. The error falls with its
-  /// square.
+  /// Voxels that a ray advances between two samples. Default 0.5, valid [0.01, 10]: others are refused. The error falls
+  /// with its square.
   vtkSetMacro(StepSize, double);
   vtkGetMacro(StepSize, double);
   ///@}
@@ -160,8 +163,8 @@ public:
 
   ///@{
   /// Whether to follow the lights' direct light by shadow rays, scattered by the medium's phase function. Default off: it is
-  /// in `fluence`, scattered evenly or as `mean_direction` says. Where no lamp and no sun shines the picture is the same and no time
-  /// goes into it; `left_out` says so.
+  /// in `fluence`, scattered evenly or as `mean_direction` says. Where no lamp and no sun shines the picture is the
+  /// same and no time goes into it; `left_out` says so.
   vtkSetMacro(ShadowRays, bool);
   vtkGetMacro(ShadowRays, bool);
   vtkBooleanMacro(ShadowRays, bool);

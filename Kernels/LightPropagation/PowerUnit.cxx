@@ -135,6 +135,7 @@ void ToWatts(LightField& light, double unit)
   Multiply(light.fluenceError, unit, "fluence_error");
   Multiply(light.netFlux, unit, "net_flux");
   Multiply(light.scatteredRadiance, unit, "scattered_radiance");
+  Multiply(light.surfaceRadiance, unit, "surface_radiance");
   MultiplyPowers(light, unit);
 }
 

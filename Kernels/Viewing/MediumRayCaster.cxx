@@ -6,6 +6,7 @@
 #include "../Medium/Traits.h"
 #include "../Refraction/SquaredIndex.h"
 #include "Bricks.h"
+#include "SurfaceLight.h"
 #include "TyndallKernelSources.h"
 #include "ViewChecks.h"
 #include "ViewLights.h"
@@ -184,7 +185,18 @@ MediumRayCaster::MediumRayCaster(Device& device, const Medium& medium, const Sol
         this->Bends ? ior : Field{}, settings.tableFace, this->UnderSky),
       "light on the table");
   }
+  this->PrepareSurface(medium, light);
   this->SayWhatIsLeftOut();
+}
+
+void MediumRayCaster::PrepareSurface(const Medium& medium, const SolvedLight& light)
+{
+  const bool plain = !this->Settings.singleScatteringOnly && this->LightCount == 0 && !this->KnowsFlow &&
+    !this->Bends && this->Settings.tableFace < 0;
+  this->Surface = Buffer<cl_float4>(this->TheDevice,
+    plain && light.surface.values && light.fluence.values ? SurfaceLight(medium, light, this->Settings.stepSize)
+                                                          : std::vector<cl_float4>(),
+    "light at the surface");
 }
 
 /// What rays meet, a border of one voxel around.
@@ -249,6 +261,8 @@ void MediumRayCaster::SayWhatIsLeftOut()
       : "surface reflection: no refractive index is as large "
         "as the surface's, or none is smaller");
   omit(this->Settings.tableFace >= 0, "table: none");
+  omit(this->Surface.Size() > 0,
+    "light at the surface: no thick voxels at the faces of the box, or it is not known there");
 }
 
 /// Without a lamp there is nothing that shadow rays could find.
@@ -265,7 +279,8 @@ bool MediumRayCaster::Adopt(const ViewSettings& asked)
   const ViewSettings& now = this->Settings;
   if (settings.singleScatteringOnly != now.singleScatteringOnly || settings.shadowRays != now.shadowRays ||
     settings.rectangleSamples != now.rectangleSamples || settings.showBackground != now.showBackground ||
-    settings.packetWidth != now.packetWidth || settings.tableFace != now.tableFace || settings.leaveOut != now.leaveOut)
+    settings.packetWidth != now.packetWidth || settings.tableFace != now.tableFace ||
+    settings.leaveOut != now.leaveOut || (this->Surface.Size() > 0 && settings.stepSize != now.stepSize))
   {
     return false;
   }
@@ -478,8 +493,8 @@ cl::Kernel MediumRayCaster::CastingKernel()
   {
     return this->TheDevice.Kernel("cast_rays",
       { kernel_source::Numerics, kernel_source::Sampling, kernel_source::View, kernel_source::Background,
-        kernel_source::Crossing, kernel_source::MediumRayCaster },
-      this->CastingOptions());
+        kernel_source::Crossing, kernel_source::SurfaceLight, kernel_source::MediumRayCaster },
+      this->CastingOptions() + Define("SURFACE_LIGHT", this->Surface.Size() > 0));
   }
   const int surface = this->Reflects() ? static_cast<int>(this->Settings.surfaceReflection) : 0;
   return this->TheDevice.Kernel("cast_bent_rays",
@@ -507,7 +522,7 @@ void MediumRayCaster::CastRays(View& view, double from, const Monitor& monitor)
     if (straight)
     {
       With(cast, view, this->Samples, this->Extinctions, this->Flow, this->Glow, this->Bricks, this->EnvironmentPixels,
-        this->Radiance, this->Alpha, this->Depth);
+        this->Surface, this->Radiance, this->Alpha, this->Depth);
     }
     else
     {

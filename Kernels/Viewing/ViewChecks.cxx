@@ -1,5 +1,6 @@
 #include "ViewChecks.h"
 
+#include "../Medium/BoxFaces.h"
 #include "../Refraction/IndexRange.h"
 
 #include <algorithm>
@@ -181,6 +182,14 @@ void Check(const SolvedLight& light, const Grid& grid, const ViewSettings& setti
         " components a voxel; a direction has 3.");
     }
     CheckFinite(light.meanDirection, "mean_direction", grid);
+  }
+  for (std::size_t i = 0; light.surface.values && i < BoxFaceCellCount(grid) * light.surface.components; ++i)
+  {
+    if (!std::isfinite(light.surface.values[i]))
+    {
+      throw InvalidInput(
+        "surface_radiance is not finite in tuple " + std::to_string(i / light.surface.components) + ".");
+    }
   }
   const bool separates = settings.shadowRays != settings.singleScatteringOnly; // direct light from the rest
   if (separates && light.fluence.values && !light.fluenceDirect.values)

@@ -406,7 +406,8 @@ TEST_F(MediumRayCasterTest, ReportsProgressAndStops)
   EXPECT_EQ(caster.Render(scene.Framed()).radiance, scene.Seen(this->GetDevice()).radiance);
 }
 
-// However wide the picture and small the steps, no part of the work between two reports is more than some million samples.
+// However wide the picture and small the steps, no part of the work between two reports is more than some million
+// samples.
 TEST_F(MediumRayCasterTest, ReportsOftenWhereRaysTakeManySteps)
 {
   Scene scene(GridOf(40, 40, 40));

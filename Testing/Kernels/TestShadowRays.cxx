@@ -40,7 +40,8 @@ TEST_F(ShadowRays, ScatterOnceAsTheClosedFormSays)
   }
 }
 
-// A sky lights the medium, no lamp and no sun does: asked for or not, the same picture of the same arrays, and it is said.
+// A sky lights the medium, no lamp and no sun does: asked for or not, the same picture of the same arrays, and it is
+// said.
 TEST_F(ShadowRays, AreLeftOutWhereNoLampShines)
 {
   for (bool single : { false, true })
