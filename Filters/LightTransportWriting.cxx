@@ -1,6 +1,7 @@
 // What filters write: see LightTransportData.h.
 #include "FiniteValues.h"
 #include "LightTransportData.h"
+#include "Medium/BoxFaces.h"
 
 #include "vtkCellData.h"
 #include "vtkDoubleArray.h"
@@ -164,7 +165,8 @@ void WriteLight(LightField&& light, vtkImageData* output)
   {
     cells->RemoveArray(earlier); // of another solve that the input has been through
   }
-  for (const char* earlier : { "stored_directions", "scattered", "packing_loss", "fluence_bias", "half_range_flux" })
+  for (const char* earlier : { "stored_directions", "scattered", "packing_loss", "fluence_bias", "half_range_flux",
+         SurfaceRadianceFact })
   {
     output->GetFieldData()->RemoveArray(earlier);
   }
@@ -199,6 +201,11 @@ void WriteLight(LightField&& light, vtkImageData* output)
   if (!light.storedDirections.empty())
   {
     AddFact(output, "stored_directions", Flat(light.storedDirections), 3);
+  }
+  if (!light.surfaceRadiance.empty())
+  {
+    AddFact(output, SurfaceRadianceFact, { light.surfaceRadiance.begin(), light.surfaceRadiance.end() },
+      static_cast<int>(SurfaceCosines.size()) * channels);
   }
   AddFact(output, "left_out", light.leftOut);
   AddFact(output, "device", std::vector<std::string>{ light.device });

@@ -44,7 +44,10 @@ struct LightField;
  * | `scattered_radiance` | StoredDirections x 1 or 3 | W/(length^2 sr) | radiance scattered into each stored direction |
  *
  * and field data `energy_balance` (W: entered, emitted, absorbed, escaped, left over), `face_power_out` (W through -x, +x,
- * -y, +y, -z, +z), `half_range_flux` (see HalfRangeFlux), `left_out` (what the scene did not need), `device`, `stored_directions`.
+ * -y, +y, -z, +z), `half_range_flux` (see HalfRangeFlux), `left_out` (what the scene did not need), `device`, `stored_directions`; where orders are
+ * accelerated and a voxel at a face of the box is thicker than half a mean free path, `surface_radiance`, W/(length^2
+ * sr): what leaves each voxel's face there, tuples face by face (-x to +z), row by row, components at the cosines 0.05,
+ * 0.25, 0.6, 1 to the normal (times red, green, blue).
  * Output 1: vtkTable, one row a scattering order: `iteration`, `seconds`, `residual`, `change`, `absorbed`, `escaped`, `left_over`.
  *
  * Without lights, environment, SkyColor, FaceRadiance and emission the result is dark, with a warning.

@@ -4,12 +4,15 @@
 #include "FiniteValues.h"
 #include "InputsKey.h"
 #include "LightTransportData.h"
+#include "Medium/BoxFaces.h"
 #include "Viewing/MediumRayCaster.h"
 #include "Viewing/ToneMapping.h"
 #include "WholeImage.h"
 
+#include "vtkCellData.h"
 #include "vtkDataArray.h"
 #include "vtkDataObject.h"
+#include "vtkFieldData.h"
 #include "vtkFloatArray.h"
 #include "vtkImageData.h"
 #include "vtkInformation.h"
@@ -96,6 +99,33 @@ vtkSmartPointer<Array> PixelArray(const char* name, const std::vector<Value>& va
   array->SetNumberOfTuples(static_cast<vtkIdType>(values.size()) / components);
   std::copy(values.begin(), values.end(), array->GetPointer(0));
   return array;
+}
+
+/// What the solver said of the light at the box's faces; empty where it did not, or what it said is not of these
+/// voxels.
+struct SurfaceValues
+{
+  std::vector<float> values;
+  int components = 0;
+};
+
+SurfaceValues ReadSurface(vtkImageData* image, const tyndall::Grid& grid)
+{
+  SurfaceValues surface;
+  vtkDataArray* const said = image->GetFieldData()->GetArray(tyndall::SurfaceRadianceFact);
+  const int cosines = static_cast<int>(tyndall::SurfaceCosines.size());
+  if (!said || said->GetNumberOfTuples() != static_cast<vtkIdType>(tyndall::BoxFaceCellCount(grid)) ||
+    (said->GetNumberOfComponents() != cosines && said->GetNumberOfComponents() != 3 * cosines))
+  {
+    return surface;
+  }
+  surface.components = said->GetNumberOfComponents();
+  surface.values.resize(static_cast<std::size_t>(said->GetNumberOfValues()));
+  for (vtkIdType i = 0; i < said->GetNumberOfValues(); ++i)
+  {
+    surface.values[i] = static_cast<float>(said->GetComponent(i / surface.components, i % surface.components));
+  }
+  return surface;
 }
 
 void WritePicture(const tyndall::Picture& picture, const std::vector<std::uint8_t>& color, vtkImageData* output)
@@ -189,6 +219,7 @@ tyndall::InputsKey vtkMediumRayCaster::KeyOf(vtkInformationVector** inputs)
   {
     key.Add(tyndall::ChosenArray(this, number, image, ArrayNames[number]));
   }
+  key.Add(image->GetFieldData()->GetArray(tyndall::SurfaceRadianceFact));
   for (int port : { LIGHTS, ENVIRONMENT })
   {
     key.Add(vtkDataObject::GetData(inputs[port]));
@@ -214,6 +245,10 @@ std::unique_ptr<vtkMediumRayCaster::Scene> vtkMediumRayCaster::MakeScene(
   const tyndall::FloatField direct = read(FluenceDirect, { 1, 3 });
   const tyndall::FloatField ior = read(RefractiveIndex, { 1 });
   const tyndall::FloatField meanDirection = read(MeanDirection, { 3 });
+  // It belongs to the array that the solver wrote.
+  const bool asSolved = fluence.IsThere() &&
+    tyndall::ChosenArray(this, Fluence, image, ArrayNames[Fluence]) == image->GetCellData()->GetArray("fluence");
+  const SurfaceValues surface = asSolved ? ReadSurface(image, input.medium.grid) : SurfaceValues();
   const tyndall::Illumination illumination = this->ReadIllumination(inputs);
   const bool sky = !illumination.environment.Empty() || illumination.sky != tyndall::Rgb{};
   if (!fluence.IsThere() && illumination.lights.empty() && !input.emission.IsThere() && !(sky && ior.IsThere()))
@@ -226,8 +261,10 @@ std::unique_ptr<vtkMediumRayCaster::Scene> vtkMediumRayCaster::MakeScene(
   scene->grid = input.medium.grid;
   scene->lightsAlone = !fluence.IsThere() && !illumination.lights.empty();
   settings.shadowRays |= scene->lightsAlone;
-  scene->caster = std::make_unique<tyndall::MediumRayCaster>(
-    *key.device, input.medium, tyndall::SolvedLight{ fluence, direct, meanDirection }, illumination, settings, ior);
+  scene->caster = std::make_unique<tyndall::MediumRayCaster>(*key.device, input.medium,
+    tyndall::SolvedLight{ fluence, direct, meanDirection,
+      { surface.values.empty() ? nullptr : surface.values.data(), surface.components } },
+    illumination, settings, ior);
   for (const std::string& doubt : scene->caster->Warnings())
   {
     vtkWarningMacro(<< doubt);
@@ -265,11 +302,16 @@ int vtkMediumRayCaster::RequestData(vtkInformation*, vtkInformationVector** inpu
   this->DeviceName.clear();
   this->LeftOut.clear();
   return tyndall::Guarded(this, outputs, [&] {
+    tyndall::ToneMapping toneMapping;
+    toneMapping.exposure = this->Exposure;
+    toneMapping.curve = static_cast<tyndall::ToneCurve>(this->ToneCurve);
+    tyndall::Check(toneMapping);
     std::unique_ptr<Scene> scene = this->FindScene(inputs);
     const tyndall::Picture picture = scene->caster->Render(CameraOf(this, scene->grid), tyndall::MonitorOf(this));
-    tyndall::ToneMapping toneMapping;
-    toneMapping.exposure = this->Exposure > 0.0 ? this->Exposure : tyndall::AutomaticExposure(picture.radiance);
-    toneMapping.curve = static_cast<tyndall::ToneCurve>(this->ToneCurve);
+    if (toneMapping.exposure == 0.0)
+    {
+      toneMapping.exposure = tyndall::AutomaticExposure(picture.radiance);
+    }
     const std::vector<float> opaque;
     const auto color = tyndall::ToneMap(picture.radiance, this->ShowBackground ? opaque : picture.alpha, toneMapping);
 

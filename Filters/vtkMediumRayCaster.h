@@ -36,7 +36,10 @@ struct ViewSettings;
  * | `ior`            | 1          | 1                | refractive index n, above 0; optional            |
  * | `mean_direction` | 3          | 1                | power-weighted mean direction of the light, its length the anisotropy, as vtkPhotonMarcher writes it; optional |
  *
- * or those chosen by SetInputArrayToProcess 0 to 6, and field data `g` (default 0).
+ * or those chosen by SetInputArrayToProcess 0 to 6, and field data `g` (default 0) and, optional, `surface_radiance`,
+ * as vtkLightPropagationMaps writes it where voxels at the faces of the box are thick: rays that come in there show it,
+ * instead of the light at the voxels' centres (not with ShadowRays and lights, SingleScatteringOnly, `mean_direction`,
+ * a table, or where rays bend). It belongs to the array `fluence` beside it; where another is chosen it is not used.
  * Input 1, optional: lights as vtkLightRig makes them, for shadow rays.
  * Input 2, optional: the environment behind the medium, vtkImageData in latitude-longitude layout, point array `radiance`.
  *
@@ -116,7 +119,7 @@ public:
 
   ///@{
   /// Where the camera is and what it looks at, as vtkCamera has it. Default (0, 0, 0) both: while they are equal, the
-  /// camera frames the medium.
+  /// camera frames the medium. Valid up to 1e15 voxels from it.
   tyndallSetRange3Macro(CameraPosition, double, tyndall::AnyLow, tyndall::AnyHigh);
   vtkGetVector3Macro(CameraPosition, double);
   tyndallSetRange3Macro(CameraFocalPoint, double, tyndall::AnyLow, tyndall::AnyHigh);
@@ -146,8 +149,8 @@ public:
   ///@}
 
   ///@{
-  /// Voxels that a ray advances between two samples. Default 0.5, valid (0, infinity). The error falls with its square.
-  tyndallSetRangeMacro(StepSize, double, tyndall::AboveZero, tyndall::AnyHigh);
+  /// Voxels that a ray advances between two samples. Default 0.5, valid [0.01, 10]. The error falls with its square.
+  tyndallSetRangeMacro(StepSize, double, 0.01, 10.0);
   vtkGetMacro(StepSize, double);
   ///@}
 
@@ -160,7 +163,8 @@ public:
 
   ///@{
   /// Whether to follow the lights' direct light by shadow rays, scattered by the medium's phase function. Default off: it is
-  /// in `fluence`, scattered evenly or as `mean_direction` says.
+  /// in `fluence`, scattered evenly or as `mean_direction` says. Where no lamp and no sun shines the picture is the
+  /// same and no time goes into it; `left_out` says so.
   vtkSetMacro(ShadowRays, bool);
   vtkGetMacro(ShadowRays, bool);
   vtkBooleanMacro(ShadowRays, bool);
@@ -181,8 +185,8 @@ public:
 
   ///@{
   /// Radiance behind the medium where there is no environment, red, green, blue, W/(length^2 sr). Default 0, valid
-  /// [0, infinity).
-  tyndallSetRange3Macro(BackgroundColor, double, 0.0, tyndall::LargestFloat);
+  /// [0, 1e37].
+  tyndallSetRange3Macro(BackgroundColor, double, 0.0, 1e37);
   vtkGetVector3Macro(BackgroundColor, double);
   ///@}
 
@@ -240,8 +244,8 @@ public:
 
   ///@{
   /// What radiance is multiplied by for `color`. Default 0: so that the mean of the picture's lit part becomes a medium
-  /// grey.
-  tyndallSetRangeMacro(Exposure, double, 0.0, tyndall::AnyHigh);
+  /// grey. Valid [0, 1e30].
+  tyndallSetRangeMacro(Exposure, double, 0.0, 1e30);
   vtkGetMacro(Exposure, double);
   ///@}
 

@@ -4,6 +4,7 @@
 #include "Monitor.h"
 
 #include <algorithm>
+#include <limits>
 
 namespace tyndall
 {
@@ -15,6 +16,7 @@ struct Batches
   std::size_t whole = 1;       ///< parts are multiples of this
   double seconds = 0.05;       ///< that a part is to take
   double growth = 4.0;         ///< of a part over the last one, at most
+  std::size_t most = std::numeric_limits<std::size_t>::max(); ///< in a part, however soon the last one was done
   double from = 0.0, to = 1.0; ///< fractions done that are reported
 };
 
@@ -23,7 +25,8 @@ template <class Queue>
 void InBatches(Device& device, const Batches& batches, const Monitor& monitor, const Queue& queue)
 {
   const auto rounded = [&](double size) {
-    const std::size_t parts = static_cast<std::size_t>(size / batches.whole);
+    const double within = std::min(size, static_cast<double>(batches.most));
+    const std::size_t parts = static_cast<std::size_t>(within / batches.whole);
     return std::max<std::size_t>(parts, 1) * batches.whole;
   };
   std::size_t batch = rounded(static_cast<double>(batches.first));

@@ -349,6 +349,19 @@ void FusedSolver::UnloadAccelerated()
   {
     this->LimitFlux(fluence);
   }
+  this->FindSurfaceRadiance();
+}
+
+/// Of thick voxels: there the system knows what a sweep does not.
+void FusedSolver::FindSurfaceRadiance()
+{
+  std::vector<SurfacePowers> powers(this->LinearSource ? this->Channels : 0);
+  for (std::size_t c = 0; c < powers.size(); ++c)
+  {
+    powers[c] = this->UnitPower(static_cast<int>(c)) > 0.0 ? this->Systems[c]->PowersAtSurface() : SurfacePowers();
+    powers[c].lamps = this->Lamps.data() + c * this->Stride;
+  }
+  this->Result.surfaceRadiance = SurfaceRadiance(this->TheMedium, this->Settings.periodic, this->Lights, powers);
 }
 
 /// The mean of what goes through a voxel's faces is more than what flows in it where light dies away within it. No light flows

@@ -129,6 +129,7 @@ private:
   bool DoneAccelerated(int sweeps) const;
   void UnloadAccelerated();
   void LimitFlux(const std::vector<float>& fluence);
+  void FindSurfaceRadiance();
 
   double Progress(int order, double done) const;
   std::vector<std::string> LeftOut() const;

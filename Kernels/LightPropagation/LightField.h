@@ -47,6 +47,9 @@ struct LightField
   std::vector<float> netFlux;           ///< W / length^2, 3 * channels a voxel: (x, y, z) of channel 0, 1, 2
   std::vector<float> scatteredRadiance; ///< W / (length^2 sr), channels * storedDirections a voxel
   std::vector<std::array<double, 3>> storedDirections; ///< of scatteredRadiance; one (0, 0, 0) where isotropic
+  /// W / (length^2 sr) that leaves through the box's faces, [cell][SurfaceCosines][channel] (BoxFaces.h); empty where
+  /// no voxel there is thick, or it is not known
+  std::vector<float> surfaceRadiance;
   double relativeError =
     0.0; ///< of fluence, estimated, root mean square over that of fluence; 0 where not asked for, NaN: not known
   EnergyBalance balance;

@@ -371,7 +371,9 @@ __kernel void low_order_balance(low_order_layout layout, const __global float* s
 }
 
 // A voxel's faces at the box's border, [face][row][voxel of the row]: power out of the box, W; power out that seems to
-// leave there in the sweep, W; for voxels with several such faces how much that counts, else -1.
+// leave there in the sweep, W; for voxels with several such faces how much that counts, else -1; power out less power
+// in, W, without what the sweep knows better: that is right for a face of the box on the whole, but not from voxel to
+// voxel.
 __kernel void low_order_outflow(low_order_layout layout, const __global float* sigma_t, const __global float* sigma_a,
   const __global float* stairs, const __global float* conductance, const __global float* entering, const __global float* passed,
   const __global float* model, const __global float* pattern, const __global float* source,
@@ -397,9 +399,10 @@ __kernel void low_order_outflow(low_order_layout layout, const __global float* s
     const int v = d / 2 == 2 ? 1 : 2;
     if (is_border(&layout, at, d))
     {
-      __global exact* face = outflow + 3 * (begin + at[v] * layout.size[u] + at[u]);
-      face[0] = power_of_face(&layout, &arrays, fluence, d, i, next, at, share) +
-        entering[d * stride + i];
+      __global exact* face = outflow + 4 * (begin + at[v] * layout.size[u] + at[u]);
+      const float none[6] = { 0.0f };
+      face[3] = power_of_face(&layout, &arrays, fluence, d, i, next, at, none);
+      face[0] = face[3] + share[d] + entering[d * stride + i];
       face[1] = seeming[d];
       face[2] = borders > 1 ? believed : -1.0f;
     }

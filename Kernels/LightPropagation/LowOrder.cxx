@@ -162,7 +162,7 @@ LowOrder::LowOrder(Device& device, const Grid& grid, const std::array<bool, 3>& 
   const std::size_t faces = 2 *
     (static_cast<std::size_t>(n[0]) * n[1] + static_cast<std::size_t>(n[1]) * n[2] +
       static_cast<std::size_t>(n[2]) * n[0]);
-  this->Borders = ExactValues(device, 3 * faces, what);
+  this->Borders = ExactValues(device, 4 * faces, what);
   for (int i = 0; i < 2; ++i)
   {
     this->FoundBefore[i] = Buffer<float>(device, this->Count, what);
@@ -280,7 +280,7 @@ std::array<double, 6> LowOrder::Outflow(const std::array<double, 6>& ofSweep)
   for (int face = 0; face < 6; ++face)
   {
     const PlaneAxes axes = AcrossAxis(face / 2);
-    for (int i = 0; i < this->Layout.size[axes.u] * this->Layout.size[axes.v]; ++i, at += 3)
+    for (int i = 0; i < this->Layout.size[axes.u] * this->Layout.size[axes.v]; ++i, at += 4)
     {
       outflow[face] += borders[at];
       missing[face] -= borders[at + 1];
@@ -297,6 +297,25 @@ std::array<double, 6> LowOrder::Outflow(const std::array<double, 6>& ofSweep)
       this->Layout.periodic[face / 2] ? 0.0 : believed / shared * (missing[face] - all * ofSweep[face] / left);
   }
   return NotNegative(outflow);
+}
+
+SurfacePowers LowOrder::PowersAtSurface() const
+{
+  const std::vector<double> borders = this->Borders.Read();
+  SurfacePowers powers;
+  powers.halfRange = this->Layout.halfRange;
+  std::size_t at = 3;
+  for (int face = 0; face < 6; ++face)
+  {
+    powers.in[face] = this->Layout.incoming[face];
+    const PlaneAxes axes = AcrossAxis(face / 2);
+    const double area = this->Layout.spacing[axes.u] * this->Layout.spacing[axes.v];
+    for (int i = 0; i < this->Layout.size[axes.u] * this->Layout.size[axes.v]; ++i, at += 4)
+    {
+      powers.net.push_back(borders[at] / area);
+    }
+  }
+  return powers;
 }
 
 void LowOrder::AddFlux(const Buffer<float>& flux)

@@ -3,6 +3,7 @@
 #include "Directions.h"
 #include "LowOrderSolver.h"
 #include "RayPattern.h"
+#include "SurfaceRadiance.h"
 
 #include "../Medium/Grid.h"
 
@@ -100,6 +101,9 @@ public:
   /// W out of the box through each of its faces, by the last correction; 0 where it is periodic.
   /// @param ofSweep  W that left through each face in the sweep: tells how to share out what leaves at the box's edges
   std::array<double, 6> Outflow(const std::array<double, 6>& ofSweep);
+
+  /// W through each voxel's faces at the box's, of the last Outflow.
+  SurfacePowers PowersAtSurface() const;
 
   /// Add the net flux times the voxel's volume to [channel][x, y, z][stride].
   void AddFlux(const Buffer<float>& flux);

@@ -56,7 +56,7 @@ template <class Act>
 void ForArrays(LightField& light, const Act& act)
 {
   for (std::vector<float>* values :
-    { &light.fluence, &light.fluenceDirect, &light.fluenceError, &light.scatteredRadiance })
+    { &light.fluence, &light.fluenceDirect, &light.fluenceError, &light.scatteredRadiance, &light.surfaceRadiance })
   {
     act(*values, std::size_t{ 1 });
   }

@@ -176,6 +176,7 @@ void ToWatts(LightField& light, double unit)
   Multiply(light.fluenceError, unit, "fluence_error");
   Multiply(light.netFlux, unit, "net_flux");
   Multiply(light.scatteredRadiance, unit, "scattered_radiance");
+  Multiply(light.surfaceRadiance, unit, "surface_radiance");
   MultiplyPowers(light, unit);
 }
 

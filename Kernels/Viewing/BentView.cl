@@ -95,7 +95,7 @@ kernel void cast_bent_rays(view v, optics o, global const float4* restrict sampl
   global const float4* restrict environment, global float* restrict radiance, global float* restrict alpha,
   global float* restrict depth)
 {
-  const int column = get_global_id(0) * PACKET_WIDTH;
+  const int column = (get_global_id(0) + v.picture.w) * PACKET_WIDTH;
   const int row = (get_global_id(1) + v.picture.z) * PACKET_HEIGHT;
   if (column >= v.picture.x || row >= v.picture.y)
   {

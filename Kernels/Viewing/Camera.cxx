@@ -28,6 +28,13 @@ bool Finite(const std::array<double, 3>& v)
   return std::isfinite(v[0]) && std::isfinite(v[1]) && std::isfinite(v[2]);
 }
 
+/// Its direction, times what makes the largest component one: squares then are numbers, whatever the scale. 0 for 0.
+glm::dvec3 Scaled(const glm::dvec3& v)
+{
+  const double largest = std::max({ std::abs(v.x), std::abs(v.y), std::abs(v.z) });
+  return largest > 0.0 ? v / largest : v;
+}
+
 double TangentOfHalf(double degrees)
 {
   return std::tan(degrees * std::acos(-1.0) / 360.0);
@@ -50,16 +57,20 @@ std::array<std::array<double, 3>, 3> Axes(const Camera& camera)
     throw InvalidInput("The camera's parallel scale is " + std::to_string(camera.parallelScale) +
       "; it is half the picture's height and must be positive.");
   }
-  const glm::dvec3 view = Vector(camera.focalPoint) - Vector(camera.position);
-  const double distance = glm::length(view);
-  if (!(distance > 0.0))
+  const glm::dvec3 view = Scaled(0.5 * Vector(camera.focalPoint) - 0.5 * Vector(camera.position)); // no overflow
+  if (view == glm::dvec3(0.0))
   {
     throw InvalidInput(
       "The camera's position and focal point are the same; move one, so that it is clear where it looks.");
   }
-  const glm::dvec3 forward = view / distance;
-  const glm::dvec3 right = glm::cross(forward, Vector(camera.viewUp));
-  if (!(glm::length(right) > 1e-9 * glm::length(Vector(camera.viewUp))))
+  const glm::dvec3 forward = glm::normalize(view);
+  const glm::dvec3 up = Scaled(Vector(camera.viewUp));
+  if (up == glm::dvec3(0.0))
+  {
+    throw InvalidInput("The camera's view up is zero; say what is upwards in the picture.");
+  }
+  const glm::dvec3 right = glm::cross(forward, up);
+  if (!(glm::length(right) > 1e-9 * glm::length(up)))
   {
     throw InvalidInput("The camera's view up is along its view; choose one across it.");
   }

@@ -32,6 +32,10 @@ typedef struct
 {
   spectrum left;
   rgb radiance;
+#if MANY_STEPS
+  spectrum left_rest; // see add_to
+  rgb radiance_rest;
+#endif
 } light;
 
 inline real mean_left(light l)
@@ -52,18 +56,6 @@ inline real most_left(light l)
 #endif
 }
 
-inline light unlit(real left)
-{
-  light l;
-#if COLOURED
-  l.left.r = l.left.g = l.left.b = left;
-#else
-  l.left = left;
-#endif
-  l.radiance.r = l.radiance.g = l.radiance.b = (real)0.0f;
-  return l;
-}
-
 inline spectrum scaled(spectrum s, real factor)
 {
 #if COLOURED
@@ -74,6 +66,22 @@ inline spectrum scaled(spectrum s, real factor)
 #else
   return s * factor;
 #endif
+}
+
+inline light unlit(real left)
+{
+  light l;
+#if COLOURED
+  l.left.r = l.left.g = l.left.b = left;
+#else
+  l.left = left;
+#endif
+  l.radiance.r = l.radiance.g = l.radiance.b = (real)0.0f;
+#if MANY_STEPS
+  l.left_rest = scaled(l.left, (real)0.0f);
+  l.radiance_rest = l.radiance;
+#endif
+  return l;
 }
 
 // What comes through from behind, `part` of it.
@@ -180,6 +188,15 @@ __attribute__((always_inline)) inline sample take_sample(const scenery* scene, c
   return s;
 }
 
+#if MANY_STEPS
+// What a step takes is subtracted, not what it leaves multiplied: one less a thousandth of a millionth is one.
+inline void lose(real* left, real* rest, real part)
+{
+  add_to(left, rest, -lesser(part, (real)1.0f) * *left);
+  *left = greater(*left, (real)0.0f);
+}
+#endif
+
 // Over `length` from place `start`, along which the ray goes on by `gain`. Rays that have less light left than `enough` stop.
 // Nothing but the last product waits for what was left before.
 __attribute__((always_inline)) inline void cross_sample(
@@ -187,7 +204,37 @@ __attribute__((always_inline)) inline void cross_sample(
 {
   const integer goes_on = most_left(*l) > (real)enough;
   const real before = mean_left(*l);
+#if MANY_STEPS
 #if COLOURED
+#define SIGMA(c) s.sigma.c
+#define LEFT(c) l->left.c
+#else
+#define SIGMA(c) s.sigma
+#define LEFT(c) l->left
+#endif
+#define GATHER(c)                                                                                  \
+  {                                                                                                \
+    real remains;                                                                                  \
+    const real weight = goes_on ? cross_length(SIGMA(c), length, &remains) * LEFT(c) : (real)0.0f; \
+    add_to(&l->radiance.c, &l->radiance_rest.c, s.source.c* weight);                               \
+  }
+  GATHER(r)
+  GATHER(g)
+  GATHER(b)
+#undef GATHER
+#undef SIGMA
+#undef LEFT
+  real unused;
+#define LOSE(sigma, left, rest) lose(&left, &rest, goes_on ? sigma* cross_length(sigma, length, &unused) : (real)0.0f);
+#if COLOURED
+  LOSE(s.sigma.r, l->left.r, l->left_rest.r)
+  LOSE(s.sigma.g, l->left.g, l->left_rest.g)
+  LOSE(s.sigma.b, l->left.b, l->left_rest.b)
+#else
+  LOSE(s.sigma, l->left, l->left_rest)
+#endif
+#undef LOSE
+#elif COLOURED
 #define CROSS(c)                                                                                                         \
   {                                                                                                                      \
     real remains;                                                                                                        \

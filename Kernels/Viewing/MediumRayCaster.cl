@@ -1,14 +1,14 @@
 // Primary rays through a medium of constant index, one work-item a packet of neighbouring pixels.
 //
-// Needs Numerics.cl, Sampling.cl, View.cl, Background.cl and Crossing.cl before it. Define besides
+// Needs Numerics.cl, Sampling.cl, View.cl, Background.cl, Crossing.cl and SurfaceLight.cl before it. Define besides
 //   SKIP_BRICKS  1: rays leap over bricks in which nothing extinguishes or shines
 
 kernel void cast_rays(view v, global const float4* restrict samples, global const float4* restrict extinctions,
   global const float4* restrict flow, global const float4* restrict glow, global const char* restrict bricks,
-  global const float4* restrict environment, global float* restrict radiance, global float* restrict alpha,
-  global float* restrict depth)
+  global const float4* restrict environment, global const float4* restrict surface, global float* restrict radiance,
+  global float* restrict alpha, global float* restrict depth)
 {
-  const int column = get_global_id(0) * PACKET_WIDTH;
+  const int column = (get_global_id(0) + v.picture.w) * PACKET_WIDTH;
   const int row = (get_global_id(1) + v.picture.z) * PACKET_HEIGHT;
   if (column >= v.picture.x || row >= v.picture.y)
   {
@@ -67,6 +67,9 @@ kernel void cast_rays(view v, global const float4* restrict samples, global cons
 
   // What is behind, and the picture.
   const real left = mean_left(l);
+#if SURFACE_LIGHT
+  add_surface_light(surface_light(surface, packet, seen.d, before, v.size), &l);
+#endif
   add_background(look_behind(&v, seen.d, environment), (real)v.background.w, &l);
   const real where =
     left > (real)0.5f ? (real)v.marching.z : (distance_to_half(half_way) + before) * seen.cosine;

@@ -6,6 +6,7 @@
 #include "../Medium/Traits.h"
 #include "../Refraction/SquaredIndex.h"
 #include "Bricks.h"
+#include "SurfaceLight.h"
 #include "TyndallKernelSources.h"
 #include "ViewChecks.h"
 #include "ViewLights.h"
@@ -40,6 +41,8 @@ constexpr int RoundsAtMost = 16;            ///< of a ray through the volume, in
 constexpr double BentStretch = 4.0;         ///< voxels, before it is asked whether rays still bend
 constexpr double BesideSurface = 5.0;       ///< voxels from a surface, beyond its smoothing (9 voxels wide) by default
 constexpr double SurfacePrecision = 1.0e-3; ///< voxels
+constexpr double SamplesAtOnce = 3.2e7; ///< of the work between two reports, at most: under a second on one old core
+constexpr double ManySteps = 4096.0;    ///< of a ray, from which on rounding in each of them adds up to 1e-4
 constexpr double Pi = 3.14159265358979323846;
 
 glm::dvec3 Vector(const std::array<double, 3>& v)
@@ -85,28 +88,58 @@ std::size_t PaddedCount(const Grid& grid)
 
 /// Work-groups have fixed shapes throughout: PoCL compiles a kernel anew for every shape.
 ///
-/// Of rows of work: slices, rows of packets.
-Batches BatchesOfRows(int rows, double from, double to)
+/// Of rows of cells of work: whole rows, or parts of them where a row takes more than SamplesAtOnce.
+/// @param samples  that a cell takes, at most
+Batches BatchesOfRows(std::size_t rows, std::size_t cells, double samples, double from, double to)
 {
+  const double atOnce = std::max(SamplesAtOnce / std::max(samples, 1.0), 1.0);
   Batches batches;
-  batches.count = static_cast<std::size_t>(rows);
-  batches.first = std::max<std::size_t>(1, batches.count / 8);
+  batches.count = rows * cells;
+  batches.whole = atOnce >= static_cast<double>(cells) ? cells : 1;
+  batches.most = static_cast<std::size_t>(std::min(atOnce, static_cast<double>(batches.count)));
+  batches.first = std::max<std::size_t>(1, rows / 8) * cells;
   batches.from = from;
   batches.to = to;
   return batches;
 }
+
+/// A part of such a batch that is a rectangle.
+struct Patch
+{
+  int column, row;
+  std::size_t columns, rows;
+};
+
+/// Calls launch(patch) for the rectangles that cells [begin, begin + size) of rows of `cells` consist of.
+template <class Launch>
+void InPatches(std::size_t begin, std::size_t size, std::size_t cells, const Launch& launch)
+{
+  for (const std::size_t end = begin + size; begin < end;)
+  {
+    const std::size_t column = begin % cells;
+    const bool whole = column == 0 && end - begin >= cells;
+    const std::size_t columns = whole ? cells : std::min(cells - column, end - begin);
+    const std::size_t rows = whole ? (end - begin) / cells : 1;
+    launch(Patch{ static_cast<int>(column), static_cast<int>(begin / cells), columns, rows });
+    begin += columns * rows;
+  }
+}
 }
 
 MediumRayCaster::MediumRayCaster(Device& device, const Medium& medium, const SolvedLight& light,
-  const Illumination& illumination, const ViewSettings& settings, const Field& ior)
+  const Illumination& illumination, const ViewSettings& asked, const Field& ior)
   : TheDevice(device)
   , TheGrid(medium.grid)
-  , Settings(settings)
+  , LampsShine(std::any_of(
+      illumination.lights.begin(), illumination.lights.end(), [](const Light& lamp) { return !IsZero(lamp.power); }))
+  , AskedForShadowRays(asked.shadowRays)
+  , Settings(this->Needed(asked))
   , G(medium.g)
 {
   Check(medium);
   Check(illumination);
-  Check(settings);
+  Check(asked);
+  const ViewSettings& settings = this->Settings;
   Check(light, medium.grid, settings);
   CheckViewedIndex(ior, medium.grid);
 
@@ -152,7 +185,18 @@ MediumRayCaster::MediumRayCaster(Device& device, const Medium& medium, const Sol
         this->Bends ? ior : Field{}, settings.tableFace, this->UnderSky),
       "light on the table");
   }
+  this->PrepareSurface(medium, light);
   this->SayWhatIsLeftOut();
+}
+
+void MediumRayCaster::PrepareSurface(const Medium& medium, const SolvedLight& light)
+{
+  const bool plain = !this->Settings.singleScatteringOnly && this->LightCount == 0 && !this->KnowsFlow &&
+    !this->Bends && this->Settings.tableFace < 0;
+  this->Surface = Buffer<cl_float4>(this->TheDevice,
+    plain && light.surface.values && light.fluence.values ? SurfaceLight(medium, light, this->Settings.stepSize)
+                                                          : std::vector<cl_float4>(),
+    "light at the surface");
 }
 
 /// What rays meet, a border of one voxel around.
@@ -204,7 +248,8 @@ void MediumRayCaster::SayWhatIsLeftOut()
   omit(this->Coloured || this->Grey, left_out::GreyExtinction);
   omit(!this->Grey, left_out::Grey);
   omit(this->Components[2] > 0, left_out::NoEmission);
-  omit(this->LightCount > 0, "shadow rays: not asked for, or no light");
+  omit(this->LightCount > 0,
+    this->AskedForShadowRays ? "shadow rays: no lamp and no sun shines" : "shadow rays: not asked for");
   omit(this->EnvironmentSize[0] > 0, "environment: none, or not shown");
   omit(this->KnowsFlow || this->LightCount > 0, "phase function: g is 0, or the direction of the light is not known");
   omit(this->Bends, left_out::ConstantIndex);
@@ -216,21 +261,33 @@ void MediumRayCaster::SayWhatIsLeftOut()
       : "surface reflection: no refractive index is as large "
         "as the surface's, or none is smaller");
   omit(this->Settings.tableFace >= 0, "table: none");
+  omit(this->Surface.Size() > 0,
+    "light at the surface: no thick voxels at the faces of the box, or it is not known there");
 }
 
-bool MediumRayCaster::Adopt(const ViewSettings& settings)
+/// Without a lamp there is nothing that shadow rays could find.
+ViewSettings MediumRayCaster::Needed(ViewSettings asked) const
 {
-  Check(settings);
+  asked.shadowRays = asked.shadowRays && this->LampsShine;
+  return asked;
+}
+
+bool MediumRayCaster::Adopt(const ViewSettings& asked)
+{
+  Check(asked);
+  const ViewSettings settings = this->Needed(asked);
   const ViewSettings& now = this->Settings;
   if (settings.singleScatteringOnly != now.singleScatteringOnly || settings.shadowRays != now.shadowRays ||
     settings.rectangleSamples != now.rectangleSamples || settings.showBackground != now.showBackground ||
-    settings.packetWidth != now.packetWidth || settings.tableFace != now.tableFace || settings.leaveOut != now.leaveOut)
+    settings.packetWidth != now.packetWidth || settings.tableFace != now.tableFace ||
+    settings.leaveOut != now.leaveOut || (this->Surface.Size() > 0 && settings.stepSize != now.stepSize))
   {
     return false;
   }
   this->SourcesReady &= this->LightCount == 0 || settings.stepSize == now.stepSize; // shadow rays step as well
   this->Background = this->UnderSky ? this->Background : settings.backgroundColor;
   this->Settings = settings;
+  this->AskedForShadowRays = asked.shadowRays;
   this->SayWhatIsLeftOut();
   return true;
 }
@@ -318,22 +375,27 @@ void MediumRayCaster::SeeLights(const Camera& camera, const Monitor& monitor)
   const double radius = std::cbrt(3.0 * this->TheGrid.VoxelVolume() / (4.0 * Pi));
   cl::Kernel see = this->TheDevice.Kernel("see_lights",
     { kernel_source::Numerics, kernel_source::Sampling, kernel_source::ScatteredLight },
-    this->PackingOptions() + Define("SHADOW_RAYS", true) + Define("BENDS", false));
+    this->PackingOptions() + Define("SHADOW_RAYS", true) + Define("BENDS", false) + this->StepOption());
   const std::size_t across = RoundUp<std::size_t>(this->TheGrid.size[0], 4 * this->PacketWidth()) / this->PacketWidth();
-  InBatches(this->TheDevice, BatchesOfRows(this->TheGrid.size[2], 0.0, 0.5), monitor, [&](int first, int count) {
+  const std::size_t rows = this->TheGrid.size[1];
+  const double samplesOfRow = this->LongestSteps() * this->LightCount * this->TheGrid.size[0];
+  const auto launch = [&](const Patch& part) {
     With(see, size, bricks, Float4(Vector(this->TheGrid.spacing), 0.0),
       Float4(eye, camera.parallelProjection ? 1.0 : 0.0), Float4(Vector(Axes(camera)[2]), 0.0),
       static_cast<float>(this->G), static_cast<float>(this->Settings.stepSize),
       static_cast<float>(radius * radius / 3.0), this->LightCount, this->Lights, this->Arrays[1], this->Samples,
-      this->Extinctions, this->Bricks, first, this->Direct);
+      this->Extinctions, this->Bricks, part.row, part.column, this->Direct);
     this->TheDevice.Queue().enqueueNDRangeKernel(
-      see, cl::NullRange, cl::NDRange(across, this->TheGrid.size[1], count), cl::NDRange(4, 1, 1));
-  });
+      see, cl::NullRange, cl::NDRange(across, part.columns, part.rows), cl::NDRange(4, 1, 1));
+  };
+  InBatches(this->TheDevice, BatchesOfRows(this->TheGrid.size[2], rows, samplesOfRow, 0.0, 0.5), monitor,
+    [&](std::size_t first, std::size_t count) { InPatches(first, count, rows, launch); });
 }
 
 MediumRayCaster::View MediumRayCaster::MakeView(const Camera& camera) const
 {
   const auto axes = Axes(camera);
+  CheckDistance(camera, this->TheGrid);
   const Grid& grid = this->TheGrid;
   const glm::dvec3 inverseSpacing = 1.0 / Vector(grid.spacing);
   const glm::dvec3 eye = Vector(camera.position) - Vector(grid.origin);
@@ -400,6 +462,18 @@ MediumRayCaster::Optics MediumRayCaster::MakeOptics() const
   return optics;
 }
 
+/// Of the longest straight ray.
+double MediumRayCaster::LongestSteps() const
+{
+  const std::array<int, 3>& size = this->TheGrid.size;
+  return std::hypot(size[0], size[1], size[2]) / this->Settings.stepSize + 1.0;
+}
+
+std::string MediumRayCaster::StepOption() const
+{
+  return Define("MANY_STEPS", this->LongestSteps() > ManySteps);
+}
+
 std::string MediumRayCaster::CastingOptions() const
 {
   // Longest optical length of a step; the kernel has a shorter way to cross it up to 2. Bent steps can be a little longer.
@@ -409,7 +483,7 @@ std::string MediumRayCaster::CastingOptions() const
   return Define("REAL_WIDTH", this->PacketWidth()) + Define("COLOURED", this->Coloured) + Define("GREY", this->Grey) +
     Define("SKIP_BRICKS", this->SkipsBricks()) + Define("ENVIRONMENT", this->EnvironmentSize[0] > 0) +
     Define("THIN_STEPS", longest <= (this->Bends ? 1.5 : 2.0)) + Define("PHASE", phase) +
-    Define("GLOW", this->GlowsApart());
+    Define("GLOW", this->GlowsApart()) + this->StepOption();
 }
 
 /// Rays that cannot but go straight on have a kernel of their own.
@@ -419,8 +493,8 @@ cl::Kernel MediumRayCaster::CastingKernel()
   {
     return this->TheDevice.Kernel("cast_rays",
       { kernel_source::Numerics, kernel_source::Sampling, kernel_source::View, kernel_source::Background,
-        kernel_source::Crossing, kernel_source::MediumRayCaster },
-      this->CastingOptions());
+        kernel_source::Crossing, kernel_source::SurfaceLight, kernel_source::MediumRayCaster },
+      this->CastingOptions() + Define("SURFACE_LIGHT", this->Surface.Size() > 0));
   }
   const int surface = this->Reflects() ? static_cast<int>(this->Settings.surfaceReflection) : 0;
   return this->TheDevice.Kernel("cast_bent_rays",
@@ -439,14 +513,16 @@ void MediumRayCaster::CastRays(View& view, double from, const Monitor& monitor)
   cl::Kernel cast = this->CastingKernel();
   // Batches of whole work-groups: else the last rows of one would be cast again by the next.
   const int group = 4;
-  const std::size_t across = RoundUp<std::size_t>(view.Picture.s[0], group * packet[0]) / packet[0];
-  const int rows = static_cast<int>(RoundUp<std::size_t>(view.Picture.s[1], group * packet[1]) / (group * packet[1]));
-  InBatches(this->TheDevice, BatchesOfRows(rows, from, 1.0), monitor, [&](int first, int count) {
-    view.Picture.s[2] = first * group;
+  const std::size_t across = RoundUp<std::size_t>(view.Picture.s[0], group * packet[0]) / (group * packet[0]);
+  const std::size_t rows = RoundUp<std::size_t>(view.Picture.s[1], group * packet[1]) / (group * packet[1]);
+  const double samples = this->LongestSteps() * group * group * packet[0] * packet[1];
+  const auto launch = [&](const Patch& part) {
+    view.Picture.s[2] = part.row * group;
+    view.Picture.s[3] = part.column * group;
     if (straight)
     {
       With(cast, view, this->Samples, this->Extinctions, this->Flow, this->Glow, this->Bricks, this->EnvironmentPixels,
-        this->Radiance, this->Alpha, this->Depth);
+        this->Surface, this->Radiance, this->Alpha, this->Depth);
     }
     else
     {
@@ -454,8 +530,10 @@ void MediumRayCaster::CastRays(View& view, double from, const Monitor& monitor)
         this->Bricks, this->EnvironmentPixels, this->Radiance, this->Alpha, this->Depth);
     }
     this->TheDevice.Queue().enqueueNDRangeKernel(
-      cast, cl::NullRange, cl::NDRange(across, static_cast<std::size_t>(count) * group), cl::NDRange(group, group));
-  });
+      cast, cl::NullRange, cl::NDRange(part.columns * group, part.rows * group), cl::NDRange(group, group));
+  };
+  InBatches(this->TheDevice, BatchesOfRows(rows, across, samples, from, 1.0), monitor,
+    [&](std::size_t first, std::size_t count) { InPatches(first, count, across, launch); });
 }
 
 Picture MediumRayCaster::Render(const Camera& camera, const Monitor& monitor)

@@ -23,6 +23,9 @@ struct SolvedLight
   Field fluenceDirect; ///< its unscattered part; null: not known
   /// Mean direction of the light weighted by power, 3 components; its length is the anisotropy, in [0, 1]. Null: not known.
   Field meanDirection;
+  /// W / (length^2 sr) that leaves through the box's faces, a value for each cell of BoxFaces.h, 4 components
+  /// (SurfaceCosines) or 3 times as many (cosine by cosine, red, green, blue). Null: not known.
+  Field surface = {};
 };
 
 /// Angular distribution of scattered light for a mean cosine g.
@@ -44,12 +47,14 @@ enum class SurfaceReflection
 struct ViewSettings
 {
   std::array<int, 2> imageSize = { 800, 600 }; ///< pixels
-  double stepSize = 0.5;                       ///< voxels a ray advances between samples, > 0
+  double stepSize = 0.5;                       ///< voxels a ray advances between samples, [0.01, 10]
   bool singleScatteringOnly = false;           ///< show only light that was scattered once
-  bool shadowRays = false;    ///< find the lights' direct light by shadow rays, with the medium's phase function
+  /// Find the lights' direct light by shadow rays, with the medium's phase function; without lamps and suns nothing
+  /// changes.
+  bool shadowRays = false;
   int rectangleSamples = 3;   ///< per edge of a rectangular light, for shadow rays
   bool showBackground = true; ///< also in what surface and table reflect
-  Rgb backgroundColor = { 0.0, 0.0, 0.0 }; ///< radiance behind the medium where there is no environment
+  Rgb backgroundColor = { 0.0, 0.0, 0.0 }; ///< radiance behind the medium where there is no environment, [0, 1e37]
   bool skipEmptyBricks = true;             ///< leap over what is empty; changes the time and nothing else
   /// What the scene does not need; false: three channels, rays that could bend and no leaps, to see what it saves.
   bool leaveOut = true;
@@ -104,6 +109,11 @@ struct Picture
 /// nothing counts twice; what else is in fluenceDirect came straight from an environment or a sky and stays. The sum over
 /// lights is found at voxel centres. With shadow rays all other light scatters evenly. Shadow rays go straight on, through glass
 /// as well.
+///
+/// Where voxels at the faces of the box are thicker than a mean free path, what leaves them there is not what is at
+/// their centres. Rays that come in through such a face show the radiance that the solver says leaves there
+/// (`surface`), see SurfaceLight.h: in straight views of all light, without shadow rays, directions of light or a
+/// table.
 ///
 /// sigma_s and sigma_t are the medium's own in every term, also where a solver worked with sigma_s (1 - g).
 /// `scattered_radiance`, which solvers keep for chosen directions, is data to look at and is not used here: a camera sees along
@@ -163,6 +173,9 @@ private:
   struct View;
   struct Optics;
 
+  ViewSettings Needed(ViewSettings asked) const;
+  double LongestSteps() const;
+  std::string StepOption() const;
   std::string PackingOptions() const;
   std::string CastingOptions() const;
   int PacketWidth() const;
@@ -181,6 +194,7 @@ private:
   void Upload(const Medium& medium, const SolvedLight& light, const Field& ior);
   void Reserve();
   void PrepareBending();
+  void PrepareSurface(const Medium& medium, const SolvedLight& light);
   void SayWhatIsLeftOut();
   void Pack(bool forShadowRays);
   void SeeLights(const Camera& camera, const Monitor& monitor);
@@ -192,7 +206,9 @@ private:
 
   Device& TheDevice;
   Grid TheGrid;
-  ViewSettings Settings;
+  bool LampsShine = false;
+  bool AskedForShadowRays = false; ///< though there may be no lamp
+  ViewSettings Settings;           ///< as far as the scene needs them
   double G = 0.0;
   MediumTraits Traits;
   bool HasEmptyBricks = false;
@@ -219,6 +235,7 @@ private:
   Buffer<cl_float4> Glow;    ///< emission, where Flow is there
   Buffer<cl_float4> Bending; ///< gradient of n^2, and n^2
   Buffer<cl_float4> Table;   ///< light on the table
+  Buffer<cl_float4> Surface; ///< see SurfaceLight.h
   Buffer<cl_char> Bricks;
   Buffer<cl_float4> EnvironmentPixels;
   Buffer<cl_float4> Lights;             ///< three a small_light

@@ -4,6 +4,8 @@
 //   COLOURED  1: extinction differs between red, green and blue; 0: one extinction serves all three
 //   GREY      1: so do sources; `samples` then hold source and extinction of a voxel, and those of the next one along y
 //
+//   MANY_STEPS 1: rays take so many steps that what rounding loses in each adds up
+//
 // Every result is rounded as written: else the compiler fuses multiply and add here but not there, and two variants of a
 // kernel (skipping bricks or not) would give pictures that differ in the last place.
 //
@@ -73,6 +75,19 @@ typedef struct
 {
   real r, g, b;
 } rgb;
+
+// sum + more; with MANY_STEPS `rest` keeps what the sum was rounded by (Kahan 1965).
+inline void add_to(real* sum, real* rest, real more)
+{
+#if MANY_STEPS
+  const real whole = more - *rest;
+  const real next = *sum + whole;
+  *rest = (next - *sum) - whole;
+  *sum = next;
+#else
+  *sum += more;
+#endif
+}
 
 // Packets of rays: where each enters the box, its direction in voxels per unit length, and how long it stays inside (0: it
 // misses).

@@ -196,12 +196,13 @@ typedef struct
 // the voxel's volume is 3/R^2.
 kernel void see_lights(int4 size, int4 brick_count, float4 spacing, float4 eye, float4 forward, float g, float step,
   float nearest_square, int light_count, global const small_light* restrict lights,
-  global const float* restrict scattering, global const float4* restrict samples, global const float4* restrict extinctions,
-  global const char* restrict bricks, int first_slice, global float* restrict direct)
+  global const float* restrict scattering, global const float4* restrict samples,
+  global const float4* restrict extinctions, global const char* restrict bricks, int first_slice, int first_row,
+  global float* restrict direct)
 {
   // The voxels of this packet, along x.
   const int first = get_global_id(0) * REAL_WIDTH;
-  const int j = get_global_id(1);
+  const int j = get_global_id(1) + first_row;
   const int k = get_global_id(2) + first_slice;
   if (first >= size.x || j >= size.y)
   {
@@ -259,6 +260,11 @@ kernel void see_lights(int4 size, int4 brick_count, float4 spacing, float4 eye, 
     }
 
     // What the medium on the way takes.
+#if MANY_STEPS
+#define PASS(sigma, sum, rest) add_to(&sum, &rest, sigma* length);
+#else
+#define PASS(sigma, sum, rest) sum = fma(sigma, length, sum);
+#endif
     const real3 direction = { d.x / (real)spacing.x, d.y / (real)spacing.y, d.z / (real)spacing.z };
     real before;
     const rays packet =
@@ -267,6 +273,7 @@ kernel void see_lights(int4 size, int4 brick_count, float4 spacing, float4 eye, 
     const real3 strides = strides_per_voxel(direction, stride);
     const int steps = (int)ceil(most_lanes(arriving > (real)0.0f ? packet.length / stride : (real)0.0f));
     rgb depths = { (real)0.0f, (real)0.0f, (real)0.0f };
+    rgb rests = depths; // see add_to
     real depth = (real)0.0f;
     for (int m = 0; m < steps;)
     {
@@ -294,15 +301,17 @@ kernel void see_lights(int4 size, int4 brick_count, float4 spacing, float4 eye, 
         real w;
 #if COLOURED
         gather(extinctions, &at, size, &colour, &w);
-        depths.r = fma(colour.r, length, depths.r);
-        depths.g = fma(colour.g, length, depths.g);
-        depths.b = fma(colour.b, length, depths.b);
+        PASS(colour.r, depths.r, rests.r)
+        PASS(colour.g, depths.g, rests.g)
+        PASS(colour.b, depths.b, rests.b)
 #else
         gather_samples(samples, &at, size, &colour, &w);
-        depth = fma(w, length, depth);
+        PASS(w, depth, rests.r)
 #endif
       }
     }
+
+#undef PASS
 
     // Henyey and Greenstein's phase function; the light travels along -d.
     const real cosine =

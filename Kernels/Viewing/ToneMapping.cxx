@@ -1,13 +1,18 @@
 #include "ToneMapping.h"
 
+#include "../Device/Errors.h"
+
 #include <algorithm>
 #include <cmath>
+#include <cstdio>
 #include <cstring>
 
 namespace tyndall
 {
 namespace
 {
+constexpr double LargestExposure = 1e30; ///< no float overflows to where a product is no number
+
 double EncodeSrgb(double linear)
 {
   return linear <= 0.0031308 ? 12.92 * linear : 1.055 * std::pow(linear, 1.0 / 2.4) - 0.055;
@@ -64,6 +69,17 @@ const ScreenValues& ScreenValuesOf(ToneCurve curve)
 }
 }
 
+void Check(const ToneMapping& settings)
+{
+  if (!(settings.exposure >= 0.0 && settings.exposure <= LargestExposure))
+  {
+    char text[128];
+    std::snprintf(text, sizeof(text), "The exposure (Exposure) is %g; it must be from 0 (automatic) to %g.",
+      settings.exposure, LargestExposure);
+    throw InvalidInput(text);
+  }
+}
+
 double AutomaticExposure(const std::vector<float>& radiance)
 {
   // How many pixels have which luminance, by the leading bits of the float: 256 classes for every doubling.
@@ -111,7 +127,8 @@ double AutomaticExposure(const std::vector<float>& radiance)
 std::vector<std::uint8_t> ToneMap(
   const std::vector<float>& radiance, const std::vector<float>& alpha, const ToneMapping& settings)
 {
-  const float exposure = static_cast<float>(settings.exposure > 0.0 ? settings.exposure : AutomaticExposure(radiance));
+  const double asked = settings.exposure > 0.0 ? settings.exposure : AutomaticExposure(radiance);
+  const auto exposure = static_cast<float>(std::min(asked, LargestExposure));
   const ScreenValues& screen = ScreenValuesOf(settings.curve);
   const std::size_t pixels = radiance.size() / 3;
   std::vector<std::uint8_t> colour(4 * pixels);

@@ -12,7 +12,7 @@ typedef struct
   float4 inverse_spacing; // voxels per length
   float4 background;      // W / (length^2 sr), added to the environment; w: 0 nothing is to be seen behind the medium
   float4 marching;        // step in voxels, transmittance at which to stop, depth where nothing is
-  int4 picture;           // width, height in pixels, first row of packets
+  int4 picture;           // width, height in pixels, first row and first column of packets
   int4 size;              // voxels
   int4 bricks;            // bricks
   int4 environment;       // width, height in pixels

@@ -1,9 +1,11 @@
 #include "ViewChecks.h"
 
+#include "../Medium/BoxFaces.h"
 #include "../Refraction/IndexRange.h"
 
 #include <algorithm>
 #include <cmath>
+#include <cstdio>
 #include <string>
 
 namespace tyndall
@@ -12,7 +14,19 @@ namespace
 {
 constexpr float LeastIndex = 1e-3f;
 constexpr float LargestIndex = 1e3f;
+constexpr double LeastStep = 0.01, LargestStep = 10.0; ///< voxels
+constexpr double LargestRadiance = 1e37;               ///< W / (length^2 sr); sums of it are still floats
+constexpr double FarthestCamera = 1e15;                ///< lengths, voxels: their squares are still floats
+constexpr double MostPixels = 7e8;                     ///< three numbers each: indices end at 2^31
 constexpr float FacesAlike = 1e-3f; ///< relative; what smoothing leaves of a border nearby
+
+/// Large and small numbers too: std::to_string has six places after the point.
+std::string Number(double value)
+{
+  char text[32];
+  std::snprintf(text, sizeof(text), "%g", value);
+  return text;
+}
 
 IndexRange RangeOnFaces(const Field& ior, const Grid& grid)
 {
@@ -113,10 +127,24 @@ void Check(const ViewSettings& settings)
     throw InvalidInput("The image is " + std::to_string(settings.imageSize[0]) + " by " +
       std::to_string(settings.imageSize[1]) + " pixels; it needs at least one each way.");
   }
-  if (!(settings.stepSize > 0.0) || !std::isfinite(settings.stepSize))
+  if (static_cast<double>(settings.imageSize[0]) * settings.imageSize[1] > MostPixels)
   {
-    throw InvalidInput(
-      "The step size is " + std::to_string(settings.stepSize) + " voxels; it must be a positive number.");
+    throw InvalidInput("The image is " + std::to_string(settings.imageSize[0]) + " by " +
+      std::to_string(settings.imageSize[1]) + " pixels; all together they may be at most " + Number(MostPixels) + ".");
+  }
+  if (!(settings.stepSize >= LeastStep && settings.stepSize <= LargestStep))
+  {
+    throw InvalidInput("The step size (StepSize) is " + Number(settings.stepSize) + " voxels; it must be from " +
+      Number(LeastStep) + " to " + Number(LargestStep) +
+      ". Smaller steps than that show nothing more, larger ones miss voxels.");
+  }
+  for (const double channel : settings.backgroundColor)
+  {
+    if (!(channel >= 0.0 && channel <= LargestRadiance))
+    {
+      throw InvalidInput("A channel of the background colour (BackgroundColor) is " + Number(channel) +
+        " W/(length^2 sr); it must be from 0 to " + Number(LargestRadiance) + ".");
+    }
   }
   const std::array<int, 5> widths = { 0, 1, 4, 8, 16 };
   if (std::find(widths.begin(), widths.end(), settings.packetWidth) == widths.end())
@@ -155,6 +183,14 @@ void Check(const SolvedLight& light, const Grid& grid, const ViewSettings& setti
     }
     CheckFinite(light.meanDirection, "mean_direction", grid);
   }
+  for (std::size_t i = 0; light.surface.values && i < BoxFaceCellCount(grid) * light.surface.components; ++i)
+  {
+    if (!std::isfinite(light.surface.values[i]))
+    {
+      throw InvalidInput(
+        "surface_radiance is not finite in tuple " + std::to_string(i / light.surface.components) + ".");
+    }
+  }
   const bool separates = settings.shadowRays != settings.singleScatteringOnly; // direct light from the rest
   if (separates && light.fluence.values && !light.fluenceDirect.values)
   {
@@ -191,6 +227,26 @@ std::vector<std::string> DoubtsAbout(
       ": light is not bent there, and looks brighter or darker by n^2. Give the box a margin.");
   }
   return doubts;
+}
+
+void CheckDistance(const Camera& camera, const Grid& grid)
+{
+  for (int axis = 0; axis < 3; ++axis)
+  {
+    const double away = std::abs(camera.position[axis] - grid.origin[axis]);
+    if (!(away <= FarthestCamera && away / grid.spacing[axis] <= FarthestCamera))
+    {
+      throw InvalidInput("The camera is too far away: " + Number(away) + " from the medium's corner along " +
+        "xyz"[axis] + ", " + Number(away / grid.spacing[axis]) + " voxels; come closer than " + Number(FarthestCamera) +
+        " of both.");
+    }
+    if (camera.parallelProjection && !(camera.parallelScale / grid.spacing[axis] <= FarthestCamera))
+    {
+      throw InvalidInput("The camera's parallel scale is " + Number(camera.parallelScale) + ", " +
+        Number(camera.parallelScale / grid.spacing[axis]) + " voxels along " + "xyz"[axis] + "; it may be at most " +
+        Number(FarthestCamera) + " voxels.");
+    }
+  }
 }
 
 void CheckViewedIndex(const Field& ior, const Grid& grid)

@@ -18,6 +18,9 @@ void Check(const SolvedLight& light, const Grid& grid, const ViewSettings& setti
 std::vector<std::string> DoubtsAbout(
   const ViewSettings& settings, const SolvedLight& light, const Field& ior, const IndexRange& index, const Grid& grid);
 
+/// @throws InvalidInput for a camera so far from the grid, or a picture so wide, that the numbers of its rays end
+void CheckDistance(const Camera& camera, const Grid& grid);
+
 /// @throws InvalidInput for an index that has not one component, is not finite, below 1e-3 or above 1e3
 void CheckViewedIndex(const Field& ior, const Grid& grid);
 }

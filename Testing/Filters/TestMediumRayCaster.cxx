@@ -6,6 +6,7 @@
 #include "vtkFieldData.h"
 #include "vtkFloatArray.h"
 #include "vtkImageData.h"
+#include "vtkLightPropagationMaps.h"
 #include "vtkLightRig.h"
 #include "vtkMediumRayCaster.h"
 #include "vtkPNGWriter.h"
@@ -251,6 +252,26 @@ void BadInputIsAnError(test::Claims& claims)
     caster->SetInputArrayToProcess(5, 0, 0, vtkDataObject::FIELD_ASSOCIATION_CELLS, "foo");
   });
   refused("StepSize is 0", [](vtkMediumRayCaster* caster, vtkImageData*) { caster->SetStepSize(0.0); });
+  for (double step : { 1e-30, 1e-6, 1e300, std::nan("") })
+  {
+    refused("StepSize", [=](vtkMediumRayCaster* caster, vtkImageData*) { caster->SetStepSize(step); });
+  }
+  for (double colour : { -1.0, 1e39, HUGE_VAL, std::nan("") })
+  {
+    refused("BackgroundColor",
+      [=](vtkMediumRayCaster* caster, vtkImageData*) { caster->SetBackgroundColor(0.1, colour, 0.2); });
+  }
+  for (double exposure : { -1.0, 1e39, HUGE_VAL, std::nan("") })
+  {
+    refused("Exposure", [=](vtkMediumRayCaster* caster, vtkImageData*) { caster->SetExposure(exposure); });
+  }
+  refused("too far", [](vtkMediumRayCaster* caster, vtkImageData*) { caster->SetCameraPosition(1e308, 0, 0); });
+  refused("pixels", [](vtkMediumRayCaster* caster, vtkImageData*) { caster->SetImageSize(50000, 50000); });
+  refused("parallel scale", [](vtkMediumRayCaster* caster, vtkImageData*) {
+    caster->SetCameraPosition(0, -5, 0.1);
+    caster->SetCameraParallelProjection(true);
+    caster->SetCameraParallelScale(1e300);
+  });
   refused("view up", [](vtkMediumRayCaster* caster, vtkImageData*) {
     caster->SetCameraPosition(0, 0, 5);
     caster->SetCameraViewUp(0, 0, 1);
@@ -258,6 +279,46 @@ void BadInputIsAnError(test::Claims& claims)
   refused("view angle", [](vtkMediumRayCaster* caster, vtkImageData*) { caster->SetCameraViewAngle(180.0); });
   refused("ImageSize is (0, 9)", [](vtkMediumRayCaster* caster, vtkImageData*) { caster->SetImageSize(0, 9); });
   refused("no such device", [](vtkMediumRayCaster* caster, vtkImageData*) { caster->SetDevice("no such device"); });
+}
+
+// Voxels ten mean free paths thick under a sky of radiance 1: 1 - sqrt(1 - albedo) H(1) leaves, of which their centres
+// have half.
+void ThickVoxelsShineAtTheirSurface(test::Claims& claims)
+{
+  const vtkNew<vtkImageData> image = Homogeneous(0.2, 19.8, 0.0);
+  vtkNew<vtkLightPropagationMaps> solver;
+  solver->SetInputData(image);
+  solver->SetSkyColor(1.0, 1.0, 1.0);
+  solver->Update();
+  vtkImageData* const lit = vtkImageData::SafeDownCast(solver->GetOutputDataObject(0));
+  vtkDataArray* const surface = lit->GetFieldData()->GetArray("surface_radiance");
+  claims.That(surface && surface->GetNumberOfTuples() == 2 * (10 * 8 + 8 * 12 + 12 * 10),
+    "the solver says what leaves every face at the box's");
+  const auto seen = [&](vtkImageData* medium, const char* fluence) {
+    vtkNew<vtkMediumRayCaster> caster;
+    caster->SetInputData(medium);
+    caster->SetImageSize(9, 9);
+    caster->SetShowBackground(false);
+    caster->SetInputArrayToProcess(3, 0, 0, vtkDataObject::FIELD_ASSOCIATION_CELLS, fluence);
+    LookDown(caster, medium);
+    caster->Update();
+    return MiddlePixel(caster, "radiance");
+  };
+  claims.Near(seen(lit, "fluence"), 0.7527, 0.02, "the light at the surface is seen");
+
+  vtkNew<vtkImageData> other; // with fluence of another name beside it
+  other->ShallowCopy(lit);
+  vtkNew<vtkFloatArray> copy;
+  copy->DeepCopy(lit->GetCellData()->GetArray("fluence"));
+  copy->SetName("mine");
+  other->GetCellData()->AddArray(copy);
+  vtkNew<vtkImageData> without;
+  without->ShallowCopy(lit);
+  vtkNew<vtkFieldData> nothing;
+  without->SetFieldData(nothing);
+  const double centres = seen(without, "fluence");
+  claims.That(centres < 0.65, "without it voxels' centres are seen");
+  claims.Near(seen(other, "mine"), centres, 1e-6, "it belongs to the array that the solver wrote");
 }
 
 void DarkMediumIsAWarning(test::Claims& claims)
@@ -352,6 +413,7 @@ int TestMediumRayCaster(int argc, char* argv[])
   LightsServeWhereThereIsNoFluence(claims);
   EnvironmentIsTheBackground(claims);
   BadInputIsAnError(claims);
+  ThickVoxelsShineAtTheirSurface(claims);
   DarkMediumIsAWarning(claims);
   AbortStops(claims);
   char* folder = vtkTestUtilities::GetArgOrEnvOrDefault("-T", argc, argv, "VTK_TEMP_DIR", "Testing/Temporary");

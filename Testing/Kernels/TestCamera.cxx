@@ -40,4 +40,50 @@ TEST(Camera, FramesTheWholeBoxTightly)
     }
   }
 }
+
+// Squares of such lengths are no numbers any more, or nothing.
+TEST(Camera, KnowsItsAxesAtEveryScale)
+{
+  Camera near;
+  near.position = { 3.0, -2.0, 1.0 };
+  near.focalPoint = { -1.0, 1.0, 0.5 };
+  near.viewUp = { 0.1, 0.2, 1.0 };
+  const auto expected = Axes(near);
+  for (double scale : { 1e-300, 1e-160, 1e160, 5e307 })
+  {
+    Camera camera = near;
+    for (Vec* v : { &camera.position, &camera.focalPoint, &camera.viewUp })
+    {
+      for (double& component : *v)
+      {
+        component *= scale;
+      }
+    }
+    const auto axes = Axes(camera);
+    for (int i = 0; i < 9; ++i)
+    {
+      EXPECT_NEAR(expected[i / 3][i % 3], axes[i / 3][i % 3], 1e-12) << scale;
+    }
+  }
+}
+
+TEST(Camera, SaysThatViewUpIsZeroWhereItIs)
+{
+  Camera camera;
+  camera.position = { 1.0, 2.0, 3.0 };
+  const auto said = [&](const Vec& viewUp) {
+    camera.viewUp = viewUp;
+    try
+    {
+      Axes(camera);
+    }
+    catch (const InvalidInput& error)
+    {
+      return std::string(error.what());
+    }
+    return std::string();
+  };
+  EXPECT_NE(std::string::npos, said({ 0.0, 0.0, 0.0 }).find("zero"));
+  EXPECT_NE(std::string::npos, said({ 2.0, 4.0, 6.0 }).find("along its view"));
+}
 }

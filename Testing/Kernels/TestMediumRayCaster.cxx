@@ -173,6 +173,32 @@ TEST_F(MediumRayCasterTest, HalvingTheStepQuartersTheError)
   EXPECT_LT(fine, 5e-4 * *std::max_element(exact.begin(), exact.end()));
 }
 
+// Forty thousand steps, of which each takes so little that a float's last place counts.
+TEST_F(MediumRayCasterTest, VerySmallStepsAddUpToTheClosedForm)
+{
+  for (int components : { 1, 3 })
+  {
+    for (double thickness : { 0.3, 1.1, 7.0 })
+    {
+      Scene scene(GridOf(4, 4, 400));
+      scene.settings.imageSize = { 5, 5 };
+      scene.settings.stepSize = 0.01;
+      scene.components = components;
+      const double sigma = thickness / 400.0;
+      scene.sigma_a.assign(components * scene.grid.VoxelCount(), static_cast<float>(sigma));
+      scene.emission = scene.Everywhere(0.7 * sigma);
+      if (components == 3)
+      {
+        scene.sigma_a[0] *= 1.001f; // coloured, if only at the bottom's corner
+      }
+      const Picture picture = scene.Seen(this->GetDevice(), FromAbove(scene.grid, 5.0));
+      const std::size_t middle = Middle(picture);
+      EXPECT_NEAR(-std::expm1(-thickness), picture.alpha[middle], 5e-6) << components << " " << thickness;
+      EXPECT_NEAR(-0.7 * std::expm1(-thickness), picture.radiance[3 * middle], 5e-6) << components << " " << thickness;
+    }
+  }
+}
+
 TEST_F(MediumRayCasterTest, MirroredSceneGivesMirroredPicture)
 {
   Scene scene(GridOf(16, 11, 13));
@@ -380,6 +406,52 @@ TEST_F(MediumRayCasterTest, ReportsProgressAndStops)
   EXPECT_EQ(caster.Render(scene.Framed()).radiance, scene.Seen(this->GetDevice()).radiance);
 }
 
+// However wide the picture and small the steps, no part of the work between two reports is more than some million
+// samples.
+TEST_F(MediumRayCasterTest, ReportsOftenWhereRaysTakeManySteps)
+{
+  Scene scene(GridOf(40, 40, 40));
+  scene.sigma_a = scene.Everywhere(0.01);
+  scene.settings.stepSize = 0.01;
+  scene.settings.imageSize = { 1600, 16 };
+  const double longest = 40.0 * std::sqrt(3.0) / scene.settings.stepSize;
+  const double samples = 1600.0 * 16.0 * longest;
+  MediumRayCaster caster = scene.Caster(this->GetDevice());
+  int reports = 0;
+  caster.Render(scene.Framed(), [&](double) { return ++reports > 0; });
+  std::printf("%.3g samples at most, %d reports\n", samples, reports);
+  EXPECT_GT(reports, samples / 4.0e7);
+
+  int asked = 0;
+  EXPECT_THROW(caster.Render(scene.Framed(), [&](double done) { return ++asked < 2 || done < 0.1; }), Aborted);
+  EXPECT_LT(asked, reports / 2);
+
+  // Shadow rays of one row of slices.
+  scene.grid = GridOf(160, 160, 1);
+  scene.sigma_s = scene.sigma_a = scene.Everywhere(0.01);
+  Light sun;
+  sun.direction = { 1.0, 0.3, -0.01 };
+  scene.illumination.lights = { sun };
+  scene.settings.shadowRays = true;
+  scene.settings.imageSize = { 2, 2 };
+  MediumRayCaster flat = scene.Caster(this->GetDevice());
+  reports = 0;
+  flat.Render(FromAbove(scene.grid, 5.0), [&](double) { return ++reports > 0; });
+  EXPECT_GT(reports, 160.0 * 160.0 * 160.0 * std::sqrt(2.0) / scene.settings.stepSize / 4.0e7);
+}
+
+TEST_F(MediumRayCasterTest, PartsOfARowGiveTheSamePictureAsRows)
+{
+  Scene scene = Blobs();
+  scene.settings.imageSize = { 203, 37 };
+  scene.settings.stepSize = 0.5;
+  const Picture coarse = scene.Seen(this->GetDevice());
+  scene.settings.stepSize = 0.01;
+  const Picture fine = scene.Seen(this->GetDevice());
+  EXPECT_LT(LargestDifference(coarse.radiance, fine.radiance), 0.02);
+  EXPECT_LT(LargestDifference(coarse.alpha, fine.alpha), 0.01);
+}
+
 TEST_F(MediumRayCasterTest, GivesItsMemoryBack)
 {
   const std::size_t before = this->GetDevice().BytesInUse();
@@ -414,11 +486,73 @@ TEST_F(MediumRayCasterTest, RefusesWhatHasNoMeaning)
   refused([](Scene&, Camera& camera) { camera.viewAngle = 180.0; });
   refused([](Scene&, Camera& camera) { camera.position[1] = NAN; });
   refused([](Scene& scene, Camera&) { scene.settings.stepSize = 0.0; });
+  for (double step : { 1e-30, 1e-9, 0.0099, 10.1, 1e300, static_cast<double>(INFINITY), static_cast<double>(NAN) })
+  {
+    refused([=](Scene& scene, Camera&) { scene.settings.stepSize = step; });
+  }
+  for (double colour : { -1.0, 1e39, 1e300, static_cast<double>(INFINITY), static_cast<double>(NAN) })
+  {
+    refused([=](Scene& scene, Camera&) { scene.settings.backgroundColor[1] = colour; });
+  }
+  refused([](Scene& scene, Camera&) { scene.settings.imageSize = { 40000, 40000 }; }); // beyond what indices reach
+  refused([](Scene&, Camera& camera) { camera.position[0] = 1e60; });
   refused([](Scene& scene, Camera&) { scene.settings.imageSize[1] = 0; });
   refused([](Scene& scene, Camera&) { scene.settings.packetWidth = 3; });
-  refused([](Scene& scene, Camera&) { scene.settings.shadowRays = true; });           // no fluence_direct
+  refused([](Scene& scene, Camera&) { // no fluence_direct
+    scene.settings.shadowRays = true;
+    scene.illumination.lights.resize(1);
+  });
   refused([](Scene& scene, Camera&) { scene.settings.singleScatteringOnly = true; }); // no fluence_direct
   refused([](Scene& scene, Camera&) { scene.fluence[7] = INFINITY; });
   refused([](Scene& scene, Camera&) { scene.sigma_a[7] = -1.0f; });
+}
+
+/// What a refusal says.
+std::string Refusal(Device& device, const Scene& scene, const Camera& camera)
+{
+  try
+  {
+    scene.Seen(device, camera);
+  }
+  catch (const InvalidInput& error)
+  {
+    return error.what();
+  }
+  return "";
+}
+
+TEST_F(MediumRayCasterTest, SaysWhichNumberIsOutOfWhichRange)
+{
+  Scene scene = Blobs();
+  scene.settings.stepSize = 1e-30;
+  const std::string step = Refusal(this->GetDevice(), scene, scene.Framed());
+  EXPECT_NE(std::string::npos, step.find("1e-30")) << step;
+  EXPECT_NE(std::string::npos, step.find("from 0.01 to 10")) << step;
+  scene.settings.stepSize = 0.5;
+  scene.settings.backgroundColor[2] = 1e39;
+  const std::string background = Refusal(this->GetDevice(), scene, scene.Framed());
+  EXPECT_NE(std::string::npos, background.find("1e+39")) << background;
+  EXPECT_NE(std::string::npos, background.find("from 0 to 1e+37")) << background;
+}
+
+TEST_F(MediumRayCasterTest, SaysThatACameraIsTooFarAway)
+{
+  const Scene scene = Blobs();
+  for (double far : { 1e30, 1e200, 1e308, -1e308 })
+  {
+    Camera camera = scene.Framed();
+    camera.position = { far, 0.0, 0.0 };
+    for (bool parallel : { false, true })
+    {
+      camera.parallelProjection = parallel;
+      const std::string said = Refusal(this->GetDevice(), scene, camera);
+      EXPECT_NE(std::string::npos, said.find("too far")) << far << " " << said;
+      EXPECT_EQ(std::string::npos, said.find("view up")) << far << " " << said;
+    }
+  }
+  Camera camera = scene.Framed();
+  camera.parallelProjection = true;
+  camera.parallelScale = 1e300;
+  EXPECT_NE(std::string::npos, Refusal(this->GetDevice(), scene, camera).find("parallel scale"));
 }
 }

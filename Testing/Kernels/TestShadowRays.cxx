@@ -40,6 +40,73 @@ TEST_F(ShadowRays, ScatterOnceAsTheClosedFormSays)
   }
 }
 
+// A sky lights the medium, no lamp and no sun does: asked for or not, the same picture of the same arrays, and it is
+// said.
+TEST_F(ShadowRays, AreLeftOutWhereNoLampShines)
+{
+  for (bool single : { false, true })
+  {
+    Scene scene = Blobs();
+    scene.g = 0.7;
+    scene.fluenceDirect = scene.Everywhere(0.3);
+    scene.meanDirection = Random(3 * scene.grid.VoxelCount(), 0.5f, 8);
+    scene.settings.singleScatteringOnly = single;
+    scene.illumination.lights.resize(1);
+    scene.illumination.lights[0].power = { 0.0, 0.0, 0.0 }; // a lamp that is off
+    const auto seen = [&](bool shadowRays, std::size_t* bytes, std::string* words) {
+      scene.settings.shadowRays = shadowRays;
+      this->GetDevice().ResetPeak();
+      MediumRayCaster caster = scene.Caster(this->GetDevice());
+      const Picture picture = caster.Render(scene.Framed());
+      *bytes = this->GetDevice().PeakBytes();
+      for (const std::string& text : caster.LeftOut())
+      {
+        *words += text + "\n";
+      }
+      return picture;
+    };
+    std::size_t without = 0, with = 0;
+    std::string unasked, asked;
+    const Picture plain = seen(false, &without, &unasked);
+    const Picture same = seen(true, &with, &asked);
+    EXPECT_EQ(plain.radiance, same.radiance) << single;
+    EXPECT_EQ(plain.alpha, same.alpha);
+    EXPECT_EQ(plain.depth, same.depth);
+    EXPECT_EQ(without, with) << "bytes on the device";
+    EXPECT_NE(std::string::npos, unasked.find("shadow rays: not asked for")) << unasked;
+    EXPECT_NE(std::string::npos, asked.find("shadow rays: no lamp and no sun shines")) << asked;
+
+    // A caster that is there serves both.
+    scene.settings.shadowRays = false;
+    MediumRayCaster kept = scene.Caster(this->GetDevice());
+    kept.Render(scene.Framed());
+    scene.settings.shadowRays = true;
+    EXPECT_TRUE(kept.Adopt(scene.settings));
+    EXPECT_EQ(plain.radiance, kept.Render(scene.Framed()).radiance);
+  }
+}
+
+// What shadow rays lose on their way does not depend on how many steps that is made of.
+TEST_F(ShadowRays, VerySmallStepsLoseWhatTheyShould)
+{
+  Scene scene(GridOf(3, 3, 400));
+  scene.settings.imageSize = { 5, 5 };
+  const double sigma = 1.2 / 400.0;
+  scene.sigma_a = scene.Everywhere(0.5 * sigma);
+  scene.sigma_s = scene.Everywhere(0.5 * sigma);
+  Light sun;
+  sun.direction = { 0.0, 0.0, -1.0 };
+  scene.illumination.lights = { sun };
+  scene.settings.shadowRays = true;
+  const double expected = 0.5 * sigma / (4.0 * Pi) * -std::expm1(-2.0 * sigma * 400.0) / (2.0 * sigma);
+  for (double step : { 1.0, 0.01 })
+  {
+    scene.settings.stepSize = step;
+    const Picture picture = scene.Seen(this->GetDevice(), FromAbove(scene.grid, 10.0));
+    EXPECT_NEAR(expected, picture.radiance[3 * Middle(picture)], 2e-5 * expected) << step;
+  }
+}
+
 TEST_F(ShadowRays, FarLightsOfEveryKindLookAlike)
 {
   Scene scene = Blobs();

@@ -3,6 +3,7 @@
 #include "DeviceTest.h"
 #include "Difference.h"
 
+#include "Medium/BoxFaces.h"
 #include "Viewing/MediumRayCaster.h"
 
 #include <algorithm>
@@ -22,7 +23,7 @@ using namespace tyndall;
 struct Scene
 {
   Grid grid;
-  std::vector<float> sigma_a, sigma_s, emission, fluence, fluenceDirect, meanDirection, ior;
+  std::vector<float> sigma_a, sigma_s, emission, fluence, fluenceDirect, meanDirection, ior, surface;
   int components = 1; ///< of sigma_a and sigma_s
   double g = 0.0;
   Illumination illumination;
@@ -53,7 +54,11 @@ struct Scene
     medium.sigma_s = See(this->sigma_s, this->components);
     medium.emission = See(this->emission, 1);
     medium.g = this->g;
-    return { device, medium, { See(this->fluence, 1), See(this->fluenceDirect, 1), See(this->meanDirection, 3) },
+    const auto channels = static_cast<int>(this->fluence.size() / std::max<std::size_t>(this->grid.VoxelCount(), 1));
+    const auto cosines = static_cast<int>(this->surface.size() / BoxFaceCellCount(this->grid));
+    return { device, medium,
+      { See(this->fluence, std::max(channels, 1)), See(this->fluenceDirect, 1), See(this->meanDirection, 3),
+        See(this->surface, cosines) },
       this->illumination, this->settings, See(this->ior, 1) };
   }
 
