@@ -79,6 +79,7 @@ void FusedSolver::ChooseAcceleration()
 void FusedSolver::RunAccelerated(const Monitor& monitor)
 {
   this->Iterating = false;
+  this->LoadAbsorption();
   this->ChooseNearness();
   this->PropagateLights(monitor);
   this->Iterating = true;
@@ -118,7 +119,34 @@ void FusedSolver::ChooseNearness()
   if (this->LinearSource && thick && !this->Lights.empty())
   {
     this->Nearness = Buffer<float>(this->TheDevice, 6 * this->Stride * this->Channels + SweepPadding, "light of lamps");
-    this->Nearness.Fill(0.0f);
+    this->Passed = Buffer<float>(this->TheDevice, 6 * this->Stride * this->Channels, "light of lamps");
+    this->Passed.Fill(0.0f);
+    this->LampPath = Buffer<float>(this->TheDevice, this->Stride * this->Channels + SweepPadding, "light of lamps");
+  }
+}
+
+void FusedSolver::LoadAbsorption()
+{
+  std::vector<float> absorption(this->Stride * this->Channels + SweepPadding, 0.0f);
+  for (int c = 0; c < this->Channels; ++c)
+  {
+    for (std::size_t i = 0; i < this->TheMedium.grid.VoxelCount(); ++i)
+    {
+      absorption[c * this->Stride + i] = this->TheMedium.sigma_a.At(i, c);
+    }
+  }
+  this->Absorption = Buffer<float>(this->TheDevice, absorption, "sigma_a");
+}
+
+/// A lamp's light in voxels where it matters how deep in them it is scattered: what passes their faces at once.
+void FusedSolver::PassLight(int firstChannel, int channels)
+{
+  for (int c = firstChannel; c < firstChannel + channels; ++c)
+  {
+    const std::size_t first = c * this->Stride;
+    PassLampLight(this->TheDevice, this->TheMedium.grid, this->Settings.periodic,
+      { this->Stride, this->SharedExtinction ? 0 : first, first, &this->Extinction, &this->Absorption,
+        &this->SigmaSOnDevice(), &this->LampPath, &this->Nearness, &this->Passed, &this->Path });
   }
 }
 
@@ -131,16 +159,13 @@ void FusedSolver::LoadAccelerated(const Monitor& monitor)
   this->Lamps = this->Path.Read();
   this->LampBalance = this->Result.balance;
   this->LampFaces = this->Result.facePowerOut;
-  if (this->Nearness.Size() > 0)
-  {
-    this->LampPath = this->Lamps;
-  }
+  this->Nearness = {};
+  this->LampPath = {};
   if (this->Flight)
   {
     this->AddFlightDifference(monitor);
   }
   std::vector<float> given = this->Source.Read();
-  std::vector<float> absorption(given.size(), 0.0f);
   this->GivenPower = this->Result.balance.emitted;
   for (int c = 0; c < this->Channels; ++c)
   {
@@ -148,14 +173,12 @@ void FusedSolver::LoadAccelerated(const Monitor& monitor)
     {
       const std::size_t at = c * this->Stride + i;
       const double scattered = static_cast<double>(this->SigmaS(i, c)) * this->Lamps[at];
-      absorption[at] = this->TheMedium.sigma_a.At(i, c);
       given[at] += static_cast<float>(scattered / (4.0 * Pi * volume));
-      this->LampBalance.absorbed[c] += static_cast<double>(absorption[at]) * this->Lamps[at];
+      this->LampBalance.absorbed[c] += static_cast<double>(this->TheMedium.sigma_a.At(i, c)) * this->Lamps[at];
       this->GivenPower[c] += scattered;
       this->Lamps[at] = static_cast<float>(this->Lamps[at] / volume);
     }
   }
-  this->Absorption = Buffer<float>(device, absorption, "sigma_a");
   this->Given = Buffer<float>(device, given, "the light given");
   this->Entering =
     Buffer<float>(device, 6 * this->Stride * this->Channels + SweepPadding, "the power from voxel to voxel");
@@ -214,11 +237,6 @@ void FusedSolver::MakeSystems()
   const CrossingPattern pattern =
     FindCrossingPattern(grid, this->Directions, this->Settings.mapResolution, this->Starts(), this->Settings.periodic);
   const SweepBoundary boundary = this->BoundaryOfOrder(0);
-  Buffer<float> lampPath;
-  if (this->Nearness.Size() > 0)
-  {
-    lampPath = Buffer<float>(this->TheDevice, this->LampPath, "light of lamps");
-  }
   for (int c = 0; c < this->Channels; ++c)
   {
     std::array<double, 6> incoming = {};
@@ -238,11 +256,10 @@ void FusedSolver::MakeSystems()
     const std::size_t first = c * this->Stride;
     const LowOrder::Arrays arrays = { this->Stride, this->SharedExtinction ? 0 : first, first, &this->Extinction,
       &this->Absorption, &this->SigmaSOnDevice(), &this->Given, &this->Source, &this->Path, &this->Entering,
-      this->Nearness.Size() > 0 ? &lampPath : nullptr, this->Nearness.Size() > 0 ? &this->Nearness : nullptr };
+      this->Passed.Size() > 0 ? &this->Passed : nullptr };
     this->Systems.push_back(std::make_unique<LowOrder>(
       this->TheDevice, grid, this->Settings.periodic, this->Directions, pattern, arrays, incoming, this->LinearSource));
   }
-  this->Nearness = {};
 }
 
 /// W of a voxel, about.

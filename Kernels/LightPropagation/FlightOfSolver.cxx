@@ -69,7 +69,8 @@ void FusedSolver::FindExtraEscape(const Monitor& monitor)
   this->ExtraEscape = Buffer<float>(this->TheDevice, extra, "what escapes of scattered light");
 }
 
-/// After a sweep, from the source that it had.
+/// After a sweep, from the scattered light that was its source. What the medium shines itself is left to the sweeps: it may come from
+/// voxels so thin that they have nothing to give.
 void FusedSolver::LetEscape()
 {
   cl::Kernel kernel = this->TheDevice.Kernel("let_escape", { kernel_source::Numerics, kernel_source::Collect });

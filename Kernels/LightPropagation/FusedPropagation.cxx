@@ -64,7 +64,7 @@ void FusedSolver::RunOrders(const Monitor& monitor)
     }
     const bool shone = this->Shining;
     this->PropagateOrder(order, ofOrder);
-    if (shone && this->ExtraEscape.Size() > 0)
+    if (shone && order > 0 && this->ExtraEscape.Size() > 0)
     {
       this->LetEscape();
     }
@@ -366,8 +366,19 @@ void FusedSolver::PropagateLights(const Monitor& monitor)
     this->ForChannels([&](const SweepVolume& volume, int first) {
       Light ofChannels = light;
       ofChannels.power = From(light.power, first);
-      this->Count(DepositLight(this->TheDevice, volume, ofChannels, this->Settings.periodic, this->Workspace, monitor),
+      SweepVolume own = volume;
+      if (volume.nearness)
+      {
+        this->Nearness.Fill(0.0f);
+        this->LampPath.Fill(0.0f);
+        own.path = &this->LampPath;
+      }
+      this->Count(DepositLight(this->TheDevice, own, ofChannels, this->Settings.periodic, this->Workspace, monitor),
         first, volume.channels);
+      if (volume.nearness)
+      {
+        this->PassLight(first, volume.channels);
+      }
     });
   }
   this->PropagateFlight(monitor);

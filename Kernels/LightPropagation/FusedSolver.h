@@ -117,7 +117,9 @@ private:
   // Accelerated, see AcceleratedPropagation.cxx.
   void ChooseAcceleration();
   double OrdersNeeded() const;
+  void LoadAbsorption();
   void ChooseNearness();
+  void PassLight(int firstChannel, int channels);
   void RunAccelerated(const Monitor& monitor);
   void LoadAccelerated(const Monitor& monitor);
   std::vector<float> WithLamps(const Buffer<float>& planar, double scale) const;
@@ -167,11 +169,11 @@ private:
   bool LinearSource = false;
   bool Iterating = false;                    ///< sweeps tell what enters voxels, and no net flux
   Buffer<float> Absorption, Given, Entering; ///< as LowOrder::Arrays has them
-  Buffer<float> Nearness;                    ///< of lamps, as SweepVolume has it; empty where voxels are thin
+  Buffer<float> Nearness, LampPath; ///< of a lamp, as SweepVolume has them; empty where voxels are thin
+  Buffer<float> Passed;             ///< of all lamps, as LowOrder::Arrays has it
   std::vector<std::unique_ptr<LowOrder>> Systems;
   std::vector<std::vector<double>> Found; ///< W / length^2, without lights' own
   std::vector<float> Lamps;               ///< W / length^2, lights' own, [channel][stride]
-  std::vector<float> LampPath;            ///< W length, the same where Nearness is there
   EnergyBalance LampBalance;              ///< of lights' own light
   std::array<Rgb, 6> LampFaces = {};
   Rgb GivenPower = {}, PowerIn = {};    ///< W, emitted or first scattered; through faces

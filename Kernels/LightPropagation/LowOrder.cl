@@ -327,6 +327,7 @@ static exact power_of_face(const low_order_layout* layout, const low_order_array
   sigma_t += layout.first_t;                                                   \
   sigma_a += layout.first;                                                     \
   entering += 6 * (ulong)layout.first;                                         \
+  passed += PASSING ? 6 * (ulong)layout.first : 0;                             \
   source += layout.first;                                                      \
   path += layout.first;                                                        \
   const ulong stride = layout.stride;                                          \
@@ -444,6 +445,7 @@ __kernel void low_order_source(low_order_layout layout, const __global float* gi
   const ulong begin = layout.first;
   sigma_t += layout.first_t;
   sigma_a += layout.first;
+  passed += PASSING ? 6 * (ulong)layout.first : 0;
   const int at[3] = { x, y, z };
   int next[6];
   find_neighbours(layout.size, x, y, z, i, next);
@@ -474,12 +476,13 @@ __kernel void low_order_source(low_order_layout layout, const __global float* gi
   source[begin + i] = mix(even, there, skin);
 }
 
-#if PASSING
-// path      W length, of lamps
+// Of one light: each passes its own part, which depends on where its light is lost.
+// path      W length, of the light
 // nearness  of it, as in SweepVolume.h, [channel][face][stride]
-// passed    [face][stride] W
+// passed    [channel][face][stride] W, added to
+// all_path  W length, of all lights, added to
 __kernel void low_order_pass(low_order_layout layout, const __global float* sigma_t, const __global float* sigma_a,
-  const __global float* sigma_s, const __global float* path, const __global float* nearness, __global float* passed)
+  const __global float* sigma_s, const __global float* path, const __global float* nearness, __global float* passed, __global float* all_path)
 {
   VOXEL(layout.size)
   const int at[3] = { x, y, z };
@@ -489,6 +492,7 @@ __kernel void low_order_pass(low_order_layout layout, const __global float* sigm
   sigma_t += layout.first_t;
   sigma_a += layout.first;
   nearness += 6 * (ulong)layout.first;
+  passed += 6 * (ulong)layout.first;
   const float length = path[layout.first + i];
   const float k = sigma_t[i] > 0.0f ? sqrt(3.0f * fmin(sigma_a[i] / sigma_t[i], 1.0f)) : 0.0f;
   float part[6], sum = 0.0f;
@@ -519,7 +523,7 @@ __kernel void low_order_pass(low_order_layout layout, const __global float* sigm
   const float power = sigma_s[layout.first + i] * length / fmax(sum, 1.0f); // a corner cannot pass more than there is
   for (int d = 0; d < 6; ++d)
   {
-    passed[d * stride + i] = part[d] * power;
+    passed[d * stride + i] += part[d] * power;
   }
+  all_path[layout.first + i] += length;
 }
-#endif

@@ -28,6 +28,32 @@ double FaceArea(const Grid& grid, int axis)
   return grid.spacing[(axis + 1) % 3] * grid.spacing[(axis + 2) % 3];
 }
 
+/// Of `Arrays`, where a channel begins.
+template <class Arrays>
+LowOrderLayout LayoutOf(const Grid& grid, const std::array<bool, 3>& periodic, const Arrays& arrays)
+{
+  LowOrderLayout layout = {};
+  for (int axis = 0; axis < 3; ++axis)
+  {
+    layout.size[axis] = grid.size[axis];
+    layout.periodic[axis] = periodic[axis];
+    layout.spacing[axis] = static_cast<float>(grid.spacing[axis]);
+  }
+  layout.stride = static_cast<cl_int>(arrays.stride);
+  layout.firstT = static_cast<cl_int>(arrays.firstT);
+  layout.first = static_cast<cl_int>(arrays.first);
+  return layout;
+}
+
+/// @param passing  lamps' light passes faces at once where it is scattered
+cl::Kernel LowOrderKernel(Device& device, const char* name, bool passing)
+{
+  return device.Kernel(name,
+    { kernel_source::LowOrderLayout, kernel_source::LampPassing, kernel_source::LowOrder,
+      kernel_source::LowOrderSolve },
+    ExactOption(device) + " -DPASSING=" + std::to_string(passing));
+}
+
 /// Rounding leaves dark faces a little less than nothing: that is for the others to bear, so that the sum stays.
 std::array<double, 6> NotNegative(std::array<double, 6> powers)
 {
@@ -91,6 +117,17 @@ std::vector<double> CrossingsIn(
 }
 }
 
+void PassLampLight(Device& device, const Grid& grid, const std::array<bool, 3>& periodic, const LampLight& light)
+{
+  LowOrderLayout layout = LayoutOf(grid, periodic, light);
+  layout.linear = true;
+  cl::Kernel pass = LowOrderKernel(device, "low_order_pass", true);
+  With(pass, layout, *light.sigma_t, *light.sigma_a, *light.sigma_s, *light.path, *light.nearness, *light.passed,
+    *light.allPath);
+  device.Queue().enqueueNDRangeKernel(
+    pass, cl::NullRange, LowOrderSolver::Range(layout.size), LowOrderSolver::Group());
+}
+
 CrossingPattern FindCrossingPattern(
   const Grid& grid, const DirectionSet& set, int mapResolution, RayStarts starts, const std::array<bool, 3>& periodic)
 {
@@ -134,16 +171,8 @@ LowOrder::LowOrder(Device& device, const Grid& grid, const std::array<bool, 3>& 
   {
     halfRange += HalfRange(grid, directions, 0, marching) / (4.0 * Pi);
   }
-  for (int axis = 0; axis < 3; ++axis)
-  {
-    this->Layout.size[axis] = grid.size[axis];
-    this->Layout.periodic[axis] = periodic[axis];
-    this->Layout.spacing[axis] = static_cast<float>(grid.spacing[axis]);
-  }
+  this->Layout = LayoutOf(grid, periodic, arrays);
   this->Layout.linear = linear;
-  this->Layout.stride = static_cast<cl_int>(arrays.stride);
-  this->Layout.firstT = static_cast<cl_int>(arrays.firstT);
-  this->Layout.first = static_cast<cl_int>(arrays.first);
   std::copy(pattern.first.begin(), pattern.first.end(), this->Layout.pattern);
   this->Layout.halfRange = static_cast<float>(halfRange);
   this->Layout.floor = static_cast<float>(Floor);
@@ -179,23 +208,11 @@ LowOrder::LowOrder(Device& device, const Grid& grid, const std::array<bool, 3>& 
     this->Solver.Loss());
   this->Run(conductance);
   this->Solver.Coarsen();
-  if (arrays.nearness)
-  {
-    this->Passed = Buffer<float>(device, 6 * arrays.stride, what);
-    cl::Kernel pass = this->Kernel("low_order_pass");
-    With(pass, this->Layout, *arrays.sigma_t, *arrays.sigma_a, *arrays.sigma_s, *arrays.lampPath, *arrays.nearness,
-      this->Passed);
-    this->Run(pass);
-    device.Finish(); // what it reads goes
-  }
 }
 
 cl::Kernel LowOrder::Kernel(const char* name) const
 {
-  return this->TheDevice.Kernel(name,
-    { kernel_source::LowOrderLayout, kernel_source::LampPassing, kernel_source::LowOrder,
-      kernel_source::LowOrderSolve },
-    ExactOption(this->TheDevice) + " -DPASSING=" + std::to_string(this->The.nearness != nullptr));
+  return LowOrderKernel(this->TheDevice, name, this->The.passed != nullptr);
 }
 
 void LowOrder::Run(cl::Kernel& kernel)
@@ -210,7 +227,7 @@ void LowOrder::RunOnArrays(const char* name, const More&... more)
   const Arrays& the = this->The;
   cl::Kernel kernel = this->Kernel(name);
   With(kernel, this->Layout, *the.sigma_t, *the.sigma_a, this->Stairs, this->Solver.Conductance(), *the.entering,
-    this->Passed.Size() > 0 ? this->Passed : this->Model, this->Model, this->Pattern, *the.source, *the.path, more...);
+    this->The.passed ? *this->The.passed : this->Model, this->Model, this->Pattern, *the.source, *the.path, more...);
   this->Run(kernel);
 }
 
@@ -218,7 +235,7 @@ void LowOrder::WriteSource()
 {
   cl::Kernel kernel = this->Kernel("low_order_source");
   With(kernel, this->Layout, *this->The.given, *this->The.sigma_s, this->Given.Handle(), *this->The.sigma_t,
-    *this->The.sigma_a, this->Solver.Conductance(), this->Passed.Size() > 0 ? this->Passed : this->Model,
+    *this->The.sigma_a, this->Solver.Conductance(), this->The.passed ? *this->The.passed : this->Model,
     *this->The.source);
   this->Run(kernel);
 }

@@ -29,6 +29,23 @@ struct CrossingPattern
 CrossingPattern FindCrossingPattern(const Grid& grid, const DirectionSet& directions, int mapResolution,
   RayStarts starts, const std::array<bool, 3>& periodic);
 
+/// A lamp's light in thick voxels, and the sums over all lamps that it is added to. Arrays as LowOrder::Arrays has them.
+struct LampLight
+{
+  std::size_t stride, firstT, first;
+  const Buffer<float>* sigma_t;
+  const Buffer<float>* sigma_a;
+  const Buffer<float>* sigma_s;
+  const Buffer<float>* path;     ///< W length, of the lamp
+  const Buffer<float>* nearness; ///< of it, as in SweepVolume.h
+  const Buffer<float>* passed;   ///< W, added to
+  const Buffer<float>* allPath;  ///< W length, added to
+};
+
+/// How much of a lamp's light passes the faces of voxels at once where it is first scattered: see LowOrder. One lamp at a time, for each
+/// has its own depth in a voxel.
+void PassLampLight(Device& device, const Grid& grid, const std::array<bool, 3>& periodic, const LampLight& light);
+
 /// The second, diffusion-like equation that carries light far in one step, where sweeps carry it from voxel to voxel.
 ///
 /// A sweep with fluence `phi` as its source finds the net power F through every face, and the fluence that goes with it. Were the
@@ -76,9 +93,9 @@ public:
     const Buffer<float>* source;       ///< of a sweep, W / (length^3 sr)
     const Buffer<float>* path;         ///< W length, that it found
     const Buffer<float>* entering;     ///< W, [channel][-x, +x, -y, +y, -z, +z][stride], that it found
-    const Buffer<float>*
-      lampPath; ///< W length, of lamps' light; these two null: voxels are thin, or there are no lamps
-    const Buffer<float>* nearness; ///< of it, as in SweepVolume.h; read only while this is made
+    /// W, [channel][-x, +x, -y, +y, -z, +z][stride]: lamps' light that passes a face at once where it is scattered (PassLampLight);
+    /// null: voxels are thin, or there are no lamps
+    const Buffer<float>* passed;
   };
 
   /// @param incoming  W / length^2 through the box's faces, but that of lights
@@ -122,7 +139,6 @@ private:
   std::size_t Count;
   LowOrderSolver Solver;
   Buffer<float> Stairs, Pattern, Model;
-  Buffer<float> Passed; ///< W, [face][stride]: lamps' light that passes a face at once where it is scattered
   ExactValues Right, Given, Solution, Sums, Borders;
   std::array<Buffer<float>, 2> FoundBefore, ChangeBefore; ///< of the last correction and the one before
   int Corrections = 0;

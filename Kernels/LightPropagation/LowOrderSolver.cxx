@@ -100,7 +100,7 @@ LowOrderSolver::LowOrderSolver(Device& device, const std::array<int, 3>& size, c
   this->Sums = ExactValues(device, (this->Count + Chunk - 1) / Chunk, "sums");
 }
 
-cl::NDRange LowOrderSolver::Range(const cl_int* size) const
+cl::NDRange LowOrderSolver::Range(const cl_int* size)
 {
   return { static_cast<std::size_t>(RoundUp(size[0], 32)), static_cast<std::size_t>(RoundUp(size[1], 8)),
     static_cast<std::size_t>(size[2]) };

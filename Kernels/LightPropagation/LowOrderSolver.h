@@ -61,7 +61,7 @@ public:
   int Solve(const ExactValues& right, ExactValues& values, double unit, double reduction,
     double leftAtMost = std::numeric_limits<double>::infinity());
 
-  cl::NDRange Range(const cl_int* size) const;
+  static cl::NDRange Range(const cl_int* size);
   static cl::NDRange Group() { return { 32, 8, 1 }; }
 
 private:

@@ -37,6 +37,10 @@ void FusedSolver::CheckRays(const DirectionSet& set, RayStarts starts, const Swe
     for (const Bundle& bundle : BundlesAlong(axis, grid, periodic, set, this->Settings.mapResolution, starts))
     {
       const std::array<double, 2> moves = { bundle.tangentU * planes, bundle.tangentV * planes };
+      if (planes <= 2.0)
+      {
+        continue; // so few that it hardly matters in which
+      }
       const std::array<double, 2> wholeMoves = { std::floor(bundle.startU + moves[0] + 1e-9),
         std::floor(bundle.startV + moves[1] + 1e-9) };
       for (const Member& member : bundle.members)
