@@ -97,17 +97,24 @@ TEST_F(Superposition, OfFacesAlongFinerDirections)
 
 TEST_F(Superposition, ReciprocityIsTheBetterTheMoreDirectionsThereAre)
 {
-  // What a glowing voxel sends to another, that one sends back: off by what a handful of directions does to light of one voxel.
-  const std::array<std::array<int, 3>, 4> places = { { { 2, 3, 4 }, { 9, 8, 3 }, { 5, 9, 9 }, { 10, 2, 8 } } };
-  std::vector<double> errors;
-  for (const int directions : { 25, 100, 400 })
+  // What a glowing voxel sends to another, that one sends back: off by what a handful of directions does to the scattered light of one
+  // voxel, whose rays are not the same both ways. Measured, root mean square over 28 pairs: 3.3%, 1.6%, 0.7%.
+  constexpr int n = 12;
+  std::mt19937 random(3);
+  std::vector<std::array<int, 3>> places;
+  for (int i = 0; i < 8; ++i)
   {
-    std::vector<std::vector<float>> fluences;
-    Scene medium({ 12, 12, 12 });
+    const int x = static_cast<int>(random() % n), y = static_cast<int>(random() % n);
+    places.push_back({ x, y, static_cast<int>(random() % n) });
+  }
+  const auto index = [](const std::array<int, 3>& at) { return (at[2] * n + at[1]) * n + at[0]; };
+  std::vector<double> errors;
+  for (const int directions : { 25, 400, 1600 })
+  {
+    Scene medium({ n, n, n });
     medium.Randomise(1.0, 1.0, 0.9, 5);
     medium.settings.directionsPerFace = directions;
-    medium.settings.emissionError = 0.0; // along sweeps
-    const auto index = [](const std::array<int, 3>& at) { return (at[2] * 12 + at[1]) * 12 + at[0]; };
+    std::vector<std::vector<float>> fluences;
     for (const std::array<int, 3>& place : places)
     {
       Scene glowing = medium;
@@ -115,15 +122,16 @@ TEST_F(Superposition, ReciprocityIsTheBetterTheMoreDirectionsThereAre)
       fluences.push_back(glowing.Solve(this->GetDevice()).fluence);
     }
     double squares = 0.0;
+    int pairs = 0;
     for (std::size_t a = 0; a < places.size(); ++a)
     {
-      for (std::size_t b = 0; b < a; ++b)
+      for (std::size_t b = 0; b < a; ++b, ++pairs)
       {
         const double there = fluences[a][index(places[b])], back = fluences[b][index(places[a])];
         squares += std::pow(2.0 * (there - back) / (there + back), 2);
       }
     }
-    errors.push_back(std::sqrt(squares / 6.0));
+    errors.push_back(std::sqrt(squares / pairs));
     this->RecordProperty(std::to_string(directions) + " directions", std::to_string(errors.back()));
   }
   EXPECT_LT(errors[1], 0.7 * errors[0]);
