@@ -61,6 +61,13 @@ double FusedSolver::OrdersNeeded() const
   return slowest <= 0.0 ? 0.0 : slowest >= 1.0 ? 1e30 : std::log(UsualTolerance) / std::log(slowest);
 }
 
+/// So that plain iteration is dearer than an acceleration.
+bool FusedSolver::ScatteredManyTimes() const
+{
+  const bool slab = UnvaryingAxes(this->TheMedium.grid, this->Outside, this->Settings).IsSlab();
+  return this->OrdersNeeded() > (slab ? ManyOrdersInSlab : ManyOrders);
+}
+
 void FusedSolver::ChooseAcceleration()
 {
   const bool linear = this->Settings.source == PropagationSource::Linear;
@@ -70,10 +77,8 @@ void FusedSolver::ChooseAcceleration()
     this->Accelerated = true;
     return;
   }
-  const bool slab = UnvaryingAxes(this->TheMedium.grid, this->Outside, this->Settings).IsSlab();
   this->Accelerated = this->Settings.acceleration == PropagationAcceleration::Automatic &&
-    this->Settings.maximumOrders == 0 && this->Traits.scatters &&
-    this->OrdersNeeded() > (slab ? ManyOrdersInSlab : ManyOrders);
+    this->Settings.maximumOrders == 0 && this->Traits.scatters && this->ScatteredManyTimes();
 }
 
 void FusedSolver::RunAccelerated(const Monitor& monitor)

@@ -148,7 +148,9 @@ std::array<double, 2> TangentsOfCone(const Grid& grid, int axis, bool up, int as
     return std::abs(angle) >= rightAngle ? std::copysign(1.0, angle)
                                          : std::tan(angle) * grid.spacing[axis] / grid.spacing[aside];
   };
-  return { std::max(tangent(turn - reach), -1.0), std::min(tangent(turn + reach), 1.0) };
+  const double low = tangent(turn - reach), high = tangent(turn + reach);
+  const double aroundIt = 0.01 * (high - low); // beams' edges do not fall on the cone's
+  return { std::max(low - aroundIt, -1.0), std::min(high + aroundIt, 1.0) };
 }
 
 /// The beams of `light` from `position` (in voxels), row by row; a beam is at most `width` voxels wide where it leaves the box.

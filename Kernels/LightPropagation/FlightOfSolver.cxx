@@ -146,25 +146,33 @@ double FusedSolver::PartOfDifference(std::size_t voxel, int channel) const
 }
 
 /// Where orders are accelerated, sweeps carry all light along the usual directions, as the low-order system wants it. What the finer ones
-/// see of the unscattered light more, or less, is added like the light of lamps: of the part that they see of an even sky, so that
-/// power is as in the sweeps, in every voxel and through every face, and what is even stays so. Power that this adds to
+/// see of the unscattered light more, or less, is added like the light of lamps. Where light is scattered many times, of the part that they
+/// see of an even sky, so that power is as in the sweeps in every voxel and through every face, and what is even stays so; where it is
+/// not, that would only bring back what few directions do to an even sky: power is as in the sweeps in all. Power that this adds to
 /// voxels or takes from them is made up for by what leaves the box.
 void FusedSolver::AddFlightDifference(const Monitor& monitor)
 {
   const Monitor ofFlight = monitor ? Monitor([&](double done) { return monitor(this->Progress(0, done)); }) : Monitor();
   const FlightLight fine = this->LightOf(*this->Flight, ofFlight);
   const FlightLight usual = this->LightOf(*this->UsualFlight, ofFlight);
-  const auto [evenFine, evenUsual] = this->LightOfEvenSky(ofFlight);
+  const bool many = this->ScatteredManyTimes();
+  const auto [evenFine, evenUsual] = many ? this->LightOfEvenSky(ofFlight) : std::array<FlightLight, 2>{ fine, usual };
   const auto ratio = [](double of, double to) { return to > 0.0 ? of / to : 1.0; };
   std::vector<float> flux = this->Settings.netFlux ? this->Flux.Read() : std::vector<float>();
   for (int c = 0; c < this->Channels; ++c)
   {
-    double more = 0.0, out = 0.0;
+    double more = 0.0, out = 0.0, in = 0.0, usualIn = 0.0;
+    for (int face = 0; face < 6; ++face)
+    {
+      in += fine.tally.in[face][c];
+      usualIn += usual.tally.in[face][c];
+    }
+    const double whole = ratio(usualIn, in);
     for (std::size_t i = 0; i < this->TheMedium.grid.VoxelCount(); ++i)
     {
       const std::size_t at = c * this->Stride + i;
       const double part = this->PartOfDifference(i, c);
-      const double scale = ratio(evenUsual.path[at], evenFine.path[at]);
+      const double scale = many ? ratio(evenUsual.path[at], evenFine.path[at]) : whole;
       const double difference = part * (scale * fine.path[at] - usual.path[at]);
       this->Lamps[at] += static_cast<float>(difference);
       more += this->SigmaT(i, c) * difference;
@@ -177,7 +185,7 @@ void FusedSolver::AddFlightDifference(const Monitor& monitor)
     std::array<double, 6> leaves;
     for (int face = 0; face < 6; ++face)
     {
-      const double scale = ratio(evenUsual.tally.out[face][c], evenFine.tally.out[face][c]);
+      const double scale = many ? ratio(evenUsual.tally.out[face][c], evenFine.tally.out[face][c]) : whole;
       leaves[face] = scale * fine.tally.out[face][c] - usual.tally.out[face][c];
       more += leaves[face];
       out += fine.tally.out[face][c];

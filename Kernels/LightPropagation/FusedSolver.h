@@ -117,6 +117,7 @@ private:
   // Accelerated, see AcceleratedPropagation.cxx.
   void ChooseAcceleration();
   double OrdersNeeded() const;
+  bool ScatteredManyTimes() const;
   void LoadAbsorption();
   void ChooseNearness();
   void PassLight(int firstChannel, int channels);

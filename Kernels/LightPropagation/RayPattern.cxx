@@ -12,25 +12,6 @@ constexpr double OnBorder = 1e-9;
 /// Fewer planes of a periodic axis are crossed several times before its pattern begins anew.
 constexpr int FewestPlanes = 128;
 
-/// A coordinate as whole voxels and the rest in [0, 1).
-struct Position
-{
-  double voxel, rest;
-  explicit Position(double x)
-    : voxel(std::floor(x + OnBorder))
-    , rest(std::max(0.0, x - this->voxel))
-  {
-  }
-};
-
-/// Where in the plane (0 its entry, 1 its exit) a ray crosses into the next voxel; above 1 if it does not.
-double CrossingDepth(double start, double tangent, int plane)
-{
-  const Position now(start + tangent * plane);
-  const Position next(start + tangent * (plane + 1));
-  return next.voxel > now.voxel ? std::min(1.0, (1.0 - now.rest) / tangent) : 2.0;
-}
-
 bool Same(double a, double b)
 {
   return std::abs(a - b) <= 1e-12 * std::max(std::abs(a), std::abs(b));
@@ -120,25 +101,41 @@ void Stagger(std::vector<Bundle>& bundles)
   }
 }
 
-/// The moves of rays that start at `start` and move by `tangent` voxels a plane.
-std::vector<Move> WholeMoves(double start, double tangent, int planes)
-{
-  std::vector<Move> moves(planes);
-  for (int k = 0; k < planes; ++k)
-  {
-    moves[k].depth = CrossingDepth(start, tangent, k);
-  }
-  return moves;
-}
-
 bool IsMove(const Move& move)
 {
   return move.depth <= 1.0;
 }
 
-/// Add a move in a plane; those that are in its way come a plane earlier, just at its end.
-void Insert(std::vector<Move>& moves, int plane, Move move)
+/// A coordinate as whole voxels and the rest in [0, 1).
+struct Position
 {
+  double voxel, rest;
+  explicit Position(double x)
+    : voxel(std::floor(x + OnBorder))
+    , rest(std::max(0.0, x - this->voxel))
+  {
+  }
+};
+
+/// The move of a straight ray in a plane.
+Move WholeMove(double start, double tangent, int plane)
+{
+  const Position now(start + tangent * plane);
+  const Position next(start + tangent * (plane + 1));
+  return next.voxel > now.voxel ? Move{ std::min(1.0, (1.0 - now.rest) / tangent), 1.0 } : Move();
+}
+
+/// The plane in which a ray is at `depth` planes; just at a plane's end it is still in it.
+int PlaneAt(double depth)
+{
+  return std::max(static_cast<int>(std::ceil(depth - OnBorder)) - 1, 0);
+}
+
+/// Add a move; those that are in its way come a plane earlier, just at its end.
+void Insert(std::vector<Move>& moves, double depth, double part)
+{
+  int plane = std::min(PlaneAt(depth), static_cast<int>(moves.size()) - 1);
+  Move move = { std::min(depth - plane, 1.0), part };
   while (plane >= 0 && IsMove(moves[plane]))
   {
     std::swap(moves[plane], move);
@@ -150,7 +147,7 @@ void Insert(std::vector<Move>& moves, int plane, Move move)
     moves[plane] = move;
     return;
   }
-  // All planes before have one: the last of these goes to the first plane that has none.
+  // All planes before have one: they come a plane later, where there is room.
   const auto free = std::find_if_not(moves.begin(), moves.end(), IsMove);
   if (free != moves.end())
   {
@@ -159,50 +156,59 @@ void Insert(std::vector<Move>& moves, int plane, Move move)
   }
 }
 
-/// How far rays have come after the last plane, in voxels.
-double EndOf(double start, double tangent, int planes)
+/// The moves of rays that start at `start` in their voxel and move by `tangent` voxels a plane, tangent x planes in all: whole ones,
+/// and one by the part that is then missing. Move k stands for what comes in from (k - 1) / tangent to k / tangent, and is at the place
+/// of `start` within that stretch; so is the part in its shorter one, after `before` whole moves.
+std::vector<Move> Moves(double start, double tangent, int planes)
 {
-  return start + tangent * planes;
-}
-
-/// The moves along one axis of rays that start at `parts` points of a voxel, (i + start) / parts. All of them together move
-/// `parts` x tangent x planes times: the ray that has just moved, or is next to, makes up for what whole moves miss.
-std::vector<std::vector<Move>> MovesOfLattice(double start, double tangent, int planes, int parts)
-{
-  std::vector<std::vector<Move>> moves;
-  double missing = parts * tangent * planes;
-  int latest = 0, next = 0; // of the points, to have moved and to move
-  const auto rest = [&](int i) { return Position(EndOf((i + start) / parts, tangent, planes)).rest; };
-  for (int i = 0; i < parts; ++i)
+  std::vector<Move> moves(planes);
+  const double all = tangent * planes;
+  if (all < OnBorder)
   {
-    moves.push_back(WholeMoves((i + start) / parts, tangent, planes));
-    missing -= static_cast<double>(std::count_if(moves[i].begin(), moves[i].end(), IsMove));
-    latest = rest(i) < rest(latest) ? i : latest;
-    next = rest(i) > rest(next) ? i : next;
+    return moves;
   }
-  if (missing < -OnBorder)
+  const int whole = static_cast<int>(std::ceil(all - OnBorder)) - 1;
+  const double part = std::min(all - whole, 1.0);
+  const auto wholeAt = [&](int k, double more) { return (k + more - start) / tangent; };
+  const auto partAt = [&](int before) { return (before + part * (1.0 - start)) / tangent; };
+  // No plane has two: as late as there is room.
+  const auto hasRoom = [&](int before) {
+    const int plane = PlaneAt(partAt(before));
+    return (before == 0 || PlaneAt(wholeAt(before, 0.0)) < plane) &&
+      (before == whole || plane < PlaneAt(wholeAt(before + 1, part)));
+  };
+  int before = whole;
+  while (before > 0 && !hasRoom(before))
   {
-    const auto last = std::find_if(moves[latest].rbegin(), moves[latest].rend(), IsMove);
-    last->part += missing;
+    --before;
   }
-  else if (missing > OnBorder)
+  before = hasRoom(before) ? before : whole;
+  for (int k = 1; k <= whole; ++k)
   {
-    // As the middle of the power that would still come in.
-    const double at = std::max(0.0, planes - 0.5 * missing / (parts * tangent));
-    const int plane = std::min(static_cast<int>(at), planes - 1);
-    Insert(moves[next], plane, { at - plane, missing });
+    Insert(moves, wholeAt(k, k > before ? part : 0.0), 1.0);
   }
+  Insert(moves, partAt(before), part);
   return moves;
 }
 
-/// Each bundle once for every point of the map's finer lattice, with its moves.
-std::vector<Bundle> OnLattice(const std::vector<Bundle>& bundles, int mapResolution, int planes)
+/// In the bundle's own frame, whose members may exchange the axes: where one is periodic and the other is not, both have moves.
+void AddMoves(Bundle& bundle, const PlaneAxes& axes, const std::array<bool, 3>& periodic, int planes)
 {
+  if (!periodic[axes.u] || !periodic[axes.v])
+  {
+    bundle.movesU = Moves(bundle.startU, bundle.tangentU, planes);
+    bundle.movesV = Moves(bundle.startV, bundle.tangentV, planes);
+  }
+}
+
+/// Each bundle once for every point of the map's finer lattice, with its moves.
+std::vector<Bundle> OnLattice(const std::vector<Bundle>& bundles, const PlaneAxes& axes, const Grid& grid,
+  const std::array<bool, 3>& periodic, int mapResolution)
+{
+  const int planes = PlanesOfPattern(grid.size[axes.axis], periodic[axes.axis]);
   std::vector<Bundle> all;
   for (const Bundle& bundle : bundles)
   {
-    const auto movesU = MovesOfLattice(bundle.startU, bundle.tangentU, planes, mapResolution);
-    const auto movesV = MovesOfLattice(bundle.startV, bundle.tangentV, planes, mapResolution);
     for (int j = 0; j < mapResolution; ++j)
     {
       for (int i = 0; i < mapResolution; ++i)
@@ -210,8 +216,7 @@ std::vector<Bundle> OnLattice(const std::vector<Bundle>& bundles, int mapResolut
         Bundle shifted = bundle;
         shifted.startU = (i + bundle.startU) / mapResolution;
         shifted.startV = (j + bundle.startV) / mapResolution;
-        shifted.movesU = movesU[i];
-        shifted.movesV = movesV[j];
+        AddMoves(shifted, axes, periodic, planes);
         shifted.power /= static_cast<double>(mapResolution) * mapResolution;
         all.push_back(shifted);
       }
@@ -230,9 +235,11 @@ bool Bundle::MovesBothWaysAtOnce() const
 /// way the bundle lies.
 PlaneCrossing Bundle::Crossing(int plane) const
 {
-  const std::size_t at = static_cast<std::size_t>(plane) % this->movesU.size();
-  const Move& u = this->movesU[at];
-  const Move& v = this->movesV[at];
+  const auto moveAt = [plane](const std::vector<Move>& moves, double start, double tangent) {
+    return moves.empty() ? WholeMove(start, tangent, plane) : moves[static_cast<std::size_t>(plane) % moves.size()];
+  };
+  const Move u = moveAt(this->movesU, this->startU, this->tangentU);
+  const Move v = moveAt(this->movesV, this->startV, this->tangentV);
   const bool tie = std::abs(u.depth - v.depth) < OnBorder;
   const bool uFirst = tie ? this->tangentU > this->tangentV : u.depth < v.depth;
   PlaneCrossing crossing;
@@ -315,7 +322,7 @@ std::vector<Bundle> BundlesAlong(int axis, const Grid& grid, const std::array<bo
   {
     Stagger(bundles);
   }
-  return OnLattice(bundles, mapResolution, PlanesOfPattern(grid.size[axis], periodic[axis]));
+  return OnLattice(bundles, axes, grid, periodic, mapResolution);
 }
 
 std::vector<Bundle> BeamAlong(int axis, const Grid& grid, const std::array<bool, 3>& periodic,
@@ -325,6 +332,6 @@ std::vector<Bundle> BeamAlong(int axis, const Grid& grid, const std::array<bool,
   Bundle beam = EmptyBundle(axes, grid, omega);
   const bool forward = omega[axis] > 0.0;
   beam.members.push_back({ forward ? 0 : -1, forward ? -1 : 0, Sign(omega[axes.u]), 0, 0, Sign(omega[axes.v]) });
-  return OnLattice({ beam }, mapResolution, PlanesOfPattern(grid.size[axis], periodic[axis]));
+  return OnLattice({ beam }, axes, grid, periodic, mapResolution);
 }
 }

@@ -60,7 +60,8 @@ struct Bundle
   double startV = 0.5;
   double length = 1.0;         ///< of a ray within one plane
   double power = 1.0;          ///< that a ray carries at radiance 1: weight |cos| area, length^2 sr
-  std::vector<Move> movesU, movesV; ///< by plane of the pattern, from where rays start
+  /// By plane of the pattern, from where rays start; empty where both axes are periodic, so that nothing enters on the way: whole moves.
+  std::vector<Move> movesU, movesV;
   std::vector<Member> members;
 
   /// Planes are counted from where the rays start; behind the last one the pattern begins anew.

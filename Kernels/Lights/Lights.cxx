@@ -10,24 +10,6 @@
 
 namespace tyndall
 {
-namespace
-{
-/// A pole is one point, whatever the azimuth: the mean of the row beside it.
-Rgb MeanOfRow(const Environment& environment, int row)
-{
-  Rgb sum = {};
-  for (int i = 0; i < environment.width; ++i)
-  {
-    const std::size_t pixel = 3 * (static_cast<std::size_t>(row) * environment.width + i);
-    for (int c = 0; c < 3; ++c)
-    {
-      sum[c] += environment.radiance[pixel + c] / static_cast<double>(environment.width);
-    }
-  }
-  return sum;
-}
-}
-
 Rgb Lookup(const Environment& environment, const std::array<double, 3>& direction)
 {
   const double pi = std::acos(-1.0);
@@ -44,14 +26,11 @@ Rgb Lookup(const Environment& environment, const std::array<double, 3>& directio
     const int dy = corner / 2;
     const double weight = (dx ? column - left : 1.0 - (column - left)) * (dy ? row - below : 1.0 - (row - below));
     const int i = (static_cast<int>(left) + dx + environment.width) % environment.width;
-    const int ofRow = static_cast<int>(below) + dy;
-    const int j = std::min(std::max(ofRow, 0), environment.height - 1);
+    const int j = std::min(std::max(static_cast<int>(below) + dy, 0), environment.height - 1);
     const std::size_t pixel = 3 * (static_cast<std::size_t>(j) * environment.width + i);
-    const float* const at = environment.radiance.data() + pixel;
-    const Rgb seen = j == ofRow ? Rgb{ at[0], at[1], at[2] } : MeanOfRow(environment, j);
     for (int c = 0; c < 3; ++c)
     {
-      sum[c] += weight * seen[c];
+      sum[c] += weight * environment.radiance[pixel + c];
     }
   }
   return sum;

@@ -88,7 +88,7 @@ TEST_F(Reconstruction, SaysWhatIsMissingAndWhoMakesIt)
   EXPECT_THAT(this->Complaint(light, By(Estimator::NearestPhotons)), HasSubstr("PhotonCounts"));
   EXPECT_THAT(this->Complaint(light, By(Estimator::Published)), HasSubstr("photon_count"));
   light.batches = 1;
-  EXPECT_THAT(this->Complaint(light, By(Estimator::Sound)), HasSubstr("1 batches"));
+  EXPECT_THAT(this->Complaint(light, By(Estimator::Sound)), HasSubstr("1 batch;"));
   light.batchFluence = nullptr;
   EXPECT_THAT(this->Complaint(light, By(Estimator::Sound)), HasSubstr("PhotonEmitter"));
   light.fluence = nullptr;
