@@ -96,6 +96,23 @@ std::vector<long long> PointsThatCount(vtkPolyData* data)
   return points;
 }
 
+namespace
+{
+/// Not where a filter works on its piece alone, cell by cell.
+bool AsksForAll(vtkInformation* input)
+{
+  using Pipeline = vtkStreamingDemandDrivenPipeline;
+  int update[6], whole[6];
+  if (!input || !input->Has(Pipeline::UPDATE_EXTENT()) || !input->Has(Pipeline::WHOLE_EXTENT()))
+  {
+    return false;
+  }
+  input->Get(Pipeline::UPDATE_EXTENT(), update);
+  input->Get(Pipeline::WHOLE_EXTENT(), whole);
+  return std::equal(update, update + 6, whole);
+}
+}
+
 void CheckDuplicates(vtkAlgorithm* filter, vtkInformationVector* outputs)
 {
   auto* const pieces = vtkStreamingDemandDrivenPipeline::UPDATE_NUMBER_OF_PIECES();
@@ -110,7 +127,8 @@ void CheckDuplicates(vtkAlgorithm* filter, vtkInformationVector* outputs)
     for (int i = 0; i < filter->GetNumberOfInputConnections(port); ++i)
     {
       auto* const image = vtkImageData::SafeDownCast(filter->GetInputDataObject(port, i));
-      if (image && Any(Flags(image->GetCellData(), image->GetNumberOfCells()), vtkDataSetAttributes::DUPLICATECELL))
+      if (image && AsksForAll(filter->GetInputInformation(port, i)) &&
+        Any(Flags(image->GetCellData(), image->GetNumberOfCells()), vtkDataSetAttributes::DUPLICATECELL))
       {
         throw InvalidInput(
           "Cells of the input image are marked as duplicates of another rank's (vtkGhostType). Light "

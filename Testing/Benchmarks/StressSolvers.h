@@ -46,7 +46,7 @@ struct StressOutcome
   std::vector<double> halfRangeFlux; ///< one, of maps
   std::vector<double> scattered;    ///< W, of photons
   std::vector<float> directions;    ///< mean directions, 3 a voxel, of photons
-  double residual = 0.0;            ///< of maps, what the solver says is left
+  double residual = 0.0;            ///< of maps, what the solver says is left, over its tolerance
   double rawTotal = 0.0;            ///< of reconstructions: the sum of the noisy fluence
   std::vector<float> levels;        ///< of the octree
   double nodes = 0.0;
@@ -61,6 +61,8 @@ std::vector<float> IndexToView(const StressScene& scene);
 
 /// Scattering orders at most, of the maps that are not accelerated; as published they are slow where voxels are 1:1000.
 constexpr int StressOrders = 10, StressOrdersPublished = 1;
+/// Of the maps, their default.
+constexpr double StressTolerance = 1e-4;
 /// Photons of each chain.
 constexpr int StressPhotons = 20000;
 }

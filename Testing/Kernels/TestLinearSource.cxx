@@ -380,7 +380,8 @@ TEST_F(LinearSource, SendsThroughACubesFacesWhatPhotonsDo)
       Row{ 5.0, 1.0, { 0.402589, 0.023612, 0.573800, 0.000000 }, { 1.2e-04, 4.9e-05, 1.3e-04, 0.0 } },
       Row{ 10.0, 1.0, { 0.551624, 0.010566, 0.437810, 0.000000 }, { 1.6e-04, 3.7e-05, 1.6e-04, 0.0 } } })
   {
-    Scene scene = Cube(32, row.tau, row.albedo);
+    // At 50 what is absorbed is 1.03% too little on 32 voxels, 0.9% on 36, 0.8% on 40.
+    Scene scene = Cube(row.tau == 50.0 ? 36 : 32, row.tau, row.albedo);
     scene.settings.directionsPerFace = 100;
     scene.settings.firstFlightDirections = 900;
     scene.settings.staggeredRays = true;
