@@ -46,7 +46,7 @@ __kernel void collect(__global float* path, __global float* fluence, __global fl
   tally[channel * get_global_size(0) + get_global_id(0)] = (float2)(sum_of(absorbed), sum_of(scattered));
 }
 
-// What gets out of the box of the light that sets out from each voxel, more than the sweep said: not more than half of what there is.
+// What gets out of the box of the light that sets out from each voxel, more than the sweep said.
 // extra  of a source of 1, W length
 // tally  [channel][chunk] W
 __kernel void let_escape(__global float* path, const __global float* source, const __global float* extra,
@@ -62,8 +62,7 @@ __kernel void let_escape(__global float* path, const __global float* source, con
   float sum = 0.0f;
   for (ulong i = begin; i < end; ++i)
   {
-    const float most = 0.5f * path[i];
-    const float escapes = clamp(source[i] * extra[i], -most, most);
+    const float escapes = source[i] * extra[i];
     path[i] -= escapes;
     sum += sigma_t[i] * escapes;
   }

@@ -8,6 +8,11 @@
 
 namespace tyndall
 {
+namespace
+{
+constexpr double Pi = 3.14159265358979323846;
+}
+
 /// What comes in evenly from everywhere is what accelerated orders carry already.
 void FusedSolver::FindFlight(const Environment& farAway)
 {
@@ -48,7 +53,6 @@ void FusedSolver::PropagateFlight(const Monitor& monitor)
     this->Count(
       this->Flight->Deposit(this->TheDevice, volume, first, this->Workspace, monitor), first, volume.channels);
   });
-  this->FindExtraEscape(monitor);
 }
 
 /// More, or less, of what sets out from a voxel gets out of the box along the finer directions than along the usual ones. With that put
@@ -56,6 +60,10 @@ void FusedSolver::PropagateFlight(const Monitor& monitor)
 void FusedSolver::FindExtraEscape(const Monitor& monitor)
 {
   const auto [fine, usual] = this->LightOfEvenSky(monitor);
+  const std::array<double, 3>& h = this->TheMedium.grid.spacing;
+  const double thinnest = std::min({ h[0], h[1], h[2] });
+  // A voxel can only let out what it takes of its own light: about half its optical thickness; a half of that.
+  const double whole = 0.25 * 4.0 * Pi * this->TheMedium.grid.VoxelVolume();
   std::vector<float> extra(this->Stride * this->Channels, 0.0f);
   for (int c = 0; c < this->Channels; ++c)
   {
@@ -63,7 +71,9 @@ void FusedSolver::FindExtraEscape(const Monitor& monitor)
     {
       const std::size_t at = c * this->Stride + i;
       const double sigma_t = this->SigmaT(i, c);
-      extra[at] = sigma_t > 0.0 ? static_cast<float>((fine.path[at] - usual.path[at]) / sigma_t) : 0.0f;
+      const double most = whole * thinnest * sigma_t / (1.0 + thinnest * sigma_t);
+      const double difference = std::clamp<double>(fine.path[at] - usual.path[at], -most, most);
+      extra[at] = sigma_t > 0.0 ? static_cast<float>(difference / sigma_t) : 0.0f;
     }
   }
   this->ExtraEscape = Buffer<float>(this->TheDevice, extra, "what escapes of scattered light");

@@ -382,6 +382,10 @@ void FusedSolver::PropagateLights(const Monitor& monitor)
     });
   }
   this->PropagateFlight(monitor);
+  if (this->Settings.firstFlightDirections > 0 && !this->Accelerated && this->Traits.scatters)
+  {
+    this->FindExtraEscape(monitor); // whatever shines: lights add up
+  }
   this->PropagatePeaks(monitor);
 }
 

@@ -214,7 +214,7 @@ TEST_F(EmissionPeaks, LightKobayashisVoidThatScatters)
   Scene scene = KobayashiScene(60, 0.5);
   scene.settings.directionsPerFace = 400;
   scene.settings.mapResolution = 2;
-  scene.settings.emissionError = 0.005;
+  scene.settings.emissionError = 0.0025;
   const LightField light = scene.Solve(this->GetDevice());
   EXPECT_LT(light.balance.RelativeError(1), 1e-5);
   for (const KobayashiReference& reference : KobayashiProblem1)
