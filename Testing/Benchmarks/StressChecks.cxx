@@ -491,7 +491,7 @@ StressCheck CheckTurned(
     largest = std::max<double>(largest, expected[i]);
   }
   // Accelerated iterations end where rounding leads them, within the error that they tell.
-  const double told = StressTolerance * std::max(outcome.residual, turned.residual);
+  const double told = StressTolerance * (outcome.residual + turned.residual);
   return { "as_its_turned_self", worst == 0.0 ? 0.0 : worst / largest, std::max(1e-5, told) };
 }
 
