@@ -5,11 +5,9 @@
 #include "vtkAlgorithm.h"
 #include "vtkCellData.h"
 #include "vtkDataSetAttributes.h"
-#include "vtkExtentTranslator.h"
 #include "vtkImageData.h"
 #include "vtkInformation.h"
 #include "vtkInformationVector.h"
-#include "vtkNew.h"
 #include "vtkPointData.h"
 #include "vtkPolyData.h"
 #include "vtkStreamingDemandDrivenPipeline.h"
@@ -98,62 +96,13 @@ std::vector<long long> PointsThatCount(vtkPolyData* data)
   return points;
 }
 
-namespace
-{
-/// Not where a filter works on its piece alone, cell by cell.
-bool AsksForAll(vtkInformation* input)
-{
-  using Pipeline = vtkStreamingDemandDrivenPipeline;
-  int update[6], whole[6];
-  if (!input || !input->Has(Pipeline::UPDATE_EXTENT()) || !input->Has(Pipeline::WHOLE_EXTENT()))
-  {
-    return false;
-  }
-  input->Get(Pipeline::UPDATE_EXTENT(), update);
-  input->Get(Pipeline::WHOLE_EXTENT(), whole);
-  return std::equal(update, update + 6, whole);
-}
-
-/// Whether the cells that are no duplicates are the piece that VTK gives this rank of the whole extent: then the rank has the whole image,
-/// and VTK itself has marked what is beyond its piece.
-bool IsWholeWithMarks(vtkImageData* image, vtkInformation* input)
-{
-  using Pipeline = vtkStreamingDemandDrivenPipeline;
-  int whole[6], piece[6];
-  input->Get(Pipeline::WHOLE_EXTENT(), whole);
-  vtkNew<vtkExtentTranslator> translator;
-  translator->PieceToExtentThreadSafe(input->Get(Pipeline::UPDATE_PIECE_NUMBER()),
-    input->Get(Pipeline::UPDATE_NUMBER_OF_PIECES()), 0, whole, piece, vtkExtentTranslator::BLOCK_MODE, 0);
-  int extent[6];
-  image->GetExtent(extent);
-  vtkUnsignedCharArray* const flags = Flags(image->GetCellData(), image->GetNumberOfCells());
-  vtkIdType cell = 0;
-  for (int k = extent[4]; k < std::max(extent[5], extent[4] + 1); ++k)
-  {
-    for (int j = extent[2]; j < std::max(extent[3], extent[2] + 1); ++j)
-    {
-      for (int i = extent[0]; i < std::max(extent[1], extent[0] + 1); ++i, ++cell)
-      {
-        const int at[3] = { i, j, k };
-        bool own = true;
-        for (int a = 0; a < 3; ++a)
-        {
-          own = own && at[a] >= piece[2 * a] && at[a] < std::max(piece[2 * a + 1], piece[2 * a] + 1);
-        }
-        if (own != ((flags->GetValue(cell) & vtkDataSetAttributes::DUPLICATECELL) == 0))
-        {
-          return false;
-        }
-      }
-    }
-  }
-  return std::equal(extent, extent + 6, whole);
-}
-}
-
 void CheckDuplicates(vtkAlgorithm* filter, vtkInformationVector* outputs)
 {
   auto* const pieces = vtkStreamingDemandDrivenPipeline::UPDATE_NUMBER_OF_PIECES();
+  if (filter->IsA("vtkParticipatingMedium"))
+  {
+    return; // cell by cell: a duplicate's medium is that of the cell
+  }
   bool divided = false;
   for (int port = 0; port < outputs->GetNumberOfInformationObjects(); ++port)
   {
@@ -165,9 +114,7 @@ void CheckDuplicates(vtkAlgorithm* filter, vtkInformationVector* outputs)
     for (int i = 0; i < filter->GetNumberOfInputConnections(port); ++i)
     {
       auto* const image = vtkImageData::SafeDownCast(filter->GetInputDataObject(port, i));
-      if (image && AsksForAll(filter->GetInputInformation(port, i)) &&
-        Any(Flags(image->GetCellData(), image->GetNumberOfCells()), vtkDataSetAttributes::DUPLICATECELL) &&
-        !IsWholeWithMarks(image, filter->GetInputInformation(port, i)))
+      if (image && Any(Flags(image->GetCellData(), image->GetNumberOfCells()), vtkDataSetAttributes::DUPLICATECELL))
       {
         throw InvalidInput(
           "Cells of the input image are marked as duplicates of another rank's (vtkGhostType). Light "
