@@ -15,6 +15,7 @@ constexpr double PartOfOne = 0.01;     ///< that each carries, at least
 constexpr std::size_t MostPeaks = 16;
 constexpr double Widest = 0.125; ///< of the box's longest edge
 constexpr double Hidden = 4.6;   ///< mean free paths beyond which a peak is not seen: 1% is left
+constexpr double Opaque = 3e4; ///< mean free paths a voxel from which on a peak is left to the sweeps
 constexpr double Clear = 1.5;    ///< times a peak's width that light must go to be followed
 
 using Voxel = std::array<int, 3>;
@@ -234,6 +235,21 @@ bool IsSeen(const Medium& medium, const EmissionPeak& peak)
   return clearest <= Hidden;
 }
 
+/// Floats do not know what gets out of a voxel that takes nearly all of its own light.
+bool IsOpaque(const Medium& medium, const std::vector<std::size_t>& group)
+{
+  const std::array<double, 3>& h = medium.grid.spacing;
+  const double edge = std::max({ h[0], h[1], h[2] });
+  return std::any_of(group.begin(), group.end(), [&](std::size_t voxel) {
+    double sigma_t = 0.0;
+    for (int c = 0; c < 3; ++c)
+    {
+      sigma_t = std::max(sigma_t, medium.sigma_a.At(voxel, c) + medium.sigma_s.At(voxel, c) * (1.0 - medium.g));
+    }
+    return sigma_t * edge > Opaque;
+  });
+}
+
 /// Fills in the emission; the rest stays in `smooth`.
 void Take(const Medium& medium, const BrightVoxels& bright, const std::vector<std::size_t>& group, EmissionPeak& peak,
   std::vector<float>& smooth)
@@ -284,7 +300,7 @@ SplitEmission Split(const Medium& medium)
       continue;
     }
     const EmissionPeak peak = BoxAround(medium.grid, group);
-    if (IsSmall(medium.grid, peak) && IsSeen(medium, peak))
+    if (IsSmall(medium.grid, peak) && !IsOpaque(medium, group) && IsSeen(medium, peak))
     {
       candidates.push_back({ power, std::move(group), peak });
     }
