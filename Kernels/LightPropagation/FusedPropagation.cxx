@@ -4,7 +4,6 @@
 #include "EmissionRays.h"
 #include "EnvironmentPeaks.h"
 #include "FirstCollision.h"
-#include "PowerUnit.h"
 #include "TyndallKernelSources.h"
 
 #include <algorithm>

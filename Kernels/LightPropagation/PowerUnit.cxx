@@ -60,8 +60,8 @@ void Multiply(Rgb& values, double unit)
 {
   Divide(values, 1.0 / unit);
 }
-}
 
+/// W that a light sends into the box, or around it if it stands outside; the sum of its channels.
 double PowerInto(const Grid& grid, const Light& light)
 {
   if (light.type != LightType::Directional)
@@ -72,6 +72,7 @@ double PowerInto(const Grid& grid, const Light& light)
   const std::array<double, 3>& d = light.direction;
   const double across = std::abs(d[0]) * area[0] + std::abs(d[1]) * area[1] + std::abs(d[2]) * area[2];
   return Sum(light.power) * across / std::hypot(d[0], d[1], d[2]);
+}
 }
 
 double PowerUnitOf(const Medium& medium, const Illumination& illumination)

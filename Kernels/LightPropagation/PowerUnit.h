@@ -13,9 +13,6 @@ namespace tyndall
 /// W to solve a scene in: 1 where the power of all that shines is not far from that.
 double PowerUnitOf(const Medium& medium, const Illumination& illumination);
 
-/// W that a light sends into the box, or around it if it stands outside; the sum of its channels.
-double PowerInto(const Grid& grid, const Light& light);
-
 /// A scene in another unit of power.
 struct SceneInUnits
 {

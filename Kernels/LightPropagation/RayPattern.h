@@ -64,7 +64,7 @@ struct Bundle
   std::vector<Move> movesU, movesV;
   std::vector<Member> members;
 
-  /// Planes are counted from where the rays start; behind the last one the pattern begins anew.
+  /// Planes are counted from where the rays start; behind the last one the pattern begins anew, but for whole moves, which go on.
   PlaneCrossing Crossing(int plane) const;
   /// All moves are along both axes at once: tangents and starts are equal.
   bool MovesBothWaysAtOnce() const;
