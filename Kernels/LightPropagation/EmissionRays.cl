@@ -106,6 +106,7 @@ static void trace(const turned_scene* s, const lit_voxel* voxel, const real* poi
       index += select((integer)0, select((integer)-strides[a], (integer)strides[a], up[a]), crossed);
       next[a] += select((real)0.0f, step[a], crossed);
     }
+    index = clamp(index, (integer)0, (integer)s->last); // rounding: along a face of the grid, a step of no length past it
     now = end;
     under_way = now < enter && tau < (real)OPAQUE;
   }
@@ -154,7 +155,7 @@ static void trace(const turned_scene* s, const lit_voxel* voxel, const real* poi
       shining += select((integer)0, select((integer)-source_strides[a], (integer)source_strides[a], up[a]), crossed);
       next[a] += select((real)0.0f, step[a], crossed);
     }
-    index = clamp(index, (integer)0, (integer)s->last); // rounding: a step of no length past the box
+    index = clamp(index, (integer)0, (integer)s->last); // the same
     shining = clamp(shining, (integer)0, (integer)s->source_last);
     now = end;
     under_way = now < leave && received > (real)1e-35f;

@@ -100,7 +100,8 @@ double PowerUnitOf(const Medium& medium, const Illumination& illumination)
     return 1.0;
   }
   const int exponent = std::ilogb(power);
-  return std::abs(exponent) <= UsualExponent ? 1.0 : std::exp2(exponent);
+  // All light together is then 2^40: next to what shines most, something else may shine 1e-36 times as much.
+  return std::abs(exponent) <= UsualExponent ? 1.0 : std::exp2(exponent - UsualExponent);
 }
 
 SceneInUnits::SceneInUnits(const Medium& inWatts, const Illumination& shining, double unit)

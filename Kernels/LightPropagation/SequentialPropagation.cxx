@@ -20,8 +20,8 @@ public:
     , Channels(this->Model.Channels())
     , Values(medium.grid.VoxelCount() * this->Channels)
     , Sources(this->Model.SourceDirections().size())
-    , OrderMoments(this->Model.MomentCount(), std::vector<float>(this->Values))
-    , Moments(this->OrderMoments)
+    , OrderMoments(this->Model.MomentCount(), std::vector<double>(this->Values))
+    , Moments(this->OrderMoments.size(), std::vector<float>(this->Values))
     , Coefficients(this->OrderMoments.size())
   {
     this->Extinction.resize(this->Values);
@@ -45,11 +45,12 @@ public:
     do
     {
       this->Propagate(monitor);
-      this->Ledger.CloseOrder(this->OrderMoments[0].data());
+      const std::vector<float> fluence(this->OrderMoments[0].begin(), this->OrderMoments[0].end());
+      this->Ledger.CloseOrder(fluence.data());
       this->UpdateSources();
       if (this->Ledger.Orders() == 1)
       {
-        field.fluenceDirect = this->OrderMoments[0];
+        field.fluenceDirect = fluence;
       }
     } while (!this->Ledger.Done());
     this->WriteTo(field);
@@ -60,9 +61,9 @@ private:
   /// All rays of all maps, once.
   void Propagate(const Monitor& monitor)
   {
-    for (std::vector<float>& moment : this->OrderMoments)
+    for (std::vector<double>& moment : this->OrderMoments)
     {
-      std::fill(moment.begin(), moment.end(), 0.0f);
+      std::fill(moment.begin(), moment.end(), 0.0);
     }
     this->Ledger.carried = {};
     const std::vector<Direction>& directions = this->Model.Directions().directions;
@@ -198,8 +199,7 @@ private:
         static_cast<float>(ray.radiance[c] * left + source[first + c] * Depth(sigma_t, left, length));
       ray.radiance[c] = radiance;
       const double sigma_s = this->Scattering[first + c];
-      const float deposit =
-        static_cast<float>(density * radiance * Depth(sigma_s, std::exp(-length * sigma_s), length));
+      const double deposit = density * radiance * Depth(sigma_s, std::exp(-length * sigma_s), length);
       for (std::size_t k = 0; k < this->OrderMoments.size(); ++k)
       {
         this->OrderMoments[k][first + c] += this->Coefficients[k] * deposit;
@@ -228,16 +228,16 @@ private:
     {
       for (std::size_t i = 0; i < this->Values; ++i)
       {
-        this->Moments[k][i] += this->OrderMoments[k][i];
+        this->Moments[k][i] += static_cast<float>(this->OrderMoments[k][i]);
       }
     }
     for (std::size_t d = 0; d < this->Sources; ++d)
     {
       const PublishedModel::Part part = this->Model.Source(static_cast<int>(d));
-      const std::vector<float>& moment = this->OrderMoments[part.moment];
+      const std::vector<double>& moment = this->OrderMoments[part.moment];
       for (std::size_t i = 0; i < this->Values; ++i)
       {
-        this->Source[d][i] = static_cast<float>(part.factor) * this->Scattering[i] * moment[i];
+        this->Source[d][i] = static_cast<float>(part.factor * this->Scattering[i] * moment[i]);
       }
     }
   }
@@ -282,9 +282,10 @@ private:
   std::size_t Sources; ///< directions of U
   std::vector<float> Extinction, Scattering;
   std::vector<std::vector<float>> Source;       ///< U of the order before, by direction
-  std::vector<std::vector<float>> OrderMoments; ///< of this order
-  std::vector<std::vector<float>> Moments;      ///< of all orders
-  std::vector<float> Coefficients;              ///< of the moments, for the direction that is under way
+  /// Of this order. Where voxels are flat a ray comes by thousands of times: as floats their sums were off by 6e-4.
+  std::vector<std::vector<double>> OrderMoments;
+  std::vector<std::vector<float>> Moments; ///< of all orders
+  std::vector<float> Coefficients;         ///< of the moments, for the direction that is under way
   std::vector<std::vector<float>> Carried;      ///< by direction: radiance on its way through a periodic axis
 };
 }

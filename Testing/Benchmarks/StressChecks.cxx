@@ -501,7 +501,7 @@ StressCheck CheckTurned(
   }
   largest = std::max(largest, outcome.balance.empty() ? 0.0 : outcome.balance[0] / surface);
   // Accelerated iterations end where rounding leads them, within the error that they tell.
-  const double told = StressTolerance * (outcome.residual + turned.residual);
+  const double told = StressTightTolerance * (outcome.residual + turned.residual);
   return { "as_its_turned_self", worst == 0.0 ? 0.0 : worst / largest, std::max(1e-5, told) };
 }
 

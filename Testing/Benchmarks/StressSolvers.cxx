@@ -134,7 +134,8 @@ void ReadLight(vtkImageData* image, StressOutcome& outcome)
   outcome.channels = fluence ? fluence->GetNumberOfComponents() : 1;
 }
 
-void RunMaps(StressSolver solver, const StressScene& scene, Listener* listener, StressOutcome& outcome)
+void RunMaps(
+  StressSolver solver, const StressScene& scene, double tolerance, Listener* listener, StressOutcome& outcome)
 {
   vtkNew<vtkLightRig> rig;
   SetRig(rig, scene);
@@ -149,6 +150,7 @@ void RunMaps(StressSolver solver, const StressScene& scene, Listener* listener, 
   maps->SetPeriodicY(scene.periodic[1]);
   maps->SetPeriodicZ(scene.periodic[2]);
   maps->SetNetFlux(true);
+  maps->SetTolerance(tolerance);
   const bool sequential = solver == StressSolver::MapsSequential;
   if (sequential || solver == StressSolver::MapsParallel)
   {
@@ -373,7 +375,7 @@ std::vector<float> IndexToView(const StressScene& scene)
   return index;
 }
 
-StressOutcome RunStress(StressSolver solver, const StressScene& scene)
+StressOutcome RunStress(StressSolver solver, const StressScene& scene, double tolerance)
 {
   StressOutcome outcome;
   vtkNew<Listener> listener;
@@ -381,7 +383,7 @@ StressOutcome RunStress(StressSolver solver, const StressScene& scene)
   const double start = WallSeconds();
   if (IsMaps(solver))
   {
-    RunMaps(solver, scene, listener, outcome);
+    RunMaps(solver, scene, tolerance, listener, outcome);
   }
   else if (IsView(solver))
   {

@@ -54,15 +54,17 @@ struct StressOutcome
   std::vector<float> through;         ///< of views, 3 a pixel: a background of 1 seen through the unlit medium along -z
 };
 
-StressOutcome RunStress(StressSolver solver, const StressScene& scene);
+/// Of the maps: their default, and as far as floats go, where what is compared is not how far iterations went.
+constexpr double StressTolerance = 1e-4, StressTightTolerance = 1e-6;
+
+/// @param tolerance  of the maps
+StressOutcome RunStress(StressSolver solver, const StressScene& scene, double tolerance = StressTolerance);
 
 /// Index of each voxel as the bent view sees it: the scene's own, or that of a soft ball.
 std::vector<float> IndexToView(const StressScene& scene);
 
 /// Scattering orders at most, of the maps that are not accelerated; as published they are slow where voxels are 1:1000.
 constexpr int StressOrders = 10, StressOrdersPublished = 1;
-/// Of the maps, their default.
-constexpr double StressTolerance = 1e-4;
 /// Photons of each chain.
 constexpr int StressPhotons = 20000;
 }
