@@ -77,9 +77,7 @@ double HalfRange(const Grid& grid, const DirectionSet& set, int axis, int marchi
   double sum = 0.0;
   for (const Direction& direction : set.directions)
   {
-    sum += direction.omega[axis] > 0.0 && MarchingAxis(grid, direction.omega) == marching
-      ? direction.weight * direction.omega[axis]
-      : 0.0;
+    sum += PartMarching(grid, direction.omega, marching) * direction.weight * std::max(direction.omega[axis], 0.0);
   }
   return sum;
 }

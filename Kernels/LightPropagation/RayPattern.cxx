@@ -46,12 +46,14 @@ int Sign(double x)
 }
 
 /// Add a direction to the bundle it belongs to, or to a new one.
-void Sort(std::vector<Bundle>& bundles, const PlaneAxes& axes, const Grid& grid, const DirectionSet& set, int d)
+/// @param part  of its power that marches along this axis
+void Sort(
+  std::vector<Bundle>& bundles, const PlaneAxes& axes, const Grid& grid, const DirectionSet& set, int d, double part)
 {
   const Direction& direction = set.directions[d];
   const std::array<double, 3>& omega = direction.omega;
   Bundle fresh = EmptyBundle(axes, grid, omega);
-  fresh.power *= direction.weight;
+  fresh.power *= part * direction.weight;
   const bool square = Same(grid.spacing[axes.u], grid.spacing[axes.v]);
   const int signU = Sign(omega[axes.u]);
   const int signV = Sign(omega[axes.v]);
@@ -277,32 +279,30 @@ PlaneAxes AcrossAxis(int axis)
   return axis == 0 ? PlaneAxes{ 0, 1, 2 } : axis == 1 ? PlaneAxes{ 1, 0, 2 } : PlaneAxes{ 2, 0, 1 };
 }
 
-int MarchingAxis(const Grid& grid, const std::array<double, 3>& omega)
-{
-  int axis = 0;
-  for (int other = 1; other < 3; ++other)
-  {
-    if (std::abs(omega[other]) / grid.spacing[other] > std::abs(omega[axis]) / grid.spacing[axis])
-    {
-      axis = other;
-    }
-  }
-  return axis;
-}
-
 std::vector<int> MarchingAxes(const Grid& grid, const std::array<double, 3>& omega)
 {
-  const int first = MarchingAxis(grid, omega);
-  const double crossings = std::abs(omega[first]) / grid.spacing[first];
+  std::array<double, 3> crossings; // of planes, per length
+  for (int axis = 0; axis < 3; ++axis)
+  {
+    crossings[axis] = std::abs(omega[axis]) / grid.spacing[axis];
+  }
+  const double most = *std::max_element(crossings.begin(), crossings.end());
   std::vector<int> axes;
   for (int axis = 0; axis < 3; ++axis)
   {
-    if (std::abs(omega[axis]) / grid.spacing[axis] >= (1.0 - OnBorder) * crossings)
+    if (crossings[axis] >= (1.0 - OnBorder) * most)
     {
       axes.push_back(axis);
     }
   }
   return axes;
+}
+
+double PartMarching(const Grid& grid, const std::array<double, 3>& omega, int axis)
+{
+  const std::vector<int> axes = MarchingAxes(grid, omega);
+  const bool marches = std::find(axes.begin(), axes.end(), axis) != axes.end();
+  return marches ? 1.0 / static_cast<double>(axes.size()) : 0.0;
 }
 
 std::vector<Bundle> BundlesAlong(int axis, const Grid& grid, const std::array<bool, 3>& periodic,
@@ -313,9 +313,10 @@ std::vector<Bundle> BundlesAlong(int axis, const Grid& grid, const std::array<bo
   for (std::size_t d = 0; d < set.directions.size(); ++d)
   {
     const std::array<double, 3>& omega = set.directions[d].omega;
-    if (MarchingAxis(grid, omega) == axis && omega[axis] > 0.0)
+    const double part = PartMarching(grid, omega, axis);
+    if (part > 0.0 && omega[axis] > 0.0)
     {
-      Sort(bundles, axes, grid, set, static_cast<int>(d));
+      Sort(bundles, axes, grid, set, static_cast<int>(d), part);
     }
   }
   if (starts == RayStarts::Staggered)

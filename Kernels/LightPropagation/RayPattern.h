@@ -82,11 +82,11 @@ struct PlaneAxes
 PlaneAxes AcrossAxis(int axis);
 
 /// The axis that a direction marches along: the one of whose voxel planes it crosses most per unit length, so that it never
-/// moves more than one voxel aside.
-int MarchingAxis(const Grid& grid, const std::array<double, 3>& omega);
-
-/// All of them, where a direction crosses the planes of several axes alike.
+/// moves more than one voxel aside. Where it crosses the planes of several alike, all of these: none of them comes first.
 std::vector<int> MarchingAxes(const Grid& grid, const std::array<double, 3>& omega);
+
+/// Of a direction's power, the part that marches along `axis`: 0, 1, or where several axes share it 1/2 or 1/3.
+double PartMarching(const Grid& grid, const std::array<double, 3>& omega, int axis);
 
 /// Where the rays of a bundle start within a voxel of the first plane, or within its part on a finer lattice.
 enum class RayStarts
