@@ -1,8 +1,8 @@
-#include "ComparedRun.h"
+#include "Comparison/ComparedRun.h"
 
-#include "RunKinds.h"
+#include "Comparison/RunKinds.h"
 
-#include "../Device/Errors.h"
+#include "Device/Errors.h"
 
 #include <algorithm>
 

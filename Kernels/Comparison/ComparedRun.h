@@ -1,12 +1,12 @@
 #pragma once
 
-#include "ComparedScene.h"
+#include "Comparison/ComparedScene.h"
 
-#include "../Device/Device.h"
-#include "../Device/Monitor.h"
-#include "../LightPropagation/LightField.h"
-#include "../LightPropagation/PropagationSettings.h"
-#include "../Photons/SampleSequence.h"
+#include "Device/Device.h"
+#include "Device/Monitor.h"
+#include "Light/LightField.h"
+#include "LightPropagation/PropagationSettings.h"
+#include "Photons/Emission/SampleSequence.h"
 
 #include <functional>
 #include <string>

@@ -1,4 +1,4 @@
-#include "ComparedScene.h"
+#include "Comparison/ComparedScene.h"
 
 #include <algorithm>
 

@@ -1,9 +1,9 @@
 #pragma once
 
-#include "GridTransfer.h"
+#include "Comparison/GridTransfer.h"
 
-#include "../Lights/Lights.h"
-#include "../Medium/Medium.h"
+#include "Lights/Lights.h"
+#include "Medium/Medium.h"
 
 #include <array>
 #include <cstdint>

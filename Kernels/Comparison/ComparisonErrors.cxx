@@ -1,5 +1,5 @@
 // What rows of a comparison are made of: see SolverComparison.h.
-#include "SolverComparison.h"
+#include "Comparison/SolverComparison.h"
 
 #include <algorithm>
 #include <cmath>

@@ -1,9 +1,9 @@
 // The reference that a comparison makes itself: see SolverComparison.h.
-#include "SolverComparison.h"
+#include "Comparison/SolverComparison.h"
 
-#include "TimeLimit.h"
+#include "Comparison/TimeLimit.h"
 
-#include "../Device/Errors.h"
+#include "Device/Errors.h"
 
 #include <algorithm>
 #include <cmath>

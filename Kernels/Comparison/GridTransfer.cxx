@@ -1,6 +1,6 @@
-#include "GridTransfer.h"
+#include "Comparison/GridTransfer.h"
 
-#include "../Medium/Coarsening.h"
+#include "Medium/Coarsening.h"
 
 #include <algorithm>
 #include <cmath>

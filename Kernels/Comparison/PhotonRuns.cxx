@@ -1,10 +1,10 @@
-#include "RunKinds.h"
+#include "Comparison/RunKinds.h"
 
-#include "../Photons/PhotonEmitter.h"
-#include "../Photons/PhotonImportance.h"
-#include "../Photons/PhotonMarcher.h"
-#include "../Photons/PublishedPhotons.h"
-#include "../Reconstruction/PhotonReconstruction.h"
+#include "Photons/Emission/PhotonEmitter.h"
+#include "Photons/Importance/PhotonImportance.h"
+#include "Photons/Marching/PhotonMarcher.h"
+#include "Photons/Marching/PublishedPhotons.h"
+#include "Reconstruction/PhotonReconstruction.h"
 
 #include <algorithm>
 #include <cmath>

@@ -1,9 +1,9 @@
-#include "RunKinds.h"
+#include "Comparison/RunKinds.h"
 
-#include "../LightPropagation/ErrorEstimate.h"
-#include "../LightPropagation/FusedPropagation.h"
-#include "../LightPropagation/ParallelPropagation.h"
-#include "../LightPropagation/SequentialPropagation.h"
+#include "LightPropagation/Conservative/ErrorEstimate.h"
+#include "LightPropagation/Conservative/ConservativePropagation.h"
+#include "LightPropagation/Published/ParallelPropagation.h"
+#include "LightPropagation/Published/SequentialPropagation.h"
 
 #include <algorithm>
 #include <cstdlib>
@@ -63,7 +63,7 @@ PropagationSolver SolverOf(ComparedMethod method, Device& device, const Compared
     {
       case ComparedMethod::Published: return SolveParallel(device, medium, scene.illumination, settings, monitor);
       case ComparedMethod::PublishedSequential: return SolveSequential(medium, scene.illumination, settings, monitor);
-      default: return SolveFused(device, medium, scene.illumination, settings, monitor);
+      default: return SolveConservative(device, medium, scene.illumination, settings, monitor);
     }
   };
 }
@@ -121,6 +121,6 @@ std::vector<ComparedRun> PropagationRunsOf(
 LightField Propagate(Device& device, const ComparedScene& scene, PropagationSettings settings, const Monitor& monitor)
 {
   settings.periodic = scene.periodic;
-  return SolveFused(device, scene.medium, scene.illumination, settings, monitor);
+  return SolveConservative(device, scene.medium, scene.illumination, settings, monitor);
 }
 }

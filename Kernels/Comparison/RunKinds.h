@@ -1,6 +1,6 @@
 #pragma once
 
-#include "ComparedRun.h"
+#include "Comparison/ComparedRun.h"
 
 /// The runs of RunsOf by their kinds.
 namespace tyndall

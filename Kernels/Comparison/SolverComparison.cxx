@@ -1,8 +1,8 @@
-#include "SolverComparison.h"
+#include "Comparison/SolverComparison.h"
 
-#include "TimeLimit.h"
+#include "Comparison/TimeLimit.h"
 
-#include "../Device/Errors.h"
+#include "Device/Errors.h"
 
 #include <algorithm>
 #include <cmath>

@@ -1,6 +1,6 @@
 #pragma once
 
-#include "ComparedRun.h"
+#include "Comparison/ComparedRun.h"
 
 #include <limits>
 #include <optional>

@@ -1,7 +1,7 @@
 #pragma once
 
-#include "../Device/Clock.h"
-#include "../Device/Monitor.h"
+#include "Device/Clock.h"
+#include "Device/Monitor.h"
 
 #include <algorithm>
 #include <memory>

@@ -1,7 +1,7 @@
 #pragma once
 
-#include "Device.h"
-#include "Monitor.h"
+#include "Device/Device.h"
+#include "Device/Monitor.h"
 
 #include <algorithm>
 #include <limits>

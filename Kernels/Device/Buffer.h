@@ -1,6 +1,6 @@
 #pragma once
 
-#include "Device.h"
+#include "Device/Device.h"
 
 #include <vector>
 

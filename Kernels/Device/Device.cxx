@@ -1,7 +1,7 @@
-#include "Device.h"
+#include "Device/Device.h"
 
-#include "HostMemory.h"
-#include "PoclCache.h"
+#include "Device/HostMemory.h"
+#include "Device/PoclCache.h"
 
 #include <algorithm>
 #include <cctype>

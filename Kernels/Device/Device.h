@@ -1,9 +1,9 @@
 #pragma once
 
-#include "Clock.h"
-#include "Errors.h"
-#include "MemoryCount.h"
-#include "OpenCL.h"
+#include "Device/Clock.h"
+#include "Device/Errors.h"
+#include "Device/MemoryCount.h"
+#include "Device/OpenCL.h"
 
 #include <atomic>
 #include <cstddef>

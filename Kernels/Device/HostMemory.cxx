@@ -1,6 +1,6 @@
-#include "HostMemory.h"
+#include "Device/HostMemory.h"
 
-#include "Errors.h"
+#include "Device/Errors.h"
 
 #include <cstdint>
 #include <cstdio>

@@ -1,6 +1,6 @@
 #pragma once
 
-#include "Errors.h"
+#include "Device/Errors.h"
 
 #include <functional>
 

@@ -1,6 +1,6 @@
-#include "PoclCache.h"
+#include "Device/PoclCache.h"
 
-#include "Errors.h"
+#include "Device/Errors.h"
 
 #include <algorithm>
 #include <cerrno>

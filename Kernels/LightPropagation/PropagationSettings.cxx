@@ -1,6 +1,6 @@
-#include "PropagationSettings.h"
+#include "LightPropagation/PropagationSettings.h"
 
-#include "../Device/Errors.h"
+#include "Device/Errors.h"
 
 #include <string>
 

@@ -9,7 +9,7 @@ enum class PropagationSource
 {
   Automatic, ///< constant, or linear where orders are accelerated
   Constant,  ///< as published
-  Linear ///< from voxel centre to voxel centre (by the low-order system, see LowOrder.h): right however thick voxels are
+  Linear ///< from voxel centre to voxel centre (by the low-order system, see DiffusionSystem.h): right however thick voxels are
 };
 
 /// How scattering orders are added up.
@@ -24,10 +24,10 @@ struct PropagationSettings
 {
   int directionsPerFace = 25;  ///< directions per cube face, a square number: 1, 4, 9, 16, 25, ...
   bool adaptDirections = true; ///< more of them for slabs (UnvaryingAxes.h); false: as many as told
-  /// Directions per cube face, a square number, of the unscattered light of shining faces, sky and environment (FirstFlight.h);
+  /// Directions per cube face, a square number, of the unscattered light of shining faces, sky and environment (UncollidedBoundary.h);
   /// 0: the same as for scattered light.
   int firstFlightDirections = 0;
-  /// Rays of each direction start in a place of their own within a voxel, those of a first flight always (RayPattern.h). From some 64
+  /// Rays of each direction start in a place of their own within a voxel, those of a first flight always (RayBundles.h). From some 64
   /// directions a face on, half the error or less.
   bool staggeredRays = false;
   int mapResolution = 1;   ///< map points per voxel edge, 1 to 16

@@ -1,6 +1,6 @@
-#include "Lights.h"
+#include "Lights/Lights.h"
 
-#include "../Device/Errors.h"
+#include "Device/Errors.h"
 
 #include <algorithm>
 #include <cmath>

@@ -1,6 +1,6 @@
 #pragma once
 
-#include "Grid.h"
+#include "Medium/Grid.h"
 
 #include <array>
 #include <cstddef>

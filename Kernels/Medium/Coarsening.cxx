@@ -1,4 +1,4 @@
-#include "Coarsening.h"
+#include "Medium/Coarsening.h"
 
 #include <algorithm>
 

@@ -1,6 +1,6 @@
-#include "Medium.h"
+#include "Medium/Medium.h"
 
-#include "../Device/Errors.h"
+#include "Device/Errors.h"
 
 #include <algorithm>
 #include <cmath>

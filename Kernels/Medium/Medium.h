@@ -1,6 +1,6 @@
 #pragma once
 
-#include "Grid.h"
+#include "Medium/Grid.h"
 
 #include <string>
 
@@ -29,6 +29,17 @@ struct Medium
   Field sigma_s;  ///< scattering coefficient, 1/length
   Field emission; ///< emitted radiance per unit length, W / (length^3 sr)
   double g = 0.0; ///< mean cosine of the phase function (Henyey-Greenstein), in (-1, 1)
+
+  /// Scattering and extinction of the isotropic medium that stands for this one by the similarity relation: same diffusion, same
+  /// absorption. 1/length
+  float TransportSigmaS(std::size_t voxel, int channel) const
+  {
+    return static_cast<float>(this->sigma_s.At(voxel, channel) * (1.0 - this->g));
+  }
+  float TransportSigmaT(std::size_t voxel, int channel) const
+  {
+    return this->sigma_a.At(voxel, channel) + this->TransportSigmaS(voxel, channel);
+  }
 
   /// 3 where any quantity is coloured, else 1.
   int Channels() const

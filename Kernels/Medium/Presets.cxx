@@ -1,4 +1,4 @@
-#include "Presets.h"
+#include "Medium/Presets.h"
 
 namespace tyndall
 {

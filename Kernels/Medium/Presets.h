@@ -1,6 +1,6 @@
 #pragma once
 
-#include "../Lights/Lights.h"
+#include "Lights/Lights.h"
 
 #include <vector>
 

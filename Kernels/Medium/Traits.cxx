@@ -1,4 +1,4 @@
-#include "Traits.h"
+#include "Medium/Traits.h"
 
 #include <algorithm>
 #include <cmath>

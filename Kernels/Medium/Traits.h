@@ -1,7 +1,7 @@
 #pragma once
 
-#include "../Lights/Lights.h"
-#include "Medium.h"
+#include "Lights/Lights.h"
+#include "Medium/Medium.h"
 
 #include <array>
 #include <string>

@@ -1,6 +1,6 @@
 #pragma once
 
-#include "../LightPropagation/LightField.h"
+#include "Light/LightField.h"
 
 #include <array>
 #include <cstdint>

@@ -1,4 +1,4 @@
-#include "ArrayRange.h"
+#include "Reconstruction/ArrayRange.h"
 
 #include "TyndallKernelSources.h"
 

@@ -1,6 +1,6 @@
 #pragma once
 
-#include "../Device/LentArray.h"
+#include "Device/HostMappedBuffer.h"
 
 #include <array>
 #include <optional>

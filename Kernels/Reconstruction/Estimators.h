@@ -1,7 +1,7 @@
 #pragma once
 
-#include "ArrayRange.h"
-#include "PhotonReconstruction.h"
+#include "Reconstruction/ArrayRange.h"
+#include "Reconstruction/PhotonReconstruction.h"
 
 namespace tyndall
 {

@@ -1,11 +1,11 @@
-#include "Estimators.h"
-#include "LightPyramid.h"
-#include "WholeRows.h"
+#include "Reconstruction/Estimators.h"
+#include "Reconstruction/LightPyramid.h"
+#include "Reconstruction/WholeRows.h"
 
 #include "TyndallKernelSources.h"
 
-#include "../Device/Batches.h"
-#include "../Device/Defines.h"
+#include "Device/Batches.h"
+#include "Device/Defines.h"
 
 #include <algorithm>
 #include <limits>

@@ -1,9 +1,9 @@
-#include "LightPyramid.h"
+#include "Reconstruction/LightPyramid.h"
 
 #include "TyndallKernelSources.h"
 
-#include "../Device/Defines.h"
-#include "../Refraction/PyramidLayout.h"
+#include "Device/Defines.h"
+#include "Numerics/PyramidLayout.h"
 
 #include <algorithm>
 

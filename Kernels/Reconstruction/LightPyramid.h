@@ -1,6 +1,6 @@
 #pragma once
 
-#include "WholeRows.h"
+#include "Reconstruction/WholeRows.h"
 
 #include <vector>
 

@@ -1,8 +1,8 @@
-#include "LightRows.h"
+#include "Reconstruction/LightRows.h"
 
 #include "TyndallKernelSources.h"
 
-#include "../Device/Defines.h"
+#include "Device/Defines.h"
 
 namespace tyndall
 {

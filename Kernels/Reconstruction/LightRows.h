@@ -1,8 +1,8 @@
 #pragma once
 
-#include "../Device/Buffer.h"
-#include "../Device/Sizes.h"
-#include "../Medium/Grid.h"
+#include "Device/Buffer.h"
+#include "Device/Sizes.h"
+#include "Medium/Grid.h"
 
 #include <array>
 #include <string>

@@ -1,13 +1,13 @@
-#include "PhotonReconstruction.h"
+#include "Reconstruction/PhotonReconstruction.h"
 
-#include "Estimators.h"
-#include "LightRows.h"
+#include "Reconstruction/Estimators.h"
+#include "Reconstruction/LightRows.h"
 
-#include "../Device/Clock.h"
-#include "../Device/HostMemory.h"
-#include "../Medium/Medium.h"
-#include "../Medium/Traits.h"
-#include "../Refraction/PyramidLayout.h"
+#include "Device/Clock.h"
+#include "Device/HostMemory.h"
+#include "Medium/Medium.h"
+#include "Medium/Traits.h"
+#include "Numerics/PyramidLayout.h"
 
 #include <algorithm>
 #include <cmath>

@@ -1,8 +1,8 @@
 #pragma once
 
-#include "../Device/Device.h"
-#include "../Device/Monitor.h"
-#include "../Medium/Grid.h"
+#include "Device/Device.h"
+#include "Device/Monitor.h"
+#include "Medium/Grid.h"
 
 #include <string>
 #include <vector>

@@ -1,11 +1,11 @@
-#include "Estimators.h"
-#include "WholeRows.h"
+#include "Reconstruction/Estimators.h"
+#include "Reconstruction/WholeRows.h"
 
 #include "TyndallKernelSources.h"
 
-#include "../Device/Batches.h"
-#include "../Device/Defines.h"
-#include "../Refraction/PyramidLayout.h"
+#include "Device/Batches.h"
+#include "Device/Defines.h"
+#include "Numerics/PyramidLayout.h"
 
 #include <algorithm>
 #include <cmath>

@@ -1,4 +1,4 @@
-#include "WholeRows.h"
+#include "Reconstruction/WholeRows.h"
 
 #include "TyndallKernelSources.h"
 

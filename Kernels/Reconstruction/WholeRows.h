@@ -1,8 +1,8 @@
 #pragma once
 
-#include "LightRows.h"
+#include "Reconstruction/LightRows.h"
 
-#include "../Device/LentArray.h"
+#include "Device/HostMappedBuffer.h"
 
 namespace tyndall
 {

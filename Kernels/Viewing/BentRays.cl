@@ -3,7 +3,7 @@
 // With dt = ds / n a ray follows dr/dt = T, dT/dt = grad(n^2) / 2, |T| = n (as in Photons/): a leapfrog whose gradient is taken
 // in the middle of each step. Where the index is constant that is a straight step, and the gradient is not fetched.
 //
-// Needs Travellers.cl and SurfaceReflection.cl before it. Define besides
+// Needs RayPackets.cl and SurfaceReflection.cl before it. Define besides
 //   SKIP_BRICKS  1: rays leap over bricks in which nothing extinguishes, shines or bends
 
 // To the nearest face, voxels.

@@ -1,4 +1,4 @@
-#include "Bricks.h"
+#include "Viewing/Bricks.h"
 
 #include <algorithm>
 

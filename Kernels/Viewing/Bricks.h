@@ -1,6 +1,6 @@
 #pragma once
 
-#include "../Device/OpenCL.h"
+#include "Device/OpenCL.h"
 
 #include <array>
 #include <vector>

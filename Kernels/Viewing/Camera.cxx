@@ -1,6 +1,6 @@
-#include "Camera.h"
+#include "Viewing/Camera.h"
 
-#include "../Device/Errors.h"
+#include "Device/Errors.h"
 
 #include <algorithm>
 #include <cmath>

@@ -1,6 +1,6 @@
 #pragma once
 
-#include "../Medium/Grid.h"
+#include "Medium/Grid.h"
 
 #include <array>
 

@@ -1,15 +1,15 @@
-#include "MediumRayCaster.h"
+#include "Viewing/MediumRayCaster.h"
 
-#include "../Device/Batches.h"
-#include "../Device/Defines.h"
-#include "../Device/Sizes.h"
-#include "../Medium/Traits.h"
-#include "../Refraction/SquaredIndex.h"
-#include "Bricks.h"
-#include "SurfaceLight.h"
+#include "Device/Batches.h"
+#include "Device/Defines.h"
+#include "Device/Sizes.h"
+#include "Medium/Traits.h"
+#include "Refraction/Index/SquaredIndex.h"
+#include "Viewing/Bricks.h"
+#include "Viewing/SurfaceLight.h"
 #include "TyndallKernelSources.h"
-#include "ViewChecks.h"
-#include "ViewLights.h"
+#include "Viewing/ViewChecks.h"
+#include "Viewing/ViewLights.h"
 
 #include <algorithm>
 #include <cmath>
@@ -26,7 +26,7 @@ struct MediumRayCaster::View
   cl_int4 Picture, Size, Bricks, Environment;
 };
 
-/// Field by field the same as Travellers.cl's.
+/// Field by field the same as RayPackets.cl's.
 struct MediumRayCaster::Optics
 {
   cl_float4 Spacing, Surface, Table;
@@ -499,7 +499,7 @@ cl::Kernel MediumRayCaster::CastingKernel()
   const int surface = this->Reflects() ? static_cast<int>(this->Settings.surfaceReflection) : 0;
   return this->TheDevice.Kernel("cast_bent_rays",
     { kernel_source::Numerics, kernel_source::Sampling, kernel_source::View, kernel_source::Background,
-      kernel_source::Crossing, kernel_source::Travellers, kernel_source::SurfaceReflection, kernel_source::BentRays,
+      kernel_source::Crossing, kernel_source::RayPackets, kernel_source::SurfaceReflection, kernel_source::BentRays,
       kernel_source::Table, kernel_source::BentView },
     this->CastingOptions() + Define("BENDS", this->Bends) + Define("SURFACE", surface) +
       Define("TABLE", this->Settings.tableFace >= 0));

@@ -1,13 +1,13 @@
 #pragma once
 
-#include "../Device/Buffer.h"
-#include "../Device/Device.h"
-#include "../Device/Monitor.h"
-#include "../Lights/Lights.h"
-#include "../Medium/Medium.h"
-#include "../Medium/Traits.h"
-#include "../Refraction/IndexRange.h"
-#include "Camera.h"
+#include "Device/Buffer.h"
+#include "Device/Device.h"
+#include "Device/Monitor.h"
+#include "Lights/Lights.h"
+#include "Medium/Medium.h"
+#include "Medium/Traits.h"
+#include "Refraction/Index/IndexRange.h"
+#include "Viewing/Camera.h"
 
 #include <array>
 #include <string>

@@ -1,7 +1,7 @@
-#include "SurfaceLight.h"
+#include "Viewing/SurfaceLight.h"
 
-#include "../Medium/BoxFaces.h"
-#include "ViewLights.h"
+#include "Medium/BoxFaces.h"
+#include "Viewing/ViewLights.h"
 
 #include <algorithm>
 #include <cmath>
@@ -41,7 +41,7 @@ double Between(double low, double high, double x)
 /// That of the solver, mean free paths.
 double Thickness(const Medium& medium, std::size_t voxel, int channel, double length)
 {
-  return length * (medium.sigma_a.At(voxel, channel) + (1.0 - medium.g) * medium.sigma_s.At(voxel, channel));
+  return length * medium.TransportSigmaT(voxel, channel);
 }
 
 /// How much is to be added: none, some, all.

@@ -1,6 +1,6 @@
 // A face of the box that is a table.
 //
-// Needs Travellers.cl before it. Define besides
+// Needs RayPackets.cl before it. Define besides
 //   TABLE  1: there is one
 
 #if TABLE

@@ -1,6 +1,6 @@
-#include "ToneMapping.h"
+#include "Viewing/ToneMapping.h"
 
-#include "../Device/Errors.h"
+#include "Device/Errors.h"
 
 #include <algorithm>
 #include <cmath>

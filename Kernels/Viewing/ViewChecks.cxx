@@ -1,7 +1,7 @@
-#include "ViewChecks.h"
+#include "Viewing/ViewChecks.h"
 
-#include "../Medium/BoxFaces.h"
-#include "../Refraction/IndexRange.h"
+#include "Medium/BoxFaces.h"
+#include "Refraction/Index/IndexRange.h"
 
 #include <algorithm>
 #include <cmath>

@@ -1,4 +1,4 @@
-#include "ViewLights.h"
+#include "Viewing/ViewLights.h"
 
 #include <algorithm>
 #include <cmath>

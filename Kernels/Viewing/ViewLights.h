@@ -1,6 +1,6 @@
 #pragma once
 
-#include "MediumRayCaster.h"
+#include "Viewing/MediumRayCaster.h"
 
 #include <vector>
 

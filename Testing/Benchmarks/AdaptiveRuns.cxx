@@ -3,7 +3,7 @@
 #include "Measure.h"
 
 #include "../Kernels/MeshShapes.h"
-#include "Photons/PublishedPhotons.h"
+#include "Photons/Marching/PublishedPhotons.h"
 
 #include <algorithm>
 #include <array>

@@ -2,7 +2,7 @@
 
 #include "PhotonRuns.h"
 
-#include "Photons/PhotonImportance.h"
+#include "Photons/Importance/PhotonImportance.h"
 #include "Reconstruction/PhotonReconstruction.h"
 
 #include <memory>

@@ -1,6 +1,6 @@
 #include "Control.h"
 
-#include "LightPropagation/RayPattern.h"
+#include "LightPropagation/Angular/RayBundles.h"
 
 #include <algorithm>
 #include <chrono>

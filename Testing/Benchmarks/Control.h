@@ -3,13 +3,13 @@
 #include "ControlSweep.h"
 
 #include "Device/Monitor.h"
-#include "LightPropagation/LightField.h"
+#include "Light/LightField.h"
 #include "LightPropagation/PropagationSettings.h"
 #include "Medium/Medium.h"
 
 #include <vector>
 
-/// What hand-written C++ makes of the fused sweep on two cores: the yardstick for the OpenCL kernels (SolveFused). The same
+/// What hand-written C++ makes of the fused sweep on two cores: the yardstick for the OpenCL kernels (SolveConservative). The same
 /// rays (RayPattern), bundles with shared transmittance, rows of rays that move by whole voxels, a pipeline of up to three
 /// stages, conservative deposit, the same balance. Two threads march towards each other from the ends of an axis.
 ///

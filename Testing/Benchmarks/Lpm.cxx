@@ -15,9 +15,9 @@
 #include "Report.h"
 
 #include "Device/Errors.h"
-#include "LightPropagation/FusedPropagation.h"
-#include "LightPropagation/ParallelPropagation.h"
-#include "LightPropagation/SequentialPropagation.h"
+#include "LightPropagation/Conservative/ConservativePropagation.h"
+#include "LightPropagation/Published/ParallelPropagation.h"
+#include "LightPropagation/Published/SequentialPropagation.h"
 
 #include <algorithm>
 #include <cstdio>
@@ -107,7 +107,7 @@ std::vector<Method> MethodsFor(
   methods.push_back({ Parallel, large || options.quick ? 1 : std::min(repetitions, 5), !large, Sequential,
     [&](const Monitor& monitor) { return SolveParallel(device, medium, light, settings, monitor); } });
   methods.push_back({ Fused, repetitions, true, "",
-    [&](const Monitor& monitor) { return SolveFused(device, medium, light, settings, monitor); } });
+    [&](const Monitor& monitor) { return SolveConservative(device, medium, light, settings, monitor); } });
   const auto control = [&](const std::string& name, const control::Kernels& kernels, bool polynomials) {
     methods.push_back(
       { name, repetitions, true, Fused, [&medium, &light, &settings, kernels, polynomials](const Monitor& monitor) {

@@ -2,7 +2,7 @@
 
 #include "Device/Device.h"
 #include "Device/Monitor.h"
-#include "LightPropagation/LightField.h"
+#include "Light/LightField.h"
 
 #include <functional>
 #include <limits>

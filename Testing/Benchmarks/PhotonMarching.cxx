@@ -4,7 +4,7 @@
 
 #include "../Kernels/PhotonScene.h"
 
-#include "Photons/PublishedPhotons.h"
+#include "Photons/Marching/PublishedPhotons.h"
 
 #include <algorithm>
 

@@ -4,10 +4,10 @@
 #include "Report.h"
 
 #include "Device/Device.h"
-#include "Photons/PhotonEmitter.h"
-#include "Photons/PhotonMarcher.h"
-#include "Refraction/RefractionOctree.h"
-#include "Refraction/RefractiveMedium.h"
+#include "Photons/Emission/PhotonEmitter.h"
+#include "Photons/Marching/PhotonMarcher.h"
+#include "Refraction/Octree/RefractionOctree.h"
+#include "Refraction/Index/RefractiveMedium.h"
 
 #include <functional>
 #include <string>

@@ -4,7 +4,7 @@
 //   TyndallBenchRaycast [folder]   writes the last picture of each method there as PPM, to be looked at
 
 #include "Device/Device.h"
-#include "LightPropagation/FusedPropagation.h"
+#include "LightPropagation/Conservative/ConservativePropagation.h"
 #include "Viewing/MediumRayCaster.h"
 #include "Viewing/ToneMapping.h"
 
@@ -116,7 +116,7 @@ void Solve(Device& device, Scene& scene)
   PropagationSettings settings;
   settings.directionsPerFace = 9;
   settings.maximumOrders = 12;
-  LightField light = SolveFused(device, MediumOf(scene), illumination, settings, {});
+  LightField light = SolveConservative(device, MediumOf(scene), illumination, settings, {});
   scene.fluence = std::move(light.fluence);
   scene.fluenceDirect = std::move(light.fluenceDirect);
   scene.channels = light.channels;

@@ -12,8 +12,8 @@
 #include "../Kernels/SlabReference.h"
 
 #include "Device/Device.h"
-#include "LightPropagation/FusedPropagation.h"
-#include "LightPropagation/SequentialPropagation.h"
+#include "LightPropagation/Conservative/ConservativePropagation.h"
+#include "LightPropagation/Published/SequentialPropagation.h"
 
 #include <cmath>
 #include <cstdio>
@@ -187,7 +187,7 @@ void RunAll(Device& device, bool quick)
   const std::vector<Method> methods = {
     { "fused", false,
       [&](const Medium& medium, const Illumination& light, const PropagationSettings& settings) {
-        return SolveFused(device, medium, light, settings);
+        return SolveConservative(device, medium, light, settings);
       } },
     { "sequential as published", true,
       [](const Medium& medium, const Illumination& light, const PropagationSettings& settings) {

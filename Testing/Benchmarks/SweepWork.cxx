@@ -1,7 +1,7 @@
 #include "SweepWork.h"
 
-#include "LightPropagation/RayPattern.h"
-#include "LightPropagation/SweepPlan.h"
+#include "LightPropagation/Angular/RayBundles.h"
+#include "LightPropagation/Sweep/SweepPlan.h"
 
 #include <algorithm>
 

@@ -1,8 +1,8 @@
 #include "TraitsScenes.h"
 
-#include "LightPropagation/FusedPropagation.h"
-#include "LightPropagation/ParallelPropagation.h"
-#include "Photons/PhotonMarcher.h"
+#include "LightPropagation/Conservative/ConservativePropagation.h"
+#include "LightPropagation/Published/ParallelPropagation.h"
+#include "Photons/Marching/PhotonMarcher.h"
 #include "Viewing/MediumRayCaster.h"
 
 #include <algorithm>
@@ -128,7 +128,7 @@ TraitCase Propagation(Device& device, const std::string& name, const std::array<
   return { name, "LightPropagationMaps", scene->GridName(), Everything, [&device, scene](bool leaveOut) {
             PropagationSettings settings = scene->settings;
             settings.leaveOut = leaveOut;
-            return SolveFused(device, scene->medium, scene->light, settings).fluence;
+            return SolveConservative(device, scene->medium, scene->light, settings).fluence;
           } };
 }
 
@@ -155,7 +155,7 @@ TraitCase GreyBesideSharedExtinction(Device& device, const std::array<int, 3>& s
   return { "grey", "LightPropagationMaps", grey->GridName(), "in colour, one sigma_t",
     [&device, grey, coloured](bool leaveOut) {
       const TraitScene& scene = leaveOut ? *grey : *coloured;
-      return SolveFused(device, scene.medium, scene.light, scene.settings).fluence;
+      return SolveConservative(device, scene.medium, scene.light, scene.settings).fluence;
     } };
 }
 

@@ -4,7 +4,7 @@
 #include "PhotonScene.h"
 #include "RefractionOptics.h"
 
-#include "Photons/PhotonEmitter.h"
+#include "Photons/Emission/PhotonEmitter.h"
 
 #include <numeric>
 

@@ -1,6 +1,6 @@
 #pragma once
 
-#include "LightPropagation/FusedPropagation.h"
+#include "LightPropagation/Conservative/ConservativePropagation.h"
 
 #include <cmath>
 #include <random>
@@ -46,7 +46,7 @@ struct Scene
   tyndall::LightField Solve(tyndall::Device& device, const tyndall::Monitor& monitor = {})
   {
     this->Attach();
-    return tyndall::SolveFused(device, this->medium, this->light, this->settings, monitor);
+    return tyndall::SolveConservative(device, this->medium, this->light, this->settings, monitor);
   }
 
   int ComponentsOf(const std::vector<float>& values) const

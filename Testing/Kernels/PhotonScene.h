@@ -1,7 +1,7 @@
 #pragma once
 
-#include "Photons/PhotonMarcher.h"
-#include "Refraction/RefractiveMedium.h"
+#include "Photons/Marching/PhotonMarcher.h"
+#include "Refraction/Index/RefractiveMedium.h"
 
 #include <algorithm>
 #include <cmath>

@@ -1,6 +1,6 @@
 #pragma once
 
-#include "Photons/PhotonMarcher.h"
+#include "Photons/Marching/PhotonMarcher.h"
 
 #include <algorithm>
 #include <cmath>

@@ -1,6 +1,6 @@
 #pragma once
 
-#include "Refraction/TriangleMesh.h"
+#include "Refraction/Voxelization/TriangleMesh.h"
 
 #include <fstream>
 #include <stdexcept>

@@ -1,8 +1,8 @@
 #include "DeviceTest.h"
 #include "PhotonScene.h"
 
-#include "Photons/PhotonEmitter.h"
-#include "Photons/PhotonImportance.h"
+#include "Photons/Emission/PhotonEmitter.h"
+#include "Photons/Importance/PhotonImportance.h"
 #include "Reconstruction/PhotonReconstruction.h"
 
 #include <algorithm>

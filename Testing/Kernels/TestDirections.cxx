@@ -1,5 +1,5 @@
-#include "LightPropagation/Directions.h"
-#include "LightPropagation/RayPattern.h"
+#include "LightPropagation/Angular/DirectionSet.h"
+#include "LightPropagation/Angular/RayBundles.h"
 
 #include "Device/Errors.h"
 

@@ -2,8 +2,8 @@
 #include "DeviceTest.h"
 #include "MediumScene.h"
 
-#include "LightPropagation/Directions.h"
-#include "LightPropagation/RayPattern.h"
+#include "LightPropagation/Angular/DirectionSet.h"
+#include "LightPropagation/Angular/RayBundles.h"
 
 #include <algorithm>
 #include <cmath>

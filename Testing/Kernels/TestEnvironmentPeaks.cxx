@@ -1,4 +1,4 @@
-#include "LightPropagation/EnvironmentPeaks.h"
+#include "LightPropagation/Uncollided/EnvironmentPeaks.h"
 
 #include "DeviceTest.h"
 #include "MediumScene.h"

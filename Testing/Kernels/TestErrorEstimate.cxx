@@ -1,7 +1,7 @@
 #include "DeviceTest.h"
 #include "MediumScene.h"
 
-#include "LightPropagation/ErrorEstimate.h"
+#include "LightPropagation/Conservative/ErrorEstimate.h"
 #include "Medium/Coarsening.h"
 
 #include <algorithm>
@@ -67,7 +67,7 @@ LightField Estimate(Device& device, Scene& scene)
   scene.Solve(device); // lets the medium see its arrays
   return SolveWithErrorEstimate(scene.medium, scene.settings, {},
     [&](const Medium& medium, const PropagationSettings& settings, const Monitor& monitor) {
-      return SolveFused(device, medium, scene.light, settings, monitor);
+      return SolveConservative(device, medium, scene.light, settings, monitor);
     });
 }
 }

@@ -2,7 +2,7 @@
 #include "MediumScene.h"
 #include "PhotonScene.h"
 
-#include "Photons/PhotonEmitter.h"
+#include "Photons/Emission/PhotonEmitter.h"
 
 #include <algorithm>
 #include <cmath>

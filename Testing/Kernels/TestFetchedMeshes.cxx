@@ -2,8 +2,8 @@
 #include "PlyFile.h"
 #include "WholeCounts.h"
 
-#include "Refraction/MeshChecks.h"
-#include "Refraction/RefractiveMedium.h"
+#include "Refraction/Voxelization/MeshChecks.h"
+#include "Refraction/Index/RefractiveMedium.h"
 
 #include <gmock/gmock.h>
 

@@ -2,7 +2,7 @@
 #include "Difference.h"
 #include "MediumScene.h"
 
-#include "LightPropagation/ErrorEstimate.h"
+#include "LightPropagation/Conservative/ErrorEstimate.h"
 
 #include <gmock/gmock.h>
 
@@ -248,7 +248,7 @@ TEST_F(FirstFlight, TakesPartInTheErrorEstimate)
     scene.Solve(this->GetDevice()); // lets the medium see its arrays
     errors[fine > 0] = SolveWithErrorEstimate(scene.medium, scene.settings, {},
       [&](const Medium& medium, const PropagationSettings& settings, const Monitor& monitor) {
-        return SolveFused(this->GetDevice(), medium, scene.light, settings, monitor);
+        return SolveConservative(this->GetDevice(), medium, scene.light, settings, monitor);
       }).relativeError;
   }
   EXPECT_LT(errors[1], 0.5 * errors[0]);

@@ -1,7 +1,7 @@
 #include "DeviceTest.h"
 #include "MediumScene.h"
 
-#include "LightPropagation/Directions.h"
+#include "LightPropagation/Angular/DirectionSet.h"
 
 #include <algorithm>
 #include <cmath>

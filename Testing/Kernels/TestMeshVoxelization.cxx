@@ -2,8 +2,8 @@
 #include "MeshShapes.h"
 #include "WholeCounts.h"
 
-#include "Refraction/SampleLattice.h"
-#include "Refraction/Voxelization.h"
+#include "Refraction/Voxelization/SampleLattice.h"
+#include "Refraction/Voxelization/Voxelization.h"
 
 #include <gmock/gmock.h>
 

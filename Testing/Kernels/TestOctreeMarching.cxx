@@ -3,8 +3,8 @@
 #include "DeviceTest.h"
 #include "PhotonScene.h"
 
-#include "Photons/PhotonEmitter.h"
-#include "Refraction/RefractionOctree.h"
+#include "Photons/Emission/PhotonEmitter.h"
+#include "Refraction/Octree/RefractionOctree.h"
 
 using namespace tyndall;
 

@@ -1,8 +1,8 @@
 #include "DeviceTest.h"
 #include "RandomMedium.h"
 
-#include "LightPropagation/ParallelPropagation.h"
-#include "LightPropagation/SequentialPropagation.h"
+#include "LightPropagation/Published/ParallelPropagation.h"
+#include "LightPropagation/Published/SequentialPropagation.h"
 
 #include <algorithm>
 #include <cmath>

@@ -1,5 +1,5 @@
 #include "Device/Errors.h"
-#include "Photons/PhotonEmitter.h"
+#include "Photons/Emission/PhotonEmitter.h"
 
 #include <gtest/gtest.h>
 

@@ -3,8 +3,8 @@
 #include "PhotonScene.h"
 
 #include "Device/Errors.h"
-#include "Photons/PhotonEmitter.h"
-#include "Photons/PhotonImportance.h"
+#include "Photons/Emission/PhotonEmitter.h"
+#include "Photons/Importance/PhotonImportance.h"
 
 #include <algorithm>
 #include <cmath>

@@ -2,8 +2,8 @@
 #include "MediumScene.h"
 #include "PhotonScene.h"
 
-#include "Photons/PhotonEmitter.h"
-#include "Photons/PublishedPhotons.h"
+#include "Photons/Emission/PhotonEmitter.h"
+#include "Photons/Marching/PublishedPhotons.h"
 
 #include <algorithm>
 #include <functional>

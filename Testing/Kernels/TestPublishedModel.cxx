@@ -1,4 +1,4 @@
-#include "LightPropagation/PublishedModel.h"
+#include "LightPropagation/Published/PublishedModel.h"
 #include "RandomMedium.h"
 
 #include "Device/Errors.h"

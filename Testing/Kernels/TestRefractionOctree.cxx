@@ -1,7 +1,7 @@
 #include "DeviceTest.h"
 
-#include "Refraction/MinMaxPyramid.h"
-#include "Refraction/RefractionOctree.h"
+#include "Refraction/Octree/MinMaxPyramid.h"
+#include "Refraction/Octree/RefractionOctree.h"
 
 #include <gmock/gmock.h>
 

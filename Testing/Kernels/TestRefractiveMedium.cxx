@@ -1,8 +1,8 @@
 #include "DeviceTest.h"
 #include "MeshShapes.h"
 
-#include "Refraction/IndexField.h"
-#include "Refraction/RefractiveMedium.h"
+#include "Refraction/Index/IndexField.h"
+#include "Refraction/Index/RefractiveMedium.h"
 
 #include <gmock/gmock.h>
 

@@ -1,4 +1,4 @@
-#include "LightPropagation/SequentialPropagation.h"
+#include "LightPropagation/Published/SequentialPropagation.h"
 #include "RandomMedium.h"
 
 #include "Device/Errors.h"

@@ -4,8 +4,8 @@
 #include "DeviceTest.h"
 #include "MediumScene.h"
 
-#include "LightPropagation/ParallelPropagation.h"
-#include "LightPropagation/SequentialPropagation.h"
+#include "LightPropagation/Published/ParallelPropagation.h"
+#include "LightPropagation/Published/SequentialPropagation.h"
 
 #include <algorithm>
 #include <cmath>

@@ -1,7 +1,7 @@
 #include "ViewScene.h"
 
-#include "LightPropagation/FusedPropagation.h"
-#include "LightPropagation/SurfaceRadiance.h"
+#include "LightPropagation/Conservative/ConservativePropagation.h"
+#include "LightPropagation/Conservative/SurfaceRadiance.h"
 #include "Medium/BoxFaces.h"
 
 #include <tuple>
@@ -31,7 +31,7 @@ void Solve(Device& device, Scene& scene, const PropagationSettings& settings = {
   medium.grid = scene.grid;
   medium.sigma_a = Scene::See(scene.sigma_a, scene.components);
   medium.sigma_s = Scene::See(scene.sigma_s, scene.components);
-  const LightField light = SolveFused(device, medium, scene.illumination, settings, {});
+  const LightField light = SolveConservative(device, medium, scene.illumination, settings, {});
   scene.fluence = light.fluence;
   scene.surface = light.surfaceRadiance;
   scene.settings.showBackground = false;

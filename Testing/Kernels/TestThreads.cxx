@@ -6,7 +6,7 @@
 #include "ViewScene.h"
 
 #include "Device/Buffer.h"
-#include "LightPropagation/ParallelPropagation.h"
+#include "LightPropagation/Published/ParallelPropagation.h"
 
 #include <atomic>
 #include <functional>

@@ -2,8 +2,8 @@
 #include "Difference.h"
 #include "MediumScene.h"
 
-#include "LightPropagation/ParallelPropagation.h"
-#include "LightPropagation/SequentialPropagation.h"
+#include "LightPropagation/Published/ParallelPropagation.h"
+#include "LightPropagation/Published/SequentialPropagation.h"
 #include "Medium/Traits.h"
 
 #include <gmock/gmock.h>

@@ -4,7 +4,7 @@
 #include "ViewScene.h"
 
 #include "Medium/Traits.h"
-#include "Photons/PhotonEmitter.h"
+#include "Photons/Emission/PhotonEmitter.h"
 
 #include <gmock/gmock.h>
 

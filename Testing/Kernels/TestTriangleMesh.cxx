@@ -1,7 +1,7 @@
 #include "MeshShapes.h"
 
 #include "Device/Errors.h"
-#include "Refraction/TriangleMesh.h"
+#include "Refraction/Voxelization/TriangleMesh.h"
 
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>

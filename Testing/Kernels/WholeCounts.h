@@ -1,6 +1,6 @@
 #pragma once
 
-#include "Refraction/Voxelization.h"
+#include "Refraction/Voxelization/Voxelization.h"
 
 #include <utility>
 #include <vector>

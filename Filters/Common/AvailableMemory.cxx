@@ -1,0 +1,62 @@
+#include "Common/AvailableMemory.h"
+
+#include <algorithm>
+#include <fstream>
+#include <limits>
+#include <string>
+#include <sys/resource.h>
+#include <unistd.h>
+
+namespace tyndall
+{
+namespace
+{
+constexpr double Unknown = std::numeric_limits<double>::infinity();
+
+/// The number after a word; Unknown where there is none.
+double NumberAfter(const char* path, const std::string& word)
+{
+  std::ifstream file(path);
+  for (std::string found; file >> found;)
+  {
+    double number = 0.0;
+    if (found == word && file >> number)
+    {
+      return number;
+    }
+  }
+  return Unknown;
+}
+
+/// The number that a file begins with; Unknown where it does not ("max").
+double NumberIn(const char* path)
+{
+  double number = 0.0;
+  return std::ifstream(path) >> number ? number : Unknown;
+}
+
+double LeftInContainer()
+{
+  const double most = NumberIn("/sys/fs/cgroup/memory.max"), taken = NumberIn("/sys/fs/cgroup/memory.current");
+  const double cache = NumberAfter("/sys/fs/cgroup/memory.stat", "inactive_file"); // is given back when needed
+  return most == Unknown || taken == Unknown ? Unknown : most - taken + (cache == Unknown ? 0.0 : cache);
+}
+
+double LeftOfAddressSpace()
+{
+  struct rlimit limit = {};
+  const double pages = NumberIn("/proc/self/statm");
+  if (getrlimit(RLIMIT_AS, &limit) != 0 || limit.rlim_cur == RLIM_INFINITY || pages == Unknown)
+  {
+    return Unknown;
+  }
+  return static_cast<double>(limit.rlim_cur) - pages * static_cast<double>(sysconf(_SC_PAGESIZE));
+}
+}
+
+double AvailableMemory()
+{
+  const double ofMachine = 1024.0 * NumberAfter("/proc/meminfo", "MemAvailable:");
+  return std::max(0.0, std::min({ ofMachine, LeftInContainer(), LeftOfAddressSpace() }));
+}
+}

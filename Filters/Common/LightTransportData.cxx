@@ -1,0 +1,462 @@
+#include "Common/LightTransportData.h"
+
+#include "Common/GhostFlags.h"
+#include "Common/LastFailure.h"
+
+#include "vtkAlgorithm.h"
+#include "vtkCellData.h"
+#include "vtkDataSetAttributes.h"
+#include "vtkFieldData.h"
+#include "vtkImageData.h"
+#include "vtkInformation.h"
+#include "vtkMatrix3x3.h"
+#include "vtkNew.h"
+#include "vtkPointData.h"
+#include "vtkPointDataToCellData.h"
+#include "vtkPolyData.h"
+#include "vtkUnsignedCharArray.h"
+
+#include <algorithm>
+#include <cmath>
+#include <utility>
+
+namespace tyndall
+{
+namespace
+{
+std::string Quoted(const std::string& name)
+{
+  return "'" + name + "'";
+}
+
+std::string Listed(Components components)
+{
+  std::string text;
+  for (int count : components)
+  {
+    text += (text.empty() ? "" : " or ") + std::to_string(count);
+  }
+  return text;
+}
+
+void CheckShape(vtkDataArray* array, const std::string& name, vtkIdType tuples, Components components)
+{
+  const int given = array->GetNumberOfComponents();
+  if (components.size() > 0 && std::find(components.begin(), components.end(), given) == components.end())
+  {
+    throw InvalidInput("Array " + Quoted(name) + " has " + std::to_string(given) + " components; it must have " +
+      Listed(components) + ".");
+  }
+  if (array->GetNumberOfTuples() != tuples)
+  {
+    throw InvalidInput("Array " + Quoted(name) + " has " + std::to_string(array->GetNumberOfTuples()) +
+      " values where the dataset has " + std::to_string(tuples) + ".");
+  }
+}
+
+vtkSmartPointer<vtkFloatArray> AsFloats(vtkDataArray* array)
+{
+  if (auto* floats = vtkArrayDownCast<vtkFloatArray>(array))
+  {
+    return floats;
+  }
+  auto floats = vtkSmartPointer<vtkFloatArray>::New();
+  floats->DeepCopy(array);
+  return floats;
+}
+
+vtkSmartPointer<vtkFloatArray> AveragedToCells(vtkImageData* image, vtkFloatArray* ofPoints)
+{
+  vtkNew<vtkImageData> points;
+  points->CopyStructure(image);
+  vtkNew<vtkFloatArray> named; // The filter loses an array without a name.
+  named->ShallowCopy(ofPoints);
+  named->SetName("averaged");
+  points->GetPointData()->AddArray(named);
+  vtkNew<vtkPointDataToCellData> average;
+  average->SetInputData(points);
+  average->Update();
+  return vtkArrayDownCast<vtkFloatArray>(average->GetOutput()->GetCellData()->GetArray("averaged"));
+}
+
+/// An array of cells or points, found but not looked at.
+struct Found
+{
+  vtkDataArray* array = nullptr;
+  bool ofPoints = false;
+};
+
+/// The same array, or a copy of it that has `empty` in hidden cells.
+vtkSmartPointer<vtkFloatArray> WithoutHidden(
+  vtkImageData* image, const vtkSmartPointer<vtkFloatArray>& ofCells, float empty)
+{
+  const std::vector<unsigned char> hidden = HiddenCells(image);
+  if (hidden.empty())
+  {
+    return ofCells;
+  }
+  auto visible = vtkSmartPointer<vtkFloatArray>::New();
+  visible->DeepCopy(ofCells);
+  const int components = visible->GetNumberOfComponents();
+  for (std::size_t i = 0; i < hidden.size(); ++i)
+  {
+    if (hidden[i])
+    {
+      std::fill_n(visible->GetPointer(static_cast<vtkIdType>(i) * components), components, empty);
+    }
+  }
+  return visible;
+}
+
+/// @param empty  of hidden cells
+FloatField ToField(vtkImageData* image, const Found& found, const std::string& name, Components components, float empty)
+{
+  CheckShape(found.array, name, found.ofPoints ? image->GetNumberOfPoints() : image->GetNumberOfCells(), components);
+  const vtkSmartPointer<vtkFloatArray> floats = AsFloats(found.array);
+  return FloatField(WithoutHidden(image, found.ofPoints ? AveragedToCells(image, floats) : floats, empty));
+}
+
+/// What SetInputArrayToProcess was told.
+struct Choice
+{
+  std::string name;   ///< of an array
+  int attribute = -1; ///< or the attribute it is, e.g. SCALARS
+  bool pointsFirst = false;
+  bool made = false; ///< by a user: not the default, and not the default's name
+};
+
+/// What ParaView's panel hands on where the input has no array of the default name (none_string of the proxies).
+const char* const NothingChosen = "(by name)";
+
+Choice ChoiceOf(vtkAlgorithm* filter, int index, const std::string& otherwise)
+{
+  vtkInformation* information = filter->GetInputArrayInformation(index);
+  Choice choice;
+  choice.pointsFirst = information->Has(vtkDataObject::FIELD_ASSOCIATION()) &&
+    information->Get(vtkDataObject::FIELD_ASSOCIATION()) == vtkDataObject::FIELD_ASSOCIATION_POINTS;
+  if (information->Has(vtkDataObject::FIELD_NAME()))
+  {
+    choice.name = information->Get(vtkDataObject::FIELD_NAME());
+  }
+  else if (information->Has(vtkDataObject::FIELD_ATTRIBUTE_TYPE()))
+  {
+    choice.attribute = information->Get(vtkDataObject::FIELD_ATTRIBUTE_TYPE());
+  }
+  const bool nothing = choice.name == NothingChosen ||
+    (choice.name.empty() && choice.attribute <= vtkDataSetAttributes::SCALARS); // VTK's own default
+  choice.made = !nothing && choice.name != otherwise;
+  if (nothing)
+  {
+    choice.pointsFirst = otherwise.empty();
+    choice.name = otherwise;
+    choice.attribute = otherwise.empty() ? static_cast<int>(vtkDataSetAttributes::SCALARS) : -1;
+  }
+  return choice;
+}
+
+vtkDataArray* ArrayOf(vtkDataSetAttributes* attributes, const Choice& choice)
+{
+  return choice.attribute >= 0 ? attributes->GetAttribute(choice.attribute) : attributes->GetArray(choice.name.c_str());
+}
+
+/// @throws InvalidInput where the array is not of numbers
+void CheckNumeric(vtkDataSetAttributes* attributes, const Choice& choice)
+{
+  vtkAbstractArray* array = attributes->GetAbstractArray(choice.name.c_str());
+  if (choice.attribute < 0 && array && !vtkArrayDownCast<vtkDataArray>(array))
+  {
+    throw InvalidInput("Array " + Quoted(choice.name) + " is text; it must be of numbers.");
+  }
+}
+
+Found Find(vtkImageData* image, const Choice& choice)
+{
+  vtkDataArray* ofCells = ArrayOf(image->GetCellData(), choice);
+  vtkDataArray* ofPoints = ArrayOf(image->GetPointData(), choice);
+  if (choice.pointsFirst ? ofPoints != nullptr : ofCells == nullptr)
+  {
+    return { ofPoints, true };
+  }
+  return { ofCells, false };
+}
+
+FloatField Read(vtkImageData* image, const Choice& choice, Need need, Components components, float empty = 0.0f)
+{
+  GridOf(image); // says what is wrong with an image that has no cells
+  const Found found = Find(image, choice);
+  if (found.array)
+  {
+    const char* name = found.array->GetName();
+    return ToField(image, found, name ? name : "", components, empty);
+  }
+  CheckNumeric(image->GetCellData(), choice);
+  CheckNumeric(image->GetPointData(), choice);
+  if (need == Need::Required || choice.made)
+  {
+    throw InvalidInput((choice.attribute >= 0 ? "The input has no active " +
+                             std::string(vtkDataSetAttributes::GetAttributeTypeAsString(choice.attribute))
+                                              : "The input has no array " + Quoted(choice.name)) +
+      ". Its cell arrays: " + NamesOf(image->GetCellData()) + "; its point arrays: " + NamesOf(image->GetPointData()) +
+      ".");
+  }
+  return {};
+}
+}
+
+std::string NamesOf(vtkDataSetAttributes* attributes)
+{
+  std::string names;
+  for (int i = 0; i < attributes->GetNumberOfArrays(); ++i)
+  {
+    const char* name = attributes->GetArrayName(i);
+    names += (i > 0 ? ", " : "") + Quoted(name ? name : "");
+  }
+  return names.empty() ? "none" : names;
+}
+
+void StopWithFilterBefore(vtkDataObject* input)
+{
+  if (ReadFact(input, AbortedFact, 0.0) > 0.0)
+  {
+    throw Aborted();
+  }
+  if (ReadFact(input, FailedFact, 0.0) > 0.0)
+  {
+    throw InputFailed();
+  }
+}
+
+Grid GridOf(vtkImageData* image)
+{
+  if (!image)
+  {
+    throw InvalidInput("There is no input image.");
+  }
+  const char* const axes[3] = { "x", "y", "z" };
+  Grid grid;
+  int extent[6];
+  image->GetExtent(extent);
+  for (int axis = 0; axis < 3; ++axis)
+  {
+    grid.size[axis] = extent[2 * axis + 1] - extent[2 * axis];
+    grid.spacing[axis] = image->GetSpacing()[axis];
+    if (grid.size[axis] < 0)
+    {
+      StopWithFilterBefore(image);
+      throw InvalidInput("The input image is empty.");
+    }
+    if (grid.size[axis] == 0)
+    {
+      throw InvalidInput("The input image has a single layer of points along " + std::string(axes[axis]) +
+        ", so no voxels; it needs at least two.");
+    }
+    if (!(grid.spacing[axis] > 0.0) || std::isinf(grid.spacing[axis]))
+    {
+      throw InvalidInput("The input image has spacing " + std::to_string(grid.spacing[axis]) + " along " + axes[axis] +
+        "; it must be a positive number.");
+    }
+    grid.origin[axis] = image->GetOrigin()[axis] + extent[2 * axis] * grid.spacing[axis];
+    if (!std::isfinite(grid.origin[axis]))
+    {
+      throw InvalidInput("The input image has an origin that is not finite along " + std::string(axes[axis]) + ".");
+    }
+  }
+  if (!image->GetDirectionMatrix()->IsIdentity())
+  {
+    throw InvalidInput("The input image is rotated by its direction matrix, which is not supported. Resample it, for "
+                       "example with ResampleToImage.");
+  }
+  Check(grid);
+  return grid;
+}
+
+FloatField ReadCells(vtkImageData* image, const std::string& name, Need need, Components components)
+{
+  Choice choice;
+  choice.name = name;
+  return Read(image, choice, need, components);
+}
+
+FloatField ReadChosenCells(
+  vtkAlgorithm* filter, int index, vtkImageData* image, const std::string& otherwise, Need need, Components components)
+{
+  const float empty = otherwise == "ior" ? 1.0f : 0.0f; // what a hidden cell has of it
+  return Read(image, ChoiceOf(filter, index, otherwise), need, components, empty);
+}
+
+vtkDataArray* ChosenArray(vtkAlgorithm* filter, int index, vtkImageData* image, const std::string& otherwise)
+{
+  return Find(image, ChoiceOf(filter, index, otherwise)).array;
+}
+
+MediumInput ReadMedium(vtkAlgorithm* filter, vtkImageData* image)
+{
+  MediumInput input;
+  input.medium.grid = GridOf(image);
+  input.sigma_a = ReadChosenCells(filter, SigmaA, image, "sigma_a", Need::Required, { 1, 3 });
+  input.sigma_s = ReadChosenCells(filter, SigmaS, image, "sigma_s", Need::Required, { 1, 3 });
+  input.emission = ReadChosenCells(filter, Emission, image, "emission", Need::Optional, { 1, 3 });
+  input.medium.sigma_a = input.sigma_a;
+  input.medium.sigma_s = input.sigma_s;
+  input.medium.emission = input.emission;
+  input.medium.g = ReadFact(image, "g", 0.0);
+  Check(input.medium);
+  return input;
+}
+
+double ReadFact(vtkDataObject* data, const char* name, double missing)
+{
+  vtkAbstractArray* found = data->GetFieldData()->GetAbstractArray(name);
+  if (!found)
+  {
+    return missing;
+  }
+  auto* numbers = vtkArrayDownCast<vtkDataArray>(found);
+  if (!numbers || numbers->GetNumberOfValues() != 1)
+  {
+    throw InvalidInput("The field data " + Quoted(name) + " must be one number.");
+  }
+  return numbers->GetTuple1(0);
+}
+
+namespace
+{
+/// A row of an array, zeros where the array is not there; of fewer components the first one repeated.
+template <std::size_t N>
+std::array<double, N> Row(vtkDataArray* array, vtkIdType row)
+{
+  std::array<double, N> values = {};
+  for (std::size_t c = 0; array && c < N; ++c)
+  {
+    values[c] = array->GetComponent(row, std::min(static_cast<int>(c), array->GetNumberOfComponents() - 1));
+  }
+  return values;
+}
+
+vtkDataArray* LightArray(vtkPolyData* lights, const char* name, Need need, Components components)
+{
+  vtkDataArray* array = lights->GetPointData()->GetArray(name);
+  if (array)
+  {
+    CheckShape(array, name, lights->GetNumberOfPoints(), components);
+  }
+  else if (need == Need::Required)
+  {
+    throw InvalidInput("The lights have no point array " + Quoted(name) +
+      ". Their point arrays: " + NamesOf(lights->GetPointData()) + ". Make lights with LightRig.");
+  }
+  return array;
+}
+
+LightType TypeOf(double number, vtkIdType light)
+{
+  if (number != 0.0 && number != 1.0 && number != 2.0 && number != 3.0)
+  {
+    throw InvalidInput("Light " + std::to_string(light) + " has light_type " + std::to_string(number) +
+      "; it must be 0 (directional), 1 (point), 2 (spot) or 3 (rectangle).");
+  }
+  return static_cast<LightType>(static_cast<int>(number));
+}
+}
+
+std::vector<Light> ReadLights(vtkPolyData* data)
+{
+  if (!data)
+  {
+    return {};
+  }
+  if (data->GetNumberOfPoints() == 0)
+  {
+    StopWithFilterBefore(data);
+    return {};
+  }
+  vtkDataArray* type = LightArray(data, "light_type", Need::Required, { 1 });
+  vtkDataArray* power = LightArray(data, "power", Need::Required, { 1, 3 });
+  vtkDataArray* direction = LightArray(data, "direction", Need::Optional, { 3 });
+  vtkDataArray* size = LightArray(data, "size", Need::Optional, { 1, 2 });
+  vtkDataArray* angle = LightArray(data, "angle", Need::Optional, { 1 });
+
+  Illumination read;
+  for (const vtkIdType i : PointsThatCount(data))
+  {
+    read.lights.emplace_back();
+    Light& light = read.lights.back();
+    light.type = TypeOf(type->GetComponent(i, 0), i);
+    data->GetPoint(i, light.position.data());
+    light.power = Row<3>(power, i);
+    light.direction = Row<3>(direction, i);
+    light.size = Row<2>(size, i);
+    light.angle = Row<1>(angle, i)[0];
+  }
+  Check(read);
+  return read.lights;
+}
+
+namespace
+{
+/// Hidden pixels are black.
+void DarkenHidden(vtkImageData* image, std::vector<float>& rgb)
+{
+  vtkUnsignedCharArray* const flags = image->GetPointGhostArray();
+  for (vtkIdType i = 0; flags && i < image->GetNumberOfPoints(); ++i)
+  {
+    if (flags->GetValue(i) & vtkDataSetAttributes::HIDDENPOINT)
+    {
+      std::fill_n(rgb.begin() + 3 * i, 3, 0.0f);
+    }
+  }
+}
+}
+
+Environment ReadEnvironment(vtkImageData* image)
+{
+  if (!image)
+  {
+    return {};
+  }
+  int size[3];
+  image->GetDimensions(size);
+  if (image->GetNumberOfPoints() == 0)
+  {
+    StopWithFilterBefore(image);
+  }
+  if (size[0] < 1 || size[1] < 1 || size[2] != 1)
+  {
+    throw InvalidInput("The environment has " + std::to_string(size[0]) + " x " + std::to_string(size[1]) + " x " +
+      std::to_string(size[2]) +
+      " points; it must be a flat latitude-longitude picture, as EnvironmentReader makes it.");
+  }
+  vtkDataArray* found = image->GetPointData()->GetArray("radiance");
+  if (!found)
+  {
+    throw InvalidInput(
+      "The environment has no point array 'radiance'. Its point arrays: " + NamesOf(image->GetPointData()) + ".");
+  }
+  CheckShape(found, "radiance", image->GetNumberOfPoints(), { 1, 3 });
+  const vtkSmartPointer<vtkFloatArray> radiance = AsFloats(found);
+  const int components = radiance->GetNumberOfComponents();
+  const float* values = radiance->GetPointer(0);
+
+  Illumination read;
+  read.environment.width = size[0];
+  read.environment.height = size[1];
+  read.environment.radiance.resize(3 * static_cast<std::size_t>(image->GetNumberOfPoints()));
+  for (std::size_t i = 0; i < read.environment.radiance.size(); ++i)
+  {
+    read.environment.radiance[i] = components == 3 ? values[i] : values[i / 3];
+  }
+  DarkenHidden(image, read.environment.radiance);
+  Check(read);
+  return std::move(read.environment);
+}
+
+void AddDiffuse(Illumination& illumination, const double* sky, const double* faceRadiance)
+{
+  std::copy_n(sky, 3, illumination.sky.begin());
+  for (int face = 0; face < 6; ++face)
+  {
+    illumination.faces[face].fill(faceRadiance[face]);
+  }
+  Check(illumination);
+}
+}

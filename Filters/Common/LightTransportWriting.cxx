@@ -1,0 +1,248 @@
+// What filters write: see LightTransportData.h.
+#include "Common/FiniteValues.h"
+#include "Common/LightTransportData.h"
+#include "Medium/BoxFaces.h"
+
+#include "vtkCellData.h"
+#include "vtkDoubleArray.h"
+#include "vtkFieldData.h"
+#include "vtkImageData.h"
+#include "vtkIntArray.h"
+#include "vtkNew.h"
+#include "vtkObjectFactory.h"
+#include "vtkStringArray.h"
+#include "vtkTable.h"
+
+#include <algorithm>
+#include <utility>
+
+namespace tyndall
+{
+namespace
+{
+/// A vtkFloatArray, to the last bit of its name, whose first values live in a vector.
+class VectorArray : public vtkFloatArray
+{
+public:
+  static VectorArray* New() { VTK_STANDARD_NEW_BODY(VectorArray); }
+
+  void Take(std::vector<float>&& values)
+  {
+    this->Values = std::move(values);
+    this->SetArray(this->Values.data(), static_cast<vtkIdType>(this->Values.size()), 1);
+  }
+
+private:
+  std::vector<float> Values;
+};
+
+void NameChannels(vtkDataArray* array)
+{
+  const char* const names[] = { "R", "G", "B" };
+  for (int c = 0; c < array->GetNumberOfComponents(); ++c)
+  {
+    array->SetComponentName(c, names[c]);
+  }
+}
+
+void NameFluxComponents(vtkDataArray* array)
+{
+  const char* const grey[] = { "X", "Y", "Z" };
+  const char* const coloured[] = { "R_X", "R_Y", "R_Z", "G_X", "G_Y", "G_Z", "B_X", "B_Y", "B_Z" };
+  const int count = array->GetNumberOfComponents();
+  for (int c = 0; c < count; ++c)
+  {
+    array->SetComponentName(c, count == 3 ? grey[c] : coloured[c]);
+  }
+}
+
+std::vector<double> Channels(std::initializer_list<Rgb> rows, int channels)
+{
+  std::vector<double> values;
+  for (const Rgb& row : rows)
+  {
+    values.insert(values.end(), row.begin(), row.begin() + channels);
+  }
+  return values;
+}
+
+std::vector<double> Flat(const std::vector<std::array<double, 3>>& directions)
+{
+  std::vector<double> values;
+  for (const std::array<double, 3>& direction : directions)
+  {
+    values.insert(values.end(), direction.begin(), direction.end());
+  }
+  return values;
+}
+
+void AddLightCells(vtkImageData* output, const char* name, std::vector<float>&& values, int components)
+{
+  if (!values.empty())
+  {
+    AddCells(output, name, std::move(values), components);
+  }
+}
+}
+
+namespace
+{
+void AddCellsAsTheyAre(vtkImageData* image, const char* name, std::vector<float>&& values, int components)
+{
+  const auto needed = static_cast<std::size_t>(image->GetNumberOfCells()) * static_cast<std::size_t>(components);
+  if (values.size() != needed)
+  {
+    throw std::logic_error(std::string(name) + " has " + std::to_string(values.size()) +
+      " values where the image takes " + std::to_string(needed) + ".");
+  }
+  vtkNew<VectorArray> array;
+  array->SetName(name);
+  array->SetNumberOfComponents(components);
+  array->Take(std::move(values));
+  image->GetCellData()->AddArray(array);
+}
+
+}
+
+void AddCells(vtkImageData* image, const char* name, std::vector<float>&& values, int components, const char* advice)
+{
+  RequireFiniteCells(image, name, values.data(), values.size(), components, advice);
+  AddCellsAsTheyAre(image, name, std::move(values), components);
+}
+
+void AddLight(vtkImageData* image, const char* name, std::vector<float>&& values, int channels)
+{
+  RequireFiniteCells(image, name, values.data(), values.size(), channels);
+  AddGivenLight(image, name, std::move(values), channels);
+}
+
+void AddGivenLight(vtkImageData* image, const char* name, std::vector<float>&& values, int channels)
+{
+  AddCellsAsTheyAre(image, name, std::move(values), channels);
+  if (channels == 3)
+  {
+    NameChannels(image->GetCellData()->GetArray(name));
+  }
+}
+
+void AddFact(vtkDataObject* data, const char* name, const std::vector<double>& values, int components)
+{
+  vtkNew<vtkDoubleArray> array;
+  array->SetName(name);
+  array->SetNumberOfComponents(components);
+  array->SetNumberOfTuples(static_cast<vtkIdType>(values.size()) / components);
+  std::copy(values.begin(), values.end(), array->GetPointer(0));
+  data->GetFieldData()->AddArray(array);
+}
+
+void AddFact(vtkDataObject* data, const char* name, const std::vector<std::string>& values)
+{
+  vtkNew<vtkStringArray> array;
+  array->SetName(name);
+  for (const std::string& value : values)
+  {
+    array->InsertNextValue(value);
+  }
+  data->GetFieldData()->AddArray(array);
+}
+
+std::string Lines(const std::vector<std::string>& texts)
+{
+  std::string lines;
+  for (const std::string& text : texts)
+  {
+    lines += (lines.empty() ? "" : "\n") + text;
+  }
+  return lines;
+}
+
+void WriteLight(LightField&& light, vtkImageData* output)
+{
+  const int channels = light.channels;
+  vtkCellData* cells = output->GetCellData();
+  for (const char* earlier : { "fluence", "fluence_direct", "fluence_error", "fluence_batches", "net_flux",
+         "scattered_radiance", "mean_direction", "photon_count", "photon_weight", "mip_level" })
+  {
+    cells->RemoveArray(earlier); // of another solve that the input has been through
+  }
+  for (const char* earlier : { "stored_directions", "scattered", "packing_loss", "fluence_bias", "half_range_flux",
+         SurfaceRadianceFact })
+  {
+    output->GetFieldData()->RemoveArray(earlier);
+  }
+  AddLight(output, "fluence", std::move(light.fluence), channels);
+  cells->SetActiveScalars("fluence");
+  if (!light.fluenceDirect.empty())
+  {
+    AddLight(output, "fluence_direct", std::move(light.fluenceDirect), channels);
+  }
+  if (!light.fluenceError.empty())
+  {
+    AddLight(output, "fluence_error", std::move(light.fluenceError), channels);
+  }
+  AddLightCells(output, "net_flux", std::move(light.netFlux), 3 * channels);
+  const int stored = std::max(1, static_cast<int>(light.storedDirections.size()));
+  AddLightCells(output, "scattered_radiance", std::move(light.scatteredRadiance), channels * stored);
+  if (vtkDataArray* flux = cells->GetArray("net_flux"))
+  {
+    NameFluxComponents(flux);
+  }
+
+  const EnergyBalance& balance = light.balance;
+  AddFact(output, "energy_balance",
+    Channels({ balance.entered, balance.emitted, balance.absorbed, balance.escaped, balance.leftOver }, channels),
+    channels);
+  const std::array<Rgb, 6>& out = light.facePowerOut;
+  AddFact(output, "face_power_out", Channels({ out[0], out[1], out[2], out[3], out[4], out[5] }, channels), channels);
+  if (light.halfRangeFlux > 0.0)
+  {
+    AddFact(output, "half_range_flux", std::vector<double>{ light.halfRangeFlux }, 1);
+  }
+  if (!light.storedDirections.empty())
+  {
+    AddFact(output, "stored_directions", Flat(light.storedDirections), 3);
+  }
+  if (!light.surfaceRadiance.empty())
+  {
+    AddFact(output, SurfaceRadianceFact, { light.surfaceRadiance.begin(), light.surfaceRadiance.end() },
+      static_cast<int>(SurfaceCosines.size()) * channels);
+  }
+  AddFact(output, "left_out", light.leftOut);
+  AddFact(output, "device", std::vector<std::string>{ light.device });
+}
+
+void WriteConvergence(const std::vector<ConvergenceRow>& rows, vtkTable* table)
+{
+  vtkNew<vtkIntArray> iteration;
+  iteration->SetName("iteration");
+  for (const ConvergenceRow& row : rows)
+  {
+    iteration->InsertNextValue(row.iteration);
+  }
+  table->AddColumn(iteration);
+
+  const auto column = [&](const char* name, double ConvergenceRow::*quantity) {
+    vtkNew<vtkDoubleArray> values;
+    values->SetName(name);
+    for (const ConvergenceRow& row : rows)
+    {
+      values->InsertNextValue(row.*quantity);
+    }
+    table->AddColumn(values);
+  };
+  column("seconds", &ConvergenceRow::seconds);
+  column("residual", &ConvergenceRow::residual);
+  column("change", &ConvergenceRow::change);
+  column("absorbed", &ConvergenceRow::absorbed);
+  column("escaped", &ConvergenceRow::escaped);
+  column("left_over", &ConvergenceRow::leftOver);
+}
+
+void PassOn(vtkImageData* input, vtkImageData* output)
+{
+  output->ShallowCopy(input);
+  vtkNew<vtkFieldData> own;
+  own->ShallowCopy(input->GetFieldData());
+  output->SetFieldData(own);
+}
+}

@@ -1,0 +1,344 @@
+#include "IO/VDB/VDBCells.h"
+
+#include "Device/Errors.h"
+#include "Common/LightTransportData.h"
+#include "IO/VDB/VDBHalf.h"
+#include "IO/VDB/VDBMetadata.h"
+#include "IO/VDB/VDBValues.h"
+
+#include "vtkCellData.h"
+#include "vtkDoubleArray.h"
+#include "vtkFieldData.h"
+#include "vtkFloatArray.h"
+#include "vtkImageData.h"
+#include "vtkIntArray.h"
+#include "vtkNew.h"
+#include "vtkStringArray.h"
+#include "vtkTypeInt64Array.h"
+#include "vtkUnsignedCharArray.h"
+
+#include <algorithm>
+#include <cmath>
+#include <cstring>
+#include <type_traits>
+#include <vector>
+
+namespace tyndall
+{
+namespace
+{
+/// A type of grid: OpenVDB's, and the array of cells with its numbers, N a voxel.
+template <typename G, typename A, int N = 1>
+struct Kind
+{
+  using Grid = G;
+  using Array = A;
+  using Number = typename A::ValueType;
+  static constexpr int Count = N;
+};
+
+/// Calls act with the Kind of a type of FindValueType.
+template <typename Do>
+void WithKind(const std::string& type, const Do& act)
+{
+  using namespace openvdb;
+  type == "float"      ? act(Kind<FloatGrid, vtkFloatArray>())
+    : type == "double" ? act(Kind<DoubleGrid, vtkDoubleArray>())
+    : type == "int32"  ? act(Kind<Int32Grid, vtkIntArray>())
+    : type == "int64"  ? act(Kind<Int64Grid, vtkTypeInt64Array>())
+    : type == "bool"   ? act(Kind<BoolGrid, vtkUnsignedCharArray>())
+    : type == "mask"   ? act(Kind<MaskGrid, vtkUnsignedCharArray>())
+    : type == "vec3i"  ? act(Kind<Vec3IGrid, vtkIntArray, 3>())
+    : type == "vec3s"  ? act(Kind<Vec3SGrid, vtkFloatArray, 3>())
+                       : act(Kind<Vec3DGrid, vtkDoubleArray, 3>());
+}
+
+template <typename K>
+void AddCellsOf(
+  K, const openvdb::GridBase& grid, const std::string& name, const openvdb::CoordBBox& box, vtkImageData* image)
+{
+  using Number = typename K::Number;
+  using Voxel = std::conditional_t<K::Count == 1, Number, openvdb::math::Vec3<Number>>;
+  const auto& tree = static_cast<const typename K::Grid&>(grid).tree();
+  vtkNew<typename K::Array> cells;
+  cells->SetName(name.c_str());
+  cells->SetNumberOfComponents(K::Count);
+  cells->SetNumberOfTuples(image->GetNumberOfCells());
+  openvdb::tools::Dense<Voxel, openvdb::tools::LayoutXYZ> dense(box, reinterpret_cast<Voxel*>(cells->GetPointer(0)));
+  openvdb::tools::copyToDense(tree, dense);
+  image->GetCellData()->AddArray(cells);
+
+  const Voxel value(tree.background());
+  vtkNew<typename K::Array> background;
+  background->SetName(FieldName(name, "background").c_str());
+  background->SetNumberOfComponents(K::Count);
+  background->SetNumberOfTuples(1);
+  std::memcpy(background->GetPointer(0), &value, sizeof(value));
+  image->GetFieldData()->AddArray(background);
+}
+
+/// Numbers of an array of any type, as a grid's.
+template <typename Number>
+class Numbers
+{
+public:
+  /// @param first  component of the voxel's first number
+  Numbers(vtkDataArray* array, int first)
+    : Values(array->GetVoidPointer(0))
+    , Components(array->GetNumberOfComponents())
+    , First(first)
+  {
+    switch (array->GetDataType())
+    {
+      vtkTemplateMacro(this->ReadOne = &Numbers::Read<VTK_TT>);
+      default: throw InvalidInput("its type " + std::string(array->GetDataTypeAsString()) + " has no grid. Convert it");
+    }
+  }
+
+  Number At(vtkIdType cell, int component) const
+  {
+    return this->ReadOne(this->Values, cell * this->Components + this->First + component, cell);
+  }
+
+private:
+  template <typename T>
+  static Number Read(const void* values, vtkIdType at, [[maybe_unused]] vtkIdType cell)
+  {
+    const T value = static_cast<const T*>(values)[at];
+    if constexpr (std::is_same<Number, vtkTypeInt64>::value && std::is_unsigned<T>::value && sizeof(T) == 8)
+    {
+      if (value > static_cast<T>(INT64_MAX))
+      {
+        throw InvalidInput("its value " + std::to_string(value) + " in cell " + std::to_string(cell) +
+          " is above 2^63 - 1, the largest integer of a .vdb file. Convert the array to double");
+      }
+    }
+    return static_cast<Number>(value);
+  }
+
+  const void* Values;
+  int Components;
+  int First;
+  Number (*ReadOne)(const void*, vtkIdType, vtkIdType) = nullptr;
+};
+
+/// One value of a grid from numbers that number(component) gives.
+template <typename Value, typename Get>
+Value VoxelFrom(const Get& number)
+{
+  if constexpr (openvdb::VecTraits<Value>::IsVec)
+  {
+    using Number = typename Value::ValueType;
+    return Value(static_cast<Number>(number(0)), static_cast<Number>(number(1)), static_cast<Number>(number(2)));
+  }
+  else if constexpr (std::is_same<Value, bool>::value)
+  {
+    return number(0) != 0;
+  }
+  else
+  {
+    return static_cast<Value>(number(0));
+  }
+}
+
+template <typename T>
+bool SameBits(const T& a, const T& b)
+{
+  return std::memcmp(&a, &b, sizeof(T)) == 0;
+}
+
+template <typename T>
+bool Near(const T& a, const T& b, double tolerance)
+{
+  if constexpr (openvdb::VecTraits<T>::IsVec)
+  {
+    return Near(a[0], b[0], tolerance) && Near(a[1], b[1], tolerance) && Near(a[2], b[2], tolerance);
+  }
+  else
+  {
+    return std::abs(static_cast<double>(a) - static_cast<double>(b)) <= tolerance; // never for NaN
+  }
+}
+
+std::string ToString(const openvdb::Coord& voxel)
+{
+  return "(" + std::to_string(voxel[0]) + ", " + std::to_string(voxel[1]) + ", " + std::to_string(voxel[2]) + ")";
+}
+
+/// Fills one block of a tree, a leaf at most: left out where it is background, a tile where all of it is one value.
+/// @param valueAt  of a voxel
+template <typename TreeT, typename ValueAt>
+void FillBlock(TreeT& tree, openvdb::CoordBBox block, const openvdb::CoordBBox& voxels, const VoxelOptions& options,
+  const ValueAt& valueAt)
+{
+  using Value = typename TreeT::ValueType;
+  const auto same = [&](const Value& a, const Value& b) {
+    return SameBits(a, b) || (options.Tolerance > 0.0 && Near(a, b, options.Tolerance));
+  };
+  const openvdb::Coord corner = block.min();
+  const Value background = tree.background();
+  bool constant = voxels.isInside(block);
+  block.intersect(voxels);
+  typename TreeT::LeafNodeType* leaf = nullptr;
+  Value one = background;
+  for (const openvdb::Coord& voxel : block)
+  {
+    const Value value = valueAt(voxel);
+    if (same(value, background))
+    {
+      constant = false;
+      continue;
+    }
+    if (leaf == nullptr)
+    {
+      leaf = tree.touchLeaf(corner);
+      one = value;
+    }
+    if (options.Half)
+    {
+      RequireHalf(value, [&] { return "in voxel " + ToString(voxel); });
+    }
+    constant = constant && same(value, one);
+    leaf->setValueOn(voxel, value);
+  }
+  if (leaf != nullptr && constant)
+  {
+    tree.addTile(1, corner, one, true);
+  }
+}
+
+/// Fills a tree block by block, so that only blocks that are not background are made.
+template <typename TreeT, typename Number>
+void FillTree(
+  TreeT& tree, const Numbers<Number>& numbers, const openvdb::CoordBBox& voxels, const VoxelOptions& options)
+{
+  constexpr std::int64_t size = TreeT::LeafNodeType::DIM;
+  const openvdb::Coord &low = voxels.min(), &high = voxels.max(), cells = voxels.dim();
+  const auto valueAt = [&](const openvdb::Coord& voxel) -> typename TreeT::ValueType {
+    const openvdb::Coord at = voxel - low;
+    const vtkIdType cell =
+      at[0] + static_cast<vtkIdType>(cells[0]) * (at[1] + static_cast<vtkIdType>(cells[1]) * at[2]);
+    if (options.Hidden && (*options.Hidden)[static_cast<std::size_t>(cell)])
+    {
+      return tree.background();
+    }
+    return VoxelFrom<typename TreeT::ValueType>([&](int component) { return numbers.At(cell, component); });
+  };
+  const auto blockStart = [&](int axis) { return static_cast<std::int64_t>(low[axis] & ~(int(size) - 1)); };
+  for (std::int64_t x = blockStart(0); x <= high[0]; x += size)
+  {
+    for (std::int64_t y = blockStart(1); y <= high[1]; y += size)
+    {
+      for (std::int64_t z = blockStart(2); z <= high[2]; z += size)
+      {
+        const openvdb::Coord corner(static_cast<int>(x), static_cast<int>(y), static_cast<int>(z));
+        FillBlock(tree, openvdb::CoordBBox::createCube(corner, size), voxels, options, valueAt);
+      }
+    }
+  }
+}
+
+/// Field data about an array, if it is there and of that type.
+template <typename ArrayT>
+ArrayT* FactOf(vtkFieldData* field, const std::string& array, const char* key)
+{
+  return ArrayT::SafeDownCast(field->GetAbstractArray(FieldName(array, key).c_str()));
+}
+
+/// The background that was noted for an array, or else the same number for each component.
+template <typename K>
+typename K::Grid::ValueType BackgroundOf(K, const std::string& array, vtkFieldData* field, double otherwise)
+{
+  using Value = typename K::Grid::ValueType;
+  vtkDataArray* noted = FactOf<vtkDataArray>(field, array, "background");
+  if (noted == nullptr || noted->GetNumberOfValues() != K::Count)
+  {
+    return VoxelFrom<Value>([&](int) { return otherwise; });
+  }
+  const Numbers<typename K::Number> numbers(noted, 0);
+  return VoxelFrom<Value>([&](int component) { return numbers.At(0, component); });
+}
+
+/// Type of the grids of an array, and how many of its components each takes.
+struct GridsOfArray
+{
+  std::string Type;
+  int Components;
+};
+
+GridsOfArray ChooseGrids(vtkDataArray* array, const std::string& noted)
+{
+  const int type = array->GetDataType();
+  const bool vector = array->GetNumberOfComponents() == 3;
+  if (type == VTK_FLOAT || type == VTK_DOUBLE)
+  {
+    const std::string real = type == VTK_FLOAT ? "float" : "double";
+    return vector ? GridsOfArray{ type == VTK_FLOAT ? "vec3s" : "vec3d", 3 } : GridsOfArray{ real, 1 };
+  }
+  if (array->GetDataTypeSize() > 4 || type == VTK_UNSIGNED_INT)
+  {
+    return { "int64", 1 };
+  }
+  if (vector)
+  {
+    return { "vec3i", 3 };
+  }
+  const bool binary = type == VTK_UNSIGNED_CHAR && (noted == "bool" || noted == "mask");
+  return { binary ? noted : "int32", 1 };
+}
+
+template <typename K>
+openvdb::GridBase::Ptr MakeGrid(K kind, vtkDataArray* array, int first, const std::string& type, vtkFieldData* field,
+  const openvdb::CoordBBox& voxels, const VoxelOptions& options)
+{
+  using Value = typename K::Grid::ValueType;
+  const openvdb::GridBase::Ptr grid = openvdb::GridBase::createGrid(FindValueType(type)->GridType());
+  auto& tree = static_cast<typename K::Grid&>(*grid).tree();
+  const Value background = BackgroundOf(kind, array->GetName() ? array->GetName() : "", field, options.Background);
+  tree.root().setBackground(background, /*updateChildNodes=*/false);
+  if (options.Half)
+  {
+    RequireHalf(background, [] { return "as background"; });
+  }
+  FillTree(tree, Numbers<typename K::Number>(array, first), voxels, options);
+  if (std::is_floating_point<Value>::value && background == openvdb::zeroVal<Value>())
+  {
+    grid->setGridClass(openvdb::GRID_FOG_VOLUME);
+  }
+  grid->setSaveFloatAsHalf(options.Half);
+  return grid;
+}
+}
+
+void AddGridCells(const openvdb::GridBase& grid, const std::string& type, const std::string& name,
+  const openvdb::CoordBBox& box, vtkImageData* image)
+{
+  WithKind(type, [&](auto kind) { AddCellsOf(kind, grid, name, box, image); });
+  AddFact(image, FieldName(name, "type").c_str(), std::vector<std::string>{ type });
+}
+
+openvdb::GridPtrVec MakeGrids(
+  vtkDataArray* array, vtkFieldData* field, const openvdb::CoordBBox& voxels, const VoxelOptions& options)
+{
+  const std::string name = array->GetName() ? array->GetName() : "";
+  vtkStringArray* noted = FactOf<vtkStringArray>(field, name, "type");
+  const GridsOfArray chosen =
+    ChooseGrids(array, noted && noted->GetNumberOfValues() == 1 ? noted->GetValue(0) : std::string());
+  openvdb::GridPtrVec grids;
+  try
+  {
+    for (int first = 0; first < array->GetNumberOfComponents(); first += chosen.Components)
+    {
+      const bool whole = chosen.Components == array->GetNumberOfComponents();
+      WithKind(chosen.Type,
+        [&](auto kind) { grids.push_back(MakeGrid(kind, array, first, chosen.Type, field, voxels, options)); });
+      grids.back()->setName(whole ? name : name + "_" + std::to_string(first));
+    }
+  }
+  catch (const InvalidInput& error)
+  {
+    throw InvalidInput("Array \"" + name + "\" cannot be written: " + error.what() + ", or leave the array out.");
+  }
+  return grids;
+}
+}

@@ -1,0 +1,194 @@
+#include "IO/VDB/VDBMetadata.h"
+
+#include "Common/LightTransportData.h"
+#include "IO/VDB/VDBGeometry.h"
+#include "IO/VDB/VDBGrid.h"
+
+#include "vtkDataObject.h"
+#include "vtkDoubleArray.h"
+#include "vtkFieldData.h"
+#include "vtkFloatArray.h"
+#include "vtkIntArray.h"
+#include "vtkNew.h"
+#include "vtkStringArray.h"
+#include "vtkTypeInt64Array.h"
+#include "vtkUnsignedCharArray.h"
+
+#include <algorithm>
+#include <iterator>
+#include <tuple>
+#include <vector>
+
+namespace tyndall
+{
+namespace
+{
+/// Metadata of OpenVDB's type V, N numbers, and the array of VTK that holds them as one tuple.
+template <typename V, typename A, int N = 1>
+struct Kind
+{
+  using Value = V;
+  using Array = A;
+  static constexpr int Count = N;
+};
+
+using namespace openvdb;
+constexpr std::tuple<Kind<bool, vtkUnsignedCharArray>, Kind<Int32, vtkIntArray>, Kind<Int64, vtkTypeInt64Array>,
+  Kind<float, vtkFloatArray>, Kind<double, vtkDoubleArray>, Kind<Vec2i, vtkIntArray, 2>, Kind<Vec2s, vtkFloatArray, 2>,
+  Kind<Vec2d, vtkDoubleArray, 2>, Kind<Vec3i, vtkIntArray, 3>, Kind<Vec3s, vtkFloatArray, 3>,
+  Kind<Vec3d, vtkDoubleArray, 3>, Kind<Vec4i, vtkIntArray, 4>, Kind<Vec4s, vtkFloatArray, 4>,
+  Kind<Vec4d, vtkDoubleArray, 4>, Kind<Mat4s, vtkFloatArray, 16>, Kind<Mat4d, vtkDoubleArray, 16>>
+  Kinds;
+
+/// Does something for each kind until it says that it is done.
+template <typename Do>
+void ForKinds(const Do& act)
+{
+  std::apply([&](auto... kind) { (act(kind) || ...); }, Kinds);
+}
+
+template <typename K>
+bool AddIfOfKind(K, vtkFieldData* field, const std::string& name, const Metadata& metadata)
+{
+  const auto* typed = dynamic_cast<const TypedMetadata<typename K::Value>*>(&metadata);
+  if (typed == nullptr)
+  {
+    return false;
+  }
+  vtkNew<typename K::Array> array;
+  array->SetName(name.c_str());
+  array->SetNumberOfComponents(K::Count);
+  array->SetNumberOfTuples(1);
+  if constexpr (K::Count == 1)
+  {
+    array->SetValue(0, typed->value());
+  }
+  else
+  {
+    std::copy_n(typed->value().asPointer(), K::Count, array->GetPointer(0));
+  }
+  field->AddArray(array);
+  return true;
+}
+
+template <typename K>
+bool InsertIfOfKind(K, MetaMap& map, const std::string& key, vtkAbstractArray* found)
+{
+  auto* array = K::Array::SafeDownCast(found);
+  if (array == nullptr || array->GetNumberOfValues() != K::Count)
+  {
+    return false;
+  }
+  if constexpr (K::Count == 1)
+  {
+    map.insertMeta(key, TypedMetadata<typename K::Value>(static_cast<typename K::Value>(array->GetValue(0))));
+  }
+  else
+  {
+    map.insertMeta(key, TypedMetadata<typename K::Value>(typename K::Value(array->GetPointer(0))));
+  }
+  return true;
+}
+
+/// Any array of one 64-bit integer, whatever VTK calls its type.
+bool InsertIfLong(MetaMap& map, const std::string& key, vtkAbstractArray* found)
+{
+  auto* array = vtkDataArray::SafeDownCast(found);
+  if (array == nullptr || array->GetDataTypeSize() != 8 || array->GetDataType() == VTK_DOUBLE ||
+    array->GetNumberOfValues() != 1)
+  {
+    return false;
+  }
+  map.insertMeta(key, Int64Metadata(*static_cast<const Int64*>(array->GetVoidPointer(0))));
+  return true;
+}
+
+void AddOne(vtkDataObject* image, const std::string& name, const Metadata& value)
+{
+  if (const auto* text = dynamic_cast<const StringMetadata*>(&value))
+  {
+    AddFact(image, name.c_str(), std::vector<std::string>{ text->value() });
+    return;
+  }
+  ForKinds([&](auto kind) { return AddIfOfKind(kind, image->GetFieldData(), name, value); });
+}
+
+void InsertOne(MetaMap& map, const std::string& key, vtkAbstractArray* array)
+{
+  map.removeMeta(key);
+  if (auto* text = vtkStringArray::SafeDownCast(array))
+  {
+    if (text->GetNumberOfValues() == 1)
+    {
+      map.insertMeta(key, StringMetadata(text->GetValue(0)));
+    }
+  }
+  else if (!InsertIfLong(map, key, array))
+  {
+    ForKinds([&](auto kind) { return InsertIfOfKind(kind, map, key, array); });
+  }
+}
+
+struct MediumFact
+{
+  const char* Field;
+  const char* Key;
+};
+constexpr MediumFact MediumFacts[] = { { "g", "medium_g" } };
+
+bool IsMediumFact(const std::string& key)
+{
+  return std::any_of(
+    std::begin(MediumFacts), std::end(MediumFacts), [&](const MediumFact& fact) { return key == fact.Key; });
+}
+}
+
+void AddMetadata(vtkDataObject* image, const std::string& prefix, const MetaMap& map)
+{
+  for (auto entry = map.beginMeta(); entry != map.endMeta(); ++entry)
+  {
+    if (!IsGeometry(entry->first) && !IsMediumFact(entry->first))
+    {
+      AddOne(image, prefix + entry->first, *entry->second);
+    }
+  }
+}
+
+void RestoreMetadata(MetaMap& map, vtkFieldData* field, const std::string& prefix)
+{
+  for (int i = 0; i < field->GetNumberOfArrays(); ++i)
+  {
+    vtkAbstractArray* array = field->GetAbstractArray(i);
+    const std::string name = array->GetName() ? array->GetName() : "";
+    const bool ours = name.size() > prefix.size() && name.compare(0, prefix.size(), prefix) == 0;
+    const std::string key = ours ? name.substr(prefix.size()) : std::string();
+    if (!ours || key == "background" || key == "type" || DescribesTheFile(key))
+    {
+      continue;
+    }
+    InsertOne(map, key, array);
+  }
+}
+
+void AddMediumFacts(vtkDataObject* image, const MetaMap& file)
+{
+  for (const MediumFact& fact : MediumFacts)
+  {
+    if (const Metadata::ConstPtr value = file[fact.Key])
+    {
+      AddOne(image, fact.Field, *value);
+    }
+  }
+}
+
+void NoteMediumFacts(MetaMap& file, vtkFieldData* field)
+{
+  for (const MediumFact& fact : MediumFacts)
+  {
+    if (vtkAbstractArray* array = field->GetAbstractArray(fact.Field))
+    {
+      InsertOne(file, fact.Key, array);
+    }
+  }
+}
+}

@@ -1,0 +1,245 @@
+#include "Photons/PhotonData.h"
+
+#include "Common/FiniteValues.h"
+#include "Common/GhostFlags.h"
+#include "Common/LightTransportData.h"
+
+#include "vtkCellArray.h"
+#include "vtkCellData.h"
+#include "vtkFieldData.h"
+#include "vtkFloatArray.h"
+#include "vtkIdTypeArray.h"
+#include "vtkImageData.h"
+#include "vtkIntArray.h"
+#include "vtkNew.h"
+#include "vtkPointData.h"
+#include "vtkPoints.h"
+#include "vtkPolyData.h"
+
+#include <algorithm>
+#include <cmath>
+#include <cstdio>
+#include <string>
+
+namespace tyndall
+{
+namespace
+{
+vtkDataArray* PhotonArray(vtkPolyData* photons, const char* name, Need need, Components components)
+{
+  vtkDataArray* array = photons->GetPointData()->GetArray(name);
+  if (!array)
+  {
+    if (need == Need::Optional && !photons->GetPointData()->HasArray(name))
+    {
+      return nullptr;
+    }
+    throw InvalidInput("The photons have no point array '" + std::string(name) + "'. Make photons with PhotonEmitter.");
+  }
+  const int given = array->GetNumberOfComponents();
+  if (std::find(components.begin(), components.end(), given) == components.end())
+  {
+    throw InvalidInput("The photons' array '" + std::string(name) + "' has " + std::to_string(given) + " components; " +
+      (components.size() > 1 ? "1 or 3" : std::to_string(*components.begin())) + " are needed.");
+  }
+  return array;
+}
+
+std::int32_t BatchOf(double number, vtkIdType photon)
+{
+  constexpr int most = 64;
+  if (!(number >= 0.0 && number < most) || number != std::floor(number))
+  {
+    throw InvalidInput("Photon " + std::to_string(photon) + " has batch " + std::to_string(number) +
+      "; it must be a whole number of 0 to 63, as PhotonEmitter makes it.");
+  }
+  return static_cast<std::int32_t>(number);
+}
+
+vtkSmartPointer<vtkFloatArray> NewFloats(const char* name, int components, std::size_t tuples)
+{
+  auto array = vtkSmartPointer<vtkFloatArray>::New();
+  array->SetName(name);
+  array->SetNumberOfComponents(components);
+  array->SetNumberOfTuples(static_cast<vtkIdType>(tuples));
+  return array;
+}
+
+constexpr const char* BoxName = "photon_box";
+constexpr double SameBox = 1e-6; ///< of its longest edge
+
+using Box = std::array<double, 6>;
+
+Box BoxOf(const Grid& grid)
+{
+  Box box;
+  for (int axis = 0; axis < 3; ++axis)
+  {
+    box[2 * axis] = grid.origin[axis];
+    box[2 * axis + 1] = grid.origin[axis] + grid.Length(axis);
+  }
+  return box;
+}
+
+std::string Text(const Box& box)
+{
+  char text[160];
+  std::snprintf(text, sizeof(text), "x from %.9g to %.9g, y from %.9g to %.9g, z from %.9g to %.9g", box[0], box[1],
+    box[2], box[3], box[4], box[5]);
+  return text;
+}
+}
+
+std::string DoubtOfBox(vtkPolyData* photons, const Grid& medium)
+{
+  vtkDataArray* const found = photons ? photons->GetFieldData()->GetArray(BoxName) : nullptr;
+  if (!found || found->GetNumberOfValues() != 6)
+  {
+    return {};
+  }
+  Box made;
+  const Box box = BoxOf(medium);
+  bool same = true;
+  const double tolerance = SameBox * std::max({ medium.Length(0), medium.Length(1), medium.Length(2) });
+  for (int i = 0; i < 6; ++i)
+  {
+    made[i] = found->GetVariantValue(i).ToDouble();
+    same = same && std::abs(made[i] - box[i]) <= tolerance;
+  }
+  return same ? ""
+              : "The photons were made for the box " + Text(made) + ", the medium fills the box " + Text(box) +
+      ": where they differ, light is missing or too much. Give PhotonEmitter the same medium.";
+}
+
+bool NothingShines(const Illumination& illumination)
+{
+  return illumination.lights.empty() && illumination.environment.Empty() && illumination.sky == Rgb{};
+}
+
+void WritePhotons(const EmittedPhotons& emitted, const Grid& box, vtkPolyData* output)
+{
+  const std::size_t count = emitted.photons.size();
+  vtkNew<vtkPoints> points;
+  points->SetDataTypeToDouble();
+  points->SetNumberOfPoints(static_cast<vtkIdType>(count));
+  const vtkSmartPointer<vtkFloatArray> direction = NewFloats("direction", 3, count);
+  const vtkSmartPointer<vtkFloatArray> power = NewFloats("power", 3, count);
+  const vtkSmartPointer<vtkFloatArray> weight = NewFloats("weight", 1, count);
+  vtkNew<vtkIntArray> light;
+  light->SetName("light");
+  light->SetNumberOfTuples(static_cast<vtkIdType>(count));
+  vtkNew<vtkIntArray> batch;
+  batch->SetName("batch");
+  batch->SetNumberOfTuples(static_cast<vtkIdType>(count));
+  vtkNew<vtkCellArray> vertices;
+  vertices->AllocateEstimate(static_cast<vtkIdType>(count), 1);
+  for (vtkIdType i = 0; i < static_cast<vtkIdType>(count); ++i)
+  {
+    const Photon& photon = emitted.photons[static_cast<std::size_t>(i)];
+    points->SetPoint(i, photon.position.data());
+    direction->SetTypedTuple(i, photon.direction.data());
+    power->SetTypedTuple(i, photon.power.data());
+    weight->SetValue(i, photon.weight);
+    light->SetValue(i, emitted.lights[static_cast<std::size_t>(i)]);
+    batch->SetValue(i, photon.batch);
+    vertices->InsertNextCell(1, &i);
+  }
+  const auto photonName = [](std::size_t photon) { return "photon " + std::to_string(photon); };
+  for (vtkFloatArray* array : { direction.Get(), power.Get(), weight.Get() })
+  {
+    RequireFinite(array->GetName(), array->GetPointer(0), static_cast<std::size_t>(array->GetNumberOfValues()),
+      array->GetNumberOfComponents(), photonName);
+  }
+  const Box bounds = BoxOf(box);
+  AddFact(output, BoxName, std::vector<double>(bounds.begin(), bounds.end()));
+  output->SetPoints(points);
+  output->SetVerts(vertices);
+  output->GetPointData()->SetVectors(direction);
+  output->GetPointData()->AddArray(power);
+  output->GetPointData()->AddArray(weight);
+  output->GetPointData()->AddArray(light);
+  output->GetPointData()->AddArray(batch);
+}
+
+std::vector<Photon> ReadPhotons(vtkPolyData* data)
+{
+  if (!data)
+  {
+    return {};
+  }
+  if (data->GetNumberOfPoints() == 0)
+  {
+    StopWithFilterBefore(data);
+    return {};
+  }
+  vtkDataArray* direction = PhotonArray(data, "direction", Need::Required, { 3 });
+  vtkDataArray* power = PhotonArray(data, "power", Need::Required, { 1, 3 });
+  vtkDataArray* weight = PhotonArray(data, "weight", Need::Optional, { 1 });
+  vtkDataArray* batch = PhotonArray(data, "batch", Need::Optional, { 1 });
+  const int colours = power->GetNumberOfComponents();
+  const std::vector<long long> points = PointsThatCount(data);
+  std::vector<Photon> photons(points.size());
+  auto next = photons.begin();
+  for (const vtkIdType i : points)
+  {
+    Photon& photon = *next++;
+    data->GetPoint(i, photon.position.data());
+    for (int c = 0; c < 3; ++c)
+    {
+      photon.direction[c] = static_cast<float>(direction->GetComponent(i, c));
+      photon.power[c] = static_cast<float>(power->GetComponent(i, colours == 3 ? c : 0));
+    }
+    photon.weight = weight ? static_cast<float>(weight->GetComponent(i, 0)) : 1.0f;
+    photon.batch = batch ? BatchOf(batch->GetComponent(i, 0), i) : 0;
+  }
+  return photons;
+}
+
+void WritePaths(const std::vector<PhotonPath>& paths, vtkPolyData* output)
+{
+  vtkNew<vtkPoints> points;
+  points->SetDataTypeToDouble();
+  vtkNew<vtkCellArray> lines;
+  vtkNew<vtkFloatArray> left;
+  left->SetName("power_left");
+  vtkNew<vtkIdTypeArray> numbers;
+  numbers->SetName("photon");
+  for (const PhotonPath& path : paths)
+  {
+    lines->InsertNextCell(static_cast<int>(path.points.size()));
+    for (std::size_t i = 0; i < path.points.size(); ++i)
+    {
+      lines->InsertCellPoint(points->InsertNextPoint(path.points[i].data()));
+      left->InsertNextValue(path.left[i]);
+    }
+    numbers->InsertNextValue(static_cast<vtkIdType>(path.photon));
+  }
+  RequireFinite("power_left", left->GetPointer(0), static_cast<std::size_t>(left->GetNumberOfValues()), 1,
+    [](std::size_t point) { return "point " + std::to_string(point) + " of the paths"; });
+  output->SetPoints(points);
+  output->SetLines(lines);
+  output->GetPointData()->SetScalars(left);
+  output->GetCellData()->AddArray(numbers);
+}
+
+std::vector<std::uint8_t> ReadLevels(vtkImageData* image)
+{
+  const FloatField field = ReadCells(image, "octree_level", Need::Optional, { 1 });
+  if (!field.IsThere())
+  {
+    return {};
+  }
+  std::vector<std::uint8_t> levels(static_cast<std::size_t>(image->GetNumberOfCells()));
+  for (std::size_t i = 0; i < levels.size(); ++i)
+  {
+    const float level = field.Values()[i];
+    if (!(level >= 0.0f && level <= 30.0f) || level != static_cast<int>(level))
+    {
+      throw InvalidInput("octree_level is " + std::to_string(level) + " in voxel " + VoxelName(GridOf(image), i) +
+        "; it must be a whole number, as RefractionOctree makes it.");
+    }
+    levels[i] = static_cast<std::uint8_t>(level);
+  }
+  return levels;
+}
+}

@@ -1,0 +1,138 @@
+#include "Photons/RefractiveInput.h"
+
+#include "Photons/PhotonData.h"
+
+#include "vtkCellData.h"
+#include "vtkImageData.h"
+#include "vtkPointData.h"
+
+#include <algorithm>
+#include <array>
+#include <cmath>
+#include <cstdio>
+#include <string>
+#include <utility>
+
+namespace tyndall
+{
+namespace
+{
+constexpr const char* LevelsName = "octree_level";
+
+std::string Triple(const std::array<double, 3>& values)
+{
+  char text[96];
+  std::snprintf(text, sizeof(text), "(%.9g, %.9g, %.9g)", values[0], values[1], values[2]);
+  return text;
+}
+
+std::string Described(const Grid& grid)
+{
+  const std::array<int, 3>& size = grid.size;
+  return std::to_string(size[0]) + " x " + std::to_string(size[1]) + " x " + std::to_string(size[2]) +
+    " voxels of spacing " + Triple(grid.spacing) + " from origin " + Triple(grid.origin);
+}
+
+/// Whether voxels have the same corners, but for rounding.
+bool Agree(const Grid& a, const Grid& b)
+{
+  constexpr double part = 1e-3; // of a voxel
+  bool agree = a.size == b.size;
+  for (int axis = 0; axis < 3; ++axis)
+  {
+    const double low = std::abs(a.origin[axis] - b.origin[axis]);
+    const double high = std::abs(a.origin[axis] + a.Length(axis) - b.origin[axis] - b.Length(axis));
+    agree = agree && std::max(low, high) <= part * b.spacing[axis];
+  }
+  return agree;
+}
+
+/// The octree's levels, of its own image or of the medium's.
+std::vector<std::uint8_t> LevelsOf(vtkImageData* octree, vtkImageData* medium)
+{
+  if (!octree)
+  {
+    return ReadLevels(medium);
+  }
+  const Grid ofOctree = GridOf(octree);
+  const Grid ofMedium = GridOf(medium);
+  if (!Agree(ofOctree, ofMedium))
+  {
+    throw InvalidInput("The octree has " + Described(ofOctree) + ", the medium " + Described(ofMedium) +
+      ". Make the octree of the same medium.");
+  }
+  std::vector<std::uint8_t> levels = ReadLevels(octree);
+  if (levels.empty())
+  {
+    throw InvalidInput("The octree's image has no cell array 'octree_level'. Make it with RefractionOctree.");
+  }
+  return levels;
+}
+
+InputsKey KeyOf(vtkAlgorithm* filter, const std::shared_ptr<Device>& device, vtkImageData* medium, vtkImageData* octree,
+  const MarchSettings& settings)
+{
+  constexpr const char* names[] = { "sigma_a", "sigma_s", "emission", "ior" };
+  InputsKey key;
+  key.device = device;
+  key.Add(GridOf(medium));
+  key.AddGhosts(medium);
+  for (int number = SigmaA; number <= RefractiveIndex; ++number)
+  {
+    key.Add(ChosenArray(filter, number, medium, names[number]));
+  }
+  vtkImageData* const ofLevels = octree ? octree : medium;
+  key.Add(GridOf(ofLevels));
+  key.AddGhosts(ofLevels);
+  key.Add(ofLevels->GetCellData()->GetArray(LevelsName));
+  key.Add(ofLevels->GetPointData()->GetArray(LevelsName));
+  key.Add({ octree ? 1.0 : 0.0, ReadFact(medium, "g", 0.0), 1.0 * settings.order, settings.stepSize,
+    1.0 * settings.meanDirection, 1.0 * settings.counts, 1.0 * settings.batches, 1.0 * static_cast<int>(settings.sums),
+    1.0 * settings.leaveOut });
+  return key;
+}
+}
+
+RefractiveInput ReadRefractiveMedium(vtkAlgorithm* filter, vtkImageData* medium, vtkImageData* octree)
+{
+  RefractiveInput read;
+  read.input = ReadMedium(filter, medium);
+  read.ior = ReadChosenCells(filter, RefractiveIndex, medium, "ior", Need::Optional, { 1 });
+  read.levels = LevelsOf(octree, medium);
+  return read;
+}
+
+KeptMarcher::Found KeptMarcher::Find(vtkAlgorithm* filter, const std::shared_ptr<Device>& device, vtkImageData* medium,
+  vtkImageData* octree, const MarchSettings& settings)
+{
+  Found found;
+  found.marcher = std::move(this->Marcher);
+  found.key = KeyOf(filter, device, medium, octree, settings);
+  found.kept = found.marcher && found.key == this->Key;
+  if (!found.kept)
+  {
+    found.marcher.reset(); // before the next one needs the memory
+    this->Made.Modified();
+    const RefractiveInput read = ReadRefractiveMedium(filter, medium, octree);
+    found.marcher = std::make_unique<PhotonMarcher>(*device, read.input.medium, read.ior, settings, read.Levels());
+  }
+  return found;
+}
+
+void KeptMarcher::Keep(Found&& found)
+{
+  this->Marcher = std::move(found.marcher);
+  this->Key = std::move(found.key);
+}
+
+void KeptMarcher::ForgetIfRan(vtkAlgorithm* filter, std::initializer_list<int> ports)
+{
+  for (int port : ports)
+  {
+    if (this->Marcher && RanSince(filter, port, this->Made))
+    {
+      this->Marcher.reset();
+    }
+  }
+}
+}

@@ -1,0 +1,100 @@
+#include "vtkPhotonEmitter.h"
+
+#include "Photons/ImportanceData.h"
+#include "Common/LightTransportData.h"
+#include "Photons/PhotonData.h"
+#include "Common/WholeImage.h"
+
+#include "vtkDataObject.h"
+#include "vtkImageData.h"
+#include "vtkInformation.h"
+#include "vtkInformationVector.h"
+#include "vtkObjectFactory.h"
+#include "vtkPolyData.h"
+
+#include <algorithm>
+
+vtkStandardNewMacro(vtkPhotonEmitter);
+
+vtkPhotonEmitter::vtkPhotonEmitter()
+{
+  this->SetNumberOfInputPorts(4);
+}
+
+vtkPhotonEmitter::~vtkPhotonEmitter() = default;
+
+void vtkPhotonEmitter::SetImportanceMapConnection(vtkAlgorithmOutput* map)
+{
+  this->SetInputConnection(IMPORTANCE_MAP, map);
+}
+
+void vtkPhotonEmitter::SetImportanceMapData(vtkDataObject* map)
+{
+  this->SetInputDataObject(IMPORTANCE_MAP, map);
+}
+
+void vtkPhotonEmitter::RemoveImportanceMap()
+{
+  this->SetInputConnection(IMPORTANCE_MAP, nullptr);
+}
+
+vtkPolyData* vtkPhotonEmitter::GetOutput()
+{
+  return vtkPolyData::SafeDownCast(this->GetOutputDataObject(0));
+}
+
+int vtkPhotonEmitter::FillOutputPortInformation(int, vtkInformation* information)
+{
+  information->Set(vtkDataObject::DATA_TYPE_NAME(), "vtkPolyData");
+  return 1;
+}
+
+int vtkPhotonEmitter::RequestData(vtkInformation* request, vtkInformationVector** inputs, vtkInformationVector* outputs)
+{
+  this->Photons = 0;
+  this->Power = 0.0;
+  this->Seconds = 0.0;
+  return tyndall::Guarded(this, outputs, [&] {
+    const tyndall::Grid grid = tyndall::GridOf(vtkImageData::GetData(inputs[MEDIUM]));
+    tyndall::Illumination illumination = this->ReadIllumination(inputs);
+    std::copy_n(this->SkyColor, 3, illumination.sky.begin());
+    if (tyndall::NothingShines(illumination))
+    {
+      vtkWarningMacro(
+        "Nothing shines on the volume, so there are no photons. Connect Lights or an Environment, or set SkyColor.");
+    }
+    vtkImageData* const mapped = vtkImageData::GetData(inputs[IMPORTANCE_MAP]);
+    const tyndall::ImportanceMap map = tyndall::ReadImportanceMap(mapped, illumination);
+    if (!tyndall::IsFirstPiece(request, outputs))
+    {
+      return;
+    }
+    tyndall::EmissionSettings settings;
+    settings.photonCount = static_cast<std::size_t>(this->PhotonCount);
+    settings.sampler = static_cast<tyndall::Sampler>(this->Sampler);
+    settings.seed = static_cast<std::uint64_t>(this->Seed);
+    settings.batches = this->Batches != 0 ? this->Batches : mapped ? 2 : 1;
+    settings.map = &map;
+    settings.densestAtMost = this->MaximumDensity;
+    const tyndall::EmittedPhotons emitted =
+      tyndall::EmitPhotons(grid, illumination, settings, tyndall::MonitorOf(this));
+    tyndall::WritePhotons(emitted, grid, vtkPolyData::GetData(outputs));
+    this->Photons = static_cast<vtkIdType>(emitted.photons.size());
+    this->Power = emitted.power[0] + emitted.power[1] + emitted.power[2];
+    this->Seconds = emitted.seconds;
+  });
+}
+
+void vtkPhotonEmitter::PrintSelf(ostream& os, vtkIndent indent)
+{
+  this->Superclass::PrintSelf(os, indent);
+  os << indent << "PhotonCount: " << this->PhotonCount << "\n";
+  os << indent << "Sampler: " << this->Sampler << "\n";
+  os << indent << "Seed: " << this->Seed << "\n";
+  os << indent << "Batches: " << this->Batches << "\n";
+  os << indent << "MaximumDensity: " << this->MaximumDensity << "\n";
+  PrintNumbers(os, indent, "SkyColor", this->SkyColor, 3);
+  os << indent << "Photons: " << this->Photons << "\n";
+  os << indent << "Power: " << this->Power << "\n";
+  os << indent << "Seconds: " << this->Seconds << "\n";
+}

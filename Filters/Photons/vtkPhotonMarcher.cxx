@@ -1,0 +1,298 @@
+#include "vtkPhotonMarcher.h"
+
+#include "Device/Device.h"
+#include "Common/LightTransportData.h"
+#include "Photons/PhotonData.h"
+#include "Photons/Marching/PublishedPhotons.h"
+#include "Photons/RefractiveInput.h"
+#include "Common/WholeImage.h"
+
+#include "vtkImageData.h"
+#include "vtkInformation.h"
+#include "vtkInformationVector.h"
+#include "vtkObjectFactory.h"
+#include "vtkPolyData.h"
+
+#include <algorithm>
+#include <cmath>
+#include <memory>
+#include <string>
+#include <utility>
+#include <vector>
+
+namespace
+{
+enum InputPort
+{
+  MediumPort,
+  PhotonsPort,
+  OctreePort,
+  InputPortCount
+};
+
+tyndall::MarchSettings SettingsOf(vtkPhotonMarcher* filter, const std::vector<tyndall::Photon>& photons)
+{
+  const bool published = filter->GetScheme() == vtkPhotonMarcher::PUBLISHED;
+  if (published && filter->GetPhotonCounts())
+  {
+    throw tyndall::InvalidInput(
+      "The published scheme packs all that it keeps of a voxel into 64 bits, and does not count "
+      "photons. Choose the sound scheme (Scheme 1), or switch PhotonCounts off.");
+  }
+  tyndall::MarchSettings settings;
+  settings.order = published ? 1 : filter->GetIntegratorOrder();
+  settings.stepSize = published ? 1.0 : filter->GetStepSize();
+  settings.counts = filter->GetPhotonCounts();
+  settings.leaveOut = filter->GetLeaveOut();
+  settings.batches = !published &&
+    std::any_of(photons.begin(), photons.end(), [](const tyndall::Photon& photon) { return photon.batch > 0; });
+  return settings;
+}
+
+/// [batch][voxel][channel] as [voxel][batch][channel].
+std::vector<float> VoxelByVoxel(const std::vector<float>& light, int batches, int channels)
+{
+  const auto ofBatch = light.size() / static_cast<std::size_t>(batches);
+  std::vector<float> byVoxel(light.size());
+  auto to = byVoxel.begin();
+  for (std::size_t voxel = 0; voxel < ofBatch; voxel += static_cast<std::size_t>(channels))
+  {
+    for (int batch = 0; batch < batches; ++batch)
+    {
+      to = std::copy_n(light.begin() + static_cast<std::ptrdiff_t>(batch * ofBatch + voxel), channels, to);
+    }
+  }
+  return byVoxel;
+}
+
+void Write(tyndall::PhotonLight&& photons, vtkImageData* output)
+{
+  const int channels = photons.light.channels;
+  photons.light.fluenceDirect = photons.light.fluence; // none of it was scattered
+  tyndall::WriteLight(std::move(photons.light), output);
+  tyndall::AddCells(output, "mean_direction", std::move(photons.meanDirection), 3);
+  if (!photons.photonCount.empty())
+  {
+    tyndall::AddCells(output, "photon_count", std::move(photons.photonCount), 1);
+    tyndall::AddCells(output, "photon_weight", std::move(photons.photonWeight), 1);
+  }
+  if (!photons.batchFluence.empty())
+  {
+    tyndall::AddCells(output, "fluence_batches", VoxelByVoxel(photons.batchFluence, photons.batches, channels),
+      photons.batches * channels);
+  }
+  tyndall::AddFact(output, "scattered", { photons.scattered.begin(), photons.scattered.begin() + channels }, channels);
+}
+
+}
+
+/// Light, of the published scheme what its packing lost, and, of the sound scheme's integrator, paths.
+struct vtkPhotonMarcher::Marched
+{
+  tyndall::PhotonLight light;
+  double packingLoss = 0.0;
+  std::vector<tyndall::PhotonPath> paths;
+};
+
+vtkStandardNewMacro(vtkPhotonMarcher);
+
+vtkPhotonMarcher::vtkPhotonMarcher()
+  : Kept(std::make_unique<tyndall::KeptMarcher>())
+{
+  this->SetNumberOfInputPorts(InputPortCount);
+  this->SetNumberOfOutputPorts(2);
+}
+
+vtkPhotonMarcher::~vtkPhotonMarcher() = default;
+
+void vtkPhotonMarcher::SetPhotonsConnection(vtkAlgorithmOutput* photons)
+{
+  this->SetInputConnection(PhotonsPort, photons);
+}
+
+void vtkPhotonMarcher::SetPhotonsData(vtkDataObject* photons)
+{
+  this->SetInputDataObject(PhotonsPort, photons);
+}
+
+void vtkPhotonMarcher::SetOctreeConnection(vtkAlgorithmOutput* octree)
+{
+  this->SetInputConnection(OctreePort, octree);
+}
+
+void vtkPhotonMarcher::SetOctreeData(vtkDataObject* octree)
+{
+  this->SetInputDataObject(OctreePort, octree);
+}
+
+void vtkPhotonMarcher::RemoveOctree()
+{
+  this->SetInputConnection(OctreePort, nullptr);
+}
+
+int vtkPhotonMarcher::FillInputPortInformation(int port, vtkInformation* information)
+{
+  information->Set(vtkAlgorithm::INPUT_REQUIRED_DATA_TYPE(), port == PhotonsPort ? "vtkPolyData" : "vtkImageData");
+  if (port == OctreePort)
+  {
+    information->Set(vtkAlgorithm::INPUT_IS_OPTIONAL(), 1);
+  }
+  return 1;
+}
+
+int vtkPhotonMarcher::FillOutputPortInformation(int port, vtkInformation* information)
+{
+  information->Set(vtkDataObject::DATA_TYPE_NAME(), port == 0 ? "vtkImageData" : "vtkPolyData");
+  return 1;
+}
+
+void vtkPhotonMarcher::SetInputConnection(int port, vtkAlgorithmOutput* input)
+{
+  if (port != PhotonsPort && input != this->GetInputConnection(port, 0))
+  {
+    this->Kept->Forget();
+  }
+  this->Superclass::SetInputConnection(port, input);
+}
+
+/// The memory of an old medium is given back before the filters before run, which may need it.
+int vtkPhotonMarcher::RequestUpdateExtent(vtkInformation*, vtkInformationVector** inputs, vtkInformationVector*)
+{
+  this->Kept->ForgetIfRan(this, { MediumPort, OctreePort });
+  for (int port = 0; port < InputPortCount; ++port)
+  {
+    tyndall::AskForAll(inputs[port]);
+  }
+  return 1;
+}
+
+vtkPhotonMarcher::Marched vtkPhotonMarcher::MarchAsPublished(
+  vtkInformationVector** inputs, const std::vector<tyndall::Photon>& photons)
+{
+  const tyndall::RefractiveInput read = tyndall::ReadRefractiveMedium(
+    this, vtkImageData::GetData(inputs[MediumPort]), vtkImageData::GetData(inputs[OctreePort]));
+  tyndall::PublishedSettings settings;
+  settings.smooth = this->Smoothing;
+  tyndall::PackingLoss loss;
+  Marched marched;
+  marched.light = tyndall::MarchPublished(*tyndall::Device::Find(this->Device), read.input.medium, read.ior,
+    read.Levels(), photons, settings, &loss, tyndall::MonitorOf(this));
+  marched.packingLoss = loss.Relative();
+  return marched;
+}
+
+vtkPhotonMarcher::Marched vtkPhotonMarcher::March(
+  vtkInformationVector** inputs, const std::vector<tyndall::Photon>& photons)
+{
+  this->Kept->ForgetIfRan(this, { MediumPort, OctreePort });
+  const tyndall::MarchSettings settings = SettingsOf(this, photons);
+  const bool published = this->Scheme == PUBLISHED;
+  Marched marched;
+  if (published)
+  {
+    marched = this->MarchAsPublished(inputs, photons);
+    if (this->PathCount == 0)
+    {
+      this->Kept->Forget();
+      return marched;
+    }
+  }
+  tyndall::KeptMarcher::Found found = this->Kept->Find(this, tyndall::Device::Find(this->Device),
+    vtkImageData::GetData(inputs[MediumPort]), vtkImageData::GetData(inputs[OctreePort]), settings);
+  if (!published)
+  {
+    marched.light = found.marcher->March(photons, tyndall::MonitorOf(this));
+  }
+  marched.paths =
+    found.marcher->Paths(photons, tyndall::ChooseEvenly(photons.size(), static_cast<std::size_t>(this->PathCount)));
+  this->MediumKept = found.kept;
+  this->Kept->Keep(std::move(found));
+  return marched;
+}
+
+int vtkPhotonMarcher::RequestData(vtkInformation* request, vtkInformationVector** inputs, vtkInformationVector* outputs)
+{
+  this->Note({});
+  this->PackingLoss = 0.0;
+  this->MediumKept = false;
+  return tyndall::Guarded(this, outputs, [&] {
+    vtkPolyData* const given = vtkPolyData::GetData(inputs[PhotonsPort]);
+    const std::vector<tyndall::Photon> photons = tyndall::ReadPhotons(given);
+    const std::string doubt = tyndall::DoubtOfBox(given, tyndall::GridOf(vtkImageData::GetData(inputs[MediumPort])));
+    if (!doubt.empty())
+    {
+      vtkWarningMacro(<< doubt);
+    }
+    Marched marched = this->March(inputs, photons);
+
+    this->Note(marched.light);
+    this->PackingLoss = marched.packingLoss;
+    this->Warn(marched.light, photons.size());
+    vtkImageData* output = vtkImageData::GetData(outputs, 0);
+    tyndall::PassOn(vtkImageData::GetData(inputs[MediumPort]), output);
+    Write(std::move(marched.light), output);
+    if (this->Scheme == PUBLISHED)
+    {
+      tyndall::AddFact(output, "packing_loss", std::vector<double>{ marched.packingLoss });
+    }
+    tyndall::KeepWhatIsAskedFor(outputs->GetInformationObject(0), output);
+    if (tyndall::IsFirstPiece(request, outputs))
+    {
+      tyndall::WritePaths(marched.paths, vtkPolyData::GetData(outputs, 1));
+    }
+  });
+}
+
+void vtkPhotonMarcher::Note(const tyndall::PhotonLight& light)
+{
+  this->Credits = static_cast<vtkIdType>(light.credits);
+  this->Steps = static_cast<vtkIdType>(light.steps);
+  this->Missed = static_cast<vtkIdType>(light.missed);
+  this->BalanceError = light.light.balance.RelativeError(light.light.channels);
+  this->Seconds = light.seconds;
+  this->DeviceName = light.light.device;
+  this->LeftOut = tyndall::Lines(light.light.leftOut);
+}
+
+void vtkPhotonMarcher::Warn(const tyndall::PhotonLight& light, std::size_t photons)
+{
+  if (this->Missed > 0)
+  {
+    vtkWarningMacro(
+      << this->Missed << " of " << photons
+      << " photons do not meet the medium, so their power is not in it. Give PhotonEmitter the same medium.");
+  }
+  const tyndall::EnergyBalance& balance = light.light.balance;
+  const double trapped =
+    tyndall::Sum(balance.entered) > 0.0 ? tyndall::Sum(balance.leftOver) / tyndall::Sum(balance.entered) : 0.0;
+  if (trapped > 0.01)
+  {
+    vtkWarningMacro(
+      << std::lround(100.0 * trapped)
+      << "% of the power that entered still went round when its photons were given up, and is missing from "
+         "fluence: total reflection traps it, as that of a lamp in a ball of a high index. Absorption would "
+         "end it.");
+  }
+}
+
+void vtkPhotonMarcher::PrintSelf(ostream& os, vtkIndent indent)
+{
+  this->Superclass::PrintSelf(os, indent);
+  os << indent << "Scheme: " << this->Scheme << "\n";
+  os << indent << "IntegratorOrder: " << this->IntegratorOrder << "\n";
+  os << indent << "StepSize: " << this->StepSize << "\n";
+  os << indent << "LeaveOut: " << this->LeaveOut << "\n";
+  os << indent << "PhotonCounts: " << this->PhotonCounts << "\n";
+  os << indent << "PathCount: " << this->PathCount << "\n";
+  os << indent << "Smoothing: " << this->Smoothing << "\n";
+  os << indent << "Device: " << this->Device << "\n";
+  os << indent << "Credits: " << this->Credits << "\n";
+  os << indent << "Steps: " << this->Steps << "\n";
+  os << indent << "Missed: " << this->Missed << "\n";
+  os << indent << "BalanceError: " << this->BalanceError << "\n";
+  os << indent << "PackingLoss: " << this->PackingLoss << "\n";
+  os << indent << "MediumKept: " << this->MediumKept << "\n";
+  os << indent << "Seconds: " << this->Seconds << "\n";
+  os << indent << "DeviceName: " << this->DeviceName << "\n";
+  os << indent << "LeftOut: " << this->LeftOut << "\n";
+}

@@ -1,0 +1,230 @@
+#include "vtkPhotonReconstruction.h"
+
+#include "Device/Device.h"
+#include "Common/LightTransportData.h"
+#include "Reconstruction/PhotonReconstruction.h"
+#include "Common/WholeImage.h"
+
+#include "vtkCellData.h"
+#include "vtkDataArray.h"
+#include "vtkFieldData.h"
+#include "vtkImageData.h"
+#include "vtkInformation.h"
+#include "vtkInformationVector.h"
+#include "vtkObjectFactory.h"
+#include "vtkStringArray.h"
+
+#include <algorithm>
+#include <cmath>
+#include <iterator>
+#include <string>
+#include <utility>
+#include <vector>
+
+namespace
+{
+using tyndall::FloatField;
+using tyndall::Need;
+
+/// Numbers of SetInputArrayToProcess.
+enum PhotonLightArray
+{
+  Fluence = 0,
+  MeanDirection = 1,
+  PhotonCount = 2,
+  PhotonWeight = 3,
+  FluenceBatches = 4,
+};
+
+tyndall::ReconstructionSettings SettingsOf(vtkPhotonReconstruction* filter)
+{
+  tyndall::ReconstructionSettings settings;
+  settings.estimator = static_cast<tyndall::ReconstructionSettings::Estimator>(filter->GetScheme());
+  settings.levels = filter->GetLevels();
+  settings.weightStep = filter->GetWeightStep();
+  settings.level = filter->GetLevel();
+  settings.nearest = filter->GetNearestPhotons();
+  settings.conserve = filter->GetConserveFluence() == vtkPhotonReconstruction::ALWAYS ||
+    (filter->GetConserveFluence() == vtkPhotonReconstruction::BY_SCHEME &&
+      filter->GetScheme() == vtkPhotonReconstruction::SOUND);
+  return settings;
+}
+
+/// Light of no photons, which have no batches: as many as are needed are as dark as it is.
+std::vector<float> DarkBatches(const FloatField& light, std::size_t voxels, int batches)
+{
+  const std::size_t count = voxels * static_cast<std::size_t>(light.Components());
+  const bool dark = std::all_of(light.Values(), light.Values() + count, [](float value) { return value == 0.0f; });
+  return std::vector<float>(dark ? count * static_cast<std::size_t>(batches) : 0, 0.0f);
+}
+
+/// [voxel][batch][channel] as [batch][voxel][channel].
+std::vector<float> BatchByBatch(const FloatField& light, std::size_t voxels, int channels)
+{
+  const int components = light.Components();
+  if (components % channels != 0)
+  {
+    throw tyndall::InvalidInput("The array 'fluence_batches' has " + std::to_string(components) +
+      " components; it must have " + std::to_string(channels) + " for each batch, as 'fluence' has.");
+  }
+  std::vector<float> byBatch(voxels * static_cast<std::size_t>(components));
+  auto to = byBatch.begin();
+  for (int batch = 0; to != byBatch.end(); ++batch)
+  {
+    const float* from = light.Values() + static_cast<std::ptrdiff_t>(batch) * channels;
+    for (std::size_t voxel = 0; voxel < voxels; ++voxel, from += components)
+    {
+      to = std::copy_n(from, channels, to);
+    }
+  }
+  return byBatch;
+}
+
+tyndall::ReconstructedLight Reconstruct(vtkPhotonReconstruction* filter, vtkImageData* image)
+{
+  tyndall::NoisyLight light;
+  light.grid = tyndall::GridOf(image);
+  const auto read = [&](int number, const char* name, tyndall::Components components) {
+    const Need need = number == Fluence ? Need::Required : Need::Optional;
+    return tyndall::ReadChosenCells(filter, number, image, name, need, components);
+  };
+  const FloatField fluence = read(Fluence, "fluence", { 1, 3 });
+  const FloatField direction = read(MeanDirection, "mean_direction", { 3 });
+  const FloatField count = read(PhotonCount, "photon_count", { 1 });
+  const FloatField weight = read(PhotonWeight, "photon_weight", { 1 });
+  const bool sound = filter->GetScheme() == vtkPhotonReconstruction::SOUND;
+  const FloatField batches = sound ? read(FluenceBatches, "fluence_batches", {}) : FloatField();
+  light.channels = fluence.Components();
+  std::vector<float> byBatch;
+  if (batches.IsThere())
+  {
+    byBatch = BatchByBatch(batches, light.grid.VoxelCount(), light.channels);
+    light.batches = batches.Components() / light.channels;
+  }
+  else if (sound)
+  {
+    light.batches = 2;
+    byBatch = DarkBatches(fluence, light.grid.VoxelCount(), light.batches);
+  }
+  light.fluence = fluence.Values();
+  light.meanDirection = direction.Values();
+  light.photonCount = count.Values();
+  light.photonWeight = weight.Values();
+  light.batchFluence = byBatch.empty() ? nullptr : byBatch.data();
+  return tyndall::Reconstruct(
+    *tyndall::Device::Find(filter->GetDevice()), light, SettingsOf(filter), tyndall::MonitorOf(filter));
+}
+
+/// What was left out before, and here.
+std::vector<std::string> Joined(vtkImageData* image, const std::vector<std::string>& more)
+{
+  std::vector<std::string> all;
+  auto* const before = vtkArrayDownCast<vtkStringArray>(image->GetFieldData()->GetAbstractArray("left_out"));
+  for (vtkIdType i = 0; before && i < before->GetNumberOfValues(); ++i)
+  {
+    all.push_back(before->GetValue(i));
+  }
+  const auto isNew = [&](const std::string& word) { return std::find(all.begin(), all.end(), word) == all.end(); };
+  std::copy_if(more.begin(), more.end(), std::back_inserter(all), isNew);
+  return all;
+}
+
+double SumOfSquares(const std::vector<float>& values)
+{
+  double sum = 0.0;
+  for (float value : values)
+  {
+    sum += static_cast<double>(value) * value;
+  }
+  return sum;
+}
+
+void Write(tyndall::ReconstructedLight&& light, vtkImageData* output)
+{
+  vtkCellData* const cells = output->GetCellData();
+  const std::size_t voxels = light.mipLevel.size();
+  const int channels = static_cast<int>(light.fluence.size() / voxels);
+  for (const char* earlier : { "fluence_batches", "fluence_error" })
+  {
+    cells->RemoveArray(earlier);
+  }
+  tyndall::AddLight(output, "fluence_direct", std::vector<float>(light.fluence), channels);
+  tyndall::AddLight(output, "fluence", std::move(light.fluence), channels);
+  cells->SetActiveScalars("fluence");
+  if (!light.meanDirection.empty())
+  {
+    tyndall::AddCells(output, "mean_direction", std::move(light.meanDirection), 3);
+  }
+  if (!light.fluenceError.empty())
+  {
+    tyndall::AddLight(output, "fluence_error", std::move(light.fluenceError), channels);
+  }
+  tyndall::AddCells(output, "mip_level", std::move(light.mipLevel), 1);
+  tyndall::AddFact(output, "fluence_bias", std::vector<double>{ light.bias });
+  tyndall::AddFact(output, "left_out", Joined(output, light.leftOut));
+  tyndall::AddFact(output, "device", std::vector<std::string>{ light.device });
+}
+}
+
+vtkStandardNewMacro(vtkPhotonReconstruction);
+
+vtkPhotonReconstruction::vtkPhotonReconstruction()
+{
+  // vtkImageAlgorithm chooses the active scalars.
+  this->SetInputArrayToProcess(Fluence, 0, 0, vtkDataObject::FIELD_ASSOCIATION_CELLS, "fluence");
+}
+
+vtkPhotonReconstruction::~vtkPhotonReconstruction() = default;
+
+int vtkPhotonReconstruction::FillInputPortInformation(int, vtkInformation* information)
+{
+  information->Set(vtkAlgorithm::INPUT_REQUIRED_DATA_TYPE(), "vtkImageData");
+  return 1;
+}
+
+int vtkPhotonReconstruction::RequestUpdateExtent(vtkInformation*, vtkInformationVector** inputs, vtkInformationVector*)
+{
+  tyndall::AskForAll(inputs[0]);
+  return 1;
+}
+
+int vtkPhotonReconstruction::RequestData(vtkInformation*, vtkInformationVector** inputs, vtkInformationVector* outputs)
+{
+  this->Note({});
+  return tyndall::Guarded(this, outputs, [&] {
+    vtkImageData* const image = vtkImageData::GetData(inputs[0]);
+    tyndall::ReconstructedLight light = Reconstruct(this, image);
+    this->Note(light);
+    vtkImageData* const output = vtkImageData::GetData(outputs);
+    tyndall::PassOn(image, output);
+    Write(std::move(light), output);
+    tyndall::KeepWhatIsAskedFor(outputs->GetInformationObject(0), output);
+  });
+}
+
+void vtkPhotonReconstruction::Note(const tyndall::ReconstructedLight& light)
+{
+  const double squares = SumOfSquares(light.fluence);
+  this->Bias = light.bias;
+  this->MeanError = squares > 0.0 ? std::sqrt(SumOfSquares(light.fluenceError) / squares) : 0.0;
+  this->Seconds = light.seconds;
+  this->DeviceName = light.device;
+  this->LeftOut = tyndall::Lines(light.leftOut);
+}
+
+void vtkPhotonReconstruction::PrintSelf(ostream& os, vtkIndent indent)
+{
+  this->Superclass::PrintSelf(os, indent);
+  os << indent << "Scheme: " << this->Scheme << "\n";
+  os << indent << "Levels: " << this->Levels << "\n";
+  os << indent << "WeightStep: " << this->WeightStep << "\n";
+  os << indent << "Level: " << this->Level << "\n";
+  os << indent << "NearestPhotons: " << this->NearestPhotons << "\n";
+  os << indent << "ConserveFluence: " << this->ConserveFluence << "\n";
+  os << indent << "Device: " << this->Device << "\n";
+  os << indent << "Bias: " << this->Bias << "\n";
+  os << indent << "MeanError: " << this->MeanError << "\n";
+  os << indent << "Seconds: " << this->Seconds << "\n";
+  os << indent << "DeviceName: " << this->DeviceName << "\n";
+  os << indent << "LeftOut: " << this->LeftOut << "\n";
+}

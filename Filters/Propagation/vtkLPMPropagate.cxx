@@ -1,0 +1,148 @@
+#include "vtkLPMPropagate.h"
+
+#include "Device/Device.h"
+#include "LightPropagation/Published/ParallelPropagation.h"
+#include "Common/LightTransportData.h"
+#include "Propagation/LPMBuffers.h"
+#include "Common/WholeImage.h"
+
+#include "vtkImageData.h"
+#include "vtkInformation.h"
+#include "vtkInformationVector.h"
+#include "vtkObjectFactory.h"
+
+#include <algorithm>
+#include <memory>
+#include <string>
+#include <utility>
+#include <vector>
+
+namespace
+{
+tyndall::PropagationSettings SettingsOf(vtkLPMPropagate* filter)
+{
+  tyndall::PropagationSettings settings;
+  settings.directionsPerFace = filter->GetDirectionsPerFace();
+  settings.mapResolution = filter->GetMapResolution();
+  settings.storedDirections = filter->GetStoredDirections();
+  settings.maximumOrders = 1;
+  return settings;
+}
+
+/// Channels of U: its components over the directions it is kept for.
+int ChannelsOf(const tyndall::FloatField& unscattered, int storedDirections)
+{
+  const int sources = storedDirections == 1 ? 6 : storedDirections;
+  const int components = unscattered.Components();
+  if (components != sources && components != 3 * sources)
+  {
+    throw tyndall::InvalidInput("Array 'unscattered' has " + std::to_string(components) + " components; with " +
+      std::to_string(storedDirections) + " stored direction(s) it must have " + std::to_string(sources) + " or " +
+      std::to_string(3 * sources) + ". Give LPMPropagate the same StoredDirections in every order.");
+  }
+  return components / sources;
+}
+
+/// One propagation, the deposits sorted by face: directions interleaved voxel by voxel, channels fastest.
+std::array<std::vector<float>, 6> PropagateAll(
+  tyndall::ParallelPropagation& propagation, std::size_t voxels, const tyndall::Monitor& monitor)
+{
+  const int perFace = propagation.Model().Directions().PerFace();
+  const std::size_t channels = static_cast<std::size_t>(propagation.Model().Channels());
+  const std::size_t components = perFace * channels;
+  std::array<std::vector<float>, 6> faces;
+  for (std::vector<float>& face : faces)
+  {
+    face.resize(voxels * components);
+  }
+  for (int batch = 0; batch < propagation.BatchCount(); ++batch)
+  {
+    propagation.Propagate(batch, monitor);
+    int direction = propagation.FirstDirection(batch);
+    for (const std::vector<float>& deposits : propagation.Contributions(batch))
+    {
+      float* target = faces[direction / perFace].data() + direction % perFace * channels;
+      for (std::size_t i = 0; i < deposits.size(); ++i)
+      {
+        target[i / channels * components + i % channels] = deposits[i];
+      }
+      ++direction;
+    }
+  }
+  return faces;
+}
+
+std::vector<double> Flat(const tyndall::DirectionSet& set)
+{
+  std::vector<double> flat;
+  for (const tyndall::Direction& direction : set.directions)
+  {
+    flat.insert(flat.end(), direction.omega.begin(), direction.omega.end());
+  }
+  return flat;
+}
+}
+
+vtkStandardNewMacro(vtkLPMPropagate);
+
+vtkLPMPropagate::vtkLPMPropagate() = default;
+vtkLPMPropagate::~vtkLPMPropagate() = default;
+
+int vtkLPMPropagate::RequestData(vtkInformation*, vtkInformationVector** inputs, vtkInformationVector* outputs)
+{
+  this->Order = 0;
+  this->Bytes = 0.0;
+  return tyndall::Guarded(this, outputs, [&] {
+    vtkImageData* image = vtkImageData::GetData(inputs[MEDIUM]);
+    const tyndall::MediumInput input = tyndall::ReadMedium(this, image);
+    const tyndall::FloatField unscattered = tyndall::ReadCells(image, "unscattered", tyndall::Need::Optional, {});
+    const tyndall::PropagationSettings settings = SettingsOf(this);
+    tyndall::Check(settings);
+    const int channels = unscattered.IsThere() ? ChannelsOf(unscattered, settings.storedDirections) : 1;
+
+    tyndall::Illumination illumination = this->ReadIllumination(inputs);
+    tyndall::AddDiffuse(illumination, this->SkyColor, this->FaceRadiance);
+    const std::shared_ptr<tyndall::Device> device = tyndall::Device::Find(this->Device);
+    tyndall::ParallelPropagation propagation(*device, input.medium, illumination, settings, 0, channels);
+    if (unscattered.IsThere())
+    {
+      if (propagation.Model().Channels() != channels)
+      {
+        throw tyndall::InvalidInput(
+          "Array 'unscattered' is grey, but the lights are coloured. Give LPMPropagate the same "
+          "lights in every order.");
+      }
+      const std::size_t values = input.medium.grid.VoxelCount() * static_cast<std::size_t>(unscattered.Components());
+      propagation.SetSource({ unscattered.Values(), unscattered.Values() + values });
+    }
+    std::array<std::vector<float>, 6> faces =
+      PropagateAll(propagation, input.medium.grid.VoxelCount(), tyndall::MonitorOf(this));
+
+    vtkImageData* output = vtkImageData::GetData(outputs, 0);
+    tyndall::PassOn(image, output);
+    for (int face = 0; face < 6; ++face)
+    {
+      this->Bytes += faces[face].size() * sizeof(float);
+      tyndall::AddCells(output, tyndall::NamesOfT[face], std::move(faces[face]),
+        settings.directionsPerFace * propagation.Model().Channels());
+    }
+    this->Order = unscattered.IsThere() ? static_cast<int>(tyndall::ReadFact(image, tyndall::OrderFact, 0.0)) + 1 : 0;
+    tyndall::AddFact(output, "directions", Flat(propagation.Model().Directions()), 3);
+    tyndall::AddFact(output, tyndall::MapResolutionFact, std::vector<double>{ 1.0 * settings.mapResolution });
+    tyndall::AddFact(output, tyndall::StoredDirectionsFact, std::vector<double>{ 1.0 * settings.storedDirections });
+    tyndall::AddFact(output, tyndall::OrderFact, std::vector<double>{ 1.0 * this->Order });
+    tyndall::KeepWhatIsAskedFor(outputs->GetInformationObject(0), output);
+  });
+}
+
+void vtkLPMPropagate::PrintSelf(ostream& os, vtkIndent indent)
+{
+  this->Superclass::PrintSelf(os, indent);
+  os << indent << "DirectionsPerFace: " << this->DirectionsPerFace << "\n";
+  os << indent << "MapResolution: " << this->MapResolution << "\n";
+  os << indent << "StoredDirections: " << this->StoredDirections << "\n";
+  PrintNumbers(os, indent, "FaceRadiance", this->FaceRadiance, 6);
+  PrintNumbers(os, indent, "SkyColor", this->SkyColor, 3);
+  os << indent << "Order: " << this->Order << "\n";
+  os << indent << "Bytes: " << this->Bytes << "\n";
+}

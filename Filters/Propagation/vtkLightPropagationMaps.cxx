@@ -1,0 +1,204 @@
+#include "vtkLightPropagationMaps.h"
+
+#include "Device/Device.h"
+#include "LightPropagation/Conservative/ErrorEstimate.h"
+#include "LightPropagation/Conservative/ConservativePropagation.h"
+#include "LightPropagation/Published/ParallelPropagation.h"
+#include "LightPropagation/Published/SequentialPropagation.h"
+#include "Common/LightTransportData.h"
+#include "Common/WholeImage.h"
+
+#include "vtkDataObject.h"
+#include "vtkImageData.h"
+#include "vtkInformation.h"
+#include "vtkInformationVector.h"
+#include "vtkObjectFactory.h"
+#include "vtkTable.h"
+
+#include <algorithm>
+#include <memory>
+#include <string>
+#include <utility>
+#include <vector>
+
+namespace
+{
+tyndall::PropagationSource SourceOf(int source)
+{
+  switch (source)
+  {
+    case vtkLightPropagationMaps::CONSTANT: return tyndall::PropagationSource::Constant;
+    case vtkLightPropagationMaps::LINEAR: return tyndall::PropagationSource::Linear;
+    default: return tyndall::PropagationSource::Automatic;
+  }
+}
+
+tyndall::PropagationSettings SettingsOf(vtkLightPropagationMaps* filter)
+{
+  tyndall::PropagationSettings settings;
+  settings.source = SourceOf(filter->GetSource());
+  settings.acceleration = filter->GetAcceleration() == vtkLightPropagationMaps::NONE
+    ? tyndall::PropagationAcceleration::None
+    : tyndall::PropagationAcceleration::Automatic;
+  settings.directionsPerFace = filter->GetDirectionsPerFace();
+  settings.firstFlightDirections = filter->GetFirstFlightDirections();
+  settings.emissionError = filter->GetEmissionError();
+  settings.staggeredRays = filter->GetStaggeredRays();
+  settings.mapResolution = filter->GetMapResolution();
+  settings.maximumOrders = filter->GetMaximumOrders();
+  settings.tolerance = filter->GetTolerance();
+  settings.periodic = { filter->GetPeriodicX(), filter->GetPeriodicY(), filter->GetPeriodicZ() };
+  settings.storedDirections = filter->GetStoredDirections();
+  settings.netFlux = filter->GetNetFlux();
+  settings.leaveOut = filter->GetLeaveOut();
+  return settings;
+}
+
+bool NothingShines(const tyndall::Medium& medium, const tyndall::Illumination& illumination)
+{
+  const tyndall::Rgb black = {};
+  return illumination.lights.empty() && illumination.environment.Empty() && illumination.sky == black &&
+    std::all_of(
+      illumination.faces.begin(), illumination.faces.end(), [&](const tyndall::Rgb& face) { return face == black; }) &&
+    !medium.emission.values;
+}
+
+/// What the solver gave up, of all power.
+double LeftOver(const tyndall::EnergyBalance& balance)
+{
+  const auto total = [](const tyndall::Rgb& power) { return power[0] + power[1] + power[2]; };
+  const double all = total(balance.entered) + total(balance.emitted);
+  return all > 0.0 ? total(balance.leftOver) / all : 0.0;
+}
+
+/// Whether all light comes in through faces of the box.
+bool OnlyFromFarAway(const tyndall::Illumination& illumination)
+{
+  return std::all_of(illumination.lights.begin(), illumination.lights.end(),
+    [](const tyndall::Light& light) { return light.type == tyndall::LightType::Directional; });
+}
+
+tyndall::LightField Solve(
+  vtkLightPropagationMaps* filter, const tyndall::Medium& medium, const tyndall::Illumination& illumination)
+{
+  const tyndall::PropagationSettings settings = SettingsOf(filter);
+  const tyndall::Monitor monitor = tyndall::MonitorOf(filter);
+  const bool published = filter->GetScheme() == vtkLightPropagationMaps::PUBLISHED;
+  const bool sequential = published && filter->GetAlgorithm() == vtkLightPropagationMaps::SEQUENTIAL;
+  const std::shared_ptr<tyndall::Device> device = sequential ? nullptr : tyndall::Device::Find(filter->GetDevice());
+  const tyndall::PropagationSolver solve = [&](const tyndall::Medium& inside, const tyndall::PropagationSettings& how,
+                                             const tyndall::Monitor& watch) {
+    return sequential ? tyndall::SolveSequential(inside, illumination, how, watch)
+      : published     ? tyndall::SolveParallel(*device, inside, illumination, how, watch)
+                      : tyndall::SolveConservative(*device, inside, illumination, how, watch);
+  };
+  return filter->GetEstimateError() ? tyndall::SolveWithErrorEstimate(medium, settings, monitor, solve)
+                                    : solve(medium, settings, monitor);
+}
+}
+
+vtkStandardNewMacro(vtkLightPropagationMaps);
+
+vtkLightPropagationMaps::vtkLightPropagationMaps()
+{
+  this->SetNumberOfOutputPorts(2);
+}
+
+vtkLightPropagationMaps::~vtkLightPropagationMaps() = default;
+
+int vtkLightPropagationMaps::FillOutputPortInformation(int port, vtkInformation* information)
+{
+  information->Set(vtkDataObject::DATA_TYPE_NAME(), port == 0 ? "vtkImageData" : "vtkTable");
+  return 1;
+}
+
+int vtkLightPropagationMaps::RequestData(vtkInformation*, vtkInformationVector** inputs, vtkInformationVector* outputs)
+{
+  this->Note({});
+  return tyndall::Guarded(this, outputs, [&] {
+    vtkImageData* image = vtkImageData::GetData(inputs[MEDIUM]);
+    const tyndall::MediumInput input = tyndall::ReadMedium(this, image);
+    tyndall::Illumination illumination = this->ReadIllumination(inputs);
+    tyndall::AddDiffuse(illumination, this->SkyColor, this->FaceRadiance);
+    if (NothingShines(input.medium, illumination))
+    {
+      vtkWarningMacro(
+        "Nothing shines on the medium, so it is dark. Connect Lights or an Environment, or set SkyColor.");
+    }
+    else if (this->PeriodicX && this->PeriodicY && this->PeriodicZ && !input.emission.IsThere() &&
+      OnlyFromFarAway(illumination))
+    {
+      vtkWarningMacro(
+        "With all three axes periodic the box has no face that light of the sky, an environment, faces or a "
+        "directional light could come in through, so it is dark. Leave one axis open.");
+    }
+
+    tyndall::LightField light = Solve(this, input.medium, illumination);
+
+    this->Note(light);
+    const double left = LeftOver(light.balance);
+    tyndall::WriteConvergence(light.convergence, vtkTable::GetData(outputs, 1));
+    vtkImageData* output = vtkImageData::GetData(outputs, 0);
+    tyndall::PassOn(image, output);
+    tyndall::WriteLight(std::move(light), output); // light that is not finite is an error, with no warnings before
+    if (this->MaximumOrders == 0 && this->Residual > this->Tolerance)
+    {
+      vtkWarningMacro("The light has not converged: after "
+        << this->Orders << " sweeps its estimated relative error is " << this->Residual << ", Tolerance is "
+        << this->Tolerance
+        << ". Set a larger Tolerance, or Acceleration to none, or resample to voxels of more equal edges.");
+    }
+    if (this->MaximumOrders == 0 && left > std::max(0.01, this->Tolerance))
+    {
+      vtkWarningMacro("Of the light's power "
+        << 100.0 * left
+        << "% is left over: its rays still go round periodic axes. A light inside a thin periodic box has images "
+           "without end: make the box wider, or its axes not periodic.");
+    }
+    tyndall::KeepWhatIsAskedFor(outputs->GetInformationObject(0), output);
+  });
+}
+
+void vtkLightPropagationMaps::Note(const tyndall::LightField& light)
+{
+  const bool any = !light.convergence.empty();
+  this->Orders = static_cast<int>(light.convergence.size());
+  this->Residual = any ? light.convergence.back().residual : 0.0;
+  this->Seconds = any ? light.convergence.back().seconds : 0.0;
+  this->EstimatedError = light.relativeError;
+  this->BalanceError = light.balance.RelativeError(light.channels);
+  this->HalfRangeFlux = light.halfRangeFlux;
+  this->DeviceName = light.device;
+  this->LeftOut = tyndall::Lines(light.leftOut);
+}
+
+void vtkLightPropagationMaps::PrintSelf(ostream& os, vtkIndent indent)
+{
+  this->Superclass::PrintSelf(os, indent);
+  os << indent << "Scheme: " << (this->Scheme == SOUND ? "sound" : "as published") << "\n";
+  os << indent << "Algorithm: " << (this->Algorithm == SEQUENTIAL ? "sequential" : "parallel") << "\n";
+  os << indent << "Source: " << this->Source << "\n";
+  os << indent << "Acceleration: " << this->Acceleration << "\n";
+  os << indent << "DirectionsPerFace: " << this->DirectionsPerFace << "\n";
+  os << indent << "FirstFlightDirections: " << this->FirstFlightDirections << "\n";
+  os << indent << "EmissionError: " << this->EmissionError << "\n";
+  os << indent << "StaggeredRays: " << this->StaggeredRays << "\n";
+  os << indent << "MapResolution: " << this->MapResolution << "\n";
+  os << indent << "MaximumOrders: " << this->MaximumOrders << "\n";
+  os << indent << "Tolerance: " << this->Tolerance << "\n";
+  os << indent << "Periodic: " << this->PeriodicX << " " << this->PeriodicY << " " << this->PeriodicZ << "\n";
+  PrintNumbers(os, indent, "FaceRadiance", this->FaceRadiance, 6);
+  PrintNumbers(os, indent, "SkyColor", this->SkyColor, 3);
+  os << indent << "NetFlux: " << this->NetFlux << "\n";
+  os << indent << "EstimateError: " << this->EstimateError << "\n";
+  os << indent << "LeaveOut: " << this->LeaveOut << "\n";
+  os << indent << "StoredDirections: " << this->StoredDirections << "\n";
+  os << indent << "Orders: " << this->Orders << "\n";
+  os << indent << "Residual: " << this->Residual << "\n";
+  os << indent << "EstimatedError: " << this->EstimatedError << "\n";
+  os << indent << "BalanceError: " << this->BalanceError << "\n";
+  os << indent << "HalfRangeFlux: " << this->HalfRangeFlux << "\n";
+  os << indent << "Seconds: " << this->Seconds << "\n";
+  os << indent << "DeviceName: " << this->DeviceName << "\n";
+  os << indent << "LeftOut: " << this->LeftOut << "\n";
+}

@@ -1,0 +1,93 @@
+#include "vtkLitMediumAlgorithm.h"
+
+#include "Lights/Lights.h"
+#include "Common/LightTransportData.h"
+#include "Common/WholeImage.h"
+
+#include "vtkImageData.h"
+#include "vtkInformation.h"
+#include "vtkInformationVector.h"
+#include "vtkPolyData.h"
+
+vtkLitMediumAlgorithm::vtkLitMediumAlgorithm()
+{
+  this->SetNumberOfInputPorts(3);
+}
+
+vtkLitMediumAlgorithm::~vtkLitMediumAlgorithm() = default;
+
+void vtkLitMediumAlgorithm::SetLightsConnection(vtkAlgorithmOutput* lights)
+{
+  this->SetInputConnection(LIGHTS, lights);
+}
+
+void vtkLitMediumAlgorithm::SetLightsData(vtkDataObject* lights)
+{
+  this->SetInputDataObject(LIGHTS, lights);
+}
+
+void vtkLitMediumAlgorithm::RemoveLights()
+{
+  this->SetInputConnection(LIGHTS, nullptr);
+}
+
+void vtkLitMediumAlgorithm::SetEnvironmentConnection(vtkAlgorithmOutput* environment)
+{
+  this->SetInputConnection(ENVIRONMENT, environment);
+}
+
+void vtkLitMediumAlgorithm::SetEnvironmentData(vtkDataObject* environment)
+{
+  this->SetInputDataObject(ENVIRONMENT, environment);
+}
+
+void vtkLitMediumAlgorithm::RemoveEnvironment()
+{
+  this->SetInputConnection(ENVIRONMENT, nullptr);
+}
+
+int vtkLitMediumAlgorithm::FillInputPortInformation(int port, vtkInformation* information)
+{
+  information->Set(vtkAlgorithm::INPUT_REQUIRED_DATA_TYPE(), port == LIGHTS ? "vtkPolyData" : "vtkImageData");
+  if (port != MEDIUM)
+  {
+    information->Set(vtkAlgorithm::INPUT_IS_OPTIONAL(), 1);
+  }
+  return 1;
+}
+
+int vtkLitMediumAlgorithm::RequestUpdateExtent(vtkInformation*, vtkInformationVector** inputs, vtkInformationVector*)
+{
+  for (int port = 0; port < this->GetNumberOfInputPorts(); ++port)
+  {
+    tyndall::AskForAll(inputs[port]);
+  }
+  return 1;
+}
+
+tyndall::Illumination vtkLitMediumAlgorithm::ReadIllumination(vtkInformationVector** inputs)
+{
+  tyndall::Illumination illumination;
+  illumination.lights = tyndall::ReadLights(vtkPolyData::GetData(inputs[LIGHTS]));
+  illumination.environment = tyndall::Turned(tyndall::ReadEnvironment(vtkImageData::GetData(inputs[ENVIRONMENT])),
+    this->EnvironmentUp, this->EnvironmentAzimuth);
+  return illumination;
+}
+
+void vtkLitMediumAlgorithm::PrintNumbers(
+  ostream& os, vtkIndent indent, const char* name, const double* values, int count)
+{
+  os << indent << name << ":";
+  for (int i = 0; i < count; ++i)
+  {
+    os << " " << values[i];
+  }
+  os << "\n";
+}
+
+void vtkLitMediumAlgorithm::PrintSelf(ostream& os, vtkIndent indent)
+{
+  this->Superclass::PrintSelf(os, indent);
+  os << indent << "EnvironmentUp: " << this->EnvironmentUp << "\n";
+  os << indent << "EnvironmentAzimuth: " << this->EnvironmentAzimuth << "\n";
+}

@@ -1,0 +1,344 @@
+#include "vtkSolverComparison.h"
+
+#include "Comparison/SolverComparison.h"
+#include "Device/Clock.h"
+#include "Common/GhostFlags.h"
+#include "Common/LightTransportData.h"
+#include "Photons/RefractiveInput.h"
+#include "Common/WholeImage.h"
+
+#include "vtkDataObject.h"
+#include "vtkDoubleArray.h"
+#include "vtkFieldData.h"
+#include "vtkImageData.h"
+#include "vtkInformation.h"
+#include "vtkInformationVector.h"
+#include "vtkIntArray.h"
+#include "vtkNew.h"
+#include "vtkObjectFactory.h"
+#include "vtkPolyData.h"
+#include "vtkStringArray.h"
+#include "vtkTable.h"
+
+#include <functional>
+#include <limits>
+#include <memory>
+#include <optional>
+#include <utility>
+
+namespace
+{
+using Row = tyndall::ComparisonRow;
+
+void AddTexts(
+  vtkTable* table, const char* name, const std::vector<Row>& rows, const std::function<std::string(const Row&)>& text)
+{
+  vtkNew<vtkStringArray> column;
+  column->SetName(name);
+  for (const Row& row : rows)
+  {
+    column->InsertNextValue(text(row));
+  }
+  table->AddColumn(column);
+}
+
+template <class Array = vtkDoubleArray>
+void AddNumbers(
+  vtkTable* table, const char* name, const std::vector<Row>& rows, const std::function<double(const Row&)>& number)
+{
+  vtkNew<Array> column;
+  column->SetName(name);
+  for (const Row& row : rows)
+  {
+    column->InsertNextValue(static_cast<typename Array::ValueType>(number(row)));
+  }
+  table->AddColumn(column);
+}
+
+void AddFacePower(vtkTable* table, const std::vector<Row>& rows)
+{
+  vtkNew<vtkDoubleArray> column;
+  column->SetName("face_power_out");
+  column->SetNumberOfComponents(6);
+  const char* const faces[] = { "-x", "+x", "-y", "+y", "-z", "+z" };
+  for (int face = 0; face < 6; ++face)
+  {
+    column->SetComponentName(face, faces[face]);
+  }
+  for (const Row& row : rows)
+  {
+    column->InsertNextTuple(row.facePowerOut.data());
+  }
+  table->AddColumn(column);
+}
+
+std::string SizeOf(const Row& row)
+{
+  const std::array<int, 3>& size = row.grid.size;
+  return std::to_string(size[0]) + "x" + std::to_string(size[1]) + "x" + std::to_string(size[2]);
+}
+
+void Write(const tyndall::Comparison& comparison, vtkTable* table)
+{
+  const std::vector<Row>& rows = comparison.rows;
+  AddTexts(table, "method", rows, [](const Row& row) { return tyndall::NameOf(row.method); });
+  AddTexts(table, "setting", rows, [](const Row& row) { return row.setting; });
+  AddTexts(table, "quantity", rows,
+    [](const Row& row) { return tyndall::IsDirectOnly(row.method) ? "fluence_direct" : "fluence"; });
+  AddTexts(table, "grid", rows, SizeOf);
+  AddNumbers(table, "seconds", rows, [](const Row& row) { return row.seconds; });
+  AddNumbers(table, "peak_bytes", rows, [](const Row& row) { return row.peakBytes; });
+  AddNumbers(table, "error_l2", rows, [](const Row& row) { return row.errorL2; });
+  AddNumbers(table, "error_max", rows, [](const Row& row) { return row.errorMax; });
+  AddNumbers(table, "error_relative", rows, [](const Row& row) { return row.errorRelative; });
+  AddNumbers(table, "balance", rows, [](const Row& row) { return row.balance; });
+  AddNumbers<vtkIntArray>(table, "iterations", rows, [](const Row& row) { return row.iterations; });
+  AddNumbers(table, "estimated_error", rows, [](const Row& row) { return row.estimatedError; });
+  AddFacePower(table, rows);
+  AddNumbers(table, "power_in", rows, [](const Row& row) { return row.powerIn; });
+  AddNumbers<vtkIntArray>(table, "pareto", rows, [](const Row& row) { return row.pareto ? 1 : 0; });
+  tyndall::AddFact(table, "reference", std::vector<std::string>{ comparison.reference.text });
+  tyndall::AddFact(table, "left_out", comparison.leftOut);
+  tyndall::AddFact(table, "device", std::vector<std::string>{ comparison.device });
+}
+
+/// @param given  by the user: it may be NaN where it is not known
+void Write(tyndall::ReferenceLight&& reference, bool given, vtkImageData* image)
+{
+  const std::array<int, 3>& size = reference.grid.size;
+  image->SetExtent(0, size[0], 0, size[1], 0, size[2]);
+  image->SetSpacing(reference.grid.spacing.data());
+  image->SetOrigin(reference.grid.origin.data());
+  const std::pair<const char*, std::vector<float>*> arrays[] = { { "fluence", &reference.fluence },
+    { "fluence_direct", &reference.fluenceDirect } };
+  for (const auto& [name, values] : arrays)
+  {
+    if (!values->empty())
+    {
+      const auto add = given ? tyndall::AddGivenLight : tyndall::AddLight;
+      add(image, name, std::move(*values), reference.channels);
+    }
+  }
+  tyndall::AddFact(image, "reference", std::vector<std::string>{ reference.text });
+}
+
+/// NaN, which is not compared, where cells are hidden.
+std::vector<float> Copied(const tyndall::FloatField& field, vtkImageData* image)
+{
+  if (!field.IsThere())
+  {
+    return {};
+  }
+  const auto components = static_cast<std::size_t>(field.Components());
+  const auto voxels = static_cast<std::size_t>(image->GetNumberOfCells());
+  std::vector<float> values(field.Values(), field.Values() + voxels * components);
+  const std::vector<unsigned char> hidden = tyndall::HiddenCells(image);
+  for (std::size_t i = 0; i < hidden.size() * components; ++i)
+  {
+    values[i] = hidden[i / components] ? std::numeric_limits<float>::quiet_NaN() : values[i];
+  }
+  return values;
+}
+
+/// The reference of an image; nothing where there is no image.
+std::optional<tyndall::ReferenceLight> ReadReference(vtkImageData* image)
+{
+  if (!image)
+  {
+    return std::nullopt;
+  }
+  tyndall::StopWithFilterBefore(image);
+  const tyndall::FloatField fluence = tyndall::ReadCells(image, "fluence", tyndall::Need::Optional);
+  const tyndall::FloatField direct = tyndall::ReadCells(image, "fluence_direct", tyndall::Need::Optional);
+  if (!fluence.IsThere() && !direct.IsThere())
+  {
+    throw tyndall::InvalidInput("The reference has neither an array 'fluence' nor 'fluence_direct'. Its cell arrays: " +
+      tyndall::NamesOf(image->GetAttributes(vtkDataObject::CELL)) + ". Connect light of a solver, or no reference.");
+  }
+  if (fluence.IsThere() && direct.IsThere() && fluence.Components() != direct.Components())
+  {
+    throw tyndall::InvalidInput(
+      "The reference's 'fluence' and 'fluence_direct' must have as many components as each other.");
+  }
+  tyndall::ReferenceLight reference;
+  reference.grid = tyndall::GridOf(image);
+  reference.channels = (fluence.IsThere() ? fluence : direct).Components();
+  reference.fluence = Copied(fluence, image);
+  reference.fluenceDirect = Copied(direct, image);
+  auto* const text = vtkArrayDownCast<vtkStringArray>(image->GetFieldData()->GetAbstractArray("reference"));
+  reference.text = text && text->GetNumberOfValues() == 1 ? text->GetValue(0) : "the image that is connected";
+  return reference;
+}
+
+void PrintList(ostream& os, vtkIndent indent, const char* name, const std::vector<int>& values)
+{
+  os << indent << name << ":";
+  for (int value : values)
+  {
+    os << " " << value;
+  }
+  os << "\n";
+}
+}
+
+vtkStandardNewMacro(vtkSolverComparison);
+
+vtkSolverComparison::vtkSolverComparison()
+{
+  this->SetNumberOfInputPorts(4);
+  this->SetNumberOfOutputPorts(2);
+}
+
+vtkSolverComparison::~vtkSolverComparison() = default;
+
+vtkTable* vtkSolverComparison::GetOutput()
+{
+  return vtkTable::SafeDownCast(this->GetOutputDataObject(0));
+}
+
+void vtkSolverComparison::SetReferenceConnection(vtkAlgorithmOutput* reference)
+{
+  this->SetInputConnection(REFERENCE, reference);
+}
+
+void vtkSolverComparison::SetReferenceData(vtkDataObject* reference)
+{
+  this->SetInputDataObject(REFERENCE, reference);
+}
+
+void vtkSolverComparison::RemoveReference()
+{
+  this->SetInputConnection(REFERENCE, nullptr);
+}
+
+// VTK's own macros have none for lists.
+#define LIST_OF_NUMBERS(add, removeAll, list) \
+  void vtkSolverComparison::add(int value)    \
+  {                                           \
+    this->list.push_back(value);              \
+    this->Modified();                         \
+  }                                           \
+  void vtkSolverComparison::removeAll()       \
+  {                                           \
+    this->list.clear();                       \
+    this->Modified();                         \
+  }
+LIST_OF_NUMBERS(AddDirections, RemoveAllDirections, Directions)
+LIST_OF_NUMBERS(AddMapResolution, RemoveAllMapResolutions, MapResolutions)
+LIST_OF_NUMBERS(AddCoarsening, RemoveAllCoarsenings, Coarsenings)
+LIST_OF_NUMBERS(AddOrders, RemoveAllOrders, Orders)
+LIST_OF_NUMBERS(AddPhotonCount, RemoveAllPhotonCounts, PhotonCounts)
+#undef LIST_OF_NUMBERS
+
+int vtkSolverComparison::FillOutputPortInformation(int port, vtkInformation* information)
+{
+  information->Set(vtkDataObject::DATA_TYPE_NAME(), port == 0 ? "vtkTable" : "vtkImageData");
+  return 1;
+}
+
+tyndall::ComparisonSettings vtkSolverComparison::Settings() const
+{
+  using tyndall::ComparedMethod;
+  const std::pair<bool, ComparedMethod> methods[] = {
+    { this->LightPropagationMaps, ComparedMethod::LightPropagationMaps },
+    { this->ConstantSource, ComparedMethod::ConstantSource },
+    { this->AsPublished, ComparedMethod::Published },
+    { this->AsPublishedSequential, ComparedMethod::PublishedSequential },
+    { this->Photons, ComparedMethod::Photons },
+    { this->AdaptivePhotons, ComparedMethod::AdaptivePhotons },
+    { this->PublishedPhotons, ComparedMethod::PublishedPhotons },
+  };
+  tyndall::ComparisonSettings settings;
+  settings.methods.clear();
+  for (const auto& [on, method] : methods)
+  {
+    if (on)
+    {
+      settings.methods.push_back(method);
+    }
+  }
+  tyndall::ComparedSettings& tried = settings.tried;
+  tried.directionsPerFace = this->Directions;
+  tried.mapResolutions = this->MapResolutions;
+  tried.coarsenings = this->Coarsenings;
+  tried.orders = this->Orders;
+  tried.photonCounts = this->PhotonCounts;
+  tried.tolerance = this->Tolerance;
+  if (this->AllSamplers)
+  {
+    using tyndall::Sampler;
+    tried.samplers = { Sampler::Hammersley, Sampler::Halton, Sampler::Jittered, Sampler::Grid, Sampler::Random };
+  }
+  settings.repeats = this->Repeats;
+  settings.timeBudget = this->TimeBudget;
+  settings.estimates = this->EstimateError;
+  return settings;
+}
+
+int vtkSolverComparison::RequestData(
+  vtkInformation* request, vtkInformationVector** inputs, vtkInformationVector* outputs)
+{
+  this->Note({}, 0.0);
+  return tyndall::Guarded(this, outputs, [&] {
+    const double start = tyndall::ClockSeconds();
+    const tyndall::RefractiveInput read = tyndall::ReadRefractiveMedium(this, vtkImageData::GetData(inputs[MEDIUM]));
+    tyndall::ComparedScene scene;
+    scene.medium = read.input.medium;
+    scene.ior = read.ior;
+    scene.levels = read.Levels();
+    scene.periodic = { this->PeriodicX, this->PeriodicY, this->PeriodicZ };
+    scene.illumination = this->ReadIllumination(inputs);
+    tyndall::AddDiffuse(scene.illumination, this->SkyColor, this->FaceRadiance);
+    const std::optional<tyndall::ReferenceLight> reference = ReadReference(vtkImageData::GetData(inputs[REFERENCE]));
+    if (!tyndall::IsFirstPiece(request, outputs))
+    {
+      return; // times that ranks take from each other mean nothing
+    }
+    tyndall::Comparison comparison = tyndall::CompareSolvers(*tyndall::Device::Find(this->Device), scene,
+      this->Settings(), reference ? &*reference : nullptr, tyndall::MonitorOf(this));
+    Write(comparison, this->GetOutput());
+    this->Note(comparison, tyndall::ClockSeconds() - start);
+    vtkImageData* const output = vtkImageData::GetData(outputs, REFERENCE_OUTPUT);
+    Write(std::move(comparison.reference), reference.has_value(), output);
+    tyndall::TellExtentAndKeepWhatIsAskedFor(
+      tyndall::AskingPort(request, outputs), outputs->GetInformationObject(REFERENCE_OUTPUT), output);
+  });
+}
+
+void vtkSolverComparison::Note(const tyndall::Comparison& comparison, double seconds)
+{
+  this->ReferenceText = comparison.reference.text;
+  this->Seconds = seconds;
+  this->DeviceName = comparison.device;
+  this->LeftOut = tyndall::Lines(comparison.leftOut);
+}
+
+void vtkSolverComparison::PrintSelf(ostream& os, vtkIndent indent)
+{
+  this->Superclass::PrintSelf(os, indent);
+  os << indent << "LightPropagationMaps: " << this->LightPropagationMaps << "\n";
+  os << indent << "ConstantSource: " << this->ConstantSource << "\n";
+  os << indent << "AsPublished: " << this->AsPublished << "\n";
+  os << indent << "AsPublishedSequential: " << this->AsPublishedSequential << "\n";
+  os << indent << "Photons: " << this->Photons << "\n";
+  os << indent << "AdaptivePhotons: " << this->AdaptivePhotons << "\n";
+  os << indent << "PublishedPhotons: " << this->PublishedPhotons << "\n";
+  PrintList(os, indent, "Directions", this->Directions);
+  PrintList(os, indent, "MapResolutions", this->MapResolutions);
+  PrintList(os, indent, "Coarsenings", this->Coarsenings);
+  PrintList(os, indent, "Orders", this->Orders);
+  PrintList(os, indent, "PhotonCounts", this->PhotonCounts);
+  os << indent << "AllSamplers: " << this->AllSamplers << "\n";
+  os << indent << "Tolerance: " << this->Tolerance << "\n";
+  os << indent << "Repeats: " << this->Repeats << "\n";
+  os << indent << "TimeBudget: " << this->TimeBudget << "\n";
+  os << indent << "EstimateError: " << this->EstimateError << "\n";
+  os << indent << "Periodic: " << this->PeriodicX << " " << this->PeriodicY << " " << this->PeriodicZ << "\n";
+  PrintNumbers(os, indent, "FaceRadiance", this->FaceRadiance, 6);
+  PrintNumbers(os, indent, "SkyColor", this->SkyColor, 3);
+  os << indent << "Device: " << this->Device << "\n";
+  os << indent << "ReferenceText: " << this->ReferenceText << "\n";
+  os << indent << "Seconds: " << this->Seconds << "\n";
+  os << indent << "DeviceName: " << this->DeviceName << "\n";
+  os << indent << "LeftOut: " << this->LeftOut << "\n";
+}

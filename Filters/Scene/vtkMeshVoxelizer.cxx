@@ -1,0 +1,339 @@
+#include "vtkMeshVoxelizer.h"
+
+#include "Device/Device.h"
+#include "Common/LightTransportData.h"
+#include "Scene/MeshSolids.h"
+#include "Refraction/Index/RefractiveMedium.h"
+#include "Common/WholeImage.h"
+
+#include "vtkCellData.h"
+#include "vtkImageData.h"
+#include "vtkInformation.h"
+#include "vtkInformationVector.h"
+#include "vtkObjectFactory.h"
+#include "vtkPolyData.h"
+#include "vtkStreamingDemandDrivenPipeline.h"
+
+#include <algorithm>
+#include <map>
+#include <memory>
+#include <numeric>
+#include <utility>
+#include <vector>
+
+namespace
+{
+using tyndall::Material;
+using tyndall::Rgb;
+using tyndall::Solid;
+
+const char* const DefaultNumbers = "material_id";
+constexpr std::size_t NumbersOfMaterial = 9;
+
+Rgb RgbOf(const double values[3])
+{
+  return { values[0], values[1], values[2] };
+}
+
+/// Name of the cell array with the numbers of materials; "(by name)" is what ParaView's panel sends for the default one.
+/// @throws InvalidInput where another one was chosen that no mesh has
+std::string NumbersArray(vtkMeshVoxelizer* filter, const std::vector<vtkPolyData*>& meshes)
+{
+  vtkInformation* chosen = filter->GetInputArrayInformation(0);
+  const std::string name = chosen->Has(vtkDataObject::FIELD_NAME()) ? chosen->Get(vtkDataObject::FIELD_NAME()) : "";
+  if (name.empty() || name == "(by name)")
+  {
+    return DefaultNumbers;
+  }
+  if (chosen->Get(vtkDataObject::FIELD_ASSOCIATION()) == vtkDataObject::FIELD_ASSOCIATION_POINTS)
+  {
+    throw tyndall::InvalidInput(
+      "The numbers of materials are to be '" + name + "' of points; they must be an array of cells.");
+  }
+  const auto hasIt = [&](vtkPolyData* mesh) { return mesh->GetCellData()->HasArray(name.c_str()) != 0; };
+  if (name != DefaultNumbers && !meshes.empty() && std::none_of(meshes.begin(), meshes.end(), hasIt))
+  {
+    throw tyndall::InvalidInput((meshes.size() == 1 ? "The mesh has" : "The meshes have") +
+      std::string(" no cell array '") + name +
+      "' with numbers of materials. Cell arrays: " + tyndall::NamesOf(meshes.front()->GetCellData()) + ".");
+  }
+  return name;
+}
+
+std::vector<vtkPolyData*> MeshesOf(vtkInformationVector* inputs)
+{
+  std::vector<vtkPolyData*> meshes;
+  for (int i = 0; i < inputs->GetNumberOfInformationObjects(); ++i)
+  {
+    meshes.push_back(vtkPolyData::GetData(inputs, i));
+    if (meshes.back()->GetNumberOfCells() == 0)
+    {
+      tyndall::StopWithFilterBefore(meshes.back());
+    }
+  }
+  return meshes;
+}
+
+bool IsOn(const double bounds[6])
+{
+  return std::any_of(bounds, bounds + 6, [](double bound) { return bound != 0.0; });
+}
+
+tyndall::Grid GridIn(const double bounds[6], const int size[3])
+{
+  tyndall::Grid grid;
+  for (int axis = 0; axis < 3; ++axis)
+  {
+    const double low = bounds[2 * axis];
+    const double high = bounds[2 * axis + 1];
+    if (!(low < high))
+    {
+      throw tyndall::InvalidInput("ModelBounds reach from " + std::to_string(low) + " to " + std::to_string(high) +
+        " along " + std::string(1, "xyz"[axis]) + "; the latter must be larger. All 0: a box around the meshes.");
+    }
+    grid.size[axis] = size[axis];
+    grid.origin[axis] = low;
+    grid.spacing[axis] = (high - low) / std::max(size[axis], 1);
+  }
+  return grid;
+}
+
+double LongestEdge(const tyndall::Grid& grid)
+{
+  return std::max({ grid.Length(0), grid.Length(1), grid.Length(2) });
+}
+
+/// The scattering asked for, or such that light which crosses the box shows and is not lost.
+Rgb OutsideScattering(const double asked[3], const tyndall::Grid& grid)
+{
+  const bool automatic = std::all_of(asked, asked + 3, [](double value) { return value < 0.0; });
+  const double edge = LongestEdge(grid); // 0 where there are no voxels, which the kernels refuse
+  const double suiting = edge > 0.0 ? 0.5 / edge : 0.0;
+  return automatic ? Rgb{ suiting, suiting, suiting } : RgbOf(asked);
+}
+
+tyndall::RefractiveMediumSettings SettingsOf(vtkMeshVoxelizer* filter, const std::vector<Solid>& solids)
+{
+  tyndall::RefractiveMediumSettings settings;
+  const int* size = filter->GetSampleDimensions();
+  settings.grid = IsOn(filter->GetModelBounds())
+    ? GridIn(filter->GetModelBounds(), size)
+    : tyndall::GridAround(solids, { size[0], size[1], size[2] }, filter->GetMargin(), filter->GetFilterSize());
+  settings.outside = { filter->GetOutsideIndex(), RgbOf(filter->GetOutsideAbsorption()),
+    OutsideScattering(filter->GetOutsideScattering(), settings.grid), filter->GetOutsideMeanCosine() };
+  const double noiseSize = filter->GetNoiseSize() == 0.0 ? LongestEdge(settings.grid) / 8.0 : filter->GetNoiseSize();
+  settings.perturbation = { filter->GetIndexNoise(), filter->GetScatteringNoise(), noiseSize,
+    static_cast<std::uint32_t>(filter->GetNoiseSeed()) };
+  settings.voxelization.samples = filter->GetSupersamplingFactor();
+  settings.filterSize = filter->GetFilterSize();
+  return settings;
+}
+
+void Pack(const tyndall::RefractiveMediumSettings& settings, tyndall::RefractiveMedium&& medium, vtkImageData* output)
+{
+  const tyndall::Grid& grid = settings.grid;
+  output->SetExtent(0, grid.size[0], 0, grid.size[1], 0, grid.size[2]);
+  output->SetOrigin(grid.origin.data());
+  output->SetSpacing(grid.spacing.data());
+  tyndall::AddCells(output, "occupancy", std::move(medium.occupancy), 1);
+  const bool constant = medium.ior.empty();
+  if (constant)
+  {
+    medium.ior.assign(grid.VoxelCount(), static_cast<float>(settings.outside.n)); // who asks for n is told
+  }
+  tyndall::AddCells(output, "ior", std::move(medium.ior), 1);
+  if (!constant)
+  {
+    tyndall::AddCells(output, "ior_gradient", std::move(medium.iorGradient), 3);
+  }
+  tyndall::AddCells(output, "sigma_a", std::move(medium.sigma_a), medium.components);
+  tyndall::AddCells(output, "sigma_s", std::move(medium.sigma_s), medium.components);
+  output->GetCellData()->SetActiveScalars("occupancy");
+  tyndall::AddFact(output, "g", std::vector<double>{ medium.g });
+  tyndall::AddFact(output, "left_out", medium.leftOut);
+  tyndall::AddFact(output, "device", std::vector<std::string>{ medium.device });
+}
+}
+
+struct vtkMeshVoxelizer::AddedMaterials
+{
+  std::vector<std::pair<double, Material>> InOrder; ///< with their numbers
+  std::vector<double> Numbers;                      ///< of a material that is not whole yet
+
+  /// @throws InvalidInput where a material lacks numbers, or is none
+  void Check() const
+  {
+    if (!this->Numbers.empty())
+    {
+      throw tyndall::InvalidInput("The last material has " + std::to_string(this->Numbers.size()) +
+        (this->Numbers.size() == 1 ? " number" : " numbers") + "; a material takes " +
+        std::to_string(NumbersOfMaterial) +
+        ": number, index, scattering red, green, blue, absorption red, green, blue, mean cosine.");
+    }
+    for (const auto& [number, material] : this->InOrder)
+    {
+      tyndall::Check(
+        material, "Material " + std::to_string(tyndall::MaterialNumber(number, "The number of a material")));
+    }
+  }
+};
+
+vtkStandardNewMacro(vtkMeshVoxelizer);
+
+vtkMeshVoxelizer::vtkMeshVoxelizer()
+  : Added(new AddedMaterials)
+{
+  // vtkImageAlgorithm chooses the active scalars.
+  this->SetInputArrayToProcess(0, 0, 0, vtkDataObject::FIELD_ASSOCIATION_CELLS, DefaultNumbers);
+}
+
+vtkMeshVoxelizer::~vtkMeshVoxelizer() = default;
+
+void vtkMeshVoxelizer::AddMaterial(double number, double n, double scatteringR, double scatteringG, double scatteringB,
+  double absorptionR, double absorptionG, double absorptionB, double g)
+{
+  this->Added->InOrder.push_back(
+    { number, { n, { absorptionR, absorptionG, absorptionB }, { scatteringR, scatteringG, scatteringB }, g } });
+  this->Modified();
+}
+
+void vtkMeshVoxelizer::AddMaterialNumber(double number)
+{
+  std::vector<double>& n = this->Added->Numbers;
+  n.push_back(number);
+  if (n.size() == NumbersOfMaterial)
+  {
+    this->AddMaterial(n[0], n[1], n[2], n[3], n[4], n[5], n[6], n[7], n[8]);
+    n.clear();
+  }
+  this->Modified();
+}
+
+void vtkMeshVoxelizer::RemoveAllMaterials()
+{
+  this->Added->InOrder.clear();
+  this->Added->Numbers.clear();
+  this->Modified();
+}
+
+int vtkMeshVoxelizer::GetNumberOfMaterials() const
+{
+  return static_cast<int>(this->Added->InOrder.size());
+}
+
+int vtkMeshVoxelizer::FillInputPortInformation(int, vtkInformation* information)
+{
+  information->Set(vtkAlgorithm::INPUT_REQUIRED_DATA_TYPE(), "vtkPolyData");
+  information->Set(vtkAlgorithm::INPUT_IS_REPEATABLE(), 1);
+  return 1;
+}
+
+int vtkMeshVoxelizer::RequestInformation(vtkInformation*, vtkInformationVector**, vtkInformationVector* outputs)
+{
+  tyndall::Grid grid; // without ModelBounds the box is known when the meshes are
+  tyndall::GuardedInformation(this, [&] {
+    if (IsOn(this->ModelBounds))
+    {
+      grid = GridIn(this->ModelBounds, this->SampleDimensions);
+    }
+  });
+  int extent[6];
+  for (int axis = 0; axis < 3; ++axis)
+  {
+    extent[2 * axis] = 0;
+    extent[2 * axis + 1] = std::max(this->SampleDimensions[axis], 1);
+  }
+  vtkInformation* information = outputs->GetInformationObject(0);
+  information->Set(vtkStreamingDemandDrivenPipeline::WHOLE_EXTENT(), extent, 6);
+  information->Set(vtkDataObject::ORIGIN(), grid.origin.data(), 3);
+  information->Set(vtkDataObject::SPACING(), grid.spacing.data(), 3);
+  return 1;
+}
+
+int vtkMeshVoxelizer::RequestUpdateExtent(vtkInformation*, vtkInformationVector** inputs, vtkInformationVector*)
+{
+  tyndall::AskForAll(inputs[0]);
+  return 1;
+}
+
+int vtkMeshVoxelizer::RequestData(vtkInformation*, vtkInformationVector** inputs, vtkInformationVector* outputs)
+{
+  this->OccupiedVolume = 0.0;
+  std::fill_n(this->UsedOutsideScattering, 3, 0.0);
+  this->Seconds = 0.0;
+  this->DeviceName.clear();
+  this->LeftOut.clear();
+  return tyndall::Guarded(this, outputs, [&] {
+    this->Added->Check();
+    const Material inside = { this->InsideIndex, RgbOf(this->InsideAbsorption), RgbOf(this->InsideScattering),
+      this->InsideMeanCosine };
+    const auto materialOf = [&](int number) {
+      const auto& added = this->Added->InOrder;
+      const auto found =
+        std::find_if(added.rbegin(), added.rend(), [number](const auto& material) { return material.first == number; });
+      return found == added.rend() ? inside : found->second;
+    };
+    const std::vector<vtkPolyData*> meshes = MeshesOf(inputs[0]);
+    const std::string numbers = NumbersArray(this, meshes);
+    std::vector<Solid> solids;
+    for (std::size_t i = 0; i < meshes.size(); ++i)
+    {
+      const std::string name = meshes.size() == 1 ? "The mesh" : "Mesh " + std::to_string(i);
+      std::vector<Solid> ofMesh = tyndall::SolidsOf(meshes[i], name, numbers, static_cast<int>(i), materialOf);
+      std::move(ofMesh.begin(), ofMesh.end(), std::back_inserter(solids));
+    }
+
+    const tyndall::RefractiveMediumSettings settings = SettingsOf(this, solids);
+    const std::shared_ptr<tyndall::Device> device = tyndall::Device::Find(this->Device);
+    tyndall::RefractiveMedium medium =
+      tyndall::Voxelize(*device, std::move(solids), settings, tyndall::MonitorOf(this));
+    for (const std::string& warning : medium.warnings)
+    {
+      vtkWarningMacro(<< warning);
+    }
+    this->OccupiedVolume =
+      settings.grid.VoxelVolume() * std::accumulate(medium.occupancy.begin(), medium.occupancy.end(), 0.0);
+    std::copy_n(settings.outside.sigma_s.begin(), 3, this->UsedOutsideScattering);
+    this->Seconds = medium.seconds;
+    this->DeviceName = medium.device;
+    this->LeftOut = tyndall::Lines(medium.leftOut);
+
+    vtkImageData* output = vtkImageData::GetData(outputs);
+    Pack(settings, std::move(medium), output);
+    tyndall::KeepWhatIsAskedFor(outputs->GetInformationObject(0), output);
+  });
+}
+
+void vtkMeshVoxelizer::PrintSelf(ostream& os, vtkIndent indent)
+{
+  const auto print = [&](const char* name, const auto* values, int count) {
+    os << indent << name << ":";
+    std::for_each(values, values + count, [&](auto value) { os << " " << value; });
+    os << "\n";
+  };
+  this->Superclass::PrintSelf(os, indent);
+  print("SampleDimensions", this->SampleDimensions, 3);
+  print("ModelBounds", this->ModelBounds, 6);
+  print("Margin", &this->Margin, 1);
+  print("InsideIndex", &this->InsideIndex, 1);
+  print("OutsideIndex", &this->OutsideIndex, 1);
+  print("InsideScattering", this->InsideScattering, 3);
+  print("OutsideScattering", this->OutsideScattering, 3);
+  print("InsideAbsorption", this->InsideAbsorption, 3);
+  print("OutsideAbsorption", this->OutsideAbsorption, 3);
+  print("InsideMeanCosine", &this->InsideMeanCosine, 1);
+  print("OutsideMeanCosine", &this->OutsideMeanCosine, 1);
+  os << indent << "Materials: " << this->GetNumberOfMaterials() << "\n";
+  print("IndexNoise", &this->IndexNoise, 1);
+  print("ScatteringNoise", &this->ScatteringNoise, 1);
+  print("NoiseSize", &this->NoiseSize, 1);
+  print("NoiseSeed", &this->NoiseSeed, 1);
+  print("SupersamplingFactor", &this->SupersamplingFactor, 1);
+  print("FilterSize", &this->FilterSize, 1);
+  print("Device", &this->Device, 1);
+  print("OccupiedVolume", &this->OccupiedVolume, 1);
+  print("UsedOutsideScattering", this->UsedOutsideScattering, 3);
+  print("Seconds", &this->Seconds, 1);
+  print("DeviceName", &this->DeviceName, 1);
+  print("LeftOut", &this->LeftOut, 1);
+}

@@ -1,0 +1,366 @@
+#include "vtkMediumRayCaster.h"
+
+#include "Device/Device.h"
+#include "Common/FiniteValues.h"
+#include "Common/InputsKey.h"
+#include "Common/LightTransportData.h"
+#include "Medium/BoxFaces.h"
+#include "Viewing/MediumRayCaster.h"
+#include "Viewing/ToneMapping.h"
+#include "Common/WholeImage.h"
+
+#include "vtkCellData.h"
+#include "vtkDataArray.h"
+#include "vtkDataObject.h"
+#include "vtkFieldData.h"
+#include "vtkFloatArray.h"
+#include "vtkImageData.h"
+#include "vtkInformation.h"
+#include "vtkInformationVector.h"
+#include "vtkNew.h"
+#include "vtkObjectFactory.h"
+#include "vtkPointData.h"
+#include "vtkStreamingDemandDrivenPipeline.h"
+#include "vtkTimeStamp.h"
+#include "vtkUnsignedCharArray.h"
+
+#include <algorithm>
+#include <chrono>
+#include <cstdint>
+#include <memory>
+#include <string>
+#include <tuple>
+#include <vector>
+
+namespace
+{
+enum LightArray
+{
+  Fluence = 3, ///< after tyndall::MediumArray
+  FluenceDirect = 4,
+  RefractiveIndex = 5,
+  MeanDirection = 6,
+};
+
+/// The arrays it reads, by their number.
+constexpr const char* ArrayNames[] = { "sigma_a", "sigma_s", "emission", "fluence", "fluence_direct", "ior",
+  "mean_direction" };
+
+tyndall::Rgb ToRgb(const double* values)
+{
+  return { values[0], values[1], values[2] };
+}
+
+tyndall::ViewSettings SettingsOf(vtkMediumRayCaster* filter)
+{
+  tyndall::ViewSettings settings;
+  std::copy_n(filter->GetImageSize(), 2, settings.imageSize.begin());
+  settings.stepSize = filter->GetStepSize();
+  settings.singleScatteringOnly = filter->GetSingleScatteringOnly();
+  settings.shadowRays = filter->GetShadowRays();
+  settings.rectangleSamples = filter->GetRectangleSamples();
+  settings.showBackground = filter->GetShowBackground();
+  settings.backgroundColor = ToRgb(filter->GetBackgroundColor());
+  settings.phaseFunction = static_cast<tyndall::PhaseFunction>(filter->GetPhaseFunction());
+  settings.surfaceReflection = static_cast<tyndall::SurfaceReflection>(filter->GetSurfaceReflection());
+  settings.surfaceIndex = filter->GetSurfaceIndex();
+  settings.surfaceReflectance = filter->GetSurfaceReflectance();
+  settings.tableFace = filter->GetTableFace();
+  settings.tableColor = ToRgb(filter->GetTableColor());
+  settings.tableReflectance = filter->GetTableReflectance();
+  settings.leaveOut = filter->GetLeaveOut();
+  return settings;
+}
+
+tyndall::Camera CameraOf(vtkMediumRayCaster* filter, const tyndall::Grid& grid)
+{
+  tyndall::Camera camera;
+  camera.position = ToRgb(filter->GetCameraPosition());
+  camera.focalPoint = ToRgb(filter->GetCameraFocalPoint());
+  camera.viewUp = ToRgb(filter->GetCameraViewUp());
+  camera.viewAngle = filter->GetCameraViewAngle();
+  camera.parallelScale = filter->GetCameraParallelScale();
+  if (camera.position == camera.focalPoint)
+  {
+    const double aspect = static_cast<double>(filter->GetImageSize()[0]) / filter->GetImageSize()[1];
+    camera =
+      tyndall::FrameGrid(grid, aspect, camera.viewAngle, tyndall::ThreeQuarterView(camera.viewUp), camera.viewUp);
+  }
+  camera.parallelProjection = filter->GetCameraParallelProjection();
+  return camera;
+}
+
+template <class Array, class Value>
+vtkSmartPointer<Array> PixelArray(const char* name, const std::vector<Value>& values, int components)
+{
+  auto array = vtkSmartPointer<Array>::New();
+  array->SetName(name);
+  array->SetNumberOfComponents(components);
+  array->SetNumberOfTuples(static_cast<vtkIdType>(values.size()) / components);
+  std::copy(values.begin(), values.end(), array->GetPointer(0));
+  return array;
+}
+
+/// What the solver said of the light at the box's faces; empty where it did not, or what it said is not of these
+/// voxels.
+struct SurfaceValues
+{
+  std::vector<float> values;
+  int components = 0;
+};
+
+SurfaceValues ReadSurface(vtkImageData* image, const tyndall::Grid& grid)
+{
+  SurfaceValues surface;
+  vtkDataArray* const said = image->GetFieldData()->GetArray(tyndall::SurfaceRadianceFact);
+  const int cosines = static_cast<int>(tyndall::SurfaceCosines.size());
+  if (!said || said->GetNumberOfTuples() != static_cast<vtkIdType>(tyndall::BoxFaceCellCount(grid)) ||
+    (said->GetNumberOfComponents() != cosines && said->GetNumberOfComponents() != 3 * cosines))
+  {
+    return surface;
+  }
+  surface.components = said->GetNumberOfComponents();
+  surface.values.resize(static_cast<std::size_t>(said->GetNumberOfValues()));
+  for (vtkIdType i = 0; i < said->GetNumberOfValues(); ++i)
+  {
+    surface.values[i] = static_cast<float>(said->GetComponent(i / surface.components, i % surface.components));
+  }
+  return surface;
+}
+
+void WritePicture(const tyndall::Picture& picture, const std::vector<std::uint8_t>& color, vtkImageData* output)
+{
+  output->SetExtent(0, picture.width - 1, 0, picture.height - 1, 0, 0);
+  output->SetOrigin(0.0, 0.0, 0.0);
+  output->SetSpacing(1.0, 1.0, 1.0);
+  const auto pixelName = [&](std::size_t pixel) {
+    const auto width = static_cast<std::size_t>(picture.width);
+    return "pixel (" + std::to_string(pixel % width) + ", " + std::to_string(pixel / width) + ") from below";
+  };
+  for (const auto& [name, values, components] : { std::tuple("radiance", &picture.radiance, 3),
+         std::tuple("alpha", &picture.alpha, 1), std::tuple("depth", &picture.depth, 1) })
+  {
+    tyndall::RequireFinite(name, values->data(), values->size(), components, pixelName);
+  }
+  vtkPointData* pixels = output->GetPointData();
+  pixels->SetScalars(PixelArray<vtkUnsignedCharArray>("color", color, 4));
+  pixels->AddArray(PixelArray<vtkFloatArray>("radiance", picture.radiance, 3));
+  pixels->AddArray(PixelArray<vtkFloatArray>("alpha", picture.alpha, 1));
+  pixels->AddArray(PixelArray<vtkFloatArray>("depth", picture.depth, 1));
+}
+}
+
+/// Medium, light and illumination as they are on the device, ready for pictures.
+struct vtkMediumRayCaster::Scene
+{
+  tyndall::InputsKey key;
+  vtkTimeStamp made;
+  tyndall::Grid grid;
+  bool lightsAlone = false; ///< there is no fluence, so shadow rays are needed
+  std::unique_ptr<tyndall::MediumRayCaster> caster;
+};
+
+vtkStandardNewMacro(vtkMediumRayCaster);
+
+vtkMediumRayCaster::vtkMediumRayCaster() = default;
+
+vtkMediumRayCaster::~vtkMediumRayCaster() = default;
+
+int vtkMediumRayCaster::RequestInformation(vtkInformation*, vtkInformationVector**, vtkInformationVector* outputs)
+{
+  vtkInformation* information = outputs->GetInformationObject(0);
+  const int extent[6] = { 0, std::max(this->ImageSize[0], 1) - 1, 0, std::max(this->ImageSize[1], 1) - 1, 0, 0 };
+  const double origin[3] = { 0.0, 0.0, 0.0 };
+  const double spacing[3] = { 1.0, 1.0, 1.0 };
+  information->Set(vtkStreamingDemandDrivenPipeline::WHOLE_EXTENT(), extent, 6);
+  information->Set(vtkDataObject::ORIGIN(), origin, 3);
+  information->Set(vtkDataObject::SPACING(), spacing, 3);
+  vtkDataObject::SetPointDataActiveScalarInfo(information, VTK_UNSIGNED_CHAR, 4);
+  return 1;
+}
+
+void vtkMediumRayCaster::SetInputConnection(int port, vtkAlgorithmOutput* input)
+{
+  if (input != this->GetInputConnection(port, 0))
+  {
+    this->Kept.reset();
+  }
+  this->Superclass::SetInputConnection(port, input);
+}
+
+void vtkMediumRayCaster::ForgetOldScene()
+{
+  for (int port = 0; port < this->GetNumberOfInputPorts(); ++port)
+  {
+    if (this->Kept && tyndall::RanSince(this, port, this->Kept->made))
+    {
+      this->Kept.reset();
+    }
+  }
+}
+
+/// The memory of an old scene is given back before the filters before run, which may need it.
+int vtkMediumRayCaster::RequestUpdateExtent(
+  vtkInformation* request, vtkInformationVector** inputs, vtkInformationVector* outputs)
+{
+  this->ForgetOldScene();
+  return this->Superclass::RequestUpdateExtent(request, inputs, outputs);
+}
+
+tyndall::InputsKey vtkMediumRayCaster::KeyOf(vtkInformationVector** inputs)
+{
+  tyndall::InputsKey key;
+  key.device = tyndall::Device::Find(this->Device);
+  vtkImageData* const image = vtkImageData::GetData(inputs[MEDIUM]);
+  key.Add(tyndall::GridOf(image));
+  key.AddGhosts(image);
+  key.Add({ tyndall::ReadFact(image, "g", 0.0), 1.0 * this->EnvironmentUp, this->EnvironmentAzimuth });
+  for (int number = tyndall::SigmaA; number <= MeanDirection; ++number)
+  {
+    key.Add(tyndall::ChosenArray(this, number, image, ArrayNames[number]));
+  }
+  key.Add(image->GetFieldData()->GetArray(tyndall::SurfaceRadianceFact));
+  for (int port : { LIGHTS, ENVIRONMENT })
+  {
+    key.Add(vtkDataObject::GetData(inputs[port]));
+  }
+  if (vtkImageData* const environment = vtkImageData::GetData(inputs[ENVIRONMENT]))
+  {
+    const int* size = environment->GetDimensions();
+    key.Add({ 1.0 * size[0], 1.0 * size[1], 1.0 * size[2] });
+  }
+  return key;
+}
+
+std::unique_ptr<vtkMediumRayCaster::Scene> vtkMediumRayCaster::MakeScene(
+  vtkInformationVector** inputs, const tyndall::InputsKey& key, tyndall::ViewSettings settings)
+{
+  using tyndall::Need;
+  vtkImageData* const image = vtkImageData::GetData(inputs[MEDIUM]);
+  const tyndall::MediumInput input = tyndall::ReadMedium(this, image);
+  const auto read = [&](int number, tyndall::Components components) {
+    return tyndall::ReadChosenCells(this, number, image, ArrayNames[number], Need::Optional, components);
+  };
+  const tyndall::FloatField fluence = read(Fluence, { 1, 3 });
+  const tyndall::FloatField direct = read(FluenceDirect, { 1, 3 });
+  const tyndall::FloatField ior = read(RefractiveIndex, { 1 });
+  const tyndall::FloatField meanDirection = read(MeanDirection, { 3 });
+  // It belongs to the array that the solver wrote.
+  const bool asSolved = fluence.IsThere() &&
+    tyndall::ChosenArray(this, Fluence, image, ArrayNames[Fluence]) == image->GetCellData()->GetArray("fluence");
+  const SurfaceValues surface = asSolved ? ReadSurface(image, input.medium.grid) : SurfaceValues();
+  const tyndall::Illumination illumination = this->ReadIllumination(inputs);
+  const bool sky = !illumination.environment.Empty() || illumination.sky != tyndall::Rgb{};
+  if (!fluence.IsThere() && illumination.lights.empty() && !input.emission.IsThere() && !(sky && ior.IsThere()))
+  {
+    vtkWarningMacro("The medium is dark: it has no array fluence (a solver makes it, e.g. LightPropagationMaps), there "
+                    "are no Lights, and it does not emit.");
+  }
+  auto scene = std::make_unique<Scene>();
+  scene->key = key;
+  scene->grid = input.medium.grid;
+  scene->lightsAlone = !fluence.IsThere() && !illumination.lights.empty();
+  settings.shadowRays |= scene->lightsAlone;
+  scene->caster = std::make_unique<tyndall::MediumRayCaster>(*key.device, input.medium,
+    tyndall::SolvedLight{ fluence, direct, meanDirection,
+      { surface.values.empty() ? nullptr : surface.values.data(), surface.components } },
+    illumination, settings, ior);
+  for (const std::string& doubt : scene->caster->Warnings())
+  {
+    vtkWarningMacro(<< doubt);
+  }
+  scene->made.Modified();
+  return scene;
+}
+
+std::unique_ptr<vtkMediumRayCaster::Scene> vtkMediumRayCaster::FindScene(vtkInformationVector** inputs)
+{
+  this->ForgetOldScene();
+  std::unique_ptr<Scene> kept = std::move(this->Kept); // it comes back after a good picture
+  const tyndall::InputsKey key = this->KeyOf(inputs);
+  const tyndall::ViewSettings settings = SettingsOf(this);
+  if (kept && kept->key == key)
+  {
+    tyndall::ViewSettings asked = settings;
+    asked.shadowRays |= kept->lightsAlone;
+    this->SceneKept = kept->caster->Adopt(asked);
+  }
+  if (this->SceneKept)
+  {
+    return kept;
+  }
+  kept.reset(); // before the next one needs the memory
+  return this->MakeScene(inputs, key, settings);
+}
+
+int vtkMediumRayCaster::RequestData(vtkInformation*, vtkInformationVector** inputs, vtkInformationVector* outputs)
+{
+  using Clock = std::chrono::steady_clock;
+  const Clock::time_point start = Clock::now();
+  this->Seconds = this->UsedExposure = 0.0;
+  this->SceneKept = false;
+  this->DeviceName.clear();
+  this->LeftOut.clear();
+  return tyndall::Guarded(this, outputs, [&] {
+    tyndall::ToneMapping toneMapping;
+    toneMapping.exposure = this->Exposure;
+    toneMapping.curve = static_cast<tyndall::ToneCurve>(this->ToneCurve);
+    tyndall::Check(toneMapping);
+    std::unique_ptr<Scene> scene = this->FindScene(inputs);
+    const tyndall::Picture picture = scene->caster->Render(CameraOf(this, scene->grid), tyndall::MonitorOf(this));
+    if (toneMapping.exposure == 0.0)
+    {
+      toneMapping.exposure = tyndall::AutomaticExposure(picture.radiance);
+    }
+    const std::vector<float> opaque;
+    const auto color = tyndall::ToneMap(picture.radiance, this->ShowBackground ? opaque : picture.alpha, toneMapping);
+
+    vtkImageData* output = vtkImageData::GetData(outputs);
+    WritePicture(picture, color, output);
+    const std::string device = scene->key.device->Name();
+    const std::vector<std::string>& leftOut = scene->caster->LeftOut();
+    tyndall::AddFact(output, "exposure", std::vector<double>{ toneMapping.exposure });
+    tyndall::AddFact(output, "left_out", leftOut);
+    tyndall::AddFact(output, "device", std::vector<std::string>{ device });
+    tyndall::KeepWhatIsAskedFor(outputs->GetInformationObject(0), output);
+
+    this->UsedExposure = toneMapping.exposure;
+    this->DeviceName = device;
+    this->LeftOut = tyndall::Lines(leftOut);
+    this->Kept = std::move(scene);
+    this->Seconds = std::chrono::duration<double>(Clock::now() - start).count();
+  });
+}
+
+void vtkMediumRayCaster::PrintSelf(ostream& os, vtkIndent indent)
+{
+  this->Superclass::PrintSelf(os, indent);
+  os << indent << "ImageSize: " << this->ImageSize[0] << " " << this->ImageSize[1] << "\n";
+  PrintNumbers(os, indent, "CameraPosition", this->CameraPosition, 3);
+  PrintNumbers(os, indent, "CameraFocalPoint", this->CameraFocalPoint, 3);
+  PrintNumbers(os, indent, "CameraViewUp", this->CameraViewUp, 3);
+  os << indent << "CameraViewAngle: " << this->CameraViewAngle << "\n";
+  os << indent << "CameraParallelProjection: " << this->CameraParallelProjection << "\n";
+  os << indent << "CameraParallelScale: " << this->CameraParallelScale << "\n";
+  os << indent << "StepSize: " << this->StepSize << "\n";
+  os << indent << "SingleScatteringOnly: " << this->SingleScatteringOnly << "\n";
+  os << indent << "ShadowRays: " << this->ShadowRays << "\n";
+  os << indent << "RectangleSamples: " << this->RectangleSamples << "\n";
+  os << indent << "ShowBackground: " << this->ShowBackground << "\n";
+  PrintNumbers(os, indent, "BackgroundColor", this->BackgroundColor, 3);
+  os << indent << "Exposure: " << this->Exposure << "\n";
+  os << indent << "ToneCurve: " << (this->ToneCurve == LINEAR ? "linear" : "filmic") << "\n";
+  os << indent << "PhaseFunction: " << (this->PhaseFunction == SCHLICK ? "Schlick" : "Henyey-Greenstein") << "\n";
+  os << indent << "SurfaceReflection: " << this->SurfaceReflection << "\n";
+  os << indent << "SurfaceIndex: " << this->SurfaceIndex << "\n";
+  os << indent << "SurfaceReflectance: " << this->SurfaceReflectance << "\n";
+  os << indent << "TableFace: " << this->TableFace << "\n";
+  PrintNumbers(os, indent, "TableColor", this->TableColor, 3);
+  os << indent << "TableReflectance: " << this->TableReflectance << "\n";
+  os << indent << "LeaveOut: " << this->LeaveOut << "\n";
+  os << indent << "Seconds: " << this->Seconds << "\n";
+  os << indent << "UsedExposure: " << this->UsedExposure << "\n";
+  os << indent << "SceneKept: " << this->SceneKept << "\n";
+  os << indent << "DeviceName: " << this->DeviceName << "\n";
+  os << indent << "LeftOut: " << this->LeftOut << "\n";
+}

@@ -1,0 +1,98 @@
+#pragma once
+
+#include "Device/Buffer.h"
+
+namespace tyndall
+{
+/// The caller's own array as kernels see it: the same memory on a CPU, elsewhere a copy on the device. The array must outlive
+/// it, and is not to be touched between a kernel's start and the device's next Finish (or Fetch).
+template <class T>
+class LentArray
+{
+public:
+  /// An array that kernels only read.
+  LentArray(Device& device, const T* values, std::size_t count, const char* what)
+    : LentArray(device, const_cast<T*>(values), count, what, CL_MEM_READ_ONLY)
+  {
+    if (count > 0 && !device.IsCpu())
+    {
+      this->Copy.Write(values);
+    }
+  }
+
+  /// An array that kernels write, whole; Fetch() when they are done.
+  LentArray(Device& device, T* values, std::size_t count, const char* what)
+    : LentArray(device, values, count, what, CL_MEM_READ_WRITE)
+  {
+  }
+
+  LentArray(const LentArray&) = delete;
+  LentArray& operator=(const LentArray&) = delete;
+
+  /// Waits: where work failed halfway, kernels that were queued before may still be at the array, which is the caller's
+  /// again now.
+  ~LentArray()
+  {
+    if (this->Count > 0 && this->Copy.Size() == 0)
+    {
+      try
+      {
+        this->Owner->Finish();
+      }
+      catch (const cl::Error&) // it will fail again where it can be told
+      {
+      }
+    }
+  }
+
+  const cl::Buffer& Handle() const { return this->Copy.Size() > 0 ? this->Copy.Handle() : this->Memory; }
+
+  /// Wait for the device; then the array holds what kernels wrote.
+  void Fetch() const
+  {
+    if (this->Copy.Size() > 0)
+    {
+      this->Copy.Read(this->Values);
+      return;
+    }
+    if (this->Count > 0) // this is how OpenCL is told that the host looks; nothing is copied
+    {
+      cl::CommandQueue& queue = this->Owner->Queue();
+      void* seen = queue.enqueueMapBuffer(this->Memory, CL_TRUE, CL_MAP_READ, 0, this->Count * sizeof(T));
+      queue.enqueueUnmapMemObject(this->Memory, seen);
+    }
+    this->Owner->Finish();
+  }
+
+private:
+  LentArray(Device& device, T* values, std::size_t count, const char* what, cl_mem_flags flags)
+    : Owner(&device)
+    , Values(values)
+    , Count(count)
+  {
+    if (count == 0 || !device.IsCpu())
+    {
+      this->Copy = Buffer<T>(device, count, what, flags);
+      this->Memory = this->Copy.Handle();
+      return;
+    }
+    try
+    {
+      this->Memory = cl::Buffer(device.Context(), flags | CL_MEM_USE_HOST_PTR, count * sizeof(T), values);
+    }
+    catch (const cl::Error& error)
+    {
+      throw DeviceError("The device " + device.Name() + " cannot use " + std::string(what) + ", an array of " +
+        std::to_string(count * sizeof(T)) + " bytes (" + error.what() + " gave " + std::to_string(error.err()) +
+        "); the largest it takes has " + std::to_string(device.AllocationLimit()) +
+        ". Use a coarser grid or fewer batches.");
+    }
+  }
+
+  Device* Owner;
+  T* Values;
+  std::size_t Count;
+  cl::Buffer Memory;
+  Buffer<T> Copy;
+};
+}

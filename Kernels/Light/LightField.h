@@ -1,0 +1,63 @@
+#pragma once
+
+#include "Lights/Lights.h"
+
+#include <array>
+#include <string>
+#include <vector>
+
+namespace tyndall
+{
+/// Where the power went, W per channel (grey media fill channel 0 only).
+/// entered + emitted = absorbed + escaped + leftOver, but for rounding and what a scheme loses.
+struct EnergyBalance
+{
+  Rgb entered = {};  ///< through the box's faces and from lights inside it
+  Rgb emitted = {};  ///< by the medium itself
+  Rgb absorbed = {}; ///< by the medium
+  Rgb escaped = {};  ///< through the box's faces
+  Rgb leftOver = {}; ///< scattered but not propagated any more when the solver stopped
+
+  /// |entered + emitted - absorbed - escaped - leftOver| / (entered + emitted), the worst channel; 0 in the dark
+  double RelativeError(int channels) const;
+};
+
+/// A row of the `convergence` table: one scattering order, or one sweep where orders are accelerated.
+struct ConvergenceRow
+{
+  int iteration = 0;
+  double seconds = 0.0; ///< since the start
+  /// Estimate of the relative error that stopping here leaves: scattered light still to come over all of it. 1 after the first row
+  /// where more is to come: it is not known then, for one order does not tell how fast they shrink.
+  double residual = 0.0;
+  double change = 0.0;   ///< of the light by this row, relative: says little where light is scattered very often
+  double absorbed = 0.0; ///< W so far, channels summed
+  double escaped = 0.0;
+  double leftOver = 0.0;
+};
+
+/// The light in a medium, as every solver returns it. Arrays are over the grid's voxels, x fastest, channels
+/// interleaved; an array that was not asked for is empty.
+struct LightField
+{
+  int channels = 1;
+  std::vector<float> fluence;           ///< W / length^2, `channels` a voxel
+  std::vector<float> fluenceDirect;     ///< its unscattered part
+  std::vector<float> fluenceError;      ///< standard error of fluence, estimated
+  std::vector<float> netFlux;           ///< W / length^2, 3 * channels a voxel: (x, y, z) of channel 0, 1, 2
+  std::vector<float> scatteredRadiance; ///< W / (length^2 sr), channels * storedDirections a voxel
+  std::vector<std::array<double, 3>> storedDirections; ///< of scatteredRadiance; one (0, 0, 0) where isotropic
+  /// W / (length^2 sr) that leaves through the box's faces, [cell][SurfaceCosines][channel] (BoxFaces.h); empty where
+  /// no voxel there is thick, or it is not known
+  std::vector<float> surfaceRadiance;
+  double relativeError =
+    0.0; ///< of fluence, estimated, root mean square over that of fluence; 0 where not asked for, NaN: not known
+  EnergyBalance balance;
+  std::array<Rgb, 6> facePowerOut = {}; ///< W, through -x, +x, -y, +y, -z, +z
+  double halfRangeFlux = 0.0; ///< of the directions that light from outside came along (DirectionSet.h); 0: there are none
+  std::vector<ConvergenceRow> convergence;
+  int directionsPerFace = 0;        ///< solved with, where a solver chooses (PropagationSettings::adaptDirections)
+  std::vector<std::string> leftOut; ///< what the scene did not need, in words
+  std::string device;
+};
+}

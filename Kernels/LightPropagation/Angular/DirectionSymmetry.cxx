@@ -1,0 +1,122 @@
+#include "LightPropagation/Angular/DirectionSymmetry.h"
+
+#include <algorithm>
+#include <cmath>
+#include <map>
+
+namespace tyndall
+{
+namespace
+{
+/// The direction that stands for `omega`.
+std::array<double, 3> Standard(std::array<double, 3> omega, const Grid& grid, const std::array<bool, 3>& single)
+{
+  for (int a = 0; a < 3; ++a)
+  {
+    omega[a] = single[a] ? std::abs(omega[a]) : omega[a];
+  }
+  for (const std::array<int, 2>& pair : { std::array<int, 2>{ 0, 1 }, { 1, 2 }, { 0, 2 }, { 0, 1 } })
+  {
+    const bool same = single[pair[0]] && single[pair[1]] && grid.spacing[pair[0]] == grid.spacing[pair[1]];
+    if (same && omega[pair[0]] < omega[pair[1]])
+    {
+      std::swap(omega[pair[0]], omega[pair[1]]);
+    }
+  }
+  return omega;
+}
+}
+
+MirrorClasses::MirrorClasses(const Grid& grid, const std::array<bool, 3>& periodic, const DirectionSet& set)
+  : ClassOf(set.directions.size())
+{
+  std::array<bool, 3> single;
+  for (int a = 0; a < 3; ++a)
+  {
+    single[a] = periodic[a] && grid.size[a] == 1;
+  }
+  std::map<std::array<double, 3>, int> numbers; // direction sets are symmetric to the last bit
+  for (std::size_t d = 0; d < set.directions.size(); ++d)
+  {
+    const std::array<double, 3> standard = Standard(set.directions[d].omega, grid, single);
+    const auto [found, isNew] = numbers.insert({ standard, static_cast<int>(this->Classes.size()) });
+    if (isNew)
+    {
+      this->Classes.emplace_back();
+    }
+    std::vector<int>& all = this->Classes[found->second];
+    all.insert(standard == set.directions[d].omega ? all.begin() : all.end(), static_cast<int>(d));
+    this->ClassOf[d] = found->second;
+  }
+}
+
+int MirrorClasses::Count() const
+{
+  return static_cast<int>(this->Classes.size());
+}
+
+std::vector<Bundle> MirrorClasses::Standing(const std::vector<Bundle>& bundles) const
+{
+  std::vector<Bundle> standing;
+  for (const Bundle& bundle : bundles)
+  {
+    std::map<std::size_t, std::vector<Member>> parts; // by how many each direction stands for
+    for (Member member : bundle.members)
+    {
+      member.direction = this->Stands(member.direction) ? member.direction : -1;
+      member.opposite = this->Stands(member.opposite) ? member.opposite : -1;
+      const int any = std::max(member.direction, member.opposite);
+      if (any >= 0)
+      {
+        parts[this->AllOf(any).size()].push_back(member);
+      }
+    }
+    for (const auto& [all, members] : parts)
+    {
+      Bundle part = bundle;
+      part.members = members;
+      part.power *= static_cast<double>(all);
+      standing.push_back(part);
+    }
+  }
+  return standing;
+}
+
+std::vector<Bundle> LitRays(const std::vector<Bundle>& bundles, int way, const std::function<bool(int)>& isLit)
+{
+  std::vector<Bundle> lit;
+  for (Bundle bundle : bundles)
+  {
+    std::vector<Member> members;
+    for (Member member : bundle.members)
+    {
+      int& other = way == 0 ? member.opposite : member.direction;
+      const int direction = way == 0 ? member.direction : member.opposite;
+      other = -1;
+      if (direction >= 0 && isLit(direction))
+      {
+        members.push_back(member);
+      }
+    }
+    bundle.members.swap(members);
+    if (!bundle.members.empty())
+    {
+      lit.push_back(bundle);
+    }
+  }
+  return lit;
+}
+
+int CountRays(const std::vector<Bundle>& bundles)
+{
+  int rays = 0;
+  for (const Bundle& bundle : bundles)
+  {
+    for (const Member& member : bundle.members)
+    {
+      rays += (member.direction >= 0 ? 1 : 0) + (member.opposite >= 0 ? 1 : 0);
+    }
+  }
+  return rays;
+}
+}

@@ -1,0 +1,338 @@
+#include "LightPropagation/Angular/RayBundles.h"
+
+#include <algorithm>
+#include <cmath>
+
+namespace tyndall
+{
+namespace
+{
+/// Positions closer than this to a voxel's border lie on it: rounding must not decide which way a tie goes.
+constexpr double OnBorder = 1e-9;
+/// Fewer planes of a periodic axis are crossed several times before its pattern begins anew.
+constexpr int FewestPlanes = 128;
+
+bool Same(double a, double b)
+{
+  return std::abs(a - b) <= 1e-12 * std::max(std::abs(a), std::abs(b));
+}
+
+double Tangent(const Grid& grid, const std::array<double, 3>& omega, int axis, int aside)
+{
+  return (omega[aside] / grid.spacing[aside]) / (std::abs(omega[axis]) / grid.spacing[axis]);
+}
+
+Bundle EmptyBundle(const PlaneAxes& axes, const Grid& grid, const std::array<double, 3>& omega)
+{
+  Bundle bundle;
+  bundle.tangentU = std::abs(Tangent(grid, omega, axes.axis, axes.u));
+  bundle.tangentV = std::abs(Tangent(grid, omega, axes.axis, axes.v));
+  bundle.length = grid.spacing[axes.axis] / std::abs(omega[axes.axis]);
+  bundle.power = std::abs(omega[axes.axis]) * grid.spacing[axes.u] * grid.spacing[axes.v];
+  return bundle;
+}
+
+/// The index of omega's mirror image at the plane across `axis`. The set holds it: direction sets are symmetric.
+int MirrorImage(const DirectionSet& set, int direction, int axis)
+{
+  std::array<double, 3> omega = set.directions[direction].omega;
+  omega[axis] = -omega[axis];
+  return Nearest(set, omega);
+}
+
+int Sign(double x)
+{
+  return x < 0.0 ? -1 : 1;
+}
+
+/// Add a direction to the bundle it belongs to, or to a new one.
+/// @param part  of its power that marches along this axis
+void Sort(
+  std::vector<Bundle>& bundles, const PlaneAxes& axes, const Grid& grid, const DirectionSet& set, int d, double part)
+{
+  const Direction& direction = set.directions[d];
+  const std::array<double, 3>& omega = direction.omega;
+  Bundle fresh = EmptyBundle(axes, grid, omega);
+  fresh.power *= part * direction.weight;
+  const bool square = Same(grid.spacing[axes.u], grid.spacing[axes.v]);
+  const int signU = Sign(omega[axes.u]);
+  const int signV = Sign(omega[axes.v]);
+  for (Bundle& bundle : bundles)
+  {
+    if (!Same(bundle.power, fresh.power))
+    {
+      continue;
+    }
+    if (Same(bundle.tangentU, fresh.tangentU) && Same(bundle.tangentV, fresh.tangentV))
+    {
+      bundle.members.push_back({ d, MirrorImage(set, d, axes.axis), signU, 0, 0, signV });
+      return;
+    }
+    if (square && Same(bundle.tangentU, fresh.tangentV) && Same(bundle.tangentV, fresh.tangentU))
+    {
+      bundle.members.push_back({ d, MirrorImage(set, d, axes.axis), 0, signU, signV, 0 });
+      return;
+    }
+  }
+  fresh.members.push_back({ d, MirrorImage(set, d, axes.axis), signU, 0, 0, signV });
+  bundles.push_back(fresh);
+}
+
+/// Rays that all start in the middle come through the box's sides in the same pattern, and as many directions as there may be do not take
+/// it away. Steps of two irrational numbers, those of the plastic number, fill a square evenly (Roberts 2018). Bundles
+/// take them in the order of their tangents, the same along every axis.
+void Stagger(std::vector<Bundle>& bundles)
+{
+  std::vector<Bundle*> inOrder;
+  for (Bundle& bundle : bundles)
+  {
+    inOrder.push_back(&bundle);
+  }
+  const auto less = [](const Bundle* a, const Bundle* b) {
+    return std::minmax(a->tangentU, a->tangentV) < std::minmax(b->tangentU, b->tangentV);
+  };
+  std::stable_sort(inOrder.begin(), inOrder.end(), less);
+  double first = 0.5, second = 0.5;
+  for (Bundle* bundle : inOrder)
+  {
+    const bool diagonal = Same(bundle->tangentU, bundle->tangentV); // neither axis comes first
+    bundle->startU = diagonal || bundle->tangentU < bundle->tangentV ? first : second;
+    bundle->startV = diagonal || bundle->tangentU > bundle->tangentV ? first : second;
+    first = std::fmod(first + 0.7548776662466927, 1.0);
+    second = std::fmod(second + 0.5698402909980532, 1.0);
+  }
+}
+
+bool IsMove(const Move& move)
+{
+  return move.depth <= 1.0;
+}
+
+/// A coordinate as whole voxels and the rest in [0, 1).
+struct Position
+{
+  double voxel, rest;
+  explicit Position(double x)
+    : voxel(std::floor(x + OnBorder))
+    , rest(std::max(0.0, x - this->voxel))
+  {
+  }
+};
+
+/// The move of a straight ray in a plane.
+Move WholeMove(double start, double tangent, int plane)
+{
+  const Position now(start + tangent * plane);
+  const Position next(start + tangent * (plane + 1));
+  return next.voxel > now.voxel ? Move{ std::min(1.0, (1.0 - now.rest) / tangent), 1.0 } : Move();
+}
+
+/// The plane in which a ray is at `depth` planes; just at a plane's end it is still in it.
+int PlaneAt(double depth)
+{
+  return std::max(static_cast<int>(std::ceil(depth - OnBorder)) - 1, 0);
+}
+
+/// Add a move; those that are in its way come a plane earlier, just at its end.
+void Insert(std::vector<Move>& moves, double depth, double part)
+{
+  int plane = std::min(PlaneAt(depth), static_cast<int>(moves.size()) - 1);
+  Move move = { std::min(depth - plane, 1.0), part };
+  while (plane >= 0 && IsMove(moves[plane]))
+  {
+    std::swap(moves[plane], move);
+    move.depth = 1.0;
+    --plane;
+  }
+  if (plane >= 0)
+  {
+    moves[plane] = move;
+    return;
+  }
+  // All planes before have one: they come a plane later, where there is room.
+  const auto free = std::find_if_not(moves.begin(), moves.end(), IsMove);
+  if (free != moves.end())
+  {
+    std::rotate(moves.begin(), free, free + 1);
+    moves.front() = move;
+  }
+}
+
+/// The moves of rays that start at `start` in their voxel and move by `tangent` voxels a plane, tangent x planes in all: whole ones,
+/// and one by the part that is then missing. Move k stands for what comes in from (k - 1) / tangent to k / tangent, and is at the place
+/// of `start` within that stretch; so is the part in its shorter one, after `before` whole moves.
+std::vector<Move> Moves(double start, double tangent, int planes)
+{
+  std::vector<Move> moves(planes);
+  const double all = tangent * planes;
+  if (all < OnBorder)
+  {
+    return moves;
+  }
+  const int whole = static_cast<int>(std::ceil(all - OnBorder)) - 1;
+  const double part = std::min(all - whole, 1.0);
+  const auto wholeAt = [&](int k, double more) { return (k + more - start) / tangent; };
+  const auto partAt = [&](int before) { return (before + part * (1.0 - start)) / tangent; };
+  // No plane has two: as late as there is room.
+  const auto hasRoom = [&](int before) {
+    const int plane = PlaneAt(partAt(before));
+    return (before == 0 || PlaneAt(wholeAt(before, 0.0)) < plane) &&
+      (before == whole || plane < PlaneAt(wholeAt(before + 1, part)));
+  };
+  int before = whole;
+  while (before > 0 && !hasRoom(before))
+  {
+    --before;
+  }
+  before = hasRoom(before) ? before : whole;
+  for (int k = 1; k <= whole; ++k)
+  {
+    Insert(moves, wholeAt(k, k > before ? part : 0.0), 1.0);
+  }
+  Insert(moves, partAt(before), part);
+  return moves;
+}
+
+/// In the bundle's own frame, whose members may exchange the axes: where one is periodic and the other is not, both have moves.
+void AddMoves(Bundle& bundle, const PlaneAxes& axes, const std::array<bool, 3>& periodic, int planes)
+{
+  if (!periodic[axes.u] || !periodic[axes.v])
+  {
+    bundle.movesU = Moves(bundle.startU, bundle.tangentU, planes);
+    bundle.movesV = Moves(bundle.startV, bundle.tangentV, planes);
+  }
+}
+
+/// Each bundle once for every point of the map's finer lattice, with its moves.
+std::vector<Bundle> OnLattice(const std::vector<Bundle>& bundles, const PlaneAxes& axes, const Grid& grid,
+  const std::array<bool, 3>& periodic, int mapResolution)
+{
+  const int planes = PlanesOfPattern(grid.size[axes.axis], periodic[axes.axis]);
+  std::vector<Bundle> all;
+  for (const Bundle& bundle : bundles)
+  {
+    for (int j = 0; j < mapResolution; ++j)
+    {
+      for (int i = 0; i < mapResolution; ++i)
+      {
+        Bundle shifted = bundle;
+        shifted.startU = (i + bundle.startU) / mapResolution;
+        shifted.startV = (j + bundle.startV) / mapResolution;
+        AddMoves(shifted, axes, periodic, planes);
+        shifted.power /= static_cast<double>(mapResolution) * mapResolution;
+        all.push_back(shifted);
+      }
+    }
+  }
+  return all;
+}
+}
+
+bool Bundle::MovesBothWaysAtOnce() const
+{
+  return Same(this->tangentU, this->tangentV) && Same(this->startU, this->startV);
+}
+
+/// Moves at the same time are one where nothing tells the axes apart, else the one of the larger tangent comes first: whatever
+/// way the bundle lies.
+PlaneCrossing Bundle::Crossing(int plane) const
+{
+  const auto moveAt = [plane](const std::vector<Move>& moves, double start, double tangent) {
+    return moves.empty() ? WholeMove(start, tangent, plane) : moves[static_cast<std::size_t>(plane) % moves.size()];
+  };
+  const Move u = moveAt(this->movesU, this->startU, this->tangentU);
+  const Move v = moveAt(this->movesV, this->startV, this->tangentV);
+  const bool tie = std::abs(u.depth - v.depth) < OnBorder;
+  const bool uFirst = tie ? this->tangentU > this->tangentV : u.depth < v.depth;
+  PlaneCrossing crossing;
+  double depth = 0.0;
+  const auto cross = [&](const Move& move, int moveU, int moveV) {
+    if (!IsMove(move))
+    {
+      return;
+    }
+    crossing.segments[crossing.count - 1].length = std::max(0.0, move.depth - depth) * this->length;
+    crossing.segments[crossing.count] = { moveU, moveV, move.part, 0.0 };
+    ++crossing.count;
+    depth = move.depth;
+  };
+  if (this->MovesBothWaysAtOnce())
+  {
+    cross(u, 1, 1);
+  }
+  else
+  {
+    cross(uFirst ? u : v, uFirst ? 1 : 0, uFirst ? 0 : 1);
+    cross(uFirst ? v : u, uFirst ? 0 : 1, uFirst ? 1 : 0);
+  }
+  crossing.segments[crossing.count - 1].length = std::max(0.0, 1.0 - depth) * this->length;
+  return crossing;
+}
+
+int PlanesOfPattern(int size, bool periodic)
+{
+  return periodic ? (FewestPlanes + size - 1) / size * size : size;
+}
+
+PlaneAxes AcrossAxis(int axis)
+{
+  return axis == 0 ? PlaneAxes{ 0, 1, 2 } : axis == 1 ? PlaneAxes{ 1, 0, 2 } : PlaneAxes{ 2, 0, 1 };
+}
+
+std::vector<int> MarchingAxes(const Grid& grid, const std::array<double, 3>& omega)
+{
+  std::array<double, 3> crossings; // of planes, per length
+  for (int axis = 0; axis < 3; ++axis)
+  {
+    crossings[axis] = std::abs(omega[axis]) / grid.spacing[axis];
+  }
+  const double most = *std::max_element(crossings.begin(), crossings.end());
+  std::vector<int> axes;
+  for (int axis = 0; axis < 3; ++axis)
+  {
+    if (crossings[axis] >= (1.0 - OnBorder) * most)
+    {
+      axes.push_back(axis);
+    }
+  }
+  return axes;
+}
+
+double PartMarching(const Grid& grid, const std::array<double, 3>& omega, int axis)
+{
+  const std::vector<int> axes = MarchingAxes(grid, omega);
+  const bool marches = std::find(axes.begin(), axes.end(), axis) != axes.end();
+  return marches ? 1.0 / static_cast<double>(axes.size()) : 0.0;
+}
+
+std::vector<Bundle> BundlesAlong(int axis, const Grid& grid, const std::array<bool, 3>& periodic,
+  const DirectionSet& set, int mapResolution, RayStarts starts)
+{
+  const PlaneAxes axes = AcrossAxis(axis);
+  std::vector<Bundle> bundles;
+  for (std::size_t d = 0; d < set.directions.size(); ++d)
+  {
+    const std::array<double, 3>& omega = set.directions[d].omega;
+    const double part = PartMarching(grid, omega, axis);
+    if (part > 0.0 && omega[axis] > 0.0)
+    {
+      Sort(bundles, axes, grid, set, static_cast<int>(d), part);
+    }
+  }
+  if (starts == RayStarts::Staggered)
+  {
+    Stagger(bundles);
+  }
+  return OnLattice(bundles, axes, grid, periodic, mapResolution);
+}
+
+std::vector<Bundle> BeamAlong(int axis, const Grid& grid, const std::array<bool, 3>& periodic,
+  const std::array<double, 3>& omega, int mapResolution)
+{
+  const PlaneAxes axes = AcrossAxis(axis);
+  Bundle beam = EmptyBundle(axes, grid, omega);
+  const bool forward = omega[axis] > 0.0;
+  beam.members.push_back({ forward ? 0 : -1, forward ? -1 : 0, Sign(omega[axes.u]), 0, 0, Sign(omega[axes.v]) });
+  return OnLattice({ beam }, axes, grid, periodic, mapResolution);
+}
+}

@@ -1,0 +1,41 @@
+#pragma once
+
+#include "LightPropagation/Angular/DirectionSet.h"
+#include "LightPropagation/Angular/DirectionSymmetry.h"
+#include "LightPropagation/Angular/RayBundles.h"
+#include "LightPropagation/PropagationSettings.h"
+#include "Medium/Grid.h"
+
+#include <functional>
+#include <vector>
+
+namespace tyndall
+{
+/// A set of directions as sweeps take it through a box: the bundles of rays along each axis. Where nothing tells mirror images apart,
+/// one direction stands for all of them.
+class SweptDirections
+{
+public:
+  SweptDirections(const Grid& grid, const PropagationSettings& settings, DirectionSet set, RayStarts starts);
+
+  const DirectionSet& Set() const { return this->Directions; }
+  RayStarts Starts() const { return this->WhereRaysStart; }
+  const MirrorClasses& Symmetry() const { return this->Mirrors; }
+  bool MergesMirrors() const { return this->Merges; } ///< net flux tells them apart
+  /// Those that `direction` stands for, itself among them.
+  std::vector<int> AllOf(int direction) const;
+
+  std::vector<Bundle> Along(int axis) const;
+  /// One way (0 forward, 1 backward), the lit ones alone.
+  std::vector<Bundle> LitAlong(int axis, int way, const std::function<bool(int)>& isLit) const;
+
+private:
+  Grid TheGrid;
+  std::array<bool, 3> Periodic;
+  int MapResolution;
+  DirectionSet Directions;
+  RayStarts WhereRaysStart;
+  MirrorClasses Mirrors;
+  bool Merges;
+};
+}

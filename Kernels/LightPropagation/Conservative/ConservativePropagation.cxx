@@ -1,0 +1,151 @@
+#include "LightPropagation/Conservative/ConservativePropagation.h"
+
+#include "Device/Errors.h"
+#include "LightPropagation/Conservative/DiffusionAcceleration.h"
+#include "LightPropagation/Conservative/ScatteringOrders.h"
+#include "LightPropagation/Conservative/SourceIteration.h"
+
+#include <algorithm>
+#include <cmath>
+#include <cstdio>
+#include <string>
+
+namespace tyndall
+{
+namespace
+{
+constexpr double Pi = 3.14159265358979323846;
+constexpr double ImbalanceAtMost = 1e-2; ///< beyond any rounding
+
+std::string Text(const char* format, double value)
+{
+  char text[64];
+  std::snprintf(text, sizeof(text), format, value);
+  return text;
+}
+
+/// A solve must not hand on in silence that power went nowhere.
+/// @throws InvalidInput where the energy balance is off by a hundredth
+void CheckBalance(const PropagationProblem& problem, const EnergyBalance& balance)
+{
+  const double error = balance.RelativeError(problem.Channels());
+  if (error <= ImbalanceAtMost)
+  {
+    return;
+  }
+  const Grid& grid = problem.TheGrid();
+  std::size_t thickest = 0;
+  float largest = 0.0f;
+  for (std::size_t i = 0; i < grid.VoxelCount(); ++i)
+  {
+    for (int c = 0; c < problem.Channels(); ++c)
+    {
+      const float sigma_t = problem.TheMedium().TransportSigmaT(i, c);
+      if (sigma_t > largest)
+      {
+        largest = sigma_t;
+        thickest = i;
+      }
+    }
+  }
+  const double tau = largest * *std::max_element(grid.spacing.begin(), grid.spacing.end());
+  const std::string what = std::isfinite(error)
+    ? "The light does not balance: " + Text("%.2g", error) + " of the power is lost or made"
+    : std::string("The light is not a number");
+  throw InvalidInput(what + ", more than floats can carry through this medium. Its thickest voxel, " +
+    VoxelName(grid, thickest) + ", has optical thickness " + Text("%.3g", tau) +
+    "; beyond some hundred it is opaque, so give it less.");
+}
+
+/// What the scene did not need, of its traits, but that one channel does for three.
+std::vector<std::string> LeftOutOf(const TransportParts& parts, const IterationResult& found)
+{
+  std::vector<std::string> words;
+  const auto say = [&](bool condition, const std::string& text) {
+    if (condition)
+    {
+      words.push_back(text);
+    }
+  };
+  const MediumTraits& traits = parts.Problem.Traits();
+  const int directions = static_cast<int>(parts.Usual.Set().directions.size());
+  const MirrorClasses& symmetry = parts.Usual.Symmetry();
+  say(parts.Layout.channels == 3 && parts.Layout.sharedExtinction, left_out::GreyExtinction);
+  say(parts.Problem.TheMedium().g == 0.0 && traits.scatters, left_out::Isotropic);
+  say(!traits.scatters, left_out::NoScattering);
+  say(!traits.absorbs, left_out::NoAbsorption);
+  say(!traits.emits, left_out::NoEmission);
+  say(!parts.SweepsAreLit() && !parts.FineBoundary, left_out::DarkOutside);
+  say(parts.Fine && parts.SweepsAreLit() && !parts.FineBoundary, left_out::EvenOutside);
+  say(parts.Lamps.empty(), left_out::NoLights);
+  say(traits.emits && parts.Emission.peaks.empty(), left_out::NoEmissionPeaks);
+  say(traits.scatters && found.convergence.All().size() == 1, left_out::OneOrder);
+  words.insert(words.end(), found.leftOut.begin(), found.leftOut.end());
+  say(parts.Usual.MergesMirrors() && symmetry.Any(), left_out::MirrorImages(symmetry.Count(), directions));
+  return words;
+}
+
+std::vector<std::string> Words(const TransportParts& parts, const IterationResult& found, bool accelerated)
+{
+  std::vector<std::string> words;
+  const double g = parts.Problem.TheMedium().g;
+  if (g != 0.0 && parts.Problem.Traits().scatters)
+  {
+    words.push_back("anisotropy: solved as isotropic scattering with sigma_s (1 - g), g = " + std::to_string(g) +
+      " (similarity relation)");
+  }
+  if (parts.Problem.Settings().leaveOut)
+  {
+    const std::vector<std::string> ofScene = LeftOutOf(parts, found);
+    words.insert(words.end(), ofScene.begin(), ofScene.end());
+  }
+  if (!accelerated)
+  {
+    words.emplace_back("acceleration: few scattering orders do");
+  }
+  if (!parts.Problem.Settings().netFlux)
+  {
+    words.emplace_back(left_out::NetFlux);
+  }
+  return words;
+}
+
+LightField LightOf(const TransportParts& parts, IterationResult&& found, bool accelerated)
+{
+  LightField light;
+  light.channels = parts.Layout.channels;
+  light.fluence = Interleaved(parts.Layout, parts.Fluence, 1.0);
+  if (parts.Problem.Settings().netFlux)
+  {
+    light.netFlux = Interleaved(parts.Layout, parts.Flux, 1.0 / parts.Layout.grid.VoxelVolume());
+  }
+  light.scatteredRadiance.resize(light.fluence.size());
+  std::transform(light.fluence.begin(), light.fluence.end(), light.scatteredRadiance.begin(),
+    [](float fluence) { return static_cast<float>(fluence / (4.0 * Pi)); });
+  light.storedDirections = { { 0.0, 0.0, 0.0 } };
+  light.leftOut = Words(parts, found, accelerated);
+  light.halfRangeFlux = HalfRangeFlux((parts.FineBoundary && !accelerated ? *parts.Fine : parts.Usual).Set());
+  light.balance = found.ledger.Balance();
+  light.facePowerOut = found.ledger.FacePowerOut();
+  light.convergence = found.convergence.All();
+  light.fluenceDirect = std::move(found.fluenceDirect);
+  light.surfaceRadiance = std::move(found.surfaceRadiance);
+  light.device = parts.TheDevice.Name();
+  return light;
+}
+}
+
+LightField SolveConservative(Device& device, const Medium& medium, const Illumination& illumination,
+  const PropagationSettings& settings, const Monitor& monitor)
+{
+  const PropagationProblem problem(medium, illumination, settings);
+  const bool accelerated = ToBeAccelerated(problem);
+  TransportParts parts(device, problem, accelerated);
+  IterationResult found =
+    accelerated ? DiffusionAcceleration(parts).Run(monitor) : SourceIteration(parts).Run(monitor);
+  CheckBalance(problem, found.ledger.Balance());
+  LightField light = LightOf(parts, std::move(found), accelerated);
+  problem.Undo(light);
+  return light;
+}
+}

@@ -1,0 +1,167 @@
+#include "LightPropagation/Conservative/ErrorEstimate.h"
+
+#include "Medium/Coarsening.h"
+
+#include <algorithm>
+#include <array>
+#include <cmath>
+#include <limits>
+#include <vector>
+
+namespace tyndall
+{
+namespace
+{
+constexpr double OrderInDirections = 0.9; ///< error as number of directions to the power of minus this
+constexpr double FinePart = 0.8;          ///< of the whole time, for the monitor
+
+/// A medium on the coarse grid, with its arrays.
+class CoarseMedium
+{
+public:
+  CoarseMedium(const Medium& medium, const Coarsening& coarsening)
+    : TheMedium(medium)
+  {
+    this->TheMedium.grid = coarsening.Coarse();
+    int next = 0;
+    for (Field* field : { &this->TheMedium.sigma_a, &this->TheMedium.sigma_s, &this->TheMedium.emission })
+    {
+      if (field->values)
+      {
+        this->Arrays[next] = coarsening.Average(field->values, field->components);
+        field->values = this->Arrays[next].data();
+        ++next;
+      }
+    }
+  }
+  CoarseMedium(const CoarseMedium&) = delete;
+  CoarseMedium& operator=(const CoarseMedium&) = delete;
+
+  const Medium& Get() const { return this->TheMedium; }
+
+private:
+  Medium TheMedium;
+  std::array<std::vector<float>, 3> Arrays;
+};
+
+/// Another number of directions a face: fewer, but for a single one; rows are even in number where `directionsPerFace` has such.
+int OtherDirections(int directionsPerFace)
+{
+  const int edge = static_cast<int>(std::lround(std::sqrt(static_cast<double>(directionsPerFace))));
+  const int step = edge % 2 == 0 && edge > 2 ? 2 : 1;
+  const int other = edge == 1 ? 2 : step * std::max(1, static_cast<int>(std::lround(0.6 * edge / step)));
+  return other * other;
+}
+
+/// The error of `directions` over the difference to the light of `others`.
+double PartOfDifference(int directions, int others)
+{
+  const double ratio = std::pow(static_cast<double>(others) / directions, OrderInDirections);
+  return ratio < 1.0 ? ratio / (1.0 - ratio) : ratio / (ratio - 1.0);
+}
+
+/// Means of three neighbours along one axis of [outer][count][inner] values, two at its ends.
+void SmoothAlong(std::vector<double>& values, std::size_t count, std::size_t inner)
+{
+  const std::vector<double> rough = values;
+  for (std::size_t i = 0; i < values.size(); ++i)
+  {
+    const std::size_t place = i / inner % count;
+    double sum = rough[i];
+    int terms = 1;
+    if (place > 0)
+    {
+      sum += rough[i - inner];
+      ++terms;
+    }
+    if (place + 1 < count)
+    {
+      sum += rough[i + inner];
+      ++terms;
+    }
+    values[i] = sum / terms;
+  }
+}
+
+void Smooth(std::vector<double>& values, const Grid& grid, int channels)
+{
+  auto inner = static_cast<std::size_t>(channels);
+  for (int size : grid.size)
+  {
+    SmoothAlong(values, static_cast<std::size_t>(size), inner);
+    inner *= static_cast<std::size_t>(size);
+  }
+}
+
+/// Whether the solve was stopped after its first order, which does not tell how much light is still to come.
+bool IsStoppedTooSoonToTell(const LightField& light)
+{
+  return light.convergence.size() == 1 && light.convergence.front().residual > 0.0;
+}
+
+/// Fills in fluenceError and relativeError.
+/// @param variance  of the coarse voxels' fluence
+void WriteError(LightField& light, const std::vector<double>& variance, const Coarsening& coarsening)
+{
+  const double residual = light.convergence.empty() ? 0.0 : light.convergence.back().residual;
+  const auto channels = static_cast<std::size_t>(light.channels);
+  light.fluenceError.resize(light.fluence.size());
+  double errors = 0.0, fluences = 0.0;
+  for (std::size_t i = 0; i < light.fluence.size(); ++i)
+  {
+    const double fluence = light.fluence[i];
+    const std::size_t parent = coarsening.Parent(i / channels) * channels + i % channels;
+    const double square = variance[parent] + residual * residual * fluence * fluence;
+    light.fluenceError[i] = static_cast<float>(std::sqrt(square));
+    errors += square;
+    fluences += fluence * fluence;
+  }
+  light.relativeError = fluences > 0.0 ? std::sqrt(errors / fluences) : 0.0;
+}
+}
+
+LightField SolveWithErrorEstimate(
+  const Medium& medium, const PropagationSettings& settings, const Monitor& monitor, const PropagationSolver& solve)
+{
+  const auto part = [&](double begin, double end) {
+    return monitor ? Monitor([=](double done) { return monitor(begin + done * (end - begin)); }) : Monitor();
+  };
+  LightField light = solve(medium, settings, part(0.0, FinePart));
+  if (IsStoppedTooSoonToTell(light))
+  {
+    light.relativeError = std::numeric_limits<double>::quiet_NaN();
+    return light;
+  }
+
+  const Coarsening coarsening(medium.grid);
+  const CoarseMedium coarse(medium, coarsening);
+  PropagationSettings plain = settings;
+  plain.netFlux = false;
+  plain.storedDirections = 1;
+  const int directions = light.directionsPerFace > 0 ? light.directionsPerFace : settings.directionsPerFace;
+  plain.directionsPerFace = directions;
+  plain.adaptDirections = false;
+  const std::vector<float> many = solve(coarse.Get(), plain, part(FinePart, 0.95)).fluence;
+  plain.directionsPerFace = OtherDirections(directions);
+  if (settings.firstFlightDirections > 0)
+  {
+    plain.firstFlightDirections = OtherDirections(settings.firstFlightDirections);
+  }
+  const std::vector<float> few = solve(coarse.Get(), plain, part(0.95, 1.0)).fluence;
+
+  const double ratio = coarsening.Ratio();
+  const double inSpace = ratio > 1.0 ? 1.0 / (ratio * ratio - 1.0) : 0.0;
+  const double inDirections = PartOfDifference(directions, plain.directionsPerFace);
+  const std::vector<float> fine = coarsening.Average(light.fluence.data(), light.channels);
+  std::vector<double> variance(fine.size());
+  for (std::size_t i = 0; i < fine.size(); ++i)
+  {
+    const double space = inSpace * (static_cast<double>(fine[i]) - many[i]);
+    const double directions = inDirections * (static_cast<double>(many[i]) - few[i]);
+    variance[i] = space * space + directions * directions;
+  }
+  Smooth(variance, coarsening.Coarse(), light.channels);
+  WriteError(light, variance, coarsening);
+  return light;
+}
+}

@@ -1,0 +1,26 @@
+// Read by itself.
+
+#define CHUNK 4096 // voxels a work-item sums up before the host adds the chunks in double
+
+// What gets out of the box of the light that sets out from each voxel, more than the sweep said.
+// extra  of a source of 1, W length
+// tally  [channel][chunk] W
+__kernel void let_escape(__global float* path, const __global float* source, const __global float* extra,
+  const __global float* sigma_t, __global float* tally, ulong stride, int one_sigma_t)
+{
+  const ulong channel = get_global_id(1);
+  const ulong begin = get_global_id(0) * CHUNK;
+  const ulong end = min(stride, begin + CHUNK);
+  path += channel * stride;
+  source += channel * stride;
+  extra += channel * stride;
+  sigma_t += one_sigma_t ? 0 : channel * stride;
+  float sum = 0.0f;
+  for (ulong i = begin; i < end; ++i)
+  {
+    const float escapes = source[i] * extra[i];
+    path[i] -= escapes;
+    sum += sigma_t[i] * escapes;
+  }
+  tally[channel * get_global_size(0) + get_global_id(0)] = sum;
+}

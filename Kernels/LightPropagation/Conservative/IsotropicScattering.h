@@ -1,0 +1,43 @@
+#pragma once
+
+#include "Device/Device.h"
+#include "LightPropagation/Conservative/MediumOnDevice.h"
+#include "LightPropagation/Sweep/VolumeLayout.h"
+
+#include <array>
+
+namespace tyndall
+{
+/// Voxels that a collection sums up in float before the host adds the sums in double (CHUNK of the kernels).
+constexpr std::size_t CollectChunk = 4096;
+
+/// The scattering operator of isotropic scattering: from the path integrals that a sweep left to fluence and to the next source,
+/// sigma_s fluence / 4 pi (Gruson et al. 2012, equation 4, conservative).
+class IsotropicScattering
+{
+public:
+  /// @param medium  must stay
+  /// @param scatters  false: sigma_s is zero everywhere, and there is no source to write
+  IsotropicScattering(Device& device, const VolumeLayout& layout, const MediumOnDevice& medium, bool scatters);
+
+  /// W, by channel.
+  struct Powers
+  {
+    Rgb absorbed = {}, scattered = {};
+  };
+
+  /// Takes what a sweep left: clears `path`, adds it to `fluence`, writes `source`. All [channel][stride].
+  /// @param range  values of a channel that the sweep may have changed, whole vectors
+  Powers Scatter(const Buffer<float>& path, const Buffer<float>& fluence, const Buffer<float>& source,
+    const std::array<std::size_t, 2>& range) const;
+
+  /// The source of all orders at once from the fluence of all: but for what the last one left over, which `source` holds.
+  void SourceOfAll(const Buffer<float>& fluence, const Buffer<float>& source) const;
+
+private:
+  Device& TheDevice;
+  VolumeLayout Layout;
+  const MediumOnDevice& TheMedium;
+  bool Scatters;
+};
+}

@@ -1,0 +1,30 @@
+#pragma once
+
+#include "Device/Monitor.h"
+#include "Light/LightField.h"
+#include "LightPropagation/Conservative/ConvergenceRecord.h"
+#include "LightPropagation/Conservative/EnergyLedger.h"
+
+#include <string>
+#include <vector>
+
+namespace tyndall
+{
+/// What an iteration has found when it ends; the light itself is in the parts' Fluence and Flux.
+struct IterationResult
+{
+  EnergyLedger ledger;
+  ConvergenceRecord convergence;
+  std::vector<float> fluenceDirect, surfaceRadiance; ///< as LightField has them
+  std::vector<std::string> leftOut;                  ///< that the iteration alone knows of
+};
+
+/// How scattering orders are added up: a strategy over the same sweep and scattering.
+class Iteration
+{
+public:
+  virtual ~Iteration() = default;
+  /// @throws Aborted when the monitor says so
+  virtual IterationResult Run(const Monitor& monitor) = 0;
+};
+}

@@ -1,0 +1,88 @@
+#include "LightPropagation/Conservative/PropagationProblem.h"
+
+namespace tyndall
+{
+namespace
+{
+/// So that the first member of a problem is made of what has been looked at.
+const Grid& Checked(const Medium& medium, const Illumination& illumination, const PropagationSettings& settings)
+{
+  Check(medium);
+  Check(illumination);
+  Check(settings);
+  return medium.grid;
+}
+}
+
+PropagationProblem::PropagationProblem(
+  const Medium& medium, const Illumination& illumination, const PropagationSettings& settings)
+  : Unvarying(Checked(medium, illumination, settings), illumination, settings)
+  , TheSettings(settings)
+  , DirectionsAskedFor(settings.directionsPerFace)
+{
+  Medium wide = medium;
+  wide.grid = this->Unvarying.Widened(medium.grid);
+  this->Narrowing = medium.grid.VoxelVolume() / wide.grid.VoxelVolume();
+  this->TheSettings.directionsPerFace = DirectionsPerFaceFor(settings, this->Unvarying);
+  this->TakeUnits(wide, illumination);
+  this->TheTraits = TraitsOf(this->Solved, 1.0 - medium.g);
+  this->Reduction.emplace(this->Solved, this->TheTraits, this->SolvedLight);
+  if (settings.leaveOut && this->Reduction->one)
+  {
+    const OneChannelScene scene(this->Solved, this->SolvedLight, *this->Reduction);
+    this->Solved = scene.medium;
+    this->SolvedLight = scene.light;
+    this->ChannelCount = 1;
+  }
+}
+
+void PropagationProblem::TakeUnits(const Medium& wide, const Illumination& illumination)
+{
+  this->Solved = wide;
+  this->SolvedLight = illumination;
+  this->LengthUnit = LengthUnitOf(wide.grid);
+  if (this->LengthUnit != 1.0)
+  {
+    this->InLengths.emplace(this->Solved, this->SolvedLight, this->LengthUnit);
+    this->Solved = this->InLengths->medium;
+    this->SolvedLight = this->InLengths->illumination;
+  }
+  this->PowerUnit = PowerUnitOf(this->Solved, this->SolvedLight);
+  if (this->PowerUnit != 1.0)
+  {
+    this->InUnits.emplace(this->Solved, this->SolvedLight, this->PowerUnit);
+    this->Solved = this->InUnits->medium;
+    this->SolvedLight = this->InUnits->illumination;
+  }
+}
+
+void PropagationProblem::Undo(LightField& light) const
+{
+  if (this->ChannelCount == 1)
+  {
+    light.leftOut.insert(light.leftOut.begin(), this->Reduction->LeftOut());
+    if (this->Reduction->given == 3)
+    {
+      Spread(light, this->Reduction->colour.Relative());
+    }
+  }
+  else if (this->Reduction->given == 1)
+  {
+    KeepOneChannel(light);
+  }
+  if (this->PowerUnit != 1.0)
+  {
+    ToWatts(light, this->PowerUnit);
+  }
+  if (this->LengthUnit != 1.0)
+  {
+    MultiplyPowers(light, this->LengthUnit * this->LengthUnit);
+  }
+  light.directionsPerFace = this->TheSettings.directionsPerFace;
+  if (light.directionsPerFace != this->DirectionsAskedFor)
+  {
+    light.leftOut.push_back(left_out::DirectionsAlongSlab(light.directionsPerFace));
+  }
+  MultiplyPowers(light, this->Narrowing);
+}
+}

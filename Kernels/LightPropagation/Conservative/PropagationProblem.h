@@ -1,0 +1,55 @@
+#pragma once
+
+#include "Light/ChannelReduction.h"
+#include "Light/LightField.h"
+#include "LightPropagation/Conservative/SceneUnits.h"
+#include "LightPropagation/Conservative/UnvaryingAxes.h"
+#include "LightPropagation/PropagationSettings.h"
+#include "Lights/Lights.h"
+#include "Medium/Medium.h"
+#include "Medium/Traits.h"
+
+#include <optional>
+
+namespace tyndall
+{
+/// A scene as it is solved: in units of length and of power that floats hold well, wide along axes on which nothing changes, with as
+/// many channels as it needs. Made once from what the user gave; Undo() turns the light that was found back into what the user asked
+/// for.
+class PropagationProblem
+{
+public:
+  /// @param medium, illumination  their arrays must stay
+  /// @throws InvalidInput what Check() of the three throw
+  PropagationProblem(const Medium& medium, const Illumination& illumination, const PropagationSettings& settings);
+  PropagationProblem(const PropagationProblem&) = delete; // the medium sees arrays that this owns
+  PropagationProblem& operator=(const PropagationProblem&) = delete;
+
+  const Medium& TheMedium() const { return this->Solved; }
+  const Grid& TheGrid() const { return this->Solved.grid; }
+  const MediumTraits& Traits() const { return this->TheTraits; }
+  const Illumination& Shining() const { return this->SolvedLight; }
+  const PropagationSettings& Settings() const { return this->TheSettings; }
+  int Channels() const { return this->ChannelCount; } ///< 1 or 3
+  bool IsSlab() const { return this->Unvarying.IsSlab(); }
+
+  /// To the user's units, channels and voxels; says in leftOut what was left out.
+  void Undo(LightField& light) const;
+
+private:
+  void TakeUnits(const Medium& wide, const Illumination& illumination);
+
+  UnvaryingAxes Unvarying;
+  PropagationSettings TheSettings;
+  int DirectionsAskedFor;
+  double Narrowing = 1.0; ///< volume of a voxel over that which is solved
+  double LengthUnit = 1.0, PowerUnit = 1.0;
+  std::optional<SceneInLengths> InLengths;
+  std::optional<SceneInUnits> InUnits;
+  Medium Solved;
+  Illumination SolvedLight;
+  MediumTraits TheTraits;
+  std::optional<SceneChannels> Reduction;
+  int ChannelCount = 3;
+};
+}

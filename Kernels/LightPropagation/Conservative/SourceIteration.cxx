@@ -1,0 +1,301 @@
+#include "LightPropagation/Conservative/SourceIteration.h"
+
+#include "Device/Sizes.h"
+#include "LightPropagation/Conservative/UncollidedLight.h"
+#include "LightPropagation/Uncollided/UncollidedBoundary.h"
+#include "TyndallKernelSources.h"
+
+#include <algorithm>
+#include <cmath>
+
+namespace tyndall
+{
+namespace
+{
+constexpr int MostOrders = 100000;
+constexpr int FewPlanes = 256;        ///< round a periodic axis, where there will be more orders as long as it matters
+constexpr double MostlyLit = 0.75;    ///< part of the rays from which on sweeps of their own do not pay
+constexpr double MostlyFilled = 0.75; ///< the same of voxels
+constexpr int OrdersExpected = 6;     ///< to tell whether it pays to sweep empty slabs at the end only
+}
+
+SourceIteration::SourceIteration(TransportParts& parts)
+  : Parts(parts)
+  , Settings(parts.Problem.Settings())
+  , Scattering(parts.TheDevice, parts.Layout, parts.OnDevice,
+      !parts.Problem.Settings().leaveOut || parts.Problem.Traits().scatters)
+  , Shining(parts.HasSource())
+{
+  this->MakeSweeps();
+}
+
+IterationResult SourceIteration::Run(const Monitor& monitor)
+{
+  CountEmission(this->Parts, this->Result.ledger);
+  do
+  {
+    const Monitor ofOrder = monitor ? Monitor([&](double done) { return monitor(this->Progress(done)); }) : Monitor();
+    if (this->Order == 0)
+    {
+      this->AddUncollided(ofOrder);
+    }
+    const bool scatteredShines = this->Shining && this->Order > 0;
+    this->SweepOrder(ofOrder);
+    if (this->Escaping && scatteredShines)
+    {
+      const Rgb escaped = this->Escaping->Apply();
+      for (int c = 0; c < 3; ++c)
+      {
+        this->Escaped[c] += escaped[c];
+        this->Result.ledger.Escape(c, escaped[c]);
+      }
+    }
+    this->ScatterOrder();
+    Report(ofOrder, 1.0);
+    ++this->Order;
+    this->Lit.reset();
+  } while (!this->Done());
+  if (this->Filled && this->Order > 1)
+  {
+    this->SweepEmptySlabs(monitor);
+  }
+  this->Result.ledger.ShareEscaped(this->Escaped);
+  this->Result.leftOut = this->LeftOut();
+  return std::move(this->Result);
+}
+
+void SourceIteration::MakeSweeps()
+{
+  const int mostPlanes = this->Settings.maximumOrders > 0 ? MostPlanesAround : FewPlanes;
+  const SweepInMemory::Description whole = { &this->Parts.OnDevice.SigmaT(), this->Parts.WholeDeposit(), {},
+    this->Settings.periodic, mostPlanes };
+  this->Whole = std::make_unique<SweepInMemory>(
+    this->Parts.TheDevice, this->Parts.Layout, whole, this->Parts.Bundles(), this->Parts.Workspace);
+  this->MakeFilledSweep();
+  if (this->Settings.leaveOut && this->Parts.SweepsAreLit() && !this->Shining)
+  {
+    this->MakeLitSweep();
+  }
+}
+
+/// Orders after the first go through the box that the medium fills alone: what leaves it does not come back. What they
+/// are outside of it is found at the end, for all of them in one sweep. Rays round a periodic axis would be on the way in both.
+void SourceIteration::MakeFilledSweep()
+{
+  const std::array<bool, 3>& periodic = this->Settings.periodic;
+  const MediumTraits& traits = this->Parts.Problem.Traits();
+  if (!this->Settings.leaveOut || !traits.scatters || periodic[0] || periodic[1] || periodic[2])
+  {
+    return;
+  }
+  const double filled =
+    static_cast<double>(traits.filled.VoxelCount()) / static_cast<double>(this->Parts.Layout.grid.VoxelCount());
+  const int later = (this->Settings.maximumOrders > 0 ? this->Settings.maximumOrders : OrdersExpected) - 1;
+  if (filled < MostlyFilled && later * (1.0 - filled) > 1.0)
+  {
+    // The sweep at the end knows the flux.
+    const SweepInMemory::Description part = { &this->Parts.OnDevice.SigmaT(),
+      { &this->Parts.Path, nullptr, nullptr, nullptr }, traits.filled, periodic, MostPlanesAround };
+    this->Filled = std::make_unique<SweepInMemory>(
+      this->Parts.TheDevice, this->Parts.Layout, part, this->Parts.Bundles(), this->Parts.Workspace);
+  }
+}
+
+/// Of the directions alone from which light comes. Those of a periodic axis stay as they are: rays wait in them for the
+/// next order.
+void SourceIteration::MakeLitSweep()
+{
+  const std::array<bool, 3>& periodic = this->Settings.periodic;
+  if (periodic[0] || periodic[1] || periodic[2])
+  {
+    return;
+  }
+  const auto isLit = [this](int direction) { return this->Parts.UsualBoundary->IsLit(direction); };
+  double all = 0.0, lit = 0.0;
+  std::vector<SweepInMemory::AxisBundles> ways;
+  for (int axis = 0; axis < 3; ++axis)
+  {
+    all += CountRays(this->Parts.Usual.Along(axis));
+    for (int way = 0; way < 2; ++way)
+    {
+      ways.push_back({ axis, this->Parts.Usual.LitAlong(axis, way, isLit) });
+      lit += CountRays(ways.back().bundles);
+    }
+  }
+  if (lit <= MostlyLit * all)
+  {
+    this->LitPart = lit / all;
+    const SweepInMemory::Description whole = { &this->Parts.OnDevice.SigmaT(), this->Parts.WholeDeposit(), {}, periodic,
+      MostPlanesAround };
+    this->Lit = std::make_unique<SweepInMemory>(
+      this->Parts.TheDevice, this->Parts.Layout, whole, ways, this->Parts.Workspace);
+  }
+}
+
+void SourceIteration::AddUncollided(const Monitor& monitor)
+{
+  std::vector<std::unique_ptr<UncollidedSource>> sources = LampsOf(this->Parts);
+  if (this->Parts.FineBoundary)
+  {
+    sources.push_back(std::make_unique<UncollidedBoundary>(this->Settings, *this->Parts.FineBoundary));
+  }
+  for (std::unique_ptr<UncollidedSource>& peak : BrightEmissionOf(this->Parts))
+  {
+    sources.push_back(std::move(peak));
+  }
+  for (const std::unique_ptr<UncollidedSource>& source : sources)
+  {
+    const SweepTally tally = this->Parts.AddUncollided(*source, this->Parts.WholeDeposit(), monitor);
+    this->Result.ledger.Count(tally);
+    for (int c = 0; c < 3; ++c)
+    {
+      this->Stranded[c] += tally.onTheWay[c];
+    }
+  }
+  if (this->Parts.Fine && this->Parts.Problem.Traits().scatters)
+  {
+    this->Escaping.emplace(this->Parts, monitor); // whatever shines: lights add up
+  }
+  this->OnTheWay = this->Stranded;
+}
+
+void SourceIteration::SweepOrder(const Monitor& monitor)
+{
+  const SweepBoundary boundary = this->Order == 0 ? this->Parts.BoundaryOfSweeps() : SweepBoundary();
+  const bool nothing = !boundary && !this->Shining && Sum(this->OnTheWay) == 0.0;
+  this->OnTheWay = {};
+  if (nothing)
+  {
+    return;
+  }
+  const Buffer<float>* const source = this->Shining ? &this->Parts.Source : nullptr;
+  SweepOperator& sweep = this->InFilledPart() ? *this->Filled : this->Lit ? *this->Lit : *this->Whole;
+  const SweepTally tally = sweep.Apply(source, boundary, monitor);
+  this->OnTheWay = tally.onTheWay;
+  if (!this->InFilledPart())
+  {
+    this->Result.ledger.Count(tally);
+    return;
+  }
+  for (int c = 0; c < 3; ++c) // through which of the box's faces is not known yet
+  {
+    for (const Rgb& face : tally.out)
+    {
+      this->Result.ledger.Escape(c, face[c]);
+    }
+  }
+}
+
+/// The values of a channel that a sweep may have changed: whole vectors.
+std::array<std::size_t, 2> SourceIteration::SweptValues() const
+{
+  if (!this->InFilledPart())
+  {
+    return { 0, this->Parts.Layout.Stride() };
+  }
+  const std::array<int, 3>& n = this->Parts.Layout.grid.size;
+  const std::size_t layer = static_cast<std::size_t>(n[0]) * n[1];
+  const VoxelBox& filled = this->Parts.Problem.Traits().filled;
+  return { layer * filled.first[2] / SweepPadding * SweepPadding,
+    RoundUp(layer * (filled.first[2] + filled.size[2]), SweepPadding) };
+}
+
+void SourceIteration::ScatterOrder()
+{
+  const IsotropicScattering::Powers powers =
+    this->Scattering.Scatter(this->Parts.Path, this->Parts.Fluence, this->Parts.Source, this->SweptValues());
+  this->Scattered = powers.scattered;
+  for (int c = 0; c < 3; ++c)
+  {
+    this->Result.ledger.Absorb(c, powers.absorbed[c]);
+    this->Result.ledger.LeaveOver(c, this->Scattered[c] + this->OnTheWay[c] + this->Stranded[c]);
+  }
+  this->Shining = Sum(this->Scattered) > 0.0;
+  this->EstimateResidual();
+  if (this->Order == 0)
+  {
+    this->Result.fluenceDirect = Interleaved(this->Parts.Layout, this->Parts.Fluence, 1.0);
+  }
+  const double all = Sum(this->AllScattered);
+  this->Result.convergence.Add(this->Residual, all > 0.0 ? Sum(this->Scattered) / all : 0.0, this->Result.ledger);
+}
+
+/// What the orders to come will add to the light that is scattered, over what there is: the rest of a geometric series, as
+/// orders fall off like one in the end. Its ratio grows towards that, so its last growth is added. The worst channel counts.
+void SourceIteration::EstimateResidual()
+{
+  this->Residual = 0.0;
+  for (int c = 0; c < this->Parts.Layout.channels; ++c)
+  {
+    const double now = this->Scattered[c] + this->OnTheWay[c];
+    this->AllScattered[c] += now;
+    if (now == 0.0)
+    {
+      continue;
+    }
+    const double ratio = this->Order > 0 ? now / this->LastScattered[c] : 1.0;
+    const double growth = this->Order > 1 ? std::max(0.0, ratio - this->Ratio[c]) : 0.0;
+    const double limit = std::min(ratio + growth, 1.0 - 1e-9);
+    this->Residual = std::max(this->Residual, now / this->AllScattered[c] * limit / (1.0 - limit));
+    this->Ratio[c] = ratio;
+    this->LastScattered[c] = now;
+  }
+  // One order says nothing of those to come.
+  this->Residual = this->Order == 0 ? std::min(this->Residual, 1.0) : this->Residual;
+}
+
+bool SourceIteration::Done() const
+{
+  if (this->Residual == 0.0 || this->Order >= MostOrders)
+  {
+    return true;
+  }
+  return this->Settings.maximumOrders > 0 ? this->Order >= this->Settings.maximumOrders
+                                          : this->Order > 2 && this->Residual <= this->Settings.tolerance;
+}
+
+/// What the orders after the first are in the voxels around the medium, and through which faces it leaves: one sweep of all
+/// that was scattered but what the last order left over.
+void SourceIteration::SweepEmptySlabs(const Monitor& monitor)
+{
+  TransportParts& parts = this->Parts;
+  this->Scattering.SourceOfAll(parts.Fluence, parts.Source);
+  const SweepTally tally = this->Whole->Apply(&parts.Source, {}, monitor);
+  for (int face = 0; face < 6; ++face)
+  {
+    for (int c = 0; c < 3; ++c)
+    {
+      this->Result.ledger.EscapeWasThrough(c, face, tally.out[face][c]);
+    }
+  }
+  cl::Kernel add =
+    parts.TheDevice.Kernel("add_outside", { kernel_source::Numerics, kernel_source::IsotropicScattering });
+  const std::array<int, 3>& n = parts.Layout.grid.size;
+  const VoxelBox& filled = parts.Problem.Traits().filled;
+  With(add, parts.Path, parts.Fluence, cl_ulong(parts.Layout.Stride()),
+    static_cast<float>(1.0 / parts.Layout.grid.VoxelVolume()), cl_int3{ { n[0], n[1], n[2] } },
+    cl_int3{ { filled.first[0], filled.first[1], filled.first[2] } },
+    cl_int3{ { filled.size[0], filled.size[1], filled.size[2] } });
+  parts.TheDevice.Queue().enqueueNDRangeKernel(
+    add, cl::NullRange, cl::NDRange(parts.Layout.Stride(), parts.Layout.channels));
+}
+
+double SourceIteration::Progress(double done) const
+{
+  return ProgressOf(this->Settings, this->Residual, this->Order + done);
+}
+
+std::vector<std::string> SourceIteration::LeftOut() const
+{
+  std::vector<std::string> words;
+  if (this->Filled)
+  {
+    words.push_back(left_out::EmptySlabs(this->Parts.Problem.Traits().filled, this->Parts.Layout.grid));
+  }
+  if (this->LitPart < 1.0)
+  {
+    words.push_back(left_out::DarkDirections(this->LitPart));
+  }
+  return words;
+}
+}

@@ -1,0 +1,235 @@
+#include "LightPropagation/Conservative/SurfaceRadiance.h"
+
+#include "Medium/BoxFaces.h"
+
+#include <algorithm>
+#include <cmath>
+
+namespace tyndall
+{
+namespace
+{
+constexpr double Pi = 3.14159265358979323846;
+constexpr double Uncertainty = 0.1;     ///< of diffusion, in sqrt(1 - albedo) of the light that comes in
+constexpr double UncertainPart = 0.5;   ///< of what lamps' rays bring too much or too little to a voxel
+constexpr double MostUneven = 4.0;      ///< that lamps' rays are taken to be
+constexpr double LargestExponent = 0.9; ///< of what comes from deep within, per mean free path
+
+/// Gauss's nodes and weights on [0, 1].
+constexpr std::array<double, 4> Nodes = { 0.0694318442029737, 0.3300094782075719, 0.6699905217924281,
+  0.9305681557970263 };
+constexpr std::array<double, 4> Weights = { 0.1739274225687269, 0.3260725774312731, 0.3260725774312731,
+  0.1739274225687269 };
+
+/// Light that falls on a cell from one direction.
+struct Beam
+{
+  double irradiance; ///< of the face, W / length^2
+  double cosine;     ///< to the inward normal
+};
+
+/// What of one channel is known at a cell.
+struct Surface
+{
+  double albedo, emitted; ///< emission / sigma_a; 0 without sigma_a
+  double out, in;         ///< radiance of even light with the same power
+  std::vector<Beam> beams;
+  double brought = 1.0; ///< of the beams' light to this voxel, over what they bring on the average
+};
+
+/// Of light that a lamp in vacuum sends to the middle of a cell; none where it comes from within.
+Beam BeamOf(const Light& lamp, const Grid& grid, const BoxFaceCell& cell, int channel)
+{
+  const int axis = cell.face / 2;
+  const int u = axis == 0 ? 1 : 0;
+  const int v = axis == 2 ? 1 : 2;
+  const double inwards = cell.face % 2 ? -1.0 : 1.0;
+  const std::array<double, 3>& d = lamp.direction;
+  const double length = std::hypot(d[0], d[1], d[2]);
+  if (lamp.type == LightType::Directional)
+  {
+    const double cosine = inwards * d[axis] / length;
+    return { cosine > 0.0 ? lamp.power[channel] * cosine : 0.0, cosine };
+  }
+  std::array<double, 3> way = {};
+  way[axis] = (cell.face % 2 ? grid.Length(axis) : 0.0);
+  way[u] = (cell.u + 0.5) * grid.spacing[u];
+  way[v] = (cell.v + 0.5) * grid.spacing[v];
+  for (int i = 0; i < 3; ++i)
+  {
+    way[i] += grid.origin[i] - lamp.position[i];
+  }
+  const double distance = std::hypot(way[0], way[1], way[2]);
+  const double cosine = inwards * way[axis] / distance;
+  if (!(cosine > 0.0))
+  {
+    return { 0.0, 0.0 };
+  }
+  const double alongAxis = length > 0.0 ? (way[0] * d[0] + way[1] * d[1] + way[2] * d[2]) / (length * distance) : 1.0;
+  const double cone = std::cos(lamp.angle * Pi / 360.0);
+  const double perSteradian = lamp.type == LightType::Point ? 1.0 / (4.0 * Pi)
+    : lamp.type == LightType::Spot ? (alongAxis >= cone ? 1.0 / (2.0 * Pi * (1.0 - cone)) : 0.0)
+                                   : std::max(alongAxis, 0.0) / Pi;
+  return { lamp.power[channel] * perSteradian * cosine / (distance * distance), cosine };
+}
+
+/// Radiance at cosine mu of what comes in and what the medium shines, in a half-space.
+double OfHalfSpace(const Surface& s, double mu, double ofBeams = 1.0)
+{
+  const double h = HalfSpaceH(s.albedo, mu);
+  const double c = std::sqrt(1.0 - s.albedo);
+  double radiance = s.in * (1.0 - c * h) + s.emitted * c * h;
+  for (const Beam& beam : s.beams)
+  {
+    radiance +=
+      ofBeams * s.albedo * beam.irradiance * HalfSpaceH(s.albedo, beam.cosine) * h / (4.0 * Pi * (mu + beam.cosine));
+  }
+  return radiance;
+}
+
+double FromDeepWithin(double albedo, double mu)
+{
+  const double k = std::min(std::sqrt(3.0 * (1.0 - albedo)), LargestExponent);
+  return HalfSpaceH(albedo, mu) / (1.0 - k * mu);
+}
+
+/// The radiances at SurfaceCosines.
+std::array<double, 4> Leaving(const Surface& s)
+{
+  double halfSpace = 0.0, deep = 0.0; // even radiance of the same power
+  for (std::size_t n = 0; n < Nodes.size(); ++n)
+  {
+    halfSpace += 2.0 * Nodes[n] * Weights[n] * OfHalfSpace(s, Nodes[n], s.brought);
+    deep += 2.0 * Nodes[n] * Weights[n] * FromDeepWithin(s.albedo, Nodes[n]);
+  }
+  // What the low-order system makes of the same.
+  double exact = 0.0;
+  for (std::size_t n = 0; n < Nodes.size(); ++n)
+  {
+    exact += 2.0 * Nodes[n] * Weights[n] * (1.0 - std::sqrt(1.0 - s.albedo) * HalfSpaceH(s.albedo, Nodes[n]));
+  }
+  const double k = std::sqrt(3.0 * (1.0 - s.albedo));
+  const double diffused = (1.0 - 2.0 / 3.0 * k) / (1.0 + 2.0 / 3.0 * k);
+  const double expected = halfSpace + (s.in - s.emitted) * (diffused - exact);
+  double incoming = s.in;
+  double uneven = 0.0;
+  for (const Beam& beam : s.beams)
+  {
+    incoming += beam.irradiance / Pi;
+    uneven += beam.irradiance / Pi * s.albedo * std::abs(s.brought - 1.0);
+  }
+  const double difference = s.out - expected;
+  const double unknown = Uncertainty * std::sqrt(1.0 - s.albedo) * incoming + UncertainPart * uneven;
+  const double known = std::max(std::abs(difference) - unknown, 0.0);
+  const double amplitude = std::copysign(known, difference) / deep;
+  std::array<double, 4> radiance;
+  for (std::size_t n = 0; n < radiance.size(); ++n)
+  {
+    const double mu = SurfaceCosines[n];
+    radiance[n] = std::max(OfHalfSpace(s, mu) + amplitude * FromDeepWithin(s.albedo, mu), 0.0);
+  }
+  return radiance;
+}
+
+/// What a voxel has lost of lamps' light, over what the beams through its faces at the box's should leave there.
+double Brought(const Medium& medium, const std::array<bool, 3>& periodic, const std::vector<Light>& lamps,
+  const BoxFaceCell& cell, int channel, double fluence)
+{
+  const Grid& grid = medium.grid;
+  const double sigma = medium.TransportSigmaT(cell.voxel, channel);
+  const std::array<int, 3> at = { static_cast<int>(cell.voxel % grid.size[0]),
+    static_cast<int>(cell.voxel / grid.size[0] % grid.size[1]),
+    static_cast<int>(cell.voxel / grid.size[0] / grid.size[1]) };
+  double expected = 0.0; // per volume
+  for (int face = 0; face < 6; ++face)
+  {
+    const int axis = face / 2;
+    if (periodic[axis] || at[axis] != (face % 2 ? grid.size[axis] - 1 : 0))
+    {
+      continue;
+    }
+    const BoxFaceCell there = { 0, face, at[axis == 0 ? 1 : 0], at[axis == 2 ? 1 : 2], cell.voxel, cell.voxel };
+    for (const Light& lamp : lamps)
+    {
+      const Beam beam = BeamOf(lamp, grid, there, channel);
+      expected += beam.irradiance > 0.0
+        ? beam.irradiance * -std::expm1(-sigma * grid.spacing[axis] / beam.cosine) / grid.spacing[axis]
+        : 0.0;
+    }
+  }
+  return expected > 0.0 ? std::clamp(sigma * fluence / expected, 1.0 / MostUneven, MostUneven) : 1.0;
+}
+
+bool ThickAnywhere(const Medium& medium, const std::array<bool, 3>& periodic, int channels)
+{
+  bool thick = false;
+  ForBoxFaceCells(medium.grid, [&](const BoxFaceCell& cell) {
+    for (int c = 0; c < channels && !periodic[cell.face / 2]; ++c)
+    {
+      const double sigma = medium.TransportSigmaT(cell.voxel, c);
+      thick |= sigma * medium.grid.spacing[cell.face / 2] > ThickAtSurface;
+    }
+  });
+  return thick;
+}
+}
+
+double HalfSpaceH(double albedo, double mu)
+{
+  if (mu <= 0.0)
+  {
+    return 1.0;
+  }
+  const double c = std::sqrt(1.0 - albedo);
+  const double r = (1.0 - c) / (1.0 + c);
+  return 1.0 / (1.0 - albedo * mu * (r + 0.5 * (1.0 - 2.0 * r * mu) * std::log1p(1.0 / mu)));
+}
+
+std::vector<float> SurfaceRadiance(const Medium& medium, const std::array<bool, 3>& periodic,
+  const std::vector<Light>& lamps, const std::vector<SurfacePowers>& powers)
+{
+  const Grid& grid = medium.grid;
+  const int channels = static_cast<int>(powers.size());
+  if (!ThickAnywhere(medium, periodic, channels))
+  {
+    return {};
+  }
+  std::vector<float> radiance(BoxFaceCellCount(grid) * SurfaceCosines.size() * channels, 0.0f);
+  ForBoxFaceCells(grid, [&](const BoxFaceCell& cell) {
+    const int axis = cell.face / 2;
+    for (int c = 0; c < channels; ++c)
+    {
+      if (periodic[axis] || powers[c].net.empty())
+      {
+        continue;
+      }
+      const double absorbs = medium.sigma_a.At(cell.voxel, c);
+      const double scatters = medium.TransportSigmaS(cell.voxel, c);
+      const double sigma = absorbs + scatters;
+      Surface s;
+      s.albedo = sigma > 0.0 ? scatters / sigma : 0.0;
+      s.emitted = absorbs > 0.0 ? medium.emission.At(cell.voxel, c) / absorbs : 0.0;
+      s.in = powers[c].in[cell.face] / (4.0 * Pi * powers[c].halfRange);
+      s.out = s.in + powers[c].net[cell.number] / Pi;
+      for (const Light& lamp : lamps)
+      {
+        const Beam beam = BeamOf(lamp, grid, cell, c);
+        if (beam.irradiance > 0.0)
+        {
+          s.beams.push_back(beam);
+        }
+      }
+      if (!s.beams.empty() && powers[c].lamps)
+      {
+        s.brought = Brought(medium, periodic, lamps, cell, c, powers[c].lamps[cell.voxel]);
+      }
+      const std::array<double, 4> leaves = Leaving(s);
+      for (std::size_t n = 0; n < leaves.size(); ++n)
+      {
+        radiance[(cell.number * leaves.size() + n) * channels + c] = static_cast<float>(leaves[n]);
+      }
+    }
+  });
+  return radiance;
+}
+}

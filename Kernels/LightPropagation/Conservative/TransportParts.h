@@ -1,0 +1,81 @@
+#pragma once
+
+#include "Device/Buffer.h"
+#include "LightPropagation/Angular/SweptDirections.h"
+#include "LightPropagation/Conservative/MediumOnDevice.h"
+#include "LightPropagation/Conservative/PropagationProblem.h"
+#include "LightPropagation/Sweep/SweepInMemory.h"
+#include "LightPropagation/Sweep/VolumeLayout.h"
+#include "LightPropagation/Uncollided/BoundaryLight.h"
+#include "LightPropagation/Uncollided/EmissionPeaks.h"
+#include "LightPropagation/Uncollided/UncollidedSource.h"
+
+#include <memory>
+#include <optional>
+#include <vector>
+
+namespace tyndall
+{
+/// A problem on a device, with the directions it is solved along and the lights that shine: what the iterations are made of. Holds no
+/// state of a solve but the arrays that they work in.
+class TransportParts
+{
+public:
+  /// @param problem  must stay
+  /// @param accelerated  light is to be carried far by a diffusion system between sweeps
+  /// @throws DeviceError if the arrays do not fit; InvalidInput where rays are too few (BoundaryLight.h)
+  TransportParts(Device& device, const PropagationProblem& problem, bool accelerated);
+  TransportParts(const TransportParts&) = delete; // lights see directions that this owns
+  TransportParts& operator=(const TransportParts&) = delete;
+
+  Device& TheDevice;
+  const PropagationProblem& Problem;
+  const VolumeLayout Layout;
+  const MediumOnDevice OnDevice;
+
+  /// Along the directions of scattered light.
+  const SweptDirections Usual;
+  /// Along directions of its own until it meets the medium, where they were asked for and differ from the usual ones.
+  std::unique_ptr<const SweptDirections> Fine;
+  std::unique_ptr<const BoundaryLight> UsualBoundary, FineBoundary; ///< FineBoundary: null where there are none
+  std::vector<Light> Lamps;                                         ///< those of the scene and the peaks of the environment
+  SplitEmission Emission;                                           ///< of the medium
+
+  /// [channel][stride]; flux [channel][x, y, z][stride], empty where net flux is not asked for.
+  Buffer<float> Source, Path, Flux, Fluence;
+  SweepWorkspace Workspace;
+
+  bool HasSource() const { return this->MediumShines; } ///< Source is not zero at first
+  /// What sweeps along the usual directions carry of the light from outside; empty: nothing.
+  SweepBoundary BoundaryOfSweeps() const;
+  bool SweepsAreLit() const { return this->UsualBoundary->Shines() && (this->Accelerated || !this->FineBoundary); }
+
+  /// The light of one source, added to where `deposit` says.
+  /// @return all channels
+  SweepTally AddUncollided(const UncollidedSource& source, const Deposit& deposit, const Monitor& monitor);
+  /// The same into arrays of its own, read back.
+  struct UncollidedFlux
+  {
+    std::vector<float> path, flux; ///< as the deposit has them
+    SweepTally tally;
+  };
+  UncollidedFlux FindUncollided(const UncollidedSource& source, const Monitor& monitor);
+  /// What a sky of radiance 1 is before it is scattered, along the finer directions and along the usual ones. Read as how much of the
+  /// light that sets out from a voxel gets out of the box (reciprocity), it tells how far scattered light is off.
+  struct EvenSky
+  {
+    UncollidedFlux fine, usual;
+  };
+  EvenSky FindEvenSky(const Monitor& monitor);
+
+  std::vector<SweepInMemory::AxisBundles> Bundles() const; ///< of the usual directions
+  Deposit WholeDeposit() const;                            ///< path, and flux where it is asked for
+
+private:
+  void LoadSource();
+  void FindBoundaryLight();
+
+  bool Accelerated;
+  bool MediumShines = false;
+};
+}

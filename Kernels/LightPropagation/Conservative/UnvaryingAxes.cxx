@@ -1,0 +1,61 @@
+#include "LightPropagation/Conservative/UnvaryingAxes.h"
+
+#include <algorithm>
+#include <cmath>
+
+namespace tyndall
+{
+namespace
+{
+constexpr double Width =
+  10.0; ///< in edges across: wider gains little, and flat voxels make the low-order system slower
+constexpr int EdgeInSlabs = 12;
+
+bool IsNear(const Light& light)
+{
+  return light.type != LightType::Directional;
+}
+}
+
+UnvaryingAxes::UnvaryingAxes(const Grid& grid, const Illumination& illumination, const PropagationSettings& settings)
+{
+  if (settings.source == PropagationSource::Constant ||
+    std::any_of(illumination.lights.begin(), illumination.lights.end(), IsNear))
+  {
+    return;
+  }
+  for (int axis = 0; axis < 3; ++axis)
+  {
+    this->Single[axis] = grid.size[axis] == 1 && settings.periodic[axis];
+  }
+}
+
+Grid UnvaryingAxes::Widened(const Grid& grid) const
+{
+  double width = 0.0;
+  for (int axis = 0; axis < 3; ++axis)
+  {
+    width = std::max(width, this->Single[axis] ? 0.0 : Width * grid.spacing[axis]);
+  }
+  Grid wide = grid;
+  for (int axis = 0; axis < 3; ++axis)
+  {
+    wide.spacing[axis] = this->Single[axis] && width > 0.0 ? width : grid.spacing[axis];
+  }
+  return wide;
+}
+
+int DirectionsPerFaceFor(const PropagationSettings& settings, const UnvaryingAxes& unvarying)
+{
+  const int told = settings.directionsPerFace;
+  const int edge = static_cast<int>(std::lround(std::sqrt(static_cast<double>(std::max(told, 0)))));
+  if (settings.source == PropagationSource::Constant || !settings.adaptDirections || edge * edge != told)
+  {
+    return told;
+  }
+  const bool goRound = settings.periodic[0] + settings.periodic[1] + settings.periodic[2] == 2;
+  const int even = goRound || unvarying.IsSlab() ? edge + edge % 2 : edge;
+  const int enough = unvarying.IsSlab() ? std::max(even, EdgeInSlabs) : even;
+  return enough * enough;
+}
+}

@@ -1,0 +1,529 @@
+// The low-order system of a channel, see DiffusionSystem.h: what a sweep found becomes its right-hand side. Read after
+// DiffusionLayout.cl.
+//
+// Face d of a voxel is -x, +x, -y, +y, -z, +z. tau is the optical length of a voxel along an axis.
+
+// Outflow of a half-space whose source is constant in each voxel and falls by one from mean free path to mean free path:
+// sum over mu of mu (tau / 2) coth(tau / (2 mu)) (Gauss, 4 points). 1/6 where voxels are thin, as it should be; tau / 8 where
+// they are thick.
+static float stair(float tau)
+{
+  const float mu[4] = { 0.0694318442f, 0.3300094782f, 0.6699905218f, 0.9305681558f };
+  const float half_weight[4] = { 0.0869637113f, 0.1630362887f, 0.1630362887f, 0.0869637113f };
+  float sum = 0.0f;
+  for (int k = 0; k < 4; ++k)
+  {
+    const float x = 0.5f * tau / mu[k];
+    sum += half_weight[k] * mu[k] * mu[k] * (x < 0.02f ? 1.0f + x * x / 3.0f : x / tanh(x));
+  }
+  return sum;
+}
+
+// Half of a voxel in units of the diffusion length, y = tau sqrt(3 (1 - albedo)) / 2.
+static float half_diffusion_length(float tau, float sigma_t, float sigma_a)
+{
+  return sigma_t > 0.0f ? 0.5f * tau * sqrt(3.0f * fmin(sigma_a / sigma_t, 1.0f)) : 0.0f;
+}
+
+// How much better than tau / 2 a half voxel conducts whose light dies away on the way: exactly that of light that falls off
+// from a border...
+static float at_border(float y)
+{
+  return y < 0.02f ? 1.0f + y * (2.0f / 3.0f) : 2.0f * y * y / (2.0f * y - 1.0f + exp(-2.0f * y));
+}
+// ...and between voxels of the same kind, where hyperbolic functions are met exactly.
+static float among_equals(float y)
+{
+  const float x = y < 40.0f ? y / sinh(fmax(y, 1e-3f)) : 0.0f;
+  return y < 0.01f ? 1.0f : fmax(x * x, 1e-20f);
+}
+
+// What a face passes per difference of fluence and area.
+static float pass_face(const low_order_layout* layout, float tau0, float tau1, float y0, float y1, float stairs)
+{
+  const float mean = 0.5f * (tau0 + tau1);
+  if (!layout->linear)
+  {
+    return stairs / fmax(mean, layout->floor);
+  }
+  const float sum = tau0 + tau1;
+  const float equal = sum > 0.0f ? 1.0f - fabs(tau0 - tau1) / sum : 1.0f;
+  const float same = equal * equal;
+  const float way0 = tau0 / mix(at_border(y0), among_equals(y0), same);
+  const float way1 = tau1 / mix(at_border(y1), among_equals(y1), same);
+  return 1.0f / (3.0f * fmax(0.5f * (way0 + way1), layout->floor));
+}
+
+static float face_area(const low_order_layout* layout, int axis)
+{
+  return layout->spacing[(axis + 1) % 3] * layout->spacing[(axis + 2) % 3];
+}
+static float volume_of(const low_order_layout* layout)
+{
+  return layout->spacing[0] * layout->spacing[1] * layout->spacing[2];
+}
+
+// Optical length from the voxel's middle to a face of the box, as the light's way counts.
+static float way_to_boundary(const low_order_layout* layout, float tau, float sigma_t, float sigma_a)
+{
+  return layout->linear ? tau / at_border(half_diffusion_length(tau, sigma_t, sigma_a)) : tau;
+}
+static float pass_boundary(const low_order_layout* layout, float way)
+{
+  const float x = 3.0f * layout->half_range * way;
+  return 2.0f * layout->half_range / (1.0f + (layout->linear ? x : x / (1.0f + x)));
+}
+
+// stairs  [axis][stride]
+__kernel void low_order_stairs(low_order_layout layout, const __global float* sigma_t, __global float* stairs)
+{
+  VOXEL(layout.size)
+  sigma_t += layout.first_t;
+  for (int axis = 0; axis < 3; ++axis)
+  {
+    stairs[(ulong)axis * layout.stride + i] = stair(sigma_t[i] * layout.spacing[axis]);
+  }
+}
+
+// conductance  [axis][voxel] of the voxel's low face, length^2; 0 on the box's border
+// loss         what absorption and the border take per fluence
+__kernel void low_order_conductance(low_order_layout layout, const __global float* sigma_t, const __global float* sigma_a,
+  const __global float* stairs, __global float* conductance, __global float* loss)
+{
+  VOXEL(layout.size)
+  sigma_t += layout.first_t;
+  sigma_a += layout.first;
+  const ulong stride = layout.stride;
+  const int count = layout.size[0] * layout.size[1] * layout.size[2];
+  int next[6];
+  find_neighbours(layout.size, x, y, z, i, next);
+  float taken = sigma_a[i] * volume_of(&layout);
+  for (int axis = 0; axis < 3; ++axis)
+  {
+    const float h = layout.spacing[axis];
+    const float area = face_area(&layout, axis);
+    const int at = axis == 0 ? x : axis == 1 ? y : z;
+    const int j = next[2 * axis];
+    const bool open = !layout.periodic[axis];
+    const float tau0 = sigma_t[j] * h, tau1 = sigma_t[i] * h;
+    const float y0 = half_diffusion_length(tau0, sigma_t[j], sigma_a[j]);
+    const float y1 = half_diffusion_length(tau1, sigma_t[i], sigma_a[i]);
+    const float passes = area * pass_face(&layout, tau0, tau1, y0, y1, stairs[axis * stride + i] + stairs[axis * stride + j]);
+    conductance[axis * count + i] = (at == 0 && open) || layout.size[axis] == 1 ? 0.0f : passes;
+    const int borders = open ? (at == 0) + (at == layout.size[axis] - 1) : 0;
+    taken += borders * area * pass_boundary(&layout, way_to_boundary(&layout, tau1, sigma_t[i], sigma_a[i]));
+  }
+  loss[i] = taken;
+}
+
+static bool is_border(const low_order_layout* layout, const int* at, int d)
+{
+  const int axis = d / 2;
+  return !layout->periodic[axis] && at[axis] == (d & 1 ? layout->size[axis] - 1 : 0);
+}
+
+// How much a voxel of optical length tau is a thick one beside one of length beyond.
+static float contrast(float tau, float beyond)
+{
+  const float thick = 0.8f * tau * tau;
+  const float unlike = tau > beyond ? 1.0f - beyond / tau : 0.0f;
+  return unlike * unlike * thick * thick / ((1.0f + thick * thick) * (1.0f + beyond * beyond));
+}
+
+// Of a thick voxel beside thinner ones those see only the skin: how much that counts, and for each inner face.
+static float openness(const low_order_layout* layout, const __global float* sigma_t, int i, const int* next, const int* at, float* open)
+{
+  float most = 0.0f;
+  for (int d = 0; d < 6; ++d)
+  {
+    const int axis = d / 2;
+    const float tau = sigma_t[i] * layout->spacing[axis];
+    const float beyond = sigma_t[next[d]] * layout->spacing[axis];
+    const bool inner = layout->linear && layout->size[axis] > 1 && !is_border(layout, at, d);
+    open[d] = inner ? contrast(tau, beyond) : 0.0f;
+    most = fmax(most, open[d]);
+  }
+  return most > 0.01f ? most : 0.0f;
+}
+
+// What the sweep's light is compared with: the light it found where voxels are thin, the light it was given where they are
+// thick and it only repeats that.
+__kernel void low_order_model(low_order_layout layout, const __global float* sigma_t, const __global float* path,
+  const __global exact* fluence, const __global float* source, __global float* model)
+{
+  VOXEL(layout.size)
+  sigma_t += layout.first_t;
+  path += layout.first;
+  source += layout.first;
+  const int at[3] = { x, y, z };
+  int next[6];
+  find_neighbours(layout.size, x, y, z, i, next);
+  float open[6];
+  const float skin = openness(&layout, sigma_t, i, next, at, open);
+  const float longest = sigma_t[i] * fmax(layout.spacing[0], fmax(layout.spacing[1], layout.spacing[2]));
+  const float found = path[i] / volume_of(&layout);
+  const float thick = layout.linear ? longest * longest / (1.0f + longest * longest) : 0.0f;
+  const float given = skin > 0.0f ? mix((float)fluence[i], 4.0f * M_PI_F * source[i] / sigma_t[i], skin) : (float)fluence[i];
+  model[i] = longest > 1e9f ? given : found + thick * (given - found);
+}
+
+typedef struct
+{
+  const __global float* sigma_t;
+  const __global float* sigma_a;
+  const __global float* stairs;
+  const __global float* conductance;
+  const __global float* entering;
+  const __global float* passed;
+  const __global float* model;
+  const __global float* pattern;
+  ulong stride;
+  int count;
+} low_order_arrays;
+
+// Rays that cross a face, over those that should: what a repeated pattern of few rays has too many or too few.
+static float pattern_at(const low_order_layout* layout, const low_order_arrays* arrays, int axis, const int* at, float tau)
+{
+  const int b = axis == 0 ? 1 : 0;
+  const int c = axis == 2 ? 1 : 2;
+  const float crossing = arrays->pattern[layout->pattern[2 * axis] + at[b]] + arrays->pattern[layout->pattern[2 * axis + 1] + at[c]];
+  const float thick = 1.0f - 1.0f / (1.0f + tau * tau); // in thin voxels it is in the light too
+  return 1.0f + thick * (crossing - 1.0f);
+}
+
+// How much of what a sweep knows better than diffusion is believed: little where voxels are thick, or the light dies away within
+// one, and it knows nothing.
+static float belief(const low_order_layout* layout, float tau, float absorbing)
+{
+  return layout->linear ? 1.0f / (1.0f + tau * (0.25f * tau + 3.0f * absorbing)) : 1.0f;
+}
+
+// Power through inner face d out of voxel i, that of the sweep less that of the model.
+static float remainder_of_face(
+  const low_order_layout* layout, const low_order_arrays* arrays, int d, int i, int j, const int* at)
+{
+  const int axis = d / 2;
+  const ulong stride = arrays->stride;
+  const float tau = 0.5f * layout->spacing[axis] * (arrays->sigma_t[i] + arrays->sigma_t[j]);
+  const float passes = arrays->conductance[axis * arrays->count + (d & 1 ? j : i)];
+  const float net = arrays->entering[(d ^ 1) * stride + j] - arrays->entering[d * stride + i];
+  const float stairs = arrays->stairs[axis * stride + i] + arrays->stairs[axis * stride + j];
+  const float spread =
+    layout->linear ? 3.0f * passes * stairs * pattern_at(layout, arrays, axis, at, tau) : passes;
+  const float absorbing = 0.5f * layout->spacing[axis] * (arrays->sigma_a[i] + arrays->sigma_a[j]);
+  const float h = layout->spacing[axis];
+  const float tau0 = h * arrays->sigma_t[i], tau1 = h * arrays->sigma_t[j];
+  const float skin = layout->linear ? contrast(fmax(tau0, tau1), fmin(tau0, tau1)) : 0.0f;
+  const float believed = belief(layout, tau, absorbing) * (1.0f - skin);
+  return believed > 1e-12f ? believed * (net - spread * (arrays->model[i] - arrays->model[j])) : 0.0f;
+}
+
+// Power through a face of the box, out less in, that the model expects; what it expects without any light in the voxel.
+static float model_of_boundary(
+  const low_order_layout* layout, const low_order_arrays* arrays, int d, int i, const int* at, float* dark)
+{
+  const int axis = d / 2;
+  const float a = layout->half_range;
+  const float tau = arrays->sigma_t[i] * layout->spacing[axis];
+  const float way = way_to_boundary(layout, tau, arrays->sigma_t[i], arrays->sigma_a[i]);
+  const float passes = pass_boundary(layout, way);
+  const float incoming = layout->incoming[d];
+  const float area = face_area(layout, axis);
+  const float light = arrays->model[i];
+  *dark = -passes / a * incoming * area;
+  const float net = passes * (light - incoming / a);
+  if (!layout->linear)
+  {
+    return net * area;
+  }
+  const float at_face = light - 1.5f * way * net;
+  const float spread = a * at_face + 3.0f * net * arrays->stairs[axis * arrays->stride + i] - incoming;
+  return pattern_at(layout, arrays, axis, at, tau) * spread * area;
+}
+
+// Lamps' light that is scattered near face d of voxel i and passes it at once, less what comes the other way.
+static float passing(const low_order_layout* layout, const low_order_arrays* arrays, int d, int i, const int* next, bool border)
+{
+#if PASSING
+  return arrays->passed[d * arrays->stride + i] - (border ? 0.0f : arrays->passed[(d ^ 1) * arrays->stride + next[d]]);
+#else
+  return 0.0f;
+#endif
+}
+
+// What a sweep knows better about the faces of the box at voxel i, W out of it less in, in all.
+//   power    what the medium shines there, in the sweep, less what it takes of the light
+//   share    [face] its part for each face: as the sweep's light seems to leave through them
+//   seeming  [face] power out, of the sweep, that seems to leave through each
+//   believed  how much of it counts
+static float remainder_of_borders(const low_order_layout* layout, const low_order_arrays* arrays, int i, const int* next,
+  const int* at, float power, float* share, float* seeming, float* believed)
+{
+  float left = power; // through the box's faces, out less in
+  float in = 0.0f, expected = 0.0f, longest = 0.0f, sum = 0.0f, borders = 0.0f;
+  float model[6];
+  for (int d = 0; d < 6; ++d)
+  {
+    const int axis = d / 2;
+    const float entered = arrays->entering[d * arrays->stride + i];
+    model[d] = share[d] = seeming[d] = 0.0f;
+    if (is_border(layout, at, d))
+    {
+      float dark;
+      model[d] = model_of_boundary(layout, arrays, d, i, at, &dark);
+      const float tau = arrays->sigma_t[i] * layout->spacing[axis];
+      const float through = exp(-fmin(tau, 80.0f));
+      seeming[d] = through * arrays->entering[(d ^ 1) * arrays->stride + i] +
+        (1.0f - through) * layout->half_range * face_area(layout, axis) * fmax(arrays->model[i], 0.0f);
+      expected += model[d];
+      sum += seeming[d];
+      in += entered;
+      longest = fmax(longest, layout->spacing[axis]);
+      borders += 1.0f;
+    }
+    else if (layout->size[axis] > 1)
+    {
+      left -= arrays->entering[(d ^ 1) * arrays->stride + next[d]] - entered;
+    }
+  }
+  *believed = belief(layout, longest * arrays->sigma_t[i], longest * arrays->sigma_a[i]);
+  *believed = *believed > 1e-12f ? *believed : 0.0f;
+  // Of a thick voxel what is left is a small difference of what it shines and takes.
+  const float rounding = 1e-6f * arrays->sigma_t[i] * volume_of(layout) * fmax(arrays->model[i], 0.0f);
+  const float whole = rounding < 0.01f * sum || sum <= 0.0f ? left + in : sum;
+  for (int d = 0; d < 6; ++d)
+  {
+    // Where nothing goes straight through, what comes in through faces beside leaves all the same.
+    const float part = sum > 0.0f ? seeming[d] / sum : is_border(layout, at, d) ? 1.0f / borders : 0.0f;
+    seeming[d] = whole * part;
+    const float net = seeming[d] - arrays->entering[d * arrays->stride + i] - model[d];
+    share[d] = *believed > 0.0f && is_border(layout, at, d) ? *believed * net : 0.0f;
+  }
+  return *believed > 0.0f ? *believed * (left - expected) : 0.0f;
+}
+
+// Power through face d out of voxel i, less what comes in, by the solution; `share` of its remainder where it is the box's.
+static exact power_of_face(const low_order_layout* layout, const low_order_arrays* arrays, const __global exact* fluence,
+  int d, int i, const int* next, const int* at, const float* share)
+{
+  const int axis = d / 2;
+  if (is_border(layout, at, d))
+  {
+    const float tau = arrays->sigma_t[i] * layout->spacing[axis];
+    const float passes = pass_boundary(layout, way_to_boundary(layout, tau, arrays->sigma_t[i], arrays->sigma_a[i]));
+    return passes * face_area(layout, axis) * (fluence[i] - layout->incoming[d] / layout->half_range) + share[d] +
+      passing(layout, arrays, d, i, next, true);
+  }
+  if (layout->size[axis] == 1)
+  {
+    return 0;
+  }
+  const exact passes = arrays->conductance[axis * arrays->count + (d & 1 ? next[d] : i)];
+  return passes * (fluence[i] - fluence[next[d]]) + remainder_of_face(layout, arrays, d, i, next[d], at) +
+    passing(layout, arrays, d, i, next, false);
+}
+
+#define ARRAYS_OF_CHANNEL                                                      \
+  sigma_t += layout.first_t;                                                   \
+  sigma_a += layout.first;                                                     \
+  entering += 6 * (ulong)layout.first;                                         \
+  passed += PASSING ? 6 * (ulong)layout.first : 0;                             \
+  source += layout.first;                                                      \
+  path += layout.first;                                                        \
+  const ulong stride = layout.stride;                                          \
+  const int count = layout.size[0] * layout.size[1] * layout.size[2];          \
+  const low_order_arrays arrays = { sigma_t, sigma_a, stairs, conductance, entering, passed, model, pattern, stride, count }; \
+  const int at[3] = { x, y, z };                                               \
+  int next[6];                                                                 \
+  find_neighbours(layout.size, x, y, z, i, next);                              \
+  const float per_radiance = 4.0f * M_PI_F * volume_of(&layout);               \
+  float share[6], seeming[6], believed;
+
+// The right-hand side, W.
+// given    emitted and first scattered light of lights, W / (length^3 sr)
+// source   of the sweep, W / (length^3 sr)
+__kernel void low_order_balance(low_order_layout layout, const __global float* sigma_t, const __global float* sigma_a,
+  const __global float* stairs, const __global float* conductance, const __global float* entering, const __global float* passed,
+  const __global float* model, const __global float* pattern, const __global float* source,
+  const __global float* path, const __global float* given, __global exact* right)
+{
+  VOXEL(layout.size)
+  ARRAYS_OF_CHANNEL
+  float power = given[layout.first + i] * per_radiance;
+  for (int d = 0; d < 6; ++d)
+  {
+    if (is_border(&layout, at, d))
+    {
+      float dark;
+      model_of_boundary(&layout, &arrays, d, i, at, &dark);
+      power -= dark + passing(&layout, &arrays, d, i, next, true);
+    }
+    else if (layout.size[d / 2] > 1)
+    {
+      power -= remainder_of_face(&layout, &arrays, d, i, next[d], at) + passing(&layout, &arrays, d, i, next, false);
+    }
+  }
+  if (IS_OUTERMOST(layout, at))
+  {
+    power -= remainder_of_borders(&layout, &arrays, i, next, at, source[i] * per_radiance - sigma_t[i] * path[i], share,
+      seeming, &believed);
+  }
+  right[i] = power;
+}
+
+// A voxel's faces at the box's border, [face][row][voxel of the row]: power out of the box, W; power out that seems to
+// leave there in the sweep, W; for voxels with several such faces how much that counts, else -1; power out less power
+// in, W, without what the sweep knows better: that is right for a face of the box on the whole, but not from voxel to
+// voxel.
+__kernel void low_order_outflow(low_order_layout layout, const __global float* sigma_t, const __global float* sigma_a,
+  const __global float* stairs, const __global float* conductance, const __global float* entering, const __global float* passed,
+  const __global float* model, const __global float* pattern, const __global float* source,
+  const __global float* path, const __global exact* fluence, __global exact* outflow)
+{
+  VOXEL(layout.size)
+  if (!IS_OUTERMOST(layout, ((int[3]){ x, y, z })))
+  {
+    return;
+  }
+  ARRAYS_OF_CHANNEL
+  remainder_of_borders(&layout, &arrays, i, next, at, source[i] * per_radiance - sigma_t[i] * path[i], share,
+      seeming, &believed);
+  int borders = 0;
+  for (int d = 0; d < 6; ++d)
+  {
+    borders += is_border(&layout, at, d);
+  }
+  int begin = 0;
+  for (int d = 0; d < 6; ++d)
+  {
+    const int u = d / 2 == 0 ? 1 : 0;
+    const int v = d / 2 == 2 ? 1 : 2;
+    if (is_border(&layout, at, d))
+    {
+      __global exact* face = outflow + 4 * (begin + at[v] * layout.size[u] + at[u]);
+      const float none[6] = { 0.0f };
+      face[3] = power_of_face(&layout, &arrays, fluence, d, i, next, at, none);
+      face[0] = face[3] + share[d] + entering[d * stride + i];
+      face[1] = seeming[d];
+      face[2] = borders > 1 ? believed : -1.0f;
+    }
+    begin += layout.size[u] * layout.size[v];
+  }
+}
+
+// Net flux, W / length^2 times volume, [x, y, z][stride], added to.
+__kernel void low_order_flux(low_order_layout layout, const __global float* sigma_t, const __global float* sigma_a,
+  const __global float* stairs, const __global float* conductance, const __global float* entering, const __global float* passed,
+  const __global float* model, const __global float* pattern, const __global float* source,
+  const __global float* path, const __global exact* fluence, __global float* flux)
+{
+  VOXEL(layout.size)
+  ARRAYS_OF_CHANNEL
+  flux += 3 * (ulong)layout.first;
+  if (IS_OUTERMOST(layout, at))
+  {
+    remainder_of_borders(&layout, &arrays, i, next, at, source[i] * per_radiance - sigma_t[i] * path[i], share,
+      seeming, &believed);
+  }
+  for (int axis = 0; axis < 3; ++axis)
+  {
+    const exact up = power_of_face(&layout, &arrays, fluence, 2 * axis + 1, i, next, at, share);
+    const exact down = power_of_face(&layout, &arrays, fluence, 2 * axis, i, next, at, share);
+    flux[axis * stride + i] += (float)(0.5f * (up - down) * layout.spacing[axis]);
+  }
+}
+
+// The next sweep's source: what the medium shines and what it scatters; of voxels with a skin, what makes that shine as the light
+// there and the power through it want: 4 J+ = fluence + 2 J.
+__kernel void low_order_source(low_order_layout layout, const __global float* given, const __global float* sigma_s,
+  const __global exact* fluence, const __global float* sigma_t, const __global float* sigma_a,
+  const __global float* conductance, const __global float* passed, __global float* source)
+{
+  VOXEL(layout.size)
+  const ulong stride = layout.stride;
+  const int count = layout.size[0] * layout.size[1] * layout.size[2];
+  const ulong begin = layout.first;
+  sigma_t += layout.first_t;
+  sigma_a += layout.first;
+  passed += PASSING ? 6 * (ulong)layout.first : 0;
+  const int at[3] = { x, y, z };
+  int next[6];
+  find_neighbours(layout.size, x, y, z, i, next);
+  float open[6];
+  const float skin = openness(&layout, sigma_t, i, next, at, open);
+  // `given` is less than nothing where unscattered light on directions of its own is less than in the sweep.
+  const float even =
+    fmax(given[begin + i] + sigma_s[begin + i] * fmax((float)fluence[i], 0.0f) * (0.25f * M_1_PI_F), 0.0f);
+  float shining = 0.0f, sum = 0.0f;
+  for (int d = 0; d < 6; ++d)
+  {
+    if (open[d] > 0.0f && skin > 0.0f)
+    {
+      const int j = next[d];
+      const float area = face_area(&layout, d / 2);
+      const float beyond = sigma_t[j] * layout.spacing[d / 2];
+      float out = conductance[d / 2 * count + (d & 1 ? j : i)] * (float)(fluence[i] - fluence[j]) / area;
+#if PASSING
+      out += (passed[d * stride + i] - passed[(d ^ 1) * stride + j]) / area;
+#endif
+      const float weight = open[d] * area;
+      const float there = (float)fluence[j] + 1.5f * out * way_to_boundary(&layout, beyond, sigma_t[j], sigma_a[j]);
+      shining += weight * (there + 2.0f * out);
+      sum += weight;
+    }
+  }
+  const float there = sum > 0.0f ? fmax(shining / sum, 0.0f) * sigma_t[i] * (0.25f * M_1_PI_F) : 0.0f;
+  source[begin + i] = mix(even, there, skin);
+}
+
+// Of one light: each passes its own part, which depends on where its light is lost.
+// path      W length, of the light
+// nearness  of it, as in SweepVolume.h, [channel][face][stride]
+// passed    [channel][face][stride] W, added to
+// all_path  W length, of all lights, added to
+__kernel void low_order_pass(low_order_layout layout, const __global float* sigma_t, const __global float* sigma_a,
+  const __global float* sigma_s, const __global float* path, const __global float* nearness, __global float* passed, __global float* all_path)
+{
+  VOXEL(layout.size)
+  const int at[3] = { x, y, z };
+  int next[6];
+  find_neighbours(layout.size, x, y, z, i, next);
+  const ulong stride = layout.stride;
+  sigma_t += layout.first_t;
+  sigma_a += layout.first;
+  nearness += 6 * (ulong)layout.first;
+  passed += 6 * (ulong)layout.first;
+  const float length = path[layout.first + i];
+  const float k = sigma_t[i] > 0.0f ? sqrt(3.0f * fmin(sigma_a[i] / sigma_t[i], 1.0f)) : 0.0f;
+  float part[6], sum = 0.0f;
+  for (int d = 0; d < 6; ++d)
+  {
+    const int axis = d / 2;
+    const float h = layout.spacing[axis];
+    const float tau = sigma_t[i] * h;
+    const float r = length > 0.0f ? fmin(2.0f * nearness[d * stride + i] / length, 1.0f) : 0.0f;
+    part[d] = 0.0f;
+    if (tau <= 0.0f || r <= 0.0f)
+    {
+      continue;
+    }
+    if (is_border(&layout, at, d))
+    {
+      part[d] = passes_border(tau, r, k) * beside_sweeps(tau);
+    }
+    else if (layout.size[axis] > 1)
+    {
+      const int j = next[d];
+      const float way = way_to_boundary(&layout, tau, sigma_t[i], sigma_a[i]);
+      const float beyond = way_to_boundary(&layout, sigma_t[j] * h, sigma_t[j], sigma_a[j]);
+      part[d] = passes_inside(tau, r, k) * way / (way + beyond) * beside_sweeps(tau);
+    }
+    sum += part[d];
+  }
+  const float power = sigma_s[layout.first + i] * length / fmax(sum, 1.0f); // a corner cannot pass more than there is
+  for (int d = 0; d < 6; ++d)
+  {
+    passed[d * stride + i] += part[d] * power;
+  }
+  all_path[layout.first + i] += length;
+}

@@ -1,0 +1,270 @@
+#include "LightPropagation/Diffusion/MultigridSolver.h"
+
+#include "Device/Sizes.h"
+
+#include "TyndallKernelSources.h"
+
+#include <algorithm>
+#include <cmath>
+
+namespace tyndall
+{
+namespace
+{
+constexpr int Chunk = 4096;      ///< as in MultigridSolver.cl
+constexpr int FewVoxels = 64;    ///< of the coarsest level
+constexpr int FinishRounds = 12; ///< on it
+constexpr int MostIterations = 300;
+constexpr int Patience = 12;         ///< iterations in which a residual has to halve, or is left as it is
+constexpr float Damping = 0.8f;      ///< of Jacobi's method, about the best for seven points
+constexpr double Negligible = 1e-12; ///< residual, of the first one
+}
+
+ExactValues::ExactValues(Device& device, std::size_t count, const char* what)
+{
+  if (device.HasExtension("cl_khr_fp64"))
+  {
+    this->Doubles = Buffer<double>(device, count, what);
+  }
+  else
+  {
+    this->Floats = Buffer<float>(device, count, what);
+  }
+  this->Fill(0.0);
+}
+
+void ExactValues::Fill(double value)
+{
+  this->Doubles.Fill(value);
+  this->Floats.Fill(static_cast<float>(value));
+}
+
+std::vector<double> ExactValues::Read() const
+{
+  if (this->InDouble())
+  {
+    return this->Doubles.Read();
+  }
+  const std::vector<float> values = this->Floats.Read();
+  return { values.begin(), values.end() };
+}
+
+std::string ExactOption(const Device& device)
+{
+  return std::string("-DDOUBLES=") + (device.HasExtension("cl_khr_fp64") ? "1" : "0");
+}
+
+LowOrderSolver::LowOrderSolver(Device& device, const std::array<int, 3>& size, const std::array<double, 3>& ofSpacing)
+  : TheDevice(device)
+{
+  std::array<double, 3> spacing = ofSpacing;
+  LevelOnDevice layout = { { size[0], size[1], size[2] }, {} };
+  for (;;)
+  {
+    const std::size_t count = static_cast<std::size_t>(layout.size[0]) * layout.size[1] * layout.size[2];
+    double shortest = 0.0;
+    for (int axis = 0; axis < 3; ++axis)
+    {
+      if (layout.size[axis] > 1 && (shortest == 0.0 || spacing[axis] < shortest))
+      {
+        shortest = spacing[axis];
+      }
+    }
+    for (int axis = 0; axis < 3; ++axis)
+    {
+      layout.halved[axis] = layout.size[axis] > 1 && spacing[axis] < 1.9 * shortest ? 1 : 0;
+    }
+    Level level;
+    level.layout = layout;
+    const char* what = "the low-order system";
+    level.conductance = Buffer<float>(device, 3 * count, what);
+    level.loss = Buffer<float>(device, count, what);
+    level.right = Buffer<float>(device, count, what);
+    level.values = Buffer<float>(device, count, what);
+    level.other = Buffer<float>(device, count, what);
+    this->Levels.push_back(std::move(level));
+    if (count <= FewVoxels)
+    {
+      break;
+    }
+    for (int axis = 0; axis < 3; ++axis)
+    {
+      spacing[axis] *= 1 + layout.halved[axis];
+      layout.size[axis] = (layout.size[axis] + layout.halved[axis]) >> layout.halved[axis];
+    }
+  }
+  this->Count = static_cast<std::size_t>(size[0]) * size[1] * size[2];
+  this->Residual = ExactValues(device, this->Count, "the low-order system");
+  this->Direction = ExactValues(device, this->Count, "the low-order system");
+  this->Applied = ExactValues(device, this->Count, "the low-order system");
+  this->Sums = ExactValues(device, (this->Count + Chunk - 1) / Chunk, "sums");
+}
+
+cl::NDRange LowOrderSolver::Range(const cl_int* size)
+{
+  return { static_cast<std::size_t>(RoundUp(size[0], 32)), static_cast<std::size_t>(RoundUp(size[1], 8)),
+    static_cast<std::size_t>(size[2]) };
+}
+
+cl::Kernel LowOrderSolver::Kernel(const char* name) const
+{
+  return this->TheDevice.Kernel(
+    name, { kernel_source::DiffusionLayout, kernel_source::MultigridSolver }, ExactOption(this->TheDevice));
+}
+
+void LowOrderSolver::Run(cl::Kernel& kernel, const cl_int* size)
+{
+  this->TheDevice.Queue().enqueueNDRangeKernel(kernel, cl::NullRange, this->Range(size), Group());
+}
+
+void LowOrderSolver::Coarsen()
+{
+  cl::Kernel kernel = this->Kernel("level_coarsen");
+  for (std::size_t l = 0; l + 1 < this->Levels.size(); ++l)
+  {
+    Level& fine = this->Levels[l];
+    Level& coarse = this->Levels[l + 1];
+    With(kernel, fine.layout, coarse.layout, fine.conductance, fine.loss, coarse.conductance, coarse.loss);
+    this->Run(kernel, coarse.layout.size);
+  }
+}
+
+/// One step of Jacobi's method.
+void LowOrderSolver::Smooth(Level& level)
+{
+  cl::Kernel kernel = this->Kernel("level_smooth");
+  With(kernel, level.layout, level.conductance, level.loss, level.right, level.values, level.other, Damping);
+  this->Run(kernel, level.layout.size);
+  level.values.Swap(level.other);
+}
+
+/// A V cycle on the residual; the finest level's values are what comes of it. The same steps up and down keep it symmetric.
+void LowOrderSolver::Precondition(double perUnit)
+{
+  cl::Kernel first = this->Kernel("finest_begin");
+  cl::Kernel begin = this->Kernel("level_begin");
+  cl::Kernel residual = this->Kernel("level_residual");
+  cl::Kernel restricts = this->Kernel("level_restrict");
+  cl::Kernel prolong = this->Kernel("level_prolong");
+  cl::Kernel finish = this->Kernel("level_finish");
+  const std::size_t last = this->Levels.size() - 1;
+  for (std::size_t l = 0; l < last || l == 0; ++l)
+  {
+    Level& level = this->Levels[l];
+    if (l == 0)
+    {
+      With(first, level.layout, level.conductance, level.loss, this->Residual.Handle(), static_cast<float>(perUnit),
+        level.right, level.values, Damping);
+      this->Run(first, level.layout.size);
+    }
+    else
+    {
+      With(begin, level.layout, level.conductance, level.loss, level.right, level.values, Damping);
+      this->Run(begin, level.layout.size);
+    }
+    if (last == 0)
+    {
+      break;
+    }
+    this->Smooth(level);
+    With(residual, level.layout, level.conductance, level.loss, level.right, level.values, level.other);
+    this->Run(residual, level.layout.size);
+    Level& coarse = this->Levels[l + 1];
+    With(restricts, level.layout, coarse.layout, level.other, coarse.right);
+    this->Run(restricts, coarse.layout.size);
+  }
+  Level& coarsest = this->Levels[last];
+  With(finish, coarsest.layout, coarsest.conductance, coarsest.loss, coarsest.right, coarsest.values,
+    cl_int(FinishRounds));
+  this->TheDevice.Queue().enqueueNDRangeKernel(finish, cl::NullRange, cl::NDRange(1), cl::NDRange(1));
+  for (std::size_t l = last; l-- > 0;)
+  {
+    Level& level = this->Levels[l];
+    With(prolong, level.layout, this->Levels[l + 1].layout, this->Levels[l + 1].values, level.values);
+    this->Run(prolong, level.layout.size);
+    this->Smooth(level);
+    this->Smooth(level);
+  }
+}
+
+double LowOrderSolver::Dot(const ExactValues& a, const cl::Buffer& b, bool ofFloats)
+{
+  cl::Kernel kernel = this->Kernel(ofFloats ? "low_order_dot_float" : "low_order_dot");
+  With(kernel, a.Handle(), b, cl_int(this->Count), this->Sums.Handle());
+  const std::size_t chunks = (this->Count + Chunk - 1) / Chunk;
+  this->TheDevice.Queue().enqueueNDRangeKernel(kernel, cl::NullRange, cl::NDRange(chunks), cl::NDRange(1));
+  double sum = 0.0;
+  for (double part : this->Sums.Read())
+  {
+    sum += part;
+  }
+  return sum;
+}
+
+int LowOrderSolver::Solve(
+  const ExactValues& right, ExactValues& values, double unit, double reduction, double leftAtMost)
+{
+  Level& finest = this->Levels.front();
+  cl::Kernel apply = this->Kernel("low_order_apply");
+  cl::Kernel step = this->Kernel("low_order_step");
+  cl::Kernel turn = this->Kernel("low_order_turn");
+  const auto exact = [&](cl::Kernel& kernel, cl_uint index, double value) {
+    if (right.InDouble())
+    {
+      kernel.setArg(index, value);
+    }
+    else
+    {
+      kernel.setArg(index, static_cast<float>(value));
+    }
+  };
+  const auto multiply = [&](const ExactValues& by, bool subtract, const ExactValues& into) {
+    With(apply, finest.layout, finest.conductance, finest.loss, by.Handle(), right.Handle(), cl_int(subtract),
+      into.Handle());
+    this->Run(apply, finest.layout.size);
+  };
+  const cl::NDRange all(this->Count);
+  multiply(values, true, this->Residual);
+  this->Precondition(1.0 / unit);
+  double rz = this->Dot(this->Residual, finest.values.Handle(), true) / unit;
+  this->FirstResidual = std::max(this->FirstResidual, rz);
+  const double enough = std::max(rz * reduction * reduction, this->FirstResidual * Negligible * Negligible);
+  this->Direction.Fill(0.0);
+  double smallest = std::numeric_limits<double>::infinity();
+  int sinceThen = 0;
+  const auto isLeft = [&] {
+    if (!std::isfinite(leftAtMost))
+    {
+      return false;
+    }
+    const double left = this->Dot(this->Residual, this->Residual.Handle(), false);
+    sinceThen = left < 0.25 * smallest ? 0 : sinceThen + 1;
+    smallest = sinceThen == 0 ? left : smallest;
+    return left > leftAtMost * leftAtMost * unit * unit * static_cast<double>(this->Count) && sinceThen < Patience;
+  };
+  double part = 0.0;
+  int iteration = 0;
+  while (iteration < MostIterations && rz > 0.0 && std::isfinite(rz) && (rz > enough || isLeft()))
+  {
+    With(turn, this->Direction.Handle(), finest.values);
+    exact(turn, 2, part);
+    this->TheDevice.Queue().enqueueNDRangeKernel(turn, cl::NullRange, all, cl::NullRange);
+    multiply(this->Direction, false, this->Applied);
+    const double curvature = this->Dot(this->Direction, this->Applied.Handle(), false);
+    if (!(curvature > 0.0))
+    {
+      break;
+    }
+    // The direction is in units: so is the step.
+    With(step, values.Handle(), this->Residual.Handle(), this->Direction.Handle(), this->Applied.Handle());
+    exact(step, 4, rz * unit / curvature);
+    this->TheDevice.Queue().enqueueNDRangeKernel(step, cl::NullRange, all, cl::NullRange);
+    this->Precondition(1.0 / unit);
+    const double next = this->Dot(this->Residual, finest.values.Handle(), true) / unit;
+    part = next / rz;
+    rz = next;
+    ++iteration;
+  }
+  return iteration;
+}
+}

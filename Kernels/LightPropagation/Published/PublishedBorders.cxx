@@ -1,0 +1,83 @@
+#include "LightPropagation/Published/PublishedBorders.h"
+
+namespace tyndall
+{
+PublishedBorders::PublishedBorders(
+  const PublishedModel& model, const PropagationSettings& settings, const PublishedPlan& plan)
+  : Model(model)
+  , Settings(settings)
+  , Plan(plan)
+{
+}
+
+std::vector<float> PublishedBorders::Radiance(const PublishedPlan::Batch& batch) const
+{
+  std::vector<float> radiance(this->Plan.boundarySize, 0.0f);
+  std::size_t at = 0;
+  for (int i = 0; i < batch.count; ++i)
+  {
+    for (int axis : { batch.maps[i].axis, batch.maps[i].axisU, batch.maps[i].axisV })
+    {
+      for (int c = 0; c < this->Model.Channels(); ++c)
+      {
+        radiance[at++] = static_cast<float>(this->Model.Boundary(batch.first + i, axis)[c]);
+      }
+    }
+  }
+  return radiance;
+}
+
+void PublishedBorders::TallyEntered(const PublishedPlan::Batch& batch, OrderLedger& ledger) const
+{
+  for (int i = 0; i < batch.count; ++i)
+  {
+    const MapGeometry& map = batch.maps[i];
+    const auto enter = [&](int axis, double rays) {
+      const Rgb& boundary = this->Model.Boundary(batch.first + i, axis);
+      for (int c = 0; c < this->Model.Channels(); ++c)
+      {
+        ledger.entered[c] += rays * map.beamPower * boundary[c];
+      }
+    };
+    enter(map.axis, static_cast<double>(map.sizeU) * map.sizeV * this->Plan.SubMaps());
+    for (int subMap = 0; subMap < this->Plan.SubMaps(); ++subMap)
+    {
+      GridWalk walk = this->Plan.Walk(map, subMap, 0);
+      while (walk.Next())
+      {
+        const bool entersU = walk.moveU != 0 && !this->Settings.periodic[map.axisU];
+        const bool entersV = walk.moveV != 0 && !this->Settings.periodic[map.axisV];
+        const double edge = entersU && entersV ? 0.5 : 0.0; // one ray enters half through either side
+        enter(map.axisU, entersU ? map.sizeV - edge : 0.0);
+        enter(map.axisV, entersV ? map.sizeU - edge : 0.0);
+      }
+    }
+  }
+}
+
+void PublishedBorders::TallyEscaped(
+  const PublishedPlan::Batch& batch, const std::vector<float>& escaped, OrderLedger& ledger) const
+{
+  const int rows = batch.Map().sizeV;
+  std::size_t at = 0;
+  for (int i = 0; i < batch.count; ++i)
+  {
+    const MapGeometry& map = batch.maps[i];
+    const auto take = [&](int count, double& power) {
+      double sum = 0.0;
+      for (int k = 0; k < count; ++k)
+      {
+        sum += escaped[at++];
+      }
+      power += map.beamPower * sum;
+    };
+    for (int c = 0; c < this->Model.Channels(); ++c)
+    {
+      take(rows, ledger.facePowerOut[map.ExitFace(map.axisU)][c]);
+      take(1, ledger.facePowerOut[map.ExitFace(map.axisV)][c]);
+      take(
+        rows, this->Settings.periodic[map.axis] ? ledger.carried[c] : ledger.facePowerOut[map.ExitFace(map.axis)][c]);
+    }
+  }
+}
+}

@@ -1,0 +1,29 @@
+#pragma once
+
+#include "LightPropagation/Published/PublishedPlan.h"
+
+#include <vector>
+
+namespace tyndall
+{
+/// Light through the faces of the box, in the published algorithm: the radiance that the maps of a batch start with, and the
+/// power that comes in and goes out.
+class PublishedBorders
+{
+public:
+  /// @param model, plan  must stay
+  PublishedBorders(const PublishedModel& model, const PropagationSettings& settings, const PublishedPlan& plan);
+
+  /// Radiance entering across w, u, v in order 0: [direction][3][channel], filled up to the plan's boundarySize.
+  std::vector<float> Radiance(const PublishedPlan::Batch& batch) const;
+  /// Adds up rays that start on the map in order 0, and those that come in anew through a side.
+  void TallyEntered(const PublishedPlan::Batch& batch, OrderLedger& ledger) const;
+  /// Adds up what a pass left at the borders, laid out as PublishedPropagate.cl says.
+  void TallyEscaped(const PublishedPlan::Batch& batch, const std::vector<float>& escaped, OrderLedger& ledger) const;
+
+private:
+  const PublishedModel& Model;
+  PropagationSettings Settings;
+  const PublishedPlan& Plan;
+};
+}

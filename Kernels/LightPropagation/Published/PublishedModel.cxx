@@ -1,0 +1,459 @@
+#include "LightPropagation/Published/PublishedModel.h"
+
+#include <glm/geometric.hpp>
+#include <glm/gtc/constants.hpp>
+#include <glm/vec3.hpp>
+
+#include <algorithm>
+#include <cmath>
+#include <limits>
+#include <string>
+
+namespace tyndall
+{
+namespace
+{
+constexpr double FourPi = 4.0 * glm::pi<double>();
+
+/// No problem that converges at all needs more; those that do not must end.
+constexpr int MostOrders = 10000;
+
+glm::dvec3 Vector(const std::array<double, 3>& v)
+{
+  return { v[0], v[1], v[2] };
+}
+
+int NearestOf(const std::vector<std::array<double, 3>>& directions, const std::array<double, 3>& omega)
+{
+  int best = 0;
+  double largest = -2.0;
+  for (std::size_t d = 0; d < directions.size(); ++d)
+  {
+    const double cosine = glm::dot(Vector(directions[d]), Vector(omega));
+    if (cosine > largest + 1e-12) // ties go to the first
+    {
+      largest = cosine;
+      best = static_cast<int>(d);
+    }
+  }
+  return best;
+}
+
+/// The directions nearest to omega, by their index: each once for every tiny push that leads to it, of the 48 that the cube's
+/// symmetries make of one. All the same, but for what lies between cells.
+std::vector<int> NearestAround(const DirectionSet& set, const std::array<double, 3>& omega)
+{
+  const double length = glm::length(Vector(omega));
+  std::array<double, 3> push = { 1e-9 * length, 2e-9 * length, 3e-9 * length };
+  std::vector<int> nearest;
+  do
+  {
+    for (int signs = 0; signs < 8; ++signs)
+    {
+      std::array<double, 3> pushed = omega;
+      for (int a = 0; a < 3; ++a)
+      {
+        pushed[a] += (signs >> a & 1) != 0 ? -push[a] : push[a];
+      }
+      nearest.push_back(Nearest(set, pushed));
+    }
+  } while (std::next_permutation(push.begin(), push.end()));
+  return nearest;
+}
+
+std::vector<std::array<Rgb, 3>> BoundaryOf(
+  const DirectionSet& set, const Illumination& illumination, const std::array<bool, 3>& periodic)
+{
+  std::vector<Rgb> distant = BoundaryRadiance(set, illumination.environment, illumination.sky);
+  for (const Light& light : illumination.lights)
+  {
+    if (light.type == LightType::Directional)
+    {
+      const std::vector<int> nearest = NearestAround(set, light.direction);
+      for (const int i : nearest)
+      {
+        for (int c = 0; c < 3; ++c)
+        {
+          distant[i][c] += light.power[c] / (set.directions[i].weight * static_cast<double>(nearest.size()));
+        }
+      }
+    }
+  }
+  std::vector<std::array<Rgb, 3>> boundary(set.directions.size());
+  for (std::size_t i = 0; i < boundary.size(); ++i)
+  {
+    for (int axis = 0; axis < 3; ++axis)
+    {
+      const int face = 2 * axis + (set.directions[i].omega[axis] < 0.0 ? 1 : 0);
+      for (int c = 0; c < 3 && !periodic[axis]; ++c)
+      {
+        boundary[i][axis][c] = distant[i][c] + illumination.faces[face][c];
+      }
+    }
+  }
+  return boundary;
+}
+
+/// A patch of the sphere small enough that the phase function is constant on it.
+struct Patch
+{
+  glm::dvec3 omega;
+  double weight;
+  int stored;
+};
+
+std::vector<Patch> Patches(const std::vector<std::array<double, 3>>& stored)
+{
+  std::vector<Patch> patches;
+  for (const Direction& direction : SoundDirections(30 * 30).directions)
+  {
+    patches.push_back({ Vector(direction.omega), direction.weight, NearestOf(stored, direction.omega) });
+  }
+  return patches;
+}
+
+double HenyeyGreenstein(double g, double cosine)
+{
+  const double x = 1.0 + g * g - 2.0 * g * cosine;
+  return (1.0 - g * g) / (FourPi * x * std::sqrt(x));
+}
+
+/// F^{i,d} / |Omega^d| of Eq. (5) for all stored directions d (rows) and all propagation directions i: the integral of the phase
+/// function over both cells.
+std::vector<std::vector<double>> ScatteringFactors(
+  double g, const DirectionSet& set, const std::vector<std::array<double, 3>>& stored)
+{
+  const std::vector<Patch> patches = Patches(stored);
+  std::vector<std::vector<double>> factors(stored.size(), std::vector<double>(set.directions.size(), 0.0));
+  std::vector<double> solidAngle(stored.size(), 0.0);
+  std::vector<double> cellSize(set.directions.size(), 0.0);
+  std::vector<double> scattered(stored.size());
+  const auto addPatch = [&](const Patch& from, std::size_t i) {
+    std::fill(scattered.begin(), scattered.end(), 0.0);
+    double all = 0.0;
+    for (const Patch& to : patches)
+    {
+      const double p = to.weight * HenyeyGreenstein(g, glm::dot(from.omega, to.omega));
+      scattered[to.stored] += p;
+      all += p;
+    }
+    for (std::size_t d = 0; d < stored.size(); ++d)
+    {
+      factors[d][i] += from.weight * scattered[d] / all; // a forward peak narrower than a patch keeps its power
+    }
+    cellSize[i] += from.weight;
+  };
+  for (const Patch& from : patches)
+  {
+    solidAngle[from.stored] += from.weight;
+    addPatch(from, Nearest(set, { from.omega.x, from.omega.y, from.omega.z }));
+  }
+  for (std::size_t i = 0; i < set.directions.size(); ++i)
+  {
+    if (cellSize[i] == 0.0) // more directions than patches
+    {
+      addPatch({ Vector(set.directions[i].omega), set.directions[i].weight, 0 }, i);
+    }
+    for (std::size_t d = 0; d < stored.size(); ++d)
+    {
+      factors[d][i] *= solidAngle[d] > 0.0 ? set.directions[i].weight / (cellSize[i] * solidAngle[d]) : 0.0;
+    }
+  }
+  return factors;
+}
+}
+
+std::vector<std::array<double, 3>> EvenDirections(int count)
+{
+  std::vector<std::array<double, 3>> directions;
+  const int edge = static_cast<int>(std::lround(std::sqrt(count / 6.0)));
+  if (edge >= 1 && edge <= 64 && 6 * edge * edge == count)
+  {
+    for (const Direction& direction : SoundDirections(edge * edge).directions)
+    {
+      directions.push_back(direction.omega);
+    }
+    return directions;
+  }
+  const double goldenAngle = glm::pi<double>() * (3.0 - std::sqrt(5.0));
+  for (int i = 0; i < count; ++i)
+  {
+    const double z = 1.0 - (2.0 * i + 1.0) / count;
+    const double sine = std::sqrt(1.0 - z * z);
+    directions.push_back({ sine * std::cos(goldenAngle * i), sine * std::sin(goldenAngle * i), z });
+  }
+  return directions;
+}
+
+std::vector<std::string> LeftOutAsPublished(const Illumination& illumination)
+{
+  int near = 0;
+  for (const Light& light : illumination.lights)
+  {
+    near += light.type != LightType::Directional ? 1 : 0;
+  }
+  if (near == 0)
+  {
+    return {};
+  }
+  return {
+    std::to_string(near) +
+    " point, spot or rectangle light(s) do not shine: the published scheme has light from outside only; take Scheme 1"
+  };
+}
+
+std::vector<std::string> LeftOutAsPublished(const Medium& medium, const MediumTraits& traits,
+  const Illumination& illumination, const PropagationSettings& settings, int orders)
+{
+  std::vector<std::string> words = LeftOutAsPublished(illumination);
+  const auto say = [&](bool condition, const char* text) {
+    if (condition)
+    {
+      words.push_back(text);
+    }
+  };
+  const bool leaveOut = settings.leaveOut;
+  say(leaveOut && medium.g == 0.0 && traits.scatters, left_out::Isotropic);
+  say(leaveOut && !traits.scatters, left_out::NoScattering);
+  say(leaveOut && !traits.emits, left_out::NoEmission);
+  say(leaveOut && traits.scatters && orders == 1, left_out::OneOrder);
+  say(!settings.netFlux, left_out::NetFlux);
+  return words;
+}
+
+PublishedModel::PublishedModel(
+  const Medium& medium, const Illumination& illumination, const PropagationSettings& settings, int channels)
+{
+  Check(medium);
+  Check(illumination);
+  Check(settings);
+  this->ChannelCount = channels == 3 || medium.Channels() == 3 || !ColourOf(illumination).IsGrey() ? 3 : 1;
+  this->Isotropic = medium.g == 0.0;
+  this->Set = PublishedDirections(settings.directionsPerFace);
+  this->BoundaryRadiances = BoundaryOf(this->Set, illumination, settings.periodic);
+  if (settings.storedDirections == 1)
+  {
+    this->Stored = { { 0.0, 0.0, 0.0 } };
+    this->Sources = EvenDirections(6);
+  }
+  else
+  {
+    this->Stored = this->Sources = EvenDirections(settings.storedDirections);
+  }
+  std::vector<double> fluence;
+  for (const Direction& direction : this->Set.directions)
+  {
+    this->NearestSource.push_back(NearestOf(this->Sources, direction.omega));
+    fluence.push_back(direction.weight);
+  }
+  this->Coefficients.push_back(fluence);
+  if (!this->Isotropic)
+  {
+    for (std::vector<double>& row : ScatteringFactors(medium.g, this->Set, this->Sources))
+    {
+      this->Coefficients.push_back(std::move(row));
+    }
+  }
+  this->FirstFlux = this->MomentCount();
+  for (int axis = 0; axis < 3 && settings.netFlux; ++axis)
+  {
+    std::vector<double> flux;
+    for (const Direction& direction : this->Set.directions)
+    {
+      flux.push_back(direction.weight * direction.omega[axis]);
+    }
+    this->Coefficients.push_back(flux);
+  }
+}
+
+PublishedModel::Part PublishedModel::Source(int sourceDirection) const
+{
+  return this->Isotropic ? Part{ 0, 1.0 / FourPi } : Part{ 1 + sourceDirection, 1.0 };
+}
+
+PublishedModel::Part PublishedModel::ScatteredRadiance(int storedDirection) const
+{
+  return this->Stored.size() == 1 ? Part{ 0, 1.0 / FourPi } : this->Source(storedDirection);
+}
+
+MapGeometry::MapGeometry(
+  const Grid& grid, const PropagationSettings& settings, const Direction& direction, int index, int perFace)
+{
+  this->axis = index / perFace / 2;
+  this->axisU = this->axis == 0 ? 1 : 0;
+  this->axisV = this->axis == 2 ? 1 : 2;
+  this->planes = grid.size[this->axis];
+  this->sizeU = grid.size[this->axisU];
+  this->sizeV = grid.size[this->axisV];
+  const std::array<double, 3>& omega = direction.omega;
+  const double cosine = std::abs(omega[this->axis]);
+  const double height = grid.spacing[this->axis];
+  const double elements = static_cast<double>(settings.mapResolution) * settings.mapResolution;
+  this->forward = omega[this->axis] > 0.0;
+  this->slopeU = omega[this->axisU] / cosine * (height / grid.spacing[this->axisU]);
+  this->slopeV = omega[this->axisV] / cosine * (height / grid.spacing[this->axisV]);
+  this->length = height / cosine;
+  this->beamPower = direction.weight * cosine * grid.spacing[this->axisU] * grid.spacing[this->axisV] / elements;
+  this->density = cosine / (height * elements);
+  for (int a = 0; a < 3; ++a)
+  {
+    this->Upward[a] = omega[a] >= 0.0;
+  }
+  this->Continues = settings.periodic[this->axis];
+}
+
+int MapGeometry::EntryFace(int entryAxis) const
+{
+  return 2 * entryAxis + (this->Upward[entryAxis] ? 0 : 1);
+}
+
+double MapGeometry::StartOfOrder(double start, double slope, int order) const
+{
+  if (order == 0 || !this->Continues)
+  {
+    return start;
+  }
+  const double position = start + slope * this->planes * order;
+  const double place = position - std::floor(position);
+  const bool onBorder = std::min(place, 1.0 - place) < 1e-9; // the crossing into the next voxel is still to come
+  return !onBorder ? place : slope > 0.0 ? 1.0 : slope < 0.0 ? 0.0 : start;
+}
+
+GridWalk::GridWalk(double startU, double startV, double slopeU, double slopeV, int planes)
+  : Planes(planes)
+  , SignU(slopeU < 0.0 ? -1 : 1)
+  , SignV(slopeV < 0.0 ? -1 : 1)
+{
+  const auto never = std::numeric_limits<double>::infinity();
+  this->StepU = slopeU != 0.0 ? 1.0 / std::abs(slopeU) : never;
+  this->StepV = slopeV != 0.0 ? 1.0 / std::abs(slopeV) : never;
+  this->NextU = slopeU != 0.0 ? (slopeU > 0.0 ? 1.0 - startU : startU) * this->StepU : never;
+  this->NextV = slopeV != 0.0 ? (slopeV > 0.0 ? 1.0 - startV : startV) * this->StepV : never;
+}
+
+bool GridWalk::Next()
+{
+  constexpr double together = 1e-9;
+  this->moveU = this->moveV = 0;
+  if (this->plane < 0)
+  {
+    this->plane = 0;
+  }
+  else
+  {
+    const bool ahead = this->plane + 1 <= this->Depth + together;
+    if (ahead && this->plane + 1 == this->Planes)
+    {
+      return false;
+    }
+    this->plane += ahead ? 1 : 0;
+    if (this->NextU <= this->Depth + together)
+    {
+      this->moveU = this->SignU;
+      this->NextU += this->StepU;
+    }
+    if (this->NextV <= this->Depth + together)
+    {
+      this->moveV = this->SignV;
+      this->NextV += this->StepV;
+    }
+  }
+  const double end = std::min({ this->NextU, this->NextV, this->plane + 1.0 });
+  this->fraction = std::max(0.0, end - this->Depth);
+  this->Depth = std::max(this->Depth, end);
+  return true;
+}
+
+OrderLedger::OrderLedger(const Medium& medium, const PublishedModel& model, const PropagationSettings& settings)
+  : TheMedium(medium)
+  , Settings(settings)
+  , Channels(model.Channels())
+  , Start(std::chrono::steady_clock::now())
+{
+  const double power = FourPi * medium.grid.VoxelVolume();
+  for (std::size_t voxel = 0; voxel < medium.grid.VoxelCount(); ++voxel)
+  {
+    for (int c = 0; c < this->Channels; ++c)
+    {
+      this->Balance.emitted[c] += power * medium.emission.At(voxel, c);
+    }
+  }
+}
+
+void OrderLedger::CloseOrder(const float* fluence)
+{
+  Rgb sum = {};
+  Rgb absorbed = {};
+  Rgb scattered = {};
+  for (std::size_t voxel = 0; voxel < this->TheMedium.grid.VoxelCount(); ++voxel)
+  {
+    for (int c = 0; c < this->Channels; ++c)
+    {
+      const double value = fluence[voxel * this->Channels + c];
+      sum[c] += value;
+      absorbed[c] += value * this->TheMedium.sigma_a.At(voxel, c);
+      scattered[c] += value * this->TheMedium.sigma_s.At(voxel, c);
+    }
+  }
+  const double volume = this->TheMedium.grid.VoxelVolume();
+  ConvergenceRow row;
+  row.iteration = this->Orders();
+  row.seconds = std::chrono::duration<double>(std::chrono::steady_clock::now() - this->Start).count();
+  this->Balance.entered = this->entered;
+  this->Balance.escaped = {};
+  for (int c = 0; c < this->Channels; ++c)
+  {
+    this->Balance.absorbed[c] += volume * absorbed[c];
+    this->Balance.leftOver[c] = volume * scattered[c] + this->carried[c];
+    for (const Rgb& face : this->facePowerOut)
+    {
+      this->Balance.escaped[c] += face[c];
+    }
+    this->TotalSum[c] += sum[c];
+    row.absorbed += this->Balance.absorbed[c];
+    row.escaped += this->Balance.escaped[c];
+    row.leftOver += this->Balance.leftOver[c];
+  }
+  row.residual = row.leftOver > 0.0 ? this->EstimateResidual(sum) : 0.0;
+  this->LastSum = sum;
+  this->Rows.push_back(row);
+  this->Finished = row.residual == 0.0 ||
+    (this->Settings.maximumOrders > 0 ? this->Orders() >= this->Settings.maximumOrders
+                                      : row.residual <= this->Settings.tolerance || this->Orders() >= MostOrders);
+}
+
+/// Orders shrink like a geometric series in the end: what is still to come is its rest.
+double OrderLedger::EstimateResidual(const Rgb& orderSum) const
+{
+  double residual = this->Rows.empty() ? 1.0 : 0.0;
+  for (int c = 0; c < this->Channels; ++c)
+  {
+    if (orderSum[c] > 0.0 && this->LastSum[c] > 0.0)
+    {
+      const double ratio = std::min(orderSum[c] / this->LastSum[c], 0.9999);
+      residual = std::max(residual, orderSum[c] * ratio / (1.0 - ratio) / this->TotalSum[c]);
+    }
+  }
+  return residual;
+}
+
+double OrderLedger::Progress(double fractionOfOrder) const
+{
+  if (this->Settings.maximumOrders > 0)
+  {
+    return (this->Orders() + fractionOfOrder) / this->Settings.maximumOrders;
+  }
+  // How far the logarithm of the residual has come, and a little more with each order.
+  const double creeping = 1.0 - 1.0 / (1.0 + 0.05 * (this->Orders() + fractionOfOrder));
+  const double tolerance = std::clamp(this->Settings.tolerance, 1e-12, 0.9);
+  const double residual = this->Rows.empty() ? 1.0 : std::clamp(this->Rows.back().residual, tolerance, 1.0);
+  return std::min(std::max(creeping, std::log(residual) / std::log(tolerance)), 0.99);
+}
+
+void OrderLedger::WriteTo(LightField& field) const
+{
+  field.balance = this->Balance;
+  field.facePowerOut = this->facePowerOut;
+  field.convergence = this->Rows;
+}
+}

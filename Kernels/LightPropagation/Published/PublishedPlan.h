@@ -1,0 +1,89 @@
+#pragma once
+
+#include "LightPropagation/Published/PublishedModel.h"
+#include "LightPropagation/Published/PublishedVolumes.h"
+
+#include "Device/Buffer.h"
+
+#include <vector>
+
+namespace tyndall
+{
+/// Which rays the published algorithm sends together, and where they go: directions in batches, their ways through the grid
+/// as tables of voxel crossings, and how much memory all that takes.
+class PublishedPlan
+{
+public:
+  /// As crossing_info in PublishedPropagate.cl: what the rays of one direction do in one launch.
+  struct CrossingOnDevice
+  {
+    cl_int direction, parity, moveU, moveV, source;
+    cl_float length;
+  };
+
+  /// One launch: some of the crossings in one plane.
+  struct Launch
+  {
+    int plane, first, count;
+    bool add; ///< to what earlier launches left in the plane
+  };
+
+  /// A batch's way through the volume on one of the N x N sub-maps ("divide the LPM into N smaller sub-LPM", section 5).
+  struct Pass
+  {
+    std::vector<Launch> launches;
+    int end = 0; ///< its crossings for EndRays
+    std::size_t carriedFirst = 0;
+  };
+
+  /// Directions of one face whose rays go together, and their rows in T.
+  struct Batch
+  {
+    int first = 0, count = 0; ///< directions
+    cl_int firstCoefficient = 0;
+    std::size_t carriedFirst = 0;
+    std::vector<MapGeometry> maps;
+    std::vector<Pass> passes;
+    Buffer<CrossingOnDevice> crossings; ///< of all passes
+    int Layout() const { return this->maps[0].axis == 0 ? 1 : 0; }
+    const MapGeometry& Map() const { return this->maps[0]; } ///< all have its axes and sizes
+  };
+
+  /// @param model, volumes  must stay
+  /// @param temporaryBytes  most that T may take; 0: what is left on the device
+  PublishedPlan(Device& device, const Grid& grid, const PublishedModel& model, const PropagationSettings& settings,
+    const PublishedVolumes& volumes, std::size_t temporaryBytes);
+
+  std::vector<Batch> batches;
+  std::vector<float> coefficients; ///< [batch][moment][direction], times the map's density
+
+  /// Sizes of the buffers that all batches share, floats.
+  std::size_t raysSize = 0, escapedSize = 0, carriedSize = 0, contributionsSize = 0, boundarySize = 0;
+
+  int SubMaps() const { return this->Settings.mapResolution * this->Settings.mapResolution; }
+  int RayRow(const Batch& batch) const;                ///< floats of a row of a ray map
+  std::size_t CarriedStride(const Batch& batch) const; ///< floats of one direction's map, all sub-maps and channels
+
+  /// Rays that went on through a periodic axis are elsewhere in their voxels in each order.
+  void MakePasses(Batch& batch, int order) const;
+  /// The way of a ray of a map.
+  GridWalk Walk(const MapGeometry& map, int subMap, int order) const;
+
+private:
+  using CrossingsByPlane = std::vector<std::vector<std::vector<CrossingOnDevice>>>; ///< [plane][voxel in it]
+
+  int DirectionsPerBatch(std::size_t temporaryBytes) const;
+  double LargestRayMap() const;
+  void MakeBatches(int perBatch);
+  void MeasureBuffers(int perBatch);
+  void AppendCoefficients(Batch& batch);
+  void WalkThrough(const Batch& batch, int i, int subMap, int order, CrossingsByPlane& byPlane,
+    std::vector<CrossingOnDevice>& ends) const;
+
+  Device& TheDevice;
+  Grid TheGrid;
+  const PublishedModel& Model;
+  PropagationSettings Settings;
+  const PublishedVolumes& Volumes;
+};
+}

@@ -1,0 +1,248 @@
+#include "LightPropagation/Published/PublishedVolumes.h"
+
+#include "Device/Sizes.h"
+
+#include <algorithm>
+#include <string>
+
+namespace tyndall
+{
+namespace
+{
+/// The grid, if kernels can count its voxels with ints.
+const Grid& Addressable(const Device& device, const Grid& grid, int width)
+{
+  for (int axis = 0; axis < 3; ++axis)
+  {
+    const double padded = static_cast<double>(RoundUp(grid.size[axis], width));
+    const double voxels = padded * (grid.size[(axis + 1) % 3] + 17.0) * grid.size[(axis + 2) % 3];
+    if (voxels > 2147483647.0)
+    {
+      throw DeviceError("The grid is too large for " + device.Name() +
+        ": the published algorithm addresses 2^31 voxels. Use a coarser grid.");
+    }
+  }
+  return grid;
+}
+}
+
+VolumeLayouts::VolumeLayouts(const Grid& grid, int width)
+  : size{ grid.size[0], grid.size[1], grid.size[2] }
+{
+  const int across[2][3] = { { this->size[0], this->size[1], this->size[2] },
+    { this->size[1], this->size[2], this->size[0] } };
+  for (int layout = 0; layout < 2; ++layout)
+  {
+    this->row[layout] = RoundUp(across[layout][0], width);
+    const cl_int rows = this->row[layout] * across[layout][1];
+    this->plane[layout] = RoundUp(rows, 16) + (rows % 1024 == 0 ? 16 : 0); // not a multiple of 4 KB
+    this->volume[layout] = this->plane[layout] * across[layout][2];
+  }
+}
+
+std::size_t VolumeLayouts::Index(int layout, int x, int y, int z) const
+{
+  return layout == 0 ? static_cast<std::size_t>(z) * this->plane[0] + y * this->row[0] + x
+                     : static_cast<std::size_t>(x) * this->plane[1] + z * this->row[1] + y;
+}
+
+PublishedVolumes::PublishedVolumes(Device& device, const Medium& medium, const PublishedModel& model, int width)
+  : Width(width)
+  , Layouts(Addressable(device, medium.grid, width), width)
+  , Coloured(medium.sigma_a.HasColour() || medium.sigma_s.HasColour())
+  , TheDevice(device)
+  , TheMedium(medium)
+  , Model(model)
+{
+  this->MakeMedium();
+  this->FindSlots();
+  this->MakeSources();
+  this->MakeMoments();
+}
+
+std::size_t PublishedVolumes::LayoutSize(int layout) const
+{
+  return static_cast<std::size_t>(this->Layouts.volume[layout]) * this->Channels();
+}
+
+/// visit(index in the layout, voxel x fastest, channel)
+template <class Visit>
+void PublishedVolumes::ForEach(int layout, int channels, Visit visit) const
+{
+  for (int c = 0; c < channels; ++c)
+  {
+    std::size_t voxel = 0;
+    for (int z = 0; z < this->Layouts.size[2]; ++z)
+    {
+      for (int y = 0; y < this->Layouts.size[1]; ++y)
+      {
+        for (int x = 0; x < this->Layouts.size[0]; ++x, ++voxel)
+        {
+          visit(static_cast<std::size_t>(c) * this->Layouts.volume[layout] + this->Layouts.Index(layout, x, y, z),
+            voxel, c);
+        }
+      }
+    }
+  }
+}
+
+/// value(voxel x fastest, channel) in one layout.
+template <class Value>
+std::vector<float> PublishedVolumes::ArrangeValues(int layout, int channels, Value value) const
+{
+  std::vector<float> arranged(static_cast<std::size_t>(this->Layouts.volume[layout]) * channels, 0.0f);
+  this->ForEach(layout, channels, [&](std::size_t at, std::size_t voxel, int c) { arranged[at] = value(voxel, c); });
+  return arranged;
+}
+
+std::vector<float> PublishedVolumes::Arrange(int layout, const float* interleaved) const
+{
+  const std::size_t channels = static_cast<std::size_t>(this->Channels());
+  return this->ArrangeValues(
+    layout, this->Channels(), [&](std::size_t voxel, int c) { return interleaved[voxel * channels + c]; });
+}
+
+std::vector<float> PublishedVolumes::Interleave(int layout, const float* arranged) const
+{
+  const std::size_t channels = static_cast<std::size_t>(this->Channels());
+  std::vector<float> values(this->TheMedium.grid.VoxelCount() * channels);
+  this->ForEach(layout, this->Channels(),
+    [&](std::size_t at, std::size_t voxel, int c) { values[voxel * channels + c] = arranged[at]; });
+  return values;
+}
+
+void PublishedVolumes::MakeMedium()
+{
+  const int channels = this->Coloured ? 3 : 1;
+  const auto scattering = [&](std::size_t voxel, int c) { return this->TheMedium.sigma_s.At(voxel, c); };
+  const auto extinction = [&](std::size_t voxel, int c) {
+    return this->TheMedium.sigma_a.At(voxel, c) + this->TheMedium.sigma_s.At(voxel, c);
+  };
+  for (int layout = 0; layout < 2; ++layout)
+  {
+    this->Extinction[layout] =
+      Buffer<float>(this->TheDevice, this->ArrangeValues(layout, channels, extinction), "the extinction coefficient");
+    this->Scattering[layout] =
+      Buffer<float>(this->TheDevice, this->ArrangeValues(layout, channels, scattering), "the scattering coefficient");
+  }
+}
+
+void PublishedVolumes::FindSlots()
+{
+  const DirectionSet& set = this->Model.Directions();
+  for (int layout = 0; layout < 2; ++layout)
+  {
+    this->Slots[layout].assign(this->Model.SourceDirections().size(), -1);
+    int slots = 0;
+    for (std::size_t i = 0; i < set.directions.size(); ++i)
+    {
+      const bool alongX = static_cast<int>(i) / set.PerFace() / 2 == 0;
+      int& slot = this->Slots[layout][this->Model.SourceOf(static_cast<int>(i))];
+      slot = (layout == 1) == alongX && slot < 0 ? slots++ : slot;
+    }
+  }
+}
+
+/// U in the layouts in which the maps read it, at first the medium's emission.
+void PublishedVolumes::MakeSources()
+{
+  std::vector<PartOnDevice> parts;
+  for (int layout = 0; layout < 2; ++layout)
+  {
+    std::size_t slots = 0;
+    for (std::size_t d = 0; d < this->Slots[layout].size(); ++d)
+    {
+      if (this->Slots[layout][d] >= 0)
+      {
+        const PublishedModel::Part part = this->Model.Source(static_cast<int>(d));
+        parts.push_back({ part.moment, static_cast<float>(part.factor), layout, this->Slots[layout][d] });
+        ++slots;
+      }
+    }
+    this->Sources[layout] =
+      Buffer<float>(this->TheDevice, this->LayoutSize(layout) * slots, "the unscattered radiance U");
+    this->Sources[layout].Fill(0.0f);
+  }
+  this->Parts = Buffer<PartOnDevice>(this->TheDevice, parts, "the list of U");
+  if (this->TheMedium.emission.values)
+  {
+    this->WriteSources([&](std::size_t voxel, int, int c) { return this->TheMedium.emission.At(voxel, c); });
+  }
+}
+
+void PublishedVolumes::MakeMoments()
+{
+  const int moments = this->Model.MomentCount();
+  for (int layout = 0; layout < 2; ++layout)
+  {
+    this->OrderMoments[layout] =
+      Buffer<float>(this->TheDevice, this->LayoutSize(layout) * moments, "the moments of an order");
+    this->OrderMoments[layout].Fill(0.0f);
+  }
+  this->Totals = Buffer<float>(this->TheDevice, this->LayoutSize(0) * moments, "the moments");
+  this->Totals.Fill(0.0f);
+}
+
+/// value(voxel, source direction, channel)
+template <class Value>
+void PublishedVolumes::WriteSources(Value value)
+{
+  for (int layout = 0; layout < 2; ++layout)
+  {
+    std::vector<float> all(this->Sources[layout].Size());
+    for (std::size_t d = 0; d < this->Slots[layout].size(); ++d)
+    {
+      if (this->Slots[layout][d] >= 0)
+      {
+        const std::vector<float> one = this->ArrangeValues(
+          layout, this->Channels(), [&](std::size_t voxel, int c) { return value(voxel, static_cast<int>(d), c); });
+        std::copy(one.begin(), one.end(), all.begin() + this->Slots[layout][d] * this->LayoutSize(layout));
+      }
+    }
+    this->Sources[layout].Write(all.data());
+  }
+}
+
+void PublishedVolumes::WriteSource(const std::vector<float>& source)
+{
+  const std::size_t channels = static_cast<std::size_t>(this->Channels());
+  const std::size_t directions = this->Model.SourceDirections().size();
+  this->WriteSources([&](std::size_t voxel, int d, int c) { return source[(voxel * directions + d) * channels + c]; });
+}
+
+std::vector<float> PublishedVolumes::ReadSource() const
+{
+  const std::size_t channels = static_cast<std::size_t>(this->Channels());
+  const std::size_t directions = this->Model.SourceDirections().size();
+  std::vector<float> all(this->TheMedium.grid.VoxelCount() * channels * directions);
+  for (std::size_t d = 0; d < directions; ++d)
+  {
+    const int layout = this->Slots[0][d] >= 0 ? 0 : 1;
+    const int slot = this->Slots[layout][d];
+    if (slot >= 0)
+    {
+      const std::size_t size = this->LayoutSize(layout);
+      const std::vector<float> one =
+        this->Interleave(layout, this->ReadPart(this->Sources[layout], slot * size, size).data());
+      for (std::size_t i = 0; i < one.size(); ++i)
+      {
+        all[(i / channels * directions + d) * channels + i % channels] = one[i];
+      }
+    }
+  }
+  return all;
+}
+
+std::vector<float> PublishedVolumes::ReadMoment(const Buffer<float>& moments, int moment) const
+{
+  return this->Interleave(0, this->ReadPart(moments, moment * this->LayoutSize(0), this->LayoutSize(0)).data());
+}
+
+std::vector<float> PublishedVolumes::ReadPart(const Buffer<float>& buffer, std::size_t first, std::size_t count) const
+{
+  std::vector<float> part(count);
+  this->TheDevice.Queue().enqueueReadBuffer(
+    buffer.Handle(), CL_TRUE, first * sizeof(float), count * sizeof(float), part.data());
+  return part;
+}
+}

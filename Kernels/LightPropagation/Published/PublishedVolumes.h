@@ -1,0 +1,82 @@
+#pragma once
+
+#include "LightPropagation/Published/PublishedModel.h"
+
+#include "Device/Buffer.h"
+
+#include <vector>
+
+namespace tyndall
+{
+/// Where a voxel is in the volumes of the published algorithm's kernels, which know this as volume_info. Layout 0 is
+/// [z][y][x]; layout 1, for maps that march along x, is [x][z][y]: so rows always run along the maps' u.
+struct VolumeLayouts
+{
+  /// @param width  floats to whose multiple rows are padded
+  VolumeLayouts(const Grid& grid, int width);
+
+  cl_int size[3];
+  cl_int row[2], plane[2], volume[2]; ///< floats from row to row, plane to plane and channel to channel, by layout
+
+  std::size_t Index(int layout, int x, int y, int z) const;
+};
+
+/// What stays on the device from one scattering order to the next of the published algorithm: the medium, U, and the moments
+/// of I and fluence. All in both layouts, [...][channel][volume], the padding zero.
+struct PublishedVolumes
+{
+  /// @param medium, model  must stay
+  /// @param width  floats a work-item handles at once
+  /// @throws DeviceError if they do not fit or have more voxels than the kernels can address
+  PublishedVolumes(Device& device, const Medium& medium, const PublishedModel& model, int width);
+
+  int Channels() const { return this->Model.Channels(); }
+  std::size_t LayoutSize(int layout) const; ///< floats of a quantity, all channels
+
+  /// U of a direction is at this place in Sources, in quantities; -1 where no map reads it in this layout.
+  int SourceSlot(int layout, int sourceDirection) const { return this->Slots[layout][sourceDirection]; }
+
+  /// From x fastest with channels interleaved, U with source directions between voxel and channel, and back.
+  std::vector<float> Arrange(int layout, const float* interleaved) const;
+  std::vector<float> Interleave(int layout, const float* arranged) const;
+  void WriteSource(const std::vector<float>& source);
+  std::vector<float> ReadSource() const;
+  std::vector<float> ReadMoment(const Buffer<float>& moments, int moment) const; ///< in layout 0
+
+  /// Floats of a buffer of which the rest is not wanted; waits for the device.
+  std::vector<float> ReadPart(const Buffer<float>& buffer, std::size_t first, std::size_t count) const;
+
+  /// As part_info in PublishedCollect.cl: a U as a multiple of a moment, and where it goes.
+  struct PartOnDevice
+  {
+    cl_int moment;
+    cl_float factor;
+    cl_int layout, slot;
+  };
+
+  int Width;
+  VolumeLayouts Layouts;
+  bool Coloured; ///< sigma has all channels
+
+  Buffer<float> Extinction[2], Scattering[2], Sources[2], OrderMoments[2]; ///< by layout
+  Buffer<float> Totals;                                                    ///< moments of all orders, layout 0
+  Buffer<PartOnDevice> Parts;
+
+private:
+  template <class Value>
+  std::vector<float> ArrangeValues(int layout, int channels, Value value) const;
+  template <class Visit>
+  void ForEach(int layout, int channels, Visit visit) const;
+  void MakeMedium();
+  void FindSlots();
+  void MakeSources();
+  void MakeMoments();
+  template <class Value>
+  void WriteSources(Value value);
+
+  Device& TheDevice;
+  const Medium& TheMedium;
+  const PublishedModel& Model;
+  std::vector<int> Slots[2];
+};
+}

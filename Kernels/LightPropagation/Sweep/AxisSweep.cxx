@@ -1,0 +1,395 @@
+#include "LightPropagation/Sweep/AxisSweep.h"
+
+#include "LightPropagation/Sweep/SweepBorder.h"
+#include "LightPropagation/Sweep/SweepPlan.h"
+#include "TyndallKernelSources.h"
+
+#include <algorithm>
+#include <map>
+#include <string>
+
+namespace tyndall
+{
+namespace
+{
+constexpr double NothingLeft = 1e-7; ///< of what was on the way after the first time: not worth going round again
+
+using BundleMaps = cl_int2; ///< for map_power: members, first float of the maps
+
+std::vector<BundleMaps> MapsOf(const SweepPlan& plan)
+{
+  std::vector<BundleMaps> maps;
+  for (const BundleOnDevice& bundle : plan.bundleRows)
+  {
+    maps.push_back({ { bundle.members, bundle.map } });
+  }
+  return maps;
+}
+
+double Total(const Rgb& rgb)
+{
+  return rgb[0] + rgb[1] + rgb[2];
+}
+}
+
+void SweepWorkspace::Reserve(Device& device, std::size_t mapFloats, std::size_t scratchFloats)
+{
+  if (this->maps.Size() < mapFloats)
+  {
+    this->maps = {};
+    this->maps = Buffer<float>(device, mapFloats, "the light propagation maps");
+  }
+  if (this->scratch.Size() < scratchFloats)
+  {
+    this->scratch = {};
+    this->scratch = Buffer<float>(device, scratchFloats, "the planes being crossed");
+  }
+}
+
+void SweepWorkspace::ReserveLost(Device& device, std::size_t floats)
+{
+  if (this->lost.Size() < floats)
+  {
+    this->lost = {};
+    this->lost = Buffer<float>(device, floats, "what rounding takes from the light gathered");
+  }
+}
+
+struct AxisSweep::Implementation
+{
+  Implementation(Device& device, const SweepVolume& volume, int axis, const std::vector<Bundle>& bundles,
+    const std::array<bool, 3>& periodic, SweepWorkspace& workspace)
+    : TheDevice(device)
+    , Plan(device, volume.grid, volume.box, axis, bundles, volume.channels, periodic, volume.flux != nullptr,
+        volume.entering != nullptr)
+    , Workspace(workspace)
+  {
+    this->MakeBuffers();
+  }
+
+  void MakeBuffers();
+  void Enter(const SweepBoundary& boundary, std::size_t firstChannel);
+  void EnterNothing();
+  void DarkenSides();
+  void DarkenBeside();
+  void CrossOnce(const SweepVolume& volume, bool source, bool border, const Monitor& monitor);
+  void GoRound(const SweepVolume& volume, int mostPlanes, const Monitor& monitor);
+
+  /// Which planes the units cross in which launch.
+  struct Schedule
+  {
+    const Buffer<cl_int2>& planes;
+    int launches;
+  };
+  Schedule Rounds() const { return { this->RoundSchedule, static_cast<int>(this->Plan.units.size()) }; }
+  void Launch(cl::Kernel kernel, const SweepVolume& volume, const Buffer<PlaneCrossingOnDevice>& crossings,
+    const Schedule& schedule, const Monitor& monitor);
+  cl::Kernel SweepKernel(bool source, bool border, bool flux);
+
+  /// As SweepBorder has them.
+  Buffer<float>& Maps() { return this->IsPeriodic() ? this->OwnMaps : this->Workspace.maps; }
+  bool IsPeriodic() const { return this->Plan.periodic[this->Plan.axes.axis]; }
+  void CountSideways();
+  void CountEnds();
+  void SumMaps();
+  std::array<Rgb, 2> PowerInMaps() const;
+  Rgb PowerOnTheWay();
+
+  Device& TheDevice;
+  SweepPlan Plan;
+  SweepWorkspace& Workspace;
+
+  Buffer<float> OwnMaps;           ///< of a periodic axis
+  Buffer<float> Outside, Radiance; ///< as SweepBorder has them
+  Buffer<float> Sideways;          ///< power that left: [unit][plane][-u, +u, -v, +v][channel]
+  Buffer<float> Sums;              ///< power in the maps: [way][bundle][row][channel]
+  Buffer<BundleOnDevice> Bundles;
+  Buffer<BundleMaps> MapPlaces;
+  Buffer<UnitOnDevice> Units;
+  Buffer<cl_int2> FirstSchedule, RoundSchedule;
+  Buffer<PlaneCrossingOnDevice> FirstCrossings;
+  Buffer<OwnLightOnDevice> FirstOwnLight;
+
+  std::map<std::size_t, std::unique_ptr<SweepBorder>> Borders; ///< by a volume's first value
+  bool MapsEmpty = false;                                      ///< whatever is in their memory
+  bool SidesDark = false;                                      ///< Outside and Radiance are zero
+  SweepTally Tally;                                            ///< of the sweep that goes on
+};
+
+void AxisSweep::Implementation::MakeBuffers()
+{
+  Device& device = this->TheDevice;
+  const SweepPlan& plan = this->Plan;
+  const std::size_t channels = static_cast<std::size_t>(plan.channels);
+  this->Workspace.Reserve(
+    device, this->IsPeriodic() ? 0 : 2 * plan.mapsEachWay, plan.units.size() * plan.ScratchFloats());
+  if (this->IsPeriodic())
+  {
+    this->OwnMaps = Buffer<float>(device, 2 * plan.mapsEachWay, "the light propagation maps");
+    this->OwnMaps.Fill(0.0f);
+  }
+  this->Outside = Buffer<float>(device, 2 * plan.outsideEachWay, "the light that comes in sideways");
+  this->Radiance = Buffer<float>(device, 2 * plan.radianceEachWay, "the light that comes in sideways");
+  this->Sideways =
+    Buffer<float>(device, plan.units.size() * plan.PatternPlanes() * 4 * channels, "the power that leaves sideways");
+  this->Sums = Buffer<float>(device, 2 * plan.bundles.size() * plan.plane.sizeV * channels, "sums");
+  this->Bundles = Buffer<BundleOnDevice>(device, plan.bundleRows, "the bundles of rays");
+  this->MapPlaces = Buffer<BundleMaps>(device, MapsOf(plan), "the bundles of rays");
+  this->Units = Buffer<UnitOnDevice>(device, plan.units, "the units of work");
+  this->FirstSchedule = Buffer<cl_int2>(device, plan.schedule, "the schedule");
+  this->RoundSchedule = Buffer<cl_int2>(device, plan.roundSchedule, "the schedule");
+  this->FirstCrossings =
+    Buffer<PlaneCrossingOnDevice>(device, plan.Crossings(0, plan.CrossingPlanes()), "the ray pattern");
+  this->FirstOwnLight = Buffer<OwnLightOnDevice>(device, plan.OwnLight(), "the ray pattern");
+}
+
+/// A sweep that is done again and again enters the same light each time: its border is kept.
+void AxisSweep::Implementation::Enter(const SweepBoundary& boundary, std::size_t firstChannel)
+{
+  std::unique_ptr<SweepBorder>& kept = this->Borders[firstChannel];
+  if (!kept)
+  {
+    kept = std::make_unique<SweepBorder>(this->Plan, boundary);
+  }
+  const SweepBorder& border = *kept;
+  this->Maps().Write(border.maps.data(), border.maps.size());
+  this->Outside.Write(border.outside.data());
+  this->Radiance.Write(border.radiance.data());
+  this->Tally.in = border.powerIn;
+  this->MapsEmpty = this->SidesDark = false;
+  if (!this->Plan.entering)
+  {
+    kept.reset();
+  }
+}
+
+/// On an open axis; the maps of a periodic one hold what is on the way from the sweep before.
+void AxisSweep::Implementation::EnterNothing()
+{
+  this->MapsEmpty = !this->IsPeriodic();
+  this->DarkenSides();
+}
+
+/// Nothing comes in sideways.
+void AxisSweep::Implementation::DarkenSides()
+{
+  if (!this->SidesDark)
+  {
+    this->Outside.Fill(0.0f);
+    this->Radiance.Fill(0.0f);
+    this->SidesDark = true;
+  }
+}
+
+/// In the maps of a periodic axis: the light beside the rows has come in, and does not again when rays go round.
+void AxisSweep::Implementation::DarkenBeside()
+{
+  const SweepPlan& plan = this->Plan;
+  if (this->SidesDark)
+  {
+    return;
+  }
+  cl::Kernel kernel = this->TheDevice.Kernel("darken_beside", { kernel_source::SweepMaps });
+  With(kernel, this->OwnMaps, cl_ulong(plan.mapsEachWay), this->MapPlaces, cl_int(plan.channels), cl_int(plan.row),
+    cl_int(plan.vector), plan.plane.sizeU, plan.plane.width);
+  this->TheDevice.Queue().enqueueNDRangeKernel(
+    kernel, cl::NullRange, cl::NDRange(plan.plane.sizeV, plan.bundles.size(), 2), cl::NDRange(1, 1, 1));
+}
+
+/// From where rays start to where they leave the axis for the first time, or the last lap ends.
+void AxisSweep::Implementation::CrossOnce(const SweepVolume& volume, bool source, bool border, const Monitor& monitor)
+{
+  const Schedule schedule =
+    this->Plan.laps == 1 ? Schedule{ this->FirstSchedule, this->Plan.launches } : this->Rounds();
+  this->Launch(
+    this->SweepKernel(source, border, volume.flux != nullptr), volume, this->FirstCrossings, schedule, monitor);
+}
+
+/// Rays that left a periodic axis come back on the other side, until next to nothing is on the way.
+void AxisSweep::Implementation::GoRound(const SweepVolume& volume, int mostPlanes, const Monitor& monitor)
+{
+  const int planes = this->Plan.PatternPlanes();
+  this->CountSideways();
+  this->DarkenBeside();
+  this->DarkenSides();
+  this->MapsEmpty = false;
+  Rgb& onTheWay = this->Tally.onTheWay;
+  onTheWay = this->PowerOnTheWay();
+  const double atFirst = Total(onTheWay);
+  for (int gone = planes; gone < mostPlanes && Total(onTheWay) > NothingLeft * atFirst; gone += planes)
+  {
+    const Buffer<PlaneCrossingOnDevice> crossings(
+      this->TheDevice, this->Plan.Crossings(gone, planes), "the ray pattern");
+    this->Launch(this->SweepKernel(false, false, volume.flux != nullptr), volume, crossings, this->Rounds(), monitor);
+    this->CountSideways();
+    onTheWay = this->PowerOnTheWay();
+  }
+}
+
+void AxisSweep::Implementation::Launch(cl::Kernel kernel, const SweepVolume& volume,
+  const Buffer<PlaneCrossingOnDevice>& crossings, const Schedule& schedule, const Monitor& monitor)
+{
+  const SweepPlan& plan = this->Plan;
+  const Buffer<float>& flux = volume.flux ? *volume.flux : *volume.path;
+  const Buffer<float>& entering = volume.entering ? *volume.entering : *volume.path;
+  const Buffer<float>& lost = this->IsPeriodic() ? this->Workspace.lost : *volume.path;
+  for (int launch = 0; launch < schedule.launches; ++launch)
+  {
+    With(kernel, *volume.sigma_t, cl_ulong(volume.sigma_t_first), *volume.source, *volume.path, lost, flux, entering,
+      cl_ulong(volume.first), cl_ulong(volume.stride), this->Maps(), cl_ulong(plan.mapsEachWay),
+      cl_int(this->MapsEmpty), this->Outside, cl_uint(plan.outsideEachWay), this->Radiance,
+      cl_uint(plan.radianceEachWay), this->Workspace.scratch, this->Units, this->Bundles, cl_int(plan.bundles.size()),
+      crossings, this->FirstOwnLight, cl_int(plan.PatternPlanes()), schedule.planes, cl_int(launch), this->Sideways,
+      plan.plane, cl_int(plan.axes.axis));
+    this->TheDevice.Queue().enqueueNDRangeKernel(kernel, cl::NullRange, cl::NDRange(plan.units.size()), cl::NDRange(1));
+    this->TheDevice.Queued(plan.secondsPerLaunch);
+    Report(monitor, (launch + 1.0) / schedule.launches);
+  }
+}
+
+/// @param source  the medium shines
+/// @param border  light comes in through the faces that rays pass sideways
+/// @param flux  net flux is wanted
+cl::Kernel AxisSweep::Implementation::SweepKernel(bool source, bool border, bool flux)
+{
+  const SweepPlan& plan = this->Plan;
+  std::string options;
+  const auto define = [&](const char* name, int value) {
+    options += std::string(" -D") + name + "=" + std::to_string(value);
+  };
+  define("REAL_WIDTH", plan.vector);
+  define("CHANNELS", plan.channels);
+  define("ROW", plan.row);
+  define("SOURCE", source);
+  define("BORDER", border);
+  define("NET_FLUX", flux);
+  define("ENTERING", plan.entering);
+  define("PERIODIC_P", this->IsPeriodic());
+  define("PERIODIC_U", plan.periodic[plan.axes.u]);
+  define("PERIODIC_V", plan.periodic[plan.axes.v]);
+  std::string bundles; // SweepBundle.cl once for each number of members there is
+  for (int members = 1; members <= MaxMembers; members *= 2)
+  {
+    const auto has = [&](const BundleOnDevice& bundle) { return bundle.members == members; };
+    if (std::any_of(plan.bundleRows.begin(), plan.bundleRows.end(), has))
+    {
+      options += " -DMEMBERS_" + std::to_string(members);
+      bundles += "#define MEMBERS " + std::to_string(members) + "\n" + std::string(kernel_source::SweepBundle) +
+        "#undef MEMBERS\n";
+    }
+  }
+  return this->TheDevice.Kernel("sweep",
+    { kernel_source::Numerics, kernel_source::SweepLayout, kernel_source::SweepPartialCurrents, bundles,
+      kernel_source::Sweep },
+    options);
+}
+
+void AxisSweep::Implementation::CountSideways()
+{
+  const std::vector<float> left = this->Sideways.Read();
+  const PlaneAxes& axes = this->Plan.axes;
+  const std::array<int, 4> faces = { 2 * axes.u, 2 * axes.u + 1, 2 * axes.v, 2 * axes.v + 1 };
+  for (std::size_t i = 0; i < left.size(); ++i)
+  {
+    this->Tally.out[faces[i / this->Plan.channels % 4]][i % this->Plan.channels] += left[i];
+  }
+}
+
+/// What is in the maps behind the last plane of an open axis has left.
+void AxisSweep::Implementation::CountEnds()
+{
+  const std::array<Rgb, 2> power = this->PowerInMaps();
+  for (int way = 0; way < 2; ++way)
+  {
+    for (int c = 0; c < this->Plan.channels; ++c)
+    {
+      this->Tally.out[2 * this->Plan.axes.axis + 1 - way][c] += power[way][c];
+    }
+  }
+}
+
+Rgb AxisSweep::Implementation::PowerOnTheWay()
+{
+  this->SumMaps();
+  const auto [up, down] = this->PowerInMaps();
+  return { up[0] + down[0], up[1] + down[1], up[2] + down[2] };
+}
+
+void AxisSweep::Implementation::SumMaps()
+{
+  const SweepPlan& plan = this->Plan;
+  cl::Kernel kernel = this->TheDevice.Kernel("map_power", { kernel_source::SweepMaps });
+  With(kernel, this->Maps(), cl_ulong(plan.mapsEachWay), this->MapPlaces, plan.plane.sizeV, cl_int(plan.channels),
+    cl_int(plan.row), cl_int(plan.vector), plan.plane.sizeU, this->Sums);
+  this->TheDevice.Queue().enqueueNDRangeKernel(
+    kernel, cl::NullRange, cl::NDRange(plan.plane.sizeV, plan.bundles.size(), 2), cl::NDRange(1, 1, 1));
+}
+
+/// By way, as SumMaps found it.
+std::array<Rgb, 2> AxisSweep::Implementation::PowerInMaps() const
+{
+  std::array<Rgb, 2> power = {};
+  const std::vector<float> sums = this->Sums.Read();
+  for (std::size_t i = 0; i < sums.size(); ++i)
+  {
+    power[2 * i / sums.size()][i % this->Plan.channels] += sums[i];
+  }
+  return power;
+}
+
+AxisSweep::AxisSweep(Device& device, const SweepVolume& volume, int axis, const std::vector<Bundle>& bundles,
+  const std::array<bool, 3>& periodic, SweepWorkspace& workspace)
+  : Inner(std::make_unique<Implementation>(device, volume, axis, bundles, periodic, workspace))
+{
+}
+
+AxisSweep::~AxisSweep() = default;
+
+void AxisSweep::Start(
+  const SweepVolume& volume, const SweepBoundary& boundary, bool hasSource, int mostPlanes, const Monitor& monitor)
+{
+  Implementation& self = *this->Inner;
+  self.Tally = {};
+  if (self.IsPeriodic())
+  {
+    self.Workspace.ReserveLost(self.TheDevice, volume.path->Size());
+    self.Workspace.lost.Fill(0.0f);
+  }
+  if (boundary)
+  {
+    self.Enter(boundary, volume.first);
+  }
+  else
+  {
+    self.EnterNothing();
+  }
+  self.CrossOnce(volume, hasSource, static_cast<bool>(boundary), monitor);
+  if (self.IsPeriodic())
+  {
+    self.GoRound(volume, mostPlanes, monitor);
+  }
+  else
+  {
+    self.SumMaps();
+  }
+}
+
+void AxisSweep::Forget()
+{
+  if (this->Inner->IsPeriodic())
+  {
+    this->Inner->OwnMaps.Fill(0.0f);
+  }
+}
+
+SweepTally AxisSweep::Finish()
+{
+  Implementation& self = *this->Inner;
+  if (!self.IsPeriodic())
+  {
+    self.CountSideways();
+    self.CountEnds();
+  }
+  return self.Tally;
+}
+}

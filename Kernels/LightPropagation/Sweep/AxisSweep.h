@@ -1,0 +1,47 @@
+#pragma once
+
+#include "LightPropagation/Angular/RayBundles.h"
+#include "LightPropagation/Sweep/SweepVolume.h"
+
+#include "Device/Monitor.h"
+
+#include <memory>
+
+namespace tyndall
+{
+/// Planes that a ray goes round a periodic axis before it is given up.
+constexpr int MostPlanesAround = 8192;
+
+/// Carries all rays of a set of bundles through a volume along one axis, and deposits what they lose: propagate and collect
+/// in one, without a buffer a direction (Gruson et al. need one, their section 4.1).
+///
+/// Memory: the maps, (plane's voxels) floats a direction and channel and way, and a few planes of scratch a unit; both in a
+/// workspace, except for a periodic axis, whose rays stay on the way from one sweep to the next.
+class AxisSweep
+{
+public:
+  /// @param volume  its grid, its channels and whether it has a flux count
+  /// @param workspace  must stay; made as large as is needed
+  AxisSweep(Device& device, const SweepVolume& volume, int axis, const std::vector<Bundle>& bundles,
+    const std::array<bool, 3>& periodic, SweepWorkspace& workspace);
+  ~AxisSweep();
+
+  /// Once through the volume, both ways. Queues the work and, on an open axis, does not wait for it.
+  /// @param boundary  what comes in; empty: nothing
+  /// @param hasSource  whether volume.source is to be read
+  /// @param mostPlanes  that rays go on a periodic axis before they wait for the next sweep
+  /// @param monitor  told fractions of this sweep
+  void Start(
+    const SweepVolume& volume, const SweepBoundary& boundary, bool hasSource, int mostPlanes, const Monitor& monitor);
+
+  /// Rays that are still on the way round a periodic axis are given up.
+  void Forget();
+
+  /// Wait for the sweep that was started.
+  SweepTally Finish();
+
+private:
+  struct Implementation;
+  std::unique_ptr<Implementation> Inner;
+};
+}

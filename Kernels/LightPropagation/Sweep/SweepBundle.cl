@@ -1,0 +1,337 @@
+// One bundle through one plane. Compiled once for each number of MEMBERS.
+//
+// A plane is crossed in up to three stages, one a segment. A stage takes every ray from where the stage before left it: the
+// whole map moves by one voxel or none, which costs nothing but an offset in the load. Stages follow each other row by row at
+// a distance of LAG rows, so that what passes between them stays in the cache; the last one writes the map in place.
+
+#define NAME_OF(a, b) TYNDALL_JOIN(a, b)
+#define CROSS_VOXELS NAME_OF(cross_voxels_, MEMBERS)
+#define STAGE_ROW NAME_OF(stage_row_, MEMBERS)
+#define COUNT_ESCAPED NAME_OF(count_escaped_, MEMBERS)
+#define FILL_BORDER NAME_OF(fill_border_, MEMBERS)
+#define CROSS_PLANE NAME_OF(cross_plane_, MEMBERS)
+#define COUNT_ENTERING NAME_OF(count_entering_, MEMBERS)
+#define MOVE_PART NAME_OF(move_part_, MEMBERS)
+#define BLOCK (MEMBERS * CHANNELS * ROW)
+#define FIRST(member, channel) (((member) * CHANNELS + (channel)) * ROW + PAD)
+
+// All rays of a row through one segment each (Gruson et al., Eq. 3, conservative):
+//   path += p1 L,  L' = L - sigma p1 L + q p1,  p1 = (1 - exp(-tau)) / sigma
+// For small tau L' is L less what it loses, for large tau it is L times what is left: neither rounds to a leak. Where all of
+// the row is thin, p1 is a polynomial: half the work. `thin` is a constant where this is called.
+static inline __attribute__((always_inline)) void CROSS_VOXELS(sweep_state* state, int y, bool deposit, bool thin,
+  const __global float** in, __global float* out, float length, const __global bundle_info* bundle)
+{
+  const int rows = state->sizeV * ROW;
+  const __global float* sigma_row = state->planes + PLANE_SIGMA * rows + y * ROW;
+  const __global float* inverse_row = state->planes + PLANE_INVERSE * rows + y * ROW;
+  __global float* taken_row = state->planes + PLANE_TAKEN * rows + y * ROW;
+  const __global float* source_row = state->planes + PLANE_SOURCE * rows + y * ROW;
+  __global float* path_row = state->planes + PLANE_PATH * rows + y * ROW;
+  const float power = bundle->power;
+#if NET_FLUX
+  __global float* flux_row = state->planes + PLANE_FLUX * rows + y * ROW;
+  float along_u[MEMBERS], along_v[MEMBERS];
+#pragma unroll
+  for (int m = 0; m < MEMBERS; ++m)
+  {
+    along_u[m] = bundle->move[m][0] * bundle->sineU + bundle->move[m][1] * bundle->sineV;
+    along_v[m] = bundle->move[m][2] * bundle->sineU + bundle->move[m][3] * bundle->sineV;
+  }
+#endif
+  for (int x = 0; x < state->width; x += REAL_WIDTH)
+  {
+    const real tau = load_real(x, sigma_row) * length;
+    real mean_length, keep, change;
+    if (thin)
+    {
+      real mean = (real)state->meanLength[MEAN_LENGTH_TERMS - 1];
+#pragma unroll
+      for (int i = MEAN_LENGTH_TERMS - 2; i >= 0; --i)
+      {
+        mean = multiply_add(mean, tau, (real)state->meanLength[i]);
+      }
+      mean = multiply_add(mean, tau, (real)1.0f);
+      mean_length = mean * length;
+      keep = (real)1.0f;
+      change = -tau * mean;
+    }
+    else
+    {
+      real left;
+      const real lost = extinguished(tau, &left);
+      const integer losesLess = tau < (real)1.0f;
+      mean_length = lost * load_real(x, inverse_row);
+      keep = select((real)0.0f, (real)1.0f, losesLess);
+      change = select(left, -lost, losesLess);
+    }
+#if SOURCE
+    if (deposit && !thin)
+    {
+      store_real(multiply_add(mean_length, (real)(power * MEMBERS), load_real(x, taken_row)), x, taken_row);
+    }
+    const real shine = mean_length * power;
+#if NET_FLUX
+    // Path of the light that the voxel's own source adds, (length - mean_length) / sigma. Across the axis mirror images take
+    // it away again, but along it a ray and its opposite may cross the voxel in different parts.
+    const real thin_path = multiply_add(tau, (real)(-length * length / 6.0f), (real)(0.5f * length * length));
+    const real thick_path = (length - mean_length) * load_real(x, inverse_row);
+    const real own_path = select(thick_path, thin_path, tau < (real)1e-2f) * (power * MEMBERS * bundle->cosine);
+#endif
+#endif
+#pragma unroll
+    for (int c = 0; c < CHANNELS; ++c)
+    {
+#if SOURCE
+      const real gain = shine * load_real(x, source_row + c * rows);
+#endif
+      real sum = (real)0.0f;
+#if NET_FLUX
+      real sum_u = (real)0.0f, sum_v = (real)0.0f;
+#endif
+#pragma unroll
+      for (int m = 0; m < MEMBERS; ++m)
+      {
+        const real ray = load_real(x, in[m] + c * ROW);
+        sum += ray;
+#if NET_FLUX
+        sum_u = multiply_add(ray, (real)along_u[m], sum_u);
+        sum_v = multiply_add(ray, (real)along_v[m], sum_v);
+#endif
+#if SOURCE
+        const real kept = thin ? ray + gain : multiply_add(ray, keep, gain);
+#else
+        const real kept = thin ? ray : ray * keep;
+#endif
+        const real after = multiply_add(ray, change, kept);
+        store_real(after, x, out + FIRST(m, c));
+      }
+      if (deposit)
+      {
+        store_real(multiply_add(mean_length, sum, load_real(x, path_row + c * rows)), x, path_row + c * rows);
+#if NET_FLUX
+        __global float* flux = flux_row + 3 * c * rows;
+        store_real(multiply_add(mean_length, sum_u, load_real(x, flux)), x, flux);
+        store_real(multiply_add(mean_length, sum_v, load_real(x, flux + rows)), x, flux + rows);
+        real sum_w = multiply_add(mean_length * bundle->cosine, sum, load_real(x, flux + 2 * rows));
+#if SOURCE
+        sum_w = multiply_add(own_path, load_real(x, source_row + c * rows), sum_w);
+#endif
+        store_real(sum_w, x, flux + 2 * rows);
+#endif
+      }
+    }
+  }
+}
+
+static void STAGE_ROW(sweep_state* state, int y, bool deposit, const __global float** in, __global float* out, float length,
+  const __global bundle_info* bundle)
+{
+  if (state->thin[y])
+  {
+    CROSS_VOXELS(state, y, deposit, true, in, out, length, bundle);
+  }
+  else
+  {
+    CROSS_VOXELS(state, y, deposit, false, in, out, length, bundle);
+  }
+#if PERIODIC_U
+  for (int i = 0; i < MEMBERS * CHANNELS; ++i)
+  {
+    out[i * ROW + PAD - 1] = out[i * ROW + PAD + state->sizeU - 1];
+    out[i * ROW + PAD + state->sizeU] = out[i * ROW + PAD];
+  }
+#endif
+}
+
+// Power of the rays that leave row y of `row` by a move of (du, dv), of which `part` moves. Rays that move both ways at once go
+// through u first and through v first in equal parts: half of those in the box's edge leave through each of its faces, and half of
+// what comes in beside it goes straight through.
+// across_u, across_v  rays that come in through the faces across u and v, at [FIRST(m, c)] of the row and at [m][c]
+static void COUNT_ESCAPED(sweep_state* state, const __global float* row, int y, int m, int du, int dv, float part,
+  const __global float* across_u, const __global float* across_v)
+{
+  const bool through_v = !PERIODIC_V && ((dv < 0 && y == 0) || (dv > 0 && y == state->sizeV - 1));
+  const bool through_u = !PERIODIC_U && du != 0;
+  const int edge = du > 0 ? state->sizeU - 1 : 0;
+  for (int c = 0; c < CHANNELS; ++c)
+  {
+    const __global float* rays = row + FIRST(m, c);
+    const float turned = through_u && through_v ? 0.5f : 0.0f;
+    if (through_u)
+    {
+      const int side = du > 0 ? 1 : 0;
+      const float beyond = across_v[FIRST(m, c)];
+      add_exactly(&state->escaped[side][c], &state->rounding[side][c], part * (rays[edge] - turned * (rays[edge] - beyond)));
+    }
+    if (through_v)
+    {
+      const int side = dv > 0 ? 3 : 2;
+      const float beyond = across_u[m * CHANNELS + c];
+      const float all = sum_of_row(rays, state->sizeU);
+      add_exactly(&state->escaped[side][c], &state->rounding[side][c], part * (all - turned * (rays[edge] - beyond)));
+    }
+  }
+}
+
+// Rays of a row of which a part moves: `in` is where they come from, `own` the row itself.
+static void MOVE_PART(sweep_state* state, float part, const __global float* own, const __global float** in)
+{
+  for (int m = 0; m < MEMBERS; ++m)
+  {
+    for (int c = 0; c < CHANNELS; ++c)
+    {
+      const __global float* stay = own + FIRST(m, c);
+      const __global float* come = in[m] + c * ROW;
+      __global float* out = state->moving + FIRST(m, c);
+      for (int x = 0; x < state->width; x += REAL_WIDTH)
+      {
+        const real stays = load_real(x, stay);
+        store_real(multiply_add(load_real(x, come) - stays, (real)part, stays), x, out);
+      }
+    }
+    in[m] = state->moving + FIRST(m, 0);
+  }
+}
+
+#if BORDER
+// Rays that come in from the side within a row: the column beside it, on both ends of every row in the rings.
+static void FILL_BORDER(sweep_state* state, const __global float* radiance)
+{
+  for (int i = 0; i < MEMBERS * CHANNELS; ++i)
+  {
+    for (int r = 0; r < 2 * RING_ROWS; ++r)
+    {
+      __global float* row = state->ring + r * (MAX_MEMBERS * CHANNELS * ROW) + i * ROW + PAD;
+      row[-1] = radiance[i];
+      row[state->width] = radiance[i];
+    }
+  }
+}
+#endif
+
+#if ENTERING
+// The rays of row y by the face they come through, see SweepPartialCurrents.cl. `own` is the row itself, where rays come from.
+static void COUNT_ENTERING(sweep_state* state, int y, bool first, const __global float** in, const __global float* own,
+  const __global bundle_info* bundle, int moveU, int moveV, float part)
+{
+  for (int m = 0; m < MEMBERS; ++m)
+  {
+    if (first)
+    {
+      add_entering(state, y, ENTERING_AXIS, in[m], 1.0f);
+      continue;
+    }
+    const int du = bundle->move[m][0] * moveU + bundle->move[m][1] * moveV;
+    const int dv = bundle->move[m][2] * moveU + bundle->move[m][3] * moveV;
+    if (du != 0 && dv != 0)
+    {
+      add_through_edge(state, y, du, dv, in[m], own + FIRST(m, 0), part);
+    }
+    else if (du != 0)
+    {
+      add_entering(state, y, du > 0 ? ENTERING_LOW_U : ENTERING_HIGH_U, in[m], part);
+    }
+    else
+    {
+      add_entering(state, y, dv > 0 ? ENTERING_LOW_V : ENTERING_HIGH_V, in[m], part);
+    }
+  }
+}
+#endif
+
+// @param map      rays of the bundle, [row][member][channel][ROW], two rows more than the plane has
+// @param outside  a row of rays that come in through the faces across v, [member][channel][ROW]
+// @param radiance of rays that come in through the faces across u, [member][channel]
+static void CROSS_PLANE(sweep_state* state, __global float* map, const __global float* outside,
+  const __global float* radiance, const __global bundle_info* bundle, const __global crossing_info* crossing)
+{
+#if BORDER
+  FILL_BORDER(state, radiance);
+#endif
+  const int stages = crossing->stages;
+  const int height = state->sizeV;
+#if PERIODIC_V
+  // Rows beyond the plane are rows of the other side, and computed again there; the first ones are needed after they
+  // are overwritten.
+  const int beyond = stages - 1;
+  for (int i = 0; i < beyond * BLOCK; ++i)
+  {
+    map[height * BLOCK + i] = map[(i / BLOCK % height) * BLOCK + i % BLOCK];
+  }
+#else
+  const int beyond = 0;
+#endif
+  for (int r = -beyond; r < height + beyond + LAG * (stages - 1); ++r)
+  {
+    for (int s = 0; s < stages; ++s)
+    {
+      const int y = r - LAG * s;
+#if PERIODIC_V
+      const int reach = stages - 1 - s;
+#else
+      const int reach = 0;
+#endif
+      if (y < -reach || y >= height + reach)
+      {
+        continue;
+      }
+      const bool inside = y >= 0 && y < height;
+      const int wrapped = inside ? y : (y % height + height) % height;
+      const float part = crossing->part[s];
+      const __global float* before = state->ring + ((s - 1) & 1) * (RING_ROWS * MAX_MEMBERS * CHANNELS * ROW);
+      const __global float* own = before + (y & (RING_ROWS - 1)) * (MAX_MEMBERS * CHANNELS * ROW); // where s > 0
+      const __global float* in[MEMBERS];
+#pragma unroll
+      for (int m = 0; m < MEMBERS; ++m)
+      {
+        const int du = bundle->move[m][0] * crossing->moveU[s] + bundle->move[m][1] * crossing->moveV[s];
+        const int dv = bundle->move[m][2] * crossing->moveU[s] + bundle->move[m][3] * crossing->moveV[s];
+        const int from = y - dv;
+        const __global float* row;
+        if (s == 0)
+        {
+          row = map + (from < 0 ? (from % height + height) % height : from) * BLOCK;
+        }
+        else
+        {
+          row = before + (from & (RING_ROWS - 1)) * (MAX_MEMBERS * CHANNELS * ROW);
+          if (inside && (du != 0 || dv != 0))
+          {
+            COUNT_ESCAPED(state, own, y, m, du, dv, part, radiance, outside);
+          }
+        }
+        if (!PERIODIC_V && (from < 0 || from >= height))
+        {
+          row = outside;
+        }
+        in[m] = row + FIRST(m, 0) - du;
+      }
+      __global float* out = s == stages - 1 ? map + y * BLOCK
+                                            : state->ring + (s & 1) * (RING_ROWS * MAX_MEMBERS * CHANNELS * ROW) +
+          (y & (RING_ROWS - 1)) * (MAX_MEMBERS * CHANNELS * ROW);
+#if ENTERING
+      if (inside)
+      {
+        COUNT_ENTERING(state, y, s == 0, in, own, bundle, crossing->moveU[s], crossing->moveV[s], part);
+      }
+#endif
+      if (part < 1.0f)
+      {
+        MOVE_PART(state, part, own, in);
+      }
+      STAGE_ROW(state, wrapped, inside, in, out, crossing->length[s], bundle);
+    }
+  }
+}
+
+#undef FIRST
+#undef BLOCK
+#undef COUNT_ENTERING
+#undef MOVE_PART
+#undef CROSS_PLANE
+#undef FILL_BORDER
+#undef COUNT_ESCAPED
+#undef STAGE_ROW
+#undef CROSS_VOXELS
+#undef NAME_OF

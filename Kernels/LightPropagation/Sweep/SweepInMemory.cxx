@@ -1,0 +1,63 @@
+#include "LightPropagation/Sweep/SweepInMemory.h"
+
+namespace tyndall
+{
+SweepInMemory::SweepInMemory(Device& device, const VolumeLayout& layout, const Description& description,
+  const std::vector<AxisBundles>& axes, SweepWorkspace& workspace)
+  : Layout(layout)
+  , The(description)
+{
+  for (const AxisBundles& along : axes)
+  {
+    if (!along.bundles.empty())
+    {
+      this->Axes.push_back(std::make_unique<AxisSweep>(device, this->VolumeOf(layout.Groups().front(), nullptr),
+        along.axis, along.bundles, description.periodic, workspace));
+    }
+  }
+}
+
+SweepVolume SweepInMemory::VolumeOf(const ChannelGroup& group, const Buffer<float>* source) const
+{
+  SweepVolume volume = GroupVolume(this->Layout, group, *this->The.sigma_t);
+  volume.box = this->The.box;
+  volume.source = source ? source : this->The.deposit.path; // never read where there is none
+  PutInto(volume, this->The.deposit);
+  return volume;
+}
+
+SweepTally SweepInMemory::Apply(const Buffer<float>* source, const SweepBoundary& boundary, const Monitor& monitor)
+{
+  SweepTally tally;
+  const std::vector<ChannelGroup> groups = this->Layout.Groups();
+  for (std::size_t g = 0; g < groups.size(); ++g)
+  {
+    const int first = groups[g].first;
+    const SweepBoundary ofChannels = boundary && first > 0
+      ? SweepBoundary([&](int direction, int face) { return From(boundary(direction, face), first); })
+      : boundary;
+    const SweepVolume volume = this->VolumeOf(groups[g], source);
+    const double all = static_cast<double>(this->Axes.size() * groups.size());
+    for (std::size_t a = 0; a < this->Axes.size(); ++a)
+    {
+      const double before = static_cast<double>(g * this->Axes.size() + a);
+      const Monitor ofAxis =
+        monitor ? Monitor([&](double done) { return monitor((before + done) / all); }) : Monitor();
+      this->Axes[a]->Start(volume, ofChannels, source != nullptr, this->The.mostPlanes, ofAxis);
+    }
+    for (const std::unique_ptr<AxisSweep>& axis : this->Axes)
+    {
+      Add(tally, axis->Finish(), first);
+    }
+  }
+  return tally;
+}
+
+void SweepInMemory::Forget()
+{
+  for (const std::unique_ptr<AxisSweep>& axis : this->Axes)
+  {
+    axis->Forget();
+  }
+}
+}

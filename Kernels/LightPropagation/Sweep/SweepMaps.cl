@@ -1,0 +1,51 @@
+// The ends of sweeps: the power in the maps of rays. Read by itself.
+
+// Power of the rays in the maps, a work-item a row of a bundle and way: what leaves at the far end of an axis.
+// maps     [way][bundle][row][member][channel][row_floats], rays in the first `size_u` floats after `border`
+// bundles  [bundle] members, first float of its maps
+// sums     [way][bundle][row][channel]
+__kernel void map_power(const __global float* maps, ulong maps_each_way, const __global int2* bundles, int rows, int channels,
+  int row_floats, int border, int size_u, __global float* sums)
+{
+  const int row = get_global_id(0);
+  const int2 bundle = bundles[get_global_id(1)];
+  const int way = get_global_id(2);
+  maps += way * maps_each_way + bundle.y + (ulong)row * bundle.x * channels * row_floats + border;
+  for (int c = 0; c < channels; ++c)
+  {
+    float total = 0.0f;
+    for (int m = 0; m < bundle.x; ++m)
+    {
+      const __global float* rays = maps + (m * channels + c) * row_floats;
+      float4 partial = (float4)(0.0f);
+      int x = 0;
+      for (; x + 4 <= size_u; x += 4)
+      {
+        partial += vload4(0, rays + x);
+      }
+      float rest = 0.0f;
+      for (; x < size_u; ++x)
+      {
+        rest += rays[x];
+      }
+      total += ((partial.x + partial.y) + (partial.z + partial.w)) + rest;
+    }
+    sums[((way * get_global_size(1) + get_global_id(1)) * rows + row) * channels + c] = total;
+  }
+}
+
+// The columns beside a row's voxels hold what comes in through u's face: nothing, once rays go round a periodic axis. A work-item
+// a row of a bundle and way; arguments as of map_power.
+__kernel void darken_beside(__global float* maps, ulong maps_each_way, const __global int2* bundles, int channels,
+  int row_floats, int border, int size_u, int width)
+{
+  const int2 bundle = bundles[get_global_id(1)];
+  maps += get_global_id(2) * maps_each_way + bundle.y + (ulong)get_global_id(0) * bundle.x * channels * row_floats + border;
+  for (int r = 0; r < bundle.x * channels; ++r)
+  {
+    for (int x = size_u; x < width; ++x)
+    {
+      maps[r * row_floats + x] = 0.0f;
+    }
+  }
+}

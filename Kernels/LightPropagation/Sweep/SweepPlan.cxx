@@ -1,0 +1,371 @@
+#include "LightPropagation/Sweep/SweepPlan.h"
+
+#include "Device/Sizes.h"
+
+#include <algorithm>
+#include <cmath>
+
+namespace tyndall
+{
+namespace
+{
+constexpr int RingRows = 4; ///< RING_ROWS of SweepLayout.cl
+constexpr double SecondsPerLaunch = 0.08;
+constexpr double SecondsPerRay = 1e-9; ///< a ray through a plane of voxels on a slow core: only sizes the launches
+constexpr int MostGroups = 4;          ///< of bundles that march one behind the other
+
+/// (1 - exp(-t)) / t = 1 + t (MeanLength[0] + t (MeanLength[1] + ...)), to 2e-8 for 0 <= t < Thin: a minimax polynomial.
+constexpr double MeanLength[MeanLengthTerms] = { -0.499999036, 0.166648826, -0.0415578957, 0.0080387554,
+  -0.00101435666 };
+constexpr double Thin = 0.75;
+
+template <class T>
+cl_int Int(T value)
+{
+  return static_cast<cl_int>(value);
+}
+
+/// Floats of a padded row: an odd number of vectors, so that rows do not fall on the same cache lines, and one of few
+/// numbers, since kernels are compiled for each.
+int RowFloats(int width, int vector)
+{
+  int vectors = 2;
+  while (vectors * vector < width)
+  {
+    vectors *= 2;
+  }
+  return (vectors + 1) * vector;
+}
+
+/// The same rays in bundles of 1, 2, 4 or 8 members.
+std::vector<Bundle> InPowersOfTwo(const std::vector<Bundle>& bundles)
+{
+  std::vector<Bundle> parts;
+  for (const Bundle& bundle : bundles)
+  {
+    std::size_t first = 0;
+    while (first < bundle.members.size())
+    {
+      std::size_t count = MaxMembers;
+      while (count > bundle.members.size() - first)
+      {
+        count /= 2;
+      }
+      Bundle part = bundle;
+      part.members.assign(bundle.members.begin() + first, bundle.members.begin() + first + count);
+      parts.push_back(part);
+      first += count;
+    }
+  }
+  return parts;
+}
+
+/// Through a plane.
+double LongestWay(const std::vector<Bundle>& bundles)
+{
+  double longest = 0.0;
+  for (const Bundle& bundle : bundles)
+  {
+    longest = std::max(longest, bundle.length);
+  }
+  return longest;
+}
+}
+
+SweepPlan::SweepPlan(const Device& device, const Grid& ofGrid, const VoxelBox& ofBox, int axis,
+  const std::vector<Bundle>& ofBundles, int channelCount, const std::array<bool, 3>& periodicAxes, bool wantsNetFlux,
+  bool wantsEntering)
+  : grid(ofGrid)
+  , box(ofBox.VoxelCount() > 0 ? ofBox : VoxelBox{ { 0, 0, 0 }, ofGrid.size })
+  , axes(AcrossAxis(axis))
+  , bundles(InPowersOfTwo(ofBundles))
+  , channels(channelCount)
+  , periodic(periodicAxes)
+  , netFlux(wantsNetFlux)
+  , entering(wantsEntering)
+{
+  for (const Bundle& bundle : this->bundles)
+  {
+    for (const Member& member : bundle.members)
+    {
+      this->forward = this->forward || member.direction >= 0;
+      this->backward = this->backward || member.opposite >= 0;
+    }
+  }
+  this->LayLaps();
+  this->LayPlane(device);
+  this->LayBundles();
+  this->LayUnits(device.ComputeUnits());
+  this->LaySchedule();
+  this->LayRounds();
+}
+
+/// On a periodic axis of few planes the rays that start in them would all cross in one and the same way. Let them start
+/// in several laps instead, each with its part of the power.
+void SweepPlan::LayLaps()
+{
+  this->laps = PlanesOfPattern(this->Planes(), this->periodic[this->axes.axis]) / this->Planes();
+  for (Bundle& bundle : this->bundles)
+  {
+    bundle.power /= this->laps;
+  }
+}
+
+void SweepPlan::LayPlane(const Device& device)
+{
+  this->vector = device.FloatVectorWidth() >= 16 ? 16 : device.FloatVectorWidth() >= 8 ? 8 : 4;
+  const std::array<int, 3>& n = this->box.size;
+  const std::array<int, 3>& first = this->box.first;
+  const std::array<int, 3> step = { 1, this->grid.size[0], this->grid.size[0] * this->grid.size[1] };
+  const int width = RoundUp(n[this->axes.u], this->vector);
+  this->row = RowFloats(width, this->vector);
+  this->plane = { n[this->axes.u], n[this->axes.v], n[this->axes.axis], first[this->axes.u], first[this->axes.v],
+    first[this->axes.axis], step[this->axes.u], step[this->axes.v], step[this->axes.axis], width,
+    this->axes.u == 0 ? 1 : this->vector, static_cast<float>(std::max(1e-30 / LongestWay(this->bundles), 1e-37)),
+    static_cast<float>(Thin / this->LongestSegment()), {} };
+  std::copy(MeanLength, MeanLength + MeanLengthTerms, this->plane.meanLength);
+}
+
+/// Through a voxel. Of rays that go round a periodic axis their way through a plane stands for it.
+double SweepPlan::LongestSegment() const
+{
+  if (this->periodic[this->axes.axis])
+  {
+    return LongestWay(this->bundles);
+  }
+  double longest = 0.0;
+  for (const PlaneCrossingOnDevice& crossing : this->Crossings(0, this->CrossingPlanes()))
+  {
+    longest = std::max<double>(longest, *std::max_element(crossing.length, crossing.length + crossing.stages));
+  }
+  return longest;
+}
+
+void SweepPlan::LayBundles()
+{
+  for (const Bundle& bundle : this->bundles)
+  {
+    const std::size_t rays = bundle.members.size() * this->channels;
+    this->bundleRows.push_back(this->Describe(bundle));
+    this->mapsEachWay += rays * this->row * (this->plane.sizeV + 2);
+    this->outsideEachWay += rays * this->row;
+    this->radianceEachWay += rays;
+  }
+  this->mapsEachWay += this->vector; // the last row's border
+  this->outsideEachWay += this->vector;
+}
+
+/// The bundle after those that have their place.
+BundleOnDevice SweepPlan::Describe(const Bundle& bundle) const
+{
+  const std::array<double, 3>& spacing = this->grid.spacing;
+  const double cosine = spacing[this->axes.axis] / bundle.length;
+  const auto sine = [&](double tangent, int aside) {
+    return static_cast<float>(tangent * spacing[aside] / spacing[this->axes.axis] * cosine);
+  };
+  BundleOnDevice description = { Int(bundle.members.size()), Int(this->mapsEachWay), Int(this->radianceEachWay),
+    Int(this->outsideEachWay), static_cast<float>(bundle.power), static_cast<float>(cosine),
+    sine(bundle.tangentU, this->axes.u), sine(bundle.tangentV, this->axes.v), {} };
+  for (std::size_t m = 0; m < bundle.members.size(); ++m)
+  {
+    const Member& member = bundle.members[m];
+    const cl_int move[4] = { member.uFromU, member.uFromV, member.vFromU, member.vFromV };
+    std::copy(move, move + 4, description.move[m]);
+  }
+  return description;
+}
+
+/// Units that march at the same time: both ways, each in as many groups of bundles as keep the cores busy.
+void SweepPlan::LayUnits(int computeUnits)
+{
+  const int ways = (this->forward ? 1 : 0) + (this->backward ? 1 : 0);
+  const int groups =
+    std::clamp(computeUnits / std::max(ways, 1), 1, std::min<int>(MostGroups, Int(this->bundles.size())));
+  std::size_t rays = 0;
+  for (const Bundle& bundle : this->bundles)
+  {
+    rays += bundle.members.size();
+  }
+  std::size_t done = 0;
+  int first = 0;
+  for (int g = 0; g < groups; ++g)
+  {
+    int end = first;
+    while (end < Int(this->bundles.size()) && (done * groups < rays * (g + 1) || g == groups - 1))
+    {
+      done += this->bundles[end].members.size();
+      ++end;
+    }
+    for (int way = 0; way < 2; ++way)
+    {
+      if (way == 0 ? this->forward : this->backward)
+      {
+        this->units.push_back(
+          { way, first, end - first, Int(this->units.size() * this->ScratchFloats()), this->PlanesBefore(way) });
+      }
+    }
+    first = end;
+  }
+}
+
+int SweepPlan::PlanesBefore(int way) const
+{
+  const int axis = this->axes.axis;
+  return way == 0 ? this->box.first[axis] : this->grid.size[axis] - this->box.first[axis] - this->box.size[axis];
+}
+
+int SweepPlan::CrossingPlanes() const
+{
+  return this->PatternPlanes() + std::max(this->PlanesBefore(0), this->PlanesBefore(1));
+}
+
+std::size_t SweepPlan::ScratchFloats() const
+{
+  // Two rings and the rays of a row of which a part moves.
+  const std::size_t ring = (std::size_t{ 2 } * RingRows + 1) * MaxMembers * this->channels * this->row + this->vector;
+  const std::size_t quantities =
+    3 + ((this->netFlux ? 5 : 2) + (this->entering ? 5 : 0)) * this->channels; // PLANES of SweepLayout.cl
+  const std::size_t planes = quantities * this->plane.block * this->plane.sizeV * this->row;
+  const std::size_t thinRows = static_cast<std::size_t>(this->plane.block) * this->plane.sizeV;
+  return ring + planes + thinRows + 2 * this->vector;
+}
+
+/// Where slabs of planes begin and end: an even number, as many as keep launches short, at least eight for each of several
+/// groups, cut between blocks.
+std::vector<int> SweepPlan::SlabBorders(int groups)
+{
+  const int planes = this->Planes();
+  const double perPlane =
+    static_cast<double>(this->plane.sizeU) * this->plane.sizeV * this->RaysPerUnit() * this->channels * SecondsPerRay;
+  int slabs = std::max(static_cast<int>(std::ceil(perPlane * planes / SecondsPerLaunch)), groups > 1 ? 8 * groups : 2);
+  slabs = std::max(2, RoundUp(std::min(slabs, planes), 2));
+  this->secondsPerLaunch = perPlane * planes / slabs;
+  const int step = planes >= 4 * this->plane.block ? this->plane.block : 1;
+  std::vector<int> borders(slabs + 1);
+  for (int s = 0; s <= slabs; ++s)
+  {
+    const int even = static_cast<int>(static_cast<long>(planes) * s / slabs);
+    borders[s] = s == slabs ? planes : std::min(planes, RoundUp(even, step));
+  }
+  return borders;
+}
+
+/// Cut the axis into slabs such that units never meet: a group enters two slabs behind the one before it, and forward
+/// and backward units, which come towards each other, are in slabs of different parity.
+void SweepPlan::LaySchedule()
+{
+  const int planes = this->Planes();
+  const int groups = this->units.back().backward || !this->backward || !this->forward
+    ? Int(this->units.size()) / ((this->forward ? 1 : 0) + (this->backward ? 1 : 0))
+    : 1;
+  const std::vector<int> borders = this->SlabBorders(groups);
+  const int slabs = Int(borders.size()) - 1;
+  this->launches = slabs + 2 * (groups - 1);
+  for (int launch = 0; launch < this->launches; ++launch)
+  {
+    int group = 0;
+    int firstBundle = this->units.front().firstBundle;
+    for (const UnitOnDevice& unit : this->units)
+    {
+      group += unit.firstBundle != firstBundle ? 1 : 0;
+      firstBundle = unit.firstBundle;
+      const int slab = launch - 2 * group;
+      cl_int2 range = { { 0, 0 } };
+      if (slab >= 0 && slab < slabs)
+      {
+        range = unit.backward ? cl_int2{ { planes - borders[slabs - slab], planes - borders[slabs - 1 - slab] } }
+                              : cl_int2{ { borders[slab], borders[slab + 1] } };
+      }
+      this->schedule.push_back(range);
+    }
+  }
+}
+
+void SweepPlan::LayRounds()
+{
+  const std::size_t count = this->units.size();
+  this->roundSchedule.assign(count * count, cl_int2{ { 0, 0 } });
+  for (std::size_t u = 0; u < count; ++u)
+  {
+    this->roundSchedule[u * count + u] = { { 0, Int(this->PatternPlanes()) } };
+  }
+}
+
+/// Of the unit that has most.
+int SweepPlan::RaysPerUnit() const
+{
+  std::size_t most = 0;
+  for (const UnitOnDevice& unit : this->units)
+  {
+    std::size_t rays = 0;
+    for (int b = unit.firstBundle; b < unit.firstBundle + unit.bundles; ++b)
+    {
+      rays += this->bundles[b].members.size();
+    }
+    most = std::max(most, rays);
+  }
+  return Int(most);
+}
+
+std::vector<PlaneCrossingOnDevice> SweepPlan::Crossings(int firstPlane, int planes) const
+{
+  std::vector<PlaneCrossingOnDevice> rows;
+  for (int k = 0; k < planes; ++k)
+  {
+    for (const Bundle& bundle : this->bundles)
+    {
+      const PlaneCrossing crossing = bundle.Crossing(firstPlane + k);
+      PlaneCrossingOnDevice onDevice = {};
+      onDevice.stages = crossing.count;
+      for (int s = 0; s < crossing.count; ++s)
+      {
+        onDevice.moveU[s] = crossing.segments[s].moveU;
+        onDevice.moveV[s] = crossing.segments[s].moveV;
+        onDevice.part[s] = static_cast<float>(crossing.segments[s].part);
+        onDevice.length[s] = static_cast<float>(crossing.segments[s].length);
+      }
+      rows.push_back(onDevice);
+    }
+  }
+  return rows;
+}
+
+std::vector<OwnLightOnDevice> SweepPlan::OwnLight() const
+{
+  std::vector<OwnLightOnDevice> rows;
+  for (const UnitOnDevice& unit : this->units)
+  {
+    for (int k = 0; k < this->PatternPlanes(); ++k)
+    {
+      rows.push_back(this->OwnLightOf(unit, unit.planesBefore + k));
+    }
+  }
+  return rows;
+}
+
+/// (l - p1) / sigma = -l^2 (MeanLength[0] + sigma l (MeanLength[1] + ...)), summed over segments; sigma in units of `thin`.
+OwnLightOnDevice SweepPlan::OwnLightOf(const UnitOnDevice& unit, int ofPlane) const
+{
+  double sum = 0.0;
+  std::array<double, MeanLengthTerms> terms = {};
+  for (int b = unit.firstBundle; b < unit.firstBundle + unit.bundles; ++b)
+  {
+    const Bundle& bundle = this->bundles[b];
+    const double power = bundle.power * static_cast<double>(bundle.members.size());
+    const PlaneCrossing crossing = bundle.Crossing(ofPlane);
+    for (int s = 0; s < crossing.count; ++s)
+    {
+      const double length = crossing.segments[s].length;
+      double factor = -power * length * length;
+      sum += power * length;
+      for (int i = 0; i < MeanLengthTerms; ++i, factor *= length * this->plane.thin)
+      {
+        terms[i] += factor * MeanLength[i];
+      }
+    }
+  }
+  OwnLightOnDevice own = { static_cast<float>(sum), {} };
+  std::copy(terms.begin(), terms.end(), own.terms);
+  return own;
+}
+}

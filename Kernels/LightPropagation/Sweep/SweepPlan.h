@@ -1,0 +1,103 @@
+#pragma once
+
+#include "LightPropagation/Angular/RayBundles.h"
+#include "LightPropagation/Sweep/SweepVolume.h"
+
+#include "Device/Device.h"
+
+#include <array>
+#include <vector>
+
+namespace tyndall
+{
+constexpr int MaxMembers = 8;      ///< MAX_MEMBERS of SweepLayout.cl
+constexpr int MeanLengthTerms = 5; ///< MEAN_LENGTH_TERMS of SweepLayout.cl
+
+// What the kernels are told, as bundle_info and crossing_info of SweepLayout.cl, unit_info, plane_layout and own_light of Sweep.cl.
+struct BundleOnDevice
+{
+  cl_int members, map, border, outside;
+  cl_float power, cosine, sineU, sineV;
+  cl_int move[MaxMembers][4];
+};
+struct PlaneCrossingOnDevice
+{
+  cl_int stages, moveU[3], moveV[3];
+  cl_float part[3], length[3];
+};
+struct UnitOnDevice
+{
+  cl_int backward, firstBundle, bundles, scratch, planesBefore;
+};
+struct PlaneOnDevice
+{
+  cl_int sizeU, sizeV, sizeP, firstU, firstV, firstP, stepU, stepV, stepP, width, block;
+  cl_float vacuum, thin, meanLength[MeanLengthTerms];
+};
+struct OwnLightOnDevice
+{
+  cl_float length, terms[MeanLengthTerms];
+};
+
+/// How a sweep goes: its bundles' place in memory, the units of work that march at the same time, and which planes each
+/// crosses in which launch. Worked out once on the host.
+struct SweepPlan
+{
+  /// @param box  the part of the grid that is swept; all of it, or no axis is periodic
+  /// @param netFlux  the net flux is wanted too
+  /// @param entering  and the power that enters voxels by face
+  SweepPlan(const Device& device, const Grid& grid, const VoxelBox& box, int axis, const std::vector<Bundle>& bundles,
+    int channels, const std::array<bool, 3>& periodic, bool netFlux, bool entering);
+
+  Grid grid;
+  VoxelBox box;
+  PlaneAxes axes;
+  std::vector<Bundle> bundles; ///< of 1, 2, 4 or 8 members: what the kernels are compiled for
+  int channels;
+  std::array<bool, 3> periodic;
+  bool netFlux;
+  bool entering;
+  bool forward = false; ///< some rays march that way
+  bool backward = false;
+
+  int vector = 8; ///< floats of a work-item's vector
+  int row = 0;    ///< floats of a padded row
+  PlaneOnDevice plane = {};
+  std::vector<BundleOnDevice> bundleRows;
+  std::size_t mapsEachWay = 0; ///< floats of the maps, the rows outside and the radiances at the faces, one way
+  std::size_t outsideEachWay = 0;
+  std::size_t radianceEachWay = 0;
+
+  std::vector<UnitOnDevice> units;
+  std::vector<cl_int2> schedule; ///< [launch][unit]: planes from, to
+  int launches = 0;
+  double secondsPerLaunch = 0.0; ///< at most, on a slow core
+  int laps = 1; ///< times that a sweep's rays start anew on a short periodic axis, so that their pattern has room
+  std::vector<cl_int2> roundSchedule; ///< for going round a periodic axis, one unit at a time
+
+  int Planes() const { return this->box.size[this->axes.axis]; }
+  int PatternPlanes() const { return this->Planes() * this->laps; } ///< that the rays of a sweep start in
+  int PlanesBefore(
+    int way) const; ///< of the grid, that rays of that way (0 forward) have crossed before they come to the box
+  int CrossingPlanes() const; ///< that rays cross to the box's end, either way: of the pattern, from its beginning
+  std::size_t ScratchFloats() const; ///< of one unit
+
+  /// [plane][bundle], planes counted on from `firstPlane`.
+  std::vector<PlaneCrossingOnDevice> Crossings(int firstPlane, int planes) const;
+  /// [unit][plane] how the medium's own light gets out of the voxel where it starts.
+  std::vector<OwnLightOnDevice> OwnLight() const;
+
+private:
+  void LayLaps();
+  void LayPlane(const Device& device);
+  void LayBundles();
+  BundleOnDevice Describe(const Bundle& bundle) const;
+  void LayUnits(int computeUnits);
+  std::vector<int> SlabBorders(int groups);
+  void LaySchedule();
+  void LayRounds();
+  int RaysPerUnit() const;
+  double LongestSegment() const;
+  OwnLightOnDevice OwnLightOf(const UnitOnDevice& unit, int plane) const;
+};
+}

@@ -1,0 +1,62 @@
+// A beam of parallel light, after it was followed: its path is added to that of all lights, and how near to voxels' faces it is lost.
+
+// As BeamInfo in LampBeams.cxx.
+typedef struct
+{
+  int size[3];
+  int periodic[3];
+  int up[3];         // the way it goes along each axis
+  float spacing[3];
+  float lengths[3];  // of a ray from face to face
+  float thin;        // optical length of voxels whose light is lost evenly, near enough
+} beam_info;
+
+// Distance from the middle of a voxel, in voxels, at which light is lost that comes in through a face and fades over tau.
+static float distance_to_face(float tau)
+{
+  return tau < 0.05f ? tau / 12.0f : 0.5f - 1.0f / tau + (tau < 80.0f ? 1.0f / expm1(tau) : 0.0f);
+}
+
+// The first moment of what is lost is by Gauss's theorem that of the power through the faces, plus the net flux: exact where as much
+// goes in as comes out of the faces beside; never more than if all came in through the face.
+// path, entering      of the beam, as in SweepVolume.h
+// all_path, nearness  of all lamps
+__kernel void add_beam(beam_info beam, const __global float* sigma, ulong sigma_first, const __global float* path,
+  const __global float* entering, __global float* all_path, __global float* nearness, ulong first, ulong stride)
+{
+  const ulong i = get_global_id(0);
+  const ulong begin = first + get_global_id(1) * stride;
+  const float length = path[begin + i];
+  all_path[begin + i] += length;
+  const float s = sigma[sigma_first + i];
+  entering += 6 * begin;
+  nearness += 6 * begin;
+  const int at[3] = { i % beam.size[0], i / beam.size[0] % beam.size[1], i / ((ulong)beam.size[0] * beam.size[1]) };
+  float in[3], out[3], rest = -s * length, leaving = 0.0f;
+  bool border[3];
+  for (int a = 0, step = 1; a < 3; step *= beam.size[a++])
+  {
+    const __global float* through = entering + (2 * a + 1 - beam.up[a]) * stride;
+    const int last = beam.up[a] ? beam.size[a] - 1 : 0;
+    const int next = at[a] != last ? (beam.up[a] ? step : -step) : (beam.size[a] - 1) * (beam.up[a] ? -step : step);
+    border[a] = at[a] == last && !beam.periodic[a];
+    in[a] = through[i];
+    out[a] = border[a] ? 0.0f : through[(long)i + next];
+    rest += in[a] - out[a];
+    leaving += border[a] ? in[a] : 0.0f;
+  }
+  for (int a = 0; a < 3; ++a)
+  {
+    const float tau = s * beam.lengths[a];
+    if (s * beam.spacing[a] < beam.thin || length <= 0.0f)
+    {
+      continue;
+    }
+    out[a] = border[a] && leaving > 0.0f ? fmax(rest, 0.0f) * in[a] / leaving : out[a];
+    const float onwards = (length / beam.lengths[a] - 0.5f * (in[a] + out[a])) / s;
+    const float most = length * distance_to_face(tau);
+    const int ahead = 2 * a + beam.up[a];
+    nearness[ahead * stride + i] += clamp(onwards, 0.0f, most);
+    nearness[(ahead ^ 1) * stride + i] += clamp(-onwards, 0.0f, most);
+  }
+}

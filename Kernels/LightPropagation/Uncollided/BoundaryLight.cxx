@@ -1,0 +1,189 @@
+#include "LightPropagation/Uncollided/BoundaryLight.h"
+
+#include "Device/Errors.h"
+
+#include <algorithm>
+#include <cmath>
+#include <cstdio>
+#include <limits>
+#include <string>
+
+namespace tyndall
+{
+namespace
+{
+constexpr double Rounding = 1e-6;    ///< of radiance that is meant to be even
+constexpr double MissedAtMost = 0.3; ///< by whole rays; a box of one voxel misses up to a fifth of one face's
+
+/// Through which face light of a direction comes in across an axis.
+int FaceOf(const Direction& direction, int axis)
+{
+  return 2 * axis + (direction.omega[axis] > 0.0 ? 0 : 1);
+}
+
+std::string Text(const char* format, double value)
+{
+  char text[64];
+  std::snprintf(text, sizeof(text), format, value);
+  return text;
+}
+
+/// Light that enters, by exact shares of rays and by whole ones.
+struct EnteringRays
+{
+  Rgb exact = {}, whole = {};
+
+  void Add(const Rgb& radiance, double power, double exactRays, double wholeRays)
+  {
+    for (int c = 0; c < 3; ++c)
+    {
+      this->exact[c] += exactRays * radiance[c] * power;
+      this->whole[c] += wholeRays * radiance[c] * power;
+    }
+  }
+};
+}
+
+BoundaryLight::BoundaryLight(const Grid& grid, const PropagationSettings& settings, const SweptDirections& directions,
+  const Illumination& illumination, const Environment& farAway)
+  : TheGrid(grid)
+  , Periodic(settings.periodic)
+  , MapResolution(settings.mapResolution)
+  , Directions(directions)
+  , Faces(illumination.faces)
+  , FromFarAway(directions.Set().directions.size())
+{
+  const std::vector<Rgb> radiance = BoundaryRadiance(directions.Set(), farAway, illumination.sky);
+  for (std::size_t d = 0; d < radiance.size(); ++d)
+  {
+    const std::vector<int> all = directions.AllOf(static_cast<int>(d));
+    for (const int one : all)
+    {
+      for (int c = 0; c < 3; ++c)
+      {
+        this->FromFarAway[d][c] += radiance[one][c] / static_cast<double>(all.size());
+      }
+    }
+  }
+  this->FindRange();
+}
+
+void BoundaryLight::FindRange()
+{
+  Rgb least, most = {};
+  least.fill(std::numeric_limits<double>::max());
+  for (std::size_t d = 0; d < this->FromFarAway.size(); ++d)
+  {
+    for (int axis = 0; axis < 3; ++axis)
+    {
+      const Rgb in = this->Incoming(static_cast<int>(d), FaceOf(this->Directions.Set().directions[d], axis));
+      for (int c = 0; c < 3 && !this->Periodic[axis]; ++c)
+      {
+        least[c] = std::min(least[c], in[c]);
+        most[c] = std::max(most[c], in[c]);
+      }
+    }
+  }
+  for (int c = 0; c < 3; ++c)
+  {
+    this->AnyLight = this->AnyLight || most[c] > 0.0;
+    this->AllAlike = this->AllAlike && (most[c] <= 0.0 || most[c] - least[c] <= Rounding * most[c]);
+  }
+}
+
+Rgb BoundaryLight::Incoming(int direction, int face) const
+{
+  Rgb radiance = this->Faces[face];
+  for (int c = 0; c < 3; ++c)
+  {
+    radiance[c] += this->FromFarAway[direction][c];
+  }
+  return radiance;
+}
+
+bool BoundaryLight::IsLit(int direction) const
+{
+  bool lit = false;
+  for (int axis = 0; axis < 3; ++axis)
+  {
+    const Rgb in = this->Incoming(direction, FaceOf(this->Directions.Set().directions[direction], axis));
+    lit = lit || (!this->Periodic[axis] && Sum(in) > 0.0);
+  }
+  return lit;
+}
+
+SweepBoundary BoundaryLight::Boundary() const
+{
+  return [this](int direction, int face) { return this->Incoming(direction, face); };
+}
+
+std::array<Rgb, 6> BoundaryLight::IncomingPower() const
+{
+  std::array<Rgb, 6> power = {};
+  const std::vector<Direction>& directions = this->Directions.Set().directions;
+  for (std::size_t d = 0; d < directions.size(); ++d)
+  {
+    for (int axis = 0; axis < 3; ++axis)
+    {
+      const int face = FaceOf(directions[d], axis);
+      const Rgb radiance = this->Incoming(static_cast<int>(d), face);
+      for (int c = 0; c < 3 && !this->Periodic[axis]; ++c)
+      {
+        power[face][c] += directions[d].weight * std::abs(directions[d].omega[axis]) * radiance[c];
+      }
+    }
+  }
+  return power;
+}
+
+void BoundaryLight::CheckRays(int channels) const
+{
+  EnteringRays entering;
+  for (int axis = 0; axis < 3; ++axis)
+  {
+    const PlaneAxes axes = AcrossAxis(axis);
+    const std::array<int, 3>& n = this->TheGrid.size;
+    const double planes = PlanesOfPattern(n[axis], this->Periodic[axis]);
+    if (planes <= 2.0)
+    {
+      continue; // so few that it hardly matters in which
+    }
+    for (const Bundle& bundle : BundlesAlong(axis, this->TheGrid, this->Periodic, this->Directions.Set(),
+           this->MapResolution, this->Directions.Starts()))
+    {
+      const std::array<double, 2> moves = { bundle.tangentU * planes, bundle.tangentV * planes };
+      const std::array<double, 2> wholeMoves = { std::floor(bundle.startU + moves[0] + 1e-9),
+        std::floor(bundle.startV + moves[1] + 1e-9) };
+      for (const Member& member : bundle.members)
+      {
+        for (const int direction : { member.direction, member.opposite })
+        {
+          const bool swapped = member.uFromU == 0;
+          const auto add = [&](int through, double exactRays, double wholeRays) {
+            const int face = FaceOf(this->Directions.Set().directions[direction], through);
+            const Rgb radiance = this->Periodic[through] ? Rgb{} : this->Incoming(direction, face);
+            entering.Add(radiance, bundle.power, exactRays, wholeRays);
+          };
+          const double across = static_cast<double>(n[axes.u]) * n[axes.v];
+          add(axis, across, across);
+          add(axes.u, moves[swapped] * n[axes.v], wholeMoves[swapped] * n[axes.v]);
+          add(axes.v, moves[!swapped] * n[axes.u], wholeMoves[!swapped] * n[axes.u]);
+        }
+      }
+    }
+  }
+  for (int c = 0; c < channels; ++c)
+  {
+    if (std::abs(entering.whole[c] - entering.exact[c]) > MissedAtMost * entering.exact[c])
+    {
+      const std::array<double, 3>& h = this->TheGrid.spacing;
+      throw InvalidInput("Whole rays bring " + Text("%.3g", 100.0 * entering.whole[c] / entering.exact[c]) +
+        "% of the light that shines through the box's faces: too few of them meet the faces that shine, for voxels "
+        "of " +
+        Text("%g", h[0]) + " x " + Text("%g", h[1]) + " x " + Text("%g", h[2]) +
+        " are too unequal, or directions too few. Resample to voxels of more equal edges, or raise MapResolution, "
+        "DirectionsPerFace or FirstFlightDirections.");
+    }
+  }
+}
+}

@@ -1,0 +1,50 @@
+#pragma once
+
+#include "LightPropagation/Angular/SweptDirections.h"
+#include "LightPropagation/Sweep/SweepVolume.h"
+#include "Lights/Lights.h"
+
+#include <array>
+#include <vector>
+
+namespace tyndall
+{
+/// Light that comes from outside: of shining faces, of the sky and of the environment (but its peaks, which are lamps), along a set of
+/// directions.
+class BoundaryLight
+{
+public:
+  /// @param directions  must stay
+  /// @param farAway  the illumination's environment without peaks
+  BoundaryLight(const Grid& grid, const PropagationSettings& settings, const SweptDirections& directions,
+    const Illumination& illumination, const Environment& farAway);
+
+  bool Shines() const { return this->AnyLight; }
+  bool IsEven() const { return this->AllAlike; } ///< the same comes in along every direction through every open face
+  bool IsLit(int direction) const;               ///< light comes in along it through one of the open faces
+  /// Radiance, in the mean over the directions that this one stands for. W / (length^2 sr)
+  Rgb Incoming(int direction, int face) const;
+  SweepBoundary Boundary() const; ///< the same, for a sweep; this must stay
+  /// W / length^2 through each of the box's faces; 0 where the axis is periodic.
+  std::array<Rgb, 6> IncomingPower() const;
+
+  /// What enters a face along rays that march along another axis is few rays where the box is thin for the planes that they march by.
+  /// @param channels  that are looked at
+  /// @throws InvalidInput where they are too few to tell where light comes in
+  void CheckRays(int channels) const;
+
+  const SweptDirections& Along() const { return this->Directions; }
+
+private:
+  void FindRange();
+
+  Grid TheGrid;
+  std::array<bool, 3> Periodic;
+  int MapResolution;
+  const SweptDirections& Directions;
+  std::array<Rgb, 6> Faces;
+  std::vector<Rgb> FromFarAway; ///< by direction, in the mean over those that it stands for
+  bool AnyLight = false;
+  bool AllAlike = true;
+};
+}

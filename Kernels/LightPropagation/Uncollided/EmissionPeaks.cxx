@@ -1,0 +1,324 @@
+#include "LightPropagation/Uncollided/EmissionPeaks.h"
+
+#include <algorithm>
+#include <cmath>
+#include <limits>
+
+namespace tyndall
+{
+namespace
+{
+constexpr std::size_t BrightPart = 64; ///< one voxel in so many may be part of a peak
+constexpr double Outshines = 4.0;      ///< times the mean of the rest
+constexpr double PartOfAll = 0.5;      ///< that all peaks carry, at least
+constexpr double PartOfOne = 0.01;     ///< that each carries, at least
+constexpr std::size_t MostPeaks = 16;
+constexpr double Widest = 0.125; ///< of the box's longest edge
+constexpr double Hidden = 4.6;   ///< mean free paths beyond which a peak is not seen: 1% is left
+constexpr double Opaque = 3e4; ///< mean free paths a voxel from which on a peak is left to the sweeps
+constexpr double Clear = 1.5;    ///< times a peak's width that light must go to be followed
+
+using Voxel = std::array<int, 3>;
+
+Voxel VoxelAt(const Grid& grid, std::size_t index)
+{
+  const std::size_t nx = static_cast<std::size_t>(grid.size[0]);
+  const std::size_t ny = static_cast<std::size_t>(grid.size[1]);
+  return { static_cast<int>(index % nx), static_cast<int>(index / nx % ny), static_cast<int>(index / (nx * ny)) };
+}
+
+std::size_t IndexOf(const Grid& grid, const Voxel& v)
+{
+  return (static_cast<std::size_t>(v[2]) * grid.size[1] + v[1]) * grid.size[0] + v[0];
+}
+
+double Brightness(const Field& emission, std::size_t voxel)
+{
+  return (static_cast<double>(emission.At(voxel, 0)) + emission.At(voxel, 1) + emission.At(voxel, 2)) / 3.0;
+}
+
+/// Voxels far brighter than the mean of the others.
+struct BrightVoxels
+{
+  std::vector<std::size_t> voxels; ///< in order
+  double limit = 0.0;              ///< what is above it stands out
+  double all = 0.0;                ///< sum of all voxels' brightness
+  double Above(const Field& emission, std::size_t voxel) const { return Brightness(emission, voxel) - this->limit; }
+};
+
+BrightVoxels FindBright(const Medium& medium)
+{
+  BrightVoxels bright;
+  const std::size_t voxels = medium.grid.VoxelCount();
+  const std::size_t most = voxels / BrightPart;
+  if (!medium.emission.values || most == 0)
+  {
+    return bright;
+  }
+  std::vector<double> sorted(voxels);
+  for (std::size_t i = 0; i < voxels; ++i)
+  {
+    sorted[i] = Brightness(medium.emission, i);
+    bright.all += sorted[i];
+  }
+  std::nth_element(sorted.begin(), sorted.begin() + most, sorted.end(), std::greater<double>());
+  const double next = sorted[most]; // as bright as that is not small any more
+  double rest = 0.0;
+  for (std::size_t i = most; i < voxels; ++i)
+  {
+    rest += sorted[i];
+  }
+  bright.limit = std::max(next, Outshines * rest / static_cast<double>(voxels - most));
+  double above = 0.0;
+  for (std::size_t i = 0; i < most; ++i)
+  {
+    above += std::max(0.0, sorted[i] - bright.limit);
+  }
+  if (above < PartOfAll * bright.all || above == 0.0)
+  {
+    return bright;
+  }
+  for (std::size_t i = 0; i < voxels; ++i)
+  {
+    if (bright.Above(medium.emission, i) > 0.0)
+    {
+      bright.voxels.push_back(i);
+    }
+  }
+  return bright;
+}
+
+/// Groups of voxels that touch each other, at corners too.
+std::vector<std::vector<std::size_t>> Groups(const Grid& grid, const std::vector<std::size_t>& voxels)
+{
+  std::vector<std::vector<std::size_t>> groups;
+  std::vector<bool> taken(voxels.size(), false);
+  for (std::size_t seed = 0; seed < voxels.size(); ++seed)
+  {
+    if (taken[seed])
+    {
+      continue;
+    }
+    taken[seed] = true;
+    std::vector<std::size_t> group = { voxels[seed] };
+    for (std::size_t next = 0; next < group.size(); ++next)
+    {
+      const Voxel at = VoxelAt(grid, group[next]);
+      for (int n = 0; n < 27; ++n)
+      {
+        const Voxel beside = { at[0] + n % 3 - 1, at[1] + n / 3 % 3 - 1, at[2] + n / 9 - 1 };
+        bool inside = true;
+        for (int a = 0; a < 3; ++a)
+        {
+          inside = inside && beside[a] >= 0 && beside[a] < grid.size[a];
+        }
+        const auto found =
+          inside ? std::lower_bound(voxels.begin(), voxels.end(), IndexOf(grid, beside)) : voxels.end();
+        const std::size_t place = found - voxels.begin();
+        if (found != voxels.end() && *found == IndexOf(grid, beside) && !taken[place])
+        {
+          taken[place] = true;
+          group.push_back(*found);
+        }
+      }
+    }
+    groups.push_back(std::move(group));
+  }
+  return groups;
+}
+
+/// The box around a group.
+EmissionPeak BoxAround(const Grid& grid, const std::vector<std::size_t>& group)
+{
+  EmissionPeak peak;
+  Voxel last = VoxelAt(grid, group[0]);
+  peak.first = last;
+  for (std::size_t voxel : group)
+  {
+    const Voxel at = VoxelAt(grid, voxel);
+    for (int a = 0; a < 3; ++a)
+    {
+      peak.first[a] = std::min(peak.first[a], at[a]);
+      last[a] = std::max(last[a], at[a]);
+    }
+  }
+  for (int a = 0; a < 3; ++a)
+  {
+    peak.size[a] = last[a] - peak.first[a] + 1;
+  }
+  return peak;
+}
+
+/// Compared with the box.
+bool IsSmall(const Grid& grid, const EmissionPeak& peak)
+{
+  return peak.Width(grid) <= Widest * std::max({ grid.Length(0), grid.Length(1), grid.Length(2) });
+}
+
+/// Optical lengths of a medium, in the clearest channel or the least clear one.
+class OpticalLength
+{
+public:
+  explicit OpticalLength(const Medium& medium)
+    : TheMedium(medium)
+  {
+  }
+
+  /// Of the straight way from a point (in voxels) on, `reach` lengths far or out of the box; in each channel.
+  std::array<double, 3> Along(const std::array<double, 3>& from, const std::array<double, 3>& way, double reach) const
+  {
+    const Grid& grid = this->TheMedium.grid;
+    const double step = 0.5 * std::min({ grid.spacing[0], grid.spacing[1], grid.spacing[2] });
+    const int steps = static_cast<int>(std::min(std::ceil(reach / step), 10000.0));
+    std::array<double, 3> length = {};
+    for (int s = 0; s < steps; ++s)
+    {
+      Voxel at;
+      for (int a = 0; a < 3; ++a)
+      {
+        at[a] = static_cast<int>(std::floor(from[a] + way[a] / grid.spacing[a] * reach * (s + 0.5) / steps));
+        if (at[a] < 0 || at[a] >= grid.size[a])
+        {
+          return length;
+        }
+      }
+      for (int c = 0; c < 3; ++c)
+      {
+        length[c] += this->TheMedium.TransportSigmaT(IndexOf(grid, at), c) * reach / steps;
+      }
+    }
+    return length;
+  }
+
+private:
+  const Medium& TheMedium;
+};
+
+/// In clear surroundings.
+bool IsSeen(const Medium& medium, const EmissionPeak& peak)
+{
+  const Grid& grid = medium.grid;
+  const OpticalLength optical(medium);
+  std::array<double, 3> middle;
+  for (int a = 0; a < 3; ++a)
+  {
+    middle[a] = peak.first[a] + 0.5 * peak.size[a];
+  }
+  double clearest = std::numeric_limits<double>::max();
+  for (int n = 0; n < 27; ++n)
+  {
+    std::array<double, 3> way = { n % 3 - 1.0, n / 3 % 3 - 1.0, n / 9 - 1.0 };
+    const double length = std::hypot(way[0], way[1], way[2]);
+    if (length == 0.0)
+    {
+      continue;
+    }
+    double half = std::numeric_limits<double>::max(); // from the middle to the border of the peak
+    for (int a = 0; a < 3; ++a)
+    {
+      way[a] /= length;
+      half = way[a] == 0.0 ? half : std::min(half, 0.5 * peak.size[a] * grid.spacing[a] / std::abs(way[a]));
+    }
+    const std::array<double, 3> inside = optical.Along(middle, way, half);
+    const std::array<double, 3> outside = optical.Along(middle, way, half + Clear * peak.Width(grid));
+    for (int c = 0; c < 3; ++c)
+    {
+      clearest = std::min(clearest, outside[c] - inside[c]);
+    }
+  }
+  return clearest <= Hidden;
+}
+
+/// Floats do not know what gets out of a voxel that takes nearly all of its own light.
+bool IsOpaque(const Medium& medium, const std::vector<std::size_t>& group)
+{
+  const std::array<double, 3>& h = medium.grid.spacing;
+  const double edge = std::max({ h[0], h[1], h[2] });
+  return std::any_of(group.begin(), group.end(), [&](std::size_t voxel) {
+    double sigma_t = 0.0;
+    for (int c = 0; c < 3; ++c)
+    {
+      sigma_t = std::max<double>(sigma_t, medium.TransportSigmaT(voxel, c));
+    }
+    return sigma_t * edge > Opaque;
+  });
+}
+
+/// Fills in the emission; the rest stays in `smooth`.
+void Take(const Medium& medium, const BrightVoxels& bright, const std::vector<std::size_t>& group, EmissionPeak& peak,
+  std::vector<float>& smooth)
+{
+  const std::size_t count = static_cast<std::size_t>(peak.size[0]) * peak.size[1] * peak.size[2];
+  const Field& emission = medium.emission;
+  peak.emission.assign(3 * count, 0.0f);
+  for (std::size_t voxel : group)
+  {
+    const Voxel at = VoxelAt(medium.grid, voxel);
+    const std::size_t place =
+      (static_cast<std::size_t>(at[2] - peak.first[2]) * peak.size[1] + at[1] - peak.first[1]) * peak.size[0] + at[0] -
+      peak.first[0];
+    const double kept = bright.limit / Brightness(emission, voxel);
+    for (int c = 0; c < 3; ++c)
+    {
+      const float all = emission.At(voxel, c);
+      const float stays = static_cast<float>(all * kept);
+      peak.emission[c * count + place] = all - stays;
+      if (c < emission.components)
+      {
+        smooth[voxel * emission.components + c] = stays;
+      }
+    }
+  }
+}
+}
+
+SplitEmission Split(const Medium& medium)
+{
+  struct Candidate
+  {
+    double power;
+    std::vector<std::size_t> group;
+    EmissionPeak peak;
+  };
+  const BrightVoxels bright = FindBright(medium);
+  std::vector<Candidate> candidates;
+  for (std::vector<std::size_t>& group : Groups(medium.grid, bright.voxels))
+  {
+    double power = 0.0;
+    for (std::size_t voxel : group)
+    {
+      power += bright.Above(medium.emission, voxel);
+    }
+    if (power < PartOfOne * bright.all)
+    {
+      continue;
+    }
+    const EmissionPeak peak = BoxAround(medium.grid, group);
+    if (IsSmall(medium.grid, peak) && !IsOpaque(medium, group) && IsSeen(medium, peak))
+    {
+      candidates.push_back({ power, std::move(group), peak });
+    }
+  }
+  std::stable_sort(
+    candidates.begin(), candidates.end(), [](const Candidate& a, const Candidate& b) { return a.power > b.power; });
+  candidates.resize(std::min(candidates.size(), MostPeaks));
+  double power = 0.0;
+  for (const Candidate& candidate : candidates)
+  {
+    power += candidate.power;
+  }
+  SplitEmission split;
+  if (candidates.empty() || power < PartOfAll * bright.all)
+  {
+    return split;
+  }
+  split.smooth.assign(
+    medium.emission.values, medium.emission.values + medium.grid.VoxelCount() * medium.emission.components);
+  for (Candidate& candidate : candidates)
+  {
+    Take(medium, bright, candidate.group, candidate.peak, split.smooth);
+    split.peaks.push_back(std::move(candidate.peak));
+  }
+  return split;
+}
+}

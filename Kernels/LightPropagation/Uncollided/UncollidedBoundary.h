@@ -1,0 +1,23 @@
+#pragma once
+
+#include "LightPropagation/Uncollided/BoundaryLight.h"
+#include "LightPropagation/Uncollided/UncollidedSource.h"
+
+namespace tyndall
+{
+/// The uncollided flux of shining faces, sky and environment, along a set of directions of its own. Shadows have edges, which want many
+/// directions; scattered light is smooth and does with few: so the many are swept once and not once an order.
+class UncollidedBoundary : public UncollidedSource
+{
+public:
+  /// @param settings, light  must stay
+  UncollidedBoundary(const PropagationSettings& settings, const BoundaryLight& light);
+
+  SweepTally AddTo(Device& device, const SweepVolume& volume, int firstChannel, SweepWorkspace& workspace,
+    const Monitor& monitor) const override;
+
+private:
+  const PropagationSettings& Settings;
+  const BoundaryLight& Light;
+};
+}

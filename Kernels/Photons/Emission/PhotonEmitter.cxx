@@ -1,0 +1,275 @@
+#include "Photons/Emission/PhotonEmitter.h"
+
+#include "Photons/Emission/PhotonSources.h"
+
+#include "Device/Clock.h"
+#include "Device/Errors.h"
+#include "Device/HostMemory.h"
+#include "Medium/Medium.h"
+
+#include <algorithm>
+#include <cmath>
+#include <cstdio>
+#include <limits>
+#include <string>
+
+namespace tyndall
+{
+namespace
+{
+constexpr std::size_t TrySamples = 4096; ///< to learn what part of a light's photons meets the volume
+constexpr std::size_t ReportEvery = 100000;
+constexpr int BatchesAtMost = 16;
+
+/// A light, and where its photons are dense.
+struct SpreadSource
+{
+  PhotonSource source;
+  std::optional<ImportanceSampler> sampler;
+
+  /// @param weight  of the photon: its power over what it had if all were spread evenly
+  std::optional<Shot> Shoot(PhotonSample sample, double& weight) const
+  {
+    weight = 1.0;
+    if (this->sampler)
+    {
+      const ImportanceSampler::Place place = this->sampler->At(sample[0], sample[1]);
+      sample[0] = place.u;
+      sample[1] = place.v;
+      weight = 1.0 / place.density;
+    }
+    return this->source.shoot(sample);
+  }
+};
+
+std::vector<SpreadSource> SpreadSources(std::vector<PhotonSource> sources, const EmissionSettings& settings)
+{
+  std::vector<SpreadSource> spread;
+  for (PhotonSource& source : sources)
+  {
+    spread.push_back({ std::move(source), {} });
+    const int square = settings.map ? settings.map->SquareOf(spread.back().source.light) : -1;
+    if (square >= 0)
+    {
+      const float* density = settings.map->density.data() + static_cast<std::size_t>(square) * settings.map->Cells();
+      spread.back().sampler.emplace(density, settings.map->size, settings.densestAtMost);
+    }
+  }
+  return spread;
+}
+
+/// What a few photons of a light tell of it.
+struct Tried
+{
+  double power = 0.0; ///< that reaches the volume, channels summed
+  double hits = 0.0;  ///< part of its photons that do
+};
+
+Tried Try(const Grid& grid, const SpreadSource& light)
+{
+  const SampleSequence samples(Sampler::Halton, TrySamples);
+  if (light.source.alike)
+  {
+    const std::optional<Shot> shot = light.source.shoot(samples[0]);
+    return shot && Sum(shot->power) > 0.0 ? Tried{ Sum(shot->power), 1.0 } : Tried{};
+  }
+  Tried tried;
+  for (std::size_t i = 0; i < TrySamples; ++i)
+  {
+    double weight;
+    const std::optional<Shot> shot = light.Shoot(samples[i], weight);
+    if (shot && Sum(shot->power) > 0.0 && Land(grid, *shot))
+    {
+      tried.power += weight * Sum(shot->power) / TrySamples;
+      tried.hits += 1.0 / TrySamples;
+    }
+  }
+  return tried;
+}
+
+/// Shares of `count` in proportion to power, at least one of each light that reaches the volume.
+std::vector<std::size_t> Shares(const std::vector<Tried>& tried, std::size_t count)
+{
+  double left = 0.0;
+  for (const Tried& light : tried)
+  {
+    left += light.power;
+  }
+  std::vector<std::size_t> shares;
+  for (const Tried& light : tried)
+  {
+    const auto share =
+      static_cast<std::size_t>(std::lround(left > 0.0 ? count * std::min(light.power / left, 1.0) : 0.0));
+    shares.push_back(light.power > 0.0 ? std::max<std::size_t>(share, 1) : 0);
+    count -= std::min(count, shares.back());
+    left -= light.power;
+  }
+  return shares;
+}
+
+/// The photon of a sample; nothing where there is none.
+/// @param weight  as it is spread
+/// @param part    of its light's power that it carries, where all are spread evenly
+std::optional<Photon> PhotonOf(const Grid& grid, const std::optional<Shot>& shot, double weight, double part)
+{
+  std::optional<Photon> photon = shot && Sum(shot->power) > 0.0 ? Land(grid, *shot) : std::optional<Photon>();
+  if (photon)
+  {
+    photon->weight = static_cast<float>(weight);
+    for (int c = 0; c < 3; ++c)
+    {
+      photon->power[c] = static_cast<float>(shot->power[c] * weight * part);
+    }
+  }
+  return photon;
+}
+
+/// Photons are floats: their power must be one that is not 0, nor endless, nor so small that digits are lost.
+void CheckPowers(const EmittedPhotons& emitted)
+{
+  float largest = 0.0f;
+  std::size_t brightest = 0;
+  for (std::size_t i = 0; i < emitted.photons.size(); ++i)
+  {
+    const std::array<float, 3>& power = emitted.photons[i].power;
+    const float most = std::max({ power[0], power[1], power[2] });
+    if (most > largest)
+    {
+      largest = most;
+      brightest = i;
+    }
+  }
+  const bool tooLarge = std::isinf(largest);
+  if (emitted.photons.empty() || (!tooLarge && largest >= std::numeric_limits<float>::min()))
+  {
+    return;
+  }
+  const int light = emitted.lights[brightest];
+  const std::string name = light >= 0 ? "light " + std::to_string(light)
+    : light == EnvironmentLight       ? "the environment or sky"
+                                      : "the faces";
+  throw InvalidInput("A photon of " + name + " would carry " +
+    (tooLarge ? "more power than 3.4e+38 W" : "less power than 1.2e-38 W") +
+    ", beyond what a float holds. Give lights " + (tooLarge ? "less power, ask for more photons" : "more power") +
+    ", or choose another unit of length: power goes with the area of the volume.");
+}
+
+void Check(const EmissionSettings& settings)
+{
+  if (settings.photonCount == 0)
+  {
+    throw InvalidInput("The number of photons is 0; ask for at least one.");
+  }
+  if (settings.batches < 1 || settings.batches > BatchesAtMost)
+  {
+    throw InvalidInput("The number of batches is " + std::to_string(settings.batches) + "; it must be 1 to " +
+      std::to_string(BatchesAtMost) + ".");
+  }
+  if (!(settings.densestAtMost >= 1.0))
+  {
+    throw InvalidInput("The density of photons at most is " + std::to_string(settings.densestAtMost) +
+      " times that of photons spread evenly; it must be at least 1.");
+  }
+  if (settings.map)
+  {
+    Check(*settings.map);
+  }
+  constexpr std::size_t bytesEach = sizeof(Photon) + sizeof(int);
+  RequireHostMemory(static_cast<double>(settings.photonCount) * bytesEach,
+    std::to_string(settings.photonCount) + " photons of " + std::to_string(bytesEach) + " bytes each: that",
+    "Ask for fewer photons (PhotonCount).");
+}
+
+/// Makes the photons of one light, batch by batch.
+void EmitFrom(const Grid& grid, const SpreadSource& light, std::size_t tries, std::uint64_t seed,
+  const EmissionSettings& settings, const Monitor& monitor, EmittedPhotons& emitted)
+{
+  const auto batches = static_cast<std::size_t>(settings.batches);
+  for (std::size_t b = 0; b < batches; ++b)
+  {
+    const std::size_t count = (b + 1) * tries / batches - b * tries / batches;
+    const SampleSequence samples(settings.sampler, count, seed, settings.batches > 1 ? static_cast<int>(b) : 0);
+    for (std::size_t i = 0; i < count; ++i)
+    {
+      double weight;
+      const std::optional<Shot> shot = light.Shoot(samples[i], weight);
+      std::optional<Photon> photon = PhotonOf(grid, shot, weight, 1.0 / (static_cast<double>(batches) * count));
+      if (photon)
+      {
+        photon->batch = static_cast<std::int32_t>(b);
+        for (int c = 0; c < 3; ++c)
+        {
+          emitted.power[c] += photon->power[c];
+        }
+        emitted.photons.push_back(*photon);
+        emitted.lights.push_back(light.source.light);
+      }
+      if ((b * tries / batches + i) % ReportEvery == ReportEvery - 1)
+      {
+        Report(monitor, std::min(1.0, static_cast<double>(emitted.photons.size()) / settings.photonCount));
+      }
+    }
+  }
+}
+}
+
+EmittedPhotons EmitPhotons(
+  const Grid& grid, const Illumination& illumination, const EmissionSettings& settings, const Monitor& monitor)
+{
+  const double start = ClockSeconds();
+  tyndall::Check(grid);
+  tyndall::Check(illumination);
+  Check(settings);
+  const std::vector<SpreadSource> lights = SpreadSources(PhotonSourcesOf(grid, illumination), settings);
+  std::vector<Tried> tried;
+  for (const SpreadSource& light : lights)
+  {
+    tried.push_back(Try(grid, light));
+  }
+  const std::vector<std::size_t> shares = Shares(tried, settings.photonCount);
+
+  EmittedPhotons emitted;
+  emitted.photons.reserve(settings.photonCount);
+  for (std::size_t s = 0; s < lights.size(); ++s)
+  {
+    if (shares[s] > 0)
+    {
+      // Every batch has a photon of every light, or it would not be all the light.
+      const auto tries = static_cast<std::size_t>(std::lround(shares[s] / tried[s].hits));
+      EmitFrom(grid, lights[s], std::max(tries, static_cast<std::size_t>(settings.batches)),
+        settings.seed == 0 ? 0 : settings.seed + s, settings, monitor, emitted);
+    }
+  }
+  CheckPowers(emitted);
+  emitted.seconds = ClockSeconds() - start;
+  return emitted;
+}
+
+std::vector<PilotPhotons> EmitPilots(const Grid& grid, const Illumination& illumination, int edge, std::uint64_t seed)
+{
+  tyndall::Check(illumination);
+  const auto rows = static_cast<std::size_t>(edge);
+  const SampleSequence samples(Sampler::Jittered, rows * rows, seed);
+  std::vector<PilotPhotons> pilots;
+  for (const PhotonSource& source : PhotonSourcesOf(grid, illumination))
+  {
+    if (source.light < EnvironmentLight)
+    {
+      continue;
+    }
+    pilots.emplace_back();
+    pilots.back().light = source.light;
+    for (std::size_t i = 0; i < rows * rows; ++i)
+    {
+      const std::optional<Photon> photon =
+        PhotonOf(grid, source.shoot(samples[i]), 1.0, 1.0 / static_cast<double>(rows * rows));
+      if (photon)
+      {
+        pilots.back().photons.push_back(*photon);
+        pilots.back().origins.push_back({ static_cast<int>(i % rows), static_cast<int>(i / rows) });
+      }
+    }
+  }
+  return pilots;
+}
+}

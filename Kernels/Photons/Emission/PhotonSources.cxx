@@ -1,0 +1,310 @@
+#include "Photons/Emission/PhotonSources.h"
+
+#include "Photons/Emission/CumulativeTable.h"
+#include "Photons/Importance/ImportanceMap.h"
+#include "Photons/Marching/PhotonPacking.h"
+#include "Photons/Emission/PhotonPlane.h"
+
+#include <glm/geometric.hpp>
+#include <glm/gtc/constants.hpp>
+
+#include <algorithm>
+#include <cmath>
+#include <memory>
+
+namespace tyndall
+{
+namespace
+{
+constexpr double Pi = glm::pi<double>();
+
+glm::dvec3 Vector(const std::array<double, 3>& v)
+{
+  return { v[0], v[1], v[2] };
+}
+
+Rgb Times(const Rgb& a, double b)
+{
+  return { a[0] * b, a[1] * b, a[2] * b };
+}
+
+/// Two axes across a unit vector (Duff et al. 2017).
+std::array<glm::dvec3, 2> Across(const glm::dvec3& n)
+{
+  const double sign = std::copysign(1.0, n.z);
+  const double a = -1.0 / (sign + n.z);
+  const double b = n.x * n.y * a;
+  return { glm::dvec3(1.0 + sign * n.x * n.x * a, sign * b, -sign * n.x), glm::dvec3(b, sign + n.y * n.y * a, -n.y) };
+}
+
+glm::dvec3 Around(const glm::dvec3& axis, double cosine, double turn)
+{
+  const std::array<glm::dvec3, 2> across = Across(axis);
+  const double sine = std::sqrt(std::max(1.0 - cosine * cosine, 0.0));
+  return axis * cosine + across[0] * (sine * std::cos(2.0 * Pi * turn)) +
+    across[1] * (sine * std::sin(2.0 * Pi * turn));
+}
+
+PhotonSource Directional(const Grid& grid, const Light& light)
+{
+  const glm::dvec3 direction = glm::normalize(Vector(light.direction));
+  const auto plane = std::make_shared<PhotonPlane>(grid, direction);
+  return { 0,
+    [=](const PhotonSample& u) {
+      return Shot{ plane->At(u[0], u[1]), direction, Times(light.power, plane->Area()) };
+    },
+    true };
+}
+
+PhotonSource Point(const Grid& grid, const Light& light)
+{
+  const auto view = std::make_shared<LampView>(grid, Vector(light.position));
+  return { 0,
+    [=](const PhotonSample& u) {
+      return Shot{ view->Lamp(), view->Direction(u[0], u[1]), Times(light.power, view->SolidAngle() / (4.0 * Pi)) };
+    },
+    true };
+}
+
+PhotonSource Spot(const Grid& grid, const Light& light)
+{
+  const glm::dvec3 axis = glm::normalize(Vector(light.direction));
+  const double edge = std::cos(0.5 * light.angle * Pi / 180.0);
+  const double cone = 2.0 * Pi * (1.0 - edge);
+  const auto view = std::make_shared<LampView>(grid, Vector(light.position));
+  const bool fromCone = view->SolidAngle() > cone;
+  const Rgb power = fromCone ? light.power : Times(light.power, view->SolidAngle() / cone);
+  return { 0, [=](const PhotonSample& u) -> std::optional<Shot> {
+            const glm::dvec3 direction =
+              fromCone ? Around(axis, 1.0 - (1.0 - edge) * u[0], u[1]) : view->Direction(u[0], u[1]);
+            const bool isThere = fromCone ? view->Enters(direction) : glm::dot(direction, axis) >= edge;
+            return isThere ? std::optional<Shot>({ view->Lamp(), direction, power }) : std::nullopt;
+          } };
+}
+
+PhotonSource Rectangle(const Grid& grid, const Light& light)
+{
+  const glm::dvec3 middle = Vector(light.position);
+  const glm::dvec3 normal = glm::normalize(Vector(light.direction));
+  const auto edges = RectangleEdges(light);
+  return { 0, [=](const PhotonSample& u) -> std::optional<Shot> {
+            const LampView view(grid, middle + Vector(edges[0]) * (u[2] - 0.5) + Vector(edges[1]) * (u[3] - 0.5));
+            const glm::dvec3 direction =
+              view.Outside() ? view.Direction(u[0], u[1]) : Around(normal, std::sqrt(1.0 - u[0]), u[1]);
+            const double cosine = glm::dot(direction, normal);
+            if (cosine <= 0.0 || !view.Enters(direction))
+            {
+              return {};
+            }
+            return Shot{ view.Lamp(), direction,
+              view.Outside() ? Times(light.power, cosine * view.SolidAngle() / Pi) : light.power };
+          } };
+}
+
+/// A face of the volume, and a point of it.
+struct FaceOfGrid
+{
+  const Grid& grid;
+  int axis;
+  bool up;
+
+  double Area() const
+  {
+    const int b = (this->axis + 1) % 3, c = (this->axis + 2) % 3;
+    return this->grid.size[b] * this->grid.spacing[b] * this->grid.size[c] * this->grid.spacing[c];
+  }
+  glm::dvec3 At(double u, double v) const
+  {
+    glm::dvec3 point;
+    for (int a = 0; a < 3; ++a)
+    {
+      const double part = a == this->axis ? (this->up ? 1.0 : 0.0) : a == (this->axis + 1) % 3 ? u : v;
+      point[a] = this->grid.origin[a] + part * this->grid.size[a] * this->grid.spacing[a];
+    }
+    return point;
+  }
+};
+
+PhotonSource DiffuseFace(const Grid& grid, int face, const Rgb& radiance)
+{
+  const int axis = face / 2;
+  const bool up = face % 2 == 1;
+  glm::dvec3 inwards(0.0);
+  inwards[axis] = up ? -1.0 : 1.0;
+  return { -2,
+    [=](const PhotonSample& u) {
+      const FaceOfGrid at = { grid, axis, up };
+      return Shot{ at.At(u[0], u[1]), Around(inwards, std::sqrt(1.0 - u[2]), u[3]), Times(radiance, Pi * at.Area()) };
+    } };
+}
+
+/// Directions of an environment, by what comes from them onto the volume.
+class Sky
+{
+public:
+  Sky(const Grid& grid, const Environment& environment, const Rgb& sky)
+    : TheGrid(grid)
+    , Picture(environment)
+    , Constant(sky)
+    , Width(environment.Empty() ? 64 : environment.width)
+    , Height(environment.Empty() ? 32 : environment.height)
+  {
+    const std::vector<double> weights = this->Weights();
+    this->Rows.assign(this->Height + 1, 0.0);
+    this->Pixels.assign(static_cast<std::size_t>(this->Height) * (this->Width + 1), 0.0);
+    for (int j = 0; j < this->Height; ++j)
+    {
+      double* row = this->Pixels.data() + static_cast<std::size_t>(j) * (this->Width + 1);
+      for (int i = 0; i < this->Width; ++i)
+      {
+        row[i + 1] = row[i] + weights[static_cast<std::size_t>(j) * this->Width + i];
+      }
+      this->Rows[j + 1] = this->Rows[j] + row[this->Width];
+    }
+  }
+
+  std::optional<Shot> Shoot(const PhotonSample& u) const
+  {
+    if (this->Rows.back() == 0.0)
+    {
+      return {};
+    }
+    double v, h;
+    const int j = FindStep(this->Rows.data(), this->Height, u[2], v);
+    const double* row = this->Pixels.data() + static_cast<std::size_t>(j) * (this->Width + 1);
+    const int i = FindStep(row, this->Width, u[3], h);
+    const double bottom = this->CosineBelow(j), top = this->CosineBelow(j + 1);
+    const double cosine = bottom + v * (top - bottom);
+    const double sine = std::sqrt(std::max(1.0 - cosine * cosine, 0.0));
+    const double azimuth = 2.0 * Pi * (i + h) / this->Width;
+    const glm::dvec3 seen(sine * std::cos(azimuth), sine * std::sin(azimuth), cosine);
+
+    const double angle = 2.0 * Pi / this->Width * (top - bottom);
+    const double density = (row[i + 1] - row[i]) / (this->Rows.back() * angle);
+    return Shot{ this->OnOutline(seen, u), -seen, Times(this->Radiance(seen), this->Outline(seen) / density) };
+  }
+
+private:
+  double CosineBelow(int row) const { return -std::cos(Pi * row / this->Height); }
+
+  Rgb Radiance(const glm::dvec3& seen) const
+  {
+    const Rgb picture = this->Picture.Empty() ? Rgb{} : Lookup(this->Picture, { seen.x, seen.y, seen.z });
+    return { picture[0] + this->Constant[0], picture[1] + this->Constant[1], picture[2] + this->Constant[2] };
+  }
+
+  double FaceOutline(int axis, const glm::dvec3& seen) const
+  {
+    return FaceOfGrid{ this->TheGrid, axis, true }.Area() * std::abs(seen[axis]);
+  }
+
+  double Outline(const glm::dvec3& seen) const
+  {
+    return this->FaceOutline(0, seen) + this->FaceOutline(1, seen) + this->FaceOutline(2, seen);
+  }
+
+  /// A point on one of the three faces that look that way.
+  glm::dvec3 OnOutline(const glm::dvec3& seen, const PhotonSample& u) const
+  {
+    double wanted = u[0] * this->Outline(seen);
+    int axis = 0;
+    while (axis < 2 && wanted >= this->FaceOutline(axis, seen))
+    {
+      wanted -= this->FaceOutline(axis, seen);
+      ++axis;
+    }
+    const double part = std::min(wanted / std::max(this->FaceOutline(axis, seen), 1e-300), 1.0);
+    return FaceOfGrid{ this->TheGrid, axis, seen[axis] > 0.0 }.At(part, u[1]);
+  }
+
+  /// Of pixels: what a bilinear picture has in them, by solid angle and outline.
+  std::vector<double> Weights() const
+  {
+    std::vector<double> weights(static_cast<std::size_t>(this->Width) * this->Height);
+    const auto brightness = [&](int i, int j) {
+      if (this->Picture.Empty())
+      {
+        return Sum(this->Constant);
+      }
+      const int row = std::min(std::max(j, 0), this->Height - 1);
+      const int column = (i + this->Width) % this->Width;
+      const float* pixel = this->Picture.radiance.data() + 3 * (static_cast<std::size_t>(row) * this->Width + column);
+      return double(pixel[0]) + pixel[1] + pixel[2] + Sum(this->Constant);
+    };
+    for (int j = 0; j < this->Height; ++j)
+    {
+      for (int i = 0; i < this->Width; ++i)
+      {
+        double sum = 0.0;
+        for (int k = 0; k < 9; ++k)
+        {
+          sum += (k % 3 == 1 ? 6.0 : 1.0) * (k / 3 == 1 ? 6.0 : 1.0) / 64.0 * brightness(i + k % 3 - 1, j + k / 3 - 1);
+        }
+        const double polar = Pi * (1.0 - (j + 0.5) / this->Height);
+        const double azimuth = 2.0 * Pi * (i + 0.5) / this->Width;
+        const glm::dvec3 seen(
+          std::sin(polar) * std::cos(azimuth), std::sin(polar) * std::sin(azimuth), std::cos(polar));
+        weights[static_cast<std::size_t>(j) * this->Width + i] =
+          sum * this->Outline(seen) * (this->CosineBelow(j + 1) - this->CosineBelow(j));
+      }
+    }
+    return weights;
+  }
+
+  Grid TheGrid;
+  Environment Picture;
+  Rgb Constant;
+  int Width, Height;
+  std::vector<double> Rows, Pixels; ///< cumulative, each with a zero before
+};
+}
+
+std::optional<Photon> Land(const Grid& grid, const Shot& shot)
+{
+  std::array<double, 3> position, direction;
+  for (int a = 0; a < 3; ++a)
+  {
+    position[a] = (shot.from[a] - grid.origin[a]) / grid.spacing[a];
+    direction[a] = shot.direction[a] / grid.spacing[a];
+  }
+  if (!MoveOnto(grid, position, direction))
+  {
+    return {};
+  }
+  Photon photon;
+  for (int a = 0; a < 3; ++a)
+  {
+    photon.position[a] = grid.origin[a] + position[a] * grid.spacing[a];
+    photon.direction[a] = static_cast<float>(shot.direction[a]);
+    photon.power[a] = static_cast<float>(shot.power[a]);
+  }
+  return photon;
+}
+
+std::vector<PhotonSource> PhotonSourcesOf(const Grid& grid, const Illumination& illumination)
+{
+  std::vector<PhotonSource> sources;
+  for (std::size_t i = 0; i < illumination.lights.size(); ++i)
+  {
+    const Light& light = illumination.lights[i];
+    sources.push_back(light.type == LightType::Directional ? Directional(grid, light)
+        : light.type == LightType::Point                   ? Point(grid, light)
+        : light.type == LightType::Spot                    ? Spot(grid, light)
+                                                           : Rectangle(grid, light));
+    sources.back().light = static_cast<int>(i);
+  }
+  if (!illumination.environment.Empty() || Sum(illumination.sky) > 0.0)
+  {
+    const auto sky = std::make_shared<Sky>(grid, illumination.environment, illumination.sky);
+    sources.push_back({ EnvironmentLight, [sky](const PhotonSample& u) { return sky->Shoot(u); } });
+  }
+  for (int face = 0; face < 6; ++face)
+  {
+    if (Sum(illumination.faces[face]) > 0.0)
+    {
+      sources.push_back(DiffuseFace(grid, face, illumination.faces[face]));
+    }
+  }
+  return sources;
+}
+}

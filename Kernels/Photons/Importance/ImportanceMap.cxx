@@ -1,0 +1,131 @@
+#include "Photons/Importance/ImportanceMap.h"
+
+#include "Photons/Emission/CumulativeTable.h"
+
+#include "Device/Errors.h"
+
+#include <algorithm>
+#include <cmath>
+#include <numeric>
+#include <string>
+
+namespace tyndall
+{
+namespace
+{
+constexpr int RoundsOfSharing = 64; ///< of what is above the cap; each leaves fewer cells above it
+
+std::string LightName(int light)
+{
+  return light == EnvironmentLight ? "the environment" : "light " + std::to_string(light);
+}
+
+void CheckSquare(const ImportanceMap& map, std::size_t square)
+{
+  const float* density = map.density.data() + square * map.Cells();
+  const std::size_t size = static_cast<std::size_t>(map.size);
+  const auto place = [&](std::size_t i) {
+    return "column " + std::to_string(i % size) + ", row " + std::to_string(i / size);
+  };
+  std::size_t zeros = 0, firstZero = 0;
+  for (std::size_t i = map.Cells(); i-- > 0;)
+  {
+    if (!(density[i] >= 0.0f) || std::isinf(density[i]))
+    {
+      throw InvalidInput("The importance of " + LightName(map.lights[square]) + " is " + std::to_string(density[i]) +
+        " in " + place(i) + "; it must be finite and not negative.");
+    }
+    zeros += density[i] == 0.0f ? 1 : 0;
+    firstZero = density[i] == 0.0f ? i : firstZero;
+  }
+  if (zeros == map.Cells())
+  {
+    throw InvalidInput("The importance of " + LightName(map.lights[square]) +
+      " is 0 everywhere, so no photon could set out. Leave the map out to spread photons evenly.");
+  }
+  if (zeros > 0)
+  {
+    throw InvalidInput("The importance of " + LightName(map.lights[square]) + " is 0 in " + std::to_string(zeros) +
+      " cells, first in " + place(firstZero) +
+      ": no photon would set out there, and its light would be missing. Give " + "every cell some importance.");
+  }
+}
+
+/// Densities of mean 1, none above `most`.
+std::vector<double> Capped(const float* density, std::size_t cells, double most)
+{
+  std::vector<double> capped(density, density + cells);
+  const double largest = *std::max_element(capped.begin(), capped.end());
+  const auto total = [&] { return std::accumulate(capped.begin(), capped.end(), 0.0); };
+  std::for_each(capped.begin(), capped.end(), [&](double& d) { d /= largest; }); // no sum of them overflows
+  const double scale = cells / total();
+  std::for_each(capped.begin(), capped.end(), [&](double& d) { d *= scale; });
+  for (int round = 0; round < RoundsOfSharing; ++round)
+  {
+    double full = 0.0, rest = 0.0;
+    for (double& d : capped)
+    {
+      (d >= most ? full : rest) += d >= most ? most : d;
+    }
+    if (rest == 0.0 || *std::max_element(capped.begin(), capped.end()) <= most)
+    {
+      break;
+    }
+    const double share = (cells - full) / rest;
+    std::for_each(capped.begin(), capped.end(), [&](double& d) { d = d >= most ? most : d * share; });
+  }
+  return capped;
+}
+}
+
+int ImportanceMap::SquareOf(int light) const
+{
+  const auto square = std::find(this->lights.begin(), this->lights.end(), light);
+  return square == this->lights.end() ? -1 : static_cast<int>(square - this->lights.begin());
+}
+
+void Check(const ImportanceMap& map)
+{
+  const std::size_t needed = map.Cells() * map.lights.size();
+  if ((map.size < 1 && !map.lights.empty()) || map.density.size() != needed)
+  {
+    throw InvalidInput("The importance map has " + std::to_string(map.density.size()) + " cells; " +
+      std::to_string(map.lights.size()) + " lights of " + std::to_string(map.size) + " x " + std::to_string(map.size) +
+      " need " + std::to_string(needed) + ", at least one each.");
+  }
+  for (std::size_t square = 0; square < map.lights.size(); ++square)
+  {
+    CheckSquare(map, square);
+  }
+}
+
+ImportanceSampler::ImportanceSampler(const float* density, int size, double most)
+  : Size(size)
+  , Rows(static_cast<std::size_t>(size) + 1, 0.0)
+  , Columns(static_cast<std::size_t>(size) * (size + 1), 0.0)
+{
+  const std::size_t edge = static_cast<std::size_t>(size);
+  const std::vector<double> capped = Capped(density, edge * edge, most);
+  for (std::size_t j = 0; j < edge; ++j)
+  {
+    double* row = this->Columns.data() + j * (edge + 1);
+    std::partial_sum(capped.begin() + j * edge, capped.begin() + (j + 1) * edge, row + 1);
+    this->Rows[j + 1] = this->Rows[j] + row[size];
+  }
+}
+
+ImportanceSampler::Place ImportanceSampler::At(double u, double v) const
+{
+  double across, along;
+  const int row = FindStep(this->Rows.data(), this->Size, v, along);
+  const double* columns = this->Columns.data() + static_cast<std::size_t>(row) * (this->Size + 1);
+  const int column = FindStep(columns, this->Size, u, across);
+  return { (column + across) / this->Size, (row + along) / this->Size, this->DensityOf(column, row) };
+}
+
+double ImportanceSampler::DensityOf(int column, int row) const
+{
+  const double* columns = this->Columns.data() + static_cast<std::size_t>(row) * (this->Size + 1);
+  return (columns[column + 1] - columns[column]) * this->Size * this->Size / this->Rows.back();
+}
+}

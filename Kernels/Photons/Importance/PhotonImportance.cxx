@@ -1,0 +1,357 @@
+#include "Photons/Importance/PhotonImportance.h"
+
+#include "Photons/Emission/PhotonEmitter.h"
+
+#include "Device/Clock.h"
+#include "Device/Errors.h"
+
+#include <algorithm>
+#include <cmath>
+#include <numeric>
+#include <string>
+
+namespace tyndall
+{
+namespace
+{
+// Thresholds from the pilot's own statistics, all in proportion to the light.
+constexpr double SteepPart = 0.2; ///< of the lit cells: as many are steep ones
+constexpr double SteepAtLeast =
+  0.25; ///< of the median luminance from a cell to the next: below, noise and fog's own falling off
+constexpr double DimBelow = 0.5;  ///< of the median luminance
+constexpr double FewCells = 0.01; ///< of the lit cells: fewer chosen ones are not worth a map
+/// Deviation of the chosen cells' map, mean 1, times the fourth root of their part of the lit ones: below, it gains nothing. Fog
+/// alone, under a sun from any side, a lamp above or in it, thin or thick, has 0.2 to 0.46; glass in fog 0.53 to 1.
+constexpr double EvenMap = 0.5;
+
+constexpr int LargestEdge = 1024; ///< of the map
+constexpr int FilterReach = 2;    ///< of the Gauss filter: 5x5
+constexpr double FilterVariance = 2.0;
+
+void Check(const ImportanceSettings& settings)
+{
+  if (settings.pilotCount == 0)
+  {
+    throw InvalidInput("The number of pilot photons is 0; ask for at least one, some tenth of the photons to follow.");
+  }
+  for (int a = 0; a < 3; ++a)
+  {
+    if (settings.cells[a] < 1)
+    {
+      throw InvalidInput("The pilot grid has " + std::to_string(settings.cells[a]) + " cells along axis " +
+        std::to_string(a) + "; it must have at least 1.");
+    }
+  }
+  if (!(settings.background > 0.0 && settings.background <= 1.0))
+  {
+    throw InvalidInput("The background is " + std::to_string(settings.background) +
+      " of the photons; it must be above 0, so that every place sends some, and at most 1.");
+  }
+  if (!settings.automatic && !(settings.gradientThreshold >= 0.0 && settings.luminanceThreshold >= 0.0))
+  {
+    throw InvalidInput("The thresholds are " + std::to_string(settings.gradientThreshold) + " (gradient) and " +
+      std::to_string(settings.luminanceThreshold) + " (luminance); they must not be negative.");
+  }
+}
+
+/// Mean of the channels.
+std::vector<double> LuminanceOf(const PilotLight& light)
+{
+  const std::size_t channels = static_cast<std::size_t>(light.channels);
+  std::vector<double> luminance(light.count.size(), 0.0);
+  for (std::size_t i = 0; i < light.fluence.size(); ++i)
+  {
+    luminance[i / channels] += light.fluence[i] / static_cast<double>(channels);
+  }
+  return luminance;
+}
+
+/// Light of one more lamp. Origins are those of the first that reaches a cell.
+void Add(const PilotLight& more, PilotLight& light)
+{
+  if (light.count.empty())
+  {
+    light = more;
+    return;
+  }
+  const int channels = std::max(light.channels, more.channels);
+  const std::size_t cells = light.count.size();
+  std::vector<float> sum(cells * static_cast<std::size_t>(channels));
+  const auto channel = [](const PilotLight& of, std::size_t cell, int c) {
+    return of.fluence[cell * static_cast<std::size_t>(of.channels) + (of.channels == 3 ? c : 0)];
+  };
+  for (std::size_t i = 0; i < cells; ++i)
+  {
+    for (int c = 0; c < channels; ++c)
+    {
+      sum[i * static_cast<std::size_t>(channels) + c] = channel(light, i, c) + channel(more, i, c);
+    }
+    for (std::size_t k = 2 * i; k < 2 * i + 2 && light.count[i] == 0.0f; ++k)
+    {
+      light.originMean[k] = more.originMean[k];
+      light.originDeviation[k] = more.originDeviation[k];
+    }
+    light.count[i] += more.count[i];
+  }
+  light.fluence = std::move(sum);
+  light.channels = channels;
+  light.seconds += more.seconds;
+}
+
+/// Length of the difference from a cell to the next: central, at the faces to the one neighbour.
+std::vector<float> GradientOf(const std::vector<double>& luminance, const Grid& grid)
+{
+  const std::array<int, 3>& size = grid.size;
+  const std::array<std::size_t, 3> stride = { 1, static_cast<std::size_t>(size[0]),
+    static_cast<std::size_t>(size[0]) * static_cast<std::size_t>(size[1]) };
+  std::vector<float> gradient(luminance.size());
+  for (std::size_t i = 0; i < luminance.size(); ++i)
+  {
+    double squares = 0.0;
+    for (int a = 0; a < 3; ++a)
+    {
+      const int at = static_cast<int>(i / stride[a] % static_cast<std::size_t>(size[a]));
+      const std::size_t before = at > 0 ? i - stride[a] : i, after = at < size[a] - 1 ? i + stride[a] : i;
+      const double steps = std::max<double>((after - before) / stride[a], 1.0);
+      squares += std::pow((luminance[after] - luminance[before]) / steps, 2);
+    }
+    gradient[i] = static_cast<float>(std::sqrt(squares));
+  }
+  return gradient;
+}
+
+/// The value below which `part` of the values are.
+double Quantile(std::vector<double> values, double part)
+{
+  if (values.empty())
+  {
+    return 0.0;
+  }
+  const auto at = values.begin() + static_cast<std::ptrdiff_t>(part * static_cast<double>(values.size() - 1));
+  std::nth_element(values.begin(), at, values.end());
+  return *at;
+}
+
+void ChooseThresholds(const std::vector<double>& luminance, Importance& importance)
+{
+  std::vector<double> lit, steepness, counts;
+  for (std::size_t i = 0; i < luminance.size(); ++i)
+  {
+    if (importance.pilot.count[i] > 0.0f)
+    {
+      lit.push_back(luminance[i]);
+      steepness.push_back(importance.gradient[i]);
+      counts.push_back(importance.pilot.count[i]);
+    }
+  }
+  const double median = Quantile(lit, 0.5);
+  // Cells of few photons differ by chance: by a photon in each row that crosses a cell.
+  const double chance = 1.0 / std::sqrt(std::max(Quantile(counts, 0.5), 1.0));
+  importance.gradientThreshold =
+    std::max(Quantile(steepness, 1.0 - SteepPart), std::max(SteepAtLeast, chance) * median);
+  importance.luminanceThreshold = DimBelow * median;
+}
+
+/// Listing B.1's choice. Returns the part of the lit cells that it is.
+double ChooseCells(const std::vector<double>& luminance, Importance& importance)
+{
+  std::size_t lit = 0, chosen = 0;
+  importance.chosen.assign(luminance.size(), 0.0f);
+  for (std::size_t i = 0; i < luminance.size(); ++i)
+  {
+    const bool there = importance.pilot.count[i] > 0.0f && luminance[i] > 0.0;
+    const bool steep = importance.gradient[i] >= importance.gradientThreshold;
+    const bool dim = luminance[i] <= importance.luminanceThreshold;
+    lit += there ? 1 : 0;
+    if (there && (steep || dim))
+    {
+      importance.chosen[i] = 1.0f;
+      ++chosen;
+    }
+  }
+  return lit > 0 ? static_cast<double>(chosen) / static_cast<double>(lit) : 0.0;
+}
+
+/// Adds 1 to the cells of a map whose middles are in a circle; at least to the one that it is about.
+void Splat(double x, double y, double diameter, int size, std::vector<double>& map)
+{
+  const double radius = 0.5 * diameter;
+  const auto cell = [&](double at) { return std::min(std::max(static_cast<int>(std::floor(at)), 0), size - 1); };
+  bool any = false;
+  for (int j = cell(y - radius); j <= cell(y + radius); ++j)
+  {
+    for (int i = cell(x - radius); i <= cell(x + radius); ++i)
+    {
+      if (std::hypot(i + 0.5 - x, j + 0.5 - y) <= radius)
+      {
+        map[static_cast<std::size_t>(j) * size + i] += 1.0;
+        any = true;
+      }
+    }
+  }
+  if (!any)
+  {
+    map[static_cast<std::size_t>(cell(y)) * size + cell(x)] += 1.0;
+  }
+}
+
+/// Diameter of a cell's circle. As published it is the origins' deviations along both axes together (Listing B.1), which leaves
+/// gaps between the circles of neighbours; else it spans the square that has these deviations, what a place is within its cell
+/// included.
+double DiameterOf(const float* deviation, bool asPublished)
+{
+  if (asPublished)
+  {
+    return std::max<double>(deviation[0] + deviation[1], 1.0);
+  }
+  const auto whole = [](double d) { return std::sqrt(d * d + 1.0 / 12.0); };
+  return 2.0 * (whole(deviation[0]) + whole(deviation[1]));
+}
+
+/// A circle about the mean origin of each chosen cell's photons, mean 1. Empty where no chosen cell has photons of this light.
+std::vector<double> CirclesOf(const std::vector<float>& chosen, const PilotLight& light, int size, bool asPublished)
+{
+  std::vector<double> map(static_cast<std::size_t>(size) * static_cast<std::size_t>(size), 0.0);
+  for (std::size_t i = 0; i < chosen.size(); ++i)
+  {
+    if (chosen[i] > 0.0f && light.count[i] > 0.0f)
+    {
+      const double diameter = DiameterOf(light.originDeviation.data() + 2 * i, asPublished);
+      Splat(light.originMean[2 * i] + 0.5, light.originMean[2 * i + 1] + 0.5, diameter, size, map);
+    }
+  }
+  const double sum = std::accumulate(map.begin(), map.end(), 0.0);
+  if (sum == 0.0)
+  {
+    return {};
+  }
+  std::for_each(map.begin(), map.end(), [&](double& d) { d *= static_cast<double>(map.size()) / sum; });
+  return map;
+}
+
+/// 5x5 Gauss filter of variance 2; beyond the edges the map goes on as it is there.
+std::vector<double> Smooth(const std::vector<double>& map, int size)
+{
+  double weights[2 * FilterReach + 1], sum = 0.0;
+  for (int k = -FilterReach; k <= FilterReach; ++k)
+  {
+    sum += weights[k + FilterReach] = std::exp(-0.5 * k * k / FilterVariance);
+  }
+  const auto pass = [&](const std::vector<double>& from, std::size_t stride, std::size_t across) {
+    std::vector<double> to(from.size(), 0.0);
+    for (int line = 0; line < size; ++line)
+    {
+      for (int at = 0; at < size; ++at)
+      {
+        for (int k = -FilterReach; k <= FilterReach; ++k)
+        {
+          const int there = std::min(std::max(at + k, 0), size - 1);
+          to[line * across + at * stride] += weights[k + FilterReach] / sum * from[line * across + there * stride];
+        }
+      }
+    }
+    return to;
+  };
+  const std::size_t row = static_cast<std::size_t>(size);
+  return pass(pass(map, 1, row), row, 1);
+}
+
+/// Deviation from 1 of means over blocks, eight along an edge: circles of cells next to each other leave gaps, which tell nothing.
+double DeviationOf(const std::vector<double>& map, int size)
+{
+  const int blocks = std::min(size, 8);
+  std::vector<double> sums(static_cast<std::size_t>(blocks) * blocks, 0.0), cells(sums.size(), 0.0);
+  for (std::size_t i = 0; i < map.size(); ++i)
+  {
+    const std::size_t column = i % size * blocks / size, row = i / size * blocks / size;
+    sums[row * blocks + column] += map[i];
+    cells[row * blocks + column] += 1.0;
+  }
+  double squares = 0.0;
+  for (std::size_t b = 0; b < sums.size(); ++b)
+  {
+    squares += std::pow(sums[b] / cells[b] - 1.0, 2);
+  }
+  return std::sqrt(squares / static_cast<double>(sums.size()));
+}
+
+/// The map of one light, mean 1. Empty: nothing is gained by it.
+/// @param part  of the lit cells that are chosen
+std::vector<double> MapOf(
+  const Importance& importance, const PilotLight& light, double part, const ImportanceSettings& settings)
+{
+  std::vector<double> map = CirclesOf(importance.chosen, light, importance.map.size, !settings.automatic);
+  if (map.empty())
+  {
+    return {};
+  }
+  map = Smooth(map, importance.map.size);
+  if (settings.automatic && DeviationOf(map, importance.map.size) * std::sqrt(std::sqrt(part)) < EvenMap)
+  {
+    return {};
+  }
+  const double mean = std::accumulate(map.begin(), map.end(), 0.0) / static_cast<double>(map.size());
+  std::for_each(
+    map.begin(), map.end(), [&](double& d) { d = (1.0 - settings.background) * d / mean + settings.background; });
+  return map;
+}
+
+void MakeMaps(const std::vector<PilotPhotons>& pilots, const std::vector<PilotLight>& lights, double part,
+  const ImportanceSettings& settings, Importance& importance)
+{
+  const bool worthIt = !settings.automatic || part >= FewCells;
+  const bool lit =
+    std::any_of(importance.pilot.count.begin(), importance.pilot.count.end(), [](float n) { return n > 0.0f; });
+  importance.even = true;
+  for (std::size_t l = 0; l < pilots.size(); ++l)
+  {
+    std::vector<double> map = worthIt ? MapOf(importance, lights[l], part, settings) : std::vector<double>();
+    importance.even = importance.even && map.empty();
+    map.resize(importance.map.Cells(), 1.0); // an empty one: even
+    importance.map.lights.push_back(pilots[l].light);
+    importance.map.density.insert(importance.map.density.end(), map.begin(), map.end());
+  }
+  if (importance.even)
+  {
+    importance.leftOut.push_back(!lit ? "importance: no pilot photon meets the medium"
+        : settings.automatic
+        ? "importance: light is even as far as the pilot photons tell, so photons are best spread evenly"
+        : "importance: the thresholds given choose no cell, so photons are spread evenly");
+  }
+}
+}
+
+Importance FindImportance(PhotonMarcher& marcher, const Grid& grid, const Illumination& illumination,
+  const ImportanceSettings& settings, const Monitor& monitor)
+{
+  const double start = ClockSeconds();
+  Check(settings);
+  Importance importance;
+  importance.map.size =
+    std::min(static_cast<int>(std::sqrt(static_cast<double>(settings.pilotCount) + 0.5)), LargestEdge);
+  const std::vector<PilotPhotons> pilots = EmitPilots(grid, illumination, importance.map.size, settings.seed);
+  if (pilots.empty())
+  {
+    throw InvalidInput(
+      "No light shines, so there is no importance to find. Connect Lights or an Environment, or set SkyColor.");
+  }
+  std::vector<PilotLight> lights;
+  for (const PilotPhotons& pilot : pilots)
+  {
+    lights.push_back(marcher.Gather(pilot.photons, pilot.origins, settings.cells, monitor));
+    Add(lights.back(), importance.pilot);
+  }
+  const std::vector<double> luminance = LuminanceOf(importance.pilot);
+  importance.gradient = GradientOf(luminance, importance.pilot.grid);
+  importance.gradientThreshold = settings.gradientThreshold;
+  importance.luminanceThreshold = settings.luminanceThreshold;
+  if (settings.automatic)
+  {
+    ChooseThresholds(luminance, importance);
+  }
+  const double part = ChooseCells(luminance, importance);
+  MakeMaps(pilots, lights, part, settings, importance);
+  importance.seconds = ClockSeconds() - start;
+  return importance;
+}
+}

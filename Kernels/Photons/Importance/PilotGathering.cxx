@@ -1,0 +1,170 @@
+#include "Photons/Importance/PilotGathering.h"
+
+#include "Photons/Marching/MarchLaunch.h"
+
+#include "Device/Clock.h"
+
+#include <algorithm>
+#include <cmath>
+#include <string>
+
+namespace tyndall
+{
+namespace
+{
+constexpr int LargestOrigin = 65535;
+constexpr int OriginNumbers = 5; ///< of a cell's record: photons, sums of columns, rows, and squares of each
+
+void CheckOrigins(const std::vector<Photon>& photons, const std::vector<std::array<int, 2>>& origins)
+{
+  if (origins.size() != photons.size())
+  {
+    throw InvalidInput("There are " + std::to_string(photons.size()) + " pilot photons and " +
+      std::to_string(origins.size()) + " origins; give one for each.");
+  }
+  for (std::size_t i = 0; i < origins.size(); ++i)
+  {
+    for (const int place : origins[i])
+    {
+      if (place < 0 || place > LargestOrigin)
+      {
+        throw InvalidInput("Photon " + std::to_string(i) + " sets out from column " + std::to_string(origins[i][0]) +
+          ", row " + std::to_string(origins[i][1]) + "; there are 0 to " + std::to_string(LargestOrigin) + ".");
+      }
+    }
+  }
+}
+
+std::array<int, 3> CellsOf(const std::array<int, 3>& asked, const Grid& grid)
+{
+  std::array<int, 3> cells;
+  for (int a = 0; a < 3; ++a)
+  {
+    if (asked[a] < 1)
+    {
+      throw InvalidInput("Pilot light is asked for in " + std::to_string(asked[0]) + " x " + std::to_string(asked[1]) +
+        " x " + std::to_string(asked[2]) + " cells; there must be at least one along each axis.");
+    }
+    cells[a] = std::min(asked[a], grid.size[a]);
+  }
+  return cells;
+}
+
+/// Column and row that each photon set out from.
+std::vector<cl_ulong> Marks(const std::vector<std::array<int, 2>>& origins, const PackedPhotons& packed)
+{
+  std::vector<cl_ulong> marks;
+  marks.reserve(packed.Count());
+  for (const std::size_t number : packed.numbers)
+  {
+    marks.push_back(static_cast<cl_ulong>(origins[number][0] | static_cast<std::int64_t>(origins[number][1]) << 16));
+  }
+  return marks;
+}
+
+/// How many of `size` voxels are in cell `i`: voxel v is in cell v * cells / size.
+double VoxelsIn(int i, int cells, int size)
+{
+  const auto first = [&](std::int64_t cell) { return (cell * size + cells - 1) / cells; };
+  return static_cast<double>(first(i + 1) - first(i));
+}
+
+/// The copies' sum. [cells][numbers]
+std::vector<cl_long> AddUp(const MarchSums& target)
+{
+  std::vector<cl_long> copies = target.sums->Read();
+  const std::size_t size = target.records * static_cast<std::size_t>(target.numbers);
+  for (std::size_t i = size; i < copies.size(); ++i)
+  {
+    copies[i % size] += copies[i];
+  }
+  copies.resize(size);
+  return copies;
+}
+
+/// Mean and deviation of what a count, a sum and a sum of squares are of.
+void PutMoments(cl_long count, cl_long sum, cl_long squares, float& mean, float& deviation)
+{
+  const double n = static_cast<double>(std::max<cl_long>(count, 1)), s = static_cast<double>(sum);
+  mean = static_cast<float>(s / n);
+  deviation = static_cast<float>(std::sqrt(std::max((static_cast<double>(squares) - s * s / n) / n, 0.0)));
+}
+
+/// @param unit  W length, of one unit of power times path
+void PutCells(
+  const std::vector<cl_long>& sums, const Grid& voxels, const PackedPhotons& packed, double unit, PilotLight& light)
+{
+  const std::size_t numbers = static_cast<std::size_t>(packed.channels + OriginNumbers);
+  const std::size_t colours = static_cast<std::size_t>(light.channels);
+  const std::array<int, 3>& cells = light.grid.size;
+  for (std::size_t i = 0; i < light.grid.VoxelCount(); ++i)
+  {
+    const cl_long* record = sums.data() + i * numbers;
+    const int place[3] = { static_cast<int>(i) % cells[0], static_cast<int>(i) / cells[0] % cells[1],
+      static_cast<int>(i) / cells[0] / cells[1] };
+    double volume = voxels.VoxelVolume();
+    for (int a = 0; a < 3; ++a)
+    {
+      volume *= VoxelsIn(place[a], cells[a], voxels.size[a]);
+    }
+    for (std::size_t c = 0; c < colours; ++c)
+    {
+      const double path = static_cast<double>(record[packed.channels == 1 ? 0 : c]) * unit;
+      light.fluence[i * colours + c] = static_cast<float>(path / volume * packed.colour[c]);
+    }
+    record += packed.channels;
+    light.count[i] = static_cast<float>(record[0]);
+    for (int a = 0; a < 2; ++a)
+    {
+      PutMoments(
+        record[0], record[1 + a], record[3 + a], light.originMean[2 * i + a], light.originDeviation[2 * i + a]);
+    }
+  }
+}
+}
+
+PilotLight PilotGathering::Gather(const std::vector<Photon>& photons, const std::vector<std::array<int, 2>>& origins,
+  std::array<int, 3> cells, const Monitor& monitor)
+{
+  const double start = ClockSeconds();
+  const MarchMedium& medium = this->TheMedium;
+  CheckOrigins(photons, origins);
+  cells = CellsOf(cells, medium.grid);
+  const PackedPhotons packed = Pack(photons, medium.grid, medium.channels == 3, medium.EventLimit());
+  if (this->Cells != cells)
+  {
+    this->CellOfVoxel = medium.Cells(cells);
+    this->Cells = cells;
+  }
+
+  PilotLight light;
+  light.grid.size = cells;
+  light.grid.origin = medium.grid.origin;
+  for (int a = 0; a < 3; ++a)
+  {
+    light.grid.spacing[a] = medium.grid.Length(a) / cells[a];
+  }
+  light.channels = medium.ColoursOf(packed);
+  const std::size_t count = light.grid.VoxelCount();
+  light.fluence.resize(count * static_cast<std::size_t>(light.channels));
+  light.count.resize(count);
+  light.originMean.resize(2 * count);
+  light.originDeviation.resize(2 * count);
+
+  MarchSums target;
+  target.records = count;
+  target.numbers = packed.channels + OriginNumbers;
+  target.cells = &this->CellOfVoxel;
+  target.shares = ShareSums(medium, target.records, target.numbers, 1, 0);
+  Buffer<cl_long> sums(medium.device,
+    count * static_cast<std::size_t>(target.numbers) * static_cast<std::size_t>(target.shares.copies),
+    "sums of the pilot photons' light");
+  sums.Fill(0);
+  target.sums = &sums;
+  const PhotonsOnDevice onDevice(medium.device, packed, Marks(origins, packed));
+  MarchPhotons(medium, packed, onDevice, target, monitor);
+  PutCells(AddUp(target), medium.grid, packed, packed.unit * medium.Diagonal(), light);
+  light.seconds = ClockSeconds() - start;
+  return light;
+}
+}

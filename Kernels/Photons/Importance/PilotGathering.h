@@ -1,0 +1,28 @@
+#pragma once
+
+#include "Photons/Marching/MarchMedium.h"
+#include "Photons/Importance/PilotLight.h"
+
+#include "Device/Monitor.h"
+
+namespace tyndall
+{
+/// PhotonMarcher::Gather. Keeps which voxels are of which cell between calls.
+class PilotGathering
+{
+public:
+  /// @param medium  to be kept
+  explicit PilotGathering(const MarchMedium& medium)
+    : TheMedium(medium)
+  {
+  }
+
+  PilotLight Gather(const std::vector<Photon>& photons, const std::vector<std::array<int, 2>>& origins,
+    std::array<int, 3> cells, const Monitor& monitor);
+
+private:
+  const MarchMedium& TheMedium;
+  std::array<int, 3> Cells = {}; ///< along each axis, that CellOfVoxel is of
+  Buffer<cl_int> CellOfVoxel;
+};
+}

@@ -1,0 +1,142 @@
+#include "Photons/Marching/MarchLaunch.h"
+
+#include "Device/Batches.h"
+#include "Device/Defines.h"
+
+#include <algorithm>
+#include <string>
+
+namespace tyndall
+{
+namespace
+{
+constexpr int Block = 512;           ///< neighbouring photons that one work-item takes one after the other
+constexpr int PrivateSumsAtMost = 8; ///< beyond, adding up the copies costs more than atomics do
+constexpr double SecondsPerLaunch = 0.1;
+constexpr double EventsPerLaunch = 4e7; ///< of straight ways, which two cores follow in less
+constexpr double FirstBent = 16384;     ///< photons on bent ways in the first launch
+
+bool NeedAtomics(const Device& device, MarchSettings::Sums sums)
+{
+  const bool atomics = device.HasExtension("cl_khr_int64_base_atomics");
+  const bool few = device.IsCpu() && device.ComputeUnits() <= PrivateSumsAtMost;
+  if (sums == MarchSettings::Sums::Shared && !atomics)
+  {
+    throw DeviceError(device.Name() +
+      " has no 64-bit atomics (cl_khr_int64_base_atomics), which shared sums need. Choose private sums.");
+  }
+  return sums == MarchSettings::Sums::Shared || (sums == MarchSettings::Sums::Fitting && atomics && !few);
+}
+
+/// Straight ways cost what their voxels do; of bent ones the first tell. Few launches: at the end of each, work-items wait.
+Batches LaunchesOf(const MarchMedium& medium, const PackedPhotons& packed, const MarchShares& shares)
+{
+  const double edges = (medium.grid.size[0] + medium.grid.size[1] + medium.grid.size[2]) / 3.0;
+  const double straight = EventsPerLaunch / edges;
+  const double first =
+    medium.bends ? std::min(straight, FirstBent * std::min(medium.settings.stepSize, 1.0)) : straight;
+  const int sharing = (shares.workers + shares.batches - 1) / shares.batches; // workers at a batch
+  Batches launches;
+  launches.count = packed.LargestBatch();
+  launches.whole = static_cast<std::size_t>(Block) * static_cast<std::size_t>(std::max(sharing, 1));
+  launches.first = static_cast<std::size_t>(first / shares.batches);
+  launches.seconds = SecondsPerLaunch;
+  launches.growth = 8.0;
+  return launches;
+}
+}
+
+void Check(const MarchSettings& settings)
+{
+  constexpr double ShortestStep = 0.05; // voxels; below, rounding of positions counts
+  constexpr double LongestStep = 1e4;
+  if (settings.order != 1 && settings.order != 2 && settings.order != 4)
+  {
+    throw InvalidInput("The integrator's order is " + std::to_string(settings.order) + "; there are 1, 2 and 4.");
+  }
+  if (!(settings.stepSize >= ShortestStep && settings.stepSize <= LongestStep))
+  {
+    throw InvalidInput("The step size is " + std::to_string(settings.stepSize) + " voxels; it must be " +
+      std::to_string(ShortestStep) + " to " + std::to_string(LongestStep) + ".");
+  }
+  if (settings.batches && settings.sums == MarchSettings::Sums::Unsafe)
+  {
+    throw InvalidInput("Unsafe sums are of all photons together, not of each batch. Choose other sums, or no batches.");
+  }
+}
+
+MarchShares ShareSums(const MarchMedium& medium, std::size_t records, int numbers, int batches, std::size_t held)
+{
+  const Device& device = medium.device;
+  MarchShares shares;
+  shares.atomics = NeedAtomics(device, medium.settings.sums);
+  shares.batches = shares.copies = batches;
+  if (medium.settings.sums == MarchSettings::Sums::Unsafe)
+  {
+    shares.workers = device.ComputeUnits();
+    return shares;
+  }
+  const std::size_t bytes = records * static_cast<std::size_t>(numbers) * sizeof(cl_long);
+  const std::size_t free = device.MemoryLimit() - std::min(device.MemoryLimit(), device.BytesInUse() - held);
+  const std::size_t fit = std::min(device.AllocationLimit(), free / (shares.atomics ? 1 : 2)) / bytes;
+  if (batches > 1 && fit < static_cast<std::size_t>(batches))
+  {
+    throw DeviceError("The sums of " + std::to_string(batches) + " batches of photons need " +
+      std::to_string(bytes / (1 << 20) * static_cast<std::size_t>(batches)) + " MiB, and " + device.Name() +
+      " has room for " + std::to_string(fit) + " of them. Use fewer batches, or a coarser grid.");
+  }
+  if (!shares.atomics)
+  {
+    shares.workers =
+      static_cast<int>(std::min(std::max<std::size_t>(fit, 1), static_cast<std::size_t>(device.ComputeUnits())));
+    shares.copies = std::max(shares.workers, batches);
+  }
+  return shares;
+}
+
+PhotonsOnDevice::PhotonsOnDevice(
+  Device& device, const PackedPhotons& packed, const std::vector<cl_ulong>& marksOfPhotons)
+  : values(device, packed.values, "photons")
+  , marks(device, marksOfPhotons, "marks of photons")
+  , batchBegin(device, packed.batchBegin, "batches of photons")
+  , ends(device, packed.Count() * static_cast<std::size_t>(EndWords + packed.channels), "ends of photons")
+{
+}
+
+void MarchPhotons(const MarchMedium& medium, const PackedPhotons& packed, const PhotonsOnDevice& photons,
+  const MarchSums& target, const Monitor& monitor)
+{
+  Device& device = medium.device;
+  const MarchShares& shares = target.shares;
+  const int width = device.IsCpu() ? std::min(std::max(device.FloatVectorWidth(), 4), 16) : 1;
+  const std::size_t stride = shares.copies > 1 ? target.records * static_cast<std::size_t>(target.numbers) : 0;
+  // Unsafe: all workers on one copy, as if each had its own.
+  const int copies = std::max(shares.copies, shares.workers);
+  cl::Kernel march = medium.MarchKernel("march_photons", packed.channels, target.directions,
+    Define("REAL_WIDTH", width) + Define("ATOMICS", shares.atomics) + Define("WORKERS", shares.workers) +
+      Define("BLOCK", Block) + Define("PATHS", 0) + Define("COUNTS", target.counts) +
+      Define("CELLS", target.cells != nullptr));
+  const Buffer<cl_int> none(device, 0, "cells of the voxels");
+  Buffer<cl_int> next(device, static_cast<std::size_t>(shares.batches), "number of the next photon");
+  InBatches(device, LaunchesOf(medium, packed, shares), monitor, [&](std::size_t first, std::size_t count) {
+    next.Fill(0);
+    With(march, medium.Describe(), medium.sigma, medium.coefficients, medium.nodes, photons.values, photons.marks,
+      target.cells ? *target.cells : none, photons.ends, *target.sums, cl_ulong(stride), cl_int(copies),
+      cl_int(shares.batches), photons.batchBegin, next, cl_int(first), cl_int(count));
+    const std::size_t packets = (count + static_cast<std::size_t>(width) - 1) / static_cast<std::size_t>(width);
+    if (shares.workers > 0)
+    {
+      medium.Launch(march, cl::NDRange(static_cast<std::size_t>(shares.workers)), cl::NDRange(1));
+    }
+    else if (device.IsCpu())
+    {
+      // One by one: PoCL would keep the packets of a whole work-group on one stack.
+      medium.Launch(march, cl::NDRange(packets, static_cast<std::size_t>(shares.batches)), cl::NDRange(1, 1));
+    }
+    else
+    {
+      medium.Launch(march, cl::NDRange(packets, static_cast<std::size_t>(shares.batches)));
+    }
+  });
+}
+}

@@ -1,0 +1,61 @@
+#pragma once
+
+#include "Photons/Marching/MarchMedium.h"
+#include "Photons/Marching/PhotonPacking.h"
+
+#include "Device/Monitor.h"
+
+namespace tyndall
+{
+/// What became of a photon, as photon_end in the kernels: these integers, then the power of each channel.
+struct EndOnDevice
+{
+  cl_int face, crossings, steps;
+};
+constexpr int EndWords = 3;
+constexpr int StillGoing = 6; ///< and above: not a face of the volume
+
+/// Who adds to how many copies of the sums. Work-item w serves copies w, w + workers, ...; copy c is for batch c % batches.
+struct MarchShares
+{
+  bool atomics = false;
+  int workers = 0; ///< work-items that take photons as they come; 0: one a packet, all add to a batch's copy
+  int copies = 1;
+  int batches = 1;
+};
+
+/// As the settings ask for.
+/// @param records, numbers  of a copy of the sums, and of 64 bits of each
+/// @param held              bytes in use that new sums will take over
+/// @throws DeviceError where the device has no atomics and they are asked for, or the sums of all batches do not fit
+MarchShares ShareSums(const MarchMedium& medium, std::size_t records, int numbers, int batches, std::size_t held);
+
+/// Photons on a device, and their ends.
+struct PhotonsOnDevice
+{
+  /// @param marks  of each photon as packed, by which it counts; empty where none are counted
+  PhotonsOnDevice(Device& device, const PackedPhotons& packed, const std::vector<cl_ulong>& marks = {});
+
+  Buffer<float> values;
+  Buffer<cl_ulong> marks;
+  Buffer<cl_int> batchBegin;
+  Buffer<cl_int> ends; ///< EndOnDevice and the power of each
+};
+
+/// What photons leave, and where.
+struct MarchSums
+{
+  MarchShares shares;
+  std::size_t records = 0;               ///< of a copy: voxels of the padded grid, or cells
+  int numbers = 1;                       ///< of a record
+  bool directions = false;               ///< are among them
+  bool counts = false;                   ///< and photons that crossed voxels
+  const Buffer<cl_int>* cells = nullptr; ///< of voxels: cells are credited, and count; null: voxels are credited
+  const Buffer<cl_long>* sums = nullptr; ///< [copies][records][numbers]
+};
+
+/// March photons to their ends.
+/// @throws Aborted: the sums are of a part of the photons then
+void MarchPhotons(const MarchMedium& medium, const PackedPhotons& packed, const PhotonsOnDevice& photons,
+  const MarchSums& target, const Monitor& monitor);
+}

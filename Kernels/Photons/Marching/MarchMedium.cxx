@@ -1,0 +1,176 @@
+#include "Photons/Marching/MarchMedium.h"
+
+#include "Device/Defines.h"
+#include "Refraction/Index/SquaredIndex.h"
+#include "TyndallKernelSources.h"
+
+#include <algorithm>
+#include <cmath>
+
+namespace tyndall
+{
+namespace
+{
+constexpr int RoundsAtMost = 64;   ///< of a photon through the volume, in sums of its edges
+constexpr float DarkUnits = 1e-3f; ///< power that no sum would show
+
+/// Components to upload: 0 where a coefficient is zero everywhere.
+int ComponentsOf(const Field& field, bool needed)
+{
+  return field.values && needed ? field.components : 0;
+}
+}
+
+MarchMedium::MarchMedium(
+  Device& onDevice, const Medium& medium, const Field& ior, const MarchSettings& with, const std::uint8_t* levels)
+  : device(onDevice)
+  , grid(medium.grid)
+  , settings(with)
+  , traits(TraitsOf(medium))
+  , channels(with.leaveOut && this->traits.grey ? 1 : 3)
+  , coloured(medium.sigma_a.HasColour() || medium.sigma_s.HasColour())
+  , index(IndexRangeOf(ior, medium.grid))
+  , bends(!with.leaveOut || this->index.Varies())
+  , hasLevels(levels && this->bends)
+  , AComponents(ComponentsOf(medium.sigma_a, !with.leaveOut || this->traits.absorbs))
+  , SComponents(ComponentsOf(medium.sigma_s, !with.leaveOut || this->traits.scatters))
+{
+  this->sigmaA = this->Upload(medium.sigma_a.values, this->AComponents, "sigma_a");
+  this->sigmaS = this->Upload(medium.sigma_s.values, this->SComponents, "sigma_s");
+  Buffer<float> low(this->device, this->bends ? Count(this->Padded(4)) : 0, "range of the index");
+  Buffer<float> high(this->device, this->bends ? Count(this->Padded(4)) : 0, "range of the index");
+  this->coefficients = Buffer<float>(this->device, 0, "squared index");
+  if (this->bends)
+  {
+    const std::vector<float> even(ior.values ? 0 : this->grid.VoxelCount(), 1.0f);
+    this->coefficients =
+      SquaredIndexCoefficients(this->device, this->grid, this->Upload(ior.values ? ior.values : even.data(), 1, "ior"));
+    this->FindRanges(low, high);
+  }
+  this->sigma =
+    Buffer<float>(this->device, this->PaddedCount() * static_cast<std::size_t>(this->channels), "extinction");
+  this->nodes = Buffer<cl_uchar>(this->device, this->bends ? this->PaddedCount() : 0, "octree nodes");
+  const Buffer<cl_uchar> given = this->hasLevels
+    ? Buffer<cl_uchar>(this->device, levels, this->grid.VoxelCount(), "octree levels")
+    : Buffer<cl_uchar>(this->device, 0, "octree levels");
+  cl::Kernel pack = this->MediumKernel("pack_extinction");
+  With(pack, this->DescribeGrid(), static_cast<float>(this->Diagonal()), this->sigmaA, this->sigmaS, low, high, given,
+    this->sigma, this->nodes);
+  this->Launch(pack, Range(this->Padded(2)));
+  this->device.Finish();
+}
+
+void MarchMedium::FindRanges(Buffer<float>& low, Buffer<float>& high) const
+{
+  const Size size = this->Padded(4);
+  Buffer<float> low2(this->device, Count(size), "range of the index");
+  Buffer<float> high2(this->device, Count(size), "range of the index");
+  cl::Kernel widen = this->MediumKernel("widen_range");
+  const int strides[3] = { 1, static_cast<int>(size[0]), static_cast<int>(size[0] * size[1]) };
+  const Buffer<float>* from[2] = { &this->coefficients, &this->coefficients };
+  for (int a = 0; a < 3; ++a)
+  {
+    Buffer<float>& toLow = a % 2 == 0 ? low : low2;
+    Buffer<float>& toHigh = a % 2 == 0 ? high : high2;
+    const std::size_t reach = 4 * static_cast<std::size_t>(strides[a]);
+    With(widen, strides[a], *from[0], *from[1], toLow, toHigh);
+    this->Launch(widen, Count(size) - reach);
+    from[0] = &toLow;
+    from[1] = &toHigh;
+  }
+  this->device.Finish();
+}
+
+MarchMedium::Size MarchMedium::Padded(int by) const
+{
+  Size size;
+  for (int a = 0; a < 3; ++a)
+  {
+    size[a] = static_cast<std::size_t>(this->grid.size[a] + by);
+  }
+  return size;
+}
+
+Buffer<float> MarchMedium::Upload(const float* values, int components, const char* what) const
+{
+  const std::size_t count = this->grid.VoxelCount() * static_cast<std::size_t>(components);
+  return count > 0 ? Buffer<float>(this->device, values, count, what) : Buffer<float>(this->device, 0, what);
+}
+
+void MarchMedium::Launch(const cl::Kernel& kernel, const cl::NDRange& range, const cl::NDRange& local) const
+{
+  this->device.Queue().enqueueNDRangeKernel(kernel, cl::NullRange, range, local);
+}
+
+GridOnDevice MarchMedium::DescribeGrid() const
+{
+  return { { this->grid.size[0], this->grid.size[1], this->grid.size[2] } };
+}
+
+double MarchMedium::Diagonal() const
+{
+  return std::hypot(this->grid.spacing[0], this->grid.spacing[1], this->grid.spacing[2]);
+}
+
+int MarchMedium::EventLimit() const
+{
+  const double edges = 1.0 * this->grid.size[0] + this->grid.size[1] + this->grid.size[2];
+  return static_cast<int>(std::min(1e9, RoundsAtMost * edges * std::max(1.0, 1.0 / this->settings.stepSize)));
+}
+
+MarchOnDevice MarchMedium::Describe() const
+{
+  MarchOnDevice info = {};
+  info.grid = this->DescribeGrid();
+  for (int a = 0; a < 3; ++a)
+  {
+    info.spacing[a] = static_cast<float>(this->grid.spacing[a] / this->Diagonal());
+  }
+  info.stepSize = static_cast<float>(this->settings.stepSize);
+  info.slowest = 0.5f * this->index.least / *std::max_element(info.spacing, info.spacing + 3);
+  info.darkness = DarkUnits;
+  info.eventLimit = this->EventLimit();
+  info.copy = this->PaddedCount();
+  return info;
+}
+
+std::string MarchMedium::Options() const
+{
+  return Define("MEDIUM_CHANNELS", this->channels) + Define("BENDS", this->bends) + Define("LEVELS", this->hasLevels) +
+    " -cl-mad-enable";
+}
+
+cl::Kernel MarchMedium::MediumKernel(const char* name) const
+{
+  return this->device.Kernel(name,
+    { kernel_source::Numerics, kernel_source::SquaredIndex, kernel_source::PhotonMedium },
+    this->Options() + Define("A_CHANNELS", this->AComponents) + Define("S_CHANNELS", this->SComponents));
+}
+
+cl::Kernel MarchMedium::SumsKernel(const char* name, int lightChannels, const std::string& options) const
+{
+  return this->device.Kernel(name, { kernel_source::Numerics, kernel_source::SquaredIndex, kernel_source::PhotonSums },
+    this->Options() + Define("CHANNELS", lightChannels) + Define("A_CHANNELS", this->AComponents) +
+      Define("S_CHANNELS", this->SComponents) + options);
+}
+
+cl::Kernel MarchMedium::MarchKernel(
+  const char* name, int lightChannels, bool directions, const std::string& options) const
+{
+  return this->device.Kernel(name,
+    { kernel_source::Numerics, kernel_source::FixedPoint, kernel_source::SquaredIndex, kernel_source::PhotonLanes,
+      kernel_source::PhotonSteps, kernel_source::PhotonMarch },
+    this->Options() + Define("CHANNELS", lightChannels) + Define("DIRECTIONS", directions) +
+      Define("ORDER", this->settings.order) + options);
+}
+
+Buffer<cl_int> MarchMedium::Cells(const std::array<int, 3>& cells) const
+{
+  Buffer<cl_int> numbers(this->device, this->PaddedCount(), "cells of the voxels");
+  cl::Kernel assign = this->MediumKernel("assign_cells");
+  With(assign, this->DescribeGrid(), GridOnDevice{ { cells[0], cells[1], cells[2] } }, numbers);
+  this->Launch(assign, Range(this->Padded(2)));
+  this->device.Finish();
+  return numbers;
+}
+}

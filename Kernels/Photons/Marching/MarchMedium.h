@@ -1,0 +1,84 @@
+#pragma once
+
+#include "Photons/Photons.h"
+
+#include "Device/Buffer.h"
+#include "Medium/Medium.h"
+#include "Medium/Traits.h"
+#include "Refraction/Index/IndexRange.h"
+#include "Photons/Marching/PhotonPacking.h"
+
+#include <string>
+
+namespace tyndall
+{
+// As index_grid, march_info in the kernels.
+struct GridOnDevice
+{
+  cl_int size[3];
+};
+struct MarchOnDevice
+{
+  GridOnDevice grid;
+  cl_float spacing[3];
+  cl_float stepSize, slowest, darkness;
+  cl_int eventLimit;
+  alignas(8) cl_ulong copy;
+};
+
+/// A refractive medium on its device, as photons are marched through it, and what kernels need to know of it.
+class MarchMedium
+{
+public:
+  /// @param ior, levels  as PhotonMarcher has them, and checked
+  MarchMedium(
+    Device& device, const Medium& medium, const Field& ior, const MarchSettings& settings, const std::uint8_t* levels);
+
+  MarchOnDevice Describe() const;
+  GridOnDevice DescribeGrid() const;
+  int EventLimit() const;  ///< walls and turns of a photon at most
+  double Diagonal() const; ///< of a voxel
+  std::size_t PaddedCount() const
+  {
+    return Count(this->Padded(2));
+  } ///< voxels, with one more at either end of each axis
+
+  /// A kernel of PhotonMarch.cl for so many channels of light; `options` are those that the medium does not tell.
+  cl::Kernel MarchKernel(const char* name, int channels, bool directions, const std::string& options) const;
+  /// A kernel of PhotonSums.cl.
+  cl::Kernel SumsKernel(const char* name, int channels, const std::string& options) const;
+
+  /// The coarse cell of each voxel of the padded grid. @param cells  along each axis, at most as many as voxels
+  Buffer<cl_int> Cells(const std::array<int, 3>& cells) const;
+
+  void Launch(const cl::Kernel& kernel, const cl::NDRange& range, const cl::NDRange& local = cl::NullRange) const;
+
+  Device& device;
+  Grid grid;
+  MarchSettings settings;
+  MediumTraits traits;
+  int channels;  ///< of extinction, 1 or 3
+  bool coloured; ///< coefficients have three components, as data
+  IndexRange index;
+  bool bends, hasLevels;
+
+  /// Channels of the light that so many photons leave.
+  int ColoursOf(const PackedPhotons& packed) const { return packed.grey && !this->coloured ? 1 : 3; }
+  Buffer<float> sigmaA, sigmaS;
+  Buffer<float> sigma;        ///< PhotonMedium.cl, pack_extinction
+  Buffer<float> coefficients; ///< SquaredIndex.cl
+  Buffer<cl_uchar> nodes;     ///< PhotonMedium.cl, pack_extinction
+
+private:
+  using Size = std::array<std::size_t, 3>;
+  static std::size_t Count(const Size& size) { return size[0] * size[1] * size[2]; }
+  static cl::NDRange Range(const Size& size) { return { size[0], size[1], size[2] }; }
+  Size Padded(int by) const;
+  Buffer<float> Upload(const float* values, int components, const char* what) const;
+  std::string Options() const;
+  cl::Kernel MediumKernel(const char* name) const;
+  void FindRanges(Buffer<float>& low, Buffer<float>& high) const;
+
+  int AComponents, SComponents;
+};
+}

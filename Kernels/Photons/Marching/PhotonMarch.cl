@@ -1,0 +1,499 @@
+// Photons through a medium (Pfeuti 2009, section 3.1.5, but for the accumulation). Read after Numerics.cl, FixedPoint.cl,
+// SquaredIndex.cl, PhotonLanes.cl and PhotonSteps.cl; the host gives what those ask for, and
+//   CHANNELS         of light; MEDIUM_CHANNELS of sigma_t, 1 or CHANNELS
+//   WORKERS          0: a work-item a packet, all add to the same sums; else so many take blocks as they come, each to its sums
+//   COUNTS           1: voxels also count photons and their weights, by photons' marks: 1 << COUNT_SHIFT and units of weight
+//   CELLS            1: what is credited are coarse cells, which also count photons, and sum up the columns and rows that these
+//                    set out from, by their marks: column and row << 16
+//   PATHS            1: nothing is summed, vertices are written
+//
+// A leg is followed from voxel wall to voxel wall (Amanatides and Woo). In a voxel whose extinction over a diagonal is s,
+// with b = max(s, 1), the sums gain
+//   a = power b (path integral of transmittance, in diagonals),   0 <= a <= power,
+// which is the power lost where a voxel is thick and the path where it is thin: neither loses digits in fixed point.
+// Cells, whose voxels differ, gain power times path in diagonals.
+//
+// A photon counts where it enters a voxel (a cell), however many stretches it crosses it in; once more where it comes back.
+
+#define PHOTON_FLOATS (6 + CHANNELS) // position, unit direction, power in units
+#if CELLS
+#define RECORD (CHANNELS + 5) // photons, sums of column, row and their squares
+#else
+#define RECORD (CHANNELS + 3 * DIRECTIONS + COUNTS)
+#endif
+#define TINY 1e-20f
+#define SLOWEST_PACE 1e-12f // diagonals per time, which is n but for rounding and steps across jumps of n
+#define FASTEST_PACE 1e12f
+
+// The part of the state that changes between two turns, in registers.
+typedef struct
+{
+  integer at, alive, crossings;
+  real wall[3], now;
+  real sigma;
+  real power[CHANNELS];
+  real owed[CHANNELS]; // what rounding has left of what the voxels were to take: the power is `power + owed`
+#if COUNTS || CELLS
+  integer counted; // place where the photon was counted last
+#endif
+} photon_flight;
+
+// What a stretch leaves where.
+typedef struct
+{
+  integer at; // record of the sums
+  real amount[CHANNELS];
+#if COUNTS || CELLS
+  integer entered; // a mask: those that were not there before
+#endif
+} photon_gain;
+
+static void land(const photon_flight* flight, photon_lanes* lanes)
+{
+  PUT_INTEGERS(lanes->at, flight->at);
+  PUT_INTEGERS(lanes->crossings, flight->crossings);
+  PUT(lanes->now, flight->now);
+  FOR_AXES(a)
+  {
+    PUT(lanes->wall[a], flight->wall[a]);
+  }
+  FOR_CHANNELS(c)
+  {
+    PUT(lanes->power[c], flight->power[c]);
+  }
+}
+
+static void take_off(const march_arrays* arrays, const photon_lanes* lanes, photon_flight* flight)
+{
+  flight->at = INTEGERS(lanes->at);
+  flight->alive = INTEGERS(lanes->alive);
+  FOR_AXES(a)
+  {
+    flight->wall[a] = VECTOR(lanes->wall[a]);
+  }
+  flight->now = VECTOR(lanes->now);
+  flight->sigma = gather(float, arrays->sigma, flight->at);
+}
+
+// What the voxels take of the photons over `length`, and gain.
+static void attenuate(const march_arrays* arrays, photon_flight* flight, real length, real* gained)
+{
+  real left, lost, factor;
+  integer thick;
+  FOR_CHANNELS(c)
+  {
+    if (c < MEDIUM_CHANNELS)
+    {
+      const real s = fabs(c == 0 ? flight->sigma : gather(float, arrays->sigma + c * arrays->info->copy, flight->at));
+      const real tau = s * length;
+      lost = extinguished(tau, &left);
+      const real mean = tau > (real)TINY ? lost / tau : (real)1.0f; // transmittance, over the length
+      factor = mean * length;
+#if !CELLS
+      factor *= greater(s, (real)1.0f);
+#endif
+      thick = truth(tau > (real)0.5f);
+    }
+    gained[c] = flight->power[c] * factor;
+    // Through many thin voxels, rounding goes the same way in each (Kahan's sum).
+    const real taken = flight->power[c] * lost - flight->owed[c];
+    const real rest = thick ? flight->power[c] * left : flight->power[c] - taken;
+    flight->owed[c] = thick ? (real)0.0f : (flight->power[c] - rest) - taken;
+    flight->power[c] = rest;
+  }
+}
+
+typedef long4 __attribute__((aligned(8))) long4_anywhere;
+
+// Add what one photon left in one voxel, `a` of each channel.
+static void credit(__global long* record, const float* a, float4 direction)
+{
+#if CHANNELS == 1 && DIRECTIONS && !ATOMICS
+  *(__global long4_anywhere*)record += convert_long4(a[0] * direction);
+#else
+  float total = 0.0f;
+  FOR_CHANNELS(c)
+  {
+    total += a[c];
+    add_units(record + c, (long)a[c]);
+  }
+#if DIRECTIONS
+  add_units(record + CHANNELS, (long)(total * direction.y));
+  add_units(record + CHANNELS + 1, (long)(total * direction.z));
+  add_units(record + CHANNELS + 2, (long)(total * direction.w));
+#endif
+#endif
+}
+
+#if COUNTS || CELLS
+// One photon more in a voxel or a cell, where it entered (-1, else 0).
+static void count_photon(__global long* record, ulong mark, int entered)
+{
+#if COUNTS
+#if ATOMICS
+  if (entered)
+#endif
+  {
+    add_units(record + RECORD - 1, (long)mark & entered);
+  }
+#else
+  if (entered)
+  {
+    const long column = mark & 0xffff, row = mark >> 16;
+    add_units(record + CHANNELS, 1);
+    add_units(record + CHANNELS + 1, column);
+    add_units(record + CHANNELS + 2, row);
+    add_units(record + CHANNELS + 3, column * column);
+    add_units(record + CHANNELS + 4, row * row);
+  }
+#endif
+}
+#define COUNT(record, k, lane) count_photon(record, lanes->mark[k], gain->entered lane);
+#else
+#define COUNT(record, k, lane)
+#endif
+
+static void credit_all(const march_arrays* arrays, const photon_lanes* lanes, const photon_gain* gain)
+{
+#define CREDIT(k, lane) \
+  { \
+    float a[CHANNELS]; \
+    FOR_CHANNELS(c) \
+    { \
+      a[c] = gain->amount[c]lane; \
+    } \
+    __global long* record = arrays->sums + (ulong)gain->at lane * RECORD; \
+    credit(record, a, lanes->direction[k]); \
+    COUNT(record, k, lane) \
+  }
+  LANE_BY_LANE(CREDIT)
+#undef CREDIT
+}
+
+// Most of the time of a march across a large grid is waiting for memory. It is asked for a few voxels ahead of the photons, as
+// far as they go straight on. Whoever compiles this may not know how: then it does without.
+static void ask_ahead(const march_arrays* arrays, const photon_lanes* lanes, integer at)
+{
+#if REAL_WIDTH > 1 && defined(__has_builtin)
+#if __has_builtin(__builtin_prefetch)
+  const integer there = at + INTEGERS(lanes->ahead);
+#if CELLS // few, whose sums are near already
+#define ASK_FOR_RECORD(lane) __builtin_prefetch((const void*)(uintptr_t)(arrays->cells + (long)there lane), 0);
+#else
+#define ASK_FOR_RECORD(lane) __builtin_prefetch((const void*)(uintptr_t)(arrays->sums + (long)there lane * RECORD), 1);
+#endif
+#define ASK(k, lane) \
+  ASK_FOR_RECORD(lane) \
+  __builtin_prefetch((const void*)(uintptr_t)(arrays->sigma + (long)there lane), 0);
+  LANE_BY_LANE(ASK)
+#undef ASK
+#endif
+#endif
+}
+
+// What the photons leave over `length` in the voxels where they are.
+static void leave_light(const march_arrays* arrays, photon_flight* flight, real length, photon_gain* gain)
+{
+  attenuate(arrays, flight, length, gain->amount);
+#if CELLS
+  gain->at = gather(int, arrays->cells, flight->at);
+#else
+  gain->at = flight->at;
+#endif
+#if COUNTS || CELLS
+  // Of no length are stretches of photons that set out from a wall, and of those that have ended.
+  gain->entered = truth(gain->at != flight->counted) & truth(length > (real)0.0f);
+  flight->counted = gain->entered ? gain->at : flight->counted;
+#endif
+}
+
+// Through the walls that are reached at time `next`.
+static void cross_walls(const march_arrays* arrays, const photon_lanes* lanes, photon_flight* flight, real next)
+{
+  FOR_AXES(a)
+  {
+    const integer through = truth(flight->wall[a] <= next);
+    flight->at += through & INTEGERS(lanes->stride[a]);
+    flight->wall[a] += masked(through, VECTOR(lanes->across[a]));
+  }
+  flight->now = next;
+  flight->sigma = gather(float, arrays->sigma, flight->at);
+}
+
+// The power of a photon's brightest channel.
+static real brightest(const photon_flight* flight)
+{
+  real most = flight->power[0];
+  for (int c = 1; c < CHANNELS; ++c)
+  {
+    most = greater(most, flight->power[c]);
+  }
+  return most;
+}
+
+// The photons that have come to an end or to a turn.
+static integer to_attend(const march_arrays* arrays, const photon_lanes* lanes, const photon_flight* flight)
+{
+  integer special =
+    truth(flight->sigma == (real)OUTSIDE) | truth(brightest(flight) < (real)arrays->info->darkness);
+#if BENDS
+  const real turn = VECTOR(lanes->turn);
+  special |= truth(turn <= flight->now) |
+    (truth(as_integer(flight->sigma) < 0) & truth(turn == (real)NEVER) & truth(flight->now >= VECTOR(lanes->settled)));
+#endif
+  return special & flight->alive;
+}
+
+// The face through which a photon came to voxel `at` of the padding.
+static int face_left(const march_info* info, int at)
+{
+  const int3 voxel = voxel_of(info, at);
+  const int3 size = size_of(info);
+  return voxel.x < 0 ? 0 : voxel.x >= size.x ? 1 : voxel.y < 0 ? 2 : voxel.y >= size.y ? 3 : voxel.z < 0 ? 4 : 5;
+}
+
+static void end_photon(const photon_lanes* lanes, int k, int face, __global photon_end* end)
+{
+  end->face = face;
+  end->crossings = lanes->crossings[k];
+  end->steps = lanes->steps[k];
+  FOR_CHANNELS(c)
+  {
+    end->power[c] = lanes->power[c][k];
+  }
+}
+
+#if BENDS
+// The photons of a mask whose velocity means nothing, after a turn.
+static void give_up_lost(const march_arrays* arrays, photon_lanes* lanes, integer mask, int first)
+{
+  const real pace = VECTOR(lanes->pace);
+  const integer lost = mask & ~(truth(pace > (real)SLOWEST_PACE) & truth(pace < (real)FASTEST_PACE));
+  if (anywhere(lost))
+  {
+    FOR_LANES(k, lost)
+    {
+      end_photon(lanes, k, STILL_GOING, arrays->ends + first + k);
+      rest(lanes, k);
+    }
+  }
+}
+#endif
+
+// The photons of a mask end or turn.
+static void attend(const march_arrays* arrays, photon_lanes* lanes, const photon_flight* flight, integer mask, int first)
+{
+  const integer outside = truth(flight->sigma == (real)OUTSIDE);
+  const integer ended = mask & (outside | truth(brightest(flight) < (real)arrays->info->darkness));
+  if (anywhere(ended))
+  {
+    const int beyond = bits_of(outside);
+    FOR_LANES(k, ended)
+    {
+      const int face = beyond >> k & 1 ? face_left(arrays->info, lanes->at[k]) : DARK;
+      end_photon(lanes, k, face, arrays->ends + first + k);
+      rest(lanes, k);
+    }
+  }
+#if BENDS
+  const integer turning = mask & ~ended;
+  if (anywhere(turning))
+  {
+    take_turns(arrays, lanes, turning);
+    give_up_lost(arrays, lanes, turning, first);
+  }
+#endif
+}
+
+static void load_packet(const march_arrays* arrays, const __global float* photons, int first, int end,
+  photon_lanes* lanes, photon_flight* flight)
+{
+  LANES_3(float, position);
+  LANES_3(float, direction);
+  for (int k = 0; k < REAL_WIDTH; ++k)
+  {
+    const bool there = first + k < end;
+    const __global float* photon = photons + (ulong)(there ? first + k : first) * PHOTON_FLOATS;
+    FOR_AXES(a)
+    {
+      position[a][k] = photon[a];
+      direction[a][k] = photon[3 + a];
+    }
+    FOR_CHANNELS(c)
+    {
+      lanes->power[c][k] = there ? photon[6 + c] : 0.0f;
+    }
+#if COUNTS || CELLS
+    lanes->mark[k] = there ? arrays->marks[first + k] : 0;
+#endif
+  }
+  real p[3], u[3];
+  FOR_AXES(a)
+  {
+    p[a] = VECTOR(position[a]);
+    u[a] = VECTOR(direction[a]);
+  }
+  set_off(arrays, lanes, p, u);
+  for (int k = end - first; k < REAL_WIDTH; ++k)
+  {
+    rest(lanes, k);
+  }
+  PUT_INTEGERS(lanes->crossings, (integer)0);
+#if BENDS
+  give_up_lost(arrays, lanes, INTEGERS(lanes->alive), first);
+#endif
+  flight->crossings = 0;
+#if COUNTS || CELLS
+  flight->counted = -1;
+#endif
+  FOR_CHANNELS(c)
+  {
+    flight->power[c] = VECTOR(lanes->power[c]);
+    flight->owed[c] = 0.0f;
+  }
+  take_off(arrays, lanes, flight);
+}
+
+#if PATHS
+static float total_power(const photon_flight* flight)
+{
+  float sum = 0.0f;
+  FOR_CHANNELS(c)
+  {
+    sum += flight->power[c];
+  }
+  return sum;
+}
+
+static void add_vertex(const march_arrays* arrays, const photon_lanes* lanes, float now, float left, int* count)
+{
+  if (arrays->vertices)
+  {
+    const float3 start = (float3)(lanes->start[0][0], lanes->start[1][0], lanes->start[2][0]);
+    const float3 velocity = (float3)(lanes->velocity[0][0], lanes->velocity[1][0], lanes->velocity[2][0]);
+    arrays->vertices[*count] = (float4)(start + velocity * now, left);
+  }
+  ++*count;
+}
+#endif
+
+// Follow photons `first` to `first + REAL_WIDTH`, but before `end`, to their ends. Returns the vertices of the path, with PATHS.
+static int march_packet(const march_arrays* arrays, const __global float* photons, int first, int end)
+{
+  photon_lanes lanes;
+  photon_flight flight;
+  load_packet(arrays, photons, first, end, &lanes, &flight);
+  int vertices = 0;
+#if PATHS
+  const float whole = total_power(&flight);
+  add_vertex(arrays, &lanes, 0.0f, 1.0f, &vertices);
+#endif
+  if (!anywhere(flight.alive))
+  {
+    return vertices;
+  }
+  // What voxels gain is credited a stretch later, while that one's extinction is on its way from memory.
+  photon_gain gain;
+  bool owed = false;
+  for (int event = 0; event < arrays->info->eventLimit; ++event)
+  {
+    real next = lesser(lesser(flight.wall[0], flight.wall[1]), flight.wall[2]);
+#if BENDS
+    next = lesser(next, VECTOR(lanes.turn));
+#endif
+#if !PATHS
+    if (owed)
+    {
+      credit_all(arrays, &lanes, &gain);
+    }
+    ask_ahead(arrays, &lanes, flight.at);
+#endif
+    leave_light(arrays, &flight, greater(next - flight.now, (real)0.0f) * VECTOR(lanes.pace), &gain);
+    flight.crossings -= flight.alive;
+    owed = true;
+    cross_walls(arrays, &lanes, &flight, next);
+    const integer special = to_attend(arrays, &lanes, &flight);
+    if (anywhere(special))
+    {
+#if !PATHS
+      credit_all(arrays, &lanes, &gain); // before directions change
+      owed = false;
+#endif
+      land(&flight, &lanes);
+#if PATHS
+      add_vertex(arrays, &lanes, next, whole > 0.0f ? total_power(&flight) / whole : 1.0f, &vertices);
+#endif
+      attend(arrays, &lanes, &flight, special, first);
+      take_off(arrays, &lanes, &flight);
+      if (!anywhere(flight.alive))
+      {
+        return vertices;
+      }
+    }
+  }
+#if !PATHS
+  if (owed)
+  {
+    credit_all(arrays, &lanes, &gain);
+  }
+#endif
+  land(&flight, &lanes);
+  for (int k = 0; k < REAL_WIDTH; ++k)
+  {
+    if (lanes.alive[k])
+    {
+      end_photon(&lanes, k, STILL_GOING, arrays->ends + first + k);
+    }
+  }
+  return vertices;
+}
+
+#if PATHS
+// The path of photon i, a work-item each. Its `counts[i]` vertices go to vertices + offsets[i]; with `counting` they are only
+// counted.
+__kernel void trace_paths(march_info info, const __global float* sigma, const __global float* coefficients,
+  const __global uchar* nodes, const __global float* photons, __global photon_end* ends, int counting,
+  const __global int* offsets, __global float4* vertices, __global int* counts)
+{
+  const int i = get_global_id(0);
+  const march_arrays arrays = { &info, sigma, coefficients, nodes, 0, ends, counting ? 0 : vertices + offsets[i], 0, 0 };
+  counts[i] = march_packet(&arrays, photons, i, i + 1);
+}
+#else
+// Of each batch, photons `first` to `first + count`: those of batch b begin at batch_begin[b], and end where the next ones
+// begin. There are `copies` of the sums, at least as many as batches; copy c is for batch c modulo their number.
+__kernel void march_photons(march_info info, const __global float* sigma, const __global float* coefficients,
+  const __global uchar* nodes, const __global float* photons, const __global ulong* marks, const __global int* cells,
+  __global photon_end* ends, __global long* sums, ulong copyStride, int copies, int batches,
+  const __global int* batch_begin, volatile __global int* next, int first, int count)
+{
+#if WORKERS > 0
+  for (int copy = get_global_id(0); copy < copies; copy += WORKERS)
+  {
+    const int batch = copy % batches;
+    const int begin = batch_begin[batch] + first, left = min(count, batch_begin[batch + 1] - begin);
+    const march_arrays arrays = {
+      &info, sigma, coefficients, nodes, sums + copy * copyStride, ends, 0, marks, cells
+    };
+    // Blocks of neighbours stay together: they share cache lines. Who takes which makes no difference to the sums.
+    for (int block = atomic_add(next + batch, BLOCK); block < left; block = atomic_add(next + batch, BLOCK))
+    {
+      for (int i = block; i < min(block + BLOCK, left); i += REAL_WIDTH)
+      {
+        march_packet(&arrays, photons, begin + i, begin + left);
+      }
+    }
+  }
+#else
+  const int batch = get_global_id(1), begin = batch_begin[batch] + first;
+  const int left = min(count, batch_begin[batch + 1] - begin), i = get_global_id(0) * REAL_WIDTH;
+  if (i < left)
+  {
+    const march_arrays arrays = {
+      &info, sigma, coefficients, nodes, sums + batch * copyStride, ends, 0, marks, cells
+    };
+    march_packet(&arrays, photons, begin + i, begin + left);
+  }
+#endif
+}
+#endif

@@ -1,0 +1,327 @@
+#include "Photons/Marching/PhotonMarcher.h"
+
+#include "Device/Clock.h"
+#include "Device/Defines.h"
+#include "Device/HostMemory.h"
+#include "Device/HostMappedBuffer.h"
+#include "Light/ChannelReduction.h"
+#include "Photons/Marching/MarchLaunch.h"
+#include "Photons/Marching/PhotonPaths.h"
+#include "Photons/Importance/PilotGathering.h"
+
+#include <algorithm>
+#include <cmath>
+#include <cstring>
+#include <string>
+
+namespace tyndall
+{
+namespace
+{
+// A voxel's count of photons stands above the sum of their weights, in the same 64 bits.
+constexpr int CountShift = 40;
+constexpr std::size_t CountedAtMost = (std::size_t(1) << (64 - CountShift)) - 1;
+constexpr double WeightUnits = 65536.0; ///< of the largest weight
+
+/// As light_info in the kernels.
+struct LightOnDevice
+{
+  GridOnDevice grid;
+  cl_float diagonal, fluence;
+  cl_int exponent;
+  cl_float colour[3], weight;
+};
+
+/// Tallies of the one channel, for the three that it stands for.
+void Colour(const Rgb& colour, PhotonLight& result)
+{
+  EnergyBalance& balance = result.light.balance;
+  const auto spread = [&](Rgb& watts) { watts = { watts[0] * colour[0], watts[0] * colour[1], watts[0] * colour[2] }; };
+  for (Rgb* watts : { &balance.entered, &balance.absorbed, &balance.escaped, &balance.leftOver, &result.scattered })
+  {
+    spread(*watts);
+  }
+  std::for_each(result.light.facePowerOut.begin(), result.light.facePowerOut.end(), spread);
+}
+
+/// Weight of one of the units that voxels sum up.
+float WeightUnit(const std::vector<Photon>& photons)
+{
+  float largest = 0.0f;
+  for (const Photon& photon : photons)
+  {
+    largest = std::max(largest, photon.weight);
+  }
+  return static_cast<float>(largest / WeightUnits);
+}
+
+/// One photon and its weight, of each.
+std::vector<cl_ulong> Marks(const std::vector<Photon>& photons, const PackedPhotons& packed, float unit)
+{
+  std::vector<cl_ulong> marks;
+  marks.reserve(packed.Count());
+  for (const std::size_t number : packed.numbers)
+  {
+    const double units = unit > 0.0f ? photons[number].weight / static_cast<double>(unit) : 0.0;
+    marks.push_back((cl_ulong(1) << CountShift) + static_cast<cl_ulong>(std::min(units + 0.5, WeightUnits)));
+  }
+  return marks;
+}
+
+void CheckCounted(std::size_t photons)
+{
+  if (photons > CountedAtMost)
+  {
+    throw InvalidInput("There are " + std::to_string(photons) + " photons; voxels can count up to " +
+      std::to_string(CountedAtMost) + ". March fewer at a time, or without counts.");
+  }
+}
+}
+
+class PhotonMarcher::Implementation
+{
+public:
+  Implementation(
+    Device& device, const Medium& medium, const Field& ior, const MarchSettings& settings, const std::uint8_t* levels)
+    : medium(device, medium, ior, settings, levels)
+    , pilots(this->medium)
+  {
+    this->Share(1, 1); // says what the device lacks
+  }
+
+  PhotonLight March(const std::vector<Photon>& photons, const Monitor& monitor);
+
+  MarchMedium medium;
+  PilotGathering pilots;
+
+private:
+  MarchShares Share(int numbers, int batches) const
+  {
+    return ShareSums(this->medium, this->medium.PaddedCount(), numbers, batches, this->Sums.Size() * sizeof(cl_long));
+  }
+  MarchSums PrepareSums(const PackedPhotons& packed);
+  void Tally(const PackedPhotons& packed, const std::vector<cl_int>& ends, PhotonLight& result) const;
+  void Finish(const PackedPhotons& packed, const MarchSums& target, float weightUnit, PhotonLight& result);
+  void SayWhatIsLeftOut(const PackedPhotons& packed, LightField& light) const;
+
+  Buffer<cl_long> Sums; ///< zero between two runs
+};
+
+MarchSums PhotonMarcher::Implementation::PrepareSums(const PackedPhotons& packed)
+{
+  const MarchSettings& settings = this->medium.settings;
+  MarchSums target;
+  target.records = this->medium.PaddedCount();
+  target.directions = settings.meanDirection;
+  target.counts = settings.counts;
+  target.numbers = packed.channels + (settings.meanDirection ? 3 : 0) + (settings.counts ? 1 : 0);
+  target.shares = this->Share(target.numbers, packed.Batches());
+  const std::size_t needed =
+    target.records * static_cast<std::size_t>(target.numbers) * static_cast<std::size_t>(target.shares.copies);
+  if (this->Sums.Size() != needed)
+  {
+    this->Sums = Buffer<cl_long>();
+    this->Sums = Buffer<cl_long>(this->medium.device, needed, "sums of the photons' light");
+    this->Sums.Fill(0);
+  }
+  target.sums = &this->Sums;
+  return target;
+}
+
+/// Of whole units, whose sums do not depend on the order of the photons.
+void PhotonMarcher::Implementation::Tally(
+  const PackedPhotons& packed, const std::vector<cl_int>& ends, PhotonLight& result) const
+{
+  EnergyBalance& balance = result.light.balance;
+  const std::size_t words = EndWords + static_cast<std::size_t>(packed.channels);
+  std::array<std::array<std::int64_t, 3>, StillGoing + 1> out = {};
+  for (std::size_t i = 0; i < packed.Count(); ++i)
+  {
+    EndOnDevice end;
+    std::memcpy(&end, ends.data() + i * words, sizeof(end));
+    result.credits += static_cast<std::size_t>(end.crossings);
+    result.steps += static_cast<std::size_t>(end.steps);
+    for (int c = 0; c < packed.channels; ++c)
+    {
+      cl_float units;
+      std::memcpy(&units, ends.data() + i * words + EndWords + c, sizeof(units));
+      out[std::min(end.face, StillGoing)][c] += WholeUnits(units); // almost nothing of those that are dark
+    }
+  }
+  for (int c = 0; c < 3; ++c)
+  {
+    for (int face = 0; face < StillGoing; ++face)
+    {
+      result.light.facePowerOut[face][c] = static_cast<double>(out[face][c]) * packed.unit;
+      balance.escaped[c] += result.light.facePowerOut[face][c];
+    }
+    balance.leftOver[c] = static_cast<double>(out[StillGoing][c]) * packed.unit;
+  }
+}
+
+void PhotonMarcher::Implementation::Finish(
+  const PackedPhotons& packed, const MarchSums& target, float weightUnit, PhotonLight& result)
+{
+  LightField& light = result.light;
+  Device& device = this->medium.device;
+  const Grid& grid = this->medium.grid;
+  const std::size_t voxels = grid.VoxelCount(), rows = voxels / static_cast<std::size_t>(grid.size[0]);
+  const std::size_t batches = static_cast<std::size_t>(target.shares.batches);
+  const std::size_t colours = static_cast<std::size_t>(light.channels);
+  const std::size_t channels = static_cast<std::size_t>(packed.channels);
+  const auto lend = [&](std::vector<float>& values, std::size_t size, const char* what) {
+    values = Zeros(size);
+    return LentArray<float>(device, values.data(), size, what);
+  };
+  const LentArray<float> fluence = lend(light.fluence, voxels * colours, "fluence");
+  const LentArray<float> direction = lend(result.meanDirection, target.directions ? 3 * voxels : 0, "mean direction");
+  const LentArray<float> count = lend(result.photonCount, target.counts ? voxels : 0, "photon count");
+  const LentArray<float> weight = lend(result.photonWeight, target.counts ? voxels : 0, "photon weight");
+  const LentArray<float> batchFluence =
+    lend(result.batchFluence, batches > 1 ? batches * voxels * colours : 0, "fluence by batches");
+  const Buffer<cl_long> taken(device, rows * 2 * channels, "tallies");
+
+  LightOnDevice info = {};
+  info.grid = this->medium.DescribeGrid();
+  info.diagonal = static_cast<float>(this->medium.Diagonal());
+  info.fluence =
+    static_cast<float>(std::frexp(packed.unit * this->medium.Diagonal() / grid.VoxelVolume(), &info.exponent));
+  std::copy(packed.colour.begin(), packed.colour.end(), info.colour);
+  info.weight = weightUnit;
+  cl::Kernel finish = this->medium.SumsKernel("finish_light", packed.channels,
+    Define("DIRECTIONS", target.directions) + Define("COUNTS", target.counts) + Define("COUNT_SHIFT", CountShift) +
+      Define("COLOURS", light.channels) + Define("COPIES", target.shares.copies) +
+      Define("BATCHES", target.shares.batches));
+  With(finish, info, this->medium.sigmaA, this->medium.sigmaS, this->Sums,
+    cl_ulong(target.records * static_cast<std::size_t>(target.numbers)), fluence.Handle(), direction.Handle(),
+    count.Handle(), weight.Handle(), batchFluence.Handle(), taken);
+  this->medium.Launch(finish, cl::NDRange(rows));
+  for (const LentArray<float>* array : { &fluence, &direction, &count, &weight, &batchFluence })
+  {
+    array->Fetch();
+  }
+  result.secondsMarching += ClockSeconds();
+
+  const std::vector<cl_long> units = taken.Read();
+  for (std::size_t i = 0; i < units.size(); ++i)
+  {
+    const double watts = units[i] * packed.unit;
+    light.balance.absorbed[i % channels] += watts;
+    result.scattered[i % channels] += i / channels % 2 == 1 ? watts : 0.0;
+  }
+}
+
+void PhotonMarcher::Implementation::SayWhatIsLeftOut(const PackedPhotons& packed, LightField& light) const
+{
+  const auto say = [&](bool condition, const char* text) {
+    if (condition)
+    {
+      light.leftOut.push_back(text);
+    }
+  };
+  say(true, "scattered light: fluence is what comes from the lights without being scattered");
+  const MarchMedium& through = this->medium;
+  const bool leaveOut = through.settings.leaveOut;
+  say(through.traits.emits, "emission: photons carry the light of lights only");
+  say(!through.bends, left_out::ConstantIndex);
+  say(through.bends && !through.hasLevels, "octree: none was given, paths go by steps of the same length");
+  say(packed.channels == 1, packed.grey ? left_out::Grey : left_out::OneColour);
+  say(packed.channels == 3 && through.channels == 1, left_out::GreyExtinction);
+  say(leaveOut && !through.traits.scatters, left_out::NoScattering);
+  say(leaveOut && !through.traits.absorbs, left_out::NoAbsorption);
+  say(!through.settings.meanDirection, "mean direction: it was not asked for");
+}
+
+PhotonLight PhotonMarcher::Implementation::March(const std::vector<Photon>& photons, const Monitor& monitor)
+{
+  const double start = ClockSeconds();
+  const MarchSettings& settings = this->medium.settings;
+  const PackedPhotons packed =
+    Pack(photons, this->medium.grid, this->medium.channels == 3, this->medium.EventLimit(), settings.batches);
+  const float weightUnit = settings.counts ? WeightUnit(photons) : 0.0f;
+  if (settings.counts)
+  {
+    CheckCounted(packed.Count());
+  }
+  PhotonLight result;
+  result.missed = packed.missed;
+  result.batches = BatchesOf(photons);
+  const int colours = this->medium.ColoursOf(packed);
+  result.light.channels = std::max(packed.channels, colours);
+  result.light.device = this->medium.device.Name();
+  result.light.balance.entered = packed.entered;
+
+  const MarchSums target = this->PrepareSums(packed);
+  const PhotonsOnDevice onDevice(
+    this->medium.device, packed, settings.counts ? Marks(photons, packed, weightUnit) : std::vector<cl_ulong>());
+  result.secondsMarching = -ClockSeconds();
+  try
+  {
+    MarchPhotons(this->medium, packed, onDevice, target, monitor);
+  }
+  catch (...)
+  {
+    this->Sums = Buffer<cl_long>(); // they are not zero
+    throw;
+  }
+  this->Finish(packed, target, weightUnit, result);
+  this->Tally(packed, onDevice.ends.Read(), result);
+  if (packed.channels == 1 && result.light.channels == 3)
+  {
+    Colour(packed.colour, result);
+  }
+  if (colours < result.light.channels)
+  {
+    KeepOneChannel(result.light);
+    KeepOneChannel(result.batchFluence);
+    result.scattered = { result.scattered[0], 0.0, 0.0 };
+  }
+  this->SayWhatIsLeftOut(packed, result.light);
+  if (settings.batches && packed.Batches() == 1)
+  {
+    result.batchFluence = result.light.fluence;
+  }
+  result.seconds = ClockSeconds() - start;
+  return result;
+}
+
+PhotonMarcher::PhotonMarcher(
+  Device& device, const Medium& medium, const Field& ior, const MarchSettings& settings, const std::uint8_t* levels)
+{
+  tyndall::Check(medium);
+  tyndall::Check(settings);
+  CheckIndex(ior, medium.grid);
+  CheckLevels(levels, medium.grid);
+  this->Inside = std::make_unique<Implementation>(device, medium, ior, settings, levels);
+}
+
+PhotonMarcher::~PhotonMarcher() = default;
+PhotonMarcher::PhotonMarcher(PhotonMarcher&&) noexcept = default;
+
+PhotonLight PhotonMarcher::March(const std::vector<Photon>& photons, const Monitor& monitor)
+{
+  return this->Inside->March(photons, monitor);
+}
+
+std::vector<PhotonPath> PhotonMarcher::Paths(const std::vector<Photon>& photons, const std::vector<std::size_t>& chosen)
+{
+  return TracePaths(this->Inside->medium, photons, chosen);
+}
+
+PilotLight PhotonMarcher::Gather(const std::vector<Photon>& photons, const std::vector<std::array<int, 2>>& origins,
+  const std::array<int, 3>& cells, const Monitor& monitor)
+{
+  return this->Inside->pilots.Gather(photons, origins, cells, monitor);
+}
+
+std::vector<std::size_t> ChooseEvenly(std::size_t size, std::size_t count)
+{
+  std::vector<std::size_t> chosen;
+  count = std::min(count, size);
+  for (std::size_t i = 0; i < count; ++i)
+  {
+    chosen.push_back(static_cast<std::size_t>((i + 0.5) / count * size));
+  }
+  return chosen;
+}
+}

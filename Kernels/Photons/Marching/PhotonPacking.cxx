@@ -1,0 +1,281 @@
+#include "Photons/Marching/PhotonPacking.h"
+
+#include "Device/Errors.h"
+#include "Medium/Traits.h"
+
+#include <algorithm>
+#include <cmath>
+#include <cstdint>
+#include <limits>
+#include <numeric>
+#include <string>
+
+namespace tyndall
+{
+namespace
+{
+constexpr int TileBits = 8; ///< tiles along an axis, by which photons are ordered: a voxel or two of a grid of 128^3
+constexpr double SameColour = 1e-6;
+
+void CheckPhoton(const Photon& photon, std::size_t number)
+{
+  const std::string name = "Photon " + std::to_string(number);
+  float length = 0.0f;
+  for (int a = 0; a < 3; ++a)
+  {
+    if (!std::isfinite(photon.position[a]) || !std::isfinite(photon.direction[a]))
+    {
+      throw InvalidInput(name + " has a position or direction that is not finite.");
+    }
+    if (!(photon.power[a] >= 0.0f) || std::isinf(photon.power[a]))
+    {
+      throw InvalidInput(
+        name + " has power " + std::to_string(photon.power[a]) + "; it must be finite and not negative.");
+    }
+    length = std::max(length, std::abs(photon.direction[a]));
+  }
+  if (length == 0.0f)
+  {
+    throw InvalidInput(name + " has direction (0, 0, 0); say where it goes.");
+  }
+  if (!(photon.weight >= 0.0f) || std::isinf(photon.weight))
+  {
+    throw InvalidInput(
+      name + " has weight " + std::to_string(photon.weight) + "; it must be finite and not negative, 1 as a rule.");
+  }
+}
+
+/// The colour that all photons have, with mean 1.
+bool HaveOneColour(const std::vector<Photon>& photons, Rgb& colour)
+{
+  CommonColour common;
+  for (std::size_t i = 0; i < photons.size() && common.IsOne(); ++i)
+  {
+    common.Add(photons[i].power.data(), 1);
+  }
+  const Rgb relative = common.Relative();
+  for (int c = 0; c < 3; ++c)
+  {
+    colour[c] = 3.0 * relative[c] / Sum(relative);
+    colour[c] = std::abs(colour[c] - 1.0) < SameColour ? 1.0 : colour[c];
+  }
+  return common.IsOne();
+}
+
+/// Positions and directions in voxels, of those that meet the grid.
+struct Ray
+{
+  std::array<float, 3> position, direction;
+  std::uint32_t tile; ///< its place on a curve through space that keeps neighbours together (Morton)
+};
+
+/// The bits of x, each followed by two zeros.
+std::uint32_t Spread(std::uint32_t x)
+{
+  std::uint32_t spread = 0;
+  for (int bit = 0; bit < TileBits; ++bit)
+  {
+    spread |= (x >> bit & 1u) << 3 * bit;
+  }
+  return spread;
+}
+
+Ray RayOf(const Grid& grid, const Photon& photon, const std::array<double, 3>& position)
+{
+  Ray ray = {};
+  const double length = std::hypot(photon.direction[0], photon.direction[1], photon.direction[2]);
+  const double reach = 0.5 * std::hypot(grid.size[0], grid.size[1], grid.size[2]);
+  for (int a = 0; a < 3; ++a)
+  {
+    const double omega = photon.direction[a] / length;
+    ray.position[a] = static_cast<float>(position[a]);
+    ray.direction[a] = static_cast<float>(omega);
+    // Photons are neighbours when they are so halfway through: those of a lamp in the volume all begin at one place.
+    const double middle = (position[a] + omega * reach + reach) / (grid.size[a] + 2.0 * reach);
+    const int tiles = 1 << TileBits;
+    ray.tile |= Spread(std::min(std::max(static_cast<int>(middle * tiles), 0), tiles - 1)) << a;
+  }
+  return ray;
+}
+
+/// Numbers of the rays in the order of their tiles; those of one tile as they are. Radix sort, by halves of the bits.
+std::vector<std::uint32_t> Order(const std::vector<Ray>& rays)
+{
+  constexpr int Bits = 3 * TileBits / 2;
+  std::vector<std::uint32_t> order(rays.size()), sorted(rays.size());
+  std::iota(order.begin(), order.end(), 0u);
+  for (const int shift : { 0, Bits })
+  {
+    std::vector<std::size_t> begin((1 << Bits) + 1, 0);
+    const auto part = [&](std::uint32_t i) { return rays[i].tile >> shift & ((1u << Bits) - 1); };
+    for (const std::uint32_t i : order)
+    {
+      ++begin[part(i) + 1];
+    }
+    std::partial_sum(begin.begin(), begin.end(), begin.begin());
+    for (const std::uint32_t i : order)
+    {
+      sorted[begin[part(i)]++] = i;
+    }
+    order.swap(sorted);
+  }
+  return order;
+}
+
+/// Those of a batch together, in the order that they have; `begin` becomes the place of each batch's first, and beyond.
+std::vector<std::uint32_t> ByBatch(const std::vector<std::uint32_t>& order, const std::vector<Photon>& photons,
+  const std::vector<std::size_t>& numbers, std::vector<int>& begin)
+{
+  const auto batch = [&](std::uint32_t i) { return static_cast<std::size_t>(photons[numbers[i]].batch); };
+  begin.assign(static_cast<std::size_t>(BatchesOf(photons)) + 1, 0);
+  for (const std::uint32_t i : order)
+  {
+    ++begin[batch(i) + 1];
+  }
+  std::partial_sum(begin.begin(), begin.end(), begin.begin());
+  std::vector<int> next = begin;
+  std::vector<std::uint32_t> sorted(order.size());
+  for (const std::uint32_t i : order)
+  {
+    sorted[static_cast<std::size_t>(next[batch(i)]++)] = i;
+  }
+  return sorted;
+}
+
+void CheckBatch(const Photon& photon, std::size_t number)
+{
+  if (photon.batch < 0 || photon.batch >= BatchesAtMost)
+  {
+    throw InvalidInput("Photon " + std::to_string(number) + " is of batch " + std::to_string(photon.batch) +
+      "; there are 0 to " + std::to_string(BatchesAtMost - 1) + ".");
+  }
+}
+
+/// The largest total of a channel, or of all where one stands for them.
+double Brightness(const std::vector<Photon>& photons)
+{
+  double sum = 0.0;
+  for (const Photon& photon : photons)
+  {
+    sum += double(photon.power[0]) + photon.power[1] + photon.power[2];
+  }
+  return sum;
+}
+}
+
+bool MoveOnto(const Grid& grid, std::array<double, 3>& position, const std::array<double, 3>& direction)
+{
+  double enter = 0.0;
+  double leave = std::numeric_limits<double>::infinity();
+  for (int a = 0; a < 3; ++a)
+  {
+    const double size = grid.size[a];
+    const double slack = 1e-6 * size; // a position on a face may have been rounded
+    if (direction[a] == 0.0)
+    {
+      if (position[a] < -slack || position[a] > size + slack)
+      {
+        return false;
+      }
+      continue;
+    }
+    const double t0 = ((direction[a] > 0.0 ? 0.0 : size) - position[a]) / direction[a];
+    const double t1 = ((direction[a] > 0.0 ? size : 0.0) - position[a]) / direction[a];
+    enter = std::max(enter, t0);
+    leave = std::min(leave, t1 + slack / std::abs(direction[a]));
+  }
+  for (int a = 0; a < 3; ++a)
+  {
+    position[a] = std::min(std::max(position[a] + enter * direction[a], 0.0), static_cast<double>(grid.size[a]));
+  }
+  return enter <= leave;
+}
+
+int BatchesOf(const std::vector<Photon>& photons)
+{
+  std::int32_t last = 0;
+  for (const Photon& photon : photons)
+  {
+    last = std::max(last, photon.batch);
+  }
+  return last + 1;
+}
+
+std::size_t PackedPhotons::LargestBatch() const
+{
+  int largest = 0;
+  for (std::size_t b = 1; b < this->batchBegin.size(); ++b)
+  {
+    largest = std::max(largest, this->batchBegin[b] - this->batchBegin[b - 1]);
+  }
+  return static_cast<std::size_t>(largest);
+}
+
+PackedPhotons Pack(
+  const std::vector<Photon>& photons, const Grid& grid, bool coloured, double creditsAtMost, bool batches)
+{
+  PackedPhotons packed;
+  const bool oneColour = HaveOneColour(photons, packed.colour);
+  packed.grey = oneColour && packed.colour == Rgb{ 1.0, 1.0, 1.0 };
+  packed.channels = oneColour && !coloured ? 1 : 3;
+  packed.colour = packed.channels == 3 ? Rgb{ 1.0, 1.0, 1.0 } : packed.colour;
+  const double total = Brightness(photons);
+  packed.unit = total > 0.0 ? std::exp2(std::ceil(std::log2(total * creditsAtMost / 0x1p62))) : 1.0;
+
+  std::vector<Ray> rays;
+  std::vector<std::size_t> numbers;
+  rays.reserve(photons.size());
+  numbers.reserve(photons.size());
+  for (std::size_t i = 0; i < photons.size(); ++i)
+  {
+    CheckPhoton(photons[i], i);
+    if (batches)
+    {
+      CheckBatch(photons[i], i);
+    }
+    std::array<double, 3> position, direction;
+    for (int a = 0; a < 3; ++a)
+    {
+      position[a] = (photons[i].position[a] - grid.origin[a]) / grid.spacing[a];
+      direction[a] = photons[i].direction[a] / grid.spacing[a];
+    }
+    if (!MoveOnto(grid, position, direction))
+    {
+      ++packed.missed;
+      continue;
+    }
+    rays.push_back(RayOf(grid, photons[i], position));
+    numbers.push_back(i);
+  }
+
+  std::vector<std::uint32_t> order = Order(rays);
+  packed.batchBegin = { 0, static_cast<int>(rays.size()) };
+  if (batches && BatchesOf(photons) > 1)
+  {
+    order = ByBatch(order, photons, numbers, packed.batchBegin);
+  }
+  packed.numbers.resize(rays.size());
+  packed.values.resize(rays.size() * packed.FloatsEach());
+  float* values = packed.values.data();
+  std::array<std::int64_t, 3> entered = {};
+  for (std::size_t i = 0; i < rays.size(); ++i)
+  {
+    const Ray& ray = rays[order[i]];
+    packed.numbers[i] = numbers[order[i]];
+    values = std::copy(ray.position.begin(), ray.position.end(), values);
+    values = std::copy(ray.direction.begin(), ray.direction.end(), values);
+    const std::array<float, 3>& power = photons[packed.numbers[i]].power;
+    for (int c = 0; c < packed.channels; ++c)
+    {
+      const double watts = packed.channels == 3 ? power[c] : (double(power[0]) + power[1] + power[2]) / 3.0;
+      *values = static_cast<float>(watts / packed.unit);
+      entered[c] += WholeUnits(*values++);
+    }
+  }
+  for (int c = 0; c < 3; ++c)
+  {
+    packed.entered[c] = static_cast<double>(entered[c]) * packed.unit;
+  }
+  return packed;
+}
+}

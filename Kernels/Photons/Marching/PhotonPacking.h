@@ -1,0 +1,51 @@
+#pragma once
+
+#include "Photons/Photons.h"
+
+#include "Medium/Grid.h"
+
+namespace tyndall
+{
+/// Photons as the kernels want them: on the volume, in voxels, near ones next to each other.
+struct PackedPhotons
+{
+  int channels = 1;                 ///< 1 where all photons have the same colour and one is enough, else 3
+  bool grey = true;                 ///< all photons are
+  Rgb colour = { 1.0, 1.0, 1.0 };   ///< that the one channel stands for; white: (1, 1, 1)
+  double unit = 1.0;                ///< W of one unit of power, a power of two
+  std::vector<float> values;        ///< position (voxels), unit direction, `channels` of power (units) of each photon
+  std::vector<std::size_t> numbers; ///< which of the photons given it is
+  std::vector<int> batchBegin;      ///< place of the first photon of each batch, and beyond the last one
+  Rgb entered = {};                 ///< W, by channel
+  std::size_t missed = 0;           ///< photons that do not meet the volume
+
+  std::size_t Count() const { return this->numbers.size(); }
+  int FloatsEach() const { return 6 + this->channels; }
+  int Batches() const { return static_cast<int>(this->batchBegin.size()) - 1; }
+  std::size_t LargestBatch() const; ///< photons
+};
+
+constexpr int BatchesAtMost = 64;
+
+/// The largest batch that photons are of, and one.
+int BatchesOf(const std::vector<Photon>& photons);
+
+/// @param coloured       keep three channels even where one would do
+/// @param creditsAtMost  of one photon: power is scaled so that no sum of that many credits can exceed 2^62
+/// @param batches        keep each batch together; else all are of one
+/// @throws InvalidInput where a photon's position, direction, power or weight is not finite, its direction zero, its power or
+///   weight negative, or its batch (if asked for) not 0 to 63
+PackedPhotons Pack(
+  const std::vector<Photon>& photons, const Grid& grid, bool coloured, double creditsAtMost, bool batches = false);
+
+/// Whole units of power: their sums do not depend on the order of their terms.
+inline std::int64_t WholeUnits(float power)
+{
+  return static_cast<std::int64_t>(static_cast<double>(power) + 0.5);
+}
+
+/// Where a line that comes from outside enters the grid, in voxels; `position` itself where that is inside.
+/// @param position, direction  in voxels; position is moved
+/// @return false where it does not meet the grid
+bool MoveOnto(const Grid& grid, std::array<double, 3>& position, const std::array<double, 3>& direction);
+}

@@ -1,0 +1,10 @@
+#pragma once
+
+#include "Photons/Marching/MarchMedium.h"
+
+namespace tyndall
+{
+/// PhotonMarcher::Paths.
+std::vector<PhotonPath> TracePaths(
+  const MarchMedium& medium, const std::vector<Photon>& photons, const std::vector<std::size_t>& chosen);
+}

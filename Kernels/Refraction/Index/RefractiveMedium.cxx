@@ -1,0 +1,467 @@
+#include "Refraction/Index/RefractiveMedium.h"
+
+#include "Device/HostMemory.h"
+#include "Device/Sizes.h"
+#include "Medium/Medium.h"
+#include "Refraction/Index/IndexField.h"
+#include "Refraction/Voxelization/MeshChecks.h"
+#include "TyndallKernelSources.h"
+
+#include <algorithm>
+#include <chrono>
+#include <cmath>
+#include <cstdio>
+
+namespace tyndall
+{
+namespace
+{
+constexpr std::size_t WorkGroup = 256;
+constexpr double ShortestEdge = 1e-18; ///< of a voxel, length
+constexpr double LeastIndex = 1e-6;    ///< as CheckIndex wants it
+constexpr double LargestIndex = 1e6;
+constexpr double LargestExtinction = 1e37; ///< as Check of a medium wants it
+
+std::string Scientific(double value)
+{
+  char text[32];
+  std::snprintf(text, sizeof(text), "%.6g", value);
+  return text;
+}
+
+void Demand(bool holds, const std::string& what)
+{
+  if (!holds)
+  {
+    throw InvalidInput(what);
+  }
+}
+}
+
+void Check(const Material& material, const std::string& name)
+{
+  Demand(material.n >= LeastIndex && material.n <= LargestIndex,
+    name + " has the refractive index " + Scientific(material.n) +
+      "; it must be finite and above 0, from 1e-6 to 1e6.");
+  for (int c = 0; c < 3; ++c)
+  {
+    const double least = std::min(material.sigma_a[c], material.sigma_s[c]);
+    const double sum = material.sigma_a[c] + material.sigma_s[c];
+    Demand(least >= 0.0 && sum <= LargestExtinction,
+      name +
+        " has an absorption or scattering coefficient that is negative or not finite, or both add up to more than "
+        "1e37: " +
+        Scientific(material.sigma_a[c]) + " and " + Scientific(material.sigma_s[c]) + ".");
+  }
+  Demand(std::abs(material.g) < 1.0,
+    name + " has the mean cosine " + std::to_string(material.g) + "; it must lie between -1 and 1.");
+}
+
+namespace
+{
+void CheckPerturbation(const Perturbation& perturbation, const std::vector<Solid>& solids)
+{
+  Demand(perturbation.size > 0.0 && std::isfinite(perturbation.size),
+    "The noise's size is " + std::to_string(perturbation.size) + "; it must be a positive length.");
+  Demand(perturbation.scattering >= 0.0 && perturbation.scattering <= 1.0,
+    "The noise of scattering is " + std::to_string(perturbation.scattering) + "; it must lie in [0, 1].");
+  for (const Solid& solid : solids)
+  {
+    Demand(perturbation.index >= 0.0 && perturbation.index < solid.material.n,
+      "The noise of the index is " + std::to_string(perturbation.index) +
+        "; it must not be negative, and be less than " + std::to_string(solid.material.n) +
+        ", the refractive index of " + solid.name + ".");
+  }
+}
+
+/// Quantities of an area or a volume of voxels are in single precision: 1/edge^2 has to be.
+void CheckSpacing(const Grid& grid)
+{
+  for (int axis = 0; axis < 3; ++axis)
+  {
+    const double edge = grid.spacing[axis];
+    Demand(edge >= ShortestEdge && edge <= 1.0 / ShortestEdge,
+      "The voxels' edge along " + std::string(1, "xyz"[axis]) + " is " + Scientific(edge) +
+        "; it must be from 1e-18 to 1e18, or fluence (W/length^2) is beyond single precision. Scale the mesh, "
+        "and the box with it: use another unit of length.");
+  }
+}
+
+void CheckSettings(const RefractiveMediumSettings& settings, const std::vector<Solid>& solids)
+{
+  Medium box;
+  box.grid = settings.grid;
+  Check(box);
+  CheckSpacing(settings.grid);
+  Check(settings.voxelization);
+  CheckFilterSize(settings.filterSize);
+  Demand(!solids.empty(), "There is no mesh.");
+  Check(settings.outside, "The outside");
+  for (const Solid& solid : solids)
+  {
+    Check(solid.material, solid.name);
+  }
+  CheckPerturbation(settings.perturbation, solids);
+}
+
+/// @param indexVaries  whether there is an index to smooth and take the gradient of
+void CheckMemory(const Device& device, const RefractiveMediumSettings& settings, int components, bool indexVaries)
+{
+  const std::array<int, 3>& size = settings.grid.size;
+  const double voxels = static_cast<double>(size[0]) * size[1] * size[2];
+  const int ofResult = static_cast<int>(sizeof(float)) * (1 + 2 * components + (indexVaries ? 4 : 0));
+  const int onDevice = static_cast<int>(sizeof(float)) * (indexVaries && settings.filterSize > 1 ? 2 : 1);
+  const std::string box = "A box of " + std::to_string(size[0]) + " x " + std::to_string(size[1]) + " x " +
+    std::to_string(size[2]) + " voxels (SampleDimensions)";
+  RequireHostMemory((ofResult + (device.IsCpu() ? onDevice : 0)) * voxels,
+    box + ", " + std::to_string(ofResult) + " bytes each and " + std::to_string(onDevice) + " on the device,",
+    "Ask for fewer voxels.");
+  const double left = static_cast<double>(device.MemoryLimit() - device.BytesInUse());
+  const double most = std::min(left, static_cast<double>(device.AllocationLimit()) * onDevice / sizeof(float));
+  if (onDevice * voxels > most)
+  {
+    char bytes[64];
+    std::snprintf(bytes, sizeof(bytes), "%.0f bytes on ", onDevice * voxels);
+    throw DeviceError(box + " needs " + bytes + device.Name() + ", which can give " +
+      std::to_string(static_cast<std::size_t>(most)) + ". Ask for fewer voxels, or use a device with more memory.");
+  }
+}
+
+bool IsGrey(const Material& material)
+{
+  const auto grey = [](const Rgb& rgb) { return rgb[0] == rgb[1] && rgb[1] == rgb[2]; };
+  return grey(material.sigma_a) && grey(material.sigma_s);
+}
+
+double MeanOf(const Rgb& rgb)
+{
+  return (rgb[0] + rgb[1] + rgb[2]) / 3.0;
+}
+
+/// Give materials one g. @return whether they had several
+bool ShareMeanCosine(std::vector<Material*> materials, double& shared)
+{
+  materials.erase(std::remove_if(materials.begin(), materials.end(),
+                    [](const Material* material) { return MeanOf(material->sigma_s) == 0.0; }),
+    materials.end());
+  if (materials.empty())
+  {
+    return false;
+  }
+  shared = materials[0]->g;
+  const bool same =
+    std::all_of(materials.begin(), materials.end(), [&](const Material* material) { return material->g == shared; });
+  if (same)
+  {
+    return false;
+  }
+  double sum = 0.0;
+  double weight = 0.0;
+  for (const Material* material : materials)
+  {
+    sum += material->g * MeanOf(material->sigma_s);
+    weight += MeanOf(material->sigma_s);
+  }
+  shared = sum / weight;
+  for (Material* material : materials)
+  {
+    for (double& coefficient : material->sigma_s)
+    {
+      coefficient *= (1.0 - material->g) / (1.0 - shared);
+    }
+  }
+  return true;
+}
+
+cl_float4 Float4(const std::array<double, 3>& values)
+{
+  return { { static_cast<float>(values[0]), static_cast<float>(values[1]), static_cast<float>(values[2]), 0.0f } };
+}
+
+/// Mixes the materials in each voxel, slab by slab.
+class Mixer
+{
+public:
+  /// @param index  filled with n, not smoothed
+  Mixer(Device& device, const std::vector<Solid>& solids, const Material& outside,
+    const RefractiveMediumSettings& settings, Buffer<float>& index, RefractiveMedium& result)
+    : TheDevice(device)
+    , Solids(solids)
+    , Outside(outside)
+    , Settings(settings)
+    , Index(index)
+    , Result(result)
+  {
+    const bool noise = settings.perturbation.index > 0.0 || settings.perturbation.scattering > 0.0;
+    const std::string options = "-DCHANNELS=" + std::to_string(result.components) + " -DNOISE=" + std::to_string(noise);
+    const auto sources = { kernel_source::GradientNoise, kernel_source::Materials };
+    this->AddObject = device.Kernel("add_object", sources, options);
+    this->AddOutside = device.Kernel("add_outside", sources, options);
+    const std::size_t voxels = settings.grid.VoxelCount();
+    result.occupancy.resize(voxels);
+    result.sigma_a.resize(voxels * result.components);
+    result.sigma_s.resize(voxels * result.components);
+    index.Fill(0.0f);
+  }
+
+  /// What CountSamplesInside hands out.
+  void Take(const SamplesInside& inside)
+  {
+    if (inside.mesh + 1 == this->Solids.size())
+    {
+      this->Begin(inside.VoxelCount());
+    }
+    this->Add(inside);
+    if (inside.mesh == 0)
+    {
+      this->End(inside);
+    }
+  }
+
+private:
+  void Begin(std::size_t voxels)
+  {
+    if (this->Covered.Size() < voxels)
+    {
+      const std::size_t values = voxels * this->Result.components;
+      this->Covered = Buffer<float>(this->TheDevice, voxels, "occupancy");
+      this->SigmaA = Buffer<float>(this->TheDevice, values, "sigma_a");
+      this->SigmaS = Buffer<float>(this->TheDevice, values, "sigma_s");
+    }
+    this->Covered.Fill(0.0f);
+    this->SigmaA.Fill(0.0f);
+    this->SigmaS.Fill(0.0f);
+  }
+
+  void Add(const SamplesInside& inside)
+  {
+    const Perturbation& noise = this->Settings.perturbation;
+    const Grid& grid = this->Settings.grid;
+    const Material& material = this->Solids[inside.mesh].material;
+    With(this->AddObject, cl_ulong(inside.first), cl_ulong(inside.length), cl_ulong(inside.stride), inside.counts,
+      this->SamplesOfVoxel(), static_cast<float>(material.n), Float4(material.sigma_a), Float4(material.sigma_s),
+      static_cast<float>(noise.index), static_cast<float>(noise.scattering), noise.seed,
+      static_cast<float>(1.0 / noise.size), Float4(grid.origin), Float4(grid.spacing), grid.size[0], grid.size[1],
+      this->Covered, this->Index, this->SigmaA, this->SigmaS);
+    this->Launch(this->AddObject, inside);
+  }
+
+  void End(const SamplesInside& inside)
+  {
+    With(this->AddOutside, cl_ulong(inside.first), cl_ulong(inside.length), cl_ulong(inside.stride),
+      this->SamplesOfVoxel(), static_cast<float>(this->Outside.n), Float4(this->Outside.sigma_a),
+      Float4(this->Outside.sigma_s), this->Covered, this->Index, this->SigmaA, this->SigmaS);
+    this->Launch(this->AddOutside, inside);
+    this->Copy(this->Covered, inside, 1, this->Result.occupancy);
+    this->Copy(this->SigmaA, inside, this->Result.components, this->Result.sigma_a);
+    this->Copy(this->SigmaS, inside, this->Result.components, this->Result.sigma_s);
+  }
+
+  float SamplesOfVoxel() const
+  {
+    const int edge = this->Settings.voxelization.samples;
+    return static_cast<float>(edge * edge * edge * UnitsOfSample(edge));
+  }
+
+  void Launch(cl::Kernel& kernel, const SamplesInside& inside)
+  {
+    this->TheDevice.Queue().enqueueNDRangeKernel(
+      kernel, cl::NullRange, cl::NDRange(RoundUp(inside.length, WorkGroup), inside.runs), cl::NDRange(WorkGroup, 1));
+  }
+
+  void Copy(const Buffer<float>& from, const SamplesInside& inside, int components, std::vector<float>& to)
+  {
+    const std::size_t bytes = inside.length * components * sizeof(float);
+    for (std::size_t run = 0; run < inside.runs; ++run)
+    {
+      this->TheDevice.Queue().enqueueReadBuffer(
+        from.Handle(), CL_TRUE, run * bytes, bytes, to.data() + (inside.first + run * inside.stride) * components);
+    }
+  }
+
+  Device& TheDevice;
+  const std::vector<Solid>& Solids;
+  const Material& Outside;
+  const RefractiveMediumSettings& Settings;
+  Buffer<float>& Index;
+  RefractiveMedium& Result;
+  Buffer<float> Covered, SigmaA, SigmaS; ///< of a slab
+  cl::Kernel AddObject, AddOutside;
+};
+
+/// Whether nothing inside differs in n from the outside.
+bool IndexIsEven(const std::vector<Solid>& solids, const RefractiveMediumSettings& settings)
+{
+  return settings.perturbation.index == 0.0 && std::all_of(solids.begin(), solids.end(), [&](const Solid& solid) {
+    return solid.material.n == settings.outside.n;
+  });
+}
+
+/// Reports what is part of a longer work.
+Monitor PartOf(const Monitor& monitor, double begin, double end)
+{
+  return [&monitor, begin, end](double done) { return !monitor || monitor(begin + done * (end - begin)); };
+}
+
+std::vector<MeshTopology> CheckMeshes(
+  const std::vector<Solid>& solids, const RefractiveMediumSettings& settings, const Monitor& monitor)
+{
+  std::vector<MeshTopology> topologies;
+  for (const Solid& solid : solids)
+  {
+    Report(monitor, static_cast<double>(topologies.size()) / solids.size());
+    topologies.push_back(CheckClosed(solid.mesh, solid.name, settings.grid, settings.voxelization.samples));
+  }
+  return topologies;
+}
+
+/// Voxelises the meshes into everything but what comes of the smoothed index.
+void FillVoxels(Device& device, const std::vector<Solid>& solids, const std::vector<MeshTopology>& topologies,
+  const RefractiveMediumSettings& settings, Mixer& mixer, const Monitor& monitor, RefractiveMedium& result)
+{
+  std::vector<OrientedMesh> meshes;
+  for (std::size_t s = 0; s < solids.size(); ++s)
+  {
+    meshes.push_back({ &solids[s].mesh, Orientation(topologies[s]) });
+  }
+  const std::vector<WindingNumbers> windings = CountSamplesInside(
+    device, settings.grid, meshes, settings.voxelization, [&](const SamplesInside& inside) { mixer.Take(inside); },
+    monitor);
+  for (std::size_t s = 0; s < solids.size(); ++s)
+  {
+    const std::vector<std::string> odd =
+      Oddities(topologies[s], windings[s], solids[s].name, settings.grid, settings.voxelization.samples);
+    result.warnings.insert(result.warnings.end(), odd.begin(), odd.end());
+  }
+}
+
+void CheckPointsOf(const Solid& solid)
+{
+  try
+  {
+    CheckPoints(solid.mesh);
+  }
+  catch (const InvalidInput& error)
+  {
+    throw InvalidInput(solid.name + " cannot be used. " + error.what());
+  }
+}
+
+/// What there is of meshes that have no extent, for a message.
+std::string WithoutExtent(const std::vector<Solid>& solids)
+{
+  std::string text;
+  for (const Solid& solid : solids)
+  {
+    const std::size_t triangles = solid.mesh.triangles.size();
+    const std::size_t edges = triangles > 0 ? Examine(solid.mesh).boundaryEdges : 0;
+    text += " " + solid.name + " has " + std::to_string(triangles) + " triangles and " + std::to_string(edges) +
+      " boundary edges.";
+  }
+  return text;
+}
+
+void AddIndex(Device& device, Buffer<float>& index, const RefractiveMediumSettings& settings, const Monitor& monitor,
+  RefractiveMedium& result)
+{
+  SmoothIndex(device, settings.grid, settings.filterSize, index);
+  result.ior = index.Read();
+  result.iorGradient = IndexGradient(device, settings.grid, index, monitor);
+}
+}
+
+Grid GridAround(const std::vector<Solid>& solids, const std::array<int, 3>& size, double margin, int filterSize)
+{
+  for (const Solid& solid : solids)
+  {
+    CheckPointsOf(solid);
+  }
+  std::array<double, 3> low, high;
+  low.fill(HUGE_VAL);
+  high.fill(-HUGE_VAL);
+  double longest = -HUGE_VAL;
+  for (int axis = 0; axis < 3; ++axis)
+  {
+    for (const Solid& solid : solids)
+    {
+      for (const std::array<double, 3>& point : solid.mesh.points)
+      {
+        low[axis] = std::min(low[axis], point[axis]);
+        high[axis] = std::max(high[axis], point[axis]);
+      }
+    }
+    longest = std::max(longest, high[axis] - low[axis]);
+    Demand(size[axis] >= 1,
+      "The grid is to have " + std::to_string(size[axis]) + " voxels along " + std::string(1, "xyz"[axis]) +
+        "; it needs at least one.");
+  }
+  Demand(longest > 0.0, "There is no mesh, or none with an extent, to put a box around." + WithoutExtent(solids));
+  Demand(std::isfinite(longest), "The meshes reach further than a number can say. Scale them.");
+  Demand(margin >= 0.0 && std::isfinite(margin),
+    "The margin is " + std::to_string(margin) + "; it must be finite and not negative.");
+
+  const int reach = filterSize / 2 + 1;
+  double edge = 0.0;
+  for (int axis = 0; axis < 3; ++axis)
+  {
+    const double length = high[axis] - low[axis];
+    const int free = size[axis] - 2 * reach;
+    edge = std::max({ edge, (length + 2.0 * margin * longest) / size[axis], length / (free > 0 ? free : size[axis]) });
+  }
+  Grid grid;
+  grid.size = size;
+  grid.spacing.fill(edge);
+  for (int axis = 0; axis < 3; ++axis)
+  {
+    grid.origin[axis] = 0.5 * (low[axis] + high[axis]) - 0.5 * edge * size[axis];
+  }
+  return grid;
+}
+
+RefractiveMedium Voxelize(
+  Device& device, std::vector<Solid> solids, const RefractiveMediumSettings& settings, const Monitor& monitor)
+{
+  const auto start = std::chrono::steady_clock::now();
+  CheckSettings(settings, solids);
+  RefractiveMedium result;
+  result.device = device.Name();
+  Material outside = settings.outside;
+  std::vector<Material*> materials = { &outside };
+  for (Solid& solid : solids)
+  {
+    materials.push_back(&solid.material);
+  }
+  if (ShareMeanCosine(materials, result.g))
+  {
+    result.leftOut.push_back("a g of each material: there is one g, and sigma_s (1 - g) is that of the material");
+  }
+  const bool grey = std::all_of(materials.begin(), materials.end(), [](const Material* m) { return IsGrey(*m); });
+  result.components = grey ? 1 : 3;
+  const bool even = IndexIsEven(solids, settings);
+  CheckMemory(device, settings, result.components, !even);
+
+  const std::vector<MeshTopology> topologies = CheckMeshes(solids, settings, PartOf(monitor, 0.0, 0.2));
+  Buffer<float> index(device, settings.grid.VoxelCount(), "ior");
+  Mixer mixer(device, solids, outside, settings, index, result);
+  FillVoxels(device, solids, topologies, settings, mixer, PartOf(monitor, 0.2, 0.8), result);
+
+  const bool empty =
+    std::all_of(result.occupancy.begin(), result.occupancy.end(), [](float part) { return part == 0.0f; });
+  if (empty)
+  {
+    result.warnings.push_back("Nothing of the box is inside a mesh, or what is falls between its samples. Compare the "
+                              "box with the meshes' bounds.");
+  }
+  if (empty || even)
+  {
+    result.leftOut.push_back(
+      "smoothing of n, ior_gradient: the refractive index is " + std::to_string(outside.n) + " everywhere");
+  }
+  else
+  {
+    AddIndex(device, index, settings, PartOf(monitor, 0.8, 1.0), result);
+  }
+  result.seconds = std::chrono::duration<double>(std::chrono::steady_clock::now() - start).count();
+  return result;
+}
+}

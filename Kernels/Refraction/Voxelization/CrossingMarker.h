@@ -1,0 +1,40 @@
+#pragma once
+
+#include "Refraction/Voxelization/SampleLattice.h"
+
+#include "Device/Buffer.h"
+
+#include <string>
+
+namespace tyndall
+{
+/// Options of Voxelization.cl.
+std::string CrossingOptions(int axis, int samplesOfVoxel, bool fromAbove, bool winding);
+
+/// Puts the crossings of meshes with some rows of columns into a buffer (mark_crossings of Voxelization.cl).
+class CrossingMarker
+{
+public:
+  /// @param words  of 32 bits in a column
+  CrossingMarker(Device& device, const SampleColumns& columns, int words, const std::string& options);
+
+  /// Queues it.
+  /// @param marks  cleared before; `words` for each column of the rows
+  /// @param sums   cleared before; one for each column of the rows; empty where windings are asked for
+  void Mark(const LatticeMesh& mesh, int firstRow, int endRow, Buffer<cl_uint>& marks, Buffer<cl_uint>& sums);
+
+private:
+  Device& TheDevice;
+  SampleColumns Columns;
+  int Words;
+  cl::Kernel Kernel;
+  Buffer<cl_uint4> Tiles;
+};
+
+/// How the kernels of Voxelization.cl run: a work-item a tile or a column.
+inline cl::NDRange CrossingGroup()
+{
+  return cl::NDRange(64);
+}
+cl::NDRange CrossingRange(std::size_t items);
+}

@@ -1,0 +1,226 @@
+#include "Refraction/Voxelization/Voxelization.h"
+
+#include "Device/Sizes.h"
+#include "Refraction/Voxelization/CrossingMarker.h"
+#include "Refraction/Voxelization/SampleLattice.h"
+#include "Refraction/Voxelization/SurfaceFraction.h"
+#include "TyndallKernelSources.h"
+
+#include <algorithm>
+#include <array>
+#include <optional>
+#include <string>
+
+namespace tyndall
+{
+namespace
+{
+constexpr int LargestSampleCount = 16;
+constexpr std::size_t SlabVoxels = std::size_t(4) << 20; ///< at most, where a row has fewer
+
+/// Words of 32 bits in a column.
+int WordsOf(const Grid& grid, int axis, int voxelsOfWord)
+{
+  return (grid.size[axis] + voxelsOfWord - 1) / voxelsOfWord;
+}
+
+std::vector<const TriangleMesh*> TrianglesOf(const std::vector<OrientedMesh>& meshes)
+{
+  std::vector<const TriangleMesh*> triangles;
+  for (const OrientedMesh& mesh : meshes)
+  {
+    triangles.push_back(mesh.mesh);
+  }
+  return triangles;
+}
+
+std::size_t VoxelsOfRow(const SampleColumns& columns, const Grid& grid)
+{
+  return grid.VoxelCount() / grid.size[columns.up];
+}
+
+/// Rows of voxels whose columns of samples take about `bytes`.
+int RowsOfSlab(const SampleColumns& columns, const Grid& grid, int words, std::size_t bytes)
+{
+  const std::size_t row = static_cast<std::size_t>(columns.count[0]) * columns.samplesOfVoxel * words * sizeof(cl_uint);
+  const std::size_t rows = std::min(bytes / row, SlabVoxels / VoxelsOfRow(columns, grid));
+  return static_cast<int>(std::clamp<std::size_t>(rows, 1, static_cast<std::size_t>(grid.size[columns.up])));
+}
+
+/// How many samples of each voxel are in each mesh, slab by slab.
+class Voxelization
+{
+public:
+  Voxelization(
+    Device& device, const Grid& grid, const std::vector<OrientedMesh>& meshes, const VoxelizationSettings& settings)
+    : TheDevice(device)
+    , TheGrid(grid)
+    , Samples(settings.samples)
+    , Lattice(grid, settings.samples, TrianglesOf(meshes))
+    , Columns(grid, settings.columnAxis, settings.samples, this->Lattice.Pitch())
+    , Words(WordsOf(grid, settings.columnAxis, 32 / settings.samples))
+    , Rows(RowsOfSlab(this->Columns, grid, this->Words, settings.slabBytes))
+    , Options(CrossingOptions(settings.columnAxis, settings.samples, settings.fromAbove, false))
+    , Marker(device, this->Columns, this->Words, this->Options)
+    , Fill(device.Kernel("fill_columns", { kernel_source::Voxelization }, this->Options))
+    , Count(device.Kernel("count_samples", { kernel_source::Voxelization }, this->Options))
+    , Oriented(meshes)
+    , Odd(device, meshes.size() * grid.size[this->Columns.up], "rows of voxels with samples that a mesh encloses twice")
+  {
+    for (const OrientedMesh& mesh : meshes)
+    {
+      this->Meshes.emplace_back(device, this->Lattice, *mesh.mesh);
+    }
+    const std::size_t voxels = this->Rows * VoxelsOfRow(this->Columns, grid);
+    const auto columns =
+      static_cast<std::size_t>(this->Columns.count[0]) * (this->Rows * this->Samples + 2 * RowsAround(settings));
+    this->Bits = Buffer<cl_uint>(device, columns * this->Words, "a slab of the fine grid");
+    this->Sums = Buffer<cl_uint>(device, columns, "sums of crossings");
+    // Without a second mesh nothing is ever claimed, and the kernel is handed an empty buffer.
+    this->Claimed = Buffer<cl_uint>(device, meshes.size() > 1 ? columns * this->Words : 0, "samples of later meshes");
+    this->Counts = Buffer<cl_ushort>(device, voxels, "a slab of the voxels' samples inside");
+    if (settings.fractions)
+    {
+      this->Fractions.emplace(device, grid, this->Columns, this->Words, voxels, meshes.size() > 1);
+    }
+    this->Odd.Fill(0);
+  }
+
+  void Run(const std::function<void(const SamplesInside&)>& take, const Monitor& monitor)
+  {
+    const int rows = this->TheGrid.size[this->Columns.up];
+    for (int first = 0; first < rows; first += this->Rows)
+    {
+      Report(monitor, static_cast<double>(first) / rows);
+      this->RunSlab(first, std::min(first + this->Rows, rows), take);
+      this->TheDevice.Finish();
+    }
+  }
+
+  std::vector<WindingNumbers> Windings(const Monitor& monitor) const
+  {
+    const std::vector<cl_int> odd = this->Odd.Read();
+    std::vector<WindingNumbers> windings;
+    auto begin = odd.begin();
+    for (std::size_t m = 0; m < this->Meshes.size(); ++m)
+    {
+      const std::vector<cl_int> rows(begin, begin + this->TheGrid.size[this->Columns.up]);
+      begin += this->TheGrid.size[this->Columns.up];
+      windings.push_back(FindWindings(this->TheDevice, this->TheGrid, this->Meshes[m], this->Columns, rows,
+        this->Oriented[m].orientation < 0, monitor));
+    }
+    return windings;
+  }
+
+private:
+  /// Of samples, on either side of a slab.
+  static int RowsAround(const VoxelizationSettings& settings) { return settings.fractions ? 1 : 0; }
+
+  SampleSlab RowsOf(int first, int end) const
+  {
+    const int around = this->Fractions ? 1 : 0;
+    return { first, end, std::max(first * this->Samples - around, 0),
+      std::min(end * this->Samples + around, this->Columns.count[1]) };
+  }
+
+  void RunSlab(int first, int end, const std::function<void(const SamplesInside&)>& take)
+  {
+    if (this->Claimed.Size() > 0)
+    {
+      this->Claimed.Fill(0);
+    }
+    if (this->Fractions)
+    {
+      this->Fractions->Begin();
+    }
+    const SampleSlab slab = this->RowsOf(first, end);
+    for (std::size_t m = this->Meshes.size(); m-- > 0;)
+    {
+      this->Marker.Mark(this->Meshes[m], slab.firstRow, slab.endRow, this->Bits, this->Sums);
+      const int columns = this->Columns.count[0] * (slab.endRow - slab.firstRow);
+      const int firstOdd = static_cast<int>(m) * this->TheGrid.size[this->Columns.up];
+      With(this->Fill, columns, this->Columns.count[0], this->Words, this->Bits, this->Sums,
+        this->Oriented[m].orientation, this->Odd, firstOdd, slab.firstRow);
+      this->TheDevice.Queue().enqueueNDRangeKernel(
+        this->Fill, cl::NullRange, CrossingRange(static_cast<std::size_t>(columns)), CrossingGroup());
+      if (this->Fractions)
+      {
+        this->Fractions->Measure(this->Meshes[m], this->Oriented[m].orientation, slab, this->Bits, this->Claimed);
+      }
+      this->CountSlab(slab);
+      if (this->Fractions)
+      {
+        this->Fractions->Refine(slab, this->Bits, this->Claimed, this->Counts);
+      }
+      take(this->SlabOf(m, first, end));
+    }
+  }
+
+  void CountSlab(const SampleSlab& slab)
+  {
+    const int rows = slab.endVoxel - slab.firstVoxel;
+    const int skipped = slab.firstVoxel * this->Samples - slab.firstRow;
+    const int units = this->Fractions ? 1 : UnitsOfSample(this->Samples);
+    const std::array<int, 3>& size = this->TheGrid.size;
+    const std::array<int, 3> stride = { 1, size[0], size[0] * (this->Columns.up == 1 ? rows : size[1]) };
+    const int columns = size[this->Columns.across];
+    With(this->Count, size[this->Columns.axis], columns, rows, this->Words, skipped, this->Bits, this->Claimed,
+      static_cast<cl_int>(this->Claimed.Size() > 0), this->Counts, units, stride[this->Columns.axis],
+      stride[this->Columns.across], stride[this->Columns.up]);
+    const std::size_t group = CrossingGroup().get()[0];
+    this->TheDevice.Queue().enqueueNDRangeKernel(this->Count, cl::NullRange,
+      cl::NDRange(RoundUp(static_cast<std::size_t>(columns), group), static_cast<std::size_t>(rows)),
+      cl::NDRange(group, 1));
+  }
+
+  SamplesInside SlabOf(std::size_t mesh, int first, int end) const
+  {
+    const std::size_t row = this->TheGrid.size[0];
+    const std::size_t layer = row * this->TheGrid.size[1];
+    const std::size_t layers = this->TheGrid.size[2];
+    return this->Columns.up == 2 ? SamplesInside{ mesh, this->Counts, first * layer, (end - first) * layer, 0, 1 }
+                                 : SamplesInside{ mesh, this->Counts, first * row, (end - first) * row, layer, layers };
+  }
+
+  Device& TheDevice;
+  const Grid& TheGrid;
+  int Samples;
+  SampleLattice Lattice;
+  SampleColumns Columns;
+  int Words;
+  int Rows; ///< of voxels in a slab
+  std::string Options;
+  CrossingMarker Marker;
+  cl::Kernel Fill, Count;
+  std::vector<OrientedMesh> Oriented;
+  std::vector<LatticeMesh> Meshes;
+  Buffer<cl_uint> Bits, Sums, Claimed;
+  Buffer<cl_ushort> Counts;
+  std::optional<SurfaceFraction> Fractions; ///< where the settings ask for them
+  Buffer<cl_int> Odd;                       ///< not 0 for each mesh's rows of voxels that FindWindings is to look at
+};
+}
+
+void Check(const VoxelizationSettings& settings)
+{
+  if (settings.samples < 1 || settings.samples > LargestSampleCount)
+  {
+    throw InvalidInput("The supersampling factor is " + std::to_string(settings.samples) + "; it must be 1 to " +
+      std::to_string(LargestSampleCount) + ".");
+  }
+  if (settings.columnAxis < 0 || settings.columnAxis > 2)
+  {
+    throw InvalidInput("Columns run along axis 0, 1 or 2, not " + std::to_string(settings.columnAxis) + ".");
+  }
+}
+
+std::vector<WindingNumbers> CountSamplesInside(Device& device, const Grid& grid,
+  const std::vector<OrientedMesh>& meshes, const VoxelizationSettings& settings,
+  const std::function<void(const SamplesInside&)>& take, const Monitor& monitor)
+{
+  Check(settings);
+  Voxelization voxelization(device, grid, meshes, settings);
+  voxelization.Run(take, monitor);
+  return voxelization.Windings(monitor ? [&monitor](double) { return monitor(1.0); } : Monitor());
+}
+}

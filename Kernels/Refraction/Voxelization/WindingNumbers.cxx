@@ -1,0 +1,91 @@
+#include "Refraction/Voxelization/WindingNumbers.h"
+
+#include "Refraction/Voxelization/CrossingMarker.h"
+#include "TyndallKernelSources.h"
+
+#include <algorithm>
+
+namespace tyndall
+{
+namespace
+{
+constexpr int SamplesOfWord = 4; ///< a byte each
+constexpr std::size_t SlabBytes = std::size_t(16) << 20;
+
+/// Adds up what find_windings of Voxelization.cl says of columns.
+class Sum
+{
+public:
+  Sum(const Grid& grid, const SampleColumns& columns)
+    : TheGrid(grid)
+    , Columns(columns)
+  {
+  }
+
+  void Add(const cl_int4& ofColumn, int across, int up)
+  {
+    this->Windings.lowest = std::min(this->Windings.lowest, ofColumn.s[0]);
+    this->Windings.highest = std::max(this->Windings.highest, ofColumn.s[1]);
+    if (this->Windings.oddSamples == 0 && ofColumn.s[2] > 0)
+    {
+      std::array<int, 3> sample;
+      sample[this->Columns.axis] = ofColumn.s[3];
+      sample[this->Columns.across] = across;
+      sample[this->Columns.up] = up;
+      for (int axis = 0; axis < 3; ++axis)
+      {
+        const double pitch = this->TheGrid.spacing[axis] / this->Columns.samplesOfVoxel;
+        this->Windings.firstOddSample[axis] = this->TheGrid.origin[axis] + (sample[axis] + 0.5) * pitch;
+      }
+    }
+    this->Windings.oddSamples += static_cast<std::size_t>(ofColumn.s[2]);
+  }
+
+  WindingNumbers Windings;
+
+private:
+  const Grid& TheGrid;
+  const SampleColumns& Columns;
+};
+}
+
+WindingNumbers FindWindings(Device& device, const Grid& grid, const LatticeMesh& mesh, const SampleColumns& columns,
+  const std::vector<cl_int>& rows, bool inverted, const Monitor& monitor)
+{
+  const int words = (columns.samples + SamplesOfWord - 1) / SamplesOfWord;
+  const auto across = static_cast<std::size_t>(columns.count[0]);
+  const int atOnce = static_cast<int>(std::clamp<std::size_t>(
+    SlabBytes / (across * words * sizeof(cl_uint)), 1, static_cast<std::size_t>(columns.samplesOfVoxel)));
+  const std::string options = CrossingOptions(columns.axis, columns.samplesOfVoxel, false, true);
+  CrossingMarker marker(device, columns, words, options);
+  cl::Kernel find = device.Kernel("find_windings", { kernel_source::Voxelization }, options);
+  Buffer<cl_uint> marks(device, across * atOnce * words, "crossings of the mesh");
+  Buffer<cl_uint> noSums(device, 0, "no sums");
+  Buffer<cl_int4> found(device, across * atOnce, "winding numbers");
+  std::vector<cl_int4> ofColumns(across * atOnce);
+
+  Sum sum(grid, columns);
+  for (int first = 0; first < columns.count[1]; first += atOnce)
+  {
+    const int end = std::min(first + atOnce, columns.count[1]);
+    const auto from = rows.begin() + first / columns.samplesOfVoxel;
+    const auto to = rows.begin() + (end - 1) / columns.samplesOfVoxel + 1;
+    if (std::all_of(from, to, [](cl_int asked) { return asked == 0; }))
+    {
+      continue;
+    }
+    Report(monitor, static_cast<double>(first) / columns.count[1]);
+    const int count = columns.count[0] * (end - first);
+    marker.Mark(mesh, first, end, marks, noSums);
+    With(find, count, words, columns.samples, inverted ? -1 : 1, marks, found);
+    device.Queue().enqueueNDRangeKernel(
+      find, cl::NullRange, CrossingRange(static_cast<std::size_t>(count)), CrossingGroup());
+    found.Read(ofColumns.data());
+    for (int c = 0; c < count; ++c)
+    {
+      sum.Add(ofColumns[static_cast<std::size_t>(c)], c % columns.count[0], first + c / columns.count[0]);
+    }
+  }
+  return sum.Windings;
+}
+}
