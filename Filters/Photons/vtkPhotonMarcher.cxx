@@ -37,7 +37,7 @@ tyndall::MarchSettings SettingsOf(vtkPhotonMarcher* filter, const std::vector<ty
   {
     throw tyndall::InvalidInput(
       "The published scheme packs all that it keeps of a voxel into 64 bits, and does not count "
-      "photons. Choose the sound scheme (Scheme 1), or switch PhotonCounts off.");
+      "photons. Choose the conservative scheme (Scheme 1), or switch PhotonCounts off.");
   }
   tyndall::MarchSettings settings;
   settings.order = published ? 1 : filter->GetIntegratorOrder();
@@ -86,7 +86,7 @@ void Write(tyndall::PhotonLight&& photons, vtkImageData* output)
 
 }
 
-/// Light, of the published scheme what its packing lost, and, of the sound scheme's integrator, paths.
+/// Light, of the published scheme what its packing lost, and, of the conservative scheme's integrator, paths.
 struct vtkPhotonMarcher::Marched
 {
   tyndall::PhotonLight light;
@@ -245,7 +245,7 @@ int vtkPhotonMarcher::RequestData(vtkInformation* request, vtkInformationVector*
 
 void vtkPhotonMarcher::Note(const tyndall::PhotonLight& light)
 {
-  this->Credits = static_cast<vtkIdType>(light.credits);
+  this->Deposits = static_cast<vtkIdType>(light.deposits);
   this->Steps = static_cast<vtkIdType>(light.steps);
   this->Missed = static_cast<vtkIdType>(light.missed);
   this->BalanceError = light.light.balance.RelativeError(light.light.channels);
@@ -286,7 +286,7 @@ void vtkPhotonMarcher::PrintSelf(ostream& os, vtkIndent indent)
   os << indent << "PathCount: " << this->PathCount << "\n";
   os << indent << "Smoothing: " << this->Smoothing << "\n";
   os << indent << "Device: " << this->Device << "\n";
-  os << indent << "Credits: " << this->Credits << "\n";
+  os << indent << "Deposits: " << this->Deposits << "\n";
   os << indent << "Steps: " << this->Steps << "\n";
   os << indent << "Missed: " << this->Missed << "\n";
   os << indent << "BalanceError: " << this->BalanceError << "\n";

@@ -42,7 +42,7 @@ struct PhotonLight;
  * | `photon_weight`  | 1          | 1          | their mean `weight`, 0 where there is none; with PhotonCounts    |
  * | `fluence_batches` | (1 or 3) x batches | W/length^2 | fluence by each batch alone, one after the other, as if it was all the light: their mean is `fluence`; where photons have several batches |
  *
- * the last three of the sound scheme only, as vtkPhotonReconstruction wants them, and field data `energy_balance` (W: entered, emitted, absorbed, escaped, left over; absorbed includes what is scattered),
+ * the last three of the conservative scheme only, as vtkPhotonReconstruction wants them, and field data `energy_balance` (W: entered, emitted, absorbed, escaped, left over; absorbed includes what is scattered),
  * `scattered` (W), `face_power_out`, `left_out`, `device`; of the published scheme also `packing_loss` (see PackingLoss).
  * Output 1: vtkPolyData, the paths of PathCount photons as polylines, point data `power_left` (part of its power), cell data
  * `photon` (its number).
@@ -70,7 +70,7 @@ public:
   {
     PUBLISHED =
       0,      ///< explicit Euler, power a rasterised voxel, 64 bits a voxel by compare-and-swap, smoothed at the end
-    SOUND = 1 ///< symplectic integrator, power times path, fixed point sums that lose nothing and repeat bit for bit
+    CONSERVATIVE = 1 ///< symplectic integrator, power times path, fixed point sums that lose nothing and repeat bit for bit
   };
 
   ///@{
@@ -83,13 +83,13 @@ public:
   ///@}
 
   ///@{
-  /// How to compute: PUBLISHED, or SOUND (default).
-  tyndallSetRangeMacro(Scheme, int, PUBLISHED, SOUND);
+  /// How to compute: PUBLISHED, or CONSERVATIVE (default).
+  tyndallSetRangeMacro(Scheme, int, PUBLISHED, CONSERVATIVE);
   vtkGetMacro(Scheme, int);
   ///@}
 
   ///@{
-  /// Order of the sound scheme's integrator: 1 (explicit Euler, to compare), 2 (leapfrog; default) or 4 (Yoshida; where the
+  /// Order of the conservative scheme's integrator: 1 (explicit Euler, to compare), 2 (leapfrog; default) or 4 (Yoshida; where the
   /// index is smooth over several voxels).
   tyndallSetRangeMacro(IntegratorOrder, int, 1, 4);
   vtkGetMacro(IntegratorOrder, int);
@@ -111,7 +111,7 @@ public:
 
   ///@{
   /// Whether to leave out what the scene does not need. Default on; off computes everything, for comparison: the same light,
-  /// later. Of the sound scheme.
+  /// later. Of the conservative scheme.
   vtkSetMacro(LeaveOut, bool);
   vtkGetMacro(LeaveOut, bool);
   vtkBooleanMacro(LeaveOut, bool);
@@ -138,14 +138,14 @@ public:
   ///@}
 
   ///@{
-  /// What came of the last update: stretches of path credited to voxels, steps of the integrator, photons that miss the volume,
+  /// What came of the last update: stretches of path deposited to voxels, steps of the integrator, photons that miss the volume,
   /// relative error of the energy balance, whether the medium was still prepared, seconds, the device's name, and what the scene did not need, one a line.
   ///
-  /// The sound scheme's balance closes to rounding. That of the published scheme does not, even where packing loses nothing: it
-  /// credits a photon's power to a voxel however long the path in it is, so the extinction of its light is not what the
-  /// photons lost. PackingLoss is apart from that: the part of the power credited to voxels that their 64 bits did not keep
-  /// (rounding, saturation, tries of compare-and-swap that ran out), before smoothing; 0 of the sound scheme.
-  vtkGetMacro(Credits, vtkIdType);
+  /// The conservative scheme's balance closes to rounding. That of the published scheme does not, even where packing loses nothing: it
+  /// deposits a photon's power to a voxel however long the path in it is, so the extinction of its light is not what the
+  /// photons lost. PackingLoss is apart from that: the part of the power deposited to voxels that their 64 bits did not keep
+  /// (rounding, saturation, tries of compare-and-swap that ran out), before smoothing; 0 of the conservative scheme.
+  vtkGetMacro(Deposits, vtkIdType);
   vtkGetMacro(Steps, vtkIdType);
   vtkGetMacro(Missed, vtkIdType);
   vtkGetMacro(BalanceError, double);
@@ -180,7 +180,7 @@ private:
   void Note(const tyndall::PhotonLight& light);
   void Warn(const tyndall::PhotonLight& light, std::size_t photons);
 
-  int Scheme = SOUND;
+  int Scheme = CONSERVATIVE;
   int IntegratorOrder = 2;
   double StepSize = 1.0;
   bool PhotonCounts = false;
@@ -191,7 +191,7 @@ private:
 
   std::unique_ptr<tyndall::KeptMarcher> Kept;
 
-  vtkIdType Credits = 0;
+  vtkIdType Deposits = 0;
   vtkIdType Steps = 0;
   vtkIdType Missed = 0;
   double BalanceError = 0.0;

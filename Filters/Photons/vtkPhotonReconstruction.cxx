@@ -46,7 +46,7 @@ tyndall::ReconstructionSettings SettingsOf(vtkPhotonReconstruction* filter)
   settings.nearest = filter->GetNearestPhotons();
   settings.conserve = filter->GetConserveFluence() == vtkPhotonReconstruction::ALWAYS ||
     (filter->GetConserveFluence() == vtkPhotonReconstruction::BY_SCHEME &&
-      filter->GetScheme() == vtkPhotonReconstruction::SOUND);
+      filter->GetScheme() == vtkPhotonReconstruction::CONSERVATIVE);
   return settings;
 }
 
@@ -92,8 +92,8 @@ tyndall::ReconstructedLight Reconstruct(vtkPhotonReconstruction* filter, vtkImag
   const FloatField direction = read(MeanDirection, "mean_direction", { 3 });
   const FloatField count = read(PhotonCount, "photon_count", { 1 });
   const FloatField weight = read(PhotonWeight, "photon_weight", { 1 });
-  const bool sound = filter->GetScheme() == vtkPhotonReconstruction::SOUND;
-  const FloatField batches = sound ? read(FluenceBatches, "fluence_batches", {}) : FloatField();
+  const bool conservative = filter->GetScheme() == vtkPhotonReconstruction::CONSERVATIVE;
+  const FloatField batches = conservative ? read(FluenceBatches, "fluence_batches", {}) : FloatField();
   light.channels = fluence.Components();
   std::vector<float> byBatch;
   if (batches.IsThere())
@@ -101,7 +101,7 @@ tyndall::ReconstructedLight Reconstruct(vtkPhotonReconstruction* filter, vtkImag
     byBatch = BatchByBatch(batches, light.grid.VoxelCount(), light.channels);
     light.batches = batches.Components() / light.channels;
   }
-  else if (sound)
+  else if (conservative)
   {
     light.batches = 2;
     byBatch = DarkBatches(fluence, light.grid.VoxelCount(), light.batches);

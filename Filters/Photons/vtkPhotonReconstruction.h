@@ -37,7 +37,7 @@ struct ReconstructedLight;
  * | array           | components | unit       | meaning                                                                          |
  * |-----------------|------------|------------|----------------------------------------------------------------------------------|
  * | `mip_level`     | 1          | 1          | level that the light was taken from, 0 the voxels themselves; between two where blended |
- * | `fluence_error` | 1 or 3     | W/length^2 | standard error of fluence, of the sound scheme                                   |
+ * | `fluence_error` | 1 or 3     | W/length^2 | standard error of fluence, of the conservative scheme                                   |
  *
  * and field data `fluence_bias` (by which part the light of all voxels together was off before it was conserved); `left_out`
  * gains what was not needed here, `device` is the one that computed. In a parallel pipeline every rank works on the whole
@@ -59,7 +59,7 @@ public:
   enum Schemes
   {
     PUBLISHED = 0,       ///< the lower of the levels by centre-surround differences and by photon weight
-    SOUND = 1,           ///< each level's detail is kept as far as independent batches agree on it; tells its error
+    CONSERVATIVE = 1,           ///< each level's detail is kept as far as independent batches agree on it; tells its error
     CONSTANT_RADIUS = 2, ///< Level everywhere
     NEAREST_PHOTONS = 3  ///< the lowest level that holds NearestPhotons
   };
@@ -68,11 +68,11 @@ public:
   {
     NEVER = 0,
     ALWAYS = 1,
-    BY_SCHEME = 2 ///< of the sound scheme, not of the others: they are there to compare with what was published
+    BY_SCHEME = 2 ///< of the conservative scheme, not of the others: they are there to compare with what was published
   };
 
   ///@{
-  /// How the level is chosen: PUBLISHED, SOUND (default), CONSTANT_RADIUS or NEAREST_PHOTONS.
+  /// How the level is chosen: PUBLISHED, CONSERVATIVE (default), CONSTANT_RADIUS or NEAREST_PHOTONS.
   tyndallSetRangeMacro(Scheme, int, PUBLISHED, NEAREST_PHOTONS);
   vtkGetMacro(Scheme, int);
   ///@}
@@ -117,7 +117,7 @@ public:
   ///@}
 
   ///@{
-  /// What came of the last update: `fluence_bias`; of the sound scheme the root of the mean square of `fluence_error` over that of
+  /// What came of the last update: `fluence_bias`; of the conservative scheme the root of the mean square of `fluence_error` over that of
   /// `fluence` (0 of the others); seconds, the device's name, and what was not needed here, one a line.
   vtkGetMacro(Bias, double);
   vtkGetMacro(MeanError, double);
@@ -141,7 +141,7 @@ private:
 
   void Note(const tyndall::ReconstructedLight& light);
 
-  int Scheme = SOUND;
+  int Scheme = CONSERVATIVE;
   int Levels = 5;
   double WeightStep = 0.0;
   int Level = 1;

@@ -41,7 +41,7 @@ tyndall::PropagationSettings SettingsOf(vtkLightPropagationMaps* filter)
     ? tyndall::PropagationAcceleration::None
     : tyndall::PropagationAcceleration::Automatic;
   settings.directionsPerFace = filter->GetDirectionsPerFace();
-  settings.firstFlightDirections = filter->GetFirstFlightDirections();
+  settings.uncollidedDirections = filter->GetUncollidedDirections();
   settings.emissionError = filter->GetEmissionError();
   settings.staggeredRays = filter->GetStaggeredRays();
   settings.mapResolution = filter->GetMapResolution();
@@ -175,12 +175,12 @@ void vtkLightPropagationMaps::Note(const tyndall::LightField& light)
 void vtkLightPropagationMaps::PrintSelf(ostream& os, vtkIndent indent)
 {
   this->Superclass::PrintSelf(os, indent);
-  os << indent << "Scheme: " << (this->Scheme == SOUND ? "sound" : "as published") << "\n";
+  os << indent << "Scheme: " << (this->Scheme == CONSERVATIVE ? "conservative" : "as published") << "\n";
   os << indent << "Algorithm: " << (this->Algorithm == SEQUENTIAL ? "sequential" : "parallel") << "\n";
   os << indent << "Source: " << this->Source << "\n";
   os << indent << "Acceleration: " << this->Acceleration << "\n";
   os << indent << "DirectionsPerFace: " << this->DirectionsPerFace << "\n";
-  os << indent << "FirstFlightDirections: " << this->FirstFlightDirections << "\n";
+  os << indent << "UncollidedDirections: " << this->UncollidedDirections << "\n";
   os << indent << "EmissionError: " << this->EmissionError << "\n";
   os << indent << "StaggeredRays: " << this->StaggeredRays << "\n";
   os << indent << "MapResolution: " << this->MapResolution << "\n";

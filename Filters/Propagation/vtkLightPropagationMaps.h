@@ -70,7 +70,7 @@ public:
   enum Schemes
   {
     PUBLISHED = 0, ///< as Gruson et al. describe it
-    SOUND = 1      ///< conservative deposit, directions by solid angle, lights followed exactly
+    CONSERVATIVE = 1      ///< conservative deposit, directions by solid angle, lights followed exactly
   };
 
   enum Sources
@@ -83,7 +83,7 @@ public:
   enum Accelerations
   {
     NONE = 0,                  ///< scattering orders one after the other, as published
-    AUTOMATIC_ACCELERATION = 1 ///< a low-order system between sweeps where orders would be many
+    AUTOMATIC_ACCELERATION = 1 ///< a diffusion system between sweeps where orders would be many
   };
 
   enum Algorithms
@@ -93,25 +93,25 @@ public:
   };
 
   ///@{
-  /// How to compute: PUBLISHED, or SOUND (default).
-  tyndallSetRangeMacro(Scheme, int, PUBLISHED, SOUND);
+  /// How to compute: PUBLISHED, or CONSERVATIVE (default).
+  tyndallSetRangeMacro(Scheme, int, PUBLISHED, CONSERVATIVE);
   vtkGetMacro(Scheme, int);
   ///@}
 
   ///@{
-  /// Which algorithm of the published scheme: SEQUENTIAL, or PARALLEL (default). The sound scheme has one only.
+  /// Which algorithm of the published scheme: SEQUENTIAL, or PARALLEL (default). The conservative scheme has one only.
   tyndallSetRangeMacro(Algorithm, int, SEQUENTIAL, PARALLEL);
   vtkGetMacro(Algorithm, int);
   ///@}
 
   ///@{
-  /// How the light that a voxel sends out is spread over it (sound scheme): CONSTANT, LINEAR, or AUTOMATIC_SOURCE (default).
+  /// How the light that a voxel sends out is spread over it (conservative scheme): CONSTANT, LINEAR, or AUTOMATIC_SOURCE (default).
   tyndallSetRangeMacro(Source, int, CONSTANT, AUTOMATIC_SOURCE);
   vtkGetMacro(Source, int);
   ///@}
 
   ///@{
-  /// How scattering orders are added up (sound scheme, where MaximumOrders is 0): NONE, or AUTOMATIC_ACCELERATION (default).
+  /// How scattering orders are added up (conservative scheme, where MaximumOrders is 0): NONE, or AUTOMATIC_ACCELERATION (default).
   /// LINEAR needs it.
   tyndallSetRangeMacro(Acceleration, int, NONE, AUTOMATIC_ACCELERATION);
   vtkGetMacro(Acceleration, int);
@@ -125,23 +125,23 @@ public:
   ///@}
 
   ///@{
-  /// Directions per face of a cube for unscattered light of shining faces, sky and environment (sound scheme). It has shadows with
+  /// Directions per face of a cube for unscattered light of shining faces, sky and environment (conservative scheme). It has shadows with
   /// edges and is swept once: it may have many while scattered light does with few. Default 0: as
   /// DirectionsPerFace; else square numbers up to 4096.
-  tyndallSetRangeMacro(FirstFlightDirections, int, 0, VTK_INT_MAX);
-  vtkGetMacro(FirstFlightDirections, int);
+  tyndallSetRangeMacro(UncollidedDirections, int, 0, VTK_INT_MAX);
+  vtkGetMacro(UncollidedDirections, int);
   ///@}
 
   ///@{
   /// Relative error, voxel by voxel, of the unscattered light of small bright parts of the medium, which is followed along exact rays
-  /// (sound scheme, no periodic axis). Default 0.02; 0.005 costs five to ten times as much, less gains nothing; 0: they are swept like all else, as they are
+  /// (conservative scheme, no periodic axis). Default 0.02; 0.005 costs five to ten times as much, less gains nothing; 0: they are swept like all else, as they are
   /// where other light has more power.
   tyndallSetRangeMacro(EmissionError, double, 0.0, tyndall::AnyHigh);
   vtkGetMacro(EmissionError, double);
   ///@}
 
   ///@{
-  /// Whether rays of each direction start in a place of their own within a voxel (sound scheme), those of FirstFlightDirections
+  /// Whether rays of each direction start in a place of their own within a voxel (conservative scheme), those of UncollidedDirections
   /// always. From some 64 directions per face on, half the error or less. Default off.
   vtkSetMacro(StaggeredRays, bool);
   vtkGetMacro(StaggeredRays, bool);
@@ -250,12 +250,12 @@ private:
 
   void Note(const tyndall::LightField& light);
 
-  int Scheme = SOUND;
+  int Scheme = CONSERVATIVE;
   int Algorithm = PARALLEL;
   int Source = AUTOMATIC_SOURCE;
   int Acceleration = AUTOMATIC_ACCELERATION;
   int DirectionsPerFace = 25;
-  int FirstFlightDirections = 0;
+  int UncollidedDirections = 0;
   double EmissionError = 0.02;
   bool StaggeredRays = false;
   int MapResolution = 1;

@@ -16,11 +16,11 @@ namespace tyndall
 {
 enum class ComparedMethod
 {
-  LightPropagationMaps, ///< the default: sound, source and acceleration by scene
-  ConstantSource,       ///< sound, constant source, no acceleration
+  LightPropagationMaps, ///< the default: conservative, source and acceleration by scene
+  ConstantSource,       ///< conservative, constant source, no acceleration
   Published,            ///< light propagation maps as published, Algorithm 2
   PublishedSequential,  ///< the same, Algorithm 1: slow
-  Photons,              ///< spread evenly, sound marching and reconstruction
+  Photons,              ///< spread evenly, conservative marching and reconstruction
   AdaptivePhotons,      ///< the same with an importance map
   PublishedPhotons,     ///< marching and Gauss filter as published
 };
@@ -65,7 +65,7 @@ std::vector<ComparedRun> RunsOf(
 LightField MarchEvenly(
   Device& device, const ComparedScene& scene, std::size_t photons, std::uint64_t seed, const Monitor& monitor);
 
-/// Propagation by the sound scheme.
+/// Propagation by the conservative scheme.
 LightField Propagate(Device& device, const ComparedScene& scene, PropagationSettings settings, const Monitor& monitor);
 
 /// @throws InvalidInput where a setting is out of its range (names it)

@@ -7,12 +7,12 @@ namespace tyndall
 /// The caller's own array as kernels see it: the same memory on a CPU, elsewhere a copy on the device. The array must outlive
 /// it, and is not to be touched between a kernel's start and the device's next Finish (or Fetch).
 template <class T>
-class LentArray
+class HostMappedBuffer
 {
 public:
   /// An array that kernels only read.
-  LentArray(Device& device, const T* values, std::size_t count, const char* what)
-    : LentArray(device, const_cast<T*>(values), count, what, CL_MEM_READ_ONLY)
+  HostMappedBuffer(Device& device, const T* values, std::size_t count, const char* what)
+    : HostMappedBuffer(device, const_cast<T*>(values), count, what, CL_MEM_READ_ONLY)
   {
     if (count > 0 && !device.IsCpu())
     {
@@ -21,17 +21,17 @@ public:
   }
 
   /// An array that kernels write, whole; Fetch() when they are done.
-  LentArray(Device& device, T* values, std::size_t count, const char* what)
-    : LentArray(device, values, count, what, CL_MEM_READ_WRITE)
+  HostMappedBuffer(Device& device, T* values, std::size_t count, const char* what)
+    : HostMappedBuffer(device, values, count, what, CL_MEM_READ_WRITE)
   {
   }
 
-  LentArray(const LentArray&) = delete;
-  LentArray& operator=(const LentArray&) = delete;
+  HostMappedBuffer(const HostMappedBuffer&) = delete;
+  HostMappedBuffer& operator=(const HostMappedBuffer&) = delete;
 
   /// Waits: where work failed halfway, kernels that were queued before may still be at the array, which is the caller's
   /// again now.
-  ~LentArray()
+  ~HostMappedBuffer()
   {
     if (this->Count > 0 && this->Copy.Size() == 0)
     {
@@ -65,7 +65,7 @@ public:
   }
 
 private:
-  LentArray(Device& device, T* values, std::size_t count, const char* what, cl_mem_flags flags)
+  HostMappedBuffer(Device& device, T* values, std::size_t count, const char* what, cl_mem_flags flags)
     : Owner(&device)
     , Values(values)
     , Count(count)

@@ -13,9 +13,9 @@ void Check(const PropagationSettings& settings)
     throw InvalidInput(
       "MapResolution is " + std::to_string(settings.mapResolution) + "; it must be at least 1 and at most 16.");
   }
-  if (settings.firstFlightDirections < 0)
+  if (settings.uncollidedDirections < 0)
   {
-    throw InvalidInput("FirstFlightDirections is " + std::to_string(settings.firstFlightDirections) +
+    throw InvalidInput("UncollidedDirections is " + std::to_string(settings.uncollidedDirections) +
       "; give a square number of directions per face, or 0 for the same as DirectionsPerFace.");
   }
   if (settings.maximumOrders < 0)

@@ -9,13 +9,13 @@ enum class PropagationSource
 {
   Automatic, ///< constant, or linear where orders are accelerated
   Constant,  ///< as published
-  Linear ///< from voxel centre to voxel centre (by the low-order system, see DiffusionSystem.h): right however thick voxels are
+  Linear ///< from voxel centre to voxel centre (by the diffusion system, see DiffusionSystem.h): right however thick voxels are
 };
 
 /// How scattering orders are added up.
 enum class PropagationAcceleration
 {
-  Automatic, ///< one after the other where a few tens do, else by a low-order system between sweeps
+  Automatic, ///< one after the other where a few tens do, else by a diffusion system between sweeps
   None       ///< one after the other, as published
 };
 
@@ -26,8 +26,8 @@ struct PropagationSettings
   bool adaptDirections = true; ///< more of them for slabs (UnvaryingAxes.h); false: as many as told
   /// Directions per cube face, a square number, of the unscattered light of shining faces, sky and environment (UncollidedBoundary.h);
   /// 0: the same as for scattered light.
-  int firstFlightDirections = 0;
-  /// Rays of each direction start in a place of their own within a voxel, those of a first flight always (RayBundles.h). From some 64
+  int uncollidedDirections = 0;
+  /// Rays of each direction start in a place of their own within a voxel, those of uncollidedDirections always (RayBundles.h). From some 64
   /// directions a face on, half the error or less.
   bool staggeredRays = false;
   int mapResolution = 1;   ///< map points per voxel edge, 1 to 16

@@ -245,12 +245,12 @@ const char* const NetFlux = "net_flux: not asked for";
 const char* const Isotropic = "anisotropy: light is scattered evenly";
 const char* const ConstantIndex = "refraction: the refractive index is constant, rays are straight";
 const char* const EmptyBricks = "empty bricks: rays leap over 8x8x8 voxels that are empty";
-const char* const NoLights = "first-collision source: there are no lights";
-const char* const NoEmissionPeaks = "first-collision source of emission: no small bright part outshines all else, or "
+const char* const NoLights = "uncollided flux of lamps: there are no lights";
+const char* const NoEmissionPeaks = "uncollided flux of bright emission: no small bright part outshines all else, or "
                                     "an axis is periodic, or EmissionError is 0";
 const char* const DarkOutside = "boundary radiance: no environment, sky or face shines";
 const char* const EvenOutside =
-  "first flight: what comes from outside is the same from everywhere and goes with scattered light";
+  "uncollided flux of the boundaries: what comes from outside is the same from everywhere and goes with scattered light";
 
 std::string EmptySlabs(const VoxelBox& filled, const Grid& grid)
 {

@@ -78,7 +78,7 @@ extern const char* const EmptyBricks;
 extern const char* const NoLights;
 extern const char* const NoEmissionPeaks; ///< what the medium emits needs no rays of its own
 extern const char* const DarkOutside;     ///< neither environment nor sky nor faces shine
-extern const char* const EvenOutside;     ///< they shine evenly: a first flight of its own is not needed
+extern const char* const EvenOutside;     ///< they shine evenly: directions of its own are not needed
 std::string EmptySlabs(const VoxelBox& filled, const Grid& grid);
 std::string DarkDirections(double lit); ///< part of the rays
 std::string MirrorImages(int classes, int directions);

@@ -78,7 +78,7 @@ struct PhotonLight
   /// asked for.
   std::vector<float> batchFluence;
   std::size_t missed = 0;       ///< photons whose ways do not meet the volume; they are not among what entered
-  std::size_t credits = 0;      ///< stretches of path that were credited to voxels
+  std::size_t deposits = 0;      ///< stretches of path that were deposited to voxels
   std::size_t steps = 0;        ///< of the integrator
   double secondsMarching = 0.0; ///< from sorted photons to sums on the device
   double seconds = 0.0;         ///< from photons to light

@@ -13,7 +13,7 @@ constexpr std::size_t Told = 5;       // numbers a run, as range_of_runs
 constexpr double SumUnit = 8192.0;    // of its sums
 }
 
-ArrayRange RangeOf(Device& device, const LentArray<float>& array, const float* values, std::size_t count,
+ArrayRange RangeOf(Device& device, const HostMappedBuffer<float>& array, const float* values, std::size_t count,
   int components, float low, float high)
 {
   const std::size_t runs = (count + Run - 1) / Run;

@@ -16,6 +16,6 @@ struct ArrayRange
 };
 
 /// @param values  also `array`'s, where the host looks for an unfit one
-ArrayRange RangeOf(Device& device, const LentArray<float>& array, const float* values, std::size_t count,
+ArrayRange RangeOf(Device& device, const HostMappedBuffer<float>& array, const float* values, std::size_t count,
   int components, float low, float high);
 }

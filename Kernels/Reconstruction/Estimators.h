@@ -12,8 +12,8 @@ struct Reconstruction
   const NoisyLight& light;
   const ReconstructionSettings& settings;
   const Monitor& monitor;
-  const LentArray<float>& fluence;   ///< light.batchFluence for the sound estimator, else light.fluence
-  const LentArray<float>& direction; ///< empty where there is none
+  const HostMappedBuffer<float>& fluence;   ///< light.batchFluence for the conservative estimator, else light.fluence
+  const HostMappedBuffer<float>& direction; ///< empty where there is none
   ArrayRange range;                  ///< of `fluence`
   int levels;                        ///< of the pyramid above the grid
 
@@ -21,11 +21,11 @@ struct Reconstruction
   std::array<float, 3> Conserve(const std::array<double, 3>& total, ReconstructedLight& result) const;
 };
 
-/// Light of all batches, of each level's detail what they agree on (Estimator::Sound). The result's arrays have their sizes.
-void ReconstructSound(const Reconstruction& task, ReconstructedLight& result);
+/// Light of all batches, of each level's detail what they agree on (Estimator::Conservative). The result's arrays have their sizes.
+void ReconstructConservative(const Reconstruction& task, ReconstructedLight& result);
 
 /// Light of one level for each voxel (the other estimators).
 /// @param counts, weights  empty where there are none
-void ReconstructByLevel(const Reconstruction& task, const LentArray<float>& counts, const LentArray<float>& weights,
+void ReconstructByLevel(const Reconstruction& task, const HostMappedBuffer<float>& counts, const HostMappedBuffer<float>& weights,
   double weightStep, ReconstructedLight& result);
 }

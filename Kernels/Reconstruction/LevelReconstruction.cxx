@@ -30,7 +30,7 @@ std::size_t Count(int number)
 }
 }
 
-void ReconstructByLevel(const Reconstruction& task, const LentArray<float>& counts, const LentArray<float>& weights,
+void ReconstructByLevel(const Reconstruction& task, const HostMappedBuffer<float>& counts, const HostMappedBuffer<float>& weights,
   double weightStep, ReconstructedLight& result)
 {
   const NoisyLight& light = task.light;
@@ -50,7 +50,7 @@ void ReconstructByLevel(const Reconstruction& task, const LentArray<float>& coun
     smooth.Fill({ kernels, task.direction, grid.size, 1, 3, false, "mean directions" }, 3, light.channels);
   }
   smooth.Build(LightPyramid::Down::Gauss);
-  const auto pyramidOf = [&](const LentArray<float>& array, bool wanted, LightPyramid::Down down, const char* what) {
+  const auto pyramidOf = [&](const HostMappedBuffer<float>& array, bool wanted, LightPyramid::Down down, const char* what) {
     LightPyramid pyramid(kernels, grid, 1, wanted ? top : 0, what);
     if (wanted)
     {
@@ -62,9 +62,9 @@ void ReconstructByLevel(const Reconstruction& task, const LentArray<float>& coun
   const LightPyramid photons = pyramidOf(counts, number != 1, LightPyramid::Down::Sum, "the pyramid of photon counts");
   const LightPyramid heavy = pyramidOf(weights, number == 0, LightPyramid::Down::MeanOfLit, "the pyramid of weights");
 
-  const LentArray<float> fluence(task.device, result.fluence.data(), result.fluence.size(), "fluence");
-  const LentArray<float> direction(task.device, result.meanDirection.data(), result.meanDirection.size(), "directions");
-  const LentArray<float> chosen(task.device, result.mipLevel.data(), result.mipLevel.size(), "levels");
+  const HostMappedBuffer<float> fluence(task.device, result.fluence.data(), result.fluence.size(), "fluence");
+  const HostMappedBuffer<float> direction(task.device, result.meanDirection.data(), result.meanDirection.size(), "directions");
+  const HostMappedBuffer<float> chosen(task.device, result.mipLevel.data(), result.mipLevel.size(), "levels");
   const WholeRows wholeFluence(kernels, fluence, grid.size, 1, light.channels, true, "fluence");
   const WholeRows wholeDirection(kernels, direction, grid.size, directions ? 1 : 0, 3, true, "mean directions");
   const WholeRows wholeChosen(kernels, chosen, grid.size, 1, 1, true, "levels");

@@ -29,7 +29,7 @@ const char* NameOf(Estimator estimator)
   switch (estimator)
   {
     case Estimator::Published: return "published";
-    case Estimator::Sound: return "sound";
+    case Estimator::Conservative: return "conservative";
     case Estimator::ConstantRadius: return "constant radius";
     default: return "nearest photons";
   }
@@ -75,15 +75,15 @@ void CheckPresence(const NoisyLight& light, Estimator estimator)
     throw InvalidInput(
       "The light has " + std::to_string(light.channels) + " channels; it must have 1 (grey) or 3 (RGB).");
   }
-  if (estimator == Estimator::Sound)
+  if (estimator == Estimator::Conservative)
   {
-    const char* advice = "Let PhotonEmitter make at least two Batches and PhotonMarcher's sound scheme gather them, or "
+    const char* advice = "Let PhotonEmitter make at least two Batches and PhotonMarcher's conservative scheme gather them, or "
                          "choose another estimator.";
     RequireArray(light.batchFluence, estimator, "fluence_batches", advice);
     if (light.batches < 2 || light.batches > 16)
     {
       throw InvalidInput("The photons are of " + std::to_string(light.batches) +
-        (light.batches == 1 ? " batch" : " batches") + "; the sound estimator compares 2 to 16 of them. " + advice);
+        (light.batches == 1 ? " batch" : " batches") + "; the conservative estimator compares 2 to 16 of them. " + advice);
     }
     return;
   }
@@ -100,7 +100,7 @@ void CheckPresence(const NoisyLight& light, Estimator estimator)
 }
 
 /// What an array holds, once it is known that all of it means something.
-ArrayRange Checked(Device& device, const LentArray<float>& array, const float* values, std::size_t count,
+ArrayRange Checked(Device& device, const HostMappedBuffer<float>& array, const float* values, std::size_t count,
   int components, const Grid& grid, const char* name, float low, float high)
 {
   const ArrayRange range = RangeOf(device, array, values, count, components, low, high);
@@ -120,12 +120,12 @@ int LevelsOf(const Grid& grid, int levels)
 }
 
 /// Of the result and of what is made on the way, roughly.
-void RequireMemory(const Device& device, const NoisyLight& light, bool sound)
+void RequireMemory(const Device& device, const NoisyLight& light, bool conservative)
 {
   const double direction = light.meanDirection ? 3.0 : 0.0;
-  const double result = light.channels * (sound ? 2.0 : 1.0) + direction + 1.0;
+  const double result = light.channels * (conservative ? 2.0 : 1.0) + direction + 1.0;
   const double made =
-    sound ? 2.0 * (light.batches + light.channels + direction) + 9.0 : 8.0 * (light.channels + direction + 2.0);
+    conservative ? 2.0 * (light.batches + light.channels + direction) + 9.0 : 8.0 * (light.channels + direction + 2.0);
   const double voxels = static_cast<double>(light.grid.VoxelCount());
   RequireHostMemory(sizeof(float) * voxels * (result + (device.IsCpu() ? made / 7.0 : 0.0)),
     "Reconstructing light on " + std::to_string(light.grid.VoxelCount()) + " voxels",
@@ -221,7 +221,7 @@ void ReconstructChannels(Device& device, const NoisyLight& light, const Reconstr
 
 std::array<float, 3> Reconstruction::Conserve(const std::array<double, 3>& total, ReconstructedLight& result) const
 {
-  const double sets = this->settings.estimator == Estimator::Sound ? this->light.batches : 1.0;
+  const double sets = this->settings.estimator == Estimator::Conservative ? this->light.batches : 1.0;
   std::array<float, 3> factors = { 1.0f, 1.0f, 1.0f };
   double before = 0.0, after = 0.0;
   for (int c = 0; c < this->light.channels; ++c)
@@ -242,10 +242,10 @@ ReconstructedLight Reconstruct(
   Device& device, const NoisyLight& light, const ReconstructionSettings& settings, const Monitor& monitor)
 {
   const double start = ClockSeconds();
-  const bool sound = settings.estimator == Estimator::Sound;
+  const bool conservative = settings.estimator == Estimator::Conservative;
   Check(settings);
   CheckPresence(light, settings.estimator);
-  RequireMemory(device, light, sound);
+  RequireMemory(device, light, conservative);
   Report(monitor, 0.0);
 
   const Grid& grid = light.grid;
@@ -257,15 +257,15 @@ ReconstructedLight Reconstruct(
   std::future<void> room = std::async(std::launch::async, [&] { result.meanDirection = Zeros(vectors); });
   result.fluence = Zeros(values);
   result.mipLevel = Zeros(voxels);
-  result.fluenceError = Zeros(sound ? values : 0);
+  result.fluenceError = Zeros(conservative ? values : 0);
   room.get();
 
-  const float* given = sound ? light.batchFluence : light.fluence;
-  const std::size_t count = values * static_cast<std::size_t>(sound ? light.batches : 1);
-  const LentArray<float> fluence(device, given, count, "fluence");
-  const LentArray<float> direction(device, light.meanDirection, vectors, "mean directions");
+  const float* given = conservative ? light.batchFluence : light.fluence;
+  const std::size_t count = values * static_cast<std::size_t>(conservative ? light.batches : 1);
+  const HostMappedBuffer<float> fluence(device, given, count, "fluence");
+  const HostMappedBuffer<float> direction(device, light.meanDirection, vectors, "mean directions");
   const ArrayRange range =
-    Checked(device, fluence, given, count, light.channels, grid, sound ? "fluence_batches" : "fluence", 0.0f, Most);
+    Checked(device, fluence, given, count, light.channels, grid, conservative ? "fluence_batches" : "fluence", 0.0f, Most);
   if (vectors > 0)
   {
     Checked(
@@ -273,9 +273,9 @@ ReconstructedLight Reconstruct(
   }
   const Reconstruction task = { device, light, settings, monitor, fluence, direction, range,
     LevelsOf(grid, settings.levels) };
-  if (sound)
+  if (conservative)
   {
-    ReconstructSound(task, result);
+    ReconstructConservative(task, result);
     if (light.channels == 3 && !OneColour(light))
     {
       ReconstructChannels(device, light, settings, monitor, result);
@@ -284,9 +284,9 @@ ReconstructedLight Reconstruct(
   else
   {
     const bool published = settings.estimator == Estimator::Published;
-    const LentArray<float> counts(
+    const HostMappedBuffer<float> counts(
       device, light.photonCount, NeedsCounts(settings.estimator) ? voxels : 0, "photon_count");
-    const LentArray<float> weights(device, light.photonWeight, published ? voxels : 0, "photon_weight");
+    const HostMappedBuffer<float> weights(device, light.photonWeight, published ? voxels : 0, "photon_weight");
     double step = 1.0;
     if (NeedsCounts(settings.estimator))
     {

@@ -14,13 +14,13 @@ struct NoisyLight
 {
   Grid grid;
   int channels = 1;                     ///< of fluence: 1 or 3
-  const float* fluence = nullptr;       ///< W / length^2; not read by the sound estimator
+  const float* fluence = nullptr;       ///< W / length^2; not read by the conservative estimator
   const float* meanDirection = nullptr; ///< 3 a voxel; optional
   const float* photonCount = nullptr;   ///< photons in each voxel; for the published and the nearest estimator
   const float* photonWeight = nullptr;  ///< their mean weight; for the published one
   int batches = 1;
   const float* batchFluence =
-    nullptr; ///< [batch][voxel][channel]; for the sound estimator, 2 to 16 whose mean is fluence
+    nullptr; ///< [batch][voxel][channel]; for the conservative estimator, 2 to 16 whose mean is fluence
 };
 
 struct ReconstructionSettings
@@ -28,11 +28,11 @@ struct ReconstructionSettings
   enum class Estimator
   {
     Published,      ///< level by centre-surround and photon weight, the lower of the two (Pfeuti 2009, section 3.2.4)
-    Sound,          ///< each level's detail is kept as far as independent batches agree on it; tells its error
+    Conservative,          ///< each level's detail is kept as far as independent batches agree on it; tells its error
     ConstantRadius, ///< one level everywhere (section 4.2)
     NearestPhotons, ///< the lowest level that holds `nearest` photons (section 4.2)
   };
-  Estimator estimator = Estimator::Sound;
+  Estimator estimator = Estimator::Conservative;
   int levels = 5; ///< of the pyramid above the grid, at most; 1 to 8, and no more than the grid has
   double weightStep =
     0.0;         ///< published: weight of photons from a level to the next; 0: the mean weight of lit voxels, less 1e-3
@@ -47,7 +47,7 @@ struct ReconstructedLight
   std::vector<float> meanDirection; ///< 3 a voxel, at most 1 long; empty where there was none
   std::vector<float>
     mipLevel; ///< a voxel: level of the pyramid that the light was taken from; between two where blended
-  std::vector<float> fluenceError; ///< standard error, `channels` a voxel, W / length^2; sound only, else empty
+  std::vector<float> fluenceError; ///< standard error, `channels` a voxel, W / length^2; conservative only, else empty
   double bias = 0.0; ///< total of the light, all channels, over what it was, less 1: before it was conserved, if it was
   std::vector<std::string> leftOut;
   std::string device;
@@ -57,11 +57,11 @@ struct ReconstructedLight
 /// Light without most of its noise, over pyramids in voxels (spacing does not matter); grids of odd sizes as if their last voxel
 /// was repeated.
 ///
-/// Sound: a Laplacian pyramid of each batch (down by 1 3 3 1 along each axis, up trilinear). On a level the batches' details d_b
+/// Conservative: a Laplacian pyramid of each batch (down by 1 3 3 1 along each axis, up trilinear). On a level the batches' details d_b
 /// have mean d; sum (d_b - d)^2 / (B (B - 1)) is the noise of d, d^2 less that noise is light, for batches agree on light and
 /// not on noise: Wiener's gain says how much of d to keep. Both are means over 2x2x2 cells, smoothed by 1 4 6 4 1; the noise is
 /// taken off twice, lest chance pass for light. The squared error is the sum over the levels of the noise that was kept and of
-/// 0.4 of the light that was held for noise (SoundReconstruction.cxx says why 0.4). Light below 0 becomes 0. Mean directions
+/// 0.4 of the light that was held for noise (ConservativeReconstruction.cxx says why 0.4). Light below 0 becomes 0. Mean directions
 /// are smoothed as flux, fluence times direction, with the same gains. Light of three channels and one colour
 /// everywhere is smoothed by their sum, whose error they share; where colours differ each channel is smoothed by itself, and has an
 /// error of its own.

@@ -4,7 +4,7 @@
 
 namespace tyndall
 {
-WholeRows::WholeRows(const RowKernels& kernels, const LentArray<float>& array, const std::array<int, 3>& size,
+WholeRows::WholeRows(const RowKernels& kernels, const HostMappedBuffer<float>& array, const std::array<int, 3>& size,
   int volumes, int components, bool written, const char* what)
   : Kernels(kernels)
   , Own(array)

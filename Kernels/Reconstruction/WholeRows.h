@@ -13,7 +13,7 @@ class WholeRows
 public:
   /// @param array    over `volumes` grids of `size` voxels, x fastest, `components` a voxel; must outlive this
   /// @param written  kernels write it: Fetch() when they are done. Else they read it.
-  WholeRows(const RowKernels& kernels, const LentArray<float>& array, const std::array<int, 3>& size, int volumes,
+  WholeRows(const RowKernels& kernels, const HostMappedBuffer<float>& array, const std::array<int, 3>& size, int volumes,
     int components, bool written, const char* what);
 
   const cl::Buffer& Handle() const { return this->Wide.Size() > 0 ? this->Wide.Handle() : this->Own.Handle(); }
@@ -25,7 +25,7 @@ private:
   void Copy(const cl::Buffer& from, int fromRow, const cl::Buffer& to, int toRow) const;
 
   const RowKernels& Kernels;
-  const LentArray<float>& Own;
+  const HostMappedBuffer<float>& Own;
   int Voxels, Components;
   std::size_t Rows;
   int Pitch;

@@ -15,11 +15,11 @@ namespace bench
 enum class Way
 {
   Published, ///< the reference pipeline: its marching and its 3x3x3 Gauss filter
-  Uniform,   ///< photons spread evenly, sound marching, no filter
+  Uniform,   ///< photons spread evenly, conservative marching, no filter
   Smoothed,  ///< the same, and a 3x3x3 Gauss filter (that of the reference pipeline; on the host, its time not counted)
-  Reconstructed,     ///< photons spread evenly, sound reconstruction
+  Reconstructed,     ///< photons spread evenly, conservative reconstruction
   AdaptivePublished, ///< importance map, counts, and level by centre-surround and weight
-  Adaptive,          ///< importance map, two batches, sound reconstruction: the default
+  Adaptive,          ///< importance map, two batches, conservative reconstruction: the default
 };
 const char* NameOf(Way way);
 

@@ -123,7 +123,7 @@ public:
     , TheMedium(medium)
     , TheGrid(medium.grid)
     , Settings(settings)
-    , Directions(SoundDirections(settings.directionsPerFace))
+    , Directions(EquiangularDirections(settings.directionsPerFace))
     , Sky(illumination.sky)
     , Channels(medium.Channels())
     , Voxels(medium.grid.VoxelCount())

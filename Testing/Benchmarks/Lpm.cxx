@@ -106,11 +106,11 @@ std::vector<Method> MethodsFor(
   const bool large = voxels > 128 * 128 * 128;
   methods.push_back({ Parallel, large || options.quick ? 1 : std::min(repetitions, 5), !large, Sequential,
     [&](const Monitor& monitor) { return SolveParallel(device, medium, light, settings, monitor); } });
-  methods.push_back({ Fused, repetitions, true, "",
+  methods.push_back({ Conservative, repetitions, true, "",
     [&](const Monitor& monitor) { return SolveConservative(device, medium, light, settings, monitor); } });
   const auto control = [&](const std::string& name, const control::Kernels& kernels, bool polynomials) {
     methods.push_back(
-      { name, repetitions, true, Fused, [&medium, &light, &settings, kernels, polynomials](const Monitor& monitor) {
+      { name, repetitions, true, Conservative, [&medium, &light, &settings, kernels, polynomials](const Monitor& monitor) {
          return control::Solve(kernels, polynomials, medium, light, settings, monitor);
        } });
   };
@@ -179,7 +179,7 @@ int main(int argc, char* argv[])
     const std::shared_ptr<Device> device = Device::Find();
     const std::vector<Case> cases = RunAll(*device, options);
     PrintTables(cases);
-    const bool fused = std::all_of(cases.begin(), cases.end(), [](const Case& one) { return one.Find(Fused); });
+    const bool fused = std::all_of(cases.begin(), cases.end(), [](const Case& one) { return one.Find(Conservative); });
     return fused ? EXIT_SUCCESS : EXIT_FAILURE;
   }
   catch (const DeviceError& error)

@@ -19,7 +19,7 @@ double NsPerUpdate(const Case& result, double secondsOfOrder)
 
 bool OnDevice(const Figures& figures)
 {
-  return figures.method == Fused || figures.method == Parallel;
+  return figures.method == Conservative || figures.method == Parallel;
 }
 
 /// Threads that a method keeps busy.
@@ -36,7 +36,7 @@ struct Shares
 
 Shares SharesOf(const Case& result, const Figures& figures)
 {
-  if (figures.method != Fused)
+  if (figures.method != Conservative)
   {
     return {};
   }
@@ -79,13 +79,13 @@ void PrintMethod(const Case& result, const Figures& figures)
   {
     line.Add("error_against", figures.comparedWith);
   }
-  const Figures* fused = result.Find(Fused);
+  const Figures* fused = result.Find(Conservative);
   if (fused && fused != &figures)
   {
     const Comparison whole = Ratio(fused, &figures, false);
     const Comparison order = Ratio(fused, &figures, true);
     line.Add("ratio", whole.wall).Add("core_ratio", whole.core);
-    line.Add("ratio_per_order", order.wall).Add("core_ratio_per_order", order.core).Add("against", Fused);
+    line.Add("ratio_per_order", order.wall).Add("core_ratio_per_order", order.core).Add("against", Conservative);
   }
   line.Add("load", LoadAverage()).Print();
 }
@@ -97,7 +97,7 @@ std::vector<std::string> MethodRow(const Case& result, const Figures& figures)
     return { result.scene + " " + result.grid, figures.method, "fails" };
   }
   const Times times = figures.Medians();
-  const Figures* fused = result.Find(Fused);
+  const Figures* fused = result.Find(Conservative);
   const Comparison whole = Ratio(&figures, fused, false);
   const Comparison order = Ratio(&figures, fused, true);
   const auto megabytes = [](double bytes) { return Text("%.0f", bytes / 1e6); };
@@ -133,7 +133,7 @@ void PrintShares(const std::vector<Case>& cases)
   Table table({ "case", "", "operations", "flops", "bytes", "cached", "operations %", "flops %", "bandwidth %" });
   for (const Case& result : cases)
   {
-    const Figures* fused = result.Find(Fused);
+    const Figures* fused = result.Find(Conservative);
     if (fused && fused->failure.empty())
     {
       const Shares shares = SharesOf(result, *fused);
@@ -146,7 +146,7 @@ void PrintShares(const std::vector<Case>& cases)
   const MachineLimits& limits = cases.front().limits;
   char title[200];
   std::snprintf(title, sizeof(title),
-    "Fused: work per update, and share of this machine's limits (%.0f Gflop/s by multiply-adds, %.1f GB/s by triad)",
+    "Conservative: work per update, and share of this machine's limits (%.0f Gflop/s by multiply-adds, %.1f GB/s by triad)",
     2e-9 * limits.multiplyAdds, 1e-9 * limits.bytes);
   table.Print(title);
   std::printf(

@@ -9,7 +9,7 @@ namespace bench
 {
 constexpr const char* Sequential = "sequential as published";
 constexpr const char* Parallel = "parallel as published";
-constexpr const char* Fused = "fused";
+constexpr const char* Conservative = "fused";
 constexpr const char* Control = "control AVX2";
 
 constexpr int Orders = 3;

@@ -46,7 +46,7 @@ void AddForAll(std::vector<Target>& targets, const Case& result)
     targets.push_back(
       { name + ": RMSE of control against fused", false, 1e-5, { control->errorL2, control->errorL2 } });
   }
-  if (const Figures* fused = result.Find(Fused))
+  if (const Figures* fused = result.Find(Conservative))
   {
     targets.push_back({ name + ": fused, energy balance", false, 1e-5, { fused->balance, fused->balance } });
   }
@@ -54,7 +54,7 @@ void AddForAll(std::vector<Target>& targets, const Case& result)
 
 void AddSpeed(std::vector<Target>& targets, const Case& result)
 {
-  const Figures* fused = result.Find(Fused);
+  const Figures* fused = result.Find(Conservative);
   if (!fused)
   {
     return;

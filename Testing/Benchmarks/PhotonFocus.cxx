@@ -116,7 +116,7 @@ void CompareProfiles(const PhotonBench& bench)
     const std::vector<double> reference = profile(rich, 0);
     std::vector<std::string> row = { std::to_string(edge) + "^3", "" };
     const auto add = [&](std::size_t count, const char* against, double error) {
-      PhotonLine("profile", "sound", grid)
+      PhotonLine("profile", "conservative", grid)
         .Add("photons", static_cast<double>(count))
         .Add("error_l1", error)
         .Add("against", against)

@@ -17,9 +17,9 @@ namespace
 std::vector<std::string> Row(
   const std::string& name, const PhotonTimes& times, const PhotonLight& light, double bandwidth)
 {
-  const double bytes = BytesOfCredits(light) / times.seconds;
+  const double bytes = BytesOfDeposits(light) / times.seconds;
   return { name, "", Text("%.1f", 1e3 * times.seconds), Text("%.1f", 1e3 * times.coreSeconds),
-    std::to_string(light.steps), Text("%.2e", light.credits / times.seconds), Text("%.1f", 1e-9 * bytes),
+    std::to_string(light.steps), Text("%.2e", light.deposits / times.seconds), Text("%.1f", 1e-9 * bytes),
     Text("%.2f", bytes / bandwidth), Text("%.1e", light.light.balance.RelativeError(light.light.channels)) };
 }
 
@@ -66,7 +66,7 @@ void TimeWays(const PhotonBench& bench)
 {
   Device& device = bench.device;
   const PaperScene scene = Ready(bench, bench.quick ? 32 : 128);
-  Table table({ "marching", "", "ms", "core ms", "steps", "credits/s", "GB/s", "of bandwidth", "balance" });
+  Table table({ "marching", "", "ms", "core ms", "steps", "deposits/s", "GB/s", "of bandwidth", "balance" });
   const auto way = [&](const std::string& name, const std::function<PhotonLight()>& march) {
     PhotonLight light;
     device.ResetPeak();
@@ -78,27 +78,27 @@ void TimeWays(const PhotonBench& bench)
     table.Add(Row(name, times, light, bench.limits.bytes));
     return times.seconds;
   };
-  const auto sound = [&](const std::string& name, const MarchSettings& settings, bool octree) {
+  const auto conservative = [&](const std::string& name, const MarchSettings& settings, bool octree) {
     PhotonMarcher marcher = scene.Marcher(device, settings, octree);
     return way(name, [&] { return marcher.March(scene.photons); });
   };
   MarchSettings settings;
-  const double fitting = sound("sound, octree", settings, true);
-  sound("sound, voxel by voxel", settings, false);
+  const double fitting = conservative("conservative, octree", settings, true);
+  conservative("conservative, voxel by voxel", settings, false);
   settings.counts = true;
-  sound("sound, octree, counts", settings, true);
+  conservative("conservative, octree, counts", settings, true);
   settings.batches = true;
-  sound("sound, octree, counts, 2 batches", settings, true);
+  conservative("conservative, octree, counts, 2 batches", settings, true);
   settings.counts = false;
-  sound("sound, octree, 2 batches", settings, true);
+  conservative("conservative, octree, 2 batches", settings, true);
   settings.batches = false;
   settings.order = 4;
-  sound("sound, order 4, octree", settings, true);
+  conservative("conservative, order 4, octree", settings, true);
   settings.order = 2;
   settings.sums = MarchSettings::Sums::Shared;
-  sound("sound, shared sums (atomics)", settings, true);
+  conservative("conservative, shared sums (atomics)", settings, true);
   settings.sums = MarchSettings::Sums::Unsafe;
-  const double plain = sound("sound, plain additions that lose some", settings, true);
+  const double plain = conservative("conservative, plain additions that lose some", settings, true);
   PhotonLine("accumulation", "fitting", scene.settings.grid)
     .Add("ratio", fitting / plain)
     .Add("against", "plain")
@@ -111,8 +111,8 @@ void TimeWays(const PhotonBench& bench)
   std::fill(straight.voxels.ior.begin(), straight.voxels.ior.end(), 1.0f);
   TimePilots(bench, scene);
   PhotonMarcher marcher = straight.Marcher(device, {}, false);
-  way("sound, constant index", [&] { return marcher.March(straight.photons); });
-  table.Print("Marching 122000 photons; GB/s: what their credits move, beside the machine's bandwidth of " +
+  way("conservative, constant index", [&] { return marcher.March(straight.photons); });
+  table.Print("Marching 122000 photons; GB/s: what their deposits move, beside the machine's bandwidth of " +
     Text("%.1f GB/s", 1e-9 * bench.limits.bytes));
 }
 
@@ -162,11 +162,11 @@ void AddLoss(Table& table, const char* where, PhotonScene& scene, Device& device
   const std::uint8_t* levels = scene.levels.empty() ? nullptr : scene.levels.data();
   const PhotonLight published =
     MarchPublished(device, scene.Medium(), scene.Index(), levels, photons, { 10, false }, &loss);
-  const PhotonLight sound = scene.March(device, photons);
+  const PhotonLight conservative = scene.March(device, photons);
   const double count = static_cast<double>(photons.size());
-  const double givenUp = static_cast<double>(loss.givenUp) / static_cast<double>(loss.credits);
+  const double givenUp = static_cast<double>(loss.givenUp) / static_cast<double>(loss.deposits);
   const double publishedError = published.light.balance.RelativeError(3);
-  const double soundError = sound.light.balance.RelativeError(sound.light.channels);
+  const double conservativeError = conservative.light.balance.RelativeError(conservative.light.channels);
   PhotonLine("power", "as published", scene.medium.grid)
     .Add("scene", where)
     .Add("photons", count)
@@ -174,19 +174,19 @@ void AddLoss(Table& table, const char* where, PhotonScene& scene, Device& device
     .Add("given_up", givenUp)
     .Add("balance", publishedError)
     .Print();
-  PhotonLine("power", "sound", scene.medium.grid)
+  PhotonLine("power", "conservative", scene.medium.grid)
     .Add("scene", where)
     .Add("photons", count)
-    .Add("balance", soundError)
+    .Add("balance", conservativeError)
     .Print();
   table.Add({ where, Text("%.0f", count), Text("%.1f %%", 100.0 * loss.Relative()), Text("%.2f %%", 100.0 * givenUp),
-    Text("%.1e", publishedError), Text("%.1e", soundError) });
+    Text("%.1e", publishedError), Text("%.1e", conservativeError) });
 }
 }
 
 void LosePower(const PhotonBench& bench)
 {
-  Table table({ "scene", "photons", "published: lost", "given up", "published: balance", "sound: balance" });
+  Table table({ "scene", "photons", "published: lost", "given up", "published: balance", "conservative: balance" });
   PhotonScene narrow({ 3, 3, 3 }, 1.0, 1.5, 0.05f, 0.15f);
   for (const std::size_t count :
     bench.quick ? std::vector<std::size_t>{ 1000 } : std::vector<std::size_t>{ 1000, 10000, 100000, 1000000 })
@@ -205,7 +205,7 @@ void LosePower(const PhotonBench& bench)
   ball.ior = paper.voxels.ior;
   ball.levels = paper.octree.levels;
   AddLoss(table, "ball in fog", ball, bench.device, paper.photons);
-  table.Print("Power: what the published packing loses of what was credited, credits given up after ten tries (what "
+  table.Print("Power: what the published packing loses of what was deposited, deposits given up after ten tries (what "
               "else is lost\n"
               "was too small beside what the voxel held), and the balance: (in - out) / in");
 }

@@ -102,10 +102,10 @@ JsonLine PhotonLine(const char* what, const std::string& method, const Grid& gri
   return JsonLine().Add("bench", "photons").Add("case", what).Add("method", method).Add("grid", GridName(grid));
 }
 
-double BytesOfCredits(const PhotonLight& light)
+double BytesOfDeposits(const PhotonLight& light)
 {
   const int sums = light.light.channels + (light.meanDirection.empty() ? 0 : 3);
-  return static_cast<double>(light.credits) * (2.0 * 8.0 * sums + 4.0);
+  return static_cast<double>(light.deposits) * (2.0 * 8.0 * sums + 4.0);
 }
 
 void PrintMarch(const char* what, const std::string& method, const PaperScene& scene, Device& device,
@@ -117,11 +117,11 @@ void PrintMarch(const char* what, const std::string& method, const PaperScene& s
     .Add("seconds", times.seconds)
     .Add("core_seconds", times.coreSeconds)
     .Add("peak_bytes", static_cast<double>(device.PeakBytes()))
-    .Add("credits", static_cast<double>(light.credits))
+    .Add("deposits", static_cast<double>(light.deposits))
     .Add("steps", static_cast<double>(light.steps))
-    .Add("credits_per_second", light.credits / times.seconds)
-    .Add("bytes_per_second", BytesOfCredits(light) / times.seconds)
-    .Add("part_of_bandwidth", BytesOfCredits(light) / times.seconds / bandwidth)
+    .Add("deposits_per_second", light.deposits / times.seconds)
+    .Add("bytes_per_second", BytesOfDeposits(light) / times.seconds)
+    .Add("part_of_bandwidth", BytesOfDeposits(light) / times.seconds / bandwidth)
     .Add("balance", light.light.balance.RelativeError(light.light.channels))
     .Print();
 }

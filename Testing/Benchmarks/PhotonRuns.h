@@ -57,11 +57,11 @@ PaperScene MeshInFog(const std::string& name, tyndall::TriangleMesh mesh, int ed
 /// A figure's name, as design.md section 4 has it.
 JsonLine PhotonLine(const char* what, const std::string& method, const tyndall::Grid& grid = {});
 
-/// Bytes that photons move where they credit voxels: each credit reads and writes the voxel's sums of light and of
+/// Bytes that photons move where they deposit voxels: each deposit reads and writes the voxel's sums of light and of
 /// directions, 8 bytes a number, and reads its extinction, 4 bytes.
-double BytesOfCredits(const tyndall::PhotonLight& light);
+double BytesOfDeposits(const tyndall::PhotonLight& light);
 
-/// Time, steps and credits of a march. @param bandwidth  of the machine, bytes / s
+/// Time, steps and deposits of a march. @param bandwidth  of the machine, bytes / s
 void PrintMarch(const char* what, const std::string& method, const PaperScene& scene, tyndall::Device& device,
   const PhotonTimes& times, const tyndall::PhotonLight& light, double bandwidth);
 

@@ -42,7 +42,7 @@ void Scale(const PhotonBench& bench)
   const std::vector<std::size_t> counts = bench.quick
     ? std::vector<std::size_t>{ 10000 }
     : std::vector<std::size_t>{ 10000, 31000, PaperPhotons, 400000, 1000000 };
-  Table table({ "grid", "photons", "ms", "core ms", "ns a photon and edge voxel", "credits/s", "of bandwidth" });
+  Table table({ "grid", "photons", "ms", "core ms", "ns a photon and edge voxel", "deposits/s", "of bandwidth" });
   for (const int edge : bench.quick ? std::vector<int>{ 32 } : std::vector<int>{ 64, 128, 256 })
   {
     PaperScene scene = BallInFog(edge);
@@ -52,11 +52,11 @@ void Scale(const PhotonBench& bench)
     {
       scene.Emit(count);
       const auto [times, light] = March(bench.device, scene, bench.quick ? 1 : 3);
-      PrintMarch("scaling", "sound, octree", scene, bench.device, times, light, bench.limits.bytes);
+      PrintMarch("scaling", "conservative, octree", scene, bench.device, times, light, bench.limits.bytes);
       table.Add({ std::to_string(edge) + "^3", std::to_string(count), Text("%.1f", 1e3 * times.seconds),
         Text("%.1f", 1e3 * times.coreSeconds), Text("%.3f", 1e9 * times.seconds / count / edge),
-        Text("%.2e", light.credits / times.seconds),
-        Text("%.2f", BytesOfCredits(light) / times.seconds / bench.limits.bytes) });
+        Text("%.2e", light.deposits / times.seconds),
+        Text("%.2f", BytesOfDeposits(light) / times.seconds / bench.limits.bytes) });
     }
   }
   table.Print("Marching, by photons and voxels");

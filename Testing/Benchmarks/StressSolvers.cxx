@@ -208,7 +208,7 @@ struct PhotonChain
 
   void March(bool published, StressOutcome& outcome)
   {
-    this->marcher->SetScheme(published ? vtkPhotonMarcher::PUBLISHED : vtkPhotonMarcher::SOUND);
+    this->marcher->SetScheme(published ? vtkPhotonMarcher::PUBLISHED : vtkPhotonMarcher::CONSERVATIVE);
     this->marcher->Update();
     ReadLight(vtkImageData::SafeDownCast(this->marcher->GetOutputDataObject(0)), outcome);
   }
@@ -217,7 +217,7 @@ struct PhotonChain
   {
     this->emitter->SetImportanceMapConnection(this->importance->GetOutputPort());
     this->marcher->SetPhotonCounts(published);
-    this->reconstruction->SetScheme(published ? vtkPhotonReconstruction::PUBLISHED : vtkPhotonReconstruction::SOUND);
+    this->reconstruction->SetScheme(published ? vtkPhotonReconstruction::PUBLISHED : vtkPhotonReconstruction::CONSERVATIVE);
     this->reconstruction->Update();
     ReadLight(this->reconstruction->GetOutput(), outcome);
     const std::vector<float> raw =

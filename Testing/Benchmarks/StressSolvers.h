@@ -10,14 +10,14 @@ namespace bench
 {
 enum class StressSolver
 {
-  Maps,             ///< light propagation maps, sound, untouched
+  Maps,             ///< light propagation maps, conservative, untouched
   MapsAll,          ///< the same, with nothing left out
-  MapsByOrders,     ///< sound, one scattering order after the other, a constant source
+  MapsByOrders,     ///< conservative, one scattering order after the other, a constant source
   MapsParallel,     ///< as published, Algorithm 2
   MapsSequential,   ///< as published, Algorithm 1
-  Photons,          ///< emitter and marcher, sound
+  Photons,          ///< emitter and marcher, conservative
   PhotonsPublished, ///< as published
-  Rebuilt,          ///< importance, emitter, marcher, reconstruction, sound
+  Rebuilt,          ///< importance, emitter, marcher, reconstruction, conservative
   RebuiltPublished, ///< as published
   Octree,           ///< octree, and photons through it
   View,             ///< ray caster, straight rays

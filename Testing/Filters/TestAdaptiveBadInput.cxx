@@ -143,7 +143,7 @@ void PhotonsThatMeanNothingAreRefused(test::Claims& claims)
   scene.marcher->SetPhotonsData(Beam(4, [](vtkIdType) { return 0.0; }));
   scene.marcher->SetScheme(vtkPhotonMarcher::PUBLISHED);
   scene.marcher->Update();
-  claims.That(errors.WasOneWith("Choose the sound scheme"), "the published scheme does not count");
+  claims.That(errors.WasOneWith("Choose the conservative scheme"), "the published scheme does not count");
   claims.That(test::AreEmpty({ scene.marcher }), "and gives no light");
 }
 

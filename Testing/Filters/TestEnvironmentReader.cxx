@@ -160,7 +160,7 @@ void PicturesComeUpright(test::Claims& claims)
     {
       WriteExr(Path("picture.exr"), picture, { "R", "G", "B" }, tiled, Imf::PIZ_COMPRESSION, {}, { 0, 0 }, type);
       vtkImageData* image = reading.Of(Path("picture.exr"));
-      claims.That(reading.Errors.None(), "a sound .exr has no error");
+      claims.That(reading.Errors.None(), "a whole .exr has no error");
       const int expected[3] = { 20, 10, 1 };
       claims.That(std::equal(expected, expected + 3, image->GetDimensions()), "one point a pixel");
       claims.That(Value(image, 3, 0, 0) == 4.0 && Value(image, 3, 0, 1) == 1000.0 && Value(image, 0, 9, 1) == 100.0,
@@ -201,7 +201,7 @@ void RadianceIsReadInItsUnit(test::Claims& claims)
   Reading reading;
   WriteBytes(Path("small.hdr"), SmallHdr());
   vtkImageData* image = reading.Of(Path("small.hdr"));
-  claims.That(reading.Errors.None(), "a sound .hdr has no error");
+  claims.That(reading.Errors.None(), "a conservative .hdr has no error");
   claims.That(image->GetDimensions()[0] == 16 && image->GetDimensions()[1] == 4, "its size");
   claims.Near(Value(image, 5, 3, 0), (128 + 5 + 0.5) / 128, 1e-6, "red, top row");
   claims.Near(Value(image, 5, 0, 0), (128 + 5 + 48 + 0.5) / 128, 1e-6, "red, bottom row");

@@ -234,9 +234,9 @@ void BadSettings(Refusals& refusals)
   refusals->SetEmissionError(-0.1);
   refusals.Says("EmissionError is -0.1");
   refusals->SetEmissionError(0.02);
-  refusals->SetFirstFlightDirections(24);
-  refusals.Says("FirstFlightDirections is 24");
-  refusals->SetFirstFlightDirections(0);
+  refusals->SetUncollidedDirections(24);
+  refusals.Says("UncollidedDirections is 24");
+  refusals->SetUncollidedDirections(0);
   refusals->SetMapResolution(0);
   refusals.Says("MapResolution");
   refusals->SetMapResolution(1);

@@ -96,7 +96,7 @@ void GlassBendsTheLight(test::Claims& claims)
     return 1.0 + 0.25 * std::erfc((r - 7.0) / 2.0);
   });
   Pipeline pipeline(medium, 24 * 24 * 9);
-  for (int scheme : { vtkPhotonMarcher::PUBLISHED, vtkPhotonMarcher::SOUND })
+  for (int scheme : { vtkPhotonMarcher::PUBLISHED, vtkPhotonMarcher::CONSERVATIVE })
   {
     pipeline.marcher->SetScheme(scheme);
     pipeline.marcher->SetPathCount(2);
@@ -161,11 +161,11 @@ void PackingLossIsToldApart(test::Claims& claims)
 
   vtkNew<vtkImageData> marched;
   marched->ShallowCopy(light);
-  marcher->SetScheme(vtkPhotonMarcher::SOUND);
+  marcher->SetScheme(vtkPhotonMarcher::CONSERVATIVE);
   marcher->SetInputDataObject(marched);
   marcher->Update();
   claims.That(!light->GetFieldData()->HasArray("packing_loss") && marcher->GetPackingLoss() == 0.0,
-    "the sound scheme has none, not even that of a march before");
+    "the conservative scheme has none, not even that of a march before");
 }
 
 /// Counts are of photons, weights their mean, and the light of batches is the light.

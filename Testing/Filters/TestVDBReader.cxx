@@ -34,7 +34,7 @@ void VoxelsBecomeCells(test::Claims& claims)
   claims.That(reader->CanReadFile(Path("fog.vdb").c_str()) == 1, "a .vdb file is known");
   reader->SetFileName(Path("fog.vdb").c_str());
   reader->Update();
-  claims.That(errors.None(), "a sound file has no error");
+  claims.That(errors.None(), "a conservative file has no error");
   vtkImageData* image = reader->GetOutput();
   const int expected[6] = { -5, -1, 3, 10, 1000, 1010 };
   claims.That(std::equal(expected, expected + 6, image->GetExtent()), "the extent is the active box");

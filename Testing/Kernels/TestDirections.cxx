@@ -35,11 +35,11 @@ double HalfRangeFlux(const DirectionSet& set, int axis)
 }
 }
 
-TEST(SoundDirections, IntegrateConstantsDirectionsAndTheirProductsExactly)
+TEST(EquiangularDirections, IntegrateConstantsDirectionsAndTheirProductsExactly)
 {
   for (int perFace : { 1, 4, 9, 16, 25, 36, 64, 100, 256 })
   {
-    const DirectionSet set = SoundDirections(perFace);
+    const DirectionSet set = EquiangularDirections(perFace);
     ASSERT_EQ(set.directions.size(), 6u * perFace);
     EXPECT_NEAR(Moment(set, 0, 0, 0), 4.0 * Pi, 1e-12) << perFace;
     for (int axis = 0; axis < 3; ++axis)
@@ -53,10 +53,10 @@ TEST(SoundDirections, IntegrateConstantsDirectionsAndTheirProductsExactly)
   }
 }
 
-TEST(SoundDirections, LetADiffuseFaceShineWithPiMoreExactlyTheMoreThereAre)
+TEST(EquiangularDirections, LetADiffuseFaceShineWithPiMoreExactlyTheMoreThereAre)
 {
   const auto error = [](int perFace) {
-    const double flux = HalfRangeFlux(SoundDirections(perFace), 2);
+    const double flux = HalfRangeFlux(EquiangularDirections(perFace), 2);
     return std::abs(flux / (2.0 * Pi) - 1.0);
   };
   EXPECT_LT(error(25), 1.3e-2);
@@ -64,11 +64,11 @@ TEST(SoundDirections, LetADiffuseFaceShineWithPiMoreExactlyTheMoreThereAre)
   EXPECT_LT(error(256), 8e-4);
 }
 
-TEST(SoundDirections, HavePositiveWeightsNearTheirSolidAngle)
+TEST(EquiangularDirections, HavePositiveWeightsNearTheirSolidAngle)
 {
   for (int perFace : { 4, 9, 16, 25, 36, 100, 400 })
   {
-    const DirectionSet set = SoundDirections(perFace);
+    const DirectionSet set = EquiangularDirections(perFace);
     const double mean = 4.0 * Pi / set.directions.size();
     for (const Direction& d : set.directions)
     {
@@ -78,9 +78,9 @@ TEST(SoundDirections, HavePositiveWeightsNearTheirSolidAngle)
   }
 }
 
-TEST(SoundDirections, AreUnchangedByEveryRotationAndMirroringOfTheCube)
+TEST(EquiangularDirections, AreUnchangedByEveryRotationAndMirroringOfTheCube)
 {
-  const DirectionSet set = SoundDirections(25);
+  const DirectionSet set = EquiangularDirections(25);
   std::set<std::array<double, 4>> rows;
   for (const Direction& d : set.directions)
   {
@@ -99,12 +99,12 @@ TEST(PublishedDirections, WeighAllTheSameAndMissTheHalfRangeFlux)
   const DirectionSet set = PublishedDirections(400);
   EXPECT_NEAR(Moment(set, 0, 0, 0), 4.0 * Pi, 1e-12);
   EXPECT_GT(std::abs(HalfRangeFlux(set, 0) / (2.0 * Pi) - 1.0), 0.01) << "equal weights do not converge";
-  EXPECT_LT(std::abs(HalfRangeFlux(SoundDirections(400), 0) / (2.0 * Pi) - 1.0), 1e-3);
+  EXPECT_LT(std::abs(HalfRangeFlux(EquiangularDirections(400), 0) / (2.0 * Pi) - 1.0), 1e-3);
 }
 
 TEST(Directions, NearestFindsEachDirectionOfItsSet)
 {
-  for (const DirectionSet& set : { SoundDirections(25), PublishedDirections(16) })
+  for (const DirectionSet& set : { EquiangularDirections(25), PublishedDirections(16) })
   {
     for (std::size_t d = 0; d < set.directions.size(); ++d)
     {
@@ -115,8 +115,8 @@ TEST(Directions, NearestFindsEachDirectionOfItsSet)
 
 TEST(Directions, RefuseANumberThatIsNoSquare)
 {
-  EXPECT_THROW(SoundDirections(24), InvalidInput);
-  EXPECT_THROW(SoundDirections(0), InvalidInput);
+  EXPECT_THROW(EquiangularDirections(24), InvalidInput);
+  EXPECT_THROW(EquiangularDirections(0), InvalidInput);
   EXPECT_THROW(PublishedDirections(-25), InvalidInput);
 }
 
@@ -126,7 +126,7 @@ TEST(BoundaryRadiance, LetsAUniformEnvironmentInUnchanged)
   environment.width = 16;
   environment.height = 8;
   environment.radiance.assign(3 * 16 * 8, 2.5f);
-  for (const Rgb& radiance : BoundaryRadiance(SoundDirections(25), environment, { 0.0, 1.0, 0.0 }))
+  for (const Rgb& radiance : BoundaryRadiance(EquiangularDirections(25), environment, { 0.0, 1.0, 0.0 }))
   {
     EXPECT_NEAR(radiance[0], 2.5, 1e-12);
     EXPECT_NEAR(radiance[1], 3.5, 1e-12);
@@ -140,7 +140,7 @@ TEST(BoundaryRadiance, KeepsTheIrradianceOfASkyThatIsBrightAbove)
   environment.height = 32;
   environment.radiance.assign(3 * 64 * 32, 0.0f);
   std::fill(environment.radiance.begin() + 3 * 64 * 16, environment.radiance.end(), 1.0f);
-  const DirectionSet set = SoundDirections(100);
+  const DirectionSet set = EquiangularDirections(100);
   const std::vector<Rgb> radiance = BoundaryRadiance(set, environment, {});
   double down = 0.0;
   double up = 0.0;
@@ -155,7 +155,7 @@ TEST(BoundaryRadiance, KeepsTheIrradianceOfASkyThatIsBrightAbove)
 
 TEST(RayPattern, SegmentsFillThePlaneAndMovesFollowTheTangent)
 {
-  const DirectionSet set = SoundDirections(25);
+  const DirectionSet set = EquiangularDirections(25);
   for (const std::array<int, 3>& size : { std::array<int, 3>{ 1, 2, 3 }, { 7, 10, 8 }, { 40, 64, 33 } })
   {
     for (const RayStarts starts : { RayStarts::Middle, RayStarts::Staggered })
@@ -202,13 +202,13 @@ TEST(RayPattern, SegmentsFillThePlaneAndMovesFollowTheTangent)
 
 TEST(RayPattern, CubicVoxelsNeedSixBundlesForTwentyFiveDirections)
 {
-  const std::vector<Bundle> bundles = BundlesAlong(2, Grid(), {}, SoundDirections(25), 1);
+  const std::vector<Bundle> bundles = BundlesAlong(2, Grid(), {}, EquiangularDirections(25), 1);
   EXPECT_EQ(bundles.size(), 6u);
 }
 
 TEST(RayPattern, EveryMemberHasItsMirrorImage)
 {
-  const DirectionSet set = SoundDirections(25);
+  const DirectionSet set = EquiangularDirections(25);
   for (int axis = 0; axis < 3; ++axis)
   {
     for (const Bundle& bundle : BundlesAlong(axis, Grid(), {}, set, 1))

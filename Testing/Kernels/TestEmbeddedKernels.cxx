@@ -19,7 +19,7 @@ std::string ReadFile(const std::string& path)
 
 TEST(EmbeddedKernels, AreTheirFilesByteForByte)
 {
-  const std::string file = ReadFile(TYNDALL_KERNELS_FOLDER "/Medium/Numerics.cl");
+  const std::string file = ReadFile(TYNDALL_KERNELS_FOLDER "/Numerics/Numerics.cl");
   ASSERT_FALSE(file.empty());
   EXPECT_EQ(tyndall::kernel_source::Numerics, file);
 }

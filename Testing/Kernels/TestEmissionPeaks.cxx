@@ -40,7 +40,7 @@ double At(const LightField& light, int x, int y, int z)
 bool LeavesOutRays(const LightField& light)
 {
   return std::any_of(light.leftOut.begin(), light.leftOut.end(),
-    [](const std::string& words) { return words.find("first-collision source of emission") != std::string::npos; });
+    [](const std::string& words) { return words.find("uncollided flux of bright emission") != std::string::npos; });
 }
 }
 

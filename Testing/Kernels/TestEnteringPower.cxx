@@ -115,7 +115,7 @@ TEST_F(EnteringPower, OfAFaceIsItsAreaTimesTheFluxOfTheDirections)
       Scene scene = SceneOf(setting, 0.4f, 0.9f);
       scene.light.faces[face] = { 2.0, 2.0, 2.0 };
       const LightField light = scene.Solve(this->GetDevice());
-      const DirectionSet set = SoundDirections(setting.directions);
+      const DirectionSet set = EquiangularDirections(setting.directions);
       const double exact =
         setting.periodic[face / 2] ? 0.0 : 2.0 * Area(scene.medium.grid, face / 2) * Flux(set, face / 2, 1.0, {});
       EXPECT_NEAR(light.balance.entered[0], exact, Rounding * exact) << Text(setting) << ", face " << face;
@@ -137,7 +137,7 @@ TEST_F(EnteringPower, OfAnEvenSkyIsTheSurfaceTimesTheFluxOfTheDirections)
     {
       exact += setting.periodic[axis]
         ? 0.0
-        : 2.0 * Area(scene.medium.grid, axis) * Flux(SoundDirections(setting.directions), axis, 1.0, {});
+        : 2.0 * Area(scene.medium.grid, axis) * Flux(EquiangularDirections(setting.directions), axis, 1.0, {});
     }
     EXPECT_NEAR(light.balance.entered[0], exact, Rounding * exact) << Text(setting);
   }
@@ -151,7 +151,7 @@ TEST_F(EnteringPower, OfAnEnvironmentIsItsFluxThroughEveryFace)
     Scene scene = SceneOf(setting, 0.4f, 0.9f);
     scene.light.environment = environment;
     const LightField light = scene.Solve(this->GetDevice());
-    const DirectionSet set = SoundDirections(setting.directions);
+    const DirectionSet set = EquiangularDirections(setting.directions);
     const std::vector<Rgb> radiance = BoundaryRadiance(set, environment, {});
     double exact = 0.0;
     for (int axis = 0; axis < 3; ++axis)

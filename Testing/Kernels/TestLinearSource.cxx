@@ -340,7 +340,7 @@ TEST_F(LinearSource, LightsAllVoxelsOfACubeAsPhotonsDo)
     Scene lit = Cube(32, 1.0, 0.9);
     lit.settings.source = source;
     lit.settings.directionsPerFace = 64;
-    lit.settings.firstFlightDirections = 900;
+    lit.settings.uncollidedDirections = 900;
     lit.settings.staggeredRays = true;
     lit.light.faces[4] = { 1.0, 1.0, 1.0 };
     const LightField light = lit.Solve(this->GetDevice());
@@ -383,7 +383,7 @@ TEST_F(LinearSource, SendsThroughACubesFacesWhatPhotonsDo)
     // At 50 what is absorbed is 1.03% too little on 32 voxels, 0.9% on 36, 0.8% on 40.
     Scene scene = Cube(row.tau == 50.0 ? 36 : 32, row.tau, row.albedo);
     scene.settings.directionsPerFace = 100;
-    scene.settings.firstFlightDirections = 900;
+    scene.settings.uncollidedDirections = 900;
     scene.settings.staggeredRays = true;
     scene.light.faces[4] = { 1.0, 1.0, 1.0 };
     const LightField light = scene.Solve(this->GetDevice());

@@ -56,7 +56,7 @@ double InSet(const Wave& wave, int perFace)
   const std::array<double, 3> k = WaveVector(wave);
   const double sigma_t = wave.thickness / Edge;
   double sum = 0.0;
-  for (const Direction& d : SoundDirections(perFace).directions)
+  for (const Direction& d : EquiangularDirections(perFace).directions)
   {
     const double along = k[0] * d.omega[0] + k[1] * d.omega[1] + k[2] * d.omega[2];
     sum += d.weight * sigma_t / (sigma_t * sigma_t + along * along);

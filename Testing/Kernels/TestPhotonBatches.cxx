@@ -65,7 +65,7 @@ void ExpectSameLight(const PhotonLight& light, const PhotonLight& other)
   EXPECT_EQ(light.light.balance.leftOver, other.light.balance.leftOver);
   EXPECT_EQ(light.light.facePowerOut, other.light.facePowerOut);
   EXPECT_EQ(light.scattered, other.scattered);
-  EXPECT_EQ(light.credits, other.credits);
+  EXPECT_EQ(light.deposits, other.deposits);
 }
 
 std::vector<Photon> OfBatch(const std::vector<Photon>& photons, int batch)

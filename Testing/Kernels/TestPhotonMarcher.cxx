@@ -38,7 +38,7 @@ void JumbleIndex(PhotonScene& scene, const std::function<double(double)>& ofRand
   scene.SetIndex([&](double, double, double) { return ofRandom(uniform(random)); });
 }
 
-void ExpectSoundLight(const PhotonLight& light, const std::string& what)
+void ExpectPhysicalLight(const PhotonLight& light, const std::string& what)
 {
   for (const float fluence : light.light.fluence)
   {
@@ -136,7 +136,7 @@ TEST_F(PhotonMarcherTest, PowerInIsPowerOut)
   }
 }
 
-TEST_F(PhotonMarcherTest, StaysSoundWhereTheIndexJumps)
+TEST_F(PhotonMarcherTest, StaysConservativeWhereTheIndexJumps)
 {
   for (int order : { 1, 2, 4 })
   {
@@ -147,15 +147,15 @@ TEST_F(PhotonMarcherTest, StaysSoundWhereTheIndexJumps)
     {
       const std::string what = "order " + std::to_string(order) + ", up to " + std::to_string(highest);
       JumbleIndex(scene, [&](double x) { return x < 0.5 ? 1.0 : highest; });
-      ExpectSoundLight(scene.March(this->GetDevice(), photons), what + ", two");
+      ExpectPhysicalLight(scene.March(this->GetDevice(), photons), what + ", two");
       JumbleIndex(scene, [&](double x) { return 1.0 + (highest - 1.0) * x; });
-      ExpectSoundLight(scene.March(this->GetDevice(), photons), what + ", any");
+      ExpectPhysicalLight(scene.March(this->GetDevice(), photons), what + ", any");
       // The volume's faces cut a ball with a sharp border.
       scene.SetIndex([&](double x, double y, double z) { return std::hypot(x - 1.0, y, z) < 0.9 ? highest : 1.0; });
-      ExpectSoundLight(scene.March(this->GetDevice(), photons), what + ", ball");
+      ExpectPhysicalLight(scene.March(this->GetDevice(), photons), what + ", ball");
     }
     JumbleIndex(scene, [](double x) { return std::exp(6.0 * x - 3.0); });
-    ExpectSoundLight(scene.March(this->GetDevice(), photons), "order " + std::to_string(order) + ", exponential");
+    ExpectPhysicalLight(scene.March(this->GetDevice(), photons), "order " + std::to_string(order) + ", exponential");
   }
 }
 
@@ -169,7 +169,7 @@ TEST_F(PhotonMarcherTest, PhotonsThatAreLostAreLeftOver)
   {
     scene.settings.order = order;
     const PhotonLight light = scene.March(this->GetDevice(), photons);
-    ExpectSoundLight(light, "order " + std::to_string(order));
+    ExpectPhysicalLight(light, "order " + std::to_string(order));
     if (order > 1) // Euler's velocity is over n, which is large where it ends
     {
       EXPECT_GT(light.light.balance.leftOver[0], 0.0) << order;
@@ -177,7 +177,7 @@ TEST_F(PhotonMarcherTest, PhotonsThatAreLostAreLeftOver)
   }
 }
 
-TEST_F(PhotonMarcherTest, ThinMediaTakeWhatTheyAreCredited)
+TEST_F(PhotonMarcherTest, ThinMediaTakeWhatIsDepositedInThem)
 {
   for (int edge : { 128, 512, 2048 })
   {
@@ -229,8 +229,8 @@ TEST_F(PhotonMarcherTest, AllPhotonsThroughOneVoxelLoseNothingAndThePublishedPac
   EXPECT_GT(loss.Relative(), 0.5);
   EXPECT_GT(BalanceError(published), 0.1);
   std::printf(
-    "Published packing, 100000 photons through one voxel: %.1f %% of the power lost; %zu of %zu credits given up\n",
-    100.0 * loss.Relative(), loss.givenUp, loss.credits);
+    "Published packing, 100000 photons through one voxel: %.1f %% of the power lost; %zu of %zu deposits given up\n",
+    100.0 * loss.Relative(), loss.givenUp, loss.deposits);
 }
 
 TEST_F(PhotonMarcherTest, TheSumsDoNotDependOnWhoAdds)
@@ -465,12 +465,12 @@ TEST_F(PhotonMarcherTest, ThePublishedSchemeGivesTheSameLightAlongAnAxis)
 {
   PhotonScene scene({ 16, 16, 16 }, 0.125, 1.0, 0.2f, 0.3f);
   const std::vector<Photon> photons = Beam(scene.medium.grid, { 0.0, 0.0, 1.0 }, 256 * 4, Sampler::Grid);
-  const PhotonLight sound = scene.March(this->GetDevice(), photons);
+  const PhotonLight conservative = scene.March(this->GetDevice(), photons);
   const PhotonLight published =
     MarchPublished(this->GetDevice(), scene.Medium(), scene.Index(), nullptr, photons, { 10, false });
   for (std::size_t i : { 100u, 1000u, 3000u })
   {
-    EXPECT_NEAR(published.light.fluence[3 * i] / sound.light.fluence[i], 1.0, 0.05);
+    EXPECT_NEAR(published.light.fluence[3 * i] / conservative.light.fluence[i], 1.0, 0.05);
     EXPECT_NEAR(published.meanDirection[3 * i + 2], 1.0, 0.01);
   }
 }

@@ -12,7 +12,7 @@ using testing::HasSubstr;
 
 namespace
 {
-constexpr Estimator All[] = { Estimator::Published, Estimator::Sound, Estimator::ConstantRadius,
+constexpr Estimator All[] = { Estimator::Published, Estimator::Conservative, Estimator::ConstantRadius,
   Estimator::NearestPhotons };
 constexpr std::array<int, 3> Sizes[] = { { 1, 1, 1 }, { 1, 1, 1000 }, { 5, 7, 3 }, { 32, 16, 16 }, { 37, 18, 9 } };
 
@@ -46,14 +46,14 @@ TEST_F(Reconstruction, EvenLightComesBackAsItIs)
       {
         const ReconstructedLight light = Reconstruct(this->GetDevice(), scene.Seen(), By(estimator));
         ASSERT_EQ(light.fluence.size(), scene.Values());
-        ASSERT_EQ(light.fluenceError.size(), estimator == Estimator::Sound ? scene.Values() : 0);
+        ASSERT_EQ(light.fluenceError.size(), estimator == Estimator::Conservative ? scene.Values() : 0);
         EXPECT_NEAR(light.bias, 0.0, 1e-6);
         for (std::size_t i = 0; i < scene.Values(); ++i)
         {
           ASSERT_NEAR(light.fluence[i], 2.5, 2.5e-6) << size[0] << ' ' << static_cast<int>(estimator) << ' ' << i;
           ASSERT_NEAR(light.meanDirection[3 * (i / channels)], 0.6, 1e-6);
           ASSERT_NEAR(light.meanDirection[3 * (i / channels) + 2], -0.3, 1e-6);
-          if (estimator == Estimator::Sound)
+          if (estimator == Estimator::Conservative)
           {
             ASSERT_NEAR(light.fluenceError[i], 0.0, 2.5e-6);
           }
@@ -88,9 +88,9 @@ TEST_F(Reconstruction, SaysWhatIsMissingAndWhoMakesIt)
   EXPECT_THAT(this->Complaint(light, By(Estimator::NearestPhotons)), HasSubstr("PhotonCounts"));
   EXPECT_THAT(this->Complaint(light, By(Estimator::Published)), HasSubstr("photon_count"));
   light.batches = 1;
-  EXPECT_THAT(this->Complaint(light, By(Estimator::Sound)), HasSubstr("1 batch;"));
+  EXPECT_THAT(this->Complaint(light, By(Estimator::Conservative)), HasSubstr("1 batch;"));
   light.batchFluence = nullptr;
-  EXPECT_THAT(this->Complaint(light, By(Estimator::Sound)), HasSubstr("PhotonEmitter"));
+  EXPECT_THAT(this->Complaint(light, By(Estimator::Conservative)), HasSubstr("PhotonEmitter"));
   light.fluence = nullptr;
   EXPECT_THAT(this->Complaint(light, By(Estimator::ConstantRadius)), HasSubstr("fluence"));
 }
@@ -103,7 +103,7 @@ TEST_F(Reconstruction, NamesTheVoxelThatMeansNothing)
     ReconstructionScene scene({ 50, 30, 20 });
     scene.Light([](std::size_t) { return 1.0; }, 0.0);
     scene.batchFluence[30000 + (7 * 30 + 5) * 50 + 3] = bad;
-    EXPECT_THAT(this->Complaint(scene.Seen(), By(Estimator::Sound)), HasSubstr("(3, 5, 7)")) << bad;
+    EXPECT_THAT(this->Complaint(scene.Seen(), By(Estimator::Conservative)), HasSubstr("(3, 5, 7)")) << bad;
     EXPECT_EQ(this->Complaint(scene.Seen(), By(Estimator::Published)), "");
     scene.fluence.back() = bad;
     EXPECT_THAT(this->Complaint(scene.Seen(), By(Estimator::ConstantRadius)), HasSubstr("(49, 29, 19)")) << bad;
@@ -114,7 +114,7 @@ TEST_F(Reconstruction, NamesTheVoxelThatMeansNothing)
   ReconstructionScene scene({ 4, 4, 4 });
   scene.Light([](std::size_t) { return 1.0; }, 0.0);
   scene.direction[5] = nan;
-  EXPECT_THAT(this->Complaint(scene.Seen(), By(Estimator::Sound)), HasSubstr("mean_direction"));
+  EXPECT_THAT(this->Complaint(scene.Seen(), By(Estimator::Conservative)), HasSubstr("mean_direction"));
 }
 
 TEST_F(Reconstruction, SettingsOutOfRangeAreRefused)

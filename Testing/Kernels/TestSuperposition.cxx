@@ -90,7 +90,7 @@ TEST_F(Superposition, OfFacesAlongFinerDirections)
   for (const double thickest : { 1.0, 20.0 })
   {
     Scene medium = UnevenMedium(thickest, thickest == 1.0 ? 0.7 : 0.999);
-    medium.settings.firstFlightDirections = 100;
+    medium.settings.uncollidedDirections = 100;
     EXPECT_LT(Nonlinearity(this->GetDevice(), medium), 1e-3) << thickest;
   }
 }

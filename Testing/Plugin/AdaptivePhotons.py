@@ -70,7 +70,7 @@ for scheme in ("As published", "Constant radius", "Nearest photons"):
     other = servermanager.Fetch(reconstruction)
     assert abs(cells(other, "fluence").sum() / total - 1) < 1e-5, scheme
     assert not other.GetCellData().HasArray("fluence_error"), scheme
-reconstruction.Scheme = "Sound"
+reconstruction.Scheme = "Conservative"
 
 picture = MediumRayCaster(Input=reconstruction, ImageSize=[80, 60])
 radiance = vtk_to_numpy(servermanager.Fetch(picture).GetPointData().GetArray("radiance"))
@@ -93,7 +93,7 @@ assert marcher.MediumKept == 0
 fresh = PhotonMarcher(Input=octree, Photons=emitter, PhotonCounts=1)
 assert (cells(servermanager.Fetch(fresh), "fluence") == cells(servermanager.Fetch(marcher), "fluence")).all()
 
-# Without a map photons are spread evenly, in one batch, of which the sound scheme cannot tell the error.
+# Without a map photons are spread evenly, in one batch, of which the conservative scheme cannot tell the error.
 emitter.ImportanceMap = None
 photons = servermanager.Fetch(emitter)
 assert photons.GetPointData().GetArray("weight").GetRange() == (1, 1)

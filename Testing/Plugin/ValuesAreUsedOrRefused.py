@@ -41,7 +41,7 @@ WIDER = {
     "SupersamplingFactor": "above",
     "PilotCount": "above",
     "TimeBudget": "below",
-    "FirstFlightDirections": "above",  # any square number
+    "UncollidedDirections": "above",  # any square number
     "PhotonImportance.Background": "below",  # above 0
 }
 # The ends of what only says how a slider goes, or need something else set with them.
@@ -220,17 +220,17 @@ def set_numbers(worker, handle, prop, values):
 
 def try_end(worker, prop, values, what):
     handle = worker.proxy.GetProperty(prop.get("name")).SMProperty
-    sound = [handle.GetElement(i) for i in range(handle.GetNumberOfElements())]
+    conservative = [handle.GetElement(i) for i in range(handle.GetNumberOfElements())]
     set_numbers(worker, handle, prop, values)
     found, data = worker.run()
     if found or worker.empty(data):
         faults.append("%s: it is in the range, and refused: %s" % (what, found))
-    set_numbers(worker, handle, prop, sound)
+    set_numbers(worker, handle, prop, conservative)
 
 
 def try_value(worker, prop, value, component, must_be_refused, what):
     handle = worker.proxy.GetProperty(prop.get("name")).SMProperty
-    sound = [handle.GetElement(i) for i in range(handle.GetNumberOfElements())]
+    conservative = [handle.GetElement(i) for i in range(handle.GetNumberOfElements())]
     whole = prop.tag == "IntVectorProperty"
     handle.SetElement(component, int(value) if whole else value)
     worker.proxy.UpdateVTKObjects()
@@ -244,7 +244,7 @@ def try_value(worker, prop, value, component, must_be_refused, what):
             faults.append("%s: an error, and an output" % what)
     elif data is not None and not is_finite(data):
         faults.append("%s: no error, and an output that is not finite" % what)
-    set_numbers(worker, handle, prop, sound)
+    set_numbers(worker, handle, prop, conservative)
     return bool(found)
 
 
@@ -270,7 +270,7 @@ def check(name, proxy):
         if refused:
             found, data = worker.run()
             if found or worker.empty(data):
-                faults.append("%s.%s: it does not work again with a sound value: %s" % (name, prop.get("name"), found))
+                faults.append("%s.%s: it does not work again with a conservative value: %s" % (name, prop.get("name"), found))
     return tried
 
 

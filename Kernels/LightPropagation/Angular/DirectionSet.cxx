@@ -82,7 +82,7 @@ DirectionSet PublishedDirections(int perFace)
   return CubeDirections(perFace, false, "DirectionsPerFace");
 }
 
-DirectionSet SoundDirections(int perFace, const std::string& name)
+DirectionSet EquiangularDirections(int perFace, const std::string& name)
 {
   DirectionSet set = CubeDirections(perFace, true, name);
   const int n = set.cellsPerEdge;

@@ -37,7 +37,7 @@ DirectionSet PublishedDirections(int perFace);
 /// light through slabs, 2 E3(tau), had five to ten times the error.
 /// The set is unchanged by every rotation and mirroring of the cube, to the last bit.
 /// @param perFace  directions per face, a square number, else InvalidInput that calls it `name`
-DirectionSet SoundDirections(int perFace, const std::string& name = "DirectionsPerFace");
+DirectionSet EquiangularDirections(int perFace, const std::string& name = "DirectionsPerFace");
 
 /// What a set carries of the flux of even light through a face, over the exact pi: the kink of |mu| at grazing directions makes it
 /// 0.9875 with 25 directions per face, 1.0019 with 100. Light that enters is off by as much.

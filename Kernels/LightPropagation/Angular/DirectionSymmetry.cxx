@@ -27,7 +27,7 @@ std::array<double, 3> Standard(std::array<double, 3> omega, const Grid& grid, co
 }
 }
 
-MirrorClasses::MirrorClasses(const Grid& grid, const std::array<bool, 3>& periodic, const DirectionSet& set)
+DirectionSymmetry::DirectionSymmetry(const Grid& grid, const std::array<bool, 3>& periodic, const DirectionSet& set)
   : ClassOf(set.directions.size())
 {
   std::array<bool, 3> single;
@@ -50,12 +50,12 @@ MirrorClasses::MirrorClasses(const Grid& grid, const std::array<bool, 3>& period
   }
 }
 
-int MirrorClasses::Count() const
+int DirectionSymmetry::Count() const
 {
   return static_cast<int>(this->Classes.size());
 }
 
-std::vector<Bundle> MirrorClasses::Standing(const std::vector<Bundle>& bundles) const
+std::vector<Bundle> DirectionSymmetry::Standing(const std::vector<Bundle>& bundles) const
 {
   std::vector<Bundle> standing;
   for (const Bundle& bundle : bundles)

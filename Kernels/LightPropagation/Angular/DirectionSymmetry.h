@@ -11,10 +11,10 @@ namespace tyndall
 /// Directions that carry the same light because an axis of the grid has one voxel and is periodic: nothing changes along it, so
 /// that mirror images at it are the same, and so are directions with two such axes (of voxels that are square across them)
 /// exchanged. One of each class, the one whose components along such axes are positive and fall, stands for all.
-class MirrorClasses
+class DirectionSymmetry
 {
 public:
-  MirrorClasses(const Grid& grid, const std::array<bool, 3>& periodic, const DirectionSet& set);
+  DirectionSymmetry(const Grid& grid, const std::array<bool, 3>& periodic, const DirectionSet& set);
 
   bool Any() const { return this->Count() < static_cast<int>(this->ClassOf.size()); } ///< has more than one direction
   int Count() const;                                                                  ///< of classes

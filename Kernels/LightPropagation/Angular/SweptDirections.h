@@ -20,7 +20,7 @@ public:
 
   const DirectionSet& Set() const { return this->Directions; }
   RayStarts Starts() const { return this->WhereRaysStart; }
-  const MirrorClasses& Symmetry() const { return this->Mirrors; }
+  const DirectionSymmetry& Symmetry() const { return this->Mirrors; }
   bool MergesMirrors() const { return this->Merges; } ///< net flux tells them apart
   /// Those that `direction` stands for, itself among them.
   std::vector<int> AllOf(int direction) const;
@@ -35,7 +35,7 @@ private:
   int MapResolution;
   DirectionSet Directions;
   RayStarts WhereRaysStart;
-  MirrorClasses Mirrors;
+  DirectionSymmetry Mirrors;
   bool Merges;
 };
 }

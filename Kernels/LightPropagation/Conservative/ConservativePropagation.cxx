@@ -69,7 +69,7 @@ std::vector<std::string> LeftOutOf(const TransportParts& parts, const IterationR
   };
   const MediumTraits& traits = parts.Problem.Traits();
   const int directions = static_cast<int>(parts.Usual.Set().directions.size());
-  const MirrorClasses& symmetry = parts.Usual.Symmetry();
+  const DirectionSymmetry& symmetry = parts.Usual.Symmetry();
   say(parts.Layout.channels == 3 && parts.Layout.sharedExtinction, left_out::GreyExtinction);
   say(parts.Problem.TheMedium().g == 0.0 && traits.scatters, left_out::Isotropic);
   say(!traits.scatters, left_out::NoScattering);

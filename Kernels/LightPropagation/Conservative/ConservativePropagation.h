@@ -11,10 +11,10 @@ namespace tyndall
 {
 /// Light propagation maps as they should be: the method of Fattal (2009) and Gruson et al. (2012), with
 ///  - conservative deposit: what a ray loses, its voxel gains (path integrals by phi1; no division by sigma_t);
-///  - SoundDirections;
+///  - EquiangularDirections;
 ///  - lights, and what is small and bright in the environment, as a first-collision source: their unscattered light is
 ///    followed along exact rays, not through the directions;
-///  - what else comes in from outside along more directions until it is first scattered, if firstFlightDirections are given;
+///  - what else comes in from outside along more directions until it is first scattered, if uncollidedDirections are given;
 ///  - propagation and collection in one, so that memory is (2 source, path, fluence, sigma_s) arrays and the maps.
 ///
 /// Isotropic scattering. A medium with mean cosine g is solved as the isotropic medium with sigma_s (1 - g) (similarity

@@ -281,11 +281,11 @@ void DiffusionAcceleration::MakeSystems()
       ofChannel[face] = incoming[face][c];
       this->PowerIn[c] += this->Tally.in[face][c];
     }
-    const LowOrder::Arrays arrays = { parts.Layout.Stride(), parts.Layout.ExtinctionFirst(c),
+    const DiffusionSystem::Arrays arrays = { parts.Layout.Stride(), parts.Layout.ExtinctionFirst(c),
       c * parts.Layout.Stride(), &parts.OnDevice.SigmaT(), &parts.OnDevice.SigmaA(), &parts.OnDevice.SigmaS(),
       &this->Given, &parts.Source, &parts.Path, &this->PartialCurrents,
       this->Passed.Size() > 0 ? &this->Passed : nullptr };
-    this->Systems.push_back(std::make_unique<LowOrder>(parts.TheDevice, parts.Layout.grid, this->Settings.periodic,
+    this->Systems.push_back(std::make_unique<DiffusionSystem>(parts.TheDevice, parts.Layout.grid, this->Settings.periodic,
       parts.Usual.Set(), pattern, arrays, ofChannel, this->LinearSource));
   }
 }

@@ -51,7 +51,7 @@ private:
   // Scattered light, and what comes in along the usual directions
   Buffer<float> Given, PartialCurrents; ///< as DiffusionSystem::Arrays has them
   std::unique_ptr<SweepInMemory> Swept;
-  std::vector<std::unique_ptr<LowOrder>> Systems;
+  std::vector<std::unique_ptr<DiffusionSystem>> Systems;
   SweepTally Tally;                                  ///< of the last sweep
   Rgb GivenPower = {}, PowerIn = {};                 ///< W, emitted or first scattered; through faces
   std::vector<std::vector<double>> Found;            ///< W / length^2, without lamps'

@@ -143,9 +143,9 @@ LightField SolveWithErrorEstimate(
   plain.adaptDirections = false;
   const std::vector<float> many = solve(coarse.Get(), plain, part(FinePart, 0.95)).fluence;
   plain.directionsPerFace = OtherDirections(directions);
-  if (settings.firstFlightDirections > 0)
+  if (settings.uncollidedDirections > 0)
   {
-    plain.firstFlightDirections = OtherDirections(settings.firstFlightDirections);
+    plain.uncollidedDirections = OtherDirections(settings.uncollidedDirections);
   }
   const std::vector<float> few = solve(coarse.Get(), plain, part(0.95, 1.0)).fluence;
 

@@ -102,7 +102,7 @@ std::array<double, 4> Leaving(const Surface& s)
     halfSpace += 2.0 * Nodes[n] * Weights[n] * OfHalfSpace(s, Nodes[n], s.brought);
     deep += 2.0 * Nodes[n] * Weights[n] * FromDeepWithin(s.albedo, Nodes[n]);
   }
-  // What the low-order system makes of the same.
+  // What the diffusion system makes of the same.
   double exact = 0.0;
   for (std::size_t n = 0; n < Nodes.size(); ++n)
   {

@@ -21,7 +21,7 @@ struct SurfacePowers
 /// The radiance that leaves a medium of thick voxels through the faces of the box, W / (length^2 sr),
 /// [cell][cosine][channel] (BoxFaces.h). Empty where no voxel at a face is thicker than ThickAtSurface.
 ///
-/// The low-order system knows how much power leaves through each cell; how that is spread over the angle is known of
+/// The diffusion system knows how much power leaves through each cell; how that is spread over the angle is known of
 /// half-spaces (Chandrasekhar 1960, Radiative Transfer, chapters III to V), isotropic scattering of albedo a, H its
 /// function, c = sqrt(1 - a):
 ///   I(mu) = L (1 - c H(mu))                                             what diffuse light L from outside becomes

@@ -43,7 +43,7 @@ TransportParts::TransportParts(Device& device, const PropagationProblem& problem
   , Problem(problem)
   , Layout(LayoutOf(problem))
   , OnDevice(device, problem.TheMedium(), this->Layout, NeedsOf(problem, this->Layout, accelerated))
-  , Usual(problem.TheGrid(), problem.Settings(), SoundDirections(problem.Settings().directionsPerFace),
+  , Usual(problem.TheGrid(), problem.Settings(), EquiangularDirections(problem.Settings().directionsPerFace),
       StartsOf(problem.Settings()))
   , Emission(EmissionOf(problem))
   , Accelerated(accelerated)
@@ -88,10 +88,10 @@ void TransportParts::FindBoundaryLight()
   const PropagationSettings& settings = this->Problem.Settings();
   const Illumination& shining = this->Problem.Shining();
   const Grid& grid = this->Problem.TheGrid();
-  if (settings.firstFlightDirections > 0)
+  if (settings.uncollidedDirections > 0)
   {
     this->Fine = std::make_unique<SweptDirections>(grid, settings,
-      SoundDirections(settings.firstFlightDirections, "FirstFlightDirections"),
+      EquiangularDirections(settings.uncollidedDirections, "UncollidedDirections"),
       this->Accelerated ? StartsOf(settings) : RayStarts::Staggered);
   }
   const SplitEnvironment environment = Split(shining.environment, (this->Fine ? *this->Fine : this->Usual).Set());

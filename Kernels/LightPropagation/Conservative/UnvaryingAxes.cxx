@@ -8,7 +8,7 @@ namespace tyndall
 namespace
 {
 constexpr double Width =
-  10.0; ///< in edges across: wider gains little, and flat voxels make the low-order system slower
+  10.0; ///< in edges across: wider gains little, and flat voxels make the diffusion system slower
 constexpr int EdgeInSlabs = 12;
 
 bool IsNear(const Light& light)

@@ -1,4 +1,4 @@
-// The low-order system of a channel, see DiffusionSystem.h: what a sweep found becomes its right-hand side. Read after
+// The diffusion system of a channel, see DiffusionSystem.h: what a sweep found becomes its right-hand side. Read after
 // DiffusionLayout.cl.
 //
 // Face d of a voxel is -x, +x, -y, +y, -z, +z. tau is the optical length of a voxel along an axis.
@@ -39,12 +39,12 @@ static float among_equals(float y)
 }
 
 // What a face passes per difference of fluence and area.
-static float pass_face(const low_order_layout* layout, float tau0, float tau1, float y0, float y1, float stairs)
+static float pass_face(const diffusion_layout* layout, float tau0, float tau1, float y0, float y1, float flat_source)
 {
   const float mean = 0.5f * (tau0 + tau1);
   if (!layout->linear)
   {
-    return stairs / fmax(mean, layout->floor);
+    return flat_source / fmax(mean, layout->floor);
   }
   const float sum = tau0 + tau1;
   const float equal = sum > 0.0f ? 1.0f - fabs(tau0 - tau1) / sum : 1.0f;
@@ -54,41 +54,41 @@ static float pass_face(const low_order_layout* layout, float tau0, float tau1, f
   return 1.0f / (3.0f * fmax(0.5f * (way0 + way1), layout->floor));
 }
 
-static float face_area(const low_order_layout* layout, int axis)
+static float face_area(const diffusion_layout* layout, int axis)
 {
   return layout->spacing[(axis + 1) % 3] * layout->spacing[(axis + 2) % 3];
 }
-static float volume_of(const low_order_layout* layout)
+static float volume_of(const diffusion_layout* layout)
 {
   return layout->spacing[0] * layout->spacing[1] * layout->spacing[2];
 }
 
 // Optical length from the voxel's middle to a face of the box, as the light's way counts.
-static float way_to_boundary(const low_order_layout* layout, float tau, float sigma_t, float sigma_a)
+static float way_to_boundary(const diffusion_layout* layout, float tau, float sigma_t, float sigma_a)
 {
   return layout->linear ? tau / at_border(half_diffusion_length(tau, sigma_t, sigma_a)) : tau;
 }
-static float pass_boundary(const low_order_layout* layout, float way)
+static float pass_boundary(const diffusion_layout* layout, float way)
 {
   const float x = 3.0f * layout->half_range * way;
   return 2.0f * layout->half_range / (1.0f + (layout->linear ? x : x / (1.0f + x)));
 }
 
-// stairs  [axis][stride]
-__kernel void low_order_stairs(low_order_layout layout, const __global float* sigma_t, __global float* stairs)
+// flat_source  [axis][stride]
+__kernel void diffusion_flat_source(diffusion_layout layout, const __global float* sigma_t, __global float* flat_source)
 {
   VOXEL(layout.size)
   sigma_t += layout.first_t;
   for (int axis = 0; axis < 3; ++axis)
   {
-    stairs[(ulong)axis * layout.stride + i] = stair(sigma_t[i] * layout.spacing[axis]);
+    flat_source[(ulong)axis * layout.stride + i] = stair(sigma_t[i] * layout.spacing[axis]);
   }
 }
 
 // conductance  [axis][voxel] of the voxel's low face, length^2; 0 on the box's border
 // loss         what absorption and the border take per fluence
-__kernel void low_order_conductance(low_order_layout layout, const __global float* sigma_t, const __global float* sigma_a,
-  const __global float* stairs, __global float* conductance, __global float* loss)
+__kernel void diffusion_conductance(diffusion_layout layout, const __global float* sigma_t, const __global float* sigma_a,
+  const __global float* flat_source, __global float* conductance, __global float* loss)
 {
   VOXEL(layout.size)
   sigma_t += layout.first_t;
@@ -108,7 +108,7 @@ __kernel void low_order_conductance(low_order_layout layout, const __global floa
     const float tau0 = sigma_t[j] * h, tau1 = sigma_t[i] * h;
     const float y0 = half_diffusion_length(tau0, sigma_t[j], sigma_a[j]);
     const float y1 = half_diffusion_length(tau1, sigma_t[i], sigma_a[i]);
-    const float passes = area * pass_face(&layout, tau0, tau1, y0, y1, stairs[axis * stride + i] + stairs[axis * stride + j]);
+    const float passes = area * pass_face(&layout, tau0, tau1, y0, y1, flat_source[axis * stride + i] + flat_source[axis * stride + j]);
     conductance[axis * count + i] = (at == 0 && open) || layout.size[axis] == 1 ? 0.0f : passes;
     const int borders = open ? (at == 0) + (at == layout.size[axis] - 1) : 0;
     taken += borders * area * pass_boundary(&layout, way_to_boundary(&layout, tau1, sigma_t[i], sigma_a[i]));
@@ -116,7 +116,7 @@ __kernel void low_order_conductance(low_order_layout layout, const __global floa
   loss[i] = taken;
 }
 
-static bool is_border(const low_order_layout* layout, const int* at, int d)
+static bool is_border(const diffusion_layout* layout, const int* at, int d)
 {
   const int axis = d / 2;
   return !layout->periodic[axis] && at[axis] == (d & 1 ? layout->size[axis] - 1 : 0);
@@ -131,7 +131,7 @@ static float contrast(float tau, float beyond)
 }
 
 // Of a thick voxel beside thinner ones those see only the skin: how much that counts, and for each inner face.
-static float openness(const low_order_layout* layout, const __global float* sigma_t, int i, const int* next, const int* at, float* open)
+static float openness(const diffusion_layout* layout, const __global float* sigma_t, int i, const int* next, const int* at, float* open)
 {
   float most = 0.0f;
   for (int d = 0; d < 6; ++d)
@@ -148,7 +148,7 @@ static float openness(const low_order_layout* layout, const __global float* sigm
 
 // What the sweep's light is compared with: the light it found where voxels are thin, the light it was given where they are
 // thick and it only repeats that.
-__kernel void low_order_model(low_order_layout layout, const __global float* sigma_t, const __global float* path,
+__kernel void diffusion_model(diffusion_layout layout, const __global float* sigma_t, const __global float* path,
   const __global exact* fluence, const __global float* source, __global float* model)
 {
   VOXEL(layout.size)
@@ -171,18 +171,18 @@ typedef struct
 {
   const __global float* sigma_t;
   const __global float* sigma_a;
-  const __global float* stairs;
+  const __global float* flat_source;
   const __global float* conductance;
-  const __global float* entering;
+  const __global float* currents;
   const __global float* passed;
   const __global float* model;
   const __global float* pattern;
   ulong stride;
   int count;
-} low_order_arrays;
+} diffusion_arrays;
 
 // Rays that cross a face, over those that should: what a repeated pattern of few rays has too many or too few.
-static float pattern_at(const low_order_layout* layout, const low_order_arrays* arrays, int axis, const int* at, float tau)
+static float pattern_at(const diffusion_layout* layout, const diffusion_arrays* arrays, int axis, const int* at, float tau)
 {
   const int b = axis == 0 ? 1 : 0;
   const int c = axis == 2 ? 1 : 2;
@@ -191,36 +191,36 @@ static float pattern_at(const low_order_layout* layout, const low_order_arrays* 
   return 1.0f + thick * (crossing - 1.0f);
 }
 
-// How much of what a sweep knows better than diffusion is believed: little where voxels are thick, or the light dies away within
+// How much of what a sweep knows better than diffusion is transport_weight: little where voxels are thick, or the light dies away within
 // one, and it knows nothing.
-static float belief(const low_order_layout* layout, float tau, float absorbing)
+static float weight_of_transport(const diffusion_layout* layout, float tau, float absorbing)
 {
   return layout->linear ? 1.0f / (1.0f + tau * (0.25f * tau + 3.0f * absorbing)) : 1.0f;
 }
 
 // Power through inner face d out of voxel i, that of the sweep less that of the model.
 static float remainder_of_face(
-  const low_order_layout* layout, const low_order_arrays* arrays, int d, int i, int j, const int* at)
+  const diffusion_layout* layout, const diffusion_arrays* arrays, int d, int i, int j, const int* at)
 {
   const int axis = d / 2;
   const ulong stride = arrays->stride;
   const float tau = 0.5f * layout->spacing[axis] * (arrays->sigma_t[i] + arrays->sigma_t[j]);
   const float passes = arrays->conductance[axis * arrays->count + (d & 1 ? j : i)];
-  const float net = arrays->entering[(d ^ 1) * stride + j] - arrays->entering[d * stride + i];
-  const float stairs = arrays->stairs[axis * stride + i] + arrays->stairs[axis * stride + j];
+  const float net = arrays->currents[(d ^ 1) * stride + j] - arrays->currents[d * stride + i];
+  const float flat_source = arrays->flat_source[axis * stride + i] + arrays->flat_source[axis * stride + j];
   const float spread =
-    layout->linear ? 3.0f * passes * stairs * pattern_at(layout, arrays, axis, at, tau) : passes;
+    layout->linear ? 3.0f * passes * flat_source * pattern_at(layout, arrays, axis, at, tau) : passes;
   const float absorbing = 0.5f * layout->spacing[axis] * (arrays->sigma_a[i] + arrays->sigma_a[j]);
   const float h = layout->spacing[axis];
   const float tau0 = h * arrays->sigma_t[i], tau1 = h * arrays->sigma_t[j];
   const float skin = layout->linear ? contrast(fmax(tau0, tau1), fmin(tau0, tau1)) : 0.0f;
-  const float believed = belief(layout, tau, absorbing) * (1.0f - skin);
-  return believed > 1e-12f ? believed * (net - spread * (arrays->model[i] - arrays->model[j])) : 0.0f;
+  const float transport_weight = weight_of_transport(layout, tau, absorbing) * (1.0f - skin);
+  return transport_weight > 1e-12f ? transport_weight * (net - spread * (arrays->model[i] - arrays->model[j])) : 0.0f;
 }
 
 // Power through a face of the box, out less in, that the model expects; what it expects without any light in the voxel.
 static float model_of_boundary(
-  const low_order_layout* layout, const low_order_arrays* arrays, int d, int i, const int* at, float* dark)
+  const diffusion_layout* layout, const diffusion_arrays* arrays, int d, int i, const int* at, float* dark)
 {
   const int axis = d / 2;
   const float a = layout->half_range;
@@ -237,12 +237,12 @@ static float model_of_boundary(
     return net * area;
   }
   const float at_face = light - 1.5f * way * net;
-  const float spread = a * at_face + 3.0f * net * arrays->stairs[axis * arrays->stride + i] - incoming;
+  const float spread = a * at_face + 3.0f * net * arrays->flat_source[axis * arrays->stride + i] - incoming;
   return pattern_at(layout, arrays, axis, at, tau) * spread * area;
 }
 
 // Lamps' light that is scattered near face d of voxel i and passes it at once, less what comes the other way.
-static float passing(const low_order_layout* layout, const low_order_arrays* arrays, int d, int i, const int* next, bool border)
+static float passing(const diffusion_layout* layout, const diffusion_arrays* arrays, int d, int i, const int* next, bool border)
 {
 #if PASSING
   return arrays->passed[d * arrays->stride + i] - (border ? 0.0f : arrays->passed[(d ^ 1) * arrays->stride + next[d]]);
@@ -255,9 +255,9 @@ static float passing(const low_order_layout* layout, const low_order_arrays* arr
 //   power    what the medium shines there, in the sweep, less what it takes of the light
 //   share    [face] its part for each face: as the sweep's light seems to leave through them
 //   seeming  [face] power out, of the sweep, that seems to leave through each
-//   believed  how much of it counts
-static float remainder_of_borders(const low_order_layout* layout, const low_order_arrays* arrays, int i, const int* next,
-  const int* at, float power, float* share, float* seeming, float* believed)
+//   transport_weight  how much of it counts
+static float remainder_of_borders(const diffusion_layout* layout, const diffusion_arrays* arrays, int i, const int* next,
+  const int* at, float power, float* share, float* seeming, float* transport_weight)
 {
   float left = power; // through the box's faces, out less in
   float in = 0.0f, expected = 0.0f, longest = 0.0f, sum = 0.0f, borders = 0.0f;
@@ -265,7 +265,7 @@ static float remainder_of_borders(const low_order_layout* layout, const low_orde
   for (int d = 0; d < 6; ++d)
   {
     const int axis = d / 2;
-    const float entered = arrays->entering[d * arrays->stride + i];
+    const float entered = arrays->currents[d * arrays->stride + i];
     model[d] = share[d] = seeming[d] = 0.0f;
     if (is_border(layout, at, d))
     {
@@ -273,7 +273,7 @@ static float remainder_of_borders(const low_order_layout* layout, const low_orde
       model[d] = model_of_boundary(layout, arrays, d, i, at, &dark);
       const float tau = arrays->sigma_t[i] * layout->spacing[axis];
       const float through = exp(-fmin(tau, 80.0f));
-      seeming[d] = through * arrays->entering[(d ^ 1) * arrays->stride + i] +
+      seeming[d] = through * arrays->currents[(d ^ 1) * arrays->stride + i] +
         (1.0f - through) * layout->half_range * face_area(layout, axis) * fmax(arrays->model[i], 0.0f);
       expected += model[d];
       sum += seeming[d];
@@ -283,11 +283,11 @@ static float remainder_of_borders(const low_order_layout* layout, const low_orde
     }
     else if (layout->size[axis] > 1)
     {
-      left -= arrays->entering[(d ^ 1) * arrays->stride + next[d]] - entered;
+      left -= arrays->currents[(d ^ 1) * arrays->stride + next[d]] - entered;
     }
   }
-  *believed = belief(layout, longest * arrays->sigma_t[i], longest * arrays->sigma_a[i]);
-  *believed = *believed > 1e-12f ? *believed : 0.0f;
+  *transport_weight = weight_of_transport(layout, longest * arrays->sigma_t[i], longest * arrays->sigma_a[i]);
+  *transport_weight = *transport_weight > 1e-12f ? *transport_weight : 0.0f;
   // Of a thick voxel what is left is a small difference of what it shines and takes.
   const float rounding = 1e-6f * arrays->sigma_t[i] * volume_of(layout) * fmax(arrays->model[i], 0.0f);
   const float whole = rounding < 0.01f * sum || sum <= 0.0f ? left + in : sum;
@@ -296,14 +296,14 @@ static float remainder_of_borders(const low_order_layout* layout, const low_orde
     // Where nothing goes straight through, what comes in through faces beside leaves all the same.
     const float part = sum > 0.0f ? seeming[d] / sum : is_border(layout, at, d) ? 1.0f / borders : 0.0f;
     seeming[d] = whole * part;
-    const float net = seeming[d] - arrays->entering[d * arrays->stride + i] - model[d];
-    share[d] = *believed > 0.0f && is_border(layout, at, d) ? *believed * net : 0.0f;
+    const float net = seeming[d] - arrays->currents[d * arrays->stride + i] - model[d];
+    share[d] = *transport_weight > 0.0f && is_border(layout, at, d) ? *transport_weight * net : 0.0f;
   }
-  return *believed > 0.0f ? *believed * (left - expected) : 0.0f;
+  return *transport_weight > 0.0f ? *transport_weight * (left - expected) : 0.0f;
 }
 
 // Power through face d out of voxel i, less what comes in, by the solution; `share` of its remainder where it is the box's.
-static exact power_of_face(const low_order_layout* layout, const low_order_arrays* arrays, const __global exact* fluence,
+static exact power_of_face(const diffusion_layout* layout, const diffusion_arrays* arrays, const __global exact* fluence,
   int d, int i, const int* next, const int* at, const float* share)
 {
   const int axis = d / 2;
@@ -326,24 +326,24 @@ static exact power_of_face(const low_order_layout* layout, const low_order_array
 #define ARRAYS_OF_CHANNEL                                                      \
   sigma_t += layout.first_t;                                                   \
   sigma_a += layout.first;                                                     \
-  entering += 6 * (ulong)layout.first;                                         \
+  currents += 6 * (ulong)layout.first;                                         \
   passed += PASSING ? 6 * (ulong)layout.first : 0;                             \
   source += layout.first;                                                      \
   path += layout.first;                                                        \
   const ulong stride = layout.stride;                                          \
   const int count = layout.size[0] * layout.size[1] * layout.size[2];          \
-  const low_order_arrays arrays = { sigma_t, sigma_a, stairs, conductance, entering, passed, model, pattern, stride, count }; \
+  const diffusion_arrays arrays = { sigma_t, sigma_a, flat_source, conductance, currents, passed, model, pattern, stride, count }; \
   const int at[3] = { x, y, z };                                               \
   int next[6];                                                                 \
   find_neighbours(layout.size, x, y, z, i, next);                              \
   const float per_radiance = 4.0f * M_PI_F * volume_of(&layout);               \
-  float share[6], seeming[6], believed;
+  float share[6], seeming[6], transport_weight;
 
 // The right-hand side, W.
 // given    emitted and first scattered light of lights, W / (length^3 sr)
 // source   of the sweep, W / (length^3 sr)
-__kernel void low_order_balance(low_order_layout layout, const __global float* sigma_t, const __global float* sigma_a,
-  const __global float* stairs, const __global float* conductance, const __global float* entering, const __global float* passed,
+__kernel void diffusion_balance(diffusion_layout layout, const __global float* sigma_t, const __global float* sigma_a,
+  const __global float* flat_source, const __global float* conductance, const __global float* currents, const __global float* passed,
   const __global float* model, const __global float* pattern, const __global float* source,
   const __global float* path, const __global float* given, __global exact* right)
 {
@@ -366,7 +366,7 @@ __kernel void low_order_balance(low_order_layout layout, const __global float* s
   if (IS_OUTERMOST(layout, at))
   {
     power -= remainder_of_borders(&layout, &arrays, i, next, at, source[i] * per_radiance - sigma_t[i] * path[i], share,
-      seeming, &believed);
+      seeming, &transport_weight);
   }
   right[i] = power;
 }
@@ -375,8 +375,8 @@ __kernel void low_order_balance(low_order_layout layout, const __global float* s
 // leave there in the sweep, W; for voxels with several such faces how much that counts, else -1; power out less power
 // in, W, without what the sweep knows better: that is right for a face of the box on the whole, but not from voxel to
 // voxel.
-__kernel void low_order_outflow(low_order_layout layout, const __global float* sigma_t, const __global float* sigma_a,
-  const __global float* stairs, const __global float* conductance, const __global float* entering, const __global float* passed,
+__kernel void diffusion_outflow(diffusion_layout layout, const __global float* sigma_t, const __global float* sigma_a,
+  const __global float* flat_source, const __global float* conductance, const __global float* currents, const __global float* passed,
   const __global float* model, const __global float* pattern, const __global float* source,
   const __global float* path, const __global exact* fluence, __global exact* outflow)
 {
@@ -387,7 +387,7 @@ __kernel void low_order_outflow(low_order_layout layout, const __global float* s
   }
   ARRAYS_OF_CHANNEL
   remainder_of_borders(&layout, &arrays, i, next, at, source[i] * per_radiance - sigma_t[i] * path[i], share,
-      seeming, &believed);
+      seeming, &transport_weight);
   int borders = 0;
   for (int d = 0; d < 6; ++d)
   {
@@ -403,17 +403,17 @@ __kernel void low_order_outflow(low_order_layout layout, const __global float* s
       __global exact* face = outflow + 4 * (begin + at[v] * layout.size[u] + at[u]);
       const float none[6] = { 0.0f };
       face[3] = power_of_face(&layout, &arrays, fluence, d, i, next, at, none);
-      face[0] = face[3] + share[d] + entering[d * stride + i];
+      face[0] = face[3] + share[d] + currents[d * stride + i];
       face[1] = seeming[d];
-      face[2] = borders > 1 ? believed : -1.0f;
+      face[2] = borders > 1 ? transport_weight : -1.0f;
     }
     begin += layout.size[u] * layout.size[v];
   }
 }
 
 // Net flux, W / length^2 times volume, [x, y, z][stride], added to.
-__kernel void low_order_flux(low_order_layout layout, const __global float* sigma_t, const __global float* sigma_a,
-  const __global float* stairs, const __global float* conductance, const __global float* entering, const __global float* passed,
+__kernel void diffusion_flux(diffusion_layout layout, const __global float* sigma_t, const __global float* sigma_a,
+  const __global float* flat_source, const __global float* conductance, const __global float* currents, const __global float* passed,
   const __global float* model, const __global float* pattern, const __global float* source,
   const __global float* path, const __global exact* fluence, __global float* flux)
 {
@@ -423,7 +423,7 @@ __kernel void low_order_flux(low_order_layout layout, const __global float* sigm
   if (IS_OUTERMOST(layout, at))
   {
     remainder_of_borders(&layout, &arrays, i, next, at, source[i] * per_radiance - sigma_t[i] * path[i], share,
-      seeming, &believed);
+      seeming, &transport_weight);
   }
   for (int axis = 0; axis < 3; ++axis)
   {
@@ -435,7 +435,7 @@ __kernel void low_order_flux(low_order_layout layout, const __global float* sigm
 
 // The next sweep's source: what the medium shines and what it scatters; of voxels with a skin, what makes that shine as the light
 // there and the power through it want: 4 J+ = fluence + 2 J.
-__kernel void low_order_source(low_order_layout layout, const __global float* given, const __global float* sigma_s,
+__kernel void diffusion_source(diffusion_layout layout, const __global float* given, const __global float* sigma_s,
   const __global exact* fluence, const __global float* sigma_t, const __global float* sigma_a,
   const __global float* conductance, const __global float* passed, __global float* source)
 {
@@ -478,11 +478,11 @@ __kernel void low_order_source(low_order_layout layout, const __global float* gi
 
 // Of one light: each passes its own part, which depends on where its light is lost.
 // path      W length, of the light
-// nearness  of it, as in SweepVolume.h, [channel][face][stride]
+// moments  of it, as in SweepVolume.h, [channel][face][stride]
 // passed    [channel][face][stride] W, added to
 // all_path  W length, of all lights, added to
-__kernel void low_order_pass(low_order_layout layout, const __global float* sigma_t, const __global float* sigma_a,
-  const __global float* sigma_s, const __global float* path, const __global float* nearness, __global float* passed, __global float* all_path)
+__kernel void diffusion_pass(diffusion_layout layout, const __global float* sigma_t, const __global float* sigma_a,
+  const __global float* sigma_s, const __global float* path, const __global float* moments, __global float* passed, __global float* all_path)
 {
   VOXEL(layout.size)
   const int at[3] = { x, y, z };
@@ -491,7 +491,7 @@ __kernel void low_order_pass(low_order_layout layout, const __global float* sigm
   const ulong stride = layout.stride;
   sigma_t += layout.first_t;
   sigma_a += layout.first;
-  nearness += 6 * (ulong)layout.first;
+  moments += 6 * (ulong)layout.first;
   passed += 6 * (ulong)layout.first;
   const float length = path[layout.first + i];
   const float k = sigma_t[i] > 0.0f ? sqrt(3.0f * fmin(sigma_a[i] / sigma_t[i], 1.0f)) : 0.0f;
@@ -501,7 +501,7 @@ __kernel void low_order_pass(low_order_layout layout, const __global float* sigm
     const int axis = d / 2;
     const float h = layout.spacing[axis];
     const float tau = sigma_t[i] * h;
-    const float r = length > 0.0f ? fmin(2.0f * nearness[d * stride + i] / length, 1.0f) : 0.0f;
+    const float r = length > 0.0f ? fmin(2.0f * moments[d * stride + i] / length, 1.0f) : 0.0f;
     part[d] = 0.0f;
     if (tau <= 0.0f || r <= 0.0f)
     {

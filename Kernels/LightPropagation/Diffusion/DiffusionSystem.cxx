@@ -30,9 +30,9 @@ double FaceArea(const Grid& grid, int axis)
 
 /// Of `Arrays`, where a channel begins.
 template <class Arrays>
-LowOrderLayout LayoutOf(const Grid& grid, const std::array<bool, 3>& periodic, const Arrays& arrays)
+DiffusionLayout LayoutOf(const Grid& grid, const std::array<bool, 3>& periodic, const Arrays& arrays)
 {
-  LowOrderLayout layout = {};
+  DiffusionLayout layout = {};
   for (int axis = 0; axis < 3; ++axis)
   {
     layout.size[axis] = grid.size[axis];
@@ -46,7 +46,7 @@ LowOrderLayout LayoutOf(const Grid& grid, const std::array<bool, 3>& periodic, c
 }
 
 /// @param passing  lamps' light passes faces at once where it is scattered
-cl::Kernel LowOrderKernel(Device& device, const char* name, bool passing)
+cl::Kernel DiffusionKernel(Device& device, const char* name, bool passing)
 {
   return device.Kernel(name,
     { kernel_source::DiffusionLayout, kernel_source::LampPassing, kernel_source::DiffusionSystem,
@@ -117,13 +117,13 @@ std::vector<double> CrossingsIn(
 
 void PassLampLight(Device& device, const Grid& grid, const std::array<bool, 3>& periodic, const LampLight& light)
 {
-  LowOrderLayout layout = LayoutOf(grid, periodic, light);
+  DiffusionLayout layout = LayoutOf(grid, periodic, light);
   layout.linear = true;
-  cl::Kernel pass = LowOrderKernel(device, "low_order_pass", true);
-  With(pass, layout, *light.sigma_t, *light.sigma_a, *light.sigma_s, *light.path, *light.nearness, *light.passed,
+  cl::Kernel pass = DiffusionKernel(device, "diffusion_pass", true);
+  With(pass, layout, *light.sigma_t, *light.sigma_a, *light.sigma_s, *light.path, *light.moments, *light.passed,
     *light.allPath);
   device.Queue().enqueueNDRangeKernel(
-    pass, cl::NullRange, LowOrderSolver::Range(layout.size), LowOrderSolver::Group());
+    pass, cl::NullRange, MultigridSolver::Range(layout.size), MultigridSolver::Group());
 }
 
 CrossingPattern FindCrossingPattern(
@@ -156,7 +156,7 @@ CrossingPattern FindCrossingPattern(
   return pattern;
 }
 
-LowOrder::LowOrder(Device& device, const Grid& grid, const std::array<bool, 3>& periodic,
+DiffusionSystem::DiffusionSystem(Device& device, const Grid& grid, const std::array<bool, 3>& periodic,
   const DirectionSet& directions, const CrossingPattern& pattern, const Arrays& arrays,
   const std::array<double, 6>& incoming, bool linear)
   : TheDevice(device)
@@ -176,9 +176,9 @@ LowOrder::LowOrder(Device& device, const Grid& grid, const std::array<bool, 3>& 
   this->Layout.floor = static_cast<float>(Floor);
   std::copy(incoming.begin(), incoming.end(), this->Layout.incoming);
 
-  const char* what = "the low-order system";
+  const char* what = "the diffusion system";
   this->Pattern = Buffer<float>(device, pattern.values, what);
-  this->Stairs = Buffer<float>(device, 3 * arrays.stride, what);
+  this->FlatSource = Buffer<float>(device, 3 * arrays.stride, what);
   this->Model = Buffer<float>(device, this->Count, what);
   this->Right = ExactValues(device, this->Count, what);
   this->Given = ExactValues(device, this->Count, what);
@@ -198,53 +198,53 @@ LowOrder::LowOrder(Device& device, const Grid& grid, const std::array<bool, 3>& 
     this->ChangeBefore[i].Fill(0.0f);
   }
 
-  cl::Kernel stairs = this->Kernel("low_order_stairs");
-  With(stairs, this->Layout, *arrays.sigma_t, this->Stairs);
-  this->Run(stairs);
-  cl::Kernel conductance = this->Kernel("low_order_conductance");
-  With(conductance, this->Layout, *arrays.sigma_t, *arrays.sigma_a, this->Stairs, this->Solver.Conductance(),
+  cl::Kernel flat_source = this->Kernel("diffusion_flat_source");
+  With(flat_source, this->Layout, *arrays.sigma_t, this->FlatSource);
+  this->Run(flat_source);
+  cl::Kernel conductance = this->Kernel("diffusion_conductance");
+  With(conductance, this->Layout, *arrays.sigma_t, *arrays.sigma_a, this->FlatSource, this->Solver.Conductance(),
     this->Solver.Loss());
   this->Run(conductance);
   this->Solver.Coarsen();
 }
 
-cl::Kernel LowOrder::Kernel(const char* name) const
+cl::Kernel DiffusionSystem::Kernel(const char* name) const
 {
-  return LowOrderKernel(this->TheDevice, name, this->The.passed != nullptr);
+  return DiffusionKernel(this->TheDevice, name, this->The.passed != nullptr);
 }
 
-void LowOrder::Run(cl::Kernel& kernel)
+void DiffusionSystem::Run(cl::Kernel& kernel)
 {
   this->TheDevice.Queue().enqueueNDRangeKernel(
-    kernel, cl::NullRange, this->Solver.Range(this->Layout.size), LowOrderSolver::Group());
+    kernel, cl::NullRange, this->Solver.Range(this->Layout.size), MultigridSolver::Group());
 }
 
 template <class... More>
-void LowOrder::RunOnArrays(const char* name, const More&... more)
+void DiffusionSystem::RunOnArrays(const char* name, const More&... more)
 {
   const Arrays& the = this->The;
   cl::Kernel kernel = this->Kernel(name);
-  With(kernel, this->Layout, *the.sigma_t, *the.sigma_a, this->Stairs, this->Solver.Conductance(), *the.entering,
+  With(kernel, this->Layout, *the.sigma_t, *the.sigma_a, this->FlatSource, this->Solver.Conductance(), *the.partialCurrents,
     this->The.passed ? *this->The.passed : this->Model, this->Model, this->Pattern, *the.source, *the.path, more...);
   this->Run(kernel);
 }
 
-void LowOrder::WriteSource()
+void DiffusionSystem::WriteSource()
 {
-  cl::Kernel kernel = this->Kernel("low_order_source");
+  cl::Kernel kernel = this->Kernel("diffusion_source");
   With(kernel, this->Layout, *this->The.given, *this->The.sigma_s, this->Given.Handle(), *this->The.sigma_t,
     *this->The.sigma_a, this->Solver.Conductance(), this->The.passed ? *this->The.passed : this->Model,
     *this->The.source);
   this->Run(kernel);
 }
 
-double LowOrder::Correct(double unit)
+double DiffusionSystem::Correct(double unit)
 {
   const Arrays& the = this->The;
-  cl::Kernel model = this->Kernel("low_order_model");
+  cl::Kernel model = this->Kernel("diffusion_model");
   With(model, this->Layout, *the.sigma_t, *the.path, this->Given.Handle(), *the.source, this->Model);
   this->Run(model);
-  this->RunOnArrays("low_order_balance", *the.given, this->Right.Handle());
+  this->RunOnArrays("diffusion_balance", *the.given, this->Right.Handle());
   this->Solver.Solve(this->Right, this->Solution, unit, Reduction);
 
   double change = 0.0;
@@ -261,7 +261,7 @@ double LowOrder::Correct(double unit)
 }
 
 /// Of the last correction but one and the one before that in Anderson's mix: least squares of the change.
-std::array<double, 2> LowOrder::Weights(double* change)
+std::array<double, 2> DiffusionSystem::Weights(double* change)
 {
   cl::Kernel kernel = this->Kernel("anderson_sums");
   With(kernel, this->Given.Handle(), this->Solution.Handle(), this->ChangeBefore[0], this->ChangeBefore[1],
@@ -284,13 +284,13 @@ std::array<double, 2> LowOrder::Weights(double* change)
   return { this->Corrections >= 1 && aa > 0.0 ? af / aa : 0.0, 0.0 };
 }
 
-std::array<double, 6> LowOrder::Outflow(const std::array<double, 6>& ofSweep)
+std::array<double, 6> DiffusionSystem::Outflow(const std::array<double, 6>& ofSweep)
 {
-  this->RunOnArrays("low_order_outflow", this->Solution.Handle(), this->Borders.Handle());
+  this->RunOnArrays("diffusion_outflow", this->Solution.Handle(), this->Borders.Handle());
   const std::vector<double> borders = this->Borders.Read();
   std::array<double, 6> outflow = {};
   std::array<double, 6> missing = ofSweep; // of what seems to leave
-  double believed = 0.0, shared = 0.0;
+  double transport_weight = 0.0, shared = 0.0;
   std::size_t at = 0;
   for (int face = 0; face < 6; ++face)
   {
@@ -300,7 +300,7 @@ std::array<double, 6> LowOrder::Outflow(const std::array<double, 6>& ofSweep)
       outflow[face] += borders[at];
       missing[face] -= borders[at + 1];
       const bool several = borders[at + 2] > 0.0;
-      believed += several ? borders[at + 2] : 0.0;
+      transport_weight += several ? borders[at + 2] : 0.0;
       shared += several ? 1.0 : 0.0;
     }
   }
@@ -309,12 +309,12 @@ std::array<double, 6> LowOrder::Outflow(const std::array<double, 6>& ofSweep)
   for (int face = 0; face < 6 && shared > 0.0 && left > 0.0; ++face)
   {
     outflow[face] +=
-      this->Layout.periodic[face / 2] ? 0.0 : believed / shared * (missing[face] - all * ofSweep[face] / left);
+      this->Layout.periodic[face / 2] ? 0.0 : transport_weight / shared * (missing[face] - all * ofSweep[face] / left);
   }
   return NotNegative(outflow);
 }
 
-SurfacePowers LowOrder::PowersAtSurface() const
+SurfacePowers DiffusionSystem::PowersAtSurface() const
 {
   const std::vector<double> borders = this->Borders.Read();
   SurfacePowers powers;
@@ -333,8 +333,8 @@ SurfacePowers LowOrder::PowersAtSurface() const
   return powers;
 }
 
-void LowOrder::AddFlux(const Buffer<float>& flux)
+void DiffusionSystem::AddFlux(const Buffer<float>& flux)
 {
-  this->RunOnArrays("low_order_flux", this->Solution.Handle(), flux);
+  this->RunOnArrays("diffusion_flux", this->Solution.Handle(), flux);
 }
 }

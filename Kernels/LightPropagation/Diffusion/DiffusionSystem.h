@@ -12,8 +12,8 @@
 
 namespace tyndall
 {
-/// As low_order_layout of DiffusionLayout.cl.
-struct LowOrderLayout
+/// As diffusion_layout of DiffusionLayout.cl.
+struct DiffusionLayout
 {
   cl_int size[3], periodic[3], linear, stride, firstT, first, pattern[6];
   cl_float spacing[3], halfRange, floor, incoming[6];
@@ -29,7 +29,7 @@ struct CrossingPattern
 CrossingPattern FindCrossingPattern(const Grid& grid, const DirectionSet& directions, int mapResolution,
   RayStarts starts, const std::array<bool, 3>& periodic);
 
-/// A lamp's light in thick voxels, and the sums over all lamps that it is added to. Arrays as LowOrder::Arrays has them.
+/// A lamp's light in thick voxels, and the sums over all lamps that it is added to. Arrays as DiffusionSystem::Arrays has them.
 struct LampLight
 {
   std::size_t stride, firstT, first;
@@ -37,12 +37,12 @@ struct LampLight
   const Buffer<float>* sigma_a;
   const Buffer<float>* sigma_s;
   const Buffer<float>* path;     ///< W length, of the lamp
-  const Buffer<float>* nearness; ///< of it, as in SweepVolume.h
+  const Buffer<float>* moments; ///< of it, as in SweepVolume.h
   const Buffer<float>* passed;   ///< W, added to
   const Buffer<float>* allPath;  ///< W length, added to
 };
 
-/// How much of a lamp's light passes the faces of voxels at once where it is first scattered: see LowOrder. One lamp at a time, for each
+/// How much of a lamp's light passes the faces of voxels at once where it is first scattered: see DiffusionSystem. One lamp at a time, for each
 /// has its own depth in a voxel.
 void PassLampLight(Device& device, const Grid& grid, const std::array<bool, 3>& periodic, const LampLight& light);
 
@@ -52,7 +52,7 @@ void PassLampLight(Device& device, const Grid& grid, const std::array<bool, 3>& 
 /// light's angular distribution linear and its course linear from voxel centre to voxel centre, the true power through the face
 /// between voxels L and R were D (phi_L - phi_R), D = area / (3 tau), tau the optical length between their centres (tau_a of absorption only); but a sweep
 /// whose source is constant in each voxel finds M(phi) = 3 D (s_L + s_R) (phi_L - phi_R), where s = sum mu tau / 2 coth(tau / 2 mu)
-/// is what a flight of such stairs radiates (1/6 for thin voxels, tau / 8 for thick: there F is nearly all error). So
+/// is the current of such a flat source (1/6 for thin voxels, tau / 8 for thick: there F is nearly all error). So
 ///   sum over faces of [D (x_L - x_R) + w (F - M(m))] + sigma_a V x = emission,   w = 1 / (1 + tau^2 / 4 + 3 tau tau_a),
 /// is right for thin voxels, in vacuum and next to walls and borders, where F - M is transport that diffusion does not know,
 /// and has the diffusion limit, however thick voxels are. m is the sweep's own fluence in thin voxels (then the solution is
@@ -60,7 +60,7 @@ void PassLampLight(Device& device, const Grid& grid, const std::array<bool, 3>& 
 /// With phi := x iterated this converges in a few sweeps. It conserves energy exactly: what goes out of one voxel goes into the next.
 ///
 /// Kin of coarse-mesh finite differences (Smith 1983) with an additive, linear correction (Cho et al. 2003, `optimally
-/// diffusive` there: the larger D of thick voxels; here the stairs' excess is taken out of the correction instead) and of
+/// diffusive` there: the larger D of thick voxels; here the excess of the flat source's current is taken out of the correction instead) and of
 /// the second-moment method (Lewis and Miller 1976), which takes the correction from second moments instead of face powers.
 /// Light that dies away within a voxel (y = half its size in diffusion lengths): D's half voxels conduct 2 y^2 / (2 y - 1 + exp(-2 y)) better at a border
 /// between unlike voxels and (y / sinh y)^2 among equals: light that falls off exponentially is then met exactly.
@@ -70,7 +70,7 @@ void PassLampLight(Device& device, const Grid& grid, const std::array<bool, 3>& 
 ///   part = (1 - 2 t / tau) tau_i / (tau_i + tau_j)                              goes on to the voxel beyond at once,
 ///   part = 1 - (t + q) / (tau / 2 + 2 / 3), q = H(t) / sqrt(3) - t (Hopf)       leaves the box,
 /// as from a source there by diffusion (with absorption: the same for exp(-k t)); it counts as power through the face, so none is
-/// lost. t is from the first moment of what lamps' rays lose, see SweepVolume::nearness. Slabs of 32 voxels under beams,
+/// lost. t is from the first moment of what lamps' rays lose, see SweepVolume::moments. Slabs of 32 voxels under beams,
 /// albedo 1: transmittance to 0.5% from optical thickness 0.01 to 1e6.
 ///
 /// What lies in vacuum sees of a thick voxel the skin, which need not be as bright as its middle: as a sweep's source such a voxel
@@ -79,7 +79,7 @@ void PassLampLight(Device& device, const Grid& grid, const std::array<bool, 3>& 
 ///
 /// With `linear` false, D = area (s_L + s_R) / tau, w = 1, m the sweep's fluence: the solution is the sweep's own, with all the
 /// errors of a constant source, only sooner.
-class LowOrder
+class DiffusionSystem
 {
 public:
   /// The solver's arrays; those of all channels, one after the other, `stride` voxels each.
@@ -92,14 +92,14 @@ public:
     const Buffer<float>* given;        ///< emitted, and of lights first scattered, W / (length^3 sr)
     const Buffer<float>* source;       ///< of a sweep, W / (length^3 sr)
     const Buffer<float>* path;         ///< W length, that it found
-    const Buffer<float>* entering;     ///< W, [channel][-x, +x, -y, +y, -z, +z][stride], that it found
+    const Buffer<float>* partialCurrents;     ///< W, [channel][-x, +x, -y, +y, -z, +z][stride], that it found
     /// W, [channel][-x, +x, -y, +y, -z, +z][stride]: lamps' light that passes a face at once where it is scattered (PassLampLight);
     /// null: voxels are thin, or there are no lamps
     const Buffer<float>* passed;
   };
 
   /// @param incoming  W / length^2 through the box's faces, but that of lights
-  LowOrder(Device& device, const Grid& grid, const std::array<bool, 3>& periodic, const DirectionSet& directions,
+  DiffusionSystem(Device& device, const Grid& grid, const std::array<bool, 3>& periodic, const DirectionSet& directions,
     const CrossingPattern& pattern, const Arrays& arrays, const std::array<double, 6>& incoming, bool linear);
 
   /// What the last correction led to: write it as the next sweep's source.
@@ -134,11 +134,11 @@ private:
   std::array<double, 2> Weights(double* change);
 
   Device& TheDevice;
-  LowOrderLayout Layout = {};
+  DiffusionLayout Layout = {};
   Arrays The;
   std::size_t Count;
-  LowOrderSolver Solver;
-  Buffer<float> Stairs, Pattern, Model;
+  MultigridSolver Solver;
+  Buffer<float> FlatSource, Pattern, Model;
   ExactValues Right, Given, Solution, Sums, Borders;
   std::array<Buffer<float>, 2> FoundBefore, ChangeBefore; ///< of the last correction and the one before
   int Corrections = 0;

@@ -33,8 +33,8 @@ static float hopf(float depth)
 // In voxels that are neither thin nor thick sweeps say that even light passes less than that: fitted to slabs.
 static float beside_sweeps(float tau)
 {
-  const float believed = 1.0f / (1.0f + 0.25f * tau * tau);
-  return 1.0f + believed * (0.02f + 0.17f * believed);
+  const float transport_weight = 1.0f / (1.0f + 0.25f * tau * tau);
+  return 1.0f + transport_weight * (0.02f + 0.17f * transport_weight);
 }
 
 // The same at a face of the box. In a half-space, light scattered at depth t reaches far as t + hopf(t).

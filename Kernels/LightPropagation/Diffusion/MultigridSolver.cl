@@ -1,4 +1,4 @@
-// Conjugate gradients, preconditioned by multigrid, for the low-order system. Read after DiffusionLayout.cl.
+// Conjugate gradients, preconditioned by multigrid, for the diffusion system. Read after DiffusionLayout.cl.
 //
 // A level's matrix: row i is sum over faces of conductance (x_i - x_j) + loss_i x_i. Vectors of multigrid are float: it only
 // has to point in about the right direction.
@@ -23,7 +23,7 @@ static float neighbours_sum(const __global float* conductance, int count, const 
 }
 
 // y = b - A x where `right` is true, else A x
-__kernel void low_order_apply(level_layout level, const __global float* conductance, const __global float* loss,
+__kernel void diffusion_apply(level_layout level, const __global float* conductance, const __global float* loss,
   const __global exact* values, const __global exact* right, int subtract, __global exact* result)
 {
   VOXEL(level.size)
@@ -204,12 +204,12 @@ __kernel void name(const __global exact* a, const __global type* b, int count, _
   }                                                                                                  \
   sums[get_global_id(0)] = (part[0] + part[1]) + (part[2] + part[3]);                                \
 }
-DOT(low_order_dot, exact)
-DOT(low_order_dot_float, float)
+DOT(diffusion_dot, exact)
+DOT(diffusion_dot_float, float)
 #undef DOT
 
 // x += step p, r -= step q
-__kernel void low_order_step(
+__kernel void diffusion_step(
   __global exact* values, __global exact* residual, const __global exact* direction, const __global exact* applied, exact step)
 {
   const int i = get_global_id(0);
@@ -217,7 +217,7 @@ __kernel void low_order_step(
   residual[i] -= step * applied[i];
 }
 // p = z + part p
-__kernel void low_order_turn(__global exact* direction, const __global float* preconditioned, exact part)
+__kernel void diffusion_turn(__global exact* direction, const __global float* preconditioned, exact part)
 {
   const int i = get_global_id(0);
   direction[i] = preconditioned[i] + part * direction[i];

@@ -54,7 +54,7 @@ std::string ExactOption(const Device& device)
   return std::string("-DDOUBLES=") + (device.HasExtension("cl_khr_fp64") ? "1" : "0");
 }
 
-LowOrderSolver::LowOrderSolver(Device& device, const std::array<int, 3>& size, const std::array<double, 3>& ofSpacing)
+MultigridSolver::MultigridSolver(Device& device, const std::array<int, 3>& size, const std::array<double, 3>& ofSpacing)
   : TheDevice(device)
 {
   std::array<double, 3> spacing = ofSpacing;
@@ -76,7 +76,7 @@ LowOrderSolver::LowOrderSolver(Device& device, const std::array<int, 3>& size, c
     }
     Level level;
     level.layout = layout;
-    const char* what = "the low-order system";
+    const char* what = "the diffusion system";
     level.conductance = Buffer<float>(device, 3 * count, what);
     level.loss = Buffer<float>(device, count, what);
     level.right = Buffer<float>(device, count, what);
@@ -94,30 +94,30 @@ LowOrderSolver::LowOrderSolver(Device& device, const std::array<int, 3>& size, c
     }
   }
   this->Count = static_cast<std::size_t>(size[0]) * size[1] * size[2];
-  this->Residual = ExactValues(device, this->Count, "the low-order system");
-  this->Direction = ExactValues(device, this->Count, "the low-order system");
-  this->Applied = ExactValues(device, this->Count, "the low-order system");
+  this->Residual = ExactValues(device, this->Count, "the diffusion system");
+  this->Direction = ExactValues(device, this->Count, "the diffusion system");
+  this->Applied = ExactValues(device, this->Count, "the diffusion system");
   this->Sums = ExactValues(device, (this->Count + Chunk - 1) / Chunk, "sums");
 }
 
-cl::NDRange LowOrderSolver::Range(const cl_int* size)
+cl::NDRange MultigridSolver::Range(const cl_int* size)
 {
   return { static_cast<std::size_t>(RoundUp(size[0], 32)), static_cast<std::size_t>(RoundUp(size[1], 8)),
     static_cast<std::size_t>(size[2]) };
 }
 
-cl::Kernel LowOrderSolver::Kernel(const char* name) const
+cl::Kernel MultigridSolver::Kernel(const char* name) const
 {
   return this->TheDevice.Kernel(
     name, { kernel_source::DiffusionLayout, kernel_source::MultigridSolver }, ExactOption(this->TheDevice));
 }
 
-void LowOrderSolver::Run(cl::Kernel& kernel, const cl_int* size)
+void MultigridSolver::Run(cl::Kernel& kernel, const cl_int* size)
 {
   this->TheDevice.Queue().enqueueNDRangeKernel(kernel, cl::NullRange, this->Range(size), Group());
 }
 
-void LowOrderSolver::Coarsen()
+void MultigridSolver::Coarsen()
 {
   cl::Kernel kernel = this->Kernel("level_coarsen");
   for (std::size_t l = 0; l + 1 < this->Levels.size(); ++l)
@@ -130,7 +130,7 @@ void LowOrderSolver::Coarsen()
 }
 
 /// One step of Jacobi's method.
-void LowOrderSolver::Smooth(Level& level)
+void MultigridSolver::Smooth(Level& level)
 {
   cl::Kernel kernel = this->Kernel("level_smooth");
   With(kernel, level.layout, level.conductance, level.loss, level.right, level.values, level.other, Damping);
@@ -139,7 +139,7 @@ void LowOrderSolver::Smooth(Level& level)
 }
 
 /// A V cycle on the residual; the finest level's values are what comes of it. The same steps up and down keep it symmetric.
-void LowOrderSolver::Precondition(double perUnit)
+void MultigridSolver::Precondition(double perUnit)
 {
   cl::Kernel first = this->Kernel("finest_begin");
   cl::Kernel begin = this->Kernel("level_begin");
@@ -187,9 +187,9 @@ void LowOrderSolver::Precondition(double perUnit)
   }
 }
 
-double LowOrderSolver::Dot(const ExactValues& a, const cl::Buffer& b, bool ofFloats)
+double MultigridSolver::Dot(const ExactValues& a, const cl::Buffer& b, bool ofFloats)
 {
-  cl::Kernel kernel = this->Kernel(ofFloats ? "low_order_dot_float" : "low_order_dot");
+  cl::Kernel kernel = this->Kernel(ofFloats ? "diffusion_dot_float" : "diffusion_dot");
   With(kernel, a.Handle(), b, cl_int(this->Count), this->Sums.Handle());
   const std::size_t chunks = (this->Count + Chunk - 1) / Chunk;
   this->TheDevice.Queue().enqueueNDRangeKernel(kernel, cl::NullRange, cl::NDRange(chunks), cl::NDRange(1));
@@ -201,13 +201,13 @@ double LowOrderSolver::Dot(const ExactValues& a, const cl::Buffer& b, bool ofFlo
   return sum;
 }
 
-int LowOrderSolver::Solve(
+int MultigridSolver::Solve(
   const ExactValues& right, ExactValues& values, double unit, double reduction, double leftAtMost)
 {
   Level& finest = this->Levels.front();
-  cl::Kernel apply = this->Kernel("low_order_apply");
-  cl::Kernel step = this->Kernel("low_order_step");
-  cl::Kernel turn = this->Kernel("low_order_turn");
+  cl::Kernel apply = this->Kernel("diffusion_apply");
+  cl::Kernel step = this->Kernel("diffusion_step");
+  cl::Kernel turn = this->Kernel("diffusion_turn");
   const auto exact = [&](cl::Kernel& kernel, cl_uint index, double value) {
     if (right.InDouble())
     {

@@ -35,15 +35,15 @@ struct LevelOnDevice
   cl_int size[3], halved[3];
 };
 
-/// Solves the system of a low-order matrix on a box of voxels,
+/// Solves the system of a diffusion matrix on a box of voxels,
 ///   sum over faces of conductance (x_i - x_j) + loss_i x_i = b_i,
 /// symmetric, with positive conductances and losses: conjugate gradients in double, preconditioned by a V cycle of multigrid in float
 /// (voxels 2 x 2 x 2 together, damped Jacobi), so that its cost hardly grows with the number of voxels.
-class LowOrderSolver
+class MultigridSolver
 {
 public:
   /// @param spacing  of voxels: an axis along which they are far shorter is coarsened first
-  LowOrderSolver(Device& device, const std::array<int, 3>& size, const std::array<double, 3>& spacing);
+  MultigridSolver(Device& device, const std::array<int, 3>& size, const std::array<double, 3>& spacing);
 
   Buffer<float>& Conductance()
   {

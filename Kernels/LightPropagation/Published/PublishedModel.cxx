@@ -105,7 +105,7 @@ struct Patch
 std::vector<Patch> Patches(const std::vector<std::array<double, 3>>& stored)
 {
   std::vector<Patch> patches;
-  for (const Direction& direction : SoundDirections(30 * 30).directions)
+  for (const Direction& direction : EquiangularDirections(30 * 30).directions)
   {
     patches.push_back({ Vector(direction.omega), direction.weight, NearestOf(stored, direction.omega) });
   }
@@ -169,7 +169,7 @@ std::vector<std::array<double, 3>> EvenDirections(int count)
   const int edge = static_cast<int>(std::lround(std::sqrt(count / 6.0)));
   if (edge >= 1 && edge <= 64 && 6 * edge * edge == count)
   {
-    for (const Direction& direction : SoundDirections(edge * edge).directions)
+    for (const Direction& direction : EquiangularDirections(edge * edge).directions)
     {
       directions.push_back(direction.omega);
     }

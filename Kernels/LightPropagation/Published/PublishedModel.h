@@ -23,7 +23,7 @@ namespace tyndall
 ///    scatter 1 / |cos| too much.
 ///  - Eq. (4), (6): L is the radiance after Eq. (3), and the exponent holds sigma_s alone. Both are kept: a voxel gains
 ///    L exp(-sigma_t l) (1 - exp(-sigma_s l)) where the ray scatters more, so that thick voxels lose light. This is the
-///    published scheme's error, visible in the energy balance; the sound scheme does not have it.
+///    published scheme's error, visible in the energy balance; the conservative scheme does not have it.
 ///  - Eq. (3): (1 - exp(-sigma_t l)) / sigma_t is l where sigma_t is 0. Eq. (4), (6): we keep the deposit divided by sigma_s,
 ///    L (1 - exp(-sigma_s l)) / sigma_s, which is L l where sigma_s is 0, and multiply by sigma_s when U is made. So fluence,
 ///    the sum of deposits over all directions, is 4 pi I / sigma_s of the paper and defined in vacuum as well.

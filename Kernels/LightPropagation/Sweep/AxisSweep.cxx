@@ -61,7 +61,7 @@ struct AxisSweep::Implementation
     const std::array<bool, 3>& periodic, SweepWorkspace& workspace)
     : TheDevice(device)
     , Plan(device, volume.grid, volume.box, axis, bundles, volume.channels, periodic, volume.flux != nullptr,
-        volume.entering != nullptr)
+        volume.partialCurrents != nullptr)
     , Workspace(workspace)
   {
     this->MakeBuffers();
@@ -157,7 +157,7 @@ void AxisSweep::Implementation::Enter(const SweepBoundary& boundary, std::size_t
   this->Radiance.Write(border.radiance.data());
   this->Tally.in = border.powerIn;
   this->MapsEmpty = this->SidesDark = false;
-  if (!this->Plan.entering)
+  if (!this->Plan.partialCurrents)
   {
     kept.reset();
   }
@@ -231,11 +231,11 @@ void AxisSweep::Implementation::Launch(cl::Kernel kernel, const SweepVolume& vol
 {
   const SweepPlan& plan = this->Plan;
   const Buffer<float>& flux = volume.flux ? *volume.flux : *volume.path;
-  const Buffer<float>& entering = volume.entering ? *volume.entering : *volume.path;
+  const Buffer<float>& partialCurrents = volume.partialCurrents ? *volume.partialCurrents : *volume.path;
   const Buffer<float>& lost = this->IsPeriodic() ? this->Workspace.lost : *volume.path;
   for (int launch = 0; launch < schedule.launches; ++launch)
   {
-    With(kernel, *volume.sigma_t, cl_ulong(volume.sigma_t_first), *volume.source, *volume.path, lost, flux, entering,
+    With(kernel, *volume.sigma_t, cl_ulong(volume.sigma_t_first), *volume.source, *volume.path, lost, flux, partialCurrents,
       cl_ulong(volume.first), cl_ulong(volume.stride), this->Maps(), cl_ulong(plan.mapsEachWay),
       cl_int(this->MapsEmpty), this->Outside, cl_uint(plan.outsideEachWay), this->Radiance,
       cl_uint(plan.radianceEachWay), this->Workspace.scratch, this->Units, this->Bundles, cl_int(plan.bundles.size()),
@@ -263,7 +263,7 @@ cl::Kernel AxisSweep::Implementation::SweepKernel(bool source, bool border, bool
   define("SOURCE", source);
   define("BORDER", border);
   define("NET_FLUX", flux);
-  define("ENTERING", plan.entering);
+  define("CURRENTS", plan.partialCurrents);
   define("PERIODIC_P", this->IsPeriodic());
   define("PERIODIC_U", plan.periodic[plan.axes.u]);
   define("PERIODIC_V", plan.periodic[plan.axes.v]);

@@ -264,7 +264,7 @@ static void add_own_light(const plane_layout* layout, __global float* plane, con
 // Add what the planes gathered to the volume.
 // own      [plane from where rays start] of the first plane crossed
 static void end_planes(const plane_layout* layout, __global float* planes, int first, int count, __global float* path,
-  __global float* lost, __global float* flux, __global float* entering, ulong stride, const __global own_light* own, int backward, int axis)
+  __global float* lost, __global float* flux, __global float* currents, ulong stride, const __global own_light* own, int backward, int axis)
 {
   const int rows = layout->sizeV * ROW;
 #if SOURCE
@@ -283,14 +283,14 @@ static void end_planes(const plane_layout* layout, __global float* planes, int f
     unpack(layout, fluxes + rows, first, count, 1.0f, flux + (3 * c + (axis == 2 ? 1 : 2)) * stride, 0);
     unpack(layout, fluxes + 2 * rows, first, count, backward ? -1.0f : 1.0f, flux + (3 * c + axis) * stride, 0);
 #endif
-#if ENTERING
+#if CURRENTS
     const int aside[2] = { axis == 0 ? 1 : 0, axis == 2 ? 1 : 2 };
-    const __global float* entered = planes + (PLANE_ENTERING + ENTERING_FACES * c) * rows;
-    __global float* faces = entering + 6 * c * stride;
+    const __global float* entered = planes + (PLANE_CURRENTS + CURRENTS_FACES * c) * rows;
+    __global float* faces = currents + 6 * c * stride;
     unpack(layout, entered, first, count, 1.0f, faces + (2 * axis + backward) * stride, 0);
     for (int side = 0; side < 4; ++side)
     {
-      unpack(layout, entered + (ENTERING_LOW_U + side) * rows, first, count, 1.0f,
+      unpack(layout, entered + (CURRENTS_LOW_U + side) * rows, first, count, 1.0f,
         faces + (2 * aside[side / 2] + side % 2) * stride, 0);
     }
 #endif
@@ -325,7 +325,7 @@ static void cross_plane(sweep_state* state, __global float* maps, const __global
 // path      W length, [channel][stride] from `first` on, added to
 // lost      as path: what rounding took from it in this sweep, where PERIODIC_P
 // flux      W length, [channel][x, y, z][stride] from 3 `first` on, added to
-// entering  W, [channel][-x, +x, -y, +y, -z, +z][stride] from 6 `first` on, added to: through that face into the voxel
+// currents  W, [channel][-x, +x, -y, +y, -z, +z][stride] from 6 `first` on, added to: through that face into the voxel
 // maps      rays of both ways; `maps_each_way` floats each
 // empty     1: the maps hold nothing yet, and are cleared where rays start
 // outside, radiance   rays that come in, both ways as maps
@@ -335,7 +335,7 @@ static void cross_plane(sweep_state* state, __global float* maps, const __global
 // tally     [plane from where rays start][unit][-u, +u, -v, +v][channel] W that left
 __kernel __attribute__((reqd_work_group_size(1, 1, 1))) void sweep(const __global float* sigma,
   ulong sigma_first, const __global float* source, __global float* path, __global float* lost, __global float* flux,
-  __global float* entering, ulong first_value, ulong stride, __global float* maps, ulong maps_each_way, int empty, const __global float* outside, uint outside_each_way, const __global float* radiance, uint radiance_each_way,
+  __global float* currents, ulong first_value, ulong stride, __global float* maps, ulong maps_each_way, int empty, const __global float* outside, uint outside_each_way, const __global float* radiance, uint radiance_each_way,
   __global float* scratch, const __global unit_info* units, const __global bundle_info* bundles, int bundle_count,
   const __global crossing_info* crossings, const __global own_light* own, int planes_of_pattern, const __global int2* schedule, int launch,
   __global float* tally, plane_layout layout, int axis)
@@ -363,7 +363,7 @@ __kernel __attribute__((reqd_work_group_size(1, 1, 1))) void sweep(const __globa
   path += first_value;
   lost += first_value;
   flux += 3 * first_value;
-  entering += 6 * first_value;
+  currents += 6 * first_value;
   maps += unit.backward * maps_each_way;
   outside += unit.backward * outside_each_way;
   radiance += unit.backward * radiance_each_way;
@@ -410,6 +410,6 @@ __kernel __attribute__((reqd_work_group_size(1, 1, 1))) void sweep(const __globa
         }
       }
     }
-    end_planes(&layout, planes, first, count, path, lost, flux, entering, stride, own + u * planes_of_pattern + begin, unit.backward, axis);
+    end_planes(&layout, planes, first, count, path, lost, flux, currents, stride, own + u * planes_of_pattern + begin, unit.backward, axis);
   }
 }

@@ -10,7 +10,7 @@
 #define COUNT_ESCAPED NAME_OF(count_escaped_, MEMBERS)
 #define FILL_BORDER NAME_OF(fill_border_, MEMBERS)
 #define CROSS_PLANE NAME_OF(cross_plane_, MEMBERS)
-#define COUNT_ENTERING NAME_OF(count_entering_, MEMBERS)
+#define COUNT_CURRENTS NAME_OF(count_currents_, MEMBERS)
 #define MOVE_PART NAME_OF(move_part_, MEMBERS)
 #define BLOCK (MEMBERS * CHANNELS * ROW)
 #define FIRST(member, channel) (((member) * CHANNELS + (channel)) * ROW + PAD)
@@ -210,16 +210,16 @@ static void FILL_BORDER(sweep_state* state, const __global float* radiance)
 }
 #endif
 
-#if ENTERING
+#if CURRENTS
 // The rays of row y by the face they come through, see SweepPartialCurrents.cl. `own` is the row itself, where rays come from.
-static void COUNT_ENTERING(sweep_state* state, int y, bool first, const __global float** in, const __global float* own,
+static void COUNT_CURRENTS(sweep_state* state, int y, bool first, const __global float** in, const __global float* own,
   const __global bundle_info* bundle, int moveU, int moveV, float part)
 {
   for (int m = 0; m < MEMBERS; ++m)
   {
     if (first)
     {
-      add_entering(state, y, ENTERING_AXIS, in[m], 1.0f);
+      add_current(state, y, CURRENTS_AXIS, in[m], 1.0f);
       continue;
     }
     const int du = bundle->move[m][0] * moveU + bundle->move[m][1] * moveV;
@@ -230,11 +230,11 @@ static void COUNT_ENTERING(sweep_state* state, int y, bool first, const __global
     }
     else if (du != 0)
     {
-      add_entering(state, y, du > 0 ? ENTERING_LOW_U : ENTERING_HIGH_U, in[m], part);
+      add_current(state, y, du > 0 ? CURRENTS_LOW_U : CURRENTS_HIGH_U, in[m], part);
     }
     else
     {
-      add_entering(state, y, dv > 0 ? ENTERING_LOW_V : ENTERING_HIGH_V, in[m], part);
+      add_current(state, y, dv > 0 ? CURRENTS_LOW_V : CURRENTS_HIGH_V, in[m], part);
     }
   }
 }
@@ -310,10 +310,10 @@ static void CROSS_PLANE(sweep_state* state, __global float* map, const __global 
       __global float* out = s == stages - 1 ? map + y * BLOCK
                                             : state->ring + (s & 1) * (RING_ROWS * MAX_MEMBERS * CHANNELS * ROW) +
           (y & (RING_ROWS - 1)) * (MAX_MEMBERS * CHANNELS * ROW);
-#if ENTERING
+#if CURRENTS
       if (inside)
       {
-        COUNT_ENTERING(state, y, s == 0, in, own, bundle, crossing->moveU[s], crossing->moveV[s], part);
+        COUNT_CURRENTS(state, y, s == 0, in, own, bundle, crossing->moveU[s], crossing->moveV[s], part);
       }
 #endif
       if (part < 1.0f)
@@ -327,7 +327,7 @@ static void CROSS_PLANE(sweep_state* state, __global float* map, const __global 
 
 #undef FIRST
 #undef BLOCK
-#undef COUNT_ENTERING
+#undef COUNT_CURRENTS
 #undef MOVE_PART
 #undef CROSS_PLANE
 #undef FILL_BORDER

@@ -3,7 +3,7 @@
 //   ROW       floats in a padded row; the floats after a row's voxels and before the next row's are its border
 //   SOURCE    1 where the medium shines (emission or scattered light)
 //   NET_FLUX  1 where the net flux is wanted
-//   ENTERING  1 where the power that enters each voxel through each face is wanted
+//   CURRENTS  1 where the power that enters each voxel through each face is wanted
 //   BORDER    1 where light comes in through the faces that rays pass sideways
 //   PERIODIC_P  1 where rays go round the axis: planes are added to many times, and what rounding loses is kept
 //   PERIODIC_U, PERIODIC_V  1 where rays come back on the other side
@@ -25,16 +25,16 @@
 #define PLANE_SOURCE 3
 #define PLANE_PATH (PLANE_SOURCE + CHANNELS) // path integral of power, W length
 #define PLANE_FLUX (PLANE_PATH + CHANNELS)
-#define PLANE_ENTERING (PLANE_FLUX + FLUX * CHANNELS) // power that enters, W: ENTERING_...
-#define PLANES (PLANE_ENTERING + (ENTERING ? ENTERING_FACES * CHANNELS : 0))
+#define PLANE_CURRENTS (PLANE_FLUX + FLUX * CHANNELS) // power that enters, W: CURRENTS_...
+#define PLANES (PLANE_CURRENTS + (CURRENTS ? CURRENTS_FACES * CHANNELS : 0))
 
 // Through which face of its voxel a ray comes: the one across the axis it marches along, or a low or high one aside.
-#define ENTERING_AXIS 0
-#define ENTERING_LOW_U 1
-#define ENTERING_HIGH_U 2
-#define ENTERING_LOW_V 3
-#define ENTERING_HIGH_V 4
-#define ENTERING_FACES 5
+#define CURRENTS_AXIS 0
+#define CURRENTS_LOW_U 1
+#define CURRENTS_HIGH_U 2
+#define CURRENTS_LOW_V 3
+#define CURRENTS_HIGH_V 4
+#define CURRENTS_FACES 5
 
 // As BundleOnDevice, PlaneCrossingOnDevice in SweepPlan.h.
 typedef struct

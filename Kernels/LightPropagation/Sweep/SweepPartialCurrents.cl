@@ -1,14 +1,14 @@
-// Power that enters voxels through their faces: what goes from one to the next, for the balance of a low-order system. Read
+// Power that enters voxels through their faces: what goes from one to the next, for the balance of a diffusion system. Read
 // after SweepLayout.cl, before SweepBundle.cl.
 
-#if ENTERING
+#if CURRENTS
 // Part of the rays of row y that come through one kind of face.
-static void add_entering(sweep_state* state, int y, int face, const __global float* rays, float part)
+static void add_current(sweep_state* state, int y, int face, const __global float* rays, float part)
 {
   const int rows = state->sizeV * ROW;
   for (int c = 0; c < CHANNELS; ++c)
   {
-    __global float* sum = state->planes + (PLANE_ENTERING + ENTERING_FACES * c + face) * rows + y * ROW;
+    __global float* sum = state->planes + (PLANE_CURRENTS + CURRENTS_FACES * c + face) * rows + y * ROW;
     for (int x = 0; x < state->width; x += REAL_WIDTH)
     {
       store_real(multiply_add(load_real(x, rays + c * ROW), (real)part, load_real(x, sum)), x, sum);
@@ -25,7 +25,7 @@ static void add_beside(sweep_state* state, int y, int du, int face, const __glob
   for (int c = 0; c < CHANNELS; ++c)
   {
     const __global float* from = rays + c * ROW;
-    __global float* sum = state->planes + (PLANE_ENTERING + ENTERING_FACES * c + face) * rows + y * ROW;
+    __global float* sum = state->planes + (PLANE_CURRENTS + CURRENTS_FACES * c + face) * rows + y * ROW;
     for (int x = 0; x < state->width; x += REAL_WIDTH)
     {
       // A row's last floats and what is before its first are never read.
@@ -47,20 +47,20 @@ static void add_through_edge(
   sweep_state* state, int y, int du, int dv, const __global float* rays, const __global float* own, float part)
 {
   const float half_part = 0.5f * part;
-  const int u_face = du > 0 ? ENTERING_LOW_U : ENTERING_HIGH_U;
-  const int v_face = dv > 0 ? ENTERING_LOW_V : ENTERING_HIGH_V;
+  const int u_face = du > 0 ? CURRENTS_LOW_U : CURRENTS_HIGH_U;
+  const int v_face = dv > 0 ? CURRENTS_LOW_V : CURRENTS_HIGH_V;
   const int height = state->sizeV;
   const int before = PERIODIC_V ? (y - dv + height) % height : y - dv;
   if (before >= 0 && before < height)
   {
-    add_entering(state, before, u_face, rays, half_part);
+    add_current(state, before, u_face, rays, half_part);
   }
-  add_entering(state, y, v_face, rays, half_part);
+  add_current(state, y, v_face, rays, half_part);
   add_beside(state, y, du, v_face, rays, half_part);
-  add_entering(state, y, u_face, rays, half_part);
+  add_current(state, y, u_face, rays, half_part);
   if (!PERIODIC_V && y == (dv > 0 ? height - 1 : 0))
   {
-    add_entering(state, y, u_face, own - du, half_part); // on their way out of the box
+    add_current(state, y, u_face, own - du, half_part); // on their way out of the box
   }
 }
 #endif

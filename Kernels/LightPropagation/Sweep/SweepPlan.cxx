@@ -74,7 +74,7 @@ double LongestWay(const std::vector<Bundle>& bundles)
 
 SweepPlan::SweepPlan(const Device& device, const Grid& ofGrid, const VoxelBox& ofBox, int axis,
   const std::vector<Bundle>& ofBundles, int channelCount, const std::array<bool, 3>& periodicAxes, bool wantsNetFlux,
-  bool wantsEntering)
+  bool wantsCurrents)
   : grid(ofGrid)
   , box(ofBox.VoxelCount() > 0 ? ofBox : VoxelBox{ { 0, 0, 0 }, ofGrid.size })
   , axes(AcrossAxis(axis))
@@ -82,7 +82,7 @@ SweepPlan::SweepPlan(const Device& device, const Grid& ofGrid, const VoxelBox& o
   , channels(channelCount)
   , periodic(periodicAxes)
   , netFlux(wantsNetFlux)
-  , entering(wantsEntering)
+  , partialCurrents(wantsCurrents)
 {
   for (const Bundle& bundle : this->bundles)
   {
@@ -224,7 +224,7 @@ std::size_t SweepPlan::ScratchFloats() const
   // Two rings and the rays of a row of which a part moves.
   const std::size_t ring = (std::size_t{ 2 } * RingRows + 1) * MaxMembers * this->channels * this->row + this->vector;
   const std::size_t quantities =
-    3 + ((this->netFlux ? 5 : 2) + (this->entering ? 5 : 0)) * this->channels; // PLANES of SweepLayout.cl
+    3 + ((this->netFlux ? 5 : 2) + (this->partialCurrents ? 5 : 0)) * this->channels; // PLANES of SweepLayout.cl
   const std::size_t planes = quantities * this->plane.block * this->plane.sizeV * this->row;
   const std::size_t thinRows = static_cast<std::size_t>(this->plane.block) * this->plane.sizeV;
   return ring + planes + thinRows + 2 * this->vector;

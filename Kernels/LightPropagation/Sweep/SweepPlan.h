@@ -45,9 +45,9 @@ struct SweepPlan
 {
   /// @param box  the part of the grid that is swept; all of it, or no axis is periodic
   /// @param netFlux  the net flux is wanted too
-  /// @param entering  and the power that enters voxels by face
+  /// @param partialCurrents  and the power that enters voxels by face
   SweepPlan(const Device& device, const Grid& grid, const VoxelBox& box, int axis, const std::vector<Bundle>& bundles,
-    int channels, const std::array<bool, 3>& periodic, bool netFlux, bool entering);
+    int channels, const std::array<bool, 3>& periodic, bool netFlux, bool partialCurrents);
 
   Grid grid;
   VoxelBox box;
@@ -56,7 +56,7 @@ struct SweepPlan
   int channels;
   std::array<bool, 3> periodic;
   bool netFlux;
-  bool entering;
+  bool partialCurrents;
   bool forward = false; ///< some rays march that way
   bool backward = false;
 

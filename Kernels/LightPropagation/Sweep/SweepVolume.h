@@ -20,7 +20,7 @@ inline Rgb From(const Rgb& rgb, int first)
 constexpr std::size_t SweepPadding = 16;
 
 /// Optical length of voxels that lamps' light is lost in evenly, near enough.
-constexpr float ThinForNearness = 0.02f;
+constexpr float ThinForMoments = 0.02f;
 
 /// The medium and the light on the device while a solver runs. Every array is [channel][stride] with voxels x fastest; the
 /// stride is the voxel count rounded up to whole vectors, what is beyond the voxels is zero. Buffers
@@ -38,13 +38,13 @@ struct SweepVolume
   const Buffer<float>* flux = nullptr;    ///< W length, [channel][x, y, z][stride], added to; null: not wanted
   /// W, [channel][-x, +x, -y, +y, -z, +z][stride], added to: power that enters each voxel through each of its faces; null:
   /// not wanted
-  const Buffer<float>* entering = nullptr;
+  const Buffer<float>* partialCurrents = nullptr;
   /// W length, [channel][-x, +x, -y, +y, -z, +z][stride], added to by lamps: how near to each face of a voxel the light is lost that
   /// `path` stands for, its distance from the middle towards the face in the mean (0 to 1/2 of the voxel) times its path; null: not
-  /// wanted. Voxels thinner than ThinForNearness mean free paths have none.
-  const Buffer<float>* nearness = nullptr;
+  /// wanted. Voxels thinner than ThinForMoments mean free paths have none.
+  const Buffer<float>* moments = nullptr;
   std::size_t first =
-    0; ///< where the first channel of source and path begins (flux: three times that, entering and nearness: six times)
+    0; ///< where the first channel of source and path begins (flux: three times that, partialCurrents and moments: six times)
 };
 
 /// Where light is put down, all channels; arrays as SweepVolume has them.
@@ -60,8 +60,8 @@ inline void PutInto(SweepVolume& volume, const Deposit& deposit)
 {
   volume.path = deposit.path;
   volume.flux = deposit.flux;
-  volume.entering = deposit.partialCurrents;
-  volume.nearness = deposit.moments;
+  volume.partialCurrents = deposit.partialCurrents;
+  volume.moments = deposit.moments;
 }
 
 /// Memory that sweeps along different axes take turns in. What one leaves there means nothing to the next.

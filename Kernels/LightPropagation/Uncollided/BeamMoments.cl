@@ -19,24 +19,24 @@ static float distance_to_face(float tau)
 
 // The first moment of what is lost is by Gauss's theorem that of the power through the faces, plus the net flux: exact where as much
 // goes in as comes out of the faces beside; never more than if all came in through the face.
-// path, entering      of the beam, as in SweepVolume.h
-// all_path, nearness  of all lamps
+// path, currents      of the beam, as in SweepVolume.h
+// all_path, moments  of all lamps
 __kernel void add_beam(beam_info beam, const __global float* sigma, ulong sigma_first, const __global float* path,
-  const __global float* entering, __global float* all_path, __global float* nearness, ulong first, ulong stride)
+  const __global float* currents, __global float* all_path, __global float* moments, ulong first, ulong stride)
 {
   const ulong i = get_global_id(0);
   const ulong begin = first + get_global_id(1) * stride;
   const float length = path[begin + i];
   all_path[begin + i] += length;
   const float s = sigma[sigma_first + i];
-  entering += 6 * begin;
-  nearness += 6 * begin;
+  currents += 6 * begin;
+  moments += 6 * begin;
   const int at[3] = { i % beam.size[0], i / beam.size[0] % beam.size[1], i / ((ulong)beam.size[0] * beam.size[1]) };
   float in[3], out[3], rest = -s * length, leaving = 0.0f;
   bool border[3];
   for (int a = 0, step = 1; a < 3; step *= beam.size[a++])
   {
-    const __global float* through = entering + (2 * a + 1 - beam.up[a]) * stride;
+    const __global float* through = currents + (2 * a + 1 - beam.up[a]) * stride;
     const int last = beam.up[a] ? beam.size[a] - 1 : 0;
     const int next = at[a] != last ? (beam.up[a] ? step : -step) : (beam.size[a] - 1) * (beam.up[a] ? -step : step);
     border[a] = at[a] == last && !beam.periodic[a];
@@ -56,7 +56,7 @@ __kernel void add_beam(beam_info beam, const __global float* sigma, ulong sigma_
     const float onwards = (length / beam.lengths[a] - 0.5f * (in[a] + out[a])) / s;
     const float most = length * distance_to_face(tau);
     const int ahead = 2 * a + beam.up[a];
-    nearness[ahead * stride + i] += clamp(onwards, 0.0f, most);
-    nearness[(ahead ^ 1) * stride + i] += clamp(-onwards, 0.0f, most);
+    moments[ahead * stride + i] += clamp(onwards, 0.0f, most);
+    moments[(ahead ^ 1) * stride + i] += clamp(-onwards, 0.0f, most);
   }
 }

@@ -182,7 +182,7 @@ void BoundaryLight::CheckRays(int channels) const
         "of " +
         Text("%g", h[0]) + " x " + Text("%g", h[1]) + " x " + Text("%g", h[2]) +
         " are too unequal, or directions too few. Resample to voxels of more equal edges, or raise MapResolution, "
-        "DirectionsPerFace or FirstFlightDirections.");
+        "DirectionsPerFace or UncollidedDirections.");
     }
   }
 }

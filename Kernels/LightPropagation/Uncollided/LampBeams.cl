@@ -1,7 +1,7 @@
 // Beams from a point lamp through the box. Read after Numerics.cl and FixedPoint.cl; the host gives
 //   ATOMICS      1 where the device has 64-bit atomics, else one work-item does all
 //   LAMBERT, CONE  1 for a rectangle, a spot
-//   NEARNESS     1: how near to which faces of a voxel light is lost is wanted
+//   MOMENTS     1: how near to which faces of a voxel light is lost is wanted
 //
 // Space around the lamp is six pyramids, one for each way along an axis; in a pyramid beams lie on a grid of tangents, so fine
 // that a beam is at most a voxel wide where it leaves the box. It is followed layer by layer; where its square cross-section
@@ -99,12 +99,12 @@ static void overlap(float low, float width, int* voxel, float* part)
   *part = clamp((*voxel + 1 - low) / width, 0.0f, 1.0f);
 }
 
-#if NEARNESS
+#if MOMENTS
 // Path that light has in a voxel, times how far from its middle it is lost in the mean: along the beam's axis and aside.
 //   way   of the step, from begin to end, layers from the lamp
 //   mean  middle of the part of the cross-section in the voxel, half way through the step
-static void add_nearness(const lamp_info* lamp, const beam_row* row, const int* voxel, float2 way, float2 mean, float2 tangent,
-  float tau, float lost, float path, __global long* nearness, ulong stride)
+static void add_moments(const lamp_info* lamp, const beam_row* row, const int* voxel, float2 way, float2 mean, float2 tangent,
+  float tau, float lost, float path, __global long* moments, ulong stride)
 {
   const float part = tau < 0.05f ? 0.5f - tau / 12.0f : 1.0f / tau - (1.0f - lost) / lost;
   const float at = mix(way.x, way.y, part);
@@ -117,7 +117,7 @@ static void add_nearness(const lamp_info* lamp, const beam_row* row, const int* 
   for (int a = 0; a < 3; ++a)
   {
     const float distance = clamp(from_middle[a], -0.5f, 0.5f);
-    add_units(nearness + ((row->axis + a) % 3) * stride, convert_long_sat_rte(path * distance * lamp->scale));
+    add_units(moments + ((row->axis + a) % 3) * stride, convert_long_sat_rte(path * distance * lamp->scale));
   }
 }
 #endif
@@ -180,12 +180,12 @@ static void step_beam(const lamp_info* lamp, const beam_row* row, int layer, boo
     {
       const float counted = power * (mean_length * units_of(sigma[index], lamp->diagonal));
       add_units(path + index, convert_long_sat_rte(counted * lamp->scale));
-#if NEARNESS
+#if MOMENTS
       if (sigma[index] * length > 0.5f * THIN)
       {
         const float2 mean = (float2)(q & 1 ? 0.5f * (middle.x + 0.5f * width.x - lowest.x - 1.0f) : 0.5f * (fmin(middle.x + 0.5f * width.x - lowest.x, 1.0f) + middle.x - 0.5f * width.x - lowest.x),
           q & 2 ? 0.5f * (middle.y + 0.5f * width.y - lowest.y - 1.0f) : 0.5f * (fmin(middle.y + 0.5f * width.y - lowest.y, 1.0f) + middle.y - 0.5f * width.y - lowest.y));
-        add_nearness(lamp, row, voxel, way, mean, tangent, sigma[index] * length, lost, counted,
+        add_moments(lamp, row, voxel, way, mean, tangent, sigma[index] * length, lost, counted,
           path + stride + index, stride);
       }
 #endif
@@ -308,7 +308,7 @@ static void follow_row(const lamp_info* lamp, const beam_row* row, const __globa
   sums[8] = shone;
 }
 
-// path  part of the power times length, in fixed point, [voxel], added to; NEARNESS: [path, times distance along x, y, z][stride]
+// path  part of the power times length, in fixed point, [voxel], added to; MOMENTS: [path, times distance along x, y, z][stride]
 // sums  [row][entered, escaped through -x to +z, stranded, shone in the row's directions], parts of the power
 __kernel void follow_lamp(lamp_info lamp, const __global float* sigma, ulong sigma_first, __global long* path,
   ulong stride, const __global beam_row* rows, int row_count, int first_row, __global float* sums)
@@ -336,10 +336,10 @@ __kernel void add_fixed(const __global long* fixed_path, __global float* path, u
   path[first + channel * stride + i] += (float)fixed_path[i] * unit / units_of(sigma[sigma_first + i], diagonal);
 }
 
-#if NEARNESS
+#if MOMENTS
 // fixed_path  as in follow_lamp
-// nearness    W length, [channel][-x, +x, -y, +y, -z, +z][stride], added to
-__kernel void add_fixed_nearness(const __global long* fixed_path, __global float* nearness, ulong first, ulong stride,
+// moments    W length, [channel][-x, +x, -y, +y, -z, +z][stride], added to
+__kernel void add_fixed_moments(const __global long* fixed_path, __global float* moments, ulong first, ulong stride,
   float4 units, const __global float* sigma, ulong sigma_first, float diagonal)
 {
   const ulong i = get_global_id(0);
@@ -349,7 +349,7 @@ __kernel void add_fixed_nearness(const __global long* fixed_path, __global float
   {
     const float towards =
       (float)fixed_path[(1 + axis) * stride + i] * unit / units_of(sigma[sigma_first + i], diagonal);
-    __global float* of_axis = nearness + 6 * (first + channel * stride) + 2 * axis * stride + i;
+    __global float* of_axis = moments + 6 * (first + channel * stride) + 2 * axis * stride + i;
     of_axis[0] += fmax(-towards, 0.0f);
     of_axis[stride] += fmax(towards, 0.0f);
   }

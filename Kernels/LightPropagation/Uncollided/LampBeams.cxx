@@ -65,16 +65,16 @@ SweepTally DepositBeam(Device& device, const SweepVolume& volume, const Light& l
   const std::array<double, 3> omega = Array(glm::normalize(Vector(light.direction)));
   // How near to voxels' faces the light is lost is told by the faces that it enters through.
   SweepVolume own = volume;
-  Buffer<float> path, entering;
-  if (volume.nearness)
+  Buffer<float> path, partialCurrents;
+  if (volume.moments)
   {
     const std::size_t all = volume.first + volume.channels * volume.stride;
     path = Buffer<float>(device, all + SweepPadding, "the light of a beam");
-    entering = Buffer<float>(device, 6 * all + SweepPadding, "the light of a beam");
+    partialCurrents = Buffer<float>(device, 6 * all + SweepPadding, "the light of a beam");
     path.Fill(0.0f);
-    entering.Fill(0.0f);
+    partialCurrents.Fill(0.0f);
     own.path = &path;
-    own.entering = &entering;
+    own.partialCurrents = &partialCurrents;
   }
   SweepTally tally;
   const std::vector<int> axes = MarchingAxes(volume.grid, omega);
@@ -90,7 +90,7 @@ SweepTally DepositBeam(Device& device, const SweepVolume& volume, const Light& l
       own, [&](int, int) { return power; }, false, MostPlanesAround, monitor);
     Add(tally, beam.Finish());
   }
-  if (volume.nearness)
+  if (volume.moments)
   {
     BeamInfo info = {};
     for (int a = 0; a < 3; ++a)
@@ -101,9 +101,9 @@ SweepTally DepositBeam(Device& device, const SweepVolume& volume, const Light& l
       info.spacing[a] = static_cast<float>(volume.grid.spacing[a]);
       info.lengths[a] = static_cast<float>(volume.grid.spacing[a] / std::max(std::abs(omega[a]), 1e-6));
     }
-    info.thin = ThinForNearness;
+    info.thin = ThinForMoments;
     cl::Kernel add = device.Kernel("add_beam", { kernel_source::BeamMoments });
-    With(add, info, *volume.sigma_t, cl_ulong(volume.sigma_t_first), path, entering, *volume.path, *volume.nearness,
+    With(add, info, *volume.sigma_t, cl_ulong(volume.sigma_t_first), path, partialCurrents, *volume.path, *volume.moments,
       cl_ulong(volume.first), cl_ulong(volume.stride));
     device.Queue().enqueueNDRangeKernel(
       add, cl::NullRange, cl::NDRange(volume.grid.VoxelCount(), volume.channels), cl::NullRange);
@@ -246,7 +246,7 @@ public:
     , Volume(volume)
     , TheLight(light)
     , Periodic(periodic)
-    , Path(device, (volume.nearness ? 4 : 1) * volume.stride, "the light of a lamp")
+    , Path(device, (volume.moments ? 4 : 1) * volume.stride, "the light of a lamp")
   {
     this->Path.Fill(0);
   }
@@ -273,10 +273,10 @@ public:
       this->TheDevice.Queue().enqueueNDRangeKernel(kernel, cl::NullRange, voxels, cl::NullRange);
     };
     finish(add, *this->Volume.path);
-    if (this->Volume.nearness)
+    if (this->Volume.moments)
     {
-      cl::Kernel addNearness = this->Kernel("add_fixed_nearness");
-      finish(addNearness, *this->Volume.nearness);
+      cl::Kernel addMoments = this->Kernel("add_fixed_moments");
+      finish(addMoments, *this->Volume.moments);
     }
     return this->TallyTimes(correction);
   }
@@ -290,8 +290,8 @@ private:
       { kernel_source::Numerics, kernel_source::FixedPoint, kernel_source::LampBeams },
       "-DATOMICS=" + std::to_string(this->HasAtomics()) +
         " -DLAMBERT=" + std::to_string(this->TheLight.type == LightType::Rectangle) +
-        " -DCONE=" + std::to_string(this->TheLight.type == LightType::Spot) + " -DNEARNESS=" +
-        std::to_string(this->Volume.nearness != nullptr) + " -DTHIN=" + std::to_string(ThinForNearness) + "f");
+        " -DCONE=" + std::to_string(this->TheLight.type == LightType::Spot) + " -DMOMENTS=" +
+        std::to_string(this->Volume.moments != nullptr) + " -DTHIN=" + std::to_string(ThinForMoments) + "f");
   }
 
   /// Fixed point units per length: no voxel can gather more than all power along its diagonal.

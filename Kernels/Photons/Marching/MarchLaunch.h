@@ -50,7 +50,7 @@ struct MarchSums
   int numbers = 1;                       ///< of a record
   bool directions = false;               ///< are among them
   bool counts = false;                   ///< and photons that crossed voxels
-  const Buffer<cl_int>* cells = nullptr; ///< of voxels: cells are credited, and count; null: voxels are credited
+  const Buffer<cl_int>* cells = nullptr; ///< of voxels: cells are deposited, and count; null: voxels are deposited
   const Buffer<cl_long>* sums = nullptr; ///< [copies][records][numbers]
 };
 

@@ -3,11 +3,11 @@
 //   CHANNELS         of light; MEDIUM_CHANNELS of sigma_t, 1 or CHANNELS
 //   WORKERS          0: a work-item a packet, all add to the same sums; else so many take blocks as they come, each to its sums
 //   COUNTS           1: voxels also count photons and their weights, by photons' marks: 1 << COUNT_SHIFT and units of weight
-//   CELLS            1: what is credited are coarse cells, which also count photons, and sum up the columns and rows that these
+//   CELLS            1: what is deposited are coarse cells, which also count photons, and sum up the columns and rows that these
 //                    set out from, by their marks: column and row << 16
 //   PATHS            1: nothing is summed, vertices are written
 //
-// A leg is followed from voxel wall to voxel wall (Amanatides and Woo). In a voxel whose extinction over a diagonal is s,
+// A step is followed from voxel wall to voxel wall (Amanatides and Woo). In a voxel whose extinction over a diagonal is s,
 // with b = max(s, 1), the sums gain
 //   a = power b (path integral of transmittance, in diagonals),   0 <= a <= power,
 // which is the power lost where a voxel is thick and the path where it is thin: neither loses digits in fixed point.
@@ -106,7 +106,7 @@ static void attenuate(const march_arrays* arrays, photon_flight* flight, real le
 typedef long4 __attribute__((aligned(8))) long4_anywhere;
 
 // Add what one photon left in one voxel, `a` of each channel.
-static void credit(__global long* record, const float* a, float4 direction)
+static void deposit(__global long* record, const float* a, float4 direction)
 {
 #if CHANNELS == 1 && DIRECTIONS && !ATOMICS
   *(__global long4_anywhere*)record += convert_long4(a[0] * direction);
@@ -153,9 +153,9 @@ static void count_photon(__global long* record, ulong mark, int entered)
 #define COUNT(record, k, lane)
 #endif
 
-static void credit_all(const march_arrays* arrays, const photon_lanes* lanes, const photon_gain* gain)
+static void deposit_all(const march_arrays* arrays, const photon_lanes* lanes, const photon_gain* gain)
 {
-#define CREDIT(k, lane) \
+#define DEPOSIT(k, lane) \
   { \
     float a[CHANNELS]; \
     FOR_CHANNELS(c) \
@@ -163,11 +163,11 @@ static void credit_all(const march_arrays* arrays, const photon_lanes* lanes, co
       a[c] = gain->amount[c]lane; \
     } \
     __global long* record = arrays->sums + (ulong)gain->at lane * RECORD; \
-    credit(record, a, lanes->direction[k]); \
+    deposit(record, a, lanes->direction[k]); \
     COUNT(record, k, lane) \
   }
-  LANE_BY_LANE(CREDIT)
-#undef CREDIT
+  LANE_BY_LANE(DEPOSIT)
+#undef DEPOSIT
 }
 
 // Most of the time of a march across a large grid is waiting for memory. It is asked for a few voxels ahead of the photons, as
@@ -392,7 +392,7 @@ static int march_packet(const march_arrays* arrays, const __global float* photon
   {
     return vertices;
   }
-  // What voxels gain is credited a stretch later, while that one's extinction is on its way from memory.
+  // What voxels gain is deposited a stretch later, while that one's extinction is on its way from memory.
   photon_gain gain;
   bool owed = false;
   for (int event = 0; event < arrays->info->eventLimit; ++event)
@@ -404,7 +404,7 @@ static int march_packet(const march_arrays* arrays, const __global float* photon
 #if !PATHS
     if (owed)
     {
-      credit_all(arrays, &lanes, &gain);
+      deposit_all(arrays, &lanes, &gain);
     }
     ask_ahead(arrays, &lanes, flight.at);
 #endif
@@ -416,7 +416,7 @@ static int march_packet(const march_arrays* arrays, const __global float* photon
     if (anywhere(special))
     {
 #if !PATHS
-      credit_all(arrays, &lanes, &gain); // before directions change
+      deposit_all(arrays, &lanes, &gain); // before directions change
       owed = false;
 #endif
       land(&flight, &lanes);
@@ -434,7 +434,7 @@ static int march_packet(const march_arrays* arrays, const __global float* photon
 #if !PATHS
   if (owed)
   {
-    credit_all(arrays, &lanes, &gain);
+    deposit_all(arrays, &lanes, &gain);
   }
 #endif
   land(&flight, &lanes);

@@ -139,7 +139,7 @@ void PhotonMarcher::Implementation::Tally(
   {
     EndOnDevice end;
     std::memcpy(&end, ends.data() + i * words, sizeof(end));
-    result.credits += static_cast<std::size_t>(end.crossings);
+    result.deposits += static_cast<std::size_t>(end.crossings);
     result.steps += static_cast<std::size_t>(end.steps);
     for (int c = 0; c < packed.channels; ++c)
     {
@@ -171,13 +171,13 @@ void PhotonMarcher::Implementation::Finish(
   const std::size_t channels = static_cast<std::size_t>(packed.channels);
   const auto lend = [&](std::vector<float>& values, std::size_t size, const char* what) {
     values = Zeros(size);
-    return LentArray<float>(device, values.data(), size, what);
+    return HostMappedBuffer<float>(device, values.data(), size, what);
   };
-  const LentArray<float> fluence = lend(light.fluence, voxels * colours, "fluence");
-  const LentArray<float> direction = lend(result.meanDirection, target.directions ? 3 * voxels : 0, "mean direction");
-  const LentArray<float> count = lend(result.photonCount, target.counts ? voxels : 0, "photon count");
-  const LentArray<float> weight = lend(result.photonWeight, target.counts ? voxels : 0, "photon weight");
-  const LentArray<float> batchFluence =
+  const HostMappedBuffer<float> fluence = lend(light.fluence, voxels * colours, "fluence");
+  const HostMappedBuffer<float> direction = lend(result.meanDirection, target.directions ? 3 * voxels : 0, "mean direction");
+  const HostMappedBuffer<float> count = lend(result.photonCount, target.counts ? voxels : 0, "photon count");
+  const HostMappedBuffer<float> weight = lend(result.photonWeight, target.counts ? voxels : 0, "photon weight");
+  const HostMappedBuffer<float> batchFluence =
     lend(result.batchFluence, batches > 1 ? batches * voxels * colours : 0, "fluence by batches");
   const Buffer<cl_long> taken(device, rows * 2 * channels, "tallies");
 
@@ -196,7 +196,7 @@ void PhotonMarcher::Implementation::Finish(
     cl_ulong(target.records * static_cast<std::size_t>(target.numbers)), fluence.Handle(), direction.Handle(),
     count.Handle(), weight.Handle(), batchFluence.Handle(), taken);
   this->medium.Launch(finish, cl::NDRange(rows));
-  for (const LentArray<float>* array : { &fluence, &direction, &count, &weight, &batchFluence })
+  for (const HostMappedBuffer<float>* array : { &fluence, &direction, &count, &weight, &batchFluence })
   {
     array->Fetch();
   }

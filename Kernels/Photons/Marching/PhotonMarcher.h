@@ -12,7 +12,7 @@
 
 namespace tyndall
 {
-/// Marches photons along bent rays through a medium, and credits every voxel that they cross.
+/// Marches photons along bent rays through a medium, and deposits every voxel that they cross.
 ///
 /// Paths follow d/ds(n dx/ds) = grad n (Pfeuti 2009, Eq. 2.7) as dr/dt = T, dT/dt = grad(n^2) / 2, dt = ds / n, by a symplectic
 /// integrator on a tricubic B-spline of n^2 through the voxels' centres; total reflection is part of it. The spline stays

@@ -212,7 +212,7 @@ std::size_t PackedPhotons::LargestBatch() const
 }
 
 PackedPhotons Pack(
-  const std::vector<Photon>& photons, const Grid& grid, bool coloured, double creditsAtMost, bool batches)
+  const std::vector<Photon>& photons, const Grid& grid, bool coloured, double depositsAtMost, bool batches)
 {
   PackedPhotons packed;
   const bool oneColour = HaveOneColour(photons, packed.colour);
@@ -220,7 +220,7 @@ PackedPhotons Pack(
   packed.channels = oneColour && !coloured ? 1 : 3;
   packed.colour = packed.channels == 3 ? Rgb{ 1.0, 1.0, 1.0 } : packed.colour;
   const double total = Brightness(photons);
-  packed.unit = total > 0.0 ? std::exp2(std::ceil(std::log2(total * creditsAtMost / 0x1p62))) : 1.0;
+  packed.unit = total > 0.0 ? std::exp2(std::ceil(std::log2(total * depositsAtMost / 0x1p62))) : 1.0;
 
   std::vector<Ray> rays;
   std::vector<std::size_t> numbers;

@@ -1,16 +1,16 @@
-// The paths of photons, leg by leg. Read after Numerics.cl, SquaredIndex.cl and PhotonLanes.cl; the host gives
+// The paths of photons, step by step. Read after Numerics.cl, SquaredIndex.cl and PhotonLanes.cl; the host gives
 //   REAL_WIDTH  photons side by side: 1 on a GPU, 4 to 16 on a CPU
 //   BENDS       1: the index varies; ORDER of the integrator then: 1, 2 or 4
 //   LEVELS      1: there are octree levels
 //   DIRECTIONS  1: directions are asked for
 //   COUNTS, CELLS  1: photons bear marks (PhotonMarch.cl)
 //
-// A path obeys dr/dt = T, dT/dt = grad(n^2) / 2 with dt = ds / n, so that |T| = n. It becomes legs, straight lines of constant
+// A path obeys dr/dt = T, dT/dt = grad(n^2) / 2 with dt = ds / n, so that |T| = n. It becomes steps, straight lines of constant
 // velocity:
 //   order 2  from kick to kick of the leapfrog (drift, kick, drift): its polygon is the path itself
 //   order 4  from step end to step end, each step of Yoshida's three leapfrogs
 //   order 1  explicit Euler as in Pfeuti 2009, Eq. 2.10 and 2.11: dx/ds = v / n, dv/ds = grad n
-// Where n does not vary within the reach of interpolation nothing is evaluated, and a leg is as long as that is so.
+// Where n does not vary within the reach of interpolation nothing is evaluated, and a step is as long as that is so.
 //
 // Positions and velocities are in voxels, lengths in voxel diagonals.
 //
@@ -35,7 +35,7 @@ typedef struct
 typedef struct
 {
   int face;      // it left through, -x, +x, ... +z; or one of the following
-  int crossings; // stretches of it that were credited
+  int crossings; // stretches of it that were deposited
   int steps;     // of the integrator
   float power[CHANNELS];
 } photon_end;
@@ -65,15 +65,15 @@ typedef struct
   LANES(int, ahead); // of `at` to where the photon will be a few voxels on
   LANES_3(float, wall); // time of the next wall
   LANES_3(float, across); // time from wall to wall
-  LANES(float, now);     // time since the leg began
+  LANES(float, now);     // time since the step began
   LANES(float, turn);    // time when it ends; NEVER: when the index varies again
   LANES(float, settled); // time until which the last turn holds
   LANES(float, pace);    // diagonals per time
   LANES(float, step);    // time of the step under way
   LANES(int, steps);     // taken
-  LANES(int, crossings); // stretches that were credited
+  LANES(int, crossings); // stretches that were deposited
   float power[CHANNELS][REAL_WIDTH] __attribute__((aligned(64)));
-  LANES_3(float, start);    // of the leg
+  LANES_3(float, start);    // of the step
   LANES_3(float, velocity); // along it
   LANES_3(float, momentum); // T; v of Euler; order 2 has it as the velocity
   float4 direction[REAL_WIDTH]; // 1, and the direction in space
@@ -139,8 +139,8 @@ static real time_to_wall(real p, real low, real high, real u, real inverse)
   return u == (real)0.0f ? (real)NEVER : greater(time, (real)0.0f);
 }
 
-// Legs of the photons of a mask from p in `voxel`, with velocity u; 1 / u is known.
-static void begin_legs(const march_info* info, photon_lanes* lanes, integer mask, const integer* voxel, const real* p,
+// Steps of the photons of a mask from p in `voxel`, with velocity u; 1 / u is known.
+static void begin_steps(const march_info* info, photon_lanes* lanes, integer mask, const integer* voxel, const real* p,
   const real* u, const real* inverse)
 {
   const int strides[3] = { 1, info->grid.size[0] + 2, (info->grid.size[0] + 2) * (info->grid.size[1] + 2) };
@@ -332,7 +332,7 @@ static real take_step(
 }
 #endif
 
-// The photons of a mask come to where the index varies, or to the end of their leg.
+// The photons of a mask come to where the index varies, or to the end of their step.
 static void take_turns(const march_arrays* arrays, photon_lanes* lanes, integer mask)
 {
   const march_info* info = arrays->info;
@@ -378,12 +378,12 @@ static void take_turns(const march_arrays* arrays, photon_lanes* lanes, integer 
 #endif
   PUT_WHERE(mask, lanes->step, next);
   PUT_WHERE(mask, lanes->turn, next > (real)0.0f ? turn : (real)NEVER);
-  begin_legs(info, lanes, kicked, voxel, p, u, inverse);
+  begin_steps(info, lanes, kicked, voxel, p, u, inverse);
   PUT_INTEGERS(lanes->steps, INTEGERS(lanes->steps) - kicked);
 }
 #endif
 
-// A photon that has ended stands still in the padding, and credits nothing.
+// A photon that has ended stands still in the padding, and deposits nothing.
 static void rest(photon_lanes* lanes, int k)
 {
   lanes->alive[k] = 0;
@@ -432,7 +432,7 @@ static void set_off(const march_arrays* arrays, photon_lanes* lanes, real* p, re
   {
     inverse[a] = (real)1.0f / u[a];
   }
-  begin_legs(info, lanes, all, voxel, p, u, inverse);
+  begin_steps(info, lanes, all, voxel, p, u, inverse);
 #if BENDS
   if (anywhere(varies))
   {

@@ -21,11 +21,11 @@ typedef struct
 typedef struct
 {
   int face;    // it left through, or 6: it was given up
-  int credits; // to voxels
+  int deposits; // to voxels
   int givenUp; // of them, after all tries
   int steps;
   float power[3];     // that is left
-  float deposited[3]; // sum of all credits
+  float deposited[3]; // sum of all deposits
 } published_end;
 
 static float3 from_rgbe(uint packed)
@@ -66,7 +66,7 @@ static float luminance(float3 colour)
 }
 
 // Read, unpack, change, pack, and write if nobody else has written meanwhile. Returns whether it succeeded.
-static bool credit_packed(__global ulong* voxel, float3 power, float3 direction)
+static bool deposit_packed(__global ulong* voxel, float3 power, float3 direction)
 {
   for (int i = 0; i < TRIES; ++i)
   {
@@ -160,7 +160,7 @@ typedef struct
   float3 position, velocity, power; // voxels; n times direction; W in units
 } published_photon;
 
-// Credit the voxels whose middles, along the axis of largest change, lie between the two ends.
+// Deposit the voxels whose middles, along the axis of largest change, lie between the two ends.
 static void rasterize(const published_info* info, const published_photon* a, const published_photon* b,
   __global ulong* packed, __global published_end* end)
 {
@@ -184,8 +184,8 @@ static void rasterize(const published_info* info, const published_photon* a, con
     }
     const float3 power = mix(a->power, b->power, t);
     const float3 direction = normalize(mix(a->velocity, b->velocity, t));
-    ++end->credits;
-    end->givenUp += !credit_packed(packed + index_of(info, voxel), power, direction);
+    ++end->deposits;
+    end->givenUp += !deposit_packed(packed + index_of(info, voxel), power, direction);
     for (int c = 0; c < 3; ++c)
     {
       end->deposited[c] += c == 0 ? power.x : c == 1 ? power.y : power.z;
@@ -211,7 +211,7 @@ __kernel void march_published(published_info info, const __global float4* index,
   published_photon photon = { (float3)(given[0], given[1], given[2]), (float3)(given[3], given[4], given[5]),
     (float3)(given[6], given[7], given[8]) };
   __global published_end* end = ends + i;
-  end->credits = end->givenUp = 0;
+  end->deposits = end->givenUp = 0;
   for (int c = 0; c < 3; ++c)
   {
     end->deposited[c] = 0.0f;

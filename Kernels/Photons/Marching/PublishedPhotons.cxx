@@ -27,7 +27,7 @@ struct GridOnDevice
 };
 struct EndOnDevice
 {
-  cl_int face, credits, givenUp, steps;
+  cl_int face, deposits, givenUp, steps;
   cl_float power[3], deposited[3];
 };
 
@@ -52,7 +52,7 @@ public:
     this->Info.stepLimit = RoundsAtMost * edges;
   }
 
-  int CreditsAtMost() const { return this->Info.stepLimit; }
+  int DepositsAtMost() const { return this->Info.stepLimit; }
 
   cl::Kernel Kernel(const char* name)
   {
@@ -135,13 +135,13 @@ void Tally(const std::vector<EndOnDevice>& ends, double unit, PhotonLight& resul
 {
   for (const EndOnDevice& end : ends)
   {
-    result.credits += static_cast<std::size_t>(end.credits);
+    result.deposits += static_cast<std::size_t>(end.deposits);
     result.steps += static_cast<std::size_t>(end.steps);
-    loss.credits += static_cast<std::size_t>(end.credits);
+    loss.deposits += static_cast<std::size_t>(end.deposits);
     loss.givenUp += static_cast<std::size_t>(end.givenUp);
     for (int c = 0; c < 3; ++c)
     {
-      loss.credited[c] += end.deposited[c] * unit;
+      loss.deposited[c] += end.deposited[c] * unit;
       Rgb& goes = end.face < 6 ? result.light.balance.escaped : result.light.balance.leftOver;
       goes[c] += end.power[c] * unit;
       if (end.face < 6)
@@ -163,7 +163,7 @@ double UnitOf(const PackedPhotons& packed)
 
 double PackingLoss::Relative() const
 {
-  const double in = this->credited[0] + this->credited[1] + this->credited[2];
+  const double in = this->deposited[0] + this->deposited[1] + this->deposited[2];
   return in > 0.0 ? 1.0 - (this->kept[0] + this->kept[1] + this->kept[2]) / in : 0.0;
 }
 
@@ -178,11 +178,11 @@ PhotonLight MarchPublished(Device& device, const Medium& medium, const Field& io
   {
     throw DeviceError(device.Name() +
       " has no 64-bit atomics (cl_khr_int64_base_atomics), which the published scheme needs. "
-      "Choose the sound scheme, or another device.");
+      "Choose the conservative scheme, or another device.");
   }
   const bool bends = IndexVaries(ior, medium.grid);
   PublishedMarch march(device, medium, settings, bends, levels != nullptr);
-  PackedPhotons packed = Pack(photons, medium.grid, true, march.CreditsAtMost());
+  PackedPhotons packed = Pack(photons, medium.grid, true, march.DepositsAtMost());
   const double unit = UnitOf(packed);
   for (std::size_t i = 0; i < packed.values.size(); ++i)
   {

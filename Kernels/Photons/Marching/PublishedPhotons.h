@@ -10,19 +10,19 @@ namespace tyndall
 {
 struct PublishedSettings
 {
-  int tries = 10;     ///< of compare-and-swap before a credit is given up
+  int tries = 10;     ///< of compare-and-swap before a deposit is given up
   bool smooth = true; ///< the 3x3x3 Gauss filter at the end
 };
 
 /// What packing the light of a voxel into 64 bits cost.
 struct PackingLoss
 {
-  Rgb credited = {};       ///< sum of all credits, W
+  Rgb deposited = {};       ///< sum of all deposits, W
   Rgb kept = {};           ///< what is in the voxels, W
-  std::size_t credits = 0; ///< to voxels
+  std::size_t deposits = 0; ///< to voxels
   std::size_t givenUp = 0; ///< of them, after all tries
 
-  double Relative() const; ///< part of the power credited that was lost, channels summed
+  double Relative() const; ///< part of the power deposited that was lost, channels summed
 };
 
 /// Photon marching as Pfeuti publishes it (2009, section 3.1.5), to compare with. See PublishedPhotons.cl.

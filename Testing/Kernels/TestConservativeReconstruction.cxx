@@ -6,7 +6,7 @@ using namespace tyndall;
 
 namespace
 {
-class SoundReconstruction : public DeviceTest
+class ConservativeReconstruction : public DeviceTest
 {
 protected:
   ReconstructedLight Of(const ReconstructionScene& scene, const ReconstructionSettings& settings = {})
@@ -35,7 +35,7 @@ double Beam(const ReconstructionScene& scene, std::size_t voxel)
 }
 }
 
-TEST_F(SoundReconstruction, IndependentNoiseOnEvenLightIsTwentyTimesLess)
+TEST_F(ConservativeReconstruction, IndependentNoiseOnEvenLightIsTwentyTimesLess)
 {
   for (int batches : { 2, 3, 4 })
   {
@@ -46,7 +46,7 @@ TEST_F(SoundReconstruction, IndependentNoiseOnEvenLightIsTwentyTimesLess)
   }
 }
 
-TEST_F(SoundReconstruction, ABrightVoxelThatBatchesAgreeOnIsKept)
+TEST_F(ConservativeReconstruction, ABrightVoxelThatBatchesAgreeOnIsKept)
 {
   ReconstructionScene scene({ 32, 32, 32 });
   const std::size_t bright = (16 * 32 + 15) * 32 + 17;
@@ -57,7 +57,7 @@ TEST_F(SoundReconstruction, ABrightVoxelThatBatchesAgreeOnIsKept)
   EXPECT_LT(light.mipLevel[bright], 0.1);
 }
 
-TEST_F(SoundReconstruction, TheTotalOfEachChannelStays)
+TEST_F(ConservativeReconstruction, TheTotalOfEachChannelStays)
 {
   for (int channels : { 1, 3 })
   {
@@ -95,7 +95,7 @@ double HeldBy(const ReconstructionScene& scene, const ReconstructedLight& light)
 }
 
 /// Photons at random, whose noise is the same along rays. Those of real scenes are spread better: see TestAdaptivePhotons.
-TEST_F(SoundReconstruction, TwoStandardErrorsHoldTheTruthInAboutNineteenVoxelsOfTwenty)
+TEST_F(ConservativeReconstruction, TwoStandardErrorsHoldTheTruthInAboutNineteenVoxelsOfTwenty)
 {
   constexpr unsigned seeds = 5;
   for (const int batches : { 2, 4 })
@@ -114,7 +114,7 @@ TEST_F(SoundReconstruction, TwoStandardErrorsHoldTheTruthInAboutNineteenVoxelsOf
   }
 }
 
-TEST_F(SoundReconstruction, TheErrorIsOnTheSafeSideWhereVoxelsHaveNoiseOfTheirOwn)
+TEST_F(ConservativeReconstruction, TheErrorIsOnTheSafeSideWhereVoxelsHaveNoiseOfTheirOwn)
 {
   for (const int batches : { 2, 4 })
   {
@@ -124,7 +124,7 @@ TEST_F(SoundReconstruction, TheErrorIsOnTheSafeSideWhereVoxelsHaveNoiseOfTheirOw
   }
 }
 
-TEST_F(SoundReconstruction, ColoursThatDifferHaveErrorsOfTheirOwn)
+TEST_F(ConservativeReconstruction, ColoursThatDifferHaveErrorsOfTheirOwn)
 {
   ReconstructionScene scene({ 48, 48, 48 }, 3);
   scene.Light([&](std::size_t i) { return i % 3 == 0 ? 0.2 * Beam(scene, i / 3) : Beam(scene, i / 3); }, 0.55);
@@ -151,7 +151,7 @@ TEST_F(SoundReconstruction, ColoursThatDifferHaveErrorsOfTheirOwn)
   }
 }
 
-TEST_F(SoundReconstruction, LightOfAnyPowerIsTheSameLight)
+TEST_F(ConservativeReconstruction, LightOfAnyPowerIsTheSameLight)
 {
   ReconstructionScene scene({ 32, 20, 17 });
   scene.Light([&](std::size_t i) { return Beam(scene, i); }, 0.5);
@@ -173,7 +173,7 @@ TEST_F(SoundReconstruction, LightOfAnyPowerIsTheSameLight)
   }
 }
 
-TEST_F(SoundReconstruction, ColoursAreFilteredAlike)
+TEST_F(ConservativeReconstruction, ColoursAreFilteredAlike)
 {
   ReconstructionScene grey({ 32, 24, 16 });
   grey.Light([&](std::size_t i) { return Beam(grey, i); }, 0.5);
@@ -192,7 +192,7 @@ TEST_F(SoundReconstruction, ColoursAreFilteredAlike)
   EXPECT_EQ(b.mipLevel.size(), a.mipLevel.size());
 }
 
-TEST_F(SoundReconstruction, IsTheSameEveryTime)
+TEST_F(ConservativeReconstruction, IsTheSameEveryTime)
 {
   ReconstructionScene scene({ 48, 31, 22 }, 1, 3);
   scene.Light([&](std::size_t i) { return Beam(scene, i); }, 0.55);
@@ -203,7 +203,7 @@ TEST_F(SoundReconstruction, IsTheSameEveryTime)
   EXPECT_EQ(a.mipLevel, b.mipLevel);
 }
 
-TEST_F(SoundReconstruction, ALineIsFilteredAlikeAlongEachAxis)
+TEST_F(ConservativeReconstruction, ALineIsFilteredAlikeAlongEachAxis)
 {
   ReconstructionScene along({ 1000, 1, 1 }), across({ 1, 1, 1000 });
   along.Light([](std::size_t i) { return 2.0 + std::sin(0.01 * static_cast<double>(i)); }, 0.4);
@@ -216,7 +216,7 @@ TEST_F(SoundReconstruction, ALineIsFilteredAlikeAlongEachAxis)
   }
 }
 
-TEST_F(SoundReconstruction, ACausticOfFewPhotonsComesNearerToThatOfMany)
+TEST_F(ConservativeReconstruction, ACausticOfFewPhotonsComesNearerToThatOfMany)
 {
   const int edge = 48;
   PhotonScene ball = caustic::BallScene(this->GetDevice(), edge);

@@ -26,11 +26,11 @@ double FluenceAt(const LightField& light, const Scene& scene, int x, int y, int 
 }
 }
 
-class FirstCollision : public DeviceTest
+class LampBeams : public DeviceTest
 {
 };
 
-TEST_F(FirstCollision, LampsInsideAndOutsideKeepTheirPower)
+TEST_F(LampBeams, LampsInsideAndOutsideKeepTheirPower)
 {
   for (LightType type : { LightType::Point, LightType::Spot, LightType::Rectangle })
   {
@@ -57,7 +57,7 @@ TEST_F(FirstCollision, LampsInsideAndOutsideKeepTheirPower)
   }
 }
 
-TEST_F(FirstCollision, ASpotBringsItsPowerHoweverNarrowItIs)
+TEST_F(LampBeams, ASpotBringsItsPowerHoweverNarrowItIs)
 {
   for (int n : { 8, 16, 33 })
   {
@@ -79,7 +79,7 @@ TEST_F(FirstCollision, ASpotBringsItsPowerHoweverNarrowItIs)
   }
 }
 
-TEST_F(FirstCollision, APointOutsideBringsWhatTheFaceSeesOfIt)
+TEST_F(LampBeams, APointOutsideBringsWhatTheFaceSeesOfIt)
 {
   for (int n : { 4, 16, 40 })
   {
@@ -94,7 +94,7 @@ TEST_F(FirstCollision, APointOutsideBringsWhatTheFaceSeesOfIt)
   }
 }
 
-TEST_F(FirstCollision, APointInAbsorberFollowsTheInverseSquareAndTheExponential)
+TEST_F(LampBeams, APointInAbsorberFollowsTheInverseSquareAndTheExponential)
 {
   const double sigma = 0.1;
   Scene scene({ 33, 33, 33 }, static_cast<float>(sigma), 0.0f);
@@ -109,7 +109,7 @@ TEST_F(FirstCollision, APointInAbsorberFollowsTheInverseSquareAndTheExponential)
   }
 }
 
-TEST_F(FirstCollision, ARectangleShinesByTheCosineAndOnOneSideOnly)
+TEST_F(LampBeams, ARectangleShinesByTheCosineAndOnOneSideOnly)
 {
   Scene scene({ 31, 31, 31 }, 0.0f, 0.0f);
   scene.light.lights = { Lamp(LightType::Rectangle, { 15.5, 15.5, 5.0 }) };
@@ -121,7 +121,7 @@ TEST_F(FirstCollision, ARectangleShinesByTheCosineAndOnOneSideOnly)
   EXPECT_NEAR(light.facePowerOut[4][0], 0.0, 1e-6);
 }
 
-TEST_F(FirstCollision, ASpotLightsItsConeOnly)
+TEST_F(LampBeams, ASpotLightsItsConeOnly)
 {
   Scene scene({ 31, 31, 31 }, 0.0f, 0.0f);
   scene.light.lights = { Lamp(LightType::Spot, { 15.5, 15.5, 0.5 }) };
@@ -131,7 +131,7 @@ TEST_F(FirstCollision, ASpotLightsItsConeOnly)
   EXPECT_EQ(FluenceAt(light, scene, 30, 15, 10), 0.0);
 }
 
-TEST_F(FirstCollision, LampsGiveTheSameLightBitForBit)
+TEST_F(LampBeams, LampsGiveTheSameLightBitForBit)
 {
   Scene scene({ 16, 16, 16 });
   scene.Randomise(1.0, 4.0, 0.5);
@@ -140,7 +140,7 @@ TEST_F(FirstCollision, LampsGiveTheSameLightBitForBit)
   EXPECT_EQ(scene.Solve(this->GetDevice()).fluence, scene.Solve(this->GetDevice()).fluence);
 }
 
-TEST_F(FirstCollision, AnIsolatedOpaqueVoxelStopsEveryRay)
+TEST_F(LampBeams, AnIsolatedOpaqueVoxelStopsEveryRay)
 {
   Scene scene({ 9, 9, 9 }, 0.0f, 0.0f);
   scene.sigma_a[(4 * 9 + 4) * 9 + 4] = 1e9f;

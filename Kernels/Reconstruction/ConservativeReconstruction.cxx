@@ -22,11 +22,11 @@ constexpr float Honesty = 0.4f;
 
 constexpr std::size_t FirstPart = std::size_t(1) << 22; // voxels a launch, until it is known how long that takes
 
-// As in SoundReconstruction.cl.
+// As in ConservativeReconstruction.cl.
 constexpr int GainFields = 4, Removed = 1;
 
 /// What the device keeps of a level of the pyramid, from level 1 on.
-struct SoundLevel
+struct ConservativeLevel
 {
   LightRows light;            ///< each batch's, then what is smoothed
   LightRows results;          ///< what is smoothed, level, squared error
@@ -39,7 +39,7 @@ int Carried(const NoisyLight& light)
   return light.channels + (light.meanDirection ? 3 : 0);
 }
 
-SoundLevel MakeLevel(Device& device, const NoisyLight& light, const std::array<int, 3>& size, int width)
+ConservativeLevel MakeLevel(Device& device, const NoisyLight& light, const std::array<int, 3>& size, int width)
 {
   const int fields = light.batches + Carried(light);
   const char* what = "a level of the pyramid of light";
@@ -60,10 +60,10 @@ float ScaleOf(float largest)
   return std::ldexp(1.0f, -std::clamp(largest > 0.0f ? std::ilogb(largest) : 0, -126, 126));
 }
 
-class SoundPasses
+class ConservativePasses
 {
 public:
-  SoundPasses(const Reconstruction& task, ReconstructedLight& result)
+  ConservativePasses(const Reconstruction& task, ReconstructedLight& result)
     : Task(task)
     , Result(result)
     , Size(task.light.grid.size)
@@ -108,9 +108,9 @@ private:
 
   cl::Kernel Kernel(const char* name, bool finest = false) const
   {
-    return this->Kernels.Kernel(name, kernel_source::SoundReconstruction, Define("FINEST", finest));
+    return this->Kernels.Kernel(name, kernel_source::ConservativeReconstruction, Define("FINEST", finest));
   }
-  SoundLevel& At(int level) { return this->Levels[static_cast<std::size_t>(level - 1)]; }
+  ConservativeLevel& At(int level) { return this->Levels[static_cast<std::size_t>(level - 1)]; }
   const cl::Buffer& LightAt(int level)
   {
     return level > 0 ? this->At(level).light.Values().Handle() : this->Light.Handle();
@@ -137,7 +137,7 @@ private:
       [&](std::size_t first, std::size_t count) { this->Kernels.Run(kernel, cells, first, count); });
   }
 
-  void SmoothAcross(SoundLevel& level, const LightRows& from, int first, int fields)
+  void SmoothAcross(ConservativeLevel& level, const LightRows& from, int first, int fields)
   {
     cl::Kernel smooth = this->Kernel("smooth_across");
     With(smooth, from.Values(), from.Layout(), level.across.Values(), cl_int(first), cl_int(fields));
@@ -150,14 +150,14 @@ private:
   RowKernels Kernels;
   float Scale;
   cl_int4 Voxels;
-  LentArray<float> FluenceOut, DirectionOut, MipLevelOut, ErrorOut;
+  HostMappedBuffer<float> FluenceOut, DirectionOut, MipLevelOut, ErrorOut;
   WholeRows Light, Direction, Fluence, MeanDirection, MipLevel, Error;
-  std::vector<SoundLevel> Levels;
+  std::vector<ConservativeLevel> Levels;
 };
 
-void SoundPasses::BuildPyramid()
+void ConservativePasses::BuildPyramid()
 {
-  const SoundLevel& first = this->At(1);
+  const ConservativeLevel& first = this->At(1);
   cl::Kernel ofVoxels = this->Kernel("voxels_down", true);
   With(ofVoxels, this->Light.Handle(), this->Direction.Handle(), this->Voxels, first.light.Values(),
     first.light.Layout(), this->Scale);
@@ -170,7 +170,7 @@ void SoundPasses::BuildPyramid()
     With(down, fine.Values(), fine.Layout(), coarse.Values(), coarse.Layout(), cl_int(fine.Fields()));
     this->Kernels.Run(down, coarse.Cells());
   }
-  SoundLevel& top = this->At(this->Task.levels);
+  ConservativeLevel& top = this->At(this->Task.levels);
   cl::Kernel begin = this->Kernel("begin_results");
   With(begin, top.light.Values(), top.light.Layout(), top.results.Values(), cl_float(this->Task.levels),
     top.measured.Values());
@@ -182,9 +182,9 @@ void SoundPasses::BuildPyramid()
 }
 
 /// How much of a level's details is kept, and the error of that.
-void SoundPasses::FindGains(int level)
+void ConservativePasses::FindGains(int level)
 {
-  SoundLevel& above = this->At(level + 1);
+  ConservativeLevel& above = this->At(level + 1);
   const cl_int4 cells = above.light.Layout();
   cl::Kernel measure = this->Kernel("measure_details", level == 0);
   With(measure, this->LightAt(level), this->Direction.Handle(), this->LayoutAt(level), this->ScaleAt(level),
@@ -202,9 +202,9 @@ void SoundPasses::FindGains(int level)
   this->Kernels.Run(errors, above.light.Cells());
 }
 
-void SoundPasses::Blend(int level)
+void ConservativePasses::Blend(int level)
 {
-  const SoundLevel& above = this->At(level + 1);
+  const ConservativeLevel& above = this->At(level + 1);
   cl::Kernel blend = this->Kernel("blend_level", level == 0);
   const cl::Buffer& to = level > 0 ? this->At(level).results.Values().Handle() : above.across.Values().Handle();
   With(blend, this->LightAt(level), this->Direction.Handle(), this->LayoutAt(level), this->ScaleAt(level),
@@ -213,9 +213,9 @@ void SoundPasses::Blend(int level)
   this->RunAbove(level, blend, 0.5, 0.9);
 }
 
-void SoundPasses::Finish()
+void ConservativePasses::Finish()
 {
-  const SoundLevel& first = this->At(1);
+  const ConservativeLevel& first = this->At(1);
   this->Fluence.Fetch();
   const float most = std::numeric_limits<float>::max();
   const std::vector<float>& light = this->Result.fluence;
@@ -238,8 +238,8 @@ void SoundPasses::Finish()
 }
 }
 
-void ReconstructSound(const Reconstruction& task, ReconstructedLight& result)
+void ReconstructConservative(const Reconstruction& task, ReconstructedLight& result)
 {
-  SoundPasses(task, result).Run();
+  ConservativePasses(task, result).Run();
 }
 }

@@ -52,18 +52,18 @@ double Out(const LightField& light, int channel)
 }
 }
 
-class FirstFlight : public DeviceTest
+class UncollidedBoundary : public DeviceTest
 {
 };
 
-TEST_F(FirstFlight, SeesAShiningFaceAsLargeAsItIs)
+TEST_F(UncollidedBoundary, SeesAShiningFaceAsLargeAsItIs)
 {
   constexpr int n = 16;
   std::array<double, 2> squares = {};
   for (const int fine : { 0, 900 })
   {
     Scene scene = LitCube(n, 0.0, 0.0);
-    scene.settings.firstFlightDirections = fine;
+    scene.settings.uncollidedDirections = fine;
     const LightField light = scene.Solve(this->GetDevice());
     std::size_t i = 0;
     for (int z = 0; z < n; ++z)
@@ -83,7 +83,7 @@ TEST_F(FirstFlight, SeesAShiningFaceAsLargeAsItIs)
   EXPECT_LT(std::sqrt(squares[1]), 0.008);
 }
 
-TEST_F(FirstFlight, AlongTheUsualDirectionsChangesNothing)
+TEST_F(UncollidedBoundary, AlongTheUsualDirectionsChangesNothing)
 {
   // The rays are the same, only carried in two parts: orders one by one, accelerated with thin and with thick voxels, as published.
   const auto linear = PropagationSource::Automatic, constant = PropagationSource::Constant;
@@ -95,7 +95,7 @@ TEST_F(FirstFlight, AlongTheUsualDirectionsChangesNothing)
     scene.settings.staggeredRays = true;
     scene.settings.tolerance = 1e-6;
     const LightField usual = scene.Solve(this->GetDevice());
-    scene.settings.firstFlightDirections = scene.settings.directionsPerFace;
+    scene.settings.uncollidedDirections = scene.settings.directionsPerFace;
     const LightField light = scene.Solve(this->GetDevice());
     EXPECT_LT(RelativeDifference(light.fluence, usual.fluence), 1e-5) << tau;
     EXPECT_LT(RelativeDifference(light.fluenceDirect, usual.fluenceDirect), 1e-5) << tau;
@@ -106,7 +106,7 @@ TEST_F(FirstFlight, AlongTheUsualDirectionsChangesNothing)
   }
 }
 
-TEST_F(FirstFlight, KeepsTheFurnaceWithVoidsAndAContrastOfAHundredMillion)
+TEST_F(UncollidedBoundary, KeepsTheFurnaceWithVoidsAndAContrastOfAHundredMillion)
 {
   for (const bool asFaces : { false, true })
   {
@@ -117,18 +117,18 @@ TEST_F(FirstFlight, KeepsTheFurnaceWithVoidsAndAContrastOfAHundredMillion)
       scene.sigma_s[i] = 0.0f;
     }
     asFaces ? scene.light.faces.fill({ 1.0, 1.0, 1.0 }) : scene.ShineFromEverywhere(1.0);
-    scene.settings.firstFlightDirections = 100;
+    scene.settings.uncollidedDirections = 100;
     scene.settings.tolerance = 1e-6;
     const LightField light = scene.Solve(this->GetDevice());
     for (float fluence : light.fluence)
     {
       ASSERT_NEAR(fluence / (4.0 * Pi), 1.0, 1e-5);
     }
-    EXPECT_THAT(light.leftOut, Contains(HasSubstr("first flight")));
+    EXPECT_THAT(light.leftOut, Contains(HasSubstr("uncollided flux of the boundaries")));
   }
 }
 
-TEST_F(FirstFlight, IsNeverBrighterThanWhatShines)
+TEST_F(UncollidedBoundary, IsNeverBrighterThanWhatShines)
 {
   // Albedo 1, voids, contrast up to a hundred million.
   for (const double thickest : { 0.1, 10.0, 1e4 })
@@ -141,7 +141,7 @@ TEST_F(FirstFlight, IsNeverBrighterThanWhatShines)
     }
     scene.light.faces[4] = { 1.0, 1.0, 1.0 };
     scene.light.faces[0] = { 0.3, 0.3, 0.3 };
-    scene.settings.firstFlightDirections = 225;
+    scene.settings.uncollidedDirections = 225;
     const LightField light = scene.Solve(this->GetDevice());
     const auto [least, most] = std::minmax_element(light.fluence.begin(), light.fluence.end());
     EXPECT_GE(*least, 0.0f) << thickest;
@@ -151,7 +151,7 @@ TEST_F(FirstFlight, IsNeverBrighterThanWhatShines)
   }
 }
 
-TEST_F(FirstFlight, GivesBackEveryWattInColour)
+TEST_F(UncollidedBoundary, GivesBackEveryWattInColour)
 {
   // Sky, faces and medium with a colour each, no red from outside; channels share sigma_t or not; one by one and accelerated.
   for (const bool shared : { false, true })
@@ -172,7 +172,7 @@ TEST_F(FirstFlight, GivesBackEveryWattInColour)
       scene.light.faces[1] = { 0.0, 0.0, 1.0 };
       scene.light.faces[5] = { 0.0, 1.0, 0.5 };
       scene.settings.netFlux = true;
-      scene.settings.firstFlightDirections = 100;
+      scene.settings.uncollidedDirections = 100;
       const LightField light = scene.Solve(this->GetDevice());
       ASSERT_EQ(light.channels, 3);
       EXPECT_LT(light.balance.RelativeError(3), 1e-5) << tau;
@@ -192,7 +192,7 @@ TEST_F(FirstFlight, GivesBackEveryWattInColour)
   }
 }
 
-TEST_F(FirstFlight, TakesAnEvenSkyWhereTheMediumAbsorbs)
+TEST_F(UncollidedBoundary, TakesAnEvenSkyWhereTheMediumAbsorbs)
 {
   // Against many directions throughout.
   std::vector<std::vector<float>> fluences;
@@ -202,7 +202,7 @@ TEST_F(FirstFlight, TakesAnEvenSkyWhereTheMediumAbsorbs)
     scene.light.faces = {};
     scene.ShineFromEverywhere(1.0);
     scene.settings.directionsPerFace = std::max(directions, 25);
-    scene.settings.firstFlightDirections = directions == 0 ? 400 : 0;
+    scene.settings.uncollidedDirections = directions == 0 ? 400 : 0;
     scene.settings.staggeredRays = true;
     const LightField light = scene.Solve(this->GetDevice());
     fluences.push_back(light.fluence);
@@ -211,26 +211,26 @@ TEST_F(FirstFlight, TakesAnEvenSkyWhereTheMediumAbsorbs)
   EXPECT_LT(RelativeDifference(fluences[2], fluences[0]), 0.3 * RelativeDifference(fluences[1], fluences[0]));
 }
 
-TEST_F(FirstFlight, DiesAwayInAPeriodicAbsorberAsItShould)
+TEST_F(UncollidedBoundary, DiesAwayInAPeriodicAbsorberAsItShould)
 {
   // Transmittance of diffuse light: 2 E3(1).
   Scene scene({ 4, 1, 16 }, 1.0f / 16.0f);
   scene.settings.periodic = { true, true, false };
   scene.light.faces[4] = { 1.0, 1.0, 1.0 };
   scene.settings.directionsPerFace = 9;
-  scene.settings.firstFlightDirections = 900;
+  scene.settings.uncollidedDirections = 900;
   const LightField light = scene.Solve(this->GetDevice());
   EXPECT_NEAR(light.facePowerOut[5][0] / light.balance.entered[0], 0.2193839344, 2e-4);
   EXPECT_LT(light.balance.RelativeError(1), 1e-5);
 }
 
-TEST_F(FirstFlight, TransmitsAsSlabsDoHoweverThickVoxelsAre)
+TEST_F(UncollidedBoundary, TransmitsAsSlabsDoHoweverThickVoxelsAre)
 {
   for (const double tau : { 10.0, 30.0, 100.0, 1e3, 1e6 })
   {
     Scene scene({ 1, 1, 32 }, 0.0f, static_cast<float>(tau / 32.0));
     scene.settings.periodic = { true, true, false };
-    scene.settings.firstFlightDirections = 225;
+    scene.settings.uncollidedDirections = 225;
     scene.light.faces[4] = { 1.0, 1.0, 1.0 };
     const LightField light = scene.Solve(this->GetDevice());
     const double transmitted = light.facePowerOut[5][0] / light.balance.entered[0];
@@ -238,13 +238,13 @@ TEST_F(FirstFlight, TransmitsAsSlabsDoHoweverThickVoxelsAre)
   }
 }
 
-TEST_F(FirstFlight, TakesPartInTheErrorEstimate)
+TEST_F(UncollidedBoundary, TakesPartInTheErrorEstimate)
 {
   std::array<double, 2> errors = {};
   for (const int fine : { 0, 400 })
   {
     Scene scene = LitCube(24, 1.0, 0.9);
-    scene.settings.firstFlightDirections = fine;
+    scene.settings.uncollidedDirections = fine;
     scene.Solve(this->GetDevice()); // lets the medium see its arrays
     errors[fine > 0] = SolveWithErrorEstimate(scene.medium, scene.settings, {},
       [&](const Medium& medium, const PropagationSettings& settings, const Monitor& monitor) {
@@ -255,12 +255,12 @@ TEST_F(FirstFlight, TakesPartInTheErrorEstimate)
   EXPECT_GT(errors[1], 0.0005);
 }
 
-TEST_F(FirstFlight, RefusesANumberThatIsNoSquare)
+TEST_F(UncollidedBoundary, RefusesANumberThatIsNoSquare)
 {
   Scene scene = LitCube(4, 1.0, 0.9);
   for (const int wrong : { -1, 24, 65 * 65 })
   {
-    scene.settings.firstFlightDirections = wrong;
+    scene.settings.uncollidedDirections = wrong;
     try
     {
       scene.Solve(this->GetDevice());
@@ -268,19 +268,19 @@ TEST_F(FirstFlight, RefusesANumberThatIsNoSquare)
     }
     catch (const InvalidInput& error)
     {
-      EXPECT_THAT(error.what(), HasSubstr("FirstFlightDirections is " + std::to_string(wrong)));
+      EXPECT_THAT(error.what(), HasSubstr("UncollidedDirections is " + std::to_string(wrong)));
     }
   }
 }
 
-TEST_F(FirstFlight, LeavesThickCubesAsTheyAre)
+TEST_F(UncollidedBoundary, LeavesThickCubesAsTheyAre)
 {
   // Albedo 1, one face shines: 1/6 in the middle. Without a flight 0.1%; with one 0.5% at most, at 10 mean free paths.
   for (double tau : { 10.0, 100.0, 1e4 })
   {
     Scene scene({ 31, 31, 31 }, 0.0f, static_cast<float>(tau / 31.0));
     scene.light.faces[4] = { 1.0, 1.0, 1.0 };
-    scene.settings.firstFlightDirections = 400;
+    scene.settings.uncollidedDirections = 400;
     const LightField light = scene.Solve(this->GetDevice());
     EXPECT_NEAR(light.fluence[(15 * 31 + 15) * 31 + 15] / (4.0 * 3.14159265358979323846) * 6.0, 1.0, 0.006) << tau;
   }

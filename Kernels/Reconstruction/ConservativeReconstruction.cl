@@ -1,4 +1,4 @@
-// The sound estimator, after LightRows.cl. Compiled with
+// The conservative estimator, after LightRows.cl. Compiled with
 //   BATCHES     independent ones, at least 2
 //   CHANNELS    of the light, 1 or 3
 //   DIRECTIONS  1: there are mean directions
