@@ -15,7 +15,7 @@ inline real room_around(real3 p, int4 size)
 }
 
 // Lanes of `last` that have come to the face which ends their step are no more inside.
-inline integer leave(ray packets* t, integer last, int4 size)
+inline integer leave(ray_packets* t, integer last, int4 size)
 {
   const real to_go = time_to_face(t->at, t->velocity, size) * sqrt(product(t->velocity, t->velocity));
   const integer gone = last & (to_go < (real)1e-3f);
@@ -26,7 +26,7 @@ inline integer leave(ray packets* t, integer last, int4 size)
 #if BENDS
 // A few steps by the leapfrog. Whatever the index does, nobody looks beyond the box.
 __attribute__((always_inline)) inline void bend(
-  const surroundings* s, integer done, ray packets* t, light* l, crossed* half_way, watch* w)
+  const surroundings* s, integer done, ray_packets* t, light* l, crossed* half_way, watch* w)
 {
   const int4 size = s->v->size;
   const float4 spacing = s->o->spacing;
@@ -98,7 +98,7 @@ __attribute__((always_inline)) inline void bend(
 
 // Steps through a region of constant index, or a leap. Returns how many.
 __attribute__((always_inline)) inline int go_straight(const surroundings* s, const rays* packet, real step, stretch ahead,
-  integer done, ray packets* t, light* l, crossed* half_way)
+  integer done, ray_packets* t, light* l, crossed* half_way)
 {
   const int4 size = s->v->size;
   const int steps = max(min(ahead.steps, (int)ceil(most_lanes(packet->length / step))), 1);
@@ -130,7 +130,7 @@ __attribute__((always_inline)) inline int go_straight(const surroundings* s, con
 
 // Marches rays until they leave the box, have too little light left or have gone round for long.
 __attribute__((always_inline)) inline void march(
-  const surroundings* s, ray packets* t, light* l, crossed* half_way, watch* w)
+  const surroundings* s, ray_packets* t, light* l, crossed* half_way, watch* w)
 {
   const view* v = s->v;
   const int4 size = v->size;

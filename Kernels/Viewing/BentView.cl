@@ -19,12 +19,12 @@ typedef struct
 } seeing;
 
 // Rays from the camera where they enter the box, as fast as the index there has it.
-inline ray packets enter(const surroundings* s, camera_rays seen, real* entry_square)
+inline ray_packets enter(const surroundings* s, camera_rays seen, real* entry_square)
 {
   const real3 direction = stretched(seen.d, s->v->inverse_spacing);
   real before;
   const rays packet = clip_to_box(seen.from, direction, (real)1e30f, s->v->size, &before);
-  ray packets t = { packet.entry, direction, packet.length > (real)0.0f };
+  ray_packets t = { packet.entry, direction, packet.length > (real)0.0f };
   *entry_square = (real)1.0f;
 #if BENDS
   real3 unused;
@@ -37,7 +37,7 @@ inline ray packets enter(const surroundings* s, camera_rays seen, real* entry_sq
 }
 
 // Sends off what waits for a later march; false where nothing does.
-inline int send_off(const waiting* next, ray packets* t, light* l)
+inline int send_off(const waiting* next, ray_packets* t, light* l)
 {
   l->left = next->left;
   t->at = next->at;
@@ -48,7 +48,7 @@ inline int send_off(const waiting* next, ray packets* t, light* l)
 
 // What a march comes to: background, or table. Rays that did not find out see the background as if the index were there what it
 // is at their entry.
-inline void arrive(const surroundings* s, const ray packets* t, integer set_off, int primary,
+inline void arrive(const surroundings* s, const ray_packets* t, integer set_off, int primary,
   global const float4* lit, global const float4* environment, crossed* half_way, seeing* to)
 {
   const integer out = set_off & (t->inside == 0);
@@ -103,7 +103,7 @@ kernel void cast_bent_rays(view v, optics o, global const float4* restrict sampl
   }
   const surroundings s = { &v, &o, { samples, extinctions, flow, glow }, bending, bricks };
   seeing to;
-  ray packets t = enter(&s, rays_through(&v, column, row), &to.entry_square);
+  ray_packets t = enter(&s, rays_through(&v, column, row), &to.entry_square);
   to.l = unlit((real)1.0f);
   const waiting nothing = { t.at, t.velocity, unlit((real)0.0f).left };
   to.mirrored = nothing;

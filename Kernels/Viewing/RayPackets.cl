@@ -19,7 +19,7 @@ typedef struct
 {
   real3 at, velocity;
   integer inside;
-} ray packets;
+} ray_packets;
 
 // Rays that are marched later; without light left there are none.
 typedef struct

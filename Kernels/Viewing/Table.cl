@@ -22,7 +22,7 @@ inline rgb table_light(const surroundings* s, global const float4* lit, real3 p)
 }
 
 // Rays that leave the box through the table.
-inline integer meet_table(const surroundings* s, const ray packets* t, integer left_box)
+inline integer meet_table(const surroundings* s, const ray_packets* t, integer left_box)
 {
   const int axis = s->o->face.x;
   const real sign = (real)(s->o->face.y ? 1.0f : -1.0f);
