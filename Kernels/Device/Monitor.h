@@ -10,6 +10,13 @@ namespace tyndall
 /// Called on the thread that started the computation.
 using Monitor = std::function<bool(double fractionDone)>;
 
+/// What a part of the work reports to: `whole` turns a fraction of it into that of all. Empty where `monitor` is, which must stay.
+template <class Whole>
+Monitor OfPart(const Monitor& monitor, Whole whole)
+{
+  return monitor ? Monitor([&monitor, whole](double done) { return monitor(whole(done)); }) : Monitor();
+}
+
 /// Report progress and leave by Aborted where the caller wants to stop. An empty monitor never stops.
 inline void Report(const Monitor& monitor, double fractionDone)
 {

@@ -85,6 +85,22 @@ const char* SceneChannels::LeftOut() const
   return this->colour.IsGrey() ? left_out::Grey : left_out::OneColour;
 }
 
+void SceneChannels::Undo(LightField& light, int solved) const
+{
+  if (solved == 3 && this->given == 1)
+  {
+    KeepOneChannel(light);
+  }
+  if (solved == 1)
+  {
+    light.leftOut.insert(light.leftOut.begin(), this->LeftOut());
+    if (this->given == 3)
+    {
+      Spread(light, this->colour.Relative());
+    }
+  }
+}
+
 OneChannelScene::OneChannelScene(const Medium& given, const Illumination& illumination, const SceneChannels& channels)
   : medium(given)
   , light(illumination)

@@ -16,7 +16,13 @@ struct SceneChannels
   CommonColour colour;
 
   SceneChannels(const Medium& medium, const MediumTraits& traits, const Illumination& illumination);
-  const char* LeftOut() const; ///< in words, where one is enough
+  /// How many are solved for: one where that is enough and what is not needed is left out, else three.
+  int Solved(bool leaveOut) const { return leaveOut && this->one ? 1 : 3; }
+  /// The light of `solved` channels as that of as many as are given; says in leftOut what one stood for.
+  void Undo(LightField& light, int solved) const;
+
+private:
+  const char* LeftOut() const;
 };
 
 /// A scene whose three channels are multiples of each other, as its brightest sees it: medium and lights are grey.
@@ -46,22 +52,18 @@ template <class Solve>
 LightField SolveChannels(bool leaveOut, const SceneChannels& channels, const Medium& medium,
   const Illumination& illumination, const Solve& solve)
 {
-  if (!leaveOut || !channels.one)
+  const int solved = channels.Solved(leaveOut);
+  LightField light;
+  if (solved == 1)
   {
-    LightField light = solve(medium, illumination, 3);
-    if (channels.given == 1)
-    {
-      KeepOneChannel(light);
-    }
-    return light;
+    const OneChannelScene scene(medium, illumination, channels);
+    light = solve(scene.medium, scene.light, 1);
   }
-  const OneChannelScene scene(medium, illumination, channels);
-  LightField light = solve(scene.medium, scene.light, 1);
-  light.leftOut.insert(light.leftOut.begin(), channels.LeftOut());
-  if (channels.given == 3)
+  else
   {
-    Spread(light, channels.colour.Relative());
+    light = solve(medium, illumination, 3);
   }
+  channels.Undo(light, solved);
   return light;
 }
 }

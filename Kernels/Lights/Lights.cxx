@@ -1,10 +1,10 @@
 #include "Lights/Lights.h"
 
 #include "Device/Errors.h"
+#include "Numerics/NumberText.h"
 
 #include <algorithm>
 #include <cmath>
-#include <cstdio>
 #include <limits>
 #include <string>
 
@@ -130,9 +130,7 @@ bool Usable(double value)
 /// "1e+39; it must be ..."
 std::string Refusal(double value)
 {
-  char text[32];
-  std::snprintf(text, sizeof(text), "%.6g", value);
-  return std::string(text) + "; it must be finite and not negative, at most 3.40282e+38, as floats are.";
+  return Text("%.6g", value) + "; it must be finite and not negative, at most 3.40282e+38, as floats are.";
 }
 
 void CheckLight(const Light& light, std::size_t number)

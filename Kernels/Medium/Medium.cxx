@@ -1,10 +1,10 @@
 #include "Medium/Medium.h"
 
 #include "Device/Errors.h"
+#include "Numerics/NumberText.h"
 
 #include <algorithm>
 #include <cmath>
-#include <cstdio>
 
 namespace tyndall
 {
@@ -21,13 +21,6 @@ namespace
 constexpr double LargestExtinction = 1e37; ///< 1/length; the inverse of more is not a normal float
 constexpr double LongestSpacing = 1e30;    ///< and the shortest is its inverse: products of several areas stay doubles
 constexpr double MostUnequal = 1e9;        ///< longest spacing over shortest
-
-std::string Scientific(double value)
-{
-  char text[32];
-  std::snprintf(text, sizeof(text), "%.3g", value);
-  return text;
-}
 
 void CheckField(const Field& field, const char* name, const Grid& grid)
 {
@@ -68,9 +61,9 @@ void CheckExtinction(const Medium& medium)
       const double sigma_t = medium.sigma_a.At(i, c) + (1.0 + g) * medium.sigma_s.At(i, c);
       if (sigma_t > LargestExtinction)
       {
-        throw InvalidInput("sigma_a and sigma_s add up to " + Scientific(sigma_t) + " in voxel " +
+        throw InvalidInput("sigma_a and sigma_s add up to " + Text("%.3g", sigma_t) + " in voxel " +
           VoxelName(medium.grid, i) + " (the first such voxel), more than solvers can do (" +
-          Scientific(LargestExtinction) + "). From a thickness of some hundred on a voxel is opaque: give it less.");
+          Text("%.3g", LargestExtinction) + "). From a thickness of some hundred on a voxel is opaque: give it less.");
       }
     }
   }
@@ -88,15 +81,15 @@ void Check(const Grid& grid)
     }
     if (!(spacing >= 1.0 / LongestSpacing && spacing <= LongestSpacing))
     {
-      throw InvalidInput("The grid's spacing along " + std::string(1, "xyz"[axis]) + " is " + Scientific(spacing) +
+      throw InvalidInput("The grid's spacing along " + std::string(1, "xyz"[axis]) + " is " + Text("%.3g", spacing) +
         "; it must be from 1e-30 to 1e30. Use another unit of length.");
     }
   }
   const auto [shortest, longest] = std::minmax_element(grid.spacing.begin(), grid.spacing.end());
   if (*longest > MostUnequal * *shortest)
   {
-    throw InvalidInput("The grid's spacing is " + Scientific(grid.spacing[0]) + ", " + Scientific(grid.spacing[1]) +
-      ", " + Scientific(grid.spacing[2]) + ": one is more than " + Scientific(MostUnequal) +
+    throw InvalidInput("The grid's spacing is " + Text("%.3g", grid.spacing[0]) + ", " + Text("%.3g", grid.spacing[1]) +
+      ", " + Text("%.3g", grid.spacing[2]) + ": one is more than " + Text("%.3g", MostUnequal) +
       " times another, which floats cannot follow rays through. Resample to voxels of more equal edges.");
   }
 }

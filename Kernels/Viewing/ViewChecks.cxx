@@ -2,10 +2,10 @@
 
 #include "Medium/BoxFaces.h"
 #include "Refraction/Index/IndexRange.h"
+#include "Numerics/NumberText.h"
 
 #include <algorithm>
 #include <cmath>
-#include <cstdio>
 #include <string>
 
 namespace tyndall
@@ -19,14 +19,6 @@ constexpr double LargestRadiance = 1e37;               ///< W / (length^2 sr); s
 constexpr double FarthestCamera = 1e15;                ///< lengths, voxels: their squares are still floats
 constexpr double MostPixels = 7e8;                     ///< three numbers each: indices end at 2^31
 constexpr float FacesAlike = 1e-3f; ///< relative; what smoothing leaves of a border nearby
-
-/// Large and small numbers too: std::to_string has six places after the point.
-std::string Number(double value)
-{
-  char text[32];
-  std::snprintf(text, sizeof(text), "%g", value);
-  return text;
-}
 
 IndexRange RangeOnFaces(const Field& ior, const Grid& grid)
 {
@@ -130,20 +122,20 @@ void Check(const ViewSettings& settings)
   if (static_cast<double>(settings.imageSize[0]) * settings.imageSize[1] > MostPixels)
   {
     throw InvalidInput("The image is " + std::to_string(settings.imageSize[0]) + " by " +
-      std::to_string(settings.imageSize[1]) + " pixels; all together they may be at most " + Number(MostPixels) + ".");
+      std::to_string(settings.imageSize[1]) + " pixels; all together they may be at most " + Text("%g", MostPixels) + ".");
   }
   if (!(settings.stepSize >= LeastStep && settings.stepSize <= LargestStep))
   {
-    throw InvalidInput("The step size (StepSize) is " + Number(settings.stepSize) + " voxels; it must be from " +
-      Number(LeastStep) + " to " + Number(LargestStep) +
+    throw InvalidInput("The step size (StepSize) is " + Text("%g", settings.stepSize) + " voxels; it must be from " +
+      Text("%g", LeastStep) + " to " + Text("%g", LargestStep) +
       ". Smaller steps than that show nothing more, larger ones miss voxels.");
   }
   for (const double channel : settings.backgroundColor)
   {
     if (!(channel >= 0.0 && channel <= LargestRadiance))
     {
-      throw InvalidInput("A channel of the background colour (BackgroundColor) is " + Number(channel) +
-        " W/(length^2 sr); it must be from 0 to " + Number(LargestRadiance) + ".");
+      throw InvalidInput("A channel of the background colour (BackgroundColor) is " + Text("%g", channel) +
+        " W/(length^2 sr); it must be from 0 to " + Text("%g", LargestRadiance) + ".");
     }
   }
   const std::array<int, 5> widths = { 0, 1, 4, 8, 16 };
@@ -236,15 +228,15 @@ void CheckDistance(const Camera& camera, const Grid& grid)
     const double away = std::abs(camera.position[axis] - grid.origin[axis]);
     if (!(away <= FarthestCamera && away / grid.spacing[axis] <= FarthestCamera))
     {
-      throw InvalidInput("The camera is too far away: " + Number(away) + " from the medium's corner along " +
-        "xyz"[axis] + ", " + Number(away / grid.spacing[axis]) + " voxels; come closer than " + Number(FarthestCamera) +
+      throw InvalidInput("The camera is too far away: " + Text("%g", away) + " from the medium's corner along " +
+        "xyz"[axis] + ", " + Text("%g", away / grid.spacing[axis]) + " voxels; come closer than " + Text("%g", FarthestCamera) +
         " of both.");
     }
     if (camera.parallelProjection && !(camera.parallelScale / grid.spacing[axis] <= FarthestCamera))
     {
-      throw InvalidInput("The camera's parallel scale is " + Number(camera.parallelScale) + ", " +
-        Number(camera.parallelScale / grid.spacing[axis]) + " voxels along " + "xyz"[axis] + "; it may be at most " +
-        Number(FarthestCamera) + " voxels.");
+      throw InvalidInput("The camera's parallel scale is " + Text("%g", camera.parallelScale) + ", " +
+        Text("%g", camera.parallelScale / grid.spacing[axis]) + " voxels along " + "xyz"[axis] + "; it may be at most " +
+        Text("%g", FarthestCamera) + " voxels.");
     }
   }
 }

@@ -158,7 +158,7 @@ void RunMaps(
     maps->SetAlgorithm(sequential ? vtkLightPropagationMaps::SEQUENTIAL : vtkLightPropagationMaps::PARALLEL);
   }
   maps->SetLeaveOut(solver != StressSolver::MapsAll);
-  if (solver != StressSolver::Maps && solver != StressSolver::MapsAll)
+  if (!EndsByTolerance(solver))
   {
     maps->SetSource(vtkLightPropagationMaps::CONSTANT);
     maps->SetAcceleration(vtkLightPropagationMaps::NONE);
@@ -319,6 +319,11 @@ const char* NameOf(StressSolver solver)
 bool IsMaps(StressSolver solver)
 {
   return solver <= StressSolver::MapsSequential;
+}
+
+bool EndsByTolerance(StressSolver solver)
+{
+  return solver == StressSolver::Maps || solver == StressSolver::MapsAll;
 }
 
 bool IsPhotons(StressSolver solver)

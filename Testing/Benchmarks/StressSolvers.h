@@ -27,6 +27,7 @@ enum class StressSolver
 
 const char* NameOf(StressSolver solver);
 bool IsMaps(StressSolver solver);
+bool EndsByTolerance(StressSolver solver); ///< others do as many orders whatever it is
 bool IsPhotons(StressSolver solver); ///< photons, reconstructed or not
 bool IsView(StressSolver solver);
 

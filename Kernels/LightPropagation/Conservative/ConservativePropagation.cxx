@@ -2,12 +2,13 @@
 
 #include "Device/Errors.h"
 #include "LightPropagation/Conservative/DiffusionAcceleration.h"
-#include "LightPropagation/Conservative/ScatteringOrders.h"
+#include "LightPropagation/Problem/ScatteringOrders.h"
 #include "LightPropagation/Conservative/SourceIteration.h"
+#include "Numerics/NumberText.h"
 
 #include <algorithm>
 #include <cmath>
-#include <cstdio>
+#include <memory>
 #include <string>
 
 namespace tyndall
@@ -16,13 +17,6 @@ namespace
 {
 constexpr double Pi = 3.14159265358979323846;
 constexpr double ImbalanceAtMost = 1e-2; ///< beyond any rounding
-
-std::string Text(const char* format, double value)
-{
-  char text[64];
-  std::snprintf(text, sizeof(text), format, value);
-  return text;
-}
 
 /// A solve must not hand on in silence that power went nowhere.
 /// @throws InvalidInput where the energy balance is off by a hundredth
@@ -141,8 +135,16 @@ LightField SolveConservative(Device& device, const Medium& medium, const Illumin
   const PropagationProblem problem(medium, illumination, settings);
   const bool accelerated = ToBeAccelerated(problem);
   TransportParts parts(device, problem, accelerated);
-  IterationResult found =
-    accelerated ? DiffusionAcceleration(parts).Run(monitor) : SourceIteration(parts).Run(monitor);
+  std::unique_ptr<Iteration> iteration;
+  if (accelerated)
+  {
+    iteration = std::make_unique<DiffusionAcceleration>(parts);
+  }
+  else
+  {
+    iteration = std::make_unique<SourceIteration>(parts);
+  }
+  IterationResult found = iteration->Run(monitor);
   CheckBalance(problem, found.ledger.Balance());
   LightField light = LightOf(parts, std::move(found), accelerated);
   problem.Undo(light);

@@ -1,8 +1,7 @@
 #include "LightPropagation/Conservative/DiffusionAcceleration.h"
 
-#include "LightPropagation/Conservative/ScatteringOrders.h"
+#include "LightPropagation/Problem/ScatteringOrders.h"
 #include "LightPropagation/Conservative/SurfaceRadiance.h"
-#include "LightPropagation/Conservative/UncollidedLight.h"
 #include "LightPropagation/Uncollided/UncollidedBoundary.h"
 
 #include <algorithm>
@@ -33,16 +32,15 @@ DiffusionAcceleration::DiffusionAcceleration(TransportParts& parts)
 
 IterationResult DiffusionAcceleration::Run(const Monitor& monitor)
 {
-  CountEmission(this->Parts, this->OfLamps);
+  this->Parts.CountEmission(this->OfLamps);
   this->AddLamps(monitor);
   this->GiveFirstScattered();
   this->MakeSweep();
   int iteration = 0;
   do
   {
-    const Monitor ofSweep = monitor
-      ? Monitor([&](double done) { return monitor(ProgressOf(this->Settings, this->Residual, iteration + done)); })
-      : Monitor();
+    const Monitor ofSweep = OfPart(
+      monitor, [=](double done) { return ProgressOf(this->Settings, this->Residual, iteration + done); });
     this->Sweep(iteration, ofSweep);
     if (iteration == 0)
     {
@@ -86,8 +84,7 @@ void DiffusionAcceleration::AddLamps(const Monitor& monitor)
       this->Stranded[c] += tally.onTheWay[c];
     }
   };
-  const Monitor first =
-    monitor ? Monitor([&](double done) { return monitor(ProgressOf(this->Settings, 1.0, done)); }) : Monitor();
+  const Monitor first = OfPart(monitor, [this](double done) { return ProgressOf(this->Settings, 1.0, done); });
   Buffer<float> moments, path; // of one lamp
   if (this->NeedsMoments())
   {
@@ -97,7 +94,7 @@ void DiffusionAcceleration::AddLamps(const Monitor& monitor)
       Buffer<float>(parts.TheDevice, 6 * parts.Layout.Stride() * parts.Layout.channels, "light of lamps");
     this->Passed.Fill(0.0f);
   }
-  for (const std::unique_ptr<UncollidedSource>& lamp : LampsOf(parts))
+  for (const std::unique_ptr<UncollidedSource>& lamp : parts.LampSources())
   {
     if (moments.Size() == 0)
     {
@@ -107,9 +104,9 @@ void DiffusionAcceleration::AddLamps(const Monitor& monitor)
     moments.Fill(0.0f);
     path.Fill(0.0f);
     count(parts.AddUncollided(*lamp, { &path, parts.WholeDeposit().flux, nullptr, &moments }, first));
-    this->PassLampLight({ &path, &moments });
+    this->PassLampLight(path, moments);
   }
-  for (const std::unique_ptr<UncollidedSource>& peak : BrightEmissionOf(parts))
+  for (const std::unique_ptr<UncollidedSource>& peak : parts.BrightEmissionSources())
   {
     count(parts.AddUncollided(*peak, parts.WholeDeposit(), first));
   }
@@ -121,8 +118,7 @@ void DiffusionAcceleration::AddLamps(const Monitor& monitor)
 }
 
 /// A lamp's light in voxels where it matters how deep in them it is scattered: what passes their faces at once.
-/// @param ofLamp  its path and moments
-void DiffusionAcceleration::PassLampLight(const std::vector<const Buffer<float>*>& ofLamp)
+void DiffusionAcceleration::PassLampLight(const Buffer<float>& path, const Buffer<float>& moments)
 {
   const TransportParts& parts = this->Parts;
   for (int c = 0; c < parts.Layout.channels; ++c)
@@ -130,7 +126,7 @@ void DiffusionAcceleration::PassLampLight(const std::vector<const Buffer<float>*
     const std::size_t first = c * parts.Layout.Stride();
     tyndall::PassLampLight(parts.TheDevice, parts.Layout.grid, this->Settings.periodic,
       { parts.Layout.Stride(), parts.Layout.ExtinctionFirst(c), first, &parts.OnDevice.SigmaT(),
-        &parts.OnDevice.SigmaA(), &parts.OnDevice.SigmaS(), ofLamp[0], ofLamp[1], &this->Passed, &parts.Path });
+        &parts.OnDevice.SigmaA(), &parts.OnDevice.SigmaS(), &path, &moments, &this->Passed, &parts.Path });
   }
 }
 
@@ -230,10 +226,7 @@ void DiffusionAcceleration::MakeSweep()
   TransportParts& parts = this->Parts;
   this->PartialCurrents = Buffer<float>(parts.TheDevice, parts.Layout.Floats(6), "the power from voxel to voxel");
   // The system knows the net flux.
-  const SweepInMemory::Description whole = { &parts.OnDevice.SigmaT(),
-    { &parts.Path, nullptr, &this->PartialCurrents, nullptr }, {}, this->Settings.periodic, MostPlanesAround };
-  this->Swept =
-    std::make_unique<SweepInMemory>(parts.TheDevice, parts.Layout, whole, parts.Bundles(), parts.Workspace);
+  this->Swept = parts.MakeSweep({ &parts.Path, nullptr, &this->PartialCurrents, nullptr });
 }
 
 /// From the source that is there to path integrals and partial currents. The light that comes in from outside comes in every time.

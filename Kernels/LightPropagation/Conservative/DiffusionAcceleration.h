@@ -21,7 +21,7 @@ public:
 private:
   bool NeedsMoments() const;
   void AddLamps(const Monitor& monitor);
-  void PassLampLight(const std::vector<const Buffer<float>*>& ofLamp);
+  void PassLampLight(const Buffer<float>& path, const Buffer<float>& moments);
   void AddBoundaryDifference(const Monitor& monitor);
   double PartOfDifference(std::size_t voxel, int channel) const;
   void GiveFirstScattered();
@@ -50,7 +50,7 @@ private:
 
   // Scattered light, and what comes in along the usual directions
   Buffer<float> Given, PartialCurrents; ///< as DiffusionSystem::Arrays has them
-  std::unique_ptr<SweepInMemory> Swept;
+  std::unique_ptr<SweepOperator> Swept;
   std::vector<std::unique_ptr<DiffusionSystem>> Systems;
   SweepTally Tally;                                  ///< of the last sweep
   Rgb GivenPower = {}, PowerIn = {};                 ///< W, emitted or first scattered; through faces

@@ -1,6 +1,4 @@
-// Read by itself.
-
-#define CHUNK 4096 // voxels a work-item sums up before the host adds the chunks in double
+// Read by itself; the host gives CHUNK: voxels a work-item sums up before the host adds the chunks in double.
 
 // What gets out of the box of the light that sets out from each voxel, more than the sweep said.
 // extra  of a source of 1, W length

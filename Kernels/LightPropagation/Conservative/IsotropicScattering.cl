@@ -1,7 +1,7 @@
 // What the sweeps gathered becomes light and the next order's source (Gruson et al., Eq. 4, conservative). Read after
-// Numerics.cl.
-
-#define CHUNK 4096 // voxels a work-item sums up before the host adds the chunks in double
+// Numerics.cl. The host gives
+//   CHUNK     voxels a work-item sums up before the host adds the chunks in double
+//   SCATTERS  0: sigma_s is zero, and neither it nor `source` is there
 
 // A work-item a chunk of a channel; a channel's arrays begin at a vector's border and are filled up with zeros to a whole
 // number of vectors.
@@ -10,9 +10,6 @@
 // source   W / (length^3 sr), replaced by what was scattered
 // tally    [channel][chunk] absorbed and scattered W
 // first, last  values of a channel, whole vectors: the others have gathered nothing
-#ifndef SCATTERS
-#define SCATTERS 1 // 0: sigma_s is zero, and neither it nor `source` is there
-#endif
 __kernel void collect(__global float* path, __global float* fluence, __global float* source,
   const __global float* sigma_t, const __global float* sigma_s, __global float2* tally, ulong stride, ulong first, ulong last,
   int one_sigma_t, float per_volume)

@@ -14,13 +14,17 @@ IsotropicScattering::IsotropicScattering(
 {
 }
 
+cl::Kernel IsotropicScattering::Kernel(const char* name) const
+{
+  const int vector = this->TheDevice.FloatVectorWidth() >= 8 ? 8 : 4;
+  return this->TheDevice.Kernel(name, { kernel_source::Numerics, kernel_source::IsotropicScattering },
+    Define("REAL_WIDTH", vector) + Define("SCATTERS", this->Scatters) + Define("CHUNK", CollectChunk));
+}
+
 IsotropicScattering::Powers IsotropicScattering::Scatter(const Buffer<float>& path, const Buffer<float>& fluence,
   const Buffer<float>& source, const std::array<std::size_t, 2>& range) const
 {
-  const int vector = this->TheDevice.FloatVectorWidth() >= 8 ? 8 : 4;
-  cl::Kernel kernel =
-    this->TheDevice.Kernel("collect", { kernel_source::Numerics, kernel_source::IsotropicScattering },
-      Define("REAL_WIDTH", vector) + Define("SCATTERS", this->Scatters));
+  cl::Kernel kernel = this->Kernel("collect");
   const auto [begin, end] = range;
   const std::size_t chunks = (end - begin + CollectChunk - 1) / CollectChunk;
   const int channels = this->Layout.channels;
@@ -42,10 +46,21 @@ IsotropicScattering::Powers IsotropicScattering::Scatter(const Buffer<float>& pa
 
 void IsotropicScattering::SourceOfAll(const Buffer<float>& fluence, const Buffer<float>& source) const
 {
-  cl::Kernel kernel =
-    this->TheDevice.Kernel("gather_scattered", { kernel_source::Numerics, kernel_source::IsotropicScattering });
+  cl::Kernel kernel = this->Kernel("gather_scattered");
   With(kernel, fluence, source, this->TheMedium.SigmaS(), cl_ulong(this->Layout.Stride()));
   this->TheDevice.Queue().enqueueNDRangeKernel(
     kernel, cl::NullRange, cl::NDRange(this->Layout.Stride(), this->Layout.channels));
+}
+
+void IsotropicScattering::AddOutside(
+  const VoxelBox& box, const Buffer<float>& path, const Buffer<float>& fluence) const
+{
+  cl::Kernel add = this->Kernel("add_outside");
+  const std::array<int, 3>& n = this->Layout.grid.size;
+  With(add, path, fluence, cl_ulong(this->Layout.Stride()), static_cast<float>(1.0 / this->Layout.grid.VoxelVolume()),
+    cl_int3{ { n[0], n[1], n[2] } }, cl_int3{ { box.first[0], box.first[1], box.first[2] } },
+    cl_int3{ { box.size[0], box.size[1], box.size[2] } });
+  this->TheDevice.Queue().enqueueNDRangeKernel(
+    add, cl::NullRange, cl::NDRange(this->Layout.Stride(), this->Layout.channels));
 }
 }

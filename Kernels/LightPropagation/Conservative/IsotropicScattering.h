@@ -8,7 +8,7 @@
 
 namespace tyndall
 {
-/// Voxels that a collection sums up in float before the host adds the sums in double (CHUNK of the kernels).
+/// Voxels that a work-item sums up in float before the host adds the sums in double: the kernels' CHUNK.
 constexpr std::size_t CollectChunk = 4096;
 
 /// The scattering operator of isotropic scattering: from the path integrals that a sweep left to fluence and to the next source,
@@ -34,7 +34,12 @@ public:
   /// The source of all orders at once from the fluence of all: but for what the last one left over, which `source` holds.
   void SourceOfAll(const Buffer<float>& fluence, const Buffer<float>& source) const;
 
+  /// What a sweep left in the voxels outside a box becomes fluence.
+  void AddOutside(const VoxelBox& box, const Buffer<float>& path, const Buffer<float>& fluence) const;
+
 private:
+  cl::Kernel Kernel(const char* name) const;
+
   Device& TheDevice;
   VolumeLayout Layout;
   const MediumOnDevice& TheMedium;

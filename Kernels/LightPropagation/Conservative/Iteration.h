@@ -4,6 +4,7 @@
 #include "Light/LightField.h"
 #include "LightPropagation/Conservative/ConvergenceRecord.h"
 #include "LightPropagation/Conservative/EnergyLedger.h"
+#include "LightPropagation/PropagationSettings.h"
 
 #include <string>
 #include <vector>
@@ -27,4 +28,8 @@ public:
   /// @throws Aborted when the monitor says so
   virtual IterationResult Run(const Monitor& monitor) = 0;
 };
+
+/// How far a solve is, 0 to 1. Iterations are counted where their number is known, else the logarithm of the residual tells.
+/// @param iterations  done, the one that is under way in part
+double ProgressOf(const PropagationSettings& settings, double residual, double iterations);
 }

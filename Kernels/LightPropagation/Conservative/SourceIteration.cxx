@@ -1,9 +1,7 @@
 #include "LightPropagation/Conservative/SourceIteration.h"
 
 #include "Device/Sizes.h"
-#include "LightPropagation/Conservative/UncollidedLight.h"
 #include "LightPropagation/Uncollided/UncollidedBoundary.h"
-#include "TyndallKernelSources.h"
 
 #include <algorithm>
 #include <cmath>
@@ -31,10 +29,11 @@ SourceIteration::SourceIteration(TransportParts& parts)
 
 IterationResult SourceIteration::Run(const Monitor& monitor)
 {
-  CountEmission(this->Parts, this->Result.ledger);
+  this->Parts.CountEmission(this->Result.ledger);
   do
   {
-    const Monitor ofOrder = monitor ? Monitor([&](double done) { return monitor(this->Progress(done)); }) : Monitor();
+    const Monitor ofOrder =
+      OfPart(monitor, [this](double done) { return ProgressOf(this->Settings, this->Residual, this->Order + done); });
     if (this->Order == 0)
     {
       this->AddUncollided(ofOrder);
@@ -67,10 +66,7 @@ IterationResult SourceIteration::Run(const Monitor& monitor)
 void SourceIteration::MakeSweeps()
 {
   const int mostPlanes = this->Settings.maximumOrders > 0 ? MostPlanesAround : FewPlanes;
-  const SweepInMemory::Description whole = { &this->Parts.OnDevice.SigmaT(), this->Parts.WholeDeposit(), {},
-    this->Settings.periodic, mostPlanes };
-  this->Whole = std::make_unique<SweepInMemory>(
-    this->Parts.TheDevice, this->Parts.Layout, whole, this->Parts.Bundles(), this->Parts.Workspace);
+  this->Whole = this->Parts.MakeSweep(this->Parts.WholeDeposit(), {}, mostPlanes);
   this->MakeFilledSweep();
   if (this->Settings.leaveOut && this->Parts.SweepsAreLit() && !this->Shining)
   {
@@ -94,10 +90,7 @@ void SourceIteration::MakeFilledSweep()
   if (filled < MostlyFilled && later * (1.0 - filled) > 1.0)
   {
     // The sweep at the end knows the flux.
-    const SweepInMemory::Description part = { &this->Parts.OnDevice.SigmaT(),
-      { &this->Parts.Path, nullptr, nullptr, nullptr }, traits.filled, periodic, MostPlanesAround };
-    this->Filled = std::make_unique<SweepInMemory>(
-      this->Parts.TheDevice, this->Parts.Layout, part, this->Parts.Bundles(), this->Parts.Workspace);
+    this->Filled = this->Parts.MakeSweep({ &this->Parts.Path, nullptr, nullptr, nullptr }, traits.filled);
   }
 }
 
@@ -125,21 +118,18 @@ void SourceIteration::MakeLitSweep()
   if (lit <= MostlyLit * all)
   {
     this->LitPart = lit / all;
-    const SweepInMemory::Description whole = { &this->Parts.OnDevice.SigmaT(), this->Parts.WholeDeposit(), {}, periodic,
-      MostPlanesAround };
-    this->Lit = std::make_unique<SweepInMemory>(
-      this->Parts.TheDevice, this->Parts.Layout, whole, ways, this->Parts.Workspace);
+    this->Lit = this->Parts.MakeSweep(ways);
   }
 }
 
 void SourceIteration::AddUncollided(const Monitor& monitor)
 {
-  std::vector<std::unique_ptr<UncollidedSource>> sources = LampsOf(this->Parts);
+  TransportParts::Sources sources = this->Parts.LampSources();
   if (this->Parts.FineBoundary)
   {
     sources.push_back(std::make_unique<UncollidedBoundary>(this->Settings, *this->Parts.FineBoundary));
   }
-  for (std::unique_ptr<UncollidedSource>& peak : BrightEmissionOf(this->Parts))
+  for (std::unique_ptr<UncollidedSource>& peak : this->Parts.BrightEmissionSources())
   {
     sources.push_back(std::move(peak));
   }
@@ -268,21 +258,7 @@ void SourceIteration::SweepEmptySlabs(const Monitor& monitor)
       this->Result.ledger.EscapeWasThrough(c, face, tally.out[face][c]);
     }
   }
-  cl::Kernel add =
-    parts.TheDevice.Kernel("add_outside", { kernel_source::Numerics, kernel_source::IsotropicScattering });
-  const std::array<int, 3>& n = parts.Layout.grid.size;
-  const VoxelBox& filled = parts.Problem.Traits().filled;
-  With(add, parts.Path, parts.Fluence, cl_ulong(parts.Layout.Stride()),
-    static_cast<float>(1.0 / parts.Layout.grid.VoxelVolume()), cl_int3{ { n[0], n[1], n[2] } },
-    cl_int3{ { filled.first[0], filled.first[1], filled.first[2] } },
-    cl_int3{ { filled.size[0], filled.size[1], filled.size[2] } });
-  parts.TheDevice.Queue().enqueueNDRangeKernel(
-    add, cl::NullRange, cl::NDRange(parts.Layout.Stride(), parts.Layout.channels));
-}
-
-double SourceIteration::Progress(double done) const
-{
-  return ProgressOf(this->Settings, this->Residual, this->Order + done);
+  this->Scattering.AddOutside(parts.Problem.Traits().filled, parts.Path, parts.Fluence);
 }
 
 std::vector<std::string> SourceIteration::LeftOut() const

@@ -30,15 +30,14 @@ private:
   bool InFilledPart() const { return this->Filled && this->Order > 0; }
   std::array<std::size_t, 2> SweptValues() const;
   bool Done() const;
-  double Progress(double done) const;
   std::vector<std::string> LeftOut() const;
 
   TransportParts& Parts;
   const PropagationSettings& Settings;
   IsotropicScattering Scattering;
-  std::unique_ptr<SweepInMemory> Whole;
-  std::unique_ptr<SweepInMemory> Lit;    ///< of the first order, where much of the outside is dark and the medium too; else null
-  std::unique_ptr<SweepInMemory> Filled; ///< of the orders after it, where the medium leaves much of the volume empty; else null
+  std::unique_ptr<SweepOperator> Whole;
+  std::unique_ptr<SweepOperator> Lit;    ///< of the first order, where much of the outside is dark and the medium too; else null
+  std::unique_ptr<SweepOperator> Filled; ///< of the orders after it, where the medium leaves much of the volume empty; else null
   std::optional<EscapeCorrection> Escaping;
   double LitPart = 1.0; ///< of all rays, in the first order
 

@@ -2,11 +2,15 @@
 
 #include "LightPropagation/Uncollided/EnvironmentPeaks.h"
 #include "LightPropagation/Uncollided/UncollidedBoundary.h"
+#include "LightPropagation/Uncollided/UncollidedEmission.h"
+#include "LightPropagation/Uncollided/UncollidedLamp.h"
 
 namespace tyndall
 {
 namespace
 {
+constexpr double Pi = 3.14159265358979323846;
+
 RayStarts StartsOf(const PropagationSettings& settings)
 {
   return settings.staggeredRays ? RayStarts::Staggered : RayStarts::Middle;
@@ -128,9 +132,52 @@ Deposit TransportParts::WholeDeposit() const
   return { &this->Path, this->Flux.Size() > 0 ? &this->Flux : nullptr, nullptr, nullptr };
 }
 
-std::vector<SweepInMemory::AxisBundles> TransportParts::Bundles() const
+std::unique_ptr<SweepOperator> TransportParts::MakeSweep(const Deposit& deposit, const VoxelBox& box, int mostPlanes)
 {
-  return { { 0, this->Usual.Along(0) }, { 1, this->Usual.Along(1) }, { 2, this->Usual.Along(2) } };
+  const std::vector<SweepInMemory::AxisBundles> all = { { 0, this->Usual.Along(0) }, { 1, this->Usual.Along(1) },
+    { 2, this->Usual.Along(2) } };
+  const SweepInMemory::Description description = { &this->OnDevice.SigmaT(), deposit, box,
+    this->Problem.Settings().periodic, mostPlanes };
+  return std::make_unique<SweepInMemory>(this->TheDevice, this->Layout, description, all, this->Workspace);
+}
+
+std::unique_ptr<SweepOperator> TransportParts::MakeSweep(const std::vector<SweepInMemory::AxisBundles>& rays)
+{
+  const SweepInMemory::Description description = { &this->OnDevice.SigmaT(), this->WholeDeposit(), {},
+    this->Problem.Settings().periodic, MostPlanesAround };
+  return std::make_unique<SweepInMemory>(this->TheDevice, this->Layout, description, rays, this->Workspace);
+}
+
+TransportParts::Sources TransportParts::LampSources() const
+{
+  Sources sources;
+  for (const Light& lamp : this->Lamps)
+  {
+    sources.push_back(std::make_unique<UncollidedLamp>(lamp, this->Problem.Settings().periodic));
+  }
+  return sources;
+}
+
+TransportParts::Sources TransportParts::BrightEmissionSources() const
+{
+  Sources sources;
+  for (const EmissionPeak& peak : this->Emission.peaks)
+  {
+    sources.push_back(std::make_unique<UncollidedEmission>(peak, this->Problem.Settings().emissionError));
+  }
+  return sources;
+}
+
+void TransportParts::CountEmission(EnergyLedger& ledger) const
+{
+  const double volume = this->Layout.grid.VoxelVolume();
+  for (int c = 0; c < this->Layout.channels && this->Problem.Traits().emits; ++c)
+  {
+    for (std::size_t i = 0; i < this->Layout.grid.VoxelCount(); ++i)
+    {
+      ledger.Emit(c, 4.0 * Pi * this->Problem.TheMedium().emission.At(i, c) * volume);
+    }
+  }
 }
 
 SweepTally TransportParts::AddUncollided(
@@ -141,7 +188,7 @@ SweepTally TransportParts::AddUncollided(
   {
     SweepVolume volume = GroupVolume(this->Layout, group, this->OnDevice.SigmaT());
     volume.source = &this->Source;
-    PutInto(volume, deposit);
+    volume.deposit = deposit;
     Add(tally, source.AddTo(this->TheDevice, volume, group.first, this->Workspace, monitor), group.first);
   }
   return tally;

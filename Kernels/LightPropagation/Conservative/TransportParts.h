@@ -2,8 +2,9 @@
 
 #include "Device/Buffer.h"
 #include "LightPropagation/Angular/SweptDirections.h"
+#include "LightPropagation/Conservative/EnergyLedger.h"
 #include "LightPropagation/Conservative/MediumOnDevice.h"
-#include "LightPropagation/Conservative/PropagationProblem.h"
+#include "LightPropagation/Problem/PropagationProblem.h"
 #include "LightPropagation/Sweep/SweepInMemory.h"
 #include "LightPropagation/Sweep/VolumeLayout.h"
 #include "LightPropagation/Uncollided/BoundaryLight.h"
@@ -68,8 +69,18 @@ public:
   };
   EvenSky FindEvenSky(const Monitor& monitor);
 
-  std::vector<SweepInMemory::AxisBundles> Bundles() const; ///< of the usual directions
-  Deposit WholeDeposit() const;                            ///< path, and flux where it is asked for
+  using Sources = std::vector<std::unique_ptr<UncollidedSource>>;
+  Sources LampSources() const;
+  Sources BrightEmissionSources() const;
+  void CountEmission(EnergyLedger& ledger) const; ///< all that the medium emits, however it is carried
+
+  Deposit WholeDeposit() const; ///< path, and flux where it is asked for
+  /// @param box  the part that is swept; empty: all
+  /// @param mostPlanes  that rays go round a periodic axis before they wait for the next sweep
+  std::unique_ptr<SweepOperator> MakeSweep(
+    const Deposit& deposit, const VoxelBox& box = {}, int mostPlanes = MostPlanesAround);
+  /// Of some of the usual directions' rays, in place of all.
+  std::unique_ptr<SweepOperator> MakeSweep(const std::vector<SweepInMemory::AxisBundles>& rays);
 
 private:
   void LoadSource();

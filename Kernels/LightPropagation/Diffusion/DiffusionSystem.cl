@@ -191,7 +191,7 @@ static float pattern_at(const diffusion_layout* layout, const diffusion_arrays* 
   return 1.0f + thick * (crossing - 1.0f);
 }
 
-// How much of what a sweep knows better than diffusion is transport_weight: little where voxels are thick, or the light dies away within
+// The weight of the transport correction, of what a sweep knows better than diffusion: little where voxels are thick, or the light dies away within
 // one, and it knows nothing.
 static float weight_of_transport(const diffusion_layout* layout, float tau, float absorbing)
 {

@@ -1,5 +1,6 @@
 #include "LightPropagation/Sweep/AxisSweep.h"
 
+#include "Device/Defines.h"
 #include "LightPropagation/Sweep/SweepBorder.h"
 #include "LightPropagation/Sweep/SweepPlan.h"
 #include "TyndallKernelSources.h"
@@ -24,11 +25,6 @@ std::vector<BundleMaps> MapsOf(const SweepPlan& plan)
     maps.push_back({ { bundle.members, bundle.map } });
   }
   return maps;
-}
-
-double Total(const Rgb& rgb)
-{
-  return rgb[0] + rgb[1] + rgb[2];
 }
 }
 
@@ -60,8 +56,8 @@ struct AxisSweep::Implementation
   Implementation(Device& device, const SweepVolume& volume, int axis, const std::vector<Bundle>& bundles,
     const std::array<bool, 3>& periodic, SweepWorkspace& workspace)
     : TheDevice(device)
-    , Plan(device, volume.grid, volume.box, axis, bundles, volume.channels, periodic, volume.flux != nullptr,
-        volume.partialCurrents != nullptr)
+    , Plan(device, volume.grid, volume.box, axis, bundles, volume.channels, periodic, volume.deposit.flux != nullptr,
+        volume.deposit.partialCurrents != nullptr)
     , Workspace(workspace)
   {
     this->MakeBuffers();
@@ -202,7 +198,7 @@ void AxisSweep::Implementation::CrossOnce(const SweepVolume& volume, bool source
   const Schedule schedule =
     this->Plan.laps == 1 ? Schedule{ this->FirstSchedule, this->Plan.launches } : this->Rounds();
   this->Launch(
-    this->SweepKernel(source, border, volume.flux != nullptr), volume, this->FirstCrossings, schedule, monitor);
+    this->SweepKernel(source, border, volume.deposit.flux != nullptr), volume, this->FirstCrossings, schedule, monitor);
 }
 
 /// Rays that left a periodic axis come back on the other side, until next to nothing is on the way.
@@ -215,12 +211,12 @@ void AxisSweep::Implementation::GoRound(const SweepVolume& volume, int mostPlane
   this->MapsEmpty = false;
   Rgb& onTheWay = this->Tally.onTheWay;
   onTheWay = this->PowerOnTheWay();
-  const double atFirst = Total(onTheWay);
-  for (int gone = planes; gone < mostPlanes && Total(onTheWay) > NothingLeft * atFirst; gone += planes)
+  const double atFirst = Sum(onTheWay);
+  for (int gone = planes; gone < mostPlanes && Sum(onTheWay) > NothingLeft * atFirst; gone += planes)
   {
     const Buffer<PlaneCrossingOnDevice> crossings(
       this->TheDevice, this->Plan.Crossings(gone, planes), "the ray pattern");
-    this->Launch(this->SweepKernel(false, false, volume.flux != nullptr), volume, crossings, this->Rounds(), monitor);
+    this->Launch(this->SweepKernel(false, false, volume.deposit.flux != nullptr), volume, crossings, this->Rounds(), monitor);
     this->CountSideways();
     onTheWay = this->PowerOnTheWay();
   }
@@ -230,12 +226,12 @@ void AxisSweep::Implementation::Launch(cl::Kernel kernel, const SweepVolume& vol
   const Buffer<PlaneCrossingOnDevice>& crossings, const Schedule& schedule, const Monitor& monitor)
 {
   const SweepPlan& plan = this->Plan;
-  const Buffer<float>& flux = volume.flux ? *volume.flux : *volume.path;
-  const Buffer<float>& partialCurrents = volume.partialCurrents ? *volume.partialCurrents : *volume.path;
-  const Buffer<float>& lost = this->IsPeriodic() ? this->Workspace.lost : *volume.path;
+  const Buffer<float>& flux = volume.deposit.flux ? *volume.deposit.flux : *volume.deposit.path;
+  const Buffer<float>& partialCurrents = volume.deposit.partialCurrents ? *volume.deposit.partialCurrents : *volume.deposit.path;
+  const Buffer<float>& lost = this->IsPeriodic() ? this->Workspace.lost : *volume.deposit.path;
   for (int launch = 0; launch < schedule.launches; ++launch)
   {
-    With(kernel, *volume.sigma_t, cl_ulong(volume.sigma_t_first), *volume.source, *volume.path, lost, flux, partialCurrents,
+    With(kernel, *volume.sigma_t, cl_ulong(volume.sigma_t_first), *volume.source, *volume.deposit.path, lost, flux, partialCurrents,
       cl_ulong(volume.first), cl_ulong(volume.stride), this->Maps(), cl_ulong(plan.mapsEachWay),
       cl_int(this->MapsEmpty), this->Outside, cl_uint(plan.outsideEachWay), this->Radiance,
       cl_uint(plan.radianceEachWay), this->Workspace.scratch, this->Units, this->Bundles, cl_int(plan.bundles.size()),
@@ -253,20 +249,10 @@ void AxisSweep::Implementation::Launch(cl::Kernel kernel, const SweepVolume& vol
 cl::Kernel AxisSweep::Implementation::SweepKernel(bool source, bool border, bool flux)
 {
   const SweepPlan& plan = this->Plan;
-  std::string options;
-  const auto define = [&](const char* name, int value) {
-    options += std::string(" -D") + name + "=" + std::to_string(value);
-  };
-  define("REAL_WIDTH", plan.vector);
-  define("CHANNELS", plan.channels);
-  define("ROW", plan.row);
-  define("SOURCE", source);
-  define("BORDER", border);
-  define("NET_FLUX", flux);
-  define("CURRENTS", plan.partialCurrents);
-  define("PERIODIC_P", this->IsPeriodic());
-  define("PERIODIC_U", plan.periodic[plan.axes.u]);
-  define("PERIODIC_V", plan.periodic[plan.axes.v]);
+  std::string options = Define("REAL_WIDTH", plan.vector) + Define("CHANNELS", plan.channels) + Define("ROW", plan.row) +
+    Define("SOURCE", source) + Define("BORDER", border) + Define("NET_FLUX", flux) +
+    Define("CURRENTS", plan.partialCurrents) + Define("PERIODIC_P", this->IsPeriodic()) +
+    Define("PERIODIC_U", plan.periodic[plan.axes.u]) + Define("PERIODIC_V", plan.periodic[plan.axes.v]);
   std::string bundles; // SweepBundle.cl once for each number of members there is
   for (int members = 1; members <= MaxMembers; members *= 2)
   {
@@ -352,7 +338,7 @@ void AxisSweep::Start(
   self.Tally = {};
   if (self.IsPeriodic())
   {
-    self.Workspace.ReserveLost(self.TheDevice, volume.path->Size());
+    self.Workspace.ReserveLost(self.TheDevice, volume.deposit.path->Size());
     self.Workspace.lost.Fill(0.0f);
   }
   if (boundary)

@@ -22,7 +22,7 @@ SweepVolume SweepInMemory::VolumeOf(const ChannelGroup& group, const Buffer<floa
   SweepVolume volume = GroupVolume(this->Layout, group, *this->The.sigma_t);
   volume.box = this->The.box;
   volume.source = source ? source : this->The.deposit.path; // never read where there is none
-  PutInto(volume, this->The.deposit);
+  volume.deposit = this->The.deposit;
   return volume;
 }
 
@@ -41,8 +41,7 @@ SweepTally SweepInMemory::Apply(const Buffer<float>* source, const SweepBoundary
     for (std::size_t a = 0; a < this->Axes.size(); ++a)
     {
       const double before = static_cast<double>(g * this->Axes.size() + a);
-      const Monitor ofAxis =
-        monitor ? Monitor([&](double done) { return monitor((before + done) / all); }) : Monitor();
+      const Monitor ofAxis = OfPart(monitor, [=](double done) { return (before + done) / all; });
       this->Axes[a]->Start(volume, ofChannels, source != nullptr, this->The.mostPlanes, ofAxis);
     }
     for (const std::unique_ptr<AxisSweep>& axis : this->Axes)

@@ -22,6 +22,20 @@ constexpr std::size_t SweepPadding = 16;
 /// Optical length of voxels that lamps' light is lost in evenly, near enough.
 constexpr float ThinForMoments = 0.02f;
 
+/// Where light is put down: everything is added to.
+struct Deposit
+{
+  const Buffer<float>* path = nullptr;    ///< W length, added to
+  const Buffer<float>* flux = nullptr;    ///< W length, [channel][x, y, z][stride], added to; null: not wanted
+  /// W, [channel][-x, +x, -y, +y, -z, +z][stride], added to: power that enters each voxel through each of its faces; null:
+  /// not wanted
+  const Buffer<float>* partialCurrents = nullptr;
+  /// W length, [channel][-x, +x, -y, +y, -z, +z][stride], added to by lamps: how near to each face of a voxel the light is lost that
+  /// `path` stands for, its distance from the middle towards the face in the mean (0 to 1/2 of the voxel) times its path; null: not
+  /// wanted. Voxels thinner than ThinForMoments mean free paths have none.
+  const Buffer<float>* moments = nullptr;
+};
+
 /// The medium and the light on the device while a solver runs. Every array is [channel][stride] with voxels x fastest; the
 /// stride is the voxel count rounded up to whole vectors, what is beyond the voxels is zero. Buffers
 /// are SweepPadding floats longer: a vector that begins in them may be read whole.
@@ -34,35 +48,10 @@ struct SweepVolume
   const Buffer<float>* sigma_t = nullptr; ///< 1/length
   std::size_t sigma_t_first = 0;          ///< where its channel begins
   const Buffer<float>* source = nullptr;  ///< W / (length^3 sr)
-  const Buffer<float>* path = nullptr;    ///< W length, added to
-  const Buffer<float>* flux = nullptr;    ///< W length, [channel][x, y, z][stride], added to; null: not wanted
-  /// W, [channel][-x, +x, -y, +y, -z, +z][stride], added to: power that enters each voxel through each of its faces; null:
-  /// not wanted
-  const Buffer<float>* partialCurrents = nullptr;
-  /// W length, [channel][-x, +x, -y, +y, -z, +z][stride], added to by lamps: how near to each face of a voxel the light is lost that
-  /// `path` stands for, its distance from the middle towards the face in the mean (0 to 1/2 of the voxel) times its path; null: not
-  /// wanted. Voxels thinner than ThinForMoments mean free paths have none.
-  const Buffer<float>* moments = nullptr;
-  std::size_t first =
-    0; ///< where the first channel of source and path begins (flux: three times that, partialCurrents and moments: six times)
+  Deposit deposit;
+  /// Where the first channel of source and path begins (flux: three times that, partialCurrents and moments: six times).
+  std::size_t first = 0;
 };
-
-/// Where light is put down, all channels; arrays as SweepVolume has them.
-struct Deposit
-{
-  const Buffer<float>* path = nullptr;
-  const Buffer<float>* flux = nullptr;
-  const Buffer<float>* partialCurrents = nullptr;
-  const Buffer<float>* moments = nullptr;
-};
-
-inline void PutInto(SweepVolume& volume, const Deposit& deposit)
-{
-  volume.path = deposit.path;
-  volume.flux = deposit.flux;
-  volume.partialCurrents = deposit.partialCurrents;
-  volume.moments = deposit.moments;
-}
 
 /// Memory that sweeps along different axes take turns in. What one leaves there means nothing to the next.
 struct SweepWorkspace

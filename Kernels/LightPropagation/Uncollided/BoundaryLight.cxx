@@ -1,10 +1,10 @@
 #include "LightPropagation/Uncollided/BoundaryLight.h"
 
 #include "Device/Errors.h"
+#include "Numerics/NumberText.h"
 
 #include <algorithm>
 #include <cmath>
-#include <cstdio>
 #include <limits>
 #include <string>
 
@@ -19,13 +19,6 @@ constexpr double MissedAtMost = 0.3; ///< by whole rays; a box of one voxel miss
 int FaceOf(const Direction& direction, int axis)
 {
   return 2 * axis + (direction.omega[axis] > 0.0 ? 0 : 1);
-}
-
-std::string Text(const char* format, double value)
-{
-  char text[64];
-  std::snprintf(text, sizeof(text), format, value);
-  return text;
 }
 
 /// Light that enters, by exact shares of rays and by whole ones.

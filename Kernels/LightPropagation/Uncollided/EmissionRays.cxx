@@ -83,7 +83,7 @@ private:
   {
     return this->TheDevice.Kernel(name, { kernel_source::Numerics, kernel_source::EmissionRays },
       Define("REAL_WIDTH", width) + Define("CHANNELS", this->Volume.channels) +
-        Define("NET_FLUX", this->Volume.flux != nullptr) + Define("MOST", MostRays));
+        Define("NET_FLUX", this->Volume.deposit.flux != nullptr) + Define("MOST", MostRays));
   }
 
   /// Lanes of a packet of rays.
@@ -127,7 +127,7 @@ private:
     Device& device = this->TheDevice;
     this->Path = Buffer<float>(device, volume.stride * volume.channels, "the light of what shines");
     this->Path.Fill(0.0f);
-    this->Flux = Buffer<float>(device, volume.flux ? 3 * volume.stride * volume.channels : 0, "its net flux");
+    this->Flux = Buffer<float>(device, volume.deposit.flux ? 3 * volume.stride * volume.channels : 0, "its net flux");
     this->Flux.Fill(0.0f);
     cl::Kernel gather = this->Kernel("gather_voxels", this->Width());
     this->InParts(volume.grid.VoxelCount(), 0.0, 0.9, monitor, [&](std::size_t first, std::size_t size) {
@@ -208,10 +208,10 @@ private:
       {
         this->Tally.out[face][c] += factor * this->Escaped[face][c];
       }
-      addTo(this->Path, c, *volume.path, volume.first, factor);
-      for (int a = 0; a < 3 && volume.flux; ++a)
+      addTo(this->Path, c, *volume.deposit.path, volume.first, factor);
+      for (int a = 0; a < 3 && volume.deposit.flux; ++a)
       {
-        addTo(this->Flux, 3 * c + a, *volume.flux, 3 * volume.first, factor);
+        addTo(this->Flux, 3 * c + a, *volume.deposit.flux, 3 * volume.first, factor);
       }
     }
     this->TheDevice.Finish();

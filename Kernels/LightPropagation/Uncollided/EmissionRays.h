@@ -21,7 +21,7 @@ namespace tyndall
 /// Measured, Kobayashi's absorber, 28 points, voxels against exact means over them: with error 0.005 within 0.33% at 20^3 and 1.5% at
 /// 60^3, with 0.0025 within 0.12% at 60^3, with 0.02 within 0.9% and 4.6%.
 ///
-/// No axis may be periodic. Voxels' moments (SweepVolume) is not told: their light is taken as lost evenly.
+/// No axis may be periodic. Moments of the deposit (SweepVolume.h) are not told: light is taken as lost evenly in each voxel.
 ///
 /// @param firstChannel  of the peak's three, that is the volume's first
 /// @param error  difference of two halves of a voxel's rays, to their sum, that will do

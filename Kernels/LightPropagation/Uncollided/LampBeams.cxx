@@ -66,15 +66,15 @@ SweepTally DepositBeam(Device& device, const SweepVolume& volume, const Light& l
   // How near to voxels' faces the light is lost is told by the faces that it enters through.
   SweepVolume own = volume;
   Buffer<float> path, partialCurrents;
-  if (volume.moments)
+  if (volume.deposit.moments)
   {
     const std::size_t all = volume.first + volume.channels * volume.stride;
     path = Buffer<float>(device, all + SweepPadding, "the light of a beam");
     partialCurrents = Buffer<float>(device, 6 * all + SweepPadding, "the light of a beam");
     path.Fill(0.0f);
     partialCurrents.Fill(0.0f);
-    own.path = &path;
-    own.partialCurrents = &partialCurrents;
+    own.deposit.path = &path;
+    own.deposit.partialCurrents = &partialCurrents;
   }
   SweepTally tally;
   const std::vector<int> axes = MarchingAxes(volume.grid, omega);
@@ -90,7 +90,7 @@ SweepTally DepositBeam(Device& device, const SweepVolume& volume, const Light& l
       own, [&](int, int) { return power; }, false, MostPlanesAround, monitor);
     Add(tally, beam.Finish());
   }
-  if (volume.moments)
+  if (volume.deposit.moments)
   {
     BeamInfo info = {};
     for (int a = 0; a < 3; ++a)
@@ -103,7 +103,7 @@ SweepTally DepositBeam(Device& device, const SweepVolume& volume, const Light& l
     }
     info.thin = ThinForMoments;
     cl::Kernel add = device.Kernel("add_beam", { kernel_source::BeamMoments });
-    With(add, info, *volume.sigma_t, cl_ulong(volume.sigma_t_first), path, partialCurrents, *volume.path, *volume.moments,
+    With(add, info, *volume.sigma_t, cl_ulong(volume.sigma_t_first), path, partialCurrents, *volume.deposit.path, *volume.deposit.moments,
       cl_ulong(volume.first), cl_ulong(volume.stride));
     device.Queue().enqueueNDRangeKernel(
       add, cl::NullRange, cl::NDRange(volume.grid.VoxelCount(), volume.channels), cl::NullRange);
@@ -246,7 +246,7 @@ public:
     , Volume(volume)
     , TheLight(light)
     , Periodic(periodic)
-    , Path(device, (volume.moments ? 4 : 1) * volume.stride, "the light of a lamp")
+    , Path(device, (volume.deposit.moments ? 4 : 1) * volume.stride, "the light of a lamp")
   {
     this->Path.Fill(0);
   }
@@ -272,11 +272,11 @@ public:
       const cl::NDRange voxels(this->Volume.stride, this->Volume.channels);
       this->TheDevice.Queue().enqueueNDRangeKernel(kernel, cl::NullRange, voxels, cl::NullRange);
     };
-    finish(add, *this->Volume.path);
-    if (this->Volume.moments)
+    finish(add, *this->Volume.deposit.path);
+    if (this->Volume.deposit.moments)
     {
       cl::Kernel addMoments = this->Kernel("add_fixed_moments");
-      finish(addMoments, *this->Volume.moments);
+      finish(addMoments, *this->Volume.deposit.moments);
     }
     return this->TallyTimes(correction);
   }
@@ -291,7 +291,7 @@ private:
       "-DATOMICS=" + std::to_string(this->HasAtomics()) +
         " -DLAMBERT=" + std::to_string(this->TheLight.type == LightType::Rectangle) +
         " -DCONE=" + std::to_string(this->TheLight.type == LightType::Spot) + " -DMOMENTS=" +
-        std::to_string(this->Volume.moments != nullptr) + " -DTHIN=" + std::to_string(ThinForMoments) + "f");
+        std::to_string(this->Volume.deposit.moments != nullptr) + " -DTHIN=" + std::to_string(ThinForMoments) + "f");
   }
 
   /// Fixed point units per length: no voxel can gather more than all power along its diagonal.

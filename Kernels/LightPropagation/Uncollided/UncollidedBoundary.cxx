@@ -28,7 +28,7 @@ SweepTally UncollidedBoundary::AddTo(
   SweepTally tally;
   for (int part = 0; part < 6; ++part)
   {
-    const Monitor ofPart = monitor ? Monitor([&](double done) { return monitor((part + done) / 6.0); }) : Monitor();
+    const Monitor ofPart = OfPart(monitor, [=](double done) { return (part + done) / 6.0; });
     const std::vector<Bundle> bundles = this->Light.Along().LitAlong(part / 2, part % 2, isLit);
     const PlaneAxes axes = AcrossAxis(part / 2);
     const std::size_t plane = static_cast<std::size_t>(volume.grid.size[axes.u]) * volume.grid.size[axes.v];

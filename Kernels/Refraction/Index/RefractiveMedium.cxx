@@ -6,6 +6,7 @@
 #include "Refraction/Index/IndexField.h"
 #include "Refraction/Voxelization/MeshChecks.h"
 #include "TyndallKernelSources.h"
+#include "Numerics/NumberText.h"
 
 #include <algorithm>
 #include <chrono>
@@ -22,13 +23,6 @@ constexpr double LeastIndex = 1e-6;    ///< as CheckIndex wants it
 constexpr double LargestIndex = 1e6;
 constexpr double LargestExtinction = 1e37; ///< as Check of a medium wants it
 
-std::string Scientific(double value)
-{
-  char text[32];
-  std::snprintf(text, sizeof(text), "%.6g", value);
-  return text;
-}
-
 void Demand(bool holds, const std::string& what)
 {
   if (!holds)
@@ -41,7 +35,7 @@ void Demand(bool holds, const std::string& what)
 void Check(const Material& material, const std::string& name)
 {
   Demand(material.n >= LeastIndex && material.n <= LargestIndex,
-    name + " has the refractive index " + Scientific(material.n) +
+    name + " has the refractive index " + Text("%.6g", material.n) +
       "; it must be finite and above 0, from 1e-6 to 1e6.");
   for (int c = 0; c < 3; ++c)
   {
@@ -51,7 +45,7 @@ void Check(const Material& material, const std::string& name)
       name +
         " has an absorption or scattering coefficient that is negative or not finite, or both add up to more than "
         "1e37: " +
-        Scientific(material.sigma_a[c]) + " and " + Scientific(material.sigma_s[c]) + ".");
+        Text("%.6g", material.sigma_a[c]) + " and " + Text("%.6g", material.sigma_s[c]) + ".");
   }
   Demand(std::abs(material.g) < 1.0,
     name + " has the mean cosine " + std::to_string(material.g) + "; it must lie between -1 and 1.");
@@ -81,7 +75,7 @@ void CheckSpacing(const Grid& grid)
   {
     const double edge = grid.spacing[axis];
     Demand(edge >= ShortestEdge && edge <= 1.0 / ShortestEdge,
-      "The voxels' edge along " + std::string(1, "xyz"[axis]) + " is " + Scientific(edge) +
+      "The voxels' edge along " + std::string(1, "xyz"[axis]) + " is " + Text("%.6g", edge) +
         "; it must be from 1e-18 to 1e18, or fluence (W/length^2) is beyond single precision. Scale the mesh, "
         "and the box with it: use another unit of length.");
   }

@@ -2,8 +2,8 @@
 
 #include "Light/ChannelReduction.h"
 #include "Light/LightField.h"
-#include "LightPropagation/Conservative/SceneUnits.h"
-#include "LightPropagation/Conservative/UnvaryingAxes.h"
+#include "LightPropagation/Problem/SceneUnits.h"
+#include "LightPropagation/Problem/UnvaryingAxes.h"
 #include "LightPropagation/PropagationSettings.h"
 #include "Lights/Lights.h"
 #include "Medium/Medium.h"

@@ -1,4 +1,4 @@
-#include "LightPropagation/Conservative/PropagationProblem.h"
+#include "LightPropagation/Problem/PropagationProblem.h"
 
 namespace tyndall
 {
@@ -27,12 +27,12 @@ PropagationProblem::PropagationProblem(
   this->TakeUnits(wide, illumination);
   this->TheTraits = TraitsOf(this->Solved, 1.0 - medium.g);
   this->Reduction.emplace(this->Solved, this->TheTraits, this->SolvedLight);
-  if (settings.leaveOut && this->Reduction->one)
+  this->ChannelCount = this->Reduction->Solved(settings.leaveOut);
+  if (this->ChannelCount == 1)
   {
     const OneChannelScene scene(this->Solved, this->SolvedLight, *this->Reduction);
     this->Solved = scene.medium;
     this->SolvedLight = scene.light;
-    this->ChannelCount = 1;
   }
 }
 
@@ -58,18 +58,7 @@ void PropagationProblem::TakeUnits(const Medium& wide, const Illumination& illum
 
 void PropagationProblem::Undo(LightField& light) const
 {
-  if (this->ChannelCount == 1)
-  {
-    light.leftOut.insert(light.leftOut.begin(), this->Reduction->LeftOut());
-    if (this->Reduction->given == 3)
-    {
-      Spread(light, this->Reduction->colour.Relative());
-    }
-  }
-  else if (this->Reduction->given == 1)
-  {
-    KeepOneChannel(light);
-  }
+  this->Reduction->Undo(light, this->ChannelCount);
   if (this->PowerUnit != 1.0)
   {
     ToWatts(light, this->PowerUnit);

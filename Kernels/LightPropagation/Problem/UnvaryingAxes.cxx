@@ -1,4 +1,4 @@
-#include "LightPropagation/Conservative/UnvaryingAxes.h"
+#include "LightPropagation/Problem/UnvaryingAxes.h"
 
 #include <algorithm>
 #include <cmath>

@@ -1,4 +1,4 @@
-#include "LightPropagation/Conservative/ScatteringOrders.h"
+#include "LightPropagation/Problem/ScatteringOrders.h"
 
 #include "LightPropagation/Angular/RayBundles.h"
 

@@ -1,6 +1,6 @@
 #pragma once
 
-#include "LightPropagation/Conservative/PropagationProblem.h"
+#include "LightPropagation/Problem/PropagationProblem.h"
 
 namespace tyndall
 {

@@ -1,10 +1,10 @@
-#include "LightPropagation/Conservative/SceneUnits.h"
+#include "LightPropagation/Problem/SceneUnits.h"
 
 #include "Device/Errors.h"
+#include "Numerics/NumberText.h"
 
 #include <algorithm>
 #include <cmath>
-#include <cstdio>
 #include <string>
 
 namespace tyndall
@@ -48,9 +48,7 @@ void Multiply(std::vector<float>& values, double unit, const char* name)
     value = static_cast<float>(watts);
     if (std::isinf(value))
     {
-      char text[32];
-      std::snprintf(text, sizeof(text), "%.5g", watts);
-      throw InvalidInput("The " + std::string(name) + " would be " + text +
+      throw InvalidInput("The " + std::string(name) + " would be " + Text("%.5g", watts) +
         ", which is more than a float holds. Give lights, sky and emission less power: light is in proportion to it.");
     }
   }
