@@ -81,16 +81,12 @@ private:
   {
     switch (event)
     {
-      case vtkCommand::StartEvent:
-        this->Begin(algorithm);
-        break;
+      case vtkCommand::StartEvent: this->Begin(algorithm); break;
       case vtkCommand::ProgressEvent:
         vtkLogF(TRACE, "%s is %.3g done", algorithm->GetClassName(), algorithm->GetProgress());
         this->HandleWaitingEvents();
         break;
-      default:
-        this->End();
-        this->ShowResults(algorithm);
+      default: this->End(); this->ShowResults(algorithm);
     }
   }
 
@@ -142,8 +138,8 @@ private:
     });
   }
 
-  /// The window is blocked while an algorithm runs in it, so this is called on its progress. Timers do not run, and what the
-  /// user does is dropped, apart from pressing the button: nothing may begin a second update within the first.
+  /// The window is blocked while an algorithm runs in it, so this is called on its progress. Timers do not run, and
+  /// what the user does is dropped, apart from pressing the button: nothing may begin a second update within the first.
   void HandleWaitingEvents()
   {
     const bool soonAfterTheLast = this->SinceLast.isValid() && this->SinceLast.elapsed() < 50;
@@ -184,16 +180,11 @@ private:
       case QEvent::TouchEnd:
       case QEvent::DragEnter:
       case QEvent::DragMove:
-      case QEvent::Drop:
-        return true;
-      case QEvent::Close:
-        event->ignore();
-        return true;
+      case QEvent::Drop: return true;
+      case QEvent::Close: event->ignore(); return true;
       case QEvent::Paint:
-      case QEvent::UpdateRequest:
-        return receiver->inherits("QOpenGLWidget"); // a view, which may not render now
-      default:
-        return false;
+      case QEvent::UpdateRequest: return receiver->inherits("QOpenGLWidget"); // a view, which may not render now
+      default: return false;
     }
   }
 

@@ -10,8 +10,8 @@
 
 namespace tyndall
 {
-/// When the arrays and the points of a dataset were last changed: point, cell and field data in their order. Two datasets of
-/// the same times hold the same: no two objects have the same time.
+/// When the arrays and the points of a dataset were last changed: point, cell and field data in their order. Two
+/// datasets of the same times hold the same: no two objects have the same time.
 inline std::vector<vtkMTimeType> TimesOfArrays(vtkDataObject* data)
 {
   std::vector<vtkMTimeType> times;

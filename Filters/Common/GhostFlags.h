@@ -29,7 +29,8 @@ std::vector<unsigned char> HiddenCells(vtkImageData* image);
 /// Numbers of the points that count, in their order.
 std::vector<long long> PointsThatCount(vtkPolyData* data);
 
-/// @throws InvalidInput where an input image has duplicate cells and more than one piece of the output is asked for, unless the filter
+/// @throws InvalidInput where an input image has duplicate cells and more than one piece of the output is asked for,
+/// unless the filter
 ///   works cell by cell
 void CheckDuplicates(vtkAlgorithm* filter, vtkInformationVector* outputs);
 }

@@ -1,10 +1,10 @@
 // How filters do their work, report and fail: see LightTransportData.h.
 #include "Common/LightTransportData.h"
 
-#include "Device/Device.h"
-#include "Device/OpenCL.h"
 #include "Common/GhostFlags.h"
 #include "Common/LastFailure.h"
+#include "Device/Device.h"
+#include "Device/OpenCL.h"
 #include "PropertyRange.h"
 
 #include "vtkAlgorithm.h"

@@ -17,7 +17,8 @@
 /// For filters that keep what they made of their inputs between updates.
 namespace tyndall
 {
-/// By what a thing on a device is known to be still that of a filter's inputs. No two objects of VTK have the same time.
+/// By what a thing on a device is known to be still that of a filter's inputs. No two objects of VTK have the same
+/// time.
 struct InputsKey
 {
   std::shared_ptr<Device> device;
@@ -58,9 +59,9 @@ struct InputsKey
   }
 };
 
-/// Whether filters before an input port will run again, or have, since a time. Their data do not tell: ParaView's filters
-/// between filters make them anew, with the same arrays, whenever they are looked at; and values may be changed without telling
-/// their array.
+/// Whether filters before an input port will run again, or have, since a time. Their data do not tell: ParaView's
+/// filters between filters make them anew, with the same arrays, whenever they are looked at; and values may be changed
+/// without telling their array.
 inline bool RanSince(vtkAlgorithm* filter, int port, vtkMTimeType time)
 {
   bool ran = false;

@@ -26,8 +26,8 @@ struct InputFailed
 };
 
 /// When a filter's last run failed, and how. VTK runs a filter again with every update while its
-/// output does not cover the extent that was asked for, and that is so while the output is empty; ParaView makes several
-/// updates. They should not each say the same error.
+/// output does not cover the extent that was asked for, and that is so while the output is empty; ParaView makes
+/// several updates. They should not each say the same error.
 class LastFailure
 {
 public:
@@ -73,7 +73,8 @@ public:
   void Forget() { this->Facts->Remove(Time()); }
 
 private:
-  /// Not that of the data: ParaView's filters between filters make it anew, with the same arrays, whenever it is looked at.
+  /// Not that of the data: ParaView's filters between filters make it anew, with the same arrays, whenever it is looked
+  /// at.
   static vtkMTimeType TimeOf(vtkDataObject* data)
   {
     const std::vector<vtkMTimeType> times = TimesOfArrays(data);

@@ -165,8 +165,8 @@ void WriteLight(LightField&& light, vtkImageData* output)
   {
     cells->RemoveArray(earlier); // of another solve that the input has been through
   }
-  for (const char* earlier : { "stored_directions", "scattered", "packing_loss", "fluence_bias", "half_range_flux",
-         SurfaceRadianceFact })
+  for (const char* earlier :
+    { "stored_directions", "scattered", "packing_loss", "fluence_bias", "half_range_flux", SurfaceRadianceFact })
   {
     output->GetFieldData()->RemoveArray(earlier);
   }

@@ -44,8 +44,8 @@ inline vtkInformation* AskingPort(vtkInformation* request, vtkInformationVector*
   return outputs->GetInformationObject(port);
 }
 
-/// In RequestData: whether the piece that is asked for is the first, the one that has what is not divided. The port that asks
-/// says so; other ports may not know their piece yet.
+/// In RequestData: whether the piece that is asked for is the first, the one that has what is not divided. The port
+/// that asks says so; other ports may not know their piece yet.
 inline bool IsFirstPiece(vtkInformation* request, vtkInformationVector* outputs)
 {
   auto* const piece = vtkStreamingDemandDrivenPipeline::UPDATE_PIECE_NUMBER();
@@ -121,7 +121,8 @@ inline void KeepWhatIsAskedFor(vtkInformation* information, vtkImageData* output
   }
 }
 
-/// The same for an output whose extent shows only when it is made: the pipeline, which had to guess, is told of it first.
+/// The same for an output whose extent shows only when it is made: the pipeline, which had to guess, is told of it
+/// first.
 /// @param asking  the port that asks: VTK takes it that all ports then have its piece
 inline void TellExtentAndKeepWhatIsAskedFor(vtkInformation* asking, vtkInformation* information, vtkImageData* output)
 {

@@ -65,7 +65,8 @@ void CheckSize(const std::string& path, std::int64_t width, std::int64_t height,
   if (width < 1 || height < 1 || width > LongestEdge || height > LongestEdge ||
     static_cast<std::uint64_t>(width) * static_cast<std::uint64_t>(height) > fileSize * MostPixelsAByte)
   {
-    Corrupt(path, "a picture of " + std::to_string(width) + " x " + std::to_string(height) + " pixels cannot be in a file of " +
+    Corrupt(path,
+      "a picture of " + std::to_string(width) + " x " + std::to_string(height) + " pixels cannot be in a file of " +
         std::to_string(fileSize) + " bytes");
   }
 }
@@ -82,7 +83,7 @@ struct HdrHeader
   bool FromTop = true;       ///< Y falls along the file
   bool FromLeft = true;      ///< X grows along the file
   bool Xyz = false;
-  double Exposure = 1.0; ///< what the radiance was multiplied by
+  double Exposure = 1.0;  ///< what the radiance was multiplied by
   std::size_t Pixels = 0; ///< where they begin
 };
 
@@ -263,7 +264,8 @@ private:
 
   [[noreturn]] void Fail(const char* why) const
   {
-    Corrupt(this->Path, "stored row " + std::to_string(this->Row) + " " + why + " (byte " + std::to_string(this->At) + ")");
+    Corrupt(
+      this->Path, "stored row " + std::to_string(this->Row) + " " + why + " (byte " + std::to_string(this->At) + ")");
   }
 
   const std::string& Path;
@@ -387,7 +389,8 @@ ExrChannels FindChannels(const std::string& path, const Imf::ChannelList& list)
     const bool chroma = list.findChannel("RY") && list.findChannel("BY");
     return { { "Y", "Y", "Y" }, chroma };
   }
-  throw InvalidInput("\"" + path + "\" has neither the channels R, G, B nor Y; it has " + (all.empty() ? "none" : all) + ".");
+  throw InvalidInput(
+    "\"" + path + "\" has neither the channels R, G, B nor Y; it has " + (all.empty() ? "none" : all) + ".");
 }
 
 /// Pixels of the data window, top row first, RGB.

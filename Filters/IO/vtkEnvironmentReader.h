@@ -11,16 +11,17 @@
  *
  * Output: vtkImageData of width x height x 1 points, one a pixel, with the point array `radiance` (float, RGB,
  * W / (length^2 sr)), in latitude-longitude layout with z up: the centre of pixel (i, j) looks along azimuth
- * phi = 2 pi (i + 1/2) / width about +z from +x towards +y, and polar angle theta = pi (1 - (j + 1/2) / height) from +z,
- * that is along (sin theta cos phi, sin theta sin phi, cos theta). Row 0 is the picture's bottom row, straight down.
+ * phi = 2 pi (i + 1/2) / width about +z from +x towards +y, and polar angle theta = pi (1 - (j + 1/2) / height) from
+ * +z, that is along (sin theta cos phi, sin theta sin phi, cos theta). Row 0 is the picture's bottom row, straight
+ * down.
  *
- * Files: OpenEXR with R, G, B (at the root or in a layer), Y, or Y, RY, BY; scan lines or tiles; the display window is the
- * picture, black where the data window does not reach. Radiance with RGBE or XYZE pixels in any order of axes; the
+ * Files: OpenEXR with R, G, B (at the root or in a layer), Y, or Y, RY, BY; scan lines or tiles; the display window is
+ * the picture, black where the data window does not reach. Radiance with RGBE or XYZE pixels in any order of axes; the
  * header's exposure is divided out. Primaries are taken as they are.
  *
  * Errors, each one message, with empty output: a file that is not there, truncated or corrupt, of another kind, a cube
- * map, a deep picture; a pixel that is not finite (named). Negative values, which filters leave in photographs, become 0,
- * with a warning that counts them. Formats without check sums do not tell a changed pixel.
+ * map, a deep picture; a pixel that is not finite (named). Negative values, which filters leave in photographs, become
+ * 0, with a warning that counts them. Formats without check sums do not tell a changed pixel.
  *
  * @sa vtkLightPropagationMaps vtkMediumRayCaster
  */
@@ -54,8 +55,8 @@ public:
   ///@}
 
   ///@{
-  /// Most pixels around. A wider picture is averaged over the solid angle of the wider pixels, so that the power from every
-  /// part of the sky stays. Default 0: no limit.
+  /// Most pixels around. A wider picture is averaged over the solid angle of the wider pixels, so that the power from
+  /// every part of the sky stays. Default 0: no limit.
   tyndallSetRangeMacro(Width, int, 0, VTK_INT_MAX);
   vtkGetMacro(Width, int);
   ///@}

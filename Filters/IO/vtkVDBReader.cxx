@@ -1,8 +1,8 @@
 #include "vtkVDBReader.h"
 
 #include "Common/AvailableMemory.h"
-#include "Device/HostMemory.h"
 #include "Common/LightTransportData.h"
+#include "Device/HostMemory.h"
 #include "IO/VDB/VDBCells.h"
 #include "IO/VDB/VDBFile.h"
 #include "IO/VDB/VDBGeometry.h"

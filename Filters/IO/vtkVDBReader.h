@@ -38,9 +38,10 @@ class vtkDataArraySelection;
  *
  * The file is listed without loading a voxel value, and leaves are loaded where the requested extent needs them only.
  *
- * Errors, each one message, with empty output: a file that is not there, truncated or corrupt (see VDBFile.h for what is
- * noticed), a grid that is not there, a transform that no image has, chosen grids on different transforms, more memory
- * than MaximumMemory; all of them before the memory is taken. Versions 222 to 224 of the format are read (OpenVDB 3 to 10).
+ * Errors, each one message, with empty output: a file that is not there, truncated or corrupt (see VDBFile.h for what
+ * is noticed), a grid that is not there, a transform that no image has, chosen grids on different transforms, more
+ * memory than MaximumMemory; all of them before the memory is taken. Versions 222 to 224 of the format are read
+ * (OpenVDB 3 to 10).
  *
  * @sa vtkVDBWriter
  */
@@ -77,9 +78,10 @@ public:
   const char* GetGridSummary();
 
   ///@{
-  /// Most memory that the image and the tree it is read from may take, MiB. Default 0: half of the machine's memory, 90%
-  /// of what is available, and, unless vtkVDBWriter noted that the file was an image of that size, 1 GiB or 1000 times the
-  /// file's length, whichever is more: one changed bit of a small file can put a voxel thousands of voxels away.
+  /// Most memory that the image and the tree it is read from may take, MiB. Default 0: half of the machine's memory,
+  /// 90% of what is available, and, unless vtkVDBWriter noted that the file was an image of that size, 1 GiB or 1000
+  /// times the file's length, whichever is more: one changed bit of a small file can put a voxel thousands of voxels
+  /// away.
   tyndallSetRangeMacro(MaximumMemory, vtkIdType, 0, VTK_ID_MAX >> 20);
   vtkGetMacro(MaximumMemory, vtkIdType);
   ///@}

@@ -1,7 +1,7 @@
 #include "vtkVDBWriter.h"
 
-#include "Device/Errors.h"
 #include "Common/GatheredImage.h"
+#include "Device/Errors.h"
 #include "IO/VDB/VDBCells.h"
 #include "IO/VDB/VDBFile.h"
 #include "IO/VDB/VDBGeometry.h"

@@ -21,17 +21,18 @@ class vtkMultiProcessController;
  *
  * Point arrays are averaged to cells, where there is no cell array of their name.
  *
- * Cells that equal the background become inactive voxels and take no room; every other one is active. The image's extent,
- * spacing, origin and direction become the grid's index space and transform (see vtkVDBReader: a voxel's index is the
- * cell's), and what a grid cannot say becomes its metadata image_extent_min, image_extent_max, image_cells, image_origin
- * and image_spacing, so that vtkVDBReader gives the image back bit for bit: values (NaN, infinity and -0 too), extent,
- * origin, spacing. Of a direction that is not along the axes the last bit may change, and SaveAsHalf and Tolerance change
- * values.
+ * Cells that equal the background become inactive voxels and take no room; every other one is active. The image's
+ * extent, spacing, origin and direction become the grid's index space and transform (see vtkVDBReader: a voxel's index
+ * is the cell's), and what a grid cannot say becomes its metadata image_extent_min, image_extent_max, image_cells,
+ * image_origin and image_spacing, so that vtkVDBReader gives the image back bit for bit: values (NaN, infinity and -0
+ * too), extent, origin, spacing. Of a direction that is not along the axes the last bit may change, and SaveAsHalf and
+ * Tolerance change values.
  *
  * Field data `vdb::<key>`, `vdb:<array>:<key>`, `vdb:<array>:type` and `vdb:<array>:background`, as vtkVDBReader makes
- * them, become metadata, type (bool and mask from uint8) and background; field data `g`, which belong to a medium, become
- * the file's metadata `medium_g`, and come back as `g`. Other field data are left out. Without them the background is Background, and
- * a grid of one real component with background 0 is a fog volume, any other of unknown class.
+ * them, become metadata, type (bool and mask from uint8) and background; field data `g`, which belong to a medium,
+ * become the file's metadata `medium_g`, and come back as `g`. Other field data are left out. Without them the
+ * background is Background, and a grid of one real component with background 0 is a fog volume, any other of unknown
+ * class.
  *
  * Cells that vtkGhostType hides are no part of the image: their voxels are inactive. vtkGhostType itself is not
  * written.
@@ -86,8 +87,8 @@ public:
   ///@}
 
   ///@{
-  /// Values this near to the background become background, and blocks of 8^3 voxels that are this near to their first one
-  /// become one value; in the unit of the array. Default 0: nothing is changed. Valid [0, infinity).
+  /// Values this near to the background become background, and blocks of 8^3 voxels that are this near to their first
+  /// one become one value; in the unit of the array. Default 0: nothing is changed. Valid [0, infinity).
   tyndallSetRangeMacro(Tolerance, double, 0.0, tyndall::AnyHigh);
   vtkGetMacro(Tolerance, double);
   ///@}

@@ -14,22 +14,23 @@ namespace tyndall
 /// Whether there is neither a light nor an environment nor a sky.
 bool NothingShines(const Illumination& illumination);
 
-/// Photons as polydata: points (double), a vertex each, point data `direction` (3, unit), `power` (3, RGB, W), `weight` (1: its
-/// power over what it had if its light's photons were spread evenly), `light` (1: number of its light, -1 the environment or sky)
-/// and `batch` (1: of which of the independent sets it is). `direction` is the active vectors, so that glyphs point along it. Field data
-/// `photon_box`: bounds of the box that they were made for.
+/// Photons as polydata: points (double), a vertex each, point data `direction` (3, unit), `power` (3, RGB, W), `weight`
+/// (1: its power over what it had if its light's photons were spread evenly), `light` (1: number of its light, -1 the
+/// environment or sky) and `batch` (1: of which of the independent sets it is). `direction` is the active vectors, so
+/// that glyphs point along it. Field data `photon_box`: bounds of the box that they were made for.
 void WritePhotons(const EmittedPhotons& emitted, const Grid& box, vtkPolyData* output);
 
-/// Where photons were made for another box than that of a medium: both boxes and what to do, as a warning; else empty. Photons that do
-/// not say their box are taken as they are.
+/// Where photons were made for another box than that of a medium: both boxes and what to do, as a warning; else empty.
+/// Photons that do not say their box are taken as they are.
 std::string DoubtOfBox(vtkPolyData* photons, const Grid& medium);
 
-/// Photons of polydata: points, and point data `direction` (3), `power` (1 or 3 components, W), `weight` (missing: 1) and `batch`
-/// (missing: 0). Hidden and duplicate points are left out.
+/// Photons of polydata: points, and point data `direction` (3), `power` (1 or 3 components, W), `weight` (missing: 1)
+/// and `batch` (missing: 0). Hidden and duplicate points are left out.
 /// @throws InvalidInput where an array is missing or has another shape, or a batch is not a whole number of 0 to 63
 std::vector<Photon> ReadPhotons(vtkPolyData* photons);
 
-/// Polylines with point data `power_left` (part of the photon's power that is left there) and cell data `photon` (its number).
+/// Polylines with point data `power_left` (part of the photon's power that is left there) and cell data `photon` (its
+/// number).
 void WritePaths(const std::vector<PhotonPath>& paths, vtkPolyData* output);
 
 /// Cells `octree_level` of an image as whole numbers; empty where it has none.

@@ -31,7 +31,8 @@ struct RefractiveInput
 /// @throws InvalidInput as ReadMedium, and where the octree is of other voxels or has no levels
 RefractiveInput ReadRefractiveMedium(vtkAlgorithm* filter, vtkImageData* medium, vtkImageData* octree = nullptr);
 
-/// A PhotonMarcher of a filter's medium, which is prepared once, and again only when something that it was made of has changed:
+/// A PhotonMarcher of a filter's medium, which is prepared once, and again only when something that it was made of has
+/// changed:
 /// what ReadRefractiveMedium reads, the settings or the device. Light and photons are none of that.
 class KeptMarcher
 {

@@ -1,9 +1,9 @@
 #include "vtkPhotonEmitter.h"
 
-#include "Photons/ImportanceData.h"
 #include "Common/LightTransportData.h"
-#include "Photons/PhotonData.h"
 #include "Common/WholeImage.h"
+#include "Photons/ImportanceData.h"
+#include "Photons/PhotonData.h"
 
 #include "vtkDataObject.h"
 #include "vtkImageData.h"

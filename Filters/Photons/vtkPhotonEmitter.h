@@ -12,16 +12,16 @@ class vtkPolyData;
  * @brief photons of lights and of the sky, where they enter a volume
  *
  * Photons are spread over what each light sees of the volume: over the photon plane across a directional light that the
- * volume's outline is, over the solid angle of the faces that a lamp sees, over the directions and the outline for an environment.
- * What would miss the volume is not made; the power of all photons is what reaches it. Photons of a lamp in the volume begin
- * at the lamp.
+ * volume's outline is, over the solid angle of the faces that a lamp sees, over the directions and the outline for an
+ * environment. What would miss the volume is not made; the power of all photons is what reaches it. Photons of a lamp
+ * in the volume begin at the lamp.
  *
  * Input 0, the medium: vtkImageData, of which only the box counts. Input 1, optional: lights as vtkLightRig makes them.
  * Input 2, optional: the environment, as vtkEnvironmentReader makes it. The index outside is taken as constant.
- * Input 3, optional: where photons are to be dense, as vtkPhotonImportance makes it: vtkImageData of n x n x lights cells, cell
- * array `importance` (1 component, >= 0, of any scale), field data `light` (number of the light of each layer; missing: 0, 1,
- * ...). A light without a layer is spread evenly, and so are all where field data `even` is 1. Where photons are denser each has
- * less power, so that what they add up to is the same.
+ * Input 3, optional: where photons are to be dense, as vtkPhotonImportance makes it: vtkImageData of n x n x lights
+ * cells, cell array `importance` (1 component, >= 0, of any scale), field data `light` (number of the light of each
+ * layer; missing: 0, 1, ...). A light without a layer is spread evenly, and so are all where field data `even` is 1.
+ * Where photons are denser each has less power, so that what they add up to is the same.
  *
  * Output: vtkPolyData, a vertex a photon, point data
  *
@@ -33,11 +33,11 @@ class vtkPolyData;
  * | `light`     | 1          | 1    | number of its light; -1: the environment or SkyColor              |
  * | `batch`     | 1          | 1    | of which of the independent sets it is, from 0                    |
  *
- * and field data `photon_box`, the bounds of the box that they were made for (6 numbers): vtkPhotonMarcher warns where its medium
- * fills another one.
+ * and field data `photon_box`, the bounds of the box that they were made for (6 numbers): vtkPhotonMarcher warns where
+ * its medium fills another one.
  *
- * Without lights, environment and SkyColor there are no photons, with a warning. In a parallel pipeline the first piece has
- * all photons.
+ * Without lights, environment and SkyColor there are no photons, with a warning. In a parallel pipeline the first piece
+ * has all photons.
  *
  * @sa vtkLightRig vtkEnvironmentReader vtkPhotonImportance vtkPhotonMarcher
  * @par Thanks
@@ -72,8 +72,9 @@ public:
   ///@}
 
   ///@{
-  /// Photons that reach the volume, of all lights together, which share them in proportion to the power with which they reach
-  /// it. Default 100000, valid [1, infinity). Spots and rectangles of which a part misses the volume meet it within a percent.
+  /// Photons that reach the volume, of all lights together, which share them in proportion to the power with which they
+  /// reach it. Default 100000, valid [1, infinity). Spots and rectangles of which a part misses the volume meet it
+  /// within a percent.
   tyndallSetRangeMacro(PhotonCount, vtkIdType, 1, VTK_ID_MAX);
   vtkGetMacro(PhotonCount, vtkIdType);
   ///@}
@@ -92,15 +93,15 @@ public:
 
   ///@{
   /// Independent sets that the photons are made of, each with its part of all the power: their differences tell
-  /// vtkPhotonReconstruction the error of the light. Default 0: two with an importance map (even if that is even), one without; valid
-  /// [0, 16].
+  /// vtkPhotonReconstruction the error of the light. Default 0: two with an importance map (even if that is even), one
+  /// without; valid [0, 16].
   tyndallSetRangeMacro(Batches, int, 0, 16);
   vtkGetMacro(Batches, int);
   ///@}
 
   ///@{
-  /// How dense photons may become by the importance map, in those spread evenly: what it asks for above that goes to other
-  /// places. Default 8, valid [1, infinity).
+  /// How dense photons may become by the importance map, in those spread evenly: what it asks for above that goes to
+  /// other places. Default 8, valid [1, infinity).
   tyndallSetRangeMacro(MaximumDensity, double, 1.0, tyndall::AnyHigh);
   vtkGetMacro(MaximumDensity, double);
   ///@}

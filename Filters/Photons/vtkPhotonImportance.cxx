@@ -1,11 +1,11 @@
 #include "vtkPhotonImportance.h"
 
+#include "Common/LightTransportData.h"
+#include "Common/WholeImage.h"
 #include "Device/Device.h"
 #include "Photons/ImportanceData.h"
-#include "Common/LightTransportData.h"
 #include "Photons/PhotonData.h"
 #include "Photons/RefractiveInput.h"
-#include "Common/WholeImage.h"
 
 #include "vtkImageData.h"
 #include "vtkInformation.h"

@@ -18,23 +18,23 @@ struct Importance;
  * @class vtkPhotonImportance
  * @brief where photons are needed: an importance map, found by few pilot photons
  *
- * Pilot photons on a jittered grid of each light's photon plane are marched through the medium and gathered in coarse cells. Cells
- * where the light changes steeply from one to the next, and dark ones, are chosen; each is splatted into the map as a circle about
- * the mean origin of its photons, as wide as they deviate from it; a background is added, and a 5x5 Gauss filter smooths
- * the map. vtkPhotonEmitter makes photons as dense as it says.
+ * Pilot photons on a jittered grid of each light's photon plane are marched through the medium and gathered in coarse
+ * cells. Cells where the light changes steeply from one to the next, and dark ones, are chosen; each is splatted into
+ * the map as a circle about the mean origin of its photons, as wide as they deviate from it; a background is added, and
+ * a 5x5 Gauss filter smooths the map. vtkPhotonEmitter makes photons as dense as it says.
  *
  * Where the light is even nothing is gained: `even` is 1, and vtkPhotonEmitter spreads its photons evenly.
  *
- * Input 0, the medium: vtkImageData with cell arrays `sigma_a`, `sigma_s` (1 or 3 components, 1/length) and optionally `ior` (1
- * component; missing: constant), or those chosen by SetInputArrayToProcess 0, 1 and 3, and optionally `octree_level`, as
- * vtkPhotonMarcher reads them. Input 1, optional: lights as vtkLightRig makes them. Input 2, optional: the environment, as
- * vtkEnvironmentReader makes it. Give vtkPhotonEmitter the same.
+ * Input 0, the medium: vtkImageData with cell arrays `sigma_a`, `sigma_s` (1 or 3 components, 1/length) and optionally
+ * `ior` (1 component; missing: constant), or those chosen by SetInputArrayToProcess 0, 1 and 3, and optionally
+ * `octree_level`, as vtkPhotonMarcher reads them. Input 1, optional: lights as vtkLightRig makes them. Input 2,
+ * optional: the environment, as vtkEnvironmentReader makes it. Give vtkPhotonEmitter the same.
  *
  * Output 0, the map: vtkImageData of n x n x lights cells over the unit square, n the root of PilotCount, cell array
  *
- * | array        | components | unit | meaning                                                                            |
- * |--------------|------------|------|------------------------------------------------------------------------------------|
- * | `importance` | 1          | 1    | probability density of the photons' starting places on the photon plane, mean 1 per light |
+ * | array | components | unit | meaning |
+ * |---|---|---|---|
+ * | `importance` | 1 | 1 | probability density of the photons' starting places on the photon plane, mean 1 per light |
  *
  * and field data `light` (number of the light of each layer; -1: the environment or SkyColor) and `even`.
  * Output 1, the pilot light: vtkImageData of the coarse cells over the medium's box, cell arrays
@@ -48,8 +48,8 @@ struct Importance;
  * | `gradient`         | 1          | W/length^2 | steepness of the light, from a cell to the next              |
  * | `chosen`           | 1          | 1          | 1 where photons are to be dense                              |
  *
- * Both have field data `left_out` (what the scene did not need) and `device`. Without lights, environment and SkyColor both are
- * empty, with a warning. In a parallel pipeline every rank finds the whole and hands on its piece.
+ * Both have field data `left_out` (what the scene did not need) and `device`. Without lights, environment and SkyColor
+ * both are empty, with a warning. In a parallel pipeline every rank finds the whole and hands on its piece.
  *
  * @sa vtkPhotonEmitter vtkPhotonMarcher vtkPhotonReconstruction
  * @par Thanks
@@ -69,7 +69,8 @@ public:
   };
 
   ///@{
-  /// Pilot photons of each light; the largest square number that is not above it is made. Default 1024, valid [1, 2^20]; below it is an error.
+  /// Pilot photons of each light; the largest square number that is not above it is made. Default 1024, valid [1,
+  /// 2^20]; below it is an error.
   tyndallSetRangeMacro(PilotCount, int, 1, VTK_INT_MAX);
   vtkGetMacro(PilotCount, int);
   ///@}
@@ -87,8 +88,8 @@ public:
   ///@}
 
   ///@{
-  /// With own thresholds: cells whose light changes by this or more to the next are chosen, and lit cells of this light or less.
-  /// W/length^2, default 0, valid [0, infinity).
+  /// With own thresholds: cells whose light changes by this or more to the next are chosen, and lit cells of this light
+  /// or less. W/length^2, default 0, valid [0, infinity).
   tyndallSetRangeMacro(GradientThreshold, double, 0.0, tyndall::AnyHigh);
   vtkGetMacro(GradientThreshold, double);
   tyndallSetRangeMacro(LuminanceThreshold, double, 0.0, tyndall::AnyHigh);
@@ -115,8 +116,8 @@ public:
   ///@}
 
   ///@{
-  /// What came of the last update: whether the light is even, the thresholds that were used (W/length^2), seconds, the device's
-  /// name, and what the scene did not need, one a line.
+  /// What came of the last update: whether the light is even, the thresholds that were used (W/length^2), seconds, the
+  /// device's name, and what the scene did not need, one a line.
   vtkGetMacro(Even, bool);
   vtkGetMacro(UsedGradientThreshold, double);
   vtkGetMacro(UsedLuminanceThreshold, double);

@@ -1,11 +1,11 @@
 #include "vtkPhotonMarcher.h"
 
-#include "Device/Device.h"
 #include "Common/LightTransportData.h"
-#include "Photons/PhotonData.h"
-#include "Photons/Marching/PublishedPhotons.h"
-#include "Photons/RefractiveInput.h"
 #include "Common/WholeImage.h"
+#include "Device/Device.h"
+#include "Photons/Marching/PublishedPhotons.h"
+#include "Photons/PhotonData.h"
+#include "Photons/RefractiveInput.h"
 
 #include "vtkImageData.h"
 #include "vtkInformation.h"

@@ -21,10 +21,10 @@ struct PhotonLight;
  * @class vtkPhotonMarcher
  * @brief photons along bent rays through a medium: its light before it is scattered
  *
- * Paths follow d/ds(n dx/ds) = grad n, so that refraction and total reflection need no surfaces. Power falls along a path by
- * extinction, exactly; every voxel that a path crosses gains its power times its length in it, so that `fluence` is an unbiased
- * estimate in W/length^2 whatever the number of photons is. Scattered light is not followed: a viewer gathers single
- * scattering from `fluence` and `mean_direction`.
+ * Paths follow d/ds(n dx/ds) = grad n, so that refraction and total reflection need no surfaces. Power falls along a
+ * path by extinction, exactly; every voxel that a path crosses gains its power times its length in it, so that
+ * `fluence` is an unbiased estimate in W/length^2 whatever the number of photons is. Scattered light is not followed: a
+ * viewer gathers single scattering from `fluence` and `mean_direction`.
  *
  * Input 0, the medium: vtkImageData with cell arrays `sigma_a`, `sigma_s` (1 or 3 components, 1/length) and optionally
  * `ior` (1 component; missing: constant) or those chosen by SetInputArrayToProcess 0, 1 and 3.
@@ -33,22 +33,24 @@ struct PhotonLight;
  *
  * Output 0: the medium's image with cell arrays
  *
- * | array            | components | unit       | meaning                                                          |
- * |------------------|------------|------------|------------------------------------------------------------------|
- * | `fluence`        | 1 or 3     | W/length^2 | radiance integrated over all directions, of unscattered light    |
- * | `fluence_direct` | 1 or 3     | W/length^2 | the same                                                         |
- * | `mean_direction` | 3          | 1          | power-weighted mean direction; its length is the anisotropy      |
- * | `photon_count`   | 1          | 1          | photons that crossed the voxel, each once; with PhotonCounts     |
- * | `photon_weight`  | 1          | 1          | their mean `weight`, 0 where there is none; with PhotonCounts    |
- * | `fluence_batches` | (1 or 3) x batches | W/length^2 | fluence by each batch alone, one after the other, as if it was all the light: their mean is `fluence`; where photons have several batches |
+ * | array | components | unit | meaning |
+ * |---|---|---|---|
+ * | `fluence` | 1 or 3 | W/length^2 | radiance integrated over all directions, of unscattered light |
+ * | `fluence_direct` | 1 or 3 | W/length^2 | the same |
+ * | `mean_direction` | 3 | 1 | power-weighted mean direction; its length is the anisotropy |
+ * | `photon_count` | 1 | 1 | photons that crossed the voxel, each once; with PhotonCounts |
+ * | `photon_weight` | 1 | 1 | their mean `weight`, 0 where there is none; with PhotonCounts |
+ * | `fluence_batches` | (1 or 3) x batches | W/length^2 | of each of several batches, as if it was all the light |
  *
- * the last three of the conservative scheme only, as vtkPhotonReconstruction wants them, and field data `energy_balance` (W: entered, emitted, absorbed, escaped, left over; absorbed includes what is scattered),
- * `scattered` (W), `face_power_out`, `left_out`, `device`; of the published scheme also `packing_loss` (see PackingLoss).
- * Output 1: vtkPolyData, the paths of PathCount photons as polylines, point data `power_left` (part of its power), cell data
- * `photon` (its number).
+ * the last three of the conservative scheme only, as vtkPhotonReconstruction wants them, and field data
+ * `energy_balance` (W: entered, emitted, absorbed, escaped, left over; absorbed includes what is scattered),
+ * `scattered` (W), `face_power_out`, `left_out`, `device`; of the published scheme also `packing_loss` (see
+ * PackingLoss).
+ * Output 1: vtkPolyData, the paths of PathCount photons as polylines, point data `power_left` (part of its power), cell
+ * data `photon` (its number).
  *
- * The medium stays prepared on the device, so that new light or other photons only cost their march: until the medium or the
- * octree changes, another one is connected, a setting needs it, the device is another one, or the filter goes.
+ * The medium stays prepared on the device, so that new light or other photons only cost their march: until the medium
+ * or the octree changes, another one is connected, a setting needs it, the device is another one, or the filter goes.
  *
  * In a parallel pipeline every rank marches all photons and hands on its piece; the paths are on the first.
  *
@@ -56,8 +58,8 @@ struct PhotonLight;
  *
  * @sa vtkPhotonEmitter vtkRefractionOctree vtkPhotonReconstruction vtkMediumRayCaster
  * @par Thanks
- * M. Pfeuti, Real-time Rendering of Refractive Objects in Participating Media, 2009, section 3.1.5. X. Sun, K. Zhou, E. Stollnitz,
- * J. Shi, B. Guo: Interactive Relighting of Dynamic Refractive Objects, ACM Trans. Graph. 27 (2008).
+ * M. Pfeuti, Real-time Rendering of Refractive Objects in Participating Media, 2009, section 3.1.5. X. Sun, K. Zhou, E.
+ * Stollnitz, J. Shi, B. Guo: Interactive Relighting of Dynamic Refractive Objects, ACM Trans. Graph. 27 (2008).
  */
 class TYNDALL_EXPORT vtkPhotonMarcher : public vtkImageAlgorithm
 {
@@ -69,8 +71,9 @@ public:
   enum Schemes
   {
     PUBLISHED =
-      0,      ///< explicit Euler, power a rasterised voxel, 64 bits a voxel by compare-and-swap, smoothed at the end
-    CONSERVATIVE = 1 ///< symplectic integrator, power times path, fixed point sums that lose nothing and repeat bit for bit
+      0, ///< explicit Euler, power a rasterised voxel, 64 bits a voxel by compare-and-swap, smoothed at the end
+    CONSERVATIVE =
+      1 ///< symplectic integrator, power times path, fixed point sums that lose nothing and repeat bit for bit
   };
 
   ///@{
@@ -89,8 +92,8 @@ public:
   ///@}
 
   ///@{
-  /// Order of the conservative scheme's integrator: 1 (explicit Euler, to compare), 2 (leapfrog; default) or 4 (Yoshida; where the
-  /// index is smooth over several voxels).
+  /// Order of the conservative scheme's integrator: 1 (explicit Euler, to compare), 2 (leapfrog; default) or 4
+  /// (Yoshida; where the index is smooth over several voxels).
   tyndallSetRangeMacro(IntegratorOrder, int, 1, 4);
   vtkGetMacro(IntegratorOrder, int);
   ///@}
@@ -102,16 +105,16 @@ public:
   ///@}
 
   ///@{
-  /// Whether to count photons: `photon_count` and `photon_weight`, one number a voxel more in the same pass. Default off. The
-  /// published scheme cannot: an error.
+  /// Whether to count photons: `photon_count` and `photon_weight`, one number a voxel more in the same pass. Default
+  /// off. The published scheme cannot: an error.
   vtkSetMacro(PhotonCounts, bool);
   vtkGetMacro(PhotonCounts, bool);
   vtkBooleanMacro(PhotonCounts, bool);
   ///@}
 
   ///@{
-  /// Whether to leave out what the scene does not need. Default on; off computes everything, for comparison: the same light,
-  /// later. Of the conservative scheme.
+  /// Whether to leave out what the scene does not need. Default on; off computes everything, for comparison: the same
+  /// light, later. Of the conservative scheme.
   vtkSetMacro(LeaveOut, bool);
   vtkGetMacro(LeaveOut, bool);
   vtkBooleanMacro(LeaveOut, bool);
@@ -131,20 +134,22 @@ public:
   ///@}
 
   ///@{
-  /// Part of the name of the OpenCL device to use, of any case. Default empty: what the variable TYNDALL_DEVICE names, or
-  /// else PoCL's CPU device.
+  /// Part of the name of the OpenCL device to use, of any case. Default empty: what the variable TYNDALL_DEVICE names,
+  /// or else PoCL's CPU device.
   vtkSetStdStringFromCharMacro(Device);
   vtkGetCharFromStdStringMacro(Device);
   ///@}
 
   ///@{
-  /// What came of the last update: stretches of path deposited to voxels, steps of the integrator, photons that miss the volume,
-  /// relative error of the energy balance, whether the medium was still prepared, seconds, the device's name, and what the scene did not need, one a line.
+  /// What came of the last update: stretches of path deposited to voxels, steps of the integrator, photons that miss
+  /// the volume, relative error of the energy balance, whether the medium was still prepared, seconds, the device's
+  /// name, and what the scene did not need, one a line.
   ///
-  /// The conservative scheme's balance closes to rounding. That of the published scheme does not, even where packing loses nothing: it
-  /// deposits a photon's power to a voxel however long the path in it is, so the extinction of its light is not what the
-  /// photons lost. PackingLoss is apart from that: the part of the power deposited to voxels that their 64 bits did not keep
-  /// (rounding, saturation, tries of compare-and-swap that ran out), before smoothing; 0 of the conservative scheme.
+  /// The conservative scheme's balance closes to rounding. That of the published scheme does not, even where packing
+  /// loses nothing: it deposits a photon's power to a voxel however long the path in it is, so the extinction of its
+  /// light is not what the photons lost. PackingLoss is apart from that: the part of the power deposited to voxels that
+  /// their 64 bits did not keep (rounding, saturation, tries of compare-and-swap that ran out), before smoothing; 0 of
+  /// the conservative scheme.
   vtkGetMacro(Deposits, vtkIdType);
   vtkGetMacro(Steps, vtkIdType);
   vtkGetMacro(Missed, vtkIdType);

@@ -1,9 +1,9 @@
 #include "vtkPhotonReconstruction.h"
 
-#include "Device/Device.h"
 #include "Common/LightTransportData.h"
-#include "Reconstruction/PhotonReconstruction.h"
 #include "Common/WholeImage.h"
+#include "Device/Device.h"
+#include "Reconstruction/PhotonReconstruction.h"
 
 #include "vtkCellData.h"
 #include "vtkDataArray.h"

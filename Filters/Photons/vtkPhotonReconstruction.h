@@ -16,32 +16,32 @@ struct ReconstructedLight;
  * @class vtkPhotonReconstruction
  * @brief smooth light of the noisy light that photons left, voxel by voxel as coarse as the noise asks for
  *
- * Pyramids of the light, each level of half the resolution of the one below it. Every voxel takes its light from the level
- * that Scheme chooses; a level without photons is never chosen while a coarser one has some.
+ * Pyramids of the light, each level of half the resolution of the one below it. Every voxel takes its light from the
+ * level that Scheme chooses; a level without photons is never chosen while a coarser one has some.
  *
  * Input: vtkImageData as vtkPhotonMarcher makes it, with cell arrays (point arrays are averaged to cells)
  *
- * | array             | components         | unit       | meaning                                          | needed by Scheme |
- * |-------------------|--------------------|------------|--------------------------------------------------|------------------|
- * | `fluence`         | 1 or 3             | W/length^2 | noisy light that was not scattered               | all              |
- * | `mean_direction`  | 3                  | 1          | power-weighted mean direction; optional          |                  |
- * | `photon_count`    | 1                  | 1          | photons in the voxel (PhotonCounts of the marcher) | 0, 3           |
- * | `photon_weight`   | 1                  | 1          | their mean weight (PhotonCounts)                 | 0                |
- * | `fluence_batches` | (1 or 3) x batches | W/length^2 | light by each batch alone (Batches of the emitter: at least 2) | 1  |
+ * | array | components | unit | meaning | needed by Scheme |
+ * |---|---|---|---|---|
+ * | `fluence` | 1 or 3 | W/length^2 | noisy light that was not scattered | all |
+ * | `mean_direction` | 3 | 1 | power-weighted mean direction; optional |  |
+ * | `photon_count` | 1 | 1 | photons in the voxel (PhotonCounts of the marcher) | 0, 3 |
+ * | `photon_weight` | 1 | 1 | their mean weight (PhotonCounts) | 0 |
+ * | `fluence_batches` | (1 or 3) x batches | W/length^2 | light by each batch alone (Batches: at least 2) | 1 |
  *
  * or those chosen by SetInputArrayToProcess 0 to 4.
  *
  * Output: the input with `fluence`, `fluence_direct` (the same) and `mean_direction` replaced by smooth ones, without
  * `fluence_batches`, and with
  *
- * | array           | components | unit       | meaning                                                                          |
- * |-----------------|------------|------------|----------------------------------------------------------------------------------|
- * | `mip_level`     | 1          | 1          | level that the light was taken from, 0 the voxels themselves; between two where blended |
- * | `fluence_error` | 1 or 3     | W/length^2 | standard error of fluence, of the conservative scheme                                   |
+ * | array | components | unit | meaning |
+ * |---|---|---|---|
+ * | `mip_level` | 1 | 1 | level that the light was taken from, 0 the voxels themselves; between two where blended |
+ * | `fluence_error` | 1 or 3 | W/length^2 | standard error of fluence, of the conservative scheme |
  *
- * and field data `fluence_bias` (by which part the light of all voxels together was off before it was conserved); `left_out`
- * gains what was not needed here, `device` is the one that computed. In a parallel pipeline every rank works on the whole
- * and hands on its piece.
+ * and field data `fluence_bias` (by which part the light of all voxels together was off before it was conserved);
+ * `left_out` gains what was not needed here, `device` is the one that computed. In a parallel pipeline every rank works
+ * on the whole and hands on its piece.
  *
  * Cells that are hidden by `vtkGhostType` are empty.
  *
@@ -59,7 +59,7 @@ public:
   enum Schemes
   {
     PUBLISHED = 0,       ///< the lower of the levels by centre-surround differences and by photon weight
-    CONSERVATIVE = 1,           ///< each level's detail is kept as far as independent batches agree on it; tells its error
+    CONSERVATIVE = 1,    ///< each level's detail is kept as far as independent batches agree on it; tells its error
     CONSTANT_RADIUS = 2, ///< Level everywhere
     NEAREST_PHOTONS = 3  ///< the lowest level that holds NearestPhotons
   };
@@ -110,15 +110,16 @@ public:
   ///@}
 
   ///@{
-  /// Part of the name of the OpenCL device to use, of any case. Default empty: what the variable TYNDALL_DEVICE names, or
-  /// else PoCL's CPU device.
+  /// Part of the name of the OpenCL device to use, of any case. Default empty: what the variable TYNDALL_DEVICE names,
+  /// or else PoCL's CPU device.
   vtkSetStdStringFromCharMacro(Device);
   vtkGetCharFromStdStringMacro(Device);
   ///@}
 
   ///@{
-  /// What came of the last update: `fluence_bias`; of the conservative scheme the root of the mean square of `fluence_error` over that of
-  /// `fluence` (0 of the others); seconds, the device's name, and what was not needed here, one a line.
+  /// What came of the last update: `fluence_bias`; of the conservative scheme the root of the mean square of
+  /// `fluence_error` over that of `fluence` (0 of the others); seconds, the device's name, and what was not needed
+  /// here, one a line.
   vtkGetMacro(Bias, double);
   vtkGetMacro(MeanError, double);
   vtkGetMacro(Seconds, double);

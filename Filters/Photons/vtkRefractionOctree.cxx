@@ -1,8 +1,8 @@
 #include "vtkRefractionOctree.h"
 
 #include "Common/LightTransportData.h"
-#include "Photons/OctreeNodes.h"
 #include "Common/WholeImage.h"
+#include "Photons/OctreeNodes.h"
 
 #include "vtkCellData.h"
 #include "vtkHyperTreeGrid.h"

@@ -15,24 +15,25 @@
  * SetInputArrayToProcess 0; with IncludeExtinction also `sigma_a` and `sigma_s` (1 or 3 components, 1/length), or those
  * chosen as 1 and 2. Point arrays are averaged to cells.
  *
- * Output 0: the input with cell array `octree_level` (uint8: 0 a single voxel, k a node of 2^k voxels an edge) and field
- * data `left_out` (what the scene did not need) and `device`.
+ * Output 0: the input with cell array `octree_level` (uint8: 0 a single voxel, k a node of 2^k voxels an edge) and
+ * field data `left_out` (what the scene did not need) and `device`.
  * Output 1: the same octree as vtkHyperTreeGrid, to look at. Its leaves are the nodes, with cell array `octree_level`.
  *
- * A node of level k > 0 is the cube of 2^k voxels an edge whose lowest voxel has indices, counted from the image's lower
- * corner, that are multiples of 2^k. It is kept whole where
+ * A node of level k > 0 is the cube of 2^k voxels an edge whose lowest voxel has indices, counted from the image's
+ * lower corner, that are multiples of 2^k. It is kept whole where
  *
  *     max(ior) - min(ior) <= Tolerance
  *     (max(sigma_t) - min(sigma_t)) diagonal of the node <= ExtinctionTolerance       with IncludeExtinction
  *
- * over its voxels (the latter in each channel of sigma_t = sigma_a + sigma_s), and no larger node is. A quantity that is the
- * same everywhere restricts nothing: where ior is constant the octree is one node and nothing runs on the device.
+ * over its voxels (the latter in each channel of sigma_t = sigma_a + sigma_s), and no larger node is. A quantity that
+ * is the same everywhere restricts nothing: where ior is constant the octree is one node and nothing runs on the
+ * device.
  *
- * A grid whose size is not a power of two is treated as if its last voxel were repeated: nodes at its upper faces may stick
- * out of it. In output 1 nodes wholly outside are masked.
+ * A grid whose size is not a power of two is treated as if its last voxel were repeated: nodes at its upper faces may
+ * stick out of it. In output 1 nodes wholly outside are masked.
  *
- * In a parallel pipeline nodes cross the borders of pieces, so every rank asks for the whole extent, and hands on the piece
- * of output 0 that it was asked for; output 1 is on the first rank.
+ * In a parallel pipeline nodes cross the borders of pieces, so every rank asks for the whole extent, and hands on the
+ * piece of output 0 that it was asked for; output 1 is on the first rank.
  *
  * Cells that are hidden by `vtkGhostType` are empty.
  *
@@ -62,21 +63,22 @@ public:
   ///@}
 
   ///@{
-  /// With IncludeExtinction: by how much the optical thickness of a straight way through a node may be off where extinction is
-  /// taken as constant in it. Default 0.1, valid [0, infinity).
+  /// With IncludeExtinction: by how much the optical thickness of a straight way through a node may be off where
+  /// extinction is taken as constant in it. Default 0.1, valid [0, infinity).
   tyndallSetRangeMacro(ExtinctionTolerance, double, 0.0, tyndall::AnyHigh);
   vtkGetMacro(ExtinctionTolerance, double);
   ///@}
 
   ///@{
-  /// Part of the name of the OpenCL device to use, of any case. Default empty: what the variable TYNDALL_DEVICE names, or
-  /// else PoCL's CPU device.
+  /// Part of the name of the OpenCL device to use, of any case. Default empty: what the variable TYNDALL_DEVICE names,
+  /// or else PoCL's CPU device.
   vtkSetStdStringFromCharMacro(Device);
   vtkGetCharFromStdStringMacro(Device);
   ///@}
 
   ///@{
-  /// What came of the last update: the number of nodes, the seconds that their levels took, the name of the device (empty:
+  /// What came of the last update: the number of nodes, the seconds that their levels took, the name of the device
+  /// (empty:
   /// none was needed), and what the scene did not need, one a line.
   vtkGetMacro(NodeCount, vtkIdType);
   vtkGetMacro(Seconds, double);

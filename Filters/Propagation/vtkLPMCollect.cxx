@@ -1,8 +1,8 @@
 #include "vtkLPMCollect.h"
 
+#include "Common/LightTransportData.h"
 #include "Device/Device.h"
 #include "LightPropagation/Published/ParallelPropagation.h"
-#include "Common/LightTransportData.h"
 #include "Propagation/LPMBuffers.h"
 
 #include "vtkCellData.h"

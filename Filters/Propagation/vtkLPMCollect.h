@@ -10,31 +10,31 @@
  * @class vtkLPMCollect
  * @brief the second half of one scattering order of light propagation maps, as published: what rays left becomes light
  *
- * Each voxel reads the temporary buffers T of all directions and updates the light in it and the source of the next order
- * (Gruson et al. 2012, Algorithm 2, Eq. 4).
+ * Each voxel reads the temporary buffers T of all directions and updates the light in it and the source of the next
+ * order (Gruson et al. 2012, Algorithm 2, Eq. 4).
  *
- * Input: what vtkLPMPropagate makes: the medium's image with cell arrays `T_xmin`, `T_xmax`, ..., `T_zmax` and field data
- * `map_resolution`, `stored_directions_count`, `scattering_order`. Where there are `fluence`, `fluence_direct` and
+ * Input: what vtkLPMPropagate makes: the medium's image with cell arrays `T_xmin`, `T_xmax`, ..., `T_zmax` and field
+ * data `map_resolution`, `stored_directions_count`, `scattering_order`. Where there are `fluence`, `fluence_direct` and
  * `scattered_radiance` of the orders before (behind the first order), they are added to.
  *
  * Output: the input without the arrays T, with the cell arrays
  *
- * | array                | components                     | unit            | meaning                                        |
- * |----------------------|--------------------------------|-----------------|------------------------------------------------|
- * | `unscattered`        | 6, or stored directions, x 1 or 3 | W/(length^3 sr) | U: what the next order propagates           |
- * | `scattered_radiance` | stored directions x 1 or 3     | W/(length^2 sr) | I of all orders so far, over sigma_s           |
- * | `fluence`            | 1 or 3                         | W/length^2      | of all orders so far                           |
- * | `fluence_direct`     | 1 or 3                         | W/length^2      | of order 0                                     |
+ * | array | components | unit | meaning |
+ * |---|---|---|---|
+ * | `unscattered` | 6, or stored directions, x 1 or 3 | W/(length^3 sr) | U: what the next order propagates |
+ * | `scattered_radiance` | stored directions x 1 or 3 | W/(length^2 sr) | I of all orders so far, over sigma_s |
+ * | `fluence` | 1 or 3 | W/length^2 | of all orders so far |
+ * | `fluence_direct` | 1 or 3 | W/length^2 | of order 0 |
  *
- * channels fastest, then directions, and field data `left_over` (W a channel: power that U holds). Give it to vtkLPMPropagate
- * for the next order.
+ * channels fastest, then directions, and field data `left_over` (W a channel: power that U holds). Give it to
+ * vtkLPMPropagate for the next order.
  *
  * Cells that are hidden by `vtkGhostType` are empty.
  *
  * @sa vtkLPMPropagate vtkLightPropagationMaps
  * @par Thanks
- * A. Gruson, A. Hakke Patil, R. Cozot, K. Bouatouch, S. Pattanaik: Light Propagation Maps on Parallel Graphics Architectures,
- * EGPGV 2012.
+ * A. Gruson, A. Hakke Patil, R. Cozot, K. Bouatouch, S. Pattanaik: Light Propagation Maps on Parallel Graphics
+ * Architectures, EGPGV 2012.
  */
 class TYNDALL_EXPORT vtkLPMCollect : public vtkImageAlgorithm
 {
@@ -44,8 +44,8 @@ public:
   void PrintSelf(ostream& os, vtkIndent indent) override;
 
   ///@{
-  /// Part of the name of the OpenCL device to use, of any case. Default empty: what the variable TYNDALL_DEVICE names, or
-  /// else PoCL's CPU device.
+  /// Part of the name of the OpenCL device to use, of any case. Default empty: what the variable TYNDALL_DEVICE names,
+  /// or else PoCL's CPU device.
   vtkSetStdStringFromCharMacro(Device);
   vtkGetCharFromStdStringMacro(Device);
   ///@}

@@ -1,10 +1,10 @@
 #include "vtkLPMPropagate.h"
 
+#include "Common/LightTransportData.h"
+#include "Common/WholeImage.h"
 #include "Device/Device.h"
 #include "LightPropagation/Published/ParallelPropagation.h"
-#include "Common/LightTransportData.h"
 #include "Propagation/LPMBuffers.h"
-#include "Common/WholeImage.h"
 
 #include "vtkImageData.h"
 #include "vtkInformation.h"

@@ -1,12 +1,12 @@
 #include "vtkLightPropagationMaps.h"
 
-#include "Device/Device.h"
-#include "LightPropagation/Conservative/ErrorEstimate.h"
-#include "LightPropagation/Conservative/ConservativePropagation.h"
-#include "LightPropagation/Published/ParallelPropagation.h"
-#include "LightPropagation/Published/SequentialPropagation.h"
 #include "Common/LightTransportData.h"
 #include "Common/WholeImage.h"
+#include "Device/Device.h"
+#include "LightPropagation/Conservative/ConservativePropagation.h"
+#include "LightPropagation/Conservative/ErrorEstimate.h"
+#include "LightPropagation/Published/ParallelPropagation.h"
+#include "LightPropagation/Published/SequentialPropagation.h"
 
 #include "vtkDataObject.h"
 #include "vtkImageData.h"

@@ -16,9 +16,9 @@ struct LightField;
  * @class vtkLightPropagationMaps
  * @brief light that is scattered many times in a medium, by light propagation maps
  *
- * Rays march through the grid in DirectionsPerFace directions of each face of a cube, one per MapResolution-th part of a
- * voxel's edge. What they lose to a voxel becomes its scattered light, which the next scattering order propagates, until
- * the light that is left does not matter any more.
+ * Rays march through the grid in DirectionsPerFace directions of each face of a cube, one per MapResolution-th part of
+ * a voxel's edge. What they lose to a voxel becomes its scattered light, which the next scattering order propagates,
+ * until the light that is left does not matter any more.
  *
  * Input 0, the medium: vtkImageData with cell arrays (point arrays are averaged to cells)
  *
@@ -30,35 +30,38 @@ struct LightField;
  *
  * or those chosen by SetInputArrayToProcess 0, 1 and 2, and field data `g` (default 0).
  * Input 1, optional: lights as vtkLightRig makes them.
- * Input 2, optional: the environment, vtkImageData in latitude-longitude layout, point array `radiance` (1 or 3 components,
- * W/(length^2 sr)), as vtkEnvironmentReader makes it.
+ * Input 2, optional: the environment, vtkImageData in latitude-longitude layout, point array `radiance` (1 or 3
+ * components, W/(length^2 sr)), as vtkEnvironmentReader makes it.
  *
  * Output 0: the medium's image with cell arrays of 1 component, or 3 where medium or light has colour
  *
- * | array                | components           | unit            | meaning                                           |
- * |----------------------|----------------------|-----------------|---------------------------------------------------|
- * | `fluence`            | 1 or 3               | W/length^2      | radiance integrated over all directions           |
- * | `fluence_direct`     | 1 or 3               | W/length^2      | its unscattered part                              |
- * | `fluence_error`      | 1 or 3               | W/length^2      | its standard error (if EstimateError)             |
- * | `net_flux`           | 3 or 9               | W/length^2      | radiance times direction, integrated (if NetFlux) |
- * | `scattered_radiance` | StoredDirections x 1 or 3 | W/(length^2 sr) | radiance scattered into each stored direction |
+ * | array | components | unit | meaning |
+ * |---|---|---|---|
+ * | `fluence` | 1 or 3 | W/length^2 | radiance integrated over all directions |
+ * | `fluence_direct` | 1 or 3 | W/length^2 | its unscattered part |
+ * | `fluence_error` | 1 or 3 | W/length^2 | its standard error (if EstimateError) |
+ * | `net_flux` | 3 or 9 | W/length^2 | radiance times direction, integrated (if NetFlux) |
+ * | `scattered_radiance` | StoredDirections x 1 or 3 | W/(length^2 sr) | radiance scattered into each direction |
  *
- * and field data `energy_balance` (W: entered, emitted, absorbed, escaped, left over), `face_power_out` (W through -x, +x,
- * -y, +y, -z, +z), `half_range_flux` (see HalfRangeFlux), `left_out` (what the scene did not need), `device`, `stored_directions`; where orders are
- * accelerated and a voxel at a face of the box is thicker than half a mean free path, `surface_radiance`, W/(length^2
- * sr): what leaves each voxel's face there, tuples face by face (-x to +z), row by row, components at the cosines 0.05,
+ * and field data `energy_balance` (W: entered, emitted, absorbed, escaped, left over), `face_power_out` (W through -x,
+ * +x, -y, +y, -z, +z), `half_range_flux` (see HalfRangeFlux), `left_out` (what the scene did not need), `device`,
+ * `stored_directions`; where orders are accelerated and a voxel at a face of the box is thicker than half a mean free
+ * path, `surface_radiance`, W/(length^2 sr): what leaves each voxel's face there, tuples face by face (-x to +z), row
+ * by row, components at the cosines 0.05,
  * 0.25, 0.6, 1 to the normal (times red, green, blue).
- * Output 1: vtkTable, one row a scattering order: `iteration`, `seconds`, `residual`, `change`, `absorbed`, `escaped`, `left_over`.
+ * Output 1: vtkTable, one row a scattering order: `iteration`, `seconds`, `residual`, `change`, `absorbed`, `escaped`,
+ * `left_over`.
  *
  * Without lights, environment, SkyColor, FaceRadiance and emission the result is dark, with a warning.
  *
- * In a parallel pipeline light crosses the borders of pieces, so every rank asks for the whole extent and solves it, and
- * hands on the piece it was asked for.
+ * In a parallel pipeline light crosses the borders of pieces, so every rank asks for the whole extent and solves it,
+ * and hands on the piece it was asked for.
  *
  * @sa vtkParticipatingMedium vtkLightRig vtkEnvironmentReader vtkMediumRayCaster
  * @par Thanks
- * A. Gruson, A. Hakke Patil, R. Cozot, K. Bouatouch, S. Pattanaik: Light Propagation Maps on Parallel Graphics Architectures,
- * EGPGV 2012. R. Fattal: Participating Media Illumination Using Light Propagation Maps, ACM Trans. Graph. 28 (2009).
+ * A. Gruson, A. Hakke Patil, R. Cozot, K. Bouatouch, S. Pattanaik: Light Propagation Maps on Parallel Graphics
+ * Architectures, EGPGV 2012. R. Fattal: Participating Media Illumination Using Light Propagation Maps, ACM Trans.
+ * Graph. 28 (2009).
  */
 class TYNDALL_EXPORT vtkLightPropagationMaps : public vtkLitImageAlgorithm
 {
@@ -69,8 +72,8 @@ public:
 
   enum Schemes
   {
-    PUBLISHED = 0, ///< as Gruson et al. describe it
-    CONSERVATIVE = 1      ///< conservative deposit, directions by solid angle, lights followed exactly
+    PUBLISHED = 0,   ///< as Gruson et al. describe it
+    CONSERVATIVE = 1 ///< conservative deposit, directions by solid angle, lights followed exactly
   };
 
   enum Sources
@@ -105,14 +108,15 @@ public:
   ///@}
 
   ///@{
-  /// How the light that a voxel sends out is spread over it (conservative scheme): CONSTANT, LINEAR, or AUTOMATIC_SOURCE (default).
+  /// How the light that a voxel sends out is spread over it (conservative scheme): CONSTANT, LINEAR, or
+  /// AUTOMATIC_SOURCE (default).
   tyndallSetRangeMacro(Source, int, CONSTANT, AUTOMATIC_SOURCE);
   vtkGetMacro(Source, int);
   ///@}
 
   ///@{
-  /// How scattering orders are added up (conservative scheme, where MaximumOrders is 0): NONE, or AUTOMATIC_ACCELERATION (default).
-  /// LINEAR needs it.
+  /// How scattering orders are added up (conservative scheme, where MaximumOrders is 0): NONE, or
+  /// AUTOMATIC_ACCELERATION (default). LINEAR needs it.
   tyndallSetRangeMacro(Acceleration, int, NONE, AUTOMATIC_ACCELERATION);
   vtkGetMacro(Acceleration, int);
   ///@}
@@ -125,24 +129,24 @@ public:
   ///@}
 
   ///@{
-  /// Directions per face of a cube for unscattered light of shining faces, sky and environment (conservative scheme). It has shadows with
-  /// edges and is swept once: it may have many while scattered light does with few. Default 0: as
+  /// Directions per face of a cube for unscattered light of shining faces, sky and environment (conservative scheme).
+  /// It has shadows with edges and is swept once: it may have many while scattered light does with few. Default 0: as
   /// DirectionsPerFace; else square numbers up to 4096.
   tyndallSetRangeMacro(UncollidedDirections, int, 0, VTK_INT_MAX);
   vtkGetMacro(UncollidedDirections, int);
   ///@}
 
   ///@{
-  /// Relative error, voxel by voxel, of the unscattered light of small bright parts of the medium, which is followed along exact rays
-  /// (conservative scheme, no periodic axis). Default 0.02; 0.005 costs five to ten times as much, less gains nothing; 0: they are swept like all else, as they are
-  /// where other light has more power.
+  /// Relative error, voxel by voxel, of the unscattered light of small bright parts of the medium, which is followed
+  /// along exact rays (conservative scheme, no periodic axis). Default 0.02; 0.005 costs five to ten times as much,
+  /// less gains nothing; 0: they are swept like all else, as they are where other light has more power.
   tyndallSetRangeMacro(EmissionError, double, 0.0, tyndall::AnyHigh);
   vtkGetMacro(EmissionError, double);
   ///@}
 
   ///@{
-  /// Whether rays of each direction start in a place of their own within a voxel (conservative scheme), those of UncollidedDirections
-  /// always. From some 64 directions per face on, half the error or less. Default off.
+  /// Whether rays of each direction start in a place of their own within a voxel (conservative scheme), those of
+  /// UncollidedDirections always. From some 64 directions per face on, half the error or less. Default off.
   vtkSetMacro(StaggeredRays, bool);
   vtkGetMacro(StaggeredRays, bool);
   vtkBooleanMacro(StaggeredRays, bool);
@@ -201,16 +205,16 @@ public:
   ///@}
 
   ///@{
-  /// Whether to estimate the error of fluence from coarser solves, as `fluence_error` and EstimatedError; it takes about a
-  /// third more time. Default off.
+  /// Whether to estimate the error of fluence from coarser solves, as `fluence_error` and EstimatedError; it takes
+  /// about a third more time. Default off.
   vtkSetMacro(EstimateError, bool);
   vtkGetMacro(EstimateError, bool);
   vtkBooleanMacro(EstimateError, bool);
   ///@}
 
   ///@{
-  /// Whether to leave out what the scene does not need. Default on; off computes everything, for comparison: the same light,
-  /// later.
+  /// Whether to leave out what the scene does not need. Default on; off computes everything, for comparison: the same
+  /// light, later.
   vtkSetMacro(LeaveOut, bool);
   vtkGetMacro(LeaveOut, bool);
   vtkBooleanMacro(LeaveOut, bool);
@@ -223,10 +227,11 @@ public:
   ///@}
 
   ///@{
-  /// What came of the last update: scattering orders done, estimated relative error of fluence left by those that were not
-  /// done, estimated relative error of fluence altogether (0 without EstimateError; NaN, not known, after one order), relative error of the energy balance, what the
-  /// directions carry of the power that even light brings through a face, over the exact value (0.9875 with 25 directions per face: light
-  /// that enters from faces and sky is off by as much), seconds, the device's name, and what the scene did not need, one a line.
+  /// What came of the last update: scattering orders done, estimated relative error of fluence left by those that were
+  /// not done, estimated relative error of fluence altogether (0 without EstimateError; NaN, not known, after one
+  /// order), relative error of the energy balance, what the directions carry of the power that even light brings
+  /// through a face, over the exact value (0.9875 with 25 directions per face: light that enters from faces and sky is
+  /// off by as much), seconds, the device's name, and what the scene did not need, one a line.
   vtkGetMacro(Orders, int);
   vtkGetMacro(Residual, double);
   vtkGetMacro(EstimatedError, double);

@@ -1,8 +1,8 @@
 #include "vtkLitMediumAlgorithm.h"
 
-#include "Lights/Lights.h"
 #include "Common/LightTransportData.h"
 #include "Common/WholeImage.h"
+#include "Lights/Lights.h"
 
 #include "vtkImageData.h"
 #include "vtkInformation.h"

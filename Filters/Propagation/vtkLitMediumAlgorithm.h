@@ -14,18 +14,18 @@ struct Illumination;
  * @class vtkLitMediumAlgorithm
  * @brief superclass of the filters that take a medium and what shines on it
  *
- * It has their input ports and how the environment stands, whatever they make of them; vtkLitImageAlgorithm is for those that
- * make an image on an OpenCL device.
+ * It has their input ports and how the environment stands, whatever they make of them; vtkLitImageAlgorithm is for
+ * those that make an image on an OpenCL device.
  *
  * Input 0, the medium: vtkImageData; see the subclass for its arrays.
  * Input 1, optional: lights as vtkLightRig makes them, vtkPolyData.
- * Input 2, optional: the environment, vtkImageData in latitude-longitude layout, point array `radiance` (1 or 3 components,
- * W/(length^2 sr)), as vtkEnvironmentReader makes it.
+ * Input 2, optional: the environment, vtkImageData in latitude-longitude layout, point array `radiance` (1 or 3
+ * components, W/(length^2 sr)), as vtkEnvironmentReader makes it.
  *
  * Cells of the medium that are hidden by `vtkGhostType` are empty, hidden pixels of the environment black.
  *
- * Light crosses the borders of pieces. In a parallel pipeline every rank therefore asks for all of each input and works on
- * the whole; RequestData of a subclass hands on the piece it was asked for.
+ * Light crosses the borders of pieces. In a parallel pipeline every rank therefore asks for all of each input and works
+ * on the whole; RequestData of a subclass hands on the piece it was asked for.
  *
  * A subclass says the type of its outputs and implements RequestData, and reads there the lights and the environment by
  * ReadIllumination.

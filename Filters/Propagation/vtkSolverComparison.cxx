@@ -1,11 +1,11 @@
 #include "vtkSolverComparison.h"
 
-#include "Comparison/SolverComparison.h"
-#include "Device/Clock.h"
 #include "Common/GhostFlags.h"
 #include "Common/LightTransportData.h"
-#include "Photons/RefractiveInput.h"
 #include "Common/WholeImage.h"
+#include "Comparison/SolverComparison.h"
+#include "Device/Clock.h"
+#include "Photons/RefractiveInput.h"
 
 #include "vtkDataObject.h"
 #include "vtkDoubleArray.h"

@@ -20,46 +20,48 @@ struct ComparisonSettings;
  * @class vtkSolverComparison
  * @brief error against run time: which solver at which setting is best for a scene
  *
- * Runs the chosen methods at several settings each on one scene, and compares their light with a reference: that of input 3, or
- * a converged run of the best method.
+ * Runs the chosen methods at several settings each on one scene, and compares their light with a reference: that of
+ * input 3, or a converged run of the best method.
  *
- * Input 0, the medium: vtkImageData as vtkLightPropagationMaps and vtkPhotonMarcher read it: cell arrays `sigma_a`, `sigma_s` (1
- * or 3 components, 1/length), optionally `emission` (W/(length^3 sr)), `ior` and `octree_level` (photons only), or those chosen
- * by SetInputArrayToProcess 0, 1, 2 and 3, and field data `g`.
- * Input 1, optional: lights as vtkLightRig makes them. Input 2, optional: the environment, as vtkEnvironmentReader makes it.
- * Input 3, optional: the reference, vtkImageData of the same box, its voxels as large as the medium's or a whole number of
- * times smaller or larger, with cell array `fluence`, or `fluence_direct` for photons, or both (W/length^2; as many components
- * as the light has). Where it is NaN nothing is compared. Light and reference are compared on the coarser grid of both, by voxel
- * means; light of a coarsened medium is taken to be constant in its voxels.
+ * Input 0, the medium: vtkImageData as vtkLightPropagationMaps and vtkPhotonMarcher read it: cell arrays `sigma_a`,
+ * `sigma_s` (1 or 3 components, 1/length), optionally `emission` (W/(length^3 sr)), `ior` and `octree_level` (photons
+ * only), or those chosen by SetInputArrayToProcess 0, 1, 2 and 3, and field data `g`.
+ * Input 1, optional: lights as vtkLightRig makes them. Input 2, optional: the environment, as vtkEnvironmentReader
+ * makes it.
+ * Input 3, optional: the reference, vtkImageData of the same box, its voxels as large as the medium's or a whole number
+ * of times smaller or larger, with cell array `fluence`, or `fluence_direct` for photons, or both (W/length^2; as many
+ * components as the light has). Where it is NaN nothing is compared. Light and reference are compared on the coarser
+ * grid of both, by voxel means; light of a coarsened medium is taken to be constant in its voxels.
  *
  * Output 0: vtkTable `error_against_time`, a row a method and setting:
  *
- * | column            | unit | meaning                                                                                       |
- * |-------------------|------|-----------------------------------------------------------------------------------------------|
- * | `method`          |      | its name                                                                                      |
- * | `setting`         |      | in words                                                                                      |
- * | `quantity`        |      | what is compared: `fluence`, or `fluence_direct` for photons, which do not follow scattered light |
- * | `grid`            |      | voxels, as 64x64x64                                                                           |
- * | `seconds`         | s    | median of Repeats, from arrays to arrays, kernels compiled                                    |
- * | `peak_bytes`      | byte | most memory that was taken on the device at one time; NaN of a method on the host            |
- * | `error_l2`        | 1    | root of the sum of squared differences over voxels and channels, over that of the reference   |
- * | `error_max`       | 1    | largest difference in a voxel, over the largest fluence of the reference                      |
- * | `error_relative`  | 1    | root of the mean square of voxels' own relative errors, where the reference is above 0          |
- * | `balance`         | 1    | relative error of the energy balance                                                          |
- * | `iterations`      | 1    | scattering orders or sweeps; 1 for photons                                                    |
- * | `estimated_error` | 1    | of `error_l2`, by the solver itself, without the reference (if EstimateError); NaN where it is not known: after one order, which does not tell how fast orders shrink, and of methods that cannot |
- * | `face_power_out`  | W    | 6 components: through -x, +x, -y, +y, -z, +z, channels summed                                  |
- * | `power_in`        | W    | entered and emitted, channels summed                                                          |
- * | `pareto`          | 1    | 1 where no other row of the same quantity is both faster and better                           |
+ * | column | unit | meaning |
+ * |---|---|---|
+ * | `method` |  | its name |
+ * | `setting` |  | in words |
+ * | `quantity` |  | what is compared: `fluence`, or `fluence_direct` for photons, which do not follow scattered light |
+ * | `grid` |  | voxels, as 64x64x64 |
+ * | `seconds` | s | median of Repeats, from arrays to arrays, kernels compiled |
+ * | `peak_bytes` | byte | most memory that was taken on the device at one time; NaN of a method on the host |
+ * | `error_l2` | 1 | root of the sum of squared differences over voxels and channels, over that of the reference |
+ * | `error_max` | 1 | largest difference in a voxel, over the largest fluence of the reference |
+ * | `error_relative` | 1 | root of the mean square of voxels' own relative errors, where the reference is above 0 |
+ * | `balance` | 1 | relative error of the energy balance |
+ * | `iterations` | 1 | scattering orders or sweeps; 1 for photons |
+ * | `estimated_error` | 1 | of `error_l2`, by the solver itself (if EstimateError); NaN where it is not known |
+ * | `face_power_out` | W | 6 components: through -x, +x, -y, +y, -z, +z, channels summed |
+ * | `power_in` | W | entered and emitted, channels summed |
+ * | `pareto` | 1 | 1 where no other row of the same quantity is both faster and better |
  *
  * and field data `reference` (what it is), `left_out` (what was not compared, and why) and `device`.
  *
- * Output 1: the reference, vtkImageData with cell arrays `fluence` and `fluence_direct`, those that are known: to look at, or to
- * connect as input 3 of the next comparison of the same scene.
+ * Output 1: the reference, vtkImageData with cell arrays `fluence` and `fluence_direct`, those that are known: to look
+ * at, or to connect as input 3 of the next comparison of the same scene.
  *
- * The settings that are tried: of propagation, all Directions on all Coarsenings of the grid (those that do not divide it are left
- * out); MapResolutions above 1 where directions are 25 or more; limited Orders with the number of Directions nearest to 25. Of photons,
- * all PhotonCounts by Hammersley's sampler, and with AllSamplers the largest but one by the others.
+ * The settings that are tried: of propagation, all Directions on all Coarsenings of the grid (those that do not divide
+ * it are left out); MapResolutions above 1 where directions are 25 or more; limited Orders with the number of
+ * Directions nearest to 25. Of photons, all PhotonCounts by Hammersley's sampler, and with AllSamplers the largest but
+ * one by the others.
  *
  * In a parallel pipeline every rank asks for all; the outputs are on the first.
  *
@@ -87,9 +89,9 @@ public:
   ///@}
 
   ///@{
-  /// Methods: light propagation maps as they are by default (default on); with a constant source and no acceleration (on); as
-  /// published, on the device (on), and one ray after the other (off: slow); photons with reconstruction (on), with an importance
-  /// map (off), and as published (off).
+  /// Methods: light propagation maps as they are by default (default on); with a constant source and no acceleration
+  /// (on); as published, on the device (on), and one ray after the other (off: slow); photons with reconstruction (on),
+  /// with an importance map (off), and as published (off).
   vtkSetMacro(LightPropagationMaps, bool);
   vtkGetMacro(LightPropagationMaps, bool);
   vtkBooleanMacro(LightPropagationMaps, bool);
@@ -153,14 +155,15 @@ public:
   ///@}
 
   ///@{
-  /// Runs whose median is the time, after one that does not count; fewer where TimeBudget does not allow them. Default 3, valid [1, 100].
+  /// Runs whose median is the time, after one that does not count; fewer where TimeBudget does not allow them. Default
+  /// 3, valid [1, 100].
   tyndallSetRangeMacro(Repeats, int, 1, 100);
   vtkGetMacro(Repeats, int);
   ///@}
 
   ///@{
-  /// Seconds that all may take: half of it for a converged run, the rest shared by the methods. Runs that do not fit are not
-  /// begun, or stopped; field data `left_out` names them. Default 300, valid above 0.
+  /// Seconds that all may take: half of it for a converged run, the rest shared by the methods. Runs that do not fit
+  /// are not begun, or stopped; field data `left_out` names them. Default 300, valid above 0.
   tyndallSetRangeMacro(TimeBudget, double, tyndall::AboveZero, tyndall::AnyHigh);
   vtkGetMacro(TimeBudget, double);
   ///@}
@@ -173,7 +176,8 @@ public:
   ///@}
 
   ///@{
-  /// Whether rays that leave along an axis return on the other side. Default off. Photons do not; they are left out then.
+  /// Whether rays that leave along an axis return on the other side. Default off. Photons do not; they are left out
+  /// then.
   vtkSetMacro(PeriodicX, bool);
   vtkGetMacro(PeriodicX, bool);
   vtkBooleanMacro(PeriodicX, bool);
@@ -186,7 +190,8 @@ public:
   ///@}
 
   ///@{
-  /// Diffuse radiance that enters through the faces -x, +x, -y, +y, -z, +z, W/(length^2 sr). Default 0, valid [0, infinity).
+  /// Diffuse radiance that enters through the faces -x, +x, -y, +y, -z, +z, W/(length^2 sr). Default 0, valid [0,
+  /// infinity).
   tyndallSetRange6Macro(FaceRadiance, double, 0.0, tyndall::LargestFloat);
   vtkGetVector6Macro(FaceRadiance, double);
   ///@}
@@ -199,14 +204,15 @@ public:
   ///@}
 
   ///@{
-  /// Part of the name of the OpenCL device to use, of any case. Default empty: what the variable TYNDALL_DEVICE names, or
-  /// else PoCL's CPU device.
+  /// Part of the name of the OpenCL device to use, of any case. Default empty: what the variable TYNDALL_DEVICE names,
+  /// or else PoCL's CPU device.
   vtkSetStdStringFromCharMacro(Device);
   vtkGetCharFromStdStringMacro(Device);
   ///@}
 
   ///@{
-  /// What came of the last update: what the reference is, seconds, the device's name, and what was not compared, one a line.
+  /// What came of the last update: what the reference is, seconds, the device's name, and what was not compared, one a
+  /// line.
   vtkGetCharFromStdStringMacro(ReferenceText);
   vtkGetMacro(Seconds, double);
   vtkGetCharFromStdStringMacro(DeviceName);

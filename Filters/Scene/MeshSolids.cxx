@@ -81,7 +81,8 @@ private:
   std::vector<int> NewNumbers;
 };
 
-/// Says what is wrong with an array of numbers of materials, in the mesh's own cells. Those of vertices and lines do not count.
+/// Says what is wrong with an array of numbers of materials, in the mesh's own cells. Those of vertices and lines do
+/// not count.
 void CheckNumbers(vtkPolyData* mesh, const std::string& name, const std::string& array)
 {
   vtkAbstractArray* const found = mesh->GetCellData()->GetAbstractArray(array.c_str());

@@ -211,23 +211,21 @@ void vtkLightRig::AddRectangleLight(double x, double y, double z, double dx, dou
 
 void vtkLightRig::AddDirectionalLightNumber(double number)
 {
-  this->Added->Take(DIRECTIONAL, number,
-    [&](const double* n) { this->AddDirectionalLight(n[0], n[1], n[2], n[3], n[4], n[5]); });
+  this->Added->Take(
+    DIRECTIONAL, number, [&](const double* n) { this->AddDirectionalLight(n[0], n[1], n[2], n[3], n[4], n[5]); });
   this->Modified();
 }
 
 void vtkLightRig::AddPointLightNumber(double number)
 {
-  this->Added->Take(
-    POINT, number, [&](const double* n) { this->AddPointLight(n[0], n[1], n[2], n[3], n[4], n[5]); });
+  this->Added->Take(POINT, number, [&](const double* n) { this->AddPointLight(n[0], n[1], n[2], n[3], n[4], n[5]); });
   this->Modified();
 }
 
 void vtkLightRig::AddSpotLightNumber(double number)
 {
-  this->Added->Take(SPOT, number, [&](const double* n) {
-    this->AddSpotLight(n[0], n[1], n[2], n[3], n[4], n[5], n[6], n[7], n[8], n[9]);
-  });
+  this->Added->Take(SPOT, number,
+    [&](const double* n) { this->AddSpotLight(n[0], n[1], n[2], n[3], n[4], n[5], n[6], n[7], n[8], n[9]); });
   this->Modified();
 }
 

@@ -21,8 +21,8 @@
  * | `size`       | double x 2 | edges of a rectangle, length; else 0                                               |
  * | `angle`      | double     | full opening angle of a spot, degrees; else 0                                      |
  *
- * The lights come in this order: the sun, directional, point, spot and rectangle lights, each kind in the order in which
- * it was added. Untouched, the rig is one white sun of 1 W/length^2, halfway up.
+ * The lights come in this order: the sun, directional, point, spot and rectangle lights, each kind in the order in
+ * which it was added. Untouched, the rig is one white sun of 1 W/length^2, halfway up.
  *
  * A rectangle shines to one side, that of `direction`. Its first edge is horizontal (across z and `direction`; along x
  * where `direction` is vertical), its second one is across the first and `direction`.

@@ -1,10 +1,10 @@
 #include "vtkMeshVoxelizer.h"
 
-#include "Device/Device.h"
 #include "Common/LightTransportData.h"
-#include "Scene/MeshSolids.h"
-#include "Refraction/Index/RefractiveMedium.h"
 #include "Common/WholeImage.h"
+#include "Device/Device.h"
+#include "Refraction/Index/RefractiveMedium.h"
+#include "Scene/MeshSolids.h"
 
 #include "vtkCellData.h"
 #include "vtkImageData.h"
@@ -35,7 +35,8 @@ Rgb RgbOf(const double values[3])
   return { values[0], values[1], values[2] };
 }
 
-/// Name of the cell array with the numbers of materials; "(by name)" is what ParaView's panel sends for the default one.
+/// Name of the cell array with the numbers of materials; "(by name)" is what ParaView's panel sends for the default
+/// one.
 /// @throws InvalidInput where another one was chosen that no mesh has
 std::string NumbersArray(vtkMeshVoxelizer* filter, const std::vector<vtkPolyData*>& meshes)
 {

@@ -12,39 +12,40 @@
  * @class vtkMeshVoxelizer
  * @brief turns closed meshes into a medium of voxels, for light that is bent by its refractive index
  *
- * Input, repeatable: vtkPolyData, each closed; polygons and strips are triangulated, points at the same place count as one.
- * Where meshes overlap, the later input is there.
+ * Input, repeatable: vtkPolyData, each closed; polygons and strips are triangulated, points at the same place count as
+ * one. Where meshes overlap, the later input is there.
  *
- * Optional cell array `material_id` (whole numbers), or that chosen by SetInputArrayToProcess(0, ...): the material of each
- * cell. The cells of each number must be closed by themselves; where they overlap, the higher number is there. Without it the
- * number of the input, from 0 on, is its material; one that was chosen must be there in one input at least. Materials are added by AddMaterial; those that are not there have the
- * Inside properties.
+ * Optional cell array `material_id` (whole numbers), or that chosen by SetInputArrayToProcess(0, ...): the material of
+ * each cell. The cells of each number must be closed by themselves; where they overlap, the higher number is there.
+ * Without it the number of the input, from 0 on, is its material; one that was chosen must be there in one input at
+ * least. Materials are added by AddMaterial; those that are not there have the Inside properties.
  *
  * Output: vtkImageData with the cell arrays
  *
- * | array          | components                  | unit     | meaning                                            |
- * |----------------|-----------------------------|----------|----------------------------------------------------|
- * | `occupancy`    | 1                           | 1        | part of the voxel inside any mesh, the active scalars |
- * | `ior`          | 1                           | 1        | refractive index n, smoothed                          |
- * | `ior_gradient` | 3                           | 1/length | its gradient by central differences; not where n is constant |
- * | `sigma_a`      | 1, or 3 where it has colour | 1/length | absorption coefficient                             |
- * | `sigma_s`      | 1, or 3 where it has colour | 1/length | scattering coefficient                             |
+ * | array | components | unit | meaning |
+ * |---|---|---|---|
+ * | `occupancy` | 1 | 1 | part of the voxel inside any mesh, the active scalars |
+ * | `ior` | 1 | 1 | refractive index n, smoothed |
+ * | `ior_gradient` | 3 | 1/length | its gradient by central differences; not where n is constant |
+ * | `sigma_a` | 1, or 3 where it has colour | 1/length | absorption coefficient |
+ * | `sigma_s` | 1, or 3 where it has colour | 1/length | scattering coefficient |
  *
  * and the field data `g` (mean cosine of the phase function), `left_out` (what the scene did not need) and `device`.
  * Lengths are in the dataset's own unit.
  *
- * A voxel is divided into SupersamplingFactor^3 fine voxels, whose centres are inside a mesh or not, decided in whole numbers:
- * edges and corners count once, a closed mesh never leaks, and the result is the same to the last bit on every run. Where
- * exactly the surface lies between the centres is then added in fractions of fine voxels. A voxel's coefficients and index are
- * the means of its materials. The fine grid is there in slabs of a fixed size.
+ * A voxel is divided into SupersamplingFactor^3 fine voxels, whose centres are inside a mesh or not, decided in whole
+ * numbers:
+ * edges and corners count once, a closed mesh never leaks, and the result is the same to the last bit on every run.
+ * Where exactly the surface lies between the centres is then added in fractions of fine voxels. A voxel's coefficients
+ * and index are the means of its materials. The fine grid is there in slabs of a fixed size.
  *
- * There is one g: where materials that scatter have different ones, it is their mean weighed by sigma_s, and each sigma_s is
- * scaled such that sigma_s (1 - g) stays what it is; `left_out` says so.
+ * There is one g: where materials that scatter have different ones, it is their mean weighed by sigma_s, and each
+ * sigma_s is scaled such that sigma_s (1 - g) stays what it is; `left_out` says so.
  *
- * An open or empty mesh is an error that names the number of boundary edges (edges of an odd number of triangles) and the
- * first; so is one without area. Meshes that intersect themselves, are inverted, have triangles that disagree about which
- * side is outside, or degenerate ones give a warning that says how many and where; inside is what is enclosed an odd number
- * of times.
+ * An open or empty mesh is an error that names the number of boundary edges (edges of an odd number of triangles) and
+ * the first; so is one without area. Meshes that intersect themselves, are inverted, have triangles that disagree about
+ * which side is outside, or degenerate ones give a warning that says how many and where; inside is what is enclosed an
+ * odd number of times.
  *
  * In a parallel pipeline every rank voxelises the whole box from all pieces of the meshes and keeps its part.
  *
@@ -67,15 +68,15 @@ public:
   ///@}
 
   ///@{
-  /// The box, (xmin, xmax, ymin, ymax, zmin, zmax), length. Default all 0: a box of cubic voxels about the meshes, in its
-  /// middle, as close as Margin allows.
+  /// The box, (xmin, xmax, ymin, ymax, zmin, zmax), length. Default all 0: a box of cubic voxels about the meshes, in
+  /// its middle, as close as Margin allows.
   tyndallSetRange6Macro(ModelBounds, double, tyndall::AnyLow, tyndall::AnyHigh);
   vtkGetVector6Macro(ModelBounds, double);
   ///@}
 
   ///@{
-  /// Room on each side of the meshes where ModelBounds are 0, as a part of the longest edge of their bounds; there is always as
-  /// much as the filter reaches. Default 0.125, valid [0, infinity).
+  /// Room on each side of the meshes where ModelBounds are 0, as a part of the longest edge of their bounds; there is
+  /// always as much as the filter reaches. Default 0.125, valid [0, infinity).
   tyndallSetRangeMacro(Margin, double, 0.0, tyndall::AnyHigh);
   vtkGetMacro(Margin, double);
   ///@}
@@ -89,9 +90,9 @@ public:
   ///@}
 
   ///@{
-  /// Scattering coefficients sigma_s, red, green, blue, 1/length, valid [0, infinity). Default (0, 0, 0) inside. Outside
-  /// (-1, -1, -1): where all three are below 0, the scattering that suits the box, such that half an optical length is scattered
-  /// along its longest edge; see UsedOutsideScattering.
+  /// Scattering coefficients sigma_s, red, green, blue, 1/length, valid [0, infinity). Default (0, 0, 0) inside.
+  /// Outside (-1, -1, -1): where all three are below 0, the scattering that suits the box, such that half an optical
+  /// length is scattered along its longest edge; see UsedOutsideScattering.
   tyndallSetRange3Macro(InsideScattering, double, 0.0, tyndall::LargestFloat);
   vtkGetVector3Macro(InsideScattering, double);
   tyndallSetRange3Macro(OutsideScattering, double, tyndall::AnyLow, tyndall::LargestFloat);
@@ -115,9 +116,9 @@ public:
   ///@}
 
   ///@{
-  /// A material for the cells of that number instead of the Inside properties: its index n, sigma_s and sigma_a (red, green,
-  /// blue, 1/length), and mean cosine g. Of several with the same number the last one counts. AddMaterialNumber takes the same
-  /// nine one by one. Materials that are not whole or not valid are an error of the update, used or not.
+  /// A material for the cells of that number instead of the Inside properties: its index n, sigma_s and sigma_a (red,
+  /// green, blue, 1/length), and mean cosine g. Of several with the same number the last one counts. AddMaterialNumber
+  /// takes the same nine one by one. Materials that are not whole or not valid are an error of the update, used or not.
   void AddMaterial(double number, double n, double scatteringR, double scatteringG, double scatteringB,
     double absorptionR, double absorptionG, double absorptionB, double g);
   void AddMaterialNumber(double number);
@@ -126,8 +127,8 @@ public:
   ///@}
 
   ///@{
-  /// Gradient noise on the index inside: n becomes n + IndexNoise times a smooth random number in [-1, 1]. Default 0, valid
-  /// from 0 to less than the index.
+  /// Gradient noise on the index inside: n becomes n + IndexNoise times a smooth random number in [-1, 1]. Default 0,
+  /// valid from 0 to less than the index.
   tyndallSetRangeMacro(IndexNoise, double, 0.0, tyndall::AnyHigh);
   vtkGetMacro(IndexNoise, double);
   ///@}
@@ -151,29 +152,30 @@ public:
   ///@}
 
   ///@{
-  /// Fine voxels an edge of a voxel. Occupancy has no steps: where the surface lies between their centres counts too. The
-  /// factor sets how well it follows edges and bends. Default 4, valid [1, 16].
+  /// Fine voxels an edge of a voxel. Occupancy has no steps: where the surface lies between their centres counts too.
+  /// The factor sets how well it follows edges and bends. Default 4, valid [1, 16].
   tyndallSetRangeMacro(SupersamplingFactor, int, 1, 16);
   vtkGetMacro(SupersamplingFactor, int);
   ///@}
 
   ///@{
-  /// Width of the Gaussian that smooths n, voxels; its standard deviation is a sixth of that. Default 9, valid odd numbers
-  /// from 1 (not smoothed) to 65.
+  /// Width of the Gaussian that smooths n, voxels; its standard deviation is a sixth of that. Default 9, valid odd
+  /// numbers from 1 (not smoothed) to 65.
   tyndallSetRangeMacro(FilterSize, int, 1, 65);
   vtkGetMacro(FilterSize, int);
   ///@}
 
   ///@{
-  /// Part of the name of the OpenCL device to use, of any case. Default empty: what the variable TYNDALL_DEVICE names, or
-  /// else PoCL's CPU device.
+  /// Part of the name of the OpenCL device to use, of any case. Default empty: what the variable TYNDALL_DEVICE names,
+  /// or else PoCL's CPU device.
   vtkSetStdStringFromCharMacro(Device);
   vtkGetCharFromStdStringMacro(Device);
   ///@}
 
   ///@{
-  /// What came of the last update: the volume inside meshes (length^3; with its discretisation), sigma_s outside (red, green,
-  /// blue, 1/length), the seconds that it took, the name of the device, and what the scene did not need, one a line.
+  /// What came of the last update: the volume inside meshes (length^3; with its discretisation), sigma_s outside (red,
+  /// green, blue, 1/length), the seconds that it took, the name of the device, and what the scene did not need, one a
+  /// line.
   vtkGetMacro(OccupiedVolume, double);
   vtkGetVector3Macro(UsedOutsideScattering, double);
   vtkGetMacro(Seconds, double);

@@ -29,8 +29,8 @@
  *     emission = rho EmissionScale EmissionColor
  *
  * A preset gives sigma_s, sigma_a (1/mm at rho = 1) and g of a real medium instead of Albedo and MeanCosine;
- * ExtinctionScale then multiplies them, 1 being the medium as it was measured, and MillimetresPerUnit says how long a unit
- * of the dataset is.
+ * ExtinctionScale then multiplies them, 1 being the medium as it was measured, and MillimetresPerUnit says how long a
+ * unit of the dataset is.
  *
  * Cells that are hidden by `vtkGhostType` are empty.
  *
@@ -80,8 +80,8 @@ public:
   ///@}
 
   ///@{
-  /// Density with relative density 1; what lies above it is denser in proportion. Default 1, valid from MinimumDensity on;
-  /// if equal to it, everything above it has relative density 1.
+  /// Density with relative density 1; what lies above it is denser in proportion. Default 1, valid from MinimumDensity
+  /// on; if equal to it, everything above it has relative density 1.
   tyndallSetRangeMacro(MaximumDensity, double, tyndall::AnyLow, tyndall::AnyHigh);
   vtkGetMacro(MaximumDensity, double);
   ///@}
@@ -101,8 +101,8 @@ public:
   ///@}
 
   ///@{
-  /// Mean cosine g of the angle by which light is scattered (Henyey-Greenstein): 0 isotropic, near 1 forward. Default 0,
-  /// valid (-1, 1). Not used with a preset.
+  /// Mean cosine g of the angle by which light is scattered (Henyey-Greenstein): 0 isotropic, near 1 forward. Default
+  /// 0, valid (-1, 1). Not used with a preset.
   tyndallSetRangeMacro(MeanCosine, double, -1.0, 1.0);
   vtkGetMacro(MeanCosine, double);
   ///@}

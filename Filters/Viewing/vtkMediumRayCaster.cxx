@@ -1,13 +1,13 @@
 #include "vtkMediumRayCaster.h"
 
-#include "Device/Device.h"
 #include "Common/FiniteValues.h"
 #include "Common/InputsKey.h"
 #include "Common/LightTransportData.h"
+#include "Common/WholeImage.h"
+#include "Device/Device.h"
 #include "Medium/BoxFaces.h"
 #include "Viewing/MediumRayCaster.h"
 #include "Viewing/ToneMapping.h"
-#include "Common/WholeImage.h"
 
 #include "vtkCellData.h"
 #include "vtkDataArray.h"

@@ -19,59 +19,60 @@ struct ViewSettings;
  * @brief a picture of a medium whose light is known
  *
  * Marches a ray through every pixel of the picture, and gathers along it the light that the medium scatters towards the
- * camera and the light it emits, each dimmed by the medium before it; behind the medium the background is seen through it.
- * The source is interpolated linearly between voxel centres. Where the refractive index varies, rays bend as
- * d/ds(n dx/ds) = grad n says, surfaces of refractive objects may mirror, and the background is looked up along the direction
- * in which a ray leaves. Where it is constant none of that is computed.
+ * camera and the light it emits, each dimmed by the medium before it; behind the medium the background is seen through
+ * it. The source is interpolated linearly between voxel centres. Where the refractive index varies, rays bend as
+ * d/ds(n dx/ds) = grad n says, surfaces of refractive objects may mirror, and the background is looked up along the
+ * direction in which a ray leaves. Where it is constant none of that is computed.
  *
  * Input 0, the medium with its light: vtkImageData with cell arrays (point arrays are averaged to cells)
  *
- * | array            | components | unit             | meaning                                          |
- * |------------------|------------|------------------|--------------------------------------------------|
- * | `sigma_a`        | 1 or 3     | 1/length         | absorption coefficient                           |
- * | `sigma_s`        | 1 or 3     | 1/length         | scattering coefficient                           |
- * | `emission`       | 1 or 3     | W/(length^3 sr)  | emitted radiance per unit length; optional       |
- * | `fluence`        | 1 or 3     | W/length^2       | light, as every solver writes it; optional       |
- * | `fluence_direct` | 1 or 3     | W/length^2       | its unscattered part; needed only to separate it |
- * | `ior`            | 1          | 1                | refractive index n, above 0; optional            |
- * | `mean_direction` | 3          | 1                | power-weighted mean direction of the light, its length the anisotropy, as vtkPhotonMarcher writes it; optional |
+ * | array | components | unit | meaning |
+ * |---|---|---|---|
+ * | `sigma_a` | 1 or 3 | 1/length | absorption coefficient |
+ * | `sigma_s` | 1 or 3 | 1/length | scattering coefficient |
+ * | `emission` | 1 or 3 | W/(length^3 sr) | emitted radiance per unit length; optional |
+ * | `fluence` | 1 or 3 | W/length^2 | light, as every solver writes it; optional |
+ * | `fluence_direct` | 1 or 3 | W/length^2 | its unscattered part; needed only to separate it |
+ * | `ior` | 1 | 1 | refractive index n, above 0; optional |
+ * | `mean_direction` | 3 | 1 | power-weighted mean direction, its length the anisotropy; optional |
  *
  * or those chosen by SetInputArrayToProcess 0 to 6, and field data `g` (default 0) and, optional, `surface_radiance`,
  * as vtkLightPropagationMaps writes it where voxels at the faces of the box are thick: rays that come in there show it,
  * instead of the light at the voxels' centres (not with ShadowRays and lights, SingleScatteringOnly, `mean_direction`,
  * a table, or where rays bend). It belongs to the array `fluence` beside it; where another is chosen it is not used.
  * Input 1, optional: lights as vtkLightRig makes them, for shadow rays.
- * Input 2, optional: the environment behind the medium, vtkImageData in latitude-longitude layout, point array `radiance`.
+ * Input 2, optional: the environment behind the medium, vtkImageData in latitude-longitude layout, point array
+ * `radiance`.
  *
  * What is scattered towards the camera, of the light in a voxel:
  *
- * |                     | SingleScatteringOnly                                 | else                       |
- * |---------------------|------------------------------------------------------|----------------------------|
- * | without ShadowRays  | `fluence_direct` / 4 pi                              | `fluence` / 4 pi           |
- * | with ShadowRays     | the lights behind the medium, with its phase function | that, and the rest of `fluence` / 4 pi |
+ * |  | SingleScatteringOnly | else |
+ * |---|---|---|
+ * | without ShadowRays | `fluence_direct` / 4 pi | `fluence` / 4 pi |
+ * | with ShadowRays | the lights behind the medium, with its phase function | that, and the rest of `fluence` / 4 pi |
  *
- * Where there is `mean_direction` m, what is divided by 4 pi is multiplied by f: 4 pi times PhaseFunction of mean cosine g |m|,
- * for the angle from m to the direction towards the camera. So light that all travels one way (|m| = 1) is scattered by the
- * medium's phase function, light from everywhere alike (|m| = 0) evenly, and as much on the whole. Without `mean_direction`, with
- * ShadowRays, or where g is 0, f is 1.
+ * Where there is `mean_direction` m, what is divided by 4 pi is multiplied by f: 4 pi times PhaseFunction of mean
+ * cosine g |m|, for the angle from m to the direction towards the camera. So light that all travels one way (|m| = 1)
+ * is scattered by the medium's phase function, light from everywhere alike (|m| = 0) evenly, and as much on the whole.
+ * Without `mean_direction`, with ShadowRays, or where g is 0, f is 1.
  *
  * The rest of `fluence` is what the shadow rays do not show already, so that no light counts twice. Where there is no
  * `fluence` but there are lights, shadow rays are used without being asked for.
  *
  * Output: vtkImageData of ImageSize pixels (x to the right, y upwards), point arrays
  *
- * | array      | type      | unit            | meaning                                                              |
- * |------------|-----------|-----------------|----------------------------------------------------------------------|
- * | `color`    | uint8 x 4 | sRGB            | the picture for a screen, active scalars; opaque if ShowBackground    |
- * | `radiance` | float x 3 | W/(length^2 sr) | what arrives at the camera                                           |
- * | `alpha`    | float     | 1               | 1 - transmittance (mean of the channels)                             |
- * | `depth`    | float     | length          | distance along the view to where transmittance (mean of the channels) falls to 1/2; beyond the whole medium where it does not |
+ * | array | type | unit | meaning |
+ * |---|---|---|---|
+ * | `color` | uint8 x 4 | sRGB | the picture for a screen, active scalars; opaque if ShowBackground |
+ * | `radiance` | float x 3 | W/(length^2 sr) | what arrives at the camera |
+ * | `alpha` | float | 1 | 1 - transmittance (mean of the channels) |
+ * | `depth` | float | length | along the view, to where the channels' mean transmittance falls to 1/2 |
  *
  * and field data `exposure` (what radiance was multiplied by), `left_out` (what the scene did not need), `device`.
  *
- * Medium, light and illumination stay on the device, so that a picture from another camera, of another size, or of other
- * colours on the screen only casts its rays: until an input changes, another one is connected, a setting needs it, the device is
- * another one, or the filter goes. Then their memory is given back.
+ * Medium, light and illumination stay on the device, so that a picture from another camera, of another size, or of
+ * other colours on the screen only casts its rays: until an input changes, another one is connected, a setting needs
+ * it, the device is another one, or the filter goes. Then their memory is given back.
  *
  * While CameraPosition and CameraFocalPoint are equal, as they are untouched, the camera frames the whole medium, from
  * above, z upwards.
@@ -80,10 +81,10 @@ struct ViewSettings;
  *
  * @sa vtkLightPropagationMaps vtkPhotonMarcher vtkLightRig vtkEnvironmentReader
  * @par Thanks
- * M. Pfeuti, Real-time Rendering of Refractive Objects in Participating Media, 2009, section 3.1.6 (bent rays). P. Blasi,
- * B. Le Saec, C. Schlick: A Rendering Algorithm for Discrete Volume Density Objects, Computer Graphics Forum 12 (1993).
- * Tone mapping: K. Narkowicz, ACES Filmic Tone Mapping Curve, 2015; E. Reinhard et al., Photographic Tone Reproduction for
- * Digital Images, SIGGRAPH 2002 (exposure).
+ * M. Pfeuti, Real-time Rendering of Refractive Objects in Participating Media, 2009, section 3.1.6 (bent rays). P.
+ * Blasi, B. Le Saec, C. Schlick: A Rendering Algorithm for Discrete Volume Density Objects, Computer Graphics Forum 12
+ * (1993). Tone mapping: K. Narkowicz, ACES Filmic Tone Mapping Curve, 2015; E. Reinhard et al., Photographic Tone
+ * Reproduction for Digital Images, SIGGRAPH 2002 (exposure).
  */
 class TYNDALL_EXPORT vtkMediumRayCaster : public vtkLitImageAlgorithm
 {
@@ -139,8 +140,8 @@ public:
   ///@}
 
   ///@{
-  /// Whether rays are parallel, and then half the picture's height, length. Default off; 1, valid (0, infinity). A camera
-  /// that frames the medium finds the height itself.
+  /// Whether rays are parallel, and then half the picture's height, length. Default off; 1, valid (0, infinity). A
+  /// camera that frames the medium finds the height itself.
   vtkSetMacro(CameraParallelProjection, bool);
   vtkGetMacro(CameraParallelProjection, bool);
   vtkBooleanMacro(CameraParallelProjection, bool);
@@ -162,9 +163,9 @@ public:
   ///@}
 
   ///@{
-  /// Whether to follow the lights' direct light by shadow rays, scattered by the medium's phase function. Default off: it is
-  /// in `fluence`, scattered evenly or as `mean_direction` says. Where no lamp and no sun shines the picture is the
-  /// same and no time goes into it; `left_out` says so.
+  /// Whether to follow the lights' direct light by shadow rays, scattered by the medium's phase function. Default off:
+  /// it is in `fluence`, scattered evenly or as `mean_direction` says. Where no lamp and no sun shines the picture is
+  /// the same and no time goes into it; `left_out` says so.
   vtkSetMacro(ShadowRays, bool);
   vtkGetMacro(ShadowRays, bool);
   vtkBooleanMacro(ShadowRays, bool);
@@ -197,8 +198,8 @@ public:
   ///@}
 
   ///@{
-  /// What the surface of refractive objects mirrors of a ray that meets it from the side of the smaller index: NONE (default),
-  /// FRESNEL or FIXED. Without an `ior` that varies there is no surface.
+  /// What the surface of refractive objects mirrors of a ray that meets it from the side of the smaller index: NONE
+  /// (default), FRESNEL or FIXED. Without an `ior` that varies there is no surface.
   tyndallSetRangeMacro(SurfaceReflection, int, NONE, FIXED);
   vtkGetMacro(SurfaceReflection, int);
   ///@}
@@ -222,8 +223,8 @@ public:
   ///@}
 
   ///@{
-  /// Diffuse reflectance of the table, red, green, blue, lit by the light in the voxels on it. Default (0.6, 0.6, 0.6), valid
-  /// [0, 1].
+  /// Diffuse reflectance of the table, red, green, blue, lit by the light in the voxels on it. Default (0.6, 0.6, 0.6),
+  /// valid [0, 1].
   tyndallSetRange3Macro(TableColor, double, 0.0, 1.0);
   vtkGetVector3Macro(TableColor, double);
   ///@}
@@ -235,8 +236,8 @@ public:
   ///@}
 
   ///@{
-  /// Whether to leave out what the scene does not need. Default on; off computes everything, for comparison: the same picture,
-  /// later.
+  /// Whether to leave out what the scene does not need. Default on; off computes everything, for comparison: the same
+  /// picture, later.
   vtkSetMacro(LeaveOut, bool);
   vtkGetMacro(LeaveOut, bool);
   vtkBooleanMacro(LeaveOut, bool);
@@ -256,8 +257,8 @@ public:
   ///@}
 
   ///@{
-  /// What came of the last update: seconds, the exposure used, whether medium and light were on the device from an earlier
-  /// picture, the device's name, and what the scene did not need, one a line.
+  /// What came of the last update: seconds, the exposure used, whether medium and light were on the device from an
+  /// earlier picture, the device's name, and what the scene did not need, one a line.
   vtkGetMacro(Seconds, double);
   vtkGetMacro(UsedExposure, double);
   vtkGetMacro(SceneKept, bool);

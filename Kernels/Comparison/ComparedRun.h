@@ -29,8 +29,9 @@ const char* NameOf(ComparedMethod method);
 /// Whether a method finds unscattered light only, which is compared with `fluence_direct`.
 bool IsDirectOnly(ComparedMethod method);
 
-/// The settings that are tried: of propagation all directions on all grids; finer maps where there are 25 directions or more;
-/// limited orders with the number of directions nearest to 25; of photons all counts by the first sampler, and the largest but one by the others.
+/// The settings that are tried: of propagation all directions on all grids; finer maps where there are 25 directions or
+/// more; limited orders with the number of directions nearest to 25; of photons all counts by the first sampler, and
+/// the largest but one by the others.
 struct ComparedSettings
 {
   std::vector<int> directionsPerFace = { 4, 9, 25, 64, 100 };

@@ -19,7 +19,8 @@ std::optional<Factors> CoarseningBy(int factor, const Grid& grid);
 Grid Coarsened(const Grid& fine, const Factors& factors);
 Grid Refined(const Grid& coarse, const Factors& factors);
 
-/// How many voxels of `fine` make one of `coarse`, the same box to a thousandth of a voxel; nothing where there is no whole number.
+/// How many voxels of `fine` make one of `coarse`, the same box to a thousandth of a voxel; nothing where there is no
+/// whole number.
 std::optional<Factors> FactorsBetween(const Grid& fine, const Grid& coarse);
 
 /// Means over the voxels of the coarse grid. NaN where one of them is.

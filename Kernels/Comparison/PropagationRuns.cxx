@@ -1,7 +1,7 @@
 #include "Comparison/RunKinds.h"
 
-#include "LightPropagation/Conservative/ErrorEstimate.h"
 #include "LightPropagation/Conservative/ConservativePropagation.h"
+#include "LightPropagation/Conservative/ErrorEstimate.h"
 #include "LightPropagation/Published/ParallelPropagation.h"
 #include "LightPropagation/Published/SequentialPropagation.h"
 

@@ -254,8 +254,8 @@ std::vector<Lane> LanesOf(Device& device, const ComparedScene& scene, const Comp
   return lanes;
 }
 
-/// A run of each method in turn, so that what else the machine does falls on all alike, and time that one does not need is left for
-/// the others.
+/// A run of each method in turn, so that what else the machine does falls on all alike, and time that one does not need
+/// is left for the others.
 void RunInTurns(std::vector<Lane>& lanes, Runner& runner, double end, const Monitor& monitor)
 {
   std::size_t count = 0, done = 0;

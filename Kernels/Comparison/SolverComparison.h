@@ -26,8 +26,8 @@ struct ComparisonSettings
     ComparedMethod::Published, ComparedMethod::Photons };
   ComparedSettings tried;
   int repeats = 3; ///< runs that count, after one that compiles; fewer where the budget does not allow them
-  /// Seconds for all: half of them for a reference that is not given, the others shared by the methods. A run that does not fit is
-  /// not begun, or stopped.
+  /// Seconds for all: half of them for a reference that is not given, the others shared by the methods. A run that does
+  /// not fit is not begun, or stopped.
   double timeBudget = 300.0;
   bool estimates = true; ///< let solvers estimate their errors, by a run whose time does not count
 };
@@ -63,19 +63,20 @@ struct Comparison
   std::string device;
 };
 
-/// Sets `pareto`: where no other row that is compared with the same quantity is both at least as fast and at least as good, and one of
-/// both better. Rows without an error have none.
+/// Sets `pareto`: where no other row that is compared with the same quantity is both at least as fast and at least as
+/// good, and one of both better. Rows without an error have none.
 void MarkPareto(std::vector<ComparisonRow>& rows);
 
 struct RelativeErrors
 {
   double l2 = 0.0, max = 0.0, relative = 0.0;
 };
-/// See ComparisonRow. Voxels in which the reference is NaN do not count; NaN where there are none or the reference is dark.
+/// See ComparisonRow. Voxels in which the reference is NaN do not count; NaN where there are none or the reference is
+/// dark.
 RelativeErrors ErrorsOf(const std::vector<float>& light, const std::vector<float>& reference);
 
-/// A converged run of the best method: 256 directions a face, two rays a voxel's edge, tolerance 1e-6, on the doubled grid; less
-/// of it where that would take more than `seconds`. Where light is bent, photons.
+/// A converged run of the best method: 256 directions a face, two rays a voxel's edge, tolerance 1e-6, on the doubled
+/// grid; less of it where that would take more than `seconds`. Where light is bent, photons.
 ReferenceLight ConvergedLight(Device& device, const ComparedScene& scene, const ComparedSettings& settings,
   double seconds, const Monitor& monitor = {});
 

@@ -11,13 +11,13 @@ namespace tyndall
 /// A long computation in parts, so that it can report and be stopped about ten times a second by the device's clock.
 struct Batches
 {
-  std::size_t count = 0;       ///< of what is to be computed
-  std::size_t first = 1;       ///< of it in the first part; how long that takes says how large the next ones are
-  std::size_t whole = 1;       ///< parts are multiples of this
-  double seconds = 0.05;       ///< that a part is to take
-  double growth = 4.0;         ///< of a part over the last one, at most
+  std::size_t count = 0; ///< of what is to be computed
+  std::size_t first = 1; ///< of it in the first part; how long that takes says how large the next ones are
+  std::size_t whole = 1; ///< parts are multiples of this
+  double seconds = 0.05; ///< that a part is to take
+  double growth = 4.0;   ///< of a part over the last one, at most
   std::size_t most = std::numeric_limits<std::size_t>::max(); ///< in a part, however soon the last one was done
-  double from = 0.0, to = 1.0; ///< fractions done that are reported
+  double from = 0.0, to = 1.0;                                ///< fractions done that are reported
 };
 
 /// Queues each part, queue(begin, size), waits for it and reports. @throws Aborted

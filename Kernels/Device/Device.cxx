@@ -269,8 +269,8 @@ namespace
 {
 constexpr std::size_t HugePage = std::size_t(1) << 21;
 
-/// A buffer of a CPU in pages of 2 MB where the system has them to give: marching across a large grid otherwise waits for the
-/// translation of addresses.
+/// A buffer of a CPU in pages of 2 MB where the system has them to give: marching across a large grid otherwise waits
+/// for the translation of addresses.
 cl::Buffer InHugePages(const cl::Context& context, cl_mem_flags flags, std::size_t bytes)
 {
   void* memory = nullptr;

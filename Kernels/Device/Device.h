@@ -17,10 +17,11 @@
 
 namespace tyndall
 {
-/// One OpenCL device: its context, one in-order queue, the programs built for it, and a count of the memory taken on it.
+/// One OpenCL device: its context, one in-order queue, the programs built for it, and a count of the memory taken on
+/// it.
 ///
-/// Safe for several threads at once, each with buffers and kernels of its own: what they queue is done in some order, one
-/// after the other. A thread that waits may wait for the work of others too, and PeakBytes is of all of them.
+/// Safe for several threads at once, each with buffers and kernels of its own: what they queue is done in some order,
+/// one after the other. A thread that waits may wait for the work of others too, and PeakBytes is of all of them.
 class Device
 {
 public:
@@ -34,14 +35,16 @@ public:
   /// given out once.
   static std::vector<std::string> TakeWarnings();
 
-  /// @param cacheFolder  where the platform writes what it compiles, if that is known: looked at for room before it does
+  /// @param cacheFolder  where the platform writes what it compiles, if that is known: looked at for room before it
+  /// does
   Device(const cl::Platform& platform, const cl::Device& device, std::string cacheFolder = {});
 
   const std::string& Name() const { return this->DeviceName; }
   bool IsCpu() const { return this->Cpu; }
   int ComputeUnits() const { return this->Units; }
   int FloatVectorWidth() const { return this->VectorWidth; } ///< 1 on GPUs, 4 to 16 on CPUs
-  /// Not those that the environment variable TYNDALL_WITHOUT names (with blanks between): to try what devices without them get.
+  /// Not those that the environment variable TYNDALL_WITHOUT names (with blanks between): to try what devices without
+  /// them get.
   bool HasExtension(const std::string& name) const;
 
   /// Bytes that buffers on this device may take together. What OpenCL reports, on a CPU at least three quarters of the
@@ -53,8 +56,8 @@ public:
   void ResetPeak() { this->Memory.ResetPeak(); }
 
   /// A kernel of the program that the given sources make one after the other. Programs are kept, so that asking again
-  /// with the same sources and options costs nothing. The kernel is the caller's own: two threads that ask for one get two,
-  /// for OpenCL does not let them set arguments of the same.
+  /// with the same sources and options costs nothing. The kernel is the caller's own: two threads that ask for one get
+  /// two, for OpenCL does not let them set arguments of the same.
   /// @param sources  texts of .cl files (kernel_source::...), in the order they are to be read
   /// @param options  compiler options, e.g. "-DCHANNELS=3"
   /// @throws DeviceError with the build log
@@ -68,8 +71,8 @@ public:
   cl::CommandQueue& Queue() { return this->TheQueue; }
   void Finish();
 
-  /// Note that work of about so many seconds was queued, and wait for all of it once that is a tenth of a second: progress is
-  /// told and an abort heard that often, while short kernels follow each other without the host.
+  /// Note that work of about so many seconds was queued, and wait for all of it once that is a tenth of a second:
+  /// progress is told and an abort heard that often, while short kernels follow each other without the host.
   void Queued(double seconds);
 
   /// Seconds by the clock that work is shared out by: the machine's, or that of a test, set before work begins.

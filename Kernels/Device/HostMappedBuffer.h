@@ -4,8 +4,8 @@
 
 namespace tyndall
 {
-/// The caller's own array as kernels see it: the same memory on a CPU, elsewhere a copy on the device. The array must outlive
-/// it, and is not to be touched between a kernel's start and the device's next Finish (or Fetch).
+/// The caller's own array as kernels see it: the same memory on a CPU, elsewhere a copy on the device. The array must
+/// outlive it, and is not to be touched between a kernel's start and the device's next Finish (or Fetch).
 template <class T>
 class HostMappedBuffer
 {

@@ -16,7 +16,7 @@ std::size_t HostMemory();
 /// @throws DeviceError where they exceed three quarters of the machine's memory
 void RequireHostMemory(double bytes, const std::string& what, const std::string& advice);
 
-/// `count` zeros, in pages of 2 MB where the system has them: to take a large array page by page of 4 kB can cost more than to
-/// fill it.
+/// `count` zeros, in pages of 2 MB where the system has them: to take a large array page by page of 4 kB can cost more
+/// than to fill it.
 std::vector<float> Zeros(std::size_t count);
 }

@@ -6,11 +6,12 @@
 
 namespace tyndall
 {
-/// Told the fraction done in [0, 1] at least about ten times a second by every long computation; returns false to stop it.
-/// Called on the thread that started the computation.
+/// Told the fraction done in [0, 1] at least about ten times a second by every long computation; returns false to stop
+/// it. Called on the thread that started the computation.
 using Monitor = std::function<bool(double fractionDone)>;
 
-/// What a part of the work reports to: `whole` turns a fraction of it into that of all. Empty where `monitor` is, which must stay.
+/// What a part of the work reports to: `whole` turns a fraction of it into that of all. Empty where `monitor` is, which
+/// must stay.
 template <class Whole>
 Monitor OfPart(const Monitor& monitor, Whole whole)
 {

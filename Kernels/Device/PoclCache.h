@@ -5,8 +5,8 @@
 
 namespace tyndall
 {
-/// The folder to which PoCL writes what it compiles. It is looked at before PoCL does: that finds no device where it cannot
-/// make the folder, and ends the process where the folder's disk is full.
+/// The folder to which PoCL writes what it compiles. It is looked at before PoCL does: that finds no device where it
+/// cannot make the folder, and ends the process where the folder's disk is full.
 struct PoclCache
 {
   /// Bytes that are asked for: kernels of a scene take a part of it.
@@ -16,8 +16,8 @@ struct PoclCache
   std::string warning; ///< why it is not the one that PoCL takes by itself, and what to do; else empty
 };
 
-/// The folder that PoCL takes by itself: POCL_CACHE_DIR, or one of the user's. Where that cannot be written, a private one in
-/// the temporary directory: POCL_CACHE_DIR is set to it, so PoCL must not have been asked for devices before.
+/// The folder that PoCL takes by itself: POCL_CACHE_DIR, or one of the user's. Where that cannot be written, a private
+/// one in the temporary directory: POCL_CACHE_DIR is set to it, so PoCL must not have been asked for devices before.
 /// @throws DeviceError where neither can be written
 PoclCache ChoosePoclCache();
 

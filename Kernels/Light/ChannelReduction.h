@@ -34,8 +34,8 @@ struct OneChannelScene
   Illumination light;
 };
 
-/// Solve a scene in as many channels as it needs, or in three where nothing is to be left out; the light has as many as are
-/// given, either way.
+/// Solve a scene in as many channels as it needs, or in three where nothing is to be left out; the light has as many as
+/// are given, either way.
 /// @param solve  takes a medium, its illumination and the number of channels
 template <class Solve>
 LightField SolveChannels(bool leaveOut, const SceneChannels& channels, const Medium& medium,

@@ -27,8 +27,8 @@ struct ConvergenceRow
 {
   int iteration = 0;
   double seconds = 0.0; ///< since the start
-  /// Estimate of the relative error that stopping here leaves: scattered light still to come over all of it. 1 after the first row
-  /// where more is to come: it is not known then, for one order does not tell how fast they shrink.
+  /// Estimate of the relative error that stopping here leaves: scattered light still to come over all of it. 1 after
+  /// the first row where more is to come: it is not known then, for one order does not tell how fast they shrink.
   double residual = 0.0;
   double change = 0.0;   ///< of the light by this row, relative: says little where light is scattered very often
   double absorbed = 0.0; ///< W so far, channels summed
@@ -54,7 +54,8 @@ struct LightField
     0.0; ///< of fluence, estimated, root mean square over that of fluence; 0 where not asked for, NaN: not known
   EnergyBalance balance;
   std::array<Rgb, 6> facePowerOut = {}; ///< W, through -x, +x, -y, +y, -z, +z
-  double halfRangeFlux = 0.0; ///< of the directions that light from outside came along (DirectionSet.h); 0: there are none
+  double halfRangeFlux =
+    0.0; ///< of the directions that light from outside came along (DirectionSet.h); 0: there are none
   std::vector<ConvergenceRow> convergence;
   int directionsPerFace = 0;        ///< solved with, where a solver chooses (PropagationSettings::adaptDirections)
   std::vector<std::string> leftOut; ///< what the scene did not need, in words

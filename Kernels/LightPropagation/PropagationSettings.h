@@ -9,7 +9,7 @@ enum class PropagationSource
 {
   Automatic, ///< constant, or linear where orders are accelerated
   Constant,  ///< as published
-  Linear ///< from voxel centre to voxel centre (by the diffusion system, see DiffusionSystem.h): right however thick voxels are
+  Linear     ///< from voxel centre to voxel centre (see DiffusionSystem.h): right however thick voxels are
 };
 
 /// How scattering orders are added up.
@@ -24,11 +24,11 @@ struct PropagationSettings
 {
   int directionsPerFace = 25;  ///< directions per cube face, a square number: 1, 4, 9, 16, 25, ...
   bool adaptDirections = true; ///< more of them for slabs (UnvaryingAxes.h); false: as many as told
-  /// Directions per cube face, a square number, of the unscattered light of shining faces, sky and environment (UncollidedBoundary.h);
-  /// 0: the same as for scattered light.
+  /// Directions per cube face, a square number, of the unscattered light of shining faces, sky and environment
+  /// (UncollidedBoundary.h); 0: the same as for scattered light.
   int uncollidedDirections = 0;
-  /// Rays of each direction start in a place of their own within a voxel, those of uncollidedDirections always (RayBundles.h). From some 64
-  /// directions a face on, half the error or less.
+  /// Rays of each direction start in a place of their own within a voxel, those of uncollidedDirections always
+  /// (RayBundles.h). From some 64 directions a face on, half the error or less.
   bool staggeredRays = false;
   int mapResolution = 1;   ///< map points per voxel edge, 1 to 16
   int maximumOrders = 0;   ///< scattering orders (accelerated: sweeps) at most; 0: until the tolerance is met
@@ -38,9 +38,9 @@ struct PropagationSettings
   PropagationSource source = PropagationSource::Automatic;
   PropagationAcceleration acceleration = PropagationAcceleration::Automatic; ///< not where maximumOrders is given
   bool netFlux = false;                                                      ///< compute net_flux too: it costs
-  /// Relative error, voxel by voxel, of the unscattered light of small bright parts of the medium, which is followed along exact rays
-  /// (EmissionRays.h), about: a twentieth of the voxels may be off by more; 0.005 costs five to ten times as much, and less than that
-  /// gains nothing; 0: not followed
+  /// Relative error, voxel by voxel, of the unscattered light of small bright parts of the medium, which is followed
+  /// along exact rays (EmissionRays.h), about: a twentieth of the voxels may be off by more; 0.005 costs five to ten
+  /// times as much, and less than that gains nothing; 0: not followed
   double emissionError = 0.02;
   bool leaveOut = true; ///< what the scene does not need; false: all is computed, to see what leaving out saves
 };

@@ -31,8 +31,8 @@ struct Light
   double angle = 0.0;                        ///< full opening angle of a spot, degrees
 };
 
-/// Radiance that comes from infinitely far away, W / (length^2 sr), in latitude-longitude layout with z up: pixel (i, j)
-/// of width x height looks along azimuth 2 pi (i + 1/2) / width about +z from +x, polar angle
+/// Radiance that comes from infinitely far away, W / (length^2 sr), in latitude-longitude layout with z up: pixel (i,
+/// j) of width x height looks along azimuth 2 pi (i + 1/2) / width about +z from +x, polar angle
 /// pi (1 - (j + 1/2) / height) from +z; so row 0 is the nadir.
 struct Environment
 {
@@ -69,7 +69,8 @@ Environment Turned(const Environment& environment, int up, double degrees);
 /// Whether anything of it shines: has a power or a radiance above 0.
 bool Shines(const Illumination& illumination);
 
-/// @throws InvalidInput where a light has a zero direction, a power that is negative or beyond float, no size; an environment has a
+/// @throws InvalidInput where a light has a zero direction, a power that is negative or beyond float, no size; an
+/// environment has a
 ///   negative or infinite pixel (names the first); a sky or a face a radiance that is negative or beyond float
 void Check(const Illumination& illumination);
 }

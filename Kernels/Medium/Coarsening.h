@@ -21,8 +21,8 @@ public:
   /// Smallest ratio of coarse to fine spacing among the axes that have several voxels; 1 where none has.
   double Ratio() const;
 
-  /// Means over coarse voxels: every fine voxel counts by the part of it that lies inside, so that the sum is kept. NaN where
-  /// one of them is.
+  /// Means over coarse voxels: every fine voxel counts by the part of it that lies inside, so that the sum is kept. NaN
+  /// where one of them is.
   /// @param values  `components` a fine voxel, x fastest
   std::vector<float> Average(const float* values, int components) const;
 

@@ -5,8 +5,8 @@
 
 namespace tyndall
 {
-/// A box of voxels. Voxel (i, j, k) covers [origin + (i, j, k) spacing, origin + (i+1, j+1, k+1) spacing]; arrays over it
-/// have x fastest. Lengths in the dataset's own unit.
+/// A box of voxels. Voxel (i, j, k) covers [origin + (i, j, k) spacing, origin + (i+1, j+1, k+1) spacing]; arrays over
+/// it have x fastest. Lengths in the dataset's own unit.
 struct Grid
 {
   std::array<int, 3> size = { 1, 1, 1 };             ///< voxels per axis, at least 1

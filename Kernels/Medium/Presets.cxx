@@ -50,8 +50,8 @@ MediumPreset Smoke()
   };
 }
 
-/// Measured with a g of each colour, 0.907, 0.896 and 0.880. One g has to do here: their mean, with the reduced scattering
-/// sigma_s (1 - g) of each colour kept.
+/// Measured with a g of each colour, 0.907, 0.896 and 0.880. One g has to do here: their mean, with the reduced
+/// scattering sigma_s (1 - g) of each colour kept.
 MediumPreset Espresso()
 {
   const double g = (0.907 + 0.896 + 0.880) / 3.0;

@@ -1,5 +1,5 @@
-// Numerics shared by every kernel that follows light through a medium. Define REAL_WIDTH as 1, 4, 8 or 16 before: `real`
-// is then a float or a float vector, on which all of this works alike.
+// Numerics shared by every kernel that follows light through a medium. Define REAL_WIDTH as 1, 4, 8 or 16 before:
+// `real` is then a float or a float vector, on which all of this works alike.
 
 #ifndef REAL_WIDTH
 #define REAL_WIDTH 1
@@ -56,8 +56,8 @@ inline float sum_of(real values)
 #endif
 }
 
-// Fraction extinguished over an optical length, 1 - exp(-tau), to a few units in the last place for every tau >= 0, and the
-// fraction that is left, exp(-tau).
+// Fraction extinguished over an optical length, 1 - exp(-tau), to a few units in the last place for every tau >= 0, and
+// the fraction that is left, exp(-tau).
 //   exp(-tau) = 2^n (1 + q), q = expm1(r), r = -tau - n ln 2 in [-ln 2 / 2, ln 2 / 2]
 // so that small tau lose nothing to cancellation. PoCL's exp is scalar and costs five times this.
 inline real extinguished(real tau, real* left)

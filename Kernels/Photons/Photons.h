@@ -22,16 +22,17 @@ struct Photon
 /// How paths are followed, and sums kept.
 struct MarchSettings
 {
-  /// Order of the integrator: 2, the leapfrog; 4, Yoshida's three leapfrogs, which pays where n^2 is smooth over several
-  /// voxels; 1, explicit Euler, to compare with.
+  /// Order of the integrator: 2, the leapfrog; 4, Yoshida's three leapfrogs, which pays where n^2 is smooth over
+  /// several voxels; 1, explicit Euler, to compare with.
   int order = 2;
   double stepSize =
     1.0; ///< voxels, of a step where the index varies and the octree (if any) has single voxels; 0.05 to 1e4
   bool meanDirection = true;
   /// Also photonCount and photonWeight, of up to 16777215 photons: one more number a voxel, in the same pass.
   bool counts = false;
-  /// Also batchFluence: sums of each of up to 64 batches apart, on as many copies at least. Private sums are shared out by
-  /// whole copies: batches that are as large as each other, and as many as compute units or a multiple, keep all of them busy.
+  /// Also batchFluence: sums of each of up to 64 batches apart, on as many copies at least. Private sums are shared out
+  /// by whole copies: batches that are as large as each other, and as many as compute units or a multiple, keep all of
+  /// them busy.
   bool batches = false;
   bool leaveOut =
     true; ///< what the scene does not need; false: three channels and the integrator, to see what it saves
@@ -47,11 +48,13 @@ struct MarchSettings
   Sums sums = Sums::Fitting;
 };
 
-/// @throws InvalidInput where the order is not 1, 2 or 4, the step size not 0.05 to 1e4 voxels, or sums are Unsafe and batches
+/// @throws InvalidInput where the order is not 1, 2 or 4, the step size not 0.05 to 1e4 voxels, or sums are Unsafe and
+/// batches
 ///   asked for
 void Check(const MarchSettings& settings);
 
-/// The way of one photon: positions, and the part of its power (all channels together) that is left there; 1 where it had none.
+/// The way of one photon: positions, and the part of its power (all channels together) that is left there; 1 where it
+/// had none.
 struct PhotonPath
 {
   std::size_t photon = 0; ///< its number
@@ -62,23 +65,25 @@ struct PhotonPath
 /// Light that photons carried into a medium.
 struct PhotonLight
 {
-  /// Light that was not scattered, so that fluenceDirect would be the same and is left empty. Balance: `absorbed` is what the medium absorbed and what it
-  /// scattered, `leftOver` what still went round when the photon was given up (total reflection can trap it).
+  /// Light that was not scattered, so that fluenceDirect would be the same and is left empty. Balance: `absorbed` is
+  /// what the medium absorbed and what it scattered, `leftOver` what still went round when the photon was given up
+  /// (total reflection can trap it).
   LightField light;
   Rgb scattered = {}; ///< W, the part of `absorbed` that is scattered
-  /// 3 a voxel: sum of power times direction over sum of power, at most 1 long; empty: not asked for. Coarse in voxels so dark
-  /// that they gained a few units of fixed point only, some 2^-62 of all power times the longest path.
+  /// 3 a voxel: sum of power times direction over sum of power, at most 1 long; empty: not asked for. Coarse in voxels
+  /// so dark that they gained a few units of fixed point only, some 2^-62 of all power times the longest path.
   std::vector<float> meanDirection;
-  /// Photons that crossed each voxel, until they were dark; each once, and once more where it comes back. Empty: not asked for.
+  /// Photons that crossed each voxel, until they were dark; each once, and once more where it comes back. Empty: not
+  /// asked for.
   std::vector<float> photonCount;
   std::vector<float>
     photonWeight;  ///< their mean `weight`, 0 where there is none, to 1e-4 of the largest; empty: not asked for
   int batches = 1; ///< that the photons have: the largest `batch` and one
-  /// fluence by each batch alone, [batch][voxel][channel], as if it was all the light: their mean is `fluence`. Empty: not
-  /// asked for.
+  /// fluence by each batch alone, [batch][voxel][channel], as if it was all the light: their mean is `fluence`. Empty:
+  /// not asked for.
   std::vector<float> batchFluence;
   std::size_t missed = 0;       ///< photons whose ways do not meet the volume; they are not among what entered
-  std::size_t deposits = 0;      ///< stretches of path that were deposited to voxels
+  std::size_t deposits = 0;     ///< stretches of path that were deposited to voxels
   std::size_t steps = 0;        ///< of the integrator
   double secondsMarching = 0.0; ///< from sorted photons to sums on the device
   double seconds = 0.0;         ///< from photons to light

@@ -1,5 +1,5 @@
-// Smallest, largest, sum and fitness of a run of `chunk` (a multiple of 48) values, a work-item a run. Sums carry what they
-// lost (Kahan), those of three components one by one.
+// Smallest, largest, sum and fitness of a run of `chunk` (a multiple of 48) values, a work-item a run. Sums carry what
+// they lost (Kahan), those of three components one by one.
 
 #define SUM_UNIT 0x1p-13f // so that sums do not overflow where values do not
 
@@ -14,8 +14,8 @@ inline void add(float16* sum, float16* lost, float16 value)
 }
 
 //   low, high  that values may have
-//   runs       a run: is one outside or not a number (0 or 1), the largest magnitude, sums of three components in units of
-//              1 / SUM_UNIT; of 1 component all are in the first
+//   runs       a run: is one outside or not a number (0 or 1), the largest magnitude, sums of three components in units
+//              of 1 / SUM_UNIT; of 1 component all are in the first
 __kernel void range_of_runs(
   const __global float* values, ulong count, int chunk, int components, float low, float high, __global float* runs)
 {

@@ -4,8 +4,8 @@
 //   DIRECTIONS  1: there are mean directions
 //   FINEST      1: the finer level is the grid itself, as the host has it; 0: rows of a level
 //
-// Fields of a level of the pyramid: each batch's light (sum of channels), then what is smoothed: the light's channels, then its
-// flux (light times mean direction).
+// Fields of a level of the pyramid: each batch's light (sum of channels), then what is smoothed: the light's channels,
+// then its flux (light times mean direction).
 #define CARRIED (CHANNELS + 3 * DIRECTIONS)
 #define FIELDS (BATCHES + CARRIED)
 // Fields of a level of the result: what is smoothed, the level it was taken from, and the squared error.
@@ -25,7 +25,8 @@ typedef struct
 } light_pair;
 
 // Two vectors of voxels of the grid, in units of 1 / scale.
-inline light_pair load_voxels(const __global float* batches, const __global float* directions, int4 size, size_t voxel, float scale)
+inline light_pair load_voxels(
+  const __global float* batches, const __global float* directions, int4 size, size_t voxel, float scale)
 {
   const size_t all = (size_t)size.w * size.y * size.z;
   light_pair light;
@@ -64,8 +65,8 @@ inline light_pair load_voxels(const __global float* batches, const __global floa
   return light;
 }
 
-inline void add_voxels(pair* sum, const __global float* batches, const __global float* directions, int4 size, const size_t* rows,
-  int x, float scale)
+inline void add_voxels(pair* sum, const __global float* batches, const __global float* directions, int4 size,
+  const size_t* rows, int x, float scale)
 {
   const float weights[4] = { 0.125f, 0.375f, 0.375f, 0.125f };
 #pragma unroll
@@ -91,8 +92,10 @@ inline void add_voxels(pair* sum, const __global float* batches, const __global 
 }
 
 #if REAL_WIDTH == 8
-#define shifted_up(before, values) (float8)((before).sf, (values).s0, (values).s1, (values).s2, (values).s3, (values).s4, (values).s5, (values).s6)
-#define shifted_down(values, after) (float8)((values).s1, (values).s2, (values).s3, (values).s4, (values).s5, (values).s6, (values).s7, (after).s0)
+#define shifted_up(before, values) \
+  (float8)((before).sf, (values).s0, (values).s1, (values).s2, (values).s3, (values).s4, (values).s5, (values).s6)
+#define shifted_down(values, after) \
+  (float8)((values).s1, (values).s2, (values).s3, (values).s4, (values).s5, (values).s6, (values).s7, (after).s0)
 #define first_of(p) ((p).s0)
 #define last_of(p) ((p).sf)
 #else
@@ -110,7 +113,8 @@ __kernel void voxels_down(const __global float* batches, const __global float* d
   size_t rows[16];
   for (int k = 0; k < 16; ++k)
   {
-    rows[k] = ((size_t)within(2 * z + k / 4 - 1, fine_size.z) * fine_size.y + within(2 * y + k % 4 - 1, fine_size.y)) * fine_size.w;
+    rows[k] = ((size_t)within(2 * z + k / 4 - 1, fine_size.z) * fine_size.y + within(2 * y + k % 4 - 1, fine_size.y)) *
+      fine_size.w;
   }
   const int wide = 2 * REAL_WIDTH;
   pair before[FIELDS], here[FIELDS], after[FIELDS];
@@ -147,7 +151,8 @@ __kernel void voxels_down(const __global float* batches, const __global float* d
 }
 
 // The light of a row's pairs of cells, at FINEST from the grid's voxels, else from rows.
-inline light_pair load_light(const __global float* fine, const __global float* directions, int4 size, int x, int y, int z, float scale)
+inline light_pair load_light(
+  const __global float* fine, const __global float* directions, int4 size, int x, int y, int z, float scale)
 {
 #if FINEST
   return load_voxels(fine, directions, size, ((size_t)z * size.y + y) * size.w + x, scale);
@@ -266,8 +271,8 @@ inline real smoothed(const __global float* row, int x)
     0.0625f * (load_real(x - 2, row) + load_real(x + 2, row));
 }
 
-// How much of the details is kept (Wiener's filter): where two batches agree it is light, where they do not it is noise. The
-// noise is taken off twice, so that what is left by chance is not taken for light.
+// How much of the details is kept (Wiener's filter): where two batches agree it is light, where they do not it is
+// noise. The noise is taken off twice, so that what is left by chance is not taken for light.
 __kernel void find_gains(const __global float* measured, int4 size, __global float* gains)
 {
   const int y = ROW_Y, z = ROW_Z;
@@ -287,9 +292,10 @@ __kernel void find_gains(const __global float* measured, int4 size, __global flo
   }
 }
 
-// Squared error of the details: noise that was kept, light that was taken for noise (times `honesty`), and what there is from
-// the levels above.
-__kernel void add_errors(const __global float* removed, int4 size, float honesty, const __global float* results, __global float* gains)
+// Squared error of the details: noise that was kept, light that was taken for noise (times `honesty`), and what there
+// is from the levels above.
+__kernel void add_errors(
+  const __global float* removed, int4 size, float honesty, const __global float* results, __global float* gains)
 {
   const int y = ROW_Y, z = ROW_Z;
   const size_t field = field_of(size);
@@ -305,7 +311,8 @@ __kernel void add_errors(const __global float* removed, int4 size, float honesty
 }
 
 // The top of the pyramid: taken whole. Its noise is smoothed before it counts.
-__kernel void begin_results(const __global float* level, int4 size, __global float* results, float top, __global float* noise)
+__kernel void begin_results(
+  const __global float* level, int4 size, __global float* results, float top, __global float* noise)
 {
   const int y = ROW_Y, z = ROW_Z;
   const size_t field = field_of(size);
@@ -369,7 +376,8 @@ inline real direction_of(real total, real x, real y, real z)
 #endif
 
 // The light of two vectors of voxels and its direction, from what is smoothed.
-inline __attribute__((always_inline)) void store_voxels(const children* smooth, float unit, size_t voxel, __global float* fluence, __global float* mean_direction)
+inline __attribute__((always_inline)) void store_voxels(
+  const children* smooth, float unit, size_t voxel, __global float* fluence, __global float* mean_direction)
 {
   children total = { 0.0f, 0.0f };
   pair light[3];
@@ -435,8 +443,8 @@ __kernel void blend_level(const __global float* fine, const __global float* dire
         continue;
       }
       const children above = interpolate(results + BLENDED * field, &rows, x);
-      const pair level = woven(
-        above.even + gain.even * (number - above.even), above.odd + gain.odd * (number - above.odd));
+      const pair level =
+        woven(above.even + gain.even * (number - above.even), above.odd + gain.odd * (number - above.odd));
 #if FINEST
       store_voxels(kept, unit, ((size_t)fz * fine_size.y + fy) * fine_size.w + 2 * x, fluence, mean_direction);
       store_pair(level, ((size_t)fz * fine_size.y + fy) * fine_size.w + 2 * x, blended);
@@ -459,7 +467,8 @@ __kernel void blend_level(const __global float* fine, const __global float* dire
   }
 }
 
-// The last pass: light so that each channel's total is what it was, and its error, which channels share as they share the light.
+// The last pass: light so that each channel's total is what it was, and its error, which channels share as they share
+// the light.
 __kernel void finish_light(const __global float* gains, int4 size, float4 conserve, float unit, __global float* fluence,
   __global float* errors, int4 fine_size)
 {

@@ -3,8 +3,8 @@
 //   CHANNELS, DIRECTIONS  of the light; fields of its pyramid are its channels, then the mean direction
 //   TOP         the highest level
 //
-// Voxels of a row that are next to each other lie between the same cells of a level. So levels are taken one after the other,
-// and each voxel keeps what it took so far: nothing is gathered.
+// Voxels of a row that are next to each other lie between the same cells of a level. So levels are taken one after the
+// other, and each voxel keeps what it took so far: nothing is gathered.
 
 typedef struct
 {
@@ -51,8 +51,8 @@ inline real cells_across(const __global float* values, const rows_between* rows,
   return between(low, high, (real)rows->z);
 }
 
-// Trilinear interpolation between the cells of a level where REAL_WIDTH voxels from x on are: getInterpolatedValue of listing B.3.
-// `level` is known when this is compiled.
+// Trilinear interpolation between the cells of a level where REAL_WIDTH voxels from x on are: getInterpolatedValue of
+// listing B.3. `level` is known when this is compiled.
 inline real sample(const __global float* values, const rows_between* rows, int level, int x)
 {
   if (level == 0)
@@ -113,8 +113,8 @@ inline void take(real* taken, const real* channels, integer where)
   }
 }
 
-// The first level at which `least` photons are found, the top where none has so many, and what `wanted` is there: the light
-// (its channels) or the photons' weight.
+// The first level at which `least` photons are found, the top where none has so many, and what `wanted` is there: the
+// light (its channels) or the photons' weight.
 inline real populated(const __global float* counts, const rows_between* rows_of_counts, float least,
   const __global float* wanted, const rows_between* rows, int x, real* found)
 {
@@ -144,7 +144,8 @@ inline real populated(const __global float* counts, const rows_between* rows_of_
   return level;
 }
 
-// Up as long as the difference of two levels does not grow (listing B.3), and no higher than `highest`; `taken` is the light there.
+// Up as long as the difference of two levels does not grow (listing B.3), and no higher than `highest`; `taken` is the
+// light there.
 inline real by_surround(const __global float* light, const rows_between* rows, real highest, int x, real* taken)
 {
   real level = 0.0f;
@@ -181,8 +182,8 @@ inline real by_surround(const __global float* light, const rows_between* rows, r
   return level;
 }
 
-inline void store_direction(const __global float* light, const rows_between* rows, real level, int x, size_t voxel,
-  __global float* direction)
+inline void store_direction(
+  const __global float* light, const rows_between* rows, real level, int x, size_t voxel, __global float* direction)
 {
   real way[3] = { 0.0f, 0.0f, 0.0f };
 #pragma unroll
@@ -208,8 +209,9 @@ inline void store_direction(const __global float* light, const rows_between* row
 }
 
 //   voxels   the grid's, and from a row of them to the next
-__kernel void choose_level(const __global float* light, const __global pyramid* where, const __global float* counts, const __global float* weights,
-  const __global pyramid* where_counts, float parameter, __global float* fluence, __global float* direction, __global float* chosen, int4 voxels)
+__kernel void choose_level(const __global float* light, const __global pyramid* where, const __global float* counts,
+  const __global float* weights, const __global pyramid* where_counts, float parameter, __global float* fluence,
+  __global float* direction, __global float* chosen, int4 voxels)
 {
   const int y = ROW_Y, z = ROW_Z;
   rows_between rows[TOP + 1], rows_of_counts[TOP + 1];

@@ -30,8 +30,8 @@ std::size_t Count(int number)
 }
 }
 
-void ReconstructByLevel(const Reconstruction& task, const HostMappedBuffer<float>& counts, const HostMappedBuffer<float>& weights,
-  double weightStep, ReconstructedLight& result)
+void ReconstructByLevel(const Reconstruction& task, const HostMappedBuffer<float>& counts,
+  const HostMappedBuffer<float>& weights, double weightStep, ReconstructedLight& result)
 {
   const NoisyLight& light = task.light;
   const Grid& grid = light.grid;
@@ -50,7 +50,8 @@ void ReconstructByLevel(const Reconstruction& task, const HostMappedBuffer<float
     smooth.Fill({ kernels, task.direction, grid.size, 1, 3, false, "mean directions" }, 3, light.channels);
   }
   smooth.Build(LightPyramid::Down::Gauss);
-  const auto pyramidOf = [&](const HostMappedBuffer<float>& array, bool wanted, LightPyramid::Down down, const char* what) {
+  const auto pyramidOf = [&](const HostMappedBuffer<float>& array, bool wanted, LightPyramid::Down down,
+                           const char* what) {
     LightPyramid pyramid(kernels, grid, 1, wanted ? top : 0, what);
     if (wanted)
     {
@@ -63,7 +64,8 @@ void ReconstructByLevel(const Reconstruction& task, const HostMappedBuffer<float
   const LightPyramid heavy = pyramidOf(weights, number == 0, LightPyramid::Down::MeanOfLit, "the pyramid of weights");
 
   const HostMappedBuffer<float> fluence(task.device, result.fluence.data(), result.fluence.size(), "fluence");
-  const HostMappedBuffer<float> direction(task.device, result.meanDirection.data(), result.meanDirection.size(), "directions");
+  const HostMappedBuffer<float> direction(
+    task.device, result.meanDirection.data(), result.meanDirection.size(), "directions");
   const HostMappedBuffer<float> chosen(task.device, result.mipLevel.data(), result.mipLevel.size(), "levels");
   const WholeRows wholeFluence(kernels, fluence, grid.size, 1, light.channels, true, "fluence");
   const WholeRows wholeDirection(kernels, direction, grid.size, directions ? 1 : 0, 3, true, "mean directions");

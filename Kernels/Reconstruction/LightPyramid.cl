@@ -112,7 +112,8 @@ __kernel void join_down(const __global float* fine, int4 fine_size, __global flo
   }
 }
 
-// Rows of voxels as the host has them, with `components` each, to rows of another length; what is too long repeats the last.
+// Rows of voxels as the host has them, with `components` each, to rows of another length; what is too long repeats the
+// last.
 __kernel void copy_rows(
   const __global float* from, int count, int from_row, __global float* to, int to_row, int components)
 {

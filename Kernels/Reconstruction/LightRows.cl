@@ -1,11 +1,11 @@
 // Rows of light for every kernel of the reconstruction, after Numerics.cl with REAL_WIDTH 8 (CPUs) or 1.
 //
-// A level of a pyramid holds `fields` volumes of rows, one quantity each. A row has GUARD values before and after it that
-// repeat its ends, as the values do that fill it up to a multiple of 2 REAL_WIDTH: no load along x asks where a row ends.
-// `size` is cells along x, y, z, then floats from a row to the next.
+// A level of a pyramid holds `fields` volumes of rows, one quantity each. A row has GUARD values before and after it
+// that repeat its ends, as the values do that fill it up to a multiple of 2 REAL_WIDTH: no load along x asks where a
+// row ends. `size` is cells along x, y, z, then floats from a row to the next.
 //
-// Arrays of voxels as the host has them are not split into quantities and have no guards; their size.w is voxels from a row to
-// the next, a multiple of 2 REAL_WIDTH.
+// Arrays of voxels as the host has them are not split into quantities and have no guards; their size.w is voxels from a
+// row to the next, a multiple of 2 REAL_WIDTH.
 
 #if REAL_WIDTH == 8
 typedef float16 pair;
@@ -51,8 +51,8 @@ typedef struct
 } pair_of_three;
 
 #if REAL_WIDTH == 8
-// Lanes 0, 3, 6 of the first, 1, 4, 7 of the second, 2, 5 of the third. In three vectors of eight voxels each component has every
-// lane once, so that this and one permutation sort them; written as one shuffle they become sixteen moves.
+// Lanes 0, 3, 6 of the first, 1, 4, 7 of the second, 2, 5 of the third. In three vectors of eight voxels each component
+// has every lane once, so that this and one permutation sort them; written as one shuffle they become sixteen moves.
 inline float8 lanes_of(float8 a, float8 b, float8 c)
 {
   const int8 second = (int8)(0, -1, 0, 0, -1, 0, 0, -1), third = (int8)(0, 0, -1, 0, 0, -1, 0, 0);
@@ -126,8 +126,8 @@ inline int within(int i, int count)
   return i < 0 ? 0 : i < count ? i : count - 1;
 }
 
-// Floats from a layer of rows to the next, and from a quantity to the next. Not multiples of 4 kB, where they would push each
-// other out of the cache: see LightRows.cxx.
+// Floats from a layer of rows to the next, and from a quantity to the next. Not multiples of 4 kB, where they would
+// push each other out of the cache: see LightRows.cxx.
 inline size_t layer_of(int4 size)
 {
   const size_t layer = (size_t)size.y * size.w;
@@ -169,8 +169,8 @@ inline real nearer(real near, real far)
   return multiply_add((real)0.25f, far, (real)0.75f * near);
 }
 
-// Cells have eight children, four rows of pairs; row k is at y = k % 2, z = k / 2. Of the cells' level, from field 0 on: the rows
-// that row k of the children of row (y, z) lies between.
+// Cells have eight children, four rows of pairs; row k is at y = k % 2, z = k / 2. Of the cells' level, from field 0
+// on: the rows that row k of the children of row (y, z) lies between.
 typedef struct
 {
   size_t here, beside, behind, opposite;
@@ -195,8 +195,8 @@ inline real cells_for_children(const __global float* field, const rows_about* ro
     nearer(load_real(rows->behind + x, field), load_real(rows->opposite + x, field)));
 }
 
-// Trilinear interpolation of REAL_WIDTH cells from x on to a row of their children. A row at a time, for all eight children of
-// several quantities do not fit into a CPU's registers.
+// Trilinear interpolation of REAL_WIDTH cells from x on to a row of their children. A row at a time, for all eight
+// children of several quantities do not fit into a CPU's registers.
 inline children interpolate(const __global float* field, const rows_about* rows, int x)
 {
   const real middle = cells_for_children(field, rows, x);

@@ -21,8 +21,8 @@ int RowWidth(const Device& device, const Grid& grid)
 
 namespace
 {
-/// As layer_of and field_of in LightRows.cl. Rows of one place in all layers and quantities are used together; with strides that
-/// are multiples of 4 kB they would all want the same few places of the cache. So a
+/// As layer_of and field_of in LightRows.cl. Rows of one place in all layers and quantities are used together; with
+/// strides that are multiples of 4 kB they would all want the same few places of the cache. So a
 /// layer ends with 3 and a quantity with 41 lines of 64 bytes that are not used.
 std::size_t FieldStride(const std::array<int, 3>& size, int stride)
 {

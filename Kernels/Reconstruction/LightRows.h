@@ -13,7 +13,8 @@ namespace tyndall
 /// How wide the vectors are that the reconstruction's kernels work on: 8 on a CPU, 1 on a GPU and where rows are short.
 int RowWidth(const Device& device, const Grid& grid);
 
-/// Voxels from a row to the next that these kernels need of arrays as the host has them: no more than there are if it fits.
+/// Voxels from a row to the next that these kernels need of arrays as the host has them: no more than there are if it
+/// fits.
 inline int WholeVectors(int voxels, int width)
 {
   return RoundUp(voxels, 2 * width);

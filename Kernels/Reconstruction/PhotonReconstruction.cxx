@@ -77,13 +77,15 @@ void CheckPresence(const NoisyLight& light, Estimator estimator)
   }
   if (estimator == Estimator::Conservative)
   {
-    const char* advice = "Let PhotonEmitter make at least two Batches and PhotonMarcher's conservative scheme gather them, or "
-                         "choose another estimator.";
+    const char* advice =
+      "Let PhotonEmitter make at least two Batches and PhotonMarcher's conservative scheme gather them, or "
+      "choose another estimator.";
     RequireArray(light.batchFluence, estimator, "fluence_batches", advice);
     if (light.batches < 2 || light.batches > 16)
     {
       throw InvalidInput("The photons are of " + std::to_string(light.batches) +
-        (light.batches == 1 ? " batch" : " batches") + "; the conservative estimator compares 2 to 16 of them. " + advice);
+        (light.batches == 1 ? " batch" : " batches") + "; the conservative estimator compares 2 to 16 of them. " +
+        advice);
     }
     return;
   }
@@ -132,8 +134,8 @@ void RequireMemory(const Device& device, const NoisyLight& light, bool conservat
     "Use a coarser grid or fewer batches.");
 }
 
-/// The weight of photons from a level to the next: the mean weight of lit voxels, less than marching rounds weights to, so that
-/// equal ones all reach the first step.
+/// The weight of photons from a level to the next: the mean weight of lit voxels, less than marching rounds weights to,
+/// so that equal ones all reach the first step.
 double WeightStep(const NoisyLight& light, const ReconstructionSettings& settings, double total)
 {
   if (settings.weightStep > 0.0)
@@ -264,8 +266,8 @@ ReconstructedLight Reconstruct(
   const std::size_t count = values * static_cast<std::size_t>(conservative ? light.batches : 1);
   const HostMappedBuffer<float> fluence(device, given, count, "fluence");
   const HostMappedBuffer<float> direction(device, light.meanDirection, vectors, "mean directions");
-  const ArrayRange range =
-    Checked(device, fluence, given, count, light.channels, grid, conservative ? "fluence_batches" : "fluence", 0.0f, Most);
+  const ArrayRange range = Checked(
+    device, fluence, given, count, light.channels, grid, conservative ? "fluence_batches" : "fluence", 0.0f, Most);
   if (vectors > 0)
   {
     Checked(

@@ -6,15 +6,15 @@
 
 namespace tyndall
 {
-/// An array over voxels whose rows are whole vectors: the host's own where it has such rows, else a copy with longer ones that
-/// repeat the last voxel.
+/// An array over voxels whose rows are whole vectors: the host's own where it has such rows, else a copy with longer
+/// ones that repeat the last voxel.
 class WholeRows
 {
 public:
   /// @param array    over `volumes` grids of `size` voxels, x fastest, `components` a voxel; must outlive this
   /// @param written  kernels write it: Fetch() when they are done. Else they read it.
-  WholeRows(const RowKernels& kernels, const HostMappedBuffer<float>& array, const std::array<int, 3>& size, int volumes,
-    int components, bool written, const char* what);
+  WholeRows(const RowKernels& kernels, const HostMappedBuffer<float>& array, const std::array<int, 3>& size,
+    int volumes, int components, bool written, const char* what);
 
   const cl::Buffer& Handle() const { return this->Wide.Size() > 0 ? this->Wide.Handle() : this->Own.Handle(); }
 

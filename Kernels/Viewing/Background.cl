@@ -23,8 +23,8 @@ inline real angle_of(real y, real x)
   return copysign(p, y);
 }
 
-// Radiance seen along each (world) direction, as Lookup in Lights.h has it. The picture has a column more on both sides,
-// so that it closes around z.
+// Radiance seen along each (world) direction, as Lookup in Lights.h has it. The picture has a column more on both
+// sides, so that it closes around z.
 inline rgb look_up(global const float4* environment, real3 d, int4 size)
 {
   const real polar = angle_of(sqrt(fma(d.x, d.x, d.y * d.y)), d.z);

@@ -1,8 +1,8 @@
-// How rays bend: half the gradient of n^2, and n^2, of the tricubic spline that photons follow as well, at voxel centres with a
-// border of one voxel that repeats the outermost ones.
+// How rays bend: half the gradient of n^2, and n^2, of the tricubic spline that photons follow as well, at voxel
+// centres with a border of one voxel that repeats the outermost ones.
 //
-// Between centres both are interpolated linearly. Along a row of voxels the spline's slopes add up to the difference of its ends,
-// so that rays through a plane layer leave it as Snell's law has it, however steep it is.
+// Between centres both are interpolated linearly. Along a row of voxels the spline's slopes add up to the difference of
+// its ends, so that rays through a plane layer leave it as Snell's law has it, however steep it is.
 //
 // Needs SquaredIndex.cl before it.
 
@@ -23,17 +23,18 @@ kernel void pack_bending(
     return;
   }
   const int row = grid.size[0] + 4, layer = row * (grid.size[1] + 4);
-  global const float* c = coefficients + ((clamp(z - 1, 0, grid.size[2] - 1) + 2) * layer +
-    (clamp(y - 1, 0, grid.size[1] - 1) + 2) * row + clamp(x - 1, 0, grid.size[0] - 1) + 2);
-#define SPLINE_ROW(name, at)                                                                                             \
-  const float name = SPLINE_VALUE((at)[-1], (at)[0], (at)[1]);                                                           \
+  global const float* c = coefficients +
+    ((clamp(z - 1, 0, grid.size[2] - 1) + 2) * layer + (clamp(y - 1, 0, grid.size[1] - 1) + 2) * row +
+      clamp(x - 1, 0, grid.size[0] - 1) + 2);
+#define SPLINE_ROW(name, at)                                   \
+  const float name = SPLINE_VALUE((at)[-1], (at)[0], (at)[1]); \
   const float name##_x = SPLINE_SLOPE((at)[-1], (at)[1]);
-#define SPLINE_LAYER(name, at)                                                                                           \
-  SPLINE_ROW(name##_low, (at) - row)                                                                                     \
-  SPLINE_ROW(name##_middle, at)                                                                                          \
-  SPLINE_ROW(name##_high, (at) + row)                                                                                    \
-  const float name = SPLINE_VALUE(name##_low, name##_middle, name##_high);                                               \
-  const float name##_x = SPLINE_VALUE(name##_low_x, name##_middle_x, name##_high_x);                                     \
+#define SPLINE_LAYER(name, at)                                                       \
+  SPLINE_ROW(name##_low, (at)-row)                                                   \
+  SPLINE_ROW(name##_middle, at)                                                      \
+  SPLINE_ROW(name##_high, (at) + row)                                                \
+  const float name = SPLINE_VALUE(name##_low, name##_middle, name##_high);           \
+  const float name##_x = SPLINE_VALUE(name##_low_x, name##_middle_x, name##_high_x); \
   const float name##_y = SPLINE_SLOPE(name##_low, name##_high);
   SPLINE_LAYER(below, c - layer)
   SPLINE_LAYER(here, c)
@@ -46,6 +47,7 @@ kernel void pack_bending(
   const float along_z = SPLINE_SLOPE(below, above);
   const float kept = fabs(along_x) + fabs(along_y) + fabs(along_z) <= FLAT * square ? 0.0f : 0.5f;
   bending[((size_t)z * (grid.size[1] + 2) + y) * (grid.size[0] + 2) + x] =
-    (float4)(kept * along_x * inverse_spacing.x * inverse_spacing.x, kept * along_y * inverse_spacing.y * inverse_spacing.y,
-      kept * along_z * inverse_spacing.z * inverse_spacing.z, square);
+    (float4)(kept * along_x * inverse_spacing.x * inverse_spacing.x,
+      kept * along_y * inverse_spacing.y * inverse_spacing.y, kept * along_z * inverse_spacing.z * inverse_spacing.z,
+      square);
 }

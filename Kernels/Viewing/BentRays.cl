@@ -1,7 +1,8 @@
 // The march of rays that bend where the refractive index varies.
 //
-// With dt = ds / n a ray follows dr/dt = T, dT/dt = grad(n^2) / 2, |T| = n (as in Photons/): a leapfrog whose gradient is taken
-// in the middle of each step. Where the index is constant that is a straight step, and the gradient is not fetched.
+// With dt = ds / n a ray follows dr/dt = T, dT/dt = grad(n^2) / 2, |T| = n (as in Photons/): a leapfrog whose gradient
+// is taken in the middle of each step. Where the index is constant that is a straight step, and the gradient is not
+// fetched.
 //
 // Needs RayPackets.cl and SurfaceReflection.cl before it. Define besides
 //   SKIP_BRICKS  1: rays leap over bricks in which nothing extinguishes, shines or bends
@@ -97,8 +98,8 @@ __attribute__((always_inline)) inline void bend(
 #endif
 
 // Steps through a region of constant index, or a leap. Returns how many.
-__attribute__((always_inline)) inline int go_straight(const surroundings* s, const rays* packet, real step, stretch ahead,
-  integer done, ray_packets* t, light* l, crossed* half_way)
+__attribute__((always_inline)) inline int go_straight(const surroundings* s, const rays* packet, real step,
+  stretch ahead, integer done, ray_packets* t, light* l, crossed* half_way)
 {
   const int4 size = s->v->size;
   const int steps = max(min(ahead.steps, (int)ceil(most_lanes(packet->length / step))), 1);
@@ -148,8 +149,8 @@ __attribute__((always_inline)) inline void march(
     packet.direction = divided(t->velocity, sqrt(greater(product(world, world), (real)1e-30f)));
     packet.length = done ? (real)0.0f : time_to_face(t->at, packet.direction, size);
     const real step = step_length(packet.direction, v->marching.x);
-    const stretch ahead = stretch_ahead(s->bricks, v->bricks, along(packet, (real)0.5f * step),
-      strides_per_voxel(packet.direction, step), done);
+    const stretch ahead = stretch_ahead(
+      s->bricks, v->bricks, along(packet, (real)0.5f * step), strides_per_voxel(packet.direction, step), done);
 #if BENDS
     if (ahead.bends)
     {

@@ -1,11 +1,12 @@
-// What a camera sees of a medium that bends rays, of a surface and of a table: rays from the camera, what the surface reflects of
-// them, and what the table mirrors of them, one march each. One work-item is a packet of neighbouring pixels.
+// What a camera sees of a medium that bends rays, of a surface and of a table: rays from the camera, what the surface
+// reflects of them, and what the table mirrors of them, one march each. One work-item is a packet of neighbouring
+// pixels.
 //
-// Along a bent ray L / n^2 is conserved but for what the medium does: sources and backgrounds are divided by n^2 of their place,
-// and the picture is multiplied by n^2 where the ray enters.
+// Along a bent ray L / n^2 is conserved but for what the medium does: sources and backgrounds are divided by n^2 of
+// their place, and the picture is multiplied by n^2 where the ray enters.
 //
-// Needs Numerics.cl, Sampling.cl, View.cl, Background.cl, Crossing.cl, RayPackets.cl, SurfaceReflection.cl, BentRays.cl and
-// Table.cl before it; they say what to define.
+// Needs Numerics.cl, Sampling.cl, View.cl, Background.cl, Crossing.cl, RayPackets.cl, SurfaceReflection.cl, BentRays.cl
+// and Table.cl before it; they say what to define.
 
 #define PASSES (1 + (SURFACE > 0) + TABLE)
 
@@ -46,10 +47,10 @@ inline int send_off(const waiting* next, ray_packets* t, light* l)
   return any_lane(t->inside);
 }
 
-// What a march comes to: background, or table. Rays that did not find out see the background as if the index were there what it
-// is at their entry.
-inline void arrive(const surroundings* s, const ray_packets* t, integer set_off, int primary,
-  global const float4* lit, global const float4* environment, crossed* half_way, seeing* to)
+// What a march comes to: background, or table. Rays that did not find out see the background as if the index were there
+// what it is at their entry.
+inline void arrive(const surroundings* s, const ray_packets* t, integer set_off, int primary, global const float4* lit,
+  global const float4* environment, crossed* half_way, seeing* to)
 {
   const integer out = set_off & (t->inside == 0);
   const real3 world = stretched(t->velocity, s->o->spacing);

@@ -16,7 +16,8 @@ typedef real spectrum;
 // What is packed of the medium and its light, with a border of one voxel.
 typedef struct
 {
-  global const float4* samples;     // red, green, blue of q, W / (length^3 sr), and grey sigma_t, 1/length; with GREY see there
+  global const float4*
+    samples; // red, green, blue of q, W / (length^3 sr), and grey sigma_t, 1/length; with GREY see there
   global const float4* extinctions; // coloured sigma_t
   global const float4* flow;        // x, y, z of the light's mean direction times g
   global const float4* glow;        // emission
@@ -99,7 +100,8 @@ inline void add_background(rgb behind, real part, light* l)
 #endif
 }
 
-// Over a length of constant coefficients: what a unit of source adds to the radiance, and what is left of the light behind.
+// Over a length of constant coefficients: what a unit of source adds to the radiance, and what is left of the light
+// behind.
 //   length (1 - exp(-tau)) / tau; tau = 0 is vacuum, where the fraction is 1.
 inline real cross_length(real sigma, real length, real* remains)
 {
@@ -121,8 +123,8 @@ inline real cross_length(real sigma, real length, real* remains)
   return length * fraction;
 }
 
-// The step in which half of a ray's light was lost: where it starts, how far it goes, and what was left before and after.
-// Where: along the ray, or along the view.
+// The step in which half of a ray's light was lost: where it starts, how far it goes, and what was left before and
+// after. Where: along the ray, or along the view.
 typedef struct
 {
   real start, length, before, after;
@@ -136,9 +138,10 @@ typedef struct
 } sample;
 
 #if PHASE
-// 4 pi times the phase function of light that is itself spread about its mean direction, seen along unit vectors v away from the
-// eye. b is that direction times g and the anisotropy: Legendre moments of two distributions multiply, so that light which is
-// spread as Henyey and Greenstein's function of mean cosine a is scattered by that of g into that of g a, exactly.
+// 4 pi times the phase function of light that is itself spread about its mean direction, seen along unit vectors v away
+// from the eye. b is that direction times g and the anisotropy: Legendre moments of two distributions multiply, so that
+// light which is spread as Henyey and Greenstein's function of mean cosine a is scattered by that of g into that of g
+// a, exactly.
 inline real scattered_towards_eye(real3 b, real3 v)
 {
   const real square = product(b, b);
@@ -148,7 +151,8 @@ inline real scattered_towards_eye(real3 b, real3 v)
   return ((real)1.0f - square) / (base * sqrt(base));
 #else
   // The fit exceeds 1 from |b| = 0.94 on.
-  const real k = lesser(fma((real)-0.55f, square, (real)1.55f), (real)0.9999f / sqrt(greater(square, (real)1e-20f))); // times |b|
+  const real k =
+    lesser(fma((real)-0.55f, square, (real)1.55f), (real)0.9999f / sqrt(greater(square, (real)1e-20f))); // times |b|
   const real base = greater(fma(k, cosine, (real)1.0f), (real)1e-4f);
   return fma(-square * k, k, (real)1.0f) / (base * base);
 #endif
@@ -197,8 +201,8 @@ inline void lose(real* left, real* rest, real part)
 }
 #endif
 
-// Over `length` from place `start`, along which the ray goes on by `gain`. Rays that have less light left than `enough` stop.
-// Nothing but the last product waits for what was left before.
+// Over `length` from place `start`, along which the ray goes on by `gain`. Rays that have less light left than `enough`
+// stop. Nothing but the last product waits for what was left before.
 __attribute__((always_inline)) inline void cross_sample(
   sample s, real length, real start, real gain, float enough, light* l, crossed* half_way)
 {
@@ -235,12 +239,12 @@ __attribute__((always_inline)) inline void cross_sample(
 #endif
 #undef LOSE
 #elif COLOURED
-#define CROSS(c)                                                                                                         \
-  {                                                                                                                      \
-    real remains;                                                                                                        \
-    const real weight = cross_length(s.sigma.c, length, &remains);                                                     \
-    l->radiance.c = fma(s.source.c * weight, goes_on ? l->left.c : (real)0.0f, l->radiance.c);                           \
-    l->left.c *= goes_on ? remains : (real)1.0f;                                                                         \
+#define CROSS(c)                                                                               \
+  {                                                                                            \
+    real remains;                                                                              \
+    const real weight = cross_length(s.sigma.c, length, &remains);                             \
+    l->radiance.c = fma(s.source.c * weight, goes_on ? l->left.c : (real)0.0f, l->radiance.c); \
+    l->left.c *= goes_on ? remains : (real)1.0f;                                               \
   }
   CROSS(r)
   CROSS(g)

@@ -40,8 +40,7 @@ kernel void cast_rays(view v, global const float4* restrict samples, global cons
       break;
     }
 #if SKIP_BRICKS
-    const stretch ahead =
-      stretch_ahead(bricks, v.bricks, along(packet, fma(step, (real)0.5f, so_far)), strides, done);
+    const stretch ahead = stretch_ahead(bricks, v.bricks, along(packet, fma(step, (real)0.5f, so_far)), strides, done);
     stop = n + ahead.steps;
     if (ahead.empty)
     {
@@ -71,8 +70,7 @@ kernel void cast_rays(view v, global const float4* restrict samples, global cons
   add_surface_light(surface_light(surface, packet, seen.d, before, v.size), &l);
 #endif
   add_background(look_behind(&v, seen.d, environment), (real)v.background.w, &l);
-  const real where =
-    left > (real)0.5f ? (real)v.marching.z : (distance_to_half(half_way) + before) * seen.cosine;
+  const real where = left > (real)0.5f ? (real)v.marching.z : (distance_to_half(half_way) + before) * seen.cosine;
   const canvas picture = { radiance, alpha, depth };
   paint(&v, picture, column, row, l.radiance, (real)1.0f - left, where);
 }

@@ -5,9 +5,9 @@
 #include "Device/Sizes.h"
 #include "Medium/Traits.h"
 #include "Refraction/Index/SquaredIndex.h"
+#include "TyndallKernelSources.h"
 #include "Viewing/Bricks.h"
 #include "Viewing/SurfaceLight.h"
-#include "TyndallKernelSources.h"
 #include "Viewing/ViewChecks.h"
 #include "Viewing/ViewLights.h"
 
@@ -476,7 +476,8 @@ std::string MediumRayCaster::StepOption() const
 
 std::string MediumRayCaster::CastingOptions() const
 {
-  // Longest optical length of a step; the kernel has a shorter way to cross it up to 2. Bent steps can be a little longer.
+  // Longest optical length of a step; the kernel has a shorter way to cross it up to 2. Bent steps can be a little
+  // longer.
   const double longest = this->LargestExtinction * this->Settings.stepSize *
     *std::max_element(this->TheGrid.spacing.begin(), this->TheGrid.spacing.end());
   const int phase = this->KnowsFlow ? 1 + static_cast<int>(this->Settings.phaseFunction) : 0;

@@ -6,12 +6,12 @@
 //
 //   MANY_STEPS 1: rays take so many steps that what rounding loses in each adds up
 //
-// Every result is rounded as written: else the compiler fuses multiply and add here but not there, and two variants of a
-// kernel (skipping bricks or not) would give pictures that differ in the last place.
+// Every result is rounded as written: else the compiler fuses multiply and add here but not there, and two variants of
+// a kernel (skipping bricks or not) would give pictures that differ in the last place.
 //
-// Positions are in voxels from the box's lower corner, so that voxel (i, j, k) covers [i, i+1] x [j, j+1] x [k, k+1]. Arrays
-// named `samples` and `extinctions` have a border of one voxel that repeats the outermost ones: an interpolation never has
-// to ask where the box ends, and the medium ends at the box's faces, not half a voxel before.
+// Positions are in voxels from the box's lower corner, so that voxel (i, j, k) covers [i, i+1] x [j, j+1] x [k, k+1].
+// Arrays named `samples` and `extinctions` have a border of one voxel that repeats the outermost ones: an interpolation
+// never has to ask where the box ends, and the medium ends at the box's faces, not half a voxel before.
 
 #pragma OPENCL FP_CONTRACT OFF
 
@@ -25,8 +25,7 @@
 #elif REAL_WIDTH == 8
 #define EACH_LANE(DO) DO(0) DO(1) DO(2) DO(3) DO(4) DO(5) DO(6) DO(7)
 #else
-#define EACH_LANE(DO)                                                                                                    \
-  DO(0) DO(1) DO(2) DO(3) DO(4) DO(5) DO(6) DO(7) DO(8) DO(9) DO(a) DO(b) DO(c) DO(d) DO(e) DO(f)
+#define EACH_LANE(DO) DO(0) DO(1) DO(2) DO(3) DO(4) DO(5) DO(6) DO(7) DO(8) DO(9) DO(a) DO(b) DO(c) DO(d) DO(e) DO(f)
 #endif
 #endif
 
@@ -36,8 +35,8 @@
 
 // Half the lanes with the other half, until four are left.
 #if REAL_WIDTH == 16
-#define REDUCED_TO_FOUR(type, v, operation)                                                                              \
-  const type##8 eight = operation(v.lo, v.hi);                                                                           \
+#define REDUCED_TO_FOUR(type, v, operation)    \
+  const type##8 eight = operation(v.lo, v.hi); \
   const type##4 four = operation(eight.lo, eight.hi);
 #elif REAL_WIDTH == 8
 #define REDUCED_TO_FOUR(type, v, operation) const type##4 four = operation(v.lo, v.hi);
@@ -89,8 +88,8 @@ inline void add_to(real* sum, real* rest, real more)
 #endif
 }
 
-// Packets of rays: where each enters the box, its direction in voxels per unit length, and how long it stays inside (0: it
-// misses).
+// Packets of rays: where each enters the box, its direction in voxels per unit length, and how long it stays inside (0:
+// it misses).
 typedef struct
 {
   real3 entry;
@@ -141,8 +140,7 @@ inline rays clip_to_box(real3 from, real3 direction, real farthest, int4 size, r
 // A length along each ray that advances by `step` voxels.
 inline real step_length(real3 direction, float step)
 {
-  return (real)step /
-    sqrt(fma(direction.x, direction.x, fma(direction.y, direction.y, direction.z * direction.z)));
+  return (real)step / sqrt(fma(direction.x, direction.x, fma(direction.y, direction.y, direction.z * direction.z)));
 }
 
 inline real3 along(rays packet, real distance)
@@ -207,8 +205,7 @@ inline void fetch_ahead(global const float4* samples, real3 p, int4 size)
   const integer k = to_integer(p.z + (real)0.5f);
   const integer at = k * slice + j * row + to_integer(p.x + (real)0.5f);
 #define ASK(place) __builtin_prefetch((const void*)(size_t)(samples + (place)))
-#define ASK_AROUND(n)                                                                                                    \
-  ASK(LANE(at, n)), ASK(LANE(at, n) + row), ASK(LANE(at, n) + slice), ASK(LANE(at, n) + slice + row)
+#define ASK_AROUND(n) ASK(LANE(at, n)), ASK(LANE(at, n) + row), ASK(LANE(at, n) + slice), ASK(LANE(at, n) + slice + row)
   ASK_AROUND(0);
   ASK_AROUND(3);
 #if REAL_WIDTH == 16
@@ -229,8 +226,8 @@ inline float8 neighbours(global const float2* row, uint twice_first)
 }
 
 #if REAL_WIDTH == 16
-// Four rays' v = (a at the lower x, a at the upper x), a of four values, in the order 0, 4, 8, c of a quarter each, taken
-// between the two by x: 16 lanes that hold the four values of one ray, of the next, ...
+// Four rays' v = (a at the lower x, a at the upper x), a of four values, in the order 0, 4, 8, c of a quarter each,
+// taken between the two by x: 16 lanes that hold the four values of one ray, of the next, ...
 inline float16 four_between(float8 v0, float8 v4, float8 v8, float8 vc, float16 x)
 {
   const float16 left = (float16)(v0, v4);
@@ -241,10 +238,10 @@ inline float16 four_between(float8 v0, float8 v4, float8 v8, float8 vc, float16 
 }
 #endif
 
-// The values at each ray's corners, between the voxel centres: colour and w. Neighbours along x lie side by side in memory,
-// so that four loads of eight floats bring all corners of a ray; two, and nothing is taken between along y, where values hold
-// two numbers and those of the next voxel along y (`paired`, a constant). size.w is 0, which the compiler cannot know: so `at` stays
-// in memory, from where a CPU broadcasts single lanes for nothing.
+// The values at each ray's corners, between the voxel centres: colour and w. Neighbours along x lie side by side in
+// memory, so that four loads of eight floats bring all corners of a ray; two, and nothing is taken between along y,
+// where values hold two numbers and those of the next voxel along y (`paired`, a constant). size.w is 0, which the
+// compiler cannot know: so `at` stays in memory, from where a CPU broadcasts single lanes for nothing.
 __attribute__((always_inline)) inline void gather_values(
   global const float4* values, const corners* at, int4 size, const int paired, rgb* colour, real* w)
 {
@@ -254,53 +251,49 @@ __attribute__((always_inline)) inline void gather_values(
   global const float2* far_high = far_low + 2 * (size.x + 2);
 #define FIRST(n) ((const uint*)&at->twice_first)[0x##n + size.w]
 #define WEIGHT(part, n) (((const float*)&at->part)[0x##n + size.w])
-#define FETCH_FOUR(n)                                                                                                    \
-  v##n = WEIGHT(near_low, n) * neighbours(near_low, FIRST(n));                                                           \
-  v##n = fma((float8)(WEIGHT(near_high, n)), neighbours(near_high, FIRST(n)), v##n);                                     \
-  v##n = fma((float8)(WEIGHT(far_low, n)), neighbours(far_low, FIRST(n)), v##n);                                         \
+#define FETCH_FOUR(n)                                                                \
+  v##n = WEIGHT(near_low, n) * neighbours(near_low, FIRST(n));                       \
+  v##n = fma((float8)(WEIGHT(near_high, n)), neighbours(near_high, FIRST(n)), v##n); \
+  v##n = fma((float8)(WEIGHT(far_low, n)), neighbours(far_low, FIRST(n)), v##n);     \
   v##n = fma((float8)(WEIGHT(far_high, n)), neighbours(far_high, FIRST(n)), v##n);
 #if GREY
-#define FETCH(n)                                                                                                         \
-  float8 v##n;                                                                                                           \
-  if (paired)                                                                                                            \
-  {                                                                                                                      \
-    v##n = WEIGHT(near, n) * neighbours(near_low, FIRST(n));                                                             \
-    v##n = fma((float8)(WEIGHT(far, n)), neighbours(far_low, FIRST(n)), v##n);                                           \
-  }                                                                                                                      \
-  else                                                                                                                   \
-  {                                                                                                                      \
-    FETCH_FOUR(n)                                                                                                        \
+#define FETCH(n)                                                               \
+  float8 v##n;                                                                 \
+  if (paired)                                                                  \
+  {                                                                            \
+    v##n = WEIGHT(near, n) * neighbours(near_low, FIRST(n));                   \
+    v##n = fma((float8)(WEIGHT(far, n)), neighbours(far_low, FIRST(n)), v##n); \
+  }                                                                            \
+  else                                                                         \
+  {                                                                            \
+    FETCH_FOUR(n)                                                              \
   }
 #else
-#define FETCH(n)                                                                                                         \
-  float8 v##n;                                                                                                           \
+#define FETCH(n) \
+  float8 v##n;   \
   FETCH_FOUR(n)
 #endif
 #if REAL_WIDTH == 16
   const float16 x = at->x;
-  FETCH(0) FETCH(4) FETCH(8) FETCH(c)
-  const float16 a = four_between(v0, v4, v8, vc, x.s000044448888cccc);
-  FETCH(1) FETCH(5) FETCH(9) FETCH(d)
-  const float16 b = four_between(v1, v5, v9, vd, x.s111155559999dddd);
-  FETCH(2) FETCH(6) FETCH(a) FETCH(e)
-  const float16 c = four_between(v2, v6, va, ve, x.s22226666aaaaeeee);
-  FETCH(3) FETCH(7) FETCH(b) FETCH(f)
-  const float16 d = four_between(v3, v7, vb, vf, x.s33337777bbbbffff);
+  FETCH(0) FETCH(4) FETCH(8) FETCH(c) const float16 a = four_between(v0, v4, v8, vc, x.s000044448888cccc);
+  FETCH(1) FETCH(5) FETCH(9) FETCH(d) const float16 b = four_between(v1, v5, v9, vd, x.s111155559999dddd);
+  FETCH(2) FETCH(6) FETCH(a) FETCH(e) const float16 c = four_between(v2, v6, va, ve, x.s22226666aaaaeeee);
+  FETCH(3) FETCH(7) FETCH(b) FETCH(f) const float16 d = four_between(v3, v7, vb, vf, x.s33337777bbbbffff);
   // All that follows stays within quarters of a register.
-  const float16 ab_low = (float16)(a.s0, b.s0, a.s1, b.s1, a.s4, b.s4, a.s5, b.s5, a.s8, b.s8, a.s9, b.s9, a.sc, b.sc,
-    a.sd, b.sd);
-  const float16 cd_low = (float16)(c.s0, d.s0, c.s1, d.s1, c.s4, d.s4, c.s5, d.s5, c.s8, d.s8, c.s9, d.s9, c.sc, d.sc,
-    c.sd, d.sd);
-  const float16 ab_high = (float16)(a.s2, b.s2, a.s3, b.s3, a.s6, b.s6, a.s7, b.s7, a.sa, b.sa, a.sb, b.sb, a.se, b.se,
-    a.sf, b.sf);
-  const float16 cd_high = (float16)(c.s2, d.s2, c.s3, d.s3, c.s6, d.s6, c.s7, d.s7, c.sa, d.sa, c.sb, d.sb, c.se, d.se,
-    c.sf, d.sf);
+  const float16 ab_low =
+    (float16)(a.s0, b.s0, a.s1, b.s1, a.s4, b.s4, a.s5, b.s5, a.s8, b.s8, a.s9, b.s9, a.sc, b.sc, a.sd, b.sd);
+  const float16 cd_low =
+    (float16)(c.s0, d.s0, c.s1, d.s1, c.s4, d.s4, c.s5, d.s5, c.s8, d.s8, c.s9, d.s9, c.sc, d.sc, c.sd, d.sd);
+  const float16 ab_high =
+    (float16)(a.s2, b.s2, a.s3, b.s3, a.s6, b.s6, a.s7, b.s7, a.sa, b.sa, a.sb, b.sb, a.se, b.se, a.sf, b.sf);
+  const float16 cd_high =
+    (float16)(c.s2, d.s2, c.s3, d.s3, c.s6, d.s6, c.s7, d.s7, c.sa, d.sa, c.sb, d.sb, c.se, d.se, c.sf, d.sf);
   // Pairs move as longs: else PoCL makes ten instructions of each of these.
-#define FIRST_PAIRS(p, q)                                                                                                \
-  as_float16((long8)(as_long8(p).s0, as_long8(q).s0, as_long8(p).s2, as_long8(q).s2, as_long8(p).s4, as_long8(q).s4,     \
+#define FIRST_PAIRS(p, q)                                                                                            \
+  as_float16((long8)(as_long8(p).s0, as_long8(q).s0, as_long8(p).s2, as_long8(q).s2, as_long8(p).s4, as_long8(q).s4, \
     as_long8(p).s6, as_long8(q).s6))
-#define SECOND_PAIRS(p, q)                                                                                               \
-  as_float16((long8)(as_long8(p).s1, as_long8(q).s1, as_long8(p).s3, as_long8(q).s3, as_long8(p).s5, as_long8(q).s5,     \
+#define SECOND_PAIRS(p, q)                                                                                           \
+  as_float16((long8)(as_long8(p).s1, as_long8(q).s1, as_long8(p).s3, as_long8(q).s3, as_long8(p).s5, as_long8(q).s5, \
     as_long8(p).s7, as_long8(q).s7))
   colour->r = FIRST_PAIRS(ab_low, cd_low);
   colour->g = SECOND_PAIRS(ab_low, cd_low);
@@ -351,34 +344,35 @@ inline void gather_samples(global const float4* samples, const corners* at, int4
 #endif
 }
 
-// Between four values of a picture for each ray: two side by side from `lower` on and two from `upper`; x goes from the first of two to
-// the second, y from the lower to the upper.
+// Between four values of a picture for each ray: two side by side from `lower` on and two from `upper`; x goes from the
+// first of two to the second, y from the lower to the upper.
 inline rgb between_four(global const float4* values, integer lower, integer upper, real x, real y)
 {
   rgb seen;
-#define SEE(n)                                                                                                           \
-  {                                                                                                                      \
-    global const float4* below = values + LANE(lower, n);                                                                \
-    global const float4* above = values + LANE(upper, n);                                                                \
-    const float4 a = fma((float4)LANE(x, n), below[1] - below[0], below[0]);                                             \
-    const float4 b = fma((float4)LANE(x, n), above[1] - above[0], above[0]);                                             \
-    const float4 c = fma((float4)LANE(y, n), b - a, a);                                                                  \
-    LANE(seen.r, n) = c.x;                                                                                               \
-    LANE(seen.g, n) = c.y;                                                                                               \
-    LANE(seen.b, n) = c.z;                                                                                               \
+#define SEE(n)                                                               \
+  {                                                                          \
+    global const float4* below = values + LANE(lower, n);                    \
+    global const float4* above = values + LANE(upper, n);                    \
+    const float4 a = fma((float4)LANE(x, n), below[1] - below[0], below[0]); \
+    const float4 b = fma((float4)LANE(x, n), above[1] - above[0], above[0]); \
+    const float4 c = fma((float4)LANE(y, n), b - a, a);                      \
+    LANE(seen.r, n) = c.x;                                                   \
+    LANE(seen.g, n) = c.y;                                                   \
+    LANE(seen.b, n) = c.z;                                                   \
   }
   EACH_LANE(SEE)
 #undef SEE
   return seen;
 }
 
-// Edge of a brick in voxels. Each brick has a number: how many bricks one has to go (as a chess king does) to one of another
-// kind; positive for a brick that is empty, negative for one where anything extinguishes or shines. It is 0 where rays bend.
+// Edge of a brick in voxels. Each brick has a number: how many bricks one has to go (as a chess king does) to one of
+// another kind; positive for a brick that is empty, negative for one where anything extinguishes or shines. It is 0
+// where rays bend.
 #define BRICK 8
 
-// What is ahead of a packet: how many steps, from the sample at p on, every ray can take before one of them leaves the bricks
-// around it that are known to be alike; whether all those steps are through nothing; whether a ray bends. Rays that are done do
-// not count.
+// What is ahead of a packet: how many steps, from the sample at p on, every ray can take before one of them leaves the
+// bricks around it that are known to be alike; whether all those steps are through nothing; whether a ray bends. Rays
+// that are done do not count.
 typedef struct
 {
   int steps, empty, bends;
@@ -399,7 +393,7 @@ __attribute__((always_inline)) inline stretch stretch_ahead(
 #undef DISTANCE
   }
   const integer reach = (distance < 0 ? -distance : distance) - 1;
-#define STEPS_LEFT(b, c)                                                                                                 \
+#define STEPS_LEFT(b, c) \
   ((to_real(strides.c > (real)0.0f ? (b + reach + 1) * BRICK : (b - reach) * BRICK) - p.c) * strides.c)
   const real steps = lesser(lesser(STEPS_LEFT(bx, x), STEPS_LEFT(by, y)), STEPS_LEFT(bz, z));
 #undef STEPS_LEFT

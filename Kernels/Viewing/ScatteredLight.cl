@@ -1,5 +1,5 @@
-// What the rays meet: every voxel's source radiance per unit length and its extinction, made from the medium's arrays and
-// from the light that a solver left in them or that shadow rays find.
+// What the rays meet: every voxel's source radiance per unit length and its extinction, made from the medium's arrays
+// and from the light that a solver left in them or that shadow rays find.
 //
 // Needs Numerics.cl and Sampling.cl before it. Define besides
 //   ABSORPTION, SCATTERING, EMISSION, FLUENCE, UNSCATTERED   components of each array: 0 (there is none), 1 or 3
@@ -29,8 +29,8 @@ inline int voxel_index(int4 size)
   return (k * size.y + j) * size.x + i;
 }
 
-// In-scattered radiance of one channel. `fluence` holds everything, `unscattered` what of it came straight from a light;
-// what is seen of the lights by shadow rays is taken out of fluence, so that it does not count twice.
+// In-scattered radiance of one channel. `fluence` holds everything, `unscattered` what of it came straight from a
+// light; what is seen of the lights by shadow rays is taken out of fluence, so that it does not count twice.
 inline float in_scattered(global const float* fluence, global const float* unscattered, global const float* direct,
   int voxel, int channel, int single)
 {
@@ -57,17 +57,17 @@ typedef struct
   global const float* ior;
 } ingredients;
 
-// Source of a voxel, by n^2 with BENDS: red, green, blue, and grey extinction; besides all of the extinction, and what is emitted,
-// which with GLOW is no part of the source.
+// Source of a voxel, by n^2 with BENDS: red, green, blue, and grey extinction; besides all of the extinction, and what
+// is emitted, which with GLOW is no part of the source.
 inline float4 source_of(const ingredients* from, int voxel, int single, float4* sigma_t, float4* emitted)
 {
   float4 sigma_s = (float4)(0.0f);
   float4 source = (float4)(0.0f);
   *sigma_t = *emitted = (float4)(0.0f);
-#define CHANNEL(c, n)                                                                                                    \
-  sigma_s.c = channel_of(from->scattering, voxel, SCATTERING, n);                                                        \
-  sigma_t->c = sigma_s.c + channel_of(from->absorption, voxel, ABSORPTION, n);                                           \
-  emitted->c = channel_of(from->emission, voxel, EMISSION, n);                                                           \
+#define CHANNEL(c, n)                                                          \
+  sigma_s.c = channel_of(from->scattering, voxel, SCATTERING, n);              \
+  sigma_t->c = sigma_s.c + channel_of(from->absorption, voxel, ABSORPTION, n); \
+  emitted->c = channel_of(from->emission, voxel, EMISSION, n);                 \
   source.c = sigma_s.c * in_scattered(from->fluence, from->unscattered, from->direct, voxel, n, single);
   CHANNEL(x, 0)
   CHANNEL(y, 1)
@@ -86,16 +86,16 @@ inline float4 source_of(const ingredients* from, int voxel, int single, float4* 
 }
 
 // single   1: only light that scatters once
-// samples  red, green, blue of the source, and grey extinction; with GREY source and extinction here and at the next voxel along y
+// samples  red, green, blue of the source, and grey extinction; with GREY source and extinction here and at the next
+//          voxel along y
 // flow     with FLOW: the light's mean direction times g, at most LARGEST_FLOW long
 // glow     with GLOW: emission, which is then no part of `samples`
 // ior      with BENDS: sources are divided by n^2
 kernel void pack_samples(int4 size, int single, float g, global const float* restrict absorption,
-  global const float* restrict scattering, global const float* restrict emission,
-  global const float* restrict fluence, global const float* restrict unscattered,
-  global const float* restrict direct, global const float* restrict direction, global const float* restrict ior,
-  global float4* restrict samples, global float4* restrict extinctions, global float4* restrict flow,
-  global float4* restrict glow)
+  global const float* restrict scattering, global const float* restrict emission, global const float* restrict fluence,
+  global const float* restrict unscattered, global const float* restrict direct, global const float* restrict direction,
+  global const float* restrict ior, global float4* restrict samples, global float4* restrict extinctions,
+  global float4* restrict flow, global float4* restrict glow)
 {
   if (get_global_id(0) >= size.x + 2)
   {
@@ -109,8 +109,7 @@ kernel void pack_samples(int4 size, int single, float g, global const float* res
 #if GREY
   const int row = get_global_id(1);
   float4 unused, also_unused;
-  const float4 next = source_of(
-    &from, row > 0 && row < size.y ? voxel + size.x : voxel, single, &unused, &also_unused);
+  const float4 next = source_of(&from, row > 0 && row < size.y ? voxel + size.x : voxel, single, &unused, &also_unused);
   samples[place] = (float4)(source.x, source.w, next.x, next.w);
 #else
   samples[place] = source;
@@ -129,7 +128,8 @@ kernel void pack_samples(int4 size, int single, float g, global const float* res
 #endif
 }
 
-// Whether anything extinguishes or shines in a brick, or bends with BENDS, or does so close enough to be interpolated into it:
+// Whether anything extinguishes or shines in a brick, or bends with BENDS, or does so close enough to be interpolated
+// into it:
 // 1 it is empty, -1 it is not, 0 rays bend.
 kernel void find_empty_bricks(int4 size, int4 brick_count, global const float4* restrict samples,
   global const float4* restrict extinctions, global const float4* restrict glow, global const float4* restrict bending,
@@ -192,8 +192,8 @@ typedef struct
 
 // Scatters towards the eye what the lights send straight to each voxel's centre.
 //   direct  6 a voxel: sum of irradiance times phase function, W / (length^2 sr), and sum of irradiance, W / length^2
-// Work-items by voxels of a slice. nearest_square keeps a voxel that holds a light finite: the mean of 1/r^2 over a sphere of
-// the voxel's volume is 3/R^2.
+// Work-items by voxels of a slice. nearest_square keeps a voxel that holds a light finite: the mean of 1/r^2 over a
+// sphere of the voxel's volume is 3/R^2.
 kernel void see_lights(int4 size, int4 brick_count, float4 spacing, float4 eye, float4 forward, float g, float step,
   float nearest_square, int light_count, global const small_light* restrict lights,
   global const float* restrict scattering, global const float4* restrict samples,
@@ -219,8 +219,8 @@ kernel void see_lights(int4 size, int4 brick_count, float4 spacing, float4 eye, 
 #endif
   const integer voxel = i + (k * size.y + j) * size.x;
   real scatters = (real)0.0f;
-#define SCATTERS(n)                                                                                                      \
-  LANE(scatters, n) = channel_of(scattering, LANE(voxel, n), SCATTERING, 0) +                                            \
+#define SCATTERS(n)                                                           \
+  LANE(scatters, n) = channel_of(scattering, LANE(voxel, n), SCATTERING, 0) + \
     channel_of(scattering, LANE(voxel, n), SCATTERING, 1) + channel_of(scattering, LANE(voxel, n), SCATTERING, 2);
   EACH_LANE(SCATTERS)
 #undef SCATTERS
@@ -233,8 +233,7 @@ kernel void see_lights(int4 size, int4 brick_count, float4 spacing, float4 eye, 
   real3 out = { fma(perspective, (real)eye.x - place.x, (real)(-eye.w * forward.x)),
     fma(perspective, (real)eye.y - place.y, (real)(-eye.w * forward.y)),
     fma(perspective, (real)eye.z - place.z, (real)(-eye.w * forward.z)) };
-  const real out_scale =
-    (real)1.0f / sqrt(greater(fma(out.x, out.x, fma(out.y, out.y, out.z * out.z)), (real)1e-30f));
+  const real out_scale = (real)1.0f / sqrt(greater(fma(out.x, out.x, fma(out.y, out.y, out.z * out.z)), (real)1e-30f));
 
   for (int n = 0; n < light_count && any_lane(scatters > (real)0.0f); ++n)
   {
@@ -248,8 +247,7 @@ kernel void see_lights(int4 size, int4 brick_count, float4 spacing, float4 eye, 
     const real distance = sqrt(square);
     const real inverse = (real)1.0f / distance;
     const real3 d = { to.x * inverse, to.y * inverse, to.z * inverse };
-    const real to_axis =
-      -fma(d.x, (real)light.axis.x, fma(d.y, (real)light.axis.y, d.z * (real)light.axis.z));
+    const real to_axis = -fma(d.x, (real)light.axis.x, fma(d.y, (real)light.axis.y, d.z * (real)light.axis.z));
     real arriving = point > (real)0.0f ? (real)1.0f / greater(square, (real)nearest_square) : (real)1.0f;
     arriving *= light.power.w > 0.0f ? greater(to_axis, (real)0.0f) : (real)1.0f;
     arriving = to_axis >= (real)light.axis.w ? arriving : (real)0.0f;
@@ -267,8 +265,7 @@ kernel void see_lights(int4 size, int4 brick_count, float4 spacing, float4 eye, 
 #endif
     const real3 direction = { d.x / (real)spacing.x, d.y / (real)spacing.y, d.z / (real)spacing.z };
     real before;
-    const rays packet =
-      clip_to_box(centre, direction, point > (real)0.0f ? distance : (real)1e30f, size, &before);
+    const rays packet = clip_to_box(centre, direction, point > (real)0.0f ? distance : (real)1e30f, size, &before);
     const real stride = step_length(direction, step);
     const real3 strides = strides_per_voxel(direction, stride);
     const int steps = (int)ceil(most_lanes(arriving > (real)0.0f ? packet.length / stride : (real)0.0f));
@@ -314,8 +311,7 @@ kernel void see_lights(int4 size, int4 brick_count, float4 spacing, float4 eye, 
 #undef PASS
 
     // Henyey and Greenstein's phase function; the light travels along -d.
-    const real cosine =
-      -(fma(d.x, out.x, fma(d.y, out.y, d.z * out.z))) * out_scale;
+    const real cosine = -(fma(d.x, out.x, fma(d.y, out.y, d.z * out.z))) * out_scale;
     const real base = greater(fma((real)(-2.0f * g), cosine, (real)(1.0f + g * g)), (real)1e-12f);
     const real phase = (real)(PER_SPHERE * (1.0f - g * g)) / (base * sqrt(base));
 #if COLOURED
@@ -342,15 +338,15 @@ kernel void see_lights(int4 size, int4 brick_count, float4 spacing, float4 eye, 
   }
 
   // Lanes beyond the last voxel repeat it, and write the same again.
-#define KEEP(n)                                                                                                          \
-  {                                                                                                                      \
-    global float* kept = direct + 6 * LANE(voxel, n);                                                                    \
-    kept[0] = LANE(towards_eye.r, n);                                                                                    \
-    kept[1] = LANE(towards_eye.g, n);                                                                                    \
-    kept[2] = LANE(towards_eye.b, n);                                                                                    \
-    kept[3] = LANE(irradiance.r, n);                                                                                     \
-    kept[4] = LANE(irradiance.g, n);                                                                                     \
-    kept[5] = LANE(irradiance.b, n);                                                                                     \
+#define KEEP(n)                                       \
+  {                                                   \
+    global float* kept = direct + 6 * LANE(voxel, n); \
+    kept[0] = LANE(towards_eye.r, n);                 \
+    kept[1] = LANE(towards_eye.g, n);                 \
+    kept[2] = LANE(towards_eye.b, n);                 \
+    kept[3] = LANE(irradiance.r, n);                  \
+    kept[4] = LANE(irradiance.g, n);                  \
+    kept[5] = LANE(irradiance.b, n);                  \
   }
   EACH_LANE(KEEP)
 #undef KEEP

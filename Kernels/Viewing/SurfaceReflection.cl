@@ -7,7 +7,7 @@
 // Unpolarised light from an index of square n1 to one of n2, the square of n sin(theta) being `across`.
 inline real fresnel(real n1, real n2, real across)
 {
-  const real in = sqrt(greater(n1 - across, (real)0.0f));   // n cos(theta)
+  const real in = sqrt(greater(n1 - across, (real)0.0f)); // n cos(theta)
   const real out = sqrt(greater(n2 - across, (real)0.0f));
   const real s = (in - out) / greater(in + out, (real)1e-20f);
   const real p = fma(n2, in, -n1 * out) / greater(fma(n2, in, n1 * out), (real)1e-20f);
@@ -21,8 +21,8 @@ typedef struct
   real half_time, since;
 } met_step;
 
-// Splits the rays that meet the surface in this step (`meets`). Light is known where the step starts; the surface lies a little
-// before or behind that: what the medium does between the two belongs to both parts or to one.
+// Splits the rays that meet the surface in this step (`meets`). Light is known where the step starts; the surface lies
+// a little before or behind that: what the medium does between the two belongs to both parts or to one.
 inline void split_at_surface(
   const surroundings* s, const met_step* step, integer meets, light* l, crossed* half_way, waiting* reflected)
 {
@@ -76,16 +76,16 @@ inline void split_at_surface(
   const sample there = take_sample(&s->scene, &around, size, towards);
   const real whole = mean_left(*l);
   const integer behind = after_start >= (real)0.0f;
-#define SPLIT(sigma, left, later, EACH_SOURCE)                                                                           \
-  {                                                                                                                      \
-    const real length = lesser(way, (real)1.0f / greater(sigma, (real)1e-20f));                                          \
-    real remains;                                                                                                        \
-    const real weight = cross_length(sigma, length, &remains);                                                           \
-    const real at_surface = left * (behind ? remains : (real)1.0f / remains);                                            \
-    const real gained = part * weight * (behind ? left : -at_surface);                                                   \
-    EACH_SOURCE                                                                                                          \
-    later = meets ? part * at_surface : later;                                                                           \
-    left = meets ? left * ((real)1.0f - part) : left;                                                                    \
+#define SPLIT(sigma, left, later, EACH_SOURCE)                                  \
+  {                                                                             \
+    const real length = lesser(way, (real)1.0f / greater(sigma, (real)1e-20f)); \
+    real remains;                                                               \
+    const real weight = cross_length(sigma, length, &remains);                  \
+    const real at_surface = left * (behind ? remains : (real)1.0f / remains);   \
+    const real gained = part * weight * (behind ? left : -at_surface);          \
+    EACH_SOURCE                                                                 \
+    later = meets ? part * at_surface : later;                                  \
+    left = meets ? left * ((real)1.0f - part) : left;                           \
   }
 #define GAIN(c) l->radiance.c = meets ? fma(there.source.c, gained, l->radiance.c) : l->radiance.c;
 #if COLOURED
@@ -97,7 +97,6 @@ inline void split_at_surface(
 #endif
 #undef GAIN
 #undef SPLIT
-  lose_half(
-    meets & (whole > (real)0.5f) & (mean_left(*l) <= (real)0.5f), depth_of(at, s->v, spacing), half_way);
+  lose_half(meets & (whole > (real)0.5f) & (mean_left(*l) <= (real)0.5f), depth_of(at, s->v, spacing), half_way);
 }
 #endif

@@ -14,8 +14,9 @@ enum class ToneCurve
 
 struct ToneMapping
 {
-  /// What radiance is multiplied by before the curve; 0 chooses it so that the picture's logarithmic mean luminance becomes
-  /// the 0.18 of a photographer's grey card (Reinhard et al. 2002, "Photographic tone reproduction", equations 1 and 2).
+  /// What radiance is multiplied by before the curve; 0 chooses it so that the picture's logarithmic mean luminance
+  /// becomes the 0.18 of a photographer's grey card (Reinhard et al. 2002, "Photographic tone reproduction", equations
+  /// 1 and 2).
   double exposure = 0.0; ///< [0, 1e30]
   ToneCurve curve = ToneCurve::Filmic;
 };
@@ -23,8 +24,9 @@ struct ToneMapping
 /// @throws InvalidInput for an exposure out of its range
 void Check(const ToneMapping& settings);
 
-/// The exposure that `exposure` = 0 stands for. Pixels do not count that are a thousand times darker than the one which 5%
-/// of all that are lit outshine, or darker still: what is nearly black would make the rest white. 1 where no pixel is lit.
+/// The exposure that `exposure` = 0 stands for. Pixels do not count that are a thousand times darker than the one which
+/// 5% of all that are lit outshine, or darker still: what is nearly black would make the rest white. 1 where no pixel
+/// is lit.
 /// @param radiance  3 a pixel, not negative
 double AutomaticExposure(const std::vector<float>& radiance);
 

@@ -41,8 +41,8 @@ typedef struct
 #define UPWARDS 0.0f
 #endif
 
-// The rays through a packet's pixels: where they come from (voxels), their unit vectors in the world, and the cosine to the
-// view axis.
+// The rays through a packet's pixels: where they come from (voxels), their unit vectors in the world, and the cosine to
+// the view axis.
 typedef struct
 {
   real3 from, d;
@@ -87,15 +87,15 @@ inline void paint(const view* v, canvas picture, int column, int row, rgb radian
   const integer j = to_integer(UPWARDS);
   const integer pixel = (integer)(row * v->picture.x + column) + j * v->picture.x + i;
   const integer inside = (i + column < (integer)v->picture.x) & (j + row < (integer)v->picture.y);
-#define PAINT(n)                                                                                                         \
-  if (LANE(inside, n))                                                                                                   \
-  {                                                                                                                      \
-    const int p = LANE(pixel, n);                                                                                        \
-    picture.radiance[3 * p] = LANE(radiance.r, n);                                                                       \
-    picture.radiance[3 * p + 1] = LANE(radiance.g, n);                                                                   \
-    picture.radiance[3 * p + 2] = LANE(radiance.b, n);                                                                   \
-    picture.alpha[p] = LANE(opaque, n);                                                                                  \
-    picture.depth[p] = LANE(where, n);                                                                                   \
+#define PAINT(n)                                       \
+  if (LANE(inside, n))                                 \
+  {                                                    \
+    const int p = LANE(pixel, n);                      \
+    picture.radiance[3 * p] = LANE(radiance.r, n);     \
+    picture.radiance[3 * p + 1] = LANE(radiance.g, n); \
+    picture.radiance[3 * p + 2] = LANE(radiance.b, n); \
+    picture.alpha[p] = LANE(opaque, n);                \
+    picture.depth[p] = LANE(where, n);                 \
   }
   EACH_LANE(PAINT)
 #undef PAINT

@@ -1,8 +1,8 @@
 #include "Viewing/ViewChecks.h"
 
 #include "Medium/BoxFaces.h"
-#include "Refraction/Index/IndexRange.h"
 #include "Numerics/NumberText.h"
+#include "Refraction/Index/IndexRange.h"
 
 #include <algorithm>
 #include <cmath>
@@ -18,7 +18,7 @@ constexpr double LeastStep = 0.01, LargestStep = 10.0; ///< voxels
 constexpr double LargestRadiance = 1e37;               ///< W / (length^2 sr); sums of it are still floats
 constexpr double FarthestCamera = 1e15;                ///< lengths, voxels: their squares are still floats
 constexpr double MostPixels = 7e8;                     ///< three numbers each: indices end at 2^31
-constexpr float FacesAlike = 1e-3f; ///< relative; what smoothing leaves of a border nearby
+constexpr float FacesAlike = 1e-3f;                    ///< relative; what smoothing leaves of a border nearby
 
 IndexRange RangeOnFaces(const Field& ior, const Grid& grid)
 {
@@ -122,7 +122,8 @@ void Check(const ViewSettings& settings)
   if (static_cast<double>(settings.imageSize[0]) * settings.imageSize[1] > MostPixels)
   {
     throw InvalidInput("The image is " + std::to_string(settings.imageSize[0]) + " by " +
-      std::to_string(settings.imageSize[1]) + " pixels; all together they may be at most " + Text("%g", MostPixels) + ".");
+      std::to_string(settings.imageSize[1]) + " pixels; all together they may be at most " + Text("%g", MostPixels) +
+      ".");
   }
   if (!(settings.stepSize >= LeastStep && settings.stepSize <= LargestStep))
   {
@@ -229,14 +230,14 @@ void CheckDistance(const Camera& camera, const Grid& grid)
     if (!(away <= FarthestCamera && away / grid.spacing[axis] <= FarthestCamera))
     {
       throw InvalidInput("The camera is too far away: " + Text("%g", away) + " from the medium's corner along " +
-        "xyz"[axis] + ", " + Text("%g", away / grid.spacing[axis]) + " voxels; come closer than " + Text("%g", FarthestCamera) +
-        " of both.");
+        "xyz"[axis] + ", " + Text("%g", away / grid.spacing[axis]) + " voxels; come closer than " +
+        Text("%g", FarthestCamera) + " of both.");
     }
     if (camera.parallelProjection && !(camera.parallelScale / grid.spacing[axis] <= FarthestCamera))
     {
       throw InvalidInput("The camera's parallel scale is " + Text("%g", camera.parallelScale) + ", " +
-        Text("%g", camera.parallelScale / grid.spacing[axis]) + " voxels along " + "xyz"[axis] + "; it may be at most " +
-        Text("%g", FarthestCamera) + " voxels.");
+        Text("%g", camera.parallelScale / grid.spacing[axis]) + " voxels along " + "xyz"[axis] +
+        "; it may be at most " + Text("%g", FarthestCamera) + " voxels.");
     }
   }
 }

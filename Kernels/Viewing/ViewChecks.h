@@ -7,12 +7,13 @@ namespace tyndall
 /// @throws InvalidInput for a setting that has no meaning, whatever the scene
 void Check(const ViewSettings& settings);
 
-/// @throws InvalidInput for an array of light that is not finite or has components of another number, and where the settings ask
+/// @throws InvalidInput for an array of light that is not finite or has components of another number, and where the
+/// settings ask
 ///   for one that is not there
 void Check(const SolvedLight& light, const Grid& grid, const ViewSettings& settings);
 
-/// What may not look as it was meant to, in sentences: a table without light, a surface where the index is never, an index that
-/// varies over the box's faces.
+/// What may not look as it was meant to, in sentences: a table without light, a surface where the index is never, an
+/// index that varies over the box's faces.
 /// @param ior    null: constant
 /// @param index  its range
 std::vector<std::string> DoubtsAbout(

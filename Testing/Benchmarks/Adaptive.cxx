@@ -1,7 +1,7 @@
-// Photons sent where they are needed: error of fluence against run time, for photons spread evenly, for Pfeuti's adaptive pipeline
-// as published and for ours, on his three scenes; what equal error costs each; his Table 4.2 beside our passes; and what a scene
-// costs that has nothing to gain. All passes count: pilot photons and map, generation, marching, reconstruction. The medium is on
-// the device before any way begins.
+// Photons sent where they are needed: error of fluence against run time, for photons spread evenly, for Pfeuti's
+// adaptive pipeline as published and for ours, on his three scenes; what equal error costs each; his Table 4.2 beside
+// our passes; and what a scene costs that has nothing to gain. All passes count: pilot photons and map, generation,
+// marching, reconstruction. The medium is on the device before any way begins.
 //
 //   TyndallBenchAdaptive [--quick] [ball] [cube] [armadillo] [even]
 
@@ -224,8 +224,8 @@ private:
   std::vector<float> Reference;
 };
 
-/// Milliseconds of a pass on a GTX 260 (Pfeuti 2009, Tables 4.2 to 4.4), photons spread evenly and adaptive ones; the map's 5 or 6 ms are
-/// in the pilot's, mipmaps and filter in the reconstruction.
+/// Milliseconds of a pass on a GTX 260 (Pfeuti 2009, Tables 4.2 to 4.4), photons spread evenly and adaptive ones; the
+/// map's 5 or 6 ms are in the pilot's, mipmaps and filter in the reconstruction.
 struct PaperPasses
 {
   double generation[2], pilot, marching[2], reconstruction;

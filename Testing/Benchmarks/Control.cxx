@@ -326,8 +326,8 @@ void Solver::EnterMember(Axis& axis, int way, std::size_t b, int m)
   this->CountEntered(axis, axis.patterns[b], axis.patterns[b].members[m], power);
 }
 
-/// Rays come in where others leave: one a row for each move along u, one a column for each along v; one that does both comes
-/// in through u's face in the corner.
+/// Rays come in where others leave: one a row for each move along u, one a column for each along v; one that does both
+/// comes in through u's face in the corner.
 void Solver::CountEntered(const Axis& axis, const tyndall::Bundle& bundle, const Member& member, const Rgb& power)
 {
   const double u = this->TheGrid.size[axis.axes.u];
@@ -383,7 +383,8 @@ March Solver::MarchOf(Axis& axis, int way, int order, double* escaped) const
   return march;
 }
 
-/// Both ways at once: each to the middle of the axis, and when both are there, on to the end. So they never meet in a plane.
+/// Both ways at once: each to the middle of the axis, and when both are there, on to the end. So they never meet in a
+/// plane.
 void Solver::Sweep(Axis& axis, int order)
 {
   if (order == 0)

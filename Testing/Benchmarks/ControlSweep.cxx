@@ -328,8 +328,8 @@ void BeginPlane(const State& state, float longest)
   }
 }
 
-/// Mean length of the medium's own light in the voxel where it starts, summed over all rays with their power, per unit of
-/// source: the sum of power (l - mean) / sigma, by series where that would cancel.
+/// Mean length of the medium's own light in the voxel where it starts, summed over all rays with their power, per unit
+/// of source: the sum of power (l - mean) / sigma, by series where that would cancel.
 inline Vector OwnLength(const Plane& plane, std::size_t at, const OwnLight& own, bool thin)
 {
   const Vector sigma = Load(plane.sigma + at);

@@ -2,16 +2,17 @@
 
 #include <cstddef>
 
-/// The inner loops of the control (Control.h): the fused sweep in C++ for one processor, compiled once for each set of vector
-/// instructions. ControlSweep.cxx includes no header of the standard library but this one's: an inline function compiled
-/// for AVX could become the one that the linker keeps for the whole program.
+/// The inner loops of the control (Control.h): the fused sweep in C++ for one processor, compiled once for each set of
+/// vector instructions. ControlSweep.cxx includes no header of the standard library but this one's: an inline function
+/// compiled for AVX could become the one that the linker keeps for the whole program.
 namespace control
 {
 constexpr int MaxMembers = 8;
 constexpr int MaxChannels = 3;
 constexpr int RingRows = 4; ///< of rays between two stages, of which there are two rings a bundle
 
-/// (1 - exp(-t)) / t = 1 + t (MeanLength[0] + t (MeanLength[1] + ...)), to 2e-8 for 0 <= t < Thin; a minimax polynomial.
+/// (1 - exp(-t)) / t = 1 + t (MeanLength[0] + t (MeanLength[1] + ...)), to 2e-8 for 0 <= t < Thin; a minimax
+/// polynomial.
 constexpr int Terms = 6;
 constexpr double MeanLength[Terms - 1] = { -0.499999036, 0.166648826, -0.0415578957, 0.0080387554, -0.00101435666 };
 constexpr float Thin = 0.75f;
@@ -93,8 +94,8 @@ struct Kernels
   void (*collect)(const Collect&);
 };
 
-/// Floats of a row of `width` rays: an odd number of vectors, so that rows do not fall on the same cache lines. A vector
-/// of border comes before the rays; the one before the next row's is the border behind them.
+/// Floats of a row of `width` rays: an odd number of vectors, so that rows do not fall on the same cache lines. A
+/// vector of border comes before the rays; the one before the next row's is the border behind them.
 constexpr int RowFloats(int rays, int width)
 {
   return (rays / width + 1 + rays / width % 2) * width;

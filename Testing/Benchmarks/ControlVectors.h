@@ -2,8 +2,9 @@
 
 #include <immintrin.h>
 
-/// Vectors of CONTROL_WIDTH floats, 8 (AVX2) or 16 (AVX-512). They have the compiler's own signs for arithmetic; here is what
-/// it has none for. All of it is local to the file, which is compiled for several processors (see ControlSweep.h).
+/// Vectors of CONTROL_WIDTH floats, 8 (AVX2) or 16 (AVX-512). They have the compiler's own signs for arithmetic; here
+/// is what it has none for. All of it is local to the file, which is compiled for several processors (see
+/// ControlSweep.h).
 namespace control
 {
 namespace

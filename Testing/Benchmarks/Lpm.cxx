@@ -1,10 +1,10 @@
-// Light propagation maps, all ways to solve them side by side in one run: sequential and parallel as published, the fused
-// solver, and its control in C++.
+// Light propagation maps, all ways to solve them side by side in one run: sequential and parallel as published, the
+// fused solver, and its control in C++.
 //
 //   TyndallBenchLpm [--quick] [--sizes 32,64,128,256] [--repetitions N] [--scan build/data/skull_2.9.inr]
 //
-// --quick (or TYNDALL_BENCH_QUICK in the environment): seconds, small grids, few repetitions. A medium made by chance, and the
-// CT scan where its file is there. JSON lines as the figures are found, then tables.
+// --quick (or TYNDALL_BENCH_QUICK in the environment): seconds, small grids, few repetitions. A medium made by chance,
+// and the CT scan where its file is there. JSON lines as the figures are found, then tables.
 
 #include "Control.h"
 #include "LpmRuns.h"
@@ -109,10 +109,9 @@ std::vector<Method> MethodsFor(
   methods.push_back({ Conservative, repetitions, true, "",
     [&](const Monitor& monitor) { return SolveConservative(device, medium, light, settings, monitor); } });
   const auto control = [&](const std::string& name, const control::Kernels& kernels, bool polynomials) {
-    methods.push_back(
-      { name, repetitions, true, Conservative, [&medium, &light, &settings, kernels, polynomials](const Monitor& monitor) {
-         return control::Solve(kernels, polynomials, medium, light, settings, monitor);
-       } });
+    methods.push_back({ name, repetitions, true, Conservative,
+      [&medium, &light, &settings, kernels, polynomials](
+        const Monitor& monitor) { return control::Solve(kernels, polynomials, medium, light, settings, monitor); } });
   };
   for (const control::Kernels& kernels : control::KernelsHere())
   {

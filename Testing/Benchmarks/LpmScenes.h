@@ -24,7 +24,8 @@ struct Scene
   std::string GridName() const; ///< "64x64x64"
 };
 
-/// Voxels that have nothing to do with each other, a tenth of them empty; a box 8 mean free paths thick whatever its voxels.
+/// Voxels that have nothing to do with each other, a tenth of them empty; a box 8 mean free paths thick whatever its
+/// voxels.
 /// @param channels  1: albedo 0.9, white sky; 3: albedo 0.95, 0.9, 0.8, bluish sky, one sigma_t
 Scene RandomScene(int edge, int channels);
 

@@ -146,7 +146,8 @@ void PrintShares(const std::vector<Case>& cases)
   const MachineLimits& limits = cases.front().limits;
   char title[200];
   std::snprintf(title, sizeof(title),
-    "Conservative: work per update, and share of this machine's limits (%.0f Gflop/s by multiply-adds, %.1f GB/s by triad)",
+    "Conservative: work per update, and share of this machine's limits (%.0f Gflop/s by multiply-adds, %.1f GB/s by "
+    "triad)",
     2e-9 * limits.multiplyAdds, 1e-9 * limits.bytes);
   table.Print(title);
   std::printf(

@@ -31,8 +31,8 @@ struct Case
   const Figures* Find(const std::string& method) const; ///< null where it was not run
 };
 
-/// How a Figures' times compare. Core seconds over cores are what the wall would show if nobody else used the machine and
-/// both cores were busy all the time; where others are at work they say more than the wall.
+/// How a Figures' times compare. Core seconds over cores are what the wall would show if nobody else used the machine
+/// and both cores were busy all the time; where others are at work they say more than the wall.
 struct Comparison
 {
   double wall = NotMeasured;

@@ -4,8 +4,8 @@
 
 namespace bench
 {
-/// What the device can do at most, as measured with kernels that do nothing else: the fastest of many short runs, so that
-/// it is the machine's and not its other users'.
+/// What the device can do at most, as measured with kernels that do nothing else: the fastest of many short runs, so
+/// that it is the machine's and not its other users'.
 struct MachineLimits
 {
   double multiplyAdds = 0.0; ///< 1/s: fused multiply-adds of floats, on all cores; twice that are flop/s

@@ -6,8 +6,8 @@
 #include "Device/Device.h"
 #include "Photons/Emission/PhotonEmitter.h"
 #include "Photons/Marching/PhotonMarcher.h"
-#include "Refraction/Octree/RefractionOctree.h"
 #include "Refraction/Index/RefractiveMedium.h"
+#include "Refraction/Octree/RefractionOctree.h"
 
 #include <functional>
 #include <string>

@@ -1,8 +1,10 @@
-// Photons through a refractive medium: the stages of Pfeuti's reference pipeline beside his times, what accumulation costs and
-// saves, how paths and light converge, and what the samplers are worth. How to read it: "seconds" is wall time, the median of
-// several runs; "core_seconds" is processor time over the device's compute units, which other programs at work hardly change.
+// Photons through a refractive medium: the stages of Pfeuti's reference pipeline beside his times, what accumulation
+// costs and saves, how paths and light converge, and what the samplers are worth. How to read it: "seconds" is wall
+// time, the median of several runs; "core_seconds" is processor time over the device's compute units, which other
+// programs at work hardly change.
 //
-//   TyndallBenchPhotons [--quick] [stages] [marching] [octree] [power] [lenses] [prism] [focus] [samplers] [scaling] [threads]
+//   TyndallBenchPhotons [--quick] [stages] [marching] [octree] [power] [lenses] [prism] [focus] [samplers] [scaling]
+//   [threads]
 
 #include "MachineLimits.h"
 #include "Measure.h"

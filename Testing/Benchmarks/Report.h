@@ -4,7 +4,8 @@
 #include <string>
 #include <vector>
 
-/// How benchmarks print: figures as one JSON object a line, and tables for people, whose lines never begin with a brace.
+/// How benchmarks print: figures as one JSON object a line, and tables for people, whose lines never begin with a
+/// brace.
 namespace bench
 {
 class JsonLine

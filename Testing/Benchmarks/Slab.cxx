@@ -1,6 +1,6 @@
-// Plane-parallel slabs, periodic across: light reflected and transmitted against reference values, as voxels and directions
-// become more. How to read it: with more cells the answer for a set of directions converges ("order", from three grids); what
-// is left then is the directions' error ("limit": Richardson's extrapolation, less the reference).
+// Plane-parallel slabs, periodic across: light reflected and transmitted against reference values, as voxels and
+// directions become more. How to read it: with more cells the answer for a set of directions converges ("order", from
+// three grids); what is left then is the directions' error ("limit": Richardson's extrapolation, less the reference).
 //
 //   TyndallBenchSlab [--quick]
 
@@ -37,8 +37,8 @@ constexpr SlabReference MoreSlabs[] = {
 struct Method
 {
   std::string name;
-  bool
-    asPublished; ///< only diffuse light, and few directions: it takes a thousand orders to get round, and shows its point
+  /// Only diffuse light, and few directions: it takes a thousand orders to get round, and shows its point.
+  bool asPublished;
   std::function<LightField(const Medium&, const Illumination&, const PropagationSettings&)> solve;
 };
 

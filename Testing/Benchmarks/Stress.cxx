@@ -1,6 +1,7 @@
-// The extreme matrix: scenes at the edge of what numbers can hold, through every solver's filters. Each cell is right, by all that
-// is known of its light without solving it (balance, furnaces, symmetry, scale, closed forms), or it is refused with one clear
-// error, or it is WRONG: not a number, negative, wrong, crashed or hung. Exit status 1 where one is.
+// The extreme matrix: scenes at the edge of what numbers can hold, through every solver's filters. Each cell is right,
+// by all that is known of its light without solving it (balance, furnaces, symmetry, scale, closed forms), or it is
+// refused with one clear error, or it is WRONG: not a number, negative, wrong, crashed or hung. Exit status 1 where one
+// is.
 //
 //   TyndallBenchStress [--quick] [part of a row's, case's or method's name]...
 

@@ -148,9 +148,9 @@ private:
     {
       const int a = (axis + 1) % 3, b = (axis + 2) % 3;
       area[axis] = this->Scene.cells[a] * h[a] * this->Scene.cells[b] * h[b];
-      power += this->Scene.periodic[axis]
-        ? 0.0
-        : carried * Pi * area[axis] * (2.0 * this->Scene.sky[c] + this->Scene.faces[2 * axis] + this->Scene.faces[2 * axis + 1]);
+      power += this->Scene.periodic[axis] ? 0.0
+                                          : carried * Pi * area[axis] *
+          (2.0 * this->Scene.sky[c] + this->Scene.faces[2 * axis] + this->Scene.faces[2 * axis + 1]);
     }
     for (const Lamp& lamp : this->Scene.lamps)
     {
@@ -167,7 +167,8 @@ private:
     };
     if (this->Published)
     {
-      // The published deposit knows of scattering only: of what a voxel shines itself up to a quarter more is absorbed and escapes.
+      // The published deposit knows of scattering only: of what a voxel shines itself up to a quarter more is absorbed
+      // and escapes.
       const double made = this->Scene.emission.empty() ? 1e-3 : 0.3;
       this->Add("energy_made", this->Solver == StressSolver::PhotonsPublished ? 0.0 : this->Worst(imbalance), made);
       return;
@@ -175,7 +176,8 @@ private:
     this->Add("balance", this->Worst([&](int c) { return std::abs(imbalance(c)); }), 1e-4);
     // Lamps outside the box are seen by beams, and photons come by chance.
     const bool exact = !photons &&
-      std::all_of(this->Scene.lamps.begin(), this->Scene.lamps.end(), [](const Lamp& lamp) { return lamp.kind == Lamp::Sun; });
+      std::all_of(
+        this->Scene.lamps.begin(), this->Scene.lamps.end(), [](const Lamp& lamp) { return lamp.kind == Lamp::Sun; });
     this->Add("entered", this->Worst([&](int c) {
       return this->Shining(c) == 0.0 ? 0.0 : std::abs(this->Fact(Entered, c) / this->Shining(c) - 1.0);
     }),
@@ -248,7 +250,8 @@ private:
       if (this->Case.mirrored[axis])
       {
         this->Add(std::string("faces_" + std::string(1, "xyz"[axis])).c_str(), this->FaceAsymmetry(axis), 0.01);
-        // Rays from small bright parts start in other places on the other side: 0.24% of the largest fluence was measured.
+        // Rays from small bright parts start in other places on the other side: 0.24% of the largest fluence was
+        // measured.
         const double limit = this->Scene.emission.empty() ? 1e-3 : 5e-3;
         this->Add(std::string("mirrored_" + std::string(1, "xyz"[axis])).c_str(), this->Asymmetry(axis), limit);
       }
@@ -310,7 +313,8 @@ private:
     {
       const std::array<int, 3>& n = this->Scene.cells;
       const double fluence = this->Fluence(this->Scene.Voxel(n[0] / 2, n[1] / 2, n[2] / 2), 0);
-      // On 32 voxels it is within 2e-3 (LinearSource.OneShiningFaceIsASixthAtTheCentreOfACube); these few are a mean free path each.
+      // On 32 voxels it is within 2e-3 (LinearSource.OneShiningFaceIsASixthAtTheCentreOfACube); these few are a mean
+      // free path each.
       this->Add("middle", std::abs(fluence / (4.0 * Pi * this->Case.middle) - 1.0), 5e-3);
     }
     const bool linear = this->Solver != StressSolver::MapsByOrders; // a constant source has no diffusion limit
@@ -327,7 +331,8 @@ private:
     }
   }
 
-  /// A sun along -z through an absorber: means of exp(-tau) over voxels. Photons are spread within columns, and counted by layers.
+  /// A sun along -z through an absorber: means of exp(-tau) over voxels. Photons are spread within columns, and counted
+  /// by layers.
   void Beam()
   {
     const bool photons = IsPhotons(this->Solver);
@@ -490,7 +495,8 @@ StressCheck CheckTurned(
     worst = error <= worst ? worst : error;
     largest = std::max<double>(largest, expected[i]);
   }
-  // Where next to nothing gets into an opaque box, rounding of what shines on it is all that there is: the scale is also that.
+  // Where next to nothing gets into an opaque box, rounding of what shines on it is all that there is: the scale is
+  // also that.
   const std::array<int, 3>& n = stressCase.scene.cells;
   const Vector& h = stressCase.scene.spacing;
   double surface = 0.0;

@@ -141,8 +141,8 @@ StressCase Beam(const std::string& row, const std::string& name, StressScene sce
   return made;
 }
 
-/// A cube with one face that shines. Where nothing is absorbed the six faces together are a furnace, so each gives its middle
-/// a sixth.
+/// A cube with one face that shines. Where nothing is absorbed the six faces together are a furnace, so each gives its
+/// middle a sixth.
 StressCase OneFace(const std::string& row, const std::string& name, StressScene scene)
 {
   scene.faces[4] = 1.0;
@@ -202,7 +202,8 @@ void AddMeanCosines(std::vector<StressCase>& cases)
   }
 }
 
-/// n = `inside` in a ball or in voxels by turns, 1 about them, without any smooth border. Two layers about it are the spline's.
+/// n = `inside` in a ball or in voxels by turns, 1 about them, without any smooth border. Two layers about it are the
+/// spline's.
 StressScene Glass(double inside, bool checkered)
 {
   StressScene scene;
@@ -460,8 +461,8 @@ void AddShapes(std::vector<StressCase>& cases)
       cases[cases.size() - 2].middle = 0.0; // that is of a cube that many rays enter
     }
   }
-  // A slab, of 1 x 1 x 1000 voxels with periodic sides: T of diffuse light by the diffusion limit, whose extrapolation length
-  // is Hopf's (0.7104 on both sides).
+  // A slab, of 1 x 1 x 1000 voxels with periodic sides: T of diffuse light by the diffusion limit, whose extrapolation
+  // length is Hopf's (0.7104 on both sides).
   for (const double tau : { 100.0, 1e4, 1e6 })
   {
     StressScene slab = Uniform(0.0, tau / 1000.0, { 1, 1, 1000 });

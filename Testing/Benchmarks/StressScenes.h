@@ -20,7 +20,7 @@ struct Lamp
   {
     Sun,
     Point,
-    Spot,     ///< 60 degrees
+    Spot, ///< 60 degrees
     Rectangle
   };
   Kind kind = Sun;
@@ -30,7 +30,8 @@ struct Lamp
   double width = 0.0;               ///< of a rectangle's edges; 0: half a voxel along x
 };
 
-/// A medium and what shines on it. Arrays are over the voxels, x fastest, `channels` floats a voxel; empty: 0 everywhere.
+/// A medium and what shines on it. Arrays are over the voxels, x fastest, `channels` floats a voxel; empty: 0
+/// everywhere.
 struct StressScene
 {
   std::array<int, 3> cells = { 9, 9, 9 };

@@ -78,8 +78,7 @@ void AddLamp(vtkLightRig* rig, const Lamp& lamp, const StressScene& scene)
     case Lamp::Point: rig->AddPointLight(at[0], at[1], at[2], p[0], p[1], p[2]); break;
     case Lamp::Spot: rig->AddSpotLight(at[0], at[1], at[2], to[0], to[1], to[2], p[0], p[1], p[2], 60.0); break;
     case Lamp::Rectangle:
-      rig->AddRectangleLight(
-        at[0], at[1], at[2], to[0], to[1], to[2], p[0], p[1], p[2], width, width);
+      rig->AddRectangleLight(at[0], at[1], at[2], to[0], to[1], to[2], p[0], p[1], p[2], width, width);
       break;
   }
 }
@@ -217,7 +216,8 @@ struct PhotonChain
   {
     this->emitter->SetImportanceMapConnection(this->importance->GetOutputPort());
     this->marcher->SetPhotonCounts(published);
-    this->reconstruction->SetScheme(published ? vtkPhotonReconstruction::PUBLISHED : vtkPhotonReconstruction::CONSERVATIVE);
+    this->reconstruction->SetScheme(
+      published ? vtkPhotonReconstruction::PUBLISHED : vtkPhotonReconstruction::CONSERVATIVE);
     this->reconstruction->Update();
     ReadLight(this->reconstruction->GetOutput(), outcome);
     const std::vector<float> raw =
@@ -238,8 +238,8 @@ struct PhotonChain
   }
 };
 
-/// The medium in a light of 4 pi everywhere, so that where it is in equilibrium with that all is 1 to the eye. Where rays bend
-/// radiance is n^2 of that.
+/// The medium in a light of 4 pi everywhere, so that where it is in equilibrium with that all is 1 to the eye. Where
+/// rays bend radiance is n^2 of that.
 vtkSmartPointer<vtkImageData> ImageToView(const StressScene& scene, bool bent, bool lit)
 {
   StressScene seen = scene;

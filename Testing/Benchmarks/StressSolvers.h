@@ -28,7 +28,7 @@ enum class StressSolver
 const char* NameOf(StressSolver solver);
 bool IsMaps(StressSolver solver);
 bool EndsByTolerance(StressSolver solver); ///< others do as many orders whatever it is
-bool IsPhotons(StressSolver solver); ///< photons, reconstructed or not
+bool IsPhotons(StressSolver solver);       ///< photons, reconstructed or not
 bool IsView(StressSolver solver);
 
 /// Whether a solver has anything to do with a case: photons come from lamps and skies only, a viewer sees no lamps, ...
@@ -42,14 +42,14 @@ struct StressOutcome
   double seconds = 0.0;
   int channels = 1;
   std::vector<float> fluence, fluenceDirect, netFlux, fluenceError;
-  std::vector<double> balance;      ///< entered, emitted, absorbed, escaped, left over; `channels` each
-  std::vector<double> facePowerOut; ///< -x, +x, -y, +y, -z, +z; `channels` each
+  std::vector<double> balance;       ///< entered, emitted, absorbed, escaped, left over; `channels` each
+  std::vector<double> facePowerOut;  ///< -x, +x, -y, +y, -z, +z; `channels` each
   std::vector<double> halfRangeFlux; ///< one, of maps
-  std::vector<double> scattered;    ///< W, of photons
-  std::vector<float> directions;    ///< mean directions, 3 a voxel, of photons
-  double residual = 0.0;            ///< of maps, what the solver says is left, over its tolerance
-  double rawTotal = 0.0;            ///< of reconstructions: the sum of the noisy fluence
-  std::vector<float> levels;        ///< of the octree
+  std::vector<double> scattered;     ///< W, of photons
+  std::vector<float> directions;     ///< mean directions, 3 a voxel, of photons
+  double residual = 0.0;             ///< of maps, what the solver says is left, over its tolerance
+  double rawTotal = 0.0;             ///< of reconstructions: the sum of the noisy fluence
+  std::vector<float> levels;         ///< of the octree
   double nodes = 0.0;
   std::vector<float> radiance, alpha; ///< of views, 3 and 1 a pixel: in a furnace
   std::vector<float> through;         ///< of views, 3 a pixel: a background of 1 seen through the unlit medium along -z

@@ -12,8 +12,8 @@ namespace bench
 /// @return what it returned; -1 where it crashed or took longer than `seconds`
 int RunApart(const std::function<int()>& work, double seconds);
 
-/// Runs `work(i)` for 0 <= i < count, one after the other in a child, which goes on with the next number in a new one where
-/// it crashes or one number takes longer than `seconds`.
+/// Runs `work(i)` for 0 <= i < count, one after the other in a child, which goes on with the next number in a new one
+/// where it crashes or one number takes longer than `seconds`.
 /// @param work   prints what it likes, and returns a word
 /// @param buried told of each number that its process did not survive, and how it ended
 /// @return the words; "WRONG" where there is none

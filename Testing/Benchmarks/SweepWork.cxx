@@ -19,7 +19,8 @@ struct Count
 // Of `extinguished`: clamp, n (3), r (2 multiply-adds), polynomial (5), q (2), 2^n (3), left (1), lost (2).
 constexpr Count Exponential = { 19, 26, 0, 0 };
 
-// cross_voxels, a segment of a bundle: tau, the exponential, mean length, thin or not (3), taken, shine; sigma, 1/sigma, taken.
+// cross_voxels, a segment of a bundle: tau, the exponential, mean length, thin or not (3), taken, shine; sigma,
+// 1/sigma, taken.
 constexpr Count OfSegment = { 1 + Exponential.operations + 1 + 3 + 1 + 1, 1 + Exponential.flops + 1 + 2 + 1, 3, 1 };
 // In a thin row: tau, the polynomial (5), mean length, change, shine; sigma.
 constexpr Count OfThinSegment = { 9, 14, 1, 0 };

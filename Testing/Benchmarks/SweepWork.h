@@ -5,9 +5,10 @@
 
 namespace bench
 {
-/// What one order of the fused solver has to do for one voxel, direction and channel, counted in the texts of Numerics.cl,
-/// Sweep.cl, SweepBundle.cl and Collect.cl with the rays' real number of segments (Bundle::Crossing). The order is one with
-/// scattered light, without net flux, on an open box; rows that are thin throughout take the polynomial.
+/// What one order of the fused solver has to do for one voxel, direction and channel, counted in the texts of
+/// Numerics.cl, Sweep.cl, SweepBundle.cl and Collect.cl with the rays' real number of segments (Bundle::Crossing). The
+/// order is one with scattered light, without net flux, on an open box; rows that are thin throughout take the
+/// polynomial.
 struct SweepWork
 {
   double operations = 0.0; ///< arithmetic on floats: each addition, multiplication, fused multiply-add, comparison,

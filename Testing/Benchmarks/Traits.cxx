@@ -1,5 +1,5 @@
-// What it saves to leave out what a scene does not need: for each trait and solver a scene that has this trait alone, solved with
-// LeaveOut and without. Seconds and bytes, and whether it is the same light.
+// What it saves to leave out what a scene does not need: for each trait and solver a scene that has this trait alone,
+// solved with LeaveOut and without. Seconds and bytes, and whether it is the same light.
 //
 //   TyndallBenchTraits [--quick] [case...]
 

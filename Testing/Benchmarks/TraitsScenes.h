@@ -14,8 +14,8 @@
 
 namespace bench
 {
-/// A cloud in which nothing can be left out: coloured, it scatters, absorbs and shines, under a coloured sky; the memory of its
-/// arrays. Traits are given to it one by one. Moves, does not copy.
+/// A cloud in which nothing can be left out: coloured, it scatters, absorbs and shines, under a coloured sky; the
+/// memory of its arrays. Traits are given to it one by one. Moves, does not copy.
 struct TraitScene
 {
   explicit TraitScene(std::array<int, 3> size);

@@ -65,7 +65,8 @@ struct Adaptive
   vtkImageData* Smooth() { return this->reconstruction->GetOutput(); }
 };
 
-/// A cell array of so many components, one value each for every cell, all finite; null, and a failed claim, where it is not.
+/// A cell array of so many components, one value each for every cell, all finite; null, and a failed claim, where it is
+/// not.
 inline vtkDataArray* FiniteCells(Claims& claims, vtkImageData* image, const char* name, int components)
 {
   vtkDataArray* array = image->GetCellData()->GetArray(name);

@@ -1,4 +1,5 @@
-// What adaptive photons are told when a map, photons or light mean nothing: one error that says what, and empty outputs.
+// What adaptive photons are told when a map, photons or light mean nothing: one error that says what, and empty
+// outputs.
 
 #include "AdaptiveScene.h"
 

@@ -6,8 +6,8 @@
 #include "vtkMath.h"
 #include "vtkNew.h"
 #include "vtkPointData.h"
-#include "vtkTestUtilities.h"
 #include "vtksys/SystemTools.hxx"
+#include "vtkTestUtilities.h"
 
 #include <ImfChannelList.h>
 #include <ImfFrameBuffer.h>
@@ -65,9 +65,9 @@ Picture Gradient(int width, int height)
 }
 
 /// @param offset   of the data window in the display window, which is `around` larger on each side
-void WriteExr(const std::string& path, const Picture& picture, const std::vector<std::string>& names, bool tiled = false,
-  Imf::Compression compression = Imf::ZIP_COMPRESSION, Imath::Box2i display = Imath::Box2i(), Imath::V2i offset = { 0, 0 },
-  Imf::PixelType type = Imf::FLOAT, bool cube = false)
+void WriteExr(const std::string& path, const Picture& picture, const std::vector<std::string>& names,
+  bool tiled = false, Imf::Compression compression = Imf::ZIP_COMPRESSION, Imath::Box2i display = Imath::Box2i(),
+  Imath::V2i offset = { 0, 0 }, Imf::PixelType type = Imf::FLOAT, bool cube = false)
 {
   const Imath::Box2i data(offset, offset + Imath::V2i(picture.Width - 1, picture.Height - 1));
   Imf::Header header(display.isEmpty() ? data : display, data);
@@ -179,7 +179,8 @@ void PicturesComeUpright(test::Claims& claims)
   WriteExr(Path("window.exr"), picture, { "R", "G", "B" }, false, Imf::ZIP_COMPRESSION,
     Imath::Box2i(Imath::V2i(-2, -1), Imath::V2i(19, 9)), { 5, 3 });
   vtkImageData* window = reading.Of(Path("window.exr"));
-  claims.That(window->GetDimensions()[0] == 22 && window->GetDimensions()[1] == 11, "the display window is the picture");
+  claims.That(
+    window->GetDimensions()[0] == 22 && window->GetDimensions()[1] == 11, "the display window is the picture");
   claims.That(Value(window, 0, 0, 0) == 0.0 && Value(window, 7, 6, 0) == 1.0 && Value(window, 7, 6, 1) == 100.0 &&
       Value(window, 21, 0, 0) == 15.0 && Value(window, 21, 0, 1) == 700.0,
     "the data window lies where it says");
@@ -211,9 +212,10 @@ void RadianceIsReadInItsUnit(test::Claims& claims)
   WriteBytes(Path("turned.hdr"), SmallHdr("FORMAT=32-bit_rle_rgbe\n", "-X 4 +Y 16\n"));
   vtkImageData* turned = reading.Of(Path("turned.hdr"));
   claims.That(turned->GetDimensions()[0] == 4 && turned->GetDimensions()[1] == 16, "a turned picture's size");
-  claims.Near(Value(turned, 3, 5, 0), (128 + 5 + 0.5) / 128, 1e-6, "a turned picture's first stored row is its right column");
-  const std::string old = "#?RGBE\nFORMAT=32-bit_rle_rgbe\n\n+Y 1 +X 6\n" + Rgbe(200, 100, 50, 128) + Rgbe(1, 1, 1, 4) +
-    Rgbe(10, 20, 30, 0);
+  claims.Near(
+    Value(turned, 3, 5, 0), (128 + 5 + 0.5) / 128, 1e-6, "a turned picture's first stored row is its right column");
+  const std::string old =
+    "#?RGBE\nFORMAT=32-bit_rle_rgbe\n\n+Y 1 +X 6\n" + Rgbe(200, 100, 50, 128) + Rgbe(1, 1, 1, 4) + Rgbe(10, 20, 30, 0);
   WriteBytes(Path("old.hdr"), old);
   vtkImageData* oldRuns = reading.Of(Path("old.hdr"));
   claims.Near(Value(oldRuns, 4, 0, 0), 200.5 / 256, 1e-6, "old run lengths");
@@ -221,8 +223,8 @@ void RadianceIsReadInItsUnit(test::Claims& claims)
   WriteBytes(Path("xyz.hdr"), SmallHdr("FORMAT=32-bit_rle_xyze\n"));
   vtkImageData* xyz = reading.Of(Path("xyz.hdr"));
   claims.That(reading.Errors.WasOneWith("negative"), "a colour outside sRGB is told");
-  claims.Near(Value(xyz, 0, 3, 0),
-    (3.2404542 * 128.5 - 1.5371385 * 64.5 - 0.4985314 * 32.5) / 128, 1e-5, "XYZ becomes RGB");
+  claims.Near(
+    Value(xyz, 0, 3, 0), (3.2404542 * 128.5 - 1.5371385 * 64.5 - 0.4985314 * 32.5) / 128, 1e-5, "XYZ becomes RGB");
 }
 
 /// Integral of radiance over the sphere.
@@ -264,7 +266,8 @@ void LightIsKept(test::Claims& claims)
   reading.Reader->SetMaximumRadiance(1e4);
   vtkImageData* tamed = reading.Of(Path("sun.exr"));
   claims.Near(Value(tamed, 30, 26 - 1 - 7, 0), 1e4, 1e-2, "the sun is held to the maximum");
-  claims.Near(Value(tamed, 30, 26 - 1 - 7, 1) / Value(tamed, 30, 26 - 1 - 7, 0), 800.0 / 1e5, 1e-6, "and keeps its hue");
+  claims.Near(
+    Value(tamed, 30, 26 - 1 - 7, 1) / Value(tamed, 30, 26 - 1 - 7, 0), 800.0 / 1e5, 1e-6, "and keeps its hue");
   claims.That(reading.Errors.None(), "all of it without an error");
 }
 
@@ -304,10 +307,12 @@ void WrongQuestionsAreErrors(test::Claims& claims)
   picture.Rgb[0] = -1e-3f;
   WriteExr(Path("negative.exr"), picture, { "R", "G", "B" });
   vtkImageData* image = reading.Of(Path("negative.exr"));
-  claims.That(reading.Errors.WasOneWith("2 values") && Value(image, 7, 7, 1) == 0.0, "negative values become 0, with a warning");
+  claims.That(
+    reading.Errors.WasOneWith("2 values") && Value(image, 7, 7, 1) == 0.0, "negative values become 0, with a warning");
 }
 
-/// Damaged files: one error and no data, or other pixels (a warning if they are negative); and always a living application.
+/// Damaged files: one error and no data, or other pixels (a warning if they are negative); and always a living
+/// application.
 void DamagedFilesAreErrors(test::Claims& claims)
 {
   Reading reading;
@@ -349,7 +354,8 @@ void DamagedFilesAreErrors(test::Claims& claims)
     claims.That(oneError, "flipped bits are one error or other pixels: " + path);
   };
   damage(Path("damaged.hdr"), SmallHdr());
-  damage(Path("damaged.hdr"), "#?RGBE\nFORMAT=32-bit_rle_rgbe\n\n+Y 1 +X 6\n" + Rgbe(200, 100, 50, 128) + Rgbe(1, 1, 1, 5));
+  damage(
+    Path("damaged.hdr"), "#?RGBE\nFORMAT=32-bit_rle_rgbe\n\n+Y 1 +X 6\n" + Rgbe(200, 100, 50, 128) + Rgbe(1, 1, 1, 5));
   const Picture picture = Gradient(17, 9);
   for (const auto compression : { Imf::NO_COMPRESSION, Imf::RLE_COMPRESSION, Imf::ZIP_COMPRESSION, Imf::PIZ_COMPRESSION,
          Imf::PXR24_COMPRESSION, Imf::B44_COMPRESSION, Imf::DWAA_COMPRESSION })

@@ -217,8 +217,8 @@ void PointsAreLeftOut(test::Claims& claims)
     rig->Update();
     auto lights = vtkSmartPointer<vtkPolyData>::New();
     lights->ShallowCopy(rig->GetOutput());
-    test::AddValues<vtkUnsignedCharArray>(lights->GetPointData(), vtkDataSetAttributes::GhostArrayName(), 3, 1,
-      [&](vtkIdType i, int) {
+    test::AddValues<vtkUnsignedCharArray>(
+      lights->GetPointData(), vtkDataSetAttributes::GhostArrayName(), 3, 1, [&](vtkIdType i, int) {
         return hidden(i) ? vtkDataSetAttributes::HIDDENPOINT : duplicate(i) ? vtkDataSetAttributes::DUPLICATEPOINT : 0;
       });
     vtkNew<vtkLightPropagationMaps> maps;

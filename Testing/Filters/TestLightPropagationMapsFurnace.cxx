@@ -9,8 +9,8 @@ namespace
 constexpr double Pi = 3.14159265358979323846;
 constexpr double Radiance = 0.75; ///< of the walls, and of the medium in equilibrium with them
 
-/// A box whose walls shine, filled with a medium that absorbs, scatters and emits in equilibrium: whatever its shape, every
-/// voxel sees the same radiance from everywhere.
+/// A box whose walls shine, filled with a medium that absorbs, scatters and emits in equilibrium: whatever its shape,
+/// every voxel sees the same radiance from everywhere.
 void Holds(test::Claims& claims, vtkImageData* medium, const std::string& which)
 {
   vtkNew<vtkLightPropagationMaps> maps;

@@ -18,8 +18,8 @@
 #include <string>
 #include <vector>
 
-// CGAL's meshes, voxelised by this project and by OpenVDB's meshToVolume. `./run test` fetches them; without them the test is
-// skipped.
+// CGAL's meshes, voxelised by this project and by OpenVDB's meshToVolume. `./run test` fetches them; without them the
+// test is skipped.
 namespace
 {
 using tyndall::TriangleMesh;

@@ -108,13 +108,15 @@ void EverySchemeGivesLight(test::Claims& claims)
       claims.That(errors.None(), "no error of " + what);
       vtkDataArray* fluence = test::FiniteCells(claims, scene.Smooth(), "fluence", 1);
       test::FiniteCells(claims, scene.Smooth(), "mip_level", 1);
-      const bool conserved = conserve == Filter::ALWAYS || (conserve == Filter::BY_SCHEME && scheme == Filter::CONSERVATIVE);
+      const bool conserved =
+        conserve == Filter::ALWAYS || (conserve == Filter::BY_SCHEME && scheme == Filter::CONSERVATIVE);
       const double before = test::TotalCells(scene.Noisy(), "fluence");
       const double bias = conserved ? 0.0 : scene.reconstruction->GetBias();
       claims.Near(test::Total(fluence) / before, 1.0 + bias, 1e-5, "total fluence of " + what);
       claims.That(scene.Smooth()->GetCellData()->HasArray("fluence_error") == (scheme == Filter::CONSERVATIVE),
         "a standard error of the conservative scheme alone");
-      claims.That((scene.reconstruction->GetMeanError() > 0.0) == (scheme == Filter::CONSERVATIVE), "on the panel, too");
+      claims.That(
+        (scene.reconstruction->GetMeanError() > 0.0) == (scheme == Filter::CONSERVATIVE), "on the panel, too");
     }
   }
   scene.reconstruction->SetScheme(Filter::CONSTANT_RADIUS);

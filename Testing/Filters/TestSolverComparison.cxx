@@ -23,7 +23,8 @@ std::string Text(vtkTable* table, vtkIdType row, const char* column)
   return table->GetValueByName(row, column).ToString();
 }
 
-/// Only the default method, at one setting, with all the time that it takes: which runs there are must not depend on the machine.
+/// Only the default method, at one setting, with all the time that it takes: which runs there are must not depend on
+/// the machine.
 void AskForOne(vtkSolverComparison* comparison)
 {
   comparison->ConstantSourceOff();

@@ -18,8 +18,8 @@
 using test::Path;
 using test::ReadBytes;
 
-/// What a .vdb file makes the reader take, measured in a child process for each file. The parent reads none: OpenVDB's threads
-/// would not survive a fork.
+/// What a .vdb file makes the reader take, measured in a child process for each file. The parent reads none: OpenVDB's
+/// threads would not survive a fork.
 namespace
 {
 constexpr double Mebibyte = 1048576.0;

@@ -1,4 +1,5 @@
-// What is beyond floats, or no number, is refused where it comes in, or told where it comes out: one error, an empty output.
+// What is beyond floats, or no number, is refused where it comes in, or told where it comes out: one error, an empty
+// output.
 #include "MediumScene.h"
 
 #include "vtkCellArray.h"

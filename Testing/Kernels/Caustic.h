@@ -8,8 +8,8 @@
 
 #include <numeric>
 
-/// A ball of glass in air, voxelised from a mesh, and what it makes of parallel light. Places along the light's axis are
-/// distances behind the ball's centre, and like all other lengths that go in or out here in radii of the ball.
+/// A ball of glass in air, voxelised from a mesh, and what it makes of parallel light. Places along the light's axis
+/// are distances behind the ball's centre, and like all other lengths that go in or out here in radii of the ball.
 namespace caustic
 {
 using Point = std::array<double, 3>;
@@ -134,8 +134,8 @@ void ForVoxels(const tyndall::Grid& grid, const Axis& axis, const std::vector<fl
   }
 }
 
-/// Where the light behind the ball is narrowest, by the mean square of its distance from the axis in slices as thick as a
-/// voxel: a parabola, fitted from 1.15 to 1.85. What voxels add to that distance is the same everywhere.
+/// Where the light behind the ball is narrowest, by the mean square of its distance from the axis in slices as thick as
+/// a voxel: a parabola, fitted from 1.15 to 1.85. What voxels add to that distance is the same everywhere.
 inline double Waist(const tyndall::Grid& grid, const Axis& axis, const std::vector<float>& fluence)
 {
   const double from = 1.15, to = 1.85, slice = grid.spacing[0] / Radius;
@@ -259,8 +259,8 @@ inline std::vector<double> Profile(const tyndall::Grid& grid, const Axis& axis, 
   return sums;
 }
 
-/// The same by geometrical optics, of light of 1 W / length^2 that covers the ball: each ray adds the inverse of its cosine to
-/// the ring in which it meets the plane. The ball keeps other light away.
+/// The same by geometrical optics, of light of 1 W / length^2 that covers the ball: each ray adds the inverse of its
+/// cosine to the ring in which it meets the plane. The ball keeps other light away.
 inline std::vector<double> ExpectedProfile()
 {
   std::vector<double> sums(Rings);

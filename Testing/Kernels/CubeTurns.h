@@ -8,8 +8,8 @@
 /// The 48 rotations and mirrorings of the cube, as they move boxes of voxels and what is in them.
 struct CubeTurn
 {
-  std::array<int, 3> to = { 0, 1, 2 };  ///< where axis a comes to lie
-  std::array<bool, 3> turned = {};      ///< whether it is turned round
+  std::array<int, 3> to = { 0, 1, 2 }; ///< where axis a comes to lie
+  std::array<bool, 3> turned = {};     ///< whether it is turned round
 
   template <class T>
   std::array<T, 3> Moved(const std::array<T, 3>& values) const

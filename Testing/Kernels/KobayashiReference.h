@@ -3,9 +3,10 @@
 #include <array>
 #include <vector>
 
-/// Scalar flux at points of Kobayashi's problem 1: K. Kobayashi, N. Sugimura, Y. Nagaya, 3-D Radiation Transport Benchmark Problems and
-/// Results for Simple Geometries with Void Regions, NSC-DOC(2000)4, Prog. Nucl. Energy 39 (2001) 119; the project's reference
-/// values, kobayashi_problem1.csv, copied so that a clone needs no other file. Coordinates in cm.
+/// Scalar flux at points of Kobayashi's problem 1: K. Kobayashi, N. Sugimura, Y. Nagaya, 3-D Radiation Transport
+/// Benchmark Problems and Results for Simple Geometries with Void Regions, NSC-DOC(2000)4, Prog. Nucl. Energy 39 (2001)
+/// 119; the project's reference values, kobayashi_problem1.csv, copied so that a clone needs no other file. Coordinates
+/// in cm.
 struct KobayashiReference
 {
   std::array<double, 3> point;
@@ -16,7 +17,8 @@ struct KobayashiReference
   double half, halfError; ///< half of the extinction scatters: the project's own Monte Carlo, its standard error
   double published, publishedError; ///< the same, published (GMVP), relative standard error
 
-  /// The one that is better known by its own error. At 95 95 95 the published one is 11% higher, three of the own one's errors.
+  /// The one that is better known by its own error. At 95 95 95 the published one is 11% higher, three of the own one's
+  /// errors.
   double BestHalf() const { return this->halfError < this->publishedError * this->half ? this->half : this->published; }
 };
 const std::vector<KobayashiReference> KobayashiProblem1 = {

@@ -6,8 +6,8 @@
 #include <algorithm>
 #include <cmath>
 
-/// Kobayashi's problem 1, in cm: a source of 20 cm in a void of 100 cm in a shield of 200 cm; the problem's reflecting planes
-/// run through the middle.
+/// Kobayashi's problem 1, in cm: a source of 20 cm in a void of 100 cm in a shield of 200 cm; the problem's reflecting
+/// planes run through the middle.
 /// @param voxels  along each edge, a multiple of 20 so that the regions end on voxels
 /// @param scattering  part of the extinction: 0 (case i), 0.5 (case ii)
 inline Scene KobayashiScene(int voxels, double scattering)
@@ -39,8 +39,8 @@ inline Scene KobayashiScene(int voxels, double scattering)
   return scene;
 }
 
-/// Fluence at a point in the middle of a voxel, seen as through 8 mirrored octants. A parabola through the means of the voxel
-/// and its neighbours along each axis takes from the voxel's mean what its size adds: order 4 in the size.
+/// Fluence at a point in the middle of a voxel, seen as through 8 mirrored octants. A parabola through the means of the
+/// voxel and its neighbours along each axis takes from the voxel's mean what its size adds: order 4 in the size.
 /// @param asPoint  false: the voxel's mean itself
 inline double KobayashiFluence(
   const Scene& scene, const std::vector<float>& fluence, const std::array<double, 3>& point, bool asPoint)

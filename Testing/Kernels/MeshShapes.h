@@ -40,8 +40,8 @@ inline TriangleMesh Torus(const Point& centre, double ring, double tube, int acr
   });
 }
 
-/// An octahedron whose triangles were divided into four `divisions` times, its points pulled onto the sphere. The points of
-/// each triangle are its own: none is shared.
+/// An octahedron whose triangles were divided into four `divisions` times, its points pulled onto the sphere. The
+/// points of each triangle are its own: none is shared.
 inline TriangleMesh Sphere(const Point& centre, double radius, int divisions = 6)
 {
   using Triangle = std::array<Point, 3>;

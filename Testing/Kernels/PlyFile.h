@@ -6,8 +6,8 @@
 #include <stdexcept>
 #include <string>
 
-/// Reads the triangles of a PLY file in text form whose points have nothing but three coordinates, as `./run` makes them of
-/// CGAL's meshes.
+/// Reads the triangles of a PLY file in text form whose points have nothing but three coordinates, as `./run` makes
+/// them of CGAL's meshes.
 inline tyndall::TriangleMesh ReadPly(const std::string& name)
 {
   std::ifstream file(name);

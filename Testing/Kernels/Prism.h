@@ -18,8 +18,8 @@ inline PhotonScene Scene(tyndall::Device& device, int edge, int samples = 4)
   return scene;
 }
 
-/// Incidences, from the normal, of which the ray leaves through the middle of the next face or near it: before, of and beyond
-/// least deviation.
+/// Incidences, from the normal, of which the ray leaves through the middle of the next face or near it: before, of and
+/// beyond least deviation.
 inline std::vector<double> Incidences()
 {
   return { 0.7, optics::IncidenceOfLeastTurn(Index, Apex), 1.0 };

@@ -44,8 +44,8 @@ struct ReconstructionScene
     return this->Average();
   }
 
-  /// The same, but noise is that of photons along z: one for each column of a batch, and smaller than 1 by the chance that
-  /// `photons` of them cross it.
+  /// The same, but noise is that of photons along z: one for each column of a batch, and smaller than 1 by the chance
+  /// that `photons` of them cross it.
   ReconstructionScene& LightAlongRays(
     const std::function<double(std::size_t)>& truth, double photons, unsigned seed = 1)
   {

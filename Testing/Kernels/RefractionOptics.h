@@ -3,8 +3,8 @@
 #include <algorithm>
 #include <cmath>
 
-/// Geometrical optics of glass in air: what refraction at sharp faces does to a ray, and a smoothed border to a ball's focus.
-/// Lengths of a ball are in its radii, angles in radians.
+/// Geometrical optics of glass in air: what refraction at sharp faces does to a ray, and a smoothed border to a ball's
+/// focus. Lengths of a ball are in its radii, angles in radians.
 namespace optics
 {
 constexpr double Pi = 3.14159265358979323846;
@@ -21,8 +21,8 @@ inline double BallFocus(double n, double b)
   return b > 0.0 ? b / std::sin(BallTurn(n, b)) : 0.5 * n / (n - 1.0);
 }
 
-/// The focal distance, b = 0, of a ball whose index was smoothed by a Gaussian of standard deviation `width`. By Bouguer's
-/// formula a ray that passes at b is turned by -2 b times the integral of n' / (n sqrt(n^2 r^2 - b^2)) dr.
+/// The focal distance, b = 0, of a ball whose index was smoothed by a Gaussian of standard deviation `width`. By
+/// Bouguer's formula a ray that passes at b is turned by -2 b times the integral of n' / (n sqrt(n^2 r^2 - b^2)) dr.
 inline double SmoothedBallFocus(double n, double width)
 {
   const auto index = [&](double r) {
@@ -41,8 +41,8 @@ inline double SmoothedBallFocus(double n, double width)
   return 1.0 / power;
 }
 
-/// How far a prism with the given angle at its apex turns a ray that comes in at `incidence` from its face's normal, on the
-/// side of the apex's far side, through both faces. NaN where it is reflected totally.
+/// How far a prism with the given angle at its apex turns a ray that comes in at `incidence` from its face's normal, on
+/// the side of the apex's far side, through both faces. NaN where it is reflected totally.
 inline double PrismTurn(double n, double apex, double incidence)
 {
   const double inside = apex - std::asin(std::sin(incidence) / n);

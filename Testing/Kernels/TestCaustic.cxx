@@ -1,5 +1,5 @@
-// Parallel light through a voxelised ball of glass against geometrical optics: the focus of the ball lens, from paths and from
-// fluence, and the brightness about it. TyndallBenchPhotons has the table, by voxels and smoothing.
+// Parallel light through a voxelised ball of glass against geometrical optics: the focus of the ball lens, from paths
+// and from fluence, and the brightness about it. TyndallBenchPhotons has the table, by voxels and smoothing.
 #include "Caustic.h"
 #include "DeviceTest.h"
 

@@ -94,7 +94,8 @@ double HeldBy(const ReconstructionScene& scene, const ReconstructedLight& light)
   return held / static_cast<double>(light.fluence.size());
 }
 
-/// Photons at random, whose noise is the same along rays. Those of real scenes are spread better: see TestAdaptivePhotons.
+/// Photons at random, whose noise is the same along rays. Those of real scenes are spread better: see
+/// TestAdaptivePhotons.
 TEST_F(ConservativeReconstruction, TwoStandardErrorsHoldTheTruthInAboutNineteenVoxelsOfTwenty)
 {
   constexpr unsigned seeds = 5;

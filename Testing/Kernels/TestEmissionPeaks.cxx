@@ -72,7 +72,8 @@ TEST_F(EmissionPeaks, GiveTheSameLightBitForBit)
 
 TEST_F(EmissionPeaks, OnFacesOfTheBoxGiveTheSameLightEveryTime)
 {
-  // Rays along a face step past it by rounding: what lies there in memory must not matter, and that differs from solve to solve.
+  // Rays along a face step past it by rounding: what lies there in memory must not matter, and that differs from solve
+  // to solve.
   constexpr int n = 12;
   for (const std::array<int, 3>& place : { std::array<int, 3>{ 3, 4, 0 }, { 8, 8, 0 }, { 11, 5, 2 }, { 6, 0, 0 } })
   {
@@ -210,8 +211,8 @@ TEST_F(EmissionPeaks, HaveTheirNetFlux)
 
 TEST_F(EmissionPeaks, LightKobayashisVoid)
 {
-  // Against means of the reference over voxels (known to 2e-4). Measured: 0.33% and 0.12% at most; 1.5% at 60^3 with 0.005. The eight
-  // octants are alike, so that their mean is no better than each.
+  // Against means of the reference over voxels (known to 2e-4). Measured: 0.33% and 0.12% at most; 1.5% at 60^3 with
+  // 0.005. The eight octants are alike, so that their mean is no better than each.
   for (int voxels : { 20, 60 })
   {
     Scene scene = KobayashiScene(voxels, 0.0);

@@ -1,4 +1,5 @@
-// The power that light from outside brings is known in closed form: area x radiance x what the direction set has of a half space.
+// The power that light from outside brings is known in closed form: area x radiance x what the direction set has of a
+// half space.
 #include "DeviceTest.h"
 #include "MediumScene.h"
 
@@ -77,8 +78,8 @@ double Flux(const DirectionSet& set, int axis, double sign, const std::vector<Rg
   double flux = 0.0;
   for (std::size_t d = 0; d < set.directions.size(); ++d)
   {
-    flux +=
-      set.directions[d].weight * std::max(sign * set.directions[d].omega[axis], 0.0) * (radiance.empty() ? 1.0 : radiance[d][0]);
+    flux += set.directions[d].weight * std::max(sign * set.directions[d].omega[axis], 0.0) *
+      (radiance.empty() ? 1.0 : radiance[d][0]);
   }
   return flux;
 }
@@ -167,7 +168,8 @@ TEST_F(EnteringPower, OfTheSunIsItsIrradianceTimesTheShadowsArea)
 {
   for (const Setting& setting : Settings)
   {
-    for (std::array<double, 3> direction : { std::array<double, 3>{ 0.3, -0.5, -0.8 }, { 1.0, 1.0, 0.2 }, { -1.0, 2.0, 4.0 } })
+    for (std::array<double, 3> direction :
+      { std::array<double, 3>{ 0.3, -0.5, -0.8 }, { 1.0, 1.0, 0.2 }, { -1.0, 2.0, 4.0 } })
     {
       Scene scene = SceneOf(setting, 0.4f, 0.9f);
       scene.ShineAlong(direction, 3.0);
@@ -176,7 +178,8 @@ TEST_F(EnteringPower, OfTheSunIsItsIrradianceTimesTheShadowsArea)
       double exact = 0.0;
       for (int axis = 0; axis < 3; ++axis)
       {
-        exact += setting.periodic[axis] ? 0.0 : 3.0 * Area(scene.medium.grid, axis) * std::abs(direction[axis]) / length;
+        exact +=
+          setting.periodic[axis] ? 0.0 : 3.0 * Area(scene.medium.grid, axis) * std::abs(direction[axis]) / length;
       }
       EXPECT_NEAR(light.balance.entered[0], exact, Rounding * exact) << Text(setting) << ", " << direction[0];
     }
@@ -185,8 +188,8 @@ TEST_F(EnteringPower, OfTheSunIsItsIrradianceTimesTheShadowsArea)
 
 TEST_F(EnteringPower, IsAbsorbedByABlackBox)
 {
-  // But what goes exactly through the edges of the box: directions on diagonals run along the edges of voxels, so that part of one ray in
-  // a row of them meets no voxel.
+  // But what goes exactly through the edges of the box: directions on diagonals run along the edges of voxels, so that
+  // part of one ray in a row of them meets no voxel.
   for (const Setting& setting : Settings)
   {
     Scene scene = SceneOf(setting, 1e5f);

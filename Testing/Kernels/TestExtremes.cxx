@@ -185,7 +185,8 @@ TEST_F(Extremes, LampsGiveAllTheirPowerToAnOpaqueVoxel)
 
 TEST_F(Extremes, WhiteVoxelsInVacuumGiveLightBack)
 {
-  // Of 36 directions some border voxels have rays that leave through the box's face, and none that come straight towards it.
+  // Of 36 directions some border voxels have rays that leave through the box's face, and none that come straight
+  // towards it.
   for (const auto& [sigma, directions] : { std::pair(1e3f, 25), { 1e8f, 25 }, { 1e12f, 25 }, { 1e3f, 36 } })
   {
     Scene scene({ 9, 9, 9 });

@@ -2,8 +2,8 @@
 #include "PlyFile.h"
 #include "WholeCounts.h"
 
-#include "Refraction/Voxelization/MeshChecks.h"
 #include "Refraction/Index/RefractiveMedium.h"
+#include "Refraction/Voxelization/MeshChecks.h"
 
 #include <gmock/gmock.h>
 
@@ -65,7 +65,8 @@ TEST_P(FetchedMesh, IsTheSameFromAllSidesAndHasItsVolume)
       EXPECT_TRUE(counts == first) << "axis " << settings.columnAxis << (above ? " from above" : " from below");
     }
   }
-  const double volume = std::accumulate(first.begin(), first.end(), 0.0) / (64.0 * UnitsOfSample(4)) * grid.VoxelVolume();
+  const double volume =
+    std::accumulate(first.begin(), first.end(), 0.0) / (64.0 * UnitsOfSample(4)) * grid.VoxelVolume();
   const MeshTopology topology = Examine(solid.mesh);
   EXPECT_NEAR(volume, topology.enclosedVolume, 1e-3 * topology.enclosedVolume);
   EXPECT_THAT(Oddities(topology, {}, "It", grid, 4), testing::IsEmpty());

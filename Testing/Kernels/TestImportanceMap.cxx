@@ -1,7 +1,7 @@
 #include "Device/Errors.h"
-#include "Photons/Importance/ImportanceMap.h"
 #include "Photons/Emission/PhotonEmitter.h"
 #include "Photons/Emission/SampleSequence.h"
+#include "Photons/Importance/ImportanceMap.h"
 
 #include <gtest/gtest.h>
 

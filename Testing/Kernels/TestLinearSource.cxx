@@ -122,7 +122,8 @@ struct Transmittance
   double tau, transmitted;
 };
 
-/// Diffuse light through slabs of albedo 1. Thin: adding-doubling (slab.csv of the project's reference values); thick: 4 / (3 (tau +
+/// Diffuse light through slabs of albedo 1. Thin: adding-doubling (slab.csv of the project's reference values); thick:
+/// 4 / (3 (tau +
 /// 1.4208922)).
 std::vector<Transmittance> TransmittancesOfWhiteSlabs()
 {
@@ -198,8 +199,8 @@ TEST_F(LinearSource, SlabsAreTheSameHoweverWideTheirVoxelsAre)
 
 TEST_F(LinearSource, TransmitsBeamsAsSlabsDoHoweverThickVoxelsAre)
 {
-  // Albedo 1, beams at cosine 1 and 0.5: slab.csv; between and beyond its rows the diffusion limit H(mu) / sqrt(3) / (tau + 1.4208922)
-  // (H: Chandrasekhar's function, 2.9078107 and 2.0127788).
+  // Albedo 1, beams at cosine 1 and 0.5: slab.csv; between and beyond its rows the diffusion limit H(mu) / sqrt(3) /
+  // (tau + 1.4208922) (H: Chandrasekhar's function, 2.9078107 and 2.0127788).
   struct Row
   {
     double tau, across, oblique;
@@ -252,7 +253,8 @@ TEST_F(LinearSource, TransmitsBeamsBetweenClearVoxels)
 
 TEST_F(LinearSource, LampsOfAllKindsReachAsDeepIntoThickVoxelsAsIntoThinOnes)
 {
-  // A cube of optical thickness 100, coarse voxels (6.25 mean free paths) against finer ones (2.1), light out of the face beyond.
+  // A cube of optical thickness 100, coarse voxels (6.25 mean free paths) against finer ones (2.1), light out of the
+  // face beyond.
   for (LightType type : { LightType::Directional, LightType::Point, LightType::Spot, LightType::Rectangle })
   {
     std::array<double, 2> through = {};
@@ -359,9 +361,9 @@ TEST_F(LinearSource, LightsAllVoxelsOfAShiningCubeAsPhotonsDo)
 
 TEST_F(LinearSource, SendsThroughACubesFacesWhatPhotonsDo)
 {
-  // cube_RTSA.csv, isotropic, diffuse light on one face: reflected, transmitted, through four sides, absorbed, with their standard
-  // errors. Left out is what wants finer voxels: albedo 0.5 from optical thickness 5 on (reflected 3% too little), 1 at 50 (1.3% too
-  // little through the sides).
+  // cube_RTSA.csv, isotropic, diffuse light on one face: reflected, transmitted, through four sides, absorbed, with
+  // their standard errors. Left out is what wants finer voxels: albedo 0.5 from optical thickness 5 on (reflected 3%
+  // too little), 1 at 50 (1.3% too little through the sides).
   struct Row
   {
     double tau, albedo;

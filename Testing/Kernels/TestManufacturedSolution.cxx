@@ -10,8 +10,8 @@
 
 using namespace tyndall;
 
-// A medium without end, sigma_t and sigma_s everywhere the same, that shines q(x) = 1 + a cos(k x). Along a ray the wave comes with
-// exp(-sigma_t s), so an isotropic source cos(k x) of strength 1 makes the fluence A cos(k x) 4 pi with
+// A medium without end, sigma_t and sigma_s everywhere the same, that shines q(x) = 1 + a cos(k x). Along a ray the
+// wave comes with exp(-sigma_t s), so an isotropic source cos(k x) of strength 1 makes the fluence A cos(k x) 4 pi with
 //   A = mean over directions of sigma_t / (sigma_t^2 + (k omega)^2) = atan(|k| / sigma_t) / |k|;
 // the source itself is q + sigma_s fluence / (4 pi). Summed up:
 //   fluence = 4 pi (1 / sigma_a + a cos(k x) A / (1 - sigma_s A)).
@@ -167,8 +167,8 @@ TEST_F(ManufacturedSolution, LinearSourceIsOfSecondOrderInVoxelSize)
     Wave wave;
     std::vector<int> voxels;
   };
-  // Thin voxels (1/16 to 1/64 and 0.3 to 0.08 mean free paths) and thick ones (12 to 3); around one mean free path the error changes its
-  // sign, and is smaller than the order says.
+  // Thin voxels (1/16 to 1/64 and 0.3 to 0.08 mean free paths) and thick ones (12 to 3); around one mean free path the
+  // error changes its sign, and is smaller than the order says.
   for (const Case& one :
     { Case{ { { 1, 0, 0 }, 1.0, 0.5 }, { 16, 32, 64 } }, Case{ { { 1, 0, 0 }, 20.0, 0.9 }, { 64, 128, 256 } },
       Case{ { { 1, 0, 0 }, 100.0, 0.99 }, { 8, 16, 32 } }, Case{ { { 1, 1, 0 }, 1.0, 0.5 }, { 16, 32 } },
@@ -198,8 +198,8 @@ TEST_F(ManufacturedSolution, LinearSourceIsNearerThanConstantWhereVoxelsAreThick
 
 TEST_F(ManufacturedSolution, DirectionsAreOfSecondOrderInTheirSpacing)
 {
-  // Sets: their mean against the integral. The solver: its error against the true solution, in voxels so thin that directions are the
-  // error.
+  // Sets: their mean against the integral. The solver: its error against the true solution, in voxels so thin that
+  // directions are the error.
   for (const Wave& wave : { Wave{ { 1, 0, 0 }, 1.0, 0.5 }, Wave{ { 1, 1, 0 }, 1.0, 0.5 },
          Wave{ { 1, 0, 0 }, 20.0, 0.9 }, Wave{ { 1, 1, 1 }, 20.0, 0.9 } })
   {

@@ -300,8 +300,8 @@ TEST_F(MediumRayCasterTest, AdoptsWhatNeedsNothingNewOnTheDevice)
   }
 }
 
-// Steps of an optical length up to 2 are crossed another way than longer ones, if there are no longer ones: an opaque voxel
-// that nobody sees decides.
+// Steps of an optical length up to 2 are crossed another way than longer ones, if there are no longer ones: an opaque
+// voxel that nobody sees decides.
 TEST_F(MediumRayCasterTest, ThinAndThickStepsAgree)
 {
   for (int components : { 1, 3 })

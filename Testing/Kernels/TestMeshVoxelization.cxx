@@ -88,8 +88,8 @@ protected:
   }
 };
 
-/// How often a mesh winds about a point, from the solid angles of its triangles (Van Oosterom and Strackee 1983): a reference
-/// that knows no columns.
+/// How often a mesh winds about a point, from the solid angles of its triangles (Van Oosterom and Strackee 1983): a
+/// reference that knows no columns.
 double Winding(const TriangleMesh& mesh, const Point& centre)
 {
   const auto dot = [](const Point& a, const Point& b) { return a[0] * b[0] + a[1] * b[1] + a[2] * b[2]; };
@@ -465,7 +465,8 @@ TEST_F(Windings, AreThoseOfSolidAngles)
 
 TEST_F(Windings, OfWhatIsThinnerThanAVoxel)
 {
-  // Two boxes that share a layer of one sample of four, between the voxels' centres; then one that shares a single sample.
+  // Two boxes that share a layer of one sample of four, between the voxels' centres; then one that shares a single
+  // sample.
   const Grid grid = CubeGrid(16);
   const double pitch = 2.0 / 64.0;
   const TriangleMesh left = shapes::Box({ -0.75, -0.5, -0.5 }, { pitch, 0.5, 0.5 });
@@ -488,7 +489,8 @@ TEST_F(Windings, OfWhatIsThinnerThanAVoxel)
 
 TEST_F(Windings, ThatBalanceAreFound)
 {
-  // In each column of y and z as many samples are enclosed twice as are inside out: what parity leaves out here it adds there.
+  // In each column of y and z as many samples are enclosed twice as are inside out: what parity leaves out here it adds
+  // there.
   const Grid grid = CubeGrid(16);
   const TriangleMesh twice = shapes::Together(
     shapes::Box({ -0.9, -0.5, -0.5 }, { -0.2, 0.5, 0.5 }), shapes::Box({ -0.7, -0.5, -0.5 }, { -0.5, 0.5, 0.5 }));

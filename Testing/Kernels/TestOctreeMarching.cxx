@@ -1,5 +1,5 @@
-// Marching with an octree against marching voxel by voxel: what its tolerance promises. TyndallBenchPhotons has the table for
-// a ball of glass.
+// Marching with an octree against marching voxel by voxel: what its tolerance promises. TyndallBenchPhotons has the
+// table for a ball of glass.
 #include "DeviceTest.h"
 #include "PhotonScene.h"
 

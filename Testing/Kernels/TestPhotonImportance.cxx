@@ -227,8 +227,8 @@ TEST_F(PhotonImportance, RefusesWhatMeansNothing)
   EXPECT_NE(MessageOf([&] { this->Find(this->Ball, {}); }).find("No light shines"), std::string::npos);
 }
 
-/// The unfiltered light of adaptive photons is an unbiased estimate: over 64 seeds its mean in every octant is that of photons
-/// spread evenly.
+/// The unfiltered light of adaptive photons is an unbiased estimate: over 64 seeds its mean in every octant is that of
+/// photons spread evenly.
 TEST_F(PhotonImportance, BiasesNothing)
 {
   Illumination light;

@@ -1,4 +1,5 @@
-// Paths of photons against closed forms. Order of the integrators and closed forms: the project's grin_integrator_errors.csv.
+// Paths of photons against closed forms. Order of the integrators and closed forms: the project's
+// grin_integrator_errors.csv.
 #include "DeviceTest.h"
 #include "PhotonScene.h"
 #include "Prism.h"

@@ -203,8 +203,8 @@ TEST_F(RefractiveView, LuneburgLensSendsParallelRaysWhereTheClosedFormSays)
   EXPECT_LT(worst[1], 0.6 * worst[0]);
 }
 
-/// Difference of deflection to two surfaces that refract as Snell has it, over impact parameters up to 0.8 radii: the mean and the
-/// largest.
+/// Difference of deflection to two surfaces that refract as Snell has it, over impact parameters up to 0.8 radii: the
+/// mean and the largest.
 std::array<double, 2> DeflectionError(Device& device, int edge, double n)
 {
   Scene scene(GridOf(edge, edge, edge));

@@ -23,9 +23,15 @@ void GlowAt(Scene& scene, std::array<int, 3> voxel, float emission)
 }
 
 const std::vector<Shine> Lights = {
-  [](Scene& scene) { scene.ShineAlong({ 0.3, -0.5, -0.8 }, 0.5); },
-  [](Scene& scene) { GlowAt(scene, { 11, 6, 9 }, 3.0f); },
-  [](Scene& scene) { scene.light.faces[1] = { 0.2, 0.2, 0.2 }; },
+  [](Scene& scene) {
+    scene.ShineAlong({ 0.3, -0.5, -0.8 }, 0.5);
+  },
+  [](Scene& scene) {
+    GlowAt(scene, { 11, 6, 9 }, 3.0f);
+  },
+  [](Scene& scene) {
+    scene.light.faces[1] = { 0.2, 0.2, 0.2 };
+  },
   [](Scene& scene) { scene.ShineFromEverywhere(0.1); },
   [](Scene& scene) {
     Light lamp;
@@ -97,8 +103,9 @@ TEST_F(Superposition, OfFacesAlongFinerDirections)
 
 TEST_F(Superposition, ReciprocityIsTheBetterTheMoreDirectionsThereAre)
 {
-  // What a glowing voxel sends to another, that one sends back: off by what a handful of directions does to the scattered light of one
-  // voxel, whose rays are not the same both ways. Measured, root mean square over 28 pairs: 3.3%, 1.3%, 0.55%.
+  // What a glowing voxel sends to another, that one sends back: off by what a handful of directions does to the
+  // scattered light of one voxel, whose rays are not the same both ways. Measured, root mean square over 28 pairs:
+  // 3.3%, 1.3%, 0.55%.
   constexpr int n = 12;
   std::mt19937 random(3);
   std::vector<std::array<int, 3>> places;

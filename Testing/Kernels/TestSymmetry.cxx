@@ -1,5 +1,5 @@
-// A scene that is turned or mirrored has its light turned or mirrored: all 48 symmetries of the cube, under each kind of light
-// by itself.
+// A scene that is turned or mirrored has its light turned or mirrored: all 48 symmetries of the cube, under each kind
+// of light by itself.
 #include "CubeTurns.h"
 #include "DeviceTest.h"
 #include "MediumScene.h"
@@ -38,8 +38,8 @@ Scene Turned(const Scene& scene, const CubeTurn& turn)
   for (Light& light : turned.light.lights)
   {
     light.direction = turn.Direction(light.direction);
-    light.position = turn.Position(light.position,
-      { scene.medium.grid.Length(0), scene.medium.grid.Length(1), scene.medium.grid.Length(2) });
+    light.position = turn.Position(
+      light.position, { scene.medium.grid.Length(0), scene.medium.grid.Length(1), scene.medium.grid.Length(2) });
   }
   return turned;
 }
@@ -84,14 +84,27 @@ Light LampAt(const Grid& grid, LightType type, std::array<double, 3> place)
 }
 
 const std::vector<KindOfLight> Kinds = {
-  { "face", [](Scene& scene) { scene.light.faces[4] = { 1.0, 1.0, 1.0 }; } },
+  { "face",
+    [](Scene& scene) {
+      scene.light.faces[4] = { 1.0, 1.0, 1.0 };
+    } },
   { "sky", [](Scene& scene) { scene.ShineFromEverywhere(1.0); } },
-  { "sun", [](Scene& scene) { scene.ShineAlong({ 0.3, -0.5, -0.8 }); } },
-  { "sun along a diagonal", [](Scene& scene) { scene.ShineAlong({ 1.0, 1.0, 1.0 }); } },
+  { "sun",
+    [](Scene& scene) {
+      scene.ShineAlong({ 0.3, -0.5, -0.8 });
+    } },
+  { "sun along a diagonal",
+    [](Scene& scene) {
+      scene.ShineAlong({ 1.0, 1.0, 1.0 });
+    } },
   { "lamp inside",
-    [](Scene& scene) { scene.light.lights = { LampAt(scene.medium.grid, LightType::Point, { 0.3, 0.45, 0.71 }) }; } },
+    [](Scene& scene) {
+      scene.light.lights = { LampAt(scene.medium.grid, LightType::Point, { 0.3, 0.45, 0.71 }) };
+    } },
   { "lamp outside",
-    [](Scene& scene) { scene.light.lights = { LampAt(scene.medium.grid, LightType::Point, { -0.3, 0.4, 1.7 }) }; } },
+    [](Scene& scene) {
+      scene.light.lights = { LampAt(scene.medium.grid, LightType::Point, { -0.3, 0.4, 1.7 }) };
+    } },
   { "spot",
     [](Scene& scene) {
       Light spot = LampAt(scene.medium.grid, LightType::Spot, { 0.6, 1.5, 0.4 });
@@ -119,7 +132,9 @@ const std::vector<KindOfLight> Kinds = {
     [](Scene& scene) {
       const Grid& grid = scene.medium.grid;
       scene.emission.assign(scene.sigma_a.size(), 0.0f);
-      scene.emission[(static_cast<std::size_t>(grid.size[2] / 3) * grid.size[1] + grid.size[1] / 2) * grid.size[0] + 2] = 1.0f;
+      scene
+        .emission[(static_cast<std::size_t>(grid.size[2] / 3) * grid.size[1] + grid.size[1] / 2) * grid.size[0] + 2] =
+        1.0f;
     } },
 };
 
@@ -134,8 +149,7 @@ void ExpectSymmetric(const Scene& scene, const std::string& what, double limit, 
   {
     Scene turned = Turned(scene, turn);
     const LightField turnedLight = solve(turned);
-    worst = std::max(
-      worst, LargestDifference(turnedLight.fluence, turn.Field(light.fluence, scene.medium.grid.size)));
+    worst = std::max(worst, LargestDifference(turnedLight.fluence, turn.Field(light.fluence, scene.medium.grid.size)));
     power = std::max(power, std::abs(turnedLight.balance.entered[0] - light.balance.entered[0]));
     for (int face = 0; face < 6; ++face)
     {
@@ -163,7 +177,8 @@ TEST_F(Symmetry, OfEveryKindOfLight)
 
 TEST_F(Symmetry, OfVoxelsOfTwoEqualEdges)
 {
-  // Directions between the two equal axes cross the planes of both alike: neither comes first (it was 0.5%, 1.2% in a single order).
+  // Directions between the two equal axes cross the planes of both alike: neither comes first (it was 0.5%, 1.2% in a
+  // single order).
   for (const std::array<double, 3>& spacing : { std::array<double, 3>{ 0.1, 1.0, 0.1 }, { 0.1, 0.1, 0.02 } })
   {
     for (const int orders : { 0, 3 })

@@ -129,7 +129,8 @@ TEST_F(Table, MirrorsThroughALens)
   EXPECT_NEAR(-down[2], seen[2], 1e-3);
 }
 
-// Irradiance is what it is in the medium on the table: its light grows no further there, and falls by n^2 on its way out.
+// Irradiance is what it is in the medium on the table: its light grows no further there, and falls by n^2 on its way
+// out.
 TEST_F(Table, UnderGlassLosesTheSquareOfTheIndex)
 {
   Scene scene = LitTable(5.0, { 0.0, 0.0, -1.0 });

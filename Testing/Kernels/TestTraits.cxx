@@ -21,8 +21,8 @@ using testing::Not;
 namespace
 {
 constexpr double Same = 1e-6; ///< of the largest
-/// The same where orders are accelerated in a slab of 100 mean free paths: what rounding leaves in the power that enters voxels
-/// counts many times there. 1.9e-6 was measured.
+/// The same where orders are accelerated in a slab of 100 mean free paths: what rounding leaves in the power that
+/// enters voxels counts many times there. 1.9e-6 was measured.
 constexpr double SameInThickSlab = 5e-6;
 
 /// A cloud in a box: its voxels are empty outside of [first, first + size).

@@ -85,7 +85,8 @@ TEST_F(UncollidedBoundary, SeesAShiningFaceAsLargeAsItIs)
 
 TEST_F(UncollidedBoundary, AlongTheUsualDirectionsChangesNothing)
 {
-  // The rays are the same, only carried in two parts: orders one by one, accelerated with thin and with thick voxels, as published.
+  // The rays are the same, only carried in two parts: orders one by one, accelerated with thin and with thick voxels,
+  // as published.
   const auto linear = PropagationSource::Automatic, constant = PropagationSource::Constant;
   for (const auto& [tau, source] : { std::pair(2.0, linear), { 20.0, linear }, { 2000.0, linear }, { 20.0, constant } })
   {
@@ -153,7 +154,8 @@ TEST_F(UncollidedBoundary, IsNeverBrighterThanWhatShines)
 
 TEST_F(UncollidedBoundary, GivesBackEveryWattInColour)
 {
-  // Sky, faces and medium with a colour each, no red from outside; channels share sigma_t or not; one by one and accelerated.
+  // Sky, faces and medium with a colour each, no red from outside; channels share sigma_t or not; one by one and
+  // accelerated.
   for (const bool shared : { false, true })
   {
     for (const double tau : { 1.0, 50.0 })

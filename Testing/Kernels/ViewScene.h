@@ -280,8 +280,8 @@ inline Camera Along(const Grid& grid, Vec direction, double half)
   return camera;
 }
 
-/// n by squares, changing from n1 (above) to n2 (below) along z between heights `high` and `low` in voxels, as a straight line
-/// that is rounded at its ends.
+/// n by squares, changing from n1 (above) to n2 (below) along z between heights `high` and `low` in voxels, as a
+/// straight line that is rounded at its ends.
 inline std::vector<float> Layers(const Grid& grid, double n1, double n2, double high, double low)
 {
   return AtCentres(grid, [=](double, double, double z) {
@@ -290,7 +290,8 @@ inline std::vector<float> Layers(const Grid& grid, double n1, double n2, double 
   });
 }
 
-/// A ball of glass about the box's centre, its radius in parts of the box's edge, its border smoothed over a few voxels.
+/// A ball of glass about the box's centre, its radius in parts of the box's edge, its border smoothed over a few
+/// voxels.
 inline std::vector<float> Ball(const Grid& grid, double radius, double n)
 {
   const double width = 1.5 / grid.size[0] * std::sqrt(2.0);

@@ -1,6 +1,7 @@
 #pragma once
 
-/// The one place where OpenVDB is included. Its templates keep default visibility although the module hides its symbols:
+/// The one place where OpenVDB is included. Its templates keep default visibility although the module hides its
+/// symbols:
 /// std::call_once, which OpenVDB instantiates, is visible all the same, and would otherwise run the module's copy of a
 /// function against the library's copy of the variable that it sets (openvdb::initialize then reads a null pointer).
 #pragma GCC visibility push(default)

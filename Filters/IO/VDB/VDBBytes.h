@@ -9,8 +9,8 @@ namespace tyndall
 {
 /// The bytes of a .vdb file, read through a window; nothing is ever read beyond the end.
 ///
-/// All of it throws InvalidInput that names the file, what is wrong and the byte where it is; `what` in the parameters is
-/// what is being read, e.g. "a grid".
+/// All of it throws InvalidInput that names the file, what is wrong and the byte where it is; `what` in the parameters
+/// is what is being read, e.g. "a grid".
 class VDBBytes
 {
 public:

@@ -1,7 +1,7 @@
 #include "IO/VDB/VDBCells.h"
 
-#include "Device/Errors.h"
 #include "Common/LightTransportData.h"
+#include "Device/Errors.h"
 #include "IO/VDB/VDBHalf.h"
 #include "IO/VDB/VDBMetadata.h"
 #include "IO/VDB/VDBValues.h"

@@ -11,15 +11,15 @@ namespace tyndall
 {
 /// Reads .vdb files that may be truncated or corrupt.
 ///
-/// OpenVDB trusts its files: the sizes of strings, compressed blocks and masks that it reads decide how much it allocates
-/// and how far it writes (a compressed block that claims to be longer than its node overruns the node), and a buffer whose
-/// delayed load fails is freed twice. So io::File is not used. The file is walked here first, and every number that OpenVDB
-/// would believe is held against the file's size and the node it belongs to; then OpenVDB reads the trees from the checked
-/// places. Opening walks the topology, which says where there are active voxels, and no voxel values; Read walks and loads
-/// the leaves of one grid, and only those that overlap the wanted box.
+/// OpenVDB trusts its files: the sizes of strings, compressed blocks and masks that it reads decide how much it
+/// allocates and how far it writes (a compressed block that claims to be longer than its node overruns the node), and a
+/// buffer whose delayed load fails is freed twice. So io::File is not used. The file is walked here first, and every
+/// number that OpenVDB would believe is held against the file's size and the node it belongs to; then OpenVDB reads the
+/// trees from the checked places. Opening walks the topology, which says where there are active voxels, and no voxel
+/// values; Read walks and loads the leaves of one grid, and only those that overlap the wanted box.
 ///
-/// Limits: the format has no check sums, so a changed voxel value is not noticed (but where zlib's or Blosc's does). A file
-/// that another process changes between walk and load is not defended against.
+/// Limits: the format has no check sums, so a changed voxel value is not noticed (but where zlib's or Blosc's does). A
+/// file that another process changes between walk and load is not defended against.
 class VDBFile
 {
 public:

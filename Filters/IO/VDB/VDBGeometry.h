@@ -11,10 +11,10 @@ class vtkImageData;
 
 /// Where an image's cells and a grid's voxels are in the world, one from the other.
 ///
-/// A cell is centred on its voxel's index: voxel i is the cell that covers [i - 1/2, i + 1/2] of index space. A grid that was
-/// an image notes in its metadata what it does not say itself: the extent of points (voxels may be background up to the
-/// border) with the number of cells in it, and origin and spacing to the last bit (OpenVDB computes the scale of a
-/// transform as the difference of two positions).
+/// A cell is centred on its voxel's index: voxel i is the cell that covers [i - 1/2, i + 1/2] of index space. A grid
+/// that was an image notes in its metadata what it does not say itself: the extent of points (voxels may be background
+/// up to the border) with the number of cells in it, and origin and spacing to the last bit (OpenVDB computes the scale
+/// of a transform as the difference of two positions).
 namespace tyndall
 {
 /// Whether metadata of this name is such a note.
@@ -37,8 +37,8 @@ VDBBox VoxelsOf(const std::array<std::int64_t, 6>& extent);
 /// Number of them, 0 in an empty extent.
 double CellsOf(const std::array<std::int64_t, 6>& extent);
 
-/// The extent of points that a grid covers: the noted one, as long as that still holds every active voxel, or else that of
-/// the active voxels.
+/// The extent of points that a grid covers: the noted one, as long as that still holds every active voxel, or else that
+/// of the active voxels.
 std::array<std::int64_t, 6> ExtentOf(const VDBGrid& grid);
 
 /// Whether a grid notes that it was an image of this extent, and of as many cells: then the extent is no accident of a

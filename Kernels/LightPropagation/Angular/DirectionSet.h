@@ -31,15 +31,16 @@ struct DirectionSet
 /// @param perFace  directions per face, a square number, else InvalidInput
 DirectionSet PublishedDirections(int perFace);
 
-/// Cells of equal angle, weighed by solid angle. By its symmetry the set integrates 1, omega and omega omega exactly. The
-/// half-range flux of a diffuse face, int |omega_x| = 2 pi, is off by 1.2% with 25 directions per face and by 0.2% with 100;
-/// weights corrected to make it (and omega_x^4) exact were tried and lose more than they gain: the transmission of diffuse
-/// light through slabs, 2 E3(tau), had five to ten times the error.
+/// Cells of equal angle, weighed by solid angle. By its symmetry the set integrates 1, omega and omega omega exactly.
+/// The half-range flux of a diffuse face, int |omega_x| = 2 pi, is off by 1.2% with 25 directions per face and by 0.2%
+/// with 100; weights corrected to make it (and omega_x^4) exact were tried and lose more than they gain: the
+/// transmission of diffuse light through slabs, 2 E3(tau), had five to ten times the error.
 /// The set is unchanged by every rotation and mirroring of the cube, to the last bit.
 /// @param perFace  directions per face, a square number, else InvalidInput that calls it `name`
 DirectionSet EquiangularDirections(int perFace, const std::string& name = "DirectionsPerFace");
 
-/// What a set carries of the flux of even light through a face, over the exact pi: the kink of |mu| at grazing directions makes it
+/// What a set carries of the flux of even light through a face, over the exact pi: the kink of |mu| at grazing
+/// directions makes it
 /// 0.9875 with 25 directions per face, 1.0019 with 100. Light that enters is off by as much.
 double HalfRangeFlux(const DirectionSet& set);
 

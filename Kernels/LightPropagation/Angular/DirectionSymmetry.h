@@ -8,9 +8,10 @@
 
 namespace tyndall
 {
-/// Directions that carry the same light because an axis of the grid has one voxel and is periodic: nothing changes along it, so
-/// that mirror images at it are the same, and so are directions with two such axes (of voxels that are square across them)
-/// exchanged. One of each class, the one whose components along such axes are positive and fall, stands for all.
+/// Directions that carry the same light because an axis of the grid has one voxel and is periodic: nothing changes
+/// along it, so that mirror images at it are the same, and so are directions with two such axes (of voxels that are
+/// square across them) exchanged. One of each class, the one whose components along such axes are positive and fall,
+/// stands for all.
 class DirectionSymmetry
 {
 public:

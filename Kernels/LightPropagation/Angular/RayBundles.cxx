@@ -78,9 +78,9 @@ void Sort(
   bundles.push_back(fresh);
 }
 
-/// Rays that all start in the middle come through the box's sides in the same pattern, and as many directions as there may be do not take
-/// it away. Steps of two irrational numbers, those of the plastic number, fill a square evenly (Roberts 2018). Bundles
-/// take them in the order of their tangents, the same along every axis.
+/// Rays that all start in the middle come through the box's sides in the same pattern, and as many directions as there
+/// may be do not take it away. Steps of two irrational numbers, those of the plastic number, fill a square evenly
+/// (Roberts 2018). Bundles take them in the order of their tangents, the same along every axis.
 void Stagger(std::vector<Bundle>& bundles)
 {
   std::vector<Bundle*> inOrder;
@@ -158,9 +158,10 @@ void Insert(std::vector<Move>& moves, double depth, double part)
   }
 }
 
-/// The moves of rays that start at `start` in their voxel and move by `tangent` voxels a plane, tangent x planes in all: whole ones,
-/// and one by the part that is then missing. Move k stands for what comes in from (k - 1) / tangent to k / tangent, and is at the place
-/// of `start` within that stretch; so is the part in its shorter one, after `before` whole moves.
+/// The moves of rays that start at `start` in their voxel and move by `tangent` voxels a plane, tangent x planes in
+/// all: whole ones, and one by the part that is then missing. Move k stands for what comes in from (k - 1) / tangent to
+/// k / tangent, and is at the place of `start` within that stretch; so is the part in its shorter one, after `before`
+/// whole moves.
 std::vector<Move> Moves(double start, double tangent, int planes)
 {
   std::vector<Move> moves(planes);
@@ -193,7 +194,8 @@ std::vector<Move> Moves(double start, double tangent, int planes)
   return moves;
 }
 
-/// In the bundle's own frame, whose members may exchange the axes: where one is periodic and the other is not, both have moves.
+/// In the bundle's own frame, whose members may exchange the axes: where one is periodic and the other is not, both
+/// have moves.
 void AddMoves(Bundle& bundle, const PlaneAxes& axes, const std::array<bool, 3>& periodic, int planes)
 {
   if (!periodic[axes.u] || !periodic[axes.v])
@@ -233,8 +235,8 @@ bool Bundle::MovesBothWaysAtOnce() const
   return Same(this->tangentU, this->tangentV) && Same(this->startU, this->startV);
 }
 
-/// Moves at the same time are one where nothing tells the axes apart, else the one of the larger tangent comes first: whatever
-/// way the bundle lies.
+/// Moves at the same time are one where nothing tells the axes apart, else the one of the larger tangent comes first:
+/// whatever way the bundle lies.
 PlaneCrossing Bundle::Crossing(int plane) const
 {
   const auto moveAt = [plane](const std::vector<Move>& moves, double start, double tangent) {

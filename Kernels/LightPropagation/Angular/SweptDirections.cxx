@@ -23,8 +23,8 @@ std::vector<int> SweptDirections::AllOf(int direction) const
 
 std::vector<Bundle> SweptDirections::Along(int axis) const
 {
-  const std::vector<Bundle> bundles = BundlesAlong(
-    axis, this->TheGrid, this->Periodic, this->Directions, this->MapResolution, this->WhereRaysStart);
+  const std::vector<Bundle> bundles =
+    BundlesAlong(axis, this->TheGrid, this->Periodic, this->Directions, this->MapResolution, this->WhereRaysStart);
   return this->Merges ? this->Mirrors.Standing(bundles) : bundles;
 }
 

@@ -11,8 +11,8 @@
 
 namespace tyndall
 {
-/// A set of directions as sweeps take it through a box: the bundles of rays along each axis. Where nothing tells mirror images apart,
-/// one direction stands for all of them.
+/// A set of directions as sweeps take it through a box: the bundles of rays along each axis. Where nothing tells mirror
+/// images apart, one direction stands for all of them.
 class SweptDirections
 {
 public:

@@ -2,8 +2,8 @@
 
 #include "Device/Errors.h"
 #include "LightPropagation/Conservative/DiffusionAcceleration.h"
-#include "LightPropagation/Problem/ScatteringOrders.h"
 #include "LightPropagation/Conservative/SourceIteration.h"
+#include "LightPropagation/Problem/ScatteringOrders.h"
 #include "Numerics/NumberText.h"
 
 #include <algorithm>

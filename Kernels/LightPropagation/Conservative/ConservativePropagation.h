@@ -14,7 +14,8 @@ namespace tyndall
 ///  - EquiangularDirections;
 ///  - lights, and what is small and bright in the environment, as a first-collision source: their unscattered light is
 ///    followed along exact rays, not through the directions;
-///  - what else comes in from outside along more directions until it is first scattered, if uncollidedDirections are given;
+///  - what else comes in from outside along more directions until it is first scattered, if uncollidedDirections are
+///    given;
 ///  - propagation and collection in one, so that memory is (2 source, path, fluence, sigma_s) arrays and the maps.
 ///
 /// Isotropic scattering. A medium with mean cosine g is solved as the isotropic medium with sigma_s (1 - g) (similarity

@@ -1,7 +1,7 @@
 #include "LightPropagation/Conservative/DiffusionAcceleration.h"
 
-#include "LightPropagation/Problem/ScatteringOrders.h"
 #include "LightPropagation/Conservative/SurfaceRadiance.h"
+#include "LightPropagation/Problem/ScatteringOrders.h"
 #include "LightPropagation/Uncollided/UncollidedBoundary.h"
 
 #include <algorithm>
@@ -39,8 +39,8 @@ IterationResult DiffusionAcceleration::Run(const Monitor& monitor)
   int iteration = 0;
   do
   {
-    const Monitor ofSweep = OfPart(
-      monitor, [=](double done) { return ProgressOf(this->Settings, this->Residual, iteration + done); });
+    const Monitor ofSweep =
+      OfPart(monitor, [=](double done) { return ProgressOf(this->Settings, this->Residual, iteration + done); });
     this->Sweep(iteration, ofSweep);
     if (iteration == 0)
     {
@@ -90,8 +90,7 @@ void DiffusionAcceleration::AddLamps(const Monitor& monitor)
   {
     moments = Buffer<float>(parts.TheDevice, parts.Layout.Floats(6), "light of lamps");
     path = Buffer<float>(parts.TheDevice, parts.Layout.Floats(), "light of lamps");
-    this->Passed =
-      Buffer<float>(parts.TheDevice, 6 * parts.Layout.Stride() * parts.Layout.channels, "light of lamps");
+    this->Passed = Buffer<float>(parts.TheDevice, 6 * parts.Layout.Stride() * parts.Layout.channels, "light of lamps");
     this->Passed.Fill(0.0f);
   }
   for (const std::unique_ptr<UncollidedSource>& lamp : parts.LampSources())
@@ -130,8 +129,8 @@ void DiffusionAcceleration::PassLampLight(const Buffer<float>& path, const Buffe
   }
 }
 
-/// How much of it counts: less where light hardly comes through a voxel. There it matters where in the voxel it is scattered, which
-/// the diffusion system knows of the light in sweeps.
+/// How much of it counts: less where light hardly comes through a voxel. There it matters where in the voxel it is
+/// scattered, which the diffusion system knows of the light in sweeps.
 double DiffusionAcceleration::PartOfDifference(std::size_t voxel, int channel) const
 {
   const std::array<double, 3>& h = this->TheMedium.grid.spacing;
@@ -142,11 +141,12 @@ double DiffusionAcceleration::PartOfDifference(std::size_t voxel, int channel) c
   return this->LinearSource ? 1.0 / (1.0 + tau * (0.25 * tau + 3.0 * absorbing)) : 1.0;
 }
 
-/// Sweeps carry all light from outside along the usual directions, as the diffusion system wants it. What the finer ones see of it before
-/// it is scattered more, or less, is added like the light of lamps. Where light is scattered many times, of the part that they
-/// see of an even sky, so that power is as in the sweeps in every voxel and through every face, and what is even stays so; where it is
-/// not, that would only bring back what few directions do to an even sky: power is as in the sweeps in all. Power that this adds to
-/// voxels or takes from them is made up for by what leaves the box.
+/// Sweeps carry all light from outside along the usual directions, as the diffusion system wants it. What the finer
+/// ones see of it before it is scattered more, or less, is added like the light of lamps. Where light is scattered many
+/// times, of the part that they see of an even sky, so that power is as in the sweeps in every voxel and through every
+/// face, and what is even stays so; where it is not, that would only bring back what few directions do to an even sky:
+/// power is as in the sweeps in all. Power that this adds to voxels or takes from them is made up for by what leaves
+/// the box.
 void DiffusionAcceleration::AddBoundaryDifference(const Monitor& monitor)
 {
   TransportParts& parts = this->Parts;
@@ -229,7 +229,8 @@ void DiffusionAcceleration::MakeSweep()
   this->Swept = parts.MakeSweep({ &parts.Path, nullptr, &this->PartialCurrents, nullptr });
 }
 
-/// From the source that is there to path integrals and partial currents. The light that comes in from outside comes in every time.
+/// From the source that is there to path integrals and partial currents. The light that comes in from outside comes in
+/// every time.
 void DiffusionAcceleration::Sweep(int iteration, const Monitor& monitor)
 {
   for (std::size_t c = 0; c < this->Systems.size(); ++c)
@@ -243,8 +244,7 @@ void DiffusionAcceleration::Sweep(int iteration, const Monitor& monitor)
   this->PartialCurrents.Fill(0.0f);
   this->Swept->Forget();
   const bool shines = iteration > 0 || this->Parts.HasSource();
-  this->Tally =
-    this->Swept->Apply(shines ? &this->Parts.Source : nullptr, this->Parts.BoundaryOfSweeps(), monitor);
+  this->Tally = this->Swept->Apply(shines ? &this->Parts.Source : nullptr, this->Parts.BoundaryOfSweeps(), monitor);
 }
 
 /// Of the last sweep, with that of lamps; [channel][stride].
@@ -278,8 +278,8 @@ void DiffusionAcceleration::MakeSystems()
       c * parts.Layout.Stride(), &parts.OnDevice.SigmaT(), &parts.OnDevice.SigmaA(), &parts.OnDevice.SigmaS(),
       &this->Given, &parts.Source, &parts.Path, &this->PartialCurrents,
       this->Passed.Size() > 0 ? &this->Passed : nullptr };
-    this->Systems.push_back(std::make_unique<DiffusionSystem>(parts.TheDevice, parts.Layout.grid, this->Settings.periodic,
-      parts.Usual.Set(), pattern, arrays, ofChannel, this->LinearSource));
+    this->Systems.push_back(std::make_unique<DiffusionSystem>(parts.TheDevice, parts.Layout.grid,
+      this->Settings.periodic, parts.Usual.Set(), pattern, arrays, ofChannel, this->LinearSource));
   }
 }
 
@@ -311,7 +311,8 @@ void DiffusionAcceleration::Correct(int iteration)
   this->Result.convergence.Add(this->Residual, change, this->Result.ledger);
 }
 
-/// Where the power went, by the diffusion system: it conserves energy. What a sweep says went out only tells through which faces.
+/// Where the power went, by the diffusion system: it conserves energy. What a sweep says went out only tells through
+/// which faces.
 void DiffusionAcceleration::CountLight()
 {
   const Grid& grid = this->Parts.Layout.grid;
@@ -399,8 +400,8 @@ void DiffusionAcceleration::FindSurfaceRadiance()
   this->Result.surfaceRadiance = SurfaceRadiance(this->TheMedium, this->Settings.periodic, this->Parts.Lamps, powers);
 }
 
-/// The mean of what goes through a voxel's faces is more than what flows in it where light dies away within it. No light flows
-/// more than there is.
+/// The mean of what goes through a voxel's faces is more than what flows in it where light dies away within it. No
+/// light flows more than there is.
 void DiffusionAcceleration::LimitFlux(const std::vector<float>& fluence)
 {
   const std::size_t stride = this->Parts.Layout.Stride();

@@ -9,8 +9,8 @@
 
 namespace tyndall
 {
-/// Iteration with diffusion acceleration: each sweep carries all scattered light once, and a diffusion system (DiffusionSystem.h) that
-/// agrees with it on the power through every voxel's face carries it as far as it goes.
+/// Iteration with diffusion acceleration: each sweep carries all scattered light once, and a diffusion system
+/// (DiffusionSystem.h) that agrees with it on the power through every voxel's face carries it as far as it goes.
 class DiffusionAcceleration : public Iteration
 {
 public:
@@ -52,9 +52,9 @@ private:
   Buffer<float> Given, PartialCurrents; ///< as DiffusionSystem::Arrays has them
   std::unique_ptr<SweepOperator> Swept;
   std::vector<std::unique_ptr<DiffusionSystem>> Systems;
-  SweepTally Tally;                                  ///< of the last sweep
-  Rgb GivenPower = {}, PowerIn = {};                 ///< W, emitted or first scattered; through faces
-  std::vector<std::vector<double>> Found;            ///< W / length^2, without lamps'
+  SweepTally Tally;                       ///< of the last sweep
+  Rgb GivenPower = {}, PowerIn = {};      ///< W, emitted or first scattered; through faces
+  std::vector<std::vector<double>> Found; ///< W / length^2, without lamps'
   double Change = 1.0, LastRatio = 1.0, Residual = 1.0;
 
   IterationResult Result;

@@ -44,7 +44,8 @@ private:
   std::array<std::vector<float>, 3> Arrays;
 };
 
-/// Another number of directions a face: fewer, but for a single one; rows are even in number where `directionsPerFace` has such.
+/// Another number of directions a face: fewer, but for a single one; rows are even in number where `directionsPerFace`
+/// has such.
 int OtherDirections(int directionsPerFace)
 {
   const int edge = static_cast<int>(std::lround(std::sqrt(static_cast<double>(directionsPerFace))));

@@ -3,16 +3,16 @@
 //   CHUNK     voxels a work-item sums up before the host adds the chunks in double
 //   SCATTERS  0: sigma_s is zero, and neither it nor `source` is there
 
-// A work-item a chunk of a channel; a channel's arrays begin at a vector's border and are filled up with zeros to a whole
-// number of vectors.
+// A work-item a chunk of a channel; a channel's arrays begin at a vector's border and are filled up with zeros to a
+// whole number of vectors.
 // path     W length; cleared
 // fluence  W / length^2, added to
 // source   W / (length^3 sr), replaced by what was scattered
 // tally    [channel][chunk] absorbed and scattered W
 // first, last  values of a channel, whole vectors: the others have gathered nothing
 __kernel void collect(__global float* path, __global float* fluence, __global float* source,
-  const __global float* sigma_t, const __global float* sigma_s, __global float2* tally, ulong stride, ulong first, ulong last,
-  int one_sigma_t, float per_volume)
+  const __global float* sigma_t, const __global float* sigma_s, __global float2* tally, ulong stride, ulong first,
+  ulong last, int one_sigma_t, float per_volume)
 {
   const ulong channel = get_global_id(1);
   const ulong begin = first + get_global_id(0) * CHUNK;
@@ -43,17 +43,18 @@ __kernel void collect(__global float* path, __global float* fluence, __global fl
   tally[channel * get_global_size(0) + get_global_id(0)] = (float2)(sum_of(absorbed), sum_of(scattered));
 }
 
-// All that was scattered but what the last order left over: from that, in `source`, and the fluence of all orders. A work-item a
-// value of a channel.
-__kernel void gather_scattered(const __global float* fluence, __global float* source, const __global float* sigma_s, ulong stride)
+// All that was scattered but what the last order left over: from that, in `source`, and the fluence of all orders. A
+// work-item a value of a channel.
+__kernel void gather_scattered(
+  const __global float* fluence, __global float* source, const __global float* sigma_s, ulong stride)
 {
   const ulong i = get_global_id(1) * stride + get_global_id(0);
   source[i] = fmax(sigma_s[i] * fluence[i] * (M_1_PI_F * 0.25f) - source[i], 0.0f);
 }
 
 // Light in the voxels outside a box becomes fluence. A work-item a value of a channel.
-__kernel void add_outside(const __global float* path, __global float* fluence, ulong stride, float per_volume, int3 size,
-  int3 first, int3 filled)
+__kernel void add_outside(const __global float* path, __global float* fluence, ulong stride, float per_volume,
+  int3 size, int3 first, int3 filled)
 {
   const ulong at = get_global_id(0);
   const int x = (int)(at % size.x) - first.x;

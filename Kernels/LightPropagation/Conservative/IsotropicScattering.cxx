@@ -32,8 +32,7 @@ IsotropicScattering::Powers IsotropicScattering::Scatter(const Buffer<float>& pa
   With(kernel, path, fluence, source, this->TheMedium.SigmaT(), this->TheMedium.SigmaS(), tally,
     cl_ulong(this->Layout.Stride()), cl_ulong(begin), cl_ulong(end), cl_int(this->Layout.sharedExtinction),
     static_cast<float>(1.0 / this->Layout.grid.VoxelVolume()));
-  this->TheDevice.Queue().enqueueNDRangeKernel(
-    kernel, cl::NullRange, cl::NDRange(chunks, channels), cl::NDRange(1, 1));
+  this->TheDevice.Queue().enqueueNDRangeKernel(kernel, cl::NullRange, cl::NDRange(chunks, channels), cl::NDRange(1, 1));
   Powers powers;
   const std::vector<cl_float2> sums = tally.Read();
   for (std::size_t i = 0; i < sums.size(); ++i)
@@ -52,8 +51,7 @@ void IsotropicScattering::SourceOfAll(const Buffer<float>& fluence, const Buffer
     kernel, cl::NullRange, cl::NDRange(this->Layout.Stride(), this->Layout.channels));
 }
 
-void IsotropicScattering::AddOutside(
-  const VoxelBox& box, const Buffer<float>& path, const Buffer<float>& fluence) const
+void IsotropicScattering::AddOutside(const VoxelBox& box, const Buffer<float>& path, const Buffer<float>& fluence) const
 {
   cl::Kernel add = this->Kernel("add_outside");
   const std::array<int, 3>& n = this->Layout.grid.size;

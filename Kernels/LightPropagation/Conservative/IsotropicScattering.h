@@ -11,8 +11,8 @@ namespace tyndall
 /// Voxels that a work-item sums up in float before the host adds the sums in double: the kernels' CHUNK.
 constexpr std::size_t CollectChunk = 4096;
 
-/// The scattering operator of isotropic scattering: from the path integrals that a sweep left to fluence and to the next source,
-/// sigma_s fluence / 4 pi (Gruson et al. 2012, equation 4, conservative).
+/// The scattering operator of isotropic scattering: from the path integrals that a sweep left to fluence and to the
+/// next source, sigma_s fluence / 4 pi (Gruson et al. 2012, equation 4, conservative).
 class IsotropicScattering
 {
 public:
@@ -31,7 +31,8 @@ public:
   Powers Scatter(const Buffer<float>& path, const Buffer<float>& fluence, const Buffer<float>& source,
     const std::array<std::size_t, 2>& range) const;
 
-  /// The source of all orders at once from the fluence of all: but for what the last one left over, which `source` holds.
+  /// The source of all orders at once from the fluence of all: but for what the last one left over, which `source`
+  /// holds.
   void SourceOfAll(const Buffer<float>& fluence, const Buffer<float>& source) const;
 
   /// What a sweep left in the voxels outside a box becomes fluence.

@@ -29,7 +29,8 @@ public:
   virtual IterationResult Run(const Monitor& monitor) = 0;
 };
 
-/// How far a solve is, 0 to 1. Iterations are counted where their number is known, else the logarithm of the residual tells.
+/// How far a solve is, 0 to 1. Iterations are counted where their number is known, else the logarithm of the residual
+/// tells.
 /// @param iterations  done, the one that is under way in part
 double ProgressOf(const PropagationSettings& settings, double residual, double iterations);
 }

@@ -8,8 +8,7 @@ MediumOnDevice::MediumOnDevice(Device& device, const Medium& medium, const Volum
   const auto load = [&](int channels, const char* what, auto&& value) {
     return Buffer<float>(device, Planar(layout, channels, value), what);
   };
-  this->Extinction =
-    load(extinctions, "sigma_t", [&](std::size_t i, int c) { return medium.TransportSigmaT(i, c); });
+  this->Extinction = load(extinctions, "sigma_t", [&](std::size_t i, int c) { return medium.TransportSigmaT(i, c); });
   if (needs.sigma_s)
   {
     this->Scattering =

@@ -6,8 +6,8 @@
 
 namespace tyndall
 {
-/// A medium's coefficients as sweeps and what comes between them read them, 1/length, laid out as VolumeLayout says. Scattering with a
-/// mean cosine g is isotropic scattering of sigma_s (1 - g).
+/// A medium's coefficients as sweeps and what comes between them read them, 1/length, laid out as VolumeLayout says.
+/// Scattering with a mean cosine g is isotropic scattering of sigma_s (1 - g).
 class MediumOnDevice
 {
 public:
@@ -28,7 +28,8 @@ private:
   Buffer<float> Extinction, Scattering, Absorption;
 };
 
-/// A quantity of voxel and channel, value(voxel, channel), as an array of that layout with `channels` channels; zero beyond the voxels.
+/// A quantity of voxel and channel, value(voxel, channel), as an array of that layout with `channels` channels; zero
+/// beyond the voxels.
 template <class Value>
 std::vector<float> Planar(const VolumeLayout& layout, int channels, const Value& value)
 {
@@ -44,6 +45,7 @@ std::vector<float> Planar(const VolumeLayout& layout, int channels, const Value&
   return values;
 }
 
-/// The voxels' values of such an array, times `scale`, the `parts` values of a voxel (channels, times components) side by side.
+/// The voxels' values of such an array, times `scale`, the `parts` values of a voxel (channels, times components) side
+/// by side.
 std::vector<float> Interleaved(const VolumeLayout& layout, const Buffer<float>& planar, double scale);
 }

@@ -75,7 +75,8 @@ void SourceIteration::MakeSweeps()
 }
 
 /// Orders after the first go through the box that the medium fills alone: what leaves it does not come back. What they
-/// are outside of it is found at the end, for all of them in one sweep. Rays round a periodic axis would be on the way in both.
+/// are outside of it is found at the end, for all of them in one sweep. Rays round a periodic axis would be on the way
+/// in both.
 void SourceIteration::MakeFilledSweep()
 {
   const std::array<bool, 3>& periodic = this->Settings.periodic;
@@ -210,8 +211,9 @@ void SourceIteration::ScatterOrder()
   this->Result.convergence.Add(this->Residual, all > 0.0 ? Sum(this->Scattered) / all : 0.0, this->Result.ledger);
 }
 
-/// What the orders to come will add to the light that is scattered, over what there is: the rest of a geometric series, as
-/// orders fall off like one in the end. Its ratio grows towards that, so its last growth is added. The worst channel counts.
+/// What the orders to come will add to the light that is scattered, over what there is: the rest of a geometric series,
+/// as orders fall off like one in the end. Its ratio grows towards that, so its last growth is added. The worst channel
+/// counts.
 void SourceIteration::EstimateResidual()
 {
   this->Residual = 0.0;
@@ -244,8 +246,8 @@ bool SourceIteration::Done() const
                                           : this->Order > 2 && this->Residual <= this->Settings.tolerance;
 }
 
-/// What the orders after the first are in the voxels around the medium, and through which faces it leaves: one sweep of all
-/// that was scattered but what the last order left over.
+/// What the orders after the first are in the voxels around the medium, and through which faces it leaves: one sweep of
+/// all that was scattered but what the last order left over.
 void SourceIteration::SweepEmptySlabs(const Monitor& monitor)
 {
   TransportParts& parts = this->Parts;

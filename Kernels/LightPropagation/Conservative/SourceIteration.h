@@ -10,7 +10,8 @@
 
 namespace tyndall
 {
-/// Source iteration: one scattering order after the other. Each sweep carries what the one before scattered; the fluence is their sum.
+/// Source iteration: one scattering order after the other. Each sweep carries what the one before scattered; the
+/// fluence is their sum.
 class SourceIteration : public Iteration
 {
 public:
@@ -36,18 +37,20 @@ private:
   const PropagationSettings& Settings;
   IsotropicScattering Scattering;
   std::unique_ptr<SweepOperator> Whole;
-  std::unique_ptr<SweepOperator> Lit;    ///< of the first order, where much of the outside is dark and the medium too; else null
-  std::unique_ptr<SweepOperator> Filled; ///< of the orders after it, where the medium leaves much of the volume empty; else null
+  std::unique_ptr<SweepOperator>
+    Lit; ///< of the first order, where much of the outside is dark and the medium too; else null
+  std::unique_ptr<SweepOperator>
+    Filled; ///< of the orders after it, where the medium leaves much of the volume empty; else null
   std::optional<EscapeCorrection> Escaping;
   double LitPart = 1.0; ///< of all rays, in the first order
 
   IterationResult Result;
-  int Order = 0;        ///< that is under way
-  bool Shining = false; ///< the source is not zero
-  Rgb Scattered = {};   ///< W, by the order just done
-  Rgb OnTheWay = {};    ///< W, rays that go round a periodic axis in the next sweep
-  Rgb Stranded = {};    ///< W, of uncollided light whose rays go round a periodic axis without end
-  Rgb Escaped = {};     ///< W, by the correction
+  int Order = 0;          ///< that is under way
+  bool Shining = false;   ///< the source is not zero
+  Rgb Scattered = {};     ///< W, by the order just done
+  Rgb OnTheWay = {};      ///< W, rays that go round a periodic axis in the next sweep
+  Rgb Stranded = {};      ///< W, of uncollided light whose rays go round a periodic axis without end
+  Rgb Escaped = {};       ///< W, by the correction
   Rgb LastScattered = {}; ///< W, by the order before
   Rgb AllScattered = {};  ///< W, by all orders so far
   Rgb Ratio = {};         ///< of this order's scattered power to that of the one before

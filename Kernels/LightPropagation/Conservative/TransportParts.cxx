@@ -18,8 +18,7 @@ RayStarts StartsOf(const PropagationSettings& settings)
 
 VolumeLayout LayoutOf(const PropagationProblem& problem)
 {
-  const bool shared =
-    problem.Channels() == 1 || (problem.Settings().leaveOut && problem.Traits().greyExtinction);
+  const bool shared = problem.Channels() == 1 || (problem.Settings().leaveOut && problem.Traits().greyExtinction);
   return { problem.TheGrid(), problem.Channels(), shared };
 }
 
@@ -38,7 +37,7 @@ SplitEmission EmissionOf(const PropagationProblem& problem)
   const std::array<bool, 3>& periodic = problem.Settings().periodic;
   const bool endless = periodic[0] || periodic[1] || periodic[2];
   return problem.Traits().emits && problem.Settings().emissionError > 0.0 && !endless ? Split(problem.TheMedium())
-                                                                                     : SplitEmission();
+                                                                                      : SplitEmission();
 }
 }
 
@@ -56,8 +55,7 @@ TransportParts::TransportParts(Device& device, const PropagationProblem& problem
   const MediumTraits& traits = problem.Traits();
   const bool scatters = !problem.Settings().leaveOut || traits.scatters;
   const bool needsSource = scatters || traits.emits || accelerated;
-  this->Source =
-    Buffer<float>(device, needsSource ? this->Layout.Floats() : SweepPadding, "the scattered light");
+  this->Source = Buffer<float>(device, needsSource ? this->Layout.Floats() : SweepPadding, "the scattered light");
   this->Path = Buffer<float>(device, this->Layout.Floats(), "the light gathered");
   this->Fluence = Buffer<float>(device, this->Layout.Floats(), "fluence");
   if (problem.Settings().netFlux)
@@ -180,8 +178,7 @@ void TransportParts::CountEmission(EnergyLedger& ledger) const
   }
 }
 
-SweepTally TransportParts::AddUncollided(
-  const UncollidedSource& source, const Deposit& deposit, const Monitor& monitor)
+SweepTally TransportParts::AddUncollided(const UncollidedSource& source, const Deposit& deposit, const Monitor& monitor)
 {
   SweepTally tally;
   for (const ChannelGroup& group : this->Layout.Groups())

@@ -17,8 +17,8 @@
 
 namespace tyndall
 {
-/// A problem on a device, with the directions it is solved along and the lights that shine: what the iterations are made of. Holds no
-/// state of a solve but the arrays that they work in.
+/// A problem on a device, with the directions it is solved along and the lights that shine: what the iterations are
+/// made of. Holds no state of a solve but the arrays that they work in.
 class TransportParts
 {
 public:
@@ -39,8 +39,8 @@ public:
   /// Along directions of its own until it meets the medium, where they were asked for and differ from the usual ones.
   std::unique_ptr<const SweptDirections> Fine;
   std::unique_ptr<const BoundaryLight> UsualBoundary, FineBoundary; ///< FineBoundary: null where there are none
-  std::vector<Light> Lamps;                                         ///< those of the scene and the peaks of the environment
-  SplitEmission Emission;                                           ///< of the medium
+  std::vector<Light> Lamps; ///< those of the scene and the peaks of the environment
+  SplitEmission Emission;   ///< of the medium
 
   /// [channel][stride]; flux [channel][x, y, z][stride], empty where net flux is not asked for.
   Buffer<float> Source, Path, Flux, Fluence;
@@ -61,8 +61,9 @@ public:
     SweepTally tally;
   };
   UncollidedFlux FindUncollided(const UncollidedSource& source, const Monitor& monitor);
-  /// What a sky of radiance 1 is before it is scattered, along the finer directions and along the usual ones. Read as how much of the
-  /// light that sets out from a voxel gets out of the box (reciprocity), it tells how far scattered light is off.
+  /// What a sky of radiance 1 is before it is scattered, along the finer directions and along the usual ones. Read as
+  /// how much of the light that sets out from a voxel gets out of the box (reciprocity), it tells how far scattered
+  /// light is off.
   struct EvenSky
   {
     UncollidedFlux fine, usual;

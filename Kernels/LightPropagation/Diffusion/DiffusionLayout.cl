@@ -13,10 +13,11 @@ typedef struct
 {
   int size[3];
   int periodic[3];
-  int linear;        // 1: the light between voxels' centres is linear; 0: each voxel is as one
-  int stride;        // of channels in the solver's arrays
-  int first_t, first; // where this channel begins: of sigma_t, of all others (currents: six times that, flux: three times)
-  int pattern[6];    // where the tables of crossings begin: [axis][other axes in order]
+  int linear; // 1: the light between voxels' centres is linear; 0: each voxel is as one
+  int stride; // of channels in the solver's arrays
+  int first_t,
+    first;        // where this channel begins: of sigma_t, of all others (currents: six times that, flux: three times)
+  int pattern[6]; // where the tables of crossings begin: [axis][other axes in order]
   float spacing[3];
   float half_range;  // sum over directions of w mu / 4 pi, mu > 0: 1/4 but for the direction set
   float floor;       // optical length between voxels' centres below which they pass no more
@@ -24,17 +25,17 @@ typedef struct
 } diffusion_layout;
 
 // The voxel of a work-item: x, y, z and i.
-#define VOXEL(count)                                                       \
+#define VOXEL(count)                                                          \
   const int x = get_global_id(0), y = get_global_id(1), z = get_global_id(2); \
-  if (x >= (count)[0] || y >= (count)[1] || z >= (count)[2])               \
-  {                                                                        \
-    return;                                                                \
-  }                                                                        \
+  if (x >= (count)[0] || y >= (count)[1] || z >= (count)[2])                  \
+  {                                                                           \
+    return;                                                                   \
+  }                                                                           \
   const int i = (z * (count)[1] + y) * (count)[0] + x;
 
-#define IS_OUTERMOST(layout, at)                                                              \
-  ((!(layout).periodic[0] && ((at)[0] == 0 || (at)[0] == (layout).size[0] - 1)) ||            \
-    (!(layout).periodic[1] && ((at)[1] == 0 || (at)[1] == (layout).size[1] - 1)) ||           \
+#define IS_OUTERMOST(layout, at)                                                    \
+  ((!(layout).periodic[0] && ((at)[0] == 0 || (at)[0] == (layout).size[0] - 1)) ||  \
+    (!(layout).periodic[1] && ((at)[1] == 0 || (at)[1] == (layout).size[1] - 1)) || \
     (!(layout).periodic[2] && ((at)[2] == 0 || (at)[2] == (layout).size[2] - 1)))
 
 // Round the axes; where the box ends conductances are zero.

@@ -3,9 +3,10 @@
 //
 // Face d of a voxel is -x, +x, -y, +y, -z, +z. tau is the optical length of a voxel along an axis.
 
-// Outflow of a half-space whose source is constant in each voxel and falls by one from mean free path to mean free path:
-// sum over mu of mu (tau / 2) coth(tau / (2 mu)) (Gauss, 4 points). 1/6 where voxels are thin, as it should be; tau / 8 where
-// they are thick.
+// Outflow of a half-space whose source is constant in each voxel and falls by one from mean free path to mean free
+// path:
+// sum over mu of mu (tau / 2) coth(tau / (2 mu)) (Gauss, 4 points). 1/6 where voxels are thin, as it should be; tau / 8
+// where they are thick.
 static float stair(float tau)
 {
   const float mu[4] = { 0.0694318442f, 0.3300094782f, 0.6699905218f, 0.9305681558f };
@@ -25,8 +26,8 @@ static float half_diffusion_length(float tau, float sigma_t, float sigma_a)
   return sigma_t > 0.0f ? 0.5f * tau * sqrt(3.0f * fmin(sigma_a / sigma_t, 1.0f)) : 0.0f;
 }
 
-// How much better than tau / 2 a half voxel conducts whose light dies away on the way: exactly that of light that falls off
-// from a border...
+// How much better than tau / 2 a half voxel conducts whose light dies away on the way: exactly that of light that falls
+// off from a border...
 static float at_border(float y)
 {
   return y < 0.02f ? 1.0f + y * (2.0f / 3.0f) : 2.0f * y * y / (2.0f * y - 1.0f + exp(-2.0f * y));
@@ -87,8 +88,8 @@ __kernel void diffusion_flat_source(diffusion_layout layout, const __global floa
 
 // conductance  [axis][voxel] of the voxel's low face, length^2; 0 on the box's border
 // loss         what absorption and the border take per fluence
-__kernel void diffusion_conductance(diffusion_layout layout, const __global float* sigma_t, const __global float* sigma_a,
-  const __global float* flat_source, __global float* conductance, __global float* loss)
+__kernel void diffusion_conductance(diffusion_layout layout, const __global float* sigma_t,
+  const __global float* sigma_a, const __global float* flat_source, __global float* conductance, __global float* loss)
 {
   VOXEL(layout.size)
   sigma_t += layout.first_t;
@@ -108,7 +109,8 @@ __kernel void diffusion_conductance(diffusion_layout layout, const __global floa
     const float tau0 = sigma_t[j] * h, tau1 = sigma_t[i] * h;
     const float y0 = half_diffusion_length(tau0, sigma_t[j], sigma_a[j]);
     const float y1 = half_diffusion_length(tau1, sigma_t[i], sigma_a[i]);
-    const float passes = area * pass_face(&layout, tau0, tau1, y0, y1, flat_source[axis * stride + i] + flat_source[axis * stride + j]);
+    const float passes =
+      area * pass_face(&layout, tau0, tau1, y0, y1, flat_source[axis * stride + i] + flat_source[axis * stride + j]);
     conductance[axis * count + i] = (at == 0 && open) || layout.size[axis] == 1 ? 0.0f : passes;
     const int borders = open ? (at == 0) + (at == layout.size[axis] - 1) : 0;
     taken += borders * area * pass_boundary(&layout, way_to_boundary(&layout, tau1, sigma_t[i], sigma_a[i]));
@@ -131,7 +133,8 @@ static float contrast(float tau, float beyond)
 }
 
 // Of a thick voxel beside thinner ones those see only the skin: how much that counts, and for each inner face.
-static float openness(const diffusion_layout* layout, const __global float* sigma_t, int i, const int* next, const int* at, float* open)
+static float openness(
+  const diffusion_layout* layout, const __global float* sigma_t, int i, const int* next, const int* at, float* open)
 {
   float most = 0.0f;
   for (int d = 0; d < 6; ++d)
@@ -146,8 +149,8 @@ static float openness(const diffusion_layout* layout, const __global float* sigm
   return most > 0.01f ? most : 0.0f;
 }
 
-// What the sweep's light is compared with: the light it found where voxels are thin, the light it was given where they are
-// thick and it only repeats that.
+// What the sweep's light is compared with: the light it found where voxels are thin, the light it was given where they
+// are thick and it only repeats that.
 __kernel void diffusion_model(diffusion_layout layout, const __global float* sigma_t, const __global float* path,
   const __global exact* fluence, const __global float* source, __global float* model)
 {
@@ -163,7 +166,8 @@ __kernel void diffusion_model(diffusion_layout layout, const __global float* sig
   const float longest = sigma_t[i] * fmax(layout.spacing[0], fmax(layout.spacing[1], layout.spacing[2]));
   const float found = path[i] / volume_of(&layout);
   const float thick = layout.linear ? longest * longest / (1.0f + longest * longest) : 0.0f;
-  const float given = skin > 0.0f ? mix((float)fluence[i], 4.0f * M_PI_F * source[i] / sigma_t[i], skin) : (float)fluence[i];
+  const float given =
+    skin > 0.0f ? mix((float)fluence[i], 4.0f * M_PI_F * source[i] / sigma_t[i], skin) : (float)fluence[i];
   model[i] = longest > 1e9f ? given : found + thick * (given - found);
 }
 
@@ -182,17 +186,19 @@ typedef struct
 } diffusion_arrays;
 
 // Rays that cross a face, over those that should: what a repeated pattern of few rays has too many or too few.
-static float pattern_at(const diffusion_layout* layout, const diffusion_arrays* arrays, int axis, const int* at, float tau)
+static float pattern_at(
+  const diffusion_layout* layout, const diffusion_arrays* arrays, int axis, const int* at, float tau)
 {
   const int b = axis == 0 ? 1 : 0;
   const int c = axis == 2 ? 1 : 2;
-  const float crossing = arrays->pattern[layout->pattern[2 * axis] + at[b]] + arrays->pattern[layout->pattern[2 * axis + 1] + at[c]];
+  const float crossing =
+    arrays->pattern[layout->pattern[2 * axis] + at[b]] + arrays->pattern[layout->pattern[2 * axis + 1] + at[c]];
   const float thick = 1.0f - 1.0f / (1.0f + tau * tau); // in thin voxels it is in the light too
   return 1.0f + thick * (crossing - 1.0f);
 }
 
-// The weight of the transport correction, of what a sweep knows better than diffusion: little where voxels are thick, or the light dies away within
-// one, and it knows nothing.
+// The weight of the transport correction, of what a sweep knows better than diffusion: little where voxels are thick,
+// or the light dies away within one, and it knows nothing.
 static float weight_of_transport(const diffusion_layout* layout, float tau, float absorbing)
 {
   return layout->linear ? 1.0f / (1.0f + tau * (0.25f * tau + 3.0f * absorbing)) : 1.0f;
@@ -242,7 +248,8 @@ static float model_of_boundary(
 }
 
 // Lamps' light that is scattered near face d of voxel i and passes it at once, less what comes the other way.
-static float passing(const diffusion_layout* layout, const diffusion_arrays* arrays, int d, int i, const int* next, bool border)
+static float passing(
+  const diffusion_layout* layout, const diffusion_arrays* arrays, int d, int i, const int* next, bool border)
 {
 #if PASSING
   return arrays->passed[d * arrays->stride + i] - (border ? 0.0f : arrays->passed[(d ^ 1) * arrays->stride + next[d]]);
@@ -256,8 +263,8 @@ static float passing(const diffusion_layout* layout, const diffusion_arrays* arr
 //   share    [face] its part for each face: as the sweep's light seems to leave through them
 //   seeming  [face] power out, of the sweep, that seems to leave through each
 //   transport_weight  how much of it counts
-static float remainder_of_borders(const diffusion_layout* layout, const diffusion_arrays* arrays, int i, const int* next,
-  const int* at, float power, float* share, float* seeming, float* transport_weight)
+static float remainder_of_borders(const diffusion_layout* layout, const diffusion_arrays* arrays, int i,
+  const int* next, const int* at, float power, float* share, float* seeming, float* transport_weight)
 {
   float left = power; // through the box's faces, out less in
   float in = 0.0f, expected = 0.0f, longest = 0.0f, sum = 0.0f, borders = 0.0f;
@@ -302,9 +309,10 @@ static float remainder_of_borders(const diffusion_layout* layout, const diffusio
   return *transport_weight > 0.0f ? *transport_weight * (left - expected) : 0.0f;
 }
 
-// Power through face d out of voxel i, less what comes in, by the solution; `share` of its remainder where it is the box's.
-static exact power_of_face(const diffusion_layout* layout, const diffusion_arrays* arrays, const __global exact* fluence,
-  int d, int i, const int* next, const int* at, const float* share)
+// Power through face d out of voxel i, less what comes in, by the solution; `share` of its remainder where it is the
+// box's.
+static exact power_of_face(const diffusion_layout* layout, const diffusion_arrays* arrays,
+  const __global exact* fluence, int d, int i, const int* next, const int* at, const float* share)
 {
   const int axis = d / 2;
   if (is_border(layout, at, d))
@@ -323,29 +331,30 @@ static exact power_of_face(const diffusion_layout* layout, const diffusion_array
     passing(layout, arrays, d, i, next, false);
 }
 
-#define ARRAYS_OF_CHANNEL                                                      \
-  sigma_t += layout.first_t;                                                   \
-  sigma_a += layout.first;                                                     \
-  currents += 6 * (ulong)layout.first;                                         \
-  passed += PASSING ? 6 * (ulong)layout.first : 0;                             \
-  source += layout.first;                                                      \
-  path += layout.first;                                                        \
-  const ulong stride = layout.stride;                                          \
-  const int count = layout.size[0] * layout.size[1] * layout.size[2];          \
-  const diffusion_arrays arrays = { sigma_t, sigma_a, flat_source, conductance, currents, passed, model, pattern, stride, count }; \
-  const int at[3] = { x, y, z };                                               \
-  int next[6];                                                                 \
-  find_neighbours(layout.size, x, y, z, i, next);                              \
-  const float per_radiance = 4.0f * M_PI_F * volume_of(&layout);               \
+#define ARRAYS_OF_CHANNEL                                                                                         \
+  sigma_t += layout.first_t;                                                                                      \
+  sigma_a += layout.first;                                                                                        \
+  currents += 6 * (ulong)layout.first;                                                                            \
+  passed += PASSING ? 6 * (ulong)layout.first : 0;                                                                \
+  source += layout.first;                                                                                         \
+  path += layout.first;                                                                                           \
+  const ulong stride = layout.stride;                                                                             \
+  const int count = layout.size[0] * layout.size[1] * layout.size[2];                                             \
+  const diffusion_arrays arrays = { sigma_t, sigma_a, flat_source, conductance, currents, passed, model, pattern, \
+    stride, count };                                                                                              \
+  const int at[3] = { x, y, z };                                                                                  \
+  int next[6];                                                                                                    \
+  find_neighbours(layout.size, x, y, z, i, next);                                                                 \
+  const float per_radiance = 4.0f * M_PI_F * volume_of(&layout);                                                  \
   float share[6], seeming[6], transport_weight;
 
 // The right-hand side, W.
 // given    emitted and first scattered light of lights, W / (length^3 sr)
 // source   of the sweep, W / (length^3 sr)
 __kernel void diffusion_balance(diffusion_layout layout, const __global float* sigma_t, const __global float* sigma_a,
-  const __global float* flat_source, const __global float* conductance, const __global float* currents, const __global float* passed,
-  const __global float* model, const __global float* pattern, const __global float* source,
-  const __global float* path, const __global float* given, __global exact* right)
+  const __global float* flat_source, const __global float* conductance, const __global float* currents,
+  const __global float* passed, const __global float* model, const __global float* pattern,
+  const __global float* source, const __global float* path, const __global float* given, __global exact* right)
 {
   VOXEL(layout.size)
   ARRAYS_OF_CHANNEL
@@ -376,9 +385,9 @@ __kernel void diffusion_balance(diffusion_layout layout, const __global float* s
 // in, W, without what the sweep knows better: that is right for a face of the box on the whole, but not from voxel to
 // voxel.
 __kernel void diffusion_outflow(diffusion_layout layout, const __global float* sigma_t, const __global float* sigma_a,
-  const __global float* flat_source, const __global float* conductance, const __global float* currents, const __global float* passed,
-  const __global float* model, const __global float* pattern, const __global float* source,
-  const __global float* path, const __global exact* fluence, __global exact* outflow)
+  const __global float* flat_source, const __global float* conductance, const __global float* currents,
+  const __global float* passed, const __global float* model, const __global float* pattern,
+  const __global float* source, const __global float* path, const __global exact* fluence, __global exact* outflow)
 {
   VOXEL(layout.size)
   if (!IS_OUTERMOST(layout, ((int[3]){ x, y, z })))
@@ -386,8 +395,8 @@ __kernel void diffusion_outflow(diffusion_layout layout, const __global float* s
     return;
   }
   ARRAYS_OF_CHANNEL
-  remainder_of_borders(&layout, &arrays, i, next, at, source[i] * per_radiance - sigma_t[i] * path[i], share,
-      seeming, &transport_weight);
+  remainder_of_borders(
+    &layout, &arrays, i, next, at, source[i] * per_radiance - sigma_t[i] * path[i], share, seeming, &transport_weight);
   int borders = 0;
   for (int d = 0; d < 6; ++d)
   {
@@ -413,17 +422,17 @@ __kernel void diffusion_outflow(diffusion_layout layout, const __global float* s
 
 // Net flux, W / length^2 times volume, [x, y, z][stride], added to.
 __kernel void diffusion_flux(diffusion_layout layout, const __global float* sigma_t, const __global float* sigma_a,
-  const __global float* flat_source, const __global float* conductance, const __global float* currents, const __global float* passed,
-  const __global float* model, const __global float* pattern, const __global float* source,
-  const __global float* path, const __global exact* fluence, __global float* flux)
+  const __global float* flat_source, const __global float* conductance, const __global float* currents,
+  const __global float* passed, const __global float* model, const __global float* pattern,
+  const __global float* source, const __global float* path, const __global exact* fluence, __global float* flux)
 {
   VOXEL(layout.size)
   ARRAYS_OF_CHANNEL
   flux += 3 * (ulong)layout.first;
   if (IS_OUTERMOST(layout, at))
   {
-    remainder_of_borders(&layout, &arrays, i, next, at, source[i] * per_radiance - sigma_t[i] * path[i], share,
-      seeming, &transport_weight);
+    remainder_of_borders(&layout, &arrays, i, next, at, source[i] * per_radiance - sigma_t[i] * path[i], share, seeming,
+      &transport_weight);
   }
   for (int axis = 0; axis < 3; ++axis)
   {
@@ -433,8 +442,8 @@ __kernel void diffusion_flux(diffusion_layout layout, const __global float* sigm
   }
 }
 
-// The next sweep's source: what the medium shines and what it scatters; of voxels with a skin, what makes that shine as the light
-// there and the power through it want: 4 J+ = fluence + 2 J.
+// The next sweep's source: what the medium shines and what it scatters; of voxels with a skin, what makes that shine as
+// the light there and the power through it want: 4 J+ = fluence + 2 J.
 __kernel void diffusion_source(diffusion_layout layout, const __global float* given, const __global float* sigma_s,
   const __global exact* fluence, const __global float* sigma_t, const __global float* sigma_a,
   const __global float* conductance, const __global float* passed, __global float* source)
@@ -482,7 +491,8 @@ __kernel void diffusion_source(diffusion_layout layout, const __global float* gi
 // passed    [channel][face][stride] W, added to
 // all_path  W length, of all lights, added to
 __kernel void diffusion_pass(diffusion_layout layout, const __global float* sigma_t, const __global float* sigma_a,
-  const __global float* sigma_s, const __global float* path, const __global float* moments, __global float* passed, __global float* all_path)
+  const __global float* sigma_s, const __global float* path, const __global float* moments, __global float* passed,
+  __global float* all_path)
 {
   VOXEL(layout.size)
   const int at[3] = { x, y, z };

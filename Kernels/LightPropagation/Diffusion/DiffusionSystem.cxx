@@ -82,7 +82,8 @@ double HalfRange(const Grid& grid, const DirectionSet& set, int axis, int marchi
   return sum;
 }
 
-/// Power at radiance 1 that crosses faces across `axis` upwards in each plane, per area, of rays that march along `marching`.
+/// Power at radiance 1 that crosses faces across `axis` upwards in each plane, per area, of rays that march along
+/// `marching`.
 std::vector<double> CrossingsIn(
   const Grid& grid, const DirectionSet& set, int mapResolution, RayStarts starts, int axis, int marching)
 {
@@ -224,8 +225,9 @@ void DiffusionSystem::RunOnArrays(const char* name, const More&... more)
 {
   const Arrays& the = this->The;
   cl::Kernel kernel = this->Kernel(name);
-  With(kernel, this->Layout, *the.sigma_t, *the.sigma_a, this->FlatSource, this->Solver.Conductance(), *the.partialCurrents,
-    this->The.passed ? *this->The.passed : this->Model, this->Model, this->Pattern, *the.source, *the.path, more...);
+  With(kernel, this->Layout, *the.sigma_t, *the.sigma_a, this->FlatSource, this->Solver.Conductance(),
+    *the.partialCurrents, this->The.passed ? *this->The.passed : this->Model, this->Model, this->Pattern, *the.source,
+    *the.path, more...);
   this->Run(kernel);
 }
 

@@ -1,8 +1,9 @@
-// Lamps' light in thick voxels, see DiffusionSystem.h: it is scattered first near the faces that it comes in through, and part of it
-// passes those at once. Read after DiffusionLayout.cl and before DiffusionSystem.cl.
+// Lamps' light in thick voxels, see DiffusionSystem.h: it is scattered first near the faces that it comes in through,
+// and part of it passes those at once. Read after DiffusionLayout.cl and before DiffusionSystem.cl.
 
-// Of light that falls off over tau from a face of a voxel as exp(-b t), what comes back to the face while it is diffused and absorbed
-// over k a mean free path. r, 0 to 1, is how near to the face it is scattered: 1 - 2 t / tau for a mean depth t.
+// Of light that falls off over tau from a face of a voxel as exp(-b t), what comes back to the face while it is
+// diffused and absorbed over k a mean free path. r, 0 to 1, is how near to the face it is scattered: 1 - 2 t / tau for
+// a mean depth t.
 static float comes_back(float tau, float r, float k)
 {
   const float b = 2.0f * r * (3.0f - 2.0f * r) / (tau * fmax(1.0f - r, 1e-6f)); // exact for r near 0 and near 1

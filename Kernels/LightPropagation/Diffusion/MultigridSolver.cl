@@ -1,7 +1,7 @@
 // Conjugate gradients, preconditioned by multigrid, for the diffusion system. Read after DiffusionLayout.cl.
 //
-// A level's matrix: row i is sum over faces of conductance (x_i - x_j) + loss_i x_i. Vectors of multigrid are float: it only
-// has to point in about the right direction.
+// A level's matrix: row i is sum over faces of conductance (x_i - x_j) + loss_i x_i. Vectors of multigrid are float: it
+// only has to point in about the right direction.
 
 #define CHUNK 4096
 
@@ -11,8 +11,8 @@ typedef struct
   int halved[3]; // to the next coarser level
 } level_layout;
 
-static float neighbours_sum(const __global float* conductance, int count, const __global float* values, int i,
-  const int* next, float* passes)
+static float neighbours_sum(
+  const __global float* conductance, int count, const __global float* values, int i, const int* next, float* passes)
 {
   const float a = conductance[i], b = conductance[next[1]];
   const float c = conductance[count + i], d = conductance[count + next[3]];
@@ -48,7 +48,8 @@ __kernel void level_begin(level_layout level, const __global float* conductance,
   const int count = level.size[0] * level.size[1] * level.size[2];
   int next[6];
   find_neighbours(level.size, x, y, z, i, next);
-  const float passes = ((conductance[i] + conductance[next[1]]) + (conductance[count + i] + conductance[count + next[3]])) +
+  const float passes =
+    ((conductance[i] + conductance[next[1]]) + (conductance[count + i] + conductance[count + next[3]])) +
     (conductance[2 * count + i] + conductance[2 * count + next[5]]);
   const float diagonal = passes + loss[i];
   values[i] = diagonal > 0.0f ? damping * right[i] / diagonal : 0.0f;
@@ -62,7 +63,8 @@ __kernel void finest_begin(level_layout level, const __global float* conductance
   const int count = level.size[0] * level.size[1] * level.size[2];
   int next[6];
   find_neighbours(level.size, x, y, z, i, next);
-  const float passes = ((conductance[i] + conductance[next[1]]) + (conductance[count + i] + conductance[count + next[3]])) +
+  const float passes =
+    ((conductance[i] + conductance[next[1]]) + (conductance[count + i] + conductance[count + next[3]])) +
     (conductance[2 * count + i] + conductance[2 * count + next[5]]);
   const float diagonal = passes + loss[i];
   right[i] = (float)(residual[i] * per_unit);
@@ -95,7 +97,8 @@ __kernel void level_residual(level_layout level, const __global float* conductan
 }
 
 // Sum over the finer level's voxels in each of this one. A work-item a coarse voxel.
-__kernel void level_restrict(level_layout fine, level_layout coarse, const __global float* residual, __global float* right)
+__kernel void level_restrict(
+  level_layout fine, level_layout coarse, const __global float* residual, __global float* right)
 {
   VOXEL(coarse.size)
   float sum = 0.0f;
@@ -115,7 +118,8 @@ __kernel void level_restrict(level_layout fine, level_layout coarse, const __glo
   right[i] = sum;
 }
 
-__kernel void level_prolong(level_layout fine, level_layout coarse, const __global float* correction, __global float* values)
+__kernel void level_prolong(
+  level_layout fine, level_layout coarse, const __global float* correction, __global float* values)
 {
   VOXEL(fine.size)
   const int parent =
@@ -184,33 +188,33 @@ __kernel void level_finish(level_layout level, const __global float* conductance
 }
 
 // Chunks of the sum of a b; a work-item a chunk.
-#define DOT(name, type)                                                                              \
-__kernel void name(const __global exact* a, const __global type* b, int count, __global exact* sums) \
-{                                                                                                    \
-  const int begin = get_global_id(0) * CHUNK;                                                        \
-  const int end = min(count, begin + CHUNK);                                                         \
-  exact part[4] = { 0, 0, 0, 0 };                                                                    \
-  int i = begin;                                                                                     \
-  for (; i + 4 <= end; i += 4)                                                                       \
-  {                                                                                                  \
-    for (int k = 0; k < 4; ++k)                                                                      \
-    {                                                                                                \
-      part[k] += a[i + k] * b[i + k];                                                                \
-    }                                                                                                \
-  }                                                                                                  \
-  for (; i < end; ++i)                                                                               \
-  {                                                                                                  \
-    part[0] += a[i] * b[i];                                                                          \
-  }                                                                                                  \
-  sums[get_global_id(0)] = (part[0] + part[1]) + (part[2] + part[3]);                                \
-}
+#define DOT(name, type)                                                                                \
+  __kernel void name(const __global exact* a, const __global type* b, int count, __global exact* sums) \
+  {                                                                                                    \
+    const int begin = get_global_id(0) * CHUNK;                                                        \
+    const int end = min(count, begin + CHUNK);                                                         \
+    exact part[4] = { 0, 0, 0, 0 };                                                                    \
+    int i = begin;                                                                                     \
+    for (; i + 4 <= end; i += 4)                                                                       \
+    {                                                                                                  \
+      for (int k = 0; k < 4; ++k)                                                                      \
+      {                                                                                                \
+        part[k] += a[i + k] * b[i + k];                                                                \
+      }                                                                                                \
+    }                                                                                                  \
+    for (; i < end; ++i)                                                                               \
+    {                                                                                                  \
+      part[0] += a[i] * b[i];                                                                          \
+    }                                                                                                  \
+    sums[get_global_id(0)] = (part[0] + part[1]) + (part[2] + part[3]);                                \
+  }
 DOT(diffusion_dot, exact)
 DOT(diffusion_dot_float, float)
 #undef DOT
 
 // x += step p, r -= step q
-__kernel void diffusion_step(
-  __global exact* values, __global exact* residual, const __global exact* direction, const __global exact* applied, exact step)
+__kernel void diffusion_step(__global exact* values, __global exact* residual, const __global exact* direction,
+  const __global exact* applied, exact step)
 {
   const int i = get_global_id(0);
   values[i] += step * direction[i];
@@ -225,9 +229,11 @@ __kernel void diffusion_turn(__global exact* direction, const __global float* pr
 
 #define SUMS 8
 // Sums for Anderson's method, with f = found - given and differences to those of two iterations before:
-// f f, found found (both where light is scattered: what passes through vacuum says nothing of that), d1 d1, d1 d2, d2 d2, d1 f, d2 f
+// f f, found found (both where light is scattered: what passes through vacuum says nothing of that), d1 d1, d1 d2, d2
+// d2, d1 f, d2 f
 __kernel void anderson_sums(const __global exact* given, const __global exact* found, const __global float* change1,
-  const __global float* change2, const __global float* sigma_s, int first, float length, int count, __global exact* sums)
+  const __global float* change2, const __global float* sigma_s, int first, float length, int count,
+  __global exact* sums)
 {
   const int begin = get_global_id(0) * CHUNK;
   const int end = min(count, begin + CHUNK);
@@ -253,8 +259,8 @@ __kernel void anderson_sums(const __global exact* given, const __global exact* f
   }
 }
 
-// given = found - w1 (found - found1) - w2 (found - found2); remembers found and found - given in the place of the second
-// iteration before.
+// given = found - w1 (found - found1) - w2 (found - found2); remembers found and found - given in the place of the
+// second iteration before.
 __kernel void anderson_step(__global exact* given, const __global exact* found, const __global float* found1,
   __global float* found2, __global float* change2, float w1, float w2)
 {

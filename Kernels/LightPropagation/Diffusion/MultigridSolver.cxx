@@ -138,7 +138,8 @@ void MultigridSolver::Smooth(Level& level)
   level.values.Swap(level.other);
 }
 
-/// A V cycle on the residual; the finest level's values are what comes of it. The same steps up and down keep it symmetric.
+/// A V cycle on the residual; the finest level's values are what comes of it. The same steps up and down keep it
+/// symmetric.
 void MultigridSolver::Precondition(double perUnit)
 {
   cl::Kernel first = this->Kernel("finest_begin");

@@ -37,8 +37,9 @@ struct LevelOnDevice
 
 /// Solves the system of a diffusion matrix on a box of voxels,
 ///   sum over faces of conductance (x_i - x_j) + loss_i x_i = b_i,
-/// symmetric, with positive conductances and losses: conjugate gradients in double, preconditioned by a V cycle of multigrid in float
-/// (voxels 2 x 2 x 2 together, damped Jacobi), so that its cost hardly grows with the number of voxels.
+/// symmetric, with positive conductances and losses: conjugate gradients in double, preconditioned by a V cycle of
+/// multigrid in float (voxels 2 x 2 x 2 together, damped Jacobi), so that its cost hardly grows with the number of
+/// voxels.
 class MultigridSolver
 {
 public:
@@ -55,7 +56,8 @@ public:
 
   /// Make the residual of `values`, in the norm of the preconditioner, smaller by `reduction`.
   /// @param unit  about as large as the entries of b
-  /// @param leftAtMost  and, so that thin voxels beside thick ones, of which that norm sees little, are solved as well: root mean
+  /// @param leftAtMost  and, so that thin voxels beside thick ones, of which that norm sees little, are solved as well:
+  /// root mean
   ///   square of the residual, in units
   /// @return iterations
   int Solve(const ExactValues& right, ExactValues& values, double unit, double reduction,

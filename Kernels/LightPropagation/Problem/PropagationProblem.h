@@ -13,9 +13,9 @@
 
 namespace tyndall
 {
-/// A scene as it is solved: in units of length and of power that floats hold well, wide along axes on which nothing changes, with as
-/// many channels as it needs. Made once from what the user gave; Undo() turns the light that was found back into what the user asked
-/// for.
+/// A scene as it is solved: in units of length and of power that floats hold well, wide along axes on which nothing
+/// changes, with as many channels as it needs. Made once from what the user gave; Undo() turns the light that was found
+/// back into what the user asked for.
 class PropagationProblem
 {
 public:

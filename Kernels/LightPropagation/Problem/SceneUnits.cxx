@@ -12,7 +12,7 @@ namespace tyndall
 namespace
 {
 constexpr double Pi = 3.14159265358979323846;
-constexpr int UsualExponent = 40; ///< powers up to 2^40 W, and down to 2^-40 W, are solved as they are
+constexpr int UsualExponent = 40;       ///< powers up to 2^40 W, and down to 2^-40 W, are solved as they are
 constexpr int UsualLengthExponent = 20; ///< the same of spacings
 
 double Largest(const Rgb& values)

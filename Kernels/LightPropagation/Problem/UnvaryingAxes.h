@@ -1,14 +1,15 @@
 #pragma once
 
-#include "Medium/Medium.h"
 #include "Light/LightField.h"
 #include "LightPropagation/PropagationSettings.h"
+#include "Medium/Medium.h"
 
 #include <array>
 
 namespace tyndall
 {
-/// Axes of one voxel that are periodic: nothing changes along them. With two of them the scene is a plane-parallel slab.
+/// Axes of one voxel that are periodic: nothing changes along them. With two of them the scene is a plane-parallel
+/// slab.
 class UnvaryingAxes
 {
 public:
@@ -17,8 +18,8 @@ public:
 
   bool IsSlab() const { return this->Single[0] + this->Single[1] + this->Single[2] == 2; }
 
-  /// The grid with voxels along these axes ten edges of the other axes wide. It makes no difference to light; narrower ones rays would
-  /// go round many times, and wider ones take more sweeps.
+  /// The grid with voxels along these axes ten edges of the other axes wide. It makes no difference to light; narrower
+  /// ones rays would go round many times, and wider ones take more sweeps.
   Grid Widened(const Grid& grid) const;
 
 private:
@@ -27,8 +28,8 @@ private:
 
 /// Directions a cube face to solve with: the settings', but
 ///  - in a slab 144 at least (its mirror images are one, so they cost little), and an even number of rows;
-///  - where two axes are periodic, an even number of rows: with an odd one, directions go along the slab and their light never leaves
-///    (tau 0.01: reflectance 11% too low, 122 sweeps instead of 4).
+///  - where two axes are periodic, an even number of rows: with an odd one, directions go along the slab and their
+///    light never leaves (tau 0.01: reflectance 11% too low, 122 sweeps instead of 4).
 /// The settings' own where the source is constant as published, or adaptDirections is false.
 int DirectionsPerFaceFor(const PropagationSettings& settings, const UnvaryingAxes& unvarying);
 }

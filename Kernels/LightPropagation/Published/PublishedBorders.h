@@ -6,8 +6,8 @@
 
 namespace tyndall
 {
-/// Light through the faces of the box, in the published algorithm: the radiance that the maps of a batch start with, and the
-/// power that comes in and goes out.
+/// Light through the faces of the box, in the published algorithm: the radiance that the maps of a batch start with,
+/// and the power that comes in and goes out.
 class PublishedBorders
 {
 public:

@@ -4,11 +4,11 @@
 //   MOMENTS   sums over directions that are kept: the fluence, and more where scattering depends on direction
 //   COLOURED  1 where sigma has CHANNELS channels, 0 where all share one
 //
-// A moment is the sum over directions of a coefficient times T. Directions are added one by one in their order, so that the
-// result does not depend on how they are cut into batches.
+// A moment is the sum over directions of a coefficient times T. Directions are added one by one in their order, so that
+// the result does not depend on how they are cut into batches.
 
-// As VolumeLayouts in PublishedVolumes.h: floats from row to row, plane to plane and channel to channel of the two layouts.
-// Layout 0 is [z][y][x]; layout 1, for maps that march along x, is [x][z][y].
+// As VolumeLayouts in PublishedVolumes.h: floats from row to row, plane to plane and channel to channel of the two
+// layouts. Layout 0 is [z][y][x]; layout 1, for maps that march along x, is [x][z][y].
 typedef struct
 {
   int size[3];

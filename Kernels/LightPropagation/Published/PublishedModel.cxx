@@ -39,8 +39,8 @@ int NearestOf(const std::vector<std::array<double, 3>>& directions, const std::a
   return best;
 }
 
-/// The directions nearest to omega, by their index: each once for every tiny push that leads to it, of the 48 that the cube's
-/// symmetries make of one. All the same, but for what lies between cells.
+/// The directions nearest to omega, by their index: each once for every tiny push that leads to it, of the 48 that the
+/// cube's symmetries make of one. All the same, but for what lies between cells.
 std::vector<int> NearestAround(const DirectionSet& set, const std::array<double, 3>& omega)
 {
   const double length = glm::length(Vector(omega));
@@ -118,8 +118,8 @@ double HenyeyGreenstein(double g, double cosine)
   return (1.0 - g * g) / (FourPi * x * std::sqrt(x));
 }
 
-/// F^{i,d} / |Omega^d| of Eq. (5) for all stored directions d (rows) and all propagation directions i: the integral of the phase
-/// function over both cells.
+/// F^{i,d} / |Omega^d| of Eq. (5) for all stored directions d (rows) and all propagation directions i: the integral of
+/// the phase function over both cells.
 std::vector<std::vector<double>> ScatteringFactors(
   double g, const DirectionSet& set, const std::vector<std::array<double, 3>>& stored)
 {

@@ -1,7 +1,7 @@
 #pragma once
 
-#include "LightPropagation/Angular/DirectionSet.h"
 #include "Light/LightField.h"
+#include "LightPropagation/Angular/DirectionSet.h"
 #include "LightPropagation/PropagationSettings.h"
 
 #include "Medium/Medium.h"
@@ -16,35 +16,37 @@ namespace tyndall
 /// What Algorithms 1 and 2 of Gruson et al. 2012 have in common: directions, boundary conditions, and how a ray's
 /// deposits become the stored quantities.
 ///
-/// A ray of direction i, weight w_i (sr), carries radiance L, W / (length^2 sr), through a beam of the map element's area
-/// A_rs as the ray sees it. Where the paper leaves a choice we read it so:
+/// A ray of direction i, weight w_i (sr), carries radiance L, W / (length^2 sr), through a beam of the map element's
+/// area A_rs as the ray sees it. Where the paper leaves a choice we read it so:
 ///  - Eq. (3), (4), (6): `Delta l / omega_z` is the length l of the ray in the voxel.
-///  - Eq. (4): A_rs is the area across the ray, face area |cos| / N^2. With the area on the face itself even thin media would
-///    scatter 1 / |cos| too much.
+///  - Eq. (4): A_rs is the area across the ray, face area |cos| / N^2. With the area on the face itself even thin media
+///    would scatter 1 / |cos| too much.
 ///  - Eq. (4), (6): L is the radiance after Eq. (3), and the exponent holds sigma_s alone. Both are kept: a voxel gains
 ///    L exp(-sigma_t l) (1 - exp(-sigma_s l)) where the ray scatters more, so that thick voxels lose light. This is the
 ///    published scheme's error, visible in the energy balance; the conservative scheme does not have it.
-///  - Eq. (3): (1 - exp(-sigma_t l)) / sigma_t is l where sigma_t is 0. Eq. (4), (6): we keep the deposit divided by sigma_s,
-///    L (1 - exp(-sigma_s l)) / sigma_s, which is L l where sigma_s is 0, and multiply by sigma_s when U is made. So fluence,
-///    the sum of deposits over all directions, is 4 pi I / sigma_s of the paper and defined in vacuum as well.
+///  - Eq. (3): (1 - exp(-sigma_t l)) / sigma_t is l where sigma_t is 0. Eq. (4), (6): we keep the deposit divided by
+///    sigma_s, L (1 - exp(-sigma_s l)) / sigma_s, which is L l where sigma_s is 0, and multiply by sigma_s when U is
+///    made. So fluence, the sum of deposits over all directions, is 4 pi I / sigma_s of the paper and defined in vacuum
+///    as well.
 ///  - Eq. (4): the published I contains the medium's own emission; ours is scattered light only.
 ///  - Eq. (5): by quadrature over the direction's cell, times w_i; for each i all F add up to w_i. In Eq. (3), d is the
 ///    stored direction nearest to i.
-///  - "for each LPM": order 0 carries the boundary's radiance and the medium's emission, also where a ray enters through a
-///    side (Fig. 2); in later orders rays start with nothing.
+///  - "for each LPM": order 0 carries the boundary's radiance and the medium's emission, also where a ray enters
+///    through a side (Fig. 2); in later orders rays start with nothing.
 ///  - One scattering order is one propagation of all maps followed by Eq. (4); 3 orders are 3 propagations, and I then
 ///    holds light that was scattered up to 3 times.
-///  - Directional lights shine along the nearest direction of the set, with radiance irradiance / w_i; in equal parts along
-///    several that are equally near. Point, spot and rectangle lights are not part of the method.
+///  - Directional lights shine along the nearest direction of the set, with radiance irradiance / w_i; in equal parts
+///    along several that are equally near. Point, spot and rectangle lights are not part of the method.
 ///  - A ray that leaves through an edge leaves half through either side, and enters with the mean of both.
-///  - Periodic axes are ours: a ray that leaves through a side goes on with its own radiance; one that is behind the last
-///    plane goes on from the first in the next order, and is left over until then. Light that enters sideways starts on
-///    the map's lattice, so a periodic box should be several voxels wide.
+///  - Periodic axes are ours: a ray that leaves through a side goes on with its own radiance; one that is behind the
+///    last plane goes on from the first in the next order, and is left over until then. Light that enters sideways
+///    starts on the map's lattice, so a periodic box should be several voxels wide.
 class PublishedModel
 {
 public:
   /// @param channels  3: as if something had colour; 1: as the scene needs
-  /// @throws InvalidInput what Check() of medium, illumination and settings throw; directions that are not a square number
+  /// @throws InvalidInput what Check() of medium, illumination and settings throw; directions that are not a square
+  /// number
   PublishedModel(
     const Medium& medium, const Illumination& illumination, const PropagationSettings& settings, int channels = 1);
 
@@ -61,8 +63,9 @@ public:
   /// d(i) of Eq. (3), an index into SourceDirections.
   int SourceOf(int direction) const { return this->NearestSource[direction]; }
 
-  /// A moment is a sum over directions of a coefficient times a voxel's mean radiance in that direction. Moment 0 is the
-  /// fluence; the scattered radiance per source direction and the net flux follow where they are not multiples of it.
+  /// A moment is a sum over directions of a coefficient times a voxel's mean radiance in that direction. Moment 0 is
+  /// the fluence; the scattered radiance per source direction and the net flux follow where they are not multiples of
+  /// it.
   int MomentCount() const { return static_cast<int>(this->Coefficients.size()); }
   double Coefficient(int moment, int direction) const { return this->Coefficients[moment][direction]; }
 
@@ -88,7 +91,8 @@ private:
   std::vector<std::vector<double>> Coefficients;
 };
 
-/// `count` directions spread evenly over the sphere: the cells of a cube's faces where count is 6 n^2, else Fibonacci points.
+/// `count` directions spread evenly over the sphere: the cells of a cube's faces where count is 6 n^2, else Fibonacci
+/// points.
 std::vector<std::array<double, 3>> EvenDirections(int count);
 
 /// What of the illumination the published method cannot carry, in words; empty if nothing.
@@ -115,8 +119,8 @@ struct MapGeometry
 
   int EntryFace(int entryAxis) const; ///< 2 axis (+ 1 on the upper side): through which light of this direction enters
   int ExitFace(int exitAxis) const { return this->EntryFace(exitAxis) ^ 1; }
-  /// Where in its voxel, [0, 1], a ray begins an order that it began at `start` in order 0. Other than `start` where it went
-  /// on through a periodic axis.
+  /// Where in its voxel, [0, 1], a ray begins an order that it began at `start` in order 0. Other than `start` where it
+  /// went on through a periodic axis.
   double StartOfOrder(double start, double slope, int order) const;
 
 private:
@@ -124,8 +128,9 @@ private:
   bool Continues; ///< behind the last plane
 };
 
-/// Follows one ray from voxel to voxel (Amanatides and Woo 1987), in double. Crossings closer than 1e-9 of a plane happen
-/// together, so that all rays of a direction agree on ties. What happens together with the end is left to the next order.
+/// Follows one ray from voxel to voxel (Amanatides and Woo 1987), in double. Crossings closer than 1e-9 of a plane
+/// happen together, so that all rays of a direction agree on ties. What happens together with the end is left to the
+/// next order.
 class GridWalk
 {
 public:

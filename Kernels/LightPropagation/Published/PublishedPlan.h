@@ -9,8 +9,8 @@
 
 namespace tyndall
 {
-/// Which rays the published algorithm sends together, and where they go: directions in batches, their ways through the grid
-/// as tables of voxel crossings, and how much memory all that takes.
+/// Which rays the published algorithm sends together, and where they go: directions in batches, their ways through the
+/// grid as tables of voxel crossings, and how much memory all that takes.
 class PublishedPlan
 {
 public:
@@ -28,7 +28,8 @@ public:
     bool add; ///< to what earlier launches left in the plane
   };
 
-  /// A batch's way through the volume on one of the N x N sub-maps ("divide the LPM into N smaller sub-LPM", section 5).
+  /// A batch's way through the volume on one of the N x N sub-maps ("divide the LPM into N smaller sub-LPM", section
+  /// 5).
   struct Pass
   {
     std::vector<Launch> launches;

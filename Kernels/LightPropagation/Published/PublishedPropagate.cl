@@ -1,11 +1,12 @@
-// Propagation as published (Gruson et al. 2012, Algorithm 2, first half): all rays of a direction go through the grid plane by
-// plane, one ray a voxel, and leave what they deposit in the direction's own buffer T. Read after Numerics.cl; the host gives
+// Propagation as published (Gruson et al. 2012, Algorithm 2, first half): all rays of a direction go through the grid
+// plane by plane, one ray a voxel, and leave what they deposit in the direction's own buffer T. Read after Numerics.cl;
+// the host gives
 //   CHANNELS  1 or 3
 //   COLOURED  1 where sigma has CHANNELS channels, 0 where all share one
 //   SOURCE    1 where U is not zero
 //
-// The paper holds the rays of a block together with __syncthreads; here a launch is one voxel crossing of all rays of all
-// directions, and the order of launches holds them together. Rays are kept by the voxel they are in: a ray map is
+// The paper holds the rays of a block together with __syncthreads; here a launch is one voxel crossing of all rays of
+// all directions, and the order of launches holds them together. Rays are kept by the voxel they are in: a ray map is
 // [row -1 .. size_v][PAD | column 0 .. size_u - 1 | PAD], with a border that holds what enters through the sides.
 // REAL_WIDTH > 1 (CPU): a work-item crosses a row. REAL_WIDTH 1 (GPU): a work-item crosses a voxel.
 
@@ -32,7 +33,8 @@ typedef struct
   float length; // in the voxel
 } crossing_info;
 
-// Where light leaves a direction's map, W / (length^2 sr) summed over rays: [through u by row][through v][at the end by row].
+// Where light leaves a direction's map, W / (length^2 sr) summed over rays: [through u by row][through v][at the end by
+// row].
 #define ESCAPED(map) (2 * (map).size_v + 1)
 
 static __global float* ray_row(__global float* rays, const map_info* map, int parity, int slot, int v)
@@ -204,7 +206,8 @@ __kernel void CrossVoxels(const map_info map, const int plane, const int add, co
 #endif
 }
 
-// Behind the last plane: adds up what leaves, and with periodic_w keeps it for the next order, [direction][carried_stride].
+// Behind the last plane: adds up what leaves, and with periodic_w keeps it for the next order,
+// [direction][carried_stride].
 //   crossings  one a direction: parity says which map
 __kernel void EndRays(const map_info map, const int first, __global const crossing_info* crossings,
   __global float* rays, __global float* escaped, __global float* carried, const ulong carried_first,

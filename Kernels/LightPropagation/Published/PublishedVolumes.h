@@ -21,8 +21,8 @@ struct VolumeLayouts
   std::size_t Index(int layout, int x, int y, int z) const;
 };
 
-/// What stays on the device from one scattering order to the next of the published algorithm: the medium, U, and the moments
-/// of I and fluence. All in both layouts, [...][channel][volume], the padding zero.
+/// What stays on the device from one scattering order to the next of the published algorithm: the medium, U, and the
+/// moments of I and fluence. All in both layouts, [...][channel][volume], the padding zero.
 struct PublishedVolumes
 {
   /// @param medium, model  must stay

@@ -281,12 +281,12 @@ private:
   std::size_t Values;  ///< voxels times channels
   std::size_t Sources; ///< directions of U
   std::vector<float> Extinction, Scattering;
-  std::vector<std::vector<float>> Source;       ///< U of the order before, by direction
+  std::vector<std::vector<float>> Source; ///< U of the order before, by direction
   /// Of this order. Where voxels are flat a ray comes by thousands of times: as floats their sums were off by 6e-4.
   std::vector<std::vector<double>> OrderMoments;
   std::vector<std::vector<float>> Moments; ///< of all orders
   std::vector<float> Coefficients;         ///< of the moments, for the direction that is under way
-  std::vector<std::vector<float>> Carried;      ///< by direction: radiance on its way through a periodic axis
+  std::vector<std::vector<float>> Carried; ///< by direction: radiance on its way through a periodic axis
 };
 }
 

@@ -216,7 +216,8 @@ void AxisSweep::Implementation::GoRound(const SweepVolume& volume, int mostPlane
   {
     const Buffer<PlaneCrossingOnDevice> crossings(
       this->TheDevice, this->Plan.Crossings(gone, planes), "the ray pattern");
-    this->Launch(this->SweepKernel(false, false, volume.deposit.flux != nullptr), volume, crossings, this->Rounds(), monitor);
+    this->Launch(
+      this->SweepKernel(false, false, volume.deposit.flux != nullptr), volume, crossings, this->Rounds(), monitor);
     this->CountSideways();
     onTheWay = this->PowerOnTheWay();
   }
@@ -227,12 +228,13 @@ void AxisSweep::Implementation::Launch(cl::Kernel kernel, const SweepVolume& vol
 {
   const SweepPlan& plan = this->Plan;
   const Buffer<float>& flux = volume.deposit.flux ? *volume.deposit.flux : *volume.deposit.path;
-  const Buffer<float>& partialCurrents = volume.deposit.partialCurrents ? *volume.deposit.partialCurrents : *volume.deposit.path;
+  const Buffer<float>& partialCurrents =
+    volume.deposit.partialCurrents ? *volume.deposit.partialCurrents : *volume.deposit.path;
   const Buffer<float>& lost = this->IsPeriodic() ? this->Workspace.lost : *volume.deposit.path;
   for (int launch = 0; launch < schedule.launches; ++launch)
   {
-    With(kernel, *volume.sigma_t, cl_ulong(volume.sigma_t_first), *volume.source, *volume.deposit.path, lost, flux, partialCurrents,
-      cl_ulong(volume.first), cl_ulong(volume.stride), this->Maps(), cl_ulong(plan.mapsEachWay),
+    With(kernel, *volume.sigma_t, cl_ulong(volume.sigma_t_first), *volume.source, *volume.deposit.path, lost, flux,
+      partialCurrents, cl_ulong(volume.first), cl_ulong(volume.stride), this->Maps(), cl_ulong(plan.mapsEachWay),
       cl_int(this->MapsEmpty), this->Outside, cl_uint(plan.outsideEachWay), this->Radiance,
       cl_uint(plan.radianceEachWay), this->Workspace.scratch, this->Units, this->Bundles, cl_int(plan.bundles.size()),
       crossings, this->FirstOwnLight, cl_int(plan.PatternPlanes()), schedule.planes, cl_int(launch), this->Sideways,
@@ -249,8 +251,8 @@ void AxisSweep::Implementation::Launch(cl::Kernel kernel, const SweepVolume& vol
 cl::Kernel AxisSweep::Implementation::SweepKernel(bool source, bool border, bool flux)
 {
   const SweepPlan& plan = this->Plan;
-  std::string options = Define("REAL_WIDTH", plan.vector) + Define("CHANNELS", plan.channels) + Define("ROW", plan.row) +
-    Define("SOURCE", source) + Define("BORDER", border) + Define("NET_FLUX", flux) +
+  std::string options = Define("REAL_WIDTH", plan.vector) + Define("CHANNELS", plan.channels) +
+    Define("ROW", plan.row) + Define("SOURCE", source) + Define("BORDER", border) + Define("NET_FLUX", flux) +
     Define("CURRENTS", plan.partialCurrents) + Define("PERIODIC_P", this->IsPeriodic()) +
     Define("PERIODIC_U", plan.periodic[plan.axes.u]) + Define("PERIODIC_V", plan.periodic[plan.axes.v]);
   std::string bundles; // SweepBundle.cl once for each number of members there is

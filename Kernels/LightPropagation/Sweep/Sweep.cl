@@ -1,17 +1,18 @@
-// Rays through a range of planes, on a CPU: a work-item carries all the rays of its unit (one way along the axis, some or all
-// bundles) and deposits into the volume itself. Units of one launch never share a plane, so nothing is lost and sums have one
-// order. Read after SweepLayout.cl and one SweepBundle.cl for each number of MEMBERS
+// Rays through a range of planes, on a CPU: a work-item carries all the rays of its unit (one way along the axis, some
+// or all bundles) and deposits into the volume itself. Units of one launch never share a plane, so nothing is lost and
+// sums have one order. Read after SweepLayout.cl and one SweepBundle.cl for each number of MEMBERS
 // that occurs (1, 2, 4, 8), with MEMBERS_1, ... defined.
 
 typedef struct
 {
   int backward; // 0 marches from the lower end of the axis, 1 from the upper
   int firstBundle, bundles;
-  int scratch;  // where its scratch begins, in floats
+  int scratch;      // where its scratch begins, in floats
   int planesBefore; // of the ray pattern, that its rays have crossed before their first plane here
 } unit_info;
 
-// How a plane lies in the volume: voxel (u, v) of plane p is (firstU + u) * stepU + (firstV + v) * stepV + (firstP + p) * stepP.
+// How a plane lies in the volume: voxel (u, v) of plane p is (firstU + u) * stepU + (firstV + v) * stepV + (firstP + p)
+// * stepP.
 typedef struct
 {
   int sizeU, sizeV, sizeP;
@@ -24,7 +25,8 @@ typedef struct
   float meanLength[MEAN_LENGTH_TERMS];
 } plane_layout;
 
-// The medium's own light in the voxel where it starts: per unit of source, the sum over segments of power (l - p1) / sigma.
+// The medium's own light in the voxel where it starts: per unit of source, the sum over segments of power (l - p1) /
+// sigma.
 typedef struct
 {
   float length;                   // sum of power l
@@ -78,8 +80,8 @@ static void clear(__global float* floats, int count)
   }
 }
 
-// Copy one quantity of planes [first, first + count) into scratch, rows filled up with zeros. May read, not use, a vector
-// beyond the last voxel.
+// Copy one quantity of planes [first, first + count) into scratch, rows filled up with zeros. May read, not use, a
+// vector beyond the last voxel.
 static void pack(const plane_layout* layout, __global float* to, int first, int count, const __global float* volume)
 {
   const int plane = PLANES * layout->sizeV * ROW;
@@ -139,7 +141,8 @@ static void add_one(float value, __global float* sum, __global float* lost)
   }
 }
 
-// Add one quantity of the planes, with a sign, to the volume; exactly their voxels are touched, as others may be in work elsewhere.
+// Add one quantity of the planes, with a sign, to the volume; exactly their voxels are touched, as others may be in
+// work elsewhere.
 static void unpack(const plane_layout* layout, const __global float* from, int first, int count, float sign,
   __global float* volume, __global float* lost)
 {
@@ -234,8 +237,8 @@ static void begin_planes(const plane_layout* layout, __global float* planes, __g
 }
 
 #if SOURCE
-// The medium's own light on the way through the voxel where it starts, left out until here: (length - taken) / sigma, or a
-// polynomial where that would cancel or `taken` was not kept.
+// The medium's own light on the way through the voxel where it starts, left out until here: (length - taken) / sigma,
+// or a polynomial where that would cancel or `taken` was not kept.
 static void add_own_light(const plane_layout* layout, __global float* plane, const __global own_light* light)
 {
   const int rows = layout->sizeV * ROW;
@@ -264,7 +267,8 @@ static void add_own_light(const plane_layout* layout, __global float* plane, con
 // Add what the planes gathered to the volume.
 // own      [plane from where rays start] of the first plane crossed
 static void end_planes(const plane_layout* layout, __global float* planes, int first, int count, __global float* path,
-  __global float* lost, __global float* flux, __global float* currents, ulong stride, const __global own_light* own, int backward, int axis)
+  __global float* lost, __global float* flux, __global float* currents, ulong stride, const __global own_light* own,
+  int backward, int axis)
 {
   const int rows = layout->sizeV * ROW;
 #if SOURCE
@@ -331,14 +335,16 @@ static void cross_plane(sweep_state* state, __global float* maps, const __global
 // outside, radiance   rays that come in, both ways as maps
 // crossings [plane of the ray pattern][bundle]
 // own       [unit][plane from where rays start], see add_own_light
-// schedule  [launch][unit] first plane and end, counted from where rays start; beyond the last plane the axis begins anew
+// schedule  [launch][unit] first plane and end, counted from where rays start; beyond the last plane the axis begins
+//           anew
 // tally     [plane from where rays start][unit][-u, +u, -v, +v][channel] W that left
-__kernel __attribute__((reqd_work_group_size(1, 1, 1))) void sweep(const __global float* sigma,
-  ulong sigma_first, const __global float* source, __global float* path, __global float* lost, __global float* flux,
-  __global float* currents, ulong first_value, ulong stride, __global float* maps, ulong maps_each_way, int empty, const __global float* outside, uint outside_each_way, const __global float* radiance, uint radiance_each_way,
+__kernel __attribute__((reqd_work_group_size(1, 1, 1))) void sweep(const __global float* sigma, ulong sigma_first,
+  const __global float* source, __global float* path, __global float* lost, __global float* flux,
+  __global float* currents, ulong first_value, ulong stride, __global float* maps, ulong maps_each_way, int empty,
+  const __global float* outside, uint outside_each_way, const __global float* radiance, uint radiance_each_way,
   __global float* scratch, const __global unit_info* units, const __global bundle_info* bundles, int bundle_count,
-  const __global crossing_info* crossings, const __global own_light* own, int planes_of_pattern, const __global int2* schedule, int launch,
-  __global float* tally, plane_layout layout, int axis)
+  const __global crossing_info* crossings, const __global own_light* own, int planes_of_pattern,
+  const __global int2* schedule, int launch, __global float* tally, plane_layout layout, int axis)
 {
   const int u = get_global_id(0);
   const int unit_count = get_global_size(0);
@@ -400,7 +406,8 @@ __kernel __attribute__((reqd_work_group_size(1, 1, 1))) void sweep(const __globa
       }
       for (int b = unit.firstBundle; b < unit.firstBundle + unit.bundles; ++b)
       {
-        cross_plane(&state, maps, outside, radiance, bundles + b, crossings + (unit.planesBefore + k) * bundle_count + b);
+        cross_plane(
+          &state, maps, outside, radiance, bundles + b, crossings + (unit.planesBefore + k) * bundle_count + b);
       }
       for (int side = 0; side < 4; ++side)
       {
@@ -410,6 +417,7 @@ __kernel __attribute__((reqd_work_group_size(1, 1, 1))) void sweep(const __globa
         }
       }
     }
-    end_planes(&layout, planes, first, count, path, lost, flux, currents, stride, own + u * planes_of_pattern + begin, unit.backward, axis);
+    end_planes(&layout, planes, first, count, path, lost, flux, currents, stride, own + u * planes_of_pattern + begin,
+      unit.backward, axis);
   }
 }

@@ -48,8 +48,9 @@ SweepBorder::Moves SweepBorder::MovesOf(const Bundle& bundle) const
   return moves;
 }
 
-/// Rays come in where they start, and where others left: one a row for each move along u, one a column for each move along v.
-/// Of those that move both ways at once half come in through u's face where the plane has its corner, half through v's.
+/// Rays come in where they start, and where others left: one a row for each move along u, one a column for each move
+/// along v. Of those that move both ways at once half come in through u's face where the plane has its corner, half
+/// through v's.
 void SweepBorder::EnterMember(std::size_t b, int way, int m, const Moves& moves)
 {
   const Bundle& bundle = this->Plan.bundles[b];
@@ -105,8 +106,8 @@ void SweepBorder::Write(std::size_t b, int way, int slot, float fromU, float fro
     std::fill(map, map + this->Plan.plane.sizeU, fromP);
     std::fill(map + this->Plan.plane.sizeU, map + width, fromU);
   }
-  // The columns beside it go on waiting there for a move along u, as those of the map do. What moves both ways at once comes
-  // from the next ones.
+  // The columns beside it go on waiting there for a move along u, as those of the map do. What moves both ways at once
+  // comes from the next ones.
   const bool periodicU = this->Plan.periodic[this->Plan.axes.u];
   const float beside = periodicU ? fromV : fromU;
   float* beyond = this->outside.data() + way * this->Plan.outsideEachWay + bundle.outside + inBlock;

@@ -7,8 +7,8 @@
 
 namespace tyndall
 {
-/// The light that comes in through the box's faces in a sweep, as the sweep's buffers take it: each holds both ways, forward
-/// first.
+/// The light that comes in through the box's faces in a sweep, as the sweep's buffers take it: each holds both ways,
+/// forward first.
 class SweepBorder
 {
 public:

@@ -1,8 +1,9 @@
 // One bundle through one plane. Compiled once for each number of MEMBERS.
 //
-// A plane is crossed in up to three stages, one a segment. A stage takes every ray from where the stage before left it: the
-// whole map moves by one voxel or none, which costs nothing but an offset in the load. Stages follow each other row by row at
-// a distance of LAG rows, so that what passes between them stays in the cache; the last one writes the map in place.
+// A plane is crossed in up to three stages, one a segment. A stage takes every ray from where the stage before left it:
+// the whole map moves by one voxel or none, which costs nothing but an offset in the load. Stages follow each other row
+// by row at a distance of LAG rows, so that what passes between them stays in the cache; the last one writes the map in
+// place.
 
 #define NAME_OF(a, b) TYNDALL_JOIN(a, b)
 #define CROSS_VOXELS NAME_OF(cross_voxels_, MEMBERS)
@@ -13,12 +14,12 @@
 #define COUNT_CURRENTS NAME_OF(count_currents_, MEMBERS)
 #define MOVE_PART NAME_OF(move_part_, MEMBERS)
 #define BLOCK (MEMBERS * CHANNELS * ROW)
-#define FIRST(member, channel) (((member) * CHANNELS + (channel)) * ROW + PAD)
+#define FIRST(member, channel) (((member)*CHANNELS + (channel)) * ROW + PAD)
 
 // All rays of a row through one segment each (Gruson et al., Eq. 3, conservative):
 //   path += p1 L,  L' = L - sigma p1 L + q p1,  p1 = (1 - exp(-tau)) / sigma
-// For small tau L' is L less what it loses, for large tau it is L times what is left: neither rounds to a leak. Where all of
-// the row is thin, p1 is a polynomial: half the work. `thin` is a constant where this is called.
+// For small tau L' is L less what it loses, for large tau it is L times what is left: neither rounds to a leak. Where
+// all of the row is thin, p1 is a polynomial: half the work. `thin` is a constant where this is called.
 static inline __attribute__((always_inline)) void CROSS_VOXELS(sweep_state* state, int y, bool deposit, bool thin,
   const __global float** in, __global float* out, float length, const __global bundle_info* bundle)
 {
@@ -72,8 +73,8 @@ static inline __attribute__((always_inline)) void CROSS_VOXELS(sweep_state* stat
     }
     const real shine = mean_length * power;
 #if NET_FLUX
-    // Path of the light that the voxel's own source adds, (length - mean_length) / sigma. Across the axis mirror images take
-    // it away again, but along it a ray and its opposite may cross the voxel in different parts.
+    // Path of the light that the voxel's own source adds, (length - mean_length) / sigma. Across the axis mirror images
+    // take it away again, but along it a ray and its opposite may cross the voxel in different parts.
     const real thin_path = multiply_add(tau, (real)(-length * length / 6.0f), (real)(0.5f * length * length));
     const real thick_path = (length - mean_length) * load_real(x, inverse_row);
     const real own_path = select(thick_path, thin_path, tau < (real)1e-2f) * (power * MEMBERS * bundle->cosine);
@@ -124,8 +125,8 @@ static inline __attribute__((always_inline)) void CROSS_VOXELS(sweep_state* stat
   }
 }
 
-static void STAGE_ROW(sweep_state* state, int y, bool deposit, const __global float** in, __global float* out, float length,
-  const __global bundle_info* bundle)
+static void STAGE_ROW(sweep_state* state, int y, bool deposit, const __global float** in, __global float* out,
+  float length, const __global bundle_info* bundle)
 {
   if (state->thin[y])
   {
@@ -144,9 +145,9 @@ static void STAGE_ROW(sweep_state* state, int y, bool deposit, const __global fl
 #endif
 }
 
-// Power of the rays that leave row y of `row` by a move of (du, dv), of which `part` moves. Rays that move both ways at once go
-// through u first and through v first in equal parts: half of those in the box's edge leave through each of its faces, and half of
-// what comes in beside it goes straight through.
+// Power of the rays that leave row y of `row` by a move of (du, dv), of which `part` moves. Rays that move both ways at
+// once go through u first and through v first in equal parts: half of those in the box's edge leave through each of its
+// faces, and half of what comes in beside it goes straight through.
 // across_u, across_v  rays that come in through the faces across u and v, at [FIRST(m, c)] of the row and at [m][c]
 static void COUNT_ESCAPED(sweep_state* state, const __global float* row, int y, int m, int du, int dv, float part,
   const __global float* across_u, const __global float* across_v)
@@ -162,7 +163,8 @@ static void COUNT_ESCAPED(sweep_state* state, const __global float* row, int y, 
     {
       const int side = du > 0 ? 1 : 0;
       const float beyond = across_v[FIRST(m, c)];
-      add_exactly(&state->escaped[side][c], &state->rounding[side][c], part * (rays[edge] - turned * (rays[edge] - beyond)));
+      add_exactly(
+        &state->escaped[side][c], &state->rounding[side][c], part * (rays[edge] - turned * (rays[edge] - beyond)));
     }
     if (through_v)
     {
@@ -211,7 +213,8 @@ static void FILL_BORDER(sweep_state* state, const __global float* radiance)
 #endif
 
 #if CURRENTS
-// The rays of row y by the face they come through, see SweepPartialCurrents.cl. `own` is the row itself, where rays come from.
+// The rays of row y by the face they come through, see SweepPartialCurrents.cl. `own` is the row itself, where rays
+// come from.
 static void COUNT_CURRENTS(sweep_state* state, int y, bool first, const __global float** in, const __global float* own,
   const __global bundle_info* bundle, int moveU, int moveV, float part)
 {

@@ -8,13 +8,13 @@
 //   PERIODIC_P  1 where rays go round the axis: planes are added to many times, and what rounding loses is kept
 //   PERIODIC_U, PERIODIC_V  1 where rays come back on the other side
 //
-// Rays carry power (W), so that leaving through any face needs no further factor. A map row holds the rays by the voxel they
-// enter, for all members of a bundle and all channels: float [member][channel][ROW].
+// Rays carry power (W), so that leaving through any face needs no further factor. A map row holds the rays by the voxel
+// they enter, for all members of a bundle and all channels: float [member][channel][ROW].
 
 #define PAD REAL_WIDTH
 #define MAX_MEMBERS 8
-#define RING_ROWS 4 // a stage reads rows y - 1 to y + 1 while the stage before writes row y + 2
-#define LAG 2       // rows a stage stays behind the one before
+#define RING_ROWS 4         // a stage reads rows y - 1 to y + 1 while the stage before writes row y + 2
+#define LAG 2               // rows a stage stays behind the one before
 #define MEAN_LENGTH_TERMS 5 // of (1 - exp(-t)) / t = 1 + t (m0 + t (m1 + ...)) for thin voxels, see SweepPlan.cxx
 #define FLUX (NET_FLUX ? 3 : 0)
 
@@ -53,20 +53,20 @@ typedef struct
 {
   int stages;
   int moveU[3], moveV[3];
-  float part[3];   // of each ray's power that moves; the rest stays
+  float part[3]; // of each ray's power that moves; the rest stays
   float length[3];
 } crossing_info;
 
 // Where a work-item is: its planes, its rows, its buffers.
 typedef struct
 {
-  int sizeU, sizeV;        // voxels of the plane
-  int width;               // sizeU rounded up to whole vectors
-  __global float* planes;  // PLANES quantities of sizeV rows: of the plane that is being crossed
-  __global int* thin;      // [row] of it, 1 where all voxels are thin
+  int sizeU, sizeV;       // voxels of the plane
+  int width;              // sizeU rounded up to whole vectors
+  __global float* planes; // PLANES quantities of sizeV rows: of the plane that is being crossed
+  __global int* thin;     // [row] of it, 1 where all voxels are thin
   float meanLength[MEAN_LENGTH_TERMS];
-  __global float* ring;    // 2 rings of RING_ROWS rows of MAX_MEMBERS * CHANNELS * ROW floats, and one row more: `moving`
-  __global float* moving;  // the rays of a row of which a part moves
+  __global float* ring; // 2 rings of RING_ROWS rows of MAX_MEMBERS * CHANNELS * ROW floats, and one row more: `moving`
+  __global float* moving;     // the rays of a row of which a part moves
   float escaped[4][CHANNELS]; // through -u, +u, -v, +v, W; with the rounding errors
   float rounding[4][CHANNELS];
 } sweep_state;

@@ -4,8 +4,8 @@
 // maps     [way][bundle][row][member][channel][row_floats], rays in the first `size_u` floats after `border`
 // bundles  [bundle] members, first float of its maps
 // sums     [way][bundle][row][channel]
-__kernel void map_power(const __global float* maps, ulong maps_each_way, const __global int2* bundles, int rows, int channels,
-  int row_floats, int border, int size_u, __global float* sums)
+__kernel void map_power(const __global float* maps, ulong maps_each_way, const __global int2* bundles, int rows,
+  int channels, int row_floats, int border, int size_u, __global float* sums)
 {
   const int row = get_global_id(0);
   const int2 bundle = bundles[get_global_id(1)];
@@ -34,13 +34,14 @@ __kernel void map_power(const __global float* maps, ulong maps_each_way, const _
   }
 }
 
-// The columns beside a row's voxels hold what comes in through u's face: nothing, once rays go round a periodic axis. A work-item
-// a row of a bundle and way; arguments as of map_power.
+// The columns beside a row's voxels hold what comes in through u's face: nothing, once rays go round a periodic axis. A
+// work-item a row of a bundle and way; arguments as of map_power.
 __kernel void darken_beside(__global float* maps, ulong maps_each_way, const __global int2* bundles, int channels,
   int row_floats, int border, int size_u, int width)
 {
   const int2 bundle = bundles[get_global_id(1)];
-  maps += get_global_id(2) * maps_each_way + bundle.y + (ulong)get_global_id(0) * bundle.x * channels * row_floats + border;
+  maps +=
+    get_global_id(2) * maps_each_way + bundle.y + (ulong)get_global_id(0) * bundle.x * channels * row_floats + border;
   for (int r = 0; r < bundle.x * channels; ++r)
   {
     for (int x = size_u; x < width; ++x)

@@ -6,9 +6,10 @@
 
 namespace tyndall
 {
-/// Carries light once through the medium: from what shines in its voxels and what comes in through the box's faces to path integrals,
-/// net flux, partial currents and the power that left. Knows nothing of scattering orders, of acceleration or of who calls it. In one
-/// device's memory today (SweepInMemory.h); by slices, over several machines or in another order are further implementations.
+/// Carries light once through the medium: from what shines in its voxels and what comes in through the box's faces to
+/// path integrals, net flux, partial currents and the power that left. Knows nothing of scattering orders, of
+/// acceleration or of who calls it. In one device's memory today (SweepInMemory.h); by slices, over several machines or
+/// in another order are further implementations.
 class SweepOperator
 {
 public:
@@ -18,9 +19,9 @@ public:
   /// @param source  W / (length^3 sr), [channel][stride]; null: the medium is dark
   /// @param boundary  what comes in, three channels; empty: nothing
   /// @param monitor  told fractions of this sweep
-  /// @return of all channels: what came in, what left, what still goes round a periodic axis and does so in the next sweep
-  virtual SweepTally Apply(
-    const Buffer<float>* source, const SweepBoundary& boundary, const Monitor& monitor) = 0;
+  /// @return of all channels: what came in, what left, what still goes round a periodic axis and does so in the next
+  /// sweep
+  virtual SweepTally Apply(const Buffer<float>* source, const SweepBoundary& boundary, const Monitor& monitor) = 0;
 
   /// Light on its way round periodic axes is given up.
   virtual void Forget() = 0;

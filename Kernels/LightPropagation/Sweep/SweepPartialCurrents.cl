@@ -1,5 +1,5 @@
-// Power that enters voxels through their faces: what goes from one to the next, for the balance of a diffusion system. Read
-// after SweepLayout.cl, before SweepBundle.cl.
+// Power that enters voxels through their faces: what goes from one to the next, for the balance of a diffusion system.
+// Read after SweepLayout.cl, before SweepBundle.cl.
 
 #if CURRENTS
 // Part of the rays of row y that come through one kind of face.
@@ -16,8 +16,8 @@ static void add_current(sweep_state* state, int y, int face, const __global floa
   }
 }
 
-// Part of the rays that come from column x - du into column x - du of row y: what enters x itself comes through u after that, or
-// leaves the box.
+// Part of the rays that come from column x - du into column x - du of row y: what enters x itself comes through u after
+// that, or leaves the box.
 static void add_beside(sweep_state* state, int y, int du, int face, const __global float* rays, float part)
 {
   const int rows = state->sizeV * ROW;
@@ -40,7 +40,8 @@ static void add_beside(sweep_state* state, int y, int du, int face, const __glob
   }
 }
 
-// Part of the rays that go through the edge between four voxels: half of it passes the voxel beside, half the one before.
+// Part of the rays that go through the edge between four voxels: half of it passes the voxel beside, half the one
+// before.
 //   rays  by where they come to
 //   own   row y, by where they come from
 static void add_through_edge(

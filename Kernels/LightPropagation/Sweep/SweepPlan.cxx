@@ -14,7 +14,8 @@ constexpr double SecondsPerLaunch = 0.08;
 constexpr double SecondsPerRay = 1e-9; ///< a ray through a plane of voxels on a slow core: only sizes the launches
 constexpr int MostGroups = 4;          ///< of bundles that march one behind the other
 
-/// (1 - exp(-t)) / t = 1 + t (MeanLength[0] + t (MeanLength[1] + ...)), to 2e-8 for 0 <= t < Thin: a minimax polynomial.
+/// (1 - exp(-t)) / t = 1 + t (MeanLength[0] + t (MeanLength[1] + ...)), to 2e-8 for 0 <= t < Thin: a minimax
+/// polynomial.
 constexpr double MeanLength[MeanLengthTerms] = { -0.499999036, 0.166648826, -0.0415578957, 0.0080387554,
   -0.00101435666 };
 constexpr double Thin = 0.75;
@@ -230,8 +231,8 @@ std::size_t SweepPlan::ScratchFloats() const
   return ring + planes + thinRows + 2 * this->vector;
 }
 
-/// Where slabs of planes begin and end: an even number, as many as keep launches short, at least eight for each of several
-/// groups, cut between blocks.
+/// Where slabs of planes begin and end: an even number, as many as keep launches short, at least eight for each of
+/// several groups, cut between blocks.
 std::vector<int> SweepPlan::SlabBorders(int groups)
 {
   const int planes = this->Planes();
@@ -343,7 +344,8 @@ std::vector<OwnLightOnDevice> SweepPlan::OwnLight() const
   return rows;
 }
 
-/// (l - p1) / sigma = -l^2 (MeanLength[0] + sigma l (MeanLength[1] + ...)), summed over segments; sigma in units of `thin`.
+/// (l - p1) / sigma = -l^2 (MeanLength[0] + sigma l (MeanLength[1] + ...)), summed over segments; sigma in units of
+/// `thin`.
 OwnLightOnDevice SweepPlan::OwnLightOf(const UnitOnDevice& unit, int ofPlane) const
 {
   double sum = 0.0;

@@ -25,19 +25,20 @@ constexpr float ThinForMoments = 0.02f;
 /// Where light is put down: everything is added to.
 struct Deposit
 {
-  const Buffer<float>* path = nullptr;    ///< W length, added to
-  const Buffer<float>* flux = nullptr;    ///< W length, [channel][x, y, z][stride], added to; null: not wanted
-  /// W, [channel][-x, +x, -y, +y, -z, +z][stride], added to: power that enters each voxel through each of its faces; null:
+  const Buffer<float>* path = nullptr; ///< W length, added to
+  const Buffer<float>* flux = nullptr; ///< W length, [channel][x, y, z][stride], added to; null: not wanted
+  /// W, [channel][-x, +x, -y, +y, -z, +z][stride], added to: power that enters each voxel through each of its faces;
+  /// null:
   /// not wanted
   const Buffer<float>* partialCurrents = nullptr;
-  /// W length, [channel][-x, +x, -y, +y, -z, +z][stride], added to by lamps: how near to each face of a voxel the light is lost that
-  /// `path` stands for, its distance from the middle towards the face in the mean (0 to 1/2 of the voxel) times its path; null: not
-  /// wanted. Voxels thinner than ThinForMoments mean free paths have none.
+  /// W length, [channel][-x, +x, -y, +y, -z, +z][stride], added to by lamps: how near to each face of a voxel the light
+  /// is lost that `path` stands for, its distance from the middle towards the face in the mean (0 to 1/2 of the voxel)
+  /// times its path; null: not wanted. Voxels thinner than ThinForMoments mean free paths have none.
   const Buffer<float>* moments = nullptr;
 };
 
-/// The medium and the light on the device while a solver runs. Every array is [channel][stride] with voxels x fastest; the
-/// stride is the voxel count rounded up to whole vectors, what is beyond the voxels is zero. Buffers
+/// The medium and the light on the device while a solver runs. Every array is [channel][stride] with voxels x fastest;
+/// the stride is the voxel count rounded up to whole vectors, what is beyond the voxels is zero. Buffers
 /// are SweepPadding floats longer: a vector that begins in them may be read whole.
 struct SweepVolume
 {
@@ -49,7 +50,8 @@ struct SweepVolume
   std::size_t sigma_t_first = 0;          ///< where its channel begins
   const Buffer<float>* source = nullptr;  ///< W / (length^3 sr)
   Deposit deposit;
-  /// Where the first channel of source and path begins (flux: three times that, partialCurrents and moments: six times).
+  /// Where the first channel of source and path begins (flux: three times that, partialCurrents and moments: six
+  /// times).
   std::size_t first = 0;
 };
 

@@ -14,17 +14,15 @@ struct ChannelGroup
   int count = 1;
 };
 
-/// How arrays over voxels lie in the device's memory: [channel][stride], the stride a whole number of the widest vectors.
+/// How arrays over voxels lie in the device's memory: [channel][stride], the stride a whole number of the widest
+/// vectors.
 struct VolumeLayout
 {
   Grid grid;
   int channels = 1;
   bool sharedExtinction = true; ///< of all channels; else each has its own, and there are three
 
-  std::size_t Stride() const
-  {
-    return (this->grid.VoxelCount() + SweepPadding - 1) / SweepPadding * SweepPadding;
-  }
+  std::size_t Stride() const { return (this->grid.VoxelCount() + SweepPadding - 1) / SweepPadding * SweepPadding; }
   /// Floats of an array of `parts` values a voxel and channel, with what vectors may read beyond it.
   std::size_t Floats(int parts = 1) const { return parts * this->Stride() * this->channels + SweepPadding; }
   std::size_t ExtinctionFirst(int channel) const { return this->sharedExtinction ? 0 : channel * this->Stride(); }

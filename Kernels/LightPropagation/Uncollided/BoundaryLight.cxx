@@ -141,8 +141,8 @@ void BoundaryLight::CheckRays(int channels) const
     {
       continue; // so few that it hardly matters in which
     }
-    for (const Bundle& bundle : BundlesAlong(axis, this->TheGrid, this->Periodic, this->Directions.Set(),
-           this->MapResolution, this->Directions.Starts()))
+    for (const Bundle& bundle : BundlesAlong(
+           axis, this->TheGrid, this->Periodic, this->Directions.Set(), this->MapResolution, this->Directions.Starts()))
     {
       const std::array<double, 2> moves = { bundle.tangentU * planes, bundle.tangentV * planes };
       const std::array<double, 2> wholeMoves = { std::floor(bundle.startU + moves[0] + 1e-9),

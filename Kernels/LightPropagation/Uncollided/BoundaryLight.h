@@ -9,8 +9,8 @@
 
 namespace tyndall
 {
-/// Light that comes from outside: of shining faces, of the sky and of the environment (but its peaks, which are lamps), along a set of
-/// directions.
+/// Light that comes from outside: of shining faces, of the sky and of the environment (but its peaks, which are lamps),
+/// along a set of directions.
 class BoundaryLight
 {
 public:
@@ -28,7 +28,8 @@ public:
   /// W / length^2 through each of the box's faces; 0 where the axis is periodic.
   std::array<Rgb, 6> IncomingPower() const;
 
-  /// What enters a face along rays that march along another axis is few rays where the box is thin for the planes that they march by.
+  /// What enters a face along rays that march along another axis is few rays where the box is thin for the planes that
+  /// they march by.
   /// @param channels  that are looked at
   /// @throws InvalidInput where they are too few to tell where light comes in
   void CheckRays(int channels) const;

@@ -15,7 +15,7 @@ constexpr double PartOfOne = 0.01;     ///< that each carries, at least
 constexpr std::size_t MostPeaks = 16;
 constexpr double Widest = 0.125; ///< of the box's longest edge
 constexpr double Hidden = 4.6;   ///< mean free paths beyond which a peak is not seen: 1% is left
-constexpr double Opaque = 3e4; ///< mean free paths a voxel from which on a peak is left to the sweeps
+constexpr double Opaque = 3e4;   ///< mean free paths a voxel from which on a peak is left to the sweeps
 constexpr double Clear = 1.5;    ///< times a peak's width that light must go to be followed
 
 using Voxel = std::array<int, 3>;

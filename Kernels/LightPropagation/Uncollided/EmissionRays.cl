@@ -17,13 +17,13 @@ typedef struct
 typedef struct
 {
   int at[3];
-  int across; // axis of the face that is lit, 3: it is the voxel itself
-  int up;     // which of its two faces
+  int across;  // axis of the face that is lit, 3: it is the voxel itself
+  int up;      // which of its two faces
   bool inside; // of the box of what shines
 } lit_voxel;
 
-// The scene with its axes in another order, some of them turned round, so that every voxel sees what shines in the same way
-// whatever way the scene lies: the light then has the symmetries of the scene.
+// The scene with its axes in another order, some of them turned round, so that every voxel sees what shines in the same
+// way whatever way the scene lies: the light then has the symmetries of the scene.
 typedef struct
 {
   float spacing[3];
@@ -47,8 +47,8 @@ static inline real take(const __global float* from, integer i)
 #elif REAL_WIDTH == 8
   return (real)(from[i.s0], from[i.s1], from[i.s2], from[i.s3], from[i.s4], from[i.s5], from[i.s6], from[i.s7]);
 #else
-  return (real)(from[i.s0], from[i.s1], from[i.s2], from[i.s3], from[i.s4], from[i.s5], from[i.s6], from[i.s7], from[i.s8],
-    from[i.s9], from[i.sa], from[i.sb], from[i.sc], from[i.sd], from[i.se], from[i.sf]);
+  return (real)(from[i.s0], from[i.s1], from[i.s2], from[i.s3], from[i.s4], from[i.s5], from[i.s6], from[i.s7],
+    from[i.s8], from[i.s9], from[i.sa], from[i.sb], from[i.sc], from[i.sd], from[i.se], from[i.sf]);
 #endif
 }
 #endif
@@ -60,14 +60,15 @@ static real mean_left(real tau, real* left)
   return select((real)1.0f, lost / fmax(tau, (real)1e-6f), tau > (real)1e-6f);
 }
 
-// Rays from points to the box of what shines and through it: radiance at their beginnings, W / (length^2 sr), [CHANNELS].
+// Rays from points to the box of what shines and through it: radiance at their beginnings, W / (length^2 sr),
+// [CHANNELS].
 //   point      in voxels, along x, y, z
 //   way        unit vectors, towards the box
 //   sigma      of the grid
 //   emission   of the box, W / (length^3 sr), [CHANNELS][voxel]
 // What the voxel itself extinguishes is the mean over all that the line has of it.
-static void trace(const turned_scene* s, const lit_voxel* voxel, const real* point, const real* way, const __global float* sigma,
-  const __global float* emission, real* radiance)
+static void trace(const turned_scene* s, const lit_voxel* voxel, const real* point, const real* way,
+  const __global float* sigma, const __global float* emission, real* radiance)
 {
   const int* strides = s->strides;
   const int* source_strides = s->source_strides;
@@ -106,7 +107,8 @@ static void trace(const turned_scene* s, const lit_voxel* voxel, const real* poi
       index += select((integer)0, select((integer)-strides[a], (integer)strides[a], up[a]), crossed);
       next[a] += select((real)0.0f, step[a], crossed);
     }
-    index = clamp(index, (integer)0, (integer)s->last); // rounding: along a face of the grid, a step of no length past it
+    index =
+      clamp(index, (integer)0, (integer)s->last); // rounding: along a face of the grid, a step of no length past it
     now = end;
     under_way = now < enter && tau < (real)OPAQUE;
   }
@@ -162,8 +164,8 @@ static void trace(const turned_scene* s, const lit_voxel* voxel, const real* poi
   }
 }
 
-// Solid angle of each side of the box that light comes through, from the voxel's middle, but no less than an eighth of the largest: from
-// other points they are larger; 0 where no light comes through.
+// Solid angle of each side of the box that light comes through, from the voxel's middle, but no less than an eighth of
+// the largest: from other points they are larger; 0 where no light comes through.
 static void find_sides(const turned_scene* s, const lit_voxel* voxel, float* solid_angles)
 {
   float largest = 0.0f;
@@ -171,8 +173,9 @@ static void find_sides(const turned_scene* s, const lit_voxel* voxel, float* sol
   {
     const int axis = side / 2, u = (axis + 1) % 3, v = (axis + 2) % 3;
     const int at = voxel->at[axis], first = s->source_first[axis], end = first + s->source_size[axis];
-    const bool seen = voxel->inside ? axis != voxel->across || side % 2 != voxel->up || at != (side % 2 ? end - 1 : first)
-                                    : (side % 2 ? at >= end : at < first);
+    const bool seen = voxel->inside
+      ? axis != voxel->across || side % 2 != voxel->up || at != (side % 2 ? end - 1 : first)
+      : (side % 2 ? at >= end : at < first);
     const float away = fabs((side % 2 ? end : first) - at - 0.5f) * s->spacing[axis];
     solid_angles[side] = 0.0f;
     for (int corner = 0; corner < 4 && seen; ++corner)
@@ -197,9 +200,9 @@ static inline real along(const real* values, integer axis, int shift)
   return select(other, values[shift % 3], axis == (integer)0);
 }
 
-// Rays to the box, along directions from a lattice of points in the voxel that are spread evenly over the solid angles of the box's
-// sides: the first coordinate chooses the side, in proportion to its solid angle; what is left of it and the second, (u, v) from 0 to
-// 1, stand for the angles' tan(x / 2) and sin.
+// Rays to the box, along directions from a lattice of points in the voxel that are spread evenly over the solid angles
+// of the box's sides: the first coordinate chooses the side, in proportion to its solid angle; what is left of it and
+// the second, (u, v) from 0 to 1, stand for the angles' tan(x / 2) and sin.
 //   from, end  the rays, a multiple of REAL_WIDTH
 //   points     [u, v, x, y, z][MOST]
 //   sums       their mean, [channel][fluence, net flux along x, y, z]
@@ -242,7 +245,8 @@ static void gather_rays(const turned_scene* s, const lit_voxel* voxel, const flo
     }
     const real low_u = along(low, axis, 1), high_u = along(high, axis, 1);
     const real low_v = along(low, axis, 2), high_v = along(high, axis, 2);
-    const real away = fmax(fabs(select(along(low, axis, 0), along(high, axis, 0), high_side)), 1e-4f * along(edge, axis, 0));
+    const real away =
+      fmax(fabs(select(along(low, axis, 0), along(high, axis, 0), high_side)), 1e-4f * along(edge, axis, 0));
     const real half_low = low_u / (away + sqrt(away * away + low_u * low_u));
     const real half_range = high_u / (away + sqrt(away * away + high_u * high_u)) - half_low;
     const real tangent = half_low + half_range * part; // of half the angle
@@ -275,15 +279,17 @@ static void gather_rays(const turned_scene* s, const lit_voxel* voxel, const flo
   }
 }
 
-// The ways to turn the scene in which voxels and faces that are alike see it alike: one, but for those that lie evenly to what shines.
+// The ways to turn the scene in which voxels and faces that are alike see it alike: one, but for those that lie evenly
+// to what shines.
 typedef struct
 {
   int permutations[6][3]; // axes of the scene in their new order
   int count;
-  int turned, either;     // bits of axes that are turned round, and that are both ways
+  int turned, either; // bits of axes that are turned round, and that are both ways
 } ways_to_turn;
 
-// Order of the axes: that across a lit face first, then by distance from the middle of what shines, its size, the voxel's size.
+// Order of the axes: that across a lit face first, then by distance from the middle of what shines, its size, the
+// voxel's size.
 static bool goes_before(const emission_scene* s, const lit_voxel* voxel, const int* distance, int a, int b)
 {
   if ((a == voxel->across) != (b == voxel->across))
@@ -322,7 +328,8 @@ static void find_ways(const emission_scene* s, const lit_voxel* voxel, ways_to_t
   }
 }
 
-static void turn_scene(const emission_scene* s, const lit_voxel* voxel, const int* order, int turned, turned_scene* to, lit_voxel* turned_voxel)
+static void turn_scene(const emission_scene* s, const lit_voxel* voxel, const int* order, int turned, turned_scene* to,
+  lit_voxel* turned_voxel)
 {
   const int strides[3] = { 1, s->size[0], s->size[0] * s->size[1] };
   const int source_strides[3] = { 1, s->source_size[0], s->source_size[0] * s->source_size[1] };
@@ -395,7 +402,8 @@ static void gather_ways(const emission_scene* s, const lit_voxel* voxel, const w
   }
 }
 
-// With as many rays as it takes, in each way to turn the scene: half of a lattice in two ways is not as good as all of it in one.
+// With as many rays as it takes, in each way to turn the scene: half of a lattice in two ways is not as good as all of
+// it in one.
 static void gather(const emission_scene* s, lit_voxel* voxel, const __global float* points, const __global float* sigma,
   const __global float* emission, float* sums)
 {
@@ -427,16 +435,18 @@ static void gather(const emission_scene* s, lit_voxel* voxel, const __global flo
 // path      W length, [channel][stride]
 // flux      W length, [channel][x, y, z][stride]
 // emission  of the box of what shines, [channel][voxel]
-__kernel void gather_voxels(emission_scene s, const __global float* sigma, ulong sigma_first, const __global float* points,
-  const __global float* emission, __global float* path, __global float* flux, ulong stride, ulong first, ulong count)
+__kernel void gather_voxels(emission_scene s, const __global float* sigma, ulong sigma_first,
+  const __global float* points, const __global float* emission, __global float* path, __global float* flux,
+  ulong stride, ulong first, ulong count)
 {
   const ulong i = first + get_global_id(0);
   if (i >= count)
   {
     return;
   }
-  lit_voxel voxel = { { (int)(i % s.size[0]), (int)(i / s.size[0] % s.size[1]), (int)(i / ((ulong)s.size[0] * s.size[1])) }, 3, 0,
-    false };
+  lit_voxel voxel = {
+    { (int)(i % s.size[0]), (int)(i / s.size[0] % s.size[1]), (int)(i / ((ulong)s.size[0] * s.size[1])) }, 3, 0, false
+  };
   float sums[CHANNELS * 4];
   gather(&s, &voxel, points, sigma + sigma_first, emission, sums);
   const float volume = s.spacing[0] * s.spacing[1] * s.spacing[2];
@@ -476,8 +486,8 @@ __kernel void gather_face(emission_scene s, int axis, int up, const __global flo
 }
 
 // W that a row of voxels takes from the light gathered in it.
-__kernel void take_rows(int row, const __global float* sigma, ulong sigma_first, const __global float* path, ulong path_first,
-  __global float* taken)
+__kernel void take_rows(int row, const __global float* sigma, ulong sigma_first, const __global float* path,
+  ulong path_first, __global float* taken)
 {
   const ulong i = get_global_id(0);
   float sum = 0.0f;
@@ -489,7 +499,8 @@ __kernel void take_rows(int row, const __global float* sigma, ulong sigma_first,
 }
 
 // values[first + i] += factor * gathered[from + i]
-__kernel void add_gathered(const __global float* gathered, ulong from, __global float* values, ulong first, float factor)
+__kernel void add_gathered(
+  const __global float* gathered, ulong from, __global float* values, ulong first, float factor)
 {
   const ulong i = get_global_id(0);
   values[first + i] += gathered[from + i] * factor;

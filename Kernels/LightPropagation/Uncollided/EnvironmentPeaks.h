@@ -13,7 +13,8 @@ struct SplitEnvironment
 };
 
 /// Looks for peaks in the cells of a direction set. Where the brightest twentieth of a cell's solid
-/// angle outshines the rest of it more than fourfold, what is above that is a peak, and becomes one light from its centre of
-/// power, if it carries at least a five-hundredth of what the environment shines. Colour and power are kept exactly.
+/// angle outshines the rest of it more than fourfold, what is above that is a peak, and becomes one light from its
+/// centre of power, if it carries at least a five-hundredth of what the environment shines. Colour and power are kept
+/// exactly.
 SplitEnvironment Split(const Environment& environment, const DirectionSet& set);
 }

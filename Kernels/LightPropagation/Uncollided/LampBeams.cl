@@ -3,9 +3,10 @@
 //   LAMBERT, CONE  1 for a rectangle, a spot
 //   MOMENTS     1: how near to which faces of a voxel light is lost is wanted
 //
-// Space around the lamp is six pyramids, one for each way along an axis; in a pyramid beams lie on a grid of tangents, so fine
-// that a beam is at most a voxel wide where it leaves the box. It is followed layer by layer; where its square cross-section
-// lies over up to four voxels, each takes its part. All is told as parts of the lamp's power: its colours share sigma_t.
+// Space around the lamp is six pyramids, one for each way along an axis; in a pyramid beams lie on a grid of tangents,
+// so fine that a beam is at most a voxel wide where it leaves the box. It is followed layer by layer; where its square
+// cross-section lies over up to four voxels, each takes its part. All is told as parts of the lamp's power: its colours
+// share sigma_t.
 
 #define SUMS 9  // of a row
 #define STEPS 2 // a layer: a beam moves aside by half a voxel at most
@@ -28,7 +29,7 @@ typedef struct
 // The beams of one pyramid at one tangent v.
 typedef struct
 {
-  int axis, up;           // marches along the axis, up or down
+  int axis, up;             // marches along the axis, up or down
   float tangentU, tangentV; // of the first beam's middle; v's for all
   float widthU, widthV;     // of a beam, in tangents
   int count;                // of beams along u
@@ -86,7 +87,8 @@ typedef struct
   float entered, escaped[6], stranded;
 } lamp_tally;
 
-// How many of them a path in a voxel counts: what is thick is crossed by little path, of which fixed point must not lose any.
+// How many of them a path in a voxel counts: what is thick is crossed by little path, of which fixed point must not
+// lose any.
 static float units_of(float sigma, float diagonal)
 {
   return fmax(sigma * diagonal, 1.0f);
@@ -100,11 +102,12 @@ static void overlap(float low, float width, int* voxel, float* part)
 }
 
 #if MOMENTS
-// Path that light has in a voxel, times how far from its middle it is lost in the mean: along the beam's axis and aside.
+// Path that light has in a voxel, times how far from its middle it is lost in the mean: along the beam's axis and
+// aside.
 //   way   of the step, from begin to end, layers from the lamp
 //   mean  middle of the part of the cross-section in the voxel, half way through the step
-static void add_moments(const lamp_info* lamp, const beam_row* row, const int* voxel, float2 way, float2 mean, float2 tangent,
-  float tau, float lost, float path, __global long* moments, ulong stride)
+static void add_moments(const lamp_info* lamp, const beam_row* row, const int* voxel, float2 way, float2 mean,
+  float2 tangent, float tau, float lost, float path, __global long* moments, ulong stride)
 {
   const float part = tau < 0.05f ? 0.5f - tau / 12.0f : 1.0f / tau - (1.0f - lost) / lost;
   const float at = mix(way.x, way.y, part);
@@ -124,8 +127,8 @@ static void add_moments(const lamp_info* lamp, const beam_row* row, const int* v
 
 // One step of a beam: every part of it through its voxel. Changes `left`; returns the part that will never be inside.
 static void step_beam(const lamp_info* lamp, const beam_row* row, int layer, bool first, bool last, float2 tangent,
-  float2 middle, float2 width, float2 way, float length, const __global float* sigma, __global long* path, ulong stride, float* left,
-  lamp_tally* tally)
+  float2 middle, float2 width, float2 way, float length, const __global float* sigma, __global long* path, ulong stride,
+  float* left, lamp_tally* tally)
 {
   const int u = (row->axis + 1) % 3;
   const int v = (row->axis + 2) % 3;
@@ -183,10 +186,13 @@ static void step_beam(const lamp_info* lamp, const beam_row* row, int layer, boo
 #if MOMENTS
       if (sigma[index] * length > 0.5f * THIN)
       {
-        const float2 mean = (float2)(q & 1 ? 0.5f * (middle.x + 0.5f * width.x - lowest.x - 1.0f) : 0.5f * (fmin(middle.x + 0.5f * width.x - lowest.x, 1.0f) + middle.x - 0.5f * width.x - lowest.x),
-          q & 2 ? 0.5f * (middle.y + 0.5f * width.y - lowest.y - 1.0f) : 0.5f * (fmin(middle.y + 0.5f * width.y - lowest.y, 1.0f) + middle.y - 0.5f * width.y - lowest.y));
-        add_moments(lamp, row, voxel, way, mean, tangent, sigma[index] * length, lost, counted,
-          path + stride + index, stride);
+        const float2 mean = (float2)(q & 1
+            ? 0.5f * (middle.x + 0.5f * width.x - lowest.x - 1.0f)
+            : 0.5f * (fmin(middle.x + 0.5f * width.x - lowest.x, 1.0f) + middle.x - 0.5f * width.x - lowest.x),
+          q & 2 ? 0.5f * (middle.y + 0.5f * width.y - lowest.y - 1.0f)
+                : 0.5f * (fmin(middle.y + 0.5f * width.y - lowest.y, 1.0f) + middle.y - 0.5f * width.y - lowest.y));
+        add_moments(
+          lamp, row, voxel, way, mean, tangent, sigma[index] * length, lost, counted, path + stride + index, stride);
       }
 #endif
       after += mean_length * sigma[index] < 0.5f * length * sigma[index] ? power * through : power - power * lost;
@@ -205,8 +211,8 @@ static void follow_beam(const lamp_info* lamp, const beam_row* row, float2 tange
   const float3 along = (float3)(lamp->spacing[row->axis], tangent.x * lamp->spacing[u], tangent.y * lamp->spacing[v]);
   const float per_layer = sqrt(dot(along, along));
   const float start = lamp->position[row->axis];
-  const int first = row->begin > 0.0f ? (row->up ? 0 : n - 1)
-                                      : clamp((int)(row->up ? floor(start) : ceil(start) - 1.0f), 0, n - 1);
+  const int first =
+    row->begin > 0.0f ? (row->up ? 0 : n - 1) : clamp((int)(row->up ? floor(start) : ceil(start) - 1.0f), 0, n - 1);
   const int layers = row->up ? n - first : first + 1;
   const int all = lamp->periodic[row->axis] ? layers + n * lamp->rounds : layers;
   const bool sideways = lamp->position[u] < 0.0f || lamp->position[u] > lamp->size[u] || lamp->position[v] < 0.0f ||
@@ -228,8 +234,8 @@ static void follow_beam(const lamp_info* lamp, const beam_row* row, float2 tange
       const float t = first_step && row->begin > 0.0f ? t0 : last_step && sideways ? t1 : 0.5f * (t0 + t1);
       const float2 middle = (float2)(lamp->position[u] + tangent.x * t, lamp->position[v] + tangent.y * t);
       step_beam(lamp, row, layer, first_step, last_step, tangent, middle,
-        clamp((float2)(row->widthU, row->widthV) * t, 1e-4f, 1.0f), (float2)(t0, t1), (t1 - t0) * per_layer, sigma, path, stride,
-        &left, tally);
+        clamp((float2)(row->widthU, row->widthV) * t, 1e-4f, 1.0f), (float2)(t0, t1), (t1 - t0) * per_layer, sigma,
+        path, stride, &left, tally);
     }
     now = end;
   }
@@ -284,8 +290,8 @@ static void follow_row(const lamp_info* lamp, const beam_row* row, const __globa
   {
     const float2 tangent = (float2)(row->tangentU + i * row->widthU, row->tangentV);
     const float2 half_width = 0.5f * (float2)(row->widthU, row->widthV);
-    float angle = solid_angle((tangent.x - half_width.x) * hu, (tangent.x + half_width.x) * hu, (tangent.y - half_width.y) * hv,
-      (tangent.y + half_width.y) * hv, hp);
+    float angle = solid_angle((tangent.x - half_width.x) * hu, (tangent.x + half_width.x) * hu,
+      (tangent.y - half_width.y) * hv, (tangent.y + half_width.y) * hv, hp);
 #if LAMBERT
     angle *= fmax(cosine_at(lamp, row, tangent), 0.0f);
 #elif CONE
@@ -308,7 +314,8 @@ static void follow_row(const lamp_info* lamp, const beam_row* row, const __globa
   sums[8] = shone;
 }
 
-// path  part of the power times length, in fixed point, [voxel], added to; MOMENTS: [path, times distance along x, y, z][stride]
+// path  part of the power times length, in fixed point, [voxel], added to; MOMENTS: [path, times distance along x, y,
+//       z][stride]
 // sums  [row][entered, escaped through -x to +z, stranded, shone in the row's directions], parts of the power
 __kernel void follow_lamp(lamp_info lamp, const __global float* sigma, ulong sigma_first, __global long* path,
   ulong stride, const __global beam_row* rows, int row_count, int first_row, __global float* sums)

@@ -103,8 +103,8 @@ SweepTally DepositBeam(Device& device, const SweepVolume& volume, const Light& l
     }
     info.thin = ThinForMoments;
     cl::Kernel add = device.Kernel("add_beam", { kernel_source::BeamMoments });
-    With(add, info, *volume.sigma_t, cl_ulong(volume.sigma_t_first), path, partialCurrents, *volume.deposit.path, *volume.deposit.moments,
-      cl_ulong(volume.first), cl_ulong(volume.stride));
+    With(add, info, *volume.sigma_t, cl_ulong(volume.sigma_t_first), path, partialCurrents, *volume.deposit.path,
+      *volume.deposit.moments, cl_ulong(volume.first), cl_ulong(volume.stride));
     device.Queue().enqueueNDRangeKernel(
       add, cl::NullRange, cl::NDRange(volume.grid.VoxelCount(), volume.channels), cl::NullRange);
     device.Finish();
@@ -112,8 +112,8 @@ SweepTally DepositBeam(Device& device, const SweepVolume& volume, const Light& l
   return tally;
 }
 
-/// Smallest and largest tangent (voxels along `aside` per layer) at which the box is seen from `position` between two depths,
-/// within the pyramid.
+/// Smallest and largest tangent (voxels along `aside` per layer) at which the box is seen from `position` between two
+/// depths, within the pyramid.
 std::array<double, 2> Tangents(const Grid& grid, const glm::dvec3& position, int aside, double near, double far)
 {
   const double low = -position[aside];
@@ -122,9 +122,9 @@ std::array<double, 2> Tangents(const Grid& grid, const glm::dvec3& position, int
   return { std::max(-1.0, std::min(low / depth, low / far)), std::min(1.0, std::max(high / depth, high / far)) };
 }
 
-/// Tangents (voxels along `aside` per layer) between which a spot's cone is seen in the pyramid along `axis`. The planes that touch
-/// the cone and hold the third axis are turned by asin(sin(half angle) / R) from its middle, R the length of that in the plane of
-/// the two axes. The first is larger than the second where the cone is not seen there.
+/// Tangents (voxels along `aside` per layer) between which a spot's cone is seen in the pyramid along `axis`. The
+/// planes that touch the cone and hold the third axis are turned by asin(sin(half angle) / R) from its middle, R the
+/// length of that in the plane of the two axes. The first is larger than the second where the cone is not seen there.
 std::array<double, 2> TangentsOfCone(const Grid& grid, int axis, bool up, int aside, const Light& light)
 {
   constexpr double rightAngle = 0.5 * glm::pi<double>();
@@ -152,7 +152,8 @@ std::array<double, 2> TangentsOfCone(const Grid& grid, int axis, bool up, int as
   return { std::max(low - aroundIt, -1.0), std::min(high + aroundIt, 1.0) };
 }
 
-/// The beams of `light` from `position` (in voxels), row by row; a beam is at most `width` voxels wide where it leaves the box.
+/// The beams of `light` from `position` (in voxels), row by row; a beam is at most `width` voxels wide where it leaves
+/// the box.
 std::vector<BeamRow> Beams(const Grid& grid, const Light& light, const glm::dvec3& position, double width)
 {
   std::vector<BeamRow> rows;

@@ -5,8 +5,9 @@
 
 namespace tyndall
 {
-/// The uncollided flux of shining faces, sky and environment, along a set of directions of its own. Shadows have edges, which want many
-/// directions; scattered light is smooth and does with few: so the many are swept once and not once an order.
+/// The uncollided flux of shining faces, sky and environment, along a set of directions of its own. Shadows have edges,
+/// which want many directions; scattered light is smooth and does with few: so the many are swept once and not once an
+/// order.
 class UncollidedBoundary : public UncollidedSource
 {
 public:

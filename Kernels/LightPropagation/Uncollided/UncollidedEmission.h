@@ -18,8 +18,8 @@ public:
   {
   }
 
-  SweepTally AddTo(Device& device, const SweepVolume& volume, int firstChannel, SweepWorkspace&,
-    const Monitor& monitor) const override
+  SweepTally AddTo(
+    Device& device, const SweepVolume& volume, int firstChannel, SweepWorkspace&, const Monitor& monitor) const override
   {
     return DepositEmission(device, volume, firstChannel, this->Peak, this->Error, monitor);
   }

@@ -6,8 +6,9 @@
 
 namespace tyndall
 {
-/// Light up to where it first meets the medium: the uncollided flux of one lamp, of all that shines through the box's faces, of a small
-/// bright part of the medium. A solver asks each of them once; what of their light is scattered is its first source.
+/// Light up to where it first meets the medium: the uncollided flux of one lamp, of all that shines through the box's
+/// faces, of a small bright part of the medium. A solver asks each of them once; what of their light is scattered is
+/// its first source.
 class UncollidedSource
 {
 public:

@@ -1,8 +1,8 @@
 #pragma once
 
+#include "Photons/Emission/SampleSequence.h"
 #include "Photons/Importance/ImportanceMap.h"
 #include "Photons/Photons.h"
-#include "Photons/Emission/SampleSequence.h"
 
 #include "Device/Monitor.h"
 #include "Lights/Lights.h"
@@ -12,21 +12,24 @@ namespace tyndall
 {
 struct EmissionSettings
 {
-  /// Photons that reach the volume, of all lights together; each light has a share in proportion to the power with which it
-  /// reaches the volume, at least one. Spots and rectangles of which a part misses the volume meet it within a percent.
+  /// Photons that reach the volume, of all lights together; each light has a share in proportion to the power with
+  /// which it reaches the volume, at least one. Spots and rectangles of which a part misses the volume meet it within a
+  /// percent.
   std::size_t photonCount = 100000;
   Sampler sampler = Sampler::Hammersley;
   std::uint64_t seed = 0;
   /// Independent sets that the photons are made of, 1 to 16. Each has its own shift; every second one has its first two
-  /// coordinates changed for each other, and Hammersley's base 3 for 2, so that the patterns of two sets have nothing in common.
+  /// coordinates changed for each other, and Hammersley's base 3 for 2, so that the patterns of two sets have nothing
+  /// in common.
   int batches = 1;
   /// Where photons are dense; null or empty: spread evenly. A light that it has no square for is spread evenly.
   const ImportanceMap* map = nullptr;
   double densestAtMost = 8.0; ///< density that the map may ask for, in those of photons spread evenly; at least 1
 };
 
-/// Photons of all lights, where they enter the volume (those of a lamp in the volume: at the lamp), and the number of each
-/// one's light: that in `illumination.lights`, then EnvironmentLight for the environment and the sky, -2 for the faces.
+/// Photons of all lights, where they enter the volume (those of a lamp in the volume: at the lamp), and the number of
+/// each one's light: that in `illumination.lights`, then EnvironmentLight for the environment and the sky, -2 for the
+/// faces.
 struct EmittedPhotons
 {
   std::vector<Photon> photons;
@@ -35,8 +38,8 @@ struct EmittedPhotons
   double seconds = 0.0; ///< that it took
 };
 
-/// Makes photons of lights (Pfeuti 2009, section 3.1.4), in double precision on the host. What would miss the volume is not
-/// made, and the power of the others is what really reaches it:
+/// Makes photons of lights (Pfeuti 2009, section 3.1.4), in double precision on the host. What would miss the volume is
+/// not made, and the power of the others is what really reaches it:
 ///
 ///  - directional: spread over the outline of the volume on the photon plane across the light's direction
 ///  - point: over the solid angle of the faces that the lamp sees, or all around a lamp in the volume; what a lamp on a
@@ -48,7 +51,8 @@ struct EmittedPhotons
 ///
 /// The index outside is taken as constant.
 ///
-/// @throws InvalidInput where an illumination means nothing or no photon is asked for; DeviceError where the machine's memory
+/// @throws InvalidInput where an illumination means nothing or no photon is asked for; DeviceError where the machine's
+/// memory
 ///   does not suffice for the photons (60 bytes each); Aborted
 EmittedPhotons EmitPhotons(
   const Grid& grid, const Illumination& illumination, const EmissionSettings& settings, const Monitor& monitor = {});
@@ -61,8 +65,8 @@ struct PilotPhotons
   std::vector<std::array<int, 2>> origins; ///< column and row of the cell of its photon plane that each was made in
 };
 
-/// Photons of every light, the environment and the sky, not of the faces: one in each cell of a square grid, at a random place
-/// in it (Pfeuti 2009, section 3.2.2).
+/// Photons of every light, the environment and the sky, not of the faces: one in each cell of a square grid, at a
+/// random place in it (Pfeuti 2009, section 3.2.2).
 /// @param edge  cells along an edge of the grid, at least 1
 /// @throws InvalidInput where an illumination means nothing
 std::vector<PilotPhotons> EmitPilots(

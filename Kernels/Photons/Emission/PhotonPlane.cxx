@@ -37,8 +37,8 @@ bool IsBefore(const glm::dvec2& a, const glm::dvec2& b)
   return a.x < b.x || (a.x == b.x && a.y < b.y);
 }
 
-/// Sorted, those one above the other at the very same x: rounding parts the corners of a box that is seen squarely, and the hull
-/// would take the sliver between them for a side of its own.
+/// Sorted, those one above the other at the very same x: rounding parts the corners of a box that is seen squarely, and
+/// the hull would take the sliver between them for a side of its own.
 std::vector<glm::dvec2> Sorted(std::vector<glm::dvec2> points)
 {
   std::sort(points.begin(), points.end(), IsBefore);

@@ -10,8 +10,8 @@
 
 namespace tyndall
 {
-/// A convex polygon, onto which the unit square is mapped continuously and keeping areas in proportion: what is spread evenly
-/// stays so.
+/// A convex polygon, onto which the unit square is mapped continuously and keeping areas in proportion: what is spread
+/// evenly stays so.
 class ConvexPolygon
 {
 public:
@@ -78,9 +78,9 @@ private:
   std::vector<double> Below; ///< solid angle up to each
 };
 
-/// What a lamp sees of the volume: all around it inside, half of that on a face, a quarter on an edge, an eighth at a corner,
-/// the faces from outside. On a face is what is off it by no more than a position may have been rounded, a millionth of the
-/// volume's edge.
+/// What a lamp sees of the volume: all around it inside, half of that on a face, a quarter on an edge, an eighth at a
+/// corner, the faces from outside. On a face is what is off it by no more than a position may have been rounded, a
+/// millionth of the volume's edge.
 class LampView
 {
 public:

@@ -1,9 +1,9 @@
 #include "Photons/Emission/PhotonSources.h"
 
 #include "Photons/Emission/CumulativeTable.h"
+#include "Photons/Emission/PhotonPlane.h"
 #include "Photons/Importance/ImportanceMap.h"
 #include "Photons/Marching/PhotonPacking.h"
-#include "Photons/Emission/PhotonPlane.h"
 
 #include <glm/geometric.hpp>
 #include <glm/gtc/constants.hpp>

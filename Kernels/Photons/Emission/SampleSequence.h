@@ -18,11 +18,12 @@ enum class Sampler
 
 /// `count` points of the unit hypercube [0, 1)^4, the same for the same seed.
 ///
-/// Cells of Grid and Jittered have equal areas whatever the count is; in dimensions 2 and 3 they are a second grid, in another
-/// order. A seed other than 0 shifts Hammersley, Halton and Grid as a whole, round the edges.
+/// Cells of Grid and Jittered have equal areas whatever the count is; in dimensions 2 and 3 they are a second grid, in
+/// another order. A seed other than 0 shifts Hammersley, Halton and Grid as a whole, round the edges.
 ///
-/// Batches of one seed are independent sets: each above 0 has a shift of its own; in odd ones dimensions 0 and 1 change places, and
-/// Hammersley has base 3 for 2 and 2 for 3, so that errors of an even and an odd one have nothing in common.
+/// Batches of one seed are independent sets: each above 0 has a shift of its own; in odd ones dimensions 0 and 1 change
+/// places, and Hammersley has base 3 for 2 and 2 for 3, so that errors of an even and an odd one have nothing in
+/// common.
 class SampleSequence
 {
 public:

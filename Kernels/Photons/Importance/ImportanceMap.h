@@ -9,8 +9,8 @@ namespace tyndall
 /// Number of the environment and the sky among lights; lights of their own are numbered from 0.
 constexpr int EnvironmentLight = -1;
 
-/// How densely photons are to set out: a square picture for each light, of its photon plane or of what stands for it (the first
-/// two coordinates of the samples that its photons are made of).
+/// How densely photons are to set out: a square picture for each light, of its photon plane or of what stands for it
+/// (the first two coordinates of the samples that its photons are made of).
 struct ImportanceMap
 {
   int size = 0;               ///< cells along an edge of each square
@@ -21,17 +21,20 @@ struct ImportanceMap
   std::size_t Cells() const { return static_cast<std::size_t>(this->size) * static_cast<std::size_t>(this->size); }
 };
 
-/// @throws InvalidInput where a density is negative, 0 (then the light that sets out there would be missing) or not finite (names
+/// @throws InvalidInput where a density is negative, 0 (then the light that sets out there would be missing) or not
+/// finite (names
 ///   light, column and row), or their number is not that of the cells
 void Check(const ImportanceMap& map);
 
-/// One light's square of a map: the unit square is mapped onto itself such that what is spread evenly over it becomes as dense
-/// as the map (Pfeuti 2009, section 3.2.3): rows by their marginal distribution, then columns by that of the row.
+/// One light's square of a map: the unit square is mapped onto itself such that what is spread evenly over it becomes
+/// as dense as the map (Pfeuti 2009, section 3.2.3): rows by their marginal distribution, then columns by that of the
+/// row.
 class ImportanceSampler
 {
 public:
   /// @param density  size*size, not all zero
-  /// @param most     density at most, in those of photons spread evenly, at least 1: what a cell has above it is shared by the
+  /// @param most     density at most, in those of photons spread evenly, at least 1: what a cell has above it is shared
+  /// by the
   ///                 others in proportion
   ImportanceSampler(const float* density, int size, double most);
 

@@ -20,8 +20,9 @@ constexpr double SteepAtLeast =
   0.25; ///< of the median luminance from a cell to the next: below, noise and fog's own falling off
 constexpr double DimBelow = 0.5;  ///< of the median luminance
 constexpr double FewCells = 0.01; ///< of the lit cells: fewer chosen ones are not worth a map
-/// Deviation of the chosen cells' map, mean 1, times the fourth root of their part of the lit ones: below, it gains nothing. Fog
-/// alone, under a sun from any side, a lamp above or in it, thin or thick, has 0.2 to 0.46; glass in fog 0.53 to 1.
+/// Deviation of the chosen cells' map, mean 1, times the fourth root of their part of the lit ones: below, it gains
+/// nothing. Fog alone, under a sun from any side, a lamp above or in it, thin or thick, has 0.2 to 0.46; glass in fog
+/// 0.53 to 1.
 constexpr double EvenMap = 0.5;
 
 constexpr int LargestEdge = 1024; ///< of the map
@@ -195,9 +196,9 @@ void Splat(double x, double y, double diameter, int size, std::vector<double>& m
   }
 }
 
-/// Diameter of a cell's circle. As published it is the origins' deviations along both axes together (Listing B.1), which leaves
-/// gaps between the circles of neighbours; else it spans the square that has these deviations, what a place is within its cell
-/// included.
+/// Diameter of a cell's circle. As published it is the origins' deviations along both axes together (Listing B.1),
+/// which leaves gaps between the circles of neighbours; else it spans the square that has these deviations, what a
+/// place is within its cell included.
 double DiameterOf(const float* deviation, bool asPublished)
 {
   if (asPublished)
@@ -208,7 +209,8 @@ double DiameterOf(const float* deviation, bool asPublished)
   return 2.0 * (whole(deviation[0]) + whole(deviation[1]));
 }
 
-/// A circle about the mean origin of each chosen cell's photons, mean 1. Empty where no chosen cell has photons of this light.
+/// A circle about the mean origin of each chosen cell's photons, mean 1. Empty where no chosen cell has photons of this
+/// light.
 std::vector<double> CirclesOf(const std::vector<float>& chosen, const PilotLight& light, int size, bool asPublished)
 {
   std::vector<double> map(static_cast<std::size_t>(size) * static_cast<std::size_t>(size), 0.0);
@@ -256,7 +258,8 @@ std::vector<double> Smooth(const std::vector<double>& map, int size)
   return pass(pass(map, 1, row), row, 1);
 }
 
-/// Deviation from 1 of means over blocks, eight along an edge: circles of cells next to each other leave gaps, which tell nothing.
+/// Deviation from 1 of means over blocks, eight along an edge: circles of cells next to each other leave gaps, which
+/// tell nothing.
 double DeviationOf(const std::vector<double>& map, int size)
 {
   const int blocks = std::min(size, 8);

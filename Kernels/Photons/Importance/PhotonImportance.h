@@ -11,13 +11,15 @@ namespace tyndall
 {
 struct ImportanceSettings
 {
-  /// Photons of each light; the largest square number that is not above it is made, its root is the map's size. At least 1.
-  /// Some tenth of the photons to follow. Best a multiple of the cells along an axis, squared: else even light looks striped.
+  /// Photons of each light; the largest square number that is not above it is made, its root is the map's size. At
+  /// least 1. Some tenth of the photons to follow. Best a multiple of the cells along an axis, squared: else even light
+  /// looks striped.
   std::size_t pilotCount = 1024;
   std::array<int, 3> cells = { 16, 16, 16 }; ///< of the coarse grid, each at least 1
   std::uint64_t seed = 0;
 
-  /// Thresholds from the pilot photons' own statistics, in proportion to the light: see PhotonImportance.cxx. Else the two below.
+  /// Thresholds from the pilot photons' own statistics, in proportion to the light: see PhotonImportance.cxx. Else the
+  /// two below.
   bool automatic = true;
   double gradientThreshold = 0.0;  ///< W / length^2 from a cell to the next: cells at or above it are chosen
   double luminanceThreshold = 0.0; ///< W / length^2: lit cells at or below it are chosen
@@ -37,9 +39,10 @@ struct Importance
   double seconds = 0.0;
 };
 
-/// Where photons are needed (Pfeuti 2009, section 3.2.2): pilot photons on a jittered grid are gathered in coarse cells; cells
-/// with a steep gradient of light, and dark ones, are chosen; each is splatted into the map as a circle about the mean origin of
-/// its photons, as wide as they deviate from it; a background is added; a 5x5 Gauss filter of variance 2 smooths the map.
+/// Where photons are needed (Pfeuti 2009, section 3.2.2): pilot photons on a jittered grid are gathered in coarse
+/// cells; cells with a steep gradient of light, and dark ones, are chosen; each is splatted into the map as a circle
+/// about the mean origin of its photons, as wide as they deviate from it; a background is added; a 5x5 Gauss filter of
+/// variance 2 smooths the map.
 ///
 /// @param marcher  of the medium
 /// @throws InvalidInput where a setting is out of its range; Aborted

@@ -1,7 +1,7 @@
 #pragma once
 
-#include "Photons/Marching/MarchMedium.h"
 #include "Photons/Importance/PilotLight.h"
+#include "Photons/Marching/MarchMedium.h"
 
 #include "Device/Monitor.h"
 

@@ -7,7 +7,8 @@
 
 namespace tyndall
 {
-/// What pilot photons leave in coarse cells that fill the medium's box (Pfeuti 2009, section 3.2.2). Arrays have x fastest.
+/// What pilot photons leave in coarse cells that fill the medium's box (Pfeuti 2009, section 3.2.2). Arrays have x
+/// fastest.
 struct PilotLight
 {
   Grid grid; ///< the coarse cells; where they do not divide the voxels evenly, some have a voxel more than others

@@ -28,7 +28,8 @@ bool NeedAtomics(const Device& device, MarchSettings::Sums sums)
   return sums == MarchSettings::Sums::Shared || (sums == MarchSettings::Sums::Fitting && atomics && !few);
 }
 
-/// Straight ways cost what their voxels do; of bent ones the first tell. Few launches: at the end of each, work-items wait.
+/// Straight ways cost what their voxels do; of bent ones the first tell. Few launches: at the end of each, work-items
+/// wait.
 Batches LaunchesOf(const MarchMedium& medium, const PackedPhotons& packed, const MarchShares& shares)
 {
   const double edges = (medium.grid.size[0] + medium.grid.size[1] + medium.grid.size[2]) / 3.0;

@@ -15,7 +15,8 @@ struct EndOnDevice
 constexpr int EndWords = 3;
 constexpr int StillGoing = 6; ///< and above: not a face of the volume
 
-/// Who adds to how many copies of the sums. Work-item w serves copies w, w + workers, ...; copy c is for batch c % batches.
+/// Who adds to how many copies of the sums. Work-item w serves copies w, w + workers, ...; copy c is for batch c %
+/// batches.
 struct MarchShares
 {
   bool atomics = false;

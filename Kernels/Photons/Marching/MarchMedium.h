@@ -5,8 +5,8 @@
 #include "Device/Buffer.h"
 #include "Medium/Medium.h"
 #include "Medium/Traits.h"
-#include "Refraction/Index/IndexRange.h"
 #include "Photons/Marching/PhotonPacking.h"
+#include "Refraction/Index/IndexRange.h"
 
 #include <string>
 

@@ -1,7 +1,7 @@
 // Photons side by side: REAL_WIDTH of them, a lane each. Read after Numerics.cl.
 //
-// What is known of them stands in arrays, which are read and written for all at once, or one by one where a photon goes its own
-// way. A mask is -1 in the lanes that are meant and 0 in the others; `mask ? a : b` chooses by lane.
+// What is known of them stands in arrays, which are read and written for all at once, or one by one where a photon goes
+// its own way. A mask is -1 in the lanes that are meant and 0 in the others; `mask ? a : b` chooses by lane.
 
 #define LANES(type, name) type name[REAL_WIDTH] __attribute__((aligned(64)))
 #define LANES_3(type, name) type name[3][REAL_WIDTH] __attribute__((aligned(64))) // along x, y and z
@@ -23,7 +23,7 @@
 #if REAL_WIDTH == 1
 #define truth(condition) (-(condition))
 #define anywhere(mask) (mask)
-#define bits_of(mask) ((mask) & 1)
+#define bits_of(mask) ((mask)&1)
 #define as_integer as_int
 #define gather(type, values, i) ((values)[i])
 #define LANE_BY_LANE(do_it) do_it(0, )
@@ -34,19 +34,20 @@
 #define gather(type, values, i) ((type##4)((values)[(i).s0], (values)[(i).s1], (values)[(i).s2], (values)[(i).s3]))
 #define LANE_BY_LANE(do_it) do_it(0, .s0) do_it(1, .s1) do_it(2, .s2) do_it(3, .s3)
 #elif REAL_WIDTH == 8
-#define gather(type, values, i) \
-  ((type##8)((values)[(i).s0], (values)[(i).s1], (values)[(i).s2], (values)[(i).s3], (values)[(i).s4], (values)[(i).s5], \
-    (values)[(i).s6], (values)[(i).s7]))
+#define gather(type, values, i)                                                                        \
+  ((type##8)((values)[(i).s0], (values)[(i).s1], (values)[(i).s2], (values)[(i).s3], (values)[(i).s4], \
+    (values)[(i).s5], (values)[(i).s6], (values)[(i).s7]))
 #define LANE_BY_LANE(do_it) \
   do_it(0, .s0) do_it(1, .s1) do_it(2, .s2) do_it(3, .s3) do_it(4, .s4) do_it(5, .s5) do_it(6, .s6) do_it(7, .s7)
 #else
-#define gather(type, values, i) \
-  ((type##16)((values)[(i).s0], (values)[(i).s1], (values)[(i).s2], (values)[(i).s3], (values)[(i).s4], (values)[(i).s5], \
-    (values)[(i).s6], (values)[(i).s7], (values)[(i).s8], (values)[(i).s9], (values)[(i).sa], (values)[(i).sb], \
-    (values)[(i).sc], (values)[(i).sd], (values)[(i).se], (values)[(i).sf]))
-#define LANE_BY_LANE(do_it) \
+#define gather(type, values, i)                                                                                 \
+  ((type##16)((values)[(i).s0], (values)[(i).s1], (values)[(i).s2], (values)[(i).s3], (values)[(i).s4],         \
+    (values)[(i).s5], (values)[(i).s6], (values)[(i).s7], (values)[(i).s8], (values)[(i).s9], (values)[(i).sa], \
+    (values)[(i).sb], (values)[(i).sc], (values)[(i).sd], (values)[(i).se], (values)[(i).sf]))
+#define LANE_BY_LANE(do_it)                                                                                       \
   do_it(0, .s0) do_it(1, .s1) do_it(2, .s2) do_it(3, .s3) do_it(4, .s4) do_it(5, .s5) do_it(6, .s6) do_it(7, .s7) \
-    do_it(8, .s8) do_it(9, .s9) do_it(10, .sa) do_it(11, .sb) do_it(12, .sc) do_it(13, .sd) do_it(14, .se) do_it(15, .sf)
+    do_it(8, .s8) do_it(9, .s9) do_it(10, .sa) do_it(11, .sb) do_it(12, .sc) do_it(13, .sd) do_it(14, .se)        \
+      do_it(15, .sf)
 #endif
 
 static int bits_of(integer mask)
@@ -78,11 +79,12 @@ static bool anywhere(integer mask)
 #endif
 }
 #endif
-#define masked(mask, value) as_real((mask) & as_integer(value))
+#define masked(mask, value) as_real((mask)&as_integer(value))
 
 // For every lane k of a mask.
-#define FOR_LANES(k, mask) \
-  for (int k##_left = bits_of(mask), k = first_lane(k##_left); k##_left; k##_left &= k##_left - 1, k = first_lane(k##_left))
+#define FOR_LANES(k, mask)                                               \
+  for (int k##_left = bits_of(mask), k = first_lane(k##_left); k##_left; \
+       k##_left &= k##_left - 1, k = first_lane(k##_left))
 
 static int first_lane(int bits)
 {

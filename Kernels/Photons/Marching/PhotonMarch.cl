@@ -1,19 +1,22 @@
-// Photons through a medium (Pfeuti 2009, section 3.1.5, but for the accumulation). Read after Numerics.cl, FixedPoint.cl,
-// SquaredIndex.cl, PhotonLanes.cl and PhotonSteps.cl; the host gives what those ask for, and
+// Photons through a medium (Pfeuti 2009, section 3.1.5, but for the accumulation). Read after Numerics.cl,
+// FixedPoint.cl, SquaredIndex.cl, PhotonLanes.cl and PhotonSteps.cl; the host gives what those ask for, and
 //   CHANNELS         of light; MEDIUM_CHANNELS of sigma_t, 1 or CHANNELS
-//   WORKERS          0: a work-item a packet, all add to the same sums; else so many take blocks as they come, each to its sums
-//   COUNTS           1: voxels also count photons and their weights, by photons' marks: 1 << COUNT_SHIFT and units of weight
-//   CELLS            1: what is deposited are coarse cells, which also count photons, and sum up the columns and rows that these
-//                    set out from, by their marks: column and row << 16
+//   WORKERS          0: a work-item a packet, all add to the same sums; else so many take blocks as they come, each to
+//                    its sums
+//   COUNTS           1: voxels also count photons and their weights, by photons' marks: 1 << COUNT_SHIFT and units of
+//                    weight
+//   CELLS            1: what is deposited are coarse cells, which also count photons, and sum up the columns and rows
+//                    that these set out from, by their marks: column and row << 16
 //   PATHS            1: nothing is summed, vertices are written
 //
-// A step is followed from voxel wall to voxel wall (Amanatides and Woo). In a voxel whose extinction over a diagonal is s,
-// with b = max(s, 1), the sums gain
+// A step is followed from voxel wall to voxel wall (Amanatides and Woo). In a voxel whose extinction over a diagonal is
+// s, with b = max(s, 1), the sums gain
 //   a = power b (path integral of transmittance, in diagonals),   0 <= a <= power,
 // which is the power lost where a voxel is thick and the path where it is thin: neither loses digits in fixed point.
 // Cells, whose voxels differ, gain power times path in diagonals.
 //
-// A photon counts where it enters a voxel (a cell), however many stretches it crosses it in; once more where it comes back.
+// A photon counts where it enters a voxel (a cell), however many stretches it crosses it in; once more where it comes
+// back.
 
 #define PHOTON_FLOATS (6 + CHANNELS) // position, unit direction, power in units
 #if CELLS
@@ -155,23 +158,23 @@ static void count_photon(__global long* record, ulong mark, int entered)
 
 static void deposit_all(const march_arrays* arrays, const photon_lanes* lanes, const photon_gain* gain)
 {
-#define DEPOSIT(k, lane) \
-  { \
-    float a[CHANNELS]; \
-    FOR_CHANNELS(c) \
-    { \
-      a[c] = gain->amount[c]lane; \
-    } \
+#define DEPOSIT(k, lane)                                                  \
+  {                                                                       \
+    float a[CHANNELS];                                                    \
+    FOR_CHANNELS(c)                                                       \
+    {                                                                     \
+      a[c] = gain->amount[c] lane;                                        \
+    }                                                                     \
     __global long* record = arrays->sums + (ulong)gain->at lane * RECORD; \
-    deposit(record, a, lanes->direction[k]); \
-    COUNT(record, k, lane) \
+    deposit(record, a, lanes->direction[k]);                              \
+    COUNT(record, k, lane)                                                \
   }
   LANE_BY_LANE(DEPOSIT)
 #undef DEPOSIT
 }
 
-// Most of the time of a march across a large grid is waiting for memory. It is asked for a few voxels ahead of the photons, as
-// far as they go straight on. Whoever compiles this may not know how: then it does without.
+// Most of the time of a march across a large grid is waiting for memory. It is asked for a few voxels ahead of the
+// photons, as far as they go straight on. Whoever compiles this may not know how: then it does without.
 static void ask_ahead(const march_arrays* arrays, const photon_lanes* lanes, integer at)
 {
 #if REAL_WIDTH > 1 && defined(__has_builtin)
@@ -182,7 +185,7 @@ static void ask_ahead(const march_arrays* arrays, const photon_lanes* lanes, int
 #else
 #define ASK_FOR_RECORD(lane) __builtin_prefetch((const void*)(uintptr_t)(arrays->sums + (long)there lane * RECORD), 1);
 #endif
-#define ASK(k, lane) \
+#define ASK(k, lane)   \
   ASK_FOR_RECORD(lane) \
   __builtin_prefetch((const void*)(uintptr_t)(arrays->sigma + (long)there lane), 0);
   LANE_BY_LANE(ASK)
@@ -234,8 +237,7 @@ static real brightest(const photon_flight* flight)
 // The photons that have come to an end or to a turn.
 static integer to_attend(const march_arrays* arrays, const photon_lanes* lanes, const photon_flight* flight)
 {
-  integer special =
-    truth(flight->sigma == (real)OUTSIDE) | truth(brightest(flight) < (real)arrays->info->darkness);
+  integer special = truth(flight->sigma == (real)OUTSIDE) | truth(brightest(flight) < (real)arrays->info->darkness);
 #if BENDS
   const real turn = VECTOR(lanes->turn);
   special |= truth(turn <= flight->now) |
@@ -281,7 +283,8 @@ static void give_up_lost(const march_arrays* arrays, photon_lanes* lanes, intege
 #endif
 
 // The photons of a mask end or turn.
-static void attend(const march_arrays* arrays, photon_lanes* lanes, const photon_flight* flight, integer mask, int first)
+static void attend(
+  const march_arrays* arrays, photon_lanes* lanes, const photon_flight* flight, integer mask, int first)
 {
   const integer outside = truth(flight->sigma == (real)OUTSIDE);
   const integer ended = mask & (outside | truth(brightest(flight) < (real)arrays->info->darkness));
@@ -377,7 +380,8 @@ static void add_vertex(const march_arrays* arrays, const photon_lanes* lanes, fl
 }
 #endif
 
-// Follow photons `first` to `first + REAL_WIDTH`, but before `end`, to their ends. Returns the vertices of the path, with PATHS.
+// Follow photons `first` to `first + REAL_WIDTH`, but before `end`, to their ends. Returns the vertices of the path,
+// with PATHS.
 static int march_packet(const march_arrays* arrays, const __global float* photons, int first, int end)
 {
   photon_lanes lanes;
@@ -449,19 +453,20 @@ static int march_packet(const march_arrays* arrays, const __global float* photon
 }
 
 #if PATHS
-// The path of photon i, a work-item each. Its `counts[i]` vertices go to vertices + offsets[i]; with `counting` they are only
-// counted.
+// The path of photon i, a work-item each. Its `counts[i]` vertices go to vertices + offsets[i]; with `counting` they
+// are only counted.
 __kernel void trace_paths(march_info info, const __global float* sigma, const __global float* coefficients,
   const __global uchar* nodes, const __global float* photons, __global photon_end* ends, int counting,
   const __global int* offsets, __global float4* vertices, __global int* counts)
 {
   const int i = get_global_id(0);
-  const march_arrays arrays = { &info, sigma, coefficients, nodes, 0, ends, counting ? 0 : vertices + offsets[i], 0, 0 };
+  const march_arrays arrays = { &info, sigma, coefficients, nodes, 0, ends, counting ? 0 : vertices + offsets[i], 0,
+    0 };
   counts[i] = march_packet(&arrays, photons, i, i + 1);
 }
 #else
-// Of each batch, photons `first` to `first + count`: those of batch b begin at batch_begin[b], and end where the next ones
-// begin. There are `copies` of the sums, at least as many as batches; copy c is for batch c modulo their number.
+// Of each batch, photons `first` to `first + count`: those of batch b begin at batch_begin[b], and end where the next
+// ones begin. There are `copies` of the sums, at least as many as batches; copy c is for batch c modulo their number.
 __kernel void march_photons(march_info info, const __global float* sigma, const __global float* coefficients,
   const __global uchar* nodes, const __global float* photons, const __global ulong* marks, const __global int* cells,
   __global photon_end* ends, __global long* sums, ulong copyStride, int copies, int batches,
@@ -472,9 +477,7 @@ __kernel void march_photons(march_info info, const __global float* sigma, const 
   {
     const int batch = copy % batches;
     const int begin = batch_begin[batch] + first, left = min(count, batch_begin[batch + 1] - begin);
-    const march_arrays arrays = {
-      &info, sigma, coefficients, nodes, sums + copy * copyStride, ends, 0, marks, cells
-    };
+    const march_arrays arrays = { &info, sigma, coefficients, nodes, sums + copy * copyStride, ends, 0, marks, cells };
     // Blocks of neighbours stay together: they share cache lines. Who takes which makes no difference to the sums.
     for (int block = atomic_add(next + batch, BLOCK); block < left; block = atomic_add(next + batch, BLOCK))
     {
@@ -489,9 +492,7 @@ __kernel void march_photons(march_info info, const __global float* sigma, const 
   const int left = min(count, batch_begin[batch + 1] - begin), i = get_global_id(0) * REAL_WIDTH;
   if (i < left)
   {
-    const march_arrays arrays = {
-      &info, sigma, coefficients, nodes, sums + batch * copyStride, ends, 0, marks, cells
-    };
+    const march_arrays arrays = { &info, sigma, coefficients, nodes, sums + batch * copyStride, ends, 0, marks, cells };
     march_packet(&arrays, photons, begin + i, begin + left);
   }
 #endif

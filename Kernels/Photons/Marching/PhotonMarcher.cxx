@@ -2,12 +2,12 @@
 
 #include "Device/Clock.h"
 #include "Device/Defines.h"
-#include "Device/HostMemory.h"
 #include "Device/HostMappedBuffer.h"
+#include "Device/HostMemory.h"
 #include "Light/ChannelReduction.h"
+#include "Photons/Importance/PilotGathering.h"
 #include "Photons/Marching/MarchLaunch.h"
 #include "Photons/Marching/PhotonPaths.h"
-#include "Photons/Importance/PilotGathering.h"
 
 #include <algorithm>
 #include <cmath>
@@ -174,7 +174,8 @@ void PhotonMarcher::Implementation::Finish(
     return HostMappedBuffer<float>(device, values.data(), size, what);
   };
   const HostMappedBuffer<float> fluence = lend(light.fluence, voxels * colours, "fluence");
-  const HostMappedBuffer<float> direction = lend(result.meanDirection, target.directions ? 3 * voxels : 0, "mean direction");
+  const HostMappedBuffer<float> direction =
+    lend(result.meanDirection, target.directions ? 3 * voxels : 0, "mean direction");
   const HostMappedBuffer<float> count = lend(result.photonCount, target.counts ? voxels : 0, "photon count");
   const HostMappedBuffer<float> weight = lend(result.photonWeight, target.counts ? voxels : 0, "photon weight");
   const HostMappedBuffer<float> batchFluence =

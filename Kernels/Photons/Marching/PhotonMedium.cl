@@ -4,14 +4,15 @@
 
 #define OUTSIDE -3e38f
 #define FLAT 2e-6f // of n^2: what rounding makes of a constant
-#define component(values, count, voxel, c) ((count) == 0 ? 0.0f : (values)[(voxel) * (count) + ((count) == 3 ? (c) : 0)])
+#define component(values, count, voxel, c) \
+  ((count) == 0 ? 0.0f : (values)[(voxel) * (count) + ((count) == 3 ? (c) : 0)])
 
-// sigma  [MEDIUM_CHANNELS][padded] extinction over `diagonal`, OUTSIDE in the padding; its sign bit says that n^2 varies
-//        within the reach of interpolation (low, high: the range of coefficients, in their padding)
+// sigma  [MEDIUM_CHANNELS][padded] extinction over `diagonal`, OUTSIDE in the padding; its sign bit says that n^2
+//        varies within the reach of interpolation (low, high: the range of coefficients, in their padding)
 // nodes  [padded] 0: it does not vary; else 1 + the voxel's octree level
-__kernel void pack_extinction(index_grid grid, float diagonal, const __global float* sigma_a, const __global float* sigma_s,
-  const __global float* low, const __global float* high, const __global uchar* levels, __global float* sigma,
-  __global uchar* nodes)
+__kernel void pack_extinction(index_grid grid, float diagonal, const __global float* sigma_a,
+  const __global float* sigma_s, const __global float* low, const __global float* high, const __global uchar* levels,
+  __global float* sigma, __global uchar* nodes)
 {
   const int x = get_global_id(0), y = get_global_id(1), z = get_global_id(2);
   const int row = grid.size[0] + 2, layer = row * (grid.size[1] + 2);

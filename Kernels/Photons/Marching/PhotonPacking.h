@@ -33,7 +33,8 @@ int BatchesOf(const std::vector<Photon>& photons);
 /// @param coloured       keep three channels even where one would do
 /// @param depositsAtMost  of one photon: power is scaled so that no sum of that many deposits can exceed 2^62
 /// @param batches        keep each batch together; else all are of one
-/// @throws InvalidInput where a photon's position, direction, power or weight is not finite, its direction zero, its power or
+/// @throws InvalidInput where a photon's position, direction, power or weight is not finite, its direction zero, its
+/// power or
 ///   weight negative, or its batch (if asked for) not 0 to 63
 PackedPhotons Pack(
   const std::vector<Photon>& photons, const Grid& grid, bool coloured, double depositsAtMost, bool batches = false);

@@ -5,8 +5,8 @@
 //   DIRECTIONS  1: directions are asked for
 //   COUNTS, CELLS  1: photons bear marks (PhotonMarch.cl)
 //
-// A path obeys dr/dt = T, dT/dt = grad(n^2) / 2 with dt = ds / n, so that |T| = n. It becomes steps, straight lines of constant
-// velocity:
+// A path obeys dr/dt = T, dT/dt = grad(n^2) / 2 with dt = ds / n, so that |T| = n. It becomes steps, straight lines of
+// constant velocity:
 //   order 2  from kick to kick of the leapfrog (drift, kick, drift): its polygon is the path itself
 //   order 4  from step end to step end, each step of Yoshida's three leapfrogs
 //   order 1  explicit Euler as in Pfeuti 2009, Eq. 2.10 and 2.11: dx/ds = v / n, dv/ds = grad n
@@ -46,12 +46,14 @@ typedef struct
 typedef struct
 {
   const march_info* info;
-  const __global float* sigma;        // [MEDIUM_CHANNELS][copy] extinction over a diagonal; its sign bit: the index varies
+  const __global float* sigma; // [MEDIUM_CHANNELS][copy] extinction over a diagonal; its sign bit: the index varies
   const __global float* coefficients; // of n^2
-  const __global uchar* nodes; // [copy] 0: the index does not vary, 1: it does, in a single voxel, 1 + k: in an octree's node of 2^k
-  __global long* sums;                // [copy][RECORD] fixed point
+  const __global uchar*
+    nodes; // [copy] 0: the index does not vary, 1: it does, in a single voxel, 1 + k: in an octree's node of 2^k
+  __global long* sums; // [copy][RECORD] fixed point
   __global photon_end* ends;
-  __global float4* vertices; // of a path: position in voxels, part of the power that is left; null: they are only counted
+  __global float4*
+    vertices; // of a path: position in voxels, part of the power that is left; null: they are only counted
   const __global ulong* marks; // of photons, with COUNTS or CELLS
   const __global int* cells;   // [copy] of voxels, with CELLS
 } march_arrays;
@@ -59,23 +61,23 @@ typedef struct
 // The state of REAL_WIDTH photons.
 typedef struct
 {
-  LANES(int, at); // voxel, in the padded grid
-  LANES(int, alive); // -1 or 0
-  LANES_3(int, stride); // of `at` to the next voxel
-  LANES(int, ahead); // of `at` to where the photon will be a few voxels on
-  LANES_3(float, wall); // time of the next wall
+  LANES(int, at);         // voxel, in the padded grid
+  LANES(int, alive);      // -1 or 0
+  LANES_3(int, stride);   // of `at` to the next voxel
+  LANES(int, ahead);      // of `at` to where the photon will be a few voxels on
+  LANES_3(float, wall);   // time of the next wall
   LANES_3(float, across); // time from wall to wall
-  LANES(float, now);     // time since the step began
-  LANES(float, turn);    // time when it ends; NEVER: when the index varies again
-  LANES(float, settled); // time until which the last turn holds
-  LANES(float, pace);    // diagonals per time
-  LANES(float, step);    // time of the step under way
-  LANES(int, steps);     // taken
-  LANES(int, crossings); // stretches that were deposited
+  LANES(float, now);      // time since the step began
+  LANES(float, turn);     // time when it ends; NEVER: when the index varies again
+  LANES(float, settled);  // time until which the last turn holds
+  LANES(float, pace);     // diagonals per time
+  LANES(float, step);     // time of the step under way
+  LANES(int, steps);      // taken
+  LANES(int, crossings);  // stretches that were deposited
   float power[CHANNELS][REAL_WIDTH] __attribute__((aligned(64)));
-  LANES_3(float, start);    // of the step
-  LANES_3(float, velocity); // along it
-  LANES_3(float, momentum); // T; v of Euler; order 2 has it as the velocity
+  LANES_3(float, start);        // of the step
+  LANES_3(float, velocity);     // along it
+  LANES_3(float, momentum);     // T; v of Euler; order 2 has it as the velocity
   float4 direction[REAL_WIDTH]; // 1, and the direction in space
 #if COUNTS || CELLS
   LANES(ulong, mark);
@@ -240,7 +242,8 @@ static real times_of_steps(
   const integer at = mask & padded(info, voxel); // the others are in the padding
   const integer node = to_integer(gather(uchar, arrays->nodes, at));
   // Where n jumps within a step a kick may leave a photon almost without velocity.
-  const real shortest = (real)info->stepSize / greater(sqrt(u[0] * u[0] + u[1] * u[1] + u[2] * u[2]), (real)info->slowest);
+  const real shortest =
+    (real)info->stepSize / greater(sqrt(u[0] * u[0] + u[1] * u[1] + u[2] * u[2]), (real)info->slowest);
   real time = shortest;
 #if LEVELS
   if (anywhere(truth(node > 1)))

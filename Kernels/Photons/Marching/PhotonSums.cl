@@ -6,7 +6,8 @@
 //   COLOURS                 channels of what comes out: 3 also where one channel stands for three (CHANNELS 1)
 
 #define RECORD (CHANNELS + 3 * DIRECTIONS + COUNTS)
-#define component(values, count, voxel, c) ((count) == 0 ? 0.0f : (values)[(voxel) * (count) + ((count) == 3 ? (c) : 0)])
+#define component(values, count, voxel, c) \
+  ((count) == 0 ? 0.0f : (values)[(voxel) * (count) + ((count) == 3 ? (c) : 0)])
 
 typedef struct
 {
@@ -31,8 +32,8 @@ static void put_fluence(const light_info* info, __global float* voxel, int c, fl
 #endif
 }
 
-// Units of power that a coefficient, which is part of the extinction, took of a voxel's sum. Of a thick voxel that is what the
-// photons lost.
+// Units of power that a coefficient, which is part of the extinction, took of a voxel's sum. Of a thick voxel that is
+// what the photons lost.
 static long taken_by(const light_info* info, float sum, float coefficient, float extinction)
 {
   const float thickness = info->diagonal * extinction;
@@ -72,9 +73,8 @@ static void take_batch(__global long* record, ulong copyStride, int batch, long*
 //   batch_fluence   [batch][voxel][COLOURS] of each batch as if it was all the light
 //   taken           [row][absorbed, scattered][CHANNELS] units of power
 __kernel void finish_light(light_info info, const __global float* sigma_a, const __global float* sigma_s,
-  __global long* sums, ulong copyStride, __global float* fluence,
-  __global float* mean_direction, __global float* photon_count, __global float* photon_weight,
-  __global float* batch_fluence, __global long* taken)
+  __global long* sums, ulong copyStride, __global float* fluence, __global float* mean_direction,
+  __global float* photon_count, __global float* photon_weight, __global float* batch_fluence, __global long* taken)
 {
   const int r = get_global_id(0);
   const int nx = info.grid.size[0], ny = info.grid.size[1];

@@ -1,7 +1,7 @@
-// Photon marching as published: Pfeuti 2009, section 3.1.5, after Sun et al. 2008. One work-item a photon; explicit Euler
-// (Eq. 2.10, 2.11); the line of each step is rasterised and every voxel of it gets the photon's power, however long the path
-// in it is; colour (RGBe, Ward 1991) and mean direction (10 bits a component) share 64 bits, which compare-and-swap replaces,
-// with ten tries. Read after Numerics.cl. The host gives
+// Photon marching as published: Pfeuti 2009, section 3.1.5, after Sun et al. 2008. One work-item a photon; explicit
+// Euler (Eq. 2.10, 2.11); the line of each step is rasterised and every voxel of it gets the photon's power, however
+// long the path in it is; colour (RGBe, Ward 1991) and mean direction (10 bits a component) share 64 bits, which
+// compare-and-swap replaces, with ten tries. Read after Numerics.cl. The host gives
 //   BENDS   1: the index varies
 //   LEVELS  1: there are octree levels
 //   A_CHANNELS, S_CHANNELS  components of sigma_a and sigma_s, 0: there is none
@@ -20,9 +20,9 @@ typedef struct
 
 typedef struct
 {
-  int face;    // it left through, or 6: it was given up
+  int face;     // it left through, or 6: it was given up
   int deposits; // to voxels
-  int givenUp; // of them, after all tries
+  int givenUp;  // of them, after all tries
   int steps;
   float power[3];     // that is left
   float deposited[3]; // sum of all deposits
@@ -73,7 +73,8 @@ static bool deposit_packed(__global ulong* voxel, float3 power, float3 direction
     const ulong before = *(volatile __global ulong*)voxel;
     const float3 colour = from_rgbe((uint)before);
     const float old_weight = luminance(colour), weight = luminance(power);
-    const float3 mean = (from_direction((uint)(before >> 32)) * old_weight + direction * weight) / (old_weight + weight);
+    const float3 mean =
+      (from_direction((uint)(before >> 32)) * old_weight + direction * weight) / (old_weight + weight);
     const ulong after = to_rgbe(colour + power) | (ulong)to_direction(mean) << 32;
     if (atom_cmpxchg(voxel, before, after) == before)
     {
@@ -126,7 +127,8 @@ __kernel void published_index(published_info info, const __global float* ior, __
   index[index_of(&info, v)] = (float4)(gradient[0], gradient[1], gradient[2], ior[index_of(&info, v)]);
 }
 
-#define component(values, count, voxel, c) ((count) == 0 ? 0.0f : (values)[(voxel) * (count) + ((count) == 3 ? (c) : 0)])
+#define component(values, count, voxel, c) \
+  ((count) == 0 ? 0.0f : (values)[(voxel) * (count) + ((count) == 3 ? (c) : 0)])
 
 static float3 extinction(const __global float* sigma_a, const __global float* sigma_s, int v)
 {
@@ -135,8 +137,8 @@ static float3 extinction(const __global float* sigma_a, const __global float* si
     component(sigma_a, A_CHANNELS, v, 2) + component(sigma_s, S_CHANNELS, v, 2));
 }
 
-// Length of path, in the dataset's unit, from p along `u` (voxels a length): a voxel, or to the border of the octree's node
-// and a little beyond.
+// Length of path, in the dataset's unit, from p along `u` (voxels a length): a voxel, or to the border of the octree's
+// node and a little beyond.
 static float step_length(const published_info* info, const __global uchar* levels, float3 p, float3 u)
 {
   const float voxel = rsqrt(dot(u, u));
@@ -198,7 +200,12 @@ static int face_left(const published_info* info, float3 p)
   const float3 size = convert_float3(size_of(info));
   const float3 before = -p, after = p - size;
   const float most = fmax(fmax(fmax(before.x, before.y), fmax(before.z, after.x)), fmax(after.y, after.z));
-  return most == before.x ? 0 : most == after.x ? 1 : most == before.y ? 2 : most == after.y ? 3 : most == before.z ? 4 : 5;
+  return most == before.x ? 0
+    : most == after.x     ? 1
+    : most == before.y    ? 2
+    : most == after.y     ? 3
+    : most == before.z    ? 4
+                          : 5;
 }
 
 __kernel void march_published(published_info info, const __global float4* index, const __global float* sigma_a,
@@ -250,7 +257,8 @@ __kernel void march_published(published_info info, const __global float4* index,
 }
 
 // fluence  3 a voxel, W / length^2;  direction  3 a voxel
-__kernel void unpack_light(float fluence_of_unit, const __global ulong* packed, __global float* fluence, __global float* direction)
+__kernel void unpack_light(
+  float fluence_of_unit, const __global ulong* packed, __global float* fluence, __global float* direction)
 {
   const size_t v = get_global_id(0);
   const float3 colour = from_rgbe((uint)packed[v]) * fluence_of_unit;

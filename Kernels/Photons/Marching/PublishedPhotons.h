@@ -18,19 +18,20 @@ struct PublishedSettings
 struct PackingLoss
 {
   Rgb deposited = {};       ///< sum of all deposits, W
-  Rgb kept = {};           ///< what is in the voxels, W
+  Rgb kept = {};            ///< what is in the voxels, W
   std::size_t deposits = 0; ///< to voxels
-  std::size_t givenUp = 0; ///< of them, after all tries
+  std::size_t givenUp = 0;  ///< of them, after all tries
 
   double Relative() const; ///< part of the power deposited that was lost, channels summed
 };
 
 /// Photon marching as Pfeuti publishes it (2009, section 3.1.5), to compare with. See PublishedPhotons.cl.
 ///
-/// Its light is no estimate of fluence in a unit: a voxel gets a photon's power, not power times path. It is given as W / length^2
-/// by the length that a voxel has on average, the cube root of its volume: right for light along an axis, and too small by the
-/// cosine of the largest component otherwise. `absorbed` is what the voxels' light gives, extinction times fluence, so that
-/// the balance shows what the packing loses; it is not the same twice, since threads come in any order.
+/// Its light is no estimate of fluence in a unit: a voxel gets a photon's power, not power times path. It is given as W
+/// / length^2 by the length that a voxel has on average, the cube root of its volume: right for light along an axis,
+/// and too small by the cosine of the largest component otherwise. `absorbed` is what the voxels' light gives,
+/// extinction times fluence, so that the balance shows what the packing loses; it is not the same twice, since threads
+/// come in any order.
 ///
 /// @throws InvalidInput as PhotonMarcher; DeviceError where the device has no 64-bit atomics
 PhotonLight MarchPublished(Device& device, const Medium& medium, const Field& ior, const std::uint8_t* levels,

@@ -1,5 +1,5 @@
-// Gradient noise of Perlin (Improving noise, SIGGRAPH 2002) with a hash in place of his table, so that a seed chooses one of
-// 2^32 patterns.
+// Gradient noise of Perlin (Improving noise, SIGGRAPH 2002) with a hash in place of his table, so that a seed chooses
+// one of 2^32 patterns.
 
 inline uint scrambled(uint bits)
 {

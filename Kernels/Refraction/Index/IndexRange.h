@@ -23,6 +23,7 @@ IndexRange IndexRangeOf(const Field& ior, const Grid& grid);
 bool IndexVaries(const Field& ior, const Grid& grid);
 
 /// @param levels  a voxel, or null
-/// @throws InvalidInput where an octree level is above that of the one node that holds the grid, naming the first such voxel
+/// @throws InvalidInput where an octree level is above that of the one node that holds the grid, naming the first such
+/// voxel
 void CheckLevels(const std::uint8_t* levels, const Grid& grid);
 }

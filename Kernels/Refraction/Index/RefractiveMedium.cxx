@@ -3,10 +3,10 @@
 #include "Device/HostMemory.h"
 #include "Device/Sizes.h"
 #include "Medium/Medium.h"
+#include "Numerics/NumberText.h"
 #include "Refraction/Index/IndexField.h"
 #include "Refraction/Voxelization/MeshChecks.h"
 #include "TyndallKernelSources.h"
-#include "Numerics/NumberText.h"
 
 #include <algorithm>
 #include <chrono>

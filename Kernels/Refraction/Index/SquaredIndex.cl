@@ -1,12 +1,12 @@
 // The squared refractive index n^2 between voxel centres, and its gradient. Lengths are in voxels here.
 //
-// n^2 is a tricubic B-spline, so that its gradient is continuous and is that of one function: a symplectic integrator then
-// keeps its order and its Hamiltonian |T|^2 - n^2. The coefficients c = f - (d_x^2 + d_y^2 + d_z^2) f / 6, second differences of
-// the voxels' f = n^2, make the spline meet f to fourth order (quadratic fields exactly) without a recursive filter.
-// Where f jumps, differences overshoot: a coefficient is held within an eighth of the least and the largest of its voxels. The
-// spline's weights are positive with sum 1, so that it is positive as f is. Smooth fields overshoot by less, at extremes only.
-// Beyond the grid f goes on linearly, but never below a quarter of the border's. The coefficient of voxel (i, j, k) stands at (i + 2, j + 2, k + 2) of an array that is
-// four longer along each axis.
+// n^2 is a tricubic B-spline, so that its gradient is continuous and is that of one function: a symplectic integrator
+// then keeps its order and its Hamiltonian |T|^2 - n^2. The coefficients c = f - (d_x^2 + d_y^2 + d_z^2) f / 6, second
+// differences of the voxels' f = n^2, make the spline meet f to fourth order (quadratic fields exactly) without a
+// recursive filter. Where f jumps, differences overshoot: a coefficient is held within an eighth of the least and the
+// largest of its voxels. The spline's weights are positive with sum 1, so that it is positive as f is. Smooth fields
+// overshoot by less, at extremes only. Beyond the grid f goes on linearly, but never below a quarter of the border's.
+// The coefficient of voxel (i, j, k) stands at (i + 2, j + 2, k + 2) of an array that is four longer along each axis.
 
 typedef struct
 {
@@ -69,7 +69,8 @@ __kernel void squared_index_coefficients(index_grid grid, const __global float* 
   const int row = grid.size[0] + 6, layer = row * (grid.size[1] + 6);
   const __global float* here = squares + ((z + 1) * layer + (y + 1) * row + x + 1);
   // Not in arrays, which PoCL does not keep in registers.
-  const float f = here[0], x0 = here[-1], x1 = here[1], y0 = here[-row], y1 = here[row], z0 = here[-layer], z1 = here[layer];
+  const float f = here[0], x0 = here[-1], x1 = here[1], y0 = here[-row], y1 = here[row], z0 = here[-layer],
+              z1 = here[layer];
   const float low = lesser_of(f, lesser_of(lesser_of(lesser_of(x0, x1), lesser_of(y0, y1)), lesser_of(z0, z1)));
   const float high = greater_of(f, greater_of(greater_of(greater_of(x0, x1), greater_of(y0, y1)), greater_of(z0, z1)));
   const float c = 2.0f * f - (x0 + x1 + y0 + y1 + z0 + z1) / 6.0f;
@@ -78,20 +79,19 @@ __kernel void squared_index_coefficients(index_grid grid, const __global float* 
 }
 
 // Least and largest coefficient within two of each along one axis; what is beyond the array's ends is not asked for.
-__kernel void widen_range(int stride, const __global float* low, const __global float* high, __global float* low_out,
-  __global float* high_out)
+__kernel void widen_range(
+  int stride, const __global float* low, const __global float* high, __global float* low_out, __global float* high_out)
 {
   const int i = get_global_id(0) + 2 * stride;
   const __global float* l = low + i;
   const __global float* h = high + i;
-  low_out[i] = lesser_of(
-    lesser_of(lesser_of(l[-2 * stride], l[-stride]), lesser_of(l[stride], l[2 * stride])), l[0]);
-  high_out[i] = greater_of(
-    greater_of(greater_of(h[-2 * stride], h[-stride]), greater_of(h[stride], h[2 * stride])), h[0]);
+  low_out[i] = lesser_of(lesser_of(lesser_of(l[-2 * stride], l[-stride]), lesser_of(l[stride], l[2 * stride])), l[0]);
+  high_out[i] =
+    greater_of(greater_of(greater_of(h[-2 * stride], h[-stride]), greater_of(h[stride], h[2 * stride])), h[0]);
 }
 
-// The four basis functions at a place f beyond the second coefficient, from the first coefficient's to the last one's, and
-// their slopes.
+// The four basis functions at a place f beyond the second coefficient, from the first coefficient's to the last one's,
+// and their slopes.
 static float4 spline_values(float f)
 {
   const float4 squares = (float4)(0.5f, -1.0f, 0.5f, 0.0f) + f * (float4)(-1.0f / 6.0f, 0.5f, -0.5f, 1.0f / 6.0f);
@@ -114,19 +114,20 @@ static float4 four_sums(float4 a, float4 b, float4 c, float4 d)
   return (float4)(ab.lo, cd.lo) + (float4)(ab.hi, cd.hi);
 }
 
-// n^2 (w) and its gradient (x, y, z) in the middle of 4^3 coefficients from `first` on, at f in [0, 1] between the second
-// and the third of each axis. Summed over layers first, then over rows: most of it is done for sixteen at once.
+// n^2 (w) and its gradient (x, y, z) in the middle of 4^3 coefficients from `first` on, at f in [0, 1] between the
+// second and the third of each axis. Summed over layers first, then over rows: most of it is done for sixteen at once.
 static float4 squared_index_among(const __global float* first, int row, int layer, float3 f)
 {
   const float4 z = spline_values(f.z), z_slope = spline_slopes(f.z);
-  const float middle = first[layer + row + 1]; // only differences from it are summed, so that rounding makes no gradient of it
+  const float middle =
+    first[layer + row + 1]; // only differences from it are summed, so that rounding makes no gradient of it
   float16 value = 0.0f, along_z = 0.0f;
-#define ROW(k, j) (*(const __global float4_anywhere*)(first + (k) * layer + (j) * row))
-#define ADD_LAYER(k, s) \
-  { \
+#define ROW(k, j) (*(const __global float4_anywhere*)(first + (k)*layer + (j)*row))
+#define ADD_LAYER(k, s)                                                               \
+  {                                                                                   \
     const float16 c = (float16)(ROW(k, 0), ROW(k, 1), ROW(k, 2), ROW(k, 3)) - middle; \
-    value += z.s * c; \
-    along_z += z_slope.s * c; \
+    value += z.s * c;                                                                 \
+    along_z += z_slope.s * c;                                                         \
   }
   ADD_LAYER(0, s0)
   ADD_LAYER(1, s1)
@@ -138,7 +139,8 @@ static float4 squared_index_among(const __global float* first, int row, int laye
   value *= y;
   along_z *= y;
   const float4 x = spline_values(f.x), rows = SUM_OF_ROWS(value);
-  const float4 sums = four_sums(rows * spline_slopes(f.x), SUM_OF_ROWS(along_y) * x, SUM_OF_ROWS(along_z) * x, rows * x);
+  const float4 sums =
+    four_sums(rows * spline_slopes(f.x), SUM_OF_ROWS(along_y) * x, SUM_OF_ROWS(along_z) * x, rows * x);
   return (float4)(sums.xyz, middle + sums.w);
 }
 
@@ -147,8 +149,8 @@ static float4 squared_index(const index_grid* grid, const __global float* coeffi
 {
   const int row = grid->size[0] + 4, layer = row * (grid->size[1] + 4);
   const float3 q = p - 0.5f;
-  const float3 base = clamp(
-    floor(q), (float3)(-1.0f), (float3)(grid->size[0] - 1.0f, grid->size[1] - 1.0f, grid->size[2] - 1.0f));
+  const float3 base =
+    clamp(floor(q), (float3)(-1.0f), (float3)(grid->size[0] - 1.0f, grid->size[1] - 1.0f, grid->size[2] - 1.0f));
   const __global float* first = coefficients + ((int)base.z + 1) * layer + ((int)base.y + 1) * row + (int)base.x + 1;
   return squared_index_among(first, row, layer, q - base);
 }

@@ -1,5 +1,5 @@
-// Octree levels from the top down, a work-item a node (Pfeuti 2009, listing 3.3). A node's level is that of the whole node
-// it lies in, or 0 where none is whole yet.
+// Octree levels from the top down, a work-item a node (Pfeuti 2009, listing 3.3). A node's level is that of the whole
+// node it lies in, or 0 where none is whole yet.
 
 inline size_t index_of(int4 node, int4 size)
 {

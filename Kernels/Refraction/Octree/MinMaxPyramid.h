@@ -7,8 +7,8 @@ namespace tyndall
 {
 /// Pyramid of the smallest and largest value in 2x2x2, 4x4x4, ... voxels (Pfeuti 2009, section 3.1.3).
 ///
-/// Level 0 is the grid itself and is not stored again. A grid whose size is not a power of two is treated as if its last
-/// voxel were repeated, so that a level never claims a range wider than its voxels have.
+/// Level 0 is the grid itself and is not stored again. A grid whose size is not a power of two is treated as if its
+/// last voxel were repeated, so that a level never claims a range wider than its voxels have.
 class MinMaxPyramid
 {
 public:

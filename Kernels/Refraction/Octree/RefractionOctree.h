@@ -19,17 +19,17 @@ struct OctreeSettings
 
 /// Groups of voxels of nearly equal refractive index (Pfeuti 2009, section 3.1.3).
 ///
-/// What a level k promises: the voxel lies in a node, the cube of 2^k voxels an edge whose lowest voxel has indices that
-/// are multiples of 2^k, and all voxels of that node have level k and
+/// What a level k promises: the voxel lies in a node, the cube of 2^k voxels an edge whose lowest voxel has indices
+/// that are multiples of 2^k, and all voxels of that node have level k and
 ///  - max(n) - min(n) <= tolerance over the node's voxels, where k > 0;
 ///  - with includeExtinction, for every channel of sigma_t = sigma_a + sigma_s,
 ///    (max(sigma_t) - min(sigma_t)) times the node's diagonal <= extinctionTolerance, where k > 0: whichever of the
 ///    node's sigma_t is taken for a straight way through it, the way's optical thickness is off by no more.
-/// No larger node would keep the promise. The paper's listing has <, after which nothing would be whole at a tolerance of 0;
-/// with <=, equal voxels are one node then.
+/// No larger node would keep the promise. The paper's listing has <, after which nothing would be whole at a tolerance
+/// of 0; with <=, equal voxels are one node then.
 ///
-/// A grid whose size is not a power of two is treated as if its last voxel were repeated: nodes at its upper faces may stick
-/// out of it, up to the top level, the smallest k whose node holds the whole grid. Ranges are compared in float.
+/// A grid whose size is not a power of two is treated as if its last voxel were repeated: nodes at its upper faces may
+/// stick out of it, up to the top level, the smallest k whose node holds the whole grid. Ranges are compared in float.
 struct Octree
 {
   std::vector<std::uint8_t> levels; ///< a voxel, x fastest; 0: a single voxel, k: a node of 2^k voxels an edge
@@ -41,10 +41,12 @@ struct Octree
 
 /// @param medium  its grid, and where extinction is included its coefficients
 /// @param index   refractive index n, one component; finite and above 0
-/// @param device  part of the device's name as Device::Find takes it; looked for only where there is something to compute:
+/// @param device  part of the device's name as Device::Find takes it; looked for only where there is something to
+/// compute:
 ///   where everything is constant, the octree is one node and nothing runs on the device
 /// @throws InvalidInput where a setting, the grid, n (names the first such voxel) or a coefficient has no meaning
-/// @throws DeviceError if there is no such device, or its memory does not suffice: about 7 bytes a voxel of a large cube
+/// @throws DeviceError if there is no such device, or its memory does not suffice: about 7 bytes a voxel of a large
+/// cube
 Octree BuildOctree(const Medium& medium, const Field& index, const OctreeSettings& settings,
   const std::string& device = {}, const Monitor& monitor = {});
 }

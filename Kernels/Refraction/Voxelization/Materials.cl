@@ -3,8 +3,8 @@
 // Defined before: CHANNELS, 1 or 3, of sigma_a and sigma_s; NOISE, 1 where materials are perturbed, which takes
 // GradientNoise.cl.
 
-// A slab's voxels are runs of `length` of the grid's, the first from `first` on, each `stride` further: a work-item a voxel
-// (i of the slab), a row of work-items a run.
+// A slab's voxels are runs of `length` of the grid's, the first from `first` on, each `stride` further: a work-item a
+// voxel (i of the slab), a row of work-items a run.
 
 inline void add_material(float part, float n, float4 absorption, float4 scattering, ulong i, ulong voxel,
   __global float* ior, __global float* sigma_a, __global float* sigma_s)
@@ -24,7 +24,8 @@ inline void add_material(float part, float n, float4 absorption, float4 scatteri
 //   samples        of a voxel
 //   indexNoise     by how much n is perturbed, +-
 //   scatteringNoise  the same for sigma_s, relative
-//   frequency      1 / size of the noise's features, 1/length; position of the grid's corner and edges of a voxel: length
+//   frequency      1 / size of the noise's features, 1/length; position of the grid's corner and edges of a voxel:
+//                  length
 //   covered        samples in any material so far
 //   ior            of the whole grid; the other arrays are the slab's
 __kernel void add_object(ulong first, ulong length, ulong stride, __global const ushort* inside, float samples, float n,

@@ -11,10 +11,10 @@ namespace tyndall
 {
 /// The lattice of whole numbers on which meshes are voxelised exactly.
 ///
-/// Its origin is the grid's lower corner. An edge of a fine voxel, of which there are `samples` in an edge of a voxel, is
-/// 2^k units, with k as large as products of three coordinates allow: grid and meshes together are at most 2^20 units long.
-/// A point of a mesh moves by at most half a unit an axis, a millionth of that length or less, and points at the same place
-/// stay together.
+/// Its origin is the grid's lower corner. An edge of a fine voxel, of which there are `samples` in an edge of a voxel,
+/// is 2^k units, with k as large as products of three coordinates allow: grid and meshes together are at most 2^20
+/// units long. A point of a mesh moves by at most half a unit an axis, a millionth of that length or less, and points
+/// at the same place stay together.
 class SampleLattice
 {
 public:
@@ -38,8 +38,8 @@ private:
   int UnitsOfSample = 2;
 };
 
-/// Columns of samples along an axis, side by side in a grid: `count[0]` of them along the lower of the other two axes, in
-/// rows, and `count[1]` rows along the higher one.
+/// Columns of samples along an axis, side by side in a grid: `count[0]` of them along the lower of the other two axes,
+/// in rows, and `count[1]` rows along the higher one.
 struct SampleColumns
 {
   SampleColumns(const Grid& grid, int axis, int samplesOfVoxel, int pitch);
@@ -67,8 +67,8 @@ public:
   const Buffer<cl_int>& Points() const { return this->DevicePoints; }
   const Buffer<cl_int>& Triangles() const { return this->DeviceTriangles; }
 
-  /// Pieces of triangles to look for crossings in, as mark_crossings of Voxelization.cl takes them: few enough columns each
-  /// that a large triangle does not hold up a work-item while the others wait.
+  /// Pieces of triangles to look for crossings in, as mark_crossings of Voxelization.cl takes them: few enough columns
+  /// each that a large triangle does not hold up a work-item while the others wait.
   std::vector<cl_uint4> Tiles(const SampleColumns& columns, int firstRow, int endRow) const;
 
   /// The same for crossings in a box.

@@ -1,12 +1,13 @@
-// Where between two samples the surface lies: a voxel's occupancy to a fraction of a sample. Read Voxelization.cl before.
+// Where between two samples the surface lies: a voxel's occupancy to a fraction of a sample. Read Voxelization.cl
+// before.
 //
-// Along columns of samples, where a surface crosses is known exactly; the samples say which is the last one before it. What
-// lies between the crossing and the border of that sample's fine voxel is added to the voxel it is in, or taken away. Of a
-// plane across the columns this leaves no terraces, along them it does: it is done for columns along x, y and z, each
-// crossing weighed by how much the surface faces that way, all weights of a surface adding up to 1.
+// Along columns of samples, where a surface crosses is known exactly; the samples say which is the last one before it.
+// What lies between the crossing and the border of that sample's fine voxel is added to the voxel it is in, or taken
+// away. Of a plane across the columns this leaves no terraces, along them it does: it is done for columns along x, y
+// and z, each crossing weighed by how much the surface faces that way, all weights of a surface adding up to 1.
 //
-// Numbers are added up as whole ones, each with its sign changed where the mesh is mirrored: a turned or mirrored mesh has the
-// turned or mirrored voxels.
+// Numbers are added up as whole ones, each with its sign changed where the mesh is mirrored: a turned or mirrored mesh
+// has the turned or mirrored voxels.
 //
 // Defined before, but for what Voxelization.cl takes: BIT_AXIS, along which the columns of `bits` run.
 
@@ -69,19 +70,17 @@ inline float weight_along(long3 normal)
 }
 
 // Whether a crossing is hidden: next to a sample that a later mesh has.
-inline int is_hidden(
-  __global const uint* claimed, bit_rows rows, int3 before, int3 after, int first, int last)
+inline int is_hidden(__global const uint* claimed, bit_rows rows, int3 before, int3 after, int first, int last)
 {
   return (!first && is_set(claimed, rows, before)) || (!last && is_set(claimed, rows, after));
 }
 
 // 1 where a line along the column leaves the mesh, -1 where it enters. Parity
-// says so where the samples before and after differ; where they do not, two crossings or more are between them, a sliver too
-// thin for samples, and it is left to how the triangle's corners run.
+// says so where the samples before and after differ; where they do not, two crossings or more are between them, a
+// sliver too thin for samples, and it is left to how the triangle's corners run.
 //   turned   `leaving` of the triangle, -1 or 1, times the mesh's orientation, 0 where that is not known
 //   first, last  whether the column begins after the crossing, or ends before it
-inline int side_of(
-  __global const uint* bits, bit_rows rows, int3 before, int3 after, int first, int last, int turned)
+inline int side_of(__global const uint* bits, bit_rows rows, int3 before, int3 after, int first, int last, int turned)
 {
   const uint inBefore = first ? 1 - is_set(bits, rows, after) : is_set(bits, rows, before);
   const uint inAfter = last ? 1 - inBefore : is_set(bits, rows, after);
@@ -133,7 +132,7 @@ __kernel void measure_crossings(int tileCount, __global const uint4* tiles, __gl
       {
         const int number = samples_before(excess, s.step, samples);
         const long rest = excess - s.tie - number * s.step; // from the sample after the crossing back to the crossing
-        const long twice = 2 * rest + s.step;                 // from the border between both samples, twice
+        const long twice = 2 * rest + s.step;               // from the border between both samples, twice
         const int cell = number - (twice < 0 ? 1 : 0);
         if (rest >= -s.step && rest <= 0 && cell >= 0 && cell < samples)
         {
@@ -148,8 +147,8 @@ __kernel void measure_crossings(int tileCount, __global const uint4* tiles, __gl
             const int3 after = place(number, across, up);
             const int first = number == 0;
             const int last = number == samples;
-            const int counts = !several || taken[index].x == SAMPLES_OF_VOXEL ||
-              !is_hidden(claimed, rows, before, after, first, last);
+            const int counts =
+              !several || taken[index].x == SAMPLES_OF_VOXEL || !is_hidden(claimed, rows, before, after, first, last);
             if (index != target)
             {
               if (sum != 0)
@@ -199,9 +198,11 @@ inline long divided(long number, long by)
 
 // From counts of samples to the same in units of 1 / UNITS_OF_COUNT, with the corrections.
 //
-// Where there are several meshes, what the borders of later ones take of the rest of the voxel or leave to it is shared out:
-// a mesh gets the part of it that it has of the samples which are left. Where none are left, what later ones have is taken from
-// it as far as their samples are its own: one that they lie in gets the rest, and so does one that touches them.
+// Where there are several meshes, what the borders of later ones take of the rest of the voxel or leave to it is shared
+// out:
+// a mesh gets the part of it that it has of the samples which are left. Where none are left, what later ones have is
+// taken from it as far as their samples are its own: one that they lie in gets the rest, and so does one that touches
+// them.
 //   taken    of the later meshes: samples and units. Not looked at where several is 0
 //   counts   of the slab's voxels
 __kernel void refine_counts(int4 voxels, __global const int* corrections, int several, __global ushort2* taken,

@@ -16,8 +16,8 @@ struct SampleSlab
 };
 
 /// Counts samples of voxels to a fraction of a sample, from where exactly the surface lies between two of them
-/// (SurfaceFraction.cl). Occupancy by samples alone has terraces where a surface is nearly parallel to layers of voxels,
-/// wider than the index's smoothing: they bend light.
+/// (SurfaceFraction.cl). Occupancy by samples alone has terraces where a surface is nearly parallel to layers of
+/// voxels, wider than the index's smoothing: they bend light.
 class SurfaceFraction
 {
 public:
@@ -36,8 +36,8 @@ public:
   void Measure(const LatticeMesh& mesh, int orientation, const SampleSlab& slab, const Buffer<cl_uint>& bits,
     const Buffer<cl_uint>& claimed);
 
-  /// Queues it: from samples of the slab's voxels to 1 / UnitsOfSample. The mesh is that measured last. Claims the samples
-  /// of those rows that are not the voxels'.
+  /// Queues it: from samples of the slab's voxels to 1 / UnitsOfSample. The mesh is that measured last. Claims the
+  /// samples of those rows that are not the voxels'.
   void Refine(const SampleSlab& slab, const Buffer<cl_uint>& bits, Buffer<cl_uint>& claimed, Buffer<cl_ushort>& counts);
 
 private:

@@ -1,15 +1,17 @@
-// Which samples of a fine grid lie inside a closed mesh (Eisemann and Decoret 2008; Pfeuti 2009, section 3.1.2): a column of
-// samples is a row of words, a bit a sample, and every triangle toggles all samples of its columns that lie before it.
+// Which samples of a fine grid lie inside a closed mesh (Eisemann and Decoret 2008; Pfeuti 2009, section 3.1.2): a
+// column of samples is a row of words, a bit a sample, and every triangle toggles all samples of its columns that lie
+// before it.
 //
-// Toggling the samples before a crossing is left to the end: a triangle toggles only the last of them, and one scan of the
-// column then does the rest, for all triangles at once.
+// Toggling the samples before a crossing is left to the end: a triangle toggles only the last of them, and one scan of
+// the column then does the rest, for all triangles at once.
 //
 // All is whole numbers. Points lie on a lattice (see Voxelization.cxx), samples at odd multiples of half a pitch, and a
-// sample that touches a plane or an edge is decided as if it were moved by (e, e^2, e^3) with e infinitely small. A column so
-// never meets an edge or a corner, and which samples are inside is the same whichever axis the columns run along.
+// sample that touches a plane or an edge is decided as if it were moved by (e, e^2, e^3) with e infinitely small. A
+// column so never meets an edge or a corner, and which samples are inside is the same whichever axis the columns run
+// along.
 //
-// Defined before: AXIS, 0 to 2, along which the columns run; SAMPLES, samples an edge of a voxel; FROM_ABOVE, 1 where what
-// lies after a crossing is toggled instead; WINDING, 1 where crossings are counted with their sign instead.
+// Defined before: AXIS, 0 to 2, along which the columns run; SAMPLES, samples an edge of a voxel; FROM_ABOVE, 1 where
+// what lies after a crossing is toggled instead; WINDING, 1 where crossings are counted with their sign instead.
 
 #if AXIS == 0
 #define ALONG(p) ((p).x)
@@ -108,18 +110,17 @@ inline void mark_crossing(__global uint* column, __global uint* sum, int before,
 // A triangle over the columns of a tile: which of them its edges enclose, and where its plane crosses them.
 typedef struct
 {
-  edge e0, e1, e2; // in the first column of a row
-  long3 normal;    // of the plane, made to point along the columns
-  int leaving;     // 1 where it did before: a line along a column leaves the mesh; -1 where it enters
-  long step;       // from sample to sample, as `excess` measures
-  long excess;     // how far the column's first sample is before the plane, and `tie`
-  int tie;         // 1 where a sample on the plane counts as before it
+  edge e0, e1, e2;             // in the first column of a row
+  long3 normal;                // of the plane, made to point along the columns
+  int leaving;                 // 1 where it did before: a line along a column leaves the mesh; -1 where it enters
+  long step;                   // from sample to sample, as `excess` measures
+  long excess;                 // how far the column's first sample is before the plane, and `tie`
+  int tie;                     // 1 where a sample on the plane counts as before it
   long excessAcross, excessUp; // what is taken off in the next column and in the next row
 } sheet;
 
 // Returns 0 where the triangle crosses no column.
-inline int start_sheet(
-  sheet* s, uint4 tile, __global const int* points, __global const int* triangles, int pitch)
+inline int start_sheet(sheet* s, uint4 tile, __global const int* points, __global const int* triangles, int pitch)
 {
   const int3 corner = vload3(tile.x, triangles);
   const int3 a = vload3(corner.x, points);
@@ -153,8 +154,8 @@ inline int start_sheet(
   s->e2 = edge_in_column(c, a, across, up, pitch);
 
   s->step = ALONG(normal) * pitch;
-  s->excess = ACROSS(normal) * (ACROSS(a) - across) + UP(normal) * (UP(a) - up) +
-    ALONG(normal) * (ALONG(a) - pitch / 2) + s->tie;
+  s->excess =
+    ACROSS(normal) * (ACROSS(a) - across) + UP(normal) * (UP(a) - up) + ALONG(normal) * (ALONG(a) - pitch / 2) + s->tie;
   s->excessAcross = ACROSS(normal) * pitch;
   s->excessUp = UP(normal) * pitch;
   return 1;
@@ -223,8 +224,8 @@ __kernel void mark_crossings(int tileCount, __global const uint4* tiles, __globa
 
 #if WINDING
 
-// Winding numbers of one column's samples: the smallest, the largest, how many are neither 0 nor 1 when multiplied by `sign`,
-// and the first such sample.
+// Winding numbers of one column's samples: the smallest, the largest, how many are neither 0 nor 1 when multiplied by
+// `sign`, and the first such sample.
 __kernel void find_windings(
   int columnCount, int words, int samples, int sign, __global const uint* marks, __global int4* found)
 {
@@ -263,12 +264,12 @@ __kernel void find_windings(
 
 #else
 
-// Turns the marks of each column into bits that say inside or outside, and finds the columns with a sample about which the
-// mesh winds neither 0 times nor once.
+// Turns the marks of each column into bits that say inside or outside, and finds the columns with a sample about which
+// the mesh winds neither 0 times nor once.
 //
-// Where it winds about all samples of a column 0 times or once, lines along the column leave and enter the mesh by turns,
-// and the crossings' weights with their signs add up to those of the marks that are left, with signs by turns. Weights are
-// random: other crossings have another sum, but for one in 2^32.
+// Where it winds about all samples of a column 0 times or once, lines along the column leave and enter the mesh by
+// turns, and the crossings' weights with their signs add up to those of the marks that are left, with signs by turns.
+// Weights are random: other crossings have another sum, but for one in 2^32.
 //   columns   of a row
 //   sums      of mark_crossings
 //   sign      1, -1 where the mesh is inside out, 0 where nothing is to be found
@@ -332,14 +333,15 @@ __kernel void fill_columns(int columnCount, int columns, int words, __global uin
   }
 }
 
-// Counts the samples of each voxel that are inside, and not claimed by an object that comes later. A work-item a column of
-// voxels.
+// Counts the samples of each voxel that are inside, and not claimed by an object that comes later. A work-item a column
+// of voxels.
 //   voxels    of a column of voxels; columns, rows: of the columns of voxels that `bits` holds
 //   skipped   rows of samples in `bits` before those of the first voxels
 //   claimed   as `bits`: samples of later objects; those of this one are added. Not looked at where claims is 0
 //   counts    of the slab's voxels, times `units`; strides: from voxel to voxel along, across and up
 __kernel void count_samples(int voxels, int columns, int rows, int words, int skipped, __global const uint* bits,
-  __global uint* claimed, int claims, __global ushort* counts, int units, int strideAlong, int strideAcross, int strideUp)
+  __global uint* claimed, int claims, __global ushort* counts, int units, int strideAlong, int strideAcross,
+  int strideUp)
 {
   const int across = get_global_id(0);
   const int up = get_global_id(1);

@@ -16,12 +16,12 @@ struct VoxelizationSettings
 {
   int samples = 4; ///< fine voxels an edge of a voxel, 1 to 16
 
-  /// Whether counts tell of fractions of samples, from where the surface lies between them. Else occupancy comes in steps of
-  /// 1 / samples^3, as published.
+  /// Whether counts tell of fractions of samples, from where the surface lies between them. Else occupancy comes in
+  /// steps of 1 / samples^3, as published.
   bool fractions = true;
 
-  /// Which way the columns run: along axis 0, 1 or 2, toggling what lies before a crossing or, from above, what lies after it.
-  /// It makes no difference to the result, to the last bit.
+  /// Which way the columns run: along axis 0, 1 or 2, toggling what lies before a crossing or, from above, what lies
+  /// after it. It makes no difference to the result, to the last bit.
   int columnAxis = 0;
   bool fromAbove = false;
 
@@ -53,26 +53,30 @@ struct SamplesInside
   /// A voxel 0 to samples^3 UnitsOfSample(samples), x fastest. Written again for the next mesh.
   const Buffer<cl_ushort>& counts;
 
-  /// The slab's voxels are `runs` runs of `length` of the grid's: the first begins at voxel `first`, the next `stride` later.
+  /// The slab's voxels are `runs` runs of `length` of the grid's: the first begins at voxel `first`, the next `stride`
+  /// later.
   std::size_t first, length, stride, runs;
   std::size_t VoxelCount() const { return this->length * this->runs; }
 };
 
-/// Number of samples of each voxel that lie in each of several closed meshes. Where meshes overlap, the last of them has
-/// the samples.
+/// Number of samples of each voxel that lie in each of several closed meshes. Where meshes overlap, the last of them
+/// has the samples.
 ///
 /// The bit-slice voxelisation of Eisemann and Decoret (Single-pass GPU solid voxelization for real-time applications,
-/// Graphics Interface 2008; Pfeuti 2009, section 3.1.2): a column of samples is a row of bits, and every triangle toggles
-/// those that lie before it. Samples are the centres of fine voxels. Points of the mesh are rounded to a lattice a
-/// millionth of the box wide (SampleLattice), and from there on everything is exact: a column through an edge or a corner
-/// is counted once, a closed mesh never leaks, and a sample is inside or not whichever way its column runs. Then fractions of
-/// samples are added or taken away by where the surface crosses columns along x, y and z (SurfaceFraction); a voxel through
-/// which no surface goes is all inside or all outside.
+/// Graphics Interface 2008; Pfeuti 2009, section 3.1.2): a column of samples is a row of bits, and every triangle
+/// toggles those that lie before it. Samples are the centres of fine voxels. Points of the mesh are rounded to a
+/// lattice a millionth of the box wide (SampleLattice), and from there on everything is exact: a column through an edge
+/// or a corner is counted once, a closed mesh never leaks, and a sample is inside or not whichever way its column runs.
+/// Then fractions of samples are added or taken away by where the surface crosses columns along x, y and z
+/// (SurfaceFraction); a voxel through which no surface goes is all inside or all outside.
 ///
-/// @param take  handed what is found slab by slab, and of each slab mesh by mesh from the last to the first, so that what is
+/// @param take  handed what is found slab by slab, and of each slab mesh by mesh from the last to the first, so that
+/// what is
 ///   on the device at a time does not grow with the grid or the number of meshes
-/// @return a mesh: whether it winds about all samples 0 times or once. Where it does not the samples inside are those about
-///   which it winds an odd number of times. Not known where the orientation is 0: the numbers are those of a closed mesh that is well oriented
+/// @return a mesh: whether it winds about all samples 0 times or once. Where it does not the samples inside are those
+/// about
+///   which it winds an odd number of times. Not known where the orientation is 0: the numbers are those of a closed
+///   mesh that is well oriented
 /// @throws InvalidInput   where a setting or a mesh's size has no meaning
 /// @throws DeviceError    if the meshes and a slab do not fit the device
 std::vector<WindingNumbers> CountSamplesInside(Device& device, const Grid& grid,

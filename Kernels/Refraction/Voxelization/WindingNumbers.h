@@ -9,8 +9,8 @@
 
 namespace tyndall
 {
-/// Where a mesh winds about samples neither 0 times nor once: it intersects itself, or has parts inside out or within each
-/// other.
+/// Where a mesh winds about samples neither 0 times nor once: it intersects itself, or has parts inside out or within
+/// each other.
 struct WindingNumbers
 {
   std::size_t oddSamples = 0;                         ///< samples about which it does so

@@ -1,4 +1,5 @@
-// A cloud under the sun, from density to light, in a plain VTK pipeline: writes the light and says where its power went.
+// A cloud under the sun, from density to light, in a plain VTK pipeline: writes the light and says where its power
+// went.
 
 #include <vtkCellData.h>
 #include <vtkFieldData.h>

@@ -1,5 +1,6 @@
 #pragma once
-// Broken on purpose, with Other.h: types_have_one_meaning.py must find the pair that this project once had, and it alone.
+// Broken on purpose, with Other.h: types_have_one_meaning.py must find the pair that this project once had, and it
+// alone.
 namespace tyndall
 {
 struct Ahead;

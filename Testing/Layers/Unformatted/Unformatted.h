@@ -1,0 +1,2 @@
+// One line that clang-format would change.
+int  Two( );
