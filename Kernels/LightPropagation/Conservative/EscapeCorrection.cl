@@ -1,4 +1,4 @@
-// Read by itself; the host gives CHUNK: voxels a work-item sums up before the host adds the chunks in double.
+// The host gives CHUNK: voxels a work-item sums up before the host adds the chunks in double.
 
 // What gets out of the box of the light that sets out from each voxel, more than the sweep said.
 // extra  of a source of 1, W length

@@ -3,6 +3,8 @@
 #include "LightPropagation/Angular/DirectionSet.h"
 #include "LightPropagation/Angular/RayBundles.h"
 #include "LightPropagation/Conservative/SurfaceRadiance.h"
+#include "LightPropagation/Diffusion/AndersonMixing.h"
+#include "LightPropagation/Diffusion/DiffusionShared.h"
 #include "LightPropagation/Diffusion/MultigridSolver.h"
 
 #include "Medium/Grid.h"
@@ -12,13 +14,6 @@
 
 namespace tyndall
 {
-/// As diffusion_layout of DiffusionLayout.cl.
-struct DiffusionLayout
-{
-  cl_int size[3], periodic[3], linear, stride, firstT, first, pattern[6];
-  cl_float spacing[3], halfRange, floor, incoming[6];
-};
-
 /// Rays that cross the voxels' faces in the sweeps' repeated pattern, over those that a face should see: by axis of the
 /// face and plane along each other axis (two parts of one sum). Around 1; exactly that only in the mean over planes.
 struct CrossingPattern
@@ -136,7 +131,6 @@ private:
   /// The arguments that the kernels share, then `more`.
   template <class... More>
   void RunOnArrays(const char* kernel, const More&... more);
-  std::array<double, 2> Weights(double* change);
 
   Device& TheDevice;
   DiffusionLayout Layout = {};
@@ -144,8 +138,7 @@ private:
   std::size_t Count;
   MultigridSolver Solver;
   Buffer<float> FlatSource, Pattern, Model;
-  ExactValues Right, Given, Solution, Sums, Borders;
-  std::array<Buffer<float>, 2> FoundBefore, ChangeBefore; ///< of the last correction and the one before
-  int Corrections = 0;
+  AndersonMixing Mixing;
+  ExactValues Right, Given, Solution, Borders;
 };
 }

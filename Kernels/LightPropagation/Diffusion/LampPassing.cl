@@ -1,5 +1,8 @@
 // Lamps' light in thick voxels, see DiffusionSystem.h: it is scattered first near the faces that it comes in through,
-// and part of it passes those at once. Read after DiffusionLayout.cl and before DiffusionSystem.cl.
+// and part of it passes those at once.
+
+#pragma once
+#include "LightPropagation/Diffusion/DiffusionLayout.cl"
 
 // Of light that falls off over tau from a face of a voxel as exp(-b t), what comes back to the face while it is
 // diffused and absorbed over k a mean free path. r, 0 to 1, is how near to the face it is scattered: 1 - 2 t / tau for

@@ -185,7 +185,7 @@ void AxisSweep::Implementation::DarkenBeside()
   {
     return;
   }
-  cl::Kernel kernel = this->TheDevice.Kernel("darken_beside", { kernel_source::SweepMaps });
+  cl::Kernel kernel = this->TheDevice.Kernel("darken_beside", kernel_source::SweepMaps);
   With(kernel, this->OwnMaps, cl_ulong(plan.mapsEachWay), this->MapPlaces, cl_int(plan.channels), cl_int(plan.row),
     cl_int(plan.vector), plan.plane.sizeU, plan.plane.width);
   this->TheDevice.Queue().enqueueNDRangeKernel(
@@ -255,21 +255,15 @@ cl::Kernel AxisSweep::Implementation::SweepKernel(bool source, bool border, bool
     Define("ROW", plan.row) + Define("SOURCE", source) + Define("BORDER", border) + Define("NET_FLUX", flux) +
     Define("CURRENTS", plan.partialCurrents) + Define("PERIODIC_P", this->IsPeriodic()) +
     Define("PERIODIC_U", plan.periodic[plan.axes.u]) + Define("PERIODIC_V", plan.periodic[plan.axes.v]);
-  std::string bundles; // SweepBundle.cl once for each number of members there is
   for (int members = 1; members <= MaxMembers; members *= 2)
   {
     const auto has = [&](const BundleOnDevice& bundle) { return bundle.members == members; };
     if (std::any_of(plan.bundleRows.begin(), plan.bundleRows.end(), has))
     {
       options += " -DMEMBERS_" + std::to_string(members);
-      bundles += "#define MEMBERS " + std::to_string(members) + "\n" + std::string(kernel_source::SweepBundle) +
-        "#undef MEMBERS\n";
     }
   }
-  return this->TheDevice.Kernel("sweep",
-    { kernel_source::Numerics, kernel_source::SweepLayout, kernel_source::SweepPartialCurrents, bundles,
-      kernel_source::Sweep },
-    options);
+  return this->TheDevice.Kernel("sweep", kernel_source::Sweep, options);
 }
 
 void AxisSweep::Implementation::CountSideways()
@@ -306,7 +300,7 @@ Rgb AxisSweep::Implementation::PowerOnTheWay()
 void AxisSweep::Implementation::SumMaps()
 {
   const SweepPlan& plan = this->Plan;
-  cl::Kernel kernel = this->TheDevice.Kernel("map_power", { kernel_source::SweepMaps });
+  cl::Kernel kernel = this->TheDevice.Kernel("map_power", kernel_source::SweepMaps);
   With(kernel, this->Maps(), cl_ulong(plan.mapsEachWay), this->MapPlaces, plan.plane.sizeV, cl_int(plan.channels),
     cl_int(plan.row), cl_int(plan.vector), plan.plane.sizeU, this->Sums);
   this->TheDevice.Queue().enqueueNDRangeKernel(

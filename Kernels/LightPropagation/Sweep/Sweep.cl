@@ -1,7 +1,33 @@
 // Rays through a range of planes, on a CPU: a work-item carries all the rays of its unit (one way along the axis, some
 // or all bundles) and deposits into the volume itself. Units of one launch never share a plane, so nothing is lost and
-// sums have one order. Read after SweepLayout.cl and one SweepBundle.cl for each number of MEMBERS
-// that occurs (1, 2, 4, 8), with MEMBERS_1, ... defined.
+// sums have one order. The host gives
+//   MEMBERS_1, MEMBERS_2, MEMBERS_4, MEMBERS_8  defined for each number of members that bundles have
+// and what SweepLayout.cl asks for.
+
+#include "LightPropagation/Sweep/SweepLayout.cl"
+#include "LightPropagation/Sweep/SweepPartialCurrents.cl"
+
+// One bundle through one plane, once for each number of members.
+#ifdef MEMBERS_1
+#define MEMBERS 1
+#include "LightPropagation/Sweep/SweepBundle.cl"
+#undef MEMBERS
+#endif
+#ifdef MEMBERS_2
+#define MEMBERS 2
+#include "LightPropagation/Sweep/SweepBundle.cl"
+#undef MEMBERS
+#endif
+#ifdef MEMBERS_4
+#define MEMBERS 4
+#include "LightPropagation/Sweep/SweepBundle.cl"
+#undef MEMBERS
+#endif
+#ifdef MEMBERS_8
+#define MEMBERS 8
+#include "LightPropagation/Sweep/SweepBundle.cl"
+#undef MEMBERS
+#endif
 
 typedef struct
 {

@@ -1,4 +1,4 @@
-// The layout of a sweep, shared by the texts that follow. Read after Numerics.cl; the host gives
+// The layout of a sweep, shared by the texts that follow. The host gives
 //   CHANNELS  1 or 3 colours that share sigma_t
 //   ROW       floats in a padded row; the floats after a row's voxels and before the next row's are its border
 //   SOURCE    1 where the medium shines (emission or scattered light)
@@ -10,6 +10,9 @@
 //
 // Rays carry power (W), so that leaving through any face needs no further factor. A map row holds the rays by the voxel
 // they enter, for all members of a bundle and all channels: float [member][channel][ROW].
+
+#pragma once
+#include "Numerics/Numerics.cl"
 
 #define PAD REAL_WIDTH
 #define MAX_MEMBERS 8
