@@ -17,7 +17,6 @@ std::string ReadFile(const std::string& path)
   return text.str();
 }
 
-
 int CountOf(const std::string& what, std::string_view text)
 {
   int count = 0;
