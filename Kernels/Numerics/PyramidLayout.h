@@ -30,9 +30,4 @@ inline cl::NDRange PyramidGroup()
   return cl::NDRange(32, 8, 1);
 }
 cl::NDRange PyramidRange(const std::array<int, 3>& nodes);
-
-inline cl_int4 Int4(const std::array<int, 3>& size)
-{
-  return { { size[0], size[1], size[2], 0 } };
-}
 }

@@ -49,7 +49,7 @@ inline rgb look_up(__global const float4* environment, real3 d, int4 size)
 #endif
 
 // Radiance that comes from behind against each (world) direction.
-inline rgb look_behind(const view* v, real3 d, __global const float4* environment)
+inline rgb look_behind(const ViewInfo* v, real3 d, __global const float4* environment)
 {
   rgb behind = { (real)v->background.x, (real)v->background.y, (real)v->background.z };
 #if ENVIRONMENT

@@ -14,7 +14,7 @@
 
 // bending  x, y, z: half the gradient in voxels by squared spacing: what a velocity in voxels gains per time; w: n^2
 // No loops and no branches, so that PoCL takes voxels side by side.
-__kernel void pack_bending(index_grid grid, float4 inverse_spacing, __global const float* restrict coefficients,
+__kernel void pack_bending(IndexGrid grid, float4 inverse_spacing, __global const float* restrict coefficients,
   __global float4* restrict bending)
 {
   const int x = get_global_id(0), y = get_global_id(1), z = get_global_id(2);

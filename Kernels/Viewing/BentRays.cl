@@ -137,7 +137,7 @@ __attribute__((always_inline)) inline int go_straight(const surroundings* s, con
 __attribute__((always_inline)) inline void march(
   const surroundings* s, ray_packets* t, light* l, crossed* half_way, watch* w)
 {
-  const view* v = s->v;
+  const ViewInfo* v = s->v;
   const int4 size = v->size;
   const float enough = v->marching.y;
   for (int n = 0; n < s->o->limits.x;)

@@ -99,7 +99,7 @@ inline void arrive(const surroundings* s, const ray_packets* t, integer set_off,
 
 // lit      what a white table shines by n^2, a float4 a voxel with a border
 // bending  see surroundings
-__kernel void cast_bent_rays(view v, optics o, __global const float4* restrict samples,
+__kernel void cast_bent_rays(ViewInfo v, OpticsInfo o, __global const float4* restrict samples,
   __global const float4* restrict extinctions, __global const float4* restrict flow,
   __global const float4* restrict glow, __global const float4* restrict bending, __global const float4* restrict lit,
   __global const char* restrict bricks, __global const float4* restrict environment, __global float* restrict radiance,

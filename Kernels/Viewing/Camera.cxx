@@ -1,6 +1,7 @@
 #include "Viewing/Camera.h"
 
 #include "Device/Errors.h"
+#include "Numerics/Vectors.h"
 
 #include <algorithm>
 #include <cmath>
@@ -13,11 +14,6 @@ namespace tyndall
 {
 namespace
 {
-glm::dvec3 Vector(const std::array<double, 3>& v)
-{
-  return { v[0], v[1], v[2] };
-}
-
 std::array<double, 3> Array(const glm::dvec3& v)
 {
   return { v.x, v.y, v.z };

@@ -9,8 +9,9 @@
 #include "Viewing/SurfaceLight.cl"
 #include "Viewing/View.cl"
 
-__kernel void cast_rays(view v, __global const float4* restrict samples, __global const float4* restrict extinctions,
-  __global const float4* restrict flow, __global const float4* restrict glow, __global const char* restrict bricks,
+__kernel void cast_rays(ViewInfo v, __global const float4* restrict samples,
+  __global const float4* restrict extinctions, __global const float4* restrict flow,
+  __global const float4* restrict glow, __global const char* restrict bricks,
   __global const float4* restrict environment, __global const float4* restrict surface,
   __global float* restrict radiance, __global float* restrict alpha, __global float* restrict depth)
 {

@@ -8,6 +8,7 @@
 #include "Medium/Traits.h"
 #include "Refraction/Index/IndexRange.h"
 #include "Viewing/Camera.h"
+#include "Viewing/ViewShared.h"
 
 #include <array>
 #include <string>
@@ -175,9 +176,6 @@ public:
   const std::vector<std::string>& Warnings() const { return this->Doubts; }
 
 private:
-  struct View;
-  struct Optics;
-
   ViewSettings Needed(ViewSettings asked) const;
   double LongestSteps() const;
   std::string StepOption() const;
@@ -204,10 +202,10 @@ private:
   void Pack(bool forShadowRays);
   void SeeLights(const Camera& camera, const Monitor& monitor);
   void PrepareSources(const Camera& camera, const Monitor& monitor);
-  void CastRays(View& view, double from, const Monitor& monitor);
+  void CastRays(ViewInfo& view, double from, const Monitor& monitor);
   cl::Kernel CastingKernel();
-  View MakeView(const Camera& camera) const;
-  Optics MakeOptics() const;
+  ViewInfo MakeView(const Camera& camera) const;
+  OpticsInfo MakeOptics() const;
 
   Device& TheDevice;
   Grid TheGrid;
@@ -243,7 +241,7 @@ private:
   Buffer<cl_float4> Surface; ///< see SurfaceLight.h
   Buffer<cl_char> Bricks;
   Buffer<cl_float4> EnvironmentPixels;
-  Buffer<cl_float4> Lights;             ///< three a small_light
+  Buffer<SmallLight> Lights;
   Buffer<float> Radiance, Alpha, Depth; ///< the last picture; kept for the next of its size
   std::vector<std::string> Omitted, Doubts;
 };

@@ -254,11 +254,11 @@ __attribute__((always_inline)) inline void gather_values(
   __global const float2* far_high = far_low + 2 * (size.x + 2);
 #define FIRST(n) ((const uint*)&at->twiceFirst)[0x##n + size.w]
 #define WEIGHT(part, n) (((const float*)&at->part)[0x##n + size.w])
-#define FETCH_FOUR(n)                                                                \
-  v##n = WEIGHT(near_low, n) * neighbours(near_low, FIRST(n));                       \
-  v##n = fma((float8)(WEIGHT(near_high, n)), neighbours(near_high, FIRST(n)), v##n); \
-  v##n = fma((float8)(WEIGHT(far_low, n)), neighbours(far_low, FIRST(n)), v##n);     \
-  v##n = fma((float8)(WEIGHT(far_high, n)), neighbours(far_high, FIRST(n)), v##n);
+#define FETCH_FOUR(n)                                                               \
+  v##n = WEIGHT(nearLow, n) * neighbours(near_low, FIRST(n));                       \
+  v##n = fma((float8)(WEIGHT(nearHigh, n)), neighbours(near_high, FIRST(n)), v##n); \
+  v##n = fma((float8)(WEIGHT(farLow, n)), neighbours(far_low, FIRST(n)), v##n);     \
+  v##n = fma((float8)(WEIGHT(farHigh, n)), neighbours(far_high, FIRST(n)), v##n);
 #if GREY
 #define FETCH(n)                                                               \
   float8 v##n;                                                                 \

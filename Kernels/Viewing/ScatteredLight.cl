@@ -9,6 +9,7 @@
 //   BENDS        1: the refractive index varies
 
 #include "Viewing/Sampling.cl"
+#include "Viewing/ViewShared.h"
 
 #define PER_SPHERE 0.0795774715f // 1 / (4 pi)
 #define LARGEST_FLOW 0.9999f
@@ -185,20 +186,12 @@ __kernel void find_empty_bricks(int4 size, int4 brick_count, __global const floa
   bricks[(k * brick_count.y + j) * brick_count.x + i] = bends ? 0 : filled ? -1 : 1;
 }
 
-// A light as the shadow rays see it: parallel light, or a point of one.
-typedef struct
-{
-  float4 place; // world, from the box's lower corner; w: 1 a point, 0 parallel light
-  float4 axis;  // unit vector, the way the light travels; w: cosine of the cone's half angle, -2 for a whole sphere
-  float4 power; // irradiance, or radiant intensity along the axis; w: 1 falls with the cosine to the axis, else 0
-} small_light;
-
 // Scatters towards the eye what the lights send straight to each voxel's centre.
 //   direct  6 a voxel: sum of irradiance times phase function, W / (length^2 sr), and sum of irradiance, W / length^2
 // Work-items by voxels of a slice. nearest_square keeps a voxel that holds a light finite: the mean of 1/r^2 over a
 // sphere of the voxel's volume is 3/R^2.
 __kernel void see_lights(int4 size, int4 brick_count, float4 spacing, float4 eye, float4 forward, float g, float step,
-  float nearest_square, int light_count, __global const small_light* restrict lights,
+  float nearest_square, int light_count, __global const SmallLight* restrict lights,
   __global const float* restrict scattering, __global const float4* restrict samples,
   __global const float4* restrict extinctions, __global const char* restrict bricks, int first_slice, int first_row,
   __global float* restrict direct)
@@ -240,7 +233,7 @@ __kernel void see_lights(int4 size, int4 brick_count, float4 spacing, float4 eye
 
   for (int n = 0; n < light_count && any_lane(scatters > (real)0.0f); ++n)
   {
-    const small_light light = lights[n];
+    const SmallLight light = lights[n];
     const real point = (real)light.place.w;
     // To the light, and what would arrive through vacuum.
     const real3 to = { fma(point, (real)light.place.x - place.x, (real)((light.place.w - 1.0f) * light.axis.x)),

@@ -11,9 +11,8 @@ inline bool IsZero(const Rgb& colour)
   return colour[0] == 0.0 && colour[1] == 0.0 && colour[2] == 0.0;
 }
 
-/// Points and parallel beams that stand for the lights, as ScatteredLight.cl's small_light: three float4 each, world
-/// coordinates from the box's lower corner.
-std::vector<cl_float4> SmallLights(const std::vector<Light>& lights, const Grid& grid, int rectangleSamples);
+/// Points and parallel beams that stand for the lights.
+std::vector<SmallLight> SmallLights(const std::vector<Light>& lights, const Grid& grid, int rectangleSamples);
 
 /// Pixels of the environment with a column more on both sides, so that it closes.
 std::vector<cl_float4> ClosedEnvironment(const Environment& environment);

@@ -1,6 +1,7 @@
 #include "LightPropagation/Angular/DirectionSet.h"
 
 #include "Device/Errors.h"
+#include "Numerics/Constants.h"
 
 #include <glm/gtc/constants.hpp>
 
@@ -12,7 +13,6 @@ namespace tyndall
 {
 namespace
 {
-constexpr double Pi = glm::pi<double>();
 
 int CellsPerEdge(int perFace, const std::string& name)
 {

@@ -4,6 +4,7 @@
 #include "LightPropagation/Conservative/DiffusionAcceleration.h"
 #include "LightPropagation/Conservative/SourceIteration.h"
 #include "LightPropagation/Problem/ScatteringOrders.h"
+#include "Numerics/Constants.h"
 #include "Numerics/NumberText.h"
 
 #include <algorithm>
@@ -15,7 +16,6 @@ namespace tyndall
 {
 namespace
 {
-constexpr double Pi = 3.14159265358979323846;
 constexpr double ImbalanceAtMost = 1e-2; ///< beyond any rounding
 
 /// A solve must not hand on in silence that power went nowhere.

@@ -3,6 +3,7 @@
 #include "LightPropagation/Conservative/SurfaceRadiance.h"
 #include "LightPropagation/Problem/ScatteringOrders.h"
 #include "LightPropagation/Uncollided/UncollidedBoundary.h"
+#include "Numerics/Constants.h"
 
 #include <algorithm>
 #include <cmath>
@@ -11,7 +12,6 @@ namespace tyndall
 {
 namespace
 {
-constexpr double Pi = 3.14159265358979323846;
 constexpr int MostSweeps = 200;
 constexpr double ThickForMoments = 0.1; ///< mean free paths a voxel
 constexpr double Margin = 1.5;          ///< of the estimated error: changes do not fall off evenly

@@ -2,6 +2,7 @@
 
 #include "Device/Defines.h"
 #include "LightPropagation/Conservative/IsotropicScattering.h"
+#include "Numerics/Constants.h"
 #include "TyndallKernelSources.h"
 
 #include <algorithm>
@@ -10,7 +11,6 @@ namespace tyndall
 {
 namespace
 {
-constexpr double Pi = 3.14159265358979323846;
 }
 
 EscapeCorrection::EscapeCorrection(TransportParts& parts, const Monitor& monitor)

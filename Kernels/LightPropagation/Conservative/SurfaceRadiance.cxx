@@ -1,6 +1,7 @@
 #include "LightPropagation/Conservative/SurfaceRadiance.h"
 
 #include "Medium/BoxFaces.h"
+#include "Numerics/Constants.h"
 
 #include <algorithm>
 #include <cmath>
@@ -9,7 +10,6 @@ namespace tyndall
 {
 namespace
 {
-constexpr double Pi = 3.14159265358979323846;
 constexpr double Uncertainty = 0.1;     ///< of diffusion, in sqrt(1 - albedo) of the light that comes in
 constexpr double UncertainPart = 0.5;   ///< of what lamps' rays bring too much or too little to a voxel
 constexpr double MostUneven = 4.0;      ///< that lamps' rays are taken to be

@@ -1,5 +1,7 @@
 #include "LightPropagation/Diffusion/DiffusionSystem.h"
 
+#include "Numerics/Constants.h"
+
 #include "TyndallKernelSources.h"
 
 #include <algorithm>
@@ -11,7 +13,6 @@ namespace tyndall
 {
 namespace
 {
-constexpr double Pi = 3.14159265358979323846;
 constexpr double Floor = 0.05;     ///< optical length between centres of voxels that pass light as if it were that long
 constexpr double Reduction = 1e-3; ///< of the residual in one correction: sweeps gain less than that
 

@@ -21,12 +21,6 @@ using Batch = PublishedPlan::Batch;
 using Pass = PublishedPlan::Pass;
 using Launch = PublishedPlan::Launch;
 
-/// As map_info in PublishedPropagate.cl.
-struct MapOnDevice
-{
-  cl_int sizeU, sizeV, rowStride, volume, rayRow, periodicU, periodicV, periodicW, directions;
-};
-
 /// Floats a work-item handles at once.
 int VectorWidth(const Device& device)
 {
@@ -60,11 +54,11 @@ struct ParallelPropagation::Implementation
 
   // One order
   bool FirstOrder() const { return this->Ledger.Orders() == 0 && !this->SourceGiven; }
-  MapOnDevice Describe(const Batch& batch) const;
+  PublishedMap Describe(const Batch& batch) const;
   void WriteBoundary(const Batch& batch);
   void Propagate(int number, const Monitor& monitor);
-  void SendRays(const Batch& batch, const Pass& pass, const MapOnDevice& info, const Monitor& monitor, double done);
-  void CrossPlanes(const Batch& batch, const Pass& pass, const MapOnDevice& info, const Monitor& monitor, double done);
+  void SendRays(const Batch& batch, const Pass& pass, const PublishedMap& info, const Monitor& monitor, double done);
+  void CrossPlanes(const Batch& batch, const Pass& pass, const PublishedMap& info, const Monitor& monitor, double done);
   void Collect(int number);
   void FinishOrder();
   void Enqueue(cl::Kernel& kernel, std::array<int, 3> global, std::array<int, 3> local);
@@ -130,7 +124,7 @@ void ParallelPropagation::Implementation::MakeKernels()
   this->UpdateSources = collect("update_sources");
 }
 
-MapOnDevice ParallelPropagation::Implementation::Describe(const Batch& batch) const
+PublishedMap ParallelPropagation::Implementation::Describe(const Batch& batch) const
 {
   const MapGeometry& map = batch.Map();
   const VolumeLayouts& layouts = this->Volumes.Layouts;
@@ -163,7 +157,7 @@ void ParallelPropagation::Implementation::Propagate(int number, const Monitor& m
     this->Plan.MakePasses(batch, this->Ledger.Orders()); // rays go on from where they were
   }
   this->WriteBoundary(batch);
-  const MapOnDevice info = this->Describe(batch);
+  const PublishedMap info = this->Describe(batch);
   for (std::size_t p = 0; p < batch.passes.size(); ++p)
   {
     this->SendRays(
@@ -174,7 +168,7 @@ void ParallelPropagation::Implementation::Propagate(int number, const Monitor& m
 
 /// One ray a voxel of the map and direction, from the first plane to behind the last.
 void ParallelPropagation::Implementation::SendRays(
-  const Batch& batch, const Pass& pass, const MapOnDevice& info, const Monitor& monitor, double done)
+  const Batch& batch, const Pass& pass, const PublishedMap& info, const Monitor& monitor, double done)
 {
   const int slots = batch.count * this->Channels;
   const cl_ulong carriedFirst = pass.carriedFirst;
@@ -190,7 +184,7 @@ void ParallelPropagation::Implementation::SendRays(
 }
 
 void ParallelPropagation::Implementation::CrossPlanes(
-  const Batch& batch, const Pass& pass, const MapOnDevice& info, const Monitor& monitor, double done)
+  const Batch& batch, const Pass& pass, const PublishedMap& info, const Monitor& monitor, double done)
 {
   const VolumeLayouts& layouts = this->Volumes.Layouts;
   const int axis = batch.Map().axis;

@@ -1,5 +1,7 @@
 #include "LightPropagation/Published/PublishedModel.h"
 
+#include "Numerics/Vectors.h"
+
 #include <glm/geometric.hpp>
 #include <glm/gtc/constants.hpp>
 #include <glm/vec3.hpp>
@@ -17,11 +19,6 @@ constexpr double FourPi = 4.0 * glm::pi<double>();
 
 /// No problem that converges at all needs more; those that do not must end.
 constexpr int MostOrders = 10000;
-
-glm::dvec3 Vector(const std::array<double, 3>& v)
-{
-  return { v[0], v[1], v[2] };
-}
 
 int NearestOf(const std::vector<std::array<double, 3>>& directions, const std::array<double, 3>& omega)
 {

@@ -9,36 +9,16 @@
 // [row -1 .. size_v][PAD | column 0 .. size_u - 1 | PAD], with a border that holds what enters through the sides.
 // REAL_WIDTH > 1 (CPU): a work-item crosses a row. REAL_WIDTH 1 (GPU): a work-item crosses a voxel.
 
+#include "LightPropagation/Published/PublishedShared.h"
 #include "Numerics/Numerics.cl"
 
 #define PAD REAL_WIDTH
-
-// As MapOnDevice in ParallelPropagation.cxx.
-typedef struct
-{
-  int sizeU, sizeV;
-  int rowStride; // floats between rows of a volume
-  int volume;    // floats of a volume of one channel
-  int rayRow;    // floats of a row of a ray map
-  int periodicU, periodicV, periodicW;
-  int directions; // in the batch
-} map_info;
-
-// As PublishedPlan::CrossingOnDevice: what the rays of one direction do in one launch.
-typedef struct
-{
-  int direction; // within the batch
-  int parity;    // which of the two ray maps they are in
-  int moveU, moveV;
-  int source;   // which U
-  float length; // in the voxel
-} crossing_info;
 
 // Where light leaves a direction's map, W / (length^2 sr) summed over rays: [through u by row][through v][at the end by
 // row].
 #define ESCAPED(map) (2 * (map).sizeV + 1)
 
-static __global float* ray_row(__global float* rays, const map_info* map, int parity, int slot, int v)
+static __global float* ray_row(__global float* rays, const PublishedMap* map, int parity, int slot, int v)
 {
   const ulong row = (ulong)(parity * map->directions * CHANNELS + slot) * (map->sizeV + 2) + (v + 1);
   return rays + row * map->rayRow + PAD;
@@ -53,7 +33,7 @@ inline real depth(real gone, real tau, float length)
 // What rays have as they start; both maps get it, so that the border is there in both.
 //   boundary  radiance entering across w, u, v: [direction][3][CHANNELS]
 //   carried   with periodic_w: radiance by voxel, [direction][carried_stride], from carried_first on
-__kernel void start_rays(const map_info map, __global float* rays, __global const float* boundary,
+__kernel void start_rays(const PublishedMap map, __global float* rays, __global const float* boundary,
   __global const float* carried, const ulong carried_first, const ulong carried_stride)
 {
   const int u = (int)get_global_id(0) - 1;
@@ -89,7 +69,7 @@ __kernel void start_rays(const map_info map, __global float* rays, __global cons
 
 // What leaves through the sides as rays move into the next voxel; through an edge, half through either side.
 static void leave_sides(
-  const map_info* map, const crossing_info* crossing, __global const float* row, int v, __global float* escaped)
+  const PublishedMap* map, const PublishedCrossing* crossing, __global const float* row, int v, __global float* escaped)
 {
   const int leaves_u = crossing->moveU != 0 && !map->periodicU;
   const int leaves_v = crossing->moveV != 0 && !map->periodicV && v == (crossing->moveV > 0 ? map->sizeV - 1 : 0);
@@ -129,8 +109,8 @@ inline real deposit(real radiance, real sigma_s, float length)
 //   first, crossings  the launch's part of the table, a direction each
 //   plane             where the plane begins in a volume
 //   add               0: the first ray in these voxels, T is set; 1: T is added to
-__kernel void cross_voxels(const map_info map, const int plane, const int add, const int first,
-  __global const crossing_info* crossings, __global const float* sigma_t, __global const float* sigma_s,
+__kernel void cross_voxels(const PublishedMap map, const int plane, const int add, const int first,
+  __global const PublishedCrossing* crossings, __global const float* sigma_t, __global const float* sigma_s,
   __global const float* sources, __global float* rays, __global float* contributions, __global float* escaped)
 {
   const int v = get_global_id(1);
@@ -139,7 +119,7 @@ __kernel void cross_voxels(const map_info map, const int plane, const int add, c
     return;
   }
   const int channel = get_global_id(2) % CHANNELS;
-  const crossing_info crossing = crossings[first + get_global_id(2) / CHANNELS];
+  const PublishedCrossing crossing = crossings[first + get_global_id(2) / CHANNELS];
   const int slot = crossing.direction * CHANNELS + channel;
   const ulong row = (ulong)plane + v * map.rowStride;
   sigma_t += row + (COLOURED ? (ulong)channel * map.volume : 0);
@@ -210,7 +190,7 @@ __kernel void cross_voxels(const map_info map, const int plane, const int add, c
 // Behind the last plane: adds up what leaves, and with periodic_w keeps it for the next order,
 // [direction][carried_stride].
 //   crossings  one a direction: parity says which map
-__kernel void end_rays(const map_info map, const int first, __global const crossing_info* crossings,
+__kernel void end_rays(const PublishedMap map, const int first, __global const PublishedCrossing* crossings,
   __global float* rays, __global float* escaped, __global float* carried, const ulong carried_first,
   const ulong carried_stride)
 {
@@ -220,7 +200,7 @@ __kernel void end_rays(const map_info map, const int first, __global const cross
     return;
   }
   const int channel = get_global_id(1) % CHANNELS;
-  const crossing_info crossing = crossings[first + get_global_id(1) / CHANNELS];
+  const PublishedCrossing crossing = crossings[first + get_global_id(1) / CHANNELS];
   const int slot = crossing.direction * CHANNELS + channel;
   __global const float* row = ray_row(rays, &map, crossing.parity, slot, v);
   float sum = 0.0f;

@@ -1,16 +1,7 @@
 // A beam of parallel light, after it was followed: its path is added to that of all lights, and how near to voxels'
 // faces it is lost.
 
-// As BeamInfo in LampBeams.cxx.
-typedef struct
-{
-  int size[3];
-  int periodic[3];
-  int up[3]; // the way it goes along each axis
-  float spacing[3];
-  float lengths[3]; // of a ray from face to face
-  float thin;       // optical length of voxels whose light is lost evenly, near enough
-} beam_info;
+#include "LightPropagation/Uncollided/BeamMomentsShared.h"
 
 // Distance from the middle of a voxel, in voxels, at which light is lost that comes in through a face and fades over
 // tau.
@@ -23,7 +14,7 @@ static float distance_to_face(float tau)
 // where as much goes in as comes out of the faces beside; never more than if all came in through the face.
 // path, currents      of the beam, as in SweepVolume.h
 // all_path, moments  of all lamps
-__kernel void add_beam(beam_info beam, const __global float* sigma, ulong sigma_first, const __global float* path,
+__kernel void add_beam(BeamInfo beam, const __global float* sigma, ulong sigma_first, const __global float* path,
   const __global float* currents, __global float* all_path, __global float* moments, ulong first, ulong stride)
 {
   const ulong i = get_global_id(0);

@@ -3,18 +3,10 @@
 //   NET_FLUX  1 where net flux is wanted
 //   MOST      rays of a voxel to the box around what shines, at most
 
+#include "LightPropagation/Uncollided/EmissionRaysShared.h"
 #include "Numerics/Numerics.cl"
 
 #define OPAQUE 80.0f // mean free paths that nothing comes through
-
-typedef struct
-{
-  int size[3];
-  float spacing[3];
-  int sourceFirst[3], sourceSize[3]; // the box of what shines
-  int fewest;                        // rays of a voxel to it, at first; a power of two, at least 32
-  float uneven;                      // difference of two halves of them, to their sum, that will do
-} emission_scene;
 
 typedef struct
 {
@@ -292,7 +284,7 @@ typedef struct
 
 // Order of the axes: that across a lit face first, then by distance from the middle of what shines, its size, the
 // voxel's size.
-static bool goes_before(const emission_scene* s, const lit_voxel* voxel, const int* distance, int a, int b)
+static bool goes_before(const EmissionInfo* s, const lit_voxel* voxel, const int* distance, int a, int b)
 {
   if ((a == voxel->across) != (b == voxel->across))
   {
@@ -303,7 +295,7 @@ static bool goes_before(const emission_scene* s, const lit_voxel* voxel, const i
   return far_a != far_b ? far_a > far_b : wide_a != wide_b ? wide_a > wide_b : s->spacing[a] > s->spacing[b];
 }
 
-static void find_ways(const emission_scene* s, const lit_voxel* voxel, ways_to_turn* ways)
+static void find_ways(const EmissionInfo* s, const lit_voxel* voxel, ways_to_turn* ways)
 {
   const int all[6][3] = { { 0, 1, 2 }, { 0, 2, 1 }, { 1, 0, 2 }, { 1, 2, 0 }, { 2, 0, 1 }, { 2, 1, 0 } };
   int distance[3]; // half voxels
@@ -330,7 +322,7 @@ static void find_ways(const emission_scene* s, const lit_voxel* voxel, ways_to_t
   }
 }
 
-static void turn_scene(const emission_scene* s, const lit_voxel* voxel, const int* order, int turned, turned_scene* to,
+static void turn_scene(const EmissionInfo* s, const lit_voxel* voxel, const int* order, int turned, turned_scene* to,
   lit_voxel* turned_voxel)
 {
   const int strides[3] = { 1, s->size[0], s->size[0] * s->size[1] };
@@ -365,7 +357,7 @@ static void turn_scene(const emission_scene* s, const lit_voxel* voxel, const in
 }
 
 // Rays [from, end) of the lattice in every way to turn the scene: their mean.
-static void gather_ways(const emission_scene* s, const lit_voxel* voxel, const ways_to_turn* ways, int from, int end,
+static void gather_ways(const EmissionInfo* s, const lit_voxel* voxel, const ways_to_turn* ways, int from, int end,
   const __global float* points, const __global float* sigma, const __global float* emission, float* sums)
 {
   int count = 0;
@@ -406,7 +398,7 @@ static void gather_ways(const emission_scene* s, const lit_voxel* voxel, const w
 
 // With as many rays as it takes, in each way to turn the scene: half of a lattice in two ways is not as good as all of
 // it in one.
-static void gather(const emission_scene* s, lit_voxel* voxel, const __global float* points, const __global float* sigma,
+static void gather(const EmissionInfo* s, lit_voxel* voxel, const __global float* points, const __global float* sigma,
   const __global float* emission, float* sums)
 {
   float others[CHANNELS * 4];
@@ -437,7 +429,7 @@ static void gather(const emission_scene* s, lit_voxel* voxel, const __global flo
 // path      W length, [channel][stride]
 // flux      W length, [channel][x, y, z][stride]
 // emission  of the box of what shines, [channel][voxel]
-__kernel void gather_voxels(emission_scene s, const __global float* sigma, ulong sigma_first,
+__kernel void gather_voxels(EmissionInfo s, const __global float* sigma, ulong sigma_first,
   const __global float* points, const __global float* emission, __global float* path, __global float* flux,
   ulong stride, ulong first, ulong count)
 {
@@ -465,7 +457,7 @@ __kernel void gather_voxels(emission_scene s, const __global float* sigma, ulong
 }
 
 // What goes out through cell i of a face of the grid, [cell][CHANNELS], W.
-__kernel void gather_face(emission_scene s, int axis, int up, const __global float* sigma, ulong sigma_first,
+__kernel void gather_face(EmissionInfo s, int axis, int up, const __global float* sigma, ulong sigma_first,
   const __global float* points, const __global float* emission, __global float* out, ulong first, ulong count)
 {
   const ulong i = first + get_global_id(0);

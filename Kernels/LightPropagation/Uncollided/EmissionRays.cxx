@@ -1,5 +1,7 @@
 #include "LightPropagation/Uncollided/EmissionRays.h"
 
+#include "LightPropagation/Uncollided/EmissionRaysShared.h"
+
 #include "TyndallKernelSources.h"
 
 #include "Device/Batches.h"
@@ -25,16 +27,6 @@ constexpr double UsualError = 0.02;
 /// error of Kobayashi's points at 20^3 fell from 0.5% to 0.3%. Every 2^n first points, in the
 /// order of their reversed bits, are a lattice of their own.
 constexpr std::array<std::uint32_t, 5> LatticeVector = { 1, 807, 303, 119, 445 };
-
-// As in EmissionRays.cl.
-struct SceneOnDevice
-{
-  cl_int size[3];
-  cl_float spacing[3];
-  cl_int sourceFirst[3], sourceSize[3];
-  cl_int fewest;
-  cl_float uneven;
-};
 
 /// [dimension][MostRays], 0 to 1.
 std::vector<float> LatticePoints()
@@ -222,7 +214,7 @@ private:
   int FirstChannel;
   const EmissionPeak& Peak;
   double Error;
-  SceneOnDevice Scene = {};
+  EmissionInfo Scene = {};
 
   Buffer<float> Points, Emission; ///< as in EmissionRays.cl
   Rgb Emitted = {};               ///< W

@@ -1,6 +1,10 @@
 #include "LightPropagation/Uncollided/LampBeams.h"
 
+#include "LightPropagation/Uncollided/BeamMomentsShared.h"
+#include "LightPropagation/Uncollided/LampBeamsShared.h"
+
 #include "LightPropagation/Sweep/AxisSweep.h"
+#include "Numerics/Vectors.h"
 #include "TyndallKernelSources.h"
 
 #include <glm/geometric.hpp>
@@ -19,40 +23,8 @@ constexpr int RaysPerEdge = 2;      ///< of a voxel, for parallel beams
 constexpr int PointsPerEdge = 4;    ///< of a rectangle
 constexpr double BeamWidth = 0.5;   ///< of a lamp's beams where they leave the box, voxels; a rectangle's: twice
 constexpr int BeamsAcrossCone = 16; ///< of a spot, at least
-constexpr int RowSums = 9;          ///< SUMS of LampBeams.cl
 constexpr int RowsPerLaunch = 256;  ///< keeps a launch well below a tenth of a second for rows of a thousand voxels
 constexpr int RoundsAtMost = 64;    ///< of a ray on a periodic axis
-
-// As beam_info in BeamMoments.cl.
-struct BeamInfo
-{
-  cl_int size[3], periodic[3], up[3];
-  cl_float spacing[3], lengths[3], thin;
-};
-
-// As lamp_info, beam_row in LampBeams.cl.
-struct LampOnDevice
-{
-  cl_int size[3], periodic[3];
-  cl_float spacing[3], position[3], direction[3];
-  cl_float cosine;
-  cl_float intensity;
-  cl_float scale;
-  cl_float diagonal;
-  cl_int rounds;
-};
-struct BeamRow
-{
-  cl_int axis, up;
-  cl_float tangentU, tangentV, widthU, widthV;
-  cl_int count;
-  cl_float begin;
-};
-
-glm::dvec3 Vector(const std::array<double, 3>& v)
-{
-  return { v[0], v[1], v[2] };
-}
 
 std::array<double, 3> Array(const glm::dvec3& v)
 {
@@ -303,9 +275,9 @@ private:
     return std::sqrt(h[0] * h[0] + h[1] * h[1] + h[2] * h[2]);
   }
 
-  LampOnDevice Describe(const glm::dvec3& position, double part) const
+  LampInfo Describe(const glm::dvec3& position, double part) const
   {
-    LampOnDevice info = {};
+    LampInfo info = {};
     const Grid& grid = this->Volume.grid;
     const glm::dvec3 direction = this->TheLight.type == LightType::Point
       ? glm::dvec3(0.0, 0.0, 1.0)
@@ -342,9 +314,9 @@ private:
       return;
     }
     const Buffer<BeamRow> rowBuffer(this->TheDevice, rows, "the beams of a lamp");
-    Buffer<float> sums(this->TheDevice, rows.size() * RowSums, "sums");
+    Buffer<float> sums(this->TheDevice, rows.size() * LampRowSums, "sums");
     cl::Kernel kernel = this->Kernel("follow_lamp");
-    const LampOnDevice info = this->Describe(position, part);
+    const LampInfo info = this->Describe(position, part);
     for (std::size_t first = 0; first < rows.size(); first += RowsPerLaunch)
     {
       const std::size_t count = std::min<std::size_t>(RowsPerLaunch, rows.size() - first);
@@ -362,7 +334,7 @@ private:
   {
     for (std::size_t r = 0; r < rows.size(); ++r)
     {
-      const float* row = sums.data() + r * RowSums;
+      const float* row = sums.data() + r * LampRowSums;
       this->In[2 * rows[r].axis + rows[r].up] += row[0]; // by the way it shines: lamps inside pass no face
       for (int face = 0; face < 6; ++face)
       {

@@ -102,7 +102,7 @@ void MarchMedium::Launch(const cl::Kernel& kernel, const cl::NDRange& range, con
   this->device.Queue().enqueueNDRangeKernel(kernel, cl::NullRange, range, local);
 }
 
-GridOnDevice MarchMedium::DescribeGrid() const
+IndexGrid MarchMedium::DescribeGrid() const
 {
   return { { this->grid.size[0], this->grid.size[1], this->grid.size[2] } };
 }
@@ -118,9 +118,9 @@ int MarchMedium::EventLimit() const
   return static_cast<int>(std::min(1e9, RoundsAtMost * edges * std::max(1.0, 1.0 / this->settings.stepSize)));
 }
 
-MarchOnDevice MarchMedium::Describe() const
+MarchInfo MarchMedium::Describe() const
 {
-  MarchOnDevice info = {};
+  MarchInfo info = {};
   info.grid = this->DescribeGrid();
   for (int a = 0; a < 3; ++a)
   {
@@ -165,7 +165,7 @@ Buffer<cl_int> MarchMedium::Cells(const std::array<int, 3>& cells) const
 {
   Buffer<cl_int> numbers(this->device, this->PaddedCount(), "cells of the voxels");
   cl::Kernel assign = this->MediumKernel("assign_cells");
-  With(assign, this->DescribeGrid(), GridOnDevice{ { cells[0], cells[1], cells[2] } }, numbers);
+  With(assign, this->DescribeGrid(), IndexGrid{ { cells[0], cells[1], cells[2] } }, numbers);
   this->Launch(assign, Range(this->Padded(2)));
   this->device.Finish();
   return numbers;

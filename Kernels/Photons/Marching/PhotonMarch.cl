@@ -253,14 +253,14 @@ static integer to_attend(const march_arrays* arrays, const photon_lanes* lanes, 
 }
 
 // The face through which a photon came to voxel `at` of the padding.
-static int face_left(const march_info* info, int at)
+static int face_left(const MarchInfo* info, int at)
 {
   const int3 voxel = voxel_of(info, at);
   const int3 size = size_of(info);
   return voxel.x < 0 ? 0 : voxel.x >= size.x ? 1 : voxel.y < 0 ? 2 : voxel.y >= size.y ? 3 : voxel.z < 0 ? 4 : 5;
 }
 
-static void end_photon(const photon_lanes* lanes, int k, int face, __global photon_end* end)
+static void end_photon(const photon_lanes* lanes, int k, int face, __global PhotonEnd* end)
 {
   end->face = face;
   end->crossings = lanes->crossings[k];
@@ -281,7 +281,7 @@ static void give_up_lost(const march_arrays* arrays, photon_lanes* lanes, intege
   {
     FOR_LANES(k, lost)
     {
-      end_photon(lanes, k, STILL_GOING, arrays->ends + first + k);
+      end_photon(lanes, k, StillGoing, arrays->ends + first + k);
       rest(lanes, k);
     }
   }
@@ -299,7 +299,7 @@ static void attend(
     const int beyond = bits_of(outside);
     FOR_LANES(k, ended)
     {
-      const int face = beyond >> k & 1 ? face_left(arrays->info, lanes->at[k]) : DARK;
+      const int face = beyond >> k & 1 ? face_left(arrays->info, lanes->at[k]) : Dark;
       end_photon(lanes, k, face, arrays->ends + first + k);
       rest(lanes, k);
     }
@@ -452,7 +452,7 @@ static int march_packet(const march_arrays* arrays, const __global float* photon
   {
     if (lanes.alive[k])
     {
-      end_photon(&lanes, k, STILL_GOING, arrays->ends + first + k);
+      end_photon(&lanes, k, StillGoing, arrays->ends + first + k);
     }
   }
   return vertices;
@@ -461,8 +461,8 @@ static int march_packet(const march_arrays* arrays, const __global float* photon
 #if PATHS
 // The path of photon i, a work-item each. Its `counts[i]` vertices go to vertices + offsets[i]; with `counting` they
 // are only counted.
-__kernel void trace_paths(march_info info, const __global float* sigma, const __global float* coefficients,
-  const __global uchar* nodes, const __global float* photons, __global photon_end* ends, int counting,
+__kernel void trace_paths(MarchInfo info, const __global float* sigma, const __global float* coefficients,
+  const __global uchar* nodes, const __global float* photons, __global PhotonEnd* ends, int counting,
   const __global int* offsets, __global float4* vertices, __global int* counts)
 {
   const int i = get_global_id(0);
@@ -473,9 +473,9 @@ __kernel void trace_paths(march_info info, const __global float* sigma, const __
 #else
 // Of each batch, photons `first` to `first + count`: those of batch b begin at batch_begin[b], and end where the next
 // ones begin. There are `copies` of the sums, at least as many as batches; copy c is for batch c modulo their number.
-__kernel void march_photons(march_info info, const __global float* sigma, const __global float* coefficients,
+__kernel void march_photons(MarchInfo info, const __global float* sigma, const __global float* coefficients,
   const __global uchar* nodes, const __global float* photons, const __global ulong* marks, const __global int* cells,
-  __global photon_end* ends, __global long* sums, ulong copyStride, int copies, int batches,
+  __global PhotonEnd* ends, __global long* sums, ulong copyStride, int copies, int batches,
   const __global int* batch_begin, volatile __global int* next, int first, int count)
 {
 #if WORKERS > 0

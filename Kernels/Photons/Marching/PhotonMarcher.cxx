@@ -1,5 +1,7 @@
 #include "Photons/Marching/PhotonMarcher.h"
 
+#include "Photons/Marching/PhotonSumsShared.h"
+
 #include "Device/Clock.h"
 #include "Device/Defines.h"
 #include "Device/HostMappedBuffer.h"
@@ -22,15 +24,6 @@ namespace
 constexpr int CountShift = 40;
 constexpr std::size_t CountedAtMost = (std::size_t(1) << (64 - CountShift)) - 1;
 constexpr double WeightUnits = 65536.0; ///< of the largest weight
-
-/// As light_info in the kernels.
-struct LightOnDevice
-{
-  GridOnDevice grid;
-  cl_float diagonal, fluence;
-  cl_int exponent;
-  cl_float colour[3], weight;
-};
 
 /// Tallies of the one channel, for the three that it stands for.
 void Colour(const Rgb& colour, PhotonLight& result)
@@ -137,7 +130,7 @@ void PhotonMarcher::Implementation::Tally(
   std::array<std::array<std::int64_t, 3>, StillGoing + 1> out = {};
   for (std::size_t i = 0; i < packed.Count(); ++i)
   {
-    EndOnDevice end;
+    PhotonEnd end;
     std::memcpy(&end, ends.data() + i * words, sizeof(end));
     result.deposits += static_cast<std::size_t>(end.crossings);
     result.steps += static_cast<std::size_t>(end.steps);
@@ -145,7 +138,7 @@ void PhotonMarcher::Implementation::Tally(
     {
       cl_float units;
       std::memcpy(&units, ends.data() + i * words + EndWords + c, sizeof(units));
-      out[std::min(end.face, StillGoing)][c] += WholeUnits(units); // almost nothing of those that are dark
+      out[std::min<int>(end.face, StillGoing)][c] += WholeUnits(units); // almost nothing of those that are dark
     }
   }
   for (int c = 0; c < 3; ++c)
@@ -182,7 +175,7 @@ void PhotonMarcher::Implementation::Finish(
     lend(result.batchFluence, batches > 1 ? batches * voxels * colours : 0, "fluence by batches");
   const Buffer<cl_long> taken(device, rows * 2 * channels, "tallies");
 
-  LightOnDevice info = {};
+  LightSumsInfo info = {};
   info.grid = this->medium.DescribeGrid();
   info.diagonal = static_cast<float>(this->medium.Diagonal());
   info.fluence =

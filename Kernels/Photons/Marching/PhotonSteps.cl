@@ -18,6 +18,7 @@
 
 #pragma once
 #include "Numerics/Numerics.cl"
+#include "Photons/Marching/MarchShared.h"
 #include "Photons/Marching/PhotonLanes.cl"
 #include "Refraction/Index/SquaredIndex.cl"
 
@@ -25,38 +26,16 @@
 #define AHEAD 4        // voxels along the axis of fastest change, by which memory is asked for early
 #define OUTSIDE -3e38f // sigma of the padding round the grid
 
-typedef struct
-{
-  index_grid grid;
-  float spacing[3]; // over the voxel's diagonal
-  float stepSize;   // voxels, of a step where the octree has single voxels
-  float slowest;    // voxels per time that a photon keeps to wherever n is its least; steps are no longer than for it
-  float darkness;   // power below which nothing is left of a photon
-  int eventLimit;   // walls and turns of a photon at most
-  ulong copy;       // voxels of the padded grid
-} march_info;
-
-// What became of a photon.
-typedef struct
-{
-  int face;      // it left through, -x, +x, ... +z; or one of the following
-  int crossings; // stretches of it that were deposited
-  int steps;     // of the integrator
-  float power[CHANNELS];
-} photon_end;
-#define STILL_GOING 6
-#define DARK 7
-
 // Everything that is read and written.
 typedef struct
 {
-  const march_info* info;
+  const MarchInfo* info;
   const __global float* sigma; // [MEDIUM_CHANNELS][copy] extinction over a diagonal; its sign bit: the index varies
   const __global float* coefficients; // of n^2
   const __global uchar*
     nodes; // [copy] 0: the index does not vary, 1: it does, in a single voxel, 1 + k: in an octree's node of 2^k
   __global long* sums; // [copy][RECORD] fixed point
-  __global photon_end* ends;
+  __global PhotonEnd* ends;
   __global float4*
     vertices; // of a path: position in voxels, part of the power that is left; null: they are only counted
   const __global ulong* marks; // of photons, with COUNTS or CELLS
@@ -89,12 +68,12 @@ typedef struct
 #endif
 } photon_lanes;
 
-static int3 size_of(const march_info* info)
+static int3 size_of(const MarchInfo* info)
 {
   return (int3)(info->grid.size[0], info->grid.size[1], info->grid.size[2]);
 }
 
-static int3 voxel_of(const march_info* info, int at)
+static int3 voxel_of(const MarchInfo* info, int at)
 {
   const int row = info->grid.size[0] + 2, layer = row * (info->grid.size[1] + 2);
   const int z = at / layer;
@@ -102,14 +81,14 @@ static int3 voxel_of(const march_info* info, int at)
   return (int3)(at - z * layer - y * row - 1, y - 1, z - 1);
 }
 
-static integer padded(const march_info* info, const integer* voxel)
+static integer padded(const MarchInfo* info, const integer* voxel)
 {
   const int row = info->grid.size[0] + 2, layer = row * (info->grid.size[1] + 2);
   return voxel[2] * layer + voxel[1] * row + voxel[0] + (layer + row + 1);
 }
 
 // Where the photons of a mask are: at p, which on a wall only `at` knows.
-static void voxels_at(const march_info* info, integer mask, const real* p, integer at, integer* voxel)
+static void voxels_at(const MarchInfo* info, integer mask, const real* p, integer at, integer* voxel)
 {
   FOR_AXES(a)
   {
@@ -147,7 +126,7 @@ static real time_to_wall(real p, real low, real high, real u, real inverse)
 }
 
 // Steps of the photons of a mask from p in `voxel`, with velocity u; 1 / u is known.
-static void begin_steps(const march_info* info, photon_lanes* lanes, integer mask, const integer* voxel, const real* p,
+static void begin_steps(const MarchInfo* info, photon_lanes* lanes, integer mask, const integer* voxel, const real* p,
   const real* u, const real* inverse)
 {
   const int strides[3] = { 1, info->grid.size[0] + 2, (info->grid.size[0] + 2) * (info->grid.size[1] + 2) };
@@ -187,7 +166,7 @@ static void begin_steps(const march_info* info, photon_lanes* lanes, integer mas
 
 #if BENDS
 // Of a voxel.
-static integer coefficient_of(const march_info* info, const integer* voxel)
+static integer coefficient_of(const MarchInfo* info, const integer* voxel)
 {
   const int row = info->grid.size[0] + 4, layer = row * (info->grid.size[1] + 4);
   return (voxel[2] + 2) * layer + (voxel[1] + 2) * row + voxel[0] + 2;
@@ -196,7 +175,7 @@ static integer coefficient_of(const march_info* info, const integer* voxel)
 // n^2 and its gradient where the photons of a mask are.
 static void squared_index_at(const march_arrays* arrays, integer mask, const real* p, real* squared, real* gradient)
 {
-  const index_grid* grid = &arrays->info->grid;
+  const IndexGrid* grid = &arrays->info->grid;
   const int row = grid->size[0] + 4, layer = row * (grid->size[1] + 4);
   const int strides[3] = { 1, row, layer };
   LANES(int, first); // of the coefficients
@@ -231,7 +210,7 @@ static void squared_index_at(const march_arrays* arrays, integer mask, const rea
 }
 
 // The voxels of places anywhere; beyond the grid those of the padding.
-static void voxels_of_places(const march_info* info, const real* p, integer* voxel)
+static void voxels_of_places(const MarchInfo* info, const real* p, integer* voxel)
 {
   FOR_AXES(a)
   {
@@ -243,7 +222,7 @@ static void voxels_of_places(const march_info* info, const real* p, integer* vox
 static real times_of_steps(
   const march_arrays* arrays, integer mask, const integer* voxel, const real* p, const real* u, const real* inverse)
 {
-  const march_info* info = arrays->info;
+  const MarchInfo* info = arrays->info;
   const integer at = mask & padded(info, voxel); // the others are in the padding
   const integer node = to_integer(gather(uchar, arrays->nodes, at));
   // Where n jumps within a step a kick may leave a photon almost without velocity.
@@ -343,7 +322,7 @@ static real take_step(
 // The photons of a mask come to where the index varies, or to the end of their step.
 static void take_turns(const march_arrays* arrays, photon_lanes* lanes, integer mask)
 {
-  const march_info* info = arrays->info;
+  const MarchInfo* info = arrays->info;
   const real now = VECTOR(lanes->now);
   real p[3], u[3], inverse[3];
   integer voxel[3];
@@ -409,7 +388,7 @@ static void rest(photon_lanes* lanes, int k)
 // Photons set off from p (voxels) in unit directions u.
 static void set_off(const march_arrays* arrays, photon_lanes* lanes, real* p, real* u)
 {
-  const march_info* info = arrays->info;
+  const MarchInfo* info = arrays->info;
   const integer all = (integer)-1;
   integer voxel[3];
   real inverse[3];

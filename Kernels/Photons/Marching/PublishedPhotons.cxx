@@ -1,5 +1,7 @@
 #include "Photons/Marching/PublishedPhotons.h"
 
+#include "Photons/Marching/PublishedPhotonsShared.h"
+
 #include "Photons/Marching/PhotonPacking.h"
 #include "TyndallKernelSources.h"
 
@@ -17,19 +19,6 @@ namespace
 {
 constexpr int RoundsAtMost = 64;
 constexpr std::size_t PhotonsPerLaunch = 1 << 16;
-
-// As published_info, published_end in PublishedPhotons.cl.
-struct GridOnDevice
-{
-  cl_int size[3];
-  cl_float spacing[3];
-  cl_int stepLimit;
-};
-struct EndOnDevice
-{
-  cl_int face, deposits, givenUp, steps;
-  cl_float power[3], deposited[3];
-};
 
 class PublishedMarch
 {
@@ -122,7 +111,7 @@ public:
 
   static int Components(const Field& field) { return field.values ? field.components : 0; }
 
-  GridOnDevice Info = {};
+  PublishedMarchInfo Info = {};
 
 private:
   Device& TheDevice;
@@ -131,9 +120,9 @@ private:
   std::string Options;
 };
 
-void Tally(const std::vector<EndOnDevice>& ends, double unit, PhotonLight& result, PackingLoss& loss)
+void Tally(const std::vector<PublishedPhotonEnd>& ends, double unit, PhotonLight& result, PackingLoss& loss)
 {
-  for (const EndOnDevice& end : ends)
+  for (const PublishedPhotonEnd& end : ends)
   {
     result.deposits += static_cast<std::size_t>(end.deposits);
     result.steps += static_cast<std::size_t>(end.steps);
@@ -194,7 +183,7 @@ PhotonLight MarchPublished(Device& device, const Medium& medium, const Field& io
   const Buffer<cl_uchar> nodes = levels ? Buffer<cl_uchar>(device, levels, medium.grid.VoxelCount(), "octree levels")
                                         : Buffer<cl_uchar>(device, 0, "octree levels");
   const Buffer<float> values(device, packed.values, "photons");
-  const Buffer<EndOnDevice> ends(device, packed.Count(), "ends of photons");
+  const Buffer<PublishedPhotonEnd> ends(device, packed.Count(), "ends of photons");
   Buffer<cl_ulong> light(device, medium.grid.VoxelCount(), "packed light");
   Buffer<float> fluence(device, 3 * medium.grid.VoxelCount(), "fluence");
   Buffer<float> direction(device, 3 * medium.grid.VoxelCount(), "mean direction");

@@ -1,6 +1,7 @@
 #include "Refraction/Index/IndexField.h"
 
 #include "Numerics/PyramidLayout.h"
+#include "Numerics/Vectors.h"
 #include "TyndallKernelSources.h"
 
 #include <algorithm>
@@ -80,8 +81,7 @@ std::vector<float> IndexGradient(Device& device, const Grid& grid, const Buffer<
   const std::size_t layer = 3 * static_cast<std::size_t>(size[0]) * static_cast<std::size_t>(size[1]);
   const int atOnce = static_cast<int>(
     std::clamp<std::size_t>(LayerBytes / (layer * sizeof(float)), 1, static_cast<std::size_t>(size[2])));
-  const cl_float4 spacing = { { static_cast<float>(grid.spacing[0]), static_cast<float>(grid.spacing[1]),
-    static_cast<float>(grid.spacing[2]), 0.0f } };
+  const cl_float4 spacing = Float4(Vector(grid.spacing));
   Buffer<float> part(device, layer * static_cast<std::size_t>(atOnce), "ior_gradient");
   std::vector<float> gradient(3 * grid.VoxelCount());
   for (int first = 0; first < size[2]; first += atOnce)

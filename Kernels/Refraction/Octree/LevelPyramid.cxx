@@ -1,4 +1,5 @@
 #include "Refraction/Octree/LevelPyramid.h"
+#include "Numerics/Vectors.h"
 
 #include "TyndallKernelSources.h"
 

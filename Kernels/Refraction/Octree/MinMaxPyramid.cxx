@@ -1,4 +1,5 @@
 #include "Refraction/Octree/MinMaxPyramid.h"
+#include "Numerics/Vectors.h"
 
 #include "TyndallKernelSources.h"
 
