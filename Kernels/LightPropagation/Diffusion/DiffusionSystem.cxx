@@ -54,7 +54,7 @@ cl::Kernel DiffusionKernel(Device& device, const char* name, bool passing)
     ExactOption(device) + " -DPASSING=" + std::to_string(passing));
 }
 
-/// Rounding leaves dark faces a little less than nothing: that is for the others to bear, so that the sum stays.
+/// Rounding can leave dark faces a little below 0: they become 0, and the others are scaled so that the sum stays.
 std::array<double, 6> NotNegative(std::array<double, 6> powers)
 {
   const double sum = std::accumulate(powers.begin(), powers.end(), 0.0);
@@ -262,7 +262,7 @@ double DiffusionSystem::Correct(double unit)
   return change;
 }
 
-/// Of the last correction but one and the one before that in Anderson's mix: least squares of the change.
+/// Weights of the two iterations before in Anderson's mixing: least squares of the change (numerics.md, Eq. (71)).
 std::array<double, 2> DiffusionSystem::Weights(double* change)
 {
   cl::Kernel kernel = this->Kernel("anderson_sums");
