@@ -20,7 +20,8 @@ struct IterationResult
   std::vector<std::string> leftOut;                  ///< that the iteration alone knows of
 };
 
-/// How scattering orders are added up: a strategy over the same sweep and scattering.
+/// How scattering orders are added up: a strategy over the same sweep and scattering. When it ends, and what its last
+/// residual means: numerics.md, section 7.9.
 class Iteration
 {
 public:

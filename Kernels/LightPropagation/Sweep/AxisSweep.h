@@ -12,8 +12,8 @@ namespace tyndall
 /// Planes that a ray goes round a periodic axis before it is given up.
 constexpr int MostPlanesAround = 8192;
 
-/// Carries all rays of a set of bundles through a volume along one axis, and deposits what they lose: propagate and
-/// collect in one, without a buffer a direction (Gruson et al. need one, their section 4.1).
+/// Carries all rays of a set of bundles through a volume along one axis, and deposits what they lose: propagation and
+/// collection in one, without a buffer a direction (Gruson et al. need one, their section 4.1; numerics.md, section 4).
 ///
 /// Memory: the maps, (plane's voxels) floats a direction and channel and way, and a few planes of scratch a unit; both
 /// in a workspace, except for a periodic axis, whose rays stay on the way from one sweep to the next.

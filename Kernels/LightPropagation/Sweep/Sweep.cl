@@ -25,8 +25,8 @@ typedef struct
   float meanLength[MEAN_LENGTH_TERMS];
 } plane_layout;
 
-// The medium's own light in the voxel where it starts: per unit of source, the sum over segments of power (l - p1) /
-// sigma.
+// Path of the medium's own light in the voxel where it starts, per unit of source: the sum over segments of
+// power (l - p1) / sigma (numerics.md, Eq. (26)).
 typedef struct
 {
   float length;                   // sum of power l
@@ -237,8 +237,8 @@ static void begin_planes(const plane_layout* layout, __global float* planes, __g
 }
 
 #if SOURCE
-// The medium's own light on the way through the voxel where it starts, left out until here: (length - taken) / sigma,
-// or a polynomial where that would cancel or `taken` was not kept.
+// Adds the path of the medium's own light in the voxel where it starts (numerics.md, Eq. (26)): (length - taken) /
+// sigma, or a polynomial where that would cancel or `taken` was not kept.
 static void add_own_light(const plane_layout* layout, __global float* plane, const __global own_light* light)
 {
   const int rows = layout->sizeV * ROW;

@@ -7,9 +7,9 @@
 namespace tyndall
 {
 /// Carries light once through the medium: from what shines in its voxels and what comes in through the box's faces to
-/// path integrals, net flux, partial currents and the power that left. Knows nothing of scattering orders, of
-/// acceleration or of who calls it. In one device's memory today (SweepInMemory.h); by slices, over several machines or
-/// in another order are further implementations.
+/// path integrals, net flux, partial currents and the power that left (numerics.md, section 4). Power is conserved,
+/// Eq. (27). Independent of scattering orders and of acceleration. In one device's memory today
+/// (SweepInMemory.h); by slices, over several machines or in another order are further implementations.
 class SweepOperator
 {
 public:

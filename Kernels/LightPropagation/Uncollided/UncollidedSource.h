@@ -7,8 +7,8 @@
 namespace tyndall
 {
 /// Light up to where it first meets the medium: the uncollided flux of one lamp, of all that shines through the box's
-/// faces, of a small bright part of the medium. A solver asks each of them once; what of their light is scattered is
-/// its first source.
+/// faces, of a small bright part of the medium (numerics.md, section 5). Found once a solve; what of it is scattered is
+/// the first source.
 class UncollidedSource
 {
 public:
