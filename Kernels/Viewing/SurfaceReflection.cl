@@ -4,7 +4,8 @@
 //   SURFACE  what it reflects: 0 there is none, 1 as Fresnel's equations have it, 2 a fixed part
 
 #if SURFACE
-// Unpolarised light from an index of square n1 to one of n2, the square of n sin(theta) being `across`.
+// Unpolarised light from an index of square n1 to one of n2, the square of n sin(theta) being `across` (numerics.md,
+// Eq. (110)).
 inline real fresnel(real n1, real n2, real across)
 {
   const real in = sqrt(greater(n1 - across, (real)0.0f)); // n cos(theta)

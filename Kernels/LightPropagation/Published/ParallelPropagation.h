@@ -27,8 +27,7 @@ public:
   /// @param temporaryBytes  most that T may take; 0: what is left on the device
   /// @param channels  3: as if something had colour; 1: as the scene needs
   /// @throws InvalidInput for a medium, illumination or settings without meaning; DeviceError if it does not fit even
-  /// with
-  ///   one direction a batch
+  ///   with one direction a batch
   ParallelPropagation(Device& device, const Medium& medium, const Illumination& illumination,
     const PropagationSettings& settings, std::size_t temporaryBytes = 0, int channels = 1);
   ~ParallelPropagation();

@@ -9,10 +9,9 @@
 //                    that these set out from, by their marks: column and row << 16
 //   PATHS            1: nothing is summed, vertices are written
 //
-// A step is followed from voxel wall to voxel wall (Amanatides and Woo). In a voxel whose extinction over a diagonal is
-// s, with b = max(s, 1), the sums gain
-//   a = power b (path integral of transmittance, in diagonals),   0 <= a <= power,
-// which is the power lost where a voxel is thick and the path where it is thin: neither loses digits in fixed point.
+// A step is followed from voxel wall to voxel wall (Amanatides and Woo 1987). In a voxel whose extinction over a
+// diagonal is s, with b = max(s, 1), the sums gain (numerics.md, Eqs. (35), (97))
+//   a = power b (path integral of transmittance, in diagonals),   0 <= a <= power
 // Cells, whose voxels differ, gain power times path in diagonals.
 //
 // A photon counts where it enters a voxel (a cell), however many stretches it crosses it in; once more where it comes
@@ -35,7 +34,7 @@ typedef struct
   real wall[3], now;
   real sigma;
   real power[CHANNELS];
-  real owed[CHANNELS]; // what rounding has left of what the voxels were to take: the power is `power + owed`
+  real owed[CHANNELS]; // what rounding has left of what the voxels were to take (Kahan): the power is `power + owed`
 #if COUNTS || CELLS
   integer counted; // place where the photon was counted last
 #endif
