@@ -19,11 +19,11 @@ enum class PropagationAcceleration
   None       ///< one after the other, as published
 };
 
-/// What the light propagation solvers can be told; the names are those of the filter's properties.
+/// Settings of the light propagation solvers; the names are those of the filter's properties.
 struct PropagationSettings
 {
   int directionsPerFace = 25;  ///< directions per cube face, a square number: 1, 4, 9, 16, 25, ...
-  bool adaptDirections = true; ///< more of them for slabs (UnvaryingAxes.h); false: as many as told
+  bool adaptDirections = true; ///< more of them for slabs (UnvaryingAxes.h); false: directionsPerFace
   /// Directions per cube face, a square number, of the unscattered light of shining faces, sky and environment
   /// (UncollidedBoundary.h); 0: the same as for scattered light.
   int uncollidedDirections = 0;

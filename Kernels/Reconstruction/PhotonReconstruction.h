@@ -28,7 +28,7 @@ struct ReconstructionSettings
   enum class Estimator
   {
     Published,      ///< level by centre-surround and photon weight, the lower of the two (Pfeuti 2009, section 3.2.4)
-    Conservative,   ///< each level's detail is kept as far as independent batches agree on it; tells its error
+    Conservative,   ///< each level's detail is kept as far as independent batches agree on it; has an error
     ConstantRadius, ///< one level everywhere (section 4.2)
     NearestPhotons, ///< the lowest level that holds `nearest` photons (section 4.2)
   };

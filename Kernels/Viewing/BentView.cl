@@ -10,7 +10,7 @@
 
 #define PASSES (1 + (SURFACE > 0) + TABLE)
 
-// What all marches leave together: light with n^2 divided out, and what the camera's own ray tells of the way.
+// What all marches gather together: light with n^2 divided out, and transmittance and depth along the camera's own ray.
 typedef struct
 {
   light l;

@@ -233,8 +233,8 @@ bool Bundle::MovesBothWaysAtOnce() const
   return Same(this->tangentU, this->tangentV) && Same(this->startU, this->startV);
 }
 
-/// Moves at the same time are one where nothing tells the axes apart, else the one of the larger tangent comes first:
-/// whatever way the bundle lies.
+/// Moves at the same depth are one move where tangents and starts are equal, else that of the larger tangent comes
+/// first: whatever way the bundle lies.
 PlaneCrossing Bundle::Crossing(int plane) const
 {
   const auto moveAt = [plane](const std::vector<Move>& moves, double start, double tangent) {

@@ -224,7 +224,7 @@ void DiffusionAcceleration::MakeSweep()
 {
   TransportParts& parts = this->Parts;
   this->PartialCurrents = Buffer<float>(parts.TheDevice, parts.Layout.Floats(6), "the power from voxel to voxel");
-  // The system knows the net flux.
+  // No flux: it comes from the system.
   this->Swept = parts.MakeSweep({ &parts.Path, nullptr, &this->PartialCurrents, nullptr });
 }
 

@@ -90,7 +90,7 @@ void SourceIteration::MakeFilledSweep()
   const int later = (this->Settings.maximumOrders > 0 ? this->Settings.maximumOrders : OrdersExpected) - 1;
   if (filled < MostlyFilled && later * (1.0 - filled) > 1.0)
   {
-    // The sweep at the end knows the flux.
+    // No flux: it comes from the sweep at the end.
     this->Filled = this->Parts.MakeSweep({ &this->Parts.Path, nullptr, nullptr, nullptr }, traits.filled);
   }
 }

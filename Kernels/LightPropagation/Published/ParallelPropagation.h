@@ -37,7 +37,7 @@ public:
   int FirstDirection(int batch) const; ///< BatchCount() gives the number of directions
 
   /// All rays of the batch's directions once through the volume, T filled.
-  /// @param monitor  told fractions of the order
+  /// @param monitor  given fractions of the order
   void Propagate(int batch, const Monitor& monitor = {});
   void Collect(int batch);
   /// U of the next order, I and fluence of all orders so far, powers and convergence.

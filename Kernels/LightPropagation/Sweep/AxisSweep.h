@@ -30,7 +30,7 @@ public:
   /// @param boundary  what comes in; empty: nothing
   /// @param hasSource  whether volume.source is to be read
   /// @param mostPlanes  that rays go on a periodic axis before they wait for the next sweep
-  /// @param monitor  told fractions of this sweep
+  /// @param monitor  given fractions of this sweep
   void Start(
     const SweepVolume& volume, const SweepBoundary& boundary, bool hasSource, int mostPlanes, const Monitor& monitor);
 

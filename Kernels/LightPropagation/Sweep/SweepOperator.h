@@ -18,7 +18,7 @@ public:
   /// Adds to the deposit that the operator was made with.
   /// @param source  W / (length^3 sr), [channel][stride]; null: the medium is dark
   /// @param boundary  what comes in, three channels; empty: nothing
-  /// @param monitor  told fractions of this sweep
+  /// @param monitor  given fractions of this sweep
   /// @return of all channels: what came in, what left, what still goes round a periodic axis and does so in the next
   /// sweep
   virtual SweepTally Apply(const Buffer<float>* source, const SweepBoundary& boundary, const Monitor& monitor) = 0;

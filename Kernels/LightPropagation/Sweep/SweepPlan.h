@@ -13,7 +13,7 @@ namespace tyndall
 constexpr int MaxMembers = 8;      ///< MAX_MEMBERS of SweepLayout.cl
 constexpr int MeanLengthTerms = 5; ///< MEAN_LENGTH_TERMS of SweepLayout.cl
 
-// What the kernels are told, as bundle_info and crossing_info of SweepLayout.cl, unit_info, plane_layout and own_light
+// Arguments of the kernels, as bundle_info and crossing_info of SweepLayout.cl, unit_info, plane_layout and own_light
 // of Sweep.cl.
 struct BundleOnDevice
 {

@@ -14,7 +14,7 @@ class UncollidedSource
 public:
   virtual ~UncollidedSource() = default;
 
-  /// Adds its path integrals, and flux and moments where the volume asks for them, to the volume's deposit.
+  /// Adds its path integrals, and flux and moments where the deposit has arrays for them, to the volume's deposit.
   /// @param firstChannel  of the light's three, that is the volume's first
   /// @param workspace  of sweeps that are not under way
   /// @return what came in, what left, what still goes round a periodic axis

@@ -51,7 +51,7 @@ struct EmittedPhotons
 ///
 /// The index outside is taken as constant.
 ///
-/// @throws InvalidInput where an illumination means nothing or no photon is asked for; DeviceError where the machine's
+/// @throws InvalidInput where an illumination is not valid or photonCount is 0; DeviceError where the machine's
 ///   memory does not suffice for the photons (60 bytes each); Aborted
 EmittedPhotons EmitPhotons(
   const Grid& grid, const Illumination& illumination, const EmissionSettings& settings, const Monitor& monitor = {});
@@ -67,7 +67,7 @@ struct PilotPhotons
 /// Photons of every light, the environment and the sky, not of the faces: one in each cell of a square grid, at a
 /// random place in it (Pfeuti 2009, section 3.2.2).
 /// @param edge  cells along an edge of the grid, at least 1
-/// @throws InvalidInput where an illumination means nothing
+/// @throws InvalidInput where an illumination is not valid
 std::vector<PilotPhotons> EmitPilots(
   const Grid& grid, const Illumination& illumination, int edge, std::uint64_t seed = 0);
 }

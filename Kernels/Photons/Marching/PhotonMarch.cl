@@ -172,8 +172,8 @@ static void deposit_all(const march_arrays* arrays, const photon_lanes* lanes, c
 #undef DEPOSIT
 }
 
-// Most of the time of a march across a large grid is waiting for memory. It is asked for a few voxels ahead of the
-// photons, as far as they go straight on. Whoever compiles this may not know how: then it does without.
+// Most of the time of a march across a large grid is spent on memory. It is prefetched a few voxels ahead of the
+// photons, as far as they go straight on, where the compiler has a builtin for that.
 static void ask_ahead(const march_arrays* arrays, const photon_lanes* lanes, integer at)
 {
 #if REAL_WIDTH > 1 && defined(__has_builtin)
@@ -265,7 +265,7 @@ static void end_photon(const photon_lanes* lanes, int k, int face, __global phot
 }
 
 #if BENDS
-// The photons of a mask whose velocity means nothing, after a turn.
+// Gives up the photons of a mask whose velocity is out of range after a turn.
 static void give_up_lost(const march_arrays* arrays, photon_lanes* lanes, integer mask, int first)
 {
   const real pace = VECTOR(lanes->pace);

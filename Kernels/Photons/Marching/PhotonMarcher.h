@@ -33,7 +33,7 @@ public:
   /// @param ior     refractive index, one component a voxel; null values: 1 everywhere
   /// @param levels  octree level of each voxel (0: itself, k: in a node of 2^k voxels an edge), which path steps may
   ///                take whole; null: step by step. Read in the constructor only, as all arrays are.
-  /// @throws InvalidInput for a medium, an index or a level that means nothing (names the voxel); DeviceError
+  /// @throws InvalidInput for a medium, an index or a level that is not valid (names the voxel); DeviceError
   PhotonMarcher(Device& device, const Medium& medium, const Field& ior, const MarchSettings& settings = {},
     const std::uint8_t* levels = nullptr);
   ~PhotonMarcher();

@@ -103,7 +103,7 @@ static integer padded(const march_info* info, const integer* voxel)
   return voxel[2] * layer + voxel[1] * row + voxel[0] + (layer + row + 1);
 }
 
-// Where the photons of a mask are: at p, which on a wall only `at` knows.
+// The voxels of the photons of a mask: of their place p, but on a wall, where rounding would decide, that of `at`.
 static void voxels_at(const march_info* info, integer mask, const real* p, integer at, integer* voxel)
 {
   FOR_AXES(a)

@@ -53,7 +53,7 @@ struct RefractiveMediumSettings
   int filterSize = 9; ///< of the smoothing of n, see SmoothIndex
 };
 
-/// Solids in a box, as a medium of voxels. Arrays have x fastest; those that are empty are told of in leftOut.
+/// Solids in a box, as a medium of voxels. Arrays have x fastest; leftOut says which are empty.
 struct RefractiveMedium
 {
   std::vector<float> occupancy;   ///< part of the voxel inside any solid, [0, 1]
