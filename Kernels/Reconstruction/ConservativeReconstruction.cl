@@ -1,4 +1,4 @@
-// The conservative estimator, after LightRows.cl. Compiled with
+// The conservative estimator. Compiled with
 //   BATCHES     independent ones, at least 2
 //   CHANNELS    of the light, 1 or 3
 //   DIRECTIONS  1: there are mean directions
@@ -6,6 +6,9 @@
 //
 // Fields of a level of the pyramid: each batch's light (sum of channels), then what is smoothed: the light's channels,
 // then its flux (light times mean direction).
+
+#include "Reconstruction/LightRows.cl"
+
 #define CARRIED (CHANNELS + 3 * DIRECTIONS)
 #define FIELDS (BATCHES + CARRIED)
 // Fields of a level of the result: what is smoothed, the level it was taken from, and the squared error.

@@ -1,10 +1,12 @@
-// A level of the pyramid for each voxel, after LightRows.cl: a work-item a row (or a voxel). Compiled with
+// A level of the pyramid for each voxel: a work-item a row (or a voxel). Compiled with
 //   ESTIMATOR   0 published, 1 constant radius, 2 nearest photons
 //   CHANNELS, DIRECTIONS  of the light; fields of its pyramid are its channels, then the mean direction
 //   TOP         the highest level
 //
 // Voxels of a row that are next to each other lie between the same cells of a level. So levels are taken one after the
 // other, and each voxel keeps what it took so far: nothing is gathered.
+
+#include "Reconstruction/LightRows.cl"
 
 typedef struct
 {

@@ -4,8 +4,12 @@
 // Eq. (91)) whose gradient is taken in the middle of each step. Where the index is constant that is a straight step,
 // and the gradient is not fetched.
 //
-// Needs RayPackets.cl and SurfaceReflection.cl before it. Define besides
+// Define
 //   SKIP_BRICKS  1: rays leap over bricks in which nothing extinguishes, shines or bends
+
+#pragma once
+#include "Viewing/RayPackets.cl"
+#include "Viewing/SurfaceReflection.cl"
 
 // To the nearest face, voxels.
 inline real room_around(real3 p, int4 size)

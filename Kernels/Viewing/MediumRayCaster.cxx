@@ -228,8 +228,7 @@ void MediumRayCaster::PrepareBending()
   } const grid = { { this->TheGrid.size[0], this->TheGrid.size[1], this->TheGrid.size[2] } };
   const std::size_t x = grid.size[0], y = grid.size[1], z = grid.size[2];
   const Buffer<float> coefficients = SquaredIndexCoefficients(this->TheDevice, this->TheGrid, this->Ior);
-  cl::Kernel pack =
-    this->TheDevice.Kernel("pack_bending", { kernel_source::SquaredIndex, kernel_source::BendingField });
+  cl::Kernel pack = this->TheDevice.Kernel("pack_bending", kernel_source::BendingField);
   With(pack, grid, Float4(1.0 / Vector(this->TheGrid.spacing), 0.0), coefficients, this->Bending);
   this->TheDevice.Queue().enqueueNDRangeKernel(
     pack, cl::NullRange, cl::NDRange(RoundUp<std::size_t>(x + 2, 64), y + 2, z + 2), cl::NDRange(64, 1, 1));
@@ -342,22 +341,20 @@ std::string MediumRayCaster::PackingOptions() const
 void MediumRayCaster::Pack(bool forShadowRays)
 {
   const bool bends = this->Bends && !forShadowRays; // shadow rays go straight on
-  const std::initializer_list<std::string_view> sources = { kernel_source::Numerics, kernel_source::Sampling,
-    kernel_source::ScatteredLight };
   const std::string options =
     this->PackingOptions() + Define("SHADOW_RAYS", this->LightCount > 0 && !forShadowRays) + Define("BENDS", bends);
   const cl_int4 size = Int4(this->TheGrid.size[0], this->TheGrid.size[1], this->TheGrid.size[2]);
   const cl_int4 bricks = Int4(this->BrickCount[0], this->BrickCount[1], this->BrickCount[2]);
   const cl_int single = this->Settings.singleScatteringOnly ? 1 : 0;
 
-  cl::Kernel pack = this->TheDevice.Kernel("pack_samples", sources, options);
+  cl::Kernel pack = this->TheDevice.Kernel("pack_samples", kernel_source::ScatteredLight, options);
   With(pack, size, single, static_cast<float>(this->G), this->Arrays[0], this->Arrays[1], this->Arrays[2],
     this->Arrays[3], this->Arrays[4], this->Direct, this->MeanDirection, this->Ior, this->Samples, this->Extinctions,
     this->Flow, this->Glow);
   this->TheDevice.Queue().enqueueNDRangeKernel(pack, cl::NullRange,
     cl::NDRange(RoundUp<std::size_t>(size.s[0] + 2, 64), size.s[1] + 2, size.s[2] + 2), cl::NDRange(64, 1, 1));
 
-  cl::Kernel find = this->TheDevice.Kernel("find_empty_bricks", sources, options);
+  cl::Kernel find = this->TheDevice.Kernel("find_empty_bricks", kernel_source::ScatteredLight, options);
   With(find, size, bricks, this->Samples, this->Extinctions, this->Glow, this->Bending, this->Bricks);
   this->TheDevice.Queue().enqueueNDRangeKernel(find, cl::NullRange,
     cl::NDRange(RoundUp<std::size_t>(bricks.s[0], 4), bricks.s[1], bricks.s[2]), cl::NDRange(4, 1, 1));
@@ -373,8 +370,7 @@ void MediumRayCaster::SeeLights(const Camera& camera, const Monitor& monitor)
   const cl_int4 bricks = Int4(this->BrickCount[0], this->BrickCount[1], this->BrickCount[2]);
   const glm::dvec3 eye = Vector(camera.position) - Vector(this->TheGrid.origin);
   const double radius = std::cbrt(3.0 * this->TheGrid.VoxelVolume() / (4.0 * Pi));
-  cl::Kernel see = this->TheDevice.Kernel("see_lights",
-    { kernel_source::Numerics, kernel_source::Sampling, kernel_source::ScatteredLight },
+  cl::Kernel see = this->TheDevice.Kernel("see_lights", kernel_source::ScatteredLight,
     this->PackingOptions() + Define("SHADOW_RAYS", true) + Define("BENDS", false) + this->StepOption());
   const std::size_t across = RoundUp<std::size_t>(this->TheGrid.size[0], 4 * this->PacketWidth()) / this->PacketWidth();
   const std::size_t rows = this->TheGrid.size[1];
@@ -492,16 +488,11 @@ cl::Kernel MediumRayCaster::CastingKernel()
 {
   if (!this->Bends && this->Settings.tableFace < 0)
   {
-    return this->TheDevice.Kernel("cast_rays",
-      { kernel_source::Numerics, kernel_source::Sampling, kernel_source::View, kernel_source::Background,
-        kernel_source::Crossing, kernel_source::SurfaceLight, kernel_source::MediumRayCaster },
+    return this->TheDevice.Kernel("cast_rays", kernel_source::MediumRayCaster,
       this->CastingOptions() + Define("SURFACE_LIGHT", this->Surface.Size() > 0));
   }
   const int surface = this->Reflects() ? static_cast<int>(this->Settings.surfaceReflection) : 0;
-  return this->TheDevice.Kernel("cast_bent_rays",
-    { kernel_source::Numerics, kernel_source::Sampling, kernel_source::View, kernel_source::Background,
-      kernel_source::Crossing, kernel_source::RayPackets, kernel_source::SurfaceReflection, kernel_source::BentRays,
-      kernel_source::Table, kernel_source::BentView },
+  return this->TheDevice.Kernel("cast_bent_rays", kernel_source::BentView,
     this->CastingOptions() + Define("BENDS", this->Bends) + Define("SURFACE", surface) +
       Define("TABLE", this->Settings.tableFace >= 0));
 }

@@ -1,7 +1,12 @@
 // Rays on their way through a medium that bends them, and what they are given on it.
 //
-// Needs Numerics.cl, Sampling.cl, View.cl and Crossing.cl before it. Define besides
+// Define
 //   BENDS  1: the index varies
+
+#pragma once
+#include "Viewing/Crossing.cl"
+#include "Viewing/Sampling.cl"
+#include "Viewing/View.cl"
 
 // Field by field the same as MediumRayCaster.cxx's.
 typedef struct
@@ -44,8 +49,8 @@ typedef struct
   const view* v;
   const optics* o;
   scenery scene;
-  global const float4* bending; // half the gradient of n^2 by squared spacing (x, y, z), n^2 (w)
-  global const char* bricks;
+  __global const float4* bending; // half the gradient of n^2 by squared spacing (x, y, z), n^2 (w)
+  __global const char* bricks;
 } surroundings;
 
 inline real3 further(real3 p, real t, real3 velocity)

@@ -1,17 +1,19 @@
 // What the rays meet: every voxel's source radiance per unit length and its extinction, made from the medium's arrays
 // and from the light that a solver left in them or that shadow rays find.
 //
-// Needs Numerics.cl and Sampling.cl before it. Define besides
+// Define
 //   ABSORPTION, SCATTERING, EMISSION, FLUENCE, UNSCATTERED   components of each array: 0 (there is none), 1 or 3
 //   SHADOW_RAYS  1: `direct` holds what the lights scatter towards the eye
 //   FLOW         1: the light's mean direction is packed
 //   GLOW         1: emission is packed apart
 //   BENDS        1: the refractive index varies
 
+#include "Viewing/Sampling.cl"
+
 #define PER_SPHERE 0.0795774715f // 1 / (4 pi)
 #define LARGEST_FLOW 0.9999f
 
-inline float channel_of(global const float* values, int voxel, int components, int channel)
+inline float channel_of(__global const float* values, int voxel, int components, int channel)
 {
   return components == 0 ? 0.0f : values[voxel * components + (components == 3 ? channel : 0)];
 }
@@ -31,8 +33,8 @@ inline int voxel_index(int4 size)
 
 // In-scattered radiance of one channel. `fluence` holds everything, `unscattered` what of it came straight from a
 // light; what is seen of the lights by shadow rays is taken out of fluence, so that it does not count twice.
-inline float in_scattered(global const float* fluence, global const float* unscattered, global const float* direct,
-  int voxel, int channel, int single)
+inline float in_scattered(__global const float* fluence, __global const float* unscattered,
+  __global const float* direct, int voxel, int channel, int single)
 {
   const float whole = channel_of(fluence, voxel, FLUENCE, channel);
   const float first = channel_of(unscattered, voxel, UNSCATTERED, channel);
@@ -48,13 +50,13 @@ inline float in_scattered(global const float* fluence, global const float* unsca
 // What the medium and its light are made of, as the kernels' arguments.
 typedef struct
 {
-  global const float* absorption;
-  global const float* scattering;
-  global const float* emission;
-  global const float* fluence;
-  global const float* unscattered;
-  global const float* direct;
-  global const float* ior;
+  __global const float* absorption;
+  __global const float* scattering;
+  __global const float* emission;
+  __global const float* fluence;
+  __global const float* unscattered;
+  __global const float* direct;
+  __global const float* ior;
 } ingredients;
 
 // Source of a voxel, by n^2 with BENDS: red, green, blue, and grey extinction; besides all of the extinction, and what
@@ -91,11 +93,12 @@ inline float4 source_of(const ingredients* from, int voxel, int single, float4* 
 // flow     with FLOW: the light's mean direction times g, at most LARGEST_FLOW long
 // glow     with GLOW: emission, which is then no part of `samples`
 // ior      with BENDS: sources are divided by n^2
-kernel void pack_samples(int4 size, int single, float g, global const float* restrict absorption,
-  global const float* restrict scattering, global const float* restrict emission, global const float* restrict fluence,
-  global const float* restrict unscattered, global const float* restrict direct, global const float* restrict direction,
-  global const float* restrict ior, global float4* restrict samples, global float4* restrict extinctions,
-  global float4* restrict flow, global float4* restrict glow)
+__kernel void pack_samples(int4 size, int single, float g, __global const float* restrict absorption,
+  __global const float* restrict scattering, __global const float* restrict emission,
+  __global const float* restrict fluence, __global const float* restrict unscattered,
+  __global const float* restrict direct, __global const float* restrict direction, __global const float* restrict ior,
+  __global float4* restrict samples, __global float4* restrict extinctions, __global float4* restrict flow,
+  __global float4* restrict glow)
 {
   if (get_global_id(0) >= size.x + 2)
   {
@@ -131,9 +134,9 @@ kernel void pack_samples(int4 size, int single, float g, global const float* res
 // Whether anything extinguishes or shines in a brick, or bends with BENDS, or does so close enough to be interpolated
 // into it:
 // 1 it is empty, -1 it is not, 0 rays bend.
-kernel void find_empty_bricks(int4 size, int4 brick_count, global const float4* restrict samples,
-  global const float4* restrict extinctions, global const float4* restrict glow, global const float4* restrict bending,
-  global char* restrict bricks)
+__kernel void find_empty_bricks(int4 size, int4 brick_count, __global const float4* restrict samples,
+  __global const float4* restrict extinctions, __global const float4* restrict glow,
+  __global const float4* restrict bending, __global char* restrict bricks)
 {
   const int i = get_global_id(0);
   const int j = get_global_id(1);
@@ -194,11 +197,11 @@ typedef struct
 //   direct  6 a voxel: sum of irradiance times phase function, W / (length^2 sr), and sum of irradiance, W / length^2
 // Work-items by voxels of a slice. nearest_square keeps a voxel that holds a light finite: the mean of 1/r^2 over a
 // sphere of the voxel's volume is 3/R^2.
-kernel void see_lights(int4 size, int4 brick_count, float4 spacing, float4 eye, float4 forward, float g, float step,
-  float nearest_square, int light_count, global const small_light* restrict lights,
-  global const float* restrict scattering, global const float4* restrict samples,
-  global const float4* restrict extinctions, global const char* restrict bricks, int first_slice, int first_row,
-  global float* restrict direct)
+__kernel void see_lights(int4 size, int4 brick_count, float4 spacing, float4 eye, float4 forward, float g, float step,
+  float nearest_square, int light_count, __global const small_light* restrict lights,
+  __global const float* restrict scattering, __global const float4* restrict samples,
+  __global const float4* restrict extinctions, __global const char* restrict bricks, int first_slice, int first_row,
+  __global float* restrict direct)
 {
   // The voxels of this packet, along x.
   const int first = get_global_id(0) * REAL_WIDTH;
@@ -338,15 +341,15 @@ kernel void see_lights(int4 size, int4 brick_count, float4 spacing, float4 eye, 
   }
 
   // Lanes beyond the last voxel repeat it, and write the same again.
-#define KEEP(n)                                       \
-  {                                                   \
-    global float* kept = direct + 6 * LANE(voxel, n); \
-    kept[0] = LANE(towards_eye.r, n);                 \
-    kept[1] = LANE(towards_eye.g, n);                 \
-    kept[2] = LANE(towards_eye.b, n);                 \
-    kept[3] = LANE(irradiance.r, n);                  \
-    kept[4] = LANE(irradiance.g, n);                  \
-    kept[5] = LANE(irradiance.b, n);                  \
+#define KEEP(n)                                         \
+  {                                                     \
+    __global float* kept = direct + 6 * LANE(voxel, n); \
+    kept[0] = LANE(towards_eye.r, n);                   \
+    kept[1] = LANE(towards_eye.g, n);                   \
+    kept[2] = LANE(towards_eye.b, n);                   \
+    kept[3] = LANE(irradiance.r, n);                    \
+    kept[4] = LANE(irradiance.g, n);                    \
+    kept[5] = LANE(irradiance.b, n);                    \
   }
   EACH_LANE(KEEP)
 #undef KEEP

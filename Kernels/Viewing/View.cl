@@ -1,21 +1,22 @@
 // The picture and the rays through its pixels.
-//
-// Needs Numerics.cl and Sampling.cl before it.
+
+#pragma once
+#include "Viewing/Sampling.cl"
 
 // Field by field the same as MediumRayCaster.cxx's.
 typedef struct
 {
-  float4 eye;             // voxels; w: 0 the rays come from one point, 1 they are parallel
-  float4 forward;         // unit vector, world
-  float4 right;           // to the picture's right edge; of the world at unit distance, or where parallel of the world
-  float4 up;              // to its upper edge
-  float4 inverse_spacing; // voxels per length
-  float4 background;      // W / (length^2 sr), added to the environment; w: 0 nothing is to be seen behind the medium
-  float4 marching;        // step in voxels, transmittance at which to stop, depth where nothing is
-  int4 picture;           // width, height in pixels, first row and first column of packets
-  int4 size;              // voxels
-  int4 bricks;            // bricks
-  int4 environment;       // width, height in pixels
+  float4 eye;            // voxels; w: 0 the rays come from one point, 1 they are parallel
+  float4 forward;        // unit vector, world
+  float4 right;          // to the picture's right edge; of the world at unit distance, or where parallel of the world
+  float4 up;             // to its upper edge
+  float4 inverseSpacing; // voxels per length
+  float4 background;     // W / (length^2 sr), added to the environment; w: 0 nothing is to be seen behind the medium
+  float4 marching;       // step in voxels, transmittance at which to stop, depth where nothing is
+  int4 picture;          // width, height in pixels, first row and first column of packets
+  int4 size;             // voxels
+  int4 bricks;           // bricks
+  int4 environment;      // width, height in pixels
 } view;
 
 // Pixels of a packet.
@@ -64,9 +65,9 @@ inline camera_rays rays_through(const view* v, int column, int row)
   r.d.x *= r.cosine;
   r.d.y *= r.cosine;
   r.d.z *= r.cosine;
-  r.from.x = fma((real)(v->eye.w * v->inverse_spacing.x), offset.x, (real)v->eye.x);
-  r.from.y = fma((real)(v->eye.w * v->inverse_spacing.y), offset.y, (real)v->eye.y);
-  r.from.z = fma((real)(v->eye.w * v->inverse_spacing.z), offset.z, (real)v->eye.z);
+  r.from.x = fma((real)(v->eye.w * v->inverseSpacing.x), offset.x, (real)v->eye.x);
+  r.from.y = fma((real)(v->eye.w * v->inverseSpacing.y), offset.y, (real)v->eye.y);
+  r.from.z = fma((real)(v->eye.w * v->inverseSpacing.z), offset.z, (real)v->eye.z);
   return r;
 }
 
@@ -76,9 +77,9 @@ inline camera_rays rays_through(const view* v, int column, int row)
 //   depth     where the mean transmittance falls to a half, along the view axis
 typedef struct
 {
-  global float* radiance;
-  global float* alpha;
-  global float* depth;
+  __global float* radiance;
+  __global float* alpha;
+  __global float* depth;
 } canvas;
 
 inline void paint(const view* v, canvas picture, int column, int row, rgb radiance, real opaque, real where)

@@ -1,4 +1,4 @@
-// Read by itself; the host gives CHUNK: voxels a work-item sums up before the host adds the chunks in double.
+// The host gives CHUNK: voxels a work-item sums up before the host adds the chunks in double.
 
 // What leaves the box of each voxel's light besides what left in the sweep (numerics.md, Eq. (46)).
 // extra  of a source of 1, W length

@@ -36,7 +36,7 @@ Rgb EscapeCorrection::Apply()
   const TransportParts& parts = this->Parts;
   const int channels = parts.Layout.channels;
   cl::Kernel kernel =
-    parts.TheDevice.Kernel("let_escape", { kernel_source::EscapeCorrection }, Define("CHUNK", CollectChunk));
+    parts.TheDevice.Kernel("let_escape", kernel_source::EscapeCorrection, Define("CHUNK", CollectChunk));
   const std::size_t chunks = (parts.Layout.Stride() + CollectChunk - 1) / CollectChunk;
   Buffer<float> tally(parts.TheDevice, chunks * channels, "sums");
   With(kernel, parts.Path, parts.Source, this->Extra, parts.OnDevice.SigmaT(), tally, cl_ulong(parts.Layout.Stride()),

@@ -3,6 +3,8 @@
 #include "LightPropagation/Angular/DirectionSet.h"
 #include "LightPropagation/Angular/RayBundles.h"
 #include "LightPropagation/Conservative/SurfaceRadiance.h"
+#include "LightPropagation/Diffusion/AndersonMixing.h"
+#include "LightPropagation/Diffusion/DiffusionShared.h"
 #include "LightPropagation/Diffusion/MultigridSolver.h"
 
 #include "Medium/Grid.h"
@@ -12,13 +14,6 @@
 
 namespace tyndall
 {
-/// As diffusion_layout of DiffusionLayout.cl.
-struct DiffusionLayout
-{
-  cl_int size[3], periodic[3], linear, stride, firstT, first, pattern[6];
-  cl_float spacing[3], halfRange, floor, incoming[6];
-};
-
 /// Power of rays that cross the voxels' faces in the sweeps' repeated pattern, over its mean (numerics.md, Eq. (65)):
 /// by axis of the face and plane along each other axis, two parts of one sum. About 1; 1 in the mean over planes.
 struct CrossingPattern
@@ -112,7 +107,6 @@ private:
   /// The arguments that the kernels share, then `more`.
   template <class... More>
   void RunOnArrays(const char* kernel, const More&... more);
-  std::array<double, 2> Weights(double* change);
 
   Device& TheDevice;
   DiffusionLayout Layout = {};
@@ -120,8 +114,7 @@ private:
   std::size_t Count;
   MultigridSolver Solver;
   Buffer<float> FlatSource, Pattern, Model;
-  ExactValues Right, Given, Solution, Sums, Borders;
-  std::array<Buffer<float>, 2> FoundBefore, ChangeBefore; ///< of the last correction and the one before
-  int Corrections = 0;
+  AndersonMixing Mixing;
+  ExactValues Right, Given, Solution, Borders;
 };
 }

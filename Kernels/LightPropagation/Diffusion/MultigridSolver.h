@@ -1,40 +1,14 @@
 #pragma once
 
-#include "Device/Buffer.h"
+#include "LightPropagation/Diffusion/DiffusionShared.h"
+#include "LightPropagation/Diffusion/ExactValues.h"
 
 #include <array>
 #include <limits>
-#include <string>
 #include <vector>
 
 namespace tyndall
 {
-/// Values in double on the device, or in float where it has no double.
-class ExactValues
-{
-public:
-  ExactValues() = default;
-  ExactValues(Device& device, std::size_t count, const char* what);
-
-  bool InDouble() const { return this->Doubles.Size() > 0; }
-  const cl::Buffer& Handle() const { return this->InDouble() ? this->Doubles.Handle() : this->Floats.Handle(); }
-  void Fill(double value);
-  std::vector<double> Read() const;
-
-private:
-  Buffer<double> Doubles;
-  Buffer<float> Floats;
-};
-
-/// "-DDOUBLES=1" where the device has double precision, else "-DDOUBLES=0".
-std::string ExactOption(const Device& device);
-
-/// As level_layout of MultigridSolver.cl.
-struct LevelOnDevice
-{
-  cl_int size[3], halved[3];
-};
-
 /// Solves the system of a diffusion matrix on a box of voxels,
 ///   sum over faces of conductance (x_i - x_j) + loss_i x_i = b_i,
 /// symmetric, with positive conductances and losses: conjugate gradients in double (Hestenes and Stiefel 1952),
@@ -62,18 +36,18 @@ public:
   int Solve(const ExactValues& right, ExactValues& values, double unit, double reduction,
     double leftAtMost = std::numeric_limits<double>::infinity());
 
-  static cl::NDRange Range(const cl_int* size);
+  static cl::NDRange Range(const int* size);
   static cl::NDRange Group() { return { 32, 8, 1 }; }
 
 private:
   struct Level
   {
-    LevelOnDevice layout;
+    MultigridLevel layout;
     Buffer<float> conductance, loss, right, values, other;
   };
 
   cl::Kernel Kernel(const char* name) const;
-  void Run(cl::Kernel& kernel, const cl_int* size);
+  void Run(cl::Kernel& kernel, const int* size);
   void Precondition(double perUnit);
   void Smooth(Level& level);
   double Dot(const ExactValues& a, const cl::Buffer& b, bool ofFloats);

@@ -115,19 +115,19 @@ void ParallelPropagation::Implementation::MakeKernels()
   const std::string common = "-DREAL_WIDTH=" + std::to_string(this->Volumes.Width) +
     " -DCHANNELS=" + std::to_string(this->Channels) + " -DCOLOURED=" + (this->Volumes.Coloured ? "1" : "0");
   const auto propagate = [&](const char* name, int source) {
-    return this->TheDevice.Kernel(name, { kernel_source::Numerics, kernel_source::PublishedPropagate },
-      common + " -DSOURCE=" + std::to_string(source));
+    return this->TheDevice.Kernel(
+      name, kernel_source::PublishedPropagate, common + " -DSOURCE=" + std::to_string(source));
   };
   const auto collect = [&](const char* name) {
-    return this->TheDevice.Kernel(name, { kernel_source::Numerics, kernel_source::PublishedCollect },
-      common + " -DMOMENTS=" + std::to_string(this->Model.MomentCount()));
+    return this->TheDevice.Kernel(
+      name, kernel_source::PublishedCollect, common + " -DMOMENTS=" + std::to_string(this->Model.MomentCount()));
   };
-  this->StartRays = propagate("StartRays", 1);
-  this->CrossVoxels[0] = propagate("CrossVoxels", 0);
-  this->CrossVoxels[1] = propagate("CrossVoxels", 1);
-  this->EndRays = propagate("EndRays", 1);
-  this->AddDirections = collect("AddDirections");
-  this->UpdateSources = collect("UpdateSources");
+  this->StartRays = propagate("start_rays", 1);
+  this->CrossVoxels[0] = propagate("cross_voxels", 0);
+  this->CrossVoxels[1] = propagate("cross_voxels", 1);
+  this->EndRays = propagate("end_rays", 1);
+  this->AddDirections = collect("add_directions");
+  this->UpdateSources = collect("update_sources");
 }
 
 MapOnDevice ParallelPropagation::Implementation::Describe(const Batch& batch) const

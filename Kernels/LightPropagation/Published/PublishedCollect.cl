@@ -1,11 +1,13 @@
 // Collection as published (Gruson et al. 2012, Algorithm 2, second half): each voxel reads the temporary buffers of all
-// directions and updates U and I. Read after Numerics.cl; the host gives
+// directions and updates U and I. The host gives
 //   CHANNELS  1 or 3
 //   MOMENTS   sums over directions that are kept: the fluence, and more where scattering depends on direction
 //   COLOURED  1 where sigma has CHANNELS channels, 0 where all share one
 //
 // A moment is the sum over directions of a coefficient times T. Directions are added one by one in their order, so that
 // the result does not depend on how they are cut into batches.
+
+#include "Numerics/Numerics.cl"
 
 // As VolumeLayouts in PublishedVolumes.h: floats from row to row, plane to plane and channel to channel of the two
 // layouts. Layout 0 is [z][y][x]; layout 1, for maps that march along x, is [x][z][y].
@@ -29,7 +31,7 @@ typedef struct
 //   contributions  T, [direction][CHANNELS][volume], length W / (length^2 sr)
 //   moments        [MOMENTS][CHANNELS][volume]
 //   add            0: the first batch of the order
-__kernel void AddDirections(const int volume, const int directions, const int add, const int first,
+__kernel void add_directions(const int volume, const int directions, const int add, const int first,
   __global const float* coefficients, __global const float* contributions, __global float* moments)
 {
   const int voxel = get_global_id(0) * REAL_WIDTH;
@@ -55,7 +57,7 @@ __kernel void AddDirections(const int volume, const int directions, const int ad
 // Eq. (4): U of the next order, and the moments of all orders so far.
 //   moments0, moments1  of this order, from maps of either layout; those of layout 0 become the sum of both
 //   totals              [MOMENTS][CHANNELS][volume 0]
-__kernel void UpdateSources(const volume_info info, const int parts, __global const part_info* part,
+__kernel void update_sources(const volume_info info, const int parts, __global const part_info* part,
   __global const float* sigma_s, __global float* moments0, __global const float* moments1, __global float* totals,
   __global float* sources0, __global float* sources1)
 {

@@ -33,7 +33,7 @@ public:
   struct Pass
   {
     std::vector<Launch> launches;
-    int end = 0; ///< its crossings for EndRays
+    int end = 0; ///< its crossings for end_rays
     std::size_t carriedFirst = 0;
   };
 

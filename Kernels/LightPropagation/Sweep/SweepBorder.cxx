@@ -96,7 +96,7 @@ Rgb SweepBorder::PowerOfRay(const Bundle& bundle, int direction, int face) const
 /// @param slot  which member and channel of the bundle
 void SweepBorder::Write(std::size_t b, int way, int slot, float fromU, float fromV, float fromP)
 {
-  const BundleOnDevice& bundle = this->Plan.bundleRows[b];
+  const BundleInfo& bundle = this->Plan.bundleRows[b];
   const int width = this->Plan.plane.width;
   const std::size_t inBlock = static_cast<std::size_t>(slot) * this->Plan.row + this->Plan.vector;
   const std::size_t block = static_cast<std::size_t>(bundle.members) * this->Plan.channels * this->Plan.row;

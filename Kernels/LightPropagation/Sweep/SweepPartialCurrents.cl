@@ -1,5 +1,7 @@
 // Power that enters voxels through their faces: what goes from one to the next, for the balance of a diffusion system.
-// Read after SweepLayout.cl, before SweepBundle.cl.
+
+#pragma once
+#include "LightPropagation/Sweep/SweepLayout.cl"
 
 #if CURRENTS
 // Part of the rays of row y that come through one kind of face.

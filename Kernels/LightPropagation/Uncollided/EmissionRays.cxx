@@ -81,7 +81,7 @@ public:
 private:
   cl::Kernel Kernel(const char* name, int width = 1)
   {
-    return this->TheDevice.Kernel(name, { kernel_source::Numerics, kernel_source::EmissionRays },
+    return this->TheDevice.Kernel(name, kernel_source::EmissionRays,
       Define("REAL_WIDTH", width) + Define("CHANNELS", this->Volume.channels) +
         Define("NET_FLUX", this->Volume.deposit.flux != nullptr) + Define("MOST", MostRays));
   }

@@ -1,4 +1,4 @@
-// Beams from a point lamp through the box. Read after Numerics.cl and FixedPoint.cl; the host gives
+// Beams from a point lamp through the box. The host gives
 //   ATOMICS      1 where the device has 64-bit atomics, else one work-item does all
 //   LAMBERT, CONE  1 for a rectangle, a spot
 //   MOMENTS     1: moments of the deposit are wanted
@@ -7,6 +7,9 @@
 // so fine that a beam is at most a voxel wide where it leaves the box. It is followed layer by layer; where its square
 // cross-section lies over up to four voxels, each takes its part (numerics.md, Eqs. (33), (34)). All values are
 // parts of the lamp's power: its colours share sigma_t.
+
+#include "Numerics/FixedPoint.cl"
+#include "Numerics/Numerics.cl"
 
 #define SUMS 9  // of a row
 #define STEPS 2 // a layer: a beam moves aside by half a voxel at most

@@ -102,7 +102,7 @@ SweepTally DepositBeam(Device& device, const SweepVolume& volume, const Light& l
       info.lengths[a] = static_cast<float>(volume.grid.spacing[a] / std::max(std::abs(omega[a]), 1e-6));
     }
     info.thin = ThinForMoments;
-    cl::Kernel add = device.Kernel("add_beam", { kernel_source::BeamMoments });
+    cl::Kernel add = device.Kernel("add_beam", kernel_source::BeamMoments);
     With(add, info, *volume.sigma_t, cl_ulong(volume.sigma_t_first), path, partialCurrents, *volume.deposit.path,
       *volume.deposit.moments, cl_ulong(volume.first), cl_ulong(volume.stride));
     device.Queue().enqueueNDRangeKernel(
@@ -287,8 +287,7 @@ private:
 
   cl::Kernel Kernel(const char* name)
   {
-    return this->TheDevice.Kernel(name,
-      { kernel_source::Numerics, kernel_source::FixedPoint, kernel_source::LampBeams },
+    return this->TheDevice.Kernel(name, kernel_source::LampBeams,
       "-DATOMICS=" + std::to_string(this->HasAtomics()) +
         " -DLAMBERT=" + std::to_string(this->TheLight.type == LightType::Rectangle) +
         " -DCONE=" + std::to_string(this->TheLight.type == LightType::Spot) + " -DMOMENTS=" +

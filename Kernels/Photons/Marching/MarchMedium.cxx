@@ -142,14 +142,13 @@ std::string MarchMedium::Options() const
 
 cl::Kernel MarchMedium::MediumKernel(const char* name) const
 {
-  return this->device.Kernel(name,
-    { kernel_source::Numerics, kernel_source::SquaredIndex, kernel_source::PhotonMedium },
+  return this->device.Kernel(name, kernel_source::PhotonMedium,
     this->Options() + Define("A_CHANNELS", this->AComponents) + Define("S_CHANNELS", this->SComponents));
 }
 
 cl::Kernel MarchMedium::SumsKernel(const char* name, int lightChannels, const std::string& options) const
 {
-  return this->device.Kernel(name, { kernel_source::Numerics, kernel_source::SquaredIndex, kernel_source::PhotonSums },
+  return this->device.Kernel(name, kernel_source::PhotonSums,
     this->Options() + Define("CHANNELS", lightChannels) + Define("A_CHANNELS", this->AComponents) +
       Define("S_CHANNELS", this->SComponents) + options);
 }
@@ -157,9 +156,7 @@ cl::Kernel MarchMedium::SumsKernel(const char* name, int lightChannels, const st
 cl::Kernel MarchMedium::MarchKernel(
   const char* name, int lightChannels, bool directions, const std::string& options) const
 {
-  return this->device.Kernel(name,
-    { kernel_source::Numerics, kernel_source::FixedPoint, kernel_source::SquaredIndex, kernel_source::PhotonLanes,
-      kernel_source::PhotonSteps, kernel_source::PhotonMarch },
+  return this->device.Kernel(name, kernel_source::PhotonMarch,
     this->Options() + Define("CHANNELS", lightChannels) + Define("DIRECTIONS", directions) +
       Define("ORDER", this->settings.order) + options);
 }

@@ -1,5 +1,5 @@
-// Photons through a medium (Pfeuti 2009, section 3.1.5, but for the accumulation). Read after Numerics.cl,
-// FixedPoint.cl, SquaredIndex.cl, PhotonLanes.cl and PhotonSteps.cl; the host gives what those ask for, and
+// Photons through a medium (Pfeuti 2009, section 3.1.5, but for the accumulation). The host gives what the
+// included files ask for, and
 //   CHANNELS         of light; MEDIUM_CHANNELS of sigma_t, 1 or CHANNELS
 //   WORKERS          0: a work-item a packet, all add to the same sums; else so many take blocks as they come, each to
 //                    its sums
@@ -16,6 +16,12 @@
 //
 // A photon counts where it enters a voxel (a cell), however many stretches it crosses it in; once more where it comes
 // back.
+
+#include "Numerics/FixedPoint.cl"
+#include "Numerics/Numerics.cl"
+#include "Photons/Marching/PhotonLanes.cl"
+#include "Photons/Marching/PhotonSteps.cl"
+#include "Refraction/Index/SquaredIndex.cl"
 
 #define PHOTON_FLOATS (6 + CHANNELS) // position, unit direction, power in units
 #if CELLS

@@ -1,6 +1,9 @@
-// The medium as photons need it. Read after Numerics.cl and SquaredIndex.cl; the host gives
+// The medium as photons need it. The host gives
 //   MEDIUM_CHANNELS, BENDS, LEVELS  as PhotonMarch.cl wants them
 //   A_CHANNELS, S_CHANNELS          components of sigma_a and sigma_s, 0: there is none
+
+#include "Numerics/Numerics.cl"
+#include "Refraction/Index/SquaredIndex.cl"
 
 #define OUTSIDE -3e38f
 #define FLAT 2e-6f // of n^2: what rounding makes of a constant

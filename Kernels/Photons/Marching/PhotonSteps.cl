@@ -1,4 +1,4 @@
-// The paths of photons, step by step. Read after Numerics.cl, SquaredIndex.cl and PhotonLanes.cl; the host gives
+// The paths of photons, step by step. The host gives
 //   REAL_WIDTH  photons side by side: 1 on a GPU, 4 to 16 on a CPU
 //   BENDS       1: the index varies; ORDER of the integrator then: 1, 2 or 4
 //   LEVELS      1: there are octree levels
@@ -15,6 +15,11 @@
 // Positions and velocities are in voxels, lengths in voxel diagonals.
 //
 // A photon whose velocity is no number, none at all or endless (n^2 beyond float) is given up.
+
+#pragma once
+#include "Numerics/Numerics.cl"
+#include "Photons/Marching/PhotonLanes.cl"
+#include "Refraction/Index/SquaredIndex.cl"
 
 #define NEVER 3e38f
 #define AHEAD 4        // voxels along the axis of fastest change, by which memory is asked for early

@@ -1,9 +1,12 @@
-// The light that photons left. Read after Numerics.cl and SquaredIndex.cl; the host gives
+// The light that photons left. The host gives
 //   CHANNELS, MEDIUM_CHANNELS, DIRECTIONS, COUNTS  as PhotonMarch.cl wants them
 //   COPIES, BATCHES         of the sums: copy c is for batch c modulo BATCHES
 //   COUNT_SHIFT             of the bits of counts, above those of weights
 //   A_CHANNELS, S_CHANNELS  components of sigma_a and sigma_s, 0: there is none
 //   COLOURS                 channels of what comes out: 3 also where one channel stands for three (CHANNELS 1)
+
+#include "Numerics/Numerics.cl"
+#include "Refraction/Index/SquaredIndex.cl"
 
 #define RECORD (CHANNELS + 3 * DIRECTIONS + COUNTS)
 #define component(values, count, voxel, c) \

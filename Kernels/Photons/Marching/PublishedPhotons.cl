@@ -1,11 +1,13 @@
 // Photon marching as published: Pfeuti 2009, section 3.1.5, after Sun et al. 2008. One work-item a photon; explicit
 // Euler (Eq. 2.10, 2.11); the line of each step is rasterised and every voxel of it gets the photon's power, however
 // long the path in it is; colour (RGBe, Ward 1991) and mean direction (10 bits a component) share 64 bits, which
-// compare-and-swap replaces, with ten tries. Read after Numerics.cl. The host gives
+// compare-and-swap replaces, with ten tries. The host gives
 //   BENDS   1: the index varies
 //   LEVELS  1: there are octree levels
 //   A_CHANNELS, S_CHANNELS  components of sigma_a and sigma_s, 0: there is none
 //   TRIES   of compare-and-swap
+
+#include "Numerics/Numerics.cl"
 
 #pragma OPENCL EXTENSION cl_khr_int64_base_atomics : enable
 

@@ -56,7 +56,7 @@ public:
 
   cl::Kernel Kernel(const char* name)
   {
-    return this->TheDevice.Kernel(name, { kernel_source::Numerics, kernel_source::PublishedPhotons }, this->Options);
+    return this->TheDevice.Kernel(name, kernel_source::PublishedPhotons, this->Options);
   }
 
   Buffer<cl_float4> Index(const Field& ior, bool bends)

@@ -57,7 +57,7 @@ void SmoothIndex(Device& device, const Grid& grid, int filterSize, Buffer<float>
   }
   const int width = device.FloatVectorWidth() > 1 ? 8 : 1;
   const std::string options = "-DRADIUS=" + std::to_string(filterSize / 2) + " -DREAL_WIDTH=" + std::to_string(width);
-  cl::Kernel kernel = device.Kernel("smooth_index", { kernel_source::Numerics, kernel_source::IndexField }, options);
+  cl::Kernel kernel = device.Kernel("smooth_index", kernel_source::IndexField, options);
   const Buffer<float> weights(device, GaussianWeights(filterSize), "the filter");
   Buffer<float> smooth(device, grid.VoxelCount(), "the smoothed ior");
   const std::array<int, 3>& size = grid.size;
@@ -75,8 +75,7 @@ void SmoothIndex(Device& device, const Grid& grid, int filterSize, Buffer<float>
 
 std::vector<float> IndexGradient(Device& device, const Grid& grid, const Buffer<float>& index, const Monitor& monitor)
 {
-  cl::Kernel kernel = device.Kernel(
-    "index_gradient", { kernel_source::Numerics, kernel_source::IndexField }, "-DRADIUS=1 -DREAL_WIDTH=1");
+  cl::Kernel kernel = device.Kernel("index_gradient", kernel_source::IndexField, "-DRADIUS=1 -DREAL_WIDTH=1");
   const std::array<int, 3>& size = grid.size;
   const std::size_t layer = 3 * static_cast<std::size_t>(size[0]) * static_cast<std::size_t>(size[1]);
   const int atOnce = static_cast<int>(

@@ -188,9 +188,8 @@ public:
   {
     const bool noise = settings.perturbation.index > 0.0 || settings.perturbation.scattering > 0.0;
     const std::string options = "-DCHANNELS=" + std::to_string(result.components) + " -DNOISE=" + std::to_string(noise);
-    const auto sources = { kernel_source::GradientNoise, kernel_source::Materials };
-    this->AddObject = device.Kernel("add_object", sources, options);
-    this->AddOutside = device.Kernel("add_outside", sources, options);
+    this->AddObject = device.Kernel("add_object", kernel_source::Materials, options);
+    this->AddOutside = device.Kernel("add_outside", kernel_source::Materials, options);
     const std::size_t voxels = settings.grid.VoxelCount();
     result.occupancy.resize(voxels);
     result.sigma_a.resize(voxels * result.components);

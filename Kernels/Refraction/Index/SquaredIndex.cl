@@ -6,6 +6,8 @@
 // quarter of the border's. The coefficient of voxel (i, j, k) stands at (i + 2, j + 2, k + 2) of an array that is four
 // longer along each axis.
 
+#pragma once
+
 typedef struct
 {
   int size[3];

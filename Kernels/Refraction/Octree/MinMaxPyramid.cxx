@@ -9,8 +9,8 @@ MinMaxPyramid::MinMaxPyramid(Device& device, const Grid& grid, const Buffer<floa
   , TheNodes(device, this->TheLayout.nodeCount, "the pyramid of smallest and largest values")
 {
   const PyramidLayout& layout = this->TheLayout;
-  cl::Kernel ofVoxels = device.Kernel("min_max_of_voxels", { kernel_source::MinMaxPyramid });
-  cl::Kernel ofNodes = device.Kernel("min_max_of_nodes", { kernel_source::MinMaxPyramid });
+  cl::Kernel ofVoxels = device.Kernel("min_max_of_voxels", kernel_source::MinMaxPyramid);
+  cl::Kernel ofNodes = device.Kernel("min_max_of_nodes", kernel_source::MinMaxPyramid);
   for (int level = 1; level <= layout.Top(); ++level)
   {
     const cl_int4 below = Int4(layout.sizes[level - 1]);

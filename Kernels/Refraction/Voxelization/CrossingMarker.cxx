@@ -22,7 +22,7 @@ CrossingMarker::CrossingMarker(Device& device, const SampleColumns& columns, int
   : TheDevice(device)
   , Columns(columns)
   , Words(words)
-  , Kernel(device.Kernel("mark_crossings", { kernel_source::Voxelization }, options))
+  , Kernel(device.Kernel("mark_crossings", kernel_source::Voxelization, options))
 {
 }
 

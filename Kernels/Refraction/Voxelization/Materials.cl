@@ -1,7 +1,10 @@
 // From samples inside to the quantities of a medium: each voxel is the mean of the materials in it.
 //
-// Defined before: CHANNELS, 1 or 3, of sigma_a and sigma_s; NOISE, 1 where materials are perturbed, which takes
-// GradientNoise.cl.
+// The host gives
+//   CHANNELS  1 or 3, of sigma_a and sigma_s
+//   NOISE     1 where materials are perturbed
+
+#include "Refraction/Index/GradientNoise.cl"
 
 // A slab's voxels are runs of `length` of the grid's, the first from `first` on, each `stride` further: a work-item a
 // voxel (i of the slab), a row of work-items a run.

@@ -30,7 +30,7 @@ SurfaceFraction::SurfaceFraction(
   const auto kernel = [&](const char* name, int axis) {
     const std::string options =
       CrossingOptions(axis, columns.samplesOfVoxel, false, false) + " -DBIT_AXIS=" + std::to_string(columns.axis);
-    return device.Kernel(name, { kernel_source::Voxelization, kernel_source::SurfaceFraction }, options);
+    return device.Kernel(name, kernel_source::SurfaceFraction, options);
   };
   for (int axis = 0; axis < 3; ++axis)
   {

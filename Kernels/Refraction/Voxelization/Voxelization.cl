@@ -13,6 +13,8 @@
 // Defined before: AXIS, 0 to 2, along which the columns run; SAMPLES, samples an edge of a voxel; FROM_ABOVE, 1 where
 // what lies after a crossing is toggled instead; WINDING, 1 where crossings are counted with their sign instead.
 
+#pragma once
+
 #if AXIS == 0
 #define ALONG(p) ((p).x)
 #define ACROSS(p) ((p).y)
