@@ -71,7 +71,7 @@ public:
   void Finish();
 
   /// Note that work of about so many seconds was queued, and wait for all of it once that is a tenth of a second:
-  /// progress is told and an abort heard that often, while short kernels follow each other without the host.
+  /// progress is reported and an abort noticed that often, while short kernels follow each other without the host.
   void Queued(double seconds);
 
   /// Seconds by the clock that work is shared out by: the machine's, or that of a test, set before work begins.
@@ -79,7 +79,7 @@ public:
   void SetClock(Clock clock) { this->TheClock = std::move(clock); }
 
 private:
-  /// A program, built by whichever thread needs it first. Others who need the same wait, and nobody else.
+  /// A program, built by whichever thread needs it first. Only threads that need the same one wait.
   struct KeptProgram
   {
     std::mutex Building;

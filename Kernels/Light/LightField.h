@@ -27,8 +27,9 @@ struct ConvergenceRow
 {
   int iteration = 0;
   double seconds = 0.0; ///< since the start
-  /// Estimate of the relative error that stopping here leaves: scattered light still to come over all of it. 1 after
-  /// the first row where more is to come: it is not known then, for one order does not tell how fast they shrink.
+  /// Estimate of the relative error that stopping here leaves: scattered light still to come over all of it
+  /// (numerics.md, Eqs. (43), (73)). 1 after the first row where more is to come: one order does not show how fast they
+  /// shrink.
   double residual = 0.0;
   double change = 0.0;   ///< of the light by this row, relative: says little where light is scattered very often
   double absorbed = 0.0; ///< W so far, channels summed

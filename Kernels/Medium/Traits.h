@@ -42,7 +42,7 @@ struct VoxelBox
 };
 
 /// What a medium does not do, so that solvers can leave it out. Found in one scan of its arrays (some milliseconds for
-/// 128^3 voxels), whoever needs it.
+/// 128^3 voxels).
 struct MediumTraits
 {
   bool absorbs = false;       ///< sigma_a is not zero everywhere

@@ -14,10 +14,7 @@ namespace tyndall
 {
 namespace
 {
-/// Part of the light taken for noise that the error counts. That light is estimated cell by cell, and cutting the
-/// estimates at 0 overstates it. Fitted so that the true error is within two standard errors in 93 to 97% of the voxels
-/// brighter than a tenth of the median: in a ball, a cube and an armadillo of glass, each on 64^3 and 128^3 voxels with
-/// 6000 to 122000 photons in two batches, adaptive and spread evenly, it was in 93.4 to 97.0%.
+/// Part of the light taken for noise that the error counts (numerics.md, Eq. (104), which says how it was fitted).
 constexpr float Honesty = 0.4f;
 
 constexpr std::size_t FirstPart = std::size_t(1) << 22; // voxels a launch, until it is known how long that takes

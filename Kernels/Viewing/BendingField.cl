@@ -1,8 +1,8 @@
 // How rays bend: half the gradient of n^2, and n^2, of the tricubic spline that photons follow as well, at voxel
 // centres with a border of one voxel that repeats the outermost ones.
 //
-// Between centres both are interpolated linearly. Along a row of voxels the spline's slopes add up to the difference of
-// its ends, so that rays through a plane layer leave it as Snell's law has it, however steep it is.
+// Between centres both are interpolated linearly, so that rays through a plane layer leave it as Snell's law has it,
+// however steep it is (numerics.md, section 14.3).
 
 #include "Refraction/Index/SquaredIndex.cl"
 

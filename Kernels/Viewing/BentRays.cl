@@ -1,8 +1,8 @@
 // The march of rays that bend where the refractive index varies.
 //
-// With dt = ds / n a ray follows dr/dt = T, dT/dt = grad(n^2) / 2, |T| = n (as in Photons/): a leapfrog whose gradient
-// is taken in the middle of each step. Where the index is constant that is a straight step, and the gradient is not
-// fetched.
+// With dt = ds / n a ray follows dr/dt = T, dT/dt = grad(n^2) / 2, |T| = n, as photons do: a leapfrog (numerics.md,
+// Eq. (91)) whose gradient is taken in the middle of each step. Where the index is constant that is a straight step,
+// and the gradient is not fetched.
 //
 // Define
 //   SKIP_BRICKS  1: rays leap over bricks in which nothing extinguishes, shines or bends
@@ -29,7 +29,7 @@ inline integer leave(ray_packets* t, integer last, int4 size)
 }
 
 #if BENDS
-// A few steps by the leapfrog. Whatever the index does, nobody looks beyond the box.
+// A few steps by the leapfrog. Samples outside the box are never read.
 __attribute__((always_inline)) inline void bend(
   const surroundings* s, integer done, ray_packets* t, light* l, crossed* half_way, watch* w)
 {

@@ -2,8 +2,8 @@
 // reflects of them, and what the table mirrors of them, one march each. One work-item is a packet of neighbouring
 // pixels.
 //
-// Along a bent ray L / n^2 is conserved but for what the medium does: sources and backgrounds are divided by n^2 of
-// their place, and the picture is multiplied by n^2 where the ray enters.
+// Along a bent ray L / n^2 is conserved but for what the medium does (numerics.md, Eq. (109)): sources and backgrounds
+// are divided by n^2 of their place, and the picture is multiplied by n^2 where the ray enters.
 //
 // Needs Numerics.cl, Sampling.cl, View.cl, Background.cl, Crossing.cl, RayPackets.cl, SurfaceReflection.cl, BentRays.cl
 // and Table.cl before it; they say what to define.
@@ -19,7 +19,7 @@
 
 #define PASSES (1 + (SURFACE > 0) + TABLE)
 
-// What all marches leave together: light with n^2 divided out, and what the camera's own ray tells of the way.
+// What all marches gather together: light with n^2 divided out, and transmittance and depth along the camera's own ray.
 typedef struct
 {
   light l;

@@ -105,7 +105,7 @@ Camera FrameGrid(const Grid& grid, double aspect, double viewAngle, const std::a
   camera.position = Array(centre + glm::length(half) * out);
   const auto axes = Axes(camera);
 
-  // Each corner asks for a distance at which it is inside the picture; the farthest wins.
+  // The least distance at which every corner is inside the picture.
   const double margin = 1.05;
   const double upperEdge = TangentOfHalf(viewAngle);
   double distance = 0.0;

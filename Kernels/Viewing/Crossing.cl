@@ -143,10 +143,8 @@ typedef struct
 } sample;
 
 #if PHASE
-// 4 pi times the phase function of light that is itself spread about its mean direction, seen along unit vectors v away
-// from the eye. b is that direction times g and the anisotropy: Legendre moments of two distributions multiply, so that
-// light which is spread as Henyey and Greenstein's function of mean cosine a is scattered by that of g into that of g
-// a, exactly.
+// 4 pi times the phase function of light that is itself spread about its mean direction (numerics.md, Eqs. (107),
+// (108)), seen along unit vectors v away from the eye. b is that direction times g and the anisotropy.
 inline real scattered_towards_eye(real3 b, real3 v)
 {
   const real square = product(b, b);

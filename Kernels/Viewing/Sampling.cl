@@ -57,7 +57,7 @@ inline float least_lane(real v)
   const float2 two = lesser(four.lo, four.hi);
   return lesser(two.x, two.y);
 }
-// PoCL's any asks lane by lane.
+// PoCL's any tests lane by lane.
 inline int any_lane(integer condition)
 {
   REDUCED_TO_FOUR(int, condition, either)

@@ -7,7 +7,8 @@
 #include "Viewing/RayPackets.cl"
 
 #if SURFACE
-// Unpolarised light from an index of square n1 to one of n2, the square of n sin(theta) being `across`.
+// Unpolarised light from an index of square n1 to one of n2, the square of n sin(theta) being `across` (numerics.md,
+// Eq. (110)).
 inline real fresnel(real n1, real n2, real across)
 {
   const real in = sqrt(greater(n1 - across, (real)0.0f)); // n cos(theta)

@@ -23,9 +23,7 @@ std::array<int, 2> FaceSize(const Grid& grid, int face);
 /// Irradiance on a face of the box by the light in the voxels on it, by pi and n^2: what a white table shines. With a
 /// border of one voxel that repeats the outermost ones.
 ///
-/// Where the light's mean direction m is known that is its net flux through the face, fluence max(0, m . normal): all
-/// of it where no light comes from the table's side. Else, or where m is not known (0), light is taken to be one beam
-/// and the same from all sides, as m says: fluence ((1 - |m|) / 4 + max(0, m . normal)).
+/// By fluence and mean direction, as numerics.md, Eq. (111).
 /// @param ior        null: 1
 /// @param fromBelow  light may come from the table's side: an environment shines
 std::vector<cl_float4> TableLight(

@@ -19,7 +19,7 @@ EscapeCorrection::EscapeCorrection(TransportParts& parts, const Monitor& monitor
   const TransportParts::EvenSky sky = parts.FindEvenSky(monitor);
   const Grid& grid = parts.Layout.grid;
   const double thinnest = *std::min_element(grid.spacing.begin(), grid.spacing.end());
-  // A voxel can only let out what it takes of its own light: about half its optical thickness; a half of that.
+  // At most a half of what a voxel takes of its own light, which is about half its optical thickness.
   const double whole = 0.25 * 4.0 * Pi * grid.VoxelVolume();
   const std::vector<float> extra = Planar(parts.Layout, parts.Layout.channels, [&](std::size_t i, int c) {
     const std::size_t at = c * parts.Layout.Stride() + i;

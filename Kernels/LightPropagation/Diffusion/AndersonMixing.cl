@@ -2,8 +2,8 @@
 
 #include "LightPropagation/Diffusion/DiffusionLayout.cl"
 
-// Sums for Anderson's method, with f = found - given and differences to those of two iterations before:
-// f f, found found (both where light is scattered: what passes through vacuum says nothing of that), d1 d1, d1 d2, d2
+// Sums for Anderson's mixing (numerics.md, Eqs. (71), (72)), with f = found - given and d1, d2 its differences to those
+// of the two iterations before: f f and found found (both weighted by how much the voxel scatters), d1 d1, d1 d2, d2
 // d2, d1 f, d2 f
 __kernel void anderson_sums(const __global exact* given, const __global exact* found, const __global float* change1,
   const __global float* change2, const __global float* sigma_s, int first, float length, int count,

@@ -41,7 +41,7 @@ double AndersonMixing::Mix(const ExactValues& given, const ExactValues& found, c
   return change;
 }
 
-/// Of the last result but one and the one before that in the mix: least squares of the change.
+/// Weights of the two iterations before in the mix: least squares of the change (numerics.md, Eq. (71)).
 std::array<double, 2> AndersonMixing::Weights(
   const ExactValues& given, const ExactValues& found, const Weighting& weighting, double* change)
 {

@@ -6,25 +6,25 @@
 
 namespace tyndall
 {
-/// Mixes an iteration's last three results so that it converges sooner and does not swing: Anderson's method with a
-/// memory of two (D. G. Anderson, Iterative Procedures for Nonlinear Integral Equations, J. ACM 12, 1965). Given x and
-/// what the iteration finds with it, the next x is the combination whose change is the least in the least squares.
+/// Anderson's mixing of an iteration's last three results (D. G. Anderson, Iterative Procedures for Nonlinear Integral
+/// Equations, J. ACM 12, 1965; numerics.md, Eq. (71)), so that it converges sooner and without swinging: the next x is
+/// the combination of results whose change is least in the least squares.
 class AndersonMixing
 {
 public:
   AndersonMixing(Device& device, std::size_t count, const char* what);
 
-  /// How much a value counts in the change: tau / (1 + tau), tau = sigma_s length; of light in vacuum the source is
-  /// nothing.
+  /// How much a value counts in the change: tau / (1 + tau), tau = sigma_s length (numerics.md, Eq. (72)). 0 in vacuum,
+  /// which scatters nothing.
   struct Weighting
   {
     const Buffer<float>* sigma_s; ///< 1/length
-    std::size_t first;            ///< where the values' begins
+    std::size_t first;            ///< where the coefficients of these values begin
     float length;
   };
 
   /// @param given  what `found` was found with; becomes what to go on with
-  /// @return |found - given| / |found|, weighted
+  /// @return |found - given| / |found|, weighted (numerics.md, Eq. (72))
   double Mix(const ExactValues& given, const ExactValues& found, const Weighting& weighting);
 
 private:

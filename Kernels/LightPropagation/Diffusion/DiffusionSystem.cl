@@ -5,10 +5,8 @@
 #include "LightPropagation/Diffusion/DiffusionLayout.cl"
 #include "LightPropagation/Diffusion/LampPassing.cl"
 
-// Outflow of a half-space whose source is constant in each voxel and falls by one from mean free path to mean free
-// path:
-// sum over mu of mu (tau / 2) coth(tau / (2 mu)) (Gauss, 4 points). 1/6 where voxels are thin, as it should be; tau / 8
-// where they are thick.
+// Part of the partial current of a source that is constant in each voxel and falls by one from mean free path to mean
+// free path (numerics.md, Eq. (51); 4 Gauss points): 1/6 for thin voxels, tau / 8 for thick ones.
 static float stair(float tau)
 {
   const float mu[4] = { 0.0694318442f, 0.3300094782f, 0.6699905218f, 0.9305681558f };
@@ -28,20 +26,20 @@ static float half_diffusion_length(float tau, float sigma_t, float sigma_a)
   return sigma_t > 0.0f ? 0.5f * tau * sqrt(3.0f * fmin(sigma_a / sigma_t, 1.0f)) : 0.0f;
 }
 
-// How much better than tau / 2 a half voxel conducts whose light dies away on the way: exactly that of light that falls
-// off from a border...
+// Conductance of an absorbing half voxel over that of tau / 2 (numerics.md, Eq. (57)): of light that falls off
+// exponentially from a border...
 static float at_border(float y)
 {
   return y < 0.02f ? 1.0f + y * (2.0f / 3.0f) : 2.0f * y * y / (2.0f * y - 1.0f + exp(-2.0f * y));
 }
-// ...and between voxels of the same kind, where hyperbolic functions are met exactly.
+// ...and between voxels of the same kind.
 static float among_equals(float y)
 {
   const float x = y < 40.0f ? y / sinh(fmax(y, 1e-3f)) : 0.0f;
   return y < 0.01f ? 1.0f : fmax(x * x, 1e-20f);
 }
 
-// What a face passes per difference of fluence and area.
+// Conductance of an inner face per area (numerics.md, Eq. (57)).
 static float pass_face(const DiffusionLayout* layout, float tau0, float tau1, float y0, float y1, float flat_source)
 {
   const float mean = 0.5f * (tau0 + tau1);
@@ -66,7 +64,8 @@ static float volume_of(const DiffusionLayout* layout)
   return layout->spacing[0] * layout->spacing[1] * layout->spacing[2];
 }
 
-// Optical length from the voxel's middle to a face of the box, as the light's way counts.
+// Twice the optical length from the voxel's middle to a face of the box, shorter where the voxel absorbs (numerics.md,
+// Eq. (58)).
 static float way_to_boundary(const DiffusionLayout* layout, float tau, float sigma_t, float sigma_a)
 {
   return layout->linear ? tau / at_border(half_diffusion_length(tau, sigma_t, sigma_a)) : tau;
@@ -126,7 +125,7 @@ static bool is_border(const DiffusionLayout* layout, const int* at, int d)
   return !layout->periodic[axis] && at[axis] == (d & 1 ? layout->size[axis] - 1 : 0);
 }
 
-// How much a voxel of optical length tau is a thick one beside one of length beyond.
+// From 0 to 1: how thick a voxel of optical length tau is beside one of length beyond (numerics.md, Eq. (62)).
 static float contrast(float tau, float beyond)
 {
   const float thick = 0.8f * tau * tau;
@@ -134,7 +133,7 @@ static float contrast(float tau, float beyond)
   return unlike * unlike * thick * thick / ((1.0f + thick * thick) * (1.0f + beyond * beyond));
 }
 
-// Of a thick voxel beside thinner ones those see only the skin: how much that counts, and for each inner face.
+// Of a voxel beside thinner ones: the largest contrast of its inner faces, 0 below 0.01, and that of each.
 static float openness(
   const DiffusionLayout* layout, const __global float* sigma_t, int i, const int* next, const int* at, float* open)
 {
@@ -151,8 +150,8 @@ static float openness(
   return most > 0.01f ? most : 0.0f;
 }
 
-// What the sweep's light is compared with: the light it found where voxels are thin, the light it was given where they
-// are thick and it only repeats that.
+// The fluence at which the sweep's power is compared with diffusion (numerics.md, Eq. (56)): in thin voxels what
+// the sweep found, in thick ones what it was given.
 __kernel void diffusion_model(DiffusionLayout layout, const __global float* sigma_t, const __global float* path,
   const __global exact* fluence, const __global float* source, __global float* model)
 {
@@ -187,7 +186,7 @@ typedef struct
   int count;
 } diffusion_arrays;
 
-// Rays that cross a face, over those that should: what a repeated pattern of few rays has too many or too few.
+// Power of rays that cross a face in their repeated pattern, over its mean (numerics.md, Eq. (65)).
 static float pattern_at(
   const DiffusionLayout* layout, const diffusion_arrays* arrays, int axis, const int* at, float tau)
 {
@@ -199,14 +198,14 @@ static float pattern_at(
   return 1.0f + thick * (crossing - 1.0f);
 }
 
-// The weight of the transport correction, of what a sweep knows better than diffusion: little where voxels are thick,
-// or the light dies away within one, and it knows nothing.
+// The weight of the transport correction (numerics.md, Eq. (55)): 1 in thin voxels, little in thick or absorbing
+// ones, where the sweep's power holds nothing but the errors of its source.
 static float weight_of_transport(const DiffusionLayout* layout, float tau, float absorbing)
 {
   return layout->linear ? 1.0f / (1.0f + tau * (0.25f * tau + 3.0f * absorbing)) : 1.0f;
 }
 
-// Power through inner face d out of voxel i, that of the sweep less that of the model.
+// Power through inner face d out of voxel i, that of the sweep less that of the model (numerics.md, Eq. (54)).
 static float remainder_of_face(
   const DiffusionLayout* layout, const diffusion_arrays* arrays, int d, int i, int j, const int* at)
 {
@@ -226,7 +225,8 @@ static float remainder_of_face(
   return transport_weight > 1e-12f ? transport_weight * (net - spread * (arrays->model[i] - arrays->model[j])) : 0.0f;
 }
 
-// Power through a face of the box, out less in, that the model expects; what it expects without any light in the voxel.
+// Power through a face of the box, out less in, that a sweep finds by the model (numerics.md, Eq. (59));
+// `dark`: what diffusion has there without any light in the voxel.
 static float model_of_boundary(
   const DiffusionLayout* layout, const diffusion_arrays* arrays, int d, int i, const int* at, float* dark)
 {
@@ -249,7 +249,7 @@ static float model_of_boundary(
   return pattern_at(layout, arrays, axis, at, tau) * spread * area;
 }
 
-// Lamps' light that is scattered near face d of voxel i and passes it at once, less what comes the other way.
+// Lamps' light that is scattered near face d of voxel i and passes it at once, less what comes the other way, W.
 static float passing(
   const DiffusionLayout* layout, const diffusion_arrays* arrays, int d, int i, const int* next, bool border)
 {
@@ -260,10 +260,10 @@ static float passing(
 #endif
 }
 
-// What a sweep knows better about the faces of the box at voxel i, W out of it less in, in all.
+// Of all faces of the box at voxel i, W out less in: that of the sweep less that of the model (numerics.md, Eq. (60)).
 //   power    what the medium shines there, in the sweep, less what it takes of the light
-//   share    [face] its part for each face: as the sweep's light seems to leave through them
-//   seeming  [face] power out, of the sweep, that seems to leave through each
+//   share    [face] its part for each face, in proportion to `seeming`
+//   seeming  [face] power out, of the sweep: an estimate, for its tally is not by voxel (numerics.md, Eq. (61))
 //   transport_weight  how much of it counts
 static float remainder_of_borders(const DiffusionLayout* layout, const diffusion_arrays* arrays, int i, const int* next,
   const int* at, float power, float* share, float* seeming, float* transport_weight)
@@ -350,7 +350,7 @@ static exact power_of_face(const DiffusionLayout* layout, const diffusion_arrays
   const float per_radiance = 4.0f * M_PI_F * volume_of(&layout);                                                  \
   float share[6], seeming[6], transport_weight;
 
-// The right-hand side, W.
+// The right-hand side of numerics.md, Eq. (53), W.
 // given    emitted and first scattered light of lights, W / (length^3 sr)
 // source   of the sweep, W / (length^3 sr)
 __kernel void diffusion_balance(DiffusionLayout layout, const __global float* sigma_t, const __global float* sigma_a,
@@ -382,10 +382,12 @@ __kernel void diffusion_balance(DiffusionLayout layout, const __global float* si
   right[i] = power;
 }
 
-// A voxel's faces at the box's border, [face][row][voxel of the row]: power out of the box, W; power out that seems to
-// leave there in the sweep, W; for voxels with several such faces how much that counts, else -1; power out less power
-// in, W, without what the sweep knows better: that is right for a face of the box on the whole, but not from voxel to
-// voxel.
+// A voxel's faces at the box's border, [face][row][voxel of the row], four values each:
+//   power out of the box, W
+//   power out of the box in the sweep, W, an estimate
+//   weight of the transport correction, where the voxel has several such faces, else -1
+//   power out less in, W, without the transport correction: that is right for a face of the box as a whole, but not
+//   from voxel to voxel
 __kernel void diffusion_outflow(DiffusionLayout layout, const __global float* sigma_t, const __global float* sigma_a,
   const __global float* flat_source, const __global float* conductance, const __global float* currents,
   const __global float* passed, const __global float* model, const __global float* pattern,
@@ -422,7 +424,7 @@ __kernel void diffusion_outflow(DiffusionLayout layout, const __global float* si
   }
 }
 
-// Net flux, W / length^2 times volume, [x, y, z][stride], added to.
+// Net flux, W / length^2 times volume, [x, y, z][stride], added to (numerics.md, Eq. (75)).
 __kernel void diffusion_flux(DiffusionLayout layout, const __global float* sigma_t, const __global float* sigma_a,
   const __global float* flat_source, const __global float* conductance, const __global float* currents,
   const __global float* passed, const __global float* model, const __global float* pattern,
@@ -444,8 +446,8 @@ __kernel void diffusion_flux(DiffusionLayout layout, const __global float* sigma
   }
 }
 
-// The next sweep's source: what the medium shines and what it scatters; of voxels with a skin, what makes that shine as
-// the light there and the power through it want: 4 J+ = fluence + 2 J.
+// The next sweep's source: emitted and scattered light; of thick voxels beside thinner ones, what gives their surface
+// the outward partial current of diffusion (numerics.md, Eqs. (63), (64)).
 __kernel void diffusion_source(DiffusionLayout layout, const __global float* given, const __global float* sigma_s,
   const __global exact* fluence, const __global float* sigma_t, const __global float* sigma_a,
   const __global float* conductance, const __global float* passed, __global float* source)
@@ -462,7 +464,7 @@ __kernel void diffusion_source(DiffusionLayout layout, const __global float* giv
   find_neighbours(layout.size, x, y, z, i, next);
   float open[6];
   const float skin = openness(&layout, sigma_t, i, next, at, open);
-  // `given` is less than nothing where unscattered light on directions of its own is less than in the sweep.
+  // `given` is negative where uncollided light along finer directions is less than in the sweep.
   const float even =
     fmax(given[begin + i] + sigma_s[begin + i] * fmax((float)fluence[i], 0.0f) * (0.25f * M_1_PI_F), 0.0f);
   float shining = 0.0f, sum = 0.0f;
@@ -487,11 +489,11 @@ __kernel void diffusion_source(DiffusionLayout layout, const __global float* giv
   source[begin + i] = mix(even, there, skin);
 }
 
-// Of one light: each passes its own part, which depends on where its light is lost.
-// path      W length, of the light
+// Of one lamp: the light that passes faces at once where it is scattered (numerics.md, Eqs. (66) to (69)).
+// path      W length, of the lamp
 // moments  of it, as in SweepVolume.h, [channel][face][stride]
 // passed    [channel][face][stride] W, added to
-// all_path  W length, of all lights, added to
+// all_path  W length, of all lamps, added to
 __kernel void diffusion_pass(DiffusionLayout layout, const __global float* sigma_t, const __global float* sigma_a,
   const __global float* sigma_s, const __global float* path, const __global float* moments, __global float* passed,
   __global float* all_path)

@@ -51,7 +51,7 @@ cl::Kernel DiffusionKernel(Device& device, const char* name, bool passing)
     name, kernel_source::DiffusionSystem, ExactOption(device) + " -DPASSING=" + std::to_string(passing));
 }
 
-/// Rounding leaves dark faces a little less than nothing: that is for the others to bear, so that the sum stays.
+/// Rounding can leave dark faces a little below 0: they become 0, and the others are scaled so that the sum stays.
 std::array<double, 6> NotNegative(std::array<double, 6> powers)
 {
   const double sum = std::accumulate(powers.begin(), powers.end(), 0.0);

@@ -121,7 +121,8 @@ __kernel void level_prolong(
   values[i] += correction[parent];
 }
 
-// The coarser level's matrix: faces side by side add up; along a halved axis centres are twice as far apart.
+// The coarser level's matrix (numerics.md, Eq. (70)): faces side by side add up; along a halved axis centres are twice
+// as far apart.
 __kernel void level_coarsen(MultigridLevel fine, MultigridLevel coarse, const __global float* conductance,
   const __global float* loss, __global float* coarse_conductance, __global float* coarse_loss)
 {

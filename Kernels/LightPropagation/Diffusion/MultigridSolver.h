@@ -11,9 +11,9 @@ namespace tyndall
 {
 /// Solves the system of a diffusion matrix on a box of voxels,
 ///   sum over faces of conductance (x_i - x_j) + loss_i x_i = b_i,
-/// symmetric, with positive conductances and losses: conjugate gradients in double, preconditioned by a V cycle of
-/// multigrid in float (voxels 2 x 2 x 2 together, damped Jacobi), so that its cost hardly grows with the number of
-/// voxels.
+/// symmetric, with positive conductances and losses: conjugate gradients in double (Hestenes and Stiefel 1952),
+/// preconditioned by a V cycle of multigrid in float (voxels 2 x 2 x 2 together, damped Jacobi), so that its cost
+/// hardly grows with the number of voxels (numerics.md, section 7.8).
 class MultigridSolver
 {
 public:
@@ -30,9 +30,8 @@ public:
 
   /// Make the residual of `values`, in the norm of the preconditioner, smaller by `reduction`.
   /// @param unit  about as large as the entries of b
-  /// @param leftAtMost  and, so that thin voxels beside thick ones, of which that norm sees little, are solved as well:
-  /// root mean
-  ///   square of the residual, in units
+  /// @param leftAtMost  and its root mean square at most this, in units, for that norm hardly counts thin voxels beside
+  ///   thick ones
   /// @return iterations
   int Solve(const ExactValues& right, ExactValues& values, double unit, double reduction,
     double leftAtMost = std::numeric_limits<double>::infinity());

@@ -37,7 +37,7 @@ int NearestOf(const std::vector<std::array<double, 3>>& directions, const std::a
 }
 
 /// The directions nearest to omega, by their index: each once for every tiny push that leads to it, of the 48 that the
-/// cube's symmetries make of one. All the same, but for what lies between cells.
+/// cube's symmetries make of one. All are the same, unless omega lies between cells.
 std::vector<int> NearestAround(const DirectionSet& set, const std::array<double, 3>& omega)
 {
   const double length = glm::length(Vector(omega));
@@ -116,7 +116,7 @@ double HenyeyGreenstein(double g, double cosine)
 }
 
 /// F^{i,d} / |Omega^d| of Eq. (5) for all stored directions d (rows) and all propagation directions i: the integral of
-/// the phase function over both cells.
+/// the phase function over both cells (numerics.md, Eq. (12)).
 std::vector<std::vector<double>> ScatteringFactors(
   double g, const DirectionSet& set, const std::vector<std::array<double, 3>>& stored)
 {

@@ -89,7 +89,7 @@ static void leave_sides(
   }
 }
 
-// One voxel: Eq. (3), and Eq. (6) divided by sigma_s.
+// One voxel: Eq. (3), and Eq. (6) divided by sigma_s (numerics.md, Eqs. (9), (10)).
 inline real cross_voxel(real radiance, real sigma_t, real source, float length)
 {
   const real tau = sigma_t * length;

@@ -233,8 +233,8 @@ static void begin_planes(const PlaneInfo* layout, __global float* planes, __glob
 }
 
 #if SOURCE
-// The medium's own light on the way through the voxel where it starts, left out until here: (length - taken) / sigma,
-// or a polynomial where that would cancel or `taken` was not kept.
+// Adds the path of the medium's own light in the voxel where it starts (numerics.md, Eq. (26)): (length - taken) /
+// sigma, or a polynomial where that would cancel or `taken` was not kept.
 static void add_own_light(const PlaneInfo* layout, __global float* plane, const __global OwnLightInfo* light)
 {
   const int rows = layout->sizeV * ROW;

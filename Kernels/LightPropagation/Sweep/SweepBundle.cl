@@ -16,10 +16,11 @@
 #define BLOCK (MEMBERS * CHANNELS * ROW)
 #define FIRST(member, channel) (((member)*CHANNELS + (channel)) * ROW + PAD)
 
-// All rays of a row through one segment each (Gruson et al., Eq. 3, conservative):
-//   path += p1 L,  L' = L - sigma p1 L + q p1,  p1 = (1 - exp(-tau)) / sigma
-// For small tau L' is L less what it loses, for large tau it is L times what is left: neither rounds to a leak. Where
-// all of the row is thin, p1 is a polynomial: half the work. `thin` is a constant where this is called.
+// All rays of a row through one segment each (numerics.md, Eqs. (23), (24); Gruson et al., Eq. 3, conservative):
+//   path += p1 P,  P' = P - sigma p1 P + power q p1,  p1 = (1 - exp(-tau)) / sigma
+// For small tau P' is P less what it loses, for large tau it is P times what is left: neither loses digits. Where all
+// of the row is thin, p1 is a polynomial: half the work. `thin` is a constant where this is called. The path of the
+// source's own light in the voxel does not depend on P: Sweep.cl, add_own_light.
 static inline __attribute__((always_inline)) void CROSS_VOXELS(sweep_state* state, int y, bool deposit, bool thin,
   const __global float** in, __global float* out, float length, const __global BundleInfo* bundle)
 {
@@ -73,8 +74,8 @@ static inline __attribute__((always_inline)) void CROSS_VOXELS(sweep_state* stat
     }
     const real shine = mean_length * power;
 #if NET_FLUX
-    // Path of the light that the voxel's own source adds, (length - mean_length) / sigma. Across the axis mirror images
-    // take it away again, but along it a ray and its opposite may cross the voxel in different parts.
+    // Path of the light that the voxel's own source adds, (length - mean_length) / sigma. Across the axis that of
+    // mirror images cancels, but along it a ray and its opposite may cross the voxel in different parts.
     const real thin_path = multiply_add(tau, (real)(-length * length / 6.0f), (real)(0.5f * length * length));
     const real thick_path = (length - mean_length) * load_real(x, inverse_row);
     const real own_path = select(thick_path, thin_path, tau < (real)1e-2f) * (power * MEMBERS * bundle->cosine);

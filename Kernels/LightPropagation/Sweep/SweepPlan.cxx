@@ -101,8 +101,8 @@ SweepPlan::SweepPlan(const Device& device, const Grid& ofGrid, const VoxelBox& o
   this->LayRounds();
 }
 
-/// On a periodic axis of few planes the rays that start in them would all cross in one and the same way. Let them start
-/// in several laps instead, each with its part of the power.
+/// On a periodic axis of few planes the rays that start in them would all cross in the same pattern. They start in
+/// several laps instead, each with its part of the power (numerics.md, section 4.6).
 void SweepPlan::LayLaps()
 {
   this->laps = PlanesOfPattern(this->Planes(), this->periodic[this->axes.axis]) / this->Planes();
@@ -344,8 +344,8 @@ std::vector<OwnLightInfo> SweepPlan::OwnLight() const
   return rows;
 }
 
-/// (l - p1) / sigma = -l^2 (MeanLength[0] + sigma l (MeanLength[1] + ...)), summed over segments; sigma in units of
-/// `thin`.
+/// numerics.md, Eq. (26), where voxels are thin: (l - p1) / sigma = -l^2 (MeanLength[0] + sigma l (MeanLength[1] +
+/// ...)), summed over segments; sigma in units of `thin`.
 OwnLightInfo SweepPlan::OwnLightOf(const UnitInfo& unit, int ofPlane) const
 {
   double sum = 0.0;

@@ -1,4 +1,4 @@
-// Shared by C++ and the sweep's kernels: what these are told.
+// Shared by C++ and the sweep's kernels: their arguments.
 #pragma once
 
 #include "Device/SharedTypes.h"
@@ -52,13 +52,13 @@ typedef struct
   int stepU, stepV, stepP;
   int width;
   int block;    ///< planes packed together: 1 where rows are contiguous in memory, else a vector's worth
-  float vacuum; ///< 1/length, so thin that no float notices
+  float vacuum; ///< 1/length, least sigma_t, in place of 0: exp(-tau) is 1 in float
   float thin;   ///< 1/length, below which meanLength holds on all segments
   float meanLength[MeanLengthTerms];
 } PlaneInfo;
 
-/// The medium's own light in the voxel where it starts: per unit of source, the sum over segments of
-/// power (l - p1) / sigma.
+/// Path of the medium's own light in the voxel where it starts, per unit of source: the sum over segments of
+/// power (l - p1) / sigma (numerics.md, Eq. (26)).
 typedef struct
 {
   float length;                 ///< sum of power l

@@ -15,7 +15,7 @@ typedef struct
   int up[3]; ///< the way it goes along each axis
   float spacing[3];
   float lengths[3]; ///< of a ray from face to face
-  float thin;       ///< optical length of voxels whose light is lost evenly, near enough
+  float thin;       ///< optical length of voxels below which light is taken as lost evenly
 } BeamInfo;
 #ifndef __OPENCL_C_VERSION__
 }

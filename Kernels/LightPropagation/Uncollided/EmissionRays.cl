@@ -6,7 +6,7 @@
 #include "LightPropagation/Uncollided/EmissionRaysShared.h"
 #include "Numerics/Numerics.cl"
 
-#define OPAQUE 80.0f // mean free paths that nothing comes through
+#define OPAQUE 80.0f // mean free paths beyond which nothing is left
 
 typedef struct
 {
@@ -16,8 +16,8 @@ typedef struct
   bool inside; // of the box of what shines
 } lit_voxel;
 
-// The scene with its axes in another order, some of them turned round, so that every voxel sees what shines in the same
-// way whatever way the scene lies: the light then has the symmetries of the scene.
+// The scene with its axes in another order, some of them turned round, so that the peak lies one way from every voxel:
+// the light then has the symmetries of the scene.
 typedef struct
 {
   float spacing[3];
@@ -55,7 +55,7 @@ static real mean_left(real tau, real* left)
 }
 
 // Rays from points to the box of what shines and through it: radiance at their beginnings, W / (length^2 sr),
-// [CHANNELS].
+// [CHANNELS] (numerics.md, Eq. (40)).
 //   point      in voxels, along x, y, z
 //   way        unit vectors, towards the box
 //   sigma      of the grid
@@ -196,7 +196,7 @@ static inline real along(const real* values, integer axis, int shift)
 
 // Rays to the box, along directions from a lattice of points in the voxel that are spread evenly over the solid angles
 // of the box's sides: the first coordinate chooses the side, in proportion to its solid angle; what is left of it and
-// the second, (u, v) from 0 to 1, stand for the angles' tan(x / 2) and sin.
+// the second, (u, v) from 0 to 1, stand for the angles' tan(x / 2) and sin (numerics.md, Eq. (41)).
 //   from, end  the rays, a multiple of REAL_WIDTH
 //   points     [u, v, x, y, z][MOST]
 //   sums       their mean, [channel][fluence, net flux along x, y, z]
@@ -273,8 +273,8 @@ static void gather_rays(const turned_scene* s, const lit_voxel* voxel, const flo
   }
 }
 
-// The ways to turn the scene in which voxels and faces that are alike see it alike: one, but for those that lie evenly
-// to what shines.
+// The ways to turn the scene by which voxels and faces that are alike get the same light: one, but for voxels that lie
+// evenly to what shines.
 typedef struct
 {
   int permutations[6][3]; // axes of the scene in their new order

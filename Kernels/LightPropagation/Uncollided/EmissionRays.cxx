@@ -24,8 +24,8 @@ constexpr double AllRays = 0x1p22; ///< at first, about, for the usual error: a 
 constexpr double UsualError = 0.02;
 
 /// Of a lattice of points in five dimensions, found component by component for 32 to 2048 points; with 4096 the worst
-/// error of Kobayashi's points at 20^3 fell from 0.5% to 0.3%. Every 2^n first points, in the
-/// order of their reversed bits, are a lattice of their own.
+/// error of Kobayashi's points at 20^3 fell from 0.5% to 0.3%. Every 2^n first points, in the order of their reversed
+/// bits, are a lattice of their own.
 constexpr std::array<std::uint32_t, 5> LatticeVector = { 1, 807, 303, 119, 445 };
 
 /// [dimension][MostRays], 0 to 1.

@@ -1,12 +1,12 @@
 // Beams from a point lamp through the box. The host gives
 //   ATOMICS      1 where the device has 64-bit atomics, else one work-item does all
 //   LAMBERT, CONE  1 for a rectangle, a spot
-//   MOMENTS     1: how near to which faces of a voxel light is lost is wanted
+//   MOMENTS     1: moments of the deposit are wanted
 //
 // Space around the lamp is six pyramids, one for each way along an axis; in a pyramid beams lie on a grid of tangents,
 // so fine that a beam is at most a voxel wide where it leaves the box. It is followed layer by layer; where its square
-// cross-section lies over up to four voxels, each takes its part. All is told as parts of the lamp's power: its colours
-// share sigma_t.
+// cross-section lies over up to four voxels, each takes its part (numerics.md, Eqs. (33), (34)). All values are
+// parts of the lamp's power: its colours share sigma_t.
 
 #include "LightPropagation/Uncollided/LampBeamsShared.h"
 #include "Numerics/FixedPoint.cl"
@@ -65,8 +65,7 @@ typedef struct
   float entered, escaped[6], stranded;
 } lamp_tally;
 
-// How many of them a path in a voxel counts: what is thick is crossed by little path, of which fixed point must not
-// lose any.
+// Factor of a path in a voxel in fixed point (numerics.md, Eq. (35)): light goes little path through what is thick.
 static float units_of(float sigma, float diagonal)
 {
   return fmax(sigma * diagonal, 1.0f);
@@ -80,8 +79,8 @@ static void overlap(float low, float width, int* voxel, float* part)
 }
 
 #if MOMENTS
-// Path that light has in a voxel, times how far from its middle it is lost in the mean: along the beam's axis and
-// aside.
+// Path that light has in a voxel, times the distance from its middle of the mean place where it is lost: along the
+// beam's axis and aside (numerics.md, Eqs. (37), (38)).
 //   way   of the step, from begin to end, layers from the lamp
 //   mean  middle of the part of the cross-section in the voxel, half way through the step
 static void add_moments(const LampInfo* lamp, const BeamRow* row, const int* voxel, float2 way, float2 mean,

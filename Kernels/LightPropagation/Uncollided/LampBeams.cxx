@@ -35,7 +35,7 @@ SweepTally DepositBeam(Device& device, const SweepVolume& volume, const Light& l
   const std::array<bool, 3>& periodic, SweepWorkspace& workspace, const Monitor& monitor)
 {
   const std::array<double, 3> omega = Array(glm::normalize(Vector(light.direction)));
-  // How near to voxels' faces the light is lost is told by the faces that it enters through.
+  // Moments of the deposit are found from the powers through the faces.
   SweepVolume own = volume;
   Buffer<float> path, partialCurrents;
   if (volume.deposit.moments)
@@ -232,7 +232,7 @@ public:
       this->Follow(points[p], 1.0 / points.size(), [&](double done) { Report(monitor, (p + done) / points.size()); });
     }
     cl::Kernel add = this->Kernel("add_fixed");
-    // All directions of a lamp inside the box were followed: what beams on the cone's border missed is known.
+    // All directions of a lamp inside the box were followed: so it is known what beams on the cone's border missed.
     const double correction = this->AllInside && this->Shone > 0.0 ? 1.0 / this->Shone : 1.0;
     cl_float4 units = {};
     for (int c = 0; c < 3; ++c)
@@ -266,7 +266,8 @@ private:
         std::to_string(this->Volume.deposit.moments != nullptr) + " -DTHIN=" + std::to_string(ThinForMoments) + "f");
   }
 
-  /// Fixed point units per length: no voxel can gather more than all power along its diagonal.
+  /// Fixed point units per length (numerics.md, Eq. (36)): no voxel can gather more than all power along its diagonal,
+  /// once a round.
   double Scale() const { return std::exp2(std::floor(std::log2(0x1p60 / (this->Diagonal() * RoundsAtMost)))); }
 
   double Diagonal() const

@@ -9,10 +9,9 @@
 //                    that these set out from, by their marks: column and row << 16
 //   PATHS            1: nothing is summed, vertices are written
 //
-// A step is followed from voxel wall to voxel wall (Amanatides and Woo). In a voxel whose extinction over a diagonal is
-// s, with b = max(s, 1), the sums gain
-//   a = power b (path integral of transmittance, in diagonals),   0 <= a <= power,
-// which is the power lost where a voxel is thick and the path where it is thin: neither loses digits in fixed point.
+// A step is followed from voxel wall to voxel wall (Amanatides and Woo 1987). In a voxel whose extinction over a
+// diagonal is s, with b = max(s, 1), the sums gain (numerics.md, Eqs. (35), (97))
+//   a = power b (path integral of transmittance, in diagonals),   0 <= a <= power
 // Cells, whose voxels differ, gain power times path in diagonals.
 //
 // A photon counts where it enters a voxel (a cell), however many stretches it crosses it in; once more where it comes
@@ -41,7 +40,7 @@ typedef struct
   real wall[3], now;
   real sigma;
   real power[CHANNELS];
-  real owed[CHANNELS]; // what rounding has left of what the voxels were to take: the power is `power + owed`
+  real owed[CHANNELS]; // what rounding has left of what the voxels were to take (Kahan): the power is `power + owed`
 #if COUNTS || CELLS
   integer counted; // place where the photon was counted last
 #endif
@@ -179,8 +178,8 @@ static void deposit_all(const march_arrays* arrays, const photon_lanes* lanes, c
 #undef DEPOSIT
 }
 
-// Most of the time of a march across a large grid is waiting for memory. It is asked for a few voxels ahead of the
-// photons, as far as they go straight on. Whoever compiles this may not know how: then it does without.
+// Most of the time of a march across a large grid is spent on memory. It is prefetched a few voxels ahead of the
+// photons, as far as they go straight on, where the compiler has a builtin for that.
 static void ask_ahead(const march_arrays* arrays, const photon_lanes* lanes, integer at)
 {
 #if REAL_WIDTH > 1 && defined(__has_builtin)
@@ -272,7 +271,7 @@ static void end_photon(const photon_lanes* lanes, int k, int face, __global Phot
 }
 
 #if BENDS
-// The photons of a mask whose velocity means nothing, after a turn.
+// Gives up the photons of a mask whose velocity is out of range after a turn.
 static void give_up_lost(const march_arrays* arrays, photon_lanes* lanes, integer mask, int first)
 {
   const real pace = VECTOR(lanes->pace);

@@ -5,11 +5,11 @@
 //   DIRECTIONS  1: directions are asked for
 //   COUNTS, CELLS  1: photons bear marks (PhotonMarch.cl)
 //
-// A path obeys dr/dt = T, dT/dt = grad(n^2) / 2 with dt = ds / n, so that |T| = n. It becomes steps, straight lines of
-// constant velocity:
-//   order 2  from kick to kick of the leapfrog (drift, kick, drift): its polygon is the path itself
+// A path obeys dr/dt = T, dT/dt = grad(n^2) / 2 with dt = ds / n (numerics.md, Eq. (90)). It becomes steps, straight
+// lines of constant velocity:
+//   order 2  from kick to kick of the leapfrog, Eq. (91): its polygon is the path itself
 //   order 4  from step end to step end, each step of Yoshida's three leapfrogs
-//   order 1  explicit Euler as in Pfeuti 2009, Eq. 2.10 and 2.11: dx/ds = v / n, dv/ds = grad n
+//   order 1  explicit Euler, Eq. (92), as in Pfeuti 2009, Eq. 2.10 and 2.11: dx/ds = v / n, dv/ds = grad n
 // Where n does not vary within the reach of interpolation nothing is evaluated, and a step is as long as that is so.
 //
 // Positions and velocities are in voxels, lengths in voxel diagonals.
@@ -87,7 +87,7 @@ static integer padded(const MarchInfo* info, const integer* voxel)
   return voxel[2] * layer + voxel[1] * row + voxel[0] + (layer + row + 1);
 }
 
-// Where the photons of a mask are: at p, which on a wall only `at` knows.
+// The voxels of the photons of a mask: of their place p, but on a wall, where rounding would decide, that of `at`.
 static void voxels_at(const MarchInfo* info, integer mask, const real* p, integer at, integer* voxel)
 {
   FOR_AXES(a)

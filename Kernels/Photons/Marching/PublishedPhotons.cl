@@ -51,7 +51,7 @@ static float luminance(float3 colour)
   return dot(colour, (float3)(0.2126f, 0.7152f, 0.0722f));
 }
 
-// Read, unpack, change, pack, and write if nobody else has written meanwhile. Returns whether it succeeded.
+// Read, unpack, change, pack, and write if no other work-item has written meanwhile. Returns whether it succeeded.
 static bool deposit_packed(__global ulong* voxel, float3 power, float3 direction)
 {
   for (int i = 0; i < TRIES; ++i)

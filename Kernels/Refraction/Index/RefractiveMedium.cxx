@@ -22,9 +22,9 @@ namespace
 {
 constexpr std::size_t WorkGroup = 256;
 constexpr double ShortestEdge = 1e-18; ///< of a voxel, length
-constexpr double LeastIndex = 1e-6;    ///< as CheckIndex wants it
+constexpr double LeastIndex = 1e-6;    ///< as in CheckIndex
 constexpr double LargestIndex = 1e6;
-constexpr double LargestExtinction = 1e37; ///< as Check of a medium wants it
+constexpr double LargestExtinction = 1e37; ///< as in Check of a medium
 
 void Demand(bool holds, const std::string& what)
 {

@@ -1,12 +1,10 @@
 // The squared refractive index n^2 between voxel centres, and its gradient. Lengths are in voxels here.
 //
-// n^2 is a tricubic B-spline, so that its gradient is continuous and is that of one function: a symplectic integrator
-// then keeps its order and its Hamiltonian |T|^2 - n^2. The coefficients c = f - (d_x^2 + d_y^2 + d_z^2) f / 6, second
-// differences of the voxels' f = n^2, make the spline meet f to fourth order (quadratic fields exactly) without a
-// recursive filter. Where f jumps, differences overshoot: a coefficient is held within an eighth of the least and the
-// largest of its voxels. The spline's weights are positive with sum 1, so that it is positive as f is. Smooth fields
-// overshoot by less, at extremes only. Beyond the grid f goes on linearly, but never below a quarter of the border's.
-// The coefficient of voxel (i, j, k) stands at (i + 2, j + 2, k + 2) of an array that is four longer along each axis.
+// n^2 is a tricubic B-spline of the coefficients of numerics.md, Eq. (88): its gradient is continuous and that of one
+// function, as a symplectic integrator needs. A coefficient is held within an eighth of the least and the largest of
+// its voxels, so that the spline is positive wherever n^2 is. Beyond the grid n^2 goes on linearly, but never below a
+// quarter of the border's. The coefficient of voxel (i, j, k) stands at (i + 2, j + 2, k + 2) of an array that is four
+// longer along each axis.
 
 #pragma once
 #include "Refraction/Index/IndexShared.h"

@@ -58,7 +58,8 @@ inline int3 place(int along, int across, int up)
 }
 
 // How much a surface faces along the columns: the fourth power of its normal's component, as a part of the sum of all
-// three. The order of the sum is that of their sizes, so that turning the surface does not change a bit.
+// three (numerics.md, Eq. (87)). The order of the sum is that of their sizes, so that turning the surface does not
+// change a bit.
 inline float weight_along(long3 normal)
 {
   float3 n = fabs(convert_float3(normal));
