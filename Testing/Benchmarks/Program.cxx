@@ -15,7 +15,7 @@ bool Arguments::Asks(const std::string& word) const
   return this->words.empty() || std::find(this->words.begin(), this->words.end(), word) != this->words.end();
 }
 
-int RunOnDevice(int argc, char* argv[], const std::function<void(tyndall::Device&, const Arguments&)>& work)
+Arguments ReadArguments(int argc, char* argv[])
 {
   Arguments arguments;
   arguments.quick = std::getenv("TYNDALL_BENCH_QUICK") != nullptr;
@@ -31,6 +31,12 @@ int RunOnDevice(int argc, char* argv[], const std::function<void(tyndall::Device
       arguments.words.push_back(word);
     }
   }
+  return arguments;
+}
+
+int RunOnDevice(int argc, char* argv[], const std::function<void(tyndall::Device&, const Arguments&)>& work)
+{
+  const Arguments arguments = ReadArguments(argc, argv);
   std::shared_ptr<tyndall::Device> device;
   try
   {

@@ -18,6 +18,8 @@ struct Arguments
   bool Asks(const std::string& word) const;
 };
 
+Arguments ReadArguments(int argc, char* argv[]);
+
 /// The main of a benchmark that needs a device: finds it and runs `work`.
 /// @return what main is to return: 125 where there is no device, failure if TYNDALL_REQUIRE_DEVICE is set or `work`
 /// throws
