@@ -16,7 +16,7 @@ HERE = pathlib.Path(__file__).resolve().parent
 PROXIES = HERE.parent / "ServerManager"
 REFERENCE = HERE / "reference.md"
 COLUMNS = 120
-NAME = re.compile(r"\b[A-Za-z]+(?:_[A-Za-z]+)+\b")
+NAME = re.compile(r"\b[A-Za-z]+(?:_[A-Za-z0-9]+)+\b")
 
 HEAD = """# Reference
 
@@ -103,19 +103,19 @@ def valid_values(prop):
         return "names of what the file has"
     if prop.find("FileListDomain") is not None or prop.get("name") == "FileName":
         return "a file name"
+    if component_labels(prop) and prop.get("repeat_command"):
+        return "rows of " + prop.get("number_of_elements_per_command") + ": " + ", ".join(component_labels(prop))
     if prop.get("repeat_command"):
-        return "rows of " + prop.get("number_of_elements_per_command", "1") + ": " + ", ".join(component_labels(prop))
+        return "whole numbers" if prop.tag == "IntVectorProperty" else "numbers"
     return "any number" if prop.tag == "DoubleVectorProperty" else "text"
 
 
 def default(prop):
     value = prop.get("default_values")
-    if prop.get("repeat_command"):
-        return "none" if component_labels(prop) else ""
     if prop.find("ArrayListDomain") is not None:
         return code(value.split(";")[-1]) if value else "its scalars"
     if not value:
-        return ""
+        return "none" if prop.get("repeat_command") and component_labels(prop) else ""
     text = dict(entries(prop)).get(value)
     return escaped(text) if text else " ".join(map(plain_number, value.split()))
 
