@@ -3,8 +3,8 @@
 
     make_help.py CMARK_GFM OUTPUT_FOLDER
 
-ParaView shows its help in a QTextBrowser, which knows HTML 4 in part: no style sheets to speak of, anchors as
-<a name="...">, pictures as large as they are unless they say their width. Links between pages become links to .html; links
+ParaView shows its help in a QTextBrowser, which knows HTML 4 in part: few styles (its own font for code, Courier, may be
+missing), anchors as <a name="...">, pictures as large as they are unless they say their width. Links between pages become links to .html; links
 to files that the help does not hold lose their target and keep their words.
 """
 import html
@@ -19,7 +19,8 @@ HERE = pathlib.Path(__file__).resolve().parent
 WIDTH, WIDTH_IN_TABLE = 720, 360  # pixels of a picture at most
 PAGE = """<!DOCTYPE html>
 <html>
-<head><meta http-equiv="Content-Type" content="text/html; charset=utf-8"><title>%s</title></head>
+<head><meta http-equiv="Content-Type" content="text/html; charset=utf-8"><title>%s</title>
+<style type="text/css">pre, code { font-family: "DejaVu Sans Mono", monospace; }</style></head>
 <body>
 %s</body>
 </html>
