@@ -11,6 +11,8 @@
 
 #include "../Kernels/PlyFile.h"
 
+#include "Reference/PfeutiTimes.h"
+
 #include <algorithm>
 #include <cmath>
 #include <cstdio>
@@ -224,20 +226,15 @@ private:
   std::vector<float> Reference;
 };
 
-/// Milliseconds of a pass on a GTX 260 (Pfeuti 2009, Tables 4.2 to 4.4), photons spread evenly and adaptive ones; the
-/// map's 5 or 6 ms are in the pilot's, mipmaps and filter in the reconstruction.
-struct PaperPasses
+/// @param paperScene  the scene's name in Pfeuti's tables
+void PrintPasses(WayRunner& runner, const PaperScene& scene, const std::string& paperScene, bool quick)
 {
-  double generation[2], pilot, marching[2], reconstruction;
-  std::size_t photons[2];
-};
-
-void PrintPasses(WayRunner& runner, const PaperScene& scene, const PaperPasses& paper, bool quick)
-{
+  const PfeutiPasses paperEven = PfeutiPassesOf(paperScene, "reference");
+  const PfeutiPasses paper = PfeutiPassesOf(paperScene, "adaptive");
   Table table({ "pass", "", "even ms", "paper", "adaptive ms", "paper" });
   const std::size_t shrink = quick ? 100 : 1;
-  const Passes even = runner.Time(Way::Uniform, paper.photons[0] / shrink, quick ? 1 : 7).passes;
-  const Passes adaptive = runner.Time(Way::Adaptive, paper.photons[1] / shrink, quick ? 1 : 7).passes;
+  const Passes even = runner.Time(Way::Uniform, paperEven.photons / shrink, quick ? 1 : 7).passes;
+  const Passes adaptive = runner.Time(Way::Adaptive, paper.photons / shrink, quick ? 1 : 7).passes;
   const auto add = [&](const char* name, double ours, double theirs, double ours2, double theirs2) {
     const double none = std::numeric_limits<double>::quiet_NaN();
     table.Add({ name, "", Text("%.1f", ours > 0.0 ? 1e3 * ours : none), Text("%.0f", theirs > 0.0 ? theirs : none),
@@ -250,13 +247,13 @@ void PrintPasses(WayRunner& runner, const PaperScene& scene, const PaperPasses& 
       .Print();
   };
   add("pilot photons and map", 0.0, 0.0, adaptive.pilot, paper.pilot);
-  add("generation", even.generation, paper.generation[0], adaptive.generation, paper.generation[1]);
-  add("marching", even.marching, paper.marching[0], adaptive.marching, paper.marching[1]);
+  add("generation", even.generation, paperEven.generation, adaptive.generation, paper.generation);
+  add("marching", even.marching, paperEven.marching, adaptive.marching, paper.marching);
   add("reconstruction", 0.0, 0.0, adaptive.reconstruction, paper.reconstruction);
-  add("together", even.Whole(), paper.generation[0] + paper.marching[0], adaptive.Whole(),
-    paper.pilot + paper.generation[1] + paper.marching[1] + paper.reconstruction);
-  table.Print("Passes, " + scene.name + ", " + std::to_string(paper.photons[0]) + " photons spread evenly, " +
-    std::to_string(paper.photons[1]) + " adaptive ones (paper: GTX 260; below 1 ms is told as 1)");
+  add("together", even.Whole(), paperEven.generation + paperEven.marching, adaptive.Whole(),
+    paper.pilot + paper.generation + paper.marching + paper.reconstruction);
+  table.Print("Passes, " + scene.name + ", " + std::to_string(paperEven.photons) + " photons spread evenly, " +
+    std::to_string(paper.photons) + " adaptive ones (paper: GTX 260; below 1 ms is told as 1)");
 }
 
 /// What falling back to photons spread evenly costs where light is even.
@@ -284,32 +281,28 @@ void PrintFallBack(tyndall::Device& device, bool quick)
     Text(", which costs %.1f%% more (goal: below 10%%)", 100.0 * cost));
 }
 
-void RunScene(tyndall::Device& device, PaperScene scene, const PaperPasses& paper, bool quick)
+void RunScene(tyndall::Device& device, PaperScene scene, const std::string& paperScene, bool quick)
 {
   SceneBench(device, scene, quick).Compare();
   WayRunner runner(device, scene);
-  PrintPasses(runner, scene, paper, quick);
+  PrintPasses(runner, scene, paperScene, quick);
 }
-
-constexpr PaperPasses PaperBall = { { 1.0, 2.0 }, 16.0, { 110.0, 85.0 }, 30.0, { 122000, 50000 } };
-constexpr PaperPasses PaperCube = { { 1.0, 2.0 }, 17.0, { 144.0, 100.0 }, 30.0, { 125000, 46000 } };
-constexpr PaperPasses PaperArmadillo = { { 1.0, 2.0 }, 18.0, { 163.0, 134.0 }, 29.0, { 106000, 49000 } };
 
 void RunAll(tyndall::Device& device, const Arguments& arguments)
 {
   const int edge = arguments.quick ? 32 : 128;
   if (arguments.Asks("ball"))
   {
-    RunScene(device, BallInFog(edge), PaperBall, arguments.quick);
+    RunScene(device, BallInFog(edge), "ball", arguments.quick);
   }
   if (arguments.Asks("cube"))
   {
-    RunScene(device, CubeInFog(edge), PaperCube, arguments.quick);
+    RunScene(device, CubeInFog(edge), "cube", arguments.quick);
   }
   const std::string file = std::string(TYNDALL_FETCHED_DATA) + "/armadillo.ply";
   if (arguments.Asks("armadillo") && std::ifstream(file).good())
   {
-    RunScene(device, MeshInFog("armadillo", ReadPly(file), edge), PaperArmadillo, arguments.quick);
+    RunScene(device, MeshInFog("armadillo", ReadPly(file), edge), "armadillo", arguments.quick);
   }
   else if (arguments.Asks("armadillo"))
   {

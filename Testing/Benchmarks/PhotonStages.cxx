@@ -4,6 +4,7 @@
 
 #include "../Kernels/PlyFile.h"
 
+#include "Reference/PfeutiTimes.h"
 #include "Viewing/MediumRayCaster.h"
 
 #include <cstdio>
@@ -15,15 +16,6 @@ using namespace tyndall;
 
 namespace
 {
-/// Of a stage, milliseconds on a GTX 260 (Pfeuti 2009, Tables 4.2 and 4.4); 0: he has no such stage.
-struct PaperTimes
-{
-  double voxelisation, octree, generation, marching, viewing;
-  std::size_t photons;
-};
-constexpr PaperTimes PaperBall = { 25.0, 5.0, 1.0, 110.0, 189.0, PaperPhotons };
-constexpr PaperTimes PaperArmadillo = { 68.0, 5.0, 1.0, 163.0, 179.0, 106000 };
-
 class StageTable
 {
 public:
@@ -100,7 +92,7 @@ void TimeViewing(
   }
 }
 
-void TimeStagesOf(const PhotonBench& bench, PaperScene& scene, const PaperTimes& paper)
+void TimeStagesOf(const PhotonBench& bench, PaperScene& scene, const PfeutiPasses& paper)
 {
   Device& device = bench.device;
   StageTable table(bench, scene);
@@ -121,12 +113,12 @@ void TimeStages(const PhotonBench& bench)
 {
   const int edge = bench.quick ? 32 : 128;
   PaperScene ball = BallInFog(edge);
-  TimeStagesOf(bench, ball, PaperBall);
+  TimeStagesOf(bench, ball, PfeutiPassesOf("ball", "reference"));
   const std::string file = std::string(TYNDALL_FETCHED_DATA) + "/armadillo.ply";
   if (std::ifstream(file).good())
   {
     PaperScene armadillo = MeshInFog("armadillo", ReadPly(file), edge);
-    TimeStagesOf(bench, armadillo, PaperArmadillo);
+    TimeStagesOf(bench, armadillo, PfeutiPassesOf("armadillo", "reference"));
   }
   else
   {

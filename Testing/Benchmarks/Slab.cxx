@@ -9,11 +9,11 @@
 #include "Report.h"
 
 #include "../Kernels/RandomMedium.h"
-#include "../Kernels/SlabReference.h"
 
 #include "Device/Device.h"
 #include "LightPropagation/Conservative/ConservativePropagation.h"
 #include "LightPropagation/Published/SequentialPropagation.h"
+#include "Reference/SlabReference.h"
 
 #include <cmath>
 #include <cstdio>
@@ -27,12 +27,6 @@ using namespace tyndall;
 namespace
 {
 constexpr double Unknown = std::numeric_limits<double>::quiet_NaN();
-
-/// More rows of the project's slab.csv (adding-doubling, see SlabReference.h): no absorption, and a thicker slab.
-constexpr SlabReference MoreSlabs[] = {
-  { 1.0, 1.0, 4.46594007e-01, 5.53405993e-01, 3.41328760e-01, 6.58671240e-01 },
-  { 10.0, 0.9, 4.78015702e-01, 3.85558281e-03, 4.14934693e-01, 5.61239453e-03 },
-};
 
 struct Method
 {
@@ -177,9 +171,12 @@ Series Refine(const Method& method, Series series, const std::vector<int>& grids
 
 std::vector<SlabReference> Slabs(bool quick)
 {
-  std::vector<SlabReference> slabs(std::begin(SlabReferences), std::end(SlabReferences));
-  slabs.insert(slabs.end(), std::begin(MoreSlabs), std::end(MoreSlabs));
-  return quick ? std::vector<SlabReference>{ slabs[2] } : slabs;
+  if (quick)
+  {
+    return { SlabOf(1.0, 0.9) };
+  }
+  return { SlabOf(0.1, 0.5), SlabOf(1.0, 0.5), SlabOf(1.0, 0.9), SlabOf(1.0, 0.999), SlabOf(5.0, 0.99),
+    SlabOf(1.0, 1.0), SlabOf(10.0, 0.9) };
 }
 
 void RunAll(Device& device, bool quick)

@@ -1,5 +1,7 @@
 #include "StressScenes.h"
 
+#include "Reference/SlabReference.h"
+
 #include <algorithm>
 #include <cmath>
 #include <cstdio>
@@ -461,15 +463,14 @@ void AddShapes(std::vector<StressCase>& cases)
       cases[cases.size() - 2].middle = 0.0; // that is of a cube that many rays enter
     }
   }
-  // A slab, of 1 x 1 x 1000 voxels with periodic sides: T of diffuse light by the diffusion limit, whose extrapolation
-  // length is Hopf's (0.7104 on both sides).
+  // A slab, of 1 x 1 x 1000 voxels with periodic sides: T of diffuse light by the diffusion limit.
   for (const double tau : { 100.0, 1e4, 1e6 })
   {
     StressScene slab = Uniform(0.0, tau / 1000.0, { 1, 1, 1000 });
     slab.periodic = { true, true, false };
     slab.faces[4] = 1.0;
     StressCase made = Named("shape", "slab of 1x1x1000, albedo 1, tau " + Number(tau), slab);
-    made.transmitted = 4.0 / 3.0 / (tau + 2.0 * 0.710446);
+    made.transmitted = ThickSlabTransmittance(tau);
     made.bound = 1.0;
     cases.push_back(made);
   }

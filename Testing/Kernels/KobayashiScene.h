@@ -1,6 +1,5 @@
 #pragma once
 
-#include "KobayashiReference.h"
 #include "MediumScene.h"
 
 #include <algorithm>

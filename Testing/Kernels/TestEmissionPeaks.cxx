@@ -1,6 +1,8 @@
 #include "DeviceTest.h"
 #include "KobayashiScene.h"
 
+#include "Reference/KobayashiReference.h"
+
 #include <algorithm>
 #include <numeric>
 #include <string>
@@ -219,7 +221,7 @@ TEST_F(EmissionPeaks, LightKobayashisVoid)
     scene.settings.emissionError = voxels == 20 ? 0.005 : 0.0025;
     const LightField light = scene.Solve(this->GetDevice());
     EXPECT_LT(light.balance.RelativeError(1), 1e-5);
-    for (const KobayashiReference& reference : KobayashiProblem1)
+    for (const KobayashiReference& reference : KobayashiProblem1())
     {
       const double mean = voxels == 20 ? reference.mean10 : reference.mean3;
       EXPECT_NEAR(KobayashiFluence(scene, light.fluence, reference.point, false) / mean, 1.0, 0.005)
@@ -237,7 +239,7 @@ TEST_F(EmissionPeaks, LightKobayashisVoidThatScatters)
   scene.settings.emissionError = 0.005;
   const LightField light = scene.Solve(this->GetDevice());
   EXPECT_LT(light.balance.RelativeError(1), 1e-5);
-  for (const KobayashiReference& reference : KobayashiProblem1)
+  for (const KobayashiReference& reference : KobayashiProblem1())
   {
     EXPECT_NEAR(KobayashiFluence(scene, light.fluence, reference.point, true) / reference.BestHalf(), 1.0, 0.03)
       << reference.point[0] << ' ' << reference.point[1] << ' ' << reference.point[2];

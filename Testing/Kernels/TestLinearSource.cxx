@@ -1,11 +1,14 @@
-#include "CubeReference.h"
 #include "DeviceTest.h"
 #include "MediumScene.h"
+
+#include "Reference/CubeReference.h"
+#include "Reference/SlabReference.h"
 
 #include <algorithm>
 #include <cmath>
 #include <cstdlib>
 #include <string>
+#include <utility>
 #include <vector>
 
 using namespace tyndall;
@@ -122,16 +125,17 @@ struct Transmittance
   double tau, transmitted;
 };
 
-/// Diffuse light through slabs of albedo 1. Thin: adding-doubling (slab.csv of the project's reference values); thick:
-/// 4 / (3 (tau +
-/// 1.4208922)).
+/// Diffuse light through slabs of albedo 1. Thin: adding-doubling; thick: the diffusion limit.
 std::vector<Transmittance> TransmittancesOfWhiteSlabs()
 {
-  std::vector<Transmittance> rows = { { 0.01, 9.90274573e-01 }, { 0.1, 9.15702874e-01 }, { 1.0, 5.53405993e-01 },
-    { 5.0, 2.07657278e-01 } };
+  std::vector<Transmittance> rows;
+  for (double tau : { 0.01, 0.1, 1.0, 5.0 })
+  {
+    rows.push_back({ tau, SlabOf(tau, 1.0).diffuseT });
+  }
   for (double tau : { 10.0, 20.0, 50.0, 100.0, 300.0, 1e3, 1e4, 1e5, 1e6 })
   {
-    rows.push_back({ tau, 4.0 / (3.0 * (tau + 1.4208922)) });
+    rows.push_back({ tau, ThickSlabTransmittance(tau) });
   }
   return rows;
 }
@@ -199,20 +203,20 @@ TEST_F(LinearSource, SlabsAreTheSameHoweverWideTheirVoxelsAre)
 
 TEST_F(LinearSource, TransmitsBeamsAsSlabsDoHoweverThickVoxelsAre)
 {
-  // Albedo 1, beams at cosine 1 and 0.5: slab.csv; between and beyond its rows the diffusion limit H(mu) / sqrt(3) /
-  // (tau + 1.4208922) (H: Chandrasekhar's function, 2.9078107 and 2.0127788).
+  // Albedo 1, beams at cosine 1 and 0.5: adding-doubling; between and beyond its rows the diffusion limit.
   struct Row
   {
     double tau, across, oblique;
   };
-  std::vector<Row> rows = { { 0.01, 9.95024714e-01, 9.90098531e-01 }, { 0.1, 9.52311414e-01, 9.08956820e-01 },
-    { 0.5, 7.97494027e-01, 6.65618362e-01 }, { 1.0, 6.58671240e-01, 5.01624471e-01 },
-    { 5.0, 2.61278832e-01, 1.81004274e-01 }, { 10.0, 1.46995381e-01, 1.01750251e-01 },
-    { 100.0, 1.65530509e-02, 1.14579781e-02 }, { 1000.0, 1.67644300e-03, 1.16042942e-03 } };
+  std::vector<Row> rows;
+  for (double tau : { 0.01, 0.1, 0.5, 1.0, 5.0, 10.0, 100.0, 1000.0 })
+  {
+    const SlabReference slab = SlabOf(tau, 1.0);
+    rows.push_back({ tau, slab.beamT, slab.obliqueT });
+  }
   for (double tau : { 20.0, 30.0, 50.0, 70.0, 150.0, 200.0, 300.0, 1e4, 1e5, 1e6 })
   {
-    rows.push_back(
-      { tau, 2.9078107 / std::sqrt(3.0) / (tau + 1.4208922), 2.0127788 / std::sqrt(3.0) / (tau + 1.4208922) });
+    rows.push_back({ tau, ThickSlabBeamTransmittance(tau, 1.0), ThickSlabBeamTransmittance(tau, 0.5) });
   }
   for (const Row& row : rows)
   {
@@ -244,7 +248,7 @@ TEST_F(LinearSource, TransmitsBeamsBetweenClearVoxels)
     scene.ShineAlong({ 0.0, 0.0, 1.0 });
     std::fill(scene.sigma_s.begin() + 8, scene.sigma_s.begin() + 24, static_cast<float>(tau / 16.0));
     const LightField light = scene.Solve(this->GetDevice());
-    const double transmitted = tau == 1.0 ? 6.58671240e-01 : 2.9078107 / std::sqrt(3.0) / (tau + 1.4208922);
+    const double transmitted = tau == 1.0 ? SlabOf(1.0, 1.0).beamT : ThickSlabBeamTransmittance(tau, 1.0);
     EXPECT_NEAR(Out(light, 5) / transmitted, 1.0, tau == 30.0 ? 0.065 : 0.02) << "optical thickness " << tau;
     EXPECT_NEAR(Out(light, 4) + Out(light, 5), 1.0, 1e-4) << "optical thickness " << tau;
     EXPECT_GE(Least(light), 0.0);
@@ -282,19 +286,17 @@ TEST_F(LinearSource, LampsOfAllKindsReachAsDeepIntoThickVoxelsAsIntoThinOnes)
 
 TEST_F(LinearSource, ReflectsAsAbsorbingSlabsDo)
 {
-  // slab.csv
   struct Row
   {
-    double tau, albedo, reflected, transmitted, tolerance;
+    double tau, albedo, tolerance;
   };
   for (const Row& row :
-    { Row{ 1.0, 0.9, 3.52712040e-01, 4.74745855e-01, 0.005 }, Row{ 5.0, 0.9, 4.76338493e-01, 5.34214494e-02, 0.005 },
-      Row{ 10.0, 0.99, 7.85324130e-01, 6.64331966e-02, 0.005 },
-      Row{ 100.0, 0.999, 9.29711087e-01, 5.66953603e-04, 0.012 } })
+    { Row{ 1.0, 0.9, 0.005 }, Row{ 5.0, 0.9, 0.005 }, Row{ 10.0, 0.99, 0.005 }, Row{ 100.0, 0.999, 0.012 } })
   {
+    const SlabReference slab = SlabOf(row.tau, row.albedo);
     const LightField light = Slab(row.tau, row.albedo).Solve(this->GetDevice());
-    EXPECT_NEAR(Out(light, 4) / row.reflected, 1.0, 0.005) << row.tau;
-    EXPECT_NEAR(Out(light, 5) / row.transmitted, 1.0, row.tolerance) << row.tau;
+    EXPECT_NEAR(Out(light, 4) / slab.diffuseR, 1.0, 0.005) << row.tau;
+    EXPECT_NEAR(Out(light, 5) / slab.diffuseT, 1.0, row.tolerance) << row.tau;
   }
 }
 
@@ -346,7 +348,7 @@ TEST_F(LinearSource, LightsAllVoxelsOfACubeAsPhotonsDo)
     lit.settings.staggeredRays = true;
     lit.light.faces[4] = { 1.0, 1.0, 1.0 };
     const LightField light = lit.Solve(this->GetDevice());
-    ExpectAsPhotonsDo(CubeInDiffuseLight, 32, light, 32.0 * 32.0 / light.balance.entered[0]); // of flux 1, side 1
+    ExpectAsPhotonsDo(CubeInDiffuseLight(), 32, light, 32.0 * 32.0 / light.balance.entered[0]); // of flux 1, side 1
   }
 }
 
@@ -356,34 +358,20 @@ TEST_F(LinearSource, LightsAllVoxelsOfAShiningCubeAsPhotonsDo)
   shining.settings.directionsPerFace = 196;
   shining.settings.staggeredRays = true;
   shining.emission.assign(32768, static_cast<float>(1.0 / (4.0 * Pi * 32768.0)));
-  ExpectAsPhotonsDo(ShiningCube, 32, shining.Solve(this->GetDevice()), 32.0 * 32.0);
+  ExpectAsPhotonsDo(ShiningCube(), 32, shining.Solve(this->GetDevice()), 32.0 * 32.0);
 }
 
 TEST_F(LinearSource, SendsThroughACubesFacesWhatPhotonsDo)
 {
-  // cube_RTSA.csv, isotropic, diffuse light on one face: reflected, transmitted, through four sides, absorbed, with
-  // their standard errors. Left out is what wants finer voxels: albedo 0.5 from optical thickness 5 on (reflected 3%
-  // too little), 1 at 50 (1.3% too little through the sides).
-  struct Row
+  // Left out is what wants finer voxels: albedo 0.5 from optical thickness 5 on (reflected 3% too little), 1 at 50
+  // (1.3% too little through the sides).
+  const std::pair<double, double> cubes[] = { { 0.1, 0.5 }, { 1.0, 0.5 }, { 0.1, 0.9 }, { 1.0, 0.9 }, { 5.0, 0.9 },
+    { 10.0, 0.9 }, { 50.0, 0.9 }, { 0.1, 1.0 }, { 1.0, 1.0 }, { 5.0, 1.0 }, { 10.0, 1.0 } };
+  for (const auto& [tau, albedo] : cubes)
   {
-    double tau, albedo;
-    std::array<double, 4> part, error;
-  };
-  for (const Row& row :
-    { Row{ 0.1, 0.5, { 0.007756, 0.182494, 0.777093, 0.032657 }, { 2.1e-05, 1.0e-04, 9.4e-05, 3.8e-05 } },
-      Row{ 1.0, 0.5, { 0.055774, 0.080696, 0.596952, 0.266579 }, { 5.7e-05, 7.9e-05, 1.6e-04, 1.1e-04 } },
-      Row{ 0.1, 0.9, { 0.014169, 0.185503, 0.793678, 0.006649 }, { 3.8e-05, 1.1e-04, 1.0e-04, 7.8e-06 } },
-      Row{ 1.0, 0.9, { 0.114652, 0.099095, 0.722803, 0.063449 }, { 1.1e-04, 8.3e-05, 1.4e-04, 2.9e-05 } },
-      Row{ 5.0, 0.9, { 0.307663, 0.011085, 0.435358, 0.245893 }, { 9.6e-05, 2.5e-05, 1.1e-04, 6.5e-05 } },
-      Row{ 10.0, 0.9, { 0.380822, 0.001002, 0.264722, 0.353452 }, { 1.1e-04, 5.7e-06, 1.3e-04, 9.8e-05 } },
-      Row{ 50.0, 0.9, { 0.456063, 0.000000, 0.060279, 0.483659 }, { 3.5e-04, 0.0, 2.6e-04, 4.0e-04 } },
-      Row{ 0.1, 1.0, { 0.015803, 0.186275, 0.797922, 0.000000 }, { 4.2e-05, 1.1e-04, 1.0e-04, 0.0 } },
-      Row{ 1.0, 1.0, { 0.132254, 0.105242, 0.762505, 0.000000 }, { 1.2e-04, 8.8e-05, 1.4e-04, 0.0 } },
-      Row{ 5.0, 1.0, { 0.402589, 0.023612, 0.573800, 0.000000 }, { 1.2e-04, 4.9e-05, 1.3e-04, 0.0 } },
-      Row{ 10.0, 1.0, { 0.551624, 0.010566, 0.437810, 0.000000 }, { 1.6e-04, 3.7e-05, 1.6e-04, 0.0 } } })
-  {
+    const CubePowers known = CubePowersOf(tau, albedo);
     // At 50 what is absorbed is 1.03% too little on 32 voxels, 0.9% on 36, 0.8% on 40.
-    Scene scene = Cube(row.tau == 50.0 ? 36 : 32, row.tau, row.albedo);
+    Scene scene = Cube(tau == 50.0 ? 36 : 32, tau, albedo);
     scene.settings.directionsPerFace = 100;
     scene.settings.uncollidedDirections = 900;
     scene.settings.staggeredRays = true;
@@ -394,8 +382,8 @@ TEST_F(LinearSource, SendsThroughACubesFacesWhatPhotonsDo)
       light.balance.absorbed[0] / light.balance.entered[0] };
     for (int i = 0; i < 4; ++i)
     {
-      EXPECT_NEAR(part[i], row.part[i], std::max({ 0.01 * row.part[i], 3.0 * row.error[i], 1e-6 }))
-        << "thickness " << row.tau << " albedo " << row.albedo << ' ' << "RTSA"[i];
+      EXPECT_NEAR(part[i], known.part[i], std::max({ 0.01 * known.part[i], 3.0 * known.error[i], 1e-6 }))
+        << "thickness " << tau << " albedo " << albedo << ' ' << "RTSA"[i];
     }
   }
 }
