@@ -63,14 +63,6 @@ bool NothingShines(const tyndall::Medium& medium, const tyndall::Illumination& i
     !medium.emission.values;
 }
 
-/// What the solver gave up, of all power.
-double LeftOver(const tyndall::EnergyBalance& balance)
-{
-  const auto total = [](const tyndall::Rgb& power) { return power[0] + power[1] + power[2]; };
-  const double all = total(balance.entered) + total(balance.emitted);
-  return all > 0.0 ? total(balance.leftOver) / all : 0.0;
-}
-
 /// Whether all light comes in through faces of the box.
 bool OnlyFromFarAway(const tyndall::Illumination& illumination)
 {
@@ -136,24 +128,14 @@ int vtkLightPropagationMaps::RequestData(vtkInformation*, vtkInformationVector**
     tyndall::LightField light = Solve(this, input.medium, illumination);
 
     this->Note(light);
-    const double left = LeftOver(light.balance);
+    const std::vector<std::string> doubts = light.doubts;
     tyndall::WriteConvergence(light.convergence, vtkTable::GetData(outputs, 1));
     vtkImageData* output = vtkImageData::GetData(outputs, 0);
     tyndall::PassOn(image, output);
     tyndall::WriteLight(std::move(light), output); // light that is not finite is an error, with no warnings before
-    if (this->MaximumOrders == 0 && this->Residual > this->Tolerance)
+    for (const std::string& doubt : doubts)
     {
-      vtkWarningMacro("The light has not converged: after "
-        << this->Orders << " sweeps its estimated relative error is " << this->Residual << ", Tolerance is "
-        << this->Tolerance
-        << ". Set a larger Tolerance, or Acceleration to none, or resample to voxels of more equal edges.");
-    }
-    if (this->MaximumOrders == 0 && left > std::max(0.01, this->Tolerance))
-    {
-      vtkWarningMacro("Of the light's power "
-        << 100.0 * left
-        << "% is left over: its rays still go round periodic axes. A light inside a thin periodic box has images "
-           "without end: make the box wider, or its axes not periodic.");
+      vtkWarningMacro(<< doubt);
     }
     tyndall::KeepWhatIsAskedFor(outputs->GetInformationObject(0), output);
   });

@@ -58,6 +58,8 @@ struct LightField
   double halfRangeFlux =
     0.0; ///< of the directions that light from outside came along (DirectionSet.h); 0: there are none
   std::vector<ConvergenceRow> convergence;
+  bool converged = true; ///< the last residual is at most the tolerance, or as many orders were done as were asked for
+  std::vector<std::string> doubts;  ///< what may be wrong with the light, a sentence each, for a warning
   int directionsPerFace = 0;        ///< solved with, where a solver chooses (PropagationSettings::adaptDirections)
   std::vector<std::string> leftOut; ///< what the scene did not need, in words
   std::string device;

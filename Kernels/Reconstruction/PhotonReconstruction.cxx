@@ -1,5 +1,6 @@
 #include "Reconstruction/PhotonReconstruction.h"
 
+#include "Light/LeftOut.h"
 #include "Reconstruction/Estimators.h"
 #include "Reconstruction/LightRows.h"
 

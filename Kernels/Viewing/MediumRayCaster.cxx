@@ -3,6 +3,7 @@
 #include "Device/Batches.h"
 #include "Device/Defines.h"
 #include "Device/Sizes.h"
+#include "Light/LeftOut.h"
 #include "Medium/Traits.h"
 #include "Numerics/Constants.h"
 #include "Numerics/Vectors.h"

@@ -11,8 +11,8 @@ namespace bench
 /// polynomial.
 struct SweepWork
 {
-  /// Arithmetic on floats: each addition, multiplication, fused multiply-add, comparison, selection, conversion or shift
-  /// is one. A processor starts no more of them in a cycle than multiply-adds.
+  /// Arithmetic on floats: each addition, multiplication, fused multiply-add, comparison, selection, conversion or
+  /// shift is one. A processor starts no more of them in a cycle than multiply-adds.
   double operations = 0.0;
   double flops = 0.0;  ///< of these: additions and multiplications 1, multiply-adds 2, the others 0
   double bytes = 0.0;  ///< between memory and caches if the volumes are read and written once a sweep each way and

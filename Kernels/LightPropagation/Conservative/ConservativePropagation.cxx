@@ -1,8 +1,10 @@
 #include "LightPropagation/Conservative/ConservativePropagation.h"
 
 #include "Device/Errors.h"
+#include "Light/LeftOut.h"
 #include "LightPropagation/Conservative/DiffusionAcceleration.h"
 #include "LightPropagation/Conservative/SourceIteration.h"
+#include "LightPropagation/Convergence.h"
 #include "LightPropagation/Problem/ScatteringOrders.h"
 #include "Numerics/Constants.h"
 #include "Numerics/NumberText.h"
@@ -148,6 +150,7 @@ LightField SolveConservative(Device& device, const Medium& medium, const Illumin
   CheckBalance(problem, found.ledger.Balance());
   LightField light = LightOf(parts, std::move(found), accelerated);
   problem.Undo(light);
+  JudgeConvergence(settings, light);
   return light;
 }
 }

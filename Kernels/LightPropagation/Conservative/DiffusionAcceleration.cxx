@@ -1,6 +1,7 @@
 #include "LightPropagation/Conservative/DiffusionAcceleration.h"
 
 #include "LightPropagation/Conservative/SurfaceRadiance.h"
+#include "LightPropagation/Convergence.h"
 #include "LightPropagation/Problem/ScatteringOrders.h"
 #include "LightPropagation/Uncollided/UncollidedBoundary.h"
 #include "Numerics/Constants.h"
@@ -348,7 +349,7 @@ bool DiffusionAcceleration::Done(int iterations) const
 {
   const int most = this->Settings.maximumOrders > 0 ? this->Settings.maximumOrders : MostSweeps;
   return iterations >= most || this->Residual == 0.0 ||
-    (this->Settings.maximumOrders == 0 && iterations > 2 && this->Residual <= this->Settings.tolerance);
+    (this->Settings.maximumOrders == 0 && iterations > 2 && MeetsTolerance(this->Settings, this->Residual));
 }
 
 /// Where the system's solution is negative, the fluence of the last sweep stands.

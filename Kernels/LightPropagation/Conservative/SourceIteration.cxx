@@ -1,6 +1,8 @@
 #include "LightPropagation/Conservative/SourceIteration.h"
 
 #include "Device/Sizes.h"
+#include "Light/LeftOut.h"
+#include "LightPropagation/Convergence.h"
 #include "LightPropagation/Uncollided/UncollidedBoundary.h"
 
 #include <algorithm>
@@ -242,7 +244,7 @@ bool SourceIteration::Done() const
     return true;
   }
   return this->Settings.maximumOrders > 0 ? this->Order >= this->Settings.maximumOrders
-                                          : this->Order > 2 && this->Residual <= this->Settings.tolerance;
+                                          : this->Order > 2 && MeetsTolerance(this->Settings, this->Residual);
 }
 
 /// Light of the orders after the first in the voxels around the medium, and the faces that it leaves through: one sweep

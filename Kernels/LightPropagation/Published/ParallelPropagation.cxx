@@ -1,6 +1,7 @@
 #include "LightPropagation/Published/ParallelPropagation.h"
 
 #include "Light/ChannelReduction.h"
+#include "LightPropagation/Convergence.h"
 #include "LightPropagation/Published/PublishedBorders.h"
 #include "LightPropagation/Published/PublishedPlan.h"
 #include "LightPropagation/Published/PublishedVolumes.h"
@@ -270,6 +271,7 @@ LightField ParallelPropagation::Implementation::Result() const
     LeftOutAsPublished(this->TheMedium, this->Traits, this->Outside, this->Settings, this->Ledger.Orders());
   field.halfRangeFlux = HalfRangeFlux(this->Model.Directions());
   field.device = this->TheDevice.Name();
+  JudgeConvergence(this->Settings, field);
   return field;
 }
 

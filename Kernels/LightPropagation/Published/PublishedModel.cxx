@@ -1,5 +1,7 @@
 #include "LightPropagation/Published/PublishedModel.h"
 
+#include "Light/LeftOut.h"
+#include "LightPropagation/Convergence.h"
 #include "Numerics/Vectors.h"
 
 #include <glm/geometric.hpp>
@@ -416,7 +418,7 @@ void OrderLedger::CloseOrder(const float* fluence)
   this->Rows.push_back(row);
   this->Finished = row.residual == 0.0 ||
     (this->Settings.maximumOrders > 0 ? this->Orders() >= this->Settings.maximumOrders
-                                      : row.residual <= this->Settings.tolerance || this->Orders() >= MostOrders);
+                                      : MeetsTolerance(this->Settings, row.residual) || this->Orders() >= MostOrders);
 }
 
 /// Orders shrink like a geometric series in the end: what is still to come is its rest.

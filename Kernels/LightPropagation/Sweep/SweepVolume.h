@@ -3,7 +3,7 @@
 #include "Device/Buffer.h"
 #include "Lights/Lights.h"
 #include "Medium/Grid.h"
-#include "Medium/Traits.h"
+#include "Medium/VoxelBox.h"
 
 #include <array>
 #include <functional>

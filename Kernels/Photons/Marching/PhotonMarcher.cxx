@@ -1,5 +1,6 @@
 #include "Photons/Marching/PhotonMarcher.h"
 
+#include "Light/LeftOut.h"
 #include "Photons/Marching/PhotonSumsShared.h"
 
 #include "Device/Clock.h"
