@@ -93,6 +93,16 @@ vtkStandardNewMacro(vtkLightPropagationMaps);
 
 vtkLightPropagationMaps::vtkLightPropagationMaps()
 {
+  const tyndall::PropagationSettings defaults;
+  this->DirectionsPerFace = defaults.directionsPerFace;
+  this->UncollidedDirections = defaults.uncollidedDirections;
+  this->EmissionError = defaults.emissionError;
+  this->StaggeredRays = defaults.staggeredRays;
+  this->MapResolution = defaults.mapResolution;
+  this->MaximumOrders = defaults.maximumOrders;
+  this->NetFlux = defaults.netFlux;
+  this->LeaveOut = defaults.leaveOut;
+  this->StoredDirections = defaults.storedDirections;
   this->SetNumberOfOutputPorts(2);
 }
 
@@ -110,8 +120,7 @@ int vtkLightPropagationMaps::RequestData(vtkInformation*, vtkInformationVector**
   return tyndall::Guarded(this, outputs, [&] {
     vtkImageData* image = vtkImageData::GetData(inputs[MEDIUM]);
     const tyndall::MediumInput input = tyndall::ReadMedium(this, image);
-    tyndall::Illumination illumination = this->ReadIllumination(inputs);
-    tyndall::AddDiffuse(illumination, this->SkyColor, this->FaceRadiance);
+    const tyndall::Illumination illumination = this->ReadAllIllumination(inputs);
     if (NothingShines(input.medium, illumination))
     {
       vtkWarningMacro(
@@ -167,12 +176,7 @@ void vtkLightPropagationMaps::PrintSelf(ostream& os, vtkIndent indent)
   os << indent << "StaggeredRays: " << this->StaggeredRays << "\n";
   os << indent << "MapResolution: " << this->MapResolution << "\n";
   os << indent << "MaximumOrders: " << this->MaximumOrders << "\n";
-  os << indent << "Tolerance: " << this->Tolerance << "\n";
-  os << indent << "Periodic: " << this->PeriodicX << " " << this->PeriodicY << " " << this->PeriodicZ << "\n";
-  PrintNumbers(os, indent, "FaceRadiance", this->FaceRadiance, 6);
-  PrintNumbers(os, indent, "SkyColor", this->SkyColor, 3);
   os << indent << "NetFlux: " << this->NetFlux << "\n";
-  os << indent << "EstimateError: " << this->EstimateError << "\n";
   os << indent << "LeaveOut: " << this->LeaveOut << "\n";
   os << indent << "StoredDirections: " << this->StoredDirections << "\n";
   os << indent << "Orders: " << this->Orders << "\n";

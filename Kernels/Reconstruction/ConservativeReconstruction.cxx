@@ -78,7 +78,7 @@ public:
     , MipLevel(Kernels, MipLevelOut, Size, 1, 1, true, "levels")
     , Error(Kernels, ErrorOut, Size, 1, task.light.channels, true, "errors")
   {
-    const PyramidLayout layout(task.light.grid);
+    const PyramidLayout layout(task.light.grid.size);
     for (int level = 1; level <= task.levels; ++level)
     {
       const std::array<int, 3>& size = layout.sizes[std::min(level, layout.Top())];

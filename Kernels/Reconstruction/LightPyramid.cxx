@@ -18,7 +18,7 @@ LightPyramid::LightPyramid(const RowKernels& kernels, const Grid& grid, int fiel
   : Kernels(kernels)
   , Fields(fields)
 {
-  const PyramidLayout layout(grid);
+  const PyramidLayout layout(grid.size);
   std::size_t end = 0;
   std::vector<std::size_t> counts;
   for (int level = 0; level <= levels; ++level)

@@ -119,7 +119,7 @@ ArrayRange Checked(Device& device, const HostMappedBuffer<float>& array, const f
 
 int LevelsOf(const Grid& grid, int levels)
 {
-  return std::max(std::min(levels, PyramidLayout(grid).Top()), 1); // above a single voxel: itself
+  return std::max(std::min(levels, PyramidLayout(grid.size).Top()), 1); // above a single voxel: itself
 }
 
 /// Of the result and of what is made on the way, roughly.

@@ -6,9 +6,9 @@
 namespace bench
 {
 /// What one order of the conservative solver has to do for one voxel, direction and channel, counted in the texts of
-/// Numerics.cl, Sweep.cl, SweepBundle.cl and IsotropicScattering.cl with the rays' real number of segments (Bundle::Crossing). The
-/// order is one with scattered light, without net flux, on an open box; rows that are thin throughout take the
-/// polynomial.
+/// Numerics.cl, Sweep.cl, SweepBundle.cl and IsotropicScattering.cl with the rays' real number of segments
+/// (Bundle::Crossing). The order is one with scattered light, without net flux, on an open box; rows that are thin
+/// throughout take the polynomial.
 struct SweepWork
 {
   /// Arithmetic on floats: each addition, multiplication, fused multiply-add, comparison, selection, conversion or

@@ -1,5 +1,6 @@
 #pragma once
 
+#include "LightPropagation/Diffusion/SurfacePowers.h"
 #include "Lights/Lights.h"
 #include "Medium/Medium.h"
 
@@ -8,15 +9,6 @@
 
 namespace tyndall
 {
-/// Power of one channel through the cells of the box's faces, W / length^2, without uncollided light of lamps.
-struct SurfacePowers
-{
-  std::vector<double> net;       ///< out less in, by cell (BoxFaces.h)
-  std::array<double, 6> in = {}; ///< through each face, in the mean over its cells
-  const float* lamps = nullptr;  ///< fluence that came straight from lamps, by voxel
-  double halfRange = 0.25; ///< of the directions that bring it: `in` of even light is its radiance times 4 pi of this
-};
-
 /// The radiance that leaves a medium of thick voxels through the faces of the box, W / (length^2 sr),
 /// [cell][cosine][channel] (BoxFaces.h). Empty where no voxel at a face is thicker than ThickAtSurface.
 ///

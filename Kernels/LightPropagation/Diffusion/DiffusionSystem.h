@@ -2,10 +2,10 @@
 
 #include "LightPropagation/Angular/DirectionSet.h"
 #include "LightPropagation/Angular/RayBundles.h"
-#include "LightPropagation/Conservative/SurfaceRadiance.h"
 #include "LightPropagation/Diffusion/AndersonMixing.h"
 #include "LightPropagation/Diffusion/DiffusionShared.h"
 #include "LightPropagation/Diffusion/MultigridSolver.h"
+#include "LightPropagation/Diffusion/SurfacePowers.h"
 
 #include "Medium/Grid.h"
 

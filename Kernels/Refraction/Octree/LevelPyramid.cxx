@@ -7,7 +7,7 @@ namespace tyndall
 {
 LevelPyramid::LevelPyramid(Device& device, const Grid& grid)
   : TheDevice(device)
-  , Layout(grid)
+  , Layout(grid.size)
   , Nodes(device, this->Layout.nodeCount, "the octree's pyramid of levels")
   , TheLevels(device, grid.VoxelCount(), "the octree's levels")
 {

@@ -6,7 +6,7 @@
 namespace tyndall
 {
 MinMaxPyramid::MinMaxPyramid(Device& device, const Grid& grid, const Buffer<float>& values)
-  : TheLayout(grid)
+  : TheLayout(grid.size)
   , TheNodes(device, this->TheLayout.nodeCount, "the pyramid of smallest and largest values")
 {
   const PyramidLayout& layout = this->TheLayout;
