@@ -5,7 +5,7 @@
 //
 //   TyndallBenchStress [--quick] [part of a row's, case's or method's name]...
 
-#include "Program.h"
+#include "Arguments.h"
 #include "Report.h"
 #include "StressChecks.h"
 #include "StressWorker.h"
