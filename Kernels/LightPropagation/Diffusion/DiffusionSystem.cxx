@@ -239,7 +239,9 @@ double DiffusionSystem::Correct(double unit)
   this->RunOnArrays("diffusion_balance", *the.given, this->Right.Handle());
   this->Solver.Solve(this->Right, this->Solution, unit, Reduction);
 
-  return this->Mixing.Mix(this->Given, this->Solution, { the.sigma_s, the.first, this->Layout.spacing[0] });
+  const auto& h = this->Layout.spacing;
+  const float edge = std::cbrt(h[0] * h[1] * h[2]); // the same whichever axis is which
+  return this->Mixing.Mix(this->Given, this->Solution, { the.sigma_s, the.first, edge });
 }
 
 std::array<double, 6> DiffusionSystem::Outflow(const std::array<double, 6>& ofSweep)

@@ -63,6 +63,8 @@ private:
   std::unique_ptr<Implementation> Inside;
 };
 
-/// `count` numbers spread evenly over 0 ... size - 1.
+/// `count` different numbers of 0 ... size - 1, ascending, one of each of as many equal stretches. Where in a stretch
+/// goes by the golden ratio: equal steps would fall in with the powers of two by which photons' starting places are
+/// made, and all of those chosen start along one line.
 std::vector<std::size_t> ChooseEvenly(std::size_t size, std::size_t count);
 }
