@@ -337,21 +337,26 @@ void MediumRayCaster::Pack(bool forShadowRays)
 
 void MediumRayCaster::SeeLights(const Camera& camera, const Monitor& monitor)
 {
-  const cl_int4 size = Int4(this->TheGrid.size);
-  const cl_int4 bricks = Int4(this->BrickCount);
-  const glm::dvec3 eye = Vector(camera.position) - Vector(this->TheGrid.origin);
   const double radius = std::cbrt(3.0 * this->TheGrid.VoxelVolume() / (4.0 * Pi));
-  cl::Kernel see = this->TheDevice.Kernel("see_lights", kernel_source::ScatteredLight,
-    this->PackingOptions() + Define("SHADOW_RAYS", true) + Define("BENDS", false) + this->StepOption());
+  ShadowInfo info = {};
+  info.spacing = Float4(Vector(this->TheGrid.spacing));
+  info.eye = Float4(Vector(camera.position) - Vector(this->TheGrid.origin), camera.parallelProjection ? 1.0 : 0.0);
+  info.forward = Float4(Vector(Axes(camera)[2]));
+  info.size = Int4(this->TheGrid.size);
+  info.bricks = Int4(this->BrickCount);
+  info.g = static_cast<float>(this->G);
+  info.step = static_cast<float>(this->Settings.stepSize);
+  info.nearestSquare = static_cast<float>(radius * radius / 3.0);
+  info.lights = this->LightCount;
+  cl::Kernel see =
+    this->TheDevice.Kernel("see_lights", kernel_source::ShadowRays, this->PackingOptions() + this->StepOption());
   const std::size_t across = RoundUp<std::size_t>(this->TheGrid.size[0], 4 * this->PacketWidth()) / this->PacketWidth();
   const std::size_t rows = this->TheGrid.size[1];
   const double samplesOfRow = this->LongestSteps() * this->LightCount * this->TheGrid.size[0];
   const auto launch = [&](const Patch& part) {
-    With(see, size, bricks, Float4(Vector(this->TheGrid.spacing), 0.0),
-      Float4(eye, camera.parallelProjection ? 1.0 : 0.0), Float4(Vector(Axes(camera)[2]), 0.0),
-      static_cast<float>(this->G), static_cast<float>(this->Settings.stepSize),
-      static_cast<float>(radius * radius / 3.0), this->LightCount, this->Lights, this->Arrays[1], this->Samples,
-      this->Extinctions, this->Bricks, part.row, part.column, this->Direct);
+    info.firstSlice = part.row;
+    info.firstRow = part.column;
+    With(see, info, this->Lights, this->Arrays[1], this->Samples, this->Extinctions, this->Bricks, this->Direct);
     this->TheDevice.Queue().enqueueNDRangeKernel(
       see, cl::NullRange, cl::NDRange(across, part.columns, part.rows), cl::NDRange(4, 1, 1));
   };

@@ -41,6 +41,21 @@ typedef struct
   float4 axis;  ///< unit vector, the way the light travels; w: cosine of the cone's half angle, -2 for a whole sphere
   float4 power; ///< irradiance, or radiant intensity along the axis; w: 1 falls with the cosine to the axis, else 0
 } SmallLight;
+
+/// What shadow rays are told.
+typedef struct
+{
+  float4 spacing;      ///< length per voxel
+  float4 eye;          ///< world, from the box's lower corner; w: 0 the rays come from one point, 1 they are parallel
+  float4 forward;      ///< unit vector, world
+  int4 size;           ///< voxels
+  int4 bricks;         ///< bricks
+  float g;             ///< mean cosine of the phase function
+  float step;          ///< voxels
+  float nearestSquare; ///< keeps a voxel that holds a light finite: its mean of 1/r^2 is 3/R^2 of a ball as large
+  int lights;
+  int firstSlice, firstRow; ///< of the launch
+} ShadowInfo;
 #ifndef __OPENCL_C_VERSION__
 }
 #endif
