@@ -303,7 +303,7 @@ std::string MediumRayCaster::PackingOptions() const
     Define("REAL_WIDTH", this->PacketWidth()) + Define("COLOURED", this->Coloured) + Define("GREY", this->Grey);
   for (std::size_t i = 0; i < names.size(); ++i)
   {
-    options += std::string(" -D") + names[i] + "=" + std::to_string(this->Components[i]);
+    options += Define(names[i], this->Components[i]);
   }
   return options + Define("FLOW", this->KnowsFlow) + Define("GLOW", this->GlowsApart());
 }

@@ -1,5 +1,6 @@
 #include "LightPropagation/Diffusion/DiffusionSystem.h"
 
+#include "Device/Defines.h"
 #include "Numerics/Constants.h"
 
 #include "TyndallKernelSources.h"
@@ -47,8 +48,7 @@ DiffusionLayout LayoutOf(const Grid& grid, const std::array<bool, 3>& periodic, 
 /// @param passing  lamps' light passes faces at once where it is scattered
 cl::Kernel DiffusionKernel(Device& device, const char* name, bool passing)
 {
-  return device.Kernel(
-    name, kernel_source::DiffusionSystem, ExactOption(device) + " -DPASSING=" + std::to_string(passing));
+  return device.Kernel(name, kernel_source::DiffusionSystem, ExactOption(device) + Define("PASSING", passing));
 }
 
 /// Rounding can leave dark faces a little below 0: they become 0, and the others are scaled so that the sum stays.

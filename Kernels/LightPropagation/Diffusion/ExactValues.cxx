@@ -1,5 +1,7 @@
 #include "LightPropagation/Diffusion/ExactValues.h"
 
+#include "Device/Defines.h"
+
 namespace tyndall
 {
 ExactValues::ExactValues(Device& device, std::size_t count, const char* what)
@@ -33,6 +35,6 @@ std::vector<double> ExactValues::Read() const
 
 std::string ExactOption(const Device& device)
 {
-  return std::string("-DDOUBLES=") + (device.HasExtension("cl_khr_fp64") ? "1" : "0");
+  return Define("DOUBLES", device.HasExtension("cl_khr_fp64"));
 }
 }

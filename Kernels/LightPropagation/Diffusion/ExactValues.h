@@ -24,6 +24,6 @@ private:
   Buffer<float> Floats;
 };
 
-/// "-DDOUBLES=1" where the device has double precision, else "-DDOUBLES=0".
+/// DOUBLES, as kernels are compiled with: 1 where the device has double precision.
 std::string ExactOption(const Device& device);
 }

@@ -1,5 +1,6 @@
 #include "LightPropagation/Published/ParallelPropagation.h"
 
+#include "Device/Defines.h"
 #include "Light/ChannelReduction.h"
 #include "LightPropagation/Convergence.h"
 #include "LightPropagation/Published/PublishedBorders.h"
@@ -107,15 +108,14 @@ void ParallelPropagation::Implementation::MakeBuffers()
 
 void ParallelPropagation::Implementation::MakeKernels()
 {
-  const std::string common = "-DREAL_WIDTH=" + std::to_string(this->Volumes.Width) +
-    " -DCHANNELS=" + std::to_string(this->Channels) + " -DCOLOURED=" + (this->Volumes.Coloured ? "1" : "0");
+  const std::string common = Define("REAL_WIDTH", this->Volumes.Width) + Define("CHANNELS", this->Channels) +
+    Define("COLOURED", this->Volumes.Coloured);
   const auto propagate = [&](const char* name, int source) {
-    return this->TheDevice.Kernel(
-      name, kernel_source::PublishedPropagate, common + " -DSOURCE=" + std::to_string(source));
+    return this->TheDevice.Kernel(name, kernel_source::PublishedPropagate, common + Define("SOURCE", source));
   };
   const auto collect = [&](const char* name) {
     return this->TheDevice.Kernel(
-      name, kernel_source::PublishedCollect, common + " -DMOMENTS=" + std::to_string(this->Model.MomentCount()));
+      name, kernel_source::PublishedCollect, common + Define("MOMENTS", this->Model.MomentCount()));
   };
   this->StartRays = propagate("start_rays", 1);
   this->CrossVoxels[0] = propagate("cross_voxels", 0);

@@ -1,5 +1,6 @@
 #include "LightPropagation/Uncollided/LampBeams.h"
 
+#include "Device/Defines.h"
 #include "LightPropagation/Uncollided/BeamMomentsShared.h"
 #include "LightPropagation/Uncollided/LampBeamsShared.h"
 
@@ -260,10 +261,9 @@ private:
   cl::Kernel Kernel(const char* name)
   {
     return this->TheDevice.Kernel(name, kernel_source::LampBeams,
-      "-DATOMICS=" + std::to_string(this->HasAtomics()) +
-        " -DLAMBERT=" + std::to_string(this->TheLight.type == LightType::Rectangle) +
-        " -DCONE=" + std::to_string(this->TheLight.type == LightType::Spot) + " -DMOMENTS=" +
-        std::to_string(this->Volume.deposit.moments != nullptr) + " -DTHIN=" + std::to_string(ThinForMoments) + "f");
+      Define("ATOMICS", this->HasAtomics()) + Define("LAMBERT", this->TheLight.type == LightType::Rectangle) +
+        Define("CONE", this->TheLight.type == LightType::Spot) +
+        Define("MOMENTS", this->Volume.deposit.moments != nullptr) + DefineFloat("THIN", ThinForMoments));
   }
 
   /// Fixed point units per length (numerics.md, Eq. (36)): no voxel can gather more than all power along its diagonal,

@@ -1,5 +1,6 @@
 #include "Photons/Marching/PublishedPhotons.h"
 
+#include "Device/Defines.h"
 #include "Photons/Marching/PublishedPhotonsShared.h"
 
 #include "Photons/Marching/PhotonPacking.h"
@@ -27,9 +28,8 @@ public:
     : TheDevice(device)
     , TheMedium(medium)
     , Voxels(medium.grid.VoxelCount())
-    , Options("-DBENDS=" + std::to_string(bends) + " -DLEVELS=" + std::to_string(levels) +
-        " -DTRIES=" + std::to_string(settings.tries) + " -DA_CHANNELS=" + std::to_string(Components(medium.sigma_a)) +
-        " -DS_CHANNELS=" + std::to_string(Components(medium.sigma_s)))
+    , Options(Define("BENDS", bends) + Define("LEVELS", levels) + Define("TRIES", settings.tries) +
+        Define("A_CHANNELS", Components(medium.sigma_a)) + Define("S_CHANNELS", Components(medium.sigma_s)))
   {
     int edges = 0;
     for (int a = 0; a < 3; ++a)

@@ -1,5 +1,6 @@
 #include "Refraction/Index/RefractiveMedium.h"
 
+#include "Device/Defines.h"
 #include "Refraction/Voxelization/MaterialsShared.h"
 
 #include "Device/HostMemory.h"
@@ -185,7 +186,7 @@ public:
     , Result(result)
   {
     const bool noise = settings.perturbation.index > 0.0 || settings.perturbation.scattering > 0.0;
-    const std::string options = "-DCHANNELS=" + std::to_string(result.components) + " -DNOISE=" + std::to_string(noise);
+    const std::string options = Define("CHANNELS", result.components) + Define("NOISE", noise);
     this->AddObject = device.Kernel("add_object", kernel_source::Materials, options);
     this->AddOutside = device.Kernel("add_outside", kernel_source::Materials, options);
     const std::size_t voxels = settings.grid.VoxelCount();
