@@ -1,4 +1,4 @@
-#include "Reconstruction/Estimators.h"
+#include "Reconstruction/ConservativeReconstruction.h"
 #include "Reconstruction/WholeRows.h"
 
 #include "TyndallKernelSources.h"

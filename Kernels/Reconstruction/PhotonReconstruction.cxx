@@ -1,7 +1,8 @@
 #include "Reconstruction/PhotonReconstruction.h"
 
 #include "Light/LeftOut.h"
-#include "Reconstruction/Estimators.h"
+#include "Reconstruction/ConservativeReconstruction.h"
+#include "Reconstruction/LevelReconstruction.h"
 #include "Reconstruction/LightRows.h"
 
 #include "Device/Clock.h"
