@@ -371,6 +371,42 @@ TEST_F(ConservativePropagation, SolvesColoursWithTheirOwnSigmaT)
   }
 }
 
+// Rays still on their way round a periodic axis when a sweep ends belong to the channel whose sigma_t they go through.
+TEST_F(ConservativePropagation, KeepsApartWhatGoesRoundInColoursOfTheirOwnSigmaT)
+{
+  const std::array<int, 3> size = { 2, 2, 24 };
+  const auto solve = [&](std::array<float, 3> sigma_t, int channels) {
+    Scene scene(size);
+    const std::size_t voxels = scene.medium.grid.VoxelCount();
+    scene.sigma_a.resize(channels * voxels);
+    scene.sigma_s.resize(channels * voxels);
+    for (std::size_t i = 0; i < channels * voxels; ++i)
+    {
+      scene.sigma_a[i] = 0.5f * sigma_t[i % channels];
+      scene.sigma_s[i] = 0.5f * sigma_t[i % channels];
+    }
+    scene.light.faces[4] = { 1.0, 1.0, 1.0 };
+    scene.settings.periodic = { true, true, false };
+    scene.settings.acceleration = PropagationAcceleration::None;
+    scene.settings.adaptDirections = false;
+    scene.settings.maximumOrders = 3;
+    scene.settings.directionsPerFace = 9;
+    return scene.Solve(this->GetDevice());
+  };
+  const std::array<float, 3> sigma_t = { 0.0002f, 0.002f, 0.02f };
+  const LightField together = solve(sigma_t, 3);
+  ASSERT_EQ(together.channels, 3);
+  for (int c = 0; c < 3; ++c)
+  {
+    const LightField alone = solve({ sigma_t[c], sigma_t[c], sigma_t[c] }, 1);
+    for (std::size_t i = 0; i < alone.fluence.size(); ++i)
+    {
+      ASSERT_NEAR(together.fluence[3 * i + c] / alone.fluence[i], 1.0, 1e-5) << "channel " << c << ", voxel " << i;
+    }
+    EXPECT_NEAR(together.balance.leftOver[c], alone.balance.leftOver[0], 1e-5 * alone.balance.entered[0]);
+  }
+}
+
 TEST_F(ConservativePropagation, NetFluxHasTheSourcesAndSinksOfTheMedium)
 {
   // On the box's faces the flux that goes out less the one that comes in is minus what is absorbed.

@@ -1,5 +1,7 @@
 #include "LightPropagation/Sweep/SweepInMemory.h"
 
+#include <utility>
+
 namespace tyndall
 {
 SweepInMemory::SweepInMemory(Device& device, const VolumeLayout& layout, const Description& description,
@@ -9,11 +11,18 @@ SweepInMemory::SweepInMemory(Device& device, const VolumeLayout& layout, const D
 {
   for (const AxisBundles& along : axes)
   {
-    if (!along.bundles.empty())
+    if (along.bundles.empty())
     {
-      this->Axes.push_back(std::make_unique<AxisSweep>(device, this->VolumeOf(layout.Groups().front(), nullptr),
+      continue;
+    }
+    Axis axis;
+    const std::size_t sweeps = description.periodic[along.axis] ? layout.Groups().size() : 1;
+    for (std::size_t g = 0; g < sweeps; ++g)
+    {
+      axis.ofGroups.push_back(std::make_unique<AxisSweep>(device, this->VolumeOf(layout.Groups()[g], nullptr),
         along.axis, along.bundles, description.periodic, workspace));
     }
+    this->Axes.push_back(std::move(axis));
   }
 }
 
@@ -42,11 +51,11 @@ SweepTally SweepInMemory::Apply(const Buffer<float>* source, const SweepBoundary
     {
       const double before = static_cast<double>(g * this->Axes.size() + a);
       const Monitor ofAxis = OfPart(monitor, [=](double done) { return (before + done) / all; });
-      this->Axes[a]->Start(volume, ofChannels, source != nullptr, this->The.mostPlanes, ofAxis);
+      this->Axes[a].Of(g).Start(volume, ofChannels, source != nullptr, this->The.mostPlanes, ofAxis);
     }
-    for (const std::unique_ptr<AxisSweep>& axis : this->Axes)
+    for (const Axis& axis : this->Axes)
     {
-      Add(tally, axis->Finish(), first);
+      Add(tally, axis.Of(g).Finish(), first);
     }
   }
   return tally;
@@ -54,9 +63,12 @@ SweepTally SweepInMemory::Apply(const Buffer<float>* source, const SweepBoundary
 
 void SweepInMemory::Forget()
 {
-  for (const std::unique_ptr<AxisSweep>& axis : this->Axes)
+  for (const Axis& axis : this->Axes)
   {
-    axis->Forget();
+    for (const std::unique_ptr<AxisSweep>& sweep : axis.ofGroups)
+    {
+      sweep->Forget();
+    }
   }
 }
 }

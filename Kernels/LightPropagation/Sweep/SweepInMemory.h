@@ -43,6 +43,13 @@ private:
 
   VolumeLayout Layout;
   Description The;
-  std::vector<std::unique_ptr<AxisSweep>> Axes;
+  /// Along one axis: one sweep for all groups of channels in turn; where the axis is periodic one a group, for it keeps
+  /// rays that are on their way from one sweep to the next.
+  struct Axis
+  {
+    std::vector<std::unique_ptr<AxisSweep>> ofGroups;
+    AxisSweep& Of(std::size_t group) const { return *this->ofGroups[this->ofGroups.size() == 1 ? 0 : group]; }
+  };
+  std::vector<Axis> Axes;
 };
 }
