@@ -226,7 +226,9 @@ void DiffusionAcceleration::MakeSweep()
   TransportParts& parts = this->Parts;
   this->PartialCurrents = Buffer<float>(parts.TheDevice, parts.Layout.Floats(6), "the power from voxel to voxel");
   // No flux: it comes from the system.
-  this->Swept = parts.MakeSweep({ &parts.Path, nullptr, &this->PartialCurrents, nullptr });
+  SweepRequest request = { { &parts.Path, nullptr, &this->PartialCurrents, nullptr }, parts.AllRays() };
+  request.sameBoundary = true;
+  this->Swept = parts.MakeSweep(request);
 }
 
 /// From the source that is there to path integrals and partial currents. The light that comes in from outside comes in

@@ -68,7 +68,7 @@ IterationResult SourceIteration::Run(const Monitor& monitor)
 void SourceIteration::MakeSweeps()
 {
   const int mostPlanes = this->Settings.maximumOrders > 0 ? MostPlanesAround : FewPlanes;
-  this->Whole = this->Parts.MakeSweep(this->Parts.WholeDeposit(), {}, mostPlanes);
+  this->Whole = this->Parts.MakeSweep({ this->Parts.WholeDeposit(), this->Parts.AllRays(), {}, mostPlanes });
   this->MakeFilledSweep();
   if (this->Settings.leaveOut && this->Parts.SweepsAreLit() && !this->Shining)
   {
@@ -93,7 +93,8 @@ void SourceIteration::MakeFilledSweep()
   if (filled < MostlyFilled && later * (1.0 - filled) > 1.0)
   {
     // No flux: it comes from the sweep at the end.
-    this->Filled = this->Parts.MakeSweep({ &this->Parts.Path, nullptr, nullptr, nullptr }, traits.filled);
+    this->Filled =
+      this->Parts.MakeSweep({ { &this->Parts.Path, nullptr, nullptr, nullptr }, this->Parts.AllRays(), traits.filled });
   }
 }
 
@@ -108,7 +109,7 @@ void SourceIteration::MakeLitSweep()
   }
   const auto isLit = [this](int direction) { return this->Parts.UsualBoundary->IsLit(direction); };
   double all = 0.0, lit = 0.0;
-  std::vector<SweepInMemory::AxisBundles> ways;
+  std::vector<AxisBundles> ways;
   for (int axis = 0; axis < 3; ++axis)
   {
     all += CountRays(this->Parts.Usual.Along(axis));
@@ -121,7 +122,7 @@ void SourceIteration::MakeLitSweep()
   if (lit <= MostlyLit * all)
   {
     this->LitPart = lit / all;
-    this->Lit = this->Parts.MakeSweep(ways);
+    this->Lit = this->Parts.MakeSweep({ this->Parts.WholeDeposit(), ways });
   }
 }
 

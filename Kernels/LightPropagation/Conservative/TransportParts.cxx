@@ -1,5 +1,6 @@
 #include "LightPropagation/Conservative/TransportParts.h"
 
+#include "LightPropagation/Sweep/SweepInMemory.h"
 #include "LightPropagation/Uncollided/EnvironmentPeaks.h"
 #include "LightPropagation/Uncollided/UncollidedBoundary.h"
 #include "LightPropagation/Uncollided/UncollidedEmission.h"
@@ -130,20 +131,15 @@ Deposit TransportParts::WholeDeposit() const
   return { &this->Path, this->Flux.Size() > 0 ? &this->Flux : nullptr, nullptr, nullptr };
 }
 
-std::unique_ptr<SweepOperator> TransportParts::MakeSweep(const Deposit& deposit, const VoxelBox& box, int mostPlanes)
+std::vector<AxisBundles> TransportParts::AllRays() const
 {
-  const std::vector<SweepInMemory::AxisBundles> all = { { 0, this->Usual.Along(0) }, { 1, this->Usual.Along(1) },
-    { 2, this->Usual.Along(2) } };
-  const SweepInMemory::Description description = { &this->OnDevice.SigmaT(), deposit, box,
-    this->Problem.Settings().periodic, mostPlanes };
-  return std::make_unique<SweepInMemory>(this->TheDevice, this->Layout, description, all, this->Workspace);
+  return { { 0, this->Usual.Along(0) }, { 1, this->Usual.Along(1) }, { 2, this->Usual.Along(2) } };
 }
 
-std::unique_ptr<SweepOperator> TransportParts::MakeSweep(const std::vector<SweepInMemory::AxisBundles>& rays)
+std::unique_ptr<SweepOperator> TransportParts::MakeSweep(const SweepRequest& request)
 {
-  const SweepInMemory::Description description = { &this->OnDevice.SigmaT(), this->WholeDeposit(), {},
-    this->Problem.Settings().periodic, MostPlanesAround };
-  return std::make_unique<SweepInMemory>(this->TheDevice, this->Layout, description, rays, this->Workspace);
+  return std::make_unique<SweepInMemory>(this->TheDevice, this->Layout, this->OnDevice.SigmaT(),
+    this->Problem.Settings().periodic, request, this->Workspace);
 }
 
 TransportParts::Sources TransportParts::LampSources() const

@@ -5,7 +5,7 @@
 #include "LightPropagation/Conservative/EnergyLedger.h"
 #include "LightPropagation/Conservative/MediumOnDevice.h"
 #include "LightPropagation/Problem/PropagationProblem.h"
-#include "LightPropagation/Sweep/SweepInMemory.h"
+#include "LightPropagation/Sweep/SweepOperator.h"
 #include "LightPropagation/Sweep/VolumeLayout.h"
 #include "LightPropagation/Uncollided/BoundaryLight.h"
 #include "LightPropagation/Uncollided/EmissionPeaks.h"
@@ -46,7 +46,10 @@ public:
   Buffer<float> Source, Path, Flux, Fluence;
   SweepWorkspace Workspace;
 
-  bool HasSource() const { return this->MediumShines; } ///< Source is not zero at first
+  bool HasSource() const
+  {
+    return this->MediumShines;
+  } ///< sweeps read Source from the first on: it shines, or nothing is left out
   /// What sweeps along the usual directions carry of the light from outside; empty: nothing.
   SweepBoundary BoundaryOfSweeps() const;
   bool SweepsAreLit() const { return this->UsualBoundary->Shines() && (this->Accelerated || !this->FineBoundary); }
@@ -74,13 +77,10 @@ public:
   Sources BrightEmissionSources() const;
   void CountEmission(EnergyLedger& ledger) const; ///< all that the medium emits, however it is carried
 
-  Deposit WholeDeposit() const; ///< path, and flux where it is asked for
-  /// @param box  the part that is swept; empty: all
-  /// @param mostPlanes  that rays go round a periodic axis before they wait for the next sweep
-  std::unique_ptr<SweepOperator> MakeSweep(
-    const Deposit& deposit, const VoxelBox& box = {}, int mostPlanes = MostPlanesAround);
-  /// Of some of the usual directions' rays, in place of all.
-  std::unique_ptr<SweepOperator> MakeSweep(const std::vector<SweepInMemory::AxisBundles>& rays);
+  Deposit WholeDeposit() const;             ///< path, and flux where it is asked for
+  std::vector<AxisBundles> AllRays() const; ///< of the usual directions
+  /// The one place where an implementation of the sweep is chosen.
+  std::unique_ptr<SweepOperator> MakeSweep(const SweepRequest& request);
 
 private:
   void LoadSource();

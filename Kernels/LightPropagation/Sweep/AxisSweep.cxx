@@ -54,21 +54,28 @@ void SweepWorkspace::ReserveLost(Device& device, std::size_t floats)
 struct AxisSweep::Implementation
 {
   Implementation(Device& device, const SweepVolume& volume, int axis, const std::vector<Bundle>& bundles,
-    const std::array<bool, 3>& periodic, SweepWorkspace& workspace)
+    const std::array<bool, 3>& periodic, SweepWorkspace& workspace, bool sameBoundary)
     : TheDevice(device)
     , Plan(device, volume.grid, volume.box, axis, bundles, volume.channels, periodic, volume.deposit.flux != nullptr,
         volume.deposit.partialCurrents != nullptr)
     , Workspace(workspace)
+    , SameBoundary(sameBoundary)
   {
     this->MakeBuffers();
   }
 
   void MakeBuffers();
   void Enter(const SweepBoundary& boundary, std::size_t firstChannel);
-  void EnterNothing();
   void DarkenSides();
   void DarkenBeside();
-  void CrossOnce(const SweepVolume& volume, bool source, bool border, const Monitor& monitor);
+  /// How rays start and what they meet first.
+  struct Entry
+  {
+    bool source;    ///< the medium shines
+    bool border;    ///< light comes in
+    bool mapsEmpty; ///< whatever is in the maps' memory is not light
+  };
+  void CrossOnce(const SweepVolume& volume, const Entry& entry, const Monitor& monitor);
   void GoRound(const SweepVolume& volume, int mostPlanes, const Monitor& monitor);
 
   /// Which planes the units cross in which launch.
@@ -79,7 +86,7 @@ struct AxisSweep::Implementation
   };
   Schedule Rounds() const { return { this->RoundSchedule, static_cast<int>(this->Plan.units.size()) }; }
   void Launch(cl::Kernel kernel, const SweepVolume& volume, const Buffer<CrossingInfo>& crossings,
-    const Schedule& schedule, const Monitor& monitor);
+    const Schedule& schedule, bool mapsEmpty, const Monitor& monitor);
   cl::Kernel SweepKernel(bool source, bool border, bool flux);
 
   /// As SweepBorder has them.
@@ -94,6 +101,7 @@ struct AxisSweep::Implementation
   Device& TheDevice;
   SweepPlan Plan;
   SweepWorkspace& Workspace;
+  bool SameBoundary;
 
   Buffer<float> OwnMaps;           ///< of a periodic axis
   Buffer<float> Outside, Radiance; ///< as SweepBorder has them
@@ -107,7 +115,6 @@ struct AxisSweep::Implementation
   Buffer<OwnLightInfo> FirstOwnLight;
 
   std::map<std::size_t, std::unique_ptr<SweepBorder>> Borders; ///< by a volume's first value
-  bool MapsEmpty = false;                                      ///< whatever is in their memory
   bool SidesDark = false;                                      ///< Outside and Radiance are zero
   SweepTally Tally;                                            ///< of the sweep that goes on
 };
@@ -138,7 +145,7 @@ void AxisSweep::Implementation::MakeBuffers()
   this->FirstOwnLight = Buffer<OwnLightInfo>(device, plan.OwnLight(), "the ray pattern");
 }
 
-/// A sweep that is done again and again enters the same light each time: its border is kept.
+/// Light that comes in, into the maps. Where it is the same each time, its border is kept.
 void AxisSweep::Implementation::Enter(const SweepBoundary& boundary, std::size_t firstChannel)
 {
   std::unique_ptr<SweepBorder>& kept = this->Borders[firstChannel];
@@ -151,18 +158,11 @@ void AxisSweep::Implementation::Enter(const SweepBoundary& boundary, std::size_t
   this->Outside.Write(border.outside.data());
   this->Radiance.Write(border.radiance.data());
   this->Tally.in = border.powerIn;
-  this->MapsEmpty = this->SidesDark = false;
-  if (!this->Plan.partialCurrents)
+  this->SidesDark = false;
+  if (!this->SameBoundary)
   {
     kept.reset();
   }
-}
-
-/// On an open axis; the maps of a periodic one hold what is on the way from the sweep before.
-void AxisSweep::Implementation::EnterNothing()
-{
-  this->MapsEmpty = !this->IsPeriodic();
-  this->DarkenSides();
 }
 
 /// Nothing comes in sideways.
@@ -192,12 +192,12 @@ void AxisSweep::Implementation::DarkenBeside()
 }
 
 /// From where rays start to where they leave the axis for the first time, or the last lap ends.
-void AxisSweep::Implementation::CrossOnce(const SweepVolume& volume, bool source, bool border, const Monitor& monitor)
+void AxisSweep::Implementation::CrossOnce(const SweepVolume& volume, const Entry& entry, const Monitor& monitor)
 {
   const Schedule schedule =
     this->Plan.laps == 1 ? Schedule{ this->FirstSchedule, this->Plan.launches } : this->Rounds();
-  this->Launch(
-    this->SweepKernel(source, border, volume.deposit.flux != nullptr), volume, this->FirstCrossings, schedule, monitor);
+  this->Launch(this->SweepKernel(entry.source, entry.border, volume.deposit.flux != nullptr), volume,
+    this->FirstCrossings, schedule, entry.mapsEmpty, monitor);
 }
 
 /// Rays that left a periodic axis come back on the other side, until next to nothing is on the way.
@@ -207,22 +207,21 @@ void AxisSweep::Implementation::GoRound(const SweepVolume& volume, int mostPlane
   this->CountSideways();
   this->DarkenBeside();
   this->DarkenSides();
-  this->MapsEmpty = false;
   Rgb& onTheWay = this->Tally.onTheWay;
   onTheWay = this->PowerOnTheWay();
   const double atFirst = Sum(onTheWay);
   for (int gone = planes; gone < mostPlanes && Sum(onTheWay) > NothingLeft * atFirst; gone += planes)
   {
     const Buffer<CrossingInfo> crossings(this->TheDevice, this->Plan.Crossings(gone, planes), "the ray pattern");
-    this->Launch(
-      this->SweepKernel(false, false, volume.deposit.flux != nullptr), volume, crossings, this->Rounds(), monitor);
+    this->Launch(this->SweepKernel(false, false, volume.deposit.flux != nullptr), volume, crossings, this->Rounds(),
+      false, monitor);
     this->CountSideways();
     onTheWay = this->PowerOnTheWay();
   }
 }
 
 void AxisSweep::Implementation::Launch(cl::Kernel kernel, const SweepVolume& volume,
-  const Buffer<CrossingInfo>& crossings, const Schedule& schedule, const Monitor& monitor)
+  const Buffer<CrossingInfo>& crossings, const Schedule& schedule, bool mapsEmpty, const Monitor& monitor)
 {
   const SweepPlan& plan = this->Plan;
   const Buffer<float>& flux = volume.deposit.flux ? *volume.deposit.flux : *volume.deposit.path;
@@ -236,7 +235,7 @@ void AxisSweep::Implementation::Launch(cl::Kernel kernel, const SweepVolume& vol
   info.mapsEachWay = plan.mapsEachWay;
   info.outsideEachWay = static_cast<uint>(plan.outsideEachWay);
   info.radianceEachWay = static_cast<uint>(plan.radianceEachWay);
-  info.empty = this->MapsEmpty;
+  info.empty = mapsEmpty;
   info.bundles = static_cast<int>(plan.bundles.size());
   info.patternPlanes = plan.PatternPlanes();
   info.axis = plan.axes.axis;
@@ -328,8 +327,8 @@ std::array<Rgb, 2> AxisSweep::Implementation::PowerInMaps() const
 }
 
 AxisSweep::AxisSweep(Device& device, const SweepVolume& volume, int axis, const std::vector<Bundle>& bundles,
-  const std::array<bool, 3>& periodic, SweepWorkspace& workspace)
-  : Inner(std::make_unique<Implementation>(device, volume, axis, bundles, periodic, workspace))
+  const std::array<bool, 3>& periodic, SweepWorkspace& workspace, bool sameBoundary)
+  : Inner(std::make_unique<Implementation>(device, volume, axis, bundles, periodic, workspace, sameBoundary))
 {
 }
 
@@ -351,9 +350,11 @@ void AxisSweep::Start(
   }
   else
   {
-    self.EnterNothing();
+    self.DarkenSides();
   }
-  self.CrossOnce(volume, hasSource, static_cast<bool>(boundary), monitor);
+  const bool lit = static_cast<bool>(boundary);
+  // The maps of a periodic axis hold what is on the way from the sweep before.
+  self.CrossOnce(volume, { hasSource, lit, !lit && !self.IsPeriodic() }, monitor);
   if (self.IsPeriodic())
   {
     self.GoRound(volume, mostPlanes, monitor);

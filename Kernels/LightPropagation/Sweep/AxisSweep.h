@@ -9,9 +9,6 @@
 
 namespace tyndall
 {
-/// Planes that a ray goes round a periodic axis before it is given up.
-constexpr int MostPlanesAround = 8192;
-
 /// Carries all rays of a set of bundles through a volume along one axis, and deposits what they lose: propagation and
 /// collection in one, without a buffer a direction (Gruson et al. need one, their section 4.1; numerics.md, section 4).
 ///
@@ -22,8 +19,9 @@ class AxisSweep
 public:
   /// @param volume  its grid, its channels and whether it has a flux count
   /// @param workspace  must stay; made as large as is needed
+  /// @param sameBoundary  every sweep of a volume is given the same boundary
   AxisSweep(Device& device, const SweepVolume& volume, int axis, const std::vector<Bundle>& bundles,
-    const std::array<bool, 3>& periodic, SweepWorkspace& workspace);
+    const std::array<bool, 3>& periodic, SweepWorkspace& workspace, bool sameBoundary = false);
   ~AxisSweep();
 
   /// Once through the volume, both ways. Queues the work and, on an open axis, does not wait for it.
@@ -34,7 +32,7 @@ public:
   void Start(
     const SweepVolume& volume, const SweepBoundary& boundary, bool hasSource, int mostPlanes, const Monitor& monitor);
 
-  /// Rays that are still on the way round a periodic axis are given up.
+  /// Discards the rays that are still on the way round a periodic axis.
   void Forget();
 
   /// Wait for the sweep that was started.

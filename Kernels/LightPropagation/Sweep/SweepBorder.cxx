@@ -18,7 +18,6 @@ SweepBorder::SweepBorder(const SweepPlan& plan, const SweepBoundary& boundary)
   , outside(2 * plan.outsideEachWay, 0.0f)
   , radiance(2 * plan.radianceEachWay, 0.0f)
   , Plan(plan)
-  , Boundary(boundary)
 {
   for (std::size_t b = 0; b < plan.bundles.size(); ++b)
   {
@@ -27,7 +26,7 @@ SweepBorder::SweepBorder(const SweepPlan& plan, const SweepBoundary& boundary)
     {
       for (int m = 0; m < plan.bundleRows[b].members; ++m)
       {
-        this->EnterMember(b, way, m, moves);
+        this->EnterMember(boundary, b, way, m, moves);
       }
     }
   }
@@ -51,7 +50,7 @@ SweepBorder::Moves SweepBorder::MovesOf(const Bundle& bundle) const
 /// Rays come in where they start, and where others left: one a row for each move along u, one a column for each move
 /// along v. Of those that move both ways at once half come in through u's face where the plane has its corner, half
 /// through v's.
-void SweepBorder::EnterMember(std::size_t b, int way, int m, const Moves& moves)
+void SweepBorder::EnterMember(const SweepBoundary& boundary, std::size_t b, int way, int m, const Moves& moves)
 {
   const Bundle& bundle = this->Plan.bundles[b];
   const Member& member = bundle.members[m];
@@ -64,9 +63,9 @@ void SweepBorder::EnterMember(std::size_t b, int way, int m, const Moves& moves)
   const int faceU = FaceOf(axes.u, member.uFromU + member.uFromV);
   const int faceV = FaceOf(axes.v, member.vFromU + member.vFromV);
   const int faceP = 2 * axes.axis + way;
-  const Rgb fromU = this->PowerOfRay(bundle, direction, faceU);
-  const Rgb fromV = this->PowerOfRay(bundle, direction, faceV);
-  const Rgb fromP = this->PowerOfRay(bundle, direction, faceP);
+  const Rgb fromU = this->PowerOfRay(boundary, bundle, direction, faceU);
+  const Rgb fromV = this->PowerOfRay(boundary, bundle, direction, faceV);
+  const Rgb fromP = this->PowerOfRay(boundary, bundle, direction, faceP);
   const bool swapped = member.uFromU == 0;
   const double sizeU = this->Plan.plane.sizeU;
   const double sizeV = this->Plan.plane.sizeV;
@@ -83,9 +82,9 @@ void SweepBorder::EnterMember(std::size_t b, int way, int m, const Moves& moves)
 }
 
 /// W per channel.
-Rgb SweepBorder::PowerOfRay(const Bundle& bundle, int direction, int face) const
+Rgb SweepBorder::PowerOfRay(const SweepBoundary& boundary, const Bundle& bundle, int direction, int face) const
 {
-  Rgb values = this->Boundary(direction, face);
+  Rgb values = boundary(direction, face);
   for (double& value : values)
   {
     value *= this->Plan.periodic[face / 2] ? 0.0 : static_cast<float>(bundle.power);

@@ -12,7 +12,8 @@ namespace tyndall
 class SweepBorder
 {
 public:
-  /// @param plan, boundary  must stay; boundary is not empty
+  /// @param plan  must stay
+  /// @param boundary  not empty
   SweepBorder(const SweepPlan& plan, const SweepBoundary& boundary);
 
   std::vector<float>
@@ -28,11 +29,10 @@ private:
     double u = 0.0, v = 0.0;
   };
   Moves MovesOf(const Bundle& bundle) const;
-  void EnterMember(std::size_t bundle, int way, int member, const Moves& moves);
-  Rgb PowerOfRay(const Bundle& bundle, int direction, int face) const;
+  void EnterMember(const SweepBoundary& boundary, std::size_t bundle, int way, int member, const Moves& moves);
+  Rgb PowerOfRay(const SweepBoundary& boundary, const Bundle& bundle, int direction, int face) const;
   void Write(std::size_t bundle, int way, int slot, float fromU, float fromV, float fromP);
 
   const SweepPlan& Plan;
-  const SweepBoundary& Boundary;
 };
 }

@@ -4,23 +4,26 @@
 
 namespace tyndall
 {
-SweepInMemory::SweepInMemory(Device& device, const VolumeLayout& layout, const Description& description,
-  const std::vector<AxisBundles>& axes, SweepWorkspace& workspace)
+SweepInMemory::SweepInMemory(Device& device, const VolumeLayout& layout, const Buffer<float>& sigma_t,
+  const std::array<bool, 3>& periodic, const SweepRequest& request, SweepWorkspace& workspace)
   : Layout(layout)
-  , The(description)
+  , SigmaT(sigma_t)
+  , To(request.deposit)
+  , Box(request.box)
+  , MostPlanes(request.mostPlanes)
 {
-  for (const AxisBundles& along : axes)
+  for (const AxisBundles& along : request.rays)
   {
     if (along.bundles.empty())
     {
       continue;
     }
     Axis axis;
-    const std::size_t sweeps = description.periodic[along.axis] ? layout.Groups().size() : 1;
+    const std::size_t sweeps = periodic[along.axis] ? layout.Groups().size() : 1;
     for (std::size_t g = 0; g < sweeps; ++g)
     {
       axis.ofGroups.push_back(std::make_unique<AxisSweep>(device, this->VolumeOf(layout.Groups()[g], nullptr),
-        along.axis, along.bundles, description.periodic, workspace));
+        along.axis, along.bundles, periodic, workspace, request.sameBoundary));
     }
     this->Axes.push_back(std::move(axis));
   }
@@ -28,10 +31,10 @@ SweepInMemory::SweepInMemory(Device& device, const VolumeLayout& layout, const D
 
 SweepVolume SweepInMemory::VolumeOf(const ChannelGroup& group, const Buffer<float>* source) const
 {
-  SweepVolume volume = GroupVolume(this->Layout, group, *this->The.sigma_t);
-  volume.box = this->The.box;
-  volume.source = source ? source : this->The.deposit.path; // never read where there is none
-  volume.deposit = this->The.deposit;
+  SweepVolume volume = GroupVolume(this->Layout, group, this->SigmaT);
+  volume.box = this->Box;
+  volume.source = source ? source : this->To.path; // never read where there is none
+  volume.deposit = this->To;
   return volume;
 }
 
@@ -51,7 +54,7 @@ SweepTally SweepInMemory::Apply(const Buffer<float>* source, const SweepBoundary
     {
       const double before = static_cast<double>(g * this->Axes.size() + a);
       const Monitor ofAxis = OfPart(monitor, [=](double done) { return (before + done) / all; });
-      this->Axes[a].Of(g).Start(volume, ofChannels, source != nullptr, this->The.mostPlanes, ofAxis);
+      this->Axes[a].Of(g).Start(volume, ofChannels, source != nullptr, this->MostPlanes, ofAxis);
     }
     for (const Axis& axis : this->Axes)
     {

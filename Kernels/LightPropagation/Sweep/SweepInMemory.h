@@ -15,25 +15,10 @@ namespace tyndall
 class SweepInMemory : public SweepOperator
 {
 public:
-  /// What is swept, and how.
-  struct Description
-  {
-    const Buffer<float>* sigma_t = nullptr; ///< must stay, as the deposit must
-    Deposit deposit;
-    VoxelBox box; ///< the part that is swept; empty: all
-    std::array<bool, 3> periodic = {};
-    int mostPlanes = MostPlanesAround; ///< that rays go round a periodic axis before they wait for the next sweep
-  };
-  /// The bundles of rays that march along one axis.
-  struct AxisBundles
-  {
-    int axis;
-    std::vector<Bundle> bundles;
-  };
-
-  /// @param workspace  must stay; shared by sweeps that take turns
-  SweepInMemory(Device& device, const VolumeLayout& layout, const Description& description,
-    const std::vector<AxisBundles>& axes, SweepWorkspace& workspace);
+  /// @param sigma_t  must stay
+  /// @param workspace  must stay; shared by sweeps that never run at the same time
+  SweepInMemory(Device& device, const VolumeLayout& layout, const Buffer<float>& sigma_t,
+    const std::array<bool, 3>& periodic, const SweepRequest& request, SweepWorkspace& workspace);
 
   SweepTally Apply(const Buffer<float>* source, const SweepBoundary& boundary, const Monitor& monitor) override;
   void Forget() override;
@@ -42,7 +27,10 @@ private:
   SweepVolume VolumeOf(const ChannelGroup& group, const Buffer<float>* source) const;
 
   VolumeLayout Layout;
-  Description The;
+  const Buffer<float>& SigmaT;
+  Deposit To;
+  VoxelBox Box;
+  int MostPlanes;
   /// Along one axis: one sweep for all groups of channels in turn; where the axis is periodic one a group, for it keeps
   /// rays that are on their way from one sweep to the next.
   struct Axis

@@ -2,10 +2,33 @@
 
 #include "Device/Buffer.h"
 #include "Device/Monitor.h"
+#include "LightPropagation/Angular/RayBundles.h"
 #include "LightPropagation/Sweep/SweepVolume.h"
+
+#include <vector>
 
 namespace tyndall
 {
+/// Planes that a ray goes round a periodic axis at most, unless the sweep is told another number.
+constexpr int MostPlanesAround = 8192;
+
+/// The bundles of rays that march along one axis.
+struct AxisBundles
+{
+  int axis;
+  std::vector<Bundle> bundles;
+};
+
+/// What a sweep is made for.
+struct SweepRequest
+{
+  Deposit deposit; ///< must stay
+  std::vector<AxisBundles> rays;
+  VoxelBox box = {};                 ///< the part of the grid that is swept; empty: all
+  int mostPlanes = MostPlanesAround; ///< that rays go round a periodic axis before they wait for the next sweep
+  bool sameBoundary = false;         ///< every sweep is given the same boundary: what it makes of it is kept
+};
+
 /// Carries light once through the medium: from what shines in its voxels and what comes in through the box's faces to
 /// path integrals, net flux, partial currents and the power that left (numerics.md, section 4). Power is conserved,
 /// Eq. (27). Independent of scattering orders and of acceleration. In one device's memory today
@@ -23,7 +46,7 @@ public:
   /// sweep
   virtual SweepTally Apply(const Buffer<float>* source, const SweepBoundary& boundary, const Monitor& monitor) = 0;
 
-  /// Light on its way round periodic axes is given up.
+  /// Discards the rays that are under way round periodic axes; their power was told as SweepTally::onTheWay.
   virtual void Forget() = 0;
 };
 }

@@ -5,6 +5,7 @@
 #include "LightPropagation/Uncollided/LampBeamsShared.h"
 
 #include "LightPropagation/Sweep/AxisSweep.h"
+#include "LightPropagation/Sweep/SweepOperator.h"
 #include "Numerics/Vectors.h"
 #include "TyndallKernelSources.h"
 

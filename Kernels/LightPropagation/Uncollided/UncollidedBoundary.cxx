@@ -1,6 +1,7 @@
 #include "LightPropagation/Uncollided/UncollidedBoundary.h"
 
 #include "LightPropagation/Sweep/AxisSweep.h"
+#include "LightPropagation/Sweep/SweepOperator.h"
 #include "LightPropagation/Sweep/SweepPlan.h"
 
 #include <algorithm>
