@@ -4,12 +4,55 @@
 #
 # Folder/Deposit.cl becomes the constant tyndall::kernel_source::Deposit, a std::string_view that ends in a zero byte,
 # declared in a generated header that is named after the target: TyndallKernels has "TyndallKernelSources.h". Editing a
-# .cl file rebuilds just its constant.
+# .cl file rebuilds just the constants that hold it.
 #
-# The same file run as a script (cmake -D INPUT= -D OUTPUT= -D NAME= -D HEADER= -P) writes the constant of one .cl file.
+# A source says itself what it needs: a line #include "Folder/Other.cl" (or a .h that C++ and OpenCL share), with the
+# path from the current source folder on, is replaced by that file. One with a line #pragma once is taken once.
+#
+# The same file run as a script (cmake -D INPUT= -D ROOT= -D OUTPUT= -D DEPFILE= -D NAME= -D HEADER= -P) writes the
+# constant of one .cl file.
+
+cmake_policy(SET CMP0057 NEW) # IN_LIST, also as a script
+
+# The text of a file with what it includes, in `text`; adds the files that were read to the global property EMBEDDED.
+function (tyndall_expand file root text)
+  get_property(read GLOBAL PROPERTY EMBEDDED)
+  file(READ "${file}" rest)
+  string(FIND "\n${rest}" "\n#pragma once\n" once)
+  if (NOT once EQUAL -1)
+    if ("${file}" IN_LIST read)
+      set(${text} "" PARENT_SCOPE)
+      return ()
+    endif ()
+    string(REPLACE "#pragma once\n" "" rest "${rest}")
+  endif ()
+  set_property(GLOBAL APPEND PROPERTY EMBEDDED "${file}")
+  set(all "")
+  string(REGEX MATCH "(^|\n)#include \"([^\"\n]+)\"[^\n]*" line "${rest}")
+  while (line)
+    set(other "${root}/${CMAKE_MATCH_2}")
+    if (NOT EXISTS "${other}")
+      message(FATAL_ERROR "${file} includes \"${CMAKE_MATCH_2}\", which is not in ${root}.")
+    endif ()
+    string(FIND "${rest}" "${line}" place)
+    string(SUBSTRING "${rest}" 0 ${place} before)
+    string(LENGTH "${line}" length)
+    math(EXPR place "${place} + ${length}")
+    string(SUBSTRING "${rest}" ${place} -1 rest)
+    tyndall_expand("${other}" "${root}" inner)
+    string(APPEND all "${before}\n${inner}")
+    string(REGEX MATCH "(^|\n)#include \"([^\"\n]+)\"[^\n]*" line "${rest}")
+  endwhile ()
+  set(${text} "${all}${rest}" PARENT_SCOPE)
+endfunction ()
 
 if (CMAKE_SCRIPT_MODE_FILE STREQUAL CMAKE_CURRENT_LIST_FILE)
-  file(READ "${INPUT}" rest)
+  tyndall_expand("${INPUT}" "${ROOT}" rest)
+  get_property(read GLOBAL PROPERTY EMBEDDED)
+  list(REMOVE_DUPLICATES read)
+  string(REPLACE " " "\\ " read "${read}")
+  string(REPLACE ";" " " read "${read}")
+  file(WRITE "${DEPFILE}" "${OUTPUT}: ${read}\n")
   set(literals "")
   # Some compilers refuse a string literal of 64 kB, so that a long file becomes several, cut at line ends.
   set(longest 60000)
@@ -56,9 +99,10 @@ function (tyndall_embed_kernels target)
     set(output "${folder}/${name}.cxx")
     add_custom_command(
       OUTPUT "${output}"
-      COMMAND "${CMAKE_COMMAND}" "-DINPUT=${input}" "-DOUTPUT=${output}" "-DNAME=${name}"
-              "-DHEADER=${header}" -P "${CMAKE_CURRENT_FUNCTION_LIST_FILE}"
+      COMMAND "${CMAKE_COMMAND}" "-DINPUT=${input}" "-DROOT=${CMAKE_CURRENT_SOURCE_DIR}" "-DOUTPUT=${output}"
+              "-DDEPFILE=${output}.d" "-DNAME=${name}" "-DHEADER=${header}" -P "${CMAKE_CURRENT_FUNCTION_LIST_FILE}"
       DEPENDS "${input}" "${CMAKE_CURRENT_FUNCTION_LIST_FILE}"
+      DEPFILE "${output}.d"
       COMMENT "Embedding ${file}"
       VERBATIM)
     target_sources("${target}" PRIVATE "${output}")
@@ -69,7 +113,7 @@ function (tyndall_embed_kernels target)
 
 #include <string_view>
 
-/// The OpenCL sources in this library, each named after its file.
+/// The OpenCL sources in this library, each named after its file, with what it includes.
 namespace tyndall::kernel_source
 {
 @declarations@}

@@ -1,8 +1,9 @@
-// How filters do their work, report and fail: see LightTransportData.h.
-#include "Common/LightTransportData.h"
+#include "Common/GuardedWork.h"
 
+// How filters do their work, report and fail: see LightTransportData.h.
 #include "Common/GhostFlags.h"
 #include "Common/LastFailure.h"
+#include "Common/LightTransportWriting.h"
 #include "Device/Device.h"
 #include "Device/OpenCL.h"
 #include "PropertyRange.h"

@@ -1,15 +1,15 @@
 #pragma once
 
+#include "Common/GuardedWork.h"
+#include "Common/LightTransportWriting.h"
+
 #include "Device/Errors.h"
-#include "Device/Monitor.h"
-#include "Light/LightField.h"
 #include "Lights/Lights.h"
 #include "Medium/Medium.h"
 
 #include "vtkFloatArray.h"
 #include "vtkSmartPointer.h"
 
-#include <functional>
 #include <initializer_list>
 #include <string>
 #include <vector>
@@ -19,11 +19,10 @@ class vtkDataArray;
 class vtkDataObject;
 class vtkDataSetAttributes;
 class vtkImageData;
-class vtkInformationVector;
 class vtkPolyData;
-class vtkTable;
 
-/// The one place where filters read and write what flows between them: arrays, their names, shapes and units.
+/// The one place where filters read what flows between them: arrays, their names, shapes and units. What they write:
+/// LightTransportWriting.h.
 ///
 /// What reads throws InvalidInput with a text for the user; a filter does all its work within Guarded, which turns that
 /// into an error of VTK. A filter's RequestData so reads:
@@ -126,61 +125,4 @@ Environment ReadEnvironment(vtkImageData* image);
 /// Adds light without a source: radiance from every direction alike (red, green, blue) and through the faces -x, +x,
 /// -y, +y, -z, +z, W/(length^2 sr). Checked.
 void AddDiffuse(Illumination& illumination, const double* sky, const double* faceRadiance);
-
-/// Add values to an image's cells, without copying them.
-/// @param values  `components` a cell, x fastest
-/// @param advice  see RequireFinite
-/// @throws InvalidInput where a value is not finite
-void AddCells(
-  vtkImageData* image, const char* name, std::vector<float>&& values, int components, const char* advice = nullptr);
-
-/// The same of light: of 3 channels they are named R, G, B.
-void AddLight(vtkImageData* image, const char* name, std::vector<float>&& values, int channels);
-
-/// The same of light that a user gave, NaN where it is not known: not looked at.
-void AddGivenLight(vtkImageData* image, const char* name, std::vector<float>&& values, int channels);
-
-/// Add field data.
-/// @param values  tuples of `components` one after the other
-void AddFact(vtkDataObject* data, const char* name, const std::vector<double>& values, int components = 1);
-void AddFact(vtkDataObject* data, const char* name, const std::vector<std::string>& values);
-
-/// What leaves thick voxels at the box's faces, see LightField::surfaceRadiance: a tuple a cell of BoxFaces.h.
-constexpr const char* SurfaceRadianceFact = "surface_radiance";
-
-/// Texts one a line, for the panel.
-std::string Lines(const std::vector<std::string>& texts);
-
-/// Everything a solver found but its convergence: cells `fluence` (made the active scalars), `fluence_direct`,
-/// `fluence_error`, `net_flux`, `scattered_radiance` (channels fastest, then stored directions), those that are not
-/// empty; field data `energy_balance`, `face_power_out`, `half_range_flux`, `stored_directions`, `surface_radiance`,
-/// `left_out`, `device`. Light that the output already has is taken away.
-void WriteLight(LightField&& light, vtkImageData* output);
-
-/// One row an iteration: `iteration`, `seconds`, `residual`, `change`, `absorbed`, `escaped`, `left_over`.
-void WriteConvergence(const std::vector<ConvergenceRow>& rows, vtkTable* table);
-
-/// To be asked where an input is empty: ends the work of Guarded without an error where the filter before failed or was
-/// aborted.
-void StopWithFilterBefore(vtkDataObject* input);
-
-/// Reports to the filter's progress; says stop when the filter is asked to abort.
-Monitor MonitorOf(vtkAlgorithm* filter);
-
-/// Make the output the input's arrays, with field data of its own: a shallow copy alone would share that, so that what
-/// a filter adds would appear in its input, and vanish when that is made again.
-void PassOn(vtkImageData* input, vtkImageData* output);
-
-/// Runs the work of a filter's RequestData. Whatever it throws becomes one error of the filter; the outputs are empty
-/// then and after an abort, which is no error, and the filter runs again when something has changed. Empty outputs have
-/// field data `failed` or `aborted`, from which later filters know: they stay empty, too, without an error of their
-/// own. What the device layer has to tell users (Device::TakeWarnings) becomes a warning of the filter.
-/// @return what RequestData is to return: always 1. With 0 the pipeline would add an error that says less, and run the
-///   filter again, in vain, with every update.
-int Guarded(vtkAlgorithm* filter, vtkInformationVector* outputs, const std::function<void()>& work);
-
-/// Runs what may fail in a reader's RequestInformation. What it throws becomes one error, however often ParaView asks,
-/// until the reader is modified; Guarded then leaves the outputs empty.
-/// @return whether it succeeded. RequestInformation is to return 1 all the same, as RequestData.
-bool GuardedInformation(vtkAlgorithm* filter, const std::function<void()>& work);
 }

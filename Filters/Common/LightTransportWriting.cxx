@@ -1,11 +1,12 @@
-// What filters write: see LightTransportData.h.
+#include "Common/LightTransportWriting.h"
+
 #include "Common/FiniteValues.h"
-#include "Common/LightTransportData.h"
 #include "Medium/BoxFaces.h"
 
 #include "vtkCellData.h"
 #include "vtkDoubleArray.h"
 #include "vtkFieldData.h"
+#include "vtkFloatArray.h"
 #include "vtkImageData.h"
 #include "vtkIntArray.h"
 #include "vtkNew.h"

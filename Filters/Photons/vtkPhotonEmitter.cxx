@@ -18,6 +18,8 @@ vtkStandardNewMacro(vtkPhotonEmitter);
 
 vtkPhotonEmitter::vtkPhotonEmitter()
 {
+  const tyndall::EmissionSettings defaults;
+  this->MaximumDensity = defaults.densestAtMost;
   this->SetNumberOfInputPorts(4);
 }
 

@@ -135,7 +135,7 @@ private:
   int Sampler = HAMMERSLEY;
   int Seed = 0;
   int Batches = 0;
-  double MaximumDensity = 8.0;
+  double MaximumDensity;
   double SkyColor[3] = { 0.0, 0.0, 0.0 };
 
   vtkIdType Photons = 0;

@@ -82,6 +82,12 @@ vtkStandardNewMacro(vtkPhotonImportance);
 vtkPhotonImportance::vtkPhotonImportance()
   : Kept(std::make_unique<tyndall::KeptMarcher>())
 {
+  const tyndall::ImportanceSettings defaults;
+  this->PilotCount = static_cast<int>(defaults.pilotCount);
+  this->GradientThreshold = defaults.gradientThreshold;
+  this->LuminanceThreshold = defaults.luminanceThreshold;
+  this->Background = defaults.background;
+  std::copy(defaults.cells.begin(), defaults.cells.end(), this->PilotDimensions);
   this->SetNumberOfOutputPorts(2);
 }
 

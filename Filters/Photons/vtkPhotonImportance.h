@@ -149,12 +149,12 @@ private:
   tyndall::Importance Find(vtkInformationVector** inputs);
   void Note(const tyndall::Importance& importance);
 
-  int PilotCount = 1024;
-  int PilotDimensions[3] = { 16, 16, 16 };
+  int PilotCount;
+  int PilotDimensions[3];
   int Thresholds = AUTOMATIC;
-  double GradientThreshold = 0.0;
-  double LuminanceThreshold = 0.0;
-  double Background = 0.3;
+  double GradientThreshold;
+  double LuminanceThreshold;
+  double Background;
   int Seed = 0;
   double SkyColor[3] = { 0.0, 0.0, 0.0 };
 

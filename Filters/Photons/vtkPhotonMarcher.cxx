@@ -99,6 +99,11 @@ vtkStandardNewMacro(vtkPhotonMarcher);
 vtkPhotonMarcher::vtkPhotonMarcher()
   : Kept(std::make_unique<tyndall::KeptMarcher>())
 {
+  const tyndall::MarchSettings defaults;
+  this->IntegratorOrder = defaults.order;
+  this->StepSize = defaults.stepSize;
+  this->PhotonCounts = defaults.counts;
+  this->LeaveOut = defaults.leaveOut;
   this->SetNumberOfInputPorts(InputPortCount);
   this->SetNumberOfOutputPorts(2);
 }

@@ -186,10 +186,10 @@ private:
   void Warn(const tyndall::PhotonLight& light, std::size_t photons);
 
   int Scheme = CONSERVATIVE;
-  int IntegratorOrder = 2;
-  double StepSize = 1.0;
-  bool PhotonCounts = false;
-  bool LeaveOut = true;
+  int IntegratorOrder;
+  double StepSize;
+  bool PhotonCounts;
+  bool LeaveOut;
   int PathCount = 0;
   bool Smoothing = true;
   std::string Device;

@@ -170,6 +170,11 @@ vtkStandardNewMacro(vtkPhotonReconstruction);
 
 vtkPhotonReconstruction::vtkPhotonReconstruction()
 {
+  const tyndall::ReconstructionSettings defaults;
+  this->Levels = defaults.levels;
+  this->WeightStep = defaults.weightStep;
+  this->Level = defaults.level;
+  this->NearestPhotons = defaults.nearest;
   // vtkImageAlgorithm chooses the active scalars.
   this->SetInputArrayToProcess(Fluence, 0, 0, vtkDataObject::FIELD_ASSOCIATION_CELLS, "fluence");
 }

@@ -143,10 +143,10 @@ private:
   void Note(const tyndall::ReconstructedLight& light);
 
   int Scheme = CONSERVATIVE;
-  int Levels = 5;
-  double WeightStep = 0.0;
-  int Level = 1;
-  int NearestPhotons = 20;
+  int Levels;
+  double WeightStep;
+  int Level;
+  int NearestPhotons;
   int ConserveFluence = BY_SCHEME;
   std::string Device;
 

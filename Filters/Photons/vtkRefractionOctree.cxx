@@ -73,6 +73,10 @@ vtkStandardNewMacro(vtkRefractionOctree);
 
 vtkRefractionOctree::vtkRefractionOctree()
 {
+  const tyndall::OctreeSettings defaults;
+  this->Tolerance = defaults.tolerance;
+  this->IncludeExtinction = defaults.includeExtinction;
+  this->ExtinctionTolerance = defaults.extinctionTolerance;
   this->SetNumberOfOutputPorts(2);
 }
 

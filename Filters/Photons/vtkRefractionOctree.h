@@ -99,9 +99,9 @@ private:
   vtkRefractionOctree(const vtkRefractionOctree&) = delete;
   void operator=(const vtkRefractionOctree&) = delete;
 
-  double Tolerance = 0.01;
-  bool IncludeExtinction = false;
-  double ExtinctionTolerance = 0.1;
+  double Tolerance;
+  bool IncludeExtinction;
+  double ExtinctionTolerance;
   std::string Device;
 
   vtkIdType NodeCount = 0;

@@ -85,7 +85,13 @@ std::vector<double> Flat(const tyndall::DirectionSet& set)
 
 vtkStandardNewMacro(vtkLPMPropagate);
 
-vtkLPMPropagate::vtkLPMPropagate() = default;
+vtkLPMPropagate::vtkLPMPropagate()
+{
+  const tyndall::PropagationSettings defaults;
+  this->DirectionsPerFace = defaults.directionsPerFace;
+  this->MapResolution = defaults.mapResolution;
+  this->StoredDirections = defaults.storedDirections;
+}
 vtkLPMPropagate::~vtkLPMPropagate() = default;
 
 int vtkLPMPropagate::RequestData(vtkInformation*, vtkInformationVector** inputs, vtkInformationVector* outputs)

@@ -102,9 +102,9 @@ private:
   vtkLPMPropagate(const vtkLPMPropagate&) = delete;
   void operator=(const vtkLPMPropagate&) = delete;
 
-  int DirectionsPerFace = 25;
-  int MapResolution = 1;
-  int StoredDirections = 1;
+  int DirectionsPerFace;
+  int MapResolution;
+  int StoredDirections;
   double FaceRadiance[6] = { 0.0, 0.0, 0.0, 0.0, 0.0, 0.0 };
   double SkyColor[3] = { 0.0, 0.0, 0.0 };
 

@@ -63,14 +63,6 @@ bool NothingShines(const tyndall::Medium& medium, const tyndall::Illumination& i
     !medium.emission.values;
 }
 
-/// What the solver gave up, of all power.
-double LeftOver(const tyndall::EnergyBalance& balance)
-{
-  const auto total = [](const tyndall::Rgb& power) { return power[0] + power[1] + power[2]; };
-  const double all = total(balance.entered) + total(balance.emitted);
-  return all > 0.0 ? total(balance.leftOver) / all : 0.0;
-}
-
 /// Whether all light comes in through faces of the box.
 bool OnlyFromFarAway(const tyndall::Illumination& illumination)
 {
@@ -101,6 +93,16 @@ vtkStandardNewMacro(vtkLightPropagationMaps);
 
 vtkLightPropagationMaps::vtkLightPropagationMaps()
 {
+  const tyndall::PropagationSettings defaults;
+  this->DirectionsPerFace = defaults.directionsPerFace;
+  this->UncollidedDirections = defaults.uncollidedDirections;
+  this->EmissionError = defaults.emissionError;
+  this->StaggeredRays = defaults.staggeredRays;
+  this->MapResolution = defaults.mapResolution;
+  this->MaximumOrders = defaults.maximumOrders;
+  this->NetFlux = defaults.netFlux;
+  this->LeaveOut = defaults.leaveOut;
+  this->StoredDirections = defaults.storedDirections;
   this->SetNumberOfOutputPorts(2);
 }
 
@@ -118,8 +120,7 @@ int vtkLightPropagationMaps::RequestData(vtkInformation*, vtkInformationVector**
   return tyndall::Guarded(this, outputs, [&] {
     vtkImageData* image = vtkImageData::GetData(inputs[MEDIUM]);
     const tyndall::MediumInput input = tyndall::ReadMedium(this, image);
-    tyndall::Illumination illumination = this->ReadIllumination(inputs);
-    tyndall::AddDiffuse(illumination, this->SkyColor, this->FaceRadiance);
+    const tyndall::Illumination illumination = this->ReadAllIllumination(inputs);
     if (NothingShines(input.medium, illumination))
     {
       vtkWarningMacro(
@@ -136,24 +137,14 @@ int vtkLightPropagationMaps::RequestData(vtkInformation*, vtkInformationVector**
     tyndall::LightField light = Solve(this, input.medium, illumination);
 
     this->Note(light);
-    const double left = LeftOver(light.balance);
+    const std::vector<std::string> doubts = light.doubts;
     tyndall::WriteConvergence(light.convergence, vtkTable::GetData(outputs, 1));
     vtkImageData* output = vtkImageData::GetData(outputs, 0);
     tyndall::PassOn(image, output);
     tyndall::WriteLight(std::move(light), output); // light that is not finite is an error, with no warnings before
-    if (this->MaximumOrders == 0 && this->Residual > this->Tolerance)
+    for (const std::string& doubt : doubts)
     {
-      vtkWarningMacro("The light has not converged: after "
-        << this->Orders << " sweeps its estimated relative error is " << this->Residual << ", Tolerance is "
-        << this->Tolerance
-        << ". Set a larger Tolerance, or Acceleration to none, or resample to voxels of more equal edges.");
-    }
-    if (this->MaximumOrders == 0 && left > std::max(0.01, this->Tolerance))
-    {
-      vtkWarningMacro("Of the light's power "
-        << 100.0 * left
-        << "% is left over: its rays still go round periodic axes. A light inside a thin periodic box has images "
-           "without end: make the box wider, or its axes not periodic.");
+      vtkWarningMacro(<< doubt);
     }
     tyndall::KeepWhatIsAskedFor(outputs->GetInformationObject(0), output);
   });
@@ -185,12 +176,7 @@ void vtkLightPropagationMaps::PrintSelf(ostream& os, vtkIndent indent)
   os << indent << "StaggeredRays: " << this->StaggeredRays << "\n";
   os << indent << "MapResolution: " << this->MapResolution << "\n";
   os << indent << "MaximumOrders: " << this->MaximumOrders << "\n";
-  os << indent << "Tolerance: " << this->Tolerance << "\n";
-  os << indent << "Periodic: " << this->PeriodicX << " " << this->PeriodicY << " " << this->PeriodicZ << "\n";
-  PrintNumbers(os, indent, "FaceRadiance", this->FaceRadiance, 6);
-  PrintNumbers(os, indent, "SkyColor", this->SkyColor, 3);
   os << indent << "NetFlux: " << this->NetFlux << "\n";
-  os << indent << "EstimateError: " << this->EstimateError << "\n";
   os << indent << "LeaveOut: " << this->LeaveOut << "\n";
   os << indent << "StoredDirections: " << this->StoredDirections << "\n";
   os << indent << "Orders: " << this->Orders << "\n";

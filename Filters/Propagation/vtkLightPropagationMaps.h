@@ -2,7 +2,7 @@
 #define vtkLightPropagationMaps_h
 
 #include "PropertyRange.h"
-#include "vtkLitImageAlgorithm.h"
+#include "vtkPropagationAlgorithm.h"
 #include "vtkTyndallModule.h" // for export macro
 
 #include <string>
@@ -63,11 +63,11 @@ struct LightField;
  * Architectures, EGPGV 2012. R. Fattal: Participating Media Illumination Using Light Propagation Maps, ACM Trans.
  * Graph. 28 (2009).
  */
-class TYNDALL_EXPORT vtkLightPropagationMaps : public vtkLitImageAlgorithm
+class TYNDALL_EXPORT vtkLightPropagationMaps : public vtkPropagationAlgorithm
 {
 public:
   static vtkLightPropagationMaps* New();
-  vtkTypeMacro(vtkLightPropagationMaps, vtkLitImageAlgorithm);
+  vtkTypeMacro(vtkLightPropagationMaps, vtkPropagationAlgorithm);
   void PrintSelf(ostream& os, vtkIndent indent) override;
 
   enum Schemes
@@ -165,51 +165,10 @@ public:
   ///@}
 
   ///@{
-  /// Relative error of fluence at which to stop. Default 1e-4, valid above 0.
-  tyndallSetRangeMacro(Tolerance, double, tyndall::AboveZero, tyndall::AnyHigh);
-  vtkGetMacro(Tolerance, double);
-  ///@}
-
-  ///@{
-  /// Whether rays that leave along an axis return on the other side. Default off.
-  vtkSetMacro(PeriodicX, bool);
-  vtkGetMacro(PeriodicX, bool);
-  vtkBooleanMacro(PeriodicX, bool);
-  vtkSetMacro(PeriodicY, bool);
-  vtkGetMacro(PeriodicY, bool);
-  vtkBooleanMacro(PeriodicY, bool);
-  vtkSetMacro(PeriodicZ, bool);
-  vtkGetMacro(PeriodicZ, bool);
-  vtkBooleanMacro(PeriodicZ, bool);
-  ///@}
-
-  ///@{
-  /// Diffuse radiance that enters through the faces -x, +x, -y, +y, -z, +z, W/(length^2 sr). Default 0, valid
-  /// [0, infinity).
-  tyndallSetRange6Macro(FaceRadiance, double, 0.0, tyndall::LargestFloat);
-  vtkGetVector6Macro(FaceRadiance, double);
-  ///@}
-
-  ///@{
-  /// Radiance from every direction alike, red, green, blue, added to the environment, W/(length^2 sr). Default 0, valid
-  /// [0, infinity).
-  tyndallSetRange3Macro(SkyColor, double, 0.0, tyndall::LargestFloat);
-  vtkGetVector3Macro(SkyColor, double);
-  ///@}
-
-  ///@{
   /// Whether to compute `net_flux` too; it costs time and memory. Default off.
   vtkSetMacro(NetFlux, bool);
   vtkGetMacro(NetFlux, bool);
   vtkBooleanMacro(NetFlux, bool);
-  ///@}
-
-  ///@{
-  /// Whether to estimate the error of fluence from coarser solves, as `fluence_error` and EstimatedError; it takes
-  /// about a third more time. Default off.
-  vtkSetMacro(EstimateError, bool);
-  vtkGetMacro(EstimateError, bool);
-  vtkBooleanMacro(EstimateError, bool);
   ///@}
 
   ///@{
@@ -259,22 +218,15 @@ private:
   int Algorithm = PARALLEL;
   int Source = AUTOMATIC_SOURCE;
   int Acceleration = AUTOMATIC_ACCELERATION;
-  int DirectionsPerFace = 25;
-  int UncollidedDirections = 0;
-  double EmissionError = 0.02;
-  bool StaggeredRays = false;
-  int MapResolution = 1;
-  int MaximumOrders = 0;
-  double Tolerance = 1e-4;
-  bool PeriodicX = false;
-  bool PeriodicY = false;
-  bool PeriodicZ = false;
-  double FaceRadiance[6] = { 0.0, 0.0, 0.0, 0.0, 0.0, 0.0 };
-  double SkyColor[3] = { 0.0, 0.0, 0.0 };
-  bool NetFlux = false;
-  bool EstimateError = false;
-  bool LeaveOut = true;
-  int StoredDirections = 1;
+  int DirectionsPerFace;
+  int UncollidedDirections;
+  double EmissionError;
+  bool StaggeredRays;
+  int MapResolution;
+  int MaximumOrders;
+  bool NetFlux;
+  bool LeaveOut;
+  int StoredDirections;
 
   int Orders = 0;
   double Residual = 0.0;

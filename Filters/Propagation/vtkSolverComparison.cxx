@@ -185,6 +185,16 @@ vtkStandardNewMacro(vtkSolverComparison);
 
 vtkSolverComparison::vtkSolverComparison()
 {
+  const tyndall::ComparisonSettings defaults;
+  this->Directions = defaults.tried.directionsPerFace;
+  this->MapResolutions = defaults.tried.mapResolutions;
+  this->Coarsenings = defaults.tried.coarsenings;
+  this->Orders = defaults.tried.orders;
+  this->PhotonCounts = defaults.tried.photonCounts;
+  this->Tolerance = defaults.tried.tolerance;
+  this->Repeats = defaults.repeats;
+  this->TimeBudget = defaults.timeBudget;
+  this->EstimateError = defaults.estimates;
   this->SetNumberOfInputPorts(4);
   this->SetNumberOfOutputPorts(2);
 }
@@ -287,8 +297,7 @@ int vtkSolverComparison::RequestData(
     scene.ior = read.ior;
     scene.levels = read.Levels();
     scene.periodic = { this->PeriodicX, this->PeriodicY, this->PeriodicZ };
-    scene.illumination = this->ReadIllumination(inputs);
-    tyndall::AddDiffuse(scene.illumination, this->SkyColor, this->FaceRadiance);
+    scene.illumination = this->ReadAllIllumination(inputs);
     const std::optional<tyndall::ReferenceLight> reference = ReadReference(vtkImageData::GetData(inputs[REFERENCE]));
     if (!tyndall::IsFirstPiece(request, outputs))
     {
@@ -329,14 +338,8 @@ void vtkSolverComparison::PrintSelf(ostream& os, vtkIndent indent)
   PrintList(os, indent, "Orders", this->Orders);
   PrintList(os, indent, "PhotonCounts", this->PhotonCounts);
   os << indent << "AllSamplers: " << this->AllSamplers << "\n";
-  os << indent << "Tolerance: " << this->Tolerance << "\n";
   os << indent << "Repeats: " << this->Repeats << "\n";
   os << indent << "TimeBudget: " << this->TimeBudget << "\n";
-  os << indent << "EstimateError: " << this->EstimateError << "\n";
-  os << indent << "Periodic: " << this->PeriodicX << " " << this->PeriodicY << " " << this->PeriodicZ << "\n";
-  PrintNumbers(os, indent, "FaceRadiance", this->FaceRadiance, 6);
-  PrintNumbers(os, indent, "SkyColor", this->SkyColor, 3);
-  os << indent << "Device: " << this->Device << "\n";
   os << indent << "ReferenceText: " << this->ReferenceText << "\n";
   os << indent << "Seconds: " << this->Seconds << "\n";
   os << indent << "DeviceName: " << this->DeviceName << "\n";

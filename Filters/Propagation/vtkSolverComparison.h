@@ -2,7 +2,7 @@
 #define vtkSolverComparison_h
 
 #include "PropertyRange.h"
-#include "vtkLitMediumAlgorithm.h"
+#include "vtkPropagationAlgorithm.h"
 #include "vtkTyndallModule.h" // for export macro
 
 #include <string>
@@ -63,18 +63,21 @@ struct ComparisonSettings;
  * Directions nearest to 25. Of photons, all PhotonCounts by Hammersley's sampler, and with AllSamplers the largest but
  * one by the others.
  *
+ * With EstimateError (default on here) solvers estimate their own errors, by a run more whose time does not count.
+ * Photons do not go round periodic axes; they are left out then.
+ *
  * In a parallel pipeline every rank asks for all; the outputs are on the first.
  *
  * @sa vtkLightPropagationMaps vtkPhotonMarcher vtkPhotonReconstruction
  */
-class TYNDALL_EXPORT vtkSolverComparison : public vtkLitMediumAlgorithm
+class TYNDALL_EXPORT vtkSolverComparison : public vtkPropagationAlgorithm
 {
 public:
   static vtkSolverComparison* New();
-  vtkTypeMacro(vtkSolverComparison, vtkLitMediumAlgorithm);
+  vtkTypeMacro(vtkSolverComparison, vtkPropagationAlgorithm);
   void PrintSelf(ostream& os, vtkIndent indent) override;
 
-  /// Number of the input port after those of vtkLitMediumAlgorithm.
+  /// Number of the input port after those of vtkPropagationAlgorithm.
   static constexpr int REFERENCE = 3;
   /// Number of the output port of the reference.
   static constexpr int REFERENCE_OUTPUT = 1;
@@ -149,12 +152,6 @@ public:
   ///@}
 
   ///@{
-  /// Relative error of fluence at which propagation stops. Default 1e-4, valid above 0.
-  tyndallSetRangeMacro(Tolerance, double, tyndall::AboveZero, tyndall::AnyHigh);
-  vtkGetMacro(Tolerance, double);
-  ///@}
-
-  ///@{
   /// Runs whose median is the time, after one that does not count; fewer where TimeBudget does not allow them. Default
   /// 3, valid [1, 100].
   tyndallSetRangeMacro(Repeats, int, 1, 100);
@@ -166,48 +163,6 @@ public:
   /// are not begun, or stopped; field data `left_out` names them. Default 300, valid above 0.
   tyndallSetRangeMacro(TimeBudget, double, tyndall::AboveZero, tyndall::AnyHigh);
   vtkGetMacro(TimeBudget, double);
-  ///@}
-
-  ///@{
-  /// Whether solvers estimate their own errors, by a run more whose time does not count. Default on.
-  vtkSetMacro(EstimateError, bool);
-  vtkGetMacro(EstimateError, bool);
-  vtkBooleanMacro(EstimateError, bool);
-  ///@}
-
-  ///@{
-  /// Whether rays that leave along an axis return on the other side. Default off. Photons do not; they are left out
-  /// then.
-  vtkSetMacro(PeriodicX, bool);
-  vtkGetMacro(PeriodicX, bool);
-  vtkBooleanMacro(PeriodicX, bool);
-  vtkSetMacro(PeriodicY, bool);
-  vtkGetMacro(PeriodicY, bool);
-  vtkBooleanMacro(PeriodicY, bool);
-  vtkSetMacro(PeriodicZ, bool);
-  vtkGetMacro(PeriodicZ, bool);
-  vtkBooleanMacro(PeriodicZ, bool);
-  ///@}
-
-  ///@{
-  /// Diffuse radiance that enters through the faces -x, +x, -y, +y, -z, +z, W/(length^2 sr). Default 0, valid [0,
-  /// infinity).
-  tyndallSetRange6Macro(FaceRadiance, double, 0.0, tyndall::LargestFloat);
-  vtkGetVector6Macro(FaceRadiance, double);
-  ///@}
-
-  ///@{
-  /// Radiance from every direction alike, red, green, blue, added to the environment, W/(length^2 sr). Default 0, valid
-  /// [0, infinity).
-  tyndallSetRange3Macro(SkyColor, double, 0.0, tyndall::LargestFloat);
-  vtkGetVector3Macro(SkyColor, double);
-  ///@}
-
-  ///@{
-  /// Part of the name of the OpenCL device to use, of any case. Default empty: what the variable TYNDALL_DEVICE names,
-  /// or else PoCL's CPU device.
-  vtkSetStdStringFromCharMacro(Device);
-  vtkGetCharFromStdStringMacro(Device);
   ///@}
 
   ///@{
@@ -240,22 +195,14 @@ private:
   bool Photons = true;
   bool AdaptivePhotons = false;
   bool PublishedPhotons = false;
-  std::vector<int> Directions = { 4, 9, 25, 64, 100 };
-  std::vector<int> MapResolutions = { 1, 2 };
-  std::vector<int> Coarsenings = { 1, 2, 4 };
-  std::vector<int> Orders = { 1, 3, 10 };
-  std::vector<int> PhotonCounts = { 10000, 100000, 1000000 };
+  std::vector<int> Directions;
+  std::vector<int> MapResolutions;
+  std::vector<int> Coarsenings;
+  std::vector<int> Orders;
+  std::vector<int> PhotonCounts;
   bool AllSamplers = false;
-  double Tolerance = 1e-4;
-  int Repeats = 3;
-  double TimeBudget = 300.0;
-  bool EstimateError = true;
-  bool PeriodicX = false;
-  bool PeriodicY = false;
-  bool PeriodicZ = false;
-  double FaceRadiance[6] = { 0.0, 0.0, 0.0, 0.0, 0.0, 0.0 };
-  double SkyColor[3] = { 0.0, 0.0, 0.0 };
-  std::string Device;
+  int Repeats;
+  double TimeBudget;
 
   std::string ReferenceText;
   double Seconds = 0.0;

@@ -184,6 +184,9 @@ vtkStandardNewMacro(vtkMeshVoxelizer);
 vtkMeshVoxelizer::vtkMeshVoxelizer()
   : Added(new AddedMaterials)
 {
+  const tyndall::RefractiveMediumSettings defaults;
+  this->SupersamplingFactor = defaults.voxelization.samples;
+  this->FilterSize = defaults.filterSize;
   // vtkImageAlgorithm chooses the active scalars.
   this->SetInputArrayToProcess(0, 0, 0, vtkDataObject::FIELD_ASSOCIATION_CELLS, DefaultNumbers);
 }

@@ -213,8 +213,8 @@ private:
   double ScatteringNoise = 0.0;
   double NoiseSize = 0.0;
   int NoiseSeed = 0;
-  int SupersamplingFactor = 4;
-  int FilterSize = 9;
+  int SupersamplingFactor;
+  int FilterSize;
   std::string Device;
 
   struct AddedMaterials;

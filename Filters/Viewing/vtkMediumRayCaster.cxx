@@ -162,7 +162,23 @@ struct vtkMediumRayCaster::Scene
 
 vtkStandardNewMacro(vtkMediumRayCaster);
 
-vtkMediumRayCaster::vtkMediumRayCaster() = default;
+vtkMediumRayCaster::vtkMediumRayCaster()
+{
+  const tyndall::ViewSettings defaults;
+  this->StepSize = defaults.stepSize;
+  this->SingleScatteringOnly = defaults.singleScatteringOnly;
+  this->ShadowRays = defaults.shadowRays;
+  this->RectangleSamples = defaults.rectangleSamples;
+  this->ShowBackground = defaults.showBackground;
+  this->SurfaceIndex = defaults.surfaceIndex;
+  this->SurfaceReflectance = defaults.surfaceReflectance;
+  this->TableFace = defaults.tableFace;
+  this->TableReflectance = defaults.tableReflectance;
+  this->LeaveOut = defaults.leaveOut;
+  std::copy(defaults.imageSize.begin(), defaults.imageSize.end(), this->ImageSize);
+  std::copy(defaults.backgroundColor.begin(), defaults.backgroundColor.end(), this->BackgroundColor);
+  std::copy(defaults.tableColor.begin(), defaults.tableColor.end(), this->TableColor);
+}
 
 vtkMediumRayCaster::~vtkMediumRayCaster() = default;
 

@@ -290,29 +290,29 @@ private:
     vtkInformationVector** inputs, const tyndall::InputsKey& key, tyndall::ViewSettings settings);
   std::unique_ptr<Scene> FindScene(vtkInformationVector** inputs);
 
-  int ImageSize[2] = { 800, 600 };
+  int ImageSize[2];
   double CameraPosition[3] = { 0.0, 0.0, 0.0 };
   double CameraFocalPoint[3] = { 0.0, 0.0, 0.0 };
   double CameraViewUp[3] = { 0.0, 0.0, 1.0 };
   double CameraViewAngle = 30.0;
   bool CameraParallelProjection = false;
   double CameraParallelScale = 1.0;
-  double StepSize = 0.5;
-  bool SingleScatteringOnly = false;
-  bool ShadowRays = false;
-  int RectangleSamples = 3;
-  bool ShowBackground = true;
-  double BackgroundColor[3] = { 0.0, 0.0, 0.0 };
+  double StepSize;
+  bool SingleScatteringOnly;
+  bool ShadowRays;
+  int RectangleSamples;
+  bool ShowBackground;
+  double BackgroundColor[3];
   double Exposure = 0.0;
   int ToneCurve = FILMIC;
   int PhaseFunction = HENYEY_GREENSTEIN;
   int SurfaceReflection = NONE;
-  double SurfaceIndex = 0.0;
-  double SurfaceReflectance = 0.1;
-  int TableFace = -1;
-  double TableColor[3] = { 0.6, 0.6, 0.6 };
-  double TableReflectance = 0.1;
-  bool LeaveOut = true;
+  double SurfaceIndex;
+  double SurfaceReflectance;
+  int TableFace;
+  double TableColor[3];
+  double TableReflectance;
+  bool LeaveOut;
 
   std::unique_ptr<Scene> Kept; ///< of the last picture, if it succeeded
 

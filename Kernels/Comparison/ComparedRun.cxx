@@ -1,6 +1,7 @@
 #include "Comparison/ComparedRun.h"
 
-#include "Comparison/RunKinds.h"
+#include "Comparison/PhotonRuns.h"
+#include "Comparison/PropagationRuns.h"
 
 #include "Device/Errors.h"
 

@@ -1,5 +1,6 @@
+#include "Comparison/ComparisonErrors.h"
+
 // What rows of a comparison are made of: see SolverComparison.h.
-#include "Comparison/SolverComparison.h"
 
 #include <algorithm>
 #include <cmath>

@@ -1,5 +1,6 @@
+#include "Comparison/ConvergedLight.h"
+
 // The reference that a comparison makes itself: see SolverComparison.h.
-#include "Comparison/SolverComparison.h"
 
 #include "Comparison/TimeLimit.h"
 

@@ -1,4 +1,4 @@
-#include "Comparison/RunKinds.h"
+#include "Comparison/PhotonRuns.h"
 
 #include "Photons/Emission/PhotonEmitter.h"
 #include "Photons/Importance/PhotonImportance.h"

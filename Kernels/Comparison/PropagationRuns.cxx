@@ -1,4 +1,4 @@
-#include "Comparison/RunKinds.h"
+#include "Comparison/PropagationRuns.h"
 
 #include "LightPropagation/Conservative/ConservativePropagation.h"
 #include "LightPropagation/Conservative/ErrorEstimate.h"

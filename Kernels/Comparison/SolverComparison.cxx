@@ -1,5 +1,6 @@
 #include "Comparison/SolverComparison.h"
 
+#include "Comparison/ComparisonErrors.h"
 #include "Comparison/TimeLimit.h"
 
 #include "Device/Errors.h"

@@ -207,16 +207,11 @@ bool Device::HasExtension(const std::string& name) const
   return (" " + this->Extensions + " ").find(" " + name + " ") != std::string::npos;
 }
 
-cl::Kernel Device::Kernel(const char* name, std::initializer_list<std::string_view> sources, const std::string& options)
+cl::Kernel Device::Kernel(const char* name, std::string_view source, const std::string& options)
 {
-  std::string text;
-  for (std::string_view source : sources)
-  {
-    text += source;
-  }
   try
   {
-    return cl::Kernel(this->ProgramOf(name, text, "-cl-std=CL1.2 " + options), name);
+    return cl::Kernel(this->ProgramOf(name, std::string(source), "-cl-std=CL1.2 " + options), name);
   }
   catch (const cl::Error& error)
   {

@@ -7,7 +7,6 @@
 
 #include <atomic>
 #include <cstddef>
-#include <initializer_list>
 #include <map>
 #include <memory>
 #include <mutex>
@@ -58,10 +57,10 @@ public:
   /// A kernel of the program that the given sources make one after the other. Programs are kept, so that asking again
   /// with the same sources and options costs nothing. The kernel is the caller's own: two threads that ask for one get
   /// two, for OpenCL does not let them set arguments of the same.
-  /// @param sources  texts of .cl files (kernel_source::...), in the order they are to be read
+  /// @param source  the text of a .cl file with what it includes (kernel_source::...)
   /// @param options  compiler options, e.g. "-DCHANNELS=3"
   /// @throws DeviceError with the build log
-  cl::Kernel Kernel(const char* name, std::initializer_list<std::string_view> sources, const std::string& options = {});
+  cl::Kernel Kernel(const char* name, std::string_view source, const std::string& options = {});
 
   /// @throws DeviceError if `bytes` more do not fit; `what` says what they are for
   cl::Buffer Allocate(std::size_t bytes, cl_mem_flags flags, const char* what);
@@ -72,7 +71,7 @@ public:
   void Finish();
 
   /// Note that work of about so many seconds was queued, and wait for all of it once that is a tenth of a second:
-  /// progress is told and an abort heard that often, while short kernels follow each other without the host.
+  /// progress is reported and an abort noticed that often, while short kernels follow each other without the host.
   void Queued(double seconds);
 
   /// Seconds by the clock that work is shared out by: the machine's, or that of a test, set before work begins.
@@ -80,7 +79,7 @@ public:
   void SetClock(Clock clock) { this->TheClock = std::move(clock); }
 
 private:
-  /// A program, built by whichever thread needs it first. Others who need the same wait, and nobody else.
+  /// A program, built by whichever thread needs it first. Only threads that need the same one wait.
   struct KeptProgram
   {
     std::mutex Building;

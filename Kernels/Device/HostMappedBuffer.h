@@ -39,7 +39,7 @@ public:
       {
         this->Owner->Finish();
       }
-      catch (const cl::Error&) // it will fail again where it can be told
+      catch (const cl::Error&) // it will fail again where it can be reported
       {
       }
     }
@@ -55,7 +55,7 @@ public:
       this->Copy.Read(this->Values);
       return;
     }
-    if (this->Count > 0) // this is how OpenCL is told that the host looks; nothing is copied
+    if (this->Count > 0) // mapping makes the values visible to the host; nothing is copied
     {
       cl::CommandQueue& queue = this->Owner->Queue();
       void* seen = queue.enqueueMapBuffer(this->Memory, CL_TRUE, CL_MAP_READ, 0, this->Count * sizeof(T));

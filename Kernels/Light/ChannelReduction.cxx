@@ -1,5 +1,7 @@
 #include "Light/ChannelReduction.h"
 
+#include "Light/LeftOut.h"
+
 #include <algorithm>
 
 namespace tyndall

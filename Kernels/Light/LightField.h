@@ -27,8 +27,9 @@ struct ConvergenceRow
 {
   int iteration = 0;
   double seconds = 0.0; ///< since the start
-  /// Estimate of the relative error that stopping here leaves: scattered light still to come over all of it. 1 after
-  /// the first row where more is to come: it is not known then, for one order does not tell how fast they shrink.
+  /// Estimate of the relative error that stopping here leaves: scattered light still to come over all of it
+  /// (numerics.md, Eqs. (43), (73)). 1 after the first row where more is to come: one order does not show how fast they
+  /// shrink.
   double residual = 0.0;
   double change = 0.0;   ///< of the light by this row, relative: says little where light is scattered very often
   double absorbed = 0.0; ///< W so far, channels summed
@@ -57,6 +58,8 @@ struct LightField
   double halfRangeFlux =
     0.0; ///< of the directions that light from outside came along (DirectionSet.h); 0: there are none
   std::vector<ConvergenceRow> convergence;
+  bool converged = true; ///< the last residual is at most the tolerance, or as many orders were done as were asked for
+  std::vector<std::string> doubts;  ///< what may be wrong with the light, a sentence each, for a warning
   int directionsPerFace = 0;        ///< solved with, where a solver chooses (PropagationSettings::adaptDirections)
   std::vector<std::string> leftOut; ///< what the scene did not need, in words
   std::string device;

@@ -9,7 +9,7 @@ enum class PropagationSource
 {
   Automatic, ///< constant, or linear where orders are accelerated
   Constant,  ///< as published
-  Linear     ///< from voxel centre to voxel centre (see DiffusionSystem.h): right however thick voxels are
+  Linear     ///< from voxel centre to voxel centre (numerics.md, section 7): right however thick voxels are
 };
 
 /// How scattering orders are added up.
@@ -19,16 +19,16 @@ enum class PropagationAcceleration
   None       ///< one after the other, as published
 };
 
-/// What the light propagation solvers can be told; the names are those of the filter's properties.
+/// Settings of the light propagation solvers; the names are those of the filter's properties.
 struct PropagationSettings
 {
   int directionsPerFace = 25;  ///< directions per cube face, a square number: 1, 4, 9, 16, 25, ...
-  bool adaptDirections = true; ///< more of them for slabs (UnvaryingAxes.h); false: as many as told
+  bool adaptDirections = true; ///< more of them for slabs (UnvaryingAxes.h); false: directionsPerFace
   /// Directions per cube face, a square number, of the unscattered light of shining faces, sky and environment
   /// (UncollidedBoundary.h); 0: the same as for scattered light.
   int uncollidedDirections = 0;
-  /// Rays of each direction start in a place of their own within a voxel, those of uncollidedDirections always
-  /// (RayBundles.h). From some 64 directions a face on, half the error or less.
+  /// Rays of each direction start in a place of their own within a voxel (RayBundles.h); those of uncollidedDirections
+  /// always, unless the solve is accelerated. From some 64 directions a face on, half the error or less.
   bool staggeredRays = false;
   int mapResolution = 1;   ///< map points per voxel edge, 1 to 16
   int maximumOrders = 0;   ///< scattering orders (accelerated: sweeps) at most; 0: until the tolerance is met

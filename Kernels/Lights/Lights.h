@@ -70,7 +70,7 @@ Environment Turned(const Environment& environment, int up, double degrees);
 bool Shines(const Illumination& illumination);
 
 /// @throws InvalidInput where a light has a zero direction, a power that is negative or beyond float, no size; an
-/// environment has a
-///   negative or infinite pixel (names the first); a sky or a face a radiance that is negative or beyond float
+///   environment has a negative or infinite pixel (names the first); a sky or a face a radiance that is negative or
+///   beyond float
 void Check(const Illumination& illumination);
 }

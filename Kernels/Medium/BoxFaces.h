@@ -49,8 +49,8 @@ inline std::size_t BoxFaceCellCount(const Grid& grid)
       static_cast<std::size_t>(n[2]) * n[0]);
 }
 
-/// Cosines to the outward normal at which the radiance that leaves a cell is told; a cubic through them is within 0.5%
-/// of Chandrasekhar's H.
+/// Cosines to the outward normal at which the radiance that leaves a cell is given; a cubic through them is within 0.5%
+/// of Chandrasekhar's H from 0.03 on.
 constexpr std::array<double, 4> SurfaceCosines = { 0.05, 0.25, 0.6, 1.0 };
 
 /// Mean free paths of a voxel across a face of the box from which on the light at its surface is not that at its

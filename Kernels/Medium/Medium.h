@@ -30,8 +30,8 @@ struct Medium
   Field emission; ///< emitted radiance per unit length, W / (length^3 sr)
   double g = 0.0; ///< mean cosine of the phase function (Henyey-Greenstein), in (-1, 1)
 
-  /// Scattering and extinction of the isotropic medium that stands for this one by the similarity relation: same
-  /// diffusion, same absorption. 1/length
+  /// Scattering and extinction of the isotropic medium that stands for this one by the similarity relation
+  /// (numerics.md, Eq. (8)): same diffusion, same absorption. 1/length
   float TransportSigmaS(std::size_t voxel, int channel) const
   {
     return static_cast<float>(this->sigma_s.At(voxel, channel) * (1.0 - this->g));
@@ -52,8 +52,7 @@ struct Medium
 std::string VoxelName(const Grid& grid, std::size_t voxel);
 
 /// @throws InvalidInput where the grid is empty, has a spacing that is not from 1e-30 to 1e30, or one that is more than
-/// 1e9 times
-///   another
+///   1e9 times another
 void Check(const Grid& grid);
 
 /// @throws InvalidInput where the grid is not as above, where a coefficient is

@@ -7,13 +7,7 @@ namespace tyndall
 {
 namespace
 {
-constexpr double SameColour = 3e-7;     ///< relative: what rounding to float leaves of multiples of one colour
-constexpr float SameExtinction = 2e-7f; ///< the same of sums
-
-bool Grey(const Rgb& rgb)
-{
-  return rgb[0] == rgb[1] && rgb[1] == rgb[2];
-}
+constexpr float SameExtinction = 2e-7f; ///< relative: what rounding to float leaves of equal sums
 
 /// One row of voxels, along x.
 struct Row
@@ -131,53 +125,6 @@ private:
 };
 }
 
-void CommonColour::Add(const Rgb& rgb)
-{
-  for (int c = 0; c < 3; ++c)
-  {
-    this->Sum[c] += rgb[c];
-  }
-  if (!this->One || rgb == Rgb{})
-  {
-    return;
-  }
-  if (this->First == Rgb{})
-  {
-    this->First = rgb;
-    return;
-  }
-  const int b = this->Brightest();
-  for (int c = 0; c < 3; ++c)
-  {
-    const double expected = this->First[c] * rgb[b];
-    this->One = this->One && std::abs(rgb[c] * this->First[b] - expected) <= SameColour * expected;
-  }
-}
-
-void CommonColour::Add(const float* rgb, std::size_t count)
-{
-  for (std::size_t i = 0; i < count && this->One; ++i)
-  {
-    this->Add(Rgb{ rgb[3 * i], rgb[3 * i + 1], rgb[3 * i + 2] });
-  }
-}
-
-bool CommonColour::IsGrey() const
-{
-  return this->One && Grey(this->First);
-}
-
-int CommonColour::Brightest() const
-{
-  return static_cast<int>(std::max_element(this->First.begin(), this->First.end()) - this->First.begin());
-}
-
-Rgb CommonColour::Relative() const
-{
-  const double most = this->First[this->Brightest()];
-  return most > 0.0 ? Rgb{ this->First[0] / most, this->First[1] / most, this->First[2] / most } : Rgb{ 1.0, 1.0, 1.0 };
-}
-
 MediumTraits TraitsOf(const Medium& medium, double similarity)
 {
   MediumTraits traits;
@@ -214,66 +161,5 @@ MediumTraits TraitsOf(const Medium& medium, double similarity)
   traits.isotropic = medium.g == 0.0 || !traits.scatters;
   traits.filled = filled.Box();
   return traits;
-}
-
-CommonColour ColourOf(const Illumination& illumination)
-{
-  CommonColour colour;
-  colour.Add(illumination.sky);
-  for (const Light& light : illumination.lights)
-  {
-    colour.Add(light.power);
-  }
-  for (const Rgb& face : illumination.faces)
-  {
-    colour.Add(face);
-  }
-  colour.Add(illumination.environment.radiance.data(), illumination.environment.radiance.size() / 3);
-  return colour;
-}
-
-namespace left_out
-{
-const char* const Grey = "colour: medium and light are grey, one channel does";
-const char* const OneColour = "colour: the medium is grey and all light has one colour, one channel stands for three";
-const char* const GreyExtinction = "sigma_t a channel: red, green and blue share one, and its transmittance";
-const char* const NoScattering = "scattering: sigma_s is zero";
-const char* const NoAbsorption = "absorption: sigma_a is zero";
-const char* const NoEmission = "emission: the medium does not shine";
-const char* const OneOrder = "scattering orders after the first: nothing is scattered";
-const char* const NetFlux = "net_flux: not asked for";
-const char* const Isotropic = "anisotropy: light is scattered evenly";
-const char* const ConstantIndex = "refraction: the refractive index is constant, rays are straight";
-const char* const EmptyBricks = "empty bricks: rays leap over 8x8x8 voxels that are empty";
-const char* const NoLights = "uncollided flux of lamps: there are no lights";
-const char* const NoEmissionPeaks = "uncollided flux of bright emission: no small bright part outshines all else, or "
-                                    "an axis is periodic, or EmissionError is 0";
-const char* const DarkOutside = "boundary radiance: no environment, sky or face shines";
-const char* const EvenOutside = "uncollided flux of the boundaries: what comes from outside is the same from "
-                                "everywhere and goes with scattered light";
-
-std::string EmptySlabs(const VoxelBox& filled, const Grid& grid)
-{
-  const double part = 1.0 - static_cast<double>(filled.VoxelCount()) / static_cast<double>(grid.VoxelCount());
-  return "empty slabs: " + std::to_string(std::lround(100.0 * part)) +
-    "% of the voxels lie outside the box that the medium fills";
-}
-
-std::string DarkDirections(double lit)
-{
-  return "dark directions: no light comes from outside along " + std::to_string(std::lround(100.0 * (1.0 - lit))) +
-    "% of the rays";
-}
-
-std::string MirrorImages(int classes, int directions)
-{
-  return "mirror images: nothing changes along periodic axes of one voxel, " + std::to_string(classes) + " of " +
-    std::to_string(directions) + " directions stand for all";
-}
-
-std::string DirectionsAlongSlab(int perFace)
-{
-  return "directions too few for a slab, or along it: solved with " + std::to_string(perFace) + " a face";
-}
 }
 }

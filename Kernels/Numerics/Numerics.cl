@@ -1,6 +1,8 @@
 // Numerics shared by every kernel that follows light through a medium. Define REAL_WIDTH as 1, 4, 8 or 16 before:
 // `real` is then a float or a float vector, on which all of this works alike.
 
+#pragma once
+
 #ifndef REAL_WIDTH
 #define REAL_WIDTH 1
 #endif

@@ -4,9 +4,9 @@
 
 namespace tyndall
 {
-PyramidLayout::PyramidLayout(const Grid& grid)
+PyramidLayout::PyramidLayout(const std::array<int, 3>& grid)
 {
-  this->sizes.push_back(grid.size);
+  this->sizes.push_back(grid);
   this->offsets.push_back(0);
   while (*std::max_element(this->sizes.back().begin(), this->sizes.back().end()) > 1)
   {

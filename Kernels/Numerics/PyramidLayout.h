@@ -1,7 +1,6 @@
 #pragma once
 
 #include "Device/OpenCL.h"
-#include "Medium/Grid.h"
 
 #include <array>
 #include <cstddef>
@@ -13,7 +12,7 @@ namespace tyndall
 /// voxels [2^l (i, j, k), 2^l (i+1, j+1, k+1)), as far as the grid has them; x fastest.
 struct PyramidLayout
 {
-  explicit PyramidLayout(const Grid& grid);
+  explicit PyramidLayout(const std::array<int, 3>& size); ///< of the grid
 
   int LevelCount() const { return static_cast<int>(this->sizes.size()); } ///< 1 + ceil(log2(longest edge))
   int Top() const { return this->LevelCount() - 1; }                      ///< the level of the one node over all
@@ -30,9 +29,4 @@ inline cl::NDRange PyramidGroup()
   return cl::NDRange(32, 8, 1);
 }
 cl::NDRange PyramidRange(const std::array<int, 3>& nodes);
-
-inline cl_int4 Int4(const std::array<int, 3>& size)
-{
-  return { { size[0], size[1], size[2], 0 } };
-}
 }

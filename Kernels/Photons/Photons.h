@@ -8,7 +8,7 @@
 
 namespace tyndall
 {
-/// A packet of light on its way: not a quantum, but a share of a lamp's power.
+/// A packet of light: not a quantum, but a share of a lamp's power with a place and a direction.
 struct Photon
 {
   std::array<double, 3> position = {}; ///< where it enters the volume, or where its lamp in the volume is
@@ -49,11 +49,10 @@ struct MarchSettings
 };
 
 /// @throws InvalidInput where the order is not 1, 2 or 4, the step size not 0.05 to 1e4 voxels, or sums are Unsafe and
-/// batches
-///   asked for
+///   batches asked for
 void Check(const MarchSettings& settings);
 
-/// The way of one photon: positions, and the part of its power (all channels together) that is left there; 1 where it
+/// The path of one photon: positions, and the part of its power (all channels together) that is left there; 1 where it
 /// had none.
 struct PhotonPath
 {

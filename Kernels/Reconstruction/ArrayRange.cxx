@@ -18,7 +18,7 @@ ArrayRange RangeOf(Device& device, const HostMappedBuffer<float>& array, const f
 {
   const std::size_t runs = (count + Run - 1) / Run;
   Buffer<float> told(device, Told * runs, "the range of an array");
-  cl::Kernel kernel = device.Kernel("range_of_runs", { kernel_source::ArrayRange });
+  cl::Kernel kernel = device.Kernel("range_of_runs", kernel_source::ArrayRange);
   With(kernel, array.Handle(), cl_ulong(count), cl_int(Run), cl_int(components), low, high, told);
   device.Queue().enqueueNDRangeKernel(kernel, cl::NullRange, cl::NDRange(runs), cl::NDRange(1));
 

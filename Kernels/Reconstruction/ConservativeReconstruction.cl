@@ -1,4 +1,4 @@
-// The conservative estimator, after LightRows.cl. Compiled with
+// The conservative estimator. Compiled with
 //   BATCHES     independent ones, at least 2
 //   CHANNELS    of the light, 1 or 3
 //   DIRECTIONS  1: there are mean directions
@@ -6,6 +6,9 @@
 //
 // Fields of a level of the pyramid: each batch's light (sum of channels), then what is smoothed: the light's channels,
 // then its flux (light times mean direction).
+
+#include "Reconstruction/LightRows.cl"
+
 #define CARRIED (CHANNELS + 3 * DIRECTIONS)
 #define FIELDS (BATCHES + CARRIED)
 // Fields of a level of the result: what is smoothed, the level it was taken from, and the squared error.
@@ -174,8 +177,8 @@ inline light_pair load_light(
 #endif
 }
 
-// How much the details of the batches agree, in cells of 2 x 2 x 2: field 0 the noise that their mean d has,
-// sum (d_b - d)^2 / (B (B - 1)), field 1 its square d^2.
+// How much the details of the batches agree, in cells of 2 x 2 x 2 (numerics.md, Eq. (101)): field 0 the noise that
+// their mean d has, sum (d_b - d)^2 / (B (B - 1)), field 1 its square d^2.
 __kernel void measure_details(const __global float* fine, const __global float* directions, int4 fine_size, float scale,
   const __global float* coarse, int4 size, __global float* measured)
 {
@@ -271,8 +274,8 @@ inline real smoothed(const __global float* row, int x)
     0.0625f * (load_real(x - 2, row) + load_real(x + 2, row));
 }
 
-// How much of the details is kept (Wiener's filter): where two batches agree it is light, where they do not it is
-// noise. The noise is taken off twice, so that what is left by chance is not taken for light.
+// How much of the details is kept (Wiener's filter; numerics.md, Eq. (102)). The noise is taken off twice, so that what
+// is left by chance is not taken for light.
 __kernel void find_gains(const __global float* measured, int4 size, __global float* gains)
 {
   const int y = ROW_Y, z = ROW_Z;
@@ -292,8 +295,8 @@ __kernel void find_gains(const __global float* measured, int4 size, __global flo
   }
 }
 
-// Squared error of the details: noise that was kept, light that was taken for noise (times `honesty`), and what there
-// is from the levels above.
+// Squared error of the details (numerics.md, Eq. (104)): noise that was kept, light that was taken for noise (times
+// `honesty`), and that of the levels above.
 __kernel void add_errors(
   const __global float* removed, int4 size, float honesty, const __global float* results, __global float* gains)
 {

@@ -1,4 +1,4 @@
-#include "Reconstruction/Estimators.h"
+#include "Reconstruction/ConservativeReconstruction.h"
 #include "Reconstruction/WholeRows.h"
 
 #include "TyndallKernelSources.h"
@@ -14,10 +14,7 @@ namespace tyndall
 {
 namespace
 {
-/// Part of the light taken for noise that the error counts. That light is estimated cell by cell, and cutting the
-/// estimates at 0 overstates it. Fitted so that the true error is within two standard errors in 93 to 97% of the voxels
-/// brighter than a tenth of the median: in a ball, a cube and an armadillo of glass, each on 64^3 and 128^3 voxels with
-/// 6000 to 122000 photons in two batches, adaptive and spread evenly, it was in 93.4 to 97.0%.
+/// Part of the light taken for noise that the error counts (numerics.md, Eq. (104), which says how it was fitted).
 constexpr float Honesty = 0.4f;
 
 constexpr std::size_t FirstPart = std::size_t(1) << 22; // voxels a launch, until it is known how long that takes
@@ -81,7 +78,7 @@ public:
     , MipLevel(Kernels, MipLevelOut, Size, 1, 1, true, "levels")
     , Error(Kernels, ErrorOut, Size, 1, task.light.channels, true, "errors")
   {
-    const PyramidLayout layout(task.light.grid);
+    const PyramidLayout layout(task.light.grid.size);
     for (int level = 1; level <= task.levels; ++level)
     {
       const std::array<int, 3>& size = layout.sizes[std::min(level, layout.Top())];

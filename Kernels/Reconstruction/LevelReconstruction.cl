@@ -1,4 +1,4 @@
-// A level of the pyramid for each voxel, after LightRows.cl: a work-item a row (or a voxel). Compiled with
+// A level of the pyramid for each voxel: a work-item a row (or a voxel). Compiled with
 //   ESTIMATOR   0 published, 1 constant radius, 2 nearest photons
 //   CHANNELS, DIRECTIONS  of the light; fields of its pyramid are its channels, then the mean direction
 //   TOP         the highest level
@@ -6,11 +6,8 @@
 // Voxels of a row that are next to each other lie between the same cells of a level. So levels are taken one after the
 // other, and each voxel keeps what it took so far: nothing is gathered.
 
-typedef struct
-{
-  int4 size[9];
-  ulong offset[9];
-} pyramid;
+#include "Reconstruction/LightPyramidShared.h"
+#include "Reconstruction/LightRows.cl"
 
 // The four rows of a level that a row of voxels lies between, y fastest, and where between them.
 typedef struct
@@ -20,7 +17,7 @@ typedef struct
   float y, z;
 } rows_between;
 
-inline rows_between rows_beside(const __global pyramid* where, int level, int y, int z)
+inline rows_between rows_beside(const __global PyramidLevels* where, int level, int y, int z)
 {
   const int4 size = where->size[level];
   const float cell = 1.0f / (float)(1 << level);
@@ -209,9 +206,9 @@ inline void store_direction(
 }
 
 //   voxels   the grid's, and from a row of them to the next
-__kernel void choose_level(const __global float* light, const __global pyramid* where, const __global float* counts,
-  const __global float* weights, const __global pyramid* where_counts, float parameter, __global float* fluence,
-  __global float* direction, __global float* chosen, int4 voxels)
+__kernel void choose_level(const __global float* light, const __global PyramidLevels* where,
+  const __global float* counts, const __global float* weights, const __global PyramidLevels* where_counts,
+  float parameter, __global float* fluence, __global float* direction, __global float* chosen, int4 voxels)
 {
   const int y = ROW_Y, z = ROW_Z;
   rows_between rows[TOP + 1], rows_of_counts[TOP + 1];

@@ -1,4 +1,4 @@
-#include "Reconstruction/Estimators.h"
+#include "Reconstruction/LevelReconstruction.h"
 #include "Reconstruction/LightPyramid.h"
 #include "Reconstruction/WholeRows.h"
 

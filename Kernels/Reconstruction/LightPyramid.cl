@@ -1,4 +1,6 @@
-// From a level of a light pyramid to the next, a work-item a row (or a cell), after LightRows.cl.
+// From a level of a light pyramid to the next, a work-item a row (or a cell).
+
+#include "Reconstruction/LightRows.cl"
 
 #if GAUSS
 // exp(-x^2 / (2 * 4)) at 0.5 and 1.5, so that four add up to 1 (Pfeuti 2009, section 3.2.4)

@@ -18,7 +18,7 @@ LightPyramid::LightPyramid(const RowKernels& kernels, const Grid& grid, int fiel
   : Kernels(kernels)
   , Fields(fields)
 {
-  const PyramidLayout layout(grid);
+  const PyramidLayout layout(grid.size);
   std::size_t end = 0;
   std::vector<std::size_t> counts;
   for (int level = 0; level <= levels; ++level)
@@ -29,7 +29,7 @@ LightPyramid::LightPyramid(const RowKernels& kernels, const Grid& grid, int fiel
     counts.push_back(LightRows::CountOf(this->Sizes.back(), fields, kernels.Width()));
     end += RoundUp(counts.back(), Alignment);
   }
-  this->Told = Buffer<Layout>(kernels.On(), &this->Where, 1, what);
+  this->Told = Buffer<PyramidLevels>(kernels.On(), &this->Where, 1, what);
   this->Memory = Buffer<float>(kernels.On(), end, what);
   for (std::size_t level = 0; level < counts.size(); ++level)
   {

@@ -1,5 +1,6 @@
 #pragma once
 
+#include "Reconstruction/LightPyramidShared.h"
 #include "Reconstruction/WholeRows.h"
 
 #include <vector>
@@ -19,13 +20,6 @@ public:
     MeanOfLit, ///< of those of 2x2x2 that are not 0 (listing B.2)
   };
 
-  /// Where the levels lie, as LevelReconstruction.cl has it.
-  struct Layout
-  {
-    cl_int4 size[9];
-    cl_ulong offset[9];
-  };
-
   /// @param levels  above the grid, at most 8
   LightPyramid(const RowKernels& kernels, const Grid& grid, int fields, int levels, const char* what);
 
@@ -36,14 +30,14 @@ public:
   void Build(Down down);
 
   const cl::Buffer& Values() const { return this->Memory.Handle(); }
-  const Buffer<Layout>& Levels() const { return this->Told; }
+  const Buffer<PyramidLevels>& Levels() const { return this->Told; }
 
 private:
   const RowKernels& Kernels;
   std::vector<std::array<int, 3>> Sizes;
   int Fields;
-  Layout Where = {};
-  Buffer<Layout> Told; ///< Where, for kernels
+  PyramidLevels Where = {};
+  Buffer<PyramidLevels> Told; ///< Where, for kernels
   Buffer<float> Memory;
   std::vector<cl::Buffer> Parts; ///< of Memory, a level each
 };

@@ -1,4 +1,4 @@
-// Rows of light for every kernel of the reconstruction, after Numerics.cl with REAL_WIDTH 8 (CPUs) or 1.
+// Rows of light for every kernel of the reconstruction, with REAL_WIDTH 8 (CPUs) or 1.
 //
 // A level of a pyramid holds `fields` volumes of rows, one quantity each. A row has GUARD values before and after it
 // that repeat its ends, as the values do that fill it up to a multiple of 2 REAL_WIDTH: no load along x asks where a
@@ -6,6 +6,9 @@
 //
 // Arrays of voxels as the host has them are not split into quantities and have no guards; their size.w is voxels from a
 // row to the next, a multiple of 2 REAL_WIDTH.
+
+#pragma once
+#include "Numerics/Numerics.cl"
 
 #if REAL_WIDTH == 8
 typedef float16 pair;

@@ -59,8 +59,7 @@ RowKernels::RowKernels(Device& device, int width, const std::string& options)
 
 cl::Kernel RowKernels::Kernel(const char* name, std::string_view source, const std::string& options) const
 {
-  return this->TheDevice.Kernel(
-    name, { kernel_source::Numerics, kernel_source::LightRows, source }, this->Options + options);
+  return this->TheDevice.Kernel(name, source, this->Options + options);
 }
 
 void RowKernels::Run(

@@ -31,7 +31,7 @@ public:
   int Fields() const { return this->FieldCount; }
   const Buffer<float>& Values() const { return this->Memory; }
 
-  /// Cells and floats a row, as kernels are told them; floats that all fields take.
+  /// Cells and floats a row, as kernels take them; floats of all fields.
   static cl_int4 LayoutOf(const std::array<int, 3>& size, int width);
   static std::size_t CountOf(const std::array<int, 3>& size, int fields, int width);
 

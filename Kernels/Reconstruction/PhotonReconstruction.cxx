@@ -1,6 +1,8 @@
 #include "Reconstruction/PhotonReconstruction.h"
 
-#include "Reconstruction/Estimators.h"
+#include "Light/LeftOut.h"
+#include "Reconstruction/ConservativeReconstruction.h"
+#include "Reconstruction/LevelReconstruction.h"
 #include "Reconstruction/LightRows.h"
 
 #include "Device/Clock.h"
@@ -118,7 +120,7 @@ ArrayRange Checked(Device& device, const HostMappedBuffer<float>& array, const f
 
 int LevelsOf(const Grid& grid, int levels)
 {
-  return std::max(std::min(levels, PyramidLayout(grid).Top()), 1); // above a single voxel: itself
+  return std::max(std::min(levels, PyramidLayout(grid.size).Top()), 1); // above a single voxel: itself
 }
 
 /// Of the result and of what is made on the way, roughly.

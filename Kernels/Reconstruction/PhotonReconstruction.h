@@ -28,7 +28,7 @@ struct ReconstructionSettings
   enum class Estimator
   {
     Published,      ///< level by centre-surround and photon weight, the lower of the two (Pfeuti 2009, section 3.2.4)
-    Conservative,   ///< each level's detail is kept as far as independent batches agree on it; tells its error
+    Conservative,   ///< each level's detail is kept as far as independent batches agree on it; has an error
     ConstantRadius, ///< one level everywhere (section 4.2)
     NearestPhotons, ///< the lowest level that holds `nearest` photons (section 4.2)
   };
@@ -57,25 +57,20 @@ struct ReconstructedLight
 /// Light without most of its noise, over pyramids in voxels (spacing does not matter); grids of odd sizes as if their
 /// last voxel was repeated.
 ///
-/// Conservative: a Laplacian pyramid of each batch (down by 1 3 3 1 along each axis, up trilinear). On a level the
-/// batches' details d_b have mean d; sum (d_b - d)^2 / (B (B - 1)) is the noise of d, d^2 less that noise is light, for
-/// batches agree on light and not on noise: Wiener's gain says how much of d to keep. Both are means over 2x2x2 cells,
-/// smoothed by 1 4 6 4 1; the noise is taken off twice, lest chance pass for light. The squared error is the sum over
-/// the levels of the noise that was kept and of
-/// 0.4 of the light that was held for noise (ConservativeReconstruction.cxx says why 0.4). Light below 0 becomes 0.
-///    Mean directions
-/// are smoothed as flux, fluence times direction, with the same gains. Light of three channels and one colour
-/// everywhere is smoothed by their sum, whose error they share; where colours differ each channel is smoothed by
-/// itself, and has an error of its own.
+/// Conservative (numerics.md, Eqs. (101) to (104)): a Laplacian pyramid of each batch (down by 1 3 3 1 along each axis,
+/// up trilinear). Batches agree on light and not on noise, which gives for each level's detail the gain of a Wiener
+/// filter: how much of it to keep. fluenceError is of the noise that was kept and of the light that was held for noise.
+/// Light below 0 becomes 0. Mean directions are smoothed as flux, fluence times direction, with the same gains. Light
+/// of three channels and one colour everywhere is smoothed by their sum, whose error they share; where colours differ
+/// each channel is smoothed by itself, and has an error of its own.
 ///
-/// Published (Pfeuti 2009, section 3.2.4, listings B.2, B.3): the lower of the level up to which the difference of two
-/// successive levels does not grow, and the weight over `weightStep`, the weight from the first level with at least one
-/// photon. Its light and directions, those of constant radius and of nearest photons are trilinear in a pyramid by a
-/// Gauss kernel of 4x4x4.
+/// Published (Pfeuti 2009, section 3.2.4, listings B.2, B.3; numerics.md, Eq. (100)): the lower of the level up to
+/// which the difference of two successive levels does not grow, and the weight over `weightStep`, the weight from the
+/// first level with at least one photon. Its light and directions, those of constant radius and of nearest photons are
+/// trilinear in a pyramid by a Gauss kernel of 4x4x4.
 ///
 /// @throws InvalidInput where what the estimator needs is missing (says what), a setting is out of its range, or a
-/// number of the
-///   light is not finite (names the voxel); DeviceError; Aborted
+///   number of the light is not finite (names the voxel); DeviceError; Aborted
 ReconstructedLight Reconstruct(
   Device& device, const NoisyLight& light, const ReconstructionSettings& settings = {}, const Monitor& monitor = {});
 }

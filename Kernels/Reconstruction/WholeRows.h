@@ -32,7 +32,7 @@ private:
   Buffer<float> Wide;
 };
 
-/// The layout of a grid's voxels in such rows, as kernels are told it.
+/// The layout of a grid's voxels in such rows, as kernels take it.
 inline cl_int4 VoxelLayout(const std::array<int, 3>& size, int width)
 {
   return { { size[0], size[1], size[2], WholeVectors(size[0], width) } };

@@ -1,7 +1,11 @@
 // What is behind the medium: an environment, a colour, or nothing.
 //
-// Needs Numerics.cl, Sampling.cl and View.cl before it. Define besides
+// Define
 //   ENVIRONMENT  1: the background is a picture; 0: one colour
+
+#pragma once
+#include "Viewing/Sampling.cl"
+#include "Viewing/View.cl"
 
 #if ENVIRONMENT
 // Angle of (x, y) from +x, in [-pi, pi], to 1e-7. PoCL's atan2 is scalar and costs ten times this.
@@ -25,7 +29,7 @@ inline real angle_of(real y, real x)
 
 // Radiance seen along each (world) direction, as Lookup in Lights.h has it. The picture has a column more on both
 // sides, so that it closes around z.
-inline rgb look_up(global const float4* environment, real3 d, int4 size)
+inline rgb look_up(__global const float4* environment, real3 d, int4 size)
 {
   const real polar = angle_of(sqrt(fma(d.x, d.x, d.y * d.y)), d.z);
   real turn = angle_of(d.y, d.x) * (real)(0.5f * M_1_PI_F);
@@ -45,7 +49,7 @@ inline rgb look_up(global const float4* environment, real3 d, int4 size)
 #endif
 
 // Radiance that comes from behind against each (world) direction.
-inline rgb look_behind(const view* v, real3 d, global const float4* environment)
+inline rgb look_behind(const ViewInfo* v, real3 d, __global const float4* environment)
 {
   rgb behind = { (real)v->background.x, (real)v->background.y, (real)v->background.z };
 #if ENVIRONMENT

@@ -1,10 +1,10 @@
 // How rays bend: half the gradient of n^2, and n^2, of the tricubic spline that photons follow as well, at voxel
 // centres with a border of one voxel that repeats the outermost ones.
 //
-// Between centres both are interpolated linearly. Along a row of voxels the spline's slopes add up to the difference of
-// its ends, so that rays through a plane layer leave it as Snell's law has it, however steep it is.
-//
-// Needs SquaredIndex.cl before it.
+// Between centres both are interpolated linearly, so that rays through a plane layer leave it as Snell's law has it,
+// however steep it is (numerics.md, section 14.3).
+
+#include "Refraction/Index/SquaredIndex.cl"
 
 #define FLAT 2e-6f // of n^2: what rounding makes of a constant
 
@@ -14,8 +14,8 @@
 
 // bending  x, y, z: half the gradient in voxels by squared spacing: what a velocity in voxels gains per time; w: n^2
 // No loops and no branches, so that PoCL takes voxels side by side.
-kernel void pack_bending(
-  index_grid grid, float4 inverse_spacing, global const float* restrict coefficients, global float4* restrict bending)
+__kernel void pack_bending(IndexGrid grid, float4 inverse_spacing, __global const float* restrict coefficients,
+  __global float4* restrict bending)
 {
   const int x = get_global_id(0), y = get_global_id(1), z = get_global_id(2);
   if (x >= grid.size[0] + 2)
@@ -23,7 +23,7 @@ kernel void pack_bending(
     return;
   }
   const int row = grid.size[0] + 4, layer = row * (grid.size[1] + 4);
-  global const float* c = coefficients +
+  __global const float* c = coefficients +
     ((clamp(z - 1, 0, grid.size[2] - 1) + 2) * layer + (clamp(y - 1, 0, grid.size[1] - 1) + 2) * row +
       clamp(x - 1, 0, grid.size[0] - 1) + 2);
 #define SPLINE_ROW(name, at)                                   \

@@ -1,11 +1,15 @@
 // The march of rays that bend where the refractive index varies.
 //
-// With dt = ds / n a ray follows dr/dt = T, dT/dt = grad(n^2) / 2, |T| = n (as in Photons/): a leapfrog whose gradient
-// is taken in the middle of each step. Where the index is constant that is a straight step, and the gradient is not
-// fetched.
+// With dt = ds / n a ray follows dr/dt = T, dT/dt = grad(n^2) / 2, |T| = n, as photons do: a leapfrog (numerics.md,
+// Eq. (91)) whose gradient is taken in the middle of each step. Where the index is constant that is a straight step,
+// and the gradient is not fetched.
 //
-// Needs RayPackets.cl and SurfaceReflection.cl before it. Define besides
+// Define
 //   SKIP_BRICKS  1: rays leap over bricks in which nothing extinguishes, shines or bends
+
+#pragma once
+#include "Viewing/RayPackets.cl"
+#include "Viewing/SurfaceReflection.cl"
 
 // To the nearest face, voxels.
 inline real room_around(real3 p, int4 size)
@@ -25,7 +29,7 @@ inline integer leave(ray_packets* t, integer last, int4 size)
 }
 
 #if BENDS
-// A few steps by the leapfrog. Whatever the index does, nobody looks beyond the box.
+// A few steps by the leapfrog. Samples outside the box are never read.
 __attribute__((always_inline)) inline void bend(
   const surroundings* s, integer done, ray_packets* t, light* l, crossed* half_way, watch* w)
 {
@@ -133,7 +137,7 @@ __attribute__((always_inline)) inline int go_straight(const surroundings* s, con
 __attribute__((always_inline)) inline void march(
   const surroundings* s, ray_packets* t, light* l, crossed* half_way, watch* w)
 {
-  const view* v = s->v;
+  const ViewInfo* v = s->v;
   const int4 size = v->size;
   const float enough = v->marching.y;
   for (int n = 0; n < s->o->limits.x;)

@@ -2,19 +2,28 @@
 // reflects of them, and what the table mirrors of them, one march each. One work-item is a packet of neighbouring
 // pixels.
 //
-// Along a bent ray L / n^2 is conserved but for what the medium does: sources and backgrounds are divided by n^2 of
-// their place, and the picture is multiplied by n^2 where the ray enters.
+// Along a bent ray L / n^2 is conserved but for what the medium does (numerics.md, Eq. (109)): sources and backgrounds
+// are divided by n^2 of their place, and the picture is multiplied by n^2 where the ray enters.
 //
 // Needs Numerics.cl, Sampling.cl, View.cl, Background.cl, Crossing.cl, RayPackets.cl, SurfaceReflection.cl, BentRays.cl
 // and Table.cl before it; they say what to define.
 
+#include "Viewing/Background.cl"
+#include "Viewing/BentRays.cl"
+#include "Viewing/Crossing.cl"
+#include "Viewing/RayPackets.cl"
+#include "Viewing/Sampling.cl"
+#include "Viewing/SurfaceReflection.cl"
+#include "Viewing/Table.cl"
+#include "Viewing/View.cl"
+
 #define PASSES (1 + (SURFACE > 0) + TABLE)
 
-// What all marches leave together: light with n^2 divided out, and what the camera's own ray tells of the way.
+// What all marches gather together: light with n^2 divided out, and transmittance and depth along the camera's own ray.
 typedef struct
 {
   light l;
-  real entry_square; // n^2 where the ray enters
+  real entrySquare; // n^2 where the ray enters
   real left, depth;
   waiting mirrored;
 } seeing;
@@ -22,7 +31,7 @@ typedef struct
 // Rays from the camera where they enter the box, as fast as the index there has it.
 inline ray_packets enter(const surroundings* s, camera_rays seen, real* entry_square)
 {
-  const real3 direction = stretched(seen.d, s->v->inverse_spacing);
+  const real3 direction = stretched(seen.d, s->v->inverseSpacing);
   real before;
   const rays packet = clip_to_box(seen.from, direction, (real)1e30f, s->v->size, &before);
   ray_packets t = { packet.entry, direction, packet.length > (real)0.0f };
@@ -49,13 +58,13 @@ inline int send_off(const waiting* next, ray_packets* t, light* l)
 
 // What a march comes to: background, or table. Rays that did not find out see the background as if the index were there
 // what it is at their entry.
-inline void arrive(const surroundings* s, const ray_packets* t, integer set_off, int primary, global const float4* lit,
-  global const float4* environment, crossed* half_way, seeing* to)
+inline void arrive(const surroundings* s, const ray_packets* t, integer set_off, int primary,
+  __global const float4* lit, __global const float4* environment, crossed* half_way, seeing* to)
 {
   const integer out = set_off & (t->inside == 0);
   const real3 world = stretched(t->velocity, s->o->spacing);
   real3 towards = divided(world, sqrt(greater(product(world, world), (real)1e-30f)));
-  real square = to->entry_square;
+  real square = to->entrySquare;
 #if BENDS
   real3 unused;
   const real there = index_at(s, t->at, &unused);
@@ -90,11 +99,11 @@ inline void arrive(const surroundings* s, const ray_packets* t, integer set_off,
 
 // lit      what a white table shines by n^2, a float4 a voxel with a border
 // bending  see surroundings
-kernel void cast_bent_rays(view v, optics o, global const float4* restrict samples,
-  global const float4* restrict extinctions, global const float4* restrict flow, global const float4* restrict glow,
-  global const float4* restrict bending, global const float4* restrict lit, global const char* restrict bricks,
-  global const float4* restrict environment, global float* restrict radiance, global float* restrict alpha,
-  global float* restrict depth)
+__kernel void cast_bent_rays(ViewInfo v, OpticsInfo o, __global const float4* restrict samples,
+  __global const float4* restrict extinctions, __global const float4* restrict flow,
+  __global const float4* restrict glow, __global const float4* restrict bending, __global const float4* restrict lit,
+  __global const char* restrict bricks, __global const float4* restrict environment, __global float* restrict radiance,
+  __global float* restrict alpha, __global float* restrict depth)
 {
   const int column = (get_global_id(0) + v.picture.w) * PACKET_WIDTH;
   const int row = (get_global_id(1) + v.picture.z) * PACKET_HEIGHT;
@@ -104,7 +113,7 @@ kernel void cast_bent_rays(view v, optics o, global const float4* restrict sampl
   }
   const surroundings s = { &v, &o, { samples, extinctions, flow, glow }, bending, bricks };
   seeing to;
-  ray_packets t = enter(&s, rays_through(&v, column, row), &to.entry_square);
+  ray_packets t = enter(&s, rays_through(&v, column, row), &to.entrySquare);
   to.l = unlit((real)1.0f);
   const waiting nothing = { t.at, t.velocity, unlit((real)0.0f).left };
   to.mirrored = nothing;
@@ -125,9 +134,9 @@ kernel void cast_bent_rays(view v, optics o, global const float4* restrict sampl
     march(&s, &t, &to.l, &half_way, &w);
     arrive(&s, &t, set_off, pass == 0, lit, environment, &half_way, &to);
   }
-  to.l.radiance.r *= to.entry_square;
-  to.l.radiance.g *= to.entry_square;
-  to.l.radiance.b *= to.entry_square;
+  to.l.radiance.r *= to.entrySquare;
+  to.l.radiance.g *= to.entrySquare;
+  to.l.radiance.b *= to.entrySquare;
   const canvas picture = { radiance, alpha, depth };
   paint(&v, picture, column, row, to.l.radiance, (real)1.0f - to.left, to.depth);
 }

@@ -1,6 +1,7 @@
 #include "Viewing/Camera.h"
 
 #include "Device/Errors.h"
+#include "Numerics/Vectors.h"
 
 #include <algorithm>
 #include <cmath>
@@ -13,11 +14,6 @@ namespace tyndall
 {
 namespace
 {
-glm::dvec3 Vector(const std::array<double, 3>& v)
-{
-  return { v[0], v[1], v[2] };
-}
-
 std::array<double, 3> Array(const glm::dvec3& v)
 {
   return { v.x, v.y, v.z };
@@ -109,7 +105,7 @@ Camera FrameGrid(const Grid& grid, double aspect, double viewAngle, const std::a
   camera.position = Array(centre + glm::length(half) * out);
   const auto axes = Axes(camera);
 
-  // Each corner asks for a distance at which it is inside the picture; the farthest wins.
+  // The least distance at which every corner is inside the picture.
   const double margin = 1.05;
   const double upperEdge = TangentOfHalf(viewAngle);
   double distance = 0.0;

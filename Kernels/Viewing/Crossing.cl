@@ -2,10 +2,15 @@
 //   radiance = integral over the ray of T(t) q(t) dt + T(end) background,  T(t) = exp(-integral of sigma_t)
 // with q = sigma_s times in-scattered radiance plus emission, both interpolated between voxel centres.
 //
-// Needs Numerics.cl and Sampling.cl before it. Define besides
+// Define
 //   THIN_STEPS  1: no step's optical length is above 2
 //   PHASE       how light of a known direction scatters: 0 evenly, 1 Henyey and Greenstein, 2 Schlick
 //   GLOW        1 (with PHASE): emission is kept apart from what is scattered
+
+#pragma once
+#include "Viewing/Background.cl"
+#include "Viewing/Sampling.cl"
+#include "Viewing/View.cl"
 
 #if COLOURED
 typedef rgb spectrum;
@@ -16,11 +21,11 @@ typedef real spectrum;
 // What is packed of the medium and its light, with a border of one voxel.
 typedef struct
 {
-  global const float4*
+  __global const float4*
     samples; // red, green, blue of q, W / (length^3 sr), and grey sigma_t, 1/length; with GREY see there
-  global const float4* extinctions; // coloured sigma_t
-  global const float4* flow;        // x, y, z of the light's mean direction times g
-  global const float4* glow;        // emission
+  __global const float4* extinctions; // coloured sigma_t
+  __global const float4* flow;        // x, y, z of the light's mean direction times g
+  __global const float4* glow;        // emission
 } scenery;
 
 inline real product(real3 a, real3 b)
@@ -34,8 +39,8 @@ typedef struct
   spectrum left;
   rgb radiance;
 #if MANY_STEPS
-  spectrum left_rest; // see add_to
-  rgb radiance_rest;
+  spectrum leftRest; // see add_to
+  rgb radianceRest;
 #endif
 } light;
 
@@ -79,8 +84,8 @@ inline light unlit(real left)
 #endif
   l.radiance.r = l.radiance.g = l.radiance.b = (real)0.0f;
 #if MANY_STEPS
-  l.left_rest = scaled(l.left, (real)0.0f);
-  l.radiance_rest = l.radiance;
+  l.leftRest = scaled(l.left, (real)0.0f);
+  l.radianceRest = l.radiance;
 #endif
   return l;
 }
@@ -138,10 +143,8 @@ typedef struct
 } sample;
 
 #if PHASE
-// 4 pi times the phase function of light that is itself spread about its mean direction, seen along unit vectors v away
-// from the eye. b is that direction times g and the anisotropy: Legendre moments of two distributions multiply, so that
-// light which is spread as Henyey and Greenstein's function of mean cosine a is scattered by that of g into that of g
-// a, exactly.
+// 4 pi times the phase function of light that is itself spread about its mean direction (numerics.md, Eqs. (107),
+// (108)), seen along unit vectors v away from the eye. b is that direction times g and the anisotropy.
 inline real scattered_towards_eye(real3 b, real3 v)
 {
   const real square = product(b, b);
@@ -220,7 +223,7 @@ __attribute__((always_inline)) inline void cross_sample(
   {                                                                                                \
     real remains;                                                                                  \
     const real weight = goes_on ? cross_length(SIGMA(c), length, &remains) * LEFT(c) : (real)0.0f; \
-    add_to(&l->radiance.c, &l->radiance_rest.c, s.source.c* weight);                               \
+    add_to(&l->radiance.c, &l->radianceRest.c, s.source.c* weight);                                \
   }
   GATHER(r)
   GATHER(g)
@@ -231,11 +234,11 @@ __attribute__((always_inline)) inline void cross_sample(
   real unused;
 #define LOSE(sigma, left, rest) lose(&left, &rest, goes_on ? sigma* cross_length(sigma, length, &unused) : (real)0.0f);
 #if COLOURED
-  LOSE(s.sigma.r, l->left.r, l->left_rest.r)
-  LOSE(s.sigma.g, l->left.g, l->left_rest.g)
-  LOSE(s.sigma.b, l->left.b, l->left_rest.b)
+  LOSE(s.sigma.r, l->left.r, l->leftRest.r)
+  LOSE(s.sigma.g, l->left.g, l->leftRest.g)
+  LOSE(s.sigma.b, l->left.b, l->leftRest.b)
 #else
-  LOSE(s.sigma, l->left, l->left_rest)
+  LOSE(s.sigma, l->left, l->leftRest)
 #endif
 #undef LOSE
 #elif COLOURED

@@ -1,12 +1,19 @@
 // Primary rays through a medium of constant index, one work-item a packet of neighbouring pixels.
 //
-// Needs Numerics.cl, Sampling.cl, View.cl, Background.cl, Crossing.cl and SurfaceLight.cl before it. Define besides
+// Define
 //   SKIP_BRICKS  1: rays leap over bricks in which nothing extinguishes or shines
 
-kernel void cast_rays(view v, global const float4* restrict samples, global const float4* restrict extinctions,
-  global const float4* restrict flow, global const float4* restrict glow, global const char* restrict bricks,
-  global const float4* restrict environment, global const float4* restrict surface, global float* restrict radiance,
-  global float* restrict alpha, global float* restrict depth)
+#include "Viewing/Background.cl"
+#include "Viewing/Crossing.cl"
+#include "Viewing/Sampling.cl"
+#include "Viewing/SurfaceLight.cl"
+#include "Viewing/View.cl"
+
+__kernel void cast_rays(ViewInfo v, __global const float4* restrict samples,
+  __global const float4* restrict extinctions, __global const float4* restrict flow,
+  __global const float4* restrict glow, __global const char* restrict bricks,
+  __global const float4* restrict environment, __global const float4* restrict surface,
+  __global float* restrict radiance, __global float* restrict alpha, __global float* restrict depth)
 {
   const int column = (get_global_id(0) + v.picture.w) * PACKET_WIDTH;
   const int row = (get_global_id(1) + v.picture.z) * PACKET_HEIGHT;
@@ -16,8 +23,8 @@ kernel void cast_rays(view v, global const float4* restrict samples, global cons
   }
   const scenery scene = { samples, extinctions, flow, glow };
   const camera_rays seen = rays_through(&v, column, row);
-  const real3 direction = { seen.d.x * (real)v.inverse_spacing.x, seen.d.y * (real)v.inverse_spacing.y,
-    seen.d.z * (real)v.inverse_spacing.z };
+  const real3 direction = { seen.d.x * (real)v.inverseSpacing.x, seen.d.y * (real)v.inverseSpacing.y,
+    seen.d.z * (real)v.inverseSpacing.z };
   real before;
   const rays packet = clip_to_box(seen.from, direction, (real)1e30f, v.size, &before);
 

@@ -3,7 +3,10 @@
 #include "Device/Batches.h"
 #include "Device/Defines.h"
 #include "Device/Sizes.h"
+#include "Light/LeftOut.h"
 #include "Medium/Traits.h"
+#include "Numerics/Constants.h"
+#include "Numerics/Vectors.h"
 #include "Refraction/Index/SquaredIndex.h"
 #include "TyndallKernelSources.h"
 #include "Viewing/Bricks.h"
@@ -19,22 +22,6 @@
 
 namespace tyndall
 {
-/// Field by field the same as View.cl's.
-struct MediumRayCaster::View
-{
-  cl_float4 Eye, Forward, Right, Up, InverseSpacing, Background, Marching;
-  cl_int4 Picture, Size, Bricks, Environment;
-};
-
-/// Field by field the same as RayPackets.cl's.
-struct MediumRayCaster::Optics
-{
-  cl_float4 Spacing, Surface, Table;
-  cl_int4 Face;
-  cl_float4 Flip;
-  cl_int4 Limits;
-};
-
 namespace
 {
 constexpr int RoundsAtMost = 16;            ///< of a ray through the volume, in sums of its edges
@@ -43,22 +30,6 @@ constexpr double BesideSurface = 5.0;       ///< voxels from a surface, beyond i
 constexpr double SurfacePrecision = 1.0e-3; ///< voxels
 constexpr double SamplesAtOnce = 3.2e7; ///< of the work between two reports, at most: under a second on one old core
 constexpr double ManySteps = 4096.0;    ///< of a ray, from which on rounding in each of them adds up to 1e-4
-constexpr double Pi = 3.14159265358979323846;
-
-glm::dvec3 Vector(const std::array<double, 3>& v)
-{
-  return { v[0], v[1], v[2] };
-}
-
-cl_float4 Float4(const glm::dvec3& v, double w)
-{
-  return { { static_cast<float>(v.x), static_cast<float>(v.y), static_cast<float>(v.z), static_cast<float>(w) } };
-}
-
-cl_int4 Int4(int x, int y, int z)
-{
-  return { { x, y, z, 0 } };
-}
 
 /// Columns and rows of pixels in a packet, as in View.cl.
 std::array<int, 2> PacketPixels(int width)
@@ -150,10 +121,10 @@ MediumRayCaster::MediumRayCaster(Device& device, const Medium& medium, const Sol
   this->Bends = !settings.leaveOut || this->Index.Varies();
   this->KnowsFlow = medium.g != 0.0 && light.meanDirection.values && light.fluence.values && !settings.shadowRays;
   this->Coloured = !settings.leaveOut || !traits.greyExtinction;
-  const std::vector<cl_float4> lights = settings.shadowRays
+  const std::vector<SmallLight> lights = settings.shadowRays
     ? SmallLights(illumination.lights, medium.grid, settings.rectangleSamples)
-    : std::vector<cl_float4>();
-  this->LightCount = static_cast<int>(lights.size() / 3);
+    : std::vector<SmallLight>();
+  this->LightCount = static_cast<int>(lights.size());
   // Beside directions of the light it does not pay to have sources by one channel.
   this->Grey = !this->Coloured && traits.grey && !this->KnowsFlow && this->LightCount == 0 &&
     light.fluence.components == 1 && light.fluenceDirect.components == 1 && (!traits.emits || traits.emission.IsGrey());
@@ -164,7 +135,7 @@ MediumRayCaster::MediumRayCaster(Device& device, const Medium& medium, const Sol
 
   this->Upload(medium, light, ior);
   this->Reserve();
-  this->Lights = Buffer<cl_float4>(device, lights, "the lights");
+  this->Lights = Buffer<SmallLight>(device, lights, "the lights");
   if (!illumination.environment.Empty() && settings.showBackground)
   {
     this->EnvironmentSize = { illumination.environment.width, illumination.environment.height };
@@ -228,8 +199,7 @@ void MediumRayCaster::PrepareBending()
   } const grid = { { this->TheGrid.size[0], this->TheGrid.size[1], this->TheGrid.size[2] } };
   const std::size_t x = grid.size[0], y = grid.size[1], z = grid.size[2];
   const Buffer<float> coefficients = SquaredIndexCoefficients(this->TheDevice, this->TheGrid, this->Ior);
-  cl::Kernel pack =
-    this->TheDevice.Kernel("pack_bending", { kernel_source::SquaredIndex, kernel_source::BendingField });
+  cl::Kernel pack = this->TheDevice.Kernel("pack_bending", kernel_source::BendingField);
   With(pack, grid, Float4(1.0 / Vector(this->TheGrid.spacing), 0.0), coefficients, this->Bending);
   this->TheDevice.Queue().enqueueNDRangeKernel(
     pack, cl::NullRange, cl::NDRange(RoundUp<std::size_t>(x + 2, 64), y + 2, z + 2), cl::NDRange(64, 1, 1));
@@ -333,7 +303,7 @@ std::string MediumRayCaster::PackingOptions() const
     Define("REAL_WIDTH", this->PacketWidth()) + Define("COLOURED", this->Coloured) + Define("GREY", this->Grey);
   for (std::size_t i = 0; i < names.size(); ++i)
   {
-    options += std::string(" -D") + names[i] + "=" + std::to_string(this->Components[i]);
+    options += Define(names[i], this->Components[i]);
   }
   return options + Define("FLOW", this->KnowsFlow) + Define("GLOW", this->GlowsApart());
 }
@@ -342,22 +312,20 @@ std::string MediumRayCaster::PackingOptions() const
 void MediumRayCaster::Pack(bool forShadowRays)
 {
   const bool bends = this->Bends && !forShadowRays; // shadow rays go straight on
-  const std::initializer_list<std::string_view> sources = { kernel_source::Numerics, kernel_source::Sampling,
-    kernel_source::ScatteredLight };
   const std::string options =
     this->PackingOptions() + Define("SHADOW_RAYS", this->LightCount > 0 && !forShadowRays) + Define("BENDS", bends);
-  const cl_int4 size = Int4(this->TheGrid.size[0], this->TheGrid.size[1], this->TheGrid.size[2]);
-  const cl_int4 bricks = Int4(this->BrickCount[0], this->BrickCount[1], this->BrickCount[2]);
+  const cl_int4 size = Int4(this->TheGrid.size);
+  const cl_int4 bricks = Int4(this->BrickCount);
   const cl_int single = this->Settings.singleScatteringOnly ? 1 : 0;
 
-  cl::Kernel pack = this->TheDevice.Kernel("pack_samples", sources, options);
+  cl::Kernel pack = this->TheDevice.Kernel("pack_samples", kernel_source::ScatteredLight, options);
   With(pack, size, single, static_cast<float>(this->G), this->Arrays[0], this->Arrays[1], this->Arrays[2],
     this->Arrays[3], this->Arrays[4], this->Direct, this->MeanDirection, this->Ior, this->Samples, this->Extinctions,
     this->Flow, this->Glow);
   this->TheDevice.Queue().enqueueNDRangeKernel(pack, cl::NullRange,
     cl::NDRange(RoundUp<std::size_t>(size.s[0] + 2, 64), size.s[1] + 2, size.s[2] + 2), cl::NDRange(64, 1, 1));
 
-  cl::Kernel find = this->TheDevice.Kernel("find_empty_bricks", sources, options);
+  cl::Kernel find = this->TheDevice.Kernel("find_empty_bricks", kernel_source::ScatteredLight, options);
   With(find, size, bricks, this->Samples, this->Extinctions, this->Glow, this->Bending, this->Bricks);
   this->TheDevice.Queue().enqueueNDRangeKernel(find, cl::NullRange,
     cl::NDRange(RoundUp<std::size_t>(bricks.s[0], 4), bricks.s[1], bricks.s[2]), cl::NDRange(4, 1, 1));
@@ -369,22 +337,26 @@ void MediumRayCaster::Pack(bool forShadowRays)
 
 void MediumRayCaster::SeeLights(const Camera& camera, const Monitor& monitor)
 {
-  const cl_int4 size = Int4(this->TheGrid.size[0], this->TheGrid.size[1], this->TheGrid.size[2]);
-  const cl_int4 bricks = Int4(this->BrickCount[0], this->BrickCount[1], this->BrickCount[2]);
-  const glm::dvec3 eye = Vector(camera.position) - Vector(this->TheGrid.origin);
   const double radius = std::cbrt(3.0 * this->TheGrid.VoxelVolume() / (4.0 * Pi));
-  cl::Kernel see = this->TheDevice.Kernel("see_lights",
-    { kernel_source::Numerics, kernel_source::Sampling, kernel_source::ScatteredLight },
-    this->PackingOptions() + Define("SHADOW_RAYS", true) + Define("BENDS", false) + this->StepOption());
+  ShadowInfo info = {};
+  info.spacing = Float4(Vector(this->TheGrid.spacing));
+  info.eye = Float4(Vector(camera.position) - Vector(this->TheGrid.origin), camera.parallelProjection ? 1.0 : 0.0);
+  info.forward = Float4(Vector(Axes(camera)[2]));
+  info.size = Int4(this->TheGrid.size);
+  info.bricks = Int4(this->BrickCount);
+  info.g = static_cast<float>(this->G);
+  info.step = static_cast<float>(this->Settings.stepSize);
+  info.nearestSquare = static_cast<float>(radius * radius / 3.0);
+  info.lights = this->LightCount;
+  cl::Kernel see =
+    this->TheDevice.Kernel("see_lights", kernel_source::ShadowRays, this->PackingOptions() + this->StepOption());
   const std::size_t across = RoundUp<std::size_t>(this->TheGrid.size[0], 4 * this->PacketWidth()) / this->PacketWidth();
   const std::size_t rows = this->TheGrid.size[1];
   const double samplesOfRow = this->LongestSteps() * this->LightCount * this->TheGrid.size[0];
   const auto launch = [&](const Patch& part) {
-    With(see, size, bricks, Float4(Vector(this->TheGrid.spacing), 0.0),
-      Float4(eye, camera.parallelProjection ? 1.0 : 0.0), Float4(Vector(Axes(camera)[2]), 0.0),
-      static_cast<float>(this->G), static_cast<float>(this->Settings.stepSize),
-      static_cast<float>(radius * radius / 3.0), this->LightCount, this->Lights, this->Arrays[1], this->Samples,
-      this->Extinctions, this->Bricks, part.row, part.column, this->Direct);
+    info.firstSlice = part.row;
+    info.firstRow = part.column;
+    With(see, info, this->Lights, this->Arrays[1], this->Samples, this->Extinctions, this->Bricks, this->Direct);
     this->TheDevice.Queue().enqueueNDRangeKernel(
       see, cl::NullRange, cl::NDRange(across, part.columns, part.rows), cl::NDRange(4, 1, 1));
   };
@@ -392,7 +364,7 @@ void MediumRayCaster::SeeLights(const Camera& camera, const Monitor& monitor)
     [&](std::size_t first, std::size_t count) { InPatches(first, count, rows, launch); });
 }
 
-MediumRayCaster::View MediumRayCaster::MakeView(const Camera& camera) const
+ViewInfo MediumRayCaster::MakeView(const Camera& camera) const
 {
   const auto axes = Axes(camera);
   CheckDistance(camera, this->TheGrid);
@@ -409,18 +381,18 @@ MediumRayCaster::View MediumRayCaster::MakeView(const Camera& camera) const
       corner & 1 ? grid.Length(0) : 0.0, corner & 2 ? grid.Length(1) : 0.0, corner & 4 ? grid.Length(2) : 0.0);
     farDepth = std::max(farDepth, glm::dot(at - eye, forward));
   }
-  View view;
-  view.Eye = Float4(eye * inverseSpacing, camera.parallelProjection ? 1.0 : 0.0);
-  view.Forward = Float4(forward, 0.0);
-  view.Right = Float4(halfWidth * Vector(axes[0]), 0.0);
-  view.Up = Float4(halfHeight * Vector(axes[1]), 0.0);
-  view.InverseSpacing = Float4(inverseSpacing, 0.0);
-  view.Background = Float4(Vector(this->Background), this->Settings.showBackground ? 1.0 : 0.0);
-  view.Marching = Float4({ this->Settings.stepSize, this->Settings.minimumTransmittance, farDepth }, 0.0);
-  view.Picture = Int4(this->Settings.imageSize[0], this->Settings.imageSize[1], 0);
-  view.Size = Int4(grid.size[0], grid.size[1], grid.size[2]);
-  view.Bricks = Int4(this->BrickCount[0], this->BrickCount[1], this->BrickCount[2]);
-  view.Environment = Int4(this->EnvironmentSize[0], this->EnvironmentSize[1], 0);
+  ViewInfo view;
+  view.eye = Float4(eye * inverseSpacing, camera.parallelProjection ? 1.0 : 0.0);
+  view.forward = Float4(forward, 0.0);
+  view.right = Float4(halfWidth * Vector(axes[0]), 0.0);
+  view.up = Float4(halfHeight * Vector(axes[1]), 0.0);
+  view.inverseSpacing = Float4(inverseSpacing, 0.0);
+  view.background = Float4(Vector(this->Background), this->Settings.showBackground ? 1.0 : 0.0);
+  view.marching = Float4({ this->Settings.stepSize, this->Settings.minimumTransmittance, farDepth }, 0.0);
+  view.picture = Int4({ this->Settings.imageSize[0], this->Settings.imageSize[1], 0 });
+  view.size = Int4(grid.size);
+  view.bricks = Int4(this->BrickCount);
+  view.environment = Int4({ this->EnvironmentSize[0], this->EnvironmentSize[1], 0 });
   return view;
 }
 
@@ -442,7 +414,7 @@ void MediumRayCaster::PrepareSources(const Camera& camera, const Monitor& monito
   }
 }
 
-MediumRayCaster::Optics MediumRayCaster::MakeOptics() const
+OpticsInfo MediumRayCaster::MakeOptics() const
 {
   const ViewSettings& settings = this->Settings;
   const Grid& grid = this->TheGrid;
@@ -450,15 +422,15 @@ MediumRayCaster::Optics MediumRayCaster::MakeOptics() const
   const int face = std::max(settings.tableFace, 0);
   const double edges = 1.0 * grid.size[0] + grid.size[1] + grid.size[2];
   const double halvings = std::log2(settings.stepSize / SurfacePrecision);
-  Optics optics;
-  optics.Spacing = Float4(Vector(grid.spacing), 0.0);
-  optics.Surface = Float4({ index * index, settings.surfaceReflectance, BesideSurface }, 0.0);
-  optics.Table = Float4(Vector(settings.tableColor), settings.tableReflectance);
-  optics.Face = Int4(face / 2, face % 2, FaceSize(grid, face)[0]);
-  optics.Flip = { { face / 2 == 0 ? -1.0f : 1.0f, face / 2 == 1 ? -1.0f : 1.0f, face / 2 == 2 ? -1.0f : 1.0f, 0.0f } };
-  optics.Limits = Int4(static_cast<int>(std::min(1e9, std::ceil(RoundsAtMost * edges / settings.stepSize))),
+  OpticsInfo optics;
+  optics.spacing = Float4(Vector(grid.spacing), 0.0);
+  optics.surface = Float4({ index * index, settings.surfaceReflectance, BesideSurface }, 0.0);
+  optics.table = Float4(Vector(settings.tableColor), settings.tableReflectance);
+  optics.face = Int4({ face / 2, face % 2, FaceSize(grid, face)[0] });
+  optics.flip = { { face / 2 == 0 ? -1.0f : 1.0f, face / 2 == 1 ? -1.0f : 1.0f, face / 2 == 2 ? -1.0f : 1.0f, 0.0f } };
+  optics.limits = Int4({ static_cast<int>(std::min(1e9, std::ceil(RoundsAtMost * edges / settings.stepSize))),
     static_cast<int>(std::clamp(BentStretch / settings.stepSize, 1.0, 1e3)),
-    static_cast<int>(std::ceil(std::max(halvings, 1.0))));
+    static_cast<int>(std::ceil(std::max(halvings, 1.0))) });
   return optics;
 }
 
@@ -492,34 +464,29 @@ cl::Kernel MediumRayCaster::CastingKernel()
 {
   if (!this->Bends && this->Settings.tableFace < 0)
   {
-    return this->TheDevice.Kernel("cast_rays",
-      { kernel_source::Numerics, kernel_source::Sampling, kernel_source::View, kernel_source::Background,
-        kernel_source::Crossing, kernel_source::SurfaceLight, kernel_source::MediumRayCaster },
+    return this->TheDevice.Kernel("cast_rays", kernel_source::MediumRayCaster,
       this->CastingOptions() + Define("SURFACE_LIGHT", this->Surface.Size() > 0));
   }
   const int surface = this->Reflects() ? static_cast<int>(this->Settings.surfaceReflection) : 0;
-  return this->TheDevice.Kernel("cast_bent_rays",
-    { kernel_source::Numerics, kernel_source::Sampling, kernel_source::View, kernel_source::Background,
-      kernel_source::Crossing, kernel_source::RayPackets, kernel_source::SurfaceReflection, kernel_source::BentRays,
-      kernel_source::Table, kernel_source::BentView },
+  return this->TheDevice.Kernel("cast_bent_rays", kernel_source::BentView,
     this->CastingOptions() + Define("BENDS", this->Bends) + Define("SURFACE", surface) +
       Define("TABLE", this->Settings.tableFace >= 0));
 }
 
-void MediumRayCaster::CastRays(View& view, double from, const Monitor& monitor)
+void MediumRayCaster::CastRays(ViewInfo& view, double from, const Monitor& monitor)
 {
   const std::array<int, 2> packet = PacketPixels(this->PacketWidth());
   const bool straight = !this->Bends && this->Settings.tableFace < 0;
-  const Optics optics = this->MakeOptics();
+  const OpticsInfo optics = this->MakeOptics();
   cl::Kernel cast = this->CastingKernel();
   // Batches of whole work-groups: else the last rows of one would be cast again by the next.
   const int group = 4;
-  const std::size_t across = RoundUp<std::size_t>(view.Picture.s[0], group * packet[0]) / (group * packet[0]);
-  const std::size_t rows = RoundUp<std::size_t>(view.Picture.s[1], group * packet[1]) / (group * packet[1]);
+  const std::size_t across = RoundUp<std::size_t>(view.picture.s[0], group * packet[0]) / (group * packet[0]);
+  const std::size_t rows = RoundUp<std::size_t>(view.picture.s[1], group * packet[1]) / (group * packet[1]);
   const double samples = this->LongestSteps() * group * group * packet[0] * packet[1];
   const auto launch = [&](const Patch& part) {
-    view.Picture.s[2] = part.row * group;
-    view.Picture.s[3] = part.column * group;
+    view.picture.s[2] = part.row * group;
+    view.picture.s[3] = part.column * group;
     if (straight)
     {
       With(cast, view, this->Samples, this->Extinctions, this->Flow, this->Glow, this->Bricks, this->EnvironmentPixels,
@@ -539,7 +506,7 @@ void MediumRayCaster::CastRays(View& view, double from, const Monitor& monitor)
 
 Picture MediumRayCaster::Render(const Camera& camera, const Monitor& monitor)
 {
-  View view = this->MakeView(camera);
+  ViewInfo view = this->MakeView(camera);
   Report(monitor, 0.0);
   const bool prepares = !this->SourcesReady || this->SourcesDependOnCamera;
   if (prepares)
@@ -550,7 +517,7 @@ Picture MediumRayCaster::Render(const Camera& camera, const Monitor& monitor)
   Picture picture;
   picture.width = this->Settings.imageSize[0];
   picture.height = this->Settings.imageSize[1];
-  picture.farDepth = view.Marching.s[2];
+  picture.farDepth = view.marching.s[2];
   const std::size_t pixels = static_cast<std::size_t>(picture.width) * picture.height;
   if (this->Alpha.Size() != pixels)
   {

@@ -8,6 +8,7 @@
 #include "Medium/Traits.h"
 #include "Refraction/Index/IndexRange.h"
 #include "Viewing/Camera.h"
+#include "Viewing/ViewShared.h"
 
 #include <array>
 #include <string>
@@ -87,60 +88,53 @@ struct Picture
   float farDepth = 0.0f; ///< beyond every point of the box
 };
 
-/// Looks into a medium whose light is known: marches a ray through every pixel and gathers
-///   L = integral of T(t) (sigma_s J + emission) dt + T(end) background,  T(t) = exp(-integral of sigma_t).
-/// The source in brackets and sigma_t are taken at voxel centres and interpolated linearly between them; each step is
-/// exact for the coefficients in its middle, so that vacuum, opaque voxels and everything between need no special case.
+/// Looks into a medium whose light is known: marches a ray through every pixel and gathers scattered and emitted light
+/// and the background, each dimmed by the medium before it (numerics.md, section 14, Eq. (105)). The source and sigma_t
+/// are taken at voxel centres and interpolated linearly between them; each step is exact for the coefficients in its
+/// middle, so that vacuum, opaque voxels and everything between need no special case.
 ///
-/// J, the in-scattered radiance, is
+/// The in-scattered radiance is
 ///
 ///   |                     | single scattering only   | all                               |
 ///   |---|---|---|
 ///   | without shadow rays | f fluenceDirect / (4 pi) | f fluence / (4 pi)                |
 ///   | with shadow rays    | sum over lights of E p   | that + max(fluence - D, 0) / 4 pi |
 ///
-/// f is 4 pi times the phase function of the mean cosine g, averaged over the directions from which the light comes; 1,
-/// light scatters evenly, where g is 0 or meanDirection is not given. Light is taken to be spread about its mean
-/// direction as Henyey and Greenstein's function of mean cosine |meanDirection| is: scattering then makes that function
-/// of mean cosine g |meanDirection| of it, exactly. Schlick's function is taken for the same product, which is a fit.
-/// One direction a voxel stands for all its light, in single scattering as well (Pfeuti 2009, section 3.1.6, has no
-/// anisotropy: all light comes from the mean direction).
+/// f is 4 pi times the phase function of the mean cosine g, averaged over the directions from which the light comes, as
+/// far as meanDirection tells (Eqs. (107), (108)); 1, light scatters evenly, where g is 0 or meanDirection is not
+/// given. One direction a voxel stands for all its light, in single scattering as well.
 ///
 /// E is a light's irradiance behind the medium, p the phase function (Henyey and Greenstein's with the medium's g) from
 /// the light's direction to the camera's. D = min(sum of E, fluenceDirect) is the part of fluence that E shows already,
-/// so that nothing counts twice; what else is in fluenceDirect came straight from an environment or a sky and stays.
-/// The sum over lights is found at voxel centres. With shadow rays all other light scatters evenly. Shadow rays go
-/// straight on, through glass as well.
+/// so that nothing counts twice. The sum over lights is found at voxel centres. With shadow rays all other light
+/// scatters evenly. Shadow rays go straight on, through glass as well.
 ///
-/// Where voxels at the faces of the box are thicker than a mean free path, what leaves them there is not what is at
-/// their centres. Rays that come in through such a face show the radiance that the solver says leaves there
-/// (`surface`), see SurfaceLight.h: in straight views of all light, without shadow rays, directions of light or a
-/// table.
+/// Where voxels at the faces of the box are thicker than a mean free path, rays that come in through such a face show
+/// the radiance that the solver says leaves there (`surface`), see SurfaceLight.h: in straight views of all light,
+/// without shadow rays, directions of light or a table.
 ///
 /// sigma_s and sigma_t are the medium's own in every term, also where a solver worked with sigma_s (1 - g).
 /// `scattered_radiance`, which solvers keep for chosen directions, is data to look at and is not used here: a camera
 /// sees along as many directions as it has pixels.
 ///
 /// Refraction (Pfeuti 2009, section 3.1.6 and listing A.4, who steps by Euler's method). Where the refractive index n
-/// varies rays follow dr/dt = T, dT/dt = grad(n^2)/2 with dt = ds/n, by a leapfrog of order 2. n^2 is the tricubic
-/// spline that photons follow too; its gradient is taken at voxel centres and interpolated linearly. L / n^2 is what
-/// stays the same along a ray, so that glass in a furnace cannot be told from the rest. The index is taken to go on
-/// beyond the box's faces as it is there: no light is bent at a face. A ray that does not find out of the box within 16
-/// times the sum of its edges (total reflection can trap light) sees the background along the direction that it has
-/// then.
+/// varies rays bend, by a leapfrog of order 2 on the spline of n^2 that photons follow too (numerics.md, Eq. (91)). L /
+/// n^2 stays the same along a ray, Eq. (109), so that glass in a furnace cannot be told from the rest. The index is
+/// taken to go on beyond the box's faces as it is there: no light is bent at a face. A ray that does not find out of
+/// the box within 16 times the sum of its edges (total reflection can trap light) sees the background along the
+/// direction that it has then.
 ///
 /// Surface. On its way from the camera a ray is split where n first rises through surfaceIndex (found by bisection to
 /// 1e-3 voxel): the reflected part is marched through the medium as well, and reflects no further. Fresnel's equations
-/// take the indices five voxels before and behind; a sheet thinner than that reflects as if it were thicker.
+/// (Eq. (110)) take the indices five voxels before and behind; a sheet thinner than that reflects as if it were
+/// thicker.
 ///
 /// Table. Where a ray leaves the box through tableFace it sees
 ///   tableColor / pi  irradiance  +  tableReflectance  mirrored light,
-/// the irradiance being fluence times max(0, m . outward normal) of the voxels on the table, m = meanDirection: all
-/// that arrives, where no light comes from the table's side. Under an environment or a sky, which shine from there as
-/// well, light is taken to be one beam and the same from all sides, as m says, fluence ((1 - |m|) / 4 + max(0, m .
-/// normal)); m = 0 where it is not given. With singleScatteringOnly, of fluenceDirect. What rays from the camera
-/// mirror there is marched through the medium; where that, or what a surface reflected, meets the table (again), the
-/// background stands for what the table mirrors of it. From outside the table is not seen.
+/// the irradiance by the fluence and meanDirection of the voxels on the table (Eq. (111)); with singleScatteringOnly,
+/// by fluenceDirect. What rays from the camera mirror there is marched through the medium; where that, or what a
+/// surface reflected, meets the table (again), the background stands for what the table mirrors of it. From outside the
+/// table is not seen.
 class MediumRayCaster
 {
 public:
@@ -148,12 +142,10 @@ public:
   /// @param illumination  its lights are used by shadow rays, environment and sky as background
   /// @param ior  refractive index, one component a voxel; null or constant: rays are straight
   /// @throws InvalidInput as Check(medium) and Check(illumination); for a light array that is not finite or has not 1
-  /// or 3
-  ///   components (a direction 3); for an index that is not within [1e-3, 1e3] or has not one component; where settings
-  ///   ask for an array that is not there; for a setting out of its range
+  ///   or 3 components (a direction 3); for an index that is not within [1e-3, 1e3] or has not one component; where
+  ///   settings ask for an array that is not there; for a setting out of its range
   /// @throws DeviceError if the samples do not fit: 16 bytes a voxel, and as many again for each of coloured
-  /// extinction, the
-  ///   light's direction, emission beside it, and a refractive index that varies
+  ///   extinction, the light's direction, emission beside it, and a refractive index that varies
   MediumRayCaster(Device& device, const Medium& medium, const SolvedLight& light, const Illumination& illumination,
     const ViewSettings& settings, const Field& ior = {});
 
@@ -175,9 +167,6 @@ public:
   const std::vector<std::string>& Warnings() const { return this->Doubts; }
 
 private:
-  struct View;
-  struct Optics;
-
   ViewSettings Needed(ViewSettings asked) const;
   double LongestSteps() const;
   std::string StepOption() const;
@@ -204,10 +193,10 @@ private:
   void Pack(bool forShadowRays);
   void SeeLights(const Camera& camera, const Monitor& monitor);
   void PrepareSources(const Camera& camera, const Monitor& monitor);
-  void CastRays(View& view, double from, const Monitor& monitor);
+  void CastRays(ViewInfo& view, double from, const Monitor& monitor);
   cl::Kernel CastingKernel();
-  View MakeView(const Camera& camera) const;
-  Optics MakeOptics() const;
+  ViewInfo MakeView(const Camera& camera) const;
+  OpticsInfo MakeOptics() const;
 
   Device& TheDevice;
   Grid TheGrid;
@@ -243,7 +232,7 @@ private:
   Buffer<cl_float4> Surface; ///< see SurfaceLight.h
   Buffer<cl_char> Bricks;
   Buffer<cl_float4> EnvironmentPixels;
-  Buffer<cl_float4> Lights;             ///< three a small_light
+  Buffer<SmallLight> Lights;
   Buffer<float> Radiance, Alpha, Depth; ///< the last picture; kept for the next of its size
   std::vector<std::string> Omitted, Doubts;
 };

@@ -1,18 +1,13 @@
 // Rays on their way through a medium that bends them, and what they are given on it.
 //
-// Needs Numerics.cl, Sampling.cl, View.cl and Crossing.cl before it. Define besides
+// Define
 //   BENDS  1: the index varies
 
-// Field by field the same as MediumRayCaster.cxx's.
-typedef struct
-{
-  float4 spacing; // length per voxel
-  float4 surface; // n^2 of the surface, reflectance, voxels from it to where the indices on its sides are taken
-  float4 table;   // diffuse reflectance, mirrored part
-  int4 face;      // axis of the table, 1 at the upper end and 0 at the lower, voxels of its longer rows
-  float4 flip;    // what the table does to directions
-  int4 limits;    // steps of a ray, steps of a bent stretch, halvings of the step in which the surface is met
-} optics;
+#pragma once
+#include "Viewing/Crossing.cl"
+#include "Viewing/Sampling.cl"
+#include "Viewing/View.cl"
+#include "Viewing/ViewShared.h"
 
 // Where rays are (voxels), how fast (voxels per unit of t) and whether inside of the box.
 typedef struct
@@ -41,11 +36,11 @@ typedef struct
 // What each march is given, besides the rays.
 typedef struct
 {
-  const view* v;
-  const optics* o;
+  const ViewInfo* v;
+  const OpticsInfo* o;
   scenery scene;
-  global const float4* bending; // half the gradient of n^2 by squared spacing (x, y, z), n^2 (w)
-  global const char* bricks;
+  __global const float4* bending; // half the gradient of n^2 by squared spacing (x, y, z), n^2 (w)
+  __global const char* bricks;
 } surroundings;
 
 inline real3 further(real3 p, real t, real3 velocity)
@@ -88,7 +83,7 @@ inline real time_to_face(real3 p, real3 velocity, int4 size)
 #undef TO_FACE
 }
 
-inline real depth_of(real3 p, const view* v, float4 spacing)
+inline real depth_of(real3 p, const ViewInfo* v, float4 spacing)
 {
   const real3 from_eye = { p.x - (real)v->eye.x, p.y - (real)v->eye.y, p.z - (real)v->eye.z };
   const real3 forward = { (real)(v->forward.x * spacing.x), (real)(v->forward.y * spacing.y),

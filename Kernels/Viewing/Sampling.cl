@@ -1,6 +1,6 @@
 // Rays through a medium, REAL_WIDTH of them at a time, and what they meet there.
 //
-// Needs Numerics.cl before it. Define
+// Define
 //   COLOURED  1: extinction differs between red, green and blue; 0: one extinction serves all three
 //   GREY      1: so do sources; `samples` then hold source and extinction of a voxel, and those of the next one along y
 //
@@ -12,6 +12,9 @@
 // Positions are in voxels from the box's lower corner, so that voxel (i, j, k) covers [i, i+1] x [j, j+1] x [k, k+1].
 // Arrays named `samples` and `extinctions` have a border of one voxel that repeats the outermost ones: an interpolation
 // never has to ask where the box ends, and the medium ends at the box's faces, not half a voxel before.
+
+#pragma once
+#include "Numerics/Numerics.cl"
 
 #pragma OPENCL FP_CONTRACT OFF
 
@@ -54,7 +57,7 @@ inline float least_lane(real v)
   const float2 two = lesser(four.lo, four.hi);
   return lesser(two.x, two.y);
 }
-// PoCL's any asks lane by lane.
+// PoCL's any tests lane by lane.
 inline int any_lane(integer condition)
 {
   REDUCED_TO_FOUR(int, condition, either)
@@ -158,8 +161,8 @@ inline real3 along(rays packet, real distance)
 // along x and of the upper of a pair.
 typedef struct
 {
-  integer twice_first;
-  real near_low, near_high, far_low, far_high;
+  integer twiceFirst;
+  real nearLow, nearHigh, farLow, farHigh;
   real x;
 #if GREY
   real y, near, far; // weights of the upper along y, and of the two along z
@@ -181,10 +184,10 @@ __attribute__((always_inline)) inline void find_corners(real3 p, int4 size, corn
   const real both = y * z;
   const real z_only = z - both;
   at->x = px - to_real(i);
-  at->far_high = both;
-  at->near_high = y - both;
-  at->far_low = z_only;
-  at->near_low = ((real)1.0f - y) - z_only;
+  at->farHigh = both;
+  at->nearHigh = y - both;
+  at->farLow = z_only;
+  at->nearLow = ((real)1.0f - y) - z_only;
 #if GREY
   at->y = y;
   at->near = (real)1.0f - z;
@@ -192,12 +195,12 @@ __attribute__((always_inline)) inline void find_corners(real3 p, int4 size, corn
 #endif
   // Rows are counted in floats, which hold whole numbers up to 16 million.
   const integer row = to_integer(fma(k, (real)(float)(size.y + 2), j));
-  at->twice_first = (row * (size.x + 2) + i) * 2;
+  at->twiceFirst = (row * (size.x + 2) + i) * 2;
 }
 
 #if REAL_WIDTH > 1 && defined(__clang__)
 // Asks for the rows of samples around a point that a packet will come to, before they are needed. May be anything.
-inline void fetch_ahead(global const float4* samples, real3 p, int4 size)
+inline void fetch_ahead(__global const float4* samples, real3 p, int4 size)
 {
   const int row = size.x + 2;
   const int slice = row * (size.y + 2);
@@ -219,9 +222,9 @@ inline void fetch_ahead(global const float4* samples, real3 p, int4 size)
 #define fetch_ahead(samples, p, size)
 #endif
 
-inline float8 neighbours(global const float2* row, uint twice_first)
+inline float8 neighbours(__global const float2* row, uint twice_first)
 {
-  global const float4* at = (global const float4*)(row + twice_first);
+  __global const float4* at = (__global const float4*)(row + twice_first);
   return (float8)(at[0], at[1]); // 16 bytes are aligned, 32 are not
 }
 
@@ -243,19 +246,19 @@ inline float16 four_between(float8 v0, float8 v4, float8 v8, float8 vc, float16 
 // where values hold two numbers and those of the next voxel along y (`paired`, a constant). size.w is 0, which the
 // compiler cannot know: so `at` stays in memory, from where a CPU broadcasts single lanes for nothing.
 __attribute__((always_inline)) inline void gather_values(
-  global const float4* values, const corners* at, int4 size, const int paired, rgb* colour, real* w)
+  __global const float4* values, const corners* at, int4 size, const int paired, rgb* colour, real* w)
 {
-  global const float2* near_low = (global const float2*)values;
-  global const float2* near_high = near_low + 2 * (size.x + 2);
-  global const float2* far_low = near_low + 2 * (size.x + 2) * (size.y + 2);
-  global const float2* far_high = far_low + 2 * (size.x + 2);
-#define FIRST(n) ((const uint*)&at->twice_first)[0x##n + size.w]
+  __global const float2* near_low = (__global const float2*)values;
+  __global const float2* near_high = near_low + 2 * (size.x + 2);
+  __global const float2* far_low = near_low + 2 * (size.x + 2) * (size.y + 2);
+  __global const float2* far_high = far_low + 2 * (size.x + 2);
+#define FIRST(n) ((const uint*)&at->twiceFirst)[0x##n + size.w]
 #define WEIGHT(part, n) (((const float*)&at->part)[0x##n + size.w])
-#define FETCH_FOUR(n)                                                                \
-  v##n = WEIGHT(near_low, n) * neighbours(near_low, FIRST(n));                       \
-  v##n = fma((float8)(WEIGHT(near_high, n)), neighbours(near_high, FIRST(n)), v##n); \
-  v##n = fma((float8)(WEIGHT(far_low, n)), neighbours(far_low, FIRST(n)), v##n);     \
-  v##n = fma((float8)(WEIGHT(far_high, n)), neighbours(far_high, FIRST(n)), v##n);
+#define FETCH_FOUR(n)                                                               \
+  v##n = WEIGHT(nearLow, n) * neighbours(near_low, FIRST(n));                       \
+  v##n = fma((float8)(WEIGHT(nearHigh, n)), neighbours(near_high, FIRST(n)), v##n); \
+  v##n = fma((float8)(WEIGHT(farLow, n)), neighbours(far_low, FIRST(n)), v##n);     \
+  v##n = fma((float8)(WEIGHT(farHigh, n)), neighbours(far_high, FIRST(n)), v##n);
 #if GREY
 #define FETCH(n)                                                               \
   float8 v##n;                                                                 \
@@ -325,13 +328,13 @@ __attribute__((always_inline)) inline void gather_values(
 #undef WEIGHT
 }
 
-inline void gather(global const float4* values, const corners* at, int4 size, rgb* colour, real* w)
+inline void gather(__global const float4* values, const corners* at, int4 size, rgb* colour, real* w)
 {
   gather_values(values, at, size, 0, colour, w);
 }
 
 // Sources and grey extinction.
-inline void gather_samples(global const float4* samples, const corners* at, int4 size, rgb* source, real* sigma)
+inline void gather_samples(__global const float4* samples, const corners* at, int4 size, rgb* source, real* sigma)
 {
 #if GREY
   rgb low;
@@ -346,13 +349,13 @@ inline void gather_samples(global const float4* samples, const corners* at, int4
 
 // Between four values of a picture for each ray: two side by side from `lower` on and two from `upper`; x goes from the
 // first of two to the second, y from the lower to the upper.
-inline rgb between_four(global const float4* values, integer lower, integer upper, real x, real y)
+inline rgb between_four(__global const float4* values, integer lower, integer upper, real x, real y)
 {
   rgb seen;
 #define SEE(n)                                                               \
   {                                                                          \
-    global const float4* below = values + LANE(lower, n);                    \
-    global const float4* above = values + LANE(upper, n);                    \
+    __global const float4* below = values + LANE(lower, n);                  \
+    __global const float4* above = values + LANE(upper, n);                  \
     const float4 a = fma((float4)LANE(x, n), below[1] - below[0], below[0]); \
     const float4 b = fma((float4)LANE(x, n), above[1] - above[0], above[0]); \
     const float4 c = fma((float4)LANE(y, n), b - a, a);                      \
@@ -379,7 +382,7 @@ typedef struct
 } stretch;
 
 __attribute__((always_inline)) inline stretch stretch_ahead(
-  global const char* bricks, int4 brick_count, real3 p, real3 strides, integer done)
+  __global const char* bricks, int4 brick_count, real3 p, real3 strides, integer done)
 {
   const integer bx = min(to_integer(p.x * (real)(1.0f / BRICK)), brick_count.x - 1);
   const integer by = min(to_integer(p.y * (real)(1.0f / BRICK)), brick_count.y - 1);

@@ -1,7 +1,11 @@
 // Light at the surface of thick voxels, where rays enter the box.
 //
-// Needs Numerics.cl, Sampling.cl and View.cl before it. Define besides
+// Define
 //   SURFACE_LIGHT  1: there is some
+
+#pragma once
+#include "Viewing/Sampling.cl"
+#include "Viewing/View.cl"
 
 #if SURFACE_LIGHT
 // The cubic through values at cosines 0.05, 0.25, 0.6 and 1, see SurfaceCosines in BoxFaces.h: part of the value at `a`
@@ -12,7 +16,7 @@
 //   table   see SurfaceLight.h
 //   d       unit vectors of the rays, world
 //   before  length before each enters; 0 where it does not
-inline rgb surface_light(global const float4* table, rays packet, real3 d, real before, int4 size)
+inline rgb surface_light(__global const float4* table, rays packet, real3 d, real before, int4 size)
 {
   // The face through which a ray came in is the one it has just come from, in time.
   const real3 p = packet.entry;

@@ -1,6 +1,7 @@
 #include "Viewing/SurfaceLight.h"
 
 #include "Medium/BoxFaces.h"
+#include "Numerics/Constants.h"
 #include "Viewing/ViewLights.h"
 
 #include <algorithm>
@@ -10,7 +11,6 @@ namespace tyndall
 {
 namespace
 {
-constexpr double Pi = 3.14159265358979323846;
 constexpr double AllOfIt = 2.0;                   ///< in ThickAtSurface
 constexpr double Translucent = 1.5, Opaque = 3.0; ///< mean free paths of what is behind a cell
 constexpr double EnoughLeft = 1e-5;               ///< of a ray

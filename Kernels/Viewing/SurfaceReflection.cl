@@ -1,10 +1,14 @@
 // The surface where the index rises through a given one: it splits primary rays in two.
 //
-// Needs RayPackets.cl before it. Define besides
+// Define
 //   SURFACE  what it reflects: 0 there is none, 1 as Fresnel's equations have it, 2 a fixed part
 
+#pragma once
+#include "Viewing/RayPackets.cl"
+
 #if SURFACE
-// Unpolarised light from an index of square n1 to one of n2, the square of n sin(theta) being `across`.
+// Unpolarised light from an index of square n1 to one of n2, the square of n sin(theta) being `across` (numerics.md,
+// Eq. (110)).
 inline real fresnel(real n1, real n2, real across)
 {
   const real in = sqrt(greater(n1 - across, (real)0.0f)); // n cos(theta)
@@ -18,7 +22,7 @@ inline real fresnel(real n1, real n2, real across)
 typedef struct
 {
   real3 middle, velocity;
-  real half_time, since;
+  real halfTime, since;
 } met_step;
 
 // Splits the rays that meet the surface in this step (`meets`). Light is known where the step starts; the surface lies
@@ -29,7 +33,7 @@ inline void split_at_surface(
   const int4 size = s->v->size;
   const float4 spacing = s->o->spacing;
   // Times before the middle: `outer` where the index is below the surface's, `inner` where it is not.
-  real outer = step->half_time + step->since;
+  real outer = step->halfTime + step->since;
   real inner = (real)0.0f;
   real3 bend;
   for (int n = 0; n < s->o->limits.z; ++n)
@@ -45,14 +49,14 @@ inline void split_at_surface(
   index_at(s, at, &bend);
 
   // Directions in the world.
-  const real after_start = step->half_time - before;
+  const real after_start = step->halfTime - before;
   const real3 t = stretched(further(step->velocity, after_start, bend), spacing);
   const real3 gradient = stretched(bend, spacing);
   const real scale = (real)1.0f / sqrt(greater(product(gradient, gradient), (real)1e-30f));
   const real3 normal = { gradient.x * scale, gradient.y * scale, gradient.z * scale };
   const real inwards = product(t, normal);
 #if SURFACE == 1
-  const real3 steps = stretched(normal, s->v->inverse_spacing);
+  const real3 steps = stretched(normal, s->v->inverseSpacing);
   const real away = (real)s->o->surface.z / sqrt(greater(product(steps, steps), (real)1e-30f));
   real3 unused;
   const real n1 = index_at(s, kept_within(further(at, -away, steps), size), &unused);
@@ -64,7 +68,7 @@ inline void split_at_surface(
 #endif
   const real3 back = further(t, (real)-2.0f * inwards, normal);
   reflected->at = chosen(meets, at, reflected->at);
-  reflected->velocity = chosen(meets, stretched(back, s->v->inverse_spacing), reflected->velocity);
+  reflected->velocity = chosen(meets, stretched(back, s->v->inverseSpacing), reflected->velocity);
 
   // Light.
   corners around;

@@ -1,13 +1,16 @@
 // A face of the box that is a table.
 //
-// Needs RayPackets.cl before it. Define besides
+// Define
 //   TABLE  1: there is one
+
+#pragma once
+#include "Viewing/RayPackets.cl"
 
 #if TABLE
 #define REACH_OF_TABLE 2e-3f // voxels; what rounding leaves between a ray's end and the face
 
 // Radiance per reflectance of the table where rays meet it, between voxel centres.
-inline rgb table_light(const surroundings* s, global const float4* lit, real3 p)
+inline rgb table_light(const surroundings* s, __global const float4* lit, real3 p)
 {
   const int axis = s->o->face.x;
   const int row = s->o->face.z + 2;
@@ -35,7 +38,7 @@ inline integer meet_table(const surroundings* s, const ray_packets* t, integer l
 // What rays that end on the table gain of its light; `towards` becomes what they mirror.
 //   lit  see table_light
 inline void end_on_table(
-  const surroundings* s, global const float4* lit, real3 p, integer ends, light* l, real3* towards)
+  const surroundings* s, __global const float4* lit, real3 p, integer ends, light* l, real3* towards)
 {
   const float4 table = s->o->table;
   rgb shine = table_light(s, lit, p);

@@ -1,22 +1,8 @@
 // The picture and the rays through its pixels.
-//
-// Needs Numerics.cl and Sampling.cl before it.
 
-// Field by field the same as MediumRayCaster.cxx's.
-typedef struct
-{
-  float4 eye;             // voxels; w: 0 the rays come from one point, 1 they are parallel
-  float4 forward;         // unit vector, world
-  float4 right;           // to the picture's right edge; of the world at unit distance, or where parallel of the world
-  float4 up;              // to its upper edge
-  float4 inverse_spacing; // voxels per length
-  float4 background;      // W / (length^2 sr), added to the environment; w: 0 nothing is to be seen behind the medium
-  float4 marching;        // step in voxels, transmittance at which to stop, depth where nothing is
-  int4 picture;           // width, height in pixels, first row and first column of packets
-  int4 size;              // voxels
-  int4 bricks;            // bricks
-  int4 environment;       // width, height in pixels
-} view;
+#pragma once
+#include "Viewing/Sampling.cl"
+#include "Viewing/ViewShared.h"
 
 // Pixels of a packet.
 #if REAL_WIDTH == 16
@@ -49,7 +35,7 @@ typedef struct
   real cosine;
 } camera_rays;
 
-inline camera_rays rays_through(const view* v, int column, int row)
+inline camera_rays rays_through(const ViewInfo* v, int column, int row)
 {
   const real x = ((real)(float)column + ACROSS + (real)0.5f) * (real)(2.0f / (float)v->picture.x) - (real)1.0f;
   const real y = ((real)(float)row + UPWARDS + (real)0.5f) * (real)(2.0f / (float)v->picture.y) - (real)1.0f;
@@ -64,9 +50,9 @@ inline camera_rays rays_through(const view* v, int column, int row)
   r.d.x *= r.cosine;
   r.d.y *= r.cosine;
   r.d.z *= r.cosine;
-  r.from.x = fma((real)(v->eye.w * v->inverse_spacing.x), offset.x, (real)v->eye.x);
-  r.from.y = fma((real)(v->eye.w * v->inverse_spacing.y), offset.y, (real)v->eye.y);
-  r.from.z = fma((real)(v->eye.w * v->inverse_spacing.z), offset.z, (real)v->eye.z);
+  r.from.x = fma((real)(v->eye.w * v->inverseSpacing.x), offset.x, (real)v->eye.x);
+  r.from.y = fma((real)(v->eye.w * v->inverseSpacing.y), offset.y, (real)v->eye.y);
+  r.from.z = fma((real)(v->eye.w * v->inverseSpacing.z), offset.z, (real)v->eye.z);
   return r;
 }
 
@@ -76,12 +62,12 @@ inline camera_rays rays_through(const view* v, int column, int row)
 //   depth     where the mean transmittance falls to a half, along the view axis
 typedef struct
 {
-  global float* radiance;
-  global float* alpha;
-  global float* depth;
+  __global float* radiance;
+  __global float* alpha;
+  __global float* depth;
 } canvas;
 
-inline void paint(const view* v, canvas picture, int column, int row, rgb radiance, real opaque, real where)
+inline void paint(const ViewInfo* v, canvas picture, int column, int row, rgb radiance, real opaque, real where)
 {
   const integer i = to_integer(ACROSS);
   const integer j = to_integer(UPWARDS);

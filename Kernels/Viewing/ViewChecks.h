@@ -8,8 +8,7 @@ namespace tyndall
 void Check(const ViewSettings& settings);
 
 /// @throws InvalidInput for an array of light that is not finite or has components of another number, and where the
-/// settings ask
-///   for one that is not there
+///   settings ask for one that is not there
 void Check(const SolvedLight& light, const Grid& grid, const ViewSettings& settings);
 
 /// What may not look as it was meant to, in sentences: a table without light, a surface where the index is never, an

@@ -1,5 +1,8 @@
 #include "Viewing/ViewLights.h"
 
+#include "Numerics/Constants.h"
+#include "Numerics/Vectors.h"
+
 #include <algorithm>
 #include <cmath>
 
@@ -10,27 +13,16 @@ namespace tyndall
 {
 namespace
 {
-constexpr double Pi = 3.14159265358979323846;
 
-glm::dvec3 Vector(const std::array<double, 3>& v)
-{
-  return { v[0], v[1], v[2] };
 }
 
-cl_float4 Float4(const glm::dvec3& v, double w)
+std::vector<SmallLight> SmallLights(const std::vector<Light>& lights, const Grid& grid, int rectangleSamples)
 {
-  return { { static_cast<float>(v.x), static_cast<float>(v.y), static_cast<float>(v.z), static_cast<float>(w) } };
-}
-}
-
-std::vector<cl_float4> SmallLights(const std::vector<Light>& lights, const Grid& grid, int rectangleSamples)
-{
-  std::vector<cl_float4> small;
+  std::vector<SmallLight> small;
   const auto add = [&](const glm::dvec3& place, bool point, const glm::dvec3& axis, double cone, const Rgb& power,
                      double scale, bool cosine) {
-    small.push_back(Float4(place, point ? 1.0 : 0.0));
-    small.push_back(Float4(axis, cone));
-    small.push_back(Float4(scale * Vector(power), cosine ? 1.0 : 0.0));
+    small.push_back(
+      { Float4(place, point ? 1.0 : 0.0), Float4(axis, cone), Float4(scale * Vector(power), cosine ? 1.0 : 0.0) });
   };
   for (const Light& light : lights)
   {

@@ -11,9 +11,8 @@ inline bool IsZero(const Rgb& colour)
   return colour[0] == 0.0 && colour[1] == 0.0 && colour[2] == 0.0;
 }
 
-/// Points and parallel beams that stand for the lights, as ScatteredLight.cl's small_light: three float4 each, world
-/// coordinates from the box's lower corner.
-std::vector<cl_float4> SmallLights(const std::vector<Light>& lights, const Grid& grid, int rectangleSamples);
+/// Points and parallel beams that stand for the lights.
+std::vector<SmallLight> SmallLights(const std::vector<Light>& lights, const Grid& grid, int rectangleSamples);
 
 /// Pixels of the environment with a column more on both sides, so that it closes.
 std::vector<cl_float4> ClosedEnvironment(const Environment& environment);
@@ -24,9 +23,7 @@ std::array<int, 2> FaceSize(const Grid& grid, int face);
 /// Irradiance on a face of the box by the light in the voxels on it, by pi and n^2: what a white table shines. With a
 /// border of one voxel that repeats the outermost ones.
 ///
-/// Where the light's mean direction m is known that is its net flux through the face, fluence max(0, m . normal): all
-/// of it where no light comes from the table's side. Else, or where m is not known (0), light is taken to be one beam
-/// and the same from all sides, as m says: fluence ((1 - |m|) / 4 + max(0, m . normal)).
+/// By fluence and mean direction, as numerics.md, Eq. (111).
 /// @param ior        null: 1
 /// @param fromBelow  light may come from the table's side: an environment shines
 std::vector<cl_float4> TableLight(

@@ -14,9 +14,10 @@ water = Calculator(Input=box, ResultArrayName="density", Function="0.5*max(0,RTD
 cloud = ParticipatingMedium(Input=water, Preset="Cloud (1 g/m^3 of water, 10 um droplets)", MaximumDensity=1,
                             MillimetresPerUnit=10000)  # a voxel is 10 m
 
-sun = LightRig(SunElevation=35, SunAzimuth=150, SunPower=[4, 3.7, 3.2])
-light = LightPropagationMaps(Input=cloud, Lights=sun, SkyColor=[0.15, 0.25, 0.45], Tolerance=5e-3)
-picture = MediumRayCaster(Input=light, Lights=sun, ImageSize=[400, 300], BackgroundColor=[0.15, 0.25, 0.45])
+sun = LightRig(SunElevation=30, SunAzimuth=180, SunPower=[4, 3.7, 3.2])
+light = LightPropagationMaps(Input=cloud, Lights=sun, SkyColor=[0.03, 0.06, 0.13], Tolerance=5e-3)
+picture = MediumRayCaster(Input=light, Lights=sun, ImageSize=[400, 300], BackgroundColor=[0.03, 0.06, 0.13],
+                          CameraPosition=[50, -95, 45], CameraViewAngle=24)
 SaveData(os.path.join(folder, "cloud.png"), proxy=picture)
 
 light.UpdatePropertyInformation()

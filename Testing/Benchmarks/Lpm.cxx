@@ -1,20 +1,17 @@
-// Light propagation maps, all ways to solve them side by side in one run: sequential and parallel as published, the
-// fused solver, and its control in C++.
+// Light propagation maps, all ways to solve them side by side in one run: sequential and parallel as published, and the
+// conservative solver, with its share of what the machine can do at most.
 //
 //   TyndallBenchLpm [--quick] [--sizes 32,64,128,256] [--repetitions N] [--scan build/data/skull_2.9.inr]
 //
 // --quick (or TYNDALL_BENCH_QUICK in the environment): seconds, small grids, few repetitions. A medium made by chance,
 // and the CT scan where its file is there. JSON lines as the figures are found, then tables.
 
-#include "Control.h"
 #include "LpmRuns.h"
 #include "LpmScenes.h"
 #include "LpmTables.h"
 #include "MachineLimits.h"
-#include "Measure.h"
-#include "Report.h"
+#include "Program.h"
 
-#include "Device/Errors.h"
 #include "LightPropagation/Conservative/ConservativePropagation.h"
 #include "LightPropagation/Published/ParallelPropagation.h"
 #include "LightPropagation/Published/SequentialPropagation.h"
@@ -33,36 +30,39 @@ namespace
 {
 struct Options
 {
-  bool quick = std::getenv("TYNDALL_BENCH_QUICK") != nullptr;
+  bool quick = false;
   std::vector<int> edges;
   int repetitions = 0; ///< of the fast methods; 0: as many as the grid's size allows
   std::string scan = "build/data/skull_2.9.inr";
 };
 
-Options ReadOptions(int argc, char* argv[])
+std::vector<int> Numbers(const std::string& text)
+{
+  std::vector<int> numbers;
+  std::istringstream words(text);
+  for (std::string word; std::getline(words, word, ',');)
+  {
+    numbers.push_back(std::max(1, std::atoi(word.c_str())));
+  }
+  return numbers;
+}
+
+Options OptionsOf(const Arguments& arguments)
 {
   Options options;
-  for (int i = 1; i < argc; ++i)
+  options.quick = arguments.quick;
+  options.edges = options.quick ? std::vector<int>{ 32, 64 } : std::vector<int>{ 32, 64, 128, 256 };
+  for (std::size_t i = 0; i < arguments.words.size(); i += 2)
   {
-    const std::string word = argv[i];
-    const char* value = i + 1 < argc ? argv[i + 1] : "";
-    if (word == "--quick")
-    {
-      options.quick = true;
-      continue;
-    }
-    ++i;
+    const std::string& word = arguments.words[i];
+    const std::string value = i + 1 < arguments.words.size() ? arguments.words[i + 1] : "";
     if (word == "--sizes")
     {
-      std::istringstream edges(value);
-      for (std::string edge; std::getline(edges, edge, ',');)
-      {
-        options.edges.push_back(std::max(16, std::atoi(edge.c_str()) / 16 * 16)); // the control's rule
-      }
+      options.edges = Numbers(value);
     }
     else if (word == "--repetitions")
     {
-      options.repetitions = std::atoi(value);
+      options.repetitions = std::atoi(value.c_str());
     }
     else if (word == "--scan")
     {
@@ -72,10 +72,6 @@ Options ReadOptions(int argc, char* argv[])
     {
       throw std::runtime_error("TyndallBenchLpm: what is " + word + "? See the top of Lpm.cxx.");
     }
-  }
-  if (options.edges.empty())
-  {
-    options.edges = options.quick ? std::vector<int>{ 32, 64 } : std::vector<int>{ 32, 64, 128, 256 };
   }
   return options;
 }
@@ -108,19 +104,6 @@ std::vector<Method> MethodsFor(
     [&](const Monitor& monitor) { return SolveParallel(device, medium, light, settings, monitor); } });
   methods.push_back({ Conservative, repetitions, true, "",
     [&](const Monitor& monitor) { return SolveConservative(device, medium, light, settings, monitor); } });
-  const auto control = [&](const std::string& name, const control::Kernels& kernels, bool polynomials) {
-    methods.push_back({ name, repetitions, true, Conservative,
-      [&medium, &light, &settings, kernels, polynomials](
-        const Monitor& monitor) { return control::Solve(kernels, polynomials, medium, light, settings, monitor); } });
-  };
-  for (const control::Kernels& kernels : control::KernelsHere())
-  {
-    control("control " + std::string(kernels.name), kernels, true);
-    if (!options.quick && !large)
-    {
-      control("control " + std::string(kernels.name) + ", exp", kernels, false);
-    }
-  }
   return methods;
 }
 
@@ -144,8 +127,9 @@ Case RunCase(Device& device, const Scene& scene, const MachineLimits& limits, co
   return result;
 }
 
-std::vector<Case> RunAll(Device& device, const Options& options)
+void RunAll(Device& device, const Arguments& arguments)
 {
+  const Options options = OptionsOf(arguments);
   const MachineLimits limits = MeasureLimits(device, !options.quick);
   PrintJson(device, limits);
   std::vector<Case> cases;
@@ -166,29 +150,15 @@ std::vector<Case> RunAll(Device& device, const Options& options)
     std::fprintf(
       stderr, "There is no CT scan %s: left out (--scan FILE; ./run demo fetches it)\n", options.scan.c_str());
   }
-  return cases;
+  PrintTables(cases);
+  if (!std::all_of(cases.begin(), cases.end(), [](const Case& one) { return one.Find(Conservative); }))
+  {
+    throw std::runtime_error("The conservative solver failed.");
+  }
 }
 }
 
 int main(int argc, char* argv[])
 {
-  try
-  {
-    const Options options = ReadOptions(argc, argv);
-    const std::shared_ptr<Device> device = Device::Find();
-    const std::vector<Case> cases = RunAll(*device, options);
-    PrintTables(cases);
-    const bool fused = std::all_of(cases.begin(), cases.end(), [](const Case& one) { return one.Find(Conservative); });
-    return fused ? EXIT_SUCCESS : EXIT_FAILURE;
-  }
-  catch (const DeviceError& error)
-  {
-    std::fprintf(stderr, "%s\n", error.what());
-    return std::getenv("TYNDALL_REQUIRE_DEVICE") ? EXIT_FAILURE : 125;
-  }
-  catch (const std::exception& error)
-  {
-    std::fprintf(stderr, "%s\n", error.what());
-    return EXIT_FAILURE;
-  }
+  return RunOnDevice(argc, argv, RunAll);
 }

@@ -25,10 +25,10 @@ bool OnDevice(const Figures& figures)
 /// Threads that a method keeps busy.
 int Cores(const Case& result, const Figures& figures)
 {
-  return figures.method == Sequential ? 1 : OnDevice(figures) ? result.cores : std::min(result.cores, 2);
+  return figures.method == Sequential ? 1 : result.cores;
 }
 
-/// Of the fused solver: what it does in a second of the cores' time over what they can do.
+/// Of the conservative solver: what it does in a second of the cores' time over what they can do.
 struct Shares
 {
   double operations = NotMeasured, flops = NotMeasured, bytes = NotMeasured;
@@ -79,11 +79,11 @@ void PrintMethod(const Case& result, const Figures& figures)
   {
     line.Add("error_against", figures.comparedWith);
   }
-  const Figures* fused = result.Find(Conservative);
-  if (fused && fused != &figures)
+  const Figures* conservative = result.Find(Conservative);
+  if (conservative && conservative != &figures)
   {
-    const Comparison whole = Ratio(fused, &figures, false);
-    const Comparison order = Ratio(fused, &figures, true);
+    const Comparison whole = Ratio(conservative, &figures, false);
+    const Comparison order = Ratio(conservative, &figures, true);
     line.Add("ratio", whole.wall).Add("core_ratio", whole.core);
     line.Add("ratio_per_order", order.wall).Add("core_ratio_per_order", order.core).Add("against", Conservative);
   }
@@ -97,9 +97,9 @@ std::vector<std::string> MethodRow(const Case& result, const Figures& figures)
     return { result.scene + " " + result.grid, figures.method, "fails" };
   }
   const Times times = figures.Medians();
-  const Figures* fused = result.Find(Conservative);
-  const Comparison whole = Ratio(&figures, fused, false);
-  const Comparison order = Ratio(&figures, fused, true);
+  const Figures* conservative = result.Find(Conservative);
+  const Comparison whole = Ratio(&figures, conservative, false);
+  const Comparison order = Ratio(&figures, conservative, true);
   const auto megabytes = [](double bytes) { return Text("%.0f", bytes / 1e6); };
   return { result.scene + " " + result.grid, figures.method, std::to_string(figures.runs.size()),
     Text("%.4f", times.wall), Text("%.4f", times.core), Text("%.4f", times.orderWall),
@@ -111,8 +111,8 @@ std::vector<std::string> MethodRow(const Case& result, const Figures& figures)
 
 void PrintFigures(const std::vector<Case>& cases)
 {
-  Table table({ "case", "method", "runs", "seconds", "core s", "s/order", "ns/update", "core ns", "x fused", "core x",
-    "order x", "device MB", "process MB", "balance", "RMSE" });
+  Table table({ "case", "method", "runs", "seconds", "core s", "s/order", "ns/update", "core ns", "x conservative",
+    "core x", "order x", "device MB", "process MB", "balance", "RMSE" });
   for (const Case& result : cases)
   {
     for (const Figures& figures : result.figures)
@@ -121,11 +121,11 @@ void PrintFigures(const std::vector<Case>& cases)
     }
   }
   table.Print("Medians; 25 directions a face, 3 orders");
-  std::printf(
-    "  seconds: the whole call on the wall; core s: of all threads together. s/order: all but the first.\n"
-    "  ns/update: an order, a voxel, direction and channel; core ns: from core seconds over the cores used.\n"
-    "  x fused: times of the fused solver's whole call; core x: in core seconds; order x: an order in core seconds.\n"
-    "  RMSE of fluence: parallel against sequential, control against fused.\n");
+  std::printf("  seconds: the whole call on the wall; core s: of all threads together. s/order: all but the first.\n"
+              "  ns/update: an order, a voxel, direction and channel; core ns: from core seconds over the cores used.\n"
+              "  x conservative: times of the conservative solver's whole call; core x: in core seconds; order x: an "
+              "order in core seconds.\n"
+              "  RMSE of fluence: parallel against sequential.\n");
 }
 
 void PrintShares(const std::vector<Case>& cases)
@@ -133,10 +133,10 @@ void PrintShares(const std::vector<Case>& cases)
   Table table({ "case", "", "operations", "flops", "bytes", "cached", "operations %", "flops %", "bandwidth %" });
   for (const Case& result : cases)
   {
-    const Figures* fused = result.Find(Conservative);
-    if (fused && fused->failure.empty())
+    const Figures* conservative = result.Find(Conservative);
+    if (conservative && conservative->failure.empty())
     {
-      const Shares shares = SharesOf(result, *fused);
+      const Shares shares = SharesOf(result, *conservative);
       table.Add(
         { result.scene + " " + result.grid, "", Text("%.1f", result.work.operations), Text("%.1f", result.work.flops),
           Text("%.2f", result.work.bytes), Text("%.1f", result.work.cached), Text("%.0f", 100.0 * shares.operations),

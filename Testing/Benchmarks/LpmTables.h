@@ -9,8 +9,7 @@ namespace bench
 {
 constexpr const char* Sequential = "sequential as published";
 constexpr const char* Parallel = "parallel as published";
-constexpr const char* Conservative = "fused";
-constexpr const char* Control = "control AVX2";
+constexpr const char* Conservative = "conservative";
 
 constexpr int Orders = 3;
 constexpr int DirectionsPerFace = 25;
@@ -24,7 +23,7 @@ struct Case
   int channels = 1;
   int cores = 1;        ///< of the device
   double updates = 0.0; ///< voxels, directions and channels of an order
-  SweepWork work;       ///< of the fused solver
+  SweepWork work;       ///< of the conservative solver
   MachineLimits limits;
   std::vector<Figures> figures;
 

@@ -41,53 +41,45 @@ void AddForAll(std::vector<Target>& targets, const Case& result)
     targets.push_back(
       { name + ": RMSE of parallel against sequential", false, 1e-4, { parallel->errorL2, parallel->errorL2 } });
   }
-  if (const Figures* control = result.Find(Control); control && std::isfinite(control->errorL2))
+  if (const Figures* conservative = result.Find(Conservative))
   {
     targets.push_back(
-      { name + ": RMSE of control against fused", false, 1e-5, { control->errorL2, control->errorL2 } });
-  }
-  if (const Figures* fused = result.Find(Conservative))
-  {
-    targets.push_back({ name + ": fused, energy balance", false, 1e-5, { fused->balance, fused->balance } });
+      { name + ": conservative, energy balance", false, 1e-5, { conservative->balance, conservative->balance } });
   }
 }
 
 void AddSpeed(std::vector<Target>& targets, const Case& result)
 {
-  const Figures* fused = result.Find(Conservative);
-  if (!fused)
+  const Figures* conservative = result.Find(Conservative);
+  if (!conservative)
   {
     return;
   }
   const std::string name = Colours(result) + " " + result.grid + ": ";
-  const Times times = fused->Medians();
+  const Times times = conservative->Medians();
   const double ns = 1e9 / result.updates;
   if (result.edge == 64 || result.edge == 128)
   {
-    targets.push_back(
-      { name + "fused, ns an update", false, 0.35, { ns * times.orderWall, ns * times.orderCore / result.cores } });
-    targets.push_back({ name + "fused / parallel as published, whole call", true, result.edge == 64 ? 5.0 : 3.0,
-      Ratio(result.Find(Parallel), fused, false) });
+    targets.push_back({ name + "conservative, ns an update", false, 0.35,
+      { ns * times.orderWall, ns * times.orderCore / result.cores } });
+    targets.push_back({ name + "conservative / parallel as published, whole call", true, result.edge == 64 ? 5.0 : 3.0,
+      Ratio(result.Find(Parallel), conservative, false) });
     if (result.channels == 3)
     {
-      targets.push_back({ name + "fused, the paper's case, s", false, result.edge == 64 ? 0.15 : 1.1,
+      targets.push_back({ name + "conservative, the paper's case, s", false, result.edge == 64 ? 0.15 : 1.1,
         { times.wall, times.core / result.cores } });
     }
   }
   if (const Figures* sequential = result.Find(Sequential))
   {
-    Comparison ratio = Ratio(sequential, fused, false);
+    Comparison ratio = Ratio(sequential, conservative, false);
     ratio.core *= result.cores; // the one runs on one core, the other on all
-    targets.push_back({ name + "fused / sequential as published, whole call", true, 40.0, ratio });
-  }
-  if (const Figures* control = result.Find(Control))
-  {
-    targets.push_back({ name + "time of fused / control AVX2, an order", false, 1.1, Ratio(fused, control, true) });
+    targets.push_back({ name + "conservative / sequential as published, whole call", true, 40.0, ratio });
   }
   if (result.edge == 256 && result.channels == 3)
   {
-    targets.push_back(
-      { name + "fused, device memory, GB", false, 1.0, { 1e-9 * fused->deviceBytes, 1e-9 * fused->deviceBytes } });
+    targets.push_back({ name + "conservative, device memory, GB", false, 1.0,
+      { 1e-9 * conservative->deviceBytes, 1e-9 * conservative->deviceBytes } });
   }
 }
 }
@@ -109,6 +101,6 @@ void PrintTargets(const std::vector<Case>& cases)
     table.Add({ target.what, target.atLeast ? ">=" : "<=", Text("%.3g", target.limit), Text("%.3g", target.figure.wall),
       Verdict(target, target.figure.wall), Text("%.3g", target.figure.core), Verdict(target, target.figure.core) });
   }
-  table.Print("Targets of issue 2. wall: as measured; cores: from core seconds, as if nobody else used the machine");
+  table.Print("Targets. wall: as measured; cores: from core seconds, as if nobody else used the machine");
 }
 }

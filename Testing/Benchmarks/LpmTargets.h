@@ -4,6 +4,6 @@
 
 namespace bench
 {
-/// The targets for speed, memory and agreement, each with what was measured and whether it is met.
+/// Targets for speed, memory and agreement, each with what was measured and whether it is met.
 void PrintTargets(const std::vector<Case>& cases);
 }

@@ -2,7 +2,6 @@
 
 #include "Device/Errors.h"
 
-#include <algorithm>
 #include <cstdio>
 #include <cstdlib>
 #include <exception>
@@ -10,27 +9,9 @@
 
 namespace bench
 {
-bool Arguments::Asks(const std::string& word) const
-{
-  return this->words.empty() || std::find(this->words.begin(), this->words.end(), word) != this->words.end();
-}
-
 int RunOnDevice(int argc, char* argv[], const std::function<void(tyndall::Device&, const Arguments&)>& work)
 {
-  Arguments arguments;
-  arguments.quick = std::getenv("TYNDALL_BENCH_QUICK") != nullptr;
-  for (int i = 1; i < argc; ++i)
-  {
-    const std::string word = argv[i];
-    if (word == "--quick")
-    {
-      arguments.quick = true;
-    }
-    else
-    {
-      arguments.words.push_back(word);
-    }
-  }
+  const Arguments arguments = ReadArguments(argc, argv);
   std::shared_ptr<tyndall::Device> device;
   try
   {

@@ -3,6 +3,8 @@
 //
 //   TyndallBenchRaycast [folder]   writes the last picture of each method there as PPM, to be looked at
 
+#include "Program.h"
+
 #include "Device/Device.h"
 #include "LightPropagation/Conservative/ConservativePropagation.h"
 #include "Viewing/MediumRayCaster.h"
@@ -370,22 +372,11 @@ void Run(Device& device, const Case& what)
   Print(what, "MediumRayCaster, first picture", TimeFirst(device, what));
   Print(what, "MediumRayCaster, shadow rays", TimeShadowRays(device, what));
 }
-}
 
-int main(int argc, char* argv[])
+void RunAll(Device& device, const bench::Arguments& arguments)
 {
-  const bool quick = std::getenv("TYNDALL_BENCH_QUICK") != nullptr;
-  const std::string folder = argc > 1 ? argv[1] : "";
-  std::shared_ptr<Device> device;
-  try
-  {
-    device = Device::Find();
-  }
-  catch (const DeviceError& error)
-  {
-    std::fprintf(stderr, "%s\n", error.what());
-    return std::getenv("TYNDALL_REQUIRE_DEVICE") ? EXIT_FAILURE : 125;
-  }
+  const bool quick = arguments.quick;
+  const std::string folder = arguments.words.empty() ? "" : arguments.words.front();
   const int n = quick ? 32 : 128;
   std::vector<Scene> scenes = { MakeScene("cloud", n, true) };
   if (!quick)
@@ -394,12 +385,17 @@ int main(int argc, char* argv[])
   }
   for (Scene& scene : scenes)
   {
-    Solve(*device, scene);
-    Run(*device, { scene, 0.5, quick ? 1 : 7, folder });
+    Solve(device, scene);
+    Run(device, { scene, 0.5, quick ? 1 : 7, folder });
     if (!quick)
     {
-      Run(*device, { scene, 1.0, 7, {} });
+      Run(device, { scene, 1.0, 7, {} });
     }
   }
-  return EXIT_SUCCESS;
+}
+}
+
+int main(int argc, char* argv[])
+{
+  return bench::RunOnDevice(argc, argv, RunAll);
 }

@@ -182,7 +182,7 @@ std::vector<SlabReference> Slabs(bool quick)
 void RunAll(Device& device, bool quick)
 {
   const std::vector<Method> methods = {
-    { "fused", false,
+    { "conservative", false,
       [&](const Medium& medium, const Illumination& light, const PropagationSettings& settings) {
         return SolveConservative(device, medium, light, settings);
       } },

@@ -5,6 +5,7 @@
 //
 //   TyndallBenchStress [--quick] [part of a row's, case's or method's name]...
 
+#include "Arguments.h"
 #include "Report.h"
 #include "StressChecks.h"
 #include "StressWorker.h"
@@ -14,7 +15,6 @@
 #include <algorithm>
 #include <cstdio>
 #include <cstdlib>
-#include <cstring>
 #include <functional>
 
 using namespace bench;
@@ -163,19 +163,7 @@ void PrintTable(const std::vector<Cell>& cells, const std::vector<std::string>& 
 
 int main(int argc, char* argv[])
 {
-  bool quick = std::getenv("TYNDALL_BENCH_QUICK") != nullptr;
-  std::vector<std::string> words;
-  for (int i = 1; i < argc; ++i)
-  {
-    if (std::strcmp(argv[i], "--quick") == 0)
-    {
-      quick = true;
-    }
-    else
-    {
-      words.emplace_back(argv[i]);
-    }
-  }
+  const bench::Arguments arguments = bench::ReadArguments(argc, argv);
   // Not asked here: a process that has used OpenCL cannot be forked.
   if (RunApart([] { return test::ThereIsADevice() ? 0 : 1; }, TimeLimit) != 0)
   {
@@ -183,7 +171,7 @@ int main(int argc, char* argv[])
     return std::getenv("TYNDALL_REQUIRE_DEVICE") ? EXIT_FAILURE : 125;
   }
   const std::vector<StressCase> cases = StressCases();
-  const std::vector<Cell> cells = CellsOf(cases, quick, words);
+  const std::vector<Cell> cells = CellsOf(cases, arguments.quick, arguments.words);
   const std::vector<std::string> verdicts = RunAllApart(
     cells.size(), TimeLimit, [&](std::size_t i) { return RunCell(cells[i]); },
     [&](std::size_t i, const std::string& death) {

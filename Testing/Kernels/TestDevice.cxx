@@ -131,13 +131,13 @@ TEST_P(Extinguished, KeepsItsRelativeErrorFromVacuumToOpaque)
   }
   tau.resize((tau.size() + 15) / 16 * 16, 1.0f);
   const int width = GetParam();
-  const char* text = "__kernel void evaluate(__global float* tau, __global float* lost, __global float* left) {"
-                     " const size_t i = get_global_id(0) * REAL_WIDTH; real rest;"
-                     " const real gone = extinguished(load_real(i, tau), &rest);"
-                     " store_real(gone, i, lost); store_real(rest, i, left); }";
+  const std::string text = std::string(kernel_source::Numerics) +
+    "__kernel void evaluate(__global float* tau, __global float* lost, __global float* left) {"
+    " const size_t i = get_global_id(0) * REAL_WIDTH; real rest;"
+    " const real gone = extinguished(load_real(i, tau), &rest);"
+    " store_real(gone, i, lost); store_real(rest, i, left); }";
   Device& device = this->GetDevice();
-  cl::Kernel kernel =
-    device.Kernel("evaluate", { kernel_source::Numerics, text }, "-DREAL_WIDTH=" + std::to_string(width));
+  cl::Kernel kernel = device.Kernel("evaluate", text, "-DREAL_WIDTH=" + std::to_string(width));
   Buffer<float> in(device, tau, "tau"), lost(device, tau.size(), "lost"), left(device, tau.size(), "left");
   With(kernel, in, lost, left);
   device.Queue().enqueueNDRangeKernel(kernel, cl::NullRange, cl::NDRange(tau.size() / width), cl::NullRange);

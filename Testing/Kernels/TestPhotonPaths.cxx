@@ -4,6 +4,8 @@
 #include "PhotonScene.h"
 #include "Prism.h"
 
+#include <algorithm>
+
 using namespace tyndall;
 
 namespace
@@ -237,4 +239,39 @@ TEST_F(PhotonPaths, ThroughAGlassBallTendToSnellAsVoxelsShrink)
   EXPECT_LT(errors[2], 0.02);
   EXPECT_LT(errors[1], 0.75 * errors[0]) << errors[0] << ' ' << errors[1] << ' ' << errors[2];
   EXPECT_LT(errors[2], 0.75 * errors[1]) << errors[0] << ' ' << errors[1] << ' ' << errors[2];
+}
+
+// Starting places of Hammersley's set are made of the bits of a photon's number: 300000 / 150 = 16 * 125 would choose
+// those of equal low bits, all within one sixteenth of the plane.
+TEST(ChosenPaths, AreSpreadOverTheirPlaceWhateverTheStep)
+{
+  for (const std::size_t count : { 150u, 128u, 7u, 1000u })
+  {
+    const std::vector<std::size_t> chosen = ChooseEvenly(300000, count);
+    ASSERT_EQ(chosen.size(), count);
+    std::array<int, 4> quarters = {};
+    for (std::size_t i = 0; i < count; ++i)
+    {
+      EXPECT_EQ(chosen[i] * count / 300000, i) << "one of each stretch";
+      ++quarters[(chosen[i] & 1) * 2 + (chosen[i] >> 1 & 1)]; // of the radical inverse to the base 2
+    }
+    EXPECT_GE(*std::min_element(quarters.begin(), quarters.end()), static_cast<int>(count / 8)) << count;
+  }
+}
+
+TEST(ChosenPaths, AreAllWhereAllAreAskedFor)
+{
+  for (const std::size_t size : { 1u, 2u, 13u, 100u })
+  {
+    for (const std::size_t count : { size, size + 5 })
+    {
+      const std::vector<std::size_t> chosen = ChooseEvenly(size, count);
+      ASSERT_EQ(chosen.size(), size);
+      for (std::size_t i = 0; i < size; ++i)
+      {
+        EXPECT_EQ(chosen[i], i);
+      }
+    }
+  }
+  EXPECT_TRUE(ChooseEvenly(10, 0).empty());
 }

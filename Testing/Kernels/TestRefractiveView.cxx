@@ -1,3 +1,4 @@
+#include "Light/LeftOut.h"
 #include "ViewScene.h"
 
 using namespace tyndall;

@@ -1,3 +1,4 @@
+#include "Comparison/ComparisonErrors.h"
 #include "Comparison/SolverComparison.h"
 
 #include <gtest/gtest.h>

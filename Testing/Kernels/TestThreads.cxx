@@ -193,7 +193,7 @@ class Stopped
 protected:
   static Work WorkNamed(const std::string& name)
   {
-    if (name == "fused")
+    if (name == "conservative")
     {
       return [](Device& device, const Monitor& monitor) { Cloud(0).Solve(device, monitor); };
     }
@@ -281,5 +281,6 @@ TEST_P(Stopped, GivesBackWhatItTookWhereMemoryEnds)
   EXPECT_NO_THROW(work(device, {}));
 }
 
-INSTANTIATE_TEST_SUITE_P(Solvers, Stopped, testing::Values("fused", "by_orders", "published", "photons", "viewed"),
+INSTANTIATE_TEST_SUITE_P(Solvers, Stopped,
+  testing::Values("conservative", "by_orders", "published", "photons", "viewed"),
   [](const auto& info) { return std::string(info.param); });

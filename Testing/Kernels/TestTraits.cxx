@@ -2,6 +2,7 @@
 #include "Difference.h"
 #include "MediumScene.h"
 
+#include "Light/LeftOut.h"
 #include "LightPropagation/Published/ParallelPropagation.h"
 #include "LightPropagation/Published/SequentialPropagation.h"
 #include "Medium/Traits.h"

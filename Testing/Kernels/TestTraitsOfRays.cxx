@@ -3,6 +3,7 @@
 #include "PhotonScene.h"
 #include "ViewScene.h"
 
+#include "Light/LeftOut.h"
 #include "Medium/Traits.h"
 #include "Photons/Emission/PhotonEmitter.h"
 

@@ -1,6 +1,7 @@
 #include "LightPropagation/Angular/DirectionSet.h"
 
 #include "Device/Errors.h"
+#include "Numerics/Constants.h"
 
 #include <glm/gtc/constants.hpp>
 
@@ -12,7 +13,6 @@ namespace tyndall
 {
 namespace
 {
-constexpr double Pi = glm::pi<double>();
 
 int CellsPerEdge(int perFace, const std::string& name)
 {
@@ -134,7 +134,7 @@ std::vector<Rgb> BoundaryRadiance(const DirectionSet& set, const Environment& en
     return radiance;
   }
   // Each cell in parts of about half a pixel: a pixel spans pi / height, a cell about pi / (2 n). An even number of
-  // them, so that none is a pole, where the azimuth means nothing.
+  // them, so that none is a pole, where the azimuth is not defined.
   const int n = set.cellsPerEdge;
   const int parts = 2 * std::clamp((environment.height / n + 1) / 2, 1, 128);
   for (std::size_t d = 0; d < set.directions.size(); ++d)

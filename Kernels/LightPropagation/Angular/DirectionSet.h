@@ -27,21 +27,19 @@ struct DirectionSet
 };
 
 /// As published (Gruson et al. 2012, section 3.1; Fattal 2009): cells of equal size on the cube's faces, all directions
-/// with the same weight. Such a set does not converge to the integral over directions as n grows (1.6% error).
+/// with the same weight. Sums over it do not tend to integrals as n grows: the half-range flux is 1.6% too large with
+/// 25 directions a face and tends to 3.1% (numerics.md, section 3).
 /// @param perFace  directions per face, a square number, else InvalidInput
 DirectionSet PublishedDirections(int perFace);
 
-/// Cells of equal angle, weighed by solid angle. By its symmetry the set integrates 1, omega and omega omega exactly.
-/// The half-range flux of a diffuse face, int |omega_x| = 2 pi, is off by 1.2% with 25 directions per face and by 0.2%
-/// with 100; weights corrected to make it (and omega_x^4) exact were tried and lose more than they gain: the
-/// transmission of diffuse light through slabs, 2 E3(tau), had five to ten times the error.
-/// The set is unchanged by every rotation and mirroring of the cube, to the last bit.
+/// Cells of equal angle, weighted by solid angle (numerics.md, Eqs. (15), (16)). The set integrates 1,
+/// omega and omega omega exactly; half-range integrals are off, see HalfRangeFlux. It is unchanged by every rotation
+/// and mirroring of the cube, to the last bit.
 /// @param perFace  directions per face, a square number, else InvalidInput that calls it `name`
 DirectionSet EquiangularDirections(int perFace, const std::string& name = "DirectionsPerFace");
 
-/// What a set carries of the flux of even light through a face, over the exact pi: the kink of |mu| at grazing
-/// directions makes it
-/// 0.9875 with 25 directions per face, 1.0019 with 100. Light that enters is off by as much.
+/// The flux of even light through a face as a set has it, over the exact pi (numerics.md, Eq. (17)): 0.9875 with 25
+/// directions per face, 1.0019 with 100. The power of diffuse light that enters is off by this factor.
 double HalfRangeFlux(const DirectionSet& set);
 
 /// Which direction's cell holds `omega` (any length but 0).

@@ -78,9 +78,9 @@ void Sort(
   bundles.push_back(fresh);
 }
 
-/// Rays that all start in the middle come through the box's sides in the same pattern, and as many directions as there
-/// may be do not take it away. Steps of two irrational numbers, those of the plastic number, fill a square evenly
-/// (Roberts 2018). Bundles take them in the order of their tangents, the same along every axis.
+/// Rays that all start in the middle come through the box's sides in the same pattern, however many directions there
+/// are. Steps of two irrational numbers, those of the plastic number, fill a square evenly (Roberts 2018). Bundles take
+/// them in the order of their tangents, the same along every axis.
 void Stagger(std::vector<Bundle>& bundles)
 {
   std::vector<Bundle*> inOrder;
@@ -133,7 +133,7 @@ int PlaneAt(double depth)
   return std::max(static_cast<int>(std::ceil(depth - OnBorder)) - 1, 0);
 }
 
-/// Add a move; those that are in its way come a plane earlier, just at its end.
+/// Add a move; others in its plane are shifted to the end of the plane before.
 void Insert(std::vector<Move>& moves, double depth, double part)
 {
   int plane = std::min(PlaneAt(depth), static_cast<int>(moves.size()) - 1);
@@ -149,7 +149,7 @@ void Insert(std::vector<Move>& moves, double depth, double part)
     moves[plane] = move;
     return;
   }
-  // All planes before have one: they come a plane later, where there is room.
+  // All planes before have one: they are shifted to the next plane that has none.
   const auto free = std::find_if_not(moves.begin(), moves.end(), IsMove);
   if (free != moves.end())
   {
@@ -159,9 +159,7 @@ void Insert(std::vector<Move>& moves, double depth, double part)
 }
 
 /// The moves of rays that start at `start` in their voxel and move by `tangent` voxels a plane, tangent x planes in
-/// all: whole ones, and one by the part that is then missing. Move k stands for what comes in from (k - 1) / tangent to
-/// k / tangent, and is at the place of `start` within that stretch; so is the part in its shorter one, after `before`
-/// whole moves.
+/// all: whole ones, and one by the part that is then missing (numerics.md, Eq. (21)).
 std::vector<Move> Moves(double start, double tangent, int planes)
 {
   std::vector<Move> moves(planes);
@@ -235,8 +233,8 @@ bool Bundle::MovesBothWaysAtOnce() const
   return Same(this->tangentU, this->tangentV) && Same(this->startU, this->startV);
 }
 
-/// Moves at the same time are one where nothing tells the axes apart, else the one of the larger tangent comes first:
-/// whatever way the bundle lies.
+/// Moves at the same depth are one move where tangents and starts are equal, else that of the larger tangent comes
+/// first: whatever way the bundle lies.
 PlaneCrossing Bundle::Crossing(int plane) const
 {
   const auto moveAt = [plane](const std::vector<Move>& moves, double start, double tangent) {

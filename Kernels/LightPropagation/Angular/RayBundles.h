@@ -9,17 +9,17 @@
 
 namespace tyndall
 {
-/// How the rays of light propagation maps run through a grid, worked out once on the host, in double.
+/// How the rays of light propagation maps run through a grid, worked out once on the host, in double (numerics.md,
+/// section 4.2).
 ///
 /// Rays march along an axis of the grid, plane by plane. All rays of one direction start on the lattice of the voxels,
 /// so they cross every plane in the same pattern: at most three voxels, one shift of the whole map. Directions that are
 /// mirror images of each other (and, where voxels are square across the axis, those with both tangents swapped) share
 /// the lengths of all segments: they make a Bundle, and transmittance is computed once for it.
 ///
-/// Rays that move aside by a voxel enter through a side of the box, and others leave on the far side. Over n planes
-/// that is tangent x n moves, which need not be a whole number. So that neither more nor less power enters than a
-/// direction carries, one move of the pattern is made by a part of each ray's power only; the rest stays in its voxel.
-/// What is even stays even, and nothing is lost.
+/// Promises: every voxel is crossed by every segment, so that a source enters with all of its power (Eq. (20)); one
+/// move aside of the pattern is made by a part of each ray's power, so that exactly the power of a direction enters
+/// through the box's sides (Eqs. (21), (28)).
 
 /// The part of a plane that a ray crosses in one voxel.
 struct Segment
@@ -59,7 +59,7 @@ struct Bundle
   double startU = 0.5; ///< where rays start within a voxel of the first plane, in (0, 1)
   double startV = 0.5;
   double length = 1.0; ///< of a ray within one plane
-  double power = 1.0;  ///< that a ray carries at radiance 1: weight |cos| area, length^2 sr
+  double power = 1.0;  ///< that a ray carries at radiance 1: weight |cos| area, length^2 sr; numerics.md, Eq. (19)
   /// By plane of the pattern, from where rays start; empty where both axes are periodic, so that nothing enters on the
   /// way: whole moves.
   std::vector<Move> movesU, movesV;
@@ -84,8 +84,7 @@ struct PlaneAxes
 PlaneAxes AcrossAxis(int axis);
 
 /// The axis that a direction marches along: the one of whose voxel planes it crosses most per unit length, so that it
-/// never moves more than one voxel aside. Where it crosses the planes of several alike, all of these: none of them
-/// comes first.
+/// never moves more than one voxel aside. Where it crosses the planes of several alike, all of these, in equal parts.
 std::vector<int> MarchingAxes(const Grid& grid, const std::array<double, 3>& omega);
 
 /// Of a direction's power, the part that marches along `axis`: 0, 1, or where several axes share it 1/2 or 1/3.

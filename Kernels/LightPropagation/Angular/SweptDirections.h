@@ -11,8 +11,8 @@
 
 namespace tyndall
 {
-/// A set of directions as sweeps take it through a box: the bundles of rays along each axis. Where nothing tells mirror
-/// images apart, one direction stands for all of them.
+/// A set of directions as the bundles of rays that sweep a box along each axis. Where mirror images carry the same
+/// light, one direction stands for all of them.
 class SweptDirections
 {
 public:
@@ -21,7 +21,7 @@ public:
   const DirectionSet& Set() const { return this->Directions; }
   RayStarts Starts() const { return this->WhereRaysStart; }
   const DirectionSymmetry& Symmetry() const { return this->Mirrors; }
-  bool MergesMirrors() const { return this->Merges; } ///< net flux tells them apart
+  bool MergesMirrors() const { return this->Merges; } ///< not where net flux is asked for, which differs
   /// Those that `direction` stands for, itself among them.
   std::vector<int> AllOf(int direction) const;
 

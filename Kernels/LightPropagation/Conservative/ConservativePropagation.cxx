@@ -1,9 +1,12 @@
 #include "LightPropagation/Conservative/ConservativePropagation.h"
 
 #include "Device/Errors.h"
+#include "Light/LeftOut.h"
 #include "LightPropagation/Conservative/DiffusionAcceleration.h"
 #include "LightPropagation/Conservative/SourceIteration.h"
+#include "LightPropagation/Convergence.h"
 #include "LightPropagation/Problem/ScatteringOrders.h"
+#include "Numerics/Constants.h"
 #include "Numerics/NumberText.h"
 
 #include <algorithm>
@@ -15,7 +18,6 @@ namespace tyndall
 {
 namespace
 {
-constexpr double Pi = 3.14159265358979323846;
 constexpr double ImbalanceAtMost = 1e-2; ///< beyond any rounding
 
 /// A solve must not hand on in silence that power went nowhere.
@@ -148,6 +150,7 @@ LightField SolveConservative(Device& device, const Medium& medium, const Illumin
   CheckBalance(problem, found.ledger.Balance());
   LightField light = LightOf(parts, std::move(found), accelerated);
   problem.Undo(light);
+  JudgeConvergence(settings, light);
   return light;
 }
 }

@@ -9,17 +9,18 @@
 
 namespace tyndall
 {
-/// Light propagation maps as they should be: the method of Fattal (2009) and Gruson et al. (2012), with
-///  - conservative deposit: what a ray loses, its voxel gains (path integrals by phi1; no division by sigma_t);
+/// Light propagation maps with the energy kept: the method of Fattal (2009) and Gruson et al. (2012), with
+///  - conservative deposit: what a ray loses, its voxel gains (numerics.md, Eqs. (23) to (27)); no division by sigma_t;
 ///  - EquiangularDirections;
-///  - lights, and what is small and bright in the environment, as a first-collision source: their unscattered light is
-///    followed along exact rays, not through the directions;
+///  - lights, and what is small and bright in environment and emission, as a first-collision source along exact rays;
 ///  - what else comes in from outside along more directions until it is first scattered, if uncollidedDirections are
 ///    given;
-///  - propagation and collection in one, so that memory is (2 source, path, fluence, sigma_s) arrays and the maps.
+///  - source iteration, or diffusion acceleration where light is scattered many times (numerics.md, sections 6, 7);
+///  - propagation and collection in one: memory is some five arrays (sigma_t, sigma_s, source, path, fluence) and the
+///    maps.
 ///
 /// Isotropic scattering. A medium with mean cosine g is solved as the isotropic medium with sigma_s (1 - g) (similarity
-/// relation: same diffusion, same absorption); leftOut says so.
+/// relation, numerics.md, Eq. (8)); leftOut says so.
 ///
 /// @throws InvalidInput  what Check(medium), Check(illumination) say, or settings out of range
 /// @throws DeviceError  if the buffers do not fit

@@ -1,8 +1,10 @@
 #include "LightPropagation/Conservative/DiffusionAcceleration.h"
 
 #include "LightPropagation/Conservative/SurfaceRadiance.h"
+#include "LightPropagation/Convergence.h"
 #include "LightPropagation/Problem/ScatteringOrders.h"
 #include "LightPropagation/Uncollided/UncollidedBoundary.h"
+#include "Numerics/Constants.h"
 
 #include <algorithm>
 #include <cmath>
@@ -11,7 +13,6 @@ namespace tyndall
 {
 namespace
 {
-constexpr double Pi = 3.14159265358979323846;
 constexpr int MostSweeps = 200;
 constexpr double ThickForMoments = 0.1; ///< mean free paths a voxel
 constexpr double Margin = 1.5;          ///< of the estimated error: changes do not fall off evenly
@@ -57,7 +58,7 @@ IterationResult DiffusionAcceleration::Run(const Monitor& monitor)
   return std::move(this->Result);
 }
 
-/// Where lamps' light is scattered first within a voxel matters where one is thick.
+/// In thick voxels it matters where lamps' light is first scattered.
 bool DiffusionAcceleration::NeedsMoments() const
 {
   const Grid& grid = this->TheMedium.grid;
@@ -116,7 +117,7 @@ void DiffusionAcceleration::AddLamps(const Monitor& monitor)
   }
 }
 
-/// A lamp's light in voxels where it matters how deep in them it is scattered: what passes their faces at once.
+/// Adds the part of a lamp's light that passes voxels' faces at once where it is first scattered.
 void DiffusionAcceleration::PassLampLight(const Buffer<float>& path, const Buffer<float>& moments)
 {
   const TransportParts& parts = this->Parts;
@@ -129,8 +130,8 @@ void DiffusionAcceleration::PassLampLight(const Buffer<float>& path, const Buffe
   }
 }
 
-/// How much of it counts: less where light hardly comes through a voxel. There it matters where in the voxel it is
-/// scattered, which the diffusion system knows of the light in sweeps.
+/// Weight of the difference of finer and usual directions (numerics.md, Eqs. (55), (76)): little in thick voxels, where
+/// it matters at which depth light is scattered, which the diffusion system has for the light in sweeps alone.
 double DiffusionAcceleration::PartOfDifference(std::size_t voxel, int channel) const
 {
   const std::array<double, 3>& h = this->TheMedium.grid.spacing;
@@ -141,12 +142,11 @@ double DiffusionAcceleration::PartOfDifference(std::size_t voxel, int channel) c
   return this->LinearSource ? 1.0 / (1.0 + tau * (0.25 * tau + 3.0 * absorbing)) : 1.0;
 }
 
-/// Sweeps carry all light from outside along the usual directions, as the diffusion system wants it. What the finer
-/// ones see of it before it is scattered more, or less, is added like the light of lamps. Where light is scattered many
-/// times, of the part that they see of an even sky, so that power is as in the sweeps in every voxel and through every
-/// face, and what is even stays so; where it is not, that would only bring back what few directions do to an even sky:
-/// power is as in the sweeps in all. Power that this adds to voxels or takes from them is made up for by what leaves
-/// the box.
+/// Sweeps carry all light from outside along the usual directions, as the diffusion system needs it. The difference
+/// that finer ones make to it before it is scattered is added like the light of lamps (numerics.md, Eq. (76)): where
+/// light is scattered many times, scaled in each voxel so that power is as in the sweeps and an even sky stays even,
+/// else scaled by the power that enters. Power that this adds to voxels or takes from them is made up for by what
+/// leaves the box.
 void DiffusionAcceleration::AddBoundaryDifference(const Monitor& monitor)
 {
   TransportParts& parts = this->Parts;
@@ -198,7 +198,7 @@ void DiffusionAcceleration::AddBoundaryDifference(const Monitor& monitor)
   }
 }
 
-/// Uncollided light is known: what of it is scattered is given to the medium, like what it shines itself.
+/// Uncollided light is known: what of it is scattered is a given source, like what the medium emits.
 void DiffusionAcceleration::GiveFirstScattered()
 {
   const TransportParts& parts = this->Parts;
@@ -225,7 +225,7 @@ void DiffusionAcceleration::MakeSweep()
 {
   TransportParts& parts = this->Parts;
   this->PartialCurrents = Buffer<float>(parts.TheDevice, parts.Layout.Floats(6), "the power from voxel to voxel");
-  // The system knows the net flux.
+  // No flux: it comes from the system.
   this->Swept = parts.MakeSweep({ &parts.Path, nullptr, &this->PartialCurrents, nullptr });
 }
 
@@ -289,8 +289,8 @@ double DiffusionAcceleration::UnitPower(int c) const
   return (this->GivenPower[c] + this->PowerIn[c]) / static_cast<double>(this->Parts.Layout.grid.VoxelCount());
 }
 
-/// Solve for the light of each channel and estimate how far it is from the truth of an endless iteration: changes fall
-/// off like a geometric series, so the rest of it is the change times q / (1 - q). The worst channel counts.
+/// Solve for the light of each channel and estimate how far it is from that of an endless iteration (numerics.md,
+/// Eq. (73)). The worst channel counts.
 void DiffusionAcceleration::Correct(int iteration)
 {
   double change = 0.0;
@@ -311,8 +311,8 @@ void DiffusionAcceleration::Correct(int iteration)
   this->Result.convergence.Add(this->Residual, change, this->Result.ledger);
 }
 
-/// Where the power went, by the diffusion system: it conserves energy. What a sweep says went out only tells through
-/// which faces.
+/// Where the power went, by the diffusion system, which conserves it. What left in the sweep is used only to share it
+/// among the faces.
 void DiffusionAcceleration::CountLight()
 {
   const Grid& grid = this->Parts.Layout.grid;
@@ -349,10 +349,10 @@ bool DiffusionAcceleration::Done(int iterations) const
 {
   const int most = this->Settings.maximumOrders > 0 ? this->Settings.maximumOrders : MostSweeps;
   return iterations >= most || this->Residual == 0.0 ||
-    (this->Settings.maximumOrders == 0 && iterations > 2 && this->Residual <= this->Settings.tolerance);
+    (this->Settings.maximumOrders == 0 && iterations > 2 && MeetsTolerance(this->Settings, this->Residual));
 }
 
-/// Where the system found less than nothing, what the last sweep found stands.
+/// Where the system's solution is negative, the fluence of the last sweep stands.
 void DiffusionAcceleration::WriteFluence()
 {
   TransportParts& parts = this->Parts;
@@ -388,7 +388,7 @@ void DiffusionAcceleration::WriteFluence()
   }
 }
 
-/// Of thick voxels: there the system knows what a sweep does not.
+/// Of thick voxels, from the powers of the system.
 void DiffusionAcceleration::FindSurfaceRadiance()
 {
   std::vector<SurfacePowers> powers(this->LinearSource ? this->Parts.Layout.channels : 0);
@@ -400,8 +400,8 @@ void DiffusionAcceleration::FindSurfaceRadiance()
   this->Result.surfaceRadiance = SurfaceRadiance(this->TheMedium, this->Settings.periodic, this->Parts.Lamps, powers);
 }
 
-/// The mean of what goes through a voxel's faces is more than what flows in it where light dies away within it. No
-/// light flows more than there is.
+/// Where light is absorbed within a voxel, the mean of the powers through its faces is more than its net flux, which is
+/// cut to the fluence.
 void DiffusionAcceleration::LimitFlux(const std::vector<float>& fluence)
 {
   const std::size_t stride = this->Parts.Layout.Stride();

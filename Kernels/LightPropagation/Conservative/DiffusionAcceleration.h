@@ -9,8 +9,9 @@
 
 namespace tyndall
 {
-/// Iteration with diffusion acceleration: each sweep carries all scattered light once, and a diffusion system
-/// (DiffusionSystem.h) that agrees with it on the power through every voxel's face carries it as far as it goes.
+/// Iteration with diffusion acceleration (numerics.md, section 7): each sweep carries all scattered light once; a
+/// diffusion system (DiffusionSystem.h), corrected by the power that the sweep found to pass each voxel's faces, then
+/// gives the fluence of all orders, which is the next sweep's source.
 class DiffusionAcceleration : public Iteration
 {
 public:

@@ -7,8 +7,8 @@
 
 namespace tyndall
 {
-/// Counts where the power of one light goes, W by channel: the only place that does. A value: what a sweep did is
-/// counted on a copy, and taken or not.
+/// Counts where the power of one light goes, W by channel: the only place that does (numerics.md, Eq. (80)). A value: a
+/// sweep can be counted on a copy, which replaces this or is dropped.
 class EnergyLedger
 {
 public:

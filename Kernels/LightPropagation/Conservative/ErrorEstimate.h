@@ -13,16 +13,13 @@ namespace tyndall
 /// Solves the same light in a medium of the same box, with settings.
 using PropagationSolver = std::function<LightField(const Medium&, const PropagationSettings&, const Monitor&)>;
 
-/// Solve, and estimate the error of fluence without a reference, from two solves on a grid of half the voxels an axis:
-///  - in voxel size, order 2 (Richardson): (fluence - coarse fluence) / (ratio of spacing^2 - 1);
-///  - in directions: the coarse fluence less that of about 0.6 times as many directions along a face's edge. It falls a
-///    little slower than with the number of directions, as number^-0.9: measured, ray effects are not smooth;
-///  - what orders that were not computed leave: the residual.
-/// The first two are smoothed (root mean square over 3 x 3 x 3 coarse voxels): where errors change sign, they are not
-/// 0. fluenceError is the root of the sum of squares, a standard error: measured on nine scenes 72 to 94% of the voxels
-///    lie within it and 93 to 99% within
-/// two, and relativeError is 0.65 to 2.2 times the true one. It is too large where the medium has edges as sharp as a
-/// voxel (coarsening blurs them), too small next to a lamp.
+/// Solve, and estimate the error of fluence without a reference, from two more solves on a grid of half the voxels an
+/// axis (numerics.md, section 9.2):
+///  - in voxel size, of order 2 (Richardson), Eq. (82);
+///  - in directions, by 0.6 times as many along a face's edge, Eq. (83);
+///  - of scattering orders that were not computed: the residual.
+/// fluenceError is a standard error, Eq. (84); relativeError that of all voxels. Too large where the medium has edges
+/// as sharp as a voxel (coarsening blurs them), too small next to a lamp. What was measured: README.md.
 ///
 /// Not known of a solve that was stopped after its first order while light was left: one order does not tell how fast
 /// orders shrink. relativeError is NaN then, and fluenceError empty.

@@ -1,6 +1,6 @@
-// Read by itself; the host gives CHUNK: voxels a work-item sums up before the host adds the chunks in double.
+// The host gives CHUNK: voxels a work-item sums up before the host adds the chunks in double.
 
-// What gets out of the box of the light that sets out from each voxel, more than the sweep said.
+// What leaves the box of each voxel's light besides what left in the sweep (numerics.md, Eq. (46)).
 // extra  of a source of 1, W length
 // tally  [channel][chunk] W
 __kernel void let_escape(__global float* path, const __global float* source, const __global float* extra,

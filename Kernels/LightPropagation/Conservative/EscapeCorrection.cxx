@@ -2,6 +2,7 @@
 
 #include "Device/Defines.h"
 #include "LightPropagation/Conservative/IsotropicScattering.h"
+#include "Numerics/Constants.h"
 #include "TyndallKernelSources.h"
 
 #include <algorithm>
@@ -10,7 +11,6 @@ namespace tyndall
 {
 namespace
 {
-constexpr double Pi = 3.14159265358979323846;
 }
 
 EscapeCorrection::EscapeCorrection(TransportParts& parts, const Monitor& monitor)
@@ -19,7 +19,7 @@ EscapeCorrection::EscapeCorrection(TransportParts& parts, const Monitor& monitor
   const TransportParts::EvenSky sky = parts.FindEvenSky(monitor);
   const Grid& grid = parts.Layout.grid;
   const double thinnest = *std::min_element(grid.spacing.begin(), grid.spacing.end());
-  // A voxel can only let out what it takes of its own light: about half its optical thickness; a half of that.
+  // At most a half of what a voxel takes of its own light, which is about half its optical thickness.
   const double whole = 0.25 * 4.0 * Pi * grid.VoxelVolume();
   const std::vector<float> extra = Planar(parts.Layout, parts.Layout.channels, [&](std::size_t i, int c) {
     const std::size_t at = c * parts.Layout.Stride() + i;
@@ -36,7 +36,7 @@ Rgb EscapeCorrection::Apply()
   const TransportParts& parts = this->Parts;
   const int channels = parts.Layout.channels;
   cl::Kernel kernel =
-    parts.TheDevice.Kernel("let_escape", { kernel_source::EscapeCorrection }, Define("CHUNK", CollectChunk));
+    parts.TheDevice.Kernel("let_escape", kernel_source::EscapeCorrection, Define("CHUNK", CollectChunk));
   const std::size_t chunks = (parts.Layout.Stride() + CollectChunk - 1) / CollectChunk;
   Buffer<float> tally(parts.TheDevice, chunks * channels, "sums");
   With(kernel, parts.Path, parts.Source, this->Extra, parts.OnDevice.SigmaT(), tally, cl_ulong(parts.Layout.Stride()),

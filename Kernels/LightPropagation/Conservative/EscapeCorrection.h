@@ -7,9 +7,9 @@
 
 namespace tyndall
 {
-/// More, or less, of what sets out from a voxel gets out of the box along finer directions than along the usual ones.
-/// Where light from outside comes in along the finer ones and scattered light is swept along the usual, this puts it
-/// right after each sweep, so that light that is the same everywhere stays so whatever comes in.
+/// Corrects, after each sweep of scattered light, what leaves the box: the part of a voxel's light that escapes along
+/// the finer directions of the boundary's light, less that along the usual ones (numerics.md, Eq. (46)). So light that
+/// is the same everywhere stays so, though it comes in along the former and is swept along the latter.
 class EscapeCorrection
 {
 public:
@@ -17,7 +17,7 @@ public:
   EscapeCorrection(TransportParts& parts, const Monitor& monitor);
 
   /// Takes from the path integrals of a sweep what escaped besides of the scattered light that was its source. What the
-  /// medium shines itself is left to the sweep: it may come from voxels so thin that they have nothing to give.
+  /// medium emits itself is left as the sweep has it: it may come from voxels so thin that there is nothing to take.
   /// @return W, by channel
   Rgb Apply();
 

@@ -1,7 +1,9 @@
-// What the sweeps gathered becomes light and the next order's source (Gruson et al., Eq. 4, conservative). Read after
-// Numerics.cl. The host gives
+// What the sweeps gathered becomes light and the next order's source (Gruson et al., Eq. 4, conservative). The host
+// gives
 //   CHUNK     voxels a work-item sums up before the host adds the chunks in double
 //   SCATTERS  0: sigma_s is zero, and neither it nor `source` is there
+
+#include "Numerics/Numerics.cl"
 
 // A work-item a chunk of a channel; a channel's arrays begin at a vector's border and are filled up with zeros to a
 // whole number of vectors.

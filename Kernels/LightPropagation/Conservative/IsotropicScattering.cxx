@@ -17,7 +17,7 @@ IsotropicScattering::IsotropicScattering(
 cl::Kernel IsotropicScattering::Kernel(const char* name) const
 {
   const int vector = this->TheDevice.FloatVectorWidth() >= 8 ? 8 : 4;
-  return this->TheDevice.Kernel(name, { kernel_source::Numerics, kernel_source::IsotropicScattering },
+  return this->TheDevice.Kernel(name, kernel_source::IsotropicScattering,
     Define("REAL_WIDTH", vector) + Define("SCATTERS", this->Scatters) + Define("CHUNK", CollectChunk));
 }
 

@@ -12,7 +12,7 @@ namespace tyndall
 constexpr std::size_t CollectChunk = 4096;
 
 /// The scattering operator of isotropic scattering: from the path integrals that a sweep left to fluence and to the
-/// next source, sigma_s fluence / 4 pi (Gruson et al. 2012, equation 4, conservative).
+/// next source, sigma_s fluence / 4 pi (numerics.md, Eq. (42); Gruson et al. 2012, equation 4, conservative).
 class IsotropicScattering
 {
 public:
@@ -31,11 +31,11 @@ public:
   Powers Scatter(const Buffer<float>& path, const Buffer<float>& fluence, const Buffer<float>& source,
     const std::array<std::size_t, 2>& range) const;
 
-  /// The source of all orders at once from the fluence of all: but for what the last one left over, which `source`
-  /// holds.
+  /// The source of all orders at once from the fluence of all, less what the last one left over, which `source` holds
+  /// (numerics.md, Eq. (44)).
   void SourceOfAll(const Buffer<float>& fluence, const Buffer<float>& source) const;
 
-  /// What a sweep left in the voxels outside a box becomes fluence.
+  /// Adds to fluence what a sweep left in the voxels outside a box.
   void AddOutside(const VoxelBox& box, const Buffer<float>& path, const Buffer<float>& fluence) const;
 
 private:

@@ -17,10 +17,11 @@ struct IterationResult
   EnergyLedger ledger;
   ConvergenceRecord convergence;
   std::vector<float> fluenceDirect, surfaceRadiance; ///< as LightField has them
-  std::vector<std::string> leftOut;                  ///< that the iteration alone knows of
+  std::vector<std::string> leftOut;                  ///< by the iteration
 };
 
-/// How scattering orders are added up: a strategy over the same sweep and scattering.
+/// How scattering orders are added up: a strategy over the same sweep and scattering. When it ends, and what its last
+/// residual means: numerics.md, section 7.9.
 class Iteration
 {
 public:
@@ -29,8 +30,7 @@ public:
   virtual IterationResult Run(const Monitor& monitor) = 0;
 };
 
-/// How far a solve is, 0 to 1. Iterations are counted where their number is known, else the logarithm of the residual
-/// tells.
+/// How far a solve is, 0 to 1: by iterations where their number is known, else by the logarithm of the residual.
 /// @param iterations  done, the one that is under way in part
 double ProgressOf(const PropagationSettings& settings, double residual, double iterations);
 }

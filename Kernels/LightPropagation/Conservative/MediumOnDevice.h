@@ -6,15 +6,15 @@
 
 namespace tyndall
 {
-/// A medium's coefficients as sweeps and what comes between them read them, 1/length, laid out as VolumeLayout says.
-/// Scattering with a mean cosine g is isotropic scattering of sigma_s (1 - g).
+/// A medium's coefficients as kernels read them, 1/length, laid out as VolumeLayout says. Scattering with a mean cosine
+/// g is isotropic scattering of sigma_s (1 - g) (numerics.md, Eq. (8)).
 class MediumOnDevice
 {
 public:
   /// Which coefficients differ from one another.
   struct Needs
   {
-    bool sigma_s; ///< else nobody reads it, or it is sigma_t
+    bool sigma_s; ///< else it is not read, or is sigma_t
     bool sigma_a; ///< by itself
   };
   /// @param medium  must stay

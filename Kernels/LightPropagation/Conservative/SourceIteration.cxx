@@ -1,6 +1,8 @@
 #include "LightPropagation/Conservative/SourceIteration.h"
 
 #include "Device/Sizes.h"
+#include "Light/LeftOut.h"
+#include "LightPropagation/Convergence.h"
 #include "LightPropagation/Uncollided/UncollidedBoundary.h"
 
 #include <algorithm>
@@ -74,9 +76,9 @@ void SourceIteration::MakeSweeps()
   }
 }
 
-/// Orders after the first go through the box that the medium fills alone: what leaves it does not come back. What they
-/// are outside of it is found at the end, for all of them in one sweep. Rays round a periodic axis would be on the way
-/// in both.
+/// Orders after the first go through the box that the medium fills alone: what leaves it does not come back. Their
+/// light in the other voxels is found at the end, for all of them in one sweep. Not with periodic axes, whose rays
+/// would be on the way in both.
 void SourceIteration::MakeFilledSweep()
 {
   const std::array<bool, 3>& periodic = this->Settings.periodic;
@@ -90,7 +92,7 @@ void SourceIteration::MakeFilledSweep()
   const int later = (this->Settings.maximumOrders > 0 ? this->Settings.maximumOrders : OrdersExpected) - 1;
   if (filled < MostlyFilled && later * (1.0 - filled) > 1.0)
   {
-    // The sweep at the end knows the flux.
+    // No flux: it comes from the sweep at the end.
     this->Filled = this->Parts.MakeSweep({ &this->Parts.Path, nullptr, nullptr, nullptr }, traits.filled);
   }
 }
@@ -211,9 +213,8 @@ void SourceIteration::ScatterOrder()
   this->Result.convergence.Add(this->Residual, all > 0.0 ? Sum(this->Scattered) / all : 0.0, this->Result.ledger);
 }
 
-/// What the orders to come will add to the light that is scattered, over what there is: the rest of a geometric series,
-/// as orders fall off like one in the end. Its ratio grows towards that, so its last growth is added. The worst channel
-/// counts.
+/// What the orders to come will add to the light that is scattered, over what there is: the rest of a geometric series
+/// (numerics.md, Eq. (43)). The worst channel counts.
 void SourceIteration::EstimateResidual()
 {
   this->Residual = 0.0;
@@ -232,7 +233,7 @@ void SourceIteration::EstimateResidual()
     this->Ratio[c] = ratio;
     this->LastScattered[c] = now;
   }
-  // One order says nothing of those to come.
+  // One order does not show how fast they fall.
   this->Residual = this->Order == 0 ? std::min(this->Residual, 1.0) : this->Residual;
 }
 
@@ -243,11 +244,11 @@ bool SourceIteration::Done() const
     return true;
   }
   return this->Settings.maximumOrders > 0 ? this->Order >= this->Settings.maximumOrders
-                                          : this->Order > 2 && this->Residual <= this->Settings.tolerance;
+                                          : this->Order > 2 && MeetsTolerance(this->Settings, this->Residual);
 }
 
-/// What the orders after the first are in the voxels around the medium, and through which faces it leaves: one sweep of
-/// all that was scattered but what the last order left over.
+/// Light of the orders after the first in the voxels around the medium, and the faces that it leaves through: one sweep
+/// of all that was scattered but what the last order left over (numerics.md, Eq. (44)).
 void SourceIteration::SweepEmptySlabs(const Monitor& monitor)
 {
   TransportParts& parts = this->Parts;

@@ -11,7 +11,7 @@
 namespace tyndall
 {
 /// Source iteration: one scattering order after the other. Each sweep carries what the one before scattered; the
-/// fluence is their sum.
+/// fluence is their sum (numerics.md, section 6).
 class SourceIteration : public Iteration
 {
 public:

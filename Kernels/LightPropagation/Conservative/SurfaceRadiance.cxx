@@ -1,6 +1,7 @@
 #include "LightPropagation/Conservative/SurfaceRadiance.h"
 
 #include "Medium/BoxFaces.h"
+#include "Numerics/Constants.h"
 
 #include <algorithm>
 #include <cmath>
@@ -9,7 +10,6 @@ namespace tyndall
 {
 namespace
 {
-constexpr double Pi = 3.14159265358979323846;
 constexpr double Uncertainty = 0.1;     ///< of diffusion, in sqrt(1 - albedo) of the light that comes in
 constexpr double UncertainPart = 0.5;   ///< of what lamps' rays bring too much or too little to a voxel
 constexpr double MostUneven = 4.0;      ///< that lamps' rays are taken to be
@@ -28,7 +28,7 @@ struct Beam
   double cosine;     ///< to the inward normal
 };
 
-/// What of one channel is known at a cell.
+/// One channel at a cell.
 struct Surface
 {
   double albedo, emitted; ///< emission / sigma_a; 0 without sigma_a
@@ -102,7 +102,7 @@ std::array<double, 4> Leaving(const Surface& s)
     halfSpace += 2.0 * Nodes[n] * Weights[n] * OfHalfSpace(s, Nodes[n], s.brought);
     deep += 2.0 * Nodes[n] * Weights[n] * FromDeepWithin(s.albedo, Nodes[n]);
   }
-  // What the diffusion system makes of the same.
+  // The same as diffusion with Marshak's condition has it (numerics.md, Eq. (79)).
   double exact = 0.0;
   for (std::size_t n = 0; n < Nodes.size(); ++n)
   {
@@ -131,7 +131,7 @@ std::array<double, 4> Leaving(const Surface& s)
   return radiance;
 }
 
-/// What a voxel has lost of lamps' light, over what the beams through its faces at the box's should leave there.
+/// What a voxel takes of lamps' light, over what the beams through its faces at the box's should leave there.
 double Brought(const Medium& medium, const std::array<bool, 3>& periodic, const std::vector<Light>& lamps,
   const BoxFaceCell& cell, int channel, double fluence)
 {

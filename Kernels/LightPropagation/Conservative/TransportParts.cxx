@@ -4,12 +4,12 @@
 #include "LightPropagation/Uncollided/UncollidedBoundary.h"
 #include "LightPropagation/Uncollided/UncollidedEmission.h"
 #include "LightPropagation/Uncollided/UncollidedLamp.h"
+#include "Numerics/Constants.h"
 
 namespace tyndall
 {
 namespace
 {
-constexpr double Pi = 3.14159265358979323846;
 
 RayStarts StartsOf(const PropagationSettings& settings)
 {

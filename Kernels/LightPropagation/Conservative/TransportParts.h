@@ -23,7 +23,7 @@ class TransportParts
 {
 public:
   /// @param problem  must stay
-  /// @param accelerated  light is to be carried far by a diffusion system between sweeps
+  /// @param accelerated  for diffusion acceleration
   /// @throws DeviceError if the arrays do not fit; InvalidInput where rays are too few (BoundaryLight.h)
   TransportParts(Device& device, const PropagationProblem& problem, bool accelerated);
   TransportParts(const TransportParts&) = delete; // lights see directions that this owns
@@ -61,9 +61,8 @@ public:
     SweepTally tally;
   };
   UncollidedFlux FindUncollided(const UncollidedSource& source, const Monitor& monitor);
-  /// What a sky of radiance 1 is before it is scattered, along the finer directions and along the usual ones. Read as
-  /// how much of the light that sets out from a voxel gets out of the box (reciprocity), it tells how far scattered
-  /// light is off.
+  /// Uncollided light of a sky of radiance 1, along the finer directions and along the usual ones. By reciprocity it is
+  /// also what leaves the box of a source of 1 in each voxel (numerics.md, Eq. (45)).
   struct EvenSky
   {
     UncollidedFlux fine, usual;

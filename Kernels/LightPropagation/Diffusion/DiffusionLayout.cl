@@ -1,5 +1,8 @@
-// What the kernels of the diffusion system share. Read first; the host gives
+// What the kernels of the diffusion system share. The host gives
 //   DOUBLES  1 where the device has double precision
+
+#pragma once
+#include "LightPropagation/Diffusion/DiffusionShared.h"
 
 #if DOUBLES
 #pragma OPENCL EXTENSION cl_khr_fp64 : enable
@@ -7,22 +10,6 @@ typedef double exact;
 #else
 typedef float exact;
 #endif
-
-// As DiffusionLayout in DiffusionSystem.h.
-typedef struct
-{
-  int size[3];
-  int periodic[3];
-  int linear; // 1: the light between voxels' centres is linear; 0: each voxel is as one
-  int stride; // of channels in the solver's arrays
-  int first_t,
-    first;        // where this channel begins: of sigma_t, of all others (currents: six times that, flux: three times)
-  int pattern[6]; // where the tables of crossings begin: [axis][other axes in order]
-  float spacing[3];
-  float half_range;  // sum over directions of w mu / 4 pi, mu > 0: 1/4 but for the direction set
-  float floor;       // optical length between voxels' centres below which they pass no more
-  float incoming[6]; // W / length^2 through each face of the box
-} diffusion_layout;
 
 // The voxel of a work-item: x, y, z and i.
 #define VOXEL(count)                                                          \

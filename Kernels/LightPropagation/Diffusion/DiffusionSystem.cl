@@ -1,12 +1,12 @@
-// The diffusion system of a channel, see DiffusionSystem.h: what a sweep found becomes its right-hand side. Read after
-// DiffusionLayout.cl.
+// The diffusion system of a channel, see DiffusionSystem.h: what a sweep found becomes its right-hand side.
 //
 // Face d of a voxel is -x, +x, -y, +y, -z, +z. tau is the optical length of a voxel along an axis.
 
-// Outflow of a half-space whose source is constant in each voxel and falls by one from mean free path to mean free
-// path:
-// sum over mu of mu (tau / 2) coth(tau / (2 mu)) (Gauss, 4 points). 1/6 where voxels are thin, as it should be; tau / 8
-// where they are thick.
+#include "LightPropagation/Diffusion/DiffusionLayout.cl"
+#include "LightPropagation/Diffusion/LampPassing.cl"
+
+// Part of the partial current of a source that is constant in each voxel and falls by one from mean free path to mean
+// free path (numerics.md, Eq. (51); 4 Gauss points): 1/6 for thin voxels, tau / 8 for thick ones.
 static float stair(float tau)
 {
   const float mu[4] = { 0.0694318442f, 0.3300094782f, 0.6699905218f, 0.9305681558f };
@@ -26,21 +26,21 @@ static float half_diffusion_length(float tau, float sigma_t, float sigma_a)
   return sigma_t > 0.0f ? 0.5f * tau * sqrt(3.0f * fmin(sigma_a / sigma_t, 1.0f)) : 0.0f;
 }
 
-// How much better than tau / 2 a half voxel conducts whose light dies away on the way: exactly that of light that falls
-// off from a border...
+// Conductance of an absorbing half voxel over that of tau / 2 (numerics.md, Eq. (57)): of light that falls off
+// exponentially from a border...
 static float at_border(float y)
 {
   return y < 0.02f ? 1.0f + y * (2.0f / 3.0f) : 2.0f * y * y / (2.0f * y - 1.0f + exp(-2.0f * y));
 }
-// ...and between voxels of the same kind, where hyperbolic functions are met exactly.
+// ...and between voxels of the same kind.
 static float among_equals(float y)
 {
   const float x = y < 40.0f ? y / sinh(fmax(y, 1e-3f)) : 0.0f;
   return y < 0.01f ? 1.0f : fmax(x * x, 1e-20f);
 }
 
-// What a face passes per difference of fluence and area.
-static float pass_face(const diffusion_layout* layout, float tau0, float tau1, float y0, float y1, float flat_source)
+// Conductance of an inner face per area (numerics.md, Eq. (57)).
+static float pass_face(const DiffusionLayout* layout, float tau0, float tau1, float y0, float y1, float flat_source)
 {
   const float mean = 0.5f * (tau0 + tau1);
   if (!layout->linear)
@@ -55,31 +55,32 @@ static float pass_face(const diffusion_layout* layout, float tau0, float tau1, f
   return 1.0f / (3.0f * fmax(0.5f * (way0 + way1), layout->floor));
 }
 
-static float face_area(const diffusion_layout* layout, int axis)
+static float face_area(const DiffusionLayout* layout, int axis)
 {
   return layout->spacing[(axis + 1) % 3] * layout->spacing[(axis + 2) % 3];
 }
-static float volume_of(const diffusion_layout* layout)
+static float volume_of(const DiffusionLayout* layout)
 {
   return layout->spacing[0] * layout->spacing[1] * layout->spacing[2];
 }
 
-// Optical length from the voxel's middle to a face of the box, as the light's way counts.
-static float way_to_boundary(const diffusion_layout* layout, float tau, float sigma_t, float sigma_a)
+// Twice the optical length from the voxel's middle to a face of the box, shorter where the voxel absorbs (numerics.md,
+// Eq. (58)).
+static float way_to_boundary(const DiffusionLayout* layout, float tau, float sigma_t, float sigma_a)
 {
   return layout->linear ? tau / at_border(half_diffusion_length(tau, sigma_t, sigma_a)) : tau;
 }
-static float pass_boundary(const diffusion_layout* layout, float way)
+static float pass_boundary(const DiffusionLayout* layout, float way)
 {
-  const float x = 3.0f * layout->half_range * way;
-  return 2.0f * layout->half_range / (1.0f + (layout->linear ? x : x / (1.0f + x)));
+  const float x = 3.0f * layout->halfRange * way;
+  return 2.0f * layout->halfRange / (1.0f + (layout->linear ? x : x / (1.0f + x)));
 }
 
 // flat_source  [axis][stride]
-__kernel void diffusion_flat_source(diffusion_layout layout, const __global float* sigma_t, __global float* flat_source)
+__kernel void diffusion_flat_source(DiffusionLayout layout, const __global float* sigma_t, __global float* flat_source)
 {
   VOXEL(layout.size)
-  sigma_t += layout.first_t;
+  sigma_t += layout.firstT;
   for (int axis = 0; axis < 3; ++axis)
   {
     flat_source[(ulong)axis * layout.stride + i] = stair(sigma_t[i] * layout.spacing[axis]);
@@ -88,11 +89,11 @@ __kernel void diffusion_flat_source(diffusion_layout layout, const __global floa
 
 // conductance  [axis][voxel] of the voxel's low face, length^2; 0 on the box's border
 // loss         what absorption and the border take per fluence
-__kernel void diffusion_conductance(diffusion_layout layout, const __global float* sigma_t,
+__kernel void diffusion_conductance(DiffusionLayout layout, const __global float* sigma_t,
   const __global float* sigma_a, const __global float* flat_source, __global float* conductance, __global float* loss)
 {
   VOXEL(layout.size)
-  sigma_t += layout.first_t;
+  sigma_t += layout.firstT;
   sigma_a += layout.first;
   const ulong stride = layout.stride;
   const int count = layout.size[0] * layout.size[1] * layout.size[2];
@@ -118,13 +119,13 @@ __kernel void diffusion_conductance(diffusion_layout layout, const __global floa
   loss[i] = taken;
 }
 
-static bool is_border(const diffusion_layout* layout, const int* at, int d)
+static bool is_border(const DiffusionLayout* layout, const int* at, int d)
 {
   const int axis = d / 2;
   return !layout->periodic[axis] && at[axis] == (d & 1 ? layout->size[axis] - 1 : 0);
 }
 
-// How much a voxel of optical length tau is a thick one beside one of length beyond.
+// From 0 to 1: how thick a voxel of optical length tau is beside one of length beyond (numerics.md, Eq. (62)).
 static float contrast(float tau, float beyond)
 {
   const float thick = 0.8f * tau * tau;
@@ -132,9 +133,9 @@ static float contrast(float tau, float beyond)
   return unlike * unlike * thick * thick / ((1.0f + thick * thick) * (1.0f + beyond * beyond));
 }
 
-// Of a thick voxel beside thinner ones those see only the skin: how much that counts, and for each inner face.
+// Of a voxel beside thinner ones: the largest contrast of its inner faces, 0 below 0.01, and that of each.
 static float openness(
-  const diffusion_layout* layout, const __global float* sigma_t, int i, const int* next, const int* at, float* open)
+  const DiffusionLayout* layout, const __global float* sigma_t, int i, const int* next, const int* at, float* open)
 {
   float most = 0.0f;
   for (int d = 0; d < 6; ++d)
@@ -149,13 +150,13 @@ static float openness(
   return most > 0.01f ? most : 0.0f;
 }
 
-// What the sweep's light is compared with: the light it found where voxels are thin, the light it was given where they
-// are thick and it only repeats that.
-__kernel void diffusion_model(diffusion_layout layout, const __global float* sigma_t, const __global float* path,
+// The fluence at which the sweep's power is compared with diffusion (numerics.md, Eq. (56)): in thin voxels what
+// the sweep found, in thick ones what it was given.
+__kernel void diffusion_model(DiffusionLayout layout, const __global float* sigma_t, const __global float* path,
   const __global exact* fluence, const __global float* source, __global float* model)
 {
   VOXEL(layout.size)
-  sigma_t += layout.first_t;
+  sigma_t += layout.firstT;
   path += layout.first;
   source += layout.first;
   const int at[3] = { x, y, z };
@@ -175,7 +176,7 @@ typedef struct
 {
   const __global float* sigma_t;
   const __global float* sigma_a;
-  const __global float* flat_source;
+  const __global float* flatSource;
   const __global float* conductance;
   const __global float* currents;
   const __global float* passed;
@@ -185,9 +186,9 @@ typedef struct
   int count;
 } diffusion_arrays;
 
-// Rays that cross a face, over those that should: what a repeated pattern of few rays has too many or too few.
+// Power of rays that cross a face in their repeated pattern, over its mean (numerics.md, Eq. (65)).
 static float pattern_at(
-  const diffusion_layout* layout, const diffusion_arrays* arrays, int axis, const int* at, float tau)
+  const DiffusionLayout* layout, const diffusion_arrays* arrays, int axis, const int* at, float tau)
 {
   const int b = axis == 0 ? 1 : 0;
   const int c = axis == 2 ? 1 : 2;
@@ -197,23 +198,23 @@ static float pattern_at(
   return 1.0f + thick * (crossing - 1.0f);
 }
 
-// The weight of the transport correction, of what a sweep knows better than diffusion: little where voxels are thick,
-// or the light dies away within one, and it knows nothing.
-static float weight_of_transport(const diffusion_layout* layout, float tau, float absorbing)
+// The weight of the transport correction (numerics.md, Eq. (55)): 1 in thin voxels, little in thick or absorbing
+// ones, where the sweep's power holds nothing but the errors of its source.
+static float weight_of_transport(const DiffusionLayout* layout, float tau, float absorbing)
 {
   return layout->linear ? 1.0f / (1.0f + tau * (0.25f * tau + 3.0f * absorbing)) : 1.0f;
 }
 
-// Power through inner face d out of voxel i, that of the sweep less that of the model.
+// Power through inner face d out of voxel i, that of the sweep less that of the model (numerics.md, Eq. (54)).
 static float remainder_of_face(
-  const diffusion_layout* layout, const diffusion_arrays* arrays, int d, int i, int j, const int* at)
+  const DiffusionLayout* layout, const diffusion_arrays* arrays, int d, int i, int j, const int* at)
 {
   const int axis = d / 2;
   const ulong stride = arrays->stride;
   const float tau = 0.5f * layout->spacing[axis] * (arrays->sigma_t[i] + arrays->sigma_t[j]);
   const float passes = arrays->conductance[axis * arrays->count + (d & 1 ? j : i)];
   const float net = arrays->currents[(d ^ 1) * stride + j] - arrays->currents[d * stride + i];
-  const float flat_source = arrays->flat_source[axis * stride + i] + arrays->flat_source[axis * stride + j];
+  const float flat_source = arrays->flatSource[axis * stride + i] + arrays->flatSource[axis * stride + j];
   const float spread =
     layout->linear ? 3.0f * passes * flat_source * pattern_at(layout, arrays, axis, at, tau) : passes;
   const float absorbing = 0.5f * layout->spacing[axis] * (arrays->sigma_a[i] + arrays->sigma_a[j]);
@@ -224,12 +225,13 @@ static float remainder_of_face(
   return transport_weight > 1e-12f ? transport_weight * (net - spread * (arrays->model[i] - arrays->model[j])) : 0.0f;
 }
 
-// Power through a face of the box, out less in, that the model expects; what it expects without any light in the voxel.
+// Power through a face of the box, out less in, that a sweep finds by the model (numerics.md, Eq. (59));
+// `dark`: what diffusion has there without any light in the voxel.
 static float model_of_boundary(
-  const diffusion_layout* layout, const diffusion_arrays* arrays, int d, int i, const int* at, float* dark)
+  const DiffusionLayout* layout, const diffusion_arrays* arrays, int d, int i, const int* at, float* dark)
 {
   const int axis = d / 2;
-  const float a = layout->half_range;
+  const float a = layout->halfRange;
   const float tau = arrays->sigma_t[i] * layout->spacing[axis];
   const float way = way_to_boundary(layout, tau, arrays->sigma_t[i], arrays->sigma_a[i]);
   const float passes = pass_boundary(layout, way);
@@ -243,13 +245,13 @@ static float model_of_boundary(
     return net * area;
   }
   const float at_face = light - 1.5f * way * net;
-  const float spread = a * at_face + 3.0f * net * arrays->flat_source[axis * arrays->stride + i] - incoming;
+  const float spread = a * at_face + 3.0f * net * arrays->flatSource[axis * arrays->stride + i] - incoming;
   return pattern_at(layout, arrays, axis, at, tau) * spread * area;
 }
 
-// Lamps' light that is scattered near face d of voxel i and passes it at once, less what comes the other way.
+// Lamps' light that is scattered near face d of voxel i and passes it at once, less what comes the other way, W.
 static float passing(
-  const diffusion_layout* layout, const diffusion_arrays* arrays, int d, int i, const int* next, bool border)
+  const DiffusionLayout* layout, const diffusion_arrays* arrays, int d, int i, const int* next, bool border)
 {
 #if PASSING
   return arrays->passed[d * arrays->stride + i] - (border ? 0.0f : arrays->passed[(d ^ 1) * arrays->stride + next[d]]);
@@ -258,13 +260,13 @@ static float passing(
 #endif
 }
 
-// What a sweep knows better about the faces of the box at voxel i, W out of it less in, in all.
+// Of all faces of the box at voxel i, W out less in: that of the sweep less that of the model (numerics.md, Eq. (60)).
 //   power    what the medium shines there, in the sweep, less what it takes of the light
-//   share    [face] its part for each face: as the sweep's light seems to leave through them
-//   seeming  [face] power out, of the sweep, that seems to leave through each
+//   share    [face] its part for each face, in proportion to `seeming`
+//   seeming  [face] power out, of the sweep: an estimate, for its tally is not by voxel (numerics.md, Eq. (61))
 //   transport_weight  how much of it counts
-static float remainder_of_borders(const diffusion_layout* layout, const diffusion_arrays* arrays, int i,
-  const int* next, const int* at, float power, float* share, float* seeming, float* transport_weight)
+static float remainder_of_borders(const DiffusionLayout* layout, const diffusion_arrays* arrays, int i, const int* next,
+  const int* at, float power, float* share, float* seeming, float* transport_weight)
 {
   float left = power; // through the box's faces, out less in
   float in = 0.0f, expected = 0.0f, longest = 0.0f, sum = 0.0f, borders = 0.0f;
@@ -281,7 +283,7 @@ static float remainder_of_borders(const diffusion_layout* layout, const diffusio
       const float tau = arrays->sigma_t[i] * layout->spacing[axis];
       const float through = exp(-fmin(tau, 80.0f));
       seeming[d] = through * arrays->currents[(d ^ 1) * arrays->stride + i] +
-        (1.0f - through) * layout->half_range * face_area(layout, axis) * fmax(arrays->model[i], 0.0f);
+        (1.0f - through) * layout->halfRange * face_area(layout, axis) * fmax(arrays->model[i], 0.0f);
       expected += model[d];
       sum += seeming[d];
       in += entered;
@@ -311,15 +313,15 @@ static float remainder_of_borders(const diffusion_layout* layout, const diffusio
 
 // Power through face d out of voxel i, less what comes in, by the solution; `share` of its remainder where it is the
 // box's.
-static exact power_of_face(const diffusion_layout* layout, const diffusion_arrays* arrays,
-  const __global exact* fluence, int d, int i, const int* next, const int* at, const float* share)
+static exact power_of_face(const DiffusionLayout* layout, const diffusion_arrays* arrays, const __global exact* fluence,
+  int d, int i, const int* next, const int* at, const float* share)
 {
   const int axis = d / 2;
   if (is_border(layout, at, d))
   {
     const float tau = arrays->sigma_t[i] * layout->spacing[axis];
     const float passes = pass_boundary(layout, way_to_boundary(layout, tau, arrays->sigma_t[i], arrays->sigma_a[i]));
-    return passes * face_area(layout, axis) * (fluence[i] - layout->incoming[d] / layout->half_range) + share[d] +
+    return passes * face_area(layout, axis) * (fluence[i] - layout->incoming[d] / layout->halfRange) + share[d] +
       passing(layout, arrays, d, i, next, true);
   }
   if (layout->size[axis] == 1)
@@ -332,7 +334,7 @@ static exact power_of_face(const diffusion_layout* layout, const diffusion_array
 }
 
 #define ARRAYS_OF_CHANNEL                                                                                         \
-  sigma_t += layout.first_t;                                                                                      \
+  sigma_t += layout.firstT;                                                                                       \
   sigma_a += layout.first;                                                                                        \
   currents += 6 * (ulong)layout.first;                                                                            \
   passed += PASSING ? 6 * (ulong)layout.first : 0;                                                                \
@@ -348,10 +350,10 @@ static exact power_of_face(const diffusion_layout* layout, const diffusion_array
   const float per_radiance = 4.0f * M_PI_F * volume_of(&layout);                                                  \
   float share[6], seeming[6], transport_weight;
 
-// The right-hand side, W.
+// The right-hand side of numerics.md, Eq. (53), W.
 // given    emitted and first scattered light of lights, W / (length^3 sr)
 // source   of the sweep, W / (length^3 sr)
-__kernel void diffusion_balance(diffusion_layout layout, const __global float* sigma_t, const __global float* sigma_a,
+__kernel void diffusion_balance(DiffusionLayout layout, const __global float* sigma_t, const __global float* sigma_a,
   const __global float* flat_source, const __global float* conductance, const __global float* currents,
   const __global float* passed, const __global float* model, const __global float* pattern,
   const __global float* source, const __global float* path, const __global float* given, __global exact* right)
@@ -380,11 +382,13 @@ __kernel void diffusion_balance(diffusion_layout layout, const __global float* s
   right[i] = power;
 }
 
-// A voxel's faces at the box's border, [face][row][voxel of the row]: power out of the box, W; power out that seems to
-// leave there in the sweep, W; for voxels with several such faces how much that counts, else -1; power out less power
-// in, W, without what the sweep knows better: that is right for a face of the box on the whole, but not from voxel to
-// voxel.
-__kernel void diffusion_outflow(diffusion_layout layout, const __global float* sigma_t, const __global float* sigma_a,
+// A voxel's faces at the box's border, [face][row][voxel of the row], four values each:
+//   power out of the box, W
+//   power out of the box in the sweep, W, an estimate
+//   weight of the transport correction, where the voxel has several such faces, else -1
+//   power out less in, W, without the transport correction: that is right for a face of the box as a whole, but not
+//   from voxel to voxel
+__kernel void diffusion_outflow(DiffusionLayout layout, const __global float* sigma_t, const __global float* sigma_a,
   const __global float* flat_source, const __global float* conductance, const __global float* currents,
   const __global float* passed, const __global float* model, const __global float* pattern,
   const __global float* source, const __global float* path, const __global exact* fluence, __global exact* outflow)
@@ -420,8 +424,8 @@ __kernel void diffusion_outflow(diffusion_layout layout, const __global float* s
   }
 }
 
-// Net flux, W / length^2 times volume, [x, y, z][stride], added to.
-__kernel void diffusion_flux(diffusion_layout layout, const __global float* sigma_t, const __global float* sigma_a,
+// Net flux, W / length^2 times volume, [x, y, z][stride], added to (numerics.md, Eq. (75)).
+__kernel void diffusion_flux(DiffusionLayout layout, const __global float* sigma_t, const __global float* sigma_a,
   const __global float* flat_source, const __global float* conductance, const __global float* currents,
   const __global float* passed, const __global float* model, const __global float* pattern,
   const __global float* source, const __global float* path, const __global exact* fluence, __global float* flux)
@@ -442,9 +446,9 @@ __kernel void diffusion_flux(diffusion_layout layout, const __global float* sigm
   }
 }
 
-// The next sweep's source: what the medium shines and what it scatters; of voxels with a skin, what makes that shine as
-// the light there and the power through it want: 4 J+ = fluence + 2 J.
-__kernel void diffusion_source(diffusion_layout layout, const __global float* given, const __global float* sigma_s,
+// The next sweep's source: emitted and scattered light; of thick voxels beside thinner ones, what gives their surface
+// the outward partial current of diffusion (numerics.md, Eqs. (63), (64)).
+__kernel void diffusion_source(DiffusionLayout layout, const __global float* given, const __global float* sigma_s,
   const __global exact* fluence, const __global float* sigma_t, const __global float* sigma_a,
   const __global float* conductance, const __global float* passed, __global float* source)
 {
@@ -452,7 +456,7 @@ __kernel void diffusion_source(diffusion_layout layout, const __global float* gi
   const ulong stride = layout.stride;
   const int count = layout.size[0] * layout.size[1] * layout.size[2];
   const ulong begin = layout.first;
-  sigma_t += layout.first_t;
+  sigma_t += layout.firstT;
   sigma_a += layout.first;
   passed += PASSING ? 6 * (ulong)layout.first : 0;
   const int at[3] = { x, y, z };
@@ -460,7 +464,7 @@ __kernel void diffusion_source(diffusion_layout layout, const __global float* gi
   find_neighbours(layout.size, x, y, z, i, next);
   float open[6];
   const float skin = openness(&layout, sigma_t, i, next, at, open);
-  // `given` is less than nothing where unscattered light on directions of its own is less than in the sweep.
+  // `given` is negative where uncollided light along finer directions is less than in the sweep.
   const float even =
     fmax(given[begin + i] + sigma_s[begin + i] * fmax((float)fluence[i], 0.0f) * (0.25f * M_1_PI_F), 0.0f);
   float shining = 0.0f, sum = 0.0f;
@@ -485,12 +489,12 @@ __kernel void diffusion_source(diffusion_layout layout, const __global float* gi
   source[begin + i] = mix(even, there, skin);
 }
 
-// Of one light: each passes its own part, which depends on where its light is lost.
-// path      W length, of the light
+// Of one lamp: the light that passes faces at once where it is scattered (numerics.md, Eqs. (66) to (69)).
+// path      W length, of the lamp
 // moments  of it, as in SweepVolume.h, [channel][face][stride]
 // passed    [channel][face][stride] W, added to
-// all_path  W length, of all lights, added to
-__kernel void diffusion_pass(diffusion_layout layout, const __global float* sigma_t, const __global float* sigma_a,
+// all_path  W length, of all lamps, added to
+__kernel void diffusion_pass(DiffusionLayout layout, const __global float* sigma_t, const __global float* sigma_a,
   const __global float* sigma_s, const __global float* path, const __global float* moments, __global float* passed,
   __global float* all_path)
 {
@@ -499,7 +503,7 @@ __kernel void diffusion_pass(diffusion_layout layout, const __global float* sigm
   int next[6];
   find_neighbours(layout.size, x, y, z, i, next);
   const ulong stride = layout.stride;
-  sigma_t += layout.first_t;
+  sigma_t += layout.firstT;
   sigma_a += layout.first;
   moments += 6 * (ulong)layout.first;
   passed += 6 * (ulong)layout.first;

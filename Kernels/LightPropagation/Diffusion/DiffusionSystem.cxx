@@ -1,5 +1,8 @@
 #include "LightPropagation/Diffusion/DiffusionSystem.h"
 
+#include "Device/Defines.h"
+#include "Numerics/Constants.h"
+
 #include "TyndallKernelSources.h"
 
 #include <algorithm>
@@ -11,9 +14,6 @@ namespace tyndall
 {
 namespace
 {
-constexpr double Pi = 3.14159265358979323846;
-constexpr int Chunk = 4096;        ///< as in MultigridSolver.cl
-constexpr int Sums_ = 8;           ///< SUMS there
 constexpr double Floor = 0.05;     ///< optical length between centres of voxels that pass light as if it were that long
 constexpr double Reduction = 1e-3; ///< of the residual in one correction: sweeps gain less than that
 
@@ -48,13 +48,10 @@ DiffusionLayout LayoutOf(const Grid& grid, const std::array<bool, 3>& periodic, 
 /// @param passing  lamps' light passes faces at once where it is scattered
 cl::Kernel DiffusionKernel(Device& device, const char* name, bool passing)
 {
-  return device.Kernel(name,
-    { kernel_source::DiffusionLayout, kernel_source::LampPassing, kernel_source::DiffusionSystem,
-      kernel_source::MultigridSolver },
-    ExactOption(device) + " -DPASSING=" + std::to_string(passing));
+  return device.Kernel(name, kernel_source::DiffusionSystem, ExactOption(device) + Define("PASSING", passing));
 }
 
-/// Rounding leaves dark faces a little less than nothing: that is for the others to bear, so that the sum stays.
+/// Rounding can leave dark faces a little below 0: they become 0, and the others are scaled so that the sum stays.
 std::array<double, 6> NotNegative(std::array<double, 6> powers)
 {
   const double sum = std::accumulate(powers.begin(), powers.end(), 0.0);
@@ -164,6 +161,7 @@ DiffusionSystem::DiffusionSystem(Device& device, const Grid& grid, const std::ar
   , The(arrays)
   , Count(grid.VoxelCount())
   , Solver(device, grid.size, grid.spacing)
+  , Mixing(device, grid.VoxelCount(), "the diffusion system")
 {
   double halfRange = 0.0;
   for (int marching = 0; marching < 3; ++marching)
@@ -185,19 +183,11 @@ DiffusionSystem::DiffusionSystem(Device& device, const Grid& grid, const std::ar
   this->Given = ExactValues(device, this->Count, what);
   this->Solution = ExactValues(device, this->Count, what);
   this->Solution.Fill(0.0); // a dark channel is never solved for
-  this->Sums = ExactValues(device, Sums_ * ((this->Count + Chunk - 1) / Chunk), "sums");
   const std::array<int, 3>& n = grid.size;
   const std::size_t faces = 2 *
     (static_cast<std::size_t>(n[0]) * n[1] + static_cast<std::size_t>(n[1]) * n[2] +
       static_cast<std::size_t>(n[2]) * n[0]);
   this->Borders = ExactValues(device, 4 * faces, what);
-  for (int i = 0; i < 2; ++i)
-  {
-    this->FoundBefore[i] = Buffer<float>(device, this->Count, what);
-    this->ChangeBefore[i] = Buffer<float>(device, this->Count, what);
-    this->FoundBefore[i].Fill(0.0f);
-    this->ChangeBefore[i].Fill(0.0f);
-  }
 
   cl::Kernel flat_source = this->Kernel("diffusion_flat_source");
   With(flat_source, this->Layout, *arrays.sigma_t, this->FlatSource);
@@ -249,41 +239,9 @@ double DiffusionSystem::Correct(double unit)
   this->RunOnArrays("diffusion_balance", *the.given, this->Right.Handle());
   this->Solver.Solve(this->Right, this->Solution, unit, Reduction);
 
-  double change = 0.0;
-  const std::array<double, 2> weights = this->Weights(&change);
-  cl::Kernel step = this->Kernel("anderson_step");
-  std::swap(this->FoundBefore[0], this->FoundBefore[1]);
-  std::swap(this->ChangeBefore[0], this->ChangeBefore[1]);
-  // What was the last is now the second before, and its place is taken: the kernel reads before it writes.
-  With(step, this->Given.Handle(), this->Solution.Handle(), this->FoundBefore[1], this->FoundBefore[0],
-    this->ChangeBefore[0], static_cast<float>(weights[0]), static_cast<float>(weights[1]));
-  this->TheDevice.Queue().enqueueNDRangeKernel(step, cl::NullRange, cl::NDRange(this->Count), cl::NullRange);
-  ++this->Corrections;
-  return change;
-}
-
-/// Of the last correction but one and the one before that in Anderson's mix: least squares of the change.
-std::array<double, 2> DiffusionSystem::Weights(double* change)
-{
-  cl::Kernel kernel = this->Kernel("anderson_sums");
-  With(kernel, this->Given.Handle(), this->Solution.Handle(), this->ChangeBefore[0], this->ChangeBefore[1],
-    *this->The.sigma_s, cl_int(this->The.first), this->Layout.spacing[0], cl_int(this->Count), this->Sums.Handle());
-  const std::size_t chunks = (this->Count + Chunk - 1) / Chunk;
-  this->TheDevice.Queue().enqueueNDRangeKernel(kernel, cl::NullRange, cl::NDRange(chunks), cl::NDRange(1));
-  std::array<double, Sums_> sums = {};
-  const std::vector<double> parts = this->Sums.Read();
-  for (std::size_t i = 0; i < parts.size(); ++i)
-  {
-    sums[i % Sums_] += parts[i];
-  }
-  const auto& [ff, all, aa, ab, bb, af, bf, unused] = sums;
-  *change = all > 0.0 ? std::sqrt(ff / all) : 0.0;
-  const double determinant = aa * bb - ab * ab;
-  if (this->Corrections >= 2 && determinant > 1e-8 * aa * bb)
-  {
-    return { (af * bb - bf * ab) / determinant, (bf * aa - af * ab) / determinant };
-  }
-  return { this->Corrections >= 1 && aa > 0.0 ? af / aa : 0.0, 0.0 };
+  const auto& h = this->Layout.spacing;
+  const float edge = std::cbrt(h[0] * h[1] * h[2]); // the same whichever axis is which
+  return this->Mixing.Mix(this->Given, this->Solution, { the.sigma_s, the.first, edge });
 }
 
 std::array<double, 6> DiffusionSystem::Outflow(const std::array<double, 6>& ofSweep)

@@ -1,9 +1,12 @@
 // Lamps' light in thick voxels, see DiffusionSystem.h: it is scattered first near the faces that it comes in through,
-// and part of it passes those at once. Read after DiffusionLayout.cl and before DiffusionSystem.cl.
+// and part of it passes those at once.
 
-// Of light that falls off over tau from a face of a voxel as exp(-b t), what comes back to the face while it is
-// diffused and absorbed over k a mean free path. r, 0 to 1, is how near to the face it is scattered: 1 - 2 t / tau for
-// a mean depth t.
+#pragma once
+#include "LightPropagation/Diffusion/DiffusionLayout.cl"
+
+// Part that returns to the face of light that is lost as exp(-b t) over tau and absorbed at k a mean free path on its
+// way back (numerics.md, Eq. (69)). r, 0 to 1, is how near to the face it is scattered: 1 - 2 t / tau for a mean
+// depth t.
 static float comes_back(float tau, float r, float k)
 {
   const float b = 2.0f * r * (3.0f - 2.0f * r) / (tau * fmax(1.0f - r, 1e-6f)); // exact for r near 0 and near 1
@@ -13,7 +16,8 @@ static float comes_back(float tau, float r, float k)
   return back / shone;
 }
 
-// How much of the light of a voxel passes on, because it is scattered near a face, than if it were scattered evenly.
+// Part of a voxel's scattered light that passes an inner face besides what it would if it were scattered at the centre
+// (numerics.md, Eqs. (66), (69)), but for the ratio of the ways.
 static float passes_inside(float tau, float r, float k)
 {
   if (k * tau < 0.02f)
@@ -24,21 +28,21 @@ static float passes_inside(float tau, float r, float k)
   return fmax((comes_back(tau, r, k) - even) / (1.0f - even), 0.0f);
 }
 
-// Mean of Hopf's function over exp(-t / depth): H(depth) / sqrt(3) - depth, to 0.2%.
+// Mean of Hopf's function over exp(-t / depth): H(depth) / sqrt(3) - depth, to 0.5% (numerics.md, Eq. (67)).
 static float hopf(float depth)
 {
   const float c = 0.34f - 0.17f / (1.0f + 4.0f * depth);
   return 0.57735f + 0.13310f * depth / (depth + c);
 }
 
-// In voxels that are neither thin nor thick sweeps say that even light passes less than that: fitted to slabs.
+// Correction of what passes in voxels that are neither thin nor thick, fitted to slabs (numerics.md, Eq. (68)).
 static float beside_sweeps(float tau)
 {
   const float transport_weight = 1.0f / (1.0f + 0.25f * tau * tau);
   return 1.0f + transport_weight * (0.02f + 0.17f * transport_weight);
 }
 
-// The same at a face of the box. In a half-space, light scattered at depth t reaches far as t + hopf(t).
+// The same at a face of the box (numerics.md, Eqs. (66), (69)).
 static float passes_border(float tau, float r, float k)
 {
   const float depth = 0.5f * (1.0f - r) * tau;

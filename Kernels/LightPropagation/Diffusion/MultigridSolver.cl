@@ -1,15 +1,9 @@
-// Conjugate gradients, preconditioned by multigrid, for the diffusion system. Read after DiffusionLayout.cl.
+// Conjugate gradients, preconditioned by multigrid, for the diffusion system.
 //
 // A level's matrix: row i is sum over faces of conductance (x_i - x_j) + loss_i x_i. Vectors of multigrid are float: it
 // only has to point in about the right direction.
 
-#define CHUNK 4096
-
-typedef struct
-{
-  int size[3];
-  int halved[3]; // to the next coarser level
-} level_layout;
+#include "LightPropagation/Diffusion/DiffusionLayout.cl"
 
 static float neighbours_sum(
   const __global float* conductance, int count, const __global float* values, int i, const int* next, float* passes)
@@ -23,7 +17,7 @@ static float neighbours_sum(
 }
 
 // y = b - A x where `right` is true, else A x
-__kernel void diffusion_apply(level_layout level, const __global float* conductance, const __global float* loss,
+__kernel void diffusion_apply(MultigridLevel level, const __global float* conductance, const __global float* loss,
   const __global exact* values, const __global exact* right, int subtract, __global exact* result)
 {
   VOXEL(level.size)
@@ -41,7 +35,7 @@ __kernel void diffusion_apply(level_layout level, const __global float* conducta
 }
 
 // The first guess on a level: right / diagonal.
-__kernel void level_begin(level_layout level, const __global float* conductance, const __global float* loss,
+__kernel void level_begin(MultigridLevel level, const __global float* conductance, const __global float* loss,
   const __global float* right, __global float* values, float damping)
 {
   VOXEL(level.size)
@@ -56,7 +50,7 @@ __kernel void level_begin(level_layout level, const __global float* conductance,
 }
 
 // As level_begin, from the residual of conjugate gradients in units of `unit`.
-__kernel void finest_begin(level_layout level, const __global float* conductance, const __global float* loss,
+__kernel void finest_begin(MultigridLevel level, const __global float* conductance, const __global float* loss,
   const __global exact* residual, float per_unit, __global float* right, __global float* values, float damping)
 {
   VOXEL(level.size)
@@ -71,7 +65,7 @@ __kernel void finest_begin(level_layout level, const __global float* conductance
   values[i] = diagonal > 0.0f ? damping * right[i] / diagonal : 0.0f;
 }
 
-__kernel void level_smooth(level_layout level, const __global float* conductance, const __global float* loss,
+__kernel void level_smooth(MultigridLevel level, const __global float* conductance, const __global float* loss,
   const __global float* right, const __global float* values, __global float* better, float damping)
 {
   VOXEL(level.size)
@@ -84,7 +78,7 @@ __kernel void level_smooth(level_layout level, const __global float* conductance
   better[i] = diagonal > 0.0f ? values[i] + damping * ((right[i] + sum) / diagonal - values[i]) : 0.0f;
 }
 
-__kernel void level_residual(level_layout level, const __global float* conductance, const __global float* loss,
+__kernel void level_residual(MultigridLevel level, const __global float* conductance, const __global float* loss,
   const __global float* right, const __global float* values, __global float* residual)
 {
   VOXEL(level.size)
@@ -98,7 +92,7 @@ __kernel void level_residual(level_layout level, const __global float* conductan
 
 // Sum over the finer level's voxels in each of this one. A work-item a coarse voxel.
 __kernel void level_restrict(
-  level_layout fine, level_layout coarse, const __global float* residual, __global float* right)
+  MultigridLevel fine, MultigridLevel coarse, const __global float* residual, __global float* right)
 {
   VOXEL(coarse.size)
   float sum = 0.0f;
@@ -119,7 +113,7 @@ __kernel void level_restrict(
 }
 
 __kernel void level_prolong(
-  level_layout fine, level_layout coarse, const __global float* correction, __global float* values)
+  MultigridLevel fine, MultigridLevel coarse, const __global float* correction, __global float* values)
 {
   VOXEL(fine.size)
   const int parent =
@@ -127,8 +121,9 @@ __kernel void level_prolong(
   values[i] += correction[parent];
 }
 
-// The coarser level's matrix: faces side by side add up; along a halved axis centres are twice as far apart.
-__kernel void level_coarsen(level_layout fine, level_layout coarse, const __global float* conductance,
+// The coarser level's matrix (numerics.md, Eq. (70)): faces side by side add up; along a halved axis centres are twice
+// as far apart.
+__kernel void level_coarsen(MultigridLevel fine, MultigridLevel coarse, const __global float* conductance,
   const __global float* loss, __global float* coarse_conductance, __global float* coarse_loss)
 {
   VOXEL(coarse.size)
@@ -163,7 +158,7 @@ __kernel void level_coarsen(level_layout fine, level_layout coarse, const __glob
 }
 
 // A few voxels: Gauss and Seidel there and back, by one work-item.
-__kernel void level_finish(level_layout level, const __global float* conductance, const __global float* loss,
+__kernel void level_finish(MultigridLevel level, const __global float* conductance, const __global float* loss,
   const __global float* right, __global float* values, int rounds)
 {
   const int count = level.size[0] * level.size[1] * level.size[2];
@@ -191,8 +186,8 @@ __kernel void level_finish(level_layout level, const __global float* conductance
 #define DOT(name, type)                                                                                \
   __kernel void name(const __global exact* a, const __global type* b, int count, __global exact* sums) \
   {                                                                                                    \
-    const int begin = get_global_id(0) * CHUNK;                                                        \
-    const int end = min(count, begin + CHUNK);                                                         \
+    const int begin = get_global_id(0) * DiffusionChunk;                                               \
+    const int end = min(count, begin + DiffusionChunk);                                                \
     exact part[4] = { 0, 0, 0, 0 };                                                                    \
     int i = begin;                                                                                     \
     for (; i + 4 <= end; i += 4)                                                                       \
@@ -225,49 +220,4 @@ __kernel void diffusion_turn(__global exact* direction, const __global float* pr
 {
   const int i = get_global_id(0);
   direction[i] = preconditioned[i] + part * direction[i];
-}
-
-#define SUMS 8
-// Sums for Anderson's method, with f = found - given and differences to those of two iterations before:
-// f f, found found (both where light is scattered: what passes through vacuum says nothing of that), d1 d1, d1 d2, d2
-// d2, d1 f, d2 f
-__kernel void anderson_sums(const __global exact* given, const __global exact* found, const __global float* change1,
-  const __global float* change2, const __global float* sigma_s, int first, float length, int count,
-  __global exact* sums)
-{
-  const int begin = get_global_id(0) * CHUNK;
-  const int end = min(count, begin + CHUNK);
-  exact sum[SUMS] = { 0, 0, 0, 0, 0, 0, 0, 0 };
-  for (int i = begin; i < end; ++i)
-  {
-    const exact f = found[i] - given[i];
-    const exact d1 = f - change1[i];
-    const exact d2 = f - change2[i];
-    const exact tau = sigma_s[first + i] * length;
-    const exact weight = tau / (1 + tau);
-    sum[0] += weight * f * f;
-    sum[1] += weight * found[i] * found[i];
-    sum[2] += d1 * d1;
-    sum[3] += d1 * d2;
-    sum[4] += d2 * d2;
-    sum[5] += d1 * f;
-    sum[6] += d2 * f;
-  }
-  for (int k = 0; k < SUMS; ++k)
-  {
-    sums[get_global_id(0) * SUMS + k] = sum[k];
-  }
-}
-
-// given = found - w1 (found - found1) - w2 (found - found2); remembers found and found - given in the place of the
-// second iteration before.
-__kernel void anderson_step(__global exact* given, const __global exact* found, const __global float* found1,
-  __global float* found2, __global float* change2, float w1, float w2)
-{
-  const int i = get_global_id(0);
-  const exact now = found[i];
-  const exact f = now - given[i];
-  given[i] = now - w1 * (now - found1[i]) - w2 * (now - found2[i]);
-  found2[i] = (float)now;
-  change2[i] = (float)f;
 }

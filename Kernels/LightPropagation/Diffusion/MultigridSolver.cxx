@@ -11,7 +11,6 @@ namespace tyndall
 {
 namespace
 {
-constexpr int Chunk = 4096;      ///< as in MultigridSolver.cl
 constexpr int FewVoxels = 64;    ///< of the coarsest level
 constexpr int FinishRounds = 12; ///< on it
 constexpr int MostIterations = 300;
@@ -20,45 +19,11 @@ constexpr float Damping = 0.8f;      ///< of Jacobi's method, about the best for
 constexpr double Negligible = 1e-12; ///< residual, of the first one
 }
 
-ExactValues::ExactValues(Device& device, std::size_t count, const char* what)
-{
-  if (device.HasExtension("cl_khr_fp64"))
-  {
-    this->Doubles = Buffer<double>(device, count, what);
-  }
-  else
-  {
-    this->Floats = Buffer<float>(device, count, what);
-  }
-  this->Fill(0.0);
-}
-
-void ExactValues::Fill(double value)
-{
-  this->Doubles.Fill(value);
-  this->Floats.Fill(static_cast<float>(value));
-}
-
-std::vector<double> ExactValues::Read() const
-{
-  if (this->InDouble())
-  {
-    return this->Doubles.Read();
-  }
-  const std::vector<float> values = this->Floats.Read();
-  return { values.begin(), values.end() };
-}
-
-std::string ExactOption(const Device& device)
-{
-  return std::string("-DDOUBLES=") + (device.HasExtension("cl_khr_fp64") ? "1" : "0");
-}
-
 MultigridSolver::MultigridSolver(Device& device, const std::array<int, 3>& size, const std::array<double, 3>& ofSpacing)
   : TheDevice(device)
 {
   std::array<double, 3> spacing = ofSpacing;
-  LevelOnDevice layout = { { size[0], size[1], size[2] }, {} };
+  MultigridLevel layout = { { size[0], size[1], size[2] }, {} };
   for (;;)
   {
     const std::size_t count = static_cast<std::size_t>(layout.size[0]) * layout.size[1] * layout.size[2];
@@ -97,10 +62,10 @@ MultigridSolver::MultigridSolver(Device& device, const std::array<int, 3>& size,
   this->Residual = ExactValues(device, this->Count, "the diffusion system");
   this->Direction = ExactValues(device, this->Count, "the diffusion system");
   this->Applied = ExactValues(device, this->Count, "the diffusion system");
-  this->Sums = ExactValues(device, (this->Count + Chunk - 1) / Chunk, "sums");
+  this->Sums = ExactValues(device, PartsOf<std::size_t>(this->Count, DiffusionChunk), "sums");
 }
 
-cl::NDRange MultigridSolver::Range(const cl_int* size)
+cl::NDRange MultigridSolver::Range(const int* size)
 {
   return { static_cast<std::size_t>(RoundUp(size[0], 32)), static_cast<std::size_t>(RoundUp(size[1], 8)),
     static_cast<std::size_t>(size[2]) };
@@ -108,11 +73,10 @@ cl::NDRange MultigridSolver::Range(const cl_int* size)
 
 cl::Kernel MultigridSolver::Kernel(const char* name) const
 {
-  return this->TheDevice.Kernel(
-    name, { kernel_source::DiffusionLayout, kernel_source::MultigridSolver }, ExactOption(this->TheDevice));
+  return this->TheDevice.Kernel(name, kernel_source::MultigridSolver, ExactOption(this->TheDevice));
 }
 
-void MultigridSolver::Run(cl::Kernel& kernel, const cl_int* size)
+void MultigridSolver::Run(cl::Kernel& kernel, const int* size)
 {
   this->TheDevice.Queue().enqueueNDRangeKernel(kernel, cl::NullRange, this->Range(size), Group());
 }
@@ -192,7 +156,7 @@ double MultigridSolver::Dot(const ExactValues& a, const cl::Buffer& b, bool ofFl
 {
   cl::Kernel kernel = this->Kernel(ofFloats ? "diffusion_dot_float" : "diffusion_dot");
   With(kernel, a.Handle(), b, cl_int(this->Count), this->Sums.Handle());
-  const std::size_t chunks = (this->Count + Chunk - 1) / Chunk;
+  const std::size_t chunks = PartsOf<std::size_t>(this->Count, DiffusionChunk);
   this->TheDevice.Queue().enqueueNDRangeKernel(kernel, cl::NullRange, cl::NDRange(chunks), cl::NDRange(1));
   double sum = 0.0;
   for (double part : this->Sums.Read())

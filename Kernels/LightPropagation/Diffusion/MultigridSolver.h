@@ -1,45 +1,19 @@
 #pragma once
 
-#include "Device/Buffer.h"
+#include "LightPropagation/Diffusion/DiffusionShared.h"
+#include "LightPropagation/Diffusion/ExactValues.h"
 
 #include <array>
 #include <limits>
-#include <string>
 #include <vector>
 
 namespace tyndall
 {
-/// Values in double on the device, or in float where it has no double.
-class ExactValues
-{
-public:
-  ExactValues() = default;
-  ExactValues(Device& device, std::size_t count, const char* what);
-
-  bool InDouble() const { return this->Doubles.Size() > 0; }
-  const cl::Buffer& Handle() const { return this->InDouble() ? this->Doubles.Handle() : this->Floats.Handle(); }
-  void Fill(double value);
-  std::vector<double> Read() const;
-
-private:
-  Buffer<double> Doubles;
-  Buffer<float> Floats;
-};
-
-/// "-DDOUBLES=1" where the device has double precision, else "-DDOUBLES=0".
-std::string ExactOption(const Device& device);
-
-/// As level_layout of MultigridSolver.cl.
-struct LevelOnDevice
-{
-  cl_int size[3], halved[3];
-};
-
 /// Solves the system of a diffusion matrix on a box of voxels,
 ///   sum over faces of conductance (x_i - x_j) + loss_i x_i = b_i,
-/// symmetric, with positive conductances and losses: conjugate gradients in double, preconditioned by a V cycle of
-/// multigrid in float (voxels 2 x 2 x 2 together, damped Jacobi), so that its cost hardly grows with the number of
-/// voxels.
+/// symmetric, with positive conductances and losses: conjugate gradients in double (Hestenes and Stiefel 1952),
+/// preconditioned by a V cycle of multigrid in float (voxels 2 x 2 x 2 together, damped Jacobi), so that its cost
+/// hardly grows with the number of voxels (numerics.md, section 7.8).
 class MultigridSolver
 {
 public:
@@ -56,25 +30,24 @@ public:
 
   /// Make the residual of `values`, in the norm of the preconditioner, smaller by `reduction`.
   /// @param unit  about as large as the entries of b
-  /// @param leftAtMost  and, so that thin voxels beside thick ones, of which that norm sees little, are solved as well:
-  /// root mean
-  ///   square of the residual, in units
+  /// @param leftAtMost  and its root mean square at most this, in units, for that norm hardly counts thin voxels beside
+  ///   thick ones
   /// @return iterations
   int Solve(const ExactValues& right, ExactValues& values, double unit, double reduction,
     double leftAtMost = std::numeric_limits<double>::infinity());
 
-  static cl::NDRange Range(const cl_int* size);
+  static cl::NDRange Range(const int* size);
   static cl::NDRange Group() { return { 32, 8, 1 }; }
 
 private:
   struct Level
   {
-    LevelOnDevice layout;
+    MultigridLevel layout;
     Buffer<float> conductance, loss, right, values, other;
   };
 
   cl::Kernel Kernel(const char* name) const;
-  void Run(cl::Kernel& kernel, const cl_int* size);
+  void Run(cl::Kernel& kernel, const int* size);
   void Precondition(double perUnit);
   void Smooth(Level& level);
   double Dot(const ExactValues& a, const cl::Buffer& b, bool ofFloats);

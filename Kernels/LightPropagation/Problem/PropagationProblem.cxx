@@ -1,5 +1,7 @@
 #include "LightPropagation/Problem/PropagationProblem.h"
 
+#include "Light/LeftOut.h"
+
 namespace tyndall
 {
 namespace

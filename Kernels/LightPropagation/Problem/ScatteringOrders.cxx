@@ -1,6 +1,7 @@
 #include "LightPropagation/Problem/ScatteringOrders.h"
 
 #include "LightPropagation/Angular/RayBundles.h"
+#include "Numerics/Constants.h"
 
 #include <algorithm>
 #include <cmath>
@@ -9,7 +10,6 @@ namespace tyndall
 {
 namespace
 {
-constexpr double Pi = 3.14159265358979323846;
 constexpr double UsualTolerance = 1e-4;   ///< the method must not depend on the tolerance
 constexpr double ManyOrders = 40.0;       ///< source iteration that is dearer than acceleration
 constexpr double ManyOrdersInSlab = 12.0; ///< the same in a slab, whose diffusion system is small

@@ -1,6 +1,7 @@
 #include "LightPropagation/Problem/SceneUnits.h"
 
 #include "Device/Errors.h"
+#include "Numerics/Constants.h"
 #include "Numerics/NumberText.h"
 
 #include <algorithm>
@@ -11,7 +12,6 @@ namespace tyndall
 {
 namespace
 {
-constexpr double Pi = 3.14159265358979323846;
 constexpr int UsualExponent = 40;       ///< powers up to 2^40 W, and down to 2^-40 W, are solved as they are
 constexpr int UsualLengthExponent = 20; ///< the same of spacings
 

@@ -7,8 +7,9 @@
 
 namespace tyndall
 {
-/// Light is linear in its power, but floats are not endless: rays carry W, path integrals W length. Scenes of powers
-/// far from 1 W are solved in a unit of their own, a power of two, so that they lose nothing.
+/// Units of power and length that the solver chooses (numerics.md, Eq. (85)). Light is linear in its power, but floats
+/// end at 3e38: rays carry W, path integrals W length. Scenes of powers far from 1 W are solved in a unit of their own,
+/// a power of two, so that no digit is lost.
 
 /// W to solve a scene in: 1 where the power of all that shines is not far from that.
 double PowerUnitOf(const Medium& medium, const Illumination& illumination);
@@ -27,9 +28,8 @@ struct SceneInUnits
 /// @throws InvalidInput where it is more than a float holds
 void ToWatts(LightField& light, double unit);
 
-/// Nor are floats endless in lengths: areas and volumes of voxels have to be floats, too. Boxes of voxels far from 1
-/// are solved in a unit of length of their own, a power of two. Radiance, and with it fluence, is the same in every
-/// unit.
+/// Areas and volumes of voxels have to be floats, too: boxes of voxels far from 1 are solved in a unit of length of
+/// their own, a power of two. Radiance and fluence are the same in every unit.
 
 /// Unit of length to solve a box in: 1 where its longest spacing is not far from that.
 double LengthUnitOf(const Grid& grid);

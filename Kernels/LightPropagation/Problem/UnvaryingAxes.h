@@ -18,8 +18,8 @@ public:
 
   bool IsSlab() const { return this->Single[0] + this->Single[1] + this->Single[2] == 2; }
 
-  /// The grid with voxels along these axes ten edges of the other axes wide. It makes no difference to light; narrower
-  /// ones rays would go round many times, and wider ones take more sweeps.
+  /// The grid with voxels along these axes ten edges of the other axes wide. Light does not depend on that width; rays
+  /// would go round narrower ones many times, and wider ones take more sweeps.
   Grid Widened(const Grid& grid) const;
 
 private:

@@ -1,6 +1,8 @@
 #include "LightPropagation/Published/ParallelPropagation.h"
 
+#include "Device/Defines.h"
 #include "Light/ChannelReduction.h"
+#include "LightPropagation/Convergence.h"
 #include "LightPropagation/Published/PublishedBorders.h"
 #include "LightPropagation/Published/PublishedPlan.h"
 #include "LightPropagation/Published/PublishedVolumes.h"
@@ -20,12 +22,6 @@ constexpr double CrossingsPerReport = 3e7;
 using Batch = PublishedPlan::Batch;
 using Pass = PublishedPlan::Pass;
 using Launch = PublishedPlan::Launch;
-
-/// As map_info in PublishedPropagate.cl.
-struct MapOnDevice
-{
-  cl_int sizeU, sizeV, rowStride, volume, rayRow, periodicU, periodicV, periodicW, directions;
-};
 
 /// Floats a work-item handles at once.
 int VectorWidth(const Device& device)
@@ -60,11 +56,11 @@ struct ParallelPropagation::Implementation
 
   // One order
   bool FirstOrder() const { return this->Ledger.Orders() == 0 && !this->SourceGiven; }
-  MapOnDevice Describe(const Batch& batch) const;
+  PublishedMap Describe(const Batch& batch) const;
   void WriteBoundary(const Batch& batch);
   void Propagate(int number, const Monitor& monitor);
-  void SendRays(const Batch& batch, const Pass& pass, const MapOnDevice& info, const Monitor& monitor, double done);
-  void CrossPlanes(const Batch& batch, const Pass& pass, const MapOnDevice& info, const Monitor& monitor, double done);
+  void SendRays(const Batch& batch, const Pass& pass, const PublishedMap& info, const Monitor& monitor, double done);
+  void CrossPlanes(const Batch& batch, const Pass& pass, const PublishedMap& info, const Monitor& monitor, double done);
   void Collect(int number);
   void FinishOrder();
   void Enqueue(cl::Kernel& kernel, std::array<int, 3> global, std::array<int, 3> local);
@@ -112,25 +108,24 @@ void ParallelPropagation::Implementation::MakeBuffers()
 
 void ParallelPropagation::Implementation::MakeKernels()
 {
-  const std::string common = "-DREAL_WIDTH=" + std::to_string(this->Volumes.Width) +
-    " -DCHANNELS=" + std::to_string(this->Channels) + " -DCOLOURED=" + (this->Volumes.Coloured ? "1" : "0");
+  const std::string common = Define("REAL_WIDTH", this->Volumes.Width) + Define("CHANNELS", this->Channels) +
+    Define("COLOURED", this->Volumes.Coloured);
   const auto propagate = [&](const char* name, int source) {
-    return this->TheDevice.Kernel(name, { kernel_source::Numerics, kernel_source::PublishedPropagate },
-      common + " -DSOURCE=" + std::to_string(source));
+    return this->TheDevice.Kernel(name, kernel_source::PublishedPropagate, common + Define("SOURCE", source));
   };
   const auto collect = [&](const char* name) {
-    return this->TheDevice.Kernel(name, { kernel_source::Numerics, kernel_source::PublishedCollect },
-      common + " -DMOMENTS=" + std::to_string(this->Model.MomentCount()));
+    return this->TheDevice.Kernel(
+      name, kernel_source::PublishedCollect, common + Define("MOMENTS", this->Model.MomentCount()));
   };
-  this->StartRays = propagate("StartRays", 1);
-  this->CrossVoxels[0] = propagate("CrossVoxels", 0);
-  this->CrossVoxels[1] = propagate("CrossVoxels", 1);
-  this->EndRays = propagate("EndRays", 1);
-  this->AddDirections = collect("AddDirections");
-  this->UpdateSources = collect("UpdateSources");
+  this->StartRays = propagate("start_rays", 1);
+  this->CrossVoxels[0] = propagate("cross_voxels", 0);
+  this->CrossVoxels[1] = propagate("cross_voxels", 1);
+  this->EndRays = propagate("end_rays", 1);
+  this->AddDirections = collect("add_directions");
+  this->UpdateSources = collect("update_sources");
 }
 
-MapOnDevice ParallelPropagation::Implementation::Describe(const Batch& batch) const
+PublishedMap ParallelPropagation::Implementation::Describe(const Batch& batch) const
 {
   const MapGeometry& map = batch.Map();
   const VolumeLayouts& layouts = this->Volumes.Layouts;
@@ -163,7 +158,7 @@ void ParallelPropagation::Implementation::Propagate(int number, const Monitor& m
     this->Plan.MakePasses(batch, this->Ledger.Orders()); // rays go on from where they were
   }
   this->WriteBoundary(batch);
-  const MapOnDevice info = this->Describe(batch);
+  const PublishedMap info = this->Describe(batch);
   for (std::size_t p = 0; p < batch.passes.size(); ++p)
   {
     this->SendRays(
@@ -174,7 +169,7 @@ void ParallelPropagation::Implementation::Propagate(int number, const Monitor& m
 
 /// One ray a voxel of the map and direction, from the first plane to behind the last.
 void ParallelPropagation::Implementation::SendRays(
-  const Batch& batch, const Pass& pass, const MapOnDevice& info, const Monitor& monitor, double done)
+  const Batch& batch, const Pass& pass, const PublishedMap& info, const Monitor& monitor, double done)
 {
   const int slots = batch.count * this->Channels;
   const cl_ulong carriedFirst = pass.carriedFirst;
@@ -190,7 +185,7 @@ void ParallelPropagation::Implementation::SendRays(
 }
 
 void ParallelPropagation::Implementation::CrossPlanes(
-  const Batch& batch, const Pass& pass, const MapOnDevice& info, const Monitor& monitor, double done)
+  const Batch& batch, const Pass& pass, const PublishedMap& info, const Monitor& monitor, double done)
 {
   const VolumeLayouts& layouts = this->Volumes.Layouts;
   const int axis = batch.Map().axis;
@@ -276,6 +271,7 @@ LightField ParallelPropagation::Implementation::Result() const
     LeftOutAsPublished(this->TheMedium, this->Traits, this->Outside, this->Settings, this->Ledger.Orders());
   field.halfRangeFlux = HalfRangeFlux(this->Model.Directions());
   field.device = this->TheDevice.Name();
+  JudgeConvergence(this->Settings, field);
   return field;
 }
 

@@ -11,7 +11,7 @@
 namespace tyndall
 {
 /// Light propagation maps as published, Algorithm 2 of Gruson et al. 2012: propagation into one temporary buffer T a
-/// direction (Eq. 6), then collection into U and I (Eq. 4). PublishedModel says how the formulas are read.
+/// direction (Eq. 6), then collection into U and I (Eq. 4); numerics.md, section 3, says how they are read.
 ///
 /// The buffers are filled and collected in batches of directions. The largest batch is one LPM, the p directions of a
 /// face, so that T takes p n^3 floats a channel as in the paper's section 5. Where that does not fit the device, or the
@@ -26,9 +26,8 @@ public:
   /// @param medium  its arrays must stay
   /// @param temporaryBytes  most that T may take; 0: what is left on the device
   /// @param channels  3: as if something had colour; 1: as the scene needs
-  /// @throws InvalidInput for a medium, illumination or settings without meaning; DeviceError if it does not fit with
-  /// even
-  ///   one direction a batch
+  /// @throws InvalidInput for a medium, illumination or settings without meaning; DeviceError if it does not fit even
+  ///   with one direction a batch
   ParallelPropagation(Device& device, const Medium& medium, const Illumination& illumination,
     const PropagationSettings& settings, std::size_t temporaryBytes = 0, int channels = 1);
   ~ParallelPropagation();
@@ -38,7 +37,7 @@ public:
   int FirstDirection(int batch) const; ///< BatchCount() gives the number of directions
 
   /// All rays of the batch's directions once through the volume, T filled.
-  /// @param monitor  told fractions of the order
+  /// @param monitor  given fractions of the order
   void Propagate(int batch, const Monitor& monitor = {});
   void Collect(int batch);
   /// U of the next order, I and fluence of all orders so far, powers and convergence.

@@ -1,5 +1,5 @@
 // Collection as published (Gruson et al. 2012, Algorithm 2, second half): each voxel reads the temporary buffers of all
-// directions and updates U and I. Read after Numerics.cl; the host gives
+// directions and updates U and I. The host gives
 //   CHANNELS  1 or 3
 //   MOMENTS   sums over directions that are kept: the fluence, and more where scattering depends on direction
 //   COLOURED  1 where sigma has CHANNELS channels, 0 where all share one
@@ -7,29 +7,15 @@
 // A moment is the sum over directions of a coefficient times T. Directions are added one by one in their order, so that
 // the result does not depend on how they are cut into batches.
 
-// As VolumeLayouts in PublishedVolumes.h: floats from row to row, plane to plane and channel to channel of the two
-// layouts. Layout 0 is [z][y][x]; layout 1, for maps that march along x, is [x][z][y].
-typedef struct
-{
-  int size[3];
-  int row[2], plane[2], volume[2];
-} volume_info;
-
-// As PublishedVolumes::PartOnDevice: a U as a multiple of a moment, and where it goes.
-typedef struct
-{
-  int moment;
-  float factor;
-  int layout;
-  int slot;
-} part_info;
+#include "LightPropagation/Published/PublishedShared.h"
+#include "Numerics/Numerics.cl"
 
 // Adds the directions of a batch to the moments, REAL_WIDTH voxels at a time, whatever the layout.
 //   coefficients   [MOMENTS][directions], from first on
 //   contributions  T, [direction][CHANNELS][volume], length W / (length^2 sr)
 //   moments        [MOMENTS][CHANNELS][volume]
 //   add            0: the first batch of the order
-__kernel void AddDirections(const int volume, const int directions, const int add, const int first,
+__kernel void add_directions(const int volume, const int directions, const int add, const int first,
   __global const float* coefficients, __global const float* contributions, __global float* moments)
 {
   const int voxel = get_global_id(0) * REAL_WIDTH;
@@ -55,7 +41,7 @@ __kernel void AddDirections(const int volume, const int directions, const int ad
 // Eq. (4): U of the next order, and the moments of all orders so far.
 //   moments0, moments1  of this order, from maps of either layout; those of layout 0 become the sum of both
 //   totals              [MOMENTS][CHANNELS][volume 0]
-__kernel void UpdateSources(const volume_info info, const int parts, __global const part_info* part,
+__kernel void update_sources(const PublishedLayouts info, const int parts, __global const PublishedPart* part,
   __global const float* sigma_s, __global float* moments0, __global const float* moments1, __global float* totals,
   __global float* sources0, __global float* sources1)
 {

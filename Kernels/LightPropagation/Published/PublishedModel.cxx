@@ -1,5 +1,9 @@
 #include "LightPropagation/Published/PublishedModel.h"
 
+#include "Light/LeftOut.h"
+#include "LightPropagation/Convergence.h"
+#include "Numerics/Vectors.h"
+
 #include <glm/geometric.hpp>
 #include <glm/gtc/constants.hpp>
 #include <glm/vec3.hpp>
@@ -18,11 +22,6 @@ constexpr double FourPi = 4.0 * glm::pi<double>();
 /// No problem that converges at all needs more; those that do not must end.
 constexpr int MostOrders = 10000;
 
-glm::dvec3 Vector(const std::array<double, 3>& v)
-{
-  return { v[0], v[1], v[2] };
-}
-
 int NearestOf(const std::vector<std::array<double, 3>>& directions, const std::array<double, 3>& omega)
 {
   int best = 0;
@@ -40,7 +39,7 @@ int NearestOf(const std::vector<std::array<double, 3>>& directions, const std::a
 }
 
 /// The directions nearest to omega, by their index: each once for every tiny push that leads to it, of the 48 that the
-/// cube's symmetries make of one. All the same, but for what lies between cells.
+/// cube's symmetries make of one. All are the same, unless omega lies between cells.
 std::vector<int> NearestAround(const DirectionSet& set, const std::array<double, 3>& omega)
 {
   const double length = glm::length(Vector(omega));
@@ -119,7 +118,7 @@ double HenyeyGreenstein(double g, double cosine)
 }
 
 /// F^{i,d} / |Omega^d| of Eq. (5) for all stored directions d (rows) and all propagation directions i: the integral of
-/// the phase function over both cells.
+/// the phase function over both cells (numerics.md, Eq. (12)).
 std::vector<std::vector<double>> ScatteringFactors(
   double g, const DirectionSet& set, const std::vector<std::array<double, 3>>& stored)
 {
@@ -419,7 +418,7 @@ void OrderLedger::CloseOrder(const float* fluence)
   this->Rows.push_back(row);
   this->Finished = row.residual == 0.0 ||
     (this->Settings.maximumOrders > 0 ? this->Orders() >= this->Settings.maximumOrders
-                                      : row.residual <= this->Settings.tolerance || this->Orders() >= MostOrders);
+                                      : MeetsTolerance(this->Settings, row.residual) || this->Orders() >= MostOrders);
 }
 
 /// Orders shrink like a geometric series in the end: what is still to come is its rest.

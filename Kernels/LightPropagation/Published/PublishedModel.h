@@ -14,33 +14,13 @@
 namespace tyndall
 {
 /// What Algorithms 1 and 2 of Gruson et al. 2012 have in common: directions, boundary conditions, and how a ray's
-/// deposits become the stored quantities.
+/// deposits become the stored quantities. How their equations are read where the paper leaves a choice, and what the
+/// scheme loses: numerics.md, section 3, Eqs. (9) to (14).
 ///
-/// A ray of direction i, weight w_i (sr), carries radiance L, W / (length^2 sr), through a beam of the map element's
-/// area A_rs as the ray sees it. Where the paper leaves a choice we read it so:
-///  - Eq. (3), (4), (6): `Delta l / omega_z` is the length l of the ray in the voxel.
-///  - Eq. (4): A_rs is the area across the ray, face area |cos| / N^2. With the area on the face itself even thin media
-///    would scatter 1 / |cos| too much.
-///  - Eq. (4), (6): L is the radiance after Eq. (3), and the exponent holds sigma_s alone. Both are kept: a voxel gains
-///    L exp(-sigma_t l) (1 - exp(-sigma_s l)) where the ray scatters more, so that thick voxels lose light. This is the
-///    published scheme's error, visible in the energy balance; the conservative scheme does not have it.
-///  - Eq. (3): (1 - exp(-sigma_t l)) / sigma_t is l where sigma_t is 0. Eq. (4), (6): we keep the deposit divided by
-///    sigma_s, L (1 - exp(-sigma_s l)) / sigma_s, which is L l where sigma_s is 0, and multiply by sigma_s when U is
-///    made. So fluence, the sum of deposits over all directions, is 4 pi I / sigma_s of the paper and defined in vacuum
-///    as well.
-///  - Eq. (4): the published I contains the medium's own emission; ours is scattered light only.
-///  - Eq. (5): by quadrature over the direction's cell, times w_i; for each i all F add up to w_i. In Eq. (3), d is the
-///    stored direction nearest to i.
-///  - "for each LPM": order 0 carries the boundary's radiance and the medium's emission, also where a ray enters
-///    through a side (Fig. 2); in later orders rays start with nothing.
-///  - One scattering order is one propagation of all maps followed by Eq. (4); 3 orders are 3 propagations, and I then
-///    holds light that was scattered up to 3 times.
-///  - Directional lights shine along the nearest direction of the set, with radiance irradiance / w_i; in equal parts
-///    along several that are equally near. Point, spot and rectangle lights are not part of the method.
-///  - A ray that leaves through an edge leaves half through either side, and enters with the mean of both.
-///  - Periodic axes are ours: a ray that leaves through a side goes on with its own radiance; one that is behind the
-///    last plane goes on from the first in the next order, and is left over until then. Light that enters sideways
-///    starts on the map's lattice, so a periodic box should be several voxels wide.
+/// A ray of direction i, weight w_i (sr), carries radiance L, W / (length^2 sr). Deposits are kept divided by sigma_s,
+/// so that fluence, the sum of deposits over all directions, is 4 pi I / sigma_s of the paper and exists in vacuum as
+/// well. Light that enters a periodic box sideways starts on the map's lattice, so such a box should be several voxels
+/// wide.
 class PublishedModel
 {
 public:

@@ -108,12 +108,12 @@ void PublishedPlan::AppendCoefficients(Batch& batch)
 /// For all sub-maps and planes the crossings of all directions, launch by launch.
 void PublishedPlan::MakePasses(Batch& batch, int order) const
 {
-  std::vector<CrossingOnDevice> crossings;
+  std::vector<PublishedCrossing> crossings;
   batch.passes.clear();
   for (int subMap = 0; subMap < this->SubMaps(); ++subMap)
   {
     CrossingsByPlane byPlane(batch.Map().planes);
-    std::vector<CrossingOnDevice> ends;
+    std::vector<PublishedCrossing> ends;
     for (int i = 0; i < batch.count; ++i)
     {
       this->WalkThrough(batch, i, subMap, order, byPlane, ends);
@@ -123,7 +123,7 @@ void PublishedPlan::MakePasses(Batch& batch, int order) const
     {
       for (std::size_t voxel = 0; voxel < byPlane[plane].size(); ++voxel)
       {
-        const std::vector<CrossingOnDevice>& together = byPlane[plane][voxel];
+        const std::vector<PublishedCrossing>& together = byPlane[plane][voxel];
         pass.launches.push_back({ batch.Map().forward ? plane : batch.Map().planes - 1 - plane,
           static_cast<int>(crossings.size()), static_cast<int>(together.size()), subMap > 0 || voxel > 0 });
         crossings.insert(crossings.end(), together.begin(), together.end());
@@ -134,7 +134,7 @@ void PublishedPlan::MakePasses(Batch& batch, int order) const
     pass.carriedFirst = batch.carriedFirst + subMap * (this->CarriedStride(batch) / this->SubMaps());
     batch.passes.push_back(std::move(pass));
   }
-  batch.crossings = Buffer<CrossingOnDevice>(this->TheDevice, crossings, "the table of voxel crossings");
+  batch.crossings = Buffer<PublishedCrossing>(this->TheDevice, crossings, "the table of voxel crossings");
 }
 
 GridWalk PublishedPlan::Walk(const MapGeometry& map, int subMap, int order) const
@@ -148,7 +148,7 @@ GridWalk PublishedPlan::Walk(const MapGeometry& map, int subMap, int order) cons
 
 /// Adds the crossings of the batch's direction i, and where it ends.
 void PublishedPlan::WalkThrough(const Batch& batch, int i, int subMap, int order, CrossingsByPlane& byPlane,
-  std::vector<CrossingOnDevice>& ends) const
+  std::vector<PublishedCrossing>& ends) const
 {
   const int source = this->Volumes.SourceSlot(batch.Layout(), this->Model.SourceOf(batch.first + i));
   GridWalk walk = this->Walk(batch.maps[i], subMap, order);

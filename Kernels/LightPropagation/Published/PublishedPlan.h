@@ -14,13 +14,6 @@ namespace tyndall
 class PublishedPlan
 {
 public:
-  /// As crossing_info in PublishedPropagate.cl: what the rays of one direction do in one launch.
-  struct CrossingOnDevice
-  {
-    cl_int direction, parity, moveU, moveV, source;
-    cl_float length;
-  };
-
   /// One launch: some of the crossings in one plane.
   struct Launch
   {
@@ -33,7 +26,7 @@ public:
   struct Pass
   {
     std::vector<Launch> launches;
-    int end = 0; ///< its crossings for EndRays
+    int end = 0; ///< its crossings for end_rays
     std::size_t carriedFirst = 0;
   };
 
@@ -45,7 +38,7 @@ public:
     std::size_t carriedFirst = 0;
     std::vector<MapGeometry> maps;
     std::vector<Pass> passes;
-    Buffer<CrossingOnDevice> crossings; ///< of all passes
+    Buffer<PublishedCrossing> crossings; ///< of all passes
     int Layout() const { return this->maps[0].axis == 0 ? 1 : 0; }
     const MapGeometry& Map() const { return this->maps[0]; } ///< all have its axes and sizes
   };
@@ -71,7 +64,7 @@ public:
   GridWalk Walk(const MapGeometry& map, int subMap, int order) const;
 
 private:
-  using CrossingsByPlane = std::vector<std::vector<std::vector<CrossingOnDevice>>>; ///< [plane][voxel in it]
+  using CrossingsByPlane = std::vector<std::vector<std::vector<PublishedCrossing>>>; ///< [plane][voxel in it]
 
   int DirectionsPerBatch(std::size_t temporaryBytes) const;
   double LargestRayMap() const;
@@ -79,7 +72,7 @@ private:
   void MeasureBuffers(int perBatch);
   void AppendCoefficients(Batch& batch);
   void WalkThrough(const Batch& batch, int i, int subMap, int order, CrossingsByPlane& byPlane,
-    std::vector<CrossingOnDevice>& ends) const;
+    std::vector<PublishedCrossing>& ends) const;
 
   Device& TheDevice;
   Grid TheGrid;

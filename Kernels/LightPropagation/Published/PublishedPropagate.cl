@@ -1,6 +1,5 @@
 // Propagation as published (Gruson et al. 2012, Algorithm 2, first half): all rays of a direction go through the grid
-// plane by plane, one ray a voxel, and leave what they deposit in the direction's own buffer T. Read after Numerics.cl;
-// the host gives
+// plane by plane, one ray a voxel, and leave what they deposit in the direction's own buffer T. The host gives
 //   CHANNELS  1 or 3
 //   COLOURED  1 where sigma has CHANNELS channels, 0 where all share one
 //   SOURCE    1 where U is not zero
@@ -10,37 +9,19 @@
 // [row -1 .. size_v][PAD | column 0 .. size_u - 1 | PAD], with a border that holds what enters through the sides.
 // REAL_WIDTH > 1 (CPU): a work-item crosses a row. REAL_WIDTH 1 (GPU): a work-item crosses a voxel.
 
+#include "LightPropagation/Published/PublishedShared.h"
+#include "Numerics/Numerics.cl"
+
 #define PAD REAL_WIDTH
-
-// As MapOnDevice in ParallelPropagation.cxx.
-typedef struct
-{
-  int size_u, size_v;
-  int row_stride; // floats between rows of a volume
-  int volume;     // floats of a volume of one channel
-  int ray_row;    // floats of a row of a ray map
-  int periodic_u, periodic_v, periodic_w;
-  int directions; // in the batch
-} map_info;
-
-// As PublishedPlan::CrossingOnDevice: what the rays of one direction do in one launch.
-typedef struct
-{
-  int direction; // within the batch
-  int parity;    // which of the two ray maps they are in
-  int move_u, move_v;
-  int source;   // which U
-  float length; // in the voxel
-} crossing_info;
 
 // Where light leaves a direction's map, W / (length^2 sr) summed over rays: [through u by row][through v][at the end by
 // row].
-#define ESCAPED(map) (2 * (map).size_v + 1)
+#define ESCAPED(map) (2 * (map).sizeV + 1)
 
-static __global float* ray_row(__global float* rays, const map_info* map, int parity, int slot, int v)
+static __global float* ray_row(__global float* rays, const PublishedMap* map, int parity, int slot, int v)
 {
-  const ulong row = (ulong)(parity * map->directions * CHANNELS + slot) * (map->size_v + 2) + (v + 1);
-  return rays + row * map->ray_row + PAD;
+  const ulong row = (ulong)(parity * map->directions * CHANNELS + slot) * (map->sizeV + 2) + (v + 1);
+  return rays + row * map->rayRow + PAD;
 }
 
 // Length times mean transmittance, (1 - exp(-tau)) / sigma: the length itself in vacuum.
@@ -52,22 +33,22 @@ inline real depth(real gone, real tau, float length)
 // What rays have as they start; both maps get it, so that the border is there in both.
 //   boundary  radiance entering across w, u, v: [direction][3][CHANNELS]
 //   carried   with periodic_w: radiance by voxel, [direction][carried_stride], from carried_first on
-__kernel void StartRays(const map_info map, __global float* rays, __global const float* boundary,
+__kernel void start_rays(const PublishedMap map, __global float* rays, __global const float* boundary,
   __global const float* carried, const ulong carried_first, const ulong carried_stride)
 {
   const int u = (int)get_global_id(0) - 1;
   const int v = (int)get_global_id(1) - 1;
   const int slot = get_global_id(2);
-  if (u > map.size_u || v > map.size_v)
+  if (u > map.sizeU || v > map.sizeV)
   {
     return;
   }
-  const int outside_u = u < 0 || u == map.size_u;
-  const int outside_v = v < 0 || v == map.size_v;
+  const int outside_u = u < 0 || u == map.sizeU;
+  const int outside_v = v < 0 || v == map.sizeV;
   const int direction = slot / CHANNELS;
   const int channel = slot % CHANNELS;
-  const int side_u = outside_u && !map.periodic_u;
-  const int side_v = outside_v && !map.periodic_v;
+  const int side_u = outside_u && !map.periodicU;
+  const int side_v = outside_v && !map.periodicV;
   boundary += direction * 3 * CHANNELS + channel;
   float radiance = boundary[0];
   if (side_u || side_v) // at an edge the mean of both
@@ -75,12 +56,12 @@ __kernel void StartRays(const map_info map, __global float* rays, __global const
     radiance = (side_u ? boundary[CHANNELS] : 0.0f) + (side_v ? boundary[2 * CHANNELS] : 0.0f);
     radiance *= side_u && side_v ? 0.5f : 1.0f;
   }
-  else if (map.periodic_w)
+  else if (map.periodicW)
   {
-    const int from_u = (u + map.size_u) % map.size_u;
-    const int from_v = (v + map.size_v) % map.size_v;
+    const int from_u = (u + map.sizeU) % map.sizeU;
+    const int from_v = (v + map.sizeV) % map.sizeV;
     radiance =
-      carried[carried_first + direction * carried_stride + (channel * map.size_v + from_v) * map.size_u + from_u];
+      carried[carried_first + direction * carried_stride + (channel * map.sizeV + from_v) * map.sizeU + from_u];
   }
   ray_row(rays, &map, 0, slot, v)[u] = radiance;
   ray_row(rays, &map, 1, slot, v)[u] = radiance;
@@ -88,11 +69,11 @@ __kernel void StartRays(const map_info map, __global float* rays, __global const
 
 // What leaves through the sides as rays move into the next voxel; through an edge, half through either side.
 static void leave_sides(
-  const map_info* map, const crossing_info* crossing, __global const float* row, int v, __global float* escaped)
+  const PublishedMap* map, const PublishedCrossing* crossing, __global const float* row, int v, __global float* escaped)
 {
-  const int leaves_u = crossing->move_u != 0 && !map->periodic_u;
-  const int leaves_v = crossing->move_v != 0 && !map->periodic_v && v == (crossing->move_v > 0 ? map->size_v - 1 : 0);
-  const float last = leaves_u ? row[crossing->move_u > 0 ? map->size_u - 1 : 0] : 0.0f;
+  const int leaves_u = crossing->moveU != 0 && !map->periodicU;
+  const int leaves_v = crossing->moveV != 0 && !map->periodicV && v == (crossing->moveV > 0 ? map->sizeV - 1 : 0);
+  const float last = leaves_u ? row[crossing->moveU > 0 ? map->sizeU - 1 : 0] : 0.0f;
   if (leaves_u)
   {
     escaped[v] += leaves_v ? 0.5f * last : last;
@@ -100,15 +81,15 @@ static void leave_sides(
   if (leaves_v)
   {
     float sum = -0.5f * last;
-    for (int u = 0; u < map->size_u; ++u)
+    for (int u = 0; u < map->sizeU; ++u)
     {
       sum += row[u];
     }
-    escaped[map->size_v] += sum;
+    escaped[map->sizeV] += sum;
   }
 }
 
-// One voxel: Eq. (3), and Eq. (6) divided by sigma_s.
+// One voxel: Eq. (3), and Eq. (6) divided by sigma_s (numerics.md, Eqs. (9), (10)).
 inline real cross_voxel(real radiance, real sigma_t, real source, float length)
 {
   const real tau = sigma_t * length;
@@ -128,32 +109,32 @@ inline real deposit(real radiance, real sigma_s, float length)
 //   first, crossings  the launch's part of the table, a direction each
 //   plane             where the plane begins in a volume
 //   add               0: the first ray in these voxels, T is set; 1: T is added to
-__kernel void CrossVoxels(const map_info map, const int plane, const int add, const int first,
-  __global const crossing_info* crossings, __global const float* sigma_t, __global const float* sigma_s,
+__kernel void cross_voxels(const PublishedMap map, const int plane, const int add, const int first,
+  __global const PublishedCrossing* crossings, __global const float* sigma_t, __global const float* sigma_s,
   __global const float* sources, __global float* rays, __global float* contributions, __global float* escaped)
 {
   const int v = get_global_id(1);
-  if (v >= map.size_v)
+  if (v >= map.sizeV)
   {
     return;
   }
   const int channel = get_global_id(2) % CHANNELS;
-  const crossing_info crossing = crossings[first + get_global_id(2) / CHANNELS];
+  const PublishedCrossing crossing = crossings[first + get_global_id(2) / CHANNELS];
   const int slot = crossing.direction * CHANNELS + channel;
-  const ulong row = (ulong)plane + v * map.row_stride;
+  const ulong row = (ulong)plane + v * map.rowStride;
   sigma_t += row + (COLOURED ? (ulong)channel * map.volume : 0);
   sigma_s += row + (COLOURED ? (ulong)channel * map.volume : 0);
   sources += row + (SOURCE ? (ulong)(crossing.source * CHANNELS + channel) * map.volume : 0);
   contributions += row + (ulong)slot * map.volume;
   escaped += (ulong)slot * ESCAPED(map);
-  __global const float* from = ray_row(rays, &map, crossing.parity, slot, v - crossing.move_v) - crossing.move_u;
+  __global const float* from = ray_row(rays, &map, crossing.parity, slot, v - crossing.moveV) - crossing.moveU;
   __global float* to = ray_row(rays, &map, !crossing.parity, slot, v);
   const float length = crossing.length;
 
 #if REAL_WIDTH > 1
   leave_sides(&map, &crossing, ray_row(rays, &map, crossing.parity, slot, v), v, escaped);
-  const float right_border = to[map.size_u]; // the last vector of the row may run over it
-  for (int u = 0; u < map.size_u; u += REAL_WIDTH)
+  const float right_border = to[map.sizeU]; // the last vector of the row may run over it
+  for (int u = 0; u < map.sizeU; u += REAL_WIDTH)
   {
     const real source = SOURCE ? load_real(u, sources) : (real)0.0f;
     const real radiance = cross_voxel(load_real(u, from), load_real(u, sigma_t), source, length);
@@ -161,17 +142,17 @@ __kernel void CrossVoxels(const map_info map, const int plane, const int add, co
     store_real(add ? load_real(u, contributions) + gained : gained, u, contributions);
     store_real(radiance, u, to);
   }
-  to[map.size_u] = map.periodic_u ? to[0] : right_border;
-  if (map.periodic_u)
+  to[map.sizeU] = map.periodicU ? to[0] : right_border;
+  if (map.periodicU)
   {
-    to[-1] = to[map.size_u - 1];
+    to[-1] = to[map.sizeU - 1];
   }
-  for (int copy = -1; map.periodic_v && copy <= 1; copy += 2)
+  for (int copy = -1; map.periodicV && copy <= 1; copy += 2)
   {
-    if (v == (copy < 0 ? map.size_v - 1 : 0))
+    if (v == (copy < 0 ? map.sizeV - 1 : 0))
     {
-      __global float* border = ray_row(rays, &map, !crossing.parity, slot, copy < 0 ? -1 : map.size_v);
-      for (int u = -1; u <= map.size_u; ++u)
+      __global float* border = ray_row(rays, &map, !crossing.parity, slot, copy < 0 ? -1 : map.sizeV);
+      for (int u = -1; u <= map.sizeU; ++u)
       {
         border[u] = to[u];
       }
@@ -179,7 +160,7 @@ __kernel void CrossVoxels(const map_info map, const int plane, const int add, co
   }
 #else
   const int u = get_global_id(0);
-  if (u >= map.size_u)
+  if (u >= map.sizeU)
   {
     return;
   }
@@ -194,10 +175,10 @@ __kernel void CrossVoxels(const map_info map, const int plane, const int add, co
   {
     for (int du = -1; du <= 1; ++du)
     {
-      const int image_u = u + du * map.size_u;
-      const int image_v = v + dv * map.size_v;
-      if ((du == 0 || map.periodic_u) && (dv == 0 || map.periodic_v) && image_u >= -1 && image_u <= map.size_u &&
-        image_v >= -1 && image_v <= map.size_v)
+      const int image_u = u + du * map.sizeU;
+      const int image_v = v + dv * map.sizeV;
+      if ((du == 0 || map.periodicU) && (dv == 0 || map.periodicV) && image_u >= -1 && image_u <= map.sizeU &&
+        image_v >= -1 && image_v <= map.sizeV)
       {
         ray_row(rays, &map, !crossing.parity, slot, image_v)[image_u] = radiance;
       }
@@ -209,29 +190,29 @@ __kernel void CrossVoxels(const map_info map, const int plane, const int add, co
 // Behind the last plane: adds up what leaves, and with periodic_w keeps it for the next order,
 // [direction][carried_stride].
 //   crossings  one a direction: parity says which map
-__kernel void EndRays(const map_info map, const int first, __global const crossing_info* crossings,
+__kernel void end_rays(const PublishedMap map, const int first, __global const PublishedCrossing* crossings,
   __global float* rays, __global float* escaped, __global float* carried, const ulong carried_first,
   const ulong carried_stride)
 {
   const int v = get_global_id(0);
-  if (v >= map.size_v)
+  if (v >= map.sizeV)
   {
     return;
   }
   const int channel = get_global_id(1) % CHANNELS;
-  const crossing_info crossing = crossings[first + get_global_id(1) / CHANNELS];
+  const PublishedCrossing crossing = crossings[first + get_global_id(1) / CHANNELS];
   const int slot = crossing.direction * CHANNELS + channel;
   __global const float* row = ray_row(rays, &map, crossing.parity, slot, v);
   float sum = 0.0f;
-  for (int u = 0; u < map.size_u; ++u)
+  for (int u = 0; u < map.sizeU; ++u)
   {
     sum += row[u];
   }
-  escaped[(ulong)slot * ESCAPED(map) + map.size_v + 1 + v] = sum;
-  if (map.periodic_w)
+  escaped[(ulong)slot * ESCAPED(map) + map.sizeV + 1 + v] = sum;
+  if (map.periodicW)
   {
-    carried += carried_first + crossing.direction * carried_stride + (ulong)(channel * map.size_v + v) * map.size_u;
-    for (int u = 0; u < map.size_u; ++u)
+    carried += carried_first + crossing.direction * carried_stride + (ulong)(channel * map.sizeV + v) * map.sizeU;
+    for (int u = 0; u < map.sizeU; ++u)
     {
       carried[u] = row[u];
     }

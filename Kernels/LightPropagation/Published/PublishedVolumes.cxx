@@ -27,7 +27,7 @@ const Grid& Addressable(const Device& device, const Grid& grid, int width)
 }
 
 VolumeLayouts::VolumeLayouts(const Grid& grid, int width)
-  : size{ grid.size[0], grid.size[1], grid.size[2] }
+  : PublishedLayouts{ { grid.size[0], grid.size[1], grid.size[2] }, {}, {}, {} }
 {
   const int across[2][3] = { { this->size[0], this->size[1], this->size[2] },
     { this->size[1], this->size[2], this->size[0] } };
@@ -146,7 +146,7 @@ void PublishedVolumes::FindSlots()
 /// U in the layouts in which the maps read it, at first the medium's emission.
 void PublishedVolumes::MakeSources()
 {
-  std::vector<PartOnDevice> parts;
+  std::vector<PublishedPart> parts;
   for (int layout = 0; layout < 2; ++layout)
   {
     std::size_t slots = 0;
@@ -163,7 +163,7 @@ void PublishedVolumes::MakeSources()
       Buffer<float>(this->TheDevice, this->LayoutSize(layout) * slots, "the unscattered radiance U");
     this->Sources[layout].Fill(0.0f);
   }
-  this->Parts = Buffer<PartOnDevice>(this->TheDevice, parts, "the list of U");
+  this->Parts = Buffer<PublishedPart>(this->TheDevice, parts, "the list of U");
   if (this->TheMedium.emission.values)
   {
     this->WriteSources([&](std::size_t voxel, int, int c) { return this->TheMedium.emission.At(voxel, c); });

@@ -1,6 +1,7 @@
 #pragma once
 
 #include "LightPropagation/Published/PublishedModel.h"
+#include "LightPropagation/Published/PublishedShared.h"
 
 #include "Device/Buffer.h"
 
@@ -8,15 +9,11 @@
 
 namespace tyndall
 {
-/// Where a voxel is in the volumes of the published algorithm's kernels, which know this as volume_info. Layout 0 is
-/// [z][y][x]; layout 1, for maps that march along x, is [x][z][y]: so rows always run along the maps' u.
-struct VolumeLayouts
+/// Where a voxel is in the volumes: rows always run along the maps' u.
+struct VolumeLayouts : PublishedLayouts
 {
   /// @param width  floats to whose multiple rows are padded
   VolumeLayouts(const Grid& grid, int width);
-
-  cl_int size[3];
-  cl_int row[2], plane[2], volume[2]; ///< floats from row to row, plane to plane and channel to channel, by layout
 
   std::size_t Index(int layout, int x, int y, int z) const;
 };
@@ -46,21 +43,13 @@ struct PublishedVolumes
   /// Floats of a buffer of which the rest is not wanted; waits for the device.
   std::vector<float> ReadPart(const Buffer<float>& buffer, std::size_t first, std::size_t count) const;
 
-  /// As part_info in PublishedCollect.cl: a U as a multiple of a moment, and where it goes.
-  struct PartOnDevice
-  {
-    cl_int moment;
-    cl_float factor;
-    cl_int layout, slot;
-  };
-
   int Width;
   VolumeLayouts Layouts;
   bool Coloured; ///< sigma has all channels
 
   Buffer<float> Extinction[2], Scattering[2], Sources[2], OrderMoments[2]; ///< by layout
   Buffer<float> Totals;                                                    ///< moments of all orders, layout 0
-  Buffer<PartOnDevice> Parts;
+  Buffer<PublishedPart> Parts;
 
 private:
   template <class Value>

@@ -1,6 +1,7 @@
 #include "LightPropagation/Published/SequentialPropagation.h"
 
 #include "Light/ChannelReduction.h"
+#include "LightPropagation/Convergence.h"
 
 #include <cmath>
 
@@ -302,6 +303,7 @@ LightField SolveSequential(
       LightField field = SequentialPropagation(ofChannels, light, settings, count).Solve(monitor);
       field.leftOut =
         LeftOutAsPublished(medium, traits, illumination, settings, static_cast<int>(field.convergence.size()));
+      JudgeConvergence(settings, field);
       return field;
     });
 }

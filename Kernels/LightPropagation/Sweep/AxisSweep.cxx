@@ -20,7 +20,7 @@ using BundleMaps = cl_int2; ///< for map_power: members, first float of the maps
 std::vector<BundleMaps> MapsOf(const SweepPlan& plan)
 {
   std::vector<BundleMaps> maps;
-  for (const BundleOnDevice& bundle : plan.bundleRows)
+  for (const BundleInfo& bundle : plan.bundleRows)
   {
     maps.push_back({ { bundle.members, bundle.map } });
   }
@@ -78,7 +78,7 @@ struct AxisSweep::Implementation
     int launches;
   };
   Schedule Rounds() const { return { this->RoundSchedule, static_cast<int>(this->Plan.units.size()) }; }
-  void Launch(cl::Kernel kernel, const SweepVolume& volume, const Buffer<PlaneCrossingOnDevice>& crossings,
+  void Launch(cl::Kernel kernel, const SweepVolume& volume, const Buffer<CrossingInfo>& crossings,
     const Schedule& schedule, const Monitor& monitor);
   cl::Kernel SweepKernel(bool source, bool border, bool flux);
 
@@ -99,12 +99,12 @@ struct AxisSweep::Implementation
   Buffer<float> Outside, Radiance; ///< as SweepBorder has them
   Buffer<float> Sideways;          ///< power that left: [unit][plane][-u, +u, -v, +v][channel]
   Buffer<float> Sums;              ///< power in the maps: [way][bundle][row][channel]
-  Buffer<BundleOnDevice> Bundles;
+  Buffer<BundleInfo> Bundles;
   Buffer<BundleMaps> MapPlaces;
-  Buffer<UnitOnDevice> Units;
+  Buffer<UnitInfo> Units;
   Buffer<cl_int2> FirstSchedule, RoundSchedule;
-  Buffer<PlaneCrossingOnDevice> FirstCrossings;
-  Buffer<OwnLightOnDevice> FirstOwnLight;
+  Buffer<CrossingInfo> FirstCrossings;
+  Buffer<OwnLightInfo> FirstOwnLight;
 
   std::map<std::size_t, std::unique_ptr<SweepBorder>> Borders; ///< by a volume's first value
   bool MapsEmpty = false;                                      ///< whatever is in their memory
@@ -129,14 +129,13 @@ void AxisSweep::Implementation::MakeBuffers()
   this->Sideways =
     Buffer<float>(device, plan.units.size() * plan.PatternPlanes() * 4 * channels, "the power that leaves sideways");
   this->Sums = Buffer<float>(device, 2 * plan.bundles.size() * plan.plane.sizeV * channels, "sums");
-  this->Bundles = Buffer<BundleOnDevice>(device, plan.bundleRows, "the bundles of rays");
+  this->Bundles = Buffer<BundleInfo>(device, plan.bundleRows, "the bundles of rays");
   this->MapPlaces = Buffer<BundleMaps>(device, MapsOf(plan), "the bundles of rays");
-  this->Units = Buffer<UnitOnDevice>(device, plan.units, "the units of work");
+  this->Units = Buffer<UnitInfo>(device, plan.units, "the units of work");
   this->FirstSchedule = Buffer<cl_int2>(device, plan.schedule, "the schedule");
   this->RoundSchedule = Buffer<cl_int2>(device, plan.roundSchedule, "the schedule");
-  this->FirstCrossings =
-    Buffer<PlaneCrossingOnDevice>(device, plan.Crossings(0, plan.CrossingPlanes()), "the ray pattern");
-  this->FirstOwnLight = Buffer<OwnLightOnDevice>(device, plan.OwnLight(), "the ray pattern");
+  this->FirstCrossings = Buffer<CrossingInfo>(device, plan.Crossings(0, plan.CrossingPlanes()), "the ray pattern");
+  this->FirstOwnLight = Buffer<OwnLightInfo>(device, plan.OwnLight(), "the ray pattern");
 }
 
 /// A sweep that is done again and again enters the same light each time: its border is kept.
@@ -185,7 +184,7 @@ void AxisSweep::Implementation::DarkenBeside()
   {
     return;
   }
-  cl::Kernel kernel = this->TheDevice.Kernel("darken_beside", { kernel_source::SweepMaps });
+  cl::Kernel kernel = this->TheDevice.Kernel("darken_beside", kernel_source::SweepMaps);
   With(kernel, this->OwnMaps, cl_ulong(plan.mapsEachWay), this->MapPlaces, cl_int(plan.channels), cl_int(plan.row),
     cl_int(plan.vector), plan.plane.sizeU, plan.plane.width);
   this->TheDevice.Queue().enqueueNDRangeKernel(
@@ -214,8 +213,7 @@ void AxisSweep::Implementation::GoRound(const SweepVolume& volume, int mostPlane
   const double atFirst = Sum(onTheWay);
   for (int gone = planes; gone < mostPlanes && Sum(onTheWay) > NothingLeft * atFirst; gone += planes)
   {
-    const Buffer<PlaneCrossingOnDevice> crossings(
-      this->TheDevice, this->Plan.Crossings(gone, planes), "the ray pattern");
+    const Buffer<CrossingInfo> crossings(this->TheDevice, this->Plan.Crossings(gone, planes), "the ray pattern");
     this->Launch(
       this->SweepKernel(false, false, volume.deposit.flux != nullptr), volume, crossings, this->Rounds(), monitor);
     this->CountSideways();
@@ -224,21 +222,31 @@ void AxisSweep::Implementation::GoRound(const SweepVolume& volume, int mostPlane
 }
 
 void AxisSweep::Implementation::Launch(cl::Kernel kernel, const SweepVolume& volume,
-  const Buffer<PlaneCrossingOnDevice>& crossings, const Schedule& schedule, const Monitor& monitor)
+  const Buffer<CrossingInfo>& crossings, const Schedule& schedule, const Monitor& monitor)
 {
   const SweepPlan& plan = this->Plan;
   const Buffer<float>& flux = volume.deposit.flux ? *volume.deposit.flux : *volume.deposit.path;
   const Buffer<float>& partialCurrents =
     volume.deposit.partialCurrents ? *volume.deposit.partialCurrents : *volume.deposit.path;
   const Buffer<float>& lost = this->IsPeriodic() ? this->Workspace.lost : *volume.deposit.path;
+  SweepInfo info = {};
+  info.sigmaFirst = volume.sigma_t_first;
+  info.first = volume.first;
+  info.stride = volume.stride;
+  info.mapsEachWay = plan.mapsEachWay;
+  info.outsideEachWay = static_cast<uint>(plan.outsideEachWay);
+  info.radianceEachWay = static_cast<uint>(plan.radianceEachWay);
+  info.empty = this->MapsEmpty;
+  info.bundles = static_cast<int>(plan.bundles.size());
+  info.patternPlanes = plan.PatternPlanes();
+  info.axis = plan.axes.axis;
+  info.planes = plan.plane;
   for (int launch = 0; launch < schedule.launches; ++launch)
   {
-    With(kernel, *volume.sigma_t, cl_ulong(volume.sigma_t_first), *volume.source, *volume.deposit.path, lost, flux,
-      partialCurrents, cl_ulong(volume.first), cl_ulong(volume.stride), this->Maps(), cl_ulong(plan.mapsEachWay),
-      cl_int(this->MapsEmpty), this->Outside, cl_uint(plan.outsideEachWay), this->Radiance,
-      cl_uint(plan.radianceEachWay), this->Workspace.scratch, this->Units, this->Bundles, cl_int(plan.bundles.size()),
-      crossings, this->FirstOwnLight, cl_int(plan.PatternPlanes()), schedule.planes, cl_int(launch), this->Sideways,
-      plan.plane, cl_int(plan.axes.axis));
+    info.launch = launch;
+    With(kernel, info, *volume.sigma_t, *volume.source, *volume.deposit.path, lost, flux, partialCurrents, this->Maps(),
+      this->Outside, this->Radiance, this->Workspace.scratch, this->Units, this->Bundles, crossings,
+      this->FirstOwnLight, schedule.planes, this->Sideways);
     this->TheDevice.Queue().enqueueNDRangeKernel(kernel, cl::NullRange, cl::NDRange(plan.units.size()), cl::NDRange(1));
     this->TheDevice.Queued(plan.secondsPerLaunch);
     Report(monitor, (launch + 1.0) / schedule.launches);
@@ -255,21 +263,15 @@ cl::Kernel AxisSweep::Implementation::SweepKernel(bool source, bool border, bool
     Define("ROW", plan.row) + Define("SOURCE", source) + Define("BORDER", border) + Define("NET_FLUX", flux) +
     Define("CURRENTS", plan.partialCurrents) + Define("PERIODIC_P", this->IsPeriodic()) +
     Define("PERIODIC_U", plan.periodic[plan.axes.u]) + Define("PERIODIC_V", plan.periodic[plan.axes.v]);
-  std::string bundles; // SweepBundle.cl once for each number of members there is
   for (int members = 1; members <= MaxMembers; members *= 2)
   {
-    const auto has = [&](const BundleOnDevice& bundle) { return bundle.members == members; };
+    const auto has = [&](const BundleInfo& bundle) { return bundle.members == members; };
     if (std::any_of(plan.bundleRows.begin(), plan.bundleRows.end(), has))
     {
       options += " -DMEMBERS_" + std::to_string(members);
-      bundles += "#define MEMBERS " + std::to_string(members) + "\n" + std::string(kernel_source::SweepBundle) +
-        "#undef MEMBERS\n";
     }
   }
-  return this->TheDevice.Kernel("sweep",
-    { kernel_source::Numerics, kernel_source::SweepLayout, kernel_source::SweepPartialCurrents, bundles,
-      kernel_source::Sweep },
-    options);
+  return this->TheDevice.Kernel("sweep", kernel_source::Sweep, options);
 }
 
 void AxisSweep::Implementation::CountSideways()
@@ -306,7 +308,7 @@ Rgb AxisSweep::Implementation::PowerOnTheWay()
 void AxisSweep::Implementation::SumMaps()
 {
   const SweepPlan& plan = this->Plan;
-  cl::Kernel kernel = this->TheDevice.Kernel("map_power", { kernel_source::SweepMaps });
+  cl::Kernel kernel = this->TheDevice.Kernel("map_power", kernel_source::SweepMaps);
   With(kernel, this->Maps(), cl_ulong(plan.mapsEachWay), this->MapPlaces, plan.plane.sizeV, cl_int(plan.channels),
     cl_int(plan.row), cl_int(plan.vector), plan.plane.sizeU, this->Sums);
   this->TheDevice.Queue().enqueueNDRangeKernel(

@@ -12,8 +12,8 @@ namespace tyndall
 /// Planes that a ray goes round a periodic axis before it is given up.
 constexpr int MostPlanesAround = 8192;
 
-/// Carries all rays of a set of bundles through a volume along one axis, and deposits what they lose: propagate and
-/// collect in one, without a buffer a direction (Gruson et al. need one, their section 4.1).
+/// Carries all rays of a set of bundles through a volume along one axis, and deposits what they lose: propagation and
+/// collection in one, without a buffer a direction (Gruson et al. need one, their section 4.1; numerics.md, section 4).
 ///
 /// Memory: the maps, (plane's voxels) floats a direction and channel and way, and a few planes of scratch a unit; both
 /// in a workspace, except for a periodic axis, whose rays stay on the way from one sweep to the next.
@@ -30,7 +30,7 @@ public:
   /// @param boundary  what comes in; empty: nothing
   /// @param hasSource  whether volume.source is to be read
   /// @param mostPlanes  that rays go on a periodic axis before they wait for the next sweep
-  /// @param monitor  told fractions of this sweep
+  /// @param monitor  given fractions of this sweep
   void Start(
     const SweepVolume& volume, const SweepBoundary& boundary, bool hasSource, int mostPlanes, const Monitor& monitor);
 

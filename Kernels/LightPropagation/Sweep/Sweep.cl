@@ -1,37 +1,33 @@
 // Rays through a range of planes, on a CPU: a work-item carries all the rays of its unit (one way along the axis, some
 // or all bundles) and deposits into the volume itself. Units of one launch never share a plane, so nothing is lost and
-// sums have one order. Read after SweepLayout.cl and one SweepBundle.cl for each number of MEMBERS
-// that occurs (1, 2, 4, 8), with MEMBERS_1, ... defined.
+// sums have one order. The host gives
+//   MEMBERS_1, MEMBERS_2, MEMBERS_4, MEMBERS_8  defined for each number of members that bundles have
+// and what SweepLayout.cl asks for.
 
-typedef struct
-{
-  int backward; // 0 marches from the lower end of the axis, 1 from the upper
-  int firstBundle, bundles;
-  int scratch;      // where its scratch begins, in floats
-  int planesBefore; // of the ray pattern, that its rays have crossed before their first plane here
-} unit_info;
+#include "LightPropagation/Sweep/SweepLayout.cl"
+#include "LightPropagation/Sweep/SweepPartialCurrents.cl"
 
-// How a plane lies in the volume: voxel (u, v) of plane p is (firstU + u) * stepU + (firstV + v) * stepV + (firstP + p)
-// * stepP.
-typedef struct
-{
-  int sizeU, sizeV, sizeP;
-  int firstU, firstV, firstP;
-  int stepU, stepV, stepP;
-  int width;
-  int block;    // planes packed together: 1 where rows are contiguous in memory, else a vector's worth
-  float vacuum; // 1/length, so thin that no float notices
-  float thin;   // 1/length, below which meanLength holds on all segments
-  float meanLength[MEAN_LENGTH_TERMS];
-} plane_layout;
-
-// The medium's own light in the voxel where it starts: per unit of source, the sum over segments of power (l - p1) /
-// sigma.
-typedef struct
-{
-  float length;                   // sum of power l
-  float terms[MEAN_LENGTH_TERMS]; // where the voxel is thin, the whole sum as a polynomial of sigma / layout.thin
-} own_light;
+// One bundle through one plane, once for each number of members.
+#ifdef MEMBERS_1
+#define MEMBERS 1
+#include "LightPropagation/Sweep/SweepBundle.cl"
+#undef MEMBERS
+#endif
+#ifdef MEMBERS_2
+#define MEMBERS 2
+#include "LightPropagation/Sweep/SweepBundle.cl"
+#undef MEMBERS
+#endif
+#ifdef MEMBERS_4
+#define MEMBERS 4
+#include "LightPropagation/Sweep/SweepBundle.cl"
+#undef MEMBERS
+#endif
+#ifdef MEMBERS_8
+#define MEMBERS 8
+#include "LightPropagation/Sweep/SweepBundle.cl"
+#undef MEMBERS
+#endif
 
 #if REAL_WIDTH == 16
 #define ROUNDS 4
@@ -65,7 +61,7 @@ static void transpose(real* rows)
 }
 
 // Where voxel (u, v) of a plane is.
-static ulong place_of(const plane_layout* layout, int u, int v, int plane)
+static ulong place_of(const PlaneInfo* layout, int u, int v, int plane)
 {
   return (ulong)(layout->firstU + u) * layout->stepU + (ulong)(layout->firstV + v) * layout->stepV +
     (ulong)(layout->firstP + plane) * layout->stepP;
@@ -82,7 +78,7 @@ static void clear(__global float* floats, int count)
 
 // Copy one quantity of planes [first, first + count) into scratch, rows filled up with zeros. May read, not use, a
 // vector beyond the last voxel.
-static void pack(const plane_layout* layout, __global float* to, int first, int count, const __global float* volume)
+static void pack(const PlaneInfo* layout, __global float* to, int first, int count, const __global float* volume)
 {
   const int plane = PLANES * layout->sizeV * ROW;
   for (int v = 0; v < layout->sizeV; ++v)
@@ -143,7 +139,7 @@ static void add_one(float value, __global float* sum, __global float* lost)
 
 // Add one quantity of the planes, with a sign, to the volume; exactly their voxels are touched, as others may be in
 // work elsewhere.
-static void unpack(const plane_layout* layout, const __global float* from, int first, int count, float sign,
+static void unpack(const PlaneInfo* layout, const __global float* from, int first, int count, float sign,
   __global float* volume, __global float* lost)
 {
   const int plane = PLANES * layout->sizeV * ROW;
@@ -192,7 +188,7 @@ static void unpack(const plane_layout* layout, const __global float* from, int f
 }
 
 // Which rows are thin throughout.
-static void find_thin_rows(const plane_layout* layout, const __global float* sigma, __global int* thin)
+static void find_thin_rows(const PlaneInfo* layout, const __global float* sigma, __global int* thin)
 {
   for (int v = 0; v < layout->sizeV; ++v)
   {
@@ -206,7 +202,7 @@ static void find_thin_rows(const plane_layout* layout, const __global float* sig
 }
 
 // Make planes [first, first + count) ready to be crossed.
-static void begin_planes(const plane_layout* layout, __global float* planes, __global int* thin, int first, int count,
+static void begin_planes(const PlaneInfo* layout, __global float* planes, __global int* thin, int first, int count,
   const __global float* sigma, const __global float* source, ulong stride)
 {
   const int rows = layout->sizeV * ROW;
@@ -237,9 +233,9 @@ static void begin_planes(const plane_layout* layout, __global float* planes, __g
 }
 
 #if SOURCE
-// The medium's own light on the way through the voxel where it starts, left out until here: (length - taken) / sigma,
-// or a polynomial where that would cancel or `taken` was not kept.
-static void add_own_light(const plane_layout* layout, __global float* plane, const __global own_light* light)
+// Adds the path of the medium's own light in the voxel where it starts (numerics.md, Eq. (26)): (length - taken) /
+// sigma, or a polynomial where that would cancel or `taken` was not kept.
+static void add_own_light(const PlaneInfo* layout, __global float* plane, const __global OwnLightInfo* light)
 {
   const int rows = layout->sizeV * ROW;
   for (int at = 0; at < rows; at += REAL_WIDTH)
@@ -248,9 +244,9 @@ static void add_own_light(const plane_layout* layout, __global float* plane, con
     const real taken = load_real(at, plane + PLANE_TAKEN * rows);
     const real closed = ((real)light->length - taken) * load_real(at, plane + PLANE_INVERSE * rows);
     const real thinness = sigma / layout->thin;
-    real polynomial = (real)light->terms[MEAN_LENGTH_TERMS - 1];
+    real polynomial = (real)light->terms[MeanLengthTerms - 1];
 #pragma unroll
-    for (int i = MEAN_LENGTH_TERMS - 2; i >= 0; --i)
+    for (int i = MeanLengthTerms - 2; i >= 0; --i)
     {
       polynomial = multiply_add(polynomial, thinness, (real)light->terms[i]);
     }
@@ -266,8 +262,8 @@ static void add_own_light(const plane_layout* layout, __global float* plane, con
 
 // Add what the planes gathered to the volume.
 // own      [plane from where rays start] of the first plane crossed
-static void end_planes(const plane_layout* layout, __global float* planes, int first, int count, __global float* path,
-  __global float* lost, __global float* flux, __global float* currents, ulong stride, const __global own_light* own,
+static void end_planes(const PlaneInfo* layout, __global float* planes, int first, int count, __global float* path,
+  __global float* lost, __global float* flux, __global float* currents, ulong stride, const __global OwnLightInfo* own,
   int backward, int axis)
 {
   const int rows = layout->sizeV * ROW;
@@ -302,7 +298,7 @@ static void end_planes(const plane_layout* layout, __global float* planes, int f
 }
 
 static void cross_plane(sweep_state* state, __global float* maps, const __global float* outside,
-  const __global float* radiance, const __global bundle_info* bundle, const __global crossing_info* crossing)
+  const __global float* radiance, const __global BundleInfo* bundle, const __global CrossingInfo* crossing)
 {
   __global float* map = maps + bundle->map;
   const __global float* rows = outside + bundle->outside;
@@ -324,32 +320,31 @@ static void cross_plane(sweep_state* state, __global float* maps, const __global
   }
 }
 
-// sigma     1/length, [voxel] from sigma_first on
-// source    W / (length^3 sr), [channel][stride] from `first` on
-// path      W length, [channel][stride] from `first` on, added to
+// sigma     1/length, [voxel]
+// source    W / (length^3 sr), [channel][stride]
+// path      W length, [channel][stride], added to
 // lost      as path: what rounding took from it in this sweep, where PERIODIC_P
-// flux      W length, [channel][x, y, z][stride] from 3 `first` on, added to
-// currents  W, [channel][-x, +x, -y, +y, -z, +z][stride] from 6 `first` on, added to: through that face into the voxel
-// maps      rays of both ways; `maps_each_way` floats each
-// empty     1: the maps hold nothing yet, and are cleared where rays start
+// flux      W length, [channel][x, y, z][stride], added to
+// currents  W, [channel][-x, +x, -y, +y, -z, +z][stride], added to: through that face into the voxel
+// maps      rays of both ways
 // outside, radiance   rays that come in, both ways as maps
 // crossings [plane of the ray pattern][bundle]
 // own       [unit][plane from where rays start], see add_own_light
 // schedule  [launch][unit] first plane and end, counted from where rays start; beyond the last plane the axis begins
 //           anew
 // tally     [plane from where rays start][unit][-u, +u, -v, +v][channel] W that left
-__kernel __attribute__((reqd_work_group_size(1, 1, 1))) void sweep(const __global float* sigma, ulong sigma_first,
+__kernel __attribute__((reqd_work_group_size(1, 1, 1))) void sweep(SweepInfo info, const __global float* sigma,
   const __global float* source, __global float* path, __global float* lost, __global float* flux,
-  __global float* currents, ulong first_value, ulong stride, __global float* maps, ulong maps_each_way, int empty,
-  const __global float* outside, uint outside_each_way, const __global float* radiance, uint radiance_each_way,
-  __global float* scratch, const __global unit_info* units, const __global bundle_info* bundles, int bundle_count,
-  const __global crossing_info* crossings, const __global own_light* own, int planes_of_pattern,
-  const __global int2* schedule, int launch, __global float* tally, plane_layout layout, int axis)
+  __global float* currents, __global float* maps, const __global float* outside, const __global float* radiance,
+  __global float* scratch, const __global UnitInfo* units, const __global BundleInfo* bundles,
+  const __global CrossingInfo* crossings, const __global OwnLightInfo* own, const __global int2* schedule,
+  __global float* tally)
 {
   const int u = get_global_id(0);
   const int unit_count = get_global_size(0);
-  const unit_info unit = units[u];
-  const int2 range = schedule[launch * unit_count + u];
+  const UnitInfo unit = units[u];
+  const int2 range = schedule[info.launch * unit_count + u];
+  const PlaneInfo layout = info.planes;
   const int rows = layout.sizeV * ROW;
 
   sweep_state state;
@@ -357,27 +352,27 @@ __kernel __attribute__((reqd_work_group_size(1, 1, 1))) void sweep(const __globa
   state.sizeV = layout.sizeV;
   state.width = layout.width;
   state.ring = scratch + unit.scratch;
-  state.moving = state.ring + 2 * RING_ROWS * MAX_MEMBERS * CHANNELS * ROW;
-  __global float* planes = state.moving + MAX_MEMBERS * CHANNELS * ROW + PAD; // past the last row's border
+  state.moving = state.ring + 2 * RING_ROWS * MaxMembers * CHANNELS * ROW;
+  __global float* planes = state.moving + MaxMembers * CHANNELS * ROW + PAD; // past the last row's border
   __global int* thin = (__global int*)(planes + layout.block * PLANES * rows);
-  for (int i = 0; i < MEAN_LENGTH_TERMS; ++i)
+  for (int i = 0; i < MeanLengthTerms; ++i)
   {
     state.meanLength[i] = layout.meanLength[i];
   }
-  sigma += sigma_first;
-  source += first_value;
-  path += first_value;
-  lost += first_value;
-  flux += 3 * first_value;
-  currents += 6 * first_value;
-  maps += unit.backward * maps_each_way;
-  outside += unit.backward * outside_each_way;
-  radiance += unit.backward * radiance_each_way;
+  sigma += info.sigmaFirst;
+  source += info.first;
+  path += info.first;
+  lost += info.first;
+  flux += 3 * info.first;
+  currents += 6 * info.first;
+  maps += unit.backward * info.mapsEachWay;
+  outside += unit.backward * info.outsideEachWay;
+  radiance += unit.backward * info.radianceEachWay;
 
 #if !BORDER
-  clear(state.ring, (2 * RING_ROWS + 1) * MAX_MEMBERS * CHANNELS * ROW + PAD);
+  clear(state.ring, (2 * RING_ROWS + 1) * MaxMembers * CHANNELS * ROW + PAD);
 #endif
-  if (empty && range.x == 0 && range.y > 0)
+  if (info.empty && range.x == 0 && range.y > 0)
   {
     for (int b = unit.firstBundle; b < unit.firstBundle + unit.bundles; ++b)
     {
@@ -390,7 +385,7 @@ __kernel __attribute__((reqd_work_group_size(1, 1, 1))) void sweep(const __globa
     const int lap = begin / layout.sizeP * layout.sizeP; // planes already marched when the axis began anew
     count = min(min(layout.block, range.y - begin), lap + layout.sizeP - begin);
     const int first = unit.backward ? layout.sizeP - (begin - lap) - count : begin - lap;
-    begin_planes(&layout, planes, thin, first, count, sigma, source, stride);
+    begin_planes(&layout, planes, thin, first, count, sigma, source, info.stride);
     for (int k = begin; k < begin + count; ++k)
     {
       const int plane = unit.backward ? layout.sizeP - 1 - (k - lap) : k - lap;
@@ -407,7 +402,7 @@ __kernel __attribute__((reqd_work_group_size(1, 1, 1))) void sweep(const __globa
       for (int b = unit.firstBundle; b < unit.firstBundle + unit.bundles; ++b)
       {
         cross_plane(
-          &state, maps, outside, radiance, bundles + b, crossings + (unit.planesBefore + k) * bundle_count + b);
+          &state, maps, outside, radiance, bundles + b, crossings + (unit.planesBefore + k) * info.bundles + b);
       }
       for (int side = 0; side < 4; ++side)
       {
@@ -417,7 +412,7 @@ __kernel __attribute__((reqd_work_group_size(1, 1, 1))) void sweep(const __globa
         }
       }
     }
-    end_planes(&layout, planes, first, count, path, lost, flux, currents, stride, own + u * planes_of_pattern + begin,
-      unit.backward, axis);
+    end_planes(&layout, planes, first, count, path, lost, flux, currents, info.stride,
+      own + u * info.patternPlanes + begin, unit.backward, info.axis);
   }
 }

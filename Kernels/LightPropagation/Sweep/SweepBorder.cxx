@@ -96,7 +96,7 @@ Rgb SweepBorder::PowerOfRay(const Bundle& bundle, int direction, int face) const
 /// @param slot  which member and channel of the bundle
 void SweepBorder::Write(std::size_t b, int way, int slot, float fromU, float fromV, float fromP)
 {
-  const BundleOnDevice& bundle = this->Plan.bundleRows[b];
+  const BundleInfo& bundle = this->Plan.bundleRows[b];
   const int width = this->Plan.plane.width;
   const std::size_t inBlock = static_cast<std::size_t>(slot) * this->Plan.row + this->Plan.vector;
   const std::size_t block = static_cast<std::size_t>(bundle.members) * this->Plan.channels * this->Plan.row;
@@ -106,8 +106,8 @@ void SweepBorder::Write(std::size_t b, int way, int slot, float fromU, float fro
     std::fill(map, map + this->Plan.plane.sizeU, fromP);
     std::fill(map + this->Plan.plane.sizeU, map + width, fromU);
   }
-  // The columns beside it go on waiting there for a move along u, as those of the map do. What moves both ways at once
-  // comes from the next ones.
+  // The columns beside it hold rays that come in at the next move along u, as those of the map do. Rays that move both
+  // ways at once come from the next ones.
   const bool periodicU = this->Plan.periodic[this->Plan.axes.u];
   const float beside = periodicU ? fromV : fromU;
   float* beyond = this->outside.data() + way * this->Plan.outsideEachWay + bundle.outside + inBlock;

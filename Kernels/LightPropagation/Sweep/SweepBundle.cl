@@ -16,12 +16,13 @@
 #define BLOCK (MEMBERS * CHANNELS * ROW)
 #define FIRST(member, channel) (((member)*CHANNELS + (channel)) * ROW + PAD)
 
-// All rays of a row through one segment each (Gruson et al., Eq. 3, conservative):
-//   path += p1 L,  L' = L - sigma p1 L + q p1,  p1 = (1 - exp(-tau)) / sigma
-// For small tau L' is L less what it loses, for large tau it is L times what is left: neither rounds to a leak. Where
-// all of the row is thin, p1 is a polynomial: half the work. `thin` is a constant where this is called.
+// All rays of a row through one segment each (numerics.md, Eqs. (23), (24); Gruson et al., Eq. 3, conservative):
+//   path += p1 P,  P' = P - sigma p1 P + power q p1,  p1 = (1 - exp(-tau)) / sigma
+// For small tau P' is P less what it loses, for large tau it is P times what is left: neither loses digits. Where all
+// of the row is thin, p1 is a polynomial: half the work. `thin` is a constant where this is called. The path of the
+// source's own light in the voxel does not depend on P: Sweep.cl, add_own_light.
 static inline __attribute__((always_inline)) void CROSS_VOXELS(sweep_state* state, int y, bool deposit, bool thin,
-  const __global float** in, __global float* out, float length, const __global bundle_info* bundle)
+  const __global float** in, __global float* out, float length, const __global BundleInfo* bundle)
 {
   const int rows = state->sizeV * ROW;
   const __global float* sigma_row = state->planes + PLANE_SIGMA * rows + y * ROW;
@@ -46,9 +47,9 @@ static inline __attribute__((always_inline)) void CROSS_VOXELS(sweep_state* stat
     real mean_length, keep, change;
     if (thin)
     {
-      real mean = (real)state->meanLength[MEAN_LENGTH_TERMS - 1];
+      real mean = (real)state->meanLength[MeanLengthTerms - 1];
 #pragma unroll
-      for (int i = MEAN_LENGTH_TERMS - 2; i >= 0; --i)
+      for (int i = MeanLengthTerms - 2; i >= 0; --i)
       {
         mean = multiply_add(mean, tau, (real)state->meanLength[i]);
       }
@@ -73,8 +74,8 @@ static inline __attribute__((always_inline)) void CROSS_VOXELS(sweep_state* stat
     }
     const real shine = mean_length * power;
 #if NET_FLUX
-    // Path of the light that the voxel's own source adds, (length - mean_length) / sigma. Across the axis mirror images
-    // take it away again, but along it a ray and its opposite may cross the voxel in different parts.
+    // Path of the light that the voxel's own source adds, (length - mean_length) / sigma. Across the axis that of
+    // mirror images cancels, but along it a ray and its opposite may cross the voxel in different parts.
     const real thin_path = multiply_add(tau, (real)(-length * length / 6.0f), (real)(0.5f * length * length));
     const real thick_path = (length - mean_length) * load_real(x, inverse_row);
     const real own_path = select(thick_path, thin_path, tau < (real)1e-2f) * (power * MEMBERS * bundle->cosine);
@@ -126,7 +127,7 @@ static inline __attribute__((always_inline)) void CROSS_VOXELS(sweep_state* stat
 }
 
 static void STAGE_ROW(sweep_state* state, int y, bool deposit, const __global float** in, __global float* out,
-  float length, const __global bundle_info* bundle)
+  float length, const __global BundleInfo* bundle)
 {
   if (state->thin[y])
   {
@@ -204,7 +205,7 @@ static void FILL_BORDER(sweep_state* state, const __global float* radiance)
   {
     for (int r = 0; r < 2 * RING_ROWS; ++r)
     {
-      __global float* row = state->ring + r * (MAX_MEMBERS * CHANNELS * ROW) + i * ROW + PAD;
+      __global float* row = state->ring + r * (MaxMembers * CHANNELS * ROW) + i * ROW + PAD;
       row[-1] = radiance[i];
       row[state->width] = radiance[i];
     }
@@ -216,7 +217,7 @@ static void FILL_BORDER(sweep_state* state, const __global float* radiance)
 // The rays of row y by the face they come through, see SweepPartialCurrents.cl. `own` is the row itself, where rays
 // come from.
 static void COUNT_CURRENTS(sweep_state* state, int y, bool first, const __global float** in, const __global float* own,
-  const __global bundle_info* bundle, int moveU, int moveV, float part)
+  const __global BundleInfo* bundle, int moveU, int moveV, float part)
 {
   for (int m = 0; m < MEMBERS; ++m)
   {
@@ -247,7 +248,7 @@ static void COUNT_CURRENTS(sweep_state* state, int y, bool first, const __global
 // @param outside  a row of rays that come in through the faces across v, [member][channel][ROW]
 // @param radiance of rays that come in through the faces across u, [member][channel]
 static void CROSS_PLANE(sweep_state* state, __global float* map, const __global float* outside,
-  const __global float* radiance, const __global bundle_info* bundle, const __global crossing_info* crossing)
+  const __global float* radiance, const __global BundleInfo* bundle, const __global CrossingInfo* crossing)
 {
 #if BORDER
   FILL_BORDER(state, radiance);
@@ -282,8 +283,8 @@ static void CROSS_PLANE(sweep_state* state, __global float* map, const __global 
       const bool inside = y >= 0 && y < height;
       const int wrapped = inside ? y : (y % height + height) % height;
       const float part = crossing->part[s];
-      const __global float* before = state->ring + ((s - 1) & 1) * (RING_ROWS * MAX_MEMBERS * CHANNELS * ROW);
-      const __global float* own = before + (y & (RING_ROWS - 1)) * (MAX_MEMBERS * CHANNELS * ROW); // where s > 0
+      const __global float* before = state->ring + ((s - 1) & 1) * (RING_ROWS * MaxMembers * CHANNELS * ROW);
+      const __global float* own = before + (y & (RING_ROWS - 1)) * (MaxMembers * CHANNELS * ROW); // where s > 0
       const __global float* in[MEMBERS];
 #pragma unroll
       for (int m = 0; m < MEMBERS; ++m)
@@ -298,7 +299,7 @@ static void CROSS_PLANE(sweep_state* state, __global float* map, const __global 
         }
         else
         {
-          row = before + (from & (RING_ROWS - 1)) * (MAX_MEMBERS * CHANNELS * ROW);
+          row = before + (from & (RING_ROWS - 1)) * (MaxMembers * CHANNELS * ROW);
           if (inside && (du != 0 || dv != 0))
           {
             COUNT_ESCAPED(state, own, y, m, du, dv, part, radiance, outside);
@@ -311,8 +312,8 @@ static void CROSS_PLANE(sweep_state* state, __global float* map, const __global 
         in[m] = row + FIRST(m, 0) - du;
       }
       __global float* out = s == stages - 1 ? map + y * BLOCK
-                                            : state->ring + (s & 1) * (RING_ROWS * MAX_MEMBERS * CHANNELS * ROW) +
-          (y & (RING_ROWS - 1)) * (MAX_MEMBERS * CHANNELS * ROW);
+                                            : state->ring + (s & 1) * (RING_ROWS * MaxMembers * CHANNELS * ROW) +
+          (y & (RING_ROWS - 1)) * (MaxMembers * CHANNELS * ROW);
 #if CURRENTS
       if (inside)
       {

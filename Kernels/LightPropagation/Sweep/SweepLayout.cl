@@ -1,4 +1,4 @@
-// The layout of a sweep, shared by the texts that follow. Read after Numerics.cl; the host gives
+// The layout of a sweep, shared by the texts that follow. The host gives
 //   CHANNELS  1 or 3 colours that share sigma_t
 //   ROW       floats in a padded row; the floats after a row's voxels and before the next row's are its border
 //   SOURCE    1 where the medium shines (emission or scattered light)
@@ -11,11 +11,13 @@
 // Rays carry power (W), so that leaving through any face needs no further factor. A map row holds the rays by the voxel
 // they enter, for all members of a bundle and all channels: float [member][channel][ROW].
 
+#pragma once
+#include "LightPropagation/Sweep/SweepShared.h"
+#include "Numerics/Numerics.cl"
+
 #define PAD REAL_WIDTH
-#define MAX_MEMBERS 8
-#define RING_ROWS 4         // a stage reads rows y - 1 to y + 1 while the stage before writes row y + 2
-#define LAG 2               // rows a stage stays behind the one before
-#define MEAN_LENGTH_TERMS 5 // of (1 - exp(-t)) / t = 1 + t (m0 + t (m1 + ...)) for thin voxels, see SweepPlan.cxx
+#define RING_ROWS 4 // a stage reads rows y - 1 to y + 1 while the stage before writes row y + 2
+#define LAG 2       // rows a stage stays behind the one before
 #define FLUX (NET_FLUX ? 3 : 0)
 
 // The quantities of one plane, each [row][ROW].
@@ -36,27 +38,6 @@
 #define CURRENTS_HIGH_V 4
 #define CURRENTS_FACES 5
 
-// As BundleOnDevice, PlaneCrossingOnDevice in SweepPlan.h.
-typedef struct
-{
-  int members;
-  int map;      // where its maps begin, in floats
-  int border;   // where its radiances at the faces begin, in floats: [member][channel]
-  int outside;  // where its rows outside begin, in floats: [member][channel][ROW]
-  float power;  // that a ray carries at radiance 1
-  float cosine; // of its directions with the axis it marches along, for the net flux
-  float sineU, sineV;
-  int move[MAX_MEMBERS][4]; // u from u, u from v, v from u, v from v: a signed permutation
-} bundle_info;
-
-typedef struct
-{
-  int stages;
-  int moveU[3], moveV[3];
-  float part[3]; // of each ray's power that moves; the rest stays
-  float length[3];
-} crossing_info;
-
 // Where a work-item is: its planes, its rows, its buffers.
 typedef struct
 {
@@ -64,9 +45,9 @@ typedef struct
   int width;              // sizeU rounded up to whole vectors
   __global float* planes; // PLANES quantities of sizeV rows: of the plane that is being crossed
   __global int* thin;     // [row] of it, 1 where all voxels are thin
-  float meanLength[MEAN_LENGTH_TERMS];
-  __global float* ring; // 2 rings of RING_ROWS rows of MAX_MEMBERS * CHANNELS * ROW floats, and one row more: `moving`
-  __global float* moving;     // the rays of a row of which a part moves
+  float meanLength[MeanLengthTerms];
+  __global float* ring;   // 2 rings of RING_ROWS rows of MaxMembers * CHANNELS * ROW floats, and one row more: `moving`
+  __global float* moving; // the rays of a row of which a part moves
   float escaped[4][CHANNELS]; // through -u, +u, -v, +v, W; with the rounding errors
   float rounding[4][CHANNELS];
 } sweep_state;

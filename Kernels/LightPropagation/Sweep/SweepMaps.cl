@@ -1,4 +1,4 @@
-// The ends of sweeps: the power in the maps of rays. Read by itself.
+// The ends of sweeps: the power in the maps of rays.
 
 // Power of the rays in the maps, a work-item a row of a bundle and way: what leaves at the far end of an axis.
 // maps     [way][bundle][row][member][channel][row_floats], rays in the first `size_u` floats after `border`

@@ -1,5 +1,7 @@
 // Power that enters voxels through their faces: what goes from one to the next, for the balance of a diffusion system.
-// Read after SweepLayout.cl, before SweepBundle.cl.
+
+#pragma once
+#include "LightPropagation/Sweep/SweepLayout.cl"
 
 #if CURRENTS
 // Part of the rays of row y that come through one kind of face.
@@ -16,8 +18,8 @@ static void add_current(sweep_state* state, int y, int face, const __global floa
   }
 }
 
-// Part of the rays that come from column x - du into column x - du of row y: what enters x itself comes through u after
-// that, or leaves the box.
+// Part of the rays on their way to column x through column x - du of row y, which they enter through v; they enter x
+// itself through u after that, or leave the box.
 static void add_beside(sweep_state* state, int y, int du, int face, const __global float* rays, float part)
 {
   const int rows = state->sizeV * ROW;

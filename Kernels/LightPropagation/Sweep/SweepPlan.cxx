@@ -101,8 +101,8 @@ SweepPlan::SweepPlan(const Device& device, const Grid& ofGrid, const VoxelBox& o
   this->LayRounds();
 }
 
-/// On a periodic axis of few planes the rays that start in them would all cross in one and the same way. Let them start
-/// in several laps instead, each with its part of the power.
+/// On a periodic axis of few planes the rays that start in them would all cross in the same pattern. They start in
+/// several laps instead, each with its part of the power (numerics.md, section 4.6).
 void SweepPlan::LayLaps()
 {
   this->laps = PlanesOfPattern(this->Planes(), this->periodic[this->axes.axis]) / this->Planes();
@@ -135,7 +135,7 @@ double SweepPlan::LongestSegment() const
     return LongestWay(this->bundles);
   }
   double longest = 0.0;
-  for (const PlaneCrossingOnDevice& crossing : this->Crossings(0, this->CrossingPlanes()))
+  for (const CrossingInfo& crossing : this->Crossings(0, this->CrossingPlanes()))
   {
     longest = std::max<double>(longest, *std::max_element(crossing.length, crossing.length + crossing.stages));
   }
@@ -157,14 +157,14 @@ void SweepPlan::LayBundles()
 }
 
 /// The bundle after those that have their place.
-BundleOnDevice SweepPlan::Describe(const Bundle& bundle) const
+BundleInfo SweepPlan::Describe(const Bundle& bundle) const
 {
   const std::array<double, 3>& spacing = this->grid.spacing;
   const double cosine = spacing[this->axes.axis] / bundle.length;
   const auto sine = [&](double tangent, int aside) {
     return static_cast<float>(tangent * spacing[aside] / spacing[this->axes.axis] * cosine);
   };
-  BundleOnDevice description = { Int(bundle.members.size()), Int(this->mapsEachWay), Int(this->radianceEachWay),
+  BundleInfo description = { Int(bundle.members.size()), Int(this->mapsEachWay), Int(this->radianceEachWay),
     Int(this->outsideEachWay), static_cast<float>(bundle.power), static_cast<float>(cosine),
     sine(bundle.tangentU, this->axes.u), sine(bundle.tangentV, this->axes.v), {} };
   for (std::size_t m = 0; m < bundle.members.size(); ++m)
@@ -266,7 +266,7 @@ void SweepPlan::LaySchedule()
   {
     int group = 0;
     int firstBundle = this->units.front().firstBundle;
-    for (const UnitOnDevice& unit : this->units)
+    for (const UnitInfo& unit : this->units)
     {
       group += unit.firstBundle != firstBundle ? 1 : 0;
       firstBundle = unit.firstBundle;
@@ -296,7 +296,7 @@ void SweepPlan::LayRounds()
 int SweepPlan::RaysPerUnit() const
 {
   std::size_t most = 0;
-  for (const UnitOnDevice& unit : this->units)
+  for (const UnitInfo& unit : this->units)
   {
     std::size_t rays = 0;
     for (int b = unit.firstBundle; b < unit.firstBundle + unit.bundles; ++b)
@@ -308,15 +308,15 @@ int SweepPlan::RaysPerUnit() const
   return Int(most);
 }
 
-std::vector<PlaneCrossingOnDevice> SweepPlan::Crossings(int firstPlane, int planes) const
+std::vector<CrossingInfo> SweepPlan::Crossings(int firstPlane, int planes) const
 {
-  std::vector<PlaneCrossingOnDevice> rows;
+  std::vector<CrossingInfo> rows;
   for (int k = 0; k < planes; ++k)
   {
     for (const Bundle& bundle : this->bundles)
     {
       const PlaneCrossing crossing = bundle.Crossing(firstPlane + k);
-      PlaneCrossingOnDevice onDevice = {};
+      CrossingInfo onDevice = {};
       onDevice.stages = crossing.count;
       for (int s = 0; s < crossing.count; ++s)
       {
@@ -331,10 +331,10 @@ std::vector<PlaneCrossingOnDevice> SweepPlan::Crossings(int firstPlane, int plan
   return rows;
 }
 
-std::vector<OwnLightOnDevice> SweepPlan::OwnLight() const
+std::vector<OwnLightInfo> SweepPlan::OwnLight() const
 {
-  std::vector<OwnLightOnDevice> rows;
-  for (const UnitOnDevice& unit : this->units)
+  std::vector<OwnLightInfo> rows;
+  for (const UnitInfo& unit : this->units)
   {
     for (int k = 0; k < this->PatternPlanes(); ++k)
     {
@@ -344,9 +344,9 @@ std::vector<OwnLightOnDevice> SweepPlan::OwnLight() const
   return rows;
 }
 
-/// (l - p1) / sigma = -l^2 (MeanLength[0] + sigma l (MeanLength[1] + ...)), summed over segments; sigma in units of
-/// `thin`.
-OwnLightOnDevice SweepPlan::OwnLightOf(const UnitOnDevice& unit, int ofPlane) const
+/// numerics.md, Eq. (26), where voxels are thin: (l - p1) / sigma = -l^2 (MeanLength[0] + sigma l (MeanLength[1] +
+/// ...)), summed over segments; sigma in units of `thin`.
+OwnLightInfo SweepPlan::OwnLightOf(const UnitInfo& unit, int ofPlane) const
 {
   double sum = 0.0;
   std::array<double, MeanLengthTerms> terms = {};
@@ -366,7 +366,7 @@ OwnLightOnDevice SweepPlan::OwnLightOf(const UnitOnDevice& unit, int ofPlane) co
       }
     }
   }
-  OwnLightOnDevice own = { static_cast<float>(sum), {} };
+  OwnLightInfo own = { static_cast<float>(sum), {} };
   std::copy(terms.begin(), terms.end(), own.terms);
   return own;
 }

@@ -1,6 +1,7 @@
 #pragma once
 
 #include "LightPropagation/Angular/RayBundles.h"
+#include "LightPropagation/Sweep/SweepShared.h"
 #include "LightPropagation/Sweep/SweepVolume.h"
 
 #include "Device/Device.h"
@@ -10,36 +11,6 @@
 
 namespace tyndall
 {
-constexpr int MaxMembers = 8;      ///< MAX_MEMBERS of SweepLayout.cl
-constexpr int MeanLengthTerms = 5; ///< MEAN_LENGTH_TERMS of SweepLayout.cl
-
-// What the kernels are told, as bundle_info and crossing_info of SweepLayout.cl, unit_info, plane_layout and own_light
-// of Sweep.cl.
-struct BundleOnDevice
-{
-  cl_int members, map, border, outside;
-  cl_float power, cosine, sineU, sineV;
-  cl_int move[MaxMembers][4];
-};
-struct PlaneCrossingOnDevice
-{
-  cl_int stages, moveU[3], moveV[3];
-  cl_float part[3], length[3];
-};
-struct UnitOnDevice
-{
-  cl_int backward, firstBundle, bundles, scratch, planesBefore;
-};
-struct PlaneOnDevice
-{
-  cl_int sizeU, sizeV, sizeP, firstU, firstV, firstP, stepU, stepV, stepP, width, block;
-  cl_float vacuum, thin, meanLength[MeanLengthTerms];
-};
-struct OwnLightOnDevice
-{
-  cl_float length, terms[MeanLengthTerms];
-};
-
 /// How a sweep goes: its bundles' place in memory, the units of work that march at the same time, and which planes each
 /// crosses in which launch. Worked out once on the host.
 struct SweepPlan
@@ -63,13 +34,13 @@ struct SweepPlan
 
   int vector = 8; ///< floats of a work-item's vector
   int row = 0;    ///< floats of a padded row
-  PlaneOnDevice plane = {};
-  std::vector<BundleOnDevice> bundleRows;
+  PlaneInfo plane = {};
+  std::vector<BundleInfo> bundleRows;
   std::size_t mapsEachWay = 0; ///< floats of the maps, the rows outside and the radiances at the faces, one way
   std::size_t outsideEachWay = 0;
   std::size_t radianceEachWay = 0;
 
-  std::vector<UnitOnDevice> units;
+  std::vector<UnitInfo> units;
   std::vector<cl_int2> schedule; ///< [launch][unit]: planes from, to
   int launches = 0;
   double secondsPerLaunch = 0.0; ///< at most, on a slow core
@@ -84,21 +55,21 @@ struct SweepPlan
   std::size_t ScratchFloats() const; ///< of one unit
 
   /// [plane][bundle], planes counted on from `firstPlane`.
-  std::vector<PlaneCrossingOnDevice> Crossings(int firstPlane, int planes) const;
+  std::vector<CrossingInfo> Crossings(int firstPlane, int planes) const;
   /// [unit][plane] how the medium's own light gets out of the voxel where it starts.
-  std::vector<OwnLightOnDevice> OwnLight() const;
+  std::vector<OwnLightInfo> OwnLight() const;
 
 private:
   void LayLaps();
   void LayPlane(const Device& device);
   void LayBundles();
-  BundleOnDevice Describe(const Bundle& bundle) const;
+  BundleInfo Describe(const Bundle& bundle) const;
   void LayUnits(int computeUnits);
   std::vector<int> SlabBorders(int groups);
   void LaySchedule();
   void LayRounds();
   int RaysPerUnit() const;
   double LongestSegment() const;
-  OwnLightOnDevice OwnLightOf(const UnitOnDevice& unit, int plane) const;
+  OwnLightInfo OwnLightOf(const UnitInfo& unit, int plane) const;
 };
 }

@@ -3,7 +3,7 @@
 #include "Device/Buffer.h"
 #include "Lights/Lights.h"
 #include "Medium/Grid.h"
-#include "Medium/Traits.h"
+#include "Medium/VoxelBox.h"
 
 #include <array>
 #include <functional>
@@ -19,7 +19,7 @@ inline Rgb From(const Rgb& rgb, int first)
 /// The widest vector of any kernel, floats.
 constexpr std::size_t SweepPadding = 16;
 
-/// Optical length of voxels that lamps' light is lost in evenly, near enough.
+/// Optical length of voxels below which lamps' light is taken as lost evenly.
 constexpr float ThinForMoments = 0.02f;
 
 /// Where light is put down: everything is added to.
@@ -27,13 +27,13 @@ struct Deposit
 {
   const Buffer<float>* path = nullptr; ///< W length, added to
   const Buffer<float>* flux = nullptr; ///< W length, [channel][x, y, z][stride], added to; null: not wanted
-  /// W, [channel][-x, +x, -y, +y, -z, +z][stride], added to: power that enters each voxel through each of its faces;
-  /// null:
-  /// not wanted
+  /// W, [channel][-x, +x, -y, +y, -z, +z][stride], added to: power that enters each voxel through each of its faces
+  /// (numerics.md, Eq. (29)); null: not wanted
   const Buffer<float>* partialCurrents = nullptr;
-  /// W length, [channel][-x, +x, -y, +y, -z, +z][stride], added to by lamps: how near to each face of a voxel the light
-  /// is lost that `path` stands for, its distance from the middle towards the face in the mean (0 to 1/2 of the voxel)
-  /// times its path; null: not wanted. Voxels thinner than ThinForMoments mean free paths have none.
+  /// First moments of the deposit, W length, [channel][-x, +x, -y, +y, -z, +z][stride], added to by lamps: the
+  /// distance, in voxels from the middle towards each face (0 to 1/2), of the mean place where the light is lost that
+  /// `path` stands for, times its path (numerics.md, Eq. (37)). 0 in voxels thinner than ThinForMoments. Null: not
+  /// wanted.
   const Buffer<float>* moments = nullptr;
 };
 
@@ -55,7 +55,7 @@ struct SweepVolume
   std::size_t first = 0;
 };
 
-/// Memory that sweeps along different axes take turns in. What one leaves there means nothing to the next.
+/// Scratch that sweeps along different axes share: contents are undefined between sweeps.
 struct SweepWorkspace
 {
   Buffer<float> maps;    ///< the rays of an open axis

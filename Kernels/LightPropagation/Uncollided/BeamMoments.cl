@@ -1,29 +1,19 @@
-// A beam of parallel light, after it was followed: its path is added to that of all lights, and how near to voxels'
-// faces it is lost.
+// A beam of parallel light, after it was followed: its path is added to that of all lights, and its moments.
 
-// As BeamInfo in LampBeams.cxx.
-typedef struct
-{
-  int size[3];
-  int periodic[3];
-  int up[3]; // the way it goes along each axis
-  float spacing[3];
-  float lengths[3]; // of a ray from face to face
-  float thin;       // optical length of voxels whose light is lost evenly, near enough
-} beam_info;
+#include "LightPropagation/Uncollided/BeamMomentsShared.h"
 
-// Distance from the middle of a voxel, in voxels, at which light is lost that comes in through a face and fades over
-// tau.
+// Distance from the middle of a voxel, in voxels, of the mean place where light is lost that comes in through a face
+// and falls off over tau.
 static float distance_to_face(float tau)
 {
   return tau < 0.05f ? tau / 12.0f : 0.5f - 1.0f / tau + (tau < 80.0f ? 1.0f / expm1(tau) : 0.0f);
 }
 
-// The first moment of what is lost is by Gauss's theorem that of the power through the faces, plus the net flux: exact
-// where as much goes in as comes out of the faces beside; never more than if all came in through the face.
-// path, currents      of the beam, as in SweepVolume.h
+// Moments of the deposit from the powers through the faces (numerics.md, Eq. (39)): exact where as much goes in as
+// comes out through the faces beside; never more than if all light came in through the face.
+// path, currents     of the beam, as in SweepVolume.h
 // all_path, moments  of all lamps
-__kernel void add_beam(beam_info beam, const __global float* sigma, ulong sigma_first, const __global float* path,
+__kernel void add_beam(BeamInfo beam, const __global float* sigma, ulong sigma_first, const __global float* path,
   const __global float* currents, __global float* all_path, __global float* moments, ulong first, ulong stride)
 {
   const ulong i = get_global_id(0);

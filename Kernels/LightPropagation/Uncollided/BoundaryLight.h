@@ -10,7 +10,7 @@
 namespace tyndall
 {
 /// Light that comes from outside: of shining faces, of the sky and of the environment (but its peaks, which are lamps),
-/// along a set of directions.
+/// along a set of directions (numerics.md, Eq. (31)).
 class BoundaryLight
 {
 public:
@@ -28,10 +28,9 @@ public:
   /// W / length^2 through each of the box's faces; 0 where the axis is periodic.
   std::array<Rgb, 6> IncomingPower() const;
 
-  /// What enters a face along rays that march along another axis is few rays where the box is thin for the planes that
-  /// they march by.
+  /// Rays that enter a face aside of their marching axis are few where the box has few of that axis' planes.
   /// @param channels  that are looked at
-  /// @throws InvalidInput where they are too few to tell where light comes in
+  /// @throws InvalidInput where so few of them meet the faces that shine that whole rays would miss 30% of the power
   void CheckRays(int channels) const;
 
   const SweptDirections& Along() const { return this->Directions; }

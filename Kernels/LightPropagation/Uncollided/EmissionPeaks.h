@@ -23,7 +23,7 @@ struct EmissionPeak
 };
 
 /// A medium's emission as two parts that add up to it: one for a coarse set of directions, and small bright peaks,
-/// whose light through a void would be a handful of rays in such a set (ray effects).
+/// whose light such a set would carry along a few rays through a void (ray effects).
 struct SplitEmission
 {
   std::vector<EmissionPeak> peaks; ///< at most 16
@@ -38,11 +38,8 @@ struct SplitEmission
   }
 };
 
-/// Looks for connected groups of voxels among the brightest 64th of all that outshine the mean of the others more than
-/// fourfold; what is above that is a peak. Each has to carry at least a hundredth of the power, to be at most an eighth
-/// of the box's longest edge wide, and to be seen: light that leaves it in the clearest of 26 directions must go
-/// further than one and a half times its width before all but a hundredth has met the medium. No voxel of it may be
-/// thicker than 30000 mean free paths. All peaks together have to carry half of the power; else (a cloud that shines, a
-/// flame) there are none.
+/// Connected groups of voxels among the brightest 64th that outshine the mean of the others more than fourfold: small
+/// ones (an eighth of the box's longest edge), in clear surroundings, not opaque, that carry half of the power
+/// together; else there are none (a cloud that shines, a flame). The limits: numerics.md, section 5.6.
 SplitEmission Split(const Medium& medium);
 }

@@ -1,18 +1,12 @@
-// The light of a small bright part of the medium, gathered along straight rays. Read after Numerics.cl; the host gives
+// The light of a small bright part of the medium, gathered along straight rays. The host gives
 //   CHANNELS  1 or 3 that share sigma_t
 //   NET_FLUX  1 where net flux is wanted
 //   MOST      rays of a voxel to the box around what shines, at most
 
-#define OPAQUE 80.0f // mean free paths that nothing comes through
+#include "LightPropagation/Uncollided/EmissionRaysShared.h"
+#include "Numerics/Numerics.cl"
 
-typedef struct
-{
-  int size[3];
-  float spacing[3];
-  int source_first[3], source_size[3]; // the box of what shines
-  int fewest;                          // rays of a voxel to it, at first; a power of two, at least 32
-  float uneven;                        // difference of two halves of them, to their sum, that will do
-} emission_scene;
+#define OPAQUE 80.0f // mean free paths beyond which nothing is left
 
 typedef struct
 {
@@ -22,16 +16,16 @@ typedef struct
   bool inside; // of the box of what shines
 } lit_voxel;
 
-// The scene with its axes in another order, some of them turned round, so that every voxel sees what shines in the same
-// way whatever way the scene lies: the light then has the symmetries of the scene.
+// The scene with its axes in another order, some of them turned round, so that the peak lies one way from every voxel:
+// the light then has the symmetries of the scene.
 typedef struct
 {
   float spacing[3];
-  int source_first[3], source_size[3];
-  int strides[3], base;               // of sigma: voxel (0, 0, 0) is at `base`
-  int source_strides[3], source_base; // of emission
-  int last, source_last;              // the highest index of each
-  int axis[3];                        // of the scene, that each axis here is
+  int sourceFirst[3], sourceSize[3];
+  int strides[3], base;             // of sigma: voxel (0, 0, 0) is at `base`
+  int sourceStrides[3], sourceBase; // of emission
+  int last, sourceLast;             // the highest index of each
+  int axis[3];                      // of the scene, that each axis here is
   float sign[3];
 } turned_scene;
 
@@ -61,7 +55,7 @@ static real mean_left(real tau, real* left)
 }
 
 // Rays from points to the box of what shines and through it: radiance at their beginnings, W / (length^2 sr),
-// [CHANNELS].
+// [CHANNELS] (numerics.md, Eq. (40)).
 //   point      in voxels, along x, y, z
 //   way        unit vectors, towards the box
 //   sigma      of the grid
@@ -71,8 +65,8 @@ static void trace(const turned_scene* s, const lit_voxel* voxel, const real* poi
   const __global float* sigma, const __global float* emission, real* radiance)
 {
   const int* strides = s->strides;
-  const int* source_strides = s->source_strides;
-  const int source_voxels = s->source_last + 1;
+  const int* source_strides = s->sourceStrides;
+  const int source_voxels = s->sourceLast + 1;
   const int begin = s->base + voxel->at[0] * strides[0] + voxel->at[1] * strides[1] + voxel->at[2] * strides[2];
   real rate[3], step[3], next[3];
   integer up[3];
@@ -85,8 +79,8 @@ static void trace(const turned_scene* s, const lit_voxel* voxel, const real* poi
     const real x = point[a] - voxel->at[a];
     next[a] = select(x, 1.0f - x, up[a]) * step[a];
     behind = fmin(behind, select(1.0f - x, x, up[a]) * step[a]);
-    const real low = s->source_first[a] - point[a];
-    const real high = low + s->source_size[a];
+    const real low = s->sourceFirst[a] - point[a];
+    const real high = low + s->sourceSize[a];
     enter = fmax(enter, select(-high, low, up[a]) * step[a]);
     leave = fmin(leave, select(-low, high, up[a]) * step[a]);
   }
@@ -122,13 +116,13 @@ static void trace(const turned_scene* s, const lit_voxel* voxel, const real* poi
   extinguished(tau, &left);
   received *= left;
 
-  integer shining = s->source_base;
+  integer shining = s->sourceBase;
   index = s->base;
   for (int a = 0; a < 3; ++a)
   {
-    const int first = s->source_first[a];
+    const int first = s->sourceFirst[a];
     const real at = point[a] + rate[a] * enter;
-    const integer cell = clamp(to_integer(floor(at)), (integer)first, (integer)(first + s->source_size[a] - 1));
+    const integer cell = clamp(to_integer(floor(at)), (integer)first, (integer)(first + s->sourceSize[a] - 1));
     const real x = at - to_real(cell);
     next[a] = enter + fmax(select(x, 1.0f - x, up[a]), (real)0.0f) * step[a];
     index += cell * strides[a];
@@ -158,7 +152,7 @@ static void trace(const turned_scene* s, const lit_voxel* voxel, const real* poi
       next[a] += select((real)0.0f, step[a], crossed);
     }
     index = clamp(index, (integer)0, (integer)s->last); // the same
-    shining = clamp(shining, (integer)0, (integer)s->source_last);
+    shining = clamp(shining, (integer)0, (integer)s->sourceLast);
     now = end;
     under_way = now < leave && received > (real)1e-35f;
   }
@@ -172,7 +166,7 @@ static void find_sides(const turned_scene* s, const lit_voxel* voxel, float* sol
   for (int side = 0; side < 6; ++side)
   {
     const int axis = side / 2, u = (axis + 1) % 3, v = (axis + 2) % 3;
-    const int at = voxel->at[axis], first = s->source_first[axis], end = first + s->source_size[axis];
+    const int at = voxel->at[axis], first = s->sourceFirst[axis], end = first + s->sourceSize[axis];
     const bool seen = voxel->inside
       ? axis != voxel->across || side % 2 != voxel->up || at != (side % 2 ? end - 1 : first)
       : (side % 2 ? at >= end : at < first);
@@ -180,8 +174,8 @@ static void find_sides(const turned_scene* s, const lit_voxel* voxel, float* sol
     solid_angles[side] = 0.0f;
     for (int corner = 0; corner < 4 && seen; ++corner)
     {
-      const float x = (s->source_first[u] + (corner & 1) * s->source_size[u] - voxel->at[u] - 0.5f) * s->spacing[u];
-      const float y = (s->source_first[v] + (corner >> 1) * s->source_size[v] - voxel->at[v] - 0.5f) * s->spacing[v];
+      const float x = (s->sourceFirst[u] + (corner & 1) * s->sourceSize[u] - voxel->at[u] - 0.5f) * s->spacing[u];
+      const float y = (s->sourceFirst[v] + (corner >> 1) * s->sourceSize[v] - voxel->at[v] - 0.5f) * s->spacing[v];
       const float part = atan(x * y / (away * sqrt(x * x + y * y + away * away)));
       solid_angles[side] += corner == 0 || corner == 3 ? part : -part;
     }
@@ -202,7 +196,7 @@ static inline real along(const real* values, integer axis, int shift)
 
 // Rays to the box, along directions from a lattice of points in the voxel that are spread evenly over the solid angles
 // of the box's sides: the first coordinate chooses the side, in proportion to its solid angle; what is left of it and
-// the second, (u, v) from 0 to 1, stand for the angles' tan(x / 2) and sin.
+// the second, (u, v) from 0 to 1, stand for the angles' tan(x / 2) and sin (numerics.md, Eq. (41)).
 //   from, end  the rays, a multiple of REAL_WIDTH
 //   points     [u, v, x, y, z][MOST]
 //   sums       their mean, [channel][fluence, net flux along x, y, z]
@@ -239,8 +233,8 @@ static void gather_rays(const turned_scene* s, const lit_voxel* voxel, const flo
     for (int a = 0; a < 3; ++a)
     {
       point[a] = voxel->at[a] + (a == voxel->across ? (real)voxel->up : load_real(i, points + (2 + a) * MOST));
-      low[a] = (s->source_first[a] - point[a]) * s->spacing[a];
-      high[a] = low[a] + s->source_size[a] * s->spacing[a];
+      low[a] = (s->sourceFirst[a] - point[a]) * s->spacing[a];
+      high[a] = low[a] + s->sourceSize[a] * s->spacing[a];
       edge[a] = s->spacing[a];
     }
     const real low_u = along(low, axis, 1), high_u = along(high, axis, 1);
@@ -279,8 +273,8 @@ static void gather_rays(const turned_scene* s, const lit_voxel* voxel, const flo
   }
 }
 
-// The ways to turn the scene in which voxels and faces that are alike see it alike: one, but for those that lie evenly
-// to what shines.
+// The ways to turn the scene by which voxels and faces that are alike get the same light: one, but for voxels that lie
+// evenly to what shines.
 typedef struct
 {
   int permutations[6][3]; // axes of the scene in their new order
@@ -290,18 +284,18 @@ typedef struct
 
 // Order of the axes: that across a lit face first, then by distance from the middle of what shines, its size, the
 // voxel's size.
-static bool goes_before(const emission_scene* s, const lit_voxel* voxel, const int* distance, int a, int b)
+static bool goes_before(const EmissionInfo* s, const lit_voxel* voxel, const int* distance, int a, int b)
 {
   if ((a == voxel->across) != (b == voxel->across))
   {
     return a == voxel->across;
   }
   const float far_a = abs(distance[a]) * s->spacing[a], far_b = abs(distance[b]) * s->spacing[b];
-  const float wide_a = s->source_size[a] * s->spacing[a], wide_b = s->source_size[b] * s->spacing[b];
+  const float wide_a = s->sourceSize[a] * s->spacing[a], wide_b = s->sourceSize[b] * s->spacing[b];
   return far_a != far_b ? far_a > far_b : wide_a != wide_b ? wide_a > wide_b : s->spacing[a] > s->spacing[b];
 }
 
-static void find_ways(const emission_scene* s, const lit_voxel* voxel, ways_to_turn* ways)
+static void find_ways(const EmissionInfo* s, const lit_voxel* voxel, ways_to_turn* ways)
 {
   const int all[6][3] = { { 0, 1, 2 }, { 0, 2, 1 }, { 1, 0, 2 }, { 1, 2, 0 }, { 2, 0, 1 }, { 2, 1, 0 } };
   int distance[3]; // half voxels
@@ -309,7 +303,7 @@ static void find_ways(const emission_scene* s, const lit_voxel* voxel, ways_to_t
   for (int a = 0; a < 3; ++a)
   {
     const int place = 2 * voxel->at[a] + (a == voxel->across ? 2 * voxel->up : 1);
-    distance[a] = place - 2 * s->source_first[a] - s->source_size[a];
+    distance[a] = place - 2 * s->sourceFirst[a] - s->sourceSize[a];
     ways->turned |= (distance[a] < 0) << a;
     ways->either |= (distance[a] == 0) << a;
   }
@@ -328,14 +322,14 @@ static void find_ways(const emission_scene* s, const lit_voxel* voxel, ways_to_t
   }
 }
 
-static void turn_scene(const emission_scene* s, const lit_voxel* voxel, const int* order, int turned, turned_scene* to,
+static void turn_scene(const EmissionInfo* s, const lit_voxel* voxel, const int* order, int turned, turned_scene* to,
   lit_voxel* turned_voxel)
 {
   const int strides[3] = { 1, s->size[0], s->size[0] * s->size[1] };
-  const int source_strides[3] = { 1, s->source_size[0], s->source_size[0] * s->source_size[1] };
-  to->base = to->source_base = 0;
+  const int source_strides[3] = { 1, s->sourceSize[0], s->sourceSize[0] * s->sourceSize[1] };
+  to->base = to->sourceBase = 0;
   to->last = s->size[2] * strides[2] - 1;
-  to->source_last = s->source_size[2] * source_strides[2] - 1;
+  to->sourceLast = s->sourceSize[2] * source_strides[2] - 1;
   turned_voxel->across = 3;
   turned_voxel->up = 0;
   turned_voxel->inside = voxel->inside;
@@ -343,16 +337,16 @@ static void turn_scene(const emission_scene* s, const lit_voxel* voxel, const in
   {
     const int a = order[k];
     const bool round = (turned >> a & 1) != 0;
-    const int size = s->size[a], source_size = s->source_size[a];
+    const int size = s->size[a], source_size = s->sourceSize[a];
     to->axis[k] = a;
     to->sign[k] = round ? -1.0f : 1.0f;
     to->spacing[k] = s->spacing[a];
-    to->source_size[k] = source_size;
-    to->source_first[k] = round ? size - s->source_first[a] - source_size : s->source_first[a];
+    to->sourceSize[k] = source_size;
+    to->sourceFirst[k] = round ? size - s->sourceFirst[a] - source_size : s->sourceFirst[a];
     to->strides[k] = round ? -strides[a] : strides[a];
     to->base += round ? (size - 1) * strides[a] : 0;
-    to->source_strides[k] = round ? -source_strides[a] : source_strides[a];
-    to->source_base += round ? (source_size - 1) * source_strides[a] : 0;
+    to->sourceStrides[k] = round ? -source_strides[a] : source_strides[a];
+    to->sourceBase += round ? (source_size - 1) * source_strides[a] : 0;
     turned_voxel->at[k] = round ? size - 1 - voxel->at[a] : voxel->at[a];
     if (a == voxel->across)
     {
@@ -363,7 +357,7 @@ static void turn_scene(const emission_scene* s, const lit_voxel* voxel, const in
 }
 
 // Rays [from, end) of the lattice in every way to turn the scene: their mean.
-static void gather_ways(const emission_scene* s, const lit_voxel* voxel, const ways_to_turn* ways, int from, int end,
+static void gather_ways(const EmissionInfo* s, const lit_voxel* voxel, const ways_to_turn* ways, int from, int end,
   const __global float* points, const __global float* sigma, const __global float* emission, float* sums)
 {
   int count = 0;
@@ -404,7 +398,7 @@ static void gather_ways(const emission_scene* s, const lit_voxel* voxel, const w
 
 // With as many rays as it takes, in each way to turn the scene: half of a lattice in two ways is not as good as all of
 // it in one.
-static void gather(const emission_scene* s, lit_voxel* voxel, const __global float* points, const __global float* sigma,
+static void gather(const EmissionInfo* s, lit_voxel* voxel, const __global float* points, const __global float* sigma,
   const __global float* emission, float* sums)
 {
   float others[CHANNELS * 4];
@@ -413,7 +407,7 @@ static void gather(const emission_scene* s, lit_voxel* voxel, const __global flo
   for (int a = 0; a < 3; ++a)
   {
     voxel->inside =
-      voxel->inside && voxel->at[a] >= s->source_first[a] && voxel->at[a] < s->source_first[a] + s->source_size[a];
+      voxel->inside && voxel->at[a] >= s->sourceFirst[a] && voxel->at[a] < s->sourceFirst[a] + s->sourceSize[a];
   }
   find_ways(s, voxel, &ways);
   gather_ways(s, voxel, &ways, 0, s->fewest / 2, points, sigma, emission, sums);
@@ -435,7 +429,7 @@ static void gather(const emission_scene* s, lit_voxel* voxel, const __global flo
 // path      W length, [channel][stride]
 // flux      W length, [channel][x, y, z][stride]
 // emission  of the box of what shines, [channel][voxel]
-__kernel void gather_voxels(emission_scene s, const __global float* sigma, ulong sigma_first,
+__kernel void gather_voxels(EmissionInfo s, const __global float* sigma, ulong sigma_first,
   const __global float* points, const __global float* emission, __global float* path, __global float* flux,
   ulong stride, ulong first, ulong count)
 {
@@ -463,7 +457,7 @@ __kernel void gather_voxels(emission_scene s, const __global float* sigma, ulong
 }
 
 // What goes out through cell i of a face of the grid, [cell][CHANNELS], W.
-__kernel void gather_face(emission_scene s, int axis, int up, const __global float* sigma, ulong sigma_first,
+__kernel void gather_face(EmissionInfo s, int axis, int up, const __global float* sigma, ulong sigma_first,
   const __global float* points, const __global float* emission, __global float* out, ulong first, ulong count)
 {
   const ulong i = first + get_global_id(0);

@@ -1,5 +1,7 @@
 #include "LightPropagation/Uncollided/EmissionRays.h"
 
+#include "LightPropagation/Uncollided/EmissionRaysShared.h"
+
 #include "TyndallKernelSources.h"
 
 #include "Device/Batches.h"
@@ -22,19 +24,9 @@ constexpr double AllRays = 0x1p22; ///< at first, about, for the usual error: a 
 constexpr double UsualError = 0.02;
 
 /// Of a lattice of points in five dimensions, found component by component for 32 to 2048 points; with 4096 the worst
-/// error of Kobayashi's points at 20^3 fell from 0.5% to 0.3%. Every 2^n first points, in the
-/// order of their reversed bits, are a lattice of their own.
+/// error of Kobayashi's points at 20^3 fell from 0.5% to 0.3%. Every 2^n first points, in the order of their reversed
+/// bits, are a lattice of their own.
 constexpr std::array<std::uint32_t, 5> LatticeVector = { 1, 807, 303, 119, 445 };
-
-// As in EmissionRays.cl.
-struct SceneOnDevice
-{
-  cl_int size[3];
-  cl_float spacing[3];
-  cl_int sourceFirst[3], sourceSize[3];
-  cl_int fewest;
-  cl_float uneven;
-};
 
 /// [dimension][MostRays], 0 to 1.
 std::vector<float> LatticePoints()
@@ -81,7 +73,7 @@ public:
 private:
   cl::Kernel Kernel(const char* name, int width = 1)
   {
-    return this->TheDevice.Kernel(name, { kernel_source::Numerics, kernel_source::EmissionRays },
+    return this->TheDevice.Kernel(name, kernel_source::EmissionRays,
       Define("REAL_WIDTH", width) + Define("CHANNELS", this->Volume.channels) +
         Define("NET_FLUX", this->Volume.deposit.flux != nullptr) + Define("MOST", MostRays));
   }
@@ -222,7 +214,7 @@ private:
   int FirstChannel;
   const EmissionPeak& Peak;
   double Error;
-  SceneOnDevice Scene = {};
+  EmissionInfo Scene = {};
 
   Buffer<float> Points, Emission; ///< as in EmissionRays.cl
   Rgb Emitted = {};               ///< W

@@ -1,5 +1,7 @@
 #include "LightPropagation/Uncollided/EnvironmentPeaks.h"
 
+#include "Numerics/Constants.h"
+
 #include <algorithm>
 #include <cmath>
 #include <utility>
@@ -8,7 +10,6 @@ namespace tyndall
 {
 namespace
 {
-constexpr double Pi = 3.14159265358979323846;
 constexpr double BrightPart = 0.05; ///< of a cell's solid angle
 constexpr double Outshines = 4.0;   ///< times the mean of the rest
 constexpr double LeastPower = 1.0 / 500.0;

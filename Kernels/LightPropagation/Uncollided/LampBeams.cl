@@ -1,40 +1,18 @@
-// Beams from a point lamp through the box. Read after Numerics.cl and FixedPoint.cl; the host gives
+// Beams from a point lamp through the box. The host gives
 //   ATOMICS      1 where the device has 64-bit atomics, else one work-item does all
 //   LAMBERT, CONE  1 for a rectangle, a spot
-//   MOMENTS     1: how near to which faces of a voxel light is lost is wanted
+//   MOMENTS     1: moments of the deposit are wanted
 //
 // Space around the lamp is six pyramids, one for each way along an axis; in a pyramid beams lie on a grid of tangents,
 // so fine that a beam is at most a voxel wide where it leaves the box. It is followed layer by layer; where its square
-// cross-section lies over up to four voxels, each takes its part. All is told as parts of the lamp's power: its colours
-// share sigma_t.
+// cross-section lies over up to four voxels, each takes its part (numerics.md, Eqs. (33), (34)). All values are
+// parts of the lamp's power: its colours share sigma_t.
 
-#define SUMS 9  // of a row
+#include "LightPropagation/Uncollided/LampBeamsShared.h"
+#include "Numerics/FixedPoint.cl"
+#include "Numerics/Numerics.cl"
+
 #define STEPS 2 // a layer: a beam moves aside by half a voxel at most
-
-// Lengths along axis a are in voxels of `spacing[a]`.
-typedef struct
-{
-  int size[3];
-  int periodic[3];
-  float spacing[3];
-  float position[3];  // of the lamp, from the box's corner
-  float direction[3]; // unit, in space
-  float cosine;       // of the cone's half angle
-  float intensity;    // part of the power, per steradian; at normal emission where LAMBERT
-  float scale;        // fixed point units per length
-  float diagonal;     // of a voxel
-  int rounds;         // of a beam round a periodic axis
-} lamp_info;
-
-// The beams of one pyramid at one tangent v.
-typedef struct
-{
-  int axis, up;             // marches along the axis, up or down
-  float tangentU, tangentV; // of the first beam's middle; v's for all
-  float widthU, widthV;     // of a beam, in tangents
-  int count;                // of beams along u
-  float begin;              // layers from the lamp to the box, 0 inside
-} beam_row;
 
 static float corner_angle(float a, float b, float d)
 {
@@ -67,7 +45,7 @@ static float solid_angle(float a0, float a1, float b0, float b1, float d)
 #define AFTER 2
 
 // Where voxel i of an axis is for a beam that moves by `tangent` along it; wraps it on a periodic axis.
-static int place(const lamp_info* lamp, int axis, float tangent, int* i)
+static int place(const LampInfo* lamp, int axis, float tangent, int* i)
 {
   const int n = lamp->size[axis];
   if (lamp->periodic[axis])
@@ -87,8 +65,7 @@ typedef struct
   float entered, escaped[6], stranded;
 } lamp_tally;
 
-// How many of them a path in a voxel counts: what is thick is crossed by little path, of which fixed point must not
-// lose any.
+// Factor of a path in a voxel in fixed point (numerics.md, Eq. (35)): light goes little path through what is thick.
 static float units_of(float sigma, float diagonal)
 {
   return fmax(sigma * diagonal, 1.0f);
@@ -102,11 +79,11 @@ static void overlap(float low, float width, int* voxel, float* part)
 }
 
 #if MOMENTS
-// Path that light has in a voxel, times how far from its middle it is lost in the mean: along the beam's axis and
-// aside.
+// Path that light has in a voxel, times the distance from its middle of the mean place where it is lost: along the
+// beam's axis and aside (numerics.md, Eqs. (37), (38)).
 //   way   of the step, from begin to end, layers from the lamp
 //   mean  middle of the part of the cross-section in the voxel, half way through the step
-static void add_moments(const lamp_info* lamp, const beam_row* row, const int* voxel, float2 way, float2 mean,
+static void add_moments(const LampInfo* lamp, const BeamRow* row, const int* voxel, float2 way, float2 mean,
   float2 tangent, float tau, float lost, float path, __global long* moments, ulong stride)
 {
   const float part = tau < 0.05f ? 0.5f - tau / 12.0f : 1.0f / tau - (1.0f - lost) / lost;
@@ -126,7 +103,7 @@ static void add_moments(const lamp_info* lamp, const beam_row* row, const int* v
 #endif
 
 // One step of a beam: every part of it through its voxel. Changes `left`; returns the part that will never be inside.
-static void step_beam(const lamp_info* lamp, const beam_row* row, int layer, bool first, bool last, float2 tangent,
+static void step_beam(const LampInfo* lamp, const BeamRow* row, int layer, bool first, bool last, float2 tangent,
   float2 middle, float2 width, float2 way, float length, const __global float* sigma, __global long* path, ulong stride,
   float* left, lamp_tally* tally)
 {
@@ -202,7 +179,7 @@ static void step_beam(const lamp_info* lamp, const beam_row* row, int layer, boo
 }
 
 // One beam from where it comes into the box's layers to where it leaves them.
-static void follow_beam(const lamp_info* lamp, const beam_row* row, float2 tangent, float power,
+static void follow_beam(const LampInfo* lamp, const BeamRow* row, float2 tangent, float power,
   const __global float* sigma, __global long* path, ulong stride, lamp_tally* tally)
 {
   const int n = lamp->size[row->axis];
@@ -251,7 +228,7 @@ static void follow_beam(const lamp_info* lamp, const beam_row* row, float2 tange
 
 #if LAMBERT || CONE
 // Of the angle between a ray and the lamp's direction.
-static float cosine_at(const lamp_info* lamp, const beam_row* row, float2 tangent)
+static float cosine_at(const LampInfo* lamp, const BeamRow* row, float2 tangent)
 {
   const int u = (row->axis + 1) % 3;
   const int v = (row->axis + 2) % 3;
@@ -266,7 +243,7 @@ static float cosine_at(const lamp_info* lamp, const beam_row* row, float2 tangen
 
 #if CONE
 #define PROBES 4 // an edge of a beam
-static float part_in_cone(const lamp_info* lamp, const beam_row* row, float2 tangent, float2 half_width)
+static float part_in_cone(const LampInfo* lamp, const BeamRow* row, float2 tangent, float2 half_width)
 {
   int inside = 0;
   for (int i = 0; i < PROBES * PROBES; ++i)
@@ -278,7 +255,7 @@ static float part_in_cone(const lamp_info* lamp, const beam_row* row, float2 tan
 }
 #endif
 
-static void follow_row(const lamp_info* lamp, const beam_row* row, const __global float* sigma, __global long* path,
+static void follow_row(const LampInfo* lamp, const BeamRow* row, const __global float* sigma, __global long* path,
   ulong stride, __global float* sums)
 {
   const int u = (row->axis + 1) % 3;
@@ -317,8 +294,8 @@ static void follow_row(const lamp_info* lamp, const beam_row* row, const __globa
 // path  part of the power times length, in fixed point, [voxel], added to; MOMENTS: [path, times distance along x, y,
 //       z][stride]
 // sums  [row][entered, escaped through -x to +z, stranded, shone in the row's directions], parts of the power
-__kernel void follow_lamp(lamp_info lamp, const __global float* sigma, ulong sigma_first, __global long* path,
-  ulong stride, const __global beam_row* rows, int row_count, int first_row, __global float* sums)
+__kernel void follow_lamp(LampInfo lamp, const __global float* sigma, ulong sigma_first, __global long* path,
+  ulong stride, const __global BeamRow* rows, int row_count, int first_row, __global float* sums)
 {
 #if ATOMICS
   const int r = first_row + get_global_id(0);
@@ -326,8 +303,8 @@ __kernel void follow_lamp(lamp_info lamp, const __global float* sigma, ulong sig
   for (int r = first_row; r < first_row + row_count; ++r)
 #endif
   {
-    const beam_row row = rows[r];
-    follow_row(&lamp, &row, sigma + sigma_first, path, stride, sums + r * SUMS);
+    const BeamRow row = rows[r];
+    follow_row(&lamp, &row, sigma + sigma_first, path, stride, sums + r * LampRowSums);
   }
 }
 

@@ -1,6 +1,11 @@
 #include "LightPropagation/Uncollided/LampBeams.h"
 
+#include "Device/Defines.h"
+#include "LightPropagation/Uncollided/BeamMomentsShared.h"
+#include "LightPropagation/Uncollided/LampBeamsShared.h"
+
 #include "LightPropagation/Sweep/AxisSweep.h"
+#include "Numerics/Vectors.h"
 #include "TyndallKernelSources.h"
 
 #include <glm/geometric.hpp>
@@ -19,40 +24,8 @@ constexpr int RaysPerEdge = 2;      ///< of a voxel, for parallel beams
 constexpr int PointsPerEdge = 4;    ///< of a rectangle
 constexpr double BeamWidth = 0.5;   ///< of a lamp's beams where they leave the box, voxels; a rectangle's: twice
 constexpr int BeamsAcrossCone = 16; ///< of a spot, at least
-constexpr int RowSums = 9;          ///< SUMS of LampBeams.cl
 constexpr int RowsPerLaunch = 256;  ///< keeps a launch well below a tenth of a second for rows of a thousand voxels
 constexpr int RoundsAtMost = 64;    ///< of a ray on a periodic axis
-
-// As beam_info in BeamMoments.cl.
-struct BeamInfo
-{
-  cl_int size[3], periodic[3], up[3];
-  cl_float spacing[3], lengths[3], thin;
-};
-
-// As lamp_info, beam_row in LampBeams.cl.
-struct LampOnDevice
-{
-  cl_int size[3], periodic[3];
-  cl_float spacing[3], position[3], direction[3];
-  cl_float cosine;
-  cl_float intensity;
-  cl_float scale;
-  cl_float diagonal;
-  cl_int rounds;
-};
-struct BeamRow
-{
-  cl_int axis, up;
-  cl_float tangentU, tangentV, widthU, widthV;
-  cl_int count;
-  cl_float begin;
-};
-
-glm::dvec3 Vector(const std::array<double, 3>& v)
-{
-  return { v[0], v[1], v[2] };
-}
 
 std::array<double, 3> Array(const glm::dvec3& v)
 {
@@ -63,7 +36,7 @@ SweepTally DepositBeam(Device& device, const SweepVolume& volume, const Light& l
   const std::array<bool, 3>& periodic, SweepWorkspace& workspace, const Monitor& monitor)
 {
   const std::array<double, 3> omega = Array(glm::normalize(Vector(light.direction)));
-  // How near to voxels' faces the light is lost is told by the faces that it enters through.
+  // Moments of the deposit are found from the powers through the faces.
   SweepVolume own = volume;
   Buffer<float> path, partialCurrents;
   if (volume.deposit.moments)
@@ -102,7 +75,7 @@ SweepTally DepositBeam(Device& device, const SweepVolume& volume, const Light& l
       info.lengths[a] = static_cast<float>(volume.grid.spacing[a] / std::max(std::abs(omega[a]), 1e-6));
     }
     info.thin = ThinForMoments;
-    cl::Kernel add = device.Kernel("add_beam", { kernel_source::BeamMoments });
+    cl::Kernel add = device.Kernel("add_beam", kernel_source::BeamMoments);
     With(add, info, *volume.sigma_t, cl_ulong(volume.sigma_t_first), path, partialCurrents, *volume.deposit.path,
       *volume.deposit.moments, cl_ulong(volume.first), cl_ulong(volume.stride));
     device.Queue().enqueueNDRangeKernel(
@@ -260,7 +233,7 @@ public:
       this->Follow(points[p], 1.0 / points.size(), [&](double done) { Report(monitor, (p + done) / points.size()); });
     }
     cl::Kernel add = this->Kernel("add_fixed");
-    // All directions of a lamp inside the box were followed: what beams on the cone's border missed is known.
+    // All directions of a lamp inside the box were followed: so it is known what beams on the cone's border missed.
     const double correction = this->AllInside && this->Shone > 0.0 ? 1.0 / this->Shone : 1.0;
     cl_float4 units = {};
     for (int c = 0; c < 3; ++c)
@@ -287,15 +260,14 @@ private:
 
   cl::Kernel Kernel(const char* name)
   {
-    return this->TheDevice.Kernel(name,
-      { kernel_source::Numerics, kernel_source::FixedPoint, kernel_source::LampBeams },
-      "-DATOMICS=" + std::to_string(this->HasAtomics()) +
-        " -DLAMBERT=" + std::to_string(this->TheLight.type == LightType::Rectangle) +
-        " -DCONE=" + std::to_string(this->TheLight.type == LightType::Spot) + " -DMOMENTS=" +
-        std::to_string(this->Volume.deposit.moments != nullptr) + " -DTHIN=" + std::to_string(ThinForMoments) + "f");
+    return this->TheDevice.Kernel(name, kernel_source::LampBeams,
+      Define("ATOMICS", this->HasAtomics()) + Define("LAMBERT", this->TheLight.type == LightType::Rectangle) +
+        Define("CONE", this->TheLight.type == LightType::Spot) +
+        Define("MOMENTS", this->Volume.deposit.moments != nullptr) + DefineFloat("THIN", ThinForMoments));
   }
 
-  /// Fixed point units per length: no voxel can gather more than all power along its diagonal.
+  /// Fixed point units per length (numerics.md, Eq. (36)): no voxel can gather more than all power along its diagonal,
+  /// once a round.
   double Scale() const { return std::exp2(std::floor(std::log2(0x1p60 / (this->Diagonal() * RoundsAtMost)))); }
 
   double Diagonal() const
@@ -304,9 +276,9 @@ private:
     return std::sqrt(h[0] * h[0] + h[1] * h[1] + h[2] * h[2]);
   }
 
-  LampOnDevice Describe(const glm::dvec3& position, double part) const
+  LampInfo Describe(const glm::dvec3& position, double part) const
   {
-    LampOnDevice info = {};
+    LampInfo info = {};
     const Grid& grid = this->Volume.grid;
     const glm::dvec3 direction = this->TheLight.type == LightType::Point
       ? glm::dvec3(0.0, 0.0, 1.0)
@@ -343,9 +315,9 @@ private:
       return;
     }
     const Buffer<BeamRow> rowBuffer(this->TheDevice, rows, "the beams of a lamp");
-    Buffer<float> sums(this->TheDevice, rows.size() * RowSums, "sums");
+    Buffer<float> sums(this->TheDevice, rows.size() * LampRowSums, "sums");
     cl::Kernel kernel = this->Kernel("follow_lamp");
-    const LampOnDevice info = this->Describe(position, part);
+    const LampInfo info = this->Describe(position, part);
     for (std::size_t first = 0; first < rows.size(); first += RowsPerLaunch)
     {
       const std::size_t count = std::min<std::size_t>(RowsPerLaunch, rows.size() - first);
@@ -363,7 +335,7 @@ private:
   {
     for (std::size_t r = 0; r < rows.size(); ++r)
     {
-      const float* row = sums.data() + r * RowSums;
+      const float* row = sums.data() + r * LampRowSums;
       this->In[2 * rows[r].axis + rows[r].up] += row[0]; // by the way it shines: lamps inside pass no face
       for (int face = 0; face < 6; ++face)
       {

@@ -5,9 +5,8 @@
 
 namespace tyndall
 {
-/// The uncollided flux of shining faces, sky and environment, along a set of directions of its own. Shadows have edges,
-/// which want many directions; scattered light is smooth and does with few: so the many are swept once and not once an
-/// order.
+/// The uncollided flux of shining faces, sky and environment, along a set of directions of its own, swept once. Shadows
+/// have edges, which need many directions; scattered light, which is swept every order, is smooth and needs few.
 class UncollidedBoundary : public UncollidedSource
 {
 public:

@@ -38,8 +38,8 @@ struct EmittedPhotons
   double seconds = 0.0; ///< that it took
 };
 
-/// Makes photons of lights (Pfeuti 2009, section 3.1.4), in double precision on the host. What would miss the volume is
-/// not made, and the power of the others is what really reaches it:
+/// Makes photons of lights (Pfeuti 2009, section 3.1.4; numerics.md, Eq. (94)), in double precision on the host.
+/// Photons that would miss the volume are not made, and the power of the others is what really reaches it:
 ///
 ///  - directional: spread over the outline of the volume on the photon plane across the light's direction
 ///  - point: over the solid angle of the faces that the lamp sees, or all around a lamp in the volume; what a lamp on a
@@ -51,9 +51,8 @@ struct EmittedPhotons
 ///
 /// The index outside is taken as constant.
 ///
-/// @throws InvalidInput where an illumination means nothing or no photon is asked for; DeviceError where the machine's
-/// memory
-///   does not suffice for the photons (60 bytes each); Aborted
+/// @throws InvalidInput where an illumination is not valid or photonCount is 0; DeviceError where the machine's
+///   memory does not suffice for the photons (60 bytes each); Aborted
 EmittedPhotons EmitPhotons(
   const Grid& grid, const Illumination& illumination, const EmissionSettings& settings, const Monitor& monitor = {});
 
@@ -68,7 +67,7 @@ struct PilotPhotons
 /// Photons of every light, the environment and the sky, not of the faces: one in each cell of a square grid, at a
 /// random place in it (Pfeuti 2009, section 3.2.2).
 /// @param edge  cells along an edge of the grid, at least 1
-/// @throws InvalidInput where an illumination means nothing
+/// @throws InvalidInput where an illumination is not valid
 std::vector<PilotPhotons> EmitPilots(
   const Grid& grid, const Illumination& illumination, int edge, std::uint64_t seed = 0);
 }

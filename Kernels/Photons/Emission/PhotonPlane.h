@@ -49,7 +49,8 @@ private:
 class SphericalRectangle
 {
 public:
-  /// @param corner, edges  of the rectangle; the edges are at a right angle
+  /// @param corner                of the rectangle
+  /// @param firstEdge,secondEdge  from the corner, at a right angle
   SphericalRectangle(
     const glm::dvec3& eye, const glm::dvec3& corner, const glm::dvec3& firstEdge, const glm::dvec3& secondEdge);
 

@@ -1,5 +1,7 @@
 #include "Photons/Emission/PhotonSources.h"
 
+#include "Numerics/Constants.h"
+#include "Numerics/Vectors.h"
 #include "Photons/Emission/CumulativeTable.h"
 #include "Photons/Emission/PhotonPlane.h"
 #include "Photons/Importance/ImportanceMap.h"
@@ -16,12 +18,6 @@ namespace tyndall
 {
 namespace
 {
-constexpr double Pi = glm::pi<double>();
-
-glm::dvec3 Vector(const std::array<double, 3>& v)
-{
-  return { v[0], v[1], v[2] };
-}
 
 Rgb Times(const Rgb& a, double b)
 {

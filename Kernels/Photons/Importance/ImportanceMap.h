@@ -22,8 +22,7 @@ struct ImportanceMap
 };
 
 /// @throws InvalidInput where a density is negative, 0 (then the light that sets out there would be missing) or not
-/// finite (names
-///   light, column and row), or their number is not that of the cells
+///   finite (names light, column and row), or their number is not that of the cells
 void Check(const ImportanceMap& map);
 
 /// One light's square of a map: the unit square is mapped onto itself such that what is spread evenly over it becomes
@@ -34,8 +33,7 @@ class ImportanceSampler
 public:
   /// @param density  size*size, not all zero
   /// @param most     density at most, in those of photons spread evenly, at least 1: what a cell has above it is shared
-  /// by the
-  ///                 others in proportion
+  ///                 by the others in proportion
   ImportanceSampler(const float* density, int size, double most);
 
   /// A place of the unit square, and its probability density there.

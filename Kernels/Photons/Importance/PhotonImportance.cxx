@@ -14,7 +14,7 @@ namespace tyndall
 {
 namespace
 {
-// Thresholds from the pilot's own statistics, all in proportion to the light.
+// Thresholds from the pilot's own statistics, all in proportion to the light (numerics.md, Eq. (96)).
 constexpr double SteepPart = 0.2; ///< of the lit cells: as many are steep ones
 constexpr double SteepAtLeast =
   0.25; ///< of the median luminance from a cell to the next: below, noise and fog's own falling off

@@ -18,7 +18,7 @@ struct ImportanceSettings
   std::array<int, 3> cells = { 16, 16, 16 }; ///< of the coarse grid, each at least 1
   std::uint64_t seed = 0;
 
-  /// Thresholds from the pilot photons' own statistics, in proportion to the light: see PhotonImportance.cxx. Else the
+  /// Thresholds from the pilot photons' own statistics, in proportion to the light (numerics.md, Eq. (96)). Else the
   /// two below.
   bool automatic = true;
   double gradientThreshold = 0.0;  ///< W / length^2 from a cell to the next: cells at or above it are chosen
@@ -39,10 +39,10 @@ struct Importance
   double seconds = 0.0;
 };
 
-/// Where photons are needed (Pfeuti 2009, section 3.2.2): pilot photons on a jittered grid are gathered in coarse
-/// cells; cells with a steep gradient of light, and dark ones, are chosen; each is splatted into the map as a circle
-/// about the mean origin of its photons, as wide as they deviate from it; a background is added; a 5x5 Gauss filter of
-/// variance 2 smooths the map.
+/// Where photons are needed (Pfeuti 2009, section 3.2.2; numerics.md, section 12.2): pilot photons on a jittered grid
+/// are gathered in coarse cells; cells with a steep gradient of light, and dark ones, are chosen; each is drawn into
+/// the map as a circle about the mean origin of its photons, as wide as they deviate from it; a 5x5 Gauss filter of
+/// variance 2 smooths the map, and a background is added.
 ///
 /// @param marcher  of the medium
 /// @throws InvalidInput where a setting is out of its range; Aborted

@@ -7,14 +7,6 @@
 
 namespace tyndall
 {
-/// What became of a photon, as photon_end in the kernels: these integers, then the power of each channel.
-struct EndOnDevice
-{
-  cl_int face, crossings, steps;
-};
-constexpr int EndWords = 3;
-constexpr int StillGoing = 6; ///< and above: not a face of the volume
-
 /// Who adds to how many copies of the sums. Work-item w serves copies w, w + workers, ...; copy c is for batch c %
 /// batches.
 struct MarchShares
@@ -40,7 +32,7 @@ struct PhotonsOnDevice
   Buffer<float> values;
   Buffer<cl_ulong> marks;
   Buffer<cl_int> batchBegin;
-  Buffer<cl_int> ends; ///< EndOnDevice and the power of each
+  Buffer<cl_int> ends; ///< PhotonEnd and the power of each
 };
 
 /// What photons leave, and where.

@@ -102,7 +102,7 @@ void MarchMedium::Launch(const cl::Kernel& kernel, const cl::NDRange& range, con
   this->device.Queue().enqueueNDRangeKernel(kernel, cl::NullRange, range, local);
 }
 
-GridOnDevice MarchMedium::DescribeGrid() const
+IndexGrid MarchMedium::DescribeGrid() const
 {
   return { { this->grid.size[0], this->grid.size[1], this->grid.size[2] } };
 }
@@ -118,9 +118,9 @@ int MarchMedium::EventLimit() const
   return static_cast<int>(std::min(1e9, RoundsAtMost * edges * std::max(1.0, 1.0 / this->settings.stepSize)));
 }
 
-MarchOnDevice MarchMedium::Describe() const
+MarchInfo MarchMedium::Describe() const
 {
-  MarchOnDevice info = {};
+  MarchInfo info = {};
   info.grid = this->DescribeGrid();
   for (int a = 0; a < 3; ++a)
   {
@@ -142,14 +142,13 @@ std::string MarchMedium::Options() const
 
 cl::Kernel MarchMedium::MediumKernel(const char* name) const
 {
-  return this->device.Kernel(name,
-    { kernel_source::Numerics, kernel_source::SquaredIndex, kernel_source::PhotonMedium },
+  return this->device.Kernel(name, kernel_source::PhotonMedium,
     this->Options() + Define("A_CHANNELS", this->AComponents) + Define("S_CHANNELS", this->SComponents));
 }
 
 cl::Kernel MarchMedium::SumsKernel(const char* name, int lightChannels, const std::string& options) const
 {
-  return this->device.Kernel(name, { kernel_source::Numerics, kernel_source::SquaredIndex, kernel_source::PhotonSums },
+  return this->device.Kernel(name, kernel_source::PhotonSums,
     this->Options() + Define("CHANNELS", lightChannels) + Define("A_CHANNELS", this->AComponents) +
       Define("S_CHANNELS", this->SComponents) + options);
 }
@@ -157,9 +156,7 @@ cl::Kernel MarchMedium::SumsKernel(const char* name, int lightChannels, const st
 cl::Kernel MarchMedium::MarchKernel(
   const char* name, int lightChannels, bool directions, const std::string& options) const
 {
-  return this->device.Kernel(name,
-    { kernel_source::Numerics, kernel_source::FixedPoint, kernel_source::SquaredIndex, kernel_source::PhotonLanes,
-      kernel_source::PhotonSteps, kernel_source::PhotonMarch },
+  return this->device.Kernel(name, kernel_source::PhotonMarch,
     this->Options() + Define("CHANNELS", lightChannels) + Define("DIRECTIONS", directions) +
       Define("ORDER", this->settings.order) + options);
 }
@@ -168,7 +165,7 @@ Buffer<cl_int> MarchMedium::Cells(const std::array<int, 3>& cells) const
 {
   Buffer<cl_int> numbers(this->device, this->PaddedCount(), "cells of the voxels");
   cl::Kernel assign = this->MediumKernel("assign_cells");
-  With(assign, this->DescribeGrid(), GridOnDevice{ { cells[0], cells[1], cells[2] } }, numbers);
+  With(assign, this->DescribeGrid(), IndexGrid{ { cells[0], cells[1], cells[2] } }, numbers);
   this->Launch(assign, Range(this->Padded(2)));
   this->device.Finish();
   return numbers;

@@ -5,6 +5,7 @@
 #include "Device/Buffer.h"
 #include "Medium/Medium.h"
 #include "Medium/Traits.h"
+#include "Photons/Marching/MarchShared.h"
 #include "Photons/Marching/PhotonPacking.h"
 #include "Refraction/Index/IndexRange.h"
 
@@ -12,20 +13,6 @@
 
 namespace tyndall
 {
-// As index_grid, march_info in the kernels.
-struct GridOnDevice
-{
-  cl_int size[3];
-};
-struct MarchOnDevice
-{
-  GridOnDevice grid;
-  cl_float spacing[3];
-  cl_float stepSize, slowest, darkness;
-  cl_int eventLimit;
-  alignas(8) cl_ulong copy;
-};
-
 /// A refractive medium on its device, as photons are marched through it, and what kernels need to know of it.
 class MarchMedium
 {
@@ -34,8 +21,8 @@ public:
   MarchMedium(
     Device& device, const Medium& medium, const Field& ior, const MarchSettings& settings, const std::uint8_t* levels);
 
-  MarchOnDevice Describe() const;
-  GridOnDevice DescribeGrid() const;
+  MarchInfo Describe() const;
+  IndexGrid DescribeGrid() const;
   int EventLimit() const;  ///< walls and turns of a photon at most
   double Diagonal() const; ///< of a voxel
   std::size_t PaddedCount() const

@@ -1,7 +1,10 @@
-// Photons side by side: REAL_WIDTH of them, a lane each. Read after Numerics.cl.
+// Photons side by side: REAL_WIDTH of them, a lane each.
 //
 // What is known of them stands in arrays, which are read and written for all at once, or one by one where a photon goes
 // its own way. A mask is -1 in the lanes that are meant and 0 in the others; `mask ? a : b` chooses by lane.
+
+#pragma once
+#include "Numerics/Numerics.cl"
 
 #define LANES(type, name) type name[REAL_WIDTH] __attribute__((aligned(64)))
 #define LANES_3(type, name) type name[3][REAL_WIDTH] __attribute__((aligned(64))) // along x, y and z

@@ -1,5 +1,5 @@
-// Photons through a medium (Pfeuti 2009, section 3.1.5, but for the accumulation). Read after Numerics.cl,
-// FixedPoint.cl, SquaredIndex.cl, PhotonLanes.cl and PhotonSteps.cl; the host gives what those ask for, and
+// Photons through a medium (Pfeuti 2009, section 3.1.5, but for the accumulation). The host gives what the
+// included files ask for, and
 //   CHANNELS         of light; MEDIUM_CHANNELS of sigma_t, 1 or CHANNELS
 //   WORKERS          0: a work-item a packet, all add to the same sums; else so many take blocks as they come, each to
 //                    its sums
@@ -9,14 +9,19 @@
 //                    that these set out from, by their marks: column and row << 16
 //   PATHS            1: nothing is summed, vertices are written
 //
-// A step is followed from voxel wall to voxel wall (Amanatides and Woo). In a voxel whose extinction over a diagonal is
-// s, with b = max(s, 1), the sums gain
-//   a = power b (path integral of transmittance, in diagonals),   0 <= a <= power,
-// which is the power lost where a voxel is thick and the path where it is thin: neither loses digits in fixed point.
+// A step is followed from voxel wall to voxel wall (Amanatides and Woo 1987). In a voxel whose extinction over a
+// diagonal is s, with b = max(s, 1), the sums gain (numerics.md, Eqs. (35), (97))
+//   a = power b (path integral of transmittance, in diagonals),   0 <= a <= power
 // Cells, whose voxels differ, gain power times path in diagonals.
 //
 // A photon counts where it enters a voxel (a cell), however many stretches it crosses it in; once more where it comes
 // back.
+
+#include "Numerics/FixedPoint.cl"
+#include "Numerics/Numerics.cl"
+#include "Photons/Marching/PhotonLanes.cl"
+#include "Photons/Marching/PhotonSteps.cl"
+#include "Refraction/Index/SquaredIndex.cl"
 
 #define PHOTON_FLOATS (6 + CHANNELS) // position, unit direction, power in units
 #if CELLS
@@ -35,7 +40,7 @@ typedef struct
   real wall[3], now;
   real sigma;
   real power[CHANNELS];
-  real owed[CHANNELS]; // what rounding has left of what the voxels were to take: the power is `power + owed`
+  real owed[CHANNELS]; // what rounding has left of what the voxels were to take (Kahan): the power is `power + owed`
 #if COUNTS || CELLS
   integer counted; // place where the photon was counted last
 #endif
@@ -173,8 +178,8 @@ static void deposit_all(const march_arrays* arrays, const photon_lanes* lanes, c
 #undef DEPOSIT
 }
 
-// Most of the time of a march across a large grid is waiting for memory. It is asked for a few voxels ahead of the
-// photons, as far as they go straight on. Whoever compiles this may not know how: then it does without.
+// Most of the time of a march across a large grid is spent on memory. It is prefetched a few voxels ahead of the
+// photons, as far as they go straight on, where the compiler has a builtin for that.
 static void ask_ahead(const march_arrays* arrays, const photon_lanes* lanes, integer at)
 {
 #if REAL_WIDTH > 1 && defined(__has_builtin)
@@ -247,14 +252,14 @@ static integer to_attend(const march_arrays* arrays, const photon_lanes* lanes, 
 }
 
 // The face through which a photon came to voxel `at` of the padding.
-static int face_left(const march_info* info, int at)
+static int face_left(const MarchInfo* info, int at)
 {
   const int3 voxel = voxel_of(info, at);
   const int3 size = size_of(info);
   return voxel.x < 0 ? 0 : voxel.x >= size.x ? 1 : voxel.y < 0 ? 2 : voxel.y >= size.y ? 3 : voxel.z < 0 ? 4 : 5;
 }
 
-static void end_photon(const photon_lanes* lanes, int k, int face, __global photon_end* end)
+static void end_photon(const photon_lanes* lanes, int k, int face, __global PhotonEnd* end)
 {
   end->face = face;
   end->crossings = lanes->crossings[k];
@@ -266,7 +271,7 @@ static void end_photon(const photon_lanes* lanes, int k, int face, __global phot
 }
 
 #if BENDS
-// The photons of a mask whose velocity means nothing, after a turn.
+// Gives up the photons of a mask whose velocity is out of range after a turn.
 static void give_up_lost(const march_arrays* arrays, photon_lanes* lanes, integer mask, int first)
 {
   const real pace = VECTOR(lanes->pace);
@@ -275,7 +280,7 @@ static void give_up_lost(const march_arrays* arrays, photon_lanes* lanes, intege
   {
     FOR_LANES(k, lost)
     {
-      end_photon(lanes, k, STILL_GOING, arrays->ends + first + k);
+      end_photon(lanes, k, StillGoing, arrays->ends + first + k);
       rest(lanes, k);
     }
   }
@@ -293,7 +298,7 @@ static void attend(
     const int beyond = bits_of(outside);
     FOR_LANES(k, ended)
     {
-      const int face = beyond >> k & 1 ? face_left(arrays->info, lanes->at[k]) : DARK;
+      const int face = beyond >> k & 1 ? face_left(arrays->info, lanes->at[k]) : Dark;
       end_photon(lanes, k, face, arrays->ends + first + k);
       rest(lanes, k);
     }
@@ -446,7 +451,7 @@ static int march_packet(const march_arrays* arrays, const __global float* photon
   {
     if (lanes.alive[k])
     {
-      end_photon(&lanes, k, STILL_GOING, arrays->ends + first + k);
+      end_photon(&lanes, k, StillGoing, arrays->ends + first + k);
     }
   }
   return vertices;
@@ -455,8 +460,8 @@ static int march_packet(const march_arrays* arrays, const __global float* photon
 #if PATHS
 // The path of photon i, a work-item each. Its `counts[i]` vertices go to vertices + offsets[i]; with `counting` they
 // are only counted.
-__kernel void trace_paths(march_info info, const __global float* sigma, const __global float* coefficients,
-  const __global uchar* nodes, const __global float* photons, __global photon_end* ends, int counting,
+__kernel void trace_paths(MarchInfo info, const __global float* sigma, const __global float* coefficients,
+  const __global uchar* nodes, const __global float* photons, __global PhotonEnd* ends, int counting,
   const __global int* offsets, __global float4* vertices, __global int* counts)
 {
   const int i = get_global_id(0);
@@ -467,9 +472,9 @@ __kernel void trace_paths(march_info info, const __global float* sigma, const __
 #else
 // Of each batch, photons `first` to `first + count`: those of batch b begin at batch_begin[b], and end where the next
 // ones begin. There are `copies` of the sums, at least as many as batches; copy c is for batch c modulo their number.
-__kernel void march_photons(march_info info, const __global float* sigma, const __global float* coefficients,
+__kernel void march_photons(MarchInfo info, const __global float* sigma, const __global float* coefficients,
   const __global uchar* nodes, const __global float* photons, const __global ulong* marks, const __global int* cells,
-  __global photon_end* ends, __global long* sums, ulong copyStride, int copies, int batches,
+  __global PhotonEnd* ends, __global long* sums, ulong copyStride, int copies, int batches,
   const __global int* batch_begin, volatile __global int* next, int first, int count)
 {
 #if WORKERS > 0

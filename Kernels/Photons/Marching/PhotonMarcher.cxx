@@ -1,5 +1,8 @@
 #include "Photons/Marching/PhotonMarcher.h"
 
+#include "Light/LeftOut.h"
+#include "Photons/Marching/PhotonSumsShared.h"
+
 #include "Device/Clock.h"
 #include "Device/Defines.h"
 #include "Device/HostMappedBuffer.h"
@@ -22,15 +25,6 @@ namespace
 constexpr int CountShift = 40;
 constexpr std::size_t CountedAtMost = (std::size_t(1) << (64 - CountShift)) - 1;
 constexpr double WeightUnits = 65536.0; ///< of the largest weight
-
-/// As light_info in the kernels.
-struct LightOnDevice
-{
-  GridOnDevice grid;
-  cl_float diagonal, fluence;
-  cl_int exponent;
-  cl_float colour[3], weight;
-};
 
 /// Tallies of the one channel, for the three that it stands for.
 void Colour(const Rgb& colour, PhotonLight& result)
@@ -137,7 +131,7 @@ void PhotonMarcher::Implementation::Tally(
   std::array<std::array<std::int64_t, 3>, StillGoing + 1> out = {};
   for (std::size_t i = 0; i < packed.Count(); ++i)
   {
-    EndOnDevice end;
+    PhotonEnd end;
     std::memcpy(&end, ends.data() + i * words, sizeof(end));
     result.deposits += static_cast<std::size_t>(end.crossings);
     result.steps += static_cast<std::size_t>(end.steps);
@@ -145,7 +139,7 @@ void PhotonMarcher::Implementation::Tally(
     {
       cl_float units;
       std::memcpy(&units, ends.data() + i * words + EndWords + c, sizeof(units));
-      out[std::min(end.face, StillGoing)][c] += WholeUnits(units); // almost nothing of those that are dark
+      out[std::min<int>(end.face, StillGoing)][c] += WholeUnits(units); // almost nothing of those that are dark
     }
   }
   for (int c = 0; c < 3; ++c)
@@ -182,7 +176,7 @@ void PhotonMarcher::Implementation::Finish(
     lend(result.batchFluence, batches > 1 ? batches * voxels * colours : 0, "fluence by batches");
   const Buffer<cl_long> taken(device, rows * 2 * channels, "tallies");
 
-  LightOnDevice info = {};
+  LightSumsInfo info = {};
   info.grid = this->medium.DescribeGrid();
   info.diagonal = static_cast<float>(this->medium.Diagonal());
   info.fluence =
@@ -319,9 +313,13 @@ std::vector<std::size_t> ChooseEvenly(std::size_t size, std::size_t count)
 {
   std::vector<std::size_t> chosen;
   count = std::min(count, size);
+  const double golden = 0.5 * (std::sqrt(5.0) - 1.0);
   for (std::size_t i = 0; i < count; ++i)
   {
-    chosen.push_back(static_cast<std::size_t>((i + 0.5) / count * size));
+    const double within = std::fmod((i + 1.0) * golden, 1.0);
+    const auto number = static_cast<std::size_t>((i + within) / count * size);
+    const std::size_t least = chosen.empty() ? 0 : chosen.back() + 1;
+    chosen.push_back(std::clamp(number, least, size - (count - i)));
   }
   return chosen;
 }

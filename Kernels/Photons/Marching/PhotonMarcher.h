@@ -14,18 +14,16 @@ namespace tyndall
 {
 /// Marches photons along bent rays through a medium, and deposits every voxel that they cross.
 ///
-/// Paths follow d/ds(n dx/ds) = grad n (Pfeuti 2009, Eq. 2.7) as dr/dt = T, dT/dt = grad(n^2) / 2, dt = ds / n, by a
-/// symplectic integrator on a tricubic B-spline of n^2 through the voxels' centres; total reflection is part of it. The
-/// spline stays positive wherever n jumps from voxel to voxel. There is no refraction at the faces of the volume:
-/// outside, the index is that of the voxels there.
+/// Paths follow Pfeuti 2009, Eq. 2.7 (numerics.md, Eqs. (89) to (92)), by a symplectic integrator on a tricubic
+/// B-spline of n^2 through the voxels' centres; total reflection is part of it. There is no refraction at the faces of
+/// the volume: outside, the index is that of the voxels there.
 ///
-/// Power falls as exp(-tau) along a path, exactly for coefficients constant in each voxel. A voxel gains power times
-/// path integral of transmittance; over its volume that is an unbiased estimate of `fluence`, W / length^2, whatever
-/// the number of photons. Scattered light is not followed: `fluence` is the unscattered part, the source of single
-/// scattering.
+/// A voxel gains power times path integral of transmittance, exact for coefficients constant in it (Eqs. (97),
+/// (98)): over its volume an unbiased estimate of `fluence`, W / length^2, whatever the number of photons. Scattered
+/// light is not followed: `fluence` is the unscattered part, the source of single scattering.
 ///
-/// Sums are kept in 64-bit fixed point, in units so small that power times the longest path cannot overflow them; they
-/// do not depend on the order of photons or threads. Entered = absorbed + scattered + escaped + left over to 1e-6.
+/// Sums are in 64-bit fixed point (Eqs. (35), (99)) and do not depend on the order of photons or threads. Entered =
+/// absorbed + scattered + escaped + left over to 1e-6.
 ///
 /// A constant index compiles neither integrator nor interpolation; all photons of one colour in a grey medium need one
 /// channel.
@@ -34,9 +32,8 @@ class PhotonMarcher
 public:
   /// @param ior     refractive index, one component a voxel; null values: 1 everywhere
   /// @param levels  octree level of each voxel (0: itself, k: in a node of 2^k voxels an edge), which path steps may
-  /// take
-  ///                whole; null: step by step. Read in the constructor only, as all arrays are.
-  /// @throws InvalidInput for a medium, an index or a level that means nothing (names the voxel); DeviceError
+  ///                take whole; null: step by step. Read in the constructor only, as all arrays are.
+  /// @throws InvalidInput for a medium, an index or a level that is not valid (names the voxel); DeviceError
   PhotonMarcher(Device& device, const Medium& medium, const Field& ior, const MarchSettings& settings = {},
     const std::uint8_t* levels = nullptr);
   ~PhotonMarcher();
@@ -44,9 +41,8 @@ public:
 
   /// Photons outside the volume are first moved to where they enter it.
   /// @throws InvalidInput where a photon's position, direction, power or weight is not finite, its power or weight
-  /// negative,
-  ///   or (where they are asked for) its batch not 0 to 63, or where there are more photons than voxels can count;
-  ///   DeviceError where the sums of all batches do not fit; Aborted
+  ///   negative, or (where they are asked for) its batch not 0 to 63, or where there are more photons than voxels can
+  ///   count; DeviceError where the sums of all batches do not fit; Aborted
   PhotonLight March(const std::vector<Photon>& photons, const Monitor& monitor = {});
 
   /// Light of few photons in coarse cells, and where those of each cell came from (Pfeuti 2009, section 3.2.2). Paths
@@ -55,8 +51,7 @@ public:
   /// @param origins  of each photon: column and row of the cell of the photon plane that it was made in, 0 to 65535
   /// @param cells    along each axis, 1 to the medium's voxels (more are cut to them)
   /// @throws InvalidInput as March, or where there are not as many origins as photons, one is out of its range, or
-  /// there are
-  ///   no cells; Aborted
+  ///   there are no cells; Aborted
   PilotLight Gather(const std::vector<Photon>& photons, const std::vector<std::array<int, 2>>& origins,
     const std::array<int, 3>& cells, const Monitor& monitor = {});
 
@@ -68,6 +63,8 @@ private:
   std::unique_ptr<Implementation> Inside;
 };
 
-/// `count` numbers spread evenly over 0 ... size - 1.
+/// `count` different numbers of 0 ... size - 1, ascending, one of each of as many equal stretches. Where in a stretch
+/// goes by the golden ratio: equal steps would fall in with the powers of two by which photons' starting places are
+/// made, and all of those chosen start along one line.
 std::vector<std::size_t> ChooseEvenly(std::size_t size, std::size_t count);
 }

@@ -1,6 +1,9 @@
-// The medium as photons need it. Read after Numerics.cl and SquaredIndex.cl; the host gives
+// The medium as photons need it. The host gives
 //   MEDIUM_CHANNELS, BENDS, LEVELS  as PhotonMarch.cl wants them
 //   A_CHANNELS, S_CHANNELS          components of sigma_a and sigma_s, 0: there is none
+
+#include "Numerics/Numerics.cl"
+#include "Refraction/Index/SquaredIndex.cl"
 
 #define OUTSIDE -3e38f
 #define FLAT 2e-6f // of n^2: what rounding makes of a constant
@@ -10,7 +13,7 @@
 // sigma  [MEDIUM_CHANNELS][padded] extinction over `diagonal`, OUTSIDE in the padding; its sign bit says that n^2
 //        varies within the reach of interpolation (low, high: the range of coefficients, in their padding)
 // nodes  [padded] 0: it does not vary; else 1 + the voxel's octree level
-__kernel void pack_extinction(index_grid grid, float diagonal, const __global float* sigma_a,
+__kernel void pack_extinction(IndexGrid grid, float diagonal, const __global float* sigma_a,
   const __global float* sigma_s, const __global float* low, const __global float* high, const __global uchar* levels,
   __global float* sigma, __global uchar* nodes)
 {
@@ -39,7 +42,7 @@ __kernel void pack_extinction(index_grid grid, float diagonal, const __global fl
 }
 
 // [padded] the coarse cell of each voxel, of cells[0] times cells[1] times cells[2]; 0 in the padding.
-__kernel void assign_cells(index_grid grid, index_grid cells, __global int* cell)
+__kernel void assign_cells(IndexGrid grid, IndexGrid cells, __global int* cell)
 {
   const int x = get_global_id(0), y = get_global_id(1), z = get_global_id(2);
   const bool inside = x > 0 && x <= grid.size[0] && y > 0 && y <= grid.size[1] && z > 0 && z <= grid.size[2];

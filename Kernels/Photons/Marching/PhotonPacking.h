@@ -6,7 +6,7 @@
 
 namespace tyndall
 {
-/// Photons as the kernels want them: on the volume, in voxels, near ones next to each other.
+/// Photons as the kernels read them: on the volume, in voxels, near ones next to each other.
 struct PackedPhotons
 {
   int channels = 1;                 ///< 1 where all photons have the same colour and one is enough, else 3
@@ -32,10 +32,10 @@ int BatchesOf(const std::vector<Photon>& photons);
 
 /// @param coloured       keep three channels even where one would do
 /// @param depositsAtMost  of one photon: power is scaled so that no sum of that many deposits can exceed 2^62
+///                        (numerics.md, Eq. (99))
 /// @param batches        keep each batch together; else all are of one
 /// @throws InvalidInput where a photon's position, direction, power or weight is not finite, its direction zero, its
-/// power or
-///   weight negative, or its batch (if asked for) not 0 to 63
+///   power or weight negative, or its batch (if asked for) not 0 to 63
 PackedPhotons Pack(
   const std::vector<Photon>& photons, const Grid& grid, bool coloured, double depositsAtMost, bool batches = false);
 

@@ -1,57 +1,41 @@
-// The paths of photons, step by step. Read after Numerics.cl, SquaredIndex.cl and PhotonLanes.cl; the host gives
+// The paths of photons, step by step. The host gives
 //   REAL_WIDTH  photons side by side: 1 on a GPU, 4 to 16 on a CPU
 //   BENDS       1: the index varies; ORDER of the integrator then: 1, 2 or 4
 //   LEVELS      1: there are octree levels
 //   DIRECTIONS  1: directions are asked for
 //   COUNTS, CELLS  1: photons bear marks (PhotonMarch.cl)
 //
-// A path obeys dr/dt = T, dT/dt = grad(n^2) / 2 with dt = ds / n, so that |T| = n. It becomes steps, straight lines of
-// constant velocity:
-//   order 2  from kick to kick of the leapfrog (drift, kick, drift): its polygon is the path itself
+// A path obeys dr/dt = T, dT/dt = grad(n^2) / 2 with dt = ds / n (numerics.md, Eq. (90)). It becomes steps, straight
+// lines of constant velocity:
+//   order 2  from kick to kick of the leapfrog, Eq. (91): its polygon is the path itself
 //   order 4  from step end to step end, each step of Yoshida's three leapfrogs
-//   order 1  explicit Euler as in Pfeuti 2009, Eq. 2.10 and 2.11: dx/ds = v / n, dv/ds = grad n
+//   order 1  explicit Euler, Eq. (92), as in Pfeuti 2009, Eq. 2.10 and 2.11: dx/ds = v / n, dv/ds = grad n
 // Where n does not vary within the reach of interpolation nothing is evaluated, and a step is as long as that is so.
 //
 // Positions and velocities are in voxels, lengths in voxel diagonals.
 //
 // A photon whose velocity is no number, none at all or endless (n^2 beyond float) is given up.
 
+#pragma once
+#include "Numerics/Numerics.cl"
+#include "Photons/Marching/MarchShared.h"
+#include "Photons/Marching/PhotonLanes.cl"
+#include "Refraction/Index/SquaredIndex.cl"
+
 #define NEVER 3e38f
 #define AHEAD 4        // voxels along the axis of fastest change, by which memory is asked for early
 #define OUTSIDE -3e38f // sigma of the padding round the grid
 
-typedef struct
-{
-  index_grid grid;
-  float spacing[3]; // over the voxel's diagonal
-  float stepSize;   // voxels, of a step where the octree has single voxels
-  float slowest;    // voxels per time that a photon keeps to wherever n is its least; steps are no longer than for it
-  float darkness;   // power below which nothing is left of a photon
-  int eventLimit;   // walls and turns of a photon at most
-  ulong copy;       // voxels of the padded grid
-} march_info;
-
-// What became of a photon.
-typedef struct
-{
-  int face;      // it left through, -x, +x, ... +z; or one of the following
-  int crossings; // stretches of it that were deposited
-  int steps;     // of the integrator
-  float power[CHANNELS];
-} photon_end;
-#define STILL_GOING 6
-#define DARK 7
-
 // Everything that is read and written.
 typedef struct
 {
-  const march_info* info;
+  const MarchInfo* info;
   const __global float* sigma; // [MEDIUM_CHANNELS][copy] extinction over a diagonal; its sign bit: the index varies
   const __global float* coefficients; // of n^2
   const __global uchar*
     nodes; // [copy] 0: the index does not vary, 1: it does, in a single voxel, 1 + k: in an octree's node of 2^k
   __global long* sums; // [copy][RECORD] fixed point
-  __global photon_end* ends;
+  __global PhotonEnd* ends;
   __global float4*
     vertices; // of a path: position in voxels, part of the power that is left; null: they are only counted
   const __global ulong* marks; // of photons, with COUNTS or CELLS
@@ -84,12 +68,12 @@ typedef struct
 #endif
 } photon_lanes;
 
-static int3 size_of(const march_info* info)
+static int3 size_of(const MarchInfo* info)
 {
   return (int3)(info->grid.size[0], info->grid.size[1], info->grid.size[2]);
 }
 
-static int3 voxel_of(const march_info* info, int at)
+static int3 voxel_of(const MarchInfo* info, int at)
 {
   const int row = info->grid.size[0] + 2, layer = row * (info->grid.size[1] + 2);
   const int z = at / layer;
@@ -97,14 +81,14 @@ static int3 voxel_of(const march_info* info, int at)
   return (int3)(at - z * layer - y * row - 1, y - 1, z - 1);
 }
 
-static integer padded(const march_info* info, const integer* voxel)
+static integer padded(const MarchInfo* info, const integer* voxel)
 {
   const int row = info->grid.size[0] + 2, layer = row * (info->grid.size[1] + 2);
   return voxel[2] * layer + voxel[1] * row + voxel[0] + (layer + row + 1);
 }
 
-// Where the photons of a mask are: at p, which on a wall only `at` knows.
-static void voxels_at(const march_info* info, integer mask, const real* p, integer at, integer* voxel)
+// The voxels of the photons of a mask: of their place p, but on a wall, where rounding would decide, that of `at`.
+static void voxels_at(const MarchInfo* info, integer mask, const real* p, integer at, integer* voxel)
 {
   FOR_AXES(a)
   {
@@ -142,7 +126,7 @@ static real time_to_wall(real p, real low, real high, real u, real inverse)
 }
 
 // Steps of the photons of a mask from p in `voxel`, with velocity u; 1 / u is known.
-static void begin_steps(const march_info* info, photon_lanes* lanes, integer mask, const integer* voxel, const real* p,
+static void begin_steps(const MarchInfo* info, photon_lanes* lanes, integer mask, const integer* voxel, const real* p,
   const real* u, const real* inverse)
 {
   const int strides[3] = { 1, info->grid.size[0] + 2, (info->grid.size[0] + 2) * (info->grid.size[1] + 2) };
@@ -182,7 +166,7 @@ static void begin_steps(const march_info* info, photon_lanes* lanes, integer mas
 
 #if BENDS
 // Of a voxel.
-static integer coefficient_of(const march_info* info, const integer* voxel)
+static integer coefficient_of(const MarchInfo* info, const integer* voxel)
 {
   const int row = info->grid.size[0] + 4, layer = row * (info->grid.size[1] + 4);
   return (voxel[2] + 2) * layer + (voxel[1] + 2) * row + voxel[0] + 2;
@@ -191,7 +175,7 @@ static integer coefficient_of(const march_info* info, const integer* voxel)
 // n^2 and its gradient where the photons of a mask are.
 static void squared_index_at(const march_arrays* arrays, integer mask, const real* p, real* squared, real* gradient)
 {
-  const index_grid* grid = &arrays->info->grid;
+  const IndexGrid* grid = &arrays->info->grid;
   const int row = grid->size[0] + 4, layer = row * (grid->size[1] + 4);
   const int strides[3] = { 1, row, layer };
   LANES(int, first); // of the coefficients
@@ -226,7 +210,7 @@ static void squared_index_at(const march_arrays* arrays, integer mask, const rea
 }
 
 // The voxels of places anywhere; beyond the grid those of the padding.
-static void voxels_of_places(const march_info* info, const real* p, integer* voxel)
+static void voxels_of_places(const MarchInfo* info, const real* p, integer* voxel)
 {
   FOR_AXES(a)
   {
@@ -238,7 +222,7 @@ static void voxels_of_places(const march_info* info, const real* p, integer* vox
 static real times_of_steps(
   const march_arrays* arrays, integer mask, const integer* voxel, const real* p, const real* u, const real* inverse)
 {
-  const march_info* info = arrays->info;
+  const MarchInfo* info = arrays->info;
   const integer at = mask & padded(info, voxel); // the others are in the padding
   const integer node = to_integer(gather(uchar, arrays->nodes, at));
   // Where n jumps within a step a kick may leave a photon almost without velocity.
@@ -338,7 +322,7 @@ static real take_step(
 // The photons of a mask come to where the index varies, or to the end of their step.
 static void take_turns(const march_arrays* arrays, photon_lanes* lanes, integer mask)
 {
-  const march_info* info = arrays->info;
+  const MarchInfo* info = arrays->info;
   const real now = VECTOR(lanes->now);
   real p[3], u[3], inverse[3];
   integer voxel[3];
@@ -404,7 +388,7 @@ static void rest(photon_lanes* lanes, int k)
 // Photons set off from p (voxels) in unit directions u.
 static void set_off(const march_arrays* arrays, photon_lanes* lanes, real* p, real* u)
 {
-  const march_info* info = arrays->info;
+  const MarchInfo* info = arrays->info;
   const integer all = (integer)-1;
   integer voxel[3];
   real inverse[3];

@@ -1,26 +1,20 @@
-// The light that photons left. Read after Numerics.cl and SquaredIndex.cl; the host gives
+// The light that photons left. The host gives
 //   CHANNELS, MEDIUM_CHANNELS, DIRECTIONS, COUNTS  as PhotonMarch.cl wants them
 //   COPIES, BATCHES         of the sums: copy c is for batch c modulo BATCHES
 //   COUNT_SHIFT             of the bits of counts, above those of weights
 //   A_CHANNELS, S_CHANNELS  components of sigma_a and sigma_s, 0: there is none
 //   COLOURS                 channels of what comes out: 3 also where one channel stands for three (CHANNELS 1)
 
+#include "Numerics/Numerics.cl"
+#include "Photons/Marching/PhotonSumsShared.h"
+#include "Refraction/Index/SquaredIndex.cl"
+
 #define RECORD (CHANNELS + 3 * DIRECTIONS + COUNTS)
 #define component(values, count, voxel, c) \
   ((count) == 0 ? 0.0f : (values)[(voxel) * (count) + ((count) == 3 ? (c) : 0)])
 
-typedef struct
-{
-  index_grid grid;
-  float diagonal;  // of a voxel
-  float fluence;   // W / length^2 of a unit of power that goes along a voxel's diagonal, over 2 to the power of
-  int exponent;    // this one: it may be less than a float holds
-  float colour[3]; // of what CHANNELS 1 stands for
-  float weight;    // of a photon, one unit
-} light_info;
-
 // Light of one channel's power times diagonals, in what stands for it.
-static void put_fluence(const light_info* info, __global float* voxel, int c, float path)
+static void put_fluence(const LightSumsInfo* info, __global float* voxel, int c, float path)
 {
 #if CHANNELS == COLOURS
   voxel[c] = ldexp(path * info->fluence, info->exponent);
@@ -34,7 +28,7 @@ static void put_fluence(const light_info* info, __global float* voxel, int c, fl
 
 // Units of power that a coefficient, which is part of the extinction, took of a voxel's sum. Of a thick voxel that is
 // what the photons lost.
-static long taken_by(const light_info* info, float sum, float coefficient, float extinction)
+static long taken_by(const LightSumsInfo* info, float sum, float coefficient, float extinction)
 {
   const float thickness = info->diagonal * extinction;
   return (long)(sum * (thickness > 1.0f ? coefficient / extinction : info->diagonal * coefficient));
@@ -72,7 +66,7 @@ static void take_batch(__global long* record, ulong copyStride, int batch, long*
 //   photon_count    of a voxel; photon_weight: their mean weight, 0 where there is none
 //   batch_fluence   [batch][voxel][COLOURS] of each batch as if it was all the light
 //   taken           [row][absorbed, scattered][CHANNELS] units of power
-__kernel void finish_light(light_info info, const __global float* sigma_a, const __global float* sigma_s,
+__kernel void finish_light(LightSumsInfo info, const __global float* sigma_a, const __global float* sigma_s,
   __global long* sums, ulong copyStride, __global float* fluence, __global float* mean_direction,
   __global float* photon_count, __global float* photon_weight, __global float* batch_fluence, __global long* taken)
 {

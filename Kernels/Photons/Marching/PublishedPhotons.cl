@@ -1,32 +1,18 @@
 // Photon marching as published: Pfeuti 2009, section 3.1.5, after Sun et al. 2008. One work-item a photon; explicit
 // Euler (Eq. 2.10, 2.11); the line of each step is rasterised and every voxel of it gets the photon's power, however
 // long the path in it is; colour (RGBe, Ward 1991) and mean direction (10 bits a component) share 64 bits, which
-// compare-and-swap replaces, with ten tries. Read after Numerics.cl. The host gives
+// compare-and-swap replaces, with ten tries. The host gives
 //   BENDS   1: the index varies
 //   LEVELS  1: there are octree levels
 //   A_CHANNELS, S_CHANNELS  components of sigma_a and sigma_s, 0: there is none
 //   TRIES   of compare-and-swap
 
+#include "Numerics/Numerics.cl"
+#include "Photons/Marching/PublishedPhotonsShared.h"
+
 #pragma OPENCL EXTENSION cl_khr_int64_base_atomics : enable
 
 #define OUT_OF_GRID 6
-
-typedef struct
-{
-  int size[3];
-  float spacing[3];
-  int stepLimit;
-} published_info;
-
-typedef struct
-{
-  int face;     // it left through, or 6: it was given up
-  int deposits; // to voxels
-  int givenUp;  // of them, after all tries
-  int steps;
-  float power[3];     // that is left
-  float deposited[3]; // sum of all deposits
-} published_end;
 
 static float3 from_rgbe(uint packed)
 {
@@ -65,7 +51,7 @@ static float luminance(float3 colour)
   return dot(colour, (float3)(0.2126f, 0.7152f, 0.0722f));
 }
 
-// Read, unpack, change, pack, and write if nobody else has written meanwhile. Returns whether it succeeded.
+// Read, unpack, change, pack, and write if no other work-item has written meanwhile. Returns whether it succeeded.
 static bool deposit_packed(__global ulong* voxel, float3 power, float3 direction)
 {
   for (int i = 0; i < TRIES; ++i)
@@ -84,12 +70,12 @@ static bool deposit_packed(__global ulong* voxel, float3 power, float3 direction
   return false;
 }
 
-static int3 size_of(const published_info* info)
+static int3 size_of(const PublishedMarchInfo* info)
 {
   return (int3)(info->size[0], info->size[1], info->size[2]);
 }
 
-static int index_of(const published_info* info, int3 voxel)
+static int index_of(const PublishedMarchInfo* info, int3 voxel)
 {
   const int3 inside = clamp(voxel, (int3)(0), size_of(info) - 1);
   return (inside.z * info->size[1] + inside.y) * info->size[0] + inside.x;
@@ -97,7 +83,7 @@ static int index_of(const published_info* info, int3 voxel)
 
 #if BENDS
 // Linear between voxel centres: gradient of n (x, y, z; by voxels) and n (w).
-static float4 index_at(const published_info* info, const __global float4* index, float3 p)
+static float4 index_at(const PublishedMarchInfo* info, const __global float4* index, float3 p)
 {
   const float3 q = p - 0.5f, base = floor(q), f = q - base;
   const int3 b = convert_int3(base);
@@ -113,7 +99,7 @@ static float4 index_at(const published_info* info, const __global float4* index,
 #endif
 
 // Index and its central differences.
-__kernel void published_index(published_info info, const __global float* ior, __global float4* index)
+__kernel void published_index(PublishedMarchInfo info, const __global float* ior, __global float4* index)
 {
   const int3 v = (int3)(get_global_id(0), get_global_id(1), get_global_id(2));
   float gradient[3];
@@ -139,7 +125,7 @@ static float3 extinction(const __global float* sigma_a, const __global float* si
 
 // Length of path, in the dataset's unit, from p along `u` (voxels a length): a voxel, or to the border of the octree's
 // node and a little beyond.
-static float step_length(const published_info* info, const __global uchar* levels, float3 p, float3 u)
+static float step_length(const PublishedMarchInfo* info, const __global uchar* levels, float3 p, float3 u)
 {
   const float voxel = rsqrt(dot(u, u));
 #if LEVELS
@@ -163,8 +149,8 @@ typedef struct
 } published_photon;
 
 // Deposit the voxels whose middles, along the axis of largest change, lie between the two ends.
-static void rasterize(const published_info* info, const published_photon* a, const published_photon* b,
-  __global ulong* packed, __global published_end* end)
+static void rasterize(const PublishedMarchInfo* info, const published_photon* a, const published_photon* b,
+  __global ulong* packed, __global PublishedPhotonEnd* end)
 {
   const float3 change = b->position - a->position;
   const float3 size = fabs(change);
@@ -195,7 +181,7 @@ static void rasterize(const published_info* info, const published_photon* a, con
   }
 }
 
-static int face_left(const published_info* info, float3 p)
+static int face_left(const PublishedMarchInfo* info, float3 p)
 {
   const float3 size = convert_float3(size_of(info));
   const float3 before = -p, after = p - size;
@@ -208,16 +194,16 @@ static int face_left(const published_info* info, float3 p)
                           : 5;
 }
 
-__kernel void march_published(published_info info, const __global float4* index, const __global float* sigma_a,
+__kernel void march_published(PublishedMarchInfo info, const __global float4* index, const __global float* sigma_a,
   const __global float* sigma_s, const __global uchar* levels, const __global float* photons, int first,
-  __global published_end* ends, __global ulong* packed)
+  __global PublishedPhotonEnd* ends, __global ulong* packed)
 {
   const int i = first + get_global_id(0);
   const __global float* given = photons + (ulong)i * 9;
   const float3 h = (float3)(info.spacing[0], info.spacing[1], info.spacing[2]);
   published_photon photon = { (float3)(given[0], given[1], given[2]), (float3)(given[3], given[4], given[5]),
     (float3)(given[6], given[7], given[8]) };
-  __global published_end* end = ends + i;
+  __global PublishedPhotonEnd* end = ends + i;
   end->deposits = end->givenUp = 0;
   for (int c = 0; c < 3; ++c)
   {
@@ -268,7 +254,7 @@ __kernel void unpack_light(
 }
 
 // The 3x3x3 Gauss filter, one axis of it: 1/4, 1/2, 1/4.
-__kernel void smooth_along(int axis, published_info info, const __global float* from, __global float* to)
+__kernel void smooth_along(int axis, PublishedMarchInfo info, const __global float* from, __global float* to)
 {
   const int3 v = (int3)(get_global_id(0), get_global_id(1), get_global_id(2));
   const int3 step = (int3)(axis == 0, axis == 1, axis == 2);

@@ -1,5 +1,8 @@
 #include "Photons/Marching/PublishedPhotons.h"
 
+#include "Device/Defines.h"
+#include "Photons/Marching/PublishedPhotonsShared.h"
+
 #include "Photons/Marching/PhotonPacking.h"
 #include "TyndallKernelSources.h"
 
@@ -18,19 +21,6 @@ namespace
 constexpr int RoundsAtMost = 64;
 constexpr std::size_t PhotonsPerLaunch = 1 << 16;
 
-// As published_info, published_end in PublishedPhotons.cl.
-struct GridOnDevice
-{
-  cl_int size[3];
-  cl_float spacing[3];
-  cl_int stepLimit;
-};
-struct EndOnDevice
-{
-  cl_int face, deposits, givenUp, steps;
-  cl_float power[3], deposited[3];
-};
-
 class PublishedMarch
 {
 public:
@@ -38,9 +28,8 @@ public:
     : TheDevice(device)
     , TheMedium(medium)
     , Voxels(medium.grid.VoxelCount())
-    , Options("-DBENDS=" + std::to_string(bends) + " -DLEVELS=" + std::to_string(levels) +
-        " -DTRIES=" + std::to_string(settings.tries) + " -DA_CHANNELS=" + std::to_string(Components(medium.sigma_a)) +
-        " -DS_CHANNELS=" + std::to_string(Components(medium.sigma_s)))
+    , Options(Define("BENDS", bends) + Define("LEVELS", levels) + Define("TRIES", settings.tries) +
+        Define("A_CHANNELS", Components(medium.sigma_a)) + Define("S_CHANNELS", Components(medium.sigma_s)))
   {
     int edges = 0;
     for (int a = 0; a < 3; ++a)
@@ -56,7 +45,7 @@ public:
 
   cl::Kernel Kernel(const char* name)
   {
-    return this->TheDevice.Kernel(name, { kernel_source::Numerics, kernel_source::PublishedPhotons }, this->Options);
+    return this->TheDevice.Kernel(name, kernel_source::PublishedPhotons, this->Options);
   }
 
   Buffer<cl_float4> Index(const Field& ior, bool bends)
@@ -122,7 +111,7 @@ public:
 
   static int Components(const Field& field) { return field.values ? field.components : 0; }
 
-  GridOnDevice Info = {};
+  PublishedMarchInfo Info = {};
 
 private:
   Device& TheDevice;
@@ -131,9 +120,9 @@ private:
   std::string Options;
 };
 
-void Tally(const std::vector<EndOnDevice>& ends, double unit, PhotonLight& result, PackingLoss& loss)
+void Tally(const std::vector<PublishedPhotonEnd>& ends, double unit, PhotonLight& result, PackingLoss& loss)
 {
-  for (const EndOnDevice& end : ends)
+  for (const PublishedPhotonEnd& end : ends)
   {
     result.deposits += static_cast<std::size_t>(end.deposits);
     result.steps += static_cast<std::size_t>(end.steps);
@@ -194,7 +183,7 @@ PhotonLight MarchPublished(Device& device, const Medium& medium, const Field& io
   const Buffer<cl_uchar> nodes = levels ? Buffer<cl_uchar>(device, levels, medium.grid.VoxelCount(), "octree levels")
                                         : Buffer<cl_uchar>(device, 0, "octree levels");
   const Buffer<float> values(device, packed.values, "photons");
-  const Buffer<EndOnDevice> ends(device, packed.Count(), "ends of photons");
+  const Buffer<PublishedPhotonEnd> ends(device, packed.Count(), "ends of photons");
   Buffer<cl_ulong> light(device, medium.grid.VoxelCount(), "packed light");
   Buffer<float> fluence(device, 3 * medium.grid.VoxelCount(), "fluence");
   Buffer<float> direction(device, 3 * medium.grid.VoxelCount(), "mean direction");

@@ -25,13 +25,12 @@ struct PackingLoss
   double Relative() const; ///< part of the power deposited that was lost, channels summed
 };
 
-/// Photon marching as Pfeuti publishes it (2009, section 3.1.5), to compare with. See PublishedPhotons.cl.
+/// Photon marching as Pfeuti publishes it (2009, section 3.1.5), to compare with (numerics.md, section 12.4).
 ///
-/// Its light is no estimate of fluence in a unit: a voxel gets a photon's power, not power times path. It is given as W
-/// / length^2 by the length that a voxel has on average, the cube root of its volume: right for light along an axis,
-/// and too small by the cosine of the largest component otherwise. `absorbed` is what the voxels' light gives,
-/// extinction times fluence, so that the balance shows what the packing loses; it is not the same twice, since threads
-/// come in any order.
+/// A voxel gets a photon's power, not power times path, so its light is no estimate of fluence. It is given as W /
+/// length^2 by the length that a voxel has on average, the cube root of its volume. `absorbed` is extinction times that
+/// fluence, so that the balance shows what the packing loses. The result is not the same twice, since threads come in
+/// any order.
 ///
 /// @throws InvalidInput as PhotonMarcher; DeviceError where the device has no 64-bit atomics
 PhotonLight MarchPublished(Device& device, const Medium& medium, const Field& ior, const std::uint8_t* levels,

@@ -1,6 +1,8 @@
 // Gradient noise of Perlin (Improving noise, SIGGRAPH 2002) with a hash in place of his table, so that a seed chooses
 // one of 2^32 patterns.
 
+#pragma once
+
 inline uint scrambled(uint bits)
 {
   bits ^= bits >> 16;

@@ -1,4 +1,6 @@
-// Smoothing and gradient of the refractive index. Define RADIUS, of the filter in voxels, and read Numerics.cl before.
+// Smoothing and gradient of the refractive index. Define RADIUS, of the filter in voxels.
+
+#include "Numerics/Numerics.cl"
 
 // Weighted mean over the 2 RADIUS + 1 voxels along an axis; beyond the grid its last voxel goes on.
 //   weights   of the voxels 1, 2, ..., RADIUS away

@@ -1,6 +1,8 @@
 #include "Refraction/Index/IndexField.h"
 
+#include "Device/Defines.h"
 #include "Numerics/PyramidLayout.h"
+#include "Numerics/Vectors.h"
 #include "TyndallKernelSources.h"
 
 #include <algorithm>
@@ -56,8 +58,8 @@ void SmoothIndex(Device& device, const Grid& grid, int filterSize, Buffer<float>
     return;
   }
   const int width = device.FloatVectorWidth() > 1 ? 8 : 1;
-  const std::string options = "-DRADIUS=" + std::to_string(filterSize / 2) + " -DREAL_WIDTH=" + std::to_string(width);
-  cl::Kernel kernel = device.Kernel("smooth_index", { kernel_source::Numerics, kernel_source::IndexField }, options);
+  const std::string options = Define("RADIUS", filterSize / 2) + Define("REAL_WIDTH", width);
+  cl::Kernel kernel = device.Kernel("smooth_index", kernel_source::IndexField, options);
   const Buffer<float> weights(device, GaussianWeights(filterSize), "the filter");
   Buffer<float> smooth(device, grid.VoxelCount(), "the smoothed ior");
   const std::array<int, 3>& size = grid.size;
@@ -75,14 +77,13 @@ void SmoothIndex(Device& device, const Grid& grid, int filterSize, Buffer<float>
 
 std::vector<float> IndexGradient(Device& device, const Grid& grid, const Buffer<float>& index, const Monitor& monitor)
 {
-  cl::Kernel kernel = device.Kernel(
-    "index_gradient", { kernel_source::Numerics, kernel_source::IndexField }, "-DRADIUS=1 -DREAL_WIDTH=1");
+  cl::Kernel kernel =
+    device.Kernel("index_gradient", kernel_source::IndexField, Define("RADIUS", 1) + Define("REAL_WIDTH", 1));
   const std::array<int, 3>& size = grid.size;
   const std::size_t layer = 3 * static_cast<std::size_t>(size[0]) * static_cast<std::size_t>(size[1]);
   const int atOnce = static_cast<int>(
     std::clamp<std::size_t>(LayerBytes / (layer * sizeof(float)), 1, static_cast<std::size_t>(size[2])));
-  const cl_float4 spacing = { { static_cast<float>(grid.spacing[0]), static_cast<float>(grid.spacing[1]),
-    static_cast<float>(grid.spacing[2]), 0.0f } };
+  const cl_float4 spacing = Float4(Vector(grid.spacing));
   Buffer<float> part(device, layer * static_cast<std::size_t>(atOnce), "ior_gradient");
   std::vector<float> gradient(3 * grid.VoxelCount());
   for (int first = 0; first < size[2]; first += atOnce)

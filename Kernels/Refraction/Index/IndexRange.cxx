@@ -55,7 +55,7 @@ bool IndexVaries(const Field& ior, const Grid& grid)
 
 void CheckLevels(const std::uint8_t* levels, const Grid& grid)
 {
-  const int top = PyramidLayout(grid).Top();
+  const int top = PyramidLayout(grid.size).Top();
   const std::size_t count = levels ? grid.VoxelCount() : 0;
   int highest = 0; // first of all: a loop that compilers vectorise
   for (std::size_t i = 0; i < count; ++i)

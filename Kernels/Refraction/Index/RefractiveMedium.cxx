@@ -1,9 +1,13 @@
 #include "Refraction/Index/RefractiveMedium.h"
 
+#include "Device/Defines.h"
+#include "Refraction/Voxelization/MaterialsShared.h"
+
 #include "Device/HostMemory.h"
 #include "Device/Sizes.h"
 #include "Medium/Medium.h"
 #include "Numerics/NumberText.h"
+#include "Numerics/Vectors.h"
 #include "Refraction/Index/IndexField.h"
 #include "Refraction/Voxelization/MeshChecks.h"
 #include "TyndallKernelSources.h"
@@ -19,9 +23,9 @@ namespace
 {
 constexpr std::size_t WorkGroup = 256;
 constexpr double ShortestEdge = 1e-18; ///< of a voxel, length
-constexpr double LeastIndex = 1e-6;    ///< as CheckIndex wants it
+constexpr double LeastIndex = 1e-6;    ///< as in CheckIndex
 constexpr double LargestIndex = 1e6;
-constexpr double LargestExtinction = 1e37; ///< as Check of a medium wants it
+constexpr double LargestExtinction = 1e37; ///< as in Check of a medium
 
 void Demand(bool holds, const std::string& what)
 {
@@ -167,11 +171,6 @@ bool ShareMeanCosine(std::vector<Material*> materials, double& shared)
   return true;
 }
 
-cl_float4 Float4(const std::array<double, 3>& values)
-{
-  return { { static_cast<float>(values[0]), static_cast<float>(values[1]), static_cast<float>(values[2]), 0.0f } };
-}
-
 /// Mixes the materials in each voxel, slab by slab.
 class Mixer
 {
@@ -187,10 +186,9 @@ public:
     , Result(result)
   {
     const bool noise = settings.perturbation.index > 0.0 || settings.perturbation.scattering > 0.0;
-    const std::string options = "-DCHANNELS=" + std::to_string(result.components) + " -DNOISE=" + std::to_string(noise);
-    const auto sources = { kernel_source::GradientNoise, kernel_source::Materials };
-    this->AddObject = device.Kernel("add_object", sources, options);
-    this->AddOutside = device.Kernel("add_outside", sources, options);
+    const std::string options = Define("CHANNELS", result.components) + Define("NOISE", noise);
+    this->AddObject = device.Kernel("add_object", kernel_source::Materials, options);
+    this->AddOutside = device.Kernel("add_outside", kernel_source::Materials, options);
     const std::size_t voxels = settings.grid.VoxelCount();
     result.occupancy.resize(voxels);
     result.sigma_a.resize(voxels * result.components);
@@ -229,26 +227,41 @@ private:
 
   void Add(const SamplesInside& inside)
   {
+    MaterialInfo material = MaterialOf(this->Solids[inside.mesh].material);
     const Perturbation& noise = this->Settings.perturbation;
-    const Grid& grid = this->Settings.grid;
-    const Material& material = this->Solids[inside.mesh].material;
-    With(this->AddObject, cl_ulong(inside.first), cl_ulong(inside.length), cl_ulong(inside.stride), inside.counts,
-      this->SamplesOfVoxel(), static_cast<float>(material.n), Float4(material.sigma_a), Float4(material.sigma_s),
-      static_cast<float>(noise.index), static_cast<float>(noise.scattering), noise.seed,
-      static_cast<float>(1.0 / noise.size), Float4(grid.origin), Float4(grid.spacing), grid.size[0], grid.size[1],
-      this->Covered, this->Index, this->SigmaA, this->SigmaS);
+    material.indexNoise = static_cast<float>(noise.index);
+    material.scatteringNoise = static_cast<float>(noise.scattering);
+    material.frequency = static_cast<float>(1.0 / noise.size);
+    material.seed = noise.seed;
+    With(this->AddObject, this->SlabOf(inside), material, inside.counts, this->Covered, this->Index, this->SigmaA,
+      this->SigmaS);
     this->Launch(this->AddObject, inside);
   }
 
   void End(const SamplesInside& inside)
   {
-    With(this->AddOutside, cl_ulong(inside.first), cl_ulong(inside.length), cl_ulong(inside.stride),
-      this->SamplesOfVoxel(), static_cast<float>(this->Outside.n), Float4(this->Outside.sigma_a),
-      Float4(this->Outside.sigma_s), this->Covered, this->Index, this->SigmaA, this->SigmaS);
+    With(this->AddOutside, this->SlabOf(inside), MaterialOf(this->Outside), this->Covered, this->Index, this->SigmaA,
+      this->SigmaS);
     this->Launch(this->AddOutside, inside);
     this->Copy(this->Covered, inside, 1, this->Result.occupancy);
     this->Copy(this->SigmaA, inside, this->Result.components, this->Result.sigma_a);
     this->Copy(this->SigmaS, inside, this->Result.components, this->Result.sigma_s);
+  }
+
+  static MaterialInfo MaterialOf(const Material& material)
+  {
+    MaterialInfo info = {};
+    info.absorption = Float4(Vector(material.sigma_a));
+    info.scattering = Float4(Vector(material.sigma_s));
+    info.n = static_cast<float>(material.n);
+    return info;
+  }
+
+  MaterialSlab SlabOf(const SamplesInside& inside) const
+  {
+    const Grid& grid = this->Settings.grid;
+    return { Float4(Vector(grid.origin)), Float4(Vector(grid.spacing)), inside.first, inside.length, inside.stride,
+      grid.size[0], grid.size[1], this->SamplesOfVoxel() };
   }
 
   float SamplesOfVoxel() const

@@ -53,7 +53,7 @@ struct RefractiveMediumSettings
   int filterSize = 9; ///< of the smoothing of n, see SmoothIndex
 };
 
-/// Solids in a box, as a medium of voxels. Arrays have x fastest; those that are empty are told of in leftOut.
+/// Solids in a box, as a medium of voxels. Arrays have x fastest; leftOut says which are empty.
 struct RefractiveMedium
 {
   std::vector<float> occupancy;   ///< part of the voxel inside any solid, [0, 1]
@@ -69,11 +69,10 @@ struct RefractiveMedium
   double seconds = 0.0; ///< that all of it took
 };
 
-/// A box of cubic voxels about solids, in its middle, as close as leaves on each side `margin` times the longest edge
-/// of their bounds, and one voxel more than the filter reaches.
+/// The smallest box of cubic voxels about solids, these in its middle, that leaves on each side `margin` times the
+/// longest edge of their bounds, and one voxel more than the filter reaches.
 /// @throws InvalidInput where there is no solid or none with an extent, a point is not finite (names it), a size is
-/// below 1, or a
-///   margin below 0
+///   below 1, or a margin below 0
 Grid GridAround(const std::vector<Solid>& solids, const std::array<int, 3>& size, double margin, int filterSize);
 
 /// Voxelises solids (Pfeuti 2009, section 3.1.2): samples inside are counted, each voxel gets the mean of its materials
@@ -85,11 +84,9 @@ Grid GridAround(const std::vector<Solid>& solids, const std::array<int, 3>& size
 /// A mesh that encloses regions more than once or inside out, whose edges disagree about what is outside, or that has
 /// triangles without area, is voxelised by parity and gives a warning. Every sample is looked at: one alone is enough.
 /// @throws InvalidInput  where a mesh is empty or open (names the count of boundary edges and the place of the first),
-/// a number is
-///   out of its range, or a voxel's edge beyond 1e-18 to 1e18 lengths
+///   a number is out of its range, or a voxel's edge beyond 1e-18 to 1e18 lengths
 /// @throws DeviceError   at once, if 12 to 44 bytes a voxel do not fit the machine's memory or 4 to 8 more the device's
-/// (on
-///   a CPU the same memory); they do not grow with the number of solids
+///   (on a CPU the same memory); they do not grow with the number of solids
 RefractiveMedium Voxelize(
   Device& device, std::vector<Solid> solids, const RefractiveMediumSettings& settings, const Monitor& monitor = {});
 }

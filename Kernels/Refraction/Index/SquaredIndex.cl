@@ -1,20 +1,16 @@
 // The squared refractive index n^2 between voxel centres, and its gradient. Lengths are in voxels here.
 //
-// n^2 is a tricubic B-spline, so that its gradient is continuous and is that of one function: a symplectic integrator
-// then keeps its order and its Hamiltonian |T|^2 - n^2. The coefficients c = f - (d_x^2 + d_y^2 + d_z^2) f / 6, second
-// differences of the voxels' f = n^2, make the spline meet f to fourth order (quadratic fields exactly) without a
-// recursive filter. Where f jumps, differences overshoot: a coefficient is held within an eighth of the least and the
-// largest of its voxels. The spline's weights are positive with sum 1, so that it is positive as f is. Smooth fields
-// overshoot by less, at extremes only. Beyond the grid f goes on linearly, but never below a quarter of the border's.
-// The coefficient of voxel (i, j, k) stands at (i + 2, j + 2, k + 2) of an array that is four longer along each axis.
+// n^2 is a tricubic B-spline of the coefficients of numerics.md, Eq. (88): its gradient is continuous and that of one
+// function, as a symplectic integrator needs. A coefficient is held within an eighth of the least and the largest of
+// its voxels, so that the spline is positive wherever n^2 is. Beyond the grid n^2 goes on linearly, but never below a
+// quarter of the border's. The coefficient of voxel (i, j, k) stands at (i + 2, j + 2, k + 2) of an array that is four
+// longer along each axis.
 
-typedef struct
-{
-  int size[3];
-} index_grid;
+#pragma once
+#include "Refraction/Index/IndexShared.h"
 
 // A voxel on the grid's border or beyond it goes on as the two last ones of its row do.
-static float squared_index_of(const index_grid* grid, const __global float* ior, int i, int j, int k)
+static float squared_index_of(const IndexGrid* grid, const __global float* ior, int i, int j, int k)
 {
   const bool inside = i >= 0 && i < grid->size[0] && j >= 0 && j < grid->size[1] && k >= 0 && k < grid->size[2];
   if (inside)
@@ -57,13 +53,13 @@ static float greater_of(float a, float b)
 }
 
 // squares  f of each voxel and of three more at either end of each axis
-__kernel void extend_squared_index(index_grid grid, const __global float* ior, __global float* squares)
+__kernel void extend_squared_index(IndexGrid grid, const __global float* ior, __global float* squares)
 {
   const int x = get_global_id(0), y = get_global_id(1), z = get_global_id(2);
   squares[(z * (grid.size[1] + 6) + y) * (grid.size[0] + 6) + x] = squared_index_of(&grid, ior, x - 3, y - 3, z - 3);
 }
 
-__kernel void squared_index_coefficients(index_grid grid, const __global float* squares, __global float* coefficients)
+__kernel void squared_index_coefficients(IndexGrid grid, const __global float* squares, __global float* coefficients)
 {
   const int x = get_global_id(0), y = get_global_id(1), z = get_global_id(2);
   const int row = grid.size[0] + 6, layer = row * (grid.size[1] + 6);
@@ -145,7 +141,7 @@ static float4 squared_index_among(const __global float* first, int row, int laye
 }
 
 // n^2 (w) and its gradient (x, y, z) at voxel coordinates `p`.
-static float4 squared_index(const index_grid* grid, const __global float* coefficients, float3 p)
+static float4 squared_index(const IndexGrid* grid, const __global float* coefficients, float3 p)
 {
   const int row = grid->size[0] + 4, layer = row * (grid->size[1] + 4);
   const float3 q = p - 0.5f;

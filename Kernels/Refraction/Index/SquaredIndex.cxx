@@ -17,10 +17,10 @@ Buffer<float> SquaredIndexCoefficients(Device& device, const Grid& grid, const B
   };
   const Buffer<float> squares(device, padded(0, 6) * padded(1, 6) * padded(2, 6), "n^2 beyond the grid");
   Buffer<float> coefficients(device, padded(0, 4) * padded(1, 4) * padded(2, 4), "squared index");
-  cl::Kernel extend = device.Kernel("extend_squared_index", { kernel_source::SquaredIndex });
+  cl::Kernel extend = device.Kernel("extend_squared_index", kernel_source::SquaredIndex);
   With(extend, size, ior, squares);
   launch(extend, 6);
-  cl::Kernel combine = device.Kernel("squared_index_coefficients", { kernel_source::SquaredIndex });
+  cl::Kernel combine = device.Kernel("squared_index_coefficients", kernel_source::SquaredIndex);
   With(combine, size, squares, coefficients);
   launch(combine, 4);
   device.Finish();

@@ -1,4 +1,5 @@
 #include "Refraction/Octree/LevelPyramid.h"
+#include "Numerics/Vectors.h"
 
 #include "TyndallKernelSources.h"
 
@@ -6,7 +7,7 @@ namespace tyndall
 {
 LevelPyramid::LevelPyramid(Device& device, const Grid& grid)
   : TheDevice(device)
-  , Layout(grid)
+  , Layout(grid.size)
   , Nodes(device, this->Layout.nodeCount, "the octree's pyramid of levels")
   , TheLevels(device, grid.VoxelCount(), "the octree's levels")
 {
@@ -19,7 +20,7 @@ void LevelPyramid::Restrict(const MinMaxPyramid& ranges, const std::vector<float
   };
   const auto& sizes = this->Layout.sizes;
   const int top = this->Layout.Top();
-  cl::Kernel ofNodes = this->TheDevice.Kernel("levels_of_nodes", { kernel_source::LevelPyramid });
+  cl::Kernel ofNodes = this->TheDevice.Kernel("levels_of_nodes", kernel_source::LevelPyramid);
   for (int level = top; level >= 1; --level)
   {
     const int above = level < top ? level + 1 : level;
@@ -28,7 +29,7 @@ void LevelPyramid::Restrict(const MinMaxPyramid& ranges, const std::vector<float
         static_cast<cl_ulong>(this->Layout.offsets[above]), Int4(sizes[above]), level, top, tolerances[level]),
       sizes[level]);
   }
-  cl::Kernel ofVoxels = this->TheDevice.Kernel("levels_of_voxels", { kernel_source::LevelPyramid });
+  cl::Kernel ofVoxels = this->TheDevice.Kernel("levels_of_voxels", kernel_source::LevelPyramid);
   run(With(ofVoxels, this->Nodes, Int4(sizes[1]), this->TheLevels, Int4(sizes[0]), this->Restricted ? 1 : 0), sizes[1]);
   this->Restricted = true;
 }

@@ -1,6 +1,7 @@
 #pragma once
 
 #include "Device/Buffer.h"
+#include "Medium/Grid.h"
 #include "Numerics/PyramidLayout.h"
 
 namespace tyndall

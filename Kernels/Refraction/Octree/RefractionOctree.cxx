@@ -146,7 +146,7 @@ Octree BuildOctree(const Medium& medium, const Field& index, const OctreeSetting
   CheckIndex(index, medium.grid);
   Report(monitor, 0.0);
 
-  const PyramidLayout layout(medium.grid);
+  const PyramidLayout layout(medium.grid.size);
   Octree octree;
   octree.topLevel = layout.Top();
   Builder builder(medium.grid, device);

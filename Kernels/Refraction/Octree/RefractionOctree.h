@@ -25,8 +25,7 @@ struct OctreeSettings
 ///  - with includeExtinction, for every channel of sigma_t = sigma_a + sigma_s,
 ///    (max(sigma_t) - min(sigma_t)) times the node's diagonal <= extinctionTolerance, where k > 0: whichever of the
 ///    node's sigma_t is taken for a straight way through it, the way's optical thickness is off by no more.
-/// No larger node would keep the promise. The paper's listing has <, after which nothing would be whole at a tolerance
-/// of 0; with <=, equal voxels are one node then.
+/// No larger node would keep the promise (numerics.md, Eq. (93); the paper's listing has < for <=).
 ///
 /// A grid whose size is not a power of two is treated as if its last voxel were repeated: nodes at its upper faces may
 /// stick out of it, up to the top level, the smallest k whose node holds the whole grid. Ranges are compared in float.
@@ -42,8 +41,7 @@ struct Octree
 /// @param medium  its grid, and where extinction is included its coefficients
 /// @param index   refractive index n, one component; finite and above 0
 /// @param device  part of the device's name as Device::Find takes it; looked for only where there is something to
-/// compute:
-///   where everything is constant, the octree is one node and nothing runs on the device
+///   compute: where everything is constant, the octree is one node and nothing runs on the device
 /// @throws InvalidInput where a setting, the grid, n (names the first such voxel) or a coefficient has no meaning
 /// @throws DeviceError if there is no such device, or its memory does not suffice: about 7 bytes a voxel of a large
 /// cube

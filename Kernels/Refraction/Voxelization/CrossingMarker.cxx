@@ -1,5 +1,6 @@
 #include "Refraction/Voxelization/CrossingMarker.h"
 
+#include "Device/Defines.h"
 #include "Device/Sizes.h"
 #include "TyndallKernelSources.h"
 
@@ -9,8 +10,8 @@ namespace tyndall
 {
 std::string CrossingOptions(int axis, int samplesOfVoxel, bool fromAbove, bool winding)
 {
-  return "-DAXIS=" + std::to_string(axis) + " -DSAMPLES=" + std::to_string(samplesOfVoxel) +
-    " -DFROM_ABOVE=" + std::to_string(fromAbove) + " -DWINDING=" + std::to_string(winding);
+  return Define("AXIS", axis) + Define("SAMPLES", samplesOfVoxel) + Define("FROM_ABOVE", fromAbove) +
+    Define("WINDING", winding);
 }
 
 cl::NDRange CrossingRange(std::size_t items)
@@ -22,7 +23,7 @@ CrossingMarker::CrossingMarker(Device& device, const SampleColumns& columns, int
   : TheDevice(device)
   , Columns(columns)
   , Words(words)
-  , Kernel(device.Kernel("mark_crossings", { kernel_source::Voxelization }, options))
+  , Kernel(device.Kernel("mark_crossings", kernel_source::Voxelization, options))
 {
 }
 

@@ -1,5 +1,4 @@
-// Where between two samples the surface lies: a voxel's occupancy to a fraction of a sample. Read Voxelization.cl
-// before.
+// Where between two samples the surface lies: a voxel's occupancy to a fraction of a sample.
 //
 // Along columns of samples, where a surface crosses is known exactly; the samples say which is the last one before it.
 // What lies between the crossing and the border of that sample's fine voxel is added to the voxel it is in, or taken
@@ -10,6 +9,8 @@
 // has the turned or mirrored voxels.
 //
 // Defined before, but for what Voxelization.cl takes: BIT_AXIS, along which the columns of `bits` run.
+
+#include "Refraction/Voxelization/Voxelization.cl"
 
 #if BIT_AXIS == 0
 #define BIT_ALONG(p) ((p).x)
@@ -57,7 +58,8 @@ inline int3 place(int along, int across, int up)
 }
 
 // How much a surface faces along the columns: the fourth power of its normal's component, as a part of the sum of all
-// three. The order of the sum is that of their sizes, so that turning the surface does not change a bit.
+// three (numerics.md, Eq. (87)). The order of the sum is that of their sizes, so that turning the surface does not
+// change a bit.
 inline float weight_along(long3 normal)
 {
   float3 n = fabs(convert_float3(normal));

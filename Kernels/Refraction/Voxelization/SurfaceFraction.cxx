@@ -1,5 +1,6 @@
 #include "Refraction/Voxelization/SurfaceFraction.h"
 
+#include "Device/Defines.h"
 #include "Refraction/Voxelization/CrossingMarker.h"
 #include "TyndallKernelSources.h"
 
@@ -29,8 +30,8 @@ SurfaceFraction::SurfaceFraction(
 {
   const auto kernel = [&](const char* name, int axis) {
     const std::string options =
-      CrossingOptions(axis, columns.samplesOfVoxel, false, false) + " -DBIT_AXIS=" + std::to_string(columns.axis);
-    return device.Kernel(name, { kernel_source::Voxelization, kernel_source::SurfaceFraction }, options);
+      CrossingOptions(axis, columns.samplesOfVoxel, false, false) + Define("BIT_AXIS", columns.axis);
+    return device.Kernel(name, kernel_source::SurfaceFraction, options);
   };
   for (int axis = 0; axis < 3; ++axis)
   {

@@ -16,7 +16,7 @@ struct SampleSlab
 };
 
 /// Counts samples of voxels to a fraction of a sample, from where exactly the surface lies between two of them
-/// (SurfaceFraction.cl). Occupancy by samples alone has terraces where a surface is nearly parallel to layers of
+/// (numerics.md, section 11.1). Occupancy by samples alone has terraces where a surface is nearly parallel to layers of
 /// voxels, wider than the index's smoothing: they bend light.
 class SurfaceFraction
 {

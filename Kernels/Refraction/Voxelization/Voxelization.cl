@@ -5,13 +5,15 @@
 // Toggling the samples before a crossing is left to the end: a triangle toggles only the last of them, and one scan of
 // the column then does the rest, for all triangles at once.
 //
-// All is whole numbers. Points lie on a lattice (see Voxelization.cxx), samples at odd multiples of half a pitch, and a
+// All is whole numbers. Points lie on a lattice (see SampleLattice.h), samples at odd multiples of half a pitch, and a
 // sample that touches a plane or an edge is decided as if it were moved by (e, e^2, e^3) with e infinitely small. A
 // column so never meets an edge or a corner, and which samples are inside is the same whichever axis the columns run
 // along.
 //
 // Defined before: AXIS, 0 to 2, along which the columns run; SAMPLES, samples an edge of a voxel; FROM_ABOVE, 1 where
 // what lies after a crossing is toggled instead; WINDING, 1 where crossings are counted with their sign instead.
+
+#pragma once
 
 #if AXIS == 0
 #define ALONG(p) ((p).x)

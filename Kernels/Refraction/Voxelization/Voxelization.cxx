@@ -62,8 +62,8 @@ public:
     , Rows(RowsOfSlab(this->Columns, grid, this->Words, settings.slabBytes))
     , Options(CrossingOptions(settings.columnAxis, settings.samples, settings.fromAbove, false))
     , Marker(device, this->Columns, this->Words, this->Options)
-    , Fill(device.Kernel("fill_columns", { kernel_source::Voxelization }, this->Options))
-    , Count(device.Kernel("count_samples", { kernel_source::Voxelization }, this->Options))
+    , Fill(device.Kernel("fill_columns", kernel_source::Voxelization, this->Options))
+    , Count(device.Kernel("count_samples", kernel_source::Voxelization, this->Options))
     , Oriented(meshes)
     , Odd(device, meshes.size() * grid.size[this->Columns.up], "rows of voxels with samples that a mesh encloses twice")
   {

@@ -71,12 +71,10 @@ struct SamplesInside
 /// (SurfaceFraction); a voxel through which no surface goes is all inside or all outside.
 ///
 /// @param take  handed what is found slab by slab, and of each slab mesh by mesh from the last to the first, so that
-/// what is
-///   on the device at a time does not grow with the grid or the number of meshes
+///   what is on the device at a time does not grow with the grid or the number of meshes
 /// @return a mesh: whether it winds about all samples 0 times or once. Where it does not the samples inside are those
-/// about
-///   which it winds an odd number of times. Not known where the orientation is 0: the numbers are those of a closed
-///   mesh that is well oriented
+///   about which it winds an odd number of times. Not known where the orientation is 0: the numbers are those of a
+///   closed mesh that is well oriented
 /// @throws InvalidInput   where a setting or a mesh's size has no meaning
 /// @throws DeviceError    if the meshes and a slab do not fit the device
 std::vector<WindingNumbers> CountSamplesInside(Device& device, const Grid& grid,

@@ -58,7 +58,7 @@ WindingNumbers FindWindings(Device& device, const Grid& grid, const LatticeMesh&
     SlabBytes / (across * words * sizeof(cl_uint)), 1, static_cast<std::size_t>(columns.samplesOfVoxel)));
   const std::string options = CrossingOptions(columns.axis, columns.samplesOfVoxel, false, true);
   CrossingMarker marker(device, columns, words, options);
-  cl::Kernel find = device.Kernel("find_windings", { kernel_source::Voxelization }, options);
+  cl::Kernel find = device.Kernel("find_windings", kernel_source::Voxelization, options);
   Buffer<cl_uint> marks(device, across * atOnce * words, "crossings of the mesh");
   Buffer<cl_uint> noSums(device, 0, "no sums");
   Buffer<cl_int4> found(device, across * atOnce, "winding numbers");

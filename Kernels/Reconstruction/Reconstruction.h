@@ -20,13 +20,4 @@ struct Reconstruction
   /// What the light, whose totals are now `total`, is to be scaled by in each channel; sets result.bias.
   std::array<float, 3> Conserve(const std::array<double, 3>& total, ReconstructedLight& result) const;
 };
-
-/// Light of all batches, of each level's detail what they agree on (Estimator::Conservative). The result's arrays have
-/// their sizes.
-void ReconstructConservative(const Reconstruction& task, ReconstructedLight& result);
-
-/// Light of one level for each voxel (the other estimators).
-/// @param counts, weights  empty where there are none
-void ReconstructByLevel(const Reconstruction& task, const HostMappedBuffer<float>& counts,
-  const HostMappedBuffer<float>& weights, double weightStep, ReconstructedLight& result);
 }

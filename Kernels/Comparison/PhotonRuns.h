@@ -2,11 +2,9 @@
 
 #include "Comparison/ComparedRun.h"
 
-/// The runs of RunsOf by their kinds.
 namespace tyndall
 {
-std::vector<ComparedRun> PropagationRunsOf(
-  ComparedMethod method, Device& device, const ComparedScene& scene, const ComparedSettings& settings);
+/// The runs of RunsOf, of one kind.
 std::vector<ComparedRun> PhotonRunsOf(
   ComparedMethod method, Device& device, const ComparedScene& scene, const ComparedSettings& settings);
 }

@@ -63,11 +63,11 @@ std::vector<float> MirroredInX(const std::vector<float>& values, std::array<int,
 }
 }
 
-class FusedPropagation : public DeviceTest
+class ConservativePropagation : public DeviceTest
 {
 };
 
-TEST_F(FusedPropagation, GivesBackEveryWattItTakes)
+TEST_F(ConservativePropagation, GivesBackEveryWattItTakes)
 {
   for (double albedo : { 0.0, 0.5, 1.0 })
   {
@@ -91,7 +91,7 @@ TEST_F(FusedPropagation, GivesBackEveryWattItTakes)
   }
 }
 
-TEST_F(FusedPropagation, LetsEachFaceShineAlone)
+TEST_F(ConservativePropagation, LetsEachFaceShineAlone)
 {
   for (int cells : { 5, 9, 16 }) // rows of no whole number of vectors, and of one
   {
@@ -114,7 +114,7 @@ TEST_F(FusedPropagation, LetsEachFaceShineAlone)
   }
 }
 
-TEST_F(FusedPropagation, LetsLightInOnceWhereRaysGoRoundOneAxis)
+TEST_F(ConservativePropagation, LetsLightInOnceWhereRaysGoRoundOneAxis)
 {
   // Rows of no whole number of vectors: what waits beside them comes in on the first round only.
   Scene scene({ 10, 5, 9 }, 0.001f, 3.0f);
@@ -124,7 +124,7 @@ TEST_F(FusedPropagation, LetsLightInOnceWhereRaysGoRoundOneAxis)
   EXPECT_LT(scene.Solve(this->GetDevice()).balance.RelativeError(1), 1e-5);
 }
 
-TEST_F(FusedPropagation, CountsEnteringPowerAsTheSurfaceIntegralOfRadiance)
+TEST_F(ConservativePropagation, CountsEnteringPowerAsTheSurfaceIntegralOfRadiance)
 {
   Scene scene({ 40, 40, 40 }, 0.01f, 0.0f);
   scene.ShineFromEverywhere(3.0);
@@ -133,7 +133,7 @@ TEST_F(FusedPropagation, CountsEnteringPowerAsTheSurfaceIntegralOfRadiance)
   EXPECT_NEAR(light.balance.entered[0] / (6.0 * 40.0 * 40.0 * Pi * 3.0), 1.0, 0.01);
 }
 
-TEST_F(FusedPropagation, KeepsTheFurnaceAtItsTemperature)
+TEST_F(ConservativePropagation, KeepsTheFurnaceAtItsTemperature)
 {
   Scene scene({ 17, 12, 9 });
   scene.Randomise(1e3, 8.0, 0.0);
@@ -151,7 +151,7 @@ TEST_F(FusedPropagation, KeepsTheFurnaceAtItsTemperature)
   }
 }
 
-TEST_F(FusedPropagation, KeepsTheFurnaceWhereLightIsScatteredToo)
+TEST_F(ConservativePropagation, KeepsTheFurnaceWhereLightIsScatteredToo)
 {
   Scene scene({ 10, 11, 12 });
   scene.Randomise(2.0, 4.0, 0.5);
@@ -169,7 +169,7 @@ TEST_F(FusedPropagation, KeepsTheFurnaceWhereLightIsScatteredToo)
   }
 }
 
-TEST_F(FusedPropagation, LeavesRadianceInVacuumAlone)
+TEST_F(ConservativePropagation, LeavesRadianceInVacuumAlone)
 {
   Scene scene({ 21, 8, 5 });
   scene.ShineFromEverywhere(1.0);
@@ -180,7 +180,7 @@ TEST_F(FusedPropagation, LeavesRadianceInVacuumAlone)
   }
 }
 
-TEST_F(FusedPropagation, AttenuatesABeamExponentiallyAlongEachAxis)
+TEST_F(ConservativePropagation, AttenuatesABeamExponentiallyAlongEachAxis)
 {
   for (int axis = 0; axis < 3; ++axis)
   {
@@ -202,7 +202,7 @@ TEST_F(FusedPropagation, AttenuatesABeamExponentiallyAlongEachAxis)
   }
 }
 
-TEST_F(FusedPropagation, CastsTheSunsShadowAlongExactRays)
+TEST_F(ConservativePropagation, CastsTheSunsShadowAlongExactRays)
 {
   Scene scene({ 24, 24, 24 });
   scene.sigma_a[(static_cast<std::size_t>(20) * 24 + 12) * 24 + 12] = 1e6f;
@@ -217,7 +217,7 @@ TEST_F(FusedPropagation, CastsTheSunsShadowAlongExactRays)
   }
 }
 
-TEST_F(FusedPropagation, TurnsAndMirrorsWithItsInput)
+TEST_F(ConservativePropagation, TurnsAndMirrorsWithItsInput)
 {
   const std::array<int, 3> size = { 9, 14, 20 };
   Scene scene(size);
@@ -245,7 +245,7 @@ TEST_F(FusedPropagation, TurnsAndMirrorsWithItsInput)
     LargestRelativeDifference(mirrored.Solve(this->GetDevice()).fluence, MirroredInX(light.fluence, size)), 3e-6);
 }
 
-TEST_F(FusedPropagation, ReflectsAndTransmitsAsSlabsDo)
+TEST_F(ConservativePropagation, ReflectsAndTransmitsAsSlabsDo)
 {
   const std::pair<double, double> slabs[] = { { 0.1, 0.5 }, { 1.0, 0.5 }, { 1.0, 0.9 }, { 1.0, 0.999 }, { 5.0, 0.99 } };
   for (const auto& [tau, albedo] : slabs)
@@ -272,7 +272,7 @@ TEST_F(FusedPropagation, ReflectsAndTransmitsAsSlabsDo)
   }
 }
 
-TEST_F(FusedPropagation, ConvergesWithTheSquareOfTheVoxelOnASlab)
+TEST_F(ConservativePropagation, ConvergesWithTheSquareOfTheVoxelOnASlab)
 {
   const double tau = 5.0, albedo = 0.99;
   std::vector<double> transmitted;
@@ -292,7 +292,7 @@ TEST_F(FusedPropagation, ConvergesWithTheSquareOfTheVoxelOnASlab)
   EXPECT_GT(order, 1.8);
 }
 
-TEST_F(FusedPropagation, TakesAnyGrid)
+TEST_F(ConservativePropagation, TakesAnyGrid)
 {
   const std::array<int, 3> sizes[] = { { 1, 1, 1 }, { 1, 7, 3 }, { 5, 1, 1 }, { 33, 2, 17 }, { 1, 1, 65 } };
   for (const std::array<int, 3>& size : sizes)
@@ -314,7 +314,7 @@ TEST_F(FusedPropagation, TakesAnyGrid)
   }
 }
 
-TEST_F(FusedPropagation, SolvesColoursThatShareSigmaTAsItSolvesThemAlone)
+TEST_F(ConservativePropagation, SolvesColoursThatShareSigmaTAsItSolvesThemAlone)
 {
   const std::array<int, 3> size = { 13, 10, 8 };
   Scene rgb(size);
@@ -354,7 +354,7 @@ TEST_F(FusedPropagation, SolvesColoursThatShareSigmaTAsItSolvesThemAlone)
   }
 }
 
-TEST_F(FusedPropagation, SolvesColoursWithTheirOwnSigmaT)
+TEST_F(ConservativePropagation, SolvesColoursWithTheirOwnSigmaT)
 {
   Scene rgb({ 8, 9, 10 });
   rgb.sigma_a.assign(3 * rgb.medium.grid.VoxelCount(), 0.0f);
@@ -371,7 +371,7 @@ TEST_F(FusedPropagation, SolvesColoursWithTheirOwnSigmaT)
   }
 }
 
-TEST_F(FusedPropagation, NetFluxHasTheSourcesAndSinksOfTheMedium)
+TEST_F(ConservativePropagation, NetFluxHasTheSourcesAndSinksOfTheMedium)
 {
   // On the box's faces the flux that goes out less the one that comes in is minus what is absorbed.
   Scene scene({ 16, 16, 16 }, 0.05f, 0.1f);
@@ -402,7 +402,7 @@ TEST_F(FusedPropagation, NetFluxHasTheSourcesAndSinksOfTheMedium)
   EXPECT_LT(throughMiddle[2], light.balance.entered[0]);
 }
 
-TEST_F(FusedPropagation, AMapTwiceAsFineEndsNearTheSameLight)
+TEST_F(ConservativePropagation, AMapTwiceAsFineEndsNearTheSameLight)
 {
   Scene scene({ 12, 12, 12 }, 0.05f, 0.2f);
   scene.ShineFromEverywhere(1.0);
@@ -414,7 +414,7 @@ TEST_F(FusedPropagation, AMapTwiceAsFineEndsNearTheSameLight)
   EXPECT_LT(LargestRelativeDifference(coarse.fluence, fine.fluence), 0.1);
 }
 
-TEST_F(FusedPropagation, IsTheSameBitForBitTheSecondTime)
+TEST_F(ConservativePropagation, IsTheSameBitForBitTheSecondTime)
 {
   Scene scene({ 20, 17, 15 });
   scene.Randomise(1.0, 3.0, 0.9);
@@ -424,7 +424,7 @@ TEST_F(FusedPropagation, IsTheSameBitForBitTheSecondTime)
   EXPECT_EQ(scene.Solve(this->GetDevice()).fluence, scene.Solve(this->GetDevice()).fluence);
 }
 
-TEST_F(FusedPropagation, StopsWhenToldTo)
+TEST_F(ConservativePropagation, StopsWhenToldTo)
 {
   Scene scene({ 32, 32, 32 }, 0.0f, 1.0f);
   scene.ShineFromEverywhere(1.0);
@@ -433,7 +433,7 @@ TEST_F(FusedPropagation, StopsWhenToldTo)
   EXPECT_EQ(reports, 5);
 }
 
-TEST_F(FusedPropagation, ReportsProgressThatGrows)
+TEST_F(ConservativePropagation, ReportsProgressThatGrows)
 {
   Scene scene({ 16, 16, 16 }, 0.05f, 0.5f);
   scene.ShineFromEverywhere(1.0);
@@ -451,7 +451,7 @@ TEST_F(FusedPropagation, ReportsProgressThatGrows)
   }
 }
 
-TEST_F(FusedPropagation, StaysDarkWithoutLight)
+TEST_F(ConservativePropagation, StaysDarkWithoutLight)
 {
   Scene scene({ 4, 4, 4 }, 1.0f, 1.0f);
   const LightField light = scene.Solve(this->GetDevice());
@@ -459,7 +459,7 @@ TEST_F(FusedPropagation, StaysDarkWithoutLight)
   EXPECT_EQ(light.balance.RelativeError(1), 0.0);
 }
 
-TEST_F(FusedPropagation, RefusesWhatHasNoMeaning)
+TEST_F(ConservativePropagation, RefusesWhatHasNoMeaning)
 {
   const auto solve = [&](auto&& spoil) {
     Scene scene({ 4, 5, 6 }, 0.1f, 0.1f);
@@ -488,7 +488,7 @@ TEST_F(FusedPropagation, RefusesWhatHasNoMeaning)
   EXPECT_NE(message([](Scene& s) { s.settings.tolerance = 0.0; }).find("Tolerance"), std::string::npos);
 }
 
-TEST_F(FusedPropagation, StopsWhereTheToleranceIsMetNotBefore)
+TEST_F(ConservativePropagation, StopsWhereTheToleranceIsMetNotBefore)
 {
   // A dense ball in a large vacuum: nearly all light passes by, and says nothing of the orders within the ball.
   Scene scene({ 24, 24, 24 });

@@ -1,0 +1,33 @@
+#pragma once
+
+#include "Device/Monitor.h"
+
+#include <functional>
+
+class vtkAlgorithm;
+class vtkDataObject;
+class vtkInformationVector;
+
+/// Work of a filter that may fail, be stopped, and tells how far it is.
+namespace tyndall
+{
+/// To be asked where an input is empty: ends the work of Guarded without an error where the filter before failed or was
+/// aborted.
+void StopWithFilterBefore(vtkDataObject* input);
+
+/// Reports to the filter's progress; says stop when the filter is asked to abort.
+Monitor MonitorOf(vtkAlgorithm* filter);
+
+/// Runs the work of a filter's RequestData. Whatever it throws becomes one error of the filter; the outputs are empty
+/// then and after an abort, which is no error, and the filter runs again when something has changed. Empty outputs have
+/// field data `failed` or `aborted`, from which later filters know: they stay empty, too, without an error of their
+/// own. What the device layer has to tell users (Device::TakeWarnings) becomes a warning of the filter.
+/// @return what RequestData is to return: always 1. With 0 the pipeline would add an error that says less, and run the
+///   filter again, in vain, with every update.
+int Guarded(vtkAlgorithm* filter, vtkInformationVector* outputs, const std::function<void()>& work);
+
+/// Runs what may fail in a reader's RequestInformation. What it throws becomes one error, however often ParaView asks,
+/// until the reader is modified; Guarded then leaves the outputs empty.
+/// @return whether it succeeded. RequestInformation is to return 1 all the same, as RequestData.
+bool GuardedInformation(vtkAlgorithm* filter, const std::function<void()>& work);
+}

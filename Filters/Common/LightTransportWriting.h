@@ -1,0 +1,51 @@
+#pragma once
+
+#include "Light/LightField.h"
+
+#include <string>
+#include <vector>
+
+class vtkDataObject;
+class vtkImageData;
+class vtkTable;
+
+/// The one place where filters write what flows between them: arrays, their names, shapes and units.
+namespace tyndall
+{
+/// Add values to an image's cells, without copying them.
+/// @param values  `components` a cell, x fastest
+/// @param advice  see RequireFinite
+/// @throws InvalidInput where a value is not finite
+void AddCells(
+  vtkImageData* image, const char* name, std::vector<float>&& values, int components, const char* advice = nullptr);
+
+/// The same of light: of 3 channels they are named R, G, B.
+void AddLight(vtkImageData* image, const char* name, std::vector<float>&& values, int channels);
+
+/// The same of light that a user gave, NaN where it is not known: not looked at.
+void AddGivenLight(vtkImageData* image, const char* name, std::vector<float>&& values, int channels);
+
+/// Add field data.
+/// @param values  tuples of `components` one after the other
+void AddFact(vtkDataObject* data, const char* name, const std::vector<double>& values, int components = 1);
+void AddFact(vtkDataObject* data, const char* name, const std::vector<std::string>& values);
+
+/// What leaves thick voxels at the box's faces, see LightField::surfaceRadiance: a tuple a cell of BoxFaces.h.
+constexpr const char* SurfaceRadianceFact = "surface_radiance";
+
+/// Texts one a line, for the panel.
+std::string Lines(const std::vector<std::string>& texts);
+
+/// Everything a solver found but its convergence: cells `fluence` (made the active scalars), `fluence_direct`,
+/// `fluence_error`, `net_flux`, `scattered_radiance` (channels fastest, then stored directions), those that are not
+/// empty; field data `energy_balance`, `face_power_out`, `half_range_flux`, `stored_directions`, `surface_radiance`,
+/// `left_out`, `device`. Light that the output already has is taken away.
+void WriteLight(LightField&& light, vtkImageData* output);
+
+/// One row an iteration: `iteration`, `seconds`, `residual`, `change`, `absorbed`, `escaped`, `left_over`.
+void WriteConvergence(const std::vector<ConvergenceRow>& rows, vtkTable* table);
+
+/// Make the output the input's arrays, with field data of its own: a shallow copy alone would share that, so that what
+/// a filter adds would appear in its input, and vanish when that is made again.
+void PassOn(vtkImageData* input, vtkImageData* output);
+}

@@ -1,0 +1,82 @@
+#ifndef vtkPropagationAlgorithm_h
+#define vtkPropagationAlgorithm_h
+
+#include "vtkLitImageAlgorithm.h"
+#include "vtkTyndallModule.h" // for export macro
+
+/**
+ * @class vtkPropagationAlgorithm
+ * @brief superclass of the filters that propagate light through a medium until little is left
+ *
+ * It has what vtkLightPropagationMaps, which solves once, and vtkSolverComparison, which solves by many settings, are
+ * both told of the box and of when to stop.
+ *
+ * @sa vtkLightPropagationMaps vtkSolverComparison
+ */
+class TYNDALL_EXPORT vtkPropagationAlgorithm : public vtkLitImageAlgorithm
+{
+public:
+  vtkTypeMacro(vtkPropagationAlgorithm, vtkLitImageAlgorithm);
+  void PrintSelf(ostream& os, vtkIndent indent) override;
+
+  ///@{
+  /// Relative error of fluence at which to stop. Default 1e-4, valid above 0.
+  tyndallSetRangeMacro(Tolerance, double, tyndall::AboveZero, tyndall::AnyHigh);
+  vtkGetMacro(Tolerance, double);
+  ///@}
+
+  ///@{
+  /// Whether rays that leave along an axis return on the other side. Default off.
+  vtkSetMacro(PeriodicX, bool);
+  vtkGetMacro(PeriodicX, bool);
+  vtkBooleanMacro(PeriodicX, bool);
+  vtkSetMacro(PeriodicY, bool);
+  vtkGetMacro(PeriodicY, bool);
+  vtkBooleanMacro(PeriodicY, bool);
+  vtkSetMacro(PeriodicZ, bool);
+  vtkGetMacro(PeriodicZ, bool);
+  vtkBooleanMacro(PeriodicZ, bool);
+  ///@}
+
+  ///@{
+  /// Diffuse radiance that enters through the faces -x, +x, -y, +y, -z, +z, W/(length^2 sr). Default 0, valid
+  /// [0, infinity).
+  tyndallSetRange6Macro(FaceRadiance, double, 0.0, tyndall::LargestFloat);
+  vtkGetVector6Macro(FaceRadiance, double);
+  ///@}
+
+  ///@{
+  /// Radiance from every direction alike, red, green, blue, added to the environment, W/(length^2 sr). Default 0, valid
+  /// [0, infinity).
+  tyndallSetRange3Macro(SkyColor, double, 0.0, tyndall::LargestFloat);
+  vtkGetVector3Macro(SkyColor, double);
+  ///@}
+
+  ///@{
+  /// Whether solvers estimate the error of fluence from coarser solves. Default: see the subclass.
+  vtkSetMacro(EstimateError, bool);
+  vtkGetMacro(EstimateError, bool);
+  vtkBooleanMacro(EstimateError, bool);
+  ///@}
+
+protected:
+  vtkPropagationAlgorithm();
+  ~vtkPropagationAlgorithm() override;
+
+  /// The lights and the environment, with the sky and what shines through the faces. Checked.
+  tyndall::Illumination ReadAllIllumination(vtkInformationVector** inputs);
+
+  double Tolerance;
+  bool PeriodicX;
+  bool PeriodicY;
+  bool PeriodicZ;
+  double FaceRadiance[6] = { 0.0, 0.0, 0.0, 0.0, 0.0, 0.0 };
+  double SkyColor[3] = { 0.0, 0.0, 0.0 };
+  bool EstimateError = false;
+
+private:
+  vtkPropagationAlgorithm(const vtkPropagationAlgorithm&) = delete;
+  void operator=(const vtkPropagationAlgorithm&) = delete;
+};
+
+#endif

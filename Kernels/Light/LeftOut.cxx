@@ -1,0 +1,51 @@
+#include "Light/LeftOut.h"
+
+#include <cmath>
+
+namespace tyndall
+{
+namespace left_out
+{
+const char* const Grey = "colour: medium and light are grey, one channel does";
+const char* const OneColour = "colour: the medium is grey and all light has one colour, one channel stands for three";
+const char* const GreyExtinction = "sigma_t a channel: red, green and blue share one, and its transmittance";
+const char* const NoScattering = "scattering: sigma_s is zero";
+const char* const NoAbsorption = "absorption: sigma_a is zero";
+const char* const NoEmission = "emission: the medium does not shine";
+const char* const OneOrder = "scattering orders after the first: nothing is scattered";
+const char* const NetFlux = "net_flux: not asked for";
+const char* const Isotropic = "anisotropy: light is scattered evenly";
+const char* const ConstantIndex = "refraction: the refractive index is constant, rays are straight";
+const char* const EmptyBricks = "empty bricks: rays leap over 8x8x8 voxels that are empty";
+const char* const NoLights = "uncollided flux of lamps: there are no lights";
+const char* const NoEmissionPeaks = "uncollided flux of bright emission: no small bright part outshines all else, or "
+                                    "an axis is periodic, or EmissionError is 0";
+const char* const DarkOutside = "boundary radiance: no environment, sky or face shines";
+const char* const EvenOutside = "uncollided flux of the boundaries: what comes from outside is the same from "
+                                "everywhere and goes with scattered light";
+
+std::string EmptySlabs(const VoxelBox& filled, const Grid& grid)
+{
+  const double part = 1.0 - static_cast<double>(filled.VoxelCount()) / static_cast<double>(grid.VoxelCount());
+  return "empty slabs: " + std::to_string(std::lround(100.0 * part)) +
+    "% of the voxels lie outside the box that the medium fills";
+}
+
+std::string DarkDirections(double lit)
+{
+  return "dark directions: no light comes from outside along " + std::to_string(std::lround(100.0 * (1.0 - lit))) +
+    "% of the rays";
+}
+
+std::string MirrorImages(int classes, int directions)
+{
+  return "mirror images: nothing changes along periodic axes of one voxel, " + std::to_string(classes) + " of " +
+    std::to_string(directions) + " directions stand for all";
+}
+
+std::string DirectionsAlongSlab(int perFace)
+{
+  return "directions too few for a slab, or along it: solved with " + std::to_string(perFace) + " a face";
+}
+}
+}

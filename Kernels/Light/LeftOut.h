@@ -1,0 +1,33 @@
+#pragma once
+
+#include "Medium/Grid.h"
+#include "Medium/VoxelBox.h"
+
+#include <string>
+
+namespace tyndall
+{
+/// What a scene did not need, in the words of `left_out`, the same in every solver.
+namespace left_out
+{
+extern const char* const Grey;           ///< neither medium nor light has colour
+extern const char* const OneColour;      ///< the medium is grey, and light has one colour
+extern const char* const GreyExtinction; ///< one transmittance for three channels
+extern const char* const NoScattering;
+extern const char* const NoAbsorption;
+extern const char* const NoEmission;
+extern const char* const OneOrder; ///< nothing is scattered though the medium could
+extern const char* const NetFlux;
+extern const char* const Isotropic;
+extern const char* const ConstantIndex;
+extern const char* const EmptyBricks;
+extern const char* const NoLights;
+extern const char* const NoEmissionPeaks; ///< what the medium emits needs no rays of its own
+extern const char* const DarkOutside;     ///< neither environment nor sky nor faces shine
+extern const char* const EvenOutside;     ///< they shine evenly: directions of its own are not needed
+std::string EmptySlabs(const VoxelBox& filled, const Grid& grid);
+std::string DarkDirections(double lit); ///< part of the rays
+std::string MirrorImages(int classes, int directions);
+std::string DirectionsAlongSlab(int perFace); ///< solved with instead
+}
+}

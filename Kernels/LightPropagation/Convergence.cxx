@@ -1,0 +1,45 @@
+#include "LightPropagation/Convergence.h"
+
+#include "Numerics/NumberText.h"
+
+#include <algorithm>
+
+namespace tyndall
+{
+namespace
+{
+constexpr double MuchLeftOver = 0.01; ///< of the power, with the usual tolerance
+
+/// Of all power, what the solver gave up.
+double LeftOver(const EnergyBalance& balance)
+{
+  const double all = Sum(balance.entered) + Sum(balance.emitted);
+  return all > 0.0 ? Sum(balance.leftOver) / all : 0.0;
+}
+}
+
+bool MeetsTolerance(const PropagationSettings& settings, double residual)
+{
+  return settings.maximumOrders > 0 || residual <= settings.tolerance;
+}
+
+void JudgeConvergence(const PropagationSettings& settings, LightField& light)
+{
+  const double residual = light.convergence.empty() ? 0.0 : light.convergence.back().residual;
+  light.converged = MeetsTolerance(settings, residual);
+  if (!light.converged)
+  {
+    light.doubts.push_back("The light has not converged: after " + std::to_string(light.convergence.size()) +
+      " sweeps its estimated relative error is " + Text("%.3g", residual) + ", Tolerance is " +
+      Text("%.3g", settings.tolerance) +
+      ". Set a larger Tolerance, or Acceleration to none, or resample to voxels of more equal edges.");
+  }
+  const double left = LeftOver(light.balance);
+  if (settings.maximumOrders == 0 && left > std::max(MuchLeftOver, settings.tolerance))
+  {
+    light.doubts.push_back("Of the light's power " + Text("%.3g", 100.0 * left) +
+      "% is left over: its rays still go round periodic axes. A light inside a thin periodic box has images without "
+      "end: make the box wider, or its axes not periodic.");
+  }
+}
+}

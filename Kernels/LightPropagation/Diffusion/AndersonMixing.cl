@@ -1,0 +1,47 @@
+// Anderson's mixing of the last corrections, see AndersonMixing.h.
+
+#include "LightPropagation/Diffusion/DiffusionLayout.cl"
+
+// Sums for Anderson's mixing (numerics.md, Eqs. (71), (72)), with f = found - given and d1, d2 its differences to those
+// of the two iterations before: f f and found found (both weighted by how much the voxel scatters), d1 d1, d1 d2, d2
+// d2, d1 f, d2 f
+__kernel void anderson_sums(const __global exact* given, const __global exact* found, const __global float* change1,
+  const __global float* change2, const __global float* sigma_s, int first, float length, int count,
+  __global exact* sums)
+{
+  const int begin = get_global_id(0) * DiffusionChunk;
+  const int end = min(count, begin + DiffusionChunk);
+  exact sum[AndersonSums] = { 0, 0, 0, 0, 0, 0, 0, 0 };
+  for (int i = begin; i < end; ++i)
+  {
+    const exact f = found[i] - given[i];
+    const exact d1 = f - change1[i];
+    const exact d2 = f - change2[i];
+    const exact tau = sigma_s[first + i] * length;
+    const exact weight = tau / (1 + tau);
+    sum[0] += weight * f * f;
+    sum[1] += weight * found[i] * found[i];
+    sum[2] += d1 * d1;
+    sum[3] += d1 * d2;
+    sum[4] += d2 * d2;
+    sum[5] += d1 * f;
+    sum[6] += d2 * f;
+  }
+  for (int k = 0; k < AndersonSums; ++k)
+  {
+    sums[get_global_id(0) * AndersonSums + k] = sum[k];
+  }
+}
+
+// given = found - w1 (found - found1) - w2 (found - found2); remembers found and found - given in the place of the
+// second iteration before.
+__kernel void anderson_step(__global exact* given, const __global exact* found, const __global float* found1,
+  __global float* found2, __global float* change2, float w1, float w2)
+{
+  const int i = get_global_id(0);
+  const exact now = found[i];
+  const exact f = now - given[i];
+  given[i] = now - w1 * (now - found1[i]) - w2 * (now - found2[i]);
+  found2[i] = (float)now;
+  change2[i] = (float)f;
+}

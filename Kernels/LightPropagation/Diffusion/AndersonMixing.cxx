@@ -1,0 +1,69 @@
+#include "LightPropagation/Diffusion/AndersonMixing.h"
+
+#include "LightPropagation/Diffusion/DiffusionShared.h"
+
+#include "Device/Sizes.h"
+
+#include "TyndallKernelSources.h"
+
+#include <cmath>
+#include <utility>
+
+namespace tyndall
+{
+AndersonMixing::AndersonMixing(Device& device, std::size_t count, const char* what)
+  : TheDevice(device)
+  , Count(count)
+  , Sums(device, AndersonSums * PartsOf<std::size_t>(count, DiffusionChunk), "sums")
+{
+  for (int i = 0; i < 2; ++i)
+  {
+    this->FoundBefore[i] = Buffer<float>(device, count, what);
+    this->ChangeBefore[i] = Buffer<float>(device, count, what);
+    this->FoundBefore[i].Fill(0.0f);
+    this->ChangeBefore[i].Fill(0.0f);
+  }
+}
+
+double AndersonMixing::Mix(const ExactValues& given, const ExactValues& found, const Weighting& weighting)
+{
+  double change = 0.0;
+  const std::array<double, 2> weights = this->Weights(given, found, weighting, &change);
+  cl::Kernel step =
+    this->TheDevice.Kernel("anderson_step", kernel_source::AndersonMixing, ExactOption(this->TheDevice));
+  std::swap(this->FoundBefore[0], this->FoundBefore[1]);
+  std::swap(this->ChangeBefore[0], this->ChangeBefore[1]);
+  // What was the last is now the second before, and its place is taken: the kernel reads before it writes.
+  With(step, given.Handle(), found.Handle(), this->FoundBefore[1], this->FoundBefore[0], this->ChangeBefore[0],
+    static_cast<float>(weights[0]), static_cast<float>(weights[1]));
+  this->TheDevice.Queue().enqueueNDRangeKernel(step, cl::NullRange, cl::NDRange(this->Count), cl::NullRange);
+  ++this->Mixes;
+  return change;
+}
+
+/// Weights of the two iterations before in the mix: least squares of the change (numerics.md, Eq. (71)).
+std::array<double, 2> AndersonMixing::Weights(
+  const ExactValues& given, const ExactValues& found, const Weighting& weighting, double* change)
+{
+  cl::Kernel kernel =
+    this->TheDevice.Kernel("anderson_sums", kernel_source::AndersonMixing, ExactOption(this->TheDevice));
+  With(kernel, given.Handle(), found.Handle(), this->ChangeBefore[0], this->ChangeBefore[1], *weighting.sigma_s,
+    cl_int(weighting.first), weighting.length, cl_int(this->Count), this->Sums.Handle());
+  const std::size_t chunks = PartsOf<std::size_t>(this->Count, DiffusionChunk);
+  this->TheDevice.Queue().enqueueNDRangeKernel(kernel, cl::NullRange, cl::NDRange(chunks), cl::NDRange(1));
+  std::array<double, AndersonSums> sums = {};
+  const std::vector<double> parts = this->Sums.Read();
+  for (std::size_t i = 0; i < parts.size(); ++i)
+  {
+    sums[i % AndersonSums] += parts[i];
+  }
+  const auto& [ff, all, aa, ab, bb, af, bf, unused] = sums;
+  *change = all > 0.0 ? std::sqrt(ff / all) : 0.0;
+  const double determinant = aa * bb - ab * ab;
+  if (this->Mixes >= 2 && determinant > 1e-8 * aa * bb)
+  {
+    return { (af * bb - bf * ab) / determinant, (bf * aa - af * ab) / determinant };
+  }
+  return { this->Mixes >= 1 && aa > 0.0 ? af / aa : 0.0, 0.0 };
+}
+}

@@ -1,0 +1,40 @@
+#include "LightPropagation/Diffusion/ExactValues.h"
+
+#include "Device/Defines.h"
+
+namespace tyndall
+{
+ExactValues::ExactValues(Device& device, std::size_t count, const char* what)
+{
+  if (device.HasExtension("cl_khr_fp64"))
+  {
+    this->Doubles = Buffer<double>(device, count, what);
+  }
+  else
+  {
+    this->Floats = Buffer<float>(device, count, what);
+  }
+  this->Fill(0.0);
+}
+
+void ExactValues::Fill(double value)
+{
+  this->Doubles.Fill(value);
+  this->Floats.Fill(static_cast<float>(value));
+}
+
+std::vector<double> ExactValues::Read() const
+{
+  if (this->InDouble())
+  {
+    return this->Doubles.Read();
+  }
+  const std::vector<float> values = this->Floats.Read();
+  return { values.begin(), values.end() };
+}
+
+std::string ExactOption(const Device& device)
+{
+  return Define("DOUBLES", device.HasExtension("cl_khr_fp64"));
+}
+}

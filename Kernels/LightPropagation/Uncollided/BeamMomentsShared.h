@@ -1,0 +1,22 @@
+// Shared by C++ and the kernel of BeamMoments.cl.
+#pragma once
+
+#include "Device/SharedTypes.h"
+
+#ifndef __OPENCL_C_VERSION__
+namespace tyndall
+{
+#endif
+/// A beam of parallel light through the box.
+typedef struct
+{
+  int size[3];
+  int periodic[3];
+  int up[3]; ///< the way it goes along each axis
+  float spacing[3];
+  float lengths[3]; ///< of a ray from face to face
+  float thin;       ///< optical length of voxels below which light is taken as lost evenly
+} BeamInfo;
+#ifndef __OPENCL_C_VERSION__
+}
+#endif

@@ -1,0 +1,41 @@
+// Shared by C++ and the kernels of LampBeams.cl.
+#pragma once
+
+#include "Device/SharedTypes.h"
+
+#ifndef __OPENCL_C_VERSION__
+namespace tyndall
+{
+#endif
+enum
+{
+  LampRowSums = 9 ///< tallies of a row of beams: entered, escaped through each face, stranded, ...
+};
+
+/// A lamp in its box. Lengths along axis a are in voxels of `spacing[a]`.
+typedef struct
+{
+  int size[3];
+  int periodic[3];
+  float spacing[3];
+  float position[3];  ///< of the lamp, from the box's corner
+  float direction[3]; ///< unit, in space
+  float cosine;       ///< of the cone's half angle
+  float intensity;    ///< part of the power, per steradian; at normal emission where LAMBERT
+  float scale;        ///< fixed point units per length
+  float diagonal;     ///< of a voxel
+  int rounds;         ///< of a beam round a periodic axis
+} LampInfo;
+
+/// The beams of one pyramid at one tangent v.
+typedef struct
+{
+  int axis, up;             ///< marches along the axis, up or down
+  float tangentU, tangentV; ///< of the first beam's middle; v's for all
+  float widthU, widthV;     ///< of a beam, in tangents
+  int count;                ///< of beams along u
+  float begin;              ///< layers from the lamp to the box, 0 inside
+} BeamRow;
+#ifndef __OPENCL_C_VERSION__
+}
+#endif

@@ -1,0 +1,23 @@
+// Shared by C++ and the kernels of PhotonSums.cl.
+#pragma once
+
+#include "Device/SharedTypes.h"
+#include "Refraction/Index/IndexShared.h"
+
+#ifndef __OPENCL_C_VERSION__
+namespace tyndall
+{
+#endif
+/// How sums become light.
+typedef struct
+{
+  IndexGrid grid;
+  float diagonal;  ///< of a voxel
+  float fluence;   ///< W / length^2 of a unit of power that goes along a voxel's diagonal, over 2 to the power of
+  int exponent;    ///< this one: it may be less than a float holds
+  float colour[3]; ///< of what CHANNELS 1 stands for
+  float weight;    ///< of a photon, one unit
+} LightSumsInfo;
+#ifndef __OPENCL_C_VERSION__
+}
+#endif

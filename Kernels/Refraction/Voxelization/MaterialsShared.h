@@ -1,0 +1,30 @@
+// Shared by C++ and the kernels of Materials.cl.
+#pragma once
+
+#include "Device/SharedTypes.h"
+
+#ifndef __OPENCL_C_VERSION__
+namespace tyndall
+{
+#endif
+/// Voxels of a slab: runs of `length` of the grid's, the first from `first` on, each `stride` further.
+typedef struct
+{
+  float4 corner, spacing; ///< length: the grid's lower corner, edges of a voxel
+  ulong first, length, stride;
+  int nx, ny;    ///< voxels of the grid
+  float samples; ///< of a voxel
+} MaterialSlab;
+
+typedef struct
+{
+  float4 absorption, scattering; ///< red, green, blue, 1/length
+  float n;
+  float indexNoise;      ///< by how much n is perturbed, +-
+  float scatteringNoise; ///< the same for sigma_s, relative
+  float frequency;       ///< 1 / size of the noise's features, 1/length
+  uint seed;
+} MaterialInfo;
+#ifndef __OPENCL_C_VERSION__
+}
+#endif

@@ -1,0 +1,195 @@
+// What the lights send straight to each voxel, and what is scattered of it towards the eye. The host gives
+//   SCATTERING  components of sigma_s: 1 or 3
+
+#include "Viewing/Sampling.cl"
+#include "Viewing/ViewShared.h"
+#include "Viewing/VoxelChannels.cl"
+
+// A packet's way to a light: unit vectors to it and distances (world), and what would arrive through vacuum.
+typedef struct
+{
+  real3 d;
+  real distance, arriving;
+} way_to_light;
+
+inline way_to_light towards(const SmallLight* light, real3 place, real scatters, float nearest_square)
+{
+  const real point = (real)light->place.w;
+  const real3 to = { fma(point, (real)light->place.x - place.x, (real)((light->place.w - 1.0f) * light->axis.x)),
+    fma(point, (real)light->place.y - place.y, (real)((light->place.w - 1.0f) * light->axis.y)),
+    fma(point, (real)light->place.z - place.z, (real)((light->place.w - 1.0f) * light->axis.z)) };
+  const real square = greater(fma(to.x, to.x, fma(to.y, to.y, to.z * to.z)), (real)1e-30f);
+  const real distance = sqrt(square);
+  const real inverse = (real)1.0f / distance;
+  const real3 d = { to.x * inverse, to.y * inverse, to.z * inverse };
+  const real to_axis = -fma(d.x, (real)light->axis.x, fma(d.y, (real)light->axis.y, d.z * (real)light->axis.z));
+  real arriving = point > (real)0.0f ? (real)1.0f / greater(square, (real)nearest_square) : (real)1.0f;
+  arriving *= light->power.w > 0.0f ? greater(to_axis, (real)0.0f) : (real)1.0f;
+  arriving = to_axis >= (real)light->axis.w ? arriving : (real)0.0f;
+  arriving = scatters > (real)0.0f ? arriving : (real)0.0f;
+  const way_to_light way = { d, point > (real)0.0f ? distance : (real)1e30f, arriving };
+  return way;
+}
+
+#if MANY_STEPS
+#define PASS(sigma, sum, rest) add_to(&sum, &rest, sigma* length);
+#else
+#define PASS(sigma, sum, rest) sum = fma(sigma, length, sum);
+#endif
+// Optical length of the medium on the way, by channel where COLOURED, else in `r`; 30 and more is as good as any.
+inline rgb depths_on_the_way(const ShadowInfo* info, const way_to_light* way, real3 centre,
+  __global const float4* samples, __global const float4* extinctions, __global const char* bricks)
+{
+  const real3 direction = { way->d.x / (real)info->spacing.x, way->d.y / (real)info->spacing.y,
+    way->d.z / (real)info->spacing.z };
+  real before;
+  const rays packet = clip_to_box(centre, direction, way->distance, info->size, &before);
+  const real stride = step_length(direction, info->step);
+  const real3 strides = strides_per_voxel(direction, stride);
+  const int steps = (int)ceil(most_lanes(way->arriving > (real)0.0f ? packet.length / stride : (real)0.0f));
+  rgb depths = { (real)0.0f, (real)0.0f, (real)0.0f };
+  rgb rests = depths; // see add_to
+  for (int m = 0; m < steps;)
+  {
+    const real so_far = stride * (real)(float)m;
+#if COLOURED
+    const real least = lesser(lesser(depths.r, depths.g), depths.b);
+#else
+    const real least = depths.r;
+#endif
+    const integer done = (so_far >= packet.length) | (least > (real)30.0f) | (way->arriving <= (real)0.0f);
+    if (all_lanes(done))
+    {
+      break;
+    }
+    const stretch ahead =
+      stretch_ahead(bricks, info->bricks, along(packet, fma(stride, (real)0.5f, so_far)), strides, done);
+    const int stop = min(m + ahead.steps, steps);
+    for (m = ahead.empty ? stop : m; m < stop; ++m)
+    {
+      const real start = stride * (real)(float)m;
+      const real length = lesser(greater(packet.length - start, (real)0.0f), stride);
+      corners at;
+      find_corners(along(packet, fma(length, (real)0.5f, start)), info->size, &at);
+      rgb colour;
+      real w;
+#if COLOURED
+      gather(extinctions, &at, info->size, &colour, &w);
+      PASS(colour.r, depths.r, rests.r)
+      PASS(colour.g, depths.g, rests.g)
+      PASS(colour.b, depths.b, rests.b)
+#else
+      gather_samples(samples, &at, info->size, &colour, &w);
+      PASS(w, depths.r, rests.r)
+#endif
+    }
+  }
+  return depths;
+}
+#undef PASS
+
+// What arrives of a light's power through the medium, W / length^2.
+inline rgb arriving_through(const SmallLight* light, real arriving, rgb depths)
+{
+  rgb left;
+#if COLOURED
+  extinguished(depths.r, &left.r);
+  extinguished(depths.g, &left.g);
+  extinguished(depths.b, &left.b);
+#else
+  extinguished(depths.r, &left.r);
+  left.g = left.b = left.r;
+#endif
+  const rgb power = { arriving * left.r * (real)light->power.x, arriving * left.g * (real)light->power.y,
+    arriving * left.b * (real)light->power.z };
+  return power;
+}
+
+// Henyey and Greenstein's phase function, per steradian.
+inline real phase_at(real cosine, float g)
+{
+  const real base = greater(fma((real)(-2.0f * g), cosine, (real)(1.0f + g * g)), (real)1e-12f);
+  return (real)(PER_SPHERE * (1.0f - g * g)) / (base * sqrt(base));
+}
+
+// The voxels of a packet along x; beyond the row's end its last one, which is then written several times alike.
+inline integer packet_along_x(int first, int size)
+{
+#if REAL_WIDTH == 16
+  return min(first + (integer)(0, 1, 2, 3, 4, 5, 6, 7, 8, 9, 10, 11, 12, 13, 14, 15), size - 1);
+#elif REAL_WIDTH == 8
+  return min(first + (integer)(0, 1, 2, 3, 4, 5, 6, 7), size - 1);
+#elif REAL_WIDTH == 4
+  return min(first + (integer)(0, 1, 2, 3), size - 1);
+#else
+  return first;
+#endif
+}
+
+// Scatters towards the eye what the lights send straight to each voxel's centre. Work-items by packets of a slice.
+//   direct  6 a voxel: sum of irradiance times phase function, W / (length^2 sr), and sum of irradiance, W / length^2
+__kernel void see_lights(ShadowInfo info, __global const SmallLight* restrict lights,
+  __global const float* restrict scattering, __global const float4* restrict samples,
+  __global const float4* restrict extinctions, __global const char* restrict bricks, __global float* restrict direct)
+{
+  const int first = get_global_id(0) * REAL_WIDTH;
+  const int j = get_global_id(1) + info.firstRow;
+  const int k = get_global_id(2) + info.firstSlice;
+  if (first >= info.size.x || j >= info.size.y)
+  {
+    return;
+  }
+  const integer i = packet_along_x(first, info.size.x);
+  const integer voxel = i + (k * info.size.y + j) * info.size.x;
+  real scatters = (real)0.0f;
+#define SCATTERS(n)                                                           \
+  LANE(scatters, n) = channel_of(scattering, LANE(voxel, n), SCATTERING, 0) + \
+    channel_of(scattering, LANE(voxel, n), SCATTERING, 1) + channel_of(scattering, LANE(voxel, n), SCATTERING, 2);
+  EACH_LANE(SCATTERS)
+#undef SCATTERS
+  const real3 centre = { to_real(i) + (real)0.5f, (real)((float)j + 0.5f), (real)((float)k + 0.5f) };
+  const real3 place = { centre.x * (real)info.spacing.x, centre.y * (real)info.spacing.y,
+    centre.z * (real)info.spacing.z };
+  // Towards the eye: back along the view axis where rays are parallel.
+  const real perspective = (real)(1.0f - info.eye.w);
+  const real3 out = { fma(perspective, (real)info.eye.x - place.x, (real)(-info.eye.w * info.forward.x)),
+    fma(perspective, (real)info.eye.y - place.y, (real)(-info.eye.w * info.forward.y)),
+    fma(perspective, (real)info.eye.z - place.z, (real)(-info.eye.w * info.forward.z)) };
+  const real out_scale = (real)1.0f / sqrt(greater(fma(out.x, out.x, fma(out.y, out.y, out.z * out.z)), (real)1e-30f));
+
+  rgb towards_eye = { (real)0.0f, (real)0.0f, (real)0.0f };
+  rgb irradiance = towards_eye;
+  for (int n = 0; n < info.lights && any_lane(scatters > (real)0.0f); ++n)
+  {
+    const SmallLight light = lights[n];
+    const way_to_light way = towards(&light, place, scatters, info.nearestSquare);
+    if (!any_lane(way.arriving > (real)0.0f))
+    {
+      continue;
+    }
+    const rgb depths = depths_on_the_way(&info, &way, centre, samples, extinctions, bricks);
+    const rgb arrived = arriving_through(&light, way.arriving, depths);
+    // The light travels along -d.
+    const real cosine = -(fma(way.d.x, out.x, fma(way.d.y, out.y, way.d.z * out.z))) * out_scale;
+    const real phase = phase_at(cosine, info.g);
+    irradiance.r += arrived.r;
+    irradiance.g += arrived.g;
+    irradiance.b += arrived.b;
+    towards_eye.r = fma(arrived.r, phase, towards_eye.r);
+    towards_eye.g = fma(arrived.g, phase, towards_eye.g);
+    towards_eye.b = fma(arrived.b, phase, towards_eye.b);
+  }
+
+#define KEEP(n)                                         \
+  {                                                     \
+    __global float* kept = direct + 6 * LANE(voxel, n); \
+    kept[0] = LANE(towards_eye.r, n);                   \
+    kept[1] = LANE(towards_eye.g, n);                   \
+    kept[2] = LANE(towards_eye.b, n);                   \
+    kept[3] = LANE(irradiance.r, n);                    \
+    kept[4] = LANE(irradiance.g, n);                    \
+    kept[5] = LANE(irradiance.b, n);                    \
+  }
+  EACH_LANE(KEEP)
+#undef KEEP
+}

@@ -1,0 +1,61 @@
+// Shared by C++ and the kernels of the ray caster.
+#pragma once
+
+#include "Device/SharedTypes.h"
+
+#ifndef __OPENCL_C_VERSION__
+namespace tyndall
+{
+#endif
+/// The picture and its camera.
+typedef struct
+{
+  float4 eye;            ///< voxels; w: 0 the rays come from one point, 1 they are parallel
+  float4 forward;        ///< unit vector, world
+  float4 right;          ///< to the picture's right edge; of the world at unit distance, or where parallel of the world
+  float4 up;             ///< to its upper edge
+  float4 inverseSpacing; ///< voxels per length
+  float4 background;     ///< W / (length^2 sr), added to the environment; w: 0 nothing is to be seen behind the medium
+  float4 marching;       ///< step in voxels, transmittance at which to stop, depth where nothing is
+  int4 picture;          ///< width, height in pixels, first row and first column of packets
+  int4 size;             ///< voxels
+  int4 bricks;           ///< bricks
+  int4 environment;      ///< width, height in pixels
+} ViewInfo;
+
+/// Surface, table, and how rays bend.
+typedef struct
+{
+  float4 spacing; ///< length per voxel
+  float4 surface; ///< n^2 of the surface, reflectance, voxels from it to where the indices on its sides are taken
+  float4 table;   ///< diffuse reflectance, mirrored part
+  int4 face;      ///< axis of the table, 1 at the upper end and 0 at the lower, voxels of its longer rows
+  float4 flip;    ///< what the table does to directions
+  int4 limits;    ///< steps of a ray, steps of a bent stretch, halvings of the step in which the surface is met
+} OpticsInfo;
+
+/// A light as the shadow rays see it: parallel light, or a point of one.
+typedef struct
+{
+  float4 place; ///< world, from the box's lower corner; w: 1 a point, 0 parallel light
+  float4 axis;  ///< unit vector, the way the light travels; w: cosine of the cone's half angle, -2 for a whole sphere
+  float4 power; ///< irradiance, or radiant intensity along the axis; w: 1 falls with the cosine to the axis, else 0
+} SmallLight;
+
+/// What shadow rays are told.
+typedef struct
+{
+  float4 spacing;      ///< length per voxel
+  float4 eye;          ///< world, from the box's lower corner; w: 0 the rays come from one point, 1 they are parallel
+  float4 forward;      ///< unit vector, world
+  int4 size;           ///< voxels
+  int4 bricks;         ///< bricks
+  float g;             ///< mean cosine of the phase function
+  float step;          ///< voxels
+  float nearestSquare; ///< keeps a voxel that holds a light finite: its mean of 1/r^2 is 3/R^2 of a ball as large
+  int lights;
+  int firstSlice, firstRow; ///< of the launch
+} ShadowInfo;
+#ifndef __OPENCL_C_VERSION__
+}
+#endif

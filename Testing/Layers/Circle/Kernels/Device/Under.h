@@ -1,0 +1,1 @@
+#include "Medium/Over.h"
