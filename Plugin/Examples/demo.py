@@ -1,6 +1,6 @@
 """From a CT scan under a photographed sky to pictures and data, by Tyndall's proxies alone.
 
-    pvbatch demo.py --data FOLDER --output FOLDER [--grid 104]
+    pvbatch demo.py --data FOLDER --output FOLDER [--grid 104] [--size 800 600]
 
 FOLDER holds skull_2.9.inr (CGAL's demo data, Debian package libcgal-demo) and sunset.exr (Blender's studio lights, Debian
 package blender-data). `./run demo` fetches both and calls this.
@@ -19,6 +19,7 @@ arguments = argparse.ArgumentParser()
 arguments.add_argument("--data", required=True)
 arguments.add_argument("--output", required=True)
 arguments.add_argument("--grid", type=int, default=104, help="voxels an axis that the scan is resampled to")
+arguments.add_argument("--size", type=int, nargs=2, default=[800, 600], help="columns and rows of the pictures")
 arguments = arguments.parse_args()
 os.makedirs(arguments.output, exist_ok=True)
 
@@ -73,9 +74,9 @@ centre = [0.5 * (bounds[2 * axis] + bounds[2 * axis + 1]) for axis in range(3)]
 
 
 def picture(name, azimuth, elevation, single=0):
-    """Render 800 x 600 pixels from a place on a sphere about the skull."""
+    """Render from a place on a sphere about the skull."""
     a, e, distance = math.radians(azimuth), math.radians(elevation), 560.0
-    caster = MediumRayCaster(registrationName=name, Input=light, Lights=sun, Environment=sky, ImageSize=[800, 600],
+    caster = MediumRayCaster(registrationName=name, Input=light, Lights=sun, Environment=sky, ImageSize=arguments.size,
                              CameraFocalPoint=centre, SingleScatteringOnly=single, Exposure=0.45,
                              CameraPosition=[centre[0] + distance * math.cos(a) * math.cos(e),
                                              centre[1] + distance * math.sin(a) * math.cos(e),
@@ -92,7 +93,7 @@ picture("skull-on-the-square", 245, 6)
 
 def slice_through_light():
     """Light is data: its fluence in a plane through the skull, in ParaView's own view."""
-    view = CreateView("RenderView", ViewSize=[800, 600], OrientationAxesVisibility=0, Background=[0.12, 0.12, 0.14],
+    view = CreateView("RenderView", ViewSize=arguments.size, OrientationAxesVisibility=0, Background=[0.12, 0.12, 0.14],
                       UseColorPaletteForBackground=0)
     cut = Slice(registrationName="Slice", Input=light, SliceType="Plane")
     cut.SliceType.Origin = centre
@@ -110,6 +111,8 @@ def slice_through_light():
     bar = GetScalarBar(table, view)
     bar.Title, bar.ComponentTitle, bar.Visibility = "fluence, W/mm\u00b2", "", 1
     bar.TitleColor = bar.LabelColor = [1, 1, 1]
+    bar.TitleFontSize = bar.LabelFontSize = round(16 * arguments.size[1] / 600)
+    bar.ScalarBarThickness = round(16 * arguments.size[1] / 600)
     view.CameraPosition = [centre[0] + 600, centre[1], centre[2]]
     view.CameraFocalPoint, view.CameraViewUp, view.CameraParallelProjection = centre, [0, 0, 1], 1
     view.CameraParallelScale = 0.55 * max(bounds[3] - bounds[2], bounds[5] - bounds[4])
@@ -119,7 +122,7 @@ def slice_through_light():
 
 def show_beside(view, caster):
     """What the state opens with: the light and a picture of it."""
-    other = CreateView("RenderView", ViewSize=[800, 600], OrientationAxesVisibility=0, InteractionMode="2D",
+    other = CreateView("RenderView", ViewSize=arguments.size, OrientationAxesVisibility=0, InteractionMode="2D",
                        CameraParallelProjection=1)
     Show(caster, other)
     ResetCamera(other)

@@ -1,6 +1,6 @@
 """Glass in lit fog: two meshes voxelised, photons marched along bent rays, pictures with refraction.
 
-    pvbatch refraction.py --data FOLDER --output FOLDER [--grid 192] [--photons 3000000]
+    pvbatch refraction.py --data FOLDER --output FOLDER [--grid 192] [--photons 3000000] [--size 800 600]
 
 FOLDER holds armadillo.ply and elephant.ply (CGAL's demo data, Debian package libcgal-demo) and sunset.exr (Blender's studio
 lights, Debian package blender-data). `./run demo` fetches all and calls this.
@@ -20,6 +20,7 @@ arguments.add_argument("--data", required=True)
 arguments.add_argument("--output", required=True)
 arguments.add_argument("--grid", type=int, default=192, help="voxels along the box's longest edge")
 arguments.add_argument("--photons", type=int, default=3000000)
+arguments.add_argument("--size", type=int, nargs=2, default=[800, 600], help="columns and rows of the pictures")
 arguments.add_argument("--scenes", nargs="*", default=["armadillo", "elephant"])
 arguments = arguments.parse_args()
 os.makedirs(arguments.output, exist_ok=True)
@@ -78,7 +79,7 @@ def around(centre, distance, azimuth, elevation):
 
 def picture(name, light, **settings):
     """Render, and save what a screen shows."""
-    caster = MediumRayCaster(registrationName=name, Input=light, ImageSize=[800, 600], **settings)
+    caster = MediumRayCaster(registrationName=name, Input=light, ImageSize=arguments.size, **settings)
     stage("render " + name, caster)
     SaveData(output(name + ".png"), proxy=caster)
     return caster
