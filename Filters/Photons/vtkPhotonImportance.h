@@ -20,8 +20,8 @@ struct Importance;
  *
  * Pilot photons on a jittered grid of each light's photon plane are marched through the medium and gathered in coarse
  * cells. Cells where the light changes steeply from one to the next, and dark ones, are chosen; each is splatted into
- * the map as a circle about the mean origin of its photons, as wide as they deviate from it; a background is added, and
- * a 5x5 Gauss filter smooths the map. vtkPhotonEmitter makes photons as dense as it says.
+ * the map as a circle about the mean origin of its photons, as wide as they deviate from it; a 5x5 Gauss filter smooths
+ * the map, and a background is added. vtkPhotonEmitter makes photons as dense as it says.
  *
  * Where the light is even nothing is gained: `even` is 1, and vtkPhotonEmitter spreads its photons evenly.
  *

@@ -191,7 +191,6 @@ vtkSolverComparison::vtkSolverComparison()
   this->Coarsenings = defaults.tried.coarsenings;
   this->Orders = defaults.tried.orders;
   this->PhotonCounts = defaults.tried.photonCounts;
-  this->Tolerance = defaults.tried.tolerance;
   this->Repeats = defaults.repeats;
   this->TimeBudget = defaults.timeBudget;
   this->EstimateError = defaults.estimates;

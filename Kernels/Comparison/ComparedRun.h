@@ -41,7 +41,7 @@ struct ComparedSettings
   std::vector<int> orders = { 1, 3, 10 }; ///< besides all
   std::vector<int> photonCounts = { 10000, 100000, 1000000 };
   std::vector<Sampler> samplers = { Sampler::Hammersley };
-  double tolerance = 1e-4; ///< of propagation
+  double tolerance = PropagationSettings().tolerance; ///< of propagation
 };
 
 /// A method with a setting, ready to run.

@@ -54,8 +54,8 @@ public:
   std::size_t PeakBytes() const { return this->Memory.Peak(); } ///< largest BytesInUse since ResetPeak
   void ResetPeak() { this->Memory.ResetPeak(); }
 
-  /// A kernel of the program that the given sources make one after the other. Programs are kept, so that asking again
-  /// with the same sources and options costs nothing. The kernel is the caller's own: two threads that ask for one get
+  /// A kernel of the program that `source` makes. Programs are kept, so that asking again with the same source and
+  /// options costs nothing. The kernel is the caller's own: two threads that ask for one get
   /// two, for OpenCL does not let them set arguments of the same.
   /// @param source  the text of a .cl file with what it includes (kernel_source::...)
   /// @param options  compiler options, e.g. "-DCHANNELS=3"

@@ -1,4 +1,4 @@
-// The conservative estimator. Compiled with
+// The conservative estimator. The host gives
 //   BATCHES     independent ones, at least 2
 //   CHANNELS    of the light, 1 or 3
 //   DIRECTIONS  1: there are mean directions

@@ -1,4 +1,4 @@
-// A level of the pyramid for each voxel: a work-item a row (or a voxel). Compiled with
+// A level of the pyramid for each voxel: a work-item a row (or a voxel). The host gives
 //   ESTIMATOR   0 published, 1 constant radius, 2 nearest photons
 //   CHANNELS, DIRECTIONS  of the light; fields of its pyramid are its channels, then the mean direction
 //   TOP         the highest level

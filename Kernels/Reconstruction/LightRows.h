@@ -51,7 +51,7 @@ public:
   int Width() const { return this->RowWidth; }
   Device& On() const { return this->TheDevice; }
 
-  /// A kernel of `source`, after Numerics.cl and LightRows.cl.
+  /// A kernel of `source`, with rows as wide as these.
   cl::Kernel Kernel(const char* name, std::string_view source, const std::string& options = {}) const;
 
   /// Queue it for all cells of these rows, or for `layers` of them from z = `first` on.

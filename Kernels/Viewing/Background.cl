@@ -1,6 +1,6 @@
 // What is behind the medium: an environment, a colour, or nothing.
 //
-// Define
+// The host gives
 //   ENVIRONMENT  1: the background is a picture; 0: one colour
 
 #pragma once

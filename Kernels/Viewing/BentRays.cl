@@ -4,7 +4,7 @@
 // Eq. (91)) whose gradient is taken in the middle of each step. Where the index is constant that is a straight step,
 // and the gradient is not fetched.
 //
-// Define
+// The host gives
 //   SKIP_BRICKS  1: rays leap over bricks in which nothing extinguishes, shines or bends
 
 #pragma once

@@ -4,9 +4,6 @@
 //
 // Along a bent ray L / n^2 is conserved but for what the medium does (numerics.md, Eq. (109)): sources and backgrounds
 // are divided by n^2 of their place, and the picture is multiplied by n^2 where the ray enters.
-//
-// Needs Numerics.cl, Sampling.cl, View.cl, Background.cl, Crossing.cl, RayPackets.cl, SurfaceReflection.cl, BentRays.cl
-// and Table.cl before it; they say what to define.
 
 #include "Viewing/Background.cl"
 #include "Viewing/BentRays.cl"

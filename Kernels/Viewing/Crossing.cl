@@ -2,7 +2,7 @@
 //   radiance = integral over the ray of T(t) q(t) dt + T(end) background,  T(t) = exp(-integral of sigma_t)
 // with q = sigma_s times in-scattered radiance plus emission, both interpolated between voxel centres.
 //
-// Define
+// The host gives
 //   THIN_STEPS  1: no step's optical length is above 2
 //   PHASE       how light of a known direction scatters: 0 evenly, 1 Henyey and Greenstein, 2 Schlick
 //   GLOW        1 (with PHASE): emission is kept apart from what is scattered

@@ -1,6 +1,6 @@
 // Primary rays through a medium of constant index, one work-item a packet of neighbouring pixels.
 //
-// Define
+// The host gives
 //   SKIP_BRICKS  1: rays leap over bricks in which nothing extinguishes or shines
 
 #include "Viewing/Background.cl"

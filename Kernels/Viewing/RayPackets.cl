@@ -1,6 +1,6 @@
 // Rays on their way through a medium that bends them, and what they are given on it.
 //
-// Define
+// The host gives
 //   BENDS  1: the index varies
 
 #pragma once

@@ -1,6 +1,6 @@
 // Rays through a medium, REAL_WIDTH of them at a time, and what they meet there.
 //
-// Define
+// The host gives
 //   COLOURED  1: extinction differs between red, green and blue; 0: one extinction serves all three
 //   GREY      1: so do sources; `samples` then hold source and extinction of a voxel, and those of the next one along y
 //

@@ -1,7 +1,7 @@
 // What the rays meet: every voxel's source radiance per unit length and its extinction, made from the medium's arrays
 // and from the light that a solver left in them or that shadow rays find.
 //
-// Define
+// The host gives
 //   ABSORPTION, SCATTERING, EMISSION, FLUENCE, UNSCATTERED   components of each array: 0 (there is none), 1 or 3
 //   SHADOW_RAYS  1: `direct` holds what the lights scatter towards the eye
 //   FLOW         1: the light's mean direction is packed

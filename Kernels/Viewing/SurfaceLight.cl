@@ -1,6 +1,6 @@
 // Light at the surface of thick voxels, where rays enter the box.
 //
-// Define
+// The host gives
 //   SURFACE_LIGHT  1: there is some
 
 #pragma once

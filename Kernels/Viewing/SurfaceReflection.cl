@@ -1,6 +1,6 @@
 // The surface where the index rises through a given one: it splits primary rays in two.
 //
-// Define
+// The host gives
 //   SURFACE  what it reflects: 0 there is none, 1 as Fresnel's equations have it, 2 a fixed part
 
 #pragma once

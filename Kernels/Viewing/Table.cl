@@ -1,6 +1,6 @@
 // A face of the box that is a table.
 //
-// Define
+// The host gives
 //   TABLE  1: there is one
 
 #pragma once

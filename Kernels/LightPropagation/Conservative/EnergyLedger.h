@@ -22,11 +22,11 @@ public:
   }
   /// Through a face that is not known yet.
   void Escape(int channel, double watts) { this->Sums.escaped[channel] += watts; }
-  /// What left by Escape(channel, watts) did so through this face.
-  void EscapeWasThrough(int channel, int face, double watts) { this->Faces[face][channel] += watts; }
-  /// What has escaped through faces that are not known did so as the rest did.
+  /// Says through which face W left that were counted by Escape(channel, watts).
+  void AssignFace(int channel, int face, double watts) { this->Faces[face][channel] += watts; }
+  /// Shares W that escaped through unknown faces among the faces, in proportion to what is known of each.
   void ShareEscaped(const Rgb& watts);
-  /// In all; replaces what was said before.
+  /// Sets the W left over, and does not add to them.
   void LeaveOver(int channel, double watts) { this->Sums.leftOver[channel] = watts; }
 
   /// What came in and went out, of the channels of a volume.

@@ -9,10 +9,6 @@
 
 namespace tyndall
 {
-namespace
-{
-}
-
 EscapeCorrection::EscapeCorrection(TransportParts& parts, const Monitor& monitor)
   : Parts(parts)
 {

@@ -16,8 +16,8 @@ public:
   /// @param parts  must stay; it has finer directions
   EscapeCorrection(TransportParts& parts, const Monitor& monitor);
 
-  /// Takes from the path integrals of a sweep what escaped besides of the scattered light that was its source. What the
-  /// medium emits itself is left as the sweep has it: it may come from voxels so thin that there is nothing to take.
+  /// Subtracts from the path integrals of a sweep the light that would also have escaped along the finer directions.
+  /// Only scattered light is corrected: emission may come from voxels too thin to subtract from.
   /// @return W, by channel
   Rgb Apply();
 

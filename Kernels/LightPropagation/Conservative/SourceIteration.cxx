@@ -259,7 +259,7 @@ void SourceIteration::SweepEmptySlabs(const Monitor& monitor)
   {
     for (int c = 0; c < 3; ++c)
     {
-      this->Result.ledger.EscapeWasThrough(c, face, tally.out[face][c]);
+      this->Result.ledger.AssignFace(c, face, tally.out[face][c]);
     }
   }
   this->Scattering.AddOutside(parts.Problem.Traits().filled, parts.Path, parts.Fluence);

@@ -1,4 +1,7 @@
-// The diffusion system of a channel, see DiffusionSystem.h: what a sweep found becomes its right-hand side.
+// The diffusion system of a channel, see DiffusionSystem.h: what a sweep found becomes its right-hand side. The
+// host gives
+//   DOUBLES  1 where the device has double precision
+//   PASSING  1: lamps' light passes faces at once where it is scattered
 //
 // Face d of a voxel is -x, +x, -y, +y, -z, +z. tau is the optical length of a voxel along an axis.
 

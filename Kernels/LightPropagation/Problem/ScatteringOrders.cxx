@@ -10,7 +10,8 @@ namespace tyndall
 {
 namespace
 {
-constexpr double UsualTolerance = 1e-4;   ///< the method must not depend on the tolerance
+/// The default, not the user's: which method is used must not depend on the tolerance.
+const double UsualTolerance = PropagationSettings().tolerance;
 constexpr double ManyOrders = 40.0;       ///< source iteration that is dearer than acceleration
 constexpr double ManyOrdersInSlab = 12.0; ///< the same in a slab, whose diffusion system is small
 

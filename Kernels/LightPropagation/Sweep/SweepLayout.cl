@@ -1,4 +1,5 @@
-// The layout of a sweep, shared by the texts that follow. The host gives
+// The layout of a sweep, shared by the files that include it. The host gives
+//   REAL_WIDTH  4, 8 or 16 floats of a vector
 //   CHANNELS  1 or 3 colours that share sigma_t
 //   ROW       floats in a padded row; the floats after a row's voxels and before the next row's are its border
 //   SOURCE    1 where the medium shines (emission or scattered light)

@@ -42,7 +42,7 @@ public:
   /// @param source  W / (length^3 sr), [channel][stride]; null: the medium is dark
   /// @param boundary  what comes in, three channels; empty: nothing
   /// @param monitor  given fractions of this sweep
-  /// @return of all channels: what came in, what left, what still goes round a periodic axis and does so in the next
+  /// @return of all channels: what came in, what left, what still goes round a periodic axis, as it will in the next
   /// sweep
   virtual SweepTally Apply(const Buffer<float>* source, const SweepBoundary& boundary, const Monitor& monitor) = 0;
 

@@ -6,6 +6,7 @@
 
 #include "Device/Batches.h"
 #include "Device/Defines.h"
+#include "LightPropagation/PropagationSettings.h"
 
 #include <glm/gtc/constants.hpp>
 
@@ -21,7 +22,7 @@ namespace
 constexpr int FewestRays = 32;     ///< of a voxel to the peak's box, at first
 constexpr int MostRays = 4096;     ///< the same, at last
 constexpr double AllRays = 0x1p22; ///< at first, about, for the usual error: a second
-constexpr double UsualError = 0.02;
+const double UsualError = PropagationSettings().emissionError;
 
 /// Of a lattice of points in five dimensions, found component by component for 32 to 2048 points; with 4096 the worst
 /// error of Kobayashi's points at 20^3 fell from 0.5% to 0.3%. Every 2^n first points, in the order of their reversed

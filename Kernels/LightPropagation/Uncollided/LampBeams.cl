@@ -2,6 +2,7 @@
 //   ATOMICS      1 where the device has 64-bit atomics, else one work-item does all
 //   LAMBERT, CONE  1 for a rectangle, a spot
 //   MOMENTS     1: moments of the deposit are wanted
+//   THIN        optical length below which light counts as lost evenly
 //
 // Space around the lamp is six pyramids, one for each way along an axis; in a pyramid beams lie on a grid of tangents,
 // so fine that a beam is at most a voxel wide where it leaves the box. It is followed layer by layer; where its square
