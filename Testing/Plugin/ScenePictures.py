@@ -10,6 +10,7 @@ import pictures
 SOURCE, DATA = os.environ["TYNDALL_SOURCE"], os.environ["TYNDALL_FETCHED_DATA"]
 SCENES = {
     "cloud": ("Plugin/Examples/cloud.py", "{output}", ["cloud"]),
+    "glass": ("Plugin/Examples/glass.py", "{output}", ["glass"]),
     "demo": ("Plugin/Examples/demo.py", "--data {data} --output {output} --grid 40 --size 240 180",
              ["skull-multiple-scattering", "skull-single-scattering", "skull-on-the-square", "fluence-slice"]),
     "refraction": ("Plugin/Examples/refraction.py",
