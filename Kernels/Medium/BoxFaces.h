@@ -26,8 +26,8 @@ void ForBoxFaceCells(const Grid& grid, const Act& act)
   for (int face = 0; face < 6; ++face)
   {
     const int axis = face / 2;
-    const int u = axis == 0 ? 1 : 0;
-    const int v = axis == 2 ? 1 : 2;
+    const int u = AcrossAxis(axis).u;
+    const int v = AcrossAxis(axis).v;
     const std::size_t first = face % 2 ? (grid.size[axis] - 1) * step[axis] : 0;
     for (int j = 0; j < grid.size[v]; ++j)
     {

@@ -21,4 +21,14 @@ struct Grid
   double VoxelVolume() const { return this->spacing[0] * this->spacing[1] * this->spacing[2]; }
   double Length(int axis) const { return this->size[axis] * this->spacing[axis]; }
 };
+
+/// The axes of a plane across `axis`: u is the lower of both, and runs along rows in memory.
+struct PlaneAxes
+{
+  int axis, u, v;
+};
+constexpr PlaneAxes AcrossAxis(int axis)
+{
+  return { axis, axis == 0 ? 1 : 0, axis == 2 ? 1 : 2 };
+}
 }

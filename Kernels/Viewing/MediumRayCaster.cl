@@ -56,7 +56,7 @@ __kernel void cast_rays(ViewInfo v, __global const float4* restrict samples,
     }
     stop = min(stop, steps);
 #else
-    stop = min(n + BRICK, steps);
+    stop = min(n + BrickEdge, steps);
 #endif
     for (; n < stop; ++n)
     {

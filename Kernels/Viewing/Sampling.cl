@@ -15,6 +15,7 @@
 
 #pragma once
 #include "Numerics/Numerics.cl"
+#include "Viewing/ViewShared.h"
 
 #pragma OPENCL FP_CONTRACT OFF
 
@@ -371,7 +372,6 @@ inline rgb between_four(__global const float4* values, integer lower, integer up
 // Edge of a brick in voxels. Each brick has a number: how many bricks one has to go (as a chess king does) to one of
 // another kind; positive for a brick that is empty, negative for one where anything extinguishes or shines. It is 0
 // where rays bend.
-#define BRICK 8
 
 // What is ahead of a packet: how many steps, from the sample at p on, every ray can take before one of them leaves the
 // bricks around it that are known to be alike; whether all those steps are through nothing; whether a ray bends. Rays
@@ -384,9 +384,9 @@ typedef struct
 __attribute__((always_inline)) inline stretch stretch_ahead(
   __global const char* bricks, int4 brick_count, real3 p, real3 strides, integer done)
 {
-  const integer bx = min(to_integer(p.x * (real)(1.0f / BRICK)), brick_count.x - 1);
-  const integer by = min(to_integer(p.y * (real)(1.0f / BRICK)), brick_count.y - 1);
-  const integer bz = min(to_integer(p.z * (real)(1.0f / BRICK)), brick_count.z - 1);
+  const integer bx = min(to_integer(p.x * (real)(1.0f / BrickEdge)), brick_count.x - 1);
+  const integer by = min(to_integer(p.y * (real)(1.0f / BrickEdge)), brick_count.y - 1);
+  const integer bz = min(to_integer(p.z * (real)(1.0f / BrickEdge)), brick_count.z - 1);
   const integer brick = (bz * brick_count.y + by) * brick_count.x + bx;
   integer distance = (integer)(int)bricks[LANE(brick, 0)];
   if (any_lane(brick != (integer)LANE(brick, 0))) // neighbouring rays are mostly in the same brick
@@ -397,7 +397,7 @@ __attribute__((always_inline)) inline stretch stretch_ahead(
   }
   const integer reach = (distance < 0 ? -distance : distance) - 1;
 #define STEPS_LEFT(b, c) \
-  ((to_real(strides.c > (real)0.0f ? (b + reach + 1) * BRICK : (b - reach) * BRICK) - p.c) * strides.c)
+  ((to_real(strides.c > (real)0.0f ? (b + reach + 1) * BrickEdge : (b - reach) * BrickEdge) - p.c) * strides.c)
   const real steps = lesser(lesser(STEPS_LEFT(bx, x), STEPS_LEFT(by, y)), STEPS_LEFT(bz, z));
 #undef STEPS_LEFT
   stretch s;

@@ -142,9 +142,9 @@ __kernel void find_empty_bricks(int4 size, int4 brick_count, __global const floa
   }
   const int row = size.x + 2;
   const int slice = row * (size.y + 2);
-  const int x0 = i * BRICK, x1 = min(x0 + BRICK + 1, size.x + 1);
-  const int y0 = j * BRICK, y1 = min(y0 + BRICK + 1, size.y + 1);
-  const int z0 = k * BRICK, z1 = min(z0 + BRICK + 1, size.z + 1);
+  const int x0 = i * BrickEdge, x1 = min(x0 + BrickEdge + 1, size.x + 1);
+  const int y0 = j * BrickEdge, y1 = min(y0 + BrickEdge + 1, size.y + 1);
+  const int z0 = k * BrickEdge, z1 = min(z0 + BrickEdge + 1, size.z + 1);
   int filled = 0;
   int bends = 0;
 #if BENDS

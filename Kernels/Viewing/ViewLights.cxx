@@ -97,8 +97,8 @@ std::vector<cl_float4> TableLight(
   {
     for (int i = -1; i <= size[0]; ++i)
     {
-      const std::size_t voxel = std::clamp(i, 0, size[0] - 1) * strides[axis == 0 ? 1 : 0] +
-        std::clamp(j, 0, size[1] - 1) * strides[axis == 2 ? 1 : 2] +
+      const std::size_t voxel = std::clamp(i, 0, size[0] - 1) * strides[AcrossAxis(axis).u] +
+        std::clamp(j, 0, size[1] - 1) * strides[AcrossAxis(axis).v] +
         (face % 2 ? grid.size[axis] - 1 : 0) * strides[axis];
       const double n = ior.values ? ior.values[voxel] : 1.0;
       glm::dvec3 mean(0.0);

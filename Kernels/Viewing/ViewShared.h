@@ -7,6 +7,11 @@
 namespace tyndall
 {
 #endif
+enum
+{
+  BrickEdge = 8 ///< voxels an edge of a brick
+};
+
 /// The picture and its camera.
 typedef struct
 {

@@ -274,11 +274,6 @@ int PlanesOfPattern(int size, bool periodic)
   return periodic ? (FewestPlanes + size - 1) / size * size : size;
 }
 
-PlaneAxes AcrossAxis(int axis)
-{
-  return axis == 0 ? PlaneAxes{ 0, 1, 2 } : axis == 1 ? PlaneAxes{ 1, 0, 2 } : PlaneAxes{ 2, 0, 1 };
-}
-
 std::vector<int> MarchingAxes(const Grid& grid, const std::array<double, 3>& omega)
 {
   std::array<double, 3> crossings; // of planes, per length

@@ -76,13 +76,6 @@ struct Bundle
 /// those of a short periodic axis, where rays go round.
 int PlanesOfPattern(int size, bool periodic);
 
-/// The axes of a plane across `axis`: u runs along rows in memory.
-struct PlaneAxes
-{
-  int axis, u, v;
-};
-PlaneAxes AcrossAxis(int axis);
-
 /// The axis that a direction marches along: the one of whose voxel planes it crosses most per unit length, so that it
 /// never moves more than one voxel aside. Where it crosses the planes of several alike, all of these, in equal parts.
 std::vector<int> MarchingAxes(const Grid& grid, const std::array<double, 3>& omega);

@@ -1,4 +1,4 @@
-// The host gives CHUNK: voxels a work-item sums up before the host adds the chunks in double.
+#include "LightPropagation/Conservative/CollectShared.h"
 
 // What leaves the box of each voxel's light besides what left in the sweep (numerics.md, Eq. (46)).
 // extra  of a source of 1, W length
@@ -7,8 +7,8 @@ __kernel void let_escape(__global float* path, const __global float* source, con
   const __global float* sigma_t, __global float* tally, ulong stride, int one_sigma_t)
 {
   const ulong channel = get_global_id(1);
-  const ulong begin = get_global_id(0) * CHUNK;
-  const ulong end = min(stride, begin + CHUNK);
+  const ulong begin = get_global_id(0) * CollectChunk;
+  const ulong end = min(stride, begin + CollectChunk);
   path += channel * stride;
   source += channel * stride;
   extra += channel * stride;

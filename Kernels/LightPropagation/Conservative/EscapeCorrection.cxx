@@ -1,6 +1,8 @@
 #include "LightPropagation/Conservative/EscapeCorrection.h"
 
 #include "Device/Defines.h"
+#include "Device/Sizes.h"
+#include "LightPropagation/Conservative/CollectShared.h"
 #include "LightPropagation/Conservative/IsotropicScattering.h"
 #include "Numerics/Constants.h"
 #include "TyndallKernelSources.h"
@@ -31,9 +33,8 @@ Rgb EscapeCorrection::Apply()
 {
   const TransportParts& parts = this->Parts;
   const int channels = parts.Layout.channels;
-  cl::Kernel kernel =
-    parts.TheDevice.Kernel("let_escape", kernel_source::EscapeCorrection, Define("CHUNK", CollectChunk));
-  const std::size_t chunks = (parts.Layout.Stride() + CollectChunk - 1) / CollectChunk;
+  cl::Kernel kernel = parts.TheDevice.Kernel("let_escape", kernel_source::EscapeCorrection);
+  const std::size_t chunks = PartsOf<std::size_t>(parts.Layout.Stride(), CollectChunk);
   Buffer<float> tally(parts.TheDevice, chunks * channels, "sums");
   With(kernel, parts.Path, parts.Source, this->Extra, parts.OnDevice.SigmaT(), tally, cl_ulong(parts.Layout.Stride()),
     cl_int(parts.Layout.sharedExtinction));

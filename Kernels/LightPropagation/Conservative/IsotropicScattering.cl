@@ -1,8 +1,8 @@
 // What the sweeps gathered becomes light and the next order's source (Gruson et al., Eq. 4, conservative). The host
 // gives
-//   CHUNK     voxels a work-item sums up before the host adds the chunks in double
 //   SCATTERS  0: sigma_s is zero, and neither it nor `source` is there
 
+#include "LightPropagation/Conservative/CollectShared.h"
 #include "Numerics/Numerics.cl"
 
 // A work-item a chunk of a channel; a channel's arrays begin at a vector's border and are filled up with zeros to a
@@ -17,8 +17,8 @@ __kernel void collect(__global float* path, __global float* fluence, __global fl
   ulong last, int one_sigma_t, float per_volume)
 {
   const ulong channel = get_global_id(1);
-  const ulong begin = first + get_global_id(0) * CHUNK;
-  const ulong end = min(last, begin + CHUNK);
+  const ulong begin = first + get_global_id(0) * CollectChunk;
+  const ulong end = min(last, begin + CollectChunk);
   path += channel * stride;
   fluence += channel * stride;
   source += channel * stride;

@@ -1,6 +1,8 @@
 #include "LightPropagation/Conservative/IsotropicScattering.h"
 
 #include "Device/Defines.h"
+#include "Device/Sizes.h"
+#include "LightPropagation/Conservative/CollectShared.h"
 #include "TyndallKernelSources.h"
 
 namespace tyndall
@@ -17,8 +19,8 @@ IsotropicScattering::IsotropicScattering(
 cl::Kernel IsotropicScattering::Kernel(const char* name) const
 {
   const int vector = this->TheDevice.FloatVectorWidth() >= 8 ? 8 : 4;
-  return this->TheDevice.Kernel(name, kernel_source::IsotropicScattering,
-    Define("REAL_WIDTH", vector) + Define("SCATTERS", this->Scatters) + Define("CHUNK", CollectChunk));
+  return this->TheDevice.Kernel(
+    name, kernel_source::IsotropicScattering, Define("REAL_WIDTH", vector) + Define("SCATTERS", this->Scatters));
 }
 
 IsotropicScattering::Powers IsotropicScattering::Scatter(const Buffer<float>& path, const Buffer<float>& fluence,
@@ -26,7 +28,7 @@ IsotropicScattering::Powers IsotropicScattering::Scatter(const Buffer<float>& pa
 {
   cl::Kernel kernel = this->Kernel("collect");
   const auto [begin, end] = range;
-  const std::size_t chunks = (end - begin + CollectChunk - 1) / CollectChunk;
+  const std::size_t chunks = PartsOf<std::size_t>(end - begin, CollectChunk);
   const int channels = this->Layout.channels;
   Buffer<cl_float2> tally(this->TheDevice, chunks * channels, "sums");
   With(kernel, path, fluence, source, this->TheMedium.SigmaT(), this->TheMedium.SigmaS(), tally,

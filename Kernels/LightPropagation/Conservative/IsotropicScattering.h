@@ -8,9 +8,6 @@
 
 namespace tyndall
 {
-/// Voxels that a work-item sums up in float before the host adds the sums in double: the kernels' CHUNK.
-constexpr std::size_t CollectChunk = 4096;
-
 /// The scattering operator of isotropic scattering: from the path integrals that a sweep left to fluence and to the
 /// next source, sigma_s fluence / 4 pi (numerics.md, Eq. (42); Gruson et al. 2012, equation 4, conservative).
 class IsotropicScattering

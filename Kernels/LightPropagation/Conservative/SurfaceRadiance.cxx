@@ -41,8 +41,8 @@ struct Surface
 Beam BeamOf(const Light& lamp, const Grid& grid, const BoxFaceCell& cell, int channel)
 {
   const int axis = cell.face / 2;
-  const int u = axis == 0 ? 1 : 0;
-  const int v = axis == 2 ? 1 : 2;
+  const int u = AcrossAxis(axis).u;
+  const int v = AcrossAxis(axis).v;
   const double inwards = cell.face % 2 ? -1.0 : 1.0;
   const std::array<double, 3>& d = lamp.direction;
   const double length = std::hypot(d[0], d[1], d[2]);
@@ -148,7 +148,7 @@ double Brought(const Medium& medium, const std::array<bool, 3>& periodic, const 
     {
       continue;
     }
-    const BoxFaceCell there = { 0, face, at[axis == 0 ? 1 : 0], at[axis == 2 ? 1 : 2], cell.voxel, cell.voxel };
+    const BoxFaceCell there = { 0, face, at[AcrossAxis(axis).u], at[AcrossAxis(axis).v], cell.voxel, cell.voxel };
     for (const Light& lamp : lamps)
     {
       const Beam beam = BeamOf(lamp, grid, there, channel);

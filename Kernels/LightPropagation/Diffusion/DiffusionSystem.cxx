@@ -1,6 +1,7 @@
 #include "LightPropagation/Diffusion/DiffusionSystem.h"
 
 #include "Device/Defines.h"
+#include "Medium/BoxFaces.h"
 #include "Numerics/Constants.h"
 
 #include "TyndallKernelSources.h"
@@ -183,11 +184,7 @@ DiffusionSystem::DiffusionSystem(Device& device, const Grid& grid, const std::ar
   this->Given = ExactValues(device, this->Count, what);
   this->Solution = ExactValues(device, this->Count, what);
   this->Solution.Fill(0.0); // a dark channel is never solved for
-  const std::array<int, 3>& n = grid.size;
-  const std::size_t faces = 2 *
-    (static_cast<std::size_t>(n[0]) * n[1] + static_cast<std::size_t>(n[1]) * n[2] +
-      static_cast<std::size_t>(n[2]) * n[0]);
-  this->Borders = ExactValues(device, 4 * faces, what);
+  this->Borders = ExactValues(device, 4 * BoxFaceCellCount(grid), what);
 
   cl::Kernel flat_source = this->Kernel("diffusion_flat_source");
   With(flat_source, this->Layout, *arrays.sigma_t, this->FlatSource);

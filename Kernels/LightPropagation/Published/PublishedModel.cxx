@@ -2,6 +2,7 @@
 
 #include "Light/LeftOut.h"
 #include "LightPropagation/Convergence.h"
+#include "Numerics/Constants.h"
 #include "Numerics/Vectors.h"
 
 #include <glm/geometric.hpp>
@@ -17,7 +18,7 @@ namespace tyndall
 {
 namespace
 {
-constexpr double FourPi = 4.0 * glm::pi<double>();
+constexpr double FourPi = 4.0 * Pi;
 
 /// No problem that converges at all needs more; those that do not must end.
 constexpr int MostOrders = 10000;
@@ -174,7 +175,7 @@ std::vector<std::array<double, 3>> EvenDirections(int count)
     }
     return directions;
   }
-  const double goldenAngle = glm::pi<double>() * (3.0 - std::sqrt(5.0));
+  const double goldenAngle = Pi * (3.0 - std::sqrt(5.0));
   for (int i = 0; i < count; ++i)
   {
     const double z = 1.0 - (2.0 * i + 1.0) / count;
@@ -279,8 +280,8 @@ MapGeometry::MapGeometry(
   const Grid& grid, const PropagationSettings& settings, const Direction& direction, int index, int perFace)
 {
   this->axis = index / perFace / 2;
-  this->axisU = this->axis == 0 ? 1 : 0;
-  this->axisV = this->axis == 2 ? 1 : 2;
+  this->axisU = AcrossAxis(this->axis).u;
+  this->axisV = AcrossAxis(this->axis).v;
   this->planes = grid.size[this->axis];
   this->sizeU = grid.size[this->axisU];
   this->sizeV = grid.size[this->axisV];

@@ -38,8 +38,8 @@ double PublishedPlan::LargestRayMap() const
   double largest = 0.0;
   for (int axis = 0; axis < 3; ++axis)
   {
-    const double u = this->TheGrid.size[axis == 0 ? 1 : 0];
-    const double v = this->TheGrid.size[axis == 2 ? 1 : 2];
+    const double u = this->TheGrid.size[AcrossAxis(axis).u];
+    const double v = this->TheGrid.size[AcrossAxis(axis).v];
     largest = std::max(largest, (u + 3.0 * this->Volumes.Width) * (v + 2.0));
   }
   return largest;

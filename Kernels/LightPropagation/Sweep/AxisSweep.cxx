@@ -267,7 +267,7 @@ cl::Kernel AxisSweep::Implementation::SweepKernel(bool source, bool border, bool
     const auto has = [&](const BundleInfo& bundle) { return bundle.members == members; };
     if (std::any_of(plan.bundleRows.begin(), plan.bundleRows.end(), has))
     {
-      options += " -DMEMBERS_" + std::to_string(members);
+      options += Define(("MEMBERS_" + std::to_string(members)).c_str(), 1);
     }
   }
   return this->TheDevice.Kernel("sweep", kernel_source::Sweep, options);

@@ -1,14 +1,13 @@
 #include "LightPropagation/Uncollided/EmissionRays.h"
 
 #include "LightPropagation/Uncollided/EmissionRaysShared.h"
+#include "Numerics/Constants.h"
 
 #include "TyndallKernelSources.h"
 
 #include "Device/Batches.h"
 #include "Device/Defines.h"
 #include "LightPropagation/PropagationSettings.h"
-
-#include <glm/gtc/constants.hpp>
 
 #include <array>
 #include <cstdint>
@@ -108,7 +107,7 @@ private:
     const std::vector<float> emission(begin, begin + this->Volume.channels * voxels);
     for (std::size_t i = 0; i < emission.size(); ++i)
     {
-      this->Emitted[i / voxels] += 4.0 * glm::pi<double>() * emission[i] * grid.VoxelVolume();
+      this->Emitted[i / voxels] += 4.0 * Pi * emission[i] * grid.VoxelVolume();
     }
     this->Emission = Buffer<float>(this->TheDevice, emission, "what shines");
     this->Points = Buffer<float>(this->TheDevice, LatticePoints(), "rays");

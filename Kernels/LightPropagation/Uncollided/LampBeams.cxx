@@ -3,6 +3,7 @@
 #include "Device/Defines.h"
 #include "LightPropagation/Uncollided/BeamMomentsShared.h"
 #include "LightPropagation/Uncollided/LampBeamsShared.h"
+#include "Numerics/Constants.h"
 
 #include "LightPropagation/Sweep/AxisSweep.h"
 #include "LightPropagation/Sweep/SweepOperator.h"
@@ -10,7 +11,6 @@
 #include "TyndallKernelSources.h"
 
 #include <glm/geometric.hpp>
-#include <glm/gtc/constants.hpp>
 #include <glm/vec3.hpp>
 
 #include <algorithm>
@@ -101,11 +101,11 @@ std::array<double, 2> Tangents(const Grid& grid, const glm::dvec3& position, int
 /// length of that in the plane of the two axes. The first is larger than the second where the cone is not seen there.
 std::array<double, 2> TangentsOfCone(const Grid& grid, int axis, bool up, int aside, const Light& light)
 {
-  constexpr double rightAngle = 0.5 * glm::pi<double>();
+  constexpr double rightAngle = 0.5 * Pi;
   constexpr double margin = 1e-6; // rounding must not cut the cone
   const glm::dvec3 middle = glm::normalize(Vector(light.direction));
   const double forward = up ? middle[axis] : -middle[axis];
-  const double half = 0.5 * light.angle * glm::pi<double>() / 180.0;
+  const double half = 0.5 * light.angle * Pi / 180.0;
   const double inPlane = std::hypot(forward, middle[aside]);
   if (half >= rightAngle || std::sin(half) >= inPlane)
   {
@@ -203,12 +203,11 @@ std::vector<glm::dvec3> Points(const Light& light)
 /// W per steradian of a light of 1 W, along its axis.
 double Intensity(const Light& light)
 {
-  const double pi = glm::pi<double>();
   switch (light.type)
   {
-    case LightType::Spot: return 1.0 / (2.0 * pi * (1.0 - std::cos(0.5 * light.angle * pi / 180.0)));
-    case LightType::Rectangle: return 1.0 / pi;
-    default: return 1.0 / (4.0 * pi);
+    case LightType::Spot: return 1.0 / (2.0 * Pi * (1.0 - std::cos(0.5 * light.angle * Pi / 180.0)));
+    case LightType::Rectangle: return 1.0 / Pi;
+    default: return 1.0 / (4.0 * Pi);
   }
 }
 
@@ -293,7 +292,7 @@ private:
       info.direction[a] = static_cast<float>(direction[a]);
     }
     info.intensity = static_cast<float>(Intensity(this->TheLight) * part);
-    info.cosine = static_cast<float>(std::cos(0.5 * this->TheLight.angle * glm::pi<double>() / 180.0));
+    info.cosine = static_cast<float>(std::cos(0.5 * this->TheLight.angle * Pi / 180.0));
     info.scale = static_cast<float>(this->Scale());
     info.diagonal = static_cast<float>(this->Diagonal());
     info.rounds = RoundsAtMost;

@@ -1,7 +1,8 @@
 #include "Photons/Emission/PhotonPlane.h"
 
+#include "Numerics/Constants.h"
+
 #include <glm/geometric.hpp>
-#include <glm/gtc/constants.hpp>
 
 #include <algorithm>
 #include <cmath>
@@ -190,11 +191,10 @@ SphericalRectangle::SphericalRectangle(
   const auto angle = [](const glm::dvec3& a, const glm::dvec3& b) {
     return std::acos(std::min(std::max(-glm::dot(a, b), -1.0), 1.0));
   };
-  const double pi = glm::pi<double>();
   const double g0 = angle(n0, n1), g1 = angle(n1, n2), g2 = angle(n2, n3), g3 = angle(n3, n0);
   this->B0 = n0.z;
   this->B1 = n2.z;
-  this->K = 2.0 * pi - g2 - g3;
+  this->K = 2.0 * Pi - g2 - g3;
   this->Angle = g0 + g1 - this->K;
   if (this->Angle < 1e-6) // a small difference of large angles
   {
@@ -277,7 +277,7 @@ LampView::LampView(const Grid& grid, const glm::dvec3& lamp)
 double LampView::SolidAngle() const
 {
   const auto faces = std::count_if(this->Inwards.begin(), this->Inwards.end(), [](int side) { return side != 0; });
-  return this->Faces ? this->Faces->SolidAngle() : std::ldexp(4.0 * glm::pi<double>(), -static_cast<int>(faces));
+  return this->Faces ? this->Faces->SolidAngle() : std::ldexp(4.0 * Pi, -static_cast<int>(faces));
 }
 
 glm::dvec3 LampView::Direction(double u, double v) const
@@ -291,12 +291,11 @@ glm::dvec3 LampView::Direction(double u, double v) const
   std::stable_partition(axes.begin(), axes.end(), [this](int axis) { return this->Inwards[axis] != 0; });
   const auto& [pole, first, second] = axes;
   const auto side = [this](int axis) { return this->Inwards[axis] < 0 ? -1.0 : 1.0; };
-  const double pi = glm::pi<double>();
   const double cosine = this->Inwards[pole] != 0 ? 1.0 - u : 1.0 - 2.0 * u;
   const double sine = std::sqrt(std::max(1.0 - cosine * cosine, 0.0));
-  const double turn = this->Inwards[second] != 0 ? 0.5 * pi * v
-    : this->Inwards[first] != 0                  ? pi * (v - 0.5)
-                                                 : 2.0 * pi * v;
+  const double turn = this->Inwards[second] != 0 ? 0.5 * Pi * v
+    : this->Inwards[first] != 0                  ? Pi * (v - 0.5)
+                                                 : 2.0 * Pi * v;
   glm::dvec3 direction;
   direction[pole] = side(pole) * cosine;
   direction[first] = side(first) * sine * std::cos(turn);

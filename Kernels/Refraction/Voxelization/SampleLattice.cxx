@@ -124,8 +124,8 @@ bool SampleLattice::Closes(const TriangleMesh& mesh) const
 
 SampleColumns::SampleColumns(const Grid& grid, int axis, int samplesOfVoxel, int unitsOfSample)
   : axis(axis)
-  , across(axis == 0 ? 1 : 0)
-  , up(axis == 2 ? 1 : 2)
+  , across(AcrossAxis(axis).u)
+  , up(AcrossAxis(axis).v)
   , samplesOfVoxel(samplesOfVoxel)
   , samples(grid.size[axis] * samplesOfVoxel)
   , count{ grid.size[this->across] * samplesOfVoxel, grid.size[this->up] * samplesOfVoxel }

@@ -1,0 +1,16 @@
+// Shared by C++ and the kernels that sum up over voxels.
+#pragma once
+
+#include "Device/SharedTypes.h"
+
+#ifndef __OPENCL_C_VERSION__
+namespace tyndall
+{
+#endif
+enum
+{
+  CollectChunk = 4096 ///< voxels that a work-item sums up in float before the host adds the sums in double
+};
+#ifndef __OPENCL_C_VERSION__
+}
+#endif
