@@ -26,8 +26,8 @@ inline void add_material(float part, const MaterialInfo* material, ulong i, ulon
 //   inside    samples of a voxel in the material, in parts of a sample: 0 to `samples`
 //   covered   samples in any material so far
 //   ior       of the whole grid; the other arrays are the slab's
-__kernel void add_object(MaterialSlab slab, MaterialInfo material, __global const ushort* inside,
-  __global float* covered, __global float* ior, __global float* sigma_a, __global float* sigma_s)
+__kernel void add_object(MaterialSlab slab, MaterialInfo given, __global const ushort* inside, __global float* covered,
+  __global float* ior, __global float* sigma_a, __global float* sigma_s)
 {
   if (get_global_id(0) >= slab.length)
   {
@@ -36,6 +36,7 @@ __kernel void add_object(MaterialSlab slab, MaterialInfo material, __global cons
   const ulong i = get_global_id(1) * slab.length + get_global_id(0);
   const ulong voxel = slab.first + get_global_id(1) * slab.stride + get_global_id(0);
   const float number = inside[i];
+  MaterialInfo material = given; // PoCL 3.1 lets the work-items of a group share a struct argument: do not write to it
 #if NOISE
   if (number > 0.0f)
   {
