@@ -93,9 +93,10 @@ TEST(MemoryCountInThreads, GivesNoByteToTwo)
   MemoryCount count(limit);
   std::vector<int> taken(Threads);
   InThreads([&](int t) {
-    for (int i = 0; i < 1000000; ++i)
+    // Others may hold all there is while they sleep: then this one goes on until they wake.
+    for (std::size_t i = 0; i < 1000000 || taken[t] == 0; ++i)
     {
-      const std::size_t bytes = 100 + static_cast<std::size_t>(37 * i + 11 * t) % 400;
+      const std::size_t bytes = 100 + (37 * i + 11 * static_cast<std::size_t>(t)) % 400;
       if (count.Take(bytes))
       {
         ++taken[t];
