@@ -70,10 +70,10 @@ public:
 
   enum Schemes
   {
-    PUBLISHED =
-      0, ///< explicit Euler, power a rasterised voxel, 64 bits a voxel by compare-and-swap, smoothed at the end
-    CONSERVATIVE =
-      1 ///< symplectic integrator, power times path, fixed point sums that lose nothing and repeat bit for bit
+    /// Explicit Euler, power a rasterised voxel, 64 bits a voxel by compare-and-swap, smoothed at the end.
+    PUBLISHED = 0,
+    /// Symplectic integrator, power times path, fixed point sums that lose nothing and repeat bit for bit.
+    CONSERVATIVE = 1
   };
 
   ///@{

@@ -18,13 +18,13 @@ struct ComparisonRow
   Grid grid;
   double seconds = Unknown;   ///< median, from arrays in memory to light in memory
   double peakBytes = Unknown; ///< most bytes of buffers on the device
-  double errorL2 =
-    Unknown; ///< root of the sum over voxels and channels of squared differences, over that of the reference
+  /// Root of the sum over voxels and channels of squared differences, over that of the reference.
+  double errorL2 = Unknown;
   double errorMax = Unknown; ///< largest difference of a voxel's channel, over the largest of the reference
-  double errorRelative =
-    Unknown;                ///< root of the mean square of voxels' own relative errors, where the reference is above 0
-  double balance = Unknown; ///< relative error of the energy balance
-  int iterations = 0;       ///< sweeps or orders; 1 for photons
+  /// Root of the mean square of voxels' own relative errors, where the reference is above 0.
+  double errorRelative = Unknown;
+  double balance = Unknown;        ///< relative error of the energy balance
+  int iterations = 0;              ///< sweeps or orders; 1 for photons
   double estimatedError = Unknown; ///< of errorL2 by the solver itself; not known after one order (ErrorEstimate.h)
   std::array<double, 6> facePowerOut = {}; ///< W, all channels, through -x, +x, -y, +y, -z, +z
   double powerIn = 0.0;                    ///< W, entered and emitted, all channels

@@ -25,12 +25,6 @@ const char* NameOf(Sampler sampler)
   }
 }
 
-/// Progress of a part of the work.
-Monitor Part(const Monitor& monitor, double from, double to)
-{
-  return [&monitor, from, to](double done) { return !monitor || monitor(from + (to - from) * done); };
-}
-
 double RootOfSquares(const std::vector<float>& values)
 {
   double sum = 0.0;
@@ -70,9 +64,9 @@ LightField Trace(
   const Grid& grid = scene.medium.grid;
   if (method == ComparedMethod::PublishedPhotons)
   {
-    const EmittedPhotons emitted = EmitPhotons(grid, scene.illumination, emission, Part(monitor, 0.0, 0.3));
+    const EmittedPhotons emitted = EmitPhotons(grid, scene.illumination, emission, OfPart(monitor, 0.0, 0.3));
     return MarchPublished(
-      device, scene.medium, scene.ior, scene.levels, emitted.photons, {}, nullptr, Part(monitor, 0.3, 1.0))
+      device, scene.medium, scene.ior, scene.levels, emitted.photons, {}, nullptr, OfPart(monitor, 0.3, 1.0))
       .light;
   }
   MarchSettings marching;
@@ -83,14 +77,14 @@ LightField Trace(
   {
     ImportanceSettings settings;
     settings.pilotCount = std::min(settings.pilotCount, std::max<std::size_t>(emission.photonCount / 10, 1));
-    importance = FindImportance(marcher, grid, scene.illumination, settings, Part(monitor, 0.0, 0.1));
+    importance = FindImportance(marcher, grid, scene.illumination, settings, OfPart(monitor, 0.0, 0.1));
     const std::size_t pilots = importance.map.Cells() * importance.map.lights.size();
     emission.photonCount -= std::min(emission.photonCount - 1, pilots); // they count as photons, too
     emission.map = importance.even ? nullptr : &importance.map;
   }
   emission.batches = 2;
-  const EmittedPhotons emitted = EmitPhotons(grid, scene.illumination, emission, Part(monitor, 0.1, 0.3));
-  return Rebuilt(device, grid, marcher.March(emitted.photons, Part(monitor, 0.3, 0.9)), Part(monitor, 0.9, 1.0));
+  const EmittedPhotons emitted = EmitPhotons(grid, scene.illumination, emission, OfPart(monitor, 0.1, 0.3));
+  return Rebuilt(device, grid, marcher.March(emitted.photons, OfPart(monitor, 0.3, 0.9)), OfPart(monitor, 0.9, 1.0));
 }
 }
 
@@ -132,7 +126,8 @@ LightField MarchEvenly(
   emission.photonCount = photons;
   emission.seed = seed;
   PhotonMarcher marcher(device, scene.medium, scene.ior, {}, scene.levels);
-  const EmittedPhotons emitted = EmitPhotons(scene.medium.grid, scene.illumination, emission, Part(monitor, 0.0, 0.3));
-  return marcher.March(emitted.photons, Part(monitor, 0.3, 1.0)).light;
+  const EmittedPhotons emitted =
+    EmitPhotons(scene.medium.grid, scene.illumination, emission, OfPart(monitor, 0.0, 0.3));
+  return marcher.March(emitted.photons, OfPart(monitor, 0.3, 1.0)).light;
 }
 }

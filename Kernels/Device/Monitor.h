@@ -18,6 +18,12 @@ Monitor OfPart(const Monitor& monitor, Whole whole)
   return monitor ? Monitor([&monitor, whole](double done) { return monitor(whole(done)); }) : Monitor();
 }
 
+/// The same of a part that goes from one fraction of all to another.
+inline Monitor OfPart(const Monitor& monitor, double from, double to)
+{
+  return OfPart(monitor, [from, to](double done) { return from + (to - from) * done; });
+}
+
 /// Report progress and leave by Aborted where the caller wants to stop. An empty monitor never stops.
 inline void Report(const Monitor& monitor, double fractionDone)
 {

@@ -1,9 +1,18 @@
 // What C++ and OpenCL C share, a struct or a constant, is written once, in a header that both compile: its name ends in
 // Shared.h and it includes this one. Members are int, float, uint, ulong, int2, int4 and float4, which have the same
-// size and alignment on both sides; constants are enumerators.
+// size and alignment on both sides; constants are enumerators. All stands between SHARED_BEGIN and SHARED_END, which put
+// it into C++'s namespace.
 #pragma once
 
-#ifndef __OPENCL_C_VERSION__
+#ifdef __OPENCL_C_VERSION__
+#define SHARED_BEGIN
+#define SHARED_END
+#else
+#define SHARED_BEGIN \
+  namespace tyndall  \
+  {
+#define SHARED_END }
+
 #include <Device/OpenCL.h> // in these brackets: EmbedKernels.cmake leaves it where it is
 
 namespace tyndall

@@ -51,12 +51,12 @@ struct LightField
   /// W / (length^2 sr) that leaves through the box's faces, [cell][SurfaceCosines][channel] (BoxFaces.h); empty where
   /// no voxel there is thick, or it is not known
   std::vector<float> surfaceRadiance;
-  double relativeError =
-    0.0; ///< of fluence, estimated, root mean square over that of fluence; 0 where not asked for, NaN: not known
+  /// Of fluence, estimated, root mean square over that of fluence; 0 where not asked for, NaN: not known.
+  double relativeError = 0.0;
   EnergyBalance balance;
   std::array<Rgb, 6> facePowerOut = {}; ///< W, through -x, +x, -y, +y, -z, +z
-  double halfRangeFlux =
-    0.0; ///< of the directions that light from outside came along (DirectionSet.h); 0: there are none
+  /// Of the directions that light from outside came along (DirectionSet.h); 0: there are none.
+  double halfRangeFlux = 0.0;
   std::vector<ConvergenceRow> convergence;
   bool converged = true; ///< the last residual is at most the tolerance, or as many orders were done as were asked for
   std::vector<std::string> doubts;  ///< what may be wrong with the light, a sentence each, for a warning

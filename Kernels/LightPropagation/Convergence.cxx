@@ -3,6 +3,7 @@
 #include "Numerics/NumberText.h"
 
 #include <algorithm>
+#include <cmath>
 
 namespace tyndall
 {
@@ -20,13 +21,25 @@ double LeftOver(const EnergyBalance& balance)
 
 bool MeetsTolerance(const PropagationSettings& settings, double residual)
 {
-  return settings.maximumOrders > 0 || residual <= settings.tolerance;
+  return settings.maximumOrders == 0 && residual <= settings.tolerance;
+}
+
+double ProgressOf(const PropagationSettings& settings, double residual, double iterations)
+{
+  if (settings.maximumOrders > 0)
+  {
+    return iterations / settings.maximumOrders;
+  }
+  const double creeping = 1.0 - 1.0 / (1.0 + 0.05 * iterations);
+  const double tolerance = std::clamp(settings.tolerance, 1e-12, 0.9);
+  const double way = std::log(std::clamp(residual, tolerance, 1.0)) / std::log(tolerance);
+  return std::min(std::max(creeping, way), 0.99);
 }
 
 void JudgeConvergence(const PropagationSettings& settings, LightField& light)
 {
   const double residual = light.convergence.empty() ? 0.0 : light.convergence.back().residual;
-  light.converged = MeetsTolerance(settings, residual);
+  light.converged = settings.maximumOrders > 0 || MeetsTolerance(settings, residual);
   if (!light.converged)
   {
     light.doubts.push_back("The light has not converged: after " + std::to_string(light.convergence.size()) +

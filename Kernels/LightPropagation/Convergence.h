@@ -5,9 +5,15 @@
 
 namespace tyndall
 {
-/// Whether an estimated relative error (ConvergenceRow::residual) is as small as was asked for. Where a number of
-/// orders was asked for, none is too large.
+/// Whether an estimated relative error (ConvergenceRow::residual) is as small as was asked for; not where a number of
+/// orders was asked for instead.
 bool MeetsTolerance(const PropagationSettings& settings, double residual);
+
+/// Of a solve, [0, 1]: orders of those asked for, else how far the logarithm of the residual has come, and a little more
+/// with each iteration.
+/// @param residual  of the last iteration, 1 before there is one
+/// @param iterations  done, with the part of the one under way
+double ProgressOf(const PropagationSettings& settings, double residual, double iterations);
 
 /// Sets `converged` of solved light, and adds to its `doubts` where it is not, or where power is left over.
 void JudgeConvergence(const PropagationSettings& settings, LightField& light);

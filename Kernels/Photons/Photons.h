@@ -14,8 +14,8 @@ struct Photon
   std::array<double, 3> position = {}; ///< where it enters the volume, or where its lamp in the volume is
   std::array<float, 3> direction = { 0.0f, 0.0f, 1.0f }; ///< in which it travels, unit length
   std::array<float, 3> power = {};                       ///< RGB, W
-  float weight =
-    1.0f; ///< its power over what it had if its light's photons were spread evenly: large where they are sparse
+  /// Its power over what it had if its light's photons were spread evenly: large where they are sparse.
+  float weight = 1.0f;
   std::int32_t batch = 0; ///< which of the independent sets it belongs to, from 0; each set is a part of all the power
 };
 
@@ -25,8 +25,8 @@ struct MarchSettings
   /// Order of the integrator: 2, the leapfrog; 4, Yoshida's three leapfrogs, which pays where n^2 is smooth over
   /// several voxels; 1, explicit Euler, to compare with.
   int order = 2;
-  double stepSize =
-    1.0; ///< voxels, of a step where the index varies and the octree (if any) has single voxels; 0.05 to 1e4
+  /// Voxels, of a step where the index varies and the octree (if any) has single voxels; 0.05 to 1e4.
+  double stepSize = 1.0;
   bool meanDirection = true;
   /// Also photonCount and photonWeight, of up to 16777215 photons: one more number a voxel, in the same pass.
   bool counts = false;
@@ -34,8 +34,8 @@ struct MarchSettings
   /// by whole copies: batches that are as large as each other, and as many as compute units or a multiple, keep all of
   /// them busy.
   bool batches = false;
-  bool leaveOut =
-    true; ///< what the scene does not need; false: three channels and the integrator, to see what it saves
+  /// What the scene does not need; false: three channels and the integrator, to see what it saves.
+  bool leaveOut = true;
 
   /// How the sums of many work-items stay whole. All of them give the same light, bit for bit.
   enum class Sums

@@ -3,16 +3,11 @@
 
 #include "Device/SharedTypes.h"
 
-#ifndef __OPENCL_C_VERSION__
-namespace tyndall
-{
-#endif
+SHARED_BEGIN
 /// Where the levels lie.
 typedef struct
 {
   int4 size[9]; ///< as in LightRows.cl
   ulong offset[9];
 } PyramidLevels;
-#ifndef __OPENCL_C_VERSION__
-}
-#endif
+SHARED_END

@@ -19,8 +19,8 @@ struct NoisyLight
   const float* photonCount = nullptr;   ///< photons in each voxel; for the published and the nearest estimator
   const float* photonWeight = nullptr;  ///< their mean weight; for the published one
   int batches = 1;
-  const float* batchFluence =
-    nullptr; ///< [batch][voxel][channel]; for the conservative estimator, 2 to 16 whose mean is fluence
+  /// [batch][voxel][channel]; for the conservative estimator, 2 to 16 whose mean is fluence.
+  const float* batchFluence = nullptr;
 };
 
 struct ReconstructionSettings
@@ -34,9 +34,9 @@ struct ReconstructionSettings
   };
   Estimator estimator = Estimator::Conservative;
   int levels = 5; ///< of the pyramid above the grid, at most; 1 to 8, and no more than the grid has
-  double weightStep =
-    0.0;         ///< published: weight of photons from a level to the next; 0: the mean weight of lit voxels, less 1e-3
-  int level = 1; ///< constant radius: which
+  /// Published: weight of photons from a level to the next; 0: the mean weight of lit voxels, less 1e-3.
+  double weightStep = 0.0;
+  int level = 1;        ///< constant radius: which
   int nearest = 20;     ///< nearest photons: how many, at least 1
   bool conserve = true; ///< scale the light such that the volume's total is what it was
 };
@@ -45,8 +45,8 @@ struct ReconstructedLight
 {
   std::vector<float> fluence;       ///< as many channels as there were, >= 0
   std::vector<float> meanDirection; ///< 3 a voxel, at most 1 long; empty where there was none
-  std::vector<float>
-    mipLevel; ///< a voxel: level of the pyramid that the light was taken from; between two where blended
+  /// A voxel: level of the pyramid that the light was taken from; between two where blended.
+  std::vector<float> mipLevel;
   std::vector<float> fluenceError; ///< standard error, `channels` a voxel, W / length^2; conservative only, else empty
   double bias = 0.0; ///< total of the light, all channels, over what it was, less 1: before it was conserved, if it was
   std::vector<std::string> leftOut;

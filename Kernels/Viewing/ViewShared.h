@@ -3,10 +3,7 @@
 
 #include "Device/SharedTypes.h"
 
-#ifndef __OPENCL_C_VERSION__
-namespace tyndall
-{
-#endif
+SHARED_BEGIN
 enum
 {
   BrickEdge = 8 ///< voxels an edge of a brick
@@ -61,6 +58,4 @@ typedef struct
   int lights;
   int firstSlice, firstRow; ///< of the launch
 } ShadowInfo;
-#ifndef __OPENCL_C_VERSION__
-}
-#endif
+SHARED_END

@@ -21,8 +21,7 @@ def printed(filter_):
         name, colon, text = line.strip().partition(":")
         words = re.sub(r"[(),]", " ", text).split()
         try:
-            lines[name] = [{"on": 1.0, "off": 0.0}.get(word.lower(), None) if word.isalpha() and word.lower() in
-                           ("on", "off") else float(word) for word in words]
+            lines[name] = [float(word) for word in words]
         except ValueError:
             pass
     return lines

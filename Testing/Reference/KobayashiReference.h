@@ -10,9 +10,9 @@ struct KobayashiReference
 {
   std::array<double, 3> point;
   double absorber; ///< no scattering: quadrature over the source's faces (equals the published analytic values to 3e-6)
-  double mean10,
-    mean3; ///< of it over a voxel of 10 cm and of 10/3 cm around the point: by the same quadrature, to 2e-4
-           ///< (in the source, 5 5 5: along rays over solid angle)
+  /// Of it over a voxel of 10 cm and of 10/3 cm around the point: by the same quadrature, to 2e-4 (in the source,
+  /// 5 5 5: along rays over solid angle).
+  double mean10, mean3;
   double half, halfError; ///< half of the extinction scatters: the project's own Monte Carlo, its standard error
   double published, publishedError; ///< the same, published (GMVP), relative standard error
 

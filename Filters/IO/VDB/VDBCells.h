@@ -25,9 +25,9 @@ void AddGridCells(const openvdb::GridBase& grid, const std::string& type, const 
 struct VoxelOptions
 {
   double Background = 0.0; ///< where field data `background` of the array does not say another
-  double Tolerance =
-    0.0;             ///< of each number: cells so near to the background, or to each other in a block, are equal to it
-  bool Half = false; ///< store real numbers in 16 bits; an error where they do not fit
+  /// Of each number: cells so near to the background, or to each other in a block, are equal to it.
+  double Tolerance = 0.0;
+  bool Half = false;                                  ///< store real numbers in 16 bits; an error where they do not fit
   const std::vector<unsigned char>* Hidden = nullptr; ///< a flag for each cell: it is background, whatever it holds
 };
 

@@ -3,14 +3,9 @@
 
 #include "Device/SharedTypes.h"
 
-#ifndef __OPENCL_C_VERSION__
-namespace tyndall
-{
-#endif
+SHARED_BEGIN
 enum
 {
   CollectChunk = 4096 ///< voxels that a work-item sums up in float before the host adds the sums in double
 };
-#ifndef __OPENCL_C_VERSION__
-}
-#endif
+SHARED_END

@@ -351,7 +351,7 @@ bool DiffusionAcceleration::Done(int iterations) const
 {
   const int most = this->Settings.maximumOrders > 0 ? this->Settings.maximumOrders : MostSweeps;
   return iterations >= most || this->Residual == 0.0 ||
-    (this->Settings.maximumOrders == 0 && iterations > 2 && MeetsTolerance(this->Settings, this->Residual));
+    (iterations > 2 && MeetsTolerance(this->Settings, this->Residual));
 }
 
 /// Where the system's solution is negative, the fluence of the last sweep stands.

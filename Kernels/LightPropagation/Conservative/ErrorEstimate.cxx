@@ -124,10 +124,7 @@ void WriteError(LightField& light, const std::vector<double>& variance, const Co
 LightField SolveWithErrorEstimate(
   const Medium& medium, const PropagationSettings& settings, const Monitor& monitor, const PropagationSolver& solve)
 {
-  const auto part = [&](double begin, double end) {
-    return monitor ? Monitor([=](double done) { return monitor(begin + done * (end - begin)); }) : Monitor();
-  };
-  LightField light = solve(medium, settings, part(0.0, FinePart));
+  LightField light = solve(medium, settings, OfPart(monitor, 0.0, FinePart));
   if (IsStoppedTooSoonToTell(light))
   {
     light.relativeError = std::numeric_limits<double>::quiet_NaN();
@@ -142,13 +139,13 @@ LightField SolveWithErrorEstimate(
   const int directions = light.directionsPerFace > 0 ? light.directionsPerFace : settings.directionsPerFace;
   plain.directionsPerFace = directions;
   plain.adaptDirections = false;
-  const std::vector<float> many = solve(coarse.Get(), plain, part(FinePart, 0.95)).fluence;
+  const std::vector<float> many = solve(coarse.Get(), plain, OfPart(monitor, FinePart, 0.95)).fluence;
   plain.directionsPerFace = OtherDirections(directions);
   if (settings.uncollidedDirections > 0)
   {
     plain.uncollidedDirections = OtherDirections(settings.uncollidedDirections);
   }
-  const std::vector<float> few = solve(coarse.Get(), plain, part(0.95, 1.0)).fluence;
+  const std::vector<float> few = solve(coarse.Get(), plain, OfPart(monitor, 0.95, 1.0)).fluence;
 
   const double ratio = coarsening.Ratio();
   const double inSpace = ratio > 1.0 ? 1.0 / (ratio * ratio - 1.0) : 0.0;

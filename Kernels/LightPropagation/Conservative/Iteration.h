@@ -4,7 +4,6 @@
 #include "Light/LightField.h"
 #include "LightPropagation/Conservative/ConvergenceRecord.h"
 #include "LightPropagation/Conservative/EnergyLedger.h"
-#include "LightPropagation/PropagationSettings.h"
 
 #include <string>
 #include <vector>
@@ -29,8 +28,4 @@ public:
   /// @throws Aborted when the monitor says so
   virtual IterationResult Run(const Monitor& monitor) = 0;
 };
-
-/// How far a solve is, 0 to 1: by iterations where their number is known, else by the logarithm of the residual.
-/// @param iterations  done, the one that is under way in part
-double ProgressOf(const PropagationSettings& settings, double residual, double iterations);
 }

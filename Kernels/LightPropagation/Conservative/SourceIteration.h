@@ -37,10 +37,10 @@ private:
   const PropagationSettings& Settings;
   IsotropicScattering Scattering;
   std::unique_ptr<SweepOperator> Whole;
-  std::unique_ptr<SweepOperator>
-    Lit; ///< of the first order, where much of the outside is dark and the medium too; else null
-  std::unique_ptr<SweepOperator>
-    Filled; ///< of the orders after it, where the medium leaves much of the volume empty; else null
+  /// Of the first order, where much of the outside is dark and the medium too; else null.
+  std::unique_ptr<SweepOperator> Lit;
+  /// Of the orders after it, where the medium leaves much of the volume empty; else null.
+  std::unique_ptr<SweepOperator> Filled;
   std::optional<EscapeCorrection> Escaping;
   double LitPart = 1.0; ///< of all rays, in the first order
 

@@ -46,10 +46,8 @@ public:
   Buffer<float> Source, Path, Flux, Fluence;
   SweepWorkspace Workspace;
 
-  bool HasSource() const
-  {
-    return this->MediumShines;
-  } ///< sweeps read Source from the first on: it shines, or nothing is left out
+  /// Sweeps read Source from the first on: it shines, or nothing is left out.
+  bool HasSource() const { return this->MediumShines; }
   /// What sweeps along the usual directions carry of the light from outside; empty: nothing.
   SweepBoundary BoundaryOfSweeps() const;
   bool SweepsAreLit() const { return this->UsualBoundary->Shines() && (this->Accelerated || !this->FineBoundary); }

@@ -3,10 +3,7 @@
 
 #include "Device/SharedTypes.h"
 
-#ifndef __OPENCL_C_VERSION__
-namespace tyndall
-{
-#endif
+SHARED_BEGIN
 enum
 {
   DiffusionChunk = 4096, ///< values that a work-item sums up before the host adds the chunks in double
@@ -34,6 +31,4 @@ typedef struct
   int size[3];
   int halved[3]; ///< to the next coarser level
 } MultigridLevel;
-#ifndef __OPENCL_C_VERSION__
-}
-#endif
+SHARED_END

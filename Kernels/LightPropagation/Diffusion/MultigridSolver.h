@@ -20,10 +20,8 @@ public:
   /// @param spacing  of voxels: an axis along which they are far shorter is coarsened first
   MultigridSolver(Device& device, const std::array<int, 3>& size, const std::array<double, 3>& spacing);
 
-  Buffer<float>& Conductance()
-  {
-    return this->Levels.front().conductance;
-  } ///< [axis][voxel] of low faces, 0 at the box's end
+  /// [axis][voxel] of low faces, 0 at the box's end.
+  Buffer<float>& Conductance() { return this->Levels.front().conductance; }
   Buffer<float>& Loss() { return this->Levels.front().loss; }
   /// After the two were written.
   void Coarsen();

@@ -439,15 +439,8 @@ double OrderLedger::EstimateResidual(const Rgb& orderSum) const
 
 double OrderLedger::Progress(double fractionOfOrder) const
 {
-  if (this->Settings.maximumOrders > 0)
-  {
-    return (this->Orders() + fractionOfOrder) / this->Settings.maximumOrders;
-  }
-  // How far the logarithm of the residual has come, and a little more with each order.
-  const double creeping = 1.0 - 1.0 / (1.0 + 0.05 * (this->Orders() + fractionOfOrder));
-  const double tolerance = std::clamp(this->Settings.tolerance, 1e-12, 0.9);
-  const double residual = this->Rows.empty() ? 1.0 : std::clamp(this->Rows.back().residual, tolerance, 1.0);
-  return std::min(std::max(creeping, std::log(residual) / std::log(tolerance)), 0.99);
+  const double residual = this->Rows.empty() ? 1.0 : this->Rows.back().residual;
+  return ProgressOf(this->Settings, residual, this->Orders() + fractionOfOrder);
 }
 
 void OrderLedger::WriteTo(LightField& field) const

@@ -3,10 +3,7 @@
 
 #include "Device/SharedTypes.h"
 
-#ifndef __OPENCL_C_VERSION__
-namespace tyndall
-{
-#endif
+SHARED_BEGIN
 /// The volumes: layout 0 is [z][y][x]; layout 1, for maps that march along x, is [x][z][y].
 typedef struct
 {
@@ -43,6 +40,4 @@ typedef struct
   int source;   ///< which U
   float length; ///< in the voxel
 } PublishedCrossing;
-#ifndef __OPENCL_C_VERSION__
-}
-#endif
+SHARED_END

@@ -16,8 +16,8 @@ public:
   /// @param boundary  not empty
   SweepBorder(const SweepPlan& plan, const SweepBoundary& boundary);
 
-  std::vector<float>
-    maps; ///< power that rays start with; in the columns beside, that of those that come in through u's faces
+  /// Power that rays start with; in the columns beside, that of those that come in through u's faces.
+  std::vector<float> maps;
   std::vector<float> outside;      ///< of those that come in through v's faces: [bundle][member][channel][row]
   std::vector<float> radiance;     ///< of those that come in through u's faces: [bundle][member][channel]
   std::array<Rgb, 6> powerIn = {}; ///< W by face

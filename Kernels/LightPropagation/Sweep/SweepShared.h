@@ -3,10 +3,7 @@
 
 #include "Device/SharedTypes.h"
 
-#ifndef __OPENCL_C_VERSION__
-namespace tyndall
-{
-#endif
+SHARED_BEGIN
 enum
 {
   MaxMembers = 8,     ///< of a bundle
@@ -68,10 +65,11 @@ typedef struct
 /// A launch of the kernel `sweep`.
 typedef struct
 {
-  ulong sigmaFirst;    ///< where the channel begins in sigma
-  ulong first, stride; ///< where it begins in the other volumes (flux: three times, currents: six times that), and the
-                       ///< way from one channel to the next
-  ulong mapsEachWay;   ///< floats of the maps of one way along the axis
+  ulong sigmaFirst; ///< where the channel begins in sigma
+  /// Where it begins in the other volumes (flux: three times, currents: six times that), and the way from one channel
+  /// to the next.
+  ulong first, stride;
+  ulong mapsEachWay; ///< floats of the maps of one way along the axis
   uint outsideEachWay, radianceEachWay;
   int empty; ///< 1: the maps hold nothing yet, and are cleared where rays start
   int bundles;
@@ -80,6 +78,4 @@ typedef struct
   int axis;
   PlaneInfo planes;
 } SweepInfo;
-#ifndef __OPENCL_C_VERSION__
-}
-#endif
+SHARED_END

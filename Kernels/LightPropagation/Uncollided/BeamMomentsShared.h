@@ -3,10 +3,7 @@
 
 #include "Device/SharedTypes.h"
 
-#ifndef __OPENCL_C_VERSION__
-namespace tyndall
-{
-#endif
+SHARED_BEGIN
 /// A beam of parallel light through the box.
 typedef struct
 {
@@ -17,6 +14,4 @@ typedef struct
   float lengths[3]; ///< of a ray from face to face
   float thin;       ///< optical length of voxels below which light is taken as lost evenly
 } BeamInfo;
-#ifndef __OPENCL_C_VERSION__
-}
-#endif
+SHARED_END

@@ -3,10 +3,7 @@
 
 #include "Device/SharedTypes.h"
 
-#ifndef __OPENCL_C_VERSION__
-namespace tyndall
-{
-#endif
+SHARED_BEGIN
 /// A medium and the box of what shines in it.
 typedef struct
 {
@@ -16,6 +13,4 @@ typedef struct
   int fewest;                        ///< rays of a voxel to it, at first; a power of two, at least 32
   float uneven;                      ///< difference of two halves of them, to their sum, that will do
 } EmissionInfo;
-#ifndef __OPENCL_C_VERSION__
-}
-#endif
+SHARED_END

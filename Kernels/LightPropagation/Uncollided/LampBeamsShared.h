@@ -3,10 +3,7 @@
 
 #include "Device/SharedTypes.h"
 
-#ifndef __OPENCL_C_VERSION__
-namespace tyndall
-{
-#endif
+SHARED_BEGIN
 enum
 {
   LampRowSums = 9 ///< tallies of a row of beams: entered, escaped through each face, stranded, ...
@@ -36,6 +33,4 @@ typedef struct
   int count;                ///< of beams along u
   float begin;              ///< layers from the lamp to the box, 0 inside
 } BeamRow;
-#ifndef __OPENCL_C_VERSION__
-}
-#endif
+SHARED_END

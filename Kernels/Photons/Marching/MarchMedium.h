@@ -25,10 +25,8 @@ public:
   IndexGrid DescribeGrid() const;
   int EventLimit() const;  ///< walls and turns of a photon at most
   double Diagonal() const; ///< of a voxel
-  std::size_t PaddedCount() const
-  {
-    return Count(this->Padded(2));
-  } ///< voxels, with one more at either end of each axis
+  /// Voxels, with one more at either end of each axis.
+  std::size_t PaddedCount() const { return Count(this->Padded(2)); }
 
   /// A kernel of PhotonMarch.cl for so many channels of light; `options` are those that the medium does not tell.
   cl::Kernel MarchKernel(const char* name, int channels, bool directions, const std::string& options) const;

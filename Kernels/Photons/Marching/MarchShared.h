@@ -4,10 +4,7 @@
 #include "Device/SharedTypes.h"
 #include "Refraction/Index/IndexShared.h"
 
-#ifndef __OPENCL_C_VERSION__
-namespace tyndall
-{
-#endif
+SHARED_BEGIN
 enum
 {
   EndWords = 3,   ///< integers of a PhotonEnd, before its powers
@@ -37,6 +34,4 @@ typedef struct
   float power[CHANNELS];
 #endif
 } PhotonEnd;
-#ifndef __OPENCL_C_VERSION__
-}
-#endif
+SHARED_END

@@ -4,10 +4,7 @@
 #include "Device/SharedTypes.h"
 #include "Refraction/Index/IndexShared.h"
 
-#ifndef __OPENCL_C_VERSION__
-namespace tyndall
-{
-#endif
+SHARED_BEGIN
 /// How sums become light.
 typedef struct
 {
@@ -18,6 +15,4 @@ typedef struct
   float colour[3]; ///< of what CHANNELS 1 stands for
   float weight;    ///< of a photon, one unit
 } LightSumsInfo;
-#ifndef __OPENCL_C_VERSION__
-}
-#endif
+SHARED_END

@@ -3,10 +3,7 @@
 
 #include "Device/SharedTypes.h"
 
-#ifndef __OPENCL_C_VERSION__
-namespace tyndall
-{
-#endif
+SHARED_BEGIN
 typedef struct
 {
   int size[3];
@@ -24,6 +21,4 @@ typedef struct
   float power[3];     ///< that is left
   float deposited[3]; ///< sum of all deposits
 } PublishedPhotonEnd;
-#ifndef __OPENCL_C_VERSION__
-}
-#endif
+SHARED_END

@@ -3,15 +3,10 @@
 
 #include "Device/SharedTypes.h"
 
-#ifndef __OPENCL_C_VERSION__
-namespace tyndall
-{
-#endif
+SHARED_BEGIN
 /// Voxels of a grid along x, y, z.
 typedef struct
 {
   int size[3];
 } IndexGrid;
-#ifndef __OPENCL_C_VERSION__
-}
-#endif
+SHARED_END

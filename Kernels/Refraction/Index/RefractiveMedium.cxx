@@ -304,12 +304,6 @@ bool IndexIsEven(const std::vector<Solid>& solids, const RefractiveMediumSetting
   });
 }
 
-/// Reports what is part of a longer work.
-Monitor PartOf(const Monitor& monitor, double begin, double end)
-{
-  return [&monitor, begin, end](double done) { return !monitor || monitor(begin + done * (end - begin)); };
-}
-
 std::vector<MeshTopology> CheckMeshes(
   const std::vector<Solid>& solids, const RefractiveMediumSettings& settings, const Monitor& monitor)
 {
@@ -447,10 +441,10 @@ RefractiveMedium Voxelize(
   const bool even = IndexIsEven(solids, settings);
   CheckMemory(device, settings, result.components, !even);
 
-  const std::vector<MeshTopology> topologies = CheckMeshes(solids, settings, PartOf(monitor, 0.0, 0.2));
+  const std::vector<MeshTopology> topologies = CheckMeshes(solids, settings, OfPart(monitor, 0.0, 0.2));
   Buffer<float> index(device, settings.grid.VoxelCount(), "ior");
   Mixer mixer(device, solids, outside, settings, index, result);
-  FillVoxels(device, solids, topologies, settings, mixer, PartOf(monitor, 0.2, 0.8), result);
+  FillVoxels(device, solids, topologies, settings, mixer, OfPart(monitor, 0.2, 0.8), result);
 
   const bool empty =
     std::all_of(result.occupancy.begin(), result.occupancy.end(), [](float part) { return part == 0.0f; });
@@ -466,7 +460,7 @@ RefractiveMedium Voxelize(
   }
   else
   {
-    AddIndex(device, index, settings, PartOf(monitor, 0.8, 1.0), result);
+    AddIndex(device, index, settings, OfPart(monitor, 0.8, 1.0), result);
   }
   result.seconds = std::chrono::duration<double>(std::chrono::steady_clock::now() - start).count();
   return result;

@@ -3,10 +3,7 @@
 
 #include "Device/SharedTypes.h"
 
-#ifndef __OPENCL_C_VERSION__
-namespace tyndall
-{
-#endif
+SHARED_BEGIN
 /// Voxels of a slab: runs of `length` of the grid's, the first from `first` on, each `stride` further.
 typedef struct
 {
@@ -25,6 +22,4 @@ typedef struct
   float frequency;       ///< 1 / size of the noise's features, 1/length
   uint seed;
 } MaterialInfo;
-#ifndef __OPENCL_C_VERSION__
-}
-#endif
+SHARED_END

@@ -32,8 +32,8 @@ struct MeshTopology
   Edge firstDisagreeingEdge = {};
   std::size_t degenerateTriangles = 0; ///< triangles without area
   std::size_t firstDegenerateTriangle = 0;
-  double enclosedVolume =
-    0.0; ///< length^3, negative where the corners run clockwise; has no meaning where edges disagree
+  /// Length^3, negative where the corners run clockwise; has no meaning where edges disagree.
+  double enclosedVolume = 0.0;
 };
 
 /// @throws InvalidInput where the mesh has no triangle, a triangle a corner that is not there, or a point is not finite

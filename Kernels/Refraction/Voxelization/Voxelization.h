@@ -41,8 +41,8 @@ void Check(const VoxelizationSettings& settings);
 /// A closed mesh, and how its corners run.
 struct OrientedMesh
 {
-  const TriangleMesh* mesh =
-    nullptr;           ///< closed, or closed when rounded; see Examine. A triangle without area does nothing
+  /// Closed, or closed when rounded; see Examine. A triangle without area does nothing.
+  const TriangleMesh* mesh = nullptr;
   int orientation = 1; ///< 1: counterclockwise seen from outside; -1: clockwise; 0: its triangles disagree
 };
 
