@@ -1,6 +1,7 @@
 #include "Lights/Lights.h"
 
 #include "Device/Errors.h"
+#include "Numerics/Constants.h"
 #include "Numerics/NumberText.h"
 
 #include <algorithm>
@@ -12,11 +13,10 @@ namespace tyndall
 {
 Rgb Lookup(const Environment& environment, const std::array<double, 3>& direction)
 {
-  const double pi = std::acos(-1.0);
   const double polar = std::atan2(std::hypot(direction[0], direction[1]), direction[2]);
   const double azimuth = std::atan2(direction[1], direction[0]);
-  const double column = (azimuth < 0.0 ? azimuth / (2.0 * pi) + 1.0 : azimuth / (2.0 * pi)) * environment.width - 0.5;
-  const double row = (1.0 - polar / pi) * environment.height - 0.5;
+  const double column = (azimuth < 0.0 ? azimuth / (2.0 * Pi) + 1.0 : azimuth / (2.0 * Pi)) * environment.width - 0.5;
+  const double row = (1.0 - polar / Pi) * environment.height - 0.5;
   const double left = std::floor(column);
   const double below = std::floor(row);
   Rgb sum = {};
@@ -34,6 +34,16 @@ Rgb Lookup(const Environment& environment, const std::array<double, 3>& directio
     }
   }
   return sum;
+}
+
+double AxialIntensity(const Light& lamp)
+{
+  switch (lamp.type)
+  {
+    case LightType::Spot: return 1.0 / (2.0 * Pi * (1.0 - std::cos(0.5 * lamp.angle * Pi / 180.0)));
+    case LightType::Rectangle: return 1.0 / Pi;
+    default: return 1.0 / (4.0 * Pi);
+  }
 }
 
 std::array<std::array<double, 3>, 2> RectangleEdges(const Light& light)

@@ -53,6 +53,9 @@ struct Illumination
   std::array<Rgb, 6> faces = {};
 };
 
+/// W per steradian of a lamp of 1 W (not of a directional light), along its axis.
+double AxialIntensity(const Light& lamp);
+
 /// The edges of a rectangular light as vectors: the first is horizontal (across z and the direction; along x where the
 /// direction is vertical), the second across the first and the direction.
 std::array<std::array<double, 3>, 2> RectangleEdges(const Light& light);

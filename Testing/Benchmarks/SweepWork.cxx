@@ -33,7 +33,7 @@ constexpr Count OfThinRay = { 3, 4, 1, 1 };
 constexpr Count OfPlane = { 2 + 8, 1 + 8, 5, 3 };
 // The same for each channel: own light, unpacking.
 constexpr Count OfPlaneChannel = { 2, 4, 5, 4 };
-// collect, a voxel and channel.
+// scatter_order, a voxel and channel.
 constexpr Count OfCollect = { 9, 11, 4, 3 };
 
 void Add(SweepWork& work, const Count& count, double times)
@@ -95,7 +95,7 @@ SweepWork CountSweepWork(const Device& device, const Medium& medium, int directi
   Add(work, OfPlane, waysAndAxes);
   Add(work, OfPlaneChannel, waysAndAxes * channels);
   Add(work, OfCollect, channels);
-  // sigma_t and source are read, path is read and written; collect reads four and writes three.
+  // sigma_t and source are read, path is read and written; scatter_order reads four and writes three.
   work.bytes = sizeof(float) * (waysAndAxes * (1 + 3 * channels) + channels * (4 + 3));
 
   const double updates = static_cast<double>(set.directions.size()) * channels;

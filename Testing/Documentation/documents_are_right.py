@@ -7,6 +7,7 @@ ROOT is the repository. Looked at are README.md, CONTRIBUTING.md, CHANGELOG.md, 
  - a relative link or picture leads to a file of the repository, and what follows its # to a heading there;
  - every filter of Plugin/ServerManager/*.xml has a section in the reference, and every property a place in it;
  - a block of code under <!-- quoted: FILE --> holds lines of FILE, in their order;
+ - a C++ or OpenCL source that a page names (Folder/File.cxx) is in Kernels/, Filters/, Plugin/ or Testing/;
  - README.md has no more than LINES lines (150).
 """
 import pathlib
@@ -74,6 +75,14 @@ def faults_of_quotations(root, page):
                 break
 
 
+def faults_of_sources(root, page):
+    for number, line in enumerate(page.read_text(encoding="utf-8").split("\n"), 1):
+        for name in re.findall(r"(?<![\w/*])[A-Z]\w*(?:/\w+)*\.(?:cxx|cl|h)\b", line):
+            places = [root / top for top in ("Kernels", "Filters", "Plugin", "Testing")]
+            if not (root / name).exists() and not any(next(place.rglob(name), None) for place in places):
+                yield "%s:%d: there is no source %s" % (page.relative_to(root), number, name)
+
+
 def sections_of(page):
     parts = re.split(r"^## (.*)$", page.read_text(encoding="utf-8"), flags=re.MULTILINE)
     return dict(zip(parts[1::2], parts[2::2]))
@@ -106,6 +115,7 @@ def main(root, most="150"):
     pages = sorted(page for pattern in PAGES for page in root.glob(pattern))
     faults = [fault for page in pages for fault in faults_of_links(root, page)]
     faults += [fault for page in pages for fault in faults_of_quotations(root, page)]
+    faults += [fault for page in pages for fault in faults_of_sources(root, page)]
     faults += faults_of_reference(root)
     lines = len((root / "README.md").read_text(encoding="utf-8").splitlines())
     if lines > int(most):

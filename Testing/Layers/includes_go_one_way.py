@@ -26,7 +26,7 @@ LAYERS = {
         ["."],  # settings, what all of them read
         ["Angular"],
         ["Sweep", "Problem"],
-        ["Uncollided", "Diffusion"],
+        ["Scattering", "Uncollided", "Diffusion"],
         ["Conservative", "Published"],
     ],
     "Filters": [
@@ -102,6 +102,9 @@ def main(root):
         for file in sorted(f for f in (root / top).rglob("*") if f.suffix in SUFFIXES):
             path = file.relative_to(root)
             edges[path] = list(included(root, top, file))
+            faults += ["%s: %s has no room of that name in LAYERS" % (path, layer) for layer in LAYERS
+                       if path.parent.is_relative_to(layer) and path.parent != pathlib.Path(layer)
+                       and room_of(path, layer) is None]
             faults += ["%s includes %s: %s" % (path, other, why) for other in edges[path]
                        for why in faults_of(path, other)]
     faults += ["a circle: " + " includes ".join(map(str, circle)) for circle in circles(edges)]

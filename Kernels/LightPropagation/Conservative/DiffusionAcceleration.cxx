@@ -2,9 +2,6 @@
 
 #include "LightPropagation/Conservative/SurfaceRadiance.h"
 #include "LightPropagation/Convergence.h"
-#include "LightPropagation/Problem/ScatteringOrders.h"
-#include "LightPropagation/Uncollided/UncollidedBoundary.h"
-#include "Numerics/Constants.h"
 
 #include <algorithm>
 #include <cmath>
@@ -14,13 +11,7 @@ namespace tyndall
 namespace
 {
 constexpr int MostSweeps = 200;
-constexpr double ThickForMoments = 0.1; ///< mean free paths a voxel
-constexpr double Margin = 1.5;          ///< of the estimated error: changes do not fall off evenly
-
-double Ratio(double of, double to)
-{
-  return to > 0.0 ? of / to : 1.0;
-}
+constexpr double Margin = 1.5; ///< of the estimated error: changes do not fall off evenly
 }
 
 DiffusionAcceleration::DiffusionAcceleration(TransportParts& parts)
@@ -33,8 +24,8 @@ DiffusionAcceleration::DiffusionAcceleration(TransportParts& parts)
 
 IterationResult DiffusionAcceleration::Run(const Monitor& monitor)
 {
-  this->Parts.CountEmission(this->OfLamps);
-  this->AddLamps(monitor);
+  this->Uncollided.emplace(
+    this->Parts, OfPart(monitor, [this](double done) { return ProgressOf(this->Settings, 1.0, done); }));
   this->GiveFirstScattered();
   this->MakeSweep();
   int iteration = 0;
@@ -58,177 +49,41 @@ IterationResult DiffusionAcceleration::Run(const Monitor& monitor)
   return std::move(this->Result);
 }
 
-/// In thick voxels it matters where lamps' light is first scattered.
-bool DiffusionAcceleration::NeedsMoments() const
-{
-  const Grid& grid = this->TheMedium.grid;
-  const double longest = *std::max_element(grid.spacing.begin(), grid.spacing.end());
-  bool thick = false;
-  for (std::size_t i = 0; i < grid.VoxelCount() && !thick; ++i)
-  {
-    for (int c = 0; c < this->Parts.Layout.channels && !thick; ++c)
-    {
-      thick = this->TheMedium.TransportSigmaT(i, c) * longest > ThickForMoments;
-    }
-  }
-  return this->LinearSource && thick && !this->Parts.Lamps.empty();
-}
-
-/// All uncollided light but that which sweeps carry, into `Lamps`.
-void DiffusionAcceleration::AddLamps(const Monitor& monitor)
-{
-  TransportParts& parts = this->Parts;
-  const auto count = [this](const SweepTally& tally) {
-    this->OfLamps.Count(tally);
-    for (int c = 0; c < 3; ++c)
-    {
-      this->Stranded[c] += tally.onTheWay[c];
-    }
-  };
-  const Monitor first = OfPart(monitor, [this](double done) { return ProgressOf(this->Settings, 1.0, done); });
-  Buffer<float> moments, path; // of one lamp
-  if (this->NeedsMoments())
-  {
-    moments = Buffer<float>(parts.TheDevice, parts.Layout.Floats(6), "light of lamps");
-    path = Buffer<float>(parts.TheDevice, parts.Layout.Floats(), "light of lamps");
-    this->Passed = Buffer<float>(parts.TheDevice, 6 * parts.Layout.Stride() * parts.Layout.channels, "light of lamps");
-    this->Passed.Fill(0.0f);
-  }
-  for (const std::unique_ptr<UncollidedSource>& lamp : parts.LampSources())
-  {
-    if (moments.Size() == 0)
-    {
-      count(parts.AddUncollided(*lamp, parts.WholeDeposit(), first));
-      continue;
-    }
-    moments.Fill(0.0f);
-    path.Fill(0.0f);
-    count(parts.AddUncollided(*lamp, { &path, parts.WholeDeposit().flux, nullptr, &moments }, first));
-    this->PassLampLight(path, moments);
-  }
-  for (const std::unique_ptr<UncollidedSource>& peak : parts.BrightEmissionSources())
-  {
-    count(parts.AddUncollided(*peak, parts.WholeDeposit(), first));
-  }
-  this->Lamps = parts.Path.Read();
-  if (parts.FineBoundary)
-  {
-    this->AddBoundaryDifference(first);
-  }
-}
-
-/// Adds the part of a lamp's light that passes voxels' faces at once where it is first scattered.
-void DiffusionAcceleration::PassLampLight(const Buffer<float>& path, const Buffer<float>& moments)
-{
-  const TransportParts& parts = this->Parts;
-  for (int c = 0; c < parts.Layout.channels; ++c)
-  {
-    const std::size_t first = c * parts.Layout.Stride();
-    tyndall::PassLampLight(parts.TheDevice, parts.Layout.grid, this->Settings.periodic,
-      { parts.Layout.Stride(), parts.Layout.ExtinctionFirst(c), first, &parts.OnDevice.SigmaT(),
-        &parts.OnDevice.SigmaA(), &parts.OnDevice.SigmaS(), &path, &moments, &this->Passed, &parts.Path });
-  }
-}
-
-/// Weight of the difference of finer and usual directions (numerics.md, Eqs. (55), (76)): little in thick voxels, where
-/// it matters at which depth light is scattered, which the diffusion system has for the light in sweeps alone.
-double DiffusionAcceleration::PartOfDifference(std::size_t voxel, int channel) const
-{
-  const std::array<double, 3>& h = this->TheMedium.grid.spacing;
-  const double longest = *std::max_element(h.begin(), h.end());
-  const double tau = longest * this->TheMedium.TransportSigmaT(voxel, channel);
-  const double absorbing = longest * this->TheMedium.sigma_a.At(voxel, channel);
-  // As the system weighs what sweeps find.
-  return this->LinearSource ? 1.0 / (1.0 + tau * (0.25 * tau + 3.0 * absorbing)) : 1.0;
-}
-
-/// Sweeps carry all light from outside along the usual directions, as the diffusion system needs it. The difference
-/// that finer ones make to it before it is scattered is added like the light of lamps (numerics.md, Eq. (76)): where
-/// light is scattered many times, scaled in each voxel so that power is as in the sweeps and an even sky stays even,
-/// else scaled by the power that enters. Power that this adds to voxels or takes from them is made up for by what
-/// leaves the box.
-void DiffusionAcceleration::AddBoundaryDifference(const Monitor& monitor)
-{
-  TransportParts& parts = this->Parts;
-  const auto fine = parts.FindUncollided(UncollidedBoundary(this->Settings, *parts.FineBoundary), monitor);
-  const auto usual = parts.FindUncollided(UncollidedBoundary(this->Settings, *parts.UsualBoundary), monitor);
-  const bool many = ScatteredManyTimes(parts.Problem);
-  const TransportParts::EvenSky even = many ? parts.FindEvenSky(monitor) : TransportParts::EvenSky();
-  std::vector<float> flux = this->Settings.netFlux ? parts.Flux.Read() : std::vector<float>();
-  const std::size_t stride = parts.Layout.Stride();
-  for (int c = 0; c < parts.Layout.channels; ++c)
-  {
-    double more = 0.0, out = 0.0, in = 0.0, usualIn = 0.0;
-    for (int face = 0; face < 6; ++face)
-    {
-      in += fine.tally.in[face][c];
-      usualIn += usual.tally.in[face][c];
-    }
-    const double whole = Ratio(usualIn, in);
-    for (std::size_t i = 0; i < parts.Layout.grid.VoxelCount(); ++i)
-    {
-      const std::size_t at = c * stride + i;
-      const double part = this->PartOfDifference(i, c);
-      const double scale = many ? Ratio(even.usual.path[at], even.fine.path[at]) : whole;
-      const double difference = part * (scale * fine.path[at] - usual.path[at]);
-      this->Lamps[at] += static_cast<float>(difference);
-      more += this->TheMedium.TransportSigmaT(i, c) * difference;
-      for (int a = 0; a < 3 && !flux.empty(); ++a)
-      {
-        const std::size_t along = (3 * c + a) * stride + i;
-        flux[along] += static_cast<float>(part * (scale * fine.flux[along] - usual.flux[along]));
-      }
-    }
-    std::array<double, 6> leaves;
-    for (int face = 0; face < 6; ++face)
-    {
-      const double scale = many ? Ratio(even.usual.tally.out[face][c], even.fine.tally.out[face][c]) : whole;
-      leaves[face] = scale * fine.tally.out[face][c] - usual.tally.out[face][c];
-      more += leaves[face];
-      out += fine.tally.out[face][c];
-    }
-    for (int face = 0; face < 6 && out > 0.0; ++face)
-    {
-      this->OfLamps.Escape(c, face, leaves[face] - more * fine.tally.out[face][c] / out);
-    }
-  }
-  if (!flux.empty())
-  {
-    parts.Flux.Write(flux.data());
-  }
-}
-
-/// Uncollided light is known: what of it is scattered is a given source, like what the medium emits.
+/// What of uncollided light is scattered is a given source, like what the medium emits.
 void DiffusionAcceleration::GiveFirstScattered()
 {
-  const TransportParts& parts = this->Parts;
+  TransportParts& parts = this->Parts;
+  this->Given = Buffer<float>(parts.TheDevice, parts.Source.Read(), "the light given");
+  this->GivenPower = this->Uncollided->Ledger().Balance().emitted;
+  std::vector<float> path = this->Uncollided->Path();
+  parts.Path.Write(path.data());
+  parts.Scattering->AddFirstScattered(parts.WholeDeposit(), this->Given);
   const double volume = parts.Layout.grid.VoxelVolume();
-  std::vector<float> given = parts.Source.Read();
-  this->GivenPower = this->OfLamps.Balance().emitted;
   for (int c = 0; c < parts.Layout.channels; ++c)
   {
     for (std::size_t i = 0; i < parts.Layout.grid.VoxelCount(); ++i)
     {
-      const std::size_t at = c * parts.Layout.Stride() + i;
-      const double scattered = static_cast<double>(this->TheMedium.TransportSigmaS(i, c)) * this->Lamps[at];
-      given[at] += static_cast<float>(scattered / (4.0 * Pi * volume));
-      this->OfLamps.Absorb(c, static_cast<double>(this->TheMedium.sigma_a.At(i, c)) * this->Lamps[at]);
-      this->GivenPower[c] += scattered;
-      this->Lamps[at] = static_cast<float>(this->Lamps[at] / volume);
+      float& here = path[c * parts.Layout.Stride() + i];
+      this->GivenPower[c] += static_cast<double>(this->TheMedium.TransportSigmaS(i, c)) * here;
+      here = static_cast<float>(here / volume);
     }
-    this->OfLamps.LeaveOver(c, this->Stranded[c]);
   }
-  this->Given = Buffer<float>(parts.TheDevice, given, "the light given");
+  this->UncollidedFluence.swap(path);
 }
 
 void DiffusionAcceleration::MakeSweep()
 {
   TransportParts& parts = this->Parts;
   this->PartialCurrents = Buffer<float>(parts.TheDevice, parts.Layout.Floats(6), "the power from voxel to voxel");
-  // No flux: it comes from the system.
-  SweepRequest request = { { &parts.Path, nullptr, &this->PartialCurrents, nullptr }, parts.AllRays() };
+  SweepRequest request = { this->DepositOfSweep(), parts.AllRays() };
   request.sameBoundary = true;
   this->Swept = parts.MakeSweep(request);
+}
+
+/// No flux: it comes from the system.
+Deposit DiffusionAcceleration::DepositOfSweep() const
+{
+  return { &this->Parts.Path, nullptr, &this->PartialCurrents, nullptr };
 }
 
 /// From the source that is there to path integrals and partial currents. The light that comes in from outside comes in
@@ -237,9 +92,11 @@ void DiffusionAcceleration::Sweep(int iteration, const Monitor& monitor)
 {
   for (std::size_t c = 0; c < this->Systems.size(); ++c)
   {
-    if (this->UnitPower(static_cast<int>(c)) > 0.0)
+    if (this->VoxelPower(static_cast<int>(c)) > 0.0)
     {
-      this->Systems[c]->WriteSource();
+      this->Parts.Scattering->ScatterFluence(
+        static_cast<int>(c), this->DepositOfSweep(), this->Systems[c]->NextFluence(), this->Given, this->Parts.Source);
+      this->Systems[c]->ShapeSource();
     }
   }
   this->Parts.Path.Fill(0.0f);
@@ -256,7 +113,7 @@ std::vector<float> DiffusionAcceleration::SweptFluence() const
   std::vector<float> values = this->Parts.Path.Read();
   for (std::size_t i = 0; i < values.size(); ++i)
   {
-    values[i] = std::max(static_cast<float>(values[i] * perVolume + this->Lamps[i]), 0.0f);
+    values[i] = std::max(static_cast<float>(values[i] * perVolume + this->UncollidedFluence[i]), 0.0f);
   }
   return values;
 }
@@ -279,14 +136,14 @@ void DiffusionAcceleration::MakeSystems()
     const DiffusionSystem::Arrays arrays = { parts.Layout.Stride(), parts.Layout.ExtinctionFirst(c),
       c * parts.Layout.Stride(), &parts.OnDevice.SigmaT(), &parts.OnDevice.SigmaA(), &parts.OnDevice.SigmaS(),
       &this->Given, &parts.Source, &parts.Path, &this->PartialCurrents,
-      this->Passed.Size() > 0 ? &this->Passed : nullptr };
+      this->Uncollided->Passed().Size() > 0 ? &this->Uncollided->Passed() : nullptr };
     this->Systems.push_back(std::make_unique<DiffusionSystem>(parts.TheDevice, parts.Layout.grid,
       this->Settings.periodic, parts.Usual.Set(), pattern, arrays, ofChannel, this->LinearSource));
   }
 }
 
 /// W of a voxel, about.
-double DiffusionAcceleration::UnitPower(int c) const
+double DiffusionAcceleration::VoxelPower(int c) const
 {
   return (this->GivenPower[c] + this->PowerIn[c]) / static_cast<double>(this->Parts.Layout.grid.VoxelCount());
 }
@@ -298,10 +155,10 @@ void DiffusionAcceleration::Correct(int iteration)
   double change = 0.0;
   for (int c = 0; c < this->Parts.Layout.channels; ++c)
   {
-    const double unit = this->UnitPower(c);
-    if (unit > 0.0)
+    const double power = this->VoxelPower(c);
+    if (power > 0.0)
     {
-      change = std::max(change, this->Systems[c]->Correct(unit));
+      change = std::max(change, this->Systems[c]->Correct(power));
     }
   }
   const double ratio = iteration > 0 && this->Change > 0.0 ? change / this->Change : 1.0;
@@ -318,7 +175,7 @@ void DiffusionAcceleration::Correct(int iteration)
 void DiffusionAcceleration::CountLight()
 {
   const Grid& grid = this->Parts.Layout.grid;
-  this->Result.ledger = this->OfLamps;
+  this->Result.ledger = this->Uncollided->Ledger();
   this->Found.clear();
   for (int c = 0; c < this->Parts.Layout.channels; ++c)
   {
@@ -328,7 +185,7 @@ void DiffusionAcceleration::CountLight()
       ofSweep[face] = this->Tally.out[face][c];
       this->Result.ledger.Enter(c, this->Tally.in[face][c]);
     }
-    if (!(this->UnitPower(c) > 0.0))
+    if (!(this->VoxelPower(c) > 0.0))
     {
       this->Found.emplace_back(grid.VoxelCount(), 0.0); // dark: never solved for
       continue;
@@ -360,9 +217,9 @@ void DiffusionAcceleration::WriteFluence()
   TransportParts& parts = this->Parts;
   for (int c = 0; c < parts.Layout.channels; ++c)
   {
-    if (this->UnitPower(c) > 0.0)
+    if (this->VoxelPower(c) > 0.0)
     {
-      this->Systems[c]->Refine(this->UnitPower(c));
+      this->Systems[c]->Refine(this->VoxelPower(c));
     }
   }
   this->CountLight();
@@ -376,9 +233,9 @@ void DiffusionAcceleration::WriteFluence()
       const std::size_t at = c * parts.Layout.Stride() + i;
       const double found = this->Found[c][i];
       const double swept = found >= 0.0 ? found : path[at] * perVolume;
-      fluence[at] = std::max(static_cast<float>(swept + this->Lamps[at]), 0.0f);
+      fluence[at] = std::max(static_cast<float>(swept + this->UncollidedFluence[at]), 0.0f);
     }
-    if (this->Settings.netFlux && this->UnitPower(c) > 0.0)
+    if (this->Settings.netFlux && this->VoxelPower(c) > 0.0)
     {
       this->Systems[c]->AddFlux(parts.Flux);
     }
@@ -396,8 +253,8 @@ void DiffusionAcceleration::FindSurfaceRadiance()
   std::vector<SurfacePowers> powers(this->LinearSource ? this->Parts.Layout.channels : 0);
   for (std::size_t c = 0; c < powers.size(); ++c)
   {
-    powers[c] = this->UnitPower(static_cast<int>(c)) > 0.0 ? this->Systems[c]->PowersAtSurface() : SurfacePowers();
-    powers[c].lamps = this->Lamps.data() + c * this->Parts.Layout.Stride();
+    powers[c] = this->VoxelPower(static_cast<int>(c)) > 0.0 ? this->Systems[c]->PowersAtSurface() : SurfacePowers();
+    powers[c].lamps = this->UncollidedFluence.data() + c * this->Parts.Layout.Stride();
   }
   this->Result.surfaceRadiance = SurfaceRadiance(this->TheMedium, this->Settings.periodic, this->Parts.Lamps, powers);
 }

@@ -2,9 +2,11 @@
 
 #include "LightPropagation/Conservative/Iteration.h"
 #include "LightPropagation/Conservative/TransportParts.h"
+#include "LightPropagation/Conservative/UncollidedLight.h"
 #include "LightPropagation/Diffusion/DiffusionSystem.h"
 
 #include <memory>
+#include <optional>
 #include <vector>
 
 namespace tyndall
@@ -20,18 +22,14 @@ public:
   IterationResult Run(const Monitor& monitor) override;
 
 private:
-  bool NeedsMoments() const;
-  void AddLamps(const Monitor& monitor);
-  void PassLampLight(const Buffer<float>& path, const Buffer<float>& moments);
-  void AddBoundaryDifference(const Monitor& monitor);
-  double PartOfDifference(std::size_t voxel, int channel) const;
   void GiveFirstScattered();
   void MakeSweep();
+  Deposit DepositOfSweep() const;
   void Sweep(int iteration, const Monitor& monitor);
   void MakeSystems();
   void Correct(int iteration);
   void CountLight();
-  double UnitPower(int channel) const;
+  double VoxelPower(int channel) const;
   bool Done(int iterations) const;
   std::vector<float> SweptFluence() const;
   void WriteFluence();
@@ -44,10 +42,8 @@ private:
   bool LinearSource;
 
   // Uncollided light
-  EnergyLedger OfLamps;
-  std::vector<float> Lamps; ///< fluence, W / length^2, [channel][stride]; W length before GiveFirstScattered
-  Buffer<float> Passed;     ///< as DiffusionSystem::Arrays has it
-  Rgb Stranded = {};        ///< W, of uncollided light whose rays go round a periodic axis without end
+  std::optional<UncollidedLight> Uncollided;
+  std::vector<float> UncollidedFluence; ///< W / length^2, [channel][stride]
 
   // Scattered light, and what comes in along the usual directions
   Buffer<float> Given, PartialCurrents; ///< as DiffusionSystem::Arrays has them
@@ -55,7 +51,7 @@ private:
   std::vector<std::unique_ptr<DiffusionSystem>> Systems;
   SweepTally Tally;                       ///< of the last sweep
   Rgb GivenPower = {}, PowerIn = {};      ///< W, emitted or first scattered; through faces
-  std::vector<std::vector<double>> Found; ///< W / length^2, without lamps'
+  std::vector<std::vector<double>> Found; ///< W / length^2, without uncollided light
   double Change = 1.0, LastRatio = 1.0, Residual = 1.0;
 
   IterationResult Result;

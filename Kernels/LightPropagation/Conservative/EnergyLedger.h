@@ -1,7 +1,7 @@
 #pragma once
 
 #include "Light/LightField.h"
-#include "LightPropagation/Sweep/SweepVolume.h"
+#include "LightPropagation/Sweep/SweepTally.h"
 
 #include <array>
 

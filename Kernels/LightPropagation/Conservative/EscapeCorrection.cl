@@ -1,4 +1,4 @@
-#include "LightPropagation/Conservative/CollectShared.h"
+#include "LightPropagation/Scattering/CollectShared.h"
 
 // What leaves the box of each voxel's light besides what left in the sweep (numerics.md, Eq. (46)).
 // extra  of a source of 1, W length

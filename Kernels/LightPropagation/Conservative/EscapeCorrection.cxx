@@ -2,8 +2,7 @@
 
 #include "Device/Defines.h"
 #include "Device/Sizes.h"
-#include "LightPropagation/Conservative/CollectShared.h"
-#include "LightPropagation/Conservative/IsotropicScattering.h"
+#include "LightPropagation/Scattering/CollectShared.h"
 #include "Numerics/Constants.h"
 #include "TyndallKernelSources.h"
 

@@ -1,7 +1,7 @@
 #pragma once
 
-#include "LightPropagation/Conservative/MediumOnDevice.h"
 #include "LightPropagation/Conservative/TransportParts.h"
+#include "LightPropagation/Problem/MediumOnDevice.h"
 
 #include <vector>
 

@@ -4,6 +4,7 @@
 #include "Light/LeftOut.h"
 #include "LightPropagation/Convergence.h"
 #include "LightPropagation/Uncollided/UncollidedBoundary.h"
+#include "TyndallKernelSources.h"
 
 #include <algorithm>
 #include <cmath>
@@ -22,8 +23,6 @@ constexpr int OrdersExpected = 6;     ///< to tell whether it pays to sweep empt
 SourceIteration::SourceIteration(TransportParts& parts)
   : Parts(parts)
   , Settings(parts.Problem.Settings())
-  , Scattering(parts.TheDevice, parts.Layout, parts.OnDevice,
-      !parts.Problem.Settings().leaveOut || parts.Problem.Traits().scatters)
   , Shining(parts.HasSource())
 {
   this->MakeSweeps();
@@ -196,8 +195,9 @@ std::array<std::size_t, 2> SourceIteration::SweptValues() const
 
 void SourceIteration::ScatterOrder()
 {
-  const IsotropicScattering::Powers powers =
-    this->Scattering.Scatter(this->Parts.Path, this->Parts.Fluence, this->Parts.Source, this->SweptValues());
+  const TransportParts& parts = this->Parts;
+  const ScatteringOperator::Powers powers =
+    parts.Scattering->ScatterOrder(parts.WholeDeposit(), parts.Fluence, parts.Source, this->SweptValues());
   this->Scattered = powers.scattered;
   for (int c = 0; c < 3; ++c)
   {
@@ -253,7 +253,7 @@ bool SourceIteration::Done() const
 void SourceIteration::SweepEmptySlabs(const Monitor& monitor)
 {
   TransportParts& parts = this->Parts;
-  this->Scattering.SourceOfAll(parts.Fluence, parts.Source);
+  parts.Scattering->ScatterAllOrders(parts.Fluence, parts.Source);
   const SweepTally tally = this->Whole->Apply(&parts.Source, {}, monitor);
   for (int face = 0; face < 6; ++face)
   {
@@ -262,7 +262,20 @@ void SourceIteration::SweepEmptySlabs(const Monitor& monitor)
       this->Result.ledger.AssignFace(c, face, tally.out[face][c]);
     }
   }
-  this->Scattering.AddOutside(parts.Problem.Traits().filled, parts.Path, parts.Fluence);
+  this->AddOutside(parts.Problem.Traits().filled);
+}
+
+/// To fluence what a sweep left in the voxels outside a box.
+void SourceIteration::AddOutside(const VoxelBox& box)
+{
+  const TransportParts& parts = this->Parts;
+  const VolumeLayout& layout = parts.Layout;
+  cl::Kernel add = parts.TheDevice.Kernel("add_outside", kernel_source::SourceIteration);
+  const std::array<int, 3>& n = layout.grid.size;
+  With(add, parts.Path, parts.Fluence, cl_ulong(layout.Stride()), static_cast<float>(1.0 / layout.grid.VoxelVolume()),
+    cl_int3{ { n[0], n[1], n[2] } }, cl_int3{ { box.first[0], box.first[1], box.first[2] } },
+    cl_int3{ { box.size[0], box.size[1], box.size[2] } });
+  parts.TheDevice.Queue().enqueueNDRangeKernel(add, cl::NullRange, cl::NDRange(layout.Stride(), layout.channels));
 }
 
 std::vector<std::string> SourceIteration::LeftOut() const

@@ -1,7 +1,6 @@
 #pragma once
 
 #include "LightPropagation/Conservative/EscapeCorrection.h"
-#include "LightPropagation/Conservative/IsotropicScattering.h"
 #include "LightPropagation/Conservative/Iteration.h"
 #include "LightPropagation/Conservative/TransportParts.h"
 
@@ -28,6 +27,7 @@ private:
   void ScatterOrder();
   void EstimateResidual();
   void SweepEmptySlabs(const Monitor& monitor);
+  void AddOutside(const VoxelBox& box);
   bool InFilledPart() const { return this->Filled && this->Order > 0; }
   std::array<std::size_t, 2> SweptValues() const;
   bool Done() const;
@@ -35,7 +35,6 @@ private:
 
   TransportParts& Parts;
   const PropagationSettings& Settings;
-  IsotropicScattering Scattering;
   std::unique_ptr<SweepOperator> Whole;
   /// Of the first order, where much of the outside is dark and the medium too; else null.
   std::unique_ptr<SweepOperator> Lit;

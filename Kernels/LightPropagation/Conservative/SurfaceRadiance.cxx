@@ -67,10 +67,10 @@ Beam BeamOf(const Light& lamp, const Grid& grid, const BoxFaceCell& cell, int ch
   }
   const double alongAxis = length > 0.0 ? (way[0] * d[0] + way[1] * d[1] + way[2] * d[2]) / (length * distance) : 1.0;
   const double cone = std::cos(lamp.angle * Pi / 360.0);
-  const double perSteradian = lamp.type == LightType::Point ? 1.0 / (4.0 * Pi)
-    : lamp.type == LightType::Spot ? (alongAxis >= cone ? 1.0 / (2.0 * Pi * (1.0 - cone)) : 0.0)
-                                   : std::max(alongAxis, 0.0) / Pi;
-  return { lamp.power[channel] * perSteradian * cosine / (distance * distance), cosine };
+  const double part = lamp.type == LightType::Point ? 1.0
+    : lamp.type == LightType::Spot                  ? (alongAxis >= cone ? 1.0 : 0.0)
+                                                    : std::max(alongAxis, 0.0);
+  return { lamp.power[channel] * AxialIntensity(lamp) * part * cosine / (distance * distance), cosine };
 }
 
 /// Radiance at cosine mu of what comes in and what the medium shines, in a half-space.

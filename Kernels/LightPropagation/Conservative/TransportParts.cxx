@@ -1,5 +1,6 @@
 #include "LightPropagation/Conservative/TransportParts.h"
 
+#include "LightPropagation/Scattering/IsotropicScattering.h"
 #include "LightPropagation/Sweep/SweepInMemory.h"
 #include "LightPropagation/Uncollided/EnvironmentPeaks.h"
 #include "LightPropagation/Uncollided/UncollidedBoundary.h"
@@ -47,6 +48,7 @@ TransportParts::TransportParts(Device& device, const PropagationProblem& problem
   , Problem(problem)
   , Layout(LayoutOf(problem))
   , OnDevice(device, problem.TheMedium(), this->Layout, NeedsOf(problem, this->Layout, accelerated))
+  , Scattering(this->MakeScattering())
   , Usual(problem.TheGrid(), problem.Settings(), EquiangularDirections(problem.Settings().directionsPerFace),
       StartsOf(problem.Settings()))
   , Emission(EmissionOf(problem))
@@ -142,6 +144,12 @@ std::unique_ptr<SweepOperator> TransportParts::MakeSweep(const SweepRequest& req
     this->Problem.Settings().periodic, request, this->Workspace);
 }
 
+std::unique_ptr<const ScatteringOperator> TransportParts::MakeScattering() const
+{
+  const bool scatters = !this->Problem.Settings().leaveOut || this->Problem.Traits().scatters;
+  return std::make_unique<IsotropicScattering>(this->TheDevice, this->Layout, this->OnDevice, scatters);
+}
+
 TransportParts::Sources TransportParts::LampSources() const
 {
   Sources sources;
@@ -176,15 +184,8 @@ void TransportParts::CountEmission(EnergyLedger& ledger) const
 
 SweepTally TransportParts::AddUncollided(const UncollidedSource& source, const Deposit& deposit, const Monitor& monitor)
 {
-  SweepTally tally;
-  for (const ChannelGroup& group : this->Layout.Groups())
-  {
-    SweepVolume volume = GroupVolume(this->Layout, group, this->OnDevice.SigmaT());
-    volume.source = &this->Source;
-    volume.deposit = deposit;
-    Add(tally, source.AddTo(this->TheDevice, volume, group.first, this->Workspace, monitor), group.first);
-  }
-  return tally;
+  const SweepMaker sweeps = [this](const SweepRequest& request) { return this->MakeSweep(request); };
+  return source.AddTo({ this->TheDevice, this->Layout, this->OnDevice.SigmaT(), sweeps, deposit }, monitor);
 }
 
 TransportParts::UncollidedFlux TransportParts::FindUncollided(const UncollidedSource& source, const Monitor& monitor)

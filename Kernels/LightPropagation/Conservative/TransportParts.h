@@ -3,9 +3,11 @@
 #include "Device/Buffer.h"
 #include "LightPropagation/Angular/SweptDirections.h"
 #include "LightPropagation/Conservative/EnergyLedger.h"
-#include "LightPropagation/Conservative/MediumOnDevice.h"
+#include "LightPropagation/Problem/MediumOnDevice.h"
 #include "LightPropagation/Problem/PropagationProblem.h"
+#include "LightPropagation/Scattering/ScatteringOperator.h"
 #include "LightPropagation/Sweep/SweepOperator.h"
+#include "LightPropagation/Sweep/SweepWorkspace.h"
 #include "LightPropagation/Sweep/VolumeLayout.h"
 #include "LightPropagation/Uncollided/BoundaryLight.h"
 #include "LightPropagation/Uncollided/EmissionPeaks.h"
@@ -33,6 +35,7 @@ public:
   const PropagationProblem& Problem;
   const VolumeLayout Layout;
   const MediumOnDevice OnDevice;
+  const std::unique_ptr<const ScatteringOperator> Scattering;
 
   /// Along the directions of scattered light.
   const SweptDirections Usual;
@@ -81,6 +84,8 @@ public:
   std::unique_ptr<SweepOperator> MakeSweep(const SweepRequest& request);
 
 private:
+  /// The one place where a scattering operator is chosen.
+  std::unique_ptr<const ScatteringOperator> MakeScattering() const;
   void LoadSource();
   void FindBoundaryLight();
 

@@ -1,6 +1,6 @@
 #pragma once
 
-#include "LightPropagation/Diffusion/ExactValues.h"
+#include "Device/ExactValues.h"
 
 #include <array>
 

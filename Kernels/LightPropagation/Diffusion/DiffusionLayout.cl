@@ -1,15 +1,8 @@
-// What the kernels of the diffusion system share. The host gives
-//   DOUBLES  1 where the device has double precision
+// What the kernels of the diffusion system share.
 
 #pragma once
 #include "LightPropagation/Diffusion/DiffusionShared.h"
-
-#if DOUBLES
-#pragma OPENCL EXTENSION cl_khr_fp64 : enable
-typedef double exact;
-#else
-typedef float exact;
-#endif
+#include "Numerics/Exact.cl"
 
 // The voxel of a work-item: x, y, z and i.
 #define VOXEL(count)                                                          \

@@ -5,79 +5,7 @@
 //
 // Face d of a voxel is -x, +x, -y, +y, -z, +z. tau is the optical length of a voxel along an axis.
 
-#include "LightPropagation/Diffusion/DiffusionLayout.cl"
-#include "LightPropagation/Diffusion/LampPassing.cl"
-
-// Part of the partial current of a source that is constant in each voxel and falls by one from mean free path to mean
-// free path (numerics.md, Eq. (51); 4 Gauss points): 1/6 for thin voxels, tau / 8 for thick ones.
-static float stair(float tau)
-{
-  const float mu[4] = { 0.0694318442f, 0.3300094782f, 0.6699905218f, 0.9305681558f };
-  const float half_weight[4] = { 0.0869637113f, 0.1630362887f, 0.1630362887f, 0.0869637113f };
-  float sum = 0.0f;
-  for (int k = 0; k < 4; ++k)
-  {
-    const float x = 0.5f * tau / mu[k];
-    sum += half_weight[k] * mu[k] * mu[k] * (x < 0.02f ? 1.0f + x * x / 3.0f : x / tanh(x));
-  }
-  return sum;
-}
-
-// Half of a voxel in units of the diffusion length, y = tau sqrt(3 (1 - albedo)) / 2.
-static float half_diffusion_length(float tau, float sigma_t, float sigma_a)
-{
-  return sigma_t > 0.0f ? 0.5f * tau * sqrt(3.0f * fmin(sigma_a / sigma_t, 1.0f)) : 0.0f;
-}
-
-// Conductance of an absorbing half voxel over that of tau / 2 (numerics.md, Eq. (57)): of light that falls off
-// exponentially from a border...
-static float at_border(float y)
-{
-  return y < 0.02f ? 1.0f + y * (2.0f / 3.0f) : 2.0f * y * y / (2.0f * y - 1.0f + exp(-2.0f * y));
-}
-// ...and between voxels of the same kind.
-static float among_equals(float y)
-{
-  const float x = y < 40.0f ? y / sinh(fmax(y, 1e-3f)) : 0.0f;
-  return y < 0.01f ? 1.0f : fmax(x * x, 1e-20f);
-}
-
-// Conductance of an inner face per area (numerics.md, Eq. (57)).
-static float pass_face(const DiffusionLayout* layout, float tau0, float tau1, float y0, float y1, float flat_source)
-{
-  const float mean = 0.5f * (tau0 + tau1);
-  if (!layout->linear)
-  {
-    return flat_source / fmax(mean, layout->floor);
-  }
-  const float sum = tau0 + tau1;
-  const float equal = sum > 0.0f ? 1.0f - fabs(tau0 - tau1) / sum : 1.0f;
-  const float same = equal * equal;
-  const float way0 = tau0 / mix(at_border(y0), among_equals(y0), same);
-  const float way1 = tau1 / mix(at_border(y1), among_equals(y1), same);
-  return 1.0f / (3.0f * fmax(0.5f * (way0 + way1), layout->floor));
-}
-
-static float face_area(const DiffusionLayout* layout, int axis)
-{
-  return layout->spacing[(axis + 1) % 3] * layout->spacing[(axis + 2) % 3];
-}
-static float volume_of(const DiffusionLayout* layout)
-{
-  return layout->spacing[0] * layout->spacing[1] * layout->spacing[2];
-}
-
-// Twice the optical length from the voxel's middle to a face of the box, shorter where the voxel absorbs (numerics.md,
-// Eq. (58)).
-static float way_to_boundary(const DiffusionLayout* layout, float tau, float sigma_t, float sigma_a)
-{
-  return layout->linear ? tau / at_border(half_diffusion_length(tau, sigma_t, sigma_a)) : tau;
-}
-static float pass_boundary(const DiffusionLayout* layout, float way)
-{
-  const float x = 3.0f * layout->halfRange * way;
-  return 2.0f * layout->halfRange / (1.0f + (layout->linear ? x : x / (1.0f + x)));
-}
+#include "LightPropagation/Diffusion/Conductance.cl"
 
 // flat_source  [axis][stride]
 __kernel void diffusion_flat_source(DiffusionLayout layout, const __global float* sigma_t, __global float* flat_source)
@@ -120,12 +48,6 @@ __kernel void diffusion_conductance(DiffusionLayout layout, const __global float
     taken += borders * area * pass_boundary(&layout, way_to_boundary(&layout, tau1, sigma_t[i], sigma_a[i]));
   }
   loss[i] = taken;
-}
-
-static bool is_border(const DiffusionLayout* layout, const int* at, int d)
-{
-  const int axis = d / 2;
-  return !layout->periodic[axis] && at[axis] == (d & 1 ? layout->size[axis] - 1 : 0);
 }
 
 // From 0 to 1: how thick a voxel of optical length tau is beside one of length beyond (numerics.md, Eq. (62)).
@@ -449,11 +371,11 @@ __kernel void diffusion_flux(DiffusionLayout layout, const __global float* sigma
   }
 }
 
-// The next sweep's source: emitted and scattered light; of thick voxels beside thinner ones, what gives their surface
-// the outward partial current of diffusion (numerics.md, Eqs. (63), (64)).
-__kernel void diffusion_source(DiffusionLayout layout, const __global float* given, const __global float* sigma_s,
-  const __global exact* fluence, const __global float* sigma_t, const __global float* sigma_a,
-  const __global float* conductance, const __global float* passed, __global float* source)
+// The next sweep's source where thick voxels lie beside thinner ones: what gives their surface the outward partial
+// current of diffusion, instead of what is emitted and scattered (numerics.md, Eqs. (63), (64)).
+__kernel void diffusion_surface_source(DiffusionLayout layout, const __global exact* fluence,
+  const __global float* sigma_t, const __global float* sigma_a, const __global float* conductance,
+  const __global float* passed, __global float* source)
 {
   VOXEL(layout.size)
   const ulong stride = layout.stride;
@@ -467,9 +389,6 @@ __kernel void diffusion_source(DiffusionLayout layout, const __global float* giv
   find_neighbours(layout.size, x, y, z, i, next);
   float open[6];
   const float skin = openness(&layout, sigma_t, i, next, at, open);
-  // `given` is negative where uncollided light along finer directions is less than in the sweep.
-  const float even =
-    fmax(given[begin + i] + sigma_s[begin + i] * fmax((float)fluence[i], 0.0f) * (0.25f * M_1_PI_F), 0.0f);
   float shining = 0.0f, sum = 0.0f;
   for (int d = 0; d < 6; ++d)
   {
@@ -489,58 +408,5 @@ __kernel void diffusion_source(DiffusionLayout layout, const __global float* giv
     }
   }
   const float there = sum > 0.0f ? fmax(shining / sum, 0.0f) * sigma_t[i] * (0.25f * M_1_PI_F) : 0.0f;
-  source[begin + i] = mix(even, there, skin);
-}
-
-// Of one lamp: the light that passes faces at once where it is scattered (numerics.md, Eqs. (66) to (69)).
-// path      W length, of the lamp
-// moments  of it, as in SweepVolume.h, [channel][face][stride]
-// passed    [channel][face][stride] W, added to
-// all_path  W length, of all lamps, added to
-__kernel void diffusion_pass(DiffusionLayout layout, const __global float* sigma_t, const __global float* sigma_a,
-  const __global float* sigma_s, const __global float* path, const __global float* moments, __global float* passed,
-  __global float* all_path)
-{
-  VOXEL(layout.size)
-  const int at[3] = { x, y, z };
-  int next[6];
-  find_neighbours(layout.size, x, y, z, i, next);
-  const ulong stride = layout.stride;
-  sigma_t += layout.firstT;
-  sigma_a += layout.first;
-  moments += 6 * (ulong)layout.first;
-  passed += 6 * (ulong)layout.first;
-  const float length = path[layout.first + i];
-  const float k = sigma_t[i] > 0.0f ? sqrt(3.0f * fmin(sigma_a[i] / sigma_t[i], 1.0f)) : 0.0f;
-  float part[6], sum = 0.0f;
-  for (int d = 0; d < 6; ++d)
-  {
-    const int axis = d / 2;
-    const float h = layout.spacing[axis];
-    const float tau = sigma_t[i] * h;
-    const float r = length > 0.0f ? fmin(2.0f * moments[d * stride + i] / length, 1.0f) : 0.0f;
-    part[d] = 0.0f;
-    if (tau <= 0.0f || r <= 0.0f)
-    {
-      continue;
-    }
-    if (is_border(&layout, at, d))
-    {
-      part[d] = passes_border(tau, r, k) * beside_sweeps(tau);
-    }
-    else if (layout.size[axis] > 1)
-    {
-      const int j = next[d];
-      const float way = way_to_boundary(&layout, tau, sigma_t[i], sigma_a[i]);
-      const float beyond = way_to_boundary(&layout, sigma_t[j] * h, sigma_t[j], sigma_a[j]);
-      part[d] = passes_inside(tau, r, k) * way / (way + beyond) * beside_sweeps(tau);
-    }
-    sum += part[d];
-  }
-  const float power = sigma_s[layout.first + i] * length / fmax(sum, 1.0f); // a corner cannot pass more than there is
-  for (int d = 0; d < 6; ++d)
-  {
-    passed[d * stride + i] += part[d] * power;
-  }
-  all_path[layout.first + i] += length;
+  source[begin + i] = mix(source[begin + i], there, skin);
 }

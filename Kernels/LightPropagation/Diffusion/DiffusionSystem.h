@@ -1,12 +1,11 @@
 #pragma once
 
 #include "LightPropagation/Angular/DirectionSet.h"
-#include "LightPropagation/Angular/RayBundles.h"
 #include "LightPropagation/Diffusion/AndersonMixing.h"
+#include "LightPropagation/Diffusion/CrossingPattern.h"
 #include "LightPropagation/Diffusion/DiffusionShared.h"
 #include "LightPropagation/Diffusion/MultigridSolver.h"
 #include "LightPropagation/Diffusion/SurfacePowers.h"
-
 #include "Medium/Grid.h"
 
 #include <array>
@@ -14,34 +13,6 @@
 
 namespace tyndall
 {
-/// Power of rays that cross the voxels' faces in the sweeps' repeated pattern, over its mean (numerics.md, Eq. (65)):
-/// by axis of the face and plane along each other axis, two parts of one sum. About 1; 1 in the mean over planes.
-struct CrossingPattern
-{
-  std::vector<float> values;
-  std::array<int, 6> first = {}; ///< [axis][other axes in order]
-};
-CrossingPattern FindCrossingPattern(const Grid& grid, const DirectionSet& directions, int mapResolution,
-  RayStarts starts, const std::array<bool, 3>& periodic);
-
-/// A lamp's light in thick voxels, and the sums over all lamps that it is added to. Arrays as DiffusionSystem::Arrays
-/// has them.
-struct LampLight
-{
-  std::size_t stride, firstT, first;
-  const Buffer<float>* sigma_t;
-  const Buffer<float>* sigma_a;
-  const Buffer<float>* sigma_s;
-  const Buffer<float>* path;    ///< W length, of the lamp
-  const Buffer<float>* moments; ///< of it, as in SweepVolume.h
-  const Buffer<float>* passed;  ///< W, added to
-  const Buffer<float>* allPath; ///< W length, added to
-};
-
-/// Adds the part of a lamp's light that passes the faces of voxels at once where it is first scattered (numerics.md,
-/// Eqs. (66) to (69)). One lamp at a time: each is scattered at a depth of its own in a voxel.
-void PassLampLight(Device& device, const Grid& grid, const std::array<bool, 3>& periodic, const LampLight& light);
-
 /// The diffusion system of one channel (numerics.md, section 7): a diffusion-like balance of each voxel's power,
 /// corrected by what a sweep found to pass its faces, Eq. (53). Its solution is the fluence of all scattering orders.
 ///
@@ -69,7 +40,7 @@ public:
     const Buffer<float>* path;            ///< W length, that it found
     const Buffer<float>* partialCurrents; ///< W, [channel][-x, +x, -y, +y, -z, +z][stride], that it found
     /// W, [channel][-x, +x, -y, +y, -z, +z][stride]: lamps' light that passes a face at once where it is scattered
-    /// (PassLampLight); null: voxels are thin, or there are no lamps
+    /// (LampPassing.h); null: voxels are thin, or there are no lamps
     const Buffer<float>* passed;
   };
 
@@ -77,8 +48,10 @@ public:
   DiffusionSystem(Device& device, const Grid& grid, const std::array<bool, 3>& periodic, const DirectionSet& directions,
     const CrossingPattern& pattern, const Arrays& arrays, const std::array<double, 6>& incoming, bool linear);
 
-  /// What the last correction led to: write it as the next sweep's source.
-  void WriteSource();
+  /// W / length^2, on which the next sweep's source is to be built: what the last correction led to.
+  const ExactValues& NextFluence() const { return this->Next; }
+  /// Changes that source at the surfaces of thick voxels such that a sweep finds the outward current of diffusion.
+  void ShapeSource();
 
   /// Solve for the light after a sweep.
   /// @param unit  W of a voxel, about
@@ -115,6 +88,6 @@ private:
   MultigridSolver Solver;
   Buffer<float> FlatSource, Pattern, Model;
   AndersonMixing Mixing;
-  ExactValues Right, Given, Solution, Borders;
+  ExactValues Right, Next, Solution, Borders;
 };
 }

@@ -1,8 +1,7 @@
-// Lamps' light in thick voxels, see DiffusionSystem.h: it is scattered first near the faces that it comes in through,
+// Lamps' light in thick voxels, see LampPassing.h: it is scattered first near the faces that it comes in through,
 // and part of it passes those at once.
 
-#pragma once
-#include "LightPropagation/Diffusion/DiffusionLayout.cl"
+#include "LightPropagation/Diffusion/Conductance.cl"
 
 // Part that returns to the face of light that is lost as exp(-b t) over tau and absorbed at k a mean free path on its
 // way back (numerics.md, Eq. (69)). r, 0 to 1, is how near to the face it is scattered: 1 - 2 t / tau for a mean
@@ -54,4 +53,57 @@ static float passes_border(float tau, float r, float k)
   const float even = -expm1(-k * tau) / (k * tau * (1.0f + k * (2.0f / 3.0f)));
   const float kept = 1.0f - comes_back(tau, r, k) / (1.0f + k * q);
   return fmax(1.0f - kept / (1.0f - even), 0.0f);
+}
+
+// Of one lamp: the light that passes faces at once where it is scattered (numerics.md, Eqs. (66) to (69)).
+// path           W length, of the lamp
+// first_moments  of it, as in Sweep/Deposit.h, [channel][face][stride]
+// passed         [channel][face][stride] W, added to
+// all_path       W length, of all lamps, added to
+__kernel void pass_lamp_light(DiffusionLayout layout, const __global float* sigma_t, const __global float* sigma_a,
+  const __global float* sigma_s, const __global float* path, const __global float* first_moments,
+  __global float* passed, __global float* all_path)
+{
+  VOXEL(layout.size)
+  const int at[3] = { x, y, z };
+  int next[6];
+  find_neighbours(layout.size, x, y, z, i, next);
+  const ulong stride = layout.stride;
+  sigma_t += layout.firstT;
+  sigma_a += layout.first;
+  first_moments += 6 * (ulong)layout.first;
+  passed += 6 * (ulong)layout.first;
+  const float length = path[layout.first + i];
+  const float k = sigma_t[i] > 0.0f ? sqrt(3.0f * fmin(sigma_a[i] / sigma_t[i], 1.0f)) : 0.0f;
+  float part[6], sum = 0.0f;
+  for (int d = 0; d < 6; ++d)
+  {
+    const int axis = d / 2;
+    const float h = layout.spacing[axis];
+    const float tau = sigma_t[i] * h;
+    const float r = length > 0.0f ? fmin(2.0f * first_moments[d * stride + i] / length, 1.0f) : 0.0f;
+    part[d] = 0.0f;
+    if (tau <= 0.0f || r <= 0.0f)
+    {
+      continue;
+    }
+    if (is_border(&layout, at, d))
+    {
+      part[d] = passes_border(tau, r, k) * beside_sweeps(tau);
+    }
+    else if (layout.size[axis] > 1)
+    {
+      const int j = next[d];
+      const float way = way_to_boundary(&layout, tau, sigma_t[i], sigma_a[i]);
+      const float beyond = way_to_boundary(&layout, sigma_t[j] * h, sigma_t[j], sigma_a[j]);
+      part[d] = passes_inside(tau, r, k) * way / (way + beyond) * beside_sweeps(tau);
+    }
+    sum += part[d];
+  }
+  const float power = sigma_s[layout.first + i] * length / fmax(sum, 1.0f); // a corner cannot pass more than there is
+  for (int d = 0; d < 6; ++d)
+  {
+    passed[d * stride + i] += part[d] * power;
+  }
+  all_path[layout.first + i] += length;
 }

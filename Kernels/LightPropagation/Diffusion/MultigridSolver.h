@@ -1,7 +1,7 @@
 #pragma once
 
+#include "Device/ExactValues.h"
 #include "LightPropagation/Diffusion/DiffusionShared.h"
-#include "LightPropagation/Diffusion/ExactValues.h"
 
 #include <array>
 #include <limits>

@@ -28,29 +28,6 @@ std::vector<BundleMaps> MapsOf(const SweepPlan& plan)
 }
 }
 
-void SweepWorkspace::Reserve(Device& device, std::size_t mapFloats, std::size_t scratchFloats)
-{
-  if (this->maps.Size() < mapFloats)
-  {
-    this->maps = {};
-    this->maps = Buffer<float>(device, mapFloats, "the light propagation maps");
-  }
-  if (this->scratch.Size() < scratchFloats)
-  {
-    this->scratch = {};
-    this->scratch = Buffer<float>(device, scratchFloats, "the planes being crossed");
-  }
-}
-
-void SweepWorkspace::ReserveLost(Device& device, std::size_t floats)
-{
-  if (this->lost.Size() < floats)
-  {
-    this->lost = {};
-    this->lost = Buffer<float>(device, floats, "what rounding takes from the light gathered");
-  }
-}
-
 struct AxisSweep::Implementation
 {
   Implementation(Device& device, const SweepVolume& volume, int axis, const std::vector<Bundle>& bundles,
@@ -227,6 +204,7 @@ void AxisSweep::Implementation::Launch(cl::Kernel kernel, const SweepVolume& vol
   const Buffer<float>& flux = volume.deposit.flux ? *volume.deposit.flux : *volume.deposit.path;
   const Buffer<float>& partialCurrents =
     volume.deposit.partialCurrents ? *volume.deposit.partialCurrents : *volume.deposit.path;
+  const Buffer<float>& source = volume.source ? *volume.source : *volume.deposit.path; // never read where there is none
   const Buffer<float>& lost = this->IsPeriodic() ? this->Workspace.lost : *volume.deposit.path;
   SweepInfo info = {};
   info.sigmaFirst = volume.sigma_t_first;
@@ -243,7 +221,7 @@ void AxisSweep::Implementation::Launch(cl::Kernel kernel, const SweepVolume& vol
   for (int launch = 0; launch < schedule.launches; ++launch)
   {
     info.launch = launch;
-    With(kernel, info, *volume.sigma_t, *volume.source, *volume.deposit.path, lost, flux, partialCurrents, this->Maps(),
+    With(kernel, info, *volume.sigma_t, source, *volume.deposit.path, lost, flux, partialCurrents, this->Maps(),
       this->Outside, this->Radiance, this->Workspace.scratch, this->Units, this->Bundles, crossings,
       this->FirstOwnLight, schedule.planes, this->Sideways);
     this->TheDevice.Queue().enqueueNDRangeKernel(kernel, cl::NullRange, cl::NDRange(plan.units.size()), cl::NDRange(1));
@@ -334,8 +312,7 @@ AxisSweep::AxisSweep(Device& device, const SweepVolume& volume, int axis, const 
 
 AxisSweep::~AxisSweep() = default;
 
-void AxisSweep::Start(
-  const SweepVolume& volume, const SweepBoundary& boundary, bool hasSource, int mostPlanes, const Monitor& monitor)
+void AxisSweep::Start(const SweepVolume& volume, const SweepBoundary& boundary, int mostPlanes, const Monitor& monitor)
 {
   Implementation& self = *this->Inner;
   self.Tally = {};
@@ -354,7 +331,7 @@ void AxisSweep::Start(
   }
   const bool lit = static_cast<bool>(boundary);
   // The maps of a periodic axis hold what is on the way from the sweep before.
-  self.CrossOnce(volume, { hasSource, lit, !lit && !self.IsPeriodic() }, monitor);
+  self.CrossOnce(volume, { volume.source != nullptr, lit, !lit && !self.IsPeriodic() }, monitor);
   if (self.IsPeriodic())
   {
     self.GoRound(volume, mostPlanes, monitor);

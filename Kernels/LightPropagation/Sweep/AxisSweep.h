@@ -1,7 +1,9 @@
 #pragma once
 
 #include "LightPropagation/Angular/RayBundles.h"
+#include "LightPropagation/Sweep/SweepTally.h"
 #include "LightPropagation/Sweep/SweepVolume.h"
+#include "LightPropagation/Sweep/SweepWorkspace.h"
 
 #include "Device/Monitor.h"
 
@@ -26,11 +28,9 @@ public:
 
   /// Once through the volume, both ways. Queues the work and, on an open axis, does not wait for it.
   /// @param boundary  what comes in; empty: nothing
-  /// @param hasSource  whether volume.source is to be read
   /// @param mostPlanes  that rays go on a periodic axis before they wait for the next sweep
   /// @param monitor  given fractions of this sweep
-  void Start(
-    const SweepVolume& volume, const SweepBoundary& boundary, bool hasSource, int mostPlanes, const Monitor& monitor);
+  void Start(const SweepVolume& volume, const SweepBoundary& boundary, int mostPlanes, const Monitor& monitor);
 
   /// Discards the rays that are still on the way round a periodic axis.
   void Forget();

@@ -1,7 +1,7 @@
 #pragma once
 
 #include "LightPropagation/Sweep/SweepPlan.h"
-#include "LightPropagation/Sweep/SweepVolume.h"
+#include "LightPropagation/Sweep/SweepTally.h"
 
 #include <vector>
 

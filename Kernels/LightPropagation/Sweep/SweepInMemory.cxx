@@ -31,10 +31,9 @@ SweepInMemory::SweepInMemory(Device& device, const VolumeLayout& layout, const B
 
 SweepVolume SweepInMemory::VolumeOf(const ChannelGroup& group, const Buffer<float>* source) const
 {
-  SweepVolume volume = GroupVolume(this->Layout, group, this->SigmaT);
+  SweepVolume volume = GroupVolume(this->Layout, group, this->SigmaT, this->To);
   volume.box = this->Box;
-  volume.source = source ? source : this->To.path; // never read where there is none
-  volume.deposit = this->To;
+  volume.source = source;
   return volume;
 }
 
@@ -54,7 +53,7 @@ SweepTally SweepInMemory::Apply(const Buffer<float>* source, const SweepBoundary
     {
       const double before = static_cast<double>(g * this->Axes.size() + a);
       const Monitor ofAxis = OfPart(monitor, [=](double done) { return (before + done) / all; });
-      this->Axes[a].Of(g).Start(volume, ofChannels, source != nullptr, this->MostPlanes, ofAxis);
+      this->Axes[a].Of(g).Start(volume, ofChannels, this->MostPlanes, ofAxis);
     }
     for (const Axis& axis : this->Axes)
     {

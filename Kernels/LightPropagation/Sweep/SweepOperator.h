@@ -3,8 +3,12 @@
 #include "Device/Buffer.h"
 #include "Device/Monitor.h"
 #include "LightPropagation/Angular/RayBundles.h"
-#include "LightPropagation/Sweep/SweepVolume.h"
+#include "LightPropagation/Sweep/Deposit.h"
+#include "LightPropagation/Sweep/SweepTally.h"
+#include "Medium/VoxelBox.h"
 
+#include <functional>
+#include <memory>
 #include <vector>
 
 namespace tyndall
@@ -49,4 +53,7 @@ public:
   /// Discards the rays that are under way round periodic axes; their power was told as SweepTally::onTheWay.
   virtual void Forget() = 0;
 };
+
+/// Makes sweeps of one medium: who sweeps asks for one here, and does not know how it is done.
+using SweepMaker = std::function<std::unique_ptr<SweepOperator>(const SweepRequest&)>;
 }

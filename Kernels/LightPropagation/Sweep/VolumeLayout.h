@@ -1,12 +1,15 @@
 #pragma once
 
-#include "LightPropagation/Sweep/SweepVolume.h"
+#include "Device/Buffer.h"
 #include "Medium/Grid.h"
 
 #include <vector>
 
 namespace tyndall
 {
+/// The widest vector of any kernel, floats.
+constexpr std::size_t SweepPadding = 16;
+
 /// Channels that share one sigma_t: they are swept together.
 struct ChannelGroup
 {
@@ -14,8 +17,9 @@ struct ChannelGroup
   int count = 1;
 };
 
-/// How arrays over voxels lie in the device's memory: [channel][stride], the stride a whole number of the widest
-/// vectors.
+/// How arrays over voxels lie in the device's memory: [channel][stride] with voxels x fastest; the stride is the voxel
+/// count rounded up to whole vectors, what is beyond the voxels is zero. Buffers are SweepPadding floats longer: a
+/// vector that begins in them may be read whole.
 struct VolumeLayout
 {
   Grid grid;
@@ -34,16 +38,24 @@ struct VolumeLayout
   }
 };
 
-/// The channels of a group as a sweep sees them, without source and deposit.
-inline SweepVolume GroupVolume(const VolumeLayout& layout, const ChannelGroup& group, const Buffer<float>& sigma_t)
+/// A quantity of voxel and channel, value(voxel, channel), as an array of that layout with `channels` channels; zero
+/// beyond the voxels.
+template <class Value>
+std::vector<float> Planar(const VolumeLayout& layout, int channels, const Value& value)
 {
-  SweepVolume volume;
-  volume.grid = layout.grid;
-  volume.channels = group.count;
-  volume.stride = layout.Stride();
-  volume.sigma_t = &sigma_t;
-  volume.sigma_t_first = layout.ExtinctionFirst(group.first);
-  volume.first = group.first * layout.Stride();
-  return volume;
+  std::vector<float> values(layout.Stride() * channels + SweepPadding, 0.0f);
+  const std::size_t voxels = layout.grid.VoxelCount();
+  for (int c = 0; c < channels; ++c)
+  {
+    for (std::size_t i = 0; i < voxels; ++i)
+    {
+      values[c * layout.Stride() + i] = value(i, c);
+    }
+  }
+  return values;
 }
+
+/// The voxels' values of such an array, times `scale`, the `parts` values of a voxel (channels, times components) side
+/// by side.
+std::vector<float> Interleaved(const VolumeLayout& layout, const Buffer<float>& planar, double scale);
 }

@@ -1,7 +1,7 @@
 #pragma once
 
 #include "LightPropagation/Angular/SweptDirections.h"
-#include "LightPropagation/Sweep/SweepVolume.h"
+#include "LightPropagation/Sweep/SweepTally.h"
 #include "Lights/Lights.h"
 
 #include <array>

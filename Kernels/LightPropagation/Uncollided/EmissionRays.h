@@ -1,5 +1,6 @@
 #pragma once
 
+#include "LightPropagation/Sweep/SweepTally.h"
 #include "LightPropagation/Sweep/SweepVolume.h"
 #include "LightPropagation/Uncollided/EmissionPeaks.h"
 
@@ -17,8 +18,8 @@ namespace tyndall
 ///
 /// Promises: the light has the symmetries of the scene, and what is taken and what leaves are the power emitted.
 ///
-/// Needs axes that are not periodic. Finds no moments of the deposit (SweepVolume.h): light is taken as lost evenly in
-/// each voxel.
+/// Needs axes that are not periodic. Finds no first moments of the deposit (Deposit.h): light is taken as lost evenly
+/// in each voxel.
 ///
 /// @param firstChannel  of the peak's three, that is the volume's first
 /// @param error  difference of two halves of a voxel's rays, to their sum, that will do

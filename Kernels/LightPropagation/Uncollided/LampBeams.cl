@@ -1,7 +1,7 @@
 // Beams from a point lamp through the box. The host gives
 //   ATOMICS      1 where the device has 64-bit atomics, else one work-item does all
 //   LAMBERT, CONE  1 for a rectangle, a spot
-//   MOMENTS     1: moments of the deposit are wanted
+//   MOMENTS     1: first moments of the deposit are wanted
 //   THIN        optical length below which light counts as lost evenly
 //
 // Space around the lamp is six pyramids, one for each way along an axis; in a pyramid beams lie on a grid of tangents,
@@ -85,7 +85,7 @@ static void overlap(float low, float width, int* voxel, float* part)
 //   way   of the step, from begin to end, layers from the lamp
 //   mean  middle of the part of the cross-section in the voxel, half way through the step
 static void add_moments(const LampInfo* lamp, const BeamRow* row, const int* voxel, float2 way, float2 mean,
-  float2 tangent, float tau, float lost, float path, __global long* moments, ulong stride)
+  float2 tangent, float tau, float lost, float path, __global long* first_moments, ulong stride)
 {
   const float part = tau < 0.05f ? 0.5f - tau / 12.0f : 1.0f / tau - (1.0f - lost) / lost;
   const float at = mix(way.x, way.y, part);
@@ -98,7 +98,7 @@ static void add_moments(const LampInfo* lamp, const BeamRow* row, const int* vox
   for (int a = 0; a < 3; ++a)
   {
     const float distance = clamp(from_middle[a], -0.5f, 0.5f);
-    add_units(moments + ((row->axis + a) % 3) * stride, convert_long_sat_rte(path * distance * lamp->scale));
+    add_units(first_moments + ((row->axis + a) % 3) * stride, convert_long_sat_rte(path * distance * lamp->scale));
   }
 }
 #endif
@@ -323,9 +323,9 @@ __kernel void add_fixed(const __global long* fixed_path, __global float* path, u
 
 #if MOMENTS
 // fixed_path  as in follow_lamp
-// moments    W length, [channel][-x, +x, -y, +y, -z, +z][stride], added to
-__kernel void add_fixed_moments(const __global long* fixed_path, __global float* moments, ulong first, ulong stride,
-  float4 units, const __global float* sigma, ulong sigma_first, float diagonal)
+// first_moments  W length, [channel][-x, +x, -y, +y, -z, +z][stride], added to
+__kernel void add_fixed_moments(const __global long* fixed_path, __global float* first_moments, ulong first,
+  ulong stride, float4 units, const __global float* sigma, ulong sigma_first, float diagonal)
 {
   const ulong i = get_global_id(0);
   const int channel = get_global_id(1);
@@ -334,7 +334,7 @@ __kernel void add_fixed_moments(const __global long* fixed_path, __global float*
   {
     const float towards =
       (float)fixed_path[(1 + axis) * stride + i] * unit / units_of(sigma[sigma_first + i], diagonal);
-    __global float* of_axis = moments + 6 * (first + channel * stride) + 2 * axis * stride + i;
+    __global float* of_axis = first_moments + 6 * (first + channel * stride) + 2 * axis * stride + i;
     of_axis[0] += fmax(-towards, 0.0f);
     of_axis[stride] += fmax(towards, 0.0f);
   }

@@ -1,12 +1,8 @@
 #include "LightPropagation/Uncollided/LampBeams.h"
 
 #include "Device/Defines.h"
-#include "LightPropagation/Uncollided/BeamMomentsShared.h"
 #include "LightPropagation/Uncollided/LampBeamsShared.h"
 #include "Numerics/Constants.h"
-
-#include "LightPropagation/Sweep/AxisSweep.h"
-#include "LightPropagation/Sweep/SweepOperator.h"
 #include "Numerics/Vectors.h"
 #include "TyndallKernelSources.h"
 
@@ -21,70 +17,11 @@ namespace tyndall
 {
 namespace
 {
-constexpr int RaysPerEdge = 2;      ///< of a voxel, for parallel beams
 constexpr int PointsPerEdge = 4;    ///< of a rectangle
 constexpr double BeamWidth = 0.5;   ///< of a lamp's beams where they leave the box, voxels; a rectangle's: twice
 constexpr int BeamsAcrossCone = 16; ///< of a spot, at least
 constexpr int RowsPerLaunch = 256;  ///< keeps a launch well below a tenth of a second for rows of a thousand voxels
 constexpr int RoundsAtMost = 64;    ///< of a ray on a periodic axis
-
-std::array<double, 3> Array(const glm::dvec3& v)
-{
-  return { v.x, v.y, v.z };
-}
-
-SweepTally DepositBeam(Device& device, const SweepVolume& volume, const Light& light,
-  const std::array<bool, 3>& periodic, SweepWorkspace& workspace, const Monitor& monitor)
-{
-  const std::array<double, 3> omega = Array(glm::normalize(Vector(light.direction)));
-  // Moments of the deposit are found from the powers through the faces.
-  SweepVolume own = volume;
-  Buffer<float> path, partialCurrents;
-  if (volume.deposit.moments)
-  {
-    const std::size_t all = volume.first + volume.channels * volume.stride;
-    path = Buffer<float>(device, all + SweepPadding, "the light of a beam");
-    partialCurrents = Buffer<float>(device, 6 * all + SweepPadding, "the light of a beam");
-    path.Fill(0.0f);
-    partialCurrents.Fill(0.0f);
-    own.deposit.path = &path;
-    own.deposit.partialCurrents = &partialCurrents;
-  }
-  SweepTally tally;
-  const std::vector<int> axes = MarchingAxes(volume.grid, omega);
-  for (const int axis : axes) // each carries its part of the beam
-  {
-    Rgb power = light.power;
-    for (double& ofChannel : power)
-    {
-      ofChannel /= static_cast<double>(axes.size());
-    }
-    AxisSweep beam(device, own, axis, BeamAlong(axis, volume.grid, periodic, omega, RaysPerEdge), periodic, workspace);
-    beam.Start(
-      own, [&](int, int) { return power; }, false, MostPlanesAround, monitor);
-    Add(tally, beam.Finish());
-  }
-  if (volume.deposit.moments)
-  {
-    BeamInfo info = {};
-    for (int a = 0; a < 3; ++a)
-    {
-      info.size[a] = volume.grid.size[a];
-      info.periodic[a] = periodic[a];
-      info.up[a] = omega[a] >= 0.0;
-      info.spacing[a] = static_cast<float>(volume.grid.spacing[a]);
-      info.lengths[a] = static_cast<float>(volume.grid.spacing[a] / std::max(std::abs(omega[a]), 1e-6));
-    }
-    info.thin = ThinForMoments;
-    cl::Kernel add = device.Kernel("add_beam", kernel_source::BeamMoments);
-    With(add, info, *volume.sigma_t, cl_ulong(volume.sigma_t_first), path, partialCurrents, *volume.deposit.path,
-      *volume.deposit.moments, cl_ulong(volume.first), cl_ulong(volume.stride));
-    device.Queue().enqueueNDRangeKernel(
-      add, cl::NullRange, cl::NDRange(volume.grid.VoxelCount(), volume.channels), cl::NullRange);
-    device.Finish();
-  }
-  return tally;
-}
 
 /// Smallest and largest tangent (voxels along `aside` per layer) at which the box is seen from `position` between two
 /// depths, within the pyramid.
@@ -200,17 +137,6 @@ std::vector<glm::dvec3> Points(const Light& light)
   return points;
 }
 
-/// W per steradian of a light of 1 W, along its axis.
-double Intensity(const Light& light)
-{
-  switch (light.type)
-  {
-    case LightType::Spot: return 1.0 / (2.0 * Pi * (1.0 - std::cos(0.5 * light.angle * Pi / 180.0)));
-    case LightType::Rectangle: return 1.0 / Pi;
-    default: return 1.0 / (4.0 * Pi);
-  }
-}
-
 /// The beams of one lamp, from all points that stand for it.
 class LampBeams
 {
@@ -220,7 +146,7 @@ public:
     , Volume(volume)
     , TheLight(light)
     , Periodic(periodic)
-    , Path(device, (volume.deposit.moments ? 4 : 1) * volume.stride, "the light of a lamp")
+    , Path(device, (volume.deposit.firstMoments ? 4 : 1) * volume.stride, "the light of a lamp")
   {
     this->Path.Fill(0);
   }
@@ -247,10 +173,10 @@ public:
       this->TheDevice.Queue().enqueueNDRangeKernel(kernel, cl::NullRange, voxels, cl::NullRange);
     };
     finish(add, *this->Volume.deposit.path);
-    if (this->Volume.deposit.moments)
+    if (this->Volume.deposit.firstMoments)
     {
       cl::Kernel addMoments = this->Kernel("add_fixed_moments");
-      finish(addMoments, *this->Volume.deposit.moments);
+      finish(addMoments, *this->Volume.deposit.firstMoments);
     }
     return this->TallyTimes(correction);
   }
@@ -263,7 +189,7 @@ private:
     return this->TheDevice.Kernel(name, kernel_source::LampBeams,
       Define("ATOMICS", this->HasAtomics()) + Define("LAMBERT", this->TheLight.type == LightType::Rectangle) +
         Define("CONE", this->TheLight.type == LightType::Spot) +
-        Define("MOMENTS", this->Volume.deposit.moments != nullptr) + DefineFloat("THIN", ThinForMoments));
+        Define("MOMENTS", this->Volume.deposit.firstMoments != nullptr) + DefineFloat("THIN", ThinForFirstMoments));
   }
 
   /// Fixed point units per length (numerics.md, Eq. (36)): no voxel can gather more than all power along its diagonal,
@@ -291,7 +217,7 @@ private:
       info.position[a] = static_cast<float>(position[a]);
       info.direction[a] = static_cast<float>(direction[a]);
     }
-    info.intensity = static_cast<float>(Intensity(this->TheLight) * part);
+    info.intensity = static_cast<float>(AxialIntensity(this->TheLight) * part);
     info.cosine = static_cast<float>(std::cos(0.5 * this->TheLight.angle * Pi / 180.0));
     info.scale = static_cast<float>(this->Scale());
     info.diagonal = static_cast<float>(this->Diagonal());
@@ -375,13 +301,8 @@ private:
 }
 
 SweepTally DepositLamp(Device& device, const SweepVolume& volume, const Light& light,
-  const std::array<bool, 3>& periodic, SweepWorkspace& workspace, const Monitor& monitor)
+  const std::array<bool, 3>& periodic, const Monitor& monitor)
 {
-  if (light.power[0] + light.power[1] + light.power[2] == 0.0)
-  {
-    return {};
-  }
-  return light.type == LightType::Directional ? DepositBeam(device, volume, light, periodic, workspace, monitor)
-                                              : LampBeams(device, volume, light, periodic).Run(monitor);
+  return LampBeams(device, volume, light, periodic).Run(monitor);
 }
 }

@@ -1,26 +1,25 @@
 #pragma once
 
-#include "LightPropagation/Sweep/SweepVolume.h"
-
 #include "Device/Monitor.h"
+#include "LightPropagation/Sweep/SweepTally.h"
+#include "LightPropagation/Sweep/SweepVolume.h"
 #include "Lights/Lights.h"
 
 namespace tyndall
 {
-/// The first-collision source: follows the light of one lamp to where it first meets the medium, along exact rays, and
-/// deposits what they lose as a sweep does (numerics.md, sections 5.3 to 5.5). A set of directions would make a few
+/// Follows the light of one point, spot or rectangle lamp to where it first meets the medium, along exact rays, and
+/// deposits what they lose as a sweep does (numerics.md, sections 5.4 and 5.5). A set of directions would make a few
 /// rays of it (ray effects of 100% and more).
 ///
-/// A directional light is a beam of parallel rays, 2 x 2 a voxel. Point, spot and rectangle lights send square beams,
-/// at most half a voxel wide (a rectangle's, from 4 x 4 points: one) where they leave the box and at least 16 across a
-/// spot's cone, each with the power of its solid angle, Eq. (33). Deposits of different beams meet in 64-bit fixed
-/// point, Eq. (35), so that the sum does not depend on their order. All power of a lamp inside the box is followed.
+/// Lamps send square beams, at most half a voxel wide (a rectangle's, from 4 x 4 points: one) where they leave the box
+/// and at least 16 across a spot's cone, each with the power of its solid angle, Eq. (33). Deposits of different beams
+/// meet in 64-bit fixed point, Eq. (35), so that the sum does not depend on their order. All power of a lamp inside the
+/// box is followed.
 ///
 /// Where an axis is periodic, rays that leave return on the other side; a light outside the box then shines only on
 /// what it sees of the box itself, once for each period.
 ///
-/// @param workspace  of sweeps that are not under way
 /// @return what came in (for a light inside the box: all its power), what left, what still goes round a periodic axis
 SweepTally DepositLamp(Device& device, const SweepVolume& volume, const Light& light,
-  const std::array<bool, 3>& periodic, SweepWorkspace& workspace, const Monitor& monitor);
+  const std::array<bool, 3>& periodic, const Monitor& monitor);
 }

@@ -13,8 +13,7 @@ public:
   /// @param settings, light  must stay
   UncollidedBoundary(const PropagationSettings& settings, const BoundaryLight& light);
 
-  SweepTally AddTo(Device& device, const SweepVolume& volume, int firstChannel, SweepWorkspace& workspace,
-    const Monitor& monitor) const override;
+  SweepTally AddTo(const UncollidedVolume& volume, const Monitor& monitor) const override;
 
 private:
   const PropagationSettings& Settings;

@@ -1,9 +1,7 @@
 #pragma once
 
-#include "LightPropagation/Uncollided/EmissionRays.h"
+#include "LightPropagation/Uncollided/EmissionPeaks.h"
 #include "LightPropagation/Uncollided/UncollidedSource.h"
-
-#include <utility>
 
 namespace tyndall
 {
@@ -12,17 +10,9 @@ class UncollidedEmission : public UncollidedSource
 {
 public:
   /// @param error  as DepositEmission takes it
-  UncollidedEmission(EmissionPeak peak, double error)
-    : Peak(std::move(peak))
-    , Error(error)
-  {
-  }
+  UncollidedEmission(EmissionPeak peak, double error);
 
-  SweepTally AddTo(
-    Device& device, const SweepVolume& volume, int firstChannel, SweepWorkspace&, const Monitor& monitor) const override
-  {
-    return DepositEmission(device, volume, firstChannel, this->Peak, this->Error, monitor);
-  }
+  SweepTally AddTo(const UncollidedVolume& volume, const Monitor& monitor) const override;
 
 private:
   EmissionPeak Peak;

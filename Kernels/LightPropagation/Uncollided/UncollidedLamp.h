@@ -1,27 +1,17 @@
 #pragma once
 
-#include "LightPropagation/Uncollided/LampBeams.h"
 #include "LightPropagation/Uncollided/UncollidedSource.h"
+#include "Lights/Lights.h"
 
 namespace tyndall
 {
-/// The uncollided flux of one lamp, along exact rays (LampBeams.h).
+/// The uncollided flux of one lamp, along exact rays: parallel ones (ParallelBeam.h) or those of a point (LampBeams.h).
 class UncollidedLamp : public UncollidedSource
 {
 public:
-  UncollidedLamp(const Light& lamp, const std::array<bool, 3>& periodic)
-    : Lamp(lamp)
-    , Periodic(periodic)
-  {
-  }
+  UncollidedLamp(const Light& lamp, const std::array<bool, 3>& periodic);
 
-  SweepTally AddTo(Device& device, const SweepVolume& volume, int firstChannel, SweepWorkspace& workspace,
-    const Monitor& monitor) const override
-  {
-    Light ofChannels = this->Lamp;
-    ofChannels.power = From(this->Lamp.power, firstChannel);
-    return DepositLamp(device, volume, ofChannels, this->Periodic, workspace, monitor);
-  }
+  SweepTally AddTo(const UncollidedVolume& volume, const Monitor& monitor) const override;
 
 private:
   Light Lamp;

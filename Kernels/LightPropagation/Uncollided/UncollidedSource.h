@@ -2,10 +2,21 @@
 
 #include "Device/Device.h"
 #include "Device/Monitor.h"
+#include "LightPropagation/Sweep/SweepOperator.h"
 #include "LightPropagation/Sweep/SweepVolume.h"
 
 namespace tyndall
 {
+/// The medium that uncollided light goes through, and where it is put down.
+struct UncollidedVolume
+{
+  Device& device;
+  const VolumeLayout& layout;
+  const Buffer<float>& sigma_t; ///< 1/length
+  SweepMaker makeSweep;         ///< for light that goes along sets of parallel rays
+  Deposit deposit;
+};
+
 /// Light up to where it first meets the medium: the uncollided flux of one lamp, of all that shines through the box's
 /// faces, of a small bright part of the medium (numerics.md, section 5). Found once a solve; what of it is scattered is
 /// the first source.
@@ -14,11 +25,25 @@ class UncollidedSource
 public:
   virtual ~UncollidedSource() = default;
 
-  /// Adds its path integrals, and flux and moments where the deposit has arrays for them, to the volume's deposit.
-  /// @param firstChannel  of the light's three, that is the volume's first
-  /// @param workspace  of sweeps that are not under way
+  /// Adds its path integrals, and flux and first moments where the deposit has arrays for them, to the deposit.
   /// @return what came in, what left, what still goes round a periodic axis
-  virtual SweepTally AddTo(Device& device, const SweepVolume& volume, int firstChannel, SweepWorkspace& workspace,
-    const Monitor& monitor) const = 0;
+  virtual SweepTally AddTo(const UncollidedVolume& volume, const Monitor& monitor) const = 0;
 };
+
+/// Follows light through the channels of each sigma_t in turn.
+/// @param add  from a volume of some channels, the first of them and a monitor to their tally
+template <class AddGroup>
+SweepTally AddByGroups(const UncollidedVolume& volume, const Monitor& monitor, const AddGroup& add)
+{
+  SweepTally tally;
+  const std::vector<ChannelGroup> groups = volume.layout.Groups();
+  for (std::size_t g = 0; g < groups.size(); ++g)
+  {
+    const double all = static_cast<double>(groups.size());
+    const Monitor ofGroup = OfPart(monitor, g / all, (g + 1) / all);
+    const SweepVolume ofChannels = GroupVolume(volume.layout, groups[g], volume.sigma_t, volume.deposit);
+    Add(tally, add(ofChannels, groups[g].first, ofGroup), groups[g].first);
+  }
+  return tally;
+}
 }

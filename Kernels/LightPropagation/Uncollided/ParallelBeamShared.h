@@ -1,4 +1,4 @@
-// Shared by C++ and the kernel of BeamMoments.cl.
+// Shared by C++ and the kernel of ParallelBeam.cl.
 #pragma once
 
 #include "Device/SharedTypes.h"

@@ -1,6 +1,6 @@
-// A beam of parallel light, after it was followed: its path is added to that of all lights, and its moments.
+// A beam of parallel light, after it was followed: its path is added to that of all lights, and its first moments.
 
-#include "LightPropagation/Uncollided/BeamMomentsShared.h"
+#include "LightPropagation/Uncollided/ParallelBeamShared.h"
 
 // Distance from the middle of a voxel, in voxels, of the mean place where light is lost that comes in through a face
 // and falls off over tau.
@@ -9,12 +9,12 @@ static float distance_to_face(float tau)
   return tau < 0.05f ? tau / 12.0f : 0.5f - 1.0f / tau + (tau < 80.0f ? 1.0f / expm1(tau) : 0.0f);
 }
 
-// Moments of the deposit from the powers through the faces (numerics.md, Eq. (39)): exact where as much goes in as
-// comes out through the faces beside; never more than if all light came in through the face.
-// path, currents     of the beam, as in SweepVolume.h
-// all_path, moments  of all lamps
+// First moments of the deposit from the powers through the faces (numerics.md, Eq. (39)): exact where as much goes in
+// as comes out through the faces beside; never more than if all light came in through the face.
+// path, currents           of the beam, as in Sweep/Deposit.h
+// all_path, first_moments  of all lamps
 __kernel void add_beam(BeamInfo beam, const __global float* sigma, ulong sigma_first, const __global float* path,
-  const __global float* currents, __global float* all_path, __global float* moments, ulong first, ulong stride)
+  const __global float* currents, __global float* all_path, __global float* first_moments, ulong first, ulong stride)
 {
   const ulong i = get_global_id(0);
   const ulong begin = first + get_global_id(1) * stride;
@@ -22,7 +22,7 @@ __kernel void add_beam(BeamInfo beam, const __global float* sigma, ulong sigma_f
   all_path[begin + i] += length;
   const float s = sigma[sigma_first + i];
   currents += 6 * begin;
-  moments += 6 * begin;
+  first_moments += 6 * begin;
   const int at[3] = { i % beam.size[0], i / beam.size[0] % beam.size[1], i / ((ulong)beam.size[0] * beam.size[1]) };
   float in[3], out[3], rest = -s * length, leaving = 0.0f;
   bool border[3];
@@ -48,7 +48,7 @@ __kernel void add_beam(BeamInfo beam, const __global float* sigma, ulong sigma_f
     const float onwards = (length / beam.lengths[a] - 0.5f * (in[a] + out[a])) / s;
     const float most = length * distance_to_face(tau);
     const int ahead = 2 * a + beam.up[a];
-    moments[ahead * stride + i] += clamp(onwards, 0.0f, most);
-    moments[(ahead ^ 1) * stride + i] += clamp(-onwards, 0.0f, most);
+    first_moments[ahead * stride + i] += clamp(onwards, 0.0f, most);
+    first_moments[(ahead ^ 1) * stride + i] += clamp(-onwards, 0.0f, most);
   }
 }

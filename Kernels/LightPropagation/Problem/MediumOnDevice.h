@@ -27,25 +27,4 @@ public:
 private:
   Buffer<float> Extinction, Scattering, Absorption;
 };
-
-/// A quantity of voxel and channel, value(voxel, channel), as an array of that layout with `channels` channels; zero
-/// beyond the voxels.
-template <class Value>
-std::vector<float> Planar(const VolumeLayout& layout, int channels, const Value& value)
-{
-  std::vector<float> values(layout.Stride() * channels + SweepPadding, 0.0f);
-  const std::size_t voxels = layout.grid.VoxelCount();
-  for (int c = 0; c < channels; ++c)
-  {
-    for (std::size_t i = 0; i < voxels; ++i)
-    {
-      values[c * layout.Stride() + i] = value(i, c);
-    }
-  }
-  return values;
-}
-
-/// The voxels' values of such an array, times `scale`, the `parts` values of a voxel (channels, times components) side
-/// by side.
-std::vector<float> Interleaved(const VolumeLayout& layout, const Buffer<float>& planar, double scale);
 }

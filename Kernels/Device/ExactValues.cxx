@@ -1,4 +1,4 @@
-#include "LightPropagation/Diffusion/ExactValues.h"
+#include "Device/ExactValues.h"
 
 #include "Device/Defines.h"
 

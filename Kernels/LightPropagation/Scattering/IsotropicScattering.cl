@@ -1,18 +1,18 @@
-// What the sweeps gathered becomes light and the next order's source (Gruson et al., Eq. 4, conservative). The host
-// gives
-//   SCATTERS  0: sigma_s is zero, and neither it nor `source` is there
+// From light that was found to what is scattered of it (Gruson et al., Eq. 4, conservative). The host gives
+//   SCATTERS  0: sigma_s is zero, and `scatter_order` reads neither it nor `source`
 
-#include "LightPropagation/Conservative/CollectShared.h"
+#include "LightPropagation/Scattering/CollectShared.h"
+#include "Numerics/Exact.cl"
 #include "Numerics/Numerics.cl"
 
-// A work-item a chunk of a channel; a channel's arrays begin at a vector's border and are filled up with zeros to a
-// whole number of vectors.
+// One order: what the sweep gathered becomes light and the next source. A work-item a chunk of a channel; a channel's
+// arrays begin at a vector's border and are filled up with zeros to a whole number of vectors.
 // path     W length; cleared
 // fluence  W / length^2, added to
 // source   W / (length^3 sr), replaced by what was scattered
 // tally    [channel][chunk] absorbed and scattered W
 // first, last  values of a channel, whole vectors: the others have gathered nothing
-__kernel void collect(__global float* path, __global float* fluence, __global float* source,
+__kernel void scatter_order(__global float* path, __global float* fluence, __global float* source,
   const __global float* sigma_t, const __global float* sigma_s, __global float2* tally, ulong stride, ulong first,
   ulong last, int one_sigma_t, float per_volume)
 {
@@ -47,24 +47,28 @@ __kernel void collect(__global float* path, __global float* fluence, __global fl
 
 // All that was scattered but what the last order left over: from that, in `source`, and the fluence of all orders. A
 // work-item a value of a channel.
-__kernel void gather_scattered(
+__kernel void scatter_all_orders(
   const __global float* fluence, __global float* source, const __global float* sigma_s, ulong stride)
 {
   const ulong i = get_global_id(1) * stride + get_global_id(0);
   source[i] = fmax(sigma_s[i] * fluence[i] * (M_1_PI_F * 0.25f) - source[i], 0.0f);
 }
 
-// Light in the voxels outside a box becomes fluence. A work-item a value of a channel.
-__kernel void add_outside(const __global float* path, __global float* fluence, ulong stride, float per_volume,
-  int3 size, int3 first, int3 filled)
+// What is scattered of light that has met nothing yet. A work-item a value of a channel.
+// path  W length
+__kernel void add_first_scattered(
+  const __global float* path, __global float* source, const __global float* sigma_s, ulong stride, float per_volume)
 {
-  const ulong at = get_global_id(0);
-  const int x = (int)(at % size.x) - first.x;
-  const int y = (int)(at / size.x % size.y) - first.y;
-  const int z = (int)(at / ((ulong)size.x * size.y)) - first.z;
-  if (x < 0 || y < 0 || z < 0 || x >= filled.x || y >= filled.y || z >= filled.z)
-  {
-    const ulong i = get_global_id(1) * stride + at;
-    fluence[i] += path[i] * per_volume;
-  }
+  const ulong i = get_global_id(1) * stride + get_global_id(0);
+  source[i] += sigma_s[i] * path[i] * (per_volume * M_1_PI_F * 0.25f);
+}
+
+// The source of a channel, which begins at `first` in all arrays but `fluence`: what is given and what is scattered. A
+// work-item a voxel. A diffusion system's fluence can be negative.
+__kernel void scatter_fluence(const __global exact* fluence, const __global float* given, __global float* source,
+  const __global float* sigma_s, ulong first)
+{
+  const ulong i = get_global_id(0);
+  const ulong at = first + i;
+  source[at] = fmax(given[at] + sigma_s[at] * fmax((float)fluence[i], 0.0f) * (0.25f * M_1_PI_F), 0.0f);
 }

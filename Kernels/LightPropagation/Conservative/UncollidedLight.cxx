@@ -1,0 +1,186 @@
+#include "LightPropagation/Conservative/UncollidedLight.h"
+
+#include "LightPropagation/Diffusion/LampPassing.h"
+#include "LightPropagation/Problem/ScatteringOrders.h"
+#include "LightPropagation/Uncollided/UncollidedBoundary.h"
+
+#include <algorithm>
+
+namespace tyndall
+{
+namespace
+{
+constexpr double ThickForMoments = 0.1; ///< mean free paths a voxel
+
+double Ratio(double of, double to)
+{
+  return to > 0.0 ? of / to : 1.0;
+}
+}
+
+UncollidedLight::UncollidedLight(TransportParts& parts, const Monitor& monitor)
+  : Parts(parts)
+  , TheMedium(parts.Problem.TheMedium())
+  , LinearSource(parts.Problem.Settings().source != PropagationSource::Constant)
+{
+  parts.CountEmission(this->Counted);
+  this->AddSources(monitor);
+  this->Lengths = parts.Path.Read();
+  if (parts.FineBoundary)
+  {
+    this->AddBoundaryDifference(monitor);
+  }
+  this->CountAbsorbed();
+}
+
+/// In thick voxels it matters where lamps' light is first scattered.
+bool UncollidedLight::NeedsFirstMoments() const
+{
+  const Grid& grid = this->TheMedium.grid;
+  const double longest = *std::max_element(grid.spacing.begin(), grid.spacing.end());
+  bool thick = false;
+  for (std::size_t i = 0; i < grid.VoxelCount() && !thick; ++i)
+  {
+    for (int c = 0; c < this->Parts.Layout.channels && !thick; ++c)
+    {
+      thick = this->TheMedium.TransportSigmaT(i, c) * longest > ThickForMoments;
+    }
+  }
+  return this->LinearSource && thick && !this->Parts.Lamps.empty();
+}
+
+/// Lamps and bright emission, into the arrays of all sources.
+void UncollidedLight::AddSources(const Monitor& monitor)
+{
+  TransportParts& parts = this->Parts;
+  Buffer<float> firstMoments, path; // of one lamp
+  if (this->NeedsFirstMoments())
+  {
+    firstMoments = Buffer<float>(parts.TheDevice, parts.Layout.Floats(6), "light of lamps");
+    path = Buffer<float>(parts.TheDevice, parts.Layout.Floats(), "light of lamps");
+    this->ThroughFaces =
+      Buffer<float>(parts.TheDevice, 6 * parts.Layout.Stride() * parts.Layout.channels, "light of lamps");
+    this->ThroughFaces.Fill(0.0f);
+  }
+  for (const std::unique_ptr<UncollidedSource>& lamp : parts.LampSources())
+  {
+    if (firstMoments.Size() == 0)
+    {
+      this->Count(parts.AddUncollided(*lamp, parts.WholeDeposit(), monitor));
+      continue;
+    }
+    firstMoments.Fill(0.0f);
+    path.Fill(0.0f);
+    this->Count(parts.AddUncollided(*lamp, { &path, parts.WholeDeposit().flux, nullptr, &firstMoments }, monitor));
+    this->PassFaces(path, firstMoments);
+  }
+  for (const std::unique_ptr<UncollidedSource>& peak : parts.BrightEmissionSources())
+  {
+    this->Count(parts.AddUncollided(*peak, parts.WholeDeposit(), monitor));
+  }
+}
+
+void UncollidedLight::Count(const SweepTally& tally)
+{
+  this->Counted.Count(tally);
+  for (int c = 0; c < 3; ++c)
+  {
+    this->Stranded[c] += tally.onTheWay[c];
+  }
+}
+
+/// Adds the part of a lamp's light that passes voxels' faces at once where it is first scattered.
+void UncollidedLight::PassFaces(const Buffer<float>& path, const Buffer<float>& firstMoments)
+{
+  const TransportParts& parts = this->Parts;
+  for (int c = 0; c < parts.Layout.channels; ++c)
+  {
+    const std::size_t first = c * parts.Layout.Stride();
+    PassLampLight(parts.TheDevice, parts.Layout.grid, parts.Problem.Settings().periodic,
+      { parts.Layout.Stride(), parts.Layout.ExtinctionFirst(c), first, &parts.OnDevice.SigmaT(),
+        &parts.OnDevice.SigmaA(), &parts.OnDevice.SigmaS(), &path, &firstMoments, &this->ThroughFaces, &parts.Path });
+  }
+}
+
+/// Weight of the difference of finer and usual directions (numerics.md, Eqs. (55), (76)): little in thick voxels, where
+/// it matters at which depth light is scattered, which the diffusion system has for the light in sweeps alone.
+double UncollidedLight::PartOfDifference(std::size_t voxel, int channel) const
+{
+  const std::array<double, 3>& h = this->TheMedium.grid.spacing;
+  const double longest = *std::max_element(h.begin(), h.end());
+  const double tau = longest * this->TheMedium.TransportSigmaT(voxel, channel);
+  const double absorbing = longest * this->TheMedium.sigma_a.At(voxel, channel);
+  // As the system weighs what sweeps find.
+  return this->LinearSource ? 1.0 / (1.0 + tau * (0.25 * tau + 3.0 * absorbing)) : 1.0;
+}
+
+/// Sweeps carry all light from outside along the usual directions, as the diffusion system needs it. The difference
+/// that finer ones make to it before it is scattered is added like the light of lamps (numerics.md, Eq. (76)): where
+/// light is scattered many times, scaled in each voxel so that power is as in the sweeps and an even sky stays even,
+/// else scaled by the power that enters. Power that this adds to voxels or takes from them is made up for by what
+/// leaves the box.
+void UncollidedLight::AddBoundaryDifference(const Monitor& monitor)
+{
+  TransportParts& parts = this->Parts;
+  const auto fine = parts.FindUncollided(UncollidedBoundary(parts.Problem.Settings(), *parts.FineBoundary), monitor);
+  const auto usual = parts.FindUncollided(UncollidedBoundary(parts.Problem.Settings(), *parts.UsualBoundary), monitor);
+  const bool many = ScatteredManyTimes(parts.Problem);
+  const TransportParts::EvenSky even = many ? parts.FindEvenSky(monitor) : TransportParts::EvenSky();
+  std::vector<float> flux = parts.Problem.Settings().netFlux ? parts.Flux.Read() : std::vector<float>();
+  const std::size_t stride = parts.Layout.Stride();
+  for (int c = 0; c < parts.Layout.channels; ++c)
+  {
+    double more = 0.0, out = 0.0, in = 0.0, usualIn = 0.0;
+    for (int face = 0; face < 6; ++face)
+    {
+      in += fine.tally.in[face][c];
+      usualIn += usual.tally.in[face][c];
+    }
+    const double whole = Ratio(usualIn, in);
+    for (std::size_t i = 0; i < parts.Layout.grid.VoxelCount(); ++i)
+    {
+      const std::size_t at = c * stride + i;
+      const double part = this->PartOfDifference(i, c);
+      const double scale = many ? Ratio(even.usual.path[at], even.fine.path[at]) : whole;
+      const double difference = part * (scale * fine.path[at] - usual.path[at]);
+      this->Lengths[at] += static_cast<float>(difference);
+      more += this->TheMedium.TransportSigmaT(i, c) * difference;
+      for (int a = 0; a < 3 && !flux.empty(); ++a)
+      {
+        const std::size_t along = (3 * c + a) * stride + i;
+        flux[along] += static_cast<float>(part * (scale * fine.flux[along] - usual.flux[along]));
+      }
+    }
+    std::array<double, 6> leaves;
+    for (int face = 0; face < 6; ++face)
+    {
+      const double scale = many ? Ratio(even.usual.tally.out[face][c], even.fine.tally.out[face][c]) : whole;
+      leaves[face] = scale * fine.tally.out[face][c] - usual.tally.out[face][c];
+      more += leaves[face];
+      out += fine.tally.out[face][c];
+    }
+    for (int face = 0; face < 6 && out > 0.0; ++face)
+    {
+      this->Counted.Escape(c, face, leaves[face] - more * fine.tally.out[face][c] / out);
+    }
+  }
+  if (!flux.empty())
+  {
+    parts.Flux.Write(flux.data());
+  }
+}
+
+void UncollidedLight::CountAbsorbed()
+{
+  const VolumeLayout& layout = this->Parts.Layout;
+  for (int c = 0; c < layout.channels; ++c)
+  {
+    for (std::size_t i = 0; i < layout.grid.VoxelCount(); ++i)
+    {
+      this->Counted.Absorb(
+        c, static_cast<double>(this->TheMedium.sigma_a.At(i, c)) * this->Lengths[c * layout.Stride() + i]);
+    }
+    this->Counted.LeaveOver(c, this->Stranded[c]);
+  }
+}
+}

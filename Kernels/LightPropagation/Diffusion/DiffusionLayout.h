@@ -1,0 +1,26 @@
+#pragma once
+
+#include "LightPropagation/Diffusion/DiffusionShared.h"
+#include "Medium/Grid.h"
+
+#include <array>
+
+namespace tyndall
+{
+/// Of `Arrays`, where a channel begins.
+template <class Arrays>
+DiffusionLayout LayoutOf(const Grid& grid, const std::array<bool, 3>& periodic, const Arrays& arrays)
+{
+  DiffusionLayout layout = {};
+  for (int axis = 0; axis < 3; ++axis)
+  {
+    layout.size[axis] = grid.size[axis];
+    layout.periodic[axis] = periodic[axis];
+    layout.spacing[axis] = static_cast<float>(grid.spacing[axis]);
+  }
+  layout.stride = static_cast<cl_int>(arrays.stride);
+  layout.firstT = static_cast<cl_int>(arrays.firstT);
+  layout.first = static_cast<cl_int>(arrays.first);
+  return layout;
+}
+}

@@ -1,0 +1,88 @@
+#include "LightPropagation/Uncollided/ParallelBeam.h"
+
+#include "LightPropagation/Angular/RayBundles.h"
+#include "LightPropagation/Uncollided/ParallelBeamShared.h"
+#include "Numerics/Vectors.h"
+#include "TyndallKernelSources.h"
+
+#include <glm/geometric.hpp>
+#include <glm/vec3.hpp>
+
+#include <algorithm>
+#include <cmath>
+
+namespace tyndall
+{
+namespace
+{
+constexpr int RaysPerEdge = 2; ///< of a voxel
+
+/// Adds what a beam deposited, and its first moments, which are found from the powers through the voxels' faces.
+void AddWithFirstMoments(const UncollidedVolume& volume, const std::array<double, 3>& omega,
+  const std::array<bool, 3>& periodic, const Deposit& ofBeam)
+{
+  const Grid& grid = volume.layout.grid;
+  BeamInfo info = {};
+  for (int a = 0; a < 3; ++a)
+  {
+    info.size[a] = grid.size[a];
+    info.periodic[a] = periodic[a];
+    info.up[a] = omega[a] >= 0.0;
+    info.spacing[a] = static_cast<float>(grid.spacing[a]);
+    info.lengths[a] = static_cast<float>(grid.spacing[a] / std::max(std::abs(omega[a]), 1e-6));
+  }
+  info.thin = ThinForFirstMoments;
+  cl::Kernel add = volume.device.Kernel("add_beam", kernel_source::ParallelBeam);
+  for (const ChannelGroup& group : volume.layout.Groups())
+  {
+    const SweepVolume to = GroupVolume(volume.layout, group, volume.sigma_t, volume.deposit);
+    With(add, info, *to.sigma_t, cl_ulong(to.sigma_t_first), *ofBeam.path, *ofBeam.partialCurrents, *to.deposit.path,
+      *to.deposit.firstMoments, cl_ulong(to.first), cl_ulong(to.stride));
+    volume.device.Queue().enqueueNDRangeKernel(
+      add, cl::NullRange, cl::NDRange(grid.VoxelCount(), to.channels), cl::NullRange);
+  }
+  volume.device.Finish();
+}
+}
+
+SweepTally DepositBeam(
+  const UncollidedVolume& volume, const Light& light, const std::array<bool, 3>& periodic, const Monitor& monitor)
+{
+  const Grid& grid = volume.layout.grid;
+  const glm::dvec3 along = glm::normalize(Vector(light.direction));
+  const std::array<double, 3> omega = { along.x, along.y, along.z };
+  Deposit deposit = volume.deposit;
+  deposit.firstMoments = nullptr;
+  Buffer<float> path, partialCurrents;
+  if (volume.deposit.firstMoments)
+  {
+    path = Buffer<float>(volume.device, volume.layout.Floats(), "the light of a beam");
+    partialCurrents = Buffer<float>(volume.device, volume.layout.Floats(6), "the light of a beam");
+    path.Fill(0.0f);
+    partialCurrents.Fill(0.0f);
+    deposit.path = &path;
+    deposit.partialCurrents = &partialCurrents;
+  }
+  const std::vector<int> axes = MarchingAxes(grid, omega);
+  Rgb power = light.power; // each of the axes carries its part of the beam
+  for (double& ofChannel : power)
+  {
+    ofChannel /= static_cast<double>(axes.size());
+  }
+  SweepTally tally;
+  for (std::size_t a = 0; a < axes.size(); ++a)
+  {
+    const SweepRequest request = { deposit, { { axes[a], BeamAlong(axes[a], grid, periodic, omega, RaysPerEdge) } } };
+    const double all = static_cast<double>(axes.size());
+    const Monitor ofAxis = OfPart(monitor, a / all, (a + 1) / all);
+    Add(tally,
+      volume.makeSweep(request)->Apply(
+        nullptr, [&](int, int) { return power; }, ofAxis));
+  }
+  if (volume.deposit.firstMoments)
+  {
+    AddWithFirstMoments(volume, omega, periodic, deposit);
+  }
+  return tally;
+}
+}

@@ -1,0 +1,11 @@
+// Numbers as Device/ExactValues.h holds them. The host gives
+//   DOUBLES  1 where the device has double precision
+
+#pragma once
+
+#if DOUBLES
+#pragma OPENCL EXTENSION cl_khr_fp64 : enable
+typedef double exact;
+#else
+typedef float exact;
+#endif
