@@ -7,6 +7,12 @@
 
 namespace tyndall
 {
+/// The face, of -x, +x, -y, +y, -z, +z, that light comes in through which goes up or down an axis.
+inline int EntryFace(int axis, bool up)
+{
+  return 2 * axis + (up ? 0 : 1);
+}
+
 /// A voxel's face on a face of the box.
 struct BoxFaceCell
 {

@@ -63,8 +63,8 @@ std::vector<Bundle> DirectionSymmetry::Standing(const std::vector<Bundle>& bundl
     std::map<std::size_t, std::vector<Member>> parts; // by how many each direction stands for
     for (Member member : bundle.members)
     {
-      member.direction = this->Stands(member.direction) ? member.direction : -1;
-      member.opposite = this->Stands(member.opposite) ? member.opposite : -1;
+      member.direction = this->IsRepresentative(member.direction) ? member.direction : -1;
+      member.opposite = this->IsRepresentative(member.opposite) ? member.opposite : -1;
       const int any = std::max(member.direction, member.opposite);
       if (any >= 0)
       {
@@ -80,43 +80,5 @@ std::vector<Bundle> DirectionSymmetry::Standing(const std::vector<Bundle>& bundl
     }
   }
   return standing;
-}
-
-std::vector<Bundle> LitRays(const std::vector<Bundle>& bundles, int way, const std::function<bool(int)>& isLit)
-{
-  std::vector<Bundle> lit;
-  for (Bundle bundle : bundles)
-  {
-    std::vector<Member> members;
-    for (Member member : bundle.members)
-    {
-      int& other = way == 0 ? member.opposite : member.direction;
-      const int direction = way == 0 ? member.direction : member.opposite;
-      other = -1;
-      if (direction >= 0 && isLit(direction))
-      {
-        members.push_back(member);
-      }
-    }
-    bundle.members.swap(members);
-    if (!bundle.members.empty())
-    {
-      lit.push_back(bundle);
-    }
-  }
-  return lit;
-}
-
-int CountRays(const std::vector<Bundle>& bundles)
-{
-  int rays = 0;
-  for (const Bundle& bundle : bundles)
-  {
-    for (const Member& member : bundle.members)
-    {
-      rays += (member.direction >= 0 ? 1 : 0) + (member.opposite >= 0 ? 1 : 0);
-    }
-  }
-  return rays;
 }
 }

@@ -3,7 +3,6 @@
 #include "LightPropagation/Angular/RayBundles.h"
 
 #include <array>
-#include <functional>
 #include <vector>
 
 namespace tyndall
@@ -27,15 +26,9 @@ public:
   const std::vector<int>& AllOf(int direction) const { return this->Classes[this->ClassOf[direction]]; }
 
 private:
-  bool Stands(int direction) const { return direction >= 0 && this->AllOf(direction).front() == direction; }
+  bool IsRepresentative(int direction) const { return direction >= 0 && this->AllOf(direction).front() == direction; }
 
   std::vector<int> ClassOf;              ///< of each direction
   std::vector<std::vector<int>> Classes; ///< directions; the one that stands for all comes first
 };
-
-/// The rays of bundles that march one way along the axis (0 forward, 1 backward), of directions that are lit.
-std::vector<Bundle> LitRays(const std::vector<Bundle>& bundles, int way, const std::function<bool(int)>& isLit);
-
-/// Rays of the bundles a voxel, both ways.
-int CountRays(const std::vector<Bundle>& bundles);
 }

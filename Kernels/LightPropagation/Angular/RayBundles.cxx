@@ -330,4 +330,42 @@ std::vector<Bundle> BeamAlong(int axis, const Grid& grid, const std::array<bool,
   beam.members.push_back({ forward ? 0 : -1, forward ? -1 : 0, Sign(omega[axes.u]), 0, 0, Sign(omega[axes.v]) });
   return OnLattice({ beam }, axes, grid, periodic, mapResolution);
 }
+
+std::vector<Bundle> LitRays(const std::vector<Bundle>& bundles, int way, const std::function<bool(int)>& isLit)
+{
+  std::vector<Bundle> lit;
+  for (Bundle bundle : bundles)
+  {
+    std::vector<Member> members;
+    for (Member member : bundle.members)
+    {
+      int& other = way == 0 ? member.opposite : member.direction;
+      const int direction = way == 0 ? member.direction : member.opposite;
+      other = -1;
+      if (direction >= 0 && isLit(direction))
+      {
+        members.push_back(member);
+      }
+    }
+    bundle.members.swap(members);
+    if (!bundle.members.empty())
+    {
+      lit.push_back(bundle);
+    }
+  }
+  return lit;
+}
+
+int CountRays(const std::vector<Bundle>& bundles)
+{
+  int rays = 0;
+  for (const Bundle& bundle : bundles)
+  {
+    for (const Member& member : bundle.members)
+    {
+      rays += (member.direction >= 0 ? 1 : 0) + (member.opposite >= 0 ? 1 : 0);
+    }
+  }
+  return rays;
+}
 }

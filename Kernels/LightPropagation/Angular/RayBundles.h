@@ -1,10 +1,10 @@
 #pragma once
 
 #include "LightPropagation/Angular/DirectionSet.h"
-
 #include "Medium/Grid.h"
 
 #include <array>
+#include <functional>
 #include <vector>
 
 namespace tyndall
@@ -98,4 +98,10 @@ std::vector<Bundle> BundlesAlong(int axis, const Grid& grid, const std::array<bo
 /// where the beam runs forward along the axis, else `opposite` is 0; the other is -1. Power is that of irradiance 1.
 std::vector<Bundle> BeamAlong(int axis, const Grid& grid, const std::array<bool, 3>& periodic,
   const std::array<double, 3>& omega, int mapResolution);
+
+/// The rays of bundles that march one way along the axis (0 forward, 1 backward), of directions that are lit.
+std::vector<Bundle> LitRays(const std::vector<Bundle>& bundles, int way, const std::function<bool(int)>& isLit);
+
+/// Rays of the bundles a voxel, both ways.
+int CountRays(const std::vector<Bundle>& bundles);
 }

@@ -2,6 +2,7 @@
 
 #include "Light/LeftOut.h"
 #include "LightPropagation/Convergence.h"
+#include "Medium/BoxFaces.h"
 #include "Numerics/Constants.h"
 #include "Numerics/Vectors.h"
 
@@ -84,7 +85,7 @@ std::vector<std::array<Rgb, 3>> BoundaryOf(
   {
     for (int axis = 0; axis < 3; ++axis)
     {
-      const int face = 2 * axis + (set.directions[i].omega[axis] < 0.0 ? 1 : 0);
+      const int face = EntryFace(axis, set.directions[i].omega[axis] >= 0.0);
       for (int c = 0; c < 3 && !periodic[axis]; ++c)
       {
         boundary[i][axis][c] = distant[i][c] + illumination.faces[face][c];

@@ -206,24 +206,24 @@ static void begin_planes(const PlaneInfo* layout, __global float* planes, __glob
   const __global float* sigma, const __global float* source, ulong stride)
 {
   const int rows = layout->sizeV * ROW;
-  pack(layout, planes + PLANE_SIGMA * rows, first, count, sigma);
+  pack(layout, planes + PlaneSigma * rows, first, count, sigma);
 #if SOURCE
   for (int c = 0; c < CHANNELS; ++c)
   {
-    pack(layout, planes + (PLANE_SOURCE + c) * rows, first, count, source + c * stride);
+    pack(layout, planes + (PlaneSource + c) * rows, first, count, source + c * stride);
   }
 #endif
   for (int j = 0; j < count; ++j)
   {
     __global float* plane = planes + j * PLANES * rows;
-    find_thin_rows(layout, plane + PLANE_SIGMA * rows, thin + j * layout->sizeV);
+    find_thin_rows(layout, plane + PlaneSigma * rows, thin + j * layout->sizeV);
     for (int at = 0; at < rows; at += REAL_WIDTH)
     {
       // Vacuum is a very thin medium: 0 / 0 never happens.
-      const real s = fmax(load_real(at, plane + PLANE_SIGMA * rows), (real)layout->vacuum);
-      store_real(s, at, plane + PLANE_SIGMA * rows);
-      store_real((real)1.0f / s, at, plane + PLANE_INVERSE * rows);
-      store_real((real)0.0f, at, plane + PLANE_TAKEN * rows);
+      const real s = fmax(load_real(at, plane + PlaneSigma * rows), (real)layout->vacuum);
+      store_real(s, at, plane + PlaneSigma * rows);
+      store_real((real)1.0f / s, at, plane + PlaneInverse * rows);
+      store_real((real)0.0f, at, plane + PlaneTaken * rows);
       for (int q = PLANE_PATH; q < PLANES; ++q)
       {
         store_real((real)0.0f, at, plane + q * rows);
@@ -240,9 +240,9 @@ static void add_own_light(const PlaneInfo* layout, __global float* plane, const 
   const int rows = layout->sizeV * ROW;
   for (int at = 0; at < rows; at += REAL_WIDTH)
   {
-    const real sigma = load_real(at, plane + PLANE_SIGMA * rows);
-    const real taken = load_real(at, plane + PLANE_TAKEN * rows);
-    const real closed = ((real)light->length - taken) * load_real(at, plane + PLANE_INVERSE * rows);
+    const real sigma = load_real(at, plane + PlaneSigma * rows);
+    const real taken = load_real(at, plane + PlaneTaken * rows);
+    const real closed = ((real)light->length - taken) * load_real(at, plane + PlaneInverse * rows);
     const real thinness = sigma / layout->thin;
     real polynomial = (real)light->terms[MeanLengthTerms - 1];
 #pragma unroll
@@ -254,7 +254,7 @@ static void add_own_light(const PlaneInfo* layout, __global float* plane, const 
     for (int c = 0; c < CHANNELS; ++c)
     {
       __global float* sum = plane + (PLANE_PATH + c) * rows;
-      store_real(multiply_add(own, load_real(at, plane + (PLANE_SOURCE + c) * rows), load_real(at, sum)), at, sum);
+      store_real(multiply_add(own, load_real(at, plane + (PlaneSource + c) * rows), load_real(at, sum)), at, sum);
     }
   }
 }
@@ -285,12 +285,12 @@ static void end_planes(const PlaneInfo* layout, __global float* planes, int firs
 #endif
 #if CURRENTS
     const int aside[2] = { axis == 0 ? 1 : 0, axis == 2 ? 1 : 2 };
-    const __global float* entered = planes + (PLANE_CURRENTS + CURRENTS_FACES * c) * rows;
+    const __global float* entered = planes + (PLANE_CURRENTS + CurrentFaces * c) * rows;
     __global float* faces = currents + 6 * c * stride;
     unpack(layout, entered, first, count, 1.0f, faces + (2 * axis + backward) * stride, 0);
     for (int side = 0; side < 4; ++side)
     {
-      unpack(layout, entered + (CURRENTS_LOW_U + side) * rows, first, count, 1.0f,
+      unpack(layout, entered + (CurrentLowU + side) * rows, first, count, 1.0f,
         faces + (2 * aside[side / 2] + side % 2) * stride, 0);
     }
 #endif
@@ -352,7 +352,7 @@ __kernel __attribute__((reqd_work_group_size(1, 1, 1))) void sweep(SweepInfo inf
   state.sizeV = layout.sizeV;
   state.width = layout.width;
   state.ring = scratch + unit.scratch;
-  state.moving = state.ring + 2 * RING_ROWS * MaxMembers * CHANNELS * ROW;
+  state.moving = state.ring + 2 * RingRows * MaxMembers * CHANNELS * ROW;
   __global float* planes = state.moving + MaxMembers * CHANNELS * ROW + PAD; // past the last row's border
   __global int* thin = (__global int*)(planes + layout.block * PLANES * rows);
   for (int i = 0; i < MeanLengthTerms; ++i)
@@ -370,7 +370,7 @@ __kernel __attribute__((reqd_work_group_size(1, 1, 1))) void sweep(SweepInfo inf
   radiance += unit.backward * info.radianceEachWay;
 
 #if !BORDER
-  clear(state.ring, (2 * RING_ROWS + 1) * MaxMembers * CHANNELS * ROW + PAD);
+  clear(state.ring, (2 * RingRows + 1) * MaxMembers * CHANNELS * ROW + PAD);
 #endif
   if (info.empty && range.x == 0 && range.y > 0)
   {

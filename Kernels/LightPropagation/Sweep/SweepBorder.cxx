@@ -1,18 +1,11 @@
 #include "LightPropagation/Sweep/SweepBorder.h"
 
+#include "Medium/BoxFaces.h"
+
 #include <algorithm>
 
 namespace tyndall
 {
-namespace
-{
-/// A ray that moves up comes in below.
-int FaceOf(int aside, int move)
-{
-  return 2 * aside + (move > 0 ? 0 : 1);
-}
-}
-
 SweepBorder::SweepBorder(const SweepPlan& plan, const SweepBoundary& boundary)
   : maps(2 * plan.mapsEachWay, 0.0f)
   , outside(2 * plan.outsideEachWay, 0.0f)
@@ -60,8 +53,8 @@ void SweepBorder::EnterMember(const SweepBoundary& boundary, std::size_t b, int 
     return;
   }
   const PlaneAxes& axes = this->Plan.axes;
-  const int faceU = FaceOf(axes.u, member.uFromU + member.uFromV);
-  const int faceV = FaceOf(axes.v, member.vFromU + member.vFromV);
+  const int faceU = EntryFace(axes.u, member.uFromU + member.uFromV > 0);
+  const int faceV = EntryFace(axes.v, member.vFromU + member.vFromV > 0);
   const int faceP = 2 * axes.axis + way;
   const Rgb fromU = this->PowerOfRay(boundary, bundle, direction, faceU);
   const Rgb fromV = this->PowerOfRay(boundary, bundle, direction, faceV);

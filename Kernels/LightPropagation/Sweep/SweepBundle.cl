@@ -25,10 +25,10 @@ static inline __attribute__((always_inline)) void CROSS_VOXELS(sweep_state* stat
   const __global float** in, __global float* out, float length, const __global BundleInfo* bundle)
 {
   const int rows = state->sizeV * ROW;
-  const __global float* sigma_row = state->planes + PLANE_SIGMA * rows + y * ROW;
-  const __global float* inverse_row = state->planes + PLANE_INVERSE * rows + y * ROW;
-  __global float* taken_row = state->planes + PLANE_TAKEN * rows + y * ROW;
-  const __global float* source_row = state->planes + PLANE_SOURCE * rows + y * ROW;
+  const __global float* sigma_row = state->planes + PlaneSigma * rows + y * ROW;
+  const __global float* inverse_row = state->planes + PlaneInverse * rows + y * ROW;
+  __global float* taken_row = state->planes + PlaneTaken * rows + y * ROW;
+  const __global float* source_row = state->planes + PlaneSource * rows + y * ROW;
   __global float* path_row = state->planes + PLANE_PATH * rows + y * ROW;
   const float power = bundle->power;
 #if NET_FLUX
@@ -203,7 +203,7 @@ static void FILL_BORDER(sweep_state* state, const __global float* radiance)
 {
   for (int i = 0; i < MEMBERS * CHANNELS; ++i)
   {
-    for (int r = 0; r < 2 * RING_ROWS; ++r)
+    for (int r = 0; r < 2 * RingRows; ++r)
     {
       __global float* row = state->ring + r * (MaxMembers * CHANNELS * ROW) + i * ROW + PAD;
       row[-1] = radiance[i];
@@ -223,7 +223,7 @@ static void COUNT_CURRENTS(sweep_state* state, int y, bool first, const __global
   {
     if (first)
     {
-      add_current(state, y, CURRENTS_AXIS, in[m], 1.0f);
+      add_current(state, y, CurrentAxis, in[m], 1.0f);
       continue;
     }
     const int du = bundle->move[m][0] * moveU + bundle->move[m][1] * moveV;
@@ -234,11 +234,11 @@ static void COUNT_CURRENTS(sweep_state* state, int y, bool first, const __global
     }
     else if (du != 0)
     {
-      add_current(state, y, du > 0 ? CURRENTS_LOW_U : CURRENTS_HIGH_U, in[m], part);
+      add_current(state, y, du > 0 ? CurrentLowU : CurrentHighU, in[m], part);
     }
     else
     {
-      add_current(state, y, dv > 0 ? CURRENTS_LOW_V : CURRENTS_HIGH_V, in[m], part);
+      add_current(state, y, dv > 0 ? CurrentLowV : CurrentHighV, in[m], part);
     }
   }
 }
@@ -283,8 +283,8 @@ static void CROSS_PLANE(sweep_state* state, __global float* map, const __global 
       const bool inside = y >= 0 && y < height;
       const int wrapped = inside ? y : (y % height + height) % height;
       const float part = crossing->part[s];
-      const __global float* before = state->ring + ((s - 1) & 1) * (RING_ROWS * MaxMembers * CHANNELS * ROW);
-      const __global float* own = before + (y & (RING_ROWS - 1)) * (MaxMembers * CHANNELS * ROW); // where s > 0
+      const __global float* before = state->ring + ((s - 1) & 1) * (RingRows * MaxMembers * CHANNELS * ROW);
+      const __global float* own = before + (y & (RingRows - 1)) * (MaxMembers * CHANNELS * ROW); // where s > 0
       const __global float* in[MEMBERS];
 #pragma unroll
       for (int m = 0; m < MEMBERS; ++m)
@@ -299,7 +299,7 @@ static void CROSS_PLANE(sweep_state* state, __global float* map, const __global 
         }
         else
         {
-          row = before + (from & (RING_ROWS - 1)) * (MaxMembers * CHANNELS * ROW);
+          row = before + (from & (RingRows - 1)) * (MaxMembers * CHANNELS * ROW);
           if (inside && (du != 0 || dv != 0))
           {
             COUNT_ESCAPED(state, own, y, m, du, dv, part, radiance, outside);
@@ -312,8 +312,8 @@ static void CROSS_PLANE(sweep_state* state, __global float* map, const __global 
         in[m] = row + FIRST(m, 0) - du;
       }
       __global float* out = s == stages - 1 ? map + y * BLOCK
-                                            : state->ring + (s & 1) * (RING_ROWS * MaxMembers * CHANNELS * ROW) +
-          (y & (RING_ROWS - 1)) * (MaxMembers * CHANNELS * ROW);
+                                            : state->ring + (s & 1) * (RingRows * MaxMembers * CHANNELS * ROW) +
+          (y & (RingRows - 1)) * (MaxMembers * CHANNELS * ROW);
 #if CURRENTS
       if (inside)
       {

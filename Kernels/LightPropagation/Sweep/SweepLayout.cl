@@ -17,27 +17,14 @@
 #include "Numerics/Numerics.cl"
 
 #define PAD REAL_WIDTH
-#define RING_ROWS 4 // a stage reads rows y - 1 to y + 1 while the stage before writes row y + 2
-#define LAG 2       // rows a stage stays behind the one before
+#define LAG 2 // rows a stage stays behind the one before
 #define FLUX (NET_FLUX ? 3 : 0)
 
-// The quantities of one plane, each [row][ROW].
-#define PLANE_SIGMA 0
-#define PLANE_INVERSE 1
-#define PLANE_TAKEN 2 // sum over rays of power times mean transmitted length: what is missing of the source's own light
-#define PLANE_SOURCE 3
-#define PLANE_PATH (PLANE_SOURCE + CHANNELS) // path integral of power, W length
+// The quantities of one plane, each [row][ROW], behind those of SweepShared.h.
+#define PLANE_PATH (PlaneSource + CHANNELS) // path integral of power, W length
 #define PLANE_FLUX (PLANE_PATH + CHANNELS)
-#define PLANE_CURRENTS (PLANE_FLUX + FLUX * CHANNELS) // power that enters, W: CURRENTS_...
-#define PLANES (PLANE_CURRENTS + (CURRENTS ? CURRENTS_FACES * CHANNELS : 0))
-
-// Through which face of its voxel a ray comes: the one across the axis it marches along, or a low or high one aside.
-#define CURRENTS_AXIS 0
-#define CURRENTS_LOW_U 1
-#define CURRENTS_HIGH_U 2
-#define CURRENTS_LOW_V 3
-#define CURRENTS_HIGH_V 4
-#define CURRENTS_FACES 5
+#define PLANE_CURRENTS (PLANE_FLUX + FLUX * CHANNELS) // power that enters through CurrentFaces, W
+#define PLANES PLANE_COUNT(CHANNELS, NET_FLUX, CURRENTS)
 
 // Where a work-item is: its planes, its rows, its buffers.
 typedef struct
@@ -47,7 +34,7 @@ typedef struct
   __global float* planes; // PLANES quantities of sizeV rows: of the plane that is being crossed
   __global int* thin;     // [row] of it, 1 where all voxels are thin
   float meanLength[MeanLengthTerms];
-  __global float* ring;   // 2 rings of RING_ROWS rows of MaxMembers * CHANNELS * ROW floats, and one row more: `moving`
+  __global float* ring;   // 2 rings of RingRows rows of MaxMembers * CHANNELS * ROW floats, and one row more: `moving`
   __global float* moving; // the rays of a row of which a part moves
   float escaped[4][CHANNELS]; // through -u, +u, -v, +v, W; with the rounding errors
   float rounding[4][CHANNELS];

@@ -10,7 +10,7 @@ static void add_current(sweep_state* state, int y, int face, const __global floa
   const int rows = state->sizeV * ROW;
   for (int c = 0; c < CHANNELS; ++c)
   {
-    __global float* sum = state->planes + (PLANE_CURRENTS + CURRENTS_FACES * c + face) * rows + y * ROW;
+    __global float* sum = state->planes + (PLANE_CURRENTS + CurrentFaces * c + face) * rows + y * ROW;
     for (int x = 0; x < state->width; x += REAL_WIDTH)
     {
       store_real(multiply_add(load_real(x, rays + c * ROW), (real)part, load_real(x, sum)), x, sum);
@@ -27,7 +27,7 @@ static void add_beside(sweep_state* state, int y, int du, int face, const __glob
   for (int c = 0; c < CHANNELS; ++c)
   {
     const __global float* from = rays + c * ROW;
-    __global float* sum = state->planes + (PLANE_CURRENTS + CURRENTS_FACES * c + face) * rows + y * ROW;
+    __global float* sum = state->planes + (PLANE_CURRENTS + CurrentFaces * c + face) * rows + y * ROW;
     for (int x = 0; x < state->width; x += REAL_WIDTH)
     {
       // A row's last floats and what is before its first are never read.
@@ -50,8 +50,8 @@ static void add_through_edge(
   sweep_state* state, int y, int du, int dv, const __global float* rays, const __global float* own, float part)
 {
   const float half_part = 0.5f * part;
-  const int u_face = du > 0 ? CURRENTS_LOW_U : CURRENTS_HIGH_U;
-  const int v_face = dv > 0 ? CURRENTS_LOW_V : CURRENTS_HIGH_V;
+  const int u_face = du > 0 ? CurrentLowU : CurrentHighU;
+  const int v_face = dv > 0 ? CurrentLowV : CurrentHighV;
   const int height = state->sizeV;
   const int before = PERIODIC_V ? (y - dv + height) % height : y - dv;
   if (before >= 0 && before < height)

@@ -9,7 +9,6 @@ namespace tyndall
 {
 namespace
 {
-constexpr int RingRows = 4; ///< RING_ROWS of SweepLayout.cl
 constexpr double SecondsPerLaunch = 0.08;
 constexpr double SecondsPerRay = 1e-9; ///< a ray through a plane of voxels on a slow core: only sizes the launches
 constexpr int MostGroups = 4;          ///< of bundles that march one behind the other
@@ -224,8 +223,7 @@ std::size_t SweepPlan::ScratchFloats() const
 {
   // Two rings and the rays of a row of which a part moves.
   const std::size_t ring = (std::size_t{ 2 } * RingRows + 1) * MaxMembers * this->channels * this->row + this->vector;
-  const std::size_t quantities =
-    3 + ((this->netFlux ? 5 : 2) + (this->partialCurrents ? 5 : 0)) * this->channels; // PLANES of SweepLayout.cl
+  const std::size_t quantities = PLANE_COUNT(this->channels, this->netFlux, this->partialCurrents);
   const std::size_t planes = quantities * this->plane.block * this->plane.sizeV * this->row;
   const std::size_t thinRows = static_cast<std::size_t>(this->plane.block) * this->plane.sizeV;
   return ring + planes + thinRows + 2 * this->vector;

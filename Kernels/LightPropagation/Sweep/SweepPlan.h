@@ -49,8 +49,8 @@ struct SweepPlan
 
   int Planes() const { return this->box.size[this->axes.axis]; }
   int PatternPlanes() const { return this->Planes() * this->laps; } ///< that the rays of a sweep start in
-  int PlanesBefore(
-    int way) const; ///< of the grid, that rays of that way (0 forward) have crossed before they come to the box
+  /// Planes of the grid that rays of a way (0 forward) have crossed before they come to the box.
+  int PlanesBefore(int way) const;
   int CrossingPlanes() const; ///< that rays cross to the box's end, either way: of the pattern, from its beginning
   std::size_t ScratchFloats() const; ///< of one unit
 

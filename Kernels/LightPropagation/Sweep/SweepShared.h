@@ -7,8 +7,33 @@ SHARED_BEGIN
 enum
 {
   MaxMembers = 8,     ///< of a bundle
+  RingRows = 4,       ///< a stage reads rows y - 1 to y + 1 while the stage before writes row y + 2
   MeanLengthTerms = 5 ///< of (1 - exp(-t)) / t = 1 + t (m0 + t (m1 + ...)) for thin voxels, see SweepPlan.cxx
 };
+
+/// The first quantities of a plane that is being crossed; behind them path, flux and partial currents (SweepLayout.cl).
+enum
+{
+  PlaneSigma = 0,
+  PlaneInverse = 1,
+  PlaneTaken = 2, ///< sum over rays of power times mean transmitted length: what is missing of the source's own light
+  PlaneSource = 3
+};
+
+/// Through which face of its voxel a ray comes: the one across the axis it marches along, or a low or high one aside.
+enum
+{
+  CurrentAxis = 0,
+  CurrentLowU = 1,
+  CurrentHighU = 2,
+  CurrentLowV = 3,
+  CurrentHighV = 4,
+  CurrentFaces = 5
+};
+
+/// Quantities of a plane: each channel has a source and a path, and a flux and currents where they are wanted.
+#define PLANE_COUNT(channels, netFlux, currents) \
+  (PlaneSource + (2 + ((netFlux) ? 3 : 0) + ((currents) ? CurrentFaces : 0)) * (channels))
 
 typedef struct
 {

@@ -1,6 +1,7 @@
 #include "LightPropagation/Uncollided/BoundaryLight.h"
 
 #include "Device/Errors.h"
+#include "Medium/BoxFaces.h"
 #include "Numerics/NumberText.h"
 
 #include <algorithm>
@@ -15,10 +16,9 @@ namespace
 constexpr double Rounding = 1e-6;    ///< of radiance that is meant to be even
 constexpr double MissedAtMost = 0.3; ///< by whole rays; a box of one voxel misses up to a fifth of one face's
 
-/// Through which face light of a direction comes in across an axis.
 int FaceOf(const Direction& direction, int axis)
 {
-  return 2 * axis + (direction.omega[axis] > 0.0 ? 0 : 1);
+  return EntryFace(axis, direction.omega[axis] > 0.0);
 }
 
 /// Light that enters, by exact shares of rays and by whole ones.
