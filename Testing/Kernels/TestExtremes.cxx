@@ -230,11 +230,25 @@ TEST_F(Extremes, WhatDoesNotBalanceIsRefused)
   scene.settings.acceleration = PropagationAcceleration::Automatic;
   const std::string why = WhyRefused(this->GetDevice(), scene);
   EXPECT_NE(why.find("Its thickest voxel, (4, 4, 4), has optical thickness 1e+12"), std::string::npos) << why;
-  scene.sigma_s[Middle(scene)] = 1e30f;
-  scene.light.lights.clear();
-  scene.ShineAlong({ 0.0, 0.0, -1.0 });
+  scene.sigma_s[Middle(scene)] = 1e20f;
   const std::string whyNumber = WhyRefused(this->GetDevice(), scene);
   EXPECT_NE(whyNumber.find("The light is not a number"), std::string::npos) << whyNumber;
+}
+
+TEST_F(Extremes, BeamsOnAnOpaqueVoxelComeBackWhole)
+{
+  for (const float sigma : { 1e6f, 1e12f, 1e30f, 1e33f, 1e36f }) // at 1e30 and 1e33 it was not a number
+  {
+    Scene scene({ 9, 9, 9 });
+    scene.sigma_s[Middle(scene)] = sigma;
+    scene.ShineAlong({ 0.0, 0.0, -1.0 });
+    scene.settings.source = PropagationSource::Automatic;
+    scene.settings.acceleration = PropagationAcceleration::Automatic;
+    const LightField light = scene.Solve(this->GetDevice());
+    EXPECT_NEAR(light.balance.escaped[0], 81.0, 81e-5) << sigma;
+    const std::size_t above = (Middle(scene) + 81) * (light.fluence.size() / scene.sigma_s.size());
+    EXPECT_GT(light.fluence[above], 1.02) << sigma << ": the beam, and what comes back";
+  }
 }
 
 TEST_F(Extremes, FacesThatFewRaysMeetAreRefused)

@@ -10,10 +10,13 @@ namespace tyndall
 {
 namespace
 {
-constexpr double Uncertainty = 0.1;     ///< of diffusion, in sqrt(1 - albedo) of the light that comes in
-constexpr double UncertainPart = 0.5;   ///< of what lamps' rays bring too much or too little to a voxel
-constexpr double MostUneven = 4.0;      ///< that lamps' rays are taken to be
-constexpr double LargestExponent = 0.9; ///< of what comes from deep within, per mean free path
+/// Error of the diffusion system's power through a cell, as part of sqrt(1 - albedo) times the light that comes in.
+constexpr double Uncertainty = 0.1;
+/// The same, as part of the scattered light that lamps' rays bring to a voxel beyond or below the average.
+constexpr double UncertainPart = 0.5;
+constexpr double MostUneven = 4.0; ///< times the average that lamps' rays are taken to bring to a voxel
+/// Largest rate, per mean free path, at which light from deep within is taken to fall off: at 1 it has no end.
+constexpr double LargestExponent = 0.9;
 
 /// Gauss's nodes and weights on [0, 1].
 constexpr std::array<double, 4> Nodes = { 0.0694318442029737, 0.3300094782075719, 0.6699905217924281,

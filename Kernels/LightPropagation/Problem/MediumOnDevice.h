@@ -11,11 +11,11 @@ namespace tyndall
 class MediumOnDevice
 {
 public:
-  /// Which coefficients differ from one another.
+  /// Which coefficients get arrays of their own.
   struct Needs
   {
-    bool sigma_s; ///< else it is not read, or is sigma_t
-    bool sigma_a; ///< by itself
+    bool sigma_s; ///< false where it is never read, or equals sigma_t
+    bool sigma_a;
   };
   /// @param medium  must stay
   MediumOnDevice(Device& device, const Medium& medium, const VolumeLayout& layout, const Needs& needs);

@@ -12,6 +12,8 @@ namespace
 {
 /// The default, not the user's: which method is used must not depend on the tolerance.
 const double UsualTolerance = PropagationSettings().tolerance;
+/// Twice the distance beyond a face at which diffuse light would be zero, 0.71 mean free paths (numerics.md, Eq. (86)).
+constexpr double BothExtrapolations = 1.42;
 constexpr double ManyOrders = 40.0;       ///< source iteration that is dearer than acceleration
 constexpr double ManyOrdersInSlab = 12.0; ///< the same in a slab, whose diffusion system is small
 
@@ -62,7 +64,8 @@ double OrdersNeeded(const PropagationProblem& problem)
     for (int axis = 0; axis < 3; ++axis)
     {
       const double longest = LongestLine(problem.TheMedium(), axis, c);
-      leak += problem.Settings().periodic[axis] ? 0.0 : Pi * Pi / 3.0 / ((longest + 1.42) * (longest + 1.42));
+      const double extrapolated = longest + BothExtrapolations;
+      leak += problem.Settings().periodic[axis] ? 0.0 : Pi * Pi / 3.0 / (extrapolated * extrapolated);
     }
     slowest = std::max(slowest, AlbedoOf(problem.TheMedium(), c) / (1.0 + leak));
   }
