@@ -37,9 +37,12 @@ def flat(source, array, low, high, size, middle, scale):
 
 
 def chart(table, x, y):
+    """y over x, or row by row where x is None."""
     view = CreateView("XYChartView", ViewSize=[240, 160], ShowLegend=0, LeftAxisLogScale=1)
     shown = Show(table, view)
-    shown.UseIndexForXAxis, shown.XArrayName, shown.SeriesVisibility = 0, x, [y]
+    shown.UseIndexForXAxis, shown.SeriesVisibility = int(x is None), [y]
+    if x:
+        shown.XArrayName = x
     Render(view)
     pixels = pictures.of_image(view.CaptureWindow(1))
     Delete(view)
@@ -79,6 +82,12 @@ def plume_pictures():
     buffers = LPMPropagate(Input=first, Lights=sun, DirectionsPerFace=9)
     yield "LPMPropagate", across_plume(buffers, ("CELLS", "T_xmax", "Magnitude"), 0, 0.01)
     yield "LPMCollect", across_plume(LPMCollect(Input=buffers), ("CELLS", "fluence"), 0, 1.5)
+    few = ResampleToImage(Input=density, UseInputBounds=1, SamplingDimensions=[13, 12, 23])
+    small = ParticipatingMedium(Input=few, DensityArray=["POINTS", "smoke"], ExtinctionScale=14)
+    # Errors by setting: run times are never the same.
+    settings = SolverComparison(Input=small, Lights=sun, Directions=[4, 9, 16, 25, 49], Coarsenings=[1], Repeats=1,
+                                MapResolutions=[1], PhotonCounts=[1000, 10000], EstimateError=0, TimeBudget=1e6)
+    yield "SolverComparison", chart(OutputPort(settings, 0), None, "error_l2")
 
 
 def goblet_pictures():

@@ -6,7 +6,7 @@
 
 // Part of the partial current of a source that is constant in each voxel and falls by one from mean free path to mean
 // free path (numerics.md, Eq. (51); 4 Gauss points): 1/6 for thin voxels, tau / 8 for thick ones.
-static float stair(float tau)
+static float flat_source_current(float tau)
 {
   const float mu[4] = { 0.0694318442f, 0.3300094782f, 0.6699905218f, 0.9305681558f };
   const float half_weight[4] = { 0.0869637113f, 0.1630362887f, 0.1630362887f, 0.0869637113f };

@@ -14,7 +14,7 @@ __kernel void diffusion_flat_source(DiffusionLayout layout, const __global float
   sigma_t += layout.firstT;
   for (int axis = 0; axis < 3; ++axis)
   {
-    flat_source[(ulong)axis * layout.stride + i] = stair(sigma_t[i] * layout.spacing[axis]);
+    flat_source[(ulong)axis * layout.stride + i] = flat_source_current(sigma_t[i] * layout.spacing[axis]);
   }
 }
 
