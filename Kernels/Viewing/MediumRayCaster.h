@@ -185,9 +185,12 @@ private:
     return this->Bends && this->Settings.surfaceReflection != SurfaceReflection::None &&
       this->SurfaceIndex() > this->Index.least && this->SurfaceIndex() <= this->Index.largest;
   }
+  void FindTraits(const Medium& medium, const SolvedLight& light, const Field& ior);
   void Upload(const Medium& medium, const SolvedLight& light, const Field& ior);
   void Reserve();
+  void PrepareBackground(const Illumination& illumination);
   void PrepareBending();
+  void PrepareTable(const SolvedLight& light, const Field& ior);
   void PrepareSurface(const Medium& medium, const SolvedLight& light);
   void SayWhatIsLeftOut();
   void Pack(bool forShadowRays);
