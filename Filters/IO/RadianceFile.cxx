@@ -89,68 +89,73 @@ struct HdrHeader
 
 constexpr std::size_t LongestHdrHeader = 1 << 16;
 
-HdrHeader ParseHdrHeader(const std::string& path, const std::vector<unsigned char>& bytes)
+/// The lines of a header, one after the other.
+class HdrLines
 {
-  HdrHeader header;
-  std::size_t at = 0;
-  const auto line = [&] {
-    const auto end = std::find(bytes.begin() + static_cast<std::ptrdiff_t>(at), bytes.end(), '\n');
-    if (end == bytes.end() || at > LongestHdrHeader)
+public:
+  HdrLines(const std::string& path, const std::vector<unsigned char>& bytes)
+    : Path(path)
+    , Bytes(bytes)
+  {
+  }
+
+  std::string Next()
+  {
+    const auto begin = this->Bytes.begin() + static_cast<std::ptrdiff_t>(this->Place);
+    const auto end = std::find(begin, this->Bytes.end(), '\n');
+    if (end == this->Bytes.end() || this->Place > LongestHdrHeader)
     {
-      Corrupt(path, "its header does not end");
+      Corrupt(this->Path, "its header does not end");
     }
-    std::string text(bytes.begin() + static_cast<std::ptrdiff_t>(at), end);
-    at = static_cast<std::size_t>(end - bytes.begin()) + 1;
+    std::string text(begin, end);
+    this->Place = static_cast<std::size_t>(end - this->Bytes.begin()) + 1;
     if (!text.empty() && text.back() == '\r')
     {
       text.pop_back();
     }
     return text;
-  };
-
-  if (bytes.size() < 2 || bytes[0] != '#' || bytes[1] != '?')
-  {
-    throw InvalidInput("\"" + path + "\" is not a Radiance picture: it does not begin with #?.");
-  }
-  line();
-  bool format = false;
-  for (std::string text = line(); !text.empty(); text = line())
-  {
-    if (text.compare(0, 7, "FORMAT=") == 0)
-    {
-      header.Xyz = text.find("32-bit_rle_xyze") != std::string::npos;
-      format = header.Xyz || text.find("32-bit_rle_rgbe") != std::string::npos;
-      if (!format)
-      {
-        Corrupt(path, "its format is \"" + text.substr(7) + "\", not 32-bit_rle_rgbe or 32-bit_rle_xyze");
-      }
-    }
-    else if (text.compare(0, 9, "EXPOSURE=") == 0)
-    {
-      const double exposure = std::strtod(text.c_str() + 9, nullptr);
-      if (!(exposure > 0.0) || !std::isfinite(exposure))
-      {
-        Corrupt(path, "its exposure is \"" + text.substr(9) + "\", not a positive number");
-      }
-      header.Exposure *= exposure;
-    }
-  }
-  if (!format)
-  {
-    Corrupt(path, "its header has no FORMAT line");
   }
 
-  const std::string resolution = line();
-  char signs[2], axes[2];
-  int lengths[2], used = 0;
-  const int found = std::sscanf(resolution.c_str(), "%c%c %6d %c%c %6d%n", &signs[0], &axes[0], &lengths[0], &signs[1],
-    &axes[1], &lengths[1], &used);
+  std::size_t At() const { return this->Place; } ///< byte at which the next one begins
+
+private:
+  const std::string& Path;
+  const std::vector<unsigned char>& Bytes;
+  std::size_t Place = 0;
+};
+
+void ParseHdrFormat(const std::string& path, const std::string& format, HdrHeader& header)
+{
+  header.Xyz = format.find("32-bit_rle_xyze") != std::string::npos;
+  if (!header.Xyz && format.find("32-bit_rle_rgbe") == std::string::npos)
+  {
+    Corrupt(path, "its format is \"" + format + "\", not 32-bit_rle_rgbe or 32-bit_rle_xyze");
+  }
+}
+
+double ParseHdrExposure(const std::string& path, const std::string& text)
+{
+  const double exposure = std::strtod(text.c_str(), nullptr);
+  if (!(exposure > 0.0) || !std::isfinite(exposure))
+  {
+    Corrupt(path, "its exposure is \"" + text + "\", not a positive number");
+  }
+  return exposure;
+}
+
+/// The line that says how large the picture is and how its rows lie, e.g. "-Y 512 +X 1024".
+void ParseHdrSize(const std::string& path, const std::string& size, HdrHeader& header)
+{
+  char signs[2] = {}, axes[2] = {};
+  int lengths[2] = {}, used = 0;
+  const int found = std::sscanf(
+    size.c_str(), "%c%c %6d %c%c %6d%n", &signs[0], &axes[0], &lengths[0], &signs[1], &axes[1], &lengths[1], &used);
   const auto isSign = [](char c) { return c == '+' || c == '-'; };
   const bool xFirst = axes[0] == 'X' && axes[1] == 'Y';
-  if (found != 6 || used != static_cast<int>(resolution.size()) || !isSign(signs[0]) || !isSign(signs[1]) ||
+  if (found != 6 || used != static_cast<int>(size.size()) || !isSign(signs[0]) || !isSign(signs[1]) ||
     !(xFirst || (axes[0] == 'Y' && axes[1] == 'X')))
   {
-    Corrupt(path, "its size is \"" + resolution.substr(0, 40) + "\", not like \"-Y 512 +X 1024\"");
+    Corrupt(path, "its size is \"" + size.substr(0, 40) + "\", not like \"-Y 512 +X 1024\"");
   }
   header.Transposed = xFirst;
   header.Rows = lengths[0];
@@ -159,7 +164,36 @@ HdrHeader ParseHdrHeader(const std::string& path, const std::vector<unsigned cha
   header.Height = xFirst ? lengths[1] : lengths[0];
   header.FromTop = signs[xFirst ? 1 : 0] == '-';
   header.FromLeft = signs[xFirst ? 0 : 1] == '+';
-  header.Pixels = at;
+}
+
+HdrHeader ParseHdrHeader(const std::string& path, const std::vector<unsigned char>& bytes)
+{
+  if (bytes.size() < 2 || bytes[0] != '#' || bytes[1] != '?')
+  {
+    throw InvalidInput("\"" + path + "\" is not a Radiance picture: it does not begin with #?.");
+  }
+  HdrHeader header;
+  HdrLines lines(path, bytes);
+  lines.Next();
+  bool hasFormat = false;
+  for (std::string text = lines.Next(); !text.empty(); text = lines.Next())
+  {
+    if (text.compare(0, 7, "FORMAT=") == 0)
+    {
+      ParseHdrFormat(path, text.substr(7), header);
+      hasFormat = true;
+    }
+    else if (text.compare(0, 9, "EXPOSURE=") == 0)
+    {
+      header.Exposure *= ParseHdrExposure(path, text.substr(9));
+    }
+  }
+  if (!hasFormat)
+  {
+    Corrupt(path, "its header has no FORMAT line");
+  }
+  ParseHdrSize(path, lines.Next(), header);
+  header.Pixels = lines.At();
   return header;
 }
 
