@@ -2,6 +2,7 @@
 
 #include "Light/LightField.h"
 
+#include <array>
 #include <string>
 #include <vector>
 
@@ -29,6 +30,7 @@ void AddGivenLight(vtkImageData* image, const char* name, std::vector<float>&& v
 /// @param values  tuples of `components` one after the other
 void AddFact(vtkDataObject* data, const char* name, const std::vector<double>& values, int components = 1);
 void AddFact(vtkDataObject* data, const char* name, const std::vector<std::string>& values);
+void AddFact(vtkDataObject* data, const char* name, const std::vector<std::array<double, 3>>& vectors);
 
 /// What leaves thick voxels at the box's faces, see LightField::surfaceRadiance: a tuple a cell of BoxFaces.h.
 constexpr const char* SurfaceRadianceFact = "surface_radiance";

@@ -1,6 +1,7 @@
 #include "IO/RadianceFile.h"
 
 #include "Device/Errors.h"
+#include "IO/ReadableFile.h"
 
 #include <ImfChannelList.h>
 #include <ImfFrameBuffer.h>
@@ -33,31 +34,19 @@ constexpr std::int64_t LongestEdge = 1 << 17;
 
 std::vector<unsigned char> ReadBytes(const std::string& path, std::uint64_t most)
 {
-  std::ifstream stream(path, std::ios::binary | std::ios::ate);
-  const std::streamoff size = stream ? static_cast<std::streamoff>(stream.tellg()) : -1;
-  stream.seekg(0);
-  // A folder opens, and has a size, but nothing can be read from it.
-  if (size < 0 || (size > 0 && stream.peek() == std::ifstream::traits_type::eof()))
-  {
-    throw InvalidInput("\"" + path + "\" cannot be read. Check that it is a file, is there and may be read.");
-  }
+  const std::uint64_t size = ReadableSize(path);
   if (size == 0)
   {
     throw InvalidInput("\"" + path + "\" is empty. Copy or write the file again.");
   }
-  std::vector<unsigned char> bytes(std::min(static_cast<std::uint64_t>(size), most));
+  std::ifstream stream(path, std::ios::binary);
+  std::vector<unsigned char> bytes(std::min(size, most));
   stream.read(reinterpret_cast<char*>(bytes.data()), static_cast<std::streamsize>(bytes.size()));
   if (!stream)
   {
     throw InvalidInput("\"" + path + "\" cannot be read to its end. Check the disk and the file's permissions.");
   }
   return bytes;
-}
-
-std::uint64_t FileSize(const std::string& path)
-{
-  std::ifstream stream(path, std::ios::binary | std::ios::ate);
-  return stream ? static_cast<std::uint64_t>(stream.tellg()) : 0;
 }
 
 void CheckSize(const std::string& path, std::int64_t width, std::int64_t height, std::uint64_t fileSize)
@@ -372,7 +361,7 @@ ExrWindows WindowsOfExr(const std::string& path)
   {
     throw InvalidInput("\"" + path + "\" is a deep picture. Flatten it first.");
   }
-  const std::uint64_t size = FileSize(path);
+  const std::uint64_t size = ReadableSize(path);
   for (const exr_attr_box2i_t& window : { windows.Data, windows.Display })
   {
     const std::int64_t width = std::int64_t(window.max.x) - window.min.x + 1;
@@ -489,7 +478,7 @@ std::vector<float> ReadExrPixels(const std::string& path, const ExrWindows& wind
 PictureSize SizeOfHdr(const std::string& path)
 {
   const HdrHeader header = ParseHdrHeader(path, ReadBytes(path, LongestHdrHeader));
-  CheckSize(path, header.Width, header.Height, FileSize(path));
+  CheckSize(path, header.Width, header.Height, ReadableSize(path));
   return { header.Width, header.Height };
 }
 

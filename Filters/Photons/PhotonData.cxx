@@ -111,11 +111,6 @@ std::string DoubtOfBox(vtkPolyData* photons, const Grid& medium)
       ": where they differ, light is missing or too much. Give PhotonEmitter the same medium.";
 }
 
-bool NothingShines(const Illumination& illumination)
-{
-  return illumination.lights.empty() && illumination.environment.Empty() && illumination.sky == Rgb{};
-}
-
 void WritePhotons(const EmittedPhotons& emitted, const Grid& box, vtkPolyData* output)
 {
   const std::size_t count = emitted.photons.size();

@@ -16,6 +16,15 @@ std::string VoxelName(const Grid& grid, std::size_t voxel)
     std::to_string(voxel / (nx * ny)) + ")";
 }
 
+void CheckComponents(const Field& field, const char* name)
+{
+  if (field.components != 1 && field.components != 3)
+  {
+    throw InvalidInput(std::string(name) + " has " + std::to_string(field.components) +
+      " components a voxel; give it 1 (grey) or 3 (red, green, blue).");
+  }
+}
+
 namespace
 {
 constexpr double LargestExtinction = 1e37; ///< 1/length; the inverse of more is not a normal float
@@ -28,11 +37,7 @@ void CheckField(const Field& field, const char* name, const Grid& grid)
   {
     return;
   }
-  if (field.components != 1 && field.components != 3)
-  {
-    throw InvalidInput(std::string(name) + " has " + std::to_string(field.components) +
-      " components a voxel; give it 1 (grey) or 3 (red, green, blue).");
-  }
+  CheckComponents(field, name);
   const std::size_t count = grid.VoxelCount() * static_cast<std::size_t>(field.components);
   for (std::size_t i = 0; i < count; ++i)
   {

@@ -51,6 +51,9 @@ struct Medium
 /// "(i, j, k)" of the voxel that is `voxel`th in an array.
 std::string VoxelName(const Grid& grid, std::size_t voxel);
 
+/// @throws InvalidInput where a field has neither 1 nor 3 components
+void CheckComponents(const Field& field, const char* name);
+
 /// @throws InvalidInput where the grid is empty, has a spacing that is not from 1e-30 to 1e30, or one that is more than
 ///   1e9 times another
 void Check(const Grid& grid);

@@ -1,5 +1,6 @@
 #include "Reconstruction/ArrayRange.h"
 
+#include "Device/Sizes.h"
 #include "TyndallKernelSources.h"
 
 #include <algorithm>
@@ -16,7 +17,7 @@ constexpr double SumUnit = 8192.0;    // of its sums
 ArrayRange RangeOf(Device& device, const HostMappedBuffer<float>& array, const float* values, std::size_t count,
   int components, float low, float high)
 {
-  const std::size_t runs = (count + Run - 1) / Run;
+  const std::size_t runs = PartsOf(count, Run);
   Buffer<float> told(device, Told * runs, "the range of an array");
   cl::Kernel kernel = device.Kernel("range_of_runs", kernel_source::ArrayRange);
   With(kernel, array.Handle(), cl_ulong(count), cl_int(Run), cl_int(components), low, high, told);

@@ -5,6 +5,7 @@
 
 #include "Device/Batches.h"
 #include "Device/Defines.h"
+#include "Device/Sizes.h"
 #include "Numerics/PyramidLayout.h"
 
 #include <algorithm>
@@ -125,9 +126,8 @@ private:
       return;
     }
     Batches parts;
-    parts.count = static_cast<std::size_t>(cells[2]);
-    parts.first = std::max<std::size_t>(
-      FirstPart / (8 * static_cast<std::size_t>(cells[0]) * static_cast<std::size_t>(cells[1])), 1);
+    parts.count = Count(cells[2]);
+    parts.first = std::max<std::size_t>(FirstPart / (8 * Count(cells[0]) * Count(cells[1])), 1);
     parts.from = from;
     parts.to = to;
     InBatches(this->Task.device, parts, this->Task.monitor,

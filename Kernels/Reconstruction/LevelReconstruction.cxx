@@ -6,6 +6,7 @@
 
 #include "Device/Batches.h"
 #include "Device/Defines.h"
+#include "Device/Sizes.h"
 
 #include <algorithm>
 #include <limits>
@@ -17,11 +18,6 @@ namespace
 using Estimator = ReconstructionSettings::Estimator;
 
 constexpr std::size_t FirstPart = std::size_t(1) << 18; // voxels a launch, until it is known how long that takes
-
-std::size_t Count(int number)
-{
-  return static_cast<std::size_t>(number);
-}
 
 /// Takes the light of each voxel from one level of its pyramid.
 class LevelPasses

@@ -6,14 +6,6 @@
 
 namespace tyndall
 {
-namespace
-{
-std::size_t Count(int number)
-{
-  return static_cast<std::size_t>(number);
-}
-}
-
 int RowWidth(const Device& device, const Grid& grid)
 {
   return device.IsCpu() && grid.size[0] >= 16 ? 8 : 1;

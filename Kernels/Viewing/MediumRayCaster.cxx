@@ -102,7 +102,7 @@ MediumRayCaster::MediumRayCaster(Device& device, const Medium& medium, const Sol
   : TheDevice(device)
   , TheGrid(medium.grid)
   , LampsShine(std::any_of(
-      illumination.lights.begin(), illumination.lights.end(), [](const Light& lamp) { return !IsZero(lamp.power); }))
+      illumination.lights.begin(), illumination.lights.end(), [](const Light& lamp) { return !IsBlack(lamp.power); }))
   , AskedForShadowRays(asked.shadowRays)
   , Settings(this->Needed(asked))
   , G(medium.g)
@@ -156,7 +156,7 @@ void MediumRayCaster::FindTraits(const Medium& medium, const SolvedLight& light,
 void MediumRayCaster::PrepareBackground(const Illumination& illumination)
 {
   const Environment& environment = illumination.environment;
-  this->UnderSky = !environment.Empty() || !IsZero(illumination.sky);
+  this->UnderSky = !environment.Empty() || !IsBlack(illumination.sky);
   this->Background = this->UnderSky ? illumination.sky : this->Settings.backgroundColor;
   if (!environment.Empty() && this->Settings.showBackground)
   {
@@ -191,7 +191,7 @@ void MediumRayCaster::Reserve()
   Device& device = this->TheDevice;
   for (int axis = 0; axis < 3; ++axis)
   {
-    this->BrickCount[axis] = (this->TheGrid.size[axis] + BrickEdge - 1) / BrickEdge;
+    this->BrickCount[axis] = PartsOf<int>(this->TheGrid.size[axis], BrickEdge);
   }
   const std::size_t count = PaddedCount(this->TheGrid);
   this->Samples = Buffer<cl_float4>(device, count, "the ray caster's samples");

@@ -59,11 +59,7 @@ void CheckLightField(const Field& field, const char* name, const Grid& grid)
   {
     return;
   }
-  if (field.components != 1 && field.components != 3)
-  {
-    throw InvalidInput(std::string(name) + " has " + std::to_string(field.components) +
-      " components a voxel; give it 1 (grey) or 3 (red, green, blue).");
-  }
+  CheckComponents(field, name);
   CheckFinite(field, name, grid);
 }
 

@@ -11,11 +11,6 @@
 
 namespace tyndall
 {
-namespace
-{
-
-}
-
 std::vector<SmallLight> SmallLights(const std::vector<Light>& lights, const Grid& grid, int rectangleSamples)
 {
   std::vector<SmallLight> small;
@@ -29,7 +24,7 @@ std::vector<SmallLight> SmallLights(const std::vector<Light>& lights, const Grid
     const double length = glm::length(Vector(light.direction));
     const glm::dvec3 axis = length > 0.0 ? Vector(light.direction) / length : glm::dvec3(0.0, 0.0, -1.0);
     const glm::dvec3 place = Vector(light.position) - Vector(grid.origin);
-    if (IsZero(light.power))
+    if (IsBlack(light.power))
     {
       continue;
     }

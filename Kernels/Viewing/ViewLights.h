@@ -6,11 +6,6 @@
 
 namespace tyndall
 {
-inline bool IsZero(const Rgb& colour)
-{
-  return colour[0] == 0.0 && colour[1] == 0.0 && colour[2] == 0.0;
-}
-
 /// Points and parallel beams that stand for the lights.
 std::vector<SmallLight> SmallLights(const std::vector<Light>& lights, const Grid& grid, int rectangleSamples);
 
