@@ -47,8 +47,7 @@ vtkDataArray* PhotonArray(vtkPolyData* photons, const char* name, Need need, Com
 
 std::int32_t BatchOf(double number, vtkIdType photon)
 {
-  constexpr int most = 64;
-  if (!(number >= 0.0 && number < most) || number != std::floor(number))
+  if (!(number >= 0.0 && number < MarchedBatchesAtMost) || number != std::floor(number))
   {
     throw InvalidInput("Photon " + std::to_string(photon) + " has batch " + std::to_string(number) +
       "; it must be a whole number of 0 to 63, as PhotonEmitter makes it.");

@@ -27,9 +27,8 @@ void CheckComponents(const Field& field, const char* name)
 
 namespace
 {
-constexpr double LargestExtinction = 1e37; ///< 1/length; the inverse of more is not a normal float
-constexpr double LongestSpacing = 1e30;    ///< and the shortest is its inverse: products of several areas stay doubles
-constexpr double MostUnequal = 1e9;        ///< longest spacing over shortest
+constexpr double LongestSpacing = 1e30; ///< and the shortest is its inverse: products of several areas stay doubles
+constexpr double MostUnequal = 1e9;     ///< longest spacing over shortest
 
 void CheckField(const Field& field, const char* name, const Grid& grid)
 {

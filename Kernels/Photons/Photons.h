@@ -8,6 +8,8 @@
 
 namespace tyndall
 {
+constexpr int MarchedBatchesAtMost = 64; ///< that PhotonMarcher keeps apart: photons have batches 0 to 63
+
 /// A packet of light: not a quantum, but a share of a lamp's power with a place and a direction.
 struct Photon
 {

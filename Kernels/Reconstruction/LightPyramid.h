@@ -20,7 +20,7 @@ public:
     MeanOfLit, ///< of those of 2x2x2 that are not 0 (listing B.2)
   };
 
-  /// @param levels  above the grid, at most 8
+  /// @param levels  above the grid, at most LevelsAtMost
   LightPyramid(const RowKernels& kernels, const Grid& grid, int fields, int levels, const char* what);
 
   /// Put an array of voxels of 1 or 3 components into fields `first` and on of level 0.

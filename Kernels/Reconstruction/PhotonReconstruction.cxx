@@ -3,6 +3,7 @@
 #include "Light/LeftOut.h"
 #include "Reconstruction/ConservativeReconstruction.h"
 #include "Reconstruction/LevelReconstruction.h"
+#include "Reconstruction/LightPyramidShared.h"
 #include "Reconstruction/LightRows.h"
 
 #include "Device/Clock.h"
@@ -44,14 +45,17 @@ bool NeedsCounts(Estimator estimator)
 
 void Check(const ReconstructionSettings& settings)
 {
-  const auto require = [](bool fits, const std::string& what, double value, const char* range) {
+  const auto require = [](bool fits, const std::string& what, double value, const std::string& range) {
     if (!fits)
     {
       throw InvalidInput(what + " is " + std::to_string(value) + "; it must be " + range + ".");
     }
   };
-  require(settings.levels >= 1 && settings.levels <= 8, "The number of levels", settings.levels, "1 to 8");
-  require(settings.level >= 0 && settings.level <= 8, "The level of the constant radius", settings.level, "0 to 8");
+  const std::string most = std::to_string(LevelsAtMost);
+  require(
+    settings.levels >= 1 && settings.levels <= LevelsAtMost, "The number of levels", settings.levels, "1 to " + most);
+  require(settings.level >= 0 && settings.level <= LevelsAtMost, "The level of the constant radius", settings.level,
+    "0 to " + most);
   require(settings.nearest >= 1, "The number of nearest photons", settings.nearest, "at least 1");
   require(settings.weightStep >= 0.0 && std::isfinite(settings.weightStep), "The weight of photons from level to level",
     settings.weightStep, "a number of 0 (found from the photons) or more");
@@ -83,11 +87,11 @@ void CheckPresence(const NoisyLight& light, Estimator estimator)
       "Let PhotonEmitter make at least two Batches and PhotonMarcher's conservative scheme gather them, or "
       "choose another estimator.";
     RequireArray(light.batchFluence, estimator, "fluence_batches", advice);
-    if (light.batches < 2 || light.batches > 16)
+    if (light.batches < 2 || light.batches > ComparedBatchesAtMost)
     {
       throw InvalidInput("The photons are of " + std::to_string(light.batches) +
-        (light.batches == 1 ? " batch" : " batches") + "; the conservative estimator compares 2 to 16 of them. " +
-        advice);
+        (light.batches == 1 ? " batch" : " batches") + "; the conservative estimator compares 2 to " +
+        std::to_string(ComparedBatchesAtMost) + " of them. " + advice);
     }
     return;
   }

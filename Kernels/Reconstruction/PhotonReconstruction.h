@@ -9,6 +9,8 @@
 
 namespace tyndall
 {
+constexpr int ComparedBatchesAtMost = 16; ///< that the conservative estimator compares
+
 /// Light as photons left it, not filtered. Arrays are over the grid's voxels, x fastest; null where there is none.
 struct NoisyLight
 {
@@ -19,7 +21,7 @@ struct NoisyLight
   const float* photonCount = nullptr;   ///< photons in each voxel; for the published and the nearest estimator
   const float* photonWeight = nullptr;  ///< their mean weight; for the published one
   int batches = 1;
-  /// [batch][voxel][channel]; for the conservative estimator, 2 to 16 whose mean is fluence.
+  /// [batch][voxel][channel]; for the conservative estimator, 2 to ComparedBatchesAtMost, whose mean is fluence.
   const float* batchFluence = nullptr;
 };
 

@@ -41,7 +41,7 @@ std::array<int, 2> PacketPixels(int width)
 }
 
 /// A bound of sigma_t over voxels and channels, 1/length.
-double LargestExtinction(const Medium& medium)
+double ExtinctionBound(const Medium& medium)
 {
   double sum = 0.0;
   for (const Field& field : { medium.sigma_a, medium.sigma_s })
@@ -150,7 +150,7 @@ void MediumRayCaster::FindTraits(const Medium& medium, const SolvedLight& light,
   this->Grey = !this->Coloured && traits.grey && !this->KnowsFlow && this->LightCount == 0 &&
     light.fluence.components == 1 && light.fluenceDirect.components == 1 && (!traits.emits || traits.emission.IsGrey());
   this->SourcesDependOnCamera = this->LightCount > 0 && medium.g != 0.0;
-  this->LargestExtinction = tyndall::LargestExtinction(medium);
+  this->LargestSigmaT = ExtinctionBound(medium);
 }
 
 void MediumRayCaster::PrepareBackground(const Illumination& illumination)
@@ -465,7 +465,7 @@ std::string MediumRayCaster::CastingOptions() const
 {
   // Longest optical length of a step; the kernel has a shorter way to cross it up to 2. Bent steps can be a little
   // longer.
-  const double longest = this->LargestExtinction * this->Settings.stepSize *
+  const double longest = this->LargestSigmaT * this->Settings.stepSize *
     *std::max_element(this->TheGrid.spacing.begin(), this->TheGrid.spacing.end());
   const int phase = this->KnowsFlow ? 1 + static_cast<int>(this->Settings.phaseFunction) : 0;
   return Define("REAL_WIDTH", this->PacketWidth()) + Define("COLOURED", this->Coloured) + Define("GREY", this->Grey) +

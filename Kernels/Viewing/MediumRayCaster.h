@@ -216,7 +216,7 @@ private:
   IndexRange Index;
   bool SourcesDependOnCamera = false;
   bool SourcesReady = false;
-  double LargestExtinction = 0.0; ///< at least the largest sigma_t, 1/length
+  double LargestSigmaT = 0.0;     ///< at least the largest sigma_t, 1/length
   bool UnderSky = false;          ///< the background is the illumination's, not the settings'
   Rgb Background = {};
   std::array<int, 2> EnvironmentSize = { 0, 0 };

@@ -12,8 +12,8 @@ namespace tyndall
 {
 namespace
 {
-constexpr float LeastIndex = 1e-3f;
-constexpr float LargestIndex = 1e3f;
+constexpr float LeastViewedIndex = 1e-3f;
+constexpr float LargestViewedIndex = 1e3f;
 constexpr double LeastStep = 0.01, LargestStep = 10.0; ///< voxels
 constexpr double LargestRadiance = 1e37;               ///< W / (length^2 sr); sums of it are still floats
 constexpr double FarthestCamera = 1e15;                ///< lengths, voxels: their squares are still floats
@@ -247,7 +247,7 @@ void CheckViewedIndex(const Field& ior, const Grid& grid)
   CheckIndex(ior, grid);
   for (std::size_t i = 0; ior.values && i < grid.VoxelCount(); ++i)
   {
-    if (ior.values[i] < LeastIndex || ior.values[i] > LargestIndex)
+    if (ior.values[i] < LeastViewedIndex || ior.values[i] > LargestViewedIndex)
     {
       throw InvalidInput("ior is " + std::to_string(ior.values[i]) + " in voxel " + VoxelName(grid, i) +
         " (the first such voxel); rays are followed where it is from 0.001 to 1000.");

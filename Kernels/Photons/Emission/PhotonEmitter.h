@@ -10,6 +10,8 @@
 
 namespace tyndall
 {
+constexpr int EmittedBatchesAtMost = 16; ///< as many as the conservative reconstruction compares
+
 struct EmissionSettings
 {
   /// Photons that reach the volume, of all lights together; each light has a share in proportion to the power with

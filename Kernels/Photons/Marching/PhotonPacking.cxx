@@ -144,10 +144,10 @@ std::vector<std::uint32_t> ByBatch(const std::vector<std::uint32_t>& order, cons
 
 void CheckBatch(const Photon& photon, std::size_t number)
 {
-  if (photon.batch < 0 || photon.batch >= BatchesAtMost)
+  if (photon.batch < 0 || photon.batch >= MarchedBatchesAtMost)
   {
     throw InvalidInput("Photon " + std::to_string(number) + " is of batch " + std::to_string(photon.batch) +
-      "; there are 0 to " + std::to_string(BatchesAtMost - 1) + ".");
+      "; there are 0 to " + std::to_string(MarchedBatchesAtMost - 1) + ".");
   }
 }
 

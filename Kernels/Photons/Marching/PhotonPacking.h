@@ -25,8 +25,6 @@ struct PackedPhotons
   std::size_t LargestBatch() const; ///< photons
 };
 
-constexpr int BatchesAtMost = 64;
-
 /// The largest batch that photons are of, and one.
 int BatchesOf(const std::vector<Photon>& photons);
 

@@ -18,7 +18,7 @@ namespace tyndall
 {
 namespace
 {
-constexpr int RoundsAtMost = 64;
+constexpr int RoundsAtMost = 64; ///< of a photon through the volume, in sums of its edges
 constexpr std::size_t PhotonsPerLaunch = 1 << 16;
 
 int Components(const Field& field)

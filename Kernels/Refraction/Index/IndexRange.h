@@ -6,7 +6,11 @@
 
 namespace tyndall
 {
-/// @throws InvalidInput where the index is not finite and positive, 1e-6 to 1e6, naming the first such voxel
+/// Of a refractive index: squares of these, and their differences, leave room in float.
+constexpr double LeastIndex = 1e-6;
+constexpr double LargestIndex = 1e6;
+
+/// @throws InvalidInput where the index is not finite and positive, LeastIndex to LargestIndex, naming the first such voxel
 void CheckIndex(const Field& ior, const Grid& grid);
 
 /// Least and largest index; null values are 1 everywhere.

@@ -9,6 +9,7 @@
 #include "Numerics/NumberText.h"
 #include "Numerics/Vectors.h"
 #include "Refraction/Index/IndexField.h"
+#include "Refraction/Index/IndexRange.h"
 #include "Refraction/Voxelization/MeshChecks.h"
 #include "TyndallKernelSources.h"
 
@@ -23,9 +24,6 @@ namespace
 {
 constexpr std::size_t WorkGroup = 256;
 constexpr double ShortestEdge = 1e-18; ///< of a voxel, length
-constexpr double LeastIndex = 1e-6;    ///< as in CheckIndex
-constexpr double LargestIndex = 1e6;
-constexpr double LargestExtinction = 1e37; ///< as in Check of a medium
 }
 
 void Check(const Material& material, const std::string& name)
