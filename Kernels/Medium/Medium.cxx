@@ -10,10 +10,8 @@ namespace tyndall
 {
 std::string VoxelName(const Grid& grid, std::size_t voxel)
 {
-  const std::size_t nx = static_cast<std::size_t>(grid.size[0]);
-  const std::size_t ny = static_cast<std::size_t>(grid.size[1]);
-  return "(" + std::to_string(voxel % nx) + ", " + std::to_string(voxel / nx % ny) + ", " +
-    std::to_string(voxel / (nx * ny)) + ")";
+  const std::array<int, 3> at = grid.VoxelAt(voxel);
+  return "(" + std::to_string(at[0]) + ", " + std::to_string(at[1]) + ", " + std::to_string(at[2]) + ")";
 }
 
 void CheckComponents(const Field& field, const char* name)

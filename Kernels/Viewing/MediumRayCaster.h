@@ -216,8 +216,8 @@ private:
   IndexRange Index;
   bool SourcesDependOnCamera = false;
   bool SourcesReady = false;
-  double LargestSigmaT = 0.0;     ///< at least the largest sigma_t, 1/length
-  bool UnderSky = false;          ///< the background is the illumination's, not the settings'
+  double LargestSigmaT = 0.0; ///< at least the largest sigma_t, 1/length
+  bool UnderSky = false;      ///< the background is the illumination's, not the settings'
   Rgb Background = {};
   std::array<int, 2> EnvironmentSize = { 0, 0 };
   std::array<int, 3> BrickCount = {};

@@ -29,7 +29,7 @@ IndexRange RangeOnFaces(const Field& ior, const Grid& grid)
     for (int j = 0; j < size[1]; ++j)
     {
       const bool wholeRow = k == 0 || k == size[2] - 1 || j == 0 || j == size[1] - 1;
-      const float* row = ior.values + (static_cast<std::size_t>(k) * size[1] + j) * size[0];
+      const float* row = ior.values + grid.IndexOf({ 0, j, k });
       const int step = wholeRow ? 1 : std::max(size[0] - 1, 1); // else its two ends
       for (int i = 0; i < size[0]; i += step)
       {
