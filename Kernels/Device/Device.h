@@ -5,6 +5,7 @@
 #include "Device/MemoryCount.h"
 #include "Device/OpenCL.h"
 
+#include <algorithm>
 #include <atomic>
 #include <cstddef>
 #include <map>
@@ -42,6 +43,12 @@ public:
   bool IsCpu() const { return this->Cpu; }
   int ComputeUnits() const { return this->Units; }
   int FloatVectorWidth() const { return this->VectorWidth; } ///< 1 on GPUs, 4 to 16 on CPUs
+  /// Floats that a work-item is to handle at once: on a CPU as many as its registers hold, but from `least` to `most`,
+  /// for which a kernel is written; on a GPU one, for it makes its own vectors.
+  int KernelWidth(int least = 4, int most = 16) const
+  {
+    return this->Cpu ? std::clamp(this->VectorWidth, least, most) : 1;
+  }
   /// Not those that the environment variable TYNDALL_WITHOUT names (with blanks between): to try what devices without
   /// them get.
   bool HasExtension(const std::string& name) const;

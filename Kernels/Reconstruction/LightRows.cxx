@@ -8,7 +8,7 @@ namespace tyndall
 {
 int RowWidth(const Device& device, const Grid& grid)
 {
-  return device.IsCpu() && grid.size[0] >= 16 ? 8 : 1;
+  return grid.size[0] >= 16 ? device.KernelWidth(8, 8) : 1;
 }
 
 namespace

@@ -277,15 +277,9 @@ bool MediumRayCaster::Adopt(const ViewSettings& asked)
   return true;
 }
 
-/// On a CPU as wide as its registers; a GPU makes its own packets.
 int MediumRayCaster::PacketWidth() const
 {
-  const int width = this->TheDevice.FloatVectorWidth();
-  return this->Settings.packetWidth > 0     ? this->Settings.packetWidth
-    : !this->TheDevice.IsCpu() || width < 4 ? 1
-    : width < 8                             ? 4
-    : width < 16                            ? 8
-                                            : 16;
+  return this->Settings.packetWidth > 0 ? this->Settings.packetWidth : this->TheDevice.KernelWidth();
 }
 
 void MediumRayCaster::Upload(const Medium& medium, const SolvedLight& light, const Field& ior)

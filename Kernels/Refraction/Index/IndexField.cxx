@@ -58,7 +58,7 @@ void SmoothIndex(Device& device, const Grid& grid, int filterSize, Buffer<float>
   {
     return;
   }
-  const int width = device.FloatVectorWidth() > 1 ? 8 : 1;
+  const int width = device.KernelWidth(8, 8);
   const std::string options = Define("RADIUS", filterSize / 2) + Define("REAL_WIDTH", width);
   cl::Kernel kernel = device.Kernel("smooth_index", kernel_source::IndexField, options);
   const Buffer<float> weights(device, GaussianWeights(filterSize), "the filter");
