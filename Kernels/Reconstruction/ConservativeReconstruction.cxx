@@ -1,4 +1,5 @@
 #include "Reconstruction/ConservativeReconstruction.h"
+#include "Reconstruction/ConservativeReconstructionShared.h"
 #include "Reconstruction/WholeRows.h"
 
 #include "TyndallKernelSources.h"
@@ -20,9 +21,6 @@ constexpr float Honesty = 0.4f;
 
 constexpr std::size_t FirstPart = std::size_t(1) << 22; // voxels a launch, until it is known how long that takes
 
-// As in ConservativeReconstruction.cl.
-constexpr int GainFields = 4, Removed = 1;
-
 /// What the device keeps of a level of the pyramid, from level 1 on.
 struct ConservativeLevel
 {
@@ -41,7 +39,8 @@ ConservativeLevel MakeLevel(Device& device, const NoisyLight& light, const std::
 {
   const int fields = light.batches + Carried(light);
   const char* what = "a level of the pyramid of light";
-  return { LightRows(device, size, fields, width, what), LightRows(device, size, Carried(light) + 2, width, what),
+  return { LightRows(device, size, fields, width, what),
+    LightRows(device, size, Carried(light) + BesideResults, width, what),
     LightRows(device, size, GainFields, width, what), LightRows(device, size, 2, width, what),
     LightRows(device, size, 2, width, what) };
 }
@@ -193,7 +192,7 @@ void ConservativePasses::FindGains(int level)
   With(gains, above.across.Values(), cells, above.gains.Values());
   this->Kernels.Run(gains, above.light.Cells());
 
-  this->SmoothAcross(above, above.gains, Removed, 1);
+  this->SmoothAcross(above, above.gains, RemovedField, 1);
   cl::Kernel errors = this->Kernel("add_errors");
   With(errors, above.across.Values(), cells, Honesty, above.results.Values(), above.gains.Values());
   this->Kernels.Run(errors, above.light.Cells());
