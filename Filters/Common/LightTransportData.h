@@ -2,7 +2,6 @@
 
 #include "Common/GuardedWork.h"
 #include "Common/LightTransportWriting.h"
-
 #include "Device/Errors.h"
 #include "Lights/Lights.h"
 #include "Medium/Medium.h"

@@ -1,13 +1,12 @@
 #include "Reconstruction/ConservativeReconstruction.h"
-#include "Reconstruction/ConservativeReconstructionShared.h"
-#include "Reconstruction/WholeRows.h"
-
-#include "TyndallKernelSources.h"
 
 #include "Device/Batches.h"
 #include "Device/Defines.h"
 #include "Device/Sizes.h"
 #include "Numerics/PyramidLayout.h"
+#include "Reconstruction/ConservativeReconstructionShared.h"
+#include "Reconstruction/WholeRows.h"
+#include "TyndallKernelSources.h"
 
 #include <algorithm>
 #include <cmath>

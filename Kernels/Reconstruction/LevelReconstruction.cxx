@@ -1,12 +1,11 @@
 #include "Reconstruction/LevelReconstruction.h"
-#include "Reconstruction/LightPyramid.h"
-#include "Reconstruction/WholeRows.h"
-
-#include "TyndallKernelSources.h"
 
 #include "Device/Batches.h"
 #include "Device/Defines.h"
 #include "Device/Sizes.h"
+#include "Reconstruction/LightPyramid.h"
+#include "Reconstruction/WholeRows.h"
+#include "TyndallKernelSources.h"
 
 #include <algorithm>
 #include <limits>

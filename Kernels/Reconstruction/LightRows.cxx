@@ -1,8 +1,7 @@
 #include "Reconstruction/LightRows.h"
 
-#include "TyndallKernelSources.h"
-
 #include "Device/Defines.h"
+#include "TyndallKernelSources.h"
 
 namespace tyndall
 {

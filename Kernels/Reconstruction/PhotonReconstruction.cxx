@@ -1,16 +1,15 @@
 #include "Reconstruction/PhotonReconstruction.h"
 
+#include "Device/Clock.h"
+#include "Device/HostMemory.h"
 #include "Light/LeftOut.h"
+#include "Medium/Medium.h"
+#include "Medium/Traits.h"
+#include "Numerics/PyramidLayout.h"
 #include "Reconstruction/ConservativeReconstruction.h"
 #include "Reconstruction/LevelReconstruction.h"
 #include "Reconstruction/LightPyramidShared.h"
 #include "Reconstruction/LightRows.h"
-
-#include "Device/Clock.h"
-#include "Device/HostMemory.h"
-#include "Medium/Medium.h"
-#include "Medium/Traits.h"
-#include "Numerics/PyramidLayout.h"
 
 #include <algorithm>
 #include <cmath>

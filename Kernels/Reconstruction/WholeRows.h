@@ -1,8 +1,7 @@
 #pragma once
 
-#include "Reconstruction/LightRows.h"
-
 #include "Device/HostMappedBuffer.h"
+#include "Reconstruction/LightRows.h"
 
 namespace tyndall
 {

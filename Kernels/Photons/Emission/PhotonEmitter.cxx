@@ -1,11 +1,10 @@
 #include "Photons/Emission/PhotonEmitter.h"
 
-#include "Photons/Emission/PhotonSources.h"
-
 #include "Device/Clock.h"
 #include "Device/Errors.h"
 #include "Device/HostMemory.h"
 #include "Medium/Medium.h"
+#include "Photons/Emission/PhotonSources.h"
 
 #include <algorithm>
 #include <cmath>

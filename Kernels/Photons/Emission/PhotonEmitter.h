@@ -1,12 +1,11 @@
 #pragma once
 
-#include "Photons/Emission/SampleSequence.h"
-#include "Photons/Importance/ImportanceMap.h"
-#include "Photons/Photons.h"
-
 #include "Device/Monitor.h"
 #include "Lights/Lights.h"
 #include "Medium/Grid.h"
+#include "Photons/Emission/SampleSequence.h"
+#include "Photons/Importance/ImportanceMap.h"
+#include "Photons/Photons.h"
 
 namespace tyndall
 {

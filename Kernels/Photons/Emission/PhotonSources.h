@@ -1,9 +1,8 @@
 #pragma once
 
-#include "Photons/Photons.h"
-
 #include "Lights/Lights.h"
 #include "Medium/Grid.h"
+#include "Photons/Photons.h"
 
 #include <array>
 #include <functional>

@@ -1,9 +1,8 @@
 #include "Photons/Importance/PhotonImportance.h"
 
-#include "Photons/Emission/PhotonEmitter.h"
-
 #include "Device/Clock.h"
 #include "Device/Errors.h"
+#include "Photons/Emission/PhotonEmitter.h"
 
 #include <algorithm>
 #include <cmath>

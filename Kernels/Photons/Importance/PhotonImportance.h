@@ -1,9 +1,8 @@
 #pragma once
 
+#include "Lights/Lights.h"
 #include "Photons/Importance/ImportanceMap.h"
 #include "Photons/Marching/PhotonMarcher.h"
-
-#include "Lights/Lights.h"
 
 #include <string>
 

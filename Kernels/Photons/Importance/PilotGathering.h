@@ -1,9 +1,8 @@
 #pragma once
 
+#include "Device/Monitor.h"
 #include "Photons/Importance/PilotLight.h"
 #include "Photons/Marching/MarchMedium.h"
-
-#include "Device/Monitor.h"
 
 namespace tyndall
 {

@@ -1,9 +1,8 @@
 #pragma once
 
+#include "Device/Monitor.h"
 #include "Photons/Marching/MarchMedium.h"
 #include "Photons/Marching/PhotonPacking.h"
-
-#include "Device/Monitor.h"
 
 namespace tyndall
 {

@@ -1,12 +1,11 @@
 #pragma once
 
-#include "Photons/Photons.h"
-
 #include "Device/Buffer.h"
 #include "Medium/Medium.h"
 #include "Medium/Traits.h"
 #include "Photons/Marching/MarchShared.h"
 #include "Photons/Marching/PhotonPacking.h"
+#include "Photons/Photons.h"
 #include "Refraction/Index/IndexRange.h"
 
 #include <string>

@@ -1,12 +1,10 @@
 #pragma once
 
-#include "Photons/Photons.h"
-
-#include "Photons/Importance/PilotLight.h"
-
 #include "Device/Buffer.h"
 #include "Device/Monitor.h"
 #include "Medium/Medium.h"
+#include "Photons/Importance/PilotLight.h"
+#include "Photons/Photons.h"
 
 #include <memory>
 

@@ -1,8 +1,7 @@
 #pragma once
 
-#include "Photons/Photons.h"
-
 #include "Medium/Grid.h"
+#include "Photons/Photons.h"
 
 namespace tyndall
 {

@@ -1,14 +1,12 @@
 #include "Photons/Marching/PublishedPhotons.h"
 
-#include "Device/Defines.h"
-#include "Photons/Marching/PublishedPhotonsShared.h"
-
-#include "Photons/Marching/PhotonPacking.h"
-#include "TyndallKernelSources.h"
-
 #include "Device/Buffer.h"
 #include "Device/Clock.h"
+#include "Device/Defines.h"
+#include "Photons/Marching/PhotonPacking.h"
+#include "Photons/Marching/PublishedPhotonsShared.h"
 #include "Refraction/Index/IndexRange.h"
+#include "TyndallKernelSources.h"
 
 #include <algorithm>
 #include <cmath>

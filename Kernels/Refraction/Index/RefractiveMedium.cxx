@@ -1,8 +1,6 @@
 #include "Refraction/Index/RefractiveMedium.h"
 
 #include "Device/Defines.h"
-#include "Refraction/Voxelization/MaterialsShared.h"
-
 #include "Device/HostMemory.h"
 #include "Device/Sizes.h"
 #include "Medium/Medium.h"
@@ -10,6 +8,7 @@
 #include "Numerics/Vectors.h"
 #include "Refraction/Index/IndexField.h"
 #include "Refraction/Index/IndexRange.h"
+#include "Refraction/Voxelization/MaterialsShared.h"
 #include "Refraction/Voxelization/MeshChecks.h"
 #include "TyndallKernelSources.h"
 

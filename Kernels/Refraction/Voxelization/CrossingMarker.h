@@ -1,8 +1,7 @@
 #pragma once
 
-#include "Refraction/Voxelization/SampleLattice.h"
-
 #include "Device/Buffer.h"
+#include "Refraction/Voxelization/SampleLattice.h"
 
 #include <string>
 
