@@ -25,7 +25,7 @@ class vtkPolyData;
 /// LightTransportWriting.h.
 ///
 /// What reads throws InvalidInput with a text for the user; a filter does all its work within Guarded, which turns that
-/// into an error of VTK. A filter's RequestData so reads:
+/// into an error of VTK. A filter's RequestData then reads:
 ///
 ///     int vtkX::RequestData(vtkInformation*, vtkInformationVector** inputs, vtkInformationVector* outputs)
 ///     {
@@ -54,7 +54,7 @@ Grid GridOf(vtkImageData* image);
 class FloatField
 {
 public:
-  FloatField() = default; ///< the quantity that is zero everywhere
+  FloatField() = default; ///< of a quantity that is zero everywhere
   explicit FloatField(vtkSmartPointer<vtkFloatArray> array)
     : Array(std::move(array))
   {

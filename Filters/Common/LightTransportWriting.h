@@ -14,7 +14,7 @@ class vtkTable;
 namespace tyndall
 {
 /// Add values to an image's cells, without copying them.
-/// @param values  `components` a cell, x fastest
+/// @param values  `components` per cell, x fastest
 /// @param advice  see RequireFinite
 /// @throws InvalidInput where a value is not finite
 void AddCells(
@@ -32,10 +32,10 @@ void AddFact(vtkDataObject* data, const char* name, const std::vector<double>& v
 void AddFact(vtkDataObject* data, const char* name, const std::vector<std::string>& values);
 void AddFact(vtkDataObject* data, const char* name, const std::vector<std::array<double, 3>>& vectors);
 
-/// What leaves thick voxels at the box's faces, see LightField::surfaceRadiance: a tuple a cell of BoxFaces.h.
+/// What leaves thick voxels at the box's faces, see LightField::surfaceRadiance: a tuple per cell of BoxFaces.h.
 constexpr const char* SurfaceRadianceFact = "surface_radiance";
 
-/// Texts one a line, for the panel.
+/// Texts one per line, for the panel.
 std::string Lines(const std::vector<std::string>& texts);
 
 /// Everything a solver found but its convergence: cells `fluence` (made the active scalars), `fluence_direct`,

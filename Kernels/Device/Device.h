@@ -35,8 +35,7 @@ public:
   /// given out once.
   static std::vector<std::string> TakeWarnings();
 
-  /// @param cacheFolder  where the platform writes what it compiles, if that is known: looked at for room before it
-  /// does
+  /// @param cacheFolder  where the platform writes what it compiles, if that is known: checked for room before it does
   Device(const cl::Platform& platform, const cl::Device& device, std::string cacheFolder = {});
 
   const std::string& Name() const { return this->DeviceName; }
@@ -62,8 +61,8 @@ public:
   void ResetPeak() { this->Memory.ResetPeak(); }
 
   /// A kernel of the program that `source` makes. Programs are kept, so that asking again with the same source and
-  /// options costs nothing. The kernel is the caller's own: two threads that ask for one get
-  /// two, for OpenCL does not let them set arguments of the same.
+  /// options costs nothing. The kernel is the caller's own: two threads that ask for one get two, for OpenCL does not
+  /// let them set arguments of the same.
   /// @param source  the text of a .cl file with what it includes (kernel_source::...)
   /// @param options  compiler options, e.g. "-DCHANNELS=3"
   /// @throws DeviceError with the build log

@@ -8,7 +8,7 @@ namespace tyndall
 {
 constexpr double LargestExtinction = 1e37; ///< 1/length; the inverse of more is not a normal float
 
-/// One quantity over a grid's voxels, seen, not owned: `components` floats a voxel (1, or 3 for RGB interleaved).
+/// One quantity over a grid's voxels, seen, not owned: `components` floats per voxel (1, or 3 for RGB interleaved).
 struct Field
 {
   const float* values = nullptr; ///< null: the quantity is zero everywhere
@@ -61,7 +61,7 @@ void CheckComponents(const Field& field, const char* name);
 void Check(const Grid& grid);
 
 /// @throws InvalidInput where the grid is not as above, where a coefficient is
-///   negative or not finite, or sigma_a and sigma_s add up to more than LargestExtinction (names the first such voxel), or where g
-///   is outside (-1, 1)
+///   negative or not finite, or sigma_a and sigma_s add up to more than LargestExtinction (names the first such voxel),
+///   or where g is outside (-1, 1)
 void Check(const Medium& medium);
 }

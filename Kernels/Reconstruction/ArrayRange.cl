@@ -1,4 +1,4 @@
-// What a run of `chunk` (a multiple of RunStep) values holds, a work-item a run. Sums carry what they lost (Kahan),
+// What a run of `chunk` (a multiple of RunStep) values holds, a work-item per run. Sums carry what they lost (Kahan),
 // those of three components one by one.
 
 #include "Reconstruction/ArrayRangeShared.h"

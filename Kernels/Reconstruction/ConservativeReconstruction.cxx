@@ -18,7 +18,7 @@ namespace
 /// Part of the light taken for noise that the error counts (numerics.md, Eq. (104), which says how it was fitted).
 constexpr float Honesty = 0.4f;
 
-constexpr std::size_t FirstPart = std::size_t(1) << 22; // voxels a launch, until it is known how long that takes
+constexpr std::size_t FirstPart = std::size_t(1) << 22; // voxels per launch, until it is known how long that takes
 
 /// What the device keeps of a level of the pyramid, from level 1 on.
 struct ConservativeLevel

@@ -1,4 +1,4 @@
-// A level of the pyramid for each voxel: a work-item a row (or a voxel). The host gives
+// A level of the pyramid for each voxel: a work-item per row (or voxel). The host gives
 //   PUBLISHED        1: the published estimator
 //   CONSTANT_RADIUS  1: that of one level everywhere; where both are 0, that of the nearest photons
 //   CHANNELS, DIRECTIONS  of the light; fields of its pyramid are its channels, then the mean direction

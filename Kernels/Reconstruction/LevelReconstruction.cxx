@@ -16,7 +16,7 @@ namespace
 {
 using Estimator = ReconstructionSettings::Estimator;
 
-constexpr std::size_t FirstPart = std::size_t(1) << 18; // voxels a launch, until it is known how long that takes
+constexpr std::size_t FirstPart = std::size_t(1) << 18; // voxels per launch, until it is known how long that takes
 
 /// Takes the light of each voxel from one level of its pyramid.
 class LevelPasses
@@ -39,7 +39,7 @@ public:
 private:
   /// Of the light, and of its directions.
   LightPyramid PyramidOfLight() const;
-  /// Of one number a voxel; without levels where that is not `wanted`.
+  /// Of one number per voxel; without levels where that is not `wanted`.
   LightPyramid PyramidOf(
     const HostMappedBuffer<float>& array, bool wanted, LightPyramid::Down down, const char* what) const;
   /// Runs a kernel over the grid, in parts.

@@ -7,8 +7,8 @@
 
 namespace tyndall
 {
-/// Volumes over a grid and what they are in 2x2x2, 4x4x4, ... voxels, level after level in one buffer, as rows of
-/// LightRows.cl. A grid of an odd size is treated as if its last voxel were repeated.
+/// Volumes over a grid and their means or sums over 2x2x2, 4x4x4, ... voxels, level after level in one buffer, as rows
+/// of LightRows.cl. A grid of an odd size is treated as if its last voxel were repeated.
 class LightPyramid
 {
 public:

@@ -6,11 +6,11 @@
 
 namespace tyndall
 {
-/// PhotonMarcher::Gather. Keeps which voxels are of which cell between calls.
+/// What PhotonMarcher::Gather does. Keeps between calls which voxels belong to which cell.
 class PilotGathering
 {
 public:
-  /// @param medium  to be kept
+  /// @param medium  must outlive this
   explicit PilotGathering(const MarchMedium& medium)
     : TheMedium(medium)
   {

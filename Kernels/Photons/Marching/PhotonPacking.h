@@ -5,7 +5,8 @@
 
 namespace tyndall
 {
-/// Photons as the kernels read them: on the volume, in voxels, near ones next to each other.
+/// Photons as the kernels read them: in the volume or where they enter it, in voxels, neighbours in space next to each
+/// other.
 struct PackedPhotons
 {
   int channels = 1;                 ///< 1 where all photons have the same colour and one is enough, else 3

@@ -180,7 +180,7 @@ private:
   Buffer<float> SigmaA, SigmaS;
   Buffer<cl_uchar> Nodes;
   Buffer<PublishedPhotonEnd> Ends;
-  Buffer<float> Fluence, Direction; ///< 3 a voxel
+  Buffer<float> Fluence, Direction; ///< 3 per voxel
 };
 
 void Tally(const std::vector<PublishedPhotonEnd>& ends, double unit, PhotonLight& result, PackingLoss& loss)
