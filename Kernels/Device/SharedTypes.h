@@ -1,7 +1,7 @@
 // What C++ and OpenCL C share, a struct or a constant, is written once, in a header that both compile: its name ends in
 // Shared.h and it includes this one. Members are int, float, uint, ulong, int2, int4 and float4, which have the same
-// size and alignment on both sides; constants are enumerators. All stands between SHARED_BEGIN and SHARED_END, which put
-// it into C++'s namespace.
+// size and alignment on both sides; constants are enumerators. All stands between SHARED_BEGIN and SHARED_END, which
+// put it into C++'s namespace.
 #pragma once
 
 #ifdef __OPENCL_C_VERSION__

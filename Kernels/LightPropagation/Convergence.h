@@ -9,8 +9,8 @@ namespace tyndall
 /// orders was asked for instead.
 bool MeetsTolerance(const PropagationSettings& settings, double residual);
 
-/// Of a solve, [0, 1]: orders of those asked for, else how far the logarithm of the residual has come, and a little more
-/// with each iteration.
+/// Of a solve, [0, 1]: orders of those asked for, else how far the logarithm of the residual has come, and a little
+/// more with each iteration.
 /// @param residual  of the last iteration, 1 before there is one
 /// @param iterations  done, with the part of the one under way
 double ProgressOf(const PropagationSettings& settings, double residual, double iterations);
