@@ -30,7 +30,6 @@ std::vector<unsigned char> HiddenCells(vtkImageData* image);
 std::vector<long long> PointsThatCount(vtkPolyData* data);
 
 /// @throws InvalidInput where an input image has duplicate cells and more than one piece of the output is asked for,
-/// unless the filter
-///   works cell by cell
+///   unless the filter works cell by cell
 void CheckDuplicates(vtkAlgorithm* filter, vtkInformationVector* outputs);
 }

@@ -17,8 +17,8 @@
 /// For filters that keep what they made of their inputs between updates.
 namespace tyndall
 {
-/// By what a thing on a device is known to be still that of a filter's inputs. No two objects of VTK have the same
-/// time.
+/// Tells whether what was made on a device of a filter's inputs is still up to date: keys are equal as long as nothing
+/// has changed. No two objects of VTK have the same time.
 struct InputsKey
 {
   std::shared_ptr<Device> device;

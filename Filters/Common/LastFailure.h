@@ -25,9 +25,9 @@ struct InputFailed
 {
 };
 
-/// When a filter's last run failed, and how. VTK runs a filter again with every update while its
-/// output does not cover the extent that was asked for, and that is so while the output is empty; ParaView makes
-/// several updates. They should not each say the same error.
+/// When a filter's last run failed, and how. VTK runs a filter again with every update while its output does not cover
+/// the extent that was asked for, and that is so while the output is empty; ParaView makes several updates. This keeps
+/// them from reporting the same error each time.
 class LastFailure
 {
 public:

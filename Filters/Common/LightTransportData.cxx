@@ -450,6 +450,12 @@ Environment ReadEnvironment(vtkImageData* image)
   return std::move(read.environment);
 }
 
+bool NothingShines(const Illumination& illumination)
+{
+  return illumination.lights.empty() && illumination.environment.Empty() && IsBlack(illumination.sky) &&
+    std::all_of(illumination.faces.begin(), illumination.faces.end(), IsBlack);
+}
+
 void AddDiffuse(Illumination& illumination, const double* sky, const double* faceRadiance)
 {
   std::copy_n(sky, 3, illumination.sky.begin());

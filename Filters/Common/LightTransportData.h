@@ -2,7 +2,6 @@
 
 #include "Common/GuardedWork.h"
 #include "Common/LightTransportWriting.h"
-
 #include "Device/Errors.h"
 #include "Lights/Lights.h"
 #include "Medium/Medium.h"
@@ -10,6 +9,7 @@
 #include "vtkFloatArray.h"
 #include "vtkSmartPointer.h"
 
+#include <array>
 #include <initializer_list>
 #include <string>
 #include <vector>
@@ -25,7 +25,7 @@ class vtkPolyData;
 /// LightTransportWriting.h.
 ///
 /// What reads throws InvalidInput with a text for the user; a filter does all its work within Guarded, which turns that
-/// into an error of VTK. A filter's RequestData so reads:
+/// into an error of VTK. A filter's RequestData then reads:
 ///
 ///     int vtkX::RequestData(vtkInformation*, vtkInformationVector** inputs, vtkInformationVector* outputs)
 ///     {
@@ -40,6 +40,12 @@ class vtkPolyData;
 ///     }
 namespace tyndall
 {
+/// The three numbers of a property: a colour or a place.
+inline std::array<double, 3> Triple(const double* values)
+{
+  return { values[0], values[1], values[2] };
+}
+
 /// The cells of an image, wherever its extent starts.
 /// @throws InvalidInput where there is no image, no cell, a spacing that is not a positive number, or a rotation
 Grid GridOf(vtkImageData* image);
@@ -48,7 +54,7 @@ Grid GridOf(vtkImageData* image);
 class FloatField
 {
 public:
-  FloatField() = default; ///< the quantity that is zero everywhere
+  FloatField() = default; ///< of a quantity that is zero everywhere
   explicit FloatField(vtkSmartPointer<vtkFloatArray> array)
     : Array(std::move(array))
   {
@@ -121,6 +127,9 @@ std::vector<Light> ReadLights(vtkPolyData* lights);
 /// The environment of a latitude-longitude image: point data `radiance`, 1 (grey) or 3 components, of width x height x
 /// 1 points; hidden ones are black. No image: an empty environment. Checked.
 Environment ReadEnvironment(vtkImageData* image);
+
+/// Whether there is neither a lamp nor an environment, and the sky and all faces are black.
+bool NothingShines(const Illumination& illumination);
 
 /// Adds light without a source: radiance from every direction alike (red, green, blue) and through the faces -x, +x,
 /// -y, +y, -z, +z, W/(length^2 sr). Checked.

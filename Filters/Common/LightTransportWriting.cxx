@@ -67,16 +67,6 @@ std::vector<double> Channels(std::initializer_list<Rgb> rows, int channels)
   return values;
 }
 
-std::vector<double> Flat(const std::vector<std::array<double, 3>>& directions)
-{
-  std::vector<double> values;
-  for (const std::array<double, 3>& direction : directions)
-  {
-    values.insert(values.end(), direction.begin(), direction.end());
-  }
-  return values;
-}
-
 void AddLightCells(vtkImageData* output, const char* name, std::vector<float>&& values, int components)
 {
   if (!values.empty())
@@ -147,6 +137,16 @@ void AddFact(vtkDataObject* data, const char* name, const std::vector<std::strin
   data->GetFieldData()->AddArray(array);
 }
 
+void AddFact(vtkDataObject* data, const char* name, const std::vector<std::array<double, 3>>& vectors)
+{
+  std::vector<double> values;
+  for (const std::array<double, 3>& vector : vectors)
+  {
+    values.insert(values.end(), vector.begin(), vector.end());
+  }
+  AddFact(data, name, values, 3);
+}
+
 std::string Lines(const std::vector<std::string>& texts)
 {
   std::string lines;
@@ -201,7 +201,7 @@ void WriteLight(LightField&& light, vtkImageData* output)
   }
   if (!light.storedDirections.empty())
   {
-    AddFact(output, "stored_directions", Flat(light.storedDirections), 3);
+    AddFact(output, "stored_directions", light.storedDirections);
   }
   if (!light.surfaceRadiance.empty())
   {

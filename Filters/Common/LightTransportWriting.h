@@ -2,6 +2,7 @@
 
 #include "Light/LightField.h"
 
+#include <array>
 #include <string>
 #include <vector>
 
@@ -13,7 +14,7 @@ class vtkTable;
 namespace tyndall
 {
 /// Add values to an image's cells, without copying them.
-/// @param values  `components` a cell, x fastest
+/// @param values  `components` per cell, x fastest
 /// @param advice  see RequireFinite
 /// @throws InvalidInput where a value is not finite
 void AddCells(
@@ -29,11 +30,12 @@ void AddGivenLight(vtkImageData* image, const char* name, std::vector<float>&& v
 /// @param values  tuples of `components` one after the other
 void AddFact(vtkDataObject* data, const char* name, const std::vector<double>& values, int components = 1);
 void AddFact(vtkDataObject* data, const char* name, const std::vector<std::string>& values);
+void AddFact(vtkDataObject* data, const char* name, const std::vector<std::array<double, 3>>& vectors);
 
-/// What leaves thick voxels at the box's faces, see LightField::surfaceRadiance: a tuple a cell of BoxFaces.h.
+/// What leaves thick voxels at the box's faces, see LightField::surfaceRadiance: a tuple per cell of BoxFaces.h.
 constexpr const char* SurfaceRadianceFact = "surface_radiance";
 
-/// Texts one a line, for the panel.
+/// Texts one per line, for the panel.
 std::string Lines(const std::vector<std::string>& texts);
 
 /// Everything a solver found but its convergence: cells `fluence` (made the active scalars), `fluence_direct`,

@@ -1,6 +1,7 @@
 #include "IO/RadianceFile.h"
 
 #include "Device/Errors.h"
+#include "IO/ReadableFile.h"
 
 #include <ImfChannelList.h>
 #include <ImfFrameBuffer.h>
@@ -33,31 +34,19 @@ constexpr std::int64_t LongestEdge = 1 << 17;
 
 std::vector<unsigned char> ReadBytes(const std::string& path, std::uint64_t most)
 {
-  std::ifstream stream(path, std::ios::binary | std::ios::ate);
-  const std::streamoff size = stream ? static_cast<std::streamoff>(stream.tellg()) : -1;
-  stream.seekg(0);
-  // A folder opens, and has a size, but nothing can be read from it.
-  if (size < 0 || (size > 0 && stream.peek() == std::ifstream::traits_type::eof()))
-  {
-    throw InvalidInput("\"" + path + "\" cannot be read. Check that it is a file, is there and may be read.");
-  }
+  const std::uint64_t size = ReadableSize(path);
   if (size == 0)
   {
     throw InvalidInput("\"" + path + "\" is empty. Copy or write the file again.");
   }
-  std::vector<unsigned char> bytes(std::min(static_cast<std::uint64_t>(size), most));
+  std::ifstream stream(path, std::ios::binary);
+  std::vector<unsigned char> bytes(std::min(size, most));
   stream.read(reinterpret_cast<char*>(bytes.data()), static_cast<std::streamsize>(bytes.size()));
   if (!stream)
   {
     throw InvalidInput("\"" + path + "\" cannot be read to its end. Check the disk and the file's permissions.");
   }
   return bytes;
-}
-
-std::uint64_t FileSize(const std::string& path)
-{
-  std::ifstream stream(path, std::ios::binary | std::ios::ate);
-  return stream ? static_cast<std::uint64_t>(stream.tellg()) : 0;
 }
 
 void CheckSize(const std::string& path, std::int64_t width, std::int64_t height, std::uint64_t fileSize)
@@ -89,68 +78,73 @@ struct HdrHeader
 
 constexpr std::size_t LongestHdrHeader = 1 << 16;
 
-HdrHeader ParseHdrHeader(const std::string& path, const std::vector<unsigned char>& bytes)
+/// The lines of a header, one after the other.
+class HdrLines
 {
-  HdrHeader header;
-  std::size_t at = 0;
-  const auto line = [&] {
-    const auto end = std::find(bytes.begin() + static_cast<std::ptrdiff_t>(at), bytes.end(), '\n');
-    if (end == bytes.end() || at > LongestHdrHeader)
+public:
+  HdrLines(const std::string& path, const std::vector<unsigned char>& bytes)
+    : Path(path)
+    , Bytes(bytes)
+  {
+  }
+
+  std::string Next()
+  {
+    const auto begin = this->Bytes.begin() + static_cast<std::ptrdiff_t>(this->Place);
+    const auto end = std::find(begin, this->Bytes.end(), '\n');
+    if (end == this->Bytes.end() || this->Place > LongestHdrHeader)
     {
-      Corrupt(path, "its header does not end");
+      Corrupt(this->Path, "its header does not end");
     }
-    std::string text(bytes.begin() + static_cast<std::ptrdiff_t>(at), end);
-    at = static_cast<std::size_t>(end - bytes.begin()) + 1;
+    std::string text(begin, end);
+    this->Place = static_cast<std::size_t>(end - this->Bytes.begin()) + 1;
     if (!text.empty() && text.back() == '\r')
     {
       text.pop_back();
     }
     return text;
-  };
-
-  if (bytes.size() < 2 || bytes[0] != '#' || bytes[1] != '?')
-  {
-    throw InvalidInput("\"" + path + "\" is not a Radiance picture: it does not begin with #?.");
-  }
-  line();
-  bool format = false;
-  for (std::string text = line(); !text.empty(); text = line())
-  {
-    if (text.compare(0, 7, "FORMAT=") == 0)
-    {
-      header.Xyz = text.find("32-bit_rle_xyze") != std::string::npos;
-      format = header.Xyz || text.find("32-bit_rle_rgbe") != std::string::npos;
-      if (!format)
-      {
-        Corrupt(path, "its format is \"" + text.substr(7) + "\", not 32-bit_rle_rgbe or 32-bit_rle_xyze");
-      }
-    }
-    else if (text.compare(0, 9, "EXPOSURE=") == 0)
-    {
-      const double exposure = std::strtod(text.c_str() + 9, nullptr);
-      if (!(exposure > 0.0) || !std::isfinite(exposure))
-      {
-        Corrupt(path, "its exposure is \"" + text.substr(9) + "\", not a positive number");
-      }
-      header.Exposure *= exposure;
-    }
-  }
-  if (!format)
-  {
-    Corrupt(path, "its header has no FORMAT line");
   }
 
-  const std::string resolution = line();
-  char signs[2], axes[2];
-  int lengths[2], used = 0;
-  const int found = std::sscanf(resolution.c_str(), "%c%c %6d %c%c %6d%n", &signs[0], &axes[0], &lengths[0], &signs[1],
-    &axes[1], &lengths[1], &used);
+  std::size_t At() const { return this->Place; } ///< byte at which the next one begins
+
+private:
+  const std::string& Path;
+  const std::vector<unsigned char>& Bytes;
+  std::size_t Place = 0;
+};
+
+void ParseHdrFormat(const std::string& path, const std::string& format, HdrHeader& header)
+{
+  header.Xyz = format.find("32-bit_rle_xyze") != std::string::npos;
+  if (!header.Xyz && format.find("32-bit_rle_rgbe") == std::string::npos)
+  {
+    Corrupt(path, "its format is \"" + format + "\", not 32-bit_rle_rgbe or 32-bit_rle_xyze");
+  }
+}
+
+double ParseHdrExposure(const std::string& path, const std::string& text)
+{
+  const double exposure = std::strtod(text.c_str(), nullptr);
+  if (!(exposure > 0.0) || !std::isfinite(exposure))
+  {
+    Corrupt(path, "its exposure is \"" + text + "\", not a positive number");
+  }
+  return exposure;
+}
+
+/// The line that says how large the picture is and how its rows lie, e.g. "-Y 512 +X 1024".
+void ParseHdrSize(const std::string& path, const std::string& size, HdrHeader& header)
+{
+  char signs[2] = {}, axes[2] = {};
+  int lengths[2] = {}, used = 0;
+  const int found = std::sscanf(
+    size.c_str(), "%c%c %6d %c%c %6d%n", &signs[0], &axes[0], &lengths[0], &signs[1], &axes[1], &lengths[1], &used);
   const auto isSign = [](char c) { return c == '+' || c == '-'; };
   const bool xFirst = axes[0] == 'X' && axes[1] == 'Y';
-  if (found != 6 || used != static_cast<int>(resolution.size()) || !isSign(signs[0]) || !isSign(signs[1]) ||
+  if (found != 6 || used != static_cast<int>(size.size()) || !isSign(signs[0]) || !isSign(signs[1]) ||
     !(xFirst || (axes[0] == 'Y' && axes[1] == 'X')))
   {
-    Corrupt(path, "its size is \"" + resolution.substr(0, 40) + "\", not like \"-Y 512 +X 1024\"");
+    Corrupt(path, "its size is \"" + size.substr(0, 40) + "\", not like \"-Y 512 +X 1024\"");
   }
   header.Transposed = xFirst;
   header.Rows = lengths[0];
@@ -159,7 +153,36 @@ HdrHeader ParseHdrHeader(const std::string& path, const std::vector<unsigned cha
   header.Height = xFirst ? lengths[1] : lengths[0];
   header.FromTop = signs[xFirst ? 1 : 0] == '-';
   header.FromLeft = signs[xFirst ? 0 : 1] == '+';
-  header.Pixels = at;
+}
+
+HdrHeader ParseHdrHeader(const std::string& path, const std::vector<unsigned char>& bytes)
+{
+  if (bytes.size() < 2 || bytes[0] != '#' || bytes[1] != '?')
+  {
+    throw InvalidInput("\"" + path + "\" is not a Radiance picture: it does not begin with #?.");
+  }
+  HdrHeader header;
+  HdrLines lines(path, bytes);
+  lines.Next();
+  bool hasFormat = false;
+  for (std::string text = lines.Next(); !text.empty(); text = lines.Next())
+  {
+    if (text.compare(0, 7, "FORMAT=") == 0)
+    {
+      ParseHdrFormat(path, text.substr(7), header);
+      hasFormat = true;
+    }
+    else if (text.compare(0, 9, "EXPOSURE=") == 0)
+    {
+      header.Exposure *= ParseHdrExposure(path, text.substr(9));
+    }
+  }
+  if (!hasFormat)
+  {
+    Corrupt(path, "its header has no FORMAT line");
+  }
+  ParseHdrSize(path, lines.Next(), header);
+  header.Pixels = lines.At();
   return header;
 }
 
@@ -338,7 +361,7 @@ ExrWindows WindowsOfExr(const std::string& path)
   {
     throw InvalidInput("\"" + path + "\" is a deep picture. Flatten it first.");
   }
-  const std::uint64_t size = FileSize(path);
+  const std::uint64_t size = ReadableSize(path);
   for (const exr_attr_box2i_t& window : { windows.Data, windows.Display })
   {
     const std::int64_t width = std::int64_t(window.max.x) - window.min.x + 1;
@@ -455,7 +478,7 @@ std::vector<float> ReadExrPixels(const std::string& path, const ExrWindows& wind
 PictureSize SizeOfHdr(const std::string& path)
 {
   const HdrHeader header = ParseHdrHeader(path, ReadBytes(path, LongestHdrHeader));
-  CheckSize(path, header.Width, header.Height, FileSize(path));
+  CheckSize(path, header.Width, header.Height, ReadableSize(path));
   return { header.Width, header.Height };
 }
 

@@ -9,7 +9,7 @@
  * @class vtkEnvironmentReader
  * @brief reads a picture of the light from all around: OpenEXR (.exr) or Radiance (.hdr)
  *
- * Output: vtkImageData of width x height x 1 points, one a pixel, with the point array `radiance` (float, RGB,
+ * Output: vtkImageData of width x height x 1 points, one per pixel, with the point array `radiance` (float, RGB,
  * W / (length^2 sr)), in latitude-longitude layout with z up: the centre of pixel (i, j) looks along azimuth
  * phi = 2 pi (i + 1/2) / width about +z from +x towards +y, and polar angle theta = pi (1 - (j + 1/2) / height) from
  * +z, that is along (sin theta cos phi, sin theta sin phi, cos theta). Row 0 is the picture's bottom row, straight

@@ -12,7 +12,7 @@ class vtkDataArraySelection;
 
 /**
  * @class vtkVDBReader
- * @brief reads grids of an OpenVDB file (.vdb) as one image, one cell a voxel
+ * @brief reads grids of an OpenVDB file (.vdb) as one image, one cell per voxel
  *
  * Output: vtkImageData with a cell array for each chosen grid, named after it.
  *

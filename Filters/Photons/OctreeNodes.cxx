@@ -43,7 +43,7 @@ class Trees
 {
 public:
   Trees(const Grid& grid, const Octree& octree)
-    : Size(grid.size)
+    : TheGrid(grid)
     , Levels(octree.levels.data())
   {
     this->VertexLevels->SetName("octree_level");
@@ -97,15 +97,13 @@ private:
 
   bool IsOutside(const Voxel& voxel) const
   {
-    return voxel[0] >= this->Size[0] || voxel[1] >= this->Size[1] || voxel[2] >= this->Size[2];
+    const Voxel& size = this->TheGrid.size;
+    return voxel[0] >= size[0] || voxel[1] >= size[1] || voxel[2] >= size[2];
   }
 
-  int LevelAt(const Voxel& voxel) const
-  {
-    return this->Levels[(static_cast<std::size_t>(voxel[2]) * this->Size[1] + voxel[1]) * this->Size[0] + voxel[0]];
-  }
+  int LevelAt(const Voxel& voxel) const { return this->Levels[this->TheGrid.IndexOf(voxel)]; }
 
-  Voxel Size;
+  const Grid& TheGrid;
   const std::uint8_t* Levels;
   vtkNew<vtkUnsignedCharArray> VertexLevels;
   vtkNew<vtkBitArray> Masked;

@@ -47,8 +47,7 @@ vtkDataArray* PhotonArray(vtkPolyData* photons, const char* name, Need need, Com
 
 std::int32_t BatchOf(double number, vtkIdType photon)
 {
-  constexpr int most = 64;
-  if (!(number >= 0.0 && number < most) || number != std::floor(number))
+  if (!(number >= 0.0 && number < MarchedBatchesAtMost) || number != std::floor(number))
   {
     throw InvalidInput("Photon " + std::to_string(photon) + " has batch " + std::to_string(number) +
       "; it must be a whole number of 0 to 63, as PhotonEmitter makes it.");
@@ -109,11 +108,6 @@ std::string DoubtOfBox(vtkPolyData* photons, const Grid& medium)
   return same ? ""
               : "The photons were made for the box " + Text(made) + ", the medium fills the box " + Text(box) +
       ": where they differ, light is missing or too much. Give PhotonEmitter the same medium.";
-}
-
-bool NothingShines(const Illumination& illumination)
-{
-  return illumination.lights.empty() && illumination.environment.Empty() && illumination.sky == Rgb{};
 }
 
 void WritePhotons(const EmittedPhotons& emitted, const Grid& box, vtkPolyData* output)

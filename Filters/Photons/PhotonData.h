@@ -11,9 +11,6 @@ class vtkPolyData;
 /// How photons flow between filters.
 namespace tyndall
 {
-/// Whether there is neither a light nor an environment nor a sky.
-bool NothingShines(const Illumination& illumination);
-
 /// Photons as polydata: points (double), a vertex each, point data `direction` (3, unit), `power` (3, RGB, W), `weight`
 /// (1: its power over what it had if its light's photons were spread evenly), `light` (1: number of its light, -1 the
 /// environment or sky) and `batch` (1: of which of the independent sets it is). `direction` is the active vectors, so

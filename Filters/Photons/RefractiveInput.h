@@ -32,8 +32,7 @@ struct RefractiveInput
 RefractiveInput ReadRefractiveMedium(vtkAlgorithm* filter, vtkImageData* medium, vtkImageData* octree = nullptr);
 
 /// A PhotonMarcher of a filter's medium, which is prepared once, and again only when something that it was made of has
-/// changed:
-/// what ReadRefractiveMedium reads, the settings or the device. Light and photons are none of that.
+/// changed: what ReadRefractiveMedium reads, the settings or the device. It does not depend on light and photons.
 class KeptMarcher
 {
 public:

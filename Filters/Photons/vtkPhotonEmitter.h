@@ -23,7 +23,7 @@ class vtkPolyData;
  * layer; missing: 0, 1, ...). A light without a layer is spread evenly, and so are all where field data `even` is 1.
  * Where photons are denser each has less power, so that what they add up to is the same.
  *
- * Output: vtkPolyData, a vertex a photon, point data
+ * Output: vtkPolyData, a vertex per photon, point data
  *
  * | array       | components | unit | meaning                                                           |
  * |-------------|------------|------|-------------------------------------------------------------------|

@@ -117,7 +117,7 @@ public:
 
   ///@{
   /// What came of the last update: whether the light is even, the thresholds that were used (W/length^2), seconds, the
-  /// device's name, and what the scene did not need, one a line.
+  /// device's name, and what the scene did not need, one per line.
   vtkGetMacro(Even, bool);
   vtkGetMacro(UsedGradientThreshold, double);
   vtkGetMacro(UsedLuminanceThreshold, double);

@@ -70,7 +70,7 @@ public:
 
   enum Schemes
   {
-    /// Explicit Euler, power a rasterised voxel, 64 bits a voxel by compare-and-swap, smoothed at the end.
+    /// Explicit Euler, power per rasterised voxel, 64 bits per voxel by compare-and-swap, smoothed at the end.
     PUBLISHED = 0,
     /// Symplectic integrator, power times path, fixed point sums that lose nothing and repeat bit for bit.
     CONSERVATIVE = 1
@@ -105,7 +105,7 @@ public:
   ///@}
 
   ///@{
-  /// Whether to count photons: `photon_count` and `photon_weight`, one number a voxel more in the same pass. Default
+  /// Whether to count photons: `photon_count` and `photon_weight`, one more number per voxel in the same pass. Default
   /// off. The published scheme cannot: an error.
   vtkSetMacro(PhotonCounts, bool);
   vtkGetMacro(PhotonCounts, bool);
@@ -143,7 +143,7 @@ public:
   ///@{
   /// What came of the last update: stretches of path deposited to voxels, steps of the integrator, photons that miss
   /// the volume, relative error of the energy balance, whether the medium was still prepared, seconds, the device's
-  /// name, and what the scene did not need, one a line.
+  /// name, and what the scene did not need, one per line.
   ///
   /// The conservative scheme's balance closes to rounding. That of the published scheme does not, even where packing
   /// loses nothing: it deposits a photon's power to a voxel however long the path in it is, so the extinction of its

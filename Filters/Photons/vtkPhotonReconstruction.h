@@ -119,7 +119,7 @@ public:
   ///@{
   /// What came of the last update: `fluence_bias`; of the conservative scheme the root of the mean square of
   /// `fluence_error` over that of `fluence` (0 of the others); seconds, the device's name, and what was not needed
-  /// here, one a line.
+  /// here, one per line.
   vtkGetMacro(Bias, double);
   vtkGetMacro(MeanError, double);
   vtkGetMacro(Seconds, double);

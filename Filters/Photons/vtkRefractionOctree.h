@@ -15,11 +15,11 @@
  * SetInputArrayToProcess 0; with IncludeExtinction also `sigma_a` and `sigma_s` (1 or 3 components, 1/length), or those
  * chosen as 1 and 2. Point arrays are averaged to cells.
  *
- * Output 0: the input with cell array `octree_level` (uint8: 0 a single voxel, k a node of 2^k voxels an edge) and
+ * Output 0: the input with cell array `octree_level` (uint8: 0 a single voxel, k a node of 2^k voxels per edge) and
  * field data `left_out` (what the scene did not need) and `device`.
  * Output 1: the same octree as vtkHyperTreeGrid, to look at. Its leaves are the nodes, with cell array `octree_level`.
  *
- * A node of level k > 0 is the cube of 2^k voxels an edge whose lowest voxel has indices, counted from the image's
+ * A node of level k > 0 is the cube of 2^k voxels per edge whose lowest voxel has indices, counted from the image's
  * lower corner, that are multiples of 2^k. It is kept whole where
  *
  *     max(ior) - min(ior) <= Tolerance
@@ -79,7 +79,7 @@ public:
   ///@{
   /// What came of the last update: the number of nodes, the seconds that their levels took, the name of the device
   /// (empty:
-  /// none was needed), and what the scene did not need, one a line.
+  /// none was needed), and what the scene did not need, one per line.
   vtkGetMacro(NodeCount, vtkIdType);
   vtkGetMacro(Seconds, double);
   vtkGetCharFromStdStringMacro(DeviceName);

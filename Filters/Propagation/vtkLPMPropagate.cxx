@@ -72,14 +72,14 @@ std::array<std::vector<float>, 6> PropagateAll(
   return faces;
 }
 
-std::vector<double> Flat(const tyndall::DirectionSet& set)
+std::vector<std::array<double, 3>> VectorsOf(const tyndall::DirectionSet& set)
 {
-  std::vector<double> flat;
+  std::vector<std::array<double, 3>> vectors;
   for (const tyndall::Direction& direction : set.directions)
   {
-    flat.insert(flat.end(), direction.omega.begin(), direction.omega.end());
+    vectors.push_back(direction.omega);
   }
-  return flat;
+  return vectors;
 }
 }
 
@@ -133,7 +133,7 @@ int vtkLPMPropagate::RequestData(vtkInformation*, vtkInformationVector** inputs,
         settings.directionsPerFace * propagation.Model().Channels());
     }
     this->Order = unscattered.IsThere() ? static_cast<int>(tyndall::ReadFact(image, tyndall::OrderFact, 0.0)) + 1 : 0;
-    tyndall::AddFact(output, "directions", Flat(propagation.Model().Directions()), 3);
+    tyndall::AddFact(output, "directions", VectorsOf(propagation.Model().Directions()));
     tyndall::AddFact(output, tyndall::MapResolutionFact, std::vector<double>{ 1.0 * settings.mapResolution });
     tyndall::AddFact(output, tyndall::StoredDirectionsFact, std::vector<double>{ 1.0 * settings.storedDirections });
     tyndall::AddFact(output, tyndall::OrderFact, std::vector<double>{ 1.0 * this->Order });

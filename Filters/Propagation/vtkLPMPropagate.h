@@ -34,7 +34,7 @@
  *
  * channels fastest: component k of grey light is direction k of the face, components 3 k to 3 k + 2 are its red, green
  * and blue. T as in Eq. (6) is sigma_s times that; without the factor it is there in voxels that do not scatter, too.
- * Memory: 6 DirectionsPerFace x 4 bytes a voxel and channel; 64^3 voxels in RGB with 25 directions take 472 MB
+ * Memory: 6 DirectionsPerFace x 4 bytes per voxel and channel; 64^3 voxels in RGB with 25 directions take 472 MB
  * (GetBytes).
  * Field data: `directions` (6 DirectionsPerFace x 3: where light travels), `map_resolution`, `stored_directions_count`,
  * `scattering_order`.

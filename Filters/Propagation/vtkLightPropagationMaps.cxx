@@ -54,15 +54,6 @@ tyndall::PropagationSettings SettingsOf(vtkLightPropagationMaps* filter)
   return settings;
 }
 
-bool NothingShines(const tyndall::Medium& medium, const tyndall::Illumination& illumination)
-{
-  const tyndall::Rgb black = {};
-  return illumination.lights.empty() && illumination.environment.Empty() && illumination.sky == black &&
-    std::all_of(
-      illumination.faces.begin(), illumination.faces.end(), [&](const tyndall::Rgb& face) { return face == black; }) &&
-    !medium.emission.values;
-}
-
 /// Whether all light comes in through faces of the box.
 bool OnlyFromFarAway(const tyndall::Illumination& illumination)
 {
@@ -121,7 +112,7 @@ int vtkLightPropagationMaps::RequestData(vtkInformation*, vtkInformationVector**
     vtkImageData* image = vtkImageData::GetData(inputs[MEDIUM]);
     const tyndall::MediumInput input = tyndall::ReadMedium(this, image);
     const tyndall::Illumination illumination = this->ReadAllIllumination(inputs);
-    if (NothingShines(input.medium, illumination))
+    if (tyndall::NothingShines(illumination) && !input.emission.IsThere())
     {
       vtkWarningMacro(
         "Nothing shines on the medium, so it is dark. Connect Lights or an Environment, or set SkyColor.");

@@ -190,7 +190,7 @@ public:
   /// not done, estimated relative error of fluence altogether (0 without EstimateError; NaN, not known, after one
   /// order), relative error of the energy balance, what the directions carry of the power that even light brings
   /// through a face, over the exact value (0.9875 with 25 directions per face: light that enters from faces and sky is
-  /// off by as much), seconds, the device's name, and what the scene did not need, one a line.
+  /// off by as much), seconds, the device's name, and what the scene did not need, one per line.
   vtkGetMacro(Orders, int);
   vtkGetMacro(Residual, double);
   vtkGetMacro(EstimatedError, double);

@@ -9,7 +9,7 @@
 
 /**
  * @class vtkLightRig
- * @brief makes the lights of a scene, one vertex a light
+ * @brief makes the lights of a scene, one vertex per light
  *
  * Output: vtkPolyData, one vertex at each light's position (directional lights: the origin), with the point arrays
  *

@@ -26,14 +26,10 @@ namespace
 using tyndall::Material;
 using tyndall::Rgb;
 using tyndall::Solid;
+using tyndall::Triple;
 
 const char* const DefaultNumbers = "material_id";
 constexpr std::size_t NumbersOfMaterial = 9;
-
-Rgb RgbOf(const double values[3])
-{
-  return { values[0], values[1], values[2] };
-}
 
 /// Name of the cell array with the numbers of materials; "(by name)" is what ParaView's panel sends for the default
 /// one.
@@ -110,7 +106,7 @@ Rgb OutsideScattering(const double asked[3], const tyndall::Grid& grid)
   const bool automatic = std::all_of(asked, asked + 3, [](double value) { return value < 0.0; });
   const double edge = LongestEdge(grid); // 0 where there are no voxels, which the kernels refuse
   const double suiting = edge > 0.0 ? 0.5 / edge : 0.0;
-  return automatic ? Rgb{ suiting, suiting, suiting } : RgbOf(asked);
+  return automatic ? Rgb{ suiting, suiting, suiting } : Triple(asked);
 }
 
 tyndall::RefractiveMediumSettings SettingsOf(vtkMeshVoxelizer* filter, const std::vector<Solid>& solids)
@@ -120,7 +116,7 @@ tyndall::RefractiveMediumSettings SettingsOf(vtkMeshVoxelizer* filter, const std
   settings.grid = IsOn(filter->GetModelBounds())
     ? GridIn(filter->GetModelBounds(), size)
     : tyndall::GridAround(solids, { size[0], size[1], size[2] }, filter->GetMargin(), filter->GetFilterSize());
-  settings.outside = { filter->GetOutsideIndex(), RgbOf(filter->GetOutsideAbsorption()),
+  settings.outside = { filter->GetOutsideIndex(), Triple(filter->GetOutsideAbsorption()),
     OutsideScattering(filter->GetOutsideScattering(), settings.grid), filter->GetOutsideMeanCosine() };
   const double noiseSize = filter->GetNoiseSize() == 0.0 ? LongestEdge(settings.grid) / 8.0 : filter->GetNoiseSize();
   settings.perturbation = { filter->GetIndexNoise(), filter->GetScatteringNoise(), noiseSize,
@@ -269,7 +265,7 @@ int vtkMeshVoxelizer::RequestData(vtkInformation*, vtkInformationVector** inputs
   this->LeftOut.clear();
   return tyndall::Guarded(this, outputs, [&] {
     this->Added->Check();
-    const Material inside = { this->InsideIndex, RgbOf(this->InsideAbsorption), RgbOf(this->InsideScattering),
+    const Material inside = { this->InsideIndex, Triple(this->InsideAbsorption), Triple(this->InsideScattering),
       this->InsideMeanCosine };
     const auto materialOf = [&](int number) {
       const auto& added = this->Added->InOrder;

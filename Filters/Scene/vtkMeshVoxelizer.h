@@ -152,7 +152,7 @@ public:
   ///@}
 
   ///@{
-  /// Fine voxels an edge of a voxel. Occupancy has no steps: where the surface lies between their centres counts too.
+  /// Fine voxels per edge of a voxel. Occupancy has no steps: where the surface lies between their centres counts too.
   /// The factor sets how well it follows edges and bends. Default 4, valid [1, 16].
   tyndallSetRangeMacro(SupersamplingFactor, int, 1, 16);
   vtkGetMacro(SupersamplingFactor, int);

@@ -17,7 +17,9 @@
 namespace
 {
 using tyndall::InvalidInput;
+using tyndall::Require;
 using tyndall::Rgb;
+using tyndall::Times;
 
 /// The medium at relative density 1, in the dataset's unit.
 struct Recipe
@@ -27,19 +29,6 @@ struct Recipe
   Rgb emission;
   double g;
 };
-
-Rgb Times(const Rgb& rgb, double factor)
-{
-  return { rgb[0] * factor, rgb[1] * factor, rgb[2] * factor };
-}
-
-void Demand(bool holds, const std::string& what)
-{
-  if (!holds)
-  {
-    throw InvalidInput(what);
-  }
-}
 
 bool NotNegative(double value)
 {
@@ -52,12 +41,12 @@ Recipe CustomMedium(vtkParticipatingMedium* filter)
   for (int c = 0; c < 3; ++c)
   {
     const double albedo = filter->GetAlbedo()[c];
-    Demand(albedo >= 0.0 && albedo <= 1.0, "Albedo is " + std::to_string(albedo) + "; it must lie in [0, 1].");
+    Require(albedo >= 0.0 && albedo <= 1.0, "Albedo is " + std::to_string(albedo) + "; it must lie in [0, 1].");
     recipe.sigma_s[c] = albedo * filter->GetExtinctionScale();
     recipe.sigma_a[c] = (1.0 - albedo) * filter->GetExtinctionScale();
   }
   recipe.g = filter->GetMeanCosine();
-  Demand(std::abs(recipe.g) < 1.0, "MeanCosine is " + std::to_string(recipe.g) + "; it must lie between -1 and 1.");
+  Require(std::abs(recipe.g) < 1.0, "MeanCosine is " + std::to_string(recipe.g) + "; it must lie between -1 and 1.");
   return recipe;
 }
 
@@ -65,7 +54,7 @@ Recipe RealMedium(vtkParticipatingMedium* filter)
 {
   const tyndall::MediumPreset& preset = tyndall::MediumPresets()[filter->GetPreset() - 1];
   const double length = filter->GetMillimetresPerUnit();
-  Demand(length > 0.0 && std::isfinite(length),
+  Require(length > 0.0 && std::isfinite(length),
     "MillimetresPerUnit is " + std::to_string(length) + "; it must be a positive number.");
   const double factor = length * filter->GetExtinctionScale();
   return { Times(preset.sigma_s, factor), Times(preset.sigma_a, factor), {}, preset.g };
@@ -73,13 +62,13 @@ Recipe RealMedium(vtkParticipatingMedium* filter)
 
 Recipe RecipeOf(vtkParticipatingMedium* filter)
 {
-  Demand(NotNegative(filter->GetExtinctionScale()),
+  Require(NotNegative(filter->GetExtinctionScale()),
     "ExtinctionScale is " + std::to_string(filter->GetExtinctionScale()) + "; it must be finite and not negative.");
   Recipe recipe = filter->GetPreset() == vtkParticipatingMedium::CUSTOM ? CustomMedium(filter) : RealMedium(filter);
   for (int c = 0; c < 3; ++c)
   {
     recipe.emission[c] = filter->GetEmissionScale() * filter->GetEmissionColor()[c];
-    Demand(NotNegative(recipe.emission[c]),
+    Require(NotNegative(recipe.emission[c]),
       "EmissionScale times EmissionColor is " + std::to_string(recipe.emission[c]) +
         "; it must be finite and not negative.");
   }
@@ -90,7 +79,7 @@ Recipe RecipeOf(vtkParticipatingMedium* filter)
 std::vector<float> RelativeDensity(
   const tyndall::FloatField& density, const tyndall::Grid& grid, double minimum, double maximum)
 {
-  Demand(std::isfinite(minimum) && std::isfinite(maximum) && maximum >= minimum,
+  Require(std::isfinite(minimum) && std::isfinite(maximum) && maximum >= minimum,
     "The densities range from MinimumDensity " + std::to_string(minimum) + " to MaximumDensity " +
       std::to_string(maximum) + "; the latter must not be less.");
   const float* values = density.Values();

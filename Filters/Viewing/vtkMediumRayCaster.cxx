@@ -46,11 +46,6 @@ enum LightArray
 constexpr const char* ArrayNames[] = { "sigma_a", "sigma_s", "emission", "fluence", "fluence_direct", "ior",
   "mean_direction" };
 
-tyndall::Rgb ToRgb(const double* values)
-{
-  return { values[0], values[1], values[2] };
-}
-
 tyndall::ViewSettings SettingsOf(vtkMediumRayCaster* filter)
 {
   tyndall::ViewSettings settings;
@@ -60,13 +55,13 @@ tyndall::ViewSettings SettingsOf(vtkMediumRayCaster* filter)
   settings.shadowRays = filter->GetShadowRays();
   settings.rectangleSamples = filter->GetRectangleSamples();
   settings.showBackground = filter->GetShowBackground();
-  settings.backgroundColor = ToRgb(filter->GetBackgroundColor());
+  settings.backgroundColor = tyndall::Triple(filter->GetBackgroundColor());
   settings.phaseFunction = static_cast<tyndall::PhaseFunction>(filter->GetPhaseFunction());
   settings.surfaceReflection = static_cast<tyndall::SurfaceReflection>(filter->GetSurfaceReflection());
   settings.surfaceIndex = filter->GetSurfaceIndex();
   settings.surfaceReflectance = filter->GetSurfaceReflectance();
   settings.tableFace = filter->GetTableFace();
-  settings.tableColor = ToRgb(filter->GetTableColor());
+  settings.tableColor = tyndall::Triple(filter->GetTableColor());
   settings.tableReflectance = filter->GetTableReflectance();
   settings.leaveOut = filter->GetLeaveOut();
   return settings;
@@ -75,9 +70,9 @@ tyndall::ViewSettings SettingsOf(vtkMediumRayCaster* filter)
 tyndall::Camera CameraOf(vtkMediumRayCaster* filter, const tyndall::Grid& grid)
 {
   tyndall::Camera camera;
-  camera.position = ToRgb(filter->GetCameraPosition());
-  camera.focalPoint = ToRgb(filter->GetCameraFocalPoint());
-  camera.viewUp = ToRgb(filter->GetCameraViewUp());
+  camera.position = tyndall::Triple(filter->GetCameraPosition());
+  camera.focalPoint = tyndall::Triple(filter->GetCameraFocalPoint());
+  camera.viewUp = tyndall::Triple(filter->GetCameraViewUp());
   camera.viewAngle = filter->GetCameraViewAngle();
   camera.parallelScale = filter->GetCameraParallelScale();
   if (camera.position == camera.focalPoint)

@@ -258,7 +258,7 @@ public:
 
   ///@{
   /// What came of the last update: seconds, the exposure used, whether medium and light were on the device from an
-  /// earlier picture, the device's name, and what the scene did not need, one a line.
+  /// earlier picture, the device's name, and what the scene did not need, one per line.
   vtkGetMacro(Seconds, double);
   vtkGetMacro(UsedExposure, double);
   vtkGetMacro(SceneKept, bool);

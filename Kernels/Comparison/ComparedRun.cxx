@@ -2,7 +2,6 @@
 
 #include "Comparison/PhotonRuns.h"
 #include "Comparison/PropagationRuns.h"
-
 #include "Device/Errors.h"
 
 #include <algorithm>

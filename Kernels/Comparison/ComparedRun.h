@@ -1,7 +1,6 @@
 #pragma once
 
 #include "Comparison/ComparedScene.h"
-
 #include "Device/Device.h"
 #include "Device/Monitor.h"
 #include "Light/LightField.h"

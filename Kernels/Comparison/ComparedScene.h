@@ -1,7 +1,6 @@
 #pragma once
 
 #include "Comparison/GridTransfer.h"
-
 #include "Lights/Lights.h"
 #include "Medium/Medium.h"
 

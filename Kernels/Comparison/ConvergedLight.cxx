@@ -3,7 +3,6 @@
 // The reference that a comparison makes itself: see SolverComparison.h.
 
 #include "Comparison/TimeLimit.h"
-
 #include "Device/Errors.h"
 
 #include <algorithm>

@@ -12,7 +12,7 @@ struct ReferenceLight
 {
   Grid grid; ///< the scene's, or one finer or coarser by whole factors: compared on the coarser of both
   int channels = 1;
-  std::vector<float> fluence; ///< W / length^2, `channels` a voxel; empty: not known; NaN: not known in this voxel
+  std::vector<float> fluence; ///< W / length^2, `channels` per voxel; empty: not known; NaN: not known in this voxel
   std::vector<float> fluenceDirect; ///< its unscattered part
   std::string text;                 ///< what it is
 };

@@ -14,15 +14,12 @@ template <class Visit>
 void ForAllPairs(const Grid& fine, const Factors& factors, const Visit& visit)
 {
   const Grid coarse = Coarsened(fine, factors);
-  const auto size = [](const Grid& grid, int axis) { return static_cast<std::size_t>(grid.size[axis]); };
   std::size_t voxel = 0;
   for (int k = 0; k < fine.size[2]; ++k)
   {
     for (int j = 0; j < fine.size[1]; ++j)
     {
-      const std::size_t row =
-        (static_cast<std::size_t>(k / factors[2]) * size(coarse, 1) + static_cast<std::size_t>(j / factors[1])) *
-        size(coarse, 0);
+      const std::size_t row = coarse.IndexOf({ 0, j / factors[1], k / factors[2] });
       for (int i = 0; i < fine.size[0]; ++i, ++voxel)
       {
         visit(voxel, row + static_cast<std::size_t>(i / factors[0]));

@@ -24,10 +24,10 @@ Grid Refined(const Grid& coarse, const Factors& factors);
 std::optional<Factors> FactorsBetween(const Grid& fine, const Grid& coarse);
 
 /// Means over the voxels of the coarse grid. NaN where one of them is.
-/// @param values  `components` a voxel of `fine`, x fastest
+/// @param values  `components` per voxel of `fine`, x fastest
 std::vector<float> Averaged(const float* values, int components, const Grid& fine, const Factors& factors);
 
 /// Each coarse voxel's value in all of its fine ones.
-/// @param values  `components` a voxel of `coarse`, x fastest
+/// @param values  `components` per voxel of `coarse`, x fastest
 std::vector<float> Repeated(const float* values, int components, const Grid& coarse, const Factors& factors);
 }

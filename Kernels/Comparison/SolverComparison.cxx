@@ -2,7 +2,6 @@
 
 #include "Comparison/ComparisonErrors.h"
 #include "Comparison/TimeLimit.h"
-
 #include "Device/Errors.h"
 
 #include <algorithm>

@@ -5,6 +5,7 @@
 #include "Device/MemoryCount.h"
 #include "Device/OpenCL.h"
 
+#include <algorithm>
 #include <atomic>
 #include <cstddef>
 #include <map>
@@ -34,14 +35,19 @@ public:
   /// given out once.
   static std::vector<std::string> TakeWarnings();
 
-  /// @param cacheFolder  where the platform writes what it compiles, if that is known: looked at for room before it
-  /// does
+  /// @param cacheFolder  where the platform writes what it compiles, if that is known: checked for room before it does
   Device(const cl::Platform& platform, const cl::Device& device, std::string cacheFolder = {});
 
   const std::string& Name() const { return this->DeviceName; }
   bool IsCpu() const { return this->Cpu; }
   int ComputeUnits() const { return this->Units; }
   int FloatVectorWidth() const { return this->VectorWidth; } ///< 1 on GPUs, 4 to 16 on CPUs
+  /// Floats that a work-item is to handle at once: on a CPU as many as its registers hold, but from `least` to `most`,
+  /// for which a kernel is written; on a GPU one, for it makes its own vectors.
+  int KernelWidth(int least = 4, int most = 16) const
+  {
+    return this->Cpu ? std::clamp(this->VectorWidth, least, most) : 1;
+  }
   /// Not those that the environment variable TYNDALL_WITHOUT names (with blanks between): to try what devices without
   /// them get.
   bool HasExtension(const std::string& name) const;
@@ -55,8 +61,8 @@ public:
   void ResetPeak() { this->Memory.ResetPeak(); }
 
   /// A kernel of the program that `source` makes. Programs are kept, so that asking again with the same source and
-  /// options costs nothing. The kernel is the caller's own: two threads that ask for one get
-  /// two, for OpenCL does not let them set arguments of the same.
+  /// options costs nothing. The kernel is the caller's own: two threads that ask for one get two, for OpenCL does not
+  /// let them set arguments of the same.
   /// @param source  the text of a .cl file with what it includes (kernel_source::...)
   /// @param options  compiler options, e.g. "-DCHANNELS=3"
   /// @throws DeviceError with the build log

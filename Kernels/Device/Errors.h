@@ -18,6 +18,15 @@ struct InvalidInput : std::invalid_argument
   using std::invalid_argument::invalid_argument;
 };
 
+/// @throws InvalidInput with this text where `holds` is false
+inline void Require(bool holds, const std::string& text)
+{
+  if (!holds)
+  {
+    throw InvalidInput(text);
+  }
+}
+
 /// Thrown out of a long computation when its Monitor said stop. Not an error: nothing is to be shown.
 struct Aborted : std::runtime_error
 {

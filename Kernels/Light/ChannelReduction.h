@@ -1,7 +1,6 @@
 #pragma once
 
 #include "Light/LightField.h"
-
 #include "Lights/Lights.h"
 #include "Medium/Traits.h"
 

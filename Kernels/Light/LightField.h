@@ -42,10 +42,10 @@ struct ConvergenceRow
 struct LightField
 {
   int channels = 1;
-  std::vector<float> fluence;           ///< W / length^2, `channels` a voxel
+  std::vector<float> fluence;           ///< W / length^2, `channels` per voxel
   std::vector<float> fluenceDirect;     ///< its unscattered part
   std::vector<float> fluenceError;      ///< standard error of fluence, estimated
-  std::vector<float> netFlux;           ///< W / length^2, 3 * channels a voxel: (x, y, z) of channel 0, 1, 2
+  std::vector<float> netFlux;           ///< W / length^2, 3 * channels per voxel: (x, y, z) of channel 0, 1, 2
   std::vector<float> scatteredRadiance; ///< W / (length^2 sr), channels * storedDirections a voxel
   std::vector<std::array<double, 3>> storedDirections; ///< of scatteredRadiance; one (0, 0, 0) where isotropic
   /// W / (length^2 sr) that leaves through the box's faces, [cell][SurfaceCosines][channel] (BoxFaces.h); empty where

@@ -26,8 +26,7 @@ struct BoxFaceCell
 template <class Act>
 void ForBoxFaceCells(const Grid& grid, const Act& act)
 {
-  const std::array<std::size_t, 3> step = { 1, static_cast<std::size_t>(grid.size[0]),
-    static_cast<std::size_t>(grid.size[0]) * grid.size[1] };
+  const std::array<std::size_t, 3> step = grid.Strides();
   std::size_t number = 0;
   for (int face = 0; face < 6; ++face)
   {

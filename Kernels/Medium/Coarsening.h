@@ -11,7 +11,7 @@ namespace tyndall
 class Coarsening
 {
 public:
-  /// Half as many voxels an axis, rounded down, at least one.
+  /// Half as many voxels per axis, rounded down, at least one.
   explicit Coarsening(const Grid& fine);
   /// @param coarse  the same box, nowhere finer
   Coarsening(const Grid& fine, const Grid& coarse);

@@ -18,6 +18,24 @@ struct Grid
     return static_cast<std::size_t>(this->size[0]) * static_cast<std::size_t>(this->size[1]) *
       static_cast<std::size_t>(this->size[2]);
   }
+  /// From a voxel to the next along each axis, in an array over the grid.
+  std::array<std::size_t, 3> Strides() const
+  {
+    const std::size_t x = static_cast<std::size_t>(this->size[0]);
+    return { 1, x, x * static_cast<std::size_t>(this->size[1]) };
+  }
+  /// The place of voxel (i, j, k) in an array, and the voxel at a place.
+  std::size_t IndexOf(const std::array<int, 3>& voxel) const
+  {
+    const std::array<std::size_t, 3> stride = this->Strides();
+    return voxel[0] + voxel[1] * stride[1] + voxel[2] * stride[2];
+  }
+  std::array<int, 3> VoxelAt(std::size_t index) const
+  {
+    const std::array<std::size_t, 3> stride = this->Strides();
+    return { static_cast<int>(index % stride[1]), static_cast<int>(index % stride[2] / stride[1]),
+      static_cast<int>(index / stride[2]) };
+  }
   double VoxelVolume() const { return this->spacing[0] * this->spacing[1] * this->spacing[2]; }
   double Length(int axis) const { return this->size[axis] * this->spacing[axis]; }
 };

@@ -10,17 +10,23 @@ namespace tyndall
 {
 std::string VoxelName(const Grid& grid, std::size_t voxel)
 {
-  const std::size_t nx = static_cast<std::size_t>(grid.size[0]);
-  const std::size_t ny = static_cast<std::size_t>(grid.size[1]);
-  return "(" + std::to_string(voxel % nx) + ", " + std::to_string(voxel / nx % ny) + ", " +
-    std::to_string(voxel / (nx * ny)) + ")";
+  const std::array<int, 3> at = grid.VoxelAt(voxel);
+  return "(" + std::to_string(at[0]) + ", " + std::to_string(at[1]) + ", " + std::to_string(at[2]) + ")";
+}
+
+void CheckComponents(const Field& field, const char* name)
+{
+  if (field.components != 1 && field.components != 3)
+  {
+    throw InvalidInput(std::string(name) + " has " + std::to_string(field.components) +
+      " components a voxel; give it 1 (grey) or 3 (red, green, blue).");
+  }
 }
 
 namespace
 {
-constexpr double LargestExtinction = 1e37; ///< 1/length; the inverse of more is not a normal float
-constexpr double LongestSpacing = 1e30;    ///< and the shortest is its inverse: products of several areas stay doubles
-constexpr double MostUnequal = 1e9;        ///< longest spacing over shortest
+constexpr double LongestSpacing = 1e30; ///< and the shortest is its inverse: products of several areas stay doubles
+constexpr double MostUnequal = 1e9;     ///< longest spacing over shortest
 
 void CheckField(const Field& field, const char* name, const Grid& grid)
 {
@@ -28,11 +34,7 @@ void CheckField(const Field& field, const char* name, const Grid& grid)
   {
     return;
   }
-  if (field.components != 1 && field.components != 3)
-  {
-    throw InvalidInput(std::string(name) + " has " + std::to_string(field.components) +
-      " components a voxel; give it 1 (grey) or 3 (red, green, blue).");
-  }
+  CheckComponents(field, name);
   const std::size_t count = grid.VoxelCount() * static_cast<std::size_t>(field.components);
   for (std::size_t i = 0; i < count; ++i)
   {

@@ -6,7 +6,9 @@
 
 namespace tyndall
 {
-/// One quantity over a grid's voxels, seen, not owned: `components` floats a voxel (1, or 3 for RGB interleaved).
+constexpr double LargestExtinction = 1e37; ///< 1/length; the inverse of more is not a normal float
+
+/// One quantity over a grid's voxels, seen, not owned: `components` floats per voxel (1, or 3 for RGB interleaved).
 struct Field
 {
   const float* values = nullptr; ///< null: the quantity is zero everywhere
@@ -51,12 +53,15 @@ struct Medium
 /// "(i, j, k)" of the voxel that is `voxel`th in an array.
 std::string VoxelName(const Grid& grid, std::size_t voxel);
 
+/// @throws InvalidInput where a field has neither 1 nor 3 components
+void CheckComponents(const Field& field, const char* name);
+
 /// @throws InvalidInput where the grid is empty, has a spacing that is not from 1e-30 to 1e30, or one that is more than
 ///   1e9 times another
 void Check(const Grid& grid);
 
 /// @throws InvalidInput where the grid is not as above, where a coefficient is
-///   negative or not finite, or sigma_a and sigma_s add up to more than 1e37 (names the first such voxel), or where g
-///   is outside (-1, 1)
+///   negative or not finite, or sigma_a and sigma_s add up to more than LargestExtinction (names the first such voxel),
+///   or where g is outside (-1, 1)
 void Check(const Medium& medium);
 }

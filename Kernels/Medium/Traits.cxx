@@ -134,7 +134,7 @@ MediumTraits TraitsOf(const Medium& medium, double similarity)
   {
     for (int y = 0; y < n[1]; ++y)
     {
-      const Row row = { medium, static_cast<float>(similarity), (static_cast<std::size_t>(z) * n[1] + y) * n[0], n[0] };
+      const Row row = { medium, static_cast<float>(similarity), medium.grid.IndexOf({ 0, y, z }), n[0] };
       const bool absorbs = row.Largest(medium.sigma_a) > 0.0f;
       const bool scatters = row.Largest(medium.sigma_s) > 0.0f;
       const bool emits = row.Largest(medium.emission) > 0.0f;

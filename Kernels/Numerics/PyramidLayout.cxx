@@ -1,5 +1,7 @@
 #include "Numerics/PyramidLayout.h"
 
+#include "Device/Sizes.h"
+
 #include <algorithm>
 
 namespace tyndall
@@ -28,8 +30,7 @@ cl::NDRange PyramidRange(const std::array<int, 3>& nodes)
   std::array<std::size_t, 3> range;
   for (int axis = 0; axis < 3; ++axis)
   {
-    const std::size_t step = group.get()[axis];
-    range[axis] = (static_cast<std::size_t>(nodes[axis]) + step - 1) / step * step;
+    range[axis] = RoundUp(Count(nodes[axis]), group.get()[axis]);
   }
   return cl::NDRange(range[0], range[1], range[2]);
 }

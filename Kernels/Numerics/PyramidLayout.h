@@ -22,7 +22,7 @@ struct PyramidLayout
   std::size_t nodeCount = 0;             ///< nodes of the levels from 1 on: a seventh of a large cube's voxels
 };
 
-/// How the kernels of the pyramids run: a work-item a node, rows of nodes in groups of one size for every level, so
+/// How the kernels of the pyramids run: a work-item per node, rows of nodes in groups of one size for every level, so
 /// that each kernel is compiled once.
 inline cl::NDRange PyramidGroup()
 {

@@ -8,7 +8,9 @@
 
 namespace tyndall
 {
-/// A packet of light: not a quantum, but a share of a lamp's power with a place and a direction.
+constexpr int MarchedBatchesAtMost = 64; ///< that PhotonMarcher keeps apart: photons have batches 0 to 63
+
+/// A packet of light: a share of a lamp's power with a place and a direction, not a quantum.
 struct Photon
 {
   std::array<double, 3> position = {}; ///< where it enters the volume, or where its lamp in the volume is
@@ -28,13 +30,14 @@ struct MarchSettings
   /// Voxels, of a step where the index varies and the octree (if any) has single voxels; 0.05 to 1e4.
   double stepSize = 1.0;
   bool meanDirection = true;
-  /// Also photonCount and photonWeight, of up to 16777215 photons: one more number a voxel, in the same pass.
+  /// Also photonCount and photonWeight, of up to 16777215 photons: one more number per voxel, in the same pass.
   bool counts = false;
-  /// Also batchFluence: sums of each of up to 64 batches apart, on as many copies at least. Private sums are shared out
-  /// by whole copies: batches that are as large as each other, and as many as compute units or a multiple, keep all of
-  /// them busy.
+  /// Also batchFluence: separate sums for each of up to MarchedBatchesAtMost batches, on at least as many copies.
+  /// Private sums are shared out by whole copies: batches of equal size, as many as compute units or a multiple of
+  /// that, keep all of these busy.
   bool batches = false;
-  /// What the scene does not need; false: three channels and the integrator, to see what it saves.
+  /// Whether to leave out what the scene does not need; false: three channels and the integrator, to measure what that
+  /// saves.
   bool leaveOut = true;
 
   /// How the sums of many work-items stay whole. All of them give the same light, bit for bit.
@@ -69,14 +72,14 @@ struct PhotonLight
   /// (total reflection can trap it).
   LightField light;
   Rgb scattered = {}; ///< W, the part of `absorbed` that is scattered
-  /// 3 a voxel: sum of power times direction over sum of power, at most 1 long; empty: not asked for. Coarse in voxels
-  /// so dark that they gained a few units of fixed point only, some 2^-62 of all power times the longest path.
+  /// 3 per voxel: sum of power times direction over sum of power, at most 1 long; empty: not asked for. Coarse in
+  /// voxels so dark that they gained a few units of fixed point only, some 2^-62 of all power times the longest path.
   std::vector<float> meanDirection;
-  /// Photons that crossed each voxel, until they were dark; each once, and once more where it comes back. Empty: not
-  /// asked for.
+  /// Photons that crossed each voxel before they were dark; each counts once, and once more each time it comes back.
+  /// Empty: not asked for.
   std::vector<float> photonCount;
-  std::vector<float>
-    photonWeight;  ///< their mean `weight`, 0 where there is none, to 1e-4 of the largest; empty: not asked for
+  /// Their mean `weight`, 0 where there is none, to 1e-4 of the largest. Empty: not asked for.
+  std::vector<float> photonWeight;
   int batches = 1; ///< that the photons have: the largest `batch` and one
   /// fluence by each batch alone, [batch][voxel][channel], as if it was all the light: their mean is `fluence`. Empty:
   /// not asked for.

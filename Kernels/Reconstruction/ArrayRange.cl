@@ -1,7 +1,9 @@
-// Smallest, largest, sum and fitness of a run of `chunk` (a multiple of 48) values, a work-item a run. Sums carry what
-// they lost (Kahan), those of three components one by one.
+// What a run of `chunk` (a multiple of RunStep) values holds, a work-item per run. Sums carry what they lost (Kahan),
+// those of three components one by one.
 
-#define SUM_UNIT 0x1p-13f // so that sums do not overflow where values do not
+#include "Reconstruction/ArrayRangeShared.h"
+
+#define IN_SUMS (1.0f / RangeSumUnit)
 
 typedef float16 __attribute__((aligned(4))) float16_anywhere;
 
@@ -14,10 +16,8 @@ inline void add(float16* sum, float16* lost, float16 value)
 }
 
 //   low, high  that values may have
-//   runs       a run: is one outside or not a number (0 or 1), the largest magnitude, sums of three components in units
-//              of 1 / SUM_UNIT; of 1 component all are in the first
 __kernel void range_of_runs(
-  const __global float* values, ulong count, int chunk, int components, float low, float high, __global float* runs)
+  const __global float* values, ulong count, int chunk, int components, float low, float high, __global RunRange* runs)
 {
   const size_t first = get_global_id(0) * (size_t)chunk;
   const size_t rest = count - first;
@@ -27,7 +27,7 @@ __kernel void range_of_runs(
   float16 largest = 0.0f;
   int16 fit = -1;
   int i = 0;
-  for (; i + 48 <= number; i += 48)
+  for (; i + RunStep <= number; i += RunStep)
   {
 #pragma unroll
     for (int k = 0; k < 3; ++k)
@@ -36,15 +36,15 @@ __kernel void range_of_runs(
       const float16 magnitude = fabs(value);
       fit &= (value >= low) & (value <= high);
       largest = magnitude > largest ? magnitude : largest;
-      add(&sum[k], &lost[k], value * SUM_UNIT);
+      add(&sum[k], &lost[k], value * IN_SUMS);
     }
   }
-  float kept[48];
+  float kept[RunStep];
   vstore16(sum[0] - lost[0], 0, kept);
   vstore16(sum[1] - lost[1], 1, kept);
   vstore16(sum[2] - lost[2], 2, kept);
   float sums[3] = { 0.0f, 0.0f, 0.0f };
-  for (int k = 0; k < 48; ++k)
+  for (int k = 0; k < RunStep; ++k)
   {
     sums[k % components] += kept[k];
   }
@@ -61,12 +61,12 @@ __kernel void range_of_runs(
     const float value = from[i];
     good &= value >= low && value <= high;
     magnitude = fabs(value) > magnitude ? fabs(value) : magnitude;
-    sums[i % components] += value * SUM_UNIT;
+    sums[i % components] += value * IN_SUMS;
   }
-  __global float* run = runs + 5 * get_global_id(0);
-  run[0] = good ? 0.0f : 1.0f;
-  run[1] = magnitude;
-  run[2] = sums[0];
-  run[3] = sums[1];
-  run[4] = sums[2];
+  __global RunRange* run = runs + get_global_id(0);
+  run->unfit = !good;
+  run->largest = magnitude;
+  run->total[0] = sums[0];
+  run->total[1] = sums[1];
+  run->total[2] = sums[2];
 }

@@ -1,5 +1,7 @@
 #include "Reconstruction/ArrayRange.h"
 
+#include "Device/Sizes.h"
+#include "Reconstruction/ArrayRangeShared.h"
 #include "TyndallKernelSources.h"
 
 #include <algorithm>
@@ -8,35 +10,32 @@ namespace tyndall
 {
 namespace
 {
-constexpr std::size_t Run = 48 * 170; // values a work-item
-constexpr std::size_t Told = 5;       // numbers a run, as range_of_runs
-constexpr double SumUnit = 8192.0;    // of its sums
+constexpr std::size_t Run = RunStep * 170; // values a work-item
 }
 
 ArrayRange RangeOf(Device& device, const HostMappedBuffer<float>& array, const float* values, std::size_t count,
   int components, float low, float high)
 {
-  const std::size_t runs = (count + Run - 1) / Run;
-  Buffer<float> told(device, Told * runs, "the range of an array");
+  const std::size_t runs = PartsOf(count, Run);
+  Buffer<RunRange> told(device, runs, "the range of an array");
   cl::Kernel kernel = device.Kernel("range_of_runs", kernel_source::ArrayRange);
   With(kernel, array.Handle(), cl_ulong(count), cl_int(Run), cl_int(components), low, high, told);
   device.Queue().enqueueNDRangeKernel(kernel, cl::NullRange, cl::NDRange(runs), cl::NDRange(1));
 
   ArrayRange range;
-  const std::vector<float> numbers = told.Read();
+  const std::vector<RunRange> ranges = told.Read();
   for (std::size_t run = 0; run < runs; ++run)
   {
-    const float* of = numbers.data() + Told * run;
-    if (of[0] != 0.0f && !range.unfit)
+    if (ranges[run].unfit && !range.unfit)
     {
       const float* end = values + std::min(count, (run + 1) * Run);
       const float* first = std::find_if_not(values + run * Run, end, [&](float v) { return v >= low && v <= high; });
       range.unfit = static_cast<std::size_t>(first - values);
     }
-    range.largest = std::max(range.largest, of[1]);
+    range.largest = std::max(range.largest, ranges[run].largest);
     for (std::size_t c = 0; c < 3; ++c)
     {
-      range.total[c] += of[2 + c] * SumUnit;
+      range.total[c] += static_cast<double>(ranges[run].total[c]) * RangeSumUnit;
     }
   }
   return range;

@@ -15,7 +15,7 @@ struct ArrayRange
   std::array<double, 3> total = {}; ///< of each component; [0] only if there is one
 };
 
-/// @param values  also `array`'s, where the host looks for an unfit one
+/// @param values  those of `array` on the host, in which the first unfit one is looked for
 ArrayRange RangeOf(Device& device, const HostMappedBuffer<float>& array, const float* values, std::size_t count,
   int components, float low, float high);
 }

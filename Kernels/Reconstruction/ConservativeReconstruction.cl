@@ -7,6 +7,7 @@
 // Fields of a level of the pyramid: each batch's light (sum of channels), then what is smoothed: the light's channels,
 // then its flux (light times mean direction).
 
+#include "Reconstruction/ConservativeReconstructionShared.h"
 #include "Reconstruction/LightRows.cl"
 
 #define CARRIED (CHANNELS + 3 * DIRECTIONS)
@@ -14,12 +15,7 @@
 // Fields of a level of the result: what is smoothed, the level it was taken from, and the squared error.
 #define BLENDED CARRIED
 #define SQUARED (BLENDED + 1)
-#define RESULTS (SQUARED + 1)
-// Fields of the gains, a cell for 2 x 2 x 2 of the finer level.
-#define GAIN 0
-#define REMOVED 1
-#define KEPT 2
-#define ERROR 3
+#define RESULTS (CARRIED + BesideResults)
 
 typedef struct
 {
@@ -287,11 +283,11 @@ __kernel void find_gains(const __global float* measured, int4 size, __global flo
     const real noise = smoothed(row, x), total = smoothed(row + field, x);
     const real sure = positive_part(total - 2.0f * noise);
     const real gain = select((real)0.0f, sure / (sure + noise), sure > 0.0f);
-    store_real(gain, x, to + GAIN * field);
-    store_real((1.0f - gain) * (1.0f - gain) * (total - noise), x, to + REMOVED * field);
-    store_real(gain * gain * noise, x, to + KEPT * field);
-    repeat_ends(to + GAIN * field, x, REAL_WIDTH, size.x);
-    repeat_ends(to + REMOVED * field, x, REAL_WIDTH, size.x);
+    store_real(gain, x, to + GainField * field);
+    store_real((1.0f - gain) * (1.0f - gain) * (total - noise), x, to + RemovedField * field);
+    store_real(gain * gain * noise, x, to + KeptField * field);
+    repeat_ends(to + GainField * field, x, REAL_WIDTH, size.x);
+    repeat_ends(to + RemovedField * field, x, REAL_WIDTH, size.x);
   }
 }
 
@@ -307,9 +303,10 @@ __kernel void add_errors(
   __global float* cells = gains + row_of(size, 0, y, z);
   FOR_CELLS(x, size.x)
   {
-    const real here = multiply_add((real)honesty, positive_part(smoothed(row, x)), load_real(KEPT * field + x, cells));
-    store_real(load_real(x, above) + here, ERROR * field + x, cells);
-    repeat_ends(cells + ERROR * field, x, REAL_WIDTH, size.x);
+    const real here =
+      multiply_add((real)honesty, positive_part(smoothed(row, x)), load_real(KeptField * field + x, cells));
+    store_real(load_real(x, above) + here, ErrorField * field + x, cells);
+    repeat_ends(cells + ErrorField * field, x, REAL_WIDTH, size.x);
   }
 }
 
@@ -431,7 +428,7 @@ __kernel void blend_level(const __global float* fine, const __global float* dire
     FOR_CELLS(x, size.x)
     {
       const light_pair light = load_light(fine, directions, fine_size, 2 * x, fy, fz, scale);
-      const children gain = interpolate(gains + GAIN * field, &rows, x);
+      const children gain = interpolate(gains + GainField * field, &rows, x);
       children kept[CARRIED];
 #pragma unroll
       for (int c = 0; c < CARRIED; ++c)
@@ -453,7 +450,7 @@ __kernel void blend_level(const __global float* fine, const __global float* dire
       store_pair(level, ((size_t)fz * fine_size.y + fy) * fine_size.w + 2 * x, blended);
 #else
       __global float* row = to + row_of(fine_size, 0, fy, fz) + 2 * x;
-      const children squared = interpolate(gains + ERROR * field, &rows, x);
+      const children squared = interpolate(gains + ErrorField * field, &rows, x);
 #pragma unroll
       for (int c = 0; c < CARRIED; ++c)
       {
@@ -488,7 +485,7 @@ __kernel void finish_light(const __global float* gains, int4 size, float4 conser
       const int fy = 2 * y + k % 2, fz = 2 * z + k / 2;
       if (fy < fine_size.y && fz < fine_size.z)
       {
-        const children error = interpolate(gains + ERROR * field_of(size), &rows[k], x);
+        const children error = interpolate(gains + ErrorField * field_of(size), &rows[k], x);
         const size_t voxel = ((size_t)fz * fine_size.y + fy) * fine_size.w + 2 * x;
         const pair deviation = unit * sqrt(positive_part(woven(error.even, error.odd)));
 #if CHANNELS == 1

@@ -1,11 +1,12 @@
 #include "Reconstruction/ConservativeReconstruction.h"
-#include "Reconstruction/WholeRows.h"
-
-#include "TyndallKernelSources.h"
 
 #include "Device/Batches.h"
 #include "Device/Defines.h"
+#include "Device/Sizes.h"
 #include "Numerics/PyramidLayout.h"
+#include "Reconstruction/ConservativeReconstructionShared.h"
+#include "Reconstruction/WholeRows.h"
+#include "TyndallKernelSources.h"
 
 #include <algorithm>
 #include <cmath>
@@ -17,10 +18,7 @@ namespace
 /// Part of the light taken for noise that the error counts (numerics.md, Eq. (104), which says how it was fitted).
 constexpr float Honesty = 0.4f;
 
-constexpr std::size_t FirstPart = std::size_t(1) << 22; // voxels a launch, until it is known how long that takes
-
-// As in ConservativeReconstruction.cl.
-constexpr int GainFields = 4, Removed = 1;
+constexpr std::size_t FirstPart = std::size_t(1) << 22; // voxels per launch, until it is known how long that takes
 
 /// What the device keeps of a level of the pyramid, from level 1 on.
 struct ConservativeLevel
@@ -40,7 +38,8 @@ ConservativeLevel MakeLevel(Device& device, const NoisyLight& light, const std::
 {
   const int fields = light.batches + Carried(light);
   const char* what = "a level of the pyramid of light";
-  return { LightRows(device, size, fields, width, what), LightRows(device, size, Carried(light) + 2, width, what),
+  return { LightRows(device, size, fields, width, what),
+    LightRows(device, size, Carried(light) + BesideResults, width, what),
     LightRows(device, size, GainFields, width, what), LightRows(device, size, 2, width, what),
     LightRows(device, size, 2, width, what) };
 }
@@ -125,9 +124,8 @@ private:
       return;
     }
     Batches parts;
-    parts.count = static_cast<std::size_t>(cells[2]);
-    parts.first = std::max<std::size_t>(
-      FirstPart / (8 * static_cast<std::size_t>(cells[0]) * static_cast<std::size_t>(cells[1])), 1);
+    parts.count = Count(cells[2]);
+    parts.first = std::max<std::size_t>(FirstPart / (8 * Count(cells[0]) * Count(cells[1])), 1);
     parts.from = from;
     parts.to = to;
     InBatches(this->Task.device, parts, this->Task.monitor,
@@ -193,7 +191,7 @@ void ConservativePasses::FindGains(int level)
   With(gains, above.across.Values(), cells, above.gains.Values());
   this->Kernels.Run(gains, above.light.Cells());
 
-  this->SmoothAcross(above, above.gains, Removed, 1);
+  this->SmoothAcross(above, above.gains, RemovedField, 1);
   cl::Kernel errors = this->Kernel("add_errors");
   With(errors, above.across.Values(), cells, Honesty, above.results.Values(), above.gains.Values());
   this->Kernels.Run(errors, above.light.Cells());

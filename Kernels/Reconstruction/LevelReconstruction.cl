@@ -1,5 +1,6 @@
-// A level of the pyramid for each voxel: a work-item a row (or a voxel). The host gives
-//   ESTIMATOR   0 published, 1 constant radius, 2 nearest photons
+// A level of the pyramid for each voxel: a work-item per row (or voxel). The host gives
+//   PUBLISHED        1: the published estimator
+//   CONSTANT_RADIUS  1: that of one level everywhere; where both are 0, that of the nearest photons
 //   CHANNELS, DIRECTIONS  of the light; fields of its pyramid are its channels, then the mean direction
 //   TOP         the highest level
 //
@@ -127,7 +128,7 @@ inline real populated(const __global float* counts, const rows_between* rows_of_
       level = select(level, (real)l, here);
       if (any_of(here))
       {
-#if ESTIMATOR == 0
+#if PUBLISHED
         found[0] = select(found[0], sample(wanted, rows + l, l, x), here);
 #else
         real channels[CHANNELS];
@@ -184,7 +185,7 @@ inline void store_direction(
 {
   real way[3] = { 0.0f, 0.0f, 0.0f };
 #pragma unroll
-  for (int l = ESTIMATOR == 1 ? TOP : 0; l <= TOP; ++l)
+  for (int l = CONSTANT_RADIUS ? TOP : 0; l <= TOP; ++l)
   {
     const integer here = level == (real)l;
     if (any_of(here))
@@ -216,7 +217,7 @@ __kernel void choose_level(const __global float* light, const __global PyramidLe
   for (int l = 0; l <= TOP; ++l)
   {
     rows[l] = rows_beside(where, l, y, z);
-#if ESTIMATOR != 1
+#if !CONSTANT_RADIUS
     rows_of_counts[l] = rows_beside(where_counts, l, y, z);
 #endif
   }
@@ -224,11 +225,11 @@ __kernel void choose_level(const __global float* light, const __global PyramidLe
   FOR_CELLS(x, voxels.x)
   {
     real taken[CHANNELS] = { 0.0f };
-#if ESTIMATOR == 0
+#if PUBLISHED
     real weight = 0.0f;
     populated(counts, rows_of_counts, 1.0f, weights, rows_of_counts, x, &weight);
     const real level = by_surround(light, rows, weight / parameter, x, taken);
-#elif ESTIMATOR == 1
+#elif CONSTANT_RADIUS
     const real level = TOP;
     sample_light(light, rows + TOP, TOP, x, taken);
 #else

@@ -1,11 +1,11 @@
 #include "Reconstruction/LevelReconstruction.h"
-#include "Reconstruction/LightPyramid.h"
-#include "Reconstruction/WholeRows.h"
-
-#include "TyndallKernelSources.h"
 
 #include "Device/Batches.h"
 #include "Device/Defines.h"
+#include "Device/Sizes.h"
+#include "Reconstruction/LightPyramid.h"
+#include "Reconstruction/WholeRows.h"
+#include "TyndallKernelSources.h"
 
 #include <algorithm>
 #include <limits>
@@ -16,88 +16,141 @@ namespace
 {
 using Estimator = ReconstructionSettings::Estimator;
 
-constexpr std::size_t FirstPart = std::size_t(1) << 18; // voxels a launch, until it is known how long that takes
+constexpr std::size_t FirstPart = std::size_t(1) << 18; // voxels per launch, until it is known how long that takes
 
-/// As ESTIMATOR of LevelReconstruction.cl.
-int NumberOf(Estimator estimator)
+/// Takes the light of each voxel from one level of its pyramid.
+class LevelPasses
 {
-  return estimator == Estimator::Published ? 0 : estimator == Estimator::ConstantRadius ? 1 : 2;
+public:
+  explicit LevelPasses(const Reconstruction& task)
+    : Task(task)
+    , Size(task.light.grid.size)
+    , HasDirections(task.light.meanDirection != nullptr)
+    , Published(task.settings.estimator == Estimator::Published)
+    , ConstantRadius(task.settings.estimator == Estimator::ConstantRadius)
+    , Top(this->ConstantRadius ? std::min(task.settings.level, task.levels) : task.levels)
+    , Kernels(task.device, RowWidth(task.device, task.light.grid))
+  {
+  }
+
+  void Run(const HostMappedBuffer<float>& counts, const HostMappedBuffer<float>& weights, double weightStep,
+    ReconstructedLight& result) const;
+
+private:
+  /// Of the light, and of its directions.
+  LightPyramid PyramidOfLight() const;
+  /// Of one number per voxel; without levels where that is not `wanted`.
+  LightPyramid PyramidOf(
+    const HostMappedBuffer<float>& array, bool wanted, LightPyramid::Down down, const char* what) const;
+  /// Runs a kernel over the grid, in parts.
+  void InParts(const cl::Kernel& kernel) const;
+  /// Scales the light as the task says.
+  void Conserve(const HostMappedBuffer<float>& fluence, ReconstructedLight& result) const;
+
+  cl::Kernel Kernel(const char* name) const
+  {
+    return this->Kernels.Kernel(name, kernel_source::LevelReconstruction,
+      Define("CHANNELS", this->Task.light.channels) + Define("DIRECTIONS", this->HasDirections) +
+        Define("PUBLISHED", this->Published) + Define("CONSTANT_RADIUS", this->ConstantRadius) +
+        Define("TOP", this->Top));
+  }
+
+  const Reconstruction& Task;
+  const std::array<int, 3>& Size;
+  bool HasDirections, Published, ConstantRadius;
+  int Top;
+  RowKernels Kernels;
+};
+
+LightPyramid LevelPasses::PyramidOfLight() const
+{
+  const int channels = this->Task.light.channels;
+  LightPyramid pyramid(
+    this->Kernels, this->Task.light.grid, channels + (this->HasDirections ? 3 : 0), this->Top, "the pyramid of light");
+  pyramid.Fill({ this->Kernels, this->Task.fluence, this->Size, 1, channels, false, "fluence" }, channels, 0);
+  if (this->HasDirections)
+  {
+    pyramid.Fill({ this->Kernels, this->Task.direction, this->Size, 1, 3, false, "mean directions" }, 3, channels);
+  }
+  pyramid.Build(LightPyramid::Down::Gauss);
+  return pyramid;
 }
 
-std::size_t Count(int number)
+LightPyramid LevelPasses::PyramidOf(
+  const HostMappedBuffer<float>& array, bool wanted, LightPyramid::Down down, const char* what) const
 {
-  return static_cast<std::size_t>(number);
+  LightPyramid pyramid(this->Kernels, this->Task.light.grid, 1, wanted ? this->Top : 0, what);
+  if (wanted)
+  {
+    pyramid.Fill({ this->Kernels, array, this->Size, 1, 1, false, what }, 1, 0);
+    pyramid.Build(down);
+  }
+  return pyramid;
+}
+
+void LevelPasses::InParts(const cl::Kernel& kernel) const
+{
+  Batches parts;
+  parts.count = Count(this->Size[2]);
+  parts.first = std::max<std::size_t>(FirstPart / (Count(this->Size[0]) * Count(this->Size[1])), 1);
+  parts.from = 0.2;
+  InBatches(this->Task.device, parts, this->Task.monitor,
+    [&](std::size_t first, std::size_t layers) { this->Kernels.Run(kernel, this->Size, first, layers); });
+}
+
+void LevelPasses::Conserve(const HostMappedBuffer<float>& fluence, ReconstructedLight& result) const
+{
+  const ArrayRange range = RangeOf(this->Task.device, fluence, result.fluence.data(), result.fluence.size(),
+    this->Task.light.channels, 0.0f, std::numeric_limits<float>::max());
+  const std::array<float, 3> factors = this->Task.Conserve(range.total, result);
+  if (this->Task.settings.conserve)
+  {
+    cl::Kernel scale = this->Kernel("scale_light");
+    With(scale, fluence.Handle(), cl_float4{ { factors[0], factors[1], factors[2], 0.0f } });
+    this->Task.device.Queue().enqueueNDRangeKernel(
+      scale, cl::NullRange, cl::NDRange(this->Task.light.grid.VoxelCount()), cl::NullRange);
+  }
+}
+
+void LevelPasses::Run(const HostMappedBuffer<float>& counts, const HostMappedBuffer<float>& weights, double weightStep,
+  ReconstructedLight& result) const
+{
+  const LightPyramid smooth = this->PyramidOfLight();
+  const LightPyramid photons =
+    this->PyramidOf(counts, !this->ConstantRadius, LightPyramid::Down::Sum, "the pyramid of photon counts");
+  const LightPyramid heavy =
+    this->PyramidOf(weights, this->Published, LightPyramid::Down::MeanOfLit, "the pyramid of weights");
+
+  Device& device = this->Task.device;
+  const int channels = this->Task.light.channels;
+  const HostMappedBuffer<float> fluence(device, result.fluence.data(), result.fluence.size(), "fluence");
+  const HostMappedBuffer<float> direction(
+    device, result.meanDirection.data(), result.meanDirection.size(), "directions");
+  const HostMappedBuffer<float> chosen(device, result.mipLevel.data(), result.mipLevel.size(), "levels");
+  const WholeRows fluenceRows(this->Kernels, fluence, this->Size, 1, channels, true, "fluence");
+  const WholeRows directionRows(
+    this->Kernels, direction, this->Size, this->HasDirections ? 1 : 0, 3, true, "mean directions");
+  const WholeRows chosenRows(this->Kernels, chosen, this->Size, 1, 1, true, "levels");
+
+  cl::Kernel choose = this->Kernel("choose_level");
+  With(choose, smooth.Values(), smooth.Levels(), photons.Values(), heavy.Values(), photons.Levels(),
+    cl_float(this->Published ? weightStep : this->Task.settings.nearest), fluenceRows.Handle(), directionRows.Handle(),
+    chosenRows.Handle(), VoxelLayout(this->Size, this->Kernels.Width()));
+  this->InParts(choose);
+  fluenceRows.Fetch();
+  this->Conserve(fluence, result);
+  fluence.Fetch();
+  chosenRows.Fetch();
+  if (this->HasDirections)
+  {
+    directionRows.Fetch();
+  }
 }
 }
 
 void ReconstructByLevel(const Reconstruction& task, const HostMappedBuffer<float>& counts,
   const HostMappedBuffer<float>& weights, double weightStep, ReconstructedLight& result)
 {
-  const NoisyLight& light = task.light;
-  const Grid& grid = light.grid;
-  const Estimator estimator = task.settings.estimator;
-  const bool directions = light.meanDirection != nullptr;
-  const int number = NumberOf(estimator);
-  const int top = estimator == Estimator::ConstantRadius ? std::min(task.settings.level, task.levels) : task.levels;
-  const RowKernels kernels(task.device, RowWidth(task.device, grid));
-  const std::string options = Define("CHANNELS", light.channels) + Define("DIRECTIONS", directions) +
-    Define("ESTIMATOR", number) + Define("TOP", top);
-
-  LightPyramid smooth(kernels, grid, light.channels + (directions ? 3 : 0), top, "the pyramid of light");
-  smooth.Fill({ kernels, task.fluence, grid.size, 1, light.channels, false, "fluence" }, light.channels, 0);
-  if (directions)
-  {
-    smooth.Fill({ kernels, task.direction, grid.size, 1, 3, false, "mean directions" }, 3, light.channels);
-  }
-  smooth.Build(LightPyramid::Down::Gauss);
-  const auto pyramidOf = [&](const HostMappedBuffer<float>& array, bool wanted, LightPyramid::Down down,
-                           const char* what) {
-    LightPyramid pyramid(kernels, grid, 1, wanted ? top : 0, what);
-    if (wanted)
-    {
-      pyramid.Fill({ kernels, array, grid.size, 1, 1, false, what }, 1, 0);
-      pyramid.Build(down);
-    }
-    return pyramid;
-  };
-  const LightPyramid photons = pyramidOf(counts, number != 1, LightPyramid::Down::Sum, "the pyramid of photon counts");
-  const LightPyramid heavy = pyramidOf(weights, number == 0, LightPyramid::Down::MeanOfLit, "the pyramid of weights");
-
-  const HostMappedBuffer<float> fluence(task.device, result.fluence.data(), result.fluence.size(), "fluence");
-  const HostMappedBuffer<float> direction(
-    task.device, result.meanDirection.data(), result.meanDirection.size(), "directions");
-  const HostMappedBuffer<float> chosen(task.device, result.mipLevel.data(), result.mipLevel.size(), "levels");
-  const WholeRows wholeFluence(kernels, fluence, grid.size, 1, light.channels, true, "fluence");
-  const WholeRows wholeDirection(kernels, direction, grid.size, directions ? 1 : 0, 3, true, "mean directions");
-  const WholeRows wholeChosen(kernels, chosen, grid.size, 1, 1, true, "levels");
-  const double parameter = number == 0 ? weightStep : task.settings.nearest;
-  cl::Kernel choose = kernels.Kernel("choose_level", kernel_source::LevelReconstruction, options);
-  With(choose, smooth.Values(), smooth.Levels(), photons.Values(), heavy.Values(), photons.Levels(),
-    cl_float(parameter), wholeFluence.Handle(), wholeDirection.Handle(), wholeChosen.Handle(),
-    VoxelLayout(grid.size, kernels.Width()));
-  const std::array<int, 3>& size = grid.size;
-  Batches parts;
-  parts.count = Count(size[2]);
-  parts.first = std::max<std::size_t>(FirstPart / (Count(size[0]) * Count(size[1])), 1);
-  parts.from = 0.2;
-  InBatches(task.device, parts, task.monitor,
-    [&](std::size_t first, std::size_t layers) { kernels.Run(choose, size, first, layers); });
-  wholeFluence.Fetch();
-  const float most = std::numeric_limits<float>::max();
-  const std::array<double, 3> total =
-    RangeOf(task.device, fluence, result.fluence.data(), result.fluence.size(), light.channels, 0.0f, most).total;
-  const std::array<float, 3> factors = task.Conserve(total, result);
-  if (task.settings.conserve)
-  {
-    cl::Kernel scale = kernels.Kernel("scale_light", kernel_source::LevelReconstruction, options);
-    With(scale, fluence.Handle(), cl_float4{ { factors[0], factors[1], factors[2], 0.0f } });
-    task.device.Queue().enqueueNDRangeKernel(scale, cl::NullRange, cl::NDRange(grid.VoxelCount()), cl::NullRange);
-  }
-  fluence.Fetch();
-  wholeChosen.Fetch();
-  if (directions)
-  {
-    wholeDirection.Fetch();
-  }
+  LevelPasses(task).Run(counts, weights, weightStep, result);
 }
 }

@@ -1,4 +1,4 @@
-// From a level of a light pyramid to the next, a work-item a row (or a cell). The host gives
+// From a level of a light pyramid to the next, a work-item per row (or cell). The host gives
 //   GAUSS        1: by a Gauss filter of 4 cells along each axis
 //   MEAN_OF_LIT  1: the mean of the cells that are not dark; else, and without GAUSS, the sum
 

@@ -1,9 +1,8 @@
 #include "Reconstruction/LightPyramid.h"
 
-#include "TyndallKernelSources.h"
-
 #include "Device/Defines.h"
 #include "Numerics/PyramidLayout.h"
+#include "TyndallKernelSources.h"
 
 #include <algorithm>
 

@@ -7,8 +7,8 @@
 
 namespace tyndall
 {
-/// Volumes over a grid and what they are in 2x2x2, 4x4x4, ... voxels, level after level in one buffer, as rows of
-/// LightRows.cl. A grid of an odd size is treated as if its last voxel were repeated.
+/// Volumes over a grid and their means or sums over 2x2x2, 4x4x4, ... voxels, level after level in one buffer, as rows
+/// of LightRows.cl. A grid of an odd size is treated as if its last voxel were repeated.
 class LightPyramid
 {
 public:
@@ -20,7 +20,7 @@ public:
     MeanOfLit, ///< of those of 2x2x2 that are not 0 (listing B.2)
   };
 
-  /// @param levels  above the grid, at most 8
+  /// @param levels  above the grid, at most LevelsAtMost
   LightPyramid(const RowKernels& kernels, const Grid& grid, int fields, int levels, const char* what);
 
   /// Put an array of voxels of 1 or 3 components into fields `first` and on of level 0.

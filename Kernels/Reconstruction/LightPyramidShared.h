@@ -4,10 +4,15 @@
 #include "Device/SharedTypes.h"
 
 SHARED_BEGIN
+enum
+{
+  LevelsAtMost = 8 ///< of a pyramid, above the grid
+};
+
 /// Where the levels lie.
 typedef struct
 {
-  int4 size[9]; ///< as in LightRows.cl
-  ulong offset[9];
+  int4 size[LevelsAtMost + 1]; ///< as in LightRows.cl
+  ulong offset[LevelsAtMost + 1];
 } PyramidLevels;
 SHARED_END

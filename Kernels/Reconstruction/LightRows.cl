@@ -21,7 +21,7 @@ typedef pair __attribute__((aligned(4))) pair_anywhere;
 #define load_pair(index, pointer) (*(const __global pair_anywhere*)((pointer) + (index)))
 #define store_pair(value, index, pointer) (*(__global pair_anywhere*)((pointer) + (index)) = (value))
 
-// A work-item a row on CPUs, a work-item a vector of cells on GPUs.
+// A work-item per row on CPUs, a work-item per vector of cells on GPUs.
 #if REAL_WIDTH > 1
 #define ROW_Y get_global_id(0)
 #define ROW_Z get_global_id(1)

@@ -1,22 +1,13 @@
 #include "Reconstruction/LightRows.h"
 
-#include "TyndallKernelSources.h"
-
 #include "Device/Defines.h"
+#include "TyndallKernelSources.h"
 
 namespace tyndall
 {
-namespace
-{
-std::size_t Count(int number)
-{
-  return static_cast<std::size_t>(number);
-}
-}
-
 int RowWidth(const Device& device, const Grid& grid)
 {
-  return device.IsCpu() && grid.size[0] >= 16 ? 8 : 1;
+  return grid.size[0] >= 16 ? device.KernelWidth(8, 8) : 1;
 }
 
 namespace

@@ -13,8 +13,7 @@ namespace tyndall
 /// How wide the vectors are that the reconstruction's kernels work on: 8 on a CPU, 1 on a GPU and where rows are short.
 int RowWidth(const Device& device, const Grid& grid);
 
-/// Voxels from a row to the next that these kernels need of arrays as the host has them: no more than there are if it
-/// fits.
+/// Voxels from a row to the next that these kernels need in arrays of voxels: rounded up to a multiple of two vectors.
 inline int WholeVectors(int voxels, int width)
 {
   return RoundUp(voxels, 2 * width);
@@ -31,7 +30,7 @@ public:
   int Fields() const { return this->FieldCount; }
   const Buffer<float>& Values() const { return this->Memory; }
 
-  /// Cells and floats a row, as kernels take them; floats of all fields.
+  /// Cells and floats per row, as kernels take them; floats of all fields.
   static cl_int4 LayoutOf(const std::array<int, 3>& size, int width);
   static std::size_t CountOf(const std::array<int, 3>& size, int fields, int width);
 

@@ -1,15 +1,15 @@
 #include "Reconstruction/PhotonReconstruction.h"
 
-#include "Light/LeftOut.h"
-#include "Reconstruction/ConservativeReconstruction.h"
-#include "Reconstruction/LevelReconstruction.h"
-#include "Reconstruction/LightRows.h"
-
 #include "Device/Clock.h"
 #include "Device/HostMemory.h"
+#include "Light/LeftOut.h"
 #include "Medium/Medium.h"
 #include "Medium/Traits.h"
 #include "Numerics/PyramidLayout.h"
+#include "Reconstruction/ConservativeReconstruction.h"
+#include "Reconstruction/LevelReconstruction.h"
+#include "Reconstruction/LightPyramidShared.h"
+#include "Reconstruction/LightRows.h"
 
 #include <algorithm>
 #include <cmath>
@@ -44,14 +44,17 @@ bool NeedsCounts(Estimator estimator)
 
 void Check(const ReconstructionSettings& settings)
 {
-  const auto require = [](bool fits, const std::string& what, double value, const char* range) {
+  const auto require = [](bool fits, const std::string& what, double value, const std::string& range) {
     if (!fits)
     {
       throw InvalidInput(what + " is " + std::to_string(value) + "; it must be " + range + ".");
     }
   };
-  require(settings.levels >= 1 && settings.levels <= 8, "The number of levels", settings.levels, "1 to 8");
-  require(settings.level >= 0 && settings.level <= 8, "The level of the constant radius", settings.level, "0 to 8");
+  const std::string most = std::to_string(LevelsAtMost);
+  require(
+    settings.levels >= 1 && settings.levels <= LevelsAtMost, "The number of levels", settings.levels, "1 to " + most);
+  require(settings.level >= 0 && settings.level <= LevelsAtMost, "The level of the constant radius", settings.level,
+    "0 to " + most);
   require(settings.nearest >= 1, "The number of nearest photons", settings.nearest, "at least 1");
   require(settings.weightStep >= 0.0 && std::isfinite(settings.weightStep), "The weight of photons from level to level",
     settings.weightStep, "a number of 0 (found from the photons) or more");
@@ -83,11 +86,11 @@ void CheckPresence(const NoisyLight& light, Estimator estimator)
       "Let PhotonEmitter make at least two Batches and PhotonMarcher's conservative scheme gather them, or "
       "choose another estimator.";
     RequireArray(light.batchFluence, estimator, "fluence_batches", advice);
-    if (light.batches < 2 || light.batches > 16)
+    if (light.batches < 2 || light.batches > ComparedBatchesAtMost)
     {
       throw InvalidInput("The photons are of " + std::to_string(light.batches) +
-        (light.batches == 1 ? " batch" : " batches") + "; the conservative estimator compares 2 to 16 of them. " +
-        advice);
+        (light.batches == 1 ? " batch" : " batches") + "; the conservative estimator compares 2 to " +
+        std::to_string(ComparedBatchesAtMost) + " of them. " + advice);
     }
     return;
   }
@@ -161,10 +164,7 @@ void SayWhatIsLeftOut(const NoisyLight& light, ReconstructedLight& result)
     result.leftOut.push_back(left_out::Grey);
   }
 }
-}
 
-namespace
-{
 /// Whether the light is of one colour everywhere, so that its channels share their noise.
 bool OneColour(const NoisyLight& light)
 {
@@ -242,6 +242,46 @@ std::array<float, 3> Reconstruction::Conserve(const std::array<double, 3>& total
   return factors;
 }
 
+namespace
+{
+ReconstructedLight MakeRoom(const NoisyLight& light, bool conservative)
+{
+  const std::size_t voxels = light.grid.VoxelCount();
+  const std::size_t values = voxels * static_cast<std::size_t>(light.channels);
+  ReconstructedLight result;
+  std::future<void> directions =
+    std::async(std::launch::async, [&] { result.meanDirection = Zeros(light.meanDirection ? 3 * voxels : 0); });
+  result.fluence = Zeros(values);
+  result.mipLevel = Zeros(voxels);
+  result.fluenceError = Zeros(conservative ? values : 0);
+  directions.get();
+  return result;
+}
+
+/// By the estimators that take each voxel's light from one level.
+void ReconstructFromLevels(const Reconstruction& task, ReconstructedLight& result)
+{
+  const NoisyLight& light = task.light;
+  const std::size_t voxels = light.grid.VoxelCount();
+  const bool needsCounts = NeedsCounts(task.settings.estimator);
+  const bool needsWeights = task.settings.estimator == Estimator::Published;
+  const HostMappedBuffer<float> counts(task.device, light.photonCount, needsCounts ? voxels : 0, "photon_count");
+  const HostMappedBuffer<float> weights(task.device, light.photonWeight, needsWeights ? voxels : 0, "photon_weight");
+  double step = 1.0;
+  if (needsCounts)
+  {
+    Checked(task.device, counts, light.photonCount, voxels, 1, light.grid, "photon_count", 0.0f, Most);
+  }
+  if (needsWeights)
+  {
+    const ArrayRange range =
+      Checked(task.device, weights, light.photonWeight, voxels, 1, light.grid, "photon_weight", 0.0f, Most);
+    step = WeightStep(light, task.settings, range.total[0]);
+  }
+  ReconstructByLevel(task, counts, weights, step, result);
+}
+}
+
 ReconstructedLight Reconstruct(
   Device& device, const NoisyLight& light, const ReconstructionSettings& settings, const Monitor& monitor)
 {
@@ -254,18 +294,10 @@ ReconstructedLight Reconstruct(
 
   const Grid& grid = light.grid;
   const std::size_t voxels = grid.VoxelCount();
-  const std::size_t channels = static_cast<std::size_t>(light.channels);
-  const std::size_t values = voxels * channels;
   const std::size_t vectors = light.meanDirection ? 3 * voxels : 0;
-  ReconstructedLight result;
-  std::future<void> room = std::async(std::launch::async, [&] { result.meanDirection = Zeros(vectors); });
-  result.fluence = Zeros(values);
-  result.mipLevel = Zeros(voxels);
-  result.fluenceError = Zeros(conservative ? values : 0);
-  room.get();
-
   const float* given = conservative ? light.batchFluence : light.fluence;
-  const std::size_t count = values * static_cast<std::size_t>(conservative ? light.batches : 1);
+  const std::size_t count = voxels * static_cast<std::size_t>(light.channels * (conservative ? light.batches : 1));
+  ReconstructedLight result = MakeRoom(light, conservative);
   const HostMappedBuffer<float> fluence(device, given, count, "fluence");
   const HostMappedBuffer<float> direction(device, light.meanDirection, vectors, "mean directions");
   const ArrayRange range = Checked(
@@ -277,31 +309,17 @@ ReconstructedLight Reconstruct(
   }
   const Reconstruction task = { device, light, settings, monitor, fluence, direction, range,
     LevelsOf(grid, settings.levels) };
-  if (conservative)
+  if (!conservative)
+  {
+    ReconstructFromLevels(task, result);
+  }
+  else
   {
     ReconstructConservative(task, result);
     if (light.channels == 3 && !OneColour(light))
     {
       ReconstructChannels(device, light, settings, monitor, result);
     }
-  }
-  else
-  {
-    const bool published = settings.estimator == Estimator::Published;
-    const HostMappedBuffer<float> counts(
-      device, light.photonCount, NeedsCounts(settings.estimator) ? voxels : 0, "photon_count");
-    const HostMappedBuffer<float> weights(device, light.photonWeight, published ? voxels : 0, "photon_weight");
-    double step = 1.0;
-    if (NeedsCounts(settings.estimator))
-    {
-      Checked(device, counts, light.photonCount, voxels, 1, grid, "photon_count", 0.0f, Most);
-    }
-    if (published)
-    {
-      step = WeightStep(light, settings,
-        Checked(device, weights, light.photonWeight, voxels, 1, grid, "photon_weight", 0.0f, Most).total[0]);
-    }
-    ReconstructByLevel(task, counts, weights, step, result);
   }
   SayWhatIsLeftOut(light, result);
   result.device = device.Name();

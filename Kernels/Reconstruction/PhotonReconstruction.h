@@ -9,17 +9,19 @@
 
 namespace tyndall
 {
+constexpr int ComparedBatchesAtMost = 16; ///< that the conservative estimator compares
+
 /// Light as photons left it, not filtered. Arrays are over the grid's voxels, x fastest; null where there is none.
 struct NoisyLight
 {
   Grid grid;
   int channels = 1;                     ///< of fluence: 1 or 3
   const float* fluence = nullptr;       ///< W / length^2; not read by the conservative estimator
-  const float* meanDirection = nullptr; ///< 3 a voxel; optional
+  const float* meanDirection = nullptr; ///< 3 per voxel; optional
   const float* photonCount = nullptr;   ///< photons in each voxel; for the published and the nearest estimator
   const float* photonWeight = nullptr;  ///< their mean weight; for the published one
   int batches = 1;
-  /// [batch][voxel][channel]; for the conservative estimator, 2 to 16 whose mean is fluence.
+  /// [batch][voxel][channel]; for the conservative estimator, 2 to ComparedBatchesAtMost, whose mean is fluence.
   const float* batchFluence = nullptr;
 };
 
@@ -44,11 +46,13 @@ struct ReconstructionSettings
 struct ReconstructedLight
 {
   std::vector<float> fluence;       ///< as many channels as there were, >= 0
-  std::vector<float> meanDirection; ///< 3 a voxel, at most 1 long; empty where there was none
-  /// A voxel: level of the pyramid that the light was taken from; between two where blended.
+  std::vector<float> meanDirection; ///< 3 per voxel, at most 1 long; empty where there was none
+  /// Level of the pyramid that each voxel's light was taken from; between two where blended.
   std::vector<float> mipLevel;
-  std::vector<float> fluenceError; ///< standard error, `channels` a voxel, W / length^2; conservative only, else empty
-  double bias = 0.0; ///< total of the light, all channels, over what it was, less 1: before it was conserved, if it was
+  /// Standard error, `channels` per voxel, W / length^2; conservative only, else empty.
+  std::vector<float> fluenceError;
+  /// Total of the light, all channels, over what it was, less 1; before it was scaled where the total is conserved.
+  double bias = 0.0;
   std::vector<std::string> leftOut;
   std::string device;
   double seconds = 0.0;

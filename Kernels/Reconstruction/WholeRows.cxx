@@ -10,13 +10,12 @@ WholeRows::WholeRows(const RowKernels& kernels, const HostMappedBuffer<float>& a
   , Own(array)
   , Voxels(size[0])
   , Components(components)
-  , Rows(static_cast<std::size_t>(size[1]) * static_cast<std::size_t>(size[2]) * static_cast<std::size_t>(volumes))
+  , Rows(Count(size[1]) * Count(size[2]) * Count(volumes))
   , Pitch(WholeVectors(size[0], kernels.Width()))
 {
   if (this->Pitch != this->Voxels)
   {
-    this->Wide = Buffer<float>(
-      kernels.On(), this->Rows * static_cast<std::size_t>(this->Pitch) * static_cast<std::size_t>(components), what);
+    this->Wide = Buffer<float>(kernels.On(), this->Rows * Count(this->Pitch) * Count(components), what);
     if (!written)
     {
       this->Copy(this->Own.Handle(), this->Voxels, this->Wide.Handle(), this->Pitch);

@@ -1,8 +1,7 @@
 #pragma once
 
-#include "Reconstruction/LightRows.h"
-
 #include "Device/HostMappedBuffer.h"
+#include "Reconstruction/LightRows.h"
 
 namespace tyndall
 {
@@ -11,7 +10,7 @@ namespace tyndall
 class WholeRows
 {
 public:
-  /// @param array    over `volumes` grids of `size` voxels, x fastest, `components` a voxel; must outlive this
+  /// @param array    over `volumes` grids of `size` voxels, x fastest, `components` per voxel; must outlive this
   /// @param written  kernels write it: Fetch() when they are done. Else they read it.
   WholeRows(const RowKernels& kernels, const HostMappedBuffer<float>& array, const std::array<int, 3>& size,
     int volumes, int components, bool written, const char* what);

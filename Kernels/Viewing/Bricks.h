@@ -1,8 +1,7 @@
 #pragma once
 
-#include "Viewing/ViewShared.h"
-
 #include "Device/OpenCL.h"
+#include "Viewing/ViewShared.h"
 
 #include <array>
 #include <vector>

@@ -17,7 +17,7 @@ struct Camera
   double parallelScale = 1.0;      ///< then half the picture's height, length, > 0
 };
 
-/// From where things are looked at untold: three quarters from the front and a little from above, with the axis nearest
+/// The direction of the default view: three quarters from the front and a little from above, with the axis nearest
 /// to `viewUp` upwards; for z the sides -y and +x and the top are seen.
 std::array<double, 3> ThreeQuarterView(const std::array<double, 3>& viewUp);
 

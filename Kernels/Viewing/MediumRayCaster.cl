@@ -1,4 +1,4 @@
-// Primary rays through a medium of constant index, one work-item a packet of neighbouring pixels.
+// Primary rays through a medium of constant index, one work-item per packet of neighbouring pixels.
 //
 // The host gives
 //   SKIP_BRICKS  1: rays leap over bricks in which nothing extinguishes or shines

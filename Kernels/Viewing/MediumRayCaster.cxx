@@ -41,7 +41,7 @@ std::array<int, 2> PacketPixels(int width)
 }
 
 /// A bound of sigma_t over voxels and channels, 1/length.
-double LargestExtinction(const Medium& medium)
+double ExtinctionBound(const Medium& medium)
 {
   double sum = 0.0;
   for (const Field& field : { medium.sigma_a, medium.sigma_s })
@@ -102,7 +102,7 @@ MediumRayCaster::MediumRayCaster(Device& device, const Medium& medium, const Sol
   : TheDevice(device)
   , TheGrid(medium.grid)
   , LampsShine(std::any_of(
-      illumination.lights.begin(), illumination.lights.end(), [](const Light& lamp) { return !IsZero(lamp.power); }))
+      illumination.lights.begin(), illumination.lights.end(), [](const Light& lamp) { return !IsBlack(lamp.power); }))
   , AskedForShadowRays(asked.shadowRays)
   , Settings(this->Needed(asked))
   , G(medium.g)
@@ -114,35 +114,15 @@ MediumRayCaster::MediumRayCaster(Device& device, const Medium& medium, const Sol
   Check(light, medium.grid, settings);
   CheckViewedIndex(ior, medium.grid);
 
-  // Traits of the scene.
-  this->Index = IndexRangeOf(ior, medium.grid);
-  this->Traits = TraitsOf(medium);
-  const MediumTraits& traits = this->Traits;
-  this->Bends = !settings.leaveOut || this->Index.Varies();
-  this->KnowsFlow = medium.g != 0.0 && light.meanDirection.values && light.fluence.values && !settings.shadowRays;
-  this->Coloured = !settings.leaveOut || !traits.greyExtinction;
   const std::vector<SmallLight> lights = settings.shadowRays
     ? SmallLights(illumination.lights, medium.grid, settings.rectangleSamples)
     : std::vector<SmallLight>();
   this->LightCount = static_cast<int>(lights.size());
-  // Beside directions of the light it does not pay to have sources by one channel.
-  this->Grey = !this->Coloured && traits.grey && !this->KnowsFlow && this->LightCount == 0 &&
-    light.fluence.components == 1 && light.fluenceDirect.components == 1 && (!traits.emits || traits.emission.IsGrey());
-  this->SourcesDependOnCamera = this->LightCount > 0 && medium.g != 0.0;
-  this->LargestExtinction = tyndall::LargestExtinction(medium);
-  this->UnderSky = !illumination.environment.Empty() || !IsZero(illumination.sky);
-  this->Background = this->UnderSky ? illumination.sky : settings.backgroundColor;
-
+  this->FindTraits(medium, light, ior);
   this->Upload(medium, light, ior);
   this->Reserve();
   this->Lights = Buffer<SmallLight>(device, lights, "the lights");
-  if (!illumination.environment.Empty() && settings.showBackground)
-  {
-    this->EnvironmentSize = { illumination.environment.width, illumination.environment.height };
-  }
-  this->EnvironmentPixels = Buffer<cl_float4>(device,
-    this->EnvironmentSize[0] > 0 ? ClosedEnvironment(illumination.environment) : std::vector<cl_float4>(),
-    "the environment");
+  this->PrepareBackground(illumination);
   if (this->Bends)
   {
     this->PrepareBending();
@@ -150,14 +130,49 @@ MediumRayCaster::MediumRayCaster(Device& device, const Medium& medium, const Sol
   this->Doubts = DoubtsAbout(settings, light, this->Bends ? ior : Field{}, this->Index, medium.grid);
   if (settings.tableFace >= 0)
   {
-    const bool single = settings.singleScatteringOnly && light.fluenceDirect.values;
-    this->Table = Buffer<cl_float4>(device,
-      TableLight(medium.grid, single ? light.fluenceDirect : light.fluence, light.meanDirection,
-        this->Bends ? ior : Field{}, settings.tableFace, this->UnderSky),
-      "light on the table");
+    this->PrepareTable(light, ior);
   }
   this->PrepareSurface(medium, light);
   this->SayWhatIsLeftOut();
+}
+
+/// What of the scene varies, has colour or depends on the camera.
+void MediumRayCaster::FindTraits(const Medium& medium, const SolvedLight& light, const Field& ior)
+{
+  const ViewSettings& settings = this->Settings;
+  this->Index = IndexRangeOf(ior, medium.grid);
+  this->Traits = TraitsOf(medium);
+  const MediumTraits& traits = this->Traits;
+  this->Bends = !settings.leaveOut || this->Index.Varies();
+  this->KnowsFlow = medium.g != 0.0 && light.meanDirection.values && light.fluence.values && !settings.shadowRays;
+  this->Coloured = !settings.leaveOut || !traits.greyExtinction;
+  // Beside directions of the light it does not pay to have sources by one channel.
+  this->Grey = !this->Coloured && traits.grey && !this->KnowsFlow && this->LightCount == 0 &&
+    light.fluence.components == 1 && light.fluenceDirect.components == 1 && (!traits.emits || traits.emission.IsGrey());
+  this->SourcesDependOnCamera = this->LightCount > 0 && medium.g != 0.0;
+  this->LargestSigmaT = ExtinctionBound(medium);
+}
+
+void MediumRayCaster::PrepareBackground(const Illumination& illumination)
+{
+  const Environment& environment = illumination.environment;
+  this->UnderSky = !environment.Empty() || !IsBlack(illumination.sky);
+  this->Background = this->UnderSky ? illumination.sky : this->Settings.backgroundColor;
+  if (!environment.Empty() && this->Settings.showBackground)
+  {
+    this->EnvironmentSize = { environment.width, environment.height };
+  }
+  this->EnvironmentPixels = Buffer<cl_float4>(this->TheDevice,
+    this->EnvironmentSize[0] > 0 ? ClosedEnvironment(environment) : std::vector<cl_float4>(), "the environment");
+}
+
+void MediumRayCaster::PrepareTable(const SolvedLight& light, const Field& ior)
+{
+  const bool single = this->Settings.singleScatteringOnly && light.fluenceDirect.values;
+  this->Table = Buffer<cl_float4>(this->TheDevice,
+    TableLight(this->TheGrid, single ? light.fluenceDirect : light.fluence, light.meanDirection,
+      this->Bends ? ior : Field{}, this->Settings.tableFace, this->UnderSky),
+    "light on the table");
 }
 
 void MediumRayCaster::PrepareSurface(const Medium& medium, const SolvedLight& light)
@@ -176,7 +191,7 @@ void MediumRayCaster::Reserve()
   Device& device = this->TheDevice;
   for (int axis = 0; axis < 3; ++axis)
   {
-    this->BrickCount[axis] = (this->TheGrid.size[axis] + BrickEdge - 1) / BrickEdge;
+    this->BrickCount[axis] = PartsOf<int>(this->TheGrid.size[axis], BrickEdge);
   }
   const std::size_t count = PaddedCount(this->TheGrid);
   this->Samples = Buffer<cl_float4>(device, count, "the ray caster's samples");
@@ -262,15 +277,9 @@ bool MediumRayCaster::Adopt(const ViewSettings& asked)
   return true;
 }
 
-/// On a CPU as wide as its registers; a GPU makes its own packets.
 int MediumRayCaster::PacketWidth() const
 {
-  const int width = this->TheDevice.FloatVectorWidth();
-  return this->Settings.packetWidth > 0     ? this->Settings.packetWidth
-    : !this->TheDevice.IsCpu() || width < 4 ? 1
-    : width < 8                             ? 4
-    : width < 16                            ? 8
-                                            : 16;
+  return this->Settings.packetWidth > 0 ? this->Settings.packetWidth : this->TheDevice.KernelWidth();
 }
 
 void MediumRayCaster::Upload(const Medium& medium, const SolvedLight& light, const Field& ior)
@@ -450,7 +459,7 @@ std::string MediumRayCaster::CastingOptions() const
 {
   // Longest optical length of a step; the kernel has a shorter way to cross it up to 2. Bent steps can be a little
   // longer.
-  const double longest = this->LargestExtinction * this->Settings.stepSize *
+  const double longest = this->LargestSigmaT * this->Settings.stepSize *
     *std::max_element(this->TheGrid.spacing.begin(), this->TheGrid.spacing.end());
   const int phase = this->KnowsFlow ? 1 + static_cast<int>(this->Settings.phaseFunction) : 0;
   return Define("REAL_WIDTH", this->PacketWidth()) + Define("COLOURED", this->Coloured) + Define("GREY", this->Grey) +

@@ -16,8 +16,7 @@
 
 namespace tyndall
 {
-/// What a solver found out about the light in a medium, as `fluence` and `fluence_direct` of the data contract; seen,
-/// not owned.
+/// The light in a medium as a solver gives it, `fluence` and `fluence_direct` of the data contract; seen, not owned.
 struct SolvedLight
 {
   Field fluence;       ///< W / length^2, all of it; null: dark
@@ -58,7 +57,8 @@ struct ViewSettings
   bool showBackground = true;              ///< also in what surface and table reflect
   Rgb backgroundColor = { 0.0, 0.0, 0.0 }; ///< radiance behind the medium where there is no environment, [0, 1e37]
   bool skipEmptyBricks = true;             ///< leap over what is empty; changes the time and nothing else
-  /// What the scene does not need; false: three channels, rays that could bend and no leaps, to see what it saves.
+  /// Whether to leave out what the scene does not need; false: three channels, rays that could bend and no leaps, to
+  /// measure what that saves.
   bool leaveOut = true;
   double minimumTransmittance = 1e-3;                            ///< a ray that has less left stops; 0: never
   PhaseFunction phaseFunction = PhaseFunction::HenyeyGreenstein; ///< of light whose direction is known
@@ -78,7 +78,7 @@ struct Picture
 {
   int width = 0;
   int height = 0;
-  std::vector<float> radiance; ///< 3 a pixel, W / (length^2 sr)
+  std::vector<float> radiance; ///< 3 per pixel, W / (length^2 sr)
   /// 1 - transmittance, its mean over the channels: what the medium, and a surface's reflection, let through of what is
   /// behind. 1 where the table is seen.
   std::vector<float> alpha;
@@ -88,7 +88,7 @@ struct Picture
   float farDepth = 0.0f; ///< beyond every point of the box
 };
 
-/// Looks into a medium whose light is known: marches a ray through every pixel and gathers scattered and emitted light
+/// Pictures of a medium whose light is known: marches a ray through every pixel and gathers scattered and emitted light
 /// and the background, each dimmed by the medium before it (numerics.md, section 14, Eq. (105)). The source and sigma_t
 /// are taken at voxel centres and interpolated linearly between them; each step is exact for the coefficients in its
 /// middle, so that vacuum, opaque voxels and everything between need no special case.
@@ -140,16 +140,16 @@ class MediumRayCaster
 public:
   /// Brings medium and light to the device.
   /// @param illumination  its lights are used by shadow rays, environment and sky as background
-  /// @param ior  refractive index, one component a voxel; null or constant: rays are straight
+  /// @param ior  refractive index, one component per voxel; null or constant: rays are straight
   /// @throws InvalidInput as Check(medium) and Check(illumination); for a light array that is not finite or has not 1
   ///   or 3 components (a direction 3); for an index that is not within [1e-3, 1e3] or has not one component; where
   ///   settings ask for an array that is not there; for a setting out of its range
-  /// @throws DeviceError if the samples do not fit: 16 bytes a voxel, and as many again for each of coloured
+  /// @throws DeviceError if the samples do not fit: 16 bytes per voxel, and as many again for each of coloured
   ///   extinction, the light's direction, emission beside it, and a refractive index that varies
   MediumRayCaster(Device& device, const Medium& medium, const SolvedLight& light, const Illumination& illumination,
     const ViewSettings& settings, const Field& ior = {});
 
-  /// Takes over what of `settings` needs nothing new on the device, so that a caster can be kept while its medium,
+  /// Takes over those settings that need nothing new on the device, so that a caster can be kept while its medium,
   /// light and illumination stay as they are: imageSize, stepSize, backgroundColor, skipEmptyBricks,
   /// minimumTransmittance, phaseFunction, those of the surface, tableColor, tableReflectance.
   /// @return false, and nothing is changed, where one of the others differs: that needs a new caster
@@ -163,7 +163,7 @@ public:
   /// What the scene did not need, in words.
   const std::vector<std::string>& LeftOut() const { return this->Omitted; }
 
-  /// What of the scene may not look as it was meant to, in sentences.
+  /// Warnings of what in the scene may not look as it was meant to, a sentence each.
   const std::vector<std::string>& Warnings() const { return this->Doubts; }
 
 private:
@@ -185,9 +185,12 @@ private:
     return this->Bends && this->Settings.surfaceReflection != SurfaceReflection::None &&
       this->SurfaceIndex() > this->Index.least && this->SurfaceIndex() <= this->Index.largest;
   }
+  void FindTraits(const Medium& medium, const SolvedLight& light, const Field& ior);
   void Upload(const Medium& medium, const SolvedLight& light, const Field& ior);
   void Reserve();
+  void PrepareBackground(const Illumination& illumination);
   void PrepareBending();
+  void PrepareTable(const SolvedLight& light, const Field& ior);
   void PrepareSurface(const Medium& medium, const SolvedLight& light);
   void SayWhatIsLeftOut();
   void Pack(bool forShadowRays);
@@ -213,8 +216,8 @@ private:
   IndexRange Index;
   bool SourcesDependOnCamera = false;
   bool SourcesReady = false;
-  double LargestExtinction = 0.0; ///< at least the largest sigma_t, 1/length
-  bool UnderSky = false;          ///< the background is the illumination's, not the settings'
+  double LargestSigmaT = 0.0; ///< at least the largest sigma_t, 1/length
+  bool UnderSky = false;      ///< the background is the illumination's, not the settings'
   Rgb Background = {};
   std::array<int, 2> EnvironmentSize = { 0, 0 };
   std::array<int, 3> BrickCount = {};
@@ -222,7 +225,7 @@ private:
   std::array<int, 5> Components = {};  ///< of absorption, scattering, emission, fluence, fluenceDirect
   std::array<Buffer<float>, 5> Arrays; ///< given back once packed, where nothing will ask for them again
   Buffer<float> MeanDirection, Ior;    ///< as Arrays
-  Buffer<float> Direct;                ///< 6 a voxel: what the lights scatter towards the eye, and their irradiance
+  Buffer<float> Direct;                ///< 6 per voxel: what the lights scatter towards the eye, and their irradiance
   Buffer<cl_float4> Samples;           ///< source and grey extinction, with a border; see ScatteredLight.cl
   Buffer<cl_float4> Extinctions;
   Buffer<cl_float4> Flow;    ///< mean direction times g

@@ -127,7 +127,7 @@ inline integer packet_along_x(int first, int size)
 }
 
 // Scatters towards the eye what the lights send straight to each voxel's centre. Work-items by packets of a slice.
-//   direct  6 a voxel: sum of irradiance times phase function, W / (length^2 sr), and sum of irradiance, W / length^2
+//   direct  6 per voxel: sum of irradiance times phase function, W / (length^2 sr), and sum of irradiance, W / length^2
 __kernel void see_lights(ShadowInfo info, __global const SmallLight* restrict lights,
   __global const float* restrict scattering, __global const float4* restrict samples,
   __global const float4* restrict extinctions, __global const char* restrict bricks, __global float* restrict direct)

@@ -24,15 +24,15 @@ struct ToneMapping
 /// @throws InvalidInput for an exposure out of its range
 void Check(const ToneMapping& settings);
 
-/// The exposure that `exposure` = 0 stands for. Pixels do not count that are a thousand times darker than the one which
-/// 5% of all that are lit outshine, or darker still: what is nearly black would make the rest white. 1 where no pixel
+/// The exposure that `exposure` = 0 stands for. Of the lit pixels those a thousand times darker than the 95th
+/// percentile, or darker still, do not count: what is nearly black would make the rest white. 1 where no pixel
 /// is lit.
-/// @param radiance  3 a pixel, not negative
+/// @param radiance  3 per pixel, not negative
 double AutomaticExposure(const std::vector<float>& radiance);
 
-/// Eight bits a channel, red, green, blue and alpha, for a screen that follows sRGB (IEC 61966-2-1). Colours are not
+/// Eight bits per channel, red, green, blue and alpha, for a screen that follows sRGB (IEC 61966-2-1). Colours are not
 /// multiplied by alpha: laid over black, the picture is what the radiance says.
-/// @param alpha  one a pixel in [0, 1]; empty: opaque
+/// @param alpha  one per pixel in [0, 1]; empty: opaque
 std::vector<std::uint8_t> ToneMap(
   const std::vector<float>& radiance, const std::vector<float>& alpha, const ToneMapping& settings);
 }

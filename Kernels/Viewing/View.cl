@@ -57,7 +57,7 @@ inline camera_rays rays_through(const ViewInfo* v, int column, int row)
 }
 
 // Where pictures go.
-//   radiance  3 a pixel, W / (length^2 sr)
+//   radiance  3 per pixel, W / (length^2 sr)
 //   alpha     1 - mean transmittance
 //   depth     where the mean transmittance falls to a half, along the view axis
 typedef struct

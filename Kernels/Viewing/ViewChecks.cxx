@@ -12,8 +12,8 @@ namespace tyndall
 {
 namespace
 {
-constexpr float LeastIndex = 1e-3f;
-constexpr float LargestIndex = 1e3f;
+constexpr float LeastViewedIndex = 1e-3f;
+constexpr float LargestViewedIndex = 1e3f;
 constexpr double LeastStep = 0.01, LargestStep = 10.0; ///< voxels
 constexpr double LargestRadiance = 1e37;               ///< W / (length^2 sr); sums of it are still floats
 constexpr double FarthestCamera = 1e15;                ///< lengths, voxels: their squares are still floats
@@ -29,7 +29,7 @@ IndexRange RangeOnFaces(const Field& ior, const Grid& grid)
     for (int j = 0; j < size[1]; ++j)
     {
       const bool wholeRow = k == 0 || k == size[2] - 1 || j == 0 || j == size[1] - 1;
-      const float* row = ior.values + (static_cast<std::size_t>(k) * size[1] + j) * size[0];
+      const float* row = ior.values + grid.IndexOf({ 0, j, k });
       const int step = wholeRow ? 1 : std::max(size[0] - 1, 1); // else its two ends
       for (int i = 0; i < size[0]; i += step)
       {
@@ -59,11 +59,7 @@ void CheckLightField(const Field& field, const char* name, const Grid& grid)
   {
     return;
   }
-  if (field.components != 1 && field.components != 3)
-  {
-    throw InvalidInput(std::string(name) + " has " + std::to_string(field.components) +
-      " components a voxel; give it 1 (grey) or 3 (red, green, blue).");
-  }
+  CheckComponents(field, name);
   CheckFinite(field, name, grid);
 }
 
@@ -251,7 +247,7 @@ void CheckViewedIndex(const Field& ior, const Grid& grid)
   CheckIndex(ior, grid);
   for (std::size_t i = 0; ior.values && i < grid.VoxelCount(); ++i)
   {
-    if (ior.values[i] < LeastIndex || ior.values[i] > LargestIndex)
+    if (ior.values[i] < LeastViewedIndex || ior.values[i] > LargestViewedIndex)
     {
       throw InvalidInput("ior is " + std::to_string(ior.values[i]) + " in voxel " + VoxelName(grid, i) +
         " (the first such voxel); rays are followed where it is from 0.001 to 1000.");

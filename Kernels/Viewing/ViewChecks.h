@@ -11,8 +11,8 @@ void Check(const ViewSettings& settings);
 ///   settings ask for one that is not there
 void Check(const SolvedLight& light, const Grid& grid, const ViewSettings& settings);
 
-/// What may not look as it was meant to, in sentences: a table without light, a surface where the index is never, an
-/// index that varies over the box's faces.
+/// Warnings of what may not look as it was meant to, a sentence each: a table without light, a surface where the index
+/// is never, an index that varies over the box's faces.
 /// @param ior    null: constant
 /// @param index  its range
 std::vector<std::string> DoubtsAbout(

@@ -11,11 +11,6 @@
 
 namespace tyndall
 {
-namespace
-{
-
-}
-
 std::vector<SmallLight> SmallLights(const std::vector<Light>& lights, const Grid& grid, int rectangleSamples)
 {
   std::vector<SmallLight> small;
@@ -29,7 +24,7 @@ std::vector<SmallLight> SmallLights(const std::vector<Light>& lights, const Grid
     const double length = glm::length(Vector(light.direction));
     const glm::dvec3 axis = length > 0.0 ? Vector(light.direction) / length : glm::dvec3(0.0, 0.0, -1.0);
     const glm::dvec3 place = Vector(light.position) - Vector(grid.origin);
-    if (IsZero(light.power))
+    if (IsBlack(light.power))
     {
       continue;
     }
@@ -80,7 +75,8 @@ std::vector<cl_float4> ClosedEnvironment(const Environment& environment)
 
 std::array<int, 2> FaceSize(const Grid& grid, int face)
 {
-  return { grid.size[face / 2 == 0 ? 1 : 0], grid.size[face / 2 == 2 ? 1 : 2] };
+  const PlaneAxes axes = AcrossAxis(face / 2);
+  return { grid.size[axes.u], grid.size[axes.v] };
 }
 
 std::vector<cl_float4> TableLight(
@@ -89,8 +85,7 @@ std::vector<cl_float4> TableLight(
   const int axis = face / 2;
   const double outwards = face % 2 ? 1.0 : -1.0;
   const std::array<int, 2> size = FaceSize(grid, face);
-  const std::array<std::size_t, 3> strides = { 1, static_cast<std::size_t>(grid.size[0]),
-    static_cast<std::size_t>(grid.size[0]) * grid.size[1] };
+  const std::array<std::size_t, 3> strides = grid.Strides();
   std::vector<cl_float4> lit;
   lit.reserve(static_cast<std::size_t>(size[0] + 2) * (size[1] + 2));
   for (int j = -1; j <= size[1]; ++j)

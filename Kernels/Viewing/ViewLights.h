@@ -6,11 +6,6 @@
 
 namespace tyndall
 {
-inline bool IsZero(const Rgb& colour)
-{
-  return colour[0] == 0.0 && colour[1] == 0.0 && colour[2] == 0.0;
-}
-
 /// Points and parallel beams that stand for the lights.
 std::vector<SmallLight> SmallLights(const std::vector<Light>& lights, const Grid& grid, int rectangleSamples);
 
@@ -20,8 +15,8 @@ std::vector<cl_float4> ClosedEnvironment(const Environment& environment);
 /// Voxels of a face's rows, and how many rows it has: along y and z, x and z, or x and y.
 std::array<int, 2> FaceSize(const Grid& grid, int face);
 
-/// Irradiance on a face of the box by the light in the voxels on it, by pi and n^2: what a white table shines. With a
-/// border of one voxel that repeats the outermost ones.
+/// Irradiance on a face of the box by the light in the voxels on it, over pi and n^2: the radiance of a white table.
+/// With a border of one voxel that repeats the outermost ones.
 ///
 /// By fluence and mean direction, as numerics.md, Eq. (111).
 /// @param ior        null: 1

@@ -6,7 +6,7 @@
 SHARED_BEGIN
 enum
 {
-  BrickEdge = 8 ///< voxels an edge of a brick
+  BrickEdge = 8 ///< voxels per edge of a brick
 };
 
 /// The picture and its camera.

@@ -88,12 +88,7 @@ struct ReconstructionScene
     return light;
   }
 
-  std::array<int, 3> Place(std::size_t voxel) const
-  {
-    const std::size_t nx = static_cast<std::size_t>(this->grid.size[0]),
-                      ny = static_cast<std::size_t>(this->grid.size[1]);
-    return { static_cast<int>(voxel % nx), static_cast<int>(voxel / nx % ny), static_cast<int>(voxel / (nx * ny)) };
-  }
+  std::array<int, 3> Place(std::size_t voxel) const { return this->grid.VoxelAt(voxel); }
 };
 
 inline tyndall::ReconstructionSettings By(tyndall::ReconstructionSettings::Estimator estimator)

@@ -31,8 +31,8 @@ struct VoxelOptions
   const std::vector<unsigned char>* Hidden = nullptr; ///< a flag for each cell: it is background, whatever it holds
 };
 
-/// The grids of one array: one, or one a component, named after it. Cells that equal the background, to the last bit or
-/// to the tolerance, are inactive.
+/// The grids of one array: one, or one per component, named after it. Cells that equal the background, to the last bit
+/// or to the tolerance, are inactive.
 /// @param field  may have `background` and `type` of the array
 /// @throws InvalidInput naming the array, where its numbers are none of a grid, or do not fit 16 bits
 openvdb::GridPtrVec MakeGrids(

@@ -1,6 +1,7 @@
 #include "IO/VDB/VDBFile.h"
 
 #include "Device/Errors.h"
+#include "IO/ReadableFile.h"
 #include "IO/VDB/VDBBytes.h"
 
 #include <algorithm>
@@ -13,19 +14,6 @@ namespace
 {
 constexpr std::uint32_t OldestFormat = openvdb::OPENVDB_FILE_VERSION_NODE_MASK_COMPRESSION;
 constexpr std::uint32_t NewestFormat = openvdb::OPENVDB_FILE_VERSION;
-
-std::uint64_t SizeOf(const std::string& path)
-{
-  std::ifstream stream(path, std::ios::binary | std::ios::ate);
-  const std::streamoff size = stream ? static_cast<std::streamoff>(stream.tellg()) : -1;
-  stream.seekg(0);
-  // A folder opens, and has a size, but nothing can be read from it.
-  if (size < 0 || (size > 0 && stream.peek() == std::ifstream::traits_type::eof()))
-  {
-    throw InvalidInput("\"" + path + "\" cannot be read. Check that it is a file, is there and may be read.");
-  }
-  return static_cast<std::uint64_t>(size);
-}
 
 bool EndsWith(const std::string& text, const std::string& end)
 {
@@ -54,7 +42,7 @@ bool VDBFile::HasMagic(const std::string& path)
 
 VDBFile::VDBFile(const std::string& path)
   : FilePath(path)
-  , FileSize(SizeOf(path))
+  , FileSize(ReadableSize(path))
 {
   openvdb::initialize();
   this->ReadHeader();

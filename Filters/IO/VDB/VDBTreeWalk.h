@@ -56,7 +56,7 @@ struct VDBMask
 
 using VDBLeafMask = VDBMask<3>;
 
-/// Walks a tree's topology as OpenVDB will read it: a root, and under it nodes of 4096, 128 and 8 voxels an edge.
+/// Walks a tree's topology as OpenVDB will read it: a root, and under it nodes of 4096, 128 and 8 voxels per edge.
 class VDBTreeWalk
 {
 public:

@@ -17,6 +17,42 @@ constexpr int MostIterations = 300;
 constexpr int Patience = 12;         ///< iterations in which a residual has to halve, or is left as it is
 constexpr float Damping = 0.8f;      ///< of Jacobi's method, about the best for seven points
 constexpr double Negligible = 1e-12; ///< residual, of the first one
+
+/// An argument of a kernel that is double where the device has it.
+void SetExact(cl::Kernel& kernel, cl_uint index, double value, bool inDouble)
+{
+  if (inDouble)
+  {
+    kernel.setArg(index, value);
+  }
+  else
+  {
+    kernel.setArg(index, static_cast<float>(value));
+  }
+}
+
+/// Whether a residual is above a bound and has not stopped falling. Asked once an iteration.
+class StillTooLarge
+{
+public:
+  explicit StillTooLarge(double most)
+    : Most(most)
+  {
+  }
+
+  /// @param square  of the residual
+  bool operator()(double square)
+  {
+    this->SinceHalved = square < 0.25 * this->Smallest ? 0 : this->SinceHalved + 1;
+    this->Smallest = this->SinceHalved == 0 ? square : this->Smallest;
+    return square > this->Most && this->SinceHalved < Patience;
+  }
+
+private:
+  double Most; ///< squared
+  double Smallest = std::numeric_limits<double>::infinity();
+  int SinceHalved = 0; ///< iterations
+};
 }
 
 MultigridSolver::MultigridSolver(Device& device, const std::array<int, 3>& size, const std::array<double, 3>& ofSpacing)
@@ -166,66 +202,66 @@ double MultigridSolver::Dot(const ExactValues& a, const cl::Buffer& b, bool ofFl
   return sum;
 }
 
+/// A x, or b - A x where `from` is given, into `into`.
+void MultigridSolver::Multiply(const ExactValues& x, const ExactValues* from, const ExactValues& into)
+{
+  const Level& finest = this->Levels.front();
+  cl::Kernel apply = this->Kernel("diffusion_apply");
+  With(apply, finest.layout, finest.conductance, finest.loss, x.Handle(), (from ? *from : x).Handle(),
+    cl_int(from != nullptr), into.Handle());
+  this->Run(apply, finest.layout.size);
+}
+
+/// Preconditions the residual. @return its norm in that of the preconditioner, squared, in units
+double MultigridSolver::PreconditionedNorm(double unit)
+{
+  this->Precondition(1.0 / unit);
+  return this->Dot(this->Residual, this->Levels.front().values.Handle(), true) / unit;
+}
+
+/// The next direction: the preconditioned residual and `part` of the last direction.
+void MultigridSolver::Turn(double part)
+{
+  cl::Kernel turn = this->Kernel("diffusion_turn");
+  With(turn, this->Direction.Handle(), this->Levels.front().values);
+  SetExact(turn, 2, part, this->Direction.InDouble());
+  this->TheDevice.Queue().enqueueNDRangeKernel(turn, cl::NullRange, cl::NDRange(this->Count), cl::NullRange);
+}
+
+/// Goes so far along the direction.
+void MultigridSolver::Step(const ExactValues& values, double length)
+{
+  cl::Kernel step = this->Kernel("diffusion_step");
+  With(step, values.Handle(), this->Residual.Handle(), this->Direction.Handle(), this->Applied.Handle());
+  SetExact(step, 4, length, this->Direction.InDouble());
+  this->TheDevice.Queue().enqueueNDRangeKernel(step, cl::NullRange, cl::NDRange(this->Count), cl::NullRange);
+}
+
 int MultigridSolver::Solve(
   const ExactValues& right, ExactValues& values, double unit, double reduction, double leftAtMost)
 {
-  Level& finest = this->Levels.front();
-  cl::Kernel apply = this->Kernel("diffusion_apply");
-  cl::Kernel step = this->Kernel("diffusion_step");
-  cl::Kernel turn = this->Kernel("diffusion_turn");
-  const auto exact = [&](cl::Kernel& kernel, cl_uint index, double value) {
-    if (right.InDouble())
-    {
-      kernel.setArg(index, value);
-    }
-    else
-    {
-      kernel.setArg(index, static_cast<float>(value));
-    }
-  };
-  const auto multiply = [&](const ExactValues& by, bool subtract, const ExactValues& into) {
-    With(apply, finest.layout, finest.conductance, finest.loss, by.Handle(), right.Handle(), cl_int(subtract),
-      into.Handle());
-    this->Run(apply, finest.layout.size);
-  };
-  const cl::NDRange all(this->Count);
-  multiply(values, true, this->Residual);
-  this->Precondition(1.0 / unit);
-  double rz = this->Dot(this->Residual, finest.values.Handle(), true) / unit;
+  this->Multiply(values, &right, this->Residual);
+  double rz = this->PreconditionedNorm(unit);
   this->FirstResidual = std::max(this->FirstResidual, rz);
   const double enough = std::max(rz * reduction * reduction, this->FirstResidual * Negligible * Negligible);
-  this->Direction.Fill(0.0);
-  double smallest = std::numeric_limits<double>::infinity();
-  int sinceThen = 0;
+  StillTooLarge tooLarge(leftAtMost * leftAtMost * unit * unit * static_cast<double>(this->Count));
   const auto isLeft = [&] {
-    if (!std::isfinite(leftAtMost))
-    {
-      return false;
-    }
-    const double left = this->Dot(this->Residual, this->Residual.Handle(), false);
-    sinceThen = left < 0.25 * smallest ? 0 : sinceThen + 1;
-    smallest = sinceThen == 0 ? left : smallest;
-    return left > leftAtMost * leftAtMost * unit * unit * static_cast<double>(this->Count) && sinceThen < Patience;
+    return std::isfinite(leftAtMost) && tooLarge(this->Dot(this->Residual, this->Residual.Handle(), false));
   };
+  this->Direction.Fill(0.0);
   double part = 0.0;
   int iteration = 0;
   while (iteration < MostIterations && rz > 0.0 && std::isfinite(rz) && (rz > enough || isLeft()))
   {
-    With(turn, this->Direction.Handle(), finest.values);
-    exact(turn, 2, part);
-    this->TheDevice.Queue().enqueueNDRangeKernel(turn, cl::NullRange, all, cl::NullRange);
-    multiply(this->Direction, false, this->Applied);
+    this->Turn(part);
+    this->Multiply(this->Direction, nullptr, this->Applied);
     const double curvature = this->Dot(this->Direction, this->Applied.Handle(), false);
     if (!(curvature > 0.0))
     {
       break;
     }
-    // The direction is in units: so is the step.
-    With(step, values.Handle(), this->Residual.Handle(), this->Direction.Handle(), this->Applied.Handle());
-    exact(step, 4, rz * unit / curvature);
-    this->TheDevice.Queue().enqueueNDRangeKernel(step, cl::NullRange, all, cl::NullRange);
-    this->Precondition(1.0 / unit);
-    const double next = this->Dot(this->Residual, finest.values.Handle(), true) / unit;
+    this->Step(values, rz * unit / curvature); // the direction is in units: so is the step
+    const double next = this->PreconditionedNorm(unit);
     part = next / rz;
     rz = next;
     ++iteration;

@@ -49,6 +49,10 @@ private:
   void Precondition(double perUnit);
   void Smooth(Level& level);
   double Dot(const ExactValues& a, const cl::Buffer& b, bool ofFloats);
+  void Multiply(const ExactValues& x, const ExactValues* from, const ExactValues& into);
+  double PreconditionedNorm(double unit);
+  void Turn(double part);
+  void Step(const ExactValues& values, double length);
 
   Device& TheDevice;
   std::vector<Level> Levels;

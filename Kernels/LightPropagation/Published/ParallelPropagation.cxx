@@ -22,12 +22,6 @@ constexpr double CrossingsPerReport = 3e7;
 using Batch = PublishedPlan::Batch;
 using Pass = PublishedPlan::Pass;
 using Launch = PublishedPlan::Launch;
-
-/// Floats a work-item handles at once.
-int VectorWidth(const Device& device)
-{
-  return device.IsCpu() ? (device.FloatVectorWidth() >= 16 ? 16 : 8) : 1;
-}
 }
 
 struct ParallelPropagation::Implementation
@@ -42,7 +36,7 @@ struct ParallelPropagation::Implementation
     , Traits(TraitsOf(medium))
     , Ledger(medium, this->Model, settings)
     , Channels(this->Model.Channels())
-    , Volumes(device, medium, this->Model, VectorWidth(device))
+    , Volumes(device, medium, this->Model, device.KernelWidth(8, 16))
     , Plan(device, medium.grid, this->Model, settings, this->Volumes, temporaryBytes)
     , Borders(this->Model, settings, this->Plan)
     , Emits(this->Traits.emits || !settings.leaveOut)

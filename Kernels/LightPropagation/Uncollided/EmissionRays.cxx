@@ -79,11 +79,7 @@ private:
   }
 
   /// Lanes of a packet of rays.
-  int Width() const
-  {
-    const int width = this->TheDevice.FloatVectorWidth();
-    return width >= 16 ? 16 : width >= 8 ? 8 : width >= 4 ? 4 : 1;
-  }
+  int Width() const { return this->TheDevice.KernelWidth(); }
 
   void Load()
   {

@@ -1,11 +1,10 @@
 #include "Photons/Emission/PhotonEmitter.h"
 
-#include "Photons/Emission/PhotonSources.h"
-
 #include "Device/Clock.h"
 #include "Device/Errors.h"
 #include "Device/HostMemory.h"
 #include "Medium/Medium.h"
+#include "Photons/Emission/PhotonSources.h"
 
 #include <algorithm>
 #include <cmath>
@@ -19,7 +18,6 @@ namespace
 {
 constexpr std::size_t TrySamples = 4096; ///< to learn what part of a light's photons meets the volume
 constexpr std::size_t ReportEvery = 100000;
-constexpr int BatchesAtMost = 16;
 
 /// A light, and where its photons are dense.
 struct SpreadSource
@@ -160,10 +158,10 @@ void Check(const EmissionSettings& settings)
   {
     throw InvalidInput("The number of photons is 0; ask for at least one.");
   }
-  if (settings.batches < 1 || settings.batches > BatchesAtMost)
+  if (settings.batches < 1 || settings.batches > EmittedBatchesAtMost)
   {
     throw InvalidInput("The number of batches is " + std::to_string(settings.batches) + "; it must be 1 to " +
-      std::to_string(BatchesAtMost) + ".");
+      std::to_string(EmittedBatchesAtMost) + ".");
   }
   if (!(settings.densestAtMost >= 1.0))
   {

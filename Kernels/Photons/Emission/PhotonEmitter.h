@@ -1,15 +1,16 @@
 #pragma once
 
+#include "Device/Monitor.h"
+#include "Lights/Lights.h"
+#include "Medium/Grid.h"
 #include "Photons/Emission/SampleSequence.h"
 #include "Photons/Importance/ImportanceMap.h"
 #include "Photons/Photons.h"
 
-#include "Device/Monitor.h"
-#include "Lights/Lights.h"
-#include "Medium/Grid.h"
-
 namespace tyndall
 {
+constexpr int EmittedBatchesAtMost = 16; ///< as many as the conservative reconstruction compares
+
 struct EmissionSettings
 {
   /// Photons that reach the volume, of all lights together; each light has a share in proportion to the power with
@@ -18,13 +19,14 @@ struct EmissionSettings
   std::size_t photonCount = 100000;
   Sampler sampler = Sampler::Hammersley;
   std::uint64_t seed = 0;
-  /// Independent sets that the photons are made of, 1 to 16. Each has its own shift; every second one has its first two
-  /// coordinates changed for each other, and Hammersley's base 3 for 2, so that the patterns of two sets have nothing
-  /// in common.
+  /// Independent sets that the photons are made of, 1 to 16. Each has its own shift; in every second one the first
+  /// two coordinates are exchanged, and so are Hammersley's bases 2 and 3, so that the patterns of two sets are
+  /// unrelated.
   int batches = 1;
   /// Where photons are dense; null or empty: spread evenly. A light that it has no square for is spread evenly.
   const ImportanceMap* map = nullptr;
-  double densestAtMost = 8.0; ///< density that the map may ask for, in those of photons spread evenly; at least 1
+  /// Largest density that the map may ask for, over that of photons spread evenly; at least 1.
+  double densestAtMost = 8.0;
 };
 
 /// Photons of all lights, where they enter the volume (those of a lamp in the volume: at the lamp), and the number of
@@ -44,7 +46,7 @@ struct EmittedPhotons
 ///  - directional: spread over the outline of the volume on the photon plane across the light's direction
 ///  - point: over the solid angle of the faces that the lamp sees, or all around a lamp in the volume; what a lamp on a
 ///    face, an edge or a corner shines outwards is not made (LampView)
-///  - spot: over its cone or what the lamp sees, whichever is smaller, and those that are in the other one
+///  - spot: over its cone or what the lamp sees, whichever is smaller; those outside the other one are not made
 ///  - rectangle: from points of it over the faces that each sees, power by the cosine; in the volume over a half-space
 ///  - environment and sky: direction by radiance, solid angle and outline of the volume, then over that outline
 ///  - faces: over each face, directions by the cosine

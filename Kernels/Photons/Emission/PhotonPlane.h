@@ -80,8 +80,8 @@ private:
 };
 
 /// What a lamp sees of the volume: all around it inside, half of that on a face, a quarter on an edge, an eighth at a
-/// corner, the faces from outside. On a face is what is off it by no more than a position may have been rounded, a
-/// millionth of the volume's edge.
+/// corner, the faces from outside. A lamp counts as on a face that it is off by no more than rounding of its position
+/// may cause, a millionth of the volume's edge.
 class LampView
 {
 public:

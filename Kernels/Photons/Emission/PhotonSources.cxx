@@ -18,12 +18,6 @@ namespace tyndall
 {
 namespace
 {
-
-Rgb Times(const Rgb& a, double b)
-{
-  return { a[0] * b, a[1] * b, a[2] * b };
-}
-
 /// Two axes across a unit vector (Duff et al. 2017).
 std::array<glm::dvec3, 2> Across(const glm::dvec3& n)
 {

@@ -1,9 +1,8 @@
 #pragma once
 
-#include "Photons/Photons.h"
-
 #include "Lights/Lights.h"
 #include "Medium/Grid.h"
+#include "Photons/Photons.h"
 
 #include <array>
 #include <functional>
@@ -23,7 +22,7 @@ struct Shot
   Rgb power; ///< W, if it was the only one of its light
 };
 
-/// What makes the photons of a light out of samples. Nothing: none is to be made of that one.
+/// What makes the photons of a light out of samples; of some samples none, where it gives nothing.
 struct PhotonSource
 {
   int light = 0; ///< number, as EmittedPhotons has it
@@ -34,6 +33,6 @@ struct PhotonSource
 /// Sources of all that shines, as EmitPhotons says. Faces come last.
 std::vector<PhotonSource> PhotonSourcesOf(const Grid& grid, const Illumination& illumination);
 
-/// Puts the shot onto the volume; nothing where it misses.
+/// The photon where the shot enters the volume; nothing where it misses.
 std::optional<Photon> Land(const Grid& grid, const Shot& shot);
 }

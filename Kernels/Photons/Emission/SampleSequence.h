@@ -22,8 +22,7 @@ enum class Sampler
 /// another order. A seed other than 0 shifts Hammersley, Halton and Grid as a whole, round the edges.
 ///
 /// Batches of one seed are independent sets: each above 0 has a shift of its own; in odd ones dimensions 0 and 1 change
-/// places, and Hammersley has base 3 for 2 and 2 for 3, so that errors of an even and an odd one have nothing in
-/// common.
+/// places, and so do Hammersley's bases 2 and 3, so that errors of an even and an odd one are unrelated.
 class SampleSequence
 {
 public:

@@ -1,8 +1,7 @@
 #include "Photons/Importance/ImportanceMap.h"
 
-#include "Photons/Emission/CumulativeTable.h"
-
 #include "Device/Errors.h"
+#include "Photons/Emission/CumulativeTable.h"
 
 #include <algorithm>
 #include <cmath>

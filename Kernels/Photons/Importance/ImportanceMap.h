@@ -9,7 +9,7 @@ namespace tyndall
 /// Number of the environment and the sky among lights; lights of their own are numbered from 0.
 constexpr int EnvironmentLight = -1;
 
-/// How densely photons are to set out: a square picture for each light, of its photon plane or of what stands for it
+/// How densely photons are to start: a square picture for each light, of its photon plane or of what stands for it
 /// (the first two coordinates of the samples that its photons are made of).
 struct ImportanceMap
 {
@@ -21,7 +21,7 @@ struct ImportanceMap
   std::size_t Cells() const { return static_cast<std::size_t>(this->size) * static_cast<std::size_t>(this->size); }
 };
 
-/// @throws InvalidInput where a density is negative, 0 (then the light that sets out there would be missing) or not
+/// @throws InvalidInput where a density is negative, 0 (then the light that starts there would be missing) or not
 ///   finite (names light, column and row), or their number is not that of the cells
 void Check(const ImportanceMap& map);
 

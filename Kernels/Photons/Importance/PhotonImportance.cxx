@@ -1,9 +1,8 @@
 #include "Photons/Importance/PhotonImportance.h"
 
-#include "Photons/Emission/PhotonEmitter.h"
-
 #include "Device/Clock.h"
 #include "Device/Errors.h"
+#include "Photons/Emission/PhotonEmitter.h"
 
 #include <algorithm>
 #include <cmath>
@@ -102,17 +101,16 @@ void Add(const PilotLight& more, PilotLight& light)
 /// Length of the difference from a cell to the next: central, at the faces to the one neighbour.
 std::vector<float> GradientOf(const std::vector<double>& luminance, const Grid& grid)
 {
-  const std::array<int, 3>& size = grid.size;
-  const std::array<std::size_t, 3> stride = { 1, static_cast<std::size_t>(size[0]),
-    static_cast<std::size_t>(size[0]) * static_cast<std::size_t>(size[1]) };
+  const std::array<std::size_t, 3> stride = grid.Strides();
   std::vector<float> gradient(luminance.size());
   for (std::size_t i = 0; i < luminance.size(); ++i)
   {
+    const std::array<int, 3> cell = grid.VoxelAt(i);
     double squares = 0.0;
     for (int a = 0; a < 3; ++a)
     {
-      const int at = static_cast<int>(i / stride[a] % static_cast<std::size_t>(size[a]));
-      const std::size_t before = at > 0 ? i - stride[a] : i, after = at < size[a] - 1 ? i + stride[a] : i;
+      const std::size_t before = cell[a] > 0 ? i - stride[a] : i,
+                        after = cell[a] < grid.size[a] - 1 ? i + stride[a] : i;
       const double steps = std::max<double>((after - before) / stride[a], 1.0);
       squares += std::pow((luminance[after] - luminance[before]) / steps, 2);
     }

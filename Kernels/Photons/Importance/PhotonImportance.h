@@ -1,9 +1,8 @@
 #pragma once
 
+#include "Lights/Lights.h"
 #include "Photons/Importance/ImportanceMap.h"
 #include "Photons/Marching/PhotonMarcher.h"
-
-#include "Lights/Lights.h"
 
 #include <string>
 
@@ -30,7 +29,7 @@ struct Importance
 {
   ImportanceMap map;           ///< mean 1 for each light
   PilotLight pilot;            ///< of all lights; origins are those of the first light that reaches the cell
-  std::vector<float> gradient; ///< W / length^2 from a cell to the next, one a cell
+  std::vector<float> gradient; ///< W / length^2 from a cell to the next, one per cell
   std::vector<float> chosen;   ///< 1 where a cell is to be sampled densely, else 0
   double gradientThreshold = 0.0, luminanceThreshold = 0.0; ///< as used
   /// Whether the light is so even that nothing is gained: the map is 1 everywhere, and photons are best spread evenly.

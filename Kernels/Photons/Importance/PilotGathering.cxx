@@ -1,8 +1,7 @@
 #include "Photons/Importance/PilotGathering.h"
 
-#include "Photons/Marching/MarchLaunch.h"
-
 #include "Device/Clock.h"
+#include "Photons/Marching/MarchLaunch.h"
 
 #include <algorithm>
 #include <cmath>

@@ -1,17 +1,16 @@
 #pragma once
 
+#include "Device/Monitor.h"
 #include "Photons/Importance/PilotLight.h"
 #include "Photons/Marching/MarchMedium.h"
 
-#include "Device/Monitor.h"
-
 namespace tyndall
 {
-/// PhotonMarcher::Gather. Keeps which voxels are of which cell between calls.
+/// What PhotonMarcher::Gather does. Keeps between calls which voxels belong to which cell.
 class PilotGathering
 {
 public:
-  /// @param medium  to be kept
+  /// @param medium  must outlive this
   explicit PilotGathering(const MarchMedium& medium)
     : TheMedium(medium)
   {

@@ -2,6 +2,7 @@
 
 #include "Device/Batches.h"
 #include "Device/Defines.h"
+#include "Device/Sizes.h"
 
 #include <algorithm>
 #include <string>
@@ -109,7 +110,7 @@ void MarchPhotons(const MarchMedium& medium, const PackedPhotons& packed, const 
 {
   Device& device = medium.device;
   const MarchShares& shares = target.shares;
-  const int width = device.IsCpu() ? std::min(std::max(device.FloatVectorWidth(), 4), 16) : 1;
+  const int width = device.KernelWidth();
   const std::size_t stride = shares.copies > 1 ? target.records * static_cast<std::size_t>(target.numbers) : 0;
   // Unsafe: all workers on one copy, as if each had its own.
   const int copies = std::max(shares.copies, shares.workers);
@@ -124,7 +125,7 @@ void MarchPhotons(const MarchMedium& medium, const PackedPhotons& packed, const 
     With(march, medium.Describe(), medium.sigma, medium.coefficients, medium.nodes, photons.values, photons.marks,
       target.cells ? *target.cells : none, photons.ends, *target.sums, cl_ulong(stride), cl_int(copies),
       cl_int(shares.batches), photons.batchBegin, next, cl_int(first), cl_int(count));
-    const std::size_t packets = (count + static_cast<std::size_t>(width) - 1) / static_cast<std::size_t>(width);
+    const std::size_t packets = PartsOf(count, Count(width));
     if (shares.workers > 0)
     {
       medium.Launch(march, cl::NDRange(static_cast<std::size_t>(shares.workers)), cl::NDRange(1));

@@ -1,25 +1,25 @@
 #pragma once
 
+#include "Device/Monitor.h"
 #include "Photons/Marching/MarchMedium.h"
 #include "Photons/Marching/PhotonPacking.h"
 
-#include "Device/Monitor.h"
-
 namespace tyndall
 {
-/// Who adds to how many copies of the sums. Work-item w serves copies w, w + workers, ...; copy c is for batch c %
-/// batches.
+/// How many copies of the sums there are, and who adds to which. Work-item w serves copies w, w + workers, ...; copy c
+/// is for batch c % batches.
 struct MarchShares
 {
   bool atomics = false;
-  int workers = 0; ///< work-items that take photons as they come; 0: one a packet, all add to a batch's copy
+  int workers = 0; ///< work-items that take photons as they come; 0: one per packet, and all of a batch add to its copy
   int copies = 1;
   int batches = 1;
 };
 
 /// As the settings ask for.
-/// @param records, numbers  of a copy of the sums, and of 64 bits of each
-/// @param held              bytes in use that new sums will take over
+/// @param records  of a copy of the sums
+/// @param numbers  of 64 bits, in a record
+/// @param held     bytes in use that new sums will take over
 /// @throws DeviceError where the device has no atomics and they are asked for, or the sums of all batches do not fit
 MarchShares ShareSums(const MarchMedium& medium, std::size_t records, int numbers, int batches, std::size_t held);
 
@@ -35,7 +35,7 @@ struct PhotonsOnDevice
   Buffer<cl_int> ends; ///< PhotonEnd and the power of each
 };
 
-/// What photons leave, and where.
+/// What photons deposit, and where.
 struct MarchSums
 {
   MarchShares shares;

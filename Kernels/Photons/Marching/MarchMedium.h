@@ -1,12 +1,11 @@
 #pragma once
 
-#include "Photons/Photons.h"
-
 #include "Device/Buffer.h"
 #include "Medium/Medium.h"
 #include "Medium/Traits.h"
 #include "Photons/Marching/MarchShared.h"
 #include "Photons/Marching/PhotonPacking.h"
+#include "Photons/Photons.h"
 #include "Refraction/Index/IndexRange.h"
 
 #include <string>
@@ -28,7 +27,7 @@ public:
   /// Voxels, with one more at either end of each axis.
   std::size_t PaddedCount() const { return Count(this->Padded(2)); }
 
-  /// A kernel of PhotonMarch.cl for so many channels of light; `options` are those that the medium does not tell.
+  /// A kernel of PhotonMarch.cl for so many channels of light; `options` are those that do not follow from the medium.
   cl::Kernel MarchKernel(const char* name, int channels, bool directions, const std::string& options) const;
   /// A kernel of PhotonSums.cl.
   cl::Kernel SumsKernel(const char* name, int channels, const std::string& options) const;

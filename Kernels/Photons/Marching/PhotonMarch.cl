@@ -1,8 +1,8 @@
 // Photons through a medium (Pfeuti 2009, section 3.1.5, but for the accumulation). The host gives what the
 // included files ask for, and
 //   CHANNELS         of light; MEDIUM_CHANNELS of sigma_t, 1 or CHANNELS
-//   WORKERS          0: a work-item a packet, all add to the same sums; else so many take blocks as they come, each to
-//                    its sums
+//   WORKERS          0: a work-item per packet, all add to the same sums; else so many take blocks as they come, each
+//                    to its sums
 //   COUNTS           1: voxels also count photons and their weights, by photons' marks: 1 << COUNT_SHIFT and units of
 //                    weight
 //   CELLS            1: what is deposited are coarse cells, which also count photons, and sum up the columns and rows

@@ -1,16 +1,15 @@
 #include "Photons/Marching/PhotonMarcher.h"
 
-#include "Light/LeftOut.h"
-#include "Photons/Marching/PhotonSumsShared.h"
-
 #include "Device/Clock.h"
 #include "Device/Defines.h"
 #include "Device/HostMappedBuffer.h"
 #include "Device/HostMemory.h"
 #include "Light/ChannelReduction.h"
+#include "Light/LeftOut.h"
 #include "Photons/Importance/PilotGathering.h"
 #include "Photons/Marching/MarchLaunch.h"
 #include "Photons/Marching/PhotonPaths.h"
+#include "Photons/Marching/PhotonSumsShared.h"
 
 #include <algorithm>
 #include <cmath>

@@ -1,12 +1,10 @@
 #pragma once
 
-#include "Photons/Photons.h"
-
-#include "Photons/Importance/PilotLight.h"
-
 #include "Device/Buffer.h"
 #include "Device/Monitor.h"
 #include "Medium/Medium.h"
+#include "Photons/Importance/PilotLight.h"
+#include "Photons/Photons.h"
 
 #include <memory>
 
@@ -25,14 +23,14 @@ namespace tyndall
 /// Sums are in 64-bit fixed point (Eqs. (35), (99)) and do not depend on the order of photons or threads. Entered =
 /// absorbed + scattered + escaped + left over to 1e-6.
 ///
-/// A constant index compiles neither integrator nor interpolation; all photons of one colour in a grey medium need one
-/// channel.
+/// Where the index is constant, kernels have neither integrator nor interpolation; where all photons have one colour
+/// and the medium is grey, they have one channel.
 class PhotonMarcher
 {
 public:
-  /// @param ior     refractive index, one component a voxel; null values: 1 everywhere
-  /// @param levels  octree level of each voxel (0: itself, k: in a node of 2^k voxels an edge), which path steps may
-  ///                take whole; null: step by step. Read in the constructor only, as all arrays are.
+  /// @param ior     refractive index, one component per voxel; null values: 1 everywhere
+  /// @param levels  octree level of each voxel (0: itself, k: in a node of 2^k voxels per edge), which a step of
+  ///                a path may cross whole; null: step by step. As all arrays, read in the constructor only.
   /// @throws InvalidInput for a medium, an index or a level that is not valid (names the voxel); DeviceError
   PhotonMarcher(Device& device, const Medium& medium, const Field& ior, const MarchSettings& settings = {},
     const std::uint8_t* levels = nullptr);
@@ -63,8 +61,8 @@ private:
   std::unique_ptr<Implementation> Inside;
 };
 
-/// `count` different numbers of 0 ... size - 1, ascending, one of each of as many equal stretches. Where in a stretch
-/// goes by the golden ratio: equal steps would fall in with the powers of two by which photons' starting places are
-/// made, and all of those chosen start along one line.
+/// `count` different numbers from 0 to size - 1, ascending, one from each of `count` equal stretches. Its place in the
+/// stretch follows the golden ratio: with equal steps, which are in phase with the powers of two that photons' starting
+/// places are made of, all chosen photons would start along one line.
 std::vector<std::size_t> ChooseEvenly(std::size_t size, std::size_t count);
 }

@@ -144,10 +144,10 @@ std::vector<std::uint32_t> ByBatch(const std::vector<std::uint32_t>& order, cons
 
 void CheckBatch(const Photon& photon, std::size_t number)
 {
-  if (photon.batch < 0 || photon.batch >= BatchesAtMost)
+  if (photon.batch < 0 || photon.batch >= MarchedBatchesAtMost)
   {
     throw InvalidInput("Photon " + std::to_string(number) + " is of batch " + std::to_string(photon.batch) +
-      "; there are 0 to " + std::to_string(BatchesAtMost - 1) + ".");
+      "; there are 0 to " + std::to_string(MarchedBatchesAtMost - 1) + ".");
   }
 }
 
@@ -160,6 +160,82 @@ double Brightness(const std::vector<Photon>& photons)
     sum += double(photon.power[0]) + photon.power[1] + photon.power[2];
   }
   return sum;
+}
+
+/// Photons that meet the grid.
+struct MetPhotons
+{
+  std::vector<Ray> rays;
+  std::vector<std::size_t> numbers; ///< which of the photons given each is
+};
+
+/// @param batches  whether they are asked for, and checked
+MetPhotons ThoseThatMeet(const Grid& grid, const std::vector<Photon>& photons, bool batches)
+{
+  MetPhotons met;
+  met.rays.reserve(photons.size());
+  met.numbers.reserve(photons.size());
+  for (std::size_t i = 0; i < photons.size(); ++i)
+  {
+    CheckPhoton(photons[i], i);
+    if (batches)
+    {
+      CheckBatch(photons[i], i);
+    }
+    std::array<double, 3> position, direction;
+    for (int a = 0; a < 3; ++a)
+    {
+      position[a] = (photons[i].position[a] - grid.origin[a]) / grid.spacing[a];
+      direction[a] = photons[i].direction[a] / grid.spacing[a];
+    }
+    if (MoveOnto(grid, position, direction))
+    {
+      met.rays.push_back(RayOf(grid, photons[i], position));
+      met.numbers.push_back(i);
+    }
+  }
+  return met;
+}
+
+/// Colour, channels and unit of power of all photons.
+PackedPhotons WithUnits(const std::vector<Photon>& photons, bool coloured, double depositsAtMost)
+{
+  PackedPhotons packed;
+  const bool oneColour = HaveOneColour(photons, packed.colour);
+  packed.grey = oneColour && packed.colour == Rgb{ 1.0, 1.0, 1.0 };
+  packed.channels = oneColour && !coloured ? 1 : 3;
+  packed.colour = packed.channels == 3 ? Rgb{ 1.0, 1.0, 1.0 } : packed.colour;
+  const double total = Brightness(photons);
+  packed.unit = total > 0.0 ? std::exp2(std::ceil(std::log2(total * depositsAtMost / 0x1p62))) : 1.0;
+  return packed;
+}
+
+/// Put the photons into `packed`, in this order, and add up what enters.
+void Fill(PackedPhotons& packed, const std::vector<Photon>& photons, const MetPhotons& met,
+  const std::vector<std::uint32_t>& order)
+{
+  packed.numbers.resize(met.rays.size());
+  packed.values.resize(met.rays.size() * packed.FloatsEach());
+  float* values = packed.values.data();
+  std::array<std::int64_t, 3> entered = {};
+  for (std::size_t i = 0; i < met.rays.size(); ++i)
+  {
+    const Ray& ray = met.rays[order[i]];
+    packed.numbers[i] = met.numbers[order[i]];
+    values = std::copy(ray.position.begin(), ray.position.end(), values);
+    values = std::copy(ray.direction.begin(), ray.direction.end(), values);
+    const std::array<float, 3>& power = photons[packed.numbers[i]].power;
+    for (int c = 0; c < packed.channels; ++c)
+    {
+      const double watts = packed.channels == 3 ? power[c] : (double(power[0]) + power[1] + power[2]) / 3.0;
+      *values = static_cast<float>(watts / packed.unit);
+      entered[c] += WholeUnits(*values++);
+    }
+  }
+  for (int c = 0; c < 3; ++c)
+  {
+    packed.entered[c] = static_cast<double>(entered[c]) * packed.unit;
+  }
 }
 }
 
@@ -214,68 +290,16 @@ std::size_t PackedPhotons::LargestBatch() const
 PackedPhotons Pack(
   const std::vector<Photon>& photons, const Grid& grid, bool coloured, double depositsAtMost, bool batches)
 {
-  PackedPhotons packed;
-  const bool oneColour = HaveOneColour(photons, packed.colour);
-  packed.grey = oneColour && packed.colour == Rgb{ 1.0, 1.0, 1.0 };
-  packed.channels = oneColour && !coloured ? 1 : 3;
-  packed.colour = packed.channels == 3 ? Rgb{ 1.0, 1.0, 1.0 } : packed.colour;
-  const double total = Brightness(photons);
-  packed.unit = total > 0.0 ? std::exp2(std::ceil(std::log2(total * depositsAtMost / 0x1p62))) : 1.0;
-
-  std::vector<Ray> rays;
-  std::vector<std::size_t> numbers;
-  rays.reserve(photons.size());
-  numbers.reserve(photons.size());
-  for (std::size_t i = 0; i < photons.size(); ++i)
-  {
-    CheckPhoton(photons[i], i);
-    if (batches)
-    {
-      CheckBatch(photons[i], i);
-    }
-    std::array<double, 3> position, direction;
-    for (int a = 0; a < 3; ++a)
-    {
-      position[a] = (photons[i].position[a] - grid.origin[a]) / grid.spacing[a];
-      direction[a] = photons[i].direction[a] / grid.spacing[a];
-    }
-    if (!MoveOnto(grid, position, direction))
-    {
-      ++packed.missed;
-      continue;
-    }
-    rays.push_back(RayOf(grid, photons[i], position));
-    numbers.push_back(i);
-  }
-
-  std::vector<std::uint32_t> order = Order(rays);
-  packed.batchBegin = { 0, static_cast<int>(rays.size()) };
+  PackedPhotons packed = WithUnits(photons, coloured, depositsAtMost);
+  const MetPhotons met = ThoseThatMeet(grid, photons, batches);
+  packed.missed = photons.size() - met.numbers.size();
+  std::vector<std::uint32_t> order = Order(met.rays);
+  packed.batchBegin = { 0, static_cast<int>(met.rays.size()) };
   if (batches && BatchesOf(photons) > 1)
   {
-    order = ByBatch(order, photons, numbers, packed.batchBegin);
+    order = ByBatch(order, photons, met.numbers, packed.batchBegin);
   }
-  packed.numbers.resize(rays.size());
-  packed.values.resize(rays.size() * packed.FloatsEach());
-  float* values = packed.values.data();
-  std::array<std::int64_t, 3> entered = {};
-  for (std::size_t i = 0; i < rays.size(); ++i)
-  {
-    const Ray& ray = rays[order[i]];
-    packed.numbers[i] = numbers[order[i]];
-    values = std::copy(ray.position.begin(), ray.position.end(), values);
-    values = std::copy(ray.direction.begin(), ray.direction.end(), values);
-    const std::array<float, 3>& power = photons[packed.numbers[i]].power;
-    for (int c = 0; c < packed.channels; ++c)
-    {
-      const double watts = packed.channels == 3 ? power[c] : (double(power[0]) + power[1] + power[2]) / 3.0;
-      *values = static_cast<float>(watts / packed.unit);
-      entered[c] += WholeUnits(*values++);
-    }
-  }
-  for (int c = 0; c < 3; ++c)
-  {
-    packed.entered[c] = static_cast<double>(entered[c]) * packed.unit;
-  }
+  Fill(packed, photons, met, order);
   return packed;
 }
 }

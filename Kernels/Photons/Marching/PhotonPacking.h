@@ -1,12 +1,12 @@
 #pragma once
 
-#include "Photons/Photons.h"
-
 #include "Medium/Grid.h"
+#include "Photons/Photons.h"
 
 namespace tyndall
 {
-/// Photons as the kernels read them: on the volume, in voxels, near ones next to each other.
+/// Photons as the kernels read them: in the volume or where they enter it, in voxels, neighbours in space next to each
+/// other.
 struct PackedPhotons
 {
   int channels = 1;                 ///< 1 where all photons have the same colour and one is enough, else 3
@@ -24,8 +24,6 @@ struct PackedPhotons
   int Batches() const { return static_cast<int>(this->batchBegin.size()) - 1; }
   std::size_t LargestBatch() const; ///< photons
 };
-
-constexpr int BatchesAtMost = 64;
 
 /// The largest batch that photons are of, and one.
 int BatchesOf(const std::vector<Photon>& photons);

@@ -4,7 +4,7 @@
 
 namespace tyndall
 {
-/// PhotonMarcher::Paths.
+/// What PhotonMarcher::Paths does.
 std::vector<PhotonPath> TracePaths(
   const MarchMedium& medium, const std::vector<Photon>& photons, const std::vector<std::size_t>& chosen);
 }

@@ -62,7 +62,7 @@ static void take_batch(__global long* record, ulong copyStride, int batch, long*
 
 // Row by row: the copies of the sums are added up, and are zero afterwards.
 //   fluence         COLOURS a voxel
-//   mean_direction  3 a voxel: sum of power times direction over sum of power, no longer than 1; 0 where it is dark
+//   mean_direction  3 per voxel: sum of power times direction over sum of power, no longer than 1; 0 where it is dark
 //   photon_count    of a voxel; photon_weight: their mean weight, 0 where there is none
 //   batch_fluence   [batch][voxel][COLOURS] of each batch as if it was all the light
 //   taken           [row][absorbed, scattered][CHANNELS] units of power

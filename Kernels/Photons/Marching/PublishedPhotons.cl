@@ -1,6 +1,6 @@
-// Photon marching as published: Pfeuti 2009, section 3.1.5, after Sun et al. 2008. One work-item a photon; explicit
+// Photon marching as published: Pfeuti 2009, section 3.1.5, after Sun et al. 2008. One work-item per photon; explicit
 // Euler (Eq. 2.10, 2.11); the line of each step is rasterised and every voxel of it gets the photon's power, however
-// long the path in it is; colour (RGBe, Ward 1991) and mean direction (10 bits a component) share 64 bits, which
+// long the path in it is; colour (RGBe, Ward 1991) and mean direction (10 bits per component) share 64 bits, which
 // compare-and-swap replaces, with ten tries. The host gives
 //   BENDS   1: the index varies
 //   LEVELS  1: there are octree levels
@@ -242,7 +242,7 @@ __kernel void march_published(PublishedMarchInfo info, const __global float4* in
   end->power[2] = photon.power.z;
 }
 
-// fluence  3 a voxel, W / length^2;  direction  3 a voxel
+// fluence  3 per voxel, W / length^2;  direction  3 per voxel
 __kernel void unpack_light(
   float fluence_of_unit, const __global ulong* packed, __global float* fluence, __global float* direction)
 {

@@ -1,14 +1,12 @@
 #include "Photons/Marching/PublishedPhotons.h"
 
-#include "Device/Defines.h"
-#include "Photons/Marching/PublishedPhotonsShared.h"
-
-#include "Photons/Marching/PhotonPacking.h"
-#include "TyndallKernelSources.h"
-
 #include "Device/Buffer.h"
 #include "Device/Clock.h"
+#include "Device/Defines.h"
+#include "Photons/Marching/PhotonPacking.h"
+#include "Photons/Marching/PublishedPhotonsShared.h"
 #include "Refraction/Index/IndexRange.h"
+#include "TyndallKernelSources.h"
 
 #include <algorithm>
 #include <cmath>
@@ -18,48 +16,123 @@ namespace tyndall
 {
 namespace
 {
-constexpr int RoundsAtMost = 64;
+constexpr int RoundsAtMost = 64; ///< of a photon through the volume, in sums of its edges
 constexpr std::size_t PhotonsPerLaunch = 1 << 16;
 
+int Components(const Field& field)
+{
+  return field.values ? field.components : 0;
+}
+
+/// Steps of a photon at most, each of which deposits once.
+int StepLimit(const Grid& grid)
+{
+  return RoundsAtMost * (grid.size[0] + grid.size[1] + grid.size[2]);
+}
+
+/// A medium on the device, and the light of the photons that were marched through it.
 class PublishedMarch
 {
 public:
-  PublishedMarch(Device& device, const Medium& medium, const PublishedSettings& settings, bool bends, bool levels)
+  PublishedMarch(Device& device, const Medium& medium, const Field& ior, const std::uint8_t* levels, int tries)
     : TheDevice(device)
     , TheMedium(medium)
     , Voxels(medium.grid.VoxelCount())
-    , Options(Define("BENDS", bends) + Define("LEVELS", levels) + Define("TRIES", settings.tries) +
+    , Bends(IndexVaries(ior, medium.grid))
+    , Options(Define("BENDS", this->Bends) + Define("LEVELS", levels != nullptr) + Define("TRIES", tries) +
         Define("A_CHANNELS", Components(medium.sigma_a)) + Define("S_CHANNELS", Components(medium.sigma_s)))
+    , Info(this->Describe())
+    , Index(this->FindIndex(ior))
+    , SigmaA(this->Upload(medium.sigma_a))
+    , SigmaS(this->Upload(medium.sigma_s))
+    , Nodes(levels ? Buffer<cl_uchar>(device, levels, this->Voxels, "octree levels")
+                   : Buffer<cl_uchar>(device, 0, "octree levels"))
   {
-    int edges = 0;
-    for (int a = 0; a < 3; ++a)
-    {
-      this->Info.size[a] = medium.grid.size[a];
-      this->Info.spacing[a] = static_cast<float>(medium.grid.spacing[a]);
-      edges += medium.grid.size[a];
-    }
-    this->Info.stepLimit = RoundsAtMost * edges;
   }
 
-  int DepositsAtMost() const { return this->Info.stepLimit; }
+  /// @return seconds that it took, from photons on the device to light there
+  double March(const PackedPhotons& packed, const Monitor& monitor)
+  {
+    const Buffer<float> values(this->TheDevice, packed.values, "photons");
+    this->Ends = Buffer<PublishedPhotonEnd>(this->TheDevice, packed.Count(), "ends of photons");
+    Buffer<cl_ulong> light(this->TheDevice, this->Voxels, "packed light");
+    this->Fluence = Buffer<float>(this->TheDevice, 3 * this->Voxels, "fluence");
+    this->Direction = Buffer<float>(this->TheDevice, 3 * this->Voxels, "mean direction");
+    light.Fill(0);
+    this->TheDevice.Finish();
+
+    const double start = ClockSeconds();
+    cl::Kernel march = this->Kernel("march_published");
+    for (std::size_t first = 0; first < packed.Count(); first += PhotonsPerLaunch)
+    {
+      const std::size_t count = std::min(PhotonsPerLaunch, packed.Count() - first);
+      With(march, this->Info, this->Index, this->SigmaA, this->SigmaS, this->Nodes, values, cl_int(first), this->Ends,
+        light);
+      this->Launch(march, cl::NDRange(count));
+      this->TheDevice.Finish();
+      Report(monitor, static_cast<double>(first + count) / packed.Count());
+    }
+    const double volume = this->TheMedium.grid.VoxelVolume();
+    cl::Kernel unpack = this->Kernel("unpack_light");
+    With(unpack, static_cast<float>(packed.unit * std::cbrt(volume) / volume), light, this->Fluence, this->Direction);
+    this->Launch(unpack, cl::NDRange(this->Voxels));
+    this->TheDevice.Finish();
+    return ClockSeconds() - start;
+  }
+
+  void Smooth()
+  {
+    this->Smooth(this->Fluence);
+    this->Smooth(this->Direction);
+  }
+
+  /// W of all light in the voxels, by extinction where `extinguished`.
+  Rgb Total(const std::vector<float>& fluence, bool scattered, bool extinguished) const
+  {
+    const double volume = this->TheMedium.grid.VoxelVolume();
+    Rgb sum = {};
+    for (std::size_t i = 0; i < fluence.size(); ++i)
+    {
+      const int c = static_cast<int>(i % 3);
+      const double a = scattered ? 0.0 : this->TheMedium.sigma_a.At(i / 3, c);
+      sum[c] +=
+        fluence[i] * (extinguished ? volume * (a + this->TheMedium.sigma_s.At(i / 3, c)) : volume / std::cbrt(volume));
+    }
+    return sum;
+  }
+
+  std::vector<float> ReadFluence() const { return this->Fluence.Read(); }
+  std::vector<float> ReadDirection() const { return this->Direction.Read(); }
+  std::vector<PublishedPhotonEnd> ReadEnds() const { return this->Ends.Read(); }
+
+private:
+  PublishedMarchInfo Describe() const
+  {
+    const Grid& grid = this->TheMedium.grid;
+    PublishedMarchInfo info = {};
+    for (int a = 0; a < 3; ++a)
+    {
+      info.size[a] = grid.size[a];
+      info.spacing[a] = static_cast<float>(grid.spacing[a]);
+    }
+    info.stepLimit = StepLimit(grid);
+    return info;
+  }
 
   cl::Kernel Kernel(const char* name)
   {
     return this->TheDevice.Kernel(name, kernel_source::PublishedPhotons, this->Options);
   }
 
-  Buffer<cl_float4> Index(const Field& ior, bool bends)
+  void Launch(const cl::Kernel& kernel, const cl::NDRange& range)
   {
-    Buffer<cl_float4> index(this->TheDevice, bends ? this->Voxels : 0, "index and gradient");
-    if (bends)
-    {
-      const Buffer<float> n(this->TheDevice, ior.values, this->Voxels, "ior");
-      cl::Kernel kernel = this->Kernel("published_index");
-      With(kernel, this->Info, n, index);
-      this->Launch(kernel, this->Range());
-      this->TheDevice.Finish();
-    }
-    return index;
+    this->TheDevice.Queue().enqueueNDRangeKernel(kernel, cl::NullRange, range, cl::NullRange);
+  }
+
+  cl::NDRange Range() const
+  {
+    return { static_cast<std::size_t>(this->Info.size[0]), static_cast<std::size_t>(this->Info.size[1]),
+      static_cast<std::size_t>(this->Info.size[2]) };
   }
 
   Buffer<float> Upload(const Field& field)
@@ -69,15 +142,19 @@ public:
                      : Buffer<float>(this->TheDevice, 0, "a coefficient");
   }
 
-  cl::NDRange Range() const
+  /// Index and gradient; empty where rays are straight.
+  Buffer<cl_float4> FindIndex(const Field& ior)
   {
-    return { static_cast<std::size_t>(this->Info.size[0]), static_cast<std::size_t>(this->Info.size[1]),
-      static_cast<std::size_t>(this->Info.size[2]) };
-  }
-
-  void Launch(const cl::Kernel& kernel, const cl::NDRange& range)
-  {
-    this->TheDevice.Queue().enqueueNDRangeKernel(kernel, cl::NullRange, range, cl::NullRange);
+    Buffer<cl_float4> index(this->TheDevice, this->Bends ? this->Voxels : 0, "index and gradient");
+    if (this->Bends)
+    {
+      const Buffer<float> n(this->TheDevice, ior.values, this->Voxels, "ior");
+      cl::Kernel kernel = this->Kernel("published_index");
+      With(kernel, this->Info, n, index);
+      this->Launch(kernel, this->Range());
+      this->TheDevice.Finish();
+    }
+    return index;
   }
 
   void Smooth(Buffer<float>& values)
@@ -93,31 +170,17 @@ public:
     this->TheDevice.Finish();
   }
 
-  /// W of all light in the voxels, by extinction where `extinguished`.
-  Rgb Total(const std::vector<float>& fluence, bool scattered, bool extinguished) const
-  {
-    const Grid& grid = this->TheMedium.grid;
-    const double volume = grid.spacing[0] * grid.spacing[1] * grid.spacing[2];
-    Rgb sum = {};
-    for (std::size_t i = 0; i < fluence.size(); ++i)
-    {
-      const int c = static_cast<int>(i % 3);
-      const double a = scattered ? 0.0 : this->TheMedium.sigma_a.At(i / 3, c);
-      sum[c] +=
-        fluence[i] * (extinguished ? volume * (a + this->TheMedium.sigma_s.At(i / 3, c)) : volume / std::cbrt(volume));
-    }
-    return sum;
-  }
-
-  static int Components(const Field& field) { return field.values ? field.components : 0; }
-
-  PublishedMarchInfo Info = {};
-
-private:
   Device& TheDevice;
   const Medium& TheMedium;
   std::size_t Voxels;
+  bool Bends;
   std::string Options;
+  PublishedMarchInfo Info;
+  Buffer<cl_float4> Index;
+  Buffer<float> SigmaA, SigmaS;
+  Buffer<cl_uchar> Nodes;
+  Buffer<PublishedPhotonEnd> Ends;
+  Buffer<float> Fluence, Direction; ///< 3 per voxel
 };
 
 void Tally(const std::vector<PublishedPhotonEnd>& ends, double unit, PhotonLight& result, PackingLoss& loss)
@@ -142,11 +205,34 @@ void Tally(const std::vector<PublishedPhotonEnd>& ends, double unit, PhotonLight
 }
 
 /// A typical photon's power, W, as a power of two: colours in units of it are far from the ends of what RGBe holds.
-double UnitOf(const PackedPhotons& packed)
+double TypicalPower(const PackedPhotons& packed)
 {
   const double mean =
     (packed.entered[0] + packed.entered[1] + packed.entered[2]) / (3.0 * std::max<std::size_t>(packed.Count(), 1));
   return mean > 0.0 ? std::exp2(std::round(std::log2(mean))) : 1.0;
+}
+
+/// Photons of three channels each, in units of a typical one's power.
+PackedPhotons PackInTypicalPowers(const std::vector<Photon>& photons, const Grid& grid)
+{
+  PackedPhotons packed = Pack(photons, grid, true, StepLimit(grid));
+  const double unit = TypicalPower(packed);
+  for (std::size_t i = 0; i < packed.values.size(); ++i)
+  {
+    packed.values[i] *= i % 9 >= 6 ? static_cast<float>(packed.unit / unit) : 1.0f;
+  }
+  packed.unit = unit;
+  return packed;
+}
+
+void RequireAtomics(const Device& device)
+{
+  if (!device.HasExtension("cl_khr_int64_base_atomics"))
+  {
+    throw DeviceError(device.Name() +
+      " has no 64-bit atomics (cl_khr_int64_base_atomics), which the published scheme needs. "
+      "Choose the conservative scheme, or another device.");
+  }
 }
 }
 
@@ -163,69 +249,28 @@ PhotonLight MarchPublished(Device& device, const Medium& medium, const Field& io
   Check(medium);
   CheckIndex(ior, medium.grid);
   CheckLevels(levels, medium.grid);
-  if (!device.HasExtension("cl_khr_int64_base_atomics"))
-  {
-    throw DeviceError(device.Name() +
-      " has no 64-bit atomics (cl_khr_int64_base_atomics), which the published scheme needs. "
-      "Choose the conservative scheme, or another device.");
-  }
-  const bool bends = IndexVaries(ior, medium.grid);
-  PublishedMarch march(device, medium, settings, bends, levels != nullptr);
-  PackedPhotons packed = Pack(photons, medium.grid, true, march.DepositsAtMost());
-  const double unit = UnitOf(packed);
-  for (std::size_t i = 0; i < packed.values.size(); ++i)
-  {
-    packed.values[i] *= i % 9 >= 6 ? static_cast<float>(packed.unit / unit) : 1.0f;
-  }
-
-  const Buffer<cl_float4> index = march.Index(ior, bends);
-  const Buffer<float> sigma_a = march.Upload(medium.sigma_a), sigma_s = march.Upload(medium.sigma_s);
-  const Buffer<cl_uchar> nodes = levels ? Buffer<cl_uchar>(device, levels, medium.grid.VoxelCount(), "octree levels")
-                                        : Buffer<cl_uchar>(device, 0, "octree levels");
-  const Buffer<float> values(device, packed.values, "photons");
-  const Buffer<PublishedPhotonEnd> ends(device, packed.Count(), "ends of photons");
-  Buffer<cl_ulong> light(device, medium.grid.VoxelCount(), "packed light");
-  Buffer<float> fluence(device, 3 * medium.grid.VoxelCount(), "fluence");
-  Buffer<float> direction(device, 3 * medium.grid.VoxelCount(), "mean direction");
-  light.Fill(0);
-  device.Finish();
+  RequireAtomics(device);
+  const PackedPhotons packed = PackInTypicalPowers(photons, medium.grid);
+  PublishedMarch march(device, medium, ior, levels, settings.tries);
 
   PhotonLight result;
-  result.secondsMarching = -ClockSeconds();
-  cl::Kernel kernel = march.Kernel("march_published");
-  for (std::size_t first = 0; first < packed.Count(); first += PhotonsPerLaunch)
-  {
-    const std::size_t count = std::min(PhotonsPerLaunch, packed.Count() - first);
-    With(kernel, march.Info, index, sigma_a, sigma_s, nodes, values, cl_int(first), ends, light);
-    march.Launch(kernel, cl::NDRange(count));
-    device.Finish();
-    Report(monitor, static_cast<double>(first + count) / packed.Count());
-  }
-  const std::array<double, 3>& h = medium.grid.spacing;
-  const double volume = h[0] * h[1] * h[2];
-  cl::Kernel unpack = march.Kernel("unpack_light");
-  With(unpack, static_cast<float>(unit * std::cbrt(volume) / volume), light, fluence, direction);
-  march.Launch(unpack, cl::NDRange(medium.grid.VoxelCount()));
-  device.Finish();
-  result.secondsMarching += ClockSeconds();
-
   PackingLoss packing;
-  packing.kept = march.Total(fluence.Read(), false, false);
+  result.secondsMarching = march.March(packed, monitor);
+  packing.kept = march.Total(march.ReadFluence(), false, false);
   if (settings.smooth)
   {
-    march.Smooth(fluence);
-    march.Smooth(direction);
+    march.Smooth();
   }
   result.light.channels = 3;
   result.light.device = device.Name();
-  result.light.fluence = fluence.Read();
-  result.meanDirection = direction.Read();
+  result.light.fluence = march.ReadFluence();
+  result.meanDirection = march.ReadDirection();
   result.missed = packed.missed;
   result.light.balance.entered = packed.entered;
   result.light.balance.absorbed = march.Total(result.light.fluence, false, true);
   result.scattered = march.Total(result.light.fluence, true, true);
   result.light.leftOut = { "scattered light: fluence is what comes from the lights without being scattered" };
-  Tally(ends.Read(), unit, result, packing);
+  Tally(march.ReadEnds(), packed.unit, result, packing);
   if (loss)
   {
     *loss = packing;

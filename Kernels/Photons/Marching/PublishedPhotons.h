@@ -1,10 +1,9 @@
 #pragma once
 
-#include "Photons/Photons.h"
-
 #include "Device/Device.h"
 #include "Device/Monitor.h"
 #include "Medium/Medium.h"
+#include "Photons/Photons.h"
 
 namespace tyndall
 {

@@ -1,6 +1,7 @@
 #include "Refraction/Index/IndexField.h"
 
 #include "Device/Defines.h"
+#include "Device/Sizes.h"
 #include "Numerics/PyramidLayout.h"
 #include "Numerics/Vectors.h"
 #include "TyndallKernelSources.h"
@@ -37,7 +38,7 @@ std::vector<float> GaussianWeights(int filterSize)
 
 cl::NDRange Rounded(std::size_t x, std::size_t y, std::size_t z, std::size_t groupX, std::size_t groupY)
 {
-  return cl::NDRange((x + groupX - 1) / groupX * groupX, (y + groupY - 1) / groupY * groupY, z);
+  return cl::NDRange(RoundUp(x, groupX), RoundUp(y, groupY), z);
 }
 }
 
@@ -57,7 +58,7 @@ void SmoothIndex(Device& device, const Grid& grid, int filterSize, Buffer<float>
   {
     return;
   }
-  const int width = device.FloatVectorWidth() > 1 ? 8 : 1;
+  const int width = device.KernelWidth(8, 8);
   const std::string options = Define("RADIUS", filterSize / 2) + Define("REAL_WIDTH", width);
   cl::Kernel kernel = device.Kernel("smooth_index", kernel_source::IndexField, options);
   const Buffer<float> weights(device, GaussianWeights(filterSize), "the filter");
@@ -69,7 +70,7 @@ void SmoothIndex(Device& device, const Grid& grid, int filterSize, Buffer<float>
   {
     With(kernel, Int4(size), axis, weights, index, smooth);
     device.Queue().enqueueNDRangeKernel(kernel, cl::NullRange,
-      Rounded((size[0] + width - 1) / width, size[1], size[2], groupX, groupY), cl::NDRange(groupX, groupY, 1));
+      Rounded(PartsOf(size[0], width), size[1], size[2], groupX, groupY), cl::NDRange(groupX, groupY, 1));
     index.Swap(smooth);
   }
   device.Finish();

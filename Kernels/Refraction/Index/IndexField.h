@@ -11,7 +11,7 @@ namespace tyndall
 /// @throws InvalidInput where a filter's width is even, or not from 1 to 65
 void CheckFilterSize(int filterSize);
 
-/// Smooths a refractive index with a Gaussian of `filterSize` voxels an edge and a standard deviation of a sixth of
+/// Smooths a refractive index with a Gaussian of `filterSize` voxels per edge and a standard deviation of a sixth of
 /// that (Pfeuti 2009, section 3.1.2: 9 and 9/6), one axis after the other; beyond the grid its outermost voxels go on.
 /// Where the index is even as far as the filter reaches, it stays as it is to the last bit.
 ///
@@ -19,7 +19,7 @@ void CheckFilterSize(int filterSize);
 /// @throws DeviceError  if a second array of the index does not fit the device
 void SmoothIndex(Device& device, const Grid& grid, int filterSize, Buffer<float>& index);
 
-/// grad n, 1/length, x fastest with three components a voxel: central differences, one-sided in the outermost voxels.
+/// grad n, 1/length, x fastest with three components per voxel: central differences, one-sided in the outermost voxels.
 /// The device holds a few layers of it at a time.
 std::vector<float> IndexGradient(
   Device& device, const Grid& grid, const Buffer<float>& index, const Monitor& monitor = {});

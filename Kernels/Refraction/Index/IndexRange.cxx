@@ -13,8 +13,8 @@ namespace tyndall
 namespace
 {
 constexpr float Rounding = 1e-6f; ///< relative
-constexpr float Least = 1e-6f;    ///< squares of these, and their differences, leave room in float
-constexpr float Largest = 1e6f;
+constexpr float Least = static_cast<float>(LeastIndex);
+constexpr float Largest = static_cast<float>(LargestIndex);
 }
 
 void CheckIndex(const Field& ior, const Grid& grid)

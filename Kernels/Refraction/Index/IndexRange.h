@@ -6,7 +6,12 @@
 
 namespace tyndall
 {
-/// @throws InvalidInput where the index is not finite and positive, 1e-6 to 1e6, naming the first such voxel
+/// Of a refractive index: squares of these, and their differences, leave room in float.
+constexpr double LeastIndex = 1e-6;
+constexpr double LargestIndex = 1e6;
+
+/// @throws InvalidInput where the index is not finite and positive, LeastIndex to LargestIndex, naming the first such
+///   voxel
 void CheckIndex(const Field& ior, const Grid& grid);
 
 /// Least and largest index; null values are 1 everywhere.
@@ -23,7 +28,7 @@ IndexRange IndexRangeOf(const Field& ior, const Grid& grid);
 bool IndexVaries(const Field& ior, const Grid& grid);
 
 /// @param levels  a voxel, or null
-/// @throws InvalidInput where an octree level is above that of the one node that holds the grid, naming the first such
-/// voxel
+/// @throws InvalidInput where an octree level is above that of the one node that holds the grid, naming the first
+/// such voxel
 void CheckLevels(const std::uint8_t* levels, const Grid& grid);
 }

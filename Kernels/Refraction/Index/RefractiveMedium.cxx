@@ -1,14 +1,14 @@
 #include "Refraction/Index/RefractiveMedium.h"
 
 #include "Device/Defines.h"
-#include "Refraction/Voxelization/MaterialsShared.h"
-
 #include "Device/HostMemory.h"
 #include "Device/Sizes.h"
 #include "Medium/Medium.h"
 #include "Numerics/NumberText.h"
 #include "Numerics/Vectors.h"
 #include "Refraction/Index/IndexField.h"
+#include "Refraction/Index/IndexRange.h"
+#include "Refraction/Voxelization/MaterialsShared.h"
 #include "Refraction/Voxelization/MeshChecks.h"
 #include "TyndallKernelSources.h"
 
@@ -23,35 +23,24 @@ namespace
 {
 constexpr std::size_t WorkGroup = 256;
 constexpr double ShortestEdge = 1e-18; ///< of a voxel, length
-constexpr double LeastIndex = 1e-6;    ///< as in CheckIndex
-constexpr double LargestIndex = 1e6;
-constexpr double LargestExtinction = 1e37; ///< as in Check of a medium
-
-void Demand(bool holds, const std::string& what)
-{
-  if (!holds)
-  {
-    throw InvalidInput(what);
-  }
-}
 }
 
 void Check(const Material& material, const std::string& name)
 {
-  Demand(material.n >= LeastIndex && material.n <= LargestIndex,
+  Require(material.n >= LeastIndex && material.n <= LargestIndex,
     name + " has the refractive index " + Text("%.6g", material.n) +
       "; it must be finite and above 0, from 1e-6 to 1e6.");
   for (int c = 0; c < 3; ++c)
   {
     const double least = std::min(material.sigma_a[c], material.sigma_s[c]);
     const double sum = material.sigma_a[c] + material.sigma_s[c];
-    Demand(least >= 0.0 && sum <= LargestExtinction,
+    Require(least >= 0.0 && sum <= LargestExtinction,
       name +
         " has an absorption or scattering coefficient that is negative or not finite, or both add up to more than "
         "1e37: " +
         Text("%.6g", material.sigma_a[c]) + " and " + Text("%.6g", material.sigma_s[c]) + ".");
   }
-  Demand(std::abs(material.g) < 1.0,
+  Require(std::abs(material.g) < 1.0,
     name + " has the mean cosine " + std::to_string(material.g) + "; it must lie between -1 and 1.");
 }
 
@@ -59,13 +48,13 @@ namespace
 {
 void CheckPerturbation(const Perturbation& perturbation, const std::vector<Solid>& solids)
 {
-  Demand(perturbation.size > 0.0 && std::isfinite(perturbation.size),
+  Require(perturbation.size > 0.0 && std::isfinite(perturbation.size),
     "The noise's size is " + std::to_string(perturbation.size) + "; it must be a positive length.");
-  Demand(perturbation.scattering >= 0.0 && perturbation.scattering <= 1.0,
+  Require(perturbation.scattering >= 0.0 && perturbation.scattering <= 1.0,
     "The noise of scattering is " + std::to_string(perturbation.scattering) + "; it must lie in [0, 1].");
   for (const Solid& solid : solids)
   {
-    Demand(perturbation.index >= 0.0 && perturbation.index < solid.material.n,
+    Require(perturbation.index >= 0.0 && perturbation.index < solid.material.n,
       "The noise of the index is " + std::to_string(perturbation.index) +
         "; it must not be negative, and be less than " + std::to_string(solid.material.n) +
         ", the refractive index of " + solid.name + ".");
@@ -78,7 +67,7 @@ void CheckSpacing(const Grid& grid)
   for (int axis = 0; axis < 3; ++axis)
   {
     const double edge = grid.spacing[axis];
-    Demand(edge >= ShortestEdge && edge <= 1.0 / ShortestEdge,
+    Require(edge >= ShortestEdge && edge <= 1.0 / ShortestEdge,
       "The voxels' edge along " + std::string(1, "xyz"[axis]) + " is " + Text("%.6g", edge) +
         "; it must be from 1e-18 to 1e18, or fluence (W/length^2) is beyond single precision. Scale the mesh, "
         "and the box with it: use another unit of length.");
@@ -93,7 +82,7 @@ void CheckSettings(const RefractiveMediumSettings& settings, const std::vector<S
   CheckSpacing(settings.grid);
   Check(settings.voxelization);
   CheckFilterSize(settings.filterSize);
-  Demand(!solids.empty(), "There is no mesh.");
+  Require(!solids.empty(), "There is no mesh.");
   Check(settings.outside, "The outside");
   for (const Solid& solid : solids)
   {
@@ -392,13 +381,13 @@ Grid GridAround(const std::vector<Solid>& solids, const std::array<int, 3>& size
       }
     }
     longest = std::max(longest, high[axis] - low[axis]);
-    Demand(size[axis] >= 1,
+    Require(size[axis] >= 1,
       "The grid is to have " + std::to_string(size[axis]) + " voxels along " + std::string(1, "xyz"[axis]) +
         "; it needs at least one.");
   }
-  Demand(longest > 0.0, "There is no mesh, or none with an extent, to put a box around." + WithoutExtent(solids));
-  Demand(std::isfinite(longest), "The meshes reach further than a number can say. Scale them.");
-  Demand(margin >= 0.0 && std::isfinite(margin),
+  Require(longest > 0.0, "There is no mesh, or none with an extent, to put a box around." + WithoutExtent(solids));
+  Require(std::isfinite(longest), "The meshes reach further than a number can say. Scale them.");
+  Require(margin >= 0.0 && std::isfinite(margin),
     "The margin is " + std::to_string(margin) + "; it must be finite and not negative.");
 
   const int reach = filterSize / 2 + 1;

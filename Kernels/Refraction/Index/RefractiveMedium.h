@@ -58,8 +58,8 @@ struct RefractiveMedium
 {
   std::vector<float> occupancy;   ///< part of the voxel inside any solid, [0, 1]
   std::vector<float> ior;         ///< n, smoothed; empty where n is the same everywhere
-  std::vector<float> iorGradient; ///< its gradient, 1/length, 3 a voxel; empty where ior is
-  std::vector<float> sigma_a;     ///< 1/length, `components` a voxel
+  std::vector<float> iorGradient; ///< its gradient, 1/length, 3 per voxel; empty where ior is
+  std::vector<float> sigma_a;     ///< 1/length, `components` per voxel
   std::vector<float> sigma_s;
   int components = 1; ///< 3 where any material has colour
   double g = 0.0;     ///< of all voxels, see below
@@ -76,17 +76,18 @@ struct RefractiveMedium
 Grid GridAround(const std::vector<Solid>& solids, const std::array<int, 3>& size, double margin, int filterSize);
 
 /// Voxelises solids (Pfeuti 2009, section 3.1.2): samples inside are counted, each voxel gets the mean of its materials
-/// by their parts of it, n is smoothed, and its gradient taken. Where solids overlap, the last one is there.
+/// weighted by their parts of it, n is smoothed, and its gradient taken. Where solids overlap, the last one counts.
 ///
 /// A medium has one g. Where materials that scatter have different ones, g is their mean weighed by sigma_s, and each
 /// sigma_s is scaled such that sigma_s (1 - g) stays what it is.
 ///
 /// A mesh that encloses regions more than once or inside out, whose edges disagree about what is outside, or that has
-/// triangles without area, is voxelised by parity and gives a warning. Every sample is looked at: one alone is enough.
+/// triangles without area, is voxelised by parity and gives a warning. Every sample is examined: a single one where it
+/// shows is enough.
 /// @throws InvalidInput  where a mesh is empty or open (names the count of boundary edges and the place of the first),
 ///   a number is out of its range, or a voxel's edge beyond 1e-18 to 1e18 lengths
-/// @throws DeviceError   at once, if 12 to 44 bytes a voxel do not fit the machine's memory or 4 to 8 more the device's
-///   (on a CPU the same memory); they do not grow with the number of solids
+/// @throws DeviceError   at once, if 12 to 44 bytes per voxel do not fit the machine's memory or 4 to 8 more the
+///   device's (on a CPU the same memory); they do not grow with the number of solids
 RefractiveMedium Voxelize(
   Device& device, std::vector<Solid> solids, const RefractiveMediumSettings& settings, const Monitor& monitor = {});
 }

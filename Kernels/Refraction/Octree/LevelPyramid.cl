@@ -1,4 +1,4 @@
-// Octree levels from the top down, a work-item a node (Pfeuti 2009, listing 3.3). A node's level is that of the whole
+// Octree levels from the top down, a work-item per node (Pfeuti 2009, listing 3.3). A node's level is that of the whole
 // node it lies in, or 0 where none is whole yet.
 
 inline size_t index_of(int4 node, int4 size)
@@ -29,7 +29,7 @@ inline void give(__global uchar* levels, size_t voxel, uchar level, int restrict
   levels[voxel] = restrict_it ? min(level, levels[voxel]) : level;
 }
 
-// A work-item a node of level 1.
+// A work-item per node of level 1.
 //   nodes    levels of the pyramid's nodes, level 1 first
 //   levels   of the voxels: written, or where `restrict_them` made smaller
 __kernel void levels_of_voxels(

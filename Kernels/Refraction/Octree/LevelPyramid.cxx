@@ -1,6 +1,6 @@
 #include "Refraction/Octree/LevelPyramid.h"
-#include "Numerics/Vectors.h"
 
+#include "Numerics/Vectors.h"
 #include "TyndallKernelSources.h"
 
 namespace tyndall

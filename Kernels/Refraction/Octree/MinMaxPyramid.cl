@@ -1,4 +1,4 @@
-// Smallest and largest value of 2x2x2 children, a work-item a node (Pfeuti 2009, listing 3.2). A child beyond the
+// Smallest and largest value of 2x2x2 children, a work-item per node (Pfeuti 2009, listing 3.2). A child beyond the
 // grid's end is its neighbour within once more.
 //
 //   children_size  children per axis

@@ -1,6 +1,6 @@
 #include "Refraction/Octree/MinMaxPyramid.h"
-#include "Numerics/Vectors.h"
 
+#include "Numerics/Vectors.h"
 #include "TyndallKernelSources.h"
 
 namespace tyndall

@@ -9,7 +9,7 @@
 
 namespace tyndall
 {
-/// What makes a node of the octree whole.
+/// When a node of the octree is kept whole.
 struct OctreeSettings
 {
   double tolerance = 0.01;          ///< Pfeuti's epsilon: largest difference of the refractive index, in [0, 1]
@@ -19,7 +19,7 @@ struct OctreeSettings
 
 /// Groups of voxels of nearly equal refractive index (Pfeuti 2009, section 3.1.3).
 ///
-/// What a level k promises: the voxel lies in a node, the cube of 2^k voxels an edge whose lowest voxel has indices
+/// What a level k promises: the voxel lies in a node, the cube of 2^k voxels per edge whose lowest voxel has indices
 /// that are multiples of 2^k, and all voxels of that node have level k and
 ///  - max(n) - min(n) <= tolerance over the node's voxels, where k > 0;
 ///  - with includeExtinction, for every channel of sigma_t = sigma_a + sigma_s,
@@ -31,7 +31,7 @@ struct OctreeSettings
 /// stick out of it, up to the top level, the smallest k whose node holds the whole grid. Ranges are compared in float.
 struct Octree
 {
-  std::vector<std::uint8_t> levels; ///< a voxel, x fastest; 0: a single voxel, k: a node of 2^k voxels an edge
+  std::vector<std::uint8_t> levels; ///< one per voxel, x fastest; 0: a single voxel, k: a node of 2^k voxels per edge
   int topLevel = 0;                 ///< ceil(log2(longest edge in voxels))
   double seconds = 0.0;             ///< of BuildOctree
   std::string device;               ///< that ran; empty: none had to
@@ -43,7 +43,7 @@ struct Octree
 /// @param device  part of the device's name as Device::Find takes it; looked for only where there is something to
 ///   compute: where everything is constant, the octree is one node and nothing runs on the device
 /// @throws InvalidInput where a setting, the grid, n (names the first such voxel) or a coefficient has no meaning
-/// @throws DeviceError if there is no such device, or its memory does not suffice: about 7 bytes a voxel of a large
+/// @throws DeviceError if there is no such device, or its memory does not suffice: about 7 bytes per voxel of a large
 /// cube
 Octree BuildOctree(const Medium& medium, const Field& index, const OctreeSettings& settings,
   const std::string& device = {}, const Monitor& monitor = {});

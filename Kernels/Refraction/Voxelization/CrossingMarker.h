@@ -1,8 +1,7 @@
 #pragma once
 
-#include "Refraction/Voxelization/SampleLattice.h"
-
 #include "Device/Buffer.h"
+#include "Refraction/Voxelization/SampleLattice.h"
 
 #include <string>
 
@@ -18,7 +17,7 @@ public:
   /// @param words  of 32 bits in a column
   CrossingMarker(Device& device, const SampleColumns& columns, int words, const std::string& options);
 
-  /// Queues it.
+  /// Queues the kernel.
   /// @param marks  cleared before; `words` for each column of the rows
   /// @param sums   cleared before; one for each column of the rows; empty where windings are asked for
   void Mark(const LatticeMesh& mesh, int firstRow, int endRow, Buffer<cl_uint>& marks, Buffer<cl_uint>& sums);
@@ -31,7 +30,7 @@ private:
   Buffer<cl_uint4> Tiles;
 };
 
-/// How the kernels of Voxelization.cl run: a work-item a tile or a column.
+/// How the kernels of Voxelization.cl run: a work-item per tile or column.
 inline cl::NDRange CrossingGroup()
 {
   return cl::NDRange(64);

@@ -7,7 +7,7 @@
 #include "Refraction/Index/GradientNoise.cl"
 #include "Refraction/Voxelization/MaterialsShared.h"
 
-// A work-item a voxel (i of the slab), a row of work-items a run of the slab.
+// A work-item per voxel (i of the slab), a row of work-items per run of the slab.
 
 inline void add_material(float part, const MaterialInfo* material, ulong i, ulong voxel, __global float* ior,
   __global float* sigma_a, __global float* sigma_s)

@@ -10,7 +10,7 @@
 namespace tyndall
 {
 /// @param name     of the mesh, for the message
-/// @param samples  fine voxels an edge of a voxel, see SampleLattice: a mesh that is closed there passes
+/// @param samples  fine voxels per edge of a voxel, see SampleLattice: a mesh that is closed there passes
 /// @return what was found
 /// @throws InvalidInput where the mesh is empty, has no area, or is open: names the count of boundary edges, and the
 /// first

@@ -23,8 +23,8 @@ public:
   /// @throws InvalidInput where a mesh is so large beside the grid that the samples would not fit between the units
   SampleLattice(const Grid& grid, int samples, const std::vector<const TriangleMesh*>& meshes);
 
-  int Samples() const { return this->SamplesOfVoxel; } ///< fine voxels an edge of a voxel
-  int Pitch() const { return this->UnitsOfSample; }    ///< units an edge of a fine voxel: a power of 2, at least 2
+  int Samples() const { return this->SamplesOfVoxel; } ///< fine voxels per edge of a voxel
+  int Pitch() const { return this->UnitsOfSample; }    ///< units per edge of a fine voxel: a power of 2, at least 2
 
   std::vector<Point> Rounded(const std::vector<std::array<double, 3>>& points) const;
 

@@ -27,7 +27,7 @@
 #endif
 
 #define SAMPLES_OF_VOXEL (SAMPLES * SAMPLES * SAMPLES)
-// Units of corrections in a sample; 80 surfaces through a voxel fit an int at 16 samples an edge, more at fewer.
+// Units of corrections in a sample; 80 surfaces through a voxel fit an int at 16 samples per edge, more at fewer.
 #define UNITS 65536
 // Of what is handed out: see UnitsOfSample.
 #define UNITS_OF_COUNT (65535 / SAMPLES_OF_VOXEL)

@@ -1,8 +1,7 @@
 #pragma once
 
-#include "Refraction/Voxelization/SampleLattice.h"
-
 #include "Device/Buffer.h"
+#include "Refraction/Voxelization/SampleLattice.h"
 
 #include <array>
 
@@ -21,7 +20,7 @@ struct SampleSlab
 class SurfaceFraction
 {
 public:
-  /// @param columns  of the samples' bits, `words` of 32 a column
+  /// @param columns  of the samples' bits, `words` of 32 per column
   /// @param voxels   of a slab, at most: takes 4 bytes each, and 4 more where there are several meshes
   SurfaceFraction(
     Device& device, const Grid& grid, const SampleColumns& columns, int words, std::size_t voxels, bool several);
@@ -29,15 +28,15 @@ public:
   /// Before the last mesh of a slab.
   void Begin();
 
-  /// Queues it: finds what samples leave out of a mesh.
+  /// Queues the measurement of what counting samples leaves out of a mesh.
   /// @param orientation  see OrientedMesh
   /// @param bits         samples in the mesh, of the slab's rows
   /// @param claimed      samples in later meshes, of the same rows; empty where there is but one mesh
   void Measure(const LatticeMesh& mesh, int orientation, const SampleSlab& slab, const Buffer<cl_uint>& bits,
     const Buffer<cl_uint>& claimed);
 
-  /// Queues it: from samples of the slab's voxels to 1 / UnitsOfSample. The mesh is that measured last. Claims the
-  /// samples of those rows that are not the voxels'.
+  /// Queues the conversion of the slab's counts from whole samples to units of 1 / UnitsOfSample, with what was
+  /// measured of the last mesh. Claims the samples of the slab's rows that are not of its voxels.
   void Refine(const SampleSlab& slab, const Buffer<cl_uint>& bits, Buffer<cl_uint>& claimed, Buffer<cl_ushort>& counts);
 
 private:

@@ -10,7 +10,7 @@
 // column so never meets an edge or a corner, and which samples are inside is the same whichever axis the columns run
 // along.
 //
-// Defined before: AXIS, 0 to 2, along which the columns run; SAMPLES, samples an edge of a voxel; FROM_ABOVE, 1 where
+// Defined before: AXIS, 0 to 2, along which the columns run; SAMPLES, samples per edge of a voxel; FROM_ABOVE, 1 where
 // what lies after a crossing is toggled instead; WINDING, 1 where crossings are counted with their sign instead.
 
 #pragma once
@@ -335,8 +335,8 @@ __kernel void fill_columns(int columnCount, int columns, int words, __global uin
   }
 }
 
-// Counts the samples of each voxel that are inside, and not claimed by an object that comes later. A work-item a column
-// of voxels.
+// Counts the samples of each voxel that are inside, and not claimed by an object that comes later. A work-item per
+// column of voxels.
 //   voxels    of a column of voxels; columns, rows: of the columns of voxels that `bits` holds
 //   skipped   rows of samples in `bits` before those of the first voxels
 //   claimed   as `bits`: samples of later objects; those of this one are added. Not looked at where claims is 0

@@ -21,7 +21,7 @@ constexpr std::size_t SlabVoxels = std::size_t(4) << 20; ///< at most, where a r
 /// Words of 32 bits in a column.
 int WordsOf(const Grid& grid, int axis, int voxelsOfWord)
 {
-  return (grid.size[axis] + voxelsOfWord - 1) / voxelsOfWord;
+  return PartsOf(grid.size[axis], voxelsOfWord);
 }
 
 std::vector<const TriangleMesh*> TrianglesOf(const std::vector<OrientedMesh>& meshes)

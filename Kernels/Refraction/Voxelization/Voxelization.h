@@ -14,7 +14,7 @@ namespace tyndall
 {
 struct VoxelizationSettings
 {
-  int samples = 4; ///< fine voxels an edge of a voxel, 1 to 16
+  int samples = 4; ///< fine voxels per edge of a voxel, 1 to 16
 
   /// Whether counts tell of fractions of samples, from where the surface lies between them. Else occupancy comes in
   /// steps of 1 / samples^3, as published.

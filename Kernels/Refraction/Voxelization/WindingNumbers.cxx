@@ -1,5 +1,6 @@
 #include "Refraction/Voxelization/WindingNumbers.h"
 
+#include "Device/Sizes.h"
 #include "Refraction/Voxelization/CrossingMarker.h"
 #include "TyndallKernelSources.h"
 
@@ -52,7 +53,7 @@ private:
 WindingNumbers FindWindings(Device& device, const Grid& grid, const LatticeMesh& mesh, const SampleColumns& columns,
   const std::vector<cl_int>& rows, bool inverted, const Monitor& monitor)
 {
-  const int words = (columns.samples + SamplesOfWord - 1) / SamplesOfWord;
+  const int words = PartsOf(columns.samples, SamplesOfWord);
   const auto across = static_cast<std::size_t>(columns.count[0]);
   const int atOnce = static_cast<int>(std::clamp<std::size_t>(
     SlabBytes / (across * words * sizeof(cl_uint)), 1, static_cast<std::size_t>(columns.samplesOfVoxel)));

@@ -1,8 +1,7 @@
 #pragma once
 
-#include "Refraction/Voxelization/SampleLattice.h"
-
 #include "Device/Monitor.h"
+#include "Refraction/Voxelization/SampleLattice.h"
 
 #include <cstddef>
 #include <vector>

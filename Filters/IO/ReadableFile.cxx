@@ -1,0 +1,21 @@
+#include "IO/ReadableFile.h"
+
+#include "Device/Errors.h"
+
+#include <fstream>
+
+namespace tyndall
+{
+std::uint64_t ReadableSize(const std::string& path)
+{
+  std::ifstream stream(path, std::ios::binary | std::ios::ate);
+  const std::streamoff size = stream ? static_cast<std::streamoff>(stream.tellg()) : -1;
+  stream.seekg(0);
+  // A folder opens, and has a size, but nothing can be read from it.
+  if (size < 0 || (size > 0 && stream.peek() == std::ifstream::traits_type::eof()))
+  {
+    throw InvalidInput("\"" + path + "\" cannot be read. Check that it is a file, is there and may be read.");
+  }
+  return static_cast<std::uint64_t>(size);
+}
+}
