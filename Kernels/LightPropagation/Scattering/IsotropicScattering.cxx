@@ -5,6 +5,8 @@
 #include "LightPropagation/Scattering/CollectShared.h"
 #include "TyndallKernelSources.h"
 
+#include <algorithm>
+
 namespace tyndall
 {
 IsotropicScattering::IsotropicScattering(
@@ -18,7 +20,7 @@ IsotropicScattering::IsotropicScattering(
 
 cl::Kernel IsotropicScattering::Kernel(const char* name) const
 {
-  const int vector = this->TheDevice.FloatVectorWidth() >= 8 ? 8 : 4;
+  const int vector = std::max(this->TheDevice.KernelWidth(4, 8), 4); // on a GPU as well
   return this->TheDevice.Kernel(name, kernel_source::IsotropicScattering,
     Define("REAL_WIDTH", vector) + Define("SCATTERS", this->Scatters) + ExactOption(this->TheDevice));
 }
