@@ -43,10 +43,10 @@ public:
   int ComputeUnits() const { return this->Units; }
   int FloatVectorWidth() const { return this->VectorWidth; } ///< 1 on GPUs, 4 to 16 on CPUs
   /// Floats that a work-item is to handle at once: on a CPU as many as its registers hold, but from `least` to `most`,
-  /// for which a kernel is written; on a GPU one, for it makes its own vectors.
-  int KernelWidth(int least = 4, int most = 16) const
+  /// for which a kernel is written; on a GPU, which makes its own vectors, as few as the kernel can do.
+  int KernelWidth(int least = 4, int most = 16, int leastOnGpu = 1) const
   {
-    return this->Cpu ? std::clamp(this->VectorWidth, least, most) : 1;
+    return this->Cpu ? std::clamp(this->VectorWidth, least, most) : leastOnGpu;
   }
   /// Not those that the environment variable TYNDALL_WITHOUT names (with blanks between): to try what devices without
   /// them get.

@@ -42,8 +42,10 @@ double AxialIntensity(const Light& lamp)
   {
     case LightType::Spot: return 1.0 / (2.0 * Pi * (1.0 - std::cos(0.5 * lamp.angle * Pi / 180.0)));
     case LightType::Rectangle: return 1.0 / Pi;
-    default: return 1.0 / (4.0 * Pi);
+    case LightType::Point: return 1.0 / (4.0 * Pi);
+    case LightType::Directional: break;
   }
+  return 0.0;
 }
 
 std::array<std::array<double, 3>, 2> RectangleEdges(const Light& light)

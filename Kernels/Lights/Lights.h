@@ -63,7 +63,7 @@ struct Illumination
   std::array<Rgb, 6> faces = {};
 };
 
-/// W per steradian of a lamp of 1 W (not of a directional light), along its axis.
+/// W per steradian of a lamp of 1 W along its axis; 0 of a directional light, which has none.
 double AxialIntensity(const Light& lamp);
 
 /// The edges of a rectangular light as vectors: the first is horizontal (across z and the direction; along x where the

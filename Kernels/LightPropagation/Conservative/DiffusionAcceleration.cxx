@@ -18,7 +18,7 @@ DiffusionAcceleration::DiffusionAcceleration(TransportParts& parts)
   : Parts(parts)
   , Settings(parts.Problem.Settings())
   , TheMedium(parts.Problem.TheMedium())
-  , LinearSource(parts.Problem.Settings().source != PropagationSource::Constant)
+  , LinearSource(parts.Problem.HasLinearSource())
 {
 }
 
@@ -106,7 +106,7 @@ void DiffusionAcceleration::Sweep(int iteration, const Monitor& monitor)
   this->Tally = this->Swept->Apply(shines ? &this->Parts.Source : nullptr, this->Parts.BoundaryOfSweeps(), monitor);
 }
 
-/// Of the last sweep, with that of lamps; [channel][stride].
+/// Of the last sweep, with uncollided light; [channel][stride].
 std::vector<float> DiffusionAcceleration::SweptFluence() const
 {
   const double perVolume = 1.0 / this->Parts.Layout.grid.VoxelVolume();
@@ -142,7 +142,7 @@ void DiffusionAcceleration::MakeSystems()
   }
 }
 
-/// W of a voxel, about.
+/// W of a voxel, about: the unit that the system's solver works in.
 double DiffusionAcceleration::VoxelPower(int c) const
 {
   return (this->GivenPower[c] + this->PowerIn[c]) / static_cast<double>(this->Parts.Layout.grid.VoxelCount());
@@ -250,11 +250,16 @@ void DiffusionAcceleration::WriteFluence()
 /// Of thick voxels, from the powers of the system.
 void DiffusionAcceleration::FindSurfaceRadiance()
 {
+  std::vector<float> lamps = this->Uncollided->PathOfLamps();
+  for (float& fluence : lamps)
+  {
+    fluence = static_cast<float>(fluence / this->Parts.Layout.grid.VoxelVolume());
+  }
   std::vector<SurfacePowers> powers(this->LinearSource ? this->Parts.Layout.channels : 0);
   for (std::size_t c = 0; c < powers.size(); ++c)
   {
     powers[c] = this->VoxelPower(static_cast<int>(c)) > 0.0 ? this->Systems[c]->PowersAtSurface() : SurfacePowers();
-    powers[c].lamps = this->UncollidedFluence.data() + c * this->Parts.Layout.Stride();
+    powers[c].lamps = lamps.empty() ? nullptr : lamps.data() + c * this->Parts.Layout.Stride();
   }
   this->Result.surfaceRadiance = SurfaceRadiance(this->TheMedium, this->Settings.periodic, this->Parts.Lamps, powers);
 }

@@ -1,9 +1,6 @@
 #pragma once
 
 #include "LightPropagation/Conservative/TransportParts.h"
-#include "LightPropagation/Problem/MediumOnDevice.h"
-
-#include <vector>
 
 namespace tyndall
 {

@@ -136,9 +136,11 @@ void SourceIteration::AddUncollided(const Monitor& monitor)
   {
     sources.push_back(std::move(peak));
   }
-  for (const std::unique_ptr<UncollidedSource>& source : sources)
+  for (std::size_t i = 0; i < sources.size(); ++i)
   {
-    const SweepTally tally = this->Parts.AddUncollided(*source, this->Parts.WholeDeposit(), monitor);
+    const double all = static_cast<double>(sources.size() + 1); // the order's own sweep is as one more
+    const Monitor ofSource = OfPart(monitor, i / all, (i + 1) / all);
+    const SweepTally tally = this->Parts.AddUncollided(*sources[i], this->Parts.WholeDeposit(), ofSource);
     this->Result.ledger.Count(tally);
     for (int c = 0; c < 3; ++c)
     {
@@ -149,7 +151,6 @@ void SourceIteration::AddUncollided(const Monitor& monitor)
   {
     this->Escaping.emplace(this->Parts, monitor); // whatever shines: lights add up
   }
-  this->OnTheWay = this->Stranded;
 }
 
 void SourceIteration::SweepOrder(const Monitor& monitor)

@@ -12,7 +12,6 @@ namespace tyndall
 {
 namespace
 {
-
 RayStarts StartsOf(const PropagationSettings& settings)
 {
   return settings.staggeredRays ? RayStarts::Staggered : RayStarts::Middle;
@@ -56,8 +55,7 @@ TransportParts::TransportParts(Device& device, const PropagationProblem& problem
 {
   this->FindBoundaryLight();
   const MediumTraits& traits = problem.Traits();
-  const bool scatters = !problem.Settings().leaveOut || traits.scatters;
-  const bool needsSource = scatters || traits.emits || accelerated;
+  const bool needsSource = problem.ComputesScattering() || traits.emits || accelerated;
   this->Source = Buffer<float>(device, needsSource ? this->Layout.Floats() : SweepPadding, "the scattered light");
   this->Path = Buffer<float>(device, this->Layout.Floats(), "the light gathered");
   this->Fluence = Buffer<float>(device, this->Layout.Floats(), "fluence");
@@ -146,8 +144,8 @@ std::unique_ptr<SweepOperator> TransportParts::MakeSweep(const SweepRequest& req
 
 std::unique_ptr<const ScatteringOperator> TransportParts::MakeScattering() const
 {
-  const bool scatters = !this->Problem.Settings().leaveOut || this->Problem.Traits().scatters;
-  return std::make_unique<IsotropicScattering>(this->TheDevice, this->Layout, this->OnDevice, scatters);
+  return std::make_unique<IsotropicScattering>(
+    this->TheDevice, this->Layout, this->OnDevice, this->Problem.ComputesScattering());
 }
 
 TransportParts::Sources TransportParts::LampSources() const
@@ -155,7 +153,7 @@ TransportParts::Sources TransportParts::LampSources() const
   Sources sources;
   for (const Light& lamp : this->Lamps)
   {
-    sources.push_back(std::make_unique<UncollidedLamp>(lamp, this->Problem.Settings().periodic));
+    sources.push_back(std::make_unique<UncollidedLamp>(lamp));
   }
   return sources;
 }
@@ -185,7 +183,8 @@ void TransportParts::CountEmission(EnergyLedger& ledger) const
 SweepTally TransportParts::AddUncollided(const UncollidedSource& source, const Deposit& deposit, const Monitor& monitor)
 {
   const SweepMaker sweeps = [this](const SweepRequest& request) { return this->MakeSweep(request); };
-  return source.AddTo({ this->TheDevice, this->Layout, this->OnDevice.SigmaT(), sweeps, deposit }, monitor);
+  const std::array<bool, 3>& periodic = this->Problem.Settings().periodic;
+  return source.AddTo({ this->TheDevice, this->Layout, this->OnDevice.SigmaT(), periodic, sweeps, deposit }, monitor);
 }
 
 TransportParts::UncollidedFlux TransportParts::FindUncollided(const UncollidedSource& source, const Monitor& monitor)
@@ -207,10 +206,10 @@ TransportParts::EvenSky TransportParts::FindEvenSky(const Monitor& monitor)
   Illumination evenly;
   evenly.sky = { 1.0, 1.0, 1.0 };
   const PropagationSettings& settings = this->Problem.Settings();
-  const auto along = [&](const SweptDirections& directions) {
+  const auto along = [&](const SweptDirections& directions, const Monitor& ofThese) {
     const BoundaryLight light(this->Problem.TheGrid(), settings, directions, evenly, {});
-    return this->FindUncollided(UncollidedBoundary(settings, light), monitor);
+    return this->FindUncollided(UncollidedBoundary(settings, light), ofThese);
   };
-  return { along(*this->Fine), along(this->Usual) };
+  return { along(*this->Fine, OfPart(monitor, 0.0, 0.8)), along(this->Usual, OfPart(monitor, 0.8, 1.0)) };
 }
 }

@@ -10,7 +10,7 @@ namespace tyndall
 {
 namespace
 {
-constexpr double ThickForMoments = 0.1; ///< mean free paths a voxel
+constexpr double ThickForFirstMoments = 0.1; ///< mean free paths a voxel
 
 double Ratio(double of, double to)
 {
@@ -21,14 +21,15 @@ double Ratio(double of, double to)
 UncollidedLight::UncollidedLight(TransportParts& parts, const Monitor& monitor)
   : Parts(parts)
   , TheMedium(parts.Problem.TheMedium())
-  , LinearSource(parts.Problem.Settings().source != PropagationSource::Constant)
+  , LinearSource(parts.Problem.HasLinearSource())
 {
   parts.CountEmission(this->Counted);
-  this->AddSources(monitor);
+  const double sources = parts.FineBoundary ? 0.5 : 1.0; // of the time
+  this->AddSources(OfPart(monitor, 0.0, sources));
   this->Lengths = parts.Path.Read();
   if (parts.FineBoundary)
   {
-    this->AddBoundaryDifference(monitor);
+    this->AddBoundaryDifference(OfPart(monitor, sources, 1.0));
   }
   this->CountAbsorbed();
 }
@@ -39,14 +40,18 @@ bool UncollidedLight::NeedsFirstMoments() const
   const Grid& grid = this->TheMedium.grid;
   const double longest = *std::max_element(grid.spacing.begin(), grid.spacing.end());
   bool thick = false;
+  if (!this->LinearSource || this->Parts.Lamps.empty())
+  {
+    return false;
+  }
   for (std::size_t i = 0; i < grid.VoxelCount() && !thick; ++i)
   {
     for (int c = 0; c < this->Parts.Layout.channels && !thick; ++c)
     {
-      thick = this->TheMedium.TransportSigmaT(i, c) * longest > ThickForMoments;
+      thick = this->TheMedium.TransportSigmaT(i, c) * longest > ThickForFirstMoments;
     }
   }
-  return this->LinearSource && thick && !this->Parts.Lamps.empty();
+  return thick;
 }
 
 /// Lamps and bright emission, into the arrays of all sources.
@@ -58,25 +63,36 @@ void UncollidedLight::AddSources(const Monitor& monitor)
   {
     firstMoments = Buffer<float>(parts.TheDevice, parts.Layout.Floats(6), "light of lamps");
     path = Buffer<float>(parts.TheDevice, parts.Layout.Floats(), "light of lamps");
-    this->ThroughFaces =
-      Buffer<float>(parts.TheDevice, 6 * parts.Layout.Stride() * parts.Layout.channels, "light of lamps");
+    this->ThroughFaces = Buffer<float>(parts.TheDevice, parts.Layout.Floats(6), "light of lamps");
     this->ThroughFaces.Fill(0.0f);
   }
-  for (const std::unique_ptr<UncollidedSource>& lamp : parts.LampSources())
+  const TransportParts::Sources lamps = parts.LampSources(), peaks = parts.BrightEmissionSources();
+  std::size_t done = 0;
+  const auto monitorOfNext = [&] {
+    const double all = static_cast<double>(lamps.size() + peaks.size());
+    ++done;
+    return OfPart(monitor, (done - 1) / all, done / all);
+  };
+  for (const std::unique_ptr<UncollidedSource>& lamp : lamps)
   {
     if (firstMoments.Size() == 0)
     {
-      this->Count(parts.AddUncollided(*lamp, parts.WholeDeposit(), monitor));
+      this->Count(parts.AddUncollided(*lamp, parts.WholeDeposit(), monitorOfNext()));
       continue;
     }
     firstMoments.Fill(0.0f);
     path.Fill(0.0f);
-    this->Count(parts.AddUncollided(*lamp, { &path, parts.WholeDeposit().flux, nullptr, &firstMoments }, monitor));
+    const Deposit ofLamp = { &path, parts.WholeDeposit().flux, nullptr, &firstMoments };
+    this->Count(parts.AddUncollided(*lamp, ofLamp, monitorOfNext()));
     this->PassFaces(path, firstMoments);
   }
-  for (const std::unique_ptr<UncollidedSource>& peak : parts.BrightEmissionSources())
+  if (!lamps.empty())
   {
-    this->Count(parts.AddUncollided(*peak, parts.WholeDeposit(), monitor));
+    this->LengthsOfLamps = parts.Path.Read();
+  }
+  for (const std::unique_ptr<UncollidedSource>& peak : peaks)
+  {
+    this->Count(parts.AddUncollided(*peak, parts.WholeDeposit(), monitorOfNext()));
   }
 }
 
@@ -122,10 +138,14 @@ double UncollidedLight::PartOfDifference(std::size_t voxel, int channel) const
 void UncollidedLight::AddBoundaryDifference(const Monitor& monitor)
 {
   TransportParts& parts = this->Parts;
-  const auto fine = parts.FindUncollided(UncollidedBoundary(parts.Problem.Settings(), *parts.FineBoundary), monitor);
-  const auto usual = parts.FindUncollided(UncollidedBoundary(parts.Problem.Settings(), *parts.UsualBoundary), monitor);
+  const PropagationSettings& settings = parts.Problem.Settings();
+  const auto fine =
+    parts.FindUncollided(UncollidedBoundary(settings, *parts.FineBoundary), OfPart(monitor, 0.0, 0.4));
+  const auto usual =
+    parts.FindUncollided(UncollidedBoundary(settings, *parts.UsualBoundary), OfPart(monitor, 0.4, 0.5));
   const bool many = ScatteredManyTimes(parts.Problem);
-  const TransportParts::EvenSky even = many ? parts.FindEvenSky(monitor) : TransportParts::EvenSky();
+  const TransportParts::EvenSky even =
+    many ? parts.FindEvenSky(OfPart(monitor, 0.5, 1.0)) : TransportParts::EvenSky();
   std::vector<float> flux = parts.Problem.Settings().netFlux ? parts.Flux.Read() : std::vector<float>();
   const std::size_t stride = parts.Layout.Stride();
   for (int c = 0; c < parts.Layout.channels; ++c)

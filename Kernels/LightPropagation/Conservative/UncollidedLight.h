@@ -13,11 +13,14 @@ namespace tyndall
 class UncollidedLight
 {
 public:
-  /// @param parts  must stay; their Path and Flux hold the light afterwards
+  /// @param parts  their Flux holds the light's afterwards
   UncollidedLight(TransportParts& parts, const Monitor& monitor);
 
   const std::vector<float>& Path() const { return this->Lengths; } ///< W length, [channel][stride]
-  /// W, of lamps, as DiffusionSystem::Arrays has it; empty where voxels are thin or there are no lamps.
+  /// W length of lamps alone, [channel][stride]; empty where there are none.
+  const std::vector<float>& PathOfLamps() const { return this->LengthsOfLamps; }
+  /// W, of lamps, as DiffusionSystem::Arrays has it; empty where voxels are thin, there are no lamps, or the source is
+  /// constant.
   const Buffer<float>& Passed() const { return this->ThroughFaces; }
   /// What was emitted and came in, what of it left, and what was absorbed before it was scattered.
   const EnergyLedger& Ledger() const { return this->Counted; }
@@ -34,7 +37,7 @@ private:
   TransportParts& Parts;
   const Medium& TheMedium;
   bool LinearSource;
-  std::vector<float> Lengths;
+  std::vector<float> Lengths, LengthsOfLamps;
   Buffer<float> ThroughFaces;
   EnergyLedger Counted;
   Rgb Stranded = {}; ///< W, of rays that go round a periodic axis without end

@@ -19,6 +19,7 @@ struct CrossingPattern
 CrossingPattern FindCrossingPattern(const Grid& grid, const DirectionSet& directions, int mapResolution,
   RayStarts starts, const std::array<bool, 3>& periodic);
 
-/// Sum over directions of w mu, mu > 0, of those that march along `marching`.
+/// Sum of w mu over the directions of positive cosine mu to `axis` that march along `marching`; those that march along
+/// several axes count in parts.
 double HalfRange(const Grid& grid, const DirectionSet& set, int axis, int marching);
 }

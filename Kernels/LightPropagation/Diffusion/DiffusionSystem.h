@@ -35,7 +35,7 @@ public:
     const Buffer<float>* sigma_t;         ///< 1/length
     const Buffer<float>* sigma_a;         ///< 1/length
     const Buffer<float>* sigma_s;         ///< 1/length
-    const Buffer<float>* given;           ///< emitted, and of lights first scattered, W / (length^3 sr)
+    const Buffer<float>* given;           ///< emitted, and uncollided light that is scattered, W / (length^3 sr)
     const Buffer<float>* source;          ///< of a sweep, W / (length^3 sr)
     const Buffer<float>* path;            ///< W length, that it found
     const Buffer<float>* partialCurrents; ///< W, [channel][-x, +x, -y, +y, -z, +z][stride], that it found

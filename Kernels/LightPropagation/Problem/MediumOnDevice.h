@@ -17,7 +17,6 @@ public:
     bool sigma_s; ///< false where it is never read, or equals sigma_t
     bool sigma_a;
   };
-  /// @param medium  must stay
   MediumOnDevice(Device& device, const Medium& medium, const VolumeLayout& layout, const Needs& needs);
 
   const Buffer<float>& SigmaT() const { return this->Extinction; }

@@ -31,6 +31,10 @@ public:
   const Illumination& Shining() const { return this->SolvedLight; }
   const PropagationSettings& Settings() const { return this->TheSettings; }
   int Channels() const { return this->ChannelCount; } ///< 1 or 3
+  /// The scattered light of a voxel is taken as linear across it, not as constant as published.
+  bool HasLinearSource() const { return this->TheSettings.source != PropagationSource::Constant; }
+  /// The medium scatters, or nothing is to be left out.
+  bool ComputesScattering() const { return !this->TheSettings.leaveOut || this->TheTraits.scatters; }
   bool IsSlab() const { return this->Unvarying.IsSlab(); }
 
   /// To the user's units, channels and voxels; says in leftOut what was left out.

@@ -1,5 +1,8 @@
 // From light that was found to what is scattered of it (Gruson et al., Eq. 4, conservative). The host gives
-//   SCATTERS  0: sigma_s is zero, and `scatter_order` reads neither it nor `source`
+//   REAL_WIDTH  4 or 8 floats of a vector
+//   DOUBLES     1 where the device has double precision
+//   SCATTERS    0: sigma_s is zero; `scatter_order` does not read it and writes no source. The other kernels are for
+//               media that scatter.
 
 #include "LightPropagation/Scattering/CollectShared.h"
 #include "Numerics/Exact.cl"

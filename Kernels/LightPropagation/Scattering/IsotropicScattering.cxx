@@ -5,8 +5,6 @@
 #include "LightPropagation/Scattering/CollectShared.h"
 #include "TyndallKernelSources.h"
 
-#include <algorithm>
-
 namespace tyndall
 {
 IsotropicScattering::IsotropicScattering(
@@ -20,7 +18,7 @@ IsotropicScattering::IsotropicScattering(
 
 cl::Kernel IsotropicScattering::Kernel(const char* name) const
 {
-  const int vector = std::max(this->TheDevice.KernelWidth(4, 8), 4); // on a GPU as well
+  const int vector = this->TheDevice.KernelWidth(4, 8, 4);
   return this->TheDevice.Kernel(name, kernel_source::IsotropicScattering,
     Define("REAL_WIDTH", vector) + Define("SCATTERS", this->Scatters) + ExactOption(this->TheDevice));
 }

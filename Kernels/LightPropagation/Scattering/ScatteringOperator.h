@@ -9,7 +9,8 @@
 namespace tyndall
 {
 /// From light that was found in a volume to what its voxels scatter of it: the source of the next sweep. Knows how the
-/// medium scatters, and nothing of how light is carried, of orders or of acceleration. Arrays as in VolumeLayout.h.
+/// medium scatters, and nothing of how light is carried. Each iteration uses the methods made for it: one order after
+/// the other, or all orders at once between two sweeps. Arrays as in VolumeLayout.h.
 class ScatteringOperator
 {
 public:
@@ -22,7 +23,8 @@ public:
   };
 
   /// One order of scattering: adds the light that a sweep found to `fluence`, writes what is scattered of it to
-  /// `source`, and clears what it found.
+  /// `source`, and clears its path integrals.
+  /// @param swept  path: of this order; flux gathers that of all orders, and is left as it is
   /// @param range  values of a channel that the sweep may have changed, whole vectors
   virtual Powers ScatterOrder(const Deposit& swept, const Buffer<float>& fluence, const Buffer<float>& source,
     const std::array<std::size_t, 2>& range) const = 0;

@@ -26,6 +26,11 @@ std::vector<BundleMaps> MapsOf(const SweepPlan& plan)
   }
   return maps;
 }
+
+bool IsDark(const std::array<Rgb, 6>& powers)
+{
+  return std::all_of(powers.begin(), powers.end(), [](const Rgb& power) { return Sum(power) == 0.0; });
+}
 }
 
 struct AxisSweep::Implementation
@@ -82,7 +87,7 @@ struct AxisSweep::Implementation
 
   Buffer<float> OwnMaps;           ///< of a periodic axis
   Buffer<float> Outside, Radiance; ///< as SweepBorder has them
-  Buffer<float> Sideways;          ///< power that left: [unit][plane][-u, +u, -v, +v][channel]
+  Buffer<float> Sideways;          ///< power that left: [plane][unit][-u, +u, -v, +v][channel]
   Buffer<float> Sums;              ///< power in the maps: [way][bundle][row][channel]
   Buffer<BundleInfo> Bundles;
   Buffer<BundleMaps> MapPlaces;
@@ -93,6 +98,7 @@ struct AxisSweep::Implementation
 
   std::map<std::size_t, std::unique_ptr<SweepBorder>> Borders; ///< by a volume's first value
   bool SidesDark = false;                                      ///< Outside and Radiance are zero
+  bool Dark = false;                                           ///< the sweep that goes on has nothing to carry
   SweepTally Tally;                                            ///< of the sweep that goes on
 };
 
@@ -330,6 +336,11 @@ void AxisSweep::Start(const SweepVolume& volume, const SweepBoundary& boundary, 
     self.DarkenSides();
   }
   const bool lit = static_cast<bool>(boundary);
+  self.Dark = lit && !volume.source && !self.IsPeriodic() && IsDark(self.Tally.in);
+  if (self.Dark)
+  {
+    return;
+  }
   // The maps of a periodic axis hold what is on the way from the sweep before.
   self.CrossOnce(volume, { volume.source != nullptr, lit, !lit && !self.IsPeriodic() }, monitor);
   if (self.IsPeriodic())
@@ -353,7 +364,7 @@ void AxisSweep::Forget()
 SweepTally AxisSweep::Finish()
 {
   Implementation& self = *this->Inner;
-  if (!self.IsPeriodic())
+  if (!self.IsPeriodic() && !self.Dark)
   {
     self.CountSideways();
     self.CountEnds();

@@ -45,7 +45,7 @@ SweepTally SweepInMemory::Apply(const Buffer<float>* source, const SweepBoundary
   {
     const int first = groups[g].first;
     const SweepBoundary ofChannels = boundary && first > 0
-      ? SweepBoundary([&](int direction, int face) { return From(boundary(direction, face), first); })
+      ? SweepBoundary([&](int direction, int face) { return OfGroup(boundary(direction, face), first); })
       : boundary;
     const SweepVolume volume = this->VolumeOf(groups[g], source);
     const double all = static_cast<double>(this->Axes.size() * groups.size());

@@ -26,7 +26,7 @@ struct AxisBundles
 /// What a sweep is made for.
 struct SweepRequest
 {
-  Deposit deposit; ///< must stay
+  Deposit deposit; ///< its buffers must stay
   std::vector<AxisBundles> rays;
   VoxelBox box = {};                 ///< the part of the grid that is swept; empty: all
   int mostPlanes = MostPlanesAround; ///< that rays go round a periodic axis before they wait for the next sweep
@@ -35,8 +35,8 @@ struct SweepRequest
 
 /// Carries light once through the medium: from what shines in its voxels and what comes in through the box's faces to
 /// path integrals, net flux, partial currents and the power that left (numerics.md, section 4). Power is conserved,
-/// Eq. (27). Independent of scattering orders and of acceleration. In one device's memory today
-/// (SweepInMemory.h); by slices, over several machines or in another order are further implementations.
+/// Eq. (27). Independent of scattering orders and of acceleration. SweepInMemory.h does it in one device's memory; other
+/// implementations may do it slice by slice, over several machines or in another order.
 class SweepOperator
 {
 public:

@@ -113,7 +113,7 @@ void SweepPlan::LayLaps()
 
 void SweepPlan::LayPlane(const Device& device)
 {
-  this->vector = std::max(device.KernelWidth(), 4); // on a GPU as well
+  this->vector = device.KernelWidth(4, 16, 4);
   const std::array<int, 3>& n = this->box.size;
   const std::array<int, 3>& first = this->box.first;
   const std::array<int, 3> step = { 1, this->grid.size[0], this->grid.size[0] * this->grid.size[1] };

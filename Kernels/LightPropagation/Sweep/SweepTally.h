@@ -29,12 +29,12 @@ inline void Add(SweepTally& sum, const SweepTally& tally, int first = 0)
   }
 }
 
-/// Radiance, W / (length^2 sr), of `direction` (an index into the direction set; for beams irradiance and 0) that comes
-/// in through `face`.
+/// Radiance, W / (length^2 sr), of `direction` (an index into the direction set) that comes in through `face`; of
+/// parallel beams their irradiance, and `direction` is 0.
 using SweepBoundary = std::function<Rgb(int direction, int face)>;
 
-/// The channels from `first` on: those of a group that begins there.
-inline Rgb From(const Rgb& rgb, int first)
+/// Of three channels those of a group (VolumeLayout.h) that begins at `first`: all three, or that one alone.
+inline Rgb OfGroup(const Rgb& rgb, int first)
 {
   return first == 0 ? rgb : Rgb{ rgb[first], 0.0, 0.0 };
 }

@@ -11,7 +11,7 @@ struct SweepWorkspace
   Buffer<float> scratch; ///< planes being crossed
   Buffer<float> lost;    ///< what rounding takes from `path` in a sweep round a periodic axis
 
-  /// Have room for so many floats. The device must be idle.
+  /// Have room for so many floats. No sweep may be under way: what is too small is given back first.
   void Reserve(Device& device, std::size_t mapFloats, std::size_t scratchFloats);
   void ReserveLost(Device& device, std::size_t floats);
 };

@@ -54,6 +54,131 @@ static real mean_left(real tau, real* left)
   return select((real)1.0f, lost / fmax(tau, (real)1e-6f), tau > (real)1e-6f);
 }
 
+// A line from a point in a voxel to the box of what shines. Places on it are lengths from that point.
+typedef struct
+{
+  real rate[3];       // voxels per length along each axis
+  real step[3];       // length from one plane across each axis to the next
+  real next[3];       // place of the plane that it crosses next; moves on as the line is followed
+  integer up[3];      // it goes up that axis
+  real enter, leave;  // places where it comes into the box and out of it
+  real ahead, behind; // how far the point's voxel reaches, along the line and against it
+} box_ray;
+
+static void begin_ray(const turned_scene* s, const lit_voxel* voxel, const real* point, const real* way, box_ray* ray)
+{
+  ray->enter = 0.0f;
+  ray->leave = 1e30f;
+  ray->behind = 1e30f;
+  for (int a = 0; a < 3; ++a)
+  {
+    ray->rate[a] = way[a] / s->spacing[a];
+    ray->up[a] = ray->rate[a] > (real)0.0f;
+    ray->step[a] = 1.0f / fmax(fabs(ray->rate[a]), (real)1e-20f);
+    const real x = point[a] - voxel->at[a];
+    ray->next[a] = select(x, 1.0f - x, ray->up[a]) * ray->step[a];
+    ray->behind = fmin(ray->behind, select(1.0f - x, x, ray->up[a]) * ray->step[a]);
+    const real low = s->sourceFirst[a] - point[a];
+    const real high = low + s->sourceSize[a];
+    ray->enter = fmax(ray->enter, select(-high, low, ray->up[a]) * ray->step[a]);
+    ray->leave = fmin(ray->leave, select(-low, high, ray->up[a]) * ray->step[a]);
+  }
+  ray->ahead = fmin(ray->next[0], fmin(ray->next[1], ray->next[2]));
+  ray->leave = fmax(ray->leave, (real)0.0f);
+  ray->enter = fmin(ray->enter, ray->leave); // rounding: past its edge
+}
+
+// Which planes are crossed at `end`, before the way ends there; the next ones are then those behind them.
+static void cross_planes(box_ray* ray, real end, real way_ends, integer* crossed)
+{
+  for (int a = 0; a < 3; ++a)
+  {
+    crossed[a] = ray->next[a] <= end && end < way_ends;
+    ray->next[a] += select((real)0.0f, ray->step[a], crossed[a]);
+  }
+}
+
+static integer index_step(const box_ray* ray, const integer* crossed, const int* strides)
+{
+  integer step = 0;
+  for (int a = 0; a < 3; ++a)
+  {
+    step += select((integer)0, select((integer)-strides[a], (integer)strides[a], ray->up[a]), crossed[a]);
+  }
+  return step;
+}
+
+// Follows the ray from voxel `begin` of the grid to the box: optical length.
+static real follow_to_box(const turned_scene* s, box_ray* ray, int begin, const __global float* sigma)
+{
+  integer index = begin, crossed[3];
+  real now = 0.0f, tau = 0.0f;
+  integer under_way = now < ray->enter;
+  while (any_of(under_way))
+  {
+    const real end = fmin(fmin(ray->next[0], fmin(ray->next[1], ray->next[2])), ray->enter);
+    tau += take(sigma, index) * (end - now);
+    cross_planes(ray, end, ray->enter, crossed);
+    index += index_step(ray, crossed, s->strides);
+    // Rounding: along a face of the grid, a step of no length past it.
+    index = clamp(index, (integer)0, (integer)s->last);
+    now = end;
+    under_way = now < ray->enter && tau < (real)OPAQUE;
+  }
+  return tau;
+}
+
+// Goes on where the ray comes into the box: the voxel's index in the grid, and in the box.
+static void enter_box(const turned_scene* s, const real* point, box_ray* ray, integer* index, integer* shining)
+{
+  *shining = s->sourceBase;
+  *index = s->base;
+  for (int a = 0; a < 3; ++a)
+  {
+    const int first = s->sourceFirst[a];
+    const real at = point[a] + ray->rate[a] * ray->enter;
+    const integer cell = clamp(to_integer(floor(at)), (integer)first, (integer)(first + s->sourceSize[a] - 1));
+    const real x = at - to_real(cell);
+    ray->next[a] = ray->enter + fmax(select(x, 1.0f - x, ray->up[a]), (real)0.0f) * ray->step[a];
+    *index += cell * s->strides[a];
+    *shining += (cell - first) * s->sourceStrides[a];
+  }
+}
+
+// Adds up what shines along the ray through the box.
+//   received  part of that light that gets to the point
+static void see_box(const turned_scene* s, const real* point, box_ray* ray, real received, const __global float* sigma,
+  const __global float* emission, real* radiance)
+{
+  const int source_voxels = s->sourceLast + 1;
+  integer index, shining, crossed[3];
+  enter_box(s, point, ray, &index, &shining);
+  for (int c = 0; c < CHANNELS; ++c)
+  {
+    radiance[c] = 0.0f;
+  }
+  real now = ray->enter, left;
+  integer under_way = now < ray->leave;
+  while (any_of(under_way))
+  {
+    const real end = fmin(fmin(ray->next[0], fmin(ray->next[1], ray->next[2])), ray->leave);
+    const real length = fmax(end - now, (real)0.0f);
+    const real seen = received * length * mean_left(take(sigma, index) * length, &left);
+    for (int c = 0; c < CHANNELS; ++c)
+    {
+      radiance[c] += seen * take(emission + c * source_voxels, shining);
+    }
+    received *= left;
+    cross_planes(ray, end, ray->leave, crossed);
+    index += index_step(ray, crossed, s->strides);
+    shining += index_step(ray, crossed, s->sourceStrides);
+    index = clamp(index, (integer)0, (integer)s->last); // rounding, as above
+    shining = clamp(shining, (integer)0, (integer)s->sourceLast);
+    now = end;
+    under_way = now < ray->leave && received > (real)1e-35f;
+  }
+}
+
 // Rays from points to the box of what shines and through it: radiance at their beginnings, W / (length^2 sr),
 // [CHANNELS] (numerics.md, Eq. (40)).
 //   point      in voxels, along x, y, z
@@ -65,97 +190,19 @@ static void trace(const turned_scene* s, const lit_voxel* voxel, const real* poi
   const __global float* sigma, const __global float* emission, real* radiance)
 {
   const int* strides = s->strides;
-  const int* source_strides = s->sourceStrides;
-  const int source_voxels = s->sourceLast + 1;
   const int begin = s->base + voxel->at[0] * strides[0] + voxel->at[1] * strides[1] + voxel->at[2] * strides[2];
-  real rate[3], step[3], next[3];
-  integer up[3];
-  real enter = 0.0f, leave = 1e30f, behind = 1e30f;
-  for (int a = 0; a < 3; ++a)
-  {
-    rate[a] = way[a] / s->spacing[a];
-    up[a] = rate[a] > (real)0.0f;
-    step[a] = 1.0f / fmax(fabs(rate[a]), (real)1e-20f);
-    const real x = point[a] - voxel->at[a];
-    next[a] = select(x, 1.0f - x, up[a]) * step[a];
-    behind = fmin(behind, select(1.0f - x, x, up[a]) * step[a]);
-    const real low = s->sourceFirst[a] - point[a];
-    const real high = low + s->sourceSize[a];
-    enter = fmax(enter, select(-high, low, up[a]) * step[a]);
-    leave = fmin(leave, select(-low, high, up[a]) * step[a]);
-  }
-  const real ahead = fmin(next[0], fmin(next[1], next[2]));
-  leave = fmax(leave, (real)0.0f);
-  enter = fmin(enter, leave); // rounding: past its edge
-
-  integer index = begin;
-  real now = 0.0f, tau = 0.0f, left;
-  integer under_way = now < enter;
-  while (any_of(under_way))
-  {
-    const real end = fmin(fmin(next[0], fmin(next[1], next[2])), enter);
-    tau += take(sigma, index) * (end - now);
-    for (int a = 0; a < 3; ++a)
-    {
-      const integer crossed = next[a] <= end && end < enter;
-      index += select((integer)0, select((integer)-strides[a], (integer)strides[a], up[a]), crossed);
-      next[a] += select((real)0.0f, step[a], crossed);
-    }
-    index =
-      clamp(index, (integer)0, (integer)s->last); // rounding: along a face of the grid, a step of no length past it
-    now = end;
-    under_way = now < enter && tau < (real)OPAQUE;
-  }
-  real received = 1.0f;
+  box_ray ray;
+  begin_ray(s, voxel, point, way, &ray);
+  real tau = follow_to_box(s, &ray, begin, sigma);
+  real received = 1.0f, left;
   if (!voxel->inside && voxel->across > 2)
   {
     const float own = sigma[begin];
-    tau = fmax(tau - own * ahead, (real)0.0f);
-    received = mean_left(own * (ahead + behind), &left);
+    tau = fmax(tau - own * ray.ahead, (real)0.0f);
+    received = mean_left(own * (ray.ahead + ray.behind), &left);
   }
   extinguished(tau, &left);
-  received *= left;
-
-  integer shining = s->sourceBase;
-  index = s->base;
-  for (int a = 0; a < 3; ++a)
-  {
-    const int first = s->sourceFirst[a];
-    const real at = point[a] + rate[a] * enter;
-    const integer cell = clamp(to_integer(floor(at)), (integer)first, (integer)(first + s->sourceSize[a] - 1));
-    const real x = at - to_real(cell);
-    next[a] = enter + fmax(select(x, 1.0f - x, up[a]), (real)0.0f) * step[a];
-    index += cell * strides[a];
-    shining += (cell - first) * source_strides[a];
-  }
-  for (int c = 0; c < CHANNELS; ++c)
-  {
-    radiance[c] = 0.0f;
-  }
-  now = enter;
-  under_way = now < leave;
-  while (any_of(under_way))
-  {
-    const real end = fmin(fmin(next[0], fmin(next[1], next[2])), leave);
-    const real length = fmax(end - now, (real)0.0f);
-    const real seen = received * length * mean_left(take(sigma, index) * length, &left);
-    for (int c = 0; c < CHANNELS; ++c)
-    {
-      radiance[c] += seen * take(emission + c * source_voxels, shining);
-    }
-    received *= left;
-    for (int a = 0; a < 3; ++a)
-    {
-      const integer crossed = next[a] <= end && end < leave;
-      index += select((integer)0, select((integer)-strides[a], (integer)strides[a], up[a]), crossed);
-      shining += select((integer)0, select((integer)-source_strides[a], (integer)source_strides[a], up[a]), crossed);
-      next[a] += select((real)0.0f, step[a], crossed);
-    }
-    index = clamp(index, (integer)0, (integer)s->last); // the same
-    shining = clamp(shining, (integer)0, (integer)s->sourceLast);
-    now = end;
-    under_way = now < leave && received > (real)1e-35f;
-  }
+  see_box(s, point, &ray, received * left, sigma, emission, radiance);
 }
 
 // Solid angle of each side of the box that light comes through, from the voxel's middle, but no less than an eighth of

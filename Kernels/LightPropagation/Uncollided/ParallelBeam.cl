@@ -1,4 +1,4 @@
-// A beam of parallel light, after it was followed: its path is added to that of all lights, and its first moments.
+// A beam of parallel light, after it was followed: its path is added to a deposit, and its first moments.
 
 #include "LightPropagation/Uncollided/ParallelBeamShared.h"
 
@@ -12,7 +12,7 @@ static float distance_to_face(float tau)
 // First moments of the deposit from the powers through the faces (numerics.md, Eq. (39)): exact where as much goes in
 // as comes out through the faces beside; never more than if all light came in through the face.
 // path, currents           of the beam, as in Sweep/Deposit.h
-// all_path, first_moments  of all lamps
+// all_path, first_moments  of the deposit, added to
 __kernel void add_beam(BeamInfo beam, const __global float* sigma, ulong sigma_first, const __global float* path,
   const __global float* currents, __global float* all_path, __global float* first_moments, ulong first, ulong stride)
 {

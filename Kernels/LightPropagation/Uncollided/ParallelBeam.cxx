@@ -18,15 +18,15 @@ namespace
 constexpr int RaysPerEdge = 2; ///< of a voxel
 
 /// Adds what a beam deposited, and its first moments, which are found from the powers through the voxels' faces.
-void AddWithFirstMoments(const UncollidedVolume& volume, const std::array<double, 3>& omega,
-  const std::array<bool, 3>& periodic, const Deposit& ofBeam)
+void AddWithFirstMoments(
+  const UncollidedVolume& volume, const std::array<double, 3>& omega, const Deposit& ofBeam)
 {
   const Grid& grid = volume.layout.grid;
   BeamInfo info = {};
   for (int a = 0; a < 3; ++a)
   {
     info.size[a] = grid.size[a];
-    info.periodic[a] = periodic[a];
+    info.periodic[a] = volume.periodic[a];
     info.up[a] = omega[a] >= 0.0;
     info.spacing[a] = static_cast<float>(grid.spacing[a]);
     info.lengths[a] = static_cast<float>(grid.spacing[a] / std::max(std::abs(omega[a]), 1e-6));
@@ -41,12 +41,11 @@ void AddWithFirstMoments(const UncollidedVolume& volume, const std::array<double
     volume.device.Queue().enqueueNDRangeKernel(
       add, cl::NullRange, cl::NDRange(grid.VoxelCount(), to.channels), cl::NullRange);
   }
-  volume.device.Finish();
+  volume.device.Finish(); // the beam's arrays go
 }
 }
 
-SweepTally DepositBeam(
-  const UncollidedVolume& volume, const Light& light, const std::array<bool, 3>& periodic, const Monitor& monitor)
+SweepTally DepositBeam(const UncollidedVolume& volume, const Light& light, const Monitor& monitor)
 {
   const Grid& grid = volume.layout.grid;
   const glm::dvec3 along = glm::normalize(Vector(light.direction));
@@ -72,7 +71,7 @@ SweepTally DepositBeam(
   SweepTally tally;
   for (std::size_t a = 0; a < axes.size(); ++a)
   {
-    const SweepRequest request = { deposit, { { axes[a], BeamAlong(axes[a], grid, periodic, omega, RaysPerEdge) } } };
+    const SweepRequest request = { deposit, { { axes[a], BeamAlong(axes[a], grid, volume.periodic, omega, RaysPerEdge) } } };
     const double all = static_cast<double>(axes.size());
     const Monitor ofAxis = OfPart(monitor, a / all, (a + 1) / all);
     Add(tally,
@@ -81,7 +80,7 @@ SweepTally DepositBeam(
   }
   if (volume.deposit.firstMoments)
   {
-    AddWithFirstMoments(volume, omega, periodic, deposit);
+    AddWithFirstMoments(volume, omega, deposit);
   }
   return tally;
 }

@@ -9,6 +9,5 @@ namespace tyndall
 /// section 5.3), by sweeps of that one direction.
 ///
 /// @return what came in, what left, what still goes round a periodic axis
-SweepTally DepositBeam(
-  const UncollidedVolume& volume, const Light& light, const std::array<bool, 3>& periodic, const Monitor& monitor);
+SweepTally DepositBeam(const UncollidedVolume& volume, const Light& light, const Monitor& monitor);
 }

@@ -1,6 +1,6 @@
 #include "LightPropagation/Uncollided/UncollidedBoundary.h"
 
-#include "LightPropagation/Sweep/SweepPlan.h"
+#include "LightPropagation/Sweep/SweepShared.h"
 
 #include <algorithm>
 
@@ -26,7 +26,6 @@ SweepTally UncollidedBoundary::AddTo(const UncollidedVolume& volume, const Monit
   SweepTally tally;
   for (int part = 0; part < 6; ++part)
   {
-    const Monitor ofPart = OfPart(monitor, part / 6.0, (part + 1) / 6.0);
     const std::vector<Bundle> bundles = this->Light.Along().LitAlong(part / 2, part % 2, isLit);
     const PlaneAxes axes = AcrossAxis(part / 2);
     const std::size_t plane = static_cast<std::size_t>(grid.size[axes.u]) * grid.size[axes.v];
@@ -34,7 +33,10 @@ SweepTally UncollidedBoundary::AddTo(const UncollidedVolume& volume, const Monit
     for (std::size_t first = 0; first < bundles.size(); first += most)
     {
       const std::vector<Bundle> some(bundles.begin() + first, bundles.begin() + std::min(first + most, bundles.size()));
-      Add(tally, volume.makeSweep({ volume.deposit, { { part / 2, some } } })->Apply(nullptr, incoming, ofPart));
+      const double all = 6.0 * static_cast<double>(bundles.size());
+      const double before = part / 6.0 + static_cast<double>(first) / all;
+      const Monitor ofSome = OfPart(monitor, before, before + static_cast<double>(some.size()) / all);
+      Add(tally, volume.makeSweep({ volume.deposit, { { part / 2, some } } })->Apply(nullptr, incoming, ofSome));
     }
   }
   return tally;

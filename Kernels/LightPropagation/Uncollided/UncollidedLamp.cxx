@@ -5,9 +5,8 @@
 
 namespace tyndall
 {
-UncollidedLamp::UncollidedLamp(const Light& lamp, const std::array<bool, 3>& periodic)
+UncollidedLamp::UncollidedLamp(const Light& lamp)
   : Lamp(lamp)
-  , Periodic(periodic)
 {
 }
 
@@ -19,12 +18,12 @@ SweepTally UncollidedLamp::AddTo(const UncollidedVolume& volume, const Monitor& 
   }
   if (this->Lamp.type == LightType::Directional)
   {
-    return DepositBeam(volume, this->Lamp, this->Periodic, monitor);
+    return DepositBeam(volume, this->Lamp, monitor);
   }
   const auto add = [this, &volume](const SweepVolume& ofChannels, int first, const Monitor& ofGroup) {
     Light light = this->Lamp;
-    light.power = From(this->Lamp.power, first);
-    return Sum(light.power) > 0.0 ? DepositLamp(volume.device, ofChannels, light, this->Periodic, ofGroup)
+    light.power = OfGroup(this->Lamp.power, first);
+    return Sum(light.power) > 0.0 ? DepositLamp(volume.device, ofChannels, light, volume.periodic, ofGroup)
                                   : SweepTally();
   };
   return AddByGroups(volume, monitor, add);

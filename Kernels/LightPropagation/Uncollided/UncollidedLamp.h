@@ -9,12 +9,11 @@ namespace tyndall
 class UncollidedLamp : public UncollidedSource
 {
 public:
-  UncollidedLamp(const Light& lamp, const std::array<bool, 3>& periodic);
+  explicit UncollidedLamp(const Light& lamp);
 
   SweepTally AddTo(const UncollidedVolume& volume, const Monitor& monitor) const override;
 
 private:
   Light Lamp;
-  std::array<bool, 3> Periodic;
 };
 }

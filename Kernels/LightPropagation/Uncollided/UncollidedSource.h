@@ -13,6 +13,7 @@ struct UncollidedVolume
   Device& device;
   const VolumeLayout& layout;
   const Buffer<float>& sigma_t; ///< 1/length
+  const std::array<bool, 3>& periodic;
   SweepMaker makeSweep;         ///< for light that goes along sets of parallel rays
   Deposit deposit;
 };
