@@ -139,13 +139,11 @@ void UncollidedLight::AddBoundaryDifference(const Monitor& monitor)
 {
   TransportParts& parts = this->Parts;
   const PropagationSettings& settings = parts.Problem.Settings();
-  const auto fine =
-    parts.FindUncollided(UncollidedBoundary(settings, *parts.FineBoundary), OfPart(monitor, 0.0, 0.4));
+  const auto fine = parts.FindUncollided(UncollidedBoundary(settings, *parts.FineBoundary), OfPart(monitor, 0.0, 0.4));
   const auto usual =
     parts.FindUncollided(UncollidedBoundary(settings, *parts.UsualBoundary), OfPart(monitor, 0.4, 0.5));
   const bool many = ScatteredManyTimes(parts.Problem);
-  const TransportParts::EvenSky even =
-    many ? parts.FindEvenSky(OfPart(monitor, 0.5, 1.0)) : TransportParts::EvenSky();
+  const TransportParts::EvenSky even = many ? parts.FindEvenSky(OfPart(monitor, 0.5, 1.0)) : TransportParts::EvenSky();
   std::vector<float> flux = parts.Problem.Settings().netFlux ? parts.Flux.Read() : std::vector<float>();
   const std::size_t stride = parts.Layout.Stride();
   for (int c = 0; c < parts.Layout.channels; ++c)

@@ -18,8 +18,7 @@ namespace
 constexpr int RaysPerEdge = 2; ///< of a voxel
 
 /// Adds what a beam deposited, and its first moments, which are found from the powers through the voxels' faces.
-void AddWithFirstMoments(
-  const UncollidedVolume& volume, const std::array<double, 3>& omega, const Deposit& ofBeam)
+void AddWithFirstMoments(const UncollidedVolume& volume, const std::array<double, 3>& omega, const Deposit& ofBeam)
 {
   const Grid& grid = volume.layout.grid;
   BeamInfo info = {};
@@ -71,7 +70,8 @@ SweepTally DepositBeam(const UncollidedVolume& volume, const Light& light, const
   SweepTally tally;
   for (std::size_t a = 0; a < axes.size(); ++a)
   {
-    const SweepRequest request = { deposit, { { axes[a], BeamAlong(axes[a], grid, volume.periodic, omega, RaysPerEdge) } } };
+    const SweepRequest request = { deposit,
+      { { axes[a], BeamAlong(axes[a], grid, volume.periodic, omega, RaysPerEdge) } } };
     const double all = static_cast<double>(axes.size());
     const Monitor ofAxis = OfPart(monitor, a / all, (a + 1) / all);
     Add(tally,

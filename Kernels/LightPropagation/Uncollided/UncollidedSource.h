@@ -14,7 +14,7 @@ struct UncollidedVolume
   const VolumeLayout& layout;
   const Buffer<float>& sigma_t; ///< 1/length
   const std::array<bool, 3>& periodic;
-  SweepMaker makeSweep;         ///< for light that goes along sets of parallel rays
+  SweepMaker makeSweep; ///< for light that goes along sets of parallel rays
   Deposit deposit;
 };
 
