@@ -35,8 +35,8 @@ struct SweepRequest
 
 /// Carries light once through the medium: from what shines in its voxels and what comes in through the box's faces to
 /// path integrals, net flux, partial currents and the power that left (numerics.md, section 4). Power is conserved,
-/// Eq. (27). Independent of scattering orders and of acceleration. SweepInMemory.h does it in one device's memory; other
-/// implementations may do it slice by slice, over several machines or in another order.
+/// Eq. (27). Independent of scattering orders and of acceleration. SweepInMemory.h does it in one device's memory;
+/// other implementations may do it slice by slice, over several machines or in another order.
 class SweepOperator
 {
 public:
