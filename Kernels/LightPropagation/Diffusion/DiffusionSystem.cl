@@ -53,7 +53,8 @@ __kernel void diffusion_conductance(DiffusionLayout layout, const __global float
 // From 0 to 1: how thick a voxel of optical length tau is beside one of length beyond (numerics.md, Eq. (62)).
 static float contrast(float tau, float beyond)
 {
-  const float thick = 0.8f * tau * tau;
+  const float bounded = fmin(tau, 1e4f); // from there on it is as thick as can be, and a fourth power has an end
+  const float thick = 0.8f * bounded * bounded;
   const float unlike = tau > beyond ? 1.0f - beyond / tau : 0.0f;
   return unlike * unlike * thick * thick / ((1.0f + thick * thick) * (1.0f + beyond * beyond));
 }
@@ -408,5 +409,6 @@ __kernel void diffusion_surface_source(DiffusionLayout layout, const __global ex
     }
   }
   const float there = sum > 0.0f ? fmax(shining / sum, 0.0f) * sigma_t[i] * (0.25f * M_1_PI_F) : 0.0f;
-  source[begin + i] = mix(source[begin + i], there, skin);
+  // Where the skin is all, what is scattered of the fluence does not count, and may be more than floats hold.
+  source[begin + i] = skin < 1.0f ? mix(source[begin + i], there, skin) : there;
 }
