@@ -33,6 +33,18 @@ std::vector<double> ExactValues::Read() const
   return { values.begin(), values.end() };
 }
 
+void SetExact(cl::Kernel& kernel, cl_uint index, double value, bool inDouble)
+{
+  if (inDouble)
+  {
+    kernel.setArg(index, value);
+  }
+  else
+  {
+    kernel.setArg(index, static_cast<float>(value));
+  }
+}
+
 std::string ExactOption(const Device& device)
 {
   return Define("DOUBLES", device.HasExtension("cl_khr_fp64"));

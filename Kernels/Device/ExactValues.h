@@ -24,6 +24,9 @@ private:
   Buffer<float> Floats;
 };
 
+/// Sets an argument that a kernel declares as `exact`.
+void SetExact(cl::Kernel& kernel, cl_uint index, double value, bool inDouble);
+
 /// DOUBLES, as kernels are compiled with: 1 where the device has double precision.
 std::string ExactOption(const Device& device);
 }

@@ -18,19 +18,6 @@ constexpr int Patience = 12;         ///< iterations in which a residual has to 
 constexpr float Damping = 0.8f;      ///< of Jacobi's method, about the best for seven points
 constexpr double Negligible = 1e-12; ///< residual, of the first one
 
-/// An argument of a kernel that is double where the device has it.
-void SetExact(cl::Kernel& kernel, cl_uint index, double value, bool inDouble)
-{
-  if (inDouble)
-  {
-    kernel.setArg(index, value);
-  }
-  else
-  {
-    kernel.setArg(index, static_cast<float>(value));
-  }
-}
-
 /// Whether a residual is above a bound and has not stopped falling. Asked once an iteration.
 class StillTooLarge
 {

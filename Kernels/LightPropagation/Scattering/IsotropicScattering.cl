@@ -58,12 +58,13 @@ __kernel void scatter_all_orders(
 }
 
 // What is scattered of light that has met nothing yet. A work-item a value of a channel.
-// path  W length
+// path    W length
+// volume  4 pi times that of a voxel
 __kernel void add_first_scattered(
-  const __global float* path, __global float* source, const __global float* sigma_s, ulong stride, float per_volume)
+  const __global float* path, __global float* source, const __global float* sigma_s, ulong stride, exact volume)
 {
   const ulong i = get_global_id(1) * stride + get_global_id(0);
-  source[i] += sigma_s[i] * path[i] * (per_volume * M_1_PI_F * 0.25f);
+  source[i] += (float)((exact)sigma_s[i] * path[i] / volume);
 }
 
 // The source of a channel, which begins at `first` in all arrays but `fluence`: what is given and what is scattered. A

@@ -3,6 +3,7 @@
 #include "Device/Defines.h"
 #include "Device/Sizes.h"
 #include "LightPropagation/Scattering/CollectShared.h"
+#include "Numerics/Constants.h"
 #include "TyndallKernelSources.h"
 
 namespace tyndall
@@ -55,7 +56,8 @@ void IsotropicScattering::ScatterAllOrders(const Buffer<float>& fluence, const B
 void IsotropicScattering::AddFirstScattered(const Deposit& uncollided, const Buffer<float>& source) const
 {
   cl::Kernel kernel = this->Kernel("add_first_scattered");
-  With(kernel, *uncollided.path, source, this->TheMedium.SigmaS(), cl_ulong(this->Layout.Stride()), this->PerVolume());
+  With(kernel, *uncollided.path, source, this->TheMedium.SigmaS(), cl_ulong(this->Layout.Stride()));
+  SetExact(kernel, 4, 4.0 * Pi * this->Layout.grid.VoxelVolume(), this->TheDevice.HasExtension("cl_khr_fp64"));
   this->TheDevice.Queue().enqueueNDRangeKernel(kernel, cl::NullRange, this->Values());
 }
 
