@@ -4,9 +4,17 @@
 
 namespace tyndall
 {
+namespace
+{
+bool HasDoubles(const Device& device)
+{
+  return device.HasExtension("cl_khr_fp64");
+}
+}
+
 ExactValues::ExactValues(Device& device, std::size_t count, const char* what)
 {
-  if (device.HasExtension("cl_khr_fp64"))
+  if (HasDoubles(device))
   {
     this->Doubles = Buffer<double>(device, count, what);
   }
@@ -33,9 +41,9 @@ std::vector<double> ExactValues::Read() const
   return { values.begin(), values.end() };
 }
 
-void SetExact(cl::Kernel& kernel, cl_uint index, double value, bool inDouble)
+void SetExact(const Device& device, cl::Kernel& kernel, cl_uint index, double value)
 {
-  if (inDouble)
+  if (HasDoubles(device))
   {
     kernel.setArg(index, value);
   }
@@ -47,6 +55,6 @@ void SetExact(cl::Kernel& kernel, cl_uint index, double value, bool inDouble)
 
 std::string ExactOption(const Device& device)
 {
-  return Define("DOUBLES", device.HasExtension("cl_khr_fp64"));
+  return Define("DOUBLES", HasDoubles(device));
 }
 }

@@ -25,7 +25,7 @@ private:
 };
 
 /// Sets an argument that a kernel declares as `exact`.
-void SetExact(cl::Kernel& kernel, cl_uint index, double value, bool inDouble);
+void SetExact(const Device& device, cl::Kernel& kernel, cl_uint index, double value);
 
 /// DOUBLES, as kernels are compiled with: 1 where the device has double precision.
 std::string ExactOption(const Device& device);

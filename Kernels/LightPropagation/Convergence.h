@@ -15,6 +15,9 @@ bool MeetsTolerance(const PropagationSettings& settings, double residual);
 /// @param iterations  done, with the part of the one under way
 double ProgressOf(const PropagationSettings& settings, double residual, double iterations);
 
+/// Part of the first iteration's progress that uncollided light takes.
+constexpr double UncollidedPart = 0.5;
+
 /// Sets `converged` of solved light, and adds to its `doubts` where it is not, or where power is left over.
 void JudgeConvergence(const PropagationSettings& settings, LightField& light);
 }

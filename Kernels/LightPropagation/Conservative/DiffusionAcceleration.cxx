@@ -24,15 +24,17 @@ DiffusionAcceleration::DiffusionAcceleration(TransportParts& parts)
 
 IterationResult DiffusionAcceleration::Run(const Monitor& monitor)
 {
-  this->Uncollided.emplace(
-    this->Parts, OfPart(monitor, [this](double done) { return ProgressOf(this->Settings, 1.0, done); }));
+  this->Uncollided.emplace(this->Parts,
+    OfPart(monitor, [this](double done) { return ProgressOf(this->Settings, 1.0, UncollidedPart * done); }));
   this->GiveFirstScattered();
   this->MakeSweep();
   int iteration = 0;
   do
   {
-    const Monitor ofSweep =
-      OfPart(monitor, [=](double done) { return ProgressOf(this->Settings, this->Residual, iteration + done); });
+    const double before = iteration == 0 ? UncollidedPart : iteration;
+    const Monitor ofSweep = OfPart(monitor, [=](double done) {
+      return ProgressOf(this->Settings, this->Residual, before + (iteration + 1 - before) * done);
+    });
     this->Sweep(iteration, ofSweep);
     if (iteration == 0)
     {

@@ -35,12 +35,13 @@ IterationResult SourceIteration::Run(const Monitor& monitor)
   {
     const Monitor ofOrder =
       OfPart(monitor, [this](double done) { return ProgressOf(this->Settings, this->Residual, this->Order + done); });
+    const double uncollided = this->Order == 0 ? UncollidedPart : 0.0;
     if (this->Order == 0)
     {
-      this->AddUncollided(ofOrder);
+      this->AddUncollided(OfPart(ofOrder, 0.0, uncollided));
     }
     const bool scatteredShines = this->Shining && this->Order > 0;
-    this->SweepOrder(ofOrder);
+    this->SweepOrder(OfPart(ofOrder, uncollided, 1.0));
     if (this->Escaping && scatteredShines)
     {
       const Rgb escaped = this->Escaping->Apply();
@@ -136,20 +137,19 @@ void SourceIteration::AddUncollided(const Monitor& monitor)
   {
     sources.push_back(std::move(peak));
   }
+  const bool escapes = this->Parts.Fine && this->Parts.Problem.Traits().scatters;
+  const double all = static_cast<double>(sources.size() + (escapes ? 1 : 0));
+  SweepTally tally;
   for (std::size_t i = 0; i < sources.size(); ++i)
   {
-    const double all = static_cast<double>(sources.size() + 1); // the order's own sweep is as one more
     const Monitor ofSource = OfPart(monitor, i / all, (i + 1) / all);
-    const SweepTally tally = this->Parts.AddUncollided(*sources[i], this->Parts.WholeDeposit(), ofSource);
-    this->Result.ledger.Count(tally);
-    for (int c = 0; c < 3; ++c)
-    {
-      this->Stranded[c] += tally.onTheWay[c];
-    }
+    Add(tally, this->Parts.AddUncollided(*sources[i], this->Parts.WholeDeposit(), ofSource));
   }
-  if (this->Parts.Fine && this->Parts.Problem.Traits().scatters)
+  this->Result.ledger.Count(tally);
+  this->Stranded = tally.onTheWay;
+  if (escapes)
   {
-    this->Escaping.emplace(this->Parts, monitor); // whatever shines: lights add up
+    this->Escaping.emplace(this->Parts, OfPart(monitor, sources.size() / all, 1.0)); // whatever shines: lights add up
   }
 }
 

@@ -26,6 +26,7 @@ UncollidedLight::UncollidedLight(TransportParts& parts, const Monitor& monitor)
   parts.CountEmission(this->Counted);
   const double sources = parts.FineBoundary ? 0.5 : 1.0; // of the time
   this->AddSources(OfPart(monitor, 0.0, sources));
+  this->Counted.Count(this->OfSources);
   this->Lengths = parts.Path.Read();
   if (parts.FineBoundary)
   {
@@ -37,13 +38,13 @@ UncollidedLight::UncollidedLight(TransportParts& parts, const Monitor& monitor)
 /// In thick voxels it matters where lamps' light is first scattered.
 bool UncollidedLight::NeedsFirstMoments() const
 {
-  const Grid& grid = this->TheMedium.grid;
-  const double longest = *std::max_element(grid.spacing.begin(), grid.spacing.end());
-  bool thick = false;
   if (!this->LinearSource || this->Parts.Lamps.empty())
   {
     return false;
   }
+  const Grid& grid = this->TheMedium.grid;
+  const double longest = *std::max_element(grid.spacing.begin(), grid.spacing.end());
+  bool thick = false;
   for (std::size_t i = 0; i < grid.VoxelCount() && !thick; ++i)
   {
     for (int c = 0; c < this->Parts.Layout.channels && !thick; ++c)
@@ -77,13 +78,13 @@ void UncollidedLight::AddSources(const Monitor& monitor)
   {
     if (firstMoments.Size() == 0)
     {
-      this->Count(parts.AddUncollided(*lamp, parts.WholeDeposit(), monitorOfNext()));
+      Add(this->OfSources, parts.AddUncollided(*lamp, parts.WholeDeposit(), monitorOfNext()));
       continue;
     }
     firstMoments.Fill(0.0f);
     path.Fill(0.0f);
     const Deposit ofLamp = { &path, parts.WholeDeposit().flux, nullptr, &firstMoments };
-    this->Count(parts.AddUncollided(*lamp, ofLamp, monitorOfNext()));
+    Add(this->OfSources, parts.AddUncollided(*lamp, ofLamp, monitorOfNext()));
     this->PassFaces(path, firstMoments);
   }
   if (!lamps.empty())
@@ -92,16 +93,7 @@ void UncollidedLight::AddSources(const Monitor& monitor)
   }
   for (const std::unique_ptr<UncollidedSource>& peak : peaks)
   {
-    this->Count(parts.AddUncollided(*peak, parts.WholeDeposit(), monitorOfNext()));
-  }
-}
-
-void UncollidedLight::Count(const SweepTally& tally)
-{
-  this->Counted.Count(tally);
-  for (int c = 0; c < 3; ++c)
-  {
-    this->Stranded[c] += tally.onTheWay[c];
+    Add(this->OfSources, parts.AddUncollided(*peak, parts.WholeDeposit(), monitorOfNext()));
   }
 }
 
@@ -198,7 +190,7 @@ void UncollidedLight::CountAbsorbed()
       this->Counted.Absorb(
         c, static_cast<double>(this->TheMedium.sigma_a.At(i, c)) * this->Lengths[c * layout.Stride() + i]);
     }
-    this->Counted.LeaveOver(c, this->Stranded[c]);
+    this->Counted.LeaveOver(c, this->OfSources.onTheWay[c]);
   }
 }
 }

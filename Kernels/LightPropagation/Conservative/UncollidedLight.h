@@ -28,7 +28,6 @@ public:
 private:
   bool NeedsFirstMoments() const;
   void AddSources(const Monitor& monitor);
-  void Count(const SweepTally& tally);
   void PassFaces(const Buffer<float>& path, const Buffer<float>& firstMoments);
   void AddBoundaryDifference(const Monitor& monitor);
   double PartOfDifference(std::size_t voxel, int channel) const;
@@ -40,6 +39,6 @@ private:
   std::vector<float> Lengths, LengthsOfLamps;
   Buffer<float> ThroughFaces;
   EnergyLedger Counted;
-  Rgb Stranded = {}; ///< W, of rays that go round a periodic axis without end
+  SweepTally OfSources; ///< what is on its way goes round a periodic axis without end
 };
 }

@@ -76,11 +76,9 @@ CrossingPattern FindCrossingPattern(
     for (int which = 0; which < 2; ++which)
     {
       const int marching = OtherAxis(axis, which);
-      std::vector<double> power = CrossingsIn(grid, set, mapResolution, starts, axis, marching);
-      if (periodic[marching]) // rays go round and round: the mean is what counts
-      {
-        std::fill(power.begin(), power.end(), HalfRange(grid, set, axis, marching));
-      }
+      const std::vector<double> power = periodic[marching] // rays go round and round: the mean is what counts
+        ? std::vector<double>(grid.size[marching], HalfRange(grid, set, axis, marching))
+        : CrossingsIn(grid, set, mapResolution, starts, axis, marching);
       pattern.first[2 * axis + which] = static_cast<int>(pattern.values.size());
       for (double crossing : power)
       {

@@ -211,7 +211,7 @@ void MultigridSolver::Turn(double part)
 {
   cl::Kernel turn = this->Kernel("diffusion_turn");
   With(turn, this->Direction.Handle(), this->Levels.front().values);
-  SetExact(turn, 2, part, this->Direction.InDouble());
+  SetExact(this->TheDevice, turn, 2, part);
   this->TheDevice.Queue().enqueueNDRangeKernel(turn, cl::NullRange, cl::NDRange(this->Count), cl::NullRange);
 }
 
@@ -220,7 +220,7 @@ void MultigridSolver::Step(const ExactValues& values, double length)
 {
   cl::Kernel step = this->Kernel("diffusion_step");
   With(step, values.Handle(), this->Residual.Handle(), this->Direction.Handle(), this->Applied.Handle());
-  SetExact(step, 4, length, this->Direction.InDouble());
+  SetExact(this->TheDevice, step, 4, length);
   this->TheDevice.Queue().enqueueNDRangeKernel(step, cl::NullRange, cl::NDRange(this->Count), cl::NullRange);
 }
 

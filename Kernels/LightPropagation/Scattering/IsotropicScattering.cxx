@@ -57,7 +57,7 @@ void IsotropicScattering::AddFirstScattered(const Deposit& uncollided, const Buf
 {
   cl::Kernel kernel = this->Kernel("add_first_scattered");
   With(kernel, *uncollided.path, source, this->TheMedium.SigmaS(), cl_ulong(this->Layout.Stride()));
-  SetExact(kernel, 4, 4.0 * Pi * this->Layout.grid.VoxelVolume(), this->TheDevice.HasExtension("cl_khr_fp64"));
+  SetExact(this->TheDevice, kernel, 4, 4.0 * Pi * this->Layout.grid.VoxelVolume());
   this->TheDevice.Queue().enqueueNDRangeKernel(kernel, cl::NullRange, this->Values());
 }
 

@@ -26,11 +26,6 @@ std::vector<BundleMaps> MapsOf(const SweepPlan& plan)
   }
   return maps;
 }
-
-bool IsDark(const std::array<Rgb, 6>& powers)
-{
-  return std::all_of(powers.begin(), powers.end(), [](const Rgb& power) { return Sum(power) == 0.0; });
-}
 }
 
 struct AxisSweep::Implementation
@@ -336,7 +331,8 @@ void AxisSweep::Start(const SweepVolume& volume, const SweepBoundary& boundary, 
     self.DarkenSides();
   }
   const bool lit = static_cast<bool>(boundary);
-  self.Dark = lit && !volume.source && !self.IsPeriodic() && IsDark(self.Tally.in);
+  self.Dark =
+    lit && !volume.source && !self.IsPeriodic() && std::all_of(self.Tally.in.begin(), self.Tally.in.end(), IsBlack);
   if (self.Dark)
   {
     return;
