@@ -299,7 +299,7 @@ MediumInput ReadMedium(vtkAlgorithm* filter, vtkImageData* image)
   input.medium.sigma_a = input.sigma_a;
   input.medium.sigma_s = input.sigma_s;
   input.medium.emission = input.emission;
-  input.medium.g = ReadFact(image, "g", 0.0);
+  input.medium.phase = PhaseFunction::HenyeyGreenstein(ReadFact(image, "g", 0.0));
   Check(input.medium);
   return input;
 }

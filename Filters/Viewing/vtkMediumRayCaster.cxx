@@ -56,7 +56,7 @@ tyndall::ViewSettings SettingsOf(vtkMediumRayCaster* filter)
   settings.rectangleSamples = filter->GetRectangleSamples();
   settings.showBackground = filter->GetShowBackground();
   settings.backgroundColor = tyndall::Triple(filter->GetBackgroundColor());
-  settings.phaseFunction = static_cast<tyndall::PhaseFunction>(filter->GetPhaseFunction());
+  settings.phaseFunction = static_cast<tyndall::ViewedPhase>(filter->GetPhaseFunction());
   settings.surfaceReflection = static_cast<tyndall::SurfaceReflection>(filter->GetSurfaceReflection());
   settings.surfaceIndex = filter->GetSurfaceIndex();
   settings.surfaceReflectance = filter->GetSurfaceReflectance();

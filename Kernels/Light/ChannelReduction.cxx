@@ -112,6 +112,7 @@ OneChannelScene::OneChannelScene(const Medium& given, const Illumination& illumi
   this->medium.sigma_a = InChannel(given.sigma_a, brightest);
   this->medium.sigma_s = InChannel(given.sigma_s, brightest);
   this->medium.emission = InChannel(given.emission, brightest);
+  this->medium.phase = given.phase.Seen(brightest);
   grey(this->light.sky);
   std::for_each(this->light.faces.begin(), this->light.faces.end(), grey);
   for (Light& lamp : this->light.lights)

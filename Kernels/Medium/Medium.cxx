@@ -47,6 +47,26 @@ void CheckField(const Field& field, const char* name, const Grid& grid)
   }
 }
 
+void CheckMeanCosines(const Medium& medium)
+{
+  const Field& g = medium.phase.G();
+  if (!g.values)
+  {
+    return; // a phase function has looked at its own
+  }
+  CheckComponents(g, "g");
+  const std::size_t count = medium.grid.VoxelCount() * static_cast<std::size_t>(g.components);
+  for (std::size_t i = 0; i < count; ++i)
+  {
+    if (!(std::abs(g.values[i]) < 1.0f))
+    {
+      throw InvalidInput("The mean cosine g is " + std::to_string(g.values[i]) + " in voxel " +
+        VoxelName(medium.grid, i / static_cast<std::size_t>(g.components)) +
+        " (the first such voxel); it must lie between -1 and 1, and be neither.");
+    }
+  }
+}
+
 /// Their sum is what dims light; floats end at 3.4e38.
 void CheckExtinction(const Medium& medium)
 {
@@ -59,7 +79,7 @@ void CheckExtinction(const Medium& medium)
   {
     for (int c = 0; c < channels; ++c)
     {
-      const double g = std::abs(medium.g);
+      const double g = std::abs(medium.phase.MeanCosine(i, c));
       const double sigma_t = medium.sigma_a.At(i, c) + (1.0 + g) * medium.sigma_s.At(i, c);
       if (sigma_t > LargestExtinction)
       {
@@ -99,12 +119,9 @@ void Check(const Grid& grid)
 void Check(const Medium& medium)
 {
   Check(medium.grid);
-  if (!(std::abs(medium.g) < 1.0))
-  {
-    throw InvalidInput("The mean cosine g is " + std::to_string(medium.g) + "; it must lie between -1 and 1.");
-  }
   CheckField(medium.sigma_a, "sigma_a", medium.grid);
   CheckField(medium.sigma_s, "sigma_s", medium.grid);
+  CheckMeanCosines(medium);
   CheckExtinction(medium);
   CheckField(medium.emission, "emission", medium.grid);
 }

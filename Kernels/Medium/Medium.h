@@ -1,27 +1,14 @@
 #pragma once
 
+#include "Medium/Field.h"
 #include "Medium/Grid.h"
+#include "PhaseFunction/PhaseOfMedium.h"
 
 #include <string>
 
 namespace tyndall
 {
 constexpr double LargestExtinction = 1e37; ///< 1/length; the inverse of more is not a normal float
-
-/// One quantity over a grid's voxels, seen, not owned: `components` floats per voxel (1, or 3 for RGB interleaved).
-struct Field
-{
-  const float* values = nullptr; ///< null: the quantity is zero everywhere
-  int components = 1;
-  int standsForAll = -1; ///< the component of three that is seen in every channel; -1: each in its own
-
-  bool HasColour() const { return this->components == 3 && this->standsForAll < 0; }
-  float At(std::size_t voxel, int channel) const
-  {
-    const int component = this->components != 3 ? 0 : this->standsForAll >= 0 ? this->standsForAll : channel;
-    return this->values ? this->values[voxel * this->components + component] : 0.0f;
-  }
-};
 
 /// A participating medium: what pbrt calls sigma_a, sigma_s, Le and the phase function, constant in each voxel.
 struct Medium
@@ -30,13 +17,13 @@ struct Medium
   Field sigma_a;  ///< absorption coefficient, 1/length
   Field sigma_s;  ///< scattering coefficient, 1/length
   Field emission; ///< emitted radiance per unit length, W / (length^3 sr)
-  double g = 0.0; ///< mean cosine of the phase function (Henyey-Greenstein), in (-1, 1)
+  PhaseOfMedium phase;
 
   /// Scattering and extinction of the isotropic medium that stands for this one by the similarity relation
   /// (numerics.md, Eq. (8)): same diffusion, same absorption. 1/length
   float TransportSigmaS(std::size_t voxel, int channel) const
   {
-    return static_cast<float>(this->sigma_s.At(voxel, channel) * (1.0 - this->g));
+    return static_cast<float>(this->sigma_s.At(voxel, channel) * (1.0 - this->phase.MeanCosine(voxel, channel)));
   }
   float TransportSigmaT(std::size_t voxel, int channel) const
   {
@@ -46,7 +33,9 @@ struct Medium
   /// 3 where any quantity is coloured, else 1.
   int Channels() const
   {
-    return this->sigma_a.HasColour() || this->sigma_s.HasColour() || this->emission.HasColour() ? 3 : 1;
+    const bool colour =
+      this->sigma_a.HasColour() || this->sigma_s.HasColour() || this->emission.HasColour() || this->phase.HasColour();
+    return colour ? 3 : 1;
   }
 };
 
@@ -61,7 +50,7 @@ void CheckComponents(const Field& field, const char* name);
 void Check(const Grid& grid);
 
 /// @throws InvalidInput where the grid is not as above, where a coefficient is
-///   negative or not finite, or sigma_a and sigma_s add up to more than LargestExtinction (names the first such voxel),
-///   or where g is outside (-1, 1)
+///   negative or not finite, or sigma_a and sigma_s add up to more than LargestExtinction, or where a voxel's mean cosine
+///   g is outside (-1, 1) (names the first such voxel)
 void Check(const Medium& medium);
 }

@@ -158,7 +158,7 @@ MediumTraits TraitsOf(const Medium& medium, double similarity)
       filled.Add(row, y, z);
     }
   }
-  traits.isotropic = medium.g == 0.0 || !traits.scatters;
+  traits.isotropic = medium.phase.IsIsotropic() || !traits.scatters;
   traits.filled = filled.Box();
   return traits;
 }

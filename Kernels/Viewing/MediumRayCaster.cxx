@@ -105,7 +105,7 @@ MediumRayCaster::MediumRayCaster(Device& device, const Medium& medium, const Sol
       illumination.lights.begin(), illumination.lights.end(), [](const Light& lamp) { return !IsBlack(lamp.power); }))
   , AskedForShadowRays(asked.shadowRays)
   , Settings(this->Needed(asked))
-  , G(medium.g)
+  , G(medium.phase.MeanCosine(0, 0))
 {
   Check(medium);
   Check(illumination);
@@ -144,12 +144,12 @@ void MediumRayCaster::FindTraits(const Medium& medium, const SolvedLight& light,
   this->Traits = TraitsOf(medium);
   const MediumTraits& traits = this->Traits;
   this->Bends = !settings.leaveOut || this->Index.Varies();
-  this->KnowsFlow = medium.g != 0.0 && light.meanDirection.values && light.fluence.values && !settings.shadowRays;
+  this->KnowsFlow = this->G != 0.0 && light.meanDirection.values && light.fluence.values && !settings.shadowRays;
   this->Coloured = !settings.leaveOut || !traits.greyExtinction;
   // Beside directions of the light it does not pay to have sources by one channel.
   this->Grey = !this->Coloured && traits.grey && !this->KnowsFlow && this->LightCount == 0 &&
     light.fluence.components == 1 && light.fluenceDirect.components == 1 && (!traits.emits || traits.emission.IsGrey());
-  this->SourcesDependOnCamera = this->LightCount > 0 && medium.g != 0.0;
+  this->SourcesDependOnCamera = this->LightCount > 0 && this->G != 0.0;
   this->LargestSigmaT = ExtinctionBound(medium);
 }
 

@@ -30,7 +30,7 @@ struct SolvedLight
 };
 
 /// Angular distribution of scattered light for a mean cosine g.
-enum class PhaseFunction
+enum class ViewedPhase
 {
   HenyeyGreenstein = 0,
   Schlick = 1, ///< Blasi et al. 1993, with k = 1.55 g - 0.55 g^3, at most 0.9999
@@ -60,8 +60,8 @@ struct ViewSettings
   /// Whether to leave out what the scene does not need; false: three channels, rays that could bend and no leaps, to
   /// measure what that saves.
   bool leaveOut = true;
-  double minimumTransmittance = 1e-3;                            ///< a ray that has less left stops; 0: never
-  PhaseFunction phaseFunction = PhaseFunction::HenyeyGreenstein; ///< of light whose direction is known
+  double minimumTransmittance = 1e-3;                        ///< a ray that has less left stops; 0: never
+  ViewedPhase phaseFunction = ViewedPhase::HenyeyGreenstein; ///< of light whose direction is known
   SurfaceReflection surfaceReflection = SurfaceReflection::None;
   double surfaceIndex = 0.0; ///< the surface is where n has this value, > 0; 0: midway between least and largest n
   double surfaceReflectance = 0.1; ///< of SurfaceReflection::Fixed, [0, 1]

@@ -63,7 +63,7 @@ Medium PaperScene::Medium() const
   medium.grid = this->settings.grid;
   medium.sigma_a = { this->voxels.sigma_a.data(), this->voxels.components };
   medium.sigma_s = { this->voxels.sigma_s.data(), this->voxels.components };
-  medium.g = this->voxels.g;
+  medium.phase = PhaseFunction::HenyeyGreenstein(this->voxels.g);
   return medium;
 }
 

@@ -68,7 +68,7 @@ void TimeViewing(
     for (const double step : { 0.5, 1.0 })
     {
       Medium medium = scene.Medium();
-      medium.g = view.g;
+      medium.phase = PhaseFunction::HenyeyGreenstein(view.g);
       ViewSettings settings;
       settings.imageSize = bench.quick ? std::array<int, 2>{ 80, 60 } : std::array<int, 2>{ 800, 600 };
       settings.stepSize = step;

@@ -263,7 +263,7 @@ Seconds TimeShadowRays(Device& device, const Case& what)
   settings.stepSize = what.step;
   settings.shadowRays = true;
   Medium medium = MediumOf(what.scene);
-  medium.g = 0.5;
+  medium.phase = PhaseFunction::HenyeyGreenstein(0.5);
   Illumination illumination;
   illumination.lights.resize(1);
   illumination.lights[0].direction = { -0.5, 0.4, -0.8 };

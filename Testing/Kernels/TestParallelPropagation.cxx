@@ -140,7 +140,7 @@ TEST_F(ParallelPropagationTest, AgreesOnStoredDirectionsEmissionAndNetFlux)
 {
   RandomMedium random({ 7, 6, 5 }, 3);
   random.Emit(0.5f);
-  random.medium.g = 0.7;
+  random.medium.phase = PhaseFunction::HenyeyGreenstein(0.7);
   PropagationSettings settings = Orders(3);
   settings.netFlux = true;
   settings.directionsPerFace = 9;
@@ -236,7 +236,7 @@ TEST_F(ParallelPropagationTest, GivesTheSameBitsInBatchesAndAgain)
   RandomMedium random({ 9, 12, 10 }, 3);
   PropagationSettings settings = Orders(3);
   settings.storedDirections = 24;
-  random.medium.g = 0.5;
+  random.medium.phase = PhaseFunction::HenyeyGreenstein(0.5);
   const LightField atOnce = this->Solve(random.medium, Sunset(), settings);
   const LightField again = this->Solve(random.medium, Sunset(), settings);
   const LightField streamed = this->Solve(random.medium, Sunset(), settings, 200000);

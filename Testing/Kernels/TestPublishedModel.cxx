@@ -55,7 +55,7 @@ TEST(PublishedModel, ScattersWhatItTakes)
   EvenMedium even({ { 1, 1, 1 } }, 0.0f, 1.0f);
   for (const double g : { -0.5, 0.3, 0.9, 0.99 })
   {
-    even.medium.g = g;
+    even.medium.phase = PhaseFunction::HenyeyGreenstein(g);
     PropagationSettings settings;
     settings.storedDirections = 6; // all of the same size
     const PublishedModel model(even.medium, {}, settings);
@@ -75,7 +75,7 @@ TEST(PublishedModel, ScattersWhatItTakes)
 TEST(PublishedModel, ScattersAlongTheMeanCosine)
 {
   EvenMedium even({ { 1, 1, 1 } }, 0.0f, 1.0f);
-  even.medium.g = 0.6;
+  even.medium.phase = PhaseFunction::HenyeyGreenstein(0.6);
   PropagationSettings settings;
   settings.storedDirections = 150;
   const PublishedModel model(even.medium, {}, settings);

@@ -10,7 +10,7 @@ class ScatteringTowardsEye : public DeviceTest
 };
 
 /// Thin haze in light of mean direction x and anisotropy a.
-Scene Haze(double g, double a, PhaseFunction phase = PhaseFunction::HenyeyGreenstein)
+Scene Haze(double g, double a, ViewedPhase phase = ViewedPhase::HenyeyGreenstein)
 {
   Scene scene(GridOf(8, 8, 8));
   scene.settings.imageSize = { 1, 1 };
@@ -56,7 +56,7 @@ TEST_F(ScatteringTowardsEye, FollowsThePhaseFunction)
         const double expected = HenyeyGreensteinOf(g * a, cosine);
         EXPECT_NEAR(expected, Seen(this->GetDevice(), Haze(g, a), cosine), 2e-4 * expected) << g << " " << a;
         const double schlick = SchlickOf(g * a, cosine);
-        EXPECT_NEAR(schlick, Seen(this->GetDevice(), Haze(g, a, PhaseFunction::Schlick), cosine), 2e-4 * schlick);
+        EXPECT_NEAR(schlick, Seen(this->GetDevice(), Haze(g, a, ViewedPhase::Schlick), cosine), 2e-4 * schlick);
       }
     }
   }
@@ -70,7 +70,7 @@ TEST_F(ScatteringTowardsEye, IsNormalisedAndHasTheMeanCosine)
   const std::array<double, 4> weights = { 0.3626837833783620, 0.3137066458778873, 0.2223810344533745,
     0.1012285362903763 };
   const double g = 0.6, a = 0.5;
-  for (const PhaseFunction phase : { PhaseFunction::HenyeyGreenstein, PhaseFunction::Schlick })
+  for (const ViewedPhase phase : { ViewedPhase::HenyeyGreenstein, ViewedPhase::Schlick })
   {
     const Scene scene = Haze(g, a, phase);
     double sum = 0.0, cosine = 0.0, reference = 0.0;
@@ -85,7 +85,7 @@ TEST_F(ScatteringTowardsEye, IsNormalisedAndHasTheMeanCosine)
       }
     }
     EXPECT_NEAR(1.0, sum, 2e-4);
-    EXPECT_NEAR(phase == PhaseFunction::HenyeyGreenstein ? g * a : reference, cosine, 2e-4);
+    EXPECT_NEAR(phase == ViewedPhase::HenyeyGreenstein ? g * a : reference, cosine, 2e-4);
     EXPECT_NEAR(g * a, cosine, 0.02); // Schlick's k is a fit
   }
 }
@@ -111,7 +111,7 @@ TEST_F(ScatteringTowardsEye, BearsDirectionsLongerThanOne)
 {
   const double expected = HenyeyGreensteinOf(0.9, -0.3);
   EXPECT_NEAR(expected, Seen(this->GetDevice(), Haze(0.9, 1.0001), -0.3), 1e-2 * expected);
-  for (const PhaseFunction phase : { PhaseFunction::HenyeyGreenstein, PhaseFunction::Schlick })
+  for (const ViewedPhase phase : { ViewedPhase::HenyeyGreenstein, ViewedPhase::Schlick })
   {
     for (const double cosine : { 1.0, -1.0 })
     {

@@ -358,7 +358,7 @@ TEST_F(Traits, AsPublishedOneChannelStandsForThree)
   scene.settings.netFlux = true;
   scene.settings.storedDirections = 6;
   scene.settings.maximumOrders = 3;
-  scene.medium.g = 0.3;
+  scene.medium.phase = PhaseFunction::HenyeyGreenstein(0.3);
   scene.medium.sigma_a.values = scene.sigma_a.data();
   scene.medium.sigma_s.values = scene.sigma_s.data();
   scene.medium.emission = { scene.emission.data(), 3 };

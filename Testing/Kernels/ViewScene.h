@@ -53,7 +53,7 @@ struct Scene
     medium.sigma_a = See(this->sigma_a, this->components);
     medium.sigma_s = See(this->sigma_s, this->components);
     medium.emission = See(this->emission, 1);
-    medium.g = this->g;
+    medium.phase = PhaseFunction::HenyeyGreenstein(this->g);
     const auto channels = static_cast<int>(this->fluence.size() / std::max<std::size_t>(this->grid.VoxelCount(), 1));
     const auto cosines = static_cast<int>(this->surface.size() / BoxFaceCellCount(this->grid));
     return { device, medium,

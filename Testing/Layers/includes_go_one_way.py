@@ -15,7 +15,7 @@ LAYERS = {
     "Kernels": [
         ["Device"],
         ["Numerics"],
-        ["Medium", "Lights", "Light"],
+        ["Medium", "PhaseFunction", "Lights", "Light"],
         ["LightPropagation"],
         ["Refraction"],
         ["Photons"],

@@ -67,7 +67,7 @@ std::vector<std::string> LeftOutOf(const TransportParts& parts, const IterationR
   const int directions = static_cast<int>(parts.Usual.Set().directions.size());
   const DirectionSymmetry& symmetry = parts.Usual.Symmetry();
   say(parts.Layout.channels == 3 && parts.Layout.sharedExtinction, left_out::GreyExtinction);
-  say(parts.Problem.TheMedium().g == 0.0 && traits.scatters, left_out::Isotropic);
+  say(parts.Problem.TheMedium().phase.IsIsotropic() && traits.scatters, left_out::Isotropic);
   say(!traits.scatters, left_out::NoScattering);
   say(!traits.absorbs, left_out::NoAbsorption);
   say(!traits.emits, left_out::NoEmission);
@@ -84,7 +84,7 @@ std::vector<std::string> LeftOutOf(const TransportParts& parts, const IterationR
 std::vector<std::string> Words(const TransportParts& parts, const IterationResult& found, bool accelerated)
 {
   std::vector<std::string> words;
-  const double g = parts.Problem.TheMedium().g;
+  const double g = parts.Problem.TheMedium().phase.MeanCosine(0, 0);
   if (g != 0.0 && parts.Problem.Traits().scatters)
   {
     words.push_back("anisotropy: solved as isotropic scattering with sigma_s (1 - g), g = " + std::to_string(g) +

@@ -214,7 +214,7 @@ std::vector<std::string> LeftOutAsPublished(const Medium& medium, const MediumTr
     }
   };
   const bool leaveOut = settings.leaveOut;
-  say(leaveOut && medium.g == 0.0 && traits.scatters, left_out::Isotropic);
+  say(leaveOut && medium.phase.IsIsotropic() && traits.scatters, left_out::Isotropic);
   say(leaveOut && !traits.scatters, left_out::NoScattering);
   say(leaveOut && !traits.emits, left_out::NoEmission);
   say(leaveOut && traits.scatters && orders == 1, left_out::OneOrder);
@@ -229,7 +229,7 @@ PublishedModel::PublishedModel(
   Check(illumination);
   Check(settings);
   this->ChannelCount = channels == 3 || medium.Channels() == 3 || !ColourOf(illumination).IsGrey() ? 3 : 1;
-  this->Isotropic = medium.g == 0.0;
+  this->Isotropic = medium.phase.IsIsotropic();
   this->Set = PublishedDirections(settings.directionsPerFace);
   this->BoundaryRadiances = BoundaryOf(this->Set, illumination, settings.periodic);
   if (settings.storedDirections == 1)
@@ -250,7 +250,7 @@ PublishedModel::PublishedModel(
   this->Coefficients.push_back(fluence);
   if (!this->Isotropic)
   {
-    for (std::vector<double>& row : ScatteringFactors(medium.g, this->Set, this->Sources))
+    for (std::vector<double>& row : ScatteringFactors(medium.phase.MeanCosine(0, 0), this->Set, this->Sources))
     {
       this->Coefficients.push_back(std::move(row));
     }

@@ -1,0 +1,21 @@
+#pragma once
+
+#include <cstddef>
+
+namespace tyndall
+{
+/// One quantity over a grid's voxels, seen, not owned: `components` floats per voxel (1, or 3 for RGB interleaved).
+struct Field
+{
+  const float* values = nullptr; ///< null: the quantity is zero everywhere
+  int components = 1;
+  int standsForAll = -1; ///< the component of three that is seen in every channel; -1: each in its own
+
+  bool HasColour() const { return this->components == 3 && this->standsForAll < 0; }
+  float At(std::size_t voxel, int channel) const
+  {
+    const int component = this->components != 3 ? 0 : this->standsForAll >= 0 ? this->standsForAll : channel;
+    return this->values ? this->values[voxel * this->components + component] : 0.0f;
+  }
+};
+}
