@@ -50,7 +50,7 @@ void CheckComponents(const Field& field, const char* name);
 void Check(const Grid& grid);
 
 /// @throws InvalidInput where the grid is not as above, where a coefficient is
-///   negative or not finite, or sigma_a and sigma_s add up to more than LargestExtinction, or where a voxel's mean cosine
-///   g is outside (-1, 1) (names the first such voxel)
+///   negative or not finite, or sigma_a and sigma_s add up to more than LargestExtinction, or where a voxel's mean
+///   cosine g is outside (-1, 1) (names the first such voxel)
 void Check(const Medium& medium);
 }

@@ -6,8 +6,8 @@
 namespace tyndall
 {
 /// What part of scattered light goes which way, by the cosine of the angle between its direction before and after: 1
-/// straight on, -1 straight back. The same both ways (reciprocity). One description for all solvers, the photons and the
-/// ray caster; numerics.md, section 2.1.
+/// straight on, -1 straight back. The same both ways (reciprocity). One description for all solvers, the photons and
+/// the ray caster; numerics.md, section 2.1.
 ///
 /// A value: copies are cheap, a table is shared.
 class PhaseFunction
@@ -37,8 +37,8 @@ public:
   /// Linear between the rows of a table, as Mie codes print them; scaled such that its integral is 1.
   /// @param cosines  from -1 to 1 (to 1e-3), rising or falling
   /// @param values   in any unit, not negative
-  /// @throws InvalidInput naming the first row that is not a number, negative or out of order; where there are fewer than
-  /// two, or their integral is zero
+  /// @throws InvalidInput naming the first row that is not a number, negative or out of order; where there are fewer
+  /// than two, or their integral is zero
   static PhaseFunction Tabulated(std::vector<double> cosines, std::vector<double> values);
 
   Kind TheKind() const { return this->Which; }
