@@ -63,6 +63,12 @@ public:
       this->Owner->Queue().enqueueWriteBuffer(this->Memory, CL_TRUE, 0, count * sizeof(T), values);
     }
   }
+  /// The same part of another.
+  void CopyFrom(const Buffer& other, std::size_t first, std::size_t count) const
+  {
+    const std::size_t begin = first * sizeof(T);
+    this->Owner->Queue().enqueueCopyBuffer(other.Memory, this->Memory, begin, begin, count * sizeof(T));
+  }
   void Read(T* values) const
   {
     if (this->Count > 0)
@@ -77,11 +83,12 @@ public:
     return values;
   }
 
-  void Fill(T value)
+  void Fill(T value) { this->Fill(value, 0, this->Count); }
+  void Fill(T value, std::size_t first, std::size_t count)
   {
-    if (this->Count > 0)
+    if (count > 0)
     {
-      this->Owner->Queue().enqueueFillBuffer(this->Memory, value, 0, this->Count * sizeof(T));
+      this->Owner->Queue().enqueueFillBuffer(this->Memory, value, first * sizeof(T), count * sizeof(T));
     }
   }
 

@@ -1,5 +1,6 @@
 #pragma once
 
+#include "LightPropagation/Angular/AngularValues.h"
 #include "LightPropagation/Angular/DirectionSet.h"
 #include "LightPropagation/Angular/DirectionSymmetry.h"
 #include "LightPropagation/Angular/RayBundles.h"
@@ -22,6 +23,10 @@ public:
   RayStarts Starts() const { return this->WhereRaysStart; }
   const DirectionSymmetry& Symmetry() const { return this->Mirrors; }
   bool MergesMirrors() const { return this->Merges; } ///< not where net flux is asked for, which differs
+  /// Functions along the directions; of those that stand for others the mean over all of them.
+  AngularValues Values(const AngularBasis& basis) const;
+  /// The mean, over all that a direction stands for, of values of directions.
+  double Mean(int direction, const std::vector<double>& values) const;
   /// Those that `direction` stands for, itself among them.
   std::vector<int> AllOf(int direction) const;
 

@@ -56,6 +56,7 @@ void DiffusionAcceleration::GiveFirstScattered()
 {
   TransportParts& parts = this->Parts;
   this->Given = Buffer<float>(parts.TheDevice, parts.Source.Read(), "the light given");
+  parts.DarkenBeams(); // until what is first scattered shines
   this->GivenPower = this->Uncollided->Ledger().Balance().emitted;
   std::vector<float> path = this->Uncollided->Path();
   parts.Path.Write(path.data());
@@ -66,7 +67,7 @@ void DiffusionAcceleration::GiveFirstScattered()
     for (std::size_t i = 0; i < parts.Layout.grid.VoxelCount(); ++i)
     {
       float& here = path[c * parts.Layout.Stride() + i];
-      this->GivenPower[c] += static_cast<double>(this->TheMedium.TransportSigmaS(i, c)) * here;
+      this->GivenPower[c] += static_cast<double>(parts.Problem.Scattering().SigmaS(i, c)) * here;
       here = static_cast<float>(here / volume);
     }
   }
@@ -79,6 +80,7 @@ void DiffusionAcceleration::MakeSweep()
   this->PartialCurrents = Buffer<float>(parts.TheDevice, parts.Layout.Floats(6), "the power from voxel to voxel");
   SweepRequest request = { this->DepositOfSweep(), parts.AllRays() };
   request.sameBoundary = true;
+  request.angular = parts.UsualValues();
   this->Swept = parts.MakeSweep(request);
 }
 
@@ -92,10 +94,18 @@ Deposit DiffusionAcceleration::DepositOfSweep() const
 /// every time.
 void DiffusionAcceleration::Sweep(int iteration, const Monitor& monitor)
 {
+  if (iteration == 1)
+  {
+    this->Parts.LightBeams(this->Given);
+  }
   for (std::size_t c = 0; c < this->Systems.size(); ++c)
   {
     if (this->VoxelPower(static_cast<int>(c)) > 0.0)
     {
+      if (this->Parts.Basis)
+      {
+        this->Systems[c]->AddFluxBeyondSweep(this->Parts.Path);
+      }
       this->Parts.Scattering->ScatterFluence(
         static_cast<int>(c), this->DepositOfSweep(), this->Systems[c]->NextFluence(), this->Given, this->Parts.Source);
       this->Systems[c]->ShapeSource();
@@ -136,9 +146,9 @@ void DiffusionAcceleration::MakeSystems()
       this->PowerIn[c] += this->Tally.in[face][c];
     }
     const DiffusionSystem::Arrays arrays = { parts.Layout.Stride(), parts.Layout.ExtinctionFirst(c),
-      c * parts.Layout.Stride(), &parts.OnDevice.SigmaT(), &parts.OnDevice.SigmaA(), &parts.OnDevice.SigmaS(),
-      &this->Given, &parts.Source, &parts.Path, &this->PartialCurrents,
-      this->Uncollided->Passed().Size() > 0 ? &this->Uncollided->Passed() : nullptr };
+      c * parts.Layout.Stride(), parts.FunctionStride(), &parts.OnDevice.TransportSigmaT(), &parts.OnDevice.SigmaT(),
+      &parts.OnDevice.SigmaA(), &parts.OnDevice.SigmaS(), &this->Given, &parts.Source, &parts.Path,
+      &this->PartialCurrents, this->Uncollided->Passed().Size() > 0 ? &this->Uncollided->Passed() : nullptr };
     this->Systems.push_back(std::make_unique<DiffusionSystem>(parts.TheDevice, parts.Layout.grid,
       this->Settings.periodic, parts.Usual.Set(), pattern, arrays, ofChannel, this->LinearSource));
   }

@@ -20,7 +20,7 @@ EscapeCorrection::EscapeCorrection(TransportParts& parts, const Monitor& monitor
   const double whole = 0.25 * 4.0 * Pi * grid.VoxelVolume();
   const std::vector<float> extra = Planar(parts.Layout, parts.Layout.channels, [&](std::size_t i, int c) {
     const std::size_t at = c * parts.Layout.Stride() + i;
-    const double sigma_t = parts.Problem.TheMedium().TransportSigmaT(i, c);
+    const double sigma_t = parts.Problem.Scattering().SigmaT(i, c);
     const double most = whole * thinnest * sigma_t / (1.0 + thinnest * sigma_t);
     const double difference = std::clamp<double>(sky.fine.path[at] - sky.usual.path[at], -most, most);
     return sigma_t > 0.0 ? static_cast<float>(difference / sigma_t) : 0.0f;

@@ -68,7 +68,9 @@ IterationResult SourceIteration::Run(const Monitor& monitor)
 void SourceIteration::MakeSweeps()
 {
   const int mostPlanes = this->Settings.maximumOrders > 0 ? MostPlanesAround : FewPlanes;
-  this->Whole = this->Parts.MakeSweep({ this->Parts.WholeDeposit(), this->Parts.AllRays(), {}, mostPlanes });
+  SweepRequest request = { this->Parts.WholeDeposit(), this->Parts.AllRays(), {}, mostPlanes };
+  request.angular = this->Parts.UsualValues();
+  this->Whole = this->Parts.MakeSweep(request);
   this->MakeFilledSweep();
   if (this->Settings.leaveOut && this->Parts.SweepsAreLit() && !this->Shining)
   {
@@ -83,7 +85,8 @@ void SourceIteration::MakeFilledSweep()
 {
   const std::array<bool, 3>& periodic = this->Settings.periodic;
   const MediumTraits& traits = this->Parts.Problem.Traits();
-  if (!this->Settings.leaveOut || !traits.scatters || periodic[0] || periodic[1] || periodic[2])
+  if (!this->Settings.leaveOut || !traits.scatters || !this->Parts.Scattering->CanScatterAllOrders() || periodic[0] ||
+    periodic[1] || periodic[2])
   {
     return;
   }
@@ -122,7 +125,9 @@ void SourceIteration::MakeLitSweep()
   if (lit <= MostlyLit * all)
   {
     this->LitPart = lit / all;
-    this->Lit = this->Parts.MakeSweep({ this->Parts.WholeDeposit(), ways });
+    SweepRequest request = { this->Parts.WholeDeposit(), ways };
+    request.angular = this->Parts.UsualValues();
+    this->Lit = this->Parts.MakeSweep(request);
   }
 }
 
@@ -166,6 +171,10 @@ void SourceIteration::SweepOrder(const Monitor& monitor)
   SweepOperator& sweep = this->InFilledPart() ? *this->Filled : this->Lit ? *this->Lit : *this->Whole;
   const SweepTally tally = sweep.Apply(source, boundary, monitor);
   this->OnTheWay = tally.onTheWay;
+  if (this->Order > 0)
+  {
+    this->Parts.DarkenBeams(); // they are first scattered once
+  }
   if (!this->InFilledPart())
   {
     this->Result.ledger.Count(tally);

@@ -1,5 +1,7 @@
 #include "LightPropagation/Conservative/TransportParts.h"
 
+#include "LightPropagation/Scattering/AngularScattering.h"
+#include "LightPropagation/Scattering/BeamScattering.h"
 #include "LightPropagation/Scattering/IsotropicScattering.h"
 #include "LightPropagation/Sweep/SweepInMemory.h"
 #include "LightPropagation/Uncollided/EnvironmentPeaks.h"
@@ -7,11 +9,19 @@
 #include "LightPropagation/Uncollided/UncollidedEmission.h"
 #include "LightPropagation/Uncollided/UncollidedLamp.h"
 #include "Numerics/Constants.h"
+#include "Numerics/Vectors.h"
+
+#include <glm/geometric.hpp>
+#include <glm/vec3.hpp>
+
+#include <algorithm>
 
 namespace tyndall
 {
 namespace
 {
+constexpr std::size_t MostBeams = 4; ///< whose first scattering is exact in angle
+
 RayStarts StartsOf(const PropagationSettings& settings)
 {
   return settings.staggeredRays ? RayStarts::Staggered : RayStarts::Middle;
@@ -46,7 +56,8 @@ TransportParts::TransportParts(Device& device, const PropagationProblem& problem
   : TheDevice(device)
   , Problem(problem)
   , Layout(LayoutOf(problem))
-  , OnDevice(device, problem.TheMedium(), this->Layout, NeedsOf(problem, this->Layout, accelerated))
+  , OnDevice(
+      device, problem.TheMedium(), problem.Scattering(), this->Layout, NeedsOf(problem, this->Layout, accelerated))
   , Scattering(this->MakeScattering())
   , Usual(problem.TheGrid(), problem.Settings(), EquiangularDirections(problem.Settings().directionsPerFace),
       StartsOf(problem.Settings()))
@@ -54,10 +65,13 @@ TransportParts::TransportParts(Device& device, const PropagationProblem& problem
   , Accelerated(accelerated)
 {
   this->FindBoundaryLight();
+  this->FindAngularValues();
   const MediumTraits& traits = problem.Traits();
   const bool needsSource = problem.ComputesScattering() || traits.emits || accelerated;
-  this->Source = Buffer<float>(device, needsSource ? this->Layout.Floats() : SweepPadding, "the scattered light");
-  this->Path = Buffer<float>(device, this->Layout.Floats(), "the light gathered");
+  const int shining = this->Functions() + static_cast<int>(this->Beams.size());
+  this->Source =
+    Buffer<float>(device, needsSource ? this->Layout.Floats(shining) : SweepPadding, "the scattered light");
+  this->Path = Buffer<float>(device, this->Layout.Floats(this->Functions()), "the light gathered");
   this->Fluence = Buffer<float>(device, this->Layout.Floats(), "fluence");
   if (problem.Settings().netFlux)
   {
@@ -73,9 +87,9 @@ TransportParts::TransportParts(Device& device, const PropagationProblem& problem
 void TransportParts::LoadSource()
 {
   this->MediumShines = !this->Problem.Settings().leaveOut;
+  this->Source.Fill(0.0f);
   if (!this->Problem.Traits().emits)
   {
-    this->Source.Fill(0.0f);
     return;
   }
   const Field smooth = this->Emission.Smooth(this->Problem.TheMedium());
@@ -83,7 +97,7 @@ void TransportParts::LoadSource()
     this->MediumShines = this->MediumShines || smooth.At(i, c) > 0.0f;
     return smooth.At(i, c);
   });
-  this->Source.Write(source.data());
+  this->Source.Write(source.data(), source.size() - SweepPadding);
 }
 
 void TransportParts::FindBoundaryLight()
@@ -144,6 +158,10 @@ std::unique_ptr<SweepOperator> TransportParts::MakeSweep(const SweepRequest& req
 
 std::unique_ptr<const ScatteringOperator> TransportParts::MakeScattering() const
 {
+  if (const int degree = this->Problem.Scattering().Degree(); degree > 0)
+  {
+    return std::make_unique<AngularScattering>(this->TheDevice, this->Layout, this->OnDevice, degree);
+  }
   return std::make_unique<IsotropicScattering>(
     this->TheDevice, this->Layout, this->OnDevice, this->Problem.ComputesScattering());
 }
@@ -184,18 +202,115 @@ SweepTally TransportParts::AddUncollided(const UncollidedSource& source, const D
 {
   const SweepMaker sweeps = [this](const SweepRequest& request) { return this->MakeSweep(request); };
   const std::array<bool, 3>& periodic = this->Problem.Settings().periodic;
-  return source.AddTo({ this->TheDevice, this->Layout, this->OnDevice.SigmaT(), periodic, sweeps, deposit }, monitor);
+  UncollidedVolume volume = { this->TheDevice, this->Layout, this->OnDevice.SigmaT(), periodic, sweeps, deposit,
+    this->Basis.get(), nullptr };
+  const int beam = this->SlotOf(source);
+  if (beam < 0)
+  {
+    return source.AddTo(volume, monitor);
+  }
+  Buffer<float> path(this->TheDevice, this->Layout.Floats(), "the light of a beam");
+  path.Fill(0.0f);
+  volume.beamPath = &path;
+  const SweepTally tally = source.AddTo(volume, monitor);
+  this->Scattering->AddBeam(path, this->Source, this->Functions() + beam);
+  return tally;
+}
+
+/// Of a beam with an angular distribution of its own, which one; -1: it has none.
+int TransportParts::SlotOf(const UncollidedSource& source) const
+{
+  const auto* lamp = dynamic_cast<const UncollidedLamp*>(&source);
+  for (std::size_t b = 0; lamp && b < this->Beams.size(); ++b)
+  {
+    if (&lamp->TheLight() == &this->Lamps[this->Beams[b]])
+    {
+      return static_cast<int>(b);
+    }
+  }
+  return -1;
+}
+
+void TransportParts::DarkenBeams()
+{
+  const std::size_t stride = this->FunctionStride();
+  if (!this->Beams.empty())
+  {
+    this->Source.Fill(0.0f, this->Functions() * stride, this->Beams.size() * stride);
+  }
+}
+
+void TransportParts::LightBeams(const Buffer<float>& given) const
+{
+  const std::size_t stride = this->FunctionStride();
+  if (!this->Beams.empty())
+  {
+    this->Source.CopyFrom(given, this->Functions() * stride, this->Beams.size() * stride);
+  }
+}
+
+/// Angular functions along the directions, and the distributions of what is first scattered of the brightest beams.
+void TransportParts::FindAngularValues()
+{
+  const TruncatedScattering& scattering = this->Problem.Scattering();
+  if (scattering.Degree() == 0)
+  {
+    return;
+  }
+  this->Basis = std::make_unique<AngularBasis>(this->Usual.Set(), scattering.Degree());
+  AngularValues values = this->Usual.Values(*this->Basis);
+  this->Beams = this->BrightestBeams();
+  std::vector<std::vector<double>> ofBeams;
+  for (int beam : this->Beams)
+  {
+    const glm::dvec3 along = glm::normalize(Vector(this->Lamps[beam].direction));
+    ofBeams.push_back(BeyondMoments(this->Problem.TheMedium().phase.OfChannel(0), scattering.OfThinVoxels(),
+      this->Usual.Set(), *this->Basis, { along.x, along.y, along.z }));
+  }
+  for (std::size_t d = 0; d < this->Usual.Set().directions.size(); ++d)
+  {
+    values.beams.emplace_back();
+    for (const std::vector<double>& ofBeam : ofBeams)
+    {
+      values.beams.back().push_back(this->Usual.Mean(static_cast<int>(d), ofBeam));
+    }
+  }
+  this->OfUsual = std::make_unique<AngularValues>(std::move(values));
+}
+
+/// Which lamps; none where the phase function varies.
+std::vector<int> TransportParts::BrightestBeams() const
+{
+  std::vector<int> beams;
+  for (std::size_t i = 0; i < this->Lamps.size() && !this->Problem.TheMedium().phase.Varies() &&
+       !this->Problem.TheMedium().phase.HasColour();
+       ++i)
+  {
+    if (this->Lamps[i].type == LightType::Directional && Sum(this->Lamps[i].power) > 0.0)
+    {
+      beams.push_back(static_cast<int>(i));
+    }
+  }
+  const auto brighter = [this](int a, int b) { return Sum(this->Lamps[a].power) > Sum(this->Lamps[b].power); };
+  std::stable_sort(beams.begin(), beams.end(), brighter);
+  beams.resize(std::min<std::size_t>(beams.size(), MostBeams));
+  return beams;
 }
 
 TransportParts::UncollidedFlux TransportParts::FindUncollided(const UncollidedSource& source, const Monitor& monitor)
 {
   const bool netFlux = this->Problem.Settings().netFlux;
-  Buffer<float> path(this->TheDevice, this->Layout.Floats(), "uncollided light");
+  Buffer<float> path(this->TheDevice, this->Layout.Floats(this->Functions()), "uncollided light");
   Buffer<float> flux(this->TheDevice, netFlux ? this->Layout.Floats(3) : 0, "its net flux");
   path.Fill(0.0f);
   flux.Fill(0.0f);
   UncollidedFlux found;
-  found.tally = this->AddUncollided(source, { &path, netFlux ? &flux : nullptr, nullptr, nullptr }, monitor);
+  const bool withFlux = netFlux && !this->Basis;
+  found.tally = this->AddUncollided(source, { &path, withFlux ? &flux : nullptr, nullptr, nullptr }, monitor);
+  if (netFlux && this->Basis)
+  {
+    AddFluxOfMoments(this->TheDevice, this->Layout, path, flux);
+  }
   found.path = path.Read();
   found.flux = flux.Read();
   return found;

@@ -1,6 +1,7 @@
 #pragma once
 
 #include "Device/Buffer.h"
+#include "LightPropagation/Angular/AngularBasis.h"
 #include "LightPropagation/Angular/SweptDirections.h"
 #include "LightPropagation/Conservative/EnergyLedger.h"
 #include "LightPropagation/Problem/MediumOnDevice.h"
@@ -39,13 +40,15 @@ public:
 
   /// Along the directions of scattered light.
   const SweptDirections Usual;
+  std::unique_ptr<const AngularBasis> Basis; ///< of the moments in which light is scattered; null: all is isotropic
   /// Along directions of its own until it meets the medium, where they were asked for and differ from the usual ones.
   std::unique_ptr<const SweptDirections> Fine;
   std::unique_ptr<const BoundaryLight> UsualBoundary, FineBoundary; ///< FineBoundary: null where there are none
   std::vector<Light> Lamps; ///< those of the scene and the peaks of the environment
   SplitEmission Emission;   ///< of the medium
 
-  /// [channel][stride]; flux [channel][x, y, z][stride], empty where net flux is not asked for.
+  /// [channel][stride]; flux [channel][x, y, z][stride], empty where net flux is not asked for. Where light has angular
+  /// moments, Source and Path have them [function][channel][stride], and Source those of beams behind them.
   Buffer<float> Source, Path, Flux, Fluence;
   SweepWorkspace Workspace;
 
@@ -80,6 +83,12 @@ public:
 
   Deposit WholeDeposit() const;             ///< path, and flux where it is asked for
   std::vector<AxisBundles> AllRays() const; ///< of the usual directions
+  /// Of the usual directions, for SweepRequest::angular; null: all is isotropic.
+  const AngularValues* UsualValues() const { return this->OfUsual.get(); }
+  void DarkenBeams();                                ///< in Source
+  void LightBeams(const Buffer<float>& given) const; ///< in Source, as they are in another one
+  std::size_t FunctionStride() const { return this->Layout.channels * this->Layout.Stride(); }
+  int Functions() const { return this->Basis ? this->Basis->Count() : 1; }
   /// The one place where an implementation of the sweep is chosen.
   std::unique_ptr<SweepOperator> MakeSweep(const SweepRequest& request);
 
@@ -88,8 +97,13 @@ private:
   std::unique_ptr<const ScatteringOperator> MakeScattering() const;
   void LoadSource();
   void FindBoundaryLight();
+  void FindAngularValues();
+  std::vector<int> BrightestBeams() const;
+  int SlotOf(const UncollidedSource& source) const;
 
   bool Accelerated;
   bool MediumShines = false;
+  std::unique_ptr<const AngularValues> OfUsual;
+  std::vector<int> Beams; ///< which of the lamps have an angular distribution of their own
 };
 }

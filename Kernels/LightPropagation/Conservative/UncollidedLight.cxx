@@ -2,6 +2,7 @@
 
 #include "LightPropagation/Diffusion/LampPassing.h"
 #include "LightPropagation/Problem/ScatteringOrders.h"
+#include "LightPropagation/Scattering/AngularScattering.h"
 #include "LightPropagation/Uncollided/UncollidedBoundary.h"
 
 #include <algorithm>
@@ -26,6 +27,10 @@ UncollidedLight::UncollidedLight(TransportParts& parts, const Monitor& monitor)
   parts.CountEmission(this->Counted);
   const double sources = parts.FineBoundary ? 0.5 : 1.0; // of the time
   this->AddSources(OfPart(monitor, 0.0, sources));
+  if (parts.Basis && parts.Problem.Settings().netFlux)
+  {
+    AddFluxOfMoments(parts.TheDevice, parts.Layout, parts.Path, parts.Flux);
+  }
   this->Counted.Count(this->OfSources);
   this->Lengths = parts.Path.Read();
   if (parts.FineBoundary)
@@ -63,7 +68,7 @@ void UncollidedLight::AddSources(const Monitor& monitor)
   if (this->NeedsFirstMoments())
   {
     firstMoments = Buffer<float>(parts.TheDevice, parts.Layout.Floats(6), "light of lamps");
-    path = Buffer<float>(parts.TheDevice, parts.Layout.Floats(), "light of lamps");
+    path = Buffer<float>(parts.TheDevice, parts.Layout.Floats(parts.Functions()), "light of lamps");
     this->ThroughFaces = Buffer<float>(parts.TheDevice, parts.Layout.Floats(6), "light of lamps");
     this->ThroughFaces.Fill(0.0f);
   }
@@ -86,6 +91,10 @@ void UncollidedLight::AddSources(const Monitor& monitor)
     const Deposit ofLamp = { &path, parts.WholeDeposit().flux, nullptr, &firstMoments };
     Add(this->OfSources, parts.AddUncollided(*lamp, ofLamp, monitorOfNext()));
     this->PassFaces(path, firstMoments);
+    if (parts.Basis)
+    {
+      AddMoments(parts.TheDevice, parts.FunctionStride(), parts.Functions(), path, parts.Path);
+    }
   }
   if (!lamps.empty())
   {
@@ -105,8 +114,9 @@ void UncollidedLight::PassFaces(const Buffer<float>& path, const Buffer<float>& 
   {
     const std::size_t first = c * parts.Layout.Stride();
     PassLampLight(parts.TheDevice, parts.Layout.grid, parts.Problem.Settings().periodic,
-      { parts.Layout.Stride(), parts.Layout.ExtinctionFirst(c), first, &parts.OnDevice.SigmaT(),
-        &parts.OnDevice.SigmaA(), &parts.OnDevice.SigmaS(), &path, &firstMoments, &this->ThroughFaces, &parts.Path });
+      { parts.Layout.Stride(), parts.Layout.ExtinctionFirst(c), first, &parts.OnDevice.TransportSigmaT(),
+        &parts.OnDevice.SigmaA(), &parts.OnDevice.SigmaS(), &parts.OnDevice.SigmaT(), &path, &firstMoments,
+        &this->ThroughFaces, &parts.Path });
   }
 }
 
@@ -154,7 +164,12 @@ void UncollidedLight::AddBoundaryDifference(const Monitor& monitor)
       const double scale = many ? Ratio(even.usual.path[at], even.fine.path[at]) : whole;
       const double difference = part * (scale * fine.path[at] - usual.path[at]);
       this->Lengths[at] += static_cast<float>(difference);
-      more += this->TheMedium.TransportSigmaT(i, c) * difference;
+      for (int q = 1; q < parts.Functions(); ++q)
+      {
+        const std::size_t moment = q * parts.FunctionStride() + at;
+        this->Lengths[moment] += static_cast<float>(part * (scale * fine.path[moment] - usual.path[moment]));
+      }
+      more += parts.Problem.Scattering().SigmaT(i, c) * difference;
       for (int a = 0; a < 3 && !flux.empty(); ++a)
       {
         const std::size_t along = (3 * c + a) * stride + i;

@@ -28,7 +28,8 @@ AndersonMixing::AndersonMixing(Device& device, std::size_t count, const char* wh
 double AndersonMixing::Mix(const ExactValues& given, const ExactValues& found, const Weighting& weighting)
 {
   double change = 0.0;
-  const std::array<double, 2> weights = this->Weights(given, found, weighting, &change);
+  const std::array<double, 2> all = this->Weights(given, found, weighting, &change);
+  const std::array<double, 2> weights = weighting.mixes ? all : std::array<double, 2>{};
   cl::Kernel step =
     this->TheDevice.Kernel("anderson_step", kernel_source::AndersonMixing, ExactOption(this->TheDevice));
   std::swap(this->FoundBefore[0], this->FoundBefore[1]);

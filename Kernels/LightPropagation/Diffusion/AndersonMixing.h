@@ -21,6 +21,9 @@ public:
     const Buffer<float>* sigma_s; ///< 1/length
     std::size_t first;            ///< where the coefficients of these values begin
     float length;
+    /// False: the last result is what to go on with. Where more goes from one iteration to the next than these values,
+    /// a mix of them alone swings.
+    bool mixes = true;
   };
 
   /// @param given  what `found` was found with; becomes what to go on with

@@ -2,19 +2,29 @@
 // host gives
 //   DOUBLES  1 where the device has double precision
 //   PASSING  1: lamps' light passes faces at once where it is scattered
+//   MOMENTS  1: sweeps carry light that goes straight on where it is scattered forwards, or has angular moments
 //
 // Face d of a voxel is -x, +x, -y, +y, -z, +z. tau is the optical length of a voxel along an axis.
 
 #include "LightPropagation/Diffusion/Conductance.cl"
 
 // flat_source  [axis][stride]
-__kernel void diffusion_flat_source(DiffusionLayout layout, const __global float* sigma_t, __global float* flat_source)
+// swept        sigma_t of the sweeps
+__kernel void diffusion_flat_source(
+  DiffusionLayout layout, const __global float* sigma_t, const __global float* swept, __global float* flat_source)
 {
   VOXEL(layout.size)
   sigma_t += layout.firstT;
+  swept += layout.firstT;
   for (int axis = 0; axis < 3; ++axis)
   {
-    flat_source[(ulong)axis * layout.stride + i] = flat_source_current(sigma_t[i] * layout.spacing[axis]);
+    float current = flat_source_current(swept[i] * layout.spacing[axis]);
+#if MOMENTS
+    // Of the current, what the source's first moment is carries itself: the rest has the excess of a flat source.
+    const float rest = swept[i] > 0.0f ? fmin(sigma_t[i] / swept[i], 1.0f) : 1.0f;
+    current = 1.0f / 6.0f + rest * (current - 1.0f / 6.0f);
+#endif
+    flat_source[(ulong)axis * layout.stride + i] = current;
   }
 }
 
@@ -108,9 +118,33 @@ typedef struct
   const __global float* passed;
   const __global float* model;
   const __global float* pattern;
-  ulong stride;
+  const __global float* given; // with its moments, functionStride apart
+  ulong stride, functionStride;
   int count;
 } diffusion_arrays;
+
+// What the given source's own net flux adds, for a voxel's half along an axis, to the fluence that drives light along it
+// (numerics.md, Eq. (53a)).
+static float drive(const DiffusionLayout* layout, const diffusion_arrays* arrays, int axis, int i)
+{
+#if MOMENTS
+  const int function = axis == 0 ? 3 : axis; // sqrt(3) times y, z, x
+  return 1.5f * layout->spacing[axis] * (4.0f * M_PI_F * 0.57735027f) *
+    arrays->given[function * arrays->functionStride + i];
+#else
+  return 0.0f;
+#endif
+}
+
+// The same out of a voxel through its face d to voxel j, or to the border of the box.
+static float drive_through(const DiffusionLayout* layout, const diffusion_arrays* arrays, int d, int i, int j)
+{
+  return (d & 1 ? 1.0f : -1.0f) * (drive(layout, arrays, d / 2, i) + drive(layout, arrays, d / 2, j));
+}
+static float drive_out(const DiffusionLayout* layout, const diffusion_arrays* arrays, int d, int i)
+{
+  return (d & 1 ? 1.0f : -1.0f) * drive(layout, arrays, d / 2, i);
+}
 
 // Power of rays that cross a face in their repeated pattern, over its mean (numerics.md, Eq. (65)).
 static float pattern_at(
@@ -128,7 +162,7 @@ static float pattern_at(
 // ones, where the sweep's power holds nothing but the errors of its source.
 static float weight_of_transport(const DiffusionLayout* layout, float tau, float absorbing)
 {
-  return layout->linear ? 1.0f / (1.0f + tau * (0.25f * tau + 3.0f * absorbing)) : 1.0f;
+  return layout->linear ? 1.0f / (1.0f + tau * (0.25f * tau + (MOMENTS ? 0.0f : 3.0f) * absorbing)) : 1.0f;
 }
 
 // Power through inner face d out of voxel i, that of the sweep less that of the model (numerics.md, Eq. (54)).
@@ -148,7 +182,8 @@ static float remainder_of_face(
   const float tau0 = h * arrays->sigma_t[i], tau1 = h * arrays->sigma_t[j];
   const float skin = layout->linear ? contrast(fmax(tau0, tau1), fmin(tau0, tau1)) : 0.0f;
   const float transport_weight = weight_of_transport(layout, tau, absorbing) * (1.0f - skin);
-  return transport_weight > 1e-12f ? transport_weight * (net - spread * (arrays->model[i] - arrays->model[j])) : 0.0f;
+  const float model = spread * (arrays->model[i] - arrays->model[j]) + passes * drive_through(layout, arrays, d, i, j);
+  return transport_weight > 1e-12f ? transport_weight * (net - model) : 0.0f;
 }
 
 // Power through a face of the box, out less in, that a sweep finds by the model (numerics.md, Eq. (59));
@@ -163,8 +198,9 @@ static float model_of_boundary(
   const float passes = pass_boundary(layout, way);
   const float incoming = layout->incoming[d];
   const float area = face_area(layout, axis);
-  const float light = arrays->model[i];
-  *dark = -passes / a * incoming * area;
+  const float driven = drive_out(layout, arrays, d, i);
+  const float light = arrays->model[i] + driven;
+  *dark = passes * (driven - incoming / a) * area;
   const float net = passes * (light - incoming / a);
   if (!layout->linear)
   {
@@ -247,7 +283,8 @@ static exact power_of_face(const DiffusionLayout* layout, const diffusion_arrays
   {
     const float tau = arrays->sigma_t[i] * layout->spacing[axis];
     const float passes = pass_boundary(layout, way_to_boundary(layout, tau, arrays->sigma_t[i], arrays->sigma_a[i]));
-    return passes * face_area(layout, axis) * (fluence[i] - layout->incoming[d] / layout->halfRange) + share[d] +
+    const exact light = fluence[i] + drive_out(layout, arrays, d, i);
+    return passes * face_area(layout, axis) * (light - layout->incoming[d] / layout->halfRange) + share[d] +
       passing(layout, arrays, d, i, next, true);
   }
   if (layout->size[axis] == 1)
@@ -255,13 +292,14 @@ static exact power_of_face(const DiffusionLayout* layout, const diffusion_arrays
     return 0;
   }
   const exact passes = arrays->conductance[axis * arrays->count + (d & 1 ? next[d] : i)];
-  return passes * (fluence[i] - fluence[next[d]]) + remainder_of_face(layout, arrays, d, i, next[d], at) +
-    passing(layout, arrays, d, i, next, false);
+  return passes * (fluence[i] - fluence[next[d]] + drive_through(layout, arrays, d, i, next[d])) +
+    remainder_of_face(layout, arrays, d, i, next[d], at) + passing(layout, arrays, d, i, next, false);
 }
 
 #define ARRAYS_OF_CHANNEL                                                                                         \
   sigma_t += layout.firstT;                                                                                       \
   sigma_a += layout.first;                                                                                        \
+  swept += layout.firstT;                                                                                         \
   currents += 6 * (ulong)layout.first;                                                                            \
   passed += PASSING ? 6 * (ulong)layout.first : 0;                                                                \
   source += layout.first;                                                                                         \
@@ -269,7 +307,7 @@ static exact power_of_face(const DiffusionLayout* layout, const diffusion_arrays
   const ulong stride = layout.stride;                                                                             \
   const int count = layout.size[0] * layout.size[1] * layout.size[2];                                             \
   const diffusion_arrays arrays = { sigma_t, sigma_a, flat_source, conductance, currents, passed, model, pattern, \
-    stride, count };                                                                                              \
+    given + layout.first, stride, function_stride, count };                                                       \
   const int at[3] = { x, y, z };                                                                                  \
   int next[6];                                                                                                    \
   find_neighbours(layout.size, x, y, z, i, next);                                                                 \
@@ -280,9 +318,10 @@ static exact power_of_face(const DiffusionLayout* layout, const diffusion_arrays
 // given    emitted and first scattered light of lights, W / (length^3 sr)
 // source   of the sweep, W / (length^3 sr)
 __kernel void diffusion_balance(DiffusionLayout layout, const __global float* sigma_t, const __global float* sigma_a,
-  const __global float* flat_source, const __global float* conductance, const __global float* currents,
-  const __global float* passed, const __global float* model, const __global float* pattern,
-  const __global float* source, const __global float* path, const __global float* given, __global exact* right)
+  const __global float* swept, const __global float* flat_source, const __global float* conductance,
+  const __global float* currents, const __global float* passed, const __global float* model,
+  const __global float* pattern, const __global float* source, const __global float* path, const __global float* given,
+  ulong function_stride, __global exact* right)
 {
   VOXEL(layout.size)
   ARRAYS_OF_CHANNEL
@@ -297,13 +336,15 @@ __kernel void diffusion_balance(DiffusionLayout layout, const __global float* si
     }
     else if (layout.size[d / 2] > 1)
     {
-      power -= remainder_of_face(&layout, &arrays, d, i, next[d], at) + passing(&layout, &arrays, d, i, next, false);
+      const float passes = conductance[d / 2 * count + (d & 1 ? next[d] : i)];
+      power -= remainder_of_face(&layout, &arrays, d, i, next[d], at) + passing(&layout, &arrays, d, i, next, false) +
+        passes * drive_through(&layout, &arrays, d, i, next[d]);
     }
   }
   if (IS_OUTERMOST(layout, at))
   {
-    power -= remainder_of_borders(&layout, &arrays, i, next, at, source[i] * per_radiance - sigma_t[i] * path[i], share,
-      seeming, &transport_weight);
+    power -= remainder_of_borders(
+      &layout, &arrays, i, next, at, source[i] * per_radiance - swept[i] * path[i], share, seeming, &transport_weight);
   }
   right[i] = power;
 }
@@ -315,9 +356,10 @@ __kernel void diffusion_balance(DiffusionLayout layout, const __global float* si
 //   power out less in, W, without the transport correction: that is right for a face of the box as a whole, but not
 //   from voxel to voxel
 __kernel void diffusion_outflow(DiffusionLayout layout, const __global float* sigma_t, const __global float* sigma_a,
-  const __global float* flat_source, const __global float* conductance, const __global float* currents,
-  const __global float* passed, const __global float* model, const __global float* pattern,
-  const __global float* source, const __global float* path, const __global exact* fluence, __global exact* outflow)
+  const __global float* swept, const __global float* flat_source, const __global float* conductance,
+  const __global float* currents, const __global float* passed, const __global float* model,
+  const __global float* pattern, const __global float* source, const __global float* path, const __global float* given,
+  ulong function_stride, const __global exact* fluence, __global exact* outflow)
 {
   VOXEL(layout.size)
   if (!IS_OUTERMOST(layout, ((int[3]){ x, y, z })))
@@ -326,7 +368,7 @@ __kernel void diffusion_outflow(DiffusionLayout layout, const __global float* si
   }
   ARRAYS_OF_CHANNEL
   remainder_of_borders(
-    &layout, &arrays, i, next, at, source[i] * per_radiance - sigma_t[i] * path[i], share, seeming, &transport_weight);
+    &layout, &arrays, i, next, at, source[i] * per_radiance - swept[i] * path[i], share, seeming, &transport_weight);
   int borders = 0;
   for (int d = 0; d < 6; ++d)
   {
@@ -352,23 +394,52 @@ __kernel void diffusion_outflow(DiffusionLayout layout, const __global float* si
 
 // Net flux, W / length^2 times volume, [x, y, z][stride], added to (numerics.md, Eq. (75)).
 __kernel void diffusion_flux(DiffusionLayout layout, const __global float* sigma_t, const __global float* sigma_a,
-  const __global float* flat_source, const __global float* conductance, const __global float* currents,
-  const __global float* passed, const __global float* model, const __global float* pattern,
-  const __global float* source, const __global float* path, const __global exact* fluence, __global float* flux)
+  const __global float* swept, const __global float* flat_source, const __global float* conductance,
+  const __global float* currents, const __global float* passed, const __global float* model,
+  const __global float* pattern, const __global float* source, const __global float* path, const __global float* given,
+  ulong function_stride, const __global exact* fluence, __global float* flux)
 {
   VOXEL(layout.size)
   ARRAYS_OF_CHANNEL
   flux += 3 * (ulong)layout.first;
   if (IS_OUTERMOST(layout, at))
   {
-    remainder_of_borders(&layout, &arrays, i, next, at, source[i] * per_radiance - sigma_t[i] * path[i], share, seeming,
-      &transport_weight);
+    remainder_of_borders(
+      &layout, &arrays, i, next, at, source[i] * per_radiance - swept[i] * path[i], share, seeming, &transport_weight);
   }
   for (int axis = 0; axis < 3; ++axis)
   {
     const exact up = power_of_face(&layout, &arrays, fluence, 2 * axis + 1, i, next, at, share);
     const exact down = power_of_face(&layout, &arrays, fluence, 2 * axis, i, next, at, share);
     flux[axis * stride + i] += (float)(0.5f * (up - down) * layout.spacing[axis]);
+  }
+}
+
+// By how much the net flux of a fluence differs from that of what the sweep found, W length, added to the moments of
+// degree 1 of the sweep's path: sqrt(3) times y, z, x.
+__kernel void diffusion_flux_beyond_sweep(DiffusionLayout layout, const __global float* sigma_t,
+  const __global float* sigma_a, const __global float* swept, const __global float* flat_source,
+  const __global float* conductance, const __global float* currents, const __global float* passed,
+  const __global float* model, const __global float* pattern, const __global float* source, const __global float* path,
+  const __global float* given, ulong function_stride, const __global exact* fluence, __global float* moments)
+{
+  VOXEL(layout.size)
+  ARRAYS_OF_CHANNEL
+  moments += layout.first + i;
+  for (int axis = 0; axis < 3; ++axis)
+  {
+    float sum = 0.0f;
+    for (int d = 2 * axis; d < 2 * axis + 2 && layout.size[axis] > 1; ++d)
+    {
+      const int j = next[d];
+      if (!is_border(&layout, at, d))
+      {
+        const float change = (float)(fluence[i] - fluence[j]) - (model[i] - model[j]);
+        sum += (d & 1 ? 1.0f : -1.0f) * conductance[axis * count + (d & 1 ? j : i)] * change;
+      }
+    }
+    const int function = axis == 0 ? 3 : axis;
+    moments[function * function_stride] += 1.73205081f * 0.5f * sum * layout.spacing[axis];
   }
 }
 

@@ -67,7 +67,7 @@ DiffusionSystem::DiffusionSystem(Device& device, const Grid& grid, const std::ar
   this->Borders = ExactValues(device, 4 * BoxFaceCellCount(grid), what);
 
   cl::Kernel flat_source = this->Kernel("diffusion_flat_source");
-  With(flat_source, this->Layout, *arrays.sigma_t, this->FlatSource);
+  With(flat_source, this->Layout, *arrays.sigma_t, *arrays.swept, this->FlatSource);
   this->Run(flat_source);
   cl::Kernel conductance = this->Kernel("diffusion_conductance");
   With(conductance, this->Layout, *arrays.sigma_t, *arrays.sigma_a, this->FlatSource, this->Solver.Conductance(),
@@ -79,7 +79,8 @@ DiffusionSystem::DiffusionSystem(Device& device, const Grid& grid, const std::ar
 cl::Kernel DiffusionSystem::Kernel(const char* name) const
 {
   return this->TheDevice.Kernel(name, kernel_source::DiffusionSystem,
-    ExactOption(this->TheDevice) + Define("PASSING", this->The.passed != nullptr));
+    ExactOption(this->TheDevice) + Define("PASSING", this->The.passed != nullptr) +
+      Define("MOMENTS", this->The.swept != this->The.sigma_t));
 }
 
 void DiffusionSystem::Run(cl::Kernel& kernel)
@@ -93,9 +94,9 @@ void DiffusionSystem::RunOnArrays(const char* name, const More&... more)
 {
   const Arrays& the = this->The;
   cl::Kernel kernel = this->Kernel(name);
-  With(kernel, this->Layout, *the.sigma_t, *the.sigma_a, this->FlatSource, this->Solver.Conductance(),
+  With(kernel, this->Layout, *the.sigma_t, *the.sigma_a, *the.swept, this->FlatSource, this->Solver.Conductance(),
     *the.partialCurrents, this->The.passed ? *this->The.passed : this->Model, this->Model, this->Pattern, *the.source,
-    *the.path, more...);
+    *the.path, *the.given, cl_ulong(the.functionStride), more...);
   this->Run(kernel);
 }
 
@@ -113,12 +114,12 @@ double DiffusionSystem::Correct(double unit)
   cl::Kernel model = this->Kernel("diffusion_model");
   With(model, this->Layout, *the.sigma_t, *the.path, this->Next.Handle(), *the.source, this->Model);
   this->Run(model);
-  this->RunOnArrays("diffusion_balance", *the.given, this->Right.Handle());
+  this->RunOnArrays("diffusion_balance", this->Right.Handle());
   this->Solver.Solve(this->Right, this->Solution, unit, Reduction);
 
   const auto& h = this->Layout.spacing;
   const float edge = std::cbrt(h[0] * h[1] * h[2]); // the same whichever axis is which
-  return this->Mixing.Mix(this->Next, this->Solution, { the.sigma_s, the.first, edge });
+  return this->Mixing.Mix(this->Next, this->Solution, { the.sigma_s, the.first, edge, the.swept == the.sigma_t });
 }
 
 std::array<double, 6> DiffusionSystem::Outflow(const std::array<double, 6>& ofSweep)
@@ -168,6 +169,11 @@ SurfacePowers DiffusionSystem::PowersAtSurface() const
     }
   }
   return powers;
+}
+
+void DiffusionSystem::AddFluxBeyondSweep(const Buffer<float>& path)
+{
+  this->RunOnArrays("diffusion_flux_beyond_sweep", this->Next.Handle(), path);
 }
 
 void DiffusionSystem::AddFlux(const Buffer<float>& flux)

@@ -32,7 +32,9 @@ public:
   struct Arrays
   {
     std::size_t stride, firstT, first;    ///< where this channel begins, in sigma_t and in the others
-    const Buffer<float>* sigma_t;         ///< 1/length
+    std::size_t functionStride;           ///< from one angular moment to the next, in given, source and path
+    const Buffer<float>* sigma_t;         ///< 1/length, that light diffuses with: sigma_a and sigma_s (1 - g)
+    const Buffer<float>* swept;           ///< 1/length, sigma_t of the sweeps
     const Buffer<float>* sigma_a;         ///< 1/length
     const Buffer<float>* sigma_s;         ///< 1/length
     const Buffer<float>* given;           ///< emitted, and uncollided light that is scattered, W / (length^3 sr)
@@ -70,6 +72,10 @@ public:
 
   /// W through each voxel's faces at the box's, of the last Outflow.
   SurfacePowers PowersAtSurface() const;
+
+  /// Add to the moments of a sweep's path by how much the net flux of NextFluence() differs from what it found, W length
+  /// (numerics.md, Eq. (70a)).
+  void AddFluxBeyondSweep(const Buffer<float>& path);
 
   /// Add the net flux times the voxel's volume to [channel][x, y, z][stride].
   void AddFlux(const Buffer<float>& flux);

@@ -57,12 +57,13 @@ static float passes_border(float tau, float r, float k)
 
 // Of one lamp: the light that passes faces at once where it is scattered (numerics.md, Eqs. (66) to (69)).
 // path           W length, of the lamp
+// swept          sigma_t of the sweeps: more where scattering is not taken as isotropic
 // first_moments  of it, as in Sweep/Deposit.h, [channel][face][stride]
 // passed         [channel][face][stride] W, added to
 // all_path       W length, of all lamps, added to
 __kernel void pass_lamp_light(DiffusionLayout layout, const __global float* sigma_t, const __global float* sigma_a,
-  const __global float* sigma_s, const __global float* path, const __global float* first_moments,
-  __global float* passed, __global float* all_path)
+  const __global float* sigma_s, const __global float* swept, const __global float* path,
+  const __global float* first_moments, __global float* passed, __global float* all_path)
 {
   VOXEL(layout.size)
   const int at[3] = { x, y, z };
@@ -70,6 +71,7 @@ __kernel void pass_lamp_light(DiffusionLayout layout, const __global float* sigm
   find_neighbours(layout.size, x, y, z, i, next);
   const ulong stride = layout.stride;
   sigma_t += layout.firstT;
+  swept += layout.firstT;
   sigma_a += layout.first;
   first_moments += 6 * (ulong)layout.first;
   passed += 6 * (ulong)layout.first;
@@ -83,7 +85,8 @@ __kernel void pass_lamp_light(DiffusionLayout layout, const __global float* sigm
     const float tau = sigma_t[i] * h;
     const float r = length > 0.0f ? fmin(2.0f * first_moments[d * stride + i] / length, 1.0f) : 0.0f;
     part[d] = 0.0f;
-    if (tau <= 0.0f || r <= 0.0f)
+    // Light that is scattered forwards does not turn back at once.
+    if (tau <= 0.0f || r <= 0.0f || swept[i] > sigma_t[i])
     {
       continue;
     }

@@ -12,8 +12,8 @@ void PassLampLight(Device& device, const Grid& grid, const std::array<bool, 3>& 
   DiffusionLayout layout = LayoutOf(grid, periodic, light);
   layout.linear = true;
   cl::Kernel pass = device.Kernel("pass_lamp_light", kernel_source::LampPassing, ExactOption(device));
-  With(pass, layout, *light.sigma_t, *light.sigma_a, *light.sigma_s, *light.path, *light.firstMoments, *light.passed,
-    *light.allPath);
+  With(pass, layout, *light.sigma_t, *light.sigma_a, *light.sigma_s, *light.swept, *light.path, *light.firstMoments,
+    *light.passed, *light.allPath);
   device.Queue().enqueueNDRangeKernel(
     pass, cl::NullRange, MultigridSolver::Range(layout.size), MultigridSolver::Group());
 }

@@ -15,6 +15,7 @@ struct LampLight
   const Buffer<float>* sigma_t;
   const Buffer<float>* sigma_a;
   const Buffer<float>* sigma_s;
+  const Buffer<float>* swept;        ///< sigma_t of the sweeps
   const Buffer<float>* path;         ///< W length, of the lamp
   const Buffer<float>* firstMoments; ///< of it, as in Sweep/Deposit.h
   const Buffer<float>* passed;       ///< W, added to

@@ -1,6 +1,7 @@
 #include "LightPropagation/Problem/PropagationProblem.h"
 
 #include "Light/LeftOut.h"
+#include "LightPropagation/Problem/AngularDegree.h"
 
 namespace tyndall
 {
@@ -36,6 +37,11 @@ PropagationProblem::PropagationProblem(
     this->Solved = scene.medium;
     this->SolvedLight = scene.light;
   }
+  const int degree = AngularDegreeFor(this->Solved, this->TheSettings, this->IsSlab());
+  this->Truncated.emplace(this->Solved, this->TheTraits.scatters ? degree : 0, this->ChannelCount);
+  // The traits know of extinction by the similarity relation alone.
+  this->TheTraits.greyExtinction =
+    this->TheTraits.grey || (this->TheTraits.greyExtinction && this->Truncated->Degree() == 0);
 }
 
 void PropagationProblem::TakeUnits(const Medium& wide, const Illumination& illumination)

@@ -3,6 +3,7 @@
 #include "Light/ChannelReduction.h"
 #include "Light/LightField.h"
 #include "LightPropagation/Problem/SceneUnits.h"
+#include "LightPropagation/Problem/TruncatedScattering.h"
 #include "LightPropagation/Problem/UnvaryingAxes.h"
 #include "LightPropagation/PropagationSettings.h"
 #include "Lights/Lights.h"
@@ -28,6 +29,7 @@ public:
   const Medium& TheMedium() const { return this->Solved; }
   const Grid& TheGrid() const { return this->Solved.grid; }
   const MediumTraits& Traits() const { return this->TheTraits; }
+  const TruncatedScattering& Scattering() const { return *this->Truncated; } ///< as sweeps carry it
   const Illumination& Shining() const { return this->SolvedLight; }
   const PropagationSettings& Settings() const { return this->TheSettings; }
   int Channels() const { return this->ChannelCount; } ///< 1 or 3
@@ -54,6 +56,7 @@ private:
   Illumination SolvedLight;
   MediumTraits TheTraits;
   std::optional<SceneChannels> Reduction;
+  std::optional<TruncatedScattering> Truncated;
   int ChannelCount = 3;
 };
 }

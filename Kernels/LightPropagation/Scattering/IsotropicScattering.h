@@ -18,8 +18,10 @@ public:
 
   Powers ScatterOrder(const Deposit& swept, const Buffer<float>& fluence, const Buffer<float>& source,
     const std::array<std::size_t, 2>& range) const override;
+  bool CanScatterAllOrders() const override { return true; }
   void ScatterAllOrders(const Buffer<float>& fluence, const Buffer<float>& source) const override;
   void AddFirstScattered(const Deposit& uncollided, const Buffer<float>& source) const override;
+  void AddBeam(const Buffer<float>&, const Buffer<float>&, int) const override {} ///< the same as other light
   void ScatterFluence(int channel, const Deposit& swept, const ExactValues& fluence, const Buffer<float>& given,
     const Buffer<float>& source) const override;
 

@@ -29,12 +29,21 @@ public:
   virtual Powers ScatterOrder(const Deposit& swept, const Buffer<float>& fluence, const Buffer<float>& source,
     const std::array<std::size_t, 2>& range) const = 0;
 
+  /// Whether the next method can be used: the light of all orders holds what is needed.
+  virtual bool CanScatterAllOrders() const = 0;
+
   /// The source of all orders at once from the fluence of all, less what the last one left over, which `source` holds
   /// (numerics.md, Eq. (44)).
   virtual void ScatterAllOrders(const Buffer<float>& fluence, const Buffer<float>& source) const = 0;
 
   /// Adds to `source` what is scattered of uncollided light. Path integrals may be negative: differences of light.
   virtual void AddFirstScattered(const Deposit& uncollided, const Buffer<float>& source) const = 0;
+
+  /// Adds what is first scattered of a parallel beam, in voxels that scatter exactly in angle (BeamScattering.h), to
+  /// one of the beams behind the angular moments of `source`.
+  /// @param path  the beam's, W length, [channel][stride]
+  /// @param slot  of [function, then beam]
+  virtual void AddBeam(const Buffer<float>& path, const Buffer<float>& source, int slot) const = 0;
 
   /// Writes one channel of `source`: what is given, and what is scattered of the fluence of all orders as it was found
   /// between two sweeps. Nowhere negative.

@@ -15,6 +15,8 @@ namespace
 {
 constexpr double NothingLeft = 1e-7; ///< of what was on the way after the first time: not worth going round again
 
+constexpr int RowsTogether = 8; ///< of a plane with many moments: they stay in the cache for all bundles
+
 using BundleMaps = cl_int2; ///< for map_power: members, first float of the maps
 
 std::vector<BundleMaps> MapsOf(const SweepPlan& plan)
@@ -28,13 +30,25 @@ std::vector<BundleMaps> MapsOf(const SweepPlan& plan)
 }
 }
 
+std::string DefineMoments(const SweepPlan& plan)
+{
+  if (!plan.angular)
+  {
+    return Define("DEGREE", 0) + Define("BEAMS", 0);
+  }
+  const auto [evenEven, oddEven, evenOdd, oddOdd] = plan.order.counts;
+  return Define("DEGREE", plan.angular->degree) + Define("BEAMS", plan.angular->Beams()) +
+    Define("EVEN_EVEN", evenEven) + Define("ODD_EVEN", oddEven) + Define("EVEN_ODD", evenOdd) +
+    Define("ODD_ODD", oddOdd) + Define("TILE", RowsTogether);
+}
+
 struct AxisSweep::Implementation
 {
   Implementation(Device& device, const SweepVolume& volume, int axis, const std::vector<Bundle>& bundles,
     const std::array<bool, 3>& periodic, SweepWorkspace& workspace, bool sameBoundary)
     : TheDevice(device)
     , Plan(device, volume.grid, volume.box, axis, bundles, volume.channels, periodic, volume.deposit.flux != nullptr,
-        volume.deposit.partialCurrents != nullptr)
+        volume.deposit.partialCurrents != nullptr, volume.angular)
     , Workspace(workspace)
     , SameBoundary(sameBoundary)
   {
@@ -87,6 +101,8 @@ struct AxisSweep::Implementation
   Buffer<BundleInfo> Bundles;
   Buffer<BundleMaps> MapPlaces;
   Buffer<UnitInfo> Units;
+  Buffer<float> Coefficients;
+  Buffer<int> Functions;
   Buffer<cl_int2> FirstSchedule, RoundSchedule;
   Buffer<CrossingInfo> FirstCrossings;
   Buffer<OwnLightInfo> FirstOwnLight;
@@ -117,6 +133,9 @@ void AxisSweep::Implementation::MakeBuffers()
   this->Bundles = Buffer<BundleInfo>(device, plan.bundleRows, "the bundles of rays");
   this->MapPlaces = Buffer<BundleMaps>(device, MapsOf(plan), "the bundles of rays");
   this->Units = Buffer<UnitInfo>(device, plan.units, "the units of work");
+  this->Coefficients = Buffer<float>(
+    device, plan.coefficients.empty() ? std::vector<float>{ 0.0f } : plan.coefficients, "the angular functions");
+  this->Functions = Buffer<int>(device, plan.order.functions, "the angular functions");
   this->FirstSchedule = Buffer<cl_int2>(device, plan.schedule, "the schedule");
   this->RoundSchedule = Buffer<cl_int2>(device, plan.roundSchedule, "the schedule");
   this->FirstCrossings = Buffer<CrossingInfo>(device, plan.Crossings(0, plan.CrossingPlanes()), "the ray pattern");
@@ -211,9 +230,11 @@ void AxisSweep::Implementation::Launch(cl::Kernel kernel, const SweepVolume& vol
   info.sigmaFirst = volume.sigma_t_first;
   info.first = volume.first;
   info.stride = volume.stride;
+  info.functionStride = volume.functionStride;
   info.mapsEachWay = plan.mapsEachWay;
   info.outsideEachWay = static_cast<uint>(plan.outsideEachWay);
   info.radianceEachWay = static_cast<uint>(plan.radianceEachWay);
+  info.coefficientsEachWay = static_cast<uint>(plan.coefficientsEachWay);
   info.empty = mapsEmpty;
   info.bundles = static_cast<int>(plan.bundles.size());
   info.patternPlanes = plan.PatternPlanes();
@@ -223,8 +244,8 @@ void AxisSweep::Implementation::Launch(cl::Kernel kernel, const SweepVolume& vol
   {
     info.launch = launch;
     With(kernel, info, *volume.sigma_t, source, *volume.deposit.path, lost, flux, partialCurrents, this->Maps(),
-      this->Outside, this->Radiance, this->Workspace.scratch, this->Units, this->Bundles, crossings,
-      this->FirstOwnLight, schedule.planes, this->Sideways);
+      this->Outside, this->Radiance, this->Workspace.scratch, this->Units, this->Bundles, this->Coefficients,
+      this->Functions, crossings, this->FirstOwnLight, schedule.planes, this->Sideways);
     this->TheDevice.Queue().enqueueNDRangeKernel(kernel, cl::NullRange, cl::NDRange(plan.units.size()), cl::NDRange(1));
     this->TheDevice.Queued(plan.secondsPerLaunch);
     Report(monitor, (launch + 1.0) / schedule.launches);
@@ -239,7 +260,7 @@ cl::Kernel AxisSweep::Implementation::SweepKernel(bool source, bool border, bool
   const SweepPlan& plan = this->Plan;
   std::string options = Define("REAL_WIDTH", plan.vector) + Define("CHANNELS", plan.channels) +
     Define("ROW", plan.row) + Define("SOURCE", source) + Define("BORDER", border) + Define("NET_FLUX", flux) +
-    Define("CURRENTS", plan.partialCurrents) + Define("PERIODIC_P", this->IsPeriodic()) +
+    Define("CURRENTS", plan.partialCurrents) + DefineMoments(plan) + Define("PERIODIC_P", this->IsPeriodic()) +
     Define("PERIODIC_U", plan.periodic[plan.axes.u]) + Define("PERIODIC_V", plan.periodic[plan.axes.v]);
   for (int members = 1; members <= MaxMembers; members *= 2)
   {

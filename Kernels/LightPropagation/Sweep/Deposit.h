@@ -7,7 +7,9 @@ namespace tyndall
 /// Where light is put down: everything is added to.
 struct Deposit
 {
-  const Buffer<float>* path = nullptr; ///< W length, added to
+  /// W length, [channel][stride], added to; of sweeps with angular moments [function][channel][stride], the first of
+  /// which is the path itself
+  const Buffer<float>* path = nullptr;
   const Buffer<float>* flux = nullptr; ///< W length, [channel][x, y, z][stride], added to; null: not wanted
   /// W, [channel][-x, +x, -y, +y, -z, +z][stride], added to: power that enters each voxel through each of its faces
   /// (numerics.md, Eq. (29)); null: not wanted

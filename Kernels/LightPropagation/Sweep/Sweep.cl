@@ -4,6 +4,7 @@
 //   MEMBERS_1, MEMBERS_2, MEMBERS_4, MEMBERS_8  defined for each number of members that bundles have
 // and what SweepLayout.cl asks for.
 
+#include "LightPropagation/Sweep/SweepCrossing.cl"
 #include "LightPropagation/Sweep/SweepLayout.cl"
 #include "LightPropagation/Sweep/SweepPartialCurrents.cl"
 
@@ -67,6 +68,12 @@ static ulong place_of(const PlaneInfo* layout, int u, int v, int plane)
     (ulong)(layout->firstP + plane) * layout->stepP;
 }
 
+// Of all quantities of a plane.
+static int plane_floats(const PlaneInfo* layout)
+{
+  return PLANES * layout->sizeV * ROW;
+}
+
 // Set floats, a multiple of a vector, to zero.
 static void clear(__global float* floats, int count)
 {
@@ -80,7 +87,7 @@ static void clear(__global float* floats, int count)
 // vector beyond the last voxel.
 static void pack(const PlaneInfo* layout, __global float* to, int first, int count, const __global float* volume)
 {
-  const int plane = PLANES * layout->sizeV * ROW;
+  const int plane = plane_floats(layout);
   for (int v = 0; v < layout->sizeV; ++v)
   {
     for (int u = 0; u < layout->width; u += REAL_WIDTH)
@@ -89,7 +96,7 @@ static void pack(const PlaneInfo* layout, __global float* to, int first, int cou
       const __global float* from = volume + place_of(layout, u, v, first);
       if (layout->block == 1)
       {
-        store_real(select(load_real(0, from), (real)0.0f, beyond), v * ROW + u, to);
+        store_real(select(load_real(0, from), (real)0.0f, beyond), v * PLANES * ROW + u, to);
         continue;
       }
       real columns[REAL_WIDTH];
@@ -104,7 +111,7 @@ static void pack(const PlaneInfo* layout, __global float* to, int first, int cou
       {
         if (j < count)
         {
-          store_real(select(columns[j], (real)0.0f, beyond), j * plane + v * ROW + u, to);
+          store_real(select(columns[j], (real)0.0f, beyond), j * plane + v * PLANES * ROW + u, to);
         }
       }
     }
@@ -142,7 +149,7 @@ static void add_one(float value, __global float* sum, __global float* lost)
 static void unpack(const PlaneInfo* layout, const __global float* from, int first, int count, float sign,
   __global float* volume, __global float* lost)
 {
-  const int plane = PLANES * layout->sizeV * ROW;
+  const int plane = plane_floats(layout);
   for (int v = 0; v < layout->sizeV; ++v)
   {
     for (int u = 0; u < layout->sizeU; u += REAL_WIDTH)
@@ -151,7 +158,7 @@ static void unpack(const PlaneInfo* layout, const __global float* from, int firs
       const int used = min(REAL_WIDTH, layout->sizeU - u);
       if (layout->block == 1 && used == REAL_WIDTH)
       {
-        add_real(sign * load_real(v * ROW + u, from), volume + at, lost ? lost + at : 0);
+        add_real(sign * load_real(v * PLANES * ROW + u, from), volume + at, lost ? lost + at : 0);
       }
       else if (layout->block > 1 && count == REAL_WIDTH)
       {
@@ -159,7 +166,7 @@ static void unpack(const PlaneInfo* layout, const __global float* from, int firs
 #pragma unroll
         for (int j = 0; j < REAL_WIDTH; ++j)
         {
-          rows[j] = sign * load_real(j * plane + v * ROW + u, from);
+          rows[j] = sign * load_real(j * plane + v * PLANES * ROW + u, from);
         }
         transpose(rows);
 #pragma unroll
@@ -179,7 +186,7 @@ static void unpack(const PlaneInfo* layout, const __global float* from, int firs
           for (int j = 0; j < count; ++j)
           {
             const ulong voxel = at + (ulong)i * layout->stepU + (ulong)j * layout->stepP;
-            add_one(sign * from[j * plane + v * ROW + u + i], volume + voxel, lost ? lost + voxel : 0);
+            add_one(sign * from[j * plane + v * PLANES * ROW + u + i], volume + voxel, lost ? lost + voxel : 0);
           }
         }
       }
@@ -195,54 +202,68 @@ static void find_thin_rows(const PlaneInfo* layout, const __global float* sigma,
     integer thick = (integer)0;
     for (int u = 0; u < layout->width; u += REAL_WIDTH)
     {
-      thick |= load_real(v * ROW + u, sigma) >= layout->thin;
+      thick |= load_real(v * PLANES * ROW + u, sigma) >= layout->thin;
     }
     thin[v] = !any(thick);
   }
 }
 
-// Make planes [first, first + count) ready to be crossed.
-static void begin_planes(const PlaneInfo* layout, __global float* planes, __global int* thin, int first, int count,
-  const __global float* sigma, const __global float* source, ulong stride)
+// Where moment k of a plane is in source and path: functions are in the order of the axis.
+static ulong moment_place(const SweepInfo* info, const __global int* functions, int k)
 {
-  const int rows = layout->sizeV * ROW;
-  pack(layout, planes + PlaneSigma * rows, first, count, sigma);
+#if DEGREE
+  return functions[k] * info->functionStride;
+#else
+  return 0;
+#endif
+}
+
+// Make planes [first, first + count) ready to be crossed.
+static void begin_planes(const SweepInfo* info, __global float* planes, __global int* thin, int first, int count,
+  const __global float* sigma, const __global float* source, const __global int* functions)
+{
+  const PlaneInfo* layout = &info->planes;
+  pack(layout, planes + PlaneSigma * ROW, first, count, sigma);
 #if SOURCE
-  for (int c = 0; c < CHANNELS; ++c)
+  for (int k = 0; k < MOMENTS + BEAMS; ++k)
   {
-    pack(layout, planes + (PlaneSource + c) * rows, first, count, source + c * stride);
+    for (int c = 0; c < CHANNELS; ++c)
+    {
+      const ulong place = k < MOMENTS ? moment_place(info, functions, k) : k * info->functionStride;
+      pack(layout, planes + (PlaneSource + k * CHANNELS + c) * ROW, first, count, source + place + c * info->stride);
+    }
   }
 #endif
   for (int j = 0; j < count; ++j)
   {
-    __global float* plane = planes + j * PLANES * rows;
-    find_thin_rows(layout, plane + PlaneSigma * rows, thin + j * layout->sizeV);
-    for (int at = 0; at < rows; at += REAL_WIDTH)
+    __global float* plane = planes + j * plane_floats(layout);
+    find_thin_rows(layout, plane + PlaneSigma * ROW, thin + j * layout->sizeV);
+    for (int v = 0; v < layout->sizeV; ++v)
     {
-      // Vacuum is a very thin medium: 0 / 0 never happens.
-      const real s = fmax(load_real(at, plane + PlaneSigma * rows), (real)layout->vacuum);
-      store_real(s, at, plane + PlaneSigma * rows);
-      store_real((real)1.0f / s, at, plane + PlaneInverse * rows);
-      store_real((real)0.0f, at, plane + PlaneTaken * rows);
-      for (int q = PLANE_PATH; q < PLANES; ++q)
+      __global float* row = ROW_OF(plane, 0, v);
+      for (int at = 0; at < ROW; at += REAL_WIDTH)
       {
-        store_real((real)0.0f, at, plane + q * rows);
+        // Vacuum is a very thin medium: 0 / 0 never happens.
+        const real s = fmax(load_real(at, row + PlaneSigma * ROW), (real)layout->vacuum);
+        store_real(s, at, row + PlaneSigma * ROW);
+        store_real((real)1.0f / s, at, row + PlaneInverse * ROW);
+        store_real((real)0.0f, at, row + PlaneTaken * ROW);
       }
+      clear(row + PLANE_PATH * ROW, (PLANES - PLANE_PATH) * ROW);
     }
   }
 }
 
-#if SOURCE
-// Adds the path of the medium's own light in the voxel where it starts (numerics.md, Eq. (26)): (length - taken) /
+#if SOURCE && !DEGREE
+// Adds to a row the path of the medium's own light in the voxel where it starts (numerics.md, Eq. (26)): (length - taken) /
 // sigma, or a polynomial where that would cancel or `taken` was not kept.
-static void add_own_light(const PlaneInfo* layout, __global float* plane, const __global OwnLightInfo* light)
+static void add_own_light(const PlaneInfo* layout, __global float* row, const __global OwnLightInfo* light)
 {
-  const int rows = layout->sizeV * ROW;
-  for (int at = 0; at < rows; at += REAL_WIDTH)
+  for (int at = 0; at < ROW; at += REAL_WIDTH)
   {
-    const real sigma = load_real(at, plane + PlaneSigma * rows);
-    const real taken = load_real(at, plane + PlaneTaken * rows);
-    const real closed = ((real)light->length - taken) * load_real(at, plane + PlaneInverse * rows);
+    const real sigma = load_real(at, row + PlaneSigma * ROW);
+    const real taken = load_real(at, row + PlaneTaken * ROW);
+    const real closed = ((real)light->length - taken) * load_real(at, row + PlaneInverse * ROW);
     const real thinness = sigma / layout->thin;
     real polynomial = (real)light->terms[MeanLengthTerms - 1];
 #pragma unroll
@@ -253,8 +274,8 @@ static void add_own_light(const PlaneInfo* layout, __global float* plane, const 
     const real own = select(closed, polynomial, sigma < (real)layout->thin);
     for (int c = 0; c < CHANNELS; ++c)
     {
-      __global float* sum = plane + (PLANE_PATH + c) * rows;
-      store_real(multiply_add(own, load_real(at, plane + (PlaneSource + c) * rows), load_real(at, sum)), at, sum);
+      __global float* sum = row + (PLANE_PATH + c) * ROW;
+      store_real(multiply_add(own, load_real(at, row + (PlaneSource + c) * ROW), load_real(at, sum)), at, sum);
     }
   }
 }
@@ -262,35 +283,44 @@ static void add_own_light(const PlaneInfo* layout, __global float* plane, const 
 
 // Add what the planes gathered to the volume.
 // own      [plane from where rays start] of the first plane crossed
-static void end_planes(const PlaneInfo* layout, __global float* planes, int first, int count, __global float* path,
-  __global float* lost, __global float* flux, __global float* currents, ulong stride, const __global OwnLightInfo* own,
-  int backward, int axis)
+static void end_planes(const SweepInfo* info, __global float* planes, int first, int count, __global float* path,
+  __global float* lost, __global float* flux, __global float* currents, const __global int* functions,
+  const __global OwnLightInfo* own, int backward)
 {
-  const int rows = layout->sizeV * ROW;
-#if SOURCE
+  const PlaneInfo* layout = &info->planes;
+  const ulong stride = info->stride;
+  const int axis = info->axis;
+#if SOURCE && !DEGREE
   for (int j = 0; j < count; ++j)
   {
-    add_own_light(layout, planes + j * PLANES * rows, own + (backward ? count - 1 - j : j));
+    for (int v = 0; v < layout->sizeV; ++v)
+    {
+      add_own_light(layout, ROW_OF(planes + j * plane_floats(layout), 0, v), own + (backward ? count - 1 - j : j));
+    }
   }
 #endif
   for (int c = 0; c < CHANNELS; ++c)
   {
-    unpack(layout, planes + (PLANE_PATH + c) * rows, first, count, 1.0f, path + c * stride,
-      PERIODIC_P ? lost + c * stride : 0);
+    for (int k = 0; k < MOMENTS; ++k)
+    {
+      const ulong place = moment_place(info, functions, k);
+      unpack(layout, planes + (PLANE_PATH + k * CHANNELS + c) * ROW, first, count, 1.0f, path + place + c * stride,
+        PERIODIC_P && place == 0 ? lost + c * stride : 0);
+    }
 #if NET_FLUX
-    const __global float* fluxes = planes + (PLANE_FLUX + 3 * c) * rows;
+    const __global float* fluxes = planes + (PLANE_FLUX + 3 * c) * ROW;
     unpack(layout, fluxes, first, count, 1.0f, flux + (3 * c + (axis == 0 ? 1 : 0)) * stride, 0);
-    unpack(layout, fluxes + rows, first, count, 1.0f, flux + (3 * c + (axis == 2 ? 1 : 2)) * stride, 0);
-    unpack(layout, fluxes + 2 * rows, first, count, backward ? -1.0f : 1.0f, flux + (3 * c + axis) * stride, 0);
+    unpack(layout, fluxes + ROW, first, count, 1.0f, flux + (3 * c + (axis == 2 ? 1 : 2)) * stride, 0);
+    unpack(layout, fluxes + 2 * ROW, first, count, backward ? -1.0f : 1.0f, flux + (3 * c + axis) * stride, 0);
 #endif
 #if CURRENTS
     const int aside[2] = { axis == 0 ? 1 : 0, axis == 2 ? 1 : 2 };
-    const __global float* entered = planes + (PLANE_CURRENTS + CurrentFaces * c) * rows;
+    const __global float* entered = planes + (PLANE_CURRENTS + CurrentFaces * c) * ROW;
     __global float* faces = currents + 6 * c * stride;
     unpack(layout, entered, first, count, 1.0f, faces + (2 * axis + backward) * stride, 0);
     for (int side = 0; side < 4; ++side)
     {
-      unpack(layout, entered + (CurrentLowU + side) * rows, first, count, 1.0f,
+      unpack(layout, entered + (CurrentLowU + side) * ROW, first, count, 1.0f,
         faces + (2 * aside[side / 2] + side % 2) * stride, 0);
     }
 #endif
@@ -298,36 +328,72 @@ static void end_planes(const PlaneInfo* layout, __global float* planes, int firs
 }
 
 static void cross_plane(sweep_state* state, __global float* maps, const __global float* outside,
-  const __global float* radiance, const __global BundleInfo* bundle, const __global CrossingInfo* crossing)
+  const __global float* radiance, const __global BundleInfo* bundle, const __global CrossingInfo* crossing,
+  const __global float* all_coefficients, int first_row, int end_row)
 {
   __global float* map = maps + bundle->map;
   const __global float* rows = outside + bundle->outside;
   const __global float* values = radiance + bundle->border;
+  const __global float* coefficients = all_coefficients + bundle->coefficients;
+#define CROSS(n) cross_plane_##n(state, map, rows, values, bundle, crossing, coefficients, first_row, end_row)
   switch (bundle->members)
   {
 #ifdef MEMBERS_1
-    case 1: cross_plane_1(state, map, rows, values, bundle, crossing); break;
+    case 1: CROSS(1); break;
 #endif
 #ifdef MEMBERS_2
-    case 2: cross_plane_2(state, map, rows, values, bundle, crossing); break;
+    case 2: CROSS(2); break;
 #endif
 #ifdef MEMBERS_4
-    case 4: cross_plane_4(state, map, rows, values, bundle, crossing); break;
+    case 4: CROSS(4); break;
 #endif
 #ifdef MEMBERS_8
-    case 8: cross_plane_8(state, map, rows, values, bundle, crossing); break;
+    case 8: CROSS(8); break;
 #endif
   }
+#undef CROSS
+}
+
+// Rays of some bundles through a plane.
+// @param crossings, coefficients  of the first of them
+static void cross_bundles(sweep_state* state, __global float* maps, const __global float* outside,
+  const __global float* radiance, const __global BundleInfo* bundles, int count, const __global CrossingInfo* crossings,
+  const __global float* coefficients)
+{
+#if DEGREE
+  // A plane has many moments: tile by tile, so that those of a tile stay in the cache for all bundles.
+  __global float* const kept = state->ring;
+  for (int row = FirstRow; row < state->sizeV + RowsBehind; row += TILE)
+  {
+    for (int b = 0; b < count; ++b)
+    {
+      state->ring = kept + b * BUNDLE_FLOATS(CHANNELS, ROW);
+      state->sources = state->ring + 2 * RingRows * RAYS_OF_ROW;
+      state->paths = state->sources + MomentRows * RAYS_OF_ROW;
+      state->ownPath = state->paths + MomentRows * RAYS_OF_ROW;
+      cross_plane(state, maps, outside, radiance, bundles + b, crossings + b, coefficients, row, row + TILE);
+    }
+  }
+  state->ring = kept;
+#else
+  for (int b = 0; b < count; ++b)
+  {
+    cross_plane(state, maps, outside, radiance, bundles + b, crossings + b, coefficients, FirstRow, INT_MAX);
+  }
+#endif
 }
 
 // sigma     1/length, [voxel]
-// source    W / (length^3 sr), [channel][stride]
-// path      W length, [channel][stride], added to
+// source    W / (length^3 sr), [function, then beam][channel][stride]
+// path      W length, [function][channel][stride], added to
 // lost      as path: what rounding took from it in this sweep, where PERIODIC_P
 // flux      W length, [channel][x, y, z][stride], added to
 // currents  W, [channel][-x, +x, -y, +y, -z, +z][stride], added to: through that face into the voxel
 // maps      rays of both ways
 // outside, radiance   rays that come in, both ways as maps
+// coefficients  see BundleInfo, both ways as maps
+// functions the angular functions in the order of the axis: even and even along u and v, odd and even, even and odd,
+//           odd and odd
 // crossings [plane of the ray pattern][bundle]
 // own       [unit][plane from where rays start], see add_own_light
 // schedule  [launch][unit] first plane and end, counted from where rays start; beyond the last plane the axis begins
@@ -337,24 +403,30 @@ __kernel __attribute__((reqd_work_group_size(1, 1, 1))) void sweep(SweepInfo inf
   const __global float* source, __global float* path, __global float* lost, __global float* flux,
   __global float* currents, __global float* maps, const __global float* outside, const __global float* radiance,
   __global float* scratch, const __global UnitInfo* units, const __global BundleInfo* bundles,
-  const __global CrossingInfo* crossings, const __global OwnLightInfo* own, const __global int2* schedule,
-  __global float* tally)
+  const __global float* coefficients, const __global int* functions, const __global CrossingInfo* crossings,
+  const __global OwnLightInfo* own, const __global int2* schedule, __global float* tally)
 {
   const int u = get_global_id(0);
   const int unit_count = get_global_size(0);
   const UnitInfo unit = units[u];
   const int2 range = schedule[info.launch * unit_count + u];
   const PlaneInfo layout = info.planes;
-  const int rows = layout.sizeV * ROW;
 
   sweep_state state;
   state.sizeU = layout.sizeU;
   state.sizeV = layout.sizeV;
   state.width = layout.width;
   state.ring = scratch + unit.scratch;
-  state.moving = state.ring + 2 * RingRows * MaxMembers * CHANNELS * ROW;
-  __global float* planes = state.moving + MaxMembers * CHANNELS * ROW + PAD; // past the last row's border
-  __global int* thin = (__global int*)(planes + layout.block * PLANES * rows);
+#if DEGREE
+  const int together = min(unit.bundles, (int)BundlesTogether);
+  const int rings = together * BUNDLE_FLOATS(CHANNELS, ROW);
+#else
+  const int together = unit.bundles;
+  const int rings = 2 * RingRows * RAYS_OF_ROW;
+#endif
+  state.moving = state.ring + rings;
+  __global float* planes = state.moving + RAYS_OF_ROW + PAD; // past the last row's border
+  __global int* thin = (__global int*)(planes + layout.block * plane_floats(&layout));
   for (int i = 0; i < MeanLengthTerms; ++i)
   {
     state.meanLength[i] = layout.meanLength[i];
@@ -368,9 +440,10 @@ __kernel __attribute__((reqd_work_group_size(1, 1, 1))) void sweep(SweepInfo inf
   maps += unit.backward * info.mapsEachWay;
   outside += unit.backward * info.outsideEachWay;
   radiance += unit.backward * info.radianceEachWay;
+  coefficients += unit.backward * info.coefficientsEachWay;
 
 #if !BORDER
-  clear(state.ring, (2 * RingRows + 1) * MaxMembers * CHANNELS * ROW + PAD);
+  clear(state.ring, rings + RAYS_OF_ROW + PAD);
 #endif
   if (info.empty && range.x == 0 && range.y > 0)
   {
@@ -385,11 +458,11 @@ __kernel __attribute__((reqd_work_group_size(1, 1, 1))) void sweep(SweepInfo inf
     const int lap = begin / layout.sizeP * layout.sizeP; // planes already marched when the axis began anew
     count = min(min(layout.block, range.y - begin), lap + layout.sizeP - begin);
     const int first = unit.backward ? layout.sizeP - (begin - lap) - count : begin - lap;
-    begin_planes(&layout, planes, thin, first, count, sigma, source, info.stride);
+    begin_planes(&info, planes, thin, first, count, sigma, source, functions);
     for (int k = begin; k < begin + count; ++k)
     {
       const int plane = unit.backward ? layout.sizeP - 1 - (k - lap) : k - lap;
-      state.planes = planes + (plane - first) * PLANES * rows;
+      state.planes = planes + (plane - first) * plane_floats(&layout);
       state.thin = thin + (plane - first) * layout.sizeV;
       for (int side = 0; side < 4; ++side)
       {
@@ -399,10 +472,11 @@ __kernel __attribute__((reqd_work_group_size(1, 1, 1))) void sweep(SweepInfo inf
           state.rounding[side][c] = 0.0f;
         }
       }
-      for (int b = unit.firstBundle; b < unit.firstBundle + unit.bundles; ++b)
+      const __global CrossingInfo* of_plane = crossings + (unit.planesBefore + k) * info.bundles;
+      for (int b = unit.firstBundle; b < unit.firstBundle + unit.bundles; b += together)
       {
-        cross_plane(
-          &state, maps, outside, radiance, bundles + b, crossings + (unit.planesBefore + k) * info.bundles + b);
+        const int some = min(together, unit.firstBundle + unit.bundles - b);
+        cross_bundles(&state, maps, outside, radiance, bundles + b, some, of_plane + b, coefficients);
       }
       for (int side = 0; side < 4; ++side)
       {
@@ -412,7 +486,7 @@ __kernel __attribute__((reqd_work_group_size(1, 1, 1))) void sweep(SweepInfo inf
         }
       }
     }
-    end_planes(&layout, planes, first, count, path, lost, flux, currents, info.stride,
-      own + u * info.patternPlanes + begin, unit.backward, info.axis);
+    end_planes(&info, planes, first, count, path, lost, flux, currents, functions, own + u * info.patternPlanes + begin,
+      unit.backward);
   }
 }

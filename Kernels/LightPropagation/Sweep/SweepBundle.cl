@@ -13,26 +13,30 @@
 #define CROSS_PLANE NAME_OF(cross_plane_, MEMBERS)
 #define COUNT_CURRENTS NAME_OF(count_currents_, MEMBERS)
 #define MOVE_PART NAME_OF(move_part_, MEMBERS)
+#define CROSS_MOMENTS NAME_OF(cross_moments_, MEMBERS)
+#define FIND_SOURCES NAME_OF(find_sources_, MEMBERS)
+#define GATHER_MOMENTS NAME_OF(gather_moments_, MEMBERS)
 #define BLOCK (MEMBERS * CHANNELS * ROW)
 #define FIRST(member, channel) (((member)*CHANNELS + (channel)) * ROW + PAD)
 
+#if DEGREE
+#include "LightPropagation/Sweep/SweepMoments.cl"
+#else
+
 // All rays of a row through one segment each (numerics.md, Eqs. (23), (24); Gruson et al., Eq. 3, conservative):
-//   path += p1 P,  P' = P - sigma p1 P + power q p1,  p1 = (1 - exp(-tau)) / sigma
-// For small tau P' is P less what it loses, for large tau it is P times what is left: neither loses digits. Where all
-// of the row is thin, p1 is a polynomial: half the work. `thin` is a constant where this is called. The path of the
-// source's own light in the voxel does not depend on P: Sweep.cl, add_own_light.
+//   path += p1 P,  P' = P - sigma p1 P + power q p1
+// The path of the source's own light in the voxel does not depend on P: Sweep.cl, add_own_light.
 static inline __attribute__((always_inline)) void CROSS_VOXELS(sweep_state* state, int y, bool deposit, bool thin,
   const __global float** in, __global float* out, float length, const __global BundleInfo* bundle)
 {
-  const int rows = state->sizeV * ROW;
-  const __global float* sigma_row = state->planes + PlaneSigma * rows + y * ROW;
-  const __global float* inverse_row = state->planes + PlaneInverse * rows + y * ROW;
-  __global float* taken_row = state->planes + PlaneTaken * rows + y * ROW;
-  const __global float* source_row = state->planes + PlaneSource * rows + y * ROW;
-  __global float* path_row = state->planes + PLANE_PATH * rows + y * ROW;
+  const __global float* sigma_row = ROW_OF(state->planes, PlaneSigma, y);
+  const __global float* inverse_row = ROW_OF(state->planes, PlaneInverse, y);
+  __global float* taken_row = ROW_OF(state->planes, PlaneTaken, y);
+  const __global float* source_row = ROW_OF(state->planes, PlaneSource, y);
+  __global float* path_row = ROW_OF(state->planes, PLANE_PATH, y);
   const float power = bundle->power;
 #if NET_FLUX
-  __global float* flux_row = state->planes + PLANE_FLUX * rows + y * ROW;
+  __global float* flux_row = ROW_OF(state->planes, PLANE_FLUX, y);
   float along_u[MEMBERS], along_v[MEMBERS];
 #pragma unroll
   for (int m = 0; m < MEMBERS; ++m)
@@ -43,30 +47,8 @@ static inline __attribute__((always_inline)) void CROSS_VOXELS(sweep_state* stat
 #endif
   for (int x = 0; x < state->width; x += REAL_WIDTH)
   {
-    const real tau = load_real(x, sigma_row) * length;
-    real mean_length, keep, change;
-    if (thin)
-    {
-      real mean = (real)state->meanLength[MeanLengthTerms - 1];
-#pragma unroll
-      for (int i = MeanLengthTerms - 2; i >= 0; --i)
-      {
-        mean = multiply_add(mean, tau, (real)state->meanLength[i]);
-      }
-      mean = multiply_add(mean, tau, (real)1.0f);
-      mean_length = mean * length;
-      keep = (real)1.0f;
-      change = -tau * mean;
-    }
-    else
-    {
-      real left;
-      const real lost = extinguished(tau, &left);
-      const integer losesLess = tau < (real)1.0f;
-      mean_length = lost * load_real(x, inverse_row);
-      keep = select((real)0.0f, (real)1.0f, losesLess);
-      change = select(left, -lost, losesLess);
-    }
+    const real_crossing crossing = cross_length(state, x, sigma_row, inverse_row, length, thin);
+    const real mean_length = crossing.meanLength, keep = crossing.keep, change = crossing.change;
 #if SOURCE
     if (deposit && !thin)
     {
@@ -76,16 +58,14 @@ static inline __attribute__((always_inline)) void CROSS_VOXELS(sweep_state* stat
 #if NET_FLUX
     // Path of the light that the voxel's own source adds, (length - mean_length) / sigma. Across the axis that of
     // mirror images cancels, but along it a ray and its opposite may cross the voxel in different parts.
-    const real thin_path = multiply_add(tau, (real)(-length * length / 6.0f), (real)(0.5f * length * length));
-    const real thick_path = (length - mean_length) * load_real(x, inverse_row);
-    const real own_path = select(thick_path, thin_path, tau < (real)1e-2f) * (power * MEMBERS * bundle->cosine);
+    const real own_path = own_path_of(x, &crossing, inverse_row, length) * (power * MEMBERS * bundle->cosine);
 #endif
 #endif
 #pragma unroll
     for (int c = 0; c < CHANNELS; ++c)
     {
 #if SOURCE
-      const real gain = shine * load_real(x, source_row + c * rows);
+      const real gain = shine * load_real(x, source_row + c * ROW);
 #endif
       real sum = (real)0.0f;
 #if NET_FLUX
@@ -110,33 +90,43 @@ static inline __attribute__((always_inline)) void CROSS_VOXELS(sweep_state* stat
       }
       if (deposit)
       {
-        store_real(multiply_add(mean_length, sum, load_real(x, path_row + c * rows)), x, path_row + c * rows);
+        store_real(multiply_add(mean_length, sum, load_real(x, path_row + c * ROW)), x, path_row + c * ROW);
 #if NET_FLUX
-        __global float* flux = flux_row + 3 * c * rows;
+        __global float* flux = flux_row + 3 * c * ROW;
         store_real(multiply_add(mean_length, sum_u, load_real(x, flux)), x, flux);
-        store_real(multiply_add(mean_length, sum_v, load_real(x, flux + rows)), x, flux + rows);
-        real sum_w = multiply_add(mean_length * bundle->cosine, sum, load_real(x, flux + 2 * rows));
+        store_real(multiply_add(mean_length, sum_v, load_real(x, flux + ROW)), x, flux + ROW);
+        real sum_w = multiply_add(mean_length * bundle->cosine, sum, load_real(x, flux + 2 * ROW));
 #if SOURCE
-        sum_w = multiply_add(own_path, load_real(x, source_row + c * rows), sum_w);
+        sum_w = multiply_add(own_path, load_real(x, source_row + c * ROW), sum_w);
 #endif
-        store_real(sum_w, x, flux + 2 * rows);
+        store_real(sum_w, x, flux + 2 * ROW);
 #endif
       }
     }
   }
 }
 
-static void STAGE_ROW(sweep_state* state, int y, bool deposit, const __global float** in, __global float* out,
-  float length, const __global BundleInfo* bundle)
+#endif
+
+// @param slot  of the row among those that a bundle keeps sources of
+// @param first  its first segment in the plane
+static void STAGE_ROW(sweep_state* state, int y, int slot, bool first, bool deposit, const __global float** in,
+  __global float* out, float length, const __global BundleInfo* bundle)
 {
+#if DEGREE
+#define CROSS_ROW(thin) CROSS_MOMENTS(state, y, slot, first, deposit, thin, in, out, length, bundle)
+#else
+#define CROSS_ROW(thin) CROSS_VOXELS(state, y, deposit, thin, in, out, length, bundle)
+#endif
   if (state->thin[y])
   {
-    CROSS_VOXELS(state, y, deposit, true, in, out, length, bundle);
+    CROSS_ROW(true);
   }
   else
   {
-    CROSS_VOXELS(state, y, deposit, false, in, out, length, bundle);
+    CROSS_ROW(false);
   }
+#undef CROSS_ROW
 #if PERIODIC_U
   for (int i = 0; i < MEMBERS * CHANNELS; ++i)
   {
@@ -205,7 +195,7 @@ static void FILL_BORDER(sweep_state* state, const __global float* radiance)
   {
     for (int r = 0; r < 2 * RingRows; ++r)
     {
-      __global float* row = state->ring + r * (MaxMembers * CHANNELS * ROW) + i * ROW + PAD;
+      __global float* row = state->ring + r * RAYS_OF_ROW + i * ROW + PAD;
       row[-1] = radiance[i];
       row[state->width] = radiance[i];
     }
@@ -247,11 +237,18 @@ static void COUNT_CURRENTS(sweep_state* state, int y, bool first, const __global
 // @param map      rays of the bundle, [row][member][channel][ROW], two rows more than the plane has
 // @param outside  a row of rays that come in through the faces across v, [member][channel][ROW]
 // @param radiance of rays that come in through the faces across u, [member][channel]
+// @param coefficients  of the bundle's angular functions
+// @param first_row, end_row  of its first stage, that are crossed in this call: in turn, from FirstRow on
 static void CROSS_PLANE(sweep_state* state, __global float* map, const __global float* outside,
-  const __global float* radiance, const __global BundleInfo* bundle, const __global CrossingInfo* crossing)
+  const __global float* radiance, const __global BundleInfo* bundle, const __global CrossingInfo* crossing,
+  const __global float* coefficients, int first_row, int end_row)
 {
+  const bool begins = first_row <= FirstRow;
 #if BORDER
-  FILL_BORDER(state, radiance);
+  if (begins)
+  {
+    FILL_BORDER(state, radiance);
+  }
 #endif
   const int stages = crossing->stages;
   const int height = state->sizeV;
@@ -259,14 +256,15 @@ static void CROSS_PLANE(sweep_state* state, __global float* map, const __global 
   // Rows beyond the plane are rows of the other side, and computed again there; the first ones are needed after they
   // are overwritten.
   const int beyond = stages - 1;
-  for (int i = 0; i < beyond * BLOCK; ++i)
+  for (int i = 0; begins && i < beyond * BLOCK; ++i)
   {
     map[height * BLOCK + i] = map[(i / BLOCK % height) * BLOCK + i % BLOCK];
   }
 #else
   const int beyond = 0;
 #endif
-  for (int r = -beyond; r < height + beyond + LAG * (stages - 1); ++r)
+  const int end = min(height + beyond + LAG * (stages - 1), end_row);
+  for (int r = max(-beyond, first_row); r < end; ++r)
   {
     for (int s = 0; s < stages; ++s)
     {
@@ -283,8 +281,8 @@ static void CROSS_PLANE(sweep_state* state, __global float* map, const __global 
       const bool inside = y >= 0 && y < height;
       const int wrapped = inside ? y : (y % height + height) % height;
       const float part = crossing->part[s];
-      const __global float* before = state->ring + ((s - 1) & 1) * (RingRows * MaxMembers * CHANNELS * ROW);
-      const __global float* own = before + (y & (RingRows - 1)) * (MaxMembers * CHANNELS * ROW); // where s > 0
+      const __global float* before = state->ring + ((s - 1) & 1) * (RingRows * RAYS_OF_ROW);
+      const __global float* own = before + (y & (RingRows - 1)) * RAYS_OF_ROW; // where s > 0
       const __global float* in[MEMBERS];
 #pragma unroll
       for (int m = 0; m < MEMBERS; ++m)
@@ -299,7 +297,7 @@ static void CROSS_PLANE(sweep_state* state, __global float* map, const __global 
         }
         else
         {
-          row = before + (from & (RingRows - 1)) * (MaxMembers * CHANNELS * ROW);
+          row = before + (from & (RingRows - 1)) * RAYS_OF_ROW;
           if (inside && (du != 0 || dv != 0))
           {
             COUNT_ESCAPED(state, own, y, m, du, dv, part, radiance, outside);
@@ -311,9 +309,9 @@ static void CROSS_PLANE(sweep_state* state, __global float* map, const __global 
         }
         in[m] = row + FIRST(m, 0) - du;
       }
-      __global float* out = s == stages - 1 ? map + y * BLOCK
-                                            : state->ring + (s & 1) * (RingRows * MaxMembers * CHANNELS * ROW) +
-          (y & (RingRows - 1)) * (MaxMembers * CHANNELS * ROW);
+      __global float* out = s == stages - 1
+        ? map + y * BLOCK
+        : state->ring + (s & 1) * (RingRows * RAYS_OF_ROW) + (y & (RingRows - 1)) * RAYS_OF_ROW;
 #if CURRENTS
       if (inside)
       {
@@ -324,11 +322,27 @@ static void CROSS_PLANE(sweep_state* state, __global float* map, const __global 
       {
         MOVE_PART(state, part, own, in);
       }
-      STAGE_ROW(state, wrapped, inside, in, out, crossing->length[s], bundle);
+      const int slot = y & (MomentRows - 1);
+#if DEGREE && SOURCE
+      if (s == 0)
+      {
+        FIND_SOURCES(state, wrapped, slot, bundle, coefficients);
+      }
+#endif
+      STAGE_ROW(state, wrapped, slot, s == 0, inside, in, out, crossing->length[s], bundle);
+#if DEGREE
+      if (inside && s == stages - 1)
+      {
+        GATHER_MOMENTS(state, y, slot, bundle, coefficients);
+      }
+#endif
     }
   }
 }
 
+#undef CROSS_MOMENTS
+#undef FIND_SOURCES
+#undef GATHER_MOMENTS
 #undef FIRST
 #undef BLOCK
 #undef COUNT_CURRENTS

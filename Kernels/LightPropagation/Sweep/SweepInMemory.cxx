@@ -11,6 +11,7 @@ SweepInMemory::SweepInMemory(Device& device, const VolumeLayout& layout, const B
   , To(request.deposit)
   , Box(request.box)
   , MostPlanes(request.mostPlanes)
+  , Angular(request.angular)
 {
   for (const AxisBundles& along : request.rays)
   {
@@ -34,6 +35,8 @@ SweepVolume SweepInMemory::VolumeOf(const ChannelGroup& group, const Buffer<floa
   SweepVolume volume = GroupVolume(this->Layout, group, this->SigmaT, this->To);
   volume.box = this->Box;
   volume.source = source;
+  volume.angular = this->Angular;
+  volume.deposit.flux = this->Angular ? nullptr : volume.deposit.flux; // it is among the moments
   return volume;
 }
 

@@ -3,6 +3,10 @@
 //   CHANNELS  1 or 3 colours that share sigma_t
 //   ROW       floats in a padded row; the floats after a row's voxels and before the next row's are its border
 //   SOURCE    1 where the medium shines (emission or scattered light)
+//   DEGREE    of the angular moments in which light is gathered and scattered; 0: fluence alone
+//   BEAMS     sources with an angular distribution of their own, besides the moments; where DEGREE is not 0
+//   EVEN_EVEN, ODD_EVEN, EVEN_ODD, ODD_ODD  how many of the angular functions are even or odd along u and v; where
+//             DEGREE is not 0
 //   NET_FLUX  1 where the net flux is wanted
 //   CURRENTS  1 where the power that enters each voxel through each face is wanted
 //   BORDER    1 where light comes in through the faces that rays pass sideways
@@ -20,22 +24,32 @@
 #define LAG 2 // rows a stage stays behind the one before
 #define FLUX (NET_FLUX ? 3 : 0)
 
-// The quantities of one plane, each [row][ROW], behind those of SweepShared.h.
-#define PLANE_PATH (PlaneSource + CHANNELS) // path integral of power, W length
-#define PLANE_FLUX (PLANE_PATH + CHANNELS)
+// The quantities of one plane, behind those of SweepShared.h.
+#define MOMENTS ((DEGREE + 1) * (DEGREE + 1))
+#define PLANE_BEAMS (PlaneSource + MOMENTS * CHANNELS)
+#define PLANE_PATH (PLANE_BEAMS + BEAMS * CHANNELS) // moments of the path integral of power, W length
+#define PLANE_FLUX (PLANE_PATH + MOMENTS * CHANNELS)
 #define PLANE_CURRENTS (PLANE_FLUX + FLUX * CHANNELS) // power that enters through CurrentFaces, W
-#define PLANES PLANE_COUNT(CHANNELS, NET_FLUX, CURRENTS)
+#define PLANES PLANE_COUNT(CHANNELS, MOMENTS, BEAMS, NET_FLUX, CURRENTS)
+#define RAYS_OF_ROW (MaxMembers * CHANNELS * ROW)
+// A plane is [row][quantity][ROW]: what is needed at once lies together, and no stride is a power of two.
+#define ROW_OF(planes, quantity, row) ((planes) + ((row)*PLANES + (quantity)) * ROW)
 
 // Where a work-item is: its planes, its rows, its buffers.
 typedef struct
 {
   int sizeU, sizeV;       // voxels of the plane
   int width;              // sizeU rounded up to whole vectors
-  __global float* planes; // PLANES quantities of sizeV rows: of the plane that is being crossed
+  __global float* planes; // of the plane that is being crossed
   __global int* thin;     // [row] of it, 1 where all voxels are thin
   float meanLength[MeanLengthTerms];
-  __global float* ring;   // 2 rings of RingRows rows of MaxMembers * CHANNELS * ROW floats, and one row more: `moving`
-  __global float* moving; // the rays of a row of which a part moves
+  __global float* ring; // 2 rings of RingRows rows of RAYS_OF_ROW floats
+#if DEGREE
+  __global float* sources; // MomentRows rows of RAYS_OF_ROW floats: W / (length^3 sr) in the members' directions
+  __global float* paths;   // the same: W length, of the members
+  __global float* ownPath; // MomentRows rows: of a source of 1 in its own voxel
+#endif
+  __global float* moving;     // the rays of a row of which a part moves
   float escaped[4][CHANNELS]; // through -u, +u, -v, +v, W; with the rounding errors
   float rounding[4][CHANNELS];
 } sweep_state;

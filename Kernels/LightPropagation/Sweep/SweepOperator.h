@@ -2,6 +2,7 @@
 
 #include "Device/Buffer.h"
 #include "Device/Monitor.h"
+#include "LightPropagation/Angular/AngularValues.h"
 #include "LightPropagation/Angular/RayBundles.h"
 #include "LightPropagation/Sweep/Deposit.h"
 #include "LightPropagation/Sweep/SweepTally.h"
@@ -31,6 +32,9 @@ struct SweepRequest
   VoxelBox box = {};                 ///< the part of the grid that is swept; empty: all
   int mostPlanes = MostPlanesAround; ///< that rays go round a periodic axis before they wait for the next sweep
   bool sameBoundary = false;         ///< every sweep is given the same boundary: what it makes of it is kept
+  /// Along the directions of the rays, must stay: sources and path integrals are angular moments, and net flux is among
+  /// them. Null: they are those of fluence alone.
+  const AngularValues* angular = nullptr;
 };
 
 /// Carries light once through the medium: from what shines in its voxels and what comes in through the box's faces to
@@ -43,7 +47,8 @@ public:
   virtual ~SweepOperator() = default;
 
   /// Adds to the deposit that the operator was made with.
-  /// @param source  W / (length^3 sr), [channel][stride]; null: the medium is dark
+  /// @param source  W / (length^3 sr), [channel][stride], with angular moments [function, then beam][channel][stride];
+  /// null: the medium is dark
   /// @param boundary  what comes in, three channels; empty: nothing
   /// @param monitor  given fractions of this sweep
   /// @return of all channels: what came in, what left, what still goes round a periodic axis, as it will in the next

@@ -7,10 +7,9 @@
 // Part of the rays of row y that come through one kind of face.
 static void add_current(sweep_state* state, int y, int face, const __global float* rays, float part)
 {
-  const int rows = state->sizeV * ROW;
   for (int c = 0; c < CHANNELS; ++c)
   {
-    __global float* sum = state->planes + (PLANE_CURRENTS + CurrentFaces * c + face) * rows + y * ROW;
+    __global float* sum = ROW_OF(state->planes, PLANE_CURRENTS + CurrentFaces * c + face, y);
     for (int x = 0; x < state->width; x += REAL_WIDTH)
     {
       store_real(multiply_add(load_real(x, rays + c * ROW), (real)part, load_real(x, sum)), x, sum);
@@ -22,12 +21,11 @@ static void add_current(sweep_state* state, int y, int face, const __global floa
 // itself through u after that, or leave the box.
 static void add_beside(sweep_state* state, int y, int du, int face, const __global float* rays, float part)
 {
-  const int rows = state->sizeV * ROW;
   const int size = state->sizeU;
   for (int c = 0; c < CHANNELS; ++c)
   {
     const __global float* from = rays + c * ROW;
-    __global float* sum = state->planes + (PLANE_CURRENTS + CurrentFaces * c + face) * rows + y * ROW;
+    __global float* sum = ROW_OF(state->planes, PLANE_CURRENTS + CurrentFaces * c + face, y);
     for (int x = 0; x < state->width; x += REAL_WIDTH)
     {
       // A row's last floats and what is before its first are never read.

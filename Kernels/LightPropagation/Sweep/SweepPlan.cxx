@@ -60,6 +60,21 @@ std::vector<Bundle> InPowersOfTwo(const std::vector<Bundle>& bundles)
   return parts;
 }
 
+bool IsSwapped(const Member& member)
+{
+  return member.uFromU == 0;
+}
+
+/// Members whose directions differ by signs alone side by side.
+void SortIntoFrames(std::vector<Bundle>& bundles)
+{
+  for (Bundle& bundle : bundles)
+  {
+    std::stable_partition(
+      bundle.members.begin(), bundle.members.end(), [](const Member& member) { return !IsSwapped(member); });
+  }
+}
+
 /// Through a plane.
 double LongestWay(const std::vector<Bundle>& bundles)
 {
@@ -74,7 +89,7 @@ double LongestWay(const std::vector<Bundle>& bundles)
 
 SweepPlan::SweepPlan(const Device& device, const Grid& ofGrid, const VoxelBox& ofBox, int axis,
   const std::vector<Bundle>& ofBundles, int channelCount, const std::array<bool, 3>& periodicAxes, bool wantsNetFlux,
-  bool wantsCurrents)
+  bool wantsCurrents, const AngularValues* angularValues)
   : grid(ofGrid)
   , box(ofBox.VoxelCount() > 0 ? ofBox : VoxelBox{ { 0, 0, 0 }, ofGrid.size })
   , axes(AcrossAxis(axis))
@@ -83,7 +98,13 @@ SweepPlan::SweepPlan(const Device& device, const Grid& ofGrid, const VoxelBox& o
   , periodic(periodicAxes)
   , netFlux(wantsNetFlux)
   , partialCurrents(wantsCurrents)
+  , angular(angularValues)
+  , order(angularValues ? angularValues->degree : 0, AcrossAxis(axis).u, AcrossAxis(axis).v)
 {
+  if (this->angular)
+  {
+    SortIntoFrames(this->bundles);
+  }
   for (const Bundle& bundle : this->bundles)
   {
     for (const Member& member : bundle.members)
@@ -95,6 +116,10 @@ SweepPlan::SweepPlan(const Device& device, const Grid& ofGrid, const VoxelBox& o
   this->LayLaps();
   this->LayPlane(device);
   this->LayBundles();
+  if (this->angular)
+  {
+    this->LayFrames();
+  }
   this->LayUnits(device.ComputeUnits());
   this->LaySchedule();
   this->LayRounds();
@@ -165,7 +190,7 @@ BundleInfo SweepPlan::Describe(const Bundle& bundle) const
   };
   BundleInfo description = { Int(bundle.members.size()), Int(this->mapsEachWay), Int(this->radianceEachWay),
     Int(this->outsideEachWay), static_cast<float>(bundle.power), static_cast<float>(cosine),
-    sine(bundle.tangentU, this->axes.u), sine(bundle.tangentV, this->axes.v), {} };
+    sine(bundle.tangentU, this->axes.u), sine(bundle.tangentV, this->axes.v), {}, 0, {}, 0 };
   for (std::size_t m = 0; m < bundle.members.size(); ++m)
   {
     const Member& member = bundle.members[m];
@@ -173,6 +198,67 @@ BundleInfo SweepPlan::Describe(const Bundle& bundle) const
     std::copy(move, move + 4, description.move[m]);
   }
   return description;
+}
+
+/// Where each bundle's frames are and its coefficients begin, and the coefficients of both ways.
+void SweepPlan::LayFrames()
+{
+  for (std::size_t b = 0; b < this->bundles.size(); ++b)
+  {
+    const std::vector<Member>& members = this->bundles[b].members;
+    BundleInfo& info = this->bundleRows[b];
+    for (std::size_t m = 0; m < members.size(); ++m)
+    {
+      if (m == 0 || IsSwapped(members[m]) != IsSwapped(members[m - 1]))
+      {
+        info.firstOfFrame[info.frames++] = Int(m);
+      }
+    }
+    info.firstOfFrame[info.frames] = Int(members.size());
+    info.coefficients = Int(this->coefficientsEachWay);
+    this->coefficientsEachWay += info.frames * this->angular->Functions() + members.size() * this->angular->Beams();
+  }
+  for (int way = 0; way < 2; ++way)
+  {
+    for (std::size_t b = 0; b < this->bundles.size(); ++b)
+    {
+      this->LayCoefficients(b, way);
+    }
+  }
+}
+
+/// Angular functions of each frame, for positive u and v, from any of its members; beams of each member.
+void SweepPlan::LayCoefficients(std::size_t b, int way)
+{
+  const auto directionOf = [way](const Member& member) { return way == 0 ? member.direction : member.opposite; };
+  const std::vector<Member>& members = this->bundles[b].members;
+  const BundleInfo& info = this->bundleRows[b];
+  for (int f = 0; f < info.frames; ++f)
+  {
+    std::vector<float> ofFrame(this->order.functions.size(), 0.0f);
+    for (int m = info.firstOfFrame[f]; m < info.firstOfFrame[f + 1]; ++m)
+    {
+      const Member& member = members[m];
+      const bool negativeU = member.uFromU + member.uFromV < 0, negativeV = member.vFromU + member.vFromV < 0;
+      for (std::size_t k = 0; k < ofFrame.size() && directionOf(member) >= 0; ++k)
+      {
+        const int function = this->order.functions[k];
+        const std::array<bool, 3> odd = AngularBasis::IsOdd(function);
+        const bool turns = (odd[this->axes.u] && negativeU) != (odd[this->axes.v] && negativeV);
+        const double value = this->angular->functions[directionOf(member)][function];
+        ofFrame[k] = static_cast<float>(turns ? -value : value);
+      }
+    }
+    this->coefficients.insert(this->coefficients.end(), ofFrame.begin(), ofFrame.end());
+  }
+  for (const Member& member : members)
+  {
+    for (int beam = 0; beam < this->angular->Beams(); ++beam)
+    {
+      const int direction = directionOf(member);
+      this->coefficients.push_back(direction < 0 ? 0.0f : static_cast<float>(this->angular->beams[direction][beam]));
+    }
+  }
 }
 
 /// Units that march at the same time: both ways, each in as many groups of bundles as keep the cores busy.
@@ -221,9 +307,15 @@ int SweepPlan::CrossingPlanes() const
 
 std::size_t SweepPlan::ScratchFloats() const
 {
-  // Two rings and the rays of a row of which a part moves.
-  const std::size_t ring = (std::size_t{ 2 } * RingRows + 1) * MaxMembers * this->channels * this->row + this->vector;
-  const std::size_t quantities = PLANE_COUNT(this->channels, this->netFlux, this->partialCurrents);
+  // Two rings, or what each bundle keeps, and the rays of a row of which a part moves.
+  const std::size_t raysOfRow = static_cast<std::size_t>(MaxMembers) * this->channels * this->row;
+  const std::size_t together = std::min<std::size_t>(this->bundles.size(), BundlesTogether);
+  const std::size_t kept =
+    this->angular ? together * BUNDLE_FLOATS(this->channels, this->row) : std::size_t{ 2 } * RingRows * raysOfRow;
+  const std::size_t ring = kept + raysOfRow + this->vector;
+  const int moments = this->angular ? this->angular->Functions() : 1,
+            beams = this->angular ? this->angular->Beams() : 0;
+  const std::size_t quantities = PLANE_COUNT(this->channels, moments, beams, this->netFlux, this->partialCurrents);
   const std::size_t planes = quantities * this->plane.block * this->plane.sizeV * this->row;
   const std::size_t thinRows = static_cast<std::size_t>(this->plane.block) * this->plane.sizeV;
   return ring + planes + thinRows + 2 * this->vector;

@@ -1,5 +1,6 @@
 #pragma once
 
+#include "LightPropagation/Angular/AngularValues.h"
 #include "LightPropagation/Angular/RayBundles.h"
 #include "LightPropagation/Sweep/SweepShared.h"
 #include "LightPropagation/Sweep/SweepVolume.h"
@@ -18,8 +19,10 @@ struct SweepPlan
   /// @param box  the part of the grid that is swept; all of it, or no axis is periodic
   /// @param netFlux  the net flux is wanted too
   /// @param partialCurrents  and the power that enters voxels by face
+  /// @param angular  of the bundles' directions, must stay; null: light has no angular moments
   SweepPlan(const Device& device, const Grid& grid, const VoxelBox& box, int axis, const std::vector<Bundle>& bundles,
-    int channels, const std::array<bool, 3>& periodic, bool netFlux, bool partialCurrents);
+    int channels, const std::array<bool, 3>& periodic, bool netFlux, bool partialCurrents,
+    const AngularValues* angular);
 
   Grid grid;
   VoxelBox box;
@@ -29,6 +32,7 @@ struct SweepPlan
   std::array<bool, 3> periodic;
   bool netFlux;
   bool partialCurrents;
+  const AngularValues* angular;
   bool forward = false; ///< some rays march that way
   bool backward = false;
 
@@ -39,6 +43,9 @@ struct SweepPlan
   std::size_t mapsEachWay = 0; ///< floats of the maps, the rows outside and the radiances at the faces, one way
   std::size_t outsideEachWay = 0;
   std::size_t radianceEachWay = 0;
+  std::vector<float> coefficients; ///< as BundleInfo has them, forward first
+  std::size_t coefficientsEachWay = 0;
+  FunctionOrder order; ///< of the angular functions, along this axis
 
   std::vector<UnitInfo> units;
   std::vector<cl_int2> schedule; ///< [launch][unit]: planes from, to
@@ -64,6 +71,8 @@ private:
   void LayPlane(const Device& device);
   void LayBundles();
   BundleInfo Describe(const Bundle& bundle) const;
+  void LayFrames();
+  void LayCoefficients(std::size_t bundle, int way);
   void LayUnits(int computeUnits);
   std::vector<int> SlabBorders(int groups);
   void LaySchedule();

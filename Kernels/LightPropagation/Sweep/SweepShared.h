@@ -6,9 +6,14 @@
 SHARED_BEGIN
 enum
 {
-  MaxMembers = 8,     ///< of a bundle
-  RingRows = 4,       ///< a stage reads rows y - 1 to y + 1 while the stage before writes row y + 2
-  MeanLengthTerms = 5 ///< of (1 - exp(-t)) / t = 1 + t (m0 + t (m1 + ...)) for thin voxels, see SweepPlan.cxx
+  MaxMembers = 8,       ///< of a bundle
+  MaxFrames = 2,        ///< of a bundle: u and v as they are, and exchanged
+  RingRows = 4,         ///< a stage reads rows y - 1 to y + 1 while the stage before writes row y + 2
+  MeanLengthTerms = 5,  ///< of (1 - exp(-t)) / t = 1 + t (m0 + t (m1 + ...)) for thin voxels, see SweepPlan.cxx
+  BundlesTogether = 16, ///< that cross a plane tile by tile, where light has angular moments
+  MomentRows = 8,       ///< of which a bundle's sources are kept: of the rows that its stages are at
+  FirstRow = -2,        ///< of a plane: that a first stage may begin at, and
+  RowsBehind = 6        ///< those beyond its last one that it may end at
 };
 
 /// The first quantities of a plane that is being crossed; behind them path, flux and partial currents (SweepLayout.cl).
@@ -31,9 +36,15 @@ enum
   CurrentFaces = 5
 };
 
-/// Quantities of a plane: each channel has a source and a path, and a flux and currents where they are wanted.
-#define PLANE_COUNT(channels, netFlux, currents) \
-  (PlaneSource + (2 + ((netFlux) ? 3 : 0) + ((currents) ? CurrentFaces : 0)) * (channels))
+/// Quantities of a plane: each channel has the moments of its source and of its path (one where scattering is
+/// isotropic), beams, and a flux and currents where they are wanted.
+#define PLANE_COUNT(channels, moments, beams, netFlux, currents) \
+  (PlaneSource + (2 * (moments) + (beams) + ((netFlux) ? 3 : 0) + ((currents) ? CurrentFaces : 0)) * (channels))
+
+/// Floats that a bundle keeps from one tile of rows to the next: two rings, and of MomentRows rows the members' sources
+/// and paths, and the path of a source of 1 in its own voxel.
+#define BUNDLE_FLOATS(channels, row) \
+  ((2 * RingRows + 2 * MomentRows) * MaxMembers * (channels) * (row) + MomentRows * (row))
 
 typedef struct
 {
@@ -45,6 +56,12 @@ typedef struct
   float cosine; ///< of its directions with the axis it marches along, for the net flux
   float sineU, sineV;
   int move[MaxMembers][4]; ///< u from u, u from v, v from u, v from v: a signed permutation
+  /// Members whose directions differ by signs alone, at most four, are a frame; where its members begin, and where the
+  /// last one's end.
+  int frames, firstOfFrame[MaxFrames + 1];
+  /// Where its coefficients begin, in floats, of each way: of the angular functions by [frame][function], in the order
+  /// of the axis, for positive u and v; of beams by [member][beam].
+  int coefficients;
 } BundleInfo;
 
 /// How rays of a bundle cross a plane.
@@ -94,8 +111,9 @@ typedef struct
   /// Where it begins in the other volumes (flux: three times, currents: six times that), and the way from one channel
   /// to the next.
   ulong first, stride;
-  ulong mapsEachWay; ///< floats of the maps of one way along the axis
-  uint outsideEachWay, radianceEachWay;
+  ulong functionStride; ///< the way from one angular function to the next, in source and path
+  ulong mapsEachWay;    ///< floats of the maps of one way along the axis
+  uint outsideEachWay, radianceEachWay, coefficientsEachWay;
   int empty; ///< 1: the maps hold nothing yet, and are cleared where rays start
   int bundles;
   int patternPlanes; ///< planes of the ray pattern

@@ -1,5 +1,6 @@
 #pragma once
 
+#include "LightPropagation/Angular/AngularValues.h"
 #include "LightPropagation/Sweep/Deposit.h"
 #include "LightPropagation/Sweep/VolumeLayout.h"
 #include "Medium/VoxelBox.h"
@@ -14,6 +15,8 @@ struct SweepVolume
   VoxelBox box;     ///< the part that is swept: rays start at its faces, where they would have come in; empty: all
   int channels = 1; ///< 1 or 3 that share one sigma_t
   std::size_t stride = 0;
+  std::size_t functionStride = 0;         ///< from one angular moment to the next
+  const AngularValues* angular = nullptr; ///< as in SweepRequest
   const Buffer<float>* sigma_t = nullptr; ///< 1/length
   std::size_t sigma_t_first = 0;          ///< where its channel begins
   const Buffer<float>* source = nullptr;  ///< W / (length^3 sr); null: the medium is dark
@@ -31,6 +34,7 @@ inline SweepVolume GroupVolume(
   volume.grid = layout.grid;
   volume.channels = group.count;
   volume.stride = layout.Stride();
+  volume.functionStride = layout.channels * layout.Stride();
   volume.sigma_t = &sigma_t;
   volume.sigma_t_first = layout.ExtinctionFirst(group.first);
   volume.deposit = deposit;

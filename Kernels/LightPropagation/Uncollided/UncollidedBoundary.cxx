@@ -23,6 +23,7 @@ SweepTally UncollidedBoundary::AddTo(const UncollidedVolume& volume, const Monit
   const int channels = volume.layout.Groups().front().count; // that are swept at once
   const SweepBoundary incoming = this->Light.Boundary();
   const auto isLit = [&](int direction) { return !this->Settings.leaveOut || this->Light.IsLit(direction); };
+  const AngularValues values = volume.basis ? this->Light.Along().Values(*volume.basis) : AngularValues();
   SweepTally tally;
   for (int part = 0; part < 6; ++part)
   {
@@ -36,7 +37,9 @@ SweepTally UncollidedBoundary::AddTo(const UncollidedVolume& volume, const Monit
       const double all = 6.0 * static_cast<double>(bundles.size());
       const double before = part / 6.0 + static_cast<double>(first) / all;
       const Monitor ofSome = OfPart(monitor, before, before + static_cast<double>(some.size()) / all);
-      Add(tally, volume.makeSweep({ volume.deposit, { { part / 2, some } } })->Apply(nullptr, incoming, ofSome));
+      SweepRequest request = { volume.deposit, { { part / 2, some } } };
+      request.angular = volume.basis ? &values : nullptr;
+      Add(tally, volume.makeSweep(request)->Apply(nullptr, incoming, ofSome));
     }
   }
   return tally;

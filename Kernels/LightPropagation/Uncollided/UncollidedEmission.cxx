@@ -1,6 +1,7 @@
 #include "LightPropagation/Uncollided/UncollidedEmission.h"
 
 #include "LightPropagation/Uncollided/EmissionRays.h"
+#include "LightPropagation/Uncollided/NarrowLight.h"
 
 #include <utility>
 
@@ -13,6 +14,20 @@ UncollidedEmission::UncollidedEmission(EmissionPeak peak, double error)
 }
 
 SweepTally UncollidedEmission::AddTo(const UncollidedVolume& volume, const Monitor& monitor) const
+{
+  if (!volume.basis)
+  {
+    return this->Put(volume, monitor);
+  }
+  const NarrowLight light(volume, true);
+  UncollidedVolume apart = volume;
+  apart.deposit = light.To();
+  const SweepTally tally = this->Put(apart, monitor);
+  light.AddAlongFlux();
+  return tally;
+}
+
+SweepTally UncollidedEmission::Put(const UncollidedVolume& volume, const Monitor& monitor) const
 {
   const auto add = [this, &volume](const SweepVolume& ofChannels, int first, const Monitor& ofGroup) {
     return DepositEmission(volume.device, ofChannels, first, this->Peak, this->Error, ofGroup);

@@ -15,6 +15,8 @@ public:
   SweepTally AddTo(const UncollidedVolume& volume, const Monitor& monitor) const override;
 
 private:
+  SweepTally Put(const UncollidedVolume& volume, const Monitor& monitor) const;
+
   EmissionPeak Peak;
   double Error;
 };

@@ -1,7 +1,12 @@
 #include "LightPropagation/Uncollided/UncollidedLamp.h"
 
 #include "LightPropagation/Uncollided/LampBeams.h"
+#include "LightPropagation/Uncollided/NarrowLight.h"
 #include "LightPropagation/Uncollided/ParallelBeam.h"
+#include "Numerics/Vectors.h"
+
+#include <glm/geometric.hpp>
+#include <glm/vec3.hpp>
 
 namespace tyndall
 {
@@ -16,6 +21,30 @@ SweepTally UncollidedLamp::AddTo(const UncollidedVolume& volume, const Monitor& 
   {
     return {};
   }
+  if (!volume.basis)
+  {
+    return this->Put(volume, monitor);
+  }
+  const bool parallel = this->Lamp.type == LightType::Directional;
+  const NarrowLight light(volume, !parallel);
+  UncollidedVolume apart = volume;
+  apart.deposit = light.To();
+  const SweepTally tally = this->Put(apart, monitor);
+  if (parallel)
+  {
+    const glm::dvec3 along = glm::normalize(Vector(this->Lamp.direction));
+    light.AddAlong({ along.x, along.y, along.z });
+  }
+  else
+  {
+    light.AddAlongFlux();
+  }
+  return tally;
+}
+
+/// Path integrals, flux and first moments, no angular moments.
+SweepTally UncollidedLamp::Put(const UncollidedVolume& volume, const Monitor& monitor) const
+{
   if (this->Lamp.type == LightType::Directional)
   {
     return DepositBeam(volume, this->Lamp, monitor);

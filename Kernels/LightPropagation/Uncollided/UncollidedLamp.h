@@ -9,11 +9,14 @@ namespace tyndall
 class UncollidedLamp : public UncollidedSource
 {
 public:
-  explicit UncollidedLamp(const Light& lamp);
+  explicit UncollidedLamp(const Light& lamp); ///< must stay
+  const Light& TheLight() const { return this->Lamp; }
 
   SweepTally AddTo(const UncollidedVolume& volume, const Monitor& monitor) const override;
 
 private:
-  Light Lamp;
+  SweepTally Put(const UncollidedVolume& volume, const Monitor& monitor) const;
+
+  const Light& Lamp;
 };
 }

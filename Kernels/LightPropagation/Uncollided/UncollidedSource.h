@@ -2,6 +2,7 @@
 
 #include "Device/Device.h"
 #include "Device/Monitor.h"
+#include "LightPropagation/Angular/AngularBasis.h"
 #include "LightPropagation/Sweep/SweepOperator.h"
 #include "LightPropagation/Sweep/SweepVolume.h"
 
@@ -16,6 +17,10 @@ struct UncollidedVolume
   const std::array<bool, 3>& periodic;
   SweepMaker makeSweep; ///< for light that goes along sets of parallel rays
   Deposit deposit;
+  /// Of the angular moments that the deposit's path has; null: it has none. Sources then leave net flux to the moments.
+  const AngularBasis* basis = nullptr;
+  /// Of a parallel beam whose own path integrals, W length, [channel][stride], are asked for too; else null.
+  const Buffer<float>* beamPath = nullptr;
 };
 
 /// Light up to where it first meets the medium: the uncollided flux of one lamp, of all that shines through the box's

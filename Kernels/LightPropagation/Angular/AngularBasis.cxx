@@ -1,0 +1,174 @@
+#include "LightPropagation/Angular/AngularBasis.h"
+
+#include "Numerics/Constants.h"
+
+#include <cmath>
+
+namespace tyndall
+{
+namespace
+{
+/// Of a function's square, the part that functions before it must leave on a set of directions.
+constexpr double LeastLeft = 0.3;
+
+/// Rows that make the harmonics orthonormal on a set, function by function (Gram and Schmidt).
+/// @return as many as the set tells apart
+std::vector<std::vector<double>> Orthonormal(const DirectionSet& set, int degree)
+{
+  const int count = (degree + 1) * (degree + 1);
+  std::vector<std::vector<double>> values(count), rows;
+  for (const Direction& direction : set.directions)
+  {
+    const std::vector<double> here = SphericalHarmonics(degree, direction.omega);
+    for (int i = 0; i < count; ++i)
+    {
+      values[i].push_back(here[i]);
+    }
+  }
+  const auto product = [&](const std::vector<double>& a, const std::vector<double>& b) {
+    double sum = 0.0;
+    for (std::size_t d = 0; d < a.size(); ++d)
+    {
+      sum += set.directions[d].weight * a[d] * b[d] / (4.0 * Pi);
+    }
+    return sum;
+  };
+  for (int i = 0; i < count; ++i)
+  {
+    std::vector<double> row(count, 0.0);
+    row[i] = 1.0;
+    for (int j = 0; j < i; ++j)
+    {
+      // Twice: what the first pass leaves by rounding. Functions of another parity are left alone, exactly.
+      for (int pass = 0; pass < 2 && AngularBasis::IsOdd(i) == AngularBasis::IsOdd(j); ++pass)
+      {
+        const double part = product(values[i], values[j]);
+        for (std::size_t d = 0; d < values[i].size(); ++d)
+        {
+          values[i][d] -= part * values[j][d];
+        }
+        for (int k = 0; k <= j; ++k)
+        {
+          row[k] -= part * rows[j][k];
+        }
+      }
+    }
+    const double left = product(values[i], values[i]);
+    if (!(left > LeastLeft))
+    {
+      break;
+    }
+    for (double& value : values[i])
+    {
+      value /= std::sqrt(left);
+    }
+    for (double& factor : row)
+    {
+      factor /= std::sqrt(left);
+    }
+    rows.push_back(row);
+  }
+  return rows;
+}
+}
+
+int AngularBasis::DegreeOf(int function)
+{
+  int l = 0;
+  while ((l + 1) * (l + 1) <= function)
+  {
+    ++l;
+  }
+  return l;
+}
+
+int AngularBasis::OrderOf(int function)
+{
+  const int l = DegreeOf(function);
+  return function - l * l - l;
+}
+
+std::array<bool, 3> AngularBasis::IsOdd(int function)
+{
+  const int l = DegreeOf(function), m = OrderOf(function);
+  const bool oddM = m % 2 != 0;
+  return { m >= 0 ? oddM : !oddM, m < 0, (l + m) % 2 != 0 };
+}
+
+AngularBasis::AngularBasis(const DirectionSet& set, int degree)
+  : L(degree)
+  , Rows(Orthonormal(set, degree))
+{
+}
+
+std::vector<double> AngularBasis::Matrix() const
+{
+  std::vector<double> matrix;
+  for (const std::vector<double>& row : this->Rows)
+  {
+    matrix.insert(matrix.end(), row.begin(), row.end());
+  }
+  return matrix;
+}
+
+std::vector<double> AngularBasis::At(const std::array<double, 3>& omega) const
+{
+  const std::vector<double> harmonics = SphericalHarmonics(this->L, omega);
+  std::vector<double> values(this->Rows.size(), 0.0);
+  for (std::size_t i = 0; i < this->Rows.size(); ++i)
+  {
+    for (std::size_t j = 0; j <= i; ++j)
+    {
+      values[i] += this->Rows[i][j] * harmonics[j];
+    }
+  }
+  return values;
+}
+
+/// By the recurrences of P_l^m / sin^m, which are polynomials of z, and of (x + i y)^m.
+std::vector<double> SphericalHarmonics(int degree, const std::array<double, 3>& omega)
+{
+  const auto [x, y, z] = omega;
+  std::vector<double> values((degree + 1) * (degree + 1), 0.0);
+  double cosine = 1.0, sine = 0.0; // of m times the azimuth, times sin^m
+  double diagonal = 1.0;           // P_m^m / sin^m
+  for (int m = 0; m <= degree; ++m)
+  {
+    double before = 0.0, p = diagonal;
+    double ratio = 1.0; // (l - m)! / (l + m)!
+    for (int k = 2; k <= 2 * m; ++k)
+    {
+      ratio /= k;
+    }
+    for (int l = m; l <= degree; ++l)
+    {
+      const double scale = std::sqrt((2 * l + 1) * (m == 0 ? 1.0 : 2.0) * ratio);
+      values[l * l + l + m] = scale * p * cosine;
+      if (m > 0)
+      {
+        values[l * l + l - m] = scale * p * sine;
+      }
+      const double next = ((2 * l + 1) * z * p - (l + m) * before) / (l - m + 1);
+      before = p;
+      p = next;
+      ratio *= static_cast<double>(l - m + 1) / (l + m + 1);
+    }
+    const double turned = cosine * x - sine * y;
+    sine = cosine * y + sine * x;
+    cosine = turned;
+    diagonal *= 2 * m + 1;
+  }
+  return values;
+}
+
+int MostDegree(const DirectionSet& set, int wanted)
+{
+  const std::size_t told = Orthonormal(set, wanted).size();
+  int degree = 0;
+  while (static_cast<std::size_t>((degree + 2) * (degree + 2)) <= told)
+  {
+    ++degree;
+  }
+  return degree;
+}
+}

@@ -1,0 +1,96 @@
+#include "LightPropagation/Problem/TruncatedScattering.h"
+
+#include <algorithm>
+#include <cmath>
+
+namespace tyndall
+{
+namespace
+{
+constexpr double Thickest = 1.0; ///< mean free paths through a voxel, of a degree above 0
+constexpr int Columns = 1024;    ///< of mean cosines; between them moments are taken as linear
+}
+
+TruncatedScattering::TruncatedScattering(const Medium& medium, int degree, int channels)
+  : TheMedium(medium)
+  , MostDegree(degree)
+  , Channels(channels)
+{
+  if (degree == 0)
+  {
+    return;
+  }
+  for (int i = 1; medium.phase.Varies() && i < Columns; ++i)
+  {
+    this->OfG.push_back(Truncations(medium.phase.OfChannel(0).WithMeanCosine(2.0 * i / Columns - 1.0), degree));
+  }
+  for (int c = 0; c < 3 && !medium.phase.Varies(); ++c)
+  {
+    this->OfChannel[c] = Truncations(medium.phase.OfChannel(c), degree);
+  }
+  // Angular detail is worth following along the shortest edge first.
+  const double shortest = *std::min_element(medium.grid.spacing.begin(), medium.grid.spacing.end());
+  this->Degrees.resize(medium.grid.VoxelCount() * channels);
+  this->MostDegree = 0;
+  for (std::size_t i = 0; i < medium.grid.VoxelCount(); ++i)
+  {
+    for (int c = 0; c < channels; ++c)
+    {
+      const int fitting = this->FittingDegree(i, c, shortest);
+      this->Degrees[i * channels + c] = static_cast<std::uint8_t>(fitting);
+      this->MostDegree = std::max(this->MostDegree, medium.sigma_s.At(i, c) > 0.0f ? fitting : 0);
+    }
+  }
+}
+
+/// The highest degree at which the voxel is not thick.
+int TruncatedScattering::FittingDegree(std::size_t voxel, int channel, double shortest) const
+{
+  const double absorbs = this->TheMedium.sigma_a.At(voxel, channel);
+  const double scatters = this->TheMedium.sigma_s.At(voxel, channel);
+  int degree = static_cast<int>((this->OfG.empty() ? this->OfChannel[channel] : this->OfG.front()).size()) - 1;
+  while (degree > 0 && shortest * (absorbs + scatters * (1.0 - this->Forward(voxel, channel, degree))) > Thickest)
+  {
+    --degree;
+  }
+  return degree;
+}
+
+template <class Value>
+double TruncatedScattering::Of(std::size_t voxel, int channel, int degree, const Value& value) const
+{
+  if (this->OfG.empty())
+  {
+    return value(this->OfChannel[channel][degree]);
+  }
+  const double g = this->TheMedium.phase.MeanCosine(voxel, channel);
+  const double column = std::clamp(0.5 * (g + 1.0) * Columns - 1.0, 0.0, Columns - 2.001);
+  const auto below = static_cast<std::size_t>(column);
+  const double low = value(this->OfG[below][degree]);
+  return low + (column - static_cast<double>(below)) * (value(this->OfG[below + 1][degree]) - low);
+}
+
+double TruncatedScattering::Forward(std::size_t voxel, int channel, int degree) const
+{
+  return this->Of(voxel, channel, degree, [](const DeltaM& truncated) { return truncated.forward; });
+}
+
+float TruncatedScattering::SigmaS(std::size_t voxel, int channel) const
+{
+  const int degree = this->DegreeOf(voxel, channel);
+  return degree == 0
+    ? this->TheMedium.TransportSigmaS(voxel, channel)
+    : static_cast<float>(this->TheMedium.sigma_s.At(voxel, channel) * (1.0 - this->Forward(voxel, channel, degree)));
+}
+
+float TruncatedScattering::SigmaS(std::size_t voxel, int channel, int l) const
+{
+  const int degree = this->DegreeOf(voxel, channel);
+  if (l == 0 || l > degree)
+  {
+    return l == 0 ? this->SigmaS(voxel, channel) : 0.0f;
+  }
+  const double moment = this->Of(voxel, channel, degree, [l](const DeltaM& truncated) { return truncated.moments[l]; });
+  return static_cast<float>(this->SigmaS(voxel, channel) * moment);
+}
+}

@@ -1,0 +1,93 @@
+#include "LightPropagation/Scattering/AngularScattering.h"
+
+#include "Numerics/Constants.h"
+#include "TyndallKernelSources.h"
+
+#include <stdexcept>
+
+namespace tyndall
+{
+AngularScattering::AngularScattering(
+  Device& device, const VolumeLayout& layout, const MediumOnDevice& medium, int degree)
+  : TheDevice(device)
+  , Layout(layout)
+  , TheMedium(medium)
+  , OfFluence(device, layout, medium, true)
+  , Degree(degree)
+  , Functions(static_cast<std::size_t>(degree + 1) * (degree + 1))
+{
+}
+
+cl::Kernel AngularScattering::Kernel(const char* name) const
+{
+  return this->TheDevice.Kernel(name, kernel_source::AngularScattering);
+}
+
+/// From a path integral, W length, to the source of what is scattered of it with a coefficient of 1.
+float AngularScattering::PerPath() const
+{
+  return static_cast<float>(1.0 / (4.0 * Pi * this->Layout.grid.VoxelVolume()));
+}
+
+ScatteringOperator::Powers AngularScattering::ScatterOrder(const Deposit& swept, const Buffer<float>& fluence,
+  const Buffer<float>& source, const std::array<std::size_t, 2>& range) const
+{
+  const Powers powers = this->OfFluence.ScatterOrder(swept, fluence, source, range);
+  if (swept.flux)
+  {
+    AddFluxOfMoments(this->TheDevice, this->Layout, *swept.path, *swept.flux);
+  }
+  cl::Kernel kernel = this->Kernel("scatter_moments");
+  With(
+    kernel, *swept.path, source, this->TheMedium.SigmaOfDegrees(), cl_ulong(this->FunctionStride()), this->PerPath());
+  this->TheDevice.Queue().enqueueNDRangeKernel(kernel, cl::NullRange, this->Moments(this->FunctionStride()));
+  return powers;
+}
+
+void AngularScattering::ScatterAllOrders(const Buffer<float>&, const Buffer<float>&) const
+{
+  throw std::logic_error("the moments of all orders are not kept");
+}
+
+void AngularScattering::AddFirstScattered(const Deposit& uncollided, const Buffer<float>& source) const
+{
+  this->OfFluence.AddFirstScattered(uncollided, source);
+  cl::Kernel kernel = this->Kernel("add_scattered_moments");
+  With(kernel, *uncollided.path, source, this->TheMedium.SigmaOfDegrees(), cl_ulong(this->FunctionStride()),
+    this->PerPath());
+  this->TheDevice.Queue().enqueueNDRangeKernel(kernel, cl::NullRange, this->Moments(this->FunctionStride()));
+}
+
+void AngularScattering::AddBeam(const Buffer<float>& path, const Buffer<float>& source, int slot) const
+{
+  cl::Kernel kernel = this->Kernel("scatter_beam");
+  With(kernel, path, source, this->TheMedium.SigmaOfDegrees(), cl_ulong(this->FunctionStride()), cl_int(slot),
+    cl_int(this->Degree), this->PerPath());
+  this->TheDevice.Queue().enqueueNDRangeKernel(kernel, cl::NullRange, cl::NDRange(this->FunctionStride()));
+  this->TheDevice.Finish(); // the path goes
+}
+
+void AngularScattering::ScatterFluence(int channel, const Deposit& swept, const ExactValues& fluence,
+  const Buffer<float>& given, const Buffer<float>& source) const
+{
+  this->OfFluence.ScatterFluence(channel, swept, fluence, given, source);
+  cl::Kernel kernel = this->Kernel("scatter_given_moments");
+  With(kernel, *swept.path, given, source, this->TheMedium.SigmaOfDegrees(), cl_ulong(this->FunctionStride()),
+    cl_ulong(channel * this->Layout.Stride()), this->PerPath());
+  this->TheDevice.Queue().enqueueNDRangeKernel(kernel, cl::NullRange, this->Moments(this->Layout.grid.VoxelCount()));
+}
+
+void AddMoments(Device& device, std::size_t stride, int functions, const Buffer<float>& path, const Buffer<float>& to)
+{
+  cl::Kernel kernel = device.Kernel("add_moments", kernel_source::AngularScattering);
+  With(kernel, path, to, cl_ulong(stride));
+  device.Queue().enqueueNDRangeKernel(kernel, cl::NullRange, cl::NDRange(stride, functions - 1));
+}
+
+void AddFluxOfMoments(Device& device, const VolumeLayout& layout, const Buffer<float>& path, const Buffer<float>& flux)
+{
+  cl::Kernel kernel = device.Kernel("add_flux_of_moments", kernel_source::AngularScattering);
+  With(kernel, path, flux, cl_ulong(layout.Stride()), cl_ulong(layout.channels * layout.Stride()));
+  device.Queue().enqueueNDRangeKernel(kernel, cl::NullRange, cl::NDRange(layout.Stride(), layout.channels));
+}
+}

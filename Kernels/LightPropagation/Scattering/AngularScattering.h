@@ -1,0 +1,44 @@
+#pragma once
+
+#include "LightPropagation/Scattering/IsotropicScattering.h"
+
+namespace tyndall
+{
+/// Scattering in angular moments (AngularBasis.h): of each moment of degree l its part of sigma_s goes on (numerics.md,
+/// Eq. (42a)). Arrays have a moment after the other, [function][channel][stride]; the first is fluence, and scattered
+/// as IsotropicScattering has it.
+class AngularScattering : public ScatteringOperator
+{
+public:
+  /// @param medium  must stay; it has scattering coefficients of degrees 0 to `degree`
+  AngularScattering(Device& device, const VolumeLayout& layout, const MediumOnDevice& medium, int degree);
+
+  Powers ScatterOrder(const Deposit& swept, const Buffer<float>& fluence, const Buffer<float>& source,
+    const std::array<std::size_t, 2>& range) const override;
+  bool CanScatterAllOrders() const override { return false; } ///< the moments of all orders are not kept
+  void ScatterAllOrders(const Buffer<float>& fluence, const Buffer<float>& source) const override;
+  void AddFirstScattered(const Deposit& uncollided, const Buffer<float>& source) const override;
+  void AddBeam(const Buffer<float>& path, const Buffer<float>& source, int slot) const override;
+  void ScatterFluence(int channel, const Deposit& swept, const ExactValues& fluence, const Buffer<float>& given,
+    const Buffer<float>& source) const override;
+
+private:
+  cl::Kernel Kernel(const char* name) const;
+  std::size_t FunctionStride() const { return this->Layout.channels * this->Layout.Stride(); }
+  cl::NDRange Moments(std::size_t values) const { return cl::NDRange(values, this->Functions - 1); }
+  float PerPath() const;
+
+  Device& TheDevice;
+  VolumeLayout Layout;
+  const MediumOnDevice& TheMedium;
+  IsotropicScattering OfFluence;
+  int Degree;
+  std::size_t Functions;
+};
+
+/// Adds the moments of one path to those of another, but for the first, which is the path itself.
+void AddMoments(Device& device, std::size_t stride, int functions, const Buffer<float>& path, const Buffer<float>& to);
+
+/// Adds the net flux that angular moments of a path hold to [channel][x, y, z][stride].
+void AddFluxOfMoments(Device& device, const VolumeLayout& layout, const Buffer<float>& path, const Buffer<float>& flux);
+}

@@ -1,0 +1,62 @@
+// What a segment of a ray does to its light, for a vector of voxels.
+
+#pragma once
+#include "LightPropagation/Sweep/SweepLayout.cl"
+
+// Of rays with power P and a source of q: path += p1 P, P' = P - sigma p1 P + power q p1, p1 = (1 - exp(-tau)) / sigma
+// (numerics.md, Eqs. (23), (24)). For small tau P' is P less what it loses, for large tau it is P times what is left:
+// neither loses digits. P' = P keep + P change + ...
+typedef struct
+{
+  real tau;
+  real meanLength; // p1
+  real keep;       // 1 for small tau, else 0
+  real change;
+} real_crossing;
+
+// Where all of the row is thin, p1 is a polynomial: half the work. `thin` is a constant where this is called.
+static inline __attribute__((always_inline)) real_crossing cross_length(const sweep_state* state, int x,
+  const __global float* sigma_row, const __global float* inverse_row, float length, bool thin)
+{
+  real_crossing crossing;
+  const real tau = load_real(x, sigma_row) * length;
+  crossing.tau = tau;
+  if (thin)
+  {
+    real mean = (real)state->meanLength[MeanLengthTerms - 1];
+#pragma unroll
+    for (int i = MeanLengthTerms - 2; i >= 0; --i)
+    {
+      mean = multiply_add(mean, tau, (real)state->meanLength[i]);
+    }
+    mean = multiply_add(mean, tau, (real)1.0f);
+    crossing.meanLength = mean * length;
+    crossing.keep = (real)1.0f;
+    crossing.change = -tau * mean;
+  }
+  else
+  {
+    real left;
+    const real lost = extinguished(tau, &left);
+    const integer losesLess = tau < (real)1.0f;
+    crossing.meanLength = lost * load_real(x, inverse_row);
+    crossing.keep = select((real)0.0f, (real)1.0f, losesLess);
+    crossing.change = select(left, -lost, losesLess);
+  }
+  return crossing;
+}
+
+// Path of the light that a source of 1 per unit of a ray's power adds in its own voxel, (length - p1) / sigma.
+static inline __attribute__((always_inline)) real own_path_of(
+  int x, const real_crossing* crossing, const __global float* inverse_row, float length)
+{
+  const real thin_path = multiply_add(crossing->tau, (real)(-length * length / 6.0f), (real)(0.5f * length * length));
+  const real thick_path = (length - crossing->meanLength) * load_real(x, inverse_row);
+  return select(thick_path, thin_path, crossing->tau < (real)1e-2f);
+}
+
+// Signs of a member's u and v in the frame of its bundle.
+static inline float2 signs_of(const __global BundleInfo* bundle, int m)
+{
+  return (float2)(bundle->move[m][0] + bundle->move[m][1], bundle->move[m][2] + bundle->move[m][3]);
+}
