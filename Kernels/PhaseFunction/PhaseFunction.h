@@ -42,7 +42,7 @@ public:
   static PhaseFunction Tabulated(std::vector<double> cosines, std::vector<double> values);
 
   Kind TheKind() const { return this->Which; }
-  bool IsIsotropic() const { return this->Which == Kind::Isotropic; }
+  bool IsIsotropic() const; ///< whatever kind it was made as
 
   /// 1/sr; its integral over all directions is 1.
   /// @param cosine  in [-1, 1]
@@ -70,6 +70,7 @@ public:
   };
   const Table* TheTable() const { return this->Rows.get(); } ///< null but for Tabulated
 
+  /// Whether both scatter alike as they are; isotropic ones do, of whatever kind.
   bool operator==(const PhaseFunction& other) const;
   bool operator!=(const PhaseFunction& other) const { return !(*this == other); }
 
