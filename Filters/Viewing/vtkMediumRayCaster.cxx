@@ -3,6 +3,7 @@
 #include "Common/FiniteValues.h"
 #include "Common/InputsKey.h"
 #include "Common/LightTransportData.h"
+#include "Common/PhaseFunctionData.h"
 #include "Common/WholeImage.h"
 #include "Device/Device.h"
 #include "Medium/BoxFaces.h"
@@ -225,7 +226,8 @@ tyndall::InputsKey vtkMediumRayCaster::KeyOf(vtkInformationVector** inputs)
   vtkImageData* const image = vtkImageData::GetData(inputs[MEDIUM]);
   key.Add(tyndall::GridOf(image));
   key.AddGhosts(image);
-  key.Add({ tyndall::ReadFact(image, "g", 0.0), 1.0 * this->EnvironmentUp, this->EnvironmentAzimuth });
+  tyndall::AddPhase(key, image);
+  key.Add({ 1.0 * this->EnvironmentUp, this->EnvironmentAzimuth });
   for (int number = tyndall::SigmaA; number <= MeanDirection; ++number)
   {
     key.Add(tyndall::ChosenArray(this, number, image, ArrayNames[number]));

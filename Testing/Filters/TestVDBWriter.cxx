@@ -81,7 +81,23 @@ vtkSmartPointer<vtkImageData> AwkwardImage()
   vtkNew<vtkDoubleArray> g;
   g->SetName("g");
   g->InsertNextValue(1.0 / 3.0);
-  for (vtkAbstractArray* array : std::initializer_list<vtkAbstractArray*>{ type, creator, matrix, background, g })
+  vtkNew<vtkStringArray> function;
+  function->SetName("phase_function");
+  function->InsertNextValue("tabulated");
+  vtkNew<vtkDoubleArray> second; // of three channels
+  second->SetName("phase_second_g");
+  second->SetNumberOfComponents(3);
+  second->InsertNextTuple3(0.1, 1.0 / 7.0, -0.3);
+  vtkNew<vtkDoubleArray> cosines, values;
+  cosines->SetName("phase_cosine");
+  values->SetName("phase_value");
+  for (int row = 0; row <= 180; ++row)
+  {
+    cosines->InsertNextValue(1.0 - row / 90.0);
+    values->InsertNextValue(std::exp(-row / 7.0));
+  }
+  for (vtkAbstractArray* array :
+    std::initializer_list<vtkAbstractArray*>{ type, creator, matrix, background, g, function, second, cosines, values })
   {
     image->GetFieldData()->AddArray(array);
   }
@@ -128,6 +144,15 @@ void ARoundTripKeepsEveryBit(test::Claims& claims, int compression)
     "the background");
   claims.That(SameBits(image->GetFieldData()->GetArray("g"), field->GetArray("g")) && !field->HasArray("vdb::medium_g"),
     "the medium's mean cosine, under its name only");
+
+  for (const char* name : { "phase_second_g", "phase_cosine", "phase_value" })
+  {
+    claims.That(SameBits(image->GetFieldData()->GetArray(name), field->GetArray(name)) &&
+        !field->HasArray((std::string("vdb::medium_") + name).c_str()),
+      std::string("the phase function's ") + name + ", under its name only");
+  }
+  auto* function = vtkStringArray::SafeDownCast(field->GetAbstractArray("phase_function"));
+  claims.That(function && function->GetValue(0) == "tabulated", "the phase function's name");
 
   // Once more, from what was read: the same grids.
   writer->SetInputConnection(reader->GetOutputPort());
