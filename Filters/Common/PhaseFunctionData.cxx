@@ -218,7 +218,10 @@ void WritePhaseDescription(vtkDataObject* medium, const PhaseDescription& descri
   }
   AddFact(medium, NameFact, std::vector<std::string>{ description.name });
   const double known = NeedsG(description.name) ? 0.0 : description.Functions()[0].MeanCosine();
-  AddChannels(medium, GFact, NeedsG(description.name) ? description.g : Rgb{ known, known, known });
+  if (!description.gByVoxel)
+  {
+    AddChannels(medium, GFact, NeedsG(description.name) ? description.g : Rgb{ known, known, known });
+  }
   if (description.name == DoubleHenyeyGreenstein)
   {
     AddChannels(medium, SecondFact, description.secondG);

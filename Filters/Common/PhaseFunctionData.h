@@ -35,6 +35,7 @@ struct PhaseDescription
   Rgb secondG = {};
   Rgb firstPart = { 1.0, 1.0, 1.0 };
   std::vector<double> cosines, values;
+  bool gByVoxel = false; ///< cells `g` count: field data `g` is not written
 
   /// Of each channel.
   /// @throws InvalidInput naming the channel whose number, or the row of the table, that is out of range
