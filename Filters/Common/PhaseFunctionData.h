@@ -12,17 +12,18 @@ class vtkImageData;
 
 /// The one place where filters read and write how a medium scatters. Field data:
 ///
-/// | name                | numbers | meaning |
-/// |---------------------|---------|---------|
-/// | `phase_function`    | a text  | `isotropic`, `henyey_greenstein`, `double_henyey_greenstein`, `schlick`, `rayleigh`, `tabulated`; missing: `henyey_greenstein` |
-/// | `g`                 | 1 or 3  | mean cosine, of all channels or of each; of `double_henyey_greenstein` that of its first lobe. Missing: 0 |
-/// | `phase_second_g`    | 1 or 3  | mean cosine of the second lobe of `double_henyey_greenstein` |
-/// | `phase_first_part`  | 1 or 3  | part of the light that the first lobe scatters, 0 to 1 |
-/// | `phase_cosine`      | n       | rows of `tabulated`: cosines of the scattering angle from -1 to 1, rising or falling |
-/// | `phase_value`       | n       | and the phase function there, in any unit |
+/// | name               | numbers | meaning |
+/// |--------------------|---------|---------|
+/// | `phase_function`   | a text  | one of the names below; missing: `henyey_greenstein` |
+/// | `g`                | 1 or 3  | mean cosine, of all channels or of each; of two lobes that of the first. Missing: 0 |
+/// | `phase_second_g`   | 1 or 3  | mean cosine of the second lobe |
+/// | `phase_first_part` | 1 or 3  | part of the light that the first lobe scatters, 0 to 1 |
+/// | `phase_cosine`     | n       | rows of a table: cosines of the scattering angle, -1 to 1, rising or falling |
+/// | `phase_value`      | n       | the phase function there, in any unit |
 ///
-/// Of `isotropic`, `rayleigh` and `tabulated`, whose mean cosine is known without it, `g` may be there or not, but must
-/// not contradict. Cells `g` (1 or 3 components) of `henyey_greenstein` and `schlick` count before field data `g`.
+/// Names: `isotropic`, `henyey_greenstein`, `double_henyey_greenstein`, `schlick`, `rayleigh`, `tabulated`. Of
+/// `isotropic`, `rayleigh` and `tabulated`, whose mean cosine is known without it, `g` may be there or not, but must not
+/// contradict. Cells `g` (1 or 3 components) of `henyey_greenstein` and `schlick` count before field data `g`.
 namespace tyndall
 {
 struct InputsKey;

@@ -26,8 +26,8 @@
  * | `emission` | 1 or 3; only where EmissionScale is not 0 | W/(length^3 sr) |
  *
  * and as field data the phase function: `phase_function` (its name), `g` (mean cosine; 3 numbers where channels
- * differ), and where they are needed `phase_second_g`, `phase_first_part`, `phase_cosine`, `phase_value`. Lengths are in
- * the dataset's own unit.
+ * differ), and where they are needed `phase_second_g`, `phase_first_part`, `phase_cosine`, `phase_value`. Lengths are
+ * in the dataset's own unit.
  *
  * With the relative density rho = (density - MinimumDensity) / (MaximumDensity - MinimumDensity), at least 0:
  *

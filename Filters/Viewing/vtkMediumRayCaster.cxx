@@ -57,7 +57,6 @@ tyndall::ViewSettings SettingsOf(vtkMediumRayCaster* filter)
   settings.rectangleSamples = filter->GetRectangleSamples();
   settings.showBackground = filter->GetShowBackground();
   settings.backgroundColor = tyndall::Triple(filter->GetBackgroundColor());
-  settings.phaseFunction = static_cast<tyndall::ViewedPhase>(filter->GetPhaseFunction());
   settings.surfaceReflection = static_cast<tyndall::SurfaceReflection>(filter->GetSurfaceReflection());
   settings.surfaceIndex = filter->GetSurfaceIndex();
   settings.surfaceReflectance = filter->GetSurfaceReflectance();
@@ -363,7 +362,6 @@ void vtkMediumRayCaster::PrintSelf(ostream& os, vtkIndent indent)
   PrintNumbers(os, indent, "BackgroundColor", this->BackgroundColor, 3);
   os << indent << "Exposure: " << this->Exposure << "\n";
   os << indent << "ToneCurve: " << (this->ToneCurve == LINEAR ? "linear" : "filmic") << "\n";
-  os << indent << "PhaseFunction: " << (this->PhaseFunction == SCHLICK ? "Schlick" : "Henyey-Greenstein") << "\n";
   os << indent << "SurfaceReflection: " << this->SurfaceReflection << "\n";
   os << indent << "SurfaceIndex: " << this->SurfaceIndex << "\n";
   os << indent << "SurfaceReflectance: " << this->SurfaceReflectance << "\n";

@@ -27,8 +27,8 @@ public:
   /// @param values  `components` a fine voxel, x fastest
   std::vector<float> Average(const float* values, int components) const;
 
-  /// Means weighted by another quantity, 0 where that is 0 throughout. So a coarse voxel gets its mean cosine, weighted by
-  /// sigma_s (numerics.md, Eq. (3e)). Rounding leaves no mean beyond the largest and the smallest value.
+  /// Means weighted by another quantity, 0 where that is 0 throughout. So a coarse voxel gets its mean cosine, weighted
+  /// by sigma_s (numerics.md, Eq. (3e)). Rounding leaves no mean beyond the largest and the smallest value.
   /// @param weights  not negative
   /// @return 3 components a coarse voxel where either has colour, else 1
   std::vector<float> Average(const Field& values, const Field& weights) const;

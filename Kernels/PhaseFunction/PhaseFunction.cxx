@@ -83,6 +83,11 @@ double KOfSchlick(double g)
   return std::copysign(0.5 * (low + high), g);
 }
 
+double BelowOfSchlick(double k, double cosine)
+{
+  return 0.5 * (1.0 - k) * (1.0 + cosine) / (1.0 - k * cosine);
+}
+
 double CosineOfSchlick(double k, double u)
 {
   return std::clamp((2.0 * u + k - 1.0) / (2.0 * k * u - k + 1.0), -1.0, 1.0);
@@ -177,6 +182,15 @@ double ValueOfTable(const PhaseFunction::Table& table, double cosine)
 }
 
 /// Within a row's stretch the part that goes below is a parabola.
+double BelowOfTable(const PhaseFunction::Table& table, double cosine)
+{
+  const auto after = std::upper_bound(table.cosines.begin(), table.cosines.end(), cosine);
+  const auto row = static_cast<std::size_t>(
+    std::clamp<std::ptrdiff_t>(after - table.cosines.begin() - 1, 0, table.cosines.size() - 2));
+  const double way = cosine - table.cosines[row];
+  return table.below[row] + Pi * way * (table.values[row] + ValueOfTable(table, cosine));
+}
+
 double CosineOfTable(const PhaseFunction::Table& table, double u)
 {
   const auto after = std::upper_bound(table.below.begin(), table.below.end(), u);
@@ -382,9 +396,7 @@ double PhaseFunction::CosineAt(double u) const
       for (int i = 0; i < 60; ++i)
       {
         const double cosine = 0.5 * (low + high);
-        const double below = this->The.part * BelowOfHenyeyGreenstein(this->The.first, cosine) +
-          (1.0 - this->The.part) * BelowOfHenyeyGreenstein(this->The.second, cosine);
-        (below < u ? low : high) = cosine;
+        (this->Below(cosine) < u ? low : high) = cosine;
       }
       return 0.5 * (low + high);
     }
@@ -392,6 +404,21 @@ double PhaseFunction::CosineAt(double u) const
     case Kind::Rayleigh: return CosineOfRayleigh(u);
     case Kind::Tabulated: return CosineOfTable(*this->Rows, u);
     default: return 2.0 * u - 1.0;
+  }
+}
+
+double PhaseFunction::Below(double cosine) const
+{
+  switch (this->Which)
+  {
+    case Kind::HenyeyGreenstein: return BelowOfHenyeyGreenstein(this->The.first, cosine);
+    case Kind::DoubleHenyeyGreenstein:
+      return this->The.part * BelowOfHenyeyGreenstein(this->The.first, cosine) +
+        (1.0 - this->The.part) * BelowOfHenyeyGreenstein(this->The.second, cosine);
+    case Kind::Schlick: return BelowOfSchlick(this->The.first, cosine);
+    case Kind::Rayleigh: return 0.5 + 0.125 * cosine * (3.0 + cosine * cosine);
+    case Kind::Tabulated: return BelowOfTable(*this->Rows, cosine);
+    default: return 0.5 * (1.0 + cosine);
   }
 }
 

@@ -53,6 +53,9 @@ public:
   /// The cosine below which a part u of the light is scattered, 0 <= u <= 1: the inverse of the distribution.
   double CosineAt(double u) const;
 
+  /// Part of the light that is scattered below a cosine, in [-1, 1]: what CosineAt inverts.
+  double Below(double cosine) const;
+
   /// Of the two kinds that have one parameter: the function of the same kind with another mean cosine. Of an isotropic
   /// one Henyey and Greenstein's.
   /// @throws InvalidInput for the other kinds, or g outside (-1, 1)

@@ -94,11 +94,11 @@ struct Picture
 ///   | with shadow rays    | sum over lights of E p   | that + max(fluence - D, 0) / 4 pi |
 ///
 /// f is 4 pi times the medium's phase function, averaged over the directions from which the light comes, as far as
-/// meanDirection tells (Eqs. (107) to (108b)); 1, light scatters evenly, where the medium is isotropic or meanDirection
+/// meanDirection tells (Eqs. (107) to (108a)); 1, light scatters evenly, where the medium is isotropic or meanDirection
 /// is not given. One direction a voxel stands for all its light, in single scattering as well.
 ///
-/// E is a light's irradiance behind the medium, p the phase function, of the voxel and of each channel, from the light's
-/// direction to the camera's. D = min(sum of E, fluenceDirect) is the part of fluence that E shows already,
+/// E is a light's irradiance behind the medium, p the phase function, of the voxel and of each channel, from the
+/// light's direction to the camera's. D = min(sum of E, fluenceDirect) is the part of fluence that E shows already,
 /// so that nothing counts twice. The sum over lights is found at voxel centres. With shadow rays all other light
 /// scatters evenly. Shadow rays go straight on, through glass as well.
 ///

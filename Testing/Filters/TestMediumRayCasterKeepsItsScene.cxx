@@ -3,6 +3,7 @@
 #include "vtkFieldData.h"
 #include "vtkLightRig.h"
 #include "vtkMediumRayCaster.h"
+#include "vtkStringArray.h"
 
 #include <algorithm>
 #include <chrono>
@@ -195,6 +196,43 @@ void WhatIsChangedIsSeen(Follows follows)
       pictures.medium->GetFieldData()->GetArray("g")->Modified();
     },
     {}, shadows);
+  const auto say = [](Pictures& pictures, const char* function) {
+    vtkNew<vtkStringArray> name;
+    name->SetName("phase_function");
+    name->InsertNextValue(function);
+    pictures.medium->GetFieldData()->AddArray(name);
+  };
+  follows.A(
+    "another phase function", Scene::Replaced, [=](Pictures& pictures) { say(pictures, "schlick"); }, {}, shadows);
+  const auto two = [=](Pictures& pictures) {
+    say(pictures, "double_henyey_greenstein");
+    for (const char* number : { "phase_second_g", "phase_first_part" })
+    {
+      test::AddValues<vtkDoubleArray>(
+        pictures.medium->GetFieldData(), number, 1, 1, [](vtkIdType, int) { return 0.25; });
+    }
+  };
+  follows.A("two lobes", Scene::Replaced, two, {}, shadows);
+  follows.A(
+    "cells g", Scene::Replaced,
+    [](Pictures& pictures) {
+      test::AddValues<vtkFloatArray>(pictures.medium->GetCellData(), "g", pictures.medium->GetNumberOfCells(), 1,
+        [](vtkIdType cell, int) { return cell % 7 * 0.1; });
+    },
+    {}, shadows);
+  follows.A(
+    "a table", Scene::Replaced,
+    [=](Pictures& pictures) {
+      say(pictures, "tabulated");
+      pictures.medium->GetFieldData()->RemoveArray("g");
+      for (const char* column : { "phase_cosine", "phase_value" })
+      {
+        test::AddValues<vtkDoubleArray>(
+          pictures.medium->GetFieldData(), column, 2, 1, [](vtkIdType row, int) { return row == 0 ? 1.0 : -1.0; });
+      }
+      pictures.medium->GetFieldData()->GetArray("phase_value")->SetComponent(1, 0, 0.2);
+    },
+    {}, shadows);
   follows.A("the environment's pixels", Scene::Replaced, [](Pictures& pictures) {
     pictures.environment->GetPointData()->GetArray("radiance")->Fill(0.4);
     pictures.environment->GetPointData()->GetArray("radiance")->Modified();
@@ -221,7 +259,6 @@ void SettingsOfRefractionAreFollowed(Follows follows)
   const auto set = [&](const char* what, const Change& setting, const Change& before = {}) {
     follows.A(what, Scene::Either, Nothing, setting, before);
   };
-  set("PhaseFunction", [](vtkMediumRayCaster* caster) { caster->SetPhaseFunction(vtkMediumRayCaster::SCHLICK); });
   set("SurfaceReflection", mirror);
   set(
     "SurfaceReflection of another kind",

@@ -220,6 +220,7 @@ TEST(PhaseFunction, SamplesItsOwnDistribution)
       ASSERT_LE(cosine, 1.0) << named.name;
       const double below = OverCosines([&](double c) { return named.function.Value(c); }, -1.0, cosine);
       EXPECT_NEAR(below, u, 1e-8) << named.name << " at " << u;
+      EXPECT_NEAR(named.function.Below(cosine), u, 1e-8) << named.name << " at " << u;
     }
   }
 }

@@ -25,8 +25,8 @@ class PublishedModel
 {
 public:
   /// @param channels  3: as if something had colour; 1: as the scene needs
-  /// @throws InvalidInput what Check() of medium, illumination and settings throw; directions that are not a square
-  /// number
+  /// @throws InvalidInput what Check() of medium, illumination and settings throw, and CheckPublishedPhase; directions
+  /// that are not a square number
   PublishedModel(
     const Medium& medium, const Illumination& illumination, const PropagationSettings& settings, int channels = 1);
 
@@ -70,6 +70,9 @@ private:
   std::vector<int> NearestSource;
   std::vector<std::vector<double>> Coefficients;
 };
+
+/// @throws InvalidInput where the phase function varies by voxel or channel: the published scheme has one
+void CheckPublishedPhase(const Medium& medium);
 
 /// `count` directions spread evenly over the sphere: the cells of a cube's faces where count is 6 n^2, else Fibonacci
 /// points.
