@@ -15,15 +15,15 @@ class vtkImageData;
 /// | name               | numbers | meaning |
 /// |--------------------|---------|---------|
 /// | `phase_function`   | a text  | one of the names below; missing: `henyey_greenstein` |
-/// | `g`                | 1 or 3  | mean cosine, of all channels or of each; of two lobes that of the first. Missing: 0 |
+/// | `g`                | 1 or 3  | mean cosine, of all or each channel; of two lobes that of the first. Missing: 0 |
 /// | `phase_second_g`   | 1 or 3  | mean cosine of the second lobe |
 /// | `phase_first_part` | 1 or 3  | part of the light that the first lobe scatters, 0 to 1 |
 /// | `phase_cosine`     | n       | rows of a table: cosines of the scattering angle, -1 to 1, rising or falling |
 /// | `phase_value`      | n       | the phase function there, in any unit |
 ///
 /// Names: `isotropic`, `henyey_greenstein`, `double_henyey_greenstein`, `schlick`, `rayleigh`, `tabulated`. Of
-/// `isotropic`, `rayleigh` and `tabulated`, whose mean cosine is known without it, `g` may be there or not, but must not
-/// contradict. Cells `g` (1 or 3 components) of `henyey_greenstein` and `schlick` count before field data `g`.
+/// `isotropic`, `rayleigh` and `tabulated`, whose mean cosine is known without it, `g` may be there or not, but must
+/// not contradict. Cells `g` (1 or 3 components) of `henyey_greenstein` and `schlick` count before field data `g`.
 namespace tyndall
 {
 struct InputsKey;

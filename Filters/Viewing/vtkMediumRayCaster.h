@@ -53,7 +53,7 @@ struct ViewSettings;
  *
  * The phase function is the medium's own, of every channel and voxel: field data `phase_function` and `g`, or cells
  * `g`. Where there is `mean_direction` m, what is divided by 4 pi is multiplied by f: 4 pi times the phase function,
- * averaged over light that is spread about m. So light that all travels one way (|m| = 1) is scattered by the medium's phase
+ * averaged over light that is spread about m. So light that all travels one way (|m| = 1) is scattered by the phase
  * function, light from everywhere alike (|m| = 0) evenly, and as much on the whole. Without `mean_direction`, with
  * ShadowRays, or where the medium is isotropic, f is 1.
  *

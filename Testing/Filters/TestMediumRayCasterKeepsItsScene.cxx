@@ -189,6 +189,17 @@ void WhatIsChangedIsSeen(Follows follows)
   follows.A(
     "lights taken away", Scene::Replaced, [](Pictures& pictures) { pictures.caster->RemoveLights(); },
     [](vtkMediumRayCaster* caster) { caster->RemoveLights(); }, shadows);
+  follows.A("the environment's pixels", Scene::Replaced, [](Pictures& pictures) {
+    pictures.environment->GetPointData()->GetArray("radiance")->Fill(0.4);
+    pictures.environment->GetPointData()->GetArray("radiance")->Modified();
+  });
+  follows.A("the environment's turn", Scene::Replaced, Nothing,
+    [](vtkMediumRayCaster* caster) { caster->SetEnvironmentAzimuth(90.0); });
+}
+
+void HowTheMediumScattersIsSeen(Follows follows)
+{
+  const Change shadows = [](vtkMediumRayCaster* caster) { caster->ShadowRaysOn(); };
   follows.A(
     "g", Scene::Replaced,
     [](Pictures& pictures) {
@@ -233,12 +244,6 @@ void WhatIsChangedIsSeen(Follows follows)
       pictures.medium->GetFieldData()->GetArray("phase_value")->SetComponent(1, 0, 0.2);
     },
     {}, shadows);
-  follows.A("the environment's pixels", Scene::Replaced, [](Pictures& pictures) {
-    pictures.environment->GetPointData()->GetArray("radiance")->Fill(0.4);
-    pictures.environment->GetPointData()->GetArray("radiance")->Modified();
-  });
-  follows.A("the environment's turn", Scene::Replaced, Nothing,
-    [](vtkMediumRayCaster* caster) { caster->SetEnvironmentAzimuth(90.0); });
 }
 
 void SettingsThatNeedAnotherSceneGetOne(Follows follows)
@@ -328,6 +333,7 @@ int TestMediumRayCasterKeepsItsScene(int, char*[])
   test::Claims claims;
   WhatTheSceneDoesNotNeedKeepsIt(Follows(claims));
   WhatIsChangedIsSeen(Follows(claims));
+  HowTheMediumScattersIsSeen(Follows(claims));
   SettingsThatNeedAnotherSceneGetOne(Follows(claims));
   SettingsOfRefractionAreFollowed(Follows(claims));
   MemoryIsGivenBack(claims);

@@ -330,6 +330,27 @@ void BadInputIsOneError(test::Claims& claims)
   filter->SetMeanCosine(1.0);
   refusedSettings("MeanCosine");
   filter->SetMeanCosine(0.0);
+  filter->SetEmissionScale(-1.0);
+  refusedSettings("EmissionScale");
+  filter->SetEmissionScale(0.0);
+  filter->SetPreset(vtkParticipatingMedium::CREAM);
+  filter->SetMillimetresPerUnit(0.0);
+  refusedSettings("MillimetresPerUnit");
+  filter->SetMillimetresPerUnit(1.0);
+
+  filter->Update();
+  claims.That(errors.None() && filter->GetOutput()->GetNumberOfCells() == 4, "good input after bad is taken");
+}
+
+void BadPhaseFunctionsAreOneError(test::Claims& claims)
+{
+  vtkNew<vtkParticipatingMedium> filter;
+  test::Errors errors(filter);
+  filter->SetInputDataObject(Ramp());
+  const auto refusedSettings = [&](const char* part) {
+    filter->Update();
+    claims.That(errors.WasOneWith(part), std::string("refused: ") + part);
+  };
   filter->AddChannelMeanCosine(0.5);
   refusedSettings("ChannelMeanCosines has 1 number;");
   filter->SetChannelMeanCosines(0.5, 0.5, -1.0);
@@ -344,16 +365,8 @@ void BadInputIsOneError(test::Claims& claims)
   filter->SetPhaseFunction(6);
   refusedSettings("PhaseFunction");
   filter->SetPhaseFunction(vtkParticipatingMedium::HENYEY_GREENSTEIN);
-  filter->SetEmissionScale(-1.0);
-  refusedSettings("EmissionScale");
-  filter->SetEmissionScale(0.0);
-  filter->SetPreset(vtkParticipatingMedium::CREAM);
-  filter->SetMillimetresPerUnit(0.0);
-  refusedSettings("MillimetresPerUnit");
-  filter->SetMillimetresPerUnit(1.0);
-
   filter->Update();
-  claims.That(errors.None() && filter->GetOutput()->GetNumberOfCells() == 4, "good input after bad is taken");
+  claims.That(errors.None() && filter->GetOutput()->GetNumberOfCells() == 4, "good numbers after bad are taken");
 }
 }
 
@@ -368,5 +381,6 @@ int TestParticipatingMedium(int, char*[])
   MeanCosinesByVoxelPassThrough(claims);
   AnyImageWillDo(claims);
   BadInputIsOneError(claims);
+  BadPhaseFunctionsAreOneError(claims);
   return claims.Result();
 }
