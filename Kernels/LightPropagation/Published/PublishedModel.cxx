@@ -248,15 +248,21 @@ std::vector<std::string> LeftOutAsPublished(const Medium& medium, const MediumTr
   return words;
 }
 
-void CheckPublishedPhase(const Medium& medium)
+std::string WhyNotPublished(const Medium& medium)
 {
   const PhaseOfMedium& phase = medium.phase;
-  if (phase.Varies() || phase.HasColour())
+  return phase.Varies() ? "the mean cosine g differs between voxels, and the published scheme has one phase function"
+    : phase.HasColour() ? "the phase function (g) differs between channels, and the published scheme has one for all"
+                        : "";
+}
+
+void CheckPublishedPhase(const Medium& medium)
+{
+  const std::string why = WhyNotPublished(medium);
+  if (!why.empty())
   {
-    throw InvalidInput(std::string("The mean cosine g (the phase function) differs between ") +
-      (phase.Varies() ? "voxels" : "channels") +
-      ", but the published scheme has one for all. Take the conservative scheme (Scheme 1; in SolverComparison switch "
-      "AsPublished off), or give the medium one.");
+    throw InvalidInput("This medium cannot be solved as published: " + why +
+      ". Take the conservative scheme (Scheme 1), or give the medium one.");
   }
 }
 

@@ -9,6 +9,7 @@
 
 #include <array>
 #include <chrono>
+#include <string>
 #include <vector>
 
 namespace tyndall
@@ -71,7 +72,10 @@ private:
   std::vector<std::vector<double>> Coefficients;
 };
 
-/// @throws InvalidInput where the phase function varies by voxel or channel: the published scheme has one
+/// Why the published scheme cannot solve a medium, in words: where its phase function varies by voxel or channel. Empty
+/// where it can.
+std::string WhyNotPublished(const Medium& medium);
+/// @throws InvalidInput with that
 void CheckPublishedPhase(const Medium& medium);
 
 /// `count` directions spread evenly over the sphere: the cells of a cube's faces where count is 6 n^2, else Fibonacci
