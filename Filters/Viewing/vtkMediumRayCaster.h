@@ -36,7 +36,7 @@ struct ViewSettings;
  * | `ior` | 1 | 1 | refractive index n, above 0; optional |
  * | `mean_direction` | 3 | 1 | power-weighted mean direction, its length the anisotropy; optional |
  *
- * or those chosen by SetInputArrayToProcess 0 to 6, and field data `g` (default 0) and, optional, `surface_radiance`,
+ * or those chosen by SetInputArrayToProcess 0 to 6, how the medium scatters, and, optional, `surface_radiance`,
  * as vtkLightPropagationMaps writes it where voxels at the faces of the box are thick: rays that come in there show it,
  * instead of the light at the voxels' centres (not with ShadowRays and lights, SingleScatteringOnly, `mean_direction`,
  * a table, or where rays bend). It belongs to the array `fluence` beside it; where another is chosen it is not used.
