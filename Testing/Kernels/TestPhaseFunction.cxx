@@ -1,4 +1,5 @@
 #include "Device/Errors.h"
+#include "Medium/Medium.h"
 #include "Numerics/Constants.h"
 #include "Numerics/Legendre.h"
 #include "PhaseFunction/PhaseFunction.h"
@@ -401,4 +402,33 @@ TEST(PhaseOfMedium, TakesTheMeanCosineOfEachVoxel)
   EXPECT_TRUE(byVoxel.Seen(2).At(1, 0) == PhaseFunction::Schlick(0.5)) << "as blue sees it";
   EXPECT_FALSE(byVoxel.Seen(2).HasColour());
   EXPECT_THROW(PhaseOfMedium(PhaseFunction::Rayleigh(), Field{ g.data(), 3 }), InvalidInput);
+}
+
+TEST(PhaseOfMedium, IsCheckedInEveryVoxel)
+{
+  Medium medium;
+  medium.grid.size = { 2, 2, 1 };
+  std::vector<float> g = { 0.1f, 0.2f, -0.99f, 0.999f };
+  medium.phase = PhaseOfMedium(PhaseFunction::HenyeyGreenstein(0.0), Field{ g.data() });
+  EXPECT_EQ(MessageOf([&] { Check(medium); }), "");
+  for (const float bad : { 1.0f, -1.0f, static_cast<float>(NoNumber) })
+  {
+    g[2] = bad;
+    EXPECT_THAT(MessageOf([&] { Check(medium); }), AllOf(HasSubstr("mean cosine g"), HasSubstr("voxel (0, 1, 0)")));
+  }
+}
+
+// A solver's transport cross section may be twice sigma_s.
+TEST(PhaseOfMedium, CountsForTheLargestExtinctionInEveryChannel)
+{
+  Medium medium;
+  medium.grid.size = { 1, 1, 1 };
+  const float sigma_s = 0.6e37f;
+  medium.sigma_s = { &sigma_s };
+  medium.phase = PhaseOfMedium(
+    std::array<PhaseFunction, 3>{ PhaseFunction(), PhaseFunction(), PhaseFunction::HenyeyGreenstein(0.5) });
+  EXPECT_EQ(MessageOf([&] { Check(medium); }), "");
+  medium.phase = PhaseOfMedium(
+    std::array<PhaseFunction, 3>{ PhaseFunction(), PhaseFunction(), PhaseFunction::HenyeyGreenstein(-0.9) });
+  EXPECT_THAT(MessageOf([&] { Check(medium); }), HasSubstr("sigma_a and sigma_s add up to"));
 }
