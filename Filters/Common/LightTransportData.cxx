@@ -2,6 +2,7 @@
 
 #include "Common/GhostFlags.h"
 #include "Common/LastFailure.h"
+#include "Common/PhaseFunctionData.h"
 
 #include "vtkAlgorithm.h"
 #include "vtkCellData.h"
@@ -299,7 +300,8 @@ MediumInput ReadMedium(vtkAlgorithm* filter, vtkImageData* image)
   input.medium.sigma_a = input.sigma_a;
   input.medium.sigma_s = input.sigma_s;
   input.medium.emission = input.emission;
-  input.medium.phase = PhaseFunction::HenyeyGreenstein(ReadFact(image, "g", 0.0));
+  input.g = ReadCells(image, "g", Need::Optional, { 1, 3 });
+  input.medium.phase = ReadPhase(image, input.g, input.sigma_s);
   Check(input.medium);
   return input;
 }

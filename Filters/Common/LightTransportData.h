@@ -108,11 +108,13 @@ enum MediumArray
 struct MediumInput
 {
   Medium medium;
-  FloatField sigma_a, sigma_s, emission;
+  FloatField sigma_a, sigma_s, emission, g;
 };
 
 /// The medium of an image: cells `sigma_a`, `sigma_s` (1 or 3 components, 1/length), `emission` (optional, 1 or 3) or
-/// the arrays chosen instead by MediumArray, and field data `g` (one number; missing: 0). Checked.
+/// the arrays chosen instead by MediumArray, and the phase function: cells `g` (optional, 1 or 3 components) where the
+/// mean cosine varies by voxel, else field data `g` (1 or 3 numbers; missing: 0), and field data `phase_function` and
+/// its companions (PhaseFunctionData.h; missing: Henyey and Greenstein's). Checked.
 MediumInput ReadMedium(vtkAlgorithm* filter, vtkImageData* image);
 
 /// Field data `name`: one number.

@@ -34,7 +34,8 @@ class vtkDataArraySelection;
  * Field data, from which vtkVDBWriter restores them:
  * `vdb::<key>` the file's metadata; `vdb:<grid>:<key>` a grid's (`class`, `name`, `creator`, ...);
  * `vdb:<grid>:type` the grid's type as in the table; `vdb:<grid>:background` its background value.
- * `g` of a medium is the file's metadata `medium_g`. Metadata of types that OpenVDB does not know are left out.
+ * `g`, `phase_function` and what else says how a medium scatters are the file's metadata `medium_g`, ... Metadata of
+ * types that OpenVDB does not know are left out.
  *
  * The file is listed without loading a voxel value, and leaves are loaded where the requested extent needs them only.
  *

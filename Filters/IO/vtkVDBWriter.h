@@ -29,10 +29,10 @@ class vtkMultiProcessController;
  * Tolerance change values.
  *
  * Field data `vdb::<key>`, `vdb:<array>:<key>`, `vdb:<array>:type` and `vdb:<array>:background`, as vtkVDBReader makes
- * them, become metadata, type (bool and mask from uint8) and background; field data `g`, which belong to a medium,
- * become the file's metadata `medium_g`, and come back as `g`. Other field data are left out. Without them the
- * background is Background, and a grid of one real component with background 0 is a fog volume, any other of unknown
- * class.
+ * them, become metadata, type (bool and mask from uint8) and background; field data `g`, `phase_function`,
+ * `phase_second_g`, `phase_first_part`, `phase_cosine` and `phase_value`, which belong to a medium, become the file's
+ * metadata of the same name after `medium_`, and come back. Other field data are left out. Without them the background
+ * is Background, and a grid of one real component with background 0 is a fog volume, any other of unknown class.
  *
  * Cells that vtkGhostType hides are no part of the image: their voxels are inactive. vtkGhostType itself is not
  * written.

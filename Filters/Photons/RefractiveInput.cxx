@@ -1,5 +1,6 @@
 #include "Photons/RefractiveInput.h"
 
+#include "Common/PhaseFunctionData.h"
 #include "Photons/PhotonData.h"
 
 #include "vtkCellData.h"
@@ -86,9 +87,9 @@ InputsKey KeyOf(vtkAlgorithm* filter, const std::shared_ptr<Device>& device, vtk
   key.AddGhosts(ofLevels);
   key.Add(ofLevels->GetCellData()->GetArray(LevelsName));
   key.Add(ofLevels->GetPointData()->GetArray(LevelsName));
-  key.Add({ octree ? 1.0 : 0.0, ReadFact(medium, "g", 0.0), 1.0 * settings.order, settings.stepSize,
-    1.0 * settings.meanDirection, 1.0 * settings.counts, 1.0 * settings.batches, 1.0 * static_cast<int>(settings.sums),
-    1.0 * settings.leaveOut });
+  AddPhase(key, medium);
+  key.Add({ octree ? 1.0 : 0.0, 1.0 * settings.order, settings.stepSize, 1.0 * settings.meanDirection,
+    1.0 * settings.counts, 1.0 * settings.batches, 1.0 * static_cast<int>(settings.sums), 1.0 * settings.leaveOut });
   return key;
 }
 }

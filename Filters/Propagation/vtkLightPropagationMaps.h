@@ -28,7 +28,8 @@ struct LightField;
  * | `sigma_s`  | 1 or 3     | 1/length         | scattering coefficient                           |
  * | `emission` | 1 or 3     | W/(length^3 sr)  | emitted radiance per unit length; optional       |
  *
- * or those chosen by SetInputArrayToProcess 0, 1 and 2, and field data `g` (default 0).
+ * or those chosen by SetInputArrayToProcess 0, 1 and 2, and field data `phase_function` and `g`, or
+ * cells `g` (default: isotropic). As published there has to be one phase function for all.
  * Input 1, optional: lights as vtkLightRig makes them.
  * Input 2, optional: the environment, vtkImageData in latitude-longitude layout, point array `radiance` (1 or 3
  * components, W/(length^2 sr)), as vtkEnvironmentReader makes it.

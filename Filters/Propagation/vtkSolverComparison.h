@@ -25,7 +25,8 @@ struct ComparisonSettings;
  *
  * Input 0, the medium: vtkImageData as vtkLightPropagationMaps and vtkPhotonMarcher read it: cell arrays `sigma_a`,
  * `sigma_s` (1 or 3 components, 1/length), optionally `emission` (W/(length^3 sr)), `ior` and `octree_level` (photons
- * only), or those chosen by SetInputArrayToProcess 0, 1, 2 and 3, and field data `g`.
+ * only), or those chosen by SetInputArrayToProcess 0, 1, 2 and 3, and field data
+ * `phase_function` and `g`, or cells `g`.
  * Input 1, optional: lights as vtkLightRig makes them. Input 2, optional: the environment, as vtkEnvironmentReader
  * makes it.
  * Input 3, optional: the reference, vtkImageData of the same box, its voxels as large as the medium's or a whole number

@@ -1,6 +1,7 @@
 #include "vtkMeshVoxelizer.h"
 
 #include "Common/LightTransportData.h"
+#include "Common/PhaseFunctionData.h"
 #include "Common/WholeImage.h"
 #include "Device/Device.h"
 #include "Refraction/Index/RefractiveMedium.h"
@@ -146,7 +147,14 @@ void Pack(const tyndall::RefractiveMediumSettings& settings, tyndall::Refractive
   tyndall::AddCells(output, "sigma_a", std::move(medium.sigma_a), medium.components);
   tyndall::AddCells(output, "sigma_s", std::move(medium.sigma_s), medium.components);
   output->GetCellData()->SetActiveScalars("occupancy");
-  tyndall::AddFact(output, "g", std::vector<double>{ medium.g });
+  tyndall::PhaseDescription phase;
+  phase.g.fill(medium.g);
+  phase.gByVoxel = !medium.gByVoxel.empty();
+  tyndall::WritePhaseDescription(output, phase);
+  if (phase.gByVoxel)
+  {
+    tyndall::AddCells(output, "g", std::move(medium.gByVoxel), medium.components);
+  }
   tyndall::AddFact(output, "left_out", medium.leftOut);
   tyndall::AddFact(output, "device", std::vector<std::string>{ medium.device });
 }

@@ -29,9 +29,10 @@
  * | `ior_gradient` | 3 | 1/length | its gradient by central differences; not where n is constant |
  * | `sigma_a` | 1, or 3 where it has colour | 1/length | absorption coefficient |
  * | `sigma_s` | 1, or 3 where it has colour | 1/length | scattering coefficient |
+ * | `g` | 1, or 3 where `sigma_s` or `sigma_a` has colour | 1 | mean cosine, where scattering materials differ in it |
  *
- * and the field data `g` (mean cosine of the phase function), `left_out` (what the scene did not need) and `device`.
- * Lengths are in the dataset's own unit.
+ * and the field data `phase_function`, `g` (mean cosine, where all voxels have one), `left_out` (what the scene did not
+ * need) and `device`. Lengths are in the dataset's own unit.
  *
  * A voxel is divided into SupersamplingFactor^3 fine voxels, whose centres are inside a mesh or not, decided in whole
  * numbers:

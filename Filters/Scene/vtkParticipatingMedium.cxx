@@ -3,12 +3,15 @@
 #include "Common/FiniteValues.h"
 #include "Common/GhostFlags.h"
 #include "Common/LightTransportData.h"
+#include "Common/PhaseFunctionData.h"
+#include "Common/WholeImage.h"
 #include "Medium/Presets.h"
 
 #include "vtkImageData.h"
 #include "vtkInformation.h"
 #include "vtkObjectFactory.h"
 #include "vtkSMPTools.h"
+#include "vtkTable.h"
 
 #include <cmath>
 #include <string>
@@ -27,12 +30,58 @@ struct Recipe
   Rgb sigma_s;
   Rgb sigma_a;
   Rgb emission;
-  double g;
+  Rgb g;
 };
 
 bool NotNegative(double value)
 {
   return value >= 0.0 && std::isfinite(value);
+}
+
+void RequireMeanCosine(const char* property, double g)
+{
+  Require(std::abs(g) < 1.0, std::string(property) + " is " + std::to_string(g) + "; it must lie between -1 and 1.");
+}
+
+/// Numbers of a column of the phase function's table.
+std::vector<double> ColumnOf(vtkTable* table, const char* name)
+{
+  vtkAbstractArray* const column = table->GetColumnByName(name);
+  auto* const numbers = vtkArrayDownCast<vtkDataArray>(column);
+  Require(column,
+    std::string("PhaseTable has no column '") + name + "'. Its columns: " + tyndall::NamesOf(table->GetRowData()) +
+      ". Rename them, or turn angles into cosines, with a Calculator.");
+  Require(numbers && numbers->GetNumberOfComponents() == 1,
+    std::string("PhaseTable's column '") + name + "' is not of numbers, one a row.");
+  std::vector<double> values(static_cast<std::size_t>(numbers->GetNumberOfTuples()));
+  for (std::size_t row = 0; row < values.size(); ++row)
+  {
+    values[row] = numbers->GetComponent(static_cast<vtkIdType>(row), 0);
+  }
+  return values;
+}
+
+/// @param g  mean cosines of the medium
+tyndall::PhaseDescription DescriptionOf(vtkParticipatingMedium* filter, const Rgb& g, vtkTable* table)
+{
+  constexpr const char* names[] = { "isotropic", "henyey_greenstein", "double_henyey_greenstein", "schlick", "rayleigh",
+    "tabulated" };
+  RequireMeanCosine("SecondMeanCosine", filter->GetSecondMeanCosine());
+  tyndall::PhaseDescription description;
+  description.name = names[filter->GetPhaseFunction()];
+  description.g = g;
+  description.secondG.fill(filter->GetSecondMeanCosine());
+  description.firstPart.fill(filter->GetFirstPart());
+  if (filter->GetPhaseFunction() == vtkParticipatingMedium::TABULATED)
+  {
+    Require(table,
+      "PhaseFunction is tabulated, but there is no PhaseTable: connect a table with the columns 'cosine' and 'value', "
+      "for example of a CSV file.");
+    description.cosines = ColumnOf(table, "cosine");
+    description.values = ColumnOf(table, "value");
+  }
+  description.Functions(); // says what is wrong with it
+  return description;
 }
 
 Recipe CustomMedium(vtkParticipatingMedium* filter)
@@ -45,8 +94,6 @@ Recipe CustomMedium(vtkParticipatingMedium* filter)
     recipe.sigma_s[c] = albedo * filter->GetExtinctionScale();
     recipe.sigma_a[c] = (1.0 - albedo) * filter->GetExtinctionScale();
   }
-  recipe.g = filter->GetMeanCosine();
-  Require(std::abs(recipe.g) < 1.0, "MeanCosine is " + std::to_string(recipe.g) + "; it must lie between -1 and 1.");
   return recipe;
 }
 
@@ -60,11 +107,31 @@ Recipe RealMedium(vtkParticipatingMedium* filter)
   return { Times(preset.sigma_s, factor), Times(preset.sigma_a, factor), {}, preset.g };
 }
 
-Recipe RecipeOf(vtkParticipatingMedium* filter)
+/// @param ofChannels  none, or those of red, green and blue
+Rgb MeanCosines(vtkParticipatingMedium* filter, const std::vector<double>& ofChannels)
+{
+  Require(ofChannels.empty() || ofChannels.size() == 3,
+    "ChannelMeanCosines has " + std::to_string(ofChannels.size()) + (ofChannels.size() == 1 ? " number" : " numbers") +
+      "; it must have none, or three for red, green and blue.");
+  if (ofChannels.empty())
+  {
+    RequireMeanCosine("MeanCosine", filter->GetMeanCosine());
+    return { filter->GetMeanCosine(), filter->GetMeanCosine(), filter->GetMeanCosine() };
+  }
+  for (const double g : ofChannels)
+  {
+    RequireMeanCosine("ChannelMeanCosines", g);
+  }
+  return { ofChannels[0], ofChannels[1], ofChannels[2] };
+}
+
+Recipe RecipeOf(vtkParticipatingMedium* filter, const std::vector<double>& channelMeanCosines)
 {
   Require(NotNegative(filter->GetExtinctionScale()),
     "ExtinctionScale is " + std::to_string(filter->GetExtinctionScale()) + "; it must be finite and not negative.");
+  const Rgb g = MeanCosines(filter, channelMeanCosines); // looked at with a preset as well
   Recipe recipe = filter->GetPreset() == vtkParticipatingMedium::CUSTOM ? CustomMedium(filter) : RealMedium(filter);
+  recipe.g = filter->GetPreset() == vtkParticipatingMedium::CUSTOM ? g : recipe.g;
   for (int c = 0; c < 3; ++c)
   {
     recipe.emission[c] = filter->GetEmissionScale() * filter->GetEmissionColor()[c];
@@ -143,7 +210,10 @@ const tyndall::MediumPreset* PresetOf(int preset)
 
 vtkStandardNewMacro(vtkParticipatingMedium);
 
-vtkParticipatingMedium::vtkParticipatingMedium() = default;
+vtkParticipatingMedium::vtkParticipatingMedium()
+{
+  this->SetNumberOfInputPorts(2);
+}
 
 vtkParticipatingMedium::~vtkParticipatingMedium() = default;
 
@@ -162,11 +232,69 @@ const char* vtkParticipatingMedium::GetPresetSource(int preset)
   return PresetOf(preset) ? PresetOf(preset)->source : "";
 }
 
+void vtkParticipatingMedium::SetChannelMeanCosines(double red, double green, double blue)
+{
+  this->ChannelMeanCosines = { red, green, blue };
+  this->Modified();
+}
+
+void vtkParticipatingMedium::AddChannelMeanCosine(double g)
+{
+  this->ChannelMeanCosines.push_back(g);
+  this->Modified();
+}
+
+void vtkParticipatingMedium::RemoveAllChannelMeanCosines()
+{
+  this->ChannelMeanCosines.clear();
+  this->Modified();
+}
+
+int vtkParticipatingMedium::GetNumberOfChannelMeanCosines() const
+{
+  return static_cast<int>(this->ChannelMeanCosines.size());
+}
+
+void vtkParticipatingMedium::SetPhaseTableConnection(vtkAlgorithmOutput* table)
+{
+  this->SetInputConnection(PHASE_TABLE, table);
+}
+
+void vtkParticipatingMedium::SetPhaseTableData(vtkDataObject* table)
+{
+  this->SetInputDataObject(PHASE_TABLE, table);
+}
+
+void vtkParticipatingMedium::RemovePhaseTable()
+{
+  this->SetInputConnection(PHASE_TABLE, nullptr);
+}
+
+int vtkParticipatingMedium::FillInputPortInformation(int port, vtkInformation* information)
+{
+  information->Set(vtkAlgorithm::INPUT_REQUIRED_DATA_TYPE(), port == PHASE_TABLE ? "vtkTable" : "vtkImageData");
+  if (port == PHASE_TABLE)
+  {
+    information->Set(vtkAlgorithm::INPUT_IS_OPTIONAL(), 1);
+  }
+  return 1;
+}
+
+/// Of the density what is asked for of the medium; of the table all.
+int vtkParticipatingMedium::RequestUpdateExtent(
+  vtkInformation* request, vtkInformationVector** inputs, vtkInformationVector* outputs)
+{
+  const int done = this->Superclass::RequestUpdateExtent(request, inputs, outputs);
+  tyndall::AskForAll(inputs[PHASE_TABLE]);
+  return done;
+}
+
 int vtkParticipatingMedium::RequestData(vtkInformation*, vtkInformationVector** inputs, vtkInformationVector* outputs)
 {
   return tyndall::Guarded(this, outputs, [&] {
     vtkImageData* input = vtkImageData::GetData(inputs[0]);
-    const Recipe recipe = RecipeOf(this);
+    const Recipe recipe = RecipeOf(this, this->ChannelMeanCosines);
+    const tyndall::PhaseDescription phase = DescriptionOf(this, recipe.g, vtkTable::GetData(inputs[PHASE_TABLE]));
     const tyndall::FloatField density = tyndall::ReadChosenCells(this, 0, input, "", tyndall::Need::Required, { 1 });
     std::vector<float> relative =
       RelativeDensity(density, tyndall::GridOf(input), this->MinimumDensity, this->MaximumDensity);
@@ -181,7 +309,12 @@ int vtkParticipatingMedium::RequestData(vtkInformation*, vtkInformationVector** 
     {
       AddProduct(output, "emission", relative, recipe.emission);
     }
-    tyndall::AddFact(output, "g", std::vector<double>{ recipe.g });
+    tyndall::WritePhaseDescription(output, phase);
+    if (const tyndall::FloatField g = tyndall::ReadCells(output, "g", tyndall::Need::Optional, { 1, 3 }); g.IsThere())
+    {
+      const tyndall::FloatField sigma_s = tyndall::ReadCells(output, "sigma_s", tyndall::Need::Required);
+      tyndall::ReadPhase(output, g, sigma_s); // says what is wrong with the input's
+    }
   });
 }
 
@@ -196,7 +329,11 @@ void vtkParticipatingMedium::PrintSelf(ostream& os, vtkIndent indent)
   os << indent << "MaximumDensity: " << this->MaximumDensity << "\n";
   os << indent << "ExtinctionScale: " << this->ExtinctionScale << "\n";
   print("Albedo", this->Albedo);
+  os << indent << "PhaseFunction: " << this->PhaseFunction << "\n";
   os << indent << "MeanCosine: " << this->MeanCosine << "\n";
+  os << indent << "ChannelMeanCosines: " << this->ChannelMeanCosines.size() << " numbers\n";
+  os << indent << "SecondMeanCosine: " << this->SecondMeanCosine << "\n";
+  os << indent << "FirstPart: " << this->FirstPart << "\n";
   os << indent << "EmissionScale: " << this->EmissionScale << "\n";
   print("EmissionColor", this->EmissionColor);
   os << indent << "MillimetresPerUnit: " << this->MillimetresPerUnit << "\n";

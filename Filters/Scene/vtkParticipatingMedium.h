@@ -5,12 +5,17 @@
 #include "vtkImageAlgorithm.h"
 #include "vtkTyndallModule.h" // for export macro
 
+#include <vector>
+
 /**
  * @class vtkParticipatingMedium
  * @brief turns a density into a medium that absorbs, scatters and emits light
  *
  * Input: vtkImageData with an array of one component, of cells or of points (averaged to cells): the active scalars, or
- * the array chosen by SetInputArrayToProcess(0, ...).
+ * the array chosen by SetInputArrayToProcess(0, ...). An array `g` (1 or 3 components) of it is the mean cosine by
+ * voxel, of a mixture for example; it is passed on and counts before MeanCosine.
+ *
+ * Input 1, optional: vtkTable with the columns `cosine` and `value`, the phase function of TABULATED.
  *
  * Output: the input with the cell arrays
  *
@@ -20,7 +25,9 @@
  * | `sigma_s`  | 1, or 3 where it has colour | 1/length   |
  * | `emission` | 1 or 3; only where EmissionScale is not 0 | W/(length^3 sr) |
  *
- * and the field data `g` (mean cosine of the phase function). Lengths are in the dataset's own unit.
+ * and as field data the phase function: `phase_function` (its name), `g` (mean cosine; 3 numbers where channels
+ * differ), and where they are needed `phase_second_g`, `phase_first_part`, `phase_cosine`, `phase_value`. Lengths are
+ * in the dataset's own unit.
  *
  * With the relative density rho = (density - MinimumDensity) / (MaximumDensity - MinimumDensity), at least 0:
  *
@@ -61,7 +68,8 @@ public:
   };
 
   ///@{
-  /// The medium, one of Presets. Default CUSTOM: Albedo and MeanCosine.
+  /// The medium, one of Presets. Default CUSTOM: Albedo and MeanCosine. PhaseFunction counts with presets, too: theirs
+  /// is HENYEY_GREENSTEIN, which with g 0 is isotropic.
   tyndallSetRangeMacro(Preset, int, CUSTOM, SKIN_2);
   vtkGetMacro(Preset, int);
   ///@}
@@ -100,11 +108,57 @@ public:
   vtkGetVector3Macro(Albedo, double);
   ///@}
 
+  /// Phase functions for SetPhaseFunction.
+  enum PhaseFunctions
+  {
+    ISOTROPIC = 0,
+    HENYEY_GREENSTEIN,
+    DOUBLE_HENYEY_GREENSTEIN, ///< FirstPart of the light with MeanCosine, the rest with SecondMeanCosine
+    SCHLICK,
+    RAYLEIGH, ///< of particles much smaller than the wavelength
+    TABULATED ///< PhaseTable
+  };
+
   ///@{
-  /// Mean cosine g of the angle by which light is scattered (Henyey-Greenstein): 0 isotropic, near 1 forward. Default
-  /// 0, valid (-1, 1). Not used with a preset.
+  /// How light is scattered by angle, one of PhaseFunctions. Default HENYEY_GREENSTEIN.
+  tyndallSetRangeMacro(PhaseFunction, int, ISOTROPIC, TABULATED);
+  vtkGetMacro(PhaseFunction, int);
+  ///@}
+
+  ///@{
+  /// Mean cosine g of the angle by which light is scattered (Henyey-Greenstein, Schlick; of
+  /// DOUBLE_HENYEY_GREENSTEIN that of its first lobe): 0 isotropic, near 1 forward. Default 0, valid (-1, 1). Not used
+  /// with a preset, which has its own.
   tyndallSetRangeMacro(MeanCosine, double, -1.0, 1.0);
   vtkGetMacro(MeanCosine, double);
+  ///@}
+
+  ///@{
+  /// Mean cosines of red, green and blue instead of MeanCosine, one call each. None (default) or three, valid (-1, 1).
+  void SetChannelMeanCosines(double red, double green, double blue);
+  void AddChannelMeanCosine(double g);
+  void RemoveAllChannelMeanCosines();
+  int GetNumberOfChannelMeanCosines() const;
+  ///@}
+
+  ///@{
+  /// Mean cosine of the second lobe of DOUBLE_HENYEY_GREENSTEIN. Default 0, valid (-1, 1).
+  tyndallSetRangeMacro(SecondMeanCosine, double, -1.0, 1.0);
+  vtkGetMacro(SecondMeanCosine, double);
+  ///@}
+
+  ///@{
+  /// Part of the scattered light that the first lobe of DOUBLE_HENYEY_GREENSTEIN has. Default 1, valid [0, 1].
+  tyndallSetRangeMacro(FirstPart, double, 0.0, 1.0);
+  vtkGetMacro(FirstPart, double);
+  ///@}
+
+  ///@{
+  /// The phase function of TABULATED: a table with the columns `cosine` (of the scattering angle, from -1 to 1, rising
+  /// or falling) and `value` (not negative, in any unit). Linear between its rows.
+  void SetPhaseTableConnection(vtkAlgorithmOutput* table);
+  void SetPhaseTableData(vtkDataObject* table);
+  void RemovePhaseTable();
   ///@}
 
   ///@{
@@ -128,9 +182,18 @@ public:
   ///@}
 
 protected:
+  enum Inputs
+  {
+    DENSITY = 0,
+    PHASE_TABLE = 1
+  };
+
   vtkParticipatingMedium();
   ~vtkParticipatingMedium() override;
 
+  int FillInputPortInformation(int port, vtkInformation* information) override;
+  int RequestUpdateExtent(
+    vtkInformation* request, vtkInformationVector** inputs, vtkInformationVector* outputs) override;
   int RequestData(vtkInformation* request, vtkInformationVector** inputs, vtkInformationVector* outputs) override;
 
 private:
@@ -142,7 +205,11 @@ private:
   double MaximumDensity = 1.0;
   double ExtinctionScale = 1.0;
   double Albedo[3] = { 0.9, 0.9, 0.9 };
+  int PhaseFunction = HENYEY_GREENSTEIN;
   double MeanCosine = 0.0;
+  std::vector<double> ChannelMeanCosines;
+  double SecondMeanCosine = 0.0;
+  double FirstPart = 1.0;
   double EmissionScale = 0.0;
   double EmissionColor[3] = { 1.0, 1.0, 1.0 };
   double MillimetresPerUnit = 1.0;

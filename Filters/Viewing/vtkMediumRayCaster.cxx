@@ -3,6 +3,7 @@
 #include "Common/FiniteValues.h"
 #include "Common/InputsKey.h"
 #include "Common/LightTransportData.h"
+#include "Common/PhaseFunctionData.h"
 #include "Common/WholeImage.h"
 #include "Device/Device.h"
 #include "Medium/BoxFaces.h"
@@ -56,7 +57,6 @@ tyndall::ViewSettings SettingsOf(vtkMediumRayCaster* filter)
   settings.rectangleSamples = filter->GetRectangleSamples();
   settings.showBackground = filter->GetShowBackground();
   settings.backgroundColor = tyndall::Triple(filter->GetBackgroundColor());
-  settings.phaseFunction = static_cast<tyndall::ViewedPhase>(filter->GetPhaseFunction());
   settings.surfaceReflection = static_cast<tyndall::SurfaceReflection>(filter->GetSurfaceReflection());
   settings.surfaceIndex = filter->GetSurfaceIndex();
   settings.surfaceReflectance = filter->GetSurfaceReflectance();
@@ -225,7 +225,8 @@ tyndall::InputsKey vtkMediumRayCaster::KeyOf(vtkInformationVector** inputs)
   vtkImageData* const image = vtkImageData::GetData(inputs[MEDIUM]);
   key.Add(tyndall::GridOf(image));
   key.AddGhosts(image);
-  key.Add({ tyndall::ReadFact(image, "g", 0.0), 1.0 * this->EnvironmentUp, this->EnvironmentAzimuth });
+  tyndall::AddPhase(key, image);
+  key.Add({ 1.0 * this->EnvironmentUp, this->EnvironmentAzimuth });
   for (int number = tyndall::SigmaA; number <= MeanDirection; ++number)
   {
     key.Add(tyndall::ChosenArray(this, number, image, ArrayNames[number]));
@@ -361,7 +362,6 @@ void vtkMediumRayCaster::PrintSelf(ostream& os, vtkIndent indent)
   PrintNumbers(os, indent, "BackgroundColor", this->BackgroundColor, 3);
   os << indent << "Exposure: " << this->Exposure << "\n";
   os << indent << "ToneCurve: " << (this->ToneCurve == LINEAR ? "linear" : "filmic") << "\n";
-  os << indent << "PhaseFunction: " << (this->PhaseFunction == SCHLICK ? "Schlick" : "Henyey-Greenstein") << "\n";
   os << indent << "SurfaceReflection: " << this->SurfaceReflection << "\n";
   os << indent << "SurfaceIndex: " << this->SurfaceIndex << "\n";
   os << indent << "SurfaceReflectance: " << this->SurfaceReflectance << "\n";

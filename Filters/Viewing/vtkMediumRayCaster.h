@@ -36,7 +36,7 @@ struct ViewSettings;
  * | `ior` | 1 | 1 | refractive index n, above 0; optional |
  * | `mean_direction` | 3 | 1 | power-weighted mean direction, its length the anisotropy; optional |
  *
- * or those chosen by SetInputArrayToProcess 0 to 6, and field data `g` (default 0) and, optional, `surface_radiance`,
+ * or those chosen by SetInputArrayToProcess 0 to 6, how the medium scatters, and, optional, `surface_radiance`,
  * as vtkLightPropagationMaps writes it where voxels at the faces of the box are thick: rays that come in there show it,
  * instead of the light at the voxels' centres (not with ShadowRays and lights, SingleScatteringOnly, `mean_direction`,
  * a table, or where rays bend). It belongs to the array `fluence` beside it; where another is chosen it is not used.
@@ -51,10 +51,11 @@ struct ViewSettings;
  * | without ShadowRays | `fluence_direct` / 4 pi | `fluence` / 4 pi |
  * | with ShadowRays | the lights behind the medium, with its phase function | that, and the rest of `fluence` / 4 pi |
  *
- * Where there is `mean_direction` m, what is divided by 4 pi is multiplied by f: 4 pi times PhaseFunction of mean
- * cosine g |m|, for the angle from m to the direction towards the camera. So light that all travels one way (|m| = 1)
- * is scattered by the medium's phase function, light from everywhere alike (|m| = 0) evenly, and as much on the whole.
- * Without `mean_direction`, with ShadowRays, or where g is 0, f is 1.
+ * The phase function is the medium's own, of every channel and voxel: field data `phase_function` and `g`, or cells
+ * `g`. Where there is `mean_direction` m, what is divided by 4 pi is multiplied by f: 4 pi times the phase function,
+ * averaged over light that is spread about m. So light that all travels one way (|m| = 1) is scattered by the phase
+ * function, light from everywhere alike (|m| = 0) evenly, and as much on the whole. Without `mean_direction`, with
+ * ShadowRays, or where the medium is isotropic, f is 1.
  *
  * The rest of `fluence` is what the shadow rays do not show already, so that no light counts twice. Where there is no
  * `fluence` but there are lights, shadow rays are used without being asked for.
@@ -97,12 +98,6 @@ public:
   {
     LINEAR = 0, ///< radiance times exposure, cut at white
     FILMIC = 1  ///< bright parts are compressed as film does it
-  };
-
-  enum PhaseFunctions
-  {
-    HENYEY_GREENSTEIN = 0,
-    SCHLICK = 1 ///< Blasi et al. 1993, k = 1.55 g - 0.55 g^3: cheaper, and close to it
   };
 
   enum SurfaceReflections
@@ -189,12 +184,6 @@ public:
   /// [0, 1e37].
   tyndallSetRange3Macro(BackgroundColor, double, 0.0, 1e37);
   vtkGetVector3Macro(BackgroundColor, double);
-  ///@}
-
-  ///@{
-  /// How light whose direction is known is scattered, by the medium's g: HENYEY_GREENSTEIN (default) or SCHLICK.
-  tyndallSetRangeMacro(PhaseFunction, int, HENYEY_GREENSTEIN, SCHLICK);
-  vtkGetMacro(PhaseFunction, int);
   ///@}
 
   ///@{
@@ -305,7 +294,6 @@ private:
   double BackgroundColor[3];
   double Exposure = 0.0;
   int ToneCurve = FILMIC;
-  int PhaseFunction = HENYEY_GREENSTEIN;
   int SurfaceReflection = NONE;
   double SurfaceIndex;
   double SurfaceReflectance;

@@ -1,5 +1,7 @@
 #include "Comparison/ComparedScene.h"
 
+#include "Medium/Coarsening.h"
+
 #include <algorithm>
 
 namespace tyndall
@@ -34,6 +36,16 @@ RescaledScene::RescaledScene(const ComparedScene& scene, To to, const Factors& f
     values = this->Rescaled(field, to, factors, from);
     field.values = values.empty() ? nullptr : values.data();
   };
+  if (medium.phase.Varies())
+  {
+    const Field& g = medium.phase.G();
+    const bool coarser = to == To::Coarser;
+    this->G = coarser ? Coarsening(from, Coarsened(from, factors)).Average(g, medium.sigma_s)
+                      : this->Rescaled(g, to, factors, from);
+    const bool colour = g.HasColour() || medium.sigma_s.HasColour();
+    medium.phase =
+      medium.phase.WithG({ this->G.data(), coarser ? (colour ? 3 : 1) : g.components, coarser ? -1 : g.standsForAll });
+  }
   rescale(medium.sigma_a, this->SigmaA);
   rescale(medium.sigma_s, this->SigmaS);
   rescale(medium.emission, this->Emission);

@@ -23,7 +23,8 @@ struct ComparedScene
   bool Emits() const;      ///< whether any voxel emits
 };
 
-/// The same scene on a coarser or a finer grid: coefficients are means over the voxels, or repeated.
+/// The same scene on a coarser or a finer grid: coefficients are means over the voxels, or repeated; the mean cosine is
+/// weighted by sigma_s.
 class RescaledScene
 {
 public:
@@ -40,7 +41,7 @@ public:
 private:
   std::vector<float> Rescaled(const Field& field, To to, const Factors& factors, const Grid& from) const;
 
-  std::vector<float> SigmaA, SigmaS, Emission;
+  std::vector<float> SigmaA, SigmaS, Emission, G;
   ComparedScene TheScene;
 };
 }

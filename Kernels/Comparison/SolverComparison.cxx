@@ -3,6 +3,7 @@
 #include "Comparison/ComparisonErrors.h"
 #include "Comparison/TimeLimit.h"
 #include "Device/Errors.h"
+#include "LightPropagation/Published/PublishedModel.h"
 
 #include <algorithm>
 #include <cmath>
@@ -105,8 +106,10 @@ std::string WhyNot(ComparedMethod method, const ComparedScene& scene, const Comp
       : !comparator.Has(method)        ? "the reference has no 'fluence_direct'"
                                        : "";
   }
+  const bool published = method == ComparedMethod::Published || method == ComparedMethod::PublishedSequential;
   return scene.BendsLight()   ? "it does not bend light, and the index of this medium varies"
     : !comparator.Has(method) ? "the reference has no 'fluence'"
+    : published               ? WhyNotPublished(scene.medium)
                               : "";
 }
 

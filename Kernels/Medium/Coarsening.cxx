@@ -80,6 +80,28 @@ std::vector<float> Coarsening::Average(const float* values, int components) cons
   return AverageAlong(xy.data(), 1, from(2), to(2), to(1) * to(0) * inner);
 }
 
+std::vector<float> Coarsening::Average(const Field& values, const Field& weights) const
+{
+  const int components = values.HasColour() || weights.HasColour() ? 3 : 1;
+  std::vector<float> products(this->FineGrid.VoxelCount() * components), plain(products.size());
+  float least = values.At(0, 0), largest = least;
+  for (std::size_t i = 0; i < products.size(); ++i)
+  {
+    const float value = values.At(i / components, static_cast<int>(i % components));
+    plain[i] = weights.At(i / components, static_cast<int>(i % components));
+    products[i] = plain[i] * value;
+    least = std::min(least, value);
+    largest = std::max(largest, value);
+  }
+  std::vector<float> means = this->Average(products.data(), components);
+  const std::vector<float> sums = this->Average(plain.data(), components);
+  for (std::size_t i = 0; i < means.size(); ++i)
+  {
+    means[i] = sums[i] > 0.0f ? std::clamp(means[i] / sums[i], least, largest) : 0.0f;
+  }
+  return means;
+}
+
 std::size_t Coarsening::Parent(std::size_t fineVoxel) const
 {
   std::size_t parent = 0, stride = 1;

@@ -1,5 +1,6 @@
 #pragma once
 
+#include "Medium/Field.h"
 #include "Medium/Grid.h"
 
 #include <array>
@@ -25,6 +26,12 @@ public:
   /// where one of them is.
   /// @param values  `components` a fine voxel, x fastest
   std::vector<float> Average(const float* values, int components) const;
+
+  /// Means weighted by another quantity, 0 where that is 0 throughout. So a coarse voxel gets its mean cosine, weighted
+  /// by sigma_s (numerics.md, Eq. (3e)). Rounding leaves no mean beyond the largest and the smallest value.
+  /// @param weights  not negative
+  /// @return 3 components a coarse voxel where either has colour, else 1
+  std::vector<float> Average(const Field& values, const Field& weights) const;
 
   /// The coarse voxel in which the centre of a fine one lies.
   std::size_t Parent(std::size_t fineVoxel) const;

@@ -74,7 +74,7 @@ void CheckExtinction(const Medium& medium)
   {
     return; // also a box that is only asked about, of more voxels than could be counted
   }
-  const int channels = std::max(medium.sigma_a.components, medium.sigma_s.components);
+  const int channels = medium.phase.HasColour() ? 3 : std::max(medium.sigma_a.components, medium.sigma_s.components);
   for (std::size_t i = 0; i < medium.grid.VoxelCount(); ++i)
   {
     for (int c = 0; c < channels; ++c)

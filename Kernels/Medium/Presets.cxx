@@ -15,6 +15,14 @@ constexpr Rgb PerMillimetre(const Rgb& coefficients, double lengthInMillimetres)
     coefficients[2] / lengthInMillimetres };
 }
 
+/// Where no g was measured; what a reduced scattering coefficient, sigma_s (1 - g), goes with.
+constexpr Rgb Isotropic = { 0.0, 0.0, 0.0 };
+
+constexpr Rgb OfAllColours(double g)
+{
+  return { g, g, g };
+}
+
 /// Slingo's band 0.25 to 0.69 um at effective radius r = 10 um: extinction a + b / r = 0.02817 + 1.305 / 10 m^2/g,
 /// 1 - albedo = c + d r = -5.62e-8 + 1.63e-7 * 10, g = e + f r = 0.829 + 0.002482 * 10.
 MediumPreset Cloud()
@@ -24,7 +32,7 @@ MediumPreset Cloud()
   const double s = extinction * (1.0 - absorbed);
   const double a = extinction * absorbed;
   return { "Cloud", "1 g of liquid water per cubic metre, in droplets of 10 um effective radius",
-    PerMillimetre({ s, s, s }, 1e3), PerMillimetre({ a, a, a }, 1e3), 0.829 + 0.002482 * 10.0,
+    PerMillimetre({ s, s, s }, 1e3), PerMillimetre({ a, a, a }, 1e3), OfAllColours(0.829 + 0.002482 * 10.0),
     "Slingo: A GCM parameterization for the shortwave radiative properties of water clouds, J. Atmos. Sci. 46 (1989), "
     "visible band" };
 }
@@ -32,7 +40,7 @@ MediumPreset Cloud()
 MediumPreset Fog()
 {
   return { "Fog", "1 droplet per cubic centimetre", PerMillimetre({ 0.5636, 0.5620, 0.5587 }, 1e6),
-    PerMillimetre({ 1.646e-6, 1.675e-7, 2.331e-7 }, 1e6), 0.866,
+    PerMillimetre({ 1.646e-6, 1.675e-7, 2.331e-7 }, 1e6), OfAllColours(0.866),
     "Hess, Koepke, Schult: Optical properties of aerosols and clouds (OPAC), Bull. Am. Meteorol. Soc. 79 (1998), "
     "data file of fog" };
 }
@@ -44,20 +52,16 @@ MediumPreset Smoke()
   const double scattering = 8.7 - 7.5 * 550.0 / 633.0;
   return {
     "Smoke", "1 g of soot per cubic metre", PerMillimetre({ scattering, scattering, scattering }, 1e3),
-    PerMillimetre({ 7.5 * 550.0 / 650.0, 7.5, 7.5 * 550.0 / 450.0 }, 1e3), 0.0,
+    PerMillimetre({ 7.5 * 550.0 / 650.0, 7.5, 7.5 * 550.0 / 450.0 }, 1e3), Isotropic,
     "Absorption: Bond, Bergstrom: Light absorption by carbonaceous particles, Aerosol Sci. Technol. 40 (2006). "
     "Extinction: Mulholland, Croarkin: Specific extinction coefficient of flame generated smoke, Fire Mater. 24 (2000)"
   };
 }
 
-/// Measured with a g of each colour, 0.907, 0.896 and 0.880. One g has to do here: their mean, with the reduced
-/// scattering sigma_s (1 - g) of each colour kept.
 MediumPreset Espresso()
 {
-  const double g = (0.907 + 0.896 + 0.880) / 3.0;
-  return { "Espresso", AsMeasured,
-    { 7.78262 * (1.0 - 0.907) / (1.0 - g), 8.13050 * (1.0 - 0.896) / (1.0 - g), 8.53875 * (1.0 - 0.880) / (1.0 - g) },
-    { 4.79838, 6.57512, 8.84925 }, g,
+  return { "Espresso", AsMeasured, { 7.78262, 8.13050, 8.53875 }, { 4.79838, 6.57512, 8.84925 },
+    { 0.907, 0.896, 0.880 },
     "Narasimhan, Gupta, Donner, Ramamoorthi, Nayar, Jensen: Acquiring scattering properties of participating media by "
     "dilution, SIGGRAPH 2006" };
 }
@@ -69,14 +73,14 @@ const std::vector<MediumPreset>& MediumPresets()
     Cloud(),
     Fog(),
     Smoke(),
-    { "Skim milk", AsMeasured, { 0.70, 1.22, 1.90 }, { 0.0014, 0.0025, 0.0142 }, 0.0, Jensen },
-    { "Whole milk", AsMeasured, { 2.55, 3.21, 3.77 }, { 0.0011, 0.0024, 0.014 }, 0.0, Jensen },
-    { "Cream", AsMeasured, { 7.38, 5.47, 3.15 }, { 0.0002, 0.0028, 0.0163 }, 0.0, Jensen },
+    { "Skim milk", AsMeasured, { 0.70, 1.22, 1.90 }, { 0.0014, 0.0025, 0.0142 }, Isotropic, Jensen },
+    { "Whole milk", AsMeasured, { 2.55, 3.21, 3.77 }, { 0.0011, 0.0024, 0.014 }, Isotropic, Jensen },
+    { "Cream", AsMeasured, { 7.38, 5.47, 3.15 }, { 0.0002, 0.0028, 0.0163 }, Isotropic, Jensen },
     Espresso(),
-    { "Ketchup", AsMeasured, { 0.18, 0.07, 0.03 }, { 0.061, 0.97, 1.45 }, 0.0, Jensen },
-    { "Marble", AsMeasured, { 2.19, 2.62, 3.00 }, { 0.0021, 0.0041, 0.0071 }, 0.0, Jensen },
-    { "Skin 1", AsMeasured, { 0.74, 0.88, 1.01 }, { 0.032, 0.17, 0.48 }, 0.0, Jensen },
-    { "Skin 2", AsMeasured, { 1.09, 1.59, 1.79 }, { 0.013, 0.070, 0.145 }, 0.0, Jensen },
+    { "Ketchup", AsMeasured, { 0.18, 0.07, 0.03 }, { 0.061, 0.97, 1.45 }, Isotropic, Jensen },
+    { "Marble", AsMeasured, { 2.19, 2.62, 3.00 }, { 0.0021, 0.0041, 0.0071 }, Isotropic, Jensen },
+    { "Skin 1", AsMeasured, { 0.74, 0.88, 1.01 }, { 0.032, 0.17, 0.48 }, Isotropic, Jensen },
+    { "Skin 2", AsMeasured, { 1.09, 1.59, 1.79 }, { 0.013, 0.070, 0.145 }, Isotropic, Jensen },
   };
   return presets;
 }

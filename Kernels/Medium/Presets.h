@@ -13,7 +13,7 @@ struct MediumPreset
   const char* densityOne; ///< what density 1 means
   Rgb sigma_s;            ///< 1/mm
   Rgb sigma_a;            ///< 1/mm
-  double g;               ///< mean cosine of the phase function; 0 where sigma_s is a reduced one, sigma_s (1 - g)
+  Rgb g;                  ///< mean cosine of the phase function; 0 where sigma_s is a reduced one, sigma_s (1 - g)
   const char* source;
 };
 

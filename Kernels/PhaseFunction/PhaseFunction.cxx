@@ -14,6 +14,7 @@ namespace tyndall
 namespace
 {
 constexpr double EndsWithin = 1e-3; ///< of -1 and 1 must a table begin and end
+constexpr double Rounding = 1e-9;   ///< by which a cosine may be beyond 1
 
 void CheckMeanCosine(double g)
 {
@@ -24,9 +25,16 @@ void CheckMeanCosine(double g)
   }
 }
 
+/// 1 + g^2 - 2 g c without cancelling, of g towards -1 as well.
+double SquareOfHenyeyGreenstein(double g, double cosine)
+{
+  const double size = std::abs(g);
+  return (1.0 - size) * (1.0 - size) + 2.0 * size * (1.0 - std::copysign(cosine, g * cosine));
+}
+
 double ValueOfHenyeyGreenstein(double g, double cosine)
 {
-  const double square = (1.0 - g) * (1.0 - g) + 2.0 * g * (1.0 - cosine); // 1 + g^2 - 2 g c, without cancelling
+  const double square = SquareOfHenyeyGreenstein(g, cosine);
   return (1.0 - g * g) / (4.0 * Pi * square * std::sqrt(square));
 }
 
@@ -49,7 +57,7 @@ double BelowOfHenyeyGreenstein(double g, double cosine)
   {
     return 0.5 * (1.0 + cosine) - 0.75 * g * (1.0 - cosine * cosine);
   }
-  const double root = std::sqrt((1.0 - g) * (1.0 - g) + 2.0 * g * (1.0 - cosine));
+  const double root = std::sqrt(SquareOfHenyeyGreenstein(g, cosine));
   return (1.0 - g * g) / (2.0 * g) * (1.0 / root - 1.0 / (1.0 + g));
 }
 
@@ -75,6 +83,11 @@ double KOfSchlick(double g)
   return std::copysign(0.5 * (low + high), g);
 }
 
+double BelowOfSchlick(double k, double cosine)
+{
+  return 0.5 * (1.0 - k) * (1.0 + cosine) / (1.0 - k * cosine);
+}
+
 double CosineOfSchlick(double k, double u)
 {
   return std::clamp((2.0 * u + k - 1.0) / (2.0 * k * u - k + 1.0), -1.0, 1.0);
@@ -88,48 +101,74 @@ double CosineOfRayleigh(double u)
   return std::clamp(root - 1.0 / root, -1.0, 1.0);
 }
 
-void CheckRows(const std::vector<double>& cosines, const std::vector<double>& values)
+[[noreturn]] void FailAtRow(
+  std::size_t row, const std::vector<double>& cosines, const std::vector<double>& values, const std::string& what)
 {
-  const auto fail = [&](std::size_t row, const std::string& what) {
-    throw InvalidInput("Row " + std::to_string(row) + " of the table of a phase function (cosine " +
-      Text("%.6g", cosines[row]) + ", value " + Text("%.6g", values[row]) + ") " + what);
-  };
-  if (cosines.size() != values.size() || cosines.size() < 2)
+  throw InvalidInput("Row " + std::to_string(row) + " of the table of a phase function (cosine " +
+    Text("%.6g", cosines[row]) + ", value " + Text("%.6g", values[row]) + ") " + what);
+}
+
+void CheckCount(std::size_t cosines, std::size_t values)
+{
+  if (cosines != values)
   {
-    throw InvalidInput("The table of a phase function has " + std::to_string(std::min(cosines.size(), values.size())) +
-      " rows; it needs two at least, a cosine and a value each.");
+    throw InvalidInput("The table of a phase function has " + std::to_string(cosines) + " cosines and " +
+      std::to_string(values) + " values; it needs one of each a row.");
   }
-  const bool rising = cosines.back() > cosines.front();
-  for (std::size_t row = 0; row < cosines.size(); ++row)
+  if (cosines < 2)
   {
-    if (!std::isfinite(cosines[row]) || !std::isfinite(values[row]))
-    {
-      fail(row, "is not a number.");
-    }
-    if (values[row] < 0.0)
-    {
-      fail(row, "is negative; a phase function is nowhere.");
-    }
-    if (std::abs(cosines[row]) > 1.0 + 1e-9)
-    {
-      fail(row, "is no cosine: those are from -1 to 1. Angles have to be turned into them.");
-    }
-    if (row > 0 && (rising ? cosines[row] <= cosines[row - 1] : cosines[row] >= cosines[row - 1]))
-    {
-      fail(row, "is out of order: sort the rows by cosine, each one once.");
-    }
+    throw InvalidInput("The table of a phase function has " + std::to_string(cosines) +
+      (cosines == 1 ? " row" : " rows") + "; it needs two at least, a cosine and a value each.");
   }
+}
+
+/// Of numbers only.
+void CheckEnds(const std::vector<double>& cosines, const std::vector<double>& values)
+{
+  const char* const what = "is an end of the table; it must reach from cosine -1 to 1.";
   for (const std::size_t row : { std::size_t{ 0 }, cosines.size() - 1 })
   {
     if (1.0 - std::abs(cosines[row]) > EndsWithin)
     {
-      fail(row, "is an end of the table; it must reach from cosine -1 to 1.");
+      FailAtRow(row, cosines, values, what);
     }
   }
   if (cosines.front() * cosines.back() > 0.0)
   {
-    fail(cosines.size() - 1, "is an end of the table; it must reach from cosine -1 to 1.");
+    FailAtRow(cosines.size() - 1, cosines, values, what);
   }
+}
+
+void CheckRows(const std::vector<double>& cosines, const std::vector<double>& values)
+{
+  CheckCount(cosines.size(), values.size());
+  const auto fail = [&](std::size_t row, const char* what) { FailAtRow(row, cosines, values, what); };
+  for (std::size_t row = 0; row < cosines.size(); ++row)
+  {
+    if (!std::isfinite(cosines[row]) || !std::isfinite(values[row]))
+    {
+      fail(row, "is not a finite number.");
+    }
+  }
+  const bool rising = cosines.back() > cosines.front();
+  for (std::size_t row = 0; row < cosines.size(); ++row)
+  {
+    if (values[row] < 0.0)
+    {
+      fail(row, "is negative; a phase function is nowhere.");
+    }
+    if (std::abs(cosines[row]) > 1.0 + Rounding)
+    {
+      fail(row, "is no cosine: those are from -1 to 1. Angles have to be turned into them.");
+    }
+    const double before = row > 0 ? std::clamp(cosines[row - 1], -1.0, 1.0) : 0.0;
+    const double here = std::clamp(cosines[row], -1.0, 1.0);
+    if (row > 0 && (rising ? here <= before : here >= before))
+    {
+      fail(row, "is out of order: sort the rows by cosine, each one once.");
+    }
+  }
+  CheckEnds(cosines, values);
 }
 
 double ValueOfTable(const PhaseFunction::Table& table, double cosine)
@@ -143,6 +182,15 @@ double ValueOfTable(const PhaseFunction::Table& table, double cosine)
 }
 
 /// Within a row's stretch the part that goes below is a parabola.
+double BelowOfTable(const PhaseFunction::Table& table, double cosine)
+{
+  const auto after = std::upper_bound(table.cosines.begin(), table.cosines.end(), cosine);
+  const auto row = static_cast<std::size_t>(
+    std::clamp<std::ptrdiff_t>(after - table.cosines.begin() - 1, 0, table.cosines.size() - 2));
+  const double way = cosine - table.cosines[row];
+  return table.below[row] + Pi * way * (table.values[row] + ValueOfTable(table, cosine));
+}
+
 double CosineOfTable(const PhaseFunction::Table& table, double u)
 {
   const auto after = std::upper_bound(table.below.begin(), table.below.end(), u);
@@ -230,7 +278,7 @@ PhaseFunction PhaseFunction::Schlick(double g)
 {
   CheckMeanCosine(g);
   PhaseFunction function;
-  function.Which = g == 0.0 ? Kind::Isotropic : Kind::Schlick;
+  function.Which = Kind::Schlick; // with g 0, too: WithMeanCosine has to know
   function.The.first = g == 0.0 ? 0.0 : KOfSchlick(g);
   return function;
 }
@@ -288,8 +336,8 @@ double PhaseFunction::Value(double cosine) const
         (1.0 - this->The.part) * ValueOfHenyeyGreenstein(this->The.second, cosine);
     case Kind::Schlick:
     {
-      const double k = this->The.first;
-      const double away = (1.0 - k) + k * (1.0 - cosine);
+      const double k = std::abs(this->The.first);
+      const double away = (1.0 - k) + k * (1.0 - std::copysign(cosine, this->The.first * cosine));
       return (1.0 - k) * (1.0 + k) / (4.0 * Pi * away * away);
     }
     case Kind::Rayleigh: return 3.0 / (16.0 * Pi) * (1.0 + cosine * cosine);
@@ -348,9 +396,7 @@ double PhaseFunction::CosineAt(double u) const
       for (int i = 0; i < 60; ++i)
       {
         const double cosine = 0.5 * (low + high);
-        const double below = this->The.part * BelowOfHenyeyGreenstein(this->The.first, cosine) +
-          (1.0 - this->The.part) * BelowOfHenyeyGreenstein(this->The.second, cosine);
-        (below < u ? low : high) = cosine;
+        (this->Below(cosine) < u ? low : high) = cosine;
       }
       return 0.5 * (low + high);
     }
@@ -358,6 +404,21 @@ double PhaseFunction::CosineAt(double u) const
     case Kind::Rayleigh: return CosineOfRayleigh(u);
     case Kind::Tabulated: return CosineOfTable(*this->Rows, u);
     default: return 2.0 * u - 1.0;
+  }
+}
+
+double PhaseFunction::Below(double cosine) const
+{
+  switch (this->Which)
+  {
+    case Kind::HenyeyGreenstein: return BelowOfHenyeyGreenstein(this->The.first, cosine);
+    case Kind::DoubleHenyeyGreenstein:
+      return this->The.part * BelowOfHenyeyGreenstein(this->The.first, cosine) +
+        (1.0 - this->The.part) * BelowOfHenyeyGreenstein(this->The.second, cosine);
+    case Kind::Schlick: return BelowOfSchlick(this->The.first, cosine);
+    case Kind::Rayleigh: return 0.5 + 0.125 * cosine * (3.0 + cosine * cosine);
+    case Kind::Tabulated: return BelowOfTable(*this->Rows, cosine);
+    default: return 0.5 * (1.0 + cosine);
   }
 }
 
@@ -374,8 +435,19 @@ PhaseFunction PhaseFunction::WithMeanCosine(double g) const
   }
 }
 
+bool PhaseFunction::IsIsotropic() const
+{
+  return this->Which == Kind::Isotropic ||
+    ((this->Which == Kind::Schlick || this->Which == Kind::DoubleHenyeyGreenstein) && this->The.first == 0.0 &&
+      this->The.second == 0.0);
+}
+
 bool PhaseFunction::operator==(const PhaseFunction& other) const
 {
+  if (this->IsIsotropic() || other.IsIsotropic())
+  {
+    return this->IsIsotropic() && other.IsIsotropic();
+  }
   const bool sameRows = this->Rows == other.Rows ||
     (this->Rows && other.Rows && this->Rows->cosines == other.Rows->cosines &&
       this->Rows->values == other.Rows->values);

@@ -42,7 +42,7 @@ public:
   static PhaseFunction Tabulated(std::vector<double> cosines, std::vector<double> values);
 
   Kind TheKind() const { return this->Which; }
-  bool IsIsotropic() const { return this->Which == Kind::Isotropic; }
+  bool IsIsotropic() const; ///< whatever kind it was made as
 
   /// 1/sr; its integral over all directions is 1.
   /// @param cosine  in [-1, 1]
@@ -52,6 +52,9 @@ public:
   std::vector<double> Moments(int degree) const;
   /// The cosine below which a part u of the light is scattered, 0 <= u <= 1: the inverse of the distribution.
   double CosineAt(double u) const;
+
+  /// Part of the light that is scattered below a cosine, in [-1, 1]: what CosineAt inverts.
+  double Below(double cosine) const;
 
   /// Of the two kinds that have one parameter: the function of the same kind with another mean cosine. Of an isotropic
   /// one Henyey and Greenstein's.
@@ -70,6 +73,7 @@ public:
   };
   const Table* TheTable() const { return this->Rows.get(); } ///< null but for Tabulated
 
+  /// Whether both scatter alike as they are; isotropic ones do, of whatever kind.
   bool operator==(const PhaseFunction& other) const;
   bool operator!=(const PhaseFunction& other) const { return !(*this == other); }
 

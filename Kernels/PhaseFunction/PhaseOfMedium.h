@@ -32,6 +32,8 @@ public:
     return this->Varies() ? this->ByVoxel.At(voxel, channel) : this->MeanCosines[channel];
   }
   PhaseFunction At(std::size_t voxel, int channel) const;
+  /// The same kind of function with other mean cosines by voxel, on another grid.
+  PhaseOfMedium WithG(const Field& g) const { return PhaseOfMedium(this->Functions[0], g); }
   /// As one channel sees it, for a scene that is solved in one.
   PhaseOfMedium Seen(int channel) const;
 

@@ -98,9 +98,11 @@ inline void arrive(const surroundings* s, const ray_packets* t, integer set_off,
 // bending  see surroundings
 __kernel void cast_bent_rays(ViewInfo v, OpticsInfo o, __global const float4* restrict samples,
   __global const float4* restrict extinctions, __global const float4* restrict flow,
-  __global const float4* restrict glow, __global const float4* restrict bending, __global const float4* restrict lit,
-  __global const char* restrict bricks, __global const float4* restrict environment, __global float* restrict radiance,
-  __global float* restrict alpha, __global float* restrict depth)
+  __global const float4* restrict glow, __global const float4* restrict cosines,
+  __global const float* restrict phase_rows, __global const float4* restrict bending,
+  __global const float4* restrict lit, __global const char* restrict bricks,
+  __global const float4* restrict environment, __global float* restrict radiance, __global float* restrict alpha,
+  __global float* restrict depth)
 {
   const int column = (get_global_id(0) + v.picture.w) * PACKET_WIDTH;
   const int row = (get_global_id(1) + v.picture.z) * PACKET_HEIGHT;
@@ -108,7 +110,8 @@ __kernel void cast_bent_rays(ViewInfo v, OpticsInfo o, __global const float4* re
   {
     return;
   }
-  const surroundings s = { &v, &o, { samples, extinctions, flow, glow }, bending, bricks };
+  const surroundings s = { &v, &o, { samples, extinctions, flow, glow, cosines, phase_rows, v.phase }, bending,
+    bricks };
   seeing to;
   ray_packets t = enter(&s, rays_through(&v, column, row), &to.entrySquare);
   to.l = unlit((real)1.0f);

@@ -4,11 +4,14 @@
 //
 // The host gives
 //   THIN_STEPS  1: no step's optical length is above 2
-//   PHASE       how light of a known direction scatters: 0 evenly, 1 Henyey and Greenstein, 2 Schlick
+//   PHASE, PHASE_CHANNELS  how light of a known direction scatters, see PhaseFunction.cl
+//   FLOW_WITH_G 1: `flow` is the light's mean direction times g; 0: the mean direction alone
+//   VARIED_G    1: `cosines` holds g by voxel
 //   GLOW        1 (with PHASE): emission is kept apart from what is scattered
 
 #pragma once
 #include "Viewing/Background.cl"
+#include "Viewing/PhaseFunction.cl"
 #include "Viewing/Sampling.cl"
 #include "Viewing/View.cl"
 
@@ -24,8 +27,11 @@ typedef struct
   __global const float4*
     samples; // red, green, blue of q, W / (length^3 sr), and grey sigma_t, 1/length; with GREY see there
   __global const float4* extinctions; // coloured sigma_t
-  __global const float4* flow;        // x, y, z of the light's mean direction times g
+  __global const float4* flow;        // x, y, z of the light's mean direction, times g with FLOW_WITH_G
   __global const float4* glow;        // emission
+  __global const float4* cosines;     // with VARIED_G: red, green, blue of g
+  __global const float* phaseRows;    // of PHASE 2 and 5
+  PhaseInfo phase;
 } scenery;
 
 inline real product(real3 a, real3 b)
@@ -143,21 +149,31 @@ typedef struct
 } sample;
 
 #if PHASE
-// 4 pi times the phase function of light that is itself spread about its mean direction (numerics.md, Eqs. (107),
-// (108)), seen along unit vectors v away from the eye. b is that direction times g and the anisotropy.
-inline real scattered_towards_eye(real3 b, real3 v)
+// 4 pi times the phase function of light that is itself spread about its mean direction (numerics.md, section 14.1),
+// seen along unit vectors v away from the eye.
+__attribute__((always_inline)) inline rgb scattered_towards_eye(
+  const scenery* scene, const corners* at, int4 size, real3 v)
 {
+  rgb flow;
+  real none;
+  gather(scene->flow, at, size, &flow, &none);
+  const real3 b = { flow.r, flow.g, flow.b };
   const real square = product(b, b);
-  const real cosine = product(b, v); // times |b|
-#if PHASE == 1
-  const real base = greater(fma((real)2.0f, cosine, (real)1.0f + square), (real)1e-8f);
-  return ((real)1.0f - square) / (base * sqrt(base));
+  const real along = product(b, v);
+#if FLOW_WITH_G && PHASE == 1
+  const real f = henyey_greenstein(square, along);
+  const rgb even = { f, f, f };
+  return even;
+#elif FLOW_WITH_G
+  const real f = schlick(square, along, scene->phaseRows);
+  const rgb even = { f, f, f };
+  return even;
 #else
-  // The fit exceeds 1 from |b| = 0.94 on.
-  const real k =
-    lesser(fma((real)-0.55f, square, (real)1.55f), (real)0.9999f / sqrt(greater(square, (real)1e-20f))); // times |b|
-  const real base = greater(fma(k, cosine, (real)1.0f), (real)1e-4f);
-  return fma(-square * k, k, (real)1.0f) / (base * base);
+  phase_parameters p = parameters_of(&scene->phase);
+#if VARIED_G
+  gather(scene->cosines, at, size, &p.first, &none);
+#endif
+  return scattered_of_channels(square, along, p, scene->phaseRows);
 #endif
 }
 #endif
@@ -175,21 +191,18 @@ __attribute__((always_inline)) inline sample take_sample(const scenery* scene, c
   s.sigma = grey;
 #endif
 #if PHASE
-  rgb flow;
-  real none;
-  gather(scene->flow, at, size, &flow, &none);
-  const real3 b = { flow.r, flow.g, flow.b };
-  const real part = scattered_towards_eye(b, v);
+  const rgb part = scattered_towards_eye(scene, at, size, v);
 #if GLOW
   rgb glow;
+  real none;
   gather(scene->glow, at, size, &glow, &none);
-  s.source.r = fma(s.source.r, part, glow.r);
-  s.source.g = fma(s.source.g, part, glow.g);
-  s.source.b = fma(s.source.b, part, glow.b);
+  s.source.r = fma(s.source.r, part.r, glow.r);
+  s.source.g = fma(s.source.g, part.g, glow.g);
+  s.source.b = fma(s.source.b, part.b, glow.b);
 #else
-  s.source.r *= part;
-  s.source.g *= part;
-  s.source.b *= part;
+  s.source.r *= part.r;
+  s.source.g *= part.g;
+  s.source.b *= part.b;
 #endif
 #endif
   return s;

@@ -11,7 +11,8 @@
 
 __kernel void cast_rays(ViewInfo v, __global const float4* restrict samples,
   __global const float4* restrict extinctions, __global const float4* restrict flow,
-  __global const float4* restrict glow, __global const char* restrict bricks,
+  __global const float4* restrict glow, __global const float4* restrict cosines,
+  __global const float* restrict phase_rows, __global const char* restrict bricks,
   __global const float4* restrict environment, __global const float4* restrict surface,
   __global float* restrict radiance, __global float* restrict alpha, __global float* restrict depth)
 {
@@ -21,7 +22,7 @@ __kernel void cast_rays(ViewInfo v, __global const float4* restrict samples,
   {
     return;
   }
-  const scenery scene = { samples, extinctions, flow, glow };
+  const scenery scene = { samples, extinctions, flow, glow, cosines, phase_rows, v.phase };
   const camera_rays seen = rays_through(&v, column, row);
   const real3 direction = { seen.d.x * (real)v.inverseSpacing.x, seen.d.y * (real)v.inverseSpacing.y,
     seen.d.z * (real)v.inverseSpacing.z };

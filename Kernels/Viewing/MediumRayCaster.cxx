@@ -105,7 +105,6 @@ MediumRayCaster::MediumRayCaster(Device& device, const Medium& medium, const Sol
       illumination.lights.begin(), illumination.lights.end(), [](const Light& lamp) { return !IsBlack(lamp.power); }))
   , AskedForShadowRays(asked.shadowRays)
   , Settings(this->Needed(asked))
-  , G(medium.phase.MeanCosine(0, 0))
 {
   Check(medium);
   Check(illumination);
@@ -118,6 +117,7 @@ MediumRayCaster::MediumRayCaster(Device& device, const Medium& medium, const Sol
     ? SmallLights(illumination.lights, medium.grid, settings.rectangleSamples)
     : std::vector<SmallLight>();
   this->LightCount = static_cast<int>(lights.size());
+  this->Phase = ViewedPhaseOf(medium.phase);
   this->FindTraits(medium, light, ior);
   this->Upload(medium, light, ior);
   this->Reserve();
@@ -144,12 +144,13 @@ void MediumRayCaster::FindTraits(const Medium& medium, const SolvedLight& light,
   this->Traits = TraitsOf(medium);
   const MediumTraits& traits = this->Traits;
   this->Bends = !settings.leaveOut || this->Index.Varies();
-  this->KnowsFlow = this->G != 0.0 && light.meanDirection.values && light.fluence.values && !settings.shadowRays;
+  const bool anisotropic = this->Phase.formula != ViewedPhase::Even;
+  this->KnowsFlow = anisotropic && light.meanDirection.values && light.fluence.values && !settings.shadowRays;
   this->Coloured = !settings.leaveOut || !traits.greyExtinction;
   // Beside directions of the light it does not pay to have sources by one channel.
   this->Grey = !this->Coloured && traits.grey && !this->KnowsFlow && this->LightCount == 0 &&
     light.fluence.components == 1 && light.fluenceDirect.components == 1 && (!traits.emits || traits.emission.IsGrey());
-  this->SourcesDependOnCamera = this->LightCount > 0 && this->G != 0.0;
+  this->SourcesDependOnCamera = this->LightCount > 0 && anisotropic;
   this->LargestSigmaT = ExtinctionBound(medium);
 }
 
@@ -197,6 +198,8 @@ void MediumRayCaster::Reserve()
   this->Samples = Buffer<cl_float4>(device, count, "the ray caster's samples");
   this->Extinctions = Buffer<cl_float4>(device, this->Coloured ? count : 0, "the ray caster's coloured extinction");
   this->Flow = Buffer<cl_float4>(device, this->KnowsFlow ? count : 0, "the ray caster's directions of light");
+  const bool cosines = this->KnowsFlow && this->Phase.varies && !this->FlowHasG();
+  this->Cosines = Buffer<cl_float4>(device, cosines ? count : 0, "the ray caster's mean cosines");
   this->Glow = Buffer<cl_float4>(device, this->GlowsApart() ? count : 0, "the ray caster's emission");
   this->Bending = Buffer<cl_float4>(device, this->Bends ? count : 0, "the ray caster's refraction");
   this->Bricks =
@@ -236,7 +239,8 @@ void MediumRayCaster::SayWhatIsLeftOut()
   omit(this->LightCount > 0,
     this->AskedForShadowRays ? "shadow rays: no lamp and no sun shines" : "shadow rays: not asked for");
   omit(this->EnvironmentSize[0] > 0, "environment: none, or not shown");
-  omit(this->KnowsFlow || this->LightCount > 0, "phase function: g is 0, or the direction of the light is not known");
+  omit(this->KnowsFlow || this->LightCount > 0,
+    "phase function: the medium scatters evenly, or the direction of the light is not known");
   omit(this->Bends, left_out::ConstantIndex);
   omit(!this->SkipsBricks() || !this->HasEmptyBricks, left_out::EmptyBricks);
   omit(this->Reflects(),
@@ -301,8 +305,33 @@ void MediumRayCaster::Upload(const Medium& medium, const SolvedLight& light, con
   }
   this->MeanDirection =
     Buffer<float>(this->TheDevice, light.meanDirection.values, this->KnowsFlow ? 3 * voxels : 0, "mean_direction");
+  this->PreparePhase(medium.phase);
   const std::vector<float> even(this->Bends && !ior.values ? voxels : 0, 1.0f);
   this->Ior = Buffer<float>(this->TheDevice, ior.values ? ior.values : even.data(), this->Bends ? voxels : 0, "ior");
+}
+
+/// What tells how the medium scatters, as far as any light has a direction.
+void MediumRayCaster::PreparePhase(const PhaseOfMedium& phase)
+{
+  const bool needed = this->KnowsFlow || this->LightCount > 0;
+  this->PhaseRows =
+    Buffer<float>(this->TheDevice, needed ? this->Phase.rows : std::vector<float>(), "the rows of the phase function");
+  this->Phase.rows.clear();
+  std::vector<float> g; // as all channels are seen
+  const std::size_t count = needed && this->Phase.varies ? this->TheGrid.VoxelCount() * this->Phase.channels : 0;
+  for (std::size_t i = 0; i < count; ++i)
+  {
+    g.push_back(phase.G().At(i / this->Phase.channels, static_cast<int>(i % this->Phase.channels)));
+  }
+  this->MeanCosines = Buffer<float>(this->TheDevice, g, "g");
+}
+
+/// @param needed  whether light has a direction where this is asked
+std::string MediumRayCaster::PhaseOptions(bool needed) const
+{
+  const ViewedPhase& phase = this->Phase;
+  return Define("PHASE", needed ? static_cast<int>(phase.formula) : 0) + Define("PHASE_CHANNELS", phase.channels) +
+    Define("FLOW_WITH_G", this->FlowHasG()) + Define("VARIED_G", this->Cosines.Size() > 0);
 }
 
 std::string MediumRayCaster::PackingOptions() const
@@ -314,23 +343,25 @@ std::string MediumRayCaster::PackingOptions() const
   {
     options += Define(names[i], this->Components[i]);
   }
-  return options + Define("FLOW", this->KnowsFlow) + Define("GLOW", this->GlowsApart());
+  const bool varies = this->MeanCosines.Size() > 0;
+  return options + Define("FLOW", this->KnowsFlow) + Define("GLOW", this->GlowsApart()) +
+    Define("MEAN_COSINE", varies ? this->Phase.channels : 0);
 }
 
 /// @param forShadowRays  what these need; else what the camera's rays do
 void MediumRayCaster::Pack(bool forShadowRays)
 {
   const bool bends = this->Bends && !forShadowRays; // shadow rays go straight on
-  const std::string options =
-    this->PackingOptions() + Define("SHADOW_RAYS", this->LightCount > 0 && !forShadowRays) + Define("BENDS", bends);
+  const std::string options = this->PackingOptions() + this->PhaseOptions(this->KnowsFlow) +
+    Define("SHADOW_RAYS", this->LightCount > 0 && !forShadowRays) + Define("BENDS", bends);
   const cl_int4 size = Int4(this->TheGrid.size);
   const cl_int4 bricks = Int4(this->BrickCount);
   const cl_int single = this->Settings.singleScatteringOnly ? 1 : 0;
 
   cl::Kernel pack = this->TheDevice.Kernel("pack_samples", kernel_source::ScatteredLight, options);
-  With(pack, size, single, static_cast<float>(this->G), this->Arrays[0], this->Arrays[1], this->Arrays[2],
-    this->Arrays[3], this->Arrays[4], this->Direct, this->MeanDirection, this->Ior, this->Samples, this->Extinctions,
-    this->Flow, this->Glow);
+  With(pack, size, single, this->Phase.parameters.first.s[0], this->Arrays[0], this->Arrays[1], this->Arrays[2],
+    this->Arrays[3], this->Arrays[4], this->Direct, this->MeanDirection, this->Ior, this->MeanCosines, this->Samples,
+    this->Extinctions, this->Flow, this->Glow, this->Cosines);
   this->TheDevice.Queue().enqueueNDRangeKernel(pack, cl::NullRange,
     cl::NDRange(RoundUp<std::size_t>(size.s[0] + 2, 64), size.s[1] + 2, size.s[2] + 2), cl::NDRange(64, 1, 1));
 
@@ -353,19 +384,20 @@ void MediumRayCaster::SeeLights(const Camera& camera, const Monitor& monitor)
   info.forward = Float4(Vector(Axes(camera)[2]));
   info.size = Int4(this->TheGrid.size);
   info.bricks = Int4(this->BrickCount);
-  info.g = static_cast<float>(this->G);
+  info.phase = this->Phase.parameters;
   info.step = static_cast<float>(this->Settings.stepSize);
   info.nearestSquare = static_cast<float>(radius * radius / 3.0);
   info.lights = this->LightCount;
-  cl::Kernel see =
-    this->TheDevice.Kernel("see_lights", kernel_source::ShadowRays, this->PackingOptions() + this->StepOption());
+  cl::Kernel see = this->TheDevice.Kernel(
+    "see_lights", kernel_source::ShadowRays, this->PackingOptions() + this->PhaseOptions(true) + this->StepOption());
   const std::size_t across = RoundUp<std::size_t>(this->TheGrid.size[0], 4 * this->PacketWidth()) / this->PacketWidth();
   const std::size_t rows = this->TheGrid.size[1];
   const double samplesOfRow = this->LongestSteps() * this->LightCount * this->TheGrid.size[0];
   const auto launch = [&](const Patch& part) {
     info.firstSlice = part.row;
     info.firstRow = part.column;
-    With(see, info, this->Lights, this->Arrays[1], this->Samples, this->Extinctions, this->Bricks, this->Direct);
+    With(see, info, this->Lights, this->Arrays[1], this->MeanCosines, this->PhaseRows, this->Samples, this->Extinctions,
+      this->Bricks, this->Direct);
     this->TheDevice.Queue().enqueueNDRangeKernel(
       see, cl::NullRange, cl::NDRange(across, part.columns, part.rows), cl::NDRange(4, 1, 1));
   };
@@ -402,6 +434,7 @@ ViewInfo MediumRayCaster::MakeView(const Camera& camera) const
   view.size = Int4(grid.size);
   view.bricks = Int4(this->BrickCount);
   view.environment = Int4({ this->EnvironmentSize[0], this->EnvironmentSize[1], 0 });
+  view.phase = this->Phase.parameters;
   return view;
 }
 
@@ -419,6 +452,7 @@ void MediumRayCaster::PrepareSources(const Camera& camera, const Monitor& monito
   {
     this->Arrays = {};
     this->MeanDirection = {};
+    this->MeanCosines = {};
     this->Ior = {};
   }
 }
@@ -461,11 +495,10 @@ std::string MediumRayCaster::CastingOptions() const
   // longer.
   const double longest = this->LargestSigmaT * this->Settings.stepSize *
     *std::max_element(this->TheGrid.spacing.begin(), this->TheGrid.spacing.end());
-  const int phase = this->KnowsFlow ? 1 + static_cast<int>(this->Settings.phaseFunction) : 0;
   return Define("REAL_WIDTH", this->PacketWidth()) + Define("COLOURED", this->Coloured) + Define("GREY", this->Grey) +
     Define("SKIP_BRICKS", this->SkipsBricks()) + Define("ENVIRONMENT", this->EnvironmentSize[0] > 0) +
-    Define("THIN_STEPS", longest <= (this->Bends ? 1.5 : 2.0)) + Define("PHASE", phase) +
-    Define("GLOW", this->GlowsApart()) + this->StepOption();
+    Define("THIN_STEPS", longest <= (this->Bends ? 1.5 : 2.0)) + Define("GLOW", this->GlowsApart()) +
+    this->PhaseOptions(this->KnowsFlow) + this->StepOption();
 }
 
 /// Rays that cannot but go straight on have a kernel of their own.
@@ -498,13 +531,13 @@ void MediumRayCaster::CastRays(ViewInfo& view, double from, const Monitor& monit
     view.picture.s[3] = part.column * group;
     if (straight)
     {
-      With(cast, view, this->Samples, this->Extinctions, this->Flow, this->Glow, this->Bricks, this->EnvironmentPixels,
-        this->Surface, this->Radiance, this->Alpha, this->Depth);
+      With(cast, view, this->Samples, this->Extinctions, this->Flow, this->Glow, this->Cosines, this->PhaseRows,
+        this->Bricks, this->EnvironmentPixels, this->Surface, this->Radiance, this->Alpha, this->Depth);
     }
     else
     {
-      With(cast, view, optics, this->Samples, this->Extinctions, this->Flow, this->Glow, this->Bending, this->Table,
-        this->Bricks, this->EnvironmentPixels, this->Radiance, this->Alpha, this->Depth);
+      With(cast, view, optics, this->Samples, this->Extinctions, this->Flow, this->Glow, this->Cosines, this->PhaseRows,
+        this->Bending, this->Table, this->Bricks, this->EnvironmentPixels, this->Radiance, this->Alpha, this->Depth);
     }
     this->TheDevice.Queue().enqueueNDRangeKernel(
       cast, cl::NullRange, cl::NDRange(part.columns * group, part.rows * group), cl::NDRange(group, group));

@@ -8,6 +8,7 @@
 #include "Medium/Traits.h"
 #include "Refraction/Index/IndexRange.h"
 #include "Viewing/Camera.h"
+#include "Viewing/ViewedPhase.h"
 #include "Viewing/ViewShared.h"
 
 #include <array>
@@ -27,13 +28,6 @@ struct SolvedLight
   /// W / (length^2 sr) that leaves through the box's faces, a value for each cell of BoxFaces.h, 4 components
   /// (SurfaceCosines) or 3 times as many (cosine by cosine, red, green, blue). Null: not known.
   Field surface = {};
-};
-
-/// Angular distribution of scattered light for a mean cosine g.
-enum class ViewedPhase
-{
-  HenyeyGreenstein = 0,
-  Schlick = 1, ///< Blasi et al. 1993, with k = 1.55 g - 0.55 g^3, at most 0.9999
 };
 
 /// What a surface of refractive objects reflects of the light that meets it from the side of the smaller index.
@@ -60,8 +54,7 @@ struct ViewSettings
   /// Whether to leave out what the scene does not need; false: three channels, rays that could bend and no leaps, to
   /// measure what that saves.
   bool leaveOut = true;
-  double minimumTransmittance = 1e-3;                        ///< a ray that has less left stops; 0: never
-  ViewedPhase phaseFunction = ViewedPhase::HenyeyGreenstein; ///< of light whose direction is known
+  double minimumTransmittance = 1e-3; ///< a ray that has less left stops; 0: never
   SurfaceReflection surfaceReflection = SurfaceReflection::None;
   double surfaceIndex = 0.0; ///< the surface is where n has this value, > 0; 0: midway between least and largest n
   double surfaceReflectance = 0.1; ///< of SurfaceReflection::Fixed, [0, 1]
@@ -100,12 +93,12 @@ struct Picture
 ///   | without shadow rays | f fluenceDirect / (4 pi) | f fluence / (4 pi)                |
 ///   | with shadow rays    | sum over lights of E p   | that + max(fluence - D, 0) / 4 pi |
 ///
-/// f is 4 pi times the phase function of the mean cosine g, averaged over the directions from which the light comes, as
-/// far as meanDirection tells (Eqs. (107), (108)); 1, light scatters evenly, where g is 0 or meanDirection is not
-/// given. One direction a voxel stands for all its light, in single scattering as well.
+/// f is 4 pi times the medium's phase function, averaged over the directions from which the light comes, as far as
+/// meanDirection tells (Eqs. (107) to (108a)); 1, light scatters evenly, where the medium is isotropic or meanDirection
+/// is not given. One direction a voxel stands for all its light, in single scattering as well.
 ///
-/// E is a light's irradiance behind the medium, p the phase function (Henyey and Greenstein's with the medium's g) from
-/// the light's direction to the camera's. D = min(sum of E, fluenceDirect) is the part of fluence that E shows already,
+/// E is a light's irradiance behind the medium, p the phase function, of the voxel and of each channel, from the
+/// light's direction to the camera's. D = min(sum of E, fluenceDirect) is the part of fluence that E shows already,
 /// so that nothing counts twice. The sum over lights is found at voxel centres. With shadow rays all other light
 /// scatters evenly. Shadow rays go straight on, through glass as well.
 ///
@@ -145,13 +138,13 @@ public:
   ///   or 3 components (a direction 3); for an index that is not within [1e-3, 1e3] or has not one component; where
   ///   settings ask for an array that is not there; for a setting out of its range
   /// @throws DeviceError if the samples do not fit: 16 bytes per voxel, and as many again for each of coloured
-  ///   extinction, the light's direction, emission beside it, and a refractive index that varies
+  ///   extinction, the light's direction, emission beside it, a coloured g by voxel, and a refractive index that varies
   MediumRayCaster(Device& device, const Medium& medium, const SolvedLight& light, const Illumination& illumination,
     const ViewSettings& settings, const Field& ior = {});
 
   /// Takes over those settings that need nothing new on the device, so that a caster can be kept while its medium,
   /// light and illumination stay as they are: imageSize, stepSize, backgroundColor, skipEmptyBricks,
-  /// minimumTransmittance, phaseFunction, those of the surface, tableColor, tableReflectance.
+  /// minimumTransmittance, those of the surface, tableColor, tableReflectance.
   /// @return false, and nothing is changed, where one of the others differs: that needs a new caster
   /// @throws InvalidInput as the constructor
   bool Adopt(const ViewSettings& settings);
@@ -174,6 +167,12 @@ private:
   std::string CastingOptions() const;
   int PacketWidth() const;
   bool SkipsBricks() const { return this->Settings.skipEmptyBricks && this->Settings.leaveOut; }
+  /// Whether the light's mean direction is kept times g, which then is that of all channels.
+  bool FlowHasG() const
+  {
+    return this->Phase.channels == 1 &&
+      (this->Phase.formula == ViewedPhase::HenyeyGreenstein || this->Phase.formula == ViewedPhase::Schlick);
+  }
   bool GlowsApart() const { return this->KnowsFlow && this->Components[2] > 0; } ///< emission is not scattered
   double SurfaceIndex() const
   {
@@ -190,6 +189,8 @@ private:
   void Reserve();
   void PrepareBackground(const Illumination& illumination);
   void PrepareBending();
+  void PreparePhase(const PhaseOfMedium& phase);
+  std::string PhaseOptions(bool needed) const;
   void PrepareTable(const SolvedLight& light, const Field& ior);
   void PrepareSurface(const Medium& medium, const SolvedLight& light);
   void SayWhatIsLeftOut();
@@ -206,7 +207,7 @@ private:
   bool LampsShine = false;
   bool AskedForShadowRays = false; ///< though there may be no lamp
   ViewSettings Settings;           ///< as far as the scene needs them
-  double G = 0.0;
+  ViewedPhase Phase;
   MediumTraits Traits;
   bool HasEmptyBricks = false;
   bool Coloured = false;  ///< extinction differs between channels
@@ -225,11 +226,14 @@ private:
   std::array<int, 5> Components = {};  ///< of absorption, scattering, emission, fluence, fluenceDirect
   std::array<Buffer<float>, 5> Arrays; ///< given back once packed, where nothing will ask for them again
   Buffer<float> MeanDirection, Ior;    ///< as Arrays
-  Buffer<float> Direct;                ///< 6 per voxel: what the lights scatter towards the eye, and their irradiance
-  Buffer<cl_float4> Samples;           ///< source and grey extinction, with a border; see ScatteredLight.cl
+  Buffer<float> MeanCosines;           ///< g by voxel, likewise
+  Buffer<float> PhaseRows;
+  Buffer<float> Direct;      ///< 6 per voxel: what the lights scatter towards the eye, and their irradiance
+  Buffer<cl_float4> Samples; ///< source and grey extinction, with a border; see ScatteredLight.cl
   Buffer<cl_float4> Extinctions;
-  Buffer<cl_float4> Flow;    ///< mean direction times g
+  Buffer<cl_float4> Flow;    ///< mean direction, times g where FlowHasG
   Buffer<cl_float4> Glow;    ///< emission, where Flow is there
+  Buffer<cl_float4> Cosines; ///< coloured g by voxel, where Flow is there
   Buffer<cl_float4> Bending; ///< gradient of n^2, and n^2
   Buffer<cl_float4> Table;   ///< light on the table
   Buffer<cl_float4> Surface; ///< see SurfaceLight.h

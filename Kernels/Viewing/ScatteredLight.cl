@@ -4,7 +4,9 @@
 // The host gives
 //   ABSORPTION, SCATTERING, EMISSION, FLUENCE, UNSCATTERED   components of each array: 0 (there is none), 1 or 3
 //   SHADOW_RAYS  1: `direct` holds what the lights scatter towards the eye
-//   FLOW         1: the light's mean direction is packed
+//   FLOW         1: the light's mean direction is packed, FLOW_WITH_G 1: times g
+//   MEAN_COSINE  components of g by voxel; 0: it is the same everywhere
+//   VARIED_G     1: g by voxel is packed apart
 //   GLOW         1: emission is packed apart
 //   BENDS        1: the refractive index varies
 
@@ -85,15 +87,16 @@ inline float4 source_of(const ingredients* from, int voxel, int single, float4* 
 // single   1: only light that scatters once
 // samples  red, green, blue of the source, and grey extinction; with GREY source and extinction here and at the next
 //          voxel along y
-// flow     with FLOW: the light's mean direction times g, at most LARGEST_FLOW long
+// flow     with FLOW: the light's mean direction; with FLOW_WITH_G times g, at most LARGEST_FLOW long
+// cosines  with VARIED_G: red, green, blue of g
 // glow     with GLOW: emission, which is then no part of `samples`
 // ior      with BENDS: sources are divided by n^2
 __kernel void pack_samples(int4 size, int single, float g, __global const float* restrict absorption,
   __global const float* restrict scattering, __global const float* restrict emission,
   __global const float* restrict fluence, __global const float* restrict unscattered,
   __global const float* restrict direct, __global const float* restrict direction, __global const float* restrict ior,
-  __global float4* restrict samples, __global float4* restrict extinctions, __global float4* restrict flow,
-  __global float4* restrict glow)
+  __global const float* restrict mean_cosines, __global float4* restrict samples, __global float4* restrict extinctions,
+  __global float4* restrict flow, __global float4* restrict glow, __global float4* restrict cosines)
 {
   if (get_global_id(0) >= size.x + 2)
   {
@@ -119,7 +122,16 @@ __kernel void pack_samples(int4 size, int single, float g, __global const float*
   const float3 mean = (float3)(direction[3 * voxel], direction[3 * voxel + 1], direction[3 * voxel + 2]);
   // No light is more than one beam.
   const float3 held = mean / fmax(length(mean), 1.0f);
-  flow[place] = (float4)(held * (g * fmin(1.0f, LARGEST_FLOW / fmax(fabs(g) * length(held), 1e-30f))), 0.0f);
+#if FLOW_WITH_G
+  const float here = MEAN_COSINE ? mean_cosines[voxel] : g;
+  flow[place] = (float4)(held * (here * fmin(1.0f, LARGEST_FLOW / fmax(fabs(here) * length(held), 1e-30f))), 0.0f);
+#else
+  flow[place] = (float4)(held, 0.0f);
+#endif
+#endif
+#if VARIED_G
+  cosines[place] = (float4)(channel_of(mean_cosines, voxel, MEAN_COSINE, 0),
+    channel_of(mean_cosines, voxel, MEAN_COSINE, 1), channel_of(mean_cosines, voxel, MEAN_COSINE, 2), 0.0f);
 #endif
 #if GLOW
   glow[place] = emitted;

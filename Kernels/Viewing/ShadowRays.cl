@@ -1,6 +1,9 @@
 // What the lights send straight to each voxel, and what is scattered of it towards the eye. The host gives
 //   SCATTERING  components of sigma_s: 1 or 3
+//   PHASE, PHASE_CHANNELS  see PhaseFunction.cl
+//   MEAN_COSINE  components of g by voxel; 0: it is the same everywhere
 
+#include "Viewing/PhaseFunction.cl"
 #include "Viewing/Sampling.cl"
 #include "Viewing/ViewShared.h"
 #include "Viewing/VoxelChannels.cl"
@@ -105,11 +108,44 @@ inline rgb arriving_through(const SmallLight* light, real arriving, rgb depths)
   return power;
 }
 
-// Henyey and Greenstein's phase function, per steradian.
-inline real phase_at(real cosine, float g)
+// The phase function of one channel, per steradian, by the cosine of the scattering angle.
+inline real phase_of_channel(real cosine, real first, real second, real part, __global const float* rows)
 {
-  const real base = greater(fma((real)(-2.0f * g), cosine, (real)(1.0f + g * g)), (real)1e-12f);
-  return (real)(PER_SPHERE * (1.0f - g * g)) / (base * sqrt(base));
+#if PHASE == 1
+  const real base = greater(fma((real)(-2.0f) * first, cosine, (real)1.0f + first * first), (real)1e-12f);
+  return (real)PER_SPHERE * ((real)1.0f - first * first) / (base * sqrt(base));
+#else
+  return (real)PER_SPHERE * scattered_of_channel((real)1.0f, -cosine, first, second, part, rows);
+#endif
+}
+
+inline rgb phase_at(real cosine, phase_parameters p, __global const float* rows)
+{
+  rgb f;
+  f.r = phase_of_channel(cosine, p.first.r, p.second.r, p.part.r, rows);
+#if PHASE_CHANNELS == 3
+  const int apart = PHASE == 5 ? (SpreadRows + 2) * (CosineRows + 2) : 0;
+  f.g = phase_of_channel(cosine, p.first.g, p.second.g, p.part.g, rows + apart);
+  f.b = phase_of_channel(cosine, p.first.b, p.second.b, p.part.b, rows + 2 * apart);
+#else
+  f.g = f.b = f.r;
+#endif
+  return f;
+}
+
+// How the voxels of a packet scatter.
+inline phase_parameters phases_of(const ShadowInfo* info, integer voxel, __global const float* mean_cosines)
+{
+  phase_parameters p = parameters_of(&info->phase);
+#if MEAN_COSINE
+#define READ(n)                                                                  \
+  LANE(p.first.r, n) = channel_of(mean_cosines, LANE(voxel, n), MEAN_COSINE, 0); \
+  LANE(p.first.g, n) = channel_of(mean_cosines, LANE(voxel, n), MEAN_COSINE, 1); \
+  LANE(p.first.b, n) = channel_of(mean_cosines, LANE(voxel, n), MEAN_COSINE, 2);
+  EACH_LANE(READ)
+#undef READ
+#endif
+  return p;
 }
 
 // The voxels of a packet along x; beyond the row's end its last one, which is then written several times alike.
@@ -129,7 +165,8 @@ inline integer packet_along_x(int first, int size)
 // Scatters towards the eye what the lights send straight to each voxel's centre. Work-items by packets of a slice.
 //   direct  6 per voxel: sum of irradiance times phase function, W / (length^2 sr), and sum of irradiance, W / length^2
 __kernel void see_lights(ShadowInfo info, __global const SmallLight* restrict lights,
-  __global const float* restrict scattering, __global const float4* restrict samples,
+  __global const float* restrict scattering, __global const float* restrict mean_cosines,
+  __global const float* restrict phase_rows, __global const float4* restrict samples,
   __global const float4* restrict extinctions, __global const char* restrict bricks, __global float* restrict direct)
 {
   const int first = get_global_id(0) * REAL_WIDTH;
@@ -157,6 +194,7 @@ __kernel void see_lights(ShadowInfo info, __global const SmallLight* restrict li
     fma(perspective, (real)info.eye.z - place.z, (real)(-info.eye.w * info.forward.z)) };
   const real out_scale = (real)1.0f / sqrt(greater(fma(out.x, out.x, fma(out.y, out.y, out.z * out.z)), (real)1e-30f));
 
+  const phase_parameters scatters_by = phases_of(&info, voxel, mean_cosines);
   rgb towards_eye = { (real)0.0f, (real)0.0f, (real)0.0f };
   rgb irradiance = towards_eye;
   for (int n = 0; n < info.lights && any_lane(scatters > (real)0.0f); ++n)
@@ -171,13 +209,13 @@ __kernel void see_lights(ShadowInfo info, __global const SmallLight* restrict li
     const rgb arrived = arriving_through(&light, way.arriving, depths);
     // The light travels along -d.
     const real cosine = -(fma(way.d.x, out.x, fma(way.d.y, out.y, way.d.z * out.z))) * out_scale;
-    const real phase = phase_at(cosine, info.g);
+    const rgb phase = phase_at(cosine, scatters_by, phase_rows);
     irradiance.r += arrived.r;
     irradiance.g += arrived.g;
     irradiance.b += arrived.b;
-    towards_eye.r = fma(arrived.r, phase, towards_eye.r);
-    towards_eye.g = fma(arrived.g, phase, towards_eye.g);
-    towards_eye.b = fma(arrived.b, phase, towards_eye.b);
+    towards_eye.r = fma(arrived.r, phase.r, towards_eye.r);
+    towards_eye.g = fma(arrived.g, phase.g, towards_eye.g);
+    towards_eye.b = fma(arrived.b, phase.b, towards_eye.b);
   }
 
 #define KEEP(n)                                         \

@@ -150,11 +150,6 @@ void Check(const ViewSettings& settings)
   {
     throw InvalidInput("A rectangular light needs at least one sample per edge.");
   }
-  if (settings.phaseFunction != ViewedPhase::HenyeyGreenstein && settings.phaseFunction != ViewedPhase::Schlick)
-  {
-    throw InvalidInput("Phase function " + std::to_string(static_cast<int>(settings.phaseFunction)) +
-      " does not exist; use 0 (Henyey-Greenstein) or 1 (Schlick).");
-  }
   CheckSurface(settings);
   CheckTable(settings);
 }

@@ -6,8 +6,20 @@
 SHARED_BEGIN
 enum
 {
-  BrickEdge = 8 ///< voxels per edge of a brick
+  BrickEdge = 8, ///< voxels per edge of a brick
+  // Rows of the tables of phase functions; each table has a row more behind its last.
+  SchlickRows = 1024,
+  CosineRows = 2048,
+  SpreadRows = 128
 };
+
+/// What tells phase functions of one kind apart, of red, green and blue.
+typedef struct
+{
+  float4 first;  ///< g; of two lobes that of the first
+  float4 second; ///< g of the second lobe
+  float4 part;   ///< of the light in the first lobe
+} PhaseInfo;
 
 /// The picture and its camera.
 typedef struct
@@ -23,6 +35,7 @@ typedef struct
   int4 size;             ///< voxels
   int4 bricks;           ///< bricks
   int4 environment;      ///< width, height in pixels
+  PhaseInfo phase;
 } ViewInfo;
 
 /// Surface, table, and how rays bend.
@@ -52,7 +65,7 @@ typedef struct
   float4 forward;      ///< unit vector, world
   int4 size;           ///< voxels
   int4 bricks;         ///< bricks
-  float g;             ///< mean cosine of the phase function
+  PhaseInfo phase;     ///< where it is the same everywhere
   float step;          ///< voxels
   float nearestSquare; ///< keeps a voxel that holds a light finite: its mean of 1/r^2 is 3/R^2 of a ball as large
   int lights;

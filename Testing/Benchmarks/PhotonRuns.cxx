@@ -64,6 +64,10 @@ Medium PaperScene::Medium() const
   medium.sigma_a = { this->voxels.sigma_a.data(), this->voxels.components };
   medium.sigma_s = { this->voxels.sigma_s.data(), this->voxels.components };
   medium.phase = PhaseFunction::HenyeyGreenstein(this->voxels.g);
+  if (!this->voxels.gByVoxel.empty())
+  {
+    medium.phase = medium.phase.WithG({ this->voxels.gByVoxel.data(), this->voxels.components });
+  }
   return medium;
 }
 

@@ -151,8 +151,8 @@ void BadMeanCosine(Refusals& refusals)
     refusals.OfMedium(medium, "mean cosine");
   }
   auto medium = Good();
-  test::AddValues<vtkDoubleArray>(medium->GetFieldData(), "g", 1, 3, [](vtkIdType, int) { return 0.1; });
-  refusals.OfMedium(medium, "'g' must be one number");
+  test::AddValues<vtkDoubleArray>(medium->GetFieldData(), "g", 2, 1, [](vtkIdType, int) { return 0.1; });
+  refusals.OfMedium(medium, "'g' has 2 numbers");
 }
 
 void BadLights(Refusals& refusals)

@@ -3,6 +3,7 @@
 #include "vtkFieldData.h"
 #include "vtkLightRig.h"
 #include "vtkMediumRayCaster.h"
+#include "vtkStringArray.h"
 
 #include <algorithm>
 #include <chrono>
@@ -188,6 +189,17 @@ void WhatIsChangedIsSeen(Follows follows)
   follows.A(
     "lights taken away", Scene::Replaced, [](Pictures& pictures) { pictures.caster->RemoveLights(); },
     [](vtkMediumRayCaster* caster) { caster->RemoveLights(); }, shadows);
+  follows.A("the environment's pixels", Scene::Replaced, [](Pictures& pictures) {
+    pictures.environment->GetPointData()->GetArray("radiance")->Fill(0.4);
+    pictures.environment->GetPointData()->GetArray("radiance")->Modified();
+  });
+  follows.A("the environment's turn", Scene::Replaced, Nothing,
+    [](vtkMediumRayCaster* caster) { caster->SetEnvironmentAzimuth(90.0); });
+}
+
+void HowTheMediumScattersIsSeen(Follows follows)
+{
+  const Change shadows = [](vtkMediumRayCaster* caster) { caster->ShadowRaysOn(); };
   follows.A(
     "g", Scene::Replaced,
     [](Pictures& pictures) {
@@ -195,12 +207,43 @@ void WhatIsChangedIsSeen(Follows follows)
       pictures.medium->GetFieldData()->GetArray("g")->Modified();
     },
     {}, shadows);
-  follows.A("the environment's pixels", Scene::Replaced, [](Pictures& pictures) {
-    pictures.environment->GetPointData()->GetArray("radiance")->Fill(0.4);
-    pictures.environment->GetPointData()->GetArray("radiance")->Modified();
-  });
-  follows.A("the environment's turn", Scene::Replaced, Nothing,
-    [](vtkMediumRayCaster* caster) { caster->SetEnvironmentAzimuth(90.0); });
+  const auto say = [](Pictures& pictures, const char* function) {
+    vtkNew<vtkStringArray> name;
+    name->SetName("phase_function");
+    name->InsertNextValue(function);
+    pictures.medium->GetFieldData()->AddArray(name);
+  };
+  follows.A(
+    "another phase function", Scene::Replaced, [=](Pictures& pictures) { say(pictures, "schlick"); }, {}, shadows);
+  const auto two = [=](Pictures& pictures) {
+    say(pictures, "double_henyey_greenstein");
+    for (const char* number : { "phase_second_g", "phase_first_part" })
+    {
+      test::AddValues<vtkDoubleArray>(
+        pictures.medium->GetFieldData(), number, 1, 1, [](vtkIdType, int) { return 0.25; });
+    }
+  };
+  follows.A("two lobes", Scene::Replaced, two, {}, shadows);
+  follows.A(
+    "cells g", Scene::Replaced,
+    [](Pictures& pictures) {
+      test::AddValues<vtkFloatArray>(pictures.medium->GetCellData(), "g", pictures.medium->GetNumberOfCells(), 1,
+        [](vtkIdType cell, int) { return cell % 7 * 0.1; });
+    },
+    {}, shadows);
+  follows.A(
+    "a table", Scene::Replaced,
+    [=](Pictures& pictures) {
+      say(pictures, "tabulated");
+      pictures.medium->GetFieldData()->RemoveArray("g");
+      for (const char* column : { "phase_cosine", "phase_value" })
+      {
+        test::AddValues<vtkDoubleArray>(
+          pictures.medium->GetFieldData(), column, 2, 1, [](vtkIdType row, int) { return row == 0 ? 1.0 : -1.0; });
+      }
+      pictures.medium->GetFieldData()->GetArray("phase_value")->SetComponent(1, 0, 0.2);
+    },
+    {}, shadows);
 }
 
 void SettingsThatNeedAnotherSceneGetOne(Follows follows)
@@ -221,7 +264,6 @@ void SettingsOfRefractionAreFollowed(Follows follows)
   const auto set = [&](const char* what, const Change& setting, const Change& before = {}) {
     follows.A(what, Scene::Either, Nothing, setting, before);
   };
-  set("PhaseFunction", [](vtkMediumRayCaster* caster) { caster->SetPhaseFunction(vtkMediumRayCaster::SCHLICK); });
   set("SurfaceReflection", mirror);
   set(
     "SurfaceReflection of another kind",
@@ -291,6 +333,7 @@ int TestMediumRayCasterKeepsItsScene(int, char*[])
   test::Claims claims;
   WhatTheSceneDoesNotNeedKeepsIt(Follows(claims));
   WhatIsChangedIsSeen(Follows(claims));
+  HowTheMediumScattersIsSeen(Follows(claims));
   SettingsThatNeedAnotherSceneGetOne(Follows(claims));
   SettingsOfRefractionAreFollowed(Follows(claims));
   MemoryIsGivenBack(claims);

@@ -1,9 +1,11 @@
 #include "MediumScene.h"
 
 #include "vtkMediumRayCaster.h"
+#include "vtkStringArray.h"
 
 #include <cmath>
 #include <string>
+#include <vector>
 
 namespace
 {
@@ -30,6 +32,20 @@ struct Slab
   void SetG(double g)
   {
     test::AddValues<vtkDoubleArray>(this->medium->GetFieldData(), "g", 1, 1, [g](vtkIdType, int) { return g; });
+  }
+
+  void SetG(const std::vector<double>& g)
+  {
+    test::AddValues<vtkDoubleArray>(
+      this->medium->GetFieldData(), "g", 3, 1, [&](vtkIdType channel, int) { return g[channel]; });
+  }
+
+  void SetPhaseFunction(const char* name)
+  {
+    vtkNew<vtkStringArray> text;
+    text->SetName("phase_function");
+    text->InsertNextValue(name);
+    this->medium->GetFieldData()->AddArray(text);
   }
 
   void SetMeanDirection(double x, double y, double z)
@@ -68,17 +84,29 @@ void LightOfKnownDirectionScattersByThePhaseFunction(test::Claims& claims)
       const double g = 0.6 * length;
       const std::string light =
         "light of anisotropy " + std::to_string(length) + " at cosine " + std::to_string(cosine);
-      slab.caster->SetPhaseFunction(vtkMediumRayCaster::HENYEY_GREENSTEIN);
       const double henyey = (1.0 - g * g) / std::pow(1.0 + g * g - 2.0 * g * cosine, 1.5);
       claims.Near(slab.Radiance() / even, henyey, 2e-5 * henyey, "Henyey and Greenstein's scattering of " + light);
-      slab.caster->SetPhaseFunction(vtkMediumRayCaster::SCHLICK);
-      const double k = 1.55 * g - 0.55 * g * g * g;
-      const double schlick = (1.0 - k * k) / std::pow(1.0 - k * cosine, 2.0);
-      claims.Near(slab.Radiance() / even, schlick, 2e-5 * schlick, "Schlick's scattering of " + light);
     }
+  }
+  slab.SetMeanDirection(0.6, 0.0, 0.8);
+  slab.SetPhaseFunction("rayleigh");
+  slab.SetG(0.0);
+  const double rayleigh = 0.75 * (1.0 + 0.8 * 0.8);
+  claims.Near(slab.Radiance() / even, rayleigh, 2e-5 * rayleigh, "Rayleigh's scattering, by the medium's field data");
+  slab.SetPhaseFunction("henyey_greenstein");
+  slab.SetG({ 0.6, 0.0, -0.6 });
+  for (int c = 0; c < 3; ++c)
+  {
+    const double g = 0.6 - 0.6 * c, henyey = (1.0 - g * g) / std::pow(1.0 + g * g - 1.6 * g, 1.5);
+    claims.Near(slab.Radiance(c) / even, henyey, 2e-5 * henyey, "each channel by its own g");
   }
   slab.SetG(0.0);
   claims.Near(slab.Radiance(), even, 1e-5, "without g the direction does not count");
+  slab.SetG(0.3);
+  test::AddValues<vtkFloatArray>(slab.medium->GetCellData(), "g", slab.medium->GetNumberOfCells(), 1,
+    [](vtkIdType cell, int) { return cell % 2 == 0 ? 0.5 : 0.5000001; });
+  const double byVoxel = 0.75 / std::pow(1.25 - 0.8, 1.5);
+  claims.Near(slab.Radiance() / even, byVoxel, 2e-5 * byVoxel, "cells g count before field data");
 }
 
 void ArraysCanBeChosen(test::Claims& claims)

@@ -71,6 +71,27 @@ void GlassBallInFog(test::Claims& claims)
   claims.That(filter->GetSeconds() > 0.0 && !std::string(filter->GetDeviceName()).empty(), "the panel has its results");
 }
 
+void MaterialsKeepTheirMeanCosines(test::Claims& claims)
+{
+  vtkNew<vtkMeshVoxelizer> filter;
+  test::Errors errors(filter);
+  filter->SetInputDataObject(Ball(0.0, 1.0));
+  filter->SetSampleDimensions(16, 16, 16);
+  filter->SetInsideScattering(0.5, 0.5, 0.5);
+  filter->SetInsideMeanCosine(0.2);
+  filter->SetOutsideMeanCosine(0.9);
+  filter->Update();
+  vtkFieldData* facts = filter->GetOutput()->GetFieldData();
+  claims.That(errors.None() && !facts->HasArray("g") && facts->HasArray("phase_function"), "g is that of the voxel");
+  claims.Near(At(filter, "g", 0.0, 0.0, 0.0), 0.2, 1e-7, "g inside");
+  claims.Near(At(filter, "g", -1.2, -1.2, -1.2), 0.9, 1e-7, "g outside");
+  claims.Near(At(filter, "sigma_s", 0.0, 0.0, 0.0), 0.5, 1e-7, "sigma_s inside is as it was given");
+  filter->SetInsideMeanCosine(0.9);
+  filter->Update();
+  claims.That(!Cells(filter, "g") && facts->GetArray("g") && facts->GetArray("g")->GetTuple1(0) == 0.9,
+    "one g of all materials is field data");
+}
+
 void UntouchedTheFogSuitsTheMesh(test::Claims& claims)
 {
   const auto voxelize = [](vtkMeshVoxelizer* filter, double size) {
@@ -380,6 +401,7 @@ int TestMeshVoxelizer(int, char*[])
   }
   test::Claims claims;
   GlassBallInFog(claims);
+  MaterialsKeepTheirMeanCosines(claims);
   UntouchedTheFogSuitsTheMesh(claims);
   ModelBoundsAreTheBox(claims);
   AnyPolyDataWillDo(claims);

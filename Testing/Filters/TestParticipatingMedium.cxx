@@ -1,10 +1,15 @@
 #include "MediumScene.h"
 
 #include "vtkParticipatingMedium.h"
+#include "vtkStringArray.h"
+#include "vtkTable.h"
 #include "vtkUnsignedCharArray.h"
 
 #include <cmath>
 #include <limits>
+#include <string>
+#include <utility>
+#include <vector>
 
 namespace
 {
@@ -21,10 +26,42 @@ int ComponentsOf(vtkParticipatingMedium* filter, const char* name)
   return array ? array->GetNumberOfComponents() : 0;
 }
 
+double FactOf(vtkParticipatingMedium* filter, const char* name, int number = 0)
+{
+  vtkDataArray* fact = filter->GetOutput()->GetFieldData()->GetArray(name);
+  const bool isThere = fact && number < fact->GetNumberOfValues();
+  const int components = fact ? fact->GetNumberOfComponents() : 1;
+  return isThere ? fact->GetComponent(number / components, number % components)
+                 : std::numeric_limits<double>::quiet_NaN();
+}
+
 double MeanCosineOf(vtkParticipatingMedium* filter)
 {
-  vtkDataArray* g = filter->GetOutput()->GetFieldData()->GetArray("g");
-  return g ? g->GetTuple1(0) : std::numeric_limits<double>::quiet_NaN();
+  return FactOf(filter, "g");
+}
+
+std::string PhaseFunctionOf(vtkParticipatingMedium* filter)
+{
+  auto* name =
+    vtkArrayDownCast<vtkStringArray>(filter->GetOutput()->GetFieldData()->GetAbstractArray("phase_function"));
+  return name ? name->GetValue(0) : "";
+}
+
+vtkSmartPointer<vtkTable> TableOf(
+  const char* first, const std::vector<double>& cosines, const char* second, const std::vector<double>& values)
+{
+  auto table = vtkSmartPointer<vtkTable>::New();
+  for (const auto& [name, numbers] : { std::pair(first, &cosines), std::pair(second, &values) })
+  {
+    vtkNew<vtkDoubleArray> column;
+    column->SetName(name);
+    for (const double number : *numbers)
+    {
+      column->InsertNextValue(number);
+    }
+    table->AddColumn(column);
+  }
+  return table;
 }
 
 /// Four cells in a row with density -1, 0, 1, 2.
@@ -114,6 +151,17 @@ void PresetsAreRealMedia(test::Claims& claims)
   claims.Near(At(filter, "sigma_s", 2), 0.5 * 0.15867, 1e-6, "sigma_s of half a cloud, 1/m");
   claims.Near(MeanCosineOf(filter), 0.85382, 1e-9, "g of a cloud");
 
+  filter->SetPreset(vtkParticipatingMedium::ESPRESSO);
+  filter->SetExtinctionScale(1.0);
+  filter->SetMillimetresPerUnit(1.0);
+  filter->Update();
+  const double espresso[3] = { 7.78262, 8.13050, 8.53875 }, g[3] = { 0.907, 0.896, 0.880 };
+  for (int c = 0; c < 3; ++c)
+  {
+    claims.Near(At(filter, "sigma_s", 2, c), espresso[c], 1e-5, "sigma_s of espresso as it was measured, 1/mm");
+    claims.Near(FactOf(filter, "g", c), g[c], 1e-12, "g of espresso in each colour");
+  }
+
   for (int preset = vtkParticipatingMedium::CLOUD; preset <= vtkParticipatingMedium::SKIN_2; ++preset)
   {
     filter->SetPreset(preset);
@@ -126,6 +174,105 @@ void PresetsAreRealMedia(test::Claims& claims)
   claims.That(std::string(vtkParticipatingMedium::GetPresetName(vtkParticipatingMedium::SKIN_2)) == "Skin 2",
     "presets are numbered as in the table");
   claims.That(std::string(vtkParticipatingMedium::GetPresetName(99)).empty(), "there is no preset 99");
+}
+
+void TheOutputSaysHowItScatters(test::Claims& claims)
+{
+  vtkNew<vtkParticipatingMedium> filter;
+  test::Errors errors(filter);
+  filter->SetInputDataObject(Ramp());
+  filter->SetMeanCosine(0.6);
+  filter->Update();
+  claims.That(PhaseFunctionOf(filter) == "henyey_greenstein", "Henyey and Greenstein's by default");
+  claims.That(!filter->GetOutput()->GetFieldData()->HasArray("phase_second_g"), "what is not needed is not written");
+
+  filter->SetChannelMeanCosines(0.1, 0.2, -0.3);
+  filter->SetPhaseFunction(vtkParticipatingMedium::SCHLICK);
+  filter->Update();
+  claims.That(PhaseFunctionOf(filter) == "schlick", "Schlick's, where asked for");
+  claims.Near(FactOf(filter, "g", 0), 0.1, 0.0, "g of red");
+  claims.Near(FactOf(filter, "g", 2), -0.3, 0.0, "g of blue");
+  filter->RemoveAllChannelMeanCosines();
+
+  filter->SetPhaseFunction(vtkParticipatingMedium::DOUBLE_HENYEY_GREENSTEIN);
+  filter->SetSecondMeanCosine(-0.4);
+  filter->SetFirstPart(0.75);
+  filter->Update();
+  claims.That(PhaseFunctionOf(filter) == "double_henyey_greenstein", "two lobes");
+  claims.Near(MeanCosineOf(filter), 0.6, 0.0, "g of the first lobe");
+  claims.Near(FactOf(filter, "phase_second_g"), -0.4, 0.0, "g of the second");
+  claims.Near(FactOf(filter, "phase_first_part"), 0.75, 0.0, "part of the first");
+
+  filter->SetPhaseFunction(vtkParticipatingMedium::RAYLEIGH);
+  filter->Update();
+  claims.That(PhaseFunctionOf(filter) == "rayleigh" && MeanCosineOf(filter) == 0.0, "Rayleigh's has no mean cosine");
+  filter->SetPhaseFunction(vtkParticipatingMedium::ISOTROPIC);
+  filter->Update();
+  claims.That(PhaseFunctionOf(filter) == "isotropic" && MeanCosineOf(filter) == 0.0, "nor has the isotropic one");
+  claims.That(errors.None(), "all of these are good");
+}
+
+void ATableIsThePhaseFunction(test::Claims& claims)
+{
+  vtkNew<vtkParticipatingMedium> filter;
+  test::Errors errors(filter);
+  filter->SetInputDataObject(Ramp());
+  filter->SetPhaseFunction(vtkParticipatingMedium::TABULATED);
+  const auto refused = [&](vtkDataObject* table, const char* part) {
+    filter->SetPhaseTableData(table);
+    filter->Update();
+    claims.That(errors.WasOneWith(part), std::string("refused: ") + part);
+  };
+  refused(nullptr, "there is no PhaseTable");
+  refused(TableOf("angle", { 0.0, 180.0 }, "value", { 1.0, 1.0 }), "no column 'cosine'. Its columns: 'angle', 'value'");
+  refused(TableOf("cosine", { -1.0, 1.0 }, "p11", { 1.0, 1.0 }), "no column 'value'");
+  refused(TableOf("cosine", { -1.0, 0.0, 1.0 }, "value", { 1.0, -1.0, 1.0 }), "Row 1 of the table");
+  refused(TableOf("cosine", {}, "value", {}), "has 0 rows");
+  vtkNew<vtkStringArray> words;
+  words->SetName("cosine");
+  words->InsertNextValue("one");
+  words->InsertNextValue("two");
+  auto table = TableOf("number", { 0.0, 1.0 }, "value", { 1.0, 1.0 });
+  table->AddColumn(words);
+  refused(table, "column 'cosine' is not of numbers");
+
+  // 1 + 3 g c has the mean cosine g.
+  filter->SetPhaseTableData(TableOf("cosine", { 1.0, -1.0 }, "value", { 160.0, 40.0 }));
+  filter->Update();
+  claims.That(errors.None() && PhaseFunctionOf(filter) == "tabulated", "a good table is taken");
+  claims.Near(MeanCosineOf(filter), 0.2, 1e-12, "g of a table is its mean cosine");
+  claims.Near(FactOf(filter, "phase_cosine", 1), -1.0, 0.0, "cosines of the table");
+  claims.Near(FactOf(filter, "phase_value", 0), 160.0, 0.0, "values of the table");
+  filter->SetPreset(vtkParticipatingMedium::CLOUD);
+  filter->Update();
+  claims.That(errors.None() && PhaseFunctionOf(filter) == "tabulated", "a real medium with a table");
+
+  vtkNew<vtkParticipatingMedium> next;
+  next->SetInputDataObject(filter->GetOutput());
+  next->SetInputArrayToProcess(0, 0, 0, vtkDataObject::FIELD_ASSOCIATION_CELLS, "density");
+  next->Update();
+  claims.That(PhaseFunctionOf(next) == "henyey_greenstein" && MeanCosineOf(next) == 0.0 &&
+      !next->GetOutput()->GetFieldData()->HasArray("phase_cosine"),
+    "a phase function that the input had is gone");
+}
+
+void MeanCosinesByVoxelPassThrough(test::Claims& claims)
+{
+  vtkNew<vtkParticipatingMedium> filter;
+  test::Errors errors(filter);
+  const auto image = Ramp();
+  test::AddValues<vtkFloatArray>(image->GetCellData(), "g", 4, 1, [](vtkIdType i, int) { return 0.25 * i; });
+  filter->SetInputDataObject(image);
+  filter->Update();
+  claims.That(errors.None() && At(filter, "g", 3) == 0.75, "cells g of the input are the medium's");
+  filter->SetPhaseFunction(vtkParticipatingMedium::RAYLEIGH);
+  filter->Update();
+  claims.That(errors.WasOneWith("has no mean cosine that could vary by voxel"), "Rayleigh's cannot vary");
+  filter->SetPhaseFunction(vtkParticipatingMedium::HENYEY_GREENSTEIN);
+  image->GetCellData()->GetArray("g")->SetComponent(2, 0, 1.0);
+  image->Modified();
+  filter->Update();
+  claims.That(errors.WasOneWith("voxel (2, 0, 0)"), "a g of 1 is refused by its voxel");
 }
 
 void AnyImageWillDo(test::Claims& claims)
@@ -194,6 +341,33 @@ void BadInputIsOneError(test::Claims& claims)
   filter->Update();
   claims.That(errors.None() && filter->GetOutput()->GetNumberOfCells() == 4, "good input after bad is taken");
 }
+
+void BadPhaseFunctionsAreOneError(test::Claims& claims)
+{
+  vtkNew<vtkParticipatingMedium> filter;
+  test::Errors errors(filter);
+  filter->SetInputDataObject(Ramp());
+  const auto refusedSettings = [&](const char* part) {
+    filter->Update();
+    claims.That(errors.WasOneWith(part), std::string("refused: ") + part);
+  };
+  filter->AddChannelMeanCosine(0.5);
+  refusedSettings("ChannelMeanCosines has 1 number;");
+  filter->SetChannelMeanCosines(0.5, 0.5, -1.0);
+  refusedSettings("ChannelMeanCosines is -1");
+  filter->RemoveAllChannelMeanCosines();
+  filter->SetSecondMeanCosine(1.0);
+  refusedSettings("SecondMeanCosine is 1");
+  filter->SetSecondMeanCosine(0.0);
+  filter->SetFirstPart(1.5);
+  refusedSettings("FirstPart");
+  filter->SetFirstPart(1.0);
+  filter->SetPhaseFunction(6);
+  refusedSettings("PhaseFunction");
+  filter->SetPhaseFunction(vtkParticipatingMedium::HENYEY_GREENSTEIN);
+  filter->Update();
+  claims.That(errors.None() && filter->GetOutput()->GetNumberOfCells() == 4, "good numbers after bad are taken");
+}
 }
 
 int TestParticipatingMedium(int, char*[])
@@ -202,7 +376,11 @@ int TestParticipatingMedium(int, char*[])
   DensityIsARamp(claims);
   ColourMakesThreeComponents(claims);
   PresetsAreRealMedia(claims);
+  TheOutputSaysHowItScatters(claims);
+  ATableIsThePhaseFunction(claims);
+  MeanCosinesByVoxelPassThrough(claims);
   AnyImageWillDo(claims);
   BadInputIsOneError(claims);
+  BadPhaseFunctionsAreOneError(claims);
   return claims.Result();
 }

@@ -271,6 +271,24 @@ void UnknownIsSaid(test::Claims& claims)
     std::string("photons without light: ") + comparison->GetLeftOut());
 }
 
+void ThePublishedSchemeIsLeftOutWhereGVaries(test::Claims& claims)
+{
+  vtkNew<vtkSolverComparison> comparison;
+  test::Errors errors(comparison);
+  AskForOne(comparison);
+  comparison->AsPublishedOn();
+  const auto medium = Cloud(6);
+  test::AddValues<vtkDoubleArray>(
+    medium->GetFieldData(), "g", 3, 1, [](vtkIdType channel, int) { return 0.1 * channel; });
+  comparison->SetInputDataObject(medium);
+  comparison->SetSkyColor(1.0, 1.0, 1.0);
+  comparison->Update();
+  claims.That(errors.None() && comparison->GetOutput()->GetNumberOfRows() == 1 &&
+      std::string(comparison->GetLeftOut()).find("as published: the phase function (g) differs between channels") !=
+        std::string::npos,
+    std::string("a g of each channel: ") + comparison->GetLeftOut());
+}
+
 /// Asks to stop at a report of progress.
 struct Stopper : vtkCommand
 {
@@ -329,6 +347,7 @@ int TestSolverComparison(int, char*[])
   PhotonsAreComparedWithDirectLight(claims);
   BadInput(claims);
   UnknownIsSaid(claims);
+  ThePublishedSchemeIsLeftOutWhereGVaries(claims);
   ReportsAndStops(claims);
   return claims.Result();
 }

@@ -29,6 +29,33 @@ using test::ReadBytes;
 
 namespace
 {
+/// A phase function that is a table, with what other functions take besides.
+void AddPhaseFunction(vtkImageData* image)
+{
+  vtkNew<vtkDoubleArray> g;
+  g->SetName("g");
+  g->InsertNextValue(1.0 / 3.0);
+  vtkNew<vtkStringArray> function;
+  function->SetName("phase_function");
+  function->InsertNextValue("tabulated");
+  vtkNew<vtkDoubleArray> second; // of three channels
+  second->SetName("phase_second_g");
+  second->SetNumberOfComponents(3);
+  second->InsertNextTuple3(0.1, 1.0 / 7.0, -0.3);
+  vtkNew<vtkDoubleArray> cosines, values;
+  cosines->SetName("phase_cosine");
+  values->SetName("phase_value");
+  for (int row = 0; row <= 180; ++row)
+  {
+    cosines->InsertNextValue(1.0 - row / 90.0);
+    values->InsertNextValue(std::exp(-row / 7.0));
+  }
+  for (vtkAbstractArray* array : std::initializer_list<vtkAbstractArray*>{ g, function, second, cosines, values })
+  {
+    image->GetFieldData()->AddArray(array);
+  }
+}
+
 /// An image whose every detail the round trip must keep.
 vtkSmartPointer<vtkImageData> AwkwardImage()
 {
@@ -78,13 +105,11 @@ vtkSmartPointer<vtkImageData> AwkwardImage()
   vtkNew<vtkFloatArray> background;
   background->SetName("vdb:constant:background");
   background->InsertNextValue(2.5f);
-  vtkNew<vtkDoubleArray> g;
-  g->SetName("g");
-  g->InsertNextValue(1.0 / 3.0);
-  for (vtkAbstractArray* array : std::initializer_list<vtkAbstractArray*>{ type, creator, matrix, background, g })
+  for (vtkAbstractArray* array : std::initializer_list<vtkAbstractArray*>{ type, creator, matrix, background })
   {
     image->GetFieldData()->AddArray(array);
   }
+  AddPhaseFunction(image);
   return image;
 }
 
@@ -93,6 +118,21 @@ bool SameBits(vtkDataArray* a, vtkDataArray* b)
   return a && b && a->GetDataTypeSize() == b->GetDataTypeSize() && a->GetNumberOfValues() == b->GetNumberOfValues() &&
     a->GetNumberOfComponents() == b->GetNumberOfComponents() &&
     std::memcmp(a->GetVoidPointer(0), b->GetVoidPointer(0), a->GetNumberOfValues() * a->GetDataTypeSize()) == 0;
+}
+
+void ThePhaseFunctionIsKept(test::Claims& claims, vtkImageData* image, vtkFieldData* field)
+{
+  claims.That(SameBits(image->GetFieldData()->GetArray("g"), field->GetArray("g")) && !field->HasArray("vdb::medium_g"),
+    "the medium's mean cosine, under its name only");
+
+  for (const char* name : { "phase_second_g", "phase_cosine", "phase_value" })
+  {
+    claims.That(SameBits(image->GetFieldData()->GetArray(name), field->GetArray(name)) &&
+        !field->HasArray((std::string("vdb::medium_") + name).c_str()),
+      std::string("the phase function's ") + name + ", under its name only");
+  }
+  auto* function = vtkStringArray::SafeDownCast(field->GetAbstractArray("phase_function"));
+  claims.That(function && function->GetValue(0) == "tabulated", "the phase function's name");
 }
 
 void ARoundTripKeepsEveryBit(test::Claims& claims, int compression)
@@ -126,8 +166,7 @@ void ARoundTripKeepsEveryBit(test::Claims& claims, int compression)
   claims.That(
     SameBits(image->GetFieldData()->GetArray("vdb:constant:background"), field->GetArray("vdb:constant:background")),
     "the background");
-  claims.That(SameBits(image->GetFieldData()->GetArray("g"), field->GetArray("g")) && !field->HasArray("vdb::medium_g"),
-    "the medium's mean cosine, under its name only");
+  ThePhaseFunctionIsKept(claims, image, field);
 
   // Once more, from what was read: the same grids.
   writer->SetInputConnection(reader->GetOutputPort());

@@ -1,11 +1,14 @@
 #include "LightPropagation/Published/PublishedModel.h"
+#include "LightPropagation/Published/SequentialPropagation.h"
 #include "RandomMedium.h"
 
 #include "Device/Errors.h"
 
 #include <gtest/gtest.h>
 
+#include <algorithm>
 #include <cmath>
+#include <vector>
 
 using namespace tyndall;
 
@@ -50,12 +53,49 @@ TEST(GridWalk, CrossesAnEdgeAtOnce)
   EXPECT_EQ(segments, 4);
 }
 
+namespace
+{
+std::vector<PhaseFunction> ManyFunctions()
+{
+  std::vector<double> cosines, values;
+  for (int degree = 0; degree <= 180; ++degree)
+  {
+    cosines.push_back(std::cos(degree * Pi / 180.0));
+    values.push_back(PhaseFunction::HenyeyGreenstein(0.6).Value(cosines.back()));
+  }
+  return { PhaseFunction::HenyeyGreenstein(-0.5), PhaseFunction::HenyeyGreenstein(0.3),
+    PhaseFunction::HenyeyGreenstein(0.9), PhaseFunction::HenyeyGreenstein(0.99),
+    PhaseFunction::HenyeyGreenstein(0.9999), PhaseFunction::HenyeyGreenstein(-0.999), PhaseFunction::Schlick(0.7),
+    PhaseFunction::Rayleigh(), PhaseFunction::DoubleHenyeyGreenstein(0.8, -0.4, 0.7),
+    PhaseFunction::Tabulated(cosines, values) };
+}
+
+/// Mean cosine between propagation directions and the stored directions that they scatter to, by power.
+double MeanCosineOf(const PublishedModel& model)
+{
+  double forward = 0.0, all = 0.0;
+  for (std::size_t i = 0; i < model.Directions().directions.size(); ++i)
+  {
+    for (std::size_t d = 0; d < model.SourceDirections().size(); ++d)
+    {
+      const auto& to = model.SourceDirections()[d];
+      const auto& from = model.Directions().directions[i].omega;
+      const PublishedModel::Part part = model.Source(static_cast<int>(d));
+      const double scattered = part.factor * model.Coefficient(part.moment, static_cast<int>(i));
+      forward += scattered * (from[0] * to[0] + from[1] * to[1] + from[2] * to[2]);
+      all += scattered;
+    }
+  }
+  return forward / all;
+}
+}
+
 TEST(PublishedModel, ScattersWhatItTakes)
 {
   EvenMedium even({ { 1, 1, 1 } }, 0.0f, 1.0f);
-  for (const double g : { -0.5, 0.3, 0.9, 0.99 })
+  for (const PhaseFunction& function : ManyFunctions())
   {
-    even.medium.phase = PhaseFunction::HenyeyGreenstein(g);
+    even.medium.phase = function;
     PropagationSettings settings;
     settings.storedDirections = 6; // all of the same size
     const PublishedModel model(even.medium, {}, settings);
@@ -67,7 +107,7 @@ TEST(PublishedModel, ScattersWhatItTakes)
         const PublishedModel::Part part = model.Source(d);
         scattered += 4.0 * Pi / 6.0 * part.factor * model.Coefficient(part.moment, static_cast<int>(i));
       }
-      EXPECT_NEAR(scattered, model.Directions().directions[i].weight, 2e-3 * scattered) << g;
+      EXPECT_NEAR(scattered, model.Directions().directions[i].weight, 2e-3 * scattered) << function.MeanCosine();
     }
   }
 }
@@ -75,25 +115,49 @@ TEST(PublishedModel, ScattersWhatItTakes)
 TEST(PublishedModel, ScattersAlongTheMeanCosine)
 {
   EvenMedium even({ { 1, 1, 1 } }, 0.0f, 1.0f);
-  even.medium.phase = PhaseFunction::HenyeyGreenstein(0.6);
   PropagationSettings settings;
   settings.storedDirections = 150;
+  for (const PhaseFunction& function : ManyFunctions())
+  {
+    even.medium.phase = function;
+    const double g = function.MeanCosine();
+    EXPECT_NEAR(MeanCosineOf(PublishedModel(even.medium, {}, settings)), g, 0.02 * std::max(std::abs(g), 0.5)) << g;
+  }
+}
+
+// Cells of a face hold all directions that are propagated through it.
+TEST(PublishedModel, KeepsAPeakThatIsNarrowerThanACell)
+{
+  EvenMedium even({ { 1, 1, 1 } }, 0.0f, 1.0f);
+  even.medium.phase = PhaseFunction::HenyeyGreenstein(0.9999);
+  PropagationSettings settings;
+  settings.storedDirections = 6;
   const PublishedModel model(even.medium, {}, settings);
-  double forward = 0.0;
-  double all = 0.0;
   for (int i = 0; i < 150; ++i)
   {
-    for (int d = 0; d < 150; ++d)
+    double kept = 0.0, all = 0.0;
+    for (int d = 0; d < 6; ++d)
     {
-      const auto& to = model.SourceDirections()[d];
-      const auto& from = model.Directions().directions[i].omega;
       const PublishedModel::Part part = model.Source(d);
       const double scattered = part.factor * model.Coefficient(part.moment, i);
-      forward += scattered * (from[0] * to[0] + from[1] * to[1] + from[2] * to[2]);
+      kept += d == model.SourceOf(i) ? scattered : 0.0;
       all += scattered;
     }
+    EXPECT_GT(kept / all, 0.98) << i;
   }
-  EXPECT_NEAR(forward / all, 0.6, 0.02);
+}
+
+TEST(PublishedModel, HasOnePhaseFunction)
+{
+  EvenMedium even({ { 2, 1, 1 } }, 0.0f, 1.0f);
+  const std::vector<float> g = { 0.1f, 0.2f };
+  even.medium.phase = PhaseOfMedium(PhaseFunction::HenyeyGreenstein(0.0), Field{ g.data() });
+  EXPECT_THROW(PublishedModel(even.medium, {}, {}), InvalidInput);
+  EXPECT_THROW(SolveSequential(even.medium, {}, {}), InvalidInput);
+  even.medium.phase = PhaseOfMedium(std::array<PhaseFunction, 3>{
+    PhaseFunction::HenyeyGreenstein(0.1), PhaseFunction::HenyeyGreenstein(0.1), PhaseFunction::HenyeyGreenstein(0.2) });
+  EXPECT_THROW(PublishedModel(even.medium, {}, {}), InvalidInput);
+  EXPECT_THROW(SolveSequential(even.medium, {}, {}), InvalidInput);
 }
 
 TEST(PublishedModel, IsotropicScatteringIsTheSameIntoAllDirections)

@@ -161,25 +161,42 @@ TEST_F(RefractiveMediumTest, NothingInTheBoxIsAWarning)
   EXPECT_THAT(medium.ior, IsEmpty());
 }
 
-TEST_F(RefractiveMediumTest, OneMeanCosineKeepsReducedScattering)
+TEST_F(RefractiveMediumTest, VoxelsHaveTheMeanCosineOfTheirMaterials)
 {
   RefractiveMediumSettings settings = FogAround(12);
   settings.filterSize = 1;
   settings.outside.g = 0.9;
-  const RefractiveMedium medium = this->Made({ Ball() }, settings);
-  EXPECT_NEAR(medium.g, 0.9 * 0.7 / (0.7 + 0.3), 1e-12);
-  EXPECT_THAT(medium.leftOut, ElementsAre(HasSubstr("g of each material")));
+  Solid ball = Ball();
+  ball.material.g = 0.2;
+  const RefractiveMedium medium = this->Made({ ball }, settings);
+  ASSERT_EQ(medium.gByVoxel.size(), settings.grid.VoxelCount() * medium.components);
   const std::size_t centre = (6 * 12 + 6) * 12 + 6;
-  EXPECT_NEAR(medium.sigma_s[0] * (1.0 - medium.g), 0.7 * 0.1, 1e-7);
-  EXPECT_NEAR(medium.sigma_s[centre] * (1.0 - medium.g), 0.3, 1e-7);
+  EXPECT_EQ(medium.gByVoxel[0], 0.9f);
+  EXPECT_EQ(medium.gByVoxel[centre * medium.components], 0.2f);
+  EXPECT_FLOAT_EQ(medium.sigma_s[0], 0.7f) << "scattering is the material's own";
+  int mixed = 0;
+  for (std::size_t i = 0; i < medium.gByVoxel.size(); ++i)
+  {
+    const double inside = medium.occupancy[i / medium.components];
+    const double within = 0.3 * inside, beyond = 0.7 * (1.0 - inside);
+    EXPECT_NEAR(medium.gByVoxel[i], (0.2 * within + 0.9 * beyond) / (within + beyond), 1e-6) << inside;
+    mixed += inside > 0.0 && inside < 1.0;
+  }
+  EXPECT_GT(mixed, 10);
+  EXPECT_THAT(medium.leftOut, IsEmpty());
+}
 
-  // What does not scatter has no say.
-  settings.outside.sigma_s = {};
+TEST_F(RefractiveMediumTest, OneMeanCosineIsOfAllVoxels)
+{
+  RefractiveMediumSettings settings = FogAround(12);
+  settings.filterSize = 1;
+  settings.outside.g = 0.9;
+  settings.outside.sigma_s = {}; // what does not scatter has no say
   Solid ball = Ball();
   ball.material.g = 0.5;
   const RefractiveMedium clear = this->Made({ ball }, settings);
   EXPECT_EQ(clear.g, 0.5);
-  EXPECT_THAT(clear.leftOut, IsEmpty());
+  EXPECT_THAT(clear.gByVoxel, IsEmpty());
 }
 
 TEST_F(RefractiveMediumTest, NoiseIsSeededBoundedAndInsideOnly)
@@ -425,7 +442,7 @@ TEST_F(RefractiveMediumTest, BadInputIsRefused)
   bad.outside.n = 0.0;
   this->ExpectRefused({ Ball() }, bad, "The outside has the refractive index");
   bad = good;
-  bad.outside.g = 1.0;
+  bad.outside.g = 0.99999999999; // 1 as a float
   this->ExpectRefused({ Ball() }, bad, "mean cosine");
   bad = good;
   bad.grid.size[1] = 0;

@@ -331,7 +331,6 @@ TEST_F(RefractiveView, AdoptsWhatNeedsNothingNewOnTheDevice)
   scene.settings.surfaceIndex = 1.1;
   scene.settings.tableColor = { 0.1, 0.2, 0.3 };
   scene.settings.tableReflectance = 0.5;
-  scene.settings.phaseFunction = ViewedPhase::Schlick;
   ASSERT_TRUE(kept.Adopt(scene.settings));
   EXPECT_EQ(scene.Seen(this->GetDevice()).radiance, kept.Render(scene.Framed()).radiance);
   MediumRayCaster fresh = scene.Caster(this->GetDevice());
@@ -375,7 +374,6 @@ TEST_F(RefractiveView, RefusesWhatHasNoMeaning)
   refused("surface", [](Scene& scene) { scene.settings.surfaceIndex = NAN; });
   refused("surface", [](Scene& scene) { scene.settings.surfaceReflectance = 1.5; });
   refused("Surface", [](Scene& scene) { scene.settings.surfaceReflection = static_cast<SurfaceReflection>(7); });
-  refused("Phase", [](Scene& scene) { scene.settings.phaseFunction = static_cast<ViewedPhase>(2); });
   refused("table", [](Scene& scene) { scene.settings.tableFace = 6; });
   refused("table", [](Scene& scene) { scene.settings.tableFace = -2; });
   refused("table", [](Scene& scene) { scene.settings.tableColor = { 0.5, -0.1, 0.5 }; });

@@ -40,6 +40,38 @@ TEST_F(ShadowRays, ScatterOnceAsTheClosedFormSays)
   }
 }
 
+// What the sun sends through thin haze is scattered by the phase function, of each channel and voxel.
+TEST_F(ShadowRays, ScatterByThePhaseFunctionOfTheMedium)
+{
+  const std::array<PhaseFunction, 3> coloured = { PhaseFunction::HenyeyGreenstein(0.3), PhaseFunction::Rayleigh(),
+    PhaseFunction::DoubleHenyeyGreenstein(0.7, -0.5, 0.6) };
+  const PhaseFunction table = PhaseFunction::Tabulated({ -1.0, -0.5, 0.5, 1.0 }, { 2.0, 1.0, 3.0, 20.0 });
+  const std::vector<float> g(3 * 8 * 8 * 8, 0.6f);
+  for (const PhaseOfMedium& phase : { PhaseOfMedium(coloured), PhaseOfMedium(coloured[2]),
+         PhaseOfMedium(PhaseFunction::Rayleigh()), PhaseOfMedium(PhaseFunction::Schlick(0.8)), PhaseOfMedium(table),
+         PhaseOfMedium(PhaseFunction::Schlick(0.0), Field{ g.data(), 1 }),
+         PhaseOfMedium(PhaseFunction::HenyeyGreenstein(0.0), Field{ g.data(), 3 }) })
+  {
+    for (const Vec& travels : { Vec{ 0.0, 0.0, -1.0 }, Vec{ 0.8, 0.0, 0.6 }, Vec{ 0.6, 0.8, 0.0 } })
+    {
+      Scene scene(GridOf(8, 8, 8));
+      scene.sigma_s = scene.Everywhere(1e-6);
+      scene.phase = phase;
+      Light sun;
+      sun.direction = travels;
+      sun.power = { 1e6 / 8.0, 1e6 / 8.0, 1e6 / 8.0 };
+      scene.illumination.lights = { sun };
+      scene.settings.shadowRays = true;
+      const Picture picture = scene.Seen(this->GetDevice(), FromAbove(scene.grid, 10.0));
+      for (int c = 0; c < 3; ++c)
+      {
+        const double expected = phase.At(0, c).Value(travels[2]); // seen from above, light leaves upwards
+        EXPECT_NEAR(picture.radiance[3 * Middle(picture) + c], expected, 2e-4 * expected) << c << " " << travels[2];
+      }
+    }
+  }
+}
+
 // A sky lights the medium, no lamp and no sun does: asked for or not, the same picture of the same arrays, and it is
 // said.
 TEST_F(ShadowRays, AreLeftOutWhereNoLampShines)

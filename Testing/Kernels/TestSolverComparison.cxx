@@ -1,5 +1,6 @@
 #include "Comparison/ComparisonErrors.h"
 #include "Comparison/SolverComparison.h"
+#include "Medium/Coarsening.h"
 
 #include <gtest/gtest.h>
 
@@ -63,6 +64,45 @@ TEST(GridTransfer, AveragesWhatItRepeats)
   const std::vector<float> repeated = Repeated(means.data(), 1, coarse, *factors);
   EXPECT_EQ(repeated, (std::vector<float>{ 3.5f, 3.5f, 5.5f, 5.5f, 3.5f, 3.5f, 5.5f, 5.5f }));
   EXPECT_EQ(Averaged(repeated.data(), 1, fine, *factors), means);
+}
+
+TEST(RescaledScene, WeighsTheMeanCosineByScattering)
+{
+  const std::vector<float> sigma_s = { 1.0f, 3.0f, 0.0f, 0.0f }, g = { 0.8f, 0.4f, 0.7f, -0.7f };
+  ComparedScene scene;
+  scene.medium.grid.size = { 4, 1, 1 };
+  scene.medium.sigma_s = { sigma_s.data() };
+  scene.medium.phase = PhaseOfMedium(PhaseFunction::Schlick(0.0), Field{ g.data() });
+  const RescaledScene coarser(scene, RescaledScene::To::Coarser, { 2, 1, 1 });
+  EXPECT_NEAR(coarser.Scene().medium.phase.MeanCosine(0, 0), (0.8 + 3.0 * 0.4) / 4.0, 1e-6);
+  EXPECT_EQ(coarser.Scene().medium.phase.MeanCosine(1, 0), 0.0) << "where nothing scatters";
+  EXPECT_EQ(coarser.Scene().medium.phase.At(0, 0).TheKind(), PhaseFunction::Kind::Schlick);
+  const RescaledScene finer(scene, RescaledScene::To::Finer, { 2, 1, 1 });
+  EXPECT_EQ(finer.Scene().medium.phase.MeanCosine(3, 0), 0.4f);
+  EXPECT_EQ(finer.Scene().medium.phase.MeanCosine(4, 0), 0.7f);
+}
+
+TEST(Coarsening, WeighsByChannel)
+{
+  const std::vector<float> sigma_s = { 1.0f, 0.0f, 2.0f, 1.0f, 1.0f, 0.0f }, g = { 0.2f, 0.6f };
+  Grid fine;
+  fine.size = { 2, 1, 1 };
+  const std::vector<float> means = Coarsening(fine).Average(Field{ g.data() }, Field{ sigma_s.data(), 3 });
+  ASSERT_EQ(means.size(), 3u);
+  EXPECT_NEAR(means[0], 0.4, 1e-6);
+  EXPECT_NEAR(means[1], 0.6, 1e-6) << "the first voxel does not scatter green";
+  EXPECT_NEAR(means[2], 0.2, 1e-6);
+}
+
+TEST(Coarsening, LeavesNoMeanCosineBeyondThoseThereAre)
+{
+  const float close = std::nextafter(1.0f, 0.0f);
+  const std::vector<float> sigma_s = { 0.1f, 0.7f, 0.3f }, g = { close, close, close };
+  Grid fine, coarse;
+  fine.size = { 3, 1, 1 };
+  coarse.spacing = { 3.0, 1.0, 1.0 };
+  coarse.size = { 1, 1, 1 };
+  EXPECT_LE(Coarsening(fine, coarse).Average(Field{ g.data() }, Field{ sigma_s.data() })[0], close);
 }
 
 TEST(GridTransfer, KnowsWhichGridsFit)

@@ -8,6 +8,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <optional>
 #include <random>
 #include <string>
 #include <vector>
@@ -26,6 +27,7 @@ struct Scene
   std::vector<float> sigma_a, sigma_s, emission, fluence, fluenceDirect, meanDirection, ior, surface;
   int components = 1; ///< of sigma_a and sigma_s
   double g = 0.0;
+  std::optional<PhaseOfMedium> phase; ///< instead of Henyey and Greenstein's of g
   Illumination illumination;
   ViewSettings settings;
 
@@ -53,7 +55,7 @@ struct Scene
     medium.sigma_a = See(this->sigma_a, this->components);
     medium.sigma_s = See(this->sigma_s, this->components);
     medium.emission = See(this->emission, 1);
-    medium.phase = PhaseFunction::HenyeyGreenstein(this->g);
+    medium.phase = this->phase ? *this->phase : PhaseOfMedium(PhaseFunction::HenyeyGreenstein(this->g));
     const auto channels = static_cast<int>(this->fluence.size() / std::max<std::size_t>(this->grid.VoxelCount(), 1));
     const auto cosines = static_cast<int>(this->surface.size() / BoxFaceCellCount(this->grid));
     return { device, medium,

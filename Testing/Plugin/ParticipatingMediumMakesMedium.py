@@ -38,3 +38,31 @@ medium.Preset = "Skim milk"
 medium.MillimetresPerUnit = 10
 medium.ExtinctionScale = 1
 assert abs(cells(medium, "sigma_s") * largest - as_is[:, None] * [7.0, 12.2, 19.0]).max() < 1e-2
+
+# Each colour scatters as it does: real media, three numbers, a table that a Mie code printed.
+def fact(name):
+    return servermanager.Fetch(medium).GetFieldData().GetAbstractArray(name)
+
+
+medium.Preset = "Espresso"
+assert fact("g").GetNumberOfValues() == 3, fact("g")
+medium.Preset = "Custom"
+medium.ChannelMeanCosines = [0.1, 0.2, 0.3]
+assert [fact("g").GetComponent(0, c) for c in range(3)] == [0.1, 0.2, 0.3]
+medium.ChannelMeanCosines = []
+medium.MeanCosine = 0.5
+assert fact("g").GetNumberOfValues() == 1 and fact("g").GetValue(0) == 0.5
+
+path = os.path.join(os.environ["TYNDALL_TEST_OUTPUT"], "mie.csv")
+with open(path, "w") as file:
+    file.write("angle,p11\n" + "".join("%d,%.6g\n" % (angle, 100 / (1 + angle)) for angle in range(0, 181, 5)))
+printed = Calculator(Input=CSVReader(FileName=[path]), AttributeType="Row Data", ResultArrayName="cosine",
+                     Function="cos(angle*3.14159265358979/180)")
+table = Calculator(Input=printed, AttributeType="Row Data", ResultArrayName="value", Function="p11")
+medium.PhaseFunction = "Tabulated"
+medium.PhaseTable = table
+assert fact("phase_function").GetValue(0) == "tabulated" and fact("phase_cosine").GetNumberOfValues() == 37
+assert 0 < fact("g").GetValue(0) < 1, fact("g").GetValue(0)
+medium.PhaseFunction = "Henyey-Greenstein"
+medium.PhaseTable = None
+assert fact("phase_cosine") is None and fact("g").GetValue(0) == 0.5

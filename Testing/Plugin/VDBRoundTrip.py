@@ -62,11 +62,12 @@ assert servermanager.Fetch(broken).GetNumberOfCells() == 0
 series.UpdatePipeline(series.TimestepValues[0])
 assert servermanager.Fetch(series).GetNumberOfCells() == 9 * 6 * 7
 
-# A medium keeps its mean cosine.
-medium = ParticipatingMedium(Input=cells, Preset=1)
+# A medium keeps its phase function.
+medium = ParticipatingMedium(Input=cells, Preset=1, PhaseFunction="Schlick")
 medium.UpdatePipeline()
 g = servermanager.Fetch(medium).GetFieldData().GetArray("g").GetValue(0)
 SaveData(os.path.join(folder, "medium.vdb"), proxy=medium)
 again = OpenDataFile(os.path.join(folder, "medium.vdb"))
 again.UpdatePipeline()
 assert g != 0 and servermanager.Fetch(again).GetFieldData().GetArray("g").GetValue(0) == g
+assert servermanager.Fetch(again).GetFieldData().GetAbstractArray("phase_function").GetValue(0) == "schlick"

@@ -3,6 +3,7 @@
 #include "Common/LightTransportData.h"
 #include "IO/VDB/VDBGeometry.h"
 #include "IO/VDB/VDBGrid.h"
+#include "Numerics/NumberText.h"
 
 #include "vtkDataObject.h"
 #include "vtkDoubleArray.h"
@@ -15,7 +16,10 @@
 #include "vtkUnsignedCharArray.h"
 
 #include <algorithm>
+#include <cstdlib>
 #include <iterator>
+#include <sstream>
+#include <string>
 #include <tuple>
 #include <vector>
 
@@ -134,12 +138,40 @@ struct MediumFact
   const char* Field;
   const char* Key;
 };
-constexpr MediumFact MediumFacts[] = { { "g", "medium_g" } };
+constexpr MediumFact MediumFacts[] = { { "g", "medium_g" }, { "phase_function", "medium_phase_function" },
+  { "phase_second_g", "medium_phase_second_g" }, { "phase_first_part", "medium_phase_first_part" } };
+/// Of any number of rows, for which OpenVDB has no type.
+constexpr MediumFact MediumTables[] = { { "phase_cosine", "medium_phase_cosine" },
+  { "phase_value", "medium_phase_value" } };
+
+/// Numbers with all of their digits, a space between.
+std::string TextOf(vtkDataArray* array)
+{
+  std::string text;
+  for (vtkIdType i = 0; i < array->GetNumberOfValues(); ++i)
+  {
+    const int components = array->GetNumberOfComponents();
+    text += (i > 0 ? " " : "") + Text("%.17g", array->GetComponent(i / components, static_cast<int>(i % components)));
+  }
+  return text;
+}
+
+std::vector<double> NumbersOf(const std::string& text)
+{
+  std::vector<double> numbers;
+  std::istringstream words(text);
+  for (std::string word; words >> word;)
+  {
+    numbers.push_back(std::strtod(word.c_str(), nullptr)); // of what is no number: 0, which is a bad table then
+  }
+  return numbers;
+}
 
 bool IsMediumFact(const std::string& key)
 {
-  return std::any_of(
-    std::begin(MediumFacts), std::end(MediumFacts), [&](const MediumFact& fact) { return key == fact.Key; });
+  const auto is = [&](const MediumFact& fact) { return key == fact.Key; };
+  return std::any_of(std::begin(MediumFacts), std::end(MediumFacts), is) ||
+    std::any_of(std::begin(MediumTables), std::end(MediumTables), is);
 }
 }
 
@@ -179,6 +211,13 @@ void AddMediumFacts(vtkDataObject* image, const MetaMap& file)
       AddOne(image, fact.Field, *value);
     }
   }
+  for (const MediumFact& table : MediumTables)
+  {
+    if (const auto text = file.getMetadata<StringMetadata>(table.Key))
+    {
+      AddFact(image, table.Field, NumbersOf(text->value()));
+    }
+  }
 }
 
 void NoteMediumFacts(MetaMap& file, vtkFieldData* field)
@@ -188,6 +227,13 @@ void NoteMediumFacts(MetaMap& file, vtkFieldData* field)
     if (vtkAbstractArray* array = field->GetAbstractArray(fact.Field))
     {
       InsertOne(file, fact.Key, array);
+    }
+  }
+  for (const MediumFact& table : MediumTables)
+  {
+    if (vtkDataArray* array = field->GetArray(table.Field))
+    {
+      file.insertMeta(table.Key, StringMetadata(TextOf(array)));
     }
   }
 }

@@ -23,7 +23,8 @@ void AddMetadata(vtkDataObject* image, const std::string& prefix, const openvdb:
 /// describes the file that it was in.
 void RestoreMetadata(openvdb::MetaMap& map, vtkFieldData* field, const std::string& prefix);
 
-/// Field data that define a medium beside its cells, `g`, and what they are in a file: metadata `medium_g`.
+/// Field data that define a medium beside its cells, `g`, `phase_function` and those that go with it, and what they are
+/// in a file: metadata of the same names after `medium_`, the rows of a table as a text.
 void AddMediumFacts(vtkDataObject* image, const openvdb::MetaMap& file);
 void NoteMediumFacts(openvdb::MetaMap& file, vtkFieldData* field);
 }

@@ -401,6 +401,7 @@ LightField SolveParallel(Device& device, const Medium& medium, const Illuminatio
   const PropagationSettings& settings, const Monitor& monitor, std::size_t temporaryBytes)
 {
   Check(medium);
+  CheckPublishedPhase(medium); // before channels become one
   Check(illumination);
   const SceneChannels channels(medium, TraitsOf(medium), illumination);
   return SolveChannels(settings.leaveOut, channels, medium, illumination,

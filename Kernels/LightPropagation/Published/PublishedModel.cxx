@@ -1,5 +1,6 @@
 #include "LightPropagation/Published/PublishedModel.h"
 
+#include "Device/Errors.h"
 #include "Light/LeftOut.h"
 #include "LightPropagation/Convergence.h"
 #include "Medium/BoxFaces.h"
@@ -95,7 +96,7 @@ std::vector<std::array<Rgb, 3>> BoundaryOf(
   return boundary;
 }
 
-/// A patch of the sphere small enough that the phase function is constant on it.
+/// A patch of the sphere, a small part of a stored direction's cell.
 struct Patch
 {
   glm::dvec3 omega;
@@ -113,18 +114,43 @@ std::vector<Patch> Patches(const std::vector<std::array<double, 3>>& stored)
   return patches;
 }
 
-double HenyeyGreenstein(double g, double cosine)
+/// Means of a phase function over patches of the sphere, by the angle between the light's direction and the patch:
+/// exact for what a ring about that direction holds, as wide as a round patch of the same size. So a peak that is
+/// narrower than a patch has its power.
+class PatchMeans
 {
-  const double x = 1.0 + g * g - 2.0 * g * cosine;
-  return (1.0 - g * g) / (FourPi * x * std::sqrt(x));
-}
+public:
+  PatchMeans(const PhaseFunction& function, double solidAngle)
+  {
+    const double radius = std::sqrt(solidAngle / Pi);
+    for (int row = 0; row <= Rows + 1; ++row)
+    {
+      const double angle = 2.0 * std::asin(std::min(1.0, static_cast<double>(row) / Rows));
+      const double inner = std::cos(std::max(angle - radius, 0.0)), outer = std::cos(std::min(angle + radius, Pi));
+      this->Means.push_back((function.Below(inner) - function.Below(outer)) / (2.0 * Pi * (inner - outer)));
+    }
+  }
+
+  /// 1/sr
+  double At(double cosine) const
+  {
+    const double place = Rows * std::sqrt(std::max(0.5 * (1.0 - cosine), 0.0)); // by sin(angle/2)
+    const int row = std::min(static_cast<int>(place), static_cast<int>(Rows));
+    return this->Means[row] + (place - row) * (this->Means[row + 1] - this->Means[row]);
+  }
+
+private:
+  static constexpr int Rows = 4096;
+  std::vector<double> Means;
+};
 
 /// F^{i,d} / |Omega^d| of Eq. (5) for all stored directions d (rows) and all propagation directions i: the integral of
 /// the phase function over both cells (numerics.md, Eq. (12)).
 std::vector<std::vector<double>> ScatteringFactors(
-  double g, const DirectionSet& set, const std::vector<std::array<double, 3>>& stored)
+  const PhaseFunction& function, const DirectionSet& set, const std::vector<std::array<double, 3>>& stored)
 {
   const std::vector<Patch> patches = Patches(stored);
+  const PatchMeans means(function, FourPi / static_cast<double>(patches.size()));
   std::vector<std::vector<double>> factors(stored.size(), std::vector<double>(set.directions.size(), 0.0));
   std::vector<double> solidAngle(stored.size(), 0.0);
   std::vector<double> cellSize(set.directions.size(), 0.0);
@@ -134,13 +160,13 @@ std::vector<std::vector<double>> ScatteringFactors(
     double all = 0.0;
     for (const Patch& to : patches)
     {
-      const double p = to.weight * HenyeyGreenstein(g, glm::dot(from.omega, to.omega));
+      const double p = to.weight * means.At(glm::dot(from.omega, to.omega));
       scattered[to.stored] += p;
       all += p;
     }
     for (std::size_t d = 0; d < stored.size(); ++d)
     {
-      factors[d][i] += from.weight * scattered[d] / all; // a forward peak narrower than a patch keeps its power
+      factors[d][i] += from.weight * scattered[d] / all; // rings are not quite patches
     }
     cellSize[i] += from.weight;
   };
@@ -222,10 +248,29 @@ std::vector<std::string> LeftOutAsPublished(const Medium& medium, const MediumTr
   return words;
 }
 
+std::string WhyNotPublished(const Medium& medium)
+{
+  const PhaseOfMedium& phase = medium.phase;
+  return phase.Varies() ? "the mean cosine g differs between voxels, and the published scheme has one phase function"
+    : phase.HasColour() ? "the phase function (g) differs between channels, and the published scheme has one for all"
+                        : "";
+}
+
+void CheckPublishedPhase(const Medium& medium)
+{
+  const std::string why = WhyNotPublished(medium);
+  if (!why.empty())
+  {
+    throw InvalidInput("This medium cannot be solved as published: " + why +
+      ". Take the conservative scheme (Scheme 1), or give the medium one.");
+  }
+}
+
 PublishedModel::PublishedModel(
   const Medium& medium, const Illumination& illumination, const PropagationSettings& settings, int channels)
 {
   Check(medium);
+  CheckPublishedPhase(medium);
   Check(illumination);
   Check(settings);
   this->ChannelCount = channels == 3 || medium.Channels() == 3 || !ColourOf(illumination).IsGrey() ? 3 : 1;
@@ -250,7 +295,7 @@ PublishedModel::PublishedModel(
   this->Coefficients.push_back(fluence);
   if (!this->Isotropic)
   {
-    for (std::vector<double>& row : ScatteringFactors(medium.phase.MeanCosine(0, 0), this->Set, this->Sources))
+    for (std::vector<double>& row : ScatteringFactors(medium.phase.OfChannel(0), this->Set, this->Sources))
     {
       this->Coefficients.push_back(std::move(row));
     }

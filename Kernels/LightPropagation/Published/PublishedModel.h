@@ -9,6 +9,7 @@
 
 #include <array>
 #include <chrono>
+#include <string>
 #include <vector>
 
 namespace tyndall
@@ -25,8 +26,8 @@ class PublishedModel
 {
 public:
   /// @param channels  3: as if something had colour; 1: as the scene needs
-  /// @throws InvalidInput what Check() of medium, illumination and settings throw; directions that are not a square
-  /// number
+  /// @throws InvalidInput what Check() of medium, illumination and settings throw, and CheckPublishedPhase; directions
+  /// that are not a square number
   PublishedModel(
     const Medium& medium, const Illumination& illumination, const PropagationSettings& settings, int channels = 1);
 
@@ -70,6 +71,12 @@ private:
   std::vector<int> NearestSource;
   std::vector<std::vector<double>> Coefficients;
 };
+
+/// Why the published scheme cannot solve a medium, in words: where its phase function varies by voxel or channel. Empty
+/// where it can.
+std::string WhyNotPublished(const Medium& medium);
+/// @throws InvalidInput with that
+void CheckPublishedPhase(const Medium& medium);
 
 /// `count` directions spread evenly over the sphere: the cells of a cube's faces where count is 6 n^2, else Fibonacci
 /// points.

@@ -295,6 +295,7 @@ LightField SolveSequential(
   const Medium& medium, const Illumination& illumination, const PropagationSettings& settings, const Monitor& monitor)
 {
   Check(medium);
+  CheckPublishedPhase(medium); // before channels become one
   Check(illumination);
   const MediumTraits traits = TraitsOf(medium);
   const SceneChannels channels(medium, traits, illumination);

@@ -40,7 +40,7 @@ void Check(const Material& material, const std::string& name)
         "1e37: " +
         Text("%.6g", material.sigma_a[c]) + " and " + Text("%.6g", material.sigma_s[c]) + ".");
   }
-  Require(std::abs(material.g) < 1.0,
+  Require(std::abs(static_cast<float>(material.g)) < 1.0f,
     name + " has the mean cosine " + std::to_string(material.g) + "; it must lie between -1 and 1.");
 }
 
@@ -91,12 +91,13 @@ void CheckSettings(const RefractiveMediumSettings& settings, const std::vector<S
   CheckPerturbation(settings.perturbation, solids);
 }
 
-/// @param indexVaries  whether there is an index to smooth and take the gradient of
-void CheckMemory(const Device& device, const RefractiveMediumSettings& settings, int components, bool indexVaries)
+/// @param coefficients  of a voxel: sigma_a, sigma_s and, where it varies, g
+/// @param indexVaries   whether there is an index to smooth and take the gradient of
+void CheckMemory(const Device& device, const RefractiveMediumSettings& settings, int coefficients, bool indexVaries)
 {
   const std::array<int, 3>& size = settings.grid.size;
   const double voxels = static_cast<double>(size[0]) * size[1] * size[2];
-  const int ofResult = static_cast<int>(sizeof(float)) * (1 + 2 * components + (indexVaries ? 4 : 0));
+  const int ofResult = static_cast<int>(sizeof(float)) * (1 + coefficients + (indexVaries ? 4 : 0));
   const int onDevice = static_cast<int>(sizeof(float)) * (indexVaries && settings.filterSize > 1 ? 2 : 1);
   const std::string box = "A box of " + std::to_string(size[0]) + " x " + std::to_string(size[1]) + " x " +
     std::to_string(size[2]) + " voxels (SampleDimensions)";
@@ -120,68 +121,49 @@ bool IsGrey(const Material& material)
   return grey(material.sigma_a) && grey(material.sigma_s);
 }
 
-double MeanOf(const Rgb& rgb)
+/// Whether materials that scatter have different mean cosines.
+/// @param g  where they have not, the one they have; unchanged where none scatters
+bool MeanCosineVaries(const std::vector<const Material*>& materials, double& g)
 {
-  return (rgb[0] + rgb[1] + rgb[2]) / 3.0;
-}
-
-/// Give materials one g. @return whether they had several
-bool ShareMeanCosine(std::vector<Material*> materials, double& shared)
-{
-  materials.erase(std::remove_if(materials.begin(), materials.end(),
-                    [](const Material* material) { return MeanOf(material->sigma_s) == 0.0; }),
-    materials.end());
-  if (materials.empty())
-  {
-    return false;
-  }
-  shared = materials[0]->g;
-  const bool same =
-    std::all_of(materials.begin(), materials.end(), [&](const Material* material) { return material->g == shared; });
-  if (same)
-  {
-    return false;
-  }
-  double sum = 0.0;
-  double weight = 0.0;
+  const Material* first = nullptr;
   for (const Material* material : materials)
   {
-    sum += material->g * MeanOf(material->sigma_s);
-    weight += MeanOf(material->sigma_s);
-  }
-  shared = sum / weight;
-  for (Material* material : materials)
-  {
-    for (double& coefficient : material->sigma_s)
+    const bool scatters = *std::max_element(material->sigma_s.begin(), material->sigma_s.end()) > 0.0;
+    if (scatters && first && material->g != first->g)
     {
-      coefficient *= (1.0 - material->g) / (1.0 - shared);
+      return true;
     }
+    first = scatters && !first ? material : first;
   }
-  return true;
+  g = first ? first->g : g;
+  return false;
 }
 
 /// Mixes the materials in each voxel, slab by slab.
 class Mixer
 {
 public:
-  /// @param index  filled with n, not smoothed
-  Mixer(Device& device, const std::vector<Solid>& solids, const Material& outside,
-    const RefractiveMediumSettings& settings, Buffer<float>& index, RefractiveMedium& result)
+  /// @param variedG  whether materials that scatter have different mean cosines
+  /// @param index    filled with n, not smoothed
+  Mixer(Device& device, const std::vector<Solid>& solids, const RefractiveMediumSettings& settings, bool variedG,
+    Buffer<float>& index, RefractiveMedium& result)
     : TheDevice(device)
     , Solids(solids)
-    , Outside(outside)
     , Settings(settings)
+    , VariedG(variedG)
     , Index(index)
     , Result(result)
   {
     const bool noise = settings.perturbation.index > 0.0 || settings.perturbation.scattering > 0.0;
-    const std::string options = Define("CHANNELS", result.components) + Define("NOISE", noise);
+    const std::string options =
+      Define("CHANNELS", result.components) + Define("NOISE", noise) + Define("VARIED_G", variedG);
     this->AddObject = device.Kernel("add_object", kernel_source::Materials, options);
     this->AddOutside = device.Kernel("add_outside", kernel_source::Materials, options);
     const std::size_t voxels = settings.grid.VoxelCount();
     result.occupancy.resize(voxels);
     result.sigma_a.resize(voxels * result.components);
     result.sigma_s.resize(voxels * result.components);
+    result.gByVoxel.resize(variedG ? voxels * result.components : 0);
     index.Fill(0.0f);
   }
 
@@ -208,10 +190,15 @@ private:
       this->Covered = Buffer<float>(this->TheDevice, voxels, "occupancy");
       this->SigmaA = Buffer<float>(this->TheDevice, values, "sigma_a");
       this->SigmaS = Buffer<float>(this->TheDevice, values, "sigma_s");
+      this->G = Buffer<float>(this->TheDevice, this->VariedG ? values : 0, "g");
     }
     this->Covered.Fill(0.0f);
     this->SigmaA.Fill(0.0f);
     this->SigmaS.Fill(0.0f);
+    if (this->VariedG)
+    {
+      this->G.Fill(0.0f);
+    }
   }
 
   void Add(const SamplesInside& inside)
@@ -223,18 +210,22 @@ private:
     material.frequency = static_cast<float>(1.0 / noise.size);
     material.seed = noise.seed;
     With(this->AddObject, this->SlabOf(inside), material, inside.counts, this->Covered, this->Index, this->SigmaA,
-      this->SigmaS);
+      this->SigmaS, this->G);
     this->Launch(this->AddObject, inside);
   }
 
   void End(const SamplesInside& inside)
   {
-    With(this->AddOutside, this->SlabOf(inside), MaterialOf(this->Outside), this->Covered, this->Index, this->SigmaA,
-      this->SigmaS);
+    With(this->AddOutside, this->SlabOf(inside), MaterialOf(this->Settings.outside), this->Covered, this->Index,
+      this->SigmaA, this->SigmaS, this->G);
     this->Launch(this->AddOutside, inside);
     this->Copy(this->Covered, inside, 1, this->Result.occupancy);
     this->Copy(this->SigmaA, inside, this->Result.components, this->Result.sigma_a);
     this->Copy(this->SigmaS, inside, this->Result.components, this->Result.sigma_s);
+    if (this->VariedG)
+    {
+      this->Copy(this->G, inside, this->Result.components, this->Result.gByVoxel);
+    }
   }
 
   static MaterialInfo MaterialOf(const Material& material)
@@ -243,6 +234,7 @@ private:
     info.absorption = Float4(Vector(material.sigma_a));
     info.scattering = Float4(Vector(material.sigma_s));
     info.n = static_cast<float>(material.n);
+    info.g = static_cast<float>(material.g);
     return info;
   }
 
@@ -277,11 +269,11 @@ private:
 
   Device& TheDevice;
   const std::vector<Solid>& Solids;
-  const Material& Outside;
   const RefractiveMediumSettings& Settings;
+  const bool VariedG;
   Buffer<float>& Index;
   RefractiveMedium& Result;
-  Buffer<float> Covered, SigmaA, SigmaS; ///< of a slab
+  Buffer<float> Covered, SigmaA, SigmaS, G; ///< of a slab
   cl::Kernel AddObject, AddOutside;
 };
 
@@ -409,30 +401,26 @@ Grid GridAround(const std::vector<Solid>& solids, const std::array<int, 3>& size
 }
 
 RefractiveMedium Voxelize(
-  Device& device, std::vector<Solid> solids, const RefractiveMediumSettings& settings, const Monitor& monitor)
+  Device& device, const std::vector<Solid>& solids, const RefractiveMediumSettings& settings, const Monitor& monitor)
 {
   const auto start = std::chrono::steady_clock::now();
   CheckSettings(settings, solids);
   RefractiveMedium result;
   result.device = device.Name();
-  Material outside = settings.outside;
-  std::vector<Material*> materials = { &outside };
-  for (Solid& solid : solids)
+  std::vector<const Material*> materials = { &settings.outside };
+  for (const Solid& solid : solids)
   {
     materials.push_back(&solid.material);
   }
-  if (ShareMeanCosine(materials, result.g))
-  {
-    result.leftOut.push_back("a g of each material: there is one g, and sigma_s (1 - g) is that of the material");
-  }
+  const bool variedG = MeanCosineVaries(materials, result.g);
   const bool grey = std::all_of(materials.begin(), materials.end(), [](const Material* m) { return IsGrey(*m); });
   result.components = grey ? 1 : 3;
   const bool even = IndexIsEven(solids, settings);
-  CheckMemory(device, settings, result.components, !even);
+  CheckMemory(device, settings, (variedG ? 3 : 2) * result.components, !even);
 
   const std::vector<MeshTopology> topologies = CheckMeshes(solids, settings, OfPart(monitor, 0.0, 0.2));
   Buffer<float> index(device, settings.grid.VoxelCount(), "ior");
-  Mixer mixer(device, solids, outside, settings, index, result);
+  Mixer mixer(device, solids, settings, variedG, index, result);
   FillVoxels(device, solids, topologies, settings, mixer, OfPart(monitor, 0.2, 0.8), result);
 
   const bool empty =
@@ -445,7 +433,7 @@ RefractiveMedium Voxelize(
   if (empty || even)
   {
     result.leftOut.push_back(
-      "smoothing of n, ior_gradient: the refractive index is " + std::to_string(outside.n) + " everywhere");
+      "smoothing of n, ior_gradient: the refractive index is " + std::to_string(settings.outside.n) + " everywhere");
   }
   else
   {

@@ -62,7 +62,9 @@ struct RefractiveMedium
   std::vector<float> sigma_a;     ///< 1/length, `components` per voxel
   std::vector<float> sigma_s;
   int components = 1; ///< 3 where any material has colour
-  double g = 0.0;     ///< of all voxels, see below
+  double g = 0.0;     ///< mean cosine of the phase function of all voxels; not used where gByVoxel is there
+  /// `components` per voxel, of voxels that do not scatter 0; empty where materials that scatter have one g.
+  std::vector<float> gByVoxel;
   std::vector<std::string> leftOut;
   std::vector<std::string> warnings; ///< of what is odd about a mesh, for the user
   std::string device;
@@ -78,16 +80,16 @@ Grid GridAround(const std::vector<Solid>& solids, const std::array<int, 3>& size
 /// Voxelises solids (Pfeuti 2009, section 3.1.2): samples inside are counted, each voxel gets the mean of its materials
 /// weighted by their parts of it, n is smoothed, and its gradient taken. Where solids overlap, the last one counts.
 ///
-/// A medium has one g. Where materials that scatter have different ones, g is their mean weighed by sigma_s, and each
-/// sigma_s is scaled such that sigma_s (1 - g) stays what it is.
+/// Where materials that scatter have different mean cosines g, a voxel's is their mean weighted by part and sigma_s
+/// (numerics.md, Eq. (3e)).
 ///
 /// A mesh that encloses regions more than once or inside out, whose edges disagree about what is outside, or that has
 /// triangles without area, is voxelised by parity and gives a warning. Every sample is examined: a single one where it
 /// shows is enough.
 /// @throws InvalidInput  where a mesh is empty or open (names the count of boundary edges and the place of the first),
 ///   a number is out of its range, or a voxel's edge beyond 1e-18 to 1e18 lengths
-/// @throws DeviceError   at once, if 12 to 44 bytes per voxel do not fit the machine's memory or 4 to 8 more the
+/// @throws DeviceError   at once, if 12 to 56 bytes per voxel do not fit the machine's memory or 4 to 8 more the
 ///   device's (on a CPU the same memory); they do not grow with the number of solids
-RefractiveMedium Voxelize(
-  Device& device, std::vector<Solid> solids, const RefractiveMediumSettings& settings, const Monitor& monitor = {});
+RefractiveMedium Voxelize(Device& device, const std::vector<Solid>& solids, const RefractiveMediumSettings& settings,
+  const Monitor& monitor = {});
 }

@@ -3,14 +3,17 @@
 // The host gives
 //   CHANNELS  1 or 3, of sigma_a and sigma_s
 //   NOISE     1 where materials are perturbed
+//   VARIED_G  1 where materials scatter with different mean cosines
 
 #include "Refraction/Index/GradientNoise.cl"
 #include "Refraction/Voxelization/MaterialsShared.h"
 
 // A work-item per voxel (i of the slab), a row of work-items per run of the slab.
 
+// The mean cosine is a mean weighted by sigma_s (numerics.md, Eq. (3e)), kept up to date with every material, so that a
+// voxel of one has its very g.
 inline void add_material(float part, const MaterialInfo* material, ulong i, ulong voxel, __global float* ior,
-  __global float* sigma_a, __global float* sigma_s)
+  __global float* sigma_a, __global float* sigma_s, __global float* g)
 {
   const float a[3] = { material->absorption.x, material->absorption.y, material->absorption.z };
   const float s[3] = { material->scattering.x, material->scattering.y, material->scattering.z };
@@ -19,6 +22,11 @@ inline void add_material(float part, const MaterialInfo* material, ulong i, ulon
   {
     sigma_a[i * CHANNELS + c] += part * a[c];
     sigma_s[i * CHANNELS + c] += part * s[c];
+#if VARIED_G
+    const float weight = part * s[c];
+    g[i * CHANNELS + c] +=
+      weight > 0.0f ? (material->g - g[i * CHANNELS + c]) * (weight / sigma_s[i * CHANNELS + c]) : 0.0f;
+#endif
   }
 }
 
@@ -27,7 +35,7 @@ inline void add_material(float part, const MaterialInfo* material, ulong i, ulon
 //   covered   samples in any material so far
 //   ior       of the whole grid; the other arrays are the slab's
 __kernel void add_object(MaterialSlab slab, MaterialInfo given, __global const ushort* inside, __global float* covered,
-  __global float* ior, __global float* sigma_a, __global float* sigma_s)
+  __global float* ior, __global float* sigma_a, __global float* sigma_s, __global float* g)
 {
   if (get_global_id(0) >= slab.length)
   {
@@ -49,12 +57,12 @@ __kernel void add_object(MaterialSlab slab, MaterialInfo given, __global const u
   }
 #endif
   covered[i] += number;
-  add_material(number / slab.samples, &material, i, voxel, ior, sigma_a, sigma_s);
+  add_material(number / slab.samples, &material, i, voxel, ior, sigma_a, sigma_s, g);
 }
 
 // The same for what no mesh covers; `covered` becomes the part that is.
 __kernel void add_outside(MaterialSlab slab, MaterialInfo material, __global float* covered, __global float* ior,
-  __global float* sigma_a, __global float* sigma_s)
+  __global float* sigma_a, __global float* sigma_s, __global float* g)
 {
   if (get_global_id(0) >= slab.length)
   {
@@ -64,5 +72,5 @@ __kernel void add_outside(MaterialSlab slab, MaterialInfo material, __global flo
   const ulong voxel = slab.first + get_global_id(1) * slab.stride + get_global_id(0);
   const float number = covered[i];
   covered[i] = number / slab.samples;
-  add_material((slab.samples - number) / slab.samples, &material, i, voxel, ior, sigma_a, sigma_s);
+  add_material((slab.samples - number) / slab.samples, &material, i, voxel, ior, sigma_a, sigma_s, g);
 }

@@ -21,5 +21,6 @@ typedef struct
   float scatteringNoise; ///< the same for sigma_s, relative
   float frequency;       ///< 1 / size of the noise's features, 1/length
   uint seed;
+  float g; ///< mean cosine of the phase function
 } MaterialInfo;
 SHARED_END
