@@ -13,7 +13,7 @@ constexpr float SameExtinction = 2e-7f; ///< relative: what rounding to float le
 struct Row
 {
   const Medium& medium;
-  float similarity;
+  bool similarity;
   std::size_t first;
   int size;
 
@@ -65,8 +65,9 @@ struct Row
       std::array<float, 3> sigma_t;
       for (int c = 0; c < 3; ++c)
       {
-        sigma_t[c] = this->medium.sigma_a.At(this->first + x, c) +
-          static_cast<float>(this->medium.sigma_s.At(this->first + x, c) * this->similarity);
+        const std::size_t voxel = this->first + x;
+        sigma_t[c] = this->similarity ? this->medium.TransportSigmaT(voxel, c)
+                                      : this->medium.sigma_a.At(voxel, c) + this->medium.sigma_s.At(voxel, c);
       }
       const float tolerance = SameExtinction * sigma_t[0];
       grey = std::abs(sigma_t[1] - sigma_t[0]) <= tolerance && std::abs(sigma_t[2] - sigma_t[0]) <= tolerance;
@@ -125,7 +126,7 @@ private:
 };
 }
 
-MediumTraits TraitsOf(const Medium& medium, double similarity)
+MediumTraits TraitsOf(const Medium& medium, bool similarity)
 {
   MediumTraits traits;
   FilledBox filled(medium.grid);
@@ -134,7 +135,7 @@ MediumTraits TraitsOf(const Medium& medium, double similarity)
   {
     for (int y = 0; y < n[1]; ++y)
     {
-      const Row row = { medium, static_cast<float>(similarity), medium.grid.IndexOf({ 0, y, z }), n[0] };
+      const Row row = { medium, similarity, medium.grid.IndexOf({ 0, y, z }), n[0] };
       const bool absorbs = row.Largest(medium.sigma_a) > 0.0f;
       const bool scatters = row.Largest(medium.sigma_s) > 0.0f;
       const bool emits = row.Largest(medium.emission) > 0.0f;
@@ -145,7 +146,8 @@ MediumTraits TraitsOf(const Medium& medium, double similarity)
       traits.absorbs = traits.absorbs || absorbs;
       traits.scatters = traits.scatters || scatters;
       traits.emits = traits.emits || emits;
-      traits.grey = traits.grey && row.IsGrey(medium.sigma_a) && row.IsGrey(medium.sigma_s);
+      traits.grey =
+        traits.grey && !medium.phase.HasColour() && row.IsGrey(medium.sigma_a) && row.IsGrey(medium.sigma_s);
       traits.greyExtinction = traits.greyExtinction && (traits.grey || row.IsGreyExtinction());
       if (emits && medium.emission.components == 3)
       {

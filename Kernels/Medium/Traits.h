@@ -14,12 +14,12 @@ struct MediumTraits
   bool scatters = false;      ///< sigma_s
   bool emits = false;         ///< emission
   bool isotropic = true;      ///< g is 0, or nothing scatters
-  bool grey = true;           ///< sigma_a and sigma_s are the same in all channels (to 2e-7)
+  bool grey = true;           ///< sigma_a, sigma_s (to 2e-7) and the phase function are the same in all channels
   bool greyExtinction = true; ///< their sum is; always where `grey` is
   CommonColour emission;
   VoxelBox filled; ///< the smallest box outside of which there is no medium: neither sigma_t nor emission
 };
 
-/// @param similarity  1, or 1 - g where sigma_s (1 - g) stands for sigma_s in sigma_t
-MediumTraits TraitsOf(const Medium& medium, double similarity = 1.0);
+/// @param similarity  sigma_s (1 - g) stands for sigma_s in sigma_t
+MediumTraits TraitsOf(const Medium& medium, bool similarity = false);
 }

@@ -84,10 +84,17 @@ std::vector<std::string> LeftOutOf(const TransportParts& parts, const IterationR
 std::vector<std::string> Words(const TransportParts& parts, const IterationResult& found, bool accelerated)
 {
   std::vector<std::string> words;
-  const double g = parts.Problem.TheMedium().phase.MeanCosine(0, 0);
-  if (g != 0.0 && parts.Problem.Traits().scatters)
+  const PhaseOfMedium& phase = parts.Problem.TheMedium().phase;
+  const int degree = parts.Problem.Scattering().Degree();
+  if (degree > 0)
   {
-    words.push_back("anisotropy: solved as isotropic scattering with sigma_s (1 - g), g = " + std::to_string(g) +
+    words.push_back("angular moments above degree " + std::to_string(degree) +
+      ": what is scattered beyond them goes straight on (delta-M)");
+  }
+  else if (!phase.IsIsotropic() && parts.Problem.Traits().scatters)
+  {
+    words.push_back("anisotropy: solved as isotropic scattering with sigma_s (1 - g), g = " +
+      (phase.Varies() ? std::string("that of each voxel") : std::to_string(phase.MeanCosine(0, 0))) +
       " (similarity relation)");
   }
   if (parts.Problem.Settings().leaveOut)

@@ -23,6 +23,12 @@ public:
     : TheMedium(medium)
   {
     this->TheMedium.grid = coarsening.Coarse();
+    if (const Field g = this->TheMedium.phase.G(); g.values)
+    {
+      this->G = coarsening.Average(g, this->TheMedium.sigma_s);
+      const auto components = static_cast<int>(this->G.size() / coarsening.Coarse().VoxelCount());
+      this->TheMedium.phase = this->TheMedium.phase.WithG({ this->G.data(), components });
+    }
     int next = 0;
     for (Field* field : { &this->TheMedium.sigma_a, &this->TheMedium.sigma_s, &this->TheMedium.emission })
     {
@@ -42,6 +48,7 @@ public:
 private:
   Medium TheMedium;
   std::array<std::vector<float>, 3> Arrays;
+  std::vector<float> G;
 };
 
 /// Another number of directions a face: fewer, but for a single one; rows are even in number where `directionsPerFace`

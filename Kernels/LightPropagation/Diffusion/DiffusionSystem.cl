@@ -182,8 +182,8 @@ static float remainder_of_face(
   const float tau0 = h * arrays->sigma_t[i], tau1 = h * arrays->sigma_t[j];
   const float skin = layout->linear ? contrast(fmax(tau0, tau1), fmin(tau0, tau1)) : 0.0f;
   const float transport_weight = weight_of_transport(layout, tau, absorbing) * (1.0f - skin);
-  const float model = spread * (arrays->model[i] - arrays->model[j]) + passes * drive_through(layout, arrays, d, i, j);
-  return transport_weight > 1e-12f ? transport_weight * (net - model) : 0.0f;
+  const float found = MOMENTS ? net - passes * drive_through(layout, arrays, d, i, j) : net;
+  return transport_weight > 1e-12f ? transport_weight * (found - spread * (arrays->model[i] - arrays->model[j])) : 0.0f;
 }
 
 // Power through a face of the box, out less in, that a sweep finds by the model (numerics.md, Eq. (59));
@@ -200,7 +200,10 @@ static float model_of_boundary(
   const float area = face_area(layout, axis);
   const float driven = drive_out(layout, arrays, d, i);
   const float light = arrays->model[i] + driven;
-  *dark = passes * (driven - incoming / a) * area;
+  *dark = -passes / a * incoming * area;
+#if MOMENTS
+  *dark += passes * driven * area;
+#endif
   const float net = passes * (light - incoming / a);
   if (!layout->linear)
   {

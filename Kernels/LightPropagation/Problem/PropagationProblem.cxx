@@ -28,7 +28,7 @@ PropagationProblem::PropagationProblem(
   this->Narrowing = medium.grid.VoxelVolume() / wide.grid.VoxelVolume();
   this->TheSettings.directionsPerFace = DirectionsPerFaceFor(settings, this->Unvarying);
   this->TakeUnits(wide, illumination);
-  this->TheTraits = TraitsOf(this->Solved, 1.0 - medium.phase.MeanCosine(0, 0));
+  this->TheTraits = TraitsOf(this->Solved, true);
   this->Reduction.emplace(this->Solved, this->TheTraits, this->SolvedLight);
   this->ChannelCount = this->Reduction->Solved(settings.leaveOut);
   if (this->ChannelCount == 1)
