@@ -16,21 +16,17 @@ ChannelArrays::ChannelArrays(
   , TheDevice(device)
   , Scene(scene)
   , Angles(angles)
+  , ScatteredAway(1.0 - angles.phase.Peak())
 {
-  const double scatteredAway = 1.0 - angles.phase.Peak();
   for (std::size_t i = 0; i < this->Voxels; ++i)
   {
     this->Absorption.push_back(scene.medium.sigma_a.At(i, scene.channel));
-    this->Scattering.push_back(static_cast<float>(scatteredAway * scene.medium.sigma_s.At(i, scene.channel)));
+    this->Scattering.push_back(scene.medium.sigma_s.At(i, scene.channel));
     this->AnyScattering = this->AnyScattering || this->Scattering.back() > 0.0f;
     this->AnyEmission = this->AnyEmission || scene.medium.emission.At(i, scene.channel) > 0.0f;
   }
-  const auto load = [&](const char* what, auto&& value) {
-    return Buffer<float>(device, Planar(this->Layout, 1, value), what);
-  };
-  this->SigmaT =
-    load("sigma_t", [&](std::size_t i, int) { return this->Absorption[i] + this->Scattering[i]; });
-  this->SigmaS = load("sigma_s", [&](std::size_t i, int) { return this->Scattering[i]; });
+  this->SigmaT = this->Load("sigma_t", 1.0, this->ScatteredAway);
+  this->SigmaS = this->Load("sigma_s", 0.0, this->ScatteredAway);
   this->Scale = Buffer<float>(device, this->Voxels, "the sources");
   this->Direct = Buffer<float>(device, this->Voxels, "fluence_direct");
   this->Light.order = Buffer<float>(device, this->Voxels, "fluence of an order");
@@ -43,9 +39,17 @@ ChannelArrays::ChannelArrays(
   }
 }
 
+Buffer<float> ChannelArrays::Load(const char* what, double absorbed, double scattered) const
+{
+  const auto value = [&](std::size_t i, int) {
+    return static_cast<float>(absorbed * this->Absorption[i] + scattered * this->Scattering[i]);
+  };
+  return Buffer<float>(this->TheDevice, Planar(this->Layout, 1, value), what);
+}
+
 std::size_t ChannelArrays::Bytes(std::size_t voxels, bool netFlux)
 {
-  return sizeof(float) * voxels * (7 + (netFlux ? 3 : 0)); // one of them for a lamp
+  return sizeof(float) * voxels * (9 + (netFlux ? 3 : 0)); // three of them for lamps
 }
 
 void ChannelArrays::AddLamps(const Buffer<float>& source, const std::array<bool, 3>& periodic, OrdinatesResult& result,
@@ -56,21 +60,22 @@ void ChannelArrays::AddLamps(const Buffer<float>& source, const std::array<bool,
     return;
   }
   const LampScattering scattering(
-    this->TheDevice, this->Layout.grid, this->Angles.groups, this->Angles.function, this->Angles.phase.Peak());
+    this->TheDevice, this->Layout.grid, this->Angles.groups, this->Angles.function);
+  const Buffer<float> sigma_t = this->Load("sigma_t", 1.0, 1.0), sigma_s = this->Load("sigma_s", 0.0, 1.0);
   const SweepMaker sweeps = [&](const SweepRequest& request) {
     return std::make_unique<SweepInMemory>(
-      this->TheDevice, this->Layout, this->SigmaT, periodic, request, this->Workspace);
+      this->TheDevice, this->Layout, sigma_t, periodic, request, this->Workspace);
   };
   Buffer<float> path(this->TheDevice, this->Layout.Floats(), "the light of a lamp");
   const double all = static_cast<double>(this->Scene.lamps.size());
   for (std::size_t i = 0; i < this->Scene.lamps.size(); ++i)
   {
     path.Fill(0.0f);
-    const UncollidedVolume volume = { this->TheDevice, this->Layout, this->SigmaT, periodic, sweeps,
+    const UncollidedVolume volume = { this->TheDevice, this->Layout, sigma_t, periodic, sweeps,
       { &path, nullptr, nullptr, nullptr } };
     const Monitor ofLamp = OfPart(monitor, i / all, (i + 1) / all);
     this->CountLamp(UncollidedLamp(this->Scene.lamps[i]).AddTo(volume, ofLamp), result.ledger);
-    scattering.Add(this->Scene.lamps[i], path, this->SigmaS, { source, this->Scale, this->Direct, this->Light });
+    scattering.Add(this->Scene.lamps[i], path, sigma_s, { source, this->Scale, this->Direct, this->Light });
   }
 }
 
@@ -84,7 +89,7 @@ void ChannelArrays::CountLamp(const SweepTally& tally, EnergyLedger& ledger)
   this->GoingRound += tally.onTheWay[0];
 }
 
-ChannelArrays::Powers ChannelArrays::PowersOf(const std::vector<float>& values) const
+ChannelArrays::Powers ChannelArrays::PowersOf(const std::vector<float>& values, bool lamps) const
 {
   Powers powers;
   for (std::size_t i = 0; i < this->Voxels; ++i)
@@ -93,7 +98,7 @@ ChannelArrays::Powers ChannelArrays::PowersOf(const std::vector<float>& values) 
     powers.scattered += static_cast<double>(values[i]) * this->Scattering[i];
   }
   const double volume = this->Layout.grid.VoxelVolume();
-  return { powers.absorbed * volume, powers.scattered * volume };
+  return { powers.absorbed * volume, powers.scattered * volume * (lamps ? 1.0 : this->ScatteredAway) };
 }
 
 void ChannelArrays::EmitEvenly(const Buffer<float>& source, EnergyLedger& ledger) const
@@ -117,7 +122,6 @@ void ChannelArrays::EmitEvenly(const Buffer<float>& source, EnergyLedger& ledger
 void ChannelArrays::Read(OrdinatesResult& result) const
 {
   result.fluence = this->Light.fluence.Read();
-  result.direct = this->Direct.Read();
   result.flux = this->Light.flux.Read();
 }
 }

@@ -14,7 +14,7 @@ namespace tyndall
 {
 /// One channel of a medium on a device, with the light that is found in it and what both schemes do alike: the
 /// uncollided light of lamps, and counting. What goes straight on where light is scattered is taken out of sigma_s and
-/// sigma_t (numerics.md, Eq. (D6)).
+/// sigma_t (numerics.md, Eq. (D6)), but of those that uncollided light of lamps meets: that is exact.
 class ChannelArrays
 {
 public:
@@ -36,7 +36,8 @@ public:
   {
     double absorbed = 0.0, scattered = 0.0;
   };
-  Powers PowersOf(const std::vector<float>& values) const;
+  /// @param lamps  whether it is uncollided light of lamps
+  Powers PowersOf(const std::vector<float>& values, bool lamps) const;
   /// Emission of the voxels into every direction. W / (length^3 sr)
   void EmitEvenly(const Buffer<float>& source, EnergyLedger& ledger) const;
   bool Emits() const { return this->AnyEmission; }
@@ -48,15 +49,17 @@ public:
   const VolumeLayout Layout;
   Buffer<float> SigmaT, SigmaS; ///< 1/length
   Buffer<float> Scale;          ///< of the sources of a voxel, 1 at first
-  Buffer<float> Direct;         ///< W / length^2
+  Buffer<float> Direct;         ///< W / length^2, of lamps
   OrdinatesLight Light;
 
 private:
+  Buffer<float> Load(const char* what, double absorbed, double scattered) const;
   void CountLamp(const SweepTally& tally, EnergyLedger& ledger);
 
   Device& TheDevice;
   const OrdinatesScene& Scene;
   const OrdinatesAngles& Angles;
+  double ScatteredAway; ///< part of what is scattered that does not go straight on
   std::vector<float> Absorption, Scattering;
   bool AnyEmission = false, AnyScattering = false;
   double GoingRound = 0.0;

@@ -21,11 +21,10 @@ namespace
 constexpr int TableSize = 1024;
 constexpr int MeansDegree = 256; ///< of moments; a cell's mean has forgotten those beyond
 
-/// The phase function averaged over a cell, less the peak, over the angle from 0 to pi; nowhere negative. 1/sr
-std::vector<float> MeansByAngle(const PhaseFunction& function, double peak, double solidAngle)
+/// The phase function averaged over a cell, over the angle from 0 to pi; nowhere negative. 1/sr
+std::vector<float> MeansByAngle(const PhaseFunction& function, double solidAngle)
 {
   const std::vector<double> moments = function.Moments(MeansDegree), cap = CapMoments(solidAngle, MeansDegree);
-  const double edge = std::max(-1.0, 1.0 - solidAngle / (2.0 * Pi));
   std::vector<float> table;
   for (int i = 0; i < TableSize; ++i)
   {
@@ -36,19 +35,18 @@ std::vector<float> MeansByAngle(const PhaseFunction& function, double peak, doub
     {
       mean += (2.0 * l + 1.0) / (4.0 * Pi) * moments[l] * cap[l] * p[l];
     }
-    const double straight = cosine > edge ? peak / solidAngle : 0.0;
-    table.push_back(static_cast<float>(std::max((mean - straight) / (1.0 - peak), 0.0)));
+    table.push_back(static_cast<float>(std::max(mean, 0.0))); // series have ripples
   }
   return table;
 }
 }
 
 LampScattering::LampScattering(
-  Device& device, const Grid& grid, const OrdinateGroups& groups, const PhaseFunction& function, double peak)
+  Device& device, const Grid& grid, const OrdinateGroups& groups, const PhaseFunction& function)
   : TheDevice(device)
   , TheGrid(grid)
   , GroupCount(groups.Count())
-  , MeanCosine((function.MeanCosine() - peak) / (1.0 - peak))
+  , MeanCosine(function.MeanCosine())
 {
   std::vector<float> omegas;
   for (int g = 0; g < groups.Count(); ++g)
@@ -63,7 +61,7 @@ LampScattering::LampScattering(
   }
   const double solidAngle = 4.0 * Pi / static_cast<double>(groups.TheDirections().size());
   this->Omegas = Buffer<float>(device, omegas, "the directions");
-  this->Table = Buffer<float>(device, MeansByAngle(function, peak, solidAngle), "the phase function");
+  this->Table = Buffer<float>(device, MeansByAngle(function, solidAngle), "the phase function");
 }
 
 void LampScattering::Add(

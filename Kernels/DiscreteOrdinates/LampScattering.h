@@ -19,16 +19,14 @@ struct LampTarget
 };
 
 /// The first scattering of uncollided light, by the phase function itself between a ray and each direction, averaged
-/// over the direction's cell, less the peak that goes straight on (numerics.md, Eq. (D12)). Power and mean cosine are
-/// right, and no source is negative, whatever the terms of later scatterings are.
+/// over the direction's cell (numerics.md, Eq. (D12)). Power and mean cosine are right, and no source is negative,
+/// whatever the terms of later scatterings are.
 ///
 /// Rays come from the lamp's place; of a rectangle from its middle, which is off near it.
 class LampScattering
 {
 public:
-  /// @param peak  part of the light that goes straight on
-  LampScattering(Device& device, const Grid& grid, const OrdinateGroups& groups, const PhaseFunction& function,
-    double peak);
+  LampScattering(Device& device, const Grid& grid, const OrdinateGroups& groups, const PhaseFunction& function);
 
   /// @param path  W length, of the lamp's light in each voxel
   void Add(const Light& lamp, const Buffer<float>& path, const Buffer<float>& sigma_s, const LampTarget& target) const;
@@ -37,7 +35,7 @@ private:
   Device& TheDevice;
   Grid TheGrid;
   int GroupCount;
-  double MeanCosine; ///< of what does not go straight on
+  double MeanCosine;
   Buffer<float> Omegas, Table;
 };
 }

@@ -96,7 +96,7 @@ private:
       this->Result.ledger.Escape(0, face, powers.out[face]);
     }
     this->Result.ledger.Absorb(
-      0, this->Arrays.PowersOf(this->Fluence).absorbed + this->Arrays.PowersOf(this->LampFluence).absorbed);
+      0, this->Arrays.PowersOf(this->Fluence, false).absorbed + this->Arrays.PowersOf(this->LampFluence, true).absorbed);
     this->Result.ledger.LeaveOver(0, this->Arrays.Stranded());
   }
 
@@ -117,6 +117,7 @@ private:
     this->Arrays.Light.flux.Fill(0.0f);
     this->Scattering.Gather(this->Radiance, this->Arrays.Light, {});
     this->Arrays.Read(this->Result);
+    this->Result.direct = this->LampFluence;
     for (std::size_t i = 0; i < this->LampFluence.size(); ++i)
     {
       this->Result.fluence[i] += this->LampFluence[i];

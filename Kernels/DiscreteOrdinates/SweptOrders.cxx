@@ -71,21 +71,26 @@ private:
     if (swept)
     {
       this->SweepAndScatter(this->Scene.incoming, OfPart(monitor, 0.0, 0.5));
-      const std::vector<float> order = this->Arrays.Light.order.Read();
-      this->Arrays.Direct.Write(order.data());
+      this->Result.direct = this->Arrays.Light.order.Read();
     }
-    else if (this->Source.Size() > 0)
+    else
     {
       this->Source.Fill(0.0f);
+      this->Result.direct.assign(this->Arrays.Voxels, 0.0f);
     }
     this->Arrays.AddLamps(this->Out(), this->Settings.periodic, this->Result, OfPart(monitor, 0.5, 1.0));
-    this->Count(this->Arrays.Direct.Read());
+    const std::vector<float> lamps = this->Arrays.Direct.Read();
+    this->Count(this->Arrays.PowersOf(this->Result.direct, false), this->Arrays.PowersOf(lamps, true));
+    for (std::size_t i = 0; i < lamps.size(); ++i)
+    {
+      this->Result.direct[i] += lamps[i];
+    }
   }
 
   void Order(const Monitor& monitor)
   {
     this->SweepAndScatter({}, monitor);
-    this->Count(this->Arrays.Light.order.Read());
+    this->Count(this->Arrays.PowersOf(this->Arrays.Light.order.Read(), false), {});
   }
 
   void SweepAndScatter(const IncomingRadiance& incoming, const Monitor& monitor)
@@ -110,12 +115,10 @@ private:
     this->Source.Fill(0.0f);
   }
 
-  /// @param fluence  of the order, W / length^2
-  void Count(const std::vector<float>& fluence)
+  void Count(const ChannelArrays::Powers& swept, const ChannelArrays::Powers& ofLamps)
   {
-    const ChannelArrays::Powers powers = this->Arrays.PowersOf(fluence);
-    this->Result.ledger.Absorb(0, powers.absorbed);
-    this->GoesOn = powers.scattered + this->OnTheWay;
+    this->Result.ledger.Absorb(0, swept.absorbed + ofLamps.absorbed);
+    this->GoesOn = swept.scattered + ofLamps.scattered + this->OnTheWay;
     this->Result.ledger.LeaveOver(0, this->GoesOn + this->Arrays.Stranded());
     this->Record.Add(this->GoesOn, this->Result.ledger);
   }

@@ -273,7 +273,8 @@ SeparablePhaseFunction::SeparablePhaseFunction(
     Eigen::Map<MatrixXd>(this->Whole.data(), count, count) =
       roots.cwiseInverse().asDiagonal() * repaired * roots.cwiseInverse().asDiagonal();
   }
-  this->PeakPart = settings.truncatesPeak ? PeakBeyond(moments, settings.terms) : 0.0;
+  const bool whole = settings.factorisation == PhaseFactorisation::SingularValues && settings.terms == count;
+  this->PeakPart = settings.truncatesPeak && !whole ? PeakBeyond(moments, settings.terms) : 0.0;
   for (int k = 0; k < basis.values.size(); ++k)
   {
     this->Singular.push_back(std::abs(basis.values[k]));

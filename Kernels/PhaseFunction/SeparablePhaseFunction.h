@@ -30,7 +30,7 @@ struct SeparableSettings
   /// published, where truncation and sampling change both.
   bool repaired = true;
   /// A part of the light goes straight on (delta-M: W. J. Wiscombe, J. Atmos. Sci. 34 (1977)); terms stand for the
-  /// rest.
+  /// rest. Not where singular values are all there: nothing is beyond them.
   bool truncatesPeak = false;
 };
 

@@ -206,17 +206,13 @@ TEST_F(DiscreteOrdinates, HaveTheReflectanceAndTransmittanceOfSlabs)
   int compared = 0;
   for (const ReferenceRow& row : ReadReference("slab_anisotropic"))
   {
-    if (row["tau"] > 1.0 || row["g"] > 0.5)
-    {
-      continue;
-    }
-    LitMedium slab = Slab(64, row["tau"], row["omega"], row["g"]);
+    LitMedium slab = Slab(row["tau"] > 1.0 ? 128 : 32, row["tau"], row["omega"], row["g"]);
     const Fractions found = FractionsOf(slab.SolveOrdinates(this->GetDevice()));
     EXPECT_NEAR(found.reflected, row["R_diffuse"], 1e-3) << row["tau"] << " " << row["omega"] << " " << row["g"];
     EXPECT_NEAR(found.transmitted, row["T_diffuse"], 1e-3) << row["tau"] << " " << row["omega"] << " " << row["g"];
     ++compared;
   }
-  EXPECT_EQ(compared, 4);
+  EXPECT_EQ(compared, 18);
 }
 
 TEST_F(DiscreteOrdinates, HaveTheReflectanceAndTransmittanceOfBeams)
@@ -224,11 +220,7 @@ TEST_F(DiscreteOrdinates, HaveTheReflectanceAndTransmittanceOfBeams)
   int compared = 0;
   for (const ReferenceRow& row : ReadReference("slab_anisotropic"))
   {
-    if (row["tau"] > 1.0)
-    {
-      continue;
-    }
-    LitMedium slab = Slab(64, row["tau"], row["omega"], row["g"]);
+    LitMedium slab = Slab(row["tau"] > 1.0 ? 128 : 32, row["tau"], row["omega"], row["g"]);
     slab.light.faces[4] = {};
     slab.ShineAlong({ std::sqrt(0.75), 0.0, 0.5 }, 2.0);
     const Fractions found = FractionsOf(slab.SolveOrdinates(this->GetDevice()));
@@ -236,7 +228,7 @@ TEST_F(DiscreteOrdinates, HaveTheReflectanceAndTransmittanceOfBeams)
     EXPECT_NEAR(found.transmitted, row["T_mu05"], 2e-3) << row["tau"] << " " << row["omega"] << " " << row["g"];
     ++compared;
   }
-  EXPECT_EQ(compared, 12);
+  EXPECT_EQ(compared, 18);
 }
 
 TEST_F(DiscreteOrdinates, AreOfSecondOrderInSlabsAndOfFirstInCubes)
@@ -294,7 +286,9 @@ TEST_F(DiscreteOrdinates, AgreeWithLightPropagationMapsWhereLightIsScatteredEven
     }
     return std::sqrt(squares / all);
   };
-  EXPECT_LT(difference(24), 0.015);
+  const double coarse = difference(12), fine = difference(24);
+  EXPECT_LT(fine, 0.03);
+  EXPECT_LT(fine, 0.65 * coarse); // of first order: half, in the limit
 }
 
 TEST_F(DiscreteOrdinates, AreTheSameByMatrixAndByAllSingularValues)
@@ -307,11 +301,12 @@ TEST_F(DiscreteOrdinates, AreTheSameByMatrixAndByAllSingularValues)
   const std::vector<float> matrix = scene.SolveOrdinates(this->GetDevice()).fluence;
   scene.how.scattering = OrdinatesScattering::SingularValues;
   scene.how.terms = 24;
-  EXPECT_LT(RelativeDifference(scene.SolveOrdinates(this->GetDevice()).fluence, matrix), 2e-2);
-  scene.how.spiralDirections = 24;
+  EXPECT_LT(RelativeDifference(scene.SolveOrdinates(this->GetDevice()).fluence, matrix), 1e-5);
+  scene.how.spiralDirections = 40;
+  scene.how.terms = 40;
   const std::vector<float> terms = scene.SolveOrdinates(this->GetDevice()).fluence;
   scene.how.scattering = OrdinatesScattering::Matrix;
-  EXPECT_LT(RelativeDifference(scene.SolveOrdinates(this->GetDevice()).fluence, terms), 2e-2);
+  EXPECT_LT(RelativeDifference(scene.SolveOrdinates(this->GetDevice()).fluence, terms), 1e-5);
 }
 
 TEST_F(DiscreteOrdinates, AreTheSameEveryTime)
@@ -357,23 +352,16 @@ TEST_F(DiscreteOrdinates, SolveColourAsThreeGreyMedia)
 
 TEST_F(DiscreteOrdinates, HaveTheNetFluxThatTheBalanceAsksFor)
 {
-  LitMedium scene({ 10, 10, 10 }, 0.3f, 0.5f);
-  scene.light.faces[4] = { 1.0, 1.0, 1.0 };
-  scene.how.netFlux = true;
-  scene.how.periodic = { true, true, false };
-  scene.how.maximumOrders = 200;
-  const LightField light = scene.SolveOrdinates(this->GetDevice());
-  // Through layer k of 100 voxels goes what the layers above absorb and what leaves on top.
+  LitMedium slab = Slab(80, 2.0, 0.7, 0.5);
+  slab.how.netFlux = true;
+  const LightField light = slab.SolveOrdinates(this->GetDevice());
+  // Through a layer goes what the layers above absorb and what leaves on top.
   double above = light.facePowerOut[5][0];
-  for (int k = 9; k >= 0; --k)
+  for (int k = 79; k >= 0; --k)
   {
-    double flux = 0.0, absorbed = 0.0;
-    for (int i = 100 * k; i < 100 * (k + 1); ++i)
-    {
-      flux += light.netFlux[3 * i + 2];
-      absorbed += 0.3 * light.fluence[i];
-    }
-    EXPECT_NEAR(flux, above + 0.5 * absorbed, 0.02 * flux) << k;
+    const double absorbed = 0.6 * light.fluence[k] / 80.0;
+    EXPECT_NEAR(light.netFlux[3 * k + 2], above + 0.5 * absorbed, 1e-3 * above) << k;
+    EXPECT_NEAR(light.netFlux[3 * k], 0.0, 1e-5) << k;
     above += absorbed;
   }
 }
