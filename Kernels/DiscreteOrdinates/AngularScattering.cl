@@ -1,5 +1,5 @@
 // What arrives in a voxel along each direction, scattered into each: by N terms or by the whole matrix (numerics.md,
-// Eqs. (D7), (D8)). Radiance is [group][voxel][8 directions].
+// Eqs. (D7), (D8)). Radiance is [group][stride][8 directions].
 //
 //   REAL_WIDTH  moments handled at once
 //   GROUPS      of eight directions
@@ -27,7 +27,7 @@ inline float sum8(float8 values)
 // Moments of eight voxels, [voxel][MOMENTS].
 //   weights  [direction][MOMENTS]: what a direction adds to each
 inline void find_moments(
-  const __global float* radiance, const __global float* weights, ulong voxels, ulong first, __global float* moments)
+  const __global float* radiance, const __global float* weights, ulong stride, ulong first, __global float* moments)
 {
   for (int row = 0; row < ROWS; ++row)
   {
@@ -35,7 +35,7 @@ inline void find_moments(
     EACH_VOXEL(CLEAR)
     for (int group = 0; group < GROUPS; ++group)
     {
-      const __global float* in = radiance + (group * voxels + first) * 8;
+      const __global float* in = radiance + (group * stride + first) * 8;
       const __global float* of = weights + (group * 8) * MOMENTS + row * REAL_WIDTH;
       for (int lane = 0; lane < 8; ++lane)
       {
@@ -73,15 +73,15 @@ inline void add_light(const __global float* moments, ulong voxels, ulong first, 
 // Eight voxels by eight directions of sources are done together; POSITIVE takes what is negative away, and notes what
 // the rest is to be multiplied by so that its power is right.
 #if POSITIVE
-#define POSITIVE_PART(b)                                                                                               \
-  source##b = fmax(source##b, (float8)0.0f);                                                                           \
+#define POSITIVE_PART(b)                     \
+  source##b = fmax(source##b, (float8)0.0f); \
   power##b = multiply_add8(angle, source##b, power##b);
 #define CLEAR_POWER(b) float8 power##b = (float8)0.0f;
-#define NOTE_SCALE(b)                                                                                                  \
-  {                                                                                                                    \
-    const float all = sum8(power##b);                                                                                  \
-    if (first + b < voxels)                                                                                            \
-      scale[first + b] = all > 0.0f ? moments[(first + b) * MOMENTS] / all : 0.0f;                                     \
+#define NOTE_SCALE(b)                                                              \
+  {                                                                                \
+    const float all = sum8(power##b);                                              \
+    if (first + b < voxels)                                                        \
+      scale[first + b] = all > 0.0f ? moments[(first + b) * MOMENTS] / all : 0.0f; \
   }
 #else
 #define POSITIVE_PART(b)
@@ -94,9 +94,9 @@ inline void add_light(const __global float* moments, ulong voxels, ulong first, 
 #define multiply_add8(a, b, c) mad(a, b, c)
 #endif
 #define CLEAR_SOURCE(b) float8 source##b = (float8)0.0f;
-#define STORE_SOURCE(b)                                                                                                \
-  if (first + b < voxels)                                                                                              \
-    STORE8(source##b * sigma_s[first + b], (group * voxels + first + b) * 8, source);
+#define STORE_SOURCE(b)   \
+  if (first + b < voxels) \
+    STORE8(source##b* sigma_s[first + b], (group * stride + first + b) * 8, source);
 
 // radiance  has room for BLOCK voxels more
 // source    W / (length^3 sr), may be radiance; written but for a factor `scale` a voxel where POSITIVE
@@ -107,10 +107,10 @@ inline void add_light(const __global float* moments, ulong voxels, ulong first, 
 __kernel void scatter_terms(const __global float* radiance, __global float* source, __global float* moments,
   const __global float* weights, const __global float* spread, const __global float* angles,
   const __global float* sigma_s, __global float* order, __global float* fluence, __global float* flux,
-  __global float* scale, ulong voxels, ulong begin)
+  __global float* scale, ulong voxels, ulong stride, ulong begin)
 {
   const ulong first = begin + get_global_id(0) * BLOCK;
-  find_moments(radiance, weights, voxels, first, moments);
+  find_moments(radiance, weights, stride, first, moments);
   add_light(moments, voxels, first, order, fluence, flux);
   const __global float* mine = moments + first * MOMENTS + 1;
   EACH_VOXEL(CLEAR_POWER)
@@ -135,10 +135,10 @@ __kernel void scatter_terms(const __global float* radiance, __global float* sour
 __kernel void scatter_matrix(const __global float* radiance, __global float* source, __global float* moments,
   const __global float* weights, const __global float* matrix, const __global float* angles,
   const __global float* sigma_s, __global float* order, __global float* fluence, __global float* flux,
-  __global float* scale, ulong voxels, ulong begin)
+  __global float* scale, ulong voxels, ulong stride, ulong begin)
 {
   const ulong first = begin + get_global_id(0) * BLOCK;
-  find_moments(radiance, weights, voxels, first, moments);
+  find_moments(radiance, weights, stride, first, moments);
   add_light(moments, voxels, first, order, fluence, flux);
   EACH_VOXEL(CLEAR_POWER)
   for (int group = 0; group < GROUPS; ++group)
@@ -147,7 +147,7 @@ __kernel void scatter_matrix(const __global float* radiance, __global float* sou
     EACH_VOXEL(CLEAR_SOURCE)
     for (int other = 0; other < GROUPS; ++other)
     {
-      const __global float* in = radiance + (other * voxels + first) * 8;
+      const __global float* in = radiance + (other * stride + first) * 8;
       for (int lane = 0; lane < 8; ++lane)
       {
         const float8 part = LOAD8(((group * GROUPS + other) * 8 + lane) * 8, matrix);
@@ -165,22 +165,22 @@ __kernel void scatter_matrix(const __global float* radiance, __global float* sou
 // Eq. (13)).
 //   row  [direction]: of the matrix, times the solid angle that light comes along
 __kernel void scatter_along(const __global float* radiance, __global float* source, const __global float* row,
-  const __global float* sigma_s, int group, int lane, ulong voxels)
+  const __global float* sigma_s, int group, int lane, ulong stride)
 {
   const ulong i = get_global_id(0);
   float8 sum = (float8)0.0f;
   for (int other = 0; other < GROUPS; ++other)
   {
-    sum = multiply_add8(LOAD8(other * 8, row), LOAD8((other * voxels + i) * 8, radiance), sum);
+    sum = multiply_add8(LOAD8(other * 8, row), LOAD8((other * stride + i) * 8, radiance), sum);
   }
-  source[(group * voxels + i) * 8 + lane] = sigma_s[i] * sum8(sum);
+  source[(group * stride + i) * 8 + lane] = sigma_s[i] * sum8(sum);
 }
 
 // The light that was found along all directions, where nothing is scattered.
 __kernel void gather_light(const __global float* radiance, __global float* moments, const __global float* weights,
-  __global float* order, __global float* fluence, __global float* flux, ulong voxels, ulong begin)
+  __global float* order, __global float* fluence, __global float* flux, ulong voxels, ulong stride, ulong begin)
 {
   const ulong first = begin + get_global_id(0) * BLOCK;
-  find_moments(radiance, weights, voxels, first, moments);
+  find_moments(radiance, weights, stride, first, moments);
   add_light(moments, voxels, first, order, fluence, flux);
 }

@@ -40,7 +40,7 @@ AngularScattering::AngularScattering(Device& device, const OrdinateGroups& group
 
 std::size_t AngularScattering::Floats(const OrdinateGroups& groups, std::size_t voxels)
 {
-  return groups.Lanes() * voxels + Block * GroupSize * OrdinateLanes;
+  return groups.Lanes() * OrdinateStride(voxels) + Block * GroupSize * OrdinateLanes;
 }
 
 std::size_t AngularScattering::Bytes(const OrdinateGroups& groups, int terms, PairSums sums, std::size_t voxels)
@@ -133,7 +133,8 @@ void AngularScattering::Scatter(const Buffer<float>& radiance, const Buffer<floa
   batches.whole = GroupSize;
   InBatches(this->TheDevice, batches, monitor, [&](std::size_t begin, std::size_t size) {
     With(scatter, radiance, source, this->Moments, this->Weights, this->Spread, this->Angles, sigma_s, light.order,
-      light.fluence, light.flux, scale, cl_ulong(this->Voxels), cl_ulong(begin * Block));
+      light.fluence, light.flux, scale, cl_ulong(this->Voxels), cl_ulong(OrdinateStride(this->Voxels)),
+      cl_ulong(begin * Block));
     this->TheDevice.Queue().enqueueNDRangeKernel(scatter, cl::NullRange, cl::NDRange(size), cl::NDRange(GroupSize));
   });
 }
@@ -148,14 +149,13 @@ void AngularScattering::ScatterByPasses(const Buffer<float>& radiance, const Buf
     for (std::size_t i = begin; i < begin + size; ++i)
     {
       With(along, radiance, source, this->MatrixRows[i], sigma_s, cl_int(this->Lanes[i][0]), cl_int(this->Lanes[i][1]),
-        cl_ulong(this->Voxels));
+        cl_ulong(OrdinateStride(this->Voxels)));
       this->TheDevice.Queue().enqueueNDRangeKernel(along, cl::NullRange, cl::NDRange(this->Voxels), cl::NullRange);
     }
   });
 }
 
-void AngularScattering::Gather(
-  const Buffer<float>& radiance, const OrdinatesLight& light, const Monitor& monitor) const
+void AngularScattering::Gather(const Buffer<float>& radiance, const OrdinatesLight& light, const Monitor& monitor) const
 {
   cl::Kernel gather = this->Kernel("gather_light");
   Batches batches;
@@ -163,8 +163,8 @@ void AngularScattering::Gather(
   batches.first = FirstBatch;
   batches.whole = GroupSize;
   InBatches(this->TheDevice, batches, monitor, [&](std::size_t begin, std::size_t size) {
-    With(gather, radiance, this->Moments, this->Weights, light.order, light.fluence, light.flux,
-      cl_ulong(this->Voxels), cl_ulong(begin * Block));
+    With(gather, radiance, this->Moments, this->Weights, light.order, light.fluence, light.flux, cl_ulong(this->Voxels),
+      cl_ulong(OrdinateStride(this->Voxels)), cl_ulong(begin * Block));
     this->TheDevice.Queue().enqueueNDRangeKernel(gather, cl::NullRange, cl::NDRange(size), cl::NDRange(GroupSize));
   });
 }

@@ -8,8 +8,7 @@
 
 namespace tyndall
 {
-ChannelArrays::ChannelArrays(
-  Device& device, const OrdinatesScene& scene, const OrdinatesAngles& angles, bool netFlux)
+ChannelArrays::ChannelArrays(Device& device, const OrdinatesScene& scene, const OrdinatesAngles& angles, bool netFlux)
   : TheMedium(scene.medium)
   , Voxels(scene.medium.grid.VoxelCount())
   , Layout{ scene.medium.grid, 1, true }
@@ -52,19 +51,17 @@ std::size_t ChannelArrays::Bytes(std::size_t voxels, bool netFlux)
   return sizeof(float) * voxels * (9 + (netFlux ? 3 : 0)); // three of them for lamps
 }
 
-void ChannelArrays::AddLamps(const Buffer<float>& source, const std::array<bool, 3>& periodic, OrdinatesResult& result,
-  const Monitor& monitor)
+void ChannelArrays::AddLamps(
+  const Buffer<float>& source, const std::array<bool, 3>& periodic, OrdinatesResult& result, const Monitor& monitor)
 {
   if (this->Scene.lamps.empty())
   {
     return;
   }
-  const LampScattering scattering(
-    this->TheDevice, this->Layout.grid, this->Angles.groups, this->Angles.function);
+  const LampScattering scattering(this->TheDevice, this->Layout.grid, this->Angles.groups, this->Angles.function);
   const Buffer<float> sigma_t = this->Load("sigma_t", 1.0, 1.0), sigma_s = this->Load("sigma_s", 0.0, 1.0);
   const SweepMaker sweeps = [&](const SweepRequest& request) {
-    return std::make_unique<SweepInMemory>(
-      this->TheDevice, this->Layout, sigma_t, periodic, request, this->Workspace);
+    return std::make_unique<SweepInMemory>(this->TheDevice, this->Layout, sigma_t, periodic, request, this->Workspace);
   };
   Buffer<float> path(this->TheDevice, this->Layout.Floats(), "the light of a lamp");
   const double all = static_cast<double>(this->Scene.lamps.size());
@@ -113,7 +110,7 @@ void ChannelArrays::EmitEvenly(const Buffer<float>& source, EnergyLedger& ledger
   ledger.Emit(0, 4.0 * Pi * sum * this->Layout.grid.VoxelVolume());
   const Buffer<float> values(this->TheDevice, emission, "emission");
   cl::Kernel even = this->TheDevice.Kernel("even_source", kernel_source::UpwindSweep, Define("REAL_WIDTH", 8));
-  With(even, source, values);
+  With(even, source, values, cl_ulong(OrdinateStride(this->Voxels)));
   this->TheDevice.Queue().enqueueNDRangeKernel(
     even, cl::NullRange, cl::NDRange(this->Voxels, this->Angles.groups.Count()));
   this->TheDevice.Finish(); // the values go

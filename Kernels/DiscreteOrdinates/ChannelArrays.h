@@ -26,8 +26,8 @@ public:
 
   /// Uncollided light of all lamps: counts it, and adds what of it is scattered for the first time.
   /// @param source  of all directions, over Scale
-  void AddLamps(const Buffer<float>& source, const std::array<bool, 3>& periodic, OrdinatesResult& result,
-    const Monitor& monitor);
+  void AddLamps(
+    const Buffer<float>& source, const std::array<bool, 3>& periodic, OrdinatesResult& result, const Monitor& monitor);
   /// W of lamps whose rays go round periodic axes without end.
   double Stranded() const { return this->GoingRound; }
 

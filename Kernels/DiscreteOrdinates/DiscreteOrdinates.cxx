@@ -108,11 +108,10 @@ SeparablePhaseFunction SeparableOf(
 }
 
 /// @throws DeviceError that says what is needed
-void CheckMemory(
-  Device& device, const Grid& grid, const OrdinatesAngles& angles, const OrdinatesSettings& settings)
+void CheckMemory(Device& device, const Grid& grid, const OrdinatesAngles& angles, const OrdinatesSettings& settings)
 {
-  const std::size_t bytes = IsPublished(settings) ? BytesOfPublishedOrders(grid, angles, settings)
-                                                  : BytesOfSweptOrders(grid, angles, settings);
+  const std::size_t bytes =
+    IsPublished(settings) ? BytesOfPublishedOrders(grid, angles, settings) : BytesOfSweptOrders(grid, angles, settings);
   const std::size_t radiance = sizeof(float) * AngularScattering::Floats(angles.groups, grid.VoxelCount());
   const std::size_t free = device.MemoryLimit() - device.BytesInUse();
   if (bytes <= free && radiance <= device.AllocationLimit())
@@ -120,8 +119,8 @@ void CheckMemory(
     return;
   }
   const auto mebibytes = [](std::size_t count) { return Text("%.0f", std::ceil(count / 1048576.0)) + " MiB"; };
-  throw DeviceError("Discrete ordinates with " + std::to_string(angles.phase.DirectionCount()) +
-    " directions need " + mebibytes(bytes) + " for this grid, " + mebibytes(radiance) +
+  throw DeviceError("Discrete ordinates with " + std::to_string(angles.phase.DirectionCount()) + " directions need " +
+    mebibytes(bytes) + " for this grid, " + mebibytes(radiance) +
     " of them in one piece, the radiance along all directions; " + device.Name() + " has " + mebibytes(free) +
     " left, " + mebibytes(device.AllocationLimit()) +
     " in one piece. Choose fewer directions, a coarser grid, or Light Propagation Maps.");
@@ -257,7 +256,8 @@ std::vector<std::string> DoubtsOf(const PropagationProblem& problem, const Ordin
     doubts.push_back("Explicit steps as published are not stable where sigma_t times the step, the shortest edge of a "
                      "voxel, is above 1: here it is up to " +
       Text("%.3g", thickest) +
-      ". Radiance becomes negative, and above 2 it grows without end. Choose the conservative scheme, or finer voxels.");
+      ". Radiance becomes negative, and above 2 it grows without end. Choose the conservative scheme, or finer "
+      "voxels.");
   }
   if (problem.TheMedium().phase.Varies())
   {
@@ -305,11 +305,9 @@ LightField SolveDiscreteOrdinates(Device& device, const Medium& medium, const Il
     CheckMemory(device, problem.TheGrid(), angles, settings);
     const OrdinatesScene scene = { problem.TheMedium(), c, LampsOf(far, problem.Shining(), c),
       IncomingOf(far, problem.Shining(), c) };
-    const Monitor ofChannel =
-      OfPart(monitor, static_cast<double>(c) / light.channels, (c + 1.0) / light.channels);
-    const OrdinatesResult found = IsPublished(settings)
-      ? SolvePublishedOrders(device, scene, angles, solved, ofChannel)
-      : SolveSweptOrders(device, scene, angles, solved, ofChannel);
+    const Monitor ofChannel = OfPart(monitor, static_cast<double>(c) / light.channels, (c + 1.0) / light.channels);
+    const OrdinatesResult found = IsPublished(settings) ? SolvePublishedOrders(device, scene, angles, solved, ofChannel)
+                                                        : SolveSweptOrders(device, scene, angles, solved, ofChannel);
     TakeChannel(light, found, c);
     diverged = diverged || found.diverged;
     light.leftOut = c == 0 ? Words(problem, far, angles) : light.leftOut;

@@ -13,6 +13,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <string>
 
 namespace tyndall
 {
@@ -45,7 +46,7 @@ LampScattering::LampScattering(
   Device& device, const Grid& grid, const OrdinateGroups& groups, const PhaseFunction& function)
   : TheDevice(device)
   , TheGrid(grid)
-  , GroupCount(groups.Count())
+  , Groups(groups)
   , MeanCosine(function.MeanCosine())
 {
   std::vector<float> omegas;
@@ -61,7 +62,39 @@ LampScattering::LampScattering(
   }
   const double solidAngle = 4.0 * Pi / static_cast<double>(groups.TheDirections().size());
   this->Omegas = Buffer<float>(device, omegas, "the directions");
-  this->Table = Buffer<float>(device, MeansByAngle(function, solidAngle), "the phase function");
+  this->ByAngle = MeansByAngle(function, solidAngle);
+  this->Table = Buffer<float>(device, this->ByAngle, "the phase function");
+}
+
+/// What goes into each direction of light along a ray, 1/sr, [group][lane]: the directions' sums of 1, the cosine and
+/// its square make it have its power and, as far as no direction gets less than nothing, its mean cosine.
+std::vector<float> LampScattering::PartsAlong(const std::array<double, 3>& ray) const
+{
+  const auto cosine = [&](int g, int lane) {
+    const std::array<double, 3>& omega = this->Groups.Of(g, lane).omega;
+    return std::clamp(ray[0] * omega[0] + ray[1] * omega[1] + ray[2] * omega[2], -1.0, 1.0);
+  };
+  const auto phase = [&](int g, int lane) {
+    const double position = std::acos(cosine(g, lane)) / Pi * (TableSize - 1);
+    const int i = std::min(static_cast<int>(position), TableSize - 2);
+    return this->ByAngle[i] + (position - i) * (this->ByAngle[i + 1] - this->ByAngle[i]);
+  };
+  double sum = 0.0, mean = 0.0, square = 0.0;
+  for (int g = 0; g < this->Groups.Count(); ++g)
+  {
+    for (int lane = 0; lane < OrdinateLanes; ++lane)
+    {
+      const double part = phase(g, lane) * this->Groups.Weight(g, lane);
+      sum += part;
+      mean += part * cosine(g, lane);
+      square += part * cosine(g, lane) * cosine(g, lane);
+    }
+  }
+  mean /= sum;
+  square /= sum;
+  const double tilt = std::clamp((this->MeanCosine - mean) / (square - this->MeanCosine * mean), -1.0, 1.0);
+  return this->Groups.Table(
+    [&](int g, int lane) { return phase(g, lane) * (1.0 + tilt * cosine(g, lane)) / (sum * (1.0 + tilt * mean)); });
 }
 
 void LampScattering::Add(
@@ -78,13 +111,35 @@ void LampScattering::Add(
     info.spacing[a] = static_cast<float>(this->TheGrid.spacing[a]);
     info.place[a] = static_cast<float>(place[a]);
   }
+  info.parallel = parallel;
   info.meanCosine = static_cast<float>(this->MeanCosine);
   info.perVolume = static_cast<float>(1.0 / this->TheGrid.VoxelVolume());
-  cl::Kernel scatter = this->TheDevice.Kernel("scatter_lamp", kernel_source::LampScattering,
-    Define("GROUPS", this->GroupCount) + Define("TABLE", TableSize) + Define("POINT", !parallel));
-  With(scatter, target.source, target.scale, path, sigma_s, this->Omegas, this->Table, target.light.fluence,
-    target.direct, target.light.flux, cl_int(target.light.flux.Size() > 0), info);
-  this->TheDevice.Queue().enqueueNDRangeKernel(scatter, cl::NullRange, cl::NDRange(this->TheGrid.VoxelCount()));
+  const std::string options = Define("GROUPS", this->Groups.Count()) + Define("TABLE", TableSize);
+  const auto kernel = [&](const char* name) {
+    return this->TheDevice.Kernel(name, kernel_source::LampScattering, options);
+  };
+  const cl::NDRange voxels(this->TheGrid.VoxelCount());
+  const cl_ulong stride = OrdinateStride(this->TheGrid.VoxelCount());
+  cl::CommandQueue& queue = this->TheDevice.Queue();
+  cl::Kernel add = kernel("add_lamp");
+  With(add, path, target.light.fluence, target.direct, target.light.flux, cl_int(target.light.flux.Size() > 0), info);
+  queue.enqueueNDRangeKernel(add, cl::NullRange, voxels);
+  if (parallel)
+  {
+    const Buffer<float> parts(this->TheDevice, this->PartsAlong({ place.x, place.y, place.z }), "the phase function");
+    cl::Kernel scatter = kernel("scatter_parallel");
+    With(scatter, target.source, target.scale, path, sigma_s, parts, stride, info.perVolume);
+    const cl::NDRange all(this->TheGrid.VoxelCount(), this->Groups.Count());
+    queue.enqueueNDRangeKernel(scatter, cl::NullRange, all);
+    this->TheDevice.Finish(); // the parts go
+  }
+  else
+  {
+    cl::Kernel scatter = kernel("scatter_from_place");
+    With(scatter, target.source, target.scale, path, sigma_s, this->Omegas, this->Table, stride, info);
+    queue.enqueueNDRangeKernel(scatter, cl::NullRange, voxels);
+  }
+  target.scale.Fill(1.0f);
   this->TheDevice.Finish();
 }
 }

@@ -7,13 +7,16 @@
 #include "Medium/Grid.h"
 #include "PhaseFunction/PhaseFunction.h"
 
+#include <array>
+#include <vector>
+
 namespace tyndall
 {
 /// Where the light of a lamp that was scattered for the first time goes.
 struct LampTarget
 {
   const Buffer<float>& source; ///< of all directions, over `scale`; added to
-  const Buffer<float>& scale;  ///< becomes 1
+  Buffer<float>& scale;        ///< becomes 1
   const Buffer<float>& direct; ///< W / length^2, uncollided fluence, added to
   const OrdinatesLight& light; ///< its fluence and flux are added to
 };
@@ -26,16 +29,20 @@ struct LampTarget
 class LampScattering
 {
 public:
+  /// @param groups  must stay
   LampScattering(Device& device, const Grid& grid, const OrdinateGroups& groups, const PhaseFunction& function);
 
   /// @param path  W length, of the lamp's light in each voxel
   void Add(const Light& lamp, const Buffer<float>& path, const Buffer<float>& sigma_s, const LampTarget& target) const;
 
 private:
+  std::vector<float> PartsAlong(const std::array<double, 3>& ray) const;
+
   Device& TheDevice;
   Grid TheGrid;
-  int GroupCount;
+  const OrdinateGroups& Groups;
   double MeanCosine;
+  std::vector<float> ByAngle; ///< the phase function from 0 to pi, 1/sr
   Buffer<float> Omegas, Table;
 };
 }

@@ -11,6 +11,13 @@ namespace tyndall
 {
 constexpr int OrdinateLanes = 8; ///< directions that kernels handle at once
 
+/// Voxels from a group's radiance to the next group's: more than there are, and such that the same voxel of different
+/// groups does not fall on the same few lines of a cache (a power of two is ten times slower).
+constexpr std::size_t OrdinateStride(std::size_t voxels)
+{
+  return (voxels + 127) / 128 * 128 + 8;
+}
+
 /// Eight directions of one octant: they meet the voxels in the same order.
 struct OrdinateGroup
 {
@@ -19,8 +26,8 @@ struct OrdinateGroup
   int count = 0;                                 ///< of them that are not repeated
 };
 
-/// Directions as kernels see them: radiance is [group][voxel][lane], voxels x fastest, so that a voxel and a group are
-/// one vector, and a row of voxels is one stream.
+/// Directions as kernels see them: radiance is [group][OrdinateStride][lane], voxels x fastest, so that a voxel and a
+/// group are one vector, and a row of voxels is one stream.
 class OrdinateGroups
 {
 public:

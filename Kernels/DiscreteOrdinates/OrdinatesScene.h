@@ -2,8 +2,8 @@
 
 #include "DiscreteOrdinates/OrdinateGroups.h"
 #include "DiscreteOrdinates/UpwindSweep.h"
-#include "LightPropagation/Conservative/EnergyLedger.h"
 #include "Light/LightField.h"
+#include "LightPropagation/Conservative/EnergyLedger.h"
 #include "Lights/Lights.h"
 #include "Medium/Medium.h"
 #include "PhaseFunction/SeparablePhaseFunction.h"
@@ -19,7 +19,7 @@ struct OrdinatesScene
 {
   const Medium& medium;
   int channel = 0;
-  std::vector<Light> lamps; ///< of the scene, and the peaks of the environment; power of the channel in all three
+  std::vector<Light> lamps;  ///< of the scene, and the peaks of the environment; power of the channel in all three
   IncomingRadiance incoming; ///< empty: no environment, sky or face shines
 };
 

@@ -21,8 +21,8 @@ PairSums SumsOf(const OrdinatesSettings& settings)
 class PublishedOrders
 {
 public:
-  PublishedOrders(Device& device, const OrdinatesScene& scene, const OrdinatesAngles& angles,
-    const OrdinatesSettings& settings)
+  PublishedOrders(
+    Device& device, const OrdinatesScene& scene, const OrdinatesAngles& angles, const OrdinatesSettings& settings)
     : Settings(settings)
     , Arrays(device, scene, angles, settings.netFlux)
     , Step(device, scene.medium.grid, angles.groups, settings.periodic, scene.incoming)
@@ -95,8 +95,8 @@ private:
       this->Result.ledger.Enter(0, powers.in[face]);
       this->Result.ledger.Escape(0, face, powers.out[face]);
     }
-    this->Result.ledger.Absorb(
-      0, this->Arrays.PowersOf(this->Fluence, false).absorbed + this->Arrays.PowersOf(this->LampFluence, true).absorbed);
+    this->Result.ledger.Absorb(0,
+      this->Arrays.PowersOf(this->Fluence, false).absorbed + this->Arrays.PowersOf(this->LampFluence, true).absorbed);
     this->Result.ledger.LeaveOver(0, this->Arrays.Stranded());
   }
 
@@ -161,8 +161,7 @@ double ThickestStep(const Medium& medium, int channel)
   double largest = 0.0;
   for (std::size_t i = 0; i < medium.grid.VoxelCount(); ++i)
   {
-    largest =
-      std::max(largest, static_cast<double>(medium.sigma_a.At(i, channel)) + medium.sigma_s.At(i, channel));
+    largest = std::max(largest, static_cast<double>(medium.sigma_a.At(i, channel)) + medium.sigma_s.At(i, channel));
   }
   return largest * *std::min_element(medium.grid.spacing.begin(), medium.grid.spacing.end());
 }

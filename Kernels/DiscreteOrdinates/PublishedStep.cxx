@@ -49,11 +49,13 @@ void PublishedStep::Apply(const Buffer<float>& radiance, const Buffer<float>& sc
 {
   const cl::NDRange all(this->TheGrid.VoxelCount(), this->Groups.Count());
   cl::Kernel change = this->Kernel("change_radiance"), move = this->Kernel("move_on");
-  With(change, radiance, scattered, steady, sigma_t, static_cast<float>(this->Step));
+  With(change, radiance, scattered, steady, sigma_t, static_cast<float>(this->Step),
+    cl_ulong(OrdinateStride(this->TheGrid.VoxelCount())));
   this->TheDevice.Queue().enqueueNDRangeKernel(change, cl::NullRange, all);
   const std::array<int, 3>& n = this->TheGrid.size;
   const int periodic = this->Periodic[0] + 2 * this->Periodic[1] + 4 * this->Periodic[2];
-  With(move, radiance, after, this->Parts, this->Up, this->Incoming, n[0], n[1], n[2], periodic);
+  With(move, radiance, after, this->Parts, this->Up, this->Incoming, n[0], n[1], n[2],
+    cl_ulong(OrdinateStride(this->TheGrid.VoxelCount())), periodic);
   this->TheDevice.Queue().enqueueNDRangeKernel(move, cl::NullRange, all);
   this->TheDevice.Finish();
 }
@@ -73,7 +75,7 @@ FacePowers PublishedStep::Powers(const Buffer<float>& radiance) const
     const PlaneAxes across = AcrossAxis(axis);
     const std::size_t rows = this->TheGrid.size[across.v];
     Buffer<float> sums(this->TheDevice, this->Groups.Lanes() * rows, "sums");
-    With(sum, radiance, sums, this->Up, cl_ulong(this->TheGrid.VoxelCount()), axis,
+    With(sum, radiance, sums, this->Up, cl_ulong(OrdinateStride(this->TheGrid.VoxelCount())), axis,
       cl_ulong(strides[axis] * (this->TheGrid.size[axis] - 1)), cl_ulong(strides[across.v]),
       cl_ulong(strides[across.u]), this->TheGrid.size[across.u]);
     this->TheDevice.Queue().enqueueNDRangeKernel(sum, cl::NullRange, cl::NDRange(rows, this->Groups.Count()));

@@ -25,8 +25,8 @@ bool CanBeNegative(const OrdinatesAngles& angles, const OrdinatesSettings& setti
 class SweptOrders
 {
 public:
-  SweptOrders(Device& device, const OrdinatesScene& scene, const OrdinatesAngles& angles,
-    const OrdinatesSettings& settings)
+  SweptOrders(
+    Device& device, const OrdinatesScene& scene, const OrdinatesAngles& angles, const OrdinatesSettings& settings)
     : Scene(scene)
     , Settings(settings)
     , Arrays(device, scene, angles, settings.netFlux)
@@ -48,8 +48,8 @@ public:
         ? static_cast<double>(this->Record.All().size()) / this->Settings.maximumOrders
         : std::log(residual) / std::log(std::min(this->Settings.tolerance, 0.5));
       Report(monitor, std::clamp(0.1 + 0.9 * done, 0.1, 0.99));
-      this->Order(monitor ? Monitor([&](double) { return monitor(std::clamp(0.1 + 0.9 * done, 0.1, 0.99)); })
-                          : Monitor());
+      this->Order(
+        monitor ? Monitor([&](double) { return monitor(std::clamp(0.1 + 0.9 * done, 0.1, 0.99)); }) : Monitor());
     }
     this->Arrays.Read(this->Result);
     this->Result.convergence = std::move(this->Record.All());

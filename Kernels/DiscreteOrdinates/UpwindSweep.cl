@@ -1,5 +1,5 @@
 // One sweep along all directions: from source and what comes in through the faces to mean radiance and what leaves
-// (numerics.md, Eqs. (D9) to (D11)). Radiance is [group][voxel][8 directions].
+// (numerics.md, Eqs. (D9) to (D11)). Radiance is [group][stride][8 directions].
 //
 //   REAL_WIDTH  8: a work-item handles the directions of a group; 1: one of them
 #include "Numerics/Numerics.cl"
@@ -53,12 +53,11 @@ inline real cross_voxel(real tau, real in, real gain, real* mean)
 //             way in, what leaves on the way out
 __kernel void sweep_upwind(__global float* radiance, const __global float* sigma_t, const __global float* scale,
   const __global float* shares, const __global int* up, __global float* x, __global float* y, __global float* z, int nx,
-  int ny, int nz, int begin, int end)
+  int ny, int nz, ulong stride, int begin, int end)
 {
   const int item = get_global_id(0);
   const int group = item * REAL_WIDTH / 8;
   const int lane = item * REAL_WIDTH % 8;
-  const ulong voxels = (ulong)nx * ny * nz;
   const real share_x = load_real((group * 4 + 0) * 8 + lane, shares);
   const real share_y = load_real((group * 4 + 1) * 8 + lane, shares);
   const real share_z = load_real((group * 4 + 2) * 8 + lane, shares);
@@ -74,7 +73,7 @@ __kernel void sweep_upwind(__global float* radiance, const __global float* sigma
       __global float* along_x = x + (((ulong)group * nz + k) * ny + j) * 8 + lane;
       __global float* along_z = z + ((ulong)group * ny + j) * nx * 8 + lane;
       const ulong first = ((ulong)k * ny + j) * nx;
-      __global float* cells = radiance + (group * voxels + first) * 8 + lane;
+      __global float* cells = radiance + (group * stride + first) * 8 + lane;
       real from_x = load_real(0, along_x);
       for (int column = 0; column < nx; ++column)
       {
@@ -84,8 +83,8 @@ __kernel void sweep_upwind(__global float* radiance, const __global float* sigma
         const real source = load_real(i * 8, cells) * (real)scale[first + i];
         const real aside = multiply_add(share_y, from_y, share_z * from_z);
         real mean;
-        const real out = cross_voxel((real)sigma_t[first + i] * chord, multiply_add(share_x, from_x, aside),
-          source * chord, &mean);
+        const real out =
+          cross_voxel((real)sigma_t[first + i] * chord, multiply_add(share_x, from_x, aside), source * chord, &mean);
         store_real(mean, i * 8, cells);
         store_real(out, i * 8, along_y);
         store_real(out, i * 8, along_z);
@@ -120,8 +119,8 @@ __kernel void fill_face(__global float* face, const __global float* values, int 
 }
 
 // The same source in all directions.
-__kernel void even_source(__global float* radiance, const __global float* emission)
+__kernel void even_source(__global float* radiance, const __global float* emission, ulong stride)
 {
-  const ulong i = get_global_id(0), voxels = get_global_size(0), group = get_global_id(1);
-  ((__global float8*)radiance)[group * voxels + i] = (float8)emission[i];
+  const ulong i = get_global_id(0), group = get_global_id(1);
+  ((__global float8*)radiance)[group * stride + i] = (float8)emission[i];
 }

@@ -159,8 +159,8 @@ void PrintRank(Device& device, bool quick)
     {
       const bool published = scheme == OrdinatesScheme::Published;
       const std::string suffix = published ? ", as published" : "";
-      const Timed whole = Measure(
-        device, cloud, SettingsOf({ "", scheme, OrdinatesScattering::Matrix }, directions, 25, orders), 1);
+      const Timed whole =
+        Measure(device, cloud, SettingsOf({ "", scheme, OrdinatesScattering::Matrix }, directions, 25, orders), 1);
       for (OrdinatesScattering how : { OrdinatesScattering::SingularValues, OrdinatesScattering::SphericalHarmonics })
       {
         const bool harmonics = how == OrdinatesScattering::SphericalHarmonics;
@@ -221,8 +221,7 @@ void PrintSpeed(Device& device, bool quick)
     {
       const bool matrix = way.scattering == OrdinatesScattering::Matrix;
       const int terms = way.scattering == OrdinatesScattering::SphericalHarmonics ? 25 : 24;
-      const Timed run =
-        Measure(device, cloud, SettingsOf(way, directions, terms, orders), quick || matrix ? 1 : 5);
+      const Timed run = Measure(device, cloud, SettingsOf(way, directions, terms, orders), quick || matrix ? 1 : 5);
       double& against = unfactorised[static_cast<int>(way.scheme)];
       against = matrix ? run.seconds : against;
       const double updates = static_cast<double>(edge) * edge * edge * directions * orders;
@@ -243,9 +242,9 @@ void PrintSpeed(Device& device, bool quick)
         line.Add("ratio_published", unfactorised[0] / run.seconds);
       }
       line.Print();
-      table.Add({ std::to_string(directions), way.name, Text("%.3f", run.seconds),
-        Text("%.2f", 1e9 * run.seconds / updates), Text("%.2f", 1.0 / run.seconds),
-        Text("%.1f", against / run.seconds) });
+      table.Add(
+        { std::to_string(directions), way.name, Text("%.3f", run.seconds), Text("%.2f", 1e9 * run.seconds / updates),
+          Text("%.2f", 1.0 / run.seconds), Text("%.1f", against / run.seconds) });
     }
   }
   table.Print("Factorised against unfactorised, " + GridText(edge) +

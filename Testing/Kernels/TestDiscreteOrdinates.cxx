@@ -32,8 +32,7 @@ void ExpectFiniteAndNotNegative(const std::vector<float>& values)
 /// A slab of `layers` voxels along z, lit by diffuse light of unit flux from below.
 LitMedium Slab(int layers, double tau, double albedo, double g)
 {
-  LitMedium slab(
-    { 1, 1, layers }, static_cast<float>(tau * (1.0 - albedo)), static_cast<float>(tau * albedo));
+  LitMedium slab({ 1, 1, layers }, static_cast<float>(tau * (1.0 - albedo)), static_cast<float>(tau * albedo));
   slab.medium.grid.spacing = { 1.0, 1.0, 1.0 / layers };
   slab.how.periodic = { true, true, false };
   slab.how.tolerance = 1e-6;
@@ -57,8 +56,7 @@ Fractions FractionsOf(const LightField& light)
 /// A cube of optical side tau, lit by diffuse light on its face -z.
 Fractions SolveCube(Device& device, int edge, double tau, double albedo, double g)
 {
-  LitMedium cube(
-    { edge, edge, edge }, static_cast<float>(tau * (1.0 - albedo)), static_cast<float>(tau * albedo));
+  LitMedium cube({ edge, edge, edge }, static_cast<float>(tau * (1.0 - albedo)), static_cast<float>(tau * albedo));
   cube.medium.grid.spacing = { 1.0 / edge, 1.0 / edge, 1.0 / edge };
   cube.light.faces[4] = { 1.0, 1.0, 1.0 };
   cube.ScatterWith(g);
@@ -104,8 +102,8 @@ TEST_F(DiscreteOrdinates, FillAFurnaceWithRadianceOneForAnyMeanCosine)
 {
   for (double g : { -0.5, 0.0, 0.5, 0.9 })
   {
-    for (OrdinatesScattering scattering : { OrdinatesScattering::Matrix, OrdinatesScattering::SingularValues,
-           OrdinatesScattering::SphericalHarmonics })
+    for (OrdinatesScattering scattering :
+      { OrdinatesScattering::Matrix, OrdinatesScattering::SingularValues, OrdinatesScattering::SphericalHarmonics })
     {
       LitMedium furnace({ 11, 9, 6 });
       furnace.Randomise(2.0, 4.0, 1.0);
@@ -250,8 +248,8 @@ TEST_F(DiscreteOrdinates, ComeNearToMonteCarloInCubesByFirstOrder)
   {
     for (double tau : { 1.0, 5.0 })
     {
-      const ReferenceRow row = ReferenceRowWhere("cube_RTSA_anisotropic",
-        { { "tau", tau }, { "omega", 0.9 }, { "g", g }, { "src", 0.0 } });
+      const ReferenceRow row =
+        ReferenceRowWhere("cube_RTSA_anisotropic", { { "tau", tau }, { "omega", 0.9 }, { "g", g }, { "src", 0.0 } });
       const Fractions coarse = SolveCube(this->GetDevice(), 16, tau, 0.9, g);
       const Fractions fine = SolveCube(this->GetDevice(), 32, tau, 0.9, g);
       // Two grids take away the error of first order.
