@@ -63,15 +63,13 @@ private:
     this->LampFluence = this->Arrays.Direct.Read();
     this->LampFlux = this->Arrays.Light.flux.Read();
     this->Fluence.assign(this->Arrays.Voxels, 0.0f);
+    this->MoveOn(); // from darkness: nothing is scattered yet
   }
 
   void StepOnce(const Monitor& monitor)
   {
     this->Scattering.Scatter(
       this->Radiance, this->Arrays.SigmaS, this->Scattered, this->Arrays.Scale, this->Arrays.Light, monitor);
-    this->Step.Apply(this->Radiance, this->Scattered, this->Steady, this->Arrays.SigmaT, this->Scattered);
-    this->Radiance.Swap(this->Scattered);
-    this->Scattering.Gather(this->Radiance, this->Arrays.Light, {});
     const std::vector<float> now = this->Arrays.Light.order.Read();
     double change = 0.0;
     for (std::size_t i = 0; i < now.size(); ++i)
@@ -85,6 +83,16 @@ private:
     this->Result.ledger = this->OfLamps;
     this->CountSteady();
     this->Record.Add(change, this->Result.ledger);
+    if (!this->Done())
+    {
+      this->MoveOn();
+    }
+  }
+
+  void MoveOn()
+  {
+    this->Step.Apply(this->Radiance, this->Scattered, this->Steady, this->Arrays.SigmaT, this->Scattered);
+    this->Radiance.Swap(this->Scattered);
   }
 
   void CountSteady()
@@ -113,10 +121,13 @@ private:
 
   void Finish()
   {
-    this->Arrays.Light.fluence.Fill(0.0f);
-    this->Arrays.Light.flux.Fill(0.0f);
-    this->Scattering.Gather(this->Radiance, this->Arrays.Light, {});
+    if (this->Settings.netFlux)
+    {
+      this->Arrays.Light.flux.Fill(0.0f); // of all steps
+      this->Scattering.Gather(this->Radiance, this->Arrays.Light, {});
+    }
     this->Arrays.Read(this->Result);
+    this->Result.fluence = this->Fluence;
     this->Result.direct = this->LampFluence;
     for (std::size_t i = 0; i < this->LampFluence.size(); ++i)
     {

@@ -39,7 +39,7 @@ __kernel void move_on(const __global float* before, __global float* after, const
       from[a] = at[a] - (up[3 * group + a] ? upwind : -upwind);
       const bool beyond = from[a] < 0 || from[a] >= n[a];
       left = beyond && !(periodic >> a & 1) ? a : left;
-      from[a] = (from[a] + n[a]) % n[a];
+      from[a] += from[a] < 0 ? n[a] : from[a] >= n[a] ? -n[a] : 0;
     }
     const ulong voxel = ((ulong)from[2] * ny + from[1]) * nx + from[0];
     sum += weight * (left >= 0 ? outside[left] : ((const __global float8*)before)[group * stride + voxel]);

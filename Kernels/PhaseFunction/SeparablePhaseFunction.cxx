@@ -171,8 +171,8 @@ Basis Eigenvectors(const MatrixXd& matrix)
 }
 
 /// The eigenvectors of a matrix that scatters exactly the power there is, with exactly the mean cosine: 1 and omega are
-/// made eigenvectors, and of what is orthogonal to them no eigenvalue is larger than theory allows (numerics.md, Eqs.
-/// (D5), (D6)).
+/// made eigenvectors, and of what is orthogonal to them no eigenvalue is larger than theory allows (numerics.md, Eq.
+/// (D5)).
 Basis RepairedEigenvectors(
   const MatrixXd& matrix, const std::vector<Direction>& directions, const std::vector<double>& moments)
 {

@@ -12,7 +12,7 @@ import os
 from paraview import servermanager
 from paraview.simple import *
 from paraview.vtk import vtkTable
-from paraview.vtk.vtkChartsCore import vtkAxis, vtkChart, vtkChartXY
+from paraview.vtk.vtkChartsCore import vtkAxis, vtkChart, vtkChartLegend, vtkChartXY
 from paraview.vtk.vtkCommonCore import vtkFloatArray
 from paraview.vtk.vtkIOImage import vtkPNGWriter
 from paraview.vtk.vtkRenderingCore import vtkWindowToImageFilter
@@ -42,6 +42,9 @@ class Chart:
         self.view.GetScene().AddItem(self.chart)
         self.chart.SetTitle(title)
         self.chart.SetShowLegend(True)
+        self.chart.GetLegend().SetInline(False)
+        self.chart.GetLegend().SetHorizontalAlignment(vtkChartLegend.RIGHT)
+        self.chart.GetLegend().SetVerticalAlignment(vtkChartLegend.TOP)
         self.chart.GetAxis(vtkAxis.BOTTOM).SetTitle(bottom)
         self.chart.GetAxis(vtkAxis.LEFT).SetTitle(left)
         self.chart.GetAxis(vtkAxis.LEFT).LogScaleOn()
