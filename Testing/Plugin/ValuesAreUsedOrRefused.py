@@ -43,12 +43,15 @@ WIDER = {
     "TimeBudget": "below",
     "UncollidedDirections": "above",  # any square number
     "PhotonImportance.Background": "below",  # above 0
+    "DiscreteOrdinates.Terms": "above",  # to as many as there are directions
+    "DiscreteOrdinates.SpiralDirections": "above",
 }
 # The ends of what only says how a slider goes, or need something else set with them.
 AT_THE_END = {
     "PilotCount",  # a million photons
     "TableColor", "TableReflectance",  # both together are at most 1
     "TimeBudget",  # no time for a row
+    "Terms",  # as many as there are directions at most
 }
 NARROWER = {"RefractionOctree.Tolerance", "VDBWriter.Tolerance"}
 
@@ -100,6 +103,7 @@ def comparison():
 
 # A proxy of each kind, ready to work.
 SCENES = {
+    "DiscreteOrdinates": lambda: DiscreteOrdinates(Input=medium, Lights=LightRig(), Terms=4),
     "EnvironmentReader": lambda: EnvironmentReader(FileName=picture),
     "LightRig": LightRig,
     "VDBReader": lambda: VDBReader(FileName=[stored]),
@@ -115,6 +119,7 @@ SCENES = {
     "PhotonReconstruction": lambda: PhotonReconstruction(Input=PhotonMarcher(
         Input=medium, Photons=photons(medium), PhotonCounts=1)),
     "RefractionOctree": lambda: RefractionOctree(Input=bends),
+    "SeparablePhaseFunction": lambda: SeparablePhaseFunction(Terms=9),
     "SolverComparison": comparison,
 }
 
