@@ -5,6 +5,7 @@
 //   TABLE   values of the phase function over the angle, evenly from 0 to pi
 #include "DiscreteOrdinates/LampScatteringShared.h"
 
+// The way of its light in a voxel; 0 in the voxel that it is in, where light goes every way.
 inline float3 from_lamp(const LampInRays* lamp, ulong i)
 {
   const float3 place = (float3)(lamp->place[0], lamp->place[1], lamp->place[2]);
@@ -14,9 +15,10 @@ inline float3 from_lamp(const LampInRays* lamp, ulong i)
   }
   const int nx = lamp->size[0], ny = lamp->size[1];
   const float3 voxel = (float3)(i % nx + 0.5f, i / nx % ny + 0.5f, i / nx / ny + 0.5f);
-  const float3 way = voxel * (float3)(lamp->spacing[0], lamp->spacing[1], lamp->spacing[2]) - place;
-  const float length_squared = dot(way, way);
-  return length_squared > 0.0f ? way * rsqrt(length_squared) : (float3)(0.0f, 0.0f, 1.0f);
+  const float3 spacing = (float3)(lamp->spacing[0], lamp->spacing[1], lamp->spacing[2]);
+  const float3 way = voxel * spacing - place;
+  const bool inside = all(fabs(way) <= 0.5001f * spacing);
+  return inside ? (float3)(0.0f) : way * rsqrt(dot(way, way));
 }
 
 // The angle over pi: cubic in the square root of 1 - |c|, to 7e-5 (Abramowitz and Stegun 4.4.45).
@@ -96,7 +98,8 @@ __kernel void scatter_from_place(__global float* source, const __global float* s
   }
   const float sum = sum8(sums);
   const float mean = sum8(firsts) / sum, square = sum8(seconds) / sum;
-  const float tilt = clamp((lamp.meanCosine - mean) / (square - lamp.meanCosine * mean), -1.0f, 1.0f);
+  const float wanted = square > 0.0f ? (lamp.meanCosine - mean) / (square - lamp.meanCosine * mean) : 0.0f;
+  const float tilt = clamp(wanted, -1.0f, 1.0f);
   const float power = path[i] * lamp.perVolume * sigma_s[i] / (sum * (1.0f + tilt * mean));
   for (int group = 0; group < GROUPS; ++group)
   {

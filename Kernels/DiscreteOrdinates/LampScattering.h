@@ -25,7 +25,8 @@ struct LampTarget
 /// over the direction's cell (numerics.md, Eq. (D12)). Power and mean cosine are right, and no source is negative,
 /// whatever the terms of later scatterings are.
 ///
-/// Rays come from the lamp's place; of a rectangle from its middle, which is off near it.
+/// Rays come from the lamp's place; of a rectangle from its middle, which is off near it. In the voxel that the lamp is
+/// in, light is scattered evenly.
 class LampScattering
 {
 public:

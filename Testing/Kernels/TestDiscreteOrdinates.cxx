@@ -3,6 +3,7 @@
 #include "Difference.h"
 #include "OrdinatesScene.h"
 
+#include "Comparison/ComparedRun.h"
 #include "DiscreteOrdinates/OrdinateGroups.h"
 #include "LightPropagation/Angular/DirectionSet.h"
 #include "Reference/ReferenceTable.h"
@@ -197,6 +198,70 @@ TEST_F(DiscreteOrdinates, TurnWithTheirScene)
     const LightField found = turned.SolveOrdinates(this->GetDevice());
     EXPECT_LT(RelativeDifference(found.fluence, turn.Field(light.fluence, scene.medium.grid.size)), 3e-5);
   }
+}
+
+TEST_F(DiscreteOrdinates, SeeAnEvenEnvironmentAsTheSky)
+{
+  for (int spiral : { 0, 60 })
+  {
+    LitMedium scene({ 5, 6, 4 }, 0.2f, 0.8f);
+    scene.ScatterWith(0.6);
+    scene.how.directionsPerFace = 9;
+    scene.how.spiralDirections = spiral;
+    LitMedium environment = scene;
+    scene.ShineFromEverywhere(0.7);
+    environment.light.environment.width = 16;
+    environment.light.environment.height = 8;
+    environment.light.environment.radiance.assign(3 * 16 * 8, 0.7f);
+    const LightField sky = scene.SolveOrdinates(this->GetDevice());
+    const LightField seen = environment.SolveOrdinates(this->GetDevice());
+    EXPECT_LT(RelativeDifference(seen.fluence, sky.fluence), 1e-5) << spiral;
+    EXPECT_GT(sky.balance.entered[0], 0.0);
+  }
+}
+
+TEST_F(DiscreteOrdinates, ScatterALampTheSameToAllSides)
+{
+  LitMedium scene({ 9, 9, 9 }, 0.05f, 0.2f);
+  Light lamp;
+  lamp.type = LightType::Point;
+  lamp.position = { 4.5, 4.5, 4.5 };
+  lamp.power = { 5.0, 5.0, 5.0 };
+  scene.light.lights.push_back(lamp);
+  scene.ScatterWith(0.8);
+  scene.how.directionsPerFace = 9;
+  scene.how.terms = 16;
+  const LightField light = scene.SolveOrdinates(this->GetDevice());
+  for (const CubeTurn& turn : AllCubeTurns())
+  {
+    EXPECT_LT(RelativeDifference(turn.Field(light.fluence, scene.medium.grid.size), light.fluence), 3e-5);
+  }
+  for (int face = 1; face < 6; ++face)
+  {
+    EXPECT_NEAR(light.facePowerOut[face][0], light.facePowerOut[0][0], 1e-5 * light.facePowerOut[0][0]);
+  }
+  EXPECT_LT(light.balance.RelativeError(1), 1e-5);
+}
+
+TEST_F(DiscreteOrdinates, AreComparedWithTheOthers)
+{
+  LitMedium scene({ 8, 8, 8 }, 0.05f, 0.1f);
+  scene.ShineFromEverywhere(1.0);
+  scene.Attach();
+  ComparedScene compared;
+  compared.medium = scene.medium;
+  compared.illumination = scene.light;
+  ComparedSettings settings;
+  settings.directionsPerFace = { 1, 4, 9 };
+  settings.coarsenings = { 1 };
+  settings.orders = {};
+  const std::vector<ComparedRun> runs =
+    RunsOf(ComparedMethod::DiscreteOrdinates, this->GetDevice(), compared, settings);
+  ASSERT_EQ(runs.size(), 3u) << "no finer maps";
+  const std::vector<float> maps = Propagate(this->GetDevice(), compared, {}, {}).fluence;
+  EXPECT_STREQ(NameOf(runs[0].method), "discrete ordinates");
+  EXPECT_LT(RelativeDifference(runs[2].solve(false, {}).fluence, maps), 0.05);
+  EXPECT_NO_THROW(runs[0].solve(false, {})) << "fewer terms where directions are few";
 }
 
 TEST_F(DiscreteOrdinates, HaveTheReflectanceAndTransmittanceOfSlabs)
