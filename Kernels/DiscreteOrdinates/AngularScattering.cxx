@@ -53,7 +53,7 @@ std::size_t AngularScattering::Bytes(const OrdinateGroups& groups, int terms, Pa
 void AngularScattering::LoadTables(const OrdinateGroups& groups, const SeparablePhaseFunction& phase)
 {
   const int moments = this->Rows * this->Width;
-  std::vector<float> weights(groups.Lanes() * moments, 0.0f), spread;
+  std::vector<float> weights(groups.Lanes() * moments, 0.0f);
   for (int g = 0; g < groups.Count(); ++g)
   {
     const OrdinateGroup& group = groups.All()[g];
@@ -75,39 +75,47 @@ void AngularScattering::LoadTables(const OrdinateGroups& groups, const Separable
         this->Lanes.push_back({ g, lane });
       }
     }
-    for (int k = 0; k < this->TermCount; ++k)
-    {
-      for (const int direction : group.direction)
-      {
-        spread.push_back(static_cast<float>(phase.Factor(direction, k)));
-      }
-    }
   }
-  const auto ofMatrix = [&](int to, int g, int lane) {
+  this->Weights = Buffer<float>(this->TheDevice, weights, "the directions");
+  this->Angles = Buffer<float>(
+    this->TheDevice, groups.Table([&](int g, int lane) { return groups.Weight(g, lane); }), "the directions");
+  this->LoadPhase(groups, phase);
+}
+
+/// What goes into each direction: factors of terms, or of the matrix [group][direction][lane], or its rows for passes.
+void AngularScattering::LoadPhase(const OrdinateGroups& groups, const SeparablePhaseFunction& phase)
+{
+  const auto ofMatrix = [&](int to, std::size_t from) {
+    const int g = static_cast<int>(from / OrdinateLanes), lane = static_cast<int>(from % OrdinateLanes);
     const std::size_t row = static_cast<std::size_t>(to) * phase.DirectionCount();
-    return phase.Matrix()[row + groups.All()[g].direction[lane]] * groups.Weight(g, lane);
+    return static_cast<float>(phase.Matrix()[row + groups.All()[g].direction[lane]] * groups.Weight(g, lane));
   };
-  for (int g = 0; g < groups.Count() && this->Sums == PairSums::Matrix; ++g)
+  const std::size_t parts = this->Sums == PairSums::Terms ? this->TermCount
+    : this->Sums == PairSums::Matrix                      ? groups.Lanes()
+                                                          : 0;
+  std::vector<float> spread;
+  for (const OrdinateGroup& group : groups.All())
   {
-    for (std::size_t from = 0; from < groups.Lanes(); ++from)
+    for (std::size_t part = 0; part < parts; ++part)
     {
-      for (const int to : groups.All()[g].direction)
+      for (const int to : group.direction)
       {
-        spread.push_back(
-          static_cast<float>(ofMatrix(to, static_cast<int>(from / OrdinateLanes), from % OrdinateLanes)));
+        spread.push_back(this->Sums == PairSums::Terms ? static_cast<float>(phase.Factor(to, static_cast<int>(part)))
+                                                       : ofMatrix(to, part));
       }
     }
   }
   for (std::size_t i = 0; i < this->Lanes.size() && this->Sums == PairSums::Passes; ++i)
   {
     const int to = groups.All()[this->Lanes[i][0]].direction[this->Lanes[i][1]];
-    this->MatrixRows.emplace_back(
-      this->TheDevice, groups.Table([&](int g, int lane) { return ofMatrix(to, g, lane); }), "the phase function");
+    std::vector<float> row;
+    for (std::size_t from = 0; from < groups.Lanes(); ++from)
+    {
+      row.push_back(ofMatrix(to, from));
+    }
+    this->MatrixRows.emplace_back(this->TheDevice, row, "the phase function");
   }
-  this->Weights = Buffer<float>(this->TheDevice, weights, "the directions");
   this->Spread = Buffer<float>(this->TheDevice, spread, "the phase function");
-  this->Angles = Buffer<float>(
-    this->TheDevice, groups.Table([&](int g, int lane) { return groups.Weight(g, lane); }), "the directions");
 }
 
 cl::Kernel AngularScattering::Kernel(const char* name) const

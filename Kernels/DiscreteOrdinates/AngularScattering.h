@@ -51,6 +51,7 @@ public:
 
 private:
   void LoadTables(const OrdinateGroups& groups, const SeparablePhaseFunction& phase);
+  void LoadPhase(const OrdinateGroups& groups, const SeparablePhaseFunction& phase);
   void ScatterByPasses(const Buffer<float>& radiance, const Buffer<float>& sigma_s, const Buffer<float>& source,
     const Monitor& monitor) const;
   cl::Kernel Kernel(const char* name) const;
