@@ -1,7 +1,6 @@
 #include "vtkLightPropagationMaps.h"
 
 #include "Common/LightTransportData.h"
-#include "Common/WholeImage.h"
 #include "Device/Device.h"
 #include "LightPropagation/Conservative/ConservativePropagation.h"
 #include "LightPropagation/Conservative/ErrorEstimate.h"
@@ -13,13 +12,10 @@
 #include "vtkInformation.h"
 #include "vtkInformationVector.h"
 #include "vtkObjectFactory.h"
-#include "vtkTable.h"
 
-#include <algorithm>
 #include <memory>
 #include <string>
 #include <utility>
-#include <vector>
 
 namespace
 {
@@ -52,13 +48,6 @@ tyndall::PropagationSettings SettingsOf(vtkLightPropagationMaps* filter)
   settings.netFlux = filter->GetNetFlux();
   settings.leaveOut = filter->GetLeaveOut();
   return settings;
-}
-
-/// Whether all light comes in through faces of the box.
-bool OnlyFromFarAway(const tyndall::Illumination& illumination)
-{
-  return std::all_of(illumination.lights.begin(), illumination.lights.end(),
-    [](const tyndall::Light& light) { return light.type == tyndall::LightType::Directional; });
 }
 
 tyndall::LightField Solve(
@@ -112,32 +101,12 @@ int vtkLightPropagationMaps::RequestData(vtkInformation*, vtkInformationVector**
     vtkImageData* image = vtkImageData::GetData(inputs[MEDIUM]);
     const tyndall::MediumInput input = tyndall::ReadMedium(this, image);
     const tyndall::Illumination illumination = this->ReadAllIllumination(inputs);
-    if (tyndall::NothingShines(illumination) && !input.emission.IsThere())
-    {
-      vtkWarningMacro(
-        "Nothing shines on the medium, so it is dark. Connect Lights or an Environment, or set SkyColor.");
-    }
-    else if (this->PeriodicX && this->PeriodicY && this->PeriodicZ && !input.emission.IsThere() &&
-      OnlyFromFarAway(illumination))
-    {
-      vtkWarningMacro(
-        "With all three axes periodic the box has no face that light of the sky, an environment, faces or a "
-        "directional light could come in through, so it is dark. Leave one axis open.");
-    }
+    this->WarnWhereDark(illumination, input.emission.IsThere());
 
     tyndall::LightField light = Solve(this, input.medium, illumination);
 
     this->Note(light);
-    const std::vector<std::string> doubts = light.doubts;
-    tyndall::WriteConvergence(light.convergence, vtkTable::GetData(outputs, 1));
-    vtkImageData* output = vtkImageData::GetData(outputs, 0);
-    tyndall::PassOn(image, output);
-    tyndall::WriteLight(std::move(light), output); // light that is not finite is an error, with no warnings before
-    for (const std::string& doubt : doubts)
-    {
-      vtkWarningMacro(<< doubt);
-    }
-    tyndall::KeepWhatIsAskedFor(outputs->GetInformationObject(0), output);
+    this->WriteSolved(image, std::move(light), outputs);
   });
 }
 

@@ -1,7 +1,27 @@
 #include "vtkPropagationAlgorithm.h"
 
 #include "Common/LightTransportData.h"
+#include "Common/WholeImage.h"
 #include "LightPropagation/PropagationSettings.h"
+
+#include "vtkImageData.h"
+#include "vtkInformationVector.h"
+#include "vtkTable.h"
+
+#include <algorithm>
+#include <string>
+#include <utility>
+#include <vector>
+
+namespace
+{
+/// Whether all light comes in through faces of the box.
+bool OnlyFromFarAway(const tyndall::Illumination& illumination)
+{
+  return std::all_of(illumination.lights.begin(), illumination.lights.end(),
+    [](const tyndall::Light& light) { return light.type == tyndall::LightType::Directional; });
+}
+}
 
 vtkPropagationAlgorithm::vtkPropagationAlgorithm()
 {
@@ -19,6 +39,34 @@ tyndall::Illumination vtkPropagationAlgorithm::ReadAllIllumination(vtkInformatio
   tyndall::Illumination illumination = this->ReadIllumination(inputs);
   tyndall::AddDiffuse(illumination, this->SkyColor, this->FaceRadiance);
   return illumination;
+}
+
+void vtkPropagationAlgorithm::WarnWhereDark(const tyndall::Illumination& illumination, bool emits)
+{
+  if (tyndall::NothingShines(illumination) && !emits)
+  {
+    vtkWarningMacro("Nothing shines on the medium, so it is dark. Connect Lights or an Environment, or set SkyColor.");
+  }
+  else if (this->PeriodicX && this->PeriodicY && this->PeriodicZ && !emits && OnlyFromFarAway(illumination))
+  {
+    vtkWarningMacro("With all three axes periodic the box has no face that light of the sky, an environment, faces or "
+                    "a directional light could come in through, so it is dark. Leave one axis open.");
+  }
+}
+
+void vtkPropagationAlgorithm::WriteSolved(
+  vtkImageData* medium, tyndall::LightField&& light, vtkInformationVector* outputs)
+{
+  const std::vector<std::string> doubts = light.doubts;
+  tyndall::WriteConvergence(light.convergence, vtkTable::GetData(outputs, 1));
+  vtkImageData* output = vtkImageData::GetData(outputs, 0);
+  tyndall::PassOn(medium, output);
+  tyndall::WriteLight(std::move(light), output); // light that is not finite is an error, with no warnings before
+  for (const std::string& doubt : doubts)
+  {
+    vtkWarningMacro(<< doubt);
+  }
+  tyndall::KeepWhatIsAskedFor(outputs->GetInformationObject(0), output);
 }
 
 void vtkPropagationAlgorithm::PrintSelf(ostream& os, vtkIndent indent)

@@ -4,14 +4,20 @@
 #include "vtkLitImageAlgorithm.h"
 #include "vtkTyndallModule.h" // for export macro
 
+class vtkImageData;
+namespace tyndall
+{
+struct LightField;
+}
+
 /**
  * @class vtkPropagationAlgorithm
  * @brief superclass of the filters that propagate light through a medium until little is left
  *
- * It has what vtkLightPropagationMaps, which solves once, and vtkSolverComparison, which solves by many settings, are
- * both told of the box and of when to stop.
+ * It has what vtkLightPropagationMaps and vtkDiscreteOrdinates, which solve once, and vtkSolverComparison, which solves
+ * by many settings, are all told of the box and of when to stop.
  *
- * @sa vtkLightPropagationMaps vtkSolverComparison
+ * @sa vtkLightPropagationMaps vtkDiscreteOrdinates vtkSolverComparison
  */
 class TYNDALL_EXPORT vtkPropagationAlgorithm : public vtkLitImageAlgorithm
 {
@@ -65,6 +71,12 @@ protected:
 
   /// The lights and the environment, with the sky and what shines through the faces. Checked.
   tyndall::Illumination ReadAllIllumination(vtkInformationVector** inputs);
+
+  /// Warns where neither the medium nor anything else shines, or no light can come in.
+  void WarnWhereDark(const tyndall::Illumination& illumination, bool emits);
+
+  /// Solved light on output 0 beside the arrays of `medium`, its convergence on output 1; then a warning of each doubt.
+  void WriteSolved(vtkImageData* medium, tyndall::LightField&& light, vtkInformationVector* outputs);
 
   double Tolerance;
   bool PeriodicX;

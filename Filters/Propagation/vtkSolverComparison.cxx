@@ -253,6 +253,7 @@ tyndall::ComparisonSettings vtkSolverComparison::Settings() const
     { this->ConstantSource, ComparedMethod::ConstantSource },
     { this->AsPublished, ComparedMethod::Published },
     { this->AsPublishedSequential, ComparedMethod::PublishedSequential },
+    { this->DiscreteOrdinates, ComparedMethod::DiscreteOrdinates },
     { this->Photons, ComparedMethod::Photons },
     { this->AdaptivePhotons, ComparedMethod::AdaptivePhotons },
     { this->PublishedPhotons, ComparedMethod::PublishedPhotons },
@@ -328,6 +329,7 @@ void vtkSolverComparison::PrintSelf(ostream& os, vtkIndent indent)
   os << indent << "ConstantSource: " << this->ConstantSource << "\n";
   os << indent << "AsPublished: " << this->AsPublished << "\n";
   os << indent << "AsPublishedSequential: " << this->AsPublishedSequential << "\n";
+  os << indent << "DiscreteOrdinates: " << this->DiscreteOrdinates << "\n";
   os << indent << "Photons: " << this->Photons << "\n";
   os << indent << "AdaptivePhotons: " << this->AdaptivePhotons << "\n";
   os << indent << "PublishedPhotons: " << this->PublishedPhotons << "\n";

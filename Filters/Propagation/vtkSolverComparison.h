@@ -108,6 +108,9 @@ public:
   vtkSetMacro(AsPublishedSequential, bool);
   vtkGetMacro(AsPublishedSequential, bool);
   vtkBooleanMacro(AsPublishedSequential, bool);
+  vtkSetMacro(DiscreteOrdinates, bool);
+  vtkGetMacro(DiscreteOrdinates, bool);
+  vtkBooleanMacro(DiscreteOrdinates, bool);
   vtkSetMacro(Photons, bool);
   vtkGetMacro(Photons, bool);
   vtkBooleanMacro(Photons, bool);
@@ -193,6 +196,7 @@ private:
   bool ConstantSource = true;
   bool AsPublished = true;
   bool AsPublishedSequential = false;
+  bool DiscreteOrdinates = false;
   bool Photons = true;
   bool AdaptivePhotons = false;
   bool PublishedPhotons = false;

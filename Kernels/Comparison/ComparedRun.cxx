@@ -16,6 +16,7 @@ const char* NameOf(ComparedMethod method)
     case ComparedMethod::ConstantSource: return "constant source, not accelerated";
     case ComparedMethod::Published: return "as published";
     case ComparedMethod::PublishedSequential: return "as published, sequential";
+    case ComparedMethod::DiscreteOrdinates: return "discrete ordinates";
     case ComparedMethod::Photons: return "photons";
     case ComparedMethod::AdaptivePhotons: return "adaptive photons";
     default: return "photons as published";

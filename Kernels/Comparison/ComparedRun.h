@@ -19,6 +19,7 @@ enum class ComparedMethod
   ConstantSource,       ///< conservative, constant source, no acceleration
   Published,            ///< light propagation maps as published, Algorithm 2
   PublishedSequential,  ///< the same, Algorithm 1: slow
+  DiscreteOrdinates,    ///< conservative, anisotropic scattering by spherical harmonics
   Photons,              ///< spread evenly, conservative marching and reconstruction
   AdaptivePhotons,      ///< the same with an importance map
   PublishedPhotons,     ///< marching and Gauss filter as published

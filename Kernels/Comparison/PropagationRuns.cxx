@@ -1,5 +1,6 @@
 #include "Comparison/PropagationRuns.h"
 
+#include "DiscreteOrdinates/DiscreteOrdinates.h"
 #include "LightPropagation/Conservative/ConservativePropagation.h"
 #include "LightPropagation/Conservative/ErrorEstimate.h"
 #include "LightPropagation/Published/ParallelPropagation.h"
@@ -54,6 +55,21 @@ std::vector<Setting> SettingsToTry(const ComparedSettings& settings)
   return all;
 }
 
+/// The same settings for discrete ordinates, with as many terms as the directions are enough for.
+OrdinatesSettings AsOrdinates(const PropagationSettings& settings)
+{
+  OrdinatesSettings as;
+  as.directionsPerFace = settings.directionsPerFace;
+  as.maximumOrders = settings.maximumOrders;
+  as.tolerance = settings.tolerance;
+  as.periodic = settings.periodic;
+  for (int degree = 4; as.terms > 6 * as.directionsPerFace; --degree)
+  {
+    as.terms = degree * degree;
+  }
+  return as;
+}
+
 /// The solver of a method, in the scene's light.
 /// @param device, scene  must stay
 PropagationSolver SolverOf(ComparedMethod method, Device& device, const ComparedScene& scene)
@@ -63,6 +79,8 @@ PropagationSolver SolverOf(ComparedMethod method, Device& device, const Compared
     {
       case ComparedMethod::Published: return SolveParallel(device, medium, scene.illumination, settings, monitor);
       case ComparedMethod::PublishedSequential: return SolveSequential(medium, scene.illumination, settings, monitor);
+      case ComparedMethod::DiscreteOrdinates:
+        return SolveDiscreteOrdinates(device, medium, scene.illumination, AsOrdinates(settings), monitor);
       default: return SolveConservative(device, medium, scene.illumination, settings, monitor);
     }
   };
@@ -93,7 +111,7 @@ std::vector<ComparedRun> PropagationRunsOf(
   for (const Setting& setting : SettingsToTry(settings))
   {
     const std::optional<Factors> factors = CoarseningBy(setting.coarsening, scene.medium.grid);
-    if (!factors)
+    if (!factors || (setting.map > 1 && method == ComparedMethod::DiscreteOrdinates))
     {
       continue;
     }
@@ -106,7 +124,7 @@ std::vector<ComparedRun> PropagationRunsOf(
     run.grid = scaled ? scaled->Scene().medium.grid : scene.medium.grid;
     run.cost = static_cast<double>(run.grid.VoxelCount()) * setting.directions * setting.map * setting.map;
     run.allOrders = setting.orders == 0;
-    run.estimates = true;
+    run.estimates = method != ComparedMethod::DiscreteOrdinates;
     run.solve = [=, &scene](bool estimate, const Monitor& monitor) {
       PropagationSettings now = of;
       now.periodic = scene.periodic;

@@ -17,7 +17,7 @@ LAYERS = {
         ["Numerics"],
         ["Medium", "PhaseFunction", "Lights", "Light"],
         ["LightPropagation"],
-        ["Refraction"],
+        ["DiscreteOrdinates", "Refraction"],
         ["Photons"],
         ["Reconstruction", "Viewing"],
         ["Comparison"],

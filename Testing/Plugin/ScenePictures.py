@@ -19,6 +19,8 @@ SCENES = {
     "adaptive": ("Plugin/Examples/adaptive.py",
                  "--output {output} --grid 64 --photons 20000 --rich 400000 --size 120 90",
                  ["adaptive", "adaptive-against-even", "estimators"]),
+    "phasefunction": ("Plugin/Examples/phase_function.py", "{output} --directions 128 --size 450 300",
+                      ["phase-function-error", "phase-function"]),
     "cumulus": ("Data/Scenes/cumulus.py", "--output {output}/cumulus.png --voxels 64 --size 240 150", ["cumulus"]),
     "plume": ("Data/Scenes/plume.py", "--output {output}/plume.png --voxels 64 --size 160 240", ["plume"]),
     "hall": ("Data/Scenes/hall.py", "--output {output}/hall.png --size 240 180", ["hall"]),

@@ -44,6 +44,8 @@ WIDER = {
     "TimeBudget": "below",
     "UncollidedDirections": "above",  # any square number
     "PhotonImportance.Background": "below",  # above 0
+    "DiscreteOrdinates.Terms": "above",  # to as many as there are directions
+    "DiscreteOrdinates.SpiralDirections": "above",
 }
 # The ends of what only says how a slider goes, or need something else set with them.
 AT_THE_END = {
@@ -51,6 +53,7 @@ AT_THE_END = {
     "TableColor", "TableReflectance",  # both together are at most 1
     "TimeBudget",  # no time for a row
     "PhaseFunction",  # the last one needs a table
+    "Terms",  # as many as there are directions at most
 }
 NARROWER = {"RefractionOctree.Tolerance", "VDBWriter.Tolerance"}
 
@@ -102,6 +105,7 @@ def comparison():
 
 # A proxy of each kind, ready to work.
 SCENES = {
+    "DiscreteOrdinates": lambda: DiscreteOrdinates(Input=medium, Lights=LightRig(), Terms=4),
     "EnvironmentReader": lambda: EnvironmentReader(FileName=picture),
     "LightRig": LightRig,
     "VDBReader": lambda: VDBReader(FileName=[stored]),
@@ -117,6 +121,7 @@ SCENES = {
     "PhotonReconstruction": lambda: PhotonReconstruction(Input=PhotonMarcher(
         Input=medium, Photons=photons(medium), PhotonCounts=1)),
     "RefractionOctree": lambda: RefractionOctree(Input=bends),
+    "SeparablePhaseFunction": lambda: SeparablePhaseFunction(Terms=9),
     "SolverComparison": comparison,
 }
 

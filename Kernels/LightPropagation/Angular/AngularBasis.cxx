@@ -1,6 +1,7 @@
 #include "LightPropagation/Angular/AngularBasis.h"
 
 #include "Numerics/Constants.h"
+#include "Numerics/SphericalHarmonics.h"
 
 #include <cmath>
 
@@ -8,6 +9,17 @@ namespace tyndall
 {
 namespace
 {
+/// Those of Numerics, so scaled that their squares average to 1.
+std::vector<double> Harmonics(int degree, const std::array<double, 3>& omega)
+{
+  std::vector<double> values = SphericalHarmonics(degree, omega);
+  for (double& value : values)
+  {
+    value *= std::sqrt(4.0 * Pi);
+  }
+  return values;
+}
+
 /// Of a function's square, the part that functions before it must leave on a set of directions.
 constexpr double LeastLeft = 0.3;
 
@@ -19,7 +31,7 @@ std::vector<std::vector<double>> Orthonormal(const DirectionSet& set, int degree
   std::vector<std::vector<double>> values(count), rows;
   for (const Direction& direction : set.directions)
   {
-    const std::vector<double> here = SphericalHarmonics(degree, direction.omega);
+    const std::vector<double> here = Harmonics(degree, direction.omega);
     for (int i = 0; i < count; ++i)
     {
       values[i].push_back(here[i]);
@@ -74,12 +86,7 @@ std::vector<std::vector<double>> Orthonormal(const DirectionSet& set, int degree
 
 int AngularBasis::DegreeOf(int function)
 {
-  int l = 0;
-  while ((l + 1) * (l + 1) <= function)
-  {
-    ++l;
-  }
-  return l;
+  return DegreeOfTerm(function);
 }
 
 int AngularBasis::OrderOf(int function)
@@ -113,7 +120,7 @@ std::vector<double> AngularBasis::Matrix() const
 
 std::vector<double> AngularBasis::At(const std::array<double, 3>& omega) const
 {
-  const std::vector<double> harmonics = SphericalHarmonics(this->L, omega);
+  const std::vector<double> harmonics = Harmonics(this->L, omega);
   std::vector<double> values(this->Rows.size(), 0.0);
   for (std::size_t i = 0; i < this->Rows.size(); ++i)
   {
@@ -121,42 +128,6 @@ std::vector<double> AngularBasis::At(const std::array<double, 3>& omega) const
     {
       values[i] += this->Rows[i][j] * harmonics[j];
     }
-  }
-  return values;
-}
-
-/// By the recurrences of P_l^m / sin^m, which are polynomials of z, and of (x + i y)^m.
-std::vector<double> SphericalHarmonics(int degree, const std::array<double, 3>& omega)
-{
-  const auto [x, y, z] = omega;
-  std::vector<double> values((degree + 1) * (degree + 1), 0.0);
-  double cosine = 1.0, sine = 0.0; // of m times the azimuth, times sin^m
-  double diagonal = 1.0;           // P_m^m / sin^m
-  for (int m = 0; m <= degree; ++m)
-  {
-    double before = 0.0, p = diagonal;
-    double ratio = 1.0; // (l - m)! / (l + m)!
-    for (int k = 2; k <= 2 * m; ++k)
-    {
-      ratio /= k;
-    }
-    for (int l = m; l <= degree; ++l)
-    {
-      const double scale = std::sqrt((2 * l + 1) * (m == 0 ? 1.0 : 2.0) * ratio);
-      values[l * l + l + m] = scale * p * cosine;
-      if (m > 0)
-      {
-        values[l * l + l - m] = scale * p * sine;
-      }
-      const double next = ((2 * l + 1) * z * p - (l + m) * before) / (l - m + 1);
-      before = p;
-      p = next;
-      ratio *= static_cast<double>(l - m + 1) / (l + m + 1);
-    }
-    const double turned = cosine * x - sine * y;
-    sine = cosine * y + sine * x;
-    cosine = turned;
-    diagonal *= 2 * m + 1;
   }
   return values;
 }

@@ -27,7 +27,7 @@ public:
   /// Whether a function changes its sign where x, y, z does.
   static std::array<bool, 3> IsOdd(int function);
 
-  /// [function][harmonic]: the functions as sums of SphericalHarmonics.
+  /// [function][harmonic]: the functions as sums of spherical harmonics whose squares average to 1.
   std::vector<double> Matrix() const;
   /// All functions in a direction, that of the set or any other. @param omega  a unit vector
   std::vector<double> At(const std::array<double, 3>& omega) const;
@@ -37,10 +37,6 @@ private:
   /// Row i: function i as a sum of the spherical harmonics of its own parity, 0 to i.
   std::vector<std::vector<double>> Rows;
 };
-
-/// The spherical harmonics that a basis is made of, as AngularBasis counts and scales them.
-/// @return (degree + 1)^2 values
-std::vector<double> SphericalHarmonics(int degree, const std::array<double, 3>& omega);
 
 /// The largest degree, at most `wanted`, whose functions a set of directions tells apart well.
 int MostDegree(const DirectionSet& set, int wanted);

@@ -7,8 +7,8 @@
 
 namespace tyndall
 {
-/// Angular functions along the directions that rays go along: what a sweep turns moments of a source into its directions
-/// with, and gathers moments with.
+/// Angular functions along the directions that rays go along: what a sweep turns moments of a source into its
+/// directions with, and gathers moments with.
 struct AngularValues
 {
   int degree = 0;

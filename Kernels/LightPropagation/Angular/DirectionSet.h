@@ -1,6 +1,7 @@
 #pragma once
 
 #include "Lights/Lights.h"
+#include "Numerics/Direction.h"
 
 #include <array>
 #include <string>
@@ -8,13 +9,6 @@
 
 namespace tyndall
 {
-/// A direction of propagation and the solid angle it stands for.
-struct Direction
-{
-  std::array<double, 3> omega = { 0.0, 0.0, 1.0 }; ///< unit vector, the way the light travels
-  double weight = 0.0;                             ///< sr; all weights of a set add up to 4 pi
-};
-
 /// Directions through the n x n cells of the six faces of a cube, face by face in the order -x, +x, -y, +y, -z, +z (the
 /// face the direction points through), cells row by row.
 struct DirectionSet

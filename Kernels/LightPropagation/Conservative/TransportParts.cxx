@@ -1,8 +1,8 @@
 #include "LightPropagation/Conservative/TransportParts.h"
 
-#include "LightPropagation/Scattering/AngularScattering.h"
 #include "LightPropagation/Scattering/BeamScattering.h"
 #include "LightPropagation/Scattering/IsotropicScattering.h"
+#include "LightPropagation/Scattering/MomentScattering.h"
 #include "LightPropagation/Sweep/SweepInMemory.h"
 #include "LightPropagation/Uncollided/EnvironmentPeaks.h"
 #include "LightPropagation/Uncollided/UncollidedBoundary.h"
@@ -160,7 +160,7 @@ std::unique_ptr<const ScatteringOperator> TransportParts::MakeScattering() const
 {
   if (const int degree = this->Problem.Scattering().Degree(); degree > 0)
   {
-    return std::make_unique<AngularScattering>(this->TheDevice, this->Layout, this->OnDevice, degree);
+    return std::make_unique<MomentScattering>(this->TheDevice, this->Layout, this->OnDevice, degree);
   }
   return std::make_unique<IsotropicScattering>(
     this->TheDevice, this->Layout, this->OnDevice, this->Problem.ComputesScattering());

@@ -2,7 +2,7 @@
 
 #include "LightPropagation/Diffusion/LampPassing.h"
 #include "LightPropagation/Problem/ScatteringOrders.h"
-#include "LightPropagation/Scattering/AngularScattering.h"
+#include "LightPropagation/Scattering/MomentScattering.h"
 #include "LightPropagation/Uncollided/UncollidedBoundary.h"
 
 #include <algorithm>

@@ -123,8 +123,8 @@ typedef struct
   int count;
 } diffusion_arrays;
 
-// What the given source's own net flux adds, for a voxel's half along an axis, to the fluence that drives light along it
-// (numerics.md, Eq. (53a)).
+// What the given source's own net flux adds, for a voxel's half along an axis, to the fluence that drives light along
+// it (numerics.md, Eq. (53a)).
 static float drive(const DiffusionLayout* layout, const diffusion_arrays* arrays, int axis, int i)
 {
 #if MOMENTS

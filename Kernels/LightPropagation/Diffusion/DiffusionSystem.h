@@ -73,8 +73,8 @@ public:
   /// W through each voxel's faces at the box's, of the last Outflow.
   SurfacePowers PowersAtSurface() const;
 
-  /// Add to the moments of a sweep's path by how much the net flux of NextFluence() differs from what it found, W length
-  /// (numerics.md, Eq. (70a)).
+  /// Add to the moments of a sweep's path by how much the net flux of NextFluence() differs from that of what the sweep
+  /// found, W length (numerics.md, Eq. (70a)).
   void AddFluxBeyondSweep(const Buffer<float>& path);
 
   /// Add the net flux times the voxel's volume to [channel][x, y, z][stride].

@@ -255,8 +255,8 @@ static void begin_planes(const SweepInfo* info, __global float* planes, __global
 }
 
 #if SOURCE && !DEGREE
-// Adds to a row the path of the medium's own light in the voxel where it starts (numerics.md, Eq. (26)): (length - taken) /
-// sigma, or a polynomial where that would cancel or `taken` was not kept.
+// Adds to a row the path of the medium's own light in the voxel where it starts (numerics.md, Eq. (26)):
+// (length - taken) / sigma, or a polynomial where that would cancel or `taken` was not kept.
 static void add_own_light(const PlaneInfo* layout, __global float* row, const __global OwnLightInfo* light)
 {
   for (int at = 0; at < ROW; at += REAL_WIDTH)

@@ -7,11 +7,11 @@ namespace tyndall
 /// Scattering in angular moments (AngularBasis.h): of each moment of degree l its part of sigma_s goes on (numerics.md,
 /// Eq. (42a)). Arrays have a moment after the other, [function][channel][stride]; the first is fluence, and scattered
 /// as IsotropicScattering has it.
-class AngularScattering : public ScatteringOperator
+class MomentScattering : public ScatteringOperator
 {
 public:
   /// @param medium  must stay; it has scattering coefficients of degrees 0 to `degree`
-  AngularScattering(Device& device, const VolumeLayout& layout, const MediumOnDevice& medium, int degree);
+  MomentScattering(Device& device, const VolumeLayout& layout, const MediumOnDevice& medium, int degree);
 
   Powers ScatterOrder(const Deposit& swept, const Buffer<float>& fluence, const Buffer<float>& source,
     const std::array<std::size_t, 2>& range) const override;

@@ -1,4 +1,4 @@
-#include "LightPropagation/Scattering/AngularScattering.h"
+#include "LightPropagation/Scattering/MomentScattering.h"
 
 #include "Numerics/Constants.h"
 #include "TyndallKernelSources.h"
@@ -7,8 +7,7 @@
 
 namespace tyndall
 {
-AngularScattering::AngularScattering(
-  Device& device, const VolumeLayout& layout, const MediumOnDevice& medium, int degree)
+MomentScattering::MomentScattering(Device& device, const VolumeLayout& layout, const MediumOnDevice& medium, int degree)
   : TheDevice(device)
   , Layout(layout)
   , TheMedium(medium)
@@ -18,18 +17,18 @@ AngularScattering::AngularScattering(
 {
 }
 
-cl::Kernel AngularScattering::Kernel(const char* name) const
+cl::Kernel MomentScattering::Kernel(const char* name) const
 {
-  return this->TheDevice.Kernel(name, kernel_source::AngularScattering);
+  return this->TheDevice.Kernel(name, kernel_source::MomentScattering);
 }
 
 /// From a path integral, W length, to the source of what is scattered of it with a coefficient of 1.
-float AngularScattering::PerPath() const
+float MomentScattering::PerPath() const
 {
   return static_cast<float>(1.0 / (4.0 * Pi * this->Layout.grid.VoxelVolume()));
 }
 
-ScatteringOperator::Powers AngularScattering::ScatterOrder(const Deposit& swept, const Buffer<float>& fluence,
+ScatteringOperator::Powers MomentScattering::ScatterOrder(const Deposit& swept, const Buffer<float>& fluence,
   const Buffer<float>& source, const std::array<std::size_t, 2>& range) const
 {
   const Powers powers = this->OfFluence.ScatterOrder(swept, fluence, source, range);
@@ -44,12 +43,12 @@ ScatteringOperator::Powers AngularScattering::ScatterOrder(const Deposit& swept,
   return powers;
 }
 
-void AngularScattering::ScatterAllOrders(const Buffer<float>&, const Buffer<float>&) const
+void MomentScattering::ScatterAllOrders(const Buffer<float>&, const Buffer<float>&) const
 {
   throw std::logic_error("the moments of all orders are not kept");
 }
 
-void AngularScattering::AddFirstScattered(const Deposit& uncollided, const Buffer<float>& source) const
+void MomentScattering::AddFirstScattered(const Deposit& uncollided, const Buffer<float>& source) const
 {
   this->OfFluence.AddFirstScattered(uncollided, source);
   cl::Kernel kernel = this->Kernel("add_scattered_moments");
@@ -58,7 +57,7 @@ void AngularScattering::AddFirstScattered(const Deposit& uncollided, const Buffe
   this->TheDevice.Queue().enqueueNDRangeKernel(kernel, cl::NullRange, this->Moments(this->FunctionStride()));
 }
 
-void AngularScattering::AddBeam(const Buffer<float>& path, const Buffer<float>& source, int slot) const
+void MomentScattering::AddBeam(const Buffer<float>& path, const Buffer<float>& source, int slot) const
 {
   cl::Kernel kernel = this->Kernel("scatter_beam");
   With(kernel, path, source, this->TheMedium.SigmaOfDegrees(), cl_ulong(this->FunctionStride()), cl_int(slot),
@@ -67,7 +66,7 @@ void AngularScattering::AddBeam(const Buffer<float>& path, const Buffer<float>& 
   this->TheDevice.Finish(); // the path goes
 }
 
-void AngularScattering::ScatterFluence(int channel, const Deposit& swept, const ExactValues& fluence,
+void MomentScattering::ScatterFluence(int channel, const Deposit& swept, const ExactValues& fluence,
   const Buffer<float>& given, const Buffer<float>& source) const
 {
   this->OfFluence.ScatterFluence(channel, swept, fluence, given, source);
@@ -79,14 +78,14 @@ void AngularScattering::ScatterFluence(int channel, const Deposit& swept, const 
 
 void AddMoments(Device& device, std::size_t stride, int functions, const Buffer<float>& path, const Buffer<float>& to)
 {
-  cl::Kernel kernel = device.Kernel("add_moments", kernel_source::AngularScattering);
+  cl::Kernel kernel = device.Kernel("add_moments", kernel_source::MomentScattering);
   With(kernel, path, to, cl_ulong(stride));
   device.Queue().enqueueNDRangeKernel(kernel, cl::NullRange, cl::NDRange(stride, functions - 1));
 }
 
 void AddFluxOfMoments(Device& device, const VolumeLayout& layout, const Buffer<float>& path, const Buffer<float>& flux)
 {
-  cl::Kernel kernel = device.Kernel("add_flux_of_moments", kernel_source::AngularScattering);
+  cl::Kernel kernel = device.Kernel("add_flux_of_moments", kernel_source::MomentScattering);
   With(kernel, path, flux, cl_ulong(layout.Stride()), cl_ulong(layout.channels * layout.Stride()));
   device.Queue().enqueueNDRangeKernel(kernel, cl::NullRange, cl::NDRange(layout.Stride(), layout.channels));
 }

@@ -1,0 +1,101 @@
+#include "vtkDiscreteOrdinates.h"
+
+#include "Common/LightTransportData.h"
+#include "Device/Device.h"
+#include "DiscreteOrdinates/DiscreteOrdinates.h"
+
+#include "vtkDataObject.h"
+#include "vtkImageData.h"
+#include "vtkInformation.h"
+#include "vtkInformationVector.h"
+#include "vtkObjectFactory.h"
+
+#include <utility>
+
+namespace
+{
+tyndall::OrdinatesSettings SettingsOf(vtkDiscreteOrdinates* filter)
+{
+  tyndall::OrdinatesSettings settings;
+  settings.scheme = static_cast<tyndall::OrdinatesScheme>(filter->GetScheme());
+  settings.scattering = static_cast<tyndall::OrdinatesScattering>(filter->GetScattering());
+  settings.directionsPerFace = filter->GetDirectionsPerFace();
+  settings.spiralDirections = filter->GetSpiralDirections();
+  settings.terms = filter->GetTerms();
+  settings.maximumOrders = filter->GetMaximumOrders();
+  settings.tolerance = filter->GetTolerance();
+  settings.periodic = { filter->GetPeriodicX(), filter->GetPeriodicY(), filter->GetPeriodicZ() };
+  settings.netFlux = filter->GetNetFlux();
+  settings.leaveOut = filter->GetLeaveOut();
+  return settings;
+}
+}
+
+vtkStandardNewMacro(vtkDiscreteOrdinates);
+
+vtkDiscreteOrdinates::vtkDiscreteOrdinates()
+{
+  const tyndall::OrdinatesSettings defaults;
+  this->DirectionsPerFace = defaults.directionsPerFace;
+  this->SpiralDirections = defaults.spiralDirections;
+  this->Terms = defaults.terms;
+  this->MaximumOrders = defaults.maximumOrders;
+  this->NetFlux = defaults.netFlux;
+  this->LeaveOut = defaults.leaveOut;
+  this->SetNumberOfOutputPorts(2);
+}
+
+vtkDiscreteOrdinates::~vtkDiscreteOrdinates() = default;
+
+int vtkDiscreteOrdinates::FillOutputPortInformation(int port, vtkInformation* information)
+{
+  information->Set(vtkDataObject::DATA_TYPE_NAME(), port == 0 ? "vtkImageData" : "vtkTable");
+  return 1;
+}
+
+int vtkDiscreteOrdinates::RequestData(vtkInformation*, vtkInformationVector** inputs, vtkInformationVector* outputs)
+{
+  this->Note({});
+  return tyndall::Guarded(this, outputs, [&] {
+    vtkImageData* image = vtkImageData::GetData(inputs[MEDIUM]);
+    const tyndall::MediumInput input = tyndall::ReadMedium(this, image);
+    const tyndall::Illumination illumination = this->ReadAllIllumination(inputs);
+    this->WarnWhereDark(illumination, input.emission.IsThere());
+    tyndall::LightField light = tyndall::SolveDiscreteOrdinates(*tyndall::Device::Find(this->GetDevice()), input.medium,
+      illumination, SettingsOf(this), tyndall::MonitorOf(this));
+    this->Note(light);
+    this->WriteSolved(image, std::move(light), outputs);
+  });
+}
+
+void vtkDiscreteOrdinates::Note(const tyndall::LightField& light)
+{
+  const bool any = !light.convergence.empty();
+  this->Orders = static_cast<int>(light.convergence.size());
+  this->Residual = any ? light.convergence.back().residual : 0.0;
+  this->Seconds = any ? light.convergence.back().seconds : 0.0;
+  this->BalanceError = light.balance.RelativeError(light.channels);
+  this->HalfRangeFlux = light.halfRangeFlux;
+  this->DeviceName = light.device;
+  this->LeftOut = tyndall::Lines(light.leftOut);
+}
+
+void vtkDiscreteOrdinates::PrintSelf(ostream& os, vtkIndent indent)
+{
+  this->Superclass::PrintSelf(os, indent);
+  os << indent << "Scheme: " << this->Scheme << "\n";
+  os << indent << "Scattering: " << this->Scattering << "\n";
+  os << indent << "DirectionsPerFace: " << this->DirectionsPerFace << "\n";
+  os << indent << "SpiralDirections: " << this->SpiralDirections << "\n";
+  os << indent << "Terms: " << this->Terms << "\n";
+  os << indent << "MaximumOrders: " << this->MaximumOrders << "\n";
+  os << indent << "NetFlux: " << this->NetFlux << "\n";
+  os << indent << "LeaveOut: " << this->LeaveOut << "\n";
+  os << indent << "Orders: " << this->Orders << "\n";
+  os << indent << "Residual: " << this->Residual << "\n";
+  os << indent << "BalanceError: " << this->BalanceError << "\n";
+  os << indent << "HalfRangeFlux: " << this->HalfRangeFlux << "\n";
+  os << indent << "Seconds: " << this->Seconds << "\n";
+  os << indent << "DeviceName: " << this->DeviceName << "\n";
+  os << indent << "LeftOut: " << this->LeftOut << "\n";
+}

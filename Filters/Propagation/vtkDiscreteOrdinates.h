@@ -1,0 +1,170 @@
+#ifndef vtkDiscreteOrdinates_h
+#define vtkDiscreteOrdinates_h
+
+#include "PropertyRange.h"
+#include "vtkPropagationAlgorithm.h"
+#include "vtkTyndallModule.h" // for export macro
+
+#include <string>
+
+/**
+ * @class vtkDiscreteOrdinates
+ * @brief light that is scattered many times and unevenly, by its radiance along many directions in every voxel
+ *
+ * Solves for the radiance along DirectionsPerFace directions of each face of a cube, order by order of scattering. What
+ * arrives in a voxel is scattered by a separable phase function of Terms terms (vtkSeparablePhaseFunction), so that a
+ * direction costs Terms, not all other directions. By default the energy is kept, and voxels may be as thick as they
+ * are; as published steps are explicit, and a warning says where they are not stable.
+ *
+ * Input 0, the medium: vtkImageData with cell arrays (point arrays are averaged to cells)
+ *
+ * | array      | components | unit             | meaning                                          |
+ * |------------|------------|------------------|--------------------------------------------------|
+ * | `sigma_a`  | 1 or 3     | 1/length         | absorption coefficient                           |
+ * | `sigma_s`  | 1 or 3     | 1/length         | scattering coefficient                           |
+ * | `emission` | 1 or 3     | W/(length^3 sr)  | emitted radiance per unit length; optional       |
+ *
+ * or those chosen by SetInputArrayToProcess 0, 1 and 2, and field data `g` (default 0).
+ * Input 1, optional: lights as vtkLightRig makes them.
+ * Input 2, optional: the environment, as vtkEnvironmentReader makes it.
+ *
+ * Output 0: the medium's image with cell arrays of 1 component, or 3 where medium or light has colour
+ *
+ * | array | components | unit | meaning |
+ * |---|---|---|---|
+ * | `fluence` | 1 or 3 | W/length^2 | radiance integrated over all directions |
+ * | `fluence_direct` | 1 or 3 | W/length^2 | its unscattered part; as published that of lamps alone |
+ * | `net_flux` | 3 or 9 | W/length^2 | radiance times direction, integrated (if NetFlux) |
+ * | `scattered_radiance` | 1 or 3 | W/(length^2 sr) | radiance scattered, in the mean over directions |
+ *
+ * and field data `energy_balance` (W: entered, emitted, absorbed, escaped, left over), `face_power_out` (W through -x,
+ * +x, -y, +y, -z, +z), `half_range_flux`, `left_out` (what the scene did not need), `device`, `stored_directions`.
+ * Output 1: vtkTable, one row a scattering order (as published: a step): `iteration`, `seconds`, `residual`, `change`,
+ * `absorbed`, `escaped`, `left_over`.
+ *
+ * Orders are not accelerated: for thick media that absorb little, vtkLightPropagationMaps is faster. The radiance of
+ * all directions has to fit the device: what it takes is said before any is taken. EstimateError is not used.
+ *
+ * @sa vtkSeparablePhaseFunction vtkLightPropagationMaps vtkParticipatingMedium vtkLightRig
+ * @par Thanks
+ * Z. Gong, Z. Ren, Z. Wang, Q. Peng: Interactive Rendering of Multiple Scattering in Participating Media Using
+ * Separable Phase Functions.
+ */
+class TYNDALL_EXPORT vtkDiscreteOrdinates : public vtkPropagationAlgorithm
+{
+public:
+  static vtkDiscreteOrdinates* New();
+  vtkTypeMacro(vtkDiscreteOrdinates, vtkPropagationAlgorithm);
+  void PrintSelf(ostream& os, vtkIndent indent) override;
+
+  enum Schemes
+  {
+    PUBLISHED = 0,   ///< explicit steps, as Gong et al. describe them
+    CONSERVATIVE = 1 ///< steps by exponentials that keep the energy, lights followed exactly
+  };
+
+  enum Scatterings
+  {
+    MATRIX = 0,             ///< every pair of directions
+    SINGULAR_VALUES = 1,    ///< Terms singular values, as published
+    SPHERICAL_HARMONICS = 2 ///< Terms spherical harmonics
+  };
+
+  ///@{
+  /// How to compute: PUBLISHED, or CONSERVATIVE (default).
+  tyndallSetRangeMacro(Scheme, int, PUBLISHED, CONSERVATIVE);
+  vtkGetMacro(Scheme, int);
+  ///@}
+
+  ///@{
+  /// How what arrives along each direction is scattered into each: MATRIX, SINGULAR_VALUES or SPHERICAL_HARMONICS
+  /// (default).
+  tyndallSetRangeMacro(Scattering, int, MATRIX, SPHERICAL_HARMONICS);
+  vtkGetMacro(Scattering, int);
+  ///@}
+
+  ///@{
+  /// Directions per face of a cube. Default 25, valid square numbers: 1, 4, 9, 16, 25, ... Slabs are solved with more.
+  tyndallSetRangeMacro(DirectionsPerFace, int, 1, VTK_INT_MAX);
+  vtkGetMacro(DirectionsPerFace, int);
+  ///@}
+
+  ///@{
+  /// Directions on a spiral instead, any number from 16 on. Default 0: those of the cube, whose light turns with its
+  /// scene.
+  tyndallSetRangeMacro(SpiralDirections, int, 0, VTK_INT_MAX);
+  vtkGetMacro(SpiralDirections, int);
+  ///@}
+
+  ///@{
+  /// Terms of the separable phase function. Default 25, at most as many as there are directions; of spherical
+  /// harmonics square numbers: 1, 4, 9, 16, ...
+  tyndallSetRangeMacro(Terms, int, 1, VTK_INT_MAX);
+  vtkGetMacro(Terms, int);
+  ///@}
+
+  ///@{
+  /// Scattering orders (as published: steps) at most. Default 0: as many as Tolerance takes.
+  tyndallSetRangeMacro(MaximumOrders, int, 0, VTK_INT_MAX);
+  vtkGetMacro(MaximumOrders, int);
+  ///@}
+
+  ///@{
+  /// Whether to compute `net_flux` too. Default off.
+  vtkSetMacro(NetFlux, bool);
+  vtkGetMacro(NetFlux, bool);
+  vtkBooleanMacro(NetFlux, bool);
+  ///@}
+
+  ///@{
+  /// Whether to leave out what the scene does not need. Default on.
+  vtkSetMacro(LeaveOut, bool);
+  vtkGetMacro(LeaveOut, bool);
+  vtkBooleanMacro(LeaveOut, bool);
+  ///@}
+
+  ///@{
+  /// What came of the last update: scattering orders done, estimated relative error of fluence left by those that were
+  /// not done, relative error of the energy balance, what the directions carry of the power that even light brings
+  /// through a face, over the exact value, seconds, the device's name, and what the scene did not need, one per line.
+  vtkGetMacro(Orders, int);
+  vtkGetMacro(Residual, double);
+  vtkGetMacro(BalanceError, double);
+  vtkGetMacro(HalfRangeFlux, double);
+  vtkGetMacro(Seconds, double);
+  vtkGetCharFromStdStringMacro(DeviceName);
+  vtkGetCharFromStdStringMacro(LeftOut);
+  ///@}
+
+protected:
+  vtkDiscreteOrdinates();
+  ~vtkDiscreteOrdinates() override;
+
+  int FillOutputPortInformation(int port, vtkInformation* information) override;
+  int RequestData(vtkInformation* request, vtkInformationVector** inputs, vtkInformationVector* outputs) override;
+
+private:
+  vtkDiscreteOrdinates(const vtkDiscreteOrdinates&) = delete;
+  void operator=(const vtkDiscreteOrdinates&) = delete;
+
+  void Note(const tyndall::LightField& light);
+
+  int Scheme = CONSERVATIVE;
+  int Scattering = SPHERICAL_HARMONICS;
+  int DirectionsPerFace;
+  int SpiralDirections;
+  int Terms;
+  int MaximumOrders;
+  bool NetFlux;
+  bool LeaveOut;
+
+  int Orders = 0;
+  double Residual = 0.0;
+  double BalanceError = 0.0;
+  double HalfRangeFlux = 0.0;
+  double Seconds = 0.0;
+  std::string DeviceName;
+  std::string LeftOut;
+};
+
+#endif

@@ -1,0 +1,169 @@
+#ifndef vtkSeparablePhaseFunction_h
+#define vtkSeparablePhaseFunction_h
+
+#include "PropertyRange.h"
+#include "vtkTableAlgorithm.h"
+#include "vtkTyndallModule.h" // for export macro
+
+/**
+ * @class vtkSeparablePhaseFunction
+ * @brief a phase function on a set of directions as a sum of products, and how good so many of them are
+ *
+ * The matrix of the phase function between all pairs of directions becomes p(i, j) = sum_k lambda_k u_k(i) u_k(j), by
+ * its singular values or by spherical harmonics. vtkDiscreteOrdinates scatters by such terms; this shows them.
+ *
+ * Output 0: vtkTable, one row a direction
+ *
+ * | column | type | unit | meaning |
+ * |---|---|---|---|
+ * | `direction` | double x 3 | 1 | unit vector |
+ * | `weight` | double | sr | solid angle it stands for |
+ * | `u_1`, `u_2`, ... | double | 1/sqrt(sr) | factors, orthonormal by the weights |
+ *
+ * Output 1: vtkTable, one row for each number of terms
+ *
+ * | column | type | unit | meaning |
+ * |---|---|---|---|
+ * | `terms` | int | 1 | N |
+ * | `eigenvalue` | double | 1 | of the Nth term |
+ * | `singular_value` | double | 1 | Nth largest of the matrix |
+ * | `error` | double | 1 | relative error of N of these terms: root of squares weighted by solid angle |
+ * | `error_singular_values`, `error_spherical_harmonics` | double | 1 | the same of N terms of either kind |
+ * | `error_theory` | double | 1 | what the Legendre moments of the phase function say of it |
+ * | `error_max` | double | 1 | largest difference, over the matrix' peak |
+ * | `row_sum_error` | double | 1 | largest difference from 1 of the power that is scattered |
+ * | `mean_cosine_error` | double | 1 | largest difference of the mean cosine |
+ * | `least_value` | double | 1 | smallest value over the peak; negative where terms are too few |
+ *
+ * NaN where fewer terms than N are not zero.
+ *
+ * @sa vtkDiscreteOrdinates
+ * @par Thanks
+ * Z. Gong, Z. Ren, Z. Wang, Q. Peng: Interactive Rendering of Multiple Scattering in Participating Media Using
+ * Separable Phase Functions.
+ */
+class TYNDALL_EXPORT vtkSeparablePhaseFunction : public vtkTableAlgorithm
+{
+public:
+  static vtkSeparablePhaseFunction* New();
+  vtkTypeMacro(vtkSeparablePhaseFunction, vtkTableAlgorithm);
+  void PrintSelf(ostream& os, vtkIndent indent) override;
+
+  enum PhaseFunctions
+  {
+    HENYEY_GREENSTEIN = 0,
+    DOUBLE_HENYEY_GREENSTEIN = 1,
+    SCHLICK = 2,
+    RAYLEIGH = 3
+  };
+
+  enum DirectionSets
+  {
+    CUBE = 0,            ///< through the cells of a cube's faces, by solid angle: DirectionsPerFace
+    SPIRAL = 1,          ///< SpiralDirections on a spiral, weights such that moments are right
+    PUBLISHED_SPIRAL = 2 ///< the same, all weights alike
+  };
+
+  enum Factorisations
+  {
+    SINGULAR_VALUES = 0,
+    SPHERICAL_HARMONICS = 1
+  };
+
+  enum Samplings
+  {
+    POINT_VALUES = 0, ///< as published
+    CELL_MEANS = 1    ///< averaged over the cells of both directions
+  };
+
+  ///@{
+  /// Which phase function: HENYEY_GREENSTEIN (default), DOUBLE_HENYEY_GREENSTEIN, SCHLICK or RAYLEIGH.
+  tyndallSetRangeMacro(PhaseFunction, int, HENYEY_GREENSTEIN, RAYLEIGH);
+  vtkGetMacro(PhaseFunction, int);
+  ///@}
+
+  ///@{
+  /// Mean cosine; of a double one of its first part. Default 0.5, as the paper's clouds, valid (-1, 1).
+  tyndallSetRangeMacro(G, double, -0.999, 0.999);
+  vtkGetMacro(G, double);
+  ///@}
+
+  ///@{
+  /// Mean cosine of the second part of a double one. Default -0.3.
+  tyndallSetRangeMacro(SecondG, double, -0.999, 0.999);
+  vtkGetMacro(SecondG, double);
+  ///@}
+
+  ///@{
+  /// Of a double one, the part that the first is. Default 0.9, valid [0, 1].
+  tyndallSetRangeMacro(FirstPart, double, 0.0, 1.0);
+  vtkGetMacro(FirstPart, double);
+  ///@}
+
+  ///@{
+  /// Which directions: CUBE, SPIRAL (default) or PUBLISHED_SPIRAL.
+  tyndallSetRangeMacro(DirectionSet, int, CUBE, PUBLISHED_SPIRAL);
+  vtkGetMacro(DirectionSet, int);
+  ///@}
+
+  ///@{
+  /// Directions per face of the cube. Default 25, valid square numbers.
+  tyndallSetRangeMacro(DirectionsPerFace, int, 1, 144);
+  vtkGetMacro(DirectionsPerFace, int);
+  ///@}
+
+  ///@{
+  /// Directions on the spiral. Default 128, valid [16, 1024].
+  tyndallSetRangeMacro(SpiralDirections, int, 16, 1024);
+  vtkGetMacro(SpiralDirections, int);
+  ///@}
+
+  ///@{
+  /// Terms that are kept. Default 24, as published; at most as many as there are directions.
+  tyndallSetRangeMacro(Terms, int, 1, 1024);
+  vtkGetMacro(Terms, int);
+  ///@}
+
+  ///@{
+  /// Of what terms are made: SINGULAR_VALUES (default) or SPHERICAL_HARMONICS.
+  tyndallSetRangeMacro(Factorisation, int, SINGULAR_VALUES, SPHERICAL_HARMONICS);
+  vtkGetMacro(Factorisation, int);
+  ///@}
+
+  ///@{
+  /// What the matrix holds: POINT_VALUES (default) or CELL_MEANS.
+  tyndallSetRangeMacro(Sampling, int, POINT_VALUES, CELL_MEANS);
+  vtkGetMacro(Sampling, int);
+  ///@}
+
+  ///@{
+  /// Whether terms scatter exactly the power there is, with exactly the mean cosine. Default on; off: as published.
+  vtkSetMacro(Repaired, bool);
+  vtkGetMacro(Repaired, bool);
+  vtkBooleanMacro(Repaired, bool);
+  ///@}
+
+protected:
+  vtkSeparablePhaseFunction();
+  ~vtkSeparablePhaseFunction() override;
+
+  int RequestData(vtkInformation* request, vtkInformationVector** inputs, vtkInformationVector* outputs) override;
+
+private:
+  vtkSeparablePhaseFunction(const vtkSeparablePhaseFunction&) = delete;
+  void operator=(const vtkSeparablePhaseFunction&) = delete;
+
+  int PhaseFunction = HENYEY_GREENSTEIN;
+  double G = 0.5;
+  double SecondG = -0.3;
+  double FirstPart = 0.9;
+  int DirectionSet = SPIRAL;
+  int DirectionsPerFace = 25;
+  int SpiralDirections = 128;
+  int Terms = 24;
+  int Factorisation = SINGULAR_VALUES;
+  int Sampling = POINT_VALUES;
+  bool Repaired = true;
+};
+
+#endif

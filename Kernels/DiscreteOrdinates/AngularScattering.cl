@@ -1,0 +1,186 @@
+// What arrives in a voxel along each direction, scattered into each: by N terms or by the whole matrix (numerics.md,
+// Eqs. (D7), (D8)). Radiance is [group][stride][8 directions].
+//
+//   REAL_WIDTH  moments handled at once
+//   GROUPS      of eight directions
+//   TERMS       of the phase function
+//   ROWS        moments of a voxel, in vectors of REAL_WIDTH: fluence, the terms, net flux
+//   FLUX        1 where net flux is wanted; it is behind the terms
+//   POSITIVE    1: no source is negative, and together they have exactly the power that is scattered
+#include "Numerics/Numerics.cl"
+
+#define BLOCK 8 // voxels of a work-item
+#define MOMENTS (ROWS * REAL_WIDTH)
+
+typedef float8 float8_anywhere __attribute__((aligned(4)));
+#define LOAD8(index, pointer) (*(const __global float8_anywhere*)((pointer) + (index)))
+#define STORE8(value, index, pointer) (*(__global float8_anywhere*)((pointer) + (index)) = (value))
+
+#define EACH_VOXEL(DO) DO(0) DO(1) DO(2) DO(3) DO(4) DO(5) DO(6) DO(7)
+
+inline float sum8(float8 values)
+{
+  const float4 four = values.lo + values.hi;
+  return (four.x + four.y) + (four.z + four.w);
+}
+
+// Moments of eight voxels, [voxel][MOMENTS].
+//   weights  [direction][MOMENTS]: what a direction adds to each
+inline void find_moments(
+  const __global float* radiance, const __global float* weights, ulong stride, ulong first, __global float* moments)
+{
+  for (int row = 0; row < ROWS; ++row)
+  {
+#define CLEAR(b) real sum##b = (real)0.0f;
+    EACH_VOXEL(CLEAR)
+    for (int group = 0; group < GROUPS; ++group)
+    {
+      const __global float* in = radiance + (group * stride + first) * 8;
+      const __global float* of = weights + (group * 8) * MOMENTS + row * REAL_WIDTH;
+      for (int lane = 0; lane < 8; ++lane)
+      {
+        const real weight = load_real(lane * MOMENTS, of);
+#define GATHER(b) sum##b = multiply_add(weight, (real)in[8 * b + lane], sum##b);
+        EACH_VOXEL(GATHER)
+      }
+    }
+#define KEEP(b) store_real(sum##b, (first + b) * MOMENTS + row * REAL_WIDTH, moments);
+    EACH_VOXEL(KEEP)
+  }
+}
+
+// Adds moments of eight voxels to the light that was found before.
+inline void add_light(const __global float* moments, ulong voxels, ulong first, __global float* order,
+  __global float* fluence, __global float* flux)
+{
+  for (int b = 0; b < BLOCK; ++b)
+  {
+    const ulong i = first + b;
+    if (i < voxels)
+    {
+      order[i] = moments[i * MOMENTS];
+      fluence[i] += moments[i * MOMENTS];
+#if FLUX
+      for (int a = 0; a < 3; ++a)
+      {
+        flux[a * voxels + i] += moments[i * MOMENTS + 1 + TERMS + a];
+      }
+#endif
+    }
+  }
+}
+
+// Eight voxels by eight directions of sources are done together; POSITIVE takes what is negative away, and notes what
+// the rest is to be multiplied by so that its power is right.
+#if POSITIVE
+#define POSITIVE_PART(b)                     \
+  source##b = fmax(source##b, (float8)0.0f); \
+  power##b = multiply_add8(angle, source##b, power##b);
+#define CLEAR_POWER(b) float8 power##b = (float8)0.0f;
+#define NOTE_SCALE(b)                                                              \
+  {                                                                                \
+    const float all = sum8(power##b);                                              \
+    if (first + b < voxels)                                                        \
+      scale[first + b] = all > 0.0f ? moments[(first + b) * MOMENTS] / all : 0.0f; \
+  }
+#else
+#define POSITIVE_PART(b)
+#define CLEAR_POWER(b)
+#define NOTE_SCALE(b)
+#endif
+#if defined(FP_FAST_FMAF) || defined(__FMA__)
+#define multiply_add8(a, b, c) fma(a, b, c)
+#else
+#define multiply_add8(a, b, c) mad(a, b, c)
+#endif
+#define CLEAR_SOURCE(b) float8 source##b = (float8)0.0f;
+#define STORE_SOURCE(b)   \
+  if (first + b < voxels) \
+    STORE8(source##b* sigma_s[first + b], (group * stride + first + b) * 8, source);
+
+// radiance  has room for BLOCK voxels more
+// source    W / (length^3 sr), may be radiance; written but for a factor `scale` a voxel where POSITIVE
+// moments   scratch, [voxel][MOMENTS], room for BLOCK voxels more
+// spread    [group][term][8]: the factors of the directions
+// angles    [group][8], sr
+// order     W / length^2, fluence of this light alone; fluence and flux are added to
+__kernel void scatter_terms(const __global float* radiance, __global float* source, __global float* moments,
+  const __global float* weights, const __global float* spread, const __global float* angles,
+  const __global float* sigma_s, __global float* order, __global float* fluence, __global float* flux,
+  __global float* scale, ulong voxels, ulong stride, ulong begin)
+{
+  const ulong first = begin + get_global_id(0) * BLOCK;
+  find_moments(radiance, weights, stride, first, moments);
+  add_light(moments, voxels, first, order, fluence, flux);
+  const __global float* mine = moments + first * MOMENTS + 1;
+  EACH_VOXEL(CLEAR_POWER)
+  for (int group = 0; group < GROUPS; ++group)
+  {
+    const float8 angle = LOAD8(group * 8, angles);
+    EACH_VOXEL(CLEAR_SOURCE)
+    for (int term = 0; term < TERMS; ++term)
+    {
+      const float8 factor = LOAD8((group * TERMS + term) * 8, spread);
+#define SPREAD(b) source##b = multiply_add8(factor, (float8)mine[b * MOMENTS + term], source##b);
+      EACH_VOXEL(SPREAD)
+    }
+    EACH_VOXEL(POSITIVE_PART)
+    EACH_VOXEL(STORE_SOURCE)
+  }
+  EACH_VOXEL(NOTE_SCALE)
+}
+
+// The same by the whole matrix; source is not radiance.
+//   matrix  [group][direction][8], 1/sr times the solid angle of the direction that light comes along
+__kernel void scatter_matrix(const __global float* radiance, __global float* source, __global float* moments,
+  const __global float* weights, const __global float* matrix, const __global float* angles,
+  const __global float* sigma_s, __global float* order, __global float* fluence, __global float* flux,
+  __global float* scale, ulong voxels, ulong stride, ulong begin)
+{
+  const ulong first = begin + get_global_id(0) * BLOCK;
+  find_moments(radiance, weights, stride, first, moments);
+  add_light(moments, voxels, first, order, fluence, flux);
+  EACH_VOXEL(CLEAR_POWER)
+  for (int group = 0; group < GROUPS; ++group)
+  {
+    const float8 angle = LOAD8(group * 8, angles);
+    EACH_VOXEL(CLEAR_SOURCE)
+    for (int other = 0; other < GROUPS; ++other)
+    {
+      const __global float* in = radiance + (other * stride + first) * 8;
+      for (int lane = 0; lane < 8; ++lane)
+      {
+        const float8 part = LOAD8(((group * GROUPS + other) * 8 + lane) * 8, matrix);
+#define FROM_DIRECTION(b) source##b = multiply_add8(part, (float8)in[8 * b + lane], source##b);
+        EACH_VOXEL(FROM_DIRECTION)
+      }
+    }
+    EACH_VOXEL(POSITIVE_PART)
+    EACH_VOXEL(STORE_SOURCE)
+  }
+  EACH_VOXEL(NOTE_SCALE)
+}
+
+// As published without factorisation: one pass for each direction, which reads the radiance along all (Gong et al.,
+// Eq. (13)).
+//   row  [direction]: of the matrix, times the solid angle that light comes along
+__kernel void scatter_along(const __global float* radiance, __global float* source, const __global float* row,
+  const __global float* sigma_s, int group, int lane, ulong stride)
+{
+  const ulong i = get_global_id(0);
+  float8 sum = (float8)0.0f;
+  for (int other = 0; other < GROUPS; ++other)
+  {
+    sum = multiply_add8(LOAD8(other * 8, row), LOAD8((other * stride + i) * 8, radiance), sum);
+  }
+  source[(group * stride + i) * 8 + lane] = sigma_s[i] * sum8(sum);
+}
+
+// The light that was found along all directions, where nothing is scattered.
+__kernel void gather_light(const __global float* radiance, __global float* moments, const __global float* weights,
+  __global float* order, __global float* fluence, __global float* flux, ulong voxels, ulong stride, ulong begin)
+{
+  const ulong first = begin + get_global_id(0) * BLOCK;
+  find_moments(radiance, weights, stride, first, moments);
+  add_light(moments, voxels, first, order, fluence, flux);
+}

@@ -1,0 +1,179 @@
+#include "DiscreteOrdinates/AngularScattering.h"
+
+#include "Device/Batches.h"
+#include "Device/Defines.h"
+#include "Device/Sizes.h"
+#include "TyndallKernelSources.h"
+
+#include <array>
+
+namespace tyndall
+{
+namespace
+{
+constexpr std::size_t Block = 8;        ///< voxels of a work-item
+constexpr std::size_t GroupSize = 64;   ///< work-items of a work-group
+constexpr std::size_t FirstBatch = 512; ///< work-items, before it is known how long they take
+
+int RowsOf(int terms, bool netFlux, int width)
+{
+  return PartsOf(1 + terms + (netFlux ? 3 : 0), width);
+}
+}
+
+AngularScattering::AngularScattering(Device& device, const OrdinateGroups& groups, const SeparablePhaseFunction& phase,
+  PairSums sums, bool positive, bool netFlux, std::size_t voxels)
+  : TheDevice(device)
+  , Sums(sums)
+  , Positive(positive)
+  , NetFlux(netFlux)
+  , GroupCount(groups.Count())
+  , TermCount(sums == PairSums::Terms ? phase.Terms() : 0)
+  , Width(device.KernelWidth(8, 16, 8))
+  , Rows(RowsOf(this->TermCount, netFlux, this->Width))
+  , Voxels(voxels)
+{
+  const std::size_t all = RoundUp(voxels, Block * GroupSize);
+  this->Moments = Buffer<float>(device, all * this->Rows * this->Width, "moments of the radiance");
+  this->LoadTables(groups, phase);
+}
+
+std::size_t AngularScattering::Floats(const OrdinateGroups& groups, std::size_t voxels)
+{
+  return groups.Lanes() * OrdinateStride(voxels) + Block * GroupSize * OrdinateLanes;
+}
+
+std::size_t AngularScattering::Bytes(const OrdinateGroups& groups, int terms, PairSums sums, std::size_t voxels)
+{
+  const std::size_t moments = sums == PairSums::Terms ? RoundUp<std::size_t>(terms + 4, 16) : 16;
+  const std::size_t tables = sums == PairSums::Terms ? groups.Lanes() * terms : groups.Lanes() * groups.Lanes();
+  return sizeof(float) * (RoundUp(voxels, Block * GroupSize) * moments + tables);
+}
+
+void AngularScattering::LoadTables(const OrdinateGroups& groups, const SeparablePhaseFunction& phase)
+{
+  const int moments = this->Rows * this->Width;
+  std::vector<float> weights(groups.Lanes() * moments, 0.0f);
+  for (int g = 0; g < groups.Count(); ++g)
+  {
+    const OrdinateGroup& group = groups.All()[g];
+    for (int lane = 0; lane < OrdinateLanes; ++lane)
+    {
+      float* of = weights.data() + (g * OrdinateLanes + lane) * moments;
+      const double angle = groups.Weight(g, lane);
+      of[0] = static_cast<float>(angle);
+      for (int k = 0; k < this->TermCount; ++k)
+      {
+        of[1 + k] = static_cast<float>(angle * phase.Eigenvalue(k) * phase.Factor(group.direction[lane], k));
+      }
+      for (int a = 0; a < 3 && this->NetFlux; ++a)
+      {
+        of[1 + this->TermCount + a] = static_cast<float>(angle * groups.Of(g, lane).omega[a]);
+      }
+      if (lane < group.count)
+      {
+        this->Lanes.push_back({ g, lane });
+      }
+    }
+  }
+  this->Weights = Buffer<float>(this->TheDevice, weights, "the directions");
+  this->Angles = Buffer<float>(
+    this->TheDevice, groups.Table([&](int g, int lane) { return groups.Weight(g, lane); }), "the directions");
+  this->LoadPhase(groups, phase);
+}
+
+/// What goes into each direction: factors of terms, or of the matrix [group][direction][lane], or its rows for passes.
+void AngularScattering::LoadPhase(const OrdinateGroups& groups, const SeparablePhaseFunction& phase)
+{
+  const auto ofMatrix = [&](int to, std::size_t from) {
+    const int g = static_cast<int>(from / OrdinateLanes), lane = static_cast<int>(from % OrdinateLanes);
+    const std::size_t row = static_cast<std::size_t>(to) * phase.DirectionCount();
+    return static_cast<float>(phase.Matrix()[row + groups.All()[g].direction[lane]] * groups.Weight(g, lane));
+  };
+  const std::size_t parts = this->Sums == PairSums::Terms ? this->TermCount
+    : this->Sums == PairSums::Matrix                      ? groups.Lanes()
+                                                          : 0;
+  std::vector<float> spread;
+  for (const OrdinateGroup& group : groups.All())
+  {
+    for (std::size_t part = 0; part < parts; ++part)
+    {
+      for (const int to : group.direction)
+      {
+        spread.push_back(this->Sums == PairSums::Terms ? static_cast<float>(phase.Factor(to, static_cast<int>(part)))
+                                                       : ofMatrix(to, part));
+      }
+    }
+  }
+  for (std::size_t i = 0; i < this->Lanes.size() && this->Sums == PairSums::Passes; ++i)
+  {
+    const int to = groups.All()[this->Lanes[i][0]].direction[this->Lanes[i][1]];
+    std::vector<float> row;
+    for (std::size_t from = 0; from < groups.Lanes(); ++from)
+    {
+      row.push_back(ofMatrix(to, from));
+    }
+    this->MatrixRows.emplace_back(this->TheDevice, row, "the phase function");
+  }
+  this->Spread = Buffer<float>(this->TheDevice, spread, "the phase function");
+}
+
+cl::Kernel AngularScattering::Kernel(const char* name) const
+{
+  return this->TheDevice.Kernel(name, kernel_source::AngularScattering,
+    Define("REAL_WIDTH", this->Width) + Define("GROUPS", this->GroupCount) + Define("TERMS", this->TermCount) +
+      Define("ROWS", this->Rows) + Define("FLUX", this->NetFlux) + Define("POSITIVE", this->Positive));
+}
+
+void AngularScattering::Scatter(const Buffer<float>& radiance, const Buffer<float>& sigma_s,
+  const Buffer<float>& source, const Buffer<float>& scale, const OrdinatesLight& light, const Monitor& monitor) const
+{
+  if (this->Sums == PairSums::Passes)
+  {
+    this->Gather(radiance, light, {});
+    this->ScatterByPasses(radiance, sigma_s, source, monitor);
+    return;
+  }
+  cl::Kernel scatter = this->Kernel(this->Sums == PairSums::Terms ? "scatter_terms" : "scatter_matrix");
+  Batches batches;
+  batches.count = RoundUp(PartsOf(this->Voxels, Block), GroupSize);
+  batches.first = FirstBatch;
+  batches.whole = GroupSize;
+  InBatches(this->TheDevice, batches, monitor, [&](std::size_t begin, std::size_t size) {
+    With(scatter, radiance, source, this->Moments, this->Weights, this->Spread, this->Angles, sigma_s, light.order,
+      light.fluence, light.flux, scale, cl_ulong(this->Voxels), cl_ulong(OrdinateStride(this->Voxels)),
+      cl_ulong(begin * Block));
+    this->TheDevice.Queue().enqueueNDRangeKernel(scatter, cl::NullRange, cl::NDRange(size), cl::NDRange(GroupSize));
+  });
+}
+
+void AngularScattering::ScatterByPasses(const Buffer<float>& radiance, const Buffer<float>& sigma_s,
+  const Buffer<float>& source, const Monitor& monitor) const
+{
+  cl::Kernel along = this->Kernel("scatter_along");
+  Batches batches;
+  batches.count = this->Lanes.size();
+  InBatches(this->TheDevice, batches, monitor, [&](std::size_t begin, std::size_t size) {
+    for (std::size_t i = begin; i < begin + size; ++i)
+    {
+      With(along, radiance, source, this->MatrixRows[i], sigma_s, cl_int(this->Lanes[i][0]), cl_int(this->Lanes[i][1]),
+        cl_ulong(OrdinateStride(this->Voxels)));
+      this->TheDevice.Queue().enqueueNDRangeKernel(along, cl::NullRange, cl::NDRange(this->Voxels), cl::NullRange);
+    }
+  });
+}
+
+void AngularScattering::Gather(const Buffer<float>& radiance, const OrdinatesLight& light, const Monitor& monitor) const
+{
+  cl::Kernel gather = this->Kernel("gather_light");
+  Batches batches;
+  batches.count = RoundUp(PartsOf(this->Voxels, Block), GroupSize);
+  batches.first = FirstBatch;
+  batches.whole = GroupSize;
+  InBatches(this->TheDevice, batches, monitor, [&](std::size_t begin, std::size_t size) {
+    With(gather, radiance, this->Moments, this->Weights, light.order, light.fluence, light.flux, cl_ulong(this->Voxels),
+      cl_ulong(OrdinateStride(this->Voxels)), cl_ulong(begin * Block));
+    this->TheDevice.Queue().enqueueNDRangeKernel(gather, cl::NullRange, cl::NDRange(size), cl::NDRange(GroupSize));
+  });
+}
+}

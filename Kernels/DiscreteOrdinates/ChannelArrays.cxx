@@ -1,0 +1,124 @@
+#include "DiscreteOrdinates/ChannelArrays.h"
+
+#include "Device/Defines.h"
+#include "LightPropagation/Sweep/SweepInMemory.h"
+#include "LightPropagation/Uncollided/UncollidedLamp.h"
+#include "Numerics/Constants.h"
+#include "TyndallKernelSources.h"
+
+namespace tyndall
+{
+ChannelArrays::ChannelArrays(Device& device, const OrdinatesScene& scene, const OrdinatesAngles& angles, bool netFlux)
+  : TheMedium(scene.medium)
+  , Voxels(scene.medium.grid.VoxelCount())
+  , Layout{ scene.medium.grid, 1, true }
+  , TheDevice(device)
+  , Scene(scene)
+  , Angles(angles)
+  , ScatteredAway(1.0 - angles.phase.Peak())
+{
+  for (std::size_t i = 0; i < this->Voxels; ++i)
+  {
+    this->Absorption.push_back(scene.medium.sigma_a.At(i, scene.channel));
+    this->Scattering.push_back(scene.medium.sigma_s.At(i, scene.channel));
+    this->AnyScattering = this->AnyScattering || this->Scattering.back() > 0.0f;
+    this->AnyEmission = this->AnyEmission || scene.medium.emission.At(i, scene.channel) > 0.0f;
+  }
+  this->SigmaT = this->Load("sigma_t", 1.0, this->ScatteredAway);
+  this->SigmaS = this->Load("sigma_s", 0.0, this->ScatteredAway);
+  this->Scale = Buffer<float>(device, this->Voxels, "the sources");
+  this->Direct = Buffer<float>(device, this->Voxels, "fluence_direct");
+  this->Light.order = Buffer<float>(device, this->Voxels, "fluence of an order");
+  this->Light.fluence = Buffer<float>(device, this->Voxels, "fluence");
+  this->Light.flux = Buffer<float>(device, netFlux ? 3 * this->Voxels : 0, "net_flux");
+  this->Scale.Fill(1.0f);
+  for (Buffer<float>* light : { &this->Direct, &this->Light.order, &this->Light.fluence, &this->Light.flux })
+  {
+    light->Fill(0.0f);
+  }
+}
+
+Buffer<float> ChannelArrays::Load(const char* what, double absorbed, double scattered) const
+{
+  const auto value = [&](std::size_t i, int) {
+    return static_cast<float>(absorbed * this->Absorption[i] + scattered * this->Scattering[i]);
+  };
+  return Buffer<float>(this->TheDevice, Planar(this->Layout, 1, value), what);
+}
+
+std::size_t ChannelArrays::Bytes(std::size_t voxels, bool netFlux)
+{
+  return sizeof(float) * voxels * (9 + (netFlux ? 3 : 0)); // three of them for lamps
+}
+
+void ChannelArrays::AddLamps(
+  const Buffer<float>& source, const std::array<bool, 3>& periodic, OrdinatesResult& result, const Monitor& monitor)
+{
+  if (this->Scene.lamps.empty())
+  {
+    return;
+  }
+  const LampScattering scattering(this->TheDevice, this->Layout.grid, this->Angles.groups, this->Angles.function);
+  const Buffer<float> sigma_t = this->Load("sigma_t", 1.0, 1.0), sigma_s = this->Load("sigma_s", 0.0, 1.0);
+  const SweepMaker sweeps = [&](const SweepRequest& request) {
+    return std::make_unique<SweepInMemory>(this->TheDevice, this->Layout, sigma_t, periodic, request, this->Workspace);
+  };
+  Buffer<float> path(this->TheDevice, this->Layout.Floats(), "the light of a lamp");
+  const double all = static_cast<double>(this->Scene.lamps.size());
+  for (std::size_t i = 0; i < this->Scene.lamps.size(); ++i)
+  {
+    path.Fill(0.0f);
+    const UncollidedVolume volume = { this->TheDevice, this->Layout, sigma_t, periodic, sweeps,
+      { &path, nullptr, nullptr, nullptr } };
+    const Monitor ofLamp = OfPart(monitor, i / all, (i + 1) / all);
+    this->CountLamp(UncollidedLamp(this->Scene.lamps[i]).AddTo(volume, ofLamp), result.ledger);
+    scattering.Add(this->Scene.lamps[i], path, sigma_s, { source, this->Scale, this->Direct, this->Light });
+  }
+}
+
+void ChannelArrays::CountLamp(const SweepTally& tally, EnergyLedger& ledger)
+{
+  for (int face = 0; face < 6; ++face)
+  {
+    ledger.Enter(0, tally.in[face][0]);
+    ledger.Escape(0, face, tally.out[face][0]);
+  }
+  this->GoingRound += tally.onTheWay[0];
+}
+
+ChannelArrays::Powers ChannelArrays::PowersOf(const std::vector<float>& values, bool lamps) const
+{
+  Powers powers;
+  for (std::size_t i = 0; i < this->Voxels; ++i)
+  {
+    powers.absorbed += static_cast<double>(values[i]) * this->Absorption[i];
+    powers.scattered += static_cast<double>(values[i]) * this->Scattering[i];
+  }
+  const double volume = this->Layout.grid.VoxelVolume();
+  return { powers.absorbed * volume, powers.scattered * volume * (lamps ? 1.0 : this->ScatteredAway) };
+}
+
+void ChannelArrays::EmitEvenly(const Buffer<float>& source, EnergyLedger& ledger) const
+{
+  std::vector<float> emission(this->Voxels);
+  double sum = 0.0;
+  for (std::size_t i = 0; i < this->Voxels; ++i)
+  {
+    emission[i] = this->TheMedium.emission.At(i, this->Scene.channel);
+    sum += emission[i];
+  }
+  ledger.Emit(0, 4.0 * Pi * sum * this->Layout.grid.VoxelVolume());
+  const Buffer<float> values(this->TheDevice, emission, "emission");
+  cl::Kernel even = this->TheDevice.Kernel("even_source", kernel_source::UpwindSweep, Define("REAL_WIDTH", 8));
+  With(even, source, values, cl_ulong(OrdinateStride(this->Voxels)));
+  this->TheDevice.Queue().enqueueNDRangeKernel(
+    even, cl::NullRange, cl::NDRange(this->Voxels, this->Angles.groups.Count()));
+  this->TheDevice.Finish(); // the values go
+}
+
+void ChannelArrays::Read(OrdinatesResult& result) const
+{
+  result.fluence = this->Light.fluence.Read();
+  result.flux = this->Light.flux.Read();
+}
+}

@@ -1,0 +1,68 @@
+#pragma once
+
+#include "DiscreteOrdinates/AngularScattering.h"
+#include "DiscreteOrdinates/LampScattering.h"
+#include "DiscreteOrdinates/OrdinatesScene.h"
+#include "LightPropagation/Sweep/SweepWorkspace.h"
+#include "LightPropagation/Sweep/VolumeLayout.h"
+
+#include "Device/Monitor.h"
+
+#include <vector>
+
+namespace tyndall
+{
+/// One channel of a medium on a device, with the light that is found in it and what both schemes do alike: the
+/// uncollided light of lamps, and counting. What goes straight on where light is scattered is taken out of sigma_s and
+/// sigma_t (numerics.md, Eq. (D6)), but of those that uncollided light of lamps meets: that is exact.
+class ChannelArrays
+{
+public:
+  /// @param scene, angles  must stay
+  ChannelArrays(Device& device, const OrdinatesScene& scene, const OrdinatesAngles& angles, bool netFlux);
+
+  /// Bytes that these arrays take on the device.
+  static std::size_t Bytes(std::size_t voxels, bool netFlux);
+
+  /// Uncollided light of all lamps: counts it, and adds what of it is scattered for the first time.
+  /// @param source  of all directions, over Scale
+  void AddLamps(
+    const Buffer<float>& source, const std::array<bool, 3>& periodic, OrdinatesResult& result, const Monitor& monitor);
+  /// W of lamps whose rays go round periodic axes without end.
+  double Stranded() const { return this->GoingRound; }
+
+  /// W that the fluence `values` loses to absorption, and that are scattered of it.
+  struct Powers
+  {
+    double absorbed = 0.0, scattered = 0.0;
+  };
+  /// @param lamps  whether it is uncollided light of lamps
+  Powers PowersOf(const std::vector<float>& values, bool lamps) const;
+  /// Emission of the voxels into every direction. W / (length^3 sr)
+  void EmitEvenly(const Buffer<float>& source, EnergyLedger& ledger) const;
+  bool Emits() const { return this->AnyEmission; }
+  bool Scatters() const { return this->AnyScattering; }
+  void Read(OrdinatesResult& result) const;
+
+  const Medium& TheMedium;
+  const std::size_t Voxels;
+  const VolumeLayout Layout;
+  Buffer<float> SigmaT, SigmaS; ///< 1/length
+  Buffer<float> Scale;          ///< of the sources of a voxel, 1 at first
+  Buffer<float> Direct;         ///< W / length^2, of lamps
+  OrdinatesLight Light;
+
+private:
+  Buffer<float> Load(const char* what, double absorbed, double scattered) const;
+  void CountLamp(const SweepTally& tally, EnergyLedger& ledger);
+
+  Device& TheDevice;
+  const OrdinatesScene& Scene;
+  const OrdinatesAngles& Angles;
+  double ScatteredAway; ///< part of what is scattered that does not go straight on
+  std::vector<float> Absorption, Scattering;
+  bool AnyEmission = false, AnyScattering = false;
+  double GoingRound = 0.0;
+  SweepWorkspace Workspace;
+};
+}

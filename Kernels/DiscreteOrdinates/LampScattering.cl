@@ -1,0 +1,110 @@
+// Uncollided light of a lamp, scattered for the first time: by the phase function between its ray and each direction
+// (numerics.md, Eq. (D12)). Radiance is [group][stride][8 directions].
+//
+//   GROUPS  of eight directions
+//   TABLE   values of the phase function over the angle, evenly from 0 to pi
+#include "DiscreteOrdinates/LampScatteringShared.h"
+
+// The way of its light in a voxel; 0 in the voxel that it is in, where light goes every way.
+inline float3 from_lamp(const LampInRays* lamp, ulong i)
+{
+  const float3 place = (float3)(lamp->place[0], lamp->place[1], lamp->place[2]);
+  if (lamp->parallel)
+  {
+    return place;
+  }
+  const int nx = lamp->size[0], ny = lamp->size[1];
+  const float3 voxel = (float3)(i % nx + 0.5f, i / nx % ny + 0.5f, i / nx / ny + 0.5f);
+  const float3 spacing = (float3)(lamp->spacing[0], lamp->spacing[1], lamp->spacing[2]);
+  const float3 way = voxel * spacing - place;
+  const bool inside = all(fabs(way) <= 0.5001f * spacing);
+  return inside ? (float3)(0.0f) : way * rsqrt(dot(way, way));
+}
+
+// The angle over pi: cubic in the square root of 1 - |c|, to 7e-5 (Abramowitz and Stegun 4.4.45).
+inline float8 angle_of(float8 cosine)
+{
+  const float8 c = fmin(fabs(cosine), (float8)1.0f);
+  const float8 p = sqrt((float8)1.0f - c) * (0.5f + c * (-0.0682776f + c * (0.0236366f - 0.0059614f * c)));
+  return select((float8)1.0f - p, p, cosine >= (float8)0.0f);
+}
+
+// Not negative: the phase function as a set of directions can have it.
+inline float8 phase_at(const __global float* table, float8 cosine)
+{
+  const float8 position = angle_of(cosine) * (float8)(TABLE - 1);
+  const int8 i = min(convert_int8(position), (int8)(TABLE - 2));
+#define TAKE(add)                                                                                         \
+  (float8)(table[i.s0 + add], table[i.s1 + add], table[i.s2 + add], table[i.s3 + add], table[i.s4 + add], \
+    table[i.s5 + add], table[i.s6 + add], table[i.s7 + add])
+  return mix(TAKE(0), TAKE(1), position - convert_float8(i));
+}
+
+inline float sum8(float8 values)
+{
+  const float4 four = values.lo + values.hi;
+  return (four.x + four.y) + (four.z + four.w);
+}
+
+//   path     W length, of the lamp
+//   direct   W / length^2, added to, as are fluence and flux, [x, y, z][voxel], if has_flux
+__kernel void add_lamp(const __global float* path, __global float* fluence, __global float* direct,
+  __global float* flux, int has_flux, LampInRays lamp)
+{
+  const ulong i = get_global_id(0), voxels = get_global_size(0);
+  const float light = path[i] * lamp.perVolume;
+  fluence[i] += light;
+  direct[i] += light;
+  if (has_flux)
+  {
+    const float3 along = from_lamp(&lamp, i);
+    flux[i] += light * along.x;
+    flux[voxels + i] += light * along.y;
+    flux[2 * voxels + i] += light * along.z;
+  }
+}
+
+// Parallel light goes into each direction by the same part in every voxel.
+//   source  W / (length^3 sr), over scale; afterwards over 1
+//   parts   [group][8], 1/sr
+__kernel void scatter_parallel(__global float* source, const __global float* scale, const __global float* path,
+  const __global float* sigma_s, const __global float* parts, ulong stride, float per_volume)
+{
+  const ulong i = get_global_id(0), group = get_global_id(1);
+  __global float8* to = (__global float8*)source + group * stride + i;
+  *to = *to * scale[i] + ((const __global float8*)parts)[group] * (path[i] * per_volume * sigma_s[i]);
+}
+
+// The same of a lamp at a place.
+//   omegas  [group][x, y, z, solid angle][8]
+//
+// The directions' sums of 1, the cosine and its square make what is scattered have its power and, as far as no
+// direction gets less than nothing, its mean cosine.
+__kernel void scatter_from_place(__global float* source, const __global float* scale, const __global float* path,
+  const __global float* sigma_s, const __global float* omegas, const __global float* table, ulong stride,
+  LampInRays lamp)
+{
+  const ulong i = get_global_id(0);
+  const float3 along = from_lamp(&lamp, i);
+  const __global float8* of = (const __global float8*)omegas;
+  float8 sums = (float8)0.0f, firsts = (float8)0.0f, seconds = (float8)0.0f;
+  for (int group = 0; group < GROUPS; ++group)
+  {
+    const float8 cosine = along.x * of[4 * group] + along.y * of[4 * group + 1] + along.z * of[4 * group + 2];
+    const float8 part = phase_at(table, cosine) * of[4 * group + 3];
+    sums += part;
+    firsts += part * cosine;
+    seconds += part * cosine * cosine;
+  }
+  const float sum = sum8(sums);
+  const float mean = sum8(firsts) / sum, square = sum8(seconds) / sum;
+  const float wanted = square > 0.0f ? (lamp.meanCosine - mean) / (square - lamp.meanCosine * mean) : 0.0f;
+  const float tilt = clamp(wanted, -1.0f, 1.0f);
+  const float power = path[i] * lamp.perVolume * sigma_s[i] / (sum * (1.0f + tilt * mean));
+  for (int group = 0; group < GROUPS; ++group)
+  {
+    const float8 cosine = along.x * of[4 * group] + along.y * of[4 * group + 1] + along.z * of[4 * group + 2];
+    __global float8* to = (__global float8*)source + group * stride + i;
+    *to = *to * scale[i] + power * phase_at(table, cosine) * ((float8)1.0f + tilt * cosine);
+  }
+}

@@ -1,0 +1,145 @@
+#include "DiscreteOrdinates/LampScattering.h"
+
+#include "Device/Defines.h"
+#include "DiscreteOrdinates/LampScatteringShared.h"
+#include "Numerics/Constants.h"
+#include "Numerics/Legendre.h"
+#include "Numerics/Vectors.h"
+#include "PhaseFunction/SeparablePhaseFunction.h"
+#include "TyndallKernelSources.h"
+
+#include <glm/geometric.hpp>
+#include <glm/vec3.hpp>
+
+#include <algorithm>
+#include <cmath>
+#include <string>
+
+namespace tyndall
+{
+namespace
+{
+constexpr int TableSize = 1024;
+constexpr int MeansDegree = 256; ///< of moments; a cell's mean has forgotten those beyond
+
+/// The phase function averaged over a cell, over the angle from 0 to pi; nowhere negative. 1/sr
+std::vector<float> MeansByAngle(const PhaseFunction& function, double solidAngle)
+{
+  const std::vector<double> moments = function.Moments(MeansDegree), cap = CapMoments(solidAngle, MeansDegree);
+  std::vector<float> table;
+  for (int i = 0; i < TableSize; ++i)
+  {
+    const double cosine = std::cos(Pi * i / (TableSize - 1));
+    const std::vector<double> p = LegendrePolynomials(MeansDegree, cosine);
+    double mean = 0.0;
+    for (int l = 0; l <= MeansDegree; ++l)
+    {
+      mean += (2.0 * l + 1.0) / (4.0 * Pi) * moments[l] * cap[l] * p[l];
+    }
+    table.push_back(static_cast<float>(std::max(mean, 0.0))); // series have ripples
+  }
+  return table;
+}
+}
+
+LampScattering::LampScattering(
+  Device& device, const Grid& grid, const OrdinateGroups& groups, const PhaseFunction& function)
+  : TheDevice(device)
+  , TheGrid(grid)
+  , Groups(groups)
+  , MeanCosine(function.MeanCosine())
+{
+  std::vector<float> omegas;
+  for (int g = 0; g < groups.Count(); ++g)
+  {
+    for (int part = 0; part < 4; ++part)
+    {
+      for (int lane = 0; lane < OrdinateLanes; ++lane)
+      {
+        omegas.push_back(static_cast<float>(part < 3 ? groups.Of(g, lane).omega[part] : groups.Weight(g, lane)));
+      }
+    }
+  }
+  const double solidAngle = 4.0 * Pi / static_cast<double>(groups.TheDirections().size());
+  this->Omegas = Buffer<float>(device, omegas, "the directions");
+  this->ByAngle = MeansByAngle(function, solidAngle);
+  this->Table = Buffer<float>(device, this->ByAngle, "the phase function");
+}
+
+/// What goes into each direction of light along a ray, 1/sr, [group][lane]: the directions' sums of 1, the cosine and
+/// its square make it have its power and, as far as no direction gets less than nothing, its mean cosine.
+std::vector<float> LampScattering::PartsAlong(const std::array<double, 3>& ray) const
+{
+  const auto cosine = [&](int g, int lane) {
+    const std::array<double, 3>& omega = this->Groups.Of(g, lane).omega;
+    return std::clamp(ray[0] * omega[0] + ray[1] * omega[1] + ray[2] * omega[2], -1.0, 1.0);
+  };
+  const auto phase = [&](int g, int lane) {
+    const double position = std::acos(cosine(g, lane)) / Pi * (TableSize - 1);
+    const int i = std::min(static_cast<int>(position), TableSize - 2);
+    return this->ByAngle[i] + (position - i) * (this->ByAngle[i + 1] - this->ByAngle[i]);
+  };
+  double sum = 0.0, mean = 0.0, square = 0.0;
+  for (int g = 0; g < this->Groups.Count(); ++g)
+  {
+    for (int lane = 0; lane < OrdinateLanes; ++lane)
+    {
+      const double part = phase(g, lane) * this->Groups.Weight(g, lane);
+      sum += part;
+      mean += part * cosine(g, lane);
+      square += part * cosine(g, lane) * cosine(g, lane);
+    }
+  }
+  mean /= sum;
+  square /= sum;
+  const double tilt = std::clamp((this->MeanCosine - mean) / (square - this->MeanCosine * mean), -1.0, 1.0);
+  return this->Groups.Table(
+    [&](int g, int lane) { return phase(g, lane) * (1.0 + tilt * cosine(g, lane)) / (sum * (1.0 + tilt * mean)); });
+}
+
+void LampScattering::Add(
+  const Light& lamp, const Buffer<float>& path, const Buffer<float>& sigma_s, const LampTarget& target) const
+{
+  const bool parallel = lamp.type == LightType::Directional;
+  const glm::dvec3 origin(this->TheGrid.origin[0], this->TheGrid.origin[1], this->TheGrid.origin[2]);
+  const glm::dvec3 place =
+    parallel ? glm::normalize(Vector(lamp.direction)) : glm::dvec3(Vector(lamp.position)) - origin;
+  LampInRays info = {};
+  for (int a = 0; a < 3; ++a)
+  {
+    info.size[a] = this->TheGrid.size[a];
+    info.spacing[a] = static_cast<float>(this->TheGrid.spacing[a]);
+    info.place[a] = static_cast<float>(place[a]);
+  }
+  info.parallel = parallel;
+  info.meanCosine = static_cast<float>(this->MeanCosine);
+  info.perVolume = static_cast<float>(1.0 / this->TheGrid.VoxelVolume());
+  const std::string options = Define("GROUPS", this->Groups.Count()) + Define("TABLE", TableSize);
+  const auto kernel = [&](const char* name) {
+    return this->TheDevice.Kernel(name, kernel_source::LampScattering, options);
+  };
+  const cl::NDRange voxels(this->TheGrid.VoxelCount());
+  const cl_ulong stride = OrdinateStride(this->TheGrid.VoxelCount());
+  cl::CommandQueue& queue = this->TheDevice.Queue();
+  cl::Kernel add = kernel("add_lamp");
+  With(add, path, target.light.fluence, target.direct, target.light.flux, cl_int(target.light.flux.Size() > 0), info);
+  queue.enqueueNDRangeKernel(add, cl::NullRange, voxels);
+  if (parallel)
+  {
+    const Buffer<float> parts(this->TheDevice, this->PartsAlong({ place.x, place.y, place.z }), "the phase function");
+    cl::Kernel scatter = kernel("scatter_parallel");
+    With(scatter, target.source, target.scale, path, sigma_s, parts, stride, info.perVolume);
+    const cl::NDRange all(this->TheGrid.VoxelCount(), this->Groups.Count());
+    queue.enqueueNDRangeKernel(scatter, cl::NullRange, all);
+    this->TheDevice.Finish(); // the parts go
+  }
+  else
+  {
+    cl::Kernel scatter = kernel("scatter_from_place");
+    With(scatter, target.source, target.scale, path, sigma_s, this->Omegas, this->Table, stride, info);
+    queue.enqueueNDRangeKernel(scatter, cl::NullRange, voxels);
+  }
+  target.scale.Fill(1.0f);
+  this->TheDevice.Finish();
+}
+}

@@ -1,0 +1,30 @@
+#include "DiscreteOrdinates/OrdinatesSettings.h"
+
+#include "Device/Errors.h"
+
+#include <string>
+
+namespace tyndall
+{
+void Check(const OrdinatesSettings& settings)
+{
+  if (settings.spiralDirections < 0)
+  {
+    throw InvalidInput("SpiralDirections is " + std::to_string(settings.spiralDirections) +
+      "; give 16 at least, or 0 for the directions of a cube.");
+  }
+  if (settings.terms < 1)
+  {
+    throw InvalidInput("Terms is " + std::to_string(settings.terms) + "; it must be at least 1.");
+  }
+  if (settings.maximumOrders < 0)
+  {
+    throw InvalidInput("MaximumOrders is " + std::to_string(settings.maximumOrders) +
+      "; give a number of scattering orders, or 0 for as many as the tolerance needs.");
+  }
+  if (!(settings.tolerance > 0.0))
+  {
+    throw InvalidInput("Tolerance is " + std::to_string(settings.tolerance) + "; it must be positive.");
+  }
+}
+}

@@ -1,0 +1,179 @@
+#include "DiscreteOrdinates/PublishedOrders.h"
+
+#include "DiscreteOrdinates/ChannelArrays.h"
+#include "DiscreteOrdinates/PublishedStep.h"
+
+#include <algorithm>
+#include <cmath>
+
+namespace tyndall
+{
+namespace
+{
+constexpr int MostSteps = 10000;
+constexpr double WithoutEnd = 1e4; ///< a step's change over the first one's
+
+PairSums SumsOf(const OrdinatesSettings& settings)
+{
+  return settings.scattering == OrdinatesScattering::Matrix ? PairSums::Passes : PairSums::Terms;
+}
+
+class PublishedOrders
+{
+public:
+  PublishedOrders(
+    Device& device, const OrdinatesScene& scene, const OrdinatesAngles& angles, const OrdinatesSettings& settings)
+    : Settings(settings)
+    , Arrays(device, scene, angles, settings.netFlux)
+    , Step(device, scene.medium.grid, angles.groups, settings.periodic, scene.incoming)
+    , Scattering(device, angles.groups, angles.phase, SumsOf(settings), false, settings.netFlux, this->Arrays.Voxels)
+    , Radiance(device, AngularScattering::Floats(angles.groups, this->Arrays.Voxels), "radiance of all directions")
+    , Scattered(device, this->Radiance.Size(), "scattered light of all directions")
+    , Steady(device, this->Radiance.Size(), "sources of all directions")
+  {
+  }
+
+  OrdinatesResult Run(const Monitor& monitor)
+  {
+    this->Begin(OfPart(monitor, 0.0, 0.1));
+    do
+    {
+      const double done = static_cast<double>(this->Record.All().size()) / (this->Record.All().size() + 20.0);
+      const double share = 0.1 + 0.9 * done;
+      Report(monitor, share);
+      this->StepOnce(monitor ? Monitor([&](double) { return monitor(share); }) : Monitor());
+    } while (!this->Done());
+    this->Finish();
+    return std::move(this->Result);
+  }
+
+private:
+  void Begin(const Monitor& monitor)
+  {
+    for (Buffer<float>* field : { &this->Radiance, &this->Scattered, &this->Steady })
+    {
+      field->Fill(0.0f);
+    }
+    if (this->Arrays.Emits())
+    {
+      this->Arrays.EmitEvenly(this->Steady, this->Result.ledger);
+    }
+    this->Arrays.AddLamps(this->Steady, this->Settings.periodic, this->Result, monitor);
+    this->OfLamps = this->Result.ledger;
+    this->LampFluence = this->Arrays.Direct.Read();
+    this->LampFlux = this->Arrays.Light.flux.Read();
+    this->Fluence.assign(this->Arrays.Voxels, 0.0f);
+    this->MoveOn(); // from darkness: nothing is scattered yet
+  }
+
+  void StepOnce(const Monitor& monitor)
+  {
+    this->Scattering.Scatter(
+      this->Radiance, this->Arrays.SigmaS, this->Scattered, this->Arrays.Scale, this->Arrays.Light, monitor);
+    const std::vector<float> now = this->Arrays.Light.order.Read();
+    double change = 0.0;
+    for (std::size_t i = 0; i < now.size(); ++i)
+    {
+      change += std::abs(static_cast<double>(now[i]) - this->Fluence[i]);
+    }
+    this->FirstChange = this->Record.All().empty() ? change : this->FirstChange;
+    this->Result.diverged = !(change <= WithoutEnd * this->FirstChange);
+    this->Fluence = now;
+    this->Change = change;
+    this->Result.ledger = this->OfLamps;
+    this->CountSteady();
+    this->Record.Add(change, this->Result.ledger);
+    if (!this->Done())
+    {
+      this->MoveOn();
+    }
+  }
+
+  void MoveOn()
+  {
+    this->Step.Apply(this->Radiance, this->Scattered, this->Steady, this->Arrays.SigmaT, this->Scattered);
+    this->Radiance.Swap(this->Scattered);
+  }
+
+  void CountSteady()
+  {
+    const FacePowers powers = this->Step.Powers(this->Radiance);
+    for (int face = 0; face < 6; ++face)
+    {
+      this->Result.ledger.Enter(0, powers.in[face]);
+      this->Result.ledger.Escape(0, face, powers.out[face]);
+    }
+    this->Result.ledger.Absorb(0,
+      this->Arrays.PowersOf(this->Fluence, false).absorbed + this->Arrays.PowersOf(this->LampFluence, true).absorbed);
+    this->Result.ledger.LeaveOver(0, this->Arrays.Stranded());
+  }
+
+  bool Done() const
+  {
+    const int steps = static_cast<int>(this->Record.All().size());
+    if (this->Change == 0.0 || this->Result.diverged || steps >= MostSteps)
+    {
+      return true;
+    }
+    return this->Settings.maximumOrders > 0 ? steps >= this->Settings.maximumOrders
+                                            : steps > 3 && this->Record.Residual() <= this->Settings.tolerance;
+  }
+
+  void Finish()
+  {
+    if (this->Settings.netFlux)
+    {
+      this->Arrays.Light.flux.Fill(0.0f); // of all steps
+      this->Scattering.Gather(this->Radiance, this->Arrays.Light, {});
+    }
+    this->Arrays.Read(this->Result);
+    this->Result.fluence = this->Fluence;
+    this->Result.direct = this->LampFluence;
+    for (std::size_t i = 0; i < this->LampFluence.size(); ++i)
+    {
+      this->Result.fluence[i] += this->LampFluence[i];
+    }
+    for (std::size_t i = 0; i < this->LampFlux.size(); ++i)
+    {
+      this->Result.flux[i] += this->LampFlux[i];
+    }
+    this->Result.convergence = std::move(this->Record.All());
+  }
+
+  const OrdinatesSettings& Settings;
+  ChannelArrays Arrays;
+  PublishedStep Step;
+  AngularScattering Scattering;
+  Buffer<float> Radiance, Scattered, Steady;
+  std::vector<float> Fluence, LampFluence, LampFlux;
+  EnergyLedger OfLamps; ///< and of emission
+  OrdinatesRecord Record;
+  OrdinatesResult Result;
+  double Change = 0.0, FirstChange = 0.0;
+};
+}
+
+OrdinatesResult SolvePublishedOrders(Device& device, const OrdinatesScene& scene, const OrdinatesAngles& angles,
+  const OrdinatesSettings& settings, const Monitor& monitor)
+{
+  return PublishedOrders(device, scene, angles, settings).Run(monitor);
+}
+
+std::size_t BytesOfPublishedOrders(const Grid& grid, const OrdinatesAngles& angles, const OrdinatesSettings& settings)
+{
+  const std::size_t voxels = grid.VoxelCount();
+  return 3 * sizeof(float) * AngularScattering::Floats(angles.groups, voxels) +
+    ChannelArrays::Bytes(voxels, settings.netFlux) +
+    AngularScattering::Bytes(angles.groups, angles.phase.Terms(), SumsOf(settings), voxels);
+}
+
+double ThickestStep(const Medium& medium, int channel)
+{
+  double largest = 0.0;
+  for (std::size_t i = 0; i < medium.grid.VoxelCount(); ++i)
+  {
+    largest = std::max(largest, static_cast<double>(medium.sigma_a.At(i, channel)) + medium.sigma_s.At(i, channel));
+  }
+  return largest * *std::min_element(medium.grid.spacing.begin(), medium.grid.spacing.end());
+}
+}

@@ -1,0 +1,63 @@
+// One explicit step of the radiance along all directions, as published (Gong et al., Eqs. (7) and (9)). Radiance is
+// [group][stride][8 directions].
+
+// What is carried one step on: L + h (Q - sigma_t L + S).
+//   scattered  S, W / (length^3 sr)
+//   steady     Q, of emission and of lamps
+__kernel void change_radiance(__global float* radiance, const __global float* scattered, const __global float* steady,
+  const __global float* sigma_t, float step, ulong stride)
+{
+  const ulong i = get_global_id(0), at = get_global_id(1) * stride + i;
+  __global float8* light = (__global float8*)radiance + at;
+  const float8 gain = ((const __global float8*)steady)[at] + ((const __global float8*)scattered)[at];
+  *light += step * (gain - sigma_t[i] * *light);
+}
+
+// Each voxel takes what stood one step upwind, linear between the eight nearest voxels.
+//   parts     [group][3][8]: the step along each axis in voxels, 0 to 1
+//   up        [group][3]: whether the group goes up an axis
+//   incoming  [group][3][8]: radiance outside the box, by the axis along which it is left
+__kernel void move_on(const __global float* before, __global float* after, const __global float* parts,
+  const __global int* up, const __global float* incoming, int nx, int ny, int nz, ulong stride, int periodic)
+{
+  const int group = get_global_id(1);
+  const ulong i = get_global_id(0);
+  const int at[3] = { (int)(i % nx), (int)(i / nx % ny), (int)(i / nx / ny) };
+  const int n[3] = { nx, ny, nz };
+  const __global float8* outside = (const __global float8*)incoming + group * 3;
+  const __global float8* part = (const __global float8*)parts + group * 3;
+  float8 sum = (float8)0.0f;
+  for (int corner = 0; corner < 8; ++corner)
+  {
+    float8 weight = (float8)1.0f;
+    int from[3];
+    int left = -1; // the axis
+    for (int a = 0; a < 3; ++a)
+    {
+      const int upwind = corner >> a & 1;
+      weight *= upwind ? part[a] : (float8)1.0f - part[a];
+      from[a] = at[a] - (up[3 * group + a] ? upwind : -upwind);
+      const bool beyond = from[a] < 0 || from[a] >= n[a];
+      left = beyond && !(periodic >> a & 1) ? a : left;
+      from[a] += from[a] < 0 ? n[a] : from[a] >= n[a] ? -n[a] : 0;
+    }
+    const ulong voxel = ((ulong)from[2] * ny + from[1]) * nx + from[0];
+    sum += weight * (left >= 0 ? outside[left] : ((const __global float8*)before)[group * stride + voxel]);
+  }
+  ((__global float8*)after)[group * stride + i] = sum;
+}
+
+// Radiance in the voxels at the face that each group leaves through, summed along the rows of it.
+//   sums  [group][row][8]; rows of `count` voxels `along` apart begin `between` apart
+__kernel void sum_leaving(const __global float* radiance, __global float* sums, const __global int* up, ulong stride,
+  int axis, ulong last, ulong between, ulong along, int count)
+{
+  const ulong row = get_global_id(0), rows = get_global_size(0), group = get_global_id(1);
+  const ulong first = (up[3 * group + axis] ? last : 0) + row * between;
+  float8 sum = (float8)0.0f;
+  for (int i = 0; i < count; ++i)
+  {
+    sum += ((const __global float8*)radiance)[group * stride + first + i * along];
+  }
+  ((__global float8*)sums)[group * rows + row] = sum;
+}

@@ -1,0 +1,164 @@
+#include "DiscreteOrdinates/SweptOrders.h"
+
+#include "DiscreteOrdinates/UpwindSweep.h"
+
+#include <algorithm>
+#include <cmath>
+
+namespace tyndall
+{
+namespace
+{
+constexpr int MostOrders = 10000;
+
+PairSums SumsOf(const OrdinatesSettings& settings)
+{
+  return settings.scattering == OrdinatesScattering::Matrix ? PairSums::Matrix : PairSums::Terms;
+}
+
+/// Whether some term can make a source negative: not where light is scattered evenly.
+bool CanBeNegative(const OrdinatesAngles& angles, const OrdinatesSettings& settings)
+{
+  return SumsOf(settings) == PairSums::Matrix || angles.phase.Terms() > 1;
+}
+
+class SweptOrders
+{
+public:
+  SweptOrders(
+    Device& device, const OrdinatesScene& scene, const OrdinatesAngles& angles, const OrdinatesSettings& settings)
+    : Scene(scene)
+    , Settings(settings)
+    , Arrays(device, scene, angles, settings.netFlux)
+    , Sweep(device, scene.medium.grid, angles.groups, settings.periodic)
+    , Scattering(device, angles.groups, angles.phase, SumsOf(settings), CanBeNegative(angles, settings),
+        settings.netFlux, this->Arrays.Voxels)
+    , Radiance(device, AngularScattering::Floats(angles.groups, this->Arrays.Voxels), "radiance of all directions")
+    , Source(device, this->Scattering.WorksInPlace() ? 0 : this->Radiance.Size(), "scattered light of all directions")
+  {
+  }
+
+  OrdinatesResult Run(const Monitor& monitor)
+  {
+    this->FirstOrder(OfPart(monitor, 0.0, 0.1));
+    while (!this->Done())
+    {
+      const double residual = std::clamp(this->Record.Residual(), this->Settings.tolerance, 1.0);
+      const double done = this->Settings.maximumOrders > 0
+        ? static_cast<double>(this->Record.All().size()) / this->Settings.maximumOrders
+        : std::log(residual) / std::log(std::min(this->Settings.tolerance, 0.5));
+      Report(monitor, std::clamp(0.1 + 0.9 * done, 0.1, 0.99));
+      this->Order(
+        monitor ? Monitor([&](double) { return monitor(std::clamp(0.1 + 0.9 * done, 0.1, 0.99)); }) : Monitor());
+    }
+    this->Arrays.Read(this->Result);
+    this->Result.convergence = std::move(this->Record.All());
+    return std::move(this->Result);
+  }
+
+private:
+  const Buffer<float>& Out() const { return this->Source.Size() > 0 ? this->Source : this->Radiance; }
+
+  /// Light that was not scattered: what comes in and what the medium emits by a sweep, lamps along rays of their own.
+  void FirstOrder(const Monitor& monitor)
+  {
+    const bool swept = this->Scene.incoming || this->Arrays.Emits() || !this->Settings.leaveOut;
+    this->Radiance.Fill(0.0f);
+    if (this->Arrays.Emits())
+    {
+      this->Arrays.EmitEvenly(this->Radiance, this->Result.ledger);
+    }
+    if (swept)
+    {
+      this->SweepAndScatter(this->Scene.incoming, OfPart(monitor, 0.0, 0.5));
+      this->Result.direct = this->Arrays.Light.order.Read();
+    }
+    else
+    {
+      this->Source.Fill(0.0f);
+      this->Result.direct.assign(this->Arrays.Voxels, 0.0f);
+    }
+    this->Arrays.AddLamps(this->Out(), this->Settings.periodic, this->Result, OfPart(monitor, 0.5, 1.0));
+    const std::vector<float> lamps = this->Arrays.Direct.Read();
+    this->Count(this->Arrays.PowersOf(this->Result.direct, false), this->Arrays.PowersOf(lamps, true));
+    for (std::size_t i = 0; i < lamps.size(); ++i)
+    {
+      this->Result.direct[i] += lamps[i];
+    }
+  }
+
+  void Order(const Monitor& monitor)
+  {
+    this->SweepAndScatter({}, monitor);
+    this->Count(this->Arrays.PowersOf(this->Arrays.Light.order.Read(), false), {});
+  }
+
+  void SweepAndScatter(const IncomingRadiance& incoming, const Monitor& monitor)
+  {
+    this->Radiance.Swap(this->Source.Size() > 0 && !this->Record.All().empty() ? this->Source : this->Radiance);
+    const FacePowers powers =
+      this->Sweep.Apply(this->Radiance, this->Arrays.SigmaT, this->Arrays.Scale, incoming, monitor);
+    for (int face = 0; face < 6; ++face)
+    {
+      this->Result.ledger.Enter(0, powers.in[face]);
+      this->Result.ledger.Escape(0, face, powers.out[face]);
+    }
+    this->OnTheWay = powers.onTheWay;
+    if (this->Arrays.Scatters() || !this->Settings.leaveOut)
+    {
+      this->Scattering.Scatter(
+        this->Radiance, this->Arrays.SigmaS, this->Out(), this->Arrays.Scale, this->Arrays.Light, monitor);
+      return;
+    }
+    this->Scattering.Gather(this->Radiance, this->Arrays.Light, monitor);
+    this->Radiance.Fill(0.0f); // only what goes round periodic axes is left
+    this->Source.Fill(0.0f);
+  }
+
+  void Count(const ChannelArrays::Powers& swept, const ChannelArrays::Powers& ofLamps)
+  {
+    this->Result.ledger.Absorb(0, swept.absorbed + ofLamps.absorbed);
+    this->GoesOn = swept.scattered + ofLamps.scattered + this->OnTheWay;
+    this->Result.ledger.LeaveOver(0, this->GoesOn + this->Arrays.Stranded());
+    this->Record.Add(this->GoesOn, this->Result.ledger);
+  }
+
+  bool Done() const
+  {
+    const int orders = static_cast<int>(this->Record.All().size());
+    if (this->GoesOn == 0.0 || orders >= MostOrders)
+    {
+      return true;
+    }
+    return this->Settings.maximumOrders > 0 ? orders >= this->Settings.maximumOrders
+                                            : orders > 2 && this->Record.Residual() <= this->Settings.tolerance;
+  }
+
+  const OrdinatesScene& Scene;
+  const OrdinatesSettings& Settings;
+  ChannelArrays Arrays;
+  UpwindSweep Sweep;
+  AngularScattering Scattering;
+  Buffer<float> Radiance, Source; ///< Source: empty where scattering works in place
+  OrdinatesRecord Record;
+  OrdinatesResult Result;
+  double GoesOn = 0.0, OnTheWay = 0.0; ///< W
+};
+}
+
+OrdinatesResult SolveSweptOrders(Device& device, const OrdinatesScene& scene, const OrdinatesAngles& angles,
+  const OrdinatesSettings& settings, const Monitor& monitor)
+{
+  return SweptOrders(device, scene, angles, settings).Run(monitor);
+}
+
+std::size_t BytesOfSweptOrders(const Grid& grid, const OrdinatesAngles& angles, const OrdinatesSettings& settings)
+{
+  const std::size_t voxels = grid.VoxelCount();
+  const std::size_t radiance = AngularScattering::Floats(angles.groups, voxels) * sizeof(float);
+  const PairSums sums = SumsOf(settings);
+  return radiance * (sums == PairSums::Terms ? 1 : 2) + ChannelArrays::Bytes(voxels, settings.netFlux) +
+    AngularScattering::Bytes(angles.groups, angles.phase.Terms(), sums, voxels) +
+    UpwindSweep::Bytes(grid, angles.groups);
+}
+}

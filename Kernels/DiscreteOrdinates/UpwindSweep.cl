@@ -1,0 +1,126 @@
+// One sweep along all directions: from source and what comes in through the faces to mean radiance and what leaves
+// (numerics.md, Eqs. (D9) to (D11)). Radiance is [group][stride][8 directions].
+//
+//   REAL_WIDTH  8: a work-item handles the directions of a group; 1: one of them
+#include "Numerics/Numerics.cl"
+
+#define THIN 0.3f // optical length below which series are as good as rounding
+
+// A voxel that light crosses along its mean chord.
+//   tau   optical length, >= 0
+//   in    radiance that comes in, in the mean over the faces
+//   gain  source times length of the chord
+//   mean  of the radiance in the voxel
+// Returns the radiance that leaves. What comes in, gain - tau mean, and what leaves add up.
+inline real cross_voxel(real tau, real in, real gain, real* mean)
+{
+  // (1 - exp(-tau)) / tau and (tau - 1 + exp(-tau)) / tau^2 by series
+  const real t = fmin(tau, (real)THIN);
+  real p = multiply_add(t, (real)-1.98412698e-4f, (real)1.38888889e-3f);
+  p = multiply_add(p, t, (real)-8.33333333e-3f);
+  p = multiply_add(p, t, (real)4.16666667e-2f);
+  p = multiply_add(p, t, (real)-1.66666667e-1f);
+  const real thin2 = multiply_add(p, t, (real)0.5f);
+  const real thin1 = multiply_add(-t, thin2, (real)1.0f);
+  // and where they are not thin
+  const real thick = fmax(tau, (real)THIN);
+  real left;
+  const real gone = extinguished(thick, &left);
+  const real inverse = (real)1.0f / thick;
+  const real thick1 = gone * inverse;
+  const real thick2 = ((real)1.0f - thick1) * inverse;
+#if REAL_WIDTH == 1
+  const bool is_thin = tau < THIN;
+  const real p1 = is_thin ? thin1 : thick1;
+  const real p2 = is_thin ? thin2 : thick2;
+  const real transmitted = is_thin ? 1.0f - t * thin1 : left;
+#else
+  const integer is_thin = tau < (real)THIN;
+  const real p1 = select(thick1, thin1, is_thin);
+  const real p2 = select(thick2, thin2, is_thin);
+  const real transmitted = select(left, multiply_add(-t, thin1, (real)1.0f), is_thin);
+#endif
+  *mean = multiply_add(in, p1, gain * p2);
+  return multiply_add(in, transmitted, gain * p1);
+}
+
+// Layers `begin` to `end` along z, counted the way each group goes.
+//   radiance  source in, W / (length^3 sr) over scale; mean radiance out
+//   scale     a factor of all sources of a voxel
+//   shares    [group][x, y, z, chord][8]: of each axis in what comes in; length of the mean chord
+//   up        [group][3]: whether the group goes up an axis
+//   x, y, z   radiance through the faces, [group][z][y][8], [group][z][x][8], [group][y][x][8]: what comes in on the
+//             way in, what leaves on the way out
+__kernel void sweep_upwind(__global float* radiance, const __global float* sigma_t, const __global float* scale,
+  const __global float* shares, const __global int* up, __global float* x, __global float* y, __global float* z, int nx,
+  int ny, int nz, ulong stride, int begin, int end)
+{
+  const int item = get_global_id(0);
+  const int group = item * REAL_WIDTH / 8;
+  const int lane = item * REAL_WIDTH % 8;
+  const real share_x = load_real((group * 4 + 0) * 8 + lane, shares);
+  const real share_y = load_real((group * 4 + 1) * 8 + lane, shares);
+  const real share_z = load_real((group * 4 + 2) * 8 + lane, shares);
+  const real chord = load_real((group * 4 + 3) * 8 + lane, shares);
+  const int up_x = up[3 * group], up_y = up[3 * group + 1], up_z = up[3 * group + 2];
+  for (int layer = begin; layer < end; ++layer)
+  {
+    const int k = up_z ? layer : nz - 1 - layer;
+    __global float* along_y = y + ((ulong)group * nz + k) * nx * 8 + lane;
+    for (int row = 0; row < ny; ++row)
+    {
+      const int j = up_y ? row : ny - 1 - row;
+      __global float* along_x = x + (((ulong)group * nz + k) * ny + j) * 8 + lane;
+      __global float* along_z = z + ((ulong)group * ny + j) * nx * 8 + lane;
+      const ulong first = ((ulong)k * ny + j) * nx;
+      __global float* cells = radiance + (group * stride + first) * 8 + lane;
+      real from_x = load_real(0, along_x);
+      for (int column = 0; column < nx; ++column)
+      {
+        const int i = up_x ? column : nx - 1 - column;
+        const real from_y = load_real(i * 8, along_y);
+        const real from_z = load_real(i * 8, along_z);
+        const real source = load_real(i * 8, cells) * (real)scale[first + i];
+        const real aside = multiply_add(share_y, from_y, share_z * from_z);
+        real mean;
+        const real out =
+          cross_voxel((real)sigma_t[first + i] * chord, multiply_add(share_x, from_x, aside), source * chord, &mean);
+        store_real(mean, i * 8, cells);
+        store_real(out, i * 8, along_y);
+        store_real(out, i * 8, along_z);
+        from_x = out;
+      }
+      store_real(from_x, 0, along_x);
+    }
+  }
+}
+
+// Sums of a row of a face, [group][row][8].
+//   face  [group][row][count][8]
+__kernel void sum_rows(const __global float* face, __global float* sums, int count)
+{
+  const ulong row = get_global_id(0);
+  const __global float8* values = (const __global float8*)(face + row * count * 8);
+  float8 sum = (float8)0.0f;
+  for (int i = 0; i < count; ++i)
+  {
+    sum += values[i];
+  }
+  ((__global float8*)sums)[row] = sum;
+}
+
+// Every voxel of a face: what comes in along each direction.
+//   values  [group][8]
+//   count   voxels of the face
+__kernel void fill_face(__global float* face, const __global float* values, int count)
+{
+  const ulong i = get_global_id(0);
+  ((__global float8*)face)[i] = ((const __global float8*)values)[i / count];
+}
+
+// The same source in all directions.
+__kernel void even_source(__global float* radiance, const __global float* emission, ulong stride)
+{
+  const ulong i = get_global_id(0), group = get_global_id(1);
+  ((__global float8*)radiance)[group * stride + i] = (float8)emission[i];
+}

@@ -1,0 +1,173 @@
+#include "DiscreteOrdinates/UpwindSweep.h"
+
+#include "Device/Batches.h"
+#include "Device/Defines.h"
+#include "TyndallKernelSources.h"
+
+#include <algorithm>
+#include <cmath>
+
+namespace tyndall
+{
+namespace
+{
+constexpr double LongestChord = 1e6; ///< in edges, of directions along which nothing changes
+
+std::size_t FaceVoxels(const Grid& grid, int axis)
+{
+  return grid.VoxelCount() / static_cast<std::size_t>(grid.size[axis]);
+}
+
+double FaceArea(const Grid& grid, int axis)
+{
+  return grid.VoxelVolume() / grid.spacing[axis];
+}
+}
+
+UpwindSweep::UpwindSweep(
+  Device& device, const Grid& grid, const OrdinateGroups& groups, const std::array<bool, 3>& periodic)
+  : TheDevice(device)
+  , TheGrid(grid)
+  , Groups(groups)
+  , Periodic(periodic)
+{
+  for (int axis = 0; axis < 3; ++axis)
+  {
+    const std::size_t lanes = groups.Lanes();
+    this->Faces[axis] = Buffer<float>(device, lanes * FaceVoxels(grid, axis), "light through the faces");
+    this->Sums[axis] = Buffer<float>(device, lanes * this->FaceSize(axis)[0], "sums");
+    this->Faces[axis].Fill(0.0f);
+  }
+  this->LoadDirections();
+}
+
+std::size_t UpwindSweep::Bytes(const Grid& grid, const OrdinateGroups& groups)
+{
+  return sizeof(float) * groups.Lanes() * (FaceVoxels(grid, 0) + FaceVoxels(grid, 1) + FaceVoxels(grid, 2));
+}
+
+std::array<int, 2> UpwindSweep::FaceSize(int axis) const
+{
+  const std::array<int, 3>& n = this->TheGrid.size;
+  return axis == 0 ? std::array<int, 2>{ n[2], n[1] }
+    : axis == 1    ? std::array<int, 2>{ n[2], n[0] }
+                   : std::array<int, 2>{ n[1], n[0] };
+}
+
+void UpwindSweep::LoadDirections()
+{
+  const std::array<double, 3>& h = this->TheGrid.spacing;
+  const double longest = LongestChord * *std::max_element(h.begin(), h.end());
+  std::vector<float> shares;
+  std::vector<cl_int> up;
+  for (int g = 0; g < this->Groups.Count(); ++g)
+  {
+    std::array<std::array<float, OrdinateLanes>, 4> of;
+    for (int lane = 0; lane < OrdinateLanes; ++lane)
+    {
+      std::array<double, 3> crossed = {}; // faces along each axis, a unit length
+      for (int a = 0; a < 3; ++a)
+      {
+        crossed[a] = this->IsCarried(a) ? std::abs(this->Groups.Of(g, lane).omega[a]) / h[a] : 0.0;
+      }
+      const double all = std::max(crossed[0] + crossed[1] + crossed[2], 1.0 / longest);
+      for (int a = 0; a < 3; ++a)
+      {
+        of[a][lane] = static_cast<float>(crossed[a] / all);
+      }
+      of[3][lane] = static_cast<float>(1.0 / all);
+    }
+    for (const auto& values : of)
+    {
+      shares.insert(shares.end(), values.begin(), values.end());
+    }
+    const std::array<bool, 3>& way = this->Groups.All()[g].up;
+    up.insert(up.end(), way.begin(), way.end());
+  }
+  this->Shares = Buffer<float>(this->TheDevice, shares, "the directions");
+  this->Up = Buffer<cl_int>(this->TheDevice, up, "the directions");
+}
+
+cl::Kernel UpwindSweep::Kernel(const char* name, int width) const
+{
+  return this->TheDevice.Kernel(name, kernel_source::UpwindSweep, Define("REAL_WIDTH", width));
+}
+
+FacePowers UpwindSweep::Apply(const Buffer<float>& radiance, const Buffer<float>& sigma_t, const Buffer<float>& scale,
+  const IncomingRadiance& incoming, const Monitor& monitor)
+{
+  FacePowers powers;
+  this->LetIn(incoming, powers);
+  const int width = this->TheDevice.IsCpu() ? OrdinateLanes : 1;
+  cl::Kernel sweep = this->Kernel("sweep_upwind", width);
+  const std::array<int, 3>& n = this->TheGrid.size;
+  Batches batches;
+  batches.count = static_cast<std::size_t>(n[2]);
+  InBatches(this->TheDevice, batches, monitor, [&](std::size_t begin, std::size_t size) {
+    With(sweep, radiance, sigma_t, scale, this->Shares, this->Up, this->Faces[0], this->Faces[1], this->Faces[2], n[0],
+      n[1], n[2], cl_ulong(OrdinateStride(this->TheGrid.VoxelCount())), cl_int(begin), cl_int(begin + size));
+    this->TheDevice.Queue().enqueueNDRangeKernel(
+      sweep, cl::NullRange, cl::NDRange(this->Groups.Lanes() / width), cl::NDRange(1));
+  });
+  this->Count(powers);
+  return powers;
+}
+
+/// Of a periodic face nothing: what left the other side is in its place already.
+void UpwindSweep::LetIn(const IncomingRadiance& incoming, FacePowers& powers)
+{
+  for (int axis = 0; axis < 3; ++axis)
+  {
+    const std::size_t voxels = FaceVoxels(this->TheGrid, axis);
+    if (this->Periodic[axis])
+    {
+      continue;
+    }
+    if (!incoming)
+    {
+      this->Faces[axis].Fill(0.0f);
+      continue;
+    }
+    const std::vector<float> values = this->Groups.Table([&](int g, int lane) {
+      const OrdinateGroup& group = this->Groups.All()[g];
+      return incoming(group.direction[lane], 2 * axis + (group.up[axis] ? 0 : 1));
+    });
+    for (std::size_t i = 0; i < values.size(); ++i)
+    {
+      const int g = static_cast<int>(i / OrdinateLanes), lane = i % OrdinateLanes;
+      const double across = this->Groups.Weight(g, lane) * std::abs(this->Groups.Of(g, lane).omega[axis]);
+      powers.in[2 * axis + (this->Groups.All()[g].up[axis] ? 0 : 1)] +=
+        across * values[i] * FaceArea(this->TheGrid, axis) * static_cast<double>(voxels);
+    }
+    const Buffer<float> table(this->TheDevice, values, "light through the faces");
+    cl::Kernel fill = this->Kernel("fill_face");
+    With(fill, this->Faces[axis], table, cl_int(voxels));
+    this->TheDevice.Queue().enqueueNDRangeKernel(fill, cl::NullRange, cl::NDRange(this->Groups.Count() * voxels));
+    this->TheDevice.Finish(); // the table goes
+  }
+}
+
+void UpwindSweep::Count(FacePowers& powers) const
+{
+  cl::Kernel sum = this->Kernel("sum_rows");
+  for (int axis = 0; axis < 3; ++axis)
+  {
+    if (!this->IsCarried(axis))
+    {
+      continue;
+    }
+    const std::array<int, 2> size = this->FaceSize(axis);
+    With(sum, this->Faces[axis], this->Sums[axis], cl_int(size[1]));
+    this->TheDevice.Queue().enqueueNDRangeKernel(sum, cl::NullRange, cl::NDRange(this->Groups.Count() * size[0]));
+    const std::vector<float> sums = this->Sums[axis].Read();
+    for (std::size_t i = 0; i < sums.size(); ++i)
+    {
+      const int g = static_cast<int>(i / OrdinateLanes / size[0]), lane = i % OrdinateLanes;
+      const double across = this->Groups.Weight(g, lane) * std::abs(this->Groups.Of(g, lane).omega[axis]);
+      const double watts = across * sums[i] * FaceArea(this->TheGrid, axis);
+      (this->Periodic[axis] ? powers.onTheWay : powers.out[2 * axis + (this->Groups.All()[g].up[axis] ? 1 : 0)]) +=
+        watts;
+    }
+  }
+}
+}

@@ -1,0 +1,61 @@
+#pragma once
+
+#include "Device/Buffer.h"
+#include "Device/Monitor.h"
+#include "DiscreteOrdinates/OrdinateGroups.h"
+#include "Medium/Grid.h"
+
+#include <array>
+#include <functional>
+#include <vector>
+
+namespace tyndall
+{
+/// Radiance that comes in along a direction (an index) through a face -x, +x, -y, +y, -z, +z. W / (length^2 sr)
+using IncomingRadiance = std::function<double(int direction, int face)>;
+
+/// Power of one channel through the faces -x, +x, -y, +y, -z, +z, W.
+struct FacePowers
+{
+  std::array<double, 6> in = {}, out = {};
+  double onTheWay = 0.0; ///< left through a periodic face, comes in on the other side in the next sweep
+};
+
+/// Carries light once along all directions through a box of voxels, upwind (numerics.md, Eqs. (D9) to (D11)).
+///
+/// Each voxel is crossed by the direction's mean chord, and light is attenuated along it by an exponential: it is
+/// stable and positive for every optical thickness, and exact along an axis. What leaves a voxel enters the next ones
+/// in equal radiance, so the power is kept to rounding; light spreads aside, so it is of first order in the voxels'
+/// edges where it goes askew.
+class UpwindSweep
+{
+public:
+  /// @param periodic  light that leaves along an axis comes in on the other side in the next sweep. Along periodic axes
+  /// of one voxel nothing changes, and none is carried.
+  UpwindSweep(Device& device, const Grid& grid, const OrdinateGroups& groups, const std::array<bool, 3>& periodic);
+
+  /// Bytes that the faces take on the device.
+  static std::size_t Bytes(const Grid& grid, const OrdinateGroups& groups);
+
+  /// @param radiance  source over `scale`, W / (length^3 sr); becomes the mean radiance, W / (length^2 sr)
+  /// @param incoming  empty: nothing
+  FacePowers Apply(const Buffer<float>& radiance, const Buffer<float>& sigma_t, const Buffer<float>& scale,
+    const IncomingRadiance& incoming, const Monitor& monitor);
+
+private:
+  bool IsCarried(int axis) const { return !(this->Periodic[axis] && this->TheGrid.size[axis] == 1); }
+  std::array<int, 2> FaceSize(int axis) const; ///< rows of a group, voxels of a row
+  void LoadDirections();
+  void LetIn(const IncomingRadiance& incoming, FacePowers& powers);
+  void Count(FacePowers& powers) const;
+  cl::Kernel Kernel(const char* name, int width = 8) const;
+
+  Device& TheDevice;
+  Grid TheGrid;
+  const OrdinateGroups& Groups;
+  std::array<bool, 3> Periodic;
+  Buffer<float> Shares;
+  Buffer<cl_int> Up;
+  std::array<Buffer<float>, 3> Faces, Sums;
+};
+}

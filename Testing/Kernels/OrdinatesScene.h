@@ -1,0 +1,20 @@
+#pragma once
+
+#include "DiscreteOrdinates/DiscreteOrdinates.h"
+#include "MediumScene.h"
+
+/// A scene for discrete ordinates.
+struct LitMedium : Scene
+{
+  tyndall::OrdinatesSettings how;
+
+  using Scene::Scene;
+
+  void ScatterWith(double g) { this->medium.phase = tyndall::PhaseFunction::HenyeyGreenstein(g); }
+
+  tyndall::LightField SolveOrdinates(tyndall::Device& device, const tyndall::Monitor& monitor = {})
+  {
+    this->Attach();
+    return tyndall::SolveDiscreteOrdinates(device, this->medium, this->light, this->how, monitor);
+  }
+};

@@ -1,0 +1,563 @@
+#include "CubeTurns.h"
+#include "DeviceTest.h"
+#include "Difference.h"
+#include "OrdinatesScene.h"
+
+#include "Comparison/ComparedRun.h"
+#include "DiscreteOrdinates/OrdinateGroups.h"
+#include "LightPropagation/Angular/DirectionSet.h"
+#include "Reference/ReferenceTable.h"
+
+#include <gmock/gmock.h>
+
+#include <algorithm>
+#include <cmath>
+#include <set>
+#include <string>
+
+using namespace tyndall;
+
+namespace
+{
+constexpr double Pi = 3.14159265358979323846;
+
+void ExpectFiniteAndNotNegative(const std::vector<float>& values)
+{
+  for (float value : values)
+  {
+    ASSERT_TRUE(std::isfinite(value));
+    ASSERT_GE(value, 0.0f);
+  }
+}
+
+/// A slab of `layers` voxels along z, lit by diffuse light of unit flux from below.
+LitMedium Slab(int layers, double tau, double albedo, double g)
+{
+  LitMedium slab({ 1, 1, layers }, static_cast<float>(tau * (1.0 - albedo)), static_cast<float>(tau * albedo));
+  slab.medium.grid.spacing = { 1.0, 1.0, 1.0 / layers };
+  slab.how.periodic = { true, true, false };
+  slab.how.tolerance = 1e-6;
+  slab.ScatterWith(g);
+  slab.light.faces[4] = { 1.0 / Pi, 1.0 / Pi, 1.0 / Pi };
+  return slab;
+}
+
+struct Fractions
+{
+  double reflected, transmitted, sides, absorbed;
+};
+
+Fractions FractionsOf(const LightField& light)
+{
+  const double in = light.balance.entered[0];
+  const auto out = [&](int face) { return light.facePowerOut[face][0] / in; };
+  return { out(4), out(5), out(0) + out(1) + out(2) + out(3), light.balance.absorbed[0] / in };
+}
+
+/// A cube of optical side tau, lit by diffuse light on its face -z.
+Fractions SolveCube(Device& device, int edge, double tau, double albedo, double g)
+{
+  LitMedium cube({ edge, edge, edge }, static_cast<float>(tau * (1.0 - albedo)), static_cast<float>(tau * albedo));
+  cube.medium.grid.spacing = { 1.0 / edge, 1.0 / edge, 1.0 / edge };
+  cube.light.faces[4] = { 1.0, 1.0, 1.0 };
+  cube.ScatterWith(g);
+  return FractionsOf(cube.SolveOrdinates(device));
+}
+}
+
+class DiscreteOrdinates : public DeviceTest
+{
+};
+
+TEST(OrdinateGroups, HaveEveryDirectionOnceInItsOctant)
+{
+  for (int perFace : { 1, 4, 9, 16, 25 })
+  {
+    const std::vector<Direction> directions = EquiangularDirections(perFace).directions;
+    const OrdinateGroups groups(directions);
+    std::multiset<int> found;
+    double weights = 0.0;
+    for (int g = 0; g < groups.Count(); ++g)
+    {
+      for (int lane = 0; lane < OrdinateLanes; ++lane)
+      {
+        for (int a = 0; a < 3; ++a)
+        {
+          const double along = groups.Of(g, lane).omega[a];
+          EXPECT_TRUE(along == 0.0 || (along > 0.0) == groups.All()[g].up[a]);
+        }
+        weights += groups.Weight(g, lane);
+        if (lane < groups.All()[g].count)
+        {
+          found.insert(groups.All()[g].direction[lane]);
+        }
+      }
+    }
+    EXPECT_EQ(found.size(), directions.size());
+    EXPECT_EQ(std::set<int>(found.begin(), found.end()).size(), directions.size());
+    EXPECT_NEAR(weights, 4.0 * Pi, 1e-12);
+  }
+}
+
+TEST_F(DiscreteOrdinates, FillAFurnaceWithRadianceOneForAnyMeanCosine)
+{
+  for (double g : { -0.5, 0.0, 0.5, 0.9 })
+  {
+    for (OrdinatesScattering scattering :
+      { OrdinatesScattering::Matrix, OrdinatesScattering::SingularValues, OrdinatesScattering::SphericalHarmonics })
+    {
+      LitMedium furnace({ 11, 9, 6 });
+      furnace.Randomise(2.0, 4.0, 1.0);
+      furnace.ShineFromEverywhere(1.0);
+      furnace.ScatterWith(g);
+      furnace.how.scattering = scattering;
+      furnace.how.directionsPerFace = 9;
+      furnace.how.terms = 16;
+      furnace.how.tolerance = 1e-7;
+      const LightField light = furnace.SolveOrdinates(this->GetDevice());
+      for (float fluence : light.fluence)
+      {
+        ASSERT_NEAR(fluence / (4.0 * Pi), 1.0, 1e-5) << g << " " << static_cast<int>(scattering);
+      }
+    }
+  }
+}
+
+TEST_F(DiscreteOrdinates, GiveBackEveryWattTheyTake)
+{
+  for (double g : { -0.8, 0.0, 0.85 })
+  {
+    for (double thickest : { 0.0, 1e-4, 1.0, 1e3 })
+    {
+      for (bool periodic : { false, true })
+      {
+        LitMedium scene({ 12, 7, 9 });
+        scene.medium.grid.spacing = { 1.0, 1.3, 0.8 };
+        scene.Randomise(thickest, 5.0, 0.9);
+        scene.emission.assign(scene.sigma_a.size(), 0.0f);
+        scene.emission[100] = 3.0f;
+        scene.ShineFromEverywhere(1.0);
+        scene.ShineAlong({ 0.3, 0.2, -1.0 });
+        tyndall::Light lamp;
+        lamp.type = LightType::Point;
+        lamp.position = { 4.1, 3.2, 2.9 };
+        lamp.power = { 30.0, 30.0, 30.0 };
+        scene.light.lights.push_back(lamp);
+        scene.light.faces[0] = { 0.5, 0.5, 0.5 };
+        scene.ScatterWith(g);
+        scene.how.directionsPerFace = 4;
+        scene.how.terms = 9;
+        scene.how.periodic = { periodic, false, false };
+        const LightField light = scene.SolveOrdinates(this->GetDevice());
+        EXPECT_LT(light.balance.RelativeError(1), 1e-5) << g << " " << thickest << " " << periodic;
+        ExpectFiniteAndNotNegative(light.fluence);
+        ExpectFiniteAndNotNegative(light.fluenceDirect);
+      }
+    }
+  }
+}
+
+TEST_F(DiscreteOrdinates, ArePositiveInVoxelsOfAHundredMeanFreePaths)
+{
+  for (double g : { -0.9, 0.0, 0.9 })
+  {
+    LitMedium thick({ 8, 8, 8 }, 10.0f, 90.0f);
+    thick.ShineAlong({ 0.5, 0.1, -1.0 });
+    thick.ScatterWith(g);
+    thick.how.directionsPerFace = 9;
+    const LightField light = thick.SolveOrdinates(this->GetDevice());
+    ExpectFiniteAndNotNegative(light.fluence);
+    EXPECT_LT(light.balance.RelativeError(1), 1e-5) << g;
+    EXPECT_TRUE(light.converged);
+  }
+}
+
+TEST_F(DiscreteOrdinates, TurnWithTheirScene)
+{
+  LitMedium scene({ 7, 5, 6 });
+  scene.medium.grid.spacing = { 0.3, 0.5, 0.4 };
+  scene.Randomise(4.0, 3.0, 0.9);
+  scene.ShineAlong({ 0.3, -0.5, -0.8 });
+  scene.light.faces = { Rgb{ 0.1, 0.1, 0.1 }, Rgb{ 0.2, 0.2, 0.2 }, Rgb{}, Rgb{ 0.7, 0.7, 0.7 }, Rgb{}, Rgb{} };
+  scene.ScatterWith(0.6);
+  scene.how.directionsPerFace = 9;
+  scene.how.terms = 16;
+  const LightField light = scene.SolveOrdinates(this->GetDevice());
+  for (const CubeTurn& turn : AllCubeTurns())
+  {
+    LitMedium turned = scene;
+    turned.medium.grid.size = turn.Moved(scene.medium.grid.size);
+    turned.medium.grid.spacing = turn.Moved(scene.medium.grid.spacing);
+    turned.sigma_a = turn.Field(scene.sigma_a, scene.medium.grid.size);
+    turned.sigma_s = turn.Field(scene.sigma_s, scene.medium.grid.size);
+    turned.light.lights[0].direction = turn.Direction(scene.light.lights[0].direction);
+    for (int face = 0; face < 6; ++face)
+    {
+      turned.light.faces[turn.Face(face)] = scene.light.faces[face];
+    }
+    const LightField found = turned.SolveOrdinates(this->GetDevice());
+    EXPECT_LT(RelativeDifference(found.fluence, turn.Field(light.fluence, scene.medium.grid.size)), 3e-5);
+  }
+}
+
+TEST_F(DiscreteOrdinates, SeeAnEvenEnvironmentAsTheSky)
+{
+  for (int spiral : { 0, 60 })
+  {
+    LitMedium scene({ 5, 6, 4 }, 0.2f, 0.8f);
+    scene.ScatterWith(0.6);
+    scene.how.directionsPerFace = 9;
+    scene.how.spiralDirections = spiral;
+    LitMedium environment = scene;
+    scene.ShineFromEverywhere(0.7);
+    environment.light.environment.width = 16;
+    environment.light.environment.height = 8;
+    environment.light.environment.radiance.assign(3 * 16 * 8, 0.7f);
+    const LightField sky = scene.SolveOrdinates(this->GetDevice());
+    const LightField seen = environment.SolveOrdinates(this->GetDevice());
+    EXPECT_LT(RelativeDifference(seen.fluence, sky.fluence), 1e-5) << spiral;
+    EXPECT_GT(sky.balance.entered[0], 0.0);
+  }
+}
+
+TEST_F(DiscreteOrdinates, ScatterALampTheSameToAllSides)
+{
+  LitMedium scene({ 9, 9, 9 }, 0.05f, 0.2f);
+  Light lamp;
+  lamp.type = LightType::Point;
+  lamp.position = { 4.5, 4.5, 4.5 };
+  lamp.power = { 5.0, 5.0, 5.0 };
+  scene.light.lights.push_back(lamp);
+  scene.ScatterWith(0.8);
+  scene.how.directionsPerFace = 9;
+  scene.how.terms = 16;
+  const LightField light = scene.SolveOrdinates(this->GetDevice());
+  for (const CubeTurn& turn : AllCubeTurns())
+  {
+    EXPECT_LT(RelativeDifference(turn.Field(light.fluence, scene.medium.grid.size), light.fluence), 3e-5);
+  }
+  for (int face = 1; face < 6; ++face)
+  {
+    EXPECT_NEAR(light.facePowerOut[face][0], light.facePowerOut[0][0], 1e-5 * light.facePowerOut[0][0]);
+  }
+  EXPECT_LT(light.balance.RelativeError(1), 1e-5);
+}
+
+TEST_F(DiscreteOrdinates, AreComparedWithTheOthers)
+{
+  LitMedium scene({ 8, 8, 8 }, 0.05f, 0.1f);
+  scene.ShineFromEverywhere(1.0);
+  scene.Attach();
+  ComparedScene compared;
+  compared.medium = scene.medium;
+  compared.illumination = scene.light;
+  ComparedSettings settings;
+  settings.directionsPerFace = { 1, 4, 9 };
+  settings.coarsenings = { 1 };
+  settings.orders = {};
+  const std::vector<ComparedRun> runs =
+    RunsOf(ComparedMethod::DiscreteOrdinates, this->GetDevice(), compared, settings);
+  ASSERT_EQ(runs.size(), 3u) << "no finer maps";
+  const std::vector<float> maps = Propagate(this->GetDevice(), compared, {}, {}).fluence;
+  EXPECT_STREQ(NameOf(runs[0].method), "discrete ordinates");
+  EXPECT_LT(RelativeDifference(runs[2].solve(false, {}).fluence, maps), 0.05);
+  EXPECT_NO_THROW(runs[0].solve(false, {})) << "fewer terms where directions are few";
+}
+
+TEST_F(DiscreteOrdinates, HaveTheReflectanceAndTransmittanceOfSlabs)
+{
+  int compared = 0;
+  for (const ReferenceRow& row : ReadReference("slab_anisotropic"))
+  {
+    LitMedium slab = Slab(row["tau"] > 1.0 ? 128 : 32, row["tau"], row["omega"], row["g"]);
+    const Fractions found = FractionsOf(slab.SolveOrdinates(this->GetDevice()));
+    EXPECT_NEAR(found.reflected, row["R_diffuse"], 1e-3) << row["tau"] << " " << row["omega"] << " " << row["g"];
+    EXPECT_NEAR(found.transmitted, row["T_diffuse"], 1e-3) << row["tau"] << " " << row["omega"] << " " << row["g"];
+    ++compared;
+  }
+  EXPECT_EQ(compared, 18);
+}
+
+TEST_F(DiscreteOrdinates, HaveTheReflectanceAndTransmittanceOfBeams)
+{
+  int compared = 0;
+  for (const ReferenceRow& row : ReadReference("slab_anisotropic"))
+  {
+    LitMedium slab = Slab(row["tau"] > 1.0 ? 128 : 32, row["tau"], row["omega"], row["g"]);
+    slab.light.faces[4] = {};
+    slab.ShineAlong({ std::sqrt(0.75), 0.0, 0.5 }, 2.0);
+    const Fractions found = FractionsOf(slab.SolveOrdinates(this->GetDevice()));
+    EXPECT_NEAR(found.reflected, row["R_mu05"], 2e-3) << row["tau"] << " " << row["omega"] << " " << row["g"];
+    EXPECT_NEAR(found.transmitted, row["T_mu05"], 2e-3) << row["tau"] << " " << row["omega"] << " " << row["g"];
+    ++compared;
+  }
+  EXPECT_EQ(compared, 18);
+}
+
+TEST_F(DiscreteOrdinates, AreOfSecondOrderInSlabsAndOfFirstInCubes)
+{
+  const auto transmitted = [&](int layers) {
+    LitMedium slab = Slab(layers, 4.0, 0.9, 0.5);
+    return FractionsOf(slab.SolveOrdinates(this->GetDevice())).transmitted;
+  };
+  const double slab = (transmitted(8) - transmitted(16)) / (transmitted(16) - transmitted(32));
+  EXPECT_NEAR(std::log2(slab), 2.0, 0.4);
+  const auto ofCube = [&](int edge) { return SolveCube(this->GetDevice(), edge, 5.0, 0.9, 0.5).transmitted; };
+  const double cube = (ofCube(8) - ofCube(16)) / (ofCube(16) - ofCube(32));
+  EXPECT_NEAR(std::log2(cube), 1.0, 0.4);
+}
+
+TEST_F(DiscreteOrdinates, ComeNearToMonteCarloInCubesByFirstOrder)
+{
+  for (double g : { 0.5, 0.85 })
+  {
+    for (double tau : { 1.0, 5.0 })
+    {
+      const ReferenceRow row =
+        ReferenceRowWhere("cube_RTSA_anisotropic", { { "tau", tau }, { "omega", 0.9 }, { "g", g }, { "src", 0.0 } });
+      const Fractions coarse = SolveCube(this->GetDevice(), 16, tau, 0.9, g);
+      const Fractions fine = SolveCube(this->GetDevice(), 32, tau, 0.9, g);
+      // Two grids take away the error of first order.
+      const auto limit = [&](double Fractions::*part) { return 2.0 * fine.*part - coarse.*part; };
+      EXPECT_NEAR(fine.reflected, row["R"], 0.03) << g << " " << tau;
+      EXPECT_NEAR(fine.transmitted, row["T"], 0.03) << g << " " << tau;
+      EXPECT_NEAR(fine.sides, row["S"], 0.03) << g << " " << tau;
+      EXPECT_NEAR(limit(&Fractions::reflected), row["R"], 0.01) << g << " " << tau;
+      EXPECT_NEAR(limit(&Fractions::transmitted), row["T"], 0.01) << g << " " << tau;
+      EXPECT_NEAR(limit(&Fractions::sides), row["S"], 0.01) << g << " " << tau;
+      EXPECT_NEAR(limit(&Fractions::absorbed), row["A"], 0.01) << g << " " << tau;
+    }
+  }
+}
+
+TEST_F(DiscreteOrdinates, AgreeWithLightPropagationMapsWhereLightIsScatteredEvenly)
+{
+  const auto difference = [&](int edge) {
+    LitMedium cube({ edge, edge, edge }, 0.4f, 3.6f);
+    cube.medium.grid.spacing = { 1.0 / edge, 1.0 / edge, 1.0 / edge };
+    cube.ShineAlong({ 0.2, 0.3, -1.0 });
+    cube.light.faces[5] = { 0.2, 0.2, 0.2 };
+    const std::vector<float> ordinates = cube.SolveOrdinates(this->GetDevice()).fluence;
+    cube.settings.source = PropagationSource::Constant;
+    cube.settings.acceleration = PropagationAcceleration::None;
+    const std::vector<float> maps = cube.Solve(this->GetDevice()).fluence;
+    double squares = 0.0, all = 0.0;
+    for (std::size_t i = 0; i < maps.size(); ++i)
+    {
+      squares += (ordinates[i] - maps[i]) * (ordinates[i] - maps[i]);
+      all += maps[i] * maps[i];
+    }
+    return std::sqrt(squares / all);
+  };
+  const double coarse = difference(12), fine = difference(24);
+  EXPECT_LT(fine, 0.03);
+  EXPECT_LT(fine, 0.65 * coarse); // of first order: half, in the limit
+}
+
+TEST_F(DiscreteOrdinates, AreTheSameByMatrixAndByAllSingularValues)
+{
+  LitMedium scene({ 6, 7, 8 }, 0.1f, 1.0f);
+  scene.ShineAlong({ 0.1, 0.2, -1.0 });
+  scene.ScatterWith(0.7);
+  scene.how.directionsPerFace = 4;
+  scene.how.scattering = OrdinatesScattering::Matrix;
+  const std::vector<float> matrix = scene.SolveOrdinates(this->GetDevice()).fluence;
+  scene.how.scattering = OrdinatesScattering::SingularValues;
+  scene.how.terms = 24;
+  EXPECT_LT(RelativeDifference(scene.SolveOrdinates(this->GetDevice()).fluence, matrix), 1e-5);
+  scene.how.spiralDirections = 40;
+  scene.how.terms = 40;
+  const std::vector<float> terms = scene.SolveOrdinates(this->GetDevice()).fluence;
+  scene.how.scattering = OrdinatesScattering::Matrix;
+  EXPECT_LT(RelativeDifference(scene.SolveOrdinates(this->GetDevice()).fluence, terms), 1e-5);
+}
+
+TEST_F(DiscreteOrdinates, AreTheSameEveryTime)
+{
+  LitMedium scene({ 9, 8, 7 }, 0.1f, 2.0f);
+  scene.ShineAlong({ 0.3, 0.2, -1.0 });
+  scene.ScatterWith(0.8);
+  const LightField first = scene.SolveOrdinates(this->GetDevice());
+  const LightField again = scene.SolveOrdinates(this->GetDevice());
+  EXPECT_EQ(first.fluence, again.fluence);
+  EXPECT_EQ(first.balance.escaped, again.balance.escaped);
+}
+
+TEST_F(DiscreteOrdinates, SolveColourAsThreeGreyMedia)
+{
+  LitMedium colour({ 5, 6, 7 });
+  colour.sigma_s.resize(3 * colour.sigma_a.size());
+  const float scattering[] = { 0.5f, 1.0f, 2.0f };
+  for (std::size_t i = 0; i < colour.sigma_s.size(); ++i)
+  {
+    colour.sigma_s[i] = scattering[i % 3];
+  }
+  colour.ShineAlong({ 0.0, 0.3, -1.0 });
+  colour.ScatterWith(0.5);
+  colour.how.directionsPerFace = 9;
+  const LightField light = colour.SolveOrdinates(this->GetDevice());
+  ASSERT_EQ(light.channels, 3);
+  EXPECT_LT(light.balance.RelativeError(3), 1e-5);
+  for (int c = 0; c < 3; ++c)
+  {
+    LitMedium grey({ 5, 6, 7 }, 0.0f, scattering[c]);
+    grey.light = colour.light;
+    grey.how = colour.how;
+    grey.ScatterWith(0.5);
+    const LightField one = grey.SolveOrdinates(this->GetDevice());
+    ASSERT_EQ(one.channels, 1);
+    for (std::size_t i = 0; i < one.fluence.size(); ++i)
+    {
+      ASSERT_FLOAT_EQ(light.fluence[3 * i + c], one.fluence[i]);
+    }
+  }
+}
+
+TEST_F(DiscreteOrdinates, HaveTheNetFluxThatTheBalanceAsksFor)
+{
+  LitMedium slab = Slab(80, 2.0, 0.7, 0.5);
+  slab.how.netFlux = true;
+  const LightField light = slab.SolveOrdinates(this->GetDevice());
+  // Through a layer goes what the layers above absorb and what leaves on top.
+  double above = light.facePowerOut[5][0];
+  for (int k = 79; k >= 0; --k)
+  {
+    const double absorbed = 0.6 * light.fluence[k] / 80.0;
+    EXPECT_NEAR(light.netFlux[3 * k + 2], above + 0.5 * absorbed, 1e-3 * above) << k;
+    EXPECT_NEAR(light.netFlux[3 * k], 0.0, 1e-5) << k;
+    above += absorbed;
+  }
+}
+
+TEST_F(DiscreteOrdinates, SayWhatTheySpared)
+{
+  LitMedium dark({ 4, 4, 4 }, 1.0f, 0.0f);
+  const LightField light = dark.SolveOrdinates(this->GetDevice());
+  EXPECT_EQ(Sum(light.balance.entered), 0.0);
+  EXPECT_THAT(light.leftOut, testing::Contains(testing::HasSubstr("sigma_s is zero")));
+  EXPECT_THAT(light.leftOut, testing::Contains(testing::HasSubstr("one channel does")));
+  EXPECT_THAT(light.leftOut, testing::Contains(testing::HasSubstr("no lights")));
+}
+
+TEST_F(DiscreteOrdinates, StopWhenTold)
+{
+  LitMedium scene({ 8, 8, 8 }, 0.0f, 5.0f);
+  scene.ShineFromEverywhere(1.0);
+  double last = 0.0;
+  EXPECT_THROW(scene.SolveOrdinates(this->GetDevice(),
+                 [&](double done) {
+                   EXPECT_GE(done, last - 1e-9);
+                   last = done;
+                   return done < 0.3;
+                 }),
+    Aborted);
+}
+
+TEST_F(DiscreteOrdinates, RefuseWhatHasNoMeaning)
+{
+  const auto message = [&](const std::function<void(OrdinatesSettings&)>& change) {
+    LitMedium scene({ 3, 3, 3 }, 0.1f, 0.1f);
+    scene.ScatterWith(0.5);
+    change(scene.how);
+    try
+    {
+      scene.SolveOrdinates(this->GetDevice());
+    }
+    catch (const InvalidInput& error)
+    {
+      return std::string(error.what());
+    }
+    return std::string();
+  };
+  EXPECT_EQ(message([](OrdinatesSettings&) {}), "");
+  EXPECT_THAT(message([](OrdinatesSettings& s) { s.terms = 0; }), testing::HasSubstr("Terms is 0"));
+  EXPECT_THAT(message([](OrdinatesSettings& s) { s.terms = 151; }), testing::HasSubstr("151 terms"));
+  EXPECT_THAT(message([](OrdinatesSettings& s) { s.directionsPerFace = 7; }), testing::HasSubstr("7"));
+  EXPECT_THAT(message([](OrdinatesSettings& s) { s.spiralDirections = 15; }), testing::HasSubstr("15"));
+  EXPECT_THAT(message([](OrdinatesSettings& s) { s.spiralDirections = -1; }), testing::HasSubstr("-1"));
+  EXPECT_THAT(message([](OrdinatesSettings& s) { s.tolerance = 0.0; }), testing::HasSubstr("Tolerance"));
+  EXPECT_THAT(message([](OrdinatesSettings& s) { s.maximumOrders = -2; }), testing::HasSubstr("-2"));
+}
+
+TEST_F(DiscreteOrdinates, SayHowMuchMemoryTheyNeedBeforeTheyTakeIt)
+{
+  LitMedium large({ 1, 1, 1 });
+  large.medium.grid.size = { 700, 700, 700 };
+  large.ShineFromEverywhere(1.0);
+  const std::size_t before = this->GetDevice().BytesInUse();
+  this->GetDevice().ResetPeak();
+  try
+  {
+    SolveDiscreteOrdinates(this->GetDevice(), large.medium, large.light, large.how);
+    FAIL() << "Radiance of 150 directions in 700^3 voxels is 200 GB.";
+  }
+  catch (const DeviceError& error)
+  {
+    EXPECT_THAT(error.what(), testing::HasSubstr("150 directions need"));
+    EXPECT_THAT(error.what(), testing::HasSubstr("MiB"));
+  }
+  EXPECT_EQ(this->GetDevice().PeakBytes(), before);
+}
+
+class PublishedOrdinates : public DiscreteOrdinates
+{
+protected:
+  LightField SolveThickVoxels(double tau, OrdinatesScattering scattering, int steps)
+  {
+    LitMedium scene({ 8, 8, 8 }, static_cast<float>(0.5 * tau), static_cast<float>(0.5 * tau));
+    scene.light.faces[4] = { 1.0, 1.0, 1.0 };
+    scene.ScatterWith(0.5);
+    scene.how.scheme = OrdinatesScheme::Published;
+    scene.how.scattering = scattering;
+    scene.how.directionsPerFace = 4;
+    scene.how.terms = 16;
+    scene.how.maximumOrders = steps;
+    return scene.SolveOrdinates(this->GetDevice());
+  }
+};
+
+TEST_F(PublishedOrdinates, AreNotStableAboveOneMeanFreePathAVoxel)
+{
+  const auto least = [](const LightField& light) {
+    return *std::min_element(light.fluence.begin(), light.fluence.end());
+  };
+  const LightField thin = this->SolveThickVoxels(0.9, OrdinatesScattering::SingularValues, 60);
+  EXPECT_GE(least(thin), 0.0f);
+  EXPECT_TRUE(thin.doubts.empty());
+  const LightField thick = this->SolveThickVoxels(1.5, OrdinatesScattering::SingularValues, 60);
+  EXPECT_LT(least(thick), 0.0f);
+  EXPECT_THAT(thick.doubts, testing::Contains(testing::HasSubstr("here it is up to 1.5")));
+  const LightField opaque = this->SolveThickVoxels(4.0, OrdinatesScattering::SingularValues, 200);
+  EXPECT_FALSE(opaque.converged);
+  EXPECT_THAT(opaque.doubts, testing::Contains(testing::HasSubstr("grows without end")));
+}
+
+TEST_F(PublishedOrdinates, AreTheSameByPassesAndByAllTerms)
+{
+  LitMedium scene({ 6, 5, 7 }, 0.05f, 0.3f);
+  scene.light.faces[4] = { 1.0, 1.0, 1.0 };
+  scene.ScatterWith(0.5);
+  scene.how.scheme = OrdinatesScheme::Published;
+  scene.how.spiralDirections = 40;
+  scene.how.terms = 40;
+  scene.how.maximumOrders = 30;
+  scene.how.scattering = OrdinatesScattering::Matrix;
+  const LightField passes = scene.SolveOrdinates(this->GetDevice());
+  scene.how.scattering = OrdinatesScattering::SingularValues;
+  const LightField terms = scene.SolveOrdinates(this->GetDevice());
+  EXPECT_LT(RelativeDifference(terms.fluence, passes.fluence), 1e-5);
+}
+
+TEST_F(PublishedOrdinates, DoNotKeepThePowerThatTheConservativeSchemeKeeps)
+{
+  LitMedium scene({ 12, 12, 12 }, 0.0f, 0.5f);
+  scene.ShineFromEverywhere(1.0);
+  scene.ScatterWith(0.85);
+  scene.how.directionsPerFace = 16;
+  scene.how.tolerance = 1e-5;
+  EXPECT_LT(scene.SolveOrdinates(this->GetDevice()).balance.RelativeError(1), 1e-5);
+  scene.how.scheme = OrdinatesScheme::Published;
+  scene.how.scattering = OrdinatesScattering::SingularValues;
+  scene.how.maximumOrders = 100;
+  EXPECT_GT(scene.SolveOrdinates(this->GetDevice()).balance.RelativeError(1), 1e-3);
+}
