@@ -2,8 +2,12 @@
 // directions become more. How to read it: with more cells the answer for a set of directions converges ("order", from
 // three grids); what is left then is the directions' error ("limit": Richardson's extrapolation, less the reference).
 //
-//   TyndallBenchSlab [--quick]
+//   TyndallBenchSlab [--quick] [order] [forward]
+//
+//   order    what is said above, isotropic scattering
+//   forward  g from -0.5 to 0.99, in angular moments and by similarity, beside other people's programs (ForwardSlabs.h)
 
+#include "ForwardSlabs.h"
 #include "Measure.h"
 #include "Program.h"
 #include "Report.h"
@@ -224,5 +228,14 @@ void RunAll(Device& device, bool quick)
 
 int main(int argc, char* argv[])
 {
-  return RunOnDevice(argc, argv, [](Device& device, const Arguments& arguments) { RunAll(device, arguments.quick); });
+  return RunOnDevice(argc, argv, [](Device& device, const Arguments& arguments) {
+    if (arguments.Asks("order"))
+    {
+      RunAll(device, arguments.quick);
+    }
+    if (arguments.Asks("forward"))
+    {
+      PrintForwardSlabs(device, arguments.quick);
+    }
+  });
 }

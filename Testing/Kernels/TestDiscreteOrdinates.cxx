@@ -264,10 +264,30 @@ TEST_F(DiscreteOrdinates, AreComparedWithTheOthers)
   EXPECT_NO_THROW(runs[0].solve(false, {})) << "fewer terms where directions are few";
 }
 
+namespace
+{
+/// tau 0.1, 1, 10, albedo 0.9 and 1, g 0.5, 0.85, 0.9
+std::vector<ReferenceRow> SomeSlabs()
+{
+  std::vector<ReferenceRow> some;
+  for (const ReferenceRow& row : ReadReference("slab_forward"))
+  {
+    const auto isOneOf = [&](const char* column, const std::vector<double>& numbers) {
+      return std::find(numbers.begin(), numbers.end(), row[column]) != numbers.end();
+    };
+    if (isOneOf("tau", { 0.1, 1.0, 10.0 }) && isOneOf("omega", { 0.9, 1.0 }) && isOneOf("g", { 0.5, 0.85, 0.9 }))
+    {
+      some.push_back(row);
+    }
+  }
+  return some;
+}
+}
+
 TEST_F(DiscreteOrdinates, HaveTheReflectanceAndTransmittanceOfSlabs)
 {
   int compared = 0;
-  for (const ReferenceRow& row : ReadReference("slab_anisotropic"))
+  for (const ReferenceRow& row : SomeSlabs())
   {
     LitMedium slab = Slab(row["tau"] > 1.0 ? 128 : 32, row["tau"], row["omega"], row["g"]);
     const Fractions found = FractionsOf(slab.SolveOrdinates(this->GetDevice()));
@@ -281,7 +301,7 @@ TEST_F(DiscreteOrdinates, HaveTheReflectanceAndTransmittanceOfSlabs)
 TEST_F(DiscreteOrdinates, HaveTheReflectanceAndTransmittanceOfBeams)
 {
   int compared = 0;
-  for (const ReferenceRow& row : ReadReference("slab_anisotropic"))
+  for (const ReferenceRow& row : SomeSlabs())
   {
     LitMedium slab = Slab(row["tau"] > 1.0 ? 128 : 32, row["tau"], row["omega"], row["g"]);
     slab.light.faces[4] = {};

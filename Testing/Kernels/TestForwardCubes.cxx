@@ -1,0 +1,115 @@
+// Cubes whose medium scatters forwards, lit on a face evenly or by a beam, or shining themselves, against Monte Carlo.
+
+#include "DeviceTest.h"
+#include "MediumScene.h"
+
+#include "Numerics/Constants.h"
+#include "Reference/ReferenceTable.h"
+
+#include <algorithm>
+#include <array>
+#include <cmath>
+#include <cstdio>
+#include <string>
+
+using namespace tyndall;
+
+namespace
+{
+constexpr const char* Parts[] = { "R", "T", "S", "A" }; ///< back, through, out of the sides, absorbed
+
+using PowerParts = std::array<double, 4>;
+
+/// One watt, of one of the table's sources.
+void ShineAs(Scene& scene, int source)
+{
+  if (source == 0)
+  {
+    scene.light.faces[4] = { 1.0 / Pi, 1.0 / Pi, 1.0 / Pi };
+  }
+  else if (source == 1)
+  {
+    scene.ShineAlong({ 0.0, 0.0, 1.0 });
+  }
+  else
+  {
+    scene.emission.assign(scene.sigma_s.size(), static_cast<float>(0.25 / Pi));
+  }
+}
+
+PowerParts SolvedCube(Device& device, const ReferenceRow& cube, int degree)
+{
+  constexpr int Edge = 32;
+  Scene scene({ Edge, Edge, Edge }, static_cast<float>(cube["tau"] * (1.0 - cube["omega"])),
+    static_cast<float>(cube["tau"] * cube["omega"]));
+  scene.medium.grid.spacing = { 1.0 / Edge, 1.0 / Edge, 1.0 / Edge };
+  scene.medium.phase = PhaseFunction::HenyeyGreenstein(cube["g"]);
+  ShineAs(scene, static_cast<int>(cube["src"]));
+  scene.settings.angularDegree = degree;
+  scene.settings.directionsPerFace = 64;
+  scene.settings.uncollidedDirections = 900;
+  scene.settings.staggeredRays = true;
+  const LightField light = scene.Solve(device);
+  EXPECT_LT(light.balance.RelativeError(light.channels), 1e-5);
+  PowerParts parts = { light.facePowerOut[4][0], light.facePowerOut[5][0], 0.0, light.balance.absorbed[0] };
+  for (int face = 0; face < 4; ++face)
+  {
+    parts[2] += light.facePowerOut[face][0];
+  }
+  for (double& part : parts)
+  {
+    part /= light.balance.entered[0] + light.balance.emitted[0];
+  }
+  return parts;
+}
+
+/// Of the part that is worst, less three standard errors of the reference.
+double LargestError(const PowerParts& found, const ReferenceRow& cube)
+{
+  double largest = 0.0;
+  for (int i = 0; i < 4; ++i)
+  {
+    const double error = std::abs(found[i] - cube[Parts[i]]) - 3.0 * cube[std::string("s") + Parts[i]];
+    largest = std::max(largest, error);
+  }
+  return largest;
+}
+
+class ForwardCubes : public DeviceTest
+{
+protected:
+  /// @return the largest error of all cubes
+  double LargestErrorOf(double g, int degree)
+  {
+    double largest = 0.0;
+    int compared = 0;
+    for (const ReferenceRow& cube : ReadReference("cube_RTSA_anisotropic"))
+    {
+      if (cube["g"] == g)
+      {
+        const double error = LargestError(SolvedCube(this->GetDevice(), cube, degree), cube);
+        std::printf("  g %g, source %g, tau %g, albedo %g, degree %d: %.5f\n", g, cube["src"], cube["tau"],
+          cube["omega"], degree, error);
+        largest = std::max(largest, error);
+        ++compared;
+      }
+    }
+    EXPECT_EQ(compared, 27);
+    return largest;
+  }
+};
+}
+
+TEST_F(ForwardCubes, HaveTheLightOfMonteCarlo)
+{
+  for (const double g : { 0.5, 0.85 })
+  {
+    EXPECT_LT(this->LargestErrorOf(g, -1), 0.01) << "g " << g;
+    EXPECT_LT(this->LargestErrorOf(g, 5), 0.01) << "g " << g;
+  }
+}
+
+TEST_F(ForwardCubes, AreWrongBySimilarity)
+{
+  EXPECT_GT(this->LargestErrorOf(0.85, 0), 0.01) << "the limit tells no difference";
+}
