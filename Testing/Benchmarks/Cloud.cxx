@@ -86,8 +86,8 @@ std::vector<Setting> Settings(bool quick)
   {
     return { { { 2, 16 }, 3, 16 } };
   }
-  std::vector<Setting> settings = { { { 4, 32 }, 0, 36 } };
-  const std::vector<step_cloud::Voxels> grids = { { 4, 32 }, { 8, 32 }, { 4, 64 }, { 8, 64 } };
+  std::vector<Setting> settings = { { { 2, 32 }, 0, 36 } };
+  const std::vector<step_cloud::Voxels> grids = { { 2, 32 }, { 4, 32 }, { 4, 64 }, { 8, 64 } };
   for (const step_cloud::Voxels& voxels : grids)
   {
     for (const int degree : { 3, 5, 7 })
@@ -98,7 +98,7 @@ std::vector<Setting> Settings(bool quick)
       }
     }
   }
-  settings.push_back({ { 8, 64 }, 9, 144 });
+  settings.push_back({ { 4, 64 }, 9, 144 });
   return settings;
 }
 

@@ -35,8 +35,6 @@ inline Scene SceneOf(const Experiment& experiment, const Voxels& voxels)
   scene.ShineAlong({ std::sin(angle), 0.0, -std::cos(angle) });
   scene.settings.periodic = { true, true, false };
   scene.settings.netFlux = true;
-  // In angular moments diffusion acceleration diverges where voxels are flat, and thick sideways.
-  scene.settings.acceleration = tyndall::PropagationAcceleration::None;
   return scene;
 }
 

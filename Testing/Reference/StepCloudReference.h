@@ -7,9 +7,9 @@
 namespace step_cloud
 {
 constexpr int Columns = 32;
-constexpr double ColumnWidth = 0.5, Thickness = 0.25;
-constexpr double ThinTau = 2.0, ThickTau = 18.0; ///< of the first and the second half of the columns
-constexpr double G = 0.85;                       ///< Henyey and Greenstein
+constexpr double ColumnWidth = 0.5 / Columns, Thickness = 0.25; ///< the columns are 0.5 wide in all
+constexpr double ThinTau = 2.0, ThickTau = 18.0;                ///< of the first and the second half of the columns
+constexpr double G = 0.85;                                      ///< Henyey and Greenstein
 
 /// Fluxes over that of the sun through a level plane.
 struct Column
