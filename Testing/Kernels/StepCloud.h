@@ -39,20 +39,24 @@ inline Scene SceneOf(const Experiment& experiment, const Voxels& voxels)
 }
 
 /// Net flux upwards through the top or the bottom of the columns, from voxel means: continued from the three layers
-/// next to it as a parabola that has these means.
+/// next to it as a parabola that has these means. At the top the beam is known, and left out of what is continued: under
+/// a low sun its shadow edge moves by a column from layer to layer.
+/// @param cosine  of the sun from the zenith
 inline std::array<double, Columns> FluxThroughFace(
-  const tyndall::LightField& light, const tyndall::Grid& grid, bool top)
+  const tyndall::LightField& light, const tyndall::Grid& grid, bool top, double cosine)
 {
   constexpr double OfLayer[] = { 11.0 / 6.0, -7.0 / 6.0, 2.0 / 6.0 };
   const int perColumn = grid.size[0] / Columns;
   std::array<double, Columns> flux = {};
+  flux.fill(top ? -cosine : 0.0);
   for (int layer = 0; layer < 3; ++layer)
   {
     const int k = top ? grid.size[2] - 1 - layer : layer;
     for (int i = 0; i < grid.size[0]; ++i)
     {
       const std::size_t voxel = static_cast<std::size_t>(k) * grid.size[0] + i;
-      flux[i / perColumn] += OfLayer[layer] * light.netFlux[3 * voxel + 2] / perColumn;
+      const double beam = top ? cosine * light.fluenceDirect[voxel] : 0.0;
+      flux[i / perColumn] += OfLayer[layer] * (light.netFlux[3 * voxel + 2] + beam) / perColumn;
     }
   }
   return flux;
@@ -66,11 +70,13 @@ struct Found
   double leastSure; ///< largest difference between the means of columns and the whole, of R and T
 };
 
-/// Columns are made to add up to the power that goes out of the face, which is counted exactly.
+/// Columns are made to add up to the power that goes out of the face, which is counted exactly: what is missing is
+/// given to them by optical thickness, for voxels' net flux is the further from the face's the thicker they are.
 inline Found FoundIn(const tyndall::LightField& light, const tyndall::Grid& grid, double sunFromZenith)
 {
   const double enters = std::cos(sunFromZenith * tyndall::Pi / 180.0);
-  Found found = { FluxThroughFace(light, grid, true), FluxThroughFace(light, grid, false), 0.0, 0.0, 0.0 };
+  Found found = { FluxThroughFace(light, grid, true, enters), FluxThroughFace(light, grid, false, enters), 0.0, 0.0,
+    0.0 };
   found.reflectedInAll = light.facePowerOut[5][0] / light.balance.entered[0];
   found.transmittedInAll = light.facePowerOut[4][0] / light.balance.entered[0];
   double meanReflected = 0.0, meanTransmitted = 0.0;
@@ -83,8 +89,9 @@ inline Found FoundIn(const tyndall::LightField& light, const tyndall::Grid& grid
   }
   for (int i = 0; i < Columns; ++i)
   {
-    found.reflected[i] += found.reflectedInAll - meanReflected;
-    found.transmitted[i] += found.transmittedInAll - meanTransmitted;
+    const double part = 2.0 * (i < Columns / 2 ? ThinTau : ThickTau) / (ThinTau + ThickTau);
+    found.reflected[i] += part * (found.reflectedInAll - meanReflected);
+    found.transmitted[i] += part * (found.transmittedInAll - meanTransmitted);
   }
   found.leastSure =
     std::max(std::abs(found.reflectedInAll - meanReflected), std::abs(found.transmittedInAll - meanTransmitted));
