@@ -1,6 +1,8 @@
 #include "DeviceTest.h"
 #include "MediumScene.h"
 
+#include <cmath>
+
 using namespace tyndall;
 
 namespace
@@ -51,6 +53,31 @@ TEST_F(LampBeams, LampsInsideAndOutsideKeepTheirPower)
         {
           EXPECT_LT(light.balance.entered[0], 10.0 * 1.03);
           EXPECT_GT(light.balance.entered[0], 1.0);
+        }
+      }
+    }
+  }
+}
+
+TEST_F(LampBeams, NetFluxPointsAwayFromTheLamp)
+{
+  Scene scene({ 11, 9, 10 }, 0.02f, 0.0f);
+  const std::array<double, 3> position = { 2.6, 3.4, -3.0 };
+  scene.light.lights = { Lamp(LightType::Point, position) };
+  scene.settings.netFlux = true;
+  const LightField light = scene.Solve(this->GetDevice());
+  std::size_t i = 0;
+  for (int z = 0; z < 10; ++z)
+  {
+    for (int y = 0; y < 9; ++y)
+    {
+      for (int x = 0; x < 11; ++x, ++i)
+      {
+        const std::array<double, 3> away = { x + 0.5 - position[0], y + 0.5 - position[1], z + 0.5 - position[2] };
+        const double distance = std::sqrt(away[0] * away[0] + away[1] * away[1] + away[2] * away[2]);
+        for (int a = 0; a < 3; ++a)
+        {
+          EXPECT_NEAR(light.netFlux[3 * i + a], light.fluence[i] * away[a] / distance, 0.03 * light.fluence[i]);
         }
       }
     }

@@ -14,7 +14,8 @@
     sum = multiply_add(load_real(x, row + k * CHANNELS * ROW), (real)of_frame[k], sum); \
   }
 
-// The source in the direction of each member, in row y, into slot `slot`.
+// The source in the direction of each member, in row y, into slot `slot`. Rows lie as those of the rings, whose last
+// row's border is the first one's here.
 static void FIND_SOURCES(
   sweep_state* state, int y, int slot, const __global BundleInfo* bundle, const __global float* coefficients)
 {
@@ -50,7 +51,7 @@ static void FIND_SOURCES(
             {
               source = multiply_add(load_real(x, beams + b * CHANNELS * ROW), (real)of_beams[m * BEAMS + b], source);
             }
-            store_real(source, x, out + FIRST(m, c) - PAD);
+            store_real(source, x, out + FIRST(m, c));
           }
         }
       }
@@ -82,7 +83,7 @@ static inline __attribute__((always_inline)) void CROSS_MOMENTS(sweep_state* sta
 #pragma unroll
     for (int i = 0; i < MEMBERS * CHANNELS; ++i)
     {
-      const int at = i * ROW;
+      const int at = i * ROW + PAD;
       const real ray = load_real(x, in[i / CHANNELS] + i % CHANNELS * ROW);
 #if SOURCE
       const real gain = shine * load_real(x, sources + at);
@@ -90,7 +91,7 @@ static inline __attribute__((always_inline)) void CROSS_MOMENTS(sweep_state* sta
 #else
       const real kept = thin ? ray : ray * keep;
 #endif
-      store_real(multiply_add(ray, change, kept), x, out + at + PAD);
+      store_real(multiply_add(ray, change, kept), x, out + at);
       const real before = first ? (real)0.0f : load_real(x, paths + at);
       store_real(multiply_add(mean_length, ray, before), x, paths + at);
     }
@@ -122,7 +123,7 @@ static void GATHER_MOMENTS(
           {
             const int m = first + i;
             const float2 sign = signs_of(bundle, m);
-            const int at = FIRST(m, c) - PAD;
+            const int at = FIRST(m, c);
             real path = load_real(x, paths + at);
 #if SOURCE
             path = multiply_add(load_real(x, own_row), load_real(x, sources + at), path);

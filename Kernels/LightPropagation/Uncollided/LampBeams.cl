@@ -2,6 +2,7 @@
 //   ATOMICS      1 where the device has 64-bit atomics, else one work-item does all
 //   LAMBERT, CONE  1 for a rectangle, a spot
 //   MOMENTS     1: first moments of the deposit are wanted
+//   NET_FLUX    1: net flux is wanted
 //   THIN        optical length below which light counts as lost evenly
 //
 // Space around the lamp is six pyramids, one for each way along an axis; in a pyramid beams lie on a grid of tangents,
@@ -103,6 +104,22 @@ static void add_moments(const LampInfo* lamp, const BeamRow* row, const int* vox
 }
 #endif
 
+#define FIRST_OF_FLUX (1 + 3 * MOMENTS) // of the sums in fixed point
+
+#if NET_FLUX
+// Path times direction, along x, y, z, of a step from way.x to way.y layers from the lamp.
+static void add_flux(const LampInfo* lamp, const BeamRow* row, float2 tangent, float2 way, float length, float path,
+  __global long* flux, ulong stride)
+{
+  const int u = (row->axis + 1) % 3;
+  const int v = (row->axis + 2) % 3;
+  const float layers = path * lamp->scale * (way.y - way.x) / length;
+  add_units(flux + row->axis * stride, convert_long_sat_rte((row->up ? layers : -layers) * lamp->spacing[row->axis]));
+  add_units(flux + u * stride, convert_long_sat_rte(layers * tangent.x * lamp->spacing[u]));
+  add_units(flux + v * stride, convert_long_sat_rte(layers * tangent.y * lamp->spacing[v]));
+}
+#endif
+
 // One step of a beam: every part of it through its voxel. Changes `left`; returns the part that will never be inside.
 static void step_beam(const LampInfo* lamp, const BeamRow* row, int layer, bool first, bool last, float2 tangent,
   float2 middle, float2 width, float2 way, float length, const __global float* sigma, __global long* path, ulong stride,
@@ -161,6 +178,9 @@ static void step_beam(const LampInfo* lamp, const BeamRow* row, int layer, bool 
     {
       const float counted = power * (mean_length * units_of(sigma[index], lamp->diagonal));
       add_units(path + index, convert_long_sat_rte(counted * lamp->scale));
+#if NET_FLUX
+      add_flux(lamp, row, tangent, way, length, counted, path + FIRST_OF_FLUX * stride + index, stride);
+#endif
 #if MOMENTS
       if (sigma[index] * length > 0.5f * THIN)
       {
@@ -293,7 +313,7 @@ static void follow_row(const LampInfo* lamp, const BeamRow* row, const __global 
 }
 
 // path  part of the power times length, in fixed point, [voxel], added to; MOMENTS: [path, times distance along x, y,
-//       z][stride]
+//       z][stride]; NET_FLUX: behind that times direction, [x, y, z][stride]
 // sums  [row][entered, escaped through -x to +z, stranded, shone in the row's directions], parts of the power
 __kernel void follow_lamp(LampInfo lamp, const __global float* sigma, ulong sigma_first, __global long* path,
   ulong stride, const __global BeamRow* rows, int row_count, int first_row, __global float* sums)
@@ -320,6 +340,23 @@ __kernel void add_fixed(const __global long* fixed_path, __global float* path, u
   const float unit = channel == 0 ? units.x : channel == 1 ? units.y : units.z;
   path[first + channel * stride + i] += (float)fixed_path[i] * unit / units_of(sigma[sigma_first + i], diagonal);
 }
+
+#if NET_FLUX
+// fixed_path  as in follow_lamp
+// flux  W length, [channel][x, y, z][stride], added to
+__kernel void add_fixed_flux(const __global long* fixed_path, __global float* flux, ulong first, ulong stride,
+  float4 units, const __global float* sigma, ulong sigma_first, float diagonal)
+{
+  const ulong i = get_global_id(0);
+  const int channel = get_global_id(1);
+  const float unit = channel == 0 ? units.x : channel == 1 ? units.y : units.z;
+  for (int axis = 0; axis < 3; ++axis)
+  {
+    flux[3 * (first + channel * stride) + axis * stride + i] +=
+      (float)fixed_path[(FIRST_OF_FLUX + axis) * stride + i] * unit / units_of(sigma[sigma_first + i], diagonal);
+  }
+}
+#endif
 
 #if MOMENTS
 // fixed_path  as in follow_lamp

@@ -146,7 +146,8 @@ public:
     , Volume(volume)
     , TheLight(light)
     , Periodic(periodic)
-    , Path(device, (volume.deposit.firstMoments ? 4 : 1) * volume.stride, "the light of a lamp")
+    , Path(device, (1 + (volume.deposit.firstMoments ? 3 : 0) + (volume.deposit.flux ? 3 : 0)) * volume.stride,
+        "the light of a lamp")
   {
     this->Path.Fill(0);
   }
@@ -178,6 +179,11 @@ public:
       cl::Kernel addMoments = this->Kernel("add_fixed_moments");
       finish(addMoments, *this->Volume.deposit.firstMoments);
     }
+    if (this->Volume.deposit.flux)
+    {
+      cl::Kernel addFlux = this->Kernel("add_fixed_flux");
+      finish(addFlux, *this->Volume.deposit.flux);
+    }
     return this->TallyTimes(correction);
   }
 
@@ -189,7 +195,8 @@ private:
     return this->TheDevice.Kernel(name, kernel_source::LampBeams,
       Define("ATOMICS", this->HasAtomics()) + Define("LAMBERT", this->TheLight.type == LightType::Rectangle) +
         Define("CONE", this->TheLight.type == LightType::Spot) +
-        Define("MOMENTS", this->Volume.deposit.firstMoments != nullptr) + DefineFloat("THIN", ThinForFirstMoments));
+        Define("MOMENTS", this->Volume.deposit.firstMoments != nullptr) +
+        Define("NET_FLUX", this->Volume.deposit.flux != nullptr) + DefineFloat("THIN", ThinForFirstMoments));
   }
 
   /// Fixed point units per length (numerics.md, Eq. (36)): no voxel can gather more than all power along its diagonal,
