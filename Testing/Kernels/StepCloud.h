@@ -39,8 +39,8 @@ inline Scene SceneOf(const Experiment& experiment, const Voxels& voxels)
 }
 
 /// Net flux upwards through the top or the bottom of the columns, from voxel means: continued from the three layers
-/// next to it as a parabola that has these means. At the top the beam is known, and left out of what is continued: under
-/// a low sun its shadow edge moves by a column from layer to layer.
+/// next to it as a parabola that has these means. At the top the beam is known, and left out of what is continued:
+/// under a low sun its shadow edge moves by a column from layer to layer.
 /// @param cosine  of the sun from the zenith
 inline std::array<double, Columns> FluxThroughFace(
   const tyndall::LightField& light, const tyndall::Grid& grid, bool top, double cosine)
