@@ -41,6 +41,17 @@ std::vector<double> ExactValues::Read() const
   return { values.begin(), values.end() };
 }
 
+void ExactValues::Write(const std::vector<double>& values)
+{
+  if (this->InDouble())
+  {
+    this->Doubles.Write(values.data());
+    return;
+  }
+  const std::vector<float> rounded(values.begin(), values.end());
+  this->Floats.Write(rounded.data());
+}
+
 void SetExact(const Device& device, cl::Kernel& kernel, cl_uint index, double value)
 {
   if (HasDoubles(device))

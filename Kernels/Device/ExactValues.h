@@ -18,6 +18,7 @@ public:
   const cl::Buffer& Handle() const { return this->InDouble() ? this->Doubles.Handle() : this->Floats.Handle(); }
   void Fill(double value);
   std::vector<double> Read() const;
+  void Write(const std::vector<double>& values); ///< as many as there are
 
 private:
   Buffer<double> Doubles;

@@ -58,6 +58,9 @@ struct LightField
   /// Of the directions that light from outside came along (DirectionSet.h); 0: there are none.
   double halfRangeFlux = 0.0;
   std::vector<ConvergenceRow> convergence;
+  /// Of each row, how many rows earlier its residual was reached than by the last solve that began in the dark: 0 where
+  /// this one did, too. Empty: it was not to begin from kept light (KeptLight.h).
+  std::vector<int> sweepsSaved;
   bool converged = true; ///< the last residual is at most the tolerance, or as many orders were done as were asked for
   std::vector<std::string> doubts;  ///< what may be wrong with the light, a sentence each, for a warning
   int directionsPerFace = 0;        ///< solved with, where a solver chooses (PropagationSettings::adaptDirections)

@@ -43,10 +43,11 @@ struct Scene
       this->emission.empty() ? 1 : this->ComponentsOf(this->emission) };
   }
 
-  tyndall::LightField Solve(tyndall::Device& device, const tyndall::Monitor& monitor = {})
+  tyndall::LightField Solve(
+    tyndall::Device& device, const tyndall::Monitor& monitor = {}, tyndall::KeptLight* kept = nullptr)
   {
     this->Attach();
-    return tyndall::SolveConservative(device, this->medium, this->light, this->settings, monitor);
+    return tyndall::SolveConservative(device, this->medium, this->light, this->settings, monitor, kept);
   }
 
   int ComponentsOf(const std::vector<float>& values) const

@@ -136,10 +136,22 @@ LightField LightOf(const TransportParts& parts, IterationResult&& found, bool ac
   light.device = parts.TheDevice.Name();
   return light;
 }
+
+
+/// Light for the next solve; a solve that began in the dark is what warm ones are measured by.
+void Leave(KeptLight&& left, bool warm, LightField& light, KeptLight& kept)
+{
+  kept = std::move(left);
+  if (!warm)
+  {
+    kept.fromDarkness = light.convergence;
+  }
+  CountSweepsSaved(light, warm, kept);
+}
 }
 
 LightField SolveConservative(Device& device, const Medium& medium, const Illumination& illumination,
-  const PropagationSettings& settings, const Monitor& monitor)
+  const PropagationSettings& settings, const Monitor& monitor, KeptLight* kept)
 {
   const PropagationProblem problem(medium, illumination, settings);
   const bool accelerated = ToBeAccelerated(problem);
@@ -147,15 +159,21 @@ LightField SolveConservative(Device& device, const Medium& medium, const Illumin
   std::unique_ptr<Iteration> iteration;
   if (accelerated)
   {
-    iteration = std::make_unique<DiffusionAcceleration>(parts);
+    iteration = std::make_unique<DiffusionAcceleration>(parts, kept);
   }
   else
   {
-    iteration = std::make_unique<SourceIteration>(parts);
+    iteration = std::make_unique<SourceIteration>(parts, kept);
   }
   IterationResult found = iteration->Run(monitor);
   CheckBalance(problem, found.ledger.Balance());
+  const bool warm = found.warm;
+  KeptLight left = std::move(found.kept);
   LightField light = LightOf(parts, std::move(found), accelerated);
+  if (kept)
+  {
+    Leave(std::move(left), warm, light, *kept);
+  }
   problem.Undo(light);
   JudgeConvergence(settings, light);
   return light;

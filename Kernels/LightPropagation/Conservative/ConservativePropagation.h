@@ -1,5 +1,6 @@
 #pragma once
 
+#include "Light/KeptLight.h"
 #include "Light/LightField.h"
 #include "LightPropagation/PropagationSettings.h"
 
@@ -22,9 +23,11 @@ namespace tyndall
 /// Isotropic scattering. A medium with mean cosine g is solved as the isotropic medium with sigma_s (1 - g) (similarity
 /// relation, numerics.md, Eq. (8)); leftOut says so.
 ///
+/// @param kept  the light of the last solve is the first guess of this one, and the light of this one is left there
+/// (KeptLight.h); null: begins in the dark, and keeps nothing
 /// @throws InvalidInput  what Check(medium), Check(illumination) say, or settings out of range
 /// @throws DeviceError  if the buffers do not fit
 /// @throws Aborted  when the monitor says so
 LightField SolveConservative(Device& device, const Medium& medium, const Illumination& illumination,
-  const PropagationSettings& settings, const Monitor& monitor = {});
+  const PropagationSettings& settings, const Monitor& monitor = {}, KeptLight* kept = nullptr);
 }

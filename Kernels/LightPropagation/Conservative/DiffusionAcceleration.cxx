@@ -2,6 +2,7 @@
 
 #include "LightPropagation/Conservative/SurfaceRadiance.h"
 #include "LightPropagation/Convergence.h"
+#include "LightPropagation/Scattering/MomentScattering.h"
 
 #include <algorithm>
 #include <cmath>
@@ -14,11 +15,12 @@ constexpr int MostSweeps = 200;
 constexpr double Margin = 1.5; ///< of the estimated error: changes do not fall off evenly
 }
 
-DiffusionAcceleration::DiffusionAcceleration(TransportParts& parts)
+DiffusionAcceleration::DiffusionAcceleration(TransportParts& parts, const KeptLight* kept)
   : Parts(parts)
   , Settings(parts.Problem.Settings())
   , TheMedium(parts.Problem.TheMedium())
   , LinearSource(parts.Problem.HasLinearSource())
+  , Warm(parts, kept, "diffusion acceleration")
 {
 }
 
@@ -41,13 +43,26 @@ IterationResult DiffusionAcceleration::Run(const Monitor& monitor)
       this->Parts.Fluence.Write(this->SweptFluence().data());
       this->Result.fluenceDirect = Interleaved(this->Parts.Layout, this->Parts.Fluence, 1.0);
       this->MakeSystems();
+      this->KeepDirect();
     }
-    this->Correct(iteration);
+    if (iteration == 0 && this->Warm.Begins())
+    {
+      this->BeginWarm();
+    }
+    else
+    {
+      this->Correct();
+    }
     Report(ofSweep, 1.0);
     ++iteration;
   } while (!this->Done(iteration));
   this->WriteFluence();
   this->FindSurfaceRadiance();
+  this->Result.leftOut = this->Warm.LeftOut();
+  if (this->Warm.Keeps())
+  {
+    this->Leave();
+  }
   return std::move(this->Result);
 }
 
@@ -102,10 +117,7 @@ void DiffusionAcceleration::Sweep(int iteration, const Monitor& monitor)
   {
     if (this->VoxelPower(static_cast<int>(c)) > 0.0)
     {
-      if (this->Parts.Basis)
-      {
-        this->Systems[c]->AddFluxBeyondSweep(this->Parts.Path);
-      }
+      this->CorrectMoments(c);
       this->Parts.Scattering->ScatterFluence(
         static_cast<int>(c), this->DepositOfSweep(), this->Systems[c]->NextFluence(), this->Given, this->Parts.Source);
       this->Systems[c]->ShapeSource();
@@ -116,6 +128,15 @@ void DiffusionAcceleration::Sweep(int iteration, const Monitor& monitor)
   this->Swept->Forget();
   const bool shines = iteration > 0 || this->Parts.HasSource();
   this->Tally = this->Swept->Apply(shines ? &this->Parts.Source : nullptr, this->Parts.BoundaryOfSweeps(), monitor);
+}
+
+/// Of what the last sweep found, by how the correction changed the fluence.
+void DiffusionAcceleration::CorrectMoments(std::size_t channel)
+{
+  if (this->Parts.Basis && this->Corrections > 0 && this->VoxelPower(static_cast<int>(channel)) > 0.0)
+  {
+    this->Systems[channel]->AddFluxBeyondSweep(this->Parts.Path);
+  }
 }
 
 /// Of the last sweep, with uncollided light; [channel][stride].
@@ -162,7 +183,7 @@ double DiffusionAcceleration::VoxelPower(int c) const
 
 /// Solve for the light of each channel and estimate how far it is from that of an endless iteration (numerics.md,
 /// Eq. (73)). The worst channel counts.
-void DiffusionAcceleration::Correct(int iteration)
+void DiffusionAcceleration::Correct()
 {
   double change = 0.0;
   for (int c = 0; c < this->Parts.Layout.channels; ++c)
@@ -173,11 +194,14 @@ void DiffusionAcceleration::Correct(int iteration)
       change = std::max(change, this->Systems[c]->Correct(power));
     }
   }
-  const double ratio = iteration > 0 && this->Change > 0.0 ? change / this->Change : 1.0;
-  const double fall = std::clamp(iteration > 1 ? std::max(ratio, this->LastRatio) : ratio, 0.5, 0.95);
-  this->Residual = iteration > 0 || change == 0.0 ? Margin * change * fall / (1.0 - fall) : 1.0;
+  const double known = this->Warm.Begins() ? this->Warm.Rate(0) : 0.0;
+  const double ratio = this->Corrections > 0 && this->Change > 0.0 ? change / this->Change : known > 0.0 ? known : 1.0;
+  const double fall = std::clamp(this->Corrections > 1 ? std::max(ratio, this->LastRatio) : ratio, 0.5, 0.95);
+  const bool falls = this->Corrections > 0 || known > 0.0 || change == 0.0;
+  this->Residual = falls ? Margin * change * fall / (1.0 - fall) : 1.0;
   this->LastRatio = ratio;
   this->Change = change;
+  ++this->Corrections;
   this->CountLight();
   this->Result.convergence.Add(this->Residual, change, this->Result.ledger);
 }
@@ -219,8 +243,71 @@ void DiffusionAcceleration::CountLight()
 bool DiffusionAcceleration::Done(int iterations) const
 {
   const int most = this->Settings.maximumOrders > 0 ? this->Settings.maximumOrders : MostSweeps;
+  // A guess has shown already how fast changes fall, but angular moments are not among them.
+  const int least = this->Warm.Begins() && !this->Parts.Basis ? 2 : 3;
   return iterations >= most || this->Residual == 0.0 ||
-    (iterations > 2 && MeetsTolerance(this->Settings, this->Residual));
+    (iterations >= least && MeetsTolerance(this->Settings, this->Residual));
+}
+
+/// Unscattered light, which is not to be kept, of all light at the end.
+void DiffusionAcceleration::KeepDirect()
+{
+  if (this->Warm.Keeps())
+  {
+    this->Direct = this->Parts.Fluence.Read();
+    this->DirectMoments = this->Parts.Basis ? this->Parts.Path.Read() : std::vector<float>();
+  }
+}
+
+/// The second sweep is given unscattered light and the guess instead of what a system makes of the first. Of the first
+/// there is a row of its own in the table.
+void DiffusionAcceleration::BeginWarm()
+{
+  const TransportParts& parts = this->Parts;
+  const VolumeLayout& layout = parts.Layout;
+  this->Warm.Prepare(this->Direct);
+  this->Result.ledger = this->Uncollided->Ledger();
+  this->Result.ledger.Count(this->Tally);
+  const std::vector<float> path = parts.Path.Read();
+  const std::vector<float>& guess = this->Warm.Guessed();
+  const double perVolume = 1.0 / layout.grid.VoxelVolume();
+  for (int c = 0; c < layout.channels; ++c)
+  {
+    std::vector<double> fluence(layout.grid.VoxelCount());
+    double scattered = 0.0;
+    for (std::size_t i = 0; i < fluence.size(); ++i)
+    {
+      const std::size_t at = c * layout.Stride() + i;
+      fluence[i] = perVolume * (static_cast<double>(path[at]) + guess[at]);
+      scattered += static_cast<double>(parts.Problem.Scattering().SigmaS(i, c)) * this->Direct[at];
+      this->Result.ledger.Absorb(c, static_cast<double>(this->TheMedium.sigma_a.At(i, c)) * path[at]);
+    }
+    this->Systems[c]->Begin(fluence);
+    this->Result.ledger.LeaveOver(
+      c, this->Result.ledger.Balance().leftOver[c] + scattered * layout.grid.VoxelVolume());
+  }
+  if (parts.Basis)
+  {
+    AddMoments(parts.TheDevice, parts.FunctionStride(), parts.Functions(), this->Warm.Guess(), parts.Path);
+  }
+  this->Result.convergence.Add(this->Residual, 1.0, this->Result.ledger);
+}
+
+/// Angular moments as the next sweep would take them.
+void DiffusionAcceleration::Leave()
+{
+  for (std::size_t c = 0; c < this->Systems.size(); ++c)
+  {
+    this->CorrectMoments(c);
+  }
+  std::vector<float> moments = this->Parts.Basis ? this->Parts.Path.Read() : std::vector<float>();
+  for (std::size_t i = 0; i < moments.size(); ++i)
+  {
+    moments[i] -= this->DirectMoments[i];
+  }
+  const double rate = std::clamp(this->LastRatio, 0.5, 0.95);
+  this->Result.warm = this->Warm.Begins();
+  this->Result.kept = this->Warm.Leave(this->Direct, moments, { rate, rate, rate });
 }
 
 /// Where the system's solution is negative, the fluence of the last sweep stands.

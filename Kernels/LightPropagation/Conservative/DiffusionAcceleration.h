@@ -3,6 +3,7 @@
 #include "LightPropagation/Conservative/Iteration.h"
 #include "LightPropagation/Conservative/TransportParts.h"
 #include "LightPropagation/Conservative/UncollidedLight.h"
+#include "LightPropagation/Conservative/WarmStart.h"
 #include "LightPropagation/Diffusion/DiffusionSystem.h"
 
 #include <memory>
@@ -18,7 +19,8 @@ class DiffusionAcceleration : public Iteration
 {
 public:
   /// @param parts  must stay; made for acceleration
-  explicit DiffusionAcceleration(TransportParts& parts);
+  /// @param kept  light of the last solve (WarmStart.h), must stay; null: none, and none is to be kept
+  explicit DiffusionAcceleration(TransportParts& parts, const KeptLight* kept = nullptr);
   IterationResult Run(const Monitor& monitor) override;
 
 private:
@@ -26,12 +28,16 @@ private:
   void MakeSweep();
   Deposit DepositOfSweep() const;
   void Sweep(int iteration, const Monitor& monitor);
+  void CorrectMoments(std::size_t channel);
   void MakeSystems();
-  void Correct(int iteration);
+  void KeepDirect();
+  void BeginWarm();
+  void Correct();
   void CountLight();
   double VoxelPower(int channel) const;
   bool Done(int iterations) const;
   std::vector<float> SweptFluence() const;
+  void Leave();
   void WriteFluence();
   void LimitFlux(const std::vector<float>& fluence);
   void FindSurfaceRadiance();
@@ -53,6 +59,10 @@ private:
   Rgb GivenPower = {}, PowerIn = {};      ///< W, emitted or first scattered; through faces
   std::vector<std::vector<double>> Found; ///< W / length^2, without uncollided light
   double Change = 1.0, LastRatio = 1.0, Residual = 1.0;
+  int Corrections = 0; ///< done
+
+  WarmStart Warm;
+  std::vector<float> Direct, DirectMoments; ///< of unscattered light, as WarmStart has them, where light is to be kept
 
   IterationResult Result;
 };

@@ -1,6 +1,7 @@
 #pragma once
 
 #include "Device/Monitor.h"
+#include "Light/KeptLight.h"
 #include "Light/LightField.h"
 #include "LightPropagation/Conservative/ConvergenceRecord.h"
 #include "LightPropagation/Conservative/EnergyLedger.h"
@@ -17,6 +18,8 @@ struct IterationResult
   ConvergenceRecord convergence;
   std::vector<float> fluenceDirect, surfaceRadiance; ///< as LightField has them
   std::vector<std::string> leftOut;                  ///< by the iteration
+  KeptLight kept;                                    ///< for the next solve; empty: not wanted
+  bool warm = false;                                 ///< begun from kept light
 };
 
 /// How scattering orders are added up: a strategy over the same sweep and scattering. When it ends, and what its last

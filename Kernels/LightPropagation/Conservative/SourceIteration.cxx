@@ -3,6 +3,7 @@
 #include "Device/Sizes.h"
 #include "Light/LeftOut.h"
 #include "LightPropagation/Convergence.h"
+#include "LightPropagation/Scattering/MomentScattering.h"
 #include "LightPropagation/Uncollided/UncollidedBoundary.h"
 #include "TyndallKernelSources.h"
 
@@ -20,11 +21,17 @@ constexpr double MostlyFilled = 0.75; ///< the same of voxels
 constexpr int OrdersExpected = 6;     ///< to tell whether it pays to sweep empty slabs at the end only
 }
 
-SourceIteration::SourceIteration(TransportParts& parts)
+SourceIteration::SourceIteration(TransportParts& parts, const KeptLight* kept)
   : Parts(parts)
   , Settings(parts.Problem.Settings())
+  , Warm(parts, kept, "source iteration")
   , Shining(parts.HasSource())
 {
+  if (this->Warm.Keeps() && parts.Basis)
+  {
+    this->Moments = Buffer<float>(parts.TheDevice, parts.Layout.Floats(parts.Functions()), "the light to keep");
+    this->Moments.Fill(0.0f);
+  }
   this->MakeSweeps();
 }
 
@@ -52,6 +59,10 @@ IterationResult SourceIteration::Run(const Monitor& monitor)
       }
     }
     this->ScatterOrder();
+    if (this->Order == 0 && this->Warm.Begins())
+    {
+      this->BeginWarm();
+    }
     Report(ofOrder, 1.0);
     ++this->Order;
     this->Lit.reset();
@@ -62,6 +73,10 @@ IterationResult SourceIteration::Run(const Monitor& monitor)
   }
   this->Result.ledger.ShareEscaped(this->Escaped);
   this->Result.leftOut = this->LeftOut();
+  if (this->Warm.Keeps())
+  {
+    this->Leave();
+  }
   return std::move(this->Result);
 }
 
@@ -206,19 +221,31 @@ std::array<std::size_t, 2> SourceIteration::SweptValues() const
 void SourceIteration::ScatterOrder()
 {
   const TransportParts& parts = this->Parts;
+  this->GatherMoments();
   const ScatteringOperator::Powers powers =
     parts.Scattering->ScatterOrder(parts.WholeDeposit(), parts.Fluence, parts.Source, this->SweptValues());
   this->Scattered = powers.scattered;
   for (int c = 0; c < 3; ++c)
   {
     this->Result.ledger.Absorb(c, powers.absorbed[c]);
-    this->Result.ledger.LeaveOver(c, this->Scattered[c] + this->OnTheWay[c] + this->Stranded[c]);
   }
   this->Shining = Sum(this->Scattered) > 0.0;
-  this->EstimateResidual();
+  if (this->Warm.Begins() && this->Order > 0)
+  {
+    this->GoOnWarm();
+  }
+  else
+  {
+    this->EstimateResidual();
+  }
+  for (int c = 0; c < 3; ++c)
+  {
+    this->Result.ledger.LeaveOver(c, this->Scattered[c] + this->OnTheWay[c] + this->Stranded[c]);
+  }
   if (this->Order == 0)
   {
     this->Result.fluenceDirect = Interleaved(this->Parts.Layout, this->Parts.Fluence, 1.0);
+    this->Direct = this->Warm.Keeps() ? this->Parts.Fluence.Read() : std::vector<float>();
   }
   const double all = Sum(this->AllScattered);
   this->Result.convergence.Add(this->Residual, all > 0.0 ? Sum(this->Scattered) / all : 0.0, this->Result.ledger);
@@ -237,15 +264,81 @@ void SourceIteration::EstimateResidual()
     {
       continue;
     }
-    const double ratio = this->Order > 0 ? now / this->LastScattered[c] : 1.0;
-    const double growth = this->Order > 1 ? std::max(0.0, ratio - this->Ratio[c]) : 0.0;
-    const double limit = std::min(ratio + growth, 1.0 - 1e-9);
-    this->Residual = std::max(this->Residual, now / this->AllScattered[c] * limit / (1.0 - limit));
-    this->Ratio[c] = ratio;
-    this->LastScattered[c] = now;
+    this->TakeResidual(c, now, this->Order > 0 ? now / this->LastScattered[c] : 1.0, 0.0);
   }
   // One order does not show how fast they fall.
   this->Residual = this->Order == 0 ? std::min(this->Residual, 1.0) : this->Residual;
+}
+
+/// @param least  that the ratio grows to
+void SourceIteration::TakeResidual(int c, double now, double ratio, double least)
+{
+  const double growth = this->Order > 1 ? std::max(0.0, ratio - this->Ratio[c]) : 0.0;
+  const double limit = std::min(std::max(ratio + growth, least), 1.0 - 1e-9);
+  this->Residual = std::max(this->Residual, now / this->AllScattered[c] * limit / (1.0 - limit));
+  this->Ratio[c] = ratio;
+  this->LastScattered[c] = now;
+}
+
+/// Beside what is first scattered, the next sweep carries what is scattered of the guess.
+void SourceIteration::BeginWarm()
+{
+  this->Warm.Prepare(this->Direct);
+  this->Parts.Scattering->AddFirstScattered({ &this->Warm.Guess(), nullptr, nullptr, nullptr }, this->Parts.Source);
+  this->Shining = this->Shining || Sum(this->Warm.GuessedPower()) != 0.0;
+}
+
+/// After the first sweep what is scattered of the guess is taken away from what was scattered: what is left is its
+/// error, which the sweeps to come carry. It can be negative, so that its magnitude, not its power, tells how far the
+/// light is from that of an endless iteration (numerics.md, Eqs. (46a) to (46c)).
+void SourceIteration::GoOnWarm()
+{
+  const Rgb guessed = this->Order == 1 ? this->Warm.GuessedPower() : Rgb{};
+  if (this->Order == 1)
+  {
+    this->Warm.TakeGuessFrom(this->Parts.Source);
+  }
+  const Rgb magnitudes = this->Warm.MagnitudeOf(this->Parts.Source);
+  this->Shining = Sum(magnitudes) > 0.0;
+  this->Residual = 0.0;
+  for (int c = 0; c < this->Parts.Layout.channels; ++c)
+  {
+    this->AllScattered[c] += this->Scattered[c];
+    this->Scattered[c] -= guessed[c];
+    const double now = magnitudes[c] + std::abs(this->OnTheWay[c]);
+    if (now > 0.0)
+    {
+      const double known = this->Warm.Rate(c); // 0: the channel was dark
+      const double ratio = this->Order > 1 ? now / this->LastScattered[c] : known > 0.0 ? known : 1.0;
+      this->TakeResidual(c, now, ratio, known);
+    }
+  }
+}
+
+/// Of the orders that were scattered before.
+void SourceIteration::GatherMoments()
+{
+  if (this->Moments.Size() > 0 && this->Order > 0)
+  {
+    AddMoments(this->Parts.TheDevice, this->Parts.FunctionStride(), this->Parts.Functions(), this->Parts.Path,
+      this->Moments);
+  }
+}
+
+/// Rounding, and what the last sweeps would have taken away, can leave dark voxels a little below 0.
+void SourceIteration::Leave()
+{
+  if (this->Warm.Begins())
+  {
+    std::vector<float> fluence = this->Parts.Fluence.Read();
+    for (float& value : fluence)
+    {
+      value = std::max(value, 0.0f);
+    }
+    this->Parts.Fluence.Write(fluence.data());
+  }
+  this->Result.warm = this->Warm.Begins();
+  this->Result.kept = this->Warm.Leave(this->Direct, this->Moments.Read(), this->Ratio);
 }
 
 bool SourceIteration::Done() const
@@ -254,8 +347,9 @@ bool SourceIteration::Done() const
   {
     return true;
   }
+  const int least = this->Warm.Begins() ? 2 : 3; // a guess has shown already how fast orders fall
   return this->Settings.maximumOrders > 0 ? this->Order >= this->Settings.maximumOrders
-                                          : this->Order > 2 && MeetsTolerance(this->Settings, this->Residual);
+                                          : this->Order >= least && MeetsTolerance(this->Settings, this->Residual);
 }
 
 /// Light of the orders after the first in the voxels around the medium, and the faces that it leaves through: one sweep
@@ -290,7 +384,7 @@ void SourceIteration::AddOutside(const VoxelBox& box)
 
 std::vector<std::string> SourceIteration::LeftOut() const
 {
-  std::vector<std::string> words;
+  std::vector<std::string> words = this->Warm.LeftOut();
   if (this->Filled)
   {
     words.push_back(left_out::EmptySlabs(this->Parts.Problem.Traits().filled, this->Parts.Layout.grid));

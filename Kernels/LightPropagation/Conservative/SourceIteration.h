@@ -3,6 +3,7 @@
 #include "LightPropagation/Conservative/EscapeCorrection.h"
 #include "LightPropagation/Conservative/Iteration.h"
 #include "LightPropagation/Conservative/TransportParts.h"
+#include "LightPropagation/Conservative/WarmStart.h"
 
 #include <memory>
 #include <optional>
@@ -15,7 +16,8 @@ class SourceIteration : public Iteration
 {
 public:
   /// @param parts  must stay
-  explicit SourceIteration(TransportParts& parts);
+  /// @param kept  light of the last solve (WarmStart.h), must stay; null: none, and none is to be kept
+  explicit SourceIteration(TransportParts& parts, const KeptLight* kept = nullptr);
   IterationResult Run(const Monitor& monitor) override;
 
 private:
@@ -26,6 +28,11 @@ private:
   void SweepOrder(const Monitor& monitor);
   void ScatterOrder();
   void EstimateResidual();
+  void TakeResidual(int channel, double now, double ratio, double least);
+  void BeginWarm();
+  void GoOnWarm();
+  void GatherMoments();
+  void Leave();
   void SweepEmptySlabs(const Monitor& monitor);
   void AddOutside(const VoxelBox& box);
   bool InFilledPart() const { return this->Filled && this->Order > 0; }
@@ -41,6 +48,9 @@ private:
   /// Of the orders after it, where the medium leaves much of the volume empty; else null.
   std::unique_ptr<SweepOperator> Filled;
   std::optional<EscapeCorrection> Escaping;
+  WarmStart Warm;
+  std::vector<float> Direct; ///< W / length^2, [channel][stride], where light is to be kept
+  Buffer<float> Moments;     ///< of scattered light of all orders, W length, where they are to be kept
   double LitPart = 1.0; ///< of all rays, in the first order
 
   IterationResult Result;

@@ -50,6 +50,13 @@ public:
   DiffusionSystem(Device& device, const Grid& grid, const std::array<bool, 3>& periodic, const DirectionSet& directions,
     const CrossingPattern& pattern, const Arrays& arrays, const std::array<double, 6>& incoming, bool linear);
 
+  /// Sets the fluence on which the first sweep's source is to be built, W / length^2, and from which the first
+  /// correction is solved for; else it is 0.
+  void Begin(const std::vector<double>& fluence)
+  {
+    this->Next.Write(fluence);
+    this->Solution.Write(fluence);
+  }
   /// W / length^2, on which the next sweep's source is to be built: what the last correction led to.
   const ExactValues& NextFluence() const { return this->Next; }
   /// Changes that source at the surfaces of thick voxels such that a sweep finds the outward current of diffusion.

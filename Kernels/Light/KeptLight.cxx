@@ -1,0 +1,35 @@
+#include "Light/KeptLight.h"
+
+#include <algorithm>
+
+namespace tyndall
+{
+std::string LightKind::WhatChangedSince(const LightKind& last) const
+{
+  return this->size != last.size || this->spacing != last.spacing ? "the grid has changed"
+    : this->channels != last.channels                             ? "the number of channels has changed"
+    : this->degree != last.degree                                 ? "the degree of angular moments has changed"
+    : this->directions != last.directions                         ? "the directions have changed"
+    : this->periodic != last.periodic                             ? "the periodic axes have changed"
+    : this->method != last.method                                 ? "the light was found by " + last.method
+                                                                  : std::string();
+}
+
+void CountSweepsSaved(LightField& light, bool warm, const KeptLight& kept)
+{
+  light.sweepsSaved.assign(light.convergence.size(), 0);
+  for (std::size_t i = 0; i < light.convergence.size() && warm; ++i)
+  {
+    const double residual = light.convergence[i].residual;
+    const auto asGood = std::find_if(kept.fromDarkness.begin(), kept.fromDarkness.end(),
+      [residual](const ConvergenceRow& row) { return row.residual <= residual; });
+    light.sweepsSaved[i] = static_cast<int>(asGood - kept.fromDarkness.begin()) - static_cast<int>(i);
+  }
+}
+
+std::string WordsOfWarmStart(const std::string& whyNot)
+{
+  return whyNot.empty() ? "scattering orders from darkness on: begun from the last light (WarmStart)"
+                        : "the last light as a first guess (WarmStart): " + whyNot;
+}
+}

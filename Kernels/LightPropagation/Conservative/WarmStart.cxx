@@ -1,0 +1,141 @@
+#include "LightPropagation/Conservative/WarmStart.h"
+
+#include "Device/Sizes.h"
+#include "LightPropagation/Scattering/CollectShared.h"
+#include "Numerics/Constants.h"
+#include "TyndallKernelSources.h"
+
+#include <algorithm>
+
+namespace tyndall
+{
+namespace
+{
+constexpr double SlowestRate = 1.0 - 1e-6; ///< that is told the next solve
+
+bool AnyLight(const KeptLight& kept)
+{
+  return !kept.Empty() && Sum(kept.firstScattered) > 0.0;
+}
+}
+
+WarmStart::WarmStart(TransportParts& parts, const KeptLight* kept, const char* method)
+  : Parts(parts)
+  , Kept(kept)
+{
+  if (!kept)
+  {
+    return;
+  }
+  this->TheKind = this->Kind(method);
+  this->WhyNot = parts.Problem.Settings().maximumOrders > 0 ? "MaximumOrders counts them from darkness on"
+    : !parts.Problem.Traits().scatters                      ? "nothing is scattered"
+    : !AnyLight(*kept)                                      ? "there is none"
+                                                            : this->TheKind.WhatChangedSince(kept->kind);
+}
+
+LightKind WarmStart::Kind(const char* method) const
+{
+  const Grid& grid = this->Parts.Layout.grid;
+  return { method, grid.size, grid.spacing, this->Parts.Layout.channels, this->Parts.Problem.Scattering().Degree(),
+    static_cast<int>(this->Parts.Usual.Set().directions.size()), this->Parts.Problem.Settings().periodic };
+}
+
+std::vector<std::string> WarmStart::LeftOut() const
+{
+  return this->Keeps() ? std::vector<std::string>{ WordsOfWarmStart(this->WhyNot) } : std::vector<std::string>();
+}
+
+/// W by channel: sigma_s times values, summed over the voxels; [channel][stride].
+Rgb WarmStart::ScatteredOf(const std::vector<float>& values) const
+{
+  Rgb sums = {};
+  for (int c = 0; c < this->Parts.Layout.channels; ++c)
+  {
+    for (std::size_t i = 0; i < this->Parts.Layout.grid.VoxelCount(); ++i)
+    {
+      sums[c] += static_cast<double>(this->Parts.Problem.Scattering().SigmaS(i, c)) *
+        values[c * this->Parts.Layout.Stride() + i];
+    }
+  }
+  return sums;
+}
+
+void WarmStart::Prepare(const std::vector<float>& direct)
+{
+  const VolumeLayout& layout = this->Parts.Layout;
+  const Rgb first = this->ScatteredOf(direct);
+  const std::size_t stride = layout.Stride();
+  const std::size_t channels = layout.channels;
+  this->Scaled = this->Kept->scattered;
+  for (std::size_t i = 0; i < this->Scaled.size(); ++i)
+  {
+    const std::size_t c = i / stride % channels;
+    const double before = this->Kept->firstScattered[c];
+    const double scale = before > 0.0 ? first[c] * layout.grid.VoxelVolume() / before : 0.0;
+    this->Scaled[i] = static_cast<float>(this->Scaled[i] * scale);
+  }
+  this->Power = this->ScatteredOf(this->Scaled);
+  this->Path = Buffer<float>(this->Parts.TheDevice, this->Scaled, "the last light");
+}
+
+void WarmStart::TakeGuessFrom(const Buffer<float>& source)
+{
+  for (float& value : this->Scaled)
+  {
+    value = -value;
+  }
+  this->Path.Write(this->Scaled.data());
+  this->Parts.Scattering->AddFirstScattered({ &this->Path, nullptr, nullptr, nullptr }, source);
+  this->Path = {};
+  this->Scaled = {};
+}
+
+Rgb WarmStart::MagnitudeOf(const Buffer<float>& source) const
+{
+  const VolumeLayout& layout = this->Parts.Layout;
+  const std::size_t chunks = PartsOf<std::size_t>(layout.Stride(), CollectChunk);
+  Buffer<float> tally(this->Parts.TheDevice, chunks * layout.channels, "sums");
+  cl::Kernel kernel = this->Parts.TheDevice.Kernel("sum_magnitudes", kernel_source::WarmStart);
+  With(kernel, source, tally, cl_ulong(layout.Stride()), cl_ulong(this->Parts.FunctionStride()),
+    cl_int(this->Parts.Functions()));
+  this->Parts.TheDevice.Queue().enqueueNDRangeKernel(
+    kernel, cl::NullRange, cl::NDRange(chunks, layout.channels), cl::NDRange(1, 1));
+  Rgb sums = {};
+  const std::vector<float> values = tally.Read();
+  for (std::size_t i = 0; i < values.size(); ++i)
+  {
+    sums[i / chunks] += values[i] * 4.0 * Pi * layout.grid.VoxelVolume();
+  }
+  return sums;
+}
+
+KeptLight WarmStart::Leave(
+  const std::vector<float>& direct, const std::vector<float>& moments, const Rgb& rate) const
+{
+  const VolumeLayout& layout = this->Parts.Layout;
+  const auto volume = static_cast<float>(layout.grid.VoxelVolume());
+  KeptLight left;
+  left.kind = this->TheKind;
+  for (int c = 0; c < layout.channels && this->Parts.Problem.Settings().maximumOrders == 0; ++c)
+  {
+    // The error of a good guess falls faster at first than that of darkness does at last.
+    left.rate[c] = std::max(std::min(rate[c], SlowestRate), this->Begins() ? this->Rate(c) : 0.0);
+  }
+  left.firstScattered = this->ScatteredOf(direct);
+  for (double& watts : left.firstScattered)
+  {
+    watts *= layout.grid.VoxelVolume();
+  }
+  left.scattered.assign(layout.Floats(this->Parts.Functions()), 0.0f);
+  const std::vector<float> fluence = this->Parts.Fluence.Read();
+  for (std::size_t i = 0; i < this->Parts.FunctionStride(); ++i)
+  {
+    left.scattered[i] = volume * (fluence[i] - direct[i]);
+  }
+  std::copy(moments.begin() + std::min(this->Parts.FunctionStride(), moments.size()), moments.end(),
+    left.scattered.begin() + static_cast<std::ptrdiff_t>(std::min(this->Parts.FunctionStride(), moments.size())));
+  left.fromDarkness = this->Begins() ? this->Kept->fromDarkness : std::vector<ConvergenceRow>();
+  return left;
+}
+}
