@@ -43,15 +43,12 @@ IterationResult DiffusionAcceleration::Run(const Monitor& monitor)
       this->Parts.Fluence.Write(this->SweptFluence().data());
       this->Result.fluenceDirect = Interleaved(this->Parts.Layout, this->Parts.Fluence, 1.0);
       this->MakeSystems();
-      this->KeepDirect();
+      this->LookAtDirect();
     }
-    if (iteration == 0 && this->Warm.Begins())
+    this->Correct(iteration);
+    if (iteration == 0 && this->Warm.Keeps())
     {
       this->BeginWarm();
-    }
-    else
-    {
-      this->Correct();
     }
     Report(ofSweep, 1.0);
     ++iteration;
@@ -117,7 +114,6 @@ void DiffusionAcceleration::Sweep(int iteration, const Monitor& monitor)
   {
     if (this->VoxelPower(static_cast<int>(c)) > 0.0)
     {
-      this->CorrectMoments(c);
       this->Parts.Scattering->ScatterFluence(
         static_cast<int>(c), this->DepositOfSweep(), this->Systems[c]->NextFluence(), this->Given, this->Parts.Source);
       this->Systems[c]->ShapeSource();
@@ -128,15 +124,6 @@ void DiffusionAcceleration::Sweep(int iteration, const Monitor& monitor)
   this->Swept->Forget();
   const bool shines = iteration > 0 || this->Parts.HasSource();
   this->Tally = this->Swept->Apply(shines ? &this->Parts.Source : nullptr, this->Parts.BoundaryOfSweeps(), monitor);
-}
-
-/// Of what the last sweep found, by how the correction changed the fluence.
-void DiffusionAcceleration::CorrectMoments(std::size_t channel)
-{
-  if (this->Parts.Basis && this->Corrections > 0 && this->VoxelPower(static_cast<int>(channel)) > 0.0)
-  {
-    this->Systems[channel]->AddFluxBeyondSweep(this->Parts.Path);
-  }
 }
 
 /// Of the last sweep, with uncollided light; [channel][stride].
@@ -183,7 +170,7 @@ double DiffusionAcceleration::VoxelPower(int c) const
 
 /// Solve for the light of each channel and estimate how far it is from that of an endless iteration (numerics.md,
 /// Eq. (73)). The worst channel counts.
-void DiffusionAcceleration::Correct()
+void DiffusionAcceleration::Correct(int iteration)
 {
   double change = 0.0;
   for (int c = 0; c < this->Parts.Layout.channels; ++c)
@@ -192,16 +179,18 @@ void DiffusionAcceleration::Correct()
     if (power > 0.0)
     {
       change = std::max(change, this->Systems[c]->Correct(power));
+      if (this->Parts.Basis)
+      {
+        this->Systems[c]->AddFluxBeyondSweep(this->Parts.Path);
+      }
     }
   }
-  const double known = this->Warm.Begins() ? this->Warm.Rate(0) : 0.0;
-  const double ratio = this->Corrections > 0 && this->Change > 0.0 ? change / this->Change : known > 0.0 ? known : 1.0;
-  const double fall = std::clamp(this->Corrections > 1 ? std::max(ratio, this->LastRatio) : ratio, 0.5, 0.95);
-  const bool falls = this->Corrections > 0 || known > 0.0 || change == 0.0;
-  this->Residual = falls ? Margin * change * fall / (1.0 - fall) : 1.0;
+  const bool guessed = iteration == 1 && this->Warm.Begins() && this->Warm.Rate(0) > 0.0;
+  const double ratio = guessed ? this->Warm.Rate(0) : iteration > 0 && this->Change > 0.0 ? change / this->Change : 1.0;
+  const double fall = std::clamp(iteration > 1 ? std::max(ratio, this->LastRatio) : ratio, 0.5, 0.95);
+  this->Residual = iteration > 0 || change == 0.0 ? Margin * change * fall / (1.0 - fall) : 1.0;
   this->LastRatio = ratio;
   this->Change = change;
-  ++this->Corrections;
   this->CountLight();
   this->Result.convergence.Add(this->Residual, change, this->Result.ledger);
 }
@@ -249,65 +238,53 @@ bool DiffusionAcceleration::Done(int iterations) const
     (iterations >= least && MeetsTolerance(this->Settings, this->Residual));
 }
 
-/// Unscattered light, which is not to be kept, of all light at the end.
-void DiffusionAcceleration::KeepDirect()
+void DiffusionAcceleration::LookAtDirect()
 {
   if (this->Warm.Keeps())
   {
-    this->Direct = this->Parts.Fluence.Read();
-    this->DirectMoments = this->Parts.Basis ? this->Parts.Path.Read() : std::vector<float>();
+    this->Warm.Prepare(this->Parts.Fluence.Read());
   }
 }
 
-/// The second sweep is given unscattered light and the guess instead of what a system makes of the first. Of the first
-/// there is a row of its own in the table.
+/// What the first sweep and its system find is found anew each time; what later ones add to it is kept, and given to
+/// the second sweep (numerics.md, Eq. (46d)).
 void DiffusionAcceleration::BeginWarm()
 {
   const TransportParts& parts = this->Parts;
   const VolumeLayout& layout = parts.Layout;
-  this->Warm.Prepare(this->Direct);
-  this->Result.ledger = this->Uncollided->Ledger();
-  this->Result.ledger.Count(this->Tally);
-  const std::vector<float> path = parts.Path.Read();
-  const std::vector<float>& guess = this->Warm.Guessed();
-  const double perVolume = 1.0 / layout.grid.VoxelVolume();
+  this->First = this->UncollidedFluence;
+  this->First.resize(parts.FunctionStride());
+  this->FirstMoments = parts.Basis ? parts.Path.Read() : std::vector<float>();
   for (int c = 0; c < layout.channels; ++c)
   {
-    std::vector<double> fluence(layout.grid.VoxelCount());
-    double scattered = 0.0;
+    std::vector<double> fluence = this->Found[c];
     for (std::size_t i = 0; i < fluence.size(); ++i)
     {
       const std::size_t at = c * layout.Stride() + i;
-      fluence[i] = perVolume * (static_cast<double>(path[at]) + guess[at]);
-      scattered += static_cast<double>(parts.Problem.Scattering().SigmaS(i, c)) * this->Direct[at];
-      this->Result.ledger.Absorb(c, static_cast<double>(this->TheMedium.sigma_a.At(i, c)) * path[at]);
+      this->First[at] += static_cast<float>(fluence[i]);
+      fluence[i] += this->Warm.Begins() ? this->Warm.Guessed()[at] / layout.grid.VoxelVolume() : 0.0;
     }
-    this->Systems[c]->Begin(fluence);
-    this->Result.ledger.LeaveOver(
-      c, this->Result.ledger.Balance().leftOver[c] + scattered * layout.grid.VoxelVolume());
+    if (this->Warm.Begins())
+    {
+      this->Systems[c]->Begin(fluence);
+    }
   }
-  if (parts.Basis)
+  if (this->Warm.Begins() && parts.Basis)
   {
     AddMoments(parts.TheDevice, parts.FunctionStride(), parts.Functions(), this->Warm.Guess(), parts.Path);
   }
-  this->Result.convergence.Add(this->Residual, 1.0, this->Result.ledger);
 }
 
-/// Angular moments as the next sweep would take them.
 void DiffusionAcceleration::Leave()
 {
-  for (std::size_t c = 0; c < this->Systems.size(); ++c)
-  {
-    this->CorrectMoments(c);
-  }
   std::vector<float> moments = this->Parts.Basis ? this->Parts.Path.Read() : std::vector<float>();
   for (std::size_t i = 0; i < moments.size(); ++i)
   {
-    moments[i] -= this->DirectMoments[i];
+    moments[i] -= this->FirstMoments[i];
   }
   const double rate = std::clamp(this->LastRatio, 0.5, 0.95);
   this->Result.warm = this->Warm.Begins();
-  this->Result.kept = this->Warm.Leave(this->Direct, moments, { rate, rate, rate });
+  this->Result.kept = this->Warm.Leave(this->First, moments, { rate, rate, rate });
 }
 
 /// Where the system's solution is negative, the fluence of the last sweep stands.

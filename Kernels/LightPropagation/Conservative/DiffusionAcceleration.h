@@ -28,11 +28,10 @@ private:
   void MakeSweep();
   Deposit DepositOfSweep() const;
   void Sweep(int iteration, const Monitor& monitor);
-  void CorrectMoments(std::size_t channel);
   void MakeSystems();
-  void KeepDirect();
+  void LookAtDirect();
   void BeginWarm();
-  void Correct();
+  void Correct(int iteration);
   void CountLight();
   double VoxelPower(int channel) const;
   bool Done(int iterations) const;
@@ -59,10 +58,9 @@ private:
   Rgb GivenPower = {}, PowerIn = {};      ///< W, emitted or first scattered; through faces
   std::vector<std::vector<double>> Found; ///< W / length^2, without uncollided light
   double Change = 1.0, LastRatio = 1.0, Residual = 1.0;
-  int Corrections = 0; ///< done
 
   WarmStart Warm;
-  std::vector<float> Direct, DirectMoments; ///< of unscattered light, as WarmStart has them, where light is to be kept
+  std::vector<float> First, FirstMoments; ///< of the first iteration, as WarmStart has them, where light is to be kept
 
   IterationResult Result;
 };

@@ -245,7 +245,11 @@ void SourceIteration::ScatterOrder()
   if (this->Order == 0)
   {
     this->Result.fluenceDirect = Interleaved(this->Parts.Layout, this->Parts.Fluence, 1.0);
-    this->Direct = this->Warm.Keeps() ? this->Parts.Fluence.Read() : std::vector<float>();
+    if (this->Warm.Keeps())
+    {
+      this->Direct = this->Parts.Fluence.Read();
+      this->Warm.Prepare(this->Direct);
+    }
   }
   const double all = Sum(this->AllScattered);
   this->Result.convergence.Add(this->Residual, all > 0.0 ? Sum(this->Scattered) / all : 0.0, this->Result.ledger);
@@ -283,7 +287,6 @@ void SourceIteration::TakeResidual(int c, double now, double ratio, double least
 /// Beside what is first scattered, the next sweep carries what is scattered of the guess.
 void SourceIteration::BeginWarm()
 {
-  this->Warm.Prepare(this->Direct);
   this->Parts.Scattering->AddFirstScattered({ &this->Warm.Guess(), nullptr, nullptr, nullptr }, this->Parts.Source);
   this->Shining = this->Shining || Sum(this->Warm.GuessedPower()) != 0.0;
 }

@@ -64,7 +64,15 @@ Rgb WarmStart::ScatteredOf(const std::vector<float>& values) const
 void WarmStart::Prepare(const std::vector<float>& direct)
 {
   const VolumeLayout& layout = this->Parts.Layout;
-  const Rgb first = this->ScatteredOf(direct);
+  this->First = this->ScatteredOf(direct);
+  for (double& watts : this->First)
+  {
+    watts *= layout.grid.VoxelVolume();
+  }
+  if (!this->Begins())
+  {
+    return;
+  }
   const std::size_t stride = layout.Stride();
   const std::size_t channels = layout.channels;
   this->Scaled = this->Kept->scattered;
@@ -72,7 +80,7 @@ void WarmStart::Prepare(const std::vector<float>& direct)
   {
     const std::size_t c = i / stride % channels;
     const double before = this->Kept->firstScattered[c];
-    const double scale = before > 0.0 ? first[c] * layout.grid.VoxelVolume() / before : 0.0;
+    const double scale = before > 0.0 ? this->First[c] / before : 0.0;
     this->Scaled[i] = static_cast<float>(this->Scaled[i] * scale);
   }
   this->Power = this->ScatteredOf(this->Scaled);
@@ -111,7 +119,7 @@ Rgb WarmStart::MagnitudeOf(const Buffer<float>& source) const
 }
 
 KeptLight WarmStart::Leave(
-  const std::vector<float>& direct, const std::vector<float>& moments, const Rgb& rate) const
+  const std::vector<float>& base, const std::vector<float>& moments, const Rgb& rate) const
 {
   const VolumeLayout& layout = this->Parts.Layout;
   const auto volume = static_cast<float>(layout.grid.VoxelVolume());
@@ -122,16 +130,12 @@ KeptLight WarmStart::Leave(
     // The error of a good guess falls faster at first than that of darkness does at last.
     left.rate[c] = std::max(std::min(rate[c], SlowestRate), this->Begins() ? this->Rate(c) : 0.0);
   }
-  left.firstScattered = this->ScatteredOf(direct);
-  for (double& watts : left.firstScattered)
-  {
-    watts *= layout.grid.VoxelVolume();
-  }
+  left.firstScattered = this->First;
   left.scattered.assign(layout.Floats(this->Parts.Functions()), 0.0f);
   const std::vector<float> fluence = this->Parts.Fluence.Read();
   for (std::size_t i = 0; i < this->Parts.FunctionStride(); ++i)
   {
-    left.scattered[i] = volume * (fluence[i] - direct[i]);
+    left.scattered[i] = volume * (fluence[i] - base[i]);
   }
   std::copy(moments.begin() + std::min(this->Parts.FunctionStride(), moments.size()), moments.end(),
     left.scattered.begin() + static_cast<std::ptrdiff_t>(std::min(this->Parts.FunctionStride(), moments.size())));

@@ -20,11 +20,11 @@ public:
   WarmStart(TransportParts& parts, const KeptLight* kept, const char* method);
 
   bool Keeps() const { return this->Kept != nullptr; } ///< this solve's light is wanted
-  /// Whether this solve begins from kept light; if so it needs Prepare.
+  /// Whether this solve begins from kept light.
   bool Begins() const { return this->Keeps() && this->WhyNot.empty(); }
   std::vector<std::string> LeftOut() const;
 
-  /// Scales kept light by how what is scattered first has changed.
+  /// To be told where light is kept. Scales kept light by how what is scattered first has changed.
   /// @param direct  unscattered fluence, W / length^2, [channel][stride]
   void Prepare(const std::vector<float>& direct);
   /// Kept light as it is guessed, W length, [function][channel][stride].
@@ -41,10 +41,10 @@ public:
   Rgb MagnitudeOf(const Buffer<float>& source) const;
 
   /// What is left for the next solve.
-  /// @param direct  as above
-  /// @param moments  of scattered light, as Guess() is, of which the first function is not read; empty: there are none
+  /// @param base  fluence that the next solve finds without a guess; its guess is what all fluence has beyond that
+  /// @param moments  what the others have beyond it, as Guess() is; the first function is not read. Empty: there are none
   /// @param rate  of the last iteration over the one before
-  KeptLight Leave(const std::vector<float>& direct, const std::vector<float>& moments, const Rgb& rate) const;
+  KeptLight Leave(const std::vector<float>& base, const std::vector<float>& moments, const Rgb& rate) const;
 
 private:
   LightKind Kind(const char* method) const;
@@ -56,6 +56,6 @@ private:
   std::string WhyNot;
   Buffer<float> Path;
   std::vector<float> Scaled;
-  Rgb Power = {};
+  Rgb Power = {}, First = {};
 };
 }
