@@ -1,6 +1,7 @@
 #include "Light/KeptLight.h"
 
 #include <algorithm>
+#include <utility>
 
 namespace tyndall
 {
@@ -15,8 +16,20 @@ std::string LightKind::WhatChangedSince(const LightKind& last) const
                                                                   : std::string();
 }
 
-void CountSweepsSaved(LightField& light, bool warm, const KeptLight& kept)
+std::string WhyNotBegun(const KeptLight& kept, const LightKind& kind, int maximumOrders)
 {
+  return maximumOrders > 0 ? "MaximumOrders counts iterations from darkness on"
+    : kept.Empty()         ? "there is none"
+                           : kind.WhatChangedSince(kept.kind);
+}
+
+void Keep(KeptLight&& left, bool warm, LightField& light, KeptLight& kept)
+{
+  kept = std::move(left);
+  if (!warm)
+  {
+    kept.fromDarkness = light.convergence;
+  }
   light.sweepsSaved.assign(light.convergence.size(), 0);
   for (std::size_t i = 0; i < light.convergence.size() && warm; ++i)
   {

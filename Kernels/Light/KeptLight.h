@@ -36,13 +36,16 @@ struct KeptLight
   Rgb rate = {};                             ///< by which the last iterations fell, each over the one before
   std::vector<ConvergenceRow> fromDarkness; ///< rows of the last solve that began in the dark
 
-  bool Empty() const { return this->scattered.empty(); }
+  bool Empty() const { return this->scattered.empty() || Sum(this->firstScattered) == 0.0; }
 };
 
-/// Sets sweepsSaved of solved light (LightField.h).
-/// @param warm  its solve began from the light of another
-/// @param kept  what it left
-void CountSweepsSaved(LightField& light, bool warm, const KeptLight& kept);
+/// Why a solve cannot begin from kept light, as a clause. Empty: it can.
+/// @param maximumOrders  iterations that the user counts; 0: they are not counted
+std::string WhyNotBegun(const KeptLight& kept, const LightKind& kind, int maximumOrders);
+
+/// Puts what a solve left in the place of what was kept, and sets sweepsSaved of its light (LightField.h).
+/// @param warm  the solve began from kept light; else it is what the next ones are measured by
+void Keep(KeptLight&& left, bool warm, LightField& light, KeptLight& kept);
 
 /// Words of `left_out` for a solve that was to begin from kept light.
 /// @param whyNot  a clause; empty: it did

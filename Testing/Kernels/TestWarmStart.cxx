@@ -3,6 +3,8 @@
 #include "DeviceTest.h"
 #include "MediumScene.h"
 
+#include "LightPropagation/Published/ParallelPropagation.h"
+
 #include <gmock/gmock.h>
 
 #include <algorithm>
@@ -366,7 +368,7 @@ TEST_F(WarmStarts, BeginInTheDarkWhereLightDoesNotFitAndSayWhy)
   expectCold(after, "the light was found by source iteration");
   after = scene;
   after.settings.maximumOrders = 4;
-  expectCold(after, "MaximumOrders counts them from darkness on");
+  expectCold(after, "MaximumOrders counts iterations from darkness on");
 }
 
 TEST_F(WarmStarts, ComeBackToAMediumThatScatteredNothing)
@@ -401,4 +403,39 @@ TEST_F(WarmStarts, SayHowManySweepsTheySaved)
   }
   EXPECT_GT(warm.sweepsSaved.back(), 2);
   EXPECT_TRUE(scene.Solve(this->GetDevice()).sweepsSaved.empty());
+}
+
+TEST_F(WarmStarts, TakeFewerOrdersAsPublished)
+{
+  for (double g : { 0.0, 0.6 })
+  {
+    Scene scene = Cloud({ 17, 13, 15 }, 5.0, 0.97, 2);
+    scene.medium.phase = PhaseFunction::HenyeyGreenstein(g);
+    scene.light.faces[5] = { 1.0, 0.4, 0.2 };
+    Scene after = scene;
+    Scatter(after, 1.05);
+    const auto solve = [this](Scene& of, KeptLight* kept) {
+      of.Attach();
+      return SolveParallel(this->GetDevice(), of.medium, of.light, of.settings, {}, 0, kept);
+    };
+    KeptLight kept;
+    EXPECT_EQ(solve(scene, &kept).fluence, solve(scene, nullptr).fluence) << "nothing was known";
+    EXPECT_EQ(solve(scene, &kept).convergence.size(), 2u) << "nothing changed";
+    const LightField warm = solve(after, &kept), cold = solve(after, nullptr);
+    EXPECT_LT(warm.convergence.size() + 2, cold.convergence.size()) << g;
+    EXPECT_EQ(warm.fluenceDirect, cold.fluenceDirect);
+    EXPECT_EQ(warm.sweepsSaved.size(), warm.convergence.size());
+    after.settings.tolerance = 1e-7;
+    const LightField exact = solve(after, nullptr);
+    const double error = RmsDifference(warm.fluence, exact.fluence), ofCold = RmsDifference(cold.fluence, exact.fluence);
+    std::printf("as published, g %g: %zu -> %zu orders, error %.2g (cold %.2g)\n", g, cold.convergence.size(),
+      warm.convergence.size(), error, ofCold);
+    EXPECT_LT(error, 1e-4) << g;
+    const double absorbed = Sum(exact.balance.absorbed), escaped = Sum(exact.balance.escaped);
+    EXPECT_LE(std::abs(Sum(warm.balance.absorbed) - absorbed), std::abs(Sum(cold.balance.absorbed) - absorbed)) << g;
+    EXPECT_LE(std::abs(Sum(warm.balance.escaped) - escaped), std::abs(Sum(cold.balance.escaped) - escaped)) << g;
+
+    after.settings.maximumOrders = 3;
+    EXPECT_EQ(solve(after, &kept).fluence, solve(after, nullptr).fluence);
+  }
 }

@@ -138,16 +138,6 @@ LightField LightOf(const TransportParts& parts, IterationResult&& found, bool ac
 }
 
 
-/// Light for the next solve; a solve that began in the dark is what warm ones are measured by.
-void Leave(KeptLight&& left, bool warm, LightField& light, KeptLight& kept)
-{
-  kept = std::move(left);
-  if (!warm)
-  {
-    kept.fromDarkness = light.convergence;
-  }
-  CountSweepsSaved(light, warm, kept);
-}
 }
 
 LightField SolveConservative(Device& device, const Medium& medium, const Illumination& illumination,
@@ -172,7 +162,7 @@ LightField SolveConservative(Device& device, const Medium& medium, const Illumin
   LightField light = LightOf(parts, std::move(found), accelerated);
   if (kept)
   {
-    Leave(std::move(left), warm, light, *kept);
+    Keep(std::move(left), warm, light, *kept);
   }
   problem.Undo(light);
   JudgeConvergence(settings, light);

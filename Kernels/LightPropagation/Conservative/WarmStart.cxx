@@ -12,11 +12,6 @@ namespace tyndall
 namespace
 {
 constexpr double SlowestRate = 1.0 - 1e-6; ///< that is told the next solve
-
-bool AnyLight(const KeptLight& kept)
-{
-  return !kept.Empty() && Sum(kept.firstScattered) > 0.0;
-}
 }
 
 WarmStart::WarmStart(TransportParts& parts, const KeptLight* kept, const char* method)
@@ -28,10 +23,9 @@ WarmStart::WarmStart(TransportParts& parts, const KeptLight* kept, const char* m
     return;
   }
   this->TheKind = this->Kind(method);
-  this->WhyNot = parts.Problem.Settings().maximumOrders > 0 ? "MaximumOrders counts them from darkness on"
-    : !parts.Problem.Traits().scatters                      ? "nothing is scattered"
-    : !AnyLight(*kept)                                      ? "there is none"
-                                                            : this->TheKind.WhatChangedSince(kept->kind);
+  this->WhyNot = parts.Problem.Traits().scatters
+    ? WhyNotBegun(*kept, this->TheKind, parts.Problem.Settings().maximumOrders)
+    : "nothing is scattered";
 }
 
 LightKind WarmStart::Kind(const char* method) const

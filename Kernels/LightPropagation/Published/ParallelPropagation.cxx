@@ -6,6 +6,7 @@
 #include "LightPropagation/Published/PublishedBorders.h"
 #include "LightPropagation/Published/PublishedPlan.h"
 #include "LightPropagation/Published/PublishedVolumes.h"
+#include "LightPropagation/Published/PublishedWarmStart.h"
 #include "TyndallKernelSources.h"
 
 #include "Device/Sizes.h"
@@ -27,7 +28,7 @@ using Launch = PublishedPlan::Launch;
 struct ParallelPropagation::Implementation
 {
   Implementation(Device& device, const Medium& medium, const Illumination& illumination,
-    const PropagationSettings& settings, std::size_t temporaryBytes, int channels)
+    const PropagationSettings& settings, std::size_t temporaryBytes, int channels, const KeptLight* kept)
     : TheDevice(device)
     , TheMedium(medium)
     , Outside(illumination)
@@ -39,6 +40,7 @@ struct ParallelPropagation::Implementation
     , Volumes(device, medium, this->Model, device.KernelWidth(8, 16))
     , Plan(device, medium.grid, this->Model, settings, this->Volumes, temporaryBytes)
     , Borders(this->Model, settings, this->Plan)
+    , Warm(medium, this->Model, settings, kept)
     , Emits(this->Traits.emits || !settings.leaveOut)
   {
     this->MakeBuffers();
@@ -57,6 +59,8 @@ struct ParallelPropagation::Implementation
   void CrossPlanes(const Batch& batch, const Pass& pass, const PublishedMap& info, const Monitor& monitor, double done);
   void Collect(int number);
   void FinishOrder();
+  void UpdateSourcesOfOrder();
+  void LookAtDirect();
   void Enqueue(cl::Kernel& kernel, std::array<int, 3> global, std::array<int, 3> local);
 
   // What came of it
@@ -75,6 +79,7 @@ struct ParallelPropagation::Implementation
   PublishedVolumes Volumes;
   PublishedPlan Plan;
   PublishedBorders Borders;
+  PublishedWarmStart Warm;
   bool Emits; ///< U is not zero
   bool SourceGiven = false;
   std::vector<float> FluenceDirect;
@@ -224,20 +229,42 @@ void ParallelPropagation::Implementation::Collect(int number)
 
 void ParallelPropagation::Implementation::FinishOrder()
 {
+  if (this->Ledger.Orders() == 1 && this->Warm.Begins())
+  {
+    this->Warm.TakeFrom(this->Volumes);
+  }
+  this->UpdateSourcesOfOrder();
+  if (this->Ledger.Orders() == 0)
+  {
+    this->LookAtDirect();
+  }
+  this->Ledger.CloseOrder(this->Volumes.ReadMoment(this->Volumes.OrderMoments[0], 0).data());
+  this->Ledger.carried = {};
+  std::swap(this->Carried[0], this->Carried[1]);
+  this->Emits = true; // from now on U is not zero
+}
+
+void ParallelPropagation::Implementation::UpdateSourcesOfOrder()
+{
   const PublishedVolumes& volumes = this->Volumes;
   this->Enqueue(With(this->UpdateSources, volumes.Layouts, static_cast<cl_int>(volumes.Parts.Size()), volumes.Parts,
                   volumes.Scattering[0], volumes.OrderMoments[0], volumes.OrderMoments[1], volumes.Totals,
                   volumes.Sources[0], volumes.Sources[1]),
     { volumes.Layouts.size[0], volumes.Layouts.size[1], volumes.Layouts.size[2] * this->Channels }, { 32, 8, 1 });
-  const std::vector<float> fluence = volumes.ReadMoment(volumes.OrderMoments[0], 0);
-  if (this->Ledger.Orders() == 0)
+}
+
+void ParallelPropagation::Implementation::LookAtDirect()
+{
+  this->FluenceDirect = this->Volumes.ReadMoment(this->Volumes.OrderMoments[0], 0);
+  if (this->Warm.Keeps())
   {
-    this->FluenceDirect = fluence;
+    this->Warm.AddTo(this->Volumes, this->FluenceDirect);
   }
-  this->Ledger.CloseOrder(fluence.data());
-  this->Ledger.carried = {};
-  std::swap(this->Carried[0], this->Carried[1]);
-  this->Emits = true; // from now on U is not zero
+  if (this->Warm.Begins())
+  {
+    this->UpdateSourcesOfOrder();
+    this->Ledger.BeginWarm(this->Warm.Rate());
+  }
 }
 
 void ParallelPropagation::Implementation::Enqueue(
@@ -263,6 +290,10 @@ LightField ParallelPropagation::Implementation::Result() const
   this->Ledger.WriteTo(field);
   field.leftOut =
     LeftOutAsPublished(this->TheMedium, this->Traits, this->Outside, this->Settings, this->Ledger.Orders());
+  if (this->Warm.Keeps())
+  {
+    field.leftOut.push_back(this->Warm.Words());
+  }
   field.halfRangeFlux = HalfRangeFlux(this->Model.Directions());
   field.device = this->TheDevice.Name();
   JudgeConvergence(this->Settings, field);
@@ -301,8 +332,8 @@ std::vector<float> ParallelPropagation::Implementation::NetFlux() const
 }
 
 ParallelPropagation::ParallelPropagation(Device& device, const Medium& medium, const Illumination& illumination,
-  const PropagationSettings& settings, std::size_t temporaryBytes, int channels)
-  : Inner(std::make_unique<Implementation>(device, medium, illumination, settings, temporaryBytes, channels))
+  const PropagationSettings& settings, std::size_t temporaryBytes, int channels, const KeptLight* kept)
+  : Inner(std::make_unique<Implementation>(device, medium, illumination, settings, temporaryBytes, channels, kept))
 {
 }
 
@@ -397,8 +428,18 @@ LightField ParallelPropagation::Result() const
   return this->Inner->Result();
 }
 
+KeptLight ParallelPropagation::Left() const
+{
+  return this->Inner->Warm.Leave(this->Inner->Volumes, this->Inner->Ledger.Rate());
+}
+
+bool ParallelPropagation::BeganWarm() const
+{
+  return this->Inner->Warm.Begins();
+}
+
 LightField SolveParallel(Device& device, const Medium& medium, const Illumination& illumination,
-  const PropagationSettings& settings, const Monitor& monitor, std::size_t temporaryBytes)
+  const PropagationSettings& settings, const Monitor& monitor, std::size_t temporaryBytes, KeptLight* kept)
 {
   Check(medium);
   CheckPublishedPhase(medium); // before channels become one
@@ -406,12 +447,17 @@ LightField SolveParallel(Device& device, const Medium& medium, const Illuminatio
   const SceneChannels channels(medium, TraitsOf(medium), illumination);
   return SolveChannels(settings.leaveOut, channels, medium, illumination,
     [&](const Medium& ofChannels, const Illumination& light, int count) {
-      ParallelPropagation propagation(device, ofChannels, light, settings, temporaryBytes, count);
+      ParallelPropagation propagation(device, ofChannels, light, settings, temporaryBytes, count, kept);
       do
       {
         propagation.RunOrder(monitor);
       } while (!propagation.Done());
-      return propagation.Result();
+      LightField found = propagation.Result();
+      if (kept)
+      {
+        Keep(propagation.Left(), propagation.BeganWarm(), found, *kept);
+      }
+      return found;
     });
 }
 }

@@ -410,6 +410,11 @@ bool GridWalk::Next()
   return true;
 }
 
+namespace
+{
+constexpr double WarmMargin = 1.5; ///< the error of a guess does not fall evenly
+}
+
 OrderLedger::OrderLedger(const Medium& medium, const PublishedModel& model, const PropagationSettings& settings)
   : TheMedium(medium)
   , Settings(settings)
@@ -426,9 +431,15 @@ OrderLedger::OrderLedger(const Medium& medium, const PublishedModel& model, cons
   }
 }
 
+void OrderLedger::BeginWarm(const Rgb& rate)
+{
+  this->Warm = true;
+  this->LeastRatio = rate;
+}
+
 void OrderLedger::CloseOrder(const float* fluence)
 {
-  Rgb sum = {};
+  Rgb sum = {}, magnitude = {};
   Rgb absorbed = {};
   Rgb scattered = {};
   for (std::size_t voxel = 0; voxel < this->TheMedium.grid.VoxelCount(); ++voxel)
@@ -437,6 +448,7 @@ void OrderLedger::CloseOrder(const float* fluence)
     {
       const double value = fluence[voxel * this->Channels + c];
       sum[c] += value;
+      magnitude[c] += std::abs(value);
       absorbed[c] += value * this->TheMedium.sigma_a.At(voxel, c);
       scattered[c] += value * this->TheMedium.sigma_s.At(voxel, c);
     }
@@ -460,8 +472,9 @@ void OrderLedger::CloseOrder(const float* fluence)
     row.escaped += this->Balance.escaped[c];
     row.leftOver += this->Balance.leftOver[c];
   }
-  row.residual = row.leftOver > 0.0 ? this->EstimateResidual(sum) : 0.0;
-  this->LastSum = sum;
+  const bool goesOn = this->Warm ? Sum(magnitude) > 0.0 : row.leftOver > 0.0;
+  row.residual = goesOn ? this->EstimateResidual(this->Warm ? magnitude : sum) : 0.0;
+  this->LastSum = this->Warm && this->Rows.empty() ? Rgb{} : this->Warm ? magnitude : sum; // with a guess it tells nothing
   this->Rows.push_back(row);
   this->Finished = row.residual == 0.0 ||
     (this->Settings.maximumOrders > 0 ? this->Orders() >= this->Settings.maximumOrders
@@ -469,15 +482,21 @@ void OrderLedger::CloseOrder(const float* fluence)
 }
 
 /// Orders shrink like a geometric series in the end: what is still to come is its rest.
-double OrderLedger::EstimateResidual(const Rgb& orderSum) const
+double OrderLedger::EstimateResidual(const Rgb& orderSum)
 {
   double residual = this->Rows.empty() ? 1.0 : 0.0;
   for (int c = 0; c < this->Channels; ++c)
   {
-    if (orderSum[c] > 0.0 && this->LastSum[c] > 0.0)
+    if (orderSum[c] > 0.0 && (this->LastSum[c] > 0.0 || (this->Warm && !this->Rows.empty())))
     {
-      const double ratio = std::min(orderSum[c] / this->LastSum[c], 0.9999);
-      residual = std::max(residual, orderSum[c] * ratio / (1.0 - ratio) / this->TotalSum[c]);
+      const double known = this->LeastRatio[c] > 0.0 ? this->LeastRatio[c] : 1.0;
+      const double found = this->LastSum[c] > 0.0 ? std::max(orderSum[c] / this->LastSum[c], this->LeastRatio[c]) : known;
+      const double ratio = std::min(found, 0.9999);
+      const double growth = this->Ratio[c] > 0.0 && !this->Warm ? std::max(0.0, ratio - this->Ratio[c]) : 0.0;
+      this->Limit[c] = std::min(ratio + growth, 0.9999);
+      this->Ratio[c] = ratio;
+      const double rest = orderSum[c] * ratio / (1.0 - ratio) / this->TotalSum[c];
+      residual = std::max(residual, this->Warm ? WarmMargin * rest : rest);
     }
   }
   return residual;

@@ -147,6 +147,11 @@ public:
   std::array<Rgb, 6> facePowerOut = {}; ///< W, likewise
   Rgb carried = {};                     ///< W on the way through periodic axes, set by the solver each order
 
+  /// The first order has a guess in it that the second is to take away: orders after the first may be negative, and
+  /// fall by `rate` at least (numerics.md, section 6.4).
+  void BeginWarm(const Rgb& rate);
+  const Rgb& Rate() const { return this->Limit; } ///< of an order to the one before, to which it seems to grow
+
   /// @param fluence  of this order alone, channels interleaved
   void CloseOrder(const float* fluence);
   bool Done() const { return this->Finished; }
@@ -157,7 +162,7 @@ public:
   void WriteTo(LightField& field) const; ///< balance, facePowerOut, convergence
 
 private:
-  double EstimateResidual(const Rgb& orderSum) const;
+  double EstimateResidual(const Rgb& orderSum);
 
   const Medium& TheMedium;
   PropagationSettings Settings;
@@ -166,6 +171,8 @@ private:
   EnergyBalance Balance;
   Rgb TotalSum = {};
   Rgb LastSum = {};
+  Rgb Ratio = {}, Limit = {}, LeastRatio = {};
+  bool Warm = false;
   std::vector<ConvergenceRow> Rows;
   std::chrono::steady_clock::time_point Start;
 };

@@ -1,0 +1,44 @@
+#pragma once
+
+#include "Light/KeptLight.h"
+#include "LightPropagation/Published/PublishedModel.h"
+#include "LightPropagation/Published/PublishedVolumes.h"
+
+#include <vector>
+
+namespace tyndall
+{
+/// The scattered light of the last solve as the first guess of this one (numerics.md, section 6.4), of light propagation
+/// maps as published: in the moments of PublishedVolumes, of which the first order's are what comes in and what is
+/// guessed, and the second's what was found less the guess.
+class PublishedWarmStart
+{
+public:
+  /// @param kept  null: nothing is begun from or kept; must stay
+  PublishedWarmStart(
+    const Medium& medium, const PublishedModel& model, const PropagationSettings& settings, const KeptLight* kept);
+
+  bool Keeps() const { return this->Kept != nullptr; }
+  bool Begins() const { return this->Keeps() && this->WhyNot.empty(); }
+  std::string Words() const { return WordsOfWarmStart(this->WhyNot); }
+  const Rgb& Rate() const { return this->Kept->rate; }
+
+  /// Adds the guess, where there is one, to the moments of the first order; their sources are to be made anew.
+  /// @param direct  unscattered fluence, channels interleaved
+  void AddTo(PublishedVolumes& volumes, const std::vector<float>& direct);
+  /// Takes it from those that the second found.
+  void TakeFrom(PublishedVolumes& volumes);
+  KeptLight Leave(const PublishedVolumes& volumes, const Rgb& rate) const;
+
+private:
+  void Add(Buffer<float>& moments, float sign) const;
+
+  const Medium& TheMedium;
+  int Channels;
+  const KeptLight* Kept;
+  LightKind Kind;
+  std::string WhyNot;
+  std::vector<float> Direct, Guess;
+  Rgb First = {};
+};
+}
