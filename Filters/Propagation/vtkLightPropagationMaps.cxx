@@ -38,6 +38,7 @@ tyndall::PropagationSettings SettingsOf(vtkLightPropagationMaps* filter)
     : tyndall::PropagationAcceleration::Automatic;
   settings.directionsPerFace = filter->GetDirectionsPerFace();
   settings.uncollidedDirections = filter->GetUncollidedDirections();
+  settings.angularDegree = filter->GetAngularDegree();
   settings.emissionError = filter->GetEmissionError();
   settings.staggeredRays = filter->GetStaggeredRays();
   settings.mapResolution = filter->GetMapResolution();
@@ -76,6 +77,7 @@ vtkLightPropagationMaps::vtkLightPropagationMaps()
   const tyndall::PropagationSettings defaults;
   this->DirectionsPerFace = defaults.directionsPerFace;
   this->UncollidedDirections = defaults.uncollidedDirections;
+  this->AngularDegree = defaults.angularDegree;
   this->EmissionError = defaults.emissionError;
   this->StaggeredRays = defaults.staggeredRays;
   this->MapResolution = defaults.mapResolution;
@@ -132,6 +134,7 @@ void vtkLightPropagationMaps::PrintSelf(ostream& os, vtkIndent indent)
   os << indent << "Acceleration: " << this->Acceleration << "\n";
   os << indent << "DirectionsPerFace: " << this->DirectionsPerFace << "\n";
   os << indent << "UncollidedDirections: " << this->UncollidedDirections << "\n";
+  os << indent << "AngularDegree: " << this->AngularDegree << "\n";
   os << indent << "EmissionError: " << this->EmissionError << "\n";
   os << indent << "StaggeredRays: " << this->StaggeredRays << "\n";
   os << indent << "MapResolution: " << this->MapResolution << "\n";

@@ -146,6 +146,15 @@ public:
   ///@}
 
   ///@{
+  /// Degree of the angular moments in which light is scattered (conservative scheme): higher ones show a forward peak
+  /// in finer detail, and take longer. -1: as many as the phase function asks for; 0 (default): scattering is taken as
+  /// isotropic with sigma_s (1 - g), the similarity relation. Valid [-1, 15]; DirectionsPerFace of n x n tell 2 n - 1
+  /// degrees apart, of others so many are used.
+  tyndallSetRangeMacro(AngularDegree, int, -1, 15);
+  vtkGetMacro(AngularDegree, int);
+  ///@}
+
+  ///@{
   /// Whether rays of each direction start in a place of their own within a voxel (conservative scheme), those of
   /// UncollidedDirections always. From some 64 directions per face on, half the error or less. Default off.
   vtkSetMacro(StaggeredRays, bool);
@@ -221,6 +230,7 @@ private:
   int Acceleration = AUTOMATIC_ACCELERATION;
   int DirectionsPerFace;
   int UncollidedDirections;
+  int AngularDegree;
   double EmissionError;
   bool StaggeredRays;
   int MapResolution;

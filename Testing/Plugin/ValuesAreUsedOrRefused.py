@@ -43,6 +43,7 @@ WIDER = {
     "PilotCount": "above",
     "TimeBudget": "below",
     "UncollidedDirections": "above",  # any square number
+    "AngularDegree": "above",  # to 15
     "PhotonImportance.Background": "below",  # above 0
     "DiscreteOrdinates.Terms": "above",  # to as many as there are directions
     "DiscreteOrdinates.SpiralDirections": "above",
