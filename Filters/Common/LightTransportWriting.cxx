@@ -212,7 +212,7 @@ void WriteLight(LightField&& light, vtkImageData* output)
   AddFact(output, "device", std::vector<std::string>{ light.device });
 }
 
-void WriteConvergence(const std::vector<ConvergenceRow>& rows, vtkTable* table)
+void WriteConvergence(const std::vector<ConvergenceRow>& rows, const std::vector<int>& sweepsSaved, vtkTable* table)
 {
   vtkNew<vtkIntArray> iteration;
   iteration->SetName("iteration");
@@ -237,6 +237,16 @@ void WriteConvergence(const std::vector<ConvergenceRow>& rows, vtkTable* table)
   column("absorbed", &ConvergenceRow::absorbed);
   column("escaped", &ConvergenceRow::escaped);
   column("left_over", &ConvergenceRow::leftOver);
+  if (!sweepsSaved.empty())
+  {
+    vtkNew<vtkIntArray> saved;
+    saved->SetName("sweeps_saved");
+    for (int sweeps : sweepsSaved)
+    {
+      saved->InsertNextValue(sweeps);
+    }
+    table->AddColumn(saved);
+  }
 }
 
 void PassOn(vtkImageData* input, vtkImageData* output)

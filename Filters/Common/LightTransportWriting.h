@@ -44,8 +44,9 @@ std::string Lines(const std::vector<std::string>& texts);
 /// `left_out`, `device`. Light that the output already has is taken away.
 void WriteLight(LightField&& light, vtkImageData* output);
 
-/// One row an iteration: `iteration`, `seconds`, `residual`, `change`, `absorbed`, `escaped`, `left_over`.
-void WriteConvergence(const std::vector<ConvergenceRow>& rows, vtkTable* table);
+/// One row an iteration: `iteration`, `seconds`, `residual`, `change`, `absorbed`, `escaped`, `left_over`, and
+/// `sweeps_saved` where light is kept (LightField.h).
+void WriteConvergence(const std::vector<ConvergenceRow>& rows, const std::vector<int>& sweepsSaved, vtkTable* table);
 
 /// Make the output the input's arrays, with field data of its own: a shallow copy alone would share that, so that what
 /// a filter adds would appear in its input, and vanish when that is made again.

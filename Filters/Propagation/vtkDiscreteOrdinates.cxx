@@ -4,6 +4,8 @@
 #include "Device/Device.h"
 #include "DiscreteOrdinates/DiscreteOrdinates.h"
 
+#include "Propagation/LastLight.h"
+
 #include "vtkDataObject.h"
 #include "vtkImageData.h"
 #include "vtkInformation.h"
@@ -42,6 +44,7 @@ vtkDiscreteOrdinates::vtkDiscreteOrdinates()
   this->MaximumOrders = defaults.maximumOrders;
   this->NetFlux = defaults.netFlux;
   this->LeaveOut = defaults.leaveOut;
+  this->Last = std::make_unique<tyndall::LastLight>();
   this->SetNumberOfOutputPorts(2);
 }
 
@@ -62,7 +65,7 @@ int vtkDiscreteOrdinates::RequestData(vtkInformation*, vtkInformationVector** in
     const tyndall::Illumination illumination = this->ReadAllIllumination(inputs);
     this->WarnWhereDark(illumination, input.emission.IsThere());
     tyndall::LightField light = tyndall::SolveDiscreteOrdinates(*tyndall::Device::Find(this->GetDevice()), input.medium,
-      illumination, SettingsOf(this), tyndall::MonitorOf(this));
+      illumination, SettingsOf(this), tyndall::MonitorOf(this), this->Last->Where(this->WarmStart));
     this->Note(light);
     this->WriteSolved(image, std::move(light), outputs);
   });
@@ -72,6 +75,7 @@ void vtkDiscreteOrdinates::Note(const tyndall::LightField& light)
 {
   const bool any = !light.convergence.empty();
   this->Orders = static_cast<int>(light.convergence.size());
+  this->SweepsSaved = light.sweepsSaved.empty() ? 0 : light.sweepsSaved.back();
   this->Residual = any ? light.convergence.back().residual : 0.0;
   this->Seconds = any ? light.convergence.back().seconds : 0.0;
   this->BalanceError = light.balance.RelativeError(light.channels);
@@ -89,9 +93,11 @@ void vtkDiscreteOrdinates::PrintSelf(ostream& os, vtkIndent indent)
   os << indent << "SpiralDirections: " << this->SpiralDirections << "\n";
   os << indent << "Terms: " << this->Terms << "\n";
   os << indent << "MaximumOrders: " << this->MaximumOrders << "\n";
+  os << indent << "WarmStart: " << this->WarmStart << "\n";
   os << indent << "NetFlux: " << this->NetFlux << "\n";
   os << indent << "LeaveOut: " << this->LeaveOut << "\n";
   os << indent << "Orders: " << this->Orders << "\n";
+  os << indent << "SweepsSaved: " << this->SweepsSaved << "\n";
   os << indent << "Residual: " << this->Residual << "\n";
   os << indent << "BalanceError: " << this->BalanceError << "\n";
   os << indent << "HalfRangeFlux: " << this->HalfRangeFlux << "\n";

@@ -7,6 +7,8 @@
 #include "LightPropagation/Published/ParallelPropagation.h"
 #include "LightPropagation/Published/SequentialPropagation.h"
 
+#include "Propagation/LastLight.h"
+
 #include "vtkDataObject.h"
 #include "vtkImageData.h"
 #include "vtkInformation.h"
@@ -51,8 +53,8 @@ tyndall::PropagationSettings SettingsOf(vtkLightPropagationMaps* filter)
   return settings;
 }
 
-tyndall::LightField Solve(
-  vtkLightPropagationMaps* filter, const tyndall::Medium& medium, const tyndall::Illumination& illumination)
+tyndall::LightField Solve(vtkLightPropagationMaps* filter, const tyndall::Medium& medium,
+  const tyndall::Illumination& illumination, tyndall::KeptLight* last)
 {
   const tyndall::PropagationSettings settings = SettingsOf(filter);
   const tyndall::Monitor monitor = tyndall::MonitorOf(filter);
@@ -61,9 +63,10 @@ tyndall::LightField Solve(
   const std::shared_ptr<tyndall::Device> device = sequential ? nullptr : tyndall::Device::Find(filter->GetDevice());
   const tyndall::PropagationSolver solve = [&](const tyndall::Medium& inside, const tyndall::PropagationSettings& how,
                                              const tyndall::Monitor& watch) {
+    tyndall::KeptLight* const kept = &inside == &medium ? last : nullptr; // not of the coarser ones
     return sequential ? tyndall::SolveSequential(inside, illumination, how, watch)
-      : published     ? tyndall::SolveParallel(*device, inside, illumination, how, watch)
-                      : tyndall::SolveConservative(*device, inside, illumination, how, watch);
+      : published     ? tyndall::SolveParallel(*device, inside, illumination, how, watch, 0, kept)
+                      : tyndall::SolveConservative(*device, inside, illumination, how, watch, kept);
   };
   return filter->GetEstimateError() ? tyndall::SolveWithErrorEstimate(medium, settings, monitor, solve)
                                     : solve(medium, settings, monitor);
@@ -85,6 +88,7 @@ vtkLightPropagationMaps::vtkLightPropagationMaps()
   this->NetFlux = defaults.netFlux;
   this->LeaveOut = defaults.leaveOut;
   this->StoredDirections = defaults.storedDirections;
+  this->Last = std::make_unique<tyndall::LastLight>();
   this->SetNumberOfOutputPorts(2);
 }
 
@@ -105,7 +109,7 @@ int vtkLightPropagationMaps::RequestData(vtkInformation*, vtkInformationVector**
     const tyndall::Illumination illumination = this->ReadAllIllumination(inputs);
     this->WarnWhereDark(illumination, input.emission.IsThere());
 
-    tyndall::LightField light = Solve(this, input.medium, illumination);
+    tyndall::LightField light = Solve(this, input.medium, illumination, this->Last->Where(this->WarmStart));
 
     this->Note(light);
     this->WriteSolved(image, std::move(light), outputs);
@@ -116,6 +120,7 @@ void vtkLightPropagationMaps::Note(const tyndall::LightField& light)
 {
   const bool any = !light.convergence.empty();
   this->Orders = static_cast<int>(light.convergence.size());
+  this->SweepsSaved = light.sweepsSaved.empty() ? 0 : light.sweepsSaved.back();
   this->Residual = any ? light.convergence.back().residual : 0.0;
   this->Seconds = any ? light.convergence.back().seconds : 0.0;
   this->EstimatedError = light.relativeError;
@@ -139,10 +144,12 @@ void vtkLightPropagationMaps::PrintSelf(ostream& os, vtkIndent indent)
   os << indent << "StaggeredRays: " << this->StaggeredRays << "\n";
   os << indent << "MapResolution: " << this->MapResolution << "\n";
   os << indent << "MaximumOrders: " << this->MaximumOrders << "\n";
+  os << indent << "WarmStart: " << this->WarmStart << "\n";
   os << indent << "NetFlux: " << this->NetFlux << "\n";
   os << indent << "LeaveOut: " << this->LeaveOut << "\n";
   os << indent << "StoredDirections: " << this->StoredDirections << "\n";
   os << indent << "Orders: " << this->Orders << "\n";
+  os << indent << "SweepsSaved: " << this->SweepsSaved << "\n";
   os << indent << "Residual: " << this->Residual << "\n";
   os << indent << "EstimatedError: " << this->EstimatedError << "\n";
   os << indent << "BalanceError: " << this->BalanceError << "\n";

@@ -58,7 +58,7 @@ void vtkPropagationAlgorithm::WriteSolved(
   vtkImageData* medium, tyndall::LightField&& light, vtkInformationVector* outputs)
 {
   const std::vector<std::string> doubts = light.doubts;
-  tyndall::WriteConvergence(light.convergence, vtkTable::GetData(outputs, 1));
+  tyndall::WriteConvergence(light.convergence, light.sweepsSaved, vtkTable::GetData(outputs, 1));
   vtkImageData* output = vtkImageData::GetData(outputs, 0);
   tyndall::PassOn(medium, output);
   tyndall::WriteLight(std::move(light), output); // light that is not finite is an error, with no warnings before

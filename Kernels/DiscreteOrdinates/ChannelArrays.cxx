@@ -6,6 +6,8 @@
 #include "Numerics/Constants.h"
 #include "TyndallKernelSources.h"
 
+#include <cmath>
+
 namespace tyndall
 {
 ChannelArrays::ChannelArrays(Device& device, const OrdinatesScene& scene, const OrdinatesAngles& angles, bool netFlux)
@@ -96,6 +98,32 @@ ChannelArrays::Powers ChannelArrays::PowersOf(const std::vector<float>& values, 
   }
   const double volume = this->Layout.grid.VoxelVolume();
   return { powers.absorbed * volume, powers.scattered * volume * (lamps ? 1.0 : this->ScatteredAway) };
+}
+
+double ChannelArrays::MagnitudeOf(const std::vector<float>& values, const std::vector<float>& others) const
+{
+  double sum = 0.0;
+  for (std::size_t i = 0; i < this->Voxels; ++i)
+  {
+    const double other = others.empty() ? 0.0 : others[i];
+    sum += std::abs(values[i] - other) * this->Scattering[i];
+  }
+  return sum * this->Layout.grid.VoxelVolume() * this->ScatteredAway;
+}
+
+void ChannelArrays::ScatterEvenly(const std::vector<float>& values, double factor, const Buffer<float>& source) const
+{
+  std::vector<float> scattered(this->Voxels);
+  for (std::size_t i = 0; i < this->Voxels; ++i)
+  {
+    scattered[i] = static_cast<float>(factor * this->ScatteredAway * this->Scattering[i] * values[i] / (4.0 * Pi));
+  }
+  const Buffer<float> even(this->TheDevice, scattered, "the last light");
+  cl::Kernel add = this->TheDevice.Kernel("add_even_source", kernel_source::UpwindSweep, Define("REAL_WIDTH", 8));
+  With(add, source, even, cl_ulong(OrdinateStride(this->Voxels)));
+  this->TheDevice.Queue().enqueueNDRangeKernel(
+    add, cl::NullRange, cl::NDRange(this->Voxels, this->Angles.groups.Count()));
+  this->TheDevice.Finish(); // the values go
 }
 
 void ChannelArrays::EmitEvenly(const Buffer<float>& source, EnergyLedger& ledger) const

@@ -38,8 +38,12 @@ public:
   };
   /// @param lamps  whether it is uncollided light of lamps
   Powers PowersOf(const std::vector<float>& values, bool lamps) const;
+  /// W that are scattered of the difference of two fluences, its magnitude in each voxel.
+  double MagnitudeOf(const std::vector<float>& values, const std::vector<float>& others) const;
   /// Emission of the voxels into every direction. W / (length^3 sr)
   void EmitEvenly(const Buffer<float>& source, EnergyLedger& ledger) const;
+  /// Adds what is scattered evenly of a fluence, which may be negative.
+  void ScatterEvenly(const std::vector<float>& values, double factor, const Buffer<float>& source) const;
   bool Emits() const { return this->AnyEmission; }
   bool Scatters() const { return this->AnyScattering; }
   void Read(OrdinatesResult& result) const;

@@ -14,11 +14,13 @@
 #include <algorithm>
 #include <cmath>
 #include <string>
+#include <utility>
 
 namespace tyndall
 {
 namespace
 {
+constexpr double SlowestRate = 1.0 - 1e-6; ///< of orders, that is told the next solve
 constexpr int FacesPeaksAreSoughtFor = 25; ///< directions per face, where directions are on a spiral
 
 bool IsPublished(const OrdinatesSettings& settings)
@@ -267,6 +269,45 @@ std::vector<std::string> DoubtsOf(const PropagationProblem& problem, const Ordin
   return doubts;
 }
 
+LightKind KindOf(const PropagationProblem& problem, const OrdinatesAngles& angles, const OrdinatesSettings& settings)
+{
+  const Grid& grid = problem.TheGrid();
+  return { IsPublished(settings) ? "discrete ordinates as published" : "discrete ordinates", grid.size, grid.spacing,
+    problem.Channels(), angles.phase.Terms(), angles.phase.DirectionCount(), settings.periodic };
+}
+
+std::string WhyNotWarm(
+  const KeptLight& kept, const LightKind& kind, const OrdinatesAngles& angles, const OrdinatesSettings& settings)
+{
+  if (!IsPublished(settings) && !CanBeginWarm(angles, settings))
+  {
+    return "sources that terms of the phase function make negative are set to 0 order by order, from darkness on";
+  }
+  return WhyNotBegun(kept, kind, settings.maximumOrders);
+}
+
+/// One channel's part of kept light.
+OrdinatesGuess GuessOf(const KeptLight& kept, bool begins, int channel, int channels)
+{
+  OrdinatesGuess guess;
+  guess.keeps = true;
+  if (begins)
+  {
+    const auto values = static_cast<std::ptrdiff_t>(kept.scattered.size()) / channels;
+    guess.values.assign(kept.scattered.begin() + channel * values, kept.scattered.begin() + (channel + 1) * values);
+    guess.firstScattered = kept.firstScattered[channel];
+    guess.rate = kept.rate[channel];
+  }
+  return guess;
+}
+
+void TakeLeft(KeptLight& left, const OrdinatesResult& found, const OrdinatesSettings& settings, int channel)
+{
+  left.scattered.insert(left.scattered.end(), found.left.begin(), found.left.end());
+  left.firstScattered[channel] = found.firstScattered;
+  left.rate[channel] = settings.maximumOrders > 0 ? 0.0 : std::min(found.rate, SlowestRate);
+}
+
 void Judge(const OrdinatesSettings& settings, bool diverged, LightField& light)
 {
   const double residual = light.convergence.empty() ? 0.0 : light.convergence.back().residual;
@@ -286,7 +327,7 @@ void Judge(const OrdinatesSettings& settings, bool diverged, LightField& light)
 }
 
 LightField SolveDiscreteOrdinates(Device& device, const Medium& medium, const Illumination& illumination,
-  const OrdinatesSettings& settings, const Monitor& monitor)
+  const OrdinatesSettings& settings, const Monitor& monitor, KeptLight* kept)
 {
   Check(settings);
   const PropagationProblem problem(medium, illumination, AsPropagation(settings));
@@ -297,18 +338,28 @@ LightField SolveDiscreteOrdinates(Device& device, const Medium& medium, const Il
   light.channels = problem.Channels();
   light.doubts = DoubtsOf(problem, settings);
   bool diverged = false;
+  std::string whyNot;
+  KeptLight left;
   for (int c = 0; c < light.channels; ++c)
   {
     const PhaseFunction function = FunctionOf(problem.TheMedium(), c);
     const OrdinatesAngles angles = { OrdinateGroups(far.directions), SeparableOf(function, far.directions, settings),
       function };
     CheckMemory(device, problem.TheGrid(), angles, settings);
-    const OrdinatesScene scene = { problem.TheMedium(), c, LampsOf(far, problem.Shining(), c),
-      IncomingOf(far, problem.Shining(), c) };
+    OrdinatesScene scene = { problem.TheMedium(), c, LampsOf(far, problem.Shining(), c),
+      IncomingOf(far, problem.Shining(), c), {} };
+    if (kept)
+    {
+      left.kind = c == 0 ? KindOf(problem, angles, settings) : left.kind;
+      const std::string why = WhyNotWarm(*kept, left.kind, angles, settings);
+      whyNot = whyNot.empty() ? why : whyNot;
+      scene.guess = GuessOf(*kept, why.empty(), c, light.channels);
+    }
     const Monitor ofChannel = OfPart(monitor, static_cast<double>(c) / light.channels, (c + 1.0) / light.channels);
     const OrdinatesResult found = IsPublished(settings) ? SolvePublishedOrders(device, scene, angles, solved, ofChannel)
                                                         : SolveSweptOrders(device, scene, angles, solved, ofChannel);
     TakeChannel(light, found, c);
+    TakeLeft(left, found, settings, c);
     diverged = diverged || found.diverged;
     light.leftOut = c == 0 ? Words(problem, far, angles) : light.leftOut;
   }
@@ -318,6 +369,13 @@ LightField SolveDiscreteOrdinates(Device& device, const Medium& medium, const Il
   light.storedDirections = { { 0.0, 0.0, 0.0 } };
   light.halfRangeFlux = HalfRangeFlux({ 0, false, far.directions });
   light.device = device.Name();
+  if (kept)
+  {
+    left.fromDarkness = kept->fromDarkness;
+    left.scattered = diverged ? std::vector<float>() : std::move(left.scattered);
+    light.leftOut.push_back(WordsOfWarmStart(whyNot));
+    Keep(std::move(left), whyNot.empty(), light, *kept);
+  }
   problem.Undo(light);
   Judge(settings, diverged, light);
   return light;

@@ -1,6 +1,7 @@
 #pragma once
 
 #include "DiscreteOrdinates/OrdinatesSettings.h"
+#include "Light/KeptLight.h"
 #include "Light/LightField.h"
 #include "Lights/Lights.h"
 #include "Medium/Medium.h"
@@ -25,9 +26,12 @@ namespace tyndall
 ///
 /// Channels are solved one after the other; a row of `convergence` counts all of them.
 ///
+/// @param kept  the light of the last solve is the first guess of this one, and the light of this one is left there
+/// (KeptLight.h); null: begins in the dark, and keeps nothing. Conservative orders begin from it where light is
+/// scattered evenly; as published the radiance along all directions is kept.
 /// @throws InvalidInput  what Check(medium), Check(illumination) say, or settings out of range
 /// @throws DeviceError  if the buffers do not fit: says how many bytes are needed before it takes any
 /// @throws Aborted  when the monitor says so
 LightField SolveDiscreteOrdinates(Device& device, const Medium& medium, const Illumination& illumination,
-  const OrdinatesSettings& settings, const Monitor& monitor = {});
+  const OrdinatesSettings& settings, const Monitor& monitor = {}, KeptLight* kept = nullptr);
 }

@@ -4,6 +4,7 @@
 #include "DiscreteOrdinates/UpwindSweep.h"
 #include "Light/LightField.h"
 #include "LightPropagation/Conservative/EnergyLedger.h"
+#include "LightPropagation/Convergence.h"
 #include "Lights/Lights.h"
 #include "Medium/Medium.h"
 #include "PhaseFunction/SeparablePhaseFunction.h"
@@ -14,6 +15,15 @@
 
 namespace tyndall
 {
+/// Light of the last solve of one channel, the first guess of this one (KeptLight.h).
+struct OrdinatesGuess
+{
+  bool keeps = false;        ///< this solve's light is wanted
+  std::vector<float> values; ///< as OrdinatesResult::left has them; empty: begin in the dark
+  double firstScattered = 0.0;
+  double rate = 0.0;
+};
+
 /// One channel of a scene as discrete ordinates see it: what is solved.
 struct OrdinatesScene
 {
@@ -21,6 +31,7 @@ struct OrdinatesScene
   int channel = 0;
   std::vector<Light> lamps;  ///< of the scene, and the peaks of the environment; power of the channel in all three
   IncomingRadiance incoming; ///< empty: no environment, sky or face shines
+  OrdinatesGuess guess;
 };
 
 /// Directions and how light is scattered between them.
@@ -39,23 +50,31 @@ struct OrdinatesResult
   EnergyLedger ledger;                ///< all in channel 0
   std::vector<ConvergenceRow> convergence;
   bool diverged = false;
+  /// For the next solve, where it is wanted: fluence that was scattered; as published the radiance of all directions.
+  std::vector<float> left;
+  double firstScattered = 0.0; ///< W, that the guess is scaled by; as published 1
+  double rate = 0.0;           ///< of the last order to the one before
 };
 
-/// Rows of the convergence table, and an estimate of what is still to come from how fast orders become smaller
-/// (numerics.md, Eq. (43)).
+/// Rows of the convergence table, with an estimate of what is still to come from how fast orders become smaller.
 class OrdinatesRecord
 {
 public:
-  /// @param scattered  W (as published: change of fluence) that goes on
-  void Add(double scattered, const EnergyLedger& ledger);
+  /// The next order is the first to show the error of a first guess (RestOfOrders).
+  void BeginWarm(double rate) { this->Rest.BeginWarm(rate); }
+  /// @param goesOn  W (as published: change of fluence); of a first guess the magnitude of what may be negative
+  void Add(double goesOn, const EnergyLedger& ledger) { this->Add(goesOn, goesOn, ledger); }
+  /// @param more  what goesOn adds to all that did
+  void Add(double goesOn, double more, const EnergyLedger& ledger);
+  double Rate() const { return this->Rest.Ratio(); }
   double Residual() const { return this->Left; }
-  bool Grows() const { return this->Ratio > 1.0 && this->Rows.size() > 3; } ///< the last order was larger
   std::vector<ConvergenceRow>& All() { return this->Rows; }
   const std::vector<ConvergenceRow>& All() const { return this->Rows; }
 
 private:
   double Start = ClockSeconds();
   std::vector<ConvergenceRow> Rows;
-  double Sum = 0.0, Last = 0.0, Ratio = 0.0, Left = 1.0;
+  RestOfOrders Rest;
+  double Sum = 0.0, Left = 1.0;
 };
 }

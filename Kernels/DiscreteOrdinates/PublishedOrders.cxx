@@ -11,7 +11,8 @@ namespace tyndall
 namespace
 {
 constexpr int MostSteps = 10000;
-constexpr double WithoutEnd = 1e4; ///< a step's change over the first one's
+constexpr double SlowestRate = 0.99; ///< that is told the next solve: light on its way does not fall off at all
+constexpr double WithoutEnd = 1e4;   ///< a step's change over the first one's
 
 PairSums SumsOf(const OrdinatesSettings& settings)
 {
@@ -23,7 +24,8 @@ class PublishedOrders
 public:
   PublishedOrders(
     Device& device, const OrdinatesScene& scene, const OrdinatesAngles& angles, const OrdinatesSettings& settings)
-    : Settings(settings)
+    : Scene(scene)
+    , Settings(settings)
     , Arrays(device, scene, angles, settings.netFlux)
     , Step(device, scene.medium.grid, angles.groups, settings.periodic, scene.incoming)
     , Scattering(device, angles.groups, angles.phase, SumsOf(settings), false, settings.netFlux, this->Arrays.Voxels)
@@ -63,7 +65,12 @@ private:
     this->LampFluence = this->Arrays.Direct.Read();
     this->LampFlux = this->Arrays.Light.flux.Read();
     this->Fluence.assign(this->Arrays.Voxels, 0.0f);
-    this->MoveOn(); // from darkness: nothing is scattered yet
+    if (this->Scene.guess.values.empty())
+    {
+      this->MoveOn(); // from darkness: nothing is scattered yet
+      return;
+    }
+    this->Radiance.Write(this->Scene.guess.values.data());
   }
 
   void StepOnce(const Monitor& monitor)
@@ -83,6 +90,10 @@ private:
     this->Result.ledger = this->OfLamps;
     this->CountSteady();
     this->Record.Add(change, this->Result.ledger);
+    if (this->Record.All().size() == 1 && !this->Scene.guess.values.empty())
+    {
+      this->Record.BeginWarm(this->Scene.guess.rate); // from darkness to the guess was no step
+    }
     if (!this->Done())
     {
       this->MoveOn();
@@ -137,9 +148,16 @@ private:
     {
       this->Result.flux[i] += this->LampFlux[i];
     }
+    if (this->Scene.guess.keeps && !this->Result.diverged)
+    {
+      this->Result.left = this->Radiance.Read();
+      this->Result.firstScattered = 1.0;
+      this->Result.rate = std::max(std::min(this->Record.Rate(), SlowestRate), this->Scene.guess.rate);
+    }
     this->Result.convergence = std::move(this->Record.All());
   }
 
+  const OrdinatesScene& Scene;
   const OrdinatesSettings& Settings;
   ChannelArrays Arrays;
   PublishedStep Step;

@@ -52,6 +52,7 @@ public:
         monitor ? Monitor([&](double) { return monitor(std::clamp(0.1 + 0.9 * done, 0.1, 0.99)); }) : Monitor());
     }
     this->Arrays.Read(this->Result);
+    this->Leave();
     this->Result.convergence = std::move(this->Record.All());
     return std::move(this->Result);
   }
@@ -80,17 +81,71 @@ private:
     }
     this->Arrays.AddLamps(this->Out(), this->Settings.periodic, this->Result, OfPart(monitor, 0.5, 1.0));
     const std::vector<float> lamps = this->Arrays.Direct.Read();
-    this->Count(this->Arrays.PowersOf(this->Result.direct, false), this->Arrays.PowersOf(lamps, true));
+    const ChannelArrays::Powers unscattered = this->Arrays.PowersOf(this->Result.direct, false);
+    const ChannelArrays::Powers ofLamps = this->Arrays.PowersOf(lamps, true);
+    this->Count(unscattered, ofLamps);
+    this->Result.firstScattered = unscattered.scattered + ofLamps.scattered;
     for (std::size_t i = 0; i < lamps.size(); ++i)
     {
       this->Result.direct[i] += lamps[i];
     }
+    this->BeginWarm();
+  }
+
+  bool IsWarm() const { return !this->Scene.guess.values.empty(); }
+
+  /// Beside what is first scattered the next sweep carries what is scattered of the guess (numerics.md, section 6.4).
+  void BeginWarm()
+  {
+    if (!this->IsWarm())
+    {
+      return;
+    }
+    const double before = this->Scene.guess.firstScattered;
+    const double scale = before > 0.0 ? this->Result.firstScattered / before : 0.0;
+    for (float value : this->Scene.guess.values)
+    {
+      this->Guess.push_back(static_cast<float>(scale * value));
+    }
+    this->Arrays.ScatterEvenly(this->Guess, 1.0, this->Out());
+    this->GoesOn += this->Arrays.PowersOf(this->Guess, false).scattered;
+    this->Record.BeginWarm(this->Scene.guess.rate);
   }
 
   void Order(const Monitor& monitor)
   {
     this->SweepAndScatter({}, monitor);
-    this->Count(this->Arrays.PowersOf(this->Arrays.Light.order.Read(), false), {});
+    const std::vector<float> found = this->Arrays.Light.order.Read();
+    const ChannelArrays::Powers powers = this->Arrays.PowersOf(found, false);
+    if (!this->IsWarm())
+    {
+      this->Count(powers, {});
+      return;
+    }
+    double guessed = 0.0;
+    if (!this->Guess.empty())
+    {
+      guessed = this->Arrays.PowersOf(this->Guess, false).scattered;
+      this->Arrays.ScatterEvenly(this->Guess, -1.0, this->Out());
+    }
+    this->Result.ledger.Absorb(0, powers.absorbed);
+    this->Result.ledger.LeaveOver(0, powers.scattered - guessed + this->OnTheWay + this->Arrays.Stranded());
+    this->GoesOn = this->Arrays.MagnitudeOf(found, this->Guess) + std::abs(this->OnTheWay);
+    this->Record.Add(this->GoesOn, powers.scattered, this->Result.ledger);
+    this->Guess.clear();
+  }
+
+  void Leave()
+  {
+    for (float& value : this->Result.fluence)
+    {
+      value = this->IsWarm() ? std::max(value, 0.0f) : value; // what the last sweeps would have taken away
+    }
+    for (std::size_t i = 0; i < this->Result.fluence.size() && this->Scene.guess.keeps; ++i)
+    {
+      this->Result.left.push_back(this->Result.fluence[i] - this->Result.direct[i]);
+    }
+    this->Result.rate = std::max(this->Record.Rate(), this->Scene.guess.rate);
   }
 
   void SweepAndScatter(const IncomingRadiance& incoming, const Monitor& monitor)
@@ -130,8 +185,9 @@ private:
     {
       return true;
     }
+    const int least = this->IsWarm() ? 2 : 3; // a guess has shown already how fast orders fall
     return this->Settings.maximumOrders > 0 ? orders >= this->Settings.maximumOrders
-                                            : orders > 2 && this->Record.Residual() <= this->Settings.tolerance;
+                                            : orders >= least && this->Record.Residual() <= this->Settings.tolerance;
   }
 
   const OrdinatesScene& Scene;
@@ -142,8 +198,14 @@ private:
   Buffer<float> Radiance, Source; ///< Source: empty where scattering works in place
   OrdinatesRecord Record;
   OrdinatesResult Result;
+  std::vector<float> Guess;            ///< W / length^2, until it is taken away again
   double GoesOn = 0.0, OnTheWay = 0.0; ///< W
 };
+}
+
+bool CanBeginWarm(const OrdinatesAngles& angles, const OrdinatesSettings& settings)
+{
+  return !CanBeNegative(angles, settings);
 }
 
 OrdinatesResult SolveSweptOrders(Device& device, const OrdinatesScene& scene, const OrdinatesAngles& angles,

@@ -12,6 +12,10 @@ namespace tyndall
 OrdinatesResult SolveSweptOrders(Device& device, const OrdinatesScene& scene, const OrdinatesAngles& angles,
   const OrdinatesSettings& settings, const Monitor& monitor);
 
+/// Whether light can begin from that of another solve: sources are never negative. What N terms make negative is set to
+/// 0 order by order, so that the light is not the sum that a guess would need it to be.
+bool CanBeginWarm(const OrdinatesAngles& angles, const OrdinatesSettings& settings);
+
 /// Bytes on the device.
 std::size_t BytesOfSweptOrders(const Grid& grid, const OrdinatesAngles& angles, const OrdinatesSettings& settings);
 }

@@ -118,6 +118,13 @@ __kernel void fill_face(__global float* face, const __global float* values, int 
   ((__global float8*)face)[i] = ((const __global float8*)values)[i / count];
 }
 
+// Adds the same source in all directions.
+__kernel void add_even_source(__global float* radiance, const __global float* source, ulong stride)
+{
+  const ulong i = get_global_id(0), group = get_global_id(1);
+  ((__global float8*)radiance)[group * stride + i] += (float8)source[i];
+}
+
 // The same source in all directions.
 __kernel void even_source(__global float* radiance, const __global float* emission, ulong stride)
 {

@@ -32,8 +32,8 @@ struct KeptLight
   LightKind kind;
   /// Scattered light, in the units and the layout of the solver: unscattered light is found anew each time.
   std::vector<float> scattered;
-  Rgb firstScattered = {};                   ///< W, of unscattered light; the guess is scaled by how it changed
-  Rgb rate = {};                             ///< by which the last iterations fell, each over the one before
+  Rgb firstScattered = {};                  ///< W, of unscattered light; the guess is scaled by how it changed
+  Rgb rate = {};                            ///< by which the last iterations fell, each over the one before
   std::vector<ConvergenceRow> fromDarkness; ///< rows of the last solve that began in the dark
 
   bool Empty() const { return this->scattered.empty() || Sum(this->firstScattered) == 0.0; }

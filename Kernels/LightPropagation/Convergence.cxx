@@ -24,6 +24,25 @@ bool MeetsTolerance(const PropagationSettings& settings, double residual)
   return settings.maximumOrders == 0 && residual <= settings.tolerance;
 }
 
+void RestOfOrders::BeginWarm(double rate)
+{
+  this->Least = rate;
+  this->Compares = false;
+}
+
+double RestOfOrders::After(double now, double all)
+{
+  const double ratio = this->Compares ? now / this->Last : this->Least > 0.0 ? this->Least : 1.0;
+  const double growth = this->Orders > 1 ? std::max(0.0, ratio - this->LastRatio) : 0.0;
+  const double limit = std::min(std::max(ratio + growth, this->Least), 1.0 - 1e-9);
+  const double rest = now / all * limit / (1.0 - limit);
+  this->LastRatio = ratio;
+  this->Last = now;
+  this->Compares = true;
+  ++this->Orders;
+  return this->Orders == 1 ? std::min(rest, 1.0) : rest;
+}
+
 double ProgressOf(const PropagationSettings& settings, double residual, double iterations)
 {
   if (settings.maximumOrders > 0)

@@ -9,6 +9,27 @@ namespace tyndall
 /// orders was asked for instead.
 bool MeetsTolerance(const PropagationSettings& settings, double residual);
 
+/// What is still to come of orders that fall off like a geometric series in the end (numerics.md, Eq. (43)).
+class RestOfOrders
+{
+public:
+  /// From the next order on, what falls off is the error of a first guess, by this rate at least (WarmStart): it falls
+  /// faster at first.
+  /// @param rate  0: not known
+  void BeginWarm(double rate);
+
+  /// @param now  power, or a magnitude, of the next order, above 0
+  /// @param all  of all orders so far
+  /// @return the rest over all; 1 at most after the first order, which does not show how fast they fall
+  double After(double now, double all);
+  double Ratio() const { return this->LastRatio; } ///< of the last order to the one before
+
+private:
+  int Orders = 0;
+  bool Compares = false; ///< the last order can be compared with the next
+  double Last = 0.0, LastRatio = 0.0, Least = 0.0;
+};
+
 /// Of a solve, [0, 1]: orders of those asked for, else how far the logarithm of the residual has come, and a little
 /// more with each iteration.
 /// @param residual  of the last iteration, 1 before there is one

@@ -12,9 +12,10 @@ struct LitMedium : Scene
 
   void ScatterWith(double g) { this->medium.phase = tyndall::PhaseFunction::HenyeyGreenstein(g); }
 
-  tyndall::LightField SolveOrdinates(tyndall::Device& device, const tyndall::Monitor& monitor = {})
+  tyndall::LightField SolveOrdinates(
+    tyndall::Device& device, const tyndall::Monitor& monitor = {}, tyndall::KeptLight* kept = nullptr)
   {
     this->Attach();
-    return tyndall::SolveDiscreteOrdinates(device, this->medium, this->light, this->how, monitor);
+    return tyndall::SolveDiscreteOrdinates(device, this->medium, this->light, this->how, monitor, kept);
   }
 };

@@ -1,7 +1,7 @@
 // The last light as a first guess: fewer sweeps to the same light (numerics.md, section 6.4).
 
 #include "DeviceTest.h"
-#include "MediumScene.h"
+#include "OrdinatesScene.h"
 
 #include "LightPropagation/Published/ParallelPropagation.h"
 
@@ -398,8 +398,7 @@ TEST_F(WarmStarts, SayHowManySweepsTheySaved)
   {
     const std::size_t same = row + warm.sweepsSaved[row];
     EXPECT_GT(cold.convergence[same - 1].residual, warm.convergence[row].residual);
-    EXPECT_TRUE(same == cold.convergence.size() ||
-      cold.convergence[same].residual <= warm.convergence[row].residual);
+    EXPECT_TRUE(same == cold.convergence.size() || cold.convergence[same].residual <= warm.convergence[row].residual);
   }
   EXPECT_GT(warm.sweepsSaved.back(), 2);
   EXPECT_TRUE(scene.Solve(this->GetDevice()).sweepsSaved.empty());
@@ -427,7 +426,8 @@ TEST_F(WarmStarts, TakeFewerOrdersAsPublished)
     EXPECT_EQ(warm.sweepsSaved.size(), warm.convergence.size());
     after.settings.tolerance = 1e-7;
     const LightField exact = solve(after, nullptr);
-    const double error = RmsDifference(warm.fluence, exact.fluence), ofCold = RmsDifference(cold.fluence, exact.fluence);
+    const double error = RmsDifference(warm.fluence, exact.fluence),
+                 ofCold = RmsDifference(cold.fluence, exact.fluence);
     std::printf("as published, g %g: %zu -> %zu orders, error %.2g (cold %.2g)\n", g, cold.convergence.size(),
       warm.convergence.size(), error, ofCold);
     EXPECT_LT(error, 1e-4) << g;
@@ -438,4 +438,57 @@ TEST_F(WarmStarts, TakeFewerOrdersAsPublished)
     after.settings.maximumOrders = 3;
     EXPECT_EQ(solve(after, &kept).fluence, solve(after, nullptr).fluence);
   }
+}
+
+TEST_F(WarmStarts, TakeFewerOrdersOfDiscreteOrdinates)
+{
+  for (const OrdinatesScheme scheme : { OrdinatesScheme::Conservative, OrdinatesScheme::Published })
+  {
+    const bool published = scheme == OrdinatesScheme::Published;
+    const Scene cloud = Cloud({ 15, 11, 13 }, 4.0, 0.97, 2);
+    LitMedium scene(cloud.medium.grid.size);
+    scene.sigma_a = cloud.sigma_a;
+    scene.sigma_s = cloud.sigma_s;
+    scene.light = cloud.light;
+    scene.light.lights[0].power = { 2.0, 1.5, 1.0 };
+    scene.how.directionsPerFace = 4;
+    scene.how.terms = 16;
+    scene.how.scheme = scheme;
+    scene.ScatterWith(published ? 0.5 : 0.0);
+    LitMedium after = scene;
+    Scatter(after, 1.05);
+    KeptLight kept;
+    EXPECT_EQ(
+      scene.SolveOrdinates(this->GetDevice(), {}, &kept).fluence, scene.SolveOrdinates(this->GetDevice()).fluence)
+      << "nothing was known";
+    EXPECT_LE(scene.SolveOrdinates(this->GetDevice(), {}, &kept).convergence.size(), published ? 4u : 3u);
+    const LightField warm = after.SolveOrdinates(this->GetDevice(), {}, &kept);
+    const LightField cold = after.SolveOrdinates(this->GetDevice());
+    after.how.tolerance = 1e-7;
+    const LightField exact = after.SolveOrdinates(this->GetDevice());
+    const double error = RmsDifference(warm.fluence, exact.fluence);
+    std::printf("discrete ordinates%s: %zu -> %zu, error %.2g (cold %.2g)\n", published ? " as published" : "",
+      cold.convergence.size(), warm.convergence.size(), error, RmsDifference(cold.fluence, exact.fluence));
+    EXPECT_LT(error, 1e-4);
+    EXPECT_LT(warm.convergence.size(), cold.convergence.size());
+    EXPECT_EQ(warm.fluenceDirect, cold.fluenceDirect);
+    EXPECT_EQ(warm.sweepsSaved.size(), warm.convergence.size());
+    if (!published)
+    {
+      EXPECT_LT(warm.balance.RelativeError(3), 1e-5);
+    }
+  }
+}
+
+TEST_F(WarmStarts, AreNotMadeOfSourcesThatAreCutOrderByOrder)
+{
+  LitMedium scene({ 6, 5, 7 }, 0.05f, 0.4f);
+  scene.ShineAlong({ 0.2, 0.1, -1.0 });
+  scene.ScatterWith(0.8);
+  scene.how.directionsPerFace = 9;
+  KeptLight kept;
+  scene.SolveOrdinates(this->GetDevice(), {}, &kept);
+  const LightField again = scene.SolveOrdinates(this->GetDevice(), {}, &kept);
+  EXPECT_EQ(again.fluence, scene.SolveOrdinates(this->GetDevice()).fluence);
+  EXPECT_THAT(again.leftOut, testing::Contains(testing::HasSubstr("set to 0 order by order")));
 }

@@ -137,7 +137,6 @@ LightField LightOf(const TransportParts& parts, IterationResult&& found, bool ac
   return light;
 }
 
-
 }
 
 LightField SolveConservative(Device& device, const Medium& medium, const Illumination& illumination,

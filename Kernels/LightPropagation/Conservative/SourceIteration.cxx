@@ -255,8 +255,7 @@ void SourceIteration::ScatterOrder()
   this->Result.convergence.Add(this->Residual, all > 0.0 ? Sum(this->Scattered) / all : 0.0, this->Result.ledger);
 }
 
-/// What the orders to come will add to the light that is scattered, over what there is: the rest of a geometric series
-/// (numerics.md, Eq. (43)). The worst channel counts.
+/// What the orders to come will add to the light that is scattered, over what there is. The worst channel counts.
 void SourceIteration::EstimateResidual()
 {
   this->Residual = 0.0;
@@ -268,20 +267,8 @@ void SourceIteration::EstimateResidual()
     {
       continue;
     }
-    this->TakeResidual(c, now, this->Order > 0 ? now / this->LastScattered[c] : 1.0, 0.0);
+    this->Residual = std::max(this->Residual, this->Rest[c].After(now, this->AllScattered[c]));
   }
-  // One order does not show how fast they fall.
-  this->Residual = this->Order == 0 ? std::min(this->Residual, 1.0) : this->Residual;
-}
-
-/// @param least  that the ratio grows to
-void SourceIteration::TakeResidual(int c, double now, double ratio, double least)
-{
-  const double growth = this->Order > 1 ? std::max(0.0, ratio - this->Ratio[c]) : 0.0;
-  const double limit = std::min(std::max(ratio + growth, least), 1.0 - 1e-9);
-  this->Residual = std::max(this->Residual, now / this->AllScattered[c] * limit / (1.0 - limit));
-  this->Ratio[c] = ratio;
-  this->LastScattered[c] = now;
 }
 
 /// Beside what is first scattered, the next sweep carries what is scattered of the guess.
@@ -289,6 +276,10 @@ void SourceIteration::BeginWarm()
 {
   this->Parts.Scattering->AddFirstScattered({ &this->Warm.Guess(), nullptr, nullptr, nullptr }, this->Parts.Source);
   this->Shining = this->Shining || Sum(this->Warm.GuessedPower()) != 0.0;
+  for (int c = 0; c < this->Parts.Layout.channels; ++c)
+  {
+    this->Rest[c].BeginWarm(this->Warm.Rate(c));
+  }
 }
 
 /// After the first sweep what is scattered of the guess is taken away from what was scattered: what is left is its
@@ -311,9 +302,7 @@ void SourceIteration::GoOnWarm()
     const double now = magnitudes[c] + std::abs(this->OnTheWay[c]);
     if (now > 0.0)
     {
-      const double known = this->Warm.Rate(c); // 0: the channel was dark
-      const double ratio = this->Order > 1 ? now / this->LastScattered[c] : known > 0.0 ? known : 1.0;
-      this->TakeResidual(c, now, ratio, known);
+      this->Residual = std::max(this->Residual, this->Rest[c].After(now, this->AllScattered[c]));
     }
   }
 }
@@ -323,8 +312,8 @@ void SourceIteration::GatherMoments()
 {
   if (this->Moments.Size() > 0 && this->Order > 0)
   {
-    AddMoments(this->Parts.TheDevice, this->Parts.FunctionStride(), this->Parts.Functions(), this->Parts.Path,
-      this->Moments);
+    AddMoments(
+      this->Parts.TheDevice, this->Parts.FunctionStride(), this->Parts.Functions(), this->Parts.Path, this->Moments);
   }
 }
 
@@ -341,7 +330,8 @@ void SourceIteration::Leave()
     this->Parts.Fluence.Write(fluence.data());
   }
   this->Result.warm = this->Warm.Begins();
-  this->Result.kept = this->Warm.Leave(this->Direct, this->Moments.Read(), this->Ratio);
+  const Rgb rates = { this->Rest[0].Ratio(), this->Rest[1].Ratio(), this->Rest[2].Ratio() };
+  this->Result.kept = this->Warm.Leave(this->Direct, this->Moments.Read(), rates);
 }
 
 bool SourceIteration::Done() const

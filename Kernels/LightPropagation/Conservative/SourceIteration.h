@@ -4,6 +4,7 @@
 #include "LightPropagation/Conservative/Iteration.h"
 #include "LightPropagation/Conservative/TransportParts.h"
 #include "LightPropagation/Conservative/WarmStart.h"
+#include "LightPropagation/Convergence.h"
 
 #include <memory>
 #include <optional>
@@ -28,7 +29,6 @@ private:
   void SweepOrder(const Monitor& monitor);
   void ScatterOrder();
   void EstimateResidual();
-  void TakeResidual(int channel, double now, double ratio, double least);
   void BeginWarm();
   void GoOnWarm();
   void GatherMoments();
@@ -51,18 +51,17 @@ private:
   WarmStart Warm;
   std::vector<float> Direct; ///< W / length^2, [channel][stride], where light is to be kept
   Buffer<float> Moments;     ///< of scattered light of all orders, W length, where they are to be kept
-  double LitPart = 1.0; ///< of all rays, in the first order
+  double LitPart = 1.0;      ///< of all rays, in the first order
 
   IterationResult Result;
-  int Order = 0;          ///< that is under way
-  bool Shining = false;   ///< the source is not zero
-  Rgb Scattered = {};     ///< W, by the order just done
-  Rgb OnTheWay = {};      ///< W, rays that go round a periodic axis in the next sweep
-  Rgb Stranded = {};      ///< W, of uncollided light whose rays go round a periodic axis without end
-  Rgb Escaped = {};       ///< W, by the correction
-  Rgb LastScattered = {}; ///< W, by the order before
-  Rgb AllScattered = {};  ///< W, by all orders so far
-  Rgb Ratio = {};         ///< of this order's scattered power to that of the one before
+  int Order = 0;         ///< that is under way
+  bool Shining = false;  ///< the source is not zero
+  Rgb Scattered = {};    ///< W, by the order just done
+  Rgb OnTheWay = {};     ///< W, rays that go round a periodic axis in the next sweep
+  Rgb Stranded = {};     ///< W, of uncollided light whose rays go round a periodic axis without end
+  Rgb Escaped = {};      ///< W, by the correction
+  Rgb AllScattered = {}; ///< W, by all orders so far
+  std::array<RestOfOrders, 3> Rest;
   double Residual = 1.0;
 };
 }

@@ -112,8 +112,7 @@ Rgb WarmStart::MagnitudeOf(const Buffer<float>& source) const
   return sums;
 }
 
-KeptLight WarmStart::Leave(
-  const std::vector<float>& base, const std::vector<float>& moments, const Rgb& rate) const
+KeptLight WarmStart::Leave(const std::vector<float>& base, const std::vector<float>& moments, const Rgb& rate) const
 {
   const VolumeLayout& layout = this->Parts.Layout;
   const auto volume = static_cast<float>(layout.grid.VoxelVolume());

@@ -474,7 +474,9 @@ void OrderLedger::CloseOrder(const float* fluence)
   }
   const bool goesOn = this->Warm ? Sum(magnitude) > 0.0 : row.leftOver > 0.0;
   row.residual = goesOn ? this->EstimateResidual(this->Warm ? magnitude : sum) : 0.0;
-  this->LastSum = this->Warm && this->Rows.empty() ? Rgb{} : this->Warm ? magnitude : sum; // with a guess it tells nothing
+  this->LastSum = this->Warm && this->Rows.empty() ? Rgb{}
+    : this->Warm                                   ? magnitude
+                                                   : sum; // with a guess it tells nothing
   this->Rows.push_back(row);
   this->Finished = row.residual == 0.0 ||
     (this->Settings.maximumOrders > 0 ? this->Orders() >= this->Settings.maximumOrders
@@ -490,7 +492,8 @@ double OrderLedger::EstimateResidual(const Rgb& orderSum)
     if (orderSum[c] > 0.0 && (this->LastSum[c] > 0.0 || (this->Warm && !this->Rows.empty())))
     {
       const double known = this->LeastRatio[c] > 0.0 ? this->LeastRatio[c] : 1.0;
-      const double found = this->LastSum[c] > 0.0 ? std::max(orderSum[c] / this->LastSum[c], this->LeastRatio[c]) : known;
+      const double found =
+        this->LastSum[c] > 0.0 ? std::max(orderSum[c] / this->LastSum[c], this->LeastRatio[c]) : known;
       const double ratio = std::min(found, 0.9999);
       const double growth = this->Ratio[c] > 0.0 && !this->Warm ? std::max(0.0, ratio - this->Ratio[c]) : 0.0;
       this->Limit[c] = std::min(ratio + growth, 0.9999);

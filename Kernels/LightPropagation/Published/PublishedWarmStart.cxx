@@ -6,6 +6,7 @@ PublishedWarmStart::PublishedWarmStart(
   const Medium& medium, const PublishedModel& model, const PropagationSettings& settings, const KeptLight* kept)
   : TheMedium(medium)
   , Channels(model.Channels())
+  , Counted(settings.maximumOrders > 0)
   , Kept(kept)
   , Kind{ "light propagation maps as published", medium.grid.size, medium.grid.spacing, model.Channels(),
     model.MomentCount(), static_cast<int>(model.Directions().directions.size()), settings.periodic }
@@ -60,7 +61,7 @@ KeptLight PublishedWarmStart::Leave(const PublishedVolumes& volumes, const Rgb& 
 {
   KeptLight left;
   left.kind = this->Kind;
-  left.rate = rate;
+  left.rate = this->Counted ? Rgb{} : rate;
   left.firstScattered = this->First;
   left.scattered = volumes.Totals.Read();
   for (std::size_t i = 0; i < left.scattered.size(); ++i)

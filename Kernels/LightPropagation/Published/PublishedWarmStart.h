@@ -35,6 +35,7 @@ private:
 
   const Medium& TheMedium;
   int Channels;
+  bool Counted; ///< orders are, and do not tell how fast they fall
   const KeptLight* Kept;
   LightKind Kind;
   std::string WhyNot;
