@@ -117,8 +117,8 @@ public:
   ///@}
 
   ///@{
-  /// Whether the light of the last update is the first guess of the next one: fewer sweeps where medium or lights changed
-  /// a little, the same light within the tolerance. It is kept in memory until an update with WarmStart off: a
+  /// Whether the light of the last update is the first guess of the next one: fewer sweeps where medium or lights
+  /// changed a little, the same light within the tolerance. It is kept in memory until an update with WarmStart off: a
   /// float a voxel and channel, as published of each direction; conservative where light is scattered evenly. Default
   /// off.
   vtkSetMacro(WarmStart, bool);

@@ -53,8 +53,8 @@ struct LightField;
  * by row, components at the cosines 0.05,
  * 0.25, 0.6, 1 to the normal (times red, green, blue).
  * Output 1: vtkTable, one row a scattering order: `iteration`, `seconds`, `residual`, `change`, `absorbed`, `escaped`,
- * `left_over`, and with WarmStart `sweeps_saved`: by how many rows a row comes to its residual earlier than the last solve
- * from darkness on did.
+ * `left_over`, and with WarmStart `sweeps_saved`: by how many rows a row comes to its residual earlier than the last
+ * solve from darkness on did.
  *
  * Without lights, environment, SkyColor, FaceRadiance and emission the result is dark, with a warning.
  *
@@ -178,8 +178,8 @@ public:
   ///@}
 
   ///@{
-  /// Whether the light of the last update is the first guess of the next one: fewer sweeps where medium or lights changed
-  /// a little, the same light within the tolerance. It is kept in memory until an update with WarmStart off: a
+  /// Whether the light of the last update is the first guess of the next one: fewer sweeps where medium or lights
+  /// changed a little, the same light within the tolerance. It is kept in memory until an update with WarmStart off: a
   /// float a voxel and channel, times (degree + 1)^2 with AngularDegree; not by the sequential algorithm. Default
   /// off.
   vtkSetMacro(WarmStart, bool);

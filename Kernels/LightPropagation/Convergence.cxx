@@ -9,6 +9,7 @@ namespace tyndall
 {
 namespace
 {
+constexpr double WarmMargin = 1.5;    ///< the error of a guess does not fall evenly
 constexpr double MuchLeftOver = 0.01; ///< of the power, with the usual tolerance
 
 /// Of all power, what the solver gave up.
@@ -26,6 +27,7 @@ bool MeetsTolerance(const PropagationSettings& settings, double residual)
 
 void RestOfOrders::BeginWarm(double rate)
 {
+  this->Warm = true;
   this->Least = rate;
   this->Compares = false;
 }
@@ -35,7 +37,7 @@ double RestOfOrders::After(double now, double all)
   const double ratio = this->Compares ? now / this->Last : this->Least > 0.0 ? this->Least : 1.0;
   const double growth = this->Orders > 1 ? std::max(0.0, ratio - this->LastRatio) : 0.0;
   const double limit = std::min(std::max(ratio + growth, this->Least), 1.0 - 1e-9);
-  const double rest = now / all * limit / (1.0 - limit);
+  const double rest = (this->Warm ? WarmMargin : 1.0) * (now / all * limit / (1.0 - limit));
   this->LastRatio = ratio;
   this->Last = now;
   this->Compares = true;

@@ -26,6 +26,7 @@ public:
 
 private:
   int Orders = 0;
+  bool Warm = false;
   bool Compares = false; ///< the last order can be compared with the next
   double Last = 0.0, LastRatio = 0.0, Least = 0.0;
 };

@@ -42,7 +42,7 @@ public:
 
   /// What is left for the next solve.
   /// @param base  fluence that the next solve finds without a guess; its guess is what all fluence has beyond that
-  /// @param moments  what the others have beyond it, as Guess() is; the first function is not read. Empty: there are none
+  /// @param moments  what the others have beyond it, as Guess() is; the first function is not read. Empty: none
   /// @param rate  of the last iteration over the one before
   KeptLight Leave(const std::vector<float>& base, const std::vector<float>& moments, const Rgb& rate) const;
 
