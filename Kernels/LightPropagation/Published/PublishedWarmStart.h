@@ -9,8 +9,8 @@
 namespace tyndall
 {
 /// The scattered light of the last solve as the first guess of this one, of light propagation maps as published
-/// (numerics.md, section 6.4): in the moments of PublishedVolumes, of which the first order's are what comes in and what
-/// is guessed, and the second's what was found less the guess.
+/// (numerics.md, section 6.4): in the moments of PublishedVolumes, of which the first order's are what comes in and
+/// what is guessed, and the second's what was found less the guess.
 class PublishedWarmStart
 {
 public:
