@@ -67,7 +67,7 @@ std::string RunCell(const Cell& cell)
   }
   std::vector<StressCheck> checks =
     CheckOutcome(cell.solver, *cell.stressCase, outcome, cell.stressCase->twin ? &twin : nullptr);
-  if (IsMaps(cell.solver))
+  if (IsGrid(cell.solver))
   {
     // Each cell in one of the cube's 47 other ways to lie; all of them occur many times.
     static const std::vector<CubeTurn> turns = AllCubeTurns();

@@ -48,7 +48,7 @@ public:
     {
       this->Conserves();
     }
-    if (IsMaps(this->Solver) && !this->Published)
+    if (IsGrid(this->Solver) && !this->Published)
     {
       this->Bounds();
       this->Exact();
@@ -256,7 +256,7 @@ private:
         this->Add(std::string("mirrored_" + std::string(1, "xyz"[axis])).c_str(), this->Asymmetry(axis), limit);
       }
     }
-    if (this->Solver != StressSolver::MapsByOrders)
+    if (!CountsOrders(this->Solver))
     {
       this->Add("residual_by_tolerance", this->Outcome.warnings.empty() ? this->Outcome.residual : 0.0, 1.0);
     }
@@ -296,7 +296,7 @@ private:
   void Exact()
   {
     const double left = this->Worst([&](int c) { return this->Fact(LeftOver, c) / this->In(c); });
-    if (this->Solver == StressSolver::MapsByOrders && !(left < 1e-5))
+    if (CountsOrders(this->Solver) && !(left < 1e-5))
     {
       return;
     }
@@ -317,7 +317,7 @@ private:
       // free path each.
       this->Add("middle", std::abs(fluence / (4.0 * Pi * this->Case.middle) - 1.0), 5e-3);
     }
-    const bool linear = this->Solver != StressSolver::MapsByOrders; // a constant source has no diffusion limit
+    const bool linear = !CountsOrders(this->Solver); // a constant source has no diffusion limit
     if (this->Case.transmitted >= 0.0 && linear)
     {
       const double part = this->Outcome.facePowerOut[5] / this->Fact(Entered, 0);
@@ -376,8 +376,8 @@ private:
   {
     const bool colours = this->Case.twinChannel >= 0;
     // As published photons lose some of their power by chance, and mean cosines are not solved by similarity.
-    const bool known = this->Case.similarity ? !this->Published && !IsPhotons(this->Solver)
-                                             : this->Solver != StressSolver::PhotonsPublished;
+    const bool similar = !this->Published && !IsPhotons(this->Solver) && this->Solver != StressSolver::Ordinates;
+    const bool known = this->Case.similarity ? similar : this->Solver != StressSolver::PhotonsPublished;
     return known && !(colours && (this->Rebuilt || this->Solver == StressSolver::Octree));
   }
 

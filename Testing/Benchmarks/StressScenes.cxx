@@ -507,6 +507,42 @@ void AddColours(std::vector<StressCase>& cases)
     cases.push_back(made);
   }
 }
+
+/// The scenes that scatter once more, with mean cosines of their own. What is known of a light by symmetry or balance
+/// alone stays; what is known of isotropic scattering goes.
+std::vector<StressCase> Forward(const std::vector<StressCase>& cases)
+{
+  std::vector<StressCase> forward;
+  for (const double g : { -0.9, 0.5, 0.9, 0.99, 0.999 })
+  {
+    for (const StressCase& one : cases)
+    {
+      const std::vector<float>& sigma = one.scene.scattering;
+      const bool scatters = std::any_of(sigma.begin(), sigma.end(), [](float value) { return value > 0.0f; });
+      if (!scatters || one.scene.g != 0.0 || !one.scene.index.empty())
+      {
+        continue;
+      }
+      StressCase made = one;
+      made.forward = true;
+      made.quick = one.quick && g == 0.99;
+      made.row += ", g " + Number(g);
+      made.scene.g = g;
+      made.transmitted = -1.0;
+      for (Refusal& refusal : made.refusals)
+      {
+        refusal.words = refusal.words.substr(0, refusal.words.find(" 6e+38")); // the sum is by the similarity relation
+      }
+      if (made.twin)
+      {
+        made.twin = std::make_shared<StressScene>(*one.twin);
+        made.twin->g = g;
+      }
+      forward.push_back(made);
+    }
+  }
+  return forward;
+}
 }
 
 std::vector<StressCase> StressCases()
@@ -523,6 +559,8 @@ std::vector<StressCase> StressCases()
   AddSpacings(cases);
   AddShapes(cases);
   AddColours(cases);
+  const std::vector<StressCase> forward = Forward(cases);
+  cases.insert(cases.end(), forward.begin(), forward.end());
   return cases;
 }
 }

@@ -68,6 +68,7 @@ struct StressCase
   std::string row;  ///< the kind of extreme
   std::string name; ///< which of them
   StressScene scene;
+  bool forward = false;                                   ///< of another one with a mean cosine that is not 0
   bool quick = false;                                     ///< also run where there are few seconds
   double furnace = 0.0;                                   ///< radiance everywhere, if not 0
   double bound = std::numeric_limits<double>::infinity(); ///< no radiance is above this

@@ -4,6 +4,7 @@
 
 #include "../Filters/MediumScene.h"
 
+#include "vtkDiscreteOrdinates.h"
 #include "vtkFieldData.h"
 #include "vtkLightRig.h"
 #include "vtkMediumRayCaster.h"
@@ -157,6 +158,7 @@ void RunMaps(
     maps->SetAlgorithm(sequential ? vtkLightPropagationMaps::SEQUENTIAL : vtkLightPropagationMaps::PARALLEL);
   }
   maps->SetLeaveOut(solver != StressSolver::MapsAll);
+  maps->SetAngularDegree(solver == StressSolver::MapsMoments ? -1 : 0);
   if (!EndsByTolerance(solver))
   {
     maps->SetSource(vtkLightPropagationMaps::CONSTANT);
@@ -166,6 +168,28 @@ void RunMaps(
   maps->Update();
   outcome.residual = maps->GetResidual() / maps->GetTolerance();
   ReadLight(maps->GetOutput(), outcome);
+}
+
+void RunOrdinates(const StressScene& scene, Listener* listener, StressOutcome& outcome)
+{
+  vtkNew<vtkLightRig> rig;
+  SetRig(rig, scene);
+  vtkNew<vtkDiscreteOrdinates> ordinates;
+  listener->Hear(rig);
+  listener->Hear(ordinates);
+  ordinates->SetInputDataObject(ImageOf(scene));
+  ordinates->SetLightsConnection(rig->GetOutputPort());
+  ordinates->SetSkyColor(scene.sky[0], scene.sky[1], scene.sky[2]);
+  std::array<double, 6> faces = scene.faces;
+  ordinates->SetFaceRadiance(faces.data());
+  ordinates->SetPeriodicX(scene.periodic[0]);
+  ordinates->SetPeriodicY(scene.periodic[1]);
+  ordinates->SetPeriodicZ(scene.periodic[2]);
+  ordinates->SetNetFlux(true);
+  ordinates->SetMaximumOrders(StressOrdersOrdinates);
+  ordinates->Update();
+  outcome.residual = ordinates->GetResidual() / ordinates->GetTolerance();
+  ReadLight(ordinates->GetOutput(), outcome);
 }
 
 /// Emitter and marcher, and what may stand before and after them.
@@ -311,8 +335,9 @@ void RunView(bool bent, const StressScene& scene, Listener* listener, StressOutc
 
 const char* NameOf(StressSolver solver)
 {
-  static const char* const names[] = { "maps", "maps, all", "maps, orders", "maps, parallel", "maps, sequential",
-    "photons", "photons, published", "rebuilt", "rebuilt, published", "octree", "view", "view, bent" };
+  static const char* const names[] = { "maps", "maps, all", "maps, moments", "maps, orders", "maps, parallel",
+    "maps, sequential", "ordinates", "photons", "photons, published", "rebuilt", "rebuilt, published", "octree", "view",
+    "view, bent" };
   return names[static_cast<int>(solver)];
 }
 
@@ -323,7 +348,17 @@ bool IsMaps(StressSolver solver)
 
 bool EndsByTolerance(StressSolver solver)
 {
-  return solver == StressSolver::Maps || solver == StressSolver::MapsAll;
+  return solver == StressSolver::Maps || solver == StressSolver::MapsAll || solver == StressSolver::MapsMoments;
+}
+
+bool IsGrid(StressSolver solver)
+{
+  return IsMaps(solver) || solver == StressSolver::Ordinates;
+}
+
+bool CountsOrders(StressSolver solver)
+{
+  return solver == StressSolver::MapsByOrders || solver == StressSolver::Ordinates;
 }
 
 bool IsPhotons(StressSolver solver)
@@ -339,6 +374,10 @@ bool IsView(StressSolver solver)
 bool Concerns(StressSolver solver, const StressCase& stressCase)
 {
   const StressScene& scene = stressCase.scene;
+  if (stressCase.forward || solver == StressSolver::MapsMoments)
+  {
+    return stressCase.forward && (solver == StressSolver::MapsMoments || solver == StressSolver::Ordinates);
+  }
   if (IsPhotons(solver))
   {
     return !scene.lamps.empty() || scene.sky != Vector{};
@@ -389,6 +428,10 @@ StressOutcome RunStress(StressSolver solver, const StressScene& scene, double to
   if (IsMaps(solver))
   {
     RunMaps(solver, scene, tolerance, listener, outcome);
+  }
+  else if (solver == StressSolver::Ordinates)
+  {
+    RunOrdinates(scene, listener, outcome);
   }
   else if (IsView(solver))
   {

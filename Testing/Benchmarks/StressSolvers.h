@@ -12,9 +12,11 @@ enum class StressSolver
 {
   Maps,             ///< light propagation maps, conservative, untouched
   MapsAll,          ///< the same, with nothing left out
+  MapsMoments,      ///< the same, scattering in angular moments as the phase function asks for: of media with g alone
   MapsByOrders,     ///< conservative, one scattering order after the other, a constant source
   MapsParallel,     ///< as published, Algorithm 2
   MapsSequential,   ///< as published, Algorithm 1
+  Ordinates,        ///< discrete ordinates, conservative
   Photons,          ///< emitter and marcher, conservative
   PhotonsPublished, ///< as published
   Rebuilt,          ///< importance, emitter, marcher, reconstruction, conservative
@@ -27,6 +29,8 @@ enum class StressSolver
 
 const char* NameOf(StressSolver solver);
 bool IsMaps(StressSolver solver);
+bool IsGrid(StressSolver solver);          ///< maps, or discrete ordinates
+bool CountsOrders(StressSolver solver);    ///< conservative, with as many orders whatever is left
 bool EndsByTolerance(StressSolver solver); ///< others do as many orders whatever it is
 bool IsPhotons(StressSolver solver);       ///< photons, reconstructed or not
 bool IsView(StressSolver solver);
@@ -65,7 +69,7 @@ StressOutcome RunStress(StressSolver solver, const StressScene& scene, double to
 std::vector<float> IndexToView(const StressScene& scene);
 
 /// Scattering orders at most, of the maps that are not accelerated; as published they are slow where voxels are 1:1000.
-constexpr int StressOrders = 10, StressOrdersPublished = 1;
+constexpr int StressOrders = 10, StressOrdersPublished = 1, StressOrdersOrdinates = 40;
 /// Photons of each chain.
 constexpr int StressPhotons = 20000;
 }
