@@ -5,6 +5,8 @@
 //   TABLE   values of the phase function over the angle, evenly from 0 to pi
 #include "DiscreteOrdinates/LampScatteringShared.h"
 
+#define MOST_TILT 0.98f // as LampScattering.cxx has it
+
 // The way of its light in a voxel; 0 in the voxel that it is in, where light goes every way.
 inline float3 from_lamp(const LampInRays* lamp, ulong i)
 {
@@ -98,8 +100,10 @@ __kernel void scatter_from_place(__global float* source, const __global float* s
   }
   const float sum = sum8(sums);
   const float mean = sum8(firsts) / sum, square = sum8(seconds) / sum;
-  const float wanted = square > 0.0f ? (lamp.meanCosine - mean) / (square - lamp.meanCosine * mean) : 0.0f;
-  const float tilt = clamp(wanted, -1.0f, 1.0f);
+  const float lacking = lamp.meanCosine - mean, slope = square - lamp.meanCosine * mean;
+  // A peak so narrow that it is in one direction alone cannot be turned: less than 1, so that its power is not a
+  // difference that cancels.
+  const float tilt = slope > 1e-6f ? clamp(lacking / slope, -MOST_TILT, MOST_TILT) : copysign(MOST_TILT, lacking);
   const float power = path[i] * lamp.perVolume * sigma_s[i] / (sum * (1.0f + tilt * mean));
   for (int group = 0; group < GROUPS; ++group)
   {

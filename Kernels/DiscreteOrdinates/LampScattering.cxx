@@ -19,10 +19,13 @@ namespace tyndall
 {
 namespace
 {
+constexpr double MostTilt = 0.98; ///< as LampScattering.cl has it
+constexpr double Least = 1e-9;    ///< of the phase function, 1/sr
 constexpr int TableSize = 1024;
 constexpr int MeansDegree = 256; ///< of moments; a cell's mean has forgotten those beyond
 
-/// The phase function averaged over a cell, over the angle from 0 to pi; nowhere negative. 1/sr
+/// The phase function averaged over a cell, over the angle from 0 to pi; nowhere negative, and nowhere 0: parts of what
+/// is all in one place can still be taken. 1/sr
 std::vector<float> MeansByAngle(const PhaseFunction& function, double solidAngle)
 {
   const std::vector<double> moments = function.Moments(MeansDegree), cap = CapMoments(solidAngle, MeansDegree);
@@ -36,7 +39,7 @@ std::vector<float> MeansByAngle(const PhaseFunction& function, double solidAngle
     {
       mean += (2.0 * l + 1.0) / (4.0 * Pi) * moments[l] * cap[l] * p[l];
     }
-    table.push_back(static_cast<float>(std::max(mean, 0.0))); // series have ripples
+    table.push_back(static_cast<float>(std::max(mean, Least))); // series have ripples
   }
   return table;
 }
@@ -92,7 +95,9 @@ std::vector<float> LampScattering::PartsAlong(const std::array<double, 3>& ray) 
   }
   mean /= sum;
   square /= sum;
-  const double tilt = std::clamp((this->MeanCosine - mean) / (square - this->MeanCosine * mean), -1.0, 1.0);
+  const double lacking = this->MeanCosine - mean, slope = square - this->MeanCosine * mean;
+  const double tilt =
+    slope > 1e-6 ? std::clamp(lacking / slope, -MostTilt, MostTilt) : std::copysign(MostTilt, lacking);
   return this->Groups.Table(
     [&](int g, int lane) { return phase(g, lane) * (1.0 + tilt * cosine(g, lane)) / (sum * (1.0 + tilt * mean)); });
 }

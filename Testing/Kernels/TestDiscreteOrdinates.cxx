@@ -243,6 +243,26 @@ TEST_F(DiscreteOrdinates, ScatterALampTheSameToAllSides)
   EXPECT_LT(light.balance.RelativeError(1), 1e-5);
 }
 
+TEST_F(DiscreteOrdinates, ScatterLampsByPeaksThatAreNarrowerThanTheirDirections)
+{
+  for (double g : { -0.999, 0.99, 0.999 })
+  {
+    LitMedium scene({ 9, 9, 9 }, 0.05f, 1.0f);
+    Light lamp;
+    lamp.type = LightType::Point;
+    lamp.position = { 3.3, 4.4, 5.2 };
+    lamp.power = { 5.0, 5.0, 5.0 };
+    scene.light.lights.push_back(lamp);
+    const std::array<double, 3> along = EquiangularDirections(25).directions[3].omega;
+    scene.ShineAlong(along);
+    scene.ScatterWith(g);
+    scene.how.maximumOrders = 20;
+    const LightField light = scene.SolveOrdinates(this->GetDevice());
+    ExpectFiniteAndNotNegative(light.fluence);
+    EXPECT_LT(light.balance.RelativeError(1), 1e-5) << g;
+  }
+}
+
 TEST_F(DiscreteOrdinates, AreComparedWithTheOthers)
 {
   LitMedium scene({ 8, 8, 8 }, 0.05f, 0.1f);
