@@ -96,7 +96,7 @@ void DiffusionSystem::RunOnArrays(const char* name, const More&... more)
   cl::Kernel kernel = this->Kernel(name);
   With(kernel, this->Layout, *the.sigma_t, *the.sigma_a, *the.swept, this->FlatSource, this->Solver.Conductance(),
     *the.partialCurrents, this->The.passed ? *this->The.passed : this->Model, this->Model, this->Pattern, *the.source,
-    *the.path, *the.given, cl_ulong(the.functionStride), more...);
+    *the.path, *the.given, the.givenFlux ? *the.givenFlux : *the.given, more...);
   this->Run(kernel);
 }
 
@@ -171,9 +171,9 @@ SurfacePowers DiffusionSystem::PowersAtSurface() const
   return powers;
 }
 
-void DiffusionSystem::AddFluxBeyondSweep(const Buffer<float>& path)
+void DiffusionSystem::AddFluxBeyondSweep(const Buffer<float>& path, const MomentPlaces& places, int channel)
 {
-  this->RunOnArrays("diffusion_flux_beyond_sweep", this->Next.Handle(), path);
+  this->RunOnArrays("diffusion_flux_beyond_sweep", this->Next.Handle(), places, cl_int(channel), path);
 }
 
 void DiffusionSystem::AddFlux(const Buffer<float>& flux)

@@ -6,6 +6,7 @@
 #include "LightPropagation/Diffusion/DiffusionShared.h"
 #include "LightPropagation/Diffusion/MultigridSolver.h"
 #include "LightPropagation/Diffusion/SurfacePowers.h"
+#include "LightPropagation/Sweep/MomentPlacesShared.h"
 #include "Medium/Grid.h"
 
 #include <array>
@@ -32,12 +33,12 @@ public:
   struct Arrays
   {
     std::size_t stride, firstT, first;    ///< where this channel begins, in sigma_t and in the others
-    std::size_t functionStride;           ///< from one angular moment to the next, in given, source and path
     const Buffer<float>* sigma_t;         ///< 1/length, that light diffuses with: sigma_a and sigma_s (1 - g)
     const Buffer<float>* swept;           ///< 1/length, sigma_t of the sweeps
     const Buffer<float>* sigma_a;         ///< 1/length
     const Buffer<float>* sigma_s;         ///< 1/length
     const Buffer<float>* given;           ///< emitted, and uncollided light that is scattered, W / (length^3 sr)
+    const Buffer<float>* givenFlux;       ///< of angular moments: net flux over 4 pi, [channel][x, y, z][stride]; null: isotropic
     const Buffer<float>* source;          ///< of a sweep, W / (length^3 sr)
     const Buffer<float>* path;            ///< W length, that it found
     const Buffer<float>* partialCurrents; ///< W, [channel][-x, +x, -y, +y, -z, +z][stride], that it found
@@ -75,7 +76,8 @@ public:
 
   /// Add to the moments of a sweep's path by how much the net flux of NextFluence() differs from that of what the sweep
   /// found, W length (numerics.md, Eq. (70a)).
-  void AddFluxBeyondSweep(const Buffer<float>& path);
+  /// @param places, channel  where the moments are
+  void AddFluxBeyondSweep(const Buffer<float>& path, const MomentPlaces& places, int channel);
 
   /// Add the net flux times the voxel's volume to [channel][x, y, z][stride].
   void AddFlux(const Buffer<float>& flux);

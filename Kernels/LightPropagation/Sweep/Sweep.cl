@@ -62,10 +62,9 @@ static void transpose(real* rows)
 }
 
 // Where voxel (u, v) of a plane is.
-static ulong place_of(const PlaneInfo* layout, int u, int v, int plane)
+static ulong place_of(const PlaneInfo* layout, const PlaneSteps* step, int u, int v, int plane)
 {
-  return (ulong)(layout->firstU + u) * layout->stepU + (ulong)(layout->firstV + v) * layout->stepV +
-    (ulong)(layout->firstP + plane) * layout->stepP;
+  return (layout->firstU + u) * step->u + (layout->firstV + v) * step->v + (layout->firstP + plane) * step->p;
 }
 
 // Of all quantities of a plane.
@@ -83,27 +82,39 @@ static void clear(__global float* floats, int count)
   }
 }
 
+// How packed rows follow each other, in floats: `plane` from one plane to the next.
+typedef struct
+{
+  int row, plane;
+} packed_rows;
+
+static packed_rows rows_of_planes(const PlaneInfo* layout)
+{
+  const packed_rows rows = { PLANES * ROW, plane_floats(layout) };
+  return rows;
+}
+
 // Copy one quantity of planes [first, first + count) into scratch, rows filled up with zeros. May read, not use, a
 // vector beyond the last voxel.
-static void pack(const PlaneInfo* layout, __global float* to, int first, int count, const __global float* volume)
+static void pack(const PlaneInfo* layout, const PlaneSteps* step, packed_rows rows, __global float* to, int first,
+  int count, const __global float* volume)
 {
-  const int plane = plane_floats(layout);
   for (int v = 0; v < layout->sizeV; ++v)
   {
     for (int u = 0; u < layout->width; u += REAL_WIDTH)
     {
       const integer beyond = LANES >= layout->sizeU - u;
-      const __global float* from = volume + place_of(layout, u, v, first);
+      const __global float* from = volume + place_of(layout, step, u, v, first);
       if (layout->block == 1)
       {
-        store_real(select(load_real(0, from), (real)0.0f, beyond), v * PLANES * ROW + u, to);
+        store_real(select(load_real(0, from), (real)0.0f, beyond), v * rows.row + u, to);
         continue;
       }
       real columns[REAL_WIDTH];
 #pragma unroll
       for (int i = 0; i < REAL_WIDTH; ++i)
       {
-        columns[i] = load_real((ulong)min(i, layout->sizeU - 1 - u) * layout->stepU, from);
+        columns[i] = load_real(min(i, layout->sizeU - 1 - u) * step->u, from);
       }
       transpose(columns);
 #pragma unroll
@@ -111,7 +122,7 @@ static void pack(const PlaneInfo* layout, __global float* to, int first, int cou
       {
         if (j < count)
         {
-          store_real(select(columns[j], (real)0.0f, beyond), j * plane + v * PLANES * ROW + u, to);
+          store_real(select(columns[j], (real)0.0f, beyond), j * rows.plane + v * rows.row + u, to);
         }
       }
     }
@@ -146,36 +157,35 @@ static void add_one(float value, __global float* sum, __global float* lost)
 
 // Add one quantity of the planes, with a sign, to the volume; exactly their voxels are touched, as others may be in
 // work elsewhere.
-static void unpack(const PlaneInfo* layout, const __global float* from, int first, int count, float sign,
-  __global float* volume, __global float* lost)
+static void unpack(const PlaneInfo* layout, const PlaneSteps* step, packed_rows rows, const __global float* from,
+  int first, int count, float sign, __global float* volume, __global float* lost)
 {
-  const int plane = plane_floats(layout);
   for (int v = 0; v < layout->sizeV; ++v)
   {
     for (int u = 0; u < layout->sizeU; u += REAL_WIDTH)
     {
-      const ulong at = place_of(layout, u, v, first);
+      const ulong at = place_of(layout, step, u, v, first);
       const int used = min(REAL_WIDTH, layout->sizeU - u);
       if (layout->block == 1 && used == REAL_WIDTH)
       {
-        add_real(sign * load_real(v * PLANES * ROW + u, from), volume + at, lost ? lost + at : 0);
+        add_real(sign * load_real(v * rows.row + u, from), volume + at, lost ? lost + at : 0);
       }
       else if (layout->block > 1 && count == REAL_WIDTH)
       {
-        real rows[REAL_WIDTH];
+        real columns[REAL_WIDTH];
 #pragma unroll
         for (int j = 0; j < REAL_WIDTH; ++j)
         {
-          rows[j] = sign * load_real(j * plane + v * PLANES * ROW + u, from);
+          columns[j] = sign * load_real(j * rows.plane + v * rows.row + u, from);
         }
-        transpose(rows);
+        transpose(columns);
 #pragma unroll
         for (int i = 0; i < REAL_WIDTH; ++i)
         {
           if (i < used)
           {
-            const ulong row = at + (ulong)i * layout->stepU;
-            add_real(rows[i], volume + row, lost ? lost + row : 0);
+            const ulong row = at + i * step->u;
+            add_real(columns[i], volume + row, lost ? lost + row : 0);
           }
         }
       }
@@ -185,8 +195,8 @@ static void unpack(const PlaneInfo* layout, const __global float* from, int firs
         {
           for (int j = 0; j < count; ++j)
           {
-            const ulong voxel = at + (ulong)i * layout->stepU + (ulong)j * layout->stepP;
-            add_one(sign * from[j * plane + v * PLANES * ROW + u + i], volume + voxel, lost ? lost + voxel : 0);
+            const ulong voxel = at + i * step->u + j * step->p;
+            add_one(sign * from[j * rows.plane + v * rows.row + u + i], volume + voxel, lost ? lost + voxel : 0);
           }
         }
       }
@@ -208,29 +218,53 @@ static void find_thin_rows(const PlaneInfo* layout, const __global float* sigma,
   }
 }
 
-// Where moment k of a plane is in source and path: functions are in the order of the axis.
-static ulong moment_place(const SweepInfo* info, const __global int* functions, int k)
-{
 #if DEGREE
-  return functions[k] * info->functionStride;
-#else
-  return 0;
-#endif
+// Pack the functions from the second on, of source.
+static void pack_moments(const SweepInfo* info, __global float* to, int first, int count, const __global float* source)
+{
+  const packed_rows rows = { MOMENT_PLANE_ROW, info->planes.sizeV * MOMENT_PLANE_ROW };
+  for (int c = 0; c < CHANNELS; ++c)
+  {
+    for (int k = 1; k < MOMENTS; ++k)
+    {
+      const ulong from = (ulong)(c * HIGHER + k - 1) * info->moments.row;
+      pack(&info->planes, &info->momentStep, rows, to + (c * HIGHER + k - 1) * MOMENT_ROW, first, count, source + from);
+    }
+  }
 }
 
+static void unpack_moments(const SweepInfo* info, const __global float* from, int first, int count,
+  __global float* path)
+{
+  const packed_rows rows = { MOMENT_PLANE_ROW, info->planes.sizeV * MOMENT_PLANE_ROW };
+  for (int c = 0; c < CHANNELS; ++c)
+  {
+    for (int k = 1; k < MOMENTS; ++k)
+    {
+      const ulong to = (ulong)(c * HIGHER + k - 1) * info->moments.row;
+      unpack(&info->planes, &info->momentStep, rows, from + (c * HIGHER + k - 1) * MOMENT_ROW, first, count, 1.0f,
+        path + to, 0);
+    }
+  }
+}
+#endif
+
 // Make planes [first, first + count) ready to be crossed.
+// @param beams  of the source
 static void begin_planes(const SweepInfo* info, __global float* planes, __global int* thin, int first, int count,
-  const __global float* sigma, const __global float* source, const __global int* functions)
+  const __global float* sigma, const __global float* source, const __global float* beams)
 {
   const PlaneInfo* layout = &info->planes;
-  pack(layout, planes + PlaneSigma * ROW, first, count, sigma);
+  const packed_rows rows = rows_of_planes(layout);
+  pack(layout, &layout->step, rows, planes + PlaneSigma * ROW, first, count, sigma);
 #if SOURCE
-  for (int k = 0; k < MOMENTS + BEAMS; ++k)
+  for (int c = 0; c < CHANNELS; ++c)
   {
-    for (int c = 0; c < CHANNELS; ++c)
+    pack(layout, &layout->step, rows, planes + (PlaneSource + c) * ROW, first, count, source + c * info->stride);
+    for (int b = 0; b < BEAMS; ++b)
     {
-      const ulong place = k < MOMENTS ? moment_place(info, functions, k) : k * info->functionStride;
-      pack(layout, planes + (PlaneSource + k * CHANNELS + c) * ROW, first, count, source + place + c * info->stride);
+      pack(layout, &layout->step, rows, planes + (PLANE_BEAMS + b * CHANNELS + c) * ROW, first, count,
+        beams + (b * info->moments.channels + c) * info->stride);
     }
   }
 #endif
@@ -284,10 +318,10 @@ static void add_own_light(const PlaneInfo* layout, __global float* row, const __
 // Add what the planes gathered to the volume.
 // own      [plane from where rays start] of the first plane crossed
 static void end_planes(const SweepInfo* info, __global float* planes, int first, int count, __global float* path,
-  __global float* lost, __global float* flux, __global float* currents, const __global int* functions,
-  const __global OwnLightInfo* own, int backward)
+  __global float* lost, __global float* flux, __global float* currents, const __global OwnLightInfo* own, int backward)
 {
   const PlaneInfo* layout = &info->planes;
+  const packed_rows rows = rows_of_planes(layout);
   const ulong stride = info->stride;
   const int axis = info->axis;
 #if SOURCE && !DEGREE
@@ -301,26 +335,22 @@ static void end_planes(const SweepInfo* info, __global float* planes, int first,
 #endif
   for (int c = 0; c < CHANNELS; ++c)
   {
-    for (int k = 0; k < MOMENTS; ++k)
-    {
-      const ulong place = moment_place(info, functions, k);
-      unpack(layout, planes + (PLANE_PATH + k * CHANNELS + c) * ROW, first, count, 1.0f, path + place + c * stride,
-        PERIODIC_P && place == 0 ? lost + c * stride : 0);
-    }
+    unpack(layout, &layout->step, rows, planes + (PLANE_PATH + c) * ROW, first, count, 1.0f, path + c * stride,
+      PERIODIC_P ? lost + c * stride : 0);
 #if NET_FLUX
     const __global float* fluxes = planes + (PLANE_FLUX + 3 * c) * ROW;
-    unpack(layout, fluxes, first, count, 1.0f, flux + (3 * c + (axis == 0 ? 1 : 0)) * stride, 0);
-    unpack(layout, fluxes + ROW, first, count, 1.0f, flux + (3 * c + (axis == 2 ? 1 : 2)) * stride, 0);
-    unpack(layout, fluxes + 2 * ROW, first, count, backward ? -1.0f : 1.0f, flux + (3 * c + axis) * stride, 0);
+    unpack(layout, &layout->step, rows, fluxes, first, count, 1.0f, flux + (3 * c + (axis == 0 ? 1 : 0)) * stride, 0);
+    unpack(layout, &layout->step, rows, fluxes + ROW, first, count, 1.0f, flux + (3 * c + (axis == 2 ? 1 : 2)) * stride, 0);
+    unpack(layout, &layout->step, rows, fluxes + 2 * ROW, first, count, backward ? -1.0f : 1.0f, flux + (3 * c + axis) * stride, 0);
 #endif
 #if CURRENTS
     const int aside[2] = { axis == 0 ? 1 : 0, axis == 2 ? 1 : 2 };
     const __global float* entered = planes + (PLANE_CURRENTS + CurrentFaces * c) * ROW;
     __global float* faces = currents + 6 * c * stride;
-    unpack(layout, entered, first, count, 1.0f, faces + (2 * axis + backward) * stride, 0);
+    unpack(layout, &layout->step, rows, entered, first, count, 1.0f, faces + (2 * axis + backward) * stride, 0);
     for (int side = 0; side < 4; ++side)
     {
-      unpack(layout, entered + (CurrentLowU + side) * ROW, first, count, 1.0f,
+      unpack(layout, &layout->step, rows, entered + (CurrentLowU + side) * ROW, first, count, 1.0f,
         faces + (2 * aside[side / 2] + side % 2) * stride, 0);
     }
 #endif
@@ -384,16 +414,14 @@ static void cross_bundles(sweep_state* state, __global float* maps, const __glob
 }
 
 // sigma     1/length, [voxel]
-// source    W / (length^3 sr), [function, then beam][channel][stride]
-// path      W length, [function][channel][stride], added to
+// source    W / (length^3 sr), with its angular moments and beams (MomentPlacesShared.h)
+// path      W length, with its angular moments, added to
 // lost      as path: what rounding took from it in this sweep, where PERIODIC_P
 // flux      W length, [channel][x, y, z][stride], added to
 // currents  W, [channel][-x, +x, -y, +y, -z, +z][stride], added to: through that face into the voxel
 // maps      rays of both ways
 // outside, radiance   rays that come in, both ways as maps
 // coefficients  see BundleInfo, both ways as maps
-// functions the angular functions in the order of the axis: even and even along u and v, odd and even, even and odd,
-//           odd and odd
 // crossings [plane of the ray pattern][bundle]
 // own       [unit][plane from where rays start], see add_own_light
 // schedule  [launch][unit] first plane and end, counted from where rays start; beyond the last plane the axis begins
@@ -403,7 +431,7 @@ __kernel __attribute__((reqd_work_group_size(1, 1, 1))) void sweep(SweepInfo inf
   const __global float* source, __global float* path, __global float* lost, __global float* flux,
   __global float* currents, __global float* maps, const __global float* outside, const __global float* radiance,
   __global float* scratch, const __global UnitInfo* units, const __global BundleInfo* bundles,
-  const __global float* coefficients, const __global int* functions, const __global CrossingInfo* crossings,
+  const __global float* coefficients, const __global CrossingInfo* crossings,
   const __global OwnLightInfo* own, const __global int2* schedule, __global float* tally)
 {
   const int u = get_global_id(0);
@@ -427,6 +455,19 @@ __kernel __attribute__((reqd_work_group_size(1, 1, 1))) void sweep(SweepInfo inf
   state.moving = state.ring + rings;
   __global float* planes = state.moving + RAYS_OF_ROW + PAD; // past the last row's border
   __global int* thin = (__global int*)(planes + layout.block * plane_floats(&layout));
+#if DEGREE
+  const ulong higher = info.moments.second + (ulong)info.firstChannel * HIGHER * info.moments.row;
+  const __global float* higher_source = source + higher;
+  __global float* higher_path = path + higher;
+  const __global float* beams = source + info.moments.beams + info.first;
+#if !MOMENTS_IN_PLACE
+  const int moment_plane = layout.sizeV * MOMENT_PLANE_ROW;
+  __global float* packed_source = (__global float*)thin + layout.block * layout.sizeV + REAL_WIDTH;
+  __global float* packed_path = packed_source + layout.block * moment_plane;
+#endif
+#else
+  const __global float* beams = source;
+#endif
   for (int i = 0; i < MeanLengthTerms; ++i)
   {
     state.meanLength[i] = layout.meanLength[i];
@@ -458,12 +499,28 @@ __kernel __attribute__((reqd_work_group_size(1, 1, 1))) void sweep(SweepInfo inf
     const int lap = begin / layout.sizeP * layout.sizeP; // planes already marched when the axis began anew
     count = min(min(layout.block, range.y - begin), lap + layout.sizeP - begin);
     const int first = unit.backward ? layout.sizeP - (begin - lap) - count : begin - lap;
-    begin_planes(&info, planes, thin, first, count, sigma, source, functions);
+    begin_planes(&info, planes, thin, first, count, sigma, source, beams);
+#if DEGREE && !MOMENTS_IN_PLACE
+#if SOURCE
+    pack_moments(&info, packed_source, first, count, higher_source);
+#endif
+    clear(packed_path, count * moment_plane);
+#endif
     for (int k = begin; k < begin + count; ++k)
     {
       const int plane = unit.backward ? layout.sizeP - 1 - (k - lap) : k - lap;
       state.planes = planes + (plane - first) * plane_floats(&layout);
       state.thin = thin + (plane - first) * layout.sizeV;
+#if DEGREE && MOMENTS_IN_PLACE
+      const ulong higher_plane = place_of(&layout, &info.momentStep, 0, 0, plane);
+      state.momentSource = higher_source + higher_plane;
+      state.momentPath = higher_path + higher_plane;
+      state.momentStep = info.momentStep.v;
+#elif DEGREE
+      state.momentSource = packed_source + (plane - first) * moment_plane;
+      state.momentPath = packed_path + (plane - first) * moment_plane;
+      state.momentStep = MOMENT_PLANE_ROW;
+#endif
       for (int side = 0; side < 4; ++side)
       {
         for (int c = 0; c < CHANNELS; ++c)
@@ -486,7 +543,10 @@ __kernel __attribute__((reqd_work_group_size(1, 1, 1))) void sweep(SweepInfo inf
         }
       }
     }
-    end_planes(&info, planes, first, count, path, lost, flux, currents, functions, own + u * info.patternPlanes + begin,
+    end_planes(&info, planes, first, count, path, lost, flux, currents, own + u * info.patternPlanes + begin,
       unit.backward);
+#if DEGREE && !MOMENTS_IN_PLACE
+    unpack_moments(&info, packed_path, first, count, higher_path);
+#endif
   }
 }
