@@ -40,7 +40,7 @@ std::string DefineMoments(const SweepPlan& plan)
   return Define("DEGREE", plan.angular->degree) + Define("BEAMS", plan.angular->Beams()) +
     Define("EVEN_EVEN", evenEven) + Define("ODD_EVEN", oddEven) + Define("EVEN_ODD", evenOdd) +
     Define("ODD_ODD", oddOdd) + Define("FUNCTION_ORDER", plan.order.functions) +
-    Define("MOMENT_ROW", plan.momentRow) + Define("MOMENTS_IN_PLACE", plan.momentsInPlace) +
+    Define("MOMENTS_IN_PLACE", plan.momentsInPlace) +
     Define("TILE", RowsTogether);
 }
 
@@ -240,7 +240,8 @@ void AxisSweep::Implementation::Launch(cl::Kernel kernel, const SweepVolume& vol
   info.axis = plan.axes.axis;
   info.planes = plan.plane;
   info.moments = plan.moments;
-  info.momentStep = plan.momentStep;
+  info.packedMoments = plan.momentRow;
+  info.sizeY = plan.grid.size[1];
   info.firstChannel = volume.firstChannel;
   for (int launch = 0; launch < schedule.launches; ++launch)
   {

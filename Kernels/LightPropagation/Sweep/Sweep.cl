@@ -62,9 +62,10 @@ static void transpose(real* rows)
 }
 
 // Where voxel (u, v) of a plane is.
-static ulong place_of(const PlaneInfo* layout, const PlaneSteps* step, int u, int v, int plane)
+static ulong place_of(const PlaneInfo* layout, int u, int v, int plane)
 {
-  return (layout->firstU + u) * step->u + (layout->firstV + v) * step->v + (layout->firstP + plane) * step->p;
+  return (ulong)(layout->firstU + u) * layout->stepU + (ulong)(layout->firstV + v) * layout->stepV +
+    (ulong)(layout->firstP + plane) * layout->stepP;
 }
 
 // Of all quantities of a plane.
@@ -82,49 +83,47 @@ static void clear(__global float* floats, int count)
   }
 }
 
-// How packed rows follow each other, in floats: `plane` from one plane to the next.
-typedef struct
+// A vector of rows, `step` floats apart, of a vector of planes: becomes as many vectors along the rows, `plane` floats
+// apart.
+// @param last  row that there is
+// @param count  planes that are wanted
+static inline __attribute__((always_inline)) void pack_block(const __global float* from, ulong step, int last,
+  integer beyond, __global float* to, int plane, int count)
 {
-  int row, plane;
-} packed_rows;
-
-static packed_rows rows_of_planes(const PlaneInfo* layout)
-{
-  const packed_rows rows = { PLANES * ROW, plane_floats(layout) };
-  return rows;
+  real columns[REAL_WIDTH];
+#pragma unroll
+  for (int i = 0; i < REAL_WIDTH; ++i)
+  {
+    columns[i] = load_real(min(i, last) * step, from);
+  }
+  transpose(columns);
+#pragma unroll
+  for (int j = 0; j < REAL_WIDTH; ++j)
+  {
+    if (j < count)
+    {
+      store_real(select(columns[j], (real)0.0f, beyond), j * plane, to);
+    }
+  }
 }
 
 // Copy one quantity of planes [first, first + count) into scratch, rows filled up with zeros. May read, not use, a
 // vector beyond the last voxel.
-static void pack(const PlaneInfo* layout, const PlaneSteps* step, packed_rows rows, __global float* to, int first,
-  int count, const __global float* volume)
+static void pack(const PlaneInfo* layout, __global float* to, int first, int count, const __global float* volume)
 {
   for (int v = 0; v < layout->sizeV; ++v)
   {
     for (int u = 0; u < layout->width; u += REAL_WIDTH)
     {
       const integer beyond = LANES >= layout->sizeU - u;
-      const __global float* from = volume + place_of(layout, step, u, v, first);
+      const __global float* from = volume + place_of(layout, u, v, first);
+      __global float* here = to + v * PLANES * ROW + u;
       if (layout->block == 1)
       {
-        store_real(select(load_real(0, from), (real)0.0f, beyond), v * rows.row + u, to);
+        store_real(select(load_real(0, from), (real)0.0f, beyond), 0, here);
         continue;
       }
-      real columns[REAL_WIDTH];
-#pragma unroll
-      for (int i = 0; i < REAL_WIDTH; ++i)
-      {
-        columns[i] = load_real(min(i, layout->sizeU - 1 - u) * step->u, from);
-      }
-      transpose(columns);
-#pragma unroll
-      for (int j = 0; j < REAL_WIDTH; ++j)
-      {
-        if (j < count)
-        {
-          store_real(select(columns[j], (real)0.0f, beyond), j * rows.plane + v * rows.row + u, to);
-        }
-      }
+      pack_block(from, layout->stepU, layout->sizeU - 1 - u, beyond, here, plane_floats(layout), count);
     }
   }
 }
@@ -155,39 +154,48 @@ static void add_one(float value, __global float* sum, __global float* lost)
   }
 }
 
+// What pack_block did, undone: added to the volume with a sign.
+// @param used  rows that are there
+static inline __attribute__((always_inline)) void unpack_block(const __global float* from, int plane, float sign,
+  __global float* volume, __global float* lost, ulong step, int used)
+{
+  real rows[REAL_WIDTH];
+#pragma unroll
+  for (int j = 0; j < REAL_WIDTH; ++j)
+  {
+    rows[j] = sign * load_real(j * plane, from);
+  }
+  transpose(rows);
+#pragma unroll
+  for (int i = 0; i < REAL_WIDTH; ++i)
+  {
+    if (i < used)
+    {
+      add_real(rows[i], volume + i * step, lost ? lost + i * step : 0);
+    }
+  }
+}
+
 // Add one quantity of the planes, with a sign, to the volume; exactly their voxels are touched, as others may be in
 // work elsewhere.
-static void unpack(const PlaneInfo* layout, const PlaneSteps* step, packed_rows rows, const __global float* from,
-  int first, int count, float sign, __global float* volume, __global float* lost)
+static void unpack(const PlaneInfo* layout, const __global float* from, int first, int count, float sign,
+  __global float* volume, __global float* lost)
 {
+  const int plane = plane_floats(layout);
   for (int v = 0; v < layout->sizeV; ++v)
   {
     for (int u = 0; u < layout->sizeU; u += REAL_WIDTH)
     {
-      const ulong at = place_of(layout, step, u, v, first);
+      const ulong at = place_of(layout, u, v, first);
       const int used = min(REAL_WIDTH, layout->sizeU - u);
+      const __global float* here = from + v * PLANES * ROW + u;
       if (layout->block == 1 && used == REAL_WIDTH)
       {
-        add_real(sign * load_real(v * rows.row + u, from), volume + at, lost ? lost + at : 0);
+        add_real(sign * load_real(0, here), volume + at, lost ? lost + at : 0);
       }
       else if (layout->block > 1 && count == REAL_WIDTH)
       {
-        real columns[REAL_WIDTH];
-#pragma unroll
-        for (int j = 0; j < REAL_WIDTH; ++j)
-        {
-          columns[j] = sign * load_real(j * rows.plane + v * rows.row + u, from);
-        }
-        transpose(columns);
-#pragma unroll
-        for (int i = 0; i < REAL_WIDTH; ++i)
-        {
-          if (i < used)
-          {
-            const ulong row = at + i * step->u;
-            add_real(columns[i], volume + row, lost ? lost + row : 0);
-          }
-        }
+        unpack_block(here, plane, sign, volume + at, lost ? lost + at : 0, layout->stepU, used);
       }
       else
       {
@@ -195,8 +203,8 @@ static void unpack(const PlaneInfo* layout, const PlaneSteps* step, packed_rows 
         {
           for (int j = 0; j < count; ++j)
           {
-            const ulong voxel = at + i * step->u + j * step->p;
-            add_one(sign * from[j * rows.plane + v * rows.row + u + i], volume + voxel, lost ? lost + voxel : 0);
+            const ulong voxel = at + (ulong)i * layout->stepU + (ulong)j * layout->stepP;
+            add_one(sign * here[j * plane + i], volume + voxel, lost ? lost + voxel : 0);
           }
         }
       }
@@ -218,32 +226,83 @@ static void find_thin_rows(const PlaneInfo* layout, const __global float* sigma,
   }
 }
 
-#if DEGREE
-// Pack the functions from the second on, of source.
+#if DEGREE && !MOMENTS_IN_PLACE
+// Of the functions from the second on, where planes from `first` on, all of one group, have row (u, v) of a channel.
+static ulong moments_of(const SweepInfo* info, int channel, int u, int v, int first)
+{
+  const PlaneInfo* layout = &info->planes;
+  const ulong line = (ulong)(layout->firstV + v) * info->sizeY + layout->firstU + u; // along x rows are y and z
+  return (line * info->moments.channels + channel) * info->moments.groups * GROUP + IN_ROW(layout->firstP + first);
+}
+
+// And where packed planes have it.
+static int packed_moments_of(const SweepInfo* info, int channel, int u, int v)
+{
+  return v * info->packedMoments + channel * (info->packedMoments / CHANNELS) + IN_ROW(u);
+}
+
+// How many planes, from the one that rays come to next, are of one group.
+static int of_one_group(const PlaneInfo* layout, int next, int backward)
+{
+  const int plane = layout->firstP + (backward ? layout->sizeP - 1 - next : next);
+  return backward ? plane % MomentGroup + 1 : MomentGroup - plane % MomentGroup;
+}
+
 static void pack_moments(const SweepInfo* info, __global float* to, int first, int count, const __global float* source)
 {
-  const packed_rows rows = { MOMENT_PLANE_ROW, info->planes.sizeV * MOMENT_PLANE_ROW };
-  for (int c = 0; c < CHANNELS; ++c)
+  const PlaneInfo* layout = &info->planes;
+  const ulong step = (ulong)info->moments.channels * info->moments.groups * GROUP;
+  const int plane = layout->sizeV * info->packedMoments;
+  for (int v = 0; v < layout->sizeV; ++v)
   {
-    for (int k = 1; k < MOMENTS; ++k)
+    for (int u = 0; u < layout->width; u += REAL_WIDTH)
     {
-      const ulong from = (ulong)(c * HIGHER + k - 1) * info->moments.row;
-      pack(&info->planes, &info->momentStep, rows, to + (c * HIGHER + k - 1) * MOMENT_ROW, first, count, source + from);
+      const integer beyond = LANES >= layout->sizeU - u;
+      for (int c = 0; c < CHANNELS; ++c)
+      {
+        const __global float* from = source + moments_of(info, c, u, v, first);
+        __global float* here = to + packed_moments_of(info, c, u, v);
+        for (int k = 0; k < HIGHER; ++k)
+        {
+          pack_block(
+            from + k * MomentGroup, step, layout->sizeU - 1 - u, beyond, here + k * MomentGroup, plane, count);
+        }
+      }
     }
   }
 }
 
-static void unpack_moments(const SweepInfo* info, const __global float* from, int first, int count,
-  __global float* path)
+static void unpack_moments(
+  const SweepInfo* info, const __global float* from, int first, int count, __global float* path)
 {
-  const packed_rows rows = { MOMENT_PLANE_ROW, info->planes.sizeV * MOMENT_PLANE_ROW };
-  for (int c = 0; c < CHANNELS; ++c)
+  const PlaneInfo* layout = &info->planes;
+  const ulong step = (ulong)info->moments.channels * info->moments.groups * GROUP;
+  const int plane = layout->sizeV * info->packedMoments;
+  for (int v = 0; v < layout->sizeV; ++v)
   {
-    for (int k = 1; k < MOMENTS; ++k)
+    for (int u = 0; u < layout->sizeU; u += REAL_WIDTH)
     {
-      const ulong to = (ulong)(c * HIGHER + k - 1) * info->moments.row;
-      unpack(&info->planes, &info->momentStep, rows, from + (c * HIGHER + k - 1) * MOMENT_ROW, first, count, 1.0f,
-        path + to, 0);
+      const int used = min(REAL_WIDTH, layout->sizeU - u);
+      for (int c = 0; c < CHANNELS; ++c)
+      {
+        const __global float* here = from + packed_moments_of(info, c, u, v);
+        __global float* to = path + moments_of(info, c, u, v, first);
+        for (int k = 0; k < HIGHER; ++k, here += MomentGroup, to += MomentGroup)
+        {
+          if (count == REAL_WIDTH)
+          {
+            unpack_block(here, plane, 1.0f, to, 0, step, used);
+            continue;
+          }
+          for (int i = 0; i < used; ++i)
+          {
+            for (int j = 0; j < count; ++j)
+            {
+              to[i * step + j] += here[j * plane + i];
+            }
+          }
+        }
+      }
     }
   }
 }
@@ -255,15 +314,14 @@ static void begin_planes(const SweepInfo* info, __global float* planes, __global
   const __global float* sigma, const __global float* source, const __global float* beams)
 {
   const PlaneInfo* layout = &info->planes;
-  const packed_rows rows = rows_of_planes(layout);
-  pack(layout, &layout->step, rows, planes + PlaneSigma * ROW, first, count, sigma);
+  pack(layout, planes + PlaneSigma * ROW, first, count, sigma);
 #if SOURCE
   for (int c = 0; c < CHANNELS; ++c)
   {
-    pack(layout, &layout->step, rows, planes + (PlaneSource + c) * ROW, first, count, source + c * info->stride);
+    pack(layout, planes + (PlaneSource + c) * ROW, first, count, source + c * info->stride);
     for (int b = 0; b < BEAMS; ++b)
     {
-      pack(layout, &layout->step, rows, planes + (PLANE_BEAMS + b * CHANNELS + c) * ROW, first, count,
+      pack(layout, planes + (PLANE_BEAMS + b * CHANNELS + c) * ROW, first, count,
         beams + (b * info->moments.channels + c) * info->stride);
     }
   }
@@ -321,7 +379,6 @@ static void end_planes(const SweepInfo* info, __global float* planes, int first,
   __global float* lost, __global float* flux, __global float* currents, const __global OwnLightInfo* own, int backward)
 {
   const PlaneInfo* layout = &info->planes;
-  const packed_rows rows = rows_of_planes(layout);
   const ulong stride = info->stride;
   const int axis = info->axis;
 #if SOURCE && !DEGREE
@@ -335,22 +392,22 @@ static void end_planes(const SweepInfo* info, __global float* planes, int first,
 #endif
   for (int c = 0; c < CHANNELS; ++c)
   {
-    unpack(layout, &layout->step, rows, planes + (PLANE_PATH + c) * ROW, first, count, 1.0f, path + c * stride,
+    unpack(layout, planes + (PLANE_PATH + c) * ROW, first, count, 1.0f, path + c * stride,
       PERIODIC_P ? lost + c * stride : 0);
 #if NET_FLUX
     const __global float* fluxes = planes + (PLANE_FLUX + 3 * c) * ROW;
-    unpack(layout, &layout->step, rows, fluxes, first, count, 1.0f, flux + (3 * c + (axis == 0 ? 1 : 0)) * stride, 0);
-    unpack(layout, &layout->step, rows, fluxes + ROW, first, count, 1.0f, flux + (3 * c + (axis == 2 ? 1 : 2)) * stride, 0);
-    unpack(layout, &layout->step, rows, fluxes + 2 * ROW, first, count, backward ? -1.0f : 1.0f, flux + (3 * c + axis) * stride, 0);
+    unpack(layout, fluxes, first, count, 1.0f, flux + (3 * c + (axis == 0 ? 1 : 0)) * stride, 0);
+    unpack(layout, fluxes + ROW, first, count, 1.0f, flux + (3 * c + (axis == 2 ? 1 : 2)) * stride, 0);
+    unpack(layout, fluxes + 2 * ROW, first, count, backward ? -1.0f : 1.0f, flux + (3 * c + axis) * stride, 0);
 #endif
 #if CURRENTS
     const int aside[2] = { axis == 0 ? 1 : 0, axis == 2 ? 1 : 2 };
     const __global float* entered = planes + (PLANE_CURRENTS + CurrentFaces * c) * ROW;
     __global float* faces = currents + 6 * c * stride;
-    unpack(layout, &layout->step, rows, entered, first, count, 1.0f, faces + (2 * axis + backward) * stride, 0);
+    unpack(layout, entered, first, count, 1.0f, faces + (2 * axis + backward) * stride, 0);
     for (int side = 0; side < 4; ++side)
     {
-      unpack(layout, &layout->step, rows, entered + (CurrentLowU + side) * ROW, first, count, 1.0f,
+      unpack(layout, entered + (CurrentLowU + side) * ROW, first, count, 1.0f,
         faces + (2 * aside[side / 2] + side % 2) * stride, 0);
     }
 #endif
@@ -456,12 +513,13 @@ __kernel __attribute__((reqd_work_group_size(1, 1, 1))) void sweep(SweepInfo inf
   __global float* planes = state.moving + RAYS_OF_ROW + PAD; // past the last row's border
   __global int* thin = (__global int*)(planes + layout.block * plane_floats(&layout));
 #if DEGREE
-  const ulong higher = info.moments.second + (ulong)info.firstChannel * HIGHER * info.moments.row;
+  const ulong channel = (ulong)info.moments.groups * GROUP;
+  const ulong higher = info.moments.second + info.firstChannel * channel;
   const __global float* higher_source = source + higher;
   __global float* higher_path = path + higher;
   const __global float* beams = source + info.moments.beams + info.first;
 #if !MOMENTS_IN_PLACE
-  const int moment_plane = layout.sizeV * MOMENT_PLANE_ROW;
+  const int moment_plane = layout.sizeV * info.packedMoments;
   __global float* packed_source = (__global float*)thin + layout.block * layout.sizeV + REAL_WIDTH;
   __global float* packed_path = packed_source + layout.block * moment_plane;
 #endif
@@ -498,6 +556,9 @@ __kernel __attribute__((reqd_work_group_size(1, 1, 1))) void sweep(SweepInfo inf
   {
     const int lap = begin / layout.sizeP * layout.sizeP; // planes already marched when the axis began anew
     count = min(min(layout.block, range.y - begin), lap + layout.sizeP - begin);
+#if DEGREE && !MOMENTS_IN_PLACE
+    count = min(count, of_one_group(&layout, begin - lap, unit.backward));
+#endif
     const int first = unit.backward ? layout.sizeP - (begin - lap) - count : begin - lap;
     begin_planes(&info, planes, thin, first, count, sigma, source, beams);
 #if DEGREE && !MOMENTS_IN_PLACE
@@ -512,14 +573,19 @@ __kernel __attribute__((reqd_work_group_size(1, 1, 1))) void sweep(SweepInfo inf
       state.planes = planes + (plane - first) * plane_floats(&layout);
       state.thin = thin + (plane - first) * layout.sizeV;
 #if DEGREE && MOMENTS_IN_PLACE
-      const ulong higher_plane = place_of(&layout, &info.momentStep, 0, 0, plane);
-      state.momentSource = higher_source + higher_plane;
-      state.momentPath = higher_path + higher_plane;
-      state.momentStep = info.momentStep.v;
+      const ulong line = info.moments.channels * channel;
+      const ulong across = info.axis == 2 ? 1 : info.sizeY; // lines from one row of the plane to the next
+      const ulong along = info.axis == 2 ? info.sizeY : 1;
+      const ulong here = line * ((layout.firstP + plane) * along + layout.firstV * across);
+      state.momentSource = higher_source + here;
+      state.momentPath = higher_path + here;
+      state.momentStep = line * across;
+      state.momentChannel = channel;
 #elif DEGREE
       state.momentSource = packed_source + (plane - first) * moment_plane;
       state.momentPath = packed_path + (plane - first) * moment_plane;
-      state.momentStep = MOMENT_PLANE_ROW;
+      state.momentStep = info.packedMoments;
+      state.momentChannel = info.packedMoments / CHANNELS;
 #endif
       for (int side = 0; side < 4; ++side)
       {

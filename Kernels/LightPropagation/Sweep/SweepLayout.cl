@@ -8,7 +8,6 @@
 //   EVEN_EVEN, ODD_EVEN, EVEN_ODD, ODD_ODD  how many of the angular functions are even or odd along u and v; where
 //             DEGREE is not 0, as are
 //   FUNCTION_ORDER  the functions by parity: even and even, odd and even, even and odd, odd and odd
-//   MOMENT_ROW  floats of a row of one of the functions from the second on
 //   MOMENTS_IN_PLACE  1: they are read and added to where they are; 0: they are packed like the rest of a plane
 //   NET_FLUX  1 where the net flux is wanted
 //   CURRENTS  1 where the power that enters each voxel through each face is wanted
@@ -39,9 +38,10 @@
 #define ROW_OF(planes, quantity, row) ((planes) + ((row)*PLANES + (quantity)) * ROW)
 
 #if DEGREE
-// Functions from the second on: [row][channel][function][MOMENT_ROW].
+// Of the functions from the second on, as MomentPlacesShared.h has them: floats of a group, and where voxel x is.
 #define HIGHER (MOMENTS - 1)
-#define MOMENT_PLANE_ROW (CHANNELS * HIGHER * MOMENT_ROW) // floats, where they are packed
+#define GROUP (HIGHER * MomentGroup)
+#define IN_ROW(x) ((x) / MomentGroup * GROUP + (x) % MomentGroup)
 static __constant int function_order[MOMENTS] = { FUNCTION_ORDER };
 #endif
 
@@ -58,10 +58,10 @@ typedef struct
   __global float* sources; // MomentRows rows of RAYS_OF_ROW floats: W / (length^3 sr) in the members' directions
   __global float* paths;   // the same: W length, of the members
   __global float* ownPath; // MomentRows rows: of a source of 1 in its own voxel
-  // Of the plane, from the second function on: source and path, and the way from one row to the next.
+  // Of the plane, from the second function on: source and path, and the way from one row or channel to the next.
   const __global float* momentSource;
   __global float* momentPath;
-  ulong momentStep;
+  ulong momentStep, momentChannel;
 #endif
   __global float* moving;     // the rays of a row of which a part moves
   float escaped[4][CHANNELS]; // through -u, +u, -v, +v, W; with the rounding errors

@@ -15,7 +15,7 @@
 #define FUNCTIONS_OF(MACRO, begin, end, parity)               \
   _Pragma("unroll") for (int k = begin; k < end; ++k)         \
   {                                                           \
-    const int place = (function_order[k] - 1) * MOMENT_ROW;   \
+    const int place = (function_order[k] - 1) * MomentGroup;  \
     MACRO(parity)                                             \
   }
 // Those of a parity are left out where they are zero in all of the bundle's directions.
@@ -46,10 +46,11 @@ static inline __attribute__((always_inline)) void FIND_SOURCES(sweep_state* stat
   for (int c = 0; c < CHANNELS; ++c)
   {
     const __global float* fluence = ROW_OF(state->planes, PlaneSource + c, y);
-    const __global float* higher = state->momentSource + y * state->momentStep + c * HIGHER * MOMENT_ROW;
+    const __global float* higher = state->momentSource + y * state->momentStep + c * state->momentChannel;
     const __global float* beams = ROW_OF(state->planes, PLANE_BEAMS + c, y);
     for (int x = 0; x < state->width; x += REAL_WIDTH)
     {
+      const int group = IN_ROW(x);
       real sums[MaxFrames][4];
 #pragma unroll
       for (int f = 0; f < frames; ++f)
@@ -58,7 +59,7 @@ static inline __attribute__((always_inline)) void FIND_SOURCES(sweep_state* stat
         sums[f][1] = sums[f][2] = sums[f][3] = (real)0.0f;
       }
 #define ADD_FUNCTION(parity)                                                                               \
-  const real value = load_real(x, higher + place);                                                         \
+  const real value = load_real(group, higher + place);                                                         \
   _Pragma("unroll") for (int f = 0; f < frames; ++f)                                                       \
   {                                                                                                        \
     sums[f][parity] = multiply_add(value, (real)coefficients[f * MOMENTS + k], sums[f][parity]);           \
@@ -142,9 +143,10 @@ static inline __attribute__((always_inline)) void GATHER_MOMENTS(sweep_state* st
   for (int c = 0; c < CHANNELS; ++c)
   {
     __global float* fluence = ROW_OF(state->planes, PLANE_PATH + c, y);
-    __global float* higher = state->momentPath + y * state->momentStep + c * HIGHER * MOMENT_ROW;
+    __global float* higher = state->momentPath + y * state->momentStep + c * state->momentChannel;
     for (int x = 0; x < state->width; x += REAL_WIDTH)
     {
+      const int group = IN_ROW(x);
       real sums[MaxFrames][4];
 #pragma unroll
       for (int f = 0; f < frames; ++f)
@@ -179,12 +181,12 @@ static inline __attribute__((always_inline)) void GATHER_MOMENTS(sweep_state* st
       }
       store_real(sum, x, fluence);
 #define ADD_SUM(parity)                                                                               \
-  real moment = load_real(x, higher + place);                                                         \
+  real moment = load_real(group, higher + place);                                                         \
   _Pragma("unroll") for (int f = 0; f < frames; ++f)                                                  \
   {                                                                                                   \
     moment = multiply_add(sums[f][parity], (real)coefficients[f * MOMENTS + k], moment);              \
   }                                                                                                   \
-  store_real(moment, x, higher + place);
+  store_real(moment, group, higher + place);
       OF_ALL_PARITIES(ADD_SUM)
 #undef ADD_SUM
     }

@@ -4,6 +4,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <stdexcept>
 
 namespace tyndall
 {
@@ -144,11 +145,11 @@ void SweepPlan::LayPlane(const Device& device)
   this->vector = device.KernelWidth(4, 16, 4);
   const std::array<int, 3>& n = this->box.size;
   const std::array<int, 3>& first = this->box.first;
-  const std::array<ulong, 3> step = { 1, ulong(this->grid.size[0]), ulong(this->grid.size[0]) * this->grid.size[1] };
+  const std::array<int, 3> step = { 1, this->grid.size[0], this->grid.size[0] * this->grid.size[1] };
   const int width = RoundUp(n[this->axes.u], this->vector);
   this->row = RowFloats(width, this->vector);
   this->plane = { n[this->axes.u], n[this->axes.v], n[this->axes.axis], first[this->axes.u], first[this->axes.v],
-    first[this->axes.axis], { step[this->axes.u], step[this->axes.v], step[this->axes.axis] }, width,
+    first[this->axes.axis], step[this->axes.u], step[this->axes.v], step[this->axes.axis], width,
     this->axes.u == 0 ? 1 : this->vector, static_cast<float>(std::max(1e-30 / LongestWay(this->bundles), 1e-37)),
     static_cast<float>(Thin / this->LongestSegment()), {} };
   std::copy(MeanLength, MeanLength + MeanLengthTerms, this->plane.meanLength);
@@ -156,11 +157,13 @@ void SweepPlan::LayPlane(const Device& device)
 
 void SweepPlan::LayMoments()
 {
-  const ulong line = ulong(this->moments.channels) * (this->moments.functions - 1) * this->moments.row;
-  const std::array<ulong, 3> step = { 1, line, line * this->grid.size[1] };
-  this->momentStep = { step[this->axes.u], step[this->axes.v], step[this->axes.axis] };
-  this->momentsInPlace = this->axes.u == 0 && this->box.size[0] == this->grid.size[0];
-  this->momentRow = this->momentsInPlace ? this->moments.row : this->plane.width;
+  if (this->box.size[0] != this->grid.size[0])
+  {
+    throw std::logic_error("angular moments are swept in whole rows");
+  }
+  this->momentsInPlace = this->axes.u == 0;
+  const int groups = (this->plane.width + MomentGroup - 1) / MomentGroup;
+  this->momentRow = this->channels * groups * (this->moments.functions - 1) * MomentGroup;
 }
 
 /// Through a voxel. Of rays that go round a periodic axis their way through a plane stands for it.
@@ -202,7 +205,7 @@ BundleInfo SweepPlan::Describe(const Bundle& bundle) const
   };
   BundleInfo description = { Int(bundle.members.size()), Int(this->mapsEachWay), Int(this->radianceEachWay),
     Int(this->outsideEachWay), static_cast<float>(bundle.power), static_cast<float>(cosine),
-    sine(bundle.tangentU, this->axes.u), sine(bundle.tangentV, this->axes.v), {}, 0, {}, 0 };
+    sine(bundle.tangentU, this->axes.u), sine(bundle.tangentV, this->axes.v), {}, 0, {}, 0, 0 };
   for (std::size_t m = 0; m < bundle.members.size(); ++m)
   {
     const Member& member = bundle.members[m];
@@ -350,8 +353,7 @@ std::size_t SweepPlan::ScratchFloats() const
   const std::size_t quantities = PLANE_COUNT(this->channels, beams, this->netFlux, this->partialCurrents);
   const std::size_t rows = static_cast<std::size_t>(this->plane.block) * this->plane.sizeV;
   const std::size_t planes = quantities * rows * this->row;
-  const std::size_t higher = this->angular && !this->momentsInPlace ? this->angular->Functions() - 1 : 0;
-  const std::size_t packed = 2 * higher * this->channels * rows * this->momentRow; // source and path
+  const std::size_t packed = this->momentsInPlace ? 0 : 2 * rows * this->momentRow; // source and path
   return ring + planes + rows + packed + 3 * this->vector;
 }
 

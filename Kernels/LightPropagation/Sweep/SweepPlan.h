@@ -48,10 +48,8 @@ struct SweepPlan
   std::vector<float> coefficients; ///< as BundleInfo has them, forward first
   std::size_t coefficientsEachWay = 0;
   FunctionOrder order; ///< of the angular functions, along this axis
-  /// Rows of the moments' array are rows of planes, and are whole: nothing needs to be packed.
-  bool momentsInPlace = false;
-  int momentRow = 0; ///< floats of a row of a function from the second on, packed or not
-  PlaneSteps momentStep = {};
+  bool momentsInPlace = false; ///< rows of planes are rows of the moments' array: nothing needs to be packed
+  int momentRow = 0;           ///< floats of a packed row, of all functions from the second on and channels
 
   std::vector<UnitInfo> units;
   std::vector<cl_int2> schedule; ///< [launch][unit]: planes from, to

@@ -84,19 +84,13 @@ typedef struct
   int planesBefore; ///< of the ray pattern, that its rays have crossed before their first plane here
 } UnitInfo;
 
-/// From one voxel to the next in an array.
-typedef struct
-{
-  ulong u, v, p;
-} PlaneSteps;
-
 /// How planes lie in the volume: voxel (u, v) of plane p is
-/// (firstU + u) * step.u + (firstV + v) * step.v + (firstP + p) * step.p.
+/// (firstU + u) * stepU + (firstV + v) * stepV + (firstP + p) * stepP.
 typedef struct
 {
   int sizeU, sizeV, sizeP;
   int firstU, firstV, firstP;
-  PlaneSteps step;
+  int stepU, stepV, stepP;
   int width;
   int block;    ///< planes packed together: 1 where rows are contiguous in memory, else a vector's worth
   float vacuum; ///< 1/length, least sigma_t, in place of 0: exp(-tau) is 1 in float
@@ -128,7 +122,8 @@ typedef struct
   int axis;
   PlaneInfo planes;
   MomentPlaces moments;
-  PlaneSteps momentStep; ///< in the functions from the second on
+  int sizeY;         ///< voxels of the grid along y
+  int packedMoments; ///< floats of a packed row of moments
   int firstChannel;
 } SweepInfo;
 SHARED_END

@@ -33,13 +33,13 @@ struct VolumeLayout
   /// Where angular moments lie, of arrays that have some.
   MomentPlaces Places(int functions) const
   {
-    const std::size_t row = (this->grid.size[0] + SweepPadding - 1) / SweepPadding * SweepPadding;
+    const std::size_t groups = (this->grid.size[0] + MomentGroup - 1) / MomentGroup;
     const std::size_t rows = static_cast<std::size_t>(this->grid.size[1]) * this->grid.size[2] * this->channels;
     MomentPlaces places = {};
     places.second = this->channels * this->Stride();
-    places.beams = places.second + rows * (functions - 1) * row;
+    places.beams = places.second + rows * groups * (functions - 1) * MomentGroup;
     places.sizeX = this->grid.size[0];
-    places.row = static_cast<int>(row);
+    places.groups = static_cast<int>(groups);
     places.channels = this->channels;
     places.functions = functions;
     return places;
