@@ -111,8 +111,7 @@ void DiffusionAcceleration::Sweep(int iteration, const Monitor& monitor)
     {
       if (this->Parts.Basis)
       {
-        this->Systems[c]->AddFluxBeyondSweep(
-          this->Parts.Path, this->Parts.Layout.Places(this->Parts.Functions()), static_cast<int>(c));
+        this->Systems[c]->PutNextFlux(this->Parts.Path);
       }
       this->Parts.Scattering->ScatterFluence(
         static_cast<int>(c), this->DepositOfSweep(), this->Systems[c]->NextFluence(), this->Given, this->Parts.Source);
@@ -156,7 +155,7 @@ void DiffusionAcceleration::MakeSystems()
     const DiffusionSystem::Arrays arrays = { parts.Layout.Stride(), parts.Layout.ExtinctionFirst(c),
       c * parts.Layout.Stride(), &parts.OnDevice.TransportSigmaT(), &parts.OnDevice.SigmaT(),
       &parts.OnDevice.SigmaA(), &parts.OnDevice.SigmaS(), &this->Given,
-      parts.Basis ? &this->GivenFlux : nullptr, &parts.Source, &parts.Path,
+      parts.Layout.Places(parts.Functions()), c, parts.Basis ? &this->GivenFlux : nullptr, &parts.Source, &parts.Path,
       &this->PartialCurrents, this->Uncollided->Passed().Size() > 0 ? &this->Uncollided->Passed() : nullptr };
     this->Systems.push_back(std::make_unique<DiffusionSystem>(parts.TheDevice, parts.Layout.grid,
       this->Settings.periodic, parts.Usual.Set(), pattern, arrays, ofChannel, this->LinearSource));

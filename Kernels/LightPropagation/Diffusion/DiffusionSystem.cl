@@ -419,16 +419,17 @@ __kernel void diffusion_flux(DiffusionLayout layout, const __global float* sigma
   }
 }
 
-// By how much the net flux of a fluence differs from that of what the sweep found, W length, added to the moments of
-// degree 1 of the sweep's path: sqrt(3) times y, z, x.
-__kernel void diffusion_flux_beyond_sweep(DiffusionLayout layout, const __global float* sigma_t,
-  const __global float* sigma_a, const __global float* swept, const __global float* flat_source,
-  const __global float* conductance, const __global float* currents, const __global float* passed,
-  const __global float* model, const __global float* pattern, const __global float* source, const __global float* path,
-  const __global float* given, const __global float* given_flux, const __global exact* fluence, MomentPlaces places,
-  int channel, __global float* moments)
+#if MOMENTS
+// The moments of degree 1, behind the fluence that was solved for, [x, y, z][voxel]: of what the sweep found, and by how
+// much that fluence's net flux differs from it.
+__kernel void diffusion_found_flux(DiffusionLayout layout, const __global float* sigma_t, const __global float* sigma_a,
+  const __global float* swept, const __global float* flat_source, const __global float* conductance,
+  const __global float* currents, const __global float* passed, const __global float* model,
+  const __global float* pattern, const __global float* source, const __global float* path, const __global float* given,
+  const __global float* given_flux, MomentPlaces places, int channel, __global exact* fluence)
 {
   VOXEL(layout.size)
+  const __global float* moments = path;
   ARRAYS_OF_CHANNEL
   const ulong line = (ulong)z * layout.size[1] + y;
   for (int axis = 0; axis < 3; ++axis)
@@ -443,10 +444,28 @@ __kernel void diffusion_flux_beyond_sweep(DiffusionLayout layout, const __global
         sum += (d & 1 ? 1.0f : -1.0f) * conductance[axis * count + (d & 1 ? j : i)] * change;
       }
     }
-    const int function = axis == 0 ? 3 : axis;
-    moments[MOMENT_PLACE(places, function, channel, line, x)] += 1.73205081f * 0.5f * sum * layout.spacing[axis];
+    const int function = axis == 0 ? 3 : axis; // sqrt(3) times y, z, x
+    const exact swept_length = moments[MOMENT_PLACE(places, function, channel, line, x)];
+    fluence[(axis + 1) * count + i] =
+      (swept_length + 1.73205081f * 0.5f * sum * layout.spacing[axis]) / volume_of(&layout);
   }
 }
+
+// And into the path.
+__kernel void diffusion_put_flux(
+  DiffusionLayout layout, const __global exact* fluence, MomentPlaces places, int channel, __global float* path)
+{
+  VOXEL(layout.size)
+  const int count = layout.size[0] * layout.size[1] * layout.size[2];
+  const ulong line = (ulong)z * layout.size[1] + y;
+  for (int axis = 0; axis < 3; ++axis)
+  {
+    const int function = axis == 0 ? 3 : axis;
+    path[MOMENT_PLACE(places, function, channel, line, x)] =
+      (float)(fluence[(axis + 1) * count + i] * volume_of(&layout));
+  }
+}
+#endif
 
 // The next sweep's source where thick voxels lie beside thinner ones: what gives their surface the outward partial
 // current of diffusion, instead of what is emitted and scattered (numerics.md, Eqs. (63), (64)).

@@ -11,8 +11,8 @@ namespace
 {
 constexpr int MostMoments = 32;     ///< that are looked at
 constexpr double Negligible = 1e-3; ///< moment of a phase function
-constexpr double SomewhatForward = 0.6;
-constexpr int DegreeOfSlabs = 9, DegreeOfForward = 5, DegreeOfOthers = 3;
+constexpr int DegreeOfSlabs = 9, DegreeOfOthers = 3;
+constexpr std::size_t ArraysOfMoments = 4; ///< source, path, what is given, and of uncollided light
 
 /// Largest moments, by degree, of all phase functions of the medium.
 std::vector<double> LargestMoments(const Medium& medium)
@@ -38,18 +38,45 @@ std::vector<double> LargestMoments(const Medium& medium)
   add(medium.phase.OfChannel(0).WithMeanCosine(*most));
   return largest;
 }
+
+/// Up to `degree`, such that half of the memory is left for all else.
+int HighestThatFits(const Grid& grid, int degree, const DeviceMemory& memory)
+{
+  constexpr std::size_t MostChannels = 3;
+  const auto fits = [&](int l) {
+    const std::size_t array = grid.VoxelCount() * MostChannels * sizeof(float) * (l + 1) * (l + 1);
+    return array <= memory.one && ArraysOfMoments * array <= memory.all / 2;
+  };
+  while (degree > 0 && !fits(degree))
+  {
+    --degree;
+  }
+  return degree;
+}
 }
 
-int AngularDegreeFor(const Medium& medium, const PropagationSettings& settings, bool slab)
+DeviceMemory MemoryOf(const Device& device)
+{
+  const std::size_t inUse = std::min(device.BytesInUse(), device.MemoryLimit());
+  return { device.MemoryLimit() - inUse, device.AllocationLimit() };
+}
+
+int AngularDegreeFor(const Medium& medium, const PropagationSettings& settings, bool slab, const DeviceMemory& memory)
 {
   const std::vector<double> moments = LargestMoments(medium);
-  int needed = 0; // the last moment that is not negligible
-  for (int l = 1; l <= MostMoments; ++l)
-  {
-    needed = moments[l] > Negligible ? l : needed;
-  }
-  const int usual = slab ? DegreeOfSlabs : moments[1] > SomewhatForward ? DegreeOfForward : DegreeOfOthers;
-  const int wanted = settings.angularDegree >= 0 ? settings.angularDegree : std::min(usual, needed);
-  return wanted == 0 || needed == 0 ? 0 : MostDegree(EquiangularDirections(settings.directionsPerFace), wanted);
+  const auto lastAbove = [&](double negligible) {
+    int last = 0;
+    for (int l = 1; l <= MostMoments; ++l)
+    {
+      last = moments[l] > negligible ? l : last;
+    }
+    return last;
+  };
+  const int usual = HighestThatFits(medium.grid, slab ? DegreeOfSlabs : DegreeOfOthers, memory);
+  const int wanted = settings.angularDegree >= 0 ? settings.angularDegree
+                                                 : std::min(usual, lastAbove(std::max(Negligible, settings.tolerance)));
+  return wanted == 0 || lastAbove(Negligible) == 0
+    ? 0
+    : MostDegree(EquiangularDirections(settings.directionsPerFace), wanted);
 }
 }
