@@ -62,7 +62,7 @@ struct SweepScene
     const MomentPlaces places = layout.Places(basis.Count());
     const int beam = std::max(function - basis.Count(), 0);
     const std::size_t plain = (static_cast<std::size_t>(beam) * layout.channels + channel) * layout.Stride() + voxel;
-    return function == 0      ? plain
+    return function == 0         ? plain
       : function < basis.Count() ? VolumeLayout::MomentPlace(places, function, channel, voxel)
                                  : places.beams + plain;
   }

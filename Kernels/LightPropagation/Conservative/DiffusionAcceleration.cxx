@@ -153,10 +153,10 @@ void DiffusionAcceleration::MakeSystems()
       this->PowerIn[c] += this->Tally.in[face][c];
     }
     const DiffusionSystem::Arrays arrays = { parts.Layout.Stride(), parts.Layout.ExtinctionFirst(c),
-      c * parts.Layout.Stride(), &parts.OnDevice.TransportSigmaT(), &parts.OnDevice.SigmaT(),
-      &parts.OnDevice.SigmaA(), &parts.OnDevice.SigmaS(), &this->Given,
-      parts.Layout.Places(parts.Functions()), c, parts.Basis ? &this->GivenFlux : nullptr, &parts.Source, &parts.Path,
-      &this->PartialCurrents, this->Uncollided->Passed().Size() > 0 ? &this->Uncollided->Passed() : nullptr };
+      c * parts.Layout.Stride(), &parts.OnDevice.TransportSigmaT(), &parts.OnDevice.SigmaT(), &parts.OnDevice.SigmaA(),
+      &parts.OnDevice.SigmaS(), &this->Given, parts.Layout.Places(parts.Functions()), c,
+      parts.Basis ? &this->GivenFlux : nullptr, &parts.Source, &parts.Path, &this->PartialCurrents,
+      this->Uncollided->Passed().Size() > 0 ? &this->Uncollided->Passed() : nullptr };
     this->Systems.push_back(std::make_unique<DiffusionSystem>(parts.TheDevice, parts.Layout.grid,
       this->Settings.periodic, parts.Usual.Set(), pattern, arrays, ofChannel, this->LinearSource));
   }

@@ -69,8 +69,8 @@ TransportParts::TransportParts(Device& device, const PropagationProblem& problem
   const MediumTraits& traits = problem.Traits();
   const bool needsSource = problem.ComputesScattering() || traits.emits || accelerated;
   const int beams = static_cast<int>(this->Beams.size());
-  this->Source = Buffer<float>(device,
-    needsSource ? this->Layout.MomentFloats(this->Functions(), beams) : SweepPadding, "the scattered light");
+  this->Source = Buffer<float>(
+    device, needsSource ? this->Layout.MomentFloats(this->Functions(), beams) : SweepPadding, "the scattered light");
   this->Path = Buffer<float>(device, this->Layout.MomentFloats(this->Functions()), "the light gathered");
   this->Fluence = Buffer<float>(device, this->Layout.Floats(), "fluence");
   if (problem.Settings().netFlux)

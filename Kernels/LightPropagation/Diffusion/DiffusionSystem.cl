@@ -420,8 +420,8 @@ __kernel void diffusion_flux(DiffusionLayout layout, const __global float* sigma
 }
 
 #if MOMENTS
-// The moments of degree 1, behind the fluence that was solved for, [x, y, z][voxel]: of what the sweep found, and by how
-// much that fluence's net flux differs from it.
+// The moments of degree 1, behind the fluence that was solved for, [x, y, z][voxel]: of what the sweep found, and by
+// how much that fluence's net flux differs from it.
 __kernel void diffusion_found_flux(DiffusionLayout layout, const __global float* sigma_t, const __global float* sigma_a,
   const __global float* swept, const __global float* flat_source, const __global float* conductance,
   const __global float* currents, const __global float* passed, const __global float* model,

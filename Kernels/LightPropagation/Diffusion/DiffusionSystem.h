@@ -32,15 +32,16 @@ public:
   /// The solver's arrays; those of all channels, one after the other, `stride` voxels each.
   struct Arrays
   {
-    std::size_t stride, firstT, first;    ///< where this channel begins, in sigma_t and in the others
-    const Buffer<float>* sigma_t;         ///< 1/length, that light diffuses with: sigma_a and sigma_s (1 - g)
-    const Buffer<float>* swept;           ///< 1/length, sigma_t of the sweeps
-    const Buffer<float>* sigma_a;         ///< 1/length
-    const Buffer<float>* sigma_s;         ///< 1/length
-    const Buffer<float>* given;           ///< emitted, and uncollided light that is scattered, W / (length^3 sr)
-    MomentPlaces moments;                 ///< where angular moments are in `path`, and
-    int channel;                          ///< of which channel
-    const Buffer<float>* givenFlux;       ///< of angular moments: net flux over 4 pi, [channel][x, y, z][stride]; null: isotropic
+    std::size_t stride, firstT, first; ///< where this channel begins, in sigma_t and in the others
+    const Buffer<float>* sigma_t;      ///< 1/length, that light diffuses with: sigma_a and sigma_s (1 - g)
+    const Buffer<float>* swept;        ///< 1/length, sigma_t of the sweeps
+    const Buffer<float>* sigma_a;      ///< 1/length
+    const Buffer<float>* sigma_s;      ///< 1/length
+    const Buffer<float>* given;        ///< emitted, and uncollided light that is scattered, W / (length^3 sr)
+    MomentPlaces moments;              ///< where angular moments are in `path`, and
+    int channel;                       ///< of which channel
+    const Buffer<float>*
+      givenFlux; ///< of angular moments: net flux over 4 pi, [channel][x, y, z][stride]; null: isotropic
     const Buffer<float>* source;          ///< of a sweep, W / (length^3 sr)
     const Buffer<float>* path;            ///< W length, that it found
     const Buffer<float>* partialCurrents; ///< W, [channel][-x, +x, -y, +y, -z, +z][stride], that it found

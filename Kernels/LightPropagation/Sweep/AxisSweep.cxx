@@ -40,8 +40,7 @@ std::string DefineMoments(const SweepPlan& plan)
   return Define("DEGREE", plan.angular->degree) + Define("BEAMS", plan.angular->Beams()) +
     Define("EVEN_EVEN", evenEven) + Define("ODD_EVEN", oddEven) + Define("EVEN_ODD", evenOdd) +
     Define("ODD_ODD", oddOdd) + Define("FUNCTION_ORDER", plan.order.functions) +
-    Define("MOMENTS_IN_PLACE", plan.momentsInPlace) +
-    Define("TILE", RowsTogether);
+    Define("MOMENTS_IN_PLACE", plan.momentsInPlace) + Define("TILE", RowsTogether);
 }
 
 struct AxisSweep::Implementation
@@ -247,8 +246,8 @@ void AxisSweep::Implementation::Launch(cl::Kernel kernel, const SweepVolume& vol
   {
     info.launch = launch;
     With(kernel, info, *volume.sigma_t, source, *volume.deposit.path, lost, flux, partialCurrents, this->Maps(),
-      this->Outside, this->Radiance, this->Workspace.scratch, this->Units, this->Bundles, this->Coefficients,
-      crossings, this->FirstOwnLight, schedule.planes, this->Sideways);
+      this->Outside, this->Radiance, this->Workspace.scratch, this->Units, this->Bundles, this->Coefficients, crossings,
+      this->FirstOwnLight, schedule.planes, this->Sideways);
     this->TheDevice.Queue().enqueueNDRangeKernel(kernel, cl::NullRange, cl::NDRange(plan.units.size()), cl::NDRange(1));
     this->TheDevice.Queued(plan.secondsPerLaunch);
     Report(monitor, (launch + 1.0) / schedule.launches);

@@ -22,10 +22,10 @@ typedef struct
 } MomentPlaces;
 
 /// Of a voxel (line: z size y + y, as ulong) in a function from the second on.
-#define MOMENT_PLACE(places, function, channel, line, x)                                                            \
-  ((places).second +                                                                                                \
-    ((((line) * (places).channels + (channel)) * (places).groups + (x) / MomentGroup) * ((places).functions - 1) +  \
-      (function)-1) *                                                                                               \
-      MomentGroup +                                                                                                 \
+#define MOMENT_PLACE(places, function, channel, line, x)                                                           \
+  ((places).second +                                                                                               \
+    ((((line) * (places).channels + (channel)) * (places).groups + (x) / MomentGroup) * ((places).functions - 1) + \
+      (function)-1) *                                                                                              \
+      MomentGroup +                                                                                                \
     (x) % MomentGroup)
 SHARED_END

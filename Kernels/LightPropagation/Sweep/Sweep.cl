@@ -87,8 +87,8 @@ static void clear(__global float* floats, int count)
 // apart.
 // @param last  row that there is
 // @param count  planes that are wanted
-static inline __attribute__((always_inline)) void pack_block(const __global float* from, ulong step, int last,
-  integer beyond, __global float* to, int plane, int count)
+static inline __attribute__((always_inline)) void pack_block(
+  const __global float* from, ulong step, int last, integer beyond, __global float* to, int plane, int count)
 {
   real columns[REAL_WIDTH];
 #pragma unroll
@@ -156,8 +156,8 @@ static void add_one(float value, __global float* sum, __global float* lost)
 
 // What pack_block did, undone: added to the volume with a sign.
 // @param used  rows that are there
-static inline __attribute__((always_inline)) void unpack_block(const __global float* from, int plane, float sign,
-  __global float* volume, __global float* lost, ulong step, int used)
+static inline __attribute__((always_inline)) void unpack_block(
+  const __global float* from, int plane, float sign, __global float* volume, __global float* lost, ulong step, int used)
 {
   real rows[REAL_WIDTH];
 #pragma unroll
@@ -264,8 +264,7 @@ static void pack_moments(const SweepInfo* info, __global float* to, int first, i
         __global float* here = to + packed_moments_of(info, c, u, v);
         for (int k = 0; k < HIGHER; ++k)
         {
-          pack_block(
-            from + k * MomentGroup, step, layout->sizeU - 1 - u, beyond, here + k * MomentGroup, plane, count);
+          pack_block(from + k * MomentGroup, step, layout->sizeU - 1 - u, beyond, here + k * MomentGroup, plane, count);
         }
       }
     }
@@ -488,8 +487,8 @@ __kernel __attribute__((reqd_work_group_size(1, 1, 1))) void sweep(SweepInfo inf
   const __global float* source, __global float* path, __global float* lost, __global float* flux,
   __global float* currents, __global float* maps, const __global float* outside, const __global float* radiance,
   __global float* scratch, const __global UnitInfo* units, const __global BundleInfo* bundles,
-  const __global float* coefficients, const __global CrossingInfo* crossings,
-  const __global OwnLightInfo* own, const __global int2* schedule, __global float* tally)
+  const __global float* coefficients, const __global CrossingInfo* crossings, const __global OwnLightInfo* own,
+  const __global int2* schedule, __global float* tally)
 {
   const int u = get_global_id(0);
   const int unit_count = get_global_size(0);
@@ -609,8 +608,8 @@ __kernel __attribute__((reqd_work_group_size(1, 1, 1))) void sweep(SweepInfo inf
         }
       }
     }
-    end_planes(&info, planes, first, count, path, lost, flux, currents, own + u * info.patternPlanes + begin,
-      unit.backward);
+    end_planes(
+      &info, planes, first, count, path, lost, flux, currents, own + u * info.patternPlanes + begin, unit.backward);
 #if DEGREE && !MOMENTS_IN_PLACE
     unpack_moments(&info, packed_path, first, count, higher_path);
 #endif

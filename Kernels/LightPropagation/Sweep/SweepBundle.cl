@@ -22,14 +22,14 @@
 #if DEGREE
 #include "LightPropagation/Sweep/SweepMoments.cl"
 // A function for as many frames as the bundle has.
-#define FOR_FRAMES(FUNCTION, ...)  \
-  if (bundle->frames == 2)         \
-  {                                \
-    FUNCTION(__VA_ARGS__, 2);      \
-  }                                \
-  else                             \
-  {                                \
-    FUNCTION(__VA_ARGS__, 1);      \
+#define FOR_FRAMES(FUNCTION, ...) \
+  if (bundle->frames == 2)        \
+  {                               \
+    FUNCTION(__VA_ARGS__, 2);     \
+  }                               \
+  else                            \
+  {                               \
+    FUNCTION(__VA_ARGS__, 1);     \
   }
 #else
 

@@ -12,26 +12,26 @@
 #define OF_ODD_EVEN(MACRO) FUNCTIONS_OF(MACRO, EVEN_EVEN, EVEN_EVEN + ODD_EVEN, 1)
 #define OF_EVEN_ODD(MACRO) FUNCTIONS_OF(MACRO, EVEN_EVEN + ODD_EVEN, EVEN_EVEN + ODD_EVEN + EVEN_ODD, 2)
 #define OF_ODD_ODD(MACRO) FUNCTIONS_OF(MACRO, EVEN_EVEN + ODD_EVEN + EVEN_ODD, MOMENTS, 3)
-#define FUNCTIONS_OF(MACRO, begin, end, parity)               \
-  _Pragma("unroll") for (int k = begin; k < end; ++k)         \
-  {                                                           \
-    const int place = (function_order[k] - 1) * MomentGroup;  \
-    MACRO(parity)                                             \
+#define FUNCTIONS_OF(MACRO, begin, end, parity)              \
+  _Pragma("unroll") for (int k = begin; k < end; ++k)        \
+  {                                                          \
+    const int place = (function_order[k] - 1) * MomentGroup; \
+    MACRO(parity)                                            \
   }
 // Those of a parity are left out where they are zero in all of the bundle's directions.
-#define OF_ALL_PARITIES(MACRO)  \
-  OF_EVEN_EVEN(MACRO)           \
-  if (parities & 2)             \
-  {                             \
-    OF_ODD_EVEN(MACRO)          \
-  }                             \
-  if (parities & 4)             \
-  {                             \
-    OF_EVEN_ODD(MACRO)          \
-  }                             \
-  if (parities & 8)             \
-  {                             \
-    OF_ODD_ODD(MACRO)           \
+#define OF_ALL_PARITIES(MACRO) \
+  OF_EVEN_EVEN(MACRO)          \
+  if (parities & 2)            \
+  {                            \
+    OF_ODD_EVEN(MACRO)         \
+  }                            \
+  if (parities & 4)            \
+  {                            \
+    OF_EVEN_ODD(MACRO)         \
+  }                            \
+  if (parities & 8)            \
+  {                            \
+    OF_ODD_ODD(MACRO)          \
   }
 
 // The source in the direction of each member, in row y, into slot `slot`. Rows lie as those of the rings, whose last
@@ -58,11 +58,11 @@ static inline __attribute__((always_inline)) void FIND_SOURCES(sweep_state* stat
         sums[f][0] = load_real(x, fluence) * (real)coefficients[f * MOMENTS];
         sums[f][1] = sums[f][2] = sums[f][3] = (real)0.0f;
       }
-#define ADD_FUNCTION(parity)                                                                               \
-  const real value = load_real(group, higher + place);                                                         \
-  _Pragma("unroll") for (int f = 0; f < frames; ++f)                                                       \
-  {                                                                                                        \
-    sums[f][parity] = multiply_add(value, (real)coefficients[f * MOMENTS + k], sums[f][parity]);           \
+#define ADD_FUNCTION(parity)                                                                     \
+  const real value = load_real(group, higher + place);                                           \
+  _Pragma("unroll") for (int f = 0; f < frames; ++f)                                             \
+  {                                                                                              \
+    sums[f][parity] = multiply_add(value, (real)coefficients[f * MOMENTS + k], sums[f][parity]); \
   }
       OF_ALL_PARITIES(ADD_FUNCTION)
 #undef ADD_FUNCTION
@@ -180,12 +180,12 @@ static inline __attribute__((always_inline)) void GATHER_MOMENTS(sweep_state* st
         sum = multiply_add(sums[f][0], (real)coefficients[f * MOMENTS], sum);
       }
       store_real(sum, x, fluence);
-#define ADD_SUM(parity)                                                                               \
-  real moment = load_real(group, higher + place);                                                         \
-  _Pragma("unroll") for (int f = 0; f < frames; ++f)                                                  \
-  {                                                                                                   \
-    moment = multiply_add(sums[f][parity], (real)coefficients[f * MOMENTS + k], moment);              \
-  }                                                                                                   \
+#define ADD_SUM(parity)                                                                  \
+  real moment = load_real(group, higher + place);                                        \
+  _Pragma("unroll") for (int f = 0; f < frames; ++f)                                     \
+  {                                                                                      \
+    moment = multiply_add(sums[f][parity], (real)coefficients[f * MOMENTS + k], moment); \
+  }                                                                                      \
   store_real(moment, group, higher + place);
       OF_ALL_PARITIES(ADD_SUM)
 #undef ADD_SUM

@@ -12,7 +12,7 @@ namespace
 {
 constexpr double SecondsPerLaunch = 0.08;
 constexpr double SecondsPerRay = 1e-9; ///< a ray through a plane of voxels on a slow core: only sizes the launches
-constexpr double ZeroFunction = 1e-6; ///< of angular functions, whose squares have a mean of 1
+constexpr double ZeroFunction = 1e-6;  ///< of angular functions, whose squares have a mean of 1
 constexpr int MostGroups = 4;          ///< of bundles that march one behind the other
 
 /// (1 - exp(-t)) / t = 1 + t (MeanLength[0] + t (MeanLength[1] + ...)), to 2e-8 for 0 <= t < Thin: a minimax

@@ -22,8 +22,8 @@ struct SweepPlan
   /// @param angular  of the bundles' directions, must stay; null: light has no angular moments
   /// @param moments  where they are
   SweepPlan(const Device& device, const Grid& grid, const VoxelBox& box, int axis, const std::vector<Bundle>& bundles,
-    int channels, const std::array<bool, 3>& periodic, bool netFlux, bool partialCurrents,
-    const AngularValues* angular, const MomentPlaces& moments);
+    int channels, const std::array<bool, 3>& periodic, bool netFlux, bool partialCurrents, const AngularValues* angular,
+    const MomentPlaces& moments);
 
   Grid grid;
   VoxelBox box;
@@ -47,7 +47,7 @@ struct SweepPlan
   std::size_t radianceEachWay = 0;
   std::vector<float> coefficients; ///< as BundleInfo has them, forward first
   std::size_t coefficientsEachWay = 0;
-  FunctionOrder order; ///< of the angular functions, along this axis
+  FunctionOrder order;         ///< of the angular functions, along this axis
   bool momentsInPlace = false; ///< rows of planes are rows of the moments' array: nothing needs to be packed
   int momentRow = 0;           ///< floats of a packed row, of all functions from the second on and channels
 

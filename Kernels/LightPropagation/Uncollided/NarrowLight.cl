@@ -80,8 +80,8 @@ __kernel void add_narrow_moments(MomentPlaces places, const __global float* basi
 #else
 
 // values   of the angular functions in the light's direction
-__kernel void add_beam_moments(MomentPlaces places, const __global float* values, const __global float* path,
-  __global float* moments, ulong stride)
+__kernel void add_beam_moments(
+  MomentPlaces places, const __global float* values, const __global float* path, __global float* moments, ulong stride)
 {
   const int x = get_global_id(0);
   const ulong line = get_global_id(1);

@@ -40,8 +40,8 @@ void NarrowLight::RunOnMoments(const char* name, bool rays, const Arguments&... 
     name, kernel_source::NarrowLight, Define("DEGREE", basis.Degree()) + Define("RAYS", rays));
   With(kernel, layout.Places(basis.Count()), arguments...);
   const std::array<int, 3>& size = layout.grid.size;
-  this->Volume.device.Queue().enqueueNDRangeKernel(kernel, cl::NullRange,
-    cl::NDRange(size[0], static_cast<std::size_t>(size[1]) * size[2], layout.channels));
+  this->Volume.device.Queue().enqueueNDRangeKernel(
+    kernel, cl::NullRange, cl::NDRange(size[0], static_cast<std::size_t>(size[1]) * size[2], layout.channels));
   this->Volume.device.Finish(); // the arrays go
 }
 
