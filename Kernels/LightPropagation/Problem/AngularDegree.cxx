@@ -11,7 +11,9 @@ namespace
 {
 constexpr int MostMoments = 32;     ///< that are looked at
 constexpr double Negligible = 1e-3; ///< moment of a phase function
-constexpr int DegreeOfSlabs = 9, DegreeOfOthers = 3;
+constexpr int DegreeOfSlabs = 9, DegreeOfThin = 5, DegreeOfOthers = 3;
+constexpr double SomewhatForward = 0.6;
+constexpr double Thick = 8.0; ///< mean free paths through the box: light's first scattering is a small part of it
 constexpr std::size_t ArraysOfMoments = 4; ///< source, path, what is given, and of uncollided light
 
 /// Largest moments, by degree, of all phase functions of the medium.
@@ -37,6 +39,17 @@ std::vector<double> LargestMoments(const Medium& medium)
   add(medium.phase.OfChannel(0).WithMeanCosine(*least));
   add(medium.phase.OfChannel(0).WithMeanCosine(*most));
   return largest;
+}
+
+/// Mean free paths through the box, in the mean of its voxels and edges.
+double Thickness(const Medium& medium)
+{
+  double sum = 0.0;
+  for (std::size_t i = 0; i < medium.grid.VoxelCount(); ++i)
+  {
+    sum += medium.sigma_a.At(i, 0) + medium.sigma_s.At(i, 0);
+  }
+  return sum * medium.grid.VoxelVolume() / std::cbrt(std::pow(medium.grid.VoxelCount() * medium.grid.VoxelVolume(), 2));
 }
 
 /// Up to `degree`, such that half of the memory is left for all else.
@@ -72,7 +85,9 @@ int AngularDegreeFor(const Medium& medium, const PropagationSettings& settings, 
     }
     return last;
   };
-  const int usual = HighestThatFits(medium.grid, slab ? DegreeOfSlabs : DegreeOfOthers, memory);
+  // Of thin media the first scattering counts: there a narrower part of the peak is to go straight on.
+  const bool thin = moments[1] > SomewhatForward && Thickness(medium) < Thick;
+  const int usual = HighestThatFits(medium.grid, slab ? DegreeOfSlabs : thin ? DegreeOfThin : DegreeOfOthers, memory);
   const int wanted = settings.angularDegree >= 0 ? settings.angularDegree
                                                  : std::min(usual, lastAbove(std::max(Negligible, settings.tolerance)));
   return wanted == 0 || lastAbove(Negligible) == 0
