@@ -18,8 +18,9 @@ struct DeviceMemory
 DeviceMemory MemoryOf(const Device& device);
 
 /// Degree of the angular moments to solve a medium with: the settings', or where they leave it open the highest whose
-/// moment of the phase function is more than the tolerance, up to 3 (in slabs 9, in thin media that scatter forwards 5),
-/// as far as there is memory; no more than the directions tell apart. 0 where scattering is isotropic, or so nearly that the similarity relation does.
+/// moment of the phase function is more than the tolerance, up to 3 (in slabs 9, in thin media that scatter forwards
+/// 5), as far as there is memory; no more than the directions tell apart. 0 where scattering is isotropic, or so nearly
+/// that the similarity relation does.
 /// @param slab  plane-parallel: more moments cost little
 int AngularDegreeFor(const Medium& medium, const PropagationSettings& settings, bool slab, const DeviceMemory& memory);
 }
