@@ -20,8 +20,8 @@ namespace tyndall
 ///  - propagation and collection in one: memory is some five arrays (sigma_t, sigma_s, source, path, fluence) and the
 ///    maps.
 ///
-/// Isotropic scattering. A medium with mean cosine g is solved as the isotropic medium with sigma_s (1 - g) (similarity
-/// relation, numerics.md, Eq. (8)); leftOut says so.
+/// A medium with g other than 0 is solved in angular moments up to a degree, settings.angularDegree, and what its phase
+/// function scatters beyond them goes straight on (delta-M, numerics.md, section 2.2); leftOut says so.
 ///
 /// @param kept  the light of the last solve is the first guess of this one, and the light of this one is left there
 /// (KeptLight.h); null: begins in the dark, and keeps nothing

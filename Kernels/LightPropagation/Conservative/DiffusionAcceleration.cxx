@@ -73,6 +73,12 @@ void DiffusionAcceleration::GiveFirstScattered()
   std::vector<float> path = this->Uncollided->Path();
   parts.Path.Write(path.data());
   parts.Scattering->AddFirstScattered(parts.WholeDeposit(), this->Given);
+  if (parts.Basis)
+  {
+    this->GivenFlux = Buffer<float>(parts.TheDevice, parts.Layout.Floats(3), "the net flux given");
+    this->GivenFlux.Fill(0.0f);
+    AddFluxOfMoments(parts.TheDevice, parts.Layout, parts.Functions(), this->Given, this->GivenFlux);
+  }
   const double volume = parts.Layout.grid.VoxelVolume();
   for (int c = 0; c < parts.Layout.channels; ++c)
   {
@@ -154,9 +160,10 @@ void DiffusionAcceleration::MakeSystems()
       this->PowerIn[c] += this->Tally.in[face][c];
     }
     const DiffusionSystem::Arrays arrays = { parts.Layout.Stride(), parts.Layout.ExtinctionFirst(c),
-      c * parts.Layout.Stride(), parts.FunctionStride(), &parts.OnDevice.TransportSigmaT(), &parts.OnDevice.SigmaT(),
-      &parts.OnDevice.SigmaA(), &parts.OnDevice.SigmaS(), &this->Given, &parts.Source, &parts.Path,
-      &this->PartialCurrents, this->Uncollided->Passed().Size() > 0 ? &this->Uncollided->Passed() : nullptr };
+      c * parts.Layout.Stride(), &parts.OnDevice.TransportSigmaT(), &parts.OnDevice.SigmaT(), &parts.OnDevice.SigmaA(),
+      &parts.OnDevice.SigmaS(), &this->Given, parts.Layout.Places(parts.Functions()), c,
+      parts.Basis ? &this->GivenFlux : nullptr, &parts.Source, &parts.Path, &this->PartialCurrents,
+      this->Uncollided->Passed().Size() > 0 ? &this->Uncollided->Passed() : nullptr };
     this->Systems.push_back(std::make_unique<DiffusionSystem>(parts.TheDevice, parts.Layout.grid,
       this->Settings.periodic, parts.Usual.Set(), pattern, arrays, ofChannel, this->LinearSource));
   }
@@ -181,7 +188,7 @@ void DiffusionAcceleration::Correct(int iteration)
       change = std::max(change, this->Systems[c]->Correct(power));
       if (this->Parts.Basis)
       {
-        this->Systems[c]->AddFluxBeyondSweep(this->Parts.Path);
+        this->Systems[c]->PutNextFlux(this->Parts.Path);
       }
     }
   }
@@ -253,26 +260,44 @@ void DiffusionAcceleration::BeginWarm()
   const TransportParts& parts = this->Parts;
   const VolumeLayout& layout = parts.Layout;
   this->First = this->UncollidedFluence;
-  this->First.resize(parts.FunctionStride());
+  this->First.resize(layout.Values());
   this->FirstMoments = parts.Basis ? parts.Path.Read() : std::vector<float>();
   for (int c = 0; c < layout.channels; ++c)
   {
-    std::vector<double> fluence = this->Found[c];
-    for (std::size_t i = 0; i < fluence.size(); ++i)
+    for (std::size_t i = 0; i < layout.grid.VoxelCount(); ++i)
     {
-      const std::size_t at = c * layout.Stride() + i;
-      this->First[at] += static_cast<float>(fluence[i]);
-      fluence[i] += this->Warm.Begins() ? this->Warm.Guessed()[at] / layout.grid.VoxelVolume() : 0.0;
+      this->First[c * layout.Stride() + i] += static_cast<float>(this->Found[c][i]);
     }
     if (this->Warm.Begins())
     {
-      this->Systems[c]->Begin(fluence);
+      this->Systems[c]->Begin(this->WithGuess(c));
     }
   }
   if (this->Warm.Begins() && parts.Basis)
   {
-    AddMoments(parts.TheDevice, parts.FunctionStride(), parts.Functions(), this->Warm.Guess(), parts.Path);
+    AddMoments(parts.TheDevice, layout, parts.Functions(), this->Warm.Guess(), parts.Path);
   }
+}
+
+/// What a channel's system has solved for, and what is guessed beyond it.
+std::vector<double> DiffusionAcceleration::WithGuess(int c) const
+{
+  const VolumeLayout& layout = this->Parts.Layout;
+  const MomentPlaces places = layout.Places(this->Parts.Functions());
+  const std::size_t voxels = layout.grid.VoxelCount();
+  const double volume = layout.grid.VoxelVolume();
+  std::vector<double> values = this->Systems[c]->State();
+  for (std::size_t i = 0; i < voxels; ++i)
+  {
+    values[i] += this->Warm.Guessed()[c * layout.Stride() + i] / volume;
+    for (int axis = 0; axis < 3 && this->Parts.Basis; ++axis)
+    {
+      const int function = axis == 0 ? 3 : axis;
+      values[(axis + 1) * voxels + i] +=
+        this->Warm.Guessed()[VolumeLayout::MomentPlace(places, function, c, i)] / volume;
+    }
+  }
+  return values;
 }
 
 void DiffusionAcceleration::Leave()

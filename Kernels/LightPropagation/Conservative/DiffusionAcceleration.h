@@ -31,6 +31,7 @@ private:
   void MakeSystems();
   void LookAtDirect();
   void BeginWarm();
+  std::vector<double> WithGuess(int channel) const;
   void Correct(int iteration);
   void CountLight();
   double VoxelPower(int channel) const;
@@ -51,7 +52,7 @@ private:
   std::vector<float> UncollidedFluence; ///< W / length^2, [channel][stride]
 
   // Scattered light, and what comes in along the usual directions
-  Buffer<float> Given, PartialCurrents; ///< as DiffusionSystem::Arrays has them
+  Buffer<float> Given, GivenFlux, PartialCurrents; ///< as DiffusionSystem::Arrays has them
   std::unique_ptr<SweepOperator> Swept;
   std::vector<std::unique_ptr<DiffusionSystem>> Systems;
   SweepTally Tally;                       ///< of the last sweep

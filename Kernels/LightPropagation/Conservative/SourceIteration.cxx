@@ -29,7 +29,7 @@ SourceIteration::SourceIteration(TransportParts& parts, const KeptLight* kept)
 {
   if (this->Warm.Keeps() && parts.Basis)
   {
-    this->Moments = Buffer<float>(parts.TheDevice, parts.Layout.Floats(parts.Functions()), "the light to keep");
+    this->Moments = Buffer<float>(parts.TheDevice, parts.Layout.MomentFloats(parts.Functions()), "the light to keep");
     this->Moments.Fill(0.0f);
   }
   this->MakeSweeps();
@@ -312,8 +312,7 @@ void SourceIteration::GatherMoments()
 {
   if (this->Moments.Size() > 0 && this->Order > 0)
   {
-    AddMoments(
-      this->Parts.TheDevice, this->Parts.FunctionStride(), this->Parts.Functions(), this->Parts.Path, this->Moments);
+    AddMoments(this->Parts.TheDevice, this->Parts.Layout, this->Parts.Functions(), this->Parts.Path, this->Moments);
   }
 }
 

@@ -1,26 +1,24 @@
-#include "LightPropagation/Scattering/CollectShared.h"
+#include "LightPropagation/Sweep/MomentPlacesShared.h"
 
-// Of a source that can be negative, the root mean square over all directions, summed over the voxels of a chunk: at
-// least the power that it adds or takes. A work-item a chunk of a channel.
-//   source  W / (length^3 sr), angular moments [function][channel][stride]
-//   tally   [channel][chunk]
-__kernel void sum_magnitudes(
-  const __global float* source, __global float* tally, ulong stride, ulong function_stride, int functions)
+// Of a source that can be negative, the root mean square over all directions, summed over the voxels of a row: at least
+// the power that it adds or takes. A work-item a row of a channel.
+//   source  W / (length^3 sr), with its angular moments (MomentPlacesShared.h)
+//   tally   [channel][row]
+__kernel void sum_magnitudes(MomentPlaces places, const __global float* source, __global float* tally, ulong stride)
 {
+  const ulong line = get_global_id(0);
   const ulong channel = get_global_id(1);
-  const ulong begin = get_global_id(0) * CollectChunk;
-  const ulong end = min(stride, begin + CollectChunk);
-  source += channel * stride;
   float sum = 0.0f;
-  for (ulong i = begin; i < end; ++i)
+  for (int x = 0; x < places.sizeX; ++x)
   {
-    float square = 0.0f;
-    for (int q = 0; q < functions; ++q)
+    const float mean = source[channel * stride + line * places.sizeX + x];
+    float square = mean * mean;
+    for (int q = 1; q < places.functions; ++q)
     {
-      const float moment = source[q * function_stride + i];
+      const float moment = source[MOMENT_PLACE(places, q, channel, line, x)];
       square += moment * moment;
     }
     sum += sqrt(square);
   }
-  tally[channel * get_global_size(0) + get_global_id(0)] = sum;
+  tally[channel * get_global_size(0) + line] = sum;
 }

@@ -1,7 +1,5 @@
 #include "LightPropagation/Conservative/WarmStart.h"
 
-#include "Device/Sizes.h"
-#include "LightPropagation/Scattering/CollectShared.h"
 #include "Numerics/Constants.h"
 #include "TyndallKernelSources.h"
 
@@ -67,12 +65,11 @@ void WarmStart::Prepare(const std::vector<float>& direct)
   {
     return;
   }
-  const std::size_t stride = layout.Stride();
-  const std::size_t channels = layout.channels;
+  const MomentPlaces places = layout.Places(this->Parts.Functions());
   this->Scaled = this->Kept->scattered;
-  for (std::size_t i = 0; i < this->Scaled.size(); ++i)
+  for (std::size_t i = 0; i < places.beams; ++i)
   {
-    const std::size_t c = i / stride % channels;
+    const int c = layout.ChannelOf(places, i);
     const double before = this->Kept->firstScattered[c];
     const double scale = before > 0.0 ? this->First[c] / before : 0.0;
     this->Scaled[i] = static_cast<float>(this->Scaled[i] * scale);
@@ -96,18 +93,17 @@ void WarmStart::TakeGuessFrom(const Buffer<float>& source)
 Rgb WarmStart::MagnitudeOf(const Buffer<float>& source) const
 {
   const VolumeLayout& layout = this->Parts.Layout;
-  const std::size_t chunks = PartsOf<std::size_t>(layout.Stride(), CollectChunk);
-  Buffer<float> tally(this->Parts.TheDevice, chunks * layout.channels, "sums");
+  const std::size_t lines = static_cast<std::size_t>(layout.grid.size[1]) * layout.grid.size[2];
+  Buffer<float> tally(this->Parts.TheDevice, lines * layout.channels, "sums");
   cl::Kernel kernel = this->Parts.TheDevice.Kernel("sum_magnitudes", kernel_source::WarmStart);
-  With(kernel, source, tally, cl_ulong(layout.Stride()), cl_ulong(this->Parts.FunctionStride()),
-    cl_int(this->Parts.Functions()));
+  With(kernel, layout.Places(this->Parts.Functions()), source, tally, cl_ulong(layout.Stride()));
   this->Parts.TheDevice.Queue().enqueueNDRangeKernel(
-    kernel, cl::NullRange, cl::NDRange(chunks, layout.channels), cl::NDRange(1, 1));
+    kernel, cl::NullRange, cl::NDRange(lines, layout.channels), cl::NDRange(1, 1));
   Rgb sums = {};
   const std::vector<float> values = tally.Read();
   for (std::size_t i = 0; i < values.size(); ++i)
   {
-    sums[i / chunks] += values[i] * 4.0 * Pi * layout.grid.VoxelVolume();
+    sums[i / lines] += values[i] * 4.0 * Pi * layout.grid.VoxelVolume();
   }
   return sums;
 }
@@ -124,14 +120,18 @@ KeptLight WarmStart::Leave(const std::vector<float>& base, const std::vector<flo
     left.rate[c] = std::max(std::min(rate[c], SlowestRate), this->Begins() ? this->Rate(c) : 0.0);
   }
   left.firstScattered = this->First;
-  left.scattered.assign(layout.Floats(this->Parts.Functions()), 0.0f);
+  left.scattered.assign(layout.MomentFloats(this->Parts.Functions()), 0.0f);
   const std::vector<float> fluence = this->Parts.Fluence.Read();
-  for (std::size_t i = 0; i < this->Parts.FunctionStride(); ++i)
+  const std::size_t values = layout.Values();
+  for (std::size_t i = 0; i < values; ++i)
   {
     left.scattered[i] = volume * (fluence[i] - base[i]);
   }
-  std::copy(moments.begin() + std::min(this->Parts.FunctionStride(), moments.size()), moments.end(),
-    left.scattered.begin() + static_cast<std::ptrdiff_t>(std::min(this->Parts.FunctionStride(), moments.size())));
+  if (!moments.empty())
+  {
+    const auto second = static_cast<std::ptrdiff_t>(values);
+    std::copy(moments.begin() + second, moments.end(), left.scattered.begin() + second);
+  }
   left.fromDarkness = this->Begins() ? this->Kept->fromDarkness : std::vector<ConvergenceRow>();
   return left;
 }
