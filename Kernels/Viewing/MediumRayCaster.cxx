@@ -16,6 +16,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <functional>
 
 #include <glm/geometric.hpp>
 #include <glm/vec3.hpp>
@@ -50,6 +51,17 @@ double ExtinctionBound(const Medium& medium)
     sum += count > 0 ? *std::max_element(field.values, field.values + count) : 0.0f;
   }
   return sum;
+}
+
+/// Of the moments that a picture is made of; -1: of none.
+int ShownDegree(const SolvedLight& light, const ViewSettings& settings)
+{
+  return light.scatteredMoments.values && !settings.singleScatteringOnly ? DegreeOf(light.scatteredMoments) : -1;
+}
+
+bool Shine(const std::vector<Light>& lamps)
+{
+  return std::any_of(lamps.begin(), lamps.end(), [](const Light& lamp) { return !IsBlack(lamp.power); });
 }
 
 std::size_t PaddedCount(const Grid& grid)
@@ -101,8 +113,8 @@ MediumRayCaster::MediumRayCaster(Device& device, const Medium& medium, const Sol
   const Illumination& illumination, const ViewSettings& asked, const Field& ior)
   : TheDevice(device)
   , TheGrid(medium.grid)
-  , LampsShine(std::any_of(
-      illumination.lights.begin(), illumination.lights.end(), [](const Light& lamp) { return !IsBlack(lamp.power); }))
+  , MomentDegree(ShownDegree(light, asked))
+  , LampsShine(Shine(this->ShowsMoments() ? light.lampsApart : illumination.lights))
   , AskedForShadowRays(asked.shadowRays)
   , Settings(this->Needed(asked))
 {
@@ -113,11 +125,13 @@ MediumRayCaster::MediumRayCaster(Device& device, const Medium& medium, const Sol
   Check(light, medium.grid, settings);
   CheckViewedIndex(ior, medium.grid);
 
+  const std::vector<Light>& lamps = this->ShowsMoments() ? light.lampsApart : illumination.lights;
   const std::vector<SmallLight> lights = settings.shadowRays
-    ? SmallLights(illumination.lights, medium.grid, settings.rectangleSamples)
+    ? SmallLights(lamps, medium.grid, settings.rectangleSamples)
     : std::vector<SmallLight>();
   this->LightCount = static_cast<int>(lights.size());
   this->Phase = ViewedPhaseOf(medium.phase);
+  this->TakeMoments(light);
   this->FindTraits(medium, light, ior);
   this->Upload(medium, light, ior);
   this->Reserve();
@@ -136,6 +150,21 @@ MediumRayCaster::MediumRayCaster(Device& device, const Medium& medium, const Sol
   this->SayWhatIsLeftOut();
 }
 
+void MediumRayCaster::TakeMoments(const SolvedLight& light)
+{
+  if (!this->ShowsMoments())
+  {
+    return;
+  }
+  const std::size_t voxels = this->TheGrid.VoxelCount();
+  this->MomentChannels = light.scatteredMoments.components / ((this->MomentDegree + 1) * (this->MomentDegree + 1));
+  this->StraightOnChannels = light.straightOn.components;
+  this->Moments = Buffer<float>(this->TheDevice, light.scatteredMoments.values,
+    voxels * light.scatteredMoments.components, "the moments of scattered light");
+  this->StraightOn = Buffer<float>(this->TheDevice, light.straightOn.values, voxels * light.straightOn.components,
+    "what is scattered straight on");
+}
+
 /// What of the scene varies, has colour or depends on the camera.
 void MediumRayCaster::FindTraits(const Medium& medium, const SolvedLight& light, const Field& ior)
 {
@@ -145,12 +174,13 @@ void MediumRayCaster::FindTraits(const Medium& medium, const SolvedLight& light,
   const MediumTraits& traits = this->Traits;
   this->Bends = !settings.leaveOut || this->Index.Varies();
   const bool anisotropic = this->Phase.formula != ViewedPhase::Even;
-  this->KnowsFlow = anisotropic && light.meanDirection.values && light.fluence.values && !settings.shadowRays;
-  this->Coloured = !settings.leaveOut || !traits.greyExtinction;
+  this->KnowsFlow = anisotropic && light.meanDirection.values && light.fluence.values && !settings.shadowRays &&
+    !this->ShowsMoments();
+  this->Coloured = !settings.leaveOut || !traits.greyExtinction || this->StraightOnChannels == 3;
   // Beside directions of the light it does not pay to have sources by one channel.
-  this->Grey = !this->Coloured && traits.grey && !this->KnowsFlow && this->LightCount == 0 &&
+  this->Grey = !this->Coloured && traits.grey && !this->KnowsFlow && this->LightCount == 0 && !this->ShowsMoments() &&
     light.fluence.components == 1 && light.fluenceDirect.components == 1 && (!traits.emits || traits.emission.IsGrey());
-  this->SourcesDependOnCamera = this->LightCount > 0 && anisotropic;
+  this->SourcesDependOnCamera = (this->LightCount > 0 && anisotropic) || this->ShowsMoments();
   this->LargestSigmaT = ExtinctionBound(medium);
 }
 
@@ -163,8 +193,11 @@ void MediumRayCaster::PrepareBackground(const Illumination& illumination)
   {
     this->EnvironmentSize = { environment.width, environment.height };
   }
-  this->EnvironmentPixels = Buffer<cl_float4>(this->TheDevice,
-    this->EnvironmentSize[0] > 0 ? ClosedEnvironment(environment) : std::vector<cl_float4>(), "the environment");
+  const std::vector<cl_float4> pixels =
+    this->EnvironmentSize[0] > 0 ? ClosedEnvironment(environment) : std::vector<cl_float4>();
+  this->EnvironmentPixels = Buffer<cl_float4>(this->TheDevice, pixels, "the environment");
+  this->SharpEnvironment =
+    Buffer<cl_float4>(this->TheDevice, std::vector<cl_float4>(this->ShowsMoments() ? pixels.size() : 0), "the environment");
 }
 
 void MediumRayCaster::PrepareTable(const SolvedLight& light, const Field& ior)
@@ -179,7 +212,7 @@ void MediumRayCaster::PrepareTable(const SolvedLight& light, const Field& ior)
 void MediumRayCaster::PrepareSurface(const Medium& medium, const SolvedLight& light)
 {
   const bool plain = !this->Settings.singleScatteringOnly && this->LightCount == 0 && !this->KnowsFlow &&
-    !this->Bends && this->Settings.tableFace < 0;
+    !this->ShowsMoments() && !this->Bends && this->Settings.tableFace < 0;
   this->Surface = Buffer<cl_float4>(this->TheDevice,
     plain && light.surface.values && light.fluence.values ? SurfaceLight(medium, light, this->Settings.stepSize)
                                                           : std::vector<cl_float4>(),
@@ -206,7 +239,8 @@ void MediumRayCaster::Reserve()
     Buffer<cl_char>(device, static_cast<std::size_t>(this->BrickCount[0]) * this->BrickCount[1] * this->BrickCount[2],
       "the ray caster's bricks");
   this->Direct =
-    Buffer<float>(device, this->LightCount > 0 ? 6 * this->TheGrid.VoxelCount() : 0, "light found by shadow rays");
+    Buffer<float>(device, this->LightCount > 0 || this->ShowsMoments() ? 6 * this->TheGrid.VoxelCount() : 0,
+      "light scattered towards the eye");
 }
 
 void MediumRayCaster::PrepareBending()
@@ -239,7 +273,7 @@ void MediumRayCaster::SayWhatIsLeftOut()
   omit(this->LightCount > 0,
     this->AskedForShadowRays ? "shadow rays: no lamp and no sun shines" : "shadow rays: not asked for");
   omit(this->EnvironmentSize[0] > 0, "environment: none, or not shown");
-  omit(this->KnowsFlow || this->LightCount > 0,
+  omit(this->KnowsFlow || this->LightCount > 0 || this->ShowsMoments(),
     "phase function: the medium scatters evenly, or the direction of the light is not known");
   omit(this->Bends, left_out::ConstantIndex);
   omit(!this->SkipsBricks() || !this->HasEmptyBricks, left_out::EmptyBricks);
@@ -254,10 +288,10 @@ void MediumRayCaster::SayWhatIsLeftOut()
     "light at the surface: no thick voxels at the faces of the box, or it is not known there");
 }
 
-/// Without a lamp there is nothing that shadow rays could find.
+/// Without a lamp there is nothing that shadow rays could find; moments lack what they find.
 ViewSettings MediumRayCaster::Needed(ViewSettings asked) const
 {
-  asked.shadowRays = asked.shadowRays && this->LampsShine;
+  asked.shadowRays = (asked.shadowRays || this->ShowsMoments()) && this->LampsShine;
   return asked;
 }
 
@@ -295,7 +329,8 @@ void MediumRayCaster::Upload(const Medium& medium, const SolvedLight& light, con
   const bool single = this->Settings.singleScatteringOnly;
   const bool all = !this->Settings.leaveOut;
   const std::array<bool, 5> used = { all || this->Traits.absorbs, all || this->Traits.scatters,
-    all || this->Traits.emits, !single, shadows != single };
+    all || this->Traits.emits, !single && !this->ShowsMoments(),
+    shadows != single && !this->ShowsMoments() };
   const std::array<const char*, 5> names = { "sigma_a", "sigma_s", "emission", "fluence", "fluence_direct" };
   const std::size_t voxels = medium.grid.VoxelCount();
   for (std::size_t i = 0; i < fields.size(); ++i)
@@ -348,20 +383,23 @@ std::string MediumRayCaster::PackingOptions() const
     Define("MEAN_COSINE", varies ? this->Phase.channels : 0);
 }
 
-/// @param forShadowRays  what these need; else what the camera's rays do
-void MediumRayCaster::Pack(bool forShadowRays)
+void MediumRayCaster::Pack(Packing what)
 {
+  const bool forShadowRays = what == Packing::ForShadowRays;
   const bool bends = this->Bends && !forShadowRays; // shadow rays go straight on
   const std::string options = this->PackingOptions() + this->PhaseOptions(this->KnowsFlow) +
-    Define("SHADOW_RAYS", this->LightCount > 0 && !forShadowRays) + Define("BENDS", bends);
+    Define("SHADOW_RAYS", this->LightCount > 0 && !forShadowRays) +
+    Define("MOMENTS", this->ShowsMoments() && !forShadowRays) +
+    Define("STRAIGHT_ON", what == Packing::Unscattered ? 0 : this->StraightOnChannels) +
+    Define("UNLIT", what == Packing::Unscattered) + Define("BENDS", bends);
   const cl_int4 size = Int4(this->TheGrid.size);
   const cl_int4 bricks = Int4(this->BrickCount);
   const cl_int single = this->Settings.singleScatteringOnly ? 1 : 0;
 
   cl::Kernel pack = this->TheDevice.Kernel("pack_samples", kernel_source::ScatteredLight, options);
   With(pack, size, single, this->Phase.parameters.first.s[0], this->Arrays[0], this->Arrays[1], this->Arrays[2],
-    this->Arrays[3], this->Arrays[4], this->Direct, this->MeanDirection, this->Ior, this->MeanCosines, this->Samples,
-    this->Extinctions, this->Flow, this->Glow, this->Cosines);
+    this->Arrays[3], this->Arrays[4], this->Direct, this->MeanDirection, this->Ior, this->MeanCosines, this->StraightOn,
+    this->Samples, this->Extinctions, this->Flow, this->Glow, this->Cosines);
   this->TheDevice.Queue().enqueueNDRangeKernel(pack, cl::NullRange,
     cl::NDRange(RoundUp<std::size_t>(size.s[0] + 2, 64), size.s[1] + 2, size.s[2] + 2), cl::NDRange(64, 1, 1));
 
@@ -375,7 +413,7 @@ void MediumRayCaster::Pack(bool forShadowRays)
   this->Bricks.Write(distances.data());
 }
 
-void MediumRayCaster::SeeLights(const Camera& camera, const Monitor& monitor)
+ShadowInfo MediumRayCaster::MakeShadowInfo(const Camera& camera) const
 {
   const double radius = std::cbrt(3.0 * this->TheGrid.VoxelVolume() / (4.0 * Pi));
   ShadowInfo info = {};
@@ -388,6 +426,12 @@ void MediumRayCaster::SeeLights(const Camera& camera, const Monitor& monitor)
   info.step = static_cast<float>(this->Settings.stepSize);
   info.nearestSquare = static_cast<float>(radius * radius / 3.0);
   info.lights = this->LightCount;
+  return info;
+}
+
+void MediumRayCaster::SeeLights(const Camera& camera, const Monitor& monitor)
+{
+  ShadowInfo info = this->MakeShadowInfo(camera);
   cl::Kernel see = this->TheDevice.Kernel(
     "see_lights", kernel_source::ShadowRays, this->PackingOptions() + this->PhaseOptions(true) + this->StepOption());
   const std::size_t across = RoundUp<std::size_t>(this->TheGrid.size[0], 4 * this->PacketWidth()) / this->PacketWidth();
@@ -403,6 +447,16 @@ void MediumRayCaster::SeeLights(const Camera& camera, const Monitor& monitor)
   };
   InBatches(this->TheDevice, BatchesOfRows(this->TheGrid.size[2], rows, samplesOfRow, 0.0, 0.5), monitor,
     [&](std::size_t first, std::size_t count) { InPatches(first, count, rows, launch); });
+}
+
+void MediumRayCaster::SeeMoments(const Camera& camera)
+{
+  const ShadowInfo info = this->MakeShadowInfo(camera);
+  cl::Kernel see = this->TheDevice.Kernel("see_moments", kernel_source::SeenMoments,
+    Define("DEGREE", this->MomentDegree) + Define("MOMENT_CHANNELS", this->MomentChannels));
+  With(see, info, cl_int(this->LightCount > 0), this->Moments, this->Direct);
+  this->TheDevice.Queue().enqueueNDRangeKernel(see, cl::NullRange,
+    cl::NDRange(RoundUp<std::size_t>(info.size.s[0], 8), info.size.s[1], info.size.s[2]), cl::NDRange(8, 1, 1));
 }
 
 ViewInfo MediumRayCaster::MakeView(const Camera& camera) const
@@ -442,13 +496,17 @@ void MediumRayCaster::PrepareSources(const Camera& camera, const Monitor& monito
 {
   if (this->LightCount > 0)
   {
-    this->Pack(true);
+    this->Pack(Packing::ForShadowRays);
     this->SeeLights(camera, monitor);
   }
-  this->Pack(false);
+  if (this->ShowsMoments())
+  {
+    this->SeeMoments(camera);
+  }
+  this->Pack(Packing::Scattered);
   this->SayWhatIsLeftOut(); // now empty bricks are known
   this->SourcesReady = true;
-  if (this->LightCount == 0)
+  if (!this->SourcesDependOnCamera && this->LightCount == 0)
   {
     this->Arrays = {};
     this->MeanDirection = {};
@@ -515,11 +573,11 @@ cl::Kernel MediumRayCaster::CastingKernel()
       Define("TABLE", this->Settings.tableFace >= 0));
 }
 
-void MediumRayCaster::CastRays(ViewInfo& view, double from, const Monitor& monitor)
+void MediumRayCaster::CastRays(ViewInfo& view, const OpticsInfo& optics, const Buffer<cl_float4>& environment,
+  double from, double to, const Monitor& monitor)
 {
   const std::array<int, 2> packet = PacketPixels(this->PacketWidth());
   const bool straight = !this->Bends && this->Settings.tableFace < 0;
-  const OpticsInfo optics = this->MakeOptics();
   cl::Kernel cast = this->CastingKernel();
   // Batches of whole work-groups: else the last rows of one would be cast again by the next.
   const int group = 4;
@@ -532,18 +590,31 @@ void MediumRayCaster::CastRays(ViewInfo& view, double from, const Monitor& monit
     if (straight)
     {
       With(cast, view, this->Samples, this->Extinctions, this->Flow, this->Glow, this->Cosines, this->PhaseRows,
-        this->Bricks, this->EnvironmentPixels, this->Surface, this->Radiance, this->Alpha, this->Depth);
+        this->Bricks, environment, this->Surface, this->Radiance, this->Alpha, this->Depth);
     }
     else
     {
       With(cast, view, optics, this->Samples, this->Extinctions, this->Flow, this->Glow, this->Cosines, this->PhaseRows,
-        this->Bending, this->Table, this->Bricks, this->EnvironmentPixels, this->Radiance, this->Alpha, this->Depth);
+        this->Bending, this->Table, this->Bricks, environment, this->Radiance, this->Alpha, this->Depth);
     }
     this->TheDevice.Queue().enqueueNDRangeKernel(
       cast, cl::NullRange, cl::NDRange(part.columns * group, part.rows * group), cl::NDRange(group, group));
   };
-  InBatches(this->TheDevice, BatchesOfRows(rows, across, samples, from, 1.0), monitor,
+  InBatches(this->TheDevice, BatchesOfRows(rows, across, samples, from, to), monitor,
     [&](std::size_t first, std::size_t count) { InPatches(first, count, across, launch); });
+}
+
+/// What comes from behind without being scattered, which alone is sharp, and how much that is: the picture's alpha and
+/// depth (numerics.md, section 14.7).
+void MediumRayCaster::AddUnscattered(ViewInfo& view, const Monitor& monitor, std::vector<float>& radiance)
+{
+  this->Pack(Packing::Unscattered);
+  view.background = Float4(this->UnderSky ? glm::dvec3(0.0) : Vector(this->Background), view.background.s[3]);
+  OpticsInfo optics = this->MakeOptics();
+  optics.table.s[0] = optics.table.s[1] = optics.table.s[2] = 0.0f; // it is in the picture already
+  this->CastRays(view, optics, this->SharpEnvironment, 0.8, 1.0, monitor);
+  const std::vector<float> sharp = this->Radiance.Read();
+  std::transform(radiance.begin(), radiance.end(), sharp.begin(), radiance.begin(), std::plus<float>());
 }
 
 Picture MediumRayCaster::Render(const Camera& camera, const Monitor& monitor)
@@ -570,8 +641,17 @@ Picture MediumRayCaster::Render(const Camera& camera, const Monitor& monitor)
     this->Alpha.Swap(alpha);
     this->Depth.Swap(depth);
   }
-  this->CastRays(view, prepares && this->LightCount > 0 ? 0.5 : 0.0, monitor);
+  if (this->ShowsMoments() && !this->UnderSky)
+  {
+    view.background = Float4(glm::dvec3(0.0), view.background.s[3]); // does not shine on the medium: see AddUnscattered
+  }
+  this->CastRays(view, this->MakeOptics(), this->EnvironmentPixels, prepares && this->LightCount > 0 ? 0.5 : 0.0,
+    this->ShowsMoments() ? 0.8 : 1.0, monitor);
   picture.radiance = this->Radiance.Read();
+  if (this->ShowsMoments())
+  {
+    this->AddUnscattered(view, monitor, picture.radiance);
+  }
   picture.alpha = this->Alpha.Read();
   picture.depth = this->Depth.Read();
   return picture;

@@ -28,6 +28,10 @@ struct SolvedLight
   /// W / (length^2 sr) that leaves through the box's faces, a value for each cell of BoxFaces.h, 4 components
   /// (SurfaceCosines) or 3 times as many (cosine by cosine, red, green, blue). Null: not known.
   Field surface = {};
+  /// LightField::scatteredMoments, (degree + 1)^2 or 3 times as many components, and straightOn and lampsApart that
+  /// belong to them. Null: not known.
+  Field scatteredMoments = {}, straightOn = {};
+  std::vector<Light> lampsApart = {};
 };
 
 /// What a surface of refractive objects reflects of the light that meets it from the side of the smaller index.
@@ -173,6 +177,7 @@ private:
     return this->Phase.channels == 1 &&
       (this->Phase.formula == ViewedPhase::HenyeyGreenstein || this->Phase.formula == ViewedPhase::Schlick);
   }
+  bool ShowsMoments() const { return this->MomentDegree >= 0; }
   bool GlowsApart() const { return this->KnowsFlow && this->Components[2] > 0; } ///< emission is not scattered
   double SurfaceIndex() const
   {
@@ -184,6 +189,7 @@ private:
     return this->Bends && this->Settings.surfaceReflection != SurfaceReflection::None &&
       this->SurfaceIndex() > this->Index.least && this->SurfaceIndex() <= this->Index.largest;
   }
+  void TakeMoments(const SolvedLight& light);
   void FindTraits(const Medium& medium, const SolvedLight& light, const Field& ior);
   void Upload(const Medium& medium, const SolvedLight& light, const Field& ior);
   void Reserve();
@@ -194,16 +200,27 @@ private:
   void PrepareTable(const SolvedLight& light, const Field& ior);
   void PrepareSurface(const Medium& medium, const SolvedLight& light);
   void SayWhatIsLeftOut();
-  void Pack(bool forShadowRays);
+  enum class Packing
+  {
+    ForShadowRays,
+    Scattered,  ///< what the camera's rays meet
+    Unscattered ///< the same in the dark: how much of what is behind comes through without being scattered at all
+  };
+  void Pack(Packing what);
+  ShadowInfo MakeShadowInfo(const Camera& camera) const;
   void SeeLights(const Camera& camera, const Monitor& monitor);
+  void SeeMoments(const Camera& camera);
+  void AddUnscattered(ViewInfo& view, const Monitor& monitor, std::vector<float>& radiance);
   void PrepareSources(const Camera& camera, const Monitor& monitor);
-  void CastRays(ViewInfo& view, double from, const Monitor& monitor);
+  void CastRays(ViewInfo& view, const OpticsInfo& optics, const Buffer<cl_float4>& environment, double from, double to,
+    const Monitor& monitor);
   cl::Kernel CastingKernel();
   ViewInfo MakeView(const Camera& camera) const;
   OpticsInfo MakeOptics() const;
 
   Device& TheDevice;
   Grid TheGrid;
+  int MomentDegree = -1; ///< of the light; -1: it is not shown by moments
   bool LampsShine = false;
   bool AskedForShadowRays = false; ///< though there may be no lamp
   ViewSettings Settings;           ///< as far as the scene needs them
@@ -226,6 +243,8 @@ private:
   std::array<int, 5> Components = {};  ///< of absorption, scattering, emission, fluence, fluenceDirect
   std::array<Buffer<float>, 5> Arrays; ///< given back once packed, where nothing will ask for them again
   Buffer<float> MeanDirection, Ior;    ///< as Arrays
+  Buffer<float> Moments, StraightOn;   ///< where moments are shown
+  int MomentChannels = 0, StraightOnChannels = 0;
   Buffer<float> MeanCosines;           ///< g by voxel, likewise
   Buffer<float> PhaseRows;
   Buffer<float> Direct;      ///< 6 per voxel: what the lights scatter towards the eye, and their irradiance
@@ -239,6 +258,7 @@ private:
   Buffer<cl_float4> Surface; ///< see SurfaceLight.h
   Buffer<cl_char> Bricks;
   Buffer<cl_float4> EnvironmentPixels;
+  Buffer<cl_float4> SharpEnvironment; ///< where moments are shown: what of it is seen without being scattered at all
   Buffer<SmallLight> Lights;
   Buffer<float> Radiance, Alpha, Depth; ///< the last picture; kept for the next of its size
   std::vector<std::string> Omitted, Doubts;

@@ -4,6 +4,9 @@
 // The host gives
 //   ABSORPTION, SCATTERING, EMISSION, FLUENCE, UNSCATTERED   components of each array: 0 (there is none), 1 or 3
 //   SHADOW_RAYS  1: `direct` holds what the lights scatter towards the eye
+//   MOMENTS      1: `direct` holds what is scattered towards the eye of all light
+//   STRAIGHT_ON  components of the part of what is scattered that goes straight on; 0: none does
+//   UNLIT        1: nothing is scattered or emitted
 //   FLOW         1: the light's mean direction is packed, FLOW_WITH_G 1: times g
 //   MEAN_COSINE  components of g by voxel; 0: it is the same everywhere
 //   VARIED_G     1: g by voxel is packed apart
@@ -35,7 +38,9 @@ inline float in_scattered(__global const float* fluence, __global const float* u
 {
   const float whole = channel_of(fluence, voxel, FLUENCE, channel);
   const float first = channel_of(unscattered, voxel, UNSCATTERED, channel);
-#if SHADOW_RAYS
+#if MOMENTS
+  return direct[voxel * 6 + channel];
+#elif SHADOW_RAYS
   const float seen = direct[voxel * 6 + channel];
   const float from_lights = fmin(direct[voxel * 6 + 3 + channel], first);
   return seen + (single ? 0.0f : fmax(whole - from_lights, 0.0f) * PER_SPHERE);
@@ -54,7 +59,14 @@ typedef struct
   __global const float* unscattered;
   __global const float* direct;
   __global const float* ior;
+  __global const float* straightOn;
 } ingredients;
+
+#if STRAIGHT_ON
+#define TURNED_ASIDE(sigma, n) sigma * (1.0f - channel_of(from->straightOn, voxel, STRAIGHT_ON, n))
+#else
+#define TURNED_ASIDE(sigma, n) sigma
+#endif
 
 // Source of a voxel, by n^2 with BENDS: red, green, blue, and grey extinction; besides all of the extinction, and what
 // is emitted, which with GLOW is no part of the source.
@@ -63,15 +75,18 @@ inline float4 source_of(const ingredients* from, int voxel, int single, float4* 
   float4 sigma_s = (float4)(0.0f);
   float4 source = (float4)(0.0f);
   *sigma_t = *emitted = (float4)(0.0f);
-#define CHANNEL(c, n)                                                          \
-  sigma_s.c = channel_of(from->scattering, voxel, SCATTERING, n);              \
-  sigma_t->c = sigma_s.c + channel_of(from->absorption, voxel, ABSORPTION, n); \
-  emitted->c = channel_of(from->emission, voxel, EMISSION, n);                 \
+#define CHANNEL(c, n)                                                                            \
+  sigma_s.c = channel_of(from->scattering, voxel, SCATTERING, n);                                \
+  sigma_t->c = TURNED_ASIDE(sigma_s.c, n) + channel_of(from->absorption, voxel, ABSORPTION, n); \
+  emitted->c = channel_of(from->emission, voxel, EMISSION, n);                                   \
   source.c = sigma_s.c * in_scattered(from->fluence, from->unscattered, from->direct, voxel, n, single);
   CHANNEL(x, 0)
   CHANNEL(y, 1)
   CHANNEL(z, 2)
 #undef CHANNEL
+#if UNLIT
+  source = *emitted = (float4)(0.0f);
+#endif
 #if !GLOW
   source += *emitted;
 #endif
@@ -95,7 +110,8 @@ __kernel void pack_samples(int4 size, int single, float g, __global const float*
   __global const float* restrict scattering, __global const float* restrict emission,
   __global const float* restrict fluence, __global const float* restrict unscattered,
   __global const float* restrict direct, __global const float* restrict direction, __global const float* restrict ior,
-  __global const float* restrict mean_cosines, __global float4* restrict samples, __global float4* restrict extinctions,
+  __global const float* restrict mean_cosines, __global const float* restrict straight_on,
+  __global float4* restrict samples, __global float4* restrict extinctions,
   __global float4* restrict flow, __global float4* restrict glow, __global float4* restrict cosines)
 {
   if (get_global_id(0) >= size.x + 2)
@@ -104,7 +120,7 @@ __kernel void pack_samples(int4 size, int single, float g, __global const float*
   }
   const int voxel = voxel_index(size);
   const int place = padded_index(size);
-  const ingredients from = { absorption, scattering, emission, fluence, unscattered, direct, ior };
+  const ingredients from = { absorption, scattering, emission, fluence, unscattered, direct, ior, straight_on };
   float4 sigma_t, emitted;
   const float4 source = source_of(&from, voxel, single, &sigma_t, &emitted);
 #if GREY

@@ -3,6 +3,7 @@
 #include "Device/Sizes.h"
 #include "Light/LeftOut.h"
 #include "LightPropagation/Convergence.h"
+#include "LightPropagation/Scattering/MomentScattering.h"
 #include "LightPropagation/Uncollided/UncollidedBoundary.h"
 #include "TyndallKernelSources.h"
 
@@ -26,6 +27,11 @@ SourceIteration::SourceIteration(TransportParts& parts)
   , Shining(parts.HasSource())
 {
   this->MakeSweeps();
+  if (parts.StoresMoments())
+  {
+    this->Result.shown = Buffer<float>(parts.TheDevice, parts.Layout.Floats(parts.Functions()), "the light shown");
+    this->Result.shown.Fill(0.0f);
+  }
 }
 
 IterationResult SourceIteration::Run(const Monitor& monitor)
@@ -149,6 +155,10 @@ void SourceIteration::AddUncollided(const Monitor& monitor)
   {
     const Monitor ofSource = OfPart(monitor, i / all, (i + 1) / all);
     Add(tally, this->Parts.AddUncollided(*sources[i], this->Parts.WholeDeposit(), ofSource));
+    if (this->Parts.StoresMoments() && i + 1 == this->Parts.Lamps.size())
+    {
+      this->Parts.Scattering->AddFirstScattered(this->Parts.WholeDeposit(), this->Result.shown);
+    }
   }
   this->Result.ledger.Count(tally);
   this->Stranded = tally.onTheWay;
@@ -208,6 +218,12 @@ void SourceIteration::ScatterOrder()
   const TransportParts& parts = this->Parts;
   const ScatteringOperator::Powers powers =
     parts.Scattering->ScatterOrder(parts.WholeDeposit(), parts.Fluence, parts.Source, this->SweptValues());
+  if (parts.StoresMoments())
+  {
+    // What is shown holds lamps' light alone before the first order.
+    AddToShown(parts.TheDevice, parts.Functions() * parts.FunctionStride(), parts.Source, this->Result.shown,
+      this->Order == 0 ? -1.0f : 1.0f);
+  }
   this->Scattered = powers.scattered;
   for (int c = 0; c < 3; ++c)
   {

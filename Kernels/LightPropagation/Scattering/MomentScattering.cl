@@ -52,6 +52,36 @@ __kernel void add_moments(const __global float* path, __global float* to, ulong 
   to[at] += path[at];
 }
 
+// All moments: what one order shines, and `part` of what others did.
+__kernel void add_to_shown(const __global float* source, __global float* shown, float part)
+{
+  const ulong at = get_global_id(0);
+  shown[at] = source[at] + part * shown[at];
+}
+
+// Moments in functions of an AngularBasis as those in spherical harmonics, of voxels side by side. A work-item a voxel,
+// a channel, and a harmonic.
+//   basis      [function][harmonic]
+//   functions  of the basis; harmonics are as many or fewer
+//   moments    [function][channel][stride]
+//   scale      [channel][stride]
+//   out        [voxel][harmonic][channel]
+__kernel void to_harmonics(const __global float* basis, int functions, const __global float* moments,
+  const __global float* scale, ulong stride, __global float* out)
+{
+  const ulong i = get_global_id(0);
+  const ulong c = get_global_id(1);
+  const ulong j = get_global_id(2);
+  const ulong channels = get_global_size(1);
+  float sum = 0.0f;
+  for (int q = j; q < functions; ++q)
+  {
+    const float part = basis[q * functions + j];
+    sum += part != 0.0f ? part * moments[(q * channels + c) * stride + i] : 0.0f;
+  }
+  out[(i * get_global_size(2) + j) * channels + c] = scale[c * stride + i] * sum;
+}
+
 // A beam's own source, in voxels of the highest degree: the others scatter it in moments alone.
 __kernel void scatter_beam(const __global float* path, __global float* source, const __global float* sigma_s,
   ulong stride, int slot, int degree, float per_path)
