@@ -9,6 +9,7 @@
 #include "Numerics/Vectors.h"
 #include "Refraction/Index/SquaredIndex.h"
 #include "TyndallKernelSources.h"
+#include "Viewing/Aureole.h"
 #include "Viewing/Bricks.h"
 #include "Viewing/SurfaceLight.h"
 #include "Viewing/ViewChecks.h"
@@ -133,6 +134,7 @@ MediumRayCaster::MediumRayCaster(Device& device, const Medium& medium, const Sol
   this->Phase = ViewedPhaseOf(medium.phase);
   this->TakeMoments(light);
   this->FindTraits(medium, light, ior);
+  this->PrepareAureole(medium, light);
   this->Upload(medium, light, ior);
   this->Reserve();
   this->Lights = Buffer<SmallLight>(device, lights, "the lights");
@@ -163,6 +165,28 @@ void MediumRayCaster::TakeMoments(const SolvedLight& light)
     voxels * light.scatteredMoments.components, "the moments of scattered light");
   this->StraightOn = Buffer<float>(this->TheDevice, light.straightOn.values, voxels * light.straightOn.components,
     "what is scattered straight on");
+}
+
+/// Of the voxels in which least goes straight on: those that matter have as much.
+void MediumRayCaster::PrepareAureole(const Medium& medium, const SolvedLight& light)
+{
+  if (!this->ShowsMoments() || this->LightCount == 0 || medium.phase.Varies())
+  {
+    return;
+  }
+  this->AureoleChannels = this->Phase.channels;
+  std::vector<float> tables;
+  for (int c = 0; c < this->AureoleChannels; ++c)
+  {
+    double least = 1.0;
+    for (std::size_t i = 0; i < medium.grid.VoxelCount(); ++i)
+    {
+      least = medium.sigma_s.At(i, c) > 0.0f ? std::min<double>(least, light.straightOn.At(i, c)) : least;
+    }
+    const std::vector<float> table = AureoleTable(medium.phase.OfChannel(c), least);
+    tables.insert(tables.end(), table.begin(), table.end());
+  }
+  this->AureoleTables = Buffer<float>(this->TheDevice, tables, "light scattered forwards");
 }
 
 /// What of the scene varies, has colour or depends on the camera.
@@ -389,9 +413,9 @@ void MediumRayCaster::Pack(Packing what)
   const bool bends = this->Bends && !forShadowRays; // shadow rays go straight on
   const std::string options = this->PackingOptions() + this->PhaseOptions(this->KnowsFlow) +
     Define("SHADOW_RAYS", this->LightCount > 0 && !forShadowRays) +
-    Define("MOMENTS", this->ShowsMoments() && !forShadowRays) +
+    Define("MOMENTS", !this->ShowsMoments() || forShadowRays ? 0 : what == Packing::Unscattered ? 2 : 1) +
     Define("STRAIGHT_ON", what == Packing::Unscattered ? 0 : this->StraightOnChannels) +
-    Define("UNLIT", what == Packing::Unscattered) + Define("BENDS", bends);
+    Define("UNLIT", what != Packing::Unscattered ? 0 : this->AureoleChannels > 0 ? 2 : 1) + Define("BENDS", bends);
   const cl_int4 size = Int4(this->TheGrid.size);
   const cl_int4 bricks = Int4(this->BrickCount);
   const cl_int single = this->Settings.singleScatteringOnly ? 1 : 0;
@@ -432,8 +456,9 @@ ShadowInfo MediumRayCaster::MakeShadowInfo(const Camera& camera) const
 void MediumRayCaster::SeeLights(const Camera& camera, const Monitor& monitor)
 {
   ShadowInfo info = this->MakeShadowInfo(camera);
-  cl::Kernel see = this->TheDevice.Kernel(
-    "see_lights", kernel_source::ShadowRays, this->PackingOptions() + this->PhaseOptions(true) + this->StepOption());
+  cl::Kernel see = this->TheDevice.Kernel("see_lights", kernel_source::ShadowRays,
+    this->PackingOptions() + this->PhaseOptions(true) + this->StepOption() + Define("AUREOLE", this->AureoleChannels) +
+      Define("STRAIGHT_ON", this->StraightOnChannels));
   const std::size_t across = RoundUp<std::size_t>(this->TheGrid.size[0], 4 * this->PacketWidth()) / this->PacketWidth();
   const std::size_t rows = this->TheGrid.size[1];
   const double samplesOfRow = this->LongestSteps() * this->LightCount * this->TheGrid.size[0];
@@ -441,7 +466,7 @@ void MediumRayCaster::SeeLights(const Camera& camera, const Monitor& monitor)
     info.firstSlice = part.row;
     info.firstRow = part.column;
     With(see, info, this->Lights, this->Arrays[1], this->MeanCosines, this->PhaseRows, this->Samples, this->Extinctions,
-      this->Bricks, this->Direct);
+      this->Bricks, this->Arrays[0], this->StraightOn, this->AureoleTables, this->Direct);
     this->TheDevice.Queue().enqueueNDRangeKernel(
       see, cl::NullRange, cl::NDRange(across, part.columns, part.rows), cl::NDRange(4, 1, 1));
   };

@@ -190,6 +190,7 @@ private:
       this->SurfaceIndex() > this->Index.least && this->SurfaceIndex() <= this->Index.largest;
   }
   void TakeMoments(const SolvedLight& light);
+  void PrepareAureole(const Medium& medium, const SolvedLight& light);
   void FindTraits(const Medium& medium, const SolvedLight& light, const Field& ior);
   void Upload(const Medium& medium, const SolvedLight& light, const Field& ior);
   void Reserve();
@@ -244,6 +245,8 @@ private:
   std::array<Buffer<float>, 5> Arrays; ///< given back once packed, where nothing will ask for them again
   Buffer<float> MeanDirection, Ior;    ///< as Arrays
   Buffer<float> Moments, StraightOn;   ///< where moments are shown
+  Buffer<float> AureoleTables;         ///< there, where g does not vary
+  int AureoleChannels = 0;
   int MomentChannels = 0, StraightOnChannels = 0;
   Buffer<float> MeanCosines;           ///< g by voxel, likewise
   Buffer<float> PhaseRows;

@@ -4,9 +4,9 @@
 // The host gives
 //   ABSORPTION, SCATTERING, EMISSION, FLUENCE, UNSCATTERED   components of each array: 0 (there is none), 1 or 3
 //   SHADOW_RAYS  1: `direct` holds what the lights scatter towards the eye
-//   MOMENTS      1: `direct` holds what is scattered towards the eye of all light
+//   MOMENTS      1: `direct` holds what is scattered towards the eye of all light; 2: see AUREOLE of ShadowRays.cl
 //   STRAIGHT_ON  components of the part of what is scattered that goes straight on; 0: none does
-//   UNLIT        1: nothing is scattered or emitted
+//   UNLIT        1: nothing is scattered or emitted; 2: nothing is emitted
 //   FLOW         1: the light's mean direction is packed, FLOW_WITH_G 1: times g
 //   MEAN_COSINE  components of g by voxel; 0: it is the same everywhere
 //   VARIED_G     1: g by voxel is packed apart
@@ -39,7 +39,7 @@ inline float in_scattered(__global const float* fluence, __global const float* u
   const float whole = channel_of(fluence, voxel, FLUENCE, channel);
   const float first = channel_of(unscattered, voxel, UNSCATTERED, channel);
 #if MOMENTS
-  return direct[voxel * 6 + channel];
+  return direct[voxel * 6 + (MOMENTS == 2 ? 3 : 0) + channel];
 #elif SHADOW_RAYS
   const float seen = direct[voxel * 6 + channel];
   const float from_lights = fmin(direct[voxel * 6 + 3 + channel], first);
@@ -85,7 +85,10 @@ inline float4 source_of(const ingredients* from, int voxel, int single, float4* 
   CHANNEL(z, 2)
 #undef CHANNEL
 #if UNLIT
-  source = *emitted = (float4)(0.0f);
+  *emitted = (float4)(0.0f);
+#endif
+#if UNLIT == 1
+  source = (float4)(0.0f);
 #endif
 #if !GLOW
   source += *emitted;
