@@ -254,7 +254,8 @@ void MediumRayCaster::Reserve()
   const std::size_t count = PaddedCount(this->TheGrid);
   this->Samples = Buffer<cl_float4>(device, count, "the ray caster's samples");
   this->Extinctions = Buffer<cl_float4>(device, this->Coloured ? count : 0, "the ray caster's coloured extinction");
-  this->Flow = Buffer<cl_float4>(device, this->KnowsFlow ? count : 0, "the ray caster's directions of light");
+  this->Flow = Buffer<cl_float4>(
+    device, this->KnowsFlow || this->ShowsBeams() ? count : 0, "the ray caster's directions of light");
   const bool cosines = this->KnowsFlow && this->Phase.varies && !this->FlowHasG();
   this->Cosines = Buffer<cl_float4>(device, cosines ? count : 0, "the ray caster's mean cosines");
   this->Glow = Buffer<cl_float4>(device, this->GlowsApart() ? count : 0, "the ray caster's emission");
@@ -263,8 +264,9 @@ void MediumRayCaster::Reserve()
     Buffer<cl_char>(device, static_cast<std::size_t>(this->BrickCount[0]) * this->BrickCount[1] * this->BrickCount[2],
       "the ray caster's bricks");
   this->Direct =
-    Buffer<float>(device, this->LightCount > 0 || this->ShowsMoments() ? 6 * this->TheGrid.VoxelCount() : 0,
-      "light scattered towards the eye");
+    Buffer<float>(device, this->LightCount > 0 ? 6 * this->TheGrid.VoxelCount() : 0, "light found by shadow rays");
+  this->Diffuse =
+    Buffer<float>(device, this->ShowsMoments() ? 3 * this->TheGrid.VoxelCount() : 0, "light scattered towards the eye");
 }
 
 void MediumRayCaster::PrepareBending()
@@ -409,24 +411,53 @@ std::string MediumRayCaster::PackingOptions() const
 
 void MediumRayCaster::Pack(Packing what)
 {
+  if (this->ShowsMoments())
+  {
+    this->PackShown(what);
+    return;
+  }
   const bool forShadowRays = what == Packing::ForShadowRays;
   const bool bends = this->Bends && !forShadowRays; // shadow rays go straight on
   const std::string options = this->PackingOptions() + this->PhaseOptions(this->KnowsFlow) +
-    Define("SHADOW_RAYS", this->LightCount > 0 && !forShadowRays) +
-    Define("MOMENTS", !this->ShowsMoments() || forShadowRays ? 0 : what == Packing::Unscattered ? 2 : 1) +
-    Define("STRAIGHT_ON", what == Packing::Unscattered ? 0 : this->StraightOnChannels) +
-    Define("UNLIT", what != Packing::Unscattered ? 0 : this->AureoleChannels > 0 ? 2 : 1) + Define("BENDS", bends);
+    Define("SHADOW_RAYS", this->LightCount > 0 && !forShadowRays) + Define("BENDS", bends) + Define("SHOWN", 0);
   const cl_int4 size = Int4(this->TheGrid.size);
-  const cl_int4 bricks = Int4(this->BrickCount);
   const cl_int single = this->Settings.singleScatteringOnly ? 1 : 0;
 
   cl::Kernel pack = this->TheDevice.Kernel("pack_samples", kernel_source::ScatteredLight, options);
   With(pack, size, single, this->Phase.parameters.first.s[0], this->Arrays[0], this->Arrays[1], this->Arrays[2],
-    this->Arrays[3], this->Arrays[4], this->Direct, this->MeanDirection, this->Ior, this->MeanCosines, this->StraightOn,
-    this->Samples, this->Extinctions, this->Flow, this->Glow, this->Cosines);
+    this->Arrays[3], this->Arrays[4], this->Direct, this->MeanDirection, this->Ior, this->MeanCosines, this->Samples,
+    this->Extinctions, this->Flow, this->Glow, this->Cosines);
   this->TheDevice.Queue().enqueueNDRangeKernel(pack, cl::NullRange,
     cl::NDRange(RoundUp<std::size_t>(size.s[0] + 2, 64), size.s[1] + 2, size.s[2] + 2), cl::NDRange(64, 1, 1));
+  this->FindBricks(options);
+}
 
+/// SHOWN and BEAMS of the kernels.
+std::string MediumRayCaster::ShownOptions(Packing what) const
+{
+  const int shown = !this->ShowsMoments() || what == Packing::ForShadowRays ? 0 : what == Packing::Scattered ? 1 : 2;
+  return Define("SHOWN", shown) + Define("BEAMS", shown > 0 && this->ShowsBeams());
+}
+
+void MediumRayCaster::PackShown(Packing what)
+{
+  const std::string options = this->PackingOptions() + this->PhaseOptions(false) + Define("SHADOW_RAYS", 0) +
+    Define("BENDS", this->Bends && what != Packing::ForShadowRays) +
+    Define("STRAIGHT_ON", what == Packing::Unscattered ? 0 : this->StraightOnChannels) +
+    Define("AUREOLE", this->AureoleChannels);
+  const cl_int4 size = Int4(this->TheGrid.size);
+  cl::Kernel pack =
+    this->TheDevice.Kernel("pack_shown", kernel_source::ShownSamples, options + this->ShownOptions(what));
+  With(pack, size, this->Arrays[0], this->Arrays[1], this->Arrays[2], this->StraightOn, this->Diffuse, this->Direct,
+    this->Ior, this->Samples, this->Extinctions, this->Flow, this->Glow);
+  this->TheDevice.Queue().enqueueNDRangeKernel(pack, cl::NullRange,
+    cl::NDRange(RoundUp<std::size_t>(size.s[0] + 2, 64), size.s[1] + 2, size.s[2] + 2), cl::NDRange(64, 1, 1));
+  this->FindBricks(options + Define("SHOWN", 1));
+}
+
+void MediumRayCaster::FindBricks(const std::string& options)
+{
+  const cl_int4 size = Int4(this->TheGrid.size), bricks = Int4(this->BrickCount);
   cl::Kernel find = this->TheDevice.Kernel("find_empty_bricks", kernel_source::ScatteredLight, options);
   With(find, size, bricks, this->Samples, this->Extinctions, this->Glow, this->Bending, this->Bricks);
   this->TheDevice.Queue().enqueueNDRangeKernel(find, cl::NullRange,
@@ -458,7 +489,7 @@ void MediumRayCaster::SeeLights(const Camera& camera, const Monitor& monitor)
   ShadowInfo info = this->MakeShadowInfo(camera);
   cl::Kernel see = this->TheDevice.Kernel("see_lights", kernel_source::ShadowRays,
     this->PackingOptions() + this->PhaseOptions(true) + this->StepOption() + Define("AUREOLE", this->AureoleChannels) +
-      Define("STRAIGHT_ON", this->StraightOnChannels));
+      Define("STRAIGHT_ON", this->StraightOnChannels) + Define("BESIDE", this->ShowsMoments()));
   const std::size_t across = RoundUp<std::size_t>(this->TheGrid.size[0], 4 * this->PacketWidth()) / this->PacketWidth();
   const std::size_t rows = this->TheGrid.size[1];
   const double samplesOfRow = this->LongestSteps() * this->LightCount * this->TheGrid.size[0];
@@ -479,7 +510,7 @@ void MediumRayCaster::SeeMoments(const Camera& camera)
   const ShadowInfo info = this->MakeShadowInfo(camera);
   cl::Kernel see = this->TheDevice.Kernel("see_moments", kernel_source::SeenMoments,
     Define("DEGREE", this->MomentDegree) + Define("MOMENT_CHANNELS", this->MomentChannels));
-  With(see, info, cl_int(this->LightCount > 0), this->Moments, this->Direct);
+  With(see, info, this->Moments, this->Diffuse);
   this->TheDevice.Queue().enqueueNDRangeKernel(see, cl::NullRange,
     cl::NDRange(RoundUp<std::size_t>(info.size.s[0], 8), info.size.s[1], info.size.s[2]), cl::NDRange(8, 1, 1));
 }
@@ -572,7 +603,7 @@ std::string MediumRayCaster::StepOption() const
   return Define("MANY_STEPS", this->LongestSteps() > ManySteps);
 }
 
-std::string MediumRayCaster::CastingOptions() const
+std::string MediumRayCaster::CastingOptions(Packing what) const
 {
   // Longest optical length of a step; the kernel has a shorter way to cross it up to 2. Bent steps can be a little
   // longer.
@@ -581,29 +612,30 @@ std::string MediumRayCaster::CastingOptions() const
   return Define("REAL_WIDTH", this->PacketWidth()) + Define("COLOURED", this->Coloured) + Define("GREY", this->Grey) +
     Define("SKIP_BRICKS", this->SkipsBricks()) + Define("ENVIRONMENT", this->EnvironmentSize[0] > 0) +
     Define("THIN_STEPS", longest <= (this->Bends ? 1.5 : 2.0)) + Define("GLOW", this->GlowsApart()) +
-    this->PhaseOptions(this->KnowsFlow) + this->StepOption();
+    this->PhaseOptions(this->KnowsFlow) + this->StepOption() + this->ShownOptions(what);
 }
 
 /// Rays that cannot but go straight on have a kernel of their own.
-cl::Kernel MediumRayCaster::CastingKernel()
+cl::Kernel MediumRayCaster::CastingKernel(Packing what)
 {
   if (!this->Bends && this->Settings.tableFace < 0)
   {
     return this->TheDevice.Kernel("cast_rays", kernel_source::MediumRayCaster,
-      this->CastingOptions() + Define("SURFACE_LIGHT", this->Surface.Size() > 0));
+      this->CastingOptions(what) + Define("SURFACE_LIGHT", this->Surface.Size() > 0));
   }
   const int surface = this->Reflects() ? static_cast<int>(this->Settings.surfaceReflection) : 0;
   return this->TheDevice.Kernel("cast_bent_rays", kernel_source::BentView,
-    this->CastingOptions() + Define("BENDS", this->Bends) + Define("SURFACE", surface) +
+    this->CastingOptions(what) + Define("BENDS", this->Bends) + Define("SURFACE", surface) +
       Define("TABLE", this->Settings.tableFace >= 0));
 }
 
-void MediumRayCaster::CastRays(ViewInfo& view, const OpticsInfo& optics, const Buffer<cl_float4>& environment,
-  double from, double to, const Monitor& monitor)
+void MediumRayCaster::CastRays(ViewInfo& view, const OpticsInfo& optics, Packing what, double from, double to, const Monitor& monitor)
 {
+  const Buffer<cl_float4>& environment =
+    what == Packing::Unscattered ? this->SharpEnvironment : this->EnvironmentPixels;
   const std::array<int, 2> packet = PacketPixels(this->PacketWidth());
   const bool straight = !this->Bends && this->Settings.tableFace < 0;
-  cl::Kernel cast = this->CastingKernel();
+  cl::Kernel cast = this->CastingKernel(what);
   // Batches of whole work-groups: else the last rows of one would be cast again by the next.
   const int group = 4;
   const std::size_t across = RoundUp<std::size_t>(view.picture.s[0], group * packet[0]) / (group * packet[0]);
@@ -637,7 +669,7 @@ void MediumRayCaster::AddUnscattered(ViewInfo& view, const Monitor& monitor, std
   view.background = Float4(this->UnderSky ? glm::dvec3(0.0) : Vector(this->Background), view.background.s[3]);
   OpticsInfo optics = this->MakeOptics();
   optics.table.s[0] = optics.table.s[1] = optics.table.s[2] = 0.0f; // it is in the picture already
-  this->CastRays(view, optics, this->SharpEnvironment, 0.8, 1.0, monitor);
+  this->CastRays(view, optics, Packing::Unscattered, 0.8, 1.0, monitor);
   const std::vector<float> sharp = this->Radiance.Read();
   std::transform(radiance.begin(), radiance.end(), sharp.begin(), radiance.begin(), std::plus<float>());
 }
@@ -670,7 +702,7 @@ Picture MediumRayCaster::Render(const Camera& camera, const Monitor& monitor)
   {
     view.background = Float4(glm::dvec3(0.0), view.background.s[3]); // does not shine on the medium: see AddUnscattered
   }
-  this->CastRays(view, this->MakeOptics(), this->EnvironmentPixels, prepares && this->LightCount > 0 ? 0.5 : 0.0,
+  this->CastRays(view, this->MakeOptics(), Packing::Scattered, prepares && this->LightCount > 0 ? 0.5 : 0.0,
     this->ShowsMoments() ? 0.8 : 1.0, monitor);
   picture.radiance = this->Radiance.Read();
   if (this->ShowsMoments())

@@ -168,7 +168,6 @@ private:
   double LongestSteps() const;
   std::string StepOption() const;
   std::string PackingOptions() const;
-  std::string CastingOptions() const;
   int PacketWidth() const;
   bool SkipsBricks() const { return this->Settings.skipEmptyBricks && this->Settings.leaveOut; }
   /// Whether the light's mean direction is kept times g, which then is that of all channels.
@@ -178,7 +177,9 @@ private:
       (this->Phase.formula == ViewedPhase::HenyeyGreenstein || this->Phase.formula == ViewedPhase::Schlick);
   }
   bool ShowsMoments() const { return this->MomentDegree >= 0; }
-  bool GlowsApart() const { return this->KnowsFlow && this->Components[2] > 0; } ///< emission is not scattered
+  /// Emission is not scattered.
+  bool GlowsApart() const { return (this->KnowsFlow || this->ShowsMoments()) && this->Components[2] > 0; }
+  bool ShowsBeams() const { return this->ShowsMoments() && this->LightCount > 0; }
   double SurfaceIndex() const
   {
     return this->Settings.surfaceIndex > 0.0 ? this->Settings.surfaceIndex
@@ -208,14 +209,17 @@ private:
     Unscattered ///< the same in the dark: how much of what is behind comes through without being scattered at all
   };
   void Pack(Packing what);
+  void PackShown(Packing what);
+  std::string ShownOptions(Packing what) const;
+  void FindBricks(const std::string& options);
+  std::string CastingOptions(Packing what) const;
   ShadowInfo MakeShadowInfo(const Camera& camera) const;
   void SeeLights(const Camera& camera, const Monitor& monitor);
   void SeeMoments(const Camera& camera);
   void AddUnscattered(ViewInfo& view, const Monitor& monitor, std::vector<float>& radiance);
   void PrepareSources(const Camera& camera, const Monitor& monitor);
-  void CastRays(ViewInfo& view, const OpticsInfo& optics, const Buffer<cl_float4>& environment, double from, double to,
-    const Monitor& monitor);
-  cl::Kernel CastingKernel();
+  void CastRays(ViewInfo& view, const OpticsInfo& optics, Packing what, double from, double to, const Monitor& monitor);
+  cl::Kernel CastingKernel(Packing what);
   ViewInfo MakeView(const Camera& camera) const;
   OpticsInfo MakeOptics() const;
 
@@ -250,10 +254,11 @@ private:
   int MomentChannels = 0, StraightOnChannels = 0;
   Buffer<float> MeanCosines;           ///< g by voxel, likewise
   Buffer<float> PhaseRows;
+  Buffer<float> Diffuse;     ///< 3 per voxel: what is scattered towards the eye of light that moments tell of
   Buffer<float> Direct;      ///< 6 per voxel: what the lights scatter towards the eye, and their irradiance
   Buffer<cl_float4> Samples; ///< source and grey extinction, with a border; see ScatteredLight.cl
   Buffer<cl_float4> Extinctions;
-  Buffer<cl_float4> Flow;    ///< mean direction, times g where FlowHasG
+  Buffer<cl_float4> Flow;    ///< mean direction, times g where FlowHasG; of ShownSamples.cl lamps' light
   Buffer<cl_float4> Glow;    ///< emission, where Flow is there
   Buffer<cl_float4> Cosines; ///< coloured g by voxel, where Flow is there
   Buffer<cl_float4> Bending; ///< gradient of n^2, and n^2

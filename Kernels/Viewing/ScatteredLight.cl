@@ -4,14 +4,12 @@
 // The host gives
 //   ABSORPTION, SCATTERING, EMISSION, FLUENCE, UNSCATTERED   components of each array: 0 (there is none), 1 or 3
 //   SHADOW_RAYS  1: `direct` holds what the lights scatter towards the eye
-//   MOMENTS      1: `direct` holds what is scattered towards the eye of all light; 2: see AUREOLE of ShadowRays.cl
-//   STRAIGHT_ON  components of the part of what is scattered that goes straight on; 0: none does
-//   UNLIT        1: nothing is scattered or emitted; 2: nothing is emitted
 //   FLOW         1: the light's mean direction is packed, FLOW_WITH_G 1: times g
 //   MEAN_COSINE  components of g by voxel; 0: it is the same everywhere
 //   VARIED_G     1: g by voxel is packed apart
 //   GLOW         1: emission is packed apart
 //   BENDS        1: the refractive index varies
+//   SHOWN        of what ShownSamples.cl packed: only the extinction tells what is empty
 
 #include "Viewing/Sampling.cl"
 #include "Viewing/VoxelChannels.cl"
@@ -38,9 +36,7 @@ inline float in_scattered(__global const float* fluence, __global const float* u
 {
   const float whole = channel_of(fluence, voxel, FLUENCE, channel);
   const float first = channel_of(unscattered, voxel, UNSCATTERED, channel);
-#if MOMENTS
-  return direct[voxel * 6 + (MOMENTS == 2 ? 3 : 0) + channel];
-#elif SHADOW_RAYS
+#if SHADOW_RAYS
   const float seen = direct[voxel * 6 + channel];
   const float from_lights = fmin(direct[voxel * 6 + 3 + channel], first);
   return seen + (single ? 0.0f : fmax(whole - from_lights, 0.0f) * PER_SPHERE);
@@ -59,14 +55,7 @@ typedef struct
   __global const float* unscattered;
   __global const float* direct;
   __global const float* ior;
-  __global const float* straightOn;
 } ingredients;
-
-#if STRAIGHT_ON
-#define TURNED_ASIDE(sigma, n) sigma * (1.0f - channel_of(from->straightOn, voxel, STRAIGHT_ON, n))
-#else
-#define TURNED_ASIDE(sigma, n) sigma
-#endif
 
 // Source of a voxel, by n^2 with BENDS: red, green, blue, and grey extinction; besides all of the extinction, and what
 // is emitted, which with GLOW is no part of the source.
@@ -75,21 +64,15 @@ inline float4 source_of(const ingredients* from, int voxel, int single, float4* 
   float4 sigma_s = (float4)(0.0f);
   float4 source = (float4)(0.0f);
   *sigma_t = *emitted = (float4)(0.0f);
-#define CHANNEL(c, n)                                                                            \
-  sigma_s.c = channel_of(from->scattering, voxel, SCATTERING, n);                                \
-  sigma_t->c = TURNED_ASIDE(sigma_s.c, n) + channel_of(from->absorption, voxel, ABSORPTION, n); \
-  emitted->c = channel_of(from->emission, voxel, EMISSION, n);                                   \
+#define CHANNEL(c, n)                                                          \
+  sigma_s.c = channel_of(from->scattering, voxel, SCATTERING, n);              \
+  sigma_t->c = sigma_s.c + channel_of(from->absorption, voxel, ABSORPTION, n); \
+  emitted->c = channel_of(from->emission, voxel, EMISSION, n);                 \
   source.c = sigma_s.c * in_scattered(from->fluence, from->unscattered, from->direct, voxel, n, single);
   CHANNEL(x, 0)
   CHANNEL(y, 1)
   CHANNEL(z, 2)
 #undef CHANNEL
-#if UNLIT
-  *emitted = (float4)(0.0f);
-#endif
-#if UNLIT == 1
-  source = (float4)(0.0f);
-#endif
 #if !GLOW
   source += *emitted;
 #endif
@@ -113,8 +96,7 @@ __kernel void pack_samples(int4 size, int single, float g, __global const float*
   __global const float* restrict scattering, __global const float* restrict emission,
   __global const float* restrict fluence, __global const float* restrict unscattered,
   __global const float* restrict direct, __global const float* restrict direction, __global const float* restrict ior,
-  __global const float* restrict mean_cosines, __global const float* restrict straight_on,
-  __global float4* restrict samples, __global float4* restrict extinctions,
+  __global const float* restrict mean_cosines, __global float4* restrict samples, __global float4* restrict extinctions,
   __global float4* restrict flow, __global float4* restrict glow, __global float4* restrict cosines)
 {
   if (get_global_id(0) >= size.x + 2)
@@ -123,7 +105,7 @@ __kernel void pack_samples(int4 size, int single, float g, __global const float*
   }
   const int voxel = voxel_index(size);
   const int place = padded_index(size);
-  const ingredients from = { absorption, scattering, emission, fluence, unscattered, direct, ior, straight_on };
+  const ingredients from = { absorption, scattering, emission, fluence, unscattered, direct, ior };
   float4 sigma_t, emitted;
   const float4 source = source_of(&from, voxel, single, &sigma_t, &emitted);
 #if GREY
@@ -193,7 +175,7 @@ __kernel void find_empty_bricks(int4 size, int4 brick_count, __global const floa
 #if GREY
         filled |= any(samples[place].xy != (float2)(0.0f));
 #else
-        filled |= any(samples[place] != (float4)(0.0f));
+        filled |= SHOWN ? samples[place].w != 0.0f : any(samples[place] != (float4)(0.0f));
 #endif
 #if COLOURED
         filled |= any(extinctions[place] != (float4)(0.0f));

@@ -11,10 +11,8 @@
 
 // A work-item a voxel.
 //   moments  W / (length^2 sr), [voxel][harmonic][channel]
-//   lit      1: `direct` has something already
-//   direct   6 per voxel, of which red, green and blue are added to
-__kernel void see_moments(
-  ShadowInfo info, int lit, __global const float* restrict moments, __global float* restrict direct)
+//   seen     3 per voxel
+__kernel void see_moments(ShadowInfo info, __global const float* restrict moments, __global float* restrict seen)
 {
   const int i = get_global_id(0);
   const int j = get_global_id(1);
@@ -31,21 +29,20 @@ __kernel void see_moments(
   float harmonics[HARMONICS];
   find_harmonics(out / sqrt(fmax(dot(out, out), 1e-30f)), harmonics);
   __global const float* from = moments + voxel * (HARMONICS * MOMENT_CHANNELS);
-  float seen[MOMENT_CHANNELS];
+  float sums[MOMENT_CHANNELS];
   for (int c = 0; c < MOMENT_CHANNELS; ++c)
   {
-    seen[c] = 0.0f;
+    sums[c] = 0.0f;
   }
   for (int q = 0; q < HARMONICS; ++q)
   {
     for (int c = 0; c < MOMENT_CHANNELS; ++c)
     {
-      seen[c] = fma(from[q * MOMENT_CHANNELS + c], harmonics[q], seen[c]);
+      sums[c] = fma(from[q * MOMENT_CHANNELS + c], harmonics[q], sums[c]);
     }
   }
-  __global float* to = direct + 6 * voxel;
   for (int c = 0; c < 3; ++c)
   {
-    to[c] = seen[MOMENT_CHANNELS == 3 ? c : 0] + (lit ? to[c] : 0.0f);
+    seen[3 * voxel + c] = sums[MOMENT_CHANNELS == 3 ? c : 0];
   }
 }

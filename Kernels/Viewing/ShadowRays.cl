@@ -3,8 +3,10 @@
 //   PHASE, PHASE_CHANNELS  see PhaseFunction.cl
 //   MEAN_COSINE  components of g by voxel; 0: it is the same everywhere
 //   AUREOLE      tables of what is scattered forwards more than once: 0, 1, or 3 for red, green and blue
+//   BESIDE       1: also in voxels beside such that scatter
 //   ABSORPTION, STRAIGHT_ON  with AUREOLE: components of these arrays
 
+#include "Viewing/Beside.cl"
 #include "Viewing/PhaseFunction.cl"
 #include "Viewing/Sampling.cl"
 #include "Viewing/ViewShared.h"
@@ -235,6 +237,15 @@ __kernel void see_lights(ShadowInfo info, __global const SmallLight* restrict li
     channel_of(scattering, LANE(voxel, n), SCATTERING, 1) + channel_of(scattering, LANE(voxel, n), SCATTERING, 2);
   EACH_LANE(SCATTERS)
 #undef SCATTERS
+#if BESIDE
+#define SCATTERS_BESIDE(n)                                                                                 \
+  if (!(LANE(scatters, n) > 0.0f))                                                                         \
+  {                                                                                                        \
+    LANE(scatters, n) = is_beside_scattering(scattering, LANE(voxel, n), info.size) ? 1.0f : 0.0f;         \
+  }
+  EACH_LANE(SCATTERS_BESIDE)
+#undef SCATTERS_BESIDE
+#endif
   const real3 centre = { to_real(i) + (real)0.5f, (real)((float)j + 0.5f), (real)((float)k + 0.5f) };
   const real3 place = { centre.x * (real)info.spacing.x, centre.y * (real)info.spacing.y,
     centre.z * (real)info.spacing.z };

@@ -11,7 +11,6 @@ using Vec = std::array<double, 3>;
 constexpr double Pi = 3.14159265358979323846;
 constexpr int Brick = 8;            ///< voxels an edge, with one bound of sigma_t
 constexpr double LeastSure = 0.02;  ///< transmittance below which a ray to the sun goes on by chance
-constexpr int MostCollisions = 100000;
 
 /// xoshiro256+ (Blackman and Vigna 2018), seeded by splitmix64.
 class Random
@@ -263,7 +262,7 @@ double RadianceOfPath(const Tracker& tracker, const LitVolume& volume, const Vie
     return volume.skyRadiance;
   }
   double weight = 1.0, radiance = 0.0;
-  for (int n = 0; n < MostCollisions; ++n)
+  for (int n = 0; n < volume.mostScatterings; ++n)
   {
     bool collides = false;
     Vec where;

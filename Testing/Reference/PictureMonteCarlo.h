@@ -17,6 +17,7 @@ struct LitVolume
   std::array<double, 3> sunTravels = { 0.0, 0.0, -1.0 }; ///< unit vector
   double sunIrradiance = 0.0;                            ///< W / length^2 across its direction
   double skyRadiance = 0.0;                              ///< W / (length^2 sr), also behind the medium
+  int mostScatterings = 100000;                          ///< light that was scattered more often is left out
 };
 
 struct ViewRay
