@@ -188,15 +188,14 @@ void WriteLight(LightField&& light, vtkImageData* output)
 {
   const int channels = light.channels;
   vtkCellData* cells = output->GetCellData();
-  for (const char* earlier : { "fluence", "fluence_direct", "fluence_error", "fluence_batches", "net_flux",
-         "scattered_radiance", "mean_direction", "photon_count", "photon_weight", "mip_level",
-         MomentsArray, StraightOnArray })
+  for (const char* earlier :
+    { "fluence", "fluence_direct", "fluence_error", "fluence_batches", "net_flux", "scattered_radiance",
+      "mean_direction", "photon_count", "photon_weight", "mip_level", MomentsArray, StraightOnArray })
   {
     cells->RemoveArray(earlier); // of another solve that the input has been through
   }
-  for (const char* earlier :
-    { "stored_directions", "scattered", "packing_loss", "fluence_bias", "half_range_flux", SurfaceRadianceFact,
-         LampsApartFact })
+  for (const char* earlier : { "stored_directions", "scattered", "packing_loss", "fluence_bias", "half_range_flux",
+         SurfaceRadianceFact, LampsApartFact })
   {
     output->GetFieldData()->RemoveArray(earlier);
   }

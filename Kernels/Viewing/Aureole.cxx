@@ -45,8 +45,8 @@ std::vector<float> AureoleTable(const PhaseFunction& function, double straightOn
   std::vector<std::vector<double>> polynomials;
   for (int column = 0; column < AureoleColumns + 2; ++column)
   {
-    polynomials.push_back(LegendrePolynomials(
-      static_cast<int>(moments.size()) - 1, CosineOfColumn(std::min<int>(column, AureoleColumns))));
+    polynomials.push_back(
+      LegendrePolynomials(static_cast<int>(moments.size()) - 1, CosineOfColumn(std::min<int>(column, AureoleColumns))));
   }
   std::vector<float> table;
   for (int row = 0; row < AureoleRows + 2; ++row)

@@ -4,6 +4,7 @@
 #include "Device/Defines.h"
 #include "Device/Sizes.h"
 #include "Light/LeftOut.h"
+#include "LightPropagation/Uncollided/EnvironmentPeaks.h"
 #include "Medium/Traits.h"
 #include "Numerics/Constants.h"
 #include "Numerics/Vectors.h"
@@ -31,6 +32,7 @@ constexpr double BentStretch = 4.0;         ///< voxels, before it is asked whet
 constexpr double BesideSurface = 5.0;       ///< voxels from a surface, beyond its smoothing (9 voxels wide) by default
 constexpr double SurfacePrecision = 1.0e-3; ///< voxels
 constexpr double SamplesAtOnce = 3.2e7; ///< of the work between two reports, at most: under a second on one old core
+constexpr int DirectionsOfPeaks = 25;   ///< a face, by which the environment's peaks are told from the rest
 constexpr double ManySteps = 4096.0;    ///< of a ray, from which on rounding in each of them adds up to 1e-4
 
 /// Columns and rows of pixels in a packet, as in View.cl.
@@ -127,9 +129,8 @@ MediumRayCaster::MediumRayCaster(Device& device, const Medium& medium, const Sol
   CheckViewedIndex(ior, medium.grid);
 
   const std::vector<Light>& lamps = this->ShowsMoments() ? light.lampsApart : illumination.lights;
-  const std::vector<SmallLight> lights = settings.shadowRays
-    ? SmallLights(lamps, medium.grid, settings.rectangleSamples)
-    : std::vector<SmallLight>();
+  const std::vector<SmallLight> lights =
+    settings.shadowRays ? SmallLights(lamps, medium.grid, settings.rectangleSamples) : std::vector<SmallLight>();
   this->LightCount = static_cast<int>(lights.size());
   this->Phase = ViewedPhaseOf(medium.phase);
   this->TakeMoments(light);
@@ -163,8 +164,8 @@ void MediumRayCaster::TakeMoments(const SolvedLight& light)
   this->StraightOnChannels = light.straightOn.components;
   this->Moments = Buffer<float>(this->TheDevice, light.scatteredMoments.values,
     voxels * light.scatteredMoments.components, "the moments of scattered light");
-  this->StraightOn = Buffer<float>(this->TheDevice, light.straightOn.values, voxels * light.straightOn.components,
-    "what is scattered straight on");
+  this->StraightOn = Buffer<float>(
+    this->TheDevice, light.straightOn.values, voxels * light.straightOn.components, "what is scattered straight on");
 }
 
 /// Of the voxels in which least goes straight on: those that matter have as much.
@@ -198,8 +199,8 @@ void MediumRayCaster::FindTraits(const Medium& medium, const SolvedLight& light,
   const MediumTraits& traits = this->Traits;
   this->Bends = !settings.leaveOut || this->Index.Varies();
   const bool anisotropic = this->Phase.formula != ViewedPhase::Even;
-  this->KnowsFlow = anisotropic && light.meanDirection.values && light.fluence.values && !settings.shadowRays &&
-    !this->ShowsMoments();
+  this->KnowsFlow =
+    anisotropic && light.meanDirection.values && light.fluence.values && !settings.shadowRays && !this->ShowsMoments();
   this->Coloured = !settings.leaveOut || !traits.greyExtinction || this->StraightOnChannels == 3;
   // Beside directions of the light it does not pay to have sources by one channel.
   this->Grey = !this->Coloured && traits.grey && !this->KnowsFlow && this->LightCount == 0 && !this->ShowsMoments() &&
@@ -217,11 +218,23 @@ void MediumRayCaster::PrepareBackground(const Illumination& illumination)
   {
     this->EnvironmentSize = { environment.width, environment.height };
   }
-  const std::vector<cl_float4> pixels =
+  std::vector<cl_float4> pixels =
     this->EnvironmentSize[0] > 0 ? ClosedEnvironment(environment) : std::vector<cl_float4>();
+  if (this->ShowsMoments() && !pixels.empty())
+  {
+    // What is small and bright is one of the lamps: what of it comes straight on without being scattered is seen apart.
+    std::vector<cl_float4> sharp = pixels;
+    pixels = ClosedEnvironment(Split(environment, EquiangularDirections(DirectionsOfPeaks)).smooth);
+    for (std::size_t i = 0; i < sharp.size(); ++i)
+    {
+      for (int c = 0; c < 3; ++c)
+      {
+        sharp[i].s[c] -= pixels[i].s[c];
+      }
+    }
+    this->SharpEnvironment = Buffer<cl_float4>(this->TheDevice, sharp, "the environment");
+  }
   this->EnvironmentPixels = Buffer<cl_float4>(this->TheDevice, pixels, "the environment");
-  this->SharpEnvironment =
-    Buffer<cl_float4>(this->TheDevice, std::vector<cl_float4>(this->ShowsMoments() ? pixels.size() : 0), "the environment");
 }
 
 void MediumRayCaster::PrepareTable(const SolvedLight& light, const Field& ior)
@@ -355,8 +368,7 @@ void MediumRayCaster::Upload(const Medium& medium, const SolvedLight& light, con
   const bool single = this->Settings.singleScatteringOnly;
   const bool all = !this->Settings.leaveOut;
   const std::array<bool, 5> used = { all || this->Traits.absorbs, all || this->Traits.scatters,
-    all || this->Traits.emits, !single && !this->ShowsMoments(),
-    shadows != single && !this->ShowsMoments() };
+    all || this->Traits.emits, !single && !this->ShowsMoments(), shadows != single && !this->ShowsMoments() };
   const std::array<const char*, 5> names = { "sigma_a", "sigma_s", "emission", "fluence", "fluence_direct" };
   const std::size_t voxels = medium.grid.VoxelCount();
   for (std::size_t i = 0; i < fields.size(); ++i)
@@ -629,7 +641,8 @@ cl::Kernel MediumRayCaster::CastingKernel(Packing what)
       Define("TABLE", this->Settings.tableFace >= 0));
 }
 
-void MediumRayCaster::CastRays(ViewInfo& view, const OpticsInfo& optics, Packing what, double from, double to, const Monitor& monitor)
+void MediumRayCaster::CastRays(
+  ViewInfo& view, const OpticsInfo& optics, Packing what, double from, double to, const Monitor& monitor)
 {
   const Buffer<cl_float4>& environment =
     what == Packing::Unscattered ? this->SharpEnvironment : this->EnvironmentPixels;

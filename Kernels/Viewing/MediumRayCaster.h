@@ -252,7 +252,7 @@ private:
   Buffer<float> AureoleTables;         ///< there, where g does not vary
   int AureoleChannels = 0;
   int MomentChannels = 0, StraightOnChannels = 0;
-  Buffer<float> MeanCosines;           ///< g by voxel, likewise
+  Buffer<float> MeanCosines; ///< g by voxel, likewise
   Buffer<float> PhaseRows;
   Buffer<float> Diffuse;     ///< 3 per voxel: what is scattered towards the eye of light that moments tell of
   Buffer<float> Direct;      ///< 6 per voxel: what the lights scatter towards the eye, and their irradiance

@@ -22,8 +22,7 @@ __kernel void see_moments(ShadowInfo info, __global const float* restrict moment
     return;
   }
   const size_t voxel = ((size_t)k * info.size.y + j) * info.size.x + i;
-  const float3 place =
-    (float3)((i + 0.5f) * info.spacing.x, (j + 0.5f) * info.spacing.y, (k + 0.5f) * info.spacing.z);
+  const float3 place = (float3)((i + 0.5f) * info.spacing.x, (j + 0.5f) * info.spacing.y, (k + 0.5f) * info.spacing.z);
   // Towards the eye: back along the view axis where rays are parallel.
   const float3 out = (1.0f - info.eye.w) * (info.eye.xyz - place) - info.eye.w * info.forward.xyz;
   float harmonics[HARMONICS];

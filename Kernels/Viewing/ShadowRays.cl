@@ -170,12 +170,12 @@ inline real scattering_over_depth(__global const float* absorption, __global con
   __global const float* straight_on, integer voxel, int channel)
 {
   real over;
-#define RATIO(n)                                                                              \
-  {                                                                                           \
-    const float s = channel_of(scattering, LANE(voxel, n), SCATTERING, channel);              \
+#define RATIO(n)                                                                                     \
+  {                                                                                                  \
+    const float s = channel_of(scattering, LANE(voxel, n), SCATTERING, channel);                     \
     const float turned = s * (1.0f - channel_of(straight_on, LANE(voxel, n), STRAIGHT_ON, channel)); \
-    const float all = turned + channel_of(absorption, LANE(voxel, n), ABSORPTION, channel);   \
-    LANE(over, n) = all > 0.0f ? s / all : 0.0f;                                              \
+    const float all = turned + channel_of(absorption, LANE(voxel, n), ABSORPTION, channel);          \
+    LANE(over, n) = all > 0.0f ? s / all : 0.0f;                                                     \
   }
   EACH_LANE(RATIO)
 #undef RATIO
@@ -238,10 +238,10 @@ __kernel void see_lights(ShadowInfo info, __global const SmallLight* restrict li
   EACH_LANE(SCATTERS)
 #undef SCATTERS
 #if BESIDE
-#define SCATTERS_BESIDE(n)                                                                                 \
-  if (!(LANE(scatters, n) > 0.0f))                                                                         \
-  {                                                                                                        \
-    LANE(scatters, n) = is_beside_scattering(scattering, LANE(voxel, n), info.size) ? 1.0f : 0.0f;         \
+#define SCATTERS_BESIDE(n)                                                                         \
+  if (!(LANE(scatters, n) > 0.0f))                                                                 \
+  {                                                                                                \
+    LANE(scatters, n) = is_beside_scattering(scattering, LANE(voxel, n), info.size) ? 1.0f : 0.0f; \
   }
   EACH_LANE(SCATTERS_BESIDE)
 #undef SCATTERS_BESIDE
@@ -279,9 +279,10 @@ __kernel void see_lights(ShadowInfo info, __global const SmallLight* restrict li
 #else
 #define DEPTH(c) depths.r
 #endif
-#define SPREAD(c, n)                                                                                              \
-  irradiance.c = fma(arrived.c,                                                                                   \
-    aureole_at(cosine, DEPTH(c) * scattering_over_depth(absorption, scattering, straight_on, voxel, n), aureole + n * apart), \
+#define SPREAD(c, n)                                                                                                 \
+  irradiance.c = fma(arrived.c,                                                                                      \
+    aureole_at(                                                                                                      \
+      cosine, DEPTH(c) * scattering_over_depth(absorption, scattering, straight_on, voxel, n), aureole + n * apart), \
     irradiance.c);
     SPREAD(r, 0)
     SPREAD(g, 1)

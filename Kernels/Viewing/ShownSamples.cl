@@ -21,8 +21,8 @@ typedef struct
   float4 sigma_t, albedo;
 } coefficients;
 
-inline coefficients coefficients_of(__global const float* absorption, __global const float* scattering,
-  __global const float* straight_on, int voxel)
+inline coefficients coefficients_of(
+  __global const float* absorption, __global const float* scattering, __global const float* straight_on, int voxel)
 {
   coefficients here;
   here.sigma_t.w = here.albedo.w = 0.0f;
@@ -31,11 +31,11 @@ inline coefficients coefficients_of(__global const float* absorption, __global c
 #else
 #define TURNED(s, n) (s)
 #endif
-#define CHANNEL(c, n)                                                                 \
-  {                                                                                   \
-    const float s = channel_of(scattering, voxel, SCATTERING, n);                     \
-    here.sigma_t.c = TURNED(s, n) + channel_of(absorption, voxel, ABSORPTION, n);     \
-    here.albedo.c = here.sigma_t.c > 0.0f ? s / here.sigma_t.c : 0.0f;                \
+#define CHANNEL(c, n)                                                             \
+  {                                                                               \
+    const float s = channel_of(scattering, voxel, SCATTERING, n);                 \
+    here.sigma_t.c = TURNED(s, n) + channel_of(absorption, voxel, ABSORPTION, n); \
+    here.albedo.c = here.sigma_t.c > 0.0f ? s / here.sigma_t.c : 0.0f;            \
   }
   CHANNEL(x, 0)
   CHANNEL(y, 1)
@@ -66,11 +66,11 @@ inline float4 triple(__global const float* values, int voxel)
 //   samples  SHOWN 1: diffuse light times albedo; 2: what is scattered more than once over what lamps' is first; and
 //            grey extinction
 //   beams    - ln of lamps' light times albedo
-__kernel void pack_shown(int4 size, __global const float* restrict absorption, __global const float* restrict scattering,
-  __global const float* restrict emission, __global const float* restrict straight_on,
-  __global const float* restrict diffuse, __global const float* restrict direct, __global const float* restrict ior,
-  __global float4* restrict samples, __global float4* restrict extinctions, __global float4* restrict beams,
-  __global float4* restrict glow)
+__kernel void pack_shown(int4 size, __global const float* restrict absorption,
+  __global const float* restrict scattering, __global const float* restrict emission,
+  __global const float* restrict straight_on, __global const float* restrict diffuse,
+  __global const float* restrict direct, __global const float* restrict ior, __global float4* restrict samples,
+  __global float4* restrict extinctions, __global float4* restrict beams, __global float4* restrict glow)
 {
   if (get_global_id(0) >= size.x + 2)
   {
@@ -93,9 +93,9 @@ __kernel void pack_shown(int4 size, __global const float* restrict absorption, _
   {
     float4 albedos = (float4)(0.0f), lights = (float4)(0.0f);
     float count = 0.0f;
-#define ADD(neighbour)                                                                         \
-  albedos += coefficients_of(absorption, scattering, straight_on, neighbour).albedo;           \
-  lights += SHOWN == 1 ? triple(diffuse, neighbour) : (float4)(0.0f);                          \
+#define ADD(neighbour)                                                               \
+  albedos += coefficients_of(absorption, scattering, straight_on, neighbour).albedo; \
+  lights += SHOWN == 1 ? triple(diffuse, neighbour) : (float4)(0.0f);                \
   count += 1.0f;
     FOR_SCATTERING_AROUND(voxel, size, scattering, ADD)
 #undef ADD
@@ -127,7 +127,8 @@ __kernel void pack_shown(int4 size, __global const float* restrict absorption, _
   float4 emitted = (float4)(0.0f);
 #if SHOWN == 1
   emitted = (float4)(channel_of(emission, voxel, EMISSION, 0), channel_of(emission, voxel, EMISSION, 1),
-              channel_of(emission, voxel, EMISSION, 2), 0.0f) * perSquare;
+              channel_of(emission, voxel, EMISSION, 2), 0.0f) *
+    perSquare;
 #endif
   glow[place] = emitted;
 #endif

@@ -19,7 +19,7 @@ constexpr double LargestRadiance = 1e37;               ///< W / (length^2 sr); s
 constexpr double FarthestCamera = 1e15;                ///< lengths, voxels: their squares are still floats
 constexpr double MostPixels = 7e8;                     ///< three numbers each: indices end at 2^31
 constexpr int MostMomentDegree = 15;
-constexpr float FacesAlike = 1e-3f;                    ///< relative; what smoothing leaves of a border nearby
+constexpr float FacesAlike = 1e-3f; ///< relative; what smoothing leaves of a border nearby
 
 IndexRange RangeOnFaces(const Field& ior, const Grid& grid)
 {

@@ -82,8 +82,7 @@ void ShowUserCloud(Device& device, int edge, int paths)
         .Add("against", "g = 0")
         .Print();
       table.Add({ grid, method.name, view.name, Text("%.2f", 100.0 * errors.rms), Text("%.2f", 100.0 * errors.noise),
-        Text("%+.2f", 100.0 * errors.mean), Text("%.2f", seconds),
-        std::to_string(cloud.Light().convergence.size()) });
+        Text("%+.2f", 100.0 * errors.mean), Text("%.2f", seconds), std::to_string(cloud.Light().convergence.size()) });
     }
   }
   table.Print("A user's cloud (tau 50 through the middle, albedo 0.9999, g 0.85, sun and sky): pictures against Monte "

@@ -4,7 +4,7 @@
 
 namespace bench
 {
-/// A cloud of our own making (FractalCloud.h), as a user would light it: its pictures against Monte Carlo from the sun's
+/// A cloud of our own making (FractalCloud.h), as a user would light it: pictures against Monte Carlo from the sun's
 /// side, from the side and against the sun, and the time of the solve beside the same with isotropic scattering.
 /// @param edge  voxels along each edge
 /// @param paths  of Monte Carlo a pixel, in each of two independent halves

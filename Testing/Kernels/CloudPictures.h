@@ -50,6 +50,16 @@ struct Setup
   }
 };
 
+/// That of Data/Reference/cloud_pictures.csv.
+inline Setup SmallCloud()
+{
+  Setup setup;
+  setup.edge = 24;
+  setup.imageSize = { 16, 14 };
+  setup.thickness = 8.0;
+  return setup;
+}
+
 /// How the cloud is solved, and with which g.
 struct Method
 {
@@ -63,7 +73,8 @@ inline constexpr Method Methods[] = { { "isotropic, g = 0", 0.0, 0, 25 }, { "sim
   { "degree 1", 0.85, 1, 25 }, { "degree 3", 0.85, 3, 25 }, { "degree 5", 0.85, 5, 25 }, { "degree 7", 0.85, 7, 25 } };
 
 /// Of each pixel, by the same rays as the ray caster's.
-inline std::vector<double> ByMonteCarlo(const Setup& setup, const View& view, int paths, std::uint64_t seed, int threads)
+inline std::vector<double> ByMonteCarlo(
+  const Setup& setup, const View& view, int paths, std::uint64_t seed, int threads)
 {
   LitVolume volume;
   volume.size = setup.Grid().size;

@@ -31,8 +31,8 @@ inline double Noise(double x, double y, double z)
   {
     const int a = corner & 1, b = corner >> 1 & 1, c = corner >> 2;
     const double u = x - fx, v = y - fy, w = z - fz;
-    const double weight = (a ? eased(u) : 1.0 - eased(u)) * (b ? eased(v) : 1.0 - eased(v)) *
-      (c ? eased(w) : 1.0 - eased(w));
+    const double weight =
+      (a ? eased(u) : 1.0 - eased(u)) * (b ? eased(v) : 1.0 - eased(v)) * (c ? eased(w) : 1.0 - eased(w));
     sum += weight *
       Slope(static_cast<std::int64_t>(fx) + a, static_cast<std::int64_t>(fy) + b, static_cast<std::int64_t>(fz) + c,
         u - a, v - b, w - c);

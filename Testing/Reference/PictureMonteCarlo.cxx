@@ -9,8 +9,8 @@ namespace
 {
 using Vec = std::array<double, 3>;
 constexpr double Pi = 3.14159265358979323846;
-constexpr int Brick = 8;            ///< voxels an edge, with one bound of sigma_t
-constexpr double LeastSure = 0.02;  ///< transmittance below which a ray to the sun goes on by chance
+constexpr int Brick = 8;           ///< voxels an edge, with one bound of sigma_t
+constexpr double LeastSure = 0.02; ///< transmittance below which a ray to the sun goes on by chance
 
 /// xoshiro256+ (Blackman and Vigna 2018), seeded by splitmix64.
 class Random
@@ -63,7 +63,8 @@ public:
         {
           const auto within = [](int at, int size) { return std::clamp(at - 1, 0, size - 1); };
           this->Padded[static_cast<std::size_t>(k) * this->Slice + j * this->Row + i] =
-            volume.sigma_t[(static_cast<std::size_t>(within(k, n[2])) * n[1] + within(j, n[1])) * n[0] + within(i, n[0])];
+            volume
+              .sigma_t[(static_cast<std::size_t>(within(k, n[2])) * n[1] + within(j, n[1])) * n[0] + within(i, n[0])];
         }
       }
     }
@@ -144,7 +145,8 @@ private:
       first[axis] = std::min(static_cast<int>(p), this->Volume.size[axis]);
       part[axis] = p - first[axis];
     }
-    const float* at = this->Padded.data() + static_cast<std::size_t>(first[2]) * this->Slice + first[1] * this->Row + first[0];
+    const float* at =
+      this->Padded.data() + static_cast<std::size_t>(first[2]) * this->Slice + first[1] * this->Row + first[0];
     const auto alongX = [&](const float* row) { return row[0] + part[0] * (row[1] - row[0]); };
     const auto alongY = [&](const float* slice) {
       const double low = alongX(slice);
@@ -284,8 +286,8 @@ double RadianceOfPath(const Tracker& tracker, const LitVolume& volume, const Vie
       -(along[0] * volume.sunTravels[0] + along[1] * volume.sunTravels[1] + along[2] * volume.sunTravels[2]);
     if (volume.sunIrradiance > 0.0)
     {
-      radiance += weight * volume.sunIrradiance * HenyeyGreenstein(volume.g, cosine) *
-        SunThrough(tracker, volume, place, random);
+      radiance +=
+        weight * volume.sunIrradiance * HenyeyGreenstein(volume.g, cosine) * SunThrough(tracker, volume, place, random);
     }
     along = Scattered(along, volume.g, random);
     if (weight < 0.05)

@@ -5,8 +5,8 @@
 #include <vector>
 
 /// A box of a medium whose sigma_t is known at voxel centres and linear between them, constant from the outermost
-/// centres to the box's faces; its lower corner at (0, 0, 0). Scatters by Henyey and Greenstein's function. A sun and an
-/// even sky shine on it.
+/// centres to the box's faces; its lower corner at (0, 0, 0). Scatters by Henyey and Greenstein's function. A sun and
+/// an even sky shine on it.
 struct LitVolume
 {
   std::array<int, 3> size = { 1, 1, 1 };
@@ -25,9 +25,9 @@ struct ViewRay
   std::array<double, 3> from, along; ///< `along` a unit vector
 };
 
-/// Radiance that comes against each ray, W / (length^2 sr), by paths that are followed backwards from the eye: free paths
-/// by Woodcock's null collisions (1965), the sun by the transmittance to it from every collision, estimated without bias
-/// by ratio tracking (Novak, Selle and Jarosz 2014). Knows nothing of the project's solvers and shares no code with them.
+/// Radiance that comes against each ray, W / (length^2 sr), by paths that are followed backwards from the eye: free
+/// paths by Woodcock's null collisions (1965), the sun by the transmittance to it from every collision, estimated
+/// without bias by ratio tracking (Novak, Selle and Jarosz 2014). Shares no code with the project's solvers.
 /// @param paths  of each ray
 /// @return one number a ray; the same for the same seed, on any number of threads
 std::vector<double> PictureByMonteCarlo(

@@ -55,8 +55,7 @@ void AddShownLight(TransportParts& parts, const Buffer<float>& shown, LightField
 {
   const int harmonics = HarmonicsKept(parts), functions = parts.Functions();
   const std::vector<double> matrix = parts.Basis->Matrix();
-  const Buffer<float> basis(
-    parts.TheDevice, std::vector<float>(matrix.begin(), matrix.end()), "the angular functions");
+  const Buffer<float> basis(parts.TheDevice, std::vector<float>(matrix.begin(), matrix.end()), "the angular functions");
   const Buffer<float> scale(parts.TheDevice, PerScattering(parts), "the inverse of sigma_s");
   cl::Kernel kernel = parts.TheDevice.Kernel("to_harmonics", kernel_source::MomentScattering);
   With(kernel, basis, cl_int(functions), shown, scale, cl_ulong(parts.Layout.Stride()), parts.Path);

@@ -83,8 +83,7 @@ void AddMoments(Device& device, std::size_t stride, int functions, const Buffer<
   device.Queue().enqueueNDRangeKernel(kernel, cl::NullRange, cl::NDRange(stride, functions - 1));
 }
 
-void AddToShown(
-  Device& device, std::size_t values, const Buffer<float>& source, const Buffer<float>& shown, float part)
+void AddToShown(Device& device, std::size_t values, const Buffer<float>& source, const Buffer<float>& shown, float part)
 {
   cl::Kernel kernel = device.Kernel("add_to_shown", kernel_source::MomentScattering);
   With(kernel, source, shown, part);
