@@ -14,16 +14,30 @@ namespace
 constexpr int MostMoments = 1024;
 constexpr double Negligible = 1e-5; ///< moment
 
-/// Of each degree: what was scattered at least twice, over the light of the beam that comes straight on.
-std::vector<double> MomentsBeyondFirst(const std::vector<double>& moments, double straightOn, double depth)
+/// The highest degree that was solved for: what goes straight on is the moment of the next one. `otherwise` where it is
+/// less than that, as of functions that scatter backwards.
+int DegreeOf(const std::vector<double>& moments, double straightOn, int otherwise)
+{
+  for (std::size_t l = 1; l < moments.size() && straightOn > 0.0; ++l)
+  {
+    if (std::abs(moments[l] - straightOn) <= 1e-4 * straightOn)
+    {
+      return static_cast<int>(l) - 1;
+    }
+  }
+  return otherwise;
+}
+
+/// Of each degree: what was scattered at least twice, over the light of the beam that comes straight on and the optical
+/// length of scattering.
+std::vector<double> MomentsBeyondFirst(const std::vector<double>& moments, double straightOn, int degree, double depth)
 {
   std::vector<double> beyond;
-  bool within = true; // the degrees that are solved for, where what goes straight on is left out alone
-  for (const double moment : moments)
+  for (std::size_t l = 0; l < moments.size(); ++l)
   {
-    within = within && moment > straightOn * (1.0 + 1e-6);
-    beyond.push_back(within ? -straightOn * straightOn * depth
-                            : moment * (std::expm1((moment - straightOn) * depth) - straightOn * depth));
+    const double more = moments[l] - straightOn;
+    const double grows = depth > 0.0 ? std::expm1(more * depth) / depth : more;
+    beyond.push_back(static_cast<int>(l) <= degree ? -straightOn * straightOn : moments[l] * (grows - straightOn));
   }
   return beyond;
 }
@@ -35,9 +49,10 @@ double CosineOfColumn(int column)
 }
 }
 
-std::vector<float> AureoleTable(const PhaseFunction& function, double straightOn)
+std::vector<float> AureoleTable(const PhaseFunction& function, double straightOn, int degree)
 {
   std::vector<double> moments = function.Moments(MostMoments);
+  const int solved = DegreeOf(moments, straightOn, degree);
   while (moments.size() > 1 && std::abs(moments.back()) < Negligible)
   {
     moments.pop_back();
@@ -52,7 +67,7 @@ std::vector<float> AureoleTable(const PhaseFunction& function, double straightOn
   for (int row = 0; row < AureoleRows + 2; ++row)
   {
     const double root = std::min<double>(row, AureoleRows) / AureoleRows;
-    const std::vector<double> beyond = MomentsBeyondFirst(moments, straightOn, AureoleDepth * root * root);
+    const std::vector<double> beyond = MomentsBeyondFirst(moments, straightOn, solved, AureoleDepth * root * root);
     for (const std::vector<double>& p : polynomials)
     {
       double sum = 0.0;

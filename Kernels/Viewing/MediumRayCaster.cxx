@@ -184,7 +184,7 @@ void MediumRayCaster::PrepareAureole(const Medium& medium, const SolvedLight& li
     {
       least = medium.sigma_s.At(i, c) > 0.0f ? std::min<double>(least, light.straightOn.At(i, c)) : least;
     }
-    const std::vector<float> table = AureoleTable(medium.phase.OfChannel(c), least);
+    const std::vector<float> table = AureoleTable(medium.phase.OfChannel(c), least, this->MomentDegree);
     tables.insert(tables.end(), table.begin(), table.end());
   }
   this->AureoleTables = Buffer<float>(this->TheDevice, tables, "light scattered forwards");

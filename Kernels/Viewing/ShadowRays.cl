@@ -138,7 +138,7 @@ inline rgb phase_at(real cosine, phase_parameters p, __global const float* rows)
 }
 
 #if AUREOLE
-// Of a table of Aureole.h, bilinear: by the cosine as the rows of PhaseFunction.cl, and by the root of the depth.
+// Of a table of Aureole.h times the depth, bilinear: by the cosine as the rows of PhaseFunction.cl, and by the root of the depth.
 inline real aureole_at(real cosine, real depth, __global const float* rows)
 {
   const real c = lesser(greater(cosine, (real)(-1.0f)), (real)1.0f);
@@ -161,7 +161,7 @@ inline real aureole_at(real cosine, real depth, __global const float* rows)
   EACH_LANE(LOOK)
 #undef LOOK
   const real near = fma(beside, near_high - near_low, near_low);
-  return fma(part, fma(beside, far_high - far_low, far_low) - near, near);
+  return depth * fma(part, fma(beside, far_high - far_low, far_low) - near, near);
 }
 
 // Optical length of all scattering, straight on or not, over that of the extinction that rays are marched with: taken

@@ -268,7 +268,7 @@ TEST(Aureole, MakesUpForWhatIsTakenToGoStraightOn)
   const PhaseFunction function = PhaseFunction::HenyeyGreenstein(0.85);
   const std::vector<double> moments = function.Moments(40);
   const double straightOn = moments[6];
-  const std::vector<float> table = AureoleTable(function, straightOn);
+  const std::vector<float> table = AureoleTable(function, straightOn, 5);
   const int row = AureoleRows / 4;
   const double depth = AureoleDepth / 16.0;
   // Its moment of degree l, by the trapezoidal rule along the columns.
@@ -279,7 +279,7 @@ TEST(Aureole, MakesUpForWhatIsTakenToGoStraightOn)
     {
       const double aside = 2.0 * std::min(column, AureoleColumns - column) / AureoleColumns;
       const double cosine = 2 * column < AureoleColumns ? 1.0 - aside * aside : aside * aside - 1.0;
-      const double value = 2.0 * Pi * table[row * (AureoleColumns + 2) + column] * std::legendre(l, cosine);
+      const double value = 2.0 * Pi * depth * table[row * (AureoleColumns + 2) + column] * std::legendre(l, cosine);
       sum += column > 0 ? 0.5 * (value + last) * (lastCosine - cosine) : 0.0;
       last = value;
       lastCosine = cosine;
