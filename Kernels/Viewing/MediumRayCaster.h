@@ -114,6 +114,13 @@ struct Picture
 /// `scattered_radiance`, which solvers keep for chosen directions, is data to look at and is not used here: a camera
 /// sees along as many directions as it has pixels.
 ///
+/// Where the light has angular moments (scatteredMoments) and singleScatteringOnly is off, they replace all this
+/// (numerics.md, section 14.7, Eqs. (112a) to (112c)): scattered light by its moments, evaluated in each voxel along
+/// the way to the camera; the first scattering of lampsApart by shadow rays and the whole phase function, whether
+/// shadowRays asks for them or not; and what of that was scattered forwards more than once. What was taken to go
+/// straight on goes on along the camera's rays too, but alpha, depth, backgroundColor and the environment's peaks are
+/// of light that is not scattered at all. The illumination's lights are not used then.
+///
 /// Refraction (Pfeuti 2009, section 3.1.6 and listing A.4, who steps by Euler's method). Where the refractive index n
 /// varies rays bend, by a leapfrog of order 2 on the spline of n^2 that photons follow too (numerics.md, Eq. (91)). L /
 /// n^2 stays the same along a ray, Eq. (109), so that glass in a furnace cannot be told from the rest. The index is
@@ -142,7 +149,8 @@ public:
   ///   or 3 components (a direction 3); for an index that is not within [1e-3, 1e3] or has not one component; where
   ///   settings ask for an array that is not there; for a setting out of its range
   /// @throws DeviceError if the samples do not fit: 16 bytes per voxel, and as many again for each of coloured
-  ///   extinction, the light's direction, emission beside it, a coloured g by voxel, and a refractive index that varies
+  ///   extinction, the light's direction, emission beside it, a coloured g by voxel, and a refractive index that
+  ///   varies; with moments, these and 36 bytes more
   MediumRayCaster(Device& device, const Medium& medium, const SolvedLight& light, const Illumination& illumination,
     const ViewSettings& settings, const Field& ior = {});
 

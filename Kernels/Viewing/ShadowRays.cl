@@ -138,7 +138,8 @@ inline rgb phase_at(real cosine, phase_parameters p, __global const float* rows)
 }
 
 #if AUREOLE
-// Of a table of Aureole.h times the depth, bilinear: by the cosine as the rows of PhaseFunction.cl, and by the root of the depth.
+// Of a table of Aureole.h times the depth, bilinear: by the cosine as the rows of PhaseFunction.cl, and by the root of
+// the depth.
 inline real aureole_at(real cosine, real depth, __global const float* rows)
 {
   const real c = lesser(greater(cosine, (real)(-1.0f)), (real)1.0f);
@@ -213,8 +214,8 @@ inline integer packet_along_x(int first, int size)
 }
 
 // Scatters towards the eye what the lights send straight to each voxel's centre. Work-items by packets of a slice.
-//   direct  6 per voxel: sum of irradiance times phase function, W / (length^2 sr), and sum of irradiance, W / length^2;
-//           with AUREOLE instead what scattering forwards more than once adds, W / (length^2 sr)
+//   direct  6 per voxel: sum of irradiance times phase function, W / (length^2 sr), and sum of irradiance, W /
+//           length^2; with AUREOLE instead what scattering forwards more than once adds, W / (length^2 sr)
 __kernel void see_lights(ShadowInfo info, __global const SmallLight* restrict lights,
   __global const float* restrict scattering, __global const float* restrict mean_cosines,
   __global const float* restrict phase_rows, __global const float4* restrict samples,

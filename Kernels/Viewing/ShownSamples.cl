@@ -1,6 +1,6 @@
-// What the rays meet where scattered light is known by direction: instead of a source its ratio to the extinction, which
-// varies slowly where both fall off steeply, as behind the surface of a cloud, and is multiplied by the extinction between
-// voxel centres (numerics.md, section 14.7).
+// What the rays meet where scattered light is known by direction: instead of a source its ratio to the extinction,
+// which varies slowly where both fall off steeply, as behind the surface of a cloud, and is multiplied by the
+// extinction between voxel centres (numerics.md, section 14.7).
 //
 // The host gives
 //   ABSORPTION, SCATTERING, EMISSION   components of each array: 0 (there is none), 1 or 3

@@ -44,8 +44,9 @@ coarse = ResampleToImage(registrationName="As many voxels", Input=water, UseInpu
 def cloud(name, g):
     """The cloud with a mean cosine g and the same transport of light, by way of a .vdb file."""
     medium = ParticipatingMedium(registrationName=name, Input=coarse, DensityArray=["POINTS", "liquid_water"],
-                                 MaximumDensity=1, ExtinctionScale=0.15 * (1 - 0.85) / (1 - g), Albedo=[0.9999] * 3,
+                                 ExtinctionScale=0.15 * (1 - 0.85) / (1 - g), Albedo=[0.9999] * 3,
                                  MeanCosine=g)
+    medium.MaximumDensity = 1
     file = output(name + ".vdb")
     VDBWriter(Input=medium, FileName=file).UpdatePipeline()
     return VDBReader(registrationName=name + " from .vdb", FileName=file)

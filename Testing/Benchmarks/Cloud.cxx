@@ -1,8 +1,7 @@
 // Clouds.
 //
-// steps: I3RC's step cloud (case 1): light reflected and transmitted by column, against the consensus; what voxels, directions
-// and degree of angular moments it takes.
-//
+// steps: I3RC's step cloud (case 1): light reflected and transmitted by column, against the consensus; what voxels,
+// directions and degree of angular moments it takes.
 // user: a cloud of our own making as a user lights it, and its pictures against Monte Carlo (UserCloud.h).
 //
 //   TyndallBenchCloud [--quick] [steps] [user [voxels an edge [paths a pixel]]]

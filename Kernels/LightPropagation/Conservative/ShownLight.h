@@ -6,7 +6,7 @@
 namespace tyndall
 {
 /// What a camera needs to show scattered light along any direction: LightField::scatteredMoments and straightOn, in the
-/// solver's units and channels (numerics.md, section 8 b). Of degrees so many as fit a gigabyte; `leftOut` says where
+/// solver's units and channels (numerics.md, section 14.7). Of degrees so many as fit a gigabyte; `leftOut` says where
 /// that is fewer than light was scattered in.
 /// @param shown  IterationResult::shown
 /// @param parts  their Path is written over
