@@ -117,7 +117,7 @@ struct MediumInput
 /// its companions (PhaseFunctionData.h; missing: Henyey and Greenstein's). Checked.
 MediumInput ReadMedium(vtkAlgorithm* filter, vtkImageData* image);
 
-/// What WriteLight wrote of scattered light by direction; not there where the solver found none, or no longer all of it.
+/// What WriteLight wrote of scattered light by direction; not there where the solver found none, or part of it is gone.
 struct MomentsInput
 {
   FloatField moments, straightOn;

@@ -49,8 +49,8 @@ struct LightField
   std::vector<float> scatteredRadiance; ///< W / (length^2 sr), channels * storedDirections a voxel
   std::vector<std::array<double, 3>> storedDirections; ///< of scatteredRadiance; one (0, 0, 0) where isotropic
   /// In-scattered radiance as a function of the direction that light goes on in, W / (length^2 sr), in the spherical
-  /// harmonics of Numerics/SphericalHarmonics.h times sqrt(4 pi), [voxel][(degree + 1)^2][channel], so that the first is
-  /// its mean. Without that of lampsApart. What goes straight on (straightOn) is no part of it. 0 where nothing is
+  /// harmonics of Numerics/SphericalHarmonics.h times sqrt(4 pi), [voxel][(degree + 1)^2][channel], so that the first
+  /// is its mean. Without that of lampsApart. What goes straight on (straightOn) is no part of it. 0 where nothing is
   /// scattered; empty where scattering is isotropic, or it was not asked for.
   std::vector<float> scatteredMoments;
   /// Part of what is scattered that is taken as light that goes straight on (numerics.md, Eq. (8a)); 1 or 3 a voxel.

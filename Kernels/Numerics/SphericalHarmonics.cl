@@ -1,5 +1,5 @@
-// The real spherical harmonics of a unit vector, as Numerics/SphericalHarmonics.h has them, so scaled that their squares
-// average to 1. The host gives DEGREE, the highest.
+// The real spherical harmonics of a unit vector, as Numerics/SphericalHarmonics.h has them, so scaled that their
+// squares average to 1. The host gives DEGREE, the highest.
 
 #pragma once
 

@@ -1,7 +1,7 @@
 """A cumulus with the low sun behind it and with the sun behind the camera: its droplets scatter forwards, which makes the
 bright edges, and what an isotropic cloud of the same transport looks like.
 
-    pvbatch silver_lining.py [--output FOLDER] [--voxels 96] [--size 640 400]
+    pvbatch silver_lining.py [--output FOLDER] [--voxels 80] [--size 640 400]
 
 The water is that of Data/Scenes/cumulus.vdb (made by make_scenes.py). The cloud is written to a .vdb with all that tells
 how it scatters, read again, and lit. `./run demo` calls this.
@@ -21,7 +21,7 @@ LoadPlugin(os.environ["TYNDALL_PLUGIN"], remote=True, ns=globals())
 
 parser = argparse.ArgumentParser()
 parser.add_argument("--output", default=os.environ.get("TYNDALL_TEST_OUTPUT", "."))
-parser.add_argument("--voxels", type=int, default=96, help="along the cloud's longest edge")
+parser.add_argument("--voxels", type=int, default=80, help="along the cloud's longest edge")
 parser.add_argument("--size", type=int, nargs=2, default=[640, 400], help="columns and rows of each picture")
 arguments = parser.parse_args()
 os.makedirs(arguments.output, exist_ok=True)
