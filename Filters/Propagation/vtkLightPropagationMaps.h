@@ -156,8 +156,8 @@ public:
 
   ///@{
   /// Whether to keep the angular moments of what is scattered (cells `scattered_moments`, `straight_on`, field data
-  /// `lamps_apart`), where light is scattered in moments: vtkMediumRayCaster shows them. Four bytes times (degree + 1)^2
-  /// a voxel and channel, a gigabyte at most. Default on.
+  /// `lamps_apart`), where light is scattered in moments: vtkMediumRayCaster shows them. Four bytes times (degree +
+  /// 1)^2 a voxel and channel, a gigabyte at most. Default on.
   vtkSetMacro(StoreMoments, bool);
   vtkGetMacro(StoreMoments, bool);
   vtkBooleanMacro(StoreMoments, bool);
