@@ -150,7 +150,7 @@ LightField LightOf(TransportParts& parts, IterationResult&& found, bool accelera
 LightField SolveConservative(Device& device, const Medium& medium, const Illumination& illumination,
   const PropagationSettings& settings, const Monitor& monitor)
 {
-  const PropagationProblem problem(medium, illumination, settings);
+  const PropagationProblem problem(medium, illumination, settings, MemoryOf(device));
   const bool accelerated = ToBeAccelerated(problem);
   TransportParts parts(device, problem, accelerated);
   std::unique_ptr<Iteration> iteration;

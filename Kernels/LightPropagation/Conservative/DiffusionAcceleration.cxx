@@ -61,7 +61,7 @@ void DiffusionAcceleration::FindShown()
 {
   TransportParts& parts = this->Parts;
   this->ScatterFound();
-  Buffer<float> shown(parts.TheDevice, parts.Layout.Floats(parts.Functions()), "the light shown");
+  Buffer<float> shown(parts.TheDevice, parts.Layout.MomentFloats(parts.Functions()), "the light shown");
   shown.Fill(0.0f);
   parts.LoadEmission(shown);
   if (!this->Uncollided->PathOfLamps().empty())
@@ -69,7 +69,7 @@ void DiffusionAcceleration::FindShown()
     parts.Path.Write(this->Uncollided->PathOfLamps().data());
     parts.Scattering->AddFirstScattered(parts.WholeDeposit(), shown);
   }
-  AddToShown(parts.TheDevice, parts.Functions() * parts.FunctionStride(), parts.Source, shown, -1.0f);
+  AddToShown(parts.TheDevice, parts.Layout.Places(parts.Functions()).beams, parts.Source, shown, -1.0f);
   this->Result.shown = std::move(shown);
 }
 
@@ -83,6 +83,12 @@ void DiffusionAcceleration::GiveFirstScattered()
   std::vector<float> path = this->Uncollided->Path();
   parts.Path.Write(path.data());
   parts.Scattering->AddFirstScattered(parts.WholeDeposit(), this->Given);
+  if (parts.Basis)
+  {
+    this->GivenFlux = Buffer<float>(parts.TheDevice, parts.Layout.Floats(3), "the net flux given");
+    this->GivenFlux.Fill(0.0f);
+    AddFluxOfMoments(parts.TheDevice, parts.Layout, parts.Functions(), this->Given, this->GivenFlux);
+  }
   const double volume = parts.Layout.grid.VoxelVolume();
   for (int c = 0; c < parts.Layout.channels; ++c)
   {
@@ -144,7 +150,7 @@ void DiffusionAcceleration::ScatterFound()
     {
       if (this->Parts.Basis)
       {
-        this->Systems[c]->AddFluxBeyondSweep(this->Parts.Path);
+        this->Systems[c]->PutNextFlux(this->Parts.Path);
       }
       this->Parts.Scattering->ScatterFluence(
         static_cast<int>(c), this->DepositOfSweep(), this->Systems[c]->NextFluence(), this->Given, this->Parts.Source);
@@ -180,9 +186,10 @@ void DiffusionAcceleration::MakeSystems()
       this->PowerIn[c] += this->Tally.in[face][c];
     }
     const DiffusionSystem::Arrays arrays = { parts.Layout.Stride(), parts.Layout.ExtinctionFirst(c),
-      c * parts.Layout.Stride(), parts.FunctionStride(), &parts.OnDevice.TransportSigmaT(), &parts.OnDevice.SigmaT(),
-      &parts.OnDevice.SigmaA(), &parts.OnDevice.SigmaS(), &this->Given, &parts.Source, &parts.Path,
-      &this->PartialCurrents, this->Uncollided->Passed().Size() > 0 ? &this->Uncollided->Passed() : nullptr };
+      c * parts.Layout.Stride(), &parts.OnDevice.TransportSigmaT(), &parts.OnDevice.SigmaT(), &parts.OnDevice.SigmaA(),
+      &parts.OnDevice.SigmaS(), &this->Given, parts.Layout.Places(parts.Functions()), c,
+      parts.Basis ? &this->GivenFlux : nullptr, &parts.Source, &parts.Path, &this->PartialCurrents,
+      this->Uncollided->Passed().Size() > 0 ? &this->Uncollided->Passed() : nullptr };
     this->Systems.push_back(std::make_unique<DiffusionSystem>(parts.TheDevice, parts.Layout.grid,
       this->Settings.periodic, parts.Usual.Set(), pattern, arrays, ofChannel, this->LinearSource));
   }

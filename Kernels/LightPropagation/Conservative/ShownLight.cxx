@@ -15,7 +15,8 @@ int HarmonicsKept(const TransportParts& parts)
 {
   int degree = parts.Basis->Degree();
   const auto count = [](int l) { return (l + 1) * (l + 1); };
-  while (degree > 1 && 4.0 * count(degree) * static_cast<double>(parts.FunctionStride()) > MostBytes)
+  while (
+    degree > 1 && 4.0 * count(degree) * static_cast<double>(parts.Layout.channels * parts.Layout.Stride()) > MostBytes)
   {
     --degree;
   }
@@ -57,11 +58,16 @@ void AddShownLight(TransportParts& parts, const Buffer<float>& shown, LightField
   const std::vector<double> matrix = parts.Basis->Matrix();
   const Buffer<float> basis(parts.TheDevice, std::vector<float>(matrix.begin(), matrix.end()), "the angular functions");
   const Buffer<float> scale(parts.TheDevice, PerScattering(parts), "the inverse of sigma_s");
-  cl::Kernel kernel = parts.TheDevice.Kernel("to_harmonics", kernel_source::MomentScattering);
-  With(kernel, basis, cl_int(functions), shown, scale, cl_ulong(parts.Layout.Stride()), parts.Path);
+  const std::array<int, 3>& size = parts.Layout.grid.size;
+  for (int c = 0; c < parts.Layout.channels; ++c)
+  {
+    cl::Kernel kernel = parts.TheDevice.Kernel("to_harmonics", kernel_source::MomentScattering);
+    With(kernel, parts.Layout.Places(functions), cl_int(c), basis, shown, scale, cl_ulong(parts.Layout.Stride()),
+      parts.Path);
+    parts.TheDevice.Queue().enqueueNDRangeKernel(
+      kernel, cl::NullRange, cl::NDRange(size[0], static_cast<std::size_t>(size[1]) * size[2], harmonics));
+  }
   const std::size_t voxels = parts.Layout.grid.VoxelCount();
-  parts.TheDevice.Queue().enqueueNDRangeKernel(
-    kernel, cl::NullRange, cl::NDRange(voxels, parts.Layout.channels, harmonics));
   light.scatteredMoments.resize(voxels * parts.Layout.channels * harmonics);
   parts.Path.Read(light.scatteredMoments.data(), light.scatteredMoments.size());
   light.straightOn = StraightOn(parts);

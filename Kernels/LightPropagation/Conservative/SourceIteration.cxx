@@ -29,7 +29,8 @@ SourceIteration::SourceIteration(TransportParts& parts)
   this->MakeSweeps();
   if (parts.StoresMoments())
   {
-    this->Result.shown = Buffer<float>(parts.TheDevice, parts.Layout.Floats(parts.Functions()), "the light shown");
+    this->Result.shown =
+      Buffer<float>(parts.TheDevice, parts.Layout.MomentFloats(parts.Functions()), "the light shown");
     this->Result.shown.Fill(0.0f);
   }
 }
@@ -221,7 +222,7 @@ void SourceIteration::ScatterOrder()
   if (parts.StoresMoments())
   {
     // What is shown holds lamps' light alone before the first order.
-    AddToShown(parts.TheDevice, parts.Functions() * parts.FunctionStride(), parts.Source, this->Result.shown,
+    AddToShown(parts.TheDevice, parts.Layout.Places(parts.Functions()).beams, parts.Source, this->Result.shown,
       this->Order == 0 ? -1.0f : 1.0f);
   }
   this->Scattered = powers.scattered;

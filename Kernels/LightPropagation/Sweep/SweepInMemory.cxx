@@ -36,6 +36,7 @@ SweepVolume SweepInMemory::VolumeOf(const ChannelGroup& group, const Buffer<floa
   volume.box = this->Box;
   volume.source = source;
   volume.angular = this->Angular;
+  volume.moments = this->Layout.Places(this->Angular ? this->Angular->Functions() : 1);
   volume.deposit.flux = this->Angular ? nullptr : volume.deposit.flux; // it is among the moments
   return volume;
 }
