@@ -66,8 +66,8 @@ __kernel void add_to_shown(const __global float* source, __global float* shown, 
   shown[at] = source[at] + part * shown[at];
 }
 
-// Moments in functions of an AngularBasis as those in spherical harmonics, of voxels side by side. A work-item a voxel of
-// a row, by row, and a harmonic.
+// Moments in functions of an AngularBasis as those in spherical harmonics, of voxels side by side. A work-item a voxel
+// of a row, by row, and a harmonic.
 //   basis      [function][harmonic]
 //   moments    with their places; harmonics are as many as functions, or fewer
 //   scale      [channel][stride]
