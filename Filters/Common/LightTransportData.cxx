@@ -306,6 +306,41 @@ MediumInput ReadMedium(vtkAlgorithm* filter, vtkImageData* image)
   return input;
 }
 
+MomentsInput ReadMoments(vtkImageData* image)
+{
+  MomentsInput input;
+  vtkDataArray* const lamps = image->GetFieldData()->GetArray(LampsApartFact);
+  if (!image->GetCellData()->GetArray(MomentsArray) || !image->GetCellData()->GetArray(StraightOnArray) || !lamps)
+  {
+    return input;
+  }
+  if (lamps->GetNumberOfComponents() != LampComponents)
+  {
+    throw InvalidInput("The field data " + Quoted(LampsApartFact) + " has " +
+      std::to_string(lamps->GetNumberOfComponents()) + " numbers a lamp; it must have " +
+      std::to_string(LampComponents) + ", as solvers write it.");
+  }
+  input.moments = ReadCells(image, MomentsArray, Need::Required, {});
+  input.straightOn = ReadCells(image, StraightOnArray, Need::Required);
+  for (vtkIdType row = 0; row < lamps->GetNumberOfTuples(); ++row)
+  {
+    double v[LampComponents];
+    lamps->GetTuple(row, v);
+    Light lamp;
+    lamp.type = static_cast<LightType>(static_cast<int>(v[0]));
+    lamp.position = { v[1], v[2], v[3] };
+    lamp.direction = { v[4], v[5], v[6] };
+    lamp.power = { v[7], v[8], v[9] };
+    lamp.size = { v[10], v[11] };
+    lamp.angle = v[12];
+    input.lampsApart.push_back(lamp);
+  }
+  Illumination all;
+  all.lights = input.lampsApart;
+  Check(all);
+  return input;
+}
+
 double ReadFact(vtkDataObject* data, const char* name, double missing)
 {
   vtkAbstractArray* found = data->GetFieldData()->GetAbstractArray(name);

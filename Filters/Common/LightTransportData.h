@@ -117,6 +117,16 @@ struct MediumInput
 /// its companions (PhaseFunctionData.h; missing: Henyey and Greenstein's). Checked.
 MediumInput ReadMedium(vtkAlgorithm* filter, vtkImageData* image);
 
+/// What WriteLight wrote of scattered light by direction; not there where the solver found none, or part of it is gone.
+struct MomentsInput
+{
+  FloatField moments, straightOn;
+  std::vector<Light> lampsApart;
+};
+
+/// @throws InvalidInput where one is there and has the wrong shape
+MomentsInput ReadMoments(vtkImageData* image);
+
 /// Field data `name`: one number.
 /// @throws InvalidInput where it is there and is not one number
 double ReadFact(vtkDataObject* data, const char* name, double missing);

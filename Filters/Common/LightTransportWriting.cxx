@@ -157,17 +157,45 @@ std::string Lines(const std::vector<std::string>& texts)
   return lines;
 }
 
+namespace
+{
+void WriteMoments(LightField&& light, vtkImageData* output)
+{
+  const auto voxels = static_cast<std::size_t>(output->GetNumberOfCells());
+  if (light.scatteredMoments.empty())
+  {
+    return;
+  }
+  const int components = static_cast<int>(light.scatteredMoments.size() / voxels);
+  AddCells(output, MomentsArray, std::move(light.scatteredMoments), components);
+  const int channels = static_cast<int>(light.straightOn.size() / voxels);
+  AddCells(output, StraightOnArray, std::move(light.straightOn), channels);
+  std::vector<double> lamps;
+  for (const Light& lamp : light.lampsApart)
+  {
+    lamps.push_back(static_cast<double>(lamp.type));
+    for (const std::array<double, 3>& triple : { lamp.position, lamp.direction, lamp.power })
+    {
+      lamps.insert(lamps.end(), triple.begin(), triple.end());
+    }
+    lamps.insert(lamps.end(), { lamp.size[0], lamp.size[1], lamp.angle });
+  }
+  AddFact(output, LampsApartFact, lamps, LampComponents);
+}
+}
+
 void WriteLight(LightField&& light, vtkImageData* output)
 {
   const int channels = light.channels;
   vtkCellData* cells = output->GetCellData();
-  for (const char* earlier : { "fluence", "fluence_direct", "fluence_error", "fluence_batches", "net_flux",
-         "scattered_radiance", "mean_direction", "photon_count", "photon_weight", "mip_level" })
+  for (const char* earlier :
+    { "fluence", "fluence_direct", "fluence_error", "fluence_batches", "net_flux", "scattered_radiance",
+      "mean_direction", "photon_count", "photon_weight", "mip_level", MomentsArray, StraightOnArray })
   {
     cells->RemoveArray(earlier); // of another solve that the input has been through
   }
-  for (const char* earlier :
-    { "stored_directions", "scattered", "packing_loss", "fluence_bias", "half_range_flux", SurfaceRadianceFact })
+  for (const char* earlier : { "stored_directions", "scattered", "packing_loss", "fluence_bias", "half_range_flux",
+         SurfaceRadianceFact, LampsApartFact })
   {
     output->GetFieldData()->RemoveArray(earlier);
   }
@@ -184,6 +212,7 @@ void WriteLight(LightField&& light, vtkImageData* output)
   AddLightCells(output, "net_flux", std::move(light.netFlux), 3 * channels);
   const int stored = std::max(1, static_cast<int>(light.storedDirections.size()));
   AddLightCells(output, "scattered_radiance", std::move(light.scatteredRadiance), channels * stored);
+  WriteMoments(std::move(light), output);
   if (vtkDataArray* flux = cells->GetArray("net_flux"))
   {
     NameFluxComponents(flux);

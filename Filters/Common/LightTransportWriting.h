@@ -35,13 +35,21 @@ void AddFact(vtkDataObject* data, const char* name, const std::vector<std::array
 /// What leaves thick voxels at the box's faces, see LightField::surfaceRadiance: a tuple per cell of BoxFaces.h.
 constexpr const char* SurfaceRadianceFact = "surface_radiance";
 
+/// Angular moments of what is scattered (LightField::scatteredMoments, straightOn), cells, and field data: the lamps
+/// whose light they leave out until it is first scattered, a tuple each: type, position, direction, power, size, angle.
+constexpr const char* MomentsArray = "scattered_moments";
+constexpr const char* StraightOnArray = "straight_on";
+constexpr const char* LampsApartFact = "lamps_apart";
+constexpr int LampComponents = 13;
+
 /// Texts one per line, for the panel.
 std::string Lines(const std::vector<std::string>& texts);
 
 /// Everything a solver found but its convergence: cells `fluence` (made the active scalars), `fluence_direct`,
-/// `fluence_error`, `net_flux`, `scattered_radiance` (channels fastest, then stored directions), those that are not
-/// empty; field data `energy_balance`, `face_power_out`, `half_range_flux`, `stored_directions`, `surface_radiance`,
-/// `left_out`, `device`. Light that the output already has is taken away.
+/// `fluence_error`, `net_flux`, `scattered_radiance` (channels fastest, then stored directions), `scattered_moments`
+/// (channels fastest, then spherical harmonics), `straight_on`, those that are not empty; field data `energy_balance`,
+/// `face_power_out`, `half_range_flux`, `stored_directions`, `surface_radiance`, `lamps_apart`, `left_out`, `device`.
+/// Light that the output already has is taken away.
 void WriteLight(LightField&& light, vtkImageData* output);
 
 /// One row an iteration: `iteration`, `seconds`, `residual`, `change`, `absorbed`, `escaped`, `left_over`, and

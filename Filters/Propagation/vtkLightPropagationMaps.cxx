@@ -41,6 +41,7 @@ tyndall::PropagationSettings SettingsOf(vtkLightPropagationMaps* filter)
   settings.directionsPerFace = filter->GetDirectionsPerFace();
   settings.uncollidedDirections = filter->GetUncollidedDirections();
   settings.angularDegree = filter->GetAngularDegree();
+  settings.storeMoments = filter->GetStoreMoments();
   settings.emissionError = filter->GetEmissionError();
   settings.staggeredRays = filter->GetStaggeredRays();
   settings.mapResolution = filter->GetMapResolution();
@@ -81,6 +82,7 @@ vtkLightPropagationMaps::vtkLightPropagationMaps()
   this->DirectionsPerFace = defaults.directionsPerFace;
   this->UncollidedDirections = defaults.uncollidedDirections;
   this->AngularDegree = defaults.angularDegree;
+  this->StoreMoments = defaults.storeMoments;
   this->EmissionError = defaults.emissionError;
   this->StaggeredRays = defaults.staggeredRays;
   this->MapResolution = defaults.mapResolution;
@@ -140,6 +142,7 @@ void vtkLightPropagationMaps::PrintSelf(ostream& os, vtkIndent indent)
   os << indent << "DirectionsPerFace: " << this->DirectionsPerFace << "\n";
   os << indent << "UncollidedDirections: " << this->UncollidedDirections << "\n";
   os << indent << "AngularDegree: " << this->AngularDegree << "\n";
+  os << indent << "StoreMoments: " << this->StoreMoments << "\n";
   os << indent << "EmissionError: " << this->EmissionError << "\n";
   os << indent << "StaggeredRays: " << this->StaggeredRays << "\n";
   os << indent << "MapResolution: " << this->MapResolution << "\n";

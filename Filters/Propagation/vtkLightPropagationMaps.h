@@ -158,6 +158,15 @@ public:
   ///@}
 
   ///@{
+  /// Whether to keep the angular moments of what is scattered (cells `scattered_moments`, `straight_on`, field data
+  /// `lamps_apart`), where light is scattered in moments: vtkMediumRayCaster shows them. Four bytes times (degree +
+  /// 1)^2 a voxel and channel, a gigabyte at most. Default on.
+  vtkSetMacro(StoreMoments, bool);
+  vtkGetMacro(StoreMoments, bool);
+  vtkBooleanMacro(StoreMoments, bool);
+  ///@}
+
+  ///@{
   /// Whether rays of each direction start in a place of their own within a voxel (conservative scheme), those of
   /// UncollidedDirections always. From some 64 directions per face on, half the error or less. Default off.
   vtkSetMacro(StaggeredRays, bool);
@@ -246,6 +255,7 @@ private:
   int DirectionsPerFace;
   int UncollidedDirections;
   int AngularDegree;
+  bool StoreMoments;
   double EmissionError;
   bool StaggeredRays;
   int MapResolution;

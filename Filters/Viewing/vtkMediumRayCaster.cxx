@@ -232,6 +232,9 @@ tyndall::InputsKey vtkMediumRayCaster::KeyOf(vtkInformationVector** inputs)
     key.Add(tyndall::ChosenArray(this, number, image, ArrayNames[number]));
   }
   key.Add(image->GetFieldData()->GetArray(tyndall::SurfaceRadianceFact));
+  key.Add(image->GetCellData()->GetArray(tyndall::MomentsArray));
+  key.Add(image->GetCellData()->GetArray(tyndall::StraightOnArray));
+  key.Add(image->GetFieldData()->GetArray(tyndall::LampsApartFact));
   for (int port : { LIGHTS, ENVIRONMENT })
   {
     key.Add(vtkDataObject::GetData(inputs[port]));
@@ -260,6 +263,7 @@ std::unique_ptr<vtkMediumRayCaster::Scene> vtkMediumRayCaster::MakeScene(
   // It belongs to the array that the solver wrote.
   const bool asSolved = fluence.IsThere() &&
     tyndall::ChosenArray(this, Fluence, image, ArrayNames[Fluence]) == image->GetCellData()->GetArray("fluence");
+  const tyndall::MomentsInput moments = asSolved ? tyndall::ReadMoments(image) : tyndall::MomentsInput();
   const SurfaceValues surface = asSolved ? ReadSurface(image, input.medium.grid) : SurfaceValues();
   const tyndall::Illumination illumination = this->ReadIllumination(inputs);
   const bool sky = !illumination.environment.Empty() || illumination.sky != tyndall::Rgb{};
@@ -275,7 +279,8 @@ std::unique_ptr<vtkMediumRayCaster::Scene> vtkMediumRayCaster::MakeScene(
   settings.shadowRays |= scene->lightsAlone;
   scene->caster = std::make_unique<tyndall::MediumRayCaster>(*key.device, input.medium,
     tyndall::SolvedLight{ fluence, direct, meanDirection,
-      { surface.values.empty() ? nullptr : surface.values.data(), surface.components } },
+      { surface.values.empty() ? nullptr : surface.values.data(), surface.components }, moments.moments,
+      moments.straightOn, moments.lampsApart },
     illumination, settings, ior);
   for (const std::string& doubt : scene->caster->Warnings())
   {

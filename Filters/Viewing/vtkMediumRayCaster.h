@@ -57,6 +57,12 @@ struct ViewSettings;
  * function, light from everywhere alike (|m| = 0) evenly, and as much on the whole. Without `mean_direction`, with
  * ShadowRays, or where the medium is isotropic, f is 1.
  *
+ * Where the input has `scattered_moments`, `straight_on` and field data `lamps_apart`, as vtkLightPropagationMaps
+ * writes them of media that it solves in angular moments, and SingleScatteringOnly is off, the picture is made of these
+ * instead: light that was scattered often by its moments, the lamps' first scattering by shadow rays and the whole
+ * phase function, with no property and no Lights needed. They belong to the array `fluence` beside them; where another
+ * is chosen they are not used.
+ *
  * The rest of `fluence` is what the shadow rays do not show already, so that no light counts twice. Where there is no
  * `fluence` but there are lights, shadow rays are used without being asked for.
  *

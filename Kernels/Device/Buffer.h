@@ -69,11 +69,12 @@ public:
     const std::size_t begin = first * sizeof(T);
     this->Owner->Queue().enqueueCopyBuffer(other.Memory, this->Memory, begin, begin, count * sizeof(T));
   }
-  void Read(T* values) const
+  void Read(T* values) const { this->Read(values, this->Count); }
+  void Read(T* values, std::size_t count) const ///< the first `count` values
   {
-    if (this->Count > 0)
+    if (count > 0)
     {
-      this->Owner->Queue().enqueueReadBuffer(this->Memory, CL_TRUE, 0, this->Count * sizeof(T), values);
+      this->Owner->Queue().enqueueReadBuffer(this->Memory, CL_TRUE, 0, count * sizeof(T), values);
     }
   }
   std::vector<T> Read() const

@@ -48,6 +48,14 @@ struct LightField
   std::vector<float> netFlux;           ///< W / length^2, 3 * channels per voxel: (x, y, z) of channel 0, 1, 2
   std::vector<float> scatteredRadiance; ///< W / (length^2 sr), channels * storedDirections a voxel
   std::vector<std::array<double, 3>> storedDirections; ///< of scatteredRadiance; one (0, 0, 0) where isotropic
+  /// In-scattered radiance as a function of the direction that light goes on in, W / (length^2 sr), in the spherical
+  /// harmonics of Numerics/SphericalHarmonics.h times sqrt(4 pi), [voxel][(degree + 1)^2][channel], so that the first
+  /// is its mean. Without that of lampsApart. What goes straight on (straightOn) is no part of it. 0 where nothing is
+  /// scattered; empty where scattering is isotropic, or it was not asked for.
+  std::vector<float> scatteredMoments;
+  /// Part of what is scattered that is taken as light that goes straight on (numerics.md, Eq. (8a)); 1 or 3 a voxel.
+  std::vector<float> straightOn;
+  std::vector<Light> lampsApart; ///< what scatteredMoments lack is what these lamps' light is scattered first
   /// W / (length^2 sr) that leaves through the box's faces, [cell][SurfaceCosines][channel] (BoxFaces.h); empty where
   /// no voxel there is thick, or it is not known
   std::vector<float> surfaceRadiance;

@@ -38,6 +38,9 @@ struct PropagationSettings
   /// tolerance, the directions and the device's memory (AngularDegree.h); 0: scattering is isotropic with
   /// sigma_s (1 - g), the similarity relation
   int angularDegree = -1;
+  /// Keep the moments of what is scattered, where light is scattered in moments: pictures are made of them
+  /// (LightField::scatteredMoments).
+  bool storeMoments = true;
   int storedDirections = 1; ///< directions kept for scattered radiance: 1 (isotropic), 6 (faces), or more
   PropagationSource source = PropagationSource::Automatic;
   PropagationAcceleration acceleration = PropagationAcceleration::Automatic; ///< not where maximumOrders is given

@@ -7,7 +7,8 @@
 //   PHASE, PHASE_CHANNELS  how light of a known direction scatters, see PhaseFunction.cl
 //   FLOW_WITH_G 1: `flow` is the light's mean direction times g; 0: the mean direction alone
 //   VARIED_G    1: `cosines` holds g by voxel
-//   GLOW        1 (with PHASE): emission is kept apart from what is scattered
+//   GLOW        1: emission is kept apart from what is scattered
+//   SHOWN       0, or what ShownSamples.cl packed; BEAMS 1: with lamps' light, in `flow`
 
 #pragma once
 #include "Viewing/Background.cl"
@@ -178,6 +179,46 @@ __attribute__((always_inline)) inline rgb scattered_towards_eye(
 }
 #endif
 
+#if SHOWN
+#if COLOURED
+#define SIGMA_OF(c) s->sigma.c
+#else
+#define SIGMA_OF(c) s->sigma
+#endif
+// From ratios of source to extinction to the source.
+__attribute__((always_inline)) inline void multiply_by_extinction(
+  const scenery* scene, const corners* at, int4 size, sample* s)
+{
+  real none;
+#if BEAMS
+  rgb beams, left;
+  gather(scene->flow, at, size, &beams, &none);
+  extinguished(beams.r, &left.r);
+  extinguished(beams.g, &left.g);
+  extinguished(beams.b, &left.b);
+#if SHOWN == 1
+#define RATIO(c) (s->source.c + left.c)
+#else
+#define RATIO(c) (s->source.c * left.c)
+#endif
+#else
+#define RATIO(c) s->source.c
+#endif
+  s->source.r = RATIO(r) * SIGMA_OF(r);
+  s->source.g = RATIO(g) * SIGMA_OF(g);
+  s->source.b = RATIO(b) * SIGMA_OF(b);
+#undef RATIO
+#if GLOW
+  rgb glow;
+  gather(scene->glow, at, size, &glow, &none);
+  s->source.r += glow.r;
+  s->source.g += glow.g;
+  s->source.b += glow.b;
+#endif
+}
+#undef SIGMA_OF
+#endif
+
 // v  unit vectors of the rays, away from the eye
 __attribute__((always_inline)) inline sample take_sample(const scenery* scene, const corners* at, int4 size, real3 v)
 {
@@ -204,6 +245,9 @@ __attribute__((always_inline)) inline sample take_sample(const scenery* scene, c
   s.source.g *= part.g;
   s.source.b *= part.b;
 #endif
+#endif
+#if SHOWN
+  multiply_by_extinction(scene, at, size, &s);
 #endif
   return s;
 }

@@ -4,11 +4,13 @@
 #include "Device/Defines.h"
 #include "Device/Sizes.h"
 #include "Light/LeftOut.h"
+#include "LightPropagation/Uncollided/EnvironmentPeaks.h"
 #include "Medium/Traits.h"
 #include "Numerics/Constants.h"
 #include "Numerics/Vectors.h"
 #include "Refraction/Index/SquaredIndex.h"
 #include "TyndallKernelSources.h"
+#include "Viewing/Aureole.h"
 #include "Viewing/Bricks.h"
 #include "Viewing/SurfaceLight.h"
 #include "Viewing/ViewChecks.h"
@@ -16,6 +18,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <functional>
 
 #include <glm/geometric.hpp>
 #include <glm/vec3.hpp>
@@ -29,6 +32,7 @@ constexpr double BentStretch = 4.0;         ///< voxels, before it is asked whet
 constexpr double BesideSurface = 5.0;       ///< voxels from a surface, beyond its smoothing (9 voxels wide) by default
 constexpr double SurfacePrecision = 1.0e-3; ///< voxels
 constexpr double SamplesAtOnce = 3.2e7; ///< of the work between two reports, at most: under a second on one old core
+constexpr int DirectionsOfPeaks = 25;   ///< a face, by which the environment's peaks are told from the rest
 constexpr double ManySteps = 4096.0;    ///< of a ray, from which on rounding in each of them adds up to 1e-4
 
 /// Columns and rows of pixels in a packet, as in View.cl.
@@ -50,6 +54,17 @@ double ExtinctionBound(const Medium& medium)
     sum += count > 0 ? *std::max_element(field.values, field.values + count) : 0.0f;
   }
   return sum;
+}
+
+/// Of the moments that a picture is made of; -1: of none.
+int ShownDegree(const SolvedLight& light, const ViewSettings& settings)
+{
+  return light.scatteredMoments.values && !settings.singleScatteringOnly ? DegreeOf(light.scatteredMoments) : -1;
+}
+
+bool Shine(const std::vector<Light>& lamps)
+{
+  return std::any_of(lamps.begin(), lamps.end(), [](const Light& lamp) { return !IsBlack(lamp.power); });
 }
 
 std::size_t PaddedCount(const Grid& grid)
@@ -101,8 +116,8 @@ MediumRayCaster::MediumRayCaster(Device& device, const Medium& medium, const Sol
   const Illumination& illumination, const ViewSettings& asked, const Field& ior)
   : TheDevice(device)
   , TheGrid(medium.grid)
-  , LampsShine(std::any_of(
-      illumination.lights.begin(), illumination.lights.end(), [](const Light& lamp) { return !IsBlack(lamp.power); }))
+  , MomentDegree(ShownDegree(light, asked))
+  , LampsShine(Shine(this->ShowsMoments() ? light.lampsApart : illumination.lights))
   , AskedForShadowRays(asked.shadowRays)
   , Settings(this->Needed(asked))
 {
@@ -113,12 +128,14 @@ MediumRayCaster::MediumRayCaster(Device& device, const Medium& medium, const Sol
   Check(light, medium.grid, settings);
   CheckViewedIndex(ior, medium.grid);
 
-  const std::vector<SmallLight> lights = settings.shadowRays
-    ? SmallLights(illumination.lights, medium.grid, settings.rectangleSamples)
-    : std::vector<SmallLight>();
+  const std::vector<Light>& lamps = this->ShowsMoments() ? light.lampsApart : illumination.lights;
+  const std::vector<SmallLight> lights =
+    settings.shadowRays ? SmallLights(lamps, medium.grid, settings.rectangleSamples) : std::vector<SmallLight>();
   this->LightCount = static_cast<int>(lights.size());
   this->Phase = ViewedPhaseOf(medium.phase);
+  this->TakeMoments(light);
   this->FindTraits(medium, light, ior);
+  this->PrepareAureole(medium, light);
   this->Upload(medium, light, ior);
   this->Reserve();
   this->Lights = Buffer<SmallLight>(device, lights, "the lights");
@@ -136,6 +153,43 @@ MediumRayCaster::MediumRayCaster(Device& device, const Medium& medium, const Sol
   this->SayWhatIsLeftOut();
 }
 
+void MediumRayCaster::TakeMoments(const SolvedLight& light)
+{
+  if (!this->ShowsMoments())
+  {
+    return;
+  }
+  const std::size_t voxels = this->TheGrid.VoxelCount();
+  this->MomentChannels = light.scatteredMoments.components / ((this->MomentDegree + 1) * (this->MomentDegree + 1));
+  this->StraightOnChannels = light.straightOn.components;
+  this->Moments = Buffer<float>(this->TheDevice, light.scatteredMoments.values,
+    voxels * light.scatteredMoments.components, "the moments of scattered light");
+  this->StraightOn = Buffer<float>(
+    this->TheDevice, light.straightOn.values, voxels * light.straightOn.components, "what is scattered straight on");
+}
+
+/// Of the voxels in which least goes straight on: those that matter have as much.
+void MediumRayCaster::PrepareAureole(const Medium& medium, const SolvedLight& light)
+{
+  if (!this->ShowsMoments() || this->LightCount == 0 || medium.phase.Varies())
+  {
+    return;
+  }
+  this->AureoleChannels = this->Phase.channels;
+  std::vector<float> tables;
+  for (int c = 0; c < this->AureoleChannels; ++c)
+  {
+    double least = 1.0;
+    for (std::size_t i = 0; i < medium.grid.VoxelCount(); ++i)
+    {
+      least = medium.sigma_s.At(i, c) > 0.0f ? std::min<double>(least, light.straightOn.At(i, c)) : least;
+    }
+    const std::vector<float> table = AureoleTable(medium.phase.OfChannel(c), least, this->MomentDegree);
+    tables.insert(tables.end(), table.begin(), table.end());
+  }
+  this->AureoleTables = Buffer<float>(this->TheDevice, tables, "light scattered forwards");
+}
+
 /// What of the scene varies, has colour or depends on the camera.
 void MediumRayCaster::FindTraits(const Medium& medium, const SolvedLight& light, const Field& ior)
 {
@@ -145,12 +199,13 @@ void MediumRayCaster::FindTraits(const Medium& medium, const SolvedLight& light,
   const MediumTraits& traits = this->Traits;
   this->Bends = !settings.leaveOut || this->Index.Varies();
   const bool anisotropic = this->Phase.formula != ViewedPhase::Even;
-  this->KnowsFlow = anisotropic && light.meanDirection.values && light.fluence.values && !settings.shadowRays;
-  this->Coloured = !settings.leaveOut || !traits.greyExtinction;
+  this->KnowsFlow =
+    anisotropic && light.meanDirection.values && light.fluence.values && !settings.shadowRays && !this->ShowsMoments();
+  this->Coloured = !settings.leaveOut || !traits.greyExtinction || this->StraightOnChannels == 3;
   // Beside directions of the light it does not pay to have sources by one channel.
-  this->Grey = !this->Coloured && traits.grey && !this->KnowsFlow && this->LightCount == 0 &&
+  this->Grey = !this->Coloured && traits.grey && !this->KnowsFlow && this->LightCount == 0 && !this->ShowsMoments() &&
     light.fluence.components == 1 && light.fluenceDirect.components == 1 && (!traits.emits || traits.emission.IsGrey());
-  this->SourcesDependOnCamera = this->LightCount > 0 && anisotropic;
+  this->SourcesDependOnCamera = (this->LightCount > 0 && anisotropic) || this->ShowsMoments();
   this->LargestSigmaT = ExtinctionBound(medium);
 }
 
@@ -163,8 +218,23 @@ void MediumRayCaster::PrepareBackground(const Illumination& illumination)
   {
     this->EnvironmentSize = { environment.width, environment.height };
   }
-  this->EnvironmentPixels = Buffer<cl_float4>(this->TheDevice,
-    this->EnvironmentSize[0] > 0 ? ClosedEnvironment(environment) : std::vector<cl_float4>(), "the environment");
+  std::vector<cl_float4> pixels =
+    this->EnvironmentSize[0] > 0 ? ClosedEnvironment(environment) : std::vector<cl_float4>();
+  if (this->ShowsMoments() && !pixels.empty())
+  {
+    // What is small and bright is one of the lamps: what of it comes straight on without being scattered is seen apart.
+    std::vector<cl_float4> sharp = pixels;
+    pixels = ClosedEnvironment(Split(environment, EquiangularDirections(DirectionsOfPeaks)).smooth);
+    for (std::size_t i = 0; i < sharp.size(); ++i)
+    {
+      for (int c = 0; c < 3; ++c)
+      {
+        sharp[i].s[c] -= pixels[i].s[c];
+      }
+    }
+    this->SharpEnvironment = Buffer<cl_float4>(this->TheDevice, sharp, "the environment");
+  }
+  this->EnvironmentPixels = Buffer<cl_float4>(this->TheDevice, pixels, "the environment");
 }
 
 void MediumRayCaster::PrepareTable(const SolvedLight& light, const Field& ior)
@@ -179,7 +249,7 @@ void MediumRayCaster::PrepareTable(const SolvedLight& light, const Field& ior)
 void MediumRayCaster::PrepareSurface(const Medium& medium, const SolvedLight& light)
 {
   const bool plain = !this->Settings.singleScatteringOnly && this->LightCount == 0 && !this->KnowsFlow &&
-    !this->Bends && this->Settings.tableFace < 0;
+    !this->ShowsMoments() && !this->Bends && this->Settings.tableFace < 0;
   this->Surface = Buffer<cl_float4>(this->TheDevice,
     plain && light.surface.values && light.fluence.values ? SurfaceLight(medium, light, this->Settings.stepSize)
                                                           : std::vector<cl_float4>(),
@@ -197,7 +267,8 @@ void MediumRayCaster::Reserve()
   const std::size_t count = PaddedCount(this->TheGrid);
   this->Samples = Buffer<cl_float4>(device, count, "the ray caster's samples");
   this->Extinctions = Buffer<cl_float4>(device, this->Coloured ? count : 0, "the ray caster's coloured extinction");
-  this->Flow = Buffer<cl_float4>(device, this->KnowsFlow ? count : 0, "the ray caster's directions of light");
+  this->Flow = Buffer<cl_float4>(
+    device, this->KnowsFlow || this->ShowsBeams() ? count : 0, "the ray caster's directions of light");
   const bool cosines = this->KnowsFlow && this->Phase.varies && !this->FlowHasG();
   this->Cosines = Buffer<cl_float4>(device, cosines ? count : 0, "the ray caster's mean cosines");
   this->Glow = Buffer<cl_float4>(device, this->GlowsApart() ? count : 0, "the ray caster's emission");
@@ -207,6 +278,8 @@ void MediumRayCaster::Reserve()
       "the ray caster's bricks");
   this->Direct =
     Buffer<float>(device, this->LightCount > 0 ? 6 * this->TheGrid.VoxelCount() : 0, "light found by shadow rays");
+  this->Diffuse =
+    Buffer<float>(device, this->ShowsMoments() ? 3 * this->TheGrid.VoxelCount() : 0, "light scattered towards the eye");
 }
 
 void MediumRayCaster::PrepareBending()
@@ -239,7 +312,7 @@ void MediumRayCaster::SayWhatIsLeftOut()
   omit(this->LightCount > 0,
     this->AskedForShadowRays ? "shadow rays: no lamp and no sun shines" : "shadow rays: not asked for");
   omit(this->EnvironmentSize[0] > 0, "environment: none, or not shown");
-  omit(this->KnowsFlow || this->LightCount > 0,
+  omit(this->KnowsFlow || this->LightCount > 0 || this->ShowsMoments(),
     "phase function: the medium scatters evenly, or the direction of the light is not known");
   omit(this->Bends, left_out::ConstantIndex);
   omit(!this->SkipsBricks() || !this->HasEmptyBricks, left_out::EmptyBricks);
@@ -254,10 +327,10 @@ void MediumRayCaster::SayWhatIsLeftOut()
     "light at the surface: no thick voxels at the faces of the box, or it is not known there");
 }
 
-/// Without a lamp there is nothing that shadow rays could find.
+/// Without a lamp there is nothing that shadow rays could find; moments lack what they find.
 ViewSettings MediumRayCaster::Needed(ViewSettings asked) const
 {
-  asked.shadowRays = asked.shadowRays && this->LampsShine;
+  asked.shadowRays = (asked.shadowRays || this->ShowsMoments()) && this->LampsShine;
   return asked;
 }
 
@@ -295,7 +368,7 @@ void MediumRayCaster::Upload(const Medium& medium, const SolvedLight& light, con
   const bool single = this->Settings.singleScatteringOnly;
   const bool all = !this->Settings.leaveOut;
   const std::array<bool, 5> used = { all || this->Traits.absorbs, all || this->Traits.scatters,
-    all || this->Traits.emits, !single, shadows != single };
+    all || this->Traits.emits, !single && !this->ShowsMoments(), shadows != single && !this->ShowsMoments() };
   const std::array<const char*, 5> names = { "sigma_a", "sigma_s", "emission", "fluence", "fluence_direct" };
   const std::size_t voxels = medium.grid.VoxelCount();
   for (std::size_t i = 0; i < fields.size(); ++i)
@@ -348,14 +421,18 @@ std::string MediumRayCaster::PackingOptions() const
     Define("MEAN_COSINE", varies ? this->Phase.channels : 0);
 }
 
-/// @param forShadowRays  what these need; else what the camera's rays do
-void MediumRayCaster::Pack(bool forShadowRays)
+void MediumRayCaster::Pack(Packing what)
 {
+  if (this->ShowsMoments())
+  {
+    this->PackShown(what);
+    return;
+  }
+  const bool forShadowRays = what == Packing::ForShadowRays;
   const bool bends = this->Bends && !forShadowRays; // shadow rays go straight on
   const std::string options = this->PackingOptions() + this->PhaseOptions(this->KnowsFlow) +
-    Define("SHADOW_RAYS", this->LightCount > 0 && !forShadowRays) + Define("BENDS", bends);
+    Define("SHADOW_RAYS", this->LightCount > 0 && !forShadowRays) + Define("BENDS", bends) + Define("SHOWN", 0);
   const cl_int4 size = Int4(this->TheGrid.size);
-  const cl_int4 bricks = Int4(this->BrickCount);
   const cl_int single = this->Settings.singleScatteringOnly ? 1 : 0;
 
   cl::Kernel pack = this->TheDevice.Kernel("pack_samples", kernel_source::ScatteredLight, options);
@@ -364,7 +441,35 @@ void MediumRayCaster::Pack(bool forShadowRays)
     this->Extinctions, this->Flow, this->Glow, this->Cosines);
   this->TheDevice.Queue().enqueueNDRangeKernel(pack, cl::NullRange,
     cl::NDRange(RoundUp<std::size_t>(size.s[0] + 2, 64), size.s[1] + 2, size.s[2] + 2), cl::NDRange(64, 1, 1));
+  this->FindBricks(options);
+}
 
+/// SHOWN and BEAMS of the kernels.
+std::string MediumRayCaster::ShownOptions(Packing what) const
+{
+  const int shown = !this->ShowsMoments() || what == Packing::ForShadowRays ? 0 : what == Packing::Scattered ? 1 : 2;
+  return Define("SHOWN", shown) + Define("BEAMS", shown > 0 && this->ShowsBeams());
+}
+
+void MediumRayCaster::PackShown(Packing what)
+{
+  const std::string options = this->PackingOptions() + this->PhaseOptions(false) + Define("SHADOW_RAYS", 0) +
+    Define("BENDS", this->Bends && what != Packing::ForShadowRays) +
+    Define("STRAIGHT_ON", what == Packing::Unscattered ? 0 : this->StraightOnChannels) +
+    Define("AUREOLE", this->AureoleChannels);
+  const cl_int4 size = Int4(this->TheGrid.size);
+  cl::Kernel pack =
+    this->TheDevice.Kernel("pack_shown", kernel_source::ShownSamples, options + this->ShownOptions(what));
+  With(pack, size, this->Arrays[0], this->Arrays[1], this->Arrays[2], this->StraightOn, this->Diffuse, this->Direct,
+    this->Ior, this->Samples, this->Extinctions, this->Flow, this->Glow);
+  this->TheDevice.Queue().enqueueNDRangeKernel(pack, cl::NullRange,
+    cl::NDRange(RoundUp<std::size_t>(size.s[0] + 2, 64), size.s[1] + 2, size.s[2] + 2), cl::NDRange(64, 1, 1));
+  this->FindBricks(options + Define("SHOWN", 1));
+}
+
+void MediumRayCaster::FindBricks(const std::string& options)
+{
+  const cl_int4 size = Int4(this->TheGrid.size), bricks = Int4(this->BrickCount);
   cl::Kernel find = this->TheDevice.Kernel("find_empty_bricks", kernel_source::ScatteredLight, options);
   With(find, size, bricks, this->Samples, this->Extinctions, this->Glow, this->Bending, this->Bricks);
   this->TheDevice.Queue().enqueueNDRangeKernel(find, cl::NullRange,
@@ -375,7 +480,7 @@ void MediumRayCaster::Pack(bool forShadowRays)
   this->Bricks.Write(distances.data());
 }
 
-void MediumRayCaster::SeeLights(const Camera& camera, const Monitor& monitor)
+ShadowInfo MediumRayCaster::MakeShadowInfo(const Camera& camera) const
 {
   const double radius = std::cbrt(3.0 * this->TheGrid.VoxelVolume() / (4.0 * Pi));
   ShadowInfo info = {};
@@ -388,8 +493,15 @@ void MediumRayCaster::SeeLights(const Camera& camera, const Monitor& monitor)
   info.step = static_cast<float>(this->Settings.stepSize);
   info.nearestSquare = static_cast<float>(radius * radius / 3.0);
   info.lights = this->LightCount;
-  cl::Kernel see = this->TheDevice.Kernel(
-    "see_lights", kernel_source::ShadowRays, this->PackingOptions() + this->PhaseOptions(true) + this->StepOption());
+  return info;
+}
+
+void MediumRayCaster::SeeLights(const Camera& camera, const Monitor& monitor)
+{
+  ShadowInfo info = this->MakeShadowInfo(camera);
+  cl::Kernel see = this->TheDevice.Kernel("see_lights", kernel_source::ShadowRays,
+    this->PackingOptions() + this->PhaseOptions(true) + this->StepOption() + Define("AUREOLE", this->AureoleChannels) +
+      Define("STRAIGHT_ON", this->StraightOnChannels) + Define("BESIDE", this->ShowsMoments()));
   const std::size_t across = RoundUp<std::size_t>(this->TheGrid.size[0], 4 * this->PacketWidth()) / this->PacketWidth();
   const std::size_t rows = this->TheGrid.size[1];
   const double samplesOfRow = this->LongestSteps() * this->LightCount * this->TheGrid.size[0];
@@ -397,12 +509,22 @@ void MediumRayCaster::SeeLights(const Camera& camera, const Monitor& monitor)
     info.firstSlice = part.row;
     info.firstRow = part.column;
     With(see, info, this->Lights, this->Arrays[1], this->MeanCosines, this->PhaseRows, this->Samples, this->Extinctions,
-      this->Bricks, this->Direct);
+      this->Bricks, this->Arrays[0], this->StraightOn, this->AureoleTables, this->Direct);
     this->TheDevice.Queue().enqueueNDRangeKernel(
       see, cl::NullRange, cl::NDRange(across, part.columns, part.rows), cl::NDRange(4, 1, 1));
   };
   InBatches(this->TheDevice, BatchesOfRows(this->TheGrid.size[2], rows, samplesOfRow, 0.0, 0.5), monitor,
     [&](std::size_t first, std::size_t count) { InPatches(first, count, rows, launch); });
+}
+
+void MediumRayCaster::SeeMoments(const Camera& camera)
+{
+  const ShadowInfo info = this->MakeShadowInfo(camera);
+  cl::Kernel see = this->TheDevice.Kernel("see_moments", kernel_source::SeenMoments,
+    Define("DEGREE", this->MomentDegree) + Define("MOMENT_CHANNELS", this->MomentChannels));
+  With(see, info, this->Moments, this->Diffuse);
+  this->TheDevice.Queue().enqueueNDRangeKernel(see, cl::NullRange,
+    cl::NDRange(RoundUp<std::size_t>(info.size.s[0], 8), info.size.s[1], info.size.s[2]), cl::NDRange(8, 1, 1));
 }
 
 ViewInfo MediumRayCaster::MakeView(const Camera& camera) const
@@ -442,13 +564,17 @@ void MediumRayCaster::PrepareSources(const Camera& camera, const Monitor& monito
 {
   if (this->LightCount > 0)
   {
-    this->Pack(true);
+    this->Pack(Packing::ForShadowRays);
     this->SeeLights(camera, monitor);
   }
-  this->Pack(false);
+  if (this->ShowsMoments())
+  {
+    this->SeeMoments(camera);
+  }
+  this->Pack(Packing::Scattered);
   this->SayWhatIsLeftOut(); // now empty bricks are known
   this->SourcesReady = true;
-  if (this->LightCount == 0)
+  if (!this->SourcesDependOnCamera && this->LightCount == 0)
   {
     this->Arrays = {};
     this->MeanDirection = {};
@@ -489,7 +615,7 @@ std::string MediumRayCaster::StepOption() const
   return Define("MANY_STEPS", this->LongestSteps() > ManySteps);
 }
 
-std::string MediumRayCaster::CastingOptions() const
+std::string MediumRayCaster::CastingOptions(Packing what) const
 {
   // Longest optical length of a step; the kernel has a shorter way to cross it up to 2. Bent steps can be a little
   // longer.
@@ -498,29 +624,31 @@ std::string MediumRayCaster::CastingOptions() const
   return Define("REAL_WIDTH", this->PacketWidth()) + Define("COLOURED", this->Coloured) + Define("GREY", this->Grey) +
     Define("SKIP_BRICKS", this->SkipsBricks()) + Define("ENVIRONMENT", this->EnvironmentSize[0] > 0) +
     Define("THIN_STEPS", longest <= (this->Bends ? 1.5 : 2.0)) + Define("GLOW", this->GlowsApart()) +
-    this->PhaseOptions(this->KnowsFlow) + this->StepOption();
+    this->PhaseOptions(this->KnowsFlow) + this->StepOption() + this->ShownOptions(what);
 }
 
 /// Rays that cannot but go straight on have a kernel of their own.
-cl::Kernel MediumRayCaster::CastingKernel()
+cl::Kernel MediumRayCaster::CastingKernel(Packing what)
 {
   if (!this->Bends && this->Settings.tableFace < 0)
   {
     return this->TheDevice.Kernel("cast_rays", kernel_source::MediumRayCaster,
-      this->CastingOptions() + Define("SURFACE_LIGHT", this->Surface.Size() > 0));
+      this->CastingOptions(what) + Define("SURFACE_LIGHT", this->Surface.Size() > 0));
   }
   const int surface = this->Reflects() ? static_cast<int>(this->Settings.surfaceReflection) : 0;
   return this->TheDevice.Kernel("cast_bent_rays", kernel_source::BentView,
-    this->CastingOptions() + Define("BENDS", this->Bends) + Define("SURFACE", surface) +
+    this->CastingOptions(what) + Define("BENDS", this->Bends) + Define("SURFACE", surface) +
       Define("TABLE", this->Settings.tableFace >= 0));
 }
 
-void MediumRayCaster::CastRays(ViewInfo& view, double from, const Monitor& monitor)
+void MediumRayCaster::CastRays(
+  ViewInfo& view, const OpticsInfo& optics, Packing what, double from, double to, const Monitor& monitor)
 {
+  const Buffer<cl_float4>& environment =
+    what == Packing::Unscattered ? this->SharpEnvironment : this->EnvironmentPixels;
   const std::array<int, 2> packet = PacketPixels(this->PacketWidth());
   const bool straight = !this->Bends && this->Settings.tableFace < 0;
-  const OpticsInfo optics = this->MakeOptics();
-  cl::Kernel cast = this->CastingKernel();
+  cl::Kernel cast = this->CastingKernel(what);
   // Batches of whole work-groups: else the last rows of one would be cast again by the next.
   const int group = 4;
   const std::size_t across = RoundUp<std::size_t>(view.picture.s[0], group * packet[0]) / (group * packet[0]);
@@ -532,18 +660,31 @@ void MediumRayCaster::CastRays(ViewInfo& view, double from, const Monitor& monit
     if (straight)
     {
       With(cast, view, this->Samples, this->Extinctions, this->Flow, this->Glow, this->Cosines, this->PhaseRows,
-        this->Bricks, this->EnvironmentPixels, this->Surface, this->Radiance, this->Alpha, this->Depth);
+        this->Bricks, environment, this->Surface, this->Radiance, this->Alpha, this->Depth);
     }
     else
     {
       With(cast, view, optics, this->Samples, this->Extinctions, this->Flow, this->Glow, this->Cosines, this->PhaseRows,
-        this->Bending, this->Table, this->Bricks, this->EnvironmentPixels, this->Radiance, this->Alpha, this->Depth);
+        this->Bending, this->Table, this->Bricks, environment, this->Radiance, this->Alpha, this->Depth);
     }
     this->TheDevice.Queue().enqueueNDRangeKernel(
       cast, cl::NullRange, cl::NDRange(part.columns * group, part.rows * group), cl::NDRange(group, group));
   };
-  InBatches(this->TheDevice, BatchesOfRows(rows, across, samples, from, 1.0), monitor,
+  InBatches(this->TheDevice, BatchesOfRows(rows, across, samples, from, to), monitor,
     [&](std::size_t first, std::size_t count) { InPatches(first, count, across, launch); });
+}
+
+/// What comes from behind without being scattered, which alone is sharp, and how much that is: the picture's alpha and
+/// depth (numerics.md, section 14.7).
+void MediumRayCaster::AddUnscattered(ViewInfo& view, const Monitor& monitor, std::vector<float>& radiance)
+{
+  this->Pack(Packing::Unscattered);
+  view.background = Float4(this->UnderSky ? glm::dvec3(0.0) : Vector(this->Background), view.background.s[3]);
+  OpticsInfo optics = this->MakeOptics();
+  optics.table.s[0] = optics.table.s[1] = optics.table.s[2] = 0.0f; // it is in the picture already
+  this->CastRays(view, optics, Packing::Unscattered, 0.8, 1.0, monitor);
+  const std::vector<float> sharp = this->Radiance.Read();
+  std::transform(radiance.begin(), radiance.end(), sharp.begin(), radiance.begin(), std::plus<float>());
 }
 
 Picture MediumRayCaster::Render(const Camera& camera, const Monitor& monitor)
@@ -570,8 +711,17 @@ Picture MediumRayCaster::Render(const Camera& camera, const Monitor& monitor)
     this->Alpha.Swap(alpha);
     this->Depth.Swap(depth);
   }
-  this->CastRays(view, prepares && this->LightCount > 0 ? 0.5 : 0.0, monitor);
+  if (this->ShowsMoments() && !this->UnderSky)
+  {
+    view.background = Float4(glm::dvec3(0.0), view.background.s[3]); // does not shine on the medium: see AddUnscattered
+  }
+  this->CastRays(view, this->MakeOptics(), Packing::Scattered, prepares && this->LightCount > 0 ? 0.5 : 0.0,
+    this->ShowsMoments() ? 0.8 : 1.0, monitor);
   picture.radiance = this->Radiance.Read();
+  if (this->ShowsMoments())
+  {
+    this->AddUnscattered(view, monitor, picture.radiance);
+  }
   picture.alpha = this->Alpha.Read();
   picture.depth = this->Depth.Read();
   return picture;

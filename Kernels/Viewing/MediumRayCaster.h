@@ -28,6 +28,10 @@ struct SolvedLight
   /// W / (length^2 sr) that leaves through the box's faces, a value for each cell of BoxFaces.h, 4 components
   /// (SurfaceCosines) or 3 times as many (cosine by cosine, red, green, blue). Null: not known.
   Field surface = {};
+  /// LightField::scatteredMoments, (degree + 1)^2 or 3 times as many components, and straightOn and lampsApart that
+  /// belong to them. Null: not known.
+  Field scatteredMoments = {}, straightOn = {};
+  std::vector<Light> lampsApart = {};
 };
 
 /// What a surface of refractive objects reflects of the light that meets it from the side of the smaller index.
@@ -110,6 +114,13 @@ struct Picture
 /// `scattered_radiance`, which solvers keep for chosen directions, is data to look at and is not used here: a camera
 /// sees along as many directions as it has pixels.
 ///
+/// Where the light has angular moments (scatteredMoments) and singleScatteringOnly is off, they replace all this
+/// (numerics.md, section 14.7, Eqs. (112a) to (112c)): scattered light by its moments, evaluated in each voxel along
+/// the way to the camera; the first scattering of lampsApart by shadow rays and the whole phase function, whether
+/// shadowRays asks for them or not; and what of that was scattered forwards more than once. What was taken to go
+/// straight on goes on along the camera's rays too, but alpha, depth, backgroundColor and the environment's peaks are
+/// of light that is not scattered at all. The illumination's lights are not used then.
+///
 /// Refraction (Pfeuti 2009, section 3.1.6 and listing A.4, who steps by Euler's method). Where the refractive index n
 /// varies rays bend, by a leapfrog of order 2 on the spline of n^2 that photons follow too (numerics.md, Eq. (91)). L /
 /// n^2 stays the same along a ray, Eq. (109), so that glass in a furnace cannot be told from the rest. The index is
@@ -138,7 +149,8 @@ public:
   ///   or 3 components (a direction 3); for an index that is not within [1e-3, 1e3] or has not one component; where
   ///   settings ask for an array that is not there; for a setting out of its range
   /// @throws DeviceError if the samples do not fit: 16 bytes per voxel, and as many again for each of coloured
-  ///   extinction, the light's direction, emission beside it, a coloured g by voxel, and a refractive index that varies
+  ///   extinction, the light's direction, emission beside it, a coloured g by voxel, and a refractive index that
+  ///   varies; with moments, these and 36 bytes more
   MediumRayCaster(Device& device, const Medium& medium, const SolvedLight& light, const Illumination& illumination,
     const ViewSettings& settings, const Field& ior = {});
 
@@ -164,7 +176,6 @@ private:
   double LongestSteps() const;
   std::string StepOption() const;
   std::string PackingOptions() const;
-  std::string CastingOptions() const;
   int PacketWidth() const;
   bool SkipsBricks() const { return this->Settings.skipEmptyBricks && this->Settings.leaveOut; }
   /// Whether the light's mean direction is kept times g, which then is that of all channels.
@@ -173,7 +184,10 @@ private:
     return this->Phase.channels == 1 &&
       (this->Phase.formula == ViewedPhase::HenyeyGreenstein || this->Phase.formula == ViewedPhase::Schlick);
   }
-  bool GlowsApart() const { return this->KnowsFlow && this->Components[2] > 0; } ///< emission is not scattered
+  bool ShowsMoments() const { return this->MomentDegree >= 0; }
+  /// Emission is not scattered.
+  bool GlowsApart() const { return (this->KnowsFlow || this->ShowsMoments()) && this->Components[2] > 0; }
+  bool ShowsBeams() const { return this->ShowsMoments() && this->LightCount > 0; }
   double SurfaceIndex() const
   {
     return this->Settings.surfaceIndex > 0.0 ? this->Settings.surfaceIndex
@@ -184,6 +198,8 @@ private:
     return this->Bends && this->Settings.surfaceReflection != SurfaceReflection::None &&
       this->SurfaceIndex() > this->Index.least && this->SurfaceIndex() <= this->Index.largest;
   }
+  void TakeMoments(const SolvedLight& light);
+  void PrepareAureole(const Medium& medium, const SolvedLight& light);
   void FindTraits(const Medium& medium, const SolvedLight& light, const Field& ior);
   void Upload(const Medium& medium, const SolvedLight& light, const Field& ior);
   void Reserve();
@@ -194,16 +210,30 @@ private:
   void PrepareTable(const SolvedLight& light, const Field& ior);
   void PrepareSurface(const Medium& medium, const SolvedLight& light);
   void SayWhatIsLeftOut();
-  void Pack(bool forShadowRays);
+  enum class Packing
+  {
+    ForShadowRays,
+    Scattered,  ///< what the camera's rays meet
+    Unscattered ///< the same in the dark: how much of what is behind comes through without being scattered at all
+  };
+  void Pack(Packing what);
+  void PackShown(Packing what);
+  std::string ShownOptions(Packing what) const;
+  void FindBricks(const std::string& options);
+  std::string CastingOptions(Packing what) const;
+  ShadowInfo MakeShadowInfo(const Camera& camera) const;
   void SeeLights(const Camera& camera, const Monitor& monitor);
+  void SeeMoments(const Camera& camera);
+  void AddUnscattered(ViewInfo& view, const Monitor& monitor, std::vector<float>& radiance);
   void PrepareSources(const Camera& camera, const Monitor& monitor);
-  void CastRays(ViewInfo& view, double from, const Monitor& monitor);
-  cl::Kernel CastingKernel();
+  void CastRays(ViewInfo& view, const OpticsInfo& optics, Packing what, double from, double to, const Monitor& monitor);
+  cl::Kernel CastingKernel(Packing what);
   ViewInfo MakeView(const Camera& camera) const;
   OpticsInfo MakeOptics() const;
 
   Device& TheDevice;
   Grid TheGrid;
+  int MomentDegree = -1; ///< of the light; -1: it is not shown by moments
   bool LampsShine = false;
   bool AskedForShadowRays = false; ///< though there may be no lamp
   ViewSettings Settings;           ///< as far as the scene needs them
@@ -226,12 +256,17 @@ private:
   std::array<int, 5> Components = {};  ///< of absorption, scattering, emission, fluence, fluenceDirect
   std::array<Buffer<float>, 5> Arrays; ///< given back once packed, where nothing will ask for them again
   Buffer<float> MeanDirection, Ior;    ///< as Arrays
-  Buffer<float> MeanCosines;           ///< g by voxel, likewise
+  Buffer<float> Moments, StraightOn;   ///< where moments are shown
+  Buffer<float> AureoleTables;         ///< there, where g does not vary
+  int AureoleChannels = 0;
+  int MomentChannels = 0, StraightOnChannels = 0;
+  Buffer<float> MeanCosines; ///< g by voxel, likewise
   Buffer<float> PhaseRows;
+  Buffer<float> Diffuse;     ///< 3 per voxel: what is scattered towards the eye of light that moments tell of
   Buffer<float> Direct;      ///< 6 per voxel: what the lights scatter towards the eye, and their irradiance
   Buffer<cl_float4> Samples; ///< source and grey extinction, with a border; see ScatteredLight.cl
   Buffer<cl_float4> Extinctions;
-  Buffer<cl_float4> Flow;    ///< mean direction, times g where FlowHasG
+  Buffer<cl_float4> Flow;    ///< mean direction, times g where FlowHasG; of ShownSamples.cl lamps' light
   Buffer<cl_float4> Glow;    ///< emission, where Flow is there
   Buffer<cl_float4> Cosines; ///< coloured g by voxel, where Flow is there
   Buffer<cl_float4> Bending; ///< gradient of n^2, and n^2
@@ -239,6 +274,7 @@ private:
   Buffer<cl_float4> Surface; ///< see SurfaceLight.h
   Buffer<cl_char> Bricks;
   Buffer<cl_float4> EnvironmentPixels;
+  Buffer<cl_float4> SharpEnvironment; ///< where moments are shown: what of it is seen without being scattered at all
   Buffer<SmallLight> Lights;
   Buffer<float> Radiance, Alpha, Depth; ///< the last picture; kept for the next of its size
   std::vector<std::string> Omitted, Doubts;

@@ -9,6 +9,7 @@
 //   VARIED_G     1: g by voxel is packed apart
 //   GLOW         1: emission is packed apart
 //   BENDS        1: the refractive index varies
+//   SHOWN        of what ShownSamples.cl packed: only the extinction tells what is empty
 
 #include "Viewing/Sampling.cl"
 #include "Viewing/VoxelChannels.cl"
@@ -174,7 +175,7 @@ __kernel void find_empty_bricks(int4 size, int4 brick_count, __global const floa
 #if GREY
         filled |= any(samples[place].xy != (float2)(0.0f));
 #else
-        filled |= any(samples[place] != (float4)(0.0f));
+        filled |= SHOWN ? samples[place].w != 0.0f : any(samples[place] != (float4)(0.0f));
 #endif
 #if COLOURED
         filled |= any(extinctions[place] != (float4)(0.0f));

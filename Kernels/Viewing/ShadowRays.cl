@@ -2,7 +2,11 @@
 //   SCATTERING  components of sigma_s: 1 or 3
 //   PHASE, PHASE_CHANNELS  see PhaseFunction.cl
 //   MEAN_COSINE  components of g by voxel; 0: it is the same everywhere
+//   AUREOLE      tables of what is scattered forwards more than once: 0, 1, or 3 for red, green and blue
+//   BESIDE       1: also in voxels beside such that scatter
+//   ABSORPTION, STRAIGHT_ON  with AUREOLE: components of these arrays
 
+#include "Viewing/Beside.cl"
 #include "Viewing/PhaseFunction.cl"
 #include "Viewing/Sampling.cl"
 #include "Viewing/ViewShared.h"
@@ -133,6 +137,53 @@ inline rgb phase_at(real cosine, phase_parameters p, __global const float* rows)
   return f;
 }
 
+#if AUREOLE
+// Of a table of Aureole.h times the depth, bilinear: by the cosine as the rows of PhaseFunction.cl, and by the root of
+// the depth.
+inline real aureole_at(real cosine, real depth, __global const float* rows)
+{
+  const real c = lesser(greater(cosine, (real)(-1.0f)), (real)1.0f);
+  const real aside = sqrt((real)1.0f - fabs(c)) * (real)(0.5f * AureoleColumns);
+  const real place = c > (real)0.0f ? aside : (real)(float)AureoleColumns - aside;
+  const real deep = sqrt(lesser(depth * (real)(1.0f / AureoleDepth), (real)1.0f)) * (real)(float)AureoleRows;
+  const integer row = to_integer(deep);
+  const real part = deep - to_real(row);
+  const integer column = to_integer(place);
+  const real beside = place - to_real(column);
+  real near_low, near_high, far_low, far_high;
+#define LOOK(n)                                                                              \
+  {                                                                                          \
+    __global const float* at = rows + LANE(row, n) * (AureoleColumns + 2) + LANE(column, n); \
+    LANE(near_low, n) = at[0];                                                               \
+    LANE(near_high, n) = at[1];                                                              \
+    LANE(far_low, n) = at[AureoleColumns + 2];                                               \
+    LANE(far_high, n) = at[AureoleColumns + 3];                                              \
+  }
+  EACH_LANE(LOOK)
+#undef LOOK
+  const real near = fma(beside, near_high - near_low, near_low);
+  return depth * fma(part, fma(beside, far_high - far_low, far_low) - near, near);
+}
+
+// Optical length of all scattering, straight on or not, over that of the extinction that rays are marched with: taken
+// as the voxel's own on the whole way.
+inline real scattering_over_depth(__global const float* absorption, __global const float* scattering,
+  __global const float* straight_on, integer voxel, int channel)
+{
+  real over;
+#define RATIO(n)                                                                                     \
+  {                                                                                                  \
+    const float s = channel_of(scattering, LANE(voxel, n), SCATTERING, channel);                     \
+    const float turned = s * (1.0f - channel_of(straight_on, LANE(voxel, n), STRAIGHT_ON, channel)); \
+    const float all = turned + channel_of(absorption, LANE(voxel, n), ABSORPTION, channel);          \
+    LANE(over, n) = all > 0.0f ? s / all : 0.0f;                                                     \
+  }
+  EACH_LANE(RATIO)
+#undef RATIO
+  return over;
+}
+#endif
+
 // How the voxels of a packet scatter.
 inline phase_parameters phases_of(const ShadowInfo* info, integer voxel, __global const float* mean_cosines)
 {
@@ -163,11 +214,14 @@ inline integer packet_along_x(int first, int size)
 }
 
 // Scatters towards the eye what the lights send straight to each voxel's centre. Work-items by packets of a slice.
-//   direct  6 per voxel: sum of irradiance times phase function, W / (length^2 sr), and sum of irradiance, W / length^2
+//   direct  6 per voxel: sum of irradiance times phase function, W / (length^2 sr), and sum of irradiance, W /
+//           length^2; with AUREOLE instead what scattering forwards more than once adds, W / (length^2 sr)
 __kernel void see_lights(ShadowInfo info, __global const SmallLight* restrict lights,
   __global const float* restrict scattering, __global const float* restrict mean_cosines,
   __global const float* restrict phase_rows, __global const float4* restrict samples,
-  __global const float4* restrict extinctions, __global const char* restrict bricks, __global float* restrict direct)
+  __global const float4* restrict extinctions, __global const char* restrict bricks,
+  __global const float* restrict absorption, __global const float* restrict straight_on,
+  __global const float* restrict aureole, __global float* restrict direct)
 {
   const int first = get_global_id(0) * REAL_WIDTH;
   const int j = get_global_id(1) + info.firstRow;
@@ -184,6 +238,15 @@ __kernel void see_lights(ShadowInfo info, __global const SmallLight* restrict li
     channel_of(scattering, LANE(voxel, n), SCATTERING, 1) + channel_of(scattering, LANE(voxel, n), SCATTERING, 2);
   EACH_LANE(SCATTERS)
 #undef SCATTERS
+#if BESIDE
+#define SCATTERS_BESIDE(n)                                                                         \
+  if (!(LANE(scatters, n) > 0.0f))                                                                 \
+  {                                                                                                \
+    LANE(scatters, n) = is_beside_scattering(scattering, LANE(voxel, n), info.size) ? 1.0f : 0.0f; \
+  }
+  EACH_LANE(SCATTERS_BESIDE)
+#undef SCATTERS_BESIDE
+#endif
   const real3 centre = { to_real(i) + (real)0.5f, (real)((float)j + 0.5f), (real)((float)k + 0.5f) };
   const real3 place = { centre.x * (real)info.spacing.x, centre.y * (real)info.spacing.y,
     centre.z * (real)info.spacing.z };
@@ -210,9 +273,28 @@ __kernel void see_lights(ShadowInfo info, __global const SmallLight* restrict li
     // The light travels along -d.
     const real cosine = -(fma(way.d.x, out.x, fma(way.d.y, out.y, way.d.z * out.z))) * out_scale;
     const rgb phase = phase_at(cosine, scatters_by, phase_rows);
+#if AUREOLE
+    const int apart = AUREOLE == 3 ? (AureoleRows + 2) * (AureoleColumns + 2) : 0;
+#if COLOURED
+#define DEPTH(c) depths.c
+#else
+#define DEPTH(c) depths.r
+#endif
+#define SPREAD(c, n)                                                                                                 \
+  irradiance.c = fma(arrived.c,                                                                                      \
+    aureole_at(                                                                                                      \
+      cosine, DEPTH(c) * scattering_over_depth(absorption, scattering, straight_on, voxel, n), aureole + n * apart), \
+    irradiance.c);
+    SPREAD(r, 0)
+    SPREAD(g, 1)
+    SPREAD(b, 2)
+#undef SPREAD
+#undef DEPTH
+#else
     irradiance.r += arrived.r;
     irradiance.g += arrived.g;
     irradiance.b += arrived.b;
+#endif
     towards_eye.r = fma(arrived.r, phase.r, towards_eye.r);
     towards_eye.g = fma(arrived.g, phase.g, towards_eye.g);
     towards_eye.b = fma(arrived.b, phase.b, towards_eye.b);

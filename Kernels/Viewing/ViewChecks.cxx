@@ -18,7 +18,8 @@ constexpr double LeastStep = 0.01, LargestStep = 10.0; ///< voxels
 constexpr double LargestRadiance = 1e37;               ///< W / (length^2 sr); sums of it are still floats
 constexpr double FarthestCamera = 1e15;                ///< lengths, voxels: their squares are still floats
 constexpr double MostPixels = 7e8;                     ///< three numbers each: indices end at 2^31
-constexpr float FacesAlike = 1e-3f;                    ///< relative; what smoothing leaves of a border nearby
+constexpr int MostMomentDegree = 15;
+constexpr float FacesAlike = 1e-3f; ///< relative; what smoothing leaves of a border nearby
 
 IndexRange RangeOnFaces(const Field& ior, const Grid& grid)
 {
@@ -154,6 +155,21 @@ void Check(const ViewSettings& settings)
   CheckTable(settings);
 }
 
+int DegreeOf(const Field& moments)
+{
+  for (int degree = 0; degree <= MostMomentDegree; ++degree)
+  {
+    const int harmonics = (degree + 1) * (degree + 1);
+    if (moments.components == harmonics || moments.components == 3 * harmonics)
+    {
+      return degree;
+    }
+  }
+  throw InvalidInput("scattered_moments has " + std::to_string(moments.components) +
+    " components a voxel; moments up to degree L have (L + 1)^2, or 3 times as many, L at most " +
+    std::to_string(MostMomentDegree) + ".");
+}
+
 void Check(const SolvedLight& light, const Grid& grid, const ViewSettings& settings)
 {
   CheckLightField(light.fluence, "fluence", grid);
@@ -176,7 +192,17 @@ void Check(const SolvedLight& light, const Grid& grid, const ViewSettings& setti
     }
   }
   const bool separates = settings.shadowRays != settings.singleScatteringOnly; // direct light from the rest
-  if (separates && light.fluence.values && !light.fluenceDirect.values)
+  const bool byMoments = light.scatteredMoments.values && !settings.singleScatteringOnly;
+  if (byMoments)
+  {
+    CheckFinite(light.scatteredMoments, "scattered_moments", grid);
+    CheckLightField(light.straightOn, "straight_on", grid);
+    if (!light.straightOn.values)
+    {
+      throw InvalidInput("straight_on is missing: it belongs to scattered_moments.");
+    }
+  }
+  if (separates && !byMoments && light.fluence.values && !light.fluenceDirect.values)
   {
     throw InvalidInput(
       "fluence_direct is missing: without it, light that scattered once cannot be told from the rest of "

@@ -11,6 +11,10 @@ void Check(const ViewSettings& settings);
 ///   settings ask for one that is not there
 void Check(const SolvedLight& light, const Grid& grid, const ViewSettings& settings);
 
+/// Degree of moments by their number of components, (degree + 1)^2 or 3 times as many.
+/// @throws InvalidInput for another number
+int DegreeOf(const Field& moments);
+
 /// Warnings of what may not look as it was meant to, a sentence each: a table without light, a surface where the index
 /// is never, an index that varies over the box's faces.
 /// @param ior    null: constant

@@ -10,7 +10,10 @@ enum
   // Rows of the tables of phase functions; each table has a row more behind its last.
   SchlickRows = 1024,
   CosineRows = 2048,
-  SpreadRows = 128
+  SpreadRows = 128,
+  AureoleColumns = 1024, // by cosine
+  AureoleRows = 64,      // by the root of the optical length
+  AureoleDepth = 40      // the largest of these
 };
 
 /// What tells phase functions of one kind apart, of red, green and blue.

@@ -1,11 +1,15 @@
-// I3RC's step cloud (case 1): light reflected and transmitted by column, against the consensus; what voxels, directions
-// and degree of angular moments it takes.
+// Clouds.
 //
-//   TyndallBenchCloud [--quick]
+// steps: I3RC's step cloud (case 1): light reflected and transmitted by column, against the consensus; what voxels,
+// directions and degree of angular moments it takes.
+// user: a cloud of our own making as a user lights it, and its pictures against Monte Carlo (UserCloud.h).
+//
+//   TyndallBenchCloud [--quick] [steps] [user [voxels an edge [paths a pixel]]]
 
 #include "Measure.h"
 #include "Program.h"
 #include "Report.h"
+#include "UserCloud.h"
 
 #include "../Kernels/StepCloud.h"
 
@@ -135,5 +139,17 @@ void RunAll(Device& device, bool quick)
 
 int main(int argc, char* argv[])
 {
-  return RunOnDevice(argc, argv, [](Device& device, const Arguments& arguments) { RunAll(device, arguments.quick); });
+  return RunOnDevice(argc, argv, [](Device& device, const Arguments& arguments) {
+    if (arguments.Asks("steps"))
+    {
+      RunAll(device, arguments.quick);
+    }
+    if (arguments.Asks("user"))
+    {
+      const auto number = [&](std::size_t place, int usual) {
+        return arguments.words.size() > place ? std::stoi(arguments.words[place]) : usual;
+      };
+      ShowUserCloud(device, number(1, arguments.quick ? 16 : 128), number(2, arguments.quick ? 16 : 2048));
+    }
+  });
 }

@@ -151,6 +151,7 @@ void RunMaps(
   maps->SetPeriodicZ(scene.periodic[2]);
   maps->SetNetFlux(true);
   maps->SetTolerance(tolerance);
+  maps->SetAngularDegree(0); // the similarity relation, as the twins of the row of g have it
   const bool sequential = solver == StressSolver::MapsSequential;
   if (sequential || solver == StressSolver::MapsParallel)
   {

@@ -3,6 +3,7 @@
 #include "Device/Errors.h"
 #include "Light/LeftOut.h"
 #include "LightPropagation/Conservative/DiffusionAcceleration.h"
+#include "LightPropagation/Conservative/ShownLight.h"
 #include "LightPropagation/Conservative/SourceIteration.h"
 #include "LightPropagation/Convergence.h"
 #include "LightPropagation/Problem/ScatteringOrders.h"
@@ -110,10 +111,14 @@ std::vector<std::string> Words(const TransportParts& parts, const IterationResul
   {
     words.emplace_back(left_out::NetFlux);
   }
+  if (degree > 0 && !parts.StoresMoments())
+  {
+    words.emplace_back("angular moments for pictures: not asked for");
+  }
   return words;
 }
 
-LightField LightOf(const TransportParts& parts, IterationResult&& found, bool accelerated)
+LightField LightOf(TransportParts& parts, IterationResult&& found, bool accelerated)
 {
   LightField light;
   light.channels = parts.Layout.channels;
@@ -127,6 +132,10 @@ LightField LightOf(const TransportParts& parts, IterationResult&& found, bool ac
     [](float fluence) { return static_cast<float>(fluence / (4.0 * Pi)); });
   light.storedDirections = { { 0.0, 0.0, 0.0 } };
   light.leftOut = Words(parts, found, accelerated);
+  if (parts.StoresMoments())
+  {
+    AddShownLight(parts, found.shown, light);
+  }
   light.halfRangeFlux = HalfRangeFlux((parts.FineBoundary && !accelerated ? *parts.Fine : parts.Usual).Set());
   light.balance = found.ledger.Balance();
   light.facePowerOut = found.ledger.FacePowerOut();
@@ -164,6 +173,10 @@ LightField SolveConservative(Device& device, const Medium& medium, const Illumin
     Keep(std::move(left), warm, light, *kept);
   }
   problem.Undo(light);
+  if (parts.StoresMoments())
+  {
+    light.lampsApart = parts.LampsOf(illumination);
+  }
   JudgeConvergence(settings, light);
   return light;
 }

@@ -60,7 +60,28 @@ IterationResult DiffusionAcceleration::Run(const Monitor& monitor)
   {
     this->Leave();
   }
+  if (this->Parts.StoresMoments())
+  {
+    this->FindShown();
+  }
   return std::move(this->Result);
+}
+
+/// The source of a next sweep, less what the medium emits and what lamps' light is scattered first.
+void DiffusionAcceleration::FindShown()
+{
+  TransportParts& parts = this->Parts;
+  this->ScatterFound();
+  Buffer<float> shown(parts.TheDevice, parts.Layout.MomentFloats(parts.Functions()), "the light shown");
+  shown.Fill(0.0f);
+  parts.LoadEmission(shown);
+  if (!this->Uncollided->PathOfLamps().empty())
+  {
+    parts.Path.Write(this->Uncollided->PathOfLamps().data());
+    parts.Scattering->AddFirstScattered(parts.WholeDeposit(), shown);
+  }
+  AddToShown(parts.TheDevice, parts.Layout.Places(parts.Functions()).beams, parts.Source, shown, -1.0f);
+  this->Result.shown = std::move(shown);
 }
 
 /// What of uncollided light is scattered is a given source, like what the medium emits.
@@ -116,12 +137,11 @@ void DiffusionAcceleration::Sweep(int iteration, const Monitor& monitor)
   {
     this->Parts.LightBeams(this->Given);
   }
+  this->ScatterFound();
   for (std::size_t c = 0; c < this->Systems.size(); ++c)
   {
     if (this->VoxelPower(static_cast<int>(c)) > 0.0)
     {
-      this->Parts.Scattering->ScatterFluence(
-        static_cast<int>(c), this->DepositOfSweep(), this->Systems[c]->NextFluence(), this->Given, this->Parts.Source);
       this->Systems[c]->ShapeSource();
     }
   }
@@ -130,6 +150,19 @@ void DiffusionAcceleration::Sweep(int iteration, const Monitor& monitor)
   this->Swept->Forget();
   const bool shines = iteration > 0 || this->Parts.HasSource();
   this->Tally = this->Swept->Apply(shines ? &this->Parts.Source : nullptr, this->Parts.BoundaryOfSweeps(), monitor);
+}
+
+/// The source of the next sweep, of what the last one and the systems found.
+void DiffusionAcceleration::ScatterFound()
+{
+  for (std::size_t c = 0; c < this->Systems.size(); ++c)
+  {
+    if (this->VoxelPower(static_cast<int>(c)) > 0.0)
+    {
+      this->Parts.Scattering->ScatterFluence(
+        static_cast<int>(c), this->DepositOfSweep(), this->Systems[c]->NextFluence(), this->Given, this->Parts.Source);
+    }
+  }
 }
 
 /// Of the last sweep, with uncollided light; [channel][stride].

@@ -27,6 +27,8 @@ private:
   void GiveFirstScattered();
   void MakeSweep();
   Deposit DepositOfSweep() const;
+  void ScatterFound();
+  void FindShown();
   void Sweep(int iteration, const Monitor& monitor);
   void MakeSystems();
   void LookAtDirect();

@@ -1,5 +1,6 @@
 #pragma once
 
+#include "Device/Buffer.h"
 #include "Device/Monitor.h"
 #include "Light/KeptLight.h"
 #include "Light/LightField.h"
@@ -17,9 +18,12 @@ struct IterationResult
   EnergyLedger ledger;
   ConvergenceRecord convergence;
   std::vector<float> fluenceDirect, surfaceRadiance; ///< as LightField has them
-  std::vector<std::string> leftOut;                  ///< by the iteration
-  KeptLight kept;                                    ///< for the next solve; empty: not wanted
-  bool warm = false;                                 ///< begun from kept light
+  /// Angular moments of what is scattered of all light but uncollided light of lamps, as ScatteringOperator writes a
+  /// source; only where TransportParts::StoresMoments().
+  Buffer<float> shown;
+  std::vector<std::string> leftOut; ///< by the iteration
+  KeptLight kept;                   ///< for the next solve; empty: not wanted
+  bool warm = false;                ///< begun from kept light
 };
 
 /// How scattering orders are added up: a strategy over the same sweep and scattering. When it ends, and what its last

@@ -33,6 +33,12 @@ SourceIteration::SourceIteration(TransportParts& parts, const KeptLight* kept)
     this->Moments.Fill(0.0f);
   }
   this->MakeSweeps();
+  if (parts.StoresMoments())
+  {
+    this->Result.shown =
+      Buffer<float>(parts.TheDevice, parts.Layout.MomentFloats(parts.Functions()), "the light shown");
+    this->Result.shown.Fill(0.0f);
+  }
 }
 
 IterationResult SourceIteration::Run(const Monitor& monitor)
@@ -164,6 +170,10 @@ void SourceIteration::AddUncollided(const Monitor& monitor)
   {
     const Monitor ofSource = OfPart(monitor, i / all, (i + 1) / all);
     Add(tally, this->Parts.AddUncollided(*sources[i], this->Parts.WholeDeposit(), ofSource));
+    if (this->Parts.StoresMoments() && i + 1 == this->Parts.Lamps.size())
+    {
+      this->Parts.Scattering->AddFirstScattered(this->Parts.WholeDeposit(), this->Result.shown);
+    }
   }
   this->Result.ledger.Count(tally);
   this->Stranded = tally.onTheWay;
@@ -224,6 +234,12 @@ void SourceIteration::ScatterOrder()
   this->GatherMoments();
   const ScatteringOperator::Powers powers =
     parts.Scattering->ScatterOrder(parts.WholeDeposit(), parts.Fluence, parts.Source, this->SweptValues());
+  if (parts.StoresMoments())
+  {
+    // What is shown holds lamps' light alone before the first order.
+    AddToShown(parts.TheDevice, parts.Layout.Places(parts.Functions()).beams, parts.Source, this->Result.shown,
+      this->Order == 0 ? -1.0f : 1.0f);
+  }
   this->Scattered = powers.scattered;
   for (int c = 0; c < 3; ++c)
   {

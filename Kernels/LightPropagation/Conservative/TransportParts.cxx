@@ -83,21 +83,26 @@ TransportParts::TransportParts(Device& device, const PropagationProblem& problem
   this->LoadSource();
 }
 
-/// What the usual directions carry of what the medium shines.
 void TransportParts::LoadSource()
 {
-  this->MediumShines = !this->Problem.Settings().leaveOut;
   this->Source.Fill(0.0f);
+  this->MediumShines = this->LoadEmission(this->Source) || !this->Problem.Settings().leaveOut;
+}
+
+bool TransportParts::LoadEmission(Buffer<float>& source) const
+{
   if (!this->Problem.Traits().emits)
   {
-    return;
+    return false;
   }
+  bool shines = false;
   const Field smooth = this->Emission.Smooth(this->Problem.TheMedium());
-  const std::vector<float> source = Planar(this->Layout, this->Layout.channels, [&](std::size_t i, int c) {
-    this->MediumShines = this->MediumShines || smooth.At(i, c) > 0.0f;
+  const std::vector<float> emitted = Planar(this->Layout, this->Layout.channels, [&](std::size_t i, int c) {
+    shines = shines || smooth.At(i, c) > 0.0f;
     return smooth.At(i, c);
   });
-  this->Source.Write(source.data(), source.size() - SweepPadding);
+  source.Write(emitted.data(), emitted.size() - SweepPadding);
+  return shines;
 }
 
 void TransportParts::FindBoundaryLight()
@@ -164,6 +169,14 @@ std::unique_ptr<const ScatteringOperator> TransportParts::MakeScattering() const
   }
   return std::make_unique<IsotropicScattering>(
     this->TheDevice, this->Layout, this->OnDevice, this->Problem.ComputesScattering());
+}
+
+std::vector<Light> TransportParts::LampsOf(const Illumination& illumination) const
+{
+  const SplitEnvironment environment = Split(illumination.environment, (this->Fine ? *this->Fine : this->Usual).Set());
+  std::vector<Light> lamps = illumination.lights;
+  lamps.insert(lamps.end(), environment.peaks.begin(), environment.peaks.end());
+  return lamps;
 }
 
 TransportParts::Sources TransportParts::LampSources() const

@@ -76,9 +76,14 @@ public:
   };
   EvenSky FindEvenSky(const Monitor& monitor);
 
+  /// The lamps of a scene and those that stand for the peaks of its environment along these directions, in its units.
+  std::vector<Light> LampsOf(const Illumination& illumination) const;
   using Sources = std::vector<std::unique_ptr<UncollidedSource>>;
   Sources LampSources() const;
   Sources BrightEmissionSources() const;
+  /// What the usual directions carry of what the medium emits, into a source; nothing where it does not.
+  /// @return whether any of it shines
+  bool LoadEmission(Buffer<float>& source) const;
   void CountEmission(EnergyLedger& ledger) const; ///< all that the medium emits, however it is carried
 
   Deposit WholeDeposit() const;             ///< path, and flux where it is asked for
@@ -88,6 +93,8 @@ public:
   void DarkenBeams();                                ///< in Source
   void LightBeams(const Buffer<float>& given) const; ///< in Source, as they are in another one
   std::size_t BeamValues() const { return this->Beams.size() * this->Layout.channels * this->Layout.Stride(); }
+  /// What is scattered is handed out in angular moments.
+  bool StoresMoments() const { return this->Basis && this->Problem.Settings().storeMoments; }
   int Functions() const { return this->Basis ? this->Basis->Count() : 1; }
   /// The one place where an implementation of the sweep is chosen.
   std::unique_ptr<SweepOperator> MakeSweep(const SweepRequest& request);

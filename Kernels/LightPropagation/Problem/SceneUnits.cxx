@@ -177,6 +177,7 @@ void ToWatts(LightField& light, double unit)
   Multiply(light.netFlux, unit, "net_flux");
   Multiply(light.scatteredRadiance, unit, "scattered_radiance");
   Multiply(light.surfaceRadiance, unit, "surface_radiance");
+  Multiply(light.scatteredMoments, unit, "scattered_moments");
   MultiplyPowers(light, unit);
 }
 

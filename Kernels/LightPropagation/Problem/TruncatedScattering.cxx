@@ -83,6 +83,17 @@ float TruncatedScattering::SigmaS(std::size_t voxel, int channel) const
     : static_cast<float>(this->TheMedium.sigma_s.At(voxel, channel) * (1.0 - this->Forward(voxel, channel, degree)));
 }
 
+float TruncatedScattering::StraightOn(std::size_t voxel, int channel) const
+{
+  if (!(this->TheMedium.sigma_s.At(voxel, channel) > 0.0f))
+  {
+    return 0.0f;
+  }
+  const int degree = this->DegreeOf(voxel, channel);
+  return static_cast<float>(
+    degree == 0 ? this->TheMedium.phase.MeanCosine(voxel, channel) : this->Forward(voxel, channel, degree));
+}
+
 float TruncatedScattering::SigmaS(std::size_t voxel, int channel, int l) const
 {
   const int degree = this->DegreeOf(voxel, channel);

@@ -28,6 +28,8 @@ public:
   }
   /// sigma_s of degree l: that, times the moment of what is scattered. 0 beyond the voxel's degree.
   float SigmaS(std::size_t voxel, int channel, int l) const;
+  /// Part of what is scattered that goes straight on; 0 where nothing is.
+  float StraightOn(std::size_t voxel, int channel) const;
   /// Of voxels whose degree is the highest, in the first channel; where g does not vary.
   const DeltaM& OfThinVoxels() const { return this->OfChannel[0][this->MostDegree]; }
   int DegreeOf(std::size_t voxel, int channel) const

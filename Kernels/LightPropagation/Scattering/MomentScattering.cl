@@ -59,6 +59,35 @@ __kernel void add_moments(MomentPlaces places, int channel, const __global float
   to[at] += path[at];
 }
 
+// All moments: what one order shines, and `part` of what others did.
+__kernel void add_to_shown(const __global float* source, __global float* shown, float part)
+{
+  const ulong at = get_global_id(0);
+  shown[at] = source[at] + part * shown[at];
+}
+
+// Moments in functions of an AngularBasis as those in spherical harmonics, of voxels side by side. A work-item a voxel
+// of a row, by row, and a harmonic.
+//   basis      [function][harmonic]
+//   moments    with their places; harmonics are as many as functions, or fewer
+//   scale      [channel][stride]
+//   out        [voxel][harmonic][channel]
+__kernel void to_harmonics(MomentPlaces places, int channel, const __global float* basis, const __global float* moments,
+  const __global float* scale, ulong stride, __global float* out)
+{
+  const ulong line = get_global_id(1);
+  const int x = get_global_id(0);
+  const ulong j = get_global_id(2);
+  const ulong voxel = line * places.sizeX + x;
+  float sum = j == 0 ? basis[0] * moments[channel * stride + voxel] : 0.0f;
+  for (int q = max((int)j, 1); q < places.functions; ++q)
+  {
+    const float part = basis[q * places.functions + j];
+    sum += part != 0.0f ? part * moments[MOMENT_PLACE(places, q, channel, line, x)] : 0.0f;
+  }
+  out[(voxel * get_global_size(2) + j) * places.channels + channel] = scale[channel * stride + voxel] * sum;
+}
+
 // A beam's own source, in voxels of the highest degree: the others scatter it in moments alone. A work-item a value.
 // values  of all channels
 __kernel void scatter_beam(MomentPlaces places, const __global float* path, __global float* source,

@@ -102,6 +102,13 @@ void AddMoments(
   }
 }
 
+void AddToShown(Device& device, std::size_t values, const Buffer<float>& source, const Buffer<float>& shown, float part)
+{
+  cl::Kernel kernel = device.Kernel("add_to_shown", kernel_source::MomentScattering);
+  With(kernel, source, shown, part);
+  device.Queue().enqueueNDRangeKernel(kernel, cl::NullRange, cl::NDRange(values));
+}
+
 void AddFluxOfMoments(
   Device& device, const VolumeLayout& layout, int functions, const Buffer<float>& path, const Buffer<float>& flux)
 {

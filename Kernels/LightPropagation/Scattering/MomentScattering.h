@@ -39,6 +39,11 @@ private:
 void AddMoments(
   Device& device, const VolumeLayout& layout, int functions, const Buffer<float>& path, const Buffer<float>& to);
 
+/// Takes all moments of a source to those that are shown: shown = source + part * shown.
+/// @param values  that a source has in all
+void AddToShown(
+  Device& device, std::size_t values, const Buffer<float>& source, const Buffer<float>& shown, float part);
+
 /// Adds the net flux that angular moments of a path hold to [channel][x, y, z][stride].
 void AddFluxOfMoments(
   Device& device, const VolumeLayout& layout, int functions, const Buffer<float>& path, const Buffer<float>& flux);
