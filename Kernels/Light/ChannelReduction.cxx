@@ -57,8 +57,8 @@ void ChangePowers(LightField& light, const Change& change, double scale)
 template <class Act>
 void ForArrays(LightField& light, const Act& act)
 {
-  for (std::vector<float>* values :
-    { &light.fluence, &light.fluenceDirect, &light.fluenceError, &light.scatteredRadiance, &light.surfaceRadiance })
+  for (std::vector<float>* values : { &light.fluence, &light.fluenceDirect, &light.fluenceError,
+         &light.scatteredRadiance, &light.surfaceRadiance, &light.facePower })
   {
     act(*values, std::size_t{ 1 });
   }

@@ -75,6 +75,7 @@ std::vector<std::string> LeftOutOf(const TransportParts& parts, const IterationR
   say(parts.Fine && parts.SweepsAreLit() && !parts.FineBoundary, left_out::EvenOutside);
   say(parts.Lamps.empty(), left_out::NoLights);
   say(traits.emits && parts.Emission.peaks.empty(), left_out::NoEmissionPeaks);
+  say(!parts.FacesReflect(), left_out::BlackFaces);
   say(traits.scatters && found.convergence.All().size() == 1, left_out::OneOrder);
   words.insert(words.end(), found.leftOut.begin(), found.leftOut.end());
   say(parts.Usual.MergesMirrors() && symmetry.Any(), left_out::MirrorImages(symmetry.Count(), directions));
@@ -113,6 +114,21 @@ std::vector<std::string> Words(const TransportParts& parts, const IterationResul
   return words;
 }
 
+/// W / length^2, from W by cell; [cell][channel].
+std::vector<float> FacePower(const TransportParts& parts, const IterationResult& found)
+{
+  const Grid& grid = parts.Layout.grid;
+  const int channels = parts.Layout.channels;
+  const std::size_t cells = found.leftByCell.size() / channels;
+  std::vector<float> power(found.leftByCell.size());
+  for (std::size_t i = 0; i < power.size(); ++i)
+  {
+    const double area = grid.VoxelVolume() / grid.spacing[parts.Faces->FaceOf(i / channels) / 2];
+    power[i] = static_cast<float>(found.leftByCell[i % channels * cells + i / channels] / area);
+  }
+  return power;
+}
+
 LightField LightOf(const TransportParts& parts, IterationResult&& found, bool accelerated)
 {
   LightField light;
@@ -130,6 +146,7 @@ LightField LightOf(const TransportParts& parts, IterationResult&& found, bool ac
   light.halfRangeFlux = HalfRangeFlux((parts.FineBoundary && !accelerated ? *parts.Fine : parts.Usual).Set());
   light.balance = found.ledger.Balance();
   light.facePowerOut = found.ledger.FacePowerOut();
+  light.facePower = FacePower(parts, found);
   light.convergence = found.convergence.All();
   light.fluenceDirect = std::move(found.fluenceDirect);
   light.surfaceRadiance = std::move(found.surfaceRadiance);

@@ -16,6 +16,7 @@ struct IterationResult
   EnergyLedger ledger;
   ConvergenceRecord convergence;
   std::vector<float> fluenceDirect, surfaceRadiance; ///< as LightField has them
+  std::vector<double> leftByCell;                    ///< W through the faces' cells, [channel][cell], where it is kept
   std::vector<std::string> leftOut;                  ///< by the iteration
 };
 

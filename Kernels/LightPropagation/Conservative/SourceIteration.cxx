@@ -51,6 +51,7 @@ IterationResult SourceIteration::Run(const Monitor& monitor)
         this->Result.ledger.Escape(c, escaped[c]);
       }
     }
+    this->ReflectOrder();
     this->ScatterOrder();
     Report(ofOrder, 1.0);
     ++this->Order;
@@ -62,6 +63,10 @@ IterationResult SourceIteration::Run(const Monitor& monitor)
   }
   this->Result.ledger.ShareEscaped(this->Escaped);
   this->Result.leftOut = this->LeftOut();
+  if (this->Parts.Faces)
+  {
+    this->Result.leftByCell = this->Parts.Faces->LeftInAll();
+  }
   return std::move(this->Result);
 }
 
@@ -70,6 +75,7 @@ void SourceIteration::MakeSweeps()
   const int mostPlanes = this->Settings.maximumOrders > 0 ? MostPlanesAround : FewPlanes;
   SweepRequest request = { this->Parts.WholeDeposit(), this->Parts.AllRays(), {}, mostPlanes };
   request.angular = this->Parts.UsualValues();
+  request.faceIn = this->Parts.LightByCells();
   this->Whole = this->Parts.MakeSweep(request);
   this->MakeFilledSweep();
   if (this->Settings.leaveOut && this->Parts.SweepsAreLit() && !this->Shining)
@@ -80,13 +86,13 @@ void SourceIteration::MakeSweeps()
 
 /// Orders after the first go through the box that the medium fills alone: what leaves it does not come back. Their
 /// light in the other voxels is found at the end, for all of them in one sweep. Not with periodic axes, whose rays
-/// would be on the way in both.
+/// would be on the way in both; nor where the light that leaves through the faces' cells is wanted.
 void SourceIteration::MakeFilledSweep()
 {
   const std::array<bool, 3>& periodic = this->Settings.periodic;
   const MediumTraits& traits = this->Parts.Problem.Traits();
   if (!this->Settings.leaveOut || !traits.scatters || !this->Parts.Scattering->CanScatterAllOrders() || periodic[0] ||
-    periodic[1] || periodic[2])
+    periodic[1] || periodic[2] || this->Parts.Faces)
   {
     return;
   }
@@ -142,7 +148,7 @@ void SourceIteration::AddUncollided(const Monitor& monitor)
   {
     sources.push_back(std::move(peak));
   }
-  const bool escapes = this->Parts.Fine && this->Parts.Problem.Traits().scatters;
+  const bool escapes = this->Parts.Fine && this->Parts.Problem.Traits().scatters && !this->Parts.FacesReflect();
   const double all = static_cast<double>(sources.size() + (escapes ? 1 : 0));
   SweepTally tally;
   for (std::size_t i = 0; i < sources.size(); ++i)
@@ -152,6 +158,10 @@ void SourceIteration::AddUncollided(const Monitor& monitor)
   }
   this->Result.ledger.Count(tally);
   this->Stranded = tally.onTheWay;
+  if (this->Parts.Faces)
+  {
+    this->Parts.Faces->TakeUncollided();
+  }
   if (escapes)
   {
     this->Escaping.emplace(this->Parts, OfPart(monitor, sources.size() / all, 1.0)); // whatever shines: lights add up
@@ -161,7 +171,7 @@ void SourceIteration::AddUncollided(const Monitor& monitor)
 void SourceIteration::SweepOrder(const Monitor& monitor)
 {
   const SweepBoundary boundary = this->Order == 0 ? this->Parts.BoundaryOfSweeps() : SweepBoundary();
-  const bool nothing = !boundary && !this->Shining && Sum(this->OnTheWay) == 0.0;
+  const bool nothing = !boundary && !this->Shining && Sum(this->OnTheWay) == 0.0 && Sum(this->Reflected) == 0.0;
   this->OnTheWay = {};
   if (nothing)
   {
@@ -189,6 +199,25 @@ void SourceIteration::SweepOrder(const Monitor& monitor)
   }
 }
 
+/// What faces give back of the light that left in this order has not left.
+void SourceIteration::ReflectOrder()
+{
+  this->Reflected = {};
+  if (!this->Parts.Faces)
+  {
+    return;
+  }
+  const std::array<Rgb, 6> back = this->Parts.Faces->Reflect();
+  for (int face = 0; face < 6; ++face)
+  {
+    for (int c = 0; c < 3; ++c)
+    {
+      this->Reflected[c] += back[face][c];
+      this->Result.ledger.Escape(c, face, -back[face][c]);
+    }
+  }
+}
+
 /// The values of a channel that a sweep may have changed: whole vectors.
 std::array<std::size_t, 2> SourceIteration::SweptValues() const
 {
@@ -212,7 +241,7 @@ void SourceIteration::ScatterOrder()
   for (int c = 0; c < 3; ++c)
   {
     this->Result.ledger.Absorb(c, powers.absorbed[c]);
-    this->Result.ledger.LeaveOver(c, this->Scattered[c] + this->OnTheWay[c] + this->Stranded[c]);
+    this->Result.ledger.LeaveOver(c, this->Scattered[c] + this->OnTheWay[c] + this->Reflected[c] + this->Stranded[c]);
   }
   this->Shining = Sum(this->Scattered) > 0.0;
   this->EstimateResidual();
@@ -231,7 +260,7 @@ void SourceIteration::EstimateResidual()
   this->Residual = 0.0;
   for (int c = 0; c < this->Parts.Layout.channels; ++c)
   {
-    const double now = this->Scattered[c] + this->OnTheWay[c];
+    const double now = this->Scattered[c] + this->OnTheWay[c] + this->Reflected[c];
     this->AllScattered[c] += now;
     if (now == 0.0)
     {

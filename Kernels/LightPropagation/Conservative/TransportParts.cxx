@@ -65,6 +65,7 @@ TransportParts::TransportParts(Device& device, const PropagationProblem& problem
   , Accelerated(accelerated)
 {
   this->FindBoundaryLight();
+  this->FindFaceLight();
   this->FindAngularValues();
   const MediumTraits& traits = problem.Traits();
   const bool needsSource = problem.ComputesScattering() || traits.emits || accelerated;
@@ -131,6 +132,16 @@ void TransportParts::FindBoundaryLight()
   }
 }
 
+void TransportParts::FindFaceLight()
+{
+  const Illumination& shining = this->Problem.Shining();
+  if (Reflects(shining) || this->Problem.Settings().facePower)
+  {
+    this->Faces = std::make_unique<FaceLight>(
+      this->TheDevice, this->Layout, this->Problem.Settings().periodic, this->Usual, shining.faceAlbedo);
+  }
+}
+
 SweepBoundary TransportParts::BoundaryOfSweeps() const
 {
   if (this->SweepsAreLit())
@@ -142,7 +153,8 @@ SweepBoundary TransportParts::BoundaryOfSweeps() const
 
 Deposit TransportParts::WholeDeposit() const
 {
-  return { &this->Path, this->Flux.Size() > 0 ? &this->Flux : nullptr, nullptr, nullptr };
+  return { &this->Path, this->Flux.Size() > 0 ? &this->Flux : nullptr, nullptr, nullptr,
+    this->Faces ? &this->Faces->Out() : nullptr };
 }
 
 std::vector<AxisBundles> TransportParts::AllRays() const

@@ -177,6 +177,7 @@ void ToWatts(LightField& light, double unit)
   Multiply(light.netFlux, unit, "net_flux");
   Multiply(light.scatteredRadiance, unit, "scattered_radiance");
   Multiply(light.surfaceRadiance, unit, "surface_radiance");
+  Multiply(light.facePower, unit, "face_power");
   MultiplyPowers(light, unit);
 }
 
