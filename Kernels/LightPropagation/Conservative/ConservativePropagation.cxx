@@ -103,6 +103,10 @@ std::vector<std::string> Words(const TransportParts& parts, const IterationResul
     const std::vector<std::string> ofScene = LeftOutOf(parts, found);
     words.insert(words.end(), ofScene.begin(), ofScene.end());
   }
+  if (parts.FacesReflect() && parts.Fine && accelerated)
+  {
+    words.emplace_back("finer directions of light from outside: the box's faces reflect");
+  }
   if (!accelerated)
   {
     words.emplace_back("acceleration: few scattering orders do");

@@ -27,6 +27,7 @@ IterationResult DiffusionAcceleration::Run(const Monitor& monitor)
   this->Uncollided.emplace(this->Parts,
     OfPart(monitor, [this](double done) { return ProgressOf(this->Settings, 1.0, UncollidedPart * done); }));
   this->GiveFirstScattered();
+  this->ReflectUncollided();
   this->MakeSweep();
   int iteration = 0;
   do
@@ -48,6 +49,10 @@ IterationResult DiffusionAcceleration::Run(const Monitor& monitor)
   } while (!this->Done(iteration));
   this->WriteFluence();
   this->FindSurfaceRadiance();
+  if (this->Parts.Faces)
+  {
+    this->Result.leftByCell = this->LeftByCell();
+  }
   return std::move(this->Result);
 }
 
@@ -81,13 +86,14 @@ void DiffusionAcceleration::MakeSweep()
   SweepRequest request = { this->DepositOfSweep(), parts.AllRays() };
   request.sameBoundary = true;
   request.angular = parts.UsualValues();
+  request.faceIn = parts.LightByCells();
   this->Swept = parts.MakeSweep(request);
 }
 
 /// No flux: it comes from the system.
 Deposit DiffusionAcceleration::DepositOfSweep() const
 {
-  return { &this->Parts.Path, nullptr, &this->PartialCurrents, nullptr };
+  return { &this->Parts.Path, nullptr, &this->PartialCurrents, nullptr, this->Parts.WholeDeposit().faceOut };
 }
 
 /// From the source that is there to path integrals and partial currents. The light that comes in from outside comes in
@@ -116,6 +122,97 @@ void DiffusionAcceleration::Sweep(int iteration, const Monitor& monitor)
   this->Swept->Forget();
   const bool shines = iteration > 0 || this->Parts.HasSource();
   this->Tally = this->Swept->Apply(shines ? &this->Parts.Source : nullptr, this->Parts.BoundaryOfSweeps(), monitor);
+  this->TakeSweptFaces();
+}
+
+/// What of uncollided light comes back comes back every time.
+void DiffusionAcceleration::ReflectUncollided()
+{
+  TransportParts& parts = this->Parts;
+  if (!parts.Faces)
+  {
+    return;
+  }
+  const std::size_t cells = parts.Faces->Cells();
+  const std::vector<float> left = parts.Faces->TakeOut();
+  this->LeftUncollided.assign(left.begin(), left.end());
+  for (std::size_t i = 0; i < left.size(); ++i)
+  {
+    this->GivenBack.push_back(parts.Faces->Albedo()[parts.Faces->FaceOf(i % cells)][i / cells] * left[i]);
+    this->GivenPower[i / cells] += this->GivenBack.back();
+  }
+  this->CameBack = this->GivenBack;
+  for (int c = 0; c < parts.Layout.channels; ++c)
+  {
+    this->Faces.emplace_back(parts.TheDevice, (FaceLeaves + 1) * cells, "the light at the box's faces");
+    this->Faces.back().Fill(0.0f);
+  }
+  if (parts.FacesReflect())
+  {
+    parts.Faces->LetIn(std::vector<double>(left.size(), 0.0), this->GivenBack);
+  }
+}
+
+/// What came back and left in the sweep, for the diffusion systems.
+void DiffusionAcceleration::TakeSweptFaces()
+{
+  if (!this->Parts.Faces)
+  {
+    return;
+  }
+  const std::size_t cells = this->Parts.Faces->Cells();
+  const std::vector<float> left = this->Parts.Faces->TakeOut();
+  for (std::size_t c = 0; c < this->Faces.size(); ++c)
+  {
+    std::vector<float> rows((FaceLeaves + 1) * cells, 0.0f);
+    std::copy_n(this->CameBack.begin() + c * cells, cells, rows.begin() + FaceCame * cells);
+    std::copy_n(this->GivenBack.begin() + c * cells, cells, rows.begin() + FaceGiven * cells);
+    std::copy_n(left.begin() + c * cells, cells, rows.begin() + FaceLeft * cells);
+    this->Faces[c].Write(rows.data());
+  }
+}
+
+/// Lets come in with the next sweep what the faces give back by the systems' solution.
+/// @return by how much it differs from what came in with the last one, over all light that is given
+double DiffusionAcceleration::ReflectFound()
+{
+  const FaceLight& faces = *this->Parts.Faces;
+  const std::size_t cells = faces.Cells();
+  const std::vector<double> leaves = this->LeftByCell();
+  std::vector<double> back(leaves.size());
+  double change = 0.0;
+  for (std::size_t c = 0; c < this->Faces.size(); ++c)
+  {
+    double differs = 0.0, all = this->GivenPower[c] + this->PowerIn[c];
+    for (std::size_t i = c * cells; i < (c + 1) * cells; ++i)
+    {
+      const double swept = leaves[i] - this->LeftUncollided[i];
+      back[i] = faces.Albedo()[faces.FaceOf(i % cells)][c] * std::max(swept, 0.0);
+      differs += std::abs(back[i] + this->GivenBack[i] - this->CameBack[i]);
+      all += back[i];
+      this->CameBack[i] = back[i] + this->GivenBack[i];
+    }
+    change = std::max(change, all > 0.0 ? differs / all : 0.0);
+  }
+  // The systems' power does not have the pattern of rays.
+  this->Parts.Faces->LetIn(std::vector<double>(back.size(), 0.0), this->CameBack);
+  return change;
+}
+
+/// W that leave through each cell, by the systems' solution; in a dark channel those of uncollided light alone.
+std::vector<double> DiffusionAcceleration::LeftByCell() const
+{
+  const std::size_t cells = this->Parts.Faces->Cells();
+  std::vector<double> left = this->LeftUncollided;
+  for (std::size_t c = 0; c < this->Faces.size(); ++c)
+  {
+    const std::vector<float> rows = this->Faces[c].Read();
+    for (std::size_t i = 0; i<cells&& this->VoxelPower(static_cast<int>(c))> 0.0; ++i)
+    {
+      left[c * cells + i] += rows[FaceLeaves * cells + i];
+    }
+  }
+  return left;
 }
 
 /// Of the last sweep, with uncollided light; [channel][stride].
@@ -139,16 +236,18 @@ void DiffusionAcceleration::MakeSystems()
     parts.SweepsAreLit() ? parts.UsualBoundary->IncomingPower() : std::array<Rgb, 6>{};
   for (int c = 0; c < parts.Layout.channels; ++c)
   {
-    std::array<double, 6> ofChannel;
+    std::array<double, 6> ofChannel, albedo = {};
     for (int face = 0; face < 6; ++face)
     {
+      albedo[face] = parts.Faces ? parts.Faces->Albedo()[face][c] : 0.0;
       ofChannel[face] = incoming[face][c];
       this->PowerIn[c] += this->Tally.in[face][c];
     }
     const DiffusionSystem::Arrays arrays = { parts.Layout.Stride(), parts.Layout.ExtinctionFirst(c),
       c * parts.Layout.Stride(), parts.FunctionStride(), &parts.OnDevice.TransportSigmaT(), &parts.OnDevice.SigmaT(),
       &parts.OnDevice.SigmaA(), &parts.OnDevice.SigmaS(), &this->Given, &parts.Source, &parts.Path,
-      &this->PartialCurrents, this->Uncollided->Passed().Size() > 0 ? &this->Uncollided->Passed() : nullptr };
+      &this->PartialCurrents, this->Uncollided->Passed().Size() > 0 ? &this->Uncollided->Passed() : nullptr,
+      parts.Faces ? &this->Faces[c] : nullptr, albedo };
     this->Systems.push_back(std::make_unique<DiffusionSystem>(parts.TheDevice, parts.Layout.grid,
       this->Settings.periodic, parts.Usual.Set(), pattern, arrays, ofChannel, this->LinearSource));
   }
@@ -173,12 +272,16 @@ void DiffusionAcceleration::Correct(int iteration)
       change = std::max(change, this->Systems[c]->Correct(power));
     }
   }
+  this->CountLight();
+  if (this->Parts.FacesReflect())
+  {
+    change = std::max(change, this->ReflectFound());
+  }
   const double ratio = iteration > 0 && this->Change > 0.0 ? change / this->Change : 1.0;
   const double fall = std::clamp(iteration > 1 ? std::max(ratio, this->LastRatio) : ratio, 0.5, 0.95);
   this->Residual = iteration > 0 || change == 0.0 ? Margin * change * fall / (1.0 - fall) : 1.0;
   this->LastRatio = ratio;
   this->Change = change;
-  this->CountLight();
   this->Result.convergence.Add(this->Residual, change, this->Result.ledger);
 }
 
@@ -209,10 +312,26 @@ void DiffusionAcceleration::CountLight()
         c, static_cast<double>(this->TheMedium.sigma_a.At(i, c)) * this->Found[c][i] * grid.VoxelVolume());
     }
     const std::array<double, 6> outflow = this->Systems[c]->Outflow(ofSweep);
-    for (int face = 0; face < 6; ++face)
+    for (int face = 0; face < 6 && !this->Parts.Faces; ++face)
     {
       this->Result.ledger.Escape(c, face, outflow[face]);
     }
+  }
+  if (this->Parts.Faces)
+  {
+    this->CountFaces();
+  }
+}
+
+/// Where light is counted by cells: uncollided light that left is in the ledger already.
+void DiffusionAcceleration::CountFaces()
+{
+  const FaceLight& faces = *this->Parts.Faces;
+  const std::vector<double> left = this->LeftByCell();
+  for (std::size_t i = 0; i < left.size(); ++i)
+  {
+    const int face = faces.FaceOf(i % faces.Cells()), c = static_cast<int>(i / faces.Cells());
+    this->Result.ledger.Escape(c, face, (1.0 - faces.Albedo()[face][c]) * left[i] - this->LeftUncollided[i]);
   }
 }
 

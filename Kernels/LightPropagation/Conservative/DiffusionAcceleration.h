@@ -28,7 +28,12 @@ private:
   void Sweep(int iteration, const Monitor& monitor);
   void MakeSystems();
   void Correct(int iteration);
+  void ReflectUncollided();
+  void TakeSweptFaces();
+  double ReflectFound();
+  std::vector<double> LeftByCell() const;
   void CountLight();
+  void CountFaces();
   double VoxelPower(int channel) const;
   bool Done(int iterations) const;
   std::vector<float> SweptFluence() const;
@@ -49,9 +54,12 @@ private:
   Buffer<float> Given, PartialCurrents; ///< as DiffusionSystem::Arrays has them
   std::unique_ptr<SweepOperator> Swept;
   std::vector<std::unique_ptr<DiffusionSystem>> Systems;
-  SweepTally Tally;                       ///< of the last sweep
-  Rgb GivenPower = {}, PowerIn = {};      ///< W, emitted or first scattered; through faces
-  std::vector<std::vector<double>> Found; ///< W / length^2, without uncollided light
+  /// By channel, where light by cells of the box's faces is wanted: as DiffusionSystem::Arrays has it.
+  std::vector<Buffer<float>> Faces;
+  std::vector<double> CameBack, GivenBack, LeftUncollided; ///< W, [channel][cell]
+  SweepTally Tally;                                        ///< of the last sweep
+  Rgb GivenPower = {}, PowerIn = {};                       ///< W, emitted or first scattered; through faces
+  std::vector<std::vector<double>> Found;                  ///< W / length^2, without uncollided light
   double Change = 1.0, LastRatio = 1.0, Residual = 1.0;
 
   IterationResult Result;

@@ -12,9 +12,10 @@ namespace
 /// W that radiance 1 brings through the cells of one row of a face: all cells of a plane alike.
 using ByPlane = std::array<std::vector<double>, 6>;
 
-/// The moves aside of a bundle's rays, as SweepBorder has them.
+/// The moves aside of a bundle's rays, as SweepBorder has them; of a short periodic axis in laps (SweepPlan::LayLaps).
 void AddAside(const Bundle& bundle, const PlaneAxes& axes, int size, int planes, ByPlane& power)
 {
+  const double ofLap = bundle.power * size / planes;
   for (int k = 0; k < planes; ++k)
   {
     const PlaneCrossing crossing = bundle.Crossing(k);
@@ -31,11 +32,11 @@ void AddAside(const Bundle& bundle, const PlaneAxes& axes, int size, int planes,
           const bool goes = (way ? member.opposite : member.direction) >= 0;
           if (du != 0 && goes)
           {
-            power[EntryFace(axes.u, du > 0)][plane] += bundle.power * segment.part;
+            power[EntryFace(axes.u, du > 0)][plane] += ofLap * segment.part;
           }
           if (dv != 0 && goes)
           {
-            power[EntryFace(axes.v, dv > 0)][plane] += bundle.power * segment.part;
+            power[EntryFace(axes.v, dv > 0)][plane] += ofLap * segment.part;
           }
         }
       }

@@ -40,6 +40,9 @@ public:
   /// Lets W come in through each cell, [channel][cell].
   void LetIn(const std::vector<double>& swept, const std::vector<double>& uncollided);
 
+  /// The sums over the cells of each face, of [channel][cell].
+  std::array<Rgb, 6> PowerOfFaces(const std::vector<double>& power) const;
+
   /// W that left through each cell in all calls of Reflect, [channel][cell].
   const std::vector<double>& LeftInAll() const { return this->All; }
   std::size_t Cells() const { return this->FaceOfCell.size(); }
@@ -47,7 +50,6 @@ public:
 
 private:
   void FindPowerIn(const Grid& grid, const std::array<bool, 3>& periodic, const SweptDirections& directions);
-  std::array<Rgb, 6> PowerOfFaces(const std::vector<double>& power) const;
 
   int Channels;
   std::array<Rgb, 6> AlbedoOfFaces;

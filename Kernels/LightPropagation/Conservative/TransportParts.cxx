@@ -119,8 +119,9 @@ void TransportParts::FindBoundaryLight()
   if (this->Fine)
   {
     auto fine = std::make_unique<BoundaryLight>(grid, settings, *this->Fine, shining, environment.smooth);
-    // What comes in evenly from everywhere is what accelerated sweeps carry already.
-    if (fine->Shines() && !(this->Accelerated && fine->IsEven()))
+    // What comes in evenly from everywhere is what accelerated sweeps carry already; and of light that finer directions
+    // bring beyond that, the sweeps' faces could not give back a part.
+    if (fine->Shines() && !(this->Accelerated && (fine->IsEven() || Reflects(shining))))
     {
       this->FineBoundary = std::move(fine);
       this->FineBoundary->CheckRays(this->Layout.channels);

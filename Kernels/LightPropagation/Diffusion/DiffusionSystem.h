@@ -44,6 +44,10 @@ public:
     /// W, [channel][-x, +x, -y, +y, -z, +z][stride]: lamps' light that passes a face at once where it is scattered
     /// (LampPassing.h); null: voxels are thin, or there are no lamps
     const Buffer<float>* passed;
+    /// W, [row of DiffusionShared.h][cell of BoxFaces.h]: light by cells of the box's faces, the last row of which
+    /// Outflow() writes; null: no face gives back light, and it is not asked for
+    const Buffer<float>* faces = nullptr;
+    std::array<double, 6> albedo = {}; ///< of the faces
   };
 
   /// @param incoming  W / length^2 through the box's faces, but that of lights
@@ -81,6 +85,7 @@ public:
   void AddFlux(const Buffer<float>& flux);
 
 private:
+  bool Reflects() const;
   cl::Kernel Kernel(const char* name) const;
   void Run(cl::Kernel& kernel);
   /// The arguments that the kernels share, then `more`.
