@@ -3,6 +3,7 @@
 
 #include "Medium/BoxFaces.h"
 #include "Numerics/Constants.h"
+#include "Reference/ReferenceTable.h"
 
 #include <gmock/gmock.h>
 
@@ -57,6 +58,28 @@ double Deviation(const LightField& light, const Rgb& colour)
     most = std::max(most, std::abs(light.fluence[i] / (4.0 * Pi * radiance) - 1.0));
   }
   return most;
+}
+
+/// A slab above ground, lit from above by diffuse light (cosine 0) or a sun.
+Scene SlabOverGround(double tau, double albedo, double g, double ground, double cosine)
+{
+  const int layers = tau < 1.0 ? 20 : tau < 10.0 ? 40 : 200;
+  Scene scene({ 1, 1, layers }, static_cast<float>((1.0 - albedo) * tau / layers),
+    static_cast<float>(albedo * tau / layers));
+  scene.medium.phase = PhaseFunction::HenyeyGreenstein(g);
+  scene.settings.periodic = { true, true, false };
+  scene.settings.angularDegree = g > 0.0 ? 5 : 0;
+  scene.settings.source = PropagationSource::Linear;
+  scene.light.faceAlbedo[4] = Grey(ground);
+  if (cosine > 0.0)
+  {
+    scene.ShineAlong({ std::sqrt(1.0 - cosine * cosine), 0.0, -cosine }, 1.0 / cosine);
+  }
+  else
+  {
+    scene.light.faces[5] = Grey(1.0);
+  }
+  return scene;
 }
 
 /// W that leave through a face, before it gives back its part.
@@ -245,6 +268,38 @@ TEST_F(FaceAlbedo, AddsUpAsLayersDo)
         // The set's own angular distribution of ground light is that of the light from above.
         EXPECT_NEAR(reflected, r + t * t * albedo / (1.0 - albedo * r), 0.002) << tau << ' ' << albedo;
         EXPECT_NEAR(taken, t * (1.0 - albedo) / (1.0 - albedo * r), 0.002) << tau << ' ' << albedo;
+      }
+    }
+  }
+}
+
+TEST_F(FaceAlbedo, IsMattGroundUnderASlab)
+{
+  const std::vector<double> cosines = { 0.0, 1.0, 0.5 };
+  for (double tau : { 0.5, 5.0, 50.0 })
+  {
+    for (double albedo : { 0.9, 1.0 })
+    {
+      for (double g : { 0.0, 0.85 })
+      {
+        for (double ground : { 0.3, 0.8, 1.0 })
+        {
+          for (double cosine : cosines)
+          {
+            const ReferenceRow row = ReferenceRowWhere("slab_over_ground",
+              { { "tau", tau }, { "albedo", albedo }, { "g", g }, { "ground", ground }, { "cosine", cosine } });
+            Scene scene = SlabOverGround(tau, albedo, g, ground, cosine);
+            const LightField light = scene.Solve(this->GetDevice());
+            const double in = light.balance.entered[0];
+            EXPECT_NEAR(light.facePowerOut[5][0] / in, row["reflected"], 0.003)
+              << tau << ' ' << albedo << ' ' << g << ' ' << ground << ' ' << cosine;
+            EXPECT_NEAR(light.facePowerOut[4][0] / in, row["taken"], 0.003)
+              << tau << ' ' << albedo << ' ' << g << ' ' << ground << ' ' << cosine;
+            EXPECT_LE(light.balance.RelativeError(1), 1e-5);
+            EXPECT_TRUE(light.converged);
+            printf("%g %g %g %g %g: %d sweeps, R %+.5f A %+.5f\n", tau, albedo, g, ground, cosine, (int)light.convergence.size(), light.facePowerOut[5][0] / in - row["reflected"], light.facePowerOut[4][0] / in - row["taken"]);
+          }
+        }
       }
     }
   }

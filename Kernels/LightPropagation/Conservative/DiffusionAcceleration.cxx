@@ -142,6 +142,7 @@ void DiffusionAcceleration::ReflectUncollided()
     this->GivenPower[i / cells] += this->GivenBack.back();
   }
   this->CameBack = this->GivenBack;
+  this->BackMixing.resize(parts.Layout.channels);
   for (int c = 0; c < parts.Layout.channels; ++c)
   {
     this->Faces.emplace_back(parts.TheDevice, (FaceLeaves + 1) * cells, "the light at the box's faces");
@@ -174,28 +175,33 @@ void DiffusionAcceleration::TakeSweptFaces()
 
 /// Lets come in with the next sweep what the faces give back by the systems' solution.
 /// @return by how much it differs from what came in with the last one, over all light that is given
-double DiffusionAcceleration::ReflectFound()
+double DiffusionAcceleration::ReflectFound(int iteration)
 {
   const FaceLight& faces = *this->Parts.Faces;
   const std::size_t cells = faces.Cells();
   const std::vector<double> leaves = this->LeftByCell();
-  std::vector<double> back(leaves.size());
   double change = 0.0;
   for (std::size_t c = 0; c < this->Faces.size(); ++c)
   {
     double differs = 0.0, all = this->GivenPower[c] + this->PowerIn[c];
-    for (std::size_t i = c * cells; i < (c + 1) * cells; ++i)
+    const auto begin = this->CameBack.begin() + static_cast<std::ptrdiff_t>(c * cells);
+    const std::vector<double> came(begin, begin + static_cast<std::ptrdiff_t>(cells));
+    std::vector<double> found(cells);
+    for (std::size_t cell = 0; cell < cells; ++cell)
     {
-      const double swept = leaves[i] - this->LeftUncollided[i];
-      back[i] = faces.Albedo()[faces.FaceOf(i % cells)][c] * std::max(swept, 0.0);
-      differs += std::abs(back[i] + this->GivenBack[i] - this->CameBack[i]);
-      all += back[i];
-      this->CameBack[i] = back[i] + this->GivenBack[i];
+      const std::size_t i = c * cells + cell;
+      const double albedo = faces.Albedo()[faces.FaceOf(cell)][c];
+      found[cell] = this->GivenBack[i] + albedo * std::max(leaves[i] - this->LeftUncollided[i], 0.0);
+      differs += std::abs(found[cell] - came[cell]);
+      all += found[cell];
     }
     change = std::max(change, all > 0.0 ? differs / all : 0.0);
+    // In thin media the systems do not know how what comes back goes through them.
+    const std::vector<double> next = iteration > 0 ? this->BackMixing[c].Next(came, found) : found;
+    std::copy(next.begin(), next.end(), begin);
   }
   // The systems' power does not have the pattern of rays.
-  this->Parts.Faces->LetIn(std::vector<double>(back.size(), 0.0), this->CameBack);
+  this->Parts.Faces->LetIn(std::vector<double>(this->CameBack.size(), 0.0), this->CameBack);
   return change;
 }
 
@@ -275,7 +281,7 @@ void DiffusionAcceleration::Correct(int iteration)
   this->CountLight();
   if (this->Parts.FacesReflect())
   {
-    change = std::max(change, this->ReflectFound());
+    change = std::max(change, this->ReflectFound(iteration));
   }
   const double ratio = iteration > 0 && this->Change > 0.0 ? change / this->Change : 1.0;
   const double fall = std::clamp(iteration > 1 ? std::max(ratio, this->LastRatio) : ratio, 0.5, 0.95);

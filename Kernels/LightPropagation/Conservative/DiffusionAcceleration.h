@@ -1,5 +1,6 @@
 #pragma once
 
+#include "LightPropagation/Conservative/HostMixing.h"
 #include "LightPropagation/Conservative/Iteration.h"
 #include "LightPropagation/Conservative/TransportParts.h"
 #include "LightPropagation/Conservative/UncollidedLight.h"
@@ -30,7 +31,7 @@ private:
   void Correct(int iteration);
   void ReflectUncollided();
   void TakeSweptFaces();
-  double ReflectFound();
+  double ReflectFound(int iteration);
   std::vector<double> LeftByCell() const;
   void CountLight();
   void CountFaces();
@@ -57,6 +58,7 @@ private:
   /// By channel, where light by cells of the box's faces is wanted: as DiffusionSystem::Arrays has it.
   std::vector<Buffer<float>> Faces;
   std::vector<double> CameBack, GivenBack, LeftUncollided; ///< W, [channel][cell]
+  std::vector<HostMixing> BackMixing;                      ///< of CameBack, by channel
   SweepTally Tally;                                        ///< of the last sweep
   Rgb GivenPower = {}, PowerIn = {};                       ///< W, emitted or first scattered; through faces
   std::vector<std::vector<double>> Found;                  ///< W / length^2, without uncollided light
