@@ -297,7 +297,6 @@ TEST_F(FaceAlbedo, IsMattGroundUnderASlab)
               << tau << ' ' << albedo << ' ' << g << ' ' << ground << ' ' << cosine;
             EXPECT_LE(light.balance.RelativeError(1), 1e-5);
             EXPECT_TRUE(light.converged);
-            printf("%g %g %g %g %g: %d sweeps, R %+.5f A %+.5f\n", tau, albedo, g, ground, cosine, (int)light.convergence.size(), light.facePowerOut[5][0] / in - row["reflected"], light.facePowerOut[4][0] / in - row["taken"]);
           }
         }
       }
