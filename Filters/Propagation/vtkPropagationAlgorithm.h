@@ -52,9 +52,9 @@ public:
   ///@}
 
   ///@{
-  /// Part of the light that leaves through the faces -x, +x, -y, +y, -z, +z that comes back where it left, spread as by a
-  /// matt surface (Lambert), beside FaceRadiance. Default 0, valid [0, 1]; 0 on the faces of a periodic axis. Only the
-  /// conservative scheme of LightPropagationMaps knows it: other solvers say so.
+  /// Part of the light that leaves through the faces -x, +x, -y, +y, -z, +z that comes back where it left, spread as by
+  /// a matt surface (Lambert), beside FaceRadiance. Default 0, valid [0, 1]; 0 on the faces of a periodic axis. Only
+  /// the conservative scheme of LightPropagationMaps knows it: other solvers say so.
   tyndallSetRange6Macro(FaceAlbedo, double, 0.0, 1.0);
   vtkGetVector6Macro(FaceAlbedo, double);
   ///@}

@@ -61,8 +61,8 @@ struct Illumination
   Rgb sky = { 0.0, 0.0, 0.0 }; ///< radiance from every direction alike, W / (length^2 sr), added to the environment
   /// Diffuse radiance entering through -x, +x, -y, +y, -z, +z, W / (length^2 sr), added to the others.
   std::array<Rgb, 6> faces = {};
-  /// Part, 0 to 1, of what leaves through each face that comes back where it left, spread as by a matt surface (Lambert),
-  /// over what shines in through the face.
+  /// Part, 0 to 1, of what leaves through each face that comes back where it left, spread as by a matt surface
+  /// (Lambert), beside what shines in through the face.
   std::array<Rgb, 6> faceAlbedo = {};
 };
 

@@ -35,8 +35,8 @@ Scene Furnace(const std::array<int, 3>& size, double thickest, double albedo, co
   {
     scene.emission[i] = static_cast<float>(scene.sigma_a[i / 3] * colour[i % 3]);
   }
-  const Rgb albedos[6] = { { 0.3, 0.5, 0.0 }, { 0.9, 0.1, 1.0 }, { 0.0, 0.2, 0.6 }, { 1.0, 1.0, 1.0 }, { 0.8, 0.7, 0.5 },
-    { 0.5, 0.5, 0.5 } };
+  const Rgb albedos[6] = { { 0.3, 0.5, 0.0 }, { 0.9, 0.1, 1.0 }, { 0.0, 0.2, 0.6 }, { 1.0, 1.0, 1.0 },
+    { 0.8, 0.7, 0.5 }, { 0.5, 0.5, 0.5 } };
   for (int face = 0; face < 6; ++face)
   {
     scene.light.faceAlbedo[face] = albedos[face];
@@ -64,8 +64,8 @@ double Deviation(const LightField& light, const Rgb& colour)
 Scene SlabOverGround(double tau, double albedo, double g, double ground, double cosine)
 {
   const int layers = tau < 1.0 ? 20 : tau < 10.0 ? 40 : 200;
-  Scene scene({ 1, 1, layers }, static_cast<float>((1.0 - albedo) * tau / layers),
-    static_cast<float>(albedo * tau / layers));
+  Scene scene(
+    { 1, 1, layers }, static_cast<float>((1.0 - albedo) * tau / layers), static_cast<float>(albedo * tau / layers));
   scene.medium.phase = PhaseFunction::HenyeyGreenstein(g);
   scene.settings.periodic = { true, true, false };
   scene.settings.angularDegree = g > 0.0 ? 5 : 0;

@@ -7,8 +7,8 @@
 
 namespace tyndall
 {
-/// Anderson's mixing (numerics.md, Eq. (71)) of short vectors on the host: the light that faces give back. The next x is
-/// the combination of the last results whose change is least in the least squares; nowhere negative.
+/// Anderson's mixing (numerics.md, Eq. (71)) of short vectors on the host: the light that faces give back. The next x
+/// is the combination of the last results whose change is least in the least squares; nowhere negative.
 class HostMixing
 {
 public:

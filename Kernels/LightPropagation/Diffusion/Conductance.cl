@@ -81,7 +81,7 @@ static bool is_border(const DiffusionLayout* layout, const int* at, int d)
   return !layout->periodic[axis] && at[axis] == (d & 1 ? layout->size[axis] - 1 : 0);
 }
 
-// Power through a face of the box that gives back a part of what leaves, out less in (numerics.md, Eqs. (79a), (79b)):
+// Power through a face of the box that gives back a part of what leaves, out less in (numerics.md, Eqs. (76b), (76c)):
 //   ofMedium times what it would be without light from outside, less ofLight times the light that comes in from there.
 typedef struct
 {

@@ -380,7 +380,7 @@ static exact power_of_face(const DiffusionLayout* layout, const diffusion_arrays
 
 #if FACES
 // Power that leaves through face d of the box by the solution, before the face gives back its part (numerics.md,
-// Eq. (79b)).
+// Eq. (76c)).
 static exact power_leaving(const DiffusionLayout* layout, const diffusion_arrays* arrays, const __global exact* fluence,
   int d, int i, const int* next, const int* at, float share)
 {
