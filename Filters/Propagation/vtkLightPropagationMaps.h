@@ -147,9 +147,9 @@ public:
 
   ///@{
   /// Degree of the angular moments in which light is scattered (conservative scheme): higher ones show a forward peak
-  /// in finer detail, and take longer. -1: as many as the phase function asks for; 0 (default): scattering is taken as
-  /// isotropic with sigma_s (1 - g), the similarity relation. Valid [-1, 15]; DirectionsPerFace of n x n tell 2 n - 1
-  /// degrees apart, of others so many are used.
+  /// in finer detail, and take longer. -1 (default): 3, in thin media 5, in slabs 9, or less, as the phase function,
+  /// Tolerance and memory ask for; 0: scattering is taken as isotropic with sigma_s (1 - g), the similarity relation.
+  /// Valid [-1, 15]; DirectionsPerFace of n x n tell 2 n - 1 degrees apart, no more are used.
   tyndallSetRangeMacro(AngularDegree, int, -1, 15);
   vtkGetMacro(AngularDegree, int);
   ///@}

@@ -34,9 +34,10 @@ struct PropagationSettings
   int maximumOrders = 0;   ///< scattering orders (accelerated: sweeps) at most; 0: until the tolerance is met
   double tolerance = 1e-4; ///< relative error of fluence at which to stop, > 0
   std::array<bool, 3> periodic = { false, false, false }; ///< rays leaving an axis return on the other side
-  /// Degree of the angular moments in which light is scattered; -1: as many as the phase function asks for; 0:
-  /// scattering is isotropic with sigma_s (1 - g), the similarity relation
-  int angularDegree = 0;
+  /// Degree of the angular moments in which light is scattered; -1: as many as the phase function asks for, the
+  /// tolerance, the directions and the device's memory (AngularDegree.h); 0: scattering is isotropic with
+  /// sigma_s (1 - g), the similarity relation
+  int angularDegree = -1;
   int storedDirections = 1; ///< directions kept for scattered radiance: 1 (isotropic), 6 (faces), or more
   PropagationSource source = PropagationSource::Automatic;
   PropagationAcceleration acceleration = PropagationAcceleration::Automatic; ///< not where maximumOrders is given

@@ -43,7 +43,7 @@ struct SweepScene
       std::generate(ofBeams.begin(), ofBeams.end(), [&] { return 1.0 + unit(random); });
       angular.beams.push_back(ofBeams);
     }
-    source.assign(layout.Floats(basis.Count() + beams), 0.0f);
+    source.assign(layout.MomentFloats(basis.Count(), beams), 0.0f);
     for (int q = 0; q < basis.Count() + beams; ++q)
     {
       for (int c = 0; c < channels; ++c)
@@ -56,9 +56,15 @@ struct SweepScene
     }
   }
 
+  /// @param function  or behind them a beam
   std::size_t Place(int function, int channel, std::size_t voxel) const
   {
-    return (static_cast<std::size_t>(function) * layout.channels + channel) * layout.Stride() + voxel;
+    const MomentPlaces places = layout.Places(basis.Count());
+    const int beam = std::max(function - basis.Count(), 0);
+    const std::size_t plain = (static_cast<std::size_t>(beam) * layout.channels + channel) * layout.Stride() + voxel;
+    return function == 0         ? plain
+      : function < basis.Count() ? VolumeLayout::MomentPlace(places, function, channel, voxel)
+                                 : places.beams + plain;
   }
 
   std::vector<AxisBundles> Rays(const std::function<bool(int)>& isLit) const
@@ -85,7 +91,7 @@ struct SweepScene
   {
     const int functions = values ? basis.Count() : 1;
     Buffer<float> shines(theDevice, ofSource, "source");
-    Buffer<float> path(theDevice, layout.Floats(functions), "path");
+    Buffer<float> path(theDevice, layout.MomentFloats(functions), "path");
     Buffer<float> currents(theDevice, layout.Floats(6), "currents");
     path.Fill(0.0f);
     currents.Fill(0.0f);
@@ -95,7 +101,24 @@ struct SweepScene
     SweepInMemory sweep(theDevice, layout, onDevice.SigmaT(), periodic, request, workspace);
     const SweepBoundary boundary = [this](int d, int face) { return Rgb{ 1.0 + 0.1 * face, 0.5, 0.01 * (d % 7) }; };
     const SweepTally tally = sweep.Apply(&shines, boundary, {});
-    return { path.Read(), currents.Read(), tally };
+    return { this->OfVoxels(path.Read(), functions), currents.Read(), tally };
+  }
+
+  /// Zero beyond the voxels of rows, where rays may have left anything.
+  std::vector<float> OfVoxels(const std::vector<float>& moments, int functions) const
+  {
+    std::vector<float> kept(moments.size(), 0.0f);
+    for (int q = 0; q < functions; ++q)
+    {
+      for (int c = 0; c < layout.channels; ++c)
+      {
+        for (std::size_t i = 0; i < layout.grid.VoxelCount(); ++i)
+        {
+          kept[Place(q, c, i)] = moments[Place(q, c, i)];
+        }
+      }
+    }
+    return kept;
   }
 
   /// The source in one direction, as that of light that shines alike everywhere.
@@ -125,7 +148,7 @@ struct SweepScene
   Found SweepOneByOne()
   {
     Found all;
-    all.path.assign(layout.Floats(basis.Count()), 0.0f);
+    all.path.assign(layout.MomentFloats(basis.Count()), 0.0f);
     all.currents.assign(layout.Floats(6), 0.0f);
     for (int d = 0; d < static_cast<int>(set.directions.size()); ++d)
     {

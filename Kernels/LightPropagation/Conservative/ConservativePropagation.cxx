@@ -162,7 +162,7 @@ LightField LightOf(const TransportParts& parts, IterationResult&& found, bool ac
 LightField SolveConservative(Device& device, const Medium& medium, const Illumination& illumination,
   const PropagationSettings& settings, const Monitor& monitor)
 {
-  const PropagationProblem problem(medium, illumination, settings);
+  const PropagationProblem problem(medium, illumination, settings, MemoryOf(device));
   const bool accelerated = ToBeAccelerated(problem);
   TransportParts parts(device, problem, accelerated);
   std::unique_ptr<Iteration> iteration;

@@ -19,8 +19,8 @@ namespace tyndall
 ///  - propagation and collection in one: memory is some five arrays (sigma_t, sigma_s, source, path, fluence) and the
 ///    maps.
 ///
-/// Isotropic scattering. A medium with mean cosine g is solved as the isotropic medium with sigma_s (1 - g) (similarity
-/// relation, numerics.md, Eq. (8)); leftOut says so.
+/// A medium with g other than 0 is solved in angular moments up to a degree, settings.angularDegree, and what its phase
+/// function scatters beyond them goes straight on (delta-M, numerics.md, section 2.2); leftOut says so.
 ///
 /// @throws InvalidInput  what Check(medium), Check(illumination) say, or settings out of range
 /// @throws DeviceError  if the buffers do not fit

@@ -2,6 +2,7 @@
 
 #include "LightPropagation/Conservative/SurfaceRadiance.h"
 #include "LightPropagation/Convergence.h"
+#include "LightPropagation/Scattering/MomentScattering.h"
 
 #include <algorithm>
 #include <cmath>
@@ -66,6 +67,12 @@ void DiffusionAcceleration::GiveFirstScattered()
   std::vector<float> path = this->Uncollided->Path();
   parts.Path.Write(path.data());
   parts.Scattering->AddFirstScattered(parts.WholeDeposit(), this->Given);
+  if (parts.Basis)
+  {
+    this->GivenFlux = Buffer<float>(parts.TheDevice, parts.Layout.Floats(3), "the net flux given");
+    this->GivenFlux.Fill(0.0f);
+    AddFluxOfMoments(parts.TheDevice, parts.Layout, parts.Functions(), this->Given, this->GivenFlux);
+  }
   const double volume = parts.Layout.grid.VoxelVolume();
   for (int c = 0; c < parts.Layout.channels; ++c)
   {
@@ -110,7 +117,7 @@ void DiffusionAcceleration::Sweep(int iteration, const Monitor& monitor)
     {
       if (this->Parts.Basis)
       {
-        this->Systems[c]->AddFluxBeyondSweep(this->Parts.Path);
+        this->Systems[c]->PutNextFlux(this->Parts.Path);
       }
       this->Parts.Scattering->ScatterFluence(
         static_cast<int>(c), this->DepositOfSweep(), this->Systems[c]->NextFluence(), this->Given, this->Parts.Source);
@@ -250,9 +257,10 @@ void DiffusionAcceleration::MakeSystems()
       this->PowerIn[c] += this->Tally.in[face][c];
     }
     const DiffusionSystem::Arrays arrays = { parts.Layout.Stride(), parts.Layout.ExtinctionFirst(c),
-      c * parts.Layout.Stride(), parts.FunctionStride(), &parts.OnDevice.TransportSigmaT(), &parts.OnDevice.SigmaT(),
-      &parts.OnDevice.SigmaA(), &parts.OnDevice.SigmaS(), &this->Given, &parts.Source, &parts.Path,
-      &this->PartialCurrents, this->Uncollided->Passed().Size() > 0 ? &this->Uncollided->Passed() : nullptr,
+      c * parts.Layout.Stride(), &parts.OnDevice.TransportSigmaT(), &parts.OnDevice.SigmaT(), &parts.OnDevice.SigmaA(),
+      &parts.OnDevice.SigmaS(), &this->Given, parts.Layout.Places(parts.Functions()), c,
+      parts.Basis ? &this->GivenFlux : nullptr, &parts.Source, &parts.Path, &this->PartialCurrents,
+      this->Uncollided->Passed().Size() > 0 ? &this->Uncollided->Passed() : nullptr,
       parts.Faces ? &this->Faces[c] : nullptr, albedo };
     this->Systems.push_back(std::make_unique<DiffusionSystem>(parts.TheDevice, parts.Layout.grid,
       this->Settings.periodic, parts.Usual.Set(), pattern, arrays, ofChannel, this->LinearSource));

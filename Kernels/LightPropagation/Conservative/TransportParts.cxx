@@ -69,10 +69,10 @@ TransportParts::TransportParts(Device& device, const PropagationProblem& problem
   this->FindAngularValues();
   const MediumTraits& traits = problem.Traits();
   const bool needsSource = problem.ComputesScattering() || traits.emits || accelerated;
-  const int shining = this->Functions() + static_cast<int>(this->Beams.size());
-  this->Source =
-    Buffer<float>(device, needsSource ? this->Layout.Floats(shining) : SweepPadding, "the scattered light");
-  this->Path = Buffer<float>(device, this->Layout.Floats(this->Functions()), "the light gathered");
+  const int beams = static_cast<int>(this->Beams.size());
+  this->Source = Buffer<float>(
+    device, needsSource ? this->Layout.MomentFloats(this->Functions(), beams) : SweepPadding, "the scattered light");
+  this->Path = Buffer<float>(device, this->Layout.MomentFloats(this->Functions()), "the light gathered");
   this->Fluence = Buffer<float>(device, this->Layout.Floats(), "fluence");
   if (problem.Settings().netFlux)
   {
@@ -226,7 +226,7 @@ SweepTally TransportParts::AddUncollided(const UncollidedSource& source, const D
   path.Fill(0.0f);
   volume.beamPath = &path;
   const SweepTally tally = source.AddTo(volume, monitor);
-  this->Scattering->AddBeam(path, this->Source, this->Functions() + beam);
+  this->Scattering->AddBeam(path, this->Source, beam);
   return tally;
 }
 
@@ -246,19 +246,17 @@ int TransportParts::SlotOf(const UncollidedSource& source) const
 
 void TransportParts::DarkenBeams()
 {
-  const std::size_t stride = this->FunctionStride();
   if (!this->Beams.empty())
   {
-    this->Source.Fill(0.0f, this->Functions() * stride, this->Beams.size() * stride);
+    this->Source.Fill(0.0f, this->Layout.Places(this->Functions()).beams, this->BeamValues());
   }
 }
 
 void TransportParts::LightBeams(const Buffer<float>& given) const
 {
-  const std::size_t stride = this->FunctionStride();
   if (!this->Beams.empty())
   {
-    this->Source.CopyFrom(given, this->Functions() * stride, this->Beams.size() * stride);
+    this->Source.CopyFrom(given, this->Layout.Places(this->Functions()).beams, this->BeamValues());
   }
 }
 
@@ -313,7 +311,7 @@ std::vector<int> TransportParts::BrightestBeams() const
 TransportParts::UncollidedFlux TransportParts::FindUncollided(const UncollidedSource& source, const Monitor& monitor)
 {
   const bool netFlux = this->Problem.Settings().netFlux;
-  Buffer<float> path(this->TheDevice, this->Layout.Floats(this->Functions()), "uncollided light");
+  Buffer<float> path(this->TheDevice, this->Layout.MomentFloats(this->Functions()), "uncollided light");
   Buffer<float> flux(this->TheDevice, netFlux ? this->Layout.Floats(3) : 0, "its net flux");
   path.Fill(0.0f);
   flux.Fill(0.0f);
@@ -322,7 +320,7 @@ TransportParts::UncollidedFlux TransportParts::FindUncollided(const UncollidedSo
   found.tally = this->AddUncollided(source, { &path, withFlux ? &flux : nullptr, nullptr, nullptr }, monitor);
   if (netFlux && this->Basis)
   {
-    AddFluxOfMoments(this->TheDevice, this->Layout, path, flux);
+    AddFluxOfMoments(this->TheDevice, this->Layout, this->Functions(), path, flux);
   }
   found.path = path.Read();
   found.flux = flux.Read();

@@ -94,7 +94,7 @@ public:
   const AngularValues* UsualValues() const { return this->OfUsual.get(); }
   void DarkenBeams();                                ///< in Source
   void LightBeams(const Buffer<float>& given) const; ///< in Source, as they are in another one
-  std::size_t FunctionStride() const { return this->Layout.channels * this->Layout.Stride(); }
+  std::size_t BeamValues() const { return this->Beams.size() * this->Layout.channels * this->Layout.Stride(); }
   int Functions() const { return this->Basis ? this->Basis->Count() : 1; }
   /// The one place where an implementation of the sweep is chosen.
   std::unique_ptr<SweepOperator> MakeSweep(const SweepRequest& request);

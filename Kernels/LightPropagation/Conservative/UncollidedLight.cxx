@@ -29,7 +29,7 @@ UncollidedLight::UncollidedLight(TransportParts& parts, const Monitor& monitor)
   this->AddSources(OfPart(monitor, 0.0, sources));
   if (parts.Basis && parts.Problem.Settings().netFlux)
   {
-    AddFluxOfMoments(parts.TheDevice, parts.Layout, parts.Path, parts.Flux);
+    AddFluxOfMoments(parts.TheDevice, parts.Layout, parts.Functions(), parts.Path, parts.Flux);
   }
   this->Counted.Count(this->OfSources);
   this->Lengths = parts.Path.Read();
@@ -68,7 +68,7 @@ void UncollidedLight::AddSources(const Monitor& monitor)
   if (this->NeedsFirstMoments())
   {
     firstMoments = Buffer<float>(parts.TheDevice, parts.Layout.Floats(6), "light of lamps");
-    path = Buffer<float>(parts.TheDevice, parts.Layout.Floats(parts.Functions()), "light of lamps");
+    path = Buffer<float>(parts.TheDevice, parts.Layout.MomentFloats(parts.Functions()), "light of lamps");
     this->ThroughFaces = Buffer<float>(parts.TheDevice, parts.Layout.Floats(6), "light of lamps");
     this->ThroughFaces.Fill(0.0f);
   }
@@ -93,7 +93,7 @@ void UncollidedLight::AddSources(const Monitor& monitor)
     this->PassFaces(path, firstMoments);
     if (parts.Basis)
     {
-      AddMoments(parts.TheDevice, parts.FunctionStride(), parts.Functions(), path, parts.Path);
+      AddMoments(parts.TheDevice, parts.Layout, parts.Functions(), path, parts.Path);
     }
   }
   if (!lamps.empty())
@@ -148,6 +148,7 @@ void UncollidedLight::AddBoundaryDifference(const Monitor& monitor)
   const TransportParts::EvenSky even = many ? parts.FindEvenSky(OfPart(monitor, 0.5, 1.0)) : TransportParts::EvenSky();
   std::vector<float> flux = parts.Problem.Settings().netFlux ? parts.Flux.Read() : std::vector<float>();
   const std::size_t stride = parts.Layout.Stride();
+  const MomentPlaces places = parts.Layout.Places(parts.Functions());
   for (int c = 0; c < parts.Layout.channels; ++c)
   {
     double more = 0.0, out = 0.0, in = 0.0, usualIn = 0.0;
@@ -166,7 +167,7 @@ void UncollidedLight::AddBoundaryDifference(const Monitor& monitor)
       this->Lengths[at] += static_cast<float>(difference);
       for (int q = 1; q < parts.Functions(); ++q)
       {
-        const std::size_t moment = q * parts.FunctionStride() + at;
+        const std::size_t moment = parts.Layout.MomentPlace(places, q, c, i);
         this->Lengths[moment] += static_cast<float>(part * (scale * fine.path[moment] - usual.path[moment]));
       }
       more += parts.Problem.Scattering().SigmaT(i, c) * difference;

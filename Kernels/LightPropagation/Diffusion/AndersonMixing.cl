@@ -4,9 +4,9 @@
 
 // Sums for Anderson's mixing (numerics.md, Eqs. (71), (72)), with f = found - given and d1, d2 its differences to those
 // of the two iterations before: f f and found found (both weighted by how much the voxel scatters), d1 d1, d1 d2, d2
-// d2, d1 f, d2 f
+// d2, d1 f, d2 f. What counts for the first two are the voxels' first values.
 __kernel void anderson_sums(const __global exact* given, const __global exact* found, const __global float* change1,
-  const __global float* change2, const __global float* sigma_s, int first, float length, int count,
+  const __global float* change2, const __global float* sigma_s, int first, float length, int voxels, int count,
   __global exact* sums)
 {
   const int begin = get_global_id(0) * DiffusionChunk;
@@ -17,7 +17,7 @@ __kernel void anderson_sums(const __global exact* given, const __global exact* f
     const exact f = found[i] - given[i];
     const exact d1 = f - change1[i];
     const exact d2 = f - change2[i];
-    const exact tau = sigma_s[first + i] * length;
+    const exact tau = i < voxels ? sigma_s[first + i] * length : 0;
     const exact weight = tau / (1 + tau);
     sum[0] += weight * f * f;
     sum[1] += weight * found[i] * found[i];

@@ -11,8 +11,9 @@
 
 namespace tyndall
 {
-AndersonMixing::AndersonMixing(Device& device, std::size_t count, const char* what)
+AndersonMixing::AndersonMixing(Device& device, std::size_t voxels, std::size_t count, const char* what)
   : TheDevice(device)
+  , Voxels(voxels)
   , Count(count)
   , Sums(device, AndersonSums * PartsOf<std::size_t>(count, DiffusionChunk), "sums")
 {
@@ -28,8 +29,7 @@ AndersonMixing::AndersonMixing(Device& device, std::size_t count, const char* wh
 double AndersonMixing::Mix(const ExactValues& given, const ExactValues& found, const Weighting& weighting)
 {
   double change = 0.0;
-  const std::array<double, 2> all = this->Weights(given, found, weighting, &change);
-  const std::array<double, 2> weights = weighting.mixes ? all : std::array<double, 2>{};
+  const std::array<double, 2> weights = this->Weights(given, found, weighting, &change);
   cl::Kernel step =
     this->TheDevice.Kernel("anderson_step", kernel_source::AndersonMixing, ExactOption(this->TheDevice));
   std::swap(this->FoundBefore[0], this->FoundBefore[1]);
@@ -49,7 +49,7 @@ std::array<double, 2> AndersonMixing::Weights(
   cl::Kernel kernel =
     this->TheDevice.Kernel("anderson_sums", kernel_source::AndersonMixing, ExactOption(this->TheDevice));
   With(kernel, given.Handle(), found.Handle(), this->ChangeBefore[0], this->ChangeBefore[1], *weighting.sigma_s,
-    cl_int(weighting.first), weighting.length, cl_int(this->Count), this->Sums.Handle());
+    cl_int(weighting.first), weighting.length, cl_int(this->Voxels), cl_int(this->Count), this->Sums.Handle());
   const std::size_t chunks = PartsOf<std::size_t>(this->Count, DiffusionChunk);
   this->TheDevice.Queue().enqueueNDRangeKernel(kernel, cl::NullRange, cl::NDRange(chunks), cl::NDRange(1));
   std::array<double, AndersonSums> sums = {};

@@ -12,7 +12,8 @@ namespace tyndall
 class AndersonMixing
 {
 public:
-  AndersonMixing(Device& device, std::size_t count, const char* what);
+  /// @param count  values, of one voxel after the other, as often as there are several of each
+  AndersonMixing(Device& device, std::size_t voxels, std::size_t count, const char* what);
 
   /// How much a value counts in the change: tau / (1 + tau), tau = sigma_s length (numerics.md, Eq. (72)). 0 in vacuum,
   /// which scatters nothing.
@@ -21,13 +22,10 @@ public:
     const Buffer<float>* sigma_s; ///< 1/length
     std::size_t first;            ///< where the coefficients of these values begin
     float length;
-    /// False: the last result is what to go on with. Where more goes from one iteration to the next than these values,
-    /// a mix of them alone swings.
-    bool mixes = true;
   };
 
   /// @param given  what `found` was found with; becomes what to go on with
-  /// @return |found - given| / |found|, weighted (numerics.md, Eq. (72))
+  /// @return |found - given| / |found| of each voxel's first value, weighted (numerics.md, Eq. (72))
   double Mix(const ExactValues& given, const ExactValues& found, const Weighting& weighting);
 
 private:
@@ -35,7 +33,7 @@ private:
     const ExactValues& given, const ExactValues& found, const Weighting& weighting, double* change);
 
   Device& TheDevice;
-  std::size_t Count;
+  std::size_t Voxels, Count;
   ExactValues Sums;
   std::array<Buffer<float>, 2> FoundBefore, ChangeBefore; ///< of the last mix and the one before
   int Mixes = 0;

@@ -8,6 +8,7 @@
 // Face d of a voxel is -x, +x, -y, +y, -z, +z. tau is the optical length of a voxel along an axis.
 
 #include "LightPropagation/Diffusion/Conductance.cl"
+#include "LightPropagation/Sweep/MomentPlacesShared.h"
 
 // flat_source  [axis][stride]
 // swept        sigma_t of the sweeps
@@ -128,8 +129,8 @@ typedef struct
   const __global float* passed;
   const __global float* model;
   const __global float* pattern;
-  const __global float* given; // with its moments, functionStride apart
-  ulong stride, functionStride;
+  const __global float* givenFlux; // [axis][stride]
+  ulong stride;
   int count;
   const __global float* faces; // where FACES
 } diffusion_arrays;
@@ -172,9 +173,7 @@ static float coming_in(const DiffusionLayout* layout, const diffusion_arrays* ar
 static float drive(const DiffusionLayout* layout, const diffusion_arrays* arrays, int axis, int i)
 {
 #if MOMENTS
-  const int function = axis == 0 ? 3 : axis; // sqrt(3) times y, z, x
-  return 1.5f * layout->spacing[axis] * (4.0f * M_PI_F * 0.57735027f) *
-    arrays->given[function * arrays->functionStride + i];
+  return 1.5f * layout->spacing[axis] * (4.0f * M_PI_F) * arrays->givenFlux[axis * arrays->stride + i];
 #else
   return 0.0f;
 #endif
@@ -402,12 +401,13 @@ static exact power_leaving(const DiffusionLayout* layout, const diffusion_arrays
   swept += layout.firstT;                                                                                         \
   currents += 6 * (ulong)layout.first;                                                                            \
   passed += PASSING ? 6 * (ulong)layout.first : 0;                                                                \
+  given_flux += MOMENTS ? 3 * (ulong)layout.first : 0;                                                            \
   source += layout.first;                                                                                         \
   path += layout.first;                                                                                           \
   const ulong stride = layout.stride;                                                                             \
   const int count = layout.size[0] * layout.size[1] * layout.size[2];                                             \
   const diffusion_arrays arrays = { sigma_t, sigma_a, flat_source, conductance, currents, passed, model, pattern, \
-    given + layout.first, stride, function_stride, count, faces };                                                \
+    given_flux, stride, count, faces };                                                                           \
   const int at[3] = { x, y, z };                                                                                  \
   int next[6];                                                                                                    \
   find_neighbours(layout.size, x, y, z, i, next);                                                                 \
@@ -415,13 +415,14 @@ static exact power_leaving(const DiffusionLayout* layout, const diffusion_arrays
   float share[6], seeming[6], transport_weight;
 
 // The right-hand side of numerics.md, Eq. (53), W.
-// given    emitted and first scattered light of lights, W / (length^3 sr)
+// given    emitted and first scattered light of lights, W / (length^3 sr); given_flux: its net flux over 4 pi, in
+//          angular moments, [channel][x, y, z][stride]
 // source   of the sweep, W / (length^3 sr)
 __kernel void diffusion_balance(DiffusionLayout layout, const __global float* sigma_t, const __global float* sigma_a,
   const __global float* swept, const __global float* flat_source, const __global float* conductance,
   const __global float* currents, const __global float* passed, const __global float* model,
   const __global float* pattern, const __global float* source, const __global float* path, const __global float* given,
-  ulong function_stride, const __global float* faces, __global exact* right)
+  const __global float* given_flux, const __global float* faces, __global exact* right)
 {
   VOXEL(layout.size)
   ARRAYS_OF_CHANNEL
@@ -459,7 +460,7 @@ __kernel void diffusion_outflow(DiffusionLayout layout, const __global float* si
   const __global float* swept, const __global float* flat_source, const __global float* conductance,
   const __global float* currents, const __global float* passed, const __global float* model,
   const __global float* pattern, const __global float* source, const __global float* path, const __global float* given,
-  ulong function_stride, __global float* faces, const __global exact* fluence, __global exact* outflow)
+  const __global float* given_flux, __global float* faces, const __global exact* fluence, __global exact* outflow)
 {
   VOXEL(layout.size)
   if (!IS_OUTERMOST(layout, ((int[3]){ x, y, z })))
@@ -501,7 +502,7 @@ __kernel void diffusion_flux(DiffusionLayout layout, const __global float* sigma
   const __global float* swept, const __global float* flat_source, const __global float* conductance,
   const __global float* currents, const __global float* passed, const __global float* model,
   const __global float* pattern, const __global float* source, const __global float* path, const __global float* given,
-  ulong function_stride, const __global float* faces, const __global exact* fluence, __global float* flux)
+  const __global float* given_flux, const __global float* faces, const __global exact* fluence, __global float* flux)
 {
   VOXEL(layout.size)
   ARRAYS_OF_CHANNEL
@@ -519,18 +520,20 @@ __kernel void diffusion_flux(DiffusionLayout layout, const __global float* sigma
   }
 }
 
-// By how much the net flux of a fluence differs from that of what the sweep found, W length, added to the moments of
-// degree 1 of the sweep's path: sqrt(3) times y, z, x.
-__kernel void diffusion_flux_beyond_sweep(DiffusionLayout layout, const __global float* sigma_t,
-  const __global float* sigma_a, const __global float* swept, const __global float* flat_source,
-  const __global float* conductance, const __global float* currents, const __global float* passed,
-  const __global float* model, const __global float* pattern, const __global float* source, const __global float* path,
-  const __global float* given, ulong function_stride, const __global float* faces, const __global exact* fluence,
-  __global float* moments)
+#if MOMENTS
+// The moments of degree 1, behind the fluence that was solved for, [x, y, z][voxel]: of what the sweep found, and by
+// how much that fluence's net flux differs from it.
+__kernel void diffusion_found_flux(DiffusionLayout layout, const __global float* sigma_t, const __global float* sigma_a,
+  const __global float* swept, const __global float* flat_source, const __global float* conductance,
+  const __global float* currents, const __global float* passed, const __global float* model,
+  const __global float* pattern, const __global float* source, const __global float* path, const __global float* given,
+  const __global float* given_flux, const __global float* faces, MomentPlaces places, int channel,
+  __global exact* fluence)
 {
   VOXEL(layout.size)
+  const __global float* moments = path;
   ARRAYS_OF_CHANNEL
-  moments += layout.first + i;
+  const ulong line = (ulong)z * layout.size[1] + y;
   for (int axis = 0; axis < 3; ++axis)
   {
     float sum = 0.0f;
@@ -543,10 +546,28 @@ __kernel void diffusion_flux_beyond_sweep(DiffusionLayout layout, const __global
         sum += (d & 1 ? 1.0f : -1.0f) * conductance[axis * count + (d & 1 ? j : i)] * change;
       }
     }
-    const int function = axis == 0 ? 3 : axis;
-    moments[function * function_stride] += 1.73205081f * 0.5f * sum * layout.spacing[axis];
+    const int function = axis == 0 ? 3 : axis; // sqrt(3) times y, z, x
+    const exact swept_length = moments[MOMENT_PLACE(places, function, channel, line, x)];
+    fluence[(axis + 1) * count + i] =
+      (swept_length + 1.73205081f * 0.5f * sum * layout.spacing[axis]) / volume_of(&layout);
   }
 }
+
+// And into the path.
+__kernel void diffusion_put_flux(
+  DiffusionLayout layout, const __global exact* fluence, MomentPlaces places, int channel, __global float* path)
+{
+  VOXEL(layout.size)
+  const int count = layout.size[0] * layout.size[1] * layout.size[2];
+  const ulong line = (ulong)z * layout.size[1] + y;
+  for (int axis = 0; axis < 3; ++axis)
+  {
+    const int function = axis == 0 ? 3 : axis;
+    path[MOMENT_PLACE(places, function, channel, line, x)] =
+      (float)(fluence[(axis + 1) * count + i] * volume_of(&layout));
+  }
+}
+#endif
 
 // The next sweep's source where thick voxels lie beside thinner ones: what gives their surface the outward partial
 // current of diffusion, instead of what is emitted and scattered (numerics.md, Eqs. (63), (64)).

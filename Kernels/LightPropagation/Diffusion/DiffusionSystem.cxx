@@ -42,7 +42,7 @@ DiffusionSystem::DiffusionSystem(Device& device, const Grid& grid, const std::ar
   , The(arrays)
   , Count(grid.VoxelCount())
   , Solver(device, grid.size, grid.spacing)
-  , Mixing(device, grid.VoxelCount(), "the diffusion system")
+  , Mixing(device, grid.VoxelCount(), this->Values(), "the diffusion system")
 {
   double halfRange = 0.0;
   for (int marching = 0; marching < 3; ++marching)
@@ -62,8 +62,8 @@ DiffusionSystem::DiffusionSystem(Device& device, const Grid& grid, const std::ar
   this->FlatSource = Buffer<float>(device, 3 * arrays.stride, what);
   this->Model = Buffer<float>(device, this->Count, what);
   this->Right = ExactValues(device, this->Count, what);
-  this->Next = ExactValues(device, this->Count, what);
-  this->Solution = ExactValues(device, this->Count, what);
+  this->Next = ExactValues(device, this->Values(), what);
+  this->Solution = ExactValues(device, this->Values(), what);
   this->Solution.Fill(0.0); // a dark channel is never solved for
   this->Borders = ExactValues(device, 4 * BoxFaceCellCount(grid), what);
 
@@ -81,7 +81,7 @@ cl::Kernel DiffusionSystem::Kernel(const char* name) const
 {
   return this->TheDevice.Kernel(name, kernel_source::DiffusionSystem,
     ExactOption(this->TheDevice) + Define("PASSING", this->The.passed != nullptr) +
-      Define("FACES", this->The.faces != nullptr) + Define("MOMENTS", this->The.swept != this->The.sigma_t));
+      Define("FACES", this->The.faces != nullptr) + Define("MOMENTS", this->HasMoments()));
 }
 
 void DiffusionSystem::Run(cl::Kernel& kernel)
@@ -97,7 +97,8 @@ void DiffusionSystem::RunOnArrays(const char* name, const More&... more)
   cl::Kernel kernel = this->Kernel(name);
   With(kernel, this->Layout, *the.sigma_t, *the.sigma_a, *the.swept, this->FlatSource, this->Solver.Conductance(),
     *the.partialCurrents, this->The.passed ? *this->The.passed : this->Model, this->Model, this->Pattern, *the.source,
-    *the.path, *the.given, cl_ulong(the.functionStride), this->The.faces ? *this->The.faces : this->Model, more...);
+    *the.path, *the.given, the.givenFlux ? *the.givenFlux : *the.given,
+    this->The.faces ? *this->The.faces : this->Model, more...);
   this->Run(kernel);
 }
 
@@ -117,16 +118,26 @@ double DiffusionSystem::Correct(double unit)
   this->Run(model);
   this->RunOnArrays("diffusion_balance", this->Right.Handle());
   this->Solver.Solve(this->Right, this->Solution, unit, Reduction);
+  if (this->HasMoments())
+  {
+    this->RunOnArrays("diffusion_found_flux", this->The.moments, cl_int(this->The.channel), this->Solution.Handle());
+  }
 
   const auto& h = this->Layout.spacing;
   const float edge = std::cbrt(h[0] * h[1] * h[2]); // the same whichever axis is which
-  return this->Mixing.Mix(
-    this->Next, this->Solution, { the.sigma_s, the.first, edge, the.swept == the.sigma_t && !this->Reflects() });
+  return this->Mixing.Mix(this->Next, this->Solution, { the.sigma_s, the.first, edge });
 }
 
 bool DiffusionSystem::Reflects() const
 {
   return std::any_of(this->The.albedo.begin(), this->The.albedo.end(), [](double albedo) { return albedo > 0.0; });
+}
+
+std::vector<double> DiffusionSystem::Found() const
+{
+  std::vector<double> found = this->Solution.Read();
+  found.resize(this->Count);
+  return found;
 }
 
 std::array<double, 6> DiffusionSystem::Outflow(const std::array<double, 6>& ofSweep)
@@ -190,9 +201,11 @@ SurfacePowers DiffusionSystem::PowersAtSurface() const
   return powers;
 }
 
-void DiffusionSystem::AddFluxBeyondSweep(const Buffer<float>& path)
+void DiffusionSystem::PutNextFlux(const Buffer<float>& path)
 {
-  this->RunOnArrays("diffusion_flux_beyond_sweep", this->Next.Handle(), path);
+  cl::Kernel kernel = this->Kernel("diffusion_put_flux");
+  With(kernel, this->Layout, this->Next.Handle(), this->The.moments, cl_int(this->The.channel), path);
+  this->Run(kernel);
 }
 
 void DiffusionSystem::AddFlux(const Buffer<float>& flux)

@@ -6,6 +6,7 @@
 #include "LightPropagation/Diffusion/DiffusionShared.h"
 #include "LightPropagation/Diffusion/MultigridSolver.h"
 #include "LightPropagation/Diffusion/SurfacePowers.h"
+#include "LightPropagation/Sweep/MomentPlacesShared.h"
 #include "Medium/Grid.h"
 
 #include <array>
@@ -31,13 +32,16 @@ public:
   /// The solver's arrays; those of all channels, one after the other, `stride` voxels each.
   struct Arrays
   {
-    std::size_t stride, firstT, first;    ///< where this channel begins, in sigma_t and in the others
-    std::size_t functionStride;           ///< from one angular moment to the next, in given, source and path
-    const Buffer<float>* sigma_t;         ///< 1/length, that light diffuses with: sigma_a and sigma_s (1 - g)
-    const Buffer<float>* swept;           ///< 1/length, sigma_t of the sweeps
-    const Buffer<float>* sigma_a;         ///< 1/length
-    const Buffer<float>* sigma_s;         ///< 1/length
-    const Buffer<float>* given;           ///< emitted, and uncollided light that is scattered, W / (length^3 sr)
+    std::size_t stride, firstT, first; ///< where this channel begins, in sigma_t and in the others
+    const Buffer<float>* sigma_t;      ///< 1/length, that light diffuses with: sigma_a and sigma_s (1 - g)
+    const Buffer<float>* swept;        ///< 1/length, sigma_t of the sweeps
+    const Buffer<float>* sigma_a;      ///< 1/length
+    const Buffer<float>* sigma_s;      ///< 1/length
+    const Buffer<float>* given;        ///< emitted, and uncollided light that is scattered, W / (length^3 sr)
+    MomentPlaces moments;              ///< where angular moments are in `path`, and
+    int channel;                       ///< of which channel
+    const Buffer<float>*
+      givenFlux; ///< of angular moments: net flux over 4 pi, [channel][x, y, z][stride]; null: isotropic
     const Buffer<float>* source;          ///< of a sweep, W / (length^3 sr)
     const Buffer<float>* path;            ///< W length, that it found
     const Buffer<float>* partialCurrents; ///< W, [channel][-x, +x, -y, +y, -z, +z][stride], that it found
@@ -68,7 +72,7 @@ public:
   void Refine(double unit) { this->Solver.Solve(this->Right, this->Solution, unit, 1e-3, 1e-6); }
 
   /// W / length^2, what the last correction found.
-  std::vector<double> Found() const { return this->Solution.Read(); }
+  std::vector<double> Found() const;
   /// W out of the box through each of its faces, by the last correction; 0 where it is periodic.
   /// @param ofSweep  W that left through each face in the sweep, by which power at the box's edges is shared among
   /// faces
@@ -77,15 +81,17 @@ public:
   /// W through each voxel's faces at the box's, of the last Outflow.
   SurfacePowers PowersAtSurface() const;
 
-  /// Add to the moments of a sweep's path by how much the net flux of NextFluence() differs from that of what the sweep
-  /// found, W length (numerics.md, Eq. (70a)).
-  void AddFluxBeyondSweep(const Buffer<float>& path);
+  /// Put into the first moments of a sweep's path those that go with NextFluence(): what the sweep found, and by how
+  /// much the net flux of what was solved for differs from it, W length (numerics.md, Eq. (70a)).
+  void PutNextFlux(const Buffer<float>& path);
 
   /// Add the net flux times the voxel's volume to [channel][x, y, z][stride].
   void AddFlux(const Buffer<float>& flux);
 
 private:
   bool Reflects() const;
+  std::size_t Values() const { return this->HasMoments() ? 4 * this->Count : this->Count; }
+  bool HasMoments() const { return this->The.swept != this->The.sigma_t; }
   cl::Kernel Kernel(const char* name) const;
   void Run(cl::Kernel& kernel);
   /// The arguments that the kernels share, then `more`.
@@ -99,6 +105,7 @@ private:
   MultigridSolver Solver;
   Buffer<float> FlatSource, Pattern, Model;
   AndersonMixing Mixing;
-  ExactValues Right, Next, Solution, Borders;
+  ExactValues Right, Borders;
+  ExactValues Next, Solution; ///< of voxels; behind them, where there are moments, those of degree 1, [x, y, z][voxel]
 };
 }

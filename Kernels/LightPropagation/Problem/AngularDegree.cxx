@@ -11,8 +11,10 @@ namespace
 {
 constexpr int MostMoments = 32;     ///< that are looked at
 constexpr double Negligible = 1e-3; ///< moment of a phase function
+constexpr int DegreeOfSlabs = 9, DegreeOfThin = 5, DegreeOfOthers = 3;
 constexpr double SomewhatForward = 0.6;
-constexpr int DegreeOfSlabs = 9, DegreeOfForward = 5, DegreeOfOthers = 3;
+constexpr double Thick = 8.0; ///< mean free paths through the box: light's first scattering is a small part of it
+constexpr std::size_t ArraysOfMoments = 4; ///< source, path, what is given, and of uncollided light
 
 /// Largest moments, by degree, of all phase functions of the medium.
 std::vector<double> LargestMoments(const Medium& medium)
@@ -38,18 +40,58 @@ std::vector<double> LargestMoments(const Medium& medium)
   add(medium.phase.OfChannel(0).WithMeanCosine(*most));
   return largest;
 }
+
+/// Mean free paths through the box, in the mean of its voxels and edges.
+double Thickness(const Medium& medium)
+{
+  double sum = 0.0;
+  for (std::size_t i = 0; i < medium.grid.VoxelCount(); ++i)
+  {
+    sum += medium.sigma_a.At(i, 0) + medium.sigma_s.At(i, 0);
+  }
+  return sum * medium.grid.VoxelVolume() / std::cbrt(std::pow(medium.grid.VoxelCount() * medium.grid.VoxelVolume(), 2));
 }
 
-int AngularDegreeFor(const Medium& medium, const PropagationSettings& settings, bool slab)
+/// Up to `degree`, such that half of the memory is left for all else.
+int HighestThatFits(const Grid& grid, int degree, const DeviceMemory& memory)
+{
+  constexpr std::size_t MostChannels = 3;
+  const auto fits = [&](int l) {
+    const std::size_t array = grid.VoxelCount() * MostChannels * sizeof(float) * (l + 1) * (l + 1);
+    return array <= memory.one && ArraysOfMoments * array <= memory.all / 2;
+  };
+  while (degree > 0 && !fits(degree))
+  {
+    --degree;
+  }
+  return degree;
+}
+}
+
+DeviceMemory MemoryOf(const Device& device)
+{
+  const std::size_t inUse = std::min(device.BytesInUse(), device.MemoryLimit());
+  return { device.MemoryLimit() - inUse, device.AllocationLimit() };
+}
+
+int AngularDegreeFor(const Medium& medium, const PropagationSettings& settings, bool slab, const DeviceMemory& memory)
 {
   const std::vector<double> moments = LargestMoments(medium);
-  int needed = 0; // the last moment that is not negligible
-  for (int l = 1; l <= MostMoments; ++l)
-  {
-    needed = moments[l] > Negligible ? l : needed;
-  }
-  const int usual = slab ? DegreeOfSlabs : moments[1] > SomewhatForward ? DegreeOfForward : DegreeOfOthers;
-  const int wanted = settings.angularDegree >= 0 ? settings.angularDegree : std::min(usual, needed);
-  return wanted == 0 || needed == 0 ? 0 : MostDegree(EquiangularDirections(settings.directionsPerFace), wanted);
+  const auto lastAbove = [&](double negligible) {
+    int last = 0;
+    for (int l = 1; l <= MostMoments; ++l)
+    {
+      last = moments[l] > negligible ? l : last;
+    }
+    return last;
+  };
+  // Of thin media the first scattering counts: there a narrower part of the peak is to go straight on.
+  const bool thin = moments[1] > SomewhatForward && Thickness(medium) < Thick;
+  const int usual = HighestThatFits(medium.grid, slab ? DegreeOfSlabs : thin ? DegreeOfThin : DegreeOfOthers, memory);
+  const int wanted = settings.angularDegree >= 0 ? settings.angularDegree
+                                                 : std::min(usual, lastAbove(std::max(Negligible, settings.tolerance)));
+  return wanted == 0 || lastAbove(Negligible) == 0
+    ? 0
+    : MostDegree(EquiangularDirections(settings.directionsPerFace), wanted);
 }
 }

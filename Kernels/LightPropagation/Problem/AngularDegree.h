@@ -1,12 +1,26 @@
 #pragma once
 
+#include "Device/Device.h"
 #include "LightPropagation/PropagationSettings.h"
 #include "Medium/Medium.h"
 
+#include <cstddef>
+#include <limits>
+
 namespace tyndall
 {
-/// Degree of the angular moments to solve a medium with: the settings', or by its phase function where they leave it
-/// open; no more than the directions tell apart. 0 where scattering is isotropic.
+/// Bytes that a device has for arrays.
+struct DeviceMemory
+{
+  std::size_t all = std::numeric_limits<std::size_t>::max();
+  std::size_t one = std::numeric_limits<std::size_t>::max(); ///< of them
+};
+DeviceMemory MemoryOf(const Device& device);
+
+/// Degree of the angular moments to solve a medium with: the settings', or where they leave it open the highest whose
+/// moment of the phase function is more than the tolerance, up to 3 (in slabs 9, in thin media that scatter forwards
+/// 5), as far as there is memory; no more than the directions tell apart. 0 where scattering is isotropic, or so nearly
+/// that the similarity relation does.
 /// @param slab  plane-parallel: more moments cost little
-int AngularDegreeFor(const Medium& medium, const PropagationSettings& settings, bool slab);
+int AngularDegreeFor(const Medium& medium, const PropagationSettings& settings, bool slab, const DeviceMemory& memory);
 }

@@ -2,7 +2,6 @@
 
 #include "Device/Errors.h"
 #include "Light/LeftOut.h"
-#include "LightPropagation/Problem/AngularDegree.h"
 
 namespace tyndall
 {
@@ -45,8 +44,8 @@ const Grid& Checked(const Medium& medium, const Illumination& illumination, cons
 }
 }
 
-PropagationProblem::PropagationProblem(
-  const Medium& medium, const Illumination& illumination, const PropagationSettings& settings)
+PropagationProblem::PropagationProblem(const Medium& medium, const Illumination& illumination,
+  const PropagationSettings& settings, const DeviceMemory& memory)
   : Unvarying(Checked(medium, illumination, settings), illumination, settings)
   , TheSettings(settings)
   , DirectionsAskedFor(settings.directionsPerFace)
@@ -65,7 +64,7 @@ PropagationProblem::PropagationProblem(
     this->Solved = scene.medium;
     this->SolvedLight = scene.light;
   }
-  const int degree = AngularDegreeFor(this->Solved, this->TheSettings, this->IsSlab());
+  const int degree = AngularDegreeFor(this->Solved, this->TheSettings, this->IsSlab(), memory);
   this->Truncated.emplace(this->Solved, this->TheTraits.scatters ? degree : 0, this->ChannelCount);
   // The traits know of extinction by the similarity relation alone.
   this->TheTraits.greyExtinction =

@@ -2,6 +2,7 @@
 
 #include "Light/ChannelReduction.h"
 #include "Light/LightField.h"
+#include "LightPropagation/Problem/AngularDegree.h"
 #include "LightPropagation/Problem/SceneUnits.h"
 #include "LightPropagation/Problem/TruncatedScattering.h"
 #include "LightPropagation/Problem/UnvaryingAxes.h"
@@ -22,7 +23,9 @@ class PropagationProblem
 public:
   /// @param medium, illumination  their arrays must stay
   /// @throws InvalidInput what Check() of the three throw
-  PropagationProblem(const Medium& medium, const Illumination& illumination, const PropagationSettings& settings);
+  /// @param memory  for angular moments, where the settings leave open how many
+  PropagationProblem(const Medium& medium, const Illumination& illumination, const PropagationSettings& settings,
+    const DeviceMemory& memory = {});
   PropagationProblem(const PropagationProblem&) = delete; // the medium sees arrays that this owns
   PropagationProblem& operator=(const PropagationProblem&) = delete;
 

@@ -7,19 +7,35 @@
 
 namespace tyndall
 {
+namespace
+{
+template <class... Arguments>
+void OnMoments(Device& device, const VolumeLayout& layout, int functions, const char* name, int channel,
+  const Arguments&... arguments)
+{
+  cl::Kernel kernel = device.Kernel(name, kernel_source::MomentScattering);
+  With(kernel, layout.Places(functions), cl_int(channel), arguments...);
+  const std::array<int, 3>& size = layout.grid.size;
+  device.Queue().enqueueNDRangeKernel(
+    kernel, cl::NullRange, cl::NDRange(size[0], static_cast<std::size_t>(size[1]) * size[2], functions - 1));
+}
+}
+
 MomentScattering::MomentScattering(Device& device, const VolumeLayout& layout, const MediumOnDevice& medium, int degree)
   : TheDevice(device)
   , Layout(layout)
   , TheMedium(medium)
   , OfFluence(device, layout, medium, true)
   , Degree(degree)
-  , Functions(static_cast<std::size_t>(degree + 1) * (degree + 1))
+  , Functions((degree + 1) * (degree + 1))
 {
 }
 
-cl::Kernel MomentScattering::Kernel(const char* name) const
+/// Of a channel's moments from the second on; the kernel's arguments are where they are, the channel, and `arguments`.
+template <class... Arguments>
+void MomentScattering::RunOnMoments(const char* name, int channel, const Arguments&... arguments) const
 {
-  return this->TheDevice.Kernel(name, kernel_source::MomentScattering);
+  OnMoments(this->TheDevice, this->Layout, this->Functions, name, channel, arguments...);
 }
 
 /// From a path integral, W length, to the source of what is scattered of it with a coefficient of 1.
@@ -34,12 +50,13 @@ ScatteringOperator::Powers MomentScattering::ScatterOrder(const Deposit& swept, 
   const Powers powers = this->OfFluence.ScatterOrder(swept, fluence, source, range);
   if (swept.flux)
   {
-    AddFluxOfMoments(this->TheDevice, this->Layout, *swept.path, *swept.flux);
+    AddFluxOfMoments(this->TheDevice, this->Layout, this->Functions, *swept.path, *swept.flux);
   }
-  cl::Kernel kernel = this->Kernel("scatter_moments");
-  With(
-    kernel, *swept.path, source, this->TheMedium.SigmaOfDegrees(), cl_ulong(this->FunctionStride()), this->PerPath());
-  this->TheDevice.Queue().enqueueNDRangeKernel(kernel, cl::NullRange, this->Moments(this->FunctionStride()));
+  for (int c = 0; c < this->Layout.channels; ++c)
+  {
+    this->RunOnMoments("scatter_moments", c, *swept.path, source, this->TheMedium.SigmaOfDegrees(),
+      cl_ulong(this->Layout.Stride()), this->PerPath());
+  }
   return powers;
 }
 
@@ -51,18 +68,20 @@ void MomentScattering::ScatterAllOrders(const Buffer<float>&, const Buffer<float
 void MomentScattering::AddFirstScattered(const Deposit& uncollided, const Buffer<float>& source) const
 {
   this->OfFluence.AddFirstScattered(uncollided, source);
-  cl::Kernel kernel = this->Kernel("add_scattered_moments");
-  With(kernel, *uncollided.path, source, this->TheMedium.SigmaOfDegrees(), cl_ulong(this->FunctionStride()),
-    this->PerPath());
-  this->TheDevice.Queue().enqueueNDRangeKernel(kernel, cl::NullRange, this->Moments(this->FunctionStride()));
+  for (int c = 0; c < this->Layout.channels; ++c)
+  {
+    this->RunOnMoments("add_scattered_moments", c, *uncollided.path, source, this->TheMedium.SigmaOfDegrees(),
+      cl_ulong(this->Layout.Stride()), this->PerPath());
+  }
 }
 
-void MomentScattering::AddBeam(const Buffer<float>& path, const Buffer<float>& source, int slot) const
+void MomentScattering::AddBeam(const Buffer<float>& path, const Buffer<float>& source, int beam) const
 {
-  cl::Kernel kernel = this->Kernel("scatter_beam");
-  With(kernel, path, source, this->TheMedium.SigmaOfDegrees(), cl_ulong(this->FunctionStride()), cl_int(slot),
-    cl_int(this->Degree), this->PerPath());
-  this->TheDevice.Queue().enqueueNDRangeKernel(kernel, cl::NullRange, cl::NDRange(this->FunctionStride()));
+  const std::size_t values = this->Layout.channels * this->Layout.Stride();
+  cl::Kernel kernel = this->TheDevice.Kernel("scatter_beam", kernel_source::MomentScattering);
+  With(kernel, this->Layout.Places(this->Functions), path, source, this->TheMedium.SigmaOfDegrees(), cl_ulong(values),
+    cl_int(beam), cl_int(this->Degree), this->PerPath());
+  this->TheDevice.Queue().enqueueNDRangeKernel(kernel, cl::NullRange, cl::NDRange(values));
   this->TheDevice.Finish(); // the path goes
 }
 
@@ -70,23 +89,29 @@ void MomentScattering::ScatterFluence(int channel, const Deposit& swept, const E
   const Buffer<float>& given, const Buffer<float>& source) const
 {
   this->OfFluence.ScatterFluence(channel, swept, fluence, given, source);
-  cl::Kernel kernel = this->Kernel("scatter_given_moments");
-  With(kernel, *swept.path, given, source, this->TheMedium.SigmaOfDegrees(), cl_ulong(this->FunctionStride()),
-    cl_ulong(channel * this->Layout.Stride()), this->PerPath());
-  this->TheDevice.Queue().enqueueNDRangeKernel(kernel, cl::NullRange, this->Moments(this->Layout.grid.VoxelCount()));
+  this->RunOnMoments("scatter_given_moments", channel, *swept.path, given, source, this->TheMedium.SigmaOfDegrees(),
+    cl_ulong(this->Layout.Stride()), this->PerPath());
 }
 
-void AddMoments(Device& device, std::size_t stride, int functions, const Buffer<float>& path, const Buffer<float>& to)
+void AddMoments(
+  Device& device, const VolumeLayout& layout, int functions, const Buffer<float>& path, const Buffer<float>& to)
 {
-  cl::Kernel kernel = device.Kernel("add_moments", kernel_source::MomentScattering);
-  With(kernel, path, to, cl_ulong(stride));
-  device.Queue().enqueueNDRangeKernel(kernel, cl::NullRange, cl::NDRange(stride, functions - 1));
+  for (int c = 0; c < layout.channels; ++c)
+  {
+    OnMoments(device, layout, functions, "add_moments", c, path, to);
+  }
 }
 
-void AddFluxOfMoments(Device& device, const VolumeLayout& layout, const Buffer<float>& path, const Buffer<float>& flux)
+void AddFluxOfMoments(
+  Device& device, const VolumeLayout& layout, int functions, const Buffer<float>& path, const Buffer<float>& flux)
 {
-  cl::Kernel kernel = device.Kernel("add_flux_of_moments", kernel_source::MomentScattering);
-  With(kernel, path, flux, cl_ulong(layout.Stride()), cl_ulong(layout.channels * layout.Stride()));
-  device.Queue().enqueueNDRangeKernel(kernel, cl::NullRange, cl::NDRange(layout.Stride(), layout.channels));
+  const std::array<int, 3>& size = layout.grid.size;
+  for (int c = 0; c < layout.channels; ++c)
+  {
+    cl::Kernel kernel = device.Kernel("add_flux_of_moments", kernel_source::MomentScattering);
+    With(kernel, layout.Places(functions), cl_int(c), path, flux, cl_ulong(layout.Stride()));
+    device.Queue().enqueueNDRangeKernel(
+      kernel, cl::NullRange, cl::NDRange(size[0], static_cast<std::size_t>(size[1]) * size[2]));
+  }
 }
 }

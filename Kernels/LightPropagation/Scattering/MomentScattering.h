@@ -5,8 +5,8 @@
 namespace tyndall
 {
 /// Scattering in angular moments (AngularBasis.h): of each moment of degree l its part of sigma_s goes on (numerics.md,
-/// Eq. (42a)). Arrays have a moment after the other, [function][channel][stride]; the first is fluence, and scattered
-/// as IsotropicScattering has it.
+/// Eq. (42a)). Arrays are as MomentPlacesShared.h has them; the first moment is fluence, and scattered as
+/// IsotropicScattering has it.
 class MomentScattering : public ScatteringOperator
 {
 public:
@@ -18,14 +18,13 @@ public:
   bool CanScatterAllOrders() const override { return false; } ///< the moments of all orders are not kept
   void ScatterAllOrders(const Buffer<float>& fluence, const Buffer<float>& source) const override;
   void AddFirstScattered(const Deposit& uncollided, const Buffer<float>& source) const override;
-  void AddBeam(const Buffer<float>& path, const Buffer<float>& source, int slot) const override;
+  void AddBeam(const Buffer<float>& path, const Buffer<float>& source, int beam) const override;
   void ScatterFluence(int channel, const Deposit& swept, const ExactValues& fluence, const Buffer<float>& given,
     const Buffer<float>& source) const override;
 
 private:
-  cl::Kernel Kernel(const char* name) const;
-  std::size_t FunctionStride() const { return this->Layout.channels * this->Layout.Stride(); }
-  cl::NDRange Moments(std::size_t values) const { return cl::NDRange(values, this->Functions - 1); }
+  template <class... Arguments>
+  void RunOnMoments(const char* name, int channel, const Arguments&... arguments) const;
   float PerPath() const;
 
   Device& TheDevice;
@@ -33,12 +32,14 @@ private:
   const MediumOnDevice& TheMedium;
   IsotropicScattering OfFluence;
   int Degree;
-  std::size_t Functions;
+  int Functions;
 };
 
 /// Adds the moments of one path to those of another, but for the first, which is the path itself.
-void AddMoments(Device& device, std::size_t stride, int functions, const Buffer<float>& path, const Buffer<float>& to);
+void AddMoments(
+  Device& device, const VolumeLayout& layout, int functions, const Buffer<float>& path, const Buffer<float>& to);
 
 /// Adds the net flux that angular moments of a path hold to [channel][x, y, z][stride].
-void AddFluxOfMoments(Device& device, const VolumeLayout& layout, const Buffer<float>& path, const Buffer<float>& flux);
+void AddFluxOfMoments(
+  Device& device, const VolumeLayout& layout, int functions, const Buffer<float>& path, const Buffer<float>& flux);
 }

@@ -42,8 +42,7 @@ public:
   /// Adds what is first scattered of a parallel beam, in voxels that scatter exactly in angle (BeamScattering.h), to
   /// one of the beams behind the angular moments of `source`.
   /// @param path  the beam's, W length, [channel][stride]
-  /// @param slot  of [function, then beam]
-  virtual void AddBeam(const Buffer<float>& path, const Buffer<float>& source, int slot) const = 0;
+  virtual void AddBeam(const Buffer<float>& path, const Buffer<float>& source, int beam) const = 0;
 
   /// Writes one channel of `source`: what is given, and what is scattered of the fluence of all orders as it was found
   /// between two sweeps. Nowhere negative.

@@ -40,7 +40,8 @@ std::string DefineMoments(const SweepPlan& plan)
   const auto [evenEven, oddEven, evenOdd, oddOdd] = plan.order.counts;
   return Define("DEGREE", plan.angular->degree) + Define("BEAMS", plan.angular->Beams()) +
     Define("EVEN_EVEN", evenEven) + Define("ODD_EVEN", oddEven) + Define("EVEN_ODD", evenOdd) +
-    Define("ODD_ODD", oddOdd) + Define("TILE", RowsTogether);
+    Define("ODD_ODD", oddOdd) + Define("FUNCTION_ORDER", plan.order.functions) +
+    Define("MOMENTS_IN_PLACE", plan.momentsInPlace) + Define("TILE", RowsTogether);
 }
 
 struct AxisSweep::Implementation
@@ -49,7 +50,7 @@ struct AxisSweep::Implementation
     const std::array<bool, 3>& periodic, SweepWorkspace& workspace, bool sameBoundary)
     : TheDevice(device)
     , Plan(device, volume.grid, volume.box, axis, bundles, volume.channels, periodic, volume.deposit.flux != nullptr,
-        volume.deposit.partialCurrents != nullptr, volume.angular, volume.faceIn != nullptr)
+        volume.deposit.partialCurrents != nullptr, volume.angular, volume.moments, volume.faceIn != nullptr)
     , Workspace(workspace)
     , SameBoundary(sameBoundary)
   {
@@ -114,7 +115,6 @@ struct AxisSweep::Implementation
   Buffer<BundleMaps> MapPlaces;
   Buffer<UnitInfo> Units;
   Buffer<float> Coefficients;
-  Buffer<int> Functions;
   Buffer<cl_int2> FirstSchedule, RoundSchedule;
   Buffer<CrossingInfo> FirstCrossings;
   Buffer<OwnLightInfo> FirstOwnLight;
@@ -147,7 +147,6 @@ void AxisSweep::Implementation::MakeBuffers()
   this->Units = Buffer<UnitInfo>(device, plan.units, "the units of work");
   this->Coefficients = Buffer<float>(
     device, plan.coefficients.empty() ? std::vector<float>{ 0.0f } : plan.coefficients, "the angular functions");
-  this->Functions = Buffer<int>(device, plan.order.functions, "the angular functions");
   this->FirstSchedule = Buffer<cl_int2>(device, plan.schedule, "the schedule");
   this->RoundSchedule = Buffer<cl_int2>(device, plan.roundSchedule, "the schedule");
   this->FirstCrossings = Buffer<CrossingInfo>(device, plan.Crossings(0, plan.CrossingPlanes()), "the ray pattern");
@@ -244,7 +243,6 @@ void AxisSweep::Implementation::Launch(cl::Kernel kernel, const SweepVolume& vol
   info.sigmaFirst = volume.sigma_t_first;
   info.first = volume.first;
   info.stride = volume.stride;
-  info.functionStride = volume.functionStride;
   info.mapsEachWay = plan.mapsEachWay;
   info.outsideEachWay = static_cast<uint>(plan.outsideEachWay);
   info.radianceEachWay = static_cast<uint>(plan.radianceEachWay);
@@ -257,12 +255,16 @@ void AxisSweep::Implementation::Launch(cl::Kernel kernel, const SweepVolume& vol
   info.faces = this->Faces(volume.faceFirst);
   const Buffer<float>& faceOut = volume.deposit.faceOut ? *volume.deposit.faceOut : *volume.deposit.path;
   const Buffer<float>& faceIn = volume.faceIn ? *volume.faceIn : *volume.deposit.path;
+  info.moments = plan.moments;
+  info.packedMoments = plan.momentRow;
+  info.sizeY = plan.grid.size[1];
+  info.firstChannel = volume.firstChannel;
   for (int launch = 0; launch < schedule.launches; ++launch)
   {
     info.launch = launch;
     With(kernel, info, *volume.sigma_t, source, *volume.deposit.path, lost, flux, partialCurrents, this->Maps(),
-      this->Outside, this->Radiance, this->Workspace.scratch, this->Units, this->Bundles, this->Coefficients,
-      this->Functions, crossings, this->FirstOwnLight, schedule.planes, this->Sideways, faceOut, faceIn);
+      this->Outside, this->Radiance, this->Workspace.scratch, this->Units, this->Bundles, this->Coefficients, crossings,
+      this->FirstOwnLight, schedule.planes, this->Sideways, faceOut, faceIn);
     this->TheDevice.Queue().enqueueNDRangeKernel(kernel, cl::NullRange, cl::NDRange(plan.units.size()), cl::NDRange(1));
     this->TheDevice.Queued(plan.secondsPerLaunch);
     Report(monitor, (launch + 1.0) / schedule.launches);

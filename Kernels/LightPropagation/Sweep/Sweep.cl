@@ -84,37 +84,47 @@ static void clear(__global float* floats, int count)
   }
 }
 
+// A vector of rows, `step` floats apart, of a vector of planes: becomes as many vectors along the rows, `plane` floats
+// apart.
+// @param last  row that there is
+// @param count  planes that are wanted
+static inline __attribute__((always_inline)) void pack_block(
+  const __global float* from, ulong step, int last, integer beyond, __global float* to, int plane, int count)
+{
+  real columns[REAL_WIDTH];
+#pragma unroll
+  for (int i = 0; i < REAL_WIDTH; ++i)
+  {
+    columns[i] = load_real(min(i, last) * step, from);
+  }
+  transpose(columns);
+#pragma unroll
+  for (int j = 0; j < REAL_WIDTH; ++j)
+  {
+    if (j < count)
+    {
+      store_real(select(columns[j], (real)0.0f, beyond), j * plane, to);
+    }
+  }
+}
+
 // Copy one quantity of planes [first, first + count) into scratch, rows filled up with zeros. May read, not use, a
 // vector beyond the last voxel.
 static void pack(const PlaneInfo* layout, __global float* to, int first, int count, const __global float* volume)
 {
-  const int plane = plane_floats(layout);
   for (int v = 0; v < layout->sizeV; ++v)
   {
     for (int u = 0; u < layout->width; u += REAL_WIDTH)
     {
       const integer beyond = LANES >= layout->sizeU - u;
       const __global float* from = volume + place_of(layout, u, v, first);
+      __global float* here = to + v * PLANES * ROW + u;
       if (layout->block == 1)
       {
-        store_real(select(load_real(0, from), (real)0.0f, beyond), v * PLANES * ROW + u, to);
+        store_real(select(load_real(0, from), (real)0.0f, beyond), 0, here);
         continue;
       }
-      real columns[REAL_WIDTH];
-#pragma unroll
-      for (int i = 0; i < REAL_WIDTH; ++i)
-      {
-        columns[i] = load_real((ulong)min(i, layout->sizeU - 1 - u) * layout->stepU, from);
-      }
-      transpose(columns);
-#pragma unroll
-      for (int j = 0; j < REAL_WIDTH; ++j)
-      {
-        if (j < count)
-        {
-          store_real(select(columns[j], (real)0.0f, beyond), j * plane + v * PLANES * ROW + u, to);
-        }
-      }
+      pack_block(from, layout->stepU, layout->sizeU - 1 - u, beyond, here, plane_floats(layout), count);
     }
   }
 }
@@ -145,6 +155,28 @@ static void add_one(float value, __global float* sum, __global float* lost)
   }
 }
 
+// What pack_block did, undone: added to the volume with a sign.
+// @param used  rows that are there
+static inline __attribute__((always_inline)) void unpack_block(
+  const __global float* from, int plane, float sign, __global float* volume, __global float* lost, ulong step, int used)
+{
+  real rows[REAL_WIDTH];
+#pragma unroll
+  for (int j = 0; j < REAL_WIDTH; ++j)
+  {
+    rows[j] = sign * load_real(j * plane, from);
+  }
+  transpose(rows);
+#pragma unroll
+  for (int i = 0; i < REAL_WIDTH; ++i)
+  {
+    if (i < used)
+    {
+      add_real(rows[i], volume + i * step, lost ? lost + i * step : 0);
+    }
+  }
+}
+
 // Add one quantity of the planes, with a sign, to the volume; exactly their voxels are touched, as others may be in
 // work elsewhere.
 static void unpack(const PlaneInfo* layout, const __global float* from, int first, int count, float sign,
@@ -157,28 +189,14 @@ static void unpack(const PlaneInfo* layout, const __global float* from, int firs
     {
       const ulong at = place_of(layout, u, v, first);
       const int used = min(REAL_WIDTH, layout->sizeU - u);
+      const __global float* here = from + v * PLANES * ROW + u;
       if (layout->block == 1 && used == REAL_WIDTH)
       {
-        add_real(sign * load_real(v * PLANES * ROW + u, from), volume + at, lost ? lost + at : 0);
+        add_real(sign * load_real(0, here), volume + at, lost ? lost + at : 0);
       }
       else if (layout->block > 1 && count == REAL_WIDTH)
       {
-        real rows[REAL_WIDTH];
-#pragma unroll
-        for (int j = 0; j < REAL_WIDTH; ++j)
-        {
-          rows[j] = sign * load_real(j * plane + v * PLANES * ROW + u, from);
-        }
-        transpose(rows);
-#pragma unroll
-        for (int i = 0; i < REAL_WIDTH; ++i)
-        {
-          if (i < used)
-          {
-            const ulong row = at + (ulong)i * layout->stepU;
-            add_real(rows[i], volume + row, lost ? lost + row : 0);
-          }
-        }
+        unpack_block(here, plane, sign, volume + at, lost ? lost + at : 0, layout->stepU, used);
       }
       else
       {
@@ -187,7 +205,7 @@ static void unpack(const PlaneInfo* layout, const __global float* from, int firs
           for (int j = 0; j < count; ++j)
           {
             const ulong voxel = at + (ulong)i * layout->stepU + (ulong)j * layout->stepP;
-            add_one(sign * from[j * plane + v * PLANES * ROW + u + i], volume + voxel, lost ? lost + voxel : 0);
+            add_one(sign * here[j * plane + i], volume + voxel, lost ? lost + voxel : 0);
           }
         }
       }
@@ -209,29 +227,102 @@ static void find_thin_rows(const PlaneInfo* layout, const __global float* sigma,
   }
 }
 
-// Where moment k of a plane is in source and path: functions are in the order of the axis.
-static ulong moment_place(const SweepInfo* info, const __global int* functions, int k)
+#if DEGREE && !MOMENTS_IN_PLACE
+// Of the functions from the second on, where planes from `first` on, all of one group, have row (u, v) of a channel.
+static ulong moments_of(const SweepInfo* info, int channel, int u, int v, int first)
 {
-#if DEGREE
-  return functions[k] * info->functionStride;
-#else
-  return 0;
-#endif
+  const PlaneInfo* layout = &info->planes;
+  const ulong line = (ulong)(layout->firstV + v) * info->sizeY + layout->firstU + u; // along x rows are y and z
+  return (line * info->moments.channels + channel) * info->moments.groups * GROUP + IN_ROW(layout->firstP + first);
 }
 
+// And where packed planes have it.
+static int packed_moments_of(const SweepInfo* info, int channel, int u, int v)
+{
+  return v * info->packedMoments + channel * (info->packedMoments / CHANNELS) + IN_ROW(u);
+}
+
+// How many planes, from the one that rays come to next, are of one group.
+static int of_one_group(const PlaneInfo* layout, int next, int backward)
+{
+  const int plane = layout->firstP + (backward ? layout->sizeP - 1 - next : next);
+  return backward ? plane % MomentGroup + 1 : MomentGroup - plane % MomentGroup;
+}
+
+static void pack_moments(const SweepInfo* info, __global float* to, int first, int count, const __global float* source)
+{
+  const PlaneInfo* layout = &info->planes;
+  const ulong step = (ulong)info->moments.channels * info->moments.groups * GROUP;
+  const int plane = layout->sizeV * info->packedMoments;
+  for (int v = 0; v < layout->sizeV; ++v)
+  {
+    for (int u = 0; u < layout->width; u += REAL_WIDTH)
+    {
+      const integer beyond = LANES >= layout->sizeU - u;
+      for (int c = 0; c < CHANNELS; ++c)
+      {
+        const __global float* from = source + moments_of(info, c, u, v, first);
+        __global float* here = to + packed_moments_of(info, c, u, v);
+        for (int k = 0; k < HIGHER; ++k)
+        {
+          pack_block(from + k * MomentGroup, step, layout->sizeU - 1 - u, beyond, here + k * MomentGroup, plane, count);
+        }
+      }
+    }
+  }
+}
+
+static void unpack_moments(
+  const SweepInfo* info, const __global float* from, int first, int count, __global float* path)
+{
+  const PlaneInfo* layout = &info->planes;
+  const ulong step = (ulong)info->moments.channels * info->moments.groups * GROUP;
+  const int plane = layout->sizeV * info->packedMoments;
+  for (int v = 0; v < layout->sizeV; ++v)
+  {
+    for (int u = 0; u < layout->sizeU; u += REAL_WIDTH)
+    {
+      const int used = min(REAL_WIDTH, layout->sizeU - u);
+      for (int c = 0; c < CHANNELS; ++c)
+      {
+        const __global float* here = from + packed_moments_of(info, c, u, v);
+        __global float* to = path + moments_of(info, c, u, v, first);
+        for (int k = 0; k < HIGHER; ++k, here += MomentGroup, to += MomentGroup)
+        {
+          if (count == REAL_WIDTH)
+          {
+            unpack_block(here, plane, 1.0f, to, 0, step, used);
+            continue;
+          }
+          for (int i = 0; i < used; ++i)
+          {
+            for (int j = 0; j < count; ++j)
+            {
+              to[i * step + j] += here[j * plane + i];
+            }
+          }
+        }
+      }
+    }
+  }
+}
+#endif
+
 // Make planes [first, first + count) ready to be crossed.
+// @param beams  of the source
 static void begin_planes(const SweepInfo* info, __global float* planes, __global int* thin, int first, int count,
-  const __global float* sigma, const __global float* source, const __global int* functions)
+  const __global float* sigma, const __global float* source, const __global float* beams)
 {
   const PlaneInfo* layout = &info->planes;
   pack(layout, planes + PlaneSigma * ROW, first, count, sigma);
 #if SOURCE
-  for (int k = 0; k < MOMENTS + BEAMS; ++k)
+  for (int c = 0; c < CHANNELS; ++c)
   {
-    for (int c = 0; c < CHANNELS; ++c)
+    pack(layout, planes + (PlaneSource + c) * ROW, first, count, source + c * info->stride);
+    for (int b = 0; b < BEAMS; ++b)
     {
-      const ulong place = k < MOMENTS ? moment_place(info, functions, k) : k * info->functionStride;
-      pack(layout, planes + (PlaneSource + k * CHANNELS + c) * ROW, first, count, source + place + c * info->stride);
+      pack(layout, planes + (PLANE_BEAMS + b * CHANNELS + c) * ROW, first, count,
+        beams + (b * info->moments.channels + c) * info->stride);
     }
   }
 #endif
@@ -285,8 +376,7 @@ static void add_own_light(const PlaneInfo* layout, __global float* row, const __
 // Add what the planes gathered to the volume.
 // own      [plane from where rays start] of the first plane crossed
 static void end_planes(const SweepInfo* info, __global float* planes, int first, int count, __global float* path,
-  __global float* lost, __global float* flux, __global float* currents, const __global int* functions,
-  const __global OwnLightInfo* own, int backward)
+  __global float* lost, __global float* flux, __global float* currents, const __global OwnLightInfo* own, int backward)
 {
   const PlaneInfo* layout = &info->planes;
   const ulong stride = info->stride;
@@ -302,12 +392,8 @@ static void end_planes(const SweepInfo* info, __global float* planes, int first,
 #endif
   for (int c = 0; c < CHANNELS; ++c)
   {
-    for (int k = 0; k < MOMENTS; ++k)
-    {
-      const ulong place = moment_place(info, functions, k);
-      unpack(layout, planes + (PLANE_PATH + k * CHANNELS + c) * ROW, first, count, 1.0f, path + place + c * stride,
-        PERIODIC_P && place == 0 ? lost + c * stride : 0);
-    }
+    unpack(layout, planes + (PLANE_PATH + c) * ROW, first, count, 1.0f, path + c * stride,
+      PERIODIC_P ? lost + c * stride : 0);
 #if NET_FLUX
     const __global float* fluxes = planes + (PLANE_FLUX + 3 * c) * ROW;
     unpack(layout, fluxes, first, count, 1.0f, flux + (3 * c + (axis == 0 ? 1 : 0)) * stride, 0);
@@ -385,16 +471,14 @@ static void cross_bundles(sweep_state* state, __global float* maps, const __glob
 }
 
 // sigma     1/length, [voxel]
-// source    W / (length^3 sr), [function, then beam][channel][stride]
-// path      W length, [function][channel][stride], added to
+// source    W / (length^3 sr), with its angular moments and beams (MomentPlacesShared.h)
+// path      W length, with its angular moments, added to
 // lost      as path: what rounding took from it in this sweep, where PERIODIC_P
 // flux      W length, [channel][x, y, z][stride], added to
 // currents  W, [channel][-x, +x, -y, +y, -z, +z][stride], added to: through that face into the voxel
 // maps      rays of both ways
 // outside, radiance   rays that come in, both ways as maps
 // coefficients  see BundleInfo, both ways as maps
-// functions the angular functions in the order of the axis: even and even along u and v, odd and even, even and odd,
-//           odd and odd
 // crossings [plane of the ray pattern][bundle]
 // own       [unit][plane from where rays start], see add_own_light
 // schedule  [launch][unit] first plane and end, counted from where rays start; beyond the last plane the axis begins
@@ -405,9 +489,8 @@ __kernel __attribute__((reqd_work_group_size(1, 1, 1))) void sweep(SweepInfo inf
   const __global float* source, __global float* path, __global float* lost, __global float* flux,
   __global float* currents, __global float* maps, const __global float* outside, const __global float* radiance,
   __global float* scratch, const __global UnitInfo* units, const __global BundleInfo* bundles,
-  const __global float* coefficients, const __global int* functions, const __global CrossingInfo* crossings,
-  const __global OwnLightInfo* own, const __global int2* schedule, __global float* tally, __global float* face_out,
-  const __global float* face_in)
+  const __global float* coefficients, const __global CrossingInfo* crossings, const __global OwnLightInfo* own,
+  const __global int2* schedule, __global float* tally, __global float* face_out, const __global float* face_in)
 {
   const int u = get_global_id(0);
   const int unit_count = get_global_size(0);
@@ -442,6 +525,20 @@ __kernel __attribute__((reqd_work_group_size(1, 1, 1))) void sweep(SweepInfo inf
   planes += RAYS_OF_ROW + PAD;
 #endif
   __global int* thin = (__global int*)(planes + layout.block * plane_floats(&layout));
+#if DEGREE
+  const ulong channel = (ulong)info.moments.groups * GROUP;
+  const ulong higher = info.moments.second + info.firstChannel * channel;
+  const __global float* higher_source = source + higher;
+  __global float* higher_path = path + higher;
+  const __global float* beams = source + info.moments.beams + info.first;
+#if !MOMENTS_IN_PLACE
+  const int moment_plane = layout.sizeV * info.packedMoments;
+  __global float* packed_source = (__global float*)thin + layout.block * layout.sizeV + REAL_WIDTH;
+  __global float* packed_path = packed_source + layout.block * moment_plane;
+#endif
+#else
+  const __global float* beams = source;
+#endif
   for (int i = 0; i < MeanLengthTerms; ++i)
   {
     state.meanLength[i] = layout.meanLength[i];
@@ -472,8 +569,17 @@ __kernel __attribute__((reqd_work_group_size(1, 1, 1))) void sweep(SweepInfo inf
   {
     const int lap = begin / layout.sizeP * layout.sizeP; // planes already marched when the axis began anew
     count = min(min(layout.block, range.y - begin), lap + layout.sizeP - begin);
+#if DEGREE && !MOMENTS_IN_PLACE
+    count = min(count, of_one_group(&layout, begin - lap, unit.backward));
+#endif
     const int first = unit.backward ? layout.sizeP - (begin - lap) - count : begin - lap;
-    begin_planes(&info, planes, thin, first, count, sigma, source, functions);
+    begin_planes(&info, planes, thin, first, count, sigma, source, beams);
+#if DEGREE && !MOMENTS_IN_PLACE
+#if SOURCE
+    pack_moments(&info, packed_source, first, count, higher_source);
+#endif
+    clear(packed_path, count * moment_plane);
+#endif
     for (int k = begin; k < begin + count; ++k)
     {
       const int plane = unit.backward ? layout.sizeP - 1 - (k - lap) : k - lap;
@@ -481,6 +587,21 @@ __kernel __attribute__((reqd_work_group_size(1, 1, 1))) void sweep(SweepInfo inf
       state.thin = thin + (plane - first) * layout.sizeV;
 #if FACE_OUT || FACE_IN
       go_to_faces(&state, layout.firstP + plane);
+#endif
+#if DEGREE && MOMENTS_IN_PLACE
+      const ulong line = info.moments.channels * channel;
+      const ulong across = info.axis == 2 ? 1 : info.sizeY; // lines from one row of the plane to the next
+      const ulong along = info.axis == 2 ? info.sizeY : 1;
+      const ulong here = line * ((layout.firstP + plane) * along + layout.firstV * across);
+      state.momentSource = higher_source + here;
+      state.momentPath = higher_path + here;
+      state.momentStep = line * across;
+      state.momentChannel = channel;
+#elif DEGREE
+      state.momentSource = packed_source + (plane - first) * moment_plane;
+      state.momentPath = packed_path + (plane - first) * moment_plane;
+      state.momentStep = info.packedMoments;
+      state.momentChannel = info.packedMoments / CHANNELS;
 #endif
       for (int side = 0; side < 4; ++side)
       {
@@ -504,7 +625,10 @@ __kernel __attribute__((reqd_work_group_size(1, 1, 1))) void sweep(SweepInfo inf
         }
       }
     }
-    end_planes(&info, planes, first, count, path, lost, flux, currents, functions, own + u * info.patternPlanes + begin,
-      unit.backward);
+    end_planes(
+      &info, planes, first, count, path, lost, flux, currents, own + u * info.patternPlanes + begin, unit.backward);
+#if DEGREE && !MOMENTS_IN_PLACE
+    unpack_moments(&info, packed_path, first, count, higher_path);
+#endif
   }
 }

@@ -23,6 +23,16 @@
 
 #if DEGREE
 #include "LightPropagation/Sweep/SweepMoments.cl"
+// A function for as many frames as the bundle has.
+#define FOR_FRAMES(FUNCTION, ...) \
+  if (bundle->frames == 2)        \
+  {                               \
+    FUNCTION(__VA_ARGS__, 2);     \
+  }                               \
+  else                            \
+  {                               \
+    FUNCTION(__VA_ARGS__, 1);     \
+  }
 #else
 
 // All rays of a row through one segment each (numerics.md, Eqs. (23), (24); Gruson et al., Eq. 3, conservative):
@@ -116,7 +126,7 @@ static void STAGE_ROW(sweep_state* state, int y, int slot, bool first, bool depo
   __global float* out, float length, const __global BundleInfo* bundle)
 {
 #if DEGREE
-#define CROSS_ROW(thin) CROSS_MOMENTS(state, y, slot, first, deposit, thin, in, out, length, bundle)
+#define CROSS_ROW(thin) CROSS_MOMENTS(state, y, slot, first, thin, in, out, length, bundle)
 #else
 #define CROSS_ROW(thin) CROSS_VOXELS(state, y, deposit, thin, in, out, length, bundle)
 #endif
@@ -418,7 +428,7 @@ static void CROSS_PLANE(sweep_state* state, __global float* map, const __global 
 #if DEGREE && SOURCE
       if (s == 0)
       {
-        FIND_SOURCES(state, wrapped, slot, bundle, coefficients);
+        FOR_FRAMES(FIND_SOURCES, state, wrapped, slot, bundle, coefficients)
       }
 #endif
       STAGE_ROW(state, wrapped, slot, s == 0, inside, in, out, crossing->length[s], bundle);
@@ -431,7 +441,7 @@ static void CROSS_PLANE(sweep_state* state, __global float* map, const __global 
 #if DEGREE
       if (inside && s == stages - 1)
       {
-        GATHER_MOMENTS(state, y, slot, bundle, coefficients);
+        FOR_FRAMES(GATHER_MOMENTS, state, y, slot, bundle, coefficients)
       }
 #endif
     }
@@ -440,6 +450,7 @@ static void CROSS_PLANE(sweep_state* state, __global float* map, const __global 
 
 #undef ENTER_ASIDE
 #undef FILL_OUTSIDE
+#undef FOR_FRAMES
 #undef CROSS_MOMENTS
 #undef FIND_SOURCES
 #undef GATHER_MOMENTS

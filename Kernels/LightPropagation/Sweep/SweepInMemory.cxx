@@ -38,6 +38,7 @@ SweepVolume SweepInMemory::VolumeOf(const ChannelGroup& group, const Buffer<floa
   volume.source = source;
   volume.angular = this->Angular;
   volume.faceIn = this->FaceIn;
+  volume.moments = this->Layout.Places(this->Angular ? this->Angular->Functions() : 1);
   volume.deposit.flux = this->Angular ? nullptr : volume.deposit.flux; // it is among the moments
   return volume;
 }

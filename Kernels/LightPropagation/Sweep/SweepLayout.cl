@@ -6,7 +6,9 @@
 //   DEGREE    of the angular moments in which light is gathered and scattered; 0: fluence alone
 //   BEAMS     sources with an angular distribution of their own, besides the moments; where DEGREE is not 0
 //   EVEN_EVEN, ODD_EVEN, EVEN_ODD, ODD_ODD  how many of the angular functions are even or odd along u and v; where
-//             DEGREE is not 0
+//             DEGREE is not 0, as are
+//   FUNCTION_ORDER  the functions by parity: even and even, odd and even, even and odd, odd and odd
+//   MOMENTS_IN_PLACE  1: they are read and added to where they are; 0: they are packed like the rest of a plane
 //   NET_FLUX  1 where the net flux is wanted
 //   CURRENTS  1 where the power that enters each voxel through each face is wanted
 //   BORDER    1 where light comes in through the faces that rays pass sideways
@@ -27,14 +29,22 @@
 
 // The quantities of one plane, behind those of SweepShared.h.
 #define MOMENTS ((DEGREE + 1) * (DEGREE + 1))
-#define PLANE_BEAMS (PlaneSource + MOMENTS * CHANNELS)
-#define PLANE_PATH (PLANE_BEAMS + BEAMS * CHANNELS) // moments of the path integral of power, W length
-#define PLANE_FLUX (PLANE_PATH + MOMENTS * CHANNELS)
+#define PLANE_BEAMS (PlaneSource + CHANNELS)
+#define PLANE_PATH (PLANE_BEAMS + BEAMS * CHANNELS) // the path integral of power, W length
+#define PLANE_FLUX (PLANE_PATH + CHANNELS)
 #define PLANE_CURRENTS (PLANE_FLUX + FLUX * CHANNELS) // power that enters through CurrentFaces, W
-#define PLANES PLANE_COUNT(CHANNELS, MOMENTS, BEAMS, NET_FLUX, CURRENTS)
+#define PLANES PLANE_COUNT(CHANNELS, BEAMS, NET_FLUX, CURRENTS)
 #define RAYS_OF_ROW (MaxMembers * CHANNELS * ROW)
 // A plane is [row][quantity][ROW]: what is needed at once lies together, and no stride is a power of two.
 #define ROW_OF(planes, quantity, row) ((planes) + ((row)*PLANES + (quantity)) * ROW)
+
+#if DEGREE
+// Of the functions from the second on, as MomentPlacesShared.h has them: floats of a group, and where voxel x is.
+#define HIGHER (MOMENTS - 1)
+#define GROUP (HIGHER * MomentGroup)
+#define IN_ROW(x) ((x) / MomentGroup * GROUP + (x) % MomentGroup)
+static __constant int function_order[MOMENTS] = { FUNCTION_ORDER };
+#endif
 
 // Where a work-item is: its planes, its rows, its buffers.
 typedef struct
@@ -49,6 +59,10 @@ typedef struct
   __global float* sources; // MomentRows rows of RAYS_OF_ROW floats: W / (length^3 sr) in the members' directions
   __global float* paths;   // the same: W length, of the members
   __global float* ownPath; // MomentRows rows: of a source of 1 in its own voxel
+  // Of the plane, from the second function on: source and path, and the way from one row or channel to the next.
+  const __global float* momentSource;
+  __global float* momentPath;
+  ulong momentStep, momentChannel;
 #endif
   __global float* moving;     // the rays of a row of which a part moves
   float escaped[4][CHANNELS]; // through -u, +u, -v, +v, W; with the rounding errors

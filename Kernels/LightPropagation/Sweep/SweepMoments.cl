@@ -3,40 +3,74 @@
 //
 // Members of a frame differ in the signs of u and v alone: each angular function has one value for all of them, but for
 // its sign. Functions are summed up by their parity along u and v, four sums for up to four members, instead of one for
-// each member.
+// each member. A bundle has one frame or two; a value of a function is read once for both.
 
 #define MOST_OF_FRAME (MEMBERS < 4 ? MEMBERS : 4)
 
-// Sum of coefficient times row over functions [begin, begin + count).
-#define ADD_FUNCTIONS(sum, begin, count)                                                \
-  _Pragma("unroll") for (int k = begin; k < begin + count; ++k)                         \
-  {                                                                                     \
-    sum = multiply_add(load_real(x, row + k * CHANNELS * ROW), (real)of_frame[k], sum); \
+// What follows for each function k of one parity in turn.
+#define OF_EVEN_EVEN(MACRO) FUNCTIONS_OF(MACRO, 1, EVEN_EVEN, 0)
+#define OF_ODD_EVEN(MACRO) FUNCTIONS_OF(MACRO, EVEN_EVEN, EVEN_EVEN + ODD_EVEN, 1)
+#define OF_EVEN_ODD(MACRO) FUNCTIONS_OF(MACRO, EVEN_EVEN + ODD_EVEN, EVEN_EVEN + ODD_EVEN + EVEN_ODD, 2)
+#define OF_ODD_ODD(MACRO) FUNCTIONS_OF(MACRO, EVEN_EVEN + ODD_EVEN + EVEN_ODD, MOMENTS, 3)
+#define FUNCTIONS_OF(MACRO, begin, end, parity)              \
+  _Pragma("unroll") for (int k = begin; k < end; ++k)        \
+  {                                                          \
+    const int place = (function_order[k] - 1) * MomentGroup; \
+    MACRO(parity)                                            \
+  }
+// Those of a parity are left out where they are zero in all of the bundle's directions.
+#define OF_ALL_PARITIES(MACRO) \
+  OF_EVEN_EVEN(MACRO)          \
+  if (parities & 2)            \
+  {                            \
+    OF_ODD_EVEN(MACRO)         \
+  }                            \
+  if (parities & 4)            \
+  {                            \
+    OF_EVEN_ODD(MACRO)         \
+  }                            \
+  if (parities & 8)            \
+  {                            \
+    OF_ODD_ODD(MACRO)          \
   }
 
 // The source in the direction of each member, in row y, into slot `slot`. Rows lie as those of the rings, whose last
 // row's border is the first one's here.
-static void FIND_SOURCES(
-  sweep_state* state, int y, int slot, const __global BundleInfo* bundle, const __global float* coefficients)
+// @param frames  of the bundle, a constant where this is called
+static inline __attribute__((always_inline)) void FIND_SOURCES(sweep_state* state, int y, int slot,
+  const __global BundleInfo* bundle, const __global float* coefficients, const int frames)
 {
   __global float* out = state->sources + slot * RAYS_OF_ROW;
-  const __global float* of_beams = coefficients + bundle->frames * MOMENTS;
-  for (int f = 0; f < bundle->frames; ++f)
+  const __global float* of_beams = coefficients + frames * MOMENTS;
+  const int parities = bundle->parities;
+  for (int c = 0; c < CHANNELS; ++c)
   {
-    const __global float* of_frame = coefficients + f * MOMENTS;
-    const int first = bundle->firstOfFrame[f];
-    const int count = bundle->firstOfFrame[f + 1] - first;
-    for (int c = 0; c < CHANNELS; ++c)
+    const __global float* fluence = ROW_OF(state->planes, PlaneSource + c, y);
+    const __global float* higher = state->momentSource + y * state->momentStep + c * state->momentChannel;
+    const __global float* beams = ROW_OF(state->planes, PLANE_BEAMS + c, y);
+    for (int x = 0; x < state->width; x += REAL_WIDTH)
     {
-      const __global float* row = ROW_OF(state->planes, PlaneSource + c, y);
-      const __global float* beams = ROW_OF(state->planes, PLANE_BEAMS + c, y);
-      for (int x = 0; x < state->width; x += REAL_WIDTH)
+      const int group = IN_ROW(x);
+      real sums[MaxFrames][4];
+#pragma unroll
+      for (int f = 0; f < frames; ++f)
       {
-        real ee = (real)0.0f, oe = (real)0.0f, eo = (real)0.0f, oo = (real)0.0f;
-        ADD_FUNCTIONS(ee, 0, EVEN_EVEN)
-        ADD_FUNCTIONS(oe, EVEN_EVEN, ODD_EVEN)
-        ADD_FUNCTIONS(eo, EVEN_EVEN + ODD_EVEN, EVEN_ODD)
-        ADD_FUNCTIONS(oo, EVEN_EVEN + ODD_EVEN + EVEN_ODD, ODD_ODD)
+        sums[f][0] = load_real(x, fluence) * (real)coefficients[f * MOMENTS];
+        sums[f][1] = sums[f][2] = sums[f][3] = (real)0.0f;
+      }
+#define ADD_FUNCTION(parity)                                                                     \
+  const real value = load_real(group, higher + place);                                           \
+  _Pragma("unroll") for (int f = 0; f < frames; ++f)                                             \
+  {                                                                                              \
+    sums[f][parity] = multiply_add(value, (real)coefficients[f * MOMENTS + k], sums[f][parity]); \
+  }
+      OF_ALL_PARITIES(ADD_FUNCTION)
+#undef ADD_FUNCTION
+#pragma unroll
+      for (int f = 0; f < frames; ++f)
+      {
+        const int first = f == 0 ? 0 : bundle->firstOfFrame[1];
+        const int count = bundle->firstOfFrame[f + 1] - first;
 #pragma unroll
         for (int i = 0; i < MOST_OF_FRAME; ++i)
         {
@@ -44,8 +78,8 @@ static void FIND_SOURCES(
           {
             const int m = first + i;
             const float2 sign = signs_of(bundle, m);
-            const real u = multiply_add(oo, (real)sign.y, oe);
-            real source = multiply_add(u, (real)sign.x, multiply_add(eo, (real)sign.y, ee));
+            const real u = multiply_add(sums[f][3], (real)sign.y, sums[f][1]);
+            real source = multiply_add(u, (real)sign.x, multiply_add(sums[f][2], (real)sign.y, sums[f][0]));
 #pragma unroll
             for (int b = 0; b < BEAMS; ++b)
             {
@@ -62,8 +96,7 @@ static void FIND_SOURCES(
 // All rays of a row through one segment each, as CROSS_VOXELS has it, but for a source of each member's own, and a path
 // of its own.
 static inline __attribute__((always_inline)) void CROSS_MOMENTS(sweep_state* state, int y, int slot, bool first,
-  bool deposit, bool thin, const __global float** in, __global float* out, float length,
-  const __global BundleInfo* bundle)
+  bool thin, const __global float** in, __global float* out, float length, const __global BundleInfo* bundle)
 {
   const __global float* sigma_row = ROW_OF(state->planes, PlaneSigma, y);
   const __global float* inverse_row = ROW_OF(state->planes, PlaneInverse, y);
@@ -99,23 +132,28 @@ static inline __attribute__((always_inline)) void CROSS_MOMENTS(sweep_state* sta
 }
 
 // Adds the members' paths to the moments of row y.
-static void GATHER_MOMENTS(
-  sweep_state* state, int y, int slot, const __global BundleInfo* bundle, const __global float* coefficients)
+// @param frames  as above
+static inline __attribute__((always_inline)) void GATHER_MOMENTS(sweep_state* state, int y, int slot,
+  const __global BundleInfo* bundle, const __global float* coefficients, const int frames)
 {
   const __global float* sources = state->sources + slot * RAYS_OF_ROW;
   const __global float* paths = state->paths + slot * RAYS_OF_ROW;
   const __global float* own_row = state->ownPath + slot * ROW;
-  for (int f = 0; f < bundle->frames; ++f)
+  const int parities = bundle->parities;
+  for (int c = 0; c < CHANNELS; ++c)
   {
-    const __global float* of_frame = coefficients + f * MOMENTS;
-    const int first = bundle->firstOfFrame[f];
-    const int count = bundle->firstOfFrame[f + 1] - first;
-    for (int c = 0; c < CHANNELS; ++c)
+    __global float* fluence = ROW_OF(state->planes, PLANE_PATH + c, y);
+    __global float* higher = state->momentPath + y * state->momentStep + c * state->momentChannel;
+    for (int x = 0; x < state->width; x += REAL_WIDTH)
     {
-      __global float* row = ROW_OF(state->planes, PLANE_PATH + c, y);
-      for (int x = 0; x < state->width; x += REAL_WIDTH)
+      const int group = IN_ROW(x);
+      real sums[MaxFrames][4];
+#pragma unroll
+      for (int f = 0; f < frames; ++f)
       {
-        real ee = (real)0.0f, oe = (real)0.0f, eo = (real)0.0f, oo = (real)0.0f;
+        const int first = f == 0 ? 0 : bundle->firstOfFrame[1];
+        const int count = bundle->firstOfFrame[f + 1] - first;
+        sums[f][0] = sums[f][1] = sums[f][2] = sums[f][3] = (real)0.0f;
 #pragma unroll
         for (int i = 0; i < MOST_OF_FRAME; ++i)
         {
@@ -128,25 +166,36 @@ static void GATHER_MOMENTS(
 #if SOURCE
             path = multiply_add(load_real(x, own_row), load_real(x, sources + at), path);
 #endif
-            ee += path;
-            oe = multiply_add(path, (real)sign.x, oe);
-            eo = multiply_add(path, (real)sign.y, eo);
-            oo = multiply_add(path, (real)(sign.x * sign.y), oo);
+            sums[f][0] += path;
+            sums[f][1] = multiply_add(path, (real)sign.x, sums[f][1]);
+            sums[f][2] = multiply_add(path, (real)sign.y, sums[f][2]);
+            sums[f][3] = multiply_add(path, (real)(sign.x * sign.y), sums[f][3]);
           }
         }
-#pragma unroll
-        for (int k = 0; k < MOMENTS; ++k)
-        {
-          const real sum = k < EVEN_EVEN          ? ee
-            : k < EVEN_EVEN + ODD_EVEN            ? oe
-            : k < EVEN_EVEN + ODD_EVEN + EVEN_ODD ? eo
-                                                  : oo;
-          __global float* moment = row + k * CHANNELS * ROW;
-          store_real(multiply_add(sum, (real)of_frame[k], load_real(x, moment)), x, moment);
-        }
       }
+      real sum = load_real(x, fluence);
+#pragma unroll
+      for (int f = 0; f < frames; ++f)
+      {
+        sum = multiply_add(sums[f][0], (real)coefficients[f * MOMENTS], sum);
+      }
+      store_real(sum, x, fluence);
+#define ADD_SUM(parity)                                                                  \
+  real moment = load_real(group, higher + place);                                        \
+  _Pragma("unroll") for (int f = 0; f < frames; ++f)                                     \
+  {                                                                                      \
+    moment = multiply_add(sums[f][parity], (real)coefficients[f * MOMENTS + k], moment); \
+  }                                                                                      \
+  store_real(moment, group, higher + place);
+      OF_ALL_PARITIES(ADD_SUM)
+#undef ADD_SUM
     }
   }
 }
-#undef ADD_FUNCTIONS
+#undef OF_ALL_PARITIES
+#undef FUNCTIONS_OF
+#undef OF_ODD_ODD
+#undef OF_EVEN_ODD
+#undef OF_ODD_EVEN
+#undef OF_EVEN_EVEN
 #undef MOST_OF_FRAME

@@ -4,6 +4,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <stdexcept>
 
 namespace tyndall
 {
@@ -11,6 +12,7 @@ namespace
 {
 constexpr double SecondsPerLaunch = 0.08;
 constexpr double SecondsPerRay = 1e-9; ///< a ray through a plane of voxels on a slow core: only sizes the launches
+constexpr double ZeroFunction = 1e-6;  ///< of angular functions, whose squares have a mean of 1
 constexpr int MostGroups = 4;          ///< of bundles that march one behind the other
 
 /// (1 - exp(-t)) / t = 1 + t (MeanLength[0] + t (MeanLength[1] + ...)), to 2e-8 for 0 <= t < Thin: a minimax
@@ -89,7 +91,7 @@ double LongestWay(const std::vector<Bundle>& bundles)
 
 SweepPlan::SweepPlan(const Device& device, const Grid& ofGrid, const VoxelBox& ofBox, int axis,
   const std::vector<Bundle>& ofBundles, int channelCount, const std::array<bool, 3>& periodicAxes, bool wantsNetFlux,
-  bool wantsCurrents, const AngularValues* angularValues, bool entersByCells)
+  bool wantsCurrents, const AngularValues* angularValues, const MomentPlaces& momentPlaces, bool entersByCells)
   : grid(ofGrid)
   , box(ofBox.VoxelCount() > 0 ? ofBox : VoxelBox{ { 0, 0, 0 }, ofGrid.size })
   , axes(AcrossAxis(axis))
@@ -100,6 +102,7 @@ SweepPlan::SweepPlan(const Device& device, const Grid& ofGrid, const VoxelBox& o
   , partialCurrents(wantsCurrents)
   , angular(angularValues)
   , faceIn(entersByCells)
+  , moments(momentPlaces)
   , order(angularValues ? angularValues->degree : 0, AcrossAxis(axis).u, AcrossAxis(axis).v)
 {
   if (this->angular)
@@ -119,6 +122,7 @@ SweepPlan::SweepPlan(const Device& device, const Grid& ofGrid, const VoxelBox& o
   this->LayBundles();
   if (this->angular)
   {
+    this->LayMoments();
     this->LayFrames();
   }
   this->LayUnits(device.ComputeUnits());
@@ -150,6 +154,17 @@ void SweepPlan::LayPlane(const Device& device)
     this->axes.u == 0 ? 1 : this->vector, static_cast<float>(std::max(1e-30 / LongestWay(this->bundles), 1e-37)),
     static_cast<float>(Thin / this->LongestSegment()), {} };
   std::copy(MeanLength, MeanLength + MeanLengthTerms, this->plane.meanLength);
+}
+
+void SweepPlan::LayMoments()
+{
+  if (this->box.size[0] != this->grid.size[0])
+  {
+    throw std::logic_error("angular moments are swept in whole rows");
+  }
+  this->momentsInPlace = this->axes.u == 0;
+  const int groups = (this->plane.width + MomentGroup - 1) / MomentGroup;
+  this->momentRow = this->channels * groups * (this->moments.functions - 1) * MomentGroup;
 }
 
 /// Through a voxel. Of rays that go round a periodic axis their way through a plane stands for it.
@@ -191,7 +206,7 @@ BundleInfo SweepPlan::Describe(const Bundle& bundle) const
   };
   BundleInfo description = { Int(bundle.members.size()), Int(this->mapsEachWay), Int(this->radianceEachWay),
     Int(this->outsideEachWay), static_cast<float>(bundle.power), static_cast<float>(cosine),
-    sine(bundle.tangentU, this->axes.u), sine(bundle.tangentV, this->axes.v), {}, 0, {}, 0 };
+    sine(bundle.tangentU, this->axes.u), sine(bundle.tangentV, this->axes.v), {}, 0, {}, 0, 0 };
   for (std::size_t m = 0; m < bundle.members.size(); ++m)
   {
     const Member& member = bundle.members[m];
@@ -217,6 +232,7 @@ void SweepPlan::LayFrames()
     }
     info.firstOfFrame[info.frames] = Int(members.size());
     info.coefficients = Int(this->coefficientsEachWay);
+    info.parities = this->ParitiesOf(this->bundles[b]);
     this->coefficientsEachWay += info.frames * this->angular->Functions() + members.size() * this->angular->Beams();
   }
   for (int way = 0; way < 2; ++way)
@@ -226,6 +242,26 @@ void SweepPlan::LayFrames()
       this->LayCoefficients(b, way);
     }
   }
+}
+
+/// Bit i: functions of parity i, in the order of FunctionOrder, are not zero in all of the bundle's directions.
+int SweepPlan::ParitiesOf(const Bundle& bundle) const
+{
+  int parities = 0;
+  for (const Member& member : bundle.members)
+  {
+    for (const int direction : { member.direction, member.opposite })
+    {
+      for (std::size_t k = 0; direction >= 0 && k < this->order.functions.size(); ++k)
+      {
+        const int function = this->order.functions[k];
+        const std::array<bool, 3> odd = AngularBasis::IsOdd(function);
+        const bool counts = std::abs(this->angular->functions[direction][function]) > ZeroFunction;
+        parities |= counts ? 1 << ((odd[this->axes.u] ? 1 : 0) + (odd[this->axes.v] ? 2 : 0)) : 0;
+      }
+    }
+  }
+  return parities;
 }
 
 /// Angular functions of each frame, for positive u and v, from any of its members; beams of each member.
@@ -315,12 +351,12 @@ std::size_t SweepPlan::ScratchFloats() const
     this->angular ? together * BUNDLE_FLOATS(this->channels, this->row) : std::size_t{ 2 } * RingRows * raysOfRow;
   // Behind those the row of rays that come in by cells of the box's faces.
   const std::size_t ring = kept + (this->faceIn ? 2 : 1) * (raysOfRow + this->vector);
-  const int moments = this->angular ? this->angular->Functions() : 1,
-            beams = this->angular ? this->angular->Beams() : 0;
-  const std::size_t quantities = PLANE_COUNT(this->channels, moments, beams, this->netFlux, this->partialCurrents);
-  const std::size_t planes = quantities * this->plane.block * this->plane.sizeV * this->row;
-  const std::size_t thinRows = static_cast<std::size_t>(this->plane.block) * this->plane.sizeV;
-  return ring + planes + thinRows + 2 * this->vector;
+  const int beams = this->angular ? this->angular->Beams() : 0;
+  const std::size_t quantities = PLANE_COUNT(this->channels, beams, this->netFlux, this->partialCurrents);
+  const std::size_t rows = static_cast<std::size_t>(this->plane.block) * this->plane.sizeV;
+  const std::size_t planes = quantities * rows * this->row;
+  const std::size_t packed = this->momentsInPlace ? 0 : 2 * rows * this->momentRow; // source and path
+  return ring + planes + rows + packed + 3 * this->vector;
 }
 
 /// Where slabs of planes begin and end: an even number, as many as keep launches short, at least eight for each of

@@ -20,10 +20,11 @@ struct SweepPlan
   /// @param netFlux  the net flux is wanted too
   /// @param partialCurrents  and the power that enters voxels by face
   /// @param angular  of the bundles' directions, must stay; null: light has no angular moments
+  /// @param moments  where they are
   /// @param faceIn  light comes in by cells of the box's faces
   SweepPlan(const Device& device, const Grid& grid, const VoxelBox& box, int axis, const std::vector<Bundle>& bundles,
     int channels, const std::array<bool, 3>& periodic, bool netFlux, bool partialCurrents, const AngularValues* angular,
-    bool faceIn);
+    const MomentPlaces& moments, bool faceIn);
 
   Grid grid;
   VoxelBox box;
@@ -35,6 +36,7 @@ struct SweepPlan
   bool partialCurrents;
   const AngularValues* angular;
   bool faceIn;
+  MomentPlaces moments;
   bool forward = false; ///< some rays march that way
   bool backward = false;
 
@@ -47,7 +49,9 @@ struct SweepPlan
   std::size_t radianceEachWay = 0;
   std::vector<float> coefficients; ///< as BundleInfo has them, forward first
   std::size_t coefficientsEachWay = 0;
-  FunctionOrder order; ///< of the angular functions, along this axis
+  FunctionOrder order;         ///< of the angular functions, along this axis
+  bool momentsInPlace = false; ///< rows of planes are rows of the moments' array: nothing needs to be packed
+  int momentRow = 0;           ///< floats of a packed row, of all functions from the second on and channels
 
   std::vector<UnitInfo> units;
   std::vector<cl_int2> schedule; ///< [launch][unit]: planes from, to
@@ -71,9 +75,11 @@ struct SweepPlan
 private:
   void LayLaps();
   void LayPlane(const Device& device);
+  void LayMoments();
   void LayBundles();
   BundleInfo Describe(const Bundle& bundle) const;
   void LayFrames();
+  int ParitiesOf(const Bundle& bundle) const;
   void LayCoefficients(std::size_t bundle, int way);
   void LayUnits(int computeUnits);
   std::vector<int> SlabBorders(int groups);

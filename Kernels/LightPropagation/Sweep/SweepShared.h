@@ -2,6 +2,7 @@
 #pragma once
 
 #include "Device/SharedTypes.h"
+#include "LightPropagation/Sweep/MomentPlacesShared.h"
 
 SHARED_BEGIN
 enum
@@ -36,10 +37,10 @@ enum
   CurrentFaces = 5
 };
 
-/// Quantities of a plane: each channel has the moments of its source and of its path (one where scattering is
-/// isotropic), beams, and a flux and currents where they are wanted.
-#define PLANE_COUNT(channels, moments, beams, netFlux, currents) \
-  (PlaneSource + (2 * (moments) + (beams) + ((netFlux) ? 3 : 0) + ((currents) ? CurrentFaces : 0)) * (channels))
+/// Quantities of a plane: each channel has its source and its path, beams, and a flux and currents where they are
+/// wanted.
+#define PLANE_COUNT(channels, beams, netFlux, currents) \
+  (PlaneSource + (2 + (beams) + ((netFlux) ? 3 : 0) + ((currents) ? CurrentFaces : 0)) * (channels))
 
 /// Floats that a bundle keeps from one tile of rows to the next: two rings, and of MomentRows rows the members' sources
 /// and paths, and the path of a source of 1 in its own voxel.
@@ -59,6 +60,7 @@ typedef struct
   /// Members whose directions differ by signs alone, at most four, are a frame; where its members begin, and where the
   /// last one's end.
   int frames, firstOfFrame[MaxFrames + 1];
+  int parities; ///< bit i: of the functions, those of parity i are not all zero (SweepLayout.cl)
   /// Where its coefficients begin, in floats, of each way: of the angular functions by [frame][function], in the order
   /// of the axis, for positive u and v; of beams by [member][beam].
   int coefficients;
@@ -119,8 +121,7 @@ typedef struct
   /// Where it begins in the other volumes (flux: three times, currents: six times that), and the way from one channel
   /// to the next.
   ulong first, stride;
-  ulong functionStride; ///< the way from one angular function to the next, in source and path
-  ulong mapsEachWay;    ///< floats of the maps of one way along the axis
+  ulong mapsEachWay; ///< floats of the maps of one way along the axis
   uint outsideEachWay, radianceEachWay, coefficientsEachWay;
   int empty; ///< 1: the maps hold nothing yet, and are cleared where rays start
   int bundles;
@@ -129,5 +130,9 @@ typedef struct
   int axis;
   PlaneInfo planes;
   FaceInfo faces;
+  MomentPlaces moments;
+  int sizeY;         ///< voxels of the grid along y
+  int packedMoments; ///< floats of a packed row of moments
+  int firstChannel;
 } SweepInfo;
 SHARED_END

@@ -16,7 +16,6 @@ struct SweepVolume
   VoxelBox box;     ///< the part that is swept: rays start at its faces, where they would have come in; empty: all
   int channels = 1; ///< 1 or 3 that share one sigma_t
   std::size_t stride = 0;
-  std::size_t functionStride = 0;         ///< from one angular moment to the next
   const AngularValues* angular = nullptr; ///< as in SweepRequest
   const Buffer<float>* sigma_t = nullptr; ///< 1/length
   std::size_t sigma_t_first = 0;          ///< where its channel begins
@@ -27,6 +26,8 @@ struct SweepVolume
   std::size_t first = 0;
   const Buffer<float>* faceIn = nullptr; ///< as in SweepRequest
   std::size_t faceFirst = 0;             ///< where the first channel of faceIn and faceOut begins
+  int firstChannel = 0;
+  MomentPlaces moments = {}; ///< of source and path, where light has angular moments
 };
 
 /// The channels of a group as a sweep sees them, without source.
@@ -37,12 +38,12 @@ inline SweepVolume GroupVolume(
   volume.grid = layout.grid;
   volume.channels = group.count;
   volume.stride = layout.Stride();
-  volume.functionStride = layout.channels * layout.Stride();
   volume.sigma_t = &sigma_t;
   volume.sigma_t_first = layout.ExtinctionFirst(group.first);
   volume.deposit = deposit;
   volume.first = group.first * layout.Stride();
   volume.faceFirst = group.first * BoxFaceCellCount(layout.grid);
+  volume.firstChannel = group.first;
   return volume;
 }
 }

@@ -1,6 +1,7 @@
 #pragma once
 
 #include "Device/Buffer.h"
+#include "LightPropagation/Sweep/MomentPlacesShared.h"
 #include "Medium/Grid.h"
 
 #include <vector>
@@ -29,6 +30,29 @@ struct VolumeLayout
   std::size_t Stride() const { return (this->grid.VoxelCount() + SweepPadding - 1) / SweepPadding * SweepPadding; }
   /// Floats of an array of `parts` values a voxel and channel, with what vectors may read beyond it.
   std::size_t Floats(int parts = 1) const { return parts * this->Stride() * this->channels + SweepPadding; }
+  /// Where angular moments lie, of arrays that have some.
+  MomentPlaces Places(int functions) const
+  {
+    const std::size_t groups = (this->grid.size[0] + MomentGroup - 1) / MomentGroup;
+    const std::size_t rows = static_cast<std::size_t>(this->grid.size[1]) * this->grid.size[2] * this->channels;
+    MomentPlaces places = {};
+    places.second = this->channels * this->Stride();
+    places.beams = places.second + rows * groups * (functions - 1) * MomentGroup;
+    places.sizeX = this->grid.size[0];
+    places.groups = static_cast<int>(groups);
+    places.channels = this->channels;
+    places.functions = functions;
+    return places;
+  }
+  static std::size_t MomentPlace(const MomentPlaces& places, int function, int channel, std::size_t voxel)
+  {
+    return MOMENT_PLACE(places, function, channel, voxel / places.sizeX, voxel % places.sizeX);
+  }
+  /// Floats of an array with angular moments and beams.
+  std::size_t MomentFloats(int functions, int beams = 0) const
+  {
+    return this->Places(functions).beams + this->Floats(beams);
+  }
   std::size_t ExtinctionFirst(int channel) const { return this->sharedExtinction ? 0 : channel * this->Stride(); }
 
   std::vector<ChannelGroup> Groups() const

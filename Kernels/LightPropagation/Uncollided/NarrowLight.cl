@@ -1,7 +1,9 @@
 // Angular moments of light that goes one way in each voxel, as that of lamps does, or nearly so. The host gives
 //   DEGREE  of the moments
 //   RAYS    1: by voxel as its net flux tells; 0: the same everywhere
-// A work-item a voxel and channel.
+// A work-item a voxel of a row, by row and channel.
+
+#include "LightPropagation/Sweep/MomentPlacesShared.h"
 
 #define MOMENTS ((DEGREE + 1) * (DEGREE + 1))
 
@@ -37,12 +39,14 @@ static void find_harmonics(float3 omega, float* values)
 // basis    [function][harmonic], AngularBasis.h
 // path     W length, of the light, [channel][stride]
 // flux     W length, its net flux, [channel][x, y, z][stride]
-// moments  W length, [function][channel][stride], added to
-__kernel void add_narrow_moments(const __global float* basis, const __global float* path, const __global float* flux,
-  __global float* moments, ulong stride, ulong function_stride)
+// moments  W length, with its angular moments (MomentPlacesShared.h), added to
+__kernel void add_narrow_moments(MomentPlaces places, const __global float* basis, const __global float* path,
+  const __global float* flux, __global float* moments, ulong stride)
 {
-  const ulong i = get_global_id(0);
-  const ulong c = get_global_id(1);
+  const int x = get_global_id(0);
+  const ulong line = get_global_id(1);
+  const ulong c = get_global_id(2);
+  const ulong i = line * places.sizeX + x;
   const ulong at = c * stride + i;
   const float power = path[at];
   const float3 flow =
@@ -69,21 +73,25 @@ __kernel void add_narrow_moments(const __global float* basis, const __global flo
       {
         value += basis[q * MOMENTS + j] * harmonics[j];
       }
-      moments[q * function_stride + at] += whole * value * power;
+      moments[MOMENT_PLACE(places, q, c, line, x)] += whole * value * power;
     }
   }
 }
 #else
 
 // values   of the angular functions in the light's direction
-__kernel void add_beam_moments(const __global float* values, const __global float* path, __global float* moments,
-  ulong stride, ulong function_stride)
+__kernel void add_beam_moments(
+  MomentPlaces places, const __global float* values, const __global float* path, __global float* moments, ulong stride)
 {
-  const ulong at = get_global_id(1) * stride + get_global_id(0);
+  const int x = get_global_id(0);
+  const ulong line = get_global_id(1);
+  const ulong c = get_global_id(2);
+  const ulong at = c * stride + line * places.sizeX + x;
   const float power = path[at];
-  for (int q = 0; q < MOMENTS; ++q)
+  moments[at] += power;
+  for (int q = 1; q < MOMENTS; ++q)
   {
-    moments[q * function_stride + at] += values[q] * power;
+    moments[MOMENT_PLACE(places, q, c, line, x)] += values[q] * power;
   }
 }
 #endif

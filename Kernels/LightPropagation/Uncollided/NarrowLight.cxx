@@ -30,29 +30,32 @@ Deposit NarrowLight::To() const
   return to;
 }
 
-void NarrowLight::AddAlong(const std::array<double, 3>& omega) const
+/// Of the volume's deposit; the kernel's arguments are where its moments are, and `arguments`.
+template <class... Arguments>
+void NarrowLight::RunOnMoments(const char* name, bool rays, const Arguments&... arguments) const
 {
   const VolumeLayout& layout = this->Volume.layout;
-  Device& device = this->Volume.device;
-  const Buffer<float> values(device, Floats(this->Volume.basis->At(omega)), "the angular functions");
-  cl::Kernel add = device.Kernel(
-    "add_beam_moments", kernel_source::NarrowLight, Define("DEGREE", this->Volume.basis->Degree()) + Define("RAYS", 0));
-  With(add, values, *this->To().path, *this->Volume.deposit.path, cl_ulong(layout.Stride()),
-    cl_ulong(layout.channels * layout.Stride()));
-  device.Queue().enqueueNDRangeKernel(add, cl::NullRange, cl::NDRange(layout.Stride(), layout.channels));
-  device.Finish(); // the arrays go
+  const AngularBasis& basis = *this->Volume.basis;
+  cl::Kernel kernel = this->Volume.device.Kernel(
+    name, kernel_source::NarrowLight, Define("DEGREE", basis.Degree()) + Define("RAYS", rays));
+  With(kernel, layout.Places(basis.Count()), arguments...);
+  const std::array<int, 3>& size = layout.grid.size;
+  this->Volume.device.Queue().enqueueNDRangeKernel(
+    kernel, cl::NullRange, cl::NDRange(size[0], static_cast<std::size_t>(size[1]) * size[2], layout.channels));
+  this->Volume.device.Finish(); // the arrays go
+}
+
+void NarrowLight::AddAlong(const std::array<double, 3>& omega) const
+{
+  const Buffer<float> values(this->Volume.device, Floats(this->Volume.basis->At(omega)), "the angular functions");
+  this->RunOnMoments("add_beam_moments", false, values, *this->To().path, *this->Volume.deposit.path,
+    cl_ulong(this->Volume.layout.Stride()));
 }
 
 void NarrowLight::AddAlongFlux() const
 {
-  const VolumeLayout& layout = this->Volume.layout;
-  Device& device = this->Volume.device;
-  const Buffer<float> basis(device, Floats(this->Volume.basis->Matrix()), "the angular functions");
-  cl::Kernel add = device.Kernel("add_narrow_moments", kernel_source::NarrowLight,
-    Define("DEGREE", this->Volume.basis->Degree()) + Define("RAYS", 1));
-  With(add, basis, *this->To().path, this->Flux, *this->Volume.deposit.path, cl_ulong(layout.Stride()),
-    cl_ulong(layout.channels * layout.Stride()));
-  device.Queue().enqueueNDRangeKernel(add, cl::NullRange, cl::NDRange(layout.Stride(), layout.channels));
-  device.Finish(); // the arrays go
+  const Buffer<float> basis(this->Volume.device, Floats(this->Volume.basis->Matrix()), "the angular functions");
+  this->RunOnMoments("add_narrow_moments", true, basis, *this->To().path, this->Flux, *this->Volume.deposit.path,
+    cl_ulong(this->Volume.layout.Stride()));
 }
 }

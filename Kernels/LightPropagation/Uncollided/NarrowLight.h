@@ -21,6 +21,9 @@ public:
   void AddAlongFlux() const;
 
 private:
+  template <class... Arguments>
+  void RunOnMoments(const char* name, bool rays, const Arguments&... arguments) const;
+
   const UncollidedVolume& Volume;
   Buffer<float> OwnPath, Flux;
 };
