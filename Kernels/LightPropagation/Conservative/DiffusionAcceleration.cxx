@@ -3,9 +3,11 @@
 #include "LightPropagation/Conservative/SurfaceRadiance.h"
 #include "LightPropagation/Convergence.h"
 #include "LightPropagation/Scattering/MomentScattering.h"
+#include "Medium/BoxFaces.h"
 
 #include <algorithm>
 #include <cmath>
+#include <utility>
 
 namespace tyndall
 {
@@ -52,7 +54,7 @@ IterationResult DiffusionAcceleration::Run(const Monitor& monitor)
   this->FindSurfaceRadiance();
   if (this->Parts.Faces)
   {
-    this->Result.leftByCell = this->LeftByCell();
+    this->Result.leftByCell = this->LeftWithoutPattern();
   }
   return std::move(this->Result);
 }
@@ -210,6 +212,34 @@ double DiffusionAcceleration::ReflectFound(int iteration)
   // The systems' power does not have the pattern of rays.
   this->Parts.Faces->LetIn(std::vector<double>(this->CameBack.size(), 0.0), this->CameBack);
   return change;
+}
+
+/// The same without the pattern in which the last sweep's rays go in and out through cells: in thin voxels the systems
+/// have it of the sweep. The sums over faces stay.
+std::vector<double> DiffusionAcceleration::LeftWithoutPattern() const
+{
+  const FaceLight& faces = *this->Parts.Faces;
+  const Grid& grid = this->Parts.Layout.grid;
+  const std::size_t cells = faces.Cells();
+  const std::vector<double> left = this->LeftByCell();
+  const std::array<Rgb, 6> incoming =
+    this->Parts.SweepsAreLit() ? this->Parts.UsualBoundary->IncomingPower() : std::array<Rgb, 6>{};
+  const double longest = *std::max_element(grid.spacing.begin(), grid.spacing.end());
+  std::vector<double> smooth = left;
+  for (std::size_t c = 0; c < this->Faces.size(); ++c)
+  {
+    const std::vector<float> rows = this->Faces[c].Read();
+    ForBoxFaceCells(grid, [&](const BoxFaceCell& cell) {
+      const double tau = longest * this->TheMedium.TransportSigmaT(cell.voxel, static_cast<int>(c));
+      const double area = grid.VoxelVolume() / grid.spacing[cell.face / 2];
+      const double in = rows[FaceCame * cells + cell.number] + incoming[cell.face][c] * area;
+      const double pattern = faces.Pattern(cell.number);
+      const double net = rows[FaceLeft * cells + cell.number] - pattern * in; // of the sweep
+      double& here = smooth[c * cells + cell.number];
+      here = std::max(here + (1.0 / pattern - 1.0) * net / (1.0 + 0.25 * tau * tau), 0.0);
+    });
+  }
+  return faces.ScaledTo(std::move(smooth), left);
 }
 
 /// W that leave through each cell, by the systems' solution; in a dark channel those of uncollided light alone.

@@ -33,6 +33,7 @@ private:
   void TakeSweptFaces();
   double ReflectFound(int iteration);
   std::vector<double> LeftByCell() const;
+  std::vector<double> LeftWithoutPattern() const;
   void CountLight();
   void CountFaces();
   double VoxelPower(int channel) const;

@@ -4,6 +4,7 @@
 
 #include <algorithm>
 #include <functional>
+#include <utility>
 
 namespace tyndall
 {
@@ -54,7 +55,8 @@ FaceLight::FaceLight(Device& device, const VolumeLayout& layout, const std::arra
   , Entering(device, layout.channels * BoxFaceCellCount(layout.grid), "the light that faces give back")
 {
   ForBoxFaceCells(layout.grid, [this](const BoxFaceCell& cell) { this->FaceOfCell.push_back(cell.face); });
-  this->All.assign(this->Channels * this->Cells(), 0.0);
+  this->AllSwept.assign(this->Channels * this->Cells(), 0.0);
+  this->AllUncollided = this->AllSwept;
   this->Leaving.Fill(0.0f);
   this->Entering.Fill(0.0f);
   this->FindPowerIn(layout.grid, periodic, directions);
@@ -114,7 +116,8 @@ std::array<Rgb, 6> FaceLight::Reflect()
   for (std::size_t i = 0; i < out.size(); ++i)
   {
     const double albedo = this->AlbedoOfFaces[this->FaceOf(i % this->Cells())][i / this->Cells()];
-    this->All[i] += static_cast<double>(out[i]) + this->Uncollided[i];
+    this->AllSwept[i] += out[i];
+    this->AllUncollided[i] += this->Uncollided[i];
     swept[i] = albedo * out[i];
     uncollided[i] = albedo * this->Uncollided[i];
   }
@@ -135,6 +138,35 @@ std::array<Rgb, 6> FaceLight::PowerOfFaces(const std::vector<double>& power) con
     sums[this->FaceOf(i % this->Cells())][i / this->Cells()] += power[i];
   }
   return sums;
+}
+
+double FaceLight::Pattern(std::size_t cell) const
+{
+  return this->PowerIn[cell] > 0.0 ? this->PowerIn[cell] / this->MeanIn[cell] : 1.0;
+}
+
+std::vector<double> FaceLight::ScaledTo(std::vector<double> power, const std::vector<double>& sums) const
+{
+  const std::array<Rgb, 6> is = this->PowerOfFaces(power), shouldBe = this->PowerOfFaces(sums);
+  for (std::size_t i = 0; i < power.size(); ++i)
+  {
+    const int face = this->FaceOf(i % this->Cells());
+    const std::size_t c = i / this->Cells();
+    power[i] *= is[face][c] > 0.0 ? shouldBe[face][c] / is[face][c] : 1.0;
+  }
+  return power;
+}
+
+std::vector<double> FaceLight::LeftInAll() const
+{
+  std::vector<double> left = this->AllSwept;
+  for (std::size_t i = 0; i < left.size(); ++i)
+  {
+    left[i] /= this->Pattern(i % this->Cells());
+  }
+  left = this->ScaledTo(std::move(left), this->AllSwept);
+  std::transform(left.begin(), left.end(), this->AllUncollided.begin(), left.begin(), std::plus<>());
+  return left;
 }
 
 void FaceLight::LetIn(const std::vector<double>& swept, const std::vector<double>& uncollided)

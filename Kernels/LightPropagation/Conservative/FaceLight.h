@@ -43,8 +43,13 @@ public:
   /// The sums over the cells of each face, of [channel][cell].
   std::array<Rgb, 6> PowerOfFaces(const std::vector<double>& power) const;
 
-  /// W that left through each cell in all calls of Reflect, [channel][cell].
-  const std::vector<double>& LeftInAll() const { return this->All; }
+  /// W that left through each cell in all calls of Reflect, [channel][cell]. Of what sweeps took out the pattern of
+  /// their rays is taken away; the sums over faces are as they were.
+  std::vector<double> LeftInAll() const;
+  /// What radiance 1 brings through a cell along the rays of sweeps, over the mean of its face.
+  double Pattern(std::size_t cell) const;
+  /// Scaled such that the sums over faces are those of `sums`.
+  std::vector<double> ScaledTo(std::vector<double> power, const std::vector<double>& sums) const;
   std::size_t Cells() const { return this->FaceOfCell.size(); }
   int FaceOf(std::size_t cell) const { return this->FaceOfCell[cell]; }
 
@@ -58,7 +63,7 @@ private:
   std::vector<double> PowerIn; ///< W that radiance 1 brings through each cell
   std::vector<double> MeanIn;  ///< the same in the mean over its face
   std::vector<float> Uncollided;
-  std::vector<double> All;
+  std::vector<double> AllSwept, AllUncollided;
   Buffer<float> Leaving, Entering; ///< [channel][cell]
 };
 }
