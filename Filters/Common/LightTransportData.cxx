@@ -502,4 +502,16 @@ void AddDiffuse(Illumination& illumination, const double* sky, const double* fac
   }
   Check(illumination);
 }
+
+void AddFaceAlbedo(Illumination& illumination, const double* albedo, const double* colour)
+{
+  for (int face = 0; face < 6; ++face)
+  {
+    for (int c = 0; c < 3; ++c)
+    {
+      illumination.faceAlbedo[face][c] = albedo[face] * colour[3 * face + c];
+    }
+  }
+  Check(illumination);
+}
 }

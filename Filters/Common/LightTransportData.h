@@ -146,4 +146,8 @@ bool NothingShines(const Illumination& illumination);
 /// Adds light without a source: radiance from every direction alike (red, green, blue) and through the faces -x, +x,
 /// -y, +y, -z, +z, W/(length^2 sr). Checked.
 void AddDiffuse(Illumination& illumination, const double* sky, const double* faceRadiance);
+
+/// Adds what these faces give back of the light that leaves: a part for each, times factors red, green, blue for each.
+/// Checked.
+void AddFaceAlbedo(Illumination& illumination, const double* albedo, const double* colour);
 }

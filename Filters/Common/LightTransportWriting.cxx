@@ -195,7 +195,7 @@ void WriteLight(LightField&& light, vtkImageData* output)
     cells->RemoveArray(earlier); // of another solve that the input has been through
   }
   for (const char* earlier : { "stored_directions", "scattered", "packing_loss", "fluence_bias", "half_range_flux",
-         SurfaceRadianceFact, LampsApartFact })
+         SurfaceRadianceFact, LampsApartFact, "face_power" })
   {
     output->GetFieldData()->RemoveArray(earlier);
   }
@@ -236,6 +236,10 @@ void WriteLight(LightField&& light, vtkImageData* output)
   {
     AddFact(output, SurfaceRadianceFact, { light.surfaceRadiance.begin(), light.surfaceRadiance.end() },
       static_cast<int>(SurfaceCosines.size()) * channels);
+  }
+  if (!light.facePower.empty())
+  {
+    AddFact(output, "face_power", { light.facePower.begin(), light.facePower.end() }, channels);
   }
   AddFact(output, "left_out", light.leftOut);
   AddFact(output, "device", std::vector<std::string>{ light.device });

@@ -38,7 +38,18 @@ tyndall::Illumination vtkPropagationAlgorithm::ReadAllIllumination(vtkInformatio
 {
   tyndall::Illumination illumination = this->ReadIllumination(inputs);
   tyndall::AddDiffuse(illumination, this->SkyColor, this->FaceRadiance);
+  tyndall::AddFaceAlbedo(illumination, this->FaceAlbedo, this->FaceAlbedoColor);
   return illumination;
+}
+
+void vtkPropagationAlgorithm::SetFaceAlbedoColor(const double values[18])
+{
+  tyndall::NoteProperty(this, "FaceAlbedoColor", values, 18, 0.0, 1.0);
+  if (!std::equal(values, values + 18, this->FaceAlbedoColor))
+  {
+    std::copy_n(values, 18, this->FaceAlbedoColor);
+    this->Modified();
+  }
 }
 
 void vtkPropagationAlgorithm::WarnWhereDark(const tyndall::Illumination& illumination, bool emits)
@@ -77,6 +88,8 @@ void vtkPropagationAlgorithm::PrintSelf(ostream& os, vtkIndent indent)
   os << indent << "PeriodicY: " << this->PeriodicY << "\n";
   os << indent << "PeriodicZ: " << this->PeriodicZ << "\n";
   PrintNumbers(os, indent, "FaceRadiance", this->FaceRadiance, 6);
+  PrintNumbers(os, indent, "FaceAlbedo", this->FaceAlbedo, 6);
+  PrintNumbers(os, indent, "FaceAlbedoColor", this->FaceAlbedoColor, 18);
   PrintNumbers(os, indent, "SkyColor", this->SkyColor, 3);
   os << indent << "EstimateError: " << this->EstimateError << "\n";
 }

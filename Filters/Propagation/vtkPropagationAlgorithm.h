@@ -52,6 +52,20 @@ public:
   ///@}
 
   ///@{
+  /// Part of the light that leaves through the faces -x, +x, -y, +y, -z, +z that comes back where it left, spread as by
+  /// a matt surface (Lambert), beside FaceRadiance. Default 0, valid [0, 1]; 0 on the faces of a periodic axis. Only
+  /// the conservative scheme of LightPropagationMaps knows it: other solvers say so.
+  tyndallSetRange6Macro(FaceAlbedo, double, 0.0, 1.0);
+  vtkGetVector6Macro(FaceAlbedo, double);
+  ///@}
+
+  ///@{
+  /// Colour of FaceAlbedo: its factors, red, green, blue of each face in turn. Default 1, valid [0, 1].
+  void SetFaceAlbedoColor(const double values[18]);
+  vtkGetVectorMacro(FaceAlbedoColor, double, 18);
+  ///@}
+
+  ///@{
   /// Radiance from every direction alike, red, green, blue, added to the environment, W/(length^2 sr). Default 0, valid
   /// [0, infinity).
   tyndallSetRange3Macro(SkyColor, double, 0.0, tyndall::LargestFloat);
@@ -83,6 +97,9 @@ protected:
   bool PeriodicY;
   bool PeriodicZ;
   double FaceRadiance[6] = { 0.0, 0.0, 0.0, 0.0, 0.0, 0.0 };
+  double FaceAlbedo[6] = { 0.0, 0.0, 0.0, 0.0, 0.0, 0.0 };
+  double FaceAlbedoColor[18] = { 1.0, 1.0, 1.0, 1.0, 1.0, 1.0, 1.0, 1.0, 1.0, 1.0, 1.0, 1.0, 1.0, 1.0, 1.0, 1.0, 1.0,
+    1.0 };
   double SkyColor[3] = { 0.0, 0.0, 0.0 };
   bool EstimateError = false;
 

@@ -332,6 +332,7 @@ LightField SolveDiscreteOrdinates(Device& device, const Medium& medium, const Il
 {
   Check(settings);
   const PropagationProblem problem(medium, illumination, AsPropagation(settings));
+  RefuseFaceAlbedo(illumination, "Discrete Ordinates");
   const FarLight far = FarLightOf(problem, settings);
   OrdinatesSettings solved = settings;
   solved.periodic = problem.Settings().periodic;

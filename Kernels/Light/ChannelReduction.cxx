@@ -58,7 +58,7 @@ template <class Act>
 void ForArrays(LightField& light, const Act& act)
 {
   for (std::vector<float>* values : { &light.fluence, &light.fluenceDirect, &light.fluenceError,
-         &light.scatteredRadiance, &light.surfaceRadiance, &light.scatteredMoments })
+         &light.scatteredRadiance, &light.surfaceRadiance, &light.scatteredMoments, &light.facePower })
   {
     act(*values, std::size_t{ 1 });
   }

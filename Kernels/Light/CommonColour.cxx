@@ -74,6 +74,10 @@ CommonColour ColourOf(const Illumination& illumination)
   {
     colour.Add(face);
   }
+  if (!std::all_of(illumination.faceAlbedo.begin(), illumination.faceAlbedo.end(), Grey))
+  {
+    colour.AddNone();
+  }
   colour.Add(illumination.environment.radiance.data(), illumination.environment.radiance.size() / 3);
   return colour;
 }

@@ -11,6 +11,7 @@ class CommonColour
 {
 public:
   void Add(const Rgb& rgb);
+  void AddNone() { this->One = false; }          ///< of something that changes colours
   void Add(const float* rgb, std::size_t count); ///< `count` colours, interleaved
 
   bool IsOne() const { return this->One; } ///< all are multiples of one, to rounding (3e-7, each component)
@@ -25,6 +26,7 @@ private:
   Rgb Sum = {};
 };
 
-/// The colour of all that shines from outside, and of the lights inside.
+/// The colour of all that shines from outside, and of the lights inside; none where a face gives back one colour more
+/// than another.
 CommonColour ColourOf(const Illumination& illumination);
 }

@@ -23,6 +23,7 @@ extern const char* const ConstantIndex;
 extern const char* const EmptyBricks;
 extern const char* const NoLights;
 extern const char* const NoEmissionPeaks; ///< what the medium emits needs no rays of its own
+extern const char* const BlackFaces;      ///< no face of the box gives back light
 extern const char* const DarkOutside;     ///< neither environment nor sky nor faces shine
 extern const char* const EvenOutside;     ///< they shine evenly: directions of its own are not needed
 std::string EmptySlabs(const VoxelBox& filled, const Grid& grid);

@@ -15,8 +15,8 @@ struct EnergyBalance
   Rgb entered = {};  ///< through the box's faces and from lights inside it
   Rgb emitted = {};  ///< by the medium itself
   Rgb absorbed = {}; ///< by the medium
-  Rgb escaped = {};  ///< through the box's faces
-  Rgb leftOver = {}; ///< scattered but not propagated any more when the solver stopped
+  Rgb escaped = {};  ///< through the box's faces, less what they give back
+  Rgb leftOver = {}; ///< scattered but not propagated any more when the solver stopped; or given back by a face
 
   /// |entered + emitted - absorbed - escaped - leftOver| / (entered + emitted), the worst channel; 0 in the dark
   double RelativeError(int channels) const;
@@ -62,7 +62,11 @@ struct LightField
   /// Of fluence, estimated, root mean square over that of fluence; 0 where not asked for, NaN: not known.
   double relativeError = 0.0;
   EnergyBalance balance;
-  std::array<Rgb, 6> facePowerOut = {}; ///< W, through -x, +x, -y, +y, -z, +z
+  /// W, through -x, +x, -y, +y, -z, +z, less what faces give back.
+  std::array<Rgb, 6> facePowerOut = {};
+  /// W / length^2 that leave through the cells of the box's faces, [cell][channel] (BoxFaces.h), before a face gives
+  /// back its part; empty: not asked for, and no face reflects.
+  std::vector<float> facePower;
   /// Of the directions that light from outside came along (DirectionSet.h); 0: there are none.
   double halfRangeFlux = 0.0;
   std::vector<ConvergenceRow> convergence;

@@ -45,6 +45,7 @@ struct PropagationSettings
   PropagationSource source = PropagationSource::Automatic;
   PropagationAcceleration acceleration = PropagationAcceleration::Automatic; ///< not where maximumOrders is given
   bool netFlux = false;                                                      ///< compute net_flux too: it costs
+  bool facePower = false; ///< keep the power that leaves through each cell of the box's faces
   /// Relative error, voxel by voxel, of the unscattered light of small bright parts of the medium, which is followed
   /// along exact rays (EmissionRays.h), about: a twentieth of the voxels may be off by more; 0.005 costs five to ten
   /// times as much, and less than that gains nothing; 0: not followed

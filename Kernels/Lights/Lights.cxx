@@ -176,6 +176,14 @@ void CheckLight(const Light& light, std::size_t number)
 }
 }
 
+namespace
+{
+std::string FaceName(std::size_t face)
+{
+  return std::to_string(face) + " (-x, +x, -y, +y, -z, +z)";
+}
+}
+
 bool Shines(const Illumination& illumination)
 {
   const std::vector<float>& pixels = illumination.environment.radiance;
@@ -185,6 +193,37 @@ bool Shines(const Illumination& illumination)
     std::any_of(
       illumination.faces.begin(), illumination.faces.end(), [](const Rgb& face) { return Sum(face) > 0.0; }) ||
     std::any_of(pixels.begin(), pixels.end(), [](float pixel) { return pixel > 0.0f; });
+}
+
+bool Reflects(const Illumination& illumination)
+{
+  return std::any_of(
+    illumination.faceAlbedo.begin(), illumination.faceAlbedo.end(), [](const Rgb& face) { return Sum(face) > 0.0; });
+}
+
+void CheckFaceAlbedo(const Illumination& illumination, const std::array<bool, 3>& periodic)
+{
+  for (std::size_t face = 0; face < 6; ++face)
+  {
+    const Rgb& albedo = illumination.faceAlbedo[face];
+    if (periodic[face / 2] && !IsBlack(albedo))
+    {
+      throw InvalidInput("FaceAlbedo of face " + FaceName(face) + " is (" + Text("%g", albedo[0]) + ", " +
+        Text("%g", albedo[1]) + ", " + Text("%g", albedo[2]) +
+        "), but its axis is periodic: what leaves there comes in on the other side. Give that face albedo 0, or switch "
+        "off Periodic of the axis.");
+    }
+  }
+}
+
+void RefuseFaceAlbedo(const Illumination& illumination, const char* solver)
+{
+  if (Reflects(illumination))
+  {
+    throw InvalidInput(std::string(solver) +
+      " cannot give back light that leaves through a face (FaceAlbedo). Set FaceAlbedo to 0, or choose Light "
+      "Propagation Maps with the conservative scheme.");
+  }
 }
 
 void Check(const Illumination& illumination)
@@ -199,8 +238,13 @@ void Check(const Illumination& illumination)
     {
       if (!Usable(illumination.faces[face][c]))
       {
-        throw InvalidInput("FaceRadiance of face " + std::to_string(face) + " (-x, +x, -y, +y, -z, +z) is " +
-          Refusal(illumination.faces[face][c]));
+        throw InvalidInput("FaceRadiance of face " + FaceName(face) + " is " + Refusal(illumination.faces[face][c]));
+      }
+      if (!(illumination.faceAlbedo[face][c] >= 0.0 && illumination.faceAlbedo[face][c] <= 1.0))
+      {
+        throw InvalidInput("FaceAlbedo of face " + FaceName(face) + " is " +
+          Text("%.6g", illumination.faceAlbedo[face][c]) +
+          "; it must be from 0 to 1: the part of what leaves through the face that comes back.");
       }
     }
     if (!Usable(illumination.sky[c]))

@@ -61,6 +61,9 @@ struct Illumination
   Rgb sky = { 0.0, 0.0, 0.0 }; ///< radiance from every direction alike, W / (length^2 sr), added to the environment
   /// Diffuse radiance entering through -x, +x, -y, +y, -z, +z, W / (length^2 sr), added to the others.
   std::array<Rgb, 6> faces = {};
+  /// Part, 0 to 1, of what leaves through each face that comes back where it left, spread as by a matt surface
+  /// (Lambert), beside what shines in through the face.
+  std::array<Rgb, 6> faceAlbedo = {};
 };
 
 /// W per steradian of a lamp of 1 W along its axis; 0 of a directional light, which has none.
@@ -82,8 +85,17 @@ Environment Turned(const Environment& environment, int up, double degrees);
 /// Whether anything of it shines: has a power or a radiance above 0.
 bool Shines(const Illumination& illumination);
 
+/// Whether some face gives back light.
+bool Reflects(const Illumination& illumination);
+
+/// @throws InvalidInput where a face that gives back light lies across a periodic axis, which has none
+void CheckFaceAlbedo(const Illumination& illumination, const std::array<bool, 3>& periodic);
+
+/// @throws InvalidInput where a face gives back light: for a solver, by its name, that does not know of it
+void RefuseFaceAlbedo(const Illumination& illumination, const char* solver);
+
 /// @throws InvalidInput where a light has a zero direction, a power that is negative or beyond float, no size; an
 ///   environment has a negative or infinite pixel (names the first); a sky or a face a radiance that is negative or
-///   beyond float
+///   beyond float, a face an albedo that is not from 0 to 1
 void Check(const Illumination& illumination);
 }

@@ -22,6 +22,26 @@ struct BoxFaceCell
   std::size_t inward; ///< the voxel behind it; itself where there is none
 };
 
+/// How the cells of a face of the box are numbered among those of all.
+struct BoxFaceLayout
+{
+  std::size_t first;
+  std::array<std::size_t, 3> step; ///< from a cell to the next along each axis; 0 across the face
+};
+
+inline BoxFaceLayout LayoutOfFace(const Grid& grid, int face)
+{
+  BoxFaceLayout layout = { 0, {} };
+  for (int before = 0; before < face; ++before)
+  {
+    layout.first += grid.VoxelCount() / grid.size[before / 2];
+  }
+  const PlaneAxes axes = AcrossAxis(face / 2);
+  layout.step[axes.u] = 1;
+  layout.step[axes.v] = grid.size[axes.u];
+  return layout;
+}
+
 /// Calls act(cell) for every cell of the box's faces, in order.
 template <class Act>
 void ForBoxFaceCells(const Grid& grid, const Act& act)

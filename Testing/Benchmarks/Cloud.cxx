@@ -73,12 +73,10 @@ void Solve(Device& device, int number, const Setting& setting, Table& table, Sum
     .Add("error_max_transmittance", errors.columnTransmitted)
     .Add("error_mean_reflectance", errors.meanReflected)
     .Add("error_mean_transmittance", errors.meanTransmitted)
-    .Add("face_difference", found.leastSure)
     .Print();
   table.Add({ name, NameOf(setting), grid, Text("%.2f", 100.0 * errors.columnReflected),
     Text("%.2f", 100.0 * errors.columnTransmitted), Text("%+.3f", 100.0 * errors.meanReflected),
-    Text("%+.3f", 100.0 * errors.meanTransmitted), Text("%.5f", found.leastSure),
-    std::to_string(light.convergence.size()), Text("%.3f", seconds) });
+    Text("%+.3f", 100.0 * errors.meanTransmitted), std::to_string(light.convergence.size()), Text("%.3f", seconds) });
   sums.seconds += seconds;
   sums.column = std::max({ sums.column, errors.columnReflected, errors.columnTransmitted });
   sums.mean = std::max({ sums.mean, std::abs(errors.meanReflected), std::abs(errors.meanTransmitted) });
@@ -108,7 +106,7 @@ std::vector<Setting> Settings(bool quick)
 
 void RunAll(Device& device, bool quick)
 {
-  Table table({ "experiment", "method", "grid", "R, worst column, %", "T", "R, mean", "T", "faces", "sweeps", "s" });
+  Table table({ "experiment", "method", "grid", "R, worst column, %", "T", "R, mean", "T", "sweeps", "s" });
   const Setting* cheapest = nullptr;
   double least = 0.0;
   const std::vector<Setting> settings = Settings(quick);
@@ -127,8 +125,7 @@ void RunAll(Device& device, bool quick)
   }
   table.Print(
     "I3RC's step cloud: errors in percent of the consensus (of an own Monte Carlo less three standard errors where\n"
-    "there is none), worst column and mean. Columns are continued from the net flux of the three layers next to a\n"
-    "face and made to add up to the power through it; \"faces\" is by how much they did not, of what comes in");
+    "there is none), worst column and mean, from the power that leaves through the faces' cells");
   std::printf("\nEach column within 1%%, means within 0.3%%, all experiments: %s\n",
     cheapest ? (NameOf(*cheapest) + ", " + std::to_string(cheapest->voxels.perColumn) + " voxels a column, " +
                  std::to_string(cheapest->voxels.layers) + " layers, " + Text("%.2f", least) + " s for all four")

@@ -2,6 +2,7 @@
 
 #include "MediumScene.h"
 
+#include "Medium/BoxFaces.h"
 #include "Numerics/Constants.h"
 #include "Reference/StepCloudReference.h"
 
@@ -34,32 +35,21 @@ inline Scene SceneOf(const Experiment& experiment, const Voxels& voxels)
   const double angle = experiment.sunFromZenith * tyndall::Pi / 180.0;
   scene.ShineAlong({ std::sin(angle), 0.0, -std::cos(angle) });
   scene.settings.periodic = { true, true, false };
-  scene.settings.netFlux = true;
+  scene.settings.facePower = true;
   return scene;
 }
 
-/// Net flux upwards through the top or the bottom of the columns, from voxel means: continued from the three layers
-/// next to it as a parabola that has these means. At the top the beam is known, and left out of what is continued:
-/// under a low sun its shadow edge moves by a column from layer to layer.
-/// @param cosine  of the sun from the zenith
-inline std::array<double, Columns> FluxThroughFace(
-  const tyndall::LightField& light, const tyndall::Grid& grid, bool top, double cosine)
+/// Power that leaves through the cells of the top (face 5) or the bottom (4) of each column, over its area.
+inline std::array<double, Columns> LeavingColumns(const tyndall::LightField& light, const tyndall::Grid& grid, int face)
 {
-  constexpr double OfLayer[] = { 11.0 / 6.0, -7.0 / 6.0, 2.0 / 6.0 };
+  const tyndall::BoxFaceLayout layout = tyndall::LayoutOfFace(grid, face);
   const int perColumn = grid.size[0] / Columns;
-  std::array<double, Columns> flux = {};
-  flux.fill(top ? -cosine : 0.0);
-  for (int layer = 0; layer < 3; ++layer)
+  std::array<double, Columns> power = {};
+  for (int i = 0; i < grid.size[0]; ++i)
   {
-    const int k = top ? grid.size[2] - 1 - layer : layer;
-    for (int i = 0; i < grid.size[0]; ++i)
-    {
-      const std::size_t voxel = static_cast<std::size_t>(k) * grid.size[0] + i;
-      const double beam = top ? cosine * light.fluenceDirect[voxel] : 0.0;
-      flux[i / perColumn] += OfLayer[layer] * (light.netFlux[3 * voxel + 2] + beam) / perColumn;
-    }
+    power[i / perColumn] += light.facePower[layout.first + i] / perColumn;
   }
-  return flux;
+  return power;
 }
 
 /// Reflected and transmitted over what comes in, and of the whole cloud from the power through the box's faces.
@@ -67,34 +57,18 @@ struct Found
 {
   std::array<double, Columns> reflected, transmitted;
   double reflectedInAll, transmittedInAll;
-  double leastSure; ///< largest difference between the means of columns and the whole, of R and T
 };
 
-/// Columns are made to add up to the power that goes out of the face, which is counted exactly: what is missing is
-/// given to them by optical thickness, for voxels' net flux is the further from the face's the thicker they are.
 inline Found FoundIn(const tyndall::LightField& light, const tyndall::Grid& grid, double sunFromZenith)
 {
   const double enters = std::cos(sunFromZenith * tyndall::Pi / 180.0);
-  Found found = { FluxThroughFace(light, grid, true, enters), FluxThroughFace(light, grid, false, enters), 0.0, 0.0,
-    0.0 };
-  found.reflectedInAll = light.facePowerOut[5][0] / light.balance.entered[0];
-  found.transmittedInAll = light.facePowerOut[4][0] / light.balance.entered[0];
-  double meanReflected = 0.0, meanTransmitted = 0.0;
+  Found found = { LeavingColumns(light, grid, 5), LeavingColumns(light, grid, 4),
+    light.facePowerOut[5][0] / light.balance.entered[0], light.facePowerOut[4][0] / light.balance.entered[0] };
   for (int i = 0; i < Columns; ++i)
   {
-    found.reflected[i] = 1.0 + found.reflected[i] / enters;
-    found.transmitted[i] = -found.transmitted[i] / enters;
-    meanReflected += found.reflected[i] / Columns;
-    meanTransmitted += found.transmitted[i] / Columns;
+    found.reflected[i] /= enters;
+    found.transmitted[i] /= enters;
   }
-  for (int i = 0; i < Columns; ++i)
-  {
-    const double part = 2.0 * (i < Columns / 2 ? ThinTau : ThickTau) / (ThinTau + ThickTau);
-    found.reflected[i] += part * (found.reflectedInAll - meanReflected);
-    found.transmitted[i] += part * (found.transmittedInAll - meanTransmitted);
-  }
-  found.leastSure =
-    std::max(std::abs(found.reflectedInAll - meanReflected), std::abs(found.transmittedInAll - meanTransmitted));
   return found;
 }
 

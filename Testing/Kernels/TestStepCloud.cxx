@@ -16,8 +16,6 @@ protected:
     scene.settings.angularDegree = degree;
     scene.settings.directionsPerFace = 36;
     scene.settings.staggeredRays = true;
-    // The net flux of accelerated solves is two to three times further from the faces' here.
-    scene.settings.acceleration = PropagationAcceleration::None;
     const LightField light = scene.Solve(this->GetDevice());
     EXPECT_LT(light.balance.RelativeError(light.channels), 1e-5);
     return step_cloud::ErrorsOf(step_cloud::FoundIn(light, scene.medium.grid, experiment.sunFromZenith), experiment);

@@ -76,6 +76,7 @@ std::vector<std::string> LeftOutOf(const TransportParts& parts, const IterationR
   say(parts.Fine && parts.SweepsAreLit() && !parts.FineBoundary, left_out::EvenOutside);
   say(parts.Lamps.empty(), left_out::NoLights);
   say(traits.emits && parts.Emission.peaks.empty(), left_out::NoEmissionPeaks);
+  say(!parts.FacesReflect(), left_out::BlackFaces);
   say(traits.scatters && found.convergence.All().size() == 1, left_out::OneOrder);
   words.insert(words.end(), found.leftOut.begin(), found.leftOut.end());
   say(parts.Usual.MergesMirrors() && symmetry.Any(), left_out::MirrorImages(symmetry.Count(), directions));
@@ -103,6 +104,10 @@ std::vector<std::string> Words(const TransportParts& parts, const IterationResul
     const std::vector<std::string> ofScene = LeftOutOf(parts, found);
     words.insert(words.end(), ofScene.begin(), ofScene.end());
   }
+  if (parts.FacesReflect() && parts.Fine && accelerated)
+  {
+    words.emplace_back("finer directions of light from outside: the box's faces reflect");
+  }
   if (!accelerated)
   {
     words.emplace_back("acceleration: few scattering orders do");
@@ -116,6 +121,21 @@ std::vector<std::string> Words(const TransportParts& parts, const IterationResul
     words.emplace_back("angular moments for pictures: not asked for");
   }
   return words;
+}
+
+/// W / length^2, from W by cell; [cell][channel].
+std::vector<float> FacePower(const TransportParts& parts, const IterationResult& found)
+{
+  const Grid& grid = parts.Layout.grid;
+  const int channels = parts.Layout.channels;
+  const std::size_t cells = found.leftByCell.size() / channels;
+  std::vector<float> power(found.leftByCell.size());
+  for (std::size_t i = 0; i < power.size(); ++i)
+  {
+    const double area = grid.VoxelVolume() / grid.spacing[parts.Faces->FaceOf(i / channels) / 2];
+    power[i] = static_cast<float>(found.leftByCell[i % channels * cells + i / channels] / area);
+  }
+  return power;
 }
 
 LightField LightOf(TransportParts& parts, IterationResult&& found, bool accelerated)
@@ -139,6 +159,7 @@ LightField LightOf(TransportParts& parts, IterationResult&& found, bool accelera
   light.halfRangeFlux = HalfRangeFlux((parts.FineBoundary && !accelerated ? *parts.Fine : parts.Usual).Set());
   light.balance = found.ledger.Balance();
   light.facePowerOut = found.ledger.FacePowerOut();
+  light.facePower = FacePower(parts, found);
   light.convergence = found.convergence.All();
   light.fluenceDirect = std::move(found.fluenceDirect);
   light.surfaceRadiance = std::move(found.surfaceRadiance);

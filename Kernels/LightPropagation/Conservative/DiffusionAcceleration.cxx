@@ -3,9 +3,11 @@
 #include "LightPropagation/Conservative/SurfaceRadiance.h"
 #include "LightPropagation/Convergence.h"
 #include "LightPropagation/Scattering/MomentScattering.h"
+#include "Medium/BoxFaces.h"
 
 #include <algorithm>
 #include <cmath>
+#include <utility>
 
 namespace tyndall
 {
@@ -29,6 +31,7 @@ IterationResult DiffusionAcceleration::Run(const Monitor& monitor)
   this->Uncollided.emplace(this->Parts,
     OfPart(monitor, [this](double done) { return ProgressOf(this->Settings, 1.0, UncollidedPart * done); }));
   this->GiveFirstScattered();
+  this->ReflectUncollided();
   this->MakeSweep();
   int iteration = 0;
   do
@@ -63,6 +66,10 @@ IterationResult DiffusionAcceleration::Run(const Monitor& monitor)
   if (this->Parts.StoresMoments())
   {
     this->FindShown();
+  }
+  if (this->Parts.Faces)
+  {
+    this->Result.leftByCell = this->LeftWithoutPattern();
   }
   return std::move(this->Result);
 }
@@ -120,13 +127,14 @@ void DiffusionAcceleration::MakeSweep()
   SweepRequest request = { this->DepositOfSweep(), parts.AllRays() };
   request.sameBoundary = true;
   request.angular = parts.UsualValues();
+  request.faceIn = parts.LightByCells();
   this->Swept = parts.MakeSweep(request);
 }
 
 /// No flux: it comes from the system.
 Deposit DiffusionAcceleration::DepositOfSweep() const
 {
-  return { &this->Parts.Path, nullptr, &this->PartialCurrents, nullptr };
+  return { &this->Parts.Path, nullptr, &this->PartialCurrents, nullptr, this->Parts.WholeDeposit().faceOut };
 }
 
 /// From the source that is there to path integrals and partial currents. The light that comes in from outside comes in
@@ -150,6 +158,131 @@ void DiffusionAcceleration::Sweep(int iteration, const Monitor& monitor)
   this->Swept->Forget();
   const bool shines = iteration > 0 || this->Parts.HasSource();
   this->Tally = this->Swept->Apply(shines ? &this->Parts.Source : nullptr, this->Parts.BoundaryOfSweeps(), monitor);
+  this->TakeSweptFaces();
+}
+
+/// What of uncollided light comes back comes back every time.
+void DiffusionAcceleration::ReflectUncollided()
+{
+  TransportParts& parts = this->Parts;
+  if (!parts.Faces)
+  {
+    return;
+  }
+  const std::size_t cells = parts.Faces->Cells();
+  const std::vector<float> left = parts.Faces->TakeOut();
+  this->LeftUncollided.assign(left.begin(), left.end());
+  for (std::size_t i = 0; i < left.size(); ++i)
+  {
+    this->GivenBack.push_back(parts.Faces->Albedo()[parts.Faces->FaceOf(i % cells)][i / cells] * left[i]);
+    this->GivenPower[i / cells] += this->GivenBack.back();
+  }
+  this->CameBack = this->GivenBack;
+  this->BackMixing.resize(parts.Layout.channels);
+  for (int c = 0; c < parts.Layout.channels; ++c)
+  {
+    this->Faces.emplace_back(parts.TheDevice, (FaceLeaves + 1) * cells, "the light at the box's faces");
+    this->Faces.back().Fill(0.0f);
+  }
+  if (parts.FacesReflect())
+  {
+    parts.Faces->LetIn(std::vector<double>(left.size(), 0.0), this->GivenBack);
+  }
+}
+
+/// What came back and left in the sweep, for the diffusion systems.
+void DiffusionAcceleration::TakeSweptFaces()
+{
+  if (!this->Parts.Faces)
+  {
+    return;
+  }
+  const std::size_t cells = this->Parts.Faces->Cells();
+  const std::vector<float> left = this->Parts.Faces->TakeOut();
+  for (std::size_t c = 0; c < this->Faces.size(); ++c)
+  {
+    std::vector<float> rows((FaceLeaves + 1) * cells, 0.0f);
+    std::copy_n(this->CameBack.begin() + c * cells, cells, rows.begin() + FaceCame * cells);
+    std::copy_n(this->GivenBack.begin() + c * cells, cells, rows.begin() + FaceGiven * cells);
+    std::copy_n(left.begin() + c * cells, cells, rows.begin() + FaceLeft * cells);
+    this->Faces[c].Write(rows.data());
+  }
+}
+
+/// Lets come in with the next sweep what the faces give back by the systems' solution.
+/// @return by how much it differs from what came in with the last one, over all light that is given
+double DiffusionAcceleration::ReflectFound(int iteration)
+{
+  const FaceLight& faces = *this->Parts.Faces;
+  const std::size_t cells = faces.Cells();
+  const std::vector<double> leaves = this->LeftByCell();
+  double change = 0.0;
+  for (std::size_t c = 0; c < this->Faces.size(); ++c)
+  {
+    double differs = 0.0, all = this->GivenPower[c] + this->PowerIn[c];
+    const auto begin = this->CameBack.begin() + static_cast<std::ptrdiff_t>(c * cells);
+    const std::vector<double> came(begin, begin + static_cast<std::ptrdiff_t>(cells));
+    std::vector<double> found(cells);
+    for (std::size_t cell = 0; cell < cells; ++cell)
+    {
+      const std::size_t i = c * cells + cell;
+      const double albedo = faces.Albedo()[faces.FaceOf(cell)][c];
+      found[cell] = this->GivenBack[i] + albedo * std::max(leaves[i] - this->LeftUncollided[i], 0.0);
+      differs += std::abs(found[cell] - came[cell]);
+      all += found[cell];
+    }
+    change = std::max(change, all > 0.0 ? differs / all : 0.0);
+    // In thin media the systems do not know how what comes back goes through them.
+    const std::vector<double> next = iteration > 0 ? this->BackMixing[c].Next(came, found) : found;
+    std::copy(next.begin(), next.end(), begin);
+  }
+  // The systems' power does not have the pattern of rays.
+  this->Parts.Faces->LetIn(std::vector<double>(this->CameBack.size(), 0.0), this->CameBack);
+  return change;
+}
+
+/// The same without the pattern in which the last sweep's rays go in and out through cells: in thin voxels the systems
+/// have it of the sweep. The sums over faces stay.
+std::vector<double> DiffusionAcceleration::LeftWithoutPattern() const
+{
+  const FaceLight& faces = *this->Parts.Faces;
+  const Grid& grid = this->Parts.Layout.grid;
+  const std::size_t cells = faces.Cells();
+  const std::vector<double> left = this->LeftByCell();
+  const std::array<Rgb, 6> incoming =
+    this->Parts.SweepsAreLit() ? this->Parts.UsualBoundary->IncomingPower() : std::array<Rgb, 6>{};
+  const double longest = *std::max_element(grid.spacing.begin(), grid.spacing.end());
+  std::vector<double> smooth = left;
+  for (std::size_t c = 0; c < this->Faces.size(); ++c)
+  {
+    const std::vector<float> rows = this->Faces[c].Read();
+    ForBoxFaceCells(grid, [&](const BoxFaceCell& cell) {
+      const double tau = longest * this->TheMedium.TransportSigmaT(cell.voxel, static_cast<int>(c));
+      const double area = grid.VoxelVolume() / grid.spacing[cell.face / 2];
+      const double in = rows[FaceCame * cells + cell.number] + incoming[cell.face][c] * area;
+      const double pattern = faces.Pattern(cell.number);
+      const double net = rows[FaceLeft * cells + cell.number] - pattern * in; // of the sweep
+      double& here = smooth[c * cells + cell.number];
+      here = std::max(here + (1.0 / pattern - 1.0) * net / (1.0 + 0.25 * tau * tau), 0.0);
+    });
+  }
+  return faces.ScaledTo(std::move(smooth), left);
+}
+
+/// W that leave through each cell, by the systems' solution; in a dark channel those of uncollided light alone.
+std::vector<double> DiffusionAcceleration::LeftByCell() const
+{
+  const std::size_t cells = this->Parts.Faces->Cells();
+  std::vector<double> left = this->LeftUncollided;
+  for (std::size_t c = 0; c < this->Faces.size(); ++c)
+  {
+    const std::vector<float> rows = this->Faces[c].Read();
+    for (std::size_t i = 0; i<cells&& this->VoxelPower(static_cast<int>(c))> 0.0; ++i)
+    {
+      left[c * cells + i] += rows[FaceLeaves * cells + i];
+    }
+  }
+  return left;
 }
 
 /// The source of the next sweep, of what the last one and the systems found.
@@ -186,9 +319,10 @@ void DiffusionAcceleration::MakeSystems()
     parts.SweepsAreLit() ? parts.UsualBoundary->IncomingPower() : std::array<Rgb, 6>{};
   for (int c = 0; c < parts.Layout.channels; ++c)
   {
-    std::array<double, 6> ofChannel;
+    std::array<double, 6> ofChannel, albedo = {};
     for (int face = 0; face < 6; ++face)
     {
+      albedo[face] = parts.Faces ? parts.Faces->Albedo()[face][c] : 0.0;
       ofChannel[face] = incoming[face][c];
       this->PowerIn[c] += this->Tally.in[face][c];
     }
@@ -196,7 +330,8 @@ void DiffusionAcceleration::MakeSystems()
       c * parts.Layout.Stride(), &parts.OnDevice.TransportSigmaT(), &parts.OnDevice.SigmaT(), &parts.OnDevice.SigmaA(),
       &parts.OnDevice.SigmaS(), &this->Given, parts.Layout.Places(parts.Functions()), c,
       parts.Basis ? &this->GivenFlux : nullptr, &parts.Source, &parts.Path, &this->PartialCurrents,
-      this->Uncollided->Passed().Size() > 0 ? &this->Uncollided->Passed() : nullptr };
+      this->Uncollided->Passed().Size() > 0 ? &this->Uncollided->Passed() : nullptr,
+      parts.Faces ? &this->Faces[c] : nullptr, albedo };
     this->Systems.push_back(std::make_unique<DiffusionSystem>(parts.TheDevice, parts.Layout.grid,
       this->Settings.periodic, parts.Usual.Set(), pattern, arrays, ofChannel, this->LinearSource));
   }
@@ -225,13 +360,17 @@ void DiffusionAcceleration::Correct(int iteration)
       }
     }
   }
+  this->CountLight();
+  if (this->Parts.FacesReflect())
+  {
+    change = std::max(change, this->ReflectFound(iteration));
+  }
   const bool guessed = iteration == 1 && this->Warm.Begins() && this->Warm.Rate(0) > 0.0;
   const double ratio = guessed ? this->Warm.Rate(0) : iteration > 0 && this->Change > 0.0 ? change / this->Change : 1.0;
   const double fall = std::clamp(iteration > 1 ? std::max(ratio, this->LastRatio) : ratio, 0.5, 0.95);
   this->Residual = iteration > 0 || change == 0.0 ? Margin * change * fall / (1.0 - fall) : 1.0;
   this->LastRatio = ratio;
   this->Change = change;
-  this->CountLight();
   this->Result.convergence.Add(this->Residual, change, this->Result.ledger);
 }
 
@@ -262,10 +401,26 @@ void DiffusionAcceleration::CountLight()
         c, static_cast<double>(this->TheMedium.sigma_a.At(i, c)) * this->Found[c][i] * grid.VoxelVolume());
     }
     const std::array<double, 6> outflow = this->Systems[c]->Outflow(ofSweep);
-    for (int face = 0; face < 6; ++face)
+    for (int face = 0; face < 6 && !this->Parts.Faces; ++face)
     {
       this->Result.ledger.Escape(c, face, outflow[face]);
     }
+  }
+  if (this->Parts.Faces)
+  {
+    this->CountFaces();
+  }
+}
+
+/// Where light is counted by cells: uncollided light that left is in the ledger already.
+void DiffusionAcceleration::CountFaces()
+{
+  const FaceLight& faces = *this->Parts.Faces;
+  const std::vector<double> left = this->LeftByCell();
+  for (std::size_t i = 0; i < left.size(); ++i)
+  {
+    const int face = faces.FaceOf(i % faces.Cells()), c = static_cast<int>(i / faces.Cells());
+    this->Result.ledger.Escape(c, face, (1.0 - faces.Albedo()[face][c]) * left[i] - this->LeftUncollided[i]);
   }
 }
 

@@ -1,5 +1,6 @@
 #pragma once
 
+#include "LightPropagation/Conservative/HostMixing.h"
 #include "LightPropagation/Conservative/Iteration.h"
 #include "LightPropagation/Conservative/TransportParts.h"
 #include "LightPropagation/Conservative/UncollidedLight.h"
@@ -35,7 +36,13 @@ private:
   void BeginWarm();
   std::vector<double> WithGuess(int channel) const;
   void Correct(int iteration);
+  void ReflectUncollided();
+  void TakeSweptFaces();
+  double ReflectFound(int iteration);
+  std::vector<double> LeftByCell() const;
+  std::vector<double> LeftWithoutPattern() const;
   void CountLight();
+  void CountFaces();
   double VoxelPower(int channel) const;
   bool Done(int iterations) const;
   std::vector<float> SweptFluence() const;
@@ -57,9 +64,13 @@ private:
   Buffer<float> Given, GivenFlux, PartialCurrents; ///< as DiffusionSystem::Arrays has them
   std::unique_ptr<SweepOperator> Swept;
   std::vector<std::unique_ptr<DiffusionSystem>> Systems;
-  SweepTally Tally;                       ///< of the last sweep
-  Rgb GivenPower = {}, PowerIn = {};      ///< W, emitted or first scattered; through faces
-  std::vector<std::vector<double>> Found; ///< W / length^2, without uncollided light
+  /// By channel, where light by cells of the box's faces is wanted: as DiffusionSystem::Arrays has it.
+  std::vector<Buffer<float>> Faces;
+  std::vector<double> CameBack, GivenBack, LeftUncollided; ///< W, [channel][cell]
+  std::vector<HostMixing> BackMixing;                      ///< of CameBack, by channel
+  SweepTally Tally;                                        ///< of the last sweep
+  Rgb GivenPower = {}, PowerIn = {};                       ///< W, emitted or first scattered; through faces
+  std::vector<std::vector<double>> Found;                  ///< W / length^2, without uncollided light
   double Change = 1.0, LastRatio = 1.0, Residual = 1.0;
 
   WarmStart Warm;

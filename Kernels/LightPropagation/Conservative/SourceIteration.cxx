@@ -64,6 +64,7 @@ IterationResult SourceIteration::Run(const Monitor& monitor)
         this->Result.ledger.Escape(c, escaped[c]);
       }
     }
+    this->ReflectOrder();
     this->ScatterOrder();
     if (this->Order == 0 && this->Warm.Begins())
     {
@@ -83,6 +84,10 @@ IterationResult SourceIteration::Run(const Monitor& monitor)
   {
     this->Leave();
   }
+  if (this->Parts.Faces)
+  {
+    this->Result.leftByCell = this->Parts.Faces->LeftInAll();
+  }
   return std::move(this->Result);
 }
 
@@ -91,6 +96,7 @@ void SourceIteration::MakeSweeps()
   const int mostPlanes = this->Settings.maximumOrders > 0 ? MostPlanesAround : FewPlanes;
   SweepRequest request = { this->Parts.WholeDeposit(), this->Parts.AllRays(), {}, mostPlanes };
   request.angular = this->Parts.UsualValues();
+  request.faceIn = this->Parts.LightByCells();
   this->Whole = this->Parts.MakeSweep(request);
   this->MakeFilledSweep();
   if (this->Settings.leaveOut && this->Parts.SweepsAreLit() && !this->Shining)
@@ -101,13 +107,13 @@ void SourceIteration::MakeSweeps()
 
 /// Orders after the first go through the box that the medium fills alone: what leaves it does not come back. Their
 /// light in the other voxels is found at the end, for all of them in one sweep. Not with periodic axes, whose rays
-/// would be on the way in both.
+/// would be on the way in both; nor where the light that leaves through the faces' cells is wanted.
 void SourceIteration::MakeFilledSweep()
 {
   const std::array<bool, 3>& periodic = this->Settings.periodic;
   const MediumTraits& traits = this->Parts.Problem.Traits();
   if (!this->Settings.leaveOut || !traits.scatters || !this->Parts.Scattering->CanScatterAllOrders() || periodic[0] ||
-    periodic[1] || periodic[2])
+    periodic[1] || periodic[2] || this->Parts.Faces)
   {
     return;
   }
@@ -163,7 +169,7 @@ void SourceIteration::AddUncollided(const Monitor& monitor)
   {
     sources.push_back(std::move(peak));
   }
-  const bool escapes = this->Parts.Fine && this->Parts.Problem.Traits().scatters;
+  const bool escapes = this->Parts.Fine && this->Parts.Problem.Traits().scatters && !this->Parts.FacesReflect();
   const double all = static_cast<double>(sources.size() + (escapes ? 1 : 0));
   SweepTally tally;
   for (std::size_t i = 0; i < sources.size(); ++i)
@@ -177,6 +183,10 @@ void SourceIteration::AddUncollided(const Monitor& monitor)
   }
   this->Result.ledger.Count(tally);
   this->Stranded = tally.onTheWay;
+  if (this->Parts.Faces)
+  {
+    this->Parts.Faces->TakeUncollided();
+  }
   if (escapes)
   {
     this->Escaping.emplace(this->Parts, OfPart(monitor, sources.size() / all, 1.0)); // whatever shines: lights add up
@@ -186,7 +196,7 @@ void SourceIteration::AddUncollided(const Monitor& monitor)
 void SourceIteration::SweepOrder(const Monitor& monitor)
 {
   const SweepBoundary boundary = this->Order == 0 ? this->Parts.BoundaryOfSweeps() : SweepBoundary();
-  const bool nothing = !boundary && !this->Shining && Sum(this->OnTheWay) == 0.0;
+  const bool nothing = !boundary && !this->Shining && Sum(this->OnTheWay) == 0.0 && Sum(this->Reflected) == 0.0;
   this->OnTheWay = {};
   if (nothing)
   {
@@ -210,6 +220,25 @@ void SourceIteration::SweepOrder(const Monitor& monitor)
     for (const Rgb& face : tally.out)
     {
       this->Result.ledger.Escape(c, face[c]);
+    }
+  }
+}
+
+/// What faces give back of the light that left in this order has not left.
+void SourceIteration::ReflectOrder()
+{
+  this->Reflected = {};
+  if (!this->Parts.Faces)
+  {
+    return;
+  }
+  const std::array<Rgb, 6> back = this->Parts.Faces->Reflect();
+  for (int face = 0; face < 6; ++face)
+  {
+    for (int c = 0; c < 3; ++c)
+    {
+      this->Reflected[c] += back[face][c];
+      this->Result.ledger.Escape(c, face, -back[face][c]);
     }
   }
 }
@@ -256,7 +285,7 @@ void SourceIteration::ScatterOrder()
   }
   for (int c = 0; c < 3; ++c)
   {
-    this->Result.ledger.LeaveOver(c, this->Scattered[c] + this->OnTheWay[c] + this->Stranded[c]);
+    this->Result.ledger.LeaveOver(c, this->Scattered[c] + this->OnTheWay[c] + this->Reflected[c] + this->Stranded[c]);
   }
   if (this->Order == 0)
   {
@@ -277,7 +306,7 @@ void SourceIteration::EstimateResidual()
   this->Residual = 0.0;
   for (int c = 0; c < this->Parts.Layout.channels; ++c)
   {
-    const double now = this->Scattered[c] + this->OnTheWay[c];
+    const double now = this->Scattered[c] + this->OnTheWay[c] + this->Reflected[c];
     this->AllScattered[c] += now;
     if (now == 0.0)
     {
@@ -315,7 +344,7 @@ void SourceIteration::GoOnWarm()
   {
     this->AllScattered[c] += this->Scattered[c];
     this->Scattered[c] -= guessed[c];
-    const double now = magnitudes[c] + std::abs(this->OnTheWay[c]);
+    const double now = magnitudes[c] + std::abs(this->OnTheWay[c]) + std::abs(this->Reflected[c]);
     if (now > 0.0)
     {
       this->Residual = std::max(this->Residual, this->Rest[c].After(now, this->AllScattered[c]));

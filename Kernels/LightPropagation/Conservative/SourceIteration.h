@@ -27,6 +27,7 @@ private:
   void MakeFilledSweep();
   void AddUncollided(const Monitor& monitor);
   void SweepOrder(const Monitor& monitor);
+  void ReflectOrder();
   void ScatterOrder();
   void EstimateResidual();
   void BeginWarm();
@@ -58,6 +59,7 @@ private:
   bool Shining = false;  ///< the source is not zero
   Rgb Scattered = {};    ///< W, by the order just done
   Rgb OnTheWay = {};     ///< W, rays that go round a periodic axis in the next sweep
+  Rgb Reflected = {};    ///< W, by faces, that come in with the next sweep
   Rgb Stranded = {};     ///< W, of uncollided light whose rays go round a periodic axis without end
   Rgb Escaped = {};      ///< W, by the correction
   Rgb AllScattered = {}; ///< W, by all orders so far

@@ -212,7 +212,8 @@ std::vector<float> SurfaceRadiance(const Medium& medium, const std::array<bool, 
       Surface s;
       s.albedo = sigma > 0.0 ? scatters / sigma : 0.0;
       s.emitted = absorbs > 0.0 ? medium.emission.At(cell.voxel, c) / absorbs : 0.0;
-      s.in = powers[c].in[cell.face] / (4.0 * Pi * powers[c].halfRange);
+      const double back = powers[c].back.empty() ? 0.0 : powers[c].back[cell.number];
+      s.in = (powers[c].in[cell.face] + back) / (4.0 * Pi * powers[c].halfRange);
       s.out = s.in + powers[c].net[cell.number] / Pi;
       for (const Light& lamp : lamps)
       {

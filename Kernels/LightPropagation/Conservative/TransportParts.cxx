@@ -65,6 +65,7 @@ TransportParts::TransportParts(Device& device, const PropagationProblem& problem
   , Accelerated(accelerated)
 {
   this->FindBoundaryLight();
+  this->FindFaceLight();
   this->FindAngularValues();
   const MediumTraits& traits = problem.Traits();
   const bool needsSource = problem.ComputesScattering() || traits.emits || accelerated;
@@ -123,8 +124,9 @@ void TransportParts::FindBoundaryLight()
   if (this->Fine)
   {
     auto fine = std::make_unique<BoundaryLight>(grid, settings, *this->Fine, shining, environment.smooth);
-    // What comes in evenly from everywhere is what accelerated sweeps carry already.
-    if (fine->Shines() && !(this->Accelerated && fine->IsEven()))
+    // What comes in evenly from everywhere is what accelerated sweeps carry already; and of light that finer directions
+    // bring beyond that, the sweeps' faces could not give back a part.
+    if (fine->Shines() && !(this->Accelerated && (fine->IsEven() || Reflects(shining))))
     {
       this->FineBoundary = std::move(fine);
       this->FineBoundary->CheckRays(this->Layout.channels);
@@ -133,6 +135,16 @@ void TransportParts::FindBoundaryLight()
   if (this->SweepsAreLit())
   {
     this->UsualBoundary->CheckRays(this->Layout.channels);
+  }
+}
+
+void TransportParts::FindFaceLight()
+{
+  const Illumination& shining = this->Problem.Shining();
+  if (Reflects(shining) || this->Problem.Settings().facePower)
+  {
+    this->Faces = std::make_unique<FaceLight>(
+      this->TheDevice, this->Layout, this->Problem.Settings().periodic, this->Usual, shining.faceAlbedo);
   }
 }
 
@@ -147,7 +159,8 @@ SweepBoundary TransportParts::BoundaryOfSweeps() const
 
 Deposit TransportParts::WholeDeposit() const
 {
-  return { &this->Path, this->Flux.Size() > 0 ? &this->Flux : nullptr, nullptr, nullptr };
+  return { &this->Path, this->Flux.Size() > 0 ? &this->Flux : nullptr, nullptr, nullptr,
+    this->Faces ? &this->Faces->Out() : nullptr };
 }
 
 std::vector<AxisBundles> TransportParts::AllRays() const

@@ -4,6 +4,7 @@
 #include "LightPropagation/Angular/AngularBasis.h"
 #include "LightPropagation/Angular/SweptDirections.h"
 #include "LightPropagation/Conservative/EnergyLedger.h"
+#include "LightPropagation/Conservative/FaceLight.h"
 #include "LightPropagation/Problem/MediumOnDevice.h"
 #include "LightPropagation/Problem/PropagationProblem.h"
 #include "LightPropagation/Scattering/ScatteringOperator.h"
@@ -44,6 +45,8 @@ public:
   /// Along directions of its own until it meets the medium, where they were asked for and differ from the usual ones.
   std::unique_ptr<const SweptDirections> Fine;
   std::unique_ptr<const BoundaryLight> UsualBoundary, FineBoundary; ///< FineBoundary: null where there are none
+  /// By cells of the box's faces: where they reflect, or face power is asked for; else null.
+  std::unique_ptr<FaceLight> Faces;
   std::vector<Light> Lamps; ///< those of the scene and the peaks of the environment
   SplitEmission Emission;   ///< of the medium
 
@@ -79,6 +82,10 @@ public:
   /// The lamps of a scene and those that stand for the peaks of its environment along these directions, in its units.
   std::vector<Light> LampsOf(const Illumination& illumination) const;
   using Sources = std::vector<std::unique_ptr<UncollidedSource>>;
+  bool FacesReflect() const { return this->Faces && this->Faces->Reflects(); }
+  /// What comes in by cells, for SweepRequest::faceIn; null: nothing.
+  const Buffer<float>* LightByCells() const { return this->FacesReflect() ? &this->Faces->In() : nullptr; }
+
   Sources LampSources() const;
   Sources BrightEmissionSources() const;
   /// What the usual directions carry of what the medium emits, into a source; nothing where it does not.
@@ -104,6 +111,7 @@ private:
   std::unique_ptr<const ScatteringOperator> MakeScattering() const;
   void LoadSource();
   void FindBoundaryLight();
+  void FindFaceLight();
   void FindAngularValues();
   std::vector<int> BrightestBeams() const;
   int SlotOf(const UncollidedSource& source) const;

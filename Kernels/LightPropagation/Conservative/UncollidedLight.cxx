@@ -88,7 +88,7 @@ void UncollidedLight::AddSources(const Monitor& monitor)
     }
     firstMoments.Fill(0.0f);
     path.Fill(0.0f);
-    const Deposit ofLamp = { &path, parts.WholeDeposit().flux, nullptr, &firstMoments };
+    const Deposit ofLamp = { &path, parts.WholeDeposit().flux, nullptr, &firstMoments, parts.WholeDeposit().faceOut };
     Add(this->OfSources, parts.AddUncollided(*lamp, ofLamp, monitorOfNext()));
     this->PassFaces(path, firstMoments);
     if (parts.Basis)

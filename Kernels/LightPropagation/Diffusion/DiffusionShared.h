@@ -23,7 +23,17 @@ typedef struct
   float halfRange;   ///< sum over directions of w mu / 4 pi, mu > 0: 1/4 but for the direction set
   float floor;       ///< optical length between voxels' centres below which they pass no more
   float incoming[6]; ///< W / length^2 through each face of the box
+  float albedo[6];   ///< part that each face gives back of what leaves through it
 } DiffusionLayout;
+
+/// Light by cells of the box's faces, W: rows of the array `faces`.
+enum
+{
+  FaceCame = 0,  ///< came back in the sweep
+  FaceGiven = 1, ///< of it, what comes back of light that was not swept
+  FaceLeft = 2,  ///< left in the sweep
+  FaceLeaves = 3 ///< leaves by the solution
+};
 
 /// A level of multigrid.
 typedef struct

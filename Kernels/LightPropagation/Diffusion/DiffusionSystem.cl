@@ -2,6 +2,7 @@
 // host gives
 //   DOUBLES  1 where the device has double precision
 //   PASSING  1: lamps' light passes faces at once where it is scattered
+//   FACES    1: light leaves and comes back by cells of the box's faces
 //   MOMENTS  1: sweeps carry light that goes straight on where it is scattered forwards, or has angular moments
 //
 // Face d of a voxel is -x, +x, -y, +y, -z, +z. tau is the optical length of a voxel along an axis.
@@ -55,8 +56,17 @@ __kernel void diffusion_conductance(DiffusionLayout layout, const __global float
     const float passes =
       area * pass_face(&layout, tau0, tau1, y0, y1, flat_source[axis * stride + i] + flat_source[axis * stride + j]);
     conductance[axis * count + i] = (at == 0 && open) || layout.size[axis] == 1 ? 0.0f : passes;
+#if FACES
+    const float leaves = area * pass_boundary(&layout, way_to_boundary(&layout, tau1, sigma_t[i], sigma_a[i]));
+    for (int up = 0; up < 2 && open; ++up)
+    {
+      const bool border = at == (up ? layout.size[axis] - 1 : 0);
+      taken += border ? reflecting_face(&layout, 2 * axis + up, leaves / area).ofMedium * leaves : 0.0f;
+    }
+#else
     const int borders = open ? (at == 0) + (at == layout.size[axis] - 1) : 0;
     taken += borders * area * pass_boundary(&layout, way_to_boundary(&layout, tau1, sigma_t[i], sigma_a[i]));
+#endif
   }
   loss[i] = taken;
 }
@@ -122,7 +132,41 @@ typedef struct
   const __global float* givenFlux; // [axis][stride]
   ulong stride;
   int count;
+  const __global float* faces; // where FACES
 } diffusion_arrays;
+
+#if FACES
+// Cell of the box's faces (Medium/BoxFaces.h).
+static int cell_of_face(const DiffusionLayout* layout, const int* at, int d)
+{
+  const int* n = layout->size;
+  const int cells[3] = { n[1] * n[2], n[0] * n[2], n[0] * n[1] };
+  const int axis = d / 2, u = axis == 0 ? 1 : 0, v = axis == 2 ? 1 : 2;
+  int first = d & 1 ? cells[axis] : 0;
+  for (int before = 0; before < axis; ++before)
+  {
+    first += 2 * cells[before];
+  }
+  return first + at[v] * n[u] + at[u];
+}
+
+static int face_cells(const DiffusionLayout* layout)
+{
+  const int* n = layout->size;
+  return 2 * (n[1] * n[2] + n[0] * n[2] + n[0] * n[1]);
+}
+#endif
+
+// W / length^2 through a cell of face d: in the sweep that was made, or what is given beside what the face gives back.
+static float coming_in(const DiffusionLayout* layout, const diffusion_arrays* arrays, int row, int d, const int* at)
+{
+#if FACES
+  const int cell = cell_of_face(layout, at, d);
+  return layout->incoming[d] + arrays->faces[row * face_cells(layout) + cell] / face_area(layout, d / 2);
+#else
+  return layout->incoming[d];
+#endif
+}
 
 // What the given source's own net flux adds, for a voxel's half along an axis, to the fluence that drives light along
 // it (numerics.md, Eq. (53a)).
@@ -195,13 +239,18 @@ static float model_of_boundary(
   const float tau = arrays->sigma_t[i] * layout->spacing[axis];
   const float way = way_to_boundary(layout, tau, arrays->sigma_t[i], arrays->sigma_a[i]);
   const float passes = pass_boundary(layout, way);
-  const float incoming = layout->incoming[d];
+  const float incoming = coming_in(layout, arrays, FaceCame, d, at);
   const float area = face_area(layout, axis);
   const float driven = drive_out(layout, arrays, d, i);
   const float light = arrays->model[i] + driven;
+#if FACES
+  const face_factors factors = reflecting_face(layout, d, passes);
+  *dark = area * (factors.ofMedium * passes * driven - factors.ofLight * coming_in(layout, arrays, FaceGiven, d, at));
+#else
   *dark = -passes / a * incoming * area;
 #if MOMENTS
   *dark += passes * driven * area;
+#endif
 #endif
   const float net = passes * (light - incoming / a);
   if (!layout->linear)
@@ -221,6 +270,18 @@ static float passing(
   return arrays->passed[d * arrays->stride + i] - (border ? 0.0f : arrays->passed[(d ^ 1) * arrays->stride + next[d]]);
 #else
   return 0.0f;
+#endif
+}
+
+// Part of what the medium sends through face d that leaves for good.
+static float part_that_leaves(const DiffusionLayout* layout, const diffusion_arrays* arrays, int d, int i)
+{
+#if FACES
+  const float tau = arrays->sigma_t[i] * layout->spacing[d / 2];
+  const float way = way_to_boundary(layout, tau, arrays->sigma_t[i], arrays->sigma_a[i]);
+  return reflecting_face(layout, d, pass_boundary(layout, way)).ofMedium;
+#else
+  return 1.0f;
 #endif
 }
 
@@ -248,6 +309,9 @@ static float remainder_of_borders(const DiffusionLayout* layout, const diffusion
       const float through = exp(-fmin(tau, 80.0f));
       seeming[d] = through * arrays->currents[(d ^ 1) * arrays->stride + i] +
         (1.0f - through) * layout->halfRange * face_area(layout, axis) * fmax(arrays->model[i], 0.0f);
+#if FACES
+      seeming[d] = arrays->faces[FaceLeft * face_cells(layout) + cell_of_face(layout, at, d)];
+#endif
       expected += model[d];
       sum += seeming[d];
       in += entered;
@@ -272,7 +336,16 @@ static float remainder_of_borders(const DiffusionLayout* layout, const diffusion
     const float net = seeming[d] - arrays->currents[d * arrays->stride + i] - model[d];
     share[d] = *transport_weight > 0.0f && is_border(layout, at, d) ? *transport_weight * net : 0.0f;
   }
+#if FACES
+  float remainder = 0.0f;
+  for (int d = 0; d < 6; ++d)
+  {
+    remainder += is_border(layout, at, d) ? part_that_leaves(layout, arrays, d, i) * share[d] : 0.0f;
+  }
+  return remainder;
+#else
   return *transport_weight > 0.0f ? *transport_weight * (left - expected) : 0.0f;
+#endif
 }
 
 // Power through face d out of voxel i, less what comes in, by the solution; `share` of its remainder where it is the
@@ -286,6 +359,12 @@ static exact power_of_face(const DiffusionLayout* layout, const diffusion_arrays
     const float tau = arrays->sigma_t[i] * layout->spacing[axis];
     const float passes = pass_boundary(layout, way_to_boundary(layout, tau, arrays->sigma_t[i], arrays->sigma_a[i]));
     const exact light = fluence[i] + drive_out(layout, arrays, d, i);
+#if FACES
+    const float area = face_area(layout, axis);
+    const face_factors factors = reflecting_face(layout, d, passes);
+    const exact ofMedium = passes * area * light + share[d] + passing(layout, arrays, d, i, next, true);
+    return factors.ofMedium * ofMedium - factors.ofLight * area * coming_in(layout, arrays, FaceGiven, d, at);
+#endif
     return passes * face_area(layout, axis) * (light - layout->incoming[d] / layout->halfRange) + share[d] +
       passing(layout, arrays, d, i, next, true);
   }
@@ -297,6 +376,24 @@ static exact power_of_face(const DiffusionLayout* layout, const diffusion_arrays
   return passes * (fluence[i] - fluence[next[d]] + drive_through(layout, arrays, d, i, next[d])) +
     remainder_of_face(layout, arrays, d, i, next[d], at) + passing(layout, arrays, d, i, next, false);
 }
+
+#if FACES
+// Power that leaves through face d of the box by the solution, before the face gives back its part (numerics.md,
+// Eq. (76c)).
+static exact power_leaving(const DiffusionLayout* layout, const diffusion_arrays* arrays, const __global exact* fluence,
+  int d, int i, const int* next, const int* at, float share)
+{
+  const int axis = d / 2;
+  const float tau = arrays->sigma_t[i] * layout->spacing[axis];
+  const float passes = pass_boundary(layout, way_to_boundary(layout, tau, arrays->sigma_t[i], arrays->sigma_a[i]));
+  const float area = face_area(layout, axis);
+  const exact ofMedium =
+    passes * area * (fluence[i] + drive_out(layout, arrays, d, i)) + share + passing(layout, arrays, d, i, next, true);
+  const exact albedo = layout->albedo[d], passes_in = passes / layout->halfRange;
+  const exact given = area * coming_in(layout, arrays, FaceGiven, d, at);
+  return (ofMedium + given * (1 - passes_in)) / (1 - albedo * (1 - passes_in));
+}
+#endif
 
 #define ARRAYS_OF_CHANNEL                                                                                         \
   sigma_t += layout.firstT;                                                                                       \
@@ -310,7 +407,7 @@ static exact power_of_face(const DiffusionLayout* layout, const diffusion_arrays
   const ulong stride = layout.stride;                                                                             \
   const int count = layout.size[0] * layout.size[1] * layout.size[2];                                             \
   const diffusion_arrays arrays = { sigma_t, sigma_a, flat_source, conductance, currents, passed, model, pattern, \
-    given_flux, stride, count };                                                                                  \
+    given_flux, stride, count, faces };                                                                           \
   const int at[3] = { x, y, z };                                                                                  \
   int next[6];                                                                                                    \
   find_neighbours(layout.size, x, y, z, i, next);                                                                 \
@@ -325,7 +422,7 @@ __kernel void diffusion_balance(DiffusionLayout layout, const __global float* si
   const __global float* swept, const __global float* flat_source, const __global float* conductance,
   const __global float* currents, const __global float* passed, const __global float* model,
   const __global float* pattern, const __global float* source, const __global float* path, const __global float* given,
-  const __global float* given_flux, __global exact* right)
+  const __global float* given_flux, const __global float* faces, __global exact* right)
 {
   VOXEL(layout.size)
   ARRAYS_OF_CHANNEL
@@ -336,7 +433,7 @@ __kernel void diffusion_balance(DiffusionLayout layout, const __global float* si
     {
       float dark;
       model_of_boundary(&layout, &arrays, d, i, at, &dark);
-      power -= dark + passing(&layout, &arrays, d, i, next, true);
+      power -= dark + part_that_leaves(&layout, &arrays, d, i) * passing(&layout, &arrays, d, i, next, true);
     }
     else if (layout.size[d / 2] > 1)
     {
@@ -363,7 +460,7 @@ __kernel void diffusion_outflow(DiffusionLayout layout, const __global float* si
   const __global float* swept, const __global float* flat_source, const __global float* conductance,
   const __global float* currents, const __global float* passed, const __global float* model,
   const __global float* pattern, const __global float* source, const __global float* path, const __global float* given,
-  const __global float* given_flux, const __global exact* fluence, __global exact* outflow)
+  const __global float* given_flux, __global float* faces, const __global exact* fluence, __global exact* outflow)
 {
   VOXEL(layout.size)
   if (!IS_OUTERMOST(layout, ((int[3]){ x, y, z })))
@@ -388,7 +485,11 @@ __kernel void diffusion_outflow(DiffusionLayout layout, const __global float* si
       __global exact* face = outflow + 4 * (begin + at[v] * layout.size[u] + at[u]);
       const float none[6] = { 0.0f };
       face[3] = power_of_face(&layout, &arrays, fluence, d, i, next, at, none);
-      face[0] = face[3] + share[d] + currents[d * stride + i];
+      face[0] = face[3] + part_that_leaves(&layout, &arrays, d, i) * share[d] + currents[d * stride + i];
+#if FACES
+      faces[FaceLeaves * face_cells(&layout) + cell_of_face(&layout, at, d)] =
+        (float)power_leaving(&layout, &arrays, fluence, d, i, next, at, share[d]);
+#endif
       face[1] = seeming[d];
       face[2] = borders > 1 ? transport_weight : -1.0f;
     }
@@ -401,7 +502,7 @@ __kernel void diffusion_flux(DiffusionLayout layout, const __global float* sigma
   const __global float* swept, const __global float* flat_source, const __global float* conductance,
   const __global float* currents, const __global float* passed, const __global float* model,
   const __global float* pattern, const __global float* source, const __global float* path, const __global float* given,
-  const __global float* given_flux, const __global exact* fluence, __global float* flux)
+  const __global float* given_flux, const __global float* faces, const __global exact* fluence, __global float* flux)
 {
   VOXEL(layout.size)
   ARRAYS_OF_CHANNEL
@@ -426,7 +527,8 @@ __kernel void diffusion_found_flux(DiffusionLayout layout, const __global float*
   const __global float* swept, const __global float* flat_source, const __global float* conductance,
   const __global float* currents, const __global float* passed, const __global float* model,
   const __global float* pattern, const __global float* source, const __global float* path, const __global float* given,
-  const __global float* given_flux, MomentPlaces places, int channel, __global exact* fluence)
+  const __global float* given_flux, const __global float* faces, MomentPlaces places, int channel,
+  __global exact* fluence)
 {
   VOXEL(layout.size)
   const __global float* moments = path;

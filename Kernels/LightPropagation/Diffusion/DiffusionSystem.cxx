@@ -55,6 +55,7 @@ DiffusionSystem::DiffusionSystem(Device& device, const Grid& grid, const std::ar
   this->Layout.halfRange = static_cast<float>(halfRange);
   this->Layout.floor = static_cast<float>(Floor);
   std::copy(incoming.begin(), incoming.end(), this->Layout.incoming);
+  std::copy(arrays.albedo.begin(), arrays.albedo.end(), this->Layout.albedo);
 
   const char* what = "the diffusion system";
   this->Pattern = Buffer<float>(device, pattern.values, what);
@@ -80,7 +81,7 @@ cl::Kernel DiffusionSystem::Kernel(const char* name) const
 {
   return this->TheDevice.Kernel(name, kernel_source::DiffusionSystem,
     ExactOption(this->TheDevice) + Define("PASSING", this->The.passed != nullptr) +
-      Define("MOMENTS", this->HasMoments()));
+      Define("FACES", this->The.faces != nullptr) + Define("MOMENTS", this->HasMoments()));
 }
 
 void DiffusionSystem::Run(cl::Kernel& kernel)
@@ -96,7 +97,8 @@ void DiffusionSystem::RunOnArrays(const char* name, const More&... more)
   cl::Kernel kernel = this->Kernel(name);
   With(kernel, this->Layout, *the.sigma_t, *the.sigma_a, *the.swept, this->FlatSource, this->Solver.Conductance(),
     *the.partialCurrents, this->The.passed ? *this->The.passed : this->Model, this->Model, this->Pattern, *the.source,
-    *the.path, *the.given, the.givenFlux ? *the.givenFlux : *the.given, more...);
+    *the.path, *the.given, the.givenFlux ? *the.givenFlux : *the.given,
+    this->The.faces ? *this->The.faces : this->Model, more...);
   this->Run(kernel);
 }
 
@@ -124,6 +126,11 @@ double DiffusionSystem::Correct(double unit)
   const auto& h = this->Layout.spacing;
   const float edge = std::cbrt(h[0] * h[1] * h[2]); // the same whichever axis is which
   return this->Mixing.Mix(this->Next, this->Solution, { the.sigma_s, the.first, edge });
+}
+
+bool DiffusionSystem::Reflects() const
+{
+  return std::any_of(this->The.albedo.begin(), this->The.albedo.end(), [](double albedo) { return albedo > 0.0; });
 }
 
 std::vector<double> DiffusionSystem::Found() const
@@ -155,7 +162,7 @@ std::array<double, 6> DiffusionSystem::Outflow(const std::array<double, 6>& ofSw
   }
   const double all = std::accumulate(missing.begin(), missing.end(), 0.0);
   const double left = std::accumulate(ofSweep.begin(), ofSweep.end(), 0.0);
-  for (int face = 0; face < 6 && shared > 0.0 && left > 0.0; ++face)
+  for (int face = 0; face < 6 && shared > 0.0 && left > 0.0 && !this->The.faces; ++face)
   {
     outflow[face] +=
       this->Layout.periodic[face / 2] ? 0.0 : transport_weight / shared * (missing[face] - all * ofSweep[face] / left);
@@ -168,6 +175,13 @@ SurfacePowers DiffusionSystem::PowersAtSurface() const
   const std::vector<double> borders = this->Borders.Read();
   SurfacePowers powers;
   powers.halfRange = this->Layout.halfRange;
+  const std::size_t cells = borders.size() / 4;
+  const std::vector<float> faces = this->Reflects() ? this->The.faces->Read() : std::vector<float>();
+  const auto row = [&](std::size_t number) {
+    return faces.empty() ? faces
+                         : std::vector<float>(faces.begin() + number * cells, faces.begin() + (number + 1) * cells);
+  };
+  const std::vector<float> back = row(FaceGiven), leaves = row(FaceLeaves);
   std::size_t at = 3;
   for (int face = 0; face < 6; ++face)
   {
@@ -177,6 +191,11 @@ SurfacePowers DiffusionSystem::PowersAtSurface() const
     for (int i = 0; i < this->Layout.size[axes.u] * this->Layout.size[axes.v]; ++i, at += 4)
     {
       powers.net.push_back(borders[at] / area);
+      if (!back.empty())
+      {
+        powers.back.push_back(
+          (back[powers.net.size() - 1] + this->The.albedo[face] * leaves[powers.net.size() - 1]) / area);
+      }
     }
   }
   return powers;

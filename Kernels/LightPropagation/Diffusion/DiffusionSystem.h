@@ -48,6 +48,10 @@ public:
     /// W, [channel][-x, +x, -y, +y, -z, +z][stride]: lamps' light that passes a face at once where it is scattered
     /// (LampPassing.h); null: voxels are thin, or there are no lamps
     const Buffer<float>* passed;
+    /// W, [row of DiffusionShared.h][cell of BoxFaces.h]: light by cells of the box's faces, the last row of which
+    /// Outflow() writes; null: no face gives back light, and it is not asked for
+    const Buffer<float>* faces = nullptr;
+    std::array<double, 6> albedo = {}; ///< of the faces
   };
 
   /// @param incoming  W / length^2 through the box's faces, but that of lights
@@ -95,6 +99,7 @@ public:
   void AddFlux(const Buffer<float>& flux);
 
 private:
+  bool Reflects() const;
   std::size_t Values() const { return this->HasMoments() ? 4 * this->Count : this->Count; }
   bool HasMoments() const { return this->The.swept != this->The.sigma_t; }
   cl::Kernel Kernel(const char* name) const;

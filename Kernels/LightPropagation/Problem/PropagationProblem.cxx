@@ -1,17 +1,45 @@
 #include "LightPropagation/Problem/PropagationProblem.h"
 
+#include "Device/Errors.h"
 #include "Light/LeftOut.h"
 
 namespace tyndall
 {
 namespace
 {
+/// @throws InvalidInput where light can neither leave the box nor be absorbed
+void CheckLightHasAnEnd(const Medium& medium, const Illumination& illumination, const std::array<bool, 3>& periodic)
+{
+  bool anyFace = false;
+  for (int c = 0; c < 3; ++c)
+  {
+    bool closed = true;
+    for (int face = 0; face < 6; ++face)
+    {
+      closed = closed && (periodic[face / 2] || illumination.faceAlbedo[face][c] >= 1.0);
+      anyFace = anyFace || !periodic[face / 2];
+    }
+    bool absorbs = false;
+    for (std::size_t i = 0; i < medium.grid.VoxelCount() && closed && !absorbs; ++i)
+    {
+      absorbs = medium.sigma_a.At(i, medium.sigma_a.components == 3 ? c : 0) > 0.0f;
+    }
+    if (closed && anyFace && !absorbs)
+    {
+      throw InvalidInput("Every face gives back all light (FaceAlbedo 1) and the medium absorbs none: light would grow "
+                         "without end. Give a face an albedo below 1, or the medium some sigma_a.");
+    }
+  }
+}
+
 /// So that the first member of a problem is made of what has been looked at.
 const Grid& Checked(const Medium& medium, const Illumination& illumination, const PropagationSettings& settings)
 {
   Check(medium);
   Check(illumination);
   Check(settings);
+  CheckFaceAlbedo(illumination, settings.periodic);
+  CheckLightHasAnEnd(medium, illumination, settings.periodic);
   return medium.grid;
 }
 }

@@ -12,8 +12,8 @@ namespace
 {
 /// The default, not the user's: which method is used must not depend on the tolerance.
 const double UsualTolerance = PropagationSettings().tolerance;
-/// Twice the distance beyond a face at which diffuse light would be zero, 0.71 mean free paths (numerics.md, Eq. (86)).
-constexpr double BothExtrapolations = 1.42;
+/// The distance beyond a face at which diffuse light would be zero, mean free paths (numerics.md, Eq. (86)).
+constexpr double Extrapolation = 1.42 / 2.0;
 constexpr double ManyOrders = 40.0;       ///< source iteration that is dearer than acceleration
 constexpr double ManyOrdersInSlab = 12.0; ///< the same in a slab, whose diffusion system is small
 
@@ -41,6 +41,18 @@ double LongestLine(const Medium& medium, int axis, int channel)
   return longest;
 }
 
+/// Of both faces across an axis. A face that reflects sends light back as if the medium went on there, at most as a
+/// mirror image of all that there is.
+double BothExtrapolations(const PropagationProblem& problem, int axis, int channel, double longest)
+{
+  const auto beyond = [&](int face) {
+    const double albedo = problem.Shining().faceAlbedo[2 * axis + face][channel];
+    return albedo > 0.0 ? Extrapolation * (1.0 + albedo) / (1.0 - albedo) : Extrapolation;
+  };
+  const double low = beyond(0), high = beyond(1);
+  return std::min(low, longest + high) + std::min(high, longest + low);
+}
+
 /// Of what is scattered, in the mean.
 double AlbedoOf(const Medium& medium, int channel)
 {
@@ -64,7 +76,7 @@ double OrdersNeeded(const PropagationProblem& problem)
     for (int axis = 0; axis < 3; ++axis)
     {
       const double longest = LongestLine(problem.TheMedium(), axis, c);
-      const double extrapolated = longest + BothExtrapolations;
+      const double extrapolated = longest + BothExtrapolations(problem, axis, c, longest);
       leak += problem.Settings().periodic[axis] ? 0.0 : Pi * Pi / 3.0 / (extrapolated * extrapolated);
     }
     slowest = std::max(slowest, AlbedoOf(problem.TheMedium(), c) / (1.0 + leak));

@@ -178,6 +178,7 @@ void ToWatts(LightField& light, double unit)
   Multiply(light.scatteredRadiance, unit, "scattered_radiance");
   Multiply(light.surfaceRadiance, unit, "surface_radiance");
   Multiply(light.scatteredMoments, unit, "scattered_moments");
+  Multiply(light.facePower, unit, "face_power");
   MultiplyPowers(light, unit);
 }
 

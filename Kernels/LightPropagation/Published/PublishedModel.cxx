@@ -272,6 +272,7 @@ PublishedModel::PublishedModel(
   Check(medium);
   CheckPublishedPhase(medium);
   Check(illumination);
+  RefuseFaceAlbedo(illumination, "Light propagation as published");
   Check(settings);
   this->ChannelCount = channels == 3 || medium.Channels() == 3 || !ColourOf(illumination).IsGrey() ? 3 : 1;
   this->Isotropic = medium.phase.IsIsotropic();

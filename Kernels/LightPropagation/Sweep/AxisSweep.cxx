@@ -3,6 +3,7 @@
 #include "Device/Defines.h"
 #include "LightPropagation/Sweep/SweepBorder.h"
 #include "LightPropagation/Sweep/SweepPlan.h"
+#include "Medium/BoxFaces.h"
 #include "TyndallKernelSources.h"
 
 #include <algorithm>
@@ -49,7 +50,7 @@ struct AxisSweep::Implementation
     const std::array<bool, 3>& periodic, SweepWorkspace& workspace, bool sameBoundary)
     : TheDevice(device)
     , Plan(device, volume.grid, volume.box, axis, bundles, volume.channels, periodic, volume.deposit.flux != nullptr,
-        volume.deposit.partialCurrents != nullptr, volume.angular, volume.moments)
+        volume.deposit.partialCurrents != nullptr, volume.angular, volume.moments, volume.faceIn != nullptr)
     , Workspace(workspace)
     , SameBoundary(sameBoundary)
   {
@@ -79,7 +80,18 @@ struct AxisSweep::Implementation
   Schedule Rounds() const { return { this->RoundSchedule, static_cast<int>(this->Plan.units.size()) }; }
   void Launch(cl::Kernel kernel, const SweepVolume& volume, const Buffer<CrossingInfo>& crossings,
     const Schedule& schedule, bool mapsEmpty, const Monitor& monitor);
-  cl::Kernel SweepKernel(bool source, bool border, bool flux);
+  /// What the kernel is compiled for.
+  struct Wanted
+  {
+    bool source; ///< the medium shines
+    bool border; ///< light comes in through the faces that rays pass sideways
+    bool faceIn; ///< and by cells
+    bool flux, faceOut;
+  };
+  cl::Kernel SweepKernel(const Wanted& wanted);
+  FaceInfo Faces(std::size_t firstChannel) const;
+  void EnterByCells(const SweepVolume& volume);
+  void LeaveByCells(const SweepVolume& volume);
 
   /// As SweepBorder has them.
   Buffer<float>& Maps() { return this->IsPeriodic() ? this->OwnMaps : this->Workspace.maps; }
@@ -192,8 +204,10 @@ void AxisSweep::Implementation::CrossOnce(const SweepVolume& volume, const Entry
 {
   const Schedule schedule =
     this->Plan.laps == 1 ? Schedule{ this->FirstSchedule, this->Plan.launches } : this->Rounds();
-  this->Launch(this->SweepKernel(entry.source, entry.border, volume.deposit.flux != nullptr), volume,
-    this->FirstCrossings, schedule, entry.mapsEmpty, monitor);
+  const Deposit& to = volume.deposit;
+  const Wanted wanted = { entry.source, entry.border, volume.faceIn != nullptr, to.flux != nullptr,
+    to.faceOut != nullptr };
+  this->Launch(this->SweepKernel(wanted), volume, this->FirstCrossings, schedule, entry.mapsEmpty, monitor);
 }
 
 /// Rays that left a periodic axis come back on the other side, until next to nothing is on the way.
@@ -209,8 +223,8 @@ void AxisSweep::Implementation::GoRound(const SweepVolume& volume, int mostPlane
   for (int gone = planes; gone < mostPlanes && Sum(onTheWay) > NothingLeft * atFirst; gone += planes)
   {
     const Buffer<CrossingInfo> crossings(this->TheDevice, this->Plan.Crossings(gone, planes), "the ray pattern");
-    this->Launch(this->SweepKernel(false, false, volume.deposit.flux != nullptr), volume, crossings, this->Rounds(),
-      false, monitor);
+    const Wanted wanted = { false, false, false, volume.deposit.flux != nullptr, volume.deposit.faceOut != nullptr };
+    this->Launch(this->SweepKernel(wanted), volume, crossings, this->Rounds(), false, monitor);
     this->CountSideways();
     onTheWay = this->PowerOnTheWay();
   }
@@ -238,6 +252,9 @@ void AxisSweep::Implementation::Launch(cl::Kernel kernel, const SweepVolume& vol
   info.patternPlanes = plan.PatternPlanes();
   info.axis = plan.axes.axis;
   info.planes = plan.plane;
+  info.faces = this->Faces(volume.faceFirst);
+  const Buffer<float>& faceOut = volume.deposit.faceOut ? *volume.deposit.faceOut : *volume.deposit.path;
+  const Buffer<float>& faceIn = volume.faceIn ? *volume.faceIn : *volume.deposit.path;
   info.moments = plan.moments;
   info.packedMoments = plan.momentRow;
   info.sizeY = plan.grid.size[1];
@@ -247,21 +264,72 @@ void AxisSweep::Implementation::Launch(cl::Kernel kernel, const SweepVolume& vol
     info.launch = launch;
     With(kernel, info, *volume.sigma_t, source, *volume.deposit.path, lost, flux, partialCurrents, this->Maps(),
       this->Outside, this->Radiance, this->Workspace.scratch, this->Units, this->Bundles, this->Coefficients, crossings,
-      this->FirstOwnLight, schedule.planes, this->Sideways);
+      this->FirstOwnLight, schedule.planes, this->Sideways, faceOut, faceIn);
     this->TheDevice.Queue().enqueueNDRangeKernel(kernel, cl::NullRange, cl::NDRange(plan.units.size()), cl::NDRange(1));
     this->TheDevice.Queued(plan.secondsPerLaunch);
     Report(monitor, (launch + 1.0) / schedule.launches);
   }
 }
 
-/// @param source  the medium shines
-/// @param border  light comes in through the faces that rays pass sideways
-/// @param flux  net flux is wanted
-cl::Kernel AxisSweep::Implementation::SweepKernel(bool source, bool border, bool flux)
+/// Where the cells are of the faces that rays of this axis pass sideways.
+FaceInfo AxisSweep::Implementation::Faces(std::size_t firstChannel) const
+{
+  const PlaneAxes& axes = this->Plan.axes;
+  FaceInfo faces = {};
+  faces.firstChannel = firstChannel;
+  faces.stride = BoxFaceCellCount(this->Plan.grid);
+  for (int side = 0; side < 4; ++side)
+  {
+    const int aside = side < 2 ? axes.u : axes.v;
+    const BoxFaceLayout layout = LayoutOfFace(this->Plan.grid, 2 * aside + side % 2);
+    faces.first[side] = static_cast<cl_int>(layout.first);
+    faces.plane[side] = static_cast<cl_int>(layout.step[axes.axis]);
+    faces.along[side] = static_cast<cl_int>(layout.step[side < 2 ? axes.v : axes.u]);
+  }
+  return faces;
+}
+
+/// Into the maps, where the axis is open: through the faces that rays start at.
+void AxisSweep::Implementation::EnterByCells(const SweepVolume& volume)
+{
+  const SweepPlan& plan = this->Plan;
+  std::vector<float> power;
+  for (const BundleInfo& bundle : plan.bundleRows)
+  {
+    power.push_back(bundle.power);
+  }
+  const Buffer<float> powers(this->TheDevice, power, "the bundles of rays");
+  const int low = 2 * plan.axes.axis;
+  cl::Kernel kernel = this->TheDevice.Kernel("enter_by_cells", kernel_source::SweepMaps);
+  With(kernel, this->Maps(), cl_ulong(plan.mapsEachWay), this->MapPlaces, powers, cl_int(plan.channels),
+    cl_int(plan.row), cl_int(plan.vector), plan.plane.sizeU, *volume.faceIn,
+    cl_ulong(volume.faceFirst + LayoutOfFace(plan.grid, low).first),
+    cl_ulong(volume.faceFirst + LayoutOfFace(plan.grid, low + 1).first), cl_ulong(BoxFaceCellCount(plan.grid)));
+  this->TheDevice.Queue().enqueueNDRangeKernel(
+    kernel, cl::NullRange, cl::NDRange(plan.plane.sizeV, plan.bundles.size(), 2), cl::NDRange(1, 1, 1));
+  this->TheDevice.Finish(); // the powers go
+}
+
+/// Out of the maps, where the axis is open: through the faces at the far ends.
+void AxisSweep::Implementation::LeaveByCells(const SweepVolume& volume)
+{
+  const SweepPlan& plan = this->Plan;
+  const int low = 2 * plan.axes.axis;
+  cl::Kernel kernel = this->TheDevice.Kernel("leave_by_cells", kernel_source::SweepMaps);
+  With(kernel, this->Maps(), cl_ulong(plan.mapsEachWay), this->MapPlaces, cl_int(plan.bundles.size()),
+    cl_int(plan.channels), cl_int(plan.row), cl_int(plan.vector), plan.plane.sizeU, *volume.deposit.faceOut,
+    cl_ulong(volume.faceFirst + LayoutOfFace(plan.grid, low + 1).first),
+    cl_ulong(volume.faceFirst + LayoutOfFace(plan.grid, low).first), cl_ulong(BoxFaceCellCount(plan.grid)));
+  this->TheDevice.Queue().enqueueNDRangeKernel(
+    kernel, cl::NullRange, cl::NDRange(plan.plane.sizeV, 2), cl::NDRange(1, 1));
+}
+
+cl::Kernel AxisSweep::Implementation::SweepKernel(const Wanted& wanted)
 {
   const SweepPlan& plan = this->Plan;
   std::string options = Define("REAL_WIDTH", plan.vector) + Define("CHANNELS", plan.channels) +
-    Define("ROW", plan.row) + Define("SOURCE", source) + Define("BORDER", border) + Define("NET_FLUX", flux) +
+    Define("ROW", plan.row) + Define("SOURCE", wanted.source) + Define("BORDER", wanted.border) +
+    Define("NET_FLUX", wanted.flux) + Define("FACE_OUT", wanted.faceOut) + Define("FACE_IN", wanted.faceIn) +
     Define("CURRENTS", plan.partialCurrents) + DefineMoments(plan) + Define("PERIODIC_P", this->IsPeriodic()) +
     Define("PERIODIC_U", plan.periodic[plan.axes.u]) + Define("PERIODIC_V", plan.periodic[plan.axes.v]);
   for (int members = 1; members <= MaxMembers; members *= 2)
@@ -354,14 +422,23 @@ void AxisSweep::Start(const SweepVolume& volume, const SweepBoundary& boundary, 
     self.DarkenSides();
   }
   const bool lit = static_cast<bool>(boundary);
-  self.Dark =
-    lit && !volume.source && !self.IsPeriodic() && std::all_of(self.Tally.in.begin(), self.Tally.in.end(), IsBlack);
+  const bool byCells = volume.faceIn && !self.IsPeriodic();
+  if (byCells)
+  {
+    if (!lit)
+    {
+      self.Maps().Fill(0.0f);
+    }
+    self.EnterByCells(volume);
+  }
+  self.Dark = lit && !volume.faceIn && !volume.source && !self.IsPeriodic() &&
+    std::all_of(self.Tally.in.begin(), self.Tally.in.end(), IsBlack);
   if (self.Dark)
   {
     return;
   }
   // The maps of a periodic axis hold what is on the way from the sweep before.
-  self.CrossOnce(volume, { volume.source != nullptr, lit, !lit && !self.IsPeriodic() }, monitor);
+  self.CrossOnce(volume, { volume.source != nullptr, lit, !lit && !self.IsPeriodic() && !byCells }, monitor);
   if (self.IsPeriodic())
   {
     self.GoRound(volume, mostPlanes, monitor);
@@ -369,6 +446,10 @@ void AxisSweep::Start(const SweepVolume& volume, const SweepBoundary& boundary, 
   else
   {
     self.SumMaps();
+    if (volume.deposit.faceOut)
+    {
+      self.LeaveByCells(volume);
+    }
   }
 }
 

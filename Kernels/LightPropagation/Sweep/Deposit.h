@@ -19,6 +19,9 @@ struct Deposit
   /// `path` stands for, times its path (numerics.md, Eq. (37)). 0 in voxels thinner than ThinForFirstMoments. Null: not
   /// wanted.
   const Buffer<float>* firstMoments = nullptr;
+  /// W that leaves through each cell of the box's faces, [channel][cell] (BoxFaces.h), added to; null: not wanted. The
+  /// whole grid is swept then.
+  const Buffer<float>* faceOut = nullptr;
 };
 
 /// Optical length of voxels below which lamps' light is taken as lost evenly.

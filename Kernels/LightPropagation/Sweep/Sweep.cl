@@ -5,6 +5,7 @@
 // and what SweepLayout.cl asks for.
 
 #include "LightPropagation/Sweep/SweepCrossing.cl"
+#include "LightPropagation/Sweep/SweepFaces.cl"
 #include "LightPropagation/Sweep/SweepLayout.cl"
 #include "LightPropagation/Sweep/SweepPartialCurrents.cl"
 
@@ -483,12 +484,13 @@ static void cross_bundles(sweep_state* state, __global float* maps, const __glob
 // schedule  [launch][unit] first plane and end, counted from where rays start; beyond the last plane the axis begins
 //           anew
 // tally     [plane from where rays start][unit][-u, +u, -v, +v][channel] W that left
+// face_out, face_in  see Deposit.h, SweepOperator.h; where FACE_OUT, FACE_IN
 __kernel __attribute__((reqd_work_group_size(1, 1, 1))) void sweep(SweepInfo info, const __global float* sigma,
   const __global float* source, __global float* path, __global float* lost, __global float* flux,
   __global float* currents, __global float* maps, const __global float* outside, const __global float* radiance,
   __global float* scratch, const __global UnitInfo* units, const __global BundleInfo* bundles,
   const __global float* coefficients, const __global CrossingInfo* crossings, const __global OwnLightInfo* own,
-  const __global int2* schedule, __global float* tally)
+  const __global int2* schedule, __global float* tally, __global float* face_out, const __global float* face_in)
 {
   const int u = get_global_id(0);
   const int unit_count = get_global_size(0);
@@ -510,6 +512,18 @@ __kernel __attribute__((reqd_work_group_size(1, 1, 1))) void sweep(SweepInfo inf
 #endif
   state.moving = state.ring + rings;
   __global float* planes = state.moving + RAYS_OF_ROW + PAD; // past the last row's border
+#if FACE_OUT || FACE_IN
+  const FaceInfo faces = info.faces;
+  state.faces = &faces;
+#endif
+#if FACE_OUT
+  state.faceOut = face_out;
+#endif
+#if FACE_IN
+  state.faceIn = face_in;
+  state.outside = planes;
+  planes += RAYS_OF_ROW + PAD;
+#endif
   __global int* thin = (__global int*)(planes + layout.block * plane_floats(&layout));
 #if DEGREE
   const ulong channel = (ulong)info.moments.groups * GROUP;
@@ -571,6 +585,9 @@ __kernel __attribute__((reqd_work_group_size(1, 1, 1))) void sweep(SweepInfo inf
       const int plane = unit.backward ? layout.sizeP - 1 - (k - lap) : k - lap;
       state.planes = planes + (plane - first) * plane_floats(&layout);
       state.thin = thin + (plane - first) * layout.sizeV;
+#if FACE_OUT || FACE_IN
+      go_to_faces(&state, layout.firstP + plane);
+#endif
 #if DEGREE && MOMENTS_IN_PLACE
       const ulong line = info.moments.channels * channel;
       const ulong across = info.axis == 2 ? 1 : info.sizeY; // lines from one row of the plane to the next

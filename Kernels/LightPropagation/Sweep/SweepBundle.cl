@@ -14,6 +14,8 @@
 #define COUNT_CURRENTS NAME_OF(count_currents_, MEMBERS)
 #define MOVE_PART NAME_OF(move_part_, MEMBERS)
 #define CROSS_MOMENTS NAME_OF(cross_moments_, MEMBERS)
+#define ENTER_ASIDE NAME_OF(enter_aside_, MEMBERS)
+#define FILL_OUTSIDE NAME_OF(fill_outside_, MEMBERS)
 #define FIND_SOURCES NAME_OF(find_sources_, MEMBERS)
 #define GATHER_MOMENTS NAME_OF(gather_moments_, MEMBERS)
 #define BLOCK (MEMBERS * CHANNELS * ROW)
@@ -149,9 +151,11 @@ static void STAGE_ROW(sweep_state* state, int y, int slot, bool first, bool depo
 // Power of the rays that leave row y of `row` by a move of (du, dv), of which `part` moves. Rays that move both ways at
 // once go through u first and through v first in equal parts: half of those in the box's edge leave through each of its
 // faces, and half of what comes in beside it goes straight through.
-// across_u, across_v  rays that come in through the faces across u and v, at [FIRST(m, c)] of the row and at [m][c]
+// across_u, across_v  rays that come in through the faces across u and v, at [FIRST(m, c)] of the row and at [m][c],
+//                     but those that come in by cells
+// power  of a ray at radiance 1
 static void COUNT_ESCAPED(sweep_state* state, const __global float* row, int y, int m, int du, int dv, float part,
-  const __global float* across_u, const __global float* across_v)
+  float power, const __global float* across_u, const __global float* across_v)
 {
   const bool through_v = !PERIODIC_V && ((dv < 0 && y == 0) || (dv > 0 && y == state->sizeV - 1));
   const bool through_u = !PERIODIC_U && du != 0;
@@ -163,16 +167,34 @@ static void COUNT_ESCAPED(sweep_state* state, const __global float* row, int y, 
     if (through_u)
     {
       const int side = du > 0 ? 1 : 0;
+#if FACE_IN
+      const float beyond = across_v[FIRST(m, c)] + power * light_of_cell(state, dv > 0 ? 2 : 3, edge, c);
+#else
       const float beyond = across_v[FIRST(m, c)];
+#endif
       add_exactly(
         &state->escaped[side][c], &state->rounding[side][c], part * (rays[edge] - turned * (rays[edge] - beyond)));
+#if FACE_OUT
+      leave_through(state, side, y, c, part * (1.0f - turned) * rays[edge]);
+      leave_through(state, side, dv > 0 ? 0 : state->sizeV - 1, c, part * turned * beyond);
+#endif
     }
     if (through_v)
     {
       const int side = dv > 0 ? 3 : 2;
+#if FACE_IN
+      const float beyond =
+        across_u[m * CHANNELS + c] + (turned > 0.0f ? power * light_of_cell(state, du > 0 ? 0 : 1, y, c) : 0.0f);
+#else
       const float beyond = across_u[m * CHANNELS + c];
+#endif
       const float all = sum_of_row(rays, state->sizeU);
       add_exactly(&state->escaped[side][c], &state->rounding[side][c], part * (all - turned * (rays[edge] - beyond)));
+#if FACE_OUT
+      leave_all_through(state, side, c, rays, part);
+      leave_through(state, side, edge, c, -part * turned * rays[edge]);
+      leave_through(state, side, du > 0 ? 0 : state->sizeU - 1, c, part * turned * beyond);
+#endif
     }
   }
 }
@@ -210,6 +232,70 @@ static void FILL_BORDER(sweep_state* state, const __global float* radiance)
       row[state->width] = radiance[i];
     }
   }
+}
+#endif
+
+#if FACE_IN
+// Rays that come in through the faces across u by cells, into the columns beside row y.
+static void ENTER_ASIDE(sweep_state* state, int y, const __global float* radiance, const __global BundleInfo* bundle,
+  int moveU, int moveV, __global float* out)
+{
+  for (int m = 0; m < MEMBERS; ++m)
+  {
+    const int du = bundle->move[m][0] * moveU + bundle->move[m][1] * moveV;
+    const int dv = bundle->move[m][2] * moveU + bundle->move[m][3] * moveV;
+    for (int c = 0; c < CHANNELS && du != 0; ++c)
+    {
+      const float light = light_of_cells(state, du > 0 ? 0 : 1, y, dv, c);
+      out[FIRST(m, c) + (du > 0 ? -1 : state->sizeU)] = radiance[m * CHANNELS + c] + bundle->power * light;
+    }
+  }
+}
+
+// The row of rays that come in through the faces across v, with those that come in by cells.
+static void FILL_OUTSIDE(sweep_state* state, const __global float* outside, const __global float* radiance,
+  const __global BundleInfo* bundle, const __global CrossingInfo* crossing)
+{
+#if !PERIODIC_V
+  const int size = state->sizeU;
+  for (int s = 1; s < crossing->stages; ++s)
+  {
+    for (int m = 0; m < MEMBERS; ++m)
+    {
+      const int du = bundle->move[m][0] * crossing->moveU[s] + bundle->move[m][1] * crossing->moveV[s];
+      const int dv = bundle->move[m][2] * crossing->moveU[s] + bundle->move[m][3] * crossing->moveV[s];
+      const int side = dv > 0 ? 2 : 3;
+      for (int c = 0; c < CHANNELS && dv != 0; ++c)
+      {
+        __global float* row = state->outside + FIRST(m, c);
+        const __global float* alike = outside + FIRST(m, c);
+        for (int x = 0; x < size; ++x)
+        {
+#if PERIODIC_U
+          row[x] = alike[x] +
+            bundle->power * 0.5f *
+              (light_of_cell(state, side, x, c) + light_of_cell(state, side, (x + du + size) % size, c));
+#else
+          row[x] = alike[x] + bundle->power * light_of_cells(state, side, x, du, c);
+#endif
+        }
+#if PERIODIC_U
+        row[-1] = row[size - 1];
+        row[size] = row[0];
+#else
+        // Past the edge half comes in through either face.
+        const int corner = dv > 0 ? 0 : state->sizeV - 1;
+        const int column = du > 0 ? 0 : size - 1;
+        const float half_light = du == 0
+          ? 0.0f
+          : 0.5f * (light_of_cell(state, side, column, c) + light_of_cell(state, du > 0 ? 0 : 1, corner, c));
+        row[-1] = alike[-1] + bundle->power * half_light;
+        row[size] = alike[size] + bundle->power * half_light;
+#endif
+      }
+    }
+  }
+#endif
 }
 #endif
 
@@ -262,6 +348,12 @@ static void CROSS_PLANE(sweep_state* state, __global float* map, const __global 
 #endif
   const int stages = crossing->stages;
   const int height = state->sizeV;
+#if FACE_IN
+  FILL_OUTSIDE(state, outside, radiance, bundle, crossing);
+  const __global float* const beside = state->outside;
+#else
+  const __global float* const beside = outside;
+#endif
 #if PERIODIC_V
   // Rows beyond the plane are rows of the other side, and computed again there; the first ones are needed after they
   // are overwritten.
@@ -310,12 +402,12 @@ static void CROSS_PLANE(sweep_state* state, __global float* map, const __global 
           row = before + (from & (RingRows - 1)) * RAYS_OF_ROW;
           if (inside && (du != 0 || dv != 0))
           {
-            COUNT_ESCAPED(state, own, y, m, du, dv, part, radiance, outside);
+            COUNT_ESCAPED(state, own, y, m, du, dv, part, bundle->power, radiance, outside);
           }
         }
         if (!PERIODIC_V && (from < 0 || from >= height))
         {
-          row = outside;
+          row = beside;
         }
         in[m] = row + FIRST(m, 0) - du;
       }
@@ -340,6 +432,12 @@ static void CROSS_PLANE(sweep_state* state, __global float* map, const __global 
       }
 #endif
       STAGE_ROW(state, wrapped, slot, s == 0, inside, in, out, crossing->length[s], bundle);
+#if FACE_IN && !PERIODIC_U
+      if (s < stages - 1)
+      {
+        ENTER_ASIDE(state, wrapped, radiance, bundle, crossing->moveU[s + 1], crossing->moveV[s + 1], out);
+      }
+#endif
 #if DEGREE
       if (inside && s == stages - 1)
       {
@@ -350,6 +448,8 @@ static void CROSS_PLANE(sweep_state* state, __global float* map, const __global 
   }
 }
 
+#undef ENTER_ASIDE
+#undef FILL_OUTSIDE
 #undef FOR_FRAMES
 #undef CROSS_MOMENTS
 #undef FIND_SOURCES

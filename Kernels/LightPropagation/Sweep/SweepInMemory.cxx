@@ -12,6 +12,7 @@ SweepInMemory::SweepInMemory(Device& device, const VolumeLayout& layout, const B
   , Box(request.box)
   , MostPlanes(request.mostPlanes)
   , Angular(request.angular)
+  , FaceIn(request.faceIn)
 {
   for (const AxisBundles& along : request.rays)
   {
@@ -36,6 +37,7 @@ SweepVolume SweepInMemory::VolumeOf(const ChannelGroup& group, const Buffer<floa
   volume.box = this->Box;
   volume.source = source;
   volume.angular = this->Angular;
+  volume.faceIn = this->FaceIn;
   volume.moments = this->Layout.Places(this->Angular ? this->Angular->Functions() : 1);
   volume.deposit.flux = this->Angular ? nullptr : volume.deposit.flux; // it is among the moments
   return volume;

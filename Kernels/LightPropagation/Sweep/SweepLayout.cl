@@ -14,6 +14,7 @@
 //   BORDER    1 where light comes in through the faces that rays pass sideways
 //   PERIODIC_P  1 where rays go round the axis: planes are added to many times, and what rounding loses is kept
 //   PERIODIC_U, PERIODIC_V  1 where rays come back on the other side
+//   FACE_OUT, FACE_IN  1 where light leaves and comes in by cells of the box's faces (SweepFaces.cl)
 //
 // Rays carry power (W), so that leaving through any face needs no further factor. A map row holds the rays by the voxel
 // they enter, for all members of a bundle and all channels: float [member][channel][ROW].
@@ -66,6 +67,17 @@ typedef struct
   __global float* moving;     // the rays of a row of which a part moves
   float escaped[4][CHANNELS]; // through -u, +u, -v, +v, W; with the rounding errors
   float rounding[4][CHANNELS];
+#if FACE_OUT || FACE_IN
+  const FaceInfo* faces;
+  ulong faceFirst[4]; // of the plane that is being crossed, first channel
+#endif
+#if FACE_OUT
+  __global float* faceOut;
+#endif
+#if FACE_IN
+  const __global float* faceIn;
+  __global float* outside; // the row of rays that come in through the faces across v, of the bundle in this plane
+#endif
 } sweep_state;
 
 #if REAL_WIDTH == 16

@@ -50,3 +50,51 @@ __kernel void darken_beside(__global float* maps, ulong maps_each_way, const __g
     }
   }
 }
+
+// Of open axes: rays that leave at the far end, by cells of its faces. A work-item a row of the face and way; arguments
+// as of map_power, but
+// face_out  W, [channel][cell], added to
+// first     [way] of the face's cells, in the first channel
+__kernel void leave_by_cells(const __global float* maps, ulong maps_each_way, const __global int2* bundles,
+  int bundle_count, int channels, int row_floats, int border, int size_u, __global float* face_out, ulong first_forward,
+  ulong first_backward, ulong face_stride)
+{
+  const int row = get_global_id(0);
+  const int way = get_global_id(1);
+  face_out += (way ? first_backward : first_forward) + (ulong)row * size_u;
+  for (int b = 0; b < bundle_count; ++b)
+  {
+    const __global float* of_bundle =
+      maps + way * maps_each_way + bundles[b].y + (ulong)row * bundles[b].x * channels * row_floats + border;
+    for (int r = 0; r < bundles[b].x * channels; ++r)
+    {
+      const __global float* rays = of_bundle + r * row_floats;
+      __global float* out = face_out + r % channels * face_stride;
+      for (int x = 0; x < size_u; ++x)
+      {
+        out[x] += rays[x];
+      }
+    }
+  }
+}
+
+// The same the other way round: adds to the maps what comes in by cells of the faces where rays start.
+// power    [bundle] of a ray at radiance 1
+// face_in  W / (length^2 sr), [channel][cell]
+__kernel void enter_by_cells(__global float* maps, ulong maps_each_way, const __global int2* bundles,
+  const __global float* power, int channels, int row_floats, int border, int size_u, const __global float* face_in,
+  ulong first_forward, ulong first_backward, ulong face_stride)
+{
+  const int row = get_global_id(0);
+  const int b = get_global_id(1);
+  const int way = get_global_id(2);
+  face_in += (way ? first_backward : first_forward) + (ulong)row * size_u;
+  maps += way * maps_each_way + bundles[b].y + (ulong)row * bundles[b].x * channels * row_floats + border;
+  for (int r = 0; r < bundles[b].x * channels; ++r)
+  {
+    for (int x = 0; x < size_u; ++x)
+    {
+      maps[r * row_floats + x] += power[b] * face_in[r % channels * face_stride + x];
+    }
+  }
+}

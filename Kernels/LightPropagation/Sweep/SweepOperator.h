@@ -35,6 +35,10 @@ struct SweepRequest
   /// Along the directions of the rays, must stay: sources and path integrals are angular moments, and net flux is among
   /// them. Null: they are those of fluence alone.
   const AngularValues* angular = nullptr;
+  /// W / (length^2 sr) that comes in through each cell of the box's faces, the same from all directions,
+  /// [channel][cell] (BoxFaces.h), beside what each sweep is given as boundary; not among the powers that came in. Must
+  /// stay; null: nothing.
+  const Buffer<float>* faceIn = nullptr;
 };
 
 /// Carries light once through the medium: from what shines in its voxels and what comes in through the box's faces to

@@ -91,7 +91,7 @@ double LongestWay(const std::vector<Bundle>& bundles)
 
 SweepPlan::SweepPlan(const Device& device, const Grid& ofGrid, const VoxelBox& ofBox, int axis,
   const std::vector<Bundle>& ofBundles, int channelCount, const std::array<bool, 3>& periodicAxes, bool wantsNetFlux,
-  bool wantsCurrents, const AngularValues* angularValues, const MomentPlaces& momentPlaces)
+  bool wantsCurrents, const AngularValues* angularValues, const MomentPlaces& momentPlaces, bool entersByCells)
   : grid(ofGrid)
   , box(ofBox.VoxelCount() > 0 ? ofBox : VoxelBox{ { 0, 0, 0 }, ofGrid.size })
   , axes(AcrossAxis(axis))
@@ -101,6 +101,7 @@ SweepPlan::SweepPlan(const Device& device, const Grid& ofGrid, const VoxelBox& o
   , netFlux(wantsNetFlux)
   , partialCurrents(wantsCurrents)
   , angular(angularValues)
+  , faceIn(entersByCells)
   , moments(momentPlaces)
   , order(angularValues ? angularValues->degree : 0, AcrossAxis(axis).u, AcrossAxis(axis).v)
 {
@@ -348,7 +349,8 @@ std::size_t SweepPlan::ScratchFloats() const
   const std::size_t together = std::min<std::size_t>(this->bundles.size(), BundlesTogether);
   const std::size_t kept =
     this->angular ? together * BUNDLE_FLOATS(this->channels, this->row) : std::size_t{ 2 } * RingRows * raysOfRow;
-  const std::size_t ring = kept + raysOfRow + this->vector;
+  // Behind those the row of rays that come in by cells of the box's faces.
+  const std::size_t ring = kept + (this->faceIn ? 2 : 1) * (raysOfRow + this->vector);
   const int beams = this->angular ? this->angular->Beams() : 0;
   const std::size_t quantities = PLANE_COUNT(this->channels, beams, this->netFlux, this->partialCurrents);
   const std::size_t rows = static_cast<std::size_t>(this->plane.block) * this->plane.sizeV;

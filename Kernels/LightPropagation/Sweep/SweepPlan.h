@@ -21,9 +21,10 @@ struct SweepPlan
   /// @param partialCurrents  and the power that enters voxels by face
   /// @param angular  of the bundles' directions, must stay; null: light has no angular moments
   /// @param moments  where they are
+  /// @param faceIn  light comes in by cells of the box's faces
   SweepPlan(const Device& device, const Grid& grid, const VoxelBox& box, int axis, const std::vector<Bundle>& bundles,
     int channels, const std::array<bool, 3>& periodic, bool netFlux, bool partialCurrents, const AngularValues* angular,
-    const MomentPlaces& moments);
+    const MomentPlaces& moments, bool faceIn);
 
   Grid grid;
   VoxelBox box;
@@ -34,6 +35,7 @@ struct SweepPlan
   bool netFlux;
   bool partialCurrents;
   const AngularValues* angular;
+  bool faceIn;
   MomentPlaces moments;
   bool forward = false; ///< some rays march that way
   bool backward = false;

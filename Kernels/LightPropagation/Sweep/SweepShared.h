@@ -106,6 +106,14 @@ typedef struct
   float terms[MeanLengthTerms]; ///< where the voxel is thin, the whole sum as a polynomial of sigma / PlaneInfo::thin
 } OwnLightInfo;
 
+/// Where the cells of the box's faces are (BoxFaces.h): of the faces -u, +u, -v, +v cell `i` of a row of plane p, along
+/// the other of u and v, is first + p * plane + i * along.
+typedef struct
+{
+  int first[4], plane[4], along[4];
+  ulong firstChannel, stride; ///< where the first channel begins, and the way to the next
+} FaceInfo;
+
 /// A launch of the kernel `sweep`.
 typedef struct
 {
@@ -121,6 +129,7 @@ typedef struct
   int launch;        ///< row of the schedule
   int axis;
   PlaneInfo planes;
+  FaceInfo faces;
   MomentPlaces moments;
   int sizeY;         ///< voxels of the grid along y
   int packedMoments; ///< floats of a packed row of moments

@@ -3,6 +3,7 @@
 #include "LightPropagation/Angular/AngularValues.h"
 #include "LightPropagation/Sweep/Deposit.h"
 #include "LightPropagation/Sweep/VolumeLayout.h"
+#include "Medium/BoxFaces.h"
 #include "Medium/VoxelBox.h"
 
 namespace tyndall
@@ -23,6 +24,8 @@ struct SweepVolume
   /// Where the first channel of source and path begins (flux: three times that, partialCurrents and firstMoments: six
   /// times).
   std::size_t first = 0;
+  const Buffer<float>* faceIn = nullptr; ///< as in SweepRequest
+  std::size_t faceFirst = 0;             ///< where the first channel of faceIn and faceOut begins
   int firstChannel = 0;
   MomentPlaces moments = {}; ///< of source and path, where light has angular moments
 };
@@ -39,6 +42,7 @@ inline SweepVolume GroupVolume(
   volume.sigma_t_first = layout.ExtinctionFirst(group.first);
   volume.deposit = deposit;
   volume.first = group.first * layout.Stride();
+  volume.faceFirst = group.first * BoxFaceCellCount(layout.grid);
   volume.firstChannel = group.first;
   return volume;
 }

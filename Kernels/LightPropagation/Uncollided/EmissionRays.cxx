@@ -1,6 +1,7 @@
 #include "LightPropagation/Uncollided/EmissionRays.h"
 
 #include "LightPropagation/Uncollided/EmissionRaysShared.h"
+#include "Medium/BoxFaces.h"
 #include "Numerics/Constants.h"
 
 #include "TyndallKernelSources.h"
@@ -153,11 +154,27 @@ private:
           this->TheDevice.Queue().enqueueNDRangeKernel(gather, cl::NullRange, cl::NDRange(size));
         });
       const std::vector<float> power = out.Read();
-
+      this->KeepCells(face, power);
       for (std::size_t i = 0; i < power.size(); ++i)
       {
         this->Escaped[face][i % volume.channels] += power[i];
       }
+    }
+  }
+
+  /// By cell, as BoxFaces.h numbers them: here rows go along the axis that follows the face's.
+  void KeepCells(int face, const std::vector<float>& power)
+  {
+    const Grid& grid = this->Volume.grid;
+    const BoxFaceLayout layout = LayoutOfFace(grid, face);
+    const int u = (face / 2 + 1) % 3, v = (face / 2 + 2) % 3;
+    const std::size_t all = BoxFaceCellCount(grid), channels = this->Volume.channels;
+    this->EscapedByCell.resize(this->Volume.deposit.faceOut ? all * channels : 0);
+    for (std::size_t i = 0; i < power.size() && this->Volume.deposit.faceOut; ++i)
+    {
+      const std::size_t cell = i / channels, row = cell / grid.size[u];
+      const std::size_t to = layout.first + cell % grid.size[u] * layout.step[u] + row * layout.step[v];
+      this->EscapedByCell[i % channels * all + to] = power[i];
     }
   }
 
@@ -170,6 +187,20 @@ private:
     batches.from = from;
     batches.to = to;
     InBatches(this->TheDevice, batches, monitor, queue);
+  }
+
+  void AddCells(int channel, double factor)
+  {
+    if (this->Volume.deposit.faceOut)
+    {
+      const std::size_t cells = BoxFaceCellCount(this->Volume.grid);
+      const Buffer<float> escaped(this->TheDevice, this->EscapedByCell, "the light that leaves through the faces");
+      cl::Kernel add = this->Kernel("add_gathered");
+      With(add, escaped, cl_ulong(channel * cells), *this->Volume.deposit.faceOut,
+        cl_ulong(this->Volume.faceFirst + channel * cells), static_cast<float>(factor));
+      this->TheDevice.Queue().enqueueNDRangeKernel(add, cl::NullRange, cl::NDRange(cells));
+      this->TheDevice.Finish(); // what escaped goes
+    }
   }
 
   /// With the power that was emitted.
@@ -196,6 +227,7 @@ private:
       {
         this->Tally.out[face][c] += factor * this->Escaped[face][c];
       }
+      this->AddCells(c, factor);
       addTo(this->Path, c, *volume.deposit.path, volume.first, factor);
       for (int a = 0; a < 3 && volume.deposit.flux; ++a)
       {
@@ -217,6 +249,7 @@ private:
   Buffer<float> Path, Flux;
   Rgb Taken = {}; ///< W, by the medium
   std::array<Rgb, 6> Escaped = {};
+  std::vector<float> EscapedByCell; ///< W, [channel][cell]; where it is wanted
   SweepTally Tally;
 };
 }

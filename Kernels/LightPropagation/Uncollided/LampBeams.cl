@@ -3,6 +3,7 @@
 //   LAMBERT, CONE  1 for a rectangle, a spot
 //   MOMENTS     1: first moments of the deposit are wanted
 //   NET_FLUX    1: net flux is wanted
+//   FACE_OUT    1: the power that leaves through each cell of the box's faces is wanted
 //   THIN        optical length below which light counts as lost evenly
 //
 // Space around the lamp is six pyramids, one for each way along an axis; in a pyramid beams lie on a grid of tangents,
@@ -65,7 +66,24 @@ static int place(const LampInfo* lamp, int axis, float tangent, int* i)
 typedef struct
 {
   float entered, escaped[6], stranded;
+#if FACE_OUT
+  __global long* cells; // W in fixed point, parts of the lamp's power, [cell] (BoxFaces.h)
+#endif
 } lamp_tally;
+
+// Power that leaves through one face of the box at a voxel.
+static void leave_box(const LampInfo* lamp, int face, const int* voxel, float power, lamp_tally* tally)
+{
+  tally->escaped[face] += power;
+#if FACE_OUT
+  long cell = lamp->faceFirst[face];
+  for (int a = 0; a < 3; ++a)
+  {
+    cell += (long)clamp(voxel[a], 0, lamp->size[a] - 1) * lamp->faceStep[face / 2][a];
+  }
+  add_units(tally->cells + cell, convert_long_sat_rte(power * LampPowerUnits));
+#endif
+}
 
 // Factor of a path in a voxel in fixed point (numerics.md, Eq. (35)): light goes little path through what is thick.
 static float units_of(float sigma, float diagonal)
@@ -120,6 +138,35 @@ static void add_flux(const LampInfo* lamp, const BeamRow* row, float2 tangent, f
 }
 #endif
 
+// Power that left through a face beside the beam's axis since the middle of the step before: a step at most ago, in two
+// halves.
+//   at    where it is now, along the axes aside, voxels
+//   here  the middle of the step, layers from the lamp
+static void leave_aside(const LampInfo* lamp, const BeamRow* row, int face, float2 tangent, float2 at, float here,
+  float step, float power, lamp_tally* tally)
+{
+#if FACE_OUT
+  const int u = (row->axis + 1) % 3;
+  const int v = (row->axis + 2) % 3;
+  for (int part = 0; part < 2; ++part)
+  {
+    const float ago = (0.25f + 0.5f * part) * step;
+    const float along = lamp->position[row->axis] + (row->up ? here - ago : ago - here);
+    int voxel[3];
+    voxel[row->axis] = (int)floor(along);
+    voxel[u] = (int)floor(at.x - tangent.x * ago);
+    voxel[v] = (int)floor(at.y - tangent.y * ago);
+    for (int a = 0; a < 3; ++a)
+    {
+      place(lamp, a, 0.0f, &voxel[a]);
+    }
+    leave_box(lamp, face, voxel, 0.5f * power, tally);
+  }
+#else
+  tally->escaped[face] += power;
+#endif
+}
+
 // One step of a beam: every part of it through its voxel. Changes `left`; returns the part that will never be inside.
 static void step_beam(const LampInfo* lamp, const BeamRow* row, int layer, bool first, bool last, float2 tangent,
   float2 middle, float2 width, float2 way, float length, const __global float* sigma, __global long* path, ulong stride,
@@ -167,8 +214,12 @@ static void step_beam(const LampInfo* lamp, const BeamRow* row, int layer, bool 
     {
       // Past an edge of the box: half through either side.
       const float both = at_u == AFTER && at_v == AFTER ? 0.5f : 1.0f;
-      tally->escaped[2 * u + (tangent.x > 0.0f)] += at_u == AFTER ? both * power : 0.0f;
-      tally->escaped[2 * v + (tangent.y > 0.0f)] += at_v == AFTER ? both * power : 0.0f;
+      const float2 at = (float2)(lowest.x + (q & 1), lowest.y + (q >> 1)) + 0.5f;
+      const float here = 0.5f * (way.x + way.y);
+      leave_aside(lamp, row, 2 * u + (tangent.x > 0.0f), tangent, at, here, way.y - way.x,
+        at_u == AFTER ? both * power : 0.0f, tally);
+      leave_aside(lamp, row, 2 * v + (tangent.y > 0.0f), tangent, at, here, way.y - way.x,
+        at_v == AFTER ? both * power : 0.0f, tally);
     }
     else if (outside)
     {
@@ -197,6 +248,31 @@ static void step_beam(const LampInfo* lamp, const BeamRow* row, int layer, bool 
     }
   }
   *left = after;
+}
+
+// What is left of a beam at the far end of its axis, through up to four cells there.
+static void leave_end(const LampInfo* lamp, const BeamRow* row, float2 tangent, float t, float left, lamp_tally* tally)
+{
+#if FACE_OUT
+  const int u = (row->axis + 1) % 3;
+  const int v = (row->axis + 2) % 3;
+  int voxel[3] = { 0, 0, 0 }, lowest[2];
+  float part_u, part_v;
+  const float2 width = clamp((float2)(row->widthU, row->widthV) * t, 1e-4f, 1.0f);
+  overlap(lamp->position[u] + tangent.x * t - 0.5f * width.x, width.x, &lowest[0], &part_u);
+  overlap(lamp->position[v] + tangent.y * t - 0.5f * width.y, width.y, &lowest[1], &part_v);
+  for (int q = 0; q < 4; ++q)
+  {
+    voxel[u] = lowest[0] + (q & 1);
+    voxel[v] = lowest[1] + (q >> 1);
+    place(lamp, u, tangent.x, &voxel[u]);
+    place(lamp, v, tangent.y, &voxel[v]);
+    const float part = (q & 1 ? 1.0f - part_u : part_u) * (q & 2 ? 1.0f - part_v : part_v);
+    leave_box(lamp, 2 * row->axis + row->up, voxel, part * left, tally);
+  }
+#else
+  tally->escaped[2 * row->axis + row->up] += left;
+#endif
 }
 
 // One beam from where it comes into the box's layers to where it leaves them.
@@ -243,7 +319,7 @@ static void follow_beam(const LampInfo* lamp, const BeamRow* row, float2 tangent
   }
   else
   {
-    tally->escaped[2 * row->axis + row->up] += left;
+    leave_end(lamp, row, tangent, now, left, tally);
   }
 }
 
@@ -277,13 +353,16 @@ static float part_in_cone(const LampInfo* lamp, const BeamRow* row, float2 tange
 #endif
 
 static void follow_row(const LampInfo* lamp, const BeamRow* row, const __global float* sigma, __global long* path,
-  ulong stride, __global float* sums)
+  ulong stride, __global long* cells, __global float* sums)
 {
   const int u = (row->axis + 1) % 3;
   const int v = (row->axis + 2) % 3;
   const float hu = lamp->spacing[u], hv = lamp->spacing[v], hp = lamp->spacing[row->axis];
   float shone = 0.0f;
   lamp_tally tally = { 0.0f, { 0.0f, 0.0f, 0.0f, 0.0f, 0.0f, 0.0f }, 0.0f };
+#if FACE_OUT
+  tally.cells = cells;
+#endif
   for (int i = 0; i < row->count; ++i)
   {
     const float2 tangent = (float2)(row->tangentU + i * row->widthU, row->tangentV);
@@ -314,9 +393,10 @@ static void follow_row(const LampInfo* lamp, const BeamRow* row, const __global 
 
 // path  part of the power times length, in fixed point, [voxel], added to; MOMENTS: [path, times distance along x, y,
 //       z][stride]; NET_FLUX: behind that times direction, [x, y, z][stride]
+// cells power that leaves through the box's faces, in fixed point, [cell]; where FACE_OUT
 // sums  [row][entered, escaped through -x to +z, stranded, shone in the row's directions], parts of the power
 __kernel void follow_lamp(LampInfo lamp, const __global float* sigma, ulong sigma_first, __global long* path,
-  ulong stride, const __global BeamRow* rows, int row_count, int first_row, __global float* sums)
+  ulong stride, __global long* cells, const __global BeamRow* rows, int row_count, int first_row, __global float* sums)
 {
 #if ATOMICS
   const int r = first_row + get_global_id(0);
@@ -325,7 +405,7 @@ __kernel void follow_lamp(LampInfo lamp, const __global float* sigma, ulong sigm
 #endif
   {
     const BeamRow row = rows[r];
-    follow_row(&lamp, &row, sigma + sigma_first, path, stride, sums + r * LampRowSums);
+    follow_row(&lamp, &row, sigma + sigma_first, path, stride, cells, sums + r * LampRowSums);
   }
 }
 
@@ -340,6 +420,20 @@ __kernel void add_fixed(const __global long* fixed_path, __global float* path, u
   const float unit = channel == 0 ? units.x : channel == 1 ? units.y : units.z;
   path[first + channel * stride + i] += (float)fixed_path[i] * unit / units_of(sigma[sigma_first + i], diagonal);
 }
+
+#if FACE_OUT
+// cells     as in follow_lamp
+// face_out  W, [channel][cell], added to
+// watts     [channel] of the lamp
+__kernel void add_fixed_cells(
+  const __global long* cells, __global float* face_out, ulong first, ulong stride, float4 watts)
+{
+  const ulong i = get_global_id(0);
+  const int channel = get_global_id(1);
+  const float unit = (channel == 0 ? watts.x : channel == 1 ? watts.y : watts.z) / LampPowerUnits;
+  face_out[first + channel * stride + i] += (float)cells[i] * unit;
+}
+#endif
 
 #if NET_FLUX
 // fixed_path  as in follow_lamp

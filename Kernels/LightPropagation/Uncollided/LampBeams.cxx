@@ -2,6 +2,7 @@
 
 #include "Device/Defines.h"
 #include "LightPropagation/Uncollided/LampBeamsShared.h"
+#include "Medium/BoxFaces.h"
 #include "Numerics/Constants.h"
 #include "Numerics/Vectors.h"
 #include "TyndallKernelSources.h"
@@ -146,10 +147,12 @@ public:
     , Volume(volume)
     , TheLight(light)
     , Periodic(periodic)
+    , Cells(device, volume.deposit.faceOut ? BoxFaceCellCount(volume.grid) : 1, "the light of a lamp")
     , Path(device, (1 + (volume.deposit.firstMoments ? 3 : 0) + (volume.deposit.flux ? 3 : 0)) * volume.stride,
         "the light of a lamp")
   {
     this->Path.Fill(0);
+    this->Cells.Fill(0);
   }
 
   SweepTally Run(const Monitor& monitor)
@@ -184,10 +187,29 @@ public:
       cl::Kernel addFlux = this->Kernel("add_fixed_flux");
       finish(addFlux, *this->Volume.deposit.flux);
     }
+    if (this->Volume.deposit.faceOut)
+    {
+      this->AddCells(correction);
+    }
     return this->TallyTimes(correction);
   }
 
 private:
+  void AddCells(double factor)
+  {
+    cl_float4 watts = {};
+    for (int c = 0; c < 3; ++c)
+    {
+      watts.s[c] = static_cast<float>(this->TheLight.power[c] * factor);
+    }
+    const std::size_t cells = BoxFaceCellCount(this->Volume.grid);
+    cl::Kernel add = this->Kernel("add_fixed_cells");
+    With(add, this->Cells, *this->Volume.deposit.faceOut, cl_ulong(this->Volume.faceFirst), cl_ulong(cells), watts);
+    this->TheDevice.Queue().enqueueNDRangeKernel(
+      add, cl::NullRange, cl::NDRange(cells, this->Volume.channels), cl::NullRange);
+    this->TheDevice.Finish(); // the cells go
+  }
+
   bool HasAtomics() const { return this->TheDevice.HasExtension("cl_khr_int64_base_atomics"); }
 
   cl::Kernel Kernel(const char* name)
@@ -196,7 +218,8 @@ private:
       Define("ATOMICS", this->HasAtomics()) + Define("LAMBERT", this->TheLight.type == LightType::Rectangle) +
         Define("CONE", this->TheLight.type == LightType::Spot) +
         Define("MOMENTS", this->Volume.deposit.firstMoments != nullptr) +
-        Define("NET_FLUX", this->Volume.deposit.flux != nullptr) + DefineFloat("THIN", ThinForFirstMoments));
+        Define("NET_FLUX", this->Volume.deposit.flux != nullptr) +
+        Define("FACE_OUT", this->Volume.deposit.faceOut != nullptr) + DefineFloat("THIN", ThinForFirstMoments));
   }
 
   /// Fixed point units per length (numerics.md, Eq. (36)): no voxel can gather more than all power along its diagonal,
@@ -229,6 +252,12 @@ private:
     info.scale = static_cast<float>(this->Scale());
     info.diagonal = static_cast<float>(this->Diagonal());
     info.rounds = RoundsAtMost;
+    for (int face = 0; face < 6; ++face)
+    {
+      const BoxFaceLayout layout = LayoutOfFace(grid, face);
+      info.faceFirst[face] = static_cast<cl_int>(layout.first);
+      std::copy(layout.step.begin(), layout.step.end(), info.faceStep[face / 2]);
+    }
     return info;
   }
 
@@ -255,7 +284,7 @@ private:
     {
       const std::size_t count = std::min<std::size_t>(RowsPerLaunch, rows.size() - first);
       With(kernel, info, *this->Volume.sigma_t, cl_ulong(this->Volume.sigma_t_first), this->Path,
-        cl_ulong(this->Volume.stride), rowBuffer, cl_int(count), cl_int(first), sums);
+        cl_ulong(this->Volume.stride), this->Cells, rowBuffer, cl_int(count), cl_int(first), sums);
       this->TheDevice.Queue().enqueueNDRangeKernel(
         kernel, cl::NullRange, cl::NDRange(this->HasAtomics() ? count : 1), cl::NDRange(1));
       this->TheDevice.Finish();
@@ -299,7 +328,7 @@ private:
   const SweepVolume& Volume;
   const Light& TheLight;
   std::array<bool, 3> Periodic;
-  Buffer<cl_long> Path;
+  Buffer<cl_long> Cells, Path;
   std::array<double, 6> In = {}, Out = {}; ///< by face; these and the next are parts of the power
   double OnTheWay = 0.0;
   double Shone = 0.0; ///< in the directions that were followed

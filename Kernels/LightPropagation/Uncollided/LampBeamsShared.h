@@ -9,19 +9,23 @@ enum
   LampRowSums = 9 ///< tallies of a row of beams: entered, escaped through each face, stranded, ...
 };
 
+/// Fixed point units of all of a lamp's power: 2^56, beside which 64 rounds of it fit.
+#define LampPowerUnits 72057594037927936.0f
+
 /// A lamp in its box. Lengths along axis a are in voxels of `spacing[a]`.
 typedef struct
 {
   int size[3];
   int periodic[3];
   float spacing[3];
-  float position[3];  ///< of the lamp, from the box's corner
-  float direction[3]; ///< unit, in space
-  float cosine;       ///< of the cone's half angle
-  float intensity;    ///< part of the power, per steradian; at normal emission where LAMBERT
-  float scale;        ///< fixed point units per length
-  float diagonal;     ///< of a voxel
-  int rounds;         ///< of a beam round a periodic axis
+  float position[3];                ///< of the lamp, from the box's corner
+  float direction[3];               ///< unit, in space
+  float cosine;                     ///< of the cone's half angle
+  float intensity;                  ///< part of the power, per steradian; at normal emission where LAMBERT
+  float scale;                      ///< fixed point units per length
+  float diagonal;                   ///< of a voxel
+  int rounds;                       ///< of a beam round a periodic axis
+  int faceFirst[6], faceStep[3][3]; ///< as BoxFaceLayout has them: of each face; of an axis' faces, along each axis
 } LampInfo;
 
 /// The beams of one pyramid at one tangent v.

@@ -1,0 +1,192 @@
+#include "LightPropagation/Conservative/FaceLight.h"
+
+#include "Medium/BoxFaces.h"
+
+#include <algorithm>
+#include <functional>
+#include <utility>
+
+namespace tyndall
+{
+namespace
+{
+/// W that radiance 1 brings through the cells of one row of a face: all cells of a plane alike.
+using ByPlane = std::array<std::vector<double>, 6>;
+
+/// The moves aside of a bundle's rays, as SweepBorder has them; of a short periodic axis in laps (SweepPlan::LayLaps).
+void AddAside(const Bundle& bundle, const PlaneAxes& axes, int size, int planes, ByPlane& power)
+{
+  const double ofLap = bundle.power * size / planes;
+  for (int k = 0; k < planes; ++k)
+  {
+    const PlaneCrossing crossing = bundle.Crossing(k);
+    for (int s = 1; s < crossing.count; ++s)
+    {
+      const Segment& segment = crossing.segments[s];
+      for (const Member& member : bundle.members)
+      {
+        const int du = member.uFromU * segment.moveU + member.uFromV * segment.moveV;
+        const int dv = member.vFromU * segment.moveU + member.vFromV * segment.moveV;
+        for (int way = 0; way < 2; ++way)
+        {
+          const int plane = way ? size - 1 - k % size : k % size;
+          const bool goes = (way ? member.opposite : member.direction) >= 0;
+          if (du != 0 && goes)
+          {
+            power[EntryFace(axes.u, du > 0)][plane] += ofLap * segment.part;
+          }
+          if (dv != 0 && goes)
+          {
+            power[EntryFace(axes.v, dv > 0)][plane] += ofLap * segment.part;
+          }
+        }
+      }
+    }
+  }
+}
+}
+
+FaceLight::FaceLight(Device& device, const VolumeLayout& layout, const std::array<bool, 3>& periodic,
+  const SweptDirections& directions, const std::array<Rgb, 6>& albedo)
+  : Channels(layout.channels)
+  , AlbedoOfFaces(albedo)
+  , AnyAlbedo(!std::all_of(albedo.begin(), albedo.end(), IsBlack))
+  , Leaving(device, layout.channels * BoxFaceCellCount(layout.grid), "the light that leaves through the faces")
+  , Entering(device, layout.channels * BoxFaceCellCount(layout.grid), "the light that faces give back")
+{
+  ForBoxFaceCells(layout.grid, [this](const BoxFaceCell& cell) { this->FaceOfCell.push_back(cell.face); });
+  this->AllSwept.assign(this->Channels * this->Cells(), 0.0);
+  this->AllUncollided = this->AllSwept;
+  this->Leaving.Fill(0.0f);
+  this->Entering.Fill(0.0f);
+  this->FindPowerIn(layout.grid, periodic, directions);
+}
+
+/// Rays aside come in through planes of voxels in a pattern: a cell in a plane where more do gives back the less
+/// radiance.
+void FaceLight::FindPowerIn(const Grid& grid, const std::array<bool, 3>& periodic, const SweptDirections& directions)
+{
+  this->PowerIn.assign(this->Cells(), 0.0);
+  for (int axis = 0; axis < 3; ++axis)
+  {
+    const PlaneAxes axes = AcrossAxis(axis);
+    const int size = grid.size[axis];
+    ByPlane aside;
+    aside.fill(std::vector<double>(size, 0.0));
+    std::array<double, 2> ahead = {}; // through the low face, and the high one
+    for (const Bundle& bundle : directions.Along(axis))
+    {
+      for (const Member& member : bundle.members)
+      {
+        ahead[0] += member.direction >= 0 ? bundle.power : 0.0;
+        ahead[1] += member.opposite >= 0 ? bundle.power : 0.0;
+      }
+      AddAside(bundle, axes, size, PlanesOfPattern(size, periodic[axis]), aside);
+    }
+    std::size_t number = 0;
+    ForBoxFaceCells(grid, [&](const BoxFaceCell& cell) {
+      const int plane = grid.VoxelAt(cell.voxel)[axis];
+      this->PowerIn[number++] += cell.face / 2 == axis ? ahead[cell.face % 2] : aside[cell.face][plane];
+    });
+  }
+  std::array<double, 6> sum = {}, count = {};
+  for (std::size_t cell = 0; cell < this->Cells(); ++cell)
+  {
+    sum[this->FaceOf(cell)] += this->PowerIn[cell];
+    count[this->FaceOf(cell)] += 1.0;
+  }
+  for (int face : this->FaceOfCell)
+  {
+    this->MeanIn.push_back(sum[face] / count[face]);
+  }
+}
+
+std::vector<float> FaceLight::TakeOut()
+{
+  std::vector<float> out = this->Leaving.Read();
+  this->Leaving.Fill(0.0f);
+  return out;
+}
+
+std::array<Rgb, 6> FaceLight::Reflect()
+{
+  const std::vector<float> out = this->TakeOut();
+  this->Uncollided.resize(out.size(), 0.0f);
+  std::vector<double> swept(out.size()), uncollided(out.size());
+  for (std::size_t i = 0; i < out.size(); ++i)
+  {
+    const double albedo = this->AlbedoOfFaces[this->FaceOf(i % this->Cells())][i / this->Cells()];
+    this->AllSwept[i] += out[i];
+    this->AllUncollided[i] += this->Uncollided[i];
+    swept[i] = albedo * out[i];
+    uncollided[i] = albedo * this->Uncollided[i];
+  }
+  this->Uncollided.clear();
+  if (this->AnyAlbedo)
+  {
+    this->LetIn(swept, uncollided);
+  }
+  std::transform(swept.begin(), swept.end(), uncollided.begin(), swept.begin(), std::plus<>());
+  return this->PowerOfFaces(swept);
+}
+
+std::array<Rgb, 6> FaceLight::PowerOfFaces(const std::vector<double>& power) const
+{
+  std::array<Rgb, 6> sums = {};
+  for (std::size_t i = 0; i < power.size(); ++i)
+  {
+    sums[this->FaceOf(i % this->Cells())][i / this->Cells()] += power[i];
+  }
+  return sums;
+}
+
+double FaceLight::Pattern(std::size_t cell) const
+{
+  return this->PowerIn[cell] > 0.0 ? this->PowerIn[cell] / this->MeanIn[cell] : 1.0;
+}
+
+std::vector<double> FaceLight::ScaledTo(std::vector<double> power, const std::vector<double>& sums) const
+{
+  const std::array<Rgb, 6> is = this->PowerOfFaces(power), shouldBe = this->PowerOfFaces(sums);
+  for (std::size_t i = 0; i < power.size(); ++i)
+  {
+    const int face = this->FaceOf(i % this->Cells());
+    const std::size_t c = i / this->Cells();
+    power[i] *= is[face][c] > 0.0 ? shouldBe[face][c] / is[face][c] : 1.0;
+  }
+  return power;
+}
+
+std::vector<double> FaceLight::LeftInAll() const
+{
+  std::vector<double> left = this->AllSwept;
+  for (std::size_t i = 0; i < left.size(); ++i)
+  {
+    left[i] /= this->Pattern(i % this->Cells());
+  }
+  left = this->ScaledTo(std::move(left), this->AllSwept);
+  std::transform(left.begin(), left.end(), this->AllUncollided.begin(), left.begin(), std::plus<>());
+  return left;
+}
+
+void FaceLight::LetIn(const std::vector<double>& swept, const std::vector<double>& uncollided)
+{
+  std::vector<double> brought(swept.size()); // by uncollided light's radiance, in the pattern
+  for (std::size_t i = 0; i < swept.size(); ++i)
+  {
+    const std::size_t cell = i % this->Cells();
+    brought[i] = this->MeanIn[cell] > 0.0 ? uncollided[i] * this->PowerIn[cell] / this->MeanIn[cell] : 0.0;
+  }
+  const std::array<Rgb, 6> is = this->PowerOfFaces(brought), shouldBe = this->PowerOfFaces(uncollided);
+  std::vector<float> radiance(swept.size());
+  for (std::size_t i = 0; i < swept.size(); ++i)
+  {
+    const std::size_t cell = i % this->Cells(), c = i / this->Cells();
+    const int face = this->FaceOf(cell);
+    const double part = is[face][c] > 0.0 ? shouldBe[face][c] / is[face][c] : 0.0;
+    radiance[i] =
+      static_cast<float>(this->PowerIn[cell] > 0.0 ? (swept[i] + part * brought[i]) / this->PowerIn[cell] : 0.0);
+  }
+  this->Entering.Write(radiance.data());
+}
+}
