@@ -1,11 +1,12 @@
 // Separable phase functions and discrete ordinates (Gong et al.): what N terms cost in light, and what they save in
 // time.
 //
-//   TyndallBenchPhase [--quick] [rank] [speed]
+//   TyndallBenchPhase [--quick] [rank] [speed] [degrees]
 //
-//   rank   N terms of the phase function: error of the matrix beside theory, error of fluence beside the whole matrix'
-//   speed  factorised against unfactorised: 64^3, 128 and 256 directions, 5 orders, grey (the paper: 1.5 against 0.2
-//          pictures a second)
+//   rank     N terms of the phase function: error of the matrix beside theory, error of fluence beside the whole matrix'
+//   speed    factorised against unfactorised: 64^3, 128 and 256 directions, 5 orders, grey (the paper: 1.5 against 0.2
+//            pictures a second)
+//   degrees  light propagation maps in angular moments of degree 1, 3, 5, 7, in nanoseconds an update beside isotropic
 
 #include "Measure.h"
 #include "Program.h"
@@ -13,6 +14,7 @@
 
 #include "DiscreteOrdinates/DiscreteOrdinates.h"
 #include "LightPropagation/Angular/DirectionSet.h"
+#include "LightPropagation/Conservative/ConservativePropagation.h"
 #include "Numerics/Constants.h"
 #include "PhaseFunction/SeparablePhaseFunction.h"
 
@@ -251,8 +253,83 @@ void PrintSpeed(Device& device, bool quick)
     ", 5 orders, grey; the paper: 1.5 against 0.2 pictures a second, ratio 7.5");
 }
 
-// Here comes what light propagation maps cost with angular moments: PrintDegrees(device, quick), degree 1, 3, 5, 7 in
-// nanoseconds an update beside isotropic.
+/// The medians of several solves of each degree in turn, so that a machine that changes its speed changes all of them.
+/// Core seconds count: they are what a sweep works, whoever else uses the machine.
+std::vector<Timed> MeasureDegrees(Device& device, const Cloud& cloud, const PropagationSettings& usual,
+  const std::vector<int>& degrees, int repetitions)
+{
+  std::vector<std::vector<double>> wall(degrees.size()), core(degrees.size());
+  std::vector<Timed> timed(degrees.size());
+  for (int i = -1; i < repetitions; ++i) // the first compiles
+  {
+    for (std::size_t k = 0; k < degrees.size(); ++k)
+    {
+      PropagationSettings settings = usual;
+      settings.angularDegree = degrees[k];
+      device.ResetPeak();
+      const double start = WallSeconds(), coreStart = CoreSeconds();
+      timed[k].light = SolveConservative(device, cloud.medium, cloud.light, settings);
+      if (i >= 0)
+      {
+        wall[k].push_back(WallSeconds() - start);
+        core[k].push_back(CoreSeconds() - coreStart);
+      }
+      timed[k].bytes = static_cast<double>(device.PeakBytes());
+    }
+  }
+  for (std::size_t k = 0; k < degrees.size(); ++k)
+  {
+    timed[k].seconds = Median(wall[k]);
+    timed[k].coreSeconds = Median(core[k]);
+  }
+  return timed;
+}
+
+/// What light propagation maps cost with angular moments.
+void PrintDegrees(Device& device, bool quick)
+{
+  const int orders = 5;
+  Table table({ "grid", "directions", "degree", "s", "ns an update", "of isotropic", "asked" });
+  const std::vector<std::array<int, 2>> scenes = quick
+    ? std::vector<std::array<int, 2>>{ { 12, 25 } }
+    : std::vector<std::array<int, 2>>{ { 64, 25 }, { 64, 64 }, { 128, 25 } };
+  const std::vector<int> degrees = { 0, 1, 3, 5, 7 };
+  const std::vector<double> asked = { 1.0, 1.5, 3.0, 5.0, 8.0 };
+  for (const auto& [edge, perFace] : scenes)
+  {
+    const Cloud cloud(edge, 0.25 * edge, 0.9, 0.85); // degrees are lower in voxels thicker than a mean free path
+    PropagationSettings settings;
+    settings.directionsPerFace = perFace;
+    settings.maximumOrders = orders;
+    settings.storeMoments = false;
+    const std::vector<Timed> runs = MeasureDegrees(device, cloud, settings, degrees, quick ? 1 : 5);
+    const double updates = static_cast<double>(edge) * edge * edge * perFace * 6.0 * orders;
+    for (std::size_t k = 0; k < degrees.size(); ++k)
+    {
+      const Timed& run = runs[k];
+      const double ratio = run.coreSeconds / runs[0].coreSeconds;
+      const std::string name = degrees[k] == 0 ? "isotropic" : "degree " + std::to_string(degrees[k]);
+      JsonLine()
+        .Add("bench", "phase")
+        .Add("case", "degrees, " + std::to_string(6 * perFace) + " directions")
+        .Add("method", "light propagation maps, " + name)
+        .Add("grid", GridText(edge))
+        .Add("seconds", run.seconds)
+        .Add("core_seconds", run.coreSeconds)
+        .Add("peak_bytes", run.bytes)
+        .Add("ns_per_update", 1e9 * run.seconds / updates)
+        .Add("iterations", static_cast<double>(run.light.convergence.size()))
+        .Add("ratio", ratio)
+        .Add("against", "isotropic")
+        .Print();
+      table.Add({ GridText(edge), std::to_string(6 * perFace), name, Text("%.3f", run.seconds),
+        Text("%.2f", 1e9 * run.seconds / updates), Text("%.2f", ratio), Text("%g", asked[k]) });
+    }
+  }
+  table.Print(
+    "Light propagation maps in angular moments beside isotropic, 5 orders, lamps' light and all; ratios of core "
+    "seconds");
+}
 }
 
 int main(int argc, char* argv[])
@@ -261,6 +338,10 @@ int main(int argc, char* argv[])
     if (arguments.Asks("speed"))
     {
       PrintSpeed(device, arguments.quick);
+    }
+    if (arguments.Asks("degrees"))
+    {
+      PrintDegrees(device, arguments.quick);
     }
     if (arguments.Asks("rank"))
     {

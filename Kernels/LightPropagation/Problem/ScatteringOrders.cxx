@@ -14,13 +14,15 @@ namespace
 const double UsualTolerance = PropagationSettings().tolerance;
 /// The distance beyond a face at which diffuse light would be zero, mean free paths (numerics.md, Eq. (86)).
 constexpr double Extrapolation = 1.42 / 2.0;
-constexpr double ManyOrders = 40.0;       ///< source iteration that is dearer than acceleration
-constexpr double ManyOrdersInSlab = 12.0; ///< the same in a slab, whose diffusion system is small
+constexpr double ManyOrders = 40.0;          ///< source iteration that is dearer than acceleration
+constexpr double ManyOrdersInMoments = 20.0; ///< the same where sweeps are dear, beside which diffusion is cheap
+constexpr double ManyOrdersInSlab = 12.0;    ///< the same in a slab, whose diffusion system is small
 
 /// Optical thickness of the thickest line of voxels along an axis.
-double LongestLine(const Medium& medium, int axis, int channel)
+/// @param sigma_t  of a voxel
+template <class Extinction>
+double LongestLine(const Grid& grid, int axis, const Extinction& sigma_t)
 {
-  const Grid& grid = medium.grid;
   const std::array<std::size_t, 3> step = { 1, static_cast<std::size_t>(grid.size[0]),
     static_cast<std::size_t>(grid.size[0]) * grid.size[1] };
   const int u = AcrossAxis(axis).u;
@@ -33,7 +35,7 @@ double LongestLine(const Medium& medium, int axis, int channel)
       double tau = 0.0;
       for (int k = 0; k < grid.size[axis]; ++k)
       {
-        tau += medium.TransportSigmaT(i * step[u] + j * step[v] + k * step[axis], channel);
+        tau += sigma_t(i * step[u] + j * step[v] + k * step[axis]);
       }
       longest = std::max(longest, tau * grid.spacing[axis]);
     }
@@ -53,17 +55,36 @@ double BothExtrapolations(const PropagationProblem& problem, int axis, int chann
   return std::min(low, longest + high) + std::min(high, longest + low);
 }
 
-/// Of what is scattered, in the mean.
-double AlbedoOf(const Medium& medium, int channel)
+/// Of what is scattered as sweeps carry it, in the mean.
+double AlbedoOf(const PropagationProblem& problem, int channel)
 {
+  const Medium& medium = problem.TheMedium();
   double scattering = 0.0, albedo = 0.0;
   for (std::size_t i = 0; i < medium.grid.VoxelCount(); ++i)
   {
-    const double s = medium.TransportSigmaS(i, channel);
+    const double s = problem.Scattering().SigmaS(i, channel);
     scattering += s;
     albedo += s > 0.0 ? s * s / (s + medium.sigma_a.At(i, channel)) : 0.0;
   }
   return scattering > 0.0 ? albedo / scattering : 0.0;
+}
+
+/// What leaks out along an axis of the slowest mode, over what is extinguished (numerics.md, Eq. (86)).
+double LeakAlong(const PropagationProblem& problem, int axis, int channel)
+{
+  const Grid& grid = problem.TheMedium().grid;
+  const double longest =
+    LongestLine(grid, axis, [&](std::size_t i) { return problem.TheMedium().TransportSigmaT(i, channel); });
+  const double extrapolated = longest + BothExtrapolations(problem, axis, channel, longest);
+  const double leak = Pi * Pi / 3.0 / (extrapolated * extrapolated);
+  if (problem.Scattering().Degree() == 0 || longest == 0.0)
+  {
+    return leak;
+  }
+  // Light diffuses as far as transport has it, but is scattered more often: each order does less.
+  const double scattered =
+    LongestLine(grid, axis, [&](std::size_t i) { return problem.Scattering().SigmaT(i, channel); });
+  return leak * longest / scattered;
 }
 }
 
@@ -75,18 +96,17 @@ double OrdersNeeded(const PropagationProblem& problem)
     double leak = 0.0;
     for (int axis = 0; axis < 3; ++axis)
     {
-      const double longest = LongestLine(problem.TheMedium(), axis, c);
-      const double extrapolated = longest + BothExtrapolations(problem, axis, c, longest);
-      leak += problem.Settings().periodic[axis] ? 0.0 : Pi * Pi / 3.0 / (extrapolated * extrapolated);
+      leak += problem.Settings().periodic[axis] ? 0.0 : LeakAlong(problem, axis, c);
     }
-    slowest = std::max(slowest, AlbedoOf(problem.TheMedium(), c) / (1.0 + leak));
+    slowest = std::max(slowest, AlbedoOf(problem, c) / (1.0 + leak));
   }
   return slowest <= 0.0 ? 0.0 : slowest >= 1.0 ? 1e30 : std::log(UsualTolerance) / std::log(slowest);
 }
 
 bool ScatteredManyTimes(const PropagationProblem& problem)
 {
-  return OrdersNeeded(problem) > (problem.IsSlab() ? ManyOrdersInSlab : ManyOrders);
+  const double many = problem.Scattering().Degree() > 0 ? ManyOrdersInMoments : ManyOrders;
+  return OrdersNeeded(problem) > (problem.IsSlab() ? ManyOrdersInSlab : many);
 }
 
 bool ToBeAccelerated(const PropagationProblem& problem)

@@ -4,8 +4,8 @@
 
 namespace tyndall
 {
-/// Scattering orders until 1e-4 is left, about: those of diffusion in a slab with extrapolated borders (numerics.md,
-/// Eq. (86)); the longest lines of voxels stand for the slab.
+/// Scattering orders, as sweeps carry them, until 1e-4 is left, about: those of diffusion in a slab with extrapolated
+/// borders (numerics.md, Eq. (86)); the longest lines of voxels stand for the slab.
 double OrdersNeeded(const PropagationProblem& problem);
 
 /// So many that adding them up one by one is dearer than acceleration.
