@@ -3,7 +3,7 @@
 //
 //   TyndallBenchPhase [--quick] [rank] [speed] [degrees]
 //
-//   rank     N terms of the phase function: error of the matrix beside theory, error of fluence beside the whole matrix'
+//   rank     N terms of the phase function: error of the matrix beside theory, of fluence beside the whole matrix'
 //   speed    factorised against unfactorised: 64^3, 128 and 256 directions, 5 orders, grey (the paper: 1.5 against 0.2
 //            pictures a second)
 //   degrees  light propagation maps in angular moments of degree 1, 3, 5, 7, in nanoseconds an update beside isotropic
