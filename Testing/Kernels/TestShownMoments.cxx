@@ -99,6 +99,7 @@ TEST_F(ShownMoments, AreThoseOfFluenceAndNetFlux)
     scene.light.sky = { 0.2, 0.2, 0.2 };
     scene.settings.netFlux = true;
     scene.settings.tolerance = 1e-6;
+    scene.settings.source = albedo == 1.0 ? PropagationSource::Linear : PropagationSource::Constant; // as above
     const LightField light = scene.Solve(this->GetDevice());
     const std::size_t voxels = scene.medium.grid.VoxelCount(), harmonics = light.scatteredMoments.size() / voxels;
     ASSERT_EQ(harmonics, 16u);

@@ -14,8 +14,9 @@ protected:
     const step_cloud::Experiment experiment = step_cloud::ExperimentOf(number);
     Scene scene = step_cloud::SceneOf(experiment, { 2, 32 });
     scene.settings.angularDegree = degree;
-    scene.settings.directionsPerFace = 36;
+    scene.settings.directionsPerFace = 64;
     scene.settings.staggeredRays = true;
+    scene.settings.mapResolution = 2; // a column's power is that of few rays
     const LightField light = scene.Solve(this->GetDevice());
     EXPECT_LT(light.balance.RelativeError(light.channels), 1e-5);
     return step_cloud::ErrorsOf(step_cloud::FoundIn(light, scene.medium.grid, experiment.sunFromZenith), experiment);
@@ -23,34 +24,33 @@ protected:
 
   void ExpectLight(int number, double ofReflected, double ofTransmitted)
   {
-    const step_cloud::Errors errors = this->ErrorsWith(5, number);
+    const step_cloud::Errors errors = this->ErrorsWith(7, number);
     EXPECT_LT(errors.columnReflected, ofReflected);
     EXPECT_LT(errors.columnTransmitted, ofTransmitted);
-    EXPECT_NEAR(errors.meanReflected, 0.0, 4e-3);
-    EXPECT_NEAR(errors.meanTransmitted, 0.0, 4e-3);
+    EXPECT_NEAR(errors.meanReflected, 0.0, 3e-3);
+    EXPECT_NEAR(errors.meanTransmitted, 0.0, 3e-3);
   }
 };
 
-// Of columns the worst are those beside the step: what degree 5 lets go straight on does not spread into the next one,
-// and under a low sun the light of the thick half's edge is not followed between a voxel's middle and the face.
+// Of columns the worst are those beside the step: what degree 7 lets go straight on does not spread into the next one.
 TEST_F(StepCloud, IsLitFromAboveAsTheConsensusSays)
 {
-  this->ExpectLight(1, 0.025, 0.05);
+  this->ExpectLight(1, 0.015, 0.025);
 }
 
 TEST_F(StepCloud, IsLitAslantAsTheConsensusSays)
 {
-  this->ExpectLight(2, 0.13, 0.05);
+  this->ExpectLight(2, 0.025, 0.015);
 }
 
 TEST_F(StepCloud, AbsorbsUnderASunAboveAsMonteCarloSays)
 {
-  this->ExpectLight(3, 0.025, 0.05);
+  this->ExpectLight(3, 0.01, 0.025);
 }
 
 TEST_F(StepCloud, AbsorbsUnderALowSunAsTheConsensusSays)
 {
-  this->ExpectLight(4, 0.14, 0.05);
+  this->ExpectLight(4, 0.03, 0.03);
 }
 
 TEST_F(StepCloud, IsWrongBySimilarity)

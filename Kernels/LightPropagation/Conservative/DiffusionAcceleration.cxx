@@ -524,7 +524,7 @@ void DiffusionAcceleration::WriteFluence()
       const double swept = found >= 0.0 ? found : path[at] * perVolume;
       fluence[at] = std::max(static_cast<float>(swept + this->UncollidedFluence[at]), 0.0f);
     }
-    if (this->Settings.netFlux && this->VoxelPower(c) > 0.0)
+    if (this->Settings.netFlux && !parts.Basis && this->VoxelPower(c) > 0.0)
     {
       this->Systems[c]->AddFlux(parts.Flux);
     }
@@ -532,6 +532,10 @@ void DiffusionAcceleration::WriteFluence()
   parts.Fluence.Write(fluence.data());
   if (this->Settings.netFlux)
   {
+    if (parts.Basis) // the moments of degree 1 have less of the pattern of rays than the powers through faces
+    {
+      AddFluxOfMoments(parts.TheDevice, parts.Layout, parts.Functions(), parts.Path, parts.Flux);
+    }
     this->LimitFlux(fluence);
   }
 }
