@@ -1,7 +1,7 @@
 """A cumulus with the low sun behind it and with the sun behind the camera: its droplets scatter forwards, which makes the
 bright edges, and what an isotropic cloud of the same transport looks like.
 
-    pvbatch silver_lining.py [--output FOLDER] [--voxels 80] [--size 640 400]
+    pvbatch silver_lining.py [--output FOLDER] [--voxels 112] [--size 640 400]
 
 The water is that of Data/Scenes/cumulus.vdb (made by make_scenes.py). The cloud is written to a .vdb with all that tells
 how it scatters, read again, and lit. `./run demo` calls this.
@@ -21,7 +21,7 @@ LoadPlugin(os.environ["TYNDALL_PLUGIN"], remote=True, ns=globals())
 
 parser = argparse.ArgumentParser()
 parser.add_argument("--output", default=os.environ.get("TYNDALL_TEST_OUTPUT", "."))
-parser.add_argument("--voxels", type=int, default=80, help="along the cloud's longest edge")
+parser.add_argument("--voxels", type=int, default=112, help="along the cloud's longest edge")
 parser.add_argument("--size", type=int, nargs=2, default=[640, 400], help="columns and rows of each picture")
 arguments = parser.parse_args()
 os.makedirs(arguments.output, exist_ok=True)
@@ -86,6 +86,6 @@ def write_row(name, pictures):
 
 begin = time.perf_counter()
 even, forward = cloud("isotropic-cloud", 0.0), cloud("cloud", 0.85)
-for name, azimuth, exposure in (("sun-behind-the-cloud", 78, 0.0042), ("sun-behind-the-camera", 250, 0.0042)):
+for name, azimuth, exposure in (("sun-behind-the-cloud", 78, 0.0015), ("sun-behind-the-camera", 250, 0.0042)):
     write_row(name, [picture(even, 0, azimuth, exposure), picture(forward, -1, azimuth, exposure)])
 print("%.1f s in all" % (time.perf_counter() - begin))
