@@ -1,61 +1,76 @@
 // From angular moments of the light that was found to those of what is scattered of it, but for the first, which is
-// fluence: IsotropicScattering.cl. A work-item a voxel of a row, by row and by angular function from the second on.
+// fluence: IsotropicScattering.cl. A work-item a row of voxels: it takes a group's functions one after the other, as they
+// lie in memory.
 //   sigma_s  1/length, [degree][channel][stride]
 //   path     W length, with its moments (MomentPlacesShared.h)
 //   source   W / (length^3 sr), the same
 
 #include "LightPropagation/Sweep/MomentPlacesShared.h"
 
-// Degree of an angular function.
-static int degree_of(int function)
+// The first voxels of a group, 0 behind the row's end.
+static float16 load_group(const __global float* values, int voxels)
 {
-  int l = 1;
-  while ((l + 1) * (l + 1) <= function)
+  if (voxels >= MomentGroup)
   {
-    ++l;
+    return vload16(0, values);
   }
-  return l;
+  float some[MomentGroup] = { 0.0f };
+  for (int i = 0; i < voxels; ++i)
+  {
+    some[i] = values[i];
+  }
+  return vload16(0, some);
 }
 
-// Of a work-item, in the moments and in sigma_s.
-static ulong moment_of(const MomentPlaces* places, int channel)
-{
-  const int function = get_global_id(2) + 1;
-  return MOMENT_PLACE(*places, function, channel, (ulong)get_global_id(1), get_global_id(0));
-}
-static ulong coefficient_of(const MomentPlaces* places, ulong stride, int channel)
-{
-  return (degree_of(get_global_id(2) + 1) * places->channels + channel) * stride +
-    (ulong)get_global_id(1) * places->sizeX + get_global_id(0);
-}
+// ACTION for each function of each group of a row, which lies at `at`; of its path comes `scale` times as much source.
+#define FOR_MOMENTS(ACTION)                                                                                      \
+  const ulong line = get_global_id(0);                                                                           \
+  for (int x = 0; x < places.sizeX; x += MomentGroup)                                                            \
+  {                                                                                                              \
+    ulong at = MOMENT_PLACE(places, 1, channel, line, x);                                                        \
+    for (int l = 1, function = 1; function < places.functions; ++l)                                              \
+    {                                                                                                            \
+      const __global float* here = sigma_s + (l * places.channels + channel) * stride + line * places.sizeX + x; \
+      const float16 scale = per_path * load_group(here, places.sizeX - x);                                       \
+      for (; function < (l + 1) * (l + 1); ++function, at += MomentGroup)                                        \
+      {                                                                                                          \
+        ACTION                                                                                                   \
+      }                                                                                                          \
+    }                                                                                                            \
+  }
 
 // One order: replaces the source, clears the path.
 __kernel void scatter_moments(MomentPlaces places, int channel, __global float* path, __global float* source,
   const __global float* sigma_s, ulong stride, float per_path)
 {
-  const ulong at = moment_of(&places, channel);
-  source[at] = sigma_s[coefficient_of(&places, stride, channel)] * path[at] * per_path;
-  path[at] = 0.0f;
+#define REPLACE                                            \
+  vstore16(vload16(0, path + at) * scale, 0, source + at); \
+  vstore16((float16)0.0f, 0, path + at);
+  FOR_MOMENTS(REPLACE)
+#undef REPLACE
 }
 
 __kernel void add_scattered_moments(MomentPlaces places, int channel, const __global float* path,
   __global float* source, const __global float* sigma_s, ulong stride, float per_path)
 {
-  const ulong at = moment_of(&places, channel);
-  source[at] += sigma_s[coefficient_of(&places, stride, channel)] * path[at] * per_path;
+#define ADD vstore16(vload16(0, source + at) + vload16(0, path + at) * scale, 0, source + at);
+  FOR_MOMENTS(ADD)
+#undef ADD
 }
 
 // What is given and what is scattered.
 __kernel void scatter_given_moments(MomentPlaces places, int channel, const __global float* path,
   const __global float* given, __global float* source, const __global float* sigma_s, ulong stride, float per_path)
 {
-  const ulong at = moment_of(&places, channel);
-  source[at] = given[at] + sigma_s[coefficient_of(&places, stride, channel)] * path[at] * per_path;
+#define ADD_TO_GIVEN vstore16(vload16(0, given + at) + vload16(0, path + at) * scale, 0, source + at);
+  FOR_MOMENTS(ADD_TO_GIVEN)
+#undef ADD_TO_GIVEN
 }
 
-__kernel void add_moments(MomentPlaces places, int channel, const __global float* path, __global float* to)
+// Moments from the second function on. A work-item a value.
+__kernel void add_moments(MomentPlaces places, const __global float* path, __global float* to)
 {
-  const ulong at = moment_of(&places, channel);
+  const ulong at = places.second + get_global_id(0);
   to[at] += path[at];
 }
 

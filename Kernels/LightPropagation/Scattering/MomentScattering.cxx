@@ -7,20 +7,6 @@
 
 namespace tyndall
 {
-namespace
-{
-template <class... Arguments>
-void OnMoments(Device& device, const VolumeLayout& layout, int functions, const char* name, int channel,
-  const Arguments&... arguments)
-{
-  cl::Kernel kernel = device.Kernel(name, kernel_source::MomentScattering);
-  With(kernel, layout.Places(functions), cl_int(channel), arguments...);
-  const std::array<int, 3>& size = layout.grid.size;
-  device.Queue().enqueueNDRangeKernel(
-    kernel, cl::NullRange, cl::NDRange(size[0], static_cast<std::size_t>(size[1]) * size[2], functions - 1));
-}
-}
-
 MomentScattering::MomentScattering(Device& device, const VolumeLayout& layout, const MediumOnDevice& medium, int degree)
   : TheDevice(device)
   , Layout(layout)
@@ -35,7 +21,11 @@ MomentScattering::MomentScattering(Device& device, const VolumeLayout& layout, c
 template <class... Arguments>
 void MomentScattering::RunOnMoments(const char* name, int channel, const Arguments&... arguments) const
 {
-  OnMoments(this->TheDevice, this->Layout, this->Functions, name, channel, arguments...);
+  cl::Kernel kernel = this->TheDevice.Kernel(name, kernel_source::MomentScattering);
+  With(kernel, this->Layout.Places(this->Functions), cl_int(channel), arguments...);
+  const std::array<int, 3>& size = this->Layout.grid.size;
+  this->TheDevice.Queue().enqueueNDRangeKernel(
+    kernel, cl::NullRange, cl::NDRange(static_cast<std::size_t>(size[1]) * size[2]), cl::NDRange(1));
 }
 
 /// From a path integral, W length, to the source of what is scattered of it with a coefficient of 1.
@@ -96,10 +86,10 @@ void MomentScattering::ScatterFluence(int channel, const Deposit& swept, const E
 void AddMoments(
   Device& device, const VolumeLayout& layout, int functions, const Buffer<float>& path, const Buffer<float>& to)
 {
-  for (int c = 0; c < layout.channels; ++c)
-  {
-    OnMoments(device, layout, functions, "add_moments", c, path, to);
-  }
+  const MomentPlaces places = layout.Places(functions);
+  cl::Kernel kernel = device.Kernel("add_moments", kernel_source::MomentScattering);
+  With(kernel, places, path, to);
+  device.Queue().enqueueNDRangeKernel(kernel, cl::NullRange, cl::NDRange(places.beams - places.second));
 }
 
 void AddToShown(Device& device, std::size_t values, const Buffer<float>& source, const Buffer<float>& shown, float part)
