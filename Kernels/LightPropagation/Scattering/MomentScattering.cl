@@ -1,6 +1,6 @@
 // From angular moments of the light that was found to those of what is scattered of it, but for the first, which is
-// fluence: IsotropicScattering.cl. A work-item a row of voxels: it takes a group's functions one after the other, as they
-// lie in memory.
+// fluence: IsotropicScattering.cl. A work-item a row of voxels: it takes a group's functions one after the other, as
+// they lie in memory.
 //   sigma_s  1/length, [degree][channel][stride]
 //   path     W length, with its moments (MomentPlacesShared.h)
 //   source   W / (length^3 sr), the same
