@@ -11,7 +11,7 @@ namespace
 {
 constexpr int FromPerFace = 144;     ///< directions, beside those of the set, that light comes along
 constexpr double LeastPart = 1e-3;   ///< of the mean: what rounding may take away
-constexpr double MostDamping = 64.0; ///< nothing is left of any moment
+constexpr double MostDamping = 16.0; ///< nothing is left of any moment
 
 /// One of the 48 parts of all directions that are each other's images by turns and mirrorings of the cube. A set and
 /// its functions, degree by degree, have that symmetry.
@@ -79,18 +79,21 @@ double DirectionKernel::Least(const std::vector<double>& moments) const
 
 DeltaM WithoutNegatives(const DeltaM& truncated, const DirectionKernel& kernel)
 {
-  const auto damped = [&](double s) {
-    std::vector<double> moments = truncated.moments;
-    for (std::size_t l = 0; l < moments.size(); ++l)
-    {
-      moments[l] *= std::exp(-s * static_cast<double>(l * (l + 1)));
-    }
-    return moments;
-  };
   if (truncated.moments.size() < 2 || kernel.Least(truncated.moments) >= LeastPart)
   {
     return truncated;
   }
+  const double g = truncated.forward + (1.0 - truncated.forward) * truncated.moments[1];
+  const double forward = g < 0.0 ? 0.0 : truncated.forward; // without a peak nothing is to be taken off it
+  const auto damped = [&](double s) {
+    std::vector<double> moments = truncated.moments;
+    for (std::size_t l = 0; l < moments.size(); ++l)
+    {
+      const double whole = truncated.forward + (1.0 - truncated.forward) * moments[l];
+      moments[l] = (whole - forward) / (1.0 - forward) * std::exp(-s * static_cast<double>(l * (l + 1)));
+    }
+    return moments;
+  };
   double low = 0.0, high = MostDamping;
   for (int i = 0; i < 20; ++i)
   {
@@ -99,7 +102,6 @@ DeltaM WithoutNegatives(const DeltaM& truncated, const DirectionKernel& kernel)
   }
   DeltaM positive = truncated;
   positive.moments = damped(high);
-  const double g = truncated.forward + (1.0 - truncated.forward) * truncated.moments[1];
   positive.forward = (g - positive.moments[1]) / (1.0 - positive.moments[1]);
   return positive;
 }
