@@ -92,6 +92,11 @@ std::vector<std::string> Words(const TransportParts& parts, const IterationResul
   {
     words.push_back("angular moments above degree " + std::to_string(degree) +
       ": what is scattered beyond them goes straight on (delta-M)");
+    if (parts.Problem.Scattering().IsNowhereNegative())
+    {
+      words.emplace_back("detail within these moments: smoothed such that no source is negative, in a box that is thin "
+                         "along one axis and long along another");
+    }
   }
   else if (!phase.IsIsotropic() && parts.Problem.Traits().scatters)
   {

@@ -23,12 +23,14 @@ int HarmonicsKept(const TransportParts& parts)
   return count(degree);
 }
 
+constexpr float LeastScattering = 1e-30f; ///< 1/length, in the solver's unit: of less nothing is ever seen
+
 /// Radiance that is scattered of a source of 1.
 std::vector<float> PerScattering(const TransportParts& parts)
 {
   const Field& sigma_s = parts.Problem.TheMedium().sigma_s;
   return Planar(parts.Layout, parts.Layout.channels,
-    [&](std::size_t i, int c) { return sigma_s.At(i, c) > 0.0f ? 1.0f / sigma_s.At(i, c) : 0.0f; });
+    [&](std::size_t i, int c) { return sigma_s.At(i, c) > LeastScattering ? 1.0f / sigma_s.At(i, c) : 0.0f; });
 }
 
 /// [voxel], or [voxel][channel] where channels differ.

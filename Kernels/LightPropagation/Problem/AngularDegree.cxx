@@ -14,6 +14,7 @@ constexpr double Negligible = 1e-3; ///< moment of a phase function
 constexpr int DegreeOfSlabs = 9, DegreeOfThin = 5, DegreeOfOthers = 3;
 constexpr double SomewhatForward = 0.6;
 constexpr double Thick = 8.0; ///< mean free paths through the box: light's first scattering is a small part of it
+constexpr double MuchThinner = 8.0;
 constexpr std::size_t ArraysOfMoments = 4; ///< source, path, what is given, and of uncollided light
 
 /// Largest moments, by degree, of all phase functions of the medium.
@@ -93,5 +94,31 @@ int AngularDegreeFor(const Medium& medium, const PropagationSettings& settings, 
   return wanted == 0 || lastAbove(Negligible) == 0
     ? 0
     : MostDegree(EquiangularDirections(settings.directionsPerFace), wanted);
+}
+
+bool IsMuchThinnerAlongOneAxis(const Medium& medium, int channels, const std::array<bool, 3>& periodic)
+{
+  const Grid& grid = medium.grid;
+  for (int c = 0; c < channels; ++c)
+  {
+    double sum = 0.0;
+    for (std::size_t i = 0; i < grid.VoxelCount(); ++i)
+    {
+      sum += medium.sigma_a.At(i, c) + medium.sigma_s.At(i, c);
+    }
+    const double sigma_t = sum / static_cast<double>(grid.VoxelCount());
+    double shortest = std::numeric_limits<double>::max(), longest = 0.0;
+    for (int axis = 0; axis < 3; ++axis)
+    {
+      const double edge = grid.size[axis] * grid.spacing[axis];
+      shortest = periodic[axis] ? shortest : std::min(shortest, edge);
+      longest = periodic[axis] ? longest : std::max(longest, edge);
+    }
+    if (longest > MuchThinner * shortest && std::min(sigma_t * longest, 1.0) > MuchThinner * sigma_t * shortest)
+    {
+      return true;
+    }
+  }
+  return false;
 }
 }

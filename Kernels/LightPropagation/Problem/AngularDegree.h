@@ -23,4 +23,9 @@ DeviceMemory MemoryOf(const Device& device);
 /// that the similarity relation does.
 /// @param slab  plane-parallel: more moments cost little
 int AngularDegreeFor(const Medium& medium, const PropagationSettings& settings, bool slab, const DeviceMemory& memory);
+
+/// Whether light goes through the box freely along one axis, and several times as far along another. Then what is
+/// scattered along the long one gathers in few directions, and a source that is negative there, as moments of a peak
+/// are here and there, is not made up for by that of others.
+bool IsMuchThinnerAlongOneAxis(const Medium& medium, int channels, const std::array<bool, 3>& periodic);
 }

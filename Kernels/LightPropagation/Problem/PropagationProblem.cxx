@@ -65,10 +65,20 @@ PropagationProblem::PropagationProblem(const Medium& medium, const Illumination&
     this->SolvedLight = scene.light;
   }
   const int degree = AngularDegreeFor(this->Solved, this->TheSettings, this->IsSlab(), memory);
-  this->Truncated.emplace(this->Solved, this->TheTraits.scatters ? degree : 0, this->ChannelCount);
+  this->Truncate(this->TheTraits.scatters ? degree : 0);
   // The traits know of extinction by the similarity relation alone.
   this->TheTraits.greyExtinction =
     this->TheTraits.grey || (this->TheTraits.greyExtinction && this->Truncated->Degree() == 0);
+}
+
+void PropagationProblem::Truncate(int degree)
+{
+  std::optional<DirectionKernel> kernel;
+  if (degree > 0 && IsMuchThinnerAlongOneAxis(this->Solved, this->ChannelCount, this->TheSettings.periodic))
+  {
+    kernel.emplace(EquiangularDirections(this->TheSettings.directionsPerFace), degree);
+  }
+  this->Truncated.emplace(this->Solved, degree, this->ChannelCount, kernel ? &*kernel : nullptr);
 }
 
 void PropagationProblem::TakeUnits(const Medium& wide, const Illumination& illumination)

@@ -47,6 +47,7 @@ public:
 
 private:
   void TakeUnits(const Medium& wide, const Illumination& illumination);
+  void Truncate(int degree);
 
   UnvaryingAxes Unvarying;
   PropagationSettings TheSettings;

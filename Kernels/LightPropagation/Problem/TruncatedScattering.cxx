@@ -9,12 +9,24 @@ namespace
 {
 constexpr double Thickest = 1.0; ///< mean free paths through a voxel, of a degree above 0
 constexpr int Columns = 1024;    ///< of mean cosines; between them moments are taken as linear
+
+std::vector<DeltaM> TruncationsOf(const PhaseFunction& function, int degree, const DirectionKernel* nowhereNegative)
+{
+  std::vector<DeltaM> truncations = Truncations(function, degree);
+  for (DeltaM& truncated : truncations)
+  {
+    truncated = nowhereNegative ? WithoutNegatives(truncated, *nowhereNegative) : truncated;
+  }
+  return truncations;
+}
 }
 
-TruncatedScattering::TruncatedScattering(const Medium& medium, int degree, int channels)
+TruncatedScattering::TruncatedScattering(
+  const Medium& medium, int degree, int channels, const DirectionKernel* nowhereNegative)
   : TheMedium(medium)
   , MostDegree(degree)
   , Channels(channels)
+  , NowhereNegative(nowhereNegative != nullptr)
 {
   if (degree == 0)
   {
@@ -22,11 +34,12 @@ TruncatedScattering::TruncatedScattering(const Medium& medium, int degree, int c
   }
   for (int i = 1; medium.phase.Varies() && i < Columns; ++i)
   {
-    this->OfG.push_back(Truncations(medium.phase.OfChannel(0).WithMeanCosine(2.0 * i / Columns - 1.0), degree));
+    this->OfG.push_back(
+      TruncationsOf(medium.phase.OfChannel(0).WithMeanCosine(2.0 * i / Columns - 1.0), degree, nowhereNegative));
   }
   for (int c = 0; c < 3 && !medium.phase.Varies(); ++c)
   {
-    this->OfChannel[c] = Truncations(medium.phase.OfChannel(c), degree);
+    this->OfChannel[c] = TruncationsOf(medium.phase.OfChannel(c), degree, nowhereNegative);
   }
   // Angular detail is worth following along the shortest edge first.
   const double shortest = *std::min_element(medium.grid.spacing.begin(), medium.grid.spacing.end());

@@ -1,6 +1,7 @@
 #pragma once
 
 #include "Medium/Medium.h"
+#include "LightPropagation/Scattering/DirectionKernel.h"
 #include "PhaseFunction/DeltaM.h"
 
 #include <array>
@@ -17,9 +18,13 @@ class TruncatedScattering
 public:
   /// @param medium  must stay
   /// @param degree  of the voxels that are thin; 0: all are isotropic, by the similarity relation
-  TruncatedScattering(const Medium& medium, int degree, int channels);
+  /// @param nowhereNegative  directions between which nothing negative is scattered (WithoutNegatives); null: moments
+  ///   are as delta-M has them
+  TruncatedScattering(
+    const Medium& medium, int degree, int channels, const DirectionKernel* nowhereNegative = nullptr);
 
   int Degree() const { return this->MostDegree; } ///< the highest of any voxel
+  bool IsNowhereNegative() const { return this->NowhereNegative && this->MostDegree > 0; }
 
   float SigmaS(std::size_t voxel, int channel) const;
   float SigmaT(std::size_t voxel, int channel) const
@@ -46,6 +51,7 @@ private:
   const Medium& TheMedium;
   int MostDegree;
   int Channels;
+  bool NowhereNegative;
   std::array<std::vector<DeltaM>, 3> OfChannel; ///< by degree; where g does not vary by voxel
   std::vector<std::vector<DeltaM>> OfG;         ///< where it varies: by g, evenly from -1 to 1, then by degree
   std::vector<std::uint8_t> Degrees;            ///< [voxel][channel]; empty: all 0

@@ -2,6 +2,11 @@
 
 #include "Numerics/Constants.h"
 #include "Numerics/Legendre.h"
+#include "Numerics/Vectors.h"
+
+#include <glm/geometric.hpp>
+#include <glm/mat3x3.hpp>
+#include <glm/matrix.hpp>
 
 #include <algorithm>
 #include <cmath>
@@ -43,27 +48,63 @@ double Dot(const std::array<double, 3>& a, const std::array<double, 3>& b)
 {
   return a[0] * b[0] + a[1] * b[1] + a[2] * b[2];
 }
-}
 
-std::vector<double> BeyondMoments(const PhaseFunction& function, const DeltaM& truncated, const DirectionSet& set,
-  const AngularBasis& basis, const std::array<double, 3>& beam)
+/// What a phase function scatters of a beam without the part of its forward peak that goes straight on, along each
+/// direction of a set: the mean is 1.
+std::vector<double> WithoutPeak(
+  const PhaseFunction& function, double peak, const DirectionSet& set, const std::array<double, 3>& beam)
 {
-  const double level = LevelOf(function, truncated.forward);
+  const double level = LevelOf(function, peak);
   std::vector<double> scattered;
-  std::vector<std::vector<double>> functions;
   double sum = 0.0;
   for (const Direction& direction : set.directions)
   {
     const double cosine = std::clamp(Dot(direction.omega, beam), -1.0, 1.0);
     const double value = function.Value(cosine);
     scattered.push_back(cosine > 0.0 ? std::min(value, level) : value);
-    functions.push_back(basis.At(direction.omega));
     sum += direction.weight * scattered.back() / (4.0 * Pi);
   }
+  for (double& value : scattered)
+  {
+    value /= sum;
+  }
+  return scattered;
+}
+
+/// Multiplies values by 1 + t omega, so that their mean stays and the mean of their product with omega becomes
+/// `flux`, as far as nothing becomes negative.
+void Tilt(std::vector<double>& values, const DirectionSet& set, const glm::dvec3& flux)
+{
+  constexpr double MostTilt = 0.98;
+  glm::dvec3 mean(0.0);
+  glm::dmat3 second(0.0);
+  for (std::size_t d = 0; d < values.size(); ++d)
+  {
+    const glm::dvec3 omega = Vector(set.directions[d].omega);
+    const double part = set.directions[d].weight * values[d] / (4.0 * Pi);
+    mean += part * omega;
+    second += part * glm::outerProduct(omega, omega);
+  }
+  glm::dvec3 tilt = glm::inverse(second - glm::outerProduct(flux, mean)) * (flux - mean);
+  const double length = glm::length(tilt);
+  tilt = std::isfinite(length) ? tilt * std::min(1.0, MostTilt / std::max(length, 1e-30)) : glm::dvec3(0.0);
+  const double all = 1.0 + glm::dot(tilt, mean);
+  for (std::size_t d = 0; d < values.size(); ++d)
+  {
+    values[d] *= (1.0 + glm::dot(tilt, Vector(set.directions[d].omega))) / all;
+  }
+}
+}
+
+std::vector<double> BeyondMoments(const PhaseFunction& function, const DeltaM& truncated, const DirectionSet& set,
+  const AngularBasis& basis, const std::array<double, 3>& beam)
+{
+  std::vector<double> scattered = WithoutPeak(function, truncated.forward, set, beam);
+  std::vector<std::vector<double>> functions;
   std::vector<double> moments(basis.Count(), 0.0);
   for (std::size_t d = 0; d < scattered.size(); ++d)
   {
-    scattered[d] /= sum;
+    functions.push_back(basis.At(set.directions[d].omega));
     for (int i = 0; i < basis.Count(); ++i)
     {
       moments[i] += set.directions[d].weight * scattered[d] * functions[d][i] / (4.0 * Pi);
@@ -74,6 +115,23 @@ std::vector<double> BeyondMoments(const PhaseFunction& function, const DeltaM& t
     for (int i = 0; i < basis.Count(); ++i)
     {
       scattered[d] -= moments[i] * functions[d][i];
+    }
+  }
+  return scattered;
+}
+
+std::vector<double> BeyondSmoothMoments(const PhaseFunction& function, const DeltaM& truncated,
+  const DirectionSet& set, const AngularBasis& basis, const std::array<double, 3>& beam)
+{
+  std::vector<double> scattered = WithoutPeak(function, truncated.forward, set, beam);
+  Tilt(scattered, set, truncated.moments[1] * Vector(beam));
+  const std::vector<double> there = basis.At(beam);
+  for (std::size_t d = 0; d < scattered.size(); ++d)
+  {
+    const std::vector<double> here = basis.At(set.directions[d].omega);
+    for (int i = 0; i < basis.Count(); ++i)
+    {
+      scattered[d] -= truncated.moments[AngularBasis::DegreeOf(i)] * here[i] * there[i];
     }
   }
   return scattered;
