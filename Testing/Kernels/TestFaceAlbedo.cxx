@@ -1,8 +1,6 @@
 #include "DeviceTest.h"
-#include "MediumScene.h"
+#include "ReflectingScene.h"
 
-#include "Medium/BoxFaces.h"
-#include "Numerics/Constants.h"
 #include "Reference/ReferenceTable.h"
 
 #include <gmock/gmock.h>
@@ -18,46 +16,11 @@ using testing::HasSubstr;
 
 namespace
 {
-Rgb Grey(double value)
-{
-  return { value, value, value };
-}
-
-/// A box in which the radiance is 1 (times `colour`) everywhere and along every direction: a medium of random density
-/// that emits what it absorbs, faces that give back their part and shine with the rest.
 Scene Furnace(const std::array<int, 3>& size, double thickest, double albedo, const Rgb& colour)
 {
   Scene scene(size);
-  scene.medium.grid.spacing = { 1.0, 1.3, 0.8 };
-  scene.Randomise(thickest, 2.0, albedo);
-  scene.emission.resize(3 * scene.sigma_a.size());
-  for (std::size_t i = 0; i < scene.emission.size(); ++i)
-  {
-    scene.emission[i] = static_cast<float>(scene.sigma_a[i / 3] * colour[i % 3]);
-  }
-  const Rgb albedos[6] = { { 0.3, 0.5, 0.0 }, { 0.9, 0.1, 1.0 }, { 0.0, 0.2, 0.6 }, { 1.0, 1.0, 1.0 },
-    { 0.8, 0.7, 0.5 }, { 0.5, 0.5, 0.5 } };
-  for (int face = 0; face < 6; ++face)
-  {
-    scene.light.faceAlbedo[face] = albedos[face];
-    for (int c = 0; c < 3; ++c)
-    {
-      scene.light.faces[face][c] = (1.0 - albedos[face][c]) * colour[c];
-    }
-  }
+  MakeReflectingFurnace(scene, thickest, albedo, colour);
   return scene;
-}
-
-/// Largest relative deviation of fluence from that of radiance `colour`.
-double Deviation(const LightField& light, const Rgb& colour)
-{
-  double most = 0.0;
-  for (std::size_t i = 0; i < light.fluence.size(); ++i)
-  {
-    const double radiance = colour[light.channels == 3 ? i % 3 : 0];
-    most = std::max(most, std::abs(light.fluence[i] / (4.0 * Pi * radiance) - 1.0));
-  }
-  return most;
 }
 
 /// A slab above ground, lit from above by diffuse light (cosine 0) or a sun.
@@ -70,29 +33,8 @@ Scene SlabOverGround(double tau, double albedo, double g, double ground, double 
   scene.settings.periodic = { true, true, false };
   scene.settings.angularDegree = g > 0.0 ? 5 : 0;
   scene.settings.source = PropagationSource::Linear;
-  scene.light.faceAlbedo[4] = Grey(ground);
-  if (cosine > 0.0)
-  {
-    scene.ShineAlong({ std::sqrt(1.0 - cosine * cosine), 0.0, -cosine }, 1.0 / cosine);
-  }
-  else
-  {
-    scene.light.faces[5] = Grey(1.0);
-  }
+  LightOverGround(scene, ground, cosine);
   return scene;
-}
-
-/// W that leave through a face, before it gives back its part.
-double Leaving(const LightField& light, const Grid& grid, int face, int channel)
-{
-  const BoxFaceLayout layout = LayoutOfFace(grid, face);
-  const std::size_t cells = grid.VoxelCount() / grid.size[face / 2];
-  double power = 0.0;
-  for (std::size_t cell = 0; cell < cells; ++cell)
-  {
-    power += light.facePower[(layout.first + cell) * light.channels + channel];
-  }
-  return power * grid.VoxelVolume() / grid.spacing[face / 2];
 }
 }
 
