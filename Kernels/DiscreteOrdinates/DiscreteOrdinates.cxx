@@ -385,6 +385,7 @@ LightField SolveDiscreteOrdinates(Device& device, const Medium& medium, const Il
     [](float fluence) { return static_cast<float>(fluence / (4.0 * Pi)); });
   light.storedDirections = { { 0.0, 0.0, 0.0 } };
   light.halfRangeFlux = HalfRangeFlux({ 0, false, far.directions });
+  light.faceAlbedo = illumination.faceAlbedo;
   light.device = device.Name();
   if (kept)
   {

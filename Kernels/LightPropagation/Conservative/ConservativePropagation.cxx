@@ -181,6 +181,7 @@ LightField SolveConservative(Device& device, const Medium& medium, const Illumin
   {
     Keep(std::move(left), warm, light, *kept);
   }
+  light.faceAlbedo = illumination.faceAlbedo;
   problem.Undo(light);
   if (parts.StoresMoments())
   {
