@@ -136,7 +136,8 @@ private:
     this->Result.ledger.Absorb(0, powers.absorbed);
     this->Result.ledger.LeaveOver(
       0, powers.scattered - guessed + this->OnTheWay + this->Reflected + this->Arrays.Stranded());
-    this->GoesOn = this->Arrays.MagnitudeOf(found, this->Guess) + std::abs(this->OnTheWay) + std::abs(this->Reflected);
+    const double reflected = this->Arrays.Faces ? this->Arrays.Faces->Magnitude()[0] : 0.0;
+    this->GoesOn = this->Arrays.MagnitudeOf(found, this->Guess) + std::abs(this->OnTheWay) + reflected;
     this->Record.Add(this->GoesOn, powers.scattered, this->Result.ledger);
     this->Guess.clear();
   }

@@ -248,6 +248,28 @@ TEST_F(FaceAlbedo, IsMattGroundUnderASlab)
   }
 }
 
+TEST_F(FaceAlbedo, IsMattGroundUnderASlabByDefault)
+{
+  for (double tau : { 0.5, 5.0, 50.0 })
+  {
+    for (double ground : { 0.3, 0.8, 1.0 })
+    {
+      for (double cosine : { 0.0, 1.0, 0.5 })
+      {
+        const ReferenceRow row = ReferenceRowWhere("slab_over_ground",
+          { { "tau", tau }, { "albedo", 0.9 }, { "g", 0.85 }, { "ground", ground }, { "cosine", cosine } });
+        Scene scene = SlabOverGround(tau, 0.9, 0.85, ground, cosine);
+        scene.settings = {};
+        scene.settings.periodic = { true, true, false };
+        const LightField light = scene.Solve(this->GetDevice());
+        const double in = light.balance.entered[0];
+        EXPECT_NEAR(light.facePowerOut[5][0] / in, row["reflected"], 0.003) << tau << ' ' << ground << ' ' << cosine;
+        EXPECT_NEAR(light.facePowerOut[4][0] / in, row["taken"], 0.003) << tau << ' ' << ground << ' ' << cosine;
+      }
+    }
+  }
+}
+
 TEST_F(FaceAlbedo, IsTheSameAlongEveryAxis)
 {
   std::vector<double> means;

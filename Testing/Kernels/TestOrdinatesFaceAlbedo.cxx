@@ -2,6 +2,7 @@
 #include "OrdinatesScene.h"
 #include "ReflectingScene.h"
 
+#include "Device/Errors.h"
 #include "Reference/ReferenceTable.h"
 
 #include <gmock/gmock.h>
@@ -200,4 +201,19 @@ TEST_F(OrdinatesFaceAlbedo, IsTheSameFromTheLastLight)
     EXPECT_TRUE(warm.converged);
     EXPECT_NEAR(warm.facePowerOut[4][0], cold.facePowerOut[4][0], 3e-5 * cold.balance.entered[0]);
   }
+}
+
+TEST_F(OrdinatesFaceAlbedo, EndsInABoxThatHardlyAbsorbsAndRefusesOneThatDoesNot)
+{
+  LitMedium scene({ 3, 3, 3 }, 1e-6f, 0.5f);
+  scene.how.directionsPerFace = 9;
+  scene.light.faceAlbedo.fill(Grey(1.0));
+  scene.emission.assign(scene.sigma_a.size(), 0.0f);
+  scene.emission[13] = 1.0f;
+  const LightField light = scene.SolveOrdinates(this->GetDevice());
+  EXPECT_FALSE(light.converged);
+  EXPECT_FALSE(light.doubts.empty());
+  EXPECT_LE(light.balance.RelativeError(1), 1e-3);
+  scene.sigma_a.assign(scene.sigma_a.size(), 0.0f);
+  EXPECT_THROW(scene.SolveOrdinates(this->GetDevice()), InvalidInput);
 }

@@ -3,6 +3,7 @@
 #include "Medium/BoxFaces.h"
 
 #include <algorithm>
+#include <cmath>
 #include <functional>
 #include <utility>
 
@@ -127,6 +128,11 @@ std::array<Rgb, 6> FaceLight::Reflect()
     this->LetIn(swept, uncollided);
   }
   std::transform(swept.begin(), swept.end(), uncollided.begin(), swept.begin(), std::plus<>());
+  this->LastMagnitude = {};
+  for (std::size_t i = 0; i < swept.size(); ++i)
+  {
+    this->LastMagnitude[i / this->Cells()] += std::abs(swept[i]);
+  }
   return this->PowerOfFaces(swept);
 }
 

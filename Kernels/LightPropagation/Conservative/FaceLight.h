@@ -35,6 +35,8 @@ public:
   /// What left since the last call, and the uncollided light before it: lets the part come in that is reflected.
   /// @return W that come back through each face
   std::array<Rgb, 6> Reflect();
+  /// Of what the last call of Reflect let in, which may be negative (WarmStart), the magnitudes by cell added up; W.
+  const Rgb& Magnitude() const { return this->LastMagnitude; }
   /// W that left through each cell since the last call of anything here, [channel][cell].
   std::vector<float> TakeOut();
   /// Lets W come in through each cell, [channel][cell].
@@ -65,6 +67,7 @@ private:
   std::vector<double> MeanIn;  ///< the same in the mean over its face
   std::vector<float> Uncollided;
   std::vector<double> AllSwept, AllUncollided;
+  Rgb LastMagnitude = {};
   Buffer<float> Leaving, Entering; ///< [channel][cell]
 };
 
