@@ -195,7 +195,7 @@ void WriteLight(LightField&& light, vtkImageData* output)
     cells->RemoveArray(earlier); // of another solve that the input has been through
   }
   for (const char* earlier : { "stored_directions", "scattered", "packing_loss", "fluence_bias", "half_range_flux",
-         SurfaceRadianceFact, LampsApartFact, "face_power" })
+         SurfaceRadianceFact, LampsApartFact, FacePowerFact, FaceAlbedoFact })
   {
     output->GetFieldData()->RemoveArray(earlier);
   }
@@ -239,7 +239,9 @@ void WriteLight(LightField&& light, vtkImageData* output)
   }
   if (!light.facePower.empty())
   {
-    AddFact(output, "face_power", { light.facePower.begin(), light.facePower.end() }, channels);
+    AddFact(output, FacePowerFact, { light.facePower.begin(), light.facePower.end() }, channels);
+    const std::array<Rgb, 6>& back = light.faceAlbedo;
+    AddFact(output, FaceAlbedoFact, Channels({ back[0], back[1], back[2], back[3], back[4], back[5] }, 3), 3);
   }
   AddFact(output, "left_out", light.leftOut);
   AddFact(output, "device", std::vector<std::string>{ light.device });

@@ -34,6 +34,9 @@ void AddFact(vtkDataObject* data, const char* name, const std::vector<std::array
 
 /// What leaves thick voxels at the box's faces, see LightField::surfaceRadiance: a tuple per cell of BoxFaces.h.
 constexpr const char* SurfaceRadianceFact = "surface_radiance";
+/// Field data: LightField::facePower, and what part of it comes back, red, green, blue of each face, -x to +z.
+constexpr const char* FacePowerFact = "face_power";
+constexpr const char* FaceAlbedoFact = "face_albedo";
 
 /// Angular moments of what is scattered (LightField::scatteredMoments, straightOn), cells, and field data: the lamps
 /// whose light they leave out until it is first scattered, a tuple each: type, position, direction, power, size, angle.
@@ -48,7 +51,8 @@ std::string Lines(const std::vector<std::string>& texts);
 /// Everything a solver found but its convergence: cells `fluence` (made the active scalars), `fluence_direct`,
 /// `fluence_error`, `net_flux`, `scattered_radiance` (channels fastest, then stored directions), `scattered_moments`
 /// (channels fastest, then spherical harmonics), `straight_on`, those that are not empty; field data `energy_balance`,
-/// `face_power_out`, `face_power`, `half_range_flux`, `stored_directions`, `surface_radiance`, `lamps_apart`,
+/// `face_power_out`, `face_power`, `face_albedo`, `half_range_flux`, `stored_directions`, `surface_radiance`,
+/// `lamps_apart`,
 /// `left_out`, `device`. Light that the output already has is taken away.
 void WriteLight(LightField&& light, vtkImageData* output);
 

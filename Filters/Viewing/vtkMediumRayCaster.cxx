@@ -98,30 +98,57 @@ vtkSmartPointer<Array> PixelArray(const char* name, const std::vector<Value>& va
 
 /// What the solver said of the light at the box's faces; empty where it did not, or what it said is not of these
 /// voxels.
-struct SurfaceValues
+struct FaceValues
 {
   std::vector<float> values;
   int components = 0;
+
+  tyndall::Field Seen() const { return { this->values.empty() ? nullptr : this->values.data(), this->components }; }
 };
 
-SurfaceValues ReadSurface(vtkImageData* image, const tyndall::Grid& grid)
+/// @param parts  components of a channel
+FaceValues ReadFaces(vtkImageData* image, const char* name, std::size_t tuples, int parts)
 {
-  SurfaceValues surface;
-  vtkDataArray* const said = image->GetFieldData()->GetArray(tyndall::SurfaceRadianceFact);
-  const int cosines = static_cast<int>(tyndall::SurfaceCosines.size());
-  if (!said || said->GetNumberOfTuples() != static_cast<vtkIdType>(tyndall::BoxFaceCellCount(grid)) ||
-    (said->GetNumberOfComponents() != cosines && said->GetNumberOfComponents() != 3 * cosines))
+  FaceValues faces;
+  vtkDataArray* const said = image->GetFieldData()->GetArray(name);
+  if (!said || said->GetNumberOfTuples() != static_cast<vtkIdType>(tuples) ||
+    (said->GetNumberOfComponents() != parts && said->GetNumberOfComponents() != 3 * parts))
   {
-    return surface;
+    return faces;
   }
-  surface.components = said->GetNumberOfComponents();
-  surface.values.resize(static_cast<std::size_t>(said->GetNumberOfValues()));
+  faces.components = said->GetNumberOfComponents();
+  faces.values.resize(static_cast<std::size_t>(said->GetNumberOfValues()));
   for (vtkIdType i = 0; i < said->GetNumberOfValues(); ++i)
   {
-    surface.values[i] = static_cast<float>(said->GetComponent(i / surface.components, i % surface.components));
+    faces.values[i] = static_cast<float>(said->GetComponent(i / faces.components, i % faces.components));
   }
-  return surface;
+  return faces;
 }
+
+/// What light at the faces is seen: it belongs to the array that the solver wrote.
+struct LightAtFaces
+{
+  FaceValues surface, power, albedo;
+
+  LightAtFaces() = default;
+  LightAtFaces(vtkImageData* image, const tyndall::Grid& grid)
+    : surface(ReadFaces(image, tyndall::SurfaceRadianceFact, tyndall::BoxFaceCellCount(grid),
+        static_cast<int>(tyndall::SurfaceCosines.size())))
+    , power(ReadFaces(image, tyndall::FacePowerFact, tyndall::BoxFaceCellCount(grid), 1))
+    , albedo(ReadFaces(image, tyndall::FaceAlbedoFact, 6, 1))
+  {
+  }
+
+  void AddTo(tyndall::SolvedLight& light) const
+  {
+    light.surface = this->surface.Seen();
+    light.facePower = this->power.Seen();
+    for (std::size_t i = 0; i < 18 && !this->albedo.values.empty(); ++i)
+    {
+      light.faceAlbedo[i / 3][i % 3] = this->albedo.Seen().At(i / 3, this->albedo.components == 3 ? i % 3 : 0);
+    }
+  }
+};
 
 void WritePicture(const tyndall::Picture& picture, const std::vector<std::uint8_t>& color, vtkImageData* output)
 {
@@ -231,7 +258,10 @@ tyndall::InputsKey vtkMediumRayCaster::KeyOf(vtkInformationVector** inputs)
   {
     key.Add(tyndall::ChosenArray(this, number, image, ArrayNames[number]));
   }
-  key.Add(image->GetFieldData()->GetArray(tyndall::SurfaceRadianceFact));
+  for (const char* fact : { tyndall::SurfaceRadianceFact, tyndall::FacePowerFact, tyndall::FaceAlbedoFact })
+  {
+    key.Add(image->GetFieldData()->GetArray(fact));
+  }
   key.Add(image->GetCellData()->GetArray(tyndall::MomentsArray));
   key.Add(image->GetCellData()->GetArray(tyndall::StraightOnArray));
   key.Add(image->GetFieldData()->GetArray(tyndall::LampsApartFact));
@@ -264,7 +294,7 @@ std::unique_ptr<vtkMediumRayCaster::Scene> vtkMediumRayCaster::MakeScene(
   const bool asSolved = fluence.IsThere() &&
     tyndall::ChosenArray(this, Fluence, image, ArrayNames[Fluence]) == image->GetCellData()->GetArray("fluence");
   const tyndall::MomentsInput moments = asSolved ? tyndall::ReadMoments(image) : tyndall::MomentsInput();
-  const SurfaceValues surface = asSolved ? ReadSurface(image, input.medium.grid) : SurfaceValues();
+  const LightAtFaces faces = asSolved ? LightAtFaces(image, input.medium.grid) : LightAtFaces();
   const tyndall::Illumination illumination = this->ReadIllumination(inputs);
   const bool sky = !illumination.environment.Empty() || illumination.sky != tyndall::Rgb{};
   if (!fluence.IsThere() && illumination.lights.empty() && !input.emission.IsThere() && !(sky && ior.IsThere()))
@@ -277,11 +307,13 @@ std::unique_ptr<vtkMediumRayCaster::Scene> vtkMediumRayCaster::MakeScene(
   scene->grid = input.medium.grid;
   scene->lightsAlone = !fluence.IsThere() && !illumination.lights.empty();
   settings.shadowRays |= scene->lightsAlone;
-  scene->caster = std::make_unique<tyndall::MediumRayCaster>(*key.device, input.medium,
-    tyndall::SolvedLight{ fluence, direct, meanDirection,
-      { surface.values.empty() ? nullptr : surface.values.data(), surface.components }, moments.moments,
-      moments.straightOn, moments.lampsApart },
-    illumination, settings, ior);
+  tyndall::SolvedLight light = { fluence, direct, meanDirection };
+  faces.AddTo(light);
+  light.scatteredMoments = moments.moments;
+  light.straightOn = moments.straightOn;
+  light.lampsApart = moments.lampsApart;
+  scene->caster =
+    std::make_unique<tyndall::MediumRayCaster>(*key.device, input.medium, light, illumination, settings, ior);
   for (const std::string& doubt : scene->caster->Warnings())
   {
     vtkWarningMacro(<< doubt);

@@ -3,6 +3,7 @@
 #include "Device/Defines.h"
 #include "LightPropagation/Sweep/SweepInMemory.h"
 #include "LightPropagation/Uncollided/UncollidedLamp.h"
+#include "Medium/BoxFaces.h"
 #include "Numerics/Constants.h"
 #include "TyndallKernelSources.h"
 
@@ -14,6 +15,7 @@ ChannelArrays::ChannelArrays(Device& device, const OrdinatesScene& scene, const 
   : TheMedium(scene.medium)
   , Voxels(scene.medium.grid.VoxelCount())
   , Layout{ scene.medium.grid, 1, true }
+  , Faces(FaceLightOf(device, scene, angles.groups))
   , TheDevice(device)
   , Scene(scene)
   , Angles(angles)
@@ -48,9 +50,10 @@ Buffer<float> ChannelArrays::Load(const char* what, double absorbed, double scat
   return Buffer<float>(this->TheDevice, Planar(this->Layout, 1, value), what);
 }
 
-std::size_t ChannelArrays::Bytes(std::size_t voxels, bool netFlux)
+std::size_t ChannelArrays::Bytes(const Grid& grid, bool netFlux)
 {
-  return sizeof(float) * voxels * (9 + (netFlux ? 3 : 0)); // three of them for lamps
+  const std::size_t ofVoxels = grid.VoxelCount() * (9 + (netFlux ? 3 : 0)); // three of them for lamps
+  return sizeof(float) * (ofVoxels + 2 * BoxFaceCellCount(grid));
 }
 
 void ChannelArrays::AddLamps(
@@ -71,7 +74,7 @@ void ChannelArrays::AddLamps(
   {
     path.Fill(0.0f);
     const UncollidedVolume volume = { this->TheDevice, this->Layout, sigma_t, periodic, sweeps,
-      { &path, nullptr, nullptr, nullptr } };
+      { &path, nullptr, nullptr, nullptr, this->Faces ? &this->Faces->Out() : nullptr } };
     const Monitor ofLamp = OfPart(monitor, i / all, (i + 1) / all);
     this->CountLamp(UncollidedLamp(this->Scene.lamps[i]).AddTo(volume, ofLamp), result.ledger);
     scattering.Add(this->Scene.lamps[i], path, sigma_s, { source, this->Scale, this->Direct, this->Light });

@@ -8,6 +8,7 @@
 
 #include "Device/Monitor.h"
 
+#include <memory>
 #include <vector>
 
 namespace tyndall
@@ -22,7 +23,7 @@ public:
   ChannelArrays(Device& device, const OrdinatesScene& scene, const OrdinatesAngles& angles, bool netFlux);
 
   /// Bytes that these arrays take on the device.
-  static std::size_t Bytes(std::size_t voxels, bool netFlux);
+  static std::size_t Bytes(const Grid& grid, bool netFlux);
 
   /// Uncollided light of all lamps: counts it, and adds what of it is scattered for the first time.
   /// @param source  of all directions, over Scale
@@ -55,6 +56,7 @@ public:
   Buffer<float> Scale;          ///< of the sources of a voxel, 1 at first
   Buffer<float> Direct;         ///< W / length^2, of lamps
   OrdinatesLight Light;
+  const std::unique_ptr<FaceLight> Faces; ///< null: none reflects
 
 private:
   Buffer<float> Load(const char* what, double absorbed, double scattered) const;

@@ -148,6 +148,16 @@ IncomingRadiance IncomingOf(const FarLight& far, const Illumination& shining, in
            int direction, int face) { return far.radiance[direction][channel] + shining.faces[face][channel]; };
 }
 
+std::array<Rgb, 6> FaceAlbedoOf(const Illumination& shining, int channel)
+{
+  std::array<Rgb, 6> albedo = {};
+  for (int face = 0; face < 6; ++face)
+  {
+    albedo[face].fill(shining.faceAlbedo[face][channel]);
+  }
+  return albedo;
+}
+
 std::vector<Light> LampsOf(const FarLight& far, const Illumination& shining, int channel)
 {
   std::vector<Light> lamps;
@@ -217,6 +227,11 @@ void TakeChannel(LightField& light, const OrdinatesResult& found, int channel)
       light.netFlux[(i * light.channels + channel) * 3 + a] = found.flux[a * voxels + i];
     }
   }
+  light.facePower.resize(std::max(light.facePower.size(), found.facePower.size() * light.channels), 0.0f);
+  for (std::size_t cell = 0; cell < found.facePower.size(); ++cell)
+  {
+    light.facePower[cell * light.channels + channel] = found.facePower[cell];
+  }
   TakePowers(light, found.ledger, channel);
   AddRows(light.convergence, found.convergence, channel == 0);
 }
@@ -241,6 +256,7 @@ std::vector<std::string> Words(const PropagationProblem& problem, const FarLight
         !IncomingOf(far, problem.Shining(), 2),
       left_out::DarkOutside);
     say(problem.Shining().lights.empty() && far.peaks.empty(), left_out::NoLights);
+    say(!Reflects(problem.Shining()), left_out::BlackFaces);
   }
   say(!problem.Settings().netFlux, left_out::NetFlux);
   return words;
@@ -332,7 +348,6 @@ LightField SolveDiscreteOrdinates(Device& device, const Medium& medium, const Il
 {
   Check(settings);
   const PropagationProblem problem(medium, illumination, AsPropagation(settings));
-  RefuseFaceAlbedo(illumination, "Discrete Ordinates");
   const FarLight far = FarLightOf(problem, settings);
   OrdinatesSettings solved = settings;
   solved.periodic = problem.Settings().periodic;
@@ -349,7 +364,7 @@ LightField SolveDiscreteOrdinates(Device& device, const Medium& medium, const Il
       function };
     CheckMemory(device, problem.TheGrid(), angles, settings);
     OrdinatesScene scene = { problem.TheMedium(), c, LampsOf(far, problem.Shining(), c),
-      IncomingOf(far, problem.Shining(), c), {} };
+      IncomingOf(far, problem.Shining(), c), FaceAlbedoOf(problem.Shining(), c), {} };
     if (kept)
     {
       left.kind = c == 0 ? KindOf(problem, angles, settings) : left.kind;
@@ -370,6 +385,7 @@ LightField SolveDiscreteOrdinates(Device& device, const Medium& medium, const Il
     [](float fluence) { return static_cast<float>(fluence / (4.0 * Pi)); });
   light.storedDirections = { { 0.0, 0.0, 0.0 } };
   light.halfRangeFlux = HalfRangeFlux({ 0, false, far.directions });
+  light.faceAlbedo = illumination.faceAlbedo;
   light.device = device.Name();
   if (kept)
   {

@@ -1,7 +1,36 @@
 #include "DiscreteOrdinates/OrdinatesScene.h"
 
+#include "Medium/BoxFaces.h"
+
+#include <algorithm>
+#include <cmath>
+
 namespace tyndall
 {
+std::unique_ptr<FaceLight> FaceLightOf(Device& device, const OrdinatesScene& scene, const OrdinateGroups& groups)
+{
+  if (std::all_of(scene.faceAlbedo.begin(), scene.faceAlbedo.end(), IsBlack))
+  {
+    return nullptr;
+  }
+  const Grid& grid = scene.medium.grid;
+  std::array<double, 6> powerIn = {};
+  for (int g = 0; g < groups.Count(); ++g)
+  {
+    for (int lane = 0; lane < OrdinateLanes; ++lane)
+    {
+      for (int axis = 0; axis < 3; ++axis)
+      {
+        powerIn[EntryFace(axis, groups.All()[g].up[axis])] +=
+          groups.Weight(g, lane) * std::abs(groups.Of(g, lane).omega[axis]) * grid.VoxelVolume() / grid.spacing[axis];
+      }
+    }
+  }
+  std::vector<double> ofCells;
+  ForBoxFaceCells(grid, [&](const BoxFaceCell& cell) { ofCells.push_back(powerIn[cell.face]); });
+  return std::make_unique<FaceLight>(device, grid, 1, std::move(ofCells), scene.faceAlbedo);
+}
+
 void OrdinatesRecord::Add(double goesOn, double more, const EnergyLedger& ledger)
 {
   const EnergyBalance& balance = ledger.Balance();

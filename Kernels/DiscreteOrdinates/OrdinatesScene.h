@@ -4,6 +4,7 @@
 #include "DiscreteOrdinates/UpwindSweep.h"
 #include "Light/LightField.h"
 #include "LightPropagation/Conservative/EnergyLedger.h"
+#include "LightPropagation/Conservative/FaceLight.h"
 #include "LightPropagation/Convergence.h"
 #include "Lights/Lights.h"
 #include "Medium/Medium.h"
@@ -11,6 +12,7 @@
 
 #include "Device/Clock.h"
 
+#include <memory>
 #include <vector>
 
 namespace tyndall
@@ -31,6 +33,7 @@ struct OrdinatesScene
   int channel = 0;
   std::vector<Light> lamps;  ///< of the scene, and the peaks of the environment; power of the channel in all three
   IncomingRadiance incoming; ///< empty: no environment, sky or face shines
+  std::array<Rgb, 6> faceAlbedo = {}; ///< of the channel in all three
   OrdinatesGuess guess;
 };
 
@@ -48,6 +51,7 @@ struct OrdinatesResult
   std::vector<float> fluence, direct; ///< W / length^2
   std::vector<float> flux;            ///< [x, y, z][voxel]; empty: not wanted
   EnergyLedger ledger;                ///< all in channel 0
+  std::vector<float> facePower;       ///< W / length^2, by cell of the box's faces; empty: none reflects
   std::vector<ConvergenceRow> convergence;
   bool diverged = false;
   /// For the next solve, where it is wanted: fluence that was scattered; as published the radiance of all directions.
@@ -55,6 +59,10 @@ struct OrdinatesResult
   double firstScattered = 0.0; ///< W, that the guess is scaled by; as published 1
   double rate = 0.0;           ///< of the last order to the one before
 };
+
+/// What the box's faces give back along the directions of a solve: of what leaves through a cell their albedo, the same
+/// radiance along all that come in (numerics.md, Eq. (D14)). Null: none gives back any.
+std::unique_ptr<FaceLight> FaceLightOf(Device& device, const OrdinatesScene& scene, const OrdinateGroups& groups);
 
 /// Rows of the convergence table, with an estimate of what is still to come from how fast orders become smaller.
 class OrdinatesRecord

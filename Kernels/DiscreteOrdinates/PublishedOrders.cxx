@@ -27,7 +27,7 @@ public:
     : Scene(scene)
     , Settings(settings)
     , Arrays(device, scene, angles, settings.netFlux)
-    , Step(device, scene.medium.grid, angles.groups, settings.periodic, scene.incoming)
+    , Step(device, scene.medium.grid, angles.groups, settings.periodic, scene.incoming, this->Arrays.Faces.get())
     , Scattering(device, angles.groups, angles.phase, SumsOf(settings), false, settings.netFlux, this->Arrays.Voxels)
     , Radiance(device, AngularScattering::Floats(angles.groups, this->Arrays.Voxels), "radiance of all directions")
     , Scattered(device, this->Radiance.Size(), "scattered light of all directions")
@@ -62,6 +62,10 @@ private:
     }
     this->Arrays.AddLamps(this->Steady, this->Settings.periodic, this->Result, monitor);
     this->OfLamps = this->Result.ledger;
+    if (this->Arrays.Faces)
+    {
+      this->LampsThroughCells = this->Arrays.Faces->TakeOut();
+    }
     this->LampFluence = this->Arrays.Direct.Read();
     this->LampFlux = this->Arrays.Light.flux.Read();
     this->Fluence.assign(this->Arrays.Voxels, 0.0f);
@@ -71,6 +75,27 @@ private:
       return;
     }
     this->Radiance.Write(this->Scene.guess.values.data());
+  }
+
+  /// What leaves the box now comes back with the next step.
+  void Reflect()
+  {
+    if (!this->Arrays.Faces)
+    {
+      return;
+    }
+    FaceLight& faces = *this->Arrays.Faces;
+    this->Step.LeaveByCells(this->Radiance);
+    const std::vector<float> swept = faces.TakeOut();
+    this->ThroughCells.resize(swept.size());
+    std::vector<double> back(swept.size());
+    for (std::size_t i = 0; i < swept.size(); ++i)
+    {
+      this->ThroughCells[i] = static_cast<double>(swept[i]) + this->LampsThroughCells[i];
+      back[i] = faces.Albedo()[faces.FaceOf(i)][0] * this->ThroughCells[i];
+    }
+    faces.LetIn(back, std::vector<double>(back.size(), 0.0));
+    this->Returned = faces.PowerOfFaces(back);
   }
 
   void StepOnce(const Monitor& monitor)
@@ -88,6 +113,7 @@ private:
     this->Fluence = now;
     this->Change = change;
     this->Result.ledger = this->OfLamps;
+    this->Reflect();
     this->CountSteady();
     this->Record.Add(change, this->Result.ledger);
     if (this->Record.All().size() == 1 && !this->Scene.guess.values.empty())
@@ -112,7 +138,7 @@ private:
     for (int face = 0; face < 6; ++face)
     {
       this->Result.ledger.Enter(0, powers.in[face]);
-      this->Result.ledger.Escape(0, face, powers.out[face]);
+      this->Result.ledger.Escape(0, face, powers.out[face] - this->Returned[face][0]);
     }
     this->Result.ledger.Absorb(0,
       this->Arrays.PowersOf(this->Fluence, false).absorbed + this->Arrays.PowersOf(this->LampFluence, true).absorbed);
@@ -132,6 +158,10 @@ private:
 
   void Finish()
   {
+    if (this->Arrays.Faces)
+    {
+      this->Result.facePower = this->Arrays.Faces->PerArea(this->ThroughCells);
+    }
     if (this->Settings.netFlux)
     {
       this->Arrays.Light.flux.Fill(0.0f); // of all steps
@@ -164,7 +194,10 @@ private:
   AngularScattering Scattering;
   Buffer<float> Radiance, Scattered, Steady;
   std::vector<float> Fluence, LampFluence, LampFlux;
-  EnergyLedger OfLamps; ///< and of emission
+  std::vector<float> LampsThroughCells; ///< W
+  std::vector<double> ThroughCells;     ///< W, with what leaves now
+  std::array<Rgb, 6> Returned = {};     ///< W
+  EnergyLedger OfLamps;                 ///< and of emission
   OrdinatesRecord Record;
   OrdinatesResult Result;
   double Change = 0.0, FirstChange = 0.0;
@@ -181,7 +214,7 @@ std::size_t BytesOfPublishedOrders(const Grid& grid, const OrdinatesAngles& angl
 {
   const std::size_t voxels = grid.VoxelCount();
   return 3 * sizeof(float) * AngularScattering::Floats(angles.groups, voxels) +
-    ChannelArrays::Bytes(voxels, settings.netFlux) +
+    ChannelArrays::Bytes(grid, settings.netFlux) +
     AngularScattering::Bytes(angles.groups, angles.phase.Terms(), SumsOf(settings), voxels);
 }
 

@@ -1,5 +1,7 @@
 // One explicit step of the radiance along all directions, as published (Gong et al., Eqs. (7) and (9)). Radiance is
 // [group][stride][8 directions].
+//
+//   FACE_IN  1 where faces give back light, by cell
 
 // What is carried one step on: L + h (Q - sigma_t L + S).
 //   scattered  S, W / (length^3 sr)
@@ -13,12 +15,24 @@ __kernel void change_radiance(__global float* radiance, const __global float* sc
   *light += step * (gain - sigma_t[i] * *light);
 }
 
+// The cell, among all of the box's faces, beside a voxel at the face that light comes in through along an axis.
+inline ulong cell_of(const int at[3], const int n[3], int axis, int up)
+{
+  const ulong of_x = (ulong)n[1] * n[2], of_y = (ulong)n[0] * n[2], of_z = (ulong)n[0] * n[1];
+  const ulong first = axis == 0 ? 0 : axis == 1 ? 2 * of_x : 2 * (of_x + of_y);
+  const ulong size = axis == 0 ? of_x : axis == 1 ? of_y : of_z;
+  const ulong within = axis == 0 ? (ulong)at[2] * n[1] + at[1] : (ulong)at[axis == 1 ? 2 : 1] * n[0] + at[0];
+  return first + (up ? 0 : size) + within;
+}
+
 // Each voxel takes what stood one step upwind, linear between the eight nearest voxels.
 //   parts     [group][3][8]: the step along each axis in voxels, 0 to 1
 //   up        [group][3]: whether the group goes up an axis
 //   incoming  [group][3][8]: radiance outside the box, by the axis along which it is left
+//   face_in   radiance that is given back, by cell of the box's faces; where FACE_IN
 __kernel void move_on(const __global float* before, __global float* after, const __global float* parts,
-  const __global int* up, const __global float* incoming, int nx, int ny, int nz, ulong stride, int periodic)
+  const __global int* up, const __global float* incoming, const __global float* face_in, int nx, int ny, int nz,
+  ulong stride, int periodic)
 {
   const int group = get_global_id(1);
   const ulong i = get_global_id(0);
@@ -32,6 +46,10 @@ __kernel void move_on(const __global float* before, __global float* after, const
     float8 weight = (float8)1.0f;
     int from[3];
     int left = -1; // the axis
+#if FACE_IN
+    float8 light = (float8)0.0f; // beyond the box, of all axes along which it is left
+    int beyond_axes = 0;
+#endif
     for (int a = 0; a < 3; ++a)
     {
       const int upwind = corner >> a & 1;
@@ -39,10 +57,22 @@ __kernel void move_on(const __global float* before, __global float* after, const
       from[a] = at[a] - (up[3 * group + a] ? upwind : -upwind);
       const bool beyond = from[a] < 0 || from[a] >= n[a];
       left = beyond && !(periodic >> a & 1) ? a : left;
+#if FACE_IN
+      if (beyond && !(periodic >> a & 1))
+      {
+        light += outside[a] + (float8)face_in[cell_of(at, n, a, up[3 * group + a])];
+        ++beyond_axes;
+      }
+#endif
       from[a] += from[a] < 0 ? n[a] : from[a] >= n[a] ? -n[a] : 0;
     }
     const ulong voxel = ((ulong)from[2] * ny + from[1]) * nx + from[0];
+#if FACE_IN
+    light = beyond_axes > 0 ? light / (float)beyond_axes : ((const __global float8*)before)[group * stride + voxel];
+    sum += weight * light;
+#else
     sum += weight * (left >= 0 ? outside[left] : ((const __global float8*)before)[group * stride + voxel]);
+#endif
   }
   ((__global float8*)after)[group * stride + i] = sum;
 }
@@ -60,4 +90,26 @@ __kernel void sum_leaving(const __global float* radiance, __global float* sums, 
     sum += ((const __global float8*)radiance)[group * stride + first + i * along];
   }
   ((__global float8*)sums)[group * rows + row] = sum;
+}
+
+// Adds what leaves through each cell of the two faces of an axis.
+//   out      W, by cell of the box's faces, of which the axis's begin at `low` and `high`
+//   across   [group][3][8]: W that radiance 1 carries through a cell across each axis
+//   last     from a voxel at the low face to that at the high one; rows of cells are `between` apart, cells `along`
+__kernel void leave_by_cells(const __global float* radiance, __global float* out, const __global float* across,
+  const __global int* up, ulong stride, int axis, int groups, ulong last, ulong between, ulong along, ulong low,
+  ulong high)
+{
+  const ulong i = get_global_id(0), j = get_global_id(1), cell = j * get_global_size(0) + i;
+  float8 through_low = (float8)0.0f, through_high = (float8)0.0f;
+  for (int group = 0; group < groups; ++group)
+  {
+    const __global float8* light = (const __global float8*)radiance + group * stride + j * between + i * along;
+    const float8 part = ((const __global float8*)across)[3 * group + axis];
+    through_low += up[3 * group + axis] ? (float8)0.0f : part * light[0];
+    through_high += up[3 * group + axis] ? part * light[last] : (float8)0.0f;
+  }
+  const float4 of_low = through_low.lo + through_low.hi, of_high = through_high.lo + through_high.hi;
+  out[low + cell] += (of_low.x + of_low.y) + (of_low.z + of_low.w);
+  out[high + cell] += (of_high.x + of_high.y) + (of_high.z + of_high.w);
 }

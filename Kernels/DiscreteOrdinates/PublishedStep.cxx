@@ -1,5 +1,7 @@
 #include "DiscreteOrdinates/PublishedStep.h"
 
+#include "Device/Defines.h"
+#include "Medium/BoxFaces.h"
 #include "TyndallKernelSources.h"
 
 #include <algorithm>
@@ -8,14 +10,15 @@
 namespace tyndall
 {
 PublishedStep::PublishedStep(Device& device, const Grid& grid, const OrdinateGroups& groups,
-  const std::array<bool, 3>& periodic, const IncomingRadiance& incoming)
+  const std::array<bool, 3>& periodic, const IncomingRadiance& incoming, const FaceLight* reflecting)
   : TheDevice(device)
   , TheGrid(grid)
   , Groups(groups)
   , Periodic(periodic)
   , Step(*std::min_element(grid.spacing.begin(), grid.spacing.end()))
+  , Reflecting(reflecting)
 {
-  std::vector<float> parts, outside;
+  std::vector<float> parts, outside, across;
   std::vector<cl_int> up;
   for (int g = 0; g < groups.Count(); ++g)
   {
@@ -29,6 +32,7 @@ PublishedStep::PublishedStep(Device& device, const Grid& grid, const OrdinateGro
         const double radiance = incoming && !periodic[a] ? incoming(groups.All()[g].direction[lane], face) : 0.0;
         const double area = grid.VoxelVolume() / grid.spacing[a];
         this->Entering[face] += groups.Weight(g, lane) * along * radiance * area * grid.VoxelCount() / grid.size[a];
+        across.push_back(static_cast<float>(groups.Weight(g, lane) * along * area));
         parts.push_back(static_cast<float>(along * this->Step / grid.spacing[a]));
         outside.push_back(static_cast<float>(radiance));
       }
@@ -36,12 +40,13 @@ PublishedStep::PublishedStep(Device& device, const Grid& grid, const OrdinateGro
   }
   this->Parts = Buffer<float>(device, parts, "the directions");
   this->Incoming = Buffer<float>(device, outside, "light through the faces");
+  this->Across = Buffer<float>(device, across, "the directions");
   this->Up = Buffer<cl_int>(device, up, "the directions");
 }
 
 cl::Kernel PublishedStep::Kernel(const char* name) const
 {
-  return this->TheDevice.Kernel(name, kernel_source::PublishedStep);
+  return this->TheDevice.Kernel(name, kernel_source::PublishedStep, Define("FACE_IN", this->Reflecting != nullptr));
 }
 
 void PublishedStep::Apply(const Buffer<float>& radiance, const Buffer<float>& scattered, const Buffer<float>& steady,
@@ -54,7 +59,8 @@ void PublishedStep::Apply(const Buffer<float>& radiance, const Buffer<float>& sc
   this->TheDevice.Queue().enqueueNDRangeKernel(change, cl::NullRange, all);
   const std::array<int, 3>& n = this->TheGrid.size;
   const int periodic = this->Periodic[0] + 2 * this->Periodic[1] + 4 * this->Periodic[2];
-  With(move, radiance, after, this->Parts, this->Up, this->Incoming, n[0], n[1], n[2],
+  const Buffer<float>& faceIn = this->Reflecting ? this->Reflecting->In() : this->Incoming;
+  With(move, radiance, after, this->Parts, this->Up, this->Incoming, faceIn, n[0], n[1], n[2],
     cl_ulong(OrdinateStride(this->TheGrid.VoxelCount())), periodic);
   this->TheDevice.Queue().enqueueNDRangeKernel(move, cl::NullRange, all);
   this->TheDevice.Finish();
@@ -89,5 +95,26 @@ FacePowers PublishedStep::Powers(const Buffer<float>& radiance) const
     }
   }
   return powers;
+}
+
+void PublishedStep::LeaveByCells(const Buffer<float>& radiance) const
+{
+  const Grid& grid = this->TheGrid;
+  const std::array<std::size_t, 3> strides = grid.Strides();
+  cl::Kernel leave = this->Kernel("leave_by_cells");
+  for (int axis = 0; axis < 3; ++axis)
+  {
+    if (this->Periodic[axis])
+    {
+      continue;
+    }
+    const PlaneAxes across = AcrossAxis(axis);
+    With(leave, radiance, this->Reflecting->Out(), this->Across, this->Up, cl_ulong(OrdinateStride(grid.VoxelCount())),
+      axis, this->Groups.Count(), cl_ulong(strides[axis] * (grid.size[axis] - 1)), cl_ulong(strides[across.v]),
+      cl_ulong(strides[across.u]), cl_ulong(LayoutOfFace(grid, 2 * axis).first),
+      cl_ulong(LayoutOfFace(grid, 2 * axis + 1).first));
+    const cl::NDRange cells(grid.size[across.u], grid.size[across.v]);
+    this->TheDevice.Queue().enqueueNDRangeKernel(leave, cl::NullRange, cells);
+  }
 }
 }

@@ -15,8 +15,10 @@ namespace tyndall
 class PublishedStep
 {
 public:
+  /// @param reflecting  where what leaves is added to by cell, and what is given back comes from; null: no face gives
+  /// back light
   PublishedStep(Device& device, const Grid& grid, const OrdinateGroups& groups, const std::array<bool, 3>& periodic,
-    const IncomingRadiance& incoming);
+    const IncomingRadiance& incoming, const FaceLight* reflecting);
 
   double Length() const { return this->Step; }
   /// @param radiance  becomes scratch
@@ -25,6 +27,8 @@ public:
     const Buffer<float>& sigma_t, const Buffer<float>& after) const;
   /// W through each face.
   FacePowers Powers(const Buffer<float>& radiance) const;
+  /// Adds what leaves through each cell of the faces, where they give back light.
+  void LeaveByCells(const Buffer<float>& radiance) const;
 
 private:
   cl::Kernel Kernel(const char* name) const;
@@ -35,7 +39,8 @@ private:
   std::array<bool, 3> Periodic;
   double Step;
   std::array<double, 6> Entering = {};
-  Buffer<float> Parts, Incoming;
+  const FaceLight* Reflecting;
+  Buffer<float> Parts, Incoming, Across;
   Buffer<cl_int> Up;
 };
 }

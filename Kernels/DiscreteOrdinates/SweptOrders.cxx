@@ -30,7 +30,7 @@ public:
     : Scene(scene)
     , Settings(settings)
     , Arrays(device, scene, angles, settings.netFlux)
-    , Sweep(device, scene.medium.grid, angles.groups, settings.periodic)
+    , Sweep(device, scene.medium.grid, angles.groups, settings.periodic, this->Arrays.Faces.get())
     , Scattering(device, angles.groups, angles.phase, SumsOf(settings), CanBeNegative(angles, settings),
         settings.netFlux, this->Arrays.Voxels)
     , Radiance(device, AngularScattering::Floats(angles.groups, this->Arrays.Voxels), "radiance of all directions")
@@ -52,6 +52,10 @@ public:
         monitor ? Monitor([&](double) { return monitor(std::clamp(0.1 + 0.9 * done, 0.1, 0.99)); }) : Monitor());
     }
     this->Arrays.Read(this->Result);
+    if (this->Arrays.Faces)
+    {
+      this->Result.facePower = this->Arrays.Faces->PerArea(this->Arrays.Faces->LeftInAll());
+    }
     this->Leave();
     this->Result.convergence = std::move(this->Record.All());
     return std::move(this->Result);
@@ -128,9 +132,12 @@ private:
       guessed = this->Arrays.PowersOf(this->Guess, false).scattered;
       this->Arrays.ScatterEvenly(this->Guess, -1.0, this->Out());
     }
+    this->Reflect();
     this->Result.ledger.Absorb(0, powers.absorbed);
-    this->Result.ledger.LeaveOver(0, powers.scattered - guessed + this->OnTheWay + this->Arrays.Stranded());
-    this->GoesOn = this->Arrays.MagnitudeOf(found, this->Guess) + std::abs(this->OnTheWay);
+    this->Result.ledger.LeaveOver(
+      0, powers.scattered - guessed + this->OnTheWay + this->Reflected + this->Arrays.Stranded());
+    const double reflected = this->Arrays.Faces ? this->Arrays.Faces->Magnitude()[0] : 0.0;
+    this->GoesOn = this->Arrays.MagnitudeOf(found, this->Guess) + std::abs(this->OnTheWay) + reflected;
     this->Record.Add(this->GoesOn, powers.scattered, this->Result.ledger);
     this->Guess.clear();
   }
@@ -170,10 +177,27 @@ private:
     this->Source.Fill(0.0f);
   }
 
+  /// What faces give back of the light that left in this order, and of lamps before, has not left.
+  void Reflect()
+  {
+    if (!this->Arrays.Faces)
+    {
+      return;
+    }
+    const std::array<Rgb, 6> back = this->Arrays.Faces->Reflect();
+    this->Reflected = 0.0;
+    for (int face = 0; face < 6; ++face)
+    {
+      this->Reflected += back[face][0];
+      this->Result.ledger.Escape(0, face, -back[face][0]);
+    }
+  }
+
   void Count(const ChannelArrays::Powers& swept, const ChannelArrays::Powers& ofLamps)
   {
+    this->Reflect();
     this->Result.ledger.Absorb(0, swept.absorbed + ofLamps.absorbed);
-    this->GoesOn = swept.scattered + ofLamps.scattered + this->OnTheWay;
+    this->GoesOn = swept.scattered + ofLamps.scattered + this->OnTheWay + this->Reflected;
     this->Result.ledger.LeaveOver(0, this->GoesOn + this->Arrays.Stranded());
     this->Record.Add(this->GoesOn, this->Result.ledger);
   }
@@ -198,8 +222,8 @@ private:
   Buffer<float> Radiance, Source; ///< Source: empty where scattering works in place
   OrdinatesRecord Record;
   OrdinatesResult Result;
-  std::vector<float> Guess;            ///< W / length^2, until it is taken away again
-  double GoesOn = 0.0, OnTheWay = 0.0; ///< W
+  std::vector<float> Guess;                             ///< W / length^2, until it is taken away again
+  double GoesOn = 0.0, OnTheWay = 0.0, Reflected = 0.0; ///< W
 };
 }
 
@@ -219,7 +243,7 @@ std::size_t BytesOfSweptOrders(const Grid& grid, const OrdinatesAngles& angles, 
   const std::size_t voxels = grid.VoxelCount();
   const std::size_t radiance = AngularScattering::Floats(angles.groups, voxels) * sizeof(float);
   const PairSums sums = SumsOf(settings);
-  return radiance * (sums == PairSums::Terms ? 1 : 2) + ChannelArrays::Bytes(voxels, settings.netFlux) +
+  return radiance * (sums == PairSums::Terms ? 1 : 2) + ChannelArrays::Bytes(grid, settings.netFlux) +
     AngularScattering::Bytes(angles.groups, angles.phase.Terms(), sums, voxels) +
     UpwindSweep::Bytes(grid, angles.groups);
 }

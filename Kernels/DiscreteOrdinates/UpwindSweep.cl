@@ -118,6 +118,36 @@ __kernel void fill_face(__global float* face, const __global float* values, int 
   ((__global float8*)face)[i] = ((const __global float8*)values)[i / count];
 }
 
+// Adds what the cells of the two faces of an axis give back, along every direction that comes in through them.
+//   face       [group][cell][8], as in fill_face
+//   in         radiance, by cell of the box's faces, of which the axis's begin at `low` and `high`
+__kernel void enter_by_cells(
+  __global float* face, const __global float* in, const __global int* up, int axis, ulong low, ulong high)
+{
+  const ulong cell = get_global_id(0), cells = get_global_size(0), group = get_global_id(1);
+  ((__global float8*)face)[group * cells + cell] += (float8)in[(up[3 * group + axis] ? low : high) + cell];
+}
+
+// Adds what leaves through each cell of the two faces of an axis.
+//   out     W, by cell of the box's faces
+//   across  [group][3][8]: W that radiance 1 carries through a cell across each axis
+__kernel void leave_by_cells(const __global float* face, __global float* out, const __global float* across,
+  const __global int* up, int axis, int groups, ulong low, ulong high)
+{
+  const ulong cell = get_global_id(0), cells = get_global_size(0);
+  float8 through_low = (float8)0.0f, through_high = (float8)0.0f;
+  for (int group = 0; group < groups; ++group)
+  {
+    const float8 power =
+      ((const __global float8*)face)[group * cells + cell] * ((const __global float8*)across)[3 * group + axis];
+    through_low += up[3 * group + axis] ? (float8)0.0f : power;
+    through_high += up[3 * group + axis] ? power : (float8)0.0f;
+  }
+  const float4 of_low = through_low.lo + through_low.hi, of_high = through_high.lo + through_high.hi;
+  out[low + cell] += (of_low.x + of_low.y) + (of_low.z + of_low.w);
+  out[high + cell] += (of_high.x + of_high.y) + (of_high.z + of_high.w);
+}
+
 // Adds the same source in all directions.
 __kernel void add_even_source(__global float* radiance, const __global float* source, ulong stride)
 {

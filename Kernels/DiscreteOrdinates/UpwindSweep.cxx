@@ -2,6 +2,7 @@
 
 #include "Device/Batches.h"
 #include "Device/Defines.h"
+#include "Medium/BoxFaces.h"
 #include "TyndallKernelSources.h"
 
 #include <algorithm>
@@ -24,12 +25,13 @@ double FaceArea(const Grid& grid, int axis)
 }
 }
 
-UpwindSweep::UpwindSweep(
-  Device& device, const Grid& grid, const OrdinateGroups& groups, const std::array<bool, 3>& periodic)
+UpwindSweep::UpwindSweep(Device& device, const Grid& grid, const OrdinateGroups& groups,
+  const std::array<bool, 3>& periodic, const FaceLight* reflecting)
   : TheDevice(device)
   , TheGrid(grid)
   , Groups(groups)
   , Periodic(periodic)
+  , Reflecting(reflecting)
 {
   for (int axis = 0; axis < 3; ++axis)
   {
@@ -58,11 +60,12 @@ void UpwindSweep::LoadDirections()
 {
   const std::array<double, 3>& h = this->TheGrid.spacing;
   const double longest = LongestChord * *std::max_element(h.begin(), h.end());
-  std::vector<float> shares;
+  std::vector<float> shares, across;
   std::vector<cl_int> up;
   for (int g = 0; g < this->Groups.Count(); ++g)
   {
     std::array<std::array<float, OrdinateLanes>, 4> of;
+    std::array<std::array<float, OrdinateLanes>, 3> powers;
     for (int lane = 0; lane < OrdinateLanes; ++lane)
     {
       std::array<double, 3> crossed = {}; // faces along each axis, a unit length
@@ -73,6 +76,8 @@ void UpwindSweep::LoadDirections()
       const double all = std::max(crossed[0] + crossed[1] + crossed[2], 1.0 / longest);
       for (int a = 0; a < 3; ++a)
       {
+        const double areaAcross = std::abs(this->Groups.Of(g, lane).omega[a]) * FaceArea(this->TheGrid, a);
+        powers[a][lane] = static_cast<float>(this->Groups.Weight(g, lane) * areaAcross);
         of[a][lane] = static_cast<float>(crossed[a] / all);
       }
       of[3][lane] = static_cast<float>(1.0 / all);
@@ -81,10 +86,15 @@ void UpwindSweep::LoadDirections()
     {
       shares.insert(shares.end(), values.begin(), values.end());
     }
+    for (const auto& values : powers)
+    {
+      across.insert(across.end(), values.begin(), values.end());
+    }
     const std::array<bool, 3>& way = this->Groups.All()[g].up;
     up.insert(up.end(), way.begin(), way.end());
   }
   this->Shares = Buffer<float>(this->TheDevice, shares, "the directions");
+  this->Across = Buffer<float>(this->TheDevice, across, "the directions");
   this->Up = Buffer<cl_int>(this->TheDevice, up, "the directions");
 }
 
@@ -110,7 +120,35 @@ FacePowers UpwindSweep::Apply(const Buffer<float>& radiance, const Buffer<float>
       sweep, cl::NullRange, cl::NDRange(this->Groups.Lanes() / width), cl::NDRange(1));
   });
   this->Count(powers);
+  if (this->Reflecting)
+  {
+    this->LeaveByCells();
+  }
   return powers;
+}
+
+void UpwindSweep::EnterByCells(int axis) const
+{
+  cl::Kernel enter = this->Kernel("enter_by_cells");
+  const std::size_t cells = FaceVoxels(this->TheGrid, axis);
+  With(enter, this->Faces[axis], this->Reflecting->In(), this->Up, axis,
+    cl_ulong(LayoutOfFace(this->TheGrid, 2 * axis).first), cl_ulong(LayoutOfFace(this->TheGrid, 2 * axis + 1).first));
+  this->TheDevice.Queue().enqueueNDRangeKernel(enter, cl::NullRange, cl::NDRange(cells, this->Groups.Count()));
+}
+
+void UpwindSweep::LeaveByCells() const
+{
+  cl::Kernel leave = this->Kernel("leave_by_cells");
+  for (int axis = 0; axis < 3; ++axis)
+  {
+    if (this->Periodic[axis])
+    {
+      continue;
+    }
+    With(leave, this->Faces[axis], this->Reflecting->Out(), this->Across, this->Up, axis, this->Groups.Count(),
+      cl_ulong(LayoutOfFace(this->TheGrid, 2 * axis).first), cl_ulong(LayoutOfFace(this->TheGrid, 2 * axis + 1).first));
+    this->TheDevice.Queue().enqueueNDRangeKernel(leave, cl::NullRange, cl::NDRange(FaceVoxels(this->TheGrid, axis)));
+  }
 }
 
 /// Of a periodic face nothing: what left the other side is in its place already.
@@ -118,33 +156,44 @@ void UpwindSweep::LetIn(const IncomingRadiance& incoming, FacePowers& powers)
 {
   for (int axis = 0; axis < 3; ++axis)
   {
-    const std::size_t voxels = FaceVoxels(this->TheGrid, axis);
     if (this->Periodic[axis])
     {
       continue;
     }
-    if (!incoming)
+    if (incoming)
+    {
+      this->FillFace(axis, incoming, powers);
+    }
+    else
     {
       this->Faces[axis].Fill(0.0f);
-      continue;
     }
-    const std::vector<float> values = this->Groups.Table([&](int g, int lane) {
-      const OrdinateGroup& group = this->Groups.All()[g];
-      return incoming(group.direction[lane], 2 * axis + (group.up[axis] ? 0 : 1));
-    });
-    for (std::size_t i = 0; i < values.size(); ++i)
+    if (this->Reflecting)
     {
-      const int g = static_cast<int>(i / OrdinateLanes), lane = i % OrdinateLanes;
-      const double across = this->Groups.Weight(g, lane) * std::abs(this->Groups.Of(g, lane).omega[axis]);
-      powers.in[2 * axis + (this->Groups.All()[g].up[axis] ? 0 : 1)] +=
-        across * values[i] * FaceArea(this->TheGrid, axis) * static_cast<double>(voxels);
+      this->EnterByCells(axis);
     }
-    const Buffer<float> table(this->TheDevice, values, "light through the faces");
-    cl::Kernel fill = this->Kernel("fill_face");
-    With(fill, this->Faces[axis], table, cl_int(voxels));
-    this->TheDevice.Queue().enqueueNDRangeKernel(fill, cl::NullRange, cl::NDRange(this->Groups.Count() * voxels));
-    this->TheDevice.Finish(); // the table goes
   }
+}
+
+void UpwindSweep::FillFace(int axis, const IncomingRadiance& incoming, FacePowers& powers)
+{
+  const std::size_t voxels = FaceVoxels(this->TheGrid, axis);
+  const std::vector<float> values = this->Groups.Table([&](int g, int lane) {
+    const OrdinateGroup& group = this->Groups.All()[g];
+    return incoming(group.direction[lane], 2 * axis + (group.up[axis] ? 0 : 1));
+  });
+  for (std::size_t i = 0; i < values.size(); ++i)
+  {
+    const int g = static_cast<int>(i / OrdinateLanes), lane = i % OrdinateLanes;
+    const double across = this->Groups.Weight(g, lane) * std::abs(this->Groups.Of(g, lane).omega[axis]);
+    powers.in[2 * axis + (this->Groups.All()[g].up[axis] ? 0 : 1)] +=
+      across * values[i] * FaceArea(this->TheGrid, axis) * static_cast<double>(voxels);
+  }
+  const Buffer<float> table(this->TheDevice, values, "light through the faces");
+  cl::Kernel fill = this->Kernel("fill_face");
+  With(fill, this->Faces[axis], table, cl_int(voxels));
+  this->TheDevice.Queue().enqueueNDRangeKernel(fill, cl::NullRange, cl::NDRange(this->Groups.Count() * voxels));
+  this->TheDevice.Finish(); // the table goes
 }
 
 void UpwindSweep::Count(FacePowers& powers) const

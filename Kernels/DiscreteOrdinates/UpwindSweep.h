@@ -3,6 +3,7 @@
 #include "Device/Buffer.h"
 #include "Device/Monitor.h"
 #include "DiscreteOrdinates/OrdinateGroups.h"
+#include "LightPropagation/Conservative/FaceLight.h"
 #include "Medium/Grid.h"
 
 #include <array>
@@ -32,13 +33,17 @@ class UpwindSweep
 public:
   /// @param periodic  light that leaves along an axis comes in on the other side in the next sweep. Along periodic axes
   /// of one voxel nothing changes, and none is carried.
-  UpwindSweep(Device& device, const Grid& grid, const OrdinateGroups& groups, const std::array<bool, 3>& periodic);
+  /// @param reflecting  where what leaves is added to by cell, and what is given back comes from; null: no face gives
+  /// back light
+  UpwindSweep(Device& device, const Grid& grid, const OrdinateGroups& groups, const std::array<bool, 3>& periodic,
+    const FaceLight* reflecting);
 
   /// Bytes that the faces take on the device.
   static std::size_t Bytes(const Grid& grid, const OrdinateGroups& groups);
 
   /// @param radiance  source over `scale`, W / (length^3 sr); becomes the mean radiance, W / (length^2 sr)
-  /// @param incoming  empty: nothing
+  /// @param incoming  empty: nothing but what faces give back
+  /// @return what leaves, before faces give back their part, and what comes in beside that
   FacePowers Apply(const Buffer<float>& radiance, const Buffer<float>& sigma_t, const Buffer<float>& scale,
     const IncomingRadiance& incoming, const Monitor& monitor);
 
@@ -47,6 +52,9 @@ private:
   std::array<int, 2> FaceSize(int axis) const; ///< rows of a group, voxels of a row
   void LoadDirections();
   void LetIn(const IncomingRadiance& incoming, FacePowers& powers);
+  void FillFace(int axis, const IncomingRadiance& incoming, FacePowers& powers);
+  void EnterByCells(int axis) const;
+  void LeaveByCells() const;
   void Count(FacePowers& powers) const;
   cl::Kernel Kernel(const char* name, int width = 8) const;
 
@@ -54,7 +62,8 @@ private:
   Grid TheGrid;
   const OrdinateGroups& Groups;
   std::array<bool, 3> Periodic;
-  Buffer<float> Shares;
+  const FaceLight* Reflecting;
+  Buffer<float> Shares, Across;
   Buffer<cl_int> Up;
   std::array<Buffer<float>, 3> Faces, Sums;
 };

@@ -67,6 +67,7 @@ struct LightField
   /// W / length^2 that leave through the cells of the box's faces, [cell][channel] (BoxFaces.h), before a face gives
   /// back its part; empty: not asked for, and no face reflects.
   std::vector<float> facePower;
+  std::array<Rgb, 6> faceAlbedo = {}; ///< part of facePower that comes back (Illumination::faceAlbedo)
   /// Of the directions that light from outside came along (DirectionSet.h); 0: there are none.
   double halfRangeFlux = 0.0;
   std::vector<ConvergenceRow> convergence;

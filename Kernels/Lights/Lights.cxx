@@ -222,7 +222,7 @@ void RefuseFaceAlbedo(const Illumination& illumination, const char* solver)
   {
     throw InvalidInput(std::string(solver) +
       " cannot give back light that leaves through a face (FaceAlbedo). Set FaceAlbedo to 0, or choose Light "
-      "Propagation Maps with the conservative scheme.");
+      "Propagation Maps with the conservative scheme, or Discrete Ordinates.");
   }
 }
 

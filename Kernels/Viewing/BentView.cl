@@ -8,6 +8,7 @@
 #include "Viewing/Background.cl"
 #include "Viewing/BentRays.cl"
 #include "Viewing/Crossing.cl"
+#include "Viewing/GroundLight.cl"
 #include "Viewing/RayPackets.cl"
 #include "Viewing/Sampling.cl"
 #include "Viewing/SurfaceReflection.cl"
@@ -56,7 +57,8 @@ inline int send_off(const waiting* next, ray_packets* t, light* l)
 // What a march comes to: background, or table. Rays that did not find out see the background as if the index were there
 // what it is at their entry.
 inline void arrive(const surroundings* s, const ray_packets* t, integer set_off, int primary,
-  __global const float4* lit, __global const float4* environment, crossed* half_way, seeing* to)
+  __global const float4* lit, __global const float4* environment, __global const float4* ground, crossed* half_way,
+  seeing* to)
 {
   const integer out = set_off & (t->inside == 0);
   const real3 world = stretched(t->velocity, s->o->spacing);
@@ -69,8 +71,9 @@ inline void arrive(const surroundings* s, const ray_packets* t, integer set_off,
 #endif
   real part = (real)1.0f;
   real left = mean_left(to->l);
+  integer ends = (integer)0;
 #if TABLE
-  const integer ends = meet_table(s, t, out);
+  ends = meet_table(s, t, out);
   if (any_lane(ends))
   {
     end_on_table(s, lit, t->at, ends, &to->l, &towards);
@@ -91,7 +94,11 @@ inline void arrive(const surroundings* s, const ray_packets* t, integer set_off,
     to->left = left;
     to->depth = left > (real)0.5f ? (real)s->v->marching.z : distance_to_half(*half_way);
   }
-  add_background(look_behind(s->v, towards, environment), part * (real)s->v->background.w / square, &to->l);
+  rgb behind = look_behind(s->v, towards, environment);
+#if GROUND
+  behind = ground_or_behind(ground, kept_within(t->at, s->v->size), t->velocity, out & (ends == 0), s->v->size, behind);
+#endif
+  add_background(behind, part * (real)s->v->background.w / square, &to->l);
 }
 
 // lit      what a white table shines by n^2, a float4 a voxel with a border
@@ -101,8 +108,8 @@ __kernel void cast_bent_rays(ViewInfo v, OpticsInfo o, __global const float4* re
   __global const float4* restrict glow, __global const float4* restrict cosines,
   __global const float* restrict phase_rows, __global const float4* restrict bending,
   __global const float4* restrict lit, __global const char* restrict bricks,
-  __global const float4* restrict environment, __global float* restrict radiance, __global float* restrict alpha,
-  __global float* restrict depth)
+  __global const float4* restrict environment, __global const float4* restrict ground,
+  __global float* restrict radiance, __global float* restrict alpha, __global float* restrict depth)
 {
   const int column = (get_global_id(0) + v.picture.w) * PACKET_WIDTH;
   const int row = (get_global_id(1) + v.picture.z) * PACKET_HEIGHT;
@@ -132,7 +139,7 @@ __kernel void cast_bent_rays(ViewInfo v, OpticsInfo o, __global const float4* re
     }
     const integer set_off = t.inside;
     march(&s, &t, &to.l, &half_way, &w);
-    arrive(&s, &t, set_off, pass == 0, lit, environment, &half_way, &to);
+    arrive(&s, &t, set_off, pass == 0, lit, environment, ground, &half_way, &to);
   }
   to.l.radiance.r *= to.entrySquare;
   to.l.radiance.g *= to.entrySquare;

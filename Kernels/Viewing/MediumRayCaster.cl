@@ -5,6 +5,7 @@
 
 #include "Viewing/Background.cl"
 #include "Viewing/Crossing.cl"
+#include "Viewing/GroundLight.cl"
 #include "Viewing/Sampling.cl"
 #include "Viewing/SurfaceLight.cl"
 #include "Viewing/View.cl"
@@ -13,8 +14,9 @@ __kernel void cast_rays(ViewInfo v, __global const float4* restrict samples,
   __global const float4* restrict extinctions, __global const float4* restrict flow,
   __global const float4* restrict glow, __global const float4* restrict cosines,
   __global const float* restrict phase_rows, __global const char* restrict bricks,
-  __global const float4* restrict environment, __global const float4* restrict surface,
-  __global float* restrict radiance, __global float* restrict alpha, __global float* restrict depth)
+  __global const float4* restrict environment, __global const float4* restrict ground,
+  __global const float4* restrict surface, __global float* restrict radiance, __global float* restrict alpha,
+  __global float* restrict depth)
 {
   const int column = (get_global_id(0) + v.picture.w) * PACKET_WIDTH;
   const int row = (get_global_id(1) + v.picture.z) * PACKET_HEIGHT;
@@ -77,7 +79,12 @@ __kernel void cast_rays(ViewInfo v, __global const float4* restrict samples,
 #if SURFACE_LIGHT
   add_surface_light(surface_light(surface, packet, seen.d, before, v.size), &l);
 #endif
-  add_background(look_behind(&v, seen.d, environment), (real)v.background.w, &l);
+  rgb behind = look_behind(&v, seen.d, environment);
+#if GROUND
+  behind =
+    ground_or_behind(ground, along(packet, packet.length), direction, packet.length > (real)0.0f, v.size, behind);
+#endif
+  add_background(behind, (real)v.background.w, &l);
   const real where = left > (real)0.5f ? (real)v.marching.z : (distance_to_half(half_way) + before) * seen.cosine;
   const canvas picture = { radiance, alpha, depth };
   paint(&v, picture, column, row, l.radiance, (real)1.0f - left, where);

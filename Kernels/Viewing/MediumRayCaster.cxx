@@ -12,6 +12,7 @@
 #include "TyndallKernelSources.h"
 #include "Viewing/Aureole.h"
 #include "Viewing/Bricks.h"
+#include "Viewing/GroundLight.h"
 #include "Viewing/SurfaceLight.h"
 #include "Viewing/ViewChecks.h"
 #include "Viewing/ViewLights.h"
@@ -149,6 +150,7 @@ MediumRayCaster::MediumRayCaster(Device& device, const Medium& medium, const Sol
   {
     this->PrepareTable(light, ior);
   }
+  this->PrepareGround(light);
   this->PrepareSurface(medium, light);
   this->SayWhatIsLeftOut();
 }
@@ -246,6 +248,13 @@ void MediumRayCaster::PrepareTable(const SolvedLight& light, const Field& ior)
     "light on the table");
 }
 
+void MediumRayCaster::PrepareGround(const SolvedLight& light)
+{
+  this->FacesOfGround = this->Settings.showBackground ? GroundFaces(light) : 0;
+  this->Ground = Buffer<cl_float4>(this->TheDevice,
+    this->FacesOfGround != 0 ? GroundLight(this->TheGrid, light) : std::vector<cl_float4>(), "light on the ground");
+}
+
 void MediumRayCaster::PrepareSurface(const Medium& medium, const SolvedLight& light)
 {
   const bool plain = !this->Settings.singleScatteringOnly && this->LightCount == 0 && !this->KnowsFlow &&
@@ -323,6 +332,7 @@ void MediumRayCaster::SayWhatIsLeftOut()
       : "surface reflection: no refractive index is as large "
         "as the surface's, or none is smaller");
   omit(this->Settings.tableFace >= 0, "table: none");
+  omit(this->FacesOfGround != 0, "ground: no face of the box gives back light, or it is not shown");
   omit(this->Surface.Size() > 0,
     "light at the surface: no thick voxels at the faces of the box, or it is not known there");
 }
@@ -623,8 +633,9 @@ std::string MediumRayCaster::CastingOptions(Packing what) const
     *std::max_element(this->TheGrid.spacing.begin(), this->TheGrid.spacing.end());
   return Define("REAL_WIDTH", this->PacketWidth()) + Define("COLOURED", this->Coloured) + Define("GREY", this->Grey) +
     Define("SKIP_BRICKS", this->SkipsBricks()) + Define("ENVIRONMENT", this->EnvironmentSize[0] > 0) +
-    Define("THIN_STEPS", longest <= (this->Bends ? 1.5 : 2.0)) + Define("GLOW", this->GlowsApart()) +
-    this->PhaseOptions(this->KnowsFlow) + this->StepOption() + this->ShownOptions(what);
+    Define("GROUND", this->FacesOfGround) + Define("THIN_STEPS", longest <= (this->Bends ? 1.5 : 2.0)) +
+    Define("GLOW", this->GlowsApart()) + this->PhaseOptions(this->KnowsFlow) + this->StepOption() +
+    this->ShownOptions(what);
 }
 
 /// Rays that cannot but go straight on have a kernel of their own.
@@ -660,12 +671,12 @@ void MediumRayCaster::CastRays(
     if (straight)
     {
       With(cast, view, this->Samples, this->Extinctions, this->Flow, this->Glow, this->Cosines, this->PhaseRows,
-        this->Bricks, environment, this->Surface, this->Radiance, this->Alpha, this->Depth);
+        this->Bricks, environment, this->Ground, this->Surface, this->Radiance, this->Alpha, this->Depth);
     }
     else
     {
       With(cast, view, optics, this->Samples, this->Extinctions, this->Flow, this->Glow, this->Cosines, this->PhaseRows,
-        this->Bending, this->Table, this->Bricks, environment, this->Radiance, this->Alpha, this->Depth);
+        this->Bending, this->Table, this->Bricks, environment, this->Ground, this->Radiance, this->Alpha, this->Depth);
     }
     this->TheDevice.Queue().enqueueNDRangeKernel(
       cast, cl::NullRange, cl::NDRange(part.columns * group, part.rows * group), cl::NDRange(group, group));

@@ -32,6 +32,9 @@ struct SolvedLight
   /// belong to them. Null: not known.
   Field scatteredMoments = {}, straightOn = {};
   std::vector<Light> lampsApart = {};
+  /// LightField::facePower, 1 or 3 components, and faceAlbedo, of faces that give back light. Null: not known.
+  Field facePower = {};
+  std::array<Rgb, 6> faceAlbedo = {};
 };
 
 /// What a surface of refractive objects reflects of the light that meets it from the side of the smaller index.
@@ -133,6 +136,11 @@ struct Picture
 /// (Eq. (110)) take the indices five voxels before and behind; a sheet thinner than that reflects as if it were
 /// thicker.
 ///
+/// Ground. Where a ray leaves the box through a face that gives back light (faceAlbedo), it sees, in place of the
+/// background, albedo / pi times what leaves through the face there (facePower), smooth between the cells' middles (Eq.
+/// (111a)). It is part of the background: showBackground switches it off, alpha and depth do not know of it, and from
+/// outside it is not seen.
+///
 /// Table. Where a ray leaves the box through tableFace it sees
 ///   tableColor / pi  irradiance  +  tableReflectance  mirrored light,
 /// the irradiance by the fluence and meanDirection of the voxels on the table (Eq. (111)); with singleScatteringOnly,
@@ -208,6 +216,7 @@ private:
   void PreparePhase(const PhaseOfMedium& phase);
   std::string PhaseOptions(bool needed) const;
   void PrepareTable(const SolvedLight& light, const Field& ior);
+  void PrepareGround(const SolvedLight& light);
   void PrepareSurface(const Medium& medium, const SolvedLight& light);
   void SayWhatIsLeftOut();
   enum class Packing
@@ -271,6 +280,8 @@ private:
   Buffer<cl_float4> Cosines; ///< coloured g by voxel, where Flow is there
   Buffer<cl_float4> Bending; ///< gradient of n^2, and n^2
   Buffer<cl_float4> Table;   ///< light on the table
+  Buffer<cl_float4> Ground;  ///< see GroundLight.h
+  int FacesOfGround = 0;     ///< a bit for each
   Buffer<cl_float4> Surface; ///< see SurfaceLight.h
   Buffer<cl_char> Bricks;
   Buffer<cl_float4> EnvironmentPixels;

@@ -4,6 +4,7 @@
 //   SURFACE_LIGHT  1: there is some
 
 #pragma once
+#include "Viewing/BoxFacePlaces.cl"
 #include "Viewing/Sampling.cl"
 #include "Viewing/View.cl"
 
@@ -18,42 +19,19 @@
 //   before  length before each enters; 0 where it does not
 inline rgb surface_light(__global const float4* table, rays packet, real3 d, real before, int4 size)
 {
-  // The face through which a ray came in is the one it has just come from, in time.
-  const real3 p = packet.entry;
-#define SINCE(c)                                                         \
-  ((packet.direction.c > (real)0.0f ? p.c : (real)(float)size.c - p.c) / \
-    greater(fabs(packet.direction.c), (real)1e-20f))
-  const real x = SINCE(x), y = SINCE(y), z = SINCE(z);
-#undef SINCE
-  const integer by_x = (x <= y) & (x <= z);
-  const integer by_y = (by_x == 0) & (y <= z);
-  const real mu = fabs(by_x ? d.x : by_y ? d.y : d.z);
-  const integer back = (by_x ? packet.direction.x : by_y ? packet.direction.y : packet.direction.z) < (real)0.0f;
-
-  const int cells_x = (size.y + 2) * (size.z + 2), cells_y = (size.x + 2) * (size.z + 2),
-            cells_z = (size.x + 2) * (size.y + 2);
-  const int all = 2 * (cells_x + cells_y + cells_z);
-  const integer first = by_x ? (back ? (integer)cells_x : (integer)0)
-    : by_y                   ? (back ? (integer)(2 * cells_x + cells_y) : (integer)(2 * cells_x))
-           : (back ? (integer)(2 * cells_x + 2 * cells_y + cells_z) : (integer)(2 * cells_x + 2 * cells_y));
-  const integer row = by_x ? (integer)(size.y + 2) : (integer)(size.x + 2);
-  const real u = (by_x ? p.y : p.x) + (real)0.5f;
-  const real v = (by_x | by_y ? p.z : p.y) + (real)0.5f;
-  const integer i = to_integer(u);
-  const integer j = to_integer(v);
-  const integer at = first + j * row + i;
-  const real a = u - to_real(i);
-  const real b = v - to_real(j);
+  const face_place to = face_behind(packet.entry, packet.direction, size);
+  const real mu = fabs(to.by_x ? d.x : to.by_y ? d.y : d.z);
+  const int all = 2 * ((size.y + 2) * (size.z + 2) + (size.x + 2) * (size.z + 2) + (size.x + 2) * (size.y + 2));
 
   rgb sum = { (real)0.0f, (real)0.0f, (real)0.0f };
   const integer enters = before > (real)0.0f;
-#define ADD(n, part)                                                    \
-  {                                                                     \
-    const rgb seen = between_four(table + n * all, at, at + row, a, b); \
-    const real weight = enters ? part : (real)0.0f;                     \
-    sum.r = fma(seen.r, weight, sum.r);                                 \
-    sum.g = fma(seen.g, weight, sum.g);                                 \
-    sum.b = fma(seen.b, weight, sum.b);                                 \
+#define ADD(n, part)                                                                   \
+  {                                                                                    \
+    const rgb seen = between_four(table + n * all, to.at, to.at + to.row, to.a, to.b); \
+    const real weight = enters ? part : (real)0.0f;                                    \
+    sum.r = fma(seen.r, weight, sum.r);                                                \
+    sum.g = fma(seen.g, weight, sum.g);                                                \
+    sum.b = fma(seen.b, weight, sum.b);                                                \
   }
   ADD(0, PART_AT(mu, 0.05f, 0.25f, 0.6f, 1.0f))
   ADD(1, PART_AT(mu, 0.25f, 0.05f, 0.6f, 1.0f))

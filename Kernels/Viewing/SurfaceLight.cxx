@@ -137,7 +137,8 @@ std::array<double, 4> Missing(
 std::vector<cl_float4> SurfaceLight(const Medium& medium, const SolvedLight& light, double step)
 {
   const Grid& grid = medium.grid;
-  std::vector<std::array<cl_float4, 4>> cells(BoxFaceCellCount(grid));
+  std::array<std::vector<cl_float4>, SurfaceCosines.size()> cells;
+  cells.fill(std::vector<cl_float4>(BoxFaceCellCount(grid)));
   bool any = false;
   ForBoxFaceCells(grid, [&](const BoxFaceCell& cell) {
     for (int c = 0; c < 3; ++c)
@@ -145,29 +146,17 @@ std::vector<cl_float4> SurfaceLight(const Medium& medium, const SolvedLight& lig
       const std::array<double, 4> missing = Missing(medium, light, cell, c, step);
       for (std::size_t n = 0; n < missing.size(); ++n)
       {
-        cells[cell.number][n].s[c] = static_cast<float>(missing[n]);
+        cells[n][cell.number].s[c] = static_cast<float>(missing[n]);
         any |= missing[n] != 0.0;
       }
     }
   });
-  std::vector<cl_float4> padded;
+  std::vector<cl_float4> table;
   for (std::size_t n = 0; any && n < SurfaceCosines.size(); ++n)
   {
-    std::size_t first = 0;
-    for (int face = 0; face < 6; ++face)
-    {
-      const std::array<int, 2> size = FaceSize(grid, face);
-      for (int j = -1; j <= size[1]; ++j)
-      {
-        for (int i = -1; i <= size[0]; ++i)
-        {
-          const std::size_t row = std::clamp(j, 0, size[1] - 1);
-          padded.push_back(cells[first + row * size[0] + std::clamp(i, 0, size[0] - 1)][n]);
-        }
-      }
-      first += static_cast<std::size_t>(size[0]) * size[1];
-    }
+    const std::vector<cl_float4> padded = WithBorders(grid, cells[n]);
+    table.insert(table.end(), padded.begin(), padded.end());
   }
-  return padded;
+  return table;
 }
 }

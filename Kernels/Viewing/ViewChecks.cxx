@@ -191,6 +191,13 @@ void Check(const SolvedLight& light, const Grid& grid, const ViewSettings& setti
         "surface_radiance is not finite in tuple " + std::to_string(i / light.surface.components) + ".");
     }
   }
+  for (std::size_t i = 0; light.facePower.values && i < BoxFaceCellCount(grid) * light.facePower.components; ++i)
+  {
+    if (!std::isfinite(light.facePower.values[i]))
+    {
+      throw InvalidInput("face_power is not finite in tuple " + std::to_string(i / light.facePower.components) + ".");
+    }
+  }
   const bool separates = settings.shadowRays != settings.singleScatteringOnly; // direct light from the rest
   const bool byMoments = light.scatteredMoments.values && !settings.singleScatteringOnly;
   if (byMoments)

@@ -15,6 +15,9 @@ std::vector<cl_float4> ClosedEnvironment(const Environment& environment);
 /// Voxels of a face's rows, and how many rows it has: along y and z, x and z, or x and y.
 std::array<int, 2> FaceSize(const Grid& grid, int face);
 
+/// Values of the cells of the box's faces (BoxFaces.h), each face with a border of one cell that repeats the outermost.
+std::vector<cl_float4> WithBorders(const Grid& grid, const std::vector<cl_float4>& cells);
+
 /// Irradiance on a face of the box by the light in the voxels on it, over pi and n^2: the radiance of a white table.
 /// With a border of one voxel that repeats the outermost ones.
 ///

@@ -255,6 +255,13 @@ void BadSettings(Refusals& refusals)
   refusals->SetFaceRadiance(0.0, 0.0, NotANumber, 0.0, 0.0, 0.0);
   refusals.Says("FaceRadiance is (0, 0, nan, 0, 0, 0)");
   refusals->SetFaceRadiance(0.0, 0.0, 0.0, 0.0, 0.0, 0.0);
+  refusals->SetFaceAlbedo(0.0, NotANumber, 0.0, 0.0, 0.0, 0.0);
+  refusals.Says("FaceAlbedo is (0, nan, 0, 0, 0, 0)");
+  refusals->SetFaceAlbedo(0.0, 0.0, 0.0, -0.1, 0.0, 0.0);
+  refusals.Says("FaceAlbedo is (0, 0, 0, -0.1, 0, 0)");
+  refusals->SetFaceAlbedo(0.0, 0.0, 0.0, 0.0, 1.5, 0.0);
+  refusals.Says("FaceAlbedo is (0, 0, 0, 0, 1.5, 0)");
+  refusals->SetFaceAlbedo(0.0, 0.0, 0.0, 0.0, 0.0, 0.0);
   refusals->SetEnvironmentAzimuth(Infinite);
   refusals.Says("EnvironmentAzimuth is inf; it must be finite");
   refusals->SetEnvironmentAzimuth(0.0);

@@ -2,6 +2,7 @@
 
 #include "vtkCallbackCommand.h"
 #include "vtkCellData.h"
+#include "vtkDiscreteOrdinates.h"
 #include "vtkDoubleArray.h"
 #include "vtkFieldData.h"
 #include "vtkFloatArray.h"
@@ -16,6 +17,7 @@
 #include "vtkVersion.h"
 
 #include <algorithm>
+#include <array>
 #include <cmath>
 #include <limits>
 #include <string>
@@ -321,6 +323,41 @@ void ThickVoxelsShineAtTheirSurface(test::Claims& claims)
   claims.Near(seen(other, "mine"), centres, 1e-6, "it belongs to the array that the solver wrote");
 }
 
+// A vacuum over ground of which the sky above lets in radiance 1: ground, of the solver's FaceAlbedo, shows its albedo.
+template <class Solver>
+void GroundIsSeen(test::Claims& claims, const std::string& which)
+{
+  const vtkNew<vtkImageData> image = Homogeneous(0.0, 0.0, 0.0);
+  vtkNew<Solver> solver;
+  solver->SetInputData(image);
+  solver->SetPeriodicX(true);
+  solver->SetPeriodicY(true);
+  solver->SetFaceRadiance(0.0, 0.0, 0.0, 0.0, 0.0, 1.0);
+  solver->SetFaceAlbedo(0.0, 0.0, 0.0, 0.0, 0.5, 0.0);
+  std::array<double, 18> colours;
+  colours.fill(1.0);
+  colours[13] = 0.4;
+  solver->SetFaceAlbedoColor(colours.data());
+  solver->SetTolerance(1e-6);
+  vtkNew<vtkMediumRayCaster> caster;
+  test::Errors errors(caster);
+  caster->SetInputConnection(solver->GetOutputPort());
+  caster->SetImageSize(9, 9);
+  caster->SetBackgroundColor(7.0, 7.0, 7.0);
+  LookDown(caster, image);
+  caster->Update();
+  claims.That(errors.None(), which + ": no complaint");
+  // Along directions that hardly fall light goes round for long.
+  claims.Near(MiddlePixel(caster, "radiance", 0), 0.5, 0.01, which + ": red of the ground");
+  claims.Near(MiddlePixel(caster, "radiance", 1), 0.2, 0.004, which + ": green of the ground");
+  claims.Near(MiddlePixel(caster, "alpha"), 0.0, 1e-6, which + ": it is behind the medium");
+  solver->SetFaceAlbedo(0.0, 0.0, 0.0, 0.0, 0.0, 0.0);
+  caster->Update();
+  claims.Near(MiddlePixel(caster, "radiance", 0), 7.0, 1e-5, which + ": without, the background is seen");
+  vtkFieldData* const facts = vtkImageData::SafeDownCast(solver->GetOutputDataObject(0))->GetFieldData();
+  claims.That(!facts->GetArray("face_power") && !facts->GetArray("face_albedo"), which + ": nor said");
+}
+
 void DarkMediumIsAWarning(test::Claims& claims)
 {
   const vtkNew<vtkImageData> image = Homogeneous(0.1, 0.4, 1.0);
@@ -414,6 +451,8 @@ int TestMediumRayCaster(int argc, char* argv[])
   EnvironmentIsTheBackground(claims);
   BadInputIsAnError(claims);
   ThickVoxelsShineAtTheirSurface(claims);
+  GroundIsSeen<vtkLightPropagationMaps>(claims, "light propagation maps");
+  GroundIsSeen<vtkDiscreteOrdinates>(claims, "discrete ordinates");
   DarkMediumIsAWarning(claims);
   AbortStops(claims);
   char* folder = vtkTestUtilities::GetArgOrEnvOrDefault("-T", argc, argv, "VTK_TEMP_DIR", "Testing/Temporary");

@@ -1,5 +1,7 @@
 #include "Reference/PictureMonteCarlo.h"
 
+#include "Reference/RandomWalk.h"
+
 #include <algorithm>
 #include <atomic>
 #include <cmath>
@@ -7,42 +9,12 @@
 
 namespace
 {
+using random_walk::Random;
+using random_walk::Scattered;
 using Vec = std::array<double, 3>;
 constexpr double Pi = 3.14159265358979323846;
 constexpr int Brick = 8;           ///< voxels an edge, with one bound of sigma_t
 constexpr double LeastSure = 0.02; ///< transmittance below which a ray to the sun goes on by chance
-
-/// xoshiro256+ (Blackman and Vigna 2018), seeded by splitmix64.
-class Random
-{
-public:
-  explicit Random(std::uint64_t seed)
-  {
-    for (std::uint64_t& word : this->State)
-    {
-      seed += 0x9e3779b97f4a7c15u;
-      std::uint64_t z = seed;
-      z = (z ^ (z >> 30)) * 0xbf58476d1ce4e5b9u;
-      z = (z ^ (z >> 27)) * 0x94d049bb133111ebu;
-      word = z ^ (z >> 31);
-    }
-  }
-  double operator()() ///< in [0, 1)
-  {
-    std::array<std::uint64_t, 4>& s = this->State;
-    const std::uint64_t result = s[0] + s[3], t = s[1] << 17;
-    s[2] ^= s[0];
-    s[3] ^= s[1];
-    s[1] ^= s[2];
-    s[0] ^= s[3];
-    s[2] ^= t;
-    s[3] = (s[3] << 45) | (s[3] >> 19);
-    return static_cast<double>(result >> 11) * 0x1p-53;
-  }
-
-private:
-  std::array<std::uint64_t, 4> State;
-};
 
 /// The volume with a border of one voxel that repeats the outermost ones, and a bound for each brick.
 class Tracker
@@ -190,30 +162,6 @@ double HenyeyGreenstein(double g, double cosine)
 {
   const double base = 1.0 + g * g - 2.0 * g * cosine;
   return (1.0 - g * g) / (4.0 * Pi * base * std::sqrt(base));
-}
-
-Vec Scattered(const Vec& along, double g, Random& random)
-{
-  const double u = random(), turn = 2.0 * Pi * random();
-  const double s = (1.0 - g * g) / (1.0 - g + 2.0 * g * u);
-  const double cosine = std::abs(g) < 1e-6 ? 2.0 * u - 1.0 : std::clamp((1.0 + g * g - s * s) / (2.0 * g), -1.0, 1.0);
-  const double sine = std::sqrt(1.0 - cosine * cosine);
-  // Two axes across (Duff et al. 2017).
-  const double sign = std::copysign(1.0, along[2]), a = -1.0 / (sign + along[2]), b = along[0] * along[1] * a;
-  const Vec u1 = { 1.0 + sign * along[0] * along[0] * a, sign * b, -sign * along[0] };
-  const Vec u2 = { b, sign + along[1] * along[1] * a, -along[1] };
-  Vec out;
-  double square = 0.0;
-  for (int i = 0; i < 3; ++i)
-  {
-    out[i] = cosine * along[i] + sine * (std::cos(turn) * u1[i] + std::sin(turn) * u2[i]);
-    square += out[i] * out[i];
-  }
-  for (double& component : out)
-  {
-    component /= std::sqrt(square);
-  }
-  return out;
 }
 
 /// What comes through from the sun to a place, as a random number of that mean.

@@ -128,21 +128,6 @@ std::vector<std::string> Words(const TransportParts& parts, const IterationResul
   return words;
 }
 
-/// W / length^2, from W by cell; [cell][channel].
-std::vector<float> FacePower(const TransportParts& parts, const IterationResult& found)
-{
-  const Grid& grid = parts.Layout.grid;
-  const int channels = parts.Layout.channels;
-  const std::size_t cells = found.leftByCell.size() / channels;
-  std::vector<float> power(found.leftByCell.size());
-  for (std::size_t i = 0; i < power.size(); ++i)
-  {
-    const double area = grid.VoxelVolume() / grid.spacing[parts.Faces->FaceOf(i / channels) / 2];
-    power[i] = static_cast<float>(found.leftByCell[i % channels * cells + i / channels] / area);
-  }
-  return power;
-}
-
 LightField LightOf(TransportParts& parts, IterationResult&& found, bool accelerated)
 {
   LightField light;
@@ -164,7 +149,10 @@ LightField LightOf(TransportParts& parts, IterationResult&& found, bool accelera
   light.halfRangeFlux = HalfRangeFlux((parts.FineBoundary && !accelerated ? *parts.Fine : parts.Usual).Set());
   light.balance = found.ledger.Balance();
   light.facePowerOut = found.ledger.FacePowerOut();
-  light.facePower = FacePower(parts, found);
+  if (parts.Faces)
+  {
+    light.facePower = parts.Faces->PerArea(found.leftByCell);
+  }
   light.convergence = found.convergence.All();
   light.fluenceDirect = std::move(found.fluenceDirect);
   light.surfaceRadiance = std::move(found.surfaceRadiance);
@@ -198,6 +186,7 @@ LightField SolveConservative(Device& device, const Medium& medium, const Illumin
   {
     Keep(std::move(left), warm, light, *kept);
   }
+  light.faceAlbedo = illumination.faceAlbedo;
   problem.Undo(light);
   if (parts.StoresMoments())
   {

@@ -3,6 +3,7 @@
 #include "Medium/BoxFaces.h"
 
 #include <algorithm>
+#include <cmath>
 #include <functional>
 #include <utility>
 
@@ -46,27 +47,37 @@ void AddAside(const Bundle& bundle, const PlaneAxes& axes, int size, int planes,
 }
 }
 
-FaceLight::FaceLight(Device& device, const VolumeLayout& layout, const std::array<bool, 3>& periodic,
-  const SweptDirections& directions, const std::array<Rgb, 6>& albedo)
-  : Channels(layout.channels)
+FaceLight::FaceLight(
+  Device& device, const Grid& grid, int channels, std::vector<double> powerIn, const std::array<Rgb, 6>& albedo)
+  : TheGrid(grid)
+  , Channels(channels)
   , AlbedoOfFaces(albedo)
   , AnyAlbedo(!std::all_of(albedo.begin(), albedo.end(), IsBlack))
-  , Leaving(device, layout.channels * BoxFaceCellCount(layout.grid), "the light that leaves through the faces")
-  , Entering(device, layout.channels * BoxFaceCellCount(layout.grid), "the light that faces give back")
+  , PowerIn(std::move(powerIn))
+  , Leaving(device, channels * BoxFaceCellCount(grid), "the light that leaves through the faces")
+  , Entering(device, channels * BoxFaceCellCount(grid), "the light that faces give back")
 {
-  ForBoxFaceCells(layout.grid, [this](const BoxFaceCell& cell) { this->FaceOfCell.push_back(cell.face); });
+  ForBoxFaceCells(grid, [this](const BoxFaceCell& cell) { this->FaceOfCell.push_back(cell.face); });
   this->AllSwept.assign(this->Channels * this->Cells(), 0.0);
   this->AllUncollided = this->AllSwept;
   this->Leaving.Fill(0.0f);
   this->Entering.Fill(0.0f);
-  this->FindPowerIn(layout.grid, periodic, directions);
+  std::array<double, 6> sum = {}, count = {};
+  for (std::size_t cell = 0; cell < this->Cells(); ++cell)
+  {
+    sum[this->FaceOf(cell)] += this->PowerIn[cell];
+    count[this->FaceOf(cell)] += 1.0;
+  }
+  for (int face : this->FaceOfCell)
+  {
+    this->MeanIn.push_back(sum[face] / count[face]);
+  }
 }
 
-/// Rays aside come in through planes of voxels in a pattern: a cell in a plane where more do gives back the less
-/// radiance.
-void FaceLight::FindPowerIn(const Grid& grid, const std::array<bool, 3>& periodic, const SweptDirections& directions)
+std::vector<double> SweptPowerIn(
+  const Grid& grid, const std::array<bool, 3>& periodic, const SweptDirections& directions)
 {
-  this->PowerIn.assign(this->Cells(), 0.0);
+  std::vector<double> power(BoxFaceCellCount(grid), 0.0);
   for (int axis = 0; axis < 3; ++axis)
   {
     const PlaneAxes axes = AcrossAxis(axis);
@@ -83,22 +94,12 @@ void FaceLight::FindPowerIn(const Grid& grid, const std::array<bool, 3>& periodi
       }
       AddAside(bundle, axes, size, PlanesOfPattern(size, periodic[axis]), aside);
     }
-    std::size_t number = 0;
     ForBoxFaceCells(grid, [&](const BoxFaceCell& cell) {
       const int plane = grid.VoxelAt(cell.voxel)[axis];
-      this->PowerIn[number++] += cell.face / 2 == axis ? ahead[cell.face % 2] : aside[cell.face][plane];
+      power[cell.number] += cell.face / 2 == axis ? ahead[cell.face % 2] : aside[cell.face][plane];
     });
   }
-  std::array<double, 6> sum = {}, count = {};
-  for (std::size_t cell = 0; cell < this->Cells(); ++cell)
-  {
-    sum[this->FaceOf(cell)] += this->PowerIn[cell];
-    count[this->FaceOf(cell)] += 1.0;
-  }
-  for (int face : this->FaceOfCell)
-  {
-    this->MeanIn.push_back(sum[face] / count[face]);
-  }
+  return power;
 }
 
 std::vector<float> FaceLight::TakeOut()
@@ -127,6 +128,11 @@ std::array<Rgb, 6> FaceLight::Reflect()
     this->LetIn(swept, uncollided);
   }
   std::transform(swept.begin(), swept.end(), uncollided.begin(), swept.begin(), std::plus<>());
+  this->LastMagnitude = {};
+  for (std::size_t i = 0; i < swept.size(); ++i)
+  {
+    this->LastMagnitude[i / this->Cells()] += std::abs(swept[i]);
+  }
   return this->PowerOfFaces(swept);
 }
 
@@ -167,6 +173,18 @@ std::vector<double> FaceLight::LeftInAll() const
   left = this->ScaledTo(std::move(left), this->AllSwept);
   std::transform(left.begin(), left.end(), this->AllUncollided.begin(), left.begin(), std::plus<>());
   return left;
+}
+
+std::vector<float> FaceLight::PerArea(const std::vector<double>& power) const
+{
+  std::vector<float> perArea(power.size());
+  for (std::size_t i = 0; i < power.size(); ++i)
+  {
+    const std::size_t cell = i / this->Channels, c = i % this->Channels;
+    const double area = this->TheGrid.VoxelVolume() / this->TheGrid.spacing[this->FaceOf(cell) / 2];
+    perArea[i] = static_cast<float>(power[c * this->Cells() + cell] / area);
+  }
+  return perArea;
 }
 
 void FaceLight::LetIn(const std::vector<double>& swept, const std::vector<double>& uncollided)

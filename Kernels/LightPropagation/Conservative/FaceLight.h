@@ -2,8 +2,8 @@
 
 #include "Device/Buffer.h"
 #include "LightPropagation/Angular/SweptDirections.h"
-#include "LightPropagation/Sweep/VolumeLayout.h"
 #include "Lights/Lights.h"
+#include "Medium/Grid.h"
 
 #include <array>
 #include <vector>
@@ -21,9 +21,9 @@ namespace tyndall
 class FaceLight
 {
 public:
-  /// @param directions  of the sweeps
-  FaceLight(Device& device, const VolumeLayout& layout, const std::array<bool, 3>& periodic,
-    const SweptDirections& directions, const std::array<Rgb, 6>& albedo);
+  /// @param powerIn  W that radiance 1 brings through each cell along the directions of sweeps
+  FaceLight(
+    Device& device, const Grid& grid, int channels, std::vector<double> powerIn, const std::array<Rgb, 6>& albedo);
 
   bool Reflects() const { return this->AnyAlbedo; }
   const Buffer<float>& Out() const { return this->Leaving; } ///< for Deposit::faceOut
@@ -35,6 +35,8 @@ public:
   /// What left since the last call, and the uncollided light before it: lets the part come in that is reflected.
   /// @return W that come back through each face
   std::array<Rgb, 6> Reflect();
+  /// Of what the last call of Reflect let in, which may be negative (WarmStart), the magnitudes by cell added up; W.
+  const Rgb& Magnitude() const { return this->LastMagnitude; }
   /// W that left through each cell since the last call of anything here, [channel][cell].
   std::vector<float> TakeOut();
   /// Lets W come in through each cell, [channel][cell].
@@ -50,12 +52,13 @@ public:
   double Pattern(std::size_t cell) const;
   /// Scaled such that the sums over faces are those of `sums`.
   std::vector<double> ScaledTo(std::vector<double> power, const std::vector<double>& sums) const;
+  /// W / length^2 of W, [channel][cell]; [cell][channel] as LightField::facePower has it.
+  std::vector<float> PerArea(const std::vector<double>& power) const;
   std::size_t Cells() const { return this->FaceOfCell.size(); }
   int FaceOf(std::size_t cell) const { return this->FaceOfCell[cell]; }
 
 private:
-  void FindPowerIn(const Grid& grid, const std::array<bool, 3>& periodic, const SweptDirections& directions);
-
+  Grid TheGrid;
   int Channels;
   std::array<Rgb, 6> AlbedoOfFaces;
   bool AnyAlbedo;
@@ -64,6 +67,12 @@ private:
   std::vector<double> MeanIn;  ///< the same in the mean over its face
   std::vector<float> Uncollided;
   std::vector<double> AllSwept, AllUncollided;
+  Rgb LastMagnitude = {};
   Buffer<float> Leaving, Entering; ///< [channel][cell]
 };
+
+/// W that radiance 1 brings through each cell of the box's faces along the rays of sweeps, which come in through some
+/// planes of voxels more than through others.
+std::vector<double> SweptPowerIn(
+  const Grid& grid, const std::array<bool, 3>& periodic, const SweptDirections& directions);
 }

@@ -344,7 +344,8 @@ void SourceIteration::GoOnWarm()
   {
     this->AllScattered[c] += this->Scattered[c];
     this->Scattered[c] -= guessed[c];
-    const double now = magnitudes[c] + std::abs(this->OnTheWay[c]) + std::abs(this->Reflected[c]);
+    const double reflected = this->Parts.Faces ? this->Parts.Faces->Magnitude()[c] : 0.0;
+    const double now = magnitudes[c] + std::abs(this->OnTheWay[c]) + reflected;
     if (now > 0.0)
     {
       this->Residual = std::max(this->Residual, this->Rest[c].After(now, this->AllScattered[c]));

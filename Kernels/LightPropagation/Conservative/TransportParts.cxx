@@ -143,8 +143,9 @@ void TransportParts::FindFaceLight()
   const Illumination& shining = this->Problem.Shining();
   if (Reflects(shining) || this->Problem.Settings().facePower)
   {
-    this->Faces = std::make_unique<FaceLight>(
-      this->TheDevice, this->Layout, this->Problem.Settings().periodic, this->Usual, shining.faceAlbedo);
+    const Grid& grid = this->Layout.grid;
+    this->Faces = std::make_unique<FaceLight>(this->TheDevice, grid, this->Layout.channels,
+      SweptPowerIn(grid, this->Problem.Settings().periodic, this->Usual), shining.faceAlbedo);
   }
 }
 
