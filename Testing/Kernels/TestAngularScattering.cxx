@@ -4,9 +4,9 @@
 #include "MediumScene.h"
 
 #include "LightPropagation/Angular/AngularBasis.h"
+#include "LightPropagation/Problem/DirectionKernel.h"
 #include "LightPropagation/Problem/TruncatedScattering.h"
 #include "LightPropagation/Scattering/BeamScattering.h"
-#include "LightPropagation/Scattering/DirectionKernel.h"
 #include "Numerics/Constants.h"
 #include "Reference/ReferenceTable.h"
 
