@@ -4,9 +4,9 @@
 #include "MediumScene.h"
 
 #include "LightPropagation/Angular/AngularBasis.h"
+#include "LightPropagation/Problem/DirectionKernel.h"
 #include "LightPropagation/Problem/TruncatedScattering.h"
 #include "LightPropagation/Scattering/BeamScattering.h"
-#include "LightPropagation/Scattering/DirectionKernel.h"
 #include "Numerics/Constants.h"
 #include "Reference/ReferenceTable.h"
 
@@ -490,5 +490,19 @@ TEST_F(AngularScattering, TakesFewSweepsInVeryThickWhiteMedia)
     const LightField light = scene->Solve(this->GetDevice());
     EXPECT_LE(light.convergence.size(), 20u);
     EXPECT_LT(light.convergence.back().residual, scene->settings.tolerance);
+  }
+}
+
+TEST_F(AngularScattering, LeavesAFurnaceOfLongVoxelsAsItIs)
+{
+  Scene scene({ 9, 9, 9 }, 0.0f, 1.0f);
+  scene.medium.grid.spacing = { 1000.0, 1.0, 1.0 };
+  scene.medium.phase = PhaseFunction::HenyeyGreenstein(0.9);
+  scene.ShineFromEverywhere(1.0);
+  scene.settings.angularDegree = -1;
+  const LightField light = scene.Solve(this->GetDevice());
+  for (const float fluence : light.fluence)
+  {
+    ASSERT_NEAR(fluence / (4.0 * Pi), 1.0, 5e-4);
   }
 }

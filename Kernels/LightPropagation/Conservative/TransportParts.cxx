@@ -290,8 +290,8 @@ void TransportParts::FindAngularValues()
   {
     const glm::dvec3 along = glm::normalize(Vector(this->Lamps[beam].direction));
     const auto beyond = scattering.IsNowhereNegative() ? BeyondSmoothMoments : BeyondMoments;
-    ofBeams.push_back(beyond(this->Problem.TheMedium().phase.OfChannel(0), scattering.OfThinVoxels(),
-      this->Usual.Set(), *this->Basis, { along.x, along.y, along.z }));
+    ofBeams.push_back(beyond(this->Problem.TheMedium().phase.OfChannel(0), scattering.OfThinVoxels(), this->Usual.Set(),
+      *this->Basis, { along.x, along.y, along.z }));
   }
   for (std::size_t d = 0; d < this->Usual.Set().directions.size(); ++d)
   {

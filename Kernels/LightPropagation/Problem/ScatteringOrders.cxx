@@ -16,7 +16,8 @@ const double UsualTolerance = PropagationSettings().tolerance;
 constexpr double Extrapolation = 1.42 / 2.0;
 constexpr double ManyOrders = 40.0;          ///< source iteration that is dearer than acceleration
 constexpr double ManyOrdersInMoments = 20.0; ///< the same where sweeps are dear, beside which diffusion is cheap
-constexpr double ManyOrdersInSlab = 12.0;    ///< the same in a slab, whose diffusion system is small
+constexpr double ThickVoxel = 10.0; ///< mean free paths along its longest edge, with which diffusion may gain nothing
+constexpr double ManyOrdersInSlab = 12.0; ///< the same in a slab, whose diffusion system is small
 
 /// Optical thickness of the thickest line of voxels along an axis.
 /// @param sigma_t  of a voxel
@@ -86,6 +87,23 @@ double LeakAlong(const PropagationProblem& problem, int axis, int channel)
     LongestLine(grid, axis, [&](std::size_t i) { return problem.Scattering().SigmaT(i, channel); });
   return leak * longest / scattered;
 }
+
+bool HasThickVoxels(const PropagationProblem& problem)
+{
+  const Grid& grid = problem.TheGrid();
+  const double longest = *std::max_element(grid.spacing.begin(), grid.spacing.end());
+  for (int c = 0; c < problem.Channels(); ++c)
+  {
+    for (std::size_t i = 0; i < grid.VoxelCount(); ++i)
+    {
+      if (longest * problem.Scattering().SigmaT(i, c) > ThickVoxel)
+      {
+        return true;
+      }
+    }
+  }
+  return false;
+}
 }
 
 double OrdersNeeded(const PropagationProblem& problem)
@@ -105,7 +123,8 @@ double OrdersNeeded(const PropagationProblem& problem)
 
 bool ScatteredManyTimes(const PropagationProblem& problem)
 {
-  const double many = problem.Scattering().Degree() > 0 ? ManyOrdersInMoments : ManyOrders;
+  const bool inMoments = problem.Scattering().Degree() > 0 && !HasThickVoxels(problem);
+  const double many = inMoments ? ManyOrdersInMoments : ManyOrders;
   return OrdersNeeded(problem) > (problem.IsSlab() ? ManyOrdersInSlab : many);
 }
 

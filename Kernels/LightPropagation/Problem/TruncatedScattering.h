@@ -1,7 +1,7 @@
 #pragma once
 
+#include "LightPropagation/Problem/DirectionKernel.h"
 #include "Medium/Medium.h"
-#include "LightPropagation/Scattering/DirectionKernel.h"
 #include "PhaseFunction/DeltaM.h"
 
 #include <array>
@@ -20,8 +20,7 @@ public:
   /// @param degree  of the voxels that are thin; 0: all are isotropic, by the similarity relation
   /// @param nowhereNegative  directions between which nothing negative is scattered (WithoutNegatives); null: moments
   ///   are as delta-M has them
-  TruncatedScattering(
-    const Medium& medium, int degree, int channels, const DirectionKernel* nowhereNegative = nullptr);
+  TruncatedScattering(const Medium& medium, int degree, int channels, const DirectionKernel* nowhereNegative = nullptr);
 
   int Degree() const { return this->MostDegree; } ///< the highest of any voxel
   bool IsNowhereNegative() const { return this->NowhereNegative && this->MostDegree > 0; }

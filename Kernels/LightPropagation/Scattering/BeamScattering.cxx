@@ -120,8 +120,8 @@ std::vector<double> BeyondMoments(const PhaseFunction& function, const DeltaM& t
   return scattered;
 }
 
-std::vector<double> BeyondSmoothMoments(const PhaseFunction& function, const DeltaM& truncated,
-  const DirectionSet& set, const AngularBasis& basis, const std::array<double, 3>& beam)
+std::vector<double> BeyondSmoothMoments(const PhaseFunction& function, const DeltaM& truncated, const DirectionSet& set,
+  const AngularBasis& basis, const std::array<double, 3>& beam)
 {
   std::vector<double> scattered = WithoutPeak(function, truncated.forward, set, beam);
   Tilt(scattered, set, truncated.moments[1] * Vector(beam));

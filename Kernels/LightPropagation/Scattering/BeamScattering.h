@@ -19,6 +19,6 @@ std::vector<double> BeyondMoments(const PhaseFunction& function, const DeltaM& t
 /// The same where moments are smoothed such that nothing is negative (WithoutNegatives): all that is scattered of the
 /// beam, less what its moments are. So the source along each direction is that of the phase function, with the mean
 /// cosine of the moments; higher ones are its own.
-std::vector<double> BeyondSmoothMoments(const PhaseFunction& function, const DeltaM& truncated,
-  const DirectionSet& set, const AngularBasis& basis, const std::array<double, 3>& beam);
+std::vector<double> BeyondSmoothMoments(const PhaseFunction& function, const DeltaM& truncated, const DirectionSet& set,
+  const AngularBasis& basis, const std::array<double, 3>& beam);
 }

@@ -1,4 +1,4 @@
-#include "LightPropagation/Scattering/DirectionKernel.h"
+#include "LightPropagation/Problem/DirectionKernel.h"
 
 #include "LightPropagation/Angular/AngularBasis.h"
 
