@@ -7,6 +7,7 @@
 #include "LightPropagation/Conservative/SourceIteration.h"
 #include "LightPropagation/Convergence.h"
 #include "LightPropagation/Problem/ScatteringOrders.h"
+#include "LightPropagation/Problem/SlabTurn.h"
 #include "Numerics/Constants.h"
 #include "Numerics/NumberText.h"
 
@@ -160,9 +161,8 @@ LightField LightOf(TransportParts& parts, IterationResult&& found, bool accelera
   return light;
 }
 
-}
-
-LightField SolveConservative(Device& device, const Medium& medium, const Illumination& illumination,
+/// Of a scene whose axes are as the sweeps like them.
+LightField Solve(Device& device, const Medium& medium, const Illumination& illumination,
   const PropagationSettings& settings, const Monitor& monitor, KeptLight* kept)
 {
   const PropagationProblem problem(medium, illumination, settings, MemoryOf(device));
@@ -193,6 +193,21 @@ LightField SolveConservative(Device& device, const Medium& medium, const Illumin
     light.lampsApart = parts.LampsOf(illumination);
   }
   JudgeConvergence(settings, light);
+  return light;
+}
+}
+
+LightField SolveConservative(Device& device, const Medium& medium, const Illumination& illumination,
+  const PropagationSettings& settings, const Monitor& monitor, KeptLight* kept)
+{
+  const SlabTurn turn(medium.grid, illumination, settings);
+  if (!turn)
+  {
+    return Solve(device, medium, illumination, settings, monitor, kept);
+  }
+  Check(medium, illumination, settings); // before axes have other names
+  LightField light = Solve(device, turn.Of(medium), turn.Of(illumination), turn.Of(settings), monitor, kept);
+  turn.Undo(light, medium.grid);
   return light;
 }
 }

@@ -35,13 +35,18 @@ void CheckLightHasAnEnd(const Medium& medium, const Illumination& illumination, 
 /// So that the first member of a problem is made of what has been looked at.
 const Grid& Checked(const Medium& medium, const Illumination& illumination, const PropagationSettings& settings)
 {
+  Check(medium, illumination, settings);
+  return medium.grid;
+}
+}
+
+void Check(const Medium& medium, const Illumination& illumination, const PropagationSettings& settings)
+{
   Check(medium);
   Check(illumination);
   Check(settings);
   CheckFaceAlbedo(illumination, settings.periodic);
   CheckLightHasAnEnd(medium, illumination, settings.periodic);
-  return medium.grid;
-}
 }
 
 PropagationProblem::PropagationProblem(const Medium& medium, const Illumination& illumination,

@@ -15,6 +15,10 @@
 
 namespace tyndall
 {
+/// @throws InvalidInput what Check() of the three throw, where a face that gives back light lies across a periodic
+///   axis, and where light could not end: all faces give back all of it and nothing absorbs
+void Check(const Medium& medium, const Illumination& illumination, const PropagationSettings& settings);
+
 /// A scene as it is solved: in units of length and of power that floats hold well, wide along axes on which nothing
 /// changes, with as many channels as it needs. Made once from what the user gave; Undo() turns the light that was found
 /// back into what the user asked for.
@@ -22,7 +26,7 @@ class PropagationProblem
 {
 public:
   /// @param medium, illumination  their arrays must stay
-  /// @throws InvalidInput what Check() of the three throw
+  /// @throws InvalidInput what Check() above throws
   /// @param memory  for angular moments, where the settings leave open how many
   PropagationProblem(const Medium& medium, const Illumination& illumination, const PropagationSettings& settings,
     const DeviceMemory& memory = {});

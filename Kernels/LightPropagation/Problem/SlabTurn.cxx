@@ -1,0 +1,168 @@
+#include "LightPropagation/Problem/SlabTurn.h"
+
+#include "LightPropagation/Problem/UnvaryingAxes.h"
+#include "Medium/BoxFaces.h"
+#include "Numerics/Constants.h"
+#include "Numerics/Legendre.h"
+#include "Numerics/SphericalHarmonics.h"
+
+#include <algorithm>
+#include <cmath>
+
+namespace tyndall
+{
+SlabTurn::SlabTurn(const Grid& grid, const Illumination& illumination, const PropagationSettings& settings)
+{
+  if (!UnvaryingAxes(grid, illumination, settings).IsSlab() || !illumination.environment.Empty())
+  {
+    return;
+  }
+  for (int axis = 0; axis < 3; ++axis)
+  {
+    this->Along = grid.size[axis] > 1 || !settings.periodic[axis] ? axis : this->Along;
+  }
+}
+
+template <class Value>
+std::array<Value, 3> SlabTurn::Turned(const std::array<Value, 3>& given) const
+{
+  return { given[this->Along], given[(this->Along + 1) % 3], given[(this->Along + 2) % 3] };
+}
+
+template <class Value>
+std::array<Value, 3> SlabTurn::TurnedBack(const std::array<Value, 3>& turned) const
+{
+  return { turned[(3 - this->Along) % 3], turned[(4 - this->Along) % 3], turned[(5 - this->Along) % 3] };
+}
+
+/// What a face of the scene as it stands is called in the turned one.
+int SlabTurn::FaceWhenTurned(int face) const
+{
+  return (face / 2 + 3 - this->Along) % 3 * 2 + face % 2;
+}
+
+Medium SlabTurn::Of(const Medium& medium) const
+{
+  Medium turned = medium;
+  turned.grid.size = this->Turned(medium.grid.size);
+  turned.grid.spacing = this->Turned(medium.grid.spacing);
+  turned.grid.origin = this->Turned(medium.grid.origin);
+  return turned;
+}
+
+Illumination SlabTurn::Of(const Illumination& illumination) const
+{
+  Illumination turned = illumination;
+  for (Light& light : turned.lights)
+  {
+    light.position = this->Turned(light.position);
+    light.direction = this->Turned(light.direction);
+  }
+  for (int face = 0; face < 6; ++face)
+  {
+    turned.faces[this->FaceWhenTurned(face)] = illumination.faces[face];
+    turned.faceAlbedo[this->FaceWhenTurned(face)] = illumination.faceAlbedo[face];
+  }
+  return turned;
+}
+
+PropagationSettings SlabTurn::Of(const PropagationSettings& settings) const
+{
+  PropagationSettings turned = settings;
+  turned.periodic = this->Turned(settings.periodic);
+  return turned;
+}
+
+/// Of the cells of the box's faces: those of one face follow each other in the same order.
+void SlabTurn::TurnBackCells(std::vector<float>& values, const Grid& grid) const
+{
+  const std::size_t each = values.size() / BoxFaceCellCount(grid);
+  Grid turnedGrid = grid;
+  turnedGrid.size = this->Turned(grid.size);
+  const std::vector<float> turned = values;
+  for (int face = 0; face < 6; ++face)
+  {
+    const std::size_t count = grid.VoxelCount() / grid.size[face / 2];
+    const auto from = static_cast<std::ptrdiff_t>(each * LayoutOfFace(turnedGrid, this->FaceWhenTurned(face)).first);
+    const auto to = static_cast<std::ptrdiff_t>(each * LayoutOfFace(grid, face).first);
+    std::copy_n(turned.begin() + from, each * count, values.begin() + to);
+  }
+}
+
+/// Harmonics of turned directions in harmonics of directions as they stand, degree by degree: integrals of their
+/// products over all directions, by a rule that is exact.
+void SlabTurn::TurnBackMoments(LightField& light, const Grid& grid) const
+{
+  const std::size_t channels = static_cast<std::size_t>(light.channels);
+  const std::size_t harmonics = light.scatteredMoments.size() / (grid.VoxelCount() * channels);
+  const int degree = static_cast<int>(std::lround(std::sqrt(static_cast<double>(harmonics)))) - 1;
+  std::vector<double> matrix(harmonics * harmonics, 0.0);
+  const GaussLegendre rule(degree + 1);
+  const int around = 2 * degree + 1;
+  for (std::size_t i = 0; i < rule.points.size(); ++i)
+  {
+    for (int k = 0; k < around; ++k)
+    {
+      const double sine = std::sqrt(1.0 - rule.points[i] * rule.points[i]), azimuth = 2.0 * Pi * k / around;
+      const std::array<double, 3> omega = { sine * std::cos(azimuth), sine * std::sin(azimuth), rule.points[i] };
+      const std::vector<double> here = SphericalHarmonics(degree, omega);
+      const std::vector<double> there = SphericalHarmonics(degree, this->Turned(omega));
+      for (std::size_t at = 0; at < matrix.size(); ++at)
+      {
+        matrix[at] += rule.weights[i] * 2.0 * Pi / around * here[at / harmonics] * there[at % harmonics];
+      }
+    }
+  }
+  std::vector<double> turned(harmonics);
+  for (std::size_t first = 0; first < light.scatteredMoments.size(); ++first)
+  {
+    if (first % (harmonics * channels) >= channels)
+    {
+      continue; // not the first moment of a voxel and channel
+    }
+    for (std::size_t j = 0; j < harmonics; ++j)
+    {
+      turned[j] = light.scatteredMoments[first + j * channels];
+    }
+    for (std::size_t j = 0; j < harmonics; ++j)
+    {
+      double sum = 0.0;
+      for (std::size_t k = 0; k < harmonics; ++k)
+      {
+        sum += matrix[j * harmonics + k] * turned[k];
+      }
+      light.scatteredMoments[first + j * channels] = static_cast<float>(sum);
+    }
+  }
+}
+
+void SlabTurn::Undo(LightField& light, const Grid& grid) const
+{
+  for (std::size_t i = 0; i < light.netFlux.size(); i += 3)
+  {
+    const std::array<float, 3> flux =
+      this->TurnedBack<float>({ light.netFlux[i], light.netFlux[i + 1], light.netFlux[i + 2] });
+    std::copy(flux.begin(), flux.end(), light.netFlux.begin() + static_cast<std::ptrdiff_t>(i));
+  }
+  for (std::array<double, 3>& direction : light.storedDirections)
+  {
+    direction = this->TurnedBack(direction);
+  }
+  for (Light& lamp : light.lampsApart)
+  {
+    lamp.direction = this->TurnedBack(lamp.direction);
+  }
+  this->TurnBackCells(light.surfaceRadiance, grid);
+  this->TurnBackCells(light.facePower, grid);
+  const std::array<Rgb, 6> power = light.facePowerOut, albedo = light.faceAlbedo;
+  for (int face = 0; face < 6; ++face)
+  {
+    light.facePowerOut[face] = power[this->FaceWhenTurned(face)];
+    light.faceAlbedo[face] = albedo[this->FaceWhenTurned(face)];
+  }
+  if (!light.scatteredMoments.empty())
+  {
+    this->TurnBackMoments(light, grid);
+  }
+}
+}
