@@ -450,12 +450,13 @@ __kernel void diffusion_balance(DiffusionLayout layout, const __global float* si
   right[i] = power;
 }
 
-// A voxel's faces at the box's border, [face][row][voxel of the row], four values each:
-//   power out of the box, W
+// A voxel's faces at the box's border, [face][row][voxel of the row], five values each:
+//   power out of the box less what came in in the sweep, W
 //   power out of the box in the sweep, W, an estimate
 //   weight of the transport correction, where the voxel has several such faces, else -1
 //   power out less in, W, without the transport correction: that is right for a face of the box as a whole, but not
 //   from voxel to voxel
+//   power that came in in the sweep, W
 __kernel void diffusion_outflow(DiffusionLayout layout, const __global float* sigma_t, const __global float* sigma_a,
   const __global float* swept, const __global float* flat_source, const __global float* conductance,
   const __global float* currents, const __global float* passed, const __global float* model,
@@ -482,16 +483,17 @@ __kernel void diffusion_outflow(DiffusionLayout layout, const __global float* si
     const int v = d / 2 == 2 ? 1 : 2;
     if (is_border(&layout, at, d))
     {
-      __global exact* face = outflow + 4 * (begin + at[v] * layout.size[u] + at[u]);
+      __global exact* face = outflow + 5 * (begin + at[v] * layout.size[u] + at[u]);
       const float none[6] = { 0.0f };
       face[3] = power_of_face(&layout, &arrays, fluence, d, i, next, at, none);
-      face[0] = face[3] + part_that_leaves(&layout, &arrays, d, i) * share[d] + currents[d * stride + i];
+      face[0] = face[3] + part_that_leaves(&layout, &arrays, d, i) * share[d];
 #if FACES
       faces[FaceLeaves * face_cells(&layout) + cell_of_face(&layout, at, d)] =
         (float)power_leaving(&layout, &arrays, fluence, d, i, next, at, share[d]);
 #endif
       face[1] = seeming[d];
       face[2] = borders > 1 ? transport_weight : -1.0f;
+      face[4] = currents[d * stride + i];
     }
     begin += layout.size[u] * layout.size[v];
   }

@@ -16,6 +16,7 @@ namespace
 {
 constexpr double Floor = 0.05;     ///< optical length between centres of voxels that pass light as if it were that long
 constexpr double Reduction = 1e-3; ///< of the residual in one correction: sweeps gain less than that
+constexpr int PerBorder = 5;       ///< values of a voxel's face at the box's border (diffusion_outflow)
 
 /// Rounding can leave dark faces a little below 0: they become 0, and the others are scaled so that the sum stays.
 std::array<double, 6> NotNegative(std::array<double, 6> powers)
@@ -65,7 +66,7 @@ DiffusionSystem::DiffusionSystem(Device& device, const Grid& grid, const std::ar
   this->Next = ExactValues(device, this->Values(), what);
   this->Solution = ExactValues(device, this->Values(), what);
   this->Solution.Fill(0.0); // a dark channel is never solved for
-  this->Borders = ExactValues(device, 4 * BoxFaceCellCount(grid), what);
+  this->Borders = ExactValues(device, PerBorder * BoxFaceCellCount(grid), what);
 
   cl::Kernel flat_source = this->Kernel("diffusion_flat_source");
   With(flat_source, this->Layout, *arrays.sigma_t, *arrays.swept, this->FlatSource);
@@ -140,25 +141,33 @@ std::vector<double> DiffusionSystem::Found() const
   return found;
 }
 
-std::array<double, 6> DiffusionSystem::Outflow(const std::array<double, 6>& ofSweep)
+std::array<double, 6> DiffusionSystem::Outflow(double entered, const std::array<double, 6>& ofSweep)
 {
   this->RunOnArrays("diffusion_outflow", this->Solution.Handle(), this->Borders.Handle());
   const std::vector<double> borders = this->Borders.Read();
   std::array<double, 6> outflow = {};
   std::array<double, 6> missing = ofSweep; // of what seems to leave
+  std::array<double, 6> came = {};
   double transport_weight = 0.0, shared = 0.0;
   std::size_t at = 0;
   for (int face = 0; face < 6; ++face)
   {
     const PlaneAxes axes = AcrossAxis(face / 2);
-    for (int i = 0; i < this->Layout.size[axes.u] * this->Layout.size[axes.v]; ++i, at += 4)
+    for (int i = 0; i < this->Layout.size[axes.u] * this->Layout.size[axes.v]; ++i, at += PerBorder)
     {
       outflow[face] += borders[at];
+      came[face] += borders[at + 4];
       missing[face] -= borders[at + 1];
       const bool several = borders[at + 2] > 0.0;
       transport_weight += several ? borders[at + 2] : 0.0;
       shared += several ? 1.0 : 0.0;
     }
+  }
+  // Thousands of rays through one cell, added in floats, are off by 1e-5.
+  const double allCame = std::accumulate(came.begin(), came.end(), 0.0);
+  for (int face = 0; face < 6; ++face)
+  {
+    outflow[face] += allCame > 0.0 ? came[face] * (entered / allCame) : 0.0;
   }
   const double all = std::accumulate(missing.begin(), missing.end(), 0.0);
   const double left = std::accumulate(ofSweep.begin(), ofSweep.end(), 0.0);
@@ -175,7 +184,7 @@ SurfacePowers DiffusionSystem::PowersAtSurface() const
   const std::vector<double> borders = this->Borders.Read();
   SurfacePowers powers;
   powers.halfRange = this->Layout.halfRange;
-  const std::size_t cells = borders.size() / 4;
+  const std::size_t cells = borders.size() / PerBorder;
   const std::vector<float> faces = this->Reflects() ? this->The.faces->Read() : std::vector<float>();
   const auto row = [&](std::size_t number) {
     return faces.empty() ? faces
@@ -188,7 +197,7 @@ SurfacePowers DiffusionSystem::PowersAtSurface() const
     powers.in[face] = this->Layout.incoming[face];
     const PlaneAxes axes = AcrossAxis(face / 2);
     const double area = this->Layout.spacing[axes.u] * this->Layout.spacing[axes.v];
-    for (int i = 0; i < this->Layout.size[axes.u] * this->Layout.size[axes.v]; ++i, at += 4)
+    for (int i = 0; i < this->Layout.size[axes.u] * this->Layout.size[axes.v]; ++i, at += PerBorder)
     {
       powers.net.push_back(borders[at] / area);
       if (!back.empty())
