@@ -134,7 +134,8 @@ void DiffusionAcceleration::MakeSweep()
 /// No flux: it comes from the system.
 Deposit DiffusionAcceleration::DepositOfSweep() const
 {
-  return { &this->Parts.Path, nullptr, &this->PartialCurrents, nullptr, this->Parts.WholeDeposit().faceOut };
+  const Deposit whole = this->Parts.WholeDeposit();
+  return { whole.path, nullptr, &this->PartialCurrents, nullptr, whole.faceOut, whole.spreadsAside };
 }
 
 /// From the source that is there to path integrals and partial currents. The light that comes in from outside comes in
@@ -260,10 +261,12 @@ std::vector<double> DiffusionAcceleration::LeftWithoutPattern() const
       const double tau = longest * this->TheMedium.TransportSigmaT(cell.voxel, static_cast<int>(c));
       const double area = grid.VoxelVolume() / grid.spacing[cell.face / 2];
       const double in = rows[FaceCame * cells + cell.number] + incoming[cell.face][c] * area;
-      const double pattern = faces.Pattern(cell.number);
-      const double net = rows[FaceLeft * cells + cell.number] - pattern * in; // of the sweep
+      const double pattern = faces.Pattern(cell.number), swept = rows[FaceLeft * cells + cell.number];
       double& here = smooth[c * cells + cell.number];
-      here = std::max(here + (1.0 / pattern - 1.0) * net / (1.0 + 0.25 * tau * tau), 0.0);
+      const double change = this->Parts.SpreadsAside()
+        ? swept / pattern - (here - this->LeftUncollided[c * cells + cell.number])
+        : (1.0 / pattern - 1.0) * (swept - pattern * in);
+      here = std::max(here + change / (1.0 + 0.25 * tau * tau), 0.0);
     });
   }
   return faces.ScaledTo(std::move(smooth), left);

@@ -14,9 +14,37 @@ namespace
 /// W that radiance 1 brings through the cells of one row of a face: all cells of a plane alike.
 using ByPlane = std::array<std::vector<double>, 6>;
 
-/// The moves aside of a bundle's rays, as SweepBorder has them; of a short periodic axis in laps (SweepPlan::LayLaps).
-void AddAside(const Bundle& bundle, const PlaneAxes& axes, int size, int planes, ByPlane& power)
+/// Along which axis rays march, and what they stand for.
+struct Aside
 {
+  PlaneAxes axes;
+  int size;      ///< planes
+  bool periodic; ///< around them
+  bool spreads;  ///< Deposit::spreadsAside
+};
+
+/// Adds power to the plane where rays move aside, or to all planes up to where the next ones do, as SweepFaces.cl.
+void AddSpread(const Aside& aside, double tangent, int plane, double power, std::vector<double>& to)
+{
+  if (!aside.spreads)
+  {
+    to[plane] += power;
+    return;
+  }
+  const double planes = tangent * aside.size > 1.0 ? 1.0 / tangent : aside.size, middle = plane + 0.5;
+  const double begin = aside.periodic ? middle - 0.5 * planes : std::max(middle - 0.5 * planes, 0.0);
+  const double end = aside.periodic ? middle + 0.5 * planes : std::min(middle + 0.5 * planes, 1.0 * aside.size);
+  for (int p = static_cast<int>(std::floor(begin)); p < end; ++p)
+  {
+    to[(p + aside.size) % aside.size] += power * (std::min(end, p + 1.0) - std::max(begin, 1.0 * p)) / (end - begin);
+  }
+}
+
+/// The moves aside of a bundle's rays, as SweepBorder has them; of a short periodic axis in laps (SweepPlan::LayLaps).
+void AddAside(const Bundle& bundle, const Aside& aside, ByPlane& power)
+{
+  const PlaneAxes& axes = aside.axes;
+  const int size = aside.size, planes = PlanesOfPattern(size, aside.periodic);
   const double ofLap = bundle.power * size / planes;
   for (int k = 0; k < planes; ++k)
   {
@@ -34,11 +62,13 @@ void AddAside(const Bundle& bundle, const PlaneAxes& axes, int size, int planes,
           const bool goes = (way ? member.opposite : member.direction) >= 0;
           if (du != 0 && goes)
           {
-            power[EntryFace(axes.u, du > 0)][plane] += ofLap * segment.part;
+            const double tangent = member.uFromU != 0 ? bundle.tangentU : bundle.tangentV;
+            AddSpread(aside, tangent, plane, ofLap * segment.part, power[EntryFace(axes.u, du > 0)]);
           }
           if (dv != 0 && goes)
           {
-            power[EntryFace(axes.v, dv > 0)][plane] += ofLap * segment.part;
+            const double tangent = member.vFromU != 0 ? bundle.tangentU : bundle.tangentV;
+            AddSpread(aside, tangent, plane, ofLap * segment.part, power[EntryFace(axes.v, dv > 0)]);
           }
         }
       }
@@ -75,15 +105,14 @@ FaceLight::FaceLight(
 }
 
 std::vector<double> SweptPowerIn(
-  const Grid& grid, const std::array<bool, 3>& periodic, const SweptDirections& directions)
+  const Grid& grid, const std::array<bool, 3>& periodic, const SweptDirections& directions, bool spreads)
 {
   std::vector<double> power(BoxFaceCellCount(grid), 0.0);
   for (int axis = 0; axis < 3; ++axis)
   {
-    const PlaneAxes axes = AcrossAxis(axis);
-    const int size = grid.size[axis];
-    ByPlane aside;
-    aside.fill(std::vector<double>(size, 0.0));
+    const Aside aside = { AcrossAxis(axis), grid.size[axis], periodic[axis], spreads };
+    ByPlane byPlane;
+    byPlane.fill(std::vector<double>(aside.size, 0.0));
     std::array<double, 2> ahead = {}; // through the low face, and the high one
     for (const Bundle& bundle : directions.Along(axis))
     {
@@ -92,11 +121,11 @@ std::vector<double> SweptPowerIn(
         ahead[0] += member.direction >= 0 ? bundle.power : 0.0;
         ahead[1] += member.opposite >= 0 ? bundle.power : 0.0;
       }
-      AddAside(bundle, axes, size, PlanesOfPattern(size, periodic[axis]), aside);
+      AddAside(bundle, aside, byPlane);
     }
     ForBoxFaceCells(grid, [&](const BoxFaceCell& cell) {
       const int plane = grid.VoxelAt(cell.voxel)[axis];
-      power[cell.number] += cell.face / 2 == axis ? ahead[cell.face % 2] : aside[cell.face][plane];
+      power[cell.number] += cell.face / 2 == axis ? ahead[cell.face % 2] : byPlane[cell.face][plane];
     });
   }
   return power;

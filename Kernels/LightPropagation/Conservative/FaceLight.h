@@ -73,6 +73,7 @@ private:
 
 /// W that radiance 1 brings through each cell of the box's faces along the rays of sweeps, which come in through some
 /// planes of voxels more than through others.
+/// @param spreads  each through all cells that it stands for (Deposit::spreadsAside)
 std::vector<double> SweptPowerIn(
-  const Grid& grid, const std::array<bool, 3>& periodic, const SweptDirections& directions);
+  const Grid& grid, const std::array<bool, 3>& periodic, const SweptDirections& directions, bool spreads);
 }

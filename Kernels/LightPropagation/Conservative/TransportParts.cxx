@@ -145,7 +145,7 @@ void TransportParts::FindFaceLight()
   {
     const Grid& grid = this->Layout.grid;
     this->Faces = std::make_unique<FaceLight>(this->TheDevice, grid, this->Layout.channels,
-      SweptPowerIn(grid, this->Problem.Settings().periodic, this->Usual), shining.faceAlbedo);
+      SweptPowerIn(grid, this->Problem.Settings().periodic, this->Usual, !Reflects(shining)), shining.faceAlbedo);
   }
 }
 
@@ -161,7 +161,7 @@ SweepBoundary TransportParts::BoundaryOfSweeps() const
 Deposit TransportParts::WholeDeposit() const
 {
   return { &this->Path, this->Flux.Size() > 0 ? &this->Flux : nullptr, nullptr, nullptr,
-    this->Faces ? &this->Faces->Out() : nullptr };
+    this->Faces ? &this->Faces->Out() : nullptr, this->SpreadsAside() };
 }
 
 std::vector<AxisBundles> TransportParts::AllRays() const

@@ -83,6 +83,8 @@ public:
   std::vector<Light> LampsOf(const Illumination& illumination) const;
   using Sources = std::vector<std::unique_ptr<UncollidedSource>>;
   bool FacesReflect() const { return this->Faces && this->Faces->Reflects(); }
+  /// Deposit::spreadsAside: but for light that comes back, through the cells that it comes in through.
+  bool SpreadsAside() const { return this->Faces && !this->Faces->Reflects(); }
   /// What comes in by cells, for SweepRequest::faceIn; null: nothing.
   const Buffer<float>* LightByCells() const { return this->FacesReflect() ? &this->Faces->In() : nullptr; }
 

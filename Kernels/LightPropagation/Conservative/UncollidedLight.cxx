@@ -88,7 +88,8 @@ void UncollidedLight::AddSources(const Monitor& monitor)
     }
     firstMoments.Fill(0.0f);
     path.Fill(0.0f);
-    const Deposit ofLamp = { &path, parts.WholeDeposit().flux, nullptr, &firstMoments, parts.WholeDeposit().faceOut };
+    const Deposit whole = parts.WholeDeposit();
+    const Deposit ofLamp = { &path, whole.flux, nullptr, &firstMoments, whole.faceOut, whole.spreadsAside };
     Add(this->OfSources, parts.AddUncollided(*lamp, ofLamp, monitorOfNext()));
     this->PassFaces(path, firstMoments);
     if (parts.Basis)

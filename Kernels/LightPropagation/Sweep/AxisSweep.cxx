@@ -87,10 +87,13 @@ struct AxisSweep::Implementation
     bool border; ///< light comes in through the faces that rays pass sideways
     bool faceIn; ///< and by cells
     bool flux, faceOut;
+    bool spreadsAside; ///< Deposit::spreadsAside
   };
   cl::Kernel SweepKernel(const Wanted& wanted);
-  FaceInfo Faces(std::size_t firstChannel) const;
+  FaceInfo Faces(std::size_t firstChannel, const Deposit& to) const;
   void EnterByCells(const SweepVolume& volume);
+  const Buffer<float>& CellsOf(const Deposit& to);
+  void LeaveSideways(const Deposit& to);
   void LeaveByCells(const SweepVolume& volume);
 
   /// As SweepBorder has them.
@@ -110,6 +113,7 @@ struct AxisSweep::Implementation
   Buffer<float> OwnMaps;           ///< of a periodic axis
   Buffer<float> Outside, Radiance; ///< as SweepBorder has them
   Buffer<float> Sideways;          ///< power that left: [plane][unit][-u, +u, -v, +v][channel]
+  Buffer<float> FacesOfUnits;      ///< power that left through cells aside, as Deposit::faceOut: [unit][channel][cell]
   Buffer<float> Sums;              ///< power in the maps: [way][bundle][row][channel]
   Buffer<BundleInfo> Bundles;
   Buffer<BundleMaps> MapPlaces;
@@ -206,7 +210,7 @@ void AxisSweep::Implementation::CrossOnce(const SweepVolume& volume, const Entry
     this->Plan.laps == 1 ? Schedule{ this->FirstSchedule, this->Plan.launches } : this->Rounds();
   const Deposit& to = volume.deposit;
   const Wanted wanted = { entry.source, entry.border, volume.faceIn != nullptr, to.flux != nullptr,
-    to.faceOut != nullptr };
+    to.faceOut != nullptr, to.spreadsAside };
   this->Launch(this->SweepKernel(wanted), volume, this->FirstCrossings, schedule, entry.mapsEmpty, monitor);
 }
 
@@ -223,7 +227,8 @@ void AxisSweep::Implementation::GoRound(const SweepVolume& volume, int mostPlane
   for (int gone = planes; gone < mostPlanes && Sum(onTheWay) > NothingLeft * atFirst; gone += planes)
   {
     const Buffer<CrossingInfo> crossings(this->TheDevice, this->Plan.Crossings(gone, planes), "the ray pattern");
-    const Wanted wanted = { false, false, false, volume.deposit.flux != nullptr, volume.deposit.faceOut != nullptr };
+    const Deposit& to = volume.deposit;
+    const Wanted wanted = { false, false, false, to.flux != nullptr, to.faceOut != nullptr, to.spreadsAside };
     this->Launch(this->SweepKernel(wanted), volume, crossings, this->Rounds(), false, monitor);
     this->CountSideways();
     onTheWay = this->PowerOnTheWay();
@@ -252,8 +257,8 @@ void AxisSweep::Implementation::Launch(cl::Kernel kernel, const SweepVolume& vol
   info.patternPlanes = plan.PatternPlanes();
   info.axis = plan.axes.axis;
   info.planes = plan.plane;
-  info.faces = this->Faces(volume.faceFirst);
-  const Buffer<float>& faceOut = volume.deposit.faceOut ? *volume.deposit.faceOut : *volume.deposit.path;
+  info.faces = this->Faces(volume.faceFirst, volume.deposit);
+  const Buffer<float>& faceOut = this->CellsOf(volume.deposit);
   const Buffer<float>& faceIn = volume.faceIn ? *volume.faceIn : *volume.deposit.path;
   info.moments = plan.moments;
   info.packedMoments = plan.momentRow;
@@ -272,12 +277,13 @@ void AxisSweep::Implementation::Launch(cl::Kernel kernel, const SweepVolume& vol
 }
 
 /// Where the cells are of the faces that rays of this axis pass sideways.
-FaceInfo AxisSweep::Implementation::Faces(std::size_t firstChannel) const
+FaceInfo AxisSweep::Implementation::Faces(std::size_t firstChannel, const Deposit& to) const
 {
   const PlaneAxes& axes = this->Plan.axes;
   FaceInfo faces = {};
   faces.firstChannel = firstChannel;
   faces.stride = BoxFaceCellCount(this->Plan.grid);
+  faces.unit = to.faceOut && to.spreadsAside ? to.faceOut->Size() : 0;
   for (int side = 0; side < 4; ++side)
   {
     const int aside = side < 2 ? axes.u : axes.v;
@@ -310,6 +316,30 @@ void AxisSweep::Implementation::EnterByCells(const SweepVolume& volume)
   this->TheDevice.Finish(); // the powers go
 }
 
+/// Where sideways moves leave light: units that go side by side would meet in cells that rays share.
+const Buffer<float>& AxisSweep::Implementation::CellsOf(const Deposit& to)
+{
+  if (!to.faceOut || !to.spreadsAside)
+  {
+    return to.faceOut ? *to.faceOut : *to.path;
+  }
+  if (this->FacesOfUnits.Size() == 0)
+  {
+    this->FacesOfUnits = Buffer<float>(
+      this->TheDevice, this->Plan.units.size() * to.faceOut->Size(), "the power that leaves by cells");
+    this->FacesOfUnits.Fill(0.0f);
+  }
+  return this->FacesOfUnits;
+}
+
+/// From the units' own cells.
+void AxisSweep::Implementation::LeaveSideways(const Deposit& to)
+{
+  cl::Kernel kernel = this->TheDevice.Kernel("take_faces_of_units", kernel_source::SweepMaps);
+  With(kernel, this->FacesOfUnits, cl_int(this->Plan.units.size()), cl_ulong(to.faceOut->Size()), *to.faceOut);
+  this->TheDevice.Queue().enqueueNDRangeKernel(kernel, cl::NullRange, cl::NDRange(to.faceOut->Size()));
+}
+
 /// Out of the maps, where the axis is open: through the faces at the far ends.
 void AxisSweep::Implementation::LeaveByCells(const SweepVolume& volume)
 {
@@ -329,7 +359,7 @@ cl::Kernel AxisSweep::Implementation::SweepKernel(const Wanted& wanted)
   const SweepPlan& plan = this->Plan;
   std::string options = Define("REAL_WIDTH", plan.vector) + Define("CHANNELS", plan.channels) +
     Define("ROW", plan.row) + Define("SOURCE", wanted.source) + Define("BORDER", wanted.border) +
-    Define("NET_FLUX", wanted.flux) + Define("FACE_OUT", wanted.faceOut) + Define("FACE_IN", wanted.faceIn) +
+    Define("NET_FLUX", wanted.flux) + Define("FACE_OUT", wanted.faceOut) + Define("FACE_SPREAD", wanted.spreadsAside) + Define("FACE_IN", wanted.faceIn) +
     Define("CURRENTS", plan.partialCurrents) + DefineMoments(plan) + Define("PERIODIC_P", this->IsPeriodic()) +
     Define("PERIODIC_U", plan.periodic[plan.axes.u]) + Define("PERIODIC_V", plan.periodic[plan.axes.v]);
   for (int members = 1; members <= MaxMembers; members *= 2)
@@ -450,6 +480,10 @@ void AxisSweep::Start(const SweepVolume& volume, const SweepBoundary& boundary, 
     {
       self.LeaveByCells(volume);
     }
+  }
+  if (volume.deposit.faceOut && volume.deposit.spreadsAside)
+  {
+    self.LeaveSideways(volume.deposit);
   }
 }
 

@@ -22,6 +22,9 @@ struct Deposit
   /// W that leaves through each cell of the box's faces, [channel][cell] (BoxFaces.h), added to; null: not wanted. The
   /// whole grid is swept then.
   const Buffer<float>* faceOut = nullptr;
+  /// Rays that run nearly along a face reach it every so many cells, and stand for what leaves through all of them:
+  /// their power is spread over these. False: it leaves through the cell that a ray comes to, as light comes in.
+  bool spreadsAside = false;
 };
 
 /// Optical length of voxels below which lamps' light is taken as lost evenly.

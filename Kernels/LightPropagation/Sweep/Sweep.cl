@@ -484,7 +484,8 @@ static void cross_bundles(sweep_state* state, __global float* maps, const __glob
 // schedule  [launch][unit] first plane and end, counted from where rays start; beyond the last plane the axis begins
 //           anew
 // tally     [plane from where rays start][unit][-u, +u, -v, +v][channel] W that left
-// face_out, face_in  see Deposit.h, SweepOperator.h; where FACE_OUT, FACE_IN
+// face_out, face_in  see Deposit.h, SweepOperator.h; where FACE_OUT, FACE_IN; face_out [unit][channel][cell] where
+//           FACE_SPREAD
 __kernel __attribute__((reqd_work_group_size(1, 1, 1))) void sweep(SweepInfo info, const __global float* sigma,
   const __global float* source, __global float* path, __global float* lost, __global float* flux,
   __global float* currents, __global float* maps, const __global float* outside, const __global float* radiance,
@@ -517,7 +518,8 @@ __kernel __attribute__((reqd_work_group_size(1, 1, 1))) void sweep(SweepInfo inf
   state.faces = &faces;
 #endif
 #if FACE_OUT
-  state.faceOut = face_out;
+  state.faceOut = face_out + u * faces.unit;
+  state.facePlanes = layout.sizeP;
 #endif
 #if FACE_IN
   state.faceIn = face_in;
@@ -587,6 +589,9 @@ __kernel __attribute__((reqd_work_group_size(1, 1, 1))) void sweep(SweepInfo inf
       state.thin = thin + (plane - first) * layout.sizeV;
 #if FACE_OUT || FACE_IN
       go_to_faces(&state, layout.firstP + plane);
+#endif
+#if FACE_OUT
+      state.facePlane = plane;
 #endif
 #if DEGREE && MOMENTS_IN_PLACE
       const ulong line = info.moments.channels * channel;

@@ -153,9 +153,8 @@ static void STAGE_ROW(sweep_state* state, int y, int slot, bool first, bool depo
 // faces, and half of what comes in beside it goes straight through.
 // across_u, across_v  rays that come in through the faces across u and v, at [FIRST(m, c)] of the row and at [m][c],
 //                     but those that come in by cells
-// power  of a ray at radiance 1
 static void COUNT_ESCAPED(sweep_state* state, const __global float* row, int y, int m, int du, int dv, float part,
-  float power, const __global float* across_u, const __global float* across_v)
+  const __global BundleInfo* bundle, const __global float* across_u, const __global float* across_v)
 {
   const bool through_v = !PERIODIC_V && ((dv < 0 && y == 0) || (dv > 0 && y == state->sizeV - 1));
   const bool through_u = !PERIODIC_U && du != 0;
@@ -168,15 +167,16 @@ static void COUNT_ESCAPED(sweep_state* state, const __global float* row, int y, 
     {
       const int side = du > 0 ? 1 : 0;
 #if FACE_IN
-      const float beyond = across_v[FIRST(m, c)] + power * light_of_cell(state, dv > 0 ? 2 : 3, edge, c);
+      const float beyond = across_v[FIRST(m, c)] + bundle->power * light_of_cell(state, dv > 0 ? 2 : 3, edge, c);
 #else
       const float beyond = across_v[FIRST(m, c)];
 #endif
       add_exactly(
         &state->escaped[side][c], &state->rounding[side][c], part * (rays[edge] - turned * (rays[edge] - beyond)));
 #if FACE_OUT
-      leave_through(state, side, y, c, part * (1.0f - turned) * rays[edge]);
-      leave_through(state, side, dv > 0 ? 0 : state->sizeV - 1, c, part * turned * beyond);
+      const face_planes of = planes_of_ray(state, bundle->move[m][0] != 0 ? bundle->planesU : bundle->planesV);
+      leave_through(state, side, y, c, of, part * (1.0f - turned) * rays[edge]);
+      leave_through(state, side, dv > 0 ? 0 : state->sizeV - 1, c, of, part * turned * beyond);
 #endif
     }
     if (through_v)
@@ -184,16 +184,17 @@ static void COUNT_ESCAPED(sweep_state* state, const __global float* row, int y, 
       const int side = dv > 0 ? 3 : 2;
 #if FACE_IN
       const float beyond =
-        across_u[m * CHANNELS + c] + (turned > 0.0f ? power * light_of_cell(state, du > 0 ? 0 : 1, y, c) : 0.0f);
+        across_u[m * CHANNELS + c] + (turned > 0.0f ? bundle->power * light_of_cell(state, du > 0 ? 0 : 1, y, c) : 0.0f);
 #else
       const float beyond = across_u[m * CHANNELS + c];
 #endif
       const float all = sum_of_row(rays, state->sizeU);
       add_exactly(&state->escaped[side][c], &state->rounding[side][c], part * (all - turned * (rays[edge] - beyond)));
 #if FACE_OUT
-      leave_all_through(state, side, c, rays, part);
-      leave_through(state, side, edge, c, -part * turned * rays[edge]);
-      leave_through(state, side, du > 0 ? 0 : state->sizeU - 1, c, part * turned * beyond);
+      const face_planes of = planes_of_ray(state, bundle->move[m][2] != 0 ? bundle->planesU : bundle->planesV);
+      leave_all_through(state, side, c, of, rays, part);
+      leave_through(state, side, edge, c, of, -part * turned * rays[edge]);
+      leave_through(state, side, du > 0 ? 0 : state->sizeU - 1, c, of, part * turned * beyond);
 #endif
     }
   }
@@ -402,7 +403,7 @@ static void CROSS_PLANE(sweep_state* state, __global float* map, const __global 
           row = before + (from & (RingRows - 1)) * RAYS_OF_ROW;
           if (inside && (du != 0 || dv != 0))
           {
-            COUNT_ESCAPED(state, own, y, m, du, dv, part, bundle->power, radiance, outside);
+            COUNT_ESCAPED(state, own, y, m, du, dv, part, bundle, radiance, outside);
           }
         }
         if (!PERIODIC_V && (from < 0 || from >= height))

@@ -23,19 +23,68 @@ static void go_to_faces(sweep_state* state, int plane)
 #endif
 
 #if FACE_OUT
-static void leave_through(const sweep_state* state, int side, int i, int c, float power)
+// The planes whose cells a ray leaves through. Rays that run nearly along a face reach it only every so many planes;
+// with FACE_SPREAD each leaves through all cells that lie between it and the next.
+typedef struct
 {
-  state->faceOut[FACE_CELL(state, side, i, c)] += power;
+  float begin, end;
+} face_planes;
+
+// @param planes  from one ray to the next
+static face_planes planes_of_ray(const sweep_state* state, float planes)
+{
+#if FACE_SPREAD
+  const float middle = state->facePlane + 0.5f;
+#if PERIODIC_P
+  const face_planes found = { middle - 0.5f * planes, middle + 0.5f * planes };
+#else
+  const face_planes found = { fmax(middle - 0.5f * planes, 0.0f),
+    fmin(middle + 0.5f * planes, (float)state->facePlanes) };
+#endif
+#else
+  const face_planes found = { state->facePlane, state->facePlane + 1.0f };
+#endif
+  return found;
+}
+
+// Where the cells of plane p of a side begin.
+static __global float* cells_of_plane(const sweep_state* state, int side, int p, int c)
+{
+#if FACE_SPREAD && PERIODIC_P
+  p = (p + state->facePlanes) % state->facePlanes;
+#endif
+  const long planes = p - state->facePlane;
+  return state->faceOut + FACE_CELL(state, side, 0, c) +
+    planes * state->faces->plane[side];
+}
+
+// Part of a ray that leaves through plane p.
+static float part_of_plane(face_planes of, int p)
+{
+  return (fmin(of.end, p + 1.0f) - fmax(of.begin, (float)p)) / (of.end - of.begin);
+}
+
+static void leave_through(const sweep_state* state, int side, int i, int c, face_planes of, float power)
+{
+  for (int p = (int)floor(of.begin); p < of.end; ++p)
+  {
+    cells_of_plane(state, side, p, c)[i * state->faces->along[side]] += part_of_plane(of, p) * power;
+  }
 }
 
 // A row of rays, through the cells of one side.
-static void leave_all_through(const sweep_state* state, int side, int c, const __global float* rays, float part)
+static void leave_all_through(
+  const sweep_state* state, int side, int c, face_planes of, const __global float* rays, float part)
 {
-  __global float* out = state->faceOut + FACE_CELL(state, side, 0, c);
   const int along = state->faces->along[side];
-  for (int x = 0; x < state->sizeU; ++x)
+  for (int p = (int)floor(of.begin); p < of.end; ++p)
   {
-    out[x * along] += part * rays[x];
+    __global float* out = cells_of_plane(state, side, p, c);
+    const float of_rays = part * part_of_plane(of, p);
+    for (int x = 0; x < state->sizeU; ++x)
+    {
+      out[x * along] += of_rays * rays[x];
+    }
   }
 }
 #endif

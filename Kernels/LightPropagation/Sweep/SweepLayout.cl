@@ -72,7 +72,8 @@ typedef struct
   ulong faceFirst[4]; // of the plane that is being crossed, first channel
 #endif
 #if FACE_OUT
-  __global float* faceOut;
+  __global float* faceOut;   // the unit's own
+  int facePlane, facePlanes; // that is being crossed; all of them
 #endif
 #if FACE_IN
   const __global float* faceIn;

@@ -78,6 +78,20 @@ __kernel void leave_by_cells(const __global float* maps, ulong maps_each_way, co
   }
 }
 
+// What left through cells of faces that rays pass sideways: the units' own are added up in their order, and cleared. A
+// work-item a value.
+__kernel void take_faces_of_units(__global float* units, int count, ulong values, __global float* face_out)
+{
+  const ulong i = get_global_id(0);
+  float sum = 0.0f;
+  for (int unit = 0; unit < count; ++unit)
+  {
+    sum += units[unit * values + i];
+    units[unit * values + i] = 0.0f;
+  }
+  face_out[i] += sum;
+}
+
 // The same the other way round: adds to the maps what comes in by cells of the faces where rays start.
 // power    [bundle] of a ray at radiance 1
 // face_in  W / (length^2 sr), [channel][cell]

@@ -204,9 +204,14 @@ BundleInfo SweepPlan::Describe(const Bundle& bundle) const
   const auto sine = [&](double tangent, int aside) {
     return static_cast<float>(tangent * spacing[aside] / spacing[this->axes.axis] * cosine);
   };
+  const auto planes = [this](double tangent) {
+    const double all = this->plane.sizeP;
+    return static_cast<float>(tangent * all > 1.0 ? 1.0 / tangent : all);
+  };
   BundleInfo description = { Int(bundle.members.size()), Int(this->mapsEachWay), Int(this->radianceEachWay),
     Int(this->outsideEachWay), static_cast<float>(bundle.power), static_cast<float>(cosine),
-    sine(bundle.tangentU, this->axes.u), sine(bundle.tangentV, this->axes.v), {}, 0, {}, 0, 0 };
+    sine(bundle.tangentU, this->axes.u), sine(bundle.tangentV, this->axes.v), planes(bundle.tangentU),
+    planes(bundle.tangentV), {}, 0, {}, 0, 0 };
   for (std::size_t m = 0; m < bundle.members.size(); ++m)
   {
     const Member& member = bundle.members[m];
