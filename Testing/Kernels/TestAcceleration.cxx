@@ -233,6 +233,24 @@ TEST_F(Acceleration, NetFluxIsTheSameThroughEveryPlaneOfASlabThatTakesNothing)
   }
 }
 
+/// Thousands of rays come in through one cell of a slab's face: their sum in floats is off by 1e-5.
+TEST_F(Acceleration, CountsWhatComesIntoSlabsToRounding)
+{
+  for (const int directions : { 64, 144 })
+  {
+    Scene scene({ 5, 1, 1 }, 0.001f, 5.0f);
+    scene.light.faces[0] = { 1.0, 1.0, 1.0 };
+    scene.settings.periodic = { false, true, true };
+    scene.settings.adaptDirections = false;
+    scene.settings.directionsPerFace = directions;
+    for (const bool leaveOut : { false, true })
+    {
+      scene.settings.leaveOut = leaveOut;
+      EXPECT_LT(scene.Solve(this->GetDevice()).balance.RelativeError(1), 1e-6) << directions;
+    }
+  }
+}
+
 TEST_F(Acceleration, LeavesThinMediaAsTheyAre)
 {
   const auto thin = [](int, int, int) { return 0.05; };

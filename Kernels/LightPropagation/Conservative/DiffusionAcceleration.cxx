@@ -383,11 +383,12 @@ void DiffusionAcceleration::CountLight()
   this->Found.clear();
   for (int c = 0; c < this->Parts.Layout.channels; ++c)
   {
-    std::array<double, 6> ofSweep;
+    std::array<double, 6> entered, ofSweep;
     for (int face = 0; face < 6; ++face)
     {
+      entered[face] = this->Tally.in[face][c];
       ofSweep[face] = this->Tally.out[face][c];
-      this->Result.ledger.Enter(c, this->Tally.in[face][c]);
+      this->Result.ledger.Enter(c, entered[face]);
     }
     if (!(this->VoxelPower(c) > 0.0))
     {
@@ -400,7 +401,7 @@ void DiffusionAcceleration::CountLight()
       this->Result.ledger.Absorb(
         c, static_cast<double>(this->TheMedium.sigma_a.At(i, c)) * this->Found[c][i] * grid.VoxelVolume());
     }
-    const std::array<double, 6> outflow = this->Systems[c]->Outflow(ofSweep);
+    const std::array<double, 6> outflow = this->Systems[c]->Outflow(entered, ofSweep);
     for (int face = 0; face < 6 && !this->Parts.Faces; ++face)
     {
       this->Result.ledger.Escape(c, face, outflow[face]);

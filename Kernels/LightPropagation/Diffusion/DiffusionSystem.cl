@@ -451,7 +451,7 @@ __kernel void diffusion_balance(DiffusionLayout layout, const __global float* si
 }
 
 // A voxel's faces at the box's border, [face][row][voxel of the row], four values each:
-//   power out of the box, W
+//   power out of the box less what came in in the sweep, W
 //   power out of the box in the sweep, W, an estimate
 //   weight of the transport correction, where the voxel has several such faces, else -1
 //   power out less in, W, without the transport correction: that is right for a face of the box as a whole, but not
@@ -485,7 +485,7 @@ __kernel void diffusion_outflow(DiffusionLayout layout, const __global float* si
       __global exact* face = outflow + 4 * (begin + at[v] * layout.size[u] + at[u]);
       const float none[6] = { 0.0f };
       face[3] = power_of_face(&layout, &arrays, fluence, d, i, next, at, none);
-      face[0] = face[3] + part_that_leaves(&layout, &arrays, d, i) * share[d] + currents[d * stride + i];
+      face[0] = face[3] + part_that_leaves(&layout, &arrays, d, i) * share[d];
 #if FACES
       faces[FaceLeaves * face_cells(&layout) + cell_of_face(&layout, at, d)] =
         (float)power_leaving(&layout, &arrays, fluence, d, i, next, at, share[d]);

@@ -140,11 +140,12 @@ std::vector<double> DiffusionSystem::Found() const
   return found;
 }
 
-std::array<double, 6> DiffusionSystem::Outflow(const std::array<double, 6>& ofSweep)
+std::array<double, 6> DiffusionSystem::Outflow(
+  const std::array<double, 6>& entered, const std::array<double, 6>& ofSweep)
 {
   this->RunOnArrays("diffusion_outflow", this->Solution.Handle(), this->Borders.Handle());
   const std::vector<double> borders = this->Borders.Read();
-  std::array<double, 6> outflow = {};
+  std::array<double, 6> outflow = entered; // not the sum of its rays in floats: of thousands of them that is off by 1e-5
   std::array<double, 6> missing = ofSweep; // of what seems to leave
   double transport_weight = 0.0, shared = 0.0;
   std::size_t at = 0;

@@ -84,9 +84,10 @@ public:
   /// W / length^2, what the last correction found.
   std::vector<double> Found() const;
   /// W out of the box through each of its faces, by the last correction; 0 where it is periodic.
+  /// @param entered  W that came in through each face in the sweep
   /// @param ofSweep  W that left through each face in the sweep, by which power at the box's edges is shared among
   /// faces
-  std::array<double, 6> Outflow(const std::array<double, 6>& ofSweep);
+  std::array<double, 6> Outflow(const std::array<double, 6>& entered, const std::array<double, 6>& ofSweep);
 
   /// W through each voxel's faces at the box's, of the last Outflow.
   SurfacePowers PowersAtSurface() const;
