@@ -77,6 +77,7 @@ void PublishedPlan::MeasureBuffers(int perBatch)
     const std::size_t rows = batch.Map().sizeV;
     this->raysSize = std::max(this->raysSize, 2 * slots * (rows + 2) * this->RayRow(batch)); // two ray maps
     this->escapedSize = std::max(this->escapedSize, slots * (2 * rows + 1));
+    this->leftSize = std::max(this->leftSize, slots * this->LeftStride(batch));
   }
   this->contributionsSize = perBatch * std::max(this->Volumes.LayoutSize(0), this->Volumes.LayoutSize(1));
   this->boundarySize = static_cast<std::size_t>(this->Model.Directions().PerFace()) * 3 * this->Volumes.Channels();
@@ -85,6 +86,13 @@ void PublishedPlan::MeasureBuffers(int perBatch)
 int PublishedPlan::RayRow(const Batch& batch) const
 {
   return RoundUp(batch.Map().sizeU, this->Volumes.Width) + 2 * this->Volumes.Width;
+}
+
+std::size_t PublishedPlan::LeftStride(const Batch& batch) const
+{
+  const MapGeometry& map = batch.Map();
+  return static_cast<std::size_t>(map.planes) * (map.sizeU + map.sizeV) +
+    static_cast<std::size_t>(map.sizeU) * map.sizeV;
 }
 
 std::size_t PublishedPlan::CarriedStride(const Batch& batch) const
@@ -139,11 +147,7 @@ void PublishedPlan::MakePasses(Batch& batch, int order) const
 
 GridWalk PublishedPlan::Walk(const MapGeometry& map, int subMap, int order) const
 {
-  const int resolution = this->Settings.mapResolution;
-  const int column = subMap % resolution;
-  const int row = subMap / resolution;
-  return { map.StartOfOrder((column + 0.5) / resolution, map.slopeU, order),
-    map.StartOfOrder((row + 0.5) / resolution, map.slopeV, order), map.slopeU, map.slopeV, map.planes };
+  return map.Walk(this->Settings.mapResolution, subMap, order);
 }
 
 /// Adds the crossings of the batch's direction i, and where it ends.
