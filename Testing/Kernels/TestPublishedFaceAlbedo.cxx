@@ -145,7 +145,7 @@ TEST_F(PublishedFaceAlbedo, IsTheGeometricSeriesOfTheSameScheme)
     std::array<int, 3> size = { 1, 1, 1 };
     size[face / 2] = 6;
     Scene scene(size, 0.05f, 0.3f);
-    scene.settings.tolerance = 1e-7;
+    scene.settings.tolerance = 1e-9;
     scene.light.faces[face ^ 1] = Grey(1.0);
     this->Solve(scene, [&](const LightField& fromAbove) {
       Scene below = scene;
@@ -297,29 +297,24 @@ TEST_F(PublishedFaceAlbedo, IsGroundAsTheConservativeSchemeHasIt)
   {
     for (double cosine : { 0.0, 1.0 })
     {
-      const auto slab = [&](double ground, bool published) {
-        std::array<int, 3> size = { 8, 8, 8 };
-        size[axis] = 40;
-        Scene scene(size, 0.00125f, 0.01125f);
-        scene.settings.periodic = { axis != 0, axis != 1, axis != 2 };
-        scene.settings.uncollidedDirections = scene.settings.directionsPerFace;
-        scene.light.faceAlbedo[2 * axis] = Grey(ground);
-        std::array<double, 3> down = {};
-        down[axis] = -1.0;
-        cosine > 0.0 ? scene.ShineAlong(down) : static_cast<void>(scene.light.faces[2 * axis + 1] = Grey(1.0));
-        return published ? this->Parallel(scene) : scene.Solve(this->GetDevice());
-      };
-      for (double ground : { 0.3, 0.8, 1.0 })
+      std::array<int, 3> size = { 6, 6, 6 };
+      size[axis] = 40;
+      Scene scene(size, 0.00125f, 0.01125f);
+      scene.settings.periodic = { axis != 0, axis != 1, axis != 2 };
+      scene.settings.tolerance = 1e-3;
+      std::array<double, 3> down = {};
+      down[axis] = -1.0;
+      cosine > 0.0 ? scene.ShineAlong(down) : static_cast<void>(scene.light.faces[2 * axis + 1] = Grey(1.0));
+      for (double ground : axis == 2 ? std::vector<double>{ 0.3, 0.8, 1.0 } : std::vector<double>{ 0.8 })
       {
-        const LightField found = slab(ground, true), truth = slab(ground, false);
-        const LightField black = slab(0.0, true), blackTruth = slab(0.0, false);
-        std::printf("axis %d, cosine %g, ground %g: reflected %.4f (conservative %.4f), taken %.4f (%.4f); over black "
-                    "ground %.4f (%.4f), %.4f (%.4f); %zu orders, balance %.2g\n",
-          axis, cosine, ground, Part(found, 2 * axis + 1), Part(truth, 2 * axis + 1), Part(found, 2 * axis),
-          Part(truth, 2 * axis), Part(black, 2 * axis + 1), Part(blackTruth, 2 * axis + 1), Part(black, 2 * axis),
-          Part(blackTruth, 2 * axis), found.convergence.size(), found.balance.RelativeError(1));
-        EXPECT_NEAR(Part(found, 2 * axis + 1), Part(truth, 2 * axis + 1), 0.02);
-        EXPECT_NEAR(Part(found, 2 * axis), Part(truth, 2 * axis), 0.02);
+        scene.light.faceAlbedo[2 * axis] = Grey(ground);
+        const LightField found = this->Parallel(scene), truth = scene.Solve(this->GetDevice());
+        std::printf(
+          "axis %d, cosine %g, ground %g: reflected %.4f (conservative %.4f), taken %.4f (%.4f), balance %.2g\n", axis,
+          cosine, ground, Part(found, 2 * axis + 1), Part(truth, 2 * axis + 1), Part(found, 2 * axis),
+          Part(truth, 2 * axis), found.balance.RelativeError(1));
+        EXPECT_NEAR(Part(found, 2 * axis + 1), Part(truth, 2 * axis + 1), 0.01);
+        EXPECT_NEAR(Part(found, 2 * axis), Part(truth, 2 * axis), 0.01);
         EXPECT_TRUE(found.converged);
       }
     }
@@ -367,7 +362,8 @@ TEST_F(PublishedFaceAlbedo, IsTheSameFromTheLastLight)
     scene.light.faceAlbedo[4] = Grey(0.8);
     scene.light.faceAlbedo[1] = Grey(0.4);
     KeptLight kept;
-    const LightField first = this->Parallel(scene, &kept);
+    this->Parallel(scene, &kept);
+    EXPECT_EQ(this->Parallel(scene, &kept).convergence.size(), 2u) << "nothing changed";
     scene.sigma_s[30] *= 1.5f;
     scene.light.faceAlbedo[4] = Grey(0.78);
     const LightField warm = this->Parallel(scene, &kept), cold = this->Parallel(scene);
@@ -375,7 +371,7 @@ TEST_F(PublishedFaceAlbedo, IsTheSameFromTheLastLight)
       warm.convergence.size(), cold.convergence.size(), RelativeRmse(warm.fluence, cold.fluence));
     EXPECT_LE(RelativeRmse(warm.fluence, cold.fluence), 2e-5);
     EXPECT_TRUE(warm.converged);
-    EXPECT_LE(warm.convergence.size(), cold.convergence.size());
+    EXPECT_LT(warm.convergence.size(), cold.convergence.size());
     EXPECT_NEAR(warm.facePowerOut[4][0], cold.facePowerOut[4][0], 2e-5 * cold.balance.entered[0]);
     EXPECT_LE(RelativeRmse(warm.facePower, cold.facePower), 5e-5);
   }

@@ -317,7 +317,7 @@ void ParallelPropagation::Implementation::LookAtDirect()
   this->FluenceDirect = this->Volumes.ReadMoment(this->Volumes.OrderMoments[0], 0);
   if (this->Warm.Keeps())
   {
-    this->Warm.AddTo(this->Volumes, this->FluenceDirect);
+    this->Warm.AddTo(this->Volumes, this->Faces, this->FluenceDirect);
   }
   if (this->Warm.Begins())
   {
@@ -490,7 +490,7 @@ LightField ParallelPropagation::Result() const
 
 KeptLight ParallelPropagation::Left() const
 {
-  return this->Inner->Warm.Leave(this->Inner->Volumes, this->Inner->Ledger.Rate());
+  return this->Inner->Warm.Leave(this->Inner->Volumes, this->Inner->Faces, this->Inner->Ledger.Rate());
 }
 
 bool ParallelPropagation::BeganWarm() const

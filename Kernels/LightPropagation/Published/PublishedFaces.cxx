@@ -112,16 +112,22 @@ std::vector<double> PublishedFaces::PowerIn(int order) const
   return powers.Take();
 }
 
+double PublishedFaces::Guessed(std::size_t i, int order) const
+{
+  return this->Guess.empty() || order > 1 ? 0.0 : order == 0 ? this->Guess[i] : -this->Guess[i];
+}
+
 void PublishedFaces::CloseOrder(OrderLedger& ledger)
 {
   if (!this->Count())
   {
     return;
   }
+  this->First = ledger.Orders() == 0 ? this->Out : this->First;
   std::vector<double> back(this->Out.size());
   for (std::size_t i = 0; i < back.size(); ++i)
   {
-    back[i] = this->Reflection->AlbedoOf(i) * this->Out[i];
+    back[i] = this->Reflection->AlbedoOf(i) * (this->Out[i] + this->Guessed(i, ledger.Orders()));
     this->All[i] += this->Out[i];
     this->Even[i] += this->Out[i] / this->Reflection->Pattern(i % this->Cells());
   }
@@ -133,6 +139,14 @@ void PublishedFaces::CloseOrder(OrderLedger& ledger)
   this->Back = this->Reflection->RadianceOf(back, std::vector<double>(back.size(), 0.0));
   ledger.GiveBack(this->Reflection->PowerOfFaces(back));
   std::fill(this->Out.begin(), this->Out.end(), 0.0);
+}
+
+std::vector<float> PublishedFaces::LeftLater() const
+{
+  std::vector<float> later(this->All.size());
+  std::transform(this->All.begin(), this->All.end(), this->First.begin(), later.begin(),
+    [](double all, double first) { return static_cast<float>(all - first); });
+  return later;
 }
 
 void PublishedFaces::WriteTo(LightField& field) const

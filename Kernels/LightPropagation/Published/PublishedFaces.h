@@ -5,6 +5,7 @@
 
 #include <array>
 #include <optional>
+#include <utility>
 #include <vector>
 
 namespace tyndall
@@ -35,16 +36,22 @@ public:
 
   /// What left in the order that ends comes back in the next, which the ledger is told.
   void CloseOrder(OrderLedger& ledger);
+  /// W by cell, guessed to leave in all later orders (WarmStart): added to what leaves in the first, taken from what
+  /// leaves in the second. Empty: no guess.
+  void BeginWarm(std::vector<float> guess) { this->Guess = std::move(guess); }
+  std::vector<float> LeftLater() const; ///< what such a guess guesses; empty where cells are not counted
   void WriteTo(LightField& field) const; ///< facePower, faceAlbedo
 
 private:
   std::vector<double> PowerIn(int order) const;
+  double Guessed(std::size_t i, int order) const;
 
   Grid TheGrid;
   const PublishedModel& Model;
   PropagationSettings Settings;
   std::optional<FaceReflection> Reflection;
   std::vector<double> Out, All, Even; ///< of this order, of all, of all without the pattern of rays; [channel][cell]
-  std::vector<float> Back;
+  std::vector<double> First;                ///< of the first order
+  std::vector<float> Back, Guess;
 };
 }
