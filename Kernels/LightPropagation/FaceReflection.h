@@ -10,8 +10,9 @@
 namespace tyndall
 {
 /// What faces of the box give back of the light that leaves through their cells: the reflectance of a face
-/// (Illumination::faceAlbedo) times the power that left through a cell comes in through the same cell, the same radiance
-/// along all directions (Lambert; numerics.md, section 7.12). Of power nothing is lost or made, whatever the directions.
+/// (Illumination::faceAlbedo) times the power that left through a cell comes in through the same cell, the same
+/// radiance along all directions (Lambert; numerics.md, section 7.12). Of power nothing is lost or made, whatever the
+/// directions.
 ///
 /// Rays bring and take light through cells in a pattern of their own: what they took is given back over what radiance 1
 /// brings through the same cell, so that even light stays even. What comes along other rays (lamps) does not have that

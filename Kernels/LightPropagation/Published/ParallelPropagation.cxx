@@ -3,12 +3,12 @@
 #include "Device/Defines.h"
 #include "Light/ChannelReduction.h"
 #include "LightPropagation/Convergence.h"
-#include "Medium/BoxFaces.h"
 #include "LightPropagation/Published/PublishedBorders.h"
 #include "LightPropagation/Published/PublishedFaces.h"
 #include "LightPropagation/Published/PublishedPlan.h"
 #include "LightPropagation/Published/PublishedVolumes.h"
 #include "LightPropagation/Published/PublishedWarmStart.h"
+#include "Medium/BoxFaces.h"
 #include "TyndallKernelSources.h"
 
 #include "Device/Sizes.h"
@@ -224,11 +224,9 @@ void ParallelPropagation::Implementation::SendRays(
     SetFrom(this->StartRays, 6, this->DescribeFaces(batch), this->FaceIn);
     SetFrom(this->EndRays, 8, this->DescribeFaces(batch), this->Left);
   }
-  this->Enqueue(this->StartRays,
-    { info.sizeU + 2, info.sizeV + 2, slots }, { 32, 8, 1 });
+  this->Enqueue(this->StartRays, { info.sizeU + 2, info.sizeV + 2, slots }, { 32, 8, 1 });
   this->CrossPlanes(batch, pass, info, monitor, done);
-  this->Enqueue(this->EndRays,
-    { info.sizeV, slots, 1 }, { 16, 1, 1 });
+  this->Enqueue(this->EndRays, { info.sizeV, slots, 1 }, { 16, 1, 1 });
   this->Borders.TallyEscaped(batch, this->Escaped.Read(), this->Ledger);
 }
 

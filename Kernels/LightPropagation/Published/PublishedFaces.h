@@ -10,13 +10,13 @@
 
 namespace tyndall
 {
-/// The cells of the box's faces as the published algorithms meet them: what leaves through them in an order, and what of
-/// it comes back in the next (numerics.md, section 3, Eq. (14a)).
+/// The cells of the box's faces as the published algorithms meet them: what leaves through them in an order, and what
+/// of it comes back in the next (numerics.md, section 3, Eq. (14a)).
 ///
 /// A ray that marches through the planes of its map and crosses a side leaves through a cell of the plane that it goes
-/// on in, of the row it was in; and comes in through one of that plane, of the row it goes on in. So the mirror image of
-/// a ray that leaves comes in through the same cell, also where it crosses on the border of two planes, and even light
-/// stays even.
+/// on in, of the row it was in; and comes in through one of that plane, of the row it goes on in. So the mirror image
+/// of a ray that leaves comes in through the same cell, also where it crosses on the border of two planes, and even
+/// light stays even.
 class PublishedFaces
 {
 public:
@@ -39,7 +39,7 @@ public:
   /// W by cell, guessed to leave in all later orders (WarmStart): added to what leaves in the first, taken from what
   /// leaves in the second. Empty: no guess.
   void BeginWarm(std::vector<float> guess) { this->Guess = std::move(guess); }
-  std::vector<float> LeftLater() const; ///< what such a guess guesses; empty where cells are not counted
+  std::vector<float> LeftLater() const;  ///< what such a guess guesses; empty where cells are not counted
   void WriteTo(LightField& field) const; ///< facePower, faceAlbedo
 
 private:
@@ -51,7 +51,7 @@ private:
   PropagationSettings Settings;
   std::optional<FaceReflection> Reflection;
   std::vector<double> Out, All, Even; ///< of this order, of all, of all without the pattern of rays; [channel][cell]
-  std::vector<double> First;                ///< of the first order
+  std::vector<double> First;          ///< of the first order
   std::vector<float> Back, Guess;
 };
 }

@@ -244,6 +244,7 @@ std::vector<std::string> LeftOutAsPublished(const Medium& medium, const MediumTr
   say(leaveOut && medium.phase.IsIsotropic() && traits.scatters, left_out::Isotropic);
   say(leaveOut && !traits.scatters, left_out::NoScattering);
   say(leaveOut && !traits.emits, left_out::NoEmission);
+  say(leaveOut && !Reflects(illumination), left_out::BlackFaces);
   say(leaveOut && traits.scatters && orders == 1, left_out::OneOrder);
   say(!settings.netFlux, left_out::NetFlux);
   return words;

@@ -24,8 +24,10 @@ int PublishedPlan::DirectionsPerBatch(std::size_t temporaryBytes) const
 {
   const int perFace = this->Model.Directions().PerFace();
   const std::size_t one = std::max(this->Volumes.LayoutSize(0), this->Volumes.LayoutSize(1)) * sizeof(float);
-  const std::size_t map = static_cast<std::size_t>(
-    4.0 * this->Volumes.Channels() * sizeof(float) * this->LargestRayMap()); // two ray maps; as much again for tables
+  const bool countsCells = this->Model.FacesReflect() || this->Settings.facePower;
+  const double maps = countsCells ? 7.0 : 4.0; // two ray maps; as much again for tables; the cells of three faces
+  const std::size_t map =
+    static_cast<std::size_t>(maps * this->Volumes.Channels() * sizeof(float) * this->LargestRayMap());
   const std::size_t taken = this->TheDevice.BytesInUse() + map * perFace;
   const std::size_t left = this->TheDevice.MemoryLimit() - std::min(taken, this->TheDevice.MemoryLimit());
   std::size_t most = std::min(left, this->TheDevice.AllocationLimit());

@@ -235,9 +235,9 @@ __kernel void cross_voxels(const PublishedMap map, const int plane, const int ad
 // Behind the last plane: adds up what leaves, and with periodic_w keeps it for the next order,
 // [direction][carried_stride].
 //   crossings  one a direction: parity says which map
-__kernel void end_rays(const PublishedMap map, const int first, __global const PublishedCrossing* crossings,
-  __global float* rays, __global float* escaped, __global float* carried, const ulong carried_first,
-  const ulong carried_stride
+__kernel void end_rays(
+  const PublishedMap map, const int first, __global const PublishedCrossing* crossings, __global float* rays,
+  __global float* escaped, __global float* carried, const ulong carried_first, const ulong carried_stride
 #if FACES
   ,
   const PublishedFaceCells faces, __global float* left

@@ -71,8 +71,7 @@ void PublishedWarmStart::Add(Buffer<float>& moments, float sign) const
   moments.Write(values.data());
 }
 
-KeptLight PublishedWarmStart::Leave(
-  const PublishedVolumes& volumes, const PublishedFaces& faces, const Rgb& rate) const
+KeptLight PublishedWarmStart::Leave(const PublishedVolumes& volumes, const PublishedFaces& faces, const Rgb& rate) const
 {
   KeptLight left;
   left.kind = this->Kind;
