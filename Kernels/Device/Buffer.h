@@ -123,12 +123,18 @@ void SetArgument(cl::Kernel& kernel, cl_uint index, const Buffer<T>& buffer)
 }
 }
 
-/// Set all arguments of a kernel in order; a Buffer stands for its memory.
+/// Set arguments of a kernel in order, from number `first` on; a Buffer stands for its memory.
+template <class... Arguments>
+void SetFrom(cl::Kernel& kernel, cl_uint first, const Arguments&... arguments)
+{
+  (detail::SetArgument(kernel, first++, arguments), ...);
+}
+
+/// Set all arguments of a kernel.
 template <class... Arguments>
 cl::Kernel& With(cl::Kernel& kernel, const Arguments&... arguments)
 {
-  cl_uint index = 0;
-  (detail::SetArgument(kernel, index++, arguments), ...);
+  SetFrom(kernel, 0, arguments...);
   return kernel;
 }
 }

@@ -216,16 +216,6 @@ void CheckFaceAlbedo(const Illumination& illumination, const std::array<bool, 3>
   }
 }
 
-void RefuseFaceAlbedo(const Illumination& illumination, const char* solver)
-{
-  if (Reflects(illumination))
-  {
-    throw InvalidInput(std::string(solver) +
-      " cannot give back light that leaves through a face (FaceAlbedo). Set FaceAlbedo to 0, or choose Light "
-      "Propagation Maps with the conservative scheme, or Discrete Ordinates.");
-  }
-}
-
 void Check(const Illumination& illumination)
 {
   for (std::size_t i = 0; i < illumination.lights.size(); ++i)

@@ -91,9 +91,6 @@ bool Reflects(const Illumination& illumination);
 /// @throws InvalidInput where a face that gives back light lies across a periodic axis, which has none
 void CheckFaceAlbedo(const Illumination& illumination, const std::array<bool, 3>& periodic);
 
-/// @throws InvalidInput where a face gives back light: for a solver, by its name, that does not know of it
-void RefuseFaceAlbedo(const Illumination& illumination, const char* solver);
-
 /// @throws InvalidInput where a light has a zero direction, a power that is negative or beyond float, no size; an
 ///   environment has a negative or infinite pixel (names the first); a sky or a face a radiance that is negative or
 ///   beyond float, a face an albedo that is not from 0 to 1

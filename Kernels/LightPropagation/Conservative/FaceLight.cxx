@@ -79,29 +79,14 @@ void AddAside(const Bundle& bundle, const Aside& aside, ByPlane& power)
 
 FaceLight::FaceLight(
   Device& device, const Grid& grid, int channels, std::vector<double> powerIn, const std::array<Rgb, 6>& albedo)
-  : TheGrid(grid)
-  , Channels(channels)
-  , AlbedoOfFaces(albedo)
-  , AnyAlbedo(!std::all_of(albedo.begin(), albedo.end(), IsBlack))
-  , PowerIn(std::move(powerIn))
+  : FaceReflection(grid, channels, std::move(powerIn), albedo)
   , Leaving(device, channels * BoxFaceCellCount(grid), "the light that leaves through the faces")
   , Entering(device, channels * BoxFaceCellCount(grid), "the light that faces give back")
 {
-  ForBoxFaceCells(grid, [this](const BoxFaceCell& cell) { this->FaceOfCell.push_back(cell.face); });
-  this->AllSwept.assign(this->Channels * this->Cells(), 0.0);
+  this->AllSwept.assign(channels * this->Cells(), 0.0);
   this->AllUncollided = this->AllSwept;
   this->Leaving.Fill(0.0f);
   this->Entering.Fill(0.0f);
-  std::array<double, 6> sum = {}, count = {};
-  for (std::size_t cell = 0; cell < this->Cells(); ++cell)
-  {
-    sum[this->FaceOf(cell)] += this->PowerIn[cell];
-    count[this->FaceOf(cell)] += 1.0;
-  }
-  for (int face : this->FaceOfCell)
-  {
-    this->MeanIn.push_back(sum[face] / count[face]);
-  }
 }
 
 std::vector<double> SweptPowerIn(
@@ -145,14 +130,14 @@ std::array<Rgb, 6> FaceLight::Reflect()
   std::vector<double> swept(out.size()), uncollided(out.size());
   for (std::size_t i = 0; i < out.size(); ++i)
   {
-    const double albedo = this->AlbedoOfFaces[this->FaceOf(i % this->Cells())][i / this->Cells()];
+    const double albedo = this->AlbedoOf(i);
     this->AllSwept[i] += out[i];
     this->AllUncollided[i] += this->Uncollided[i];
     swept[i] = albedo * out[i];
     uncollided[i] = albedo * this->Uncollided[i];
   }
   this->Uncollided.clear();
-  if (this->AnyAlbedo)
+  if (this->Reflects())
   {
     this->LetIn(swept, uncollided);
   }
@@ -163,33 +148,6 @@ std::array<Rgb, 6> FaceLight::Reflect()
     this->LastMagnitude[i / this->Cells()] += std::abs(swept[i]);
   }
   return this->PowerOfFaces(swept);
-}
-
-std::array<Rgb, 6> FaceLight::PowerOfFaces(const std::vector<double>& power) const
-{
-  std::array<Rgb, 6> sums = {};
-  for (std::size_t i = 0; i < power.size(); ++i)
-  {
-    sums[this->FaceOf(i % this->Cells())][i / this->Cells()] += power[i];
-  }
-  return sums;
-}
-
-double FaceLight::Pattern(std::size_t cell) const
-{
-  return this->PowerIn[cell] > 0.0 ? this->PowerIn[cell] / this->MeanIn[cell] : 1.0;
-}
-
-std::vector<double> FaceLight::ScaledTo(std::vector<double> power, const std::vector<double>& sums) const
-{
-  const std::array<Rgb, 6> is = this->PowerOfFaces(power), shouldBe = this->PowerOfFaces(sums);
-  for (std::size_t i = 0; i < power.size(); ++i)
-  {
-    const int face = this->FaceOf(i % this->Cells());
-    const std::size_t c = i / this->Cells();
-    power[i] *= is[face][c] > 0.0 ? shouldBe[face][c] / is[face][c] : 1.0;
-  }
-  return power;
 }
 
 std::vector<double> FaceLight::LeftInAll() const
@@ -204,36 +162,8 @@ std::vector<double> FaceLight::LeftInAll() const
   return left;
 }
 
-std::vector<float> FaceLight::PerArea(const std::vector<double>& power) const
-{
-  std::vector<float> perArea(power.size());
-  for (std::size_t i = 0; i < power.size(); ++i)
-  {
-    const std::size_t cell = i / this->Channels, c = i % this->Channels;
-    const double area = this->TheGrid.VoxelVolume() / this->TheGrid.spacing[this->FaceOf(cell) / 2];
-    perArea[i] = static_cast<float>(power[c * this->Cells() + cell] / area);
-  }
-  return perArea;
-}
-
 void FaceLight::LetIn(const std::vector<double>& swept, const std::vector<double>& uncollided)
 {
-  std::vector<double> brought(swept.size()); // by uncollided light's radiance, in the pattern
-  for (std::size_t i = 0; i < swept.size(); ++i)
-  {
-    const std::size_t cell = i % this->Cells();
-    brought[i] = this->MeanIn[cell] > 0.0 ? uncollided[i] * this->PowerIn[cell] / this->MeanIn[cell] : 0.0;
-  }
-  const std::array<Rgb, 6> is = this->PowerOfFaces(brought), shouldBe = this->PowerOfFaces(uncollided);
-  std::vector<float> radiance(swept.size());
-  for (std::size_t i = 0; i < swept.size(); ++i)
-  {
-    const std::size_t cell = i % this->Cells(), c = i / this->Cells();
-    const int face = this->FaceOf(cell);
-    const double part = is[face][c] > 0.0 ? shouldBe[face][c] / is[face][c] : 0.0;
-    radiance[i] =
-      static_cast<float>(this->PowerIn[cell] > 0.0 ? (swept[i] + part * brought[i]) / this->PowerIn[cell] : 0.0);
-  }
-  this->Entering.Write(radiance.data());
+  this->Entering.Write(this->RadianceOf(swept, uncollided).data());
 }
 }

@@ -4,9 +4,11 @@
 #include "Light/ChannelReduction.h"
 #include "LightPropagation/Convergence.h"
 #include "LightPropagation/Published/PublishedBorders.h"
+#include "LightPropagation/Published/PublishedFaces.h"
 #include "LightPropagation/Published/PublishedPlan.h"
 #include "LightPropagation/Published/PublishedVolumes.h"
 #include "LightPropagation/Published/PublishedWarmStart.h"
+#include "Medium/BoxFaces.h"
 #include "TyndallKernelSources.h"
 
 #include "Device/Sizes.h"
@@ -19,6 +21,9 @@ namespace
 {
 /// Voxel crossings between two reports; about 50 ms on two cores.
 constexpr double CrossingsPerReport = 3e7;
+
+/// Which argument of cross_voxels is the first that only kernels with FACES have.
+constexpr cl_uint FacesOfCrossVoxels = 11;
 
 using Batch = PublishedPlan::Batch;
 using Pass = PublishedPlan::Pass;
@@ -40,6 +45,7 @@ struct ParallelPropagation::Implementation
     , Volumes(device, medium, this->Model, device.KernelWidth(8, 16))
     , Plan(device, medium.grid, this->Model, settings, this->Volumes, temporaryBytes)
     , Borders(this->Model, settings, this->Plan)
+    , Faces(medium.grid, this->Model, settings)
     , Warm(medium, this->Model, settings, kept)
     , Emits(this->Traits.emits || !settings.leaveOut)
   {
@@ -53,6 +59,8 @@ struct ParallelPropagation::Implementation
   // One order
   bool FirstOrder() const { return this->Ledger.Orders() == 0 && !this->SourceGiven; }
   PublishedMap Describe(const Batch& batch) const;
+  PublishedFaceCells DescribeFaces(const Batch& batch) const;
+  void BeginFaces();
   void WriteBoundary(const Batch& batch);
   void Propagate(int number, const Monitor& monitor);
   void SendRays(const Batch& batch, const Pass& pass, const PublishedMap& info, const Monitor& monitor, double done);
@@ -79,13 +87,15 @@ struct ParallelPropagation::Implementation
   PublishedVolumes Volumes;
   PublishedPlan Plan;
   PublishedBorders Borders;
+  PublishedFaces Faces;
   PublishedWarmStart Warm;
   bool Emits; ///< U is not zero
   bool SourceGiven = false;
   std::vector<float> FluenceDirect;
 
   Buffer<float> Coefficients, Rays, Escaped, Contributions, Boundary;
-  Buffer<float> Carried[2]; ///< of the order before, of this one
+  Buffer<float> Carried[2];   ///< of the order before, of this one
+  Buffer<float> FaceIn, Left; ///< radiance that faces give back; what leaves through their cells
   cl::Kernel StartRays, CrossVoxels[2], EndRays, AddDirections, UpdateSources;
 };
 
@@ -103,14 +113,20 @@ void ParallelPropagation::Implementation::MakeBuffers()
   }
   this->Contributions = Buffer<float>(device, this->Plan.contributionsSize, "the temporary buffers T");
   this->Boundary = Buffer<float>(device, this->Plan.boundarySize, "the boundary");
+  if (this->Faces.Count())
+  {
+    this->FaceIn = Buffer<float>(device, this->Faces.Radiance().size(), "the light that faces give back");
+    this->Left = Buffer<float>(device, this->Plan.leftSize, "the light that leaves through the faces");
+  }
 }
 
 void ParallelPropagation::Implementation::MakeKernels()
 {
   const std::string common = Define("REAL_WIDTH", this->Volumes.Width) + Define("CHANNELS", this->Channels) +
     Define("COLOURED", this->Volumes.Coloured);
+  const std::string faces = Define("FACES", this->Faces.Count());
   const auto propagate = [&](const char* name, int source) {
-    return this->TheDevice.Kernel(name, kernel_source::PublishedPropagate, common + Define("SOURCE", source));
+    return this->TheDevice.Kernel(name, kernel_source::PublishedPropagate, common + faces + Define("SOURCE", source));
   };
   const auto collect = [&](const char* name) {
     return this->TheDevice.Kernel(
@@ -132,6 +148,18 @@ PublishedMap ParallelPropagation::Implementation::Describe(const Batch& batch) c
   return { map.sizeU, map.sizeV, rowStride, layouts.volume[batch.Layout()], this->Plan.RayRow(batch),
     this->Settings.periodic[map.axisU], this->Settings.periodic[map.axisV], this->Settings.periodic[map.axis],
     batch.count };
+}
+
+PublishedFaceCells ParallelPropagation::Implementation::DescribeFaces(const Batch& batch) const
+{
+  const MapGeometry& map = batch.Map();
+  const auto layout = [&](int face) { return LayoutOfFace(this->TheMedium.grid, face); };
+  const auto first = [&](int face) { return static_cast<cl_int>(layout(face).first); };
+  const auto step = [&](int face, int axis) { return static_cast<cl_int>(layout(face).step[axis]); };
+  const int w = map.EntryFace(map.axis), u = 2 * map.axisU, v = 2 * map.axisV;
+  return { map.planes, static_cast<cl_int>(this->Faces.Cells()), first(w), step(w, map.axisU), step(w, map.axisV),
+    { first(u), first(u + 1) }, step(u, map.axis), step(u, map.axisV), { first(v), first(v + 1) }, step(v, map.axis),
+    step(v, map.axisU) };
 }
 
 /// Light from outside belongs to the first order.
@@ -157,13 +185,27 @@ void ParallelPropagation::Implementation::Propagate(int number, const Monitor& m
     this->Plan.MakePasses(batch, this->Ledger.Orders()); // rays go on from where they were
   }
   this->WriteBoundary(batch);
+  this->BeginFaces();
   const PublishedMap info = this->Describe(batch);
   for (std::size_t p = 0; p < batch.passes.size(); ++p)
   {
     this->SendRays(
       batch, batch.passes[p], info, monitor, (number + p / static_cast<double>(batch.passes.size())) / batches);
   }
+  if (this->Faces.Count())
+  {
+    this->Borders.TallyLeft(batch, this->Left.Read(), this->Faces);
+  }
   Report(monitor, this->Ledger.Progress((number + 1.0) / batches));
+}
+
+void ParallelPropagation::Implementation::BeginFaces()
+{
+  if (this->Faces.Count())
+  {
+    this->FaceIn.Write(this->Faces.Radiance().data());
+    this->Left.Fill(0.0f);
+  }
 }
 
 /// One ray a voxel of the map and direction, from the first plane to behind the last.
@@ -174,12 +216,17 @@ void ParallelPropagation::Implementation::SendRays(
   const cl_ulong carriedFirst = pass.carriedFirst;
   const cl_ulong carriedStride = this->Plan.CarriedStride(batch);
   this->Escaped.Fill(0.0f);
-  this->Enqueue(With(this->StartRays, info, this->Rays, this->Boundary, this->Carried[0], carriedFirst, carriedStride),
-    { info.sizeU + 2, info.sizeV + 2, slots }, { 32, 8, 1 });
+  With(this->StartRays, info, this->Rays, this->Boundary, this->Carried[0], carriedFirst, carriedStride);
+  With(this->EndRays, info, static_cast<cl_int>(pass.end), batch.crossings, this->Rays, this->Escaped, this->Carried[1],
+    carriedFirst, carriedStride);
+  if (this->Faces.Count())
+  {
+    SetFrom(this->StartRays, 6, this->DescribeFaces(batch), this->FaceIn);
+    SetFrom(this->EndRays, 8, this->DescribeFaces(batch), this->Left);
+  }
+  this->Enqueue(this->StartRays, { info.sizeU + 2, info.sizeV + 2, slots }, { 32, 8, 1 });
   this->CrossPlanes(batch, pass, info, monitor, done);
-  this->Enqueue(With(this->EndRays, info, static_cast<cl_int>(pass.end), batch.crossings, this->Rays, this->Escaped,
-                  this->Carried[1], carriedFirst, carriedStride),
-    { info.sizeV, slots, 1 }, { 16, 1, 1 });
+  this->Enqueue(this->EndRays, { info.sizeV, slots, 1 }, { 16, 1, 1 });
   this->Borders.TallyEscaped(batch, this->Escaped.Read(), this->Ledger);
 }
 
@@ -193,6 +240,11 @@ void ParallelPropagation::Implementation::CrossPlanes(
   cl::Kernel& kernel = this->CrossVoxels[this->FirstOrder() && !this->Emits ? 0 : 1];
   With(kernel, info, cl_int(0), cl_int(0), cl_int(0), batch.crossings, this->Volumes.Extinction[layout],
     this->Volumes.Scattering[layout], this->Volumes.Sources[layout], this->Rays, this->Contributions, this->Escaped);
+  if (this->Faces.Count())
+  {
+    SetFrom(
+      kernel, FacesOfCrossVoxels, this->DescribeFaces(batch), cl_int(0), this->Boundary, this->FaceIn, this->Left);
+  }
   const bool rows = this->Volumes.Width > 1; // a work-item a row, else a voxel
   double sinceReport = 0.0;
   for (std::size_t l = 0; l < pass.launches.size(); ++l)
@@ -201,6 +253,10 @@ void ParallelPropagation::Implementation::CrossPlanes(
     kernel.setArg(1, launch.plane * planeStride);
     kernel.setArg(2, static_cast<cl_int>(launch.add));
     kernel.setArg(3, static_cast<cl_int>(launch.first));
+    if (this->Faces.Count())
+    {
+      kernel.setArg(FacesOfCrossVoxels + 1, static_cast<cl_int>(launch.plane));
+    }
     const int slots = launch.count * this->Channels;
     rows ? this->Enqueue(kernel, { 1, info.sizeV, slots }, { 1, 16, 1 })
          : this->Enqueue(kernel, { info.sizeU, info.sizeV, slots }, { 32, 8, 1 });
@@ -238,6 +294,7 @@ void ParallelPropagation::Implementation::FinishOrder()
   {
     this->LookAtDirect();
   }
+  this->Faces.CloseOrder(this->Ledger);
   this->Ledger.CloseOrder(this->Volumes.ReadMoment(this->Volumes.OrderMoments[0], 0).data());
   this->Ledger.carried = {};
   std::swap(this->Carried[0], this->Carried[1]);
@@ -258,7 +315,7 @@ void ParallelPropagation::Implementation::LookAtDirect()
   this->FluenceDirect = this->Volumes.ReadMoment(this->Volumes.OrderMoments[0], 0);
   if (this->Warm.Keeps())
   {
-    this->Warm.AddTo(this->Volumes, this->FluenceDirect);
+    this->Warm.AddTo(this->Volumes, this->Faces, this->FluenceDirect);
   }
   if (this->Warm.Begins())
   {
@@ -288,6 +345,7 @@ LightField ParallelPropagation::Implementation::Result() const
     field.netFlux = this->NetFlux();
   }
   this->Ledger.WriteTo(field);
+  this->Faces.WriteTo(field);
   field.leftOut =
     LeftOutAsPublished(this->TheMedium, this->Traits, this->Outside, this->Settings, this->Ledger.Orders());
   if (this->Warm.Keeps())
@@ -430,7 +488,7 @@ LightField ParallelPropagation::Result() const
 
 KeptLight ParallelPropagation::Left() const
 {
-  return this->Inner->Warm.Leave(this->Inner->Volumes, this->Inner->Ledger.Rate());
+  return this->Inner->Warm.Leave(this->Inner->Volumes, this->Inner->Faces, this->Inner->Ledger.Rate());
 }
 
 bool ParallelPropagation::BeganWarm() const

@@ -80,4 +80,35 @@ void PublishedBorders::TallyEscaped(
     }
   }
 }
+
+void PublishedBorders::TallyLeft(
+  const PublishedPlan::Batch& batch, const std::vector<float>& left, PublishedFaces& faces) const
+{
+  std::size_t at = 0;
+  for (const MapGeometry& map : batch.maps)
+  {
+    const auto take = [&](int exitAxis, int channel, int axisSlow, int slow, int axisFast, int fast) {
+      const int face = map.ExitFace(exitAxis);
+      std::array<int, 3> voxel = {};
+      for (int j = 0; j < slow; ++j)
+      {
+        for (int i = 0; i < fast; ++i, ++at)
+        {
+          voxel[axisSlow] = j;
+          voxel[axisFast] = i;
+          if (left[at] != 0.0f && !this->Settings.periodic[exitAxis])
+          {
+            faces.Leave(faces.Cell(face, voxel), channel, map.beamPower * left[at]);
+          }
+        }
+      }
+    };
+    for (int c = 0; c < this->Model.Channels(); ++c)
+    {
+      take(map.axisU, c, map.axis, map.planes, map.axisV, map.sizeV);
+      take(map.axisV, c, map.axis, map.planes, map.axisU, map.sizeU);
+      take(map.axis, c, map.axisV, map.sizeV, map.axisU, map.sizeU);
+    }
+  }
+}
 }

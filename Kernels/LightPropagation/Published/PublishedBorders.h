@@ -1,5 +1,6 @@
 #pragma once
 
+#include "LightPropagation/Published/PublishedFaces.h"
 #include "LightPropagation/Published/PublishedPlan.h"
 
 #include <vector>
@@ -20,6 +21,8 @@ public:
   void TallyEntered(const PublishedPlan::Batch& batch, OrderLedger& ledger) const;
   /// Adds up what a pass left at the borders, laid out as PublishedPropagate.cl says.
   void TallyEscaped(const PublishedPlan::Batch& batch, const std::vector<float>& escaped, OrderLedger& ledger) const;
+  /// The same by cell, as PublishedFaces.cl lays it out.
+  void TallyLeft(const PublishedPlan::Batch& batch, const std::vector<float>& left, PublishedFaces& faces) const;
 
 private:
   const PublishedModel& Model;

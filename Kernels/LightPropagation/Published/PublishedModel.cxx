@@ -3,6 +3,7 @@
 #include "Device/Errors.h"
 #include "Light/LeftOut.h"
 #include "LightPropagation/Convergence.h"
+#include "LightPropagation/Problem/PropagationProblem.h"
 #include "Medium/BoxFaces.h"
 #include "Numerics/Constants.h"
 #include "Numerics/Vectors.h"
@@ -243,6 +244,7 @@ std::vector<std::string> LeftOutAsPublished(const Medium& medium, const MediumTr
   say(leaveOut && medium.phase.IsIsotropic() && traits.scatters, left_out::Isotropic);
   say(leaveOut && !traits.scatters, left_out::NoScattering);
   say(leaveOut && !traits.emits, left_out::NoEmission);
+  say(leaveOut && !Reflects(illumination), left_out::BlackFaces);
   say(leaveOut && traits.scatters && orders == 1, left_out::OneOrder);
   say(!settings.netFlux, left_out::NetFlux);
   return words;
@@ -269,14 +271,12 @@ void CheckPublishedPhase(const Medium& medium)
 PublishedModel::PublishedModel(
   const Medium& medium, const Illumination& illumination, const PropagationSettings& settings, int channels)
 {
-  Check(medium);
+  Check(medium, illumination, settings);
   CheckPublishedPhase(medium);
-  Check(illumination);
-  RefuseFaceAlbedo(illumination, "Light propagation as published");
-  Check(settings);
   this->ChannelCount = channels == 3 || medium.Channels() == 3 || !ColourOf(illumination).IsGrey() ? 3 : 1;
   this->Isotropic = medium.phase.IsIsotropic();
   this->Set = PublishedDirections(settings.directionsPerFace);
+  this->AlbedoOfFaces = illumination.faceAlbedo;
   this->BoundaryRadiances = BoundaryOf(this->Set, illumination, settings.periodic);
   if (settings.storedDirections == 1)
   {
@@ -311,6 +311,11 @@ PublishedModel::PublishedModel(
     }
     this->Coefficients.push_back(flux);
   }
+}
+
+bool PublishedModel::FacesReflect() const
+{
+  return !std::all_of(this->AlbedoOfFaces.begin(), this->AlbedoOfFaces.end(), IsBlack);
 }
 
 PublishedModel::Part PublishedModel::Source(int sourceDirection) const
@@ -364,6 +369,14 @@ double MapGeometry::StartOfOrder(double start, double slope, int order) const
   const double place = position - std::floor(position);
   const bool onBorder = std::min(place, 1.0 - place) < 1e-9; // the crossing into the next voxel is still to come
   return !onBorder ? place : slope > 0.0 ? 1.0 : slope < 0.0 ? 0.0 : start;
+}
+
+GridWalk MapGeometry::Walk(int resolution, int subMap, int order) const
+{
+  const int column = subMap % resolution;
+  const int row = subMap / resolution;
+  return { this->StartOfOrder((column + 0.5) / resolution, this->slopeU, order),
+    this->StartOfOrder((row + 0.5) / resolution, this->slopeV, order), this->slopeU, this->slopeV, this->planes };
 }
 
 GridWalk::GridWalk(double startU, double startV, double slopeU, double slopeV, int planes)
@@ -420,6 +433,7 @@ OrderLedger::OrderLedger(const Medium& medium, const PublishedModel& model, cons
   : TheMedium(medium)
   , Settings(settings)
   , Channels(model.Channels())
+  , FacesReflect(model.FacesReflect())
   , Start(std::chrono::steady_clock::now())
 {
   const double power = FourPi * medium.grid.VoxelVolume();
@@ -436,6 +450,19 @@ void OrderLedger::BeginWarm(const Rgb& rate)
 {
   this->Warm = true;
   this->LeastRatio = rate;
+}
+
+void OrderLedger::GiveBack(const std::array<Rgb, 6>& powers)
+{
+  this->ComingBack = {};
+  for (std::size_t face = 0; face < powers.size(); ++face)
+  {
+    for (int c = 0; c < this->Channels; ++c)
+    {
+      this->facePowerOut[face][c] -= powers[face][c];
+      this->ComingBack[c] += powers[face][c];
+    }
+  }
 }
 
 void OrderLedger::CloseOrder(const float* fluence)
@@ -463,7 +490,7 @@ void OrderLedger::CloseOrder(const float* fluence)
   for (int c = 0; c < this->Channels; ++c)
   {
     this->Balance.absorbed[c] += volume * absorbed[c];
-    this->Balance.leftOver[c] = volume * scattered[c] + this->carried[c];
+    this->Balance.leftOver[c] = volume * scattered[c] + this->carried[c] + this->ComingBack[c];
     for (const Rgb& face : this->facePowerOut)
     {
       this->Balance.escaped[c] += face[c];
@@ -475,6 +502,7 @@ void OrderLedger::CloseOrder(const float* fluence)
   }
   const bool goesOn = this->Warm ? Sum(magnitude) > 0.0 : row.leftOver > 0.0;
   row.residual = goesOn ? this->EstimateResidual(this->Warm ? magnitude : sum) : 0.0;
+  this->SumBefore = this->LastSum;
   this->LastSum = this->Warm && this->Rows.empty() ? Rgb{}
     : this->Warm                                   ? magnitude
                                                    : sum; // with a guess it tells nothing
@@ -499,11 +527,29 @@ double OrderLedger::EstimateResidual(const Rgb& orderSum)
       const double growth = this->Ratio[c] > 0.0 && !this->Warm ? std::max(0.0, ratio - this->Ratio[c]) : 0.0;
       this->Limit[c] = std::min(ratio + growth, 0.9999);
       this->Ratio[c] = ratio;
-      const double rest = orderSum[c] * ratio / (1.0 - ratio) / this->TotalSum[c];
+      double rest = orderSum[c] * ratio / (1.0 - ratio) / this->TotalSum[c];
+      if (this->FacesReflect)
+      {
+        rest = std::max(rest, this->RestOfPairs(c, orderSum[c]) / this->TotalSum[c]);
+      }
       residual = std::max(residual, this->Warm ? WarmMargin * rest : rest);
     }
   }
   return residual;
+}
+
+/// Light that goes to and fro between a face that gives back much and one that gives back little falls by much and by
+/// little in turn, but evenly from pair to pair of orders: what the pairs to come add up to.
+double OrderLedger::RestOfPairs(int channel, double orderSum)
+{
+  const double before = this->SumBefore[channel];
+  if (before <= 0.0)
+  {
+    return orderSum; // no pair is known yet
+  }
+  const double ratio = std::min(orderSum / before, 0.9998);
+  this->Limit[channel] = std::max(this->Limit[channel], std::sqrt(ratio));
+  return (this->LastSum[channel] + orderSum) * ratio / (1.0 - ratio);
 }
 
 double OrderLedger::Progress(double fractionOfOrder) const

@@ -26,13 +26,17 @@ class PublishedModel
 {
 public:
   /// @param channels  3: as if something had colour; 1: as the scene needs
-  /// @throws InvalidInput what Check() of medium, illumination and settings throw, and CheckPublishedPhase; directions
-  /// that are not a square number
+  /// @throws InvalidInput what Check() of medium, illumination and settings throws (PropagationProblem.h), and
+  /// CheckPublishedPhase; directions that are not a square number
   PublishedModel(
     const Medium& medium, const Illumination& illumination, const PropagationSettings& settings, int channels = 1);
 
   int Channels() const { return this->ChannelCount; } ///< 3 where medium or light is coloured, else 1
   const DirectionSet& Directions() const { return this->Set; }
+
+  /// Part of what leaves through each face in an order that comes back in the next (PublishedFaces.h).
+  const std::array<Rgb, 6>& FaceAlbedo() const { return this->AlbedoOfFaces; }
+  bool FacesReflect() const;
 
   /// Radiance that enters along `direction` through the face across `axis` in order 0.
   const Rgb& Boundary(int direction, int axis) const { return this->BoundaryRadiances[direction][axis]; }
@@ -65,6 +69,7 @@ private:
   bool Isotropic = true;
   int FirstFlux = 0;
   DirectionSet Set;
+  std::array<Rgb, 6> AlbedoOfFaces = {};
   std::vector<std::array<Rgb, 3>> BoundaryRadiances;
   std::vector<std::array<double, 3>> Stored;
   std::vector<std::array<double, 3>> Sources;
@@ -90,6 +95,8 @@ std::vector<std::string> LeftOutAsPublished(const Illumination& illumination);
 std::vector<std::string> LeftOutAsPublished(const Medium& medium, const MediumTraits& traits,
   const Illumination& illumination, const PropagationSettings& settings, int orders);
 
+class GridWalk;
+
 /// The rays of a direction as its map goes through the grid plane by plane along the axis of its face.
 struct MapGeometry
 {
@@ -109,6 +116,8 @@ struct MapGeometry
   /// Where in its voxel, [0, 1], a ray begins an order that it began at `start` in order 0. Other than `start` where it
   /// went on through a periodic axis.
   double StartOfOrder(double start, double slope, int order) const;
+  /// The way of a ray of one of the resolution^2 sub-maps, row by row, in an order.
+  GridWalk Walk(int resolution, int subMap, int order) const;
 
 private:
   std::array<bool, 3> Upward;
@@ -147,6 +156,9 @@ public:
   std::array<Rgb, 6> facePowerOut = {}; ///< W, likewise
   Rgb carried = {};                     ///< W on the way through periodic axes, set by the solver each order
 
+  /// Of what left, W through each face come back in the next order: before CloseOrder, where cells are counted.
+  void GiveBack(const std::array<Rgb, 6>& powers);
+
   /// The first order has a guess in it that the second is to take away: orders after the first may be negative, and
   /// fall by `rate` at least (numerics.md, section 6.4).
   void BeginWarm(const Rgb& rate);
@@ -163,14 +175,17 @@ public:
 
 private:
   double EstimateResidual(const Rgb& orderSum);
+  double RestOfPairs(int channel, double orderSum);
 
   const Medium& TheMedium;
   PropagationSettings Settings;
   int Channels;
+  bool FacesReflect; ///< light can go to and fro between two of them
   bool Finished = false;
   EnergyBalance Balance;
   Rgb TotalSum = {};
-  Rgb LastSum = {};
+  Rgb LastSum = {}, SumBefore = {}; ///< of the last order, of the one before that
+  Rgb ComingBack = {};
   Rgb Ratio = {}, Limit = {}, LeastRatio = {};
   bool Warm = false;
   std::vector<ConvergenceRow> Rows;

@@ -24,8 +24,10 @@ int PublishedPlan::DirectionsPerBatch(std::size_t temporaryBytes) const
 {
   const int perFace = this->Model.Directions().PerFace();
   const std::size_t one = std::max(this->Volumes.LayoutSize(0), this->Volumes.LayoutSize(1)) * sizeof(float);
-  const std::size_t map = static_cast<std::size_t>(
-    4.0 * this->Volumes.Channels() * sizeof(float) * this->LargestRayMap()); // two ray maps; as much again for tables
+  const bool countsCells = this->Model.FacesReflect() || this->Settings.facePower;
+  const double maps = countsCells ? 7.0 : 4.0; // two ray maps; as much again for tables; the cells of three faces
+  const std::size_t map =
+    static_cast<std::size_t>(maps * this->Volumes.Channels() * sizeof(float) * this->LargestRayMap());
   const std::size_t taken = this->TheDevice.BytesInUse() + map * perFace;
   const std::size_t left = this->TheDevice.MemoryLimit() - std::min(taken, this->TheDevice.MemoryLimit());
   std::size_t most = std::min(left, this->TheDevice.AllocationLimit());
@@ -77,6 +79,7 @@ void PublishedPlan::MeasureBuffers(int perBatch)
     const std::size_t rows = batch.Map().sizeV;
     this->raysSize = std::max(this->raysSize, 2 * slots * (rows + 2) * this->RayRow(batch)); // two ray maps
     this->escapedSize = std::max(this->escapedSize, slots * (2 * rows + 1));
+    this->leftSize = std::max(this->leftSize, slots * this->LeftStride(batch));
   }
   this->contributionsSize = perBatch * std::max(this->Volumes.LayoutSize(0), this->Volumes.LayoutSize(1));
   this->boundarySize = static_cast<std::size_t>(this->Model.Directions().PerFace()) * 3 * this->Volumes.Channels();
@@ -85,6 +88,13 @@ void PublishedPlan::MeasureBuffers(int perBatch)
 int PublishedPlan::RayRow(const Batch& batch) const
 {
   return RoundUp(batch.Map().sizeU, this->Volumes.Width) + 2 * this->Volumes.Width;
+}
+
+std::size_t PublishedPlan::LeftStride(const Batch& batch) const
+{
+  const MapGeometry& map = batch.Map();
+  return static_cast<std::size_t>(map.planes) * (map.sizeU + map.sizeV) +
+    static_cast<std::size_t>(map.sizeU) * map.sizeV;
 }
 
 std::size_t PublishedPlan::CarriedStride(const Batch& batch) const
@@ -139,11 +149,7 @@ void PublishedPlan::MakePasses(Batch& batch, int order) const
 
 GridWalk PublishedPlan::Walk(const MapGeometry& map, int subMap, int order) const
 {
-  const int resolution = this->Settings.mapResolution;
-  const int column = subMap % resolution;
-  const int row = subMap / resolution;
-  return { map.StartOfOrder((column + 0.5) / resolution, map.slopeU, order),
-    map.StartOfOrder((row + 0.5) / resolution, map.slopeV, order), map.slopeU, map.slopeV, map.planes };
+  return map.Walk(this->Settings.mapResolution, subMap, order);
 }
 
 /// Adds the crossings of the batch's direction i, and where it ends.

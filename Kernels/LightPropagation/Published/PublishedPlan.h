@@ -53,9 +53,11 @@ public:
 
   /// Sizes of the buffers that all batches share, floats.
   std::size_t raysSize = 0, escapedSize = 0, carriedSize = 0, contributionsSize = 0, boundarySize = 0;
+  std::size_t leftSize = 0; ///< of what leaves through the cells of faces, where they are counted
 
   int SubMaps() const { return this->Settings.mapResolution * this->Settings.mapResolution; }
   int RayRow(const Batch& batch) const;                ///< floats of a row of a ray map
+  std::size_t LeftStride(const Batch& batch) const;    ///< of what leaves one direction's map through cells, a channel
   std::size_t CarriedStride(const Batch& batch) const; ///< floats of one direction's map, all sub-maps and channels
 
   /// Rays that went on through a periodic axis are elsewhere in their voxels in each order.

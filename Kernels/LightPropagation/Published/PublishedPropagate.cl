@@ -3,6 +3,7 @@
 //   CHANNELS  1 or 3
 //   COLOURED  1 where sigma has CHANNELS channels, 0 where all share one
 //   SOURCE    1 where U is not zero
+//   FACES     1 where what leaves through the cells of the box's faces is counted, and can come back through them
 //
 // The paper holds the rays of a block together with __syncthreads; here a launch is one voxel crossing of all rays of
 // all directions, and the order of launches holds them together. Rays are kept by the voxel they are in: a ray map is
@@ -17,6 +18,13 @@
 // Where light leaves a direction's map, W / (length^2 sr) summed over rays: [through u by row][through v][at the end by
 // row].
 #define ESCAPED(map) (2 * (map).sizeV + 1)
+
+#if FACES
+#include "LightPropagation/Published/PublishedFaces.cl"
+
+// What kernels are given for it; `left` has this many floats a direction.
+#define LEFT(map, faces) ((ulong)(faces).planes * ((map).sizeU + (map).sizeV) + (ulong)(map).sizeU * (map).sizeV)
+#endif
 
 static __global float* ray_row(__global float* rays, const PublishedMap* map, int parity, int slot, int v)
 {
@@ -34,7 +42,12 @@ inline real depth(real gone, real tau, float length)
 //   boundary  radiance entering across w, u, v: [direction][3][CHANNELS]
 //   carried   with periodic_w: radiance by voxel, [direction][carried_stride], from carried_first on
 __kernel void start_rays(const PublishedMap map, __global float* rays, __global const float* boundary,
-  __global const float* carried, const ulong carried_first, const ulong carried_stride)
+  __global const float* carried, const ulong carried_first, const ulong carried_stride
+#if FACES
+  ,
+  const PublishedFaceCells faces, __global const float* face_in
+#endif
+)
 {
   const int u = (int)get_global_id(0) - 1;
   const int v = (int)get_global_id(1) - 1;
@@ -63,6 +76,12 @@ __kernel void start_rays(const PublishedMap map, __global float* rays, __global 
     radiance =
       carried[carried_first + direction * carried_stride + (channel * map.sizeV + from_v) * map.sizeU + from_u];
   }
+#if FACES
+  else if (!outside_u && !outside_v)
+  {
+    radiance += face_in[(ulong)channel * faces.cells + faces.firstW + u * faces.stepWU + v * faces.stepWV];
+  }
+#endif
   ray_row(rays, &map, 0, slot, v)[u] = radiance;
   ray_row(rays, &map, 1, slot, v)[u] = radiance;
 }
@@ -111,7 +130,13 @@ inline real deposit(real radiance, real sigma_s, float length)
 //   add               0: the first ray in these voxels, T is set; 1: T is added to
 __kernel void cross_voxels(const PublishedMap map, const int plane, const int add, const int first,
   __global const PublishedCrossing* crossings, __global const float* sigma_t, __global const float* sigma_s,
-  __global const float* sources, __global float* rays, __global float* contributions, __global float* escaped)
+  __global const float* sources, __global float* rays, __global float* contributions, __global float* escaped
+#if FACES
+  ,
+  const PublishedFaceCells faces, const int level, __global const float* boundary, __global const float* face_in,
+  __global float* left
+#endif
+)
 {
   const int v = get_global_id(1);
   if (v >= map.sizeV)
@@ -127,12 +152,21 @@ __kernel void cross_voxels(const PublishedMap map, const int plane, const int ad
   sources += row + (SOURCE ? (ulong)(crossing.source * CHANNELS + channel) * map.volume : 0);
   contributions += row + (ulong)slot * map.volume;
   escaped += (ulong)slot * ESCAPED(map);
-  __global const float* from = ray_row(rays, &map, crossing.parity, slot, v - crossing.moveV) - crossing.moveU;
+  __global float* from = ray_row(rays, &map, crossing.parity, slot, v - crossing.moveV) - crossing.moveU;
   __global float* to = ray_row(rays, &map, !crossing.parity, slot, v);
   const float length = crossing.length;
+#if FACES
+  left += (ulong)slot * LEFT(map, faces);
+  boundary += crossing.direction * 3 * CHANNELS + channel;
+  face_in += (ulong)channel * faces.cells;
+#endif
 
 #if REAL_WIDTH > 1
   leave_sides(&map, &crossing, ray_row(rays, &map, crossing.parity, slot, v), v, escaped);
+#if FACES
+  leave_cells(&map, &faces, &crossing, level, ray_row(rays, &map, crossing.parity, slot, v), v, left);
+  enter_row(&map, &faces, &crossing, level, v, boundary, face_in, from);
+#endif
   const float right_border = to[map.sizeU]; // the last vector of the row may run over it
   for (int u = 0; u < map.sizeU; u += REAL_WIDTH)
   {
@@ -168,7 +202,18 @@ __kernel void cross_voxels(const PublishedMap map, const int plane, const int ad
   {
     leave_sides(&map, &crossing, ray_row(rays, &map, crossing.parity, slot, v), v, escaped);
   }
-  const float radiance = cross_voxel(from[u], sigma_t[u], SOURCE ? sources[u] : 0.0f, length);
+  float before = from[u];
+#if FACES
+  if (u == 0)
+  {
+    leave_cells(&map, &faces, &crossing, level, ray_row(rays, &map, crossing.parity, slot, v), v, left);
+  }
+  if (comes_in(crossing.moveU, map.periodicU, u, map.sizeU) || comes_in(crossing.moveV, map.periodicV, v, map.sizeV))
+  {
+    before = entering(&map, &faces, &crossing, level, u, v, boundary, face_in);
+  }
+#endif
+  const float radiance = cross_voxel(before, sigma_t[u], SOURCE ? sources[u] : 0.0f, length);
   const float gained = deposit(radiance, sigma_s[u], length);
   contributions[u] = add ? contributions[u] + gained : gained;
   for (int dv = -1; dv <= 1; ++dv) // the voxel itself and its images in the border
@@ -190,9 +235,14 @@ __kernel void cross_voxels(const PublishedMap map, const int plane, const int ad
 // Behind the last plane: adds up what leaves, and with periodic_w keeps it for the next order,
 // [direction][carried_stride].
 //   crossings  one a direction: parity says which map
-__kernel void end_rays(const PublishedMap map, const int first, __global const PublishedCrossing* crossings,
-  __global float* rays, __global float* escaped, __global float* carried, const ulong carried_first,
-  const ulong carried_stride)
+__kernel void end_rays(
+  const PublishedMap map, const int first, __global const PublishedCrossing* crossings, __global float* rays,
+  __global float* escaped, __global float* carried, const ulong carried_first, const ulong carried_stride
+#if FACES
+  ,
+  const PublishedFaceCells faces, __global float* left
+#endif
+)
 {
   const int v = get_global_id(0);
   if (v >= map.sizeV)
@@ -209,6 +259,9 @@ __kernel void end_rays(const PublishedMap map, const int first, __global const P
     sum += row[u];
   }
   escaped[(ulong)slot * ESCAPED(map) + map.sizeV + 1 + v] = sum;
+#if FACES
+  leave_ahead(&map, &faces, row, v, left + (ulong)slot * LEFT(map, faces));
+#endif
   if (map.periodicW)
   {
     carried += carried_first + crossing.direction * carried_stride + (ulong)(channel * map.sizeV + v) * map.sizeU;

@@ -40,4 +40,14 @@ typedef struct
   int source;   ///< which U
   float length; ///< in the voxel
 } PublishedCrossing;
+
+/// How the cells of the box's faces are numbered (BoxFaces.h), as a map's rays meet them; steps between numbers.
+typedef struct
+{
+  int planes;                    ///< that rays march through
+  int cells;                     ///< of all faces
+  int firstW, stepWU, stepWV;    ///< of the face through which they come in ahead
+  int firstU[2], stepUW, stepUV; ///< of the low and the high face across u
+  int firstV[2], stepVW, stepVU; ///< of those across v
+} PublishedFaceCells;
 SHARED_END

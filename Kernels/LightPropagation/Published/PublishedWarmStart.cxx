@@ -17,7 +17,22 @@ PublishedWarmStart::PublishedWarmStart(
   }
 }
 
-void PublishedWarmStart::AddTo(PublishedVolumes& volumes, const std::vector<float>& direct)
+/// Some of the kept light, scaled as the first scattered light has changed.
+/// @param perChannel  of how many values in turn channels are made
+std::vector<float> PublishedWarmStart::GuessOf(std::size_t first, std::size_t count, std::size_t perChannel) const
+{
+  const auto begin = this->Kept->scattered.begin() + static_cast<std::ptrdiff_t>(first);
+  std::vector<float> guess(begin, begin + static_cast<std::ptrdiff_t>(count));
+  for (std::size_t i = 0; i < count; ++i)
+  {
+    const std::size_t c = i / perChannel % this->Channels;
+    const double before = this->Kept->firstScattered[c];
+    guess[i] = before > 0.0 ? static_cast<float>(guess[i] * this->First[c] / before) : 0.0f;
+  }
+  return guess;
+}
+
+void PublishedWarmStart::AddTo(PublishedVolumes& volumes, PublishedFaces& faces, const std::vector<float>& direct)
 {
   this->Direct = volumes.OrderMoments[0].Read();
   for (std::size_t i = 0; i < direct.size(); ++i)
@@ -29,12 +44,11 @@ void PublishedWarmStart::AddTo(PublishedVolumes& volumes, const std::vector<floa
   {
     return;
   }
-  this->Guess = this->Kept->scattered;
-  for (std::size_t i = 0; i < this->Guess.size(); ++i)
+  const std::size_t moments = volumes.Totals.Size();
+  this->Guess = this->GuessOf(0, moments, volumes.Layouts.volume[0]);
+  if (faces.Count() && this->Kept->scattered.size() > moments) // the last light had such faces, too
   {
-    const std::size_t c = i / volumes.Layouts.volume[0] % this->Channels;
-    const double before = this->Kept->firstScattered[c];
-    this->Guess[i] = before > 0.0 ? static_cast<float>(this->Guess[i] * this->First[c] / before) : 0.0f;
+    faces.BeginWarm(this->GuessOf(moments, faces.Cells() * this->Channels, faces.Cells()));
   }
   this->Add(volumes.OrderMoments[0], 1.0f);
   volumes.OrderMoments[1].Fill(0.0f); // it is in the other already
@@ -57,7 +71,7 @@ void PublishedWarmStart::Add(Buffer<float>& moments, float sign) const
   moments.Write(values.data());
 }
 
-KeptLight PublishedWarmStart::Leave(const PublishedVolumes& volumes, const Rgb& rate) const
+KeptLight PublishedWarmStart::Leave(const PublishedVolumes& volumes, const PublishedFaces& faces, const Rgb& rate) const
 {
   KeptLight left;
   left.kind = this->Kind;
@@ -68,6 +82,8 @@ KeptLight PublishedWarmStart::Leave(const PublishedVolumes& volumes, const Rgb& 
   {
     left.scattered[i] -= this->Direct[i];
   }
+  const std::vector<float> throughCells = faces.LeftLater();
+  left.scattered.insert(left.scattered.end(), throughCells.begin(), throughCells.end());
   left.fromDarkness = this->Begins() ? this->Kept->fromDarkness : std::vector<ConvergenceRow>();
   return left;
 }

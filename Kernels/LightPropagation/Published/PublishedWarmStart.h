@@ -1,6 +1,7 @@
 #pragma once
 
 #include "Light/KeptLight.h"
+#include "LightPropagation/Published/PublishedFaces.h"
 #include "LightPropagation/Published/PublishedModel.h"
 #include "LightPropagation/Published/PublishedVolumes.h"
 
@@ -10,7 +11,8 @@ namespace tyndall
 {
 /// The scattered light of the last solve as the first guess of this one, of light propagation maps as published
 /// (numerics.md, section 6.4): in the moments of PublishedVolumes, of which the first order's are what comes in and
-/// what is guessed, and the second's what was found less the guess.
+/// what is guessed, and the second's what was found less the guess; and likewise in what leaves through faces that give
+/// it back. Kept light is the moments, and behind them W by cell.
 class PublishedWarmStart
 {
 public:
@@ -25,12 +27,13 @@ public:
 
   /// Adds the guess, where there is one, to the moments of the first order; their sources are to be made anew.
   /// @param direct  unscattered fluence, channels interleaved
-  void AddTo(PublishedVolumes& volumes, const std::vector<float>& direct);
+  void AddTo(PublishedVolumes& volumes, PublishedFaces& faces, const std::vector<float>& direct);
   /// Takes it from those that the second found.
   void TakeFrom(PublishedVolumes& volumes);
-  KeptLight Leave(const PublishedVolumes& volumes, const Rgb& rate) const;
+  KeptLight Leave(const PublishedVolumes& volumes, const PublishedFaces& faces, const Rgb& rate) const;
 
 private:
+  std::vector<float> GuessOf(std::size_t first, std::size_t count, std::size_t perChannel) const;
   void Add(Buffer<float>& moments, float sign) const;
 
   const Medium& TheMedium;

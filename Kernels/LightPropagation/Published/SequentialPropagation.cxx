@@ -2,6 +2,7 @@
 
 #include "Light/ChannelReduction.h"
 #include "LightPropagation/Convergence.h"
+#include "LightPropagation/Published/PublishedFaces.h"
 
 #include <cmath>
 
@@ -18,6 +19,7 @@ public:
     , Settings(settings)
     , Model(medium, illumination, settings, channels)
     , Ledger(medium, this->Model, settings)
+    , Faces(medium.grid, this->Model, settings)
     , Channels(this->Model.Channels())
     , Values(medium.grid.VoxelCount() * this->Channels)
     , Sources(this->Model.SourceDirections().size())
@@ -47,6 +49,7 @@ public:
     {
       this->Propagate(monitor);
       const std::vector<float> fluence(this->OrderMoments[0].begin(), this->OrderMoments[0].end());
+      this->Faces.CloseOrder(this->Ledger);
       this->Ledger.CloseOrder(fluence.data());
       this->UpdateSources();
       if (this->Ledger.Orders() == 1)
@@ -105,6 +108,10 @@ private:
           const std::size_t first = (static_cast<std::size_t>(s) * elementsU + r) * this->Channels;
           std::copy_n(this->Carried[i].begin() + first, this->Channels, ray.radiance);
         }
+        if (!carries)
+        {
+          this->ComeBack(ray, map, map.axis, this->FirstPlane(map), 1.0);
+        }
         this->Follow(ray, map, startU, startV);
         if (carries)
         {
@@ -116,7 +123,7 @@ private:
         }
         else
         {
-          Add(this->Ledger.facePowerOut[map.ExitFace(map.axis)], ray, map.beamPower);
+          this->Leave(ray, map, map.axis, map.planes - 1 - this->FirstPlane(map), map.beamPower);
         }
       }
     }
@@ -140,16 +147,19 @@ private:
     GridWalk walk(startU, startV, map.slopeU, map.slopeV, map.planes);
     while (walk.Next())
     {
-      this->Move(ray, map, walk.moveU, walk.moveV);
       const int w = map.forward ? walk.plane : map.planes - 1 - walk.plane;
+      this->Move(ray, map, w, walk.moveU, walk.moveV);
       const std::size_t voxel = ray.u * stride[map.axisU] + ray.v * stride[map.axisV] + w * stride[map.axis];
       this->CrossVoxel(ray, source, voxel * this->Channels, walk.fraction * map.length, map.density);
     }
   }
 
-  /// Into the next voxel; a ray that leaves through a side enters anew on the other (Fig. 2).
-  void Move(Ray& ray, const MapGeometry& map, int moveU, int moveV)
+  static int FirstPlane(const MapGeometry& map) { return map.forward ? 0 : map.planes - 1; }
+
+  /// Into the next voxel, in plane w; a ray that leaves through a side enters anew on the other (Fig. 2).
+  void Move(Ray& ray, const MapGeometry& map, int w, int moveU, int moveV)
   {
+    const Ray before = ray;
     const bool leavesU = Step(ray.u, moveU, map.sizeU) && !this->Settings.periodic[map.axisU];
     const bool leavesV = Step(ray.v, moveV, map.sizeV) && !this->Settings.periodic[map.axisV];
     if (leavesU || leavesV)
@@ -160,7 +170,7 @@ private:
       {
         if (axis >= 0)
         {
-          Add(this->Ledger.facePowerOut[map.ExitFace(axis)], ray, share * map.beamPower);
+          this->Leave(before, map, axis, w, share * map.beamPower);
           for (int c = 0; c < 3; ++c)
           {
             boundary[c] += share * this->Model.Boundary(ray.direction, axis)[c];
@@ -168,6 +178,13 @@ private:
         }
       }
       this->Enter(ray, map, this->Ledger.Orders() == 0 ? boundary : Rgb{});
+      for (int axis : { leavesU ? map.axisU : -1, leavesV ? map.axisV : -1 })
+      {
+        if (axis >= 0)
+        {
+          this->ComeBack(ray, map, axis, w, share);
+        }
+      }
     }
   }
 
@@ -187,6 +204,43 @@ private:
       ray.radiance[c] = static_cast<float>(boundary[c]);
     }
     Add(this->Ledger.entered, ray, map.beamPower);
+  }
+
+  std::size_t CellOf(int face, const Ray& ray, const MapGeometry& map, int w) const
+  {
+    std::array<int, 3> voxel = {};
+    voxel[map.axis] = w;
+    voxel[map.axisU] = ray.u;
+    voxel[map.axisV] = ray.v;
+    return this->Faces.Cell(face, voxel);
+  }
+
+  /// Out of the box across an axis, in plane w.
+  void Leave(const Ray& ray, const MapGeometry& map, int axis, int w, double power)
+  {
+    const int face = map.ExitFace(axis);
+    Add(this->Ledger.facePowerOut[face], ray, power);
+    if (this->Faces.Count())
+    {
+      const std::size_t cell = this->CellOf(face, ray, map, w);
+      for (int c = 0; c < this->Channels; ++c)
+      {
+        this->Faces.Leave(cell, c, power * ray.radiance[c]);
+      }
+    }
+  }
+
+  /// With what the face gives back, across an axis, in plane w.
+  void ComeBack(Ray& ray, const MapGeometry& map, int axis, int w, double share)
+  {
+    if (this->Faces.Count())
+    {
+      const std::size_t cell = this->CellOf(map.EntryFace(axis), ray, map, w);
+      for (int c = 0; c < this->Channels; ++c)
+      {
+        ray.radiance[c] += static_cast<float>(share * this->Faces.Radiance(cell, c));
+      }
+    }
   }
 
   /// Eq. (3), then the ray's part of Eq. (4).
@@ -270,6 +324,7 @@ private:
       }
     }
     this->Ledger.WriteTo(field);
+    this->Faces.WriteTo(field);
     field.halfRangeFlux = HalfRangeFlux(this->Model.Directions());
     field.device = "host, one core";
   }
@@ -278,6 +333,7 @@ private:
   PropagationSettings Settings;
   PublishedModel Model;
   OrderLedger Ledger;
+  PublishedFaces Faces;
   int Channels;
   std::size_t Values;  ///< voxels times channels
   std::size_t Sources; ///< directions of U
