@@ -183,8 +183,8 @@ static void COUNT_ESCAPED(sweep_state* state, const __global float* row, int y, 
     {
       const int side = dv > 0 ? 3 : 2;
 #if FACE_IN
-      const float beyond =
-        across_u[m * CHANNELS + c] + (turned > 0.0f ? bundle->power * light_of_cell(state, du > 0 ? 0 : 1, y, c) : 0.0f);
+      const float beyond = across_u[m * CHANNELS + c] +
+        (turned > 0.0f ? bundle->power * light_of_cell(state, du > 0 ? 0 : 1, y, c) : 0.0f);
 #else
       const float beyond = across_u[m * CHANNELS + c];
 #endif

@@ -54,8 +54,7 @@ static __global float* cells_of_plane(const sweep_state* state, int side, int p,
   p = (p + state->facePlanes) % state->facePlanes;
 #endif
   const long planes = p - state->facePlane;
-  return state->faceOut + FACE_CELL(state, side, 0, c) +
-    planes * state->faces->plane[side];
+  return state->faceOut + FACE_CELL(state, side, 0, c) + planes * state->faces->plane[side];
 }
 
 // Part of a ray that leaves through plane p.

@@ -56,7 +56,7 @@ typedef struct
   float power;  ///< that a ray carries at radiance 1
   float cosine; ///< of its directions with the axis it marches along, for the net flux
   float sineU, sineV;
-  float planesU, planesV; ///< from one move along u, v to the next; at most those of the axis
+  float planesU, planesV;  ///< from one move along u, v to the next; at most those of the axis
   int move[MaxMembers][4]; ///< u from u, u from v, v from u, v from v: a signed permutation
   /// Members whose directions differ by signs alone, at most four, are a frame; where its members begin, and where the
   /// last one's end.
