@@ -98,10 +98,9 @@ std::vector<Setting> Settings(bool quick)
       settings.push_back({ { 2, 32 }, degree, perFace });
     }
   }
-  // A column's power is that of few rays: more points a voxel's edge.
-  settings.push_back({ { 2, 32 }, 7, 64, 2 });
-  settings.push_back({ { 4, 64 }, 7, 64, 2 });
-  settings.push_back({ { 4, 64 }, 9, 144, 2 });
+  settings.push_back({ { 2, 32 }, 7, 196 });
+  settings.push_back({ { 4, 64 }, 9, 256 });
+  settings.push_back({ { 4, 64 }, 11, 256 }); // columns beside the step: little light may go straight on
   return settings;
 }
 

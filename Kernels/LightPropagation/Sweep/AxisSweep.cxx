@@ -325,8 +325,8 @@ const Buffer<float>& AxisSweep::Implementation::CellsOf(const Deposit& to)
   }
   if (this->FacesOfUnits.Size() == 0)
   {
-    this->FacesOfUnits = Buffer<float>(
-      this->TheDevice, this->Plan.units.size() * to.faceOut->Size(), "the power that leaves by cells");
+    this->FacesOfUnits =
+      Buffer<float>(this->TheDevice, this->Plan.units.size() * to.faceOut->Size(), "the power that leaves by cells");
     this->FacesOfUnits.Fill(0.0f);
   }
   return this->FacesOfUnits;
@@ -359,9 +359,10 @@ cl::Kernel AxisSweep::Implementation::SweepKernel(const Wanted& wanted)
   const SweepPlan& plan = this->Plan;
   std::string options = Define("REAL_WIDTH", plan.vector) + Define("CHANNELS", plan.channels) +
     Define("ROW", plan.row) + Define("SOURCE", wanted.source) + Define("BORDER", wanted.border) +
-    Define("NET_FLUX", wanted.flux) + Define("FACE_OUT", wanted.faceOut) + Define("FACE_SPREAD", wanted.spreadsAside) + Define("FACE_IN", wanted.faceIn) +
-    Define("CURRENTS", plan.partialCurrents) + DefineMoments(plan) + Define("PERIODIC_P", this->IsPeriodic()) +
-    Define("PERIODIC_U", plan.periodic[plan.axes.u]) + Define("PERIODIC_V", plan.periodic[plan.axes.v]);
+    Define("NET_FLUX", wanted.flux) + Define("FACE_OUT", wanted.faceOut) + Define("FACE_SPREAD", wanted.spreadsAside) +
+    Define("FACE_IN", wanted.faceIn) + Define("CURRENTS", plan.partialCurrents) + DefineMoments(plan) +
+    Define("PERIODIC_P", this->IsPeriodic()) + Define("PERIODIC_U", plan.periodic[plan.axes.u]) +
+    Define("PERIODIC_V", plan.periodic[plan.axes.v]);
   for (int members = 1; members <= MaxMembers; members *= 2)
   {
     const auto has = [&](const BundleInfo& bundle) { return bundle.members == members; };
