@@ -29,7 +29,7 @@ constexpr double GoalOfColumns = 0.01, GoalOfMean = 0.003;
 struct Setting
 {
   step_cloud::Voxels voxels;
-  int degree, perFace, mapResolution = 1;
+  int degree, perFace;
 };
 
 std::string NameOf(const Setting& setting)
@@ -51,7 +51,6 @@ void Solve(Device& device, int number, const Setting& setting, Table& table, Sum
   scene.settings.angularDegree = setting.degree;
   scene.settings.directionsPerFace = setting.perFace;
   scene.settings.staggeredRays = true;
-  scene.settings.mapResolution = setting.mapResolution;
   device.ResetPeak();
   const double start = WallSeconds();
   const LightField light = scene.Solve(device);
