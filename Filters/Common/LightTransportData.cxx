@@ -3,6 +3,7 @@
 #include "Common/GhostFlags.h"
 #include "Common/LastFailure.h"
 #include "Common/PhaseFunctionData.h"
+#include "Common/SameVoxels.h"
 
 #include "vtkAlgorithm.h"
 #include "vtkCellData.h"
@@ -354,6 +355,41 @@ double ReadFact(vtkDataObject* data, const char* name, double missing)
     throw InvalidInput("The field data " + Quoted(name) + " must be one number.");
   }
   return numbers->GetTuple1(0);
+}
+
+namespace
+{
+/// W through the faces, in the order of FaceRadiance; 0 where there is no such field data.
+std::array<Rgb, 6> FacePowersOf(vtkDataObject* data)
+{
+  std::array<Rgb, 6> powers = {};
+  auto* const found = vtkArrayDownCast<vtkDataArray>(data->GetFieldData()->GetAbstractArray("face_power_out"));
+  if (found)
+  {
+    CheckShape(found, "face_power_out", 6, { 1, 3 });
+  }
+  for (int face = 0; found && face < 6; ++face)
+  {
+    for (int c = 0; c < 3; ++c)
+    {
+      powers[face][c] = found->GetComponent(face, found->GetNumberOfComponents() == 3 ? c : 0);
+    }
+  }
+  return powers;
+}
+}
+
+UncollidedInput ReadUncollided(vtkImageData* image, const Grid& medium)
+{
+  CheckSameVoxels(GridOf(image), medium, "UncollidedLight",
+    "March the photons through the same medium, or resample their light to its voxels.");
+  UncollidedInput input;
+  input.fluence = ReadCells(image, "fluence_direct", Need::Required, { 1, 3 });
+  input.meanDirection = ReadCells(image, "mean_direction", Need::Optional, { 3 });
+  input.image.fluence = input.fluence;
+  input.image.meanDirection = input.meanDirection;
+  input.image.escaped = FacePowersOf(image);
+  return input;
 }
 
 namespace

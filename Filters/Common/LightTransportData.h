@@ -124,6 +124,26 @@ struct MomentsInput
   std::vector<Light> lampsApart;
 };
 
+/// Uncollided light of another solver, and the arrays that it sees.
+struct UncollidedInput
+{
+  UncollidedImage image;
+  FloatField fluence, meanDirection;
+};
+
+/// All that shines, and the arrays that it sees.
+struct IlluminationInput
+{
+  Illumination illumination;
+  UncollidedInput uncollided;
+};
+
+/// What PhotonMarcher or PhotonReconstruction found of light that is not scattered: cells `fluence_direct` (1 or 3
+/// components), optional cells `mean_direction` (3; missing: every way alike), optional field data `face_power_out`
+/// (missing: 0).
+/// @throws InvalidInput where its voxels are not those of the medium, or an array is missing or has the wrong shape
+UncollidedInput ReadUncollided(vtkImageData* image, const Grid& medium);
+
 /// @throws InvalidInput where one is there and has the wrong shape
 MomentsInput ReadMoments(vtkImageData* image);
 

@@ -1,6 +1,7 @@
 #include "Photons/RefractiveInput.h"
 
 #include "Common/PhaseFunctionData.h"
+#include "Common/SameVoxels.h"
 #include "Photons/PhotonData.h"
 
 #include "vtkCellData.h"
@@ -20,34 +21,6 @@ namespace
 {
 constexpr const char* LevelsName = "octree_level";
 
-std::string Triple(const std::array<double, 3>& values)
-{
-  char text[96];
-  std::snprintf(text, sizeof(text), "(%.9g, %.9g, %.9g)", values[0], values[1], values[2]);
-  return text;
-}
-
-std::string Described(const Grid& grid)
-{
-  const std::array<int, 3>& size = grid.size;
-  return std::to_string(size[0]) + " x " + std::to_string(size[1]) + " x " + std::to_string(size[2]) +
-    " voxels of spacing " + Triple(grid.spacing) + " from origin " + Triple(grid.origin);
-}
-
-/// Whether voxels have the same corners, but for rounding.
-bool Agree(const Grid& a, const Grid& b)
-{
-  constexpr double part = 1e-3; // of a voxel
-  bool agree = a.size == b.size;
-  for (int axis = 0; axis < 3; ++axis)
-  {
-    const double low = std::abs(a.origin[axis] - b.origin[axis]);
-    const double high = std::abs(a.origin[axis] + a.Length(axis) - b.origin[axis] - b.Length(axis));
-    agree = agree && std::max(low, high) <= part * b.spacing[axis];
-  }
-  return agree;
-}
-
 /// The octree's levels, of its own image or of the medium's.
 std::vector<std::uint8_t> LevelsOf(vtkImageData* octree, vtkImageData* medium)
 {
@@ -55,13 +28,7 @@ std::vector<std::uint8_t> LevelsOf(vtkImageData* octree, vtkImageData* medium)
   {
     return ReadLevels(medium);
   }
-  const Grid ofOctree = GridOf(octree);
-  const Grid ofMedium = GridOf(medium);
-  if (!Agree(ofOctree, ofMedium))
-  {
-    throw InvalidInput("The octree has " + Described(ofOctree) + ", the medium " + Described(ofMedium) +
-      ". Make the octree of the same medium.");
-  }
+  CheckSameVoxels(GridOf(octree), GridOf(medium), "The octree", "Make the octree of the same medium.");
   std::vector<std::uint8_t> levels = ReadLevels(octree);
   if (levels.empty())
   {

@@ -45,16 +45,9 @@ vtkDiscreteOrdinates::vtkDiscreteOrdinates()
   this->NetFlux = defaults.netFlux;
   this->LeaveOut = defaults.leaveOut;
   this->Last = std::make_unique<tyndall::LastLight>();
-  this->SetNumberOfOutputPorts(2);
 }
 
 vtkDiscreteOrdinates::~vtkDiscreteOrdinates() = default;
-
-int vtkDiscreteOrdinates::FillOutputPortInformation(int port, vtkInformation* information)
-{
-  information->Set(vtkDataObject::DATA_TYPE_NAME(), port == 0 ? "vtkImageData" : "vtkTable");
-  return 1;
-}
 
 int vtkDiscreteOrdinates::RequestData(vtkInformation*, vtkInformationVector** inputs, vtkInformationVector* outputs)
 {
@@ -62,7 +55,8 @@ int vtkDiscreteOrdinates::RequestData(vtkInformation*, vtkInformationVector** in
   return tyndall::Guarded(this, outputs, [&] {
     vtkImageData* image = vtkImageData::GetData(inputs[MEDIUM]);
     const tyndall::MediumInput input = tyndall::ReadMedium(this, image);
-    const tyndall::Illumination illumination = this->ReadAllIllumination(inputs);
+    const tyndall::IlluminationInput shining = this->ReadShining(inputs);
+    const tyndall::Illumination& illumination = shining.illumination;
     this->WarnWhereDark(illumination, input.emission.IsThere());
     tyndall::LightField light = tyndall::SolveDiscreteOrdinates(*tyndall::Device::Find(this->GetDevice()), input.medium,
       illumination, SettingsOf(this), tyndall::MonitorOf(this), this->Last->Where(this->WarmStart));

@@ -2,7 +2,7 @@
 #define vtkDiscreteOrdinates_h
 
 #include "PropertyRange.h"
-#include "vtkPropagationAlgorithm.h"
+#include "vtkScatteringSolver.h"
 #include "vtkTyndallModule.h" // for export macro
 
 #include <memory>
@@ -33,6 +33,7 @@ class LastLight;
  * or those chosen by SetInputArrayToProcess 0, 1 and 2, and field data `g` (default 0).
  * Input 1, optional: lights as vtkLightRig makes them.
  * Input 2, optional: the environment, as vtkEnvironmentReader makes it.
+ * Input 3, optional: uncollided light of another filter instead of all these (vtkScatteringSolver).
  *
  * Output 0: the medium's image with cell arrays of 1 component, or 3 where medium or light has colour
  *
@@ -57,11 +58,11 @@ class LastLight;
  * Z. Gong, Z. Ren, Z. Wang, Q. Peng: Interactive Rendering of Multiple Scattering in Participating Media Using
  * Separable Phase Functions.
  */
-class TYNDALL_EXPORT vtkDiscreteOrdinates : public vtkPropagationAlgorithm
+class TYNDALL_EXPORT vtkDiscreteOrdinates : public vtkScatteringSolver
 {
 public:
   static vtkDiscreteOrdinates* New();
-  vtkTypeMacro(vtkDiscreteOrdinates, vtkPropagationAlgorithm);
+  vtkTypeMacro(vtkDiscreteOrdinates, vtkScatteringSolver);
   void PrintSelf(ostream& os, vtkIndent indent) override;
 
   enum Schemes
@@ -159,7 +160,6 @@ protected:
   vtkDiscreteOrdinates();
   ~vtkDiscreteOrdinates() override;
 
-  int FillOutputPortInformation(int port, vtkInformation* information) override;
   int RequestData(vtkInformation* request, vtkInformationVector** inputs, vtkInformationVector* outputs) override;
 
 private:

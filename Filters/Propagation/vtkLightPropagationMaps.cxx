@@ -62,15 +62,15 @@ tyndall::LightField Solve(vtkLightPropagationMaps* filter, const tyndall::Medium
   const bool published = filter->GetScheme() == vtkLightPropagationMaps::PUBLISHED;
   const bool sequential = published && filter->GetAlgorithm() == vtkLightPropagationMaps::SEQUENTIAL;
   const std::shared_ptr<tyndall::Device> device = sequential ? nullptr : tyndall::Device::Find(filter->GetDevice());
-  const tyndall::PropagationSolver solve = [&](const tyndall::Medium& inside, const tyndall::PropagationSettings& how,
-                                             const tyndall::Monitor& watch) {
+  const tyndall::PropagationSolver solve = [&](const tyndall::Medium& inside, const tyndall::Illumination& shining,
+                                             const tyndall::PropagationSettings& how, const tyndall::Monitor& watch) {
     tyndall::KeptLight* const kept = &inside == &medium ? last : nullptr; // not of the coarser ones
-    return sequential ? tyndall::SolveSequential(inside, illumination, how, watch)
-      : published     ? tyndall::SolveParallel(*device, inside, illumination, how, watch, 0, kept)
-                      : tyndall::SolveConservative(*device, inside, illumination, how, watch, kept);
+    return sequential ? tyndall::SolveSequential(inside, shining, how, watch)
+      : published     ? tyndall::SolveParallel(*device, inside, shining, how, watch, 0, kept)
+                      : tyndall::SolveConservative(*device, inside, shining, how, watch, kept);
   };
-  return filter->GetEstimateError() ? tyndall::SolveWithErrorEstimate(medium, settings, monitor, solve)
-                                    : solve(medium, settings, monitor);
+  return filter->GetEstimateError() ? tyndall::SolveWithErrorEstimate(medium, illumination, settings, monitor, solve)
+                                    : solve(medium, illumination, settings, monitor);
 }
 }
 
@@ -91,16 +91,9 @@ vtkLightPropagationMaps::vtkLightPropagationMaps()
   this->LeaveOut = defaults.leaveOut;
   this->StoredDirections = defaults.storedDirections;
   this->Last = std::make_unique<tyndall::LastLight>();
-  this->SetNumberOfOutputPorts(2);
 }
 
 vtkLightPropagationMaps::~vtkLightPropagationMaps() = default;
-
-int vtkLightPropagationMaps::FillOutputPortInformation(int port, vtkInformation* information)
-{
-  information->Set(vtkDataObject::DATA_TYPE_NAME(), port == 0 ? "vtkImageData" : "vtkTable");
-  return 1;
-}
 
 int vtkLightPropagationMaps::RequestData(vtkInformation*, vtkInformationVector** inputs, vtkInformationVector* outputs)
 {
@@ -108,7 +101,8 @@ int vtkLightPropagationMaps::RequestData(vtkInformation*, vtkInformationVector**
   return tyndall::Guarded(this, outputs, [&] {
     vtkImageData* image = vtkImageData::GetData(inputs[MEDIUM]);
     const tyndall::MediumInput input = tyndall::ReadMedium(this, image);
-    const tyndall::Illumination illumination = this->ReadAllIllumination(inputs);
+    const tyndall::IlluminationInput shining = this->ReadShining(inputs);
+    const tyndall::Illumination& illumination = shining.illumination;
     this->WarnWhereDark(illumination, input.emission.IsThere());
 
     tyndall::LightField light = Solve(this, input.medium, illumination, this->Last->Where(this->WarmStart));

@@ -2,7 +2,7 @@
 #define vtkLightPropagationMaps_h
 
 #include "PropertyRange.h"
-#include "vtkPropagationAlgorithm.h"
+#include "vtkScatteringSolver.h"
 #include "vtkTyndallModule.h" // for export macro
 
 #include <memory>
@@ -35,6 +35,7 @@ struct LightField;
  * Input 1, optional: lights as vtkLightRig makes them.
  * Input 2, optional: the environment, vtkImageData in latitude-longitude layout, point array `radiance` (1 or 3
  * components, W/(length^2 sr)), as vtkEnvironmentReader makes it.
+ * Input 3, optional: uncollided light of another filter instead of all these (vtkScatteringSolver).
  *
  * Output 0: the medium's image with cell arrays of 1 component, or 3 where medium or light has colour
  *
@@ -67,11 +68,11 @@ struct LightField;
  * Architectures, EGPGV 2012. R. Fattal: Participating Media Illumination Using Light Propagation Maps, ACM Trans.
  * Graph. 28 (2009).
  */
-class TYNDALL_EXPORT vtkLightPropagationMaps : public vtkPropagationAlgorithm
+class TYNDALL_EXPORT vtkLightPropagationMaps : public vtkScatteringSolver
 {
 public:
   static vtkLightPropagationMaps* New();
-  vtkTypeMacro(vtkLightPropagationMaps, vtkPropagationAlgorithm);
+  vtkTypeMacro(vtkLightPropagationMaps, vtkScatteringSolver);
   void PrintSelf(ostream& os, vtkIndent indent) override;
 
   enum Schemes
@@ -239,7 +240,6 @@ protected:
   vtkLightPropagationMaps();
   ~vtkLightPropagationMaps() override;
 
-  int FillOutputPortInformation(int port, vtkInformation* information) override;
   int RequestData(vtkInformation* request, vtkInformationVector** inputs, vtkInformationVector* outputs) override;
 
 private:

@@ -54,6 +54,10 @@ void vtkPropagationAlgorithm::SetFaceAlbedoColor(const double values[18])
 
 void vtkPropagationAlgorithm::WarnWhereDark(const tyndall::Illumination& illumination, bool emits)
 {
+  if (illumination.uncollided.IsThere())
+  {
+    return;
+  }
   if (tyndall::NothingShines(illumination) && !emits)
   {
     vtkWarningMacro("Nothing shines on the medium, so it is dark. Connect Lights or an Environment, or set SkyColor.");

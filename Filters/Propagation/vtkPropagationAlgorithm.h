@@ -17,7 +17,7 @@ struct LightField;
  * It has what vtkLightPropagationMaps and vtkDiscreteOrdinates, which solve once, and vtkSolverComparison, which solves
  * by many settings, are all told of the box and of when to stop.
  *
- * @sa vtkLightPropagationMaps vtkDiscreteOrdinates vtkSolverComparison
+ * @sa vtkScatteringSolver vtkSolverComparison
  */
 class TYNDALL_EXPORT vtkPropagationAlgorithm : public vtkLitImageAlgorithm
 {
@@ -53,8 +53,7 @@ public:
 
   ///@{
   /// Part of the light that leaves through the faces -x, +x, -y, +y, -z, +z that comes back where it left, spread as by
-  /// a matt surface (Lambert), beside FaceRadiance. Default 0, valid [0, 1]; 0 on the faces of a periodic axis. Only
-  /// the conservative scheme of LightPropagationMaps knows it: other solvers say so.
+  /// a matt surface (Lambert), beside FaceRadiance. Default 0, valid [0, 1]; 0 on the faces of a periodic axis.
   tyndallSetRange6Macro(FaceAlbedo, double, 0.0, 1.0);
   vtkGetVector6Macro(FaceAlbedo, double);
   ///@}

@@ -72,16 +72,17 @@ OrdinatesSettings AsOrdinates(const PropagationSettings& settings)
 
 /// The solver of a method, in the scene's light.
 /// @param device, scene  must stay
-PropagationSolver SolverOf(ComparedMethod method, Device& device, const ComparedScene& scene)
+PropagationSolver SolverOf(ComparedMethod method, Device& device)
 {
-  return [method, &device, &scene](const Medium& medium, const PropagationSettings& settings, const Monitor& monitor) {
+  return [method, &device](const Medium& medium, const Illumination& illumination, const PropagationSettings& settings,
+           const Monitor& monitor) {
     switch (method)
     {
-      case ComparedMethod::Published: return SolveParallel(device, medium, scene.illumination, settings, monitor);
-      case ComparedMethod::PublishedSequential: return SolveSequential(medium, scene.illumination, settings, monitor);
+      case ComparedMethod::Published: return SolveParallel(device, medium, illumination, settings, monitor);
+      case ComparedMethod::PublishedSequential: return SolveSequential(medium, illumination, settings, monitor);
       case ComparedMethod::DiscreteOrdinates:
-        return SolveDiscreteOrdinates(device, medium, scene.illumination, AsOrdinates(settings), monitor);
-      default: return SolveConservative(device, medium, scene.illumination, settings, monitor);
+        return SolveDiscreteOrdinates(device, medium, illumination, AsOrdinates(settings), monitor);
+      default: return SolveConservative(device, medium, illumination, settings, monitor);
     }
   };
 }
@@ -106,7 +107,7 @@ PropagationSettings SettingsOf(ComparedMethod method, const Setting& setting, co
 std::vector<ComparedRun> PropagationRunsOf(
   ComparedMethod method, Device& device, const ComparedScene& scene, const ComparedSettings& settings)
 {
-  const PropagationSolver solver = SolverOf(method, device, scene);
+  const PropagationSolver solver = SolverOf(method, device);
   std::vector<ComparedRun> runs;
   for (const Setting& setting : SettingsToTry(settings))
   {
@@ -129,7 +130,9 @@ std::vector<ComparedRun> PropagationRunsOf(
       PropagationSettings now = of;
       now.periodic = scene.periodic;
       const Medium& medium = scaled ? scaled->Scene().medium : scene.medium;
-      return estimate ? SolveWithErrorEstimate(medium, now, monitor, solver) : solver(medium, now, monitor);
+      const Illumination& shining = scene.illumination;
+      return estimate ? SolveWithErrorEstimate(medium, shining, now, monitor, solver)
+                      : solver(medium, shining, now, monitor);
     };
     runs.push_back(std::move(run));
   }

@@ -2,11 +2,13 @@
 
 #include "Device/Defines.h"
 #include "LightPropagation/Sweep/SweepInMemory.h"
+#include "LightPropagation/Uncollided/GivenLight.h"
 #include "LightPropagation/Uncollided/UncollidedLamp.h"
 #include "Medium/BoxFaces.h"
 #include "Numerics/Constants.h"
 #include "TyndallKernelSources.h"
 
+#include <algorithm>
 #include <cmath>
 
 namespace tyndall
@@ -59,7 +61,7 @@ std::size_t ChannelArrays::Bytes(const Grid& grid, bool netFlux)
 void ChannelArrays::AddLamps(
   const Buffer<float>& source, const std::array<bool, 3>& periodic, OrdinatesResult& result, const Monitor& monitor)
 {
-  if (this->Scene.lamps.empty())
+  if (this->Scene.lamps.empty() && !this->Scene.uncollided.IsThere())
   {
     return;
   }
@@ -79,6 +81,30 @@ void ChannelArrays::AddLamps(
     this->CountLamp(UncollidedLamp(this->Scene.lamps[i]).AddTo(volume, ofLamp), result.ledger);
     scattering.Add(this->Scene.lamps[i], path, sigma_s, { source, this->Scale, this->Direct, this->Light });
   }
+  if (this->Scene.uncollided.IsThere())
+  {
+    this->AddGiven(scattering, sigma_s, source, result);
+  }
+}
+
+/// Light that another solver found.
+void ChannelArrays::AddGiven(
+  const LampScattering& scattering, const Buffer<float>& sigma_s, const Buffer<float>& source, OrdinatesResult& result)
+{
+  const UncollidedImage& image = this->Scene.uncollided;
+  const double size = this->Layout.grid.VoxelVolume();
+  const Buffer<float> path(this->TheDevice,
+    Planar(this->Layout, 1,
+      [&](std::size_t i, int) { return static_cast<float>(size * image.fluence.At(i, this->Scene.channel)); }),
+    "the light given");
+  std::vector<float> ways(3 * this->Voxels + 1, 0.0f);
+  if (image.meanDirection.values)
+  {
+    std::copy_n(image.meanDirection.values, 3 * this->Voxels, ways.begin());
+  }
+  scattering.AddAlong(Buffer<float>(this->TheDevice, ways, "mean directions"), path, sigma_s,
+    { source, this->Scale, this->Direct, this->Light });
+  this->CountLamp(TallyOf(image, this->TheMedium, this->Scene.channel, 1), result.ledger);
 }
 
 void ChannelArrays::CountLamp(const SweepTally& tally, EnergyLedger& ledger)

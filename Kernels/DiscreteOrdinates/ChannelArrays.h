@@ -60,6 +60,8 @@ public:
 
 private:
   Buffer<float> Load(const char* what, double absorbed, double scattered) const;
+  void AddGiven(const LampScattering& scattering, const Buffer<float>& sigma_s, const Buffer<float>& source,
+    OrdinatesResult& result);
   void CountLamp(const SweepTally& tally, EnergyLedger& ledger);
 
   Device& TheDevice;

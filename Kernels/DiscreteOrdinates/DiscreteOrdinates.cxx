@@ -158,6 +158,17 @@ std::array<Rgb, 6> FaceAlbedoOf(const Illumination& shining, int channel)
   return albedo;
 }
 
+UncollidedImage UncollidedOf(const Illumination& shining, int channel)
+{
+  UncollidedImage image = shining.uncollided;
+  image.fluence.standsForAll = image.fluence.HasColour() ? channel : image.fluence.standsForAll;
+  for (Rgb& face : image.escaped)
+  {
+    face.fill(face[channel]);
+  }
+  return image;
+}
+
 std::vector<Light> LampsOf(const FarLight& far, const Illumination& shining, int channel)
 {
   std::vector<Light> lamps;
@@ -246,6 +257,7 @@ std::vector<std::string> Words(const PropagationProblem& problem, const FarLight
     }
   };
   const MediumTraits& traits = problem.Traits();
+  say(problem.Shining().uncollided.IsThere(), left_out::OwnUncollided);
   if (problem.Settings().leaveOut)
   {
     say(angles.phase.Terms() == 1 && traits.scatters, left_out::Isotropic);
@@ -364,7 +376,8 @@ LightField SolveDiscreteOrdinates(Device& device, const Medium& medium, const Il
       function };
     CheckMemory(device, problem.TheGrid(), angles, settings);
     OrdinatesScene scene = { problem.TheMedium(), c, LampsOf(far, problem.Shining(), c),
-      IncomingOf(far, problem.Shining(), c), FaceAlbedoOf(problem.Shining(), c), {} };
+      IncomingOf(far, problem.Shining(), c), FaceAlbedoOf(problem.Shining(), c), UncollidedOf(problem.Shining(), c),
+      {} };
     if (kept)
     {
       left.kind = c == 0 ? KindOf(problem, angles, settings) : left.kind;
@@ -396,6 +409,7 @@ LightField SolveDiscreteOrdinates(Device& device, const Medium& medium, const Il
   }
   problem.Undo(light);
   Judge(settings, diverged, light);
+  DoubtGivenLight(illumination, light);
   return light;
 }
 }

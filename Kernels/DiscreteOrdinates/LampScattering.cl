@@ -3,9 +3,19 @@
 //
 //   GROUPS  of eight directions
 //   TABLE   values of the phase function over the angle, evenly from 0 to pi
+//   WAYS    1: each voxel has a mean direction of its own, whose length is the part of the light that goes that way;
+//           0: rays of a lamp
 #include "DiscreteOrdinates/LampScatteringShared.h"
 
 #define MOST_TILT 0.98f // as LampScattering.cxx has it
+
+#if WAYS
+#define WAYS_ARGUMENT , const __global float* ways
+#define ALONG vload3(i, ways)
+#else
+#define WAYS_ARGUMENT
+#define ALONG from_lamp(&lamp, i)
+#endif
 
 // The way of its light in a voxel; 0 in the voxel that it is in, where light goes every way.
 inline float3 from_lamp(const LampInRays* lamp, ulong i)
@@ -51,7 +61,7 @@ inline float sum8(float8 values)
 //   path     W length, of the lamp
 //   direct   W / length^2, added to, as are fluence and flux, [x, y, z][voxel], if has_flux
 __kernel void add_lamp(const __global float* path, __global float* fluence, __global float* direct,
-  __global float* flux, int has_flux, LampInRays lamp)
+  __global float* flux, int has_flux, LampInRays lamp WAYS_ARGUMENT)
 {
   const ulong i = get_global_id(0), voxels = get_global_size(0);
   const float light = path[i] * lamp.perVolume;
@@ -59,7 +69,7 @@ __kernel void add_lamp(const __global float* path, __global float* fluence, __gl
   direct[i] += light;
   if (has_flux)
   {
-    const float3 along = from_lamp(&lamp, i);
+    const float3 along = ALONG;
     flux[i] += light * along.x;
     flux[voxels + i] += light * along.y;
     flux[2 * voxels + i] += light * along.z;
@@ -84,10 +94,17 @@ __kernel void scatter_parallel(__global float* source, const __global float* sca
 // direction gets less than nothing, its mean cosine.
 __kernel void scatter_from_place(__global float* source, const __global float* scale, const __global float* path,
   const __global float* sigma_s, const __global float* omegas, const __global float* table, ulong stride,
-  LampInRays lamp)
+  LampInRays lamp WAYS_ARGUMENT)
 {
   const ulong i = get_global_id(0);
+#if WAYS
+  const float3 mean_way = ALONG;
+  const float directed = fmin(length(mean_way), 1.0f);
+  const float3 along = directed > 0.0f ? normalize(mean_way) : (float3)(0.0f);
+  const float evenly = (1.0f - directed) * path[i] * lamp.perVolume * sigma_s[i] / (4.0f * M_PI_F);
+#else
   const float3 along = from_lamp(&lamp, i);
+#endif
   const __global float8* of = (const __global float8*)omegas;
   float8 sums = (float8)0.0f, firsts = (float8)0.0f, seconds = (float8)0.0f;
   for (int group = 0; group < GROUPS; ++group)
@@ -104,11 +121,17 @@ __kernel void scatter_from_place(__global float* source, const __global float* s
   // A peak so narrow that it is in one direction alone cannot be turned: less than 1, so that its power is not a
   // difference that cancels.
   const float tilt = slope > 1e-6f ? clamp(lacking / slope, -MOST_TILT, MOST_TILT) : copysign(MOST_TILT, lacking);
-  const float power = path[i] * lamp.perVolume * sigma_s[i] / (sum * (1.0f + tilt * mean));
+  float power = path[i] * lamp.perVolume * sigma_s[i] / (sum * (1.0f + tilt * mean));
+#if WAYS
+  power *= directed;
+#endif
   for (int group = 0; group < GROUPS; ++group)
   {
     const float8 cosine = along.x * of[4 * group] + along.y * of[4 * group + 1] + along.z * of[4 * group + 2];
     __global float8* to = (__global float8*)source + group * stride + i;
     *to = *to * scale[i] + power * phase_at(table, cosine) * ((float8)1.0f + tilt * cosine);
+#if WAYS
+    *to += evenly;
+#endif
   }
 }

@@ -102,6 +102,30 @@ std::vector<float> LampScattering::PartsAlong(const std::array<double, 3>& ray) 
     [&](int g, int lane) { return phase(g, lane) * (1.0 + tilt * cosine(g, lane)) / (sum * (1.0 + tilt * mean)); });
 }
 
+cl::Kernel LampScattering::Kernel(const char* name, bool ways) const
+{
+  return this->TheDevice.Kernel(name, kernel_source::LampScattering,
+    Define("GROUPS", this->Groups.Count()) + Define("TABLE", TableSize) + Define("WAYS", ways));
+}
+
+void LampScattering::AddAlong(
+  const Buffer<float>& ways, const Buffer<float>& path, const Buffer<float>& sigma_s, const LampTarget& target) const
+{
+  LampInRays info = {};
+  info.meanCosine = static_cast<float>(this->MeanCosine);
+  info.perVolume = static_cast<float>(1.0 / this->TheGrid.VoxelVolume());
+  const cl::NDRange voxels(this->TheGrid.VoxelCount());
+  cl::Kernel add = this->Kernel("add_lamp", true), scatter = this->Kernel("scatter_from_place", true);
+  With(add, path, target.light.fluence, target.direct, target.light.flux, cl_int(target.light.flux.Size() > 0), info,
+    ways);
+  With(scatter, target.source, target.scale, path, sigma_s, this->Omegas, this->Table,
+    static_cast<cl_ulong>(OrdinateStride(this->TheGrid.VoxelCount())), info, ways);
+  this->TheDevice.Queue().enqueueNDRangeKernel(add, cl::NullRange, voxels);
+  this->TheDevice.Queue().enqueueNDRangeKernel(scatter, cl::NullRange, voxels);
+  target.scale.Fill(1.0f);
+  this->TheDevice.Finish();
+}
+
 void LampScattering::Add(
   const Light& lamp, const Buffer<float>& path, const Buffer<float>& sigma_s, const LampTarget& target) const
 {
@@ -119,20 +143,16 @@ void LampScattering::Add(
   info.parallel = parallel;
   info.meanCosine = static_cast<float>(this->MeanCosine);
   info.perVolume = static_cast<float>(1.0 / this->TheGrid.VoxelVolume());
-  const std::string options = Define("GROUPS", this->Groups.Count()) + Define("TABLE", TableSize);
-  const auto kernel = [&](const char* name) {
-    return this->TheDevice.Kernel(name, kernel_source::LampScattering, options);
-  };
   const cl::NDRange voxels(this->TheGrid.VoxelCount());
   const cl_ulong stride = OrdinateStride(this->TheGrid.VoxelCount());
   cl::CommandQueue& queue = this->TheDevice.Queue();
-  cl::Kernel add = kernel("add_lamp");
+  cl::Kernel add = this->Kernel("add_lamp", false);
   With(add, path, target.light.fluence, target.direct, target.light.flux, cl_int(target.light.flux.Size() > 0), info);
   queue.enqueueNDRangeKernel(add, cl::NullRange, voxels);
   if (parallel)
   {
     const Buffer<float> parts(this->TheDevice, this->PartsAlong({ place.x, place.y, place.z }), "the phase function");
-    cl::Kernel scatter = kernel("scatter_parallel");
+    cl::Kernel scatter = this->Kernel("scatter_parallel", false);
     With(scatter, target.source, target.scale, path, sigma_s, parts, stride, info.perVolume);
     const cl::NDRange all(this->TheGrid.VoxelCount(), this->Groups.Count());
     queue.enqueueNDRangeKernel(scatter, cl::NullRange, all);
@@ -140,7 +160,7 @@ void LampScattering::Add(
   }
   else
   {
-    cl::Kernel scatter = kernel("scatter_from_place");
+    cl::Kernel scatter = this->Kernel("scatter_from_place", false);
     With(scatter, target.source, target.scale, path, sigma_s, this->Omegas, this->Table, stride, info);
     queue.enqueueNDRangeKernel(scatter, cl::NullRange, voxels);
   }

@@ -35,8 +35,13 @@ public:
 
   /// @param path  W length, of the lamp's light in each voxel
   void Add(const Light& lamp, const Buffer<float>& path, const Buffer<float>& sigma_s, const LampTarget& target) const;
+  /// The same of light that goes along a mean direction of each voxel, as far as that is long, and evenly for the rest.
+  /// @param ways  mean directions, 3 a voxel
+  void AddAlong(
+    const Buffer<float>& ways, const Buffer<float>& path, const Buffer<float>& sigma_s, const LampTarget& target) const;
 
 private:
+  cl::Kernel Kernel(const char* name, bool ways) const;
   std::vector<float> PartsAlong(const std::array<double, 3>& ray) const;
 
   Device& TheDevice;

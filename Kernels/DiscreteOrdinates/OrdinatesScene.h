@@ -34,6 +34,7 @@ struct OrdinatesScene
   std::vector<Light> lamps;  ///< of the scene, and the peaks of the environment; power of the channel in all three
   IncomingRadiance incoming; ///< empty: no environment, sky or face shines
   std::array<Rgb, 6> faceAlbedo = {}; ///< of the channel in all three
+  UncollidedImage uncollided;         ///< the channel's alone
   OrdinatesGuess guess;
 };
 

@@ -74,7 +74,16 @@ Field InChannel(const Field& field, int channel)
 SceneChannels::SceneChannels(const Medium& medium, const MediumTraits& traits, const Illumination& illumination)
   : colour(ColourOf(illumination))
 {
-  this->given = medium.Channels() == 3 || !this->colour.IsGrey() ? 3 : 1;
+  const Field& uncollided = illumination.uncollided.fluence;
+  if (uncollided.HasColour() && uncollided.values)
+  {
+    this->colour.Add(uncollided.values, medium.grid.VoxelCount());
+  }
+  else if (uncollided.values)
+  {
+    this->colour.Add(Rgb{ 1.0, 1.0, 1.0 });
+  }
+  this->given = medium.Channels() == 3 || uncollided.HasColour() || !this->colour.IsGrey() ? 3 : 1;
   if (traits.emits && traits.emission.IsOne())
   {
     this->colour.Add(traits.emission.Relative());
@@ -113,6 +122,8 @@ OneChannelScene::OneChannelScene(const Medium& given, const Illumination& illumi
   this->medium.sigma_s = InChannel(given.sigma_s, brightest);
   this->medium.emission = InChannel(given.emission, brightest);
   this->medium.phase = given.phase.Seen(brightest);
+  this->light.uncollided.fluence = InChannel(illumination.uncollided.fluence, brightest);
+  std::for_each(this->light.uncollided.escaped.begin(), this->light.uncollided.escaped.end(), grey);
   grey(this->light.sky);
   std::for_each(this->light.faces.begin(), this->light.faces.end(), grey);
   for (Light& lamp : this->light.lights)

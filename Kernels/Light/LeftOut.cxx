@@ -17,6 +17,7 @@ const char* const NetFlux = "net_flux: not asked for";
 const char* const Isotropic = "anisotropy: light is scattered evenly";
 const char* const ConstantIndex = "refraction: the refractive index is constant, rays are straight";
 const char* const EmptyBricks = "empty bricks: rays leap over 8x8x8 voxels that are empty";
+const char* const OwnUncollided = "uncollided flux of lamps, environment, sky and faces: UncollidedLight has it";
 const char* const NoLights = "uncollided flux of lamps: there are no lights";
 const char* const NoEmissionPeaks = "uncollided flux of bright emission: no small bright part outshines all else, or "
                                     "an axis is periodic, or EmissionError is 0";

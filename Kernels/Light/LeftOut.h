@@ -22,6 +22,7 @@ extern const char* const Isotropic;
 extern const char* const ConstantIndex;
 extern const char* const EmptyBricks;
 extern const char* const NoLights;
+extern const char* const OwnUncollided;   ///< uncollided light was found by another solver
 extern const char* const NoEmissionPeaks; ///< what the medium emits needs no rays of its own
 extern const char* const BlackFaces;      ///< no face of the box gives back light
 extern const char* const DarkOutside;     ///< neither environment nor sky nor faces shine

@@ -57,6 +57,15 @@ double ProgressOf(const PropagationSettings& settings, double residual, double i
   return std::min(std::max(creeping, way), 0.99);
 }
 
+void DoubtGivenLight(const Illumination& illumination, LightField& light)
+{
+  if (illumination.uncollided.IsThere() && Reflects(illumination))
+  {
+    light.doubts.emplace_back("FaceAlbedo gives back scattered light only: through which cells of the faces the light "
+                              "of UncollidedLight leaves is not known.");
+  }
+}
+
 void JudgeConvergence(const PropagationSettings& settings, LightField& light)
 {
   const double residual = light.convergence.empty() ? 0.0 : light.convergence.back().residual;

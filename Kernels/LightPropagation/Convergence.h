@@ -40,6 +40,9 @@ double ProgressOf(const PropagationSettings& settings, double residual, double i
 /// Part of the first iteration's progress that uncollided light takes.
 constexpr double UncollidedPart = 0.5;
 
+/// Adds to a light's `doubts` what faces that reflect do not know of light that another solver found.
+void DoubtGivenLight(const Illumination& illumination, LightField& light);
+
 /// Sets `converged` of solved light, and adds to its `doubts` where it is not, or where power is left over.
 void JudgeConvergence(const PropagationSettings& settings, LightField& light);
 }

@@ -192,7 +192,8 @@ bool Shines(const Illumination& illumination)
       [](const Light& light) { return Sum(light.power) > 0.0; }) ||
     std::any_of(
       illumination.faces.begin(), illumination.faces.end(), [](const Rgb& face) { return Sum(face) > 0.0; }) ||
-    std::any_of(pixels.begin(), pixels.end(), [](float pixel) { return pixel > 0.0f; });
+    std::any_of(pixels.begin(), pixels.end(), [](float pixel) { return pixel > 0.0f; }) ||
+    illumination.uncollided.IsThere();
 }
 
 bool Reflects(const Illumination& illumination)

@@ -1,27 +1,12 @@
 #pragma once
 
+#include "Lights/UncollidedImage.h"
+
 #include <array>
 #include <vector>
 
 namespace tyndall
 {
-using Rgb = std::array<double, 3>;
-
-inline double Sum(const Rgb& rgb)
-{
-  return rgb[0] + rgb[1] + rgb[2];
-}
-
-inline Rgb Times(const Rgb& rgb, double factor)
-{
-  return { rgb[0] * factor, rgb[1] * factor, rgb[2] * factor };
-}
-
-inline bool IsBlack(const Rgb& rgb)
-{
-  return rgb == Rgb{};
-}
-
 enum class LightType
 {
   Directional = 0, ///< parallel light through all of space
@@ -64,6 +49,7 @@ struct Illumination
   /// Part, 0 to 1, of what leaves through each face that comes back where it left, spread as by a matt surface
   /// (Lambert), beside what shines in through the face.
   std::array<Rgb, 6> faceAlbedo = {};
+  UncollidedImage uncollided; ///< light that was found already as far as it is not scattered, beside the others
 };
 
 /// W per steradian of a lamp of 1 W along its axis; 0 of a directional light, which has none.

@@ -105,6 +105,10 @@ std::vector<std::string> Words(const TransportParts& parts, const IterationResul
       (phase.Varies() ? std::string("that of each voxel") : std::to_string(phase.MeanCosine(0, 0))) +
       " (similarity relation)");
   }
+  if (parts.Given)
+  {
+    words.emplace_back(left_out::OwnUncollided);
+  }
   if (parts.Problem.Settings().leaveOut)
   {
     const std::vector<std::string> ofScene = LeftOutOf(parts, found);
@@ -193,6 +197,7 @@ LightField Solve(Device& device, const Medium& medium, const Illumination& illum
     light.lampsApart = parts.LampsOf(illumination);
   }
   JudgeConvergence(settings, light);
+  DoubtGivenLight(illumination, light);
   return light;
 }
 }

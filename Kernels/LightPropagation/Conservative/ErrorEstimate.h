@@ -10,8 +10,9 @@
 
 namespace tyndall
 {
-/// Solves the same light in a medium of the same box, with settings.
-using PropagationSolver = std::function<LightField(const Medium&, const PropagationSettings&, const Monitor&)>;
+/// Solves a medium of the same box, with the same light on its grid, with settings.
+using PropagationSolver =
+  std::function<LightField(const Medium&, const Illumination&, const PropagationSettings&, const Monitor&)>;
 
 /// Solve, and estimate the error of fluence without a reference, from two more solves on a grid of half the voxels an
 /// axis (numerics.md, section 9.2):
@@ -26,6 +27,6 @@ using PropagationSolver = std::function<LightField(const Medium&, const Propagat
 ///
 /// Takes 1 / 8 + 1 / 20 of the sweeps' time, more where the grid is small. An axis of a single voxel is not coarsened,
 /// and its error in voxel size not seen.
-LightField SolveWithErrorEstimate(
-  const Medium& medium, const PropagationSettings& settings, const Monitor& monitor, const PropagationSolver& solve);
+LightField SolveWithErrorEstimate(const Medium& medium, const Illumination& illumination,
+  const PropagationSettings& settings, const Monitor& monitor, const PropagationSolver& solve);
 }

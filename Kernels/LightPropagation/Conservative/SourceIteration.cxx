@@ -165,9 +165,9 @@ void SourceIteration::AddUncollided(const Monitor& monitor)
   {
     sources.push_back(std::make_unique<UncollidedBoundary>(this->Settings, *this->Parts.FineBoundary));
   }
-  for (std::unique_ptr<UncollidedSource>& peak : this->Parts.BrightEmissionSources())
+  for (std::unique_ptr<UncollidedSource>& other : this->Parts.OtherSources())
   {
-    sources.push_back(std::move(peak));
+    sources.push_back(std::move(other));
   }
   const bool escapes = this->Parts.Fine && this->Parts.Problem.Traits().scatters && !this->Parts.FacesReflect();
   const double all = static_cast<double>(sources.size() + (escapes ? 1 : 0));
@@ -268,6 +268,10 @@ void SourceIteration::ScatterOrder()
     // What is shown holds lamps' light alone before the first order.
     AddToShown(parts.TheDevice, parts.Layout.Places(parts.Functions()).beams, parts.Source, this->Result.shown,
       this->Order == 0 ? -1.0f : 1.0f);
+    if (this->Order == 0 && parts.Given)
+    {
+      parts.Given->AddStraightOn(parts.TheDevice, parts.Layout, parts.Basis.get(), this->Result.shown);
+    }
   }
   this->Scattered = powers.scattered;
   for (int c = 0; c < 3; ++c)

@@ -64,6 +64,10 @@ TransportParts::TransportParts(Device& device, const PropagationProblem& problem
   , Emission(EmissionOf(problem))
   , Accelerated(accelerated)
 {
+  if (const UncollidedImage& image = problem.Shining().uncollided; image.IsThere())
+  {
+    this->Given = std::make_unique<GivenLight>(image, problem.TheMedium(), problem.Scattering());
+  }
   this->FindBoundaryLight();
   this->FindFaceLight();
   this->FindAngularValues();
@@ -88,6 +92,11 @@ void TransportParts::LoadSource()
 {
   this->Source.Fill(0.0f);
   this->MediumShines = this->LoadEmission(this->Source) || !this->Problem.Settings().leaveOut;
+  if (this->Given && this->Problem.ComputesScattering())
+  {
+    const bool more = this->Given->AddStraightOn(this->TheDevice, this->Layout, this->Basis.get(), this->Source);
+    this->MediumShines = this->MediumShines || more;
+  }
 }
 
 bool TransportParts::LoadEmission(Buffer<float>& source) const
@@ -209,6 +218,16 @@ TransportParts::Sources TransportParts::BrightEmissionSources() const
   for (const EmissionPeak& peak : this->Emission.peaks)
   {
     sources.push_back(std::make_unique<UncollidedEmission>(peak, this->Problem.Settings().emissionError));
+  }
+  return sources;
+}
+
+TransportParts::Sources TransportParts::OtherSources() const
+{
+  Sources sources = this->BrightEmissionSources();
+  if (this->Given)
+  {
+    sources.push_back(std::make_unique<GivenLight>(*this->Given));
   }
   return sources;
 }

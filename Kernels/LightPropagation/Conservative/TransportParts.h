@@ -13,6 +13,7 @@
 #include "LightPropagation/Sweep/VolumeLayout.h"
 #include "LightPropagation/Uncollided/BoundaryLight.h"
 #include "LightPropagation/Uncollided/EmissionPeaks.h"
+#include "LightPropagation/Uncollided/GivenLight.h"
 #include "LightPropagation/Uncollided/UncollidedSource.h"
 
 #include <memory>
@@ -47,8 +48,9 @@ public:
   std::unique_ptr<const BoundaryLight> UsualBoundary, FineBoundary; ///< FineBoundary: null where there are none
   /// By cells of the box's faces: where they reflect, or face power is asked for; else null.
   std::unique_ptr<FaceLight> Faces;
-  std::vector<Light> Lamps; ///< those of the scene and the peaks of the environment
-  SplitEmission Emission;   ///< of the medium
+  std::vector<Light> Lamps;                ///< those of the scene and the peaks of the environment
+  SplitEmission Emission;                  ///< of the medium
+  std::unique_ptr<const GivenLight> Given; ///< that another solver found; null: none
 
   /// [channel][stride]; flux [channel][x, y, z][stride], empty where net flux is not asked for. Where light has angular
   /// moments, Source and Path have them [function][channel][stride], and Source those of beams behind them.
@@ -90,6 +92,8 @@ public:
 
   Sources LampSources() const;
   Sources BrightEmissionSources() const;
+  /// Small bright emission and given light: what is not of lamps.
+  Sources OtherSources() const;
   /// What the usual directions carry of what the medium emits, into a source; nothing where it does not.
   /// @return whether any of it shines
   bool LoadEmission(Buffer<float>& source) const;

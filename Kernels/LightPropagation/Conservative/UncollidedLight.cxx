@@ -72,10 +72,10 @@ void UncollidedLight::AddSources(const Monitor& monitor)
     this->ThroughFaces = Buffer<float>(parts.TheDevice, parts.Layout.Floats(6), "light of lamps");
     this->ThroughFaces.Fill(0.0f);
   }
-  const TransportParts::Sources lamps = parts.LampSources(), peaks = parts.BrightEmissionSources();
+  const TransportParts::Sources lamps = parts.LampSources(), others = parts.OtherSources();
   std::size_t done = 0;
   const auto monitorOfNext = [&] {
-    const double all = static_cast<double>(lamps.size() + peaks.size());
+    const double all = static_cast<double>(lamps.size() + others.size());
     ++done;
     return OfPart(monitor, (done - 1) / all, done / all);
   };
@@ -101,9 +101,9 @@ void UncollidedLight::AddSources(const Monitor& monitor)
   {
     this->LengthsOfLamps = parts.Path.Read();
   }
-  for (const std::unique_ptr<UncollidedSource>& peak : peaks)
+  for (const std::unique_ptr<UncollidedSource>& other : others)
   {
-    Add(this->OfSources, parts.AddUncollided(*peak, parts.WholeDeposit(), monitorOfNext()));
+    Add(this->OfSources, parts.AddUncollided(*other, parts.WholeDeposit(), monitorOfNext()));
   }
 }
 

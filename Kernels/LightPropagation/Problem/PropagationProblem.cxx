@@ -44,6 +44,7 @@ void Check(const Medium& medium, const Illumination& illumination, const Propaga
 {
   Check(medium);
   Check(illumination);
+  Check(illumination.uncollided, medium);
   Check(settings);
   CheckFaceAlbedo(illumination, settings.periodic);
   CheckLightHasAnEnd(medium, illumination, settings.periodic);
@@ -90,6 +91,10 @@ void PropagationProblem::TakeUnits(const Medium& wide, const Illumination& illum
 {
   this->Solved = wide;
   this->SolvedLight = illumination;
+  for (Rgb& face : this->SolvedLight.uncollided.escaped)
+  {
+    face = Times(face, 1.0 / this->Narrowing);
+  }
   this->LengthUnit = LengthUnitOf(wide.grid);
   if (this->LengthUnit != 1.0)
   {

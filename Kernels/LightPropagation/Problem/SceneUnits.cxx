@@ -93,6 +93,10 @@ double PowerUnitOf(const Medium& medium, const Illumination& illumination)
     radiance += *std::max_element(pixels.begin(), pixels.end());
   }
   power += 2.0 * Pi * radiance * (area[0] + area[1] + area[2]);
+  for (int c = 0; c < 3 && illumination.uncollided.IsThere(); ++c)
+  {
+    power += PowerLost(illumination.uncollided, medium, c);
+  }
   if (!(power > 0.0) || std::isinf(power))
   {
     return 1.0;
@@ -126,6 +130,25 @@ SceneInUnits::SceneInUnits(const Medium& inWatts, const Illumination& shining, d
   for (float& pixel : this->illumination.environment.radiance)
   {
     pixel = static_cast<float>(pixel / unit);
+  }
+  this->TakeUncollided(unit);
+}
+
+void SceneInUnits::TakeUncollided(double unit)
+{
+  UncollidedImage& image = this->illumination.uncollided;
+  if (!image.IsThere())
+  {
+    return;
+  }
+  const std::size_t count = this->medium.grid.VoxelCount() * static_cast<std::size_t>(image.fluence.components);
+  this->uncollided.resize(count);
+  std::transform(image.fluence.values, image.fluence.values + count, this->uncollided.begin(),
+    [=](float value) { return static_cast<float>(value / unit); });
+  image.fluence.values = this->uncollided.data();
+  for (Rgb& face : image.escaped)
+  {
+    Divide(face, unit);
   }
 }
 
@@ -166,6 +189,10 @@ SceneInLengths::SceneInLengths(const Medium& inLengths, const Illumination& shin
     {
       Divide(light.power, unit * unit);
     }
+  }
+  for (Rgb& face : this->illumination.uncollided.escaped)
+  {
+    Divide(face, unit * unit);
   }
 }
 

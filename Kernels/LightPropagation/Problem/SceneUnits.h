@@ -19,9 +19,12 @@ struct SceneInUnits
 {
   SceneInUnits(const Medium& medium, const Illumination& illumination, double unit);
 
-  std::vector<float> emission;
-  Medium medium; ///< sees `emission`
-  Illumination illumination;
+  std::vector<float> emission, uncollided;
+  Medium medium;             ///< sees `emission`
+  Illumination illumination; ///< sees `uncollided`
+
+private:
+  void TakeUncollided(double unit);
 };
 
 /// Light in units back to W.

@@ -13,7 +13,8 @@ namespace tyndall
 {
 SlabTurn::SlabTurn(const Grid& grid, const Illumination& illumination, const PropagationSettings& settings)
 {
-  if (!UnvaryingAxes(grid, illumination, settings).IsSlab() || !illumination.environment.Empty())
+  if (!UnvaryingAxes(grid, illumination, settings).IsSlab() || !illumination.environment.Empty() ||
+    illumination.uncollided.IsThere())
   {
     return;
   }

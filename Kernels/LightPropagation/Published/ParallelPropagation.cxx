@@ -289,6 +289,11 @@ void ParallelPropagation::Implementation::FinishOrder()
   {
     this->Warm.TakeFrom(this->Volumes);
   }
+  if (this->Ledger.Orders() == 0 && this->Outside.uncollided.IsThere())
+  {
+    this->Volumes.AddGiven(this->Outside.uncollided);
+    this->Ledger.CountGiven(this->Outside.uncollided);
+  }
   this->UpdateSourcesOfOrder();
   if (this->Ledger.Orders() == 0)
   {
@@ -355,6 +360,7 @@ LightField ParallelPropagation::Implementation::Result() const
   field.halfRangeFlux = HalfRangeFlux(this->Model.Directions());
   field.device = this->TheDevice.Name();
   JudgeConvergence(this->Settings, field);
+  DoubtGivenLight(this->Outside, field);
   return field;
 }
 

@@ -4,6 +4,7 @@
 #include "Light/LeftOut.h"
 #include "LightPropagation/Convergence.h"
 #include "LightPropagation/Problem/PropagationProblem.h"
+#include "LightPropagation/Uncollided/GivenLight.h"
 #include "Medium/BoxFaces.h"
 #include "Numerics/Constants.h"
 #include "Numerics/Vectors.h"
@@ -241,6 +242,7 @@ std::vector<std::string> LeftOutAsPublished(const Medium& medium, const MediumTr
     }
   };
   const bool leaveOut = settings.leaveOut;
+  say(illumination.uncollided.IsThere(), left_out::OwnUncollided);
   say(leaveOut && medium.phase.IsIsotropic() && traits.scatters, left_out::Isotropic);
   say(leaveOut && !traits.scatters, left_out::NoScattering);
   say(leaveOut && !traits.emits, left_out::NoEmission);
@@ -273,7 +275,10 @@ PublishedModel::PublishedModel(
 {
   Check(medium, illumination, settings);
   CheckPublishedPhase(medium);
-  this->ChannelCount = channels == 3 || medium.Channels() == 3 || !ColourOf(illumination).IsGrey() ? 3 : 1;
+  this->ChannelCount = channels == 3 || medium.Channels() == 3 || illumination.uncollided.fluence.HasColour() ||
+      !ColourOf(illumination).IsGrey()
+    ? 3
+    : 1;
   this->Isotropic = medium.phase.IsIsotropic();
   this->Set = PublishedDirections(settings.directionsPerFace);
   this->AlbedoOfFaces = illumination.faceAlbedo;
@@ -316,6 +321,33 @@ PublishedModel::PublishedModel(
 bool PublishedModel::FacesReflect() const
 {
   return !std::all_of(this->AlbedoOfFaces.begin(), this->AlbedoOfFaces.end(), IsBlack);
+}
+
+std::vector<double> PublishedModel::MomentsAlong(const std::array<double, 3>& mean) const
+{
+  const double along = std::min(std::hypot(mean[0], mean[1], mean[2]), 1.0);
+  const auto cosine = [&](const Direction& direction) {
+    return mean[0] * direction.omega[0] + mean[1] * direction.omega[1] + mean[2] * direction.omega[2];
+  };
+  const std::vector<Direction>& all = this->Set.directions;
+  const auto nearest = std::max_element(
+    all.begin(), all.end(), [&](const Direction& a, const Direction& b) { return cosine(a) < cosine(b); });
+  std::vector<double> moments;
+  for (int k = 0; k < this->MomentCount(); ++k)
+  {
+    double evenly = 0.0;
+    for (std::size_t i = 0; i < all.size() && along < 1.0; ++i)
+    {
+      evenly += this->Coefficient(k, static_cast<int>(i)) / FourPi;
+    }
+    const double there = this->Coefficient(k, static_cast<int>(nearest - all.begin())) / nearest->weight;
+    moments.push_back(along * there + (1.0 - along) * evenly);
+  }
+  for (int axis = 0; axis < 3 && this->MomentCount() > this->FirstFlux; ++axis)
+  {
+    moments[this->FirstFlux + axis] = mean[axis];
+  }
+  return moments;
 }
 
 PublishedModel::Part PublishedModel::Source(int sourceDirection) const
@@ -450,6 +482,19 @@ void OrderLedger::BeginWarm(const Rgb& rate)
 {
   this->Warm = true;
   this->LeastRatio = rate;
+}
+
+void OrderLedger::CountGiven(const UncollidedImage& image)
+{
+  const SweepTally tally = TallyOf(image, this->TheMedium, 0, this->Channels);
+  for (int c = 0; c < this->Channels; ++c)
+  {
+    this->entered[c] += tally.in[0][c];
+    for (std::size_t face = 0; face < tally.out.size(); ++face)
+    {
+      this->facePowerOut[face][c] += tally.out[face][c];
+    }
+  }
 }
 
 void OrderLedger::GiveBack(const std::array<Rgb, 6>& powers)

@@ -60,6 +60,10 @@ public:
     int moment = 0;
     double factor = 1.0;
   };
+  /// All moments of light of fluence 1 that another solver found, as if the part of it that goes along its mean
+  /// direction (whose length that is) came along the nearest direction of the set, the rest along all. Its net flux is
+  /// its own.
+  std::vector<double> MomentsAlong(const std::array<double, 3>& mean) const;
   Part Source(int sourceDirection) const;
   Part ScatteredRadiance(int storedDirection) const;
   int NetFlux(int axis) const { return this->FirstFlux + axis; } ///< which moment
@@ -155,6 +159,9 @@ public:
   Rgb entered = {};                     ///< W, to be added to by the solver
   std::array<Rgb, 6> facePowerOut = {}; ///< W, likewise
   Rgb carried = {};                     ///< W on the way through periodic axes, set by the solver each order
+
+  /// W of light that another solver found, in the first order.
+  void CountGiven(const UncollidedImage& image);
 
   /// Of what left, W through each face come back in the next order: before CloseOrder, where cells are counted.
   void GiveBack(const std::array<Rgb, 6>& powers);

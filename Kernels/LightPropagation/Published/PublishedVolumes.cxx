@@ -210,6 +210,25 @@ void PublishedVolumes::WriteSource(const std::vector<float>& source)
   this->WriteSources([&](std::size_t voxel, int d, int c) { return source[(voxel * directions + d) * channels + c]; });
 }
 
+void PublishedVolumes::AddGiven(const UncollidedImage& image)
+{
+  std::vector<float> all = this->OrderMoments[0].Read();
+  this->ForEach(0, 1, [&](std::size_t at, std::size_t voxel, int) {
+    const Field& mean = image.meanDirection;
+    const std::vector<double> moments =
+      this->Model.MomentsAlong({ mean.At(voxel, 0), mean.At(voxel, 1), mean.At(voxel, 2) });
+    for (std::size_t k = 0; k < moments.size(); ++k)
+    {
+      for (int c = 0; c < this->Channels(); ++c)
+      {
+        all[k * this->LayoutSize(0) + c * this->Layouts.volume[0] + at] +=
+          static_cast<float>(moments[k] * image.fluence.At(voxel, c));
+      }
+    }
+  });
+  this->OrderMoments[0].Write(all.data());
+}
+
 std::vector<float> PublishedVolumes::ReadSource() const
 {
   const std::size_t channels = static_cast<std::size_t>(this->Channels());

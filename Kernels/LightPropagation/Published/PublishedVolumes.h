@@ -37,6 +37,8 @@ struct PublishedVolumes
   std::vector<float> Arrange(int layout, const float* interleaved) const;
   std::vector<float> Interleave(int layout, const float* arranged) const;
   void WriteSource(const std::vector<float>& source);
+  /// Adds light that another solver found to the moments of the order that was propagated.
+  void AddGiven(const UncollidedImage& image);
   std::vector<float> ReadSource() const;
   std::vector<float> ReadMoment(const Buffer<float>& moments, int moment) const; ///< in layout 0
 

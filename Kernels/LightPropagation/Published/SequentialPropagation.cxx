@@ -21,6 +21,7 @@ public:
     , Ledger(medium, this->Model, settings)
     , Faces(medium.grid, this->Model, settings)
     , Channels(this->Model.Channels())
+    , Given(illumination.uncollided)
     , Values(medium.grid.VoxelCount() * this->Channels)
     , Sources(this->Model.SourceDirections().size())
     , OrderMoments(this->Model.MomentCount(), std::vector<double>(this->Values))
@@ -48,6 +49,10 @@ public:
     do
     {
       this->Propagate(monitor);
+      if (this->Ledger.Orders() == 0 && this->Given.IsThere())
+      {
+        this->AddGiven();
+      }
       const std::vector<float> fluence(this->OrderMoments[0].begin(), this->OrderMoments[0].end());
       this->Faces.CloseOrder(this->Ledger);
       this->Ledger.CloseOrder(fluence.data());
@@ -75,6 +80,25 @@ private:
     {
       this->PropagateDirection(static_cast<int>(i), monitor);
     }
+  }
+
+  /// Light that another solver found, to the moments of the first order.
+  void AddGiven()
+  {
+    for (std::size_t voxel = 0; voxel < this->TheMedium.grid.VoxelCount(); ++voxel)
+    {
+      const Field& mean = this->Given.meanDirection;
+      const std::vector<double> moments =
+        this->Model.MomentsAlong({ mean.At(voxel, 0), mean.At(voxel, 1), mean.At(voxel, 2) });
+      for (std::size_t k = 0; k < moments.size(); ++k)
+      {
+        for (int c = 0; c < this->Channels; ++c)
+        {
+          this->OrderMoments[k][voxel * this->Channels + c] += moments[k] * this->Given.fluence.At(voxel, c);
+        }
+      }
+    }
+    this->Ledger.CountGiven(this->Given);
   }
 
   void PropagateDirection(int i, const Monitor& monitor)
@@ -335,6 +359,7 @@ private:
   OrderLedger Ledger;
   PublishedFaces Faces;
   int Channels;
+  UncollidedImage Given;
   std::size_t Values;  ///< voxels times channels
   std::size_t Sources; ///< directions of U
   std::vector<float> Extinction, Scattering;
@@ -361,6 +386,7 @@ LightField SolveSequential(
       field.leftOut =
         LeftOutAsPublished(medium, traits, illumination, settings, static_cast<int>(field.convergence.size()));
       JudgeConvergence(settings, field);
+      DoubtGivenLight(illumination, field);
       return field;
     });
 }

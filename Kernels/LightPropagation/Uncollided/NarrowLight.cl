@@ -14,8 +14,10 @@
 // path     W length, of the light, [channel][stride]
 // flux     W length, its net flux, [channel][x, y, z][stride]
 // moments  W length, with its angular moments (MomentPlacesShared.h), added to
+// peak     1: of light that goes one way, moments as they are; less: those of degree l are smaller, by
+//          peak^(l (l + 1) / 2 - 1)
 __kernel void add_narrow_moments(MomentPlaces places, const __global float* basis, const __global float* path,
-  const __global float* flux, __global float* moments, ulong stride)
+  const __global float* flux, __global float* moments, ulong stride, float peak)
 {
   const int x = get_global_id(0);
   const ulong line = get_global_id(1);
@@ -34,8 +36,8 @@ __kernel void add_narrow_moments(MomentPlaces places, const __global float* basi
   float harmonics[MOMENTS];
   find_harmonics(flow / size, harmonics);
   // Directions that spread about their mean as heat does: the moment of degree l is spread^(l (l + 1) / 2).
-  const float spread = fmin(size / power, 1.0f);
-  float whole = 1.0f, step = spread;
+  const float spread = fmin(size / power, 1.0f) * peak;
+  float whole = 1.0f / peak, step = spread;
   for (int l = 1; l <= DEGREE; ++l)
   {
     whole *= step;

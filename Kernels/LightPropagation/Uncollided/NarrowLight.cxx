@@ -30,32 +30,43 @@ Deposit NarrowLight::To() const
   return to;
 }
 
-/// Of the volume's deposit; the kernel's arguments are where its moments are, and `arguments`.
-template <class... Arguments>
-void NarrowLight::RunOnMoments(const char* name, bool rays, const Arguments&... arguments) const
+namespace
 {
-  const VolumeLayout& layout = this->Volume.layout;
-  const AngularBasis& basis = *this->Volume.basis;
-  cl::Kernel kernel = this->Volume.device.Kernel(
-    name, kernel_source::NarrowLight, Define("DEGREE", basis.Degree()) + Define("RAYS", rays));
+/// The kernel's arguments are where the moments are, and `arguments`.
+template <class... Arguments>
+void RunOnMoments(Device& device, const VolumeLayout& layout, const AngularBasis& basis, const char* name, bool rays,
+  const Arguments&... arguments)
+{
+  cl::Kernel kernel =
+    device.Kernel(name, kernel_source::NarrowLight, Define("DEGREE", basis.Degree()) + Define("RAYS", rays));
   With(kernel, layout.Places(basis.Count()), arguments...);
   const std::array<int, 3>& size = layout.grid.size;
-  this->Volume.device.Queue().enqueueNDRangeKernel(
+  device.Queue().enqueueNDRangeKernel(
     kernel, cl::NullRange, cl::NDRange(size[0], static_cast<std::size_t>(size[1]) * size[2], layout.channels));
-  this->Volume.device.Finish(); // the arrays go
+  device.Finish(); // the arrays go
+}
 }
 
 void NarrowLight::AddAlong(const std::array<double, 3>& omega) const
 {
-  const Buffer<float> values(this->Volume.device, Floats(this->Volume.basis->At(omega)), "the angular functions");
-  this->RunOnMoments("add_beam_moments", false, values, *this->To().path, *this->Volume.deposit.path,
-    cl_ulong(this->Volume.layout.Stride()));
+  const VolumeLayout& layout = this->Volume.layout;
+  const AngularBasis& basis = *this->Volume.basis;
+  const Buffer<float> values(this->Volume.device, Floats(basis.At(omega)), "the angular functions");
+  RunOnMoments(this->Volume.device, layout, basis, "add_beam_moments", false, values, *this->To().path,
+    *this->Volume.deposit.path, cl_ulong(layout.Stride()));
 }
 
 void NarrowLight::AddAlongFlux() const
 {
-  const Buffer<float> basis(this->Volume.device, Floats(this->Volume.basis->Matrix()), "the angular functions");
-  this->RunOnMoments("add_narrow_moments", true, basis, *this->To().path, this->Flux, *this->Volume.deposit.path,
-    cl_ulong(this->Volume.layout.Stride()));
+  AddNarrowMoments(this->Volume.device, this->Volume.layout, *this->Volume.basis, *this->To().path, this->Flux,
+    *this->Volume.deposit.path);
+}
+
+void AddNarrowMoments(Device& device, const VolumeLayout& layout, const AngularBasis& basis, const Buffer<float>& path,
+  const Buffer<float>& flux, const Buffer<float>& moments, float peak)
+{
+  const Buffer<float> matrix(device, Floats(basis.Matrix()), "the angular functions");
+  RunOnMoments(
+    device, layout, basis, "add_narrow_moments", true, matrix, path, flux, moments, cl_ulong(layout.Stride()), peak);
 }
 }

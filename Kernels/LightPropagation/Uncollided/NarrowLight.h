@@ -21,10 +21,14 @@ public:
   void AddAlongFlux() const;
 
 private:
-  template <class... Arguments>
-  void RunOnMoments(const char* name, bool rays, const Arguments&... arguments) const;
-
   const UncollidedVolume& Volume;
   Buffer<float> OwnPath, Flux;
 };
+
+/// Adds light whose net flux tells which way it goes to an array with angular moments.
+/// @param path, flux  W length, or another unit: [channel][stride], [channel][x, y, z][stride]
+/// @param peak  1: moments of light that goes one way, or spreads about it as heat does; less: those above the first
+///   smaller, as SmoothPeak has it
+void AddNarrowMoments(Device& device, const VolumeLayout& layout, const AngularBasis& basis, const Buffer<float>& path,
+  const Buffer<float>& flux, const Buffer<float>& moments, float peak = 1.0f);
 }

@@ -1,0 +1,133 @@
+// Uncollided light of photons, bent by glass, handed on to the solvers that scatter it.
+
+#include "MediumScene.h"
+
+#include "vtkCellData.h"
+#include "vtkDataArray.h"
+#include "vtkDiscreteOrdinates.h"
+#include "vtkFieldData.h"
+#include "vtkLightPropagationMaps.h"
+#include "vtkLightRig.h"
+#include "vtkPhotonEmitter.h"
+#include "vtkPhotonMarcher.h"
+
+#include <cmath>
+#include <string>
+
+namespace
+{
+const test::Box FogBox = { { 16, 14, 18 }, { 0.1, 0.1, 0.1 }, { -0.8, -0.7, 2.0 }, { 0, 1, 0 } };
+
+/// Fog round a lens of glass, under the sun.
+struct Caustic
+{
+  vtkNew<vtkLightRig> rig;
+  vtkNew<vtkPhotonEmitter> emitter;
+  vtkNew<vtkPhotonMarcher> marcher;
+  vtkSmartPointer<vtkImageData> medium = test::MakeMedium(FogBox, 0.05, 0.8);
+
+  Caustic()
+  {
+    test::AddValues<vtkDoubleArray>(
+      this->medium->GetCellData(), "ior", this->medium->GetNumberOfCells(), 1, [](vtkIdType i, int) {
+        const double r = std::hypot(i % 16 - 7.5, i / 16 % 14 - 6.5, i / 224 - 11.5);
+        return 1.0 + 0.2 * std::erfc((r - 5.0) / 1.5);
+      });
+    this->rig->SetSunElevation(70.0);
+    this->emitter->SetInputDataObject(this->medium);
+    this->emitter->SetLightsConnection(this->rig->GetOutputPort());
+    this->emitter->SetPhotonCount(100000);
+    this->marcher->SetInputDataObject(this->medium);
+    this->marcher->SetPhotonsConnection(this->emitter->GetOutputPort());
+  }
+
+  vtkImageData* Light() { return vtkImageData::SafeDownCast(this->marcher->GetOutputDataObject(0)); }
+};
+
+double Fact(vtkImageData* light, const char* name, int i)
+{
+  vtkDataArray* fact = light->GetFieldData()->GetArray(name);
+  return fact ? fact->GetComponent(i, 0) : std::nan("");
+}
+
+template <class Solver>
+void ScattersACaustic(test::Claims& claims, const std::string& name)
+{
+  Caustic caustic;
+  vtkNew<Solver> solver;
+  solver->SetInputDataObject(caustic.medium);
+  solver->SetLightsConnection(caustic.rig->GetOutputPort()); // not read
+  solver->SetSkyColor(5.0, 5.0, 5.0);                        // nor this
+  solver->SetUncollidedLightConnection(caustic.marcher->GetOutputPort());
+  solver->Update();
+  vtkImageData* light = solver->GetOutput();
+  const double entered = Fact(caustic.Light(), "energy_balance", 0);
+  claims.Near(Fact(light, "energy_balance", 0), entered, 1e-5 * entered, name + ": all power is handed over");
+  claims.That(solver->GetBalanceError() < 1e-5, name + ": and kept");
+  vtkDataArray* direct = light->GetCellData()->GetArray("fluence_direct");
+  vtkDataArray* given = caustic.Light()->GetCellData()->GetArray("fluence_direct");
+  vtkDataArray* all = light->GetCellData()->GetArray("fluence");
+  double difference = 0.0, scattered = 0.0, most = 0.0;
+  for (vtkIdType i = 0; i < all->GetNumberOfTuples(); ++i)
+  {
+    difference = std::max(difference, std::abs(direct->GetComponent(i, 0) - given->GetComponent(i, 0)));
+    scattered += (all->GetComponent(i, 0) - direct->GetComponent(i, 0)) / all->GetNumberOfTuples();
+    most = std::max(most, given->GetComponent(i, 0));
+  }
+  claims.That(most > 2.0, name + ": there is a caustic");
+  claims.Near(difference / most, 0.0, 1e-5, name + ": uncollided light is that of the photons");
+  claims.That(scattered > 0.2 && scattered < 2.0, name + ": and is scattered");
+  claims.That(std::string(solver->GetLeftOut()).find("UncollidedLight") != std::string::npos, name + ": says so");
+
+  solver->RemoveUncollidedLight();
+  solver->SetSkyColor(0.0, 0.0, 0.0);
+  solver->Update();
+  const double own = Fact(solver->GetOutput(), "energy_balance", 0);
+  claims.Near(own / entered, 1.0, 0.01, name + ": without it lights shine as before");
+}
+
+template <class Solver>
+void RefusesOtherVoxels(test::Claims& claims, const std::string& name)
+{
+  Caustic caustic;
+  caustic.marcher->Update();
+  vtkNew<Solver> solver;
+  test::Errors errors(solver);
+  solver->SetInputDataObject(caustic.medium);
+  vtkNew<vtkImageData> moved;
+  moved->ShallowCopy(caustic.Light());
+  moved->SetOrigin(0.0, -0.7, 2.0);
+  solver->SetUncollidedLightData(moved);
+  solver->Update();
+  claims.That(errors.Are(1, "UncollidedLight has 16 x 14 x 18 voxels"), name + ": one error for another box");
+  claims.That(solver->GetOutput()->GetNumberOfCells() == 0, name + ": and no light");
+
+  vtkNew<vtkImageData> bare;
+  bare->ShallowCopy(caustic.Light());
+  bare->GetCellData()->RemoveArray("fluence_direct");
+  solver->SetUncollidedLightData(bare);
+  solver->Update();
+  claims.That(errors.Are(1, "fluence_direct"), name + ": one error where there is no light");
+
+  solver->SetUncollidedLightData(caustic.Light());
+  solver->Update();
+  claims.That(errors.Are(0, ""), name + ": and goes on");
+}
+}
+
+int TestUncollidedLight(int, char*[])
+{
+  Caustic caustic;
+  test::Errors errors(caustic.marcher);
+  caustic.marcher->Update();
+  if (errors.Any())
+  {
+    return test::SkippedWithoutDevice(errors.Text());
+  }
+  test::Claims claims;
+  ScattersACaustic<vtkLightPropagationMaps>(claims, "maps");
+  ScattersACaustic<vtkDiscreteOrdinates>(claims, "ordinates");
+  RefusesOtherVoxels<vtkLightPropagationMaps>(claims, "maps");
+  RefusesOtherVoxels<vtkDiscreteOrdinates>(claims, "ordinates");
+  return claims.Result();
+}
