@@ -14,11 +14,11 @@ struct IlluminationInput;
  * @brief superclass of the filters that solve for scattered light, from uncollided light of their own or of another
  *
  * Input 3, optional: uncollided light that another filter found, vtkImageData of the medium's voxels, as
- * vtkPhotonMarcher and vtkPhotonReconstruction make it: cell arrays `fluence_direct` (1 or 3 components, W/length^2) and
- * `mean_direction` (3 components, power-weighted mean direction; missing: light goes every way alike), field data
+ * vtkPhotonMarcher and vtkPhotonReconstruction make it: cell arrays `fluence_direct` (1 or 3 components, W/length^2)
+ * and `mean_direction` (3 components, power-weighted mean direction; missing: light goes every way alike), field data
  * `face_power_out` (W that left unscattered through -x, +x, -y, +y, -z, +z; missing: 0). It is taken instead of the
  * uncollided light of lights, environment, SkyColor and FaceRadiance, which are then not read; what the medium emits is
- * added as always. What the light's own solver lost entered this one, to 1e-5.
+ * added as always. What it lost and what left count as having come in, to 1e-5.
  *
  * Output 1 is the table of convergence, vtkTable.
  *

@@ -121,9 +121,12 @@ def elephant():
     lamp = around(centre, 4, 75, 35)
     spot = LightRig(registrationName="Spot", Sun=0,
                     SpotLights=[*lamp, *(c - p for c, p in zip(centre, lamp)), 60, 60, 60, 24])
-    light = light_in("elephant", medium, spot, arguments.photons)
-    picture("elephant-in-a-sphere", light, CameraPosition=around(centre, 5, 260, 10), CameraFocalPoint=centre,
-            CameraViewAngle=19, SurfaceReflection="Fresnel")
+    bent = light_in("elephant", medium, spot, arguments.photons)
+    light = stage("elephant: scattered many times", LightPropagationMaps(registrationName="elephant scattered light",
+                                                                         Input=medium, UncollidedLight=bent))
+    for name, shown in ("elephant-in-a-sphere-one-scattering", bent), ("elephant-in-a-sphere", light):
+        picture(name, shown, CameraPosition=around(centre, 5, 260, 10), CameraFocalPoint=centre, CameraViewAngle=19,
+                SurfaceReflection="Fresnel")
     return light
 
 

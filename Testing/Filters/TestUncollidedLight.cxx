@@ -99,7 +99,7 @@ void RefusesOtherVoxels(test::Claims& claims, const std::string& name)
   moved->SetOrigin(0.0, -0.7, 2.0);
   solver->SetUncollidedLightData(moved);
   solver->Update();
-  claims.That(errors.Are(1, "UncollidedLight has 16 x 14 x 18 voxels"), name + ": one error for another box");
+  claims.That(errors.WasOneWith("UncollidedLight has 16 x 14 x 18 voxels"), name + ": one error for another box");
   claims.That(solver->GetOutput()->GetNumberOfCells() == 0, name + ": and no light");
 
   vtkNew<vtkImageData> bare;
@@ -107,22 +107,19 @@ void RefusesOtherVoxels(test::Claims& claims, const std::string& name)
   bare->GetCellData()->RemoveArray("fluence_direct");
   solver->SetUncollidedLightData(bare);
   solver->Update();
-  claims.That(errors.Are(1, "fluence_direct"), name + ": one error where there is no light");
+  claims.That(errors.WasOneWith("fluence_direct"), name + ": one error where there is no light");
 
   solver->SetUncollidedLightData(caustic.Light());
   solver->Update();
-  claims.That(errors.Are(0, ""), name + ": and goes on");
+  claims.That(errors.None(), name + ": and goes on");
 }
 }
 
 int TestUncollidedLight(int, char*[])
 {
-  Caustic caustic;
-  test::Errors errors(caustic.marcher);
-  caustic.marcher->Update();
-  if (errors.Any())
+  if (!test::HasDevice())
   {
-    return test::SkippedWithoutDevice(errors.Text());
+    return test::SkippedWithoutDevice("LightPropagationMaps gave an error");
   }
   test::Claims claims;
   ScattersACaustic<vtkLightPropagationMaps>(claims, "maps");
