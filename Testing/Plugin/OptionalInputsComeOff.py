@@ -1,4 +1,4 @@
-"""Lights, an environment and a map that were connected can be disconnected again."""
+"""Lights, an environment, light of photons and a map that were connected can be disconnected again."""
 import os
 
 from paraview import servermanager
@@ -34,6 +34,14 @@ for make in (LightPropagationMaps, LPMPropagate, MediumRayCaster):
         assert brightness(proxy) == 0, (make, name)
 
 emitter = PhotonEmitter(Input=medium, SkyColor=[1, 1, 1], PhotonCount=2000)
+
+marched = PhotonMarcher(Input=medium, Photons=emitter)
+for make in (LightPropagationMaps, DiscreteOrdinates):
+    proxy = make(Input=medium)
+    proxy.UncollidedLight = marched
+    assert brightness(proxy) > brightness(marched), make  # it is scattered as well
+    proxy.UncollidedLight = None
+    assert brightness(proxy) == 0, make
 
 
 def batches():
