@@ -36,6 +36,13 @@ struct MarchSettings
   /// Private sums are shared out by whole copies: batches of equal size, as many as compute units or a multiple of
   /// that, keep all of these busy.
   bool batches = false;
+  /// Orders of scattering that photons are followed through: 1, up to where they are first scattered (the uncollided
+  /// light, without randomness); m, through m - 1 scatterings; 0, until they are absorbed or have left.
+  int maximumOrders = 1;
+  std::uint64_t seed = 1; ///< of the random numbers by which they are scattered
+  /// Batches of photons (every so manieth is of one), up to MarchedBatchesAtMost, of whose light the standard error is
+  /// found (fluenceError of the light); 0: it is not wanted. Not together with counts or batches.
+  int errorBatches = 0;
   /// Whether to leave out what the scene does not need; false: three channels and the integrator, to measure what that
   /// saves.
   bool leaveOut = true;
@@ -51,8 +58,9 @@ struct MarchSettings
   Sums sums = Sums::Fitting;
 };
 
-/// @throws InvalidInput where the order is not 1, 2 or 4, the step size not 0.05 to 1e4 voxels, or sums are Unsafe and
-///   batches asked for
+/// @throws InvalidInput where the order is not 1, 2 or 4, the step size not 0.05 to 1e4 voxels, sums are Unsafe and
+///   batches asked for, maximumOrders is negative, errorBatches are 1 or not 0 to MarchedBatchesAtMost,
+///   or asked for together with counts or batches
 void Check(const MarchSettings& settings);
 
 /// The path of one photon: positions, and the part of its power (all channels together) that is left there; 1 where it
@@ -67,11 +75,14 @@ struct PhotonPath
 /// Light that photons carried into a medium.
 struct PhotonLight
 {
-  /// Light that was not scattered, so that fluenceDirect would be the same and is left empty. Balance: `absorbed` is
-  /// what the medium absorbed and what it scattered, `leftOver` what still went round when the photon was given up
-  /// (total reflection can trap it).
+  /// Of one order: light that was not scattered, so that fluenceDirect would be the same and is left empty. Balance:
+  /// `absorbed` is what the medium absorbed and what it scattered, `leftOver` what still went round when the photon was
+  /// given up (total reflection can trap it). Of more orders: all light, fluenceDirect what was not scattered, `absorbed`
+  /// what the medium absorbed, `leftOver` what would be scattered once more too, less what Russian roulette gave.
   LightField light;
-  Rgb scattered = {}; ///< W, the part of `absorbed` that is scattered
+  Rgb scattered = {};            ///< W, that is scattered for the first time
+  std::uint64_t scatterings = 0; ///< that photons went through, of more orders than one
+  Rgb exchanged = {};            ///< W, that Russian roulette gave less what it took; 0 in the mean
   /// 3 per voxel: sum of power times direction over sum of power, at most 1 long; empty: not asked for. Coarse in
   /// voxels so dark that they gained a few units of fixed point only, some 2^-62 of all power times the longest path.
   std::vector<float> meanDirection;

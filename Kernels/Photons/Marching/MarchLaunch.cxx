@@ -61,6 +61,22 @@ void Check(const MarchSettings& settings)
     throw InvalidInput("The step size is " + std::to_string(settings.stepSize) + " voxels; it must be " +
       std::to_string(ShortestStep) + " to " + std::to_string(LongestStep) + ".");
   }
+  if (settings.maximumOrders < 0)
+  {
+    throw InvalidInput("MaximumOrders is " + std::to_string(settings.maximumOrders) +
+      "; it must be 0 (until photons are absorbed or have left) or more.");
+  }
+  if (settings.errorBatches < 0 || settings.errorBatches == 1 || settings.errorBatches > MarchedBatchesAtMost)
+  {
+    throw InvalidInput("A standard error from " + std::to_string(settings.errorBatches) +
+      " batches of photons was asked for; it takes 2 to " + std::to_string(MarchedBatchesAtMost) + ", or 0 for none.");
+  }
+  if (settings.errorBatches > 0 && (settings.batches || settings.counts))
+  {
+    throw InvalidInput(
+      "The standard error is found from batches of its own. Ask for it, or for counts and for the light "
+      "of each of the photons' batches, not for both.");
+  }
   if (settings.batches && settings.sums == MarchSettings::Sums::Unsafe)
   {
     throw InvalidInput("Unsafe sums are of all photons together, not of each batch. Choose other sums, or no batches.");

@@ -29,6 +29,7 @@ public:
 
   /// A kernel of PhotonMarch.cl for so many channels of light; `options` are those that do not follow from the medium.
   cl::Kernel MarchKernel(const char* name, int channels, bool directions, const std::string& options) const;
+  std::string Options() const; ///< of all kernels of this medium
   /// A kernel of PhotonSums.cl.
   cl::Kernel SumsKernel(const char* name, int channels, const std::string& options) const;
 
@@ -59,7 +60,6 @@ private:
   static cl::NDRange Range(const Size& size) { return { size[0], size[1], size[2] }; }
   Size Padded(int by) const;
   Buffer<float> Upload(const float* values, int components, const char* what) const;
-  std::string Options() const;
   cl::Kernel MediumKernel(const char* name) const;
   void FindRanges(Buffer<float>& low, Buffer<float>& high) const;
 

@@ -30,8 +30,6 @@
 #define RECORD (CHANNELS + 3 * DIRECTIONS + COUNTS)
 #endif
 #define TINY 1e-20f
-#define SLOWEST_PACE 1e-12f // diagonals per time, which is n but for rounding and steps across jumps of n
-#define FASTEST_PACE 1e12f
 
 // The part of the state that changes between two turns, in registers.
 typedef struct
@@ -249,14 +247,6 @@ static integer to_attend(const march_arrays* arrays, const photon_lanes* lanes, 
     (truth(as_integer(flight->sigma) < 0) & truth(turn == (real)NEVER) & truth(flight->now >= VECTOR(lanes->settled)));
 #endif
   return special & flight->alive;
-}
-
-// The face through which a photon came to voxel `at` of the padding.
-static int face_left(const MarchInfo* info, int at)
-{
-  const int3 voxel = voxel_of(info, at);
-  const int3 size = size_of(info);
-  return voxel.x < 0 ? 0 : voxel.x >= size.x ? 1 : voxel.y < 0 ? 2 : voxel.y >= size.y ? 3 : voxel.z < 0 ? 4 : 5;
 }
 
 static void end_photon(const photon_lanes* lanes, int k, int face, __global PhotonEnd* end)

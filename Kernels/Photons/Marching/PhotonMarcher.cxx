@@ -7,9 +7,11 @@
 #include "Light/ChannelReduction.h"
 #include "Light/LeftOut.h"
 #include "Photons/Importance/PilotGathering.h"
+#include "Photons/Marching/MarchedBatches.h"
 #include "Photons/Marching/MarchLaunch.h"
 #include "Photons/Marching/PhotonPaths.h"
 #include "Photons/Marching/PhotonSumsShared.h"
+#include "Photons/Scattering/ScatteredChannels.h"
 
 #include <algorithm>
 #include <cmath>
@@ -80,9 +82,14 @@ public:
     , pilots(this->medium)
   {
     this->Share(1, 1); // says what the device lacks
+    if (settings.maximumOrders != 1 && this->medium.traits.scatters)
+    {
+      this->Scattering = std::make_unique<ScatteredChannels>(device, this->medium, medium, ior, levels);
+    }
   }
 
-  PhotonLight March(const std::vector<Photon>& photons, const Monitor& monitor);
+  PhotonLight March(const std::vector<Photon>& photons, const PhotonNumbers& numbers, const Monitor& monitor);
+  PhotonLight MarchInBatches(const std::vector<Photon>& photons, const Monitor& monitor);
 
   MarchMedium medium;
   PilotGathering pilots;
@@ -97,7 +104,8 @@ private:
   void Finish(const PackedPhotons& packed, const MarchSums& target, float weightUnit, PhotonLight& result);
   void SayWhatIsLeftOut(const PackedPhotons& packed, LightField& light) const;
 
-  Buffer<cl_long> Sums; ///< zero between two runs
+  Buffer<cl_long> Sums;                          ///< zero between two runs
+  std::unique_ptr<ScatteredChannels> Scattering; ///< null: photons are followed to where they are first scattered
 };
 
 MarchSums PhotonMarcher::Implementation::PrepareSums(const PackedPhotons& packed)
@@ -213,7 +221,8 @@ void PhotonMarcher::Implementation::SayWhatIsLeftOut(const PackedPhotons& packed
       light.leftOut.push_back(text);
     }
   };
-  say(true, "scattered light: fluence is what comes from the lights without being scattered");
+  say(this->medium.settings.maximumOrders == 1,
+    "scattered light: fluence is what comes from the lights without being scattered");
   const MarchMedium& through = this->medium;
   const bool leaveOut = through.settings.leaveOut;
   say(through.traits.emits, "emission: photons carry the light of lights only");
@@ -226,7 +235,26 @@ void PhotonMarcher::Implementation::SayWhatIsLeftOut(const PackedPhotons& packed
   say(!through.settings.meanDirection, "mean direction: it was not asked for");
 }
 
-PhotonLight PhotonMarcher::Implementation::March(const std::vector<Photon>& photons, const Monitor& monitor)
+/// Every so manieth photon is of a batch.
+PhotonLight PhotonMarcher::Implementation::MarchInBatches(const std::vector<Photon>& photons, const Monitor& monitor)
+{
+  const auto batches = static_cast<std::size_t>(this->medium.settings.errorBatches);
+  MarchedBatches all;
+  for (std::size_t b = 0; b < batches; ++b)
+  {
+    std::vector<Photon> some;
+    for (std::size_t i = b; i < photons.size(); i += batches)
+    {
+      some.push_back(photons[i]);
+    }
+    const double parts = static_cast<double>(batches);
+    all.Add(this->March(some, { b, batches }, OfPart(monitor, b / parts, (b + 1) / parts)));
+  }
+  return std::move(all).Sum();
+}
+
+PhotonLight PhotonMarcher::Implementation::March(
+  const std::vector<Photon>& photons, const PhotonNumbers& numbers, const Monitor& monitor)
 {
   const double start = ClockSeconds();
   const MarchSettings& settings = this->medium.settings;
@@ -251,7 +279,7 @@ PhotonLight PhotonMarcher::Implementation::March(const std::vector<Photon>& phot
   result.secondsMarching = -ClockSeconds();
   try
   {
-    MarchPhotons(this->medium, packed, onDevice, target, monitor);
+    MarchPhotons(this->medium, packed, onDevice, target, this->Scattering ? OfPart(monitor, 0.0, 0.05) : monitor);
   }
   catch (...)
   {
@@ -269,6 +297,10 @@ PhotonLight PhotonMarcher::Implementation::March(const std::vector<Photon>& phot
     KeepOneChannel(result.light);
     KeepOneChannel(result.batchFluence);
     result.scattered = { result.scattered[0], 0.0, 0.0 };
+  }
+  if (this->Scattering)
+  {
+    this->Scattering->AddTo(result, photons, packed, numbers, OfPart(monitor, 0.05, 1.0));
   }
   this->SayWhatIsLeftOut(packed, result.light);
   if (settings.batches && packed.Batches() == 1)
@@ -294,7 +326,8 @@ PhotonMarcher::PhotonMarcher(PhotonMarcher&&) noexcept = default;
 
 PhotonLight PhotonMarcher::March(const std::vector<Photon>& photons, const Monitor& monitor)
 {
-  return this->Inside->March(photons, monitor);
+  const bool batches = this->Inside->medium.settings.errorBatches > 0;
+  return batches ? this->Inside->MarchInBatches(photons, monitor) : this->Inside->March(photons, {}, monitor);
 }
 
 std::vector<PhotonPath> PhotonMarcher::Paths(const std::vector<Photon>& photons, const std::vector<std::size_t>& chosen)

@@ -23,8 +23,10 @@
 #include "Refraction/Index/SquaredIndex.cl"
 
 #define NEVER 3e38f
-#define AHEAD 4        // voxels along the axis of fastest change, by which memory is asked for early
-#define OUTSIDE -3e38f // sigma of the padding round the grid
+#define AHEAD 4             // voxels along the axis of fastest change, by which memory is asked for early
+#define OUTSIDE -3e38f      // sigma of the padding round the grid
+#define SLOWEST_PACE 1e-12f // diagonals per time, which is n but for rounding and steps across jumps of n
+#define FASTEST_PACE 1e12f
 
 // Everything that is read and written.
 typedef struct
@@ -79,6 +81,14 @@ static int3 voxel_of(const MarchInfo* info, int at)
   const int z = at / layer;
   const int y = (at - z * layer) / row;
   return (int3)(at - z * layer - y * row - 1, y - 1, z - 1);
+}
+
+// The face through which a photon came to voxel `at` of the padding.
+static int face_left(const MarchInfo* info, int at)
+{
+  const int3 voxel = voxel_of(info, at);
+  const int3 size = size_of(info);
+  return voxel.x < 0 ? 0 : voxel.x >= size.x ? 1 : voxel.y < 0 ? 2 : voxel.y >= size.y ? 3 : voxel.z < 0 ? 4 : 5;
 }
 
 static integer padded(const MarchInfo* info, const integer* voxel)

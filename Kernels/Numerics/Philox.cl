@@ -1,0 +1,45 @@
+// Random numbers by counter: Philox 4x32 of ten rounds (Salmon, Moraes, Dror and Shaw 2011, "Parallel random numbers: as
+// easy as 1, 2, 3", section 3.2). A block is a function of key and counter alone: who asks when makes no difference.
+
+#pragma once
+
+static uint4 philox(uint4 counter, uint2 key)
+{
+  for (int i = 0; i < 10; ++i)
+  {
+    const uint high0 = mul_hi(0xD2511F53u, counter.x), low0 = 0xD2511F53u * counter.x;
+    const uint high1 = mul_hi(0xCD9E8D57u, counter.z), low1 = 0xCD9E8D57u * counter.z;
+    counter = (uint4)(high1 ^ counter.y ^ key.x, low1, high0 ^ counter.w ^ key.y, low0);
+    key += (uint2)(0x9E3779B9u, 0xBB67AE85u);
+  }
+  return counter;
+}
+
+// The numbers of one photon, one after the other.
+typedef struct
+{
+  uint2 key;      // the seed
+  ulong stream;   // of the photon
+  uint block;     // the next one
+  int left;       // numbers of the last block that are left
+  uint values[4]; // of that
+} random_numbers;
+
+static random_numbers random_of(ulong seed, ulong stream)
+{
+  random_numbers random = { (uint2)((uint)seed, (uint)(seed >> 32)), stream, 0, 0, { 0, 0, 0, 0 } };
+  return random;
+}
+
+// In (0, 1), multiples of 2^-24 and a half of that.
+static float draw(random_numbers* random)
+{
+  if (random->left == 0)
+  {
+    const uint4 values =
+      philox((uint4)((uint)random->stream, (uint)(random->stream >> 32), random->block++, 0), random->key);
+    vstore4(values, 0, random->values);
+    random->left = 4;
+  }
+  return (random->values[--random->left] >> 8) * 0x1p-24f + 0x1p-25f;
+}

@@ -1,0 +1,179 @@
+#include "Photons/Scattering/PhotonScattering.h"
+
+#include "Device/Batches.h"
+#include "Device/Defines.h"
+#include "Device/HostMappedBuffer.h"
+#include "Device/HostMemory.h"
+#include "Photons/Marching/MarchLaunch.h"
+#include "Photons/Marching/PhotonSumsShared.h"
+#include "Photons/Scattering/ScatterShared.h"
+#include "TyndallKernelSources.h"
+
+#include <algorithm>
+#include <cmath>
+
+namespace tyndall
+{
+namespace
+{
+constexpr int Block = 16;                 ///< photons that a work-item takes one after the other
+constexpr double DepositsPerEvent = 4096; ///< of a photon, for the unit of the sums: it may come back to a voxel
+constexpr double SecondsPerLaunch = 0.1;
+
+/// Scattering and absorption over a diagonal, of the padded grid; 0 in the padding.
+std::vector<float> OpticalOf(const MarchMedium& through, const Medium& medium)
+{
+  const std::array<int, 3>& size = medium.grid.size;
+  std::vector<float> values(2 * through.PaddedCount(), 0.0f);
+  const double diagonal = through.Diagonal();
+  std::size_t voxel = 0;
+  for (int z = 0; z < size[2]; ++z)
+  {
+    for (int y = 0; y < size[1]; ++y)
+    {
+      for (int x = 0; x < size[0]; ++x, ++voxel)
+      {
+        const std::size_t at = (static_cast<std::size_t>(z + 1) * (size[1] + 2) + y + 1) * (size[0] + 2) + x + 1;
+        values[2 * at] = static_cast<float>(std::min(diagonal * medium.sigma_s.At(voxel, 0), 1e30));
+        values[2 * at + 1] = static_cast<float>(std::min(diagonal * medium.sigma_a.At(voxel, 0), 1e30));
+      }
+    }
+  }
+  return values;
+}
+}
+
+/// What a run holds.
+struct PhotonScattering::Work
+{
+  Settings settings;
+  PackedPhotons packed;
+  MarchShares shares;
+  int numbers = 1; ///< of a record of the sums
+  Buffer<float> photons;
+  Buffer<cl_ulong> streams;
+  Buffer<ScatterEnd> ends;
+  Buffer<cl_long> sums;
+  ScatteredPhotons found;
+};
+
+PhotonScattering::PhotonScattering(const MarchMedium& through, const Medium& medium)
+  : Through(through)
+  , Optical(through.device, OpticalOf(through, medium), "how voxels scatter")
+  , Phase(through.device, medium)
+{
+}
+
+ScatteredPhotons PhotonScattering::Follow(
+  const std::vector<Photon>& photons, const Settings& settings, const Monitor& monitor)
+{
+  Device& device = this->Through.device;
+  Work work;
+  work.settings = settings;
+  work.packed = Pack(photons, this->Through.grid, false, DepositsPerEvent * this->Through.EventLimit());
+  work.numbers = this->Through.settings.meanDirection ? 4 : 1;
+  const std::size_t records = this->Through.PaddedCount();
+  work.shares = ShareSums(this->Through, records, work.numbers, 1, 0);
+  work.photons = Buffer<float>(device, work.packed.values, "photons");
+  std::vector<cl_ulong> streams;
+  for (const std::size_t number : work.packed.numbers)
+  {
+    streams.push_back(settings.numbers.first + settings.numbers.step * number);
+  }
+  work.streams = Buffer<cl_ulong>(device, streams, "numbers of photons");
+  work.ends = Buffer<ScatterEnd>(device, work.packed.Count(), "ends of photons");
+  work.sums = Buffer<cl_long>(device,
+    records * static_cast<std::size_t>(work.numbers) * static_cast<std::size_t>(work.shares.copies),
+    "sums of the photons' light");
+  work.sums.Fill(0);
+  work.found.entered = work.packed.entered[0];
+  this->FollowAll(work, monitor);
+  this->TakeLight(work);
+  TakeEnds(work);
+  return std::move(work.found);
+}
+
+void PhotonScattering::FollowAll(Work& work, const Monitor& monitor)
+{
+  Device& device = this->Through.device;
+  const int workers = work.shares.atomics ? 0 : std::max(work.shares.workers, 1);
+  cl::Kernel kernel = device.Kernel("scatter_photons", kernel_source::ScatterPhotons,
+    this->Through.Options() + this->Phase.Options() + Define("CHANNELS", 1) + Define("DIRECTIONS", 1) +
+      Define("ORDER", this->Through.settings.order) + Define("REAL_WIDTH", 1) + Define("ATOMICS", work.shares.atomics) +
+      Define("WORKERS", workers) + Define("BLOCK", Block) + Define("GATHERS", work.numbers > 1));
+  const ScatterInfo how = { work.settings.seed, work.settings.mostScatterings };
+  Buffer<cl_int> next(device, 1, "number of the next photon");
+  Batches launches;
+  launches.count = work.packed.Count();
+  launches.first = launches.whole = static_cast<std::size_t>(Block) * static_cast<std::size_t>(std::max(workers, 1));
+  launches.seconds = SecondsPerLaunch;
+  launches.growth = 8.0;
+  const std::size_t stride = this->Through.PaddedCount() * static_cast<std::size_t>(work.numbers);
+  InBatches(device, launches, monitor, [&](std::size_t first, std::size_t count) {
+    next.Fill(0);
+    With(kernel, this->Through.Describe(), how, this->Through.sigma, this->Through.coefficients, this->Through.nodes,
+      this->Optical, this->Phase.Values(), work.photons, work.streams, work.ends, work.sums, cl_ulong(stride), next,
+      cl_int(first), cl_int(count));
+    const std::size_t items = workers > 0 ? static_cast<std::size_t>(workers) : count;
+    this->Through.Launch(kernel, cl::NDRange(items), workers > 0 ? cl::NDRange(1) : cl::NullRange);
+  });
+}
+
+/// From the sums.
+void PhotonScattering::TakeLight(Work& work)
+{
+  Device& device = this->Through.device;
+  const Grid& grid = this->Through.grid;
+  const std::size_t voxels = grid.VoxelCount(), rows = voxels / static_cast<std::size_t>(grid.size[0]);
+  const bool directions = work.numbers > 1;
+  std::vector<float>& fluence = work.found.fluence = Zeros(voxels);
+  std::vector<float>& flow = work.found.flow = Zeros(directions ? 3 * voxels : 0);
+  const HostMappedBuffer<float> toFluence(device, fluence.data(), fluence.size(), "fluence");
+  const HostMappedBuffer<float> toDirection(device, flow.data(), flow.size(), "mean direction");
+  const Buffer<float> none(device, 0, "what is not asked for");
+  const Buffer<cl_long> taken(device, 2 * rows, "tallies");
+  LightSumsInfo info = {};
+  info.grid = this->Through.DescribeGrid();
+  info.diagonal = static_cast<float>(this->Through.Diagonal());
+  info.fluence =
+    static_cast<float>(std::frexp(work.packed.unit * this->Through.Diagonal() / grid.VoxelVolume(), &info.exponent));
+  std::fill_n(info.colour, 3, 1.0f);
+  cl::Kernel finish = this->Through.SumsKernel("finish_light", 1,
+    Define("DIRECTIONS", directions) + Define("COUNTS", 0) + Define("COUNT_SHIFT", 0) + Define("COLOURS", 1) +
+      Define("COPIES", work.shares.copies) + Define("BATCHES", 1));
+  With(finish, info, this->Through.sigmaA, this->Through.sigmaS, work.sums,
+    cl_ulong(this->Through.PaddedCount() * static_cast<std::size_t>(work.numbers)), toFluence.Handle(),
+    toDirection.Handle(), none, none, none, taken);
+  this->Through.Launch(finish, cl::NDRange(rows));
+  toFluence.Fetch();
+  toDirection.Fetch();
+  const std::vector<cl_long> units = taken.Read();
+  for (std::size_t row = 0; row < rows; ++row)
+  {
+    work.found.absorbed += units[2 * row] * work.packed.unit;
+  }
+  for (std::size_t i = 0; i < flow.size(); ++i)
+  {
+    flow[i] *= fluence[i / 3];
+  }
+}
+
+void PhotonScattering::TakeEnds(Work& work)
+{
+  const double unit = work.packed.unit;
+  for (const ScatterEnd& end : work.ends.Read())
+  {
+    work.found.absorbed += unit * end.absorbedAtFirst;
+    work.found.exchanged += unit * end.exchanged;
+    work.found.scatterings += static_cast<std::uint64_t>(end.scatterings);
+    if (end.face < StillGoing)
+    {
+      work.found.escaped[end.face] += unit * end.power;
+    }
+    else
+    {
+      work.found.leftOver += unit * end.power;
+    }
+  }
+}
+}

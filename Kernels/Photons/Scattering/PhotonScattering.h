@@ -1,0 +1,58 @@
+#pragma once
+
+#include "Device/Monitor.h"
+#include "Photons/Marching/MarchMedium.h"
+#include "Photons/Scattering/SampledPhase.h"
+
+#include <array>
+#include <cstdint>
+#include <vector>
+
+namespace tyndall
+{
+/// Scattered light of photons, of one channel.
+struct ScatteredPhotons
+{
+  std::vector<float> fluence; ///< W / length^2, by voxel
+  std::vector<float> flow;    ///< W / length^2, 3 a voxel: radiance times direction, integrated; empty: not asked for
+  double entered = 0.0;       ///< W
+  double absorbed = 0.0;      ///< W, before and after the first scattering
+  double leftOver = 0.0;      ///< W of photons that would be scattered once more, or were trapped by total reflection
+  double exchanged = 0.0;     ///< W that Russian roulette gave less what it took; its mean is 0
+  std::array<double, 6> escaped = {}; ///< W through -x, +x, -y, +y, -z, +z
+  std::uint64_t scatterings = 0;
+};
+
+/// Follows photons along bent rays through scattering after scattering, as analog Monte Carlo with absorption by weight
+/// and Russian roulette (numerics.md, section 12.5): without bias for any medium.
+///
+/// Random numbers are drawn by counter: the same seed gives the same light, bit for bit, whatever the threads, the order
+/// of the photons and the parts in which they are marched.
+class PhotonScattering
+{
+public:
+  /// @param through  as photons march through it, of one channel; must stay
+  /// @param medium   the same, as data; read here only
+  PhotonScattering(const MarchMedium& through, const Medium& medium);
+
+  struct Settings
+  {
+    std::uint64_t seed = 1;
+    int mostScatterings = 0x7fffffff; ///< that a photon goes through
+    PhotonNumbers numbers;            ///< that random numbers belong to
+  };
+  /// @param photons  of the same power in all channels
+  /// @throws DeviceError where sums do not fit; Aborted
+  ScatteredPhotons Follow(const std::vector<Photon>& photons, const Settings& settings, const Monitor& monitor);
+
+private:
+  struct Work;
+  void FollowAll(Work& work, const Monitor& monitor);
+  void TakeLight(Work& work);
+  static void TakeEnds(Work& work);
+
+  const MarchMedium& Through;
+  Buffer<float> Optical;
+  SampledPhase Phase;
+};
+}

@@ -1,0 +1,220 @@
+// Photons that are scattered, one by one along bent rays (numerics.md, section 12.5). Of one channel. The host gives
+// what PhotonSteps.cl asks for, with REAL_WIDTH 1, DIRECTIONS 1, CHANNELS 1, and
+//   WORKERS   as PhotonMarch.cl has it; ATOMICS: those of shared sums
+//   BLOCK     neighbouring photons that a work-item takes one after the other
+//   GATHERS   1: sums have the light's flow beside its power
+//   PHASE     how light is scattered: 0 isotropic, 1 Henyey and Greenstein's, 2 Schlick's, 3 by a table of cosines
+//   VARIES    1: the parameter of these two is by voxel
+//   COSINES   of the table, less one
+//
+// The optical depth of the next scattering is drawn, and spent along the path; what is absorbed on the way is taken from
+// the photon's power, and what is left of that is deposited times its path, from the first scattering on: a mean over
+// photons of the fluence of scattered light, whatever the voxels are.
+
+#include "Numerics/FixedPoint.cl"
+#include "Numerics/Philox.cl"
+#include "Photons/Marching/PhotonSteps.cl"
+#include "Photons/Scattering/ScatterShared.h"
+
+#define RECORD (1 + 3 * GATHERS)
+#define PHOTON_FLOATS 7
+#define TINY 1e-20f
+#define DIM 0.05f // of a photon's power at first: Russian roulette makes twice as much of less, or nothing
+
+// How a voxel scatters.
+typedef struct
+{
+  const __global float2* optical; // [padded] scattering, absorption over a diagonal
+  const __global float* phase;    // parameter, of the medium or [voxel]; or cosines of even parts of the light
+} scattering;
+
+static float cosine_of(const scattering* medium, ulong voxel, float u)
+{
+  const float s = 2.0f * u - 1.0f;
+#if PHASE == 0
+  return s;
+#elif PHASE == 3
+  const float position = u * COSINES;
+  const int i = min((int)position, COSINES - 1);
+  return mix(medium->phase[i], medium->phase[i + 1], position - i);
+#else
+  const float g = medium->phase[VARIES ? voxel : 0], above = 1.0f + g * s;
+#if PHASE == 2
+  return (s + g) / above;
+#else // the inverse of the distribution without differences that cancel
+  const float sum = s + 0.5f * g * (s * s + 3.0f) + g * g * (s + 0.5f * g * (s * s - 1.0f));
+  return sum / (above * above);
+#endif
+#endif
+}
+
+// A direction at an angle of that cosine to another (Duff et al. 2017: a frame without a branch).
+static float3 turned(float3 way, float cosine, float turn)
+{
+  const float sine = sqrt(fmax(0.0f, 1.0f - cosine * cosine));
+  float around;
+  const float along = sincos(6.28318531f * turn, &around);
+  const float sign = copysign(1.0f, way.z), a = -1.0f / (sign + way.z), b = way.x * way.y * a;
+  const float3 first = (float3)(1.0f + sign * way.x * way.x * a, sign * b, -sign * way.x);
+  const float3 second = (float3)(b, sign + way.y * way.y * a, -way.y);
+  return normalize(sine * (around * first + along * second) + cosine * way);
+}
+
+// The voxel of a place in the padded grid.
+static ulong voxel_number(const MarchInfo* info, int at)
+{
+  const int3 voxel = voxel_of(info, at);
+  return ((ulong)voxel.z * info->grid.size[1] + voxel.y) * info->grid.size[0] + voxel.x;
+}
+
+static void leave(__global long* record, float amount, float4 direction)
+{
+  add_units(record, convert_long_rte(amount));
+#if GATHERS
+  add_units(record + 1, convert_long_rte(amount * direction.y));
+  add_units(record + 2, convert_long_rte(amount * direction.z));
+  add_units(record + 3, convert_long_rte(amount * direction.w));
+#endif
+}
+
+static void begin(const march_arrays* arrays, photon_lanes* lanes, float3 place, float3 way)
+{
+  real p[3] = { place.x, place.y, place.z }, u[3] = { way.x, way.y, way.z };
+  set_off(arrays, lanes, p, u);
+}
+
+// Whether a photon's velocity is a number that can be followed.
+static bool moves(const photon_lanes* lanes)
+{
+  return lanes->pace[0] > SLOWEST_PACE && lanes->pace[0] < FASTEST_PACE;
+}
+
+// The photon, `way` diagonals on, is scattered.
+static void scatter(const march_arrays* arrays, const scattering* medium, photon_lanes* lanes, float way,
+  random_numbers* random)
+{
+  const float time = lanes->now[0] + way / lanes->pace[0];
+  const float3 start = (float3)(lanes->start[0][0], lanes->start[1][0], lanes->start[2][0]);
+  const float3 velocity = (float3)(lanes->velocity[0][0], lanes->velocity[1][0], lanes->velocity[2][0]);
+  const float cosine = cosine_of(medium, PHASE && VARIES ? voxel_number(arrays->info, lanes->at[0]) : 0, draw(random));
+  begin(arrays, lanes, start + velocity * time, turned(lanes->direction[0].yzw, cosine, draw(random)));
+}
+
+// Russian roulette: what is dim becomes brighter or nothing; the mean stays.
+static void roulette(ScatterEnd* end, float dim, random_numbers* random)
+{
+  if (end->power < dim)
+  {
+    const float after = draw(random) * 2.0f * dim < end->power ? 2.0f * dim : 0.0f;
+    end->exchanged += after - end->power;
+    end->power = after;
+    end->face = after > 0.0f ? end->face : Dark;
+  }
+}
+
+// To the next wall or turn.
+static void move_on(const march_arrays* arrays, photon_lanes* lanes, float next)
+{
+  FOR_AXES(a)
+  {
+    const bool through = lanes->wall[a][0] <= next;
+    lanes->at[0] += through ? lanes->stride[a][0] : 0;
+    lanes->wall[a][0] += through ? lanes->across[a][0] : 0.0f;
+  }
+  lanes->now[0] = next;
+}
+
+static ScatterEnd follow(const march_arrays* arrays, const scattering* medium, const ScatterInfo* how,
+  const __global float* photon, ulong number)
+{
+  photon_lanes lanes;
+  random_numbers random = random_of(how->seed, number);
+  begin(arrays, &lanes, vload3(0, photon), vload3(1, photon));
+  ScatterEnd end = { -1, 0, photon[6], 0.0f, 0.0f };
+  const float dim = DIM * end.power;
+  float left = -log(draw(&random)); // of the optical depth to the next scattering
+  for (int event = 0; end.face < 0; ++event)
+  {
+    if (event >= arrays->info->eventLimit || !moves(&lanes))
+    {
+      end.face = StillGoing;
+      break;
+    }
+    float next = fmin(fmin(lanes.wall[0][0], lanes.wall[1][0]), lanes.wall[2][0]);
+#if BENDS
+    next = fmin(next, lanes.turn[0]);
+#endif
+    const float2 sigma = medium->optical[lanes.at[0]];
+    const float length = fmax(next - lanes.now[0], 0.0f) * lanes.pace[0], spent = sigma.x * length;
+    const bool collides = spent >= left;
+    const float way = collides ? fmin(left / sigma.x, length) : length;
+    float remains;
+    const float tau = sigma.y * way, lost = extinguished(tau, &remains);
+    if (end.scatterings > 0)
+    {
+      const float mean = tau > TINY ? lost / tau : 1.0f;
+      leave(arrays->sums + (ulong)lanes.at[0] * RECORD,
+        end.power * mean * way * fmax(sigma.x + sigma.y, 1.0f), lanes.direction[0]);
+    }
+    else
+    {
+      end.absorbedAtFirst += end.power * lost;
+    }
+    end.power = tau > 0.5f ? end.power * remains : end.power - end.power * lost;
+    if (collides)
+    {
+      if (end.scatterings == how->mostScatterings)
+      {
+        end.face = StillGoing;
+        break;
+      }
+      ++end.scatterings;
+      roulette(&end, dim, &random);
+      scatter(arrays, medium, &lanes, way, &random);
+      left = -log(draw(&random));
+      event = 0;
+      continue;
+    }
+    left -= spent;
+    move_on(arrays, &lanes, next);
+    const float there = arrays->sigma[lanes.at[0]];
+    if (there == OUTSIDE)
+    {
+      end.face = face_left(arrays->info, lanes.at[0]);
+    }
+#if BENDS
+    else if (lanes.turn[0] <= next || (as_int(there) < 0 && lanes.turn[0] == NEVER && next >= lanes.settled[0]))
+    {
+      take_turns(arrays, &lanes, -1);
+    }
+#endif
+  }
+  return end;
+}
+
+// Photons `first` to `first + count` of those from `begin` on.
+//   optical, phase  of the medium (scattering)
+//   photons         position (voxels), unit direction, power (units)
+//   numbers         of each, which its random numbers belong to
+__kernel void scatter_photons(MarchInfo info, ScatterInfo how, const __global float* sigma,
+  const __global float* coefficients, const __global uchar* nodes, const __global float2* optical,
+  const __global float* phase, const __global float* photons, const __global ulong* numbers,
+  __global ScatterEnd* ends, __global long* sums, ulong copyStride, volatile __global int* next, int first, int count)
+{
+  const scattering medium = { optical, phase };
+#if WORKERS > 0
+  march_arrays arrays = { &info, sigma, coefficients, nodes, sums + get_global_id(0) * copyStride, 0, 0, 0, 0 };
+  // Who takes which makes no difference to the sums.
+  for (int block = atomic_add(next, BLOCK); block < count; block = atomic_add(next, BLOCK))
+  {
+    for (int i = first + block; i < first + min(block + BLOCK, count); ++i)
+    {
+      ends[i] = follow(&arrays, &medium, &how, photons + (ulong)i * PHOTON_FLOATS, numbers[i]);
+    }
+  }
+#else
+  const march_arrays arrays = { &info, sigma, coefficients, nodes, sums, 0, 0, 0, 0 };
+  const int i = first + get_global_id(0);
+  ends[i] = follow(&arrays, &medium, &how, photons + (ulong)i * PHOTON_FLOATS, numbers[i]);
+#endif
+}

@@ -1,0 +1,327 @@
+// Photons that are scattered many times, against references that share no code with them.
+
+#include "DeviceTest.h"
+#include "MediumScene.h"
+
+#include "Numerics/Constants.h"
+#include "Photons/Marching/PhotonMarcher.h"
+#include "Reference/CubeReference.h"
+#include "Reference/ReferenceTable.h"
+#include "Reference/SlabReference.h"
+
+#include <algorithm>
+#include <cmath>
+#include <numeric>
+#include <random>
+#include <vector>
+
+using namespace tyndall;
+
+namespace
+{
+/// Photons of 1 W together through the face -z of a box, cosine-distributed or along z.
+std::vector<Photon> ThroughTheBottom(const Grid& grid, std::size_t count, bool diffuse, unsigned seed)
+{
+  std::mt19937_64 random(seed);
+  std::uniform_real_distribution<double> even(0.0, 1.0);
+  std::vector<Photon> photons(count);
+  for (Photon& photon : photons)
+  {
+    const double cosine = diffuse ? std::sqrt(even(random)) : 1.0, turn = 2.0 * Pi * even(random);
+    const double sine = std::sqrt(std::max(0.0, 1.0 - cosine * cosine));
+    photon.position = { grid.origin[0] + even(random) * grid.Length(0), grid.origin[1] + even(random) * grid.Length(1),
+      grid.origin[2] };
+    photon.direction = { static_cast<float>(sine * std::cos(turn)), static_cast<float>(sine * std::sin(turn)),
+      static_cast<float>(cosine) };
+    photon.power.fill(1.0f / static_cast<float>(count));
+  }
+  return photons;
+}
+
+Scene Cube(int edge, double tau, double albedo)
+{
+  Scene scene({ edge, edge, edge }, static_cast<float>(tau * (1.0 - albedo)), static_cast<float>(tau * albedo));
+  scene.medium.grid.spacing = { 1.0 / edge, 1.0 / edge, 1.0 / edge };
+  scene.Attach();
+  return scene;
+}
+
+MarchSettings AllOrders(std::uint64_t seed = 7)
+{
+  MarchSettings settings;
+  settings.maximumOrders = 0;
+  settings.seed = seed;
+  return settings;
+}
+
+double ErrorOf(double part, std::size_t photons)
+{
+  return std::sqrt(std::max(part * (1.0 - part), 1e-9) / static_cast<double>(photons));
+}
+
+}
+
+class ScatteredPhotonsTest : public DeviceTest
+{
+protected:
+  PhotonLight March(const Scene& scene, const std::vector<Photon>& photons, const MarchSettings& settings)
+  {
+    return PhotonMarcher(this->GetDevice(), scene.medium, {}, settings).March(photons);
+  }
+};
+
+TEST_F(ScatteredPhotonsTest, LeaveACubeAsTheReferencesDo)
+{
+  constexpr std::size_t Count = 150000;
+  int beyond = 0;
+  for (const bool forward : { false, true })
+  {
+    for (const ReferenceRow& cube : ReadReference(forward ? "cube_RTSA_anisotropic" : "cube_RTSA"))
+    {
+      if (cube["src"] > 1 || cube["tau"] > 10 || cube["slab"] != 0)
+      {
+        continue;
+      }
+      Scene scene = Cube(5, cube["tau"], cube["omega"]);
+      scene.medium.phase = PhaseFunction::HenyeyGreenstein(cube["g"]);
+      const auto photons = ThroughTheBottom(scene.medium.grid, Count, cube["src"] == 0, 20261123);
+      const PhotonLight light = this->March(scene, photons, AllOrders());
+      EXPECT_LT(light.light.balance.RelativeError(1), 1e-6);
+      const std::array<Rgb, 6>& out = light.light.facePowerOut;
+      const double found[4] = { out[4][0], out[5][0], out[0][0] + out[1][0] + out[2][0] + out[3][0],
+        light.light.balance.absorbed[0] };
+      const char* const names[4] = { "R", "T", "S", "A" };
+      for (int part = 0; part < 4; ++part)
+      {
+        const double expected = cube[names[part]];
+        const double error = std::hypot(ErrorOf(expected, Count), cube[std::string("s") + names[part]]);
+        const double off = std::abs(found[part] - expected) / error;
+        beyond += off > 3.0 ? 1 : 0;
+        EXPECT_LT(off, 4.0) << names[part] << " tau " << cube["tau"] << " albedo " << cube["omega"] << " g "
+                            << cube["g"] << ": " << found[part] << ", reference " << expected;
+      }
+    }
+  }
+  EXPECT_LE(beyond, 2); // of some hundred, where 0.3% are beyond 3 standard errors by chance
+}
+
+TEST_F(ScatteredPhotonsTest, HaveTheFluenceOfACubeVoxelByVoxel)
+{
+  const CubeReference reference = CubeInDiffuseLight();
+  const Scene scene = Cube(10, 1.0, 0.9);
+  MarchSettings settings = AllOrders(20261123);
+  settings.errorBatches = 64;
+  const PhotonLight light = this->March(scene, ThroughTheBottom(scene.medium.grid, 400000, true, 5), settings);
+  double square = 0.0;
+  for (std::size_t i = 0; i < reference.size(); ++i)
+  {
+    const double error = std::hypot(light.light.fluenceError[i], reference[i].error);
+    const double off = (light.light.fluence[i] - reference[i].fluence) / error;
+    square += off * off / static_cast<double>(reference.size());
+  }
+  EXPECT_GT(square, 0.8);
+  EXPECT_LT(square, 1.2);
+}
+
+TEST_F(ScatteredPhotonsTest, ReflectAndTransmitAsSlabsDo)
+{
+  constexpr std::size_t Count = 100000;
+  for (const double tau : { 0.1, 1.0, 10.0 })
+  {
+    for (const double albedo : { 0.5, 0.9, 1.0 })
+    {
+      Scene scene({ 1, 1, 7 }, static_cast<float>(tau * (1.0 - albedo)), static_cast<float>(tau * albedo));
+      scene.medium.grid.spacing = { 1e4, 1e4, 1.0 / 7.0 };
+      scene.Attach();
+      std::vector<Photon> photons = ThroughTheBottom(scene.medium.grid, Count, false, 3);
+      for (Photon& photon : photons)
+      {
+        photon.position = { 5e3, 5e3, 0.0 };
+      }
+      const PhotonLight light = this->March(scene, photons, AllOrders());
+      const SlabReference slab = SlabOf(tau, albedo);
+      EXPECT_NEAR(light.light.facePowerOut[4][0], slab.beamR, 3.5 * ErrorOf(slab.beamR, Count)) << tau << " " << albedo;
+      EXPECT_NEAR(light.light.facePowerOut[5][0], slab.beamT, 3.5 * ErrorOf(slab.beamT, Count)) << tau << " " << albedo;
+    }
+  }
+}
+
+TEST_F(ScatteredPhotonsTest, AreTheSameWhateverTheirOrder)
+{
+  Scene scene({ 6, 5, 7 }, 0.3f, 2.0f);
+  scene.Randomise(3.0, 2.0, 0.9, 5);
+  scene.medium.phase = PhaseFunction::HenyeyGreenstein(0.6);
+  scene.Attach();
+  const std::vector<Photon> photons = ThroughTheBottom(scene.medium.grid, 3000, true, 9);
+  const PhotonLight once = this->March(scene, photons, AllOrders()), again = this->March(scene, photons, AllOrders());
+  EXPECT_EQ(once.light.fluence, again.light.fluence);
+  EXPECT_EQ(once.meanDirection, again.meanDirection);
+  EXPECT_EQ(once.scatterings, again.scatterings);
+  EXPECT_NE(once.light.fluence, this->March(scene, photons, AllOrders(8)).light.fluence);
+}
+
+TEST_F(ScatteredPhotonsTest, OfOneOrderAreTheUncollidedLight)
+{
+  Scene scene({ 6, 5, 7 }, 0.3f, 2.0f);
+  scene.Attach();
+  const std::vector<Photon> photons = ThroughTheBottom(scene.medium.grid, 3000, true, 9);
+  const PhotonLight one = this->March(scene, photons, {}), all = this->March(scene, photons, AllOrders());
+  EXPECT_TRUE(one.light.fluenceDirect.empty());
+  EXPECT_EQ(one.light.fluence, all.light.fluenceDirect);
+}
+
+TEST_F(ScatteredPhotonsTest, OfMoreOrdersAddUp)
+{
+  const Scene scene = Cube(4, 3.0, 0.95);
+  const std::vector<Photon> photons = ThroughTheBottom(scene.medium.grid, 20000, true, 9);
+  double last = 0.0;
+  for (const int orders : { 1, 2, 3, 5, 20, 200 })
+  {
+    MarchSettings settings = AllOrders();
+    settings.maximumOrders = orders;
+    const PhotonLight light = this->March(scene, photons, settings);
+    const double sum = std::accumulate(light.light.fluence.begin(), light.light.fluence.end(), 0.0);
+    EXPECT_GE(sum, last * (1.0 - 1e-6)) << orders;
+    EXPECT_LT(light.light.balance.RelativeError(1), 1e-6) << orders;
+    EXPECT_EQ(light.light.balance.leftOver[0] > 0.01, orders > 1 && orders < 20) << orders;
+    last = sum;
+  }
+  const PhotonLight all = this->March(scene, photons, AllOrders());
+  EXPECT_NEAR(std::accumulate(all.light.fluence.begin(), all.light.fluence.end(), 0.0) / last, 1.0, 1e-6);
+}
+
+/// What Russian roulette gives it takes, in the mean: a medium that absorbs much is where it is played.
+TEST_F(ScatteredPhotonsTest, PlayFairly)
+{
+  const Scene scene = Cube(3, 20.0, 0.6);
+  const PhotonLight light =
+    this->March(scene, ThroughTheBottom(scene.medium.grid, 200000, true, 2), AllOrders(20261123));
+  EXPECT_NE(light.exchanged[0], 0.0);
+  EXPECT_LT(std::abs(light.exchanged[0]), 4.0 * 0.05 / std::sqrt(200000.0));
+  EXPECT_LT(light.light.balance.RelativeError(1), 1e-6);
+}
+
+TEST_F(ScatteredPhotonsTest, KeepColoursApart)
+{
+  Scene scene({ 4, 4, 4 }, 0.2f, 1.0f);
+  scene.Attach();
+  const std::vector<Photon> white = ThroughTheBottom(scene.medium.grid, 20000, true, 4);
+  std::vector<Photon> red = white;
+  for (Photon& photon : red)
+  {
+    photon.power[1] *= 0.5f;
+    photon.power[2] = 0.0f;
+  }
+  const PhotonLight grey = this->March(scene, white, AllOrders()), found = this->March(scene, red, AllOrders());
+  ASSERT_EQ(found.light.channels, 3);
+  for (std::size_t i = 0; i < grey.light.fluence.size(); ++i)
+  {
+    EXPECT_NEAR(found.light.fluence[3 * i], grey.light.fluence[i], 1e-4 * grey.light.fluence[i]);
+    EXPECT_NEAR(found.light.fluence[3 * i + 1], 0.5f * grey.light.fluence[i], 1e-4 * grey.light.fluence[i]);
+    EXPECT_EQ(found.light.fluence[3 * i + 2], 0.0f);
+  }
+  // A coloured medium: each channel is the light of its own medium.
+  Scene coloured({ 4, 4, 4 });
+  for (std::size_t i = 0; i < grey.light.fluence.size(); ++i)
+  {
+    coloured.sigma_a[i] = 0.2f;
+  }
+  coloured.sigma_s.clear();
+  for (std::size_t i = 0; i < grey.light.fluence.size(); ++i)
+  {
+    coloured.sigma_s.insert(coloured.sigma_s.end(), { 1.0f, 0.1f, 3.0f });
+  }
+  coloured.Attach();
+  const PhotonLight three = this->March(coloured, white, AllOrders());
+  double difference = 0.0, sum = 0.0;
+  for (std::size_t i = 0; i < grey.light.fluence.size(); ++i)
+  {
+    difference += std::abs(three.light.fluence[3 * i] - grey.light.fluence[i]);
+    sum += grey.light.fluence[i];
+  }
+  EXPECT_LT(difference / sum, 1e-4);
+  EXPECT_LT(three.light.balance.RelativeError(3), 1e-6);
+}
+
+TEST_F(ScatteredPhotonsTest, ErrFourTimesLessWithSixteenTimesAsMany)
+{
+  const Scene scene = Cube(3, 2.0, 0.9);
+  std::vector<double> errors;
+  for (const std::size_t count : { 250, 4000, 64000, 1024000 })
+  {
+    MarchSettings settings = AllOrders();
+    settings.errorBatches = 50;
+    const PhotonLight light = this->March(scene, ThroughTheBottom(scene.medium.grid, count, true, 4), settings);
+    double square = 0.0;
+    for (float error : light.light.fluenceError)
+    {
+      square += static_cast<double>(error) * error;
+    }
+    errors.push_back(std::sqrt(square));
+  }
+  for (std::size_t i = 1; i < errors.size(); ++i)
+  {
+    EXPECT_NEAR(errors[i - 1] / errors[i], 4.0, 0.5);
+  }
+}
+
+/// Of 95 in 100 voxels the mean of many seeds lies within 1.96 standard errors.
+TEST_F(ScatteredPhotonsTest, KnowTheirError)
+{
+  const Scene scene = Cube(4, 2.0, 0.9);
+  constexpr int Seeds = 60;
+  std::vector<std::vector<float>> scattered, errors;
+  for (int seed = 0; seed < Seeds; ++seed)
+  {
+    MarchSettings settings = AllOrders(1000 + seed);
+    settings.errorBatches = 64;
+    PhotonLight light =
+      this->March(scene, ThroughTheBottom(scene.medium.grid, 6400, true, 77 + static_cast<unsigned>(seed)), settings);
+    scattered.push_back(light.light.fluence);
+    errors.push_back(light.light.fluenceError);
+  }
+  int within = 0;
+  for (std::size_t i = 0; i < scattered[0].size(); ++i)
+  {
+    double mean = 0.0;
+    for (const std::vector<float>& one : scattered)
+    {
+      mean += one[i] / Seeds;
+    }
+    for (int seed = 0; seed < Seeds; ++seed)
+    {
+      within += std::abs(scattered[seed][i] - mean) < 1.96 * errors[seed][i] ? 1 : 0;
+    }
+  }
+  const double part = within / static_cast<double>(Seeds * scattered[0].size());
+  EXPECT_GT(part, 0.93);
+  EXPECT_LT(part, 0.97);
+}
+
+TEST_F(ScatteredPhotonsTest, ReportAndStop)
+{
+  const Scene scene = Cube(8, 200.0, 1.0);
+  const std::vector<Photon> photons = ThroughTheBottom(scene.medium.grid, 20000, true, 4);
+  PhotonMarcher marcher(this->GetDevice(), scene.medium, {}, AllOrders());
+  double last = 0.0;
+  int reports = 0;
+  EXPECT_THROW(marcher.March(photons,
+                 [&](double done) {
+                   EXPECT_GE(done, last);
+                   last = done;
+                   return ++reports < 4;
+                 }),
+    Aborted);
+  EXPECT_EQ(reports, 4);
+}
+
+TEST_F(ScatteredPhotonsTest, RefuseSettingsThatMeanNothing)
+{
+  const Scene scene = Cube(2, 1.0, 1.0);
+  MarchSettings settings;
+  settings.maximumOrders = -1;
+  EXPECT_THROW(PhotonMarcher(this->GetDevice(), scene.medium, {}, settings), InvalidInput);
+  settings = AllOrders();
+  settings.errorBatches = 65;
+  EXPECT_THROW(PhotonMarcher(this->GetDevice(), scene.medium, {}, settings), InvalidInput);
+}
