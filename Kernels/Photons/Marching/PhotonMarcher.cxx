@@ -268,7 +268,7 @@ PhotonLight PhotonMarcher::Implementation::March(
   PhotonLight result;
   result.missed = packed.missed;
   result.batches = BatchesOf(photons);
-  const int colours = this->medium.ColoursOf(packed);
+  const int colours = this->Scattering && this->Scattering->HasColour() ? 3 : this->medium.ColoursOf(packed);
   result.light.channels = std::max(packed.channels, colours);
   result.light.device = this->medium.device.Name();
   result.light.balance.entered = packed.entered;
@@ -301,6 +301,10 @@ PhotonLight PhotonMarcher::Implementation::March(
   if (this->Scattering)
   {
     this->Scattering->AddTo(result, photons, packed, numbers, OfPart(monitor, 0.05, 1.0));
+  }
+  else if (settings.maximumOrders != 1)
+  {
+    result.light.fluenceDirect = result.light.fluence; // nothing scatters
   }
   this->SayWhatIsLeftOut(packed, result.light);
   if (settings.batches && packed.Batches() == 1)

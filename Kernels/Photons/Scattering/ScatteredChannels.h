@@ -17,6 +17,8 @@ public:
   ScatteredChannels(
     Device& device, const MarchMedium& through, const Medium& medium, const Field& ior, const std::uint8_t* levels);
 
+  bool HasColour() const { return this->Channels.size() > 1; } ///< of coefficients or of the phase function
+
   /// Adds scattered light to the uncollided light that the same photons left.
   /// @param packed  of that light: its channels and colour
   void AddTo(PhotonLight& light, const std::vector<Photon>& photons, const PackedPhotons& packed,
