@@ -257,6 +257,7 @@ tyndall::ComparisonSettings vtkSolverComparison::Settings() const
     { this->Photons, ComparedMethod::Photons },
     { this->AdaptivePhotons, ComparedMethod::AdaptivePhotons },
     { this->PublishedPhotons, ComparedMethod::PublishedPhotons },
+    { this->MonteCarlo, ComparedMethod::MonteCarlo },
   };
   tyndall::ComparisonSettings settings;
   settings.methods.clear();
@@ -333,6 +334,7 @@ void vtkSolverComparison::PrintSelf(ostream& os, vtkIndent indent)
   os << indent << "Photons: " << this->Photons << "\n";
   os << indent << "AdaptivePhotons: " << this->AdaptivePhotons << "\n";
   os << indent << "PublishedPhotons: " << this->PublishedPhotons << "\n";
+  os << indent << "MonteCarlo: " << this->MonteCarlo << "\n";
   PrintList(os, indent, "Directions", this->Directions);
   PrintList(os, indent, "MapResolutions", this->MapResolutions);
   PrintList(os, indent, "Coarsenings", this->Coarsenings);

@@ -123,6 +123,16 @@ public:
   ///@}
 
   ///@{
+  /// Whether photons that are scattered until they end are compared, by all light and without a filter: Monte Carlo,
+  /// without bias, and the only one that scatters light which is bent. Default off. Where light is bent and there is no
+  /// input 3, such photons make the reference then. Left out where the medium emits, axes are periodic or faces give
+  /// back light.
+  vtkSetMacro(MonteCarlo, bool);
+  vtkGetMacro(MonteCarlo, bool);
+  vtkBooleanMacro(MonteCarlo, bool);
+  ///@}
+
+  ///@{
   /// Directions per face that are tried. Default 4, 9, 25, 64, 100; valid square numbers.
   void AddDirections(int perFace);
   void RemoveAllDirections();
@@ -200,6 +210,7 @@ private:
   bool Photons = true;
   bool AdaptivePhotons = false;
   bool PublishedPhotons = false;
+  bool MonteCarlo = false;
   std::vector<int> Directions;
   std::vector<int> MapResolutions;
   std::vector<int> Coarsenings;

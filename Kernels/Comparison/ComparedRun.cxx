@@ -19,8 +19,14 @@ const char* NameOf(ComparedMethod method)
     case ComparedMethod::DiscreteOrdinates: return "discrete ordinates";
     case ComparedMethod::Photons: return "photons";
     case ComparedMethod::AdaptivePhotons: return "adaptive photons";
+    case ComparedMethod::MonteCarlo: return "Monte Carlo";
     default: return "photons as published";
   }
+}
+
+bool IsOfPhotons(ComparedMethod method)
+{
+  return IsDirectOnly(method) || method == ComparedMethod::MonteCarlo;
 }
 
 bool IsDirectOnly(ComparedMethod method)
@@ -32,8 +38,8 @@ bool IsDirectOnly(ComparedMethod method)
 std::vector<ComparedRun> RunsOf(
   ComparedMethod method, Device& device, const ComparedScene& scene, const ComparedSettings& settings)
 {
-  std::vector<ComparedRun> runs = IsDirectOnly(method) ? PhotonRunsOf(method, device, scene, settings)
-                                                       : PropagationRunsOf(method, device, scene, settings);
+  std::vector<ComparedRun> runs = IsOfPhotons(method) ? PhotonRunsOf(method, device, scene, settings)
+                                                      : PropagationRunsOf(method, device, scene, settings);
   std::stable_sort(
     runs.begin(), runs.end(), [](const ComparedRun& a, const ComparedRun& b) { return a.cost < b.cost; });
   return runs;

@@ -23,8 +23,12 @@ enum class ComparedMethod
   Photons,              ///< spread evenly, conservative marching and reconstruction
   AdaptivePhotons,      ///< the same with an importance map
   PublishedPhotons,     ///< marching and Gauss filter as published
+  MonteCarlo,           ///< photons that are scattered until they end, without a filter: no bias, but noise
 };
 const char* NameOf(ComparedMethod method);
+
+/// Whether a method makes photons of lights.
+bool IsOfPhotons(ComparedMethod method);
 
 /// Whether a method finds unscattered light only, which is compared with `fluence_direct`.
 bool IsDirectOnly(ComparedMethod method);
@@ -42,6 +46,7 @@ struct ComparedSettings
   std::vector<int> photonCounts = { 10000, 100000, 1000000 };
   std::vector<Sampler> samplers = { Sampler::Hammersley };
   double tolerance = PropagationSettings().tolerance; ///< of propagation
+  bool scattersReference = false; ///< where light is bent, photons that make the reference are scattered, too
 };
 
 /// A method with a setting, ready to run.
@@ -63,8 +68,9 @@ std::vector<ComparedRun> RunsOf(
   ComparedMethod method, Device& device, const ComparedScene& scene, const ComparedSettings& settings);
 
 /// Light of `photons` photons without a filter, for a reference.
-LightField MarchEvenly(
-  Device& device, const ComparedScene& scene, std::size_t photons, std::uint64_t seed, const Monitor& monitor);
+/// @param orders  MarchSettings::maximumOrders: 1, unscattered light; 0, all
+LightField MarchEvenly(Device& device, const ComparedScene& scene, std::size_t photons, int orders, std::uint64_t seed,
+  const Monitor& monitor);
 
 /// Propagation by the conservative scheme.
 LightField Propagate(Device& device, const ComparedScene& scene, PropagationSettings settings, const Monitor& monitor);

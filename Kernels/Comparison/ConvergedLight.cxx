@@ -172,7 +172,8 @@ private:
   std::vector<double> Sums, Squares;
 };
 
-/// Photons that are not filtered, sixteen to sixty-four times the largest number that is tried.
+/// Photons that are not filtered, scattered where that is asked for: sixteen to sixty-four times the largest number that
+/// is tried.
 ReferenceLight ByPhotons(
   Device& device, const ComparedScene& scene, const ComparedSettings& settings, double seconds, const Monitor& monitor)
 {
@@ -180,20 +181,23 @@ ReferenceLight ByPhotons(
   const double start = ClockSeconds();
   const auto set =
     static_cast<std::size_t>(*std::max_element(settings.photonCounts.begin(), settings.photonCounts.end()));
-  Means means;
+  const bool all = settings.scattersReference;
+  Means means, direct;
   ReferenceLight reference;
   while (means.Count < most && (means.Count < fewest || ClockSeconds() - start < seconds))
   {
     const Monitor part = PartWithin(HUGE_VAL, monitor, 1.0 * means.Count / most, (means.Count + 1.0) / most);
-    LightField light = MarchEvenly(device, scene, set, static_cast<std::uint64_t>(means.Count) + 1, part);
+    LightField light = MarchEvenly(device, scene, set, all ? 0 : 1, static_cast<std::uint64_t>(means.Count) + 1, part);
     means.Add(light.fluence);
+    direct.Add(all ? light.fluenceDirect : light.fluence);
     reference.channels = light.channels;
   }
   reference.grid = scene.medium.grid;
-  reference.fluenceDirect = means.Values();
+  reference.fluence = all ? means.Values() : std::vector<float>();
+  reference.fluenceDirect = direct.Values();
   char text[160];
-  std::snprintf(text, sizeof(text), "%d times %zu photons, not filtered, standard error %.2g, %.3g s", means.Count, set,
-    means.RelativeError(), ClockSeconds() - start);
+  std::snprintf(text, sizeof(text), "%d times %zu photons%s, not filtered, standard error %.2g, %.3g s", means.Count,
+    set, all ? " that are scattered until they end" : "", means.RelativeError(), ClockSeconds() - start);
   reference.text = text;
   return reference;
 }

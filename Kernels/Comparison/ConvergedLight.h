@@ -18,7 +18,8 @@ struct ReferenceLight
 };
 
 /// A converged run of the best method: 256 directions a face, two rays a voxel's edge, tolerance 1e-6, on the doubled
-/// grid; less of it where that would take more than `seconds`. Where light is bent, photons.
+/// grid; less of it where that would take more than `seconds`. Where light is bent, photons: of
+/// unscattered light, or of all (ComparedSettings::scattersReference).
 ReferenceLight ConvergedLight(Device& device, const ComparedScene& scene, const ComparedSettings& settings,
   double seconds, const Monitor& monitor = {});
 }

@@ -35,6 +35,25 @@ double RootOfSquares(const std::vector<float>& values)
   return std::sqrt(sum);
 }
 
+/// Photons that are scattered until they end.
+LightField TraceAllOrders(
+  Device& device, const ComparedScene& scene, const EmissionSettings& emission, bool estimate, const Monitor& monitor)
+{
+  constexpr int Batches = 16;
+  MarchSettings marching;
+  marching.maximumOrders = 0;
+  marching.seed = emission.seed + 1;
+  marching.meanDirection = false;
+  marching.errorBatches = estimate ? Batches : 0;
+  PhotonMarcher marcher(device, scene.medium, scene.ior, marching, scene.levels);
+  const EmittedPhotons emitted =
+    EmitPhotons(scene.medium.grid, scene.illumination, emission, OfPart(monitor, 0.0, 0.1));
+  LightField light = marcher.March(emitted.photons, OfPart(monitor, 0.1, 1.0)).light;
+  const double size = RootOfSquares(light.fluence);
+  light.relativeError = size > 0.0 ? RootOfSquares(light.fluenceError) / size : 0.0;
+  return light;
+}
+
 /// @param photons  of a light that none of them brought into the volume are all there is: dark, with nothing to rebuild
 LightField Rebuilt(Device& device, const Grid& grid, PhotonLight&& photons, const Monitor& monitor)
 {
@@ -111,21 +130,27 @@ std::vector<ComparedRun> PhotonRunsOf(
       run.setting = std::to_string(count) + " photons, " + NameOf(sampler);
       run.grid = scene.medium.grid;
       run.cost = count;
-      run.solve = [=, &device, &scene](
-                    bool, const Monitor& monitor) { return Trace(device, scene, method, emission, monitor); };
+      run.estimates = method == ComparedMethod::MonteCarlo;
+      run.solve = [=, &device, &scene](bool estimate, const Monitor& monitor) {
+        return method == ComparedMethod::MonteCarlo ? TraceAllOrders(device, scene, emission, estimate, monitor)
+                                                    : Trace(device, scene, method, emission, monitor);
+      };
       runs.push_back(std::move(run));
     }
   }
   return runs;
 }
 
-LightField MarchEvenly(
-  Device& device, const ComparedScene& scene, std::size_t photons, std::uint64_t seed, const Monitor& monitor)
+LightField MarchEvenly(Device& device, const ComparedScene& scene, std::size_t photons, int orders, std::uint64_t seed,
+  const Monitor& monitor)
 {
+  MarchSettings marching;
+  marching.maximumOrders = orders;
+  marching.seed = seed;
   EmissionSettings emission;
   emission.photonCount = photons;
   emission.seed = seed;
-  PhotonMarcher marcher(device, scene.medium, scene.ior, {}, scene.levels);
+  PhotonMarcher marcher(device, scene.medium, scene.ior, marching, scene.levels);
   const EmittedPhotons emitted =
     EmitPhotons(scene.medium.grid, scene.illumination, emission, OfPart(monitor, 0.0, 0.3));
   return marcher.March(emitted.photons, OfPart(monitor, 0.3, 1.0)).light;

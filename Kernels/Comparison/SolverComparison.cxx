@@ -98,13 +98,16 @@ private:
 std::string WhyNot(ComparedMethod method, const ComparedScene& scene, const Comparator& comparator)
 {
   const bool periodic = scene.periodic[0] || scene.periodic[1] || scene.periodic[2];
-  if (IsDirectOnly(method))
+  if (IsOfPhotons(method))
   {
     return !Shines(scene.illumination) ? "photons are made of lights, and nothing shines on this medium"
       : scene.Emits()                  ? "photons are made of lights, and this medium emits"
       : periodic                       ? "photons do not return on the other side of periodic axes"
-      : !comparator.Has(method)        ? "the reference has no 'fluence_direct'"
-                                       : "";
+      : !IsDirectOnly(method) && Reflects(scene.illumination)
+      ? "photons do not come back from faces that give back light"
+      : comparator.Has(method) ? ""
+      : IsDirectOnly(method)   ? "the reference has no 'fluence_direct'"
+                               : "the reference has no 'fluence'";
   }
   const bool published = method == ComparedMethod::Published || method == ComparedMethod::PublishedSequential;
   return scene.BendsLight()   ? "it does not bend light, and the index of this medium varies"
@@ -305,9 +308,12 @@ Comparison CompareSolvers(Device& device, const ComparedScene& scene, const Comp
   const double begun = reference ? 0.0 : 0.4; // part of the progress
   Comparison result;
   result.device = device.Name();
-  result.reference = reference ? *reference
-                               : ConvergedLight(device, scene, settings.tried, 0.5 * settings.timeBudget,
-                                   PartWithin(HUGE_VAL, monitor, 0.0, begun));
+  ComparedSettings tried = settings.tried;
+  tried.scattersReference =
+    std::count(settings.methods.begin(), settings.methods.end(), ComparedMethod::MonteCarlo) > 0;
+  result.reference = reference
+    ? *reference
+    : ConvergedLight(device, scene, tried, 0.5 * settings.timeBudget, PartWithin(HUGE_VAL, monitor, 0.0, begun));
   const Comparator comparator(scene.medium.grid, result.reference);
   std::vector<Lane> lanes = LanesOf(device, scene, settings, comparator, result);
   Runner runner(device, settings, comparator, result);

@@ -34,6 +34,7 @@ STYLES = {
     "photons": ((0, 158, 115), vtkPlotPoints.CIRCLE),
     "adaptive photons": ((86, 180, 233), vtkPlotPoints.SQUARE),
     "photons as published": ((110, 110, 110), vtkPlotPoints.DIAMOND),
+    "Monte Carlo": ((0, 0, 0), vtkPlotPoints.CIRCLE),
 }
 
 
@@ -306,6 +307,7 @@ SWITCHES = {
     "photons": "Photons",
     "adaptive photons": "AdaptivePhotons",
     "photons as published": "PublishedPhotons",
+    "Monte Carlo": "MonteCarlo",
 }
 
 

@@ -1,3 +1,5 @@
+#include "DeviceTest.h"
+
 #include "Comparison/ComparisonErrors.h"
 #include "Comparison/SolverComparison.h"
 #include "Medium/Coarsening.h"
@@ -116,4 +118,90 @@ TEST(GridTransfer, KnowsWhichGridsFit)
   coarse.origin[1] += 0.1;
   EXPECT_FALSE(FactorsBetween(fine, coarse));
 }
+}
+
+namespace
+{
+/// A small cube in the sun, which scatters.
+struct SunlitCube
+{
+  explicit SunlitCube(int edge)
+    : sigma_a(static_cast<std::size_t>(edge * edge * edge), 0.2f)
+    , sigma_s(sigma_a.size(), 2.0f)
+    , ior(sigma_a.size(), 1.0f)
+  {
+    this->scene.medium.grid.size = { edge, edge, edge };
+    this->scene.medium.grid.spacing = { 1.0 / edge, 1.0 / edge, 1.0 / edge };
+    this->scene.medium.sigma_a = { this->sigma_a.data() };
+    this->scene.medium.sigma_s = { this->sigma_s.data() };
+    Light sun;
+    sun.direction = { 0.3, 0.1, -1.0 };
+    sun.power = { 3.0, 3.0, 3.0 };
+    this->scene.illumination.lights = { sun };
+    this->settings.methods = { ComparedMethod::MonteCarlo };
+    this->settings.tried.photonCounts = { 2000, 50000 };
+    this->settings.repeats = 1;
+    this->settings.timeBudget = 12.0;
+  }
+
+  std::vector<float> sigma_a, sigma_s, ior;
+  ComparedScene scene;
+  ComparisonSettings settings;
+};
+}
+
+class ComparedMonteCarlo : public DeviceTest
+{
+};
+
+// All light, by the errors that it estimates itself: the reference is of propagation.
+TEST_F(ComparedMonteCarlo, ComesNearConvergedPropagation)
+{
+  SunlitCube cube(8);
+  const Comparison found = CompareSolvers(this->GetDevice(), cube.scene, cube.settings);
+  ASSERT_EQ(found.rows.size(), 2u);
+  EXPECT_LT(found.rows[1].errorL2, 0.5 * found.rows[0].errorL2);
+  for (const ComparisonRow& row : found.rows)
+  {
+    EXPECT_EQ(row.method, ComparedMethod::MonteCarlo);
+    EXPECT_LT(row.errorL2, 2.0 * row.estimatedError + 0.01) << row.setting;
+    EXPECT_LT(row.balance, 1e-5);
+  }
+}
+
+// Light that is bent has no other reference than such photons.
+TEST_F(ComparedMonteCarlo, IsItsOwnReferenceWhereLightIsBent)
+{
+  SunlitCube cube(6);
+  for (std::size_t i = 0; i < cube.ior.size(); ++i)
+  {
+    cube.ior[i] = 1.0f + 0.002f * static_cast<float>(i);
+  }
+  cube.scene.ior = { cube.ior.data() };
+  cube.settings.methods.push_back(ComparedMethod::Photons);
+  cube.settings.tried.photonCounts = { 4000 };
+  const Comparison found = CompareSolvers(this->GetDevice(), cube.scene, cube.settings);
+  EXPECT_FALSE(found.reference.fluence.empty());
+  ASSERT_EQ(found.reference.fluence.size(), found.reference.fluenceDirect.size());
+  for (std::size_t i = 0; i < found.reference.fluence.size(); ++i)
+  {
+    ASSERT_GT(found.reference.fluence[i], found.reference.fluenceDirect[i]);
+  }
+  ASSERT_EQ(found.rows.size(), 2u);
+  EXPECT_LT(found.rows.back().errorL2, 2.0 * found.rows.back().estimatedError);
+}
+
+TEST_F(ComparedMonteCarlo, IsLeftOutWhereItsPhotonsMissLight)
+{
+  SunlitCube cube(4);
+  ReferenceLight reference;
+  reference.grid = cube.scene.medium.grid;
+  reference.fluence.assign(cube.sigma_a.size(), 1.0f);
+  cube.scene.illumination.faceAlbedo[4] = { 0.5, 0.5, 0.5 };
+  EXPECT_EQ(CompareSolvers(this->GetDevice(), cube.scene, cube.settings, &reference).leftOut.size(), 1u);
+  cube.scene.illumination.faceAlbedo[4] = {};
+  cube.scene.medium.emission = { cube.sigma_a.data() };
+  EXPECT_EQ(CompareSolvers(this->GetDevice(), cube.scene, cube.settings, &reference).leftOut.size(), 1u);
+  cube.scene.medium.emission = {};
+  EXPECT_TRUE(CompareSolvers(this->GetDevice(), cube.scene, cube.settings, &reference).leftOut.empty());
 }
