@@ -172,8 +172,8 @@ private:
   std::vector<double> Sums, Squares;
 };
 
-/// Photons that are not filtered, scattered where that is asked for: sixteen to sixty-four times the largest number that
-/// is tried.
+/// Photons that are not filtered, scattered where that is asked for: sixteen to sixty-four times the largest number
+/// that is tried.
 ReferenceLight ByPhotons(
   Device& device, const ComparedScene& scene, const ComparedSettings& settings, double seconds, const Monitor& monitor)
 {

@@ -24,4 +24,5 @@ void FocusLight(const PhotonBench& bench);      ///< by a ball of glass
 void CompareSamplers(const PhotonBench& bench); ///< Pfeuti's Figure 4.1 and Table 4.1
 void Scale(const PhotonBench& bench);           ///< in photons and voxels
 void ScaleThreads(const PhotonBench& bench);
+void ScatterPhotons(const PhotonBench& bench); ///< beside a plain program in C++
 }
