@@ -190,6 +190,33 @@ void PhotonsAreComparedWithDirectLight(test::Claims& claims)
   claims.That(std::string(comparison->GetLeftOut()).find("does not bend") != std::string::npos, "and it is said");
 }
 
+void MonteCarloIsComparedWithAllLight(test::Claims& claims)
+{
+  vtkNew<vtkLightRig> rig;
+  vtkNew<vtkSolverComparison> comparison;
+  test::Errors errors(comparison);
+  AskForOne(comparison);
+  comparison->MonteCarloOn();
+  comparison->RemoveAllPhotonCounts();
+  comparison->AddPhotonCount(100000);
+  comparison->SetTimeBudget(20.0);
+  comparison->SetInputDataObject(test::MakeMedium({ { 8, 8, 8 } }, 0.1, 0.4));
+  comparison->SetLightsConnection(rig->GetOutputPort());
+  comparison->Update();
+  vtkTable* table = comparison->GetOutput();
+  if (claims.That(errors.None() && table->GetNumberOfRows() == 2, "propagation and photons that are scattered"))
+  {
+    claims.That(
+      Text(table, 1, "method") == "Monte Carlo" && Text(table, 1, "quantity") == "fluence", "all light is compared");
+    claims.That(Number(table, 1, "error_l2") < 0.03, "both find it");
+    claims.That(Number(table, 1, "estimated_error") > 0.0, "and photons say how sure they are");
+  }
+  comparison->SetPeriodicX(true);
+  comparison->Update();
+  claims.That(std::string(comparison->GetLeftOut()).find("Monte Carlo: photons do not return") != std::string::npos,
+    "photons do not go round");
+}
+
 vtkSmartPointer<vtkImageData> Reference(std::array<int, 3> cells, const char* array)
 {
   auto image = test::MakeImage({ cells });
@@ -345,6 +372,7 @@ int TestSolverComparison(int, char*[])
   CoarserIsWorse(claims);
   GridsAreMatched(claims);
   PhotonsAreComparedWithDirectLight(claims);
+  MonteCarloIsComparedWithAllLight(claims);
   BadInput(claims);
   UnknownIsSaid(claims);
   ThePublishedSchemeIsLeftOutWhereGVaries(claims);
