@@ -383,6 +383,12 @@ UncollidedInput ReadUncollided(vtkImageData* image, const Grid& medium)
 {
   CheckSameVoxels(GridOf(image), medium, "UncollidedLight",
     "March the photons through the same medium, or resample their light to its voxels.");
+  if (ReadFact(image, ScatteringsFact, 0.0) > 0.0)
+  {
+    throw InvalidInput(
+      "UncollidedLight holds scattered light of photons, too: its mean_direction and face_power_out are of "
+      "all of it. Take PhotonMarcher with MaximumOrders 1.");
+  }
   UncollidedInput input;
   input.fluence = ReadCells(image, "fluence_direct", Need::Required, { 1, 3 });
   input.meanDirection = ReadCells(image, "mean_direction", Need::Optional, { 3 });

@@ -28,6 +28,8 @@ void AddGivenLight(vtkImageData* image, const char* name, std::vector<float>&& v
 
 /// Add field data.
 /// @param values  tuples of `components` one after the other
+/// Field data of light of photons that were scattered: how often, all together. Not there: they were not.
+constexpr const char* ScatteringsFact = "scatterings";
 void AddFact(vtkDataObject* data, const char* name, const std::vector<double>& values, int components = 1);
 void AddFact(vtkDataObject* data, const char* name, const std::vector<std::string>& values);
 void AddFact(vtkDataObject* data, const char* name, const std::vector<std::array<double, 3>>& vectors);

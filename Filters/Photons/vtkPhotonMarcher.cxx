@@ -33,6 +33,11 @@ enum InputPort
 tyndall::MarchSettings SettingsOf(vtkPhotonMarcher* filter, const std::vector<tyndall::Photon>& photons)
 {
   const bool published = filter->GetScheme() == vtkPhotonMarcher::PUBLISHED;
+  if (published && filter->GetMaximumOrders() != 1)
+  {
+    throw tyndall::InvalidInput("The published scheme follows photons to where they are first scattered. Choose the "
+                                "conservative scheme (Scheme 1), or MaximumOrders 1.");
+  }
   if (published && filter->GetPhotonCounts())
   {
     throw tyndall::InvalidInput(
@@ -44,6 +49,13 @@ tyndall::MarchSettings SettingsOf(vtkPhotonMarcher* filter, const std::vector<ty
   settings.stepSize = published ? 1.0 : filter->GetStepSize();
   settings.counts = filter->GetPhotonCounts();
   settings.leaveOut = filter->GetLeaveOut();
+  settings.maximumOrders = published ? 1 : filter->GetMaximumOrders();
+  settings.seed = static_cast<std::uint64_t>(filter->GetSeed());
+  if (settings.maximumOrders != 1)
+  {
+    settings.errorBatches = settings.counts ? 0 : filter->GetErrorBatches();
+    return settings;
+  }
   settings.batches = !published &&
     std::any_of(photons.begin(), photons.end(), [](const tyndall::Photon& photon) { return photon.batch > 0; });
   return settings;
@@ -68,7 +80,11 @@ std::vector<float> VoxelByVoxel(const std::vector<float>& light, int batches, in
 void Write(tyndall::PhotonLight&& photons, vtkImageData* output)
 {
   const int channels = photons.light.channels;
-  photons.light.fluenceDirect = photons.light.fluence; // none of it was scattered
+  if (photons.light.fluenceDirect.empty())
+  {
+    photons.light.fluenceDirect = photons.light.fluence; // none of it was scattered
+  }
+  const bool scattered = photons.scatterings > 0;
   tyndall::WriteLight(std::move(photons.light), output);
   tyndall::AddCells(output, "mean_direction", std::move(photons.meanDirection), 3);
   if (!photons.photonCount.empty())
@@ -80,6 +96,12 @@ void Write(tyndall::PhotonLight&& photons, vtkImageData* output)
   {
     tyndall::AddCells(output, "fluence_batches", VoxelByVoxel(photons.batchFluence, photons.batches, channels),
       photons.batches * channels);
+  }
+  if (scattered)
+  {
+    tyndall::AddFact(output, tyndall::ScatteringsFact, std::vector<double>{ static_cast<double>(photons.scatterings) });
+    tyndall::AddFact(
+      output, "exchanged", { photons.exchanged.begin(), photons.exchanged.begin() + channels }, channels);
   }
   tyndall::AddFact(output, "scattered", { photons.scattered.begin(), photons.scattered.begin() + channels }, channels);
 }
@@ -104,6 +126,7 @@ vtkPhotonMarcher::vtkPhotonMarcher()
   this->StepSize = defaults.stepSize;
   this->PhotonCounts = defaults.counts;
   this->LeaveOut = defaults.leaveOut;
+  this->MaximumOrders = defaults.maximumOrders;
   this->SetNumberOfInputPorts(InputPortCount);
   this->SetNumberOfOutputPorts(2);
 }
@@ -253,6 +276,7 @@ void vtkPhotonMarcher::Note(const tyndall::PhotonLight& light)
   this->Deposits = static_cast<vtkIdType>(light.deposits);
   this->Steps = static_cast<vtkIdType>(light.steps);
   this->Missed = static_cast<vtkIdType>(light.missed);
+  this->Scatterings = static_cast<vtkIdType>(light.scatterings);
   this->BalanceError = light.light.balance.RelativeError(light.light.channels);
   this->Seconds = light.seconds;
   this->DeviceName = light.light.device;
@@ -270,7 +294,7 @@ void vtkPhotonMarcher::Warn(const tyndall::PhotonLight& light, std::size_t photo
   const tyndall::EnergyBalance& balance = light.light.balance;
   const double trapped =
     tyndall::Sum(balance.entered) > 0.0 ? tyndall::Sum(balance.leftOver) / tyndall::Sum(balance.entered) : 0.0;
-  if (trapped > 0.01)
+  if (trapped > 0.01 && this->MaximumOrders < 2) // else it is what would be scattered once more
   {
     vtkWarningMacro(
       << std::lround(100.0 * trapped)
@@ -288,11 +312,15 @@ void vtkPhotonMarcher::PrintSelf(ostream& os, vtkIndent indent)
   os << indent << "StepSize: " << this->StepSize << "\n";
   os << indent << "LeaveOut: " << this->LeaveOut << "\n";
   os << indent << "PhotonCounts: " << this->PhotonCounts << "\n";
+  os << indent << "MaximumOrders: " << this->MaximumOrders << "\n";
+  os << indent << "Seed: " << this->Seed << "\n";
+  os << indent << "ErrorBatches: " << this->ErrorBatches << "\n";
   os << indent << "PathCount: " << this->PathCount << "\n";
   os << indent << "Smoothing: " << this->Smoothing << "\n";
   os << indent << "Device: " << this->Device << "\n";
   os << indent << "Deposits: " << this->Deposits << "\n";
   os << indent << "Steps: " << this->Steps << "\n";
+  os << indent << "Scatterings: " << this->Scatterings << "\n";
   os << indent << "Missed: " << this->Missed << "\n";
   os << indent << "BalanceError: " << this->BalanceError << "\n";
   os << indent << "PackingLoss: " << this->PackingLoss << "\n";

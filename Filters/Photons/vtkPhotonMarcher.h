@@ -23,8 +23,9 @@ struct PhotonLight;
  *
  * Paths follow d/ds(n dx/ds) = grad n, so that refraction and total reflection need no surfaces. Power falls along a
  * path by extinction, exactly; every voxel that a path crosses gains its power times its length in it, so that
- * `fluence` is an unbiased estimate in W/length^2 whatever the number of photons is. Scattered light is not followed: a
- * viewer gathers single scattering from `fluence` and `mean_direction`.
+ * `fluence` is an unbiased estimate in W/length^2 whatever the number of photons is. By default scattered light is not
+ * followed: a viewer gathers single scattering from `fluence` and `mean_direction`, and vtkLightPropagationMaps takes
+ * the light as UncollidedLight. With MaximumOrders photons go on through scattering after scattering.
  *
  * Input 0, the medium: vtkImageData with cell arrays `sigma_a`, `sigma_s` (1 or 3 components, 1/length) and optionally
  * `ior` (1 component; missing: constant) or those chosen by SetInputArrayToProcess 0, 1 and 3.
@@ -35,8 +36,9 @@ struct PhotonLight;
  *
  * | array | components | unit | meaning |
  * |---|---|---|---|
- * | `fluence` | 1 or 3 | W/length^2 | radiance integrated over all directions, of unscattered light |
- * | `fluence_direct` | 1 or 3 | W/length^2 | the same |
+ * | `fluence` | 1 or 3 | W/length^2 | radiance integrated over all directions, of light of up to MaximumOrders |
+ * | `fluence_direct` | 1 or 3 | W/length^2 | its unscattered part |
+ * | `fluence_error` | 1 or 3 | W/length^2 | standard error of `fluence`; of other orders than 1, with ErrorBatches |
  * | `mean_direction` | 3 | 1 | power-weighted mean direction; its length is the anisotropy |
  * | `photon_count` | 1 | 1 | photons that crossed the voxel, each once; with PhotonCounts |
  * | `photon_weight` | 1 | 1 | their mean `weight`, 0 where there is none; with PhotonCounts |
@@ -44,7 +46,7 @@ struct PhotonLight;
  *
  * the last three of the conservative scheme only, as vtkPhotonReconstruction wants them, and field data
  * `energy_balance` (W: entered, emitted, absorbed, escaped, left over; absorbed includes what is scattered),
- * `scattered` (W), `face_power_out`, `left_out`, `device`; of the published scheme also `packing_loss` (see
+ * `scattered` (W, for the first time), `face_power_out`, `left_out`, `device`; of the published scheme also `packing_loss` (see
  * PackingLoss).
  * Output 1: vtkPolyData, the paths of PathCount photons as polylines, point data `power_left` (part of its power), cell
  * data `photon` (its number).
@@ -113,6 +115,29 @@ public:
   ///@}
 
   ///@{
+  /// Orders of scattering that photons are followed through: 1 (default), to where they are first scattered, without
+  /// randomness; m, through m - 1 scatterings; 0, until they are absorbed or have left. Valid [0, infinity). Scattered
+  /// photons are an unbiased reference for every other solver: Monte Carlo along bent rays, by the medium's phase
+  /// function. The published scheme has order 1 only: an error.
+  tyndallSetRangeMacro(MaximumOrders, int, 0, VTK_INT_MAX);
+  vtkGetMacro(MaximumOrders, int);
+  ///@}
+
+  ///@{
+  /// Of the random numbers by which photons are scattered: the same seed gives the same light, bit for bit. Default 1,
+  /// valid [0, infinity).
+  tyndallSetRangeMacro(Seed, int, 0, VTK_INT_MAX);
+  vtkGetMacro(Seed, int);
+  ///@}
+
+  ///@{
+  /// Batches of scattered photons whose differences make `fluence_error`: 2 to 64, default 16; 0: it is not wanted. Of
+  /// other orders than 1, without PhotonCounts.
+  tyndallSetRangeMacro(ErrorBatches, int, 0, 64);
+  vtkGetMacro(ErrorBatches, int);
+  ///@}
+
+  ///@{
   /// Whether to leave out what the scene does not need. Default on; off computes everything, for comparison: the same
   /// light, later. Of the conservative scheme.
   vtkSetMacro(LeaveOut, bool);
@@ -153,6 +178,7 @@ public:
   vtkGetMacro(Deposits, vtkIdType);
   vtkGetMacro(Steps, vtkIdType);
   vtkGetMacro(Missed, vtkIdType);
+  vtkGetMacro(Scatterings, vtkIdType); ///< that photons went through, of other orders than 1
   vtkGetMacro(BalanceError, double);
   vtkGetMacro(PackingLoss, double);
   vtkGetMacro(MediumKept, bool);
@@ -190,6 +216,9 @@ private:
   double StepSize;
   bool PhotonCounts;
   bool LeaveOut;
+  int MaximumOrders;
+  int Seed = 1;
+  int ErrorBatches = 16;
   int PathCount = 0;
   bool Smoothing = true;
   std::string Device;
@@ -199,6 +228,7 @@ private:
   vtkIdType Deposits = 0;
   vtkIdType Steps = 0;
   vtkIdType Missed = 0;
+  vtkIdType Scatterings = 0;
   double BalanceError = 0.0;
   double PackingLoss = 0.0;
   bool MediumKept = false;

@@ -148,7 +148,10 @@ void Write(tyndall::ReconstructedLight&& light, vtkImageData* output)
   {
     cells->RemoveArray(earlier);
   }
-  tyndall::AddLight(output, "fluence_direct", std::vector<float>(light.fluence), channels);
+  if (tyndall::ReadFact(output, tyndall::ScatteringsFact, 0.0) == 0.0) // else the marcher's own is there already
+  {
+    tyndall::AddLight(output, "fluence_direct", std::vector<float>(light.fluence), channels);
+  }
   tyndall::AddLight(output, "fluence", std::move(light.fluence), channels);
   cells->SetActiveScalars("fluence");
   if (!light.meanDirection.empty())

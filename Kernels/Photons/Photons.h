@@ -60,7 +60,7 @@ struct MarchSettings
 
 /// @throws InvalidInput where the order is not 1, 2 or 4, the step size not 0.05 to 1e4 voxels, sums are Unsafe and
 ///   batches asked for, maximumOrders is negative, errorBatches are 1 or not 0 to MarchedBatchesAtMost,
-///   or asked for together with counts or batches
+///   or asked for together with counts or batches, or batches with other orders than 1
 void Check(const MarchSettings& settings);
 
 /// The path of one photon: positions, and the part of its power (all channels together) that is left there; 1 where it

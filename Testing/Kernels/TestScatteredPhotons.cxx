@@ -325,3 +325,133 @@ TEST_F(ScatteredPhotonsTest, RefuseSettingsThatMeanNothing)
   settings.errorBatches = 65;
   EXPECT_THROW(PhotonMarcher(this->GetDevice(), scene.medium, {}, settings), InvalidInput);
 }
+
+/// Sums in private copies or by atomics: who takes which photon, and when, makes no difference.
+TEST_F(ScatteredPhotonsTest, AreTheSameHoweverTheyAreShared)
+{
+  if (!this->GetDevice().HasExtension("cl_khr_int64_base_atomics"))
+  {
+    GTEST_SKIP() << "no 64-bit atomics";
+  }
+  Scene scene({ 6, 5, 7 });
+  scene.Randomise(3.0, 2.0, 0.9, 5);
+  scene.Attach();
+  const std::vector<Photon> photons = ThroughTheBottom(scene.medium.grid, 3000, true, 9);
+  MarchSettings apart = AllOrders(), shared = AllOrders();
+  apart.sums = MarchSettings::Sums::Private;
+  shared.sums = MarchSettings::Sums::Shared;
+  const PhotonLight one = this->March(scene, photons, apart), other = this->March(scene, photons, shared);
+  EXPECT_EQ(one.light.fluence, other.light.fluence);
+  EXPECT_EQ(one.meanDirection, other.meanDirection);
+}
+
+namespace
+{
+/// Photons of a furnace round a unit cube: radiance 1 from everywhere, through all its faces.
+std::vector<Photon> FurnacePhotons(std::size_t throughEach, unsigned seed)
+{
+  std::mt19937_64 random(seed);
+  std::uniform_real_distribution<double> even(0.0, 1.0);
+  std::vector<Photon> photons(6 * throughEach);
+  for (std::size_t i = 0; i < photons.size(); ++i)
+  {
+    const std::size_t face = i % 6, a = face / 2, u = (a + 1) % 3, v = (a + 2) % 3;
+    const double cosine = std::sqrt(even(random)), turn = 2.0 * Pi * even(random);
+    const double sine = std::sqrt(1.0 - cosine * cosine);
+    Photon& photon = photons[i];
+    photon.position[a] = static_cast<double>(face % 2);
+    photon.position[u] = even(random);
+    photon.position[v] = even(random);
+    photon.direction[a] = static_cast<float>(face % 2 ? -cosine : cosine);
+    photon.direction[u] = static_cast<float>(sine * std::cos(turn));
+    photon.direction[v] = static_cast<float>(sine * std::sin(turn));
+    photon.power.fill(static_cast<float>(Pi / static_cast<double>(throughEach)));
+  }
+  return photons;
+}
+
+/// A glass ball in the middle of a unit cube: its index at a distance from the middle.
+struct GlassBall
+{
+  double index;
+  bool stepped;
+
+  double At(double r) const
+  {
+    return 1.0 + (this->index - 1.0) * (this->stepped ? (r < 0.3 ? 1.0 : 0.0) : std::exp(-0.5 * r * r / (0.14 * 0.14)));
+  }
+};
+
+/// Fluence over 4 pi n^2 of the voxels within a radius, and its standard error.
+struct InFurnace
+{
+  double ratio, error;
+};
+}
+
+class FurnaceOfPhotons : public DeviceTest
+{
+protected:
+  InFurnace Within(const GlassBall& ball, double radius)
+  {
+    constexpr int Edge = 20, Parts = 16;
+    Scene scene({ Edge, Edge, Edge }, 0.0f, 3.0f);
+    scene.medium.grid.spacing = { 1.0 / Edge, 1.0 / Edge, 1.0 / Edge };
+    scene.Attach();
+    std::vector<float> ior;
+    std::vector<double> expected;
+    std::vector<bool> within;
+    for (std::size_t i = 0; i < scene.medium.grid.VoxelCount(); ++i)
+    {
+      const auto distance = [&](double x, double y, double z) {
+        return std::hypot(
+          (i % Edge + x) / Edge - 0.5, (i / Edge % Edge + y) / Edge - 0.5, (i / Edge / Edge + z) / Edge - 0.5);
+      };
+      ior.push_back(static_cast<float>(ball.At(distance(0.5, 0.5, 0.5))));
+      double mean = 0.0;
+      for (int part = 0; part < 64; ++part)
+      {
+        const double n = ball.At(distance((part % 4 + 0.5) / 4, (part / 4 % 4 + 0.5) / 4, (part / 16 + 0.5) / 4));
+        mean += n * n / 64;
+      }
+      expected.push_back(4.0 * Pi * mean);
+      within.push_back(distance(0.5, 0.5, 0.5) < radius);
+    }
+    MarchSettings settings = AllOrders();
+    std::vector<double> ratios; // of independent runs
+    for (unsigned part = 0; part < Parts; ++part)
+    {
+      settings.seed = 100 + part;
+      const PhotonLight light = PhotonMarcher(this->GetDevice(), scene.medium, { ior.data(), 1 }, settings)
+                                  .March(FurnacePhotons(2000, 20261123 + part));
+      double found = 0.0, exact = 0.0;
+      for (std::size_t i = 0; i < ior.size(); ++i)
+      {
+        found += within[i] ? light.light.fluence[i] : 0.0;
+        exact += within[i] ? expected[i] : 0.0;
+      }
+      ratios.push_back(found / exact);
+    }
+    const double mean = std::accumulate(ratios.begin(), ratios.end(), 0.0) / Parts;
+    double square = 0.0;
+    for (double ratio : ratios)
+    {
+      square += (ratio - mean) * (ratio - mean) / (Parts - 1.0);
+    }
+    return { mean, std::sqrt(square / Parts) };
+  }
+};
+
+/// A closed furnace: whatever bends and scatters, radiance is n^2 everywhere.
+TEST_F(FurnaceOfPhotons, HasTheSquareOfTheIndex)
+{
+  for (const double index : { 1.5, 2.4 })
+  {
+    for (const bool stepped : { false, true })
+    {
+      const InFurnace found = this->Within({ index, stepped }, stepped ? 0.15 : 0.25);
+      EXPECT_LT(std::abs(found.ratio - 1.0), 3.0 * found.error) << index << (stepped ? " stepped" : " smooth");
+      EXPECT_LT(found.error, 0.01);
+    }
+  }
+}

@@ -77,6 +77,12 @@ void Check(const MarchSettings& settings)
       "The standard error is found from batches of its own. Ask for it, or for counts and for the light "
       "of each of the photons' batches, not for both.");
   }
+  if (settings.maximumOrders != 1 && settings.batches)
+  {
+    throw InvalidInput(
+      "The light of each batch is kept apart as far as photons are not scattered. Take MaximumOrders 1 "
+      "with batches, or none of them.");
+  }
   if (settings.batches && settings.sums == MarchSettings::Sums::Unsafe)
   {
     throw InvalidInput("Unsafe sums are of all photons together, not of each batch. Choose other sums, or no batches.");

@@ -41,6 +41,28 @@ std::vector<float> OpticalOf(const MarchMedium& through, const Medium& medium)
   }
   return values;
 }
+
+/// Steps across a jump of n^2 that are too long lose photons in the denser side: of the largest jump between neighbours,
+/// over the lesser n^2, a step is to see half (numerics.md, Eq. (99d)).
+double StepPartFor(const Field& ior, const Grid& grid)
+{
+  constexpr double Seen = 0.5, Least = 0.1;
+  double jump = 0.0;
+  const std::array<std::size_t, 3> stride = { 1, static_cast<std::size_t>(grid.size[0]),
+    static_cast<std::size_t>(grid.size[0]) * static_cast<std::size_t>(grid.size[1]) };
+  for (std::size_t i = 0; i < grid.VoxelCount() && ior.values; ++i)
+  {
+    for (std::size_t a = 0; a < 3; ++a)
+    {
+      if (i / stride[a] % static_cast<std::size_t>(grid.size[a]) + 1 < static_cast<std::size_t>(grid.size[a]))
+      {
+        const double here = std::pow(ior.At(i, 0), 2), there = std::pow(ior.At(i + stride[a], 0), 2);
+        jump = std::max(jump, std::abs(here - there) / std::min(here, there));
+      }
+    }
+  }
+  return std::clamp(Seen / std::max(jump, 1e-9), Least, 1.0);
+}
 }
 
 /// What a run holds.
@@ -57,8 +79,9 @@ struct PhotonScattering::Work
   ScatteredPhotons found;
 };
 
-PhotonScattering::PhotonScattering(const MarchMedium& through, const Medium& medium)
+PhotonScattering::PhotonScattering(const MarchMedium& through, const Medium& medium, const Field& ior)
   : Through(through)
+  , StepPart(StepPartFor(ior, medium.grid))
   , Optical(through.device, OpticalOf(through, medium), "how voxels scatter")
   , Phase(through.device, medium)
 {
@@ -101,6 +124,9 @@ void PhotonScattering::FollowAll(Work& work, const Monitor& monitor)
     this->Through.Options() + this->Phase.Options() + Define("CHANNELS", 1) + Define("DIRECTIONS", 1) +
       Define("ORDER", this->Through.settings.order) + Define("REAL_WIDTH", 1) + Define("ATOMICS", work.shares.atomics) +
       Define("WORKERS", workers) + Define("BLOCK", Block) + Define("GATHERS", work.numbers > 1));
+  MarchInfo info = this->Through.Describe();
+  info.stepSize *= static_cast<float>(this->StepPart);
+  info.eventLimit = static_cast<int>(std::min(1e9, info.eventLimit / this->StepPart));
   const ScatterInfo how = { work.settings.seed, work.settings.mostScatterings };
   Buffer<cl_int> next(device, 1, "number of the next photon");
   Batches launches;
@@ -111,9 +137,9 @@ void PhotonScattering::FollowAll(Work& work, const Monitor& monitor)
   const std::size_t stride = this->Through.PaddedCount() * static_cast<std::size_t>(work.numbers);
   InBatches(device, launches, monitor, [&](std::size_t first, std::size_t count) {
     next.Fill(0);
-    With(kernel, this->Through.Describe(), how, this->Through.sigma, this->Through.coefficients, this->Through.nodes,
-      this->Optical, this->Phase.Values(), work.photons, work.streams, work.ends, work.sums, cl_ulong(stride), next,
-      cl_int(first), cl_int(count));
+    With(kernel, info, how, this->Through.sigma, this->Through.coefficients, this->Through.nodes, this->Optical,
+      this->Phase.Values(), work.photons, work.streams, work.ends, work.sums, cl_ulong(stride), next, cl_int(first),
+      cl_int(count));
     const std::size_t items = workers > 0 ? static_cast<std::size_t>(workers) : count;
     this->Through.Launch(kernel, cl::NDRange(items), workers > 0 ? cl::NDRange(1) : cl::NullRange);
   });

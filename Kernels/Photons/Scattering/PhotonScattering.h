@@ -32,8 +32,8 @@ class PhotonScattering
 {
 public:
   /// @param through  as photons march through it, of one channel; must stay
-  /// @param medium   the same, as data; read here only
-  PhotonScattering(const MarchMedium& through, const Medium& medium);
+  /// @param medium, ior   the same, as data; read here only
+  PhotonScattering(const MarchMedium& through, const Medium& medium, const Field& ior);
 
   struct Settings
   {
@@ -52,6 +52,7 @@ private:
   static void TakeEnds(Work& work);
 
   const MarchMedium& Through;
+  double StepPart; ///< of the settings' step size: shorter where the index jumps
   Buffer<float> Optical;
   SampledPhase Phase;
 };

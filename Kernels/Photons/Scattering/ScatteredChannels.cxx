@@ -83,7 +83,7 @@ ScatteredChannels::ScatteredChannels(
     {
       channel.own = std::make_unique<const MarchMedium>(device, one.seen, ior, through.settings, levels);
     }
-    channel.photons = std::make_unique<PhotonScattering>(coloured ? *channel.own : through, one.seen);
+    channel.photons = std::make_unique<PhotonScattering>(coloured ? *channel.own : through, one.seen, ior);
     this->Channels.push_back(std::move(channel));
   }
 }
