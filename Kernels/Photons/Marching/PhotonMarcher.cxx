@@ -16,6 +16,7 @@
 #include <algorithm>
 #include <cmath>
 #include <cstring>
+#include <random>
 #include <string>
 
 namespace tyndall
@@ -235,20 +236,41 @@ void PhotonMarcher::Implementation::SayWhatIsLeftOut(const PackedPhotons& packed
   say(!through.settings.meanDirection, "mean direction: it was not asked for");
 }
 
-/// Every so manieth photon is of a batch.
+namespace
+{
+/// Of each row of so many photons one, by chance. Not every so manieth: samplers spread photons by the digits of their
+/// numbers (Hammersley's last four binary ones are those of every sixteenth), and all of a batch would be of one part of
+/// the light.
+PhotonNumbers NumbersOfBatch(std::size_t photons, std::size_t batch, std::size_t batches)
+{
+  std::mt19937 random; // the same whatever the batch, and on every machine
+  PhotonNumbers numbers;
+  for (std::size_t row = 0; row < photons; row += batches)
+  {
+    const std::size_t number = row + (batch + random()) % batches;
+    if (number < photons)
+    {
+      numbers.push_back(number);
+    }
+  }
+  return numbers;
+}
+}
+
 PhotonLight PhotonMarcher::Implementation::MarchInBatches(const std::vector<Photon>& photons, const Monitor& monitor)
 {
   const auto batches = static_cast<std::size_t>(this->medium.settings.errorBatches);
   MarchedBatches all;
   for (std::size_t b = 0; b < batches; ++b)
   {
+    const PhotonNumbers numbers = NumbersOfBatch(photons.size(), b, batches);
     std::vector<Photon> some;
-    for (std::size_t i = b; i < photons.size(); i += batches)
+    for (const std::size_t number : numbers)
     {
-      some.push_back(photons[i]);
+      some.push_back(photons[number]);
     }
     const double parts = static_cast<double>(batches);
-    all.Add(this->March(some, { b, batches }, OfPart(monitor, b / parts, (b + 1) / parts)));
+    all.Add(this->March(some, numbers, OfPart(monitor, b / parts, (b + 1) / parts)));
   }
   return std::move(all).Sum();
 }

@@ -25,11 +25,8 @@ struct PackedPhotons
   std::size_t LargestBatch() const; ///< photons
 };
 
-/// Which of all photons some are: the i-th of them is number first + i step.
-struct PhotonNumbers
-{
-  std::size_t first = 0, step = 1;
-};
+/// Which of all photons some are; empty: they are all.
+using PhotonNumbers = std::vector<std::size_t>;
 
 /// The largest batch that photons are of, and one.
 int BatchesOf(const std::vector<Photon>& photons);

@@ -101,7 +101,7 @@ ScatteredPhotons PhotonScattering::Follow(
   std::vector<cl_ulong> streams;
   for (const std::size_t number : work.packed.numbers)
   {
-    streams.push_back(settings.numbers.first + settings.numbers.step * number);
+    streams.push_back(settings.numbers.empty() ? number : settings.numbers[number]);
   }
   work.streams = Buffer<cl_ulong>(device, streams, "numbers of photons");
   work.ends = Buffer<ScatterEnd>(device, work.packed.Count(), "ends of photons");
@@ -109,7 +109,12 @@ ScatteredPhotons PhotonScattering::Follow(
     records * static_cast<std::size_t>(work.numbers) * static_cast<std::size_t>(work.shares.copies),
     "sums of the photons' light");
   work.sums.Fill(0);
-  work.found.entered = work.packed.entered[0];
+  // Not rounded to units, as packed.entered is: what leaves is not, and photons of one power would all round alike.
+  const auto floats = static_cast<std::size_t>(work.packed.FloatsEach());
+  for (std::size_t i = 0; i < work.packed.Count(); ++i)
+  {
+    work.found.entered += work.packed.unit * work.packed.values[(i + 1) * floats - 1];
+  }
   this->FollowAll(work, monitor);
   this->TakeLight(work);
   TakeEnds(work);
