@@ -40,8 +40,8 @@ struct MarchSettings
   /// light, without randomness); m, through m - 1 scatterings; 0, until they are absorbed or have left.
   int maximumOrders = 1;
   std::uint64_t seed = 1; ///< of the random numbers by which they are scattered
-  /// Batches of photons (one by chance of each so many), up to MarchedBatchesAtMost, of whose light the standard error is
-  /// found (fluenceError of the light); 0: it is not wanted. Not together with counts or batches.
+  /// Batches of photons (one by chance of each so many), up to MarchedBatchesAtMost, of whose light the standard error
+  /// is found (fluenceError of the light); 0: it is not wanted. Not together with counts or batches.
   int errorBatches = 0;
   /// Whether to leave out what the scene does not need; false: three channels and the integrator, to measure what that
   /// saves.
@@ -77,8 +77,9 @@ struct PhotonLight
 {
   /// Of one order: light that was not scattered, so that fluenceDirect would be the same and is left empty. Balance:
   /// `absorbed` is what the medium absorbed and what it scattered, `leftOver` what still went round when the photon was
-  /// given up (total reflection can trap it). Of more orders: all light, fluenceDirect what was not scattered, `absorbed`
-  /// what the medium absorbed, `leftOver` what would be scattered once more too, less what Russian roulette gave.
+  /// given up (total reflection can trap it). Of more orders: all light, fluenceDirect what was not scattered,
+  /// `absorbed` what the medium absorbed, `leftOver` what would be scattered once more too, less what Russian roulette
+  /// gave.
   LightField light;
   Rgb scattered = {};            ///< W, that is scattered for the first time
   std::uint64_t scatterings = 0; ///< that photons went through, of more orders than one

@@ -1,4 +1,5 @@
-// Errors that scattered photons say of themselves, of photons as the emitter makes them, and their balance in large runs.
+// Errors that scattered photons say of themselves, of photons as the emitter makes them, and their balance in large
+// runs.
 
 #include "DeviceTest.h"
 #include "ScatteredScene.h"
