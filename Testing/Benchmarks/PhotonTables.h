@@ -25,4 +25,5 @@ void CompareSamplers(const PhotonBench& bench); ///< Pfeuti's Figure 4.1 and Tab
 void Scale(const PhotonBench& bench);           ///< in photons and voxels
 void ScaleThreads(const PhotonBench& bench);
 void ScatterPhotons(const PhotonBench& bench); ///< beside a plain program in C++
+void ScatterInABall(const PhotonBench& bench); ///< of glass, beside solvers whose scattered light goes straight
 }

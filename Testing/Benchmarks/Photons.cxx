@@ -4,7 +4,7 @@
 // programs at work hardly change.
 //
 //   TyndallBenchPhotons [--quick] [stages] [marching] [octree] [power] [lenses] [prism] [focus] [samplers] [scaling]
-//   [threads] [scattering]
+//   [threads] [scattering] [ball]
 
 #include "MachineLimits.h"
 #include "Measure.h"
@@ -27,7 +27,7 @@ void RunAll(tyndall::Device& device, const Arguments& arguments)
   const std::pair<const char*, void (*)(const PhotonBench&)> tables[] = { { "stages", TimeStages },
     { "marching", TimeWays }, { "octree", CompareOctrees }, { "power", LosePower }, { "lenses", FollowLenses },
     { "prism", TurnByPrism }, { "focus", FocusLight }, { "samplers", CompareSamplers }, { "scaling", Scale },
-    { "threads", ScaleThreads }, { "scattering", ScatterPhotons } };
+    { "threads", ScaleThreads }, { "scattering", ScatterPhotons }, { "ball", ScatterInABall } };
   for (const auto& [name, make] : tables)
   {
     if (arguments.Asks(name))
