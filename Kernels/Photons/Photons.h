@@ -40,8 +40,8 @@ struct MarchSettings
   /// light, without randomness); m, through m - 1 scatterings; 0, until they are absorbed or have left.
   int maximumOrders = 1;
   std::uint64_t seed = 1; ///< of the random numbers by which they are scattered
-  /// Batches of photons (one by chance of each so many), up to MarchedBatchesAtMost, of whose light the standard error is
-  /// found (fluenceError of the light); 0: it is not wanted. Not together with counts or batches.
+  /// Batches of photons (one by chance of each so many), up to MarchedBatchesAtMost, of whose light the standard error
+  /// is found (fluenceError of the light); 0: it is not wanted. Not together with counts or batches.
   int errorBatches = 0;
   /// Whether to leave out what the scene does not need; false: three channels and the integrator, to measure what that
   /// saves.
