@@ -3,6 +3,7 @@
 #include "vtkCellData.h"
 #include "vtkDataArray.h"
 #include "vtkFieldData.h"
+#include "vtkFloatArray.h"
 #include "vtkLightRig.h"
 #include "vtkPhotonEmitter.h"
 #include "vtkPhotonMarcher.h"
@@ -70,6 +71,52 @@ void ABeamFallsOffAndItsPowerIsKept(test::Claims& claims)
   claims.Near(pipeline.Paths()->GetBounds()[4], 3.0, 1e-5, "paths go through the box");
   vtkDataArray* left = pipeline.Paths()->GetPointData()->GetArray("power_left");
   claims.Near(left->GetComponent(1, 0), std::exp(-8.0 * tau), 1e-5, "what is left at a path's end");
+}
+
+void ScatteredPhotonsGoOn(test::Claims& claims)
+{
+  Pipeline pipeline(
+    test::MakeMedium({ { 4, 5, 6 }, { 0.5, 0.5, 0.5 }, { -1.0, -1.0, 3.0 }, { 0, 2, 0 } }, 0.1, 1.5), 20000);
+  pipeline.marcher->Update();
+  const double entered = pipeline.Fact("energy_balance", 0);
+  claims.That(!pipeline.Light()->GetCellData()->GetArray("fluence_error"), "uncollided light has no randomness");
+  vtkNew<vtkFloatArray> uncollided;
+  uncollided->DeepCopy(pipeline.Light()->GetCellData()->GetArray("fluence"));
+  pipeline.marcher->SetMaximumOrders(0);
+  pipeline.marcher->Update();
+  vtkCellData* cells = pipeline.Light()->GetCellData();
+  vtkDataArray *all = cells->GetArray("fluence"), *direct = cells->GetArray("fluence_direct"),
+               *error = cells->GetArray("fluence_error");
+  if (!claims.That(all && direct && error, "fluence, its unscattered part and its error"))
+  {
+    return;
+  }
+  double more = 0.0, errors = 0.0;
+  for (vtkIdType i = 0; i < all->GetNumberOfTuples(); ++i)
+  {
+    claims.Near(direct->GetComponent(i, 0), uncollided->GetComponent(i, 0), 1e-5, "uncollided light");
+    more += all->GetComponent(i, 0) - direct->GetComponent(i, 0);
+    errors += error->GetComponent(i, 0) / all->GetComponent(i, 0);
+  }
+  claims.That(more > 10.0, "scattered light is there");
+  claims.That(errors / 120.0 > 1e-3 && errors / 120.0 < 0.1, "and some percent uncertain");
+  claims.Near(pipeline.Fact("energy_balance", 0), entered, 1e-5 * entered, "power that entered");
+  claims.That(pipeline.marcher->GetBalanceError() < 1e-6, "balance");
+  claims.That(pipeline.marcher->GetScatterings() > 20000, "scatterings");
+  const double escaped = pipeline.Fact("energy_balance", 3);
+  pipeline.marcher->Modified();
+  pipeline.marcher->Update();
+  claims.That(pipeline.Fact("energy_balance", 3) == escaped, "the same seed, the same light");
+  pipeline.marcher->SetSeed(2);
+  pipeline.marcher->Update();
+  claims.That(pipeline.Fact("energy_balance", 3) != escaped, "another seed, another light");
+  pipeline.marcher->SetMaximumOrders(2);
+  pipeline.marcher->Update();
+  claims.That(pipeline.Fact("energy_balance", 4) > 0.1, "photons of few orders are left over");
+  test::Errors complaints(pipeline.marcher);
+  pipeline.marcher->SetScheme(vtkPhotonMarcher::PUBLISHED);
+  pipeline.marcher->Update();
+  claims.That(complaints.WasOneWith("MaximumOrders"), "the published scheme knows one order");
 }
 
 void WhatIsNotNeededCanBeComputedAllTheSame(test::Claims& claims)
@@ -299,6 +346,7 @@ int TestPhotonMarcher(int, char*[])
   }
   test::Claims claims;
   ABeamFallsOffAndItsPowerIsKept(claims);
+  ScatteredPhotonsGoOn(claims);
   WhatIsNotNeededCanBeComputedAllTheSame(claims);
   GlassBendsTheLight(claims);
   PackingLossIsToldApart(claims);

@@ -109,6 +109,15 @@ void RefusesOtherVoxels(test::Claims& claims, const std::string& name)
   solver->Update();
   claims.That(errors.WasOneWith("fluence_direct"), name + ": one error where there is no light");
 
+  vtkNew<vtkPhotonMarcher> scattered;
+  scattered->SetInputDataObject(caustic.medium);
+  scattered->SetPhotonsConnection(caustic.emitter->GetOutputPort());
+  scattered->SetMaximumOrders(3);
+  scattered->Update();
+  solver->SetUncollidedLightData(scattered->GetOutputDataObject(0));
+  solver->Update();
+  claims.That(errors.WasOneWith("MaximumOrders 1"), name + ": one error for light that was scattered");
+
   solver->SetUncollidedLightData(caustic.Light());
   solver->Update();
   claims.That(errors.None(), name + ": and goes on");
