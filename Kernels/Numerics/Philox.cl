@@ -1,5 +1,5 @@
-// Random numbers by counter: Philox 4x32 of ten rounds (Salmon, Moraes, Dror and Shaw 2011, "Parallel random numbers: as
-// easy as 1, 2, 3", section 3.2). A block is a function of key and counter alone: who asks when makes no difference.
+// Random numbers by counter: Philox 4x32 of ten rounds (Salmon, Moraes, Dror and Shaw 2011, "Parallel random numbers:
+// as easy as 1, 2, 3", section 3.2). A block is a function of key and counter alone: who asks when makes no difference.
 
 #pragma once
 

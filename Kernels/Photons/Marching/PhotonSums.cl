@@ -3,8 +3,8 @@
 //   COPIES, BATCHES         of the sums: copy c is for batch c modulo BATCHES
 //   COUNT_SHIFT             of the bits of counts, above those of weights
 //   A_CHANNELS, S_CHANNELS  components of sigma_a and sigma_s, 0: there is none
-//   CARRIES                 where it is defined: what is less than a unit of a voxel's power counts in the next one of its
-//                           row. Sums in large units need it: of many voxels half a unit each would be lost
+//   CARRIES                 where it is defined: what is less than a unit of a voxel's power counts in the next one
+//                           of its row. Sums in large units need it: half a unit of each voxel would be lost
 //   COLOURS                 channels of what comes out: 3 also where one channel stands for three (CHANNELS 1)
 
 #include "Numerics/Numerics.cl"

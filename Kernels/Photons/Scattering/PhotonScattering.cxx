@@ -42,8 +42,8 @@ std::vector<float> OpticalOf(const MarchMedium& through, const Medium& medium)
   return values;
 }
 
-/// Steps across a jump of n^2 that are too long lose photons in the denser side: of the largest jump between neighbours,
-/// over the lesser n^2, a step is to see half (numerics.md, Eq. (99d)).
+/// Steps across a jump of n^2 that are too long lose photons in the denser side: of the largest jump between
+/// neighbours, over the lesser n^2, a step is to see half (numerics.md, Eq. (99d)).
 double StepPartFor(const Field& ior, const Grid& grid)
 {
   constexpr double Seen = 0.5, Least = 0.1;

@@ -8,8 +8,8 @@
 namespace tyndall
 {
 /// How photons draw the cosine by which they are scattered (numerics.md, Eqs. (99b), (99c)): in closed form for
-/// isotropic scattering and for Henyey and Greenstein's and Schlick's functions, whose parameter may vary by voxel; else
-/// by a table of the distribution's inverse, in 65536 even parts of the light.
+/// isotropic scattering and for Henyey and Greenstein's and Schlick's functions, whose parameter may vary by voxel;
+/// else by a table of the distribution's inverse, in 65536 even parts of the light.
 class SampledPhase
 {
 public:
