@@ -46,8 +46,9 @@ struct PhotonLight;
  *
  * the last three of the conservative scheme only, as vtkPhotonReconstruction wants them, and field data
  * `energy_balance` (W: entered, emitted, absorbed, escaped, left over; absorbed includes what is scattered),
- * `scattered` (W, for the first time), `face_power_out`, `left_out`, `device`; of the published scheme also
- * `packing_loss` (see PackingLoss).
+ * `scattered` (W, for the first time), `face_power_out`, `left_out`, `device`; of other orders than 1 `scatterings` and
+ * `exchanged` (W that Russian roulette gave less what it took; `absorbed` is then what the medium absorbed); of the
+ * published scheme also `packing_loss` (see PackingLoss).
  * Output 1: vtkPolyData, the paths of PathCount photons as polylines, point data `power_left` (part of its power), cell
  * data `photon` (its number).
  *

@@ -77,9 +77,9 @@ struct PhotonLight
 {
   /// Of one order: light that was not scattered, so that fluenceDirect would be the same and is left empty. Balance:
   /// `absorbed` is what the medium absorbed and what it scattered, `leftOver` what still went round when the photon was
-  /// given up (total reflection can trap it). Of more orders: all light, fluenceDirect what was not scattered;
-  /// `absorbed` is what the medium absorbed, `leftOver` what would be scattered once more too, less what Russian
-  /// roulette gave.
+  /// given up (total reflection can trap it). Of more orders: all light, fluenceDirect what was not scattered,
+  /// `absorbed` what the medium absorbed, `leftOver` what would be scattered once more too, less what Russian roulette
+  /// gave.
   LightField light;
   Rgb scattered = {};            ///< W, that is scattered for the first time
   std::uint64_t scatterings = 0; ///< that photons went through, of more orders than one

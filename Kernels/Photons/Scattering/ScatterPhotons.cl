@@ -7,9 +7,9 @@
 //   VARIES    1: the parameter of these two is by voxel
 //   COSINES   of the table, less one
 //
-// The optical depth of the next scattering is drawn, and spent along the path; what is absorbed on the way is taken from
-// the photon's power, and what is left of that is deposited times its path, from the first scattering on: a mean over
-// photons of the fluence of scattered light, whatever the voxels are.
+// The optical depth of the next scattering is drawn, and spent along the path; what is absorbed on the way is taken
+// from the photon's power, and what is left of that is deposited times its path, from the first scattering on: a mean
+// over photons of the fluence of scattered light, whatever the voxels are.
 
 #include "Numerics/FixedPoint.cl"
 #include "Numerics/Philox.cl"
@@ -90,8 +90,8 @@ static bool moves(const photon_lanes* lanes)
 }
 
 // The photon, `way` diagonals on, is scattered.
-static void scatter(const march_arrays* arrays, const scattering* medium, photon_lanes* lanes, float way,
-  random_numbers* random)
+static void scatter(
+  const march_arrays* arrays, const scattering* medium, photon_lanes* lanes, float way, random_numbers* random)
 {
   const float time = lanes->now[0] + way / lanes->pace[0];
   const float3 start = (float3)(lanes->start[0][0], lanes->start[1][0], lanes->start[2][0]);
@@ -153,8 +153,8 @@ static ScatterEnd follow(const march_arrays* arrays, const scattering* medium, c
     if (end.scatterings > 0)
     {
       const float mean = tau > TINY ? lost / tau : 1.0f;
-      leave(arrays->sums + (ulong)lanes.at[0] * RECORD,
-        end.power * mean * way * fmax(sigma.x + sigma.y, 1.0f), lanes.direction[0]);
+      leave(arrays->sums + (ulong)lanes.at[0] * RECORD, end.power * mean * way * fmax(sigma.x + sigma.y, 1.0f),
+        lanes.direction[0]);
     }
     else
     {
@@ -198,8 +198,8 @@ static ScatterEnd follow(const march_arrays* arrays, const scattering* medium, c
 //   numbers         of each, which its random numbers belong to
 __kernel void scatter_photons(MarchInfo info, ScatterInfo how, const __global float* sigma,
   const __global float* coefficients, const __global uchar* nodes, const __global float2* optical,
-  const __global float* phase, const __global float* photons, const __global ulong* numbers,
-  __global ScatterEnd* ends, __global long* sums, ulong copyStride, volatile __global int* next, int first, int count)
+  const __global float* phase, const __global float* photons, const __global ulong* numbers, __global ScatterEnd* ends,
+  __global long* sums, ulong copyStride, volatile __global int* next, int first, int count)
 {
   const scattering medium = { optical, phase };
 #if WORKERS > 0
