@@ -239,8 +239,8 @@ void PhotonMarcher::Implementation::SayWhatIsLeftOut(const PackedPhotons& packed
 namespace
 {
 /// Of each row of so many photons one, by chance. Not every so manieth: samplers spread photons by the digits of their
-/// numbers (Hammersley's last four binary ones are those of every sixteenth), and all of a batch would be of one part
-/// of the light.
+/// numbers (every sixteenth has the same four last binary ones, which are Hammersley's first), and all of a batch would
+/// be of one part of the light.
 PhotonNumbers NumbersOfBatch(std::size_t photons, std::size_t batch, std::size_t batches)
 {
   std::mt19937 random; // the same whatever the batch, and on every machine

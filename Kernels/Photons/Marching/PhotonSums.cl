@@ -3,6 +3,8 @@
 //   COPIES, BATCHES         of the sums: copy c is for batch c modulo BATCHES
 //   COUNT_SHIFT             of the bits of counts, above those of weights
 //   A_CHANNELS, S_CHANNELS  components of sigma_a and sigma_s, 0: there is none
+//   CARRIES                 where it is defined: what is less than a unit of a voxel's power counts in the next one
+//                           of its row. Sums in large units need it: half a unit of each voxel would be lost
 //   COLOURS                 channels of what comes out: 3 also where one channel stands for three (CHANNELS 1)
 
 #include "Numerics/Numerics.cl"
@@ -28,10 +30,17 @@ static void put_fluence(const LightSumsInfo* info, __global float* voxel, int c,
 
 // Units of power that a coefficient, which is part of the extinction, took of a voxel's sum. Of a thick voxel that is
 // what the photons lost.
-static long taken_by(const LightSumsInfo* info, float sum, float coefficient, float extinction)
+static long taken_by(const LightSumsInfo* info, float sum, float coefficient, float extinction, float* carried)
 {
   const float thickness = info->diagonal * extinction;
-  return (long)(sum * (thickness > 1.0f ? coefficient / extinction : info->diagonal * coefficient));
+  const float taken = sum * (thickness > 1.0f ? coefficient / extinction : info->diagonal * coefficient);
+#ifdef CARRIES
+  const float all = taken + *carried;
+  *carried = all - trunc(all);
+  return (long)all;
+#else
+  return (long)taken;
+#endif
 }
 
 // The sum over a batch's copies of a voxel's record, which is zero afterwards.
@@ -75,9 +84,11 @@ __kernel void finish_light(LightSumsInfo info, const __global float* sigma_a, co
   const size_t copy = (size_t)(nx + 2) * (ny + 2) * (info.grid.size[2] + 2);
   const size_t first = ((size_t)(r / ny + 1) * (ny + 2) + r % ny + 1) * (nx + 2) + 1;
   long absorbed[CHANNELS], scattered[CHANNELS];
+  float carried[2][CHANNELS];
   for (int c = 0; c < CHANNELS; ++c)
   {
     absorbed[c] = scattered[c] = 0;
+    carried[0][c] = carried[1][c] = 0.0f;
   }
   for (int x = 0; x < nx; ++x)
   {
@@ -118,8 +129,8 @@ __kernel void finish_light(LightSumsInfo info, const __global float* sigma_a, co
       const float path = (float)sum[c] / thickness[c]; // power times diagonals
       total += sum[c];
       put_fluence(&info, fluence + voxel * COLOURS, c, path);
-      absorbed[c] += taken_by(&info, sum[c], component(sigma_a, A_CHANNELS, voxel, c), extinction[c]);
-      scattered[c] += taken_by(&info, sum[c], component(sigma_s, S_CHANNELS, voxel, c), extinction[c]);
+      absorbed[c] += taken_by(&info, sum[c], component(sigma_a, A_CHANNELS, voxel, c), extinction[c], &carried[0][c]);
+      scattered[c] += taken_by(&info, sum[c], component(sigma_s, S_CHANNELS, voxel, c), extinction[c], &carried[1][c]);
     }
 #if DIRECTIONS
     // Of a few units of power, whose fractions are lost, directions are coarse, and could be longer than the power.
@@ -140,6 +151,10 @@ __kernel void finish_light(LightSumsInfo info, const __global float* sigma_a, co
   }
   for (int c = 0; c < CHANNELS; ++c)
   {
+#ifdef CARRIES
+    absorbed[c] += carried[0][c] >= 0.5f;
+    scattered[c] += carried[1][c] >= 0.5f;
+#endif
     taken[(r * 2 + 0) * CHANNELS + c] = absorbed[c];
     taken[(r * 2 + 1) * CHANNELS + c] = scattered[c];
   }

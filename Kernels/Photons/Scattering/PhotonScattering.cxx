@@ -171,7 +171,7 @@ void PhotonScattering::TakeLight(Work& work)
   std::fill_n(info.colour, 3, 1.0f);
   cl::Kernel finish = this->Through.SumsKernel("finish_light", 1,
     Define("DIRECTIONS", directions) + Define("COUNTS", 0) + Define("COUNT_SHIFT", 0) + Define("COLOURS", 1) +
-      Define("COPIES", work.shares.copies) + Define("BATCHES", 1));
+      Define("COPIES", work.shares.copies) + Define("BATCHES", 1) + Define("CARRIES", 1));
   With(finish, info, this->Through.sigmaA, this->Through.sigmaS, work.sums,
     cl_ulong(this->Through.PaddedCount() * static_cast<std::size_t>(work.numbers)), toFluence.Handle(),
     toDirection.Handle(), none, none, none, taken);

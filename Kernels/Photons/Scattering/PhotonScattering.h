@@ -26,8 +26,8 @@ struct ScatteredPhotons
 /// Follows photons along bent rays through scattering after scattering, as analog Monte Carlo with absorption by weight
 /// and Russian roulette (numerics.md, section 12.5): without bias for any medium.
 ///
-/// Random numbers are drawn by counter: the same seed gives the same light, bit for bit, whatever the threads, the
-/// order of the photons and the parts in which they are marched.
+/// Random numbers are drawn by counter, of the seed and a photon's number: the same seed gives the same light, bit for
+/// bit, whatever the threads and the parts in which photons are marched.
 class PhotonScattering
 {
 public:
