@@ -322,7 +322,7 @@ PhotonLight PhotonMarcher::Implementation::March(
   }
   if (this->Scattering)
   {
-    this->Scattering->AddTo(result, photons, packed, numbers, OfPart(monitor, 0.05, 1.0));
+    this->Scattering->AddTo(result, packed, numbers, OfPart(monitor, 0.05, 1.0));
   }
   else if (settings.maximumOrders != 1)
   {

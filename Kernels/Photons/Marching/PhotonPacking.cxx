@@ -302,4 +302,22 @@ PackedPhotons Pack(
   Fill(packed, photons, met, order);
   return packed;
 }
+
+PackedPhotons OneChannel(const PackedPhotons& packed, int channel, double colour, double larger)
+{
+  PackedPhotons one;
+  one.unit = packed.unit * larger;
+  one.numbers = packed.numbers;
+  one.batchBegin = packed.batchBegin;
+  one.values.reserve(packed.Count() * 7);
+  const auto each = static_cast<std::ptrdiff_t>(packed.FloatsEach());
+  for (auto from = packed.values.begin(); from != packed.values.end(); from += each)
+  {
+    one.values.insert(one.values.end(), from, from + 6);
+    one.values.push_back(static_cast<float>(from[6 + channel] * (colour / larger)));
+    // Not rounded to units: photons of one power would all round alike.
+    one.entered[0] += one.unit * one.values.back();
+  }
+  return one;
+}
 }

@@ -40,6 +40,12 @@ int BatchesOf(const std::vector<Photon>& photons);
 PackedPhotons Pack(
   const std::vector<Photon>& photons, const Grid& grid, bool coloured, double depositsAtMost, bool batches = false);
 
+/// The same photons in one channel.
+/// @param channel  of those that are packed
+/// @param colour   what a unit of its power is in the channel that is wanted
+/// @param larger   a power of two: the new unit over the old one
+PackedPhotons OneChannel(const PackedPhotons& packed, int channel, double colour, double larger);
+
 /// Whole units of power: their sums do not depend on the order of their terms.
 inline std::int64_t WholeUnits(float power)
 {

@@ -11,13 +11,13 @@
 
 #include <algorithm>
 #include <cmath>
+#include <utility>
 
 namespace tyndall
 {
 namespace
 {
-constexpr int Block = 16;                 ///< photons that a work-item takes one after the other
-constexpr double DepositsPerEvent = 4096; ///< of a photon, for the unit of the sums: it may come back to a voxel
+constexpr int Block = 16; ///< photons that a work-item takes one after the other
 constexpr double SecondsPerLaunch = 0.1;
 
 /// Scattering and absorption over a diagonal, of the padded grid; 0 in the padding.
@@ -87,13 +87,12 @@ PhotonScattering::PhotonScattering(const MarchMedium& through, const Medium& med
 {
 }
 
-ScatteredPhotons PhotonScattering::Follow(
-  const std::vector<Photon>& photons, const Settings& settings, const Monitor& monitor)
+ScatteredPhotons PhotonScattering::Follow(PackedPhotons photons, const Settings& settings, const Monitor& monitor)
 {
   Device& device = this->Through.device;
   Work work;
   work.settings = settings;
-  work.packed = Pack(photons, this->Through.grid, false, DepositsPerEvent * this->Through.EventLimit());
+  work.packed = std::move(photons);
   work.numbers = this->Through.settings.meanDirection ? 4 : 1;
   const std::size_t records = this->Through.PaddedCount();
   work.shares = ShareSums(this->Through, records, work.numbers, 1, 0);
@@ -109,12 +108,7 @@ ScatteredPhotons PhotonScattering::Follow(
     records * static_cast<std::size_t>(work.numbers) * static_cast<std::size_t>(work.shares.copies),
     "sums of the photons' light");
   work.sums.Fill(0);
-  // Not rounded to units, as packed.entered is: what leaves is not, and photons of one power would all round alike.
-  const auto floats = static_cast<std::size_t>(work.packed.FloatsEach());
-  for (std::size_t i = 0; i < work.packed.Count(); ++i)
-  {
-    work.found.entered += work.packed.unit * work.packed.values[(i + 1) * floats - 1];
-  }
+  work.found.entered = work.packed.entered[0];
   this->FollowAll(work, monitor);
   this->TakeLight(work);
   TakeEnds(work);

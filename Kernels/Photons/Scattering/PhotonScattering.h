@@ -41,9 +41,12 @@ public:
     int mostScatterings = 0x7fffffff; ///< that a photon goes through
     PhotonNumbers numbers;            ///< that random numbers belong to
   };
-  /// @param photons  of the same power in all channels
+  /// @param photons  of one channel, in units of DepositsPerEvent times those of uncollided light
   /// @throws DeviceError where sums do not fit; Aborted
-  ScatteredPhotons Follow(const std::vector<Photon>& photons, const Settings& settings, const Monitor& monitor);
+  ScatteredPhotons Follow(PackedPhotons photons, const Settings& settings, const Monitor& monitor);
+
+  /// Of a photon, which may come back to a voxel: power is scaled such that no sum of so many can exceed 2^62.
+  static constexpr double DepositsPerEvent = 4096.0;
 
 private:
   struct Work;

@@ -32,19 +32,6 @@ struct OneChannelMedium
   Medium seen;
 };
 
-/// Photons with the power of one channel in all of them, or the mean of them.
-std::vector<Photon> OfChannel(const std::vector<Photon>& photons, int channel, bool mean)
-{
-  std::vector<Photon> seen = photons;
-  for (Photon& photon : seen)
-  {
-    const float power = mean ? (photon.power[0] + photon.power[1] + photon.power[2]) / 3.0f
-                             : photon.power[static_cast<std::size_t>(channel)];
-    photon.power = { power, power, power };
-  }
-  return seen;
-}
-
 /// Adds one run's light, times a colour, to all channels or to one.
 void AddRun(const ScatteredPhotons& found, const Rgb& colour, PhotonLight& light)
 {
@@ -96,8 +83,8 @@ Rgb ScatteredChannels::ColourOfRun(const PackedPhotons& packed, bool oneRun, int
   return oneRun ? packed.colour : colour;
 }
 
-void ScatteredChannels::AddTo(PhotonLight& light, const std::vector<Photon>& photons, const PackedPhotons& packed,
-  const PhotonNumbers& numbers, const Monitor& monitor)
+void ScatteredChannels::AddTo(
+  PhotonLight& light, const PackedPhotons& packed, const PhotonNumbers& numbers, const Monitor& monitor)
 {
   const MarchSettings& march = this->Through.settings;
   PhotonScattering::Settings settings;
@@ -114,8 +101,10 @@ void ScatteredChannels::AddTo(PhotonLight& light, const std::vector<Photon>& pho
   {
     const double all = runs;
     const std::size_t of = this->Channels.size() == 1 ? 0 : static_cast<std::size_t>(run);
+    const double power = oneRun || packed.channels == 3 ? 1.0 : packed.colour[static_cast<std::size_t>(run)];
     const ScatteredPhotons found = this->Channels[of].photons->Follow(
-      OfChannel(photons, run, oneRun), settings, OfPart(monitor, run / all, (run + 1) / all));
+      OneChannel(packed, packed.channels == 3 ? run : 0, power, PhotonScattering::DepositsPerEvent), settings,
+      OfPart(monitor, run / all, (run + 1) / all));
     const Rgb colour = ColourOfRun(packed, oneRun, run);
     AddRun(found, colour, light);
     for (std::size_t i = 0; i < flow.size(); ++i)

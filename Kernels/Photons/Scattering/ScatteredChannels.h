@@ -20,9 +20,8 @@ public:
   bool HasColour() const { return this->Channels.size() > 1; } ///< of coefficients or of the phase function
 
   /// Adds scattered light to the uncollided light that the same photons left.
-  /// @param packed  of that light: its channels and colour
-  void AddTo(PhotonLight& light, const std::vector<Photon>& photons, const PackedPhotons& packed,
-    const PhotonNumbers& numbers, const Monitor& monitor);
+  /// @param packed  as they were marched for that
+  void AddTo(PhotonLight& light, const PackedPhotons& packed, const PhotonNumbers& numbers, const Monitor& monitor);
 
 private:
   struct Channel
