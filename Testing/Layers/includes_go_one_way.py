@@ -17,7 +17,7 @@ LAYERS = {
         ["Numerics"],
         ["Medium", "PhaseFunction", "Lights", "Light"],
         ["LightPropagation"],
-        ["DiscreteOrdinates", "Refraction"],
+        ["DiscreteOrdinates", "LatticeBoltzmann", "Refraction"],
         ["Photons"],
         ["Reconstruction", "Viewing"],
         ["Comparison"],

@@ -1,0 +1,236 @@
+// Light that diffuses on a lattice.
+
+#include "DeviceTest.h"
+#include "Difference.h"
+#include "MediumScene.h"
+
+#include "LatticeBoltzmann/LatticeBoltzmann.h"
+#include "Numerics/Constants.h"
+#include "Reference/SlabReference.h"
+
+#include <algorithm>
+#include <cmath>
+#include <numeric>
+#include <string>
+#include <vector>
+
+using namespace tyndall;
+
+class LatticeBoltzmann : public DeviceTest
+{
+protected:
+  LightField Solve(Scene& scene, const LatticeSettings& settings = {}, const std::vector<float>& ior = {})
+  {
+    scene.Attach();
+    return SolveLatticeBoltzmann(
+      this->GetDevice(), scene.medium, { ior.empty() ? nullptr : ior.data(), 1 }, scene.light, settings);
+  }
+
+  /// Variance of the place of a pulse's light along each axis and along the diagonal of x and y, after some steps.
+  std::array<double, 4> SpreadOfPulse(int directions, double thickness, int steps)
+  {
+    constexpr int Edge = 35, Middle = Edge / 2;
+    Scene scene({ Edge, Edge, Edge }, 0.0f, static_cast<float>(thickness));
+    // A source that shines evenly: its light's variance is the mean over the time since it began.
+    scene.emission.assign(scene.sigma_s.size(), 0.0f);
+    scene.emission[(Middle * Edge + Middle) * Edge + Middle] = 1.0f;
+    LatticeSettings settings;
+    settings.directions = directions;
+    settings.maximumSteps = steps;
+    const LightField light = this->Solve(scene, settings);
+    std::array<double, 4> square = {};
+    double all = 0.0;
+    for (std::size_t i = 0; i < light.fluence.size(); ++i)
+    {
+      const double x = static_cast<int>(i % Edge) - Middle, y = static_cast<int>(i / Edge % Edge) - Middle,
+                   z = static_cast<int>(i / Edge / Edge) - Middle;
+      all += light.fluence[i];
+      const double places[4] = { x, y, z, std::sqrt(0.5) * (x + y) };
+      for (int a = 0; a < 4; ++a)
+      {
+        square[a] += light.fluence[i] * places[a] * places[a];
+      }
+    }
+    for (double& sum : square)
+    {
+      sum /= all;
+    }
+    return square;
+  }
+};
+
+/// Light that began at times 0 to T has spread by D T in the mean, along each axis: 2 D t averaged. A step takes as long
+/// as light needs for an edge.
+TEST_F(LatticeBoltzmann, SpreadsAsDiffusionSays)
+{
+  for (const int directions : { 6, 18 })
+  {
+    for (const double thickness : { 0.7, 4.0, 12.0 })
+    {
+      const double diffusion = 1.0 / (3.0 * thickness);
+      const int third = std::max(static_cast<int>(1.5 / diffusion), 6);
+      std::array<std::array<double, 4>, 3> spread;
+      for (int part = 0; part < 3; ++part)
+      {
+        spread[part] = this->SpreadOfPulse(directions, thickness, (part + 1) * third);
+      }
+      for (int a = 0; a < 4; ++a)
+      {
+        // Variance times time is D T^2, less what light lacked before it was scattered, in proportion to T.
+        const double grows = third * (3.0 * spread[2][a] - 4.0 * spread[1][a] + spread[0][a]);
+        EXPECT_NEAR(grows / (2.0 * diffusion * third * third), 1.0, 0.01)
+          << directions << " directions, thickness " << thickness << ", axis " << a;
+      }
+    }
+  }
+}
+
+TEST_F(LatticeBoltzmann, LeavesAFurnaceAsItIs)
+{
+  for (const int directions : { 6, 18 })
+  {
+    Scene scene({ 9, 8, 7 });
+    scene.Randomise(10.0, 4.0, 1.0, 20261123);
+    scene.ShineFromEverywhere(1.0);
+    LatticeSettings settings;
+    settings.directions = directions;
+    settings.tolerance = 1e-7;
+    const LightField light = this->Solve(scene, settings);
+    for (float fluence : light.fluence)
+    {
+      ASSERT_NEAR(fluence, 4.0 * Pi, 4.0 * Pi * 2e-5) << directions;
+    }
+    EXPECT_LT(std::abs(light.balance.leftOver[0]), 1e-5 * light.balance.entered[0]);
+  }
+}
+
+TEST_F(LatticeBoltzmann, FindsTheSquareOfTheIndexInAFurnace)
+{
+  Scene scene({ 9, 8, 7 });
+  scene.Randomise(3.0, 2.0, 1.0, 5);
+  scene.ShineFromEverywhere(1.0);
+  std::vector<float> ior;
+  for (std::size_t i = 0; i < scene.sigma_s.size(); ++i)
+  {
+    const double x = i % 9 - 4.0, y = i / 9 % 8 - 3.5, z = i / 72 - 3.0;
+    ior.push_back(std::hypot(x, y, z) < 2.6 ? 2.4f : 1.0f);
+  }
+  LatticeSettings settings;
+  settings.tolerance = 1e-7;
+  const LightField light = this->Solve(scene, settings, ior);
+  for (std::size_t i = 0; i < ior.size(); ++i)
+  {
+    ASSERT_NEAR(light.fluence[i] / (4.0 * Pi * ior[i] * ior[i]), 1.0, 1e-4) << i;
+  }
+}
+
+/// A slab of albedo 1 under diffuse light: diffusion's own transmittance, 1 / (1 + 3 tau / 4).
+TEST_F(LatticeBoltzmann, TransmitsASlabAsDiffusionDoes)
+{
+  for (const double tau : { 1.0, 4.0, 40.0 })
+  {
+    Scene scene({ 1, 1, 20 }, 0.0f, static_cast<float>(tau / 20.0));
+    scene.light.faces[4] = { 1.0, 1.0, 1.0 };
+    LatticeSettings settings;
+    settings.periodic = { true, true, false };
+    settings.tolerance = 1e-6;
+    const LightField light = this->Solve(scene, settings);
+    const double transmitted = light.facePowerOut[5][0] / light.balance.entered[0];
+    EXPECT_NEAR(transmitted * (1.0 + 0.75 * tau), 1.0, 0.02) << tau;
+    EXPECT_LT(std::abs(light.balance.leftOver[0]), 1e-4 * light.balance.entered[0]) << tau;
+  }
+}
+
+TEST_F(LatticeBoltzmann, IsPositiveAndKeepsPowerWhateverItsVoxelsAre)
+{
+  for (const double albedo : { 0.0, 0.5, 0.999, 1.0 })
+  {
+    Scene scene({ 8, 7, 9 });
+    scene.Randomise(1e4, 8.0, albedo, 20261123);
+    scene.ShineAlong({ 0.3, -0.2, -0.9 });
+    scene.ShineFromEverywhere(0.3);
+    LatticeSettings settings;
+    settings.maximumSteps = 3000;
+    const LightField light = this->Solve(scene, settings);
+    for (float fluence : light.fluence)
+    {
+      ASSERT_TRUE(std::isfinite(fluence) && fluence >= 0.0f) << albedo;
+    }
+    EXPECT_LT(light.balance.RelativeError(1), 1e-12); // what is left over closes it
+    EXPECT_GT(light.balance.leftOver[0], -1e-3 * light.balance.entered[0]) << albedo;
+    EXPECT_LT(light.balance.leftOver[0], (albedo < 0.9 ? 1e-3 : 0.5) * light.balance.entered[0]) << albedo;
+  }
+}
+
+/// A ground of albedo A under a slab that absorbs nothing: T (1 - A) / (1 - A R) of the diffuse light is lost to it.
+TEST_F(LatticeBoltzmann, GivesBackWhatTheGroundDoes)
+{
+  Scene scene({ 1, 1, 16 }, 0.0f, 0.25f);
+  scene.light.faces[5] = { 1.0, 1.0, 1.0 };
+  LatticeSettings settings;
+  settings.periodic = { true, true, false };
+  settings.tolerance = 1e-6;
+  const LightField black = this->Solve(scene, settings);
+  scene.light.faceAlbedo[4] = { 0.8, 0.8, 0.8 };
+  const LightField snow = this->Solve(scene, settings);
+  const double entered = black.balance.entered[0], through = black.facePowerOut[4][0] / entered;
+  const double back = black.facePowerOut[5][0] / entered;
+  EXPECT_NEAR(through + back, 1.0, 1e-4);
+  EXPECT_NEAR(snow.facePowerOut[4][0] / entered, 0.2 * through / (1.0 - 0.8 * back), 0.01);
+  EXPECT_LT(std::abs(snow.balance.leftOver[0]), 1e-4 * entered);
+}
+
+TEST_F(LatticeBoltzmann, IsTheSameFromEverySide)
+{
+  Scene scene({ 7, 6, 5 });
+  scene.Randomise(3.0, 2.0, 0.9, 3);
+  scene.light.faces[0] = { 1.0, 1.0, 1.0 };
+  const LightField light = this->Solve(scene);
+  // Mirrored along x, and y and z exchanged.
+  Scene turned({ 7, 5, 6 });
+  for (std::size_t i = 0; i < scene.sigma_s.size(); ++i)
+  {
+    const std::size_t x = i % 7, y = i / 7 % 6, z = i / 42, to = (y * 5 + z) * 7 + 6 - x;
+    turned.sigma_s[to] = scene.sigma_s[i];
+    turned.sigma_a[to] = scene.sigma_a[i];
+  }
+  turned.light.faces[1] = { 1.0, 1.0, 1.0 };
+  const LightField other = this->Solve(turned);
+  std::vector<float> back(light.fluence.size());
+  for (std::size_t i = 0; i < back.size(); ++i)
+  {
+    const std::size_t x = i % 7, y = i / 7 % 6, z = i / 42;
+    back[i] = other.fluence[(y * 5 + z) * 7 + 6 - x];
+  }
+  EXPECT_LT(RelativeDifference(back, light.fluence), 1e-5);
+}
+
+TEST_F(LatticeBoltzmann, TakesUncollidedLightOfAnotherSolver)
+{
+  Scene scene({ 8, 7, 9 }, 0.05f, 0.6f);
+  scene.ShineAlong({ 0.3, -0.2, -0.9 });
+  const LightField own = this->Solve(scene);
+  Scene again = scene;
+  again.light = {};
+  again.light.uncollided.fluence = { own.fluenceDirect.data(), own.channels };
+  const LightField given = this->Solve(again);
+  EXPECT_LT(RelativeDifference(given.fluence, own.fluence), 1e-6);
+}
+
+TEST_F(LatticeBoltzmann, RefusesWhatItCannotDo)
+{
+  Scene scene({ 3, 3, 3 }, 0.1f, 1.0f);
+  LatticeSettings settings;
+  settings.directions = 26;
+  EXPECT_THROW(this->Solve(scene, settings), InvalidInput);
+  scene.medium.grid.spacing = { 1.0, 1.0, 2.0 };
+  try
+  {
+    this->Solve(scene);
+    FAIL() << "voxels that are no cubes";
+  }
+  catch (const InvalidInput& refused)
+  {
+    EXPECT_NE(std::string(refused.what()).find("cubes"), std::string::npos);
+  }
+}
