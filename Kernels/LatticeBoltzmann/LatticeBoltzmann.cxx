@@ -88,6 +88,16 @@ Uncollided FindUncollided(
   return found;
 }
 
+constexpr int Ways[18][3] = { { 1, 0, 0 }, { -1, 0, 0 }, { 0, 1, 0 }, { 0, -1, 0 }, { 0, 0, 1 }, { 0, 0, -1 },
+  { 1, 1, 0 }, { -1, -1, 0 }, { 1, -1, 0 }, { -1, 1, 0 }, { 1, 0, 1 }, { -1, 0, -1 }, { 1, 0, -1 }, { -1, 0, 1 },
+  { 0, 1, 1 }, { 0, -1, -1 }, { 0, 1, -1 }, { 0, -1, 1 } }; // as LatticeStep.cl has them
+constexpr int Width = 16;                                   ///< of the kernel's vectors
+
+float WeightOf(int directions, int i)
+{
+  return directions == 6 ? 1.0f / 6.0f : i < 6 ? 1.0f / 12.0f : 1.0f / 24.0f;
+}
+
 /// The lattice of one channel, and its state.
 class Lattice
 {
@@ -99,10 +109,16 @@ public:
   void AddTo(LightField& light);
 
 private:
+  void LayOut();
   void Load(const Field& ior);
+  void FillDensities();
   void Step(bool writes);
   double Change();
   std::vector<float> Leaving(const Buffer<float>& densities, const LatticeInfo& info);
+
+  /// A value of each place of the lattice: inside(voxel), or outside(face, nearest voxel).
+  template <class Inside, class Outside>
+  std::vector<float> Arrange(const Inside& inside, const Outside& outside) const;
 
   Device& TheDevice;
   const PropagationProblem& Problem;
@@ -110,16 +126,16 @@ private:
   const UncollidedImage& Direct;
   int Channel;
   double Edge;
-  bool Bends = false;
+  bool Bends = false, PassesAll = true, Reflects = false;
   LatticeInfo Info = {};
-  std::vector<float> Lost;   ///< part that is absorbed in a step
-  std::vector<float> Passes; ///< part that links let through
-  double Given = 0.0;        ///< above 0: something shines
-  cl::Kernel StepKernel;
-  Buffer<float> Passing, Turning, Absorbing, Squared, Source, Fluence;
+  std::array<float, 6> Incoming = {}; ///< W / length^2: fluence of the diffuse light outside -x, +x, ... +z
+  std::vector<float> Lost;            ///< part that is absorbed in a step
+  std::vector<float> Passes;          ///< part that links let through
+  double Given = 0.0;                 ///< above 0: something shines
+  cl::Kernel StepKernel, Wrap;
+  Buffer<float> Resistance, Turning, Kept, Squared, Albedo, Source, Fluence;
   Buffer<float> Densities[2];
   std::vector<float> Last; ///< fluence when it was looked at last
-  RestOfOrders Rest;
   double LastChange = 0.0;
   std::vector<ConvergenceRow> Rows;
   double Start = ClockSeconds();
@@ -134,34 +150,73 @@ Lattice::Lattice(Device& device, const PropagationProblem& problem, const Field&
   , Channel(channel)
   , Edge(problem.TheGrid().spacing[0])
 {
-  const Grid& grid = problem.TheGrid();
-  const std::size_t voxels = grid.VoxelCount();
-  this->Info.stride = voxels;
-  for (int a = 0; a < 3; ++a)
-  {
-    this->Info.size[a] = grid.size[a];
-    this->Info.periodic[a] = settings.periodic[a];
-  }
+  const std::size_t voxels = problem.TheGrid().VoxelCount();
   for (std::size_t face = 0; face < 6; ++face)
   {
     const Illumination& shining = problem.Shining();
     const auto c = static_cast<std::size_t>(channel);
     const double radiance = shining.sky[c] + shining.faces[face][c];
-    this->Info.incoming[face] = static_cast<float>(4.0 * Pi * radiance);
+    this->Incoming[face] = static_cast<float>(4.0 * Pi * radiance);
     this->Info.albedo[face] = static_cast<float>(shining.faceAlbedo[face][c]);
+    this->Reflects = this->Reflects || this->Info.albedo[face] > 0.0f;
     this->Given += radiance;
   }
+  this->LayOut();
   this->Load(ior);
-  for (Buffer<float>& densities : this->Densities)
-  {
-    densities = Buffer<float>(device, voxels * static_cast<std::size_t>(settings.directions), "photon density");
-    densities.Fill(0.0f);
-  }
+  this->FillDensities();
   this->Fluence = Buffer<float>(device, voxels, "fluence");
   this->Fluence.Fill(0.0f);
   this->Last.assign(voxels, 0.0f);
-  this->StepKernel = device.Kernel("step_lattice", kernel_source::LatticeStep,
-    Define("DIRECTIONS", settings.directions) + Define("BENDS", this->Bends));
+  const std::string options = Define("DIRECTIONS", settings.directions) + Define("BENDS", this->Bends) +
+    Define("PASSES_ALL", this->PassesAll) + Define("REFLECTS", this->Reflects);
+  this->StepKernel = device.Kernel("step_lattice", kernel_source::LatticeStep, options);
+  this->Wrap = device.Kernel("wrap_lattice", kernel_source::LatticeStep, options);
+}
+
+void Lattice::LayOut()
+{
+  const std::array<int, 3>& size = this->Problem.TheGrid().size;
+  std::copy(size.begin(), size.end(), this->Info.size);
+  this->Info.row = size[0] + 2;
+  this->Info.layer = this->Info.row * (size[1] + 2);
+  for (int i = 0; i < 18; ++i)
+  {
+    this->Info.offset[i] = Ways[i][0] + Ways[i][1] * this->Info.row + Ways[i][2] * this->Info.layer;
+  }
+  // Vectors that begin in the last row may be read whole.
+  this->Info.stride = static_cast<cl_ulong>(this->Info.layer) * (size[2] + 2) + Width;
+}
+
+template <class Inside, class Outside>
+std::vector<float> Lattice::Arrange(const Inside& inside, const Outside& outside) const
+{
+  const std::array<int, 3>& size = this->Problem.TheGrid().size;
+  std::vector<float> values(this->Info.stride, 0.0f);
+  std::array<int, 3> at;
+  for (at[2] = -1; at[2] <= size[2]; ++at[2])
+  {
+    for (at[1] = -1; at[1] <= size[1]; ++at[1])
+    {
+      for (at[0] = -1; at[0] <= size[0]; ++at[0])
+      {
+        int face = -1;
+        std::array<int, 3> near = at;
+        for (int a = 0; a < 3; ++a)
+        {
+          const bool beyond = at[a] < 0 || at[a] >= size[a];
+          face = face < 0 && beyond && !this->Settings.periodic[a] ? 2 * a + (at[a] < 0 ? 0 : 1) : face;
+          near[a] = !beyond              ? at[a]
+            : this->Settings.periodic[a] ? (at[a] + size[a]) % size[a]
+                                         : std::clamp(at[a], 0, size[a] - 1);
+        }
+        const std::size_t voxel = (static_cast<std::size_t>(near[2]) * size[1] + near[1]) * size[0] + near[0];
+        const std::size_t place = static_cast<std::size_t>(at[2] + 1) * this->Info.layer +
+          static_cast<std::size_t>(at[1] + 1) * this->Info.row + static_cast<std::size_t>(at[0] + 1);
+        values[place] = face < 0 ? inside(voxel) : outside(face, voxel);
+      }
+    }
+  }
+  return values;
 }
 
 /// What voxels do to light, by their transport extinction over an edge, s (numerics.md, Eqs. (L2) to (L5)).
@@ -170,35 +225,83 @@ void Lattice::Load(const Field& ior)
   const Medium& medium = this->Problem.TheMedium();
   std::vector<float> turning, squared, source;
   const double squares = this->Settings.directions == 6 ? 1.0 / 3.0 : 0.5; // of the links' ways, along an axis
+  const double most = 2.0 / (3.0 * squares); // thickness of which every collision is even, and links pass all
   for (std::size_t i = 0; i < medium.grid.VoxelCount(); ++i)
   {
     const double s = this->Edge * medium.TransportSigmaT(i, this->Channel);
-    const double most = 2.0 / (3.0 * squares); // thickness of which every collision is even, and links pass all
     turning.push_back(static_cast<float>(s > 0.0 ? std::min(1.0, 1.0 / (0.5 + 0.5 * most / s)) : 0.0));
     this->Passes.push_back(static_cast<float>(s > most ? most / s : 1.0));
-    const double absorbed = this->Edge * medium.sigma_a.At(i, this->Channel);
-    this->Lost.push_back(static_cast<float>(-std::expm1(-absorbed)));
-    const double given = this->Edge *
+    this->PassesAll = this->PassesAll && this->Passes.back() == 1.0f;
+    this->Lost.push_back(static_cast<float>(-std::expm1(-this->Edge * medium.sigma_a.At(i, this->Channel))));
+    source.push_back(static_cast<float>(this->Edge *
       (medium.sigma_s.At(i, this->Channel) * this->Direct.fluence.At(i, this->Channel) +
-        4.0 * Pi * medium.emission.At(i, this->Channel));
-    source.push_back(static_cast<float>(given));
-    this->Given += given;
+        4.0 * Pi * medium.emission.At(i, this->Channel))));
+    this->Given += source.back();
     squared.push_back(ior.values ? ior.At(i, 0) * ior.At(i, 0) : 1.0f);
     this->Bends = this->Bends || squared.back() != squared.front();
   }
-  this->Passing = Buffer<float>(this->TheDevice, this->Passes, "how links pass light");
-  this->Turning = Buffer<float>(this->TheDevice, turning, "how voxels scatter");
-  this->Absorbing = Buffer<float>(this->TheDevice, this->Lost, "how voxels absorb");
-  this->Squared = Buffer<float>(this->TheDevice, this->Bends ? squared : std::vector<float>(), "n^2");
-  this->Source = Buffer<float>(this->TheDevice, source, "sources");
+  const auto arranged = [&](const std::vector<float>& values, float beyond, const char* what) {
+    return Buffer<float>(this->TheDevice,
+      this->Arrange([&](std::size_t voxel) { return values[voxel]; }, [&](int, std::size_t) { return beyond; }), what);
+  };
+  this->Turning = arranged(turning, 0.0f, "how voxels scatter");
+  this->Source = arranged(source, 0.0f, "sources");
+  this->Kept = Buffer<float>(this->TheDevice,
+    this->Arrange([&](std::size_t voxel) { return 1.0f - this->Lost[voxel]; }, [](int, std::size_t) { return 1.0f; }),
+    "how voxels absorb");
+  this->Resistance = Buffer<float>(this->TheDevice,
+    this->Arrange([&](std::size_t voxel) { return 1.0f / this->Passes[voxel]; }, [](int, std::size_t) { return 1.0f; }),
+    "how links pass light");
+  if (this->Bends) // outside, the index is that of the voxels there
+  {
+    const auto at = [&](std::size_t voxel) { return squared[voxel]; };
+    this->Squared =
+      Buffer<float>(this->TheDevice, this->Arrange(at, [&](int, std::size_t voxel) { return squared[voxel]; }), "n^2");
+  }
+  if (this->Reflects)
+  {
+    this->Albedo = Buffer<float>(this->TheDevice,
+      this->Arrange([](std::size_t) { return 0.0f; }, [&](int face, std::size_t) { return this->Info.albedo[face]; }),
+      "the faces' albedo");
+  }
+}
+
+/// Dark, but for what comes in from outside.
+void Lattice::FillDensities()
+{
+  const std::vector<float> incoming = this->Arrange([](std::size_t) { return 0.0f; },
+    [&](int face, std::size_t) { return this->Incoming[static_cast<std::size_t>(face)]; });
+  std::vector<float> densities;
+  for (int i = 0; i < this->Settings.directions; ++i)
+  {
+    for (float fluence : incoming)
+    {
+      densities.push_back(WeightOf(this->Settings.directions, i) * fluence);
+    }
+  }
+  this->Densities[0] = Buffer<float>(this->TheDevice, densities, "photon density");
+  this->Densities[1] = Buffer<float>(this->TheDevice, densities, "photon density");
 }
 
 void Lattice::Step(bool writes)
 {
-  With(this->StepKernel, this->Info, this->Passing, this->Turning, this->Absorbing, this->Squared, this->Source,
-    this->Densities[0], this->Densities[1], this->Fluence, cl_int(writes));
   const std::array<int, 3>& size = this->Problem.TheGrid().size;
-  this->TheDevice.Queue().enqueueNDRangeKernel(this->StepKernel, cl::NullRange, cl::NDRange(size[0], size[1], size[2]));
+  const int steps[3] = { 1, this->Info.row, this->Info.layer };
+  cl::CommandQueue& queue = this->TheDevice.Queue();
+  for (int a = 0; a < 3; ++a)
+  {
+    if (this->Settings.periodic[a])
+    {
+      const int u = (a + 1) % 3, v = (a + 2) % 3;
+      With(this->Wrap, this->Densities[0], this->Info.stride, cl_int(steps[u]), cl_int(steps[v]), cl_int(steps[a]),
+        cl_int(size[a]));
+      queue.enqueueNDRangeKernel(
+        this->Wrap, cl::NullRange, cl::NDRange(size[u] + 2, size[v] + 2, this->Settings.directions));
+    }
+  }
+  With(this->StepKernel, this->Info, this->Resistance, this->Turning, this->Kept, this->Squared, this->Albedo,
+    this->Source, this->Densities[0], this->Densities[1], this->Fluence, cl_int(writes));
+  queue.enqueueNDRangeKernel(this->StepKernel, cl::NullRange, cl::NDRange(size[1], size[2]));
   std::swap(this->Densities[0], this->Densities[1]);
 }
 
@@ -250,9 +353,11 @@ std::vector<float> Lattice::Leaving(const Buffer<float>& densities, const Lattic
 {
   const Grid& grid = this->Problem.TheGrid();
   cl::Kernel leave = this->TheDevice.Kernel("leave_lattice", kernel_source::LatticeStep,
-    Define("DIRECTIONS", this->Settings.directions) + Define("BENDS", this->Bends));
+    Define("DIRECTIONS", this->Settings.directions) + Define("BENDS", this->Bends) +
+      Define("PASSES_ALL", this->PassesAll) + Define("REFLECTS", this->Reflects));
   const Buffer<float> leaving(this->TheDevice, 6 * grid.VoxelCount(), "light that leaves");
-  With(leave, info, this->Passing, densities, leaving);
+  const std::array<bool, 3>& periodic = this->Settings.periodic;
+  With(leave, info, this->Resistance, densities, cl_int(periodic[0] + 2 * periodic[1] + 4 * periodic[2]), leaving);
   this->TheDevice.Queue().enqueueNDRangeKernel(
     leave, cl::NullRange, cl::NDRange(grid.size[0], grid.size[1], grid.size[2]));
   return leaving.Read();
@@ -267,8 +372,8 @@ void Lattice::AddTo(LightField& light)
   const std::vector<float> through = this->Leaving(this->Densities[0], this->Info);
   for (int i = 0; i < this->Settings.directions; ++i)
   {
-    const float weight = this->Settings.directions == 6 ? 1.0f / 6.0f : i < 6 ? 1.0f / 12.0f : 1.0f / 24.0f;
-    this->Densities[1].Fill(weight, static_cast<std::size_t>(i) * voxels, voxels);
+    this->Densities[1].Fill(
+      WeightOf(this->Settings.directions, i), static_cast<std::size_t>(i) * this->Info.stride, this->Info.stride);
   }
   LatticeInfo black = this->Info;
   std::fill_n(black.albedo, 6, 0.0f);
@@ -293,7 +398,7 @@ void Lattice::AddTo(LightField& light)
     for (std::size_t i = 0; i < voxels; ++i)
     {
       // Of what comes in through links that give back a part, that leaves at once.
-      const double entering = area * this->Info.incoming[face] * inwards[face * voxels + i];
+      const double entering = area * this->Incoming[face] * inwards[face * voxels + i];
       const double passed = 2.0 * this->Passes[i] / (this->Passes[i] + 1.0);
       power += area * through[face * voxels + i] + entering * (1.0 / passed - 1.0);
       before += entering / passed;

@@ -59,8 +59,8 @@ protected:
   }
 };
 
-/// Light that began at times 0 to T has spread by D T in the mean, along each axis: 2 D t averaged. A step takes as long
-/// as light needs for an edge.
+/// Light that began at times 0 to T has spread by D T in the mean, along each axis: 2 D t averaged. A step takes as
+/// long as light needs for an edge.
 TEST_F(LatticeBoltzmann, SpreadsAsDiffusionSays)
 {
   for (const int directions : { 6, 18 })
