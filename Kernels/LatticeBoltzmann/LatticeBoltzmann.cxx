@@ -115,6 +115,7 @@ private:
   void Step(bool writes);
   double Change();
   std::vector<float> Leaving(const Buffer<float>& densities, const LatticeInfo& info);
+  void CountFaces(LightField& light, double& entered);
 
   /// A value of each place of the lattice: inside(voxel), or outside(face, nearest voxel).
   template <class Inside, class Outside>
@@ -363,11 +364,11 @@ std::vector<float> Lattice::Leaving(const Buffer<float>& densities, const Lattic
   return leaving.Read();
 }
 
-/// Scattered light beside the uncollided one, and where all power went.
-void Lattice::AddTo(LightField& light)
+/// W that leaves and comes in through the faces.
+void Lattice::CountFaces(LightField& light, double& entered)
 {
-  const Medium& medium = this->Problem.TheMedium();
-  const std::size_t voxels = medium.grid.VoxelCount();
+  const std::size_t voxels = this->Problem.TheGrid().VoxelCount();
+  const std::size_t c = static_cast<std::size_t>(this->Channel);
   const double area = this->Edge * this->Edge;
   const std::vector<float> through = this->Leaving(this->Densities[0], this->Info);
   for (int i = 0; i < this->Settings.directions; ++i)
@@ -378,9 +379,32 @@ void Lattice::AddTo(LightField& light)
   LatticeInfo black = this->Info;
   std::fill_n(black.albedo, 6, 0.0f);
   const std::vector<float> inwards = this->Leaving(this->Densities[1], black); // of fluence 1 outside, the same way
+  for (std::size_t face = 0; face < 6; ++face)
+  {
+    double power = this->Direct.escaped[face][c];
+    entered += this->Direct.escaped[face][c];
+    for (std::size_t i = 0; i < voxels; ++i)
+    {
+      // Of what comes in through links that give back a part, that leaves at once.
+      const double entering = area * this->Incoming[face] * inwards[face * voxels + i];
+      const double passed = 2.0 * this->Passes[i] / (this->Passes[i] + 1.0);
+      power += area * through[face * voxels + i] + entering * (1.0 / passed - 1.0);
+      entered += entering / passed;
+    }
+    light.facePowerOut[face][c] = power;
+    light.balance.escaped[c] += power;
+  }
+}
+
+/// Scattered light beside the uncollided one, and where all power went.
+void Lattice::AddTo(LightField& light)
+{
+  const Medium& medium = this->Problem.TheMedium();
   const std::size_t c = static_cast<std::size_t>(this->Channel);
-  double absorbed = 0.0, escaped = 0.0, before = 0.0, emitted = 0.0;
-  for (std::size_t i = 0; i < voxels; ++i)
+  const double area = this->Edge * this->Edge;
+  double entered = 0.0;
+  EnergyBalance& balance = light.balance;
+  for (std::size_t i = 0; i < medium.grid.VoxelCount(); ++i)
   {
     const double tau = this->Edge * medium.sigma_a.At(i, this->Channel);
     const double direct = this->Direct.fluence.At(i, this->Channel);
@@ -388,33 +412,17 @@ void Lattice::AddTo(LightField& light)
     const double mean = tau > 1e-6 ? this->Lost[i] / tau : 1.0;
     light.fluence[i * light.channels + c] = static_cast<float>(direct + mean * this->Last[i]);
     light.fluenceDirect[i * light.channels + c] = static_cast<float>(direct);
-    absorbed += area * (this->Lost[i] * static_cast<double>(this->Last[i]) + tau * direct);
-    before += area * this->Edge * direct * (medium.sigma_a.At(i, this->Channel) + medium.sigma_s.At(i, this->Channel));
-    emitted += area * this->Edge * 4.0 * Pi * medium.emission.At(i, this->Channel);
+    balance.absorbed[c] += area * (this->Lost[i] * static_cast<double>(this->Last[i]) + tau * direct);
+    balance.emitted[c] += area * this->Edge * 4.0 * Pi * medium.emission.At(i, this->Channel);
+    entered += area * direct * (tau + this->Edge * medium.sigma_s.At(i, this->Channel));
   }
-  for (std::size_t face = 0; face < 6; ++face)
-  {
-    double power = 0.0;
-    for (std::size_t i = 0; i < voxels; ++i)
-    {
-      // Of what comes in through links that give back a part, that leaves at once.
-      const double entering = area * this->Incoming[face] * inwards[face * voxels + i];
-      const double passed = 2.0 * this->Passes[i] / (this->Passes[i] + 1.0);
-      power += area * through[face * voxels + i] + entering * (1.0 / passed - 1.0);
-      before += entering / passed;
-    }
-    light.facePowerOut[face][c] = power + this->Direct.escaped[face][c];
-    before += this->Direct.escaped[face][c];
-    escaped += light.facePowerOut[face][c];
-  }
-  light.balance.entered[c] = before;
-  light.balance.emitted[c] = emitted;
-  light.balance.absorbed[c] = absorbed;
-  light.balance.escaped[c] = escaped;
-  light.balance.leftOver[c] = before + emitted - absorbed - escaped; // what densities still gain in a step
+  this->CountFaces(light, entered);
+  balance.entered[c] = entered;
+  // What densities still gain in a step.
+  balance.leftOver[c] = entered + balance.emitted[c] - balance.absorbed[c] - balance.escaped[c];
+  light.convergence.resize(std::max(light.convergence.size(), this->Rows.size()));
   for (std::size_t row = 0; row < this->Rows.size(); ++row)
   {
-    light.convergence.resize(std::max(light.convergence.size(), row + 1));
     ConvergenceRow& sum = light.convergence[row];
     sum.iteration = this->Rows[row].iteration;
     sum.seconds += this->Rows[row].seconds;

@@ -27,7 +27,7 @@ void Check(const LatticeSettings& settings);
 /// Lattice-Boltzmann lighting (Geist et al. 2004; Bernabei et al., section III-C; numerics.md, section 10 c): photon
 /// density in each voxel along its links to neighbours, which collides there and moves on, until it is steady.
 /// Uncollided light is that of the illumination's image (UncollidedImage), or else that of lamps and environment, found
-/// along the maps' rays; what is scattered of it, what the medium emits, and the diffuse light of sky and faces diffuse.
+/// along the maps' rays; what is scattered of it, what the medium emits, and the light of sky and faces diffuse.
 ///
 /// Collisions are scaled so that densities are positive and power is kept for any optical thickness of a voxel: where
 /// it is above 4/3 mean free paths, links give back a part. Light that crosses into a lower refractive index goes back
