@@ -7,6 +7,7 @@
 #include "../Kernels/PhotonScene.h"
 
 #include "DiscreteOrdinates/DiscreteOrdinates.h"
+#include "LatticeBoltzmann/LatticeBoltzmann.h"
 #include "LightPropagation/Conservative/ConservativePropagation.h"
 
 #include <algorithm>
@@ -123,6 +124,8 @@ void CompareOne(const PhotonBench& bench, Table& table, double index, double tau
       [&] { return SolveConservative(bench.device, medium, given, PropagationSettings()); } },
     { "ordinates, photons' light handed on",
       [&] { return SolveDiscreteOrdinates(bench.device, medium, given, OrdinatesSettings()); } },
+    { "lattice, photons' light handed on",
+      [&] { return SolveLatticeBoltzmann(bench.device, medium, scene.Index(), given, LatticeSettings()); } },
     { "maps, straight light of their own",
       [&] { return SolveConservative(bench.device, medium, sun, PropagationSettings()); } },
   };
