@@ -1,17 +1,16 @@
 #include "LatticeBoltzmann/LatticeBoltzmann.h"
 
-#include "Device/Buffer.h"
+#include "Device/Batches.h"
 #include "Device/Clock.h"
-#include "Device/Defines.h"
 #include "Device/Errors.h"
-#include "LatticeBoltzmann/LatticeShared.h"
+#include "LatticeBoltzmann/Lattice.h"
+#include "LatticeBoltzmann/SteadyLattice.h"
 #include "Light/LeftOut.h"
 #include "LightPropagation/Conservative/ConservativePropagation.h"
 #include "LightPropagation/Convergence.h"
 #include "LightPropagation/Problem/PropagationProblem.h"
 #include "Numerics/Constants.h"
 #include "Numerics/NumberText.h"
-#include "TyndallKernelSources.h"
 
 #include <algorithm>
 #include <cmath>
@@ -24,7 +23,7 @@ namespace tyndall
 namespace
 {
 constexpr double CubesTo = 1e-3;   ///< edges of a voxel may differ by so much
-constexpr int StepsPerLook = 16;   ///< after which it is looked at how much changes
+constexpr int StepsPerLook = 16;   ///< after which it is looked at how much changes, at least
 constexpr int MostSteps = 200000;  ///< where the tolerance is not met
 constexpr double Slowest = 0.9999; ///< of changes from look to look: beyond, their rest is not known
 
@@ -38,10 +37,23 @@ void CheckCubes(const Grid& grid)
   }
 }
 
+void CheckIndex(const Field& ior, const Grid& grid)
+{
+  for (std::size_t i = 0; ior.values && i < grid.VoxelCount(); ++i)
+  {
+    if (const double n = ior.At(i, 0); !(n >= 1e-6 && n <= 1e6))
+    {
+      throw InvalidInput("The refractive index of voxel " + VoxelName(grid, i) + " is " + Text("%.6g", n) +
+        "; it must be positive (1e-6 to 1e6).");
+    }
+  }
+}
+
 PropagationSettings AsPropagation(const LatticeSettings& settings)
 {
   PropagationSettings of;
   of.periodic = settings.periodic;
+  of.netFlux = settings.netFlux;
   of.source = PropagationSource::Constant; // voxels stay cubes in slabs, too
   return of;
 }
@@ -49,9 +61,27 @@ PropagationSettings AsPropagation(const LatticeSettings& settings)
 /// Light that is not scattered, as an image and with its arrays.
 struct Uncollided
 {
-  std::vector<float> fluence;
+  std::vector<float> fluence, netFlux;
   UncollidedImage image;
 };
+
+/// Mean directions times fluence, as LightField::netFlux has it.
+std::vector<float> FluxOf(const UncollidedImage& image, const Grid& grid, int channels)
+{
+  std::vector<float> flux;
+  for (std::size_t i = 0; i < grid.VoxelCount(); ++i)
+  {
+    for (int c = 0; c < channels; ++c)
+    {
+      for (int a = 0; a < 3; ++a)
+      {
+        const float along = image.meanDirection.values ? image.meanDirection.values[3 * i + a] : 0.0f;
+        flux.push_back(along * image.fluence.At(i, c));
+      }
+    }
+  }
+  return flux;
+}
 
 /// That which is given, or else that of lamps and environment along the maps' rays. Nothing is truncated: the medium
 /// counts as scattering evenly.
@@ -62,6 +92,7 @@ Uncollided FindUncollided(
   found.image = problem.Shining().uncollided;
   if (found.image.IsThere())
   {
+    found.netFlux = settings.netFlux ? FluxOf(found.image, problem.TheGrid(), problem.Channels()) : found.netFlux;
     return found;
   }
   Medium dark = problem.TheMedium();
@@ -70,7 +101,6 @@ Uncollided FindUncollided(
   PropagationSettings once = AsPropagation(settings);
   once.source = PropagationSource::Automatic;
   once.maximumOrders = 1;
-  once.netFlux = false;
   Illumination narrow = problem.Shining(); // what is diffuse comes in on the lattice itself
   narrow.sky = {};
   narrow.faces = {};
@@ -79,347 +109,242 @@ Uncollided FindUncollided(
   {
     found.fluence.assign(problem.TheGrid().VoxelCount(), 0.0f);
     found.image.fluence = { found.fluence.data(), 1 };
+    found.netFlux = settings.netFlux ? FluxOf(found.image, problem.TheGrid(), problem.Channels()) : found.netFlux;
     return found;
   }
   LightField light = SolveConservative(device, dark, narrow, once, monitor);
   found.fluence = std::move(light.fluenceDirect);
   found.image.fluence = { found.fluence.data(), light.channels };
   found.image.escaped = light.facePowerOut;
+  for (std::size_t i = 0; settings.netFlux && i < problem.TheGrid().VoxelCount(); ++i)
+  {
+    for (int c = 0; c < problem.Channels(); ++c)
+    {
+      const float* flux = light.netFlux.data() + 3 * (i * light.channels + (light.channels > 1 ? c : 0));
+      found.netFlux.insert(found.netFlux.end(), flux, flux + 3);
+    }
+  }
   return found;
 }
 
-constexpr int Ways[18][3] = { { 1, 0, 0 }, { -1, 0, 0 }, { 0, 1, 0 }, { 0, -1, 0 }, { 0, 0, 1 }, { 0, 0, -1 },
-  { 1, 1, 0 }, { -1, -1, 0 }, { 1, -1, 0 }, { -1, 1, 0 }, { 1, 0, 1 }, { -1, 0, -1 }, { 1, 0, -1 }, { -1, 0, 1 },
-  { 0, 1, 1 }, { 0, -1, -1 }, { 0, 1, -1 }, { 0, -1, 1 } }; // as LatticeStep.cl has them
-constexpr int Width = 16;                                   ///< of the kernel's vectors
-
-float WeightOf(int directions, int i)
-{
-  return directions == 6 ? 1.0f / 6.0f : i < 6 ? 1.0f / 12.0f : 1.0f / 24.0f;
-}
-
-/// The lattice of one channel, and its state.
-class Lattice
+/// Steps until little changes, or as many as were asked for.
+class Settling
 {
 public:
-  Lattice(Device& device, const PropagationProblem& problem, const Field& ior, const LatticeSettings& settings,
-    const UncollidedImage& uncollided, int channel);
+  Settling(Device& device, Lattice& lattice, const LatticeSettings& settings)
+    : TheDevice(device)
+    , TheLattice(lattice)
+    , Settings(settings)
+  {
+  }
 
-  void Settle(const Monitor& monitor);
-  void AddTo(LightField& light);
+  /// @return fluence of the last step
+  std::vector<float> Run(const Monitor& monitor, std::vector<ConvergenceRow>& rows);
 
 private:
-  void LayOut();
-  void Load(const Field& ior);
-  void FillDensities();
-  void Step(bool writes);
   double Change();
-  std::vector<float> Leaving(const Buffer<float>& densities, const LatticeInfo& info);
-  void CountFaces(LightField& light, double& entered);
-
-  /// A value of each place of the lattice: inside(voxel), or outside(face, nearest voxel).
-  template <class Inside, class Outside>
-  std::vector<float> Arrange(const Inside& inside, const Outside& outside) const;
+  double Estimate(double change);
+  void Step(int steps, double done, const Monitor& monitor);
 
   Device& TheDevice;
-  const PropagationProblem& Problem;
+  Lattice& TheLattice;
   const LatticeSettings& Settings;
-  const UncollidedImage& Direct;
-  int Channel;
-  double Edge;
-  bool Bends = false, PassesAll = true, Reflects = false;
-  LatticeInfo Info = {};
-  std::array<float, 6> Incoming = {}; ///< W / length^2: fluence of the diffuse light outside -x, +x, ... +z
-  std::vector<float> Lost;            ///< part that is absorbed in a step
-  std::vector<float> Passes;          ///< part that links let through
-  double Given = 0.0;                 ///< above 0: something shines
-  cl::Kernel StepKernel, Wrap;
-  Buffer<float> Resistance, Turning, Kept, Squared, Albedo, Source, Fluence;
-  Buffer<float> Densities[2];
   std::vector<float> Last; ///< fluence when it was looked at last
   double LastChange = 0.0;
-  std::vector<ConvergenceRow> Rows;
-  double Start = ClockSeconds();
 };
 
-Lattice::Lattice(Device& device, const PropagationProblem& problem, const Field& ior, const LatticeSettings& settings,
-  const UncollidedImage& uncollided, int channel)
-  : TheDevice(device)
-  , Problem(problem)
-  , Settings(settings)
-  , Direct(uncollided)
-  , Channel(channel)
-  , Edge(problem.TheGrid().spacing[0])
-{
-  const std::size_t voxels = problem.TheGrid().VoxelCount();
-  for (std::size_t face = 0; face < 6; ++face)
-  {
-    const Illumination& shining = problem.Shining();
-    const auto c = static_cast<std::size_t>(channel);
-    const double radiance = shining.sky[c] + shining.faces[face][c];
-    this->Incoming[face] = static_cast<float>(4.0 * Pi * radiance);
-    this->Info.albedo[face] = static_cast<float>(shining.faceAlbedo[face][c]);
-    this->Reflects = this->Reflects || this->Info.albedo[face] > 0.0f;
-    this->Given += radiance;
-  }
-  this->LayOut();
-  this->Load(ior);
-  this->FillDensities();
-  this->Fluence = Buffer<float>(device, voxels, "fluence");
-  this->Fluence.Fill(0.0f);
-  this->Last.assign(voxels, 0.0f);
-  const std::string options = Define("DIRECTIONS", settings.directions) + Define("BENDS", this->Bends) +
-    Define("PASSES_ALL", this->PassesAll) + Define("REFLECTS", this->Reflects);
-  this->StepKernel = device.Kernel("step_lattice", kernel_source::LatticeStep, options);
-  this->Wrap = device.Kernel("wrap_lattice", kernel_source::LatticeStep, options);
-}
-
-void Lattice::LayOut()
-{
-  const std::array<int, 3>& size = this->Problem.TheGrid().size;
-  std::copy(size.begin(), size.end(), this->Info.size);
-  this->Info.row = size[0] + 2;
-  this->Info.layer = this->Info.row * (size[1] + 2);
-  for (int i = 0; i < 18; ++i)
-  {
-    this->Info.offset[i] = Ways[i][0] + Ways[i][1] * this->Info.row + Ways[i][2] * this->Info.layer;
-  }
-  // Vectors that begin in the last row may be read whole.
-  this->Info.stride = static_cast<cl_ulong>(this->Info.layer) * (size[2] + 2) + Width;
-}
-
-template <class Inside, class Outside>
-std::vector<float> Lattice::Arrange(const Inside& inside, const Outside& outside) const
-{
-  const std::array<int, 3>& size = this->Problem.TheGrid().size;
-  std::vector<float> values(this->Info.stride, 0.0f);
-  std::array<int, 3> at;
-  for (at[2] = -1; at[2] <= size[2]; ++at[2])
-  {
-    for (at[1] = -1; at[1] <= size[1]; ++at[1])
-    {
-      for (at[0] = -1; at[0] <= size[0]; ++at[0])
-      {
-        int face = -1;
-        std::array<int, 3> near = at;
-        for (int a = 0; a < 3; ++a)
-        {
-          const bool beyond = at[a] < 0 || at[a] >= size[a];
-          face = face < 0 && beyond && !this->Settings.periodic[a] ? 2 * a + (at[a] < 0 ? 0 : 1) : face;
-          near[a] = !beyond              ? at[a]
-            : this->Settings.periodic[a] ? (at[a] + size[a]) % size[a]
-                                         : std::clamp(at[a], 0, size[a] - 1);
-        }
-        const std::size_t voxel = (static_cast<std::size_t>(near[2]) * size[1] + near[1]) * size[0] + near[0];
-        const std::size_t place = static_cast<std::size_t>(at[2] + 1) * this->Info.layer +
-          static_cast<std::size_t>(at[1] + 1) * this->Info.row + static_cast<std::size_t>(at[0] + 1);
-        values[place] = face < 0 ? inside(voxel) : outside(face, voxel);
-      }
-    }
-  }
-  return values;
-}
-
-/// What voxels do to light, by their transport extinction over an edge, s (numerics.md, Eqs. (L2) to (L5)).
-void Lattice::Load(const Field& ior)
-{
-  const Medium& medium = this->Problem.TheMedium();
-  std::vector<float> turning, squared, source;
-  const double squares = this->Settings.directions == 6 ? 1.0 / 3.0 : 0.5; // of the links' ways, along an axis
-  const double most = 2.0 / (3.0 * squares); // thickness of which every collision is even, and links pass all
-  for (std::size_t i = 0; i < medium.grid.VoxelCount(); ++i)
-  {
-    const double s = this->Edge * medium.TransportSigmaT(i, this->Channel);
-    turning.push_back(static_cast<float>(s > 0.0 ? std::min(1.0, 1.0 / (0.5 + 0.5 * most / s)) : 0.0));
-    this->Passes.push_back(static_cast<float>(s > most ? most / s : 1.0));
-    this->PassesAll = this->PassesAll && this->Passes.back() == 1.0f;
-    this->Lost.push_back(static_cast<float>(-std::expm1(-this->Edge * medium.sigma_a.At(i, this->Channel))));
-    source.push_back(static_cast<float>(this->Edge *
-      (medium.sigma_s.At(i, this->Channel) * this->Direct.fluence.At(i, this->Channel) +
-        4.0 * Pi * medium.emission.At(i, this->Channel))));
-    this->Given += source.back();
-    squared.push_back(ior.values ? ior.At(i, 0) * ior.At(i, 0) : 1.0f);
-    this->Bends = this->Bends || squared.back() != squared.front();
-  }
-  const auto arranged = [&](const std::vector<float>& values, float beyond, const char* what) {
-    return Buffer<float>(this->TheDevice,
-      this->Arrange([&](std::size_t voxel) { return values[voxel]; }, [&](int, std::size_t) { return beyond; }), what);
-  };
-  this->Turning = arranged(turning, 0.0f, "how voxels scatter");
-  this->Source = arranged(source, 0.0f, "sources");
-  this->Kept = Buffer<float>(this->TheDevice,
-    this->Arrange([&](std::size_t voxel) { return 1.0f - this->Lost[voxel]; }, [](int, std::size_t) { return 1.0f; }),
-    "how voxels absorb");
-  this->Resistance = Buffer<float>(this->TheDevice,
-    this->Arrange([&](std::size_t voxel) { return 1.0f / this->Passes[voxel]; }, [](int, std::size_t) { return 1.0f; }),
-    "how links pass light");
-  if (this->Bends) // outside, the index is that of the voxels there
-  {
-    const auto at = [&](std::size_t voxel) { return squared[voxel]; };
-    this->Squared =
-      Buffer<float>(this->TheDevice, this->Arrange(at, [&](int, std::size_t voxel) { return squared[voxel]; }), "n^2");
-  }
-  if (this->Reflects)
-  {
-    this->Albedo = Buffer<float>(this->TheDevice,
-      this->Arrange([](std::size_t) { return 0.0f; }, [&](int face, std::size_t) { return this->Info.albedo[face]; }),
-      "the faces' albedo");
-  }
-}
-
-/// Dark, but for what comes in from outside.
-void Lattice::FillDensities()
-{
-  const std::vector<float> incoming = this->Arrange([](std::size_t) { return 0.0f; },
-    [&](int face, std::size_t) { return this->Incoming[static_cast<std::size_t>(face)]; });
-  std::vector<float> densities;
-  for (int i = 0; i < this->Settings.directions; ++i)
-  {
-    for (float fluence : incoming)
-    {
-      densities.push_back(WeightOf(this->Settings.directions, i) * fluence);
-    }
-  }
-  this->Densities[0] = Buffer<float>(this->TheDevice, densities, "photon density");
-  this->Densities[1] = Buffer<float>(this->TheDevice, densities, "photon density");
-}
-
-void Lattice::Step(bool writes)
-{
-  const std::array<int, 3>& size = this->Problem.TheGrid().size;
-  const int steps[3] = { 1, this->Info.row, this->Info.layer };
-  cl::CommandQueue& queue = this->TheDevice.Queue();
-  for (int a = 0; a < 3; ++a)
-  {
-    if (this->Settings.periodic[a])
-    {
-      const int u = (a + 1) % 3, v = (a + 2) % 3;
-      With(this->Wrap, this->Densities[0], this->Info.stride, cl_int(steps[u]), cl_int(steps[v]), cl_int(steps[a]),
-        cl_int(size[a]));
-      queue.enqueueNDRangeKernel(
-        this->Wrap, cl::NullRange, cl::NDRange(size[u] + 2, size[v] + 2, this->Settings.directions));
-    }
-  }
-  With(this->StepKernel, this->Info, this->Resistance, this->Turning, this->Kept, this->Squared, this->Albedo,
-    this->Source, this->Densities[0], this->Densities[1], this->Fluence, cl_int(writes));
-  queue.enqueueNDRangeKernel(this->StepKernel, cl::NullRange, cl::NDRange(size[1], size[2]));
-  std::swap(this->Densities[0], this->Densities[1]);
-}
-
 /// Of fluence since it was looked at last, relative.
-double Lattice::Change()
+double Settling::Change()
 {
-  const std::vector<float> now = this->Fluence.Read();
+  const std::vector<float> now = this->TheLattice.Fluence();
+  this->Last.resize(now.size(), 0.0f);
   double change = 0.0, all = 0.0;
   for (std::size_t i = 0; i < now.size(); ++i)
   {
     change += std::abs(static_cast<double>(now[i]) - this->Last[i]);
-    all += now[i];
+    all += std::abs(now[i]);
   }
   this->Last = now;
+  if (!std::isfinite(all))
+  {
+    throw InvalidInput(
+      "Steps as published have grown beyond all floats: sigma_t times a voxel's edge is above 1. Choose "
+      "the conservative scheme, or smaller voxels.");
+  }
   return all > 0.0 ? change / all : 0.0;
 }
 
-void Lattice::Settle(const Monitor& monitor)
+/// What is still to come, from how changes fall.
+double Settling::Estimate(double change)
 {
-  const int most = this->Settings.maximumSteps > 0 ? this->Settings.maximumSteps : MostSteps;
-  double residual = this->Given > 0.0 ? 1.0 : 0.0;
-  for (int step = 0; step < most && residual > (this->Settings.maximumSteps > 0 ? -1.0 : this->Settings.tolerance);)
+  const double ratio = this->LastChange > 0.0 ? std::min(change / this->LastChange, Slowest) : 1.0;
+  const bool compares = this->LastChange > 0.0;
+  this->LastChange = change;
+  return change == 0.0 ? 0.0 : compares ? std::min(change * ratio / (1.0 - ratio), 1.0) : 1.0;
+}
+
+/// Queued in parts of about 50 ms.
+void Settling::Step(int steps, double done, const Monitor& monitor)
+{
+  Batches batches;
+  batches.count = static_cast<std::size_t>(steps);
+  batches.whole = this->Settings.blockSize > 0 ? static_cast<std::size_t>(this->Settings.stepsPerExchange) : 1;
+  batches.first = batches.whole;
+  batches.from = batches.to = done;
+  InBatches(this->TheDevice, batches, monitor, [&](std::size_t begin, std::size_t size) {
+    this->TheLattice.Step(static_cast<int>(size), static_cast<int>(begin + size) == steps);
+  });
+}
+
+std::vector<float> Settling::Run(const Monitor& monitor, std::vector<ConvergenceRow>& rows)
+{
+  const double start = ClockSeconds();
+  const bool asked = this->Settings.maximumSteps > 0;
+  const int most = asked ? this->Settings.maximumSteps : MostSteps;
+  // A look costs about as much as a step; blocks are looked at after whole exchanges.
+  const int exchange = this->Settings.blockSize > 0 ? this->Settings.stepsPerExchange : 1;
+  const int look = (StepsPerLook + exchange - 1) / exchange * exchange;
+  double residual = 1.0, done = 0.0;
+  for (int step = 0; step < most && (asked || residual > this->Settings.tolerance);)
   {
-    const int steps = std::min(StepsPerLook, most - step);
-    for (int i = 0; i < steps; ++i)
-    {
-      this->Step(i + 1 == steps);
-    }
+    const int steps = std::min(look, most - step);
+    this->Step(steps, done, monitor);
     step += steps;
-    const double change = this->Change();
-    const double ratio = this->LastChange > 0.0 ? std::min(change / this->LastChange, Slowest) : 1.0;
-    residual = change == 0.0 ? 0.0 : this->LastChange > 0.0 ? std::min(change * ratio / (1.0 - ratio), 1.0) : 1.0;
-    this->LastChange = change;
     ConvergenceRow row;
+    row.change = this->Change();
+    residual = this->Estimate(row.change);
     row.iteration = step;
-    row.seconds = ClockSeconds() - this->Start;
+    row.seconds = ClockSeconds() - start;
     row.residual = residual;
-    row.change = change;
-    this->Rows.push_back(row);
-    const double done = this->Settings.maximumSteps > 0
+    rows.push_back(row);
+    done = asked
       ? static_cast<double>(step) / most
-      : std::clamp(std::log(std::max(residual, 1e-30)) / std::log(this->Settings.tolerance), 0.0, 1.0);
+      : std::clamp(std::log(std::max(residual, 1e-30)) / std::log(std::min(this->Settings.tolerance, 0.9)), done, 1.0);
     Report(monitor, done);
   }
+  return this->Last;
 }
 
-/// W / length^2, [face][voxel].
-std::vector<float> Lattice::Leaving(const Buffer<float>& densities, const LatticeInfo& info)
+/// One channel: solved for, and added to the light of all.
+class LatticeChannel
+{
+public:
+  LatticeChannel(Device& device, const PropagationProblem& problem, const Field& ior, const LatticeSettings& settings,
+    const Uncollided& direct, int channel)
+    : TheDevice(device)
+    , Problem(problem)
+    , Settings(settings)
+    , Direct(direct)
+    , Voxels(problem, ior, settings, direct.image, channel)
+    , Photons(device, problem.TheGrid(), settings, this->Voxels)
+    , Channel(static_cast<std::size_t>(channel))
+  {
+  }
+
+  double Thickest() const { return this->Voxels.thickest; }
+  void Solve(const Monitor& monitor);
+  void AddTo(LightField& light);
+
+private:
+  double CountVoxels(LightField& light) const;
+  double CountFaces(LightField& light);
+  void AddFlux(LightField& light);
+  void AddRows(LightField& light) const;
+
+  Device& TheDevice;
+  const PropagationProblem& Problem;
+  const LatticeSettings& Settings;
+  const Uncollided& Direct;
+  LatticeVoxels Voxels;
+  Lattice Photons;
+  std::size_t Channel;
+  std::vector<float> Fluence;
+  std::vector<ConvergenceRow> Rows;
+};
+
+void LatticeChannel::Solve(const Monitor& monitor)
 {
   const Grid& grid = this->Problem.TheGrid();
-  cl::Kernel leave = this->TheDevice.Kernel("leave_lattice", kernel_source::LatticeStep,
-    Define("DIRECTIONS", this->Settings.directions) + Define("BENDS", this->Bends) +
-      Define("PASSES_ALL", this->PassesAll) + Define("REFLECTS", this->Reflects));
-  const Buffer<float> leaving(this->TheDevice, 6 * grid.VoxelCount(), "light that leaves");
-  const std::array<bool, 3>& periodic = this->Settings.periodic;
-  With(leave, info, this->Resistance, densities, cl_int(periodic[0] + 2 * periodic[1] + 4 * periodic[2]), leaving);
-  this->TheDevice.Queue().enqueueNDRangeKernel(
-    leave, cl::NullRange, cl::NDRange(grid.size[0], grid.size[1], grid.size[2]));
-  return leaving.Read();
+  if (this->Voxels.Given() == 0.0)
+  {
+    this->Fluence.assign(grid.VoxelCount(), 0.0f);
+  }
+  else if (this->Settings.Solves())
+  {
+    SteadyLattice steady(this->TheDevice, grid, this->Settings, this->Voxels, this->Photons);
+    this->Fluence = steady.Solve(monitor, this->Rows);
+  }
+  else
+  {
+    this->Fluence = Settling(this->TheDevice, this->Photons, this->Settings).Run(monitor, this->Rows);
+  }
 }
 
-/// W that leaves and comes in through the faces.
-void Lattice::CountFaces(LightField& light, double& entered)
+/// Fluence, and what voxels absorb and emit. @return W that entered as light that collides or is absorbed
+double LatticeChannel::CountVoxels(LightField& light) const
+{
+  const Medium& medium = this->Problem.TheMedium();
+  const int channel = static_cast<int>(this->Channel);
+  const double edge = medium.grid.spacing[0], area = edge * edge;
+  double entered = 0.0;
+  for (std::size_t i = 0; i < medium.grid.VoxelCount(); ++i)
+  {
+    const double tau = edge * medium.sigma_a.At(i, channel);
+    const double direct = this->Direct.image.fluence.At(i, channel), lost = this->Voxels.lost[i];
+    // Where much is absorbed in a step, fluence is the mean over that.
+    const double mean = tau > 1e-6 ? lost / tau : 1.0;
+    light.fluence[i * light.channels + this->Channel] = static_cast<float>(direct + mean * this->Fluence[i]);
+    light.fluenceDirect[i * light.channels + this->Channel] = static_cast<float>(direct);
+    light.balance.absorbed[this->Channel] += area * (lost * this->Fluence[i] + tau * direct);
+    light.balance.emitted[this->Channel] += area * edge * 4.0 * Pi * medium.emission.At(i, channel);
+    entered += area * direct * (tau + edge * medium.sigma_s.At(i, channel));
+  }
+  return entered;
+}
+
+/// What leaves through the faces. @return W that came in through them, or left without having met anything
+double LatticeChannel::CountFaces(LightField& light)
 {
   const std::size_t voxels = this->Problem.TheGrid().VoxelCount();
-  const std::size_t c = static_cast<std::size_t>(this->Channel);
-  const double area = this->Edge * this->Edge;
-  const std::vector<float> through = this->Leaving(this->Densities[0], this->Info);
-  for (int i = 0; i < this->Settings.directions; ++i)
-  {
-    this->Densities[1].Fill(
-      WeightOf(this->Settings.directions, i), static_cast<std::size_t>(i) * this->Info.stride, this->Info.stride);
-  }
-  LatticeInfo black = this->Info;
-  std::fill_n(black.albedo, 6, 0.0f);
-  const std::vector<float> inwards = this->Leaving(this->Densities[1], black); // of fluence 1 outside, the same way
+  const double edge = this->Problem.TheGrid().spacing[0], area = edge * edge;
+  const std::vector<float> through = this->Photons.Leaving();
+  const std::vector<float> inwards = this->Photons.LeavingOfOne(); // light of fluence 1 outside comes in the same way
+  double entered = 0.0;
   for (std::size_t face = 0; face < 6; ++face)
   {
-    double power = this->Direct.escaped[face][c];
-    entered += this->Direct.escaped[face][c];
+    double power = this->Direct.image.escaped[face][this->Channel];
+    entered += power;
     for (std::size_t i = 0; i < voxels; ++i)
     {
       // Of what comes in through links that give back a part, that leaves at once.
-      const double entering = area * this->Incoming[face] * inwards[face * voxels + i];
-      const double passed = 2.0 * this->Passes[i] / (this->Passes[i] + 1.0);
+      const double squared = this->Voxels.bends ? this->Voxels.squared[i] : 1.0;
+      const double entering = area * this->Voxels.incoming[face] * squared * inwards[face * voxels + i];
+      const double passed = 2.0 * this->Voxels.passes[i] / (this->Voxels.passes[i] + 1.0);
       power += area * through[face * voxels + i] + entering * (1.0 / passed - 1.0);
       entered += entering / passed;
     }
-    light.facePowerOut[face][c] = power;
-    light.balance.escaped[c] += power;
+    light.facePowerOut[face][this->Channel] = power;
+    light.balance.escaped[this->Channel] += power;
+  }
+  return entered;
+}
+
+void LatticeChannel::AddFlux(LightField& light)
+{
+  const std::vector<float> flux = this->Photons.NetFlux();
+  const std::size_t voxels = this->Problem.TheGrid().VoxelCount();
+  for (std::size_t i = 0; i < voxels; ++i)
+  {
+    for (std::size_t a = 0; a < 3; ++a)
+    {
+      const std::size_t to = 3 * (i * light.channels + this->Channel) + a;
+      light.netFlux[to] = this->Direct.netFlux[to] + flux[a * voxels + i];
+    }
   }
 }
 
-/// Scattered light beside the uncollided one, and where all power went.
-void Lattice::AddTo(LightField& light)
+void LatticeChannel::AddRows(LightField& light) const
 {
-  const Medium& medium = this->Problem.TheMedium();
-  const std::size_t c = static_cast<std::size_t>(this->Channel);
-  const double area = this->Edge * this->Edge;
-  double entered = 0.0;
-  EnergyBalance& balance = light.balance;
-  for (std::size_t i = 0; i < medium.grid.VoxelCount(); ++i)
-  {
-    const double tau = this->Edge * medium.sigma_a.At(i, this->Channel);
-    const double direct = this->Direct.fluence.At(i, this->Channel);
-    // Where much is absorbed in a step, fluence is the mean over that.
-    const double mean = tau > 1e-6 ? this->Lost[i] / tau : 1.0;
-    light.fluence[i * light.channels + c] = static_cast<float>(direct + mean * this->Last[i]);
-    light.fluenceDirect[i * light.channels + c] = static_cast<float>(direct);
-    balance.absorbed[c] += area * (this->Lost[i] * static_cast<double>(this->Last[i]) + tau * direct);
-    balance.emitted[c] += area * this->Edge * 4.0 * Pi * medium.emission.At(i, this->Channel);
-    entered += area * direct * (tau + this->Edge * medium.sigma_s.At(i, this->Channel));
-  }
-  this->CountFaces(light, entered);
-  balance.entered[c] = entered;
-  // What densities still gain in a step.
-  balance.leftOver[c] = entered + balance.emitted[c] - balance.absorbed[c] - balance.escaped[c];
   light.convergence.resize(std::max(light.convergence.size(), this->Rows.size()));
   for (std::size_t row = 0; row < this->Rows.size(); ++row)
   {
@@ -430,56 +355,46 @@ void Lattice::AddTo(LightField& light)
     sum.change = std::max(sum.change, this->Rows[row].change);
   }
 }
+
+/// Scattered light beside the uncollided one, and where all power went.
+void LatticeChannel::AddTo(LightField& light)
+{
+  EnergyBalance& balance = light.balance;
+  const std::size_t c = this->Channel;
+  if (this->Settings.netFlux)
+  {
+    this->AddFlux(light);
+  }
+  balance.entered[c] = this->CountVoxels(light);
+  balance.entered[c] += this->CountFaces(light);
+  // What densities still gain in a step.
+  balance.leftOver[c] = balance.entered[c] + balance.emitted[c] - balance.absorbed[c] - balance.escaped[c];
+  this->AddRows(light);
 }
 
-void Check(const LatticeSettings& settings)
+/// What is said of the light beside its numbers.
+void Describe(LightField& light, const PropagationProblem& problem, const LatticeSettings& settings, double thickest)
 {
-  if (settings.directions != 6 && settings.directions != 18)
-  {
-    throw InvalidInput(
-      "A lattice of " + std::to_string(settings.directions) + " directions was asked for; there are 6 and 18.");
-  }
-  if (settings.maximumSteps < 0)
-  {
-    throw InvalidInput("MaximumSteps is " + std::to_string(settings.maximumSteps) +
-      "; give a number of steps, or 0 for as many as the tolerance needs.");
-  }
-  if (!(settings.tolerance > 0.0))
-  {
-    throw InvalidInput("Tolerance is " + std::to_string(settings.tolerance) + "; it must be positive.");
-  }
-}
-
-LightField SolveLatticeBoltzmann(Device& device, const Medium& medium, const Field& ior,
-  const Illumination& illumination, const LatticeSettings& settings, const Monitor& monitor)
-{
-  Check(settings);
-  CheckCubes(medium.grid);
-  const PropagationProblem problem(medium, illumination, AsPropagation(settings));
-  const Uncollided uncollided = FindUncollided(device, problem, settings, OfPart(monitor, 0.0, 0.1));
-  LightField light;
-  light.channels = problem.Channels();
-  light.fluence.resize(medium.grid.VoxelCount() * static_cast<std::size_t>(light.channels));
-  light.fluenceDirect = light.fluence;
-  for (int c = 0; c < light.channels; ++c)
-  {
-    Lattice lattice(device, problem, ior, settings, uncollided.image, c);
-    const double all = light.channels;
-    lattice.Settle(OfPart(monitor, 0.1 + 0.9 * c / all, 0.1 + 0.9 * (c + 1) / all));
-    lattice.AddTo(light);
-  }
-  light.scatteredRadiance.resize(light.fluence.size());
-  std::transform(light.fluence.begin(), light.fluence.end(), light.scatteredRadiance.begin(),
-    [](float fluence) { return static_cast<float>(fluence / (4.0 * Pi)); });
-  light.storedDirections = { { 0.0, 0.0, 0.0 } };
-  light.device = device.Name();
-  if (!medium.phase.IsIsotropic() && problem.Traits().scatters)
+  if (!problem.TheMedium().phase.IsIsotropic() && problem.Traits().scatters)
   {
     light.leftOut.emplace_back(
       "anisotropy: diffuses as isotropic scattering with sigma_s (1 - g) (similarity relation)");
   }
-  light.leftOut.emplace_back(left_out::NetFlux);
-  problem.Undo(light);
+  if (!settings.netFlux)
+  {
+    light.leftOut.emplace_back(left_out::NetFlux);
+  }
+  if (settings.scheme == LatticeScheme::Published && thickest > 1.0)
+  {
+    light.doubts.push_back(
+      "As published, collisions are positive only where sigma_t times a voxel's edge is at most 1; "
+      "here it is up to " +
+      Text("%.3g", thickest) + ", and light may swing and grow. Choose the conservative scheme, or smaller voxels.");
+  }
+}
+
+void Judge(LightField& light, const Illumination& illumination, const LatticeSettings& settings)
+{
   PropagationSettings judged = AsPropagation(settings);
   judged.maximumOrders = settings.maximumSteps;
   judged.tolerance = settings.tolerance;
@@ -490,6 +405,39 @@ LightField SolveLatticeBoltzmann(Device& device, const Medium& medium, const Fie
       "FaceAlbedo gives back diffuse light only, not what leaves without having been scattered.");
   }
   light.faceAlbedo = illumination.faceAlbedo;
+}
+}
+
+LightField SolveLatticeBoltzmann(Device& device, const Medium& medium, const Field& ior,
+  const Illumination& illumination, const LatticeSettings& settings, const Monitor& monitor)
+{
+  Check(settings);
+  const PropagationProblem problem(medium, illumination, AsPropagation(settings));
+  CheckCubes(medium.grid);
+  CheckIndex(ior, medium.grid);
+  const Uncollided uncollided = FindUncollided(device, problem, settings, OfPart(monitor, 0.0, 0.1));
+  LightField light;
+  light.channels = problem.Channels();
+  light.fluence.resize(medium.grid.VoxelCount() * static_cast<std::size_t>(light.channels));
+  light.fluenceDirect = light.fluence;
+  light.netFlux.resize(settings.netFlux ? 3 * light.fluence.size() : 0);
+  double thickest = 0.0;
+  for (int c = 0; c < light.channels; ++c)
+  {
+    LatticeChannel channel(device, problem, ior, settings, uncollided, c);
+    const double all = light.channels;
+    channel.Solve(OfPart(monitor, 0.1 + 0.9 * c / all, 0.1 + 0.9 * (c + 1) / all));
+    channel.AddTo(light);
+    thickest = std::max(thickest, channel.Thickest());
+  }
+  light.scatteredRadiance.resize(light.fluence.size());
+  std::transform(light.fluence.begin(), light.fluence.end(), light.scatteredRadiance.begin(),
+    [](float fluence) { return static_cast<float>(fluence / (4.0 * Pi)); });
+  light.storedDirections = { { 0.0, 0.0, 0.0 } };
+  light.device = device.Name();
+  Describe(light, problem, settings, thickest);
+  problem.Undo(light);
+  Judge(light, illumination, settings);
   return light;
 }
 }

@@ -1,7 +1,18 @@
-// Shared by C++ and the kernels of LatticeStep.cl.
+// Shared by C++ and the kernels of the lattice.
 #pragma once
 
 #include "Device/SharedTypes.h"
+
+/// Ways of the links, x, y, z; direction 2 k + 1 is opposite to 2 k.
+#define LATTICE_WAYS                                                                                                  \
+  {                                                                                                                   \
+    { 1, 0, 0 }, { -1, 0, 0 }, { 0, 1, 0 }, { 0, -1, 0 }, { 0, 0, 1 }, { 0, 0, -1 }, { 1, 1, 0 }, { -1, -1, 0 },      \
+      { 1, -1, 0 }, { -1, 1, 0 }, { 1, 0, 1 }, { -1, 0, -1 }, { 1, 0, -1 }, { -1, 0, 1 }, { 0, 1, 1 }, { 0, -1, -1 }, \
+      { 0, 1, -1 },                                                                                                   \
+    {                                                                                                                 \
+      0, -1, 1                                                                                                        \
+    }                                                                                                                 \
+  }
 
 SHARED_BEGIN
 /// A lattice in memory: voxels with one more round them, rows of `row` values, the first voxel at 1.
@@ -9,8 +20,10 @@ typedef struct
 {
   int size[3]; ///< voxels
   int row, layer;
-  int offset[18];  ///< from a voxel to the one that a direction leads to
-  float albedo[6]; ///< part of what leaves through -x, +x, ... +z that comes back
-  ulong stride;    ///< of densities, from direction to direction
+  int periodic;      ///< bits of the axes
+  int offset[18];    ///< from a voxel to the one that a direction leads to
+  float albedo[6];   ///< part of what leaves through -x, +x, ... +z that comes back
+  float incoming[6]; ///< W / length^2: fluence, over n^2, of the diffuse light outside each face
+  ulong stride;      ///< of densities, from direction to direction
 } LatticeInfo;
 SHARED_END

@@ -1,16 +1,9 @@
-// One step of photon density on a lattice (numerics.md, section 10 c). The host gives
-//   DIRECTIONS  18 or 6
-//   PASSES_ALL  1: no link gives back light, but at reflecting faces
-//   BENDS       1: the refractive index varies
-//   REFLECTS    1: a face of the box gives back light
-//
-// Densities are what leaves a voxel along each of its links, [direction][stride]; direction 2 k + 1 is opposite to 2 k.
-// Their sum is fluence, W / length^2. The voxels round the box hold what comes in.
-#include "LatticeBoltzmann/LatticeShared.h"
+// A step of photon density on a lattice (numerics.md, section 10 c), all voxels together.
+#include "LatticeBoltzmann/LatticeLink.cl"
 
 #define WIDTH 16
-#define WEIGHT(i) (DIRECTIONS == 6 ? 1.0f / 6.0f : (i) < 6 ? 1.0f / 12.0f : 1.0f / 24.0f)
-#define FOR_DIRECTIONS(i) _Pragma("unroll") for (int i = 0; i < DIRECTIONS; ++i)
+DEFINE_ARRIVING(arriving, float16)
+DEFINE_COLLIDED(collided, float16)
 
 // Of sixteen voxels beginning at `at`: to those of the row's end that are voxels.
 static void store_some(float16 values, __global float* to, ulong at, int voxels)
@@ -28,18 +21,32 @@ static void store_some(float16 values, __global float* to, ulong at, int voxels)
   }
 }
 
-// A work-item a row of voxels. Arrays are of the lattice but for fluence:
+// What the medium does in each place of the lattice:
 //   resistance  inverse of the part that links let through, as if the neighbour were alike; 1 outside
-//   turning     part of the density that collisions make even
-//   kept        part that is not absorbed in a step
-//   squared     n^2
+//   squared     n^2; 0 outside
 //   albedo      of faces, outside; 0 inside
-//   source      W / length^2 a step, that begins evenly in all directions
-//   from, to    densities before and after
-//   fluence     [voxel], written with `writes`
-__kernel void step_lattice(LatticeInfo lattice, const __global float* resistance, const __global float* turning,
-  const __global float* kept, const __global float* squared, const __global float* albedo, const __global float* source,
-  const __global float* from, __global float* to, __global float* fluence, int writes)
+#define LINKS const __global float *resistance, const __global float *squared, const __global float *albedo
+
+// What arrives along direction i in sixteen voxels beginning at `at`.
+static float16 arriving_along(LatticeInfo lattice, LINKS, const __global float* from, int i, ulong at)
+{
+  const ulong other = at - lattice.offset[i];
+  const float16 one = (float16)(1.0f), zero = (float16)(0.0f);
+  const float16 sent = vload16(0, from + i * lattice.stride + other);
+  const float16 back = PASSES_ALL && !BENDS && !REFLECTS ? zero : vload16(0, from + (i ^ 1) * lattice.stride + at);
+  return arriving(sent, back, PASSES_ALL ? one : vload16(0, resistance + at),
+    PASSES_ALL ? one : vload16(0, resistance + other), BENDS ? vload16(0, squared + at) : one,
+    BENDS ? vload16(0, squared + other) : one, REFLECTS ? vload16(0, albedo + other) : zero);
+}
+
+// A work-item a row of voxels. Arrays are of the lattice but for fluence:
+//   turning   part of the density that collisions make even
+//   kept      part that is not absorbed in a step; published: neither absorbed nor scattered
+//   source    W / length^2 a step, that begins evenly in all directions
+//   from, to  densities before and after
+//   fluence   [voxel], written with `writes`
+__kernel void step_lattice(LatticeInfo lattice, LINKS, const __global float* turning, const __global float* kept,
+  const __global float* source, const __global float* from, __global float* to, __global float* fluence, int writes)
 {
   const int y = get_global_id(0), z = get_global_id(1), nx = lattice.size[0];
   const ulong line = (ulong)(z + 1) * lattice.layer + (ulong)(y + 1) * lattice.row + 1;
@@ -48,47 +55,46 @@ __kernel void step_lattice(LatticeInfo lattice, const __global float* resistance
     const ulong at = line + x;
     const float16 half_source = 0.5f * vload16(0, source + at);
     float16 here[DIRECTIONS], sum = half_source;
-#if !PASSES_ALL
-    const float16 own = vload16(0, resistance + at);
-#endif
-#if BENDS
-    const float16 index = vload16(0, squared + at);
-#endif
     FOR_DIRECTIONS(i)
     {
-      const ulong other = at - lattice.offset[i];
-      float16 arrives = vload16(0, from + i * lattice.stride + other);
-#if !PASSES_ALL || BENDS || REFLECTS
-      const float16 back = vload16(0, from + (i ^ 1) * lattice.stride + at);
-#if PASSES_ALL
-      float16 part = (float16)(1.0f);
-#else
-      float16 part = 2.0f / (own + vload16(0, resistance + other));
-#endif
-      float16 returns = part;
-#if BENDS
-      const float16 there = vload16(0, squared + other), least = fmin(index, there);
-      part *= least / there;
-      returns *= least / index;
-#endif
-#if REFLECTS
-      returns -= returns * vload16(0, albedo + other);
-#endif
-      arrives = part * arrives + (1.0f - returns) * back;
-#endif
-      here[i] = arrives;
-      sum += arrives;
+      here[i] = arriving_along(lattice, resistance, squared, albedo, from, i, at);
+      sum += here[i];
     }
     const float16 even = vload16(0, turning + at), stays = vload16(0, kept + at);
     FOR_DIRECTIONS(i)
     {
-      const float16 before = here[i] + WEIGHT(i) * half_source;
-      const float16 after = (before + even * (WEIGHT(i) * sum - before)) * stays + WEIGHT(i) * half_source;
-      store_some(after, to + i * lattice.stride, at, nx - x);
+      const float16 own = WEIGHT(i) * half_source;
+      store_some(collided(WEIGHT(i), here[i] + own, sum, even, stays) + own, to + i * lattice.stride, at, nx - x);
     }
     if (writes)
     {
       store_some(sum, fluence, ((ulong)z * lattice.size[1] + y) * nx + x, nx - x);
+    }
+  }
+}
+
+// Net flux, W / length^2, [x, y, z][voxel]: the mean of what arrives and what leaves. A work-item a row of voxels.
+__kernel void flux_lattice(LatticeInfo lattice, LINKS, const __global float* from, __global float* flux)
+{
+  const int y = get_global_id(0), z = get_global_id(1), nx = lattice.size[0];
+  const ulong line = (ulong)(z + 1) * lattice.layer + (ulong)(y + 1) * lattice.row + 1;
+  const ulong voxels = (ulong)nx * lattice.size[1] * lattice.size[2];
+  for (int x = 0; x < nx; x += WIDTH)
+  {
+    float16 along[3] = { 0.0f, 0.0f, 0.0f };
+    FOR_DIRECTIONS(i)
+    {
+      const float16 mean = 0.5f *
+        (arriving_along(lattice, resistance, squared, albedo, from, i, line + x) +
+          vload16(0, from + i * lattice.stride + line + x));
+      for (int a = 0; a < 3; ++a)
+      {
+        along[a] += (float)Ways[i][a] * mean;
+      }
+    }
+    for (int a = 0; a < 3; ++a)
+    {
+      store_some(along[a], flux + a * voxels, ((ulong)z * lattice.size[1] + y) * nx + x, nx - x);
     }
   }
 }
@@ -104,14 +110,10 @@ __kernel void wrap_lattice(__global float* densities, ulong stride, int u, int v
   at[(ulong)(n + 1) * along] = at[along];
 }
 
-__constant char Ways[18][3] = { { 1, 0, 0 }, { -1, 0, 0 }, { 0, 1, 0 }, { 0, -1, 0 }, { 0, 0, 1 }, { 0, 0, -1 },
-  { 1, 1, 0 }, { -1, -1, 0 }, { 1, -1, 0 }, { -1, 1, 0 }, { 1, 0, 1 }, { -1, 0, -1 }, { 1, 0, -1 }, { -1, 0, 1 },
-  { 0, 1, 1 }, { 0, -1, -1 }, { 0, 1, -1 }, { 0, -1, 1 } };
-
 // W / length^2 that each voxel sends through the box's faces in the next step, [face][voxel]; a corner's light goes
 // through the first face that it meets. Periodic axes have no faces.
-__kernel void leave_lattice(LatticeInfo lattice, const __global float* resistance, const __global float* densities,
-  int periodic, __global float* leaving)
+__kernel void leave_lattice(
+  LatticeInfo lattice, const __global float* resistance, const __global float* densities, __global float* leaving)
 {
   const int at[3] = { get_global_id(0), get_global_id(1), get_global_id(2) };
   const ulong place = (ulong)(at[2] + 1) * lattice.layer + (ulong)(at[1] + 1) * lattice.row + at[0] + 1;
@@ -123,7 +125,7 @@ __kernel void leave_lattice(LatticeInfo lattice, const __global float* resistanc
     for (int a = 0; a < 3; ++a)
     {
       const int next = at[a] + Ways[i][a];
-      if (!(periodic >> a & 1) && (next < 0 || next >= lattice.size[a]))
+      if (!(lattice.periodic >> a & 1) && (next < 0 || next >= lattice.size[a]))
       {
         const int face = 2 * a + (next < 0 ? 0 : 1);
         through[face] +=

@@ -1,0 +1,288 @@
+#include "LatticeBoltzmann/Lattice.h"
+
+#include "Device/Defines.h"
+#include "Device/Sizes.h"
+#include "Numerics/Constants.h"
+#include "TyndallKernelSources.h"
+
+#include <algorithm>
+#include <cmath>
+#include <numeric>
+#include <utility>
+
+namespace tyndall
+{
+namespace
+{
+constexpr int Ways[18][3] = LATTICE_WAYS;
+constexpr int Width = 16; ///< of the vectors of LatticeStep.cl
+
+cl::NDRange WholeBlocks(const std::array<int, 3>& size, int edge)
+{
+  return { static_cast<std::size_t>(RoundUp(size[0], edge)), static_cast<std::size_t>(RoundUp(size[1], edge)),
+    static_cast<std::size_t>(RoundUp(size[2], edge)) };
+}
+}
+
+double LatticeWeight(int directions, int i)
+{
+  return directions == 6 ? 1.0 / 6.0 : i < 6 ? 1.0 / 12.0 : 1.0 / 24.0;
+}
+
+double LatticeSquares(int directions)
+{
+  return directions == 6 ? 1.0 / 3.0 : 0.5;
+}
+
+LatticeVoxels::LatticeVoxels(const PropagationProblem& problem, const Field& ior, const LatticeSettings& settings,
+  const UncollidedImage& direct, int channel)
+{
+  const Medium& medium = problem.TheMedium();
+  const double edge = medium.grid.spacing[0];
+  const bool published = settings.scheme == LatticeScheme::Published;
+  // Thickness of which every collision is even, and links pass all.
+  const double most = 2.0 / (3.0 * LatticeSquares(settings.directions));
+  for (std::size_t i = 0; i < medium.grid.VoxelCount(); ++i)
+  {
+    const double s = edge * medium.TransportSigmaT(i, channel), absorbs = edge * medium.sigma_a.At(i, channel);
+    this->thickest = std::max(this->thickest, s);
+    const double even = s > 0.0 ? std::min(1.0, 1.0 / (0.5 + 0.5 * most / s)) : 0.0;
+    this->turning.push_back(static_cast<float>(published ? s - absorbs : even));
+    this->lost.push_back(static_cast<float>(published ? absorbs : -std::expm1(-absorbs)));
+    this->kept.push_back(published ? static_cast<float>(1.0 - s) : 1.0f - this->lost.back());
+    this->passes.push_back(static_cast<float>(!published && s > most ? most / s : 1.0));
+    this->source.push_back(static_cast<float>(edge *
+      (medium.sigma_s.At(i, channel) * direct.fluence.At(i, channel) + 4.0 * Pi * medium.emission.At(i, channel))));
+    this->squared.push_back(ior.values && !published ? ior.At(i, 0) * ior.At(i, 0) : 1.0f);
+    this->passesAll = this->passesAll && this->passes.back() == 1.0f;
+    this->bends = this->bends || this->squared.back() != this->squared.front();
+  }
+  const auto c = static_cast<std::size_t>(channel);
+  const double even = this->bends ? 1.0 : this->squared.front();
+  for (std::size_t face = 0; face < 6; ++face)
+  {
+    const Illumination& shining = problem.Shining();
+    this->incoming[face] = 4.0 * Pi * (shining.sky[c] + shining.faces[face][c]) * even;
+    this->albedo[face] = shining.faceAlbedo[face][c];
+  }
+}
+
+bool LatticeVoxels::Reflects() const
+{
+  return std::any_of(this->albedo.begin(), this->albedo.end(), [](double albedo) { return albedo > 0.0; });
+}
+
+double LatticeVoxels::Given() const
+{
+  return std::accumulate(this->incoming.begin(), this->incoming.end(), 0.0) +
+    std::accumulate(this->source.begin(), this->source.end(), 0.0);
+}
+
+Lattice::Lattice(Device& device, const Grid& grid, const LatticeSettings& settings, const LatticeVoxels& voxels)
+  : TheDevice(device)
+  , Size(grid.size)
+  , Settings(settings)
+{
+  this->LayOut(voxels);
+  this->Options = Define("DIRECTIONS", settings.directions) + Define("BENDS", voxels.bends) +
+    Define("PASSES_ALL", voxels.passesAll) + Define("REFLECTS", voxels.Reflects()) +
+    Define("PUBLISHED", settings.scheme == LatticeScheme::Published);
+  this->Load(voxels);
+  this->FillDensities();
+  this->Shown = Buffer<float>(device, grid.VoxelCount(), "fluence");
+  this->Shown.Fill(0.0f);
+}
+
+void Lattice::LayOut(const LatticeVoxels& voxels)
+{
+  std::copy(this->Size.begin(), this->Size.end(), this->TheInfo.size);
+  this->TheInfo.row = this->Size[0] + 2;
+  this->TheInfo.layer = this->TheInfo.row * (this->Size[1] + 2);
+  for (int i = 0; i < 18; ++i)
+  {
+    this->TheInfo.offset[i] = Ways[i][0] + Ways[i][1] * this->TheInfo.row + Ways[i][2] * this->TheInfo.layer;
+  }
+  const std::array<bool, 3>& periodic = this->Settings.periodic;
+  this->TheInfo.periodic = periodic[0] + 2 * periodic[1] + 4 * periodic[2];
+  std::copy(voxels.albedo.begin(), voxels.albedo.end(), this->TheInfo.albedo);
+  std::copy(voxels.incoming.begin(), voxels.incoming.end(), this->TheInfo.incoming);
+  // Vectors that begin in the last row may be read whole.
+  this->TheInfo.stride = static_cast<cl_ulong>(this->TheInfo.layer) * (this->Size[2] + 2) + Width;
+}
+
+template <class Inside, class Outside>
+std::vector<float> Lattice::Arrange(const Inside& inside, const Outside& outside) const
+{
+  std::vector<float> values(this->TheInfo.stride, 0.0f);
+  std::array<int, 3> at;
+  for (at[2] = -1; at[2] <= this->Size[2]; ++at[2])
+  {
+    for (at[1] = -1; at[1] <= this->Size[1]; ++at[1])
+    {
+      for (at[0] = -1; at[0] <= this->Size[0]; ++at[0])
+      {
+        int face = -1;
+        std::array<int, 3> near = at;
+        for (int a = 0; a < 3; ++a)
+        {
+          const bool beyond = at[a] < 0 || at[a] >= this->Size[a];
+          face = face < 0 && beyond && !this->Settings.periodic[a] ? 2 * a + (at[a] < 0 ? 0 : 1) : face;
+          near[a] = beyond ? (at[a] + this->Size[a]) % this->Size[a] : at[a];
+        }
+        const std::size_t voxel =
+          (static_cast<std::size_t>(near[2]) * this->Size[1] + near[1]) * this->Size[0] + near[0];
+        const std::size_t place = static_cast<std::size_t>(at[2] + 1) * this->TheInfo.layer +
+          static_cast<std::size_t>(at[1] + 1) * this->TheInfo.row + static_cast<std::size_t>(at[0] + 1);
+        values[place] = face < 0 ? inside(voxel) : outside(face);
+      }
+    }
+  }
+  return values;
+}
+
+void Lattice::Load(const LatticeVoxels& voxels)
+{
+  const auto arranged = [&](const std::vector<float>& values, float beyond, const char* what) {
+    return Buffer<float>(this->TheDevice,
+      this->Arrange([&](std::size_t voxel) { return values[voxel]; }, [&](int) { return beyond; }), what);
+  };
+  this->Turning = arranged(voxels.turning, 0.0f, "how voxels scatter");
+  this->Source = arranged(voxels.source, 0.0f, "sources");
+  this->Kept = arranged(voxels.kept, 1.0f, "how voxels absorb");
+  this->Resistance = Buffer<float>(this->TheDevice,
+    this->Arrange([&](std::size_t voxel) { return 1.0f / voxels.passes[voxel]; }, [](int) { return 1.0f; }),
+    "how links pass light");
+  if (voxels.bends)
+  {
+    this->Squared = arranged(voxels.squared, 0.0f, "n^2");
+  }
+  if (voxels.Reflects())
+  {
+    this->Albedo = Buffer<float>(this->TheDevice,
+      this->Arrange([](std::size_t) { return 0.0f; }, [&](int face) { return this->TheInfo.albedo[face]; }),
+      "the faces' albedo");
+  }
+}
+
+/// Dark, but for what comes in from outside.
+void Lattice::FillDensities()
+{
+  const std::vector<float> incoming =
+    this->Arrange([](std::size_t) { return 0.0f; }, [&](int face) { return this->TheInfo.incoming[face]; });
+  std::vector<float> densities;
+  for (int i = 0; i < this->Settings.directions; ++i)
+  {
+    const float weight = static_cast<float>(LatticeWeight(this->Settings.directions, i));
+    std::transform(
+      incoming.begin(), incoming.end(), std::back_inserter(densities), [&](float fluence) { return weight * fluence; });
+  }
+  this->Now = Buffer<float>(this->TheDevice, densities, "photon density");
+  this->Next = Buffer<float>(this->TheDevice, densities, "photon density");
+  if (this->Settings.blockSize > 0)
+  {
+    this->Sends = Buffer<float>(this->TheDevice, densities, "light between blocks");
+  }
+}
+
+cl::Kernel Lattice::Kernel(const char* name) const
+{
+  return this->TheDevice.Kernel(name, kernel_source::LatticeStep, this->Options);
+}
+
+/// Voxels round the box take what those on the other side of periodic axes hold.
+void Lattice::Wrap(const Buffer<float>& densities)
+{
+  const int steps[3] = { 1, this->TheInfo.row, this->TheInfo.layer };
+  cl::Kernel wrap = this->Kernel("wrap_lattice");
+  for (int a = 0; a < 3; ++a)
+  {
+    if (this->Settings.periodic[a])
+    {
+      const int u = (a + 1) % 3, v = (a + 2) % 3;
+      With(wrap, densities, this->TheInfo.stride, cl_int(steps[u]), cl_int(steps[v]), cl_int(steps[a]),
+        cl_int(this->Size[a]));
+      this->TheDevice.Queue().enqueueNDRangeKernel(
+        wrap, cl::NullRange, cl::NDRange(this->Size[u] + 2, this->Size[v] + 2, this->Settings.directions));
+    }
+  }
+}
+
+void Lattice::Step(int steps, bool writes)
+{
+  if (this->Settings.blockSize > 0)
+  {
+    for (int done = 0; done < steps; done += this->Settings.stepsPerExchange)
+    {
+      this->StepBlocks(std::min(this->Settings.stepsPerExchange, steps - done));
+    }
+    return;
+  }
+  for (int step = 1; step <= steps; ++step)
+  {
+    this->StepTogether(writes && step == steps);
+  }
+}
+
+void Lattice::StepTogether(bool writes)
+{
+  this->Wrap(this->Now);
+  cl::Kernel step = this->Kernel("step_lattice");
+  With(step, this->TheInfo, this->Resistance, this->Squared, this->Albedo, this->Turning, this->Kept, this->Source,
+    this->Now, this->Next, this->Shown, cl_int(writes));
+  this->TheDevice.Queue().enqueueNDRangeKernel(step, cl::NullRange, cl::NDRange(this->Size[1], this->Size[2]));
+  this->Now.Swap(this->Next);
+}
+
+void Lattice::StepBlocks(int steps)
+{
+  const int edge = this->Settings.blockSize;
+  const auto group = static_cast<std::size_t>(edge);
+  this->Wrap(this->Next);
+  cl::Kernel step =
+    this->TheDevice.Kernel("step_blocks", kernel_source::LatticeBlocks, this->Options + Define("BLOCK", edge));
+  With(step, this->TheInfo, this->Resistance, this->Squared, this->Albedo, this->Turning, this->Kept, this->Source,
+    this->Next, this->Sends, this->Now, this->Shown, cl_int(steps));
+  this->TheDevice.Queue().enqueueNDRangeKernel(
+    step, cl::NullRange, WholeBlocks(this->Size, edge), cl::NDRange(group, group, group));
+  this->Next.Swap(this->Sends);
+}
+
+std::vector<float> Lattice::Leaving(const Buffer<float>& densities, const LatticeInfo& info)
+{
+  cl::Kernel leave = this->Kernel("leave_lattice");
+  const std::size_t voxels = static_cast<std::size_t>(this->Size[0]) * this->Size[1] * this->Size[2];
+  const Buffer<float> leaving(this->TheDevice, 6 * voxels, "light that leaves");
+  With(leave, info, this->Resistance, densities, leaving);
+  this->TheDevice.Queue().enqueueNDRangeKernel(
+    leave, cl::NullRange, cl::NDRange(this->Size[0], this->Size[1], this->Size[2]));
+  return leaving.Read();
+}
+
+std::vector<float> Lattice::Leaving()
+{
+  return this->Leaving(this->Now, this->TheInfo);
+}
+
+std::vector<float> Lattice::LeavingOfOne()
+{
+  for (int i = 0; i < this->Settings.directions; ++i)
+  {
+    this->Next.Fill(static_cast<float>(LatticeWeight(this->Settings.directions, i)),
+      static_cast<std::size_t>(i) * this->TheInfo.stride, this->TheInfo.stride);
+  }
+  LatticeInfo black = this->TheInfo;
+  std::fill_n(black.albedo, 6, 0.0f);
+  return this->Leaving(this->Next, black);
+}
+
+std::vector<float> Lattice::NetFlux()
+{
+  this->Wrap(this->Now);
+  cl::Kernel kernel = this->Kernel("flux_lattice");
+  const std::size_t voxels = static_cast<std::size_t>(this->Size[0]) * this->Size[1] * this->Size[2];
+  const Buffer<float> flux(this->TheDevice, 3 * voxels, "net flux");
+  With(kernel, this->TheInfo, this->Resistance, this->Squared, this->Albedo, this->Now, flux);
+  this->TheDevice.Queue().enqueueNDRangeKernel(kernel, cl::NullRange, cl::NDRange(this->Size[1], this->Size[2]));
+  return flux.Read();
+}
+}

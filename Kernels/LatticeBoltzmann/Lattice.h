@@ -1,0 +1,92 @@
+#pragma once
+
+#include "Device/Buffer.h"
+#include "LatticeBoltzmann/LatticeSettings.h"
+#include "LatticeBoltzmann/LatticeShared.h"
+#include "LightPropagation/Problem/PropagationProblem.h"
+#include "Lights/UncollidedImage.h"
+#include "Medium/Field.h"
+
+#include <array>
+#include <string>
+#include <vector>
+
+namespace tyndall
+{
+/// Weight of a direction in even light; those of all directions add up to 1.
+double LatticeWeight(int directions, int i);
+
+/// Part of the density of even light that the links' ways carry along an axis, squared: sum of w c c.
+double LatticeSquares(int directions);
+
+/// What each voxel of one channel does to the light of a step (numerics.md, Eqs. (L2) to (L6)), by voxel.
+struct LatticeVoxels
+{
+  std::vector<float> turning;       ///< part of the density that collisions make even; published: that is scattered
+  std::vector<float> lost;          ///< part that is absorbed
+  std::vector<float> kept;          ///< part that is not, or as published neither absorbed nor scattered
+  std::vector<float> passes;        ///< part that links let through
+  std::vector<float> squared;       ///< n^2
+  std::vector<float> source;        ///< W / length^2, that begins evenly in all directions
+  bool bends = false;               ///< n^2 varies
+  bool passesAll = true;            ///< no link gives back light
+  double thickest = 0.0;            ///< sigma_t h, by the transport extinction
+  std::array<double, 6> incoming{}; ///< W / length^2: fluence of the diffuse light outside -x, +x, ... +z, over n^2
+  std::array<double, 6> albedo{};   ///< of the faces
+
+  /// @param ior  null: 1
+  LatticeVoxels(const PropagationProblem& problem, const Field& ior, const LatticeSettings& settings,
+    const UncollidedImage& direct, int channel);
+
+  bool Reflects() const; ///< some face gives back light
+  double Given() const;  ///< above 0: something shines
+};
+
+/// Photon density of one channel on a device, that goes from voxel to voxel by steps.
+class Lattice
+{
+public:
+  Lattice(Device& device, const Grid& grid, const LatticeSettings& settings, const LatticeVoxels& voxels);
+
+  /// So many steps, dark before the first but for what comes in. Queued, not waited for.
+  /// @param writes  fluence of the last of them is to be there
+  void Step(int steps, bool writes);
+  std::vector<float> Fluence() const { return this->Shown.Read(); } ///< W / length^2, by voxel
+
+  /// Densities as a solver found them, [direction][voxel], for what leaves and flows.
+  /// @param directions  two at a time, from `first` on
+  const Buffer<float>& Densities() const { return this->Now; }
+  const LatticeInfo& Info() const { return this->TheInfo; }
+
+  /// W / length^2 that leave in a step, [face][voxel].
+  std::vector<float> Leaving();
+  /// The same, of what would leave through black faces if there were fluence 1 everywhere. Overwrites what the next
+  /// step would begin with elsewhere than in Densities().
+  std::vector<float> LeavingOfOne();
+  /// W / length^2, [x, y, z][voxel].
+  std::vector<float> NetFlux();
+
+  /// A value of each place of the lattice: inside(voxel), or outside(face).
+  template <class Inside, class Outside>
+  std::vector<float> Arrange(const Inside& inside, const Outside& outside) const;
+
+private:
+  void LayOut(const LatticeVoxels& voxels);
+  void Load(const LatticeVoxels& voxels);
+  void FillDensities();
+  void Wrap(const Buffer<float>& densities);
+  void StepTogether(bool writes);
+  void StepBlocks(int steps);
+  std::vector<float> Leaving(const Buffer<float>& densities, const LatticeInfo& info);
+  cl::Kernel Kernel(const char* name) const;
+
+  Device& TheDevice;
+  const std::array<int, 3> Size;
+  const LatticeSettings& Settings;
+  LatticeInfo TheInfo = {};
+  std::string Options;
+  Buffer<float> Resistance, Turning, Kept, Squared, Albedo, Source, Shown;
+  Buffer<float> Now, Next; ///< densities; of blocks `Next` is what they send each other
+  Buffer<float> Sends;     ///< of blocks: what they are about to send
+};
+}

@@ -1,0 +1,50 @@
+// What the kernels of the lattice share. The host gives
+//   DIRECTIONS  18 or 6
+//   PASSES_ALL  1: no link gives back light, but at reflecting faces
+//   BENDS       1: the refractive index varies
+//   REFLECTS    1: a face of the box gives back light
+//   PUBLISHED   1: collisions as printed
+//
+// Densities are what leaves a voxel along each of its links, [direction][stride]. Their sum is fluence, W / length^2.
+// The voxels round the box hold what comes in.
+#pragma once
+#include "LatticeBoltzmann/LatticeShared.h"
+
+#define WEIGHT(i) (DIRECTIONS == 6 ? 1.0f / 6.0f : (i) < 6 ? 1.0f / 12.0f : 1.0f / 24.0f)
+#define FOR_DIRECTIONS(i) _Pragma("unroll") for (int i = 0; i < DIRECTIONS; ++i)
+
+__constant char Ways[18][3] = LATTICE_WAYS;
+
+// What arrives along a link in voxels: what the neighbour sends, as far as the link lets it through, and what the link
+// gives back (numerics.md, Eqs. (L3), (L5)).
+//   sent, back  densities of the neighbour along the link, and of the voxel itself against it
+//   own, other  resistance of both: inverse of the part that a link lets through between two like them
+//   here, there n^2 of both; there 0: outside, where it is the voxel's own, and light comes as n^2 times `sent`
+//   albedo      of the face between; 0 inside
+#define DEFINE_ARRIVING(name, type)                                                                \
+  static type name(type sent, type back, type own, type other, type here, type there, type albedo) \
+  {                                                                                                \
+    type part = PASSES_ALL ? (type)(1.0f) : 2.0f / (own + other);                                  \
+    type returns = part;                                                                           \
+    if (BENDS)                                                                                     \
+    {                                                                                              \
+      const type least = fmin(here, there);                                                        \
+      part *= select(least / there, here, there == 0.0f);                                          \
+      returns *= select(least / here, (type)(1.0f), there == 0.0f);                                \
+    }                                                                                              \
+    if (REFLECTS)                                                                                  \
+    {                                                                                              \
+      returns -= returns * albedo;                                                                 \
+    }                                                                                              \
+    return PASSES_ALL && !BENDS && !REFLECTS ? sent : part * sent + (1.0f - returns) * back;       \
+  }
+
+// Density along a direction after a collision (Eqs. (L1), (L6)).
+//   weight  of the direction
+//   before  what arrived, with half of the source of a step
+//   sum     of those of all directions
+#define DEFINE_COLLIDED(name, type)                                                                                \
+  static type name(float weight, type before, type sum, type even, type stays)                                     \
+  {                                                                                                                \
+    return PUBLISHED ? before * stays + even * (weight * sum) : (before + even * (weight * sum - before)) * stays; \
+  }

@@ -1,0 +1,35 @@
+#include "LatticeBoltzmann/LatticeSettings.h"
+
+#include "Device/Errors.h"
+
+#include <string>
+
+namespace tyndall
+{
+void Check(const LatticeSettings& settings)
+{
+  if (settings.directions != 6 && settings.directions != 18)
+  {
+    throw InvalidInput(
+      "A lattice of " + std::to_string(settings.directions) + " directions was asked for; there are 6 and 18.");
+  }
+  if (settings.blockSize != 0 && (settings.blockSize < 2 || settings.blockSize > 8))
+  {
+    throw InvalidInput("BlockSize is " + std::to_string(settings.blockSize) +
+      "; give 2 to 8 voxels, or 0 for a lattice that steps as a whole.");
+  }
+  if (settings.stepsPerExchange < 1)
+  {
+    throw InvalidInput("StepsPerExchange is " + std::to_string(settings.stepsPerExchange) + "; give 1 step or more.");
+  }
+  if (settings.maximumSteps < 0)
+  {
+    throw InvalidInput("MaximumOrders is " + std::to_string(settings.maximumSteps) +
+      "; give a number of steps, or 0 for as many as the tolerance needs.");
+  }
+  if (!(settings.tolerance > 0.0))
+  {
+    throw InvalidInput("Tolerance is " + std::to_string(settings.tolerance) + "; it must be positive.");
+  }
+}
+}

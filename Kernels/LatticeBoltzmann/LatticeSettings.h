@@ -1,0 +1,41 @@
+#pragma once
+
+#include <array>
+
+namespace tyndall
+{
+/// How light collides in a voxel.
+enum class LatticeScheme
+{
+  Published = 0,   ///< explicit, as printed: positive only up to sigma_t h = 1 (Bernabei et al., Eq. (5))
+  Conservative = 1 ///< positive, and power is kept, for voxels of any optical thickness (numerics.md, Eqs. (L2), (L3))
+};
+
+/// How light diffuses on a lattice.
+struct LatticeSettings
+{
+  /// Neighbours that a voxel exchanges light with: 18 (Geist et al. 2004), or 6 along the axes.
+  int directions = 18;
+  LatticeScheme scheme = LatticeScheme::Conservative;
+  /// Edge of blocks, voxels, 2 to 8, that step apart from each other as published; 0: all voxels step together.
+  int blockSize = 0;
+  int stepsPerExchange = 8; ///< steps in a block before it exchanges light with its neighbours
+  int maximumSteps = 0;     ///< so many; 0: as many as the tolerance takes
+  double tolerance = 1e-4;  ///< relative error of fluence at which to stop, estimated
+  /// The steady equations are solved, where the scheme is conservative, there are no blocks and maximumSteps is 0;
+  /// false: steps are done until the tolerance is met.
+  bool solvesSteady = true;
+  std::array<bool, 3> periodic = {};
+  bool netFlux = false; ///< compute net_flux too
+
+  bool Solves() const
+  {
+    return this->solvesSteady && this->scheme == LatticeScheme::Conservative && this->blockSize == 0 &&
+      this->maximumSteps == 0;
+  }
+};
+
+/// @throws InvalidInput where there are not 6 or 18 directions, a number is out of its range or the tolerance is not
+///   positive
+void Check(const LatticeSettings& settings);
+}
