@@ -2,8 +2,8 @@
 // (L10)). The host gives what LatticeLink.cl and Numerics/Exact.cl want.
 //
 // Along a line light goes both ways, for links give back a part. What lies behind a voxel is known by what it sends
-// whatever happens ahead, U, and by what it gives back of what comes from ahead, R: two numbers a voxel, found on the way
-// up; densities follow on the way down. All terms are positive, so that no digit is lost.
+// whatever happens ahead, U, and by what it gives back of what comes from ahead, R: two numbers a voxel, found on the
+// way up; densities follow on the way down. All terms are positive, so that no digit is lost.
 #include "LatticeBoltzmann/LatticeLink.cl"
 #include "Numerics/Exact.cl"
 
@@ -55,9 +55,10 @@ static Place next_along(LatticeInfo lattice, Place place, int i)
 
 static Link link_between(MEDIUM, ulong a, ulong b)
 {
-  const exact both = 2 / (1 / (exact)passes[a] + 1 / (exact)passes[b]);
-  const exact least = BENDS ? fmin(squared[a], squared[b]) : 1;
-  const Link link = { BENDS ? both * least / squared[a] : both, BENDS ? both * least / squared[b] : both };
+  const exact own = 1 / (exact)passes[a], other = 1 / (exact)passes[b];
+  const exact by_a = BENDS ? 1 / (exact)squared[a] : 1, by_b = BENDS ? 1 / (exact)squared[b] : 1;
+  const exact both = 2 / (own * by_a + other * by_b + fabs(by_a - by_b));
+  const Link link = { fmin(both * by_a, (exact)1), fmin(both * by_b, (exact)1) };
   return link;
 }
 
@@ -124,16 +125,17 @@ static bool begin_line(LatticeInfo lattice, int i, Place* place, bool* closed)
   return u < size_a ? !round_b : !round_a && (round_b || u - size_a != first_b);
 }
 
-// What the way up knows of a voxel. Of closed lines also what is in proportion to the light that goes round, T, and what
-// comes down to where the line was cut, by what comes from ahead: sent + round x + gives_back B.
+// What the way up knows of a voxel: U and R.
 typedef struct
 {
   exact sends, returns;
 } Behind;
 
+// What comes down to where a closed line is cut, by what goes round up it, x, and what comes from ahead, B: sent +
+// round x + gives_back B.
 typedef struct
 {
-  exact share, sent, round, gives_back;
+  exact sent, round, gives_back;
 } Cut;
 
 // One voxel up: what arrives there from behind is arrived + back times what it sends down.
@@ -146,6 +148,7 @@ static Behind pass_voxel(exact straight, exact source, exact arrived, exact back
 // Lines of a pair of directions, 2 pair and 2 pair + 1. A work-item a line.
 //   shines    1, or 0: nothing comes in through the faces
 //   behind    [voxel][2], scratch
+//   share     [voxel], scratch: of closed lines, how much more a voxel sends by what goes round, T
 //   sum       [voxel], W / length^2: what arrives is added
 //   writes    1: densities are written, too, as step_lattice has them
 __kernel void sweep_lines(LatticeInfo lattice, MEDIUM, int pair, exact shines, __global exact* behind,
@@ -180,7 +183,7 @@ __kernel void sweep_lines(LatticeInfo lattice, MEDIUM, int pair, exact shines, _
     back = low.back;
   }
   const Link closing = link;
-  Cut cut = { 0, weight * even[voxel], 0, straight[voxel] };
+  Cut cut = { weight * even[voxel], 0, straight[voxel] };
   int voxels = 1;
   for (;;)
   {

@@ -13,6 +13,13 @@
 #define WEIGHT(i) (DIRECTIONS == 6 ? 1.0f / 6.0f : (i) < 6 ? 1.0f / 12.0f : 1.0f / 24.0f)
 #define FOR_DIRECTIONS(i) _Pragma("unroll") for (int i = 0; i < DIRECTIONS; ++i)
 
+// Links hand on what is sent, and nothing else.
+#if PASSES_ALL && !BENDS && !REFLECTS
+#define PLAIN 1
+#else
+#define PLAIN 0
+#endif
+
 __constant char Ways[18][3] = LATTICE_WAYS;
 
 // What arrives along a link in voxels: what the neighbour sends, as far as the link lets it through, and what the link
@@ -28,15 +35,16 @@ __constant char Ways[18][3] = LATTICE_WAYS;
     type returns = part;                                                                           \
     if (BENDS)                                                                                     \
     {                                                                                              \
-      const type least = fmin(here, there);                                                        \
-      part *= select(least / there, here, there == 0.0f);                                          \
-      returns *= select(least / here, (type)(1.0f), there == 0.0f);                                \
+      const type by_here = 1.0f / here, by_there = select(1.0f / there, by_here, there == 0.0f);   \
+      const type both = 2.0f / (own * by_here + other * by_there + fabs(by_here - by_there));      \
+      part = select(both * by_there, both, there == 0.0f);                                         \
+      returns = fmin(both * by_here, (type)(1.0f));                                                \
     }                                                                                              \
     if (REFLECTS)                                                                                  \
     {                                                                                              \
       returns -= returns * albedo;                                                                 \
     }                                                                                              \
-    return PASSES_ALL && !BENDS && !REFLECTS ? sent : part * sent + (1.0f - returns) * back;       \
+    return PLAIN ? sent : part * sent + (1.0f - returns) * back;                                   \
   }
 
 // Density along a direction after a collision (Eqs. (L1), (L6)).

@@ -33,7 +33,7 @@ static float16 arriving_along(LatticeInfo lattice, LINKS, const __global float* 
   const ulong other = at - lattice.offset[i];
   const float16 one = (float16)(1.0f), zero = (float16)(0.0f);
   const float16 sent = vload16(0, from + i * lattice.stride + other);
-  const float16 back = PASSES_ALL && !BENDS && !REFLECTS ? zero : vload16(0, from + (i ^ 1) * lattice.stride + at);
+  const float16 back = PLAIN ? zero : vload16(0, from + (i ^ 1) * lattice.stride + at);
   return arriving(sent, back, PASSES_ALL ? one : vload16(0, resistance + at),
     PASSES_ALL ? one : vload16(0, resistance + other), BENDS ? vload16(0, squared + at) : one,
     BENDS ? vload16(0, squared + other) : one, REFLECTS ? vload16(0, albedo + other) : zero);

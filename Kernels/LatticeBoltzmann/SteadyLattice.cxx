@@ -104,8 +104,10 @@ void SteadyLattice::LoadDiffusion()
       if (at[a] > 0 || (periodic && size > 1))
       {
         const std::size_t j = at[a] > 0 ? i - step : i + (size - 1) * step;
-        const double link = 1.0 / (1.0 / passes[i] + 1.0 / passes[j]);
-        conductance[a * this->Count + i] = static_cast<float>(link * std::min(voxels.squared[i], voxels.squared[j]));
+        const double ni = voxels.squared[i], nj = voxels.squared[j];
+        const double reflects = std::abs(1.0 / ni - 1.0 / nj) / squares;
+        conductance[a * this->Count + i] =
+          static_cast<float>(1.0 / (1.0 / (passes[i] * ni) + 1.0 / (passes[j] * nj) + reflects));
       }
       for (std::size_t face = 2 * a; face < 2 * a + 2 && !periodic; ++face)
       {
