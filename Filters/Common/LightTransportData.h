@@ -103,6 +103,8 @@ enum MediumArray
   SigmaS = 1,
   Emission = 2,
 };
+/// The same for the refractive index, of those that know it.
+constexpr int RefractiveIndex = 3;
 
 /// A medium and the arrays that it sees.
 struct MediumInput

@@ -13,9 +13,6 @@
 /// The medium of photons, as filters read it and keep it prepared.
 namespace tyndall
 {
-/// Number of SetInputArrayToProcess for the refractive index of the medium, after those of MediumArray.
-constexpr int RefractiveIndex = 3;
-
 /// A medium through which photons march, and the arrays that it sees.
 struct RefractiveInput
 {

@@ -1,5 +1,5 @@
-// Lattice-Boltzmann lighting (Geist et al. 2004; Bernabei et al.): what a step costs beside the machine's bandwidth, and
-// how soon light is steady.
+// Lattice-Boltzmann lighting (Geist et al. 2004; Bernabei et al.): what a step costs beside the machine's bandwidth,
+// and how soon light is steady.
 //
 //   TyndallBenchLattice [--quick] [step] [blocks] [albedo]
 //

@@ -36,7 +36,7 @@ for make in (LightPropagationMaps, LPMPropagate, MediumRayCaster):
 emitter = PhotonEmitter(Input=medium, SkyColor=[1, 1, 1], PhotonCount=2000)
 
 marched = PhotonMarcher(Input=medium, Photons=emitter)
-for make in (LightPropagationMaps, DiscreteOrdinates):
+for make in (LightPropagationMaps, DiscreteOrdinates, LatticeBoltzmannLighting):
     proxy = make(Input=medium)
     proxy.UncollidedLight = marched
     assert brightness(proxy) > brightness(marched), make  # it is scattered as well

@@ -108,6 +108,7 @@ def comparison():
 SCENES = {
     "DiscreteOrdinates": lambda: DiscreteOrdinates(Input=medium, Lights=LightRig(), Terms=4),
     "EnvironmentReader": lambda: EnvironmentReader(FileName=picture),
+    "LatticeBoltzmannLighting": lambda: LatticeBoltzmannLighting(Input=medium, Lights=LightRig()),
     "LightRig": LightRig,
     "VDBReader": lambda: VDBReader(FileName=[stored]),
     "LPMPropagate": lambda: LPMPropagate(Input=medium, Lights=LightRig(), DirectionsPerFace=4),

@@ -1,0 +1,146 @@
+#ifndef vtkLatticeBoltzmannLighting_h
+#define vtkLatticeBoltzmannLighting_h
+
+#include "PropertyRange.h"
+#include "vtkScatteringSolver.h"
+#include "vtkTyndallModule.h" // for export macro
+
+#include <string>
+
+/**
+ * @class vtkLatticeBoltzmannLighting
+ * @brief light that is scattered very often, as it diffuses on a lattice of 18 or 6 directions
+ *
+ * Every voxel holds photon density along its links to neighbours, which collides there and moves on, until it is
+ * steady. It is diffusion: for media in which light is scattered many times, also where the refractive index varies,
+ * which bends what diffuses, too. By default power is kept and light positive whatever voxels are, and the steady state
+ * is solved for; as published light goes in explicit steps, and a warning says where they are too long.
+ *
+ * Input 0, the medium: vtkImageData of cubic voxels (to 0.1%) with cell arrays (point arrays are averaged to cells)
+ *
+ * | array      | components | unit             | meaning                                          |
+ * |------------|------------|------------------|--------------------------------------------------|
+ * | `sigma_a`  | 1 or 3     | 1/length         | absorption coefficient                           |
+ * | `sigma_s`  | 1 or 3     | 1/length         | scattering coefficient                           |
+ * | `emission` | 1 or 3     | W/(length^3 sr)  | emitted radiance per unit length; optional       |
+ * | `ior`      | 1          | 1                | refractive index; optional, default 1            |
+ *
+ * or those chosen by SetInputArrayToProcess 0, 1, 2 and 3, and field data `g` (default 0): diffusion takes it by the
+ * similarity relation.
+ * Input 1, optional: lights as vtkLightRig makes them.
+ * Input 2, optional: the environment, as vtkEnvironmentReader makes it.
+ * Input 3, optional: uncollided light of another filter instead of all these (vtkScatteringSolver); that of lights and
+ * environment goes straight, whatever the index.
+ *
+ * Output 0: the medium's image with cell arrays of 1 component, or 3 where medium or light has colour
+ *
+ * | array | components | unit | meaning |
+ * |---|---|---|---|
+ * | `fluence` | 1 or 3 | W/length^2 | radiance integrated over all directions |
+ * | `fluence_direct` | 1 or 3 | W/length^2 | its unscattered part, without that of sky and faces |
+ * | `net_flux` | 3 or 9 | W/length^2 | radiance times direction, integrated (if NetFlux) |
+ * | `scattered_radiance` | 1 or 3 | W/(length^2 sr) | radiance scattered, in the mean over directions |
+ *
+ * and field data `energy_balance` (W: entered, emitted, absorbed, escaped, left over), `face_power_out` (W through -x,
+ * +x, -y, +y, -z, +z), `left_out` (what the scene did not need), `device`, `stored_directions`.
+ * Output 1: vtkTable, one row an iteration (of steps: every 16 or so): `iteration`, `seconds`, `residual`, `change`.
+ *
+ * EstimateError is not used.
+ *
+ * @sa vtkLightPropagationMaps vtkDiscreteOrdinates vtkPhotonMarcher vtkParticipatingMedium vtkLightRig
+ * @par Thanks
+ * R. Geist, K. Rasche, J. Westall, R. Schalkoff: Lattice-Boltzmann Lighting. EGSR 2004.
+ * D. Bernabei, A. Hakke Patil, F. Banterle, M. Di Benedetto, F. Ganovelli, S. Pattanaik, R. Scopigno: A Parallel
+ * Architecture for Interactive Rendering of Scattering and Refraction Effects.
+ */
+class TYNDALL_EXPORT vtkLatticeBoltzmannLighting : public vtkScatteringSolver
+{
+public:
+  static vtkLatticeBoltzmannLighting* New();
+  vtkTypeMacro(vtkLatticeBoltzmannLighting, vtkScatteringSolver);
+  void PrintSelf(ostream& os, vtkIndent indent) override;
+
+  enum Schemes
+  {
+    PUBLISHED = 0,   ///< explicit collisions, as Bernabei et al. print them, without refraction
+    CONSERVATIVE = 1 ///< collisions that keep power and are positive for voxels of any thickness
+  };
+
+  ///@{
+  /// Directions of the lattice: 18 (default), along axes and diagonals, or 6 along axes alone.
+  tyndallSetRangeMacro(Lattice, int, 6, 18);
+  vtkGetMacro(Lattice, int);
+  ///@}
+
+  ///@{
+  /// How light collides: PUBLISHED, or CONSERVATIVE (default).
+  tyndallSetRangeMacro(Scheme, int, PUBLISHED, CONSERVATIVE);
+  vtkGetMacro(Scheme, int);
+  ///@}
+
+  ///@{
+  /// Edge of blocks, voxels, 2 to 8, that step by themselves, as published with 4. Default 0: all voxels together.
+  tyndallSetRangeMacro(BlockSize, int, 0, 8);
+  vtkGetMacro(BlockSize, int);
+  ///@}
+
+  ///@{
+  /// Steps of a block before it exchanges light with its neighbours. Default 8, valid [1, 1000].
+  tyndallSetRangeMacro(StepsPerExchange, int, 1, 1000);
+  vtkGetMacro(StepsPerExchange, int);
+  ///@}
+
+  ///@{
+  /// Steps to do. Default 0: until Tolerance is met; of the conservative scheme without blocks the steady state is then
+  /// solved for.
+  tyndallSetRangeMacro(MaximumOrders, int, 0, VTK_INT_MAX);
+  vtkGetMacro(MaximumOrders, int);
+  ///@}
+
+  ///@{
+  /// Whether to compute `net_flux` too. Default off.
+  vtkSetMacro(NetFlux, bool);
+  vtkGetMacro(NetFlux, bool);
+  vtkBooleanMacro(NetFlux, bool);
+  ///@}
+
+  ///@{
+  /// What came of the last update: steps, or iterations of the steady state's equations, estimated relative error of
+  /// fluence, relative error of the energy balance, what is left over included, seconds, the device's name, and what
+  /// the scene did not need, one per line.
+  vtkGetMacro(Steps, int);
+  vtkGetMacro(Residual, double);
+  vtkGetMacro(BalanceError, double);
+  vtkGetMacro(Seconds, double);
+  vtkGetCharFromStdStringMacro(DeviceName);
+  vtkGetCharFromStdStringMacro(LeftOut);
+  ///@}
+
+protected:
+  vtkLatticeBoltzmannLighting();
+  ~vtkLatticeBoltzmannLighting() override;
+
+  int RequestData(vtkInformation* request, vtkInformationVector** inputs, vtkInformationVector* outputs) override;
+
+private:
+  vtkLatticeBoltzmannLighting(const vtkLatticeBoltzmannLighting&) = delete;
+  void operator=(const vtkLatticeBoltzmannLighting&) = delete;
+
+  void Note(const tyndall::LightField& light);
+
+  int Lattice;
+  int Scheme;
+  int BlockSize;
+  int StepsPerExchange;
+  int MaximumOrders;
+  bool NetFlux;
+
+  int Steps = 0;
+  double Residual = 0.0;
+  double BalanceError = 0.0;
+  double Seconds = 0.0;
+  std::string DeviceName;
+  std::string LeftOut;
+};
+
+#endif
