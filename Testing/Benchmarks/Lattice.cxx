@@ -101,6 +101,7 @@ void TimeStep(Device& device, bool quick, Table& table, const StepCase& of)
   JsonLine()
     .Add("bench", "lattice")
     .Add("case", std::string("step, ") + of.name)
+    .Add("method", "lattice, a step")
     .Add("grid", GridText(edge))
     .Add("seconds", Median(seconds))
     .Add("bytes", bytes)
@@ -157,13 +158,14 @@ double LargestDifference(const std::vector<float>& values, const std::vector<flo
   return largest;
 }
 
-void PrintRun(Table& table, const std::string& scene, const char* method, const Run& run, const Run& against)
+void PrintRun(Table& table, int edge, const std::string& scene, const char* method, const Run& run, const Run& against)
 {
   const double difference = LargestDifference(run.light.fluence, against.light.fluence);
   JsonLine()
     .Add("bench", "lattice")
     .Add("case", scene)
     .Add("method", method)
+    .Add("grid", GridText(edge))
     .Add("iterations", run.Steps())
     .Add("seconds", run.seconds)
     .Add("error_max", difference)
@@ -189,14 +191,14 @@ void PrintBlocks(Device& device, bool quick)
     settings.tolerance = 1e-4;
     const Run together = Solve(device, box, settings);
     const std::string scene = "blocks, albedo " + Text("%g", albedo);
-    PrintRun(table, scene, "all voxels together", together, together);
+    PrintRun(table, edge, scene, "all voxels together", together, together);
     settings.blockSize = 4;
     for (const auto& [steps, name] :
       { std::pair(1, "blocks of 4^3, an exchange each step"), std::pair(4, "blocks of 4^3, an exchange in 4 steps"),
         std::pair(8, "blocks of 4^3, an exchange in 8 steps (as published)") })
     {
       settings.stepsPerExchange = steps;
-      PrintRun(table, scene, name, Solve(device, box, settings), together);
+      PrintRun(table, edge, scene, name, Solve(device, box, settings), together);
     }
   }
   table.Print("Blocks against all voxels together, " + GridText(edge) + ", 6 directions, as published");
@@ -213,9 +215,9 @@ void PrintAlbedo(Device& device, bool quick)
     const std::string scene = "albedo " + Text("%g", albedo);
     settings.solvesSteady = false;
     const Run steps = Solve(device, box, settings);
-    PrintRun(table, scene, "steps", steps, steps);
+    PrintRun(table, edge, scene, "steps", steps, steps);
     settings.solvesSteady = true;
-    PrintRun(table, scene, "steady equations", Solve(device, box, settings), steps);
+    PrintRun(table, edge, scene, "steady equations", Solve(device, box, settings), steps);
   }
   table.Print("Steps, and iterations of the steady equations, until the tolerance of 1e-4: " + GridText(edge) +
     ", 18 directions");
