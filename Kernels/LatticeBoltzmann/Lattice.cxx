@@ -15,7 +15,8 @@ namespace tyndall
 namespace
 {
 constexpr int Ways[18][3] = LATTICE_WAYS;
-constexpr int Width = 16; ///< of the vectors of LatticeStep.cl
+constexpr int Width = 16;                               ///< of the vectors of LatticeStep.cl
+constexpr std::size_t Cached = std::size_t{ 48 } << 20; ///< bytes of densities that caches may hold: with more, none do
 
 cl::NDRange WholeBlocks(const std::array<int, 3>& size, int edge)
 {
@@ -87,6 +88,8 @@ Lattice::Lattice(Device& device, const Grid& grid, const LatticeSettings& settin
   this->Options = Define("DIRECTIONS", settings.directions) + Define("BENDS", voxels.bends) +
     Define("PASSES_ALL", voxels.passesAll) + Define("REFLECTS", voxels.Reflects()) +
     Define("PUBLISHED", settings.scheme == LatticeScheme::Published);
+  const std::size_t bytes = 2 * sizeof(float) * static_cast<std::size_t>(settings.directions) * this->TheInfo.stride;
+  this->Options += Define("STREAMS", device.IsCpu() && bytes > Cached);
   this->Load(voxels);
   this->FillDensities();
   this->Shown = Buffer<float>(device, grid.VoxelCount(), "fluence");
@@ -96,7 +99,7 @@ Lattice::Lattice(Device& device, const Grid& grid, const LatticeSettings& settin
 void Lattice::LayOut(const LatticeVoxels& voxels)
 {
   std::copy(this->Size.begin(), this->Size.end(), this->TheInfo.size);
-  this->TheInfo.row = this->Size[0] + 2;
+  this->TheInfo.row = RoundUp(this->Size[0], Width) + LatticeFirst; // the place behind it may be the next row's first
   this->TheInfo.layer = this->TheInfo.row * (this->Size[1] + 2);
   for (int i = 0; i < 18; ++i)
   {
@@ -132,7 +135,7 @@ std::vector<float> Lattice::Arrange(const Inside& inside, const Outside& outside
         const std::size_t voxel =
           (static_cast<std::size_t>(near[2]) * this->Size[1] + near[1]) * this->Size[0] + near[0];
         const std::size_t place = static_cast<std::size_t>(at[2] + 1) * this->TheInfo.layer +
-          static_cast<std::size_t>(at[1] + 1) * this->TheInfo.row + static_cast<std::size_t>(at[0] + 1);
+          static_cast<std::size_t>(at[1] + 1) * this->TheInfo.row + static_cast<std::size_t>(at[0] + LatticeFirst);
         values[place] = face < 0 ? inside(voxel) : outside(face);
       }
     }

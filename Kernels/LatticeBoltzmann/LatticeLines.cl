@@ -252,8 +252,8 @@ __kernel void sweep_lines(LatticeInfo lattice, MEDIUM, int pair, exact shines, _
       sum[voxel] += up_arrives + comes;
       if (writes)
       {
-        const ulong at =
-          (ulong)(place.at[2] + 1) * lattice.layer + (ulong)(place.at[1] + 1) * lattice.row + place.at[0] + 1;
+        const ulong at = (ulong)(place.at[2] + 1) * lattice.layer + (ulong)(place.at[1] + 1) * lattice.row +
+          place.at[0] + LatticeFirst;
         densities[i * lattice.stride + at] = straight[voxel] * up_arrives + source;
         densities[(i + 1) * lattice.stride + at] = down;
       }
@@ -267,8 +267,8 @@ __kernel void sweep_lines(LatticeInfo lattice, MEDIUM, int pair, exact shines, _
       sum[voxel] += up_arrives + comes;
       if (writes)
       {
-        const ulong at =
-          (ulong)(first.at[2] + 1) * lattice.layer + (ulong)(first.at[1] + 1) * lattice.row + first.at[0] + 1;
+        const ulong at = (ulong)(first.at[2] + 1) * lattice.layer + (ulong)(first.at[1] + 1) * lattice.row +
+          first.at[0] + LatticeFirst;
         densities[i * lattice.stride + at] = straight[voxel] * up_arrives + source;
         densities[(i + 1) * lattice.stride + at] = down;
       }

@@ -1,5 +1,12 @@
-// A step of photon density on a lattice (numerics.md, section 10 c), all voxels together.
+// A step of photon density on a lattice (numerics.md, section 10 c), all voxels together. The host also gives
+//   STREAMS  1: densities are far more than caches hold, and are written past them where the compiler can
 #include "LatticeBoltzmann/LatticeLink.cl"
+
+#if STREAMS && defined(__has_builtin)
+#if __has_builtin(__builtin_nontemporal_store)
+#define STORE_PAST_CACHES 1
+#endif
+#endif
 
 #define WIDTH 16
 DEFINE_ARRIVING(arriving, float16)
@@ -19,6 +26,19 @@ static void store_some(float16 values, __global float* to, ulong at, int voxels)
   {
     to[at + k] = some[k];
   }
+}
+
+// The same of densities, whose rows are aligned. What is not read before it is written need not come from memory first.
+static void store_densities(float16 values, __global float* to, ulong at, int voxels)
+{
+#ifdef STORE_PAST_CACHES
+  if (voxels >= WIDTH)
+  {
+    __builtin_nontemporal_store(values, (__global float16*)(to + at));
+    return;
+  }
+#endif
+  store_some(values, to, at, voxels);
 }
 
 // What the medium does in each place of the lattice:
@@ -49,7 +69,7 @@ __kernel void step_lattice(LatticeInfo lattice, LINKS, const __global float* tur
   const __global float* source, const __global float* from, __global float* to, __global float* fluence, int writes)
 {
   const int y = get_global_id(0), z = get_global_id(1), nx = lattice.size[0];
-  const ulong line = (ulong)(z + 1) * lattice.layer + (ulong)(y + 1) * lattice.row + 1;
+  const ulong line = (ulong)(z + 1) * lattice.layer + (ulong)(y + 1) * lattice.row + LatticeFirst;
   for (int x = 0; x < nx; x += WIDTH)
   {
     const ulong at = line + x;
@@ -64,7 +84,7 @@ __kernel void step_lattice(LatticeInfo lattice, LINKS, const __global float* tur
     FOR_DIRECTIONS(i)
     {
       const float16 own = WEIGHT(i) * half_source;
-      store_some(collided(WEIGHT(i), here[i] + own, sum, even, stays) + own, to + i * lattice.stride, at, nx - x);
+      store_densities(collided(WEIGHT(i), here[i] + own, sum, even, stays) + own, to + i * lattice.stride, at, nx - x);
     }
     if (writes)
     {
@@ -77,7 +97,7 @@ __kernel void step_lattice(LatticeInfo lattice, LINKS, const __global float* tur
 __kernel void flux_lattice(LatticeInfo lattice, LINKS, const __global float* from, __global float* flux)
 {
   const int y = get_global_id(0), z = get_global_id(1), nx = lattice.size[0];
-  const ulong line = (ulong)(z + 1) * lattice.layer + (ulong)(y + 1) * lattice.row + 1;
+  const ulong line = (ulong)(z + 1) * lattice.layer + (ulong)(y + 1) * lattice.row + LatticeFirst;
   const ulong voxels = (ulong)nx * lattice.size[1] * lattice.size[2];
   for (int x = 0; x < nx; x += WIDTH)
   {
@@ -104,8 +124,8 @@ __kernel void flux_lattice(LatticeInfo lattice, LINKS, const __global float* fro
 //   u, v  steps in memory along the plane, and `along` the axis; n: voxels along it
 __kernel void wrap_lattice(__global float* densities, ulong stride, int u, int v, int along, int n)
 {
-  __global float* at =
-    densities + get_global_id(2) * stride + (ulong)get_global_id(0) * u + (ulong)get_global_id(1) * v;
+  __global float* at = densities + LatticeFirst - 1 + get_global_id(2) * stride + (ulong)get_global_id(0) * u +
+    (ulong)get_global_id(1) * v;
   at[0] = at[(ulong)n * along];
   at[(ulong)(n + 1) * along] = at[along];
 }
@@ -116,7 +136,7 @@ __kernel void leave_lattice(
   LatticeInfo lattice, const __global float* resistance, const __global float* densities, __global float* leaving)
 {
   const int at[3] = { get_global_id(0), get_global_id(1), get_global_id(2) };
-  const ulong place = (ulong)(at[2] + 1) * lattice.layer + (ulong)(at[1] + 1) * lattice.row + at[0] + 1;
+  const ulong place = (ulong)(at[2] + 1) * lattice.layer + (ulong)(at[1] + 1) * lattice.row + at[0] + LatticeFirst;
   const ulong voxel = ((ulong)at[2] * lattice.size[1] + at[1]) * lattice.size[0] + at[0];
   const ulong voxels = (ulong)lattice.size[0] * lattice.size[1] * lattice.size[2];
   float through[6] = { 0.0f };
