@@ -93,6 +93,27 @@ __kernel void step_lattice(LatticeInfo lattice, LINKS, const __global float* tur
   }
 }
 
+// What begins in voxels where light of a fluence ([voxel][channels], of which one channel counts) is scattered. A
+// work-item a row of voxels; ShineBy in Lattice.h says what arrays are.
+__kernel void shine_lattice(LatticeInfo lattice, const __global float* scatters, const __global float* glows,
+  const __global float* fluence, int channels, int channel, __global float* source)
+{
+  const int y = get_global_id(0), z = get_global_id(1), nx = lattice.size[0];
+  const ulong line = (ulong)(z + 1) * lattice.layer + (ulong)(y + 1) * lattice.row + LatticeFirst;
+  const __global float* row = fluence + ((ulong)z * lattice.size[1] + y) * nx * channels + channel;
+  for (int x = 0; x < nx; ++x)
+  {
+    source[line + x] = glows[line + x] + scatters[line + x] * row[x * channels];
+  }
+}
+
+// Fluence at some voxels.
+__kernel void look_at_lattice(const __global float* fluence, const __global int* voxels, __global float* seen)
+{
+  const int i = get_global_id(0);
+  seen[i] = fluence[voxels[i]];
+}
+
 // Net flux, W / length^2, [x, y, z][voxel]: the mean of what arrives and what leaves. A work-item a row of voxels.
 __kernel void flux_lattice(LatticeInfo lattice, LINKS, const __global float* from, __global float* flux)
 {
