@@ -3,12 +3,14 @@
 #include "Common/LightTransportData.h"
 #include "Device/Device.h"
 #include "LatticeBoltzmann/LatticeBoltzmann.h"
+#include "Photons/PhotonData.h"
 
 #include "vtkDataObject.h"
 #include "vtkImageData.h"
 #include "vtkInformation.h"
 #include "vtkInformationVector.h"
 #include "vtkObjectFactory.h"
+#include "vtkPolyData.h"
 
 #include <algorithm>
 #include <cmath>
@@ -23,6 +25,9 @@ tyndall::LatticeSettings SettingsOf(vtkLatticeBoltzmannLighting* filter)
   settings.scheme = static_cast<tyndall::LatticeScheme>(filter->GetScheme());
   settings.blockSize = filter->GetBlockSize();
   settings.stepsPerExchange = filter->GetStepsPerExchange();
+  settings.interleaves = filter->GetInterleaved();
+  settings.stretches = filter->GetVoxelsPerTurn();
+  settings.probes = filter->GetProbes();
   settings.maximumSteps = filter->GetMaximumOrders();
   settings.tolerance = filter->GetTolerance();
   settings.periodic = { filter->GetPeriodicX(), filter->GetPeriodicY(), filter->GetPeriodicZ() };
@@ -52,27 +57,85 @@ vtkLatticeBoltzmannLighting::vtkLatticeBoltzmannLighting()
   this->Scheme = static_cast<int>(defaults.scheme);
   this->BlockSize = defaults.blockSize;
   this->StepsPerExchange = defaults.stepsPerExchange;
+  this->Interleaved = defaults.interleaves;
+  this->VoxelsPerTurn = defaults.stretches;
+  this->Probes = defaults.probes;
   this->MaximumOrders = defaults.maximumSteps;
   this->NetFlux = defaults.netFlux;
+  this->SetNumberOfInputPorts(PHOTONS + 1);
 }
 
 vtkLatticeBoltzmannLighting::~vtkLatticeBoltzmannLighting() = default;
+
+void vtkLatticeBoltzmannLighting::SetPhotonsConnection(vtkAlgorithmOutput* photons)
+{
+  this->SetInputConnection(PHOTONS, photons);
+}
+
+void vtkLatticeBoltzmannLighting::SetPhotonsData(vtkDataObject* photons)
+{
+  this->SetInputDataObject(PHOTONS, photons);
+}
+
+void vtkLatticeBoltzmannLighting::RemovePhotons()
+{
+  this->SetInputConnection(PHOTONS, nullptr);
+}
+
+int vtkLatticeBoltzmannLighting::FillInputPortInformation(int port, vtkInformation* information)
+{
+  this->Superclass::FillInputPortInformation(port, information);
+  if (port == PHOTONS)
+  {
+    information->Set(vtkAlgorithm::INPUT_REQUIRED_DATA_TYPE(), "vtkPolyData");
+  }
+  return 1;
+}
+
+tyndall::LightField vtkLatticeBoltzmannLighting::SolveWithPhotons(
+  vtkInformationVector** inputs, const tyndall::MediumInput& input, const tyndall::FloatField& ior)
+{
+  vtkPolyData* const given = vtkPolyData::GetData(inputs[PHOTONS]);
+  if (vtkImageData::GetData(inputs[UNCOLLIDED]))
+  {
+    throw tyndall::InvalidInput(
+      "Photons and UncollidedLight are both connected, and are the same light in two forms. Disconnect one of them.");
+  }
+  const std::string doubt = tyndall::DoubtOfBox(given, input.medium.grid);
+  if (!doubt.empty())
+  {
+    vtkWarningMacro(<< doubt);
+  }
+  tyndall::Illumination illumination;
+  tyndall::AddFaceAlbedo(illumination, this->FaceAlbedo, this->FaceAlbedoColor);
+  return tyndall::SolveLatticeBoltzmann(*tyndall::Device::Find(this->GetDevice()), input.medium, ior,
+    tyndall::ReadPhotons(given), illumination, SettingsOf(this), tyndall::MonitorOf(this));
+}
+
+tyndall::LightField vtkLatticeBoltzmannLighting::Solve(vtkInformationVector** inputs)
+{
+  vtkImageData* image = vtkImageData::GetData(inputs[MEDIUM]);
+  const tyndall::MediumInput input = tyndall::ReadMedium(this, image);
+  const tyndall::FloatField ior =
+    tyndall::ReadChosenCells(this, tyndall::RefractiveIndex, image, "ior", tyndall::Need::Optional, { 1 });
+  if (vtkPolyData::GetData(inputs[PHOTONS]))
+  {
+    return this->SolveWithPhotons(inputs, input, ior);
+  }
+  const tyndall::IlluminationInput shining = this->ReadShining(inputs);
+  this->WarnWhereDark(shining.illumination, input.emission.IsThere());
+  return tyndall::SolveLatticeBoltzmann(*tyndall::Device::Find(this->GetDevice()), input.medium, ior,
+    shining.illumination, SettingsOf(this), tyndall::MonitorOf(this));
+}
 
 int vtkLatticeBoltzmannLighting::RequestData(
   vtkInformation*, vtkInformationVector** inputs, vtkInformationVector* outputs)
 {
   this->Note({});
   return tyndall::Guarded(this, outputs, [&] {
-    vtkImageData* image = vtkImageData::GetData(inputs[MEDIUM]);
-    const tyndall::MediumInput input = tyndall::ReadMedium(this, image);
-    const tyndall::FloatField ior =
-      tyndall::ReadChosenCells(this, tyndall::RefractiveIndex, image, "ior", tyndall::Need::Optional, { 1 });
-    const tyndall::IlluminationInput shining = this->ReadShining(inputs);
-    this->WarnWhereDark(shining.illumination, input.emission.IsThere());
-    tyndall::LightField light = tyndall::SolveLatticeBoltzmann(*tyndall::Device::Find(this->GetDevice()), input.medium,
-      ior, shining.illumination, SettingsOf(this), tyndall::MonitorOf(this));
+    tyndall::LightField light = this->Solve(inputs);
     this->Note(light);
-    this->WriteSolved(image, std::move(light), outputs);
+    this->WriteSolved(vtkImageData::GetData(inputs[MEDIUM]), std::move(light), outputs);
   });
 }
 
@@ -93,6 +156,9 @@ void vtkLatticeBoltzmannLighting::PrintSelf(ostream& os, vtkIndent indent)
   os << indent << "Lattice: " << this->Lattice << "\n";
   os << indent << "Scheme: " << this->Scheme << "\n";
   os << indent << "BlockSize: " << this->BlockSize << "\n";
+  os << indent << "Interleaved: " << this->Interleaved << "\n";
+  os << indent << "VoxelsPerTurn: " << this->VoxelsPerTurn << "\n";
+  os << indent << "Probes: " << this->Probes << "\n";
   os << indent << "StepsPerExchange: " << this->StepsPerExchange << "\n";
   os << indent << "MaximumOrders: " << this->MaximumOrders << "\n";
   os << indent << "NetFlux: " << this->NetFlux << "\n";

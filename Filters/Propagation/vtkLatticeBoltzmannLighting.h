@@ -7,6 +7,13 @@
 
 #include <string>
 
+namespace tyndall
+{
+class FloatField;
+struct LightField;
+struct MediumInput;
+}
+
 /**
  * @class vtkLatticeBoltzmannLighting
  * @brief light that is scattered very often, as it diffuses on a lattice of 18 or 6 directions
@@ -31,6 +38,9 @@
  * Input 2, optional: the environment, as vtkEnvironmentReader makes it.
  * Input 3, optional: uncollided light of another filter instead of all these (vtkScatteringSolver); that of lights and
  * environment goes straight, whatever the index.
+ * Input 4, optional: photons as vtkPhotonEmitter makes them, instead of all these: they march along bent rays to where
+ * they are first scattered, to their ends first, or (Interleaved) while their light diffuses. Not together with 3, nor
+ * with periodic axes.
  *
  * Output 0: the medium's image with cell arrays of 1 component, or 3 where medium or light has colour
  *
@@ -66,6 +76,15 @@ public:
     CONSERVATIVE = 1 ///< collisions that keep power and are positive for voxels of any thickness
   };
 
+  static constexpr int PHOTONS = UNCOLLIDED + 1; ///< number of the input port
+
+  ///@{
+  /// Photons (vtkPolyData) by connection or as data; null: none.
+  void SetPhotonsConnection(vtkAlgorithmOutput* photons);
+  void SetPhotonsData(vtkDataObject* photons);
+  void RemovePhotons();
+  ///@}
+
   ///@{
   /// Directions of the lattice: 18 (default), along axes and diagonals, or 6 along axes alone.
   tyndallSetRangeMacro(Lattice, int, 6, 18);
@@ -85,7 +104,30 @@ public:
   ///@}
 
   ///@{
-  /// Steps of a block before it exchanges light with its neighbours. Default 8, valid [1, 1000].
+  /// Whether photons, where there are any, march while what they have left so far diffuses, by StepsPerExchange steps to
+  /// VoxelsPerTurn voxels of their ways, as published (Bernabei et al.); steps go on until Tolerance is met. Default
+  /// off: they march to their ends first.
+  vtkSetMacro(Interleaved, bool);
+  vtkGetMacro(Interleaved, bool);
+  vtkBooleanMacro(Interleaved, bool);
+  ///@}
+
+  ///@{
+  /// Voxels that photons cross in a turn, where Interleaved. Default 16, valid [0, 1000000]; 0: to the end of their ways.
+  tyndallSetRangeMacro(VoxelsPerTurn, int, 0, 1000000);
+  vtkGetMacro(VoxelsPerTurn, int);
+  ///@}
+
+  ///@{
+  /// Voxels, spread evenly, at which it is looked how much light changes by steps. Default 4096, valid [0, infinity);
+  /// 0: all.
+  tyndallSetRangeMacro(Probes, int, 0, VTK_INT_MAX);
+  vtkGetMacro(Probes, int);
+  ///@}
+
+  ///@{
+  /// Steps of a block before it exchanges light with its neighbours, and steps of the lattice to a turn of photons.
+  /// Default 8, valid [1, 1000].
   tyndallSetRangeMacro(StepsPerExchange, int, 1, 1000);
   vtkGetMacro(StepsPerExchange, int);
   ///@}
@@ -120,6 +162,7 @@ protected:
   vtkLatticeBoltzmannLighting();
   ~vtkLatticeBoltzmannLighting() override;
 
+  int FillInputPortInformation(int port, vtkInformation* information) override;
   int RequestData(vtkInformation* request, vtkInformationVector** inputs, vtkInformationVector* outputs) override;
 
 private:
@@ -127,10 +170,16 @@ private:
   void operator=(const vtkLatticeBoltzmannLighting&) = delete;
 
   void Note(const tyndall::LightField& light);
+  tyndall::LightField Solve(vtkInformationVector** inputs);
+  tyndall::LightField SolveWithPhotons(
+    vtkInformationVector** inputs, const tyndall::MediumInput& input, const tyndall::FloatField& ior);
 
   int Lattice;
   int Scheme;
   int BlockSize;
+  bool Interleaved;
+  int VoxelsPerTurn;
+  int Probes;
   int StepsPerExchange;
   int MaximumOrders;
   bool NetFlux;

@@ -1,5 +1,6 @@
 #include "LatticeBoltzmann/InterleavedLattice.h"
 
+#include "Device/Clock.h"
 #include "LatticeBoltzmann/LatticeLight.h"
 #include "Light/LeftOut.h"
 
@@ -170,16 +171,18 @@ LightField InterleavedLattice::Solve(PhotonMarcher& marcher, const std::vector<P
   turns.begin = [this](const PackedPhotons& packed, int channels) { this->Begin(packed, channels); };
   turns.meanwhile = [this](const cl::CommandQueue& queue) { return this->Step(queue); };
   turns.take = [this](const cl::CommandQueue& queue, const Buffer<float>& fluence) { this->Take(queue, fluence); };
+  const double start = ClockSeconds();
   TurnTimes times;
   const PhotonLight found = marcher.MarchByTurns(photons, turns, times, OfPart(monitor, 0.0, 0.3));
   this->TakeAll(found);
+  const double marched = (ClockSeconds() - start) / static_cast<double>(this->Channels.size()); // rows add them up
   LightField light = BeginLight(*this->Problem, this->Settings);
   double thickest = 0.0;
   for (std::size_t c = 0; c < this->Channels.size(); ++c)
   {
     LatticeChannel& channel = *this->Channels[c].lattice;
     const double all = static_cast<double>(this->Channels.size());
-    channel.Settle(this->Steps, OfPart(monitor, 0.3 + 0.7 * c / all, 0.3 + 0.7 * (c + 1) / all));
+    channel.Settle({ this->Steps, marched }, OfPart(monitor, 0.3 + 0.7 * c / all, 0.3 + 0.7 * (c + 1) / all));
     channel.AddTo(light);
     thickest = std::max(thickest, channel.Thickest());
   }

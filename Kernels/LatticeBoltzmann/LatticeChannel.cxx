@@ -1,6 +1,5 @@
 #include "LatticeBoltzmann/LatticeChannel.h"
 
-#include "LatticeBoltzmann/Settling.h"
 #include "LatticeBoltzmann/SteadyLattice.h"
 #include "Numerics/Constants.h"
 
@@ -40,14 +39,14 @@ void LatticeChannel::Solve(const Monitor& monitor)
   }
   else
   {
-    this->Settle(0, monitor);
+    this->Settle({}, monitor);
   }
 }
 
-void LatticeChannel::Settle(int done, const Monitor& monitor)
+void LatticeChannel::Settle(const StepsBefore& before, const Monitor& monitor)
 {
   this->Fluence =
-    Settling(this->TheDevice, this->Photons, this->Problem.TheGrid(), this->Settings).Run(done, monitor, this->Rows);
+    Settling(this->TheDevice, this->Photons, this->Problem.TheGrid(), this->Settings).Run(before, monitor, this->Rows);
 }
 
 void LatticeChannel::Shine()

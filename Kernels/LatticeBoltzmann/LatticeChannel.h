@@ -2,6 +2,7 @@
 
 #include "Device/Monitor.h"
 #include "LatticeBoltzmann/Lattice.h"
+#include "LatticeBoltzmann/Settling.h"
 #include "Light/LightField.h"
 
 #include <vector>
@@ -40,8 +41,8 @@ public:
   void Solve(const Monitor& monitor);
   /// Takes uncollided light that has changed.
   void Shine();
-  /// Steps on, from densities that so many steps have left.
-  void Settle(int done, const Monitor& monitor);
+  /// Steps on, from densities that other steps have left.
+  void Settle(const StepsBefore& before, const Monitor& monitor);
   void AddTo(LightField& light);
 
 private:

@@ -78,16 +78,20 @@ void Settling::Step(int steps, double done, const Monitor& monitor)
   });
 }
 
-std::vector<float> Settling::Run(int stepsBefore, const Monitor& monitor, std::vector<ConvergenceRow>& rows)
+std::vector<float> Settling::Run(const StepsBefore& before, const Monitor& monitor, std::vector<ConvergenceRow>& rows)
 {
-  const double start = ClockSeconds();
+  const double start = ClockSeconds() - before.seconds;
   const bool asked = this->Settings.maximumSteps > 0;
   const int most = asked ? this->Settings.maximumSteps : MostSteps;
   // A look costs about as much as a step; blocks are looked at after whole exchanges.
   const int exchange = this->Settings.blockSize > 0 ? this->Settings.stepsPerExchange : 1;
   const int look = (StepsPerLook + exchange - 1) / exchange * exchange;
   double residual = 1.0, done = 0.0;
-  for (int step = stepsBefore; step < most && (asked || residual > this->Settings.tolerance);)
+  if (before.steps > 0)
+  {
+    this->Change(); // since now, not since it was dark: how changes fall would seem much too fast
+  }
+  for (int step = before.steps; step < most && (asked || residual > this->Settings.tolerance);)
   {
     const int steps = std::min(look, most - step);
     this->Step(steps, done, monitor);

@@ -8,15 +8,21 @@
 
 namespace tyndall
 {
+/// Steps that were done already, which count.
+struct StepsBefore
+{
+  int steps = 0;
+  double seconds = 0.0;
+};
+
 /// Steps until little changes, or as many as were asked for.
 class Settling
 {
 public:
   Settling(Device& device, Lattice& lattice, const Grid& grid, const LatticeSettings& settings);
 
-  /// @param done  steps that were done before, which count
   /// @return fluence of the last step
-  std::vector<float> Run(int done, const Monitor& monitor, std::vector<ConvergenceRow>& rows);
+  std::vector<float> Run(const StepsBefore& before, const Monitor& monitor, std::vector<ConvergenceRow>& rows);
 
 private:
   double Change();

@@ -1,6 +1,9 @@
 #include "MediumScene.h"
 
 #include "vtkLatticeBoltzmannLighting.h"
+#include "vtkLightRig.h"
+#include "vtkPhotonEmitter.h"
+#include "vtkPhotonMarcher.h"
 
 #include "vtkTable.h"
 
@@ -66,6 +69,53 @@ void StepsByBlocksToTheSameLight(test::Claims& claims)
   }
 }
 
+/// A beam of photons through a prism of higher index, and the same light handed on by the marcher.
+void DiffusesWhatPhotonsLeave(test::Claims& claims)
+{
+  auto medium = test::MakeMedium({ { 14, 9, 11 }, { 0.1, 0.1, 0.1 } }, 0.3, 4.0);
+  test::AddCells(medium, "ior", 1.0);
+  for (vtkIdType i = 500; i < 900; ++i)
+  {
+    medium->GetCellData()->GetArray("ior")->SetTuple1(i, 1.4);
+  }
+  vtkNew<vtkLightRig> lights;
+  vtkNew<vtkPhotonEmitter> emitter;
+  emitter->SetInputDataObject(medium);
+  emitter->SetLightsConnection(lights->GetOutputPort());
+  emitter->SetPhotonCount(2000);
+  vtkNew<vtkPhotonMarcher> marcher;
+  marcher->SetInputDataObject(medium);
+  marcher->SetPhotonsConnection(emitter->GetOutputPort());
+  vtkNew<vtkLatticeBoltzmannLighting> lattice;
+  test::Errors errors(lattice);
+  lattice->SetInputDataObject(medium);
+  lattice->SetTolerance(1e-5);
+  lattice->SetUncollidedLightConnection(marcher->GetOutputPort());
+  lattice->Update();
+  vtkNew<vtkImageData> handedOn;
+  handedOn->DeepCopy(lattice->GetOutput());
+  lattice->SetPhotonsConnection(emitter->GetOutputPort());
+  lattice->Update();
+  claims.That(errors.WasOneWith("Disconnect one of them"), "refuses the same light twice");
+  lattice->RemoveUncollidedLight();
+  for (const bool interleaved : { false, true })
+  {
+    lattice->SetInterleaved(interleaved);
+    lattice->Update();
+    claims.That(errors.None(), "photons are taken without complaint");
+    vtkDataArray* one = handedOn->GetCellData()->GetArray("fluence");
+    vtkDataArray* other = lattice->GetOutput()->GetCellData()->GetArray("fluence");
+    for (vtkIdType i = 0; other && i < one->GetNumberOfTuples(); ++i)
+    {
+      claims.Near(other->GetTuple1(i) / one->GetTuple1(i), 1.0, interleaved ? 3e-4 : 1e-6, "the light handed on");
+    }
+    claims.That(lattice->GetBalanceError() < 1e-3, "power is conserved");
+  }
+  lattice->SetPeriodicY(true);
+  lattice->Update();
+  claims.That(errors.WasOneWith("periodic axes"), "refuses photons across periodic axes");
+}
+
 void WarnsBeforeItIsNotPositive(test::Claims& claims)
 {
   vtkNew<vtkLatticeBoltzmannLighting> lattice;
@@ -119,6 +169,7 @@ int TestLatticeBoltzmannLighting(int, char*[])
   FillsAFurnace(claims, 1.0);
   FillsAFurnace(claims, 1.5);
   StepsByBlocksToTheSameLight(claims);
+  DiffusesWhatPhotonsLeave(claims);
   WarnsBeforeItIsNotPositive(claims);
   SaysWhatIsWrong(claims);
   return claims.Result();

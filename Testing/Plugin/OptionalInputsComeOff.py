@@ -42,6 +42,11 @@ for make in (LightPropagationMaps, DiscreteOrdinates, LatticeBoltzmannLighting):
     assert brightness(proxy) > brightness(marched), make  # it is scattered as well
     proxy.UncollidedLight = None
     assert brightness(proxy) == 0, make
+    if make is LatticeBoltzmannLighting:
+        proxy.Photons = emitter
+        assert brightness(proxy) > brightness(marched)
+        proxy.Photons = None
+        assert brightness(proxy) == 0
 
 
 def batches():
