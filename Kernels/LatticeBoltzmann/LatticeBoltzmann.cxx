@@ -3,6 +3,7 @@
 #include "Device/Batches.h"
 #include "Device/Clock.h"
 #include "Device/Errors.h"
+#include "LatticeBoltzmann/CubicVoxels.h"
 #include "LatticeBoltzmann/Lattice.h"
 #include "LatticeBoltzmann/SteadyLattice.h"
 #include "Light/LeftOut.h"
@@ -22,15 +23,13 @@ namespace tyndall
 {
 namespace
 {
-constexpr double CubesTo = 1e-3;   ///< edges of a voxel may differ by so much
 constexpr int StepsPerLook = 16;   ///< after which it is looked at how much changes, at least
 constexpr int MostSteps = 200000;  ///< where the tolerance is not met
 constexpr double Slowest = 0.9999; ///< of changes from look to look: beyond, their rest is not known
 
 void CheckCubes(const Grid& grid)
 {
-  const auto [least, most] = std::minmax_element(grid.spacing.begin(), grid.spacing.end());
-  if (*most > (1.0 + CubesTo) * *least)
+  if (!HasCubicVoxels(grid))
   {
     throw InvalidInput("The lattice's voxels have to be cubes; their edges are " + Text("%.6g", grid.spacing[0]) +
       ", " + Text("%.6g", grid.spacing[1]) + ", " + Text("%.6g", grid.spacing[2]) + ". Resample the image.");
