@@ -1,12 +1,15 @@
 // Lattice-Boltzmann lighting (Geist et al. 2004; Bernabei et al.): what a step costs beside the machine's bandwidth,
 // and how soon light is steady.
 //
-//   TyndallBenchLattice [--quick] [step] [blocks] [albedo]
+//   TyndallBenchLattice [--quick] [step] [blocks] [albedo] [isotropy] [diffusion]
 //
 //   step    a step of 128^3 voxels over the time that its bytes take at the bandwidth measured in the same run
 //   blocks  blocks of 4^3 voxels against all voxels together, steps and seconds (their Figure 6)
 //   albedo  steps, and iterations of the steady equations, against albedo (their Figure 11)
+//   isotropy   light of a point along axes and diagonals, 18 and 6 directions
+//   diffusion  cubes against Monte Carlo, by thickness and albedo: where diffusion can be trusted
 
+#include "LatticeTables.h"
 #include "MachineLimits.h"
 #include "Measure.h"
 #include "Program.h"
@@ -238,6 +241,14 @@ int main(int argc, char* argv[])
     if (arguments.Asks("albedo"))
     {
       PrintAlbedo(device, arguments.quick);
+    }
+    if (arguments.Asks("isotropy"))
+    {
+      PrintIsotropy(device, arguments.quick);
+    }
+    if (arguments.Asks("diffusion"))
+    {
+      PrintDiffusion(device, arguments.quick);
     }
   });
 }
