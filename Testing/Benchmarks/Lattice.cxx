@@ -161,9 +161,22 @@ double LargestDifference(const std::vector<float>& values, const std::vector<flo
   return largest;
 }
 
+/// Sum of differences over all light: voxels that are almost dark do not count.
+double DifferenceOfAll(const std::vector<float>& values, const std::vector<float>& reference)
+{
+  double differences = 0.0, all = 0.0;
+  for (std::size_t i = 0; i < values.size(); ++i)
+  {
+    differences += std::abs(static_cast<double>(values[i]) - reference[i]);
+    all += reference[i];
+  }
+  return differences / all;
+}
+
 void PrintRun(Table& table, int edge, const std::string& scene, const char* method, const Run& run, const Run& against)
 {
   const double difference = LargestDifference(run.light.fluence, against.light.fluence);
+  const double ofAll = DifferenceOfAll(run.light.fluence, against.light.fluence);
   JsonLine()
     .Add("bench", "lattice")
     .Add("case", scene)
@@ -172,19 +185,20 @@ void PrintRun(Table& table, int edge, const std::string& scene, const char* meth
     .Add("iterations", run.Steps())
     .Add("seconds", run.seconds)
     .Add("error_max", difference)
+    .Add("error_l1", ofAll)
     .Add("left_over", run.light.balance.leftOver[0] / run.light.balance.entered[0])
     .Add("ratio", run.seconds / against.seconds)
     .Add("against", "all voxels together")
     .Add("load", LoadAverage())
     .Print();
   table.Add({ scene, method, std::to_string(run.Steps()), Text("%.3f", run.seconds),
-    Text("%.2f", run.seconds / against.seconds), Text("%.1e", difference) });
+    Text("%.2f", run.seconds / against.seconds), Text("%.1e", difference), Text("%.1e", ofAll) });
 }
 
 void PrintBlocks(Device& device, bool quick)
 {
   const int edge = quick ? 12 : 64;
-  Table table({ "albedo", "method", "steps", "s", "over together", "largest difference" });
+  Table table({ "albedo", "method", "steps", "s", "over together", "largest difference", "of all light" });
   for (double albedo : { 0.5, 0.9, 0.999 })
   {
     const Box box(edge, 0.5, albedo);
@@ -210,7 +224,7 @@ void PrintBlocks(Device& device, bool quick)
 void PrintAlbedo(Device& device, bool quick)
 {
   const int edge = quick ? 12 : 64;
-  Table table({ "albedo", "method", "steps", "s", "over together", "largest difference" });
+  Table table({ "albedo", "method", "steps", "s", "over together", "largest difference", "of all light" });
   for (double albedo : { 0.1, 0.5, 0.9, 0.99, 0.999, 1.0 })
   {
     const Box box(edge, 0.5, albedo);

@@ -55,18 +55,24 @@ struct Point
   }
 };
 
-void PrintPoint(Device& device, bool quick, Table& table, int directions, int steps)
+struct PointScene
 {
-  const double thickness = 0.5, albedo = steps == 0 ? 0.9 : 1.0;
-  const Point point(quick ? 25 : 65, thickness, albedo);
+  double thickness; ///< of a voxel
+  double albedo;
+  int steps; ///< 0: steady
+};
+
+void PrintPoint(Device& device, bool quick, Table& table, int directions, const PointScene& of)
+{
+  const Point point(quick ? 25 : 65, of.thickness, of.albedo);
   LatticeSettings settings;
   settings.directions = directions;
-  settings.maximumSteps = steps;
+  settings.maximumSteps = of.steps;
   settings.tolerance = 1e-7; // far off there is little light
   const LightField light = SolveLatticeBoltzmann(device, point.medium, {}, {}, settings);
   const std::string edge = std::to_string(point.edge), grid = edge + "x" + edge + "x" + edge;
-  const std::string scene =
-    steps == 0 ? "isotropy, steady, albedo 0.9" : "isotropy, after " + std::to_string(steps) + " steps, albedo 1";
+  const std::string scene = "isotropy, sigma_t h " + Text("%g", of.thickness) + ", albedo " + Text("%g", of.albedo) +
+    (of.steps == 0 ? ", steady" : ", after " + std::to_string(of.steps) + " steps");
   const std::string method = std::to_string(directions) + " directions";
   for (const double distance : quick ? std::vector<double>{ 4.0 } : std::vector<double>{ 2.0, 4.0, 8.0, 12.0, 16.0 })
   {
@@ -90,14 +96,14 @@ void PrintPoint(Device& device, bool quick, Table& table, int directions, int st
 void PrintIsotropy(Device& device, bool quick)
 {
   Table table({ "scene", "method", "voxels away", "face diagonal", "space diagonal" });
-  for (const int steps : { 0, quick ? 16 : 64 })
+  for (const PointScene& scene :
+    { PointScene{ 0.5, 0.9, 0 }, PointScene{ 2.0, 0.99, 0 }, PointScene{ 0.5, 1.0, quick ? 16 : 64 } })
   {
     for (const int directions : { 18, 6 })
     {
-      PrintPoint(device, quick, table, directions, steps);
+      PrintPoint(device, quick, table, directions, scene);
     }
   }
-  table.Print("Light of a voxel that shines, voxels of half a mean free path: fluence along diagonals over that along "
-              "axes at equal distance");
+  table.Print("Light of a voxel that shines: fluence along diagonals over that along axes at equal distance");
 }
 }
