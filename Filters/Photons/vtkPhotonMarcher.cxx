@@ -3,6 +3,7 @@
 #include "Common/LightTransportData.h"
 #include "Common/WholeImage.h"
 #include "Device/Device.h"
+#include "Numerics/ChooseEvenly.h"
 #include "Photons/Marching/PublishedPhotons.h"
 #include "Photons/PhotonData.h"
 #include "Photons/RefractiveInput.h"

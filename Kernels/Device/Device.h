@@ -74,6 +74,8 @@ public:
 
   const cl::Context& Context() const { return this->TheContext; }
   cl::CommandQueue& Queue() { return this->TheQueue; }
+  /// Another in-order queue, whose events know when they began and ended. What is on both may be done side by side.
+  cl::CommandQueue AnotherQueue() const { return { this->TheContext, this->TheDevice, CL_QUEUE_PROFILING_ENABLE }; }
   void Finish();
 
   /// Note that work of about so many seconds was queued, and wait for all of it once that is a tenth of a second:

@@ -15,7 +15,8 @@ namespace tyndall
 namespace
 {
 constexpr int Ways[18][3] = LATTICE_WAYS;
-constexpr int Width = 16; ///< of the vectors of LatticeStep.cl
+constexpr int Width = 16;                               ///< of the vectors of LatticeStep.cl
+constexpr std::size_t Cached = std::size_t{ 48 } << 20; ///< bytes of densities that caches may hold: with more, none do
 
 cl::NDRange WholeBlocks(const std::array<int, 3>& size, int edge)
 {
@@ -51,8 +52,8 @@ LatticeVoxels::LatticeVoxels(const PropagationProblem& problem, const Field& ior
     this->lost.push_back(static_cast<float>(published ? absorbs : -std::expm1(-absorbs)));
     this->kept.push_back(published ? static_cast<float>(1.0 - s) : 1.0f - this->lost.back());
     this->passes.push_back(static_cast<float>(!published && s > most ? most / s : 1.0));
-    this->source.push_back(static_cast<float>(edge *
-      (medium.sigma_s.At(i, channel) * direct.fluence.At(i, channel) + 4.0 * Pi * medium.emission.At(i, channel))));
+    const double lost = this->lost.back();
+    this->begins.push_back(published || absorbs < 1e-6 ? 1.0 : 2.0 * lost / ((2.0 - lost) * absorbs));
     this->squared.push_back(ior.values && !published ? ior.At(i, 0) * ior.At(i, 0) : 1.0f);
     this->passesAll = this->passesAll && this->passes.back() == 1.0f;
     this->bends = this->bends || this->squared.back() != this->squared.front();
@@ -64,6 +65,18 @@ LatticeVoxels::LatticeVoxels(const PropagationProblem& problem, const Field& ior
     const Illumination& shining = problem.Shining();
     this->incoming[face] = 4.0 * Pi * (shining.sky[c] + shining.faces[face][c]) * even;
     this->albedo[face] = shining.faceAlbedo[face][c];
+  }
+  this->Shine(problem, direct, channel);
+}
+
+void LatticeVoxels::Shine(const PropagationProblem& problem, const UncollidedImage& direct, int channel)
+{
+  const Medium& medium = problem.TheMedium();
+  this->source.resize(medium.grid.VoxelCount());
+  for (std::size_t i = 0; i < this->source.size(); ++i)
+  {
+    this->source[i] = static_cast<float>(this->begins[i] * medium.grid.spacing[0] *
+      (medium.sigma_s.At(i, channel) * direct.fluence.At(i, channel) + 4.0 * Pi * medium.emission.At(i, channel)));
   }
 }
 
@@ -80,6 +93,7 @@ double LatticeVoxels::Given() const
 
 Lattice::Lattice(Device& device, const Grid& grid, const LatticeSettings& settings, const LatticeVoxels& voxels)
   : TheDevice(device)
+  , Queue(device.Queue())
   , Size(grid.size)
   , Settings(settings)
 {
@@ -87,6 +101,8 @@ Lattice::Lattice(Device& device, const Grid& grid, const LatticeSettings& settin
   this->Options = Define("DIRECTIONS", settings.directions) + Define("BENDS", voxels.bends) +
     Define("PASSES_ALL", voxels.passesAll) + Define("REFLECTS", voxels.Reflects()) +
     Define("PUBLISHED", settings.scheme == LatticeScheme::Published);
+  const std::size_t bytes = 2 * sizeof(float) * static_cast<std::size_t>(settings.directions) * this->TheInfo.stride;
+  this->Options += Define("STREAMS", device.IsCpu() && bytes > Cached);
   this->Load(voxels);
   this->FillDensities();
   this->Shown = Buffer<float>(device, grid.VoxelCount(), "fluence");
@@ -96,7 +112,7 @@ Lattice::Lattice(Device& device, const Grid& grid, const LatticeSettings& settin
 void Lattice::LayOut(const LatticeVoxels& voxels)
 {
   std::copy(this->Size.begin(), this->Size.end(), this->TheInfo.size);
-  this->TheInfo.row = this->Size[0] + 2;
+  this->TheInfo.row = RoundUp(this->Size[0], Width) + LatticeFirst; // the place behind it may be the next row's first
   this->TheInfo.layer = this->TheInfo.row * (this->Size[1] + 2);
   for (int i = 0; i < 18; ++i)
   {
@@ -121,23 +137,34 @@ std::vector<float> Lattice::Arrange(const Inside& inside, const Outside& outside
     {
       for (at[0] = -1; at[0] <= this->Size[0]; ++at[0])
       {
-        int face = -1;
+        int faces = 0;
+        float beyondThem = 0.0f; // of a corner: halfway between its faces
         std::array<int, 3> near = at;
         for (int a = 0; a < 3; ++a)
         {
           const bool beyond = at[a] < 0 || at[a] >= this->Size[a];
-          face = face < 0 && beyond && !this->Settings.periodic[a] ? 2 * a + (at[a] < 0 ? 0 : 1) : face;
+          if (beyond && !this->Settings.periodic[a])
+          {
+            beyondThem += outside(2 * a + (at[a] < 0 ? 0 : 1));
+            ++faces;
+          }
           near[a] = beyond ? (at[a] + this->Size[a]) % this->Size[a] : at[a];
         }
         const std::size_t voxel =
           (static_cast<std::size_t>(near[2]) * this->Size[1] + near[1]) * this->Size[0] + near[0];
         const std::size_t place = static_cast<std::size_t>(at[2] + 1) * this->TheInfo.layer +
-          static_cast<std::size_t>(at[1] + 1) * this->TheInfo.row + static_cast<std::size_t>(at[0] + 1);
-        values[place] = face < 0 ? inside(voxel) : outside(face);
+          static_cast<std::size_t>(at[1] + 1) * this->TheInfo.row + static_cast<std::size_t>(at[0] + LatticeFirst);
+        values[place] = faces == 0 ? inside(voxel) : beyondThem / static_cast<float>(faces);
       }
     }
   }
   return values;
+}
+
+Buffer<float> Lattice::Placed(const std::vector<float>& values, const char* what) const
+{
+  return Buffer<float>(
+    this->TheDevice, this->Arrange([&](std::size_t voxel) { return values[voxel]; }, [](int) { return 0.0f; }), what);
 }
 
 void Lattice::Load(const LatticeVoxels& voxels)
@@ -147,7 +174,7 @@ void Lattice::Load(const LatticeVoxels& voxels)
       this->Arrange([&](std::size_t voxel) { return values[voxel]; }, [&](int) { return beyond; }), what);
   };
   this->Turning = arranged(voxels.turning, 0.0f, "how voxels scatter");
-  this->Source = arranged(voxels.source, 0.0f, "sources");
+  this->Shine(voxels.source);
   this->Kept = arranged(voxels.kept, 1.0f, "how voxels absorb");
   this->Resistance = Buffer<float>(this->TheDevice,
     this->Arrange([&](std::size_t voxel) { return 1.0f / voxels.passes[voxel]; }, [](int) { return 1.0f; }),
@@ -201,7 +228,7 @@ void Lattice::Wrap(const Buffer<float>& densities)
       const int u = (a + 1) % 3, v = (a + 2) % 3;
       With(wrap, densities, this->TheInfo.stride, cl_int(steps[u]), cl_int(steps[v]), cl_int(steps[a]),
         cl_int(this->Size[a]));
-      this->TheDevice.Queue().enqueueNDRangeKernel(
+      this->Queue.enqueueNDRangeKernel(
         wrap, cl::NullRange, cl::NDRange(this->Size[u] + 2, this->Size[v] + 2, this->Settings.directions));
     }
   }
@@ -229,7 +256,7 @@ void Lattice::StepTogether(bool writes)
   cl::Kernel step = this->Kernel("step_lattice");
   With(step, this->TheInfo, this->Resistance, this->Squared, this->Albedo, this->Turning, this->Kept, this->Source,
     this->Now, this->Next, this->Shown, cl_int(writes));
-  this->TheDevice.Queue().enqueueNDRangeKernel(step, cl::NullRange, cl::NDRange(this->Size[1], this->Size[2]));
+  this->Queue.enqueueNDRangeKernel(step, cl::NullRange, cl::NDRange(this->Size[1], this->Size[2]));
   this->Now.Swap(this->Next);
 }
 
@@ -242,9 +269,31 @@ void Lattice::StepBlocks(int steps)
     this->TheDevice.Kernel("step_blocks", kernel_source::LatticeBlocks, this->Options + Define("BLOCK", edge));
   With(step, this->TheInfo, this->Resistance, this->Squared, this->Albedo, this->Turning, this->Kept, this->Source,
     this->Next, this->Sends, this->Now, this->Shown, cl_int(steps));
-  this->TheDevice.Queue().enqueueNDRangeKernel(
+  this->Queue.enqueueNDRangeKernel(
     step, cl::NullRange, WholeBlocks(this->Size, edge), cl::NDRange(group, group, group));
   this->Next.Swap(this->Sends);
+}
+
+std::vector<float> Lattice::FluenceAt(const Buffer<cl_int>& voxels) const
+{
+  cl::Kernel look = this->Kernel("look_at_lattice");
+  const Buffer<float> seen(this->TheDevice, voxels.Size(), "fluence at probes");
+  With(look, this->Shown, voxels, seen);
+  this->TheDevice.Queue().enqueueNDRangeKernel(look, cl::NullRange, cl::NDRange(voxels.Size()));
+  return seen.Read();
+}
+
+void Lattice::Shine(const std::vector<float>& source)
+{
+  this->Source = this->Placed(source, "sources");
+}
+
+void Lattice::ShineBy(
+  const Buffer<float>& scatters, const Buffer<float>& glows, const Buffer<float>& fluence, int channels, int channel)
+{
+  cl::Kernel shine = this->Kernel("shine_lattice");
+  With(shine, this->TheInfo, scatters, glows, fluence, cl_int(channels), cl_int(channel), this->Source);
+  this->Queue.enqueueNDRangeKernel(shine, cl::NullRange, cl::NDRange(this->Size[1], this->Size[2]));
 }
 
 std::vector<float> Lattice::Leaving(const Buffer<float>& densities, const LatticeInfo& info)

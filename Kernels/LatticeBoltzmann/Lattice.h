@@ -28,6 +28,7 @@ struct LatticeVoxels
   std::vector<float> passes;        ///< part that links let through
   std::vector<float> squared;       ///< n^2
   std::vector<float> source;        ///< W / length^2, that begins evenly in all directions
+  std::vector<double> begins;       ///< part of what begins in a voxel that is not absorbed in the same step, Eq. (L2a)
   bool bends = false;               ///< n^2 varies
   bool passesAll = true;            ///< no link gives back light
   double thickest = 0.0;            ///< sigma_t h, by the transport extinction
@@ -37,6 +38,9 @@ struct LatticeVoxels
   /// @param ior  null: 1
   LatticeVoxels(const PropagationProblem& problem, const Field& ior, const LatticeSettings& settings,
     const UncollidedImage& direct, int channel);
+
+  /// Source of uncollided light, and of what the medium emits.
+  void Shine(const PropagationProblem& problem, const UncollidedImage& direct, int channel);
 
   bool Reflects() const; ///< some face gives back light
   double Given() const;  ///< above 0: something shines
@@ -52,6 +56,19 @@ public:
   /// @param writes  fluence of the last of them is to be there
   void Step(int steps, bool writes);
   std::vector<float> Fluence() const { return this->Shown.Read(); } ///< W / length^2, by voxel
+  /// The same at these voxels alone.
+  std::vector<float> FluenceAt(const Buffer<cl_int>& voxels) const;
+
+  /// Steps are queued here from now on, and not on the device's own queue.
+  void StepOn(const cl::CommandQueue& queue) { this->Queue = queue; }
+  void Shine(const std::vector<float>& source); ///< by voxel, as LatticeVoxels has it
+  /// Light that has its fluence on the device is scattered, beside what the medium emits. Queued.
+  /// @param scatters  by place of the lattice: part of the fluence that a step's way through a voxel scatters, times
+  ///   what its units are in the lattice's
+  /// @param glows     by place: what begins in a voxel without that light
+  /// @param fluence   [voxel][channels], of which `channel` is taken
+  void ShineBy(
+    const Buffer<float>& scatters, const Buffer<float>& glows, const Buffer<float>& fluence, int channels, int channel);
 
   /// Densities as a solver found them, [direction][voxel], for what leaves and flows.
   /// @param directions  two at a time, from `first` on
@@ -66,6 +83,8 @@ public:
   /// W / length^2, [x, y, z][voxel].
   std::vector<float> NetFlux();
 
+  /// Values by voxel on the device, by place of the lattice; 0 outside.
+  Buffer<float> Placed(const std::vector<float>& values, const char* what) const;
   /// A value of each place of the lattice: inside(voxel), or outside(face).
   template <class Inside, class Outside>
   std::vector<float> Arrange(const Inside& inside, const Outside& outside) const;
@@ -81,6 +100,7 @@ private:
   cl::Kernel Kernel(const char* name) const;
 
   Device& TheDevice;
+  cl::CommandQueue Queue; ///< of steps
   const std::array<int, 3> Size;
   const LatticeSettings& Settings;
   LatticeInfo TheInfo = {};

@@ -37,7 +37,7 @@ __kernel __attribute__((reqd_work_group_size(BLOCK, BLOCK, BLOCK))) void step_bl
   const int x = get_global_id(0), y = get_global_id(1), z = get_global_id(2);
   const int me = (get_local_id(2) * BLOCK + get_local_id(1)) * BLOCK + get_local_id(0);
   const bool exists = x < lattice.size[0] && y < lattice.size[1] && z < lattice.size[2];
-  const ulong at = exists ? (ulong)(z + 1) * lattice.layer + (ulong)(y + 1) * lattice.row + x + 1 : 0;
+  const ulong at = exists ? (ulong)(z + 1) * lattice.layer + (ulong)(y + 1) * lattice.row + x + LatticeFirst : 0;
   const float half_source = 0.5f * source[at], even = turning[at], stays = kept[at];
   const float own = PASSES_ALL ? 1.0f : resistance[at], index = BENDS ? squared[at] : 1.0f;
   float here[DIRECTIONS], mean[DIRECTIONS], sum = 0.0f;

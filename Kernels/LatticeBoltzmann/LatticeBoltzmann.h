@@ -7,6 +7,9 @@
 #include "Lights/Lights.h"
 #include "Medium/Field.h"
 #include "Medium/Medium.h"
+#include "Photons/Photons.h"
+
+#include <vector>
 
 namespace tyndall
 {
@@ -32,4 +35,12 @@ namespace tyndall
 /// @throws DeviceError where it does not fit; Aborted
 LightField SolveLatticeBoltzmann(Device& device, const Medium& medium, const Field& ior,
   const Illumination& illumination, const LatticeSettings& settings, const Monitor& monitor = {});
+
+/// The same of the light of photons, which march along bent rays to where they are first scattered (PhotonMarcher), as
+/// uncollided light: to their ends before light diffuses, or beside it (InterleavedLattice.h), as settings say. Of
+/// `illumination` what is diffuse and faces' albedo count, and no lamp.
+/// @throws InvalidInput where an axis is periodic, or what PhotonMarcher says; and as above
+LightField SolveLatticeBoltzmann(Device& device, const Medium& medium, const Field& ior,
+  const std::vector<Photon>& photons, const Illumination& illumination, const LatticeSettings& settings,
+  const Monitor& monitor = {});
 }

@@ -28,23 +28,25 @@ __constant char Ways[18][3] = LATTICE_WAYS;
 //   own, other  resistance of both: inverse of the part that a link lets through between two like them
 //   here, there n^2 of both; there 0: outside, where it is the voxel's own, and light comes as n^2 times `sent`
 //   albedo      of the face between; 0 inside
-#define DEFINE_ARRIVING(name, type)                                                                \
-  static type name(type sent, type back, type own, type other, type here, type there, type albedo) \
-  {                                                                                                \
-    type part = PASSES_ALL ? (type)(1.0f) : 2.0f / (own + other);                                  \
-    type returns = part;                                                                           \
-    if (BENDS)                                                                                     \
-    {                                                                                              \
-      const type by_here = 1.0f / here, by_there = select(1.0f / there, by_here, there == 0.0f);   \
-      const type both = 2.0f / (own * by_here + other * by_there + fabs(by_here - by_there));      \
-      part = select(both * by_there, both, there == 0.0f);                                         \
-      returns = fmin(both * by_here, (type)(1.0f));                                                \
-    }                                                                                              \
-    if (REFLECTS)                                                                                  \
-    {                                                                                              \
-      returns -= returns * albedo;                                                                 \
-    }                                                                                              \
-    return PLAIN ? sent : part * sent + (1.0f - returns) * back;                                   \
+#define DEFINE_ARRIVING(name, type)                                                                                \
+  static type name(type sent, type back, type own, type other, type here, type there, type albedo)                 \
+  {                                                                                                                \
+    type part = PASSES_ALL ? (type)(1.0f) : 2.0f / (own + other);                                                  \
+    type returns = part;                                                                                           \
+    if (BENDS)                                                                                                     \
+    {                                                                                                              \
+      const type by_here = 1.0f / here;                                                                            \
+      const type lower = select(fmin(here, there), here, there == 0.0f); /* n^2 of which all goes on */            \
+      const type by_there = select(1.0f / there, by_here, there == 0.0f);                                          \
+      const type both = PASSES_ALL ? lower : 2.0f / (own * by_here + other * by_there + fabs(by_here - by_there)); \
+      part = select(both * by_there, both, there == 0.0f);                                                         \
+      returns = fmin(both * by_here, (type)(1.0f));                                                                \
+    }                                                                                                              \
+    if (REFLECTS)                                                                                                  \
+    {                                                                                                              \
+      returns -= returns * albedo;                                                                                 \
+    }                                                                                                              \
+    return PLAIN ? sent : part * sent + (1.0f - returns) * back;                                                   \
   }
 
 // Density along a direction after a collision (Eqs. (L1), (L6)).

@@ -27,6 +27,16 @@ void Check(const LatticeSettings& settings)
     throw InvalidInput("MaximumOrders is " + std::to_string(settings.maximumSteps) +
       "; give a number of steps, or 0 for as many as the tolerance needs.");
   }
+  if (settings.probes < 0)
+  {
+    throw InvalidInput(
+      "Probes is " + std::to_string(settings.probes) + "; give a number of voxels to look at, or 0 for all.");
+  }
+  if (settings.stretches < 0)
+  {
+    throw InvalidInput("VoxelsPerTurn is " + std::to_string(settings.stretches) +
+      "; give the voxels that photons cross in a turn, or 0 for all.");
+  }
   if (!(settings.tolerance > 0.0))
   {
     throw InvalidInput("Tolerance is " + std::to_string(settings.tolerance) + "; it must be positive.");

@@ -19,19 +19,28 @@ struct LatticeSettings
   LatticeScheme scheme = LatticeScheme::Conservative;
   /// Edge of blocks, voxels, 2 to 8, that step apart from each other as published; 0: all voxels step together.
   int blockSize = 0;
-  int stepsPerExchange = 8; ///< steps in a block before it exchanges light with its neighbours
-  int maximumSteps = 0;     ///< so many; 0: as many as the tolerance takes
-  double tolerance = 1e-4;  ///< relative error of fluence at which to stop, estimated
+  int stepsPerExchange =
+    8;                     ///< steps in a block before it exchanges light with its neighbours, and of a turn of photons
+  int maximumSteps = 0;    ///< so many; 0: as many as the tolerance takes
+  double tolerance = 1e-4; ///< relative error of fluence at which to stop, estimated
   /// The steady equations are solved, where the scheme is conservative, there are no blocks and maximumSteps is 0;
   /// false: steps are done until the tolerance is met.
   bool solvesSteady = true;
+  /// Voxels, spread evenly, at which it is looked how much steps change; 0: all. A look at all costs about a step.
+  int probes = 4096;
+  /// Photons (where they are given) march, and light that they have left diffuses by steps while they march on;
+  /// stepsPerExchange of these to `stretches` of a photon's way from voxel wall to voxel wall (0: to its end). False:
+  /// they march to their ends first.
+  bool interleaves = false;
+  int stretches = 16;
+  bool sideBySide = true; ///< where it interleaves; false: photons and lattice take turns on the device
   std::array<bool, 3> periodic = {};
   bool netFlux = false; ///< compute net_flux too
 
   bool Solves() const
   {
     return this->solvesSteady && this->scheme == LatticeScheme::Conservative && this->blockSize == 0 &&
-      this->maximumSteps == 0;
+      this->maximumSteps == 0 && !this->interleaves;
   }
 };
 

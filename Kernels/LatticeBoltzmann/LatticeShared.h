@@ -15,7 +15,12 @@
   }
 
 SHARED_BEGIN
-/// A lattice in memory: voxels with one more round them, rows of `row` values, the first voxel at 1.
+enum
+{
+  LatticeFirst = 16 ///< place of a row's first voxel, so that rows are aligned as vectors are
+};
+
+/// A lattice in memory: voxels with one more round them, rows of `row` values, the first voxel at LatticeFirst.
 typedef struct
 {
   int size[3]; ///< voxels

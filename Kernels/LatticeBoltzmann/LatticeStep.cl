@@ -1,5 +1,12 @@
-// A step of photon density on a lattice (numerics.md, section 10 c), all voxels together.
+// A step of photon density on a lattice (numerics.md, section 10 c), all voxels together. The host also gives
+//   STREAMS  1: densities are far more than caches hold, and are written past them where the compiler can
 #include "LatticeBoltzmann/LatticeLink.cl"
+
+#if STREAMS && defined(__has_builtin)
+#if __has_builtin(__builtin_nontemporal_store)
+#define STORE_PAST_CACHES 1
+#endif
+#endif
 
 #define WIDTH 16
 DEFINE_ARRIVING(arriving, float16)
@@ -19,6 +26,19 @@ static void store_some(float16 values, __global float* to, ulong at, int voxels)
   {
     to[at + k] = some[k];
   }
+}
+
+// The same of densities, whose rows are aligned. What is not read before it is written need not come from memory first.
+static void store_densities(float16 values, __global float* to, ulong at, int voxels)
+{
+#ifdef STORE_PAST_CACHES
+  if (voxels >= WIDTH)
+  {
+    __builtin_nontemporal_store(values, (__global float16*)(to + at));
+    return;
+  }
+#endif
+  store_some(values, to, at, voxels);
 }
 
 // What the medium does in each place of the lattice:
@@ -49,7 +69,7 @@ __kernel void step_lattice(LatticeInfo lattice, LINKS, const __global float* tur
   const __global float* source, const __global float* from, __global float* to, __global float* fluence, int writes)
 {
   const int y = get_global_id(0), z = get_global_id(1), nx = lattice.size[0];
-  const ulong line = (ulong)(z + 1) * lattice.layer + (ulong)(y + 1) * lattice.row + 1;
+  const ulong line = (ulong)(z + 1) * lattice.layer + (ulong)(y + 1) * lattice.row + LatticeFirst;
   for (int x = 0; x < nx; x += WIDTH)
   {
     const ulong at = line + x;
@@ -64,7 +84,7 @@ __kernel void step_lattice(LatticeInfo lattice, LINKS, const __global float* tur
     FOR_DIRECTIONS(i)
     {
       const float16 own = WEIGHT(i) * half_source;
-      store_some(collided(WEIGHT(i), here[i] + own, sum, even, stays) + own, to + i * lattice.stride, at, nx - x);
+      store_densities(collided(WEIGHT(i), here[i] + own, sum, even, stays) + own, to + i * lattice.stride, at, nx - x);
     }
     if (writes)
     {
@@ -73,11 +93,32 @@ __kernel void step_lattice(LatticeInfo lattice, LINKS, const __global float* tur
   }
 }
 
+// What begins in voxels where light of a fluence ([voxel][channels], of which one channel counts) is scattered. A
+// work-item a row of voxels; ShineBy in Lattice.h says what arrays are.
+__kernel void shine_lattice(LatticeInfo lattice, const __global float* scatters, const __global float* glows,
+  const __global float* fluence, int channels, int channel, __global float* source)
+{
+  const int y = get_global_id(0), z = get_global_id(1), nx = lattice.size[0];
+  const ulong line = (ulong)(z + 1) * lattice.layer + (ulong)(y + 1) * lattice.row + LatticeFirst;
+  const __global float* row = fluence + ((ulong)z * lattice.size[1] + y) * nx * channels + channel;
+  for (int x = 0; x < nx; ++x)
+  {
+    source[line + x] = glows[line + x] + scatters[line + x] * row[x * channels];
+  }
+}
+
+// Fluence at some voxels.
+__kernel void look_at_lattice(const __global float* fluence, const __global int* voxels, __global float* seen)
+{
+  const int i = get_global_id(0);
+  seen[i] = fluence[voxels[i]];
+}
+
 // Net flux, W / length^2, [x, y, z][voxel]: the mean of what arrives and what leaves. A work-item a row of voxels.
 __kernel void flux_lattice(LatticeInfo lattice, LINKS, const __global float* from, __global float* flux)
 {
   const int y = get_global_id(0), z = get_global_id(1), nx = lattice.size[0];
-  const ulong line = (ulong)(z + 1) * lattice.layer + (ulong)(y + 1) * lattice.row + 1;
+  const ulong line = (ulong)(z + 1) * lattice.layer + (ulong)(y + 1) * lattice.row + LatticeFirst;
   const ulong voxels = (ulong)nx * lattice.size[1] * lattice.size[2];
   for (int x = 0; x < nx; x += WIDTH)
   {
@@ -104,34 +145,40 @@ __kernel void flux_lattice(LatticeInfo lattice, LINKS, const __global float* fro
 //   u, v  steps in memory along the plane, and `along` the axis; n: voxels along it
 __kernel void wrap_lattice(__global float* densities, ulong stride, int u, int v, int along, int n)
 {
-  __global float* at =
-    densities + get_global_id(2) * stride + (ulong)get_global_id(0) * u + (ulong)get_global_id(1) * v;
+  __global float* at = densities + LatticeFirst - 1 + get_global_id(2) * stride + (ulong)get_global_id(0) * u +
+    (ulong)get_global_id(1) * v;
   at[0] = at[(ulong)n * along];
   at[(ulong)(n + 1) * along] = at[along];
 }
 
 // W / length^2 that each voxel sends through the box's faces in the next step, [face][voxel]; a corner's light goes
-// through the first face that it meets. Periodic axes have no faces.
+// through both of its faces, half each. Periodic axes have no faces.
 __kernel void leave_lattice(
   LatticeInfo lattice, const __global float* resistance, const __global float* densities, __global float* leaving)
 {
   const int at[3] = { get_global_id(0), get_global_id(1), get_global_id(2) };
-  const ulong place = (ulong)(at[2] + 1) * lattice.layer + (ulong)(at[1] + 1) * lattice.row + at[0] + 1;
+  const ulong place = (ulong)(at[2] + 1) * lattice.layer + (ulong)(at[1] + 1) * lattice.row + at[0] + LatticeFirst;
   const ulong voxel = ((ulong)at[2] * lattice.size[1] + at[1]) * lattice.size[0] + at[0];
   const ulong voxels = (ulong)lattice.size[0] * lattice.size[1] * lattice.size[2];
   float through[6] = { 0.0f };
   for (int i = 0; i < DIRECTIONS; ++i)
   {
+    int first = -1, second = -1;
     for (int a = 0; a < 3; ++a)
     {
       const int next = at[a] + Ways[i][a];
       if (!(lattice.periodic >> a & 1) && (next < 0 || next >= lattice.size[a]))
       {
-        const int face = 2 * a + (next < 0 ? 0 : 1);
-        through[face] +=
-          (1.0f - lattice.albedo[face]) * 2.0f / (resistance[place] + 1.0f) * densities[i * lattice.stride + place];
-        break;
+        second = 2 * a + (next < 0 ? 0 : 1);
+        first = first < 0 ? second : first;
       }
+    }
+    if (first >= 0)
+    {
+      const float black = 1.0f - 0.5f * (lattice.albedo[first] + lattice.albedo[second]);
+      const float half_of = black / (resistance[place] + 1.0f) * densities[i * lattice.stride + place];
+      through[first] += half_of;
+      through[second] += half_of;
     }
   }
   for (int face = 0; face < 6; ++face)

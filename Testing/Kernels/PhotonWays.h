@@ -1,5 +1,6 @@
 #pragma once
 
+#include "Numerics/ChooseEvenly.h"
 #include "Photons/Marching/PhotonMarcher.h"
 
 #include <algorithm>

@@ -7,8 +7,10 @@
 #include "Reference/SlabReference.h"
 
 #include <algorithm>
+#include <array>
 #include <cmath>
 #include <numeric>
+#include <random>
 #include <string>
 #include <vector>
 
@@ -112,6 +114,39 @@ TEST_F(LatticeBoltzmann, IsPositiveAndKeepsPowerWhateverItsVoxelsAre)
     EXPECT_GT(light.balance.leftOver[0], -1e-3 * light.balance.entered[0]) << albedo;
     EXPECT_LT(light.balance.leftOver[0], (albedo < 0.9 ? 1e-3 : 0.5) * light.balance.entered[0]) << albedo;
   }
+}
+
+/// Large lattices are written past caches, in other steps of memory than small ones.
+TEST_F(LatticeBoltzmann, IsTheSameInLargeBoxesAsInTheOneThatTheyRepeat)
+{
+  const std::array<int, 3> small = { 30, 21, 35 };
+  const std::array<int, 3> large = { 90, 63, 70 };
+  LatticeSettings settings;
+  settings.periodic = { true, true, true };
+  settings.maximumSteps = 3;
+  std::mt19937 random(20261123);
+  std::uniform_real_distribution<float> any(0.0f, 2.0f);
+  Scene one(small, 0.1f, 1.0f), many(large, 0.1f, 1.0f);
+  one.emission.assign(one.sigma_s.size(), 0.0f);
+  std::generate(one.emission.begin(), one.emission.end(), [&] { return any(random); });
+  many.emission.assign(many.sigma_s.size(), 0.0f);
+  const auto same = [&](std::size_t i) {
+    const std::size_t x = i % large[0] % small[0], y = i / large[0] % large[1] % small[1],
+                      z = i / large[0] / large[1] % small[2];
+    return (z * small[1] + y) * small[0] + x;
+  };
+  for (std::size_t i = 0; i < many.emission.size(); ++i)
+  {
+    many.emission[i] = one.emission[same(i)];
+  }
+  const LightField of_one = this->Solve(one, settings), of_many = this->Solve(many, settings);
+  std::size_t others = 0;
+  for (std::size_t i = 0; i < of_many.fluence.size(); ++i)
+  {
+    others += of_many.fluence[i] != of_one.fluence[same(i)];
+  }
+  EXPECT_EQ(others, 0u);
+  EXPECT_GT(of_one.fluence[0], 0.0f);
 }
 
 /// A ground of albedo A under a slab that absorbs nothing: T (1 - A) / (1 - A R) of the diffuse light is lost to it.

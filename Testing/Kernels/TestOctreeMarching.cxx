@@ -3,6 +3,7 @@
 #include "DeviceTest.h"
 #include "PhotonScene.h"
 
+#include "Numerics/ChooseEvenly.h"
 #include "Photons/Emission/PhotonEmitter.h"
 #include "Refraction/Octree/RefractionOctree.h"
 

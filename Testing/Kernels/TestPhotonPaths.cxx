@@ -2,6 +2,8 @@
 // grin_integrator_errors.csv.
 #include "DeviceTest.h"
 #include "PhotonScene.h"
+
+#include "Numerics/ChooseEvenly.h"
 #include "Prism.h"
 
 #include <algorithm>

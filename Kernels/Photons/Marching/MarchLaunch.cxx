@@ -11,7 +11,6 @@ namespace tyndall
 {
 namespace
 {
-constexpr int Block = 512;           ///< neighbouring photons that one work-item takes one after the other
 constexpr int PrivateSumsAtMost = 8; ///< beyond, adding up the copies costs more than atomics do
 constexpr double SecondsPerLaunch = 0.1;
 constexpr double EventsPerLaunch = 4e7; ///< of straight ways, which two cores follow in less
@@ -40,7 +39,7 @@ Batches LaunchesOf(const MarchMedium& medium, const PackedPhotons& packed, const
   const int sharing = (shares.workers + shares.batches - 1) / shares.batches; // workers at a batch
   Batches launches;
   launches.count = packed.LargestBatch();
-  launches.whole = static_cast<std::size_t>(Block) * static_cast<std::size_t>(std::max(sharing, 1));
+  launches.whole = static_cast<std::size_t>(MarchBlock) * static_cast<std::size_t>(std::max(sharing, 1));
   launches.first = static_cast<std::size_t>(first / shares.batches);
   launches.seconds = SecondsPerLaunch;
   launches.growth = 8.0;
@@ -127,6 +126,15 @@ PhotonsOnDevice::PhotonsOnDevice(
 {
 }
 
+cl::Kernel MarchKernelFor(
+  const MarchMedium& medium, const MarchSums& target, int channels, const char* name, const std::string& options)
+{
+  return medium.MarchKernel(name, channels, target.directions,
+    Define("REAL_WIDTH", medium.device.KernelWidth()) + Define("ATOMICS", target.shares.atomics) +
+      Define("WORKERS", target.shares.workers) + Define("BLOCK", MarchBlock) + Define("PATHS", 0) +
+      Define("COUNTS", target.counts) + Define("CELLS", target.cells != nullptr) + options);
+}
+
 void MarchPhotons(const MarchMedium& medium, const PackedPhotons& packed, const PhotonsOnDevice& photons,
   const MarchSums& target, const Monitor& monitor)
 {
@@ -136,10 +144,7 @@ void MarchPhotons(const MarchMedium& medium, const PackedPhotons& packed, const 
   const std::size_t stride = shares.copies > 1 ? target.records * static_cast<std::size_t>(target.numbers) : 0;
   // Unsafe: all workers on one copy, as if each had its own.
   const int copies = std::max(shares.copies, shares.workers);
-  cl::Kernel march = medium.MarchKernel("march_photons", packed.channels, target.directions,
-    Define("REAL_WIDTH", width) + Define("ATOMICS", shares.atomics) + Define("WORKERS", shares.workers) +
-      Define("BLOCK", Block) + Define("PATHS", 0) + Define("COUNTS", target.counts) +
-      Define("CELLS", target.cells != nullptr));
+  cl::Kernel march = MarchKernelFor(medium, target, packed.channels, "march_photons");
   const Buffer<cl_int> none(device, 0, "cells of the voxels");
   Buffer<cl_int> next(device, static_cast<std::size_t>(shares.batches), "number of the next photon");
   InBatches(device, LaunchesOf(medium, packed, shares), monitor, [&](std::size_t first, std::size_t count) {

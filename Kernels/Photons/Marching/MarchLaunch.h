@@ -47,6 +47,12 @@ struct MarchSums
   const Buffer<cl_long>* sums = nullptr; ///< [copies][records][numbers]
 };
 
+/// A kernel of PhotonMarch.cl that adds to such sums, march_photons but with TURNS.
+cl::Kernel MarchKernelFor(
+  const MarchMedium& medium, const MarchSums& target, int channels, const char* name, const std::string& options = {});
+
+constexpr int MarchBlock = 512; ///< neighbouring photons that one work-item takes one after the other
+
 /// March photons to their ends.
 /// @throws Aborted: the sums are of a part of the photons then
 void MarchPhotons(const MarchMedium& medium, const PackedPhotons& packed, const PhotonsOnDevice& photons,

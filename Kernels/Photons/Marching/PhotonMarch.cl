@@ -8,6 +8,7 @@
 //   CELLS            1: what is deposited are coarse cells, which also count photons, and sum up the columns and rows
 //                    that these set out from, by their marks: column and row << 16
 //   PATHS            1: nothing is summed, vertices are written
+//   TURNS            1: photons march in turns, and are kept between them; one batch, without PATHS
 //
 // A step is followed from voxel wall to voxel wall (Amanatides and Woo 1987). In a voxel whose extinction over a
 // diagonal is s, with b = max(s, 1), the sums gain (numerics.md, Eqs. (35), (97))
@@ -375,6 +376,73 @@ static void add_vertex(const march_arrays* arrays, const photon_lanes* lanes, fl
 }
 #endif
 
+// Follow a packet of photons, of which some are still on their way, over `events` walls and turns at most, or to their
+// ends. True where some are on their way still. With PATHS, `vertices` of the path are counted, whose photon had power
+// `whole`.
+static bool follow(const march_arrays* arrays, photon_lanes* lanes, photon_flight* flight, int first, int events,
+  float whole, int* vertices)
+{
+  // What voxels gain is deposited a stretch later, while that one's extinction is on its way from memory.
+  photon_gain gain;
+  bool owed = false;
+  for (int event = 0; event < events; ++event)
+  {
+    real next = lesser(lesser(flight->wall[0], flight->wall[1]), flight->wall[2]);
+#if BENDS
+    next = lesser(next, VECTOR(lanes->turn));
+#endif
+#if !PATHS
+    if (owed)
+    {
+      deposit_all(arrays, lanes, &gain);
+    }
+    ask_ahead(arrays, lanes, flight->at);
+#endif
+    leave_light(arrays, flight, greater(next - flight->now, (real)0.0f) * VECTOR(lanes->pace), &gain);
+    flight->crossings -= flight->alive;
+    owed = true;
+    cross_walls(arrays, lanes, flight, next);
+    const integer special = to_attend(arrays, lanes, flight);
+    if (anywhere(special))
+    {
+#if !PATHS
+      deposit_all(arrays, lanes, &gain); // before directions change
+      owed = false;
+#endif
+      land(flight, lanes);
+#if PATHS
+      add_vertex(arrays, lanes, next, whole > 0.0f ? total_power(flight) / whole : 1.0f, vertices);
+#endif
+      attend(arrays, lanes, flight, special, first);
+      take_off(arrays, lanes, flight);
+      if (!anywhere(flight->alive))
+      {
+        return false;
+      }
+    }
+  }
+#if !PATHS
+  if (owed)
+  {
+    deposit_all(arrays, lanes, &gain);
+  }
+#endif
+  return true;
+}
+
+// Photons that are on their way still are given up.
+static void give_up_all(const march_arrays* arrays, photon_lanes* lanes, const photon_flight* flight, int first)
+{
+  land(flight, lanes);
+  for (int k = 0; k < REAL_WIDTH; ++k)
+  {
+    if (lanes->alive[k])
+    {
+      end_photon(lanes, k, StillGoing, arrays->ends + first + k);
+    }
+  }
+}
+
 // Follow photons `first` to `first + REAL_WIDTH`, but before `end`, to their ends. Returns the vertices of the path,
 // with PATHS.
 static int march_packet(const march_arrays* arrays, const __global float* photons, int first, int end)
@@ -383,66 +451,14 @@ static int march_packet(const march_arrays* arrays, const __global float* photon
   photon_flight flight;
   load_packet(arrays, photons, first, end, &lanes, &flight);
   int vertices = 0;
+  float whole = 0.0f;
 #if PATHS
-  const float whole = total_power(&flight);
+  whole = total_power(&flight);
   add_vertex(arrays, &lanes, 0.0f, 1.0f, &vertices);
 #endif
-  if (!anywhere(flight.alive))
+  if (anywhere(flight.alive) && follow(arrays, &lanes, &flight, first, arrays->info->eventLimit, whole, &vertices))
   {
-    return vertices;
-  }
-  // What voxels gain is deposited a stretch later, while that one's extinction is on its way from memory.
-  photon_gain gain;
-  bool owed = false;
-  for (int event = 0; event < arrays->info->eventLimit; ++event)
-  {
-    real next = lesser(lesser(flight.wall[0], flight.wall[1]), flight.wall[2]);
-#if BENDS
-    next = lesser(next, VECTOR(lanes.turn));
-#endif
-#if !PATHS
-    if (owed)
-    {
-      deposit_all(arrays, &lanes, &gain);
-    }
-    ask_ahead(arrays, &lanes, flight.at);
-#endif
-    leave_light(arrays, &flight, greater(next - flight.now, (real)0.0f) * VECTOR(lanes.pace), &gain);
-    flight.crossings -= flight.alive;
-    owed = true;
-    cross_walls(arrays, &lanes, &flight, next);
-    const integer special = to_attend(arrays, &lanes, &flight);
-    if (anywhere(special))
-    {
-#if !PATHS
-      deposit_all(arrays, &lanes, &gain); // before directions change
-      owed = false;
-#endif
-      land(&flight, &lanes);
-#if PATHS
-      add_vertex(arrays, &lanes, next, whole > 0.0f ? total_power(&flight) / whole : 1.0f, &vertices);
-#endif
-      attend(arrays, &lanes, &flight, special, first);
-      take_off(arrays, &lanes, &flight);
-      if (!anywhere(flight.alive))
-      {
-        return vertices;
-      }
-    }
-  }
-#if !PATHS
-  if (owed)
-  {
-    deposit_all(arrays, &lanes, &gain);
-  }
-#endif
-  land(&flight, &lanes);
-  for (int k = 0; k < REAL_WIDTH; ++k)
-  {
-    if (lanes.alive[k])
-    {
-      end_photon(&lanes, k, StillGoing, arrays->ends + first + k);
-    }
+    give_up_all(arrays, &lanes, &flight, first);
   }
   return vertices;
 }
@@ -458,6 +474,82 @@ __kernel void trace_paths(MarchInfo info, const __global float* sigma, const __g
   const march_arrays arrays = { &info, sigma, coefficients, nodes, 0, ends, counting ? 0 : vertices + offsets[i], 0,
     0 };
   counts[i] = march_packet(&arrays, photons, i, i + 1);
+}
+#elif TURNS
+// A packet between two turns.
+typedef struct
+{
+  photon_lanes lanes;
+  photon_flight flight;
+} photon_packet;
+
+// Bytes of a photon_packet, for the host.
+__kernel void size_packet(__global int* bytes)
+{
+  bytes[0] = sizeof(photon_packet);
+}
+
+// A packet's part of a turn: over `events` walls and turns, from where it is.
+static void take_turn(const march_arrays* arrays, const __global float* photons, __global photon_packet* packet,
+  __global int* going, int first, int end, int turn, int events, int last)
+{
+  photon_packet here;
+  if (turn == 0)
+  {
+    load_packet(arrays, photons, first, end, &here.lanes, &here.flight);
+  }
+  else
+  {
+    here = *packet;
+  }
+  int vertices = 0;
+  bool goes = anywhere(here.flight.alive);
+  goes = goes && follow(arrays, &here.lanes, &here.flight, first, events, 0.0f, &vertices);
+  if (goes && last)
+  {
+    give_up_all(arrays, &here.lanes, &here.flight, first);
+  }
+  *going = goes && !last;
+  if (*going)
+  {
+    *packet = here;
+  }
+}
+
+// A turn of all `count` photons, which are of one batch (march_photons).
+//   packets  of photons on their way; going: whether a packet is one
+//   left     gains their number
+//   turn     its number; last: photons on their way are given up after it
+__kernel void march_turn(MarchInfo info, const __global float* sigma, const __global float* coefficients,
+  const __global uchar* nodes, const __global float* photons, const __global ulong* marks, const __global int* cells,
+  __global PhotonEnd* ends, __global long* sums, ulong copyStride, __global photon_packet* packets, __global int* going,
+  volatile __global int* left, volatile __global int* next, int count, int turn, int events, int last)
+{
+  int still = 0;
+#if WORKERS > 0
+  const march_arrays arrays = { &info, sigma, coefficients, nodes, sums + get_global_id(0) * copyStride, ends, 0, marks,
+    cells };
+  for (int block = atomic_add(next, BLOCK); block < count; block = atomic_add(next, BLOCK))
+  {
+    for (int i = block; i < min(block + BLOCK, count); i += REAL_WIDTH)
+#else
+  const march_arrays arrays = { &info, sigma, coefficients, nodes, sums, ends, 0, marks, cells };
+  {
+    const int i = get_global_id(0) * REAL_WIDTH;
+#endif
+    {
+      const int packet = i / REAL_WIDTH;
+      if (turn == 0 || going[packet])
+      {
+        take_turn(&arrays, photons, packets + packet, going + packet, i, count, turn, events, last);
+        still += going[packet];
+      }
+    }
+  }
+  if (still > 0)
+  {
+    atomic_add(left, still);
+  }
 }
 #else
 // Of each batch, photons `first` to `first + count`: those of batch b begin at batch_begin[b], and end where the next

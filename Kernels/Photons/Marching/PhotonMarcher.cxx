@@ -89,7 +89,14 @@ public:
     }
   }
 
-  PhotonLight March(const std::vector<Photon>& photons, const PhotonNumbers& numbers, const Monitor& monitor);
+  /// What a march in turns is given, and gives.
+  struct Turns
+  {
+    const MarchTurns& how;
+    TurnTimes& times;
+  };
+  PhotonLight March(const std::vector<Photon>& photons, const PhotonNumbers& numbers, const Monitor& monitor,
+    const Turns* turns = nullptr);
   PhotonLight MarchInBatches(const std::vector<Photon>& photons, const Monitor& monitor);
 
   MarchMedium medium;
@@ -101,6 +108,11 @@ private:
     return ShareSums(this->medium, this->medium.PaddedCount(), numbers, batches, this->Sums.Size() * sizeof(cl_long));
   }
   MarchSums PrepareSums(const PackedPhotons& packed);
+  LightSumsInfo InfoOf(const PackedPhotons& packed, float weightUnit) const;
+  cl::Kernel SumsKernel(
+    const char* name, const PackedPhotons& packed, const MarchSums& target, const LightField& light) const;
+  void MarchTo(const MarchSums& target, const PackedPhotons& packed, const PhotonsOnDevice& photons,
+    const LightField& light, const Turns* turns, const Monitor& monitor);
   void Tally(const PackedPhotons& packed, const std::vector<cl_int>& ends, PhotonLight& result) const;
   void Finish(const PackedPhotons& packed, const MarchSums& target, float weightUnit, PhotonLight& result);
   void SayWhatIsLeftOut(const PackedPhotons& packed, LightField& light) const;
@@ -161,6 +173,53 @@ void PhotonMarcher::Implementation::Tally(
   }
 }
 
+LightSumsInfo PhotonMarcher::Implementation::InfoOf(const PackedPhotons& packed, float weightUnit) const
+{
+  LightSumsInfo info = {};
+  info.grid = this->medium.DescribeGrid();
+  info.diagonal = static_cast<float>(this->medium.Diagonal());
+  info.fluence = static_cast<float>(
+    std::frexp(packed.unit * this->medium.Diagonal() / this->medium.grid.VoxelVolume(), &info.exponent));
+  std::copy(packed.colour.begin(), packed.colour.end(), info.colour);
+  info.weight = weightUnit;
+  return info;
+}
+
+cl::Kernel PhotonMarcher::Implementation::SumsKernel(
+  const char* name, const PackedPhotons& packed, const MarchSums& target, const LightField& light) const
+{
+  return this->medium.SumsKernel(name, packed.channels,
+    Define("DIRECTIONS", target.directions) + Define("COUNTS", target.counts) + Define("COUNT_SHIFT", CountShift) +
+      Define("COLOURS", light.channels) + Define("COPIES", target.shares.copies) +
+      Define("BATCHES", target.shares.batches));
+}
+
+/// All at once, or in turns between which the light so far is shown.
+void PhotonMarcher::Implementation::MarchTo(const MarchSums& target, const PackedPhotons& packed,
+  const PhotonsOnDevice& photons, const LightField& light, const Turns* turns, const Monitor& monitor)
+{
+  if (!turns)
+  {
+    MarchPhotons(this->medium, packed, photons, target, monitor);
+    return;
+  }
+  const std::size_t voxels = this->medium.grid.VoxelCount();
+  const Buffer<float> fluence(
+    this->medium.device, voxels * static_cast<std::size_t>(light.channels), "fluence of photons on their way");
+  cl::Kernel show = this->SumsKernel("show_light", packed, target, light);
+  With(show, this->InfoOf(packed, 0.0f), this->medium.sigmaA, this->medium.sigmaS, this->Sums,
+    cl_ulong(target.records * static_cast<std::size_t>(target.numbers)), fluence);
+  turns->how.begin(packed, light.channels);
+  turns->times = MarchInTurns(
+    this->medium, packed, photons, target, turns->how,
+    [&](const cl::CommandQueue& queue) -> const Buffer<float>& {
+      queue.enqueueNDRangeKernel(
+        show, cl::NullRange, cl::NDRange(voxels / static_cast<std::size_t>(this->medium.grid.size[0])));
+      return fluence;
+    },
+    monitor);
+}
+
 void PhotonMarcher::Implementation::Finish(
   const PackedPhotons& packed, const MarchSums& target, float weightUnit, PhotonLight& result)
 {
@@ -184,17 +243,8 @@ void PhotonMarcher::Implementation::Finish(
     lend(result.batchFluence, batches > 1 ? batches * voxels * colours : 0, "fluence by batches");
   const Buffer<cl_long> taken(device, rows * 2 * channels, "tallies");
 
-  LightSumsInfo info = {};
-  info.grid = this->medium.DescribeGrid();
-  info.diagonal = static_cast<float>(this->medium.Diagonal());
-  info.fluence =
-    static_cast<float>(std::frexp(packed.unit * this->medium.Diagonal() / grid.VoxelVolume(), &info.exponent));
-  std::copy(packed.colour.begin(), packed.colour.end(), info.colour);
-  info.weight = weightUnit;
-  cl::Kernel finish = this->medium.SumsKernel("finish_light", packed.channels,
-    Define("DIRECTIONS", target.directions) + Define("COUNTS", target.counts) + Define("COUNT_SHIFT", CountShift) +
-      Define("COLOURS", light.channels) + Define("COPIES", target.shares.copies) +
-      Define("BATCHES", target.shares.batches));
+  const LightSumsInfo info = this->InfoOf(packed, weightUnit);
+  cl::Kernel finish = this->SumsKernel("finish_light", packed, target, light);
   With(finish, info, this->medium.sigmaA, this->medium.sigmaS, this->Sums,
     cl_ulong(target.records * static_cast<std::size_t>(target.numbers)), fluence.Handle(), direction.Handle(),
     count.Handle(), weight.Handle(), batchFluence.Handle(), taken);
@@ -276,7 +326,7 @@ PhotonLight PhotonMarcher::Implementation::MarchInBatches(const std::vector<Phot
 }
 
 PhotonLight PhotonMarcher::Implementation::March(
-  const std::vector<Photon>& photons, const PhotonNumbers& numbers, const Monitor& monitor)
+  const std::vector<Photon>& photons, const PhotonNumbers& numbers, const Monitor& monitor, const Turns* turns)
 {
   const double start = ClockSeconds();
   const MarchSettings& settings = this->medium.settings;
@@ -301,7 +351,8 @@ PhotonLight PhotonMarcher::Implementation::March(
   result.secondsMarching = -ClockSeconds();
   try
   {
-    MarchPhotons(this->medium, packed, onDevice, target, this->Scattering ? OfPart(monitor, 0.0, 0.05) : monitor);
+    this->MarchTo(
+      target, packed, onDevice, result.light, turns, this->Scattering ? OfPart(monitor, 0.0, 0.05) : monitor);
   }
   catch (...)
   {
@@ -356,6 +407,18 @@ PhotonLight PhotonMarcher::March(const std::vector<Photon>& photons, const Monit
   return batches ? this->Inside->MarchInBatches(photons, monitor) : this->Inside->March(photons, {}, monitor);
 }
 
+PhotonLight PhotonMarcher::MarchByTurns(
+  const std::vector<Photon>& photons, const MarchTurns& turns, TurnTimes& times, const Monitor& monitor)
+{
+  const MarchSettings& settings = this->Inside->medium.settings;
+  if (settings.maximumOrders != 1 || settings.batches)
+  {
+    throw InvalidInput("Photons march in turns up to where they are first scattered, and without batches.");
+  }
+  const Implementation::Turns inTurns = { turns, times };
+  return this->Inside->March(photons, {}, monitor, &inTurns);
+}
+
 std::vector<PhotonPath> PhotonMarcher::Paths(const std::vector<Photon>& photons, const std::vector<std::size_t>& chosen)
 {
   return TracePaths(this->Inside->medium, photons, chosen);
@@ -365,20 +428,5 @@ PilotLight PhotonMarcher::Gather(const std::vector<Photon>& photons, const std::
   const std::array<int, 3>& cells, const Monitor& monitor)
 {
   return this->Inside->pilots.Gather(photons, origins, cells, monitor);
-}
-
-std::vector<std::size_t> ChooseEvenly(std::size_t size, std::size_t count)
-{
-  std::vector<std::size_t> chosen;
-  count = std::min(count, size);
-  const double golden = 0.5 * (std::sqrt(5.0) - 1.0);
-  for (std::size_t i = 0; i < count; ++i)
-  {
-    const double within = std::fmod((i + 1.0) * golden, 1.0);
-    const auto number = static_cast<std::size_t>((i + within) / count * size);
-    const std::size_t least = chosen.empty() ? 0 : chosen.back() + 1;
-    chosen.push_back(std::clamp(number, least, size - (count - i)));
-  }
-  return chosen;
 }
 }

@@ -4,6 +4,7 @@
 #include "Device/Monitor.h"
 #include "Medium/Medium.h"
 #include "Photons/Importance/PilotLight.h"
+#include "Photons/Marching/MarchTurns.h"
 #include "Photons/Photons.h"
 
 #include <memory>
@@ -43,6 +44,12 @@ public:
   ///   count; DeviceError where the sums of all batches do not fit; Aborted
   PhotonLight March(const std::vector<Photon>& photons, const Monitor& monitor = {});
 
+  /// The same light, of photons that march in turns. Without batches, and of one order.
+  /// @param times  how long turns took
+  /// @throws InvalidInput where settings ask for batches or other orders than 1; and as March
+  PhotonLight MarchByTurns(
+    const std::vector<Photon>& photons, const MarchTurns& turns, TurnTimes& times, const Monitor& monitor = {});
+
   /// Light of few photons in coarse cells, and where those of each cell came from (Pfeuti 2009, section 3.2.2). Paths
   /// are those of March, through the medium's own voxels. Voxel i of an axis belongs to cell i * cells / voxels,
   /// rounded down.
@@ -60,9 +67,4 @@ private:
   class Implementation;
   std::unique_ptr<Implementation> Inside;
 };
-
-/// `count` different numbers from 0 to size - 1, ascending, one from each of `count` equal stretches. Its place in the
-/// stretch follows the golden ratio: with equal steps, which are in phase with the powers of two that photons' starting
-/// places are made of, all chosen photons would start along one line.
-std::vector<std::size_t> ChooseEvenly(std::size_t size, std::size_t count);
 }

@@ -159,3 +159,26 @@ __kernel void finish_light(LightSumsInfo info, const __global float* sigma_a, co
     taken[(r * 2 + 1) * CHANNELS + c] = scattered[c];
   }
 }
+
+// Row by row: what voxels have gained so far, as finish_light gives it. The sums stay.
+__kernel void show_light(LightSumsInfo info, const __global float* sigma_a, const __global float* sigma_s,
+  const __global long* sums, ulong copyStride, __global float* fluence)
+{
+  const int r = get_global_id(0);
+  const int nx = info.grid.size[0], ny = info.grid.size[1];
+  const size_t first = ((size_t)(r / ny + 1) * (ny + 2) + r % ny + 1) * (nx + 2) + 1;
+  for (int x = 0; x < nx; ++x)
+  {
+    const size_t voxel = (size_t)r * nx + x;
+    for (int c = 0; c < CHANNELS; ++c)
+    {
+      long sum = 0;
+      for (int w = 0; w < COPIES; ++w)
+      {
+        sum += sums[(first + x) * RECORD + c + w * copyStride];
+      }
+      const float extinction = component(sigma_a, A_CHANNELS, voxel, c) + component(sigma_s, S_CHANNELS, voxel, c);
+      put_fluence(&info, fluence + voxel * COLOURS, c, (float)sum / fmax(info.diagonal * extinction, 1.0f));
+    }
+  }
+}

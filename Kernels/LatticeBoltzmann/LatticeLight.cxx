@@ -1,0 +1,122 @@
+#include "LatticeBoltzmann/LatticeLight.h"
+
+#include "Device/Errors.h"
+#include "LatticeBoltzmann/CubicVoxels.h"
+#include "Light/LeftOut.h"
+#include "LightPropagation/Convergence.h"
+#include "Numerics/Constants.h"
+#include "Numerics/NumberText.h"
+
+#include <algorithm>
+#include <string>
+
+namespace tyndall
+{
+namespace
+{
+void CheckCubes(const Grid& grid)
+{
+  if (!HasCubicVoxels(grid))
+  {
+    throw InvalidInput("The lattice's voxels have to be cubes; their edges are " + Text("%.6g", grid.spacing[0]) +
+      ", " + Text("%.6g", grid.spacing[1]) + ", " + Text("%.6g", grid.spacing[2]) + ". Resample the image.");
+  }
+}
+
+void CheckIndex(const Field& ior, const Grid& grid)
+{
+  for (std::size_t i = 0; ior.values && i < grid.VoxelCount(); ++i)
+  {
+    if (const double n = ior.At(i, 0); !(n >= 1e-6 && n <= 1e6))
+    {
+      throw InvalidInput("The refractive index of voxel " + VoxelName(grid, i) + " is " + Text("%.6g", n) +
+        "; it must be positive (1e-6 to 1e6).");
+    }
+  }
+}
+
+/// What is said of the light beside its numbers.
+void Describe(LightField& light, const PropagationProblem& problem, const LatticeSettings& settings, double thickest)
+{
+  if (!problem.TheMedium().phase.IsIsotropic() && problem.Traits().scatters)
+  {
+    light.leftOut.emplace_back(
+      "anisotropy: diffuses as isotropic scattering with sigma_s (1 - g) (similarity relation)");
+  }
+  if (!settings.netFlux)
+  {
+    light.leftOut.emplace_back(left_out::NetFlux);
+  }
+  if (settings.scheme == LatticeScheme::Published && thickest > 1.0)
+  {
+    light.doubts.push_back(
+      "As published, collisions are positive only where sigma_t times a voxel's edge is at most 1; "
+      "here it is up to " +
+      Text("%.3g", thickest) + ", and light may swing and grow. Choose the conservative scheme, or smaller voxels.");
+  }
+}
+
+void Judge(LightField& light, const Illumination& illumination, const LatticeSettings& settings)
+{
+  PropagationSettings judged = AsPropagation(settings);
+  judged.maximumOrders = settings.maximumSteps;
+  judged.tolerance = settings.tolerance;
+  JudgeConvergence(judged, light);
+  if (Reflects(illumination))
+  {
+    light.doubts.emplace_back(
+      "FaceAlbedo gives back diffuse light only, not what leaves without having been scattered.");
+  }
+  light.faceAlbedo = illumination.faceAlbedo;
+}
+}
+
+void CheckLattice(const Medium& medium, const Field& ior, const LatticeSettings& settings)
+{
+  Check(settings);
+  Check(medium);
+  CheckCubes(medium.grid);
+  CheckIndex(ior, medium.grid);
+}
+
+PropagationSettings AsPropagation(const LatticeSettings& settings)
+{
+  PropagationSettings of;
+  of.periodic = settings.periodic;
+  of.netFlux = settings.netFlux;
+  of.source = PropagationSource::Constant; // voxels stay cubes in slabs, too
+  return of;
+}
+
+UncollidedImage ImageOf(const PhotonLight& photons)
+{
+  UncollidedImage image;
+  image.fluence = { photons.light.fluence.data(), photons.light.channels };
+  image.meanDirection = { photons.meanDirection.empty() ? nullptr : photons.meanDirection.data(), 3 };
+  image.escaped = photons.light.facePowerOut;
+  return image;
+}
+
+LightField BeginLight(const PropagationProblem& problem, const LatticeSettings& settings)
+{
+  LightField light;
+  light.channels = problem.Channels();
+  light.fluence.resize(problem.TheGrid().VoxelCount() * static_cast<std::size_t>(light.channels));
+  light.fluenceDirect = light.fluence;
+  light.netFlux.resize(settings.netFlux ? 3 * light.fluence.size() : 0);
+  return light;
+}
+
+void FinishLight(LightField& light, const Device& device, const PropagationProblem& problem,
+  const Illumination& illumination, const LatticeSettings& settings, double thickest)
+{
+  light.scatteredRadiance.resize(light.fluence.size());
+  std::transform(light.fluence.begin(), light.fluence.end(), light.scatteredRadiance.begin(),
+    [](float fluence) { return static_cast<float>(fluence / (4.0 * Pi)); });
+  light.storedDirections = { { 0.0, 0.0, 0.0 } };
+  light.device = device.Name();
+  Describe(light, problem, settings, thickest);
+  problem.Undo(light);
+  Judge(light, illumination, settings);
+}
+}

@@ -1,0 +1,32 @@
+#pragma once
+
+#include "Device/Device.h"
+#include "LatticeBoltzmann/LatticeSettings.h"
+#include "Light/LightField.h"
+#include "LightPropagation/Problem/PropagationProblem.h"
+#include "Lights/Lights.h"
+#include "Lights/UncollidedImage.h"
+#include "Medium/Field.h"
+#include "Medium/Medium.h"
+#include "Photons/Photons.h"
+
+namespace tyndall
+{
+/// @throws InvalidInput what SolveLatticeBoltzmann says of medium, index and settings
+void CheckLattice(const Medium& medium, const Field& ior, const LatticeSettings& settings);
+
+/// As the parts of other solvers that serve the lattice are asked for.
+PropagationSettings AsPropagation(const LatticeSettings& settings);
+
+/// Photons' light as uncollided light; its arrays are theirs.
+UncollidedImage ImageOf(const PhotonLight& photons);
+
+/// Dark, in the channels that are solved.
+LightField BeginLight(const PropagationProblem& problem, const LatticeSettings& settings);
+
+/// What light has beside fluence and balance once all channels have been added: to the user's units, with what is to be
+/// said of it.
+/// @param thickest  sigma_t h, of all voxels
+void FinishLight(LightField& light, const Device& device, const PropagationProblem& problem,
+  const Illumination& illumination, const LatticeSettings& settings, double thickest);
+}

@@ -1,0 +1,109 @@
+#include "LatticeBoltzmann/Settling.h"
+
+#include "Device/Batches.h"
+#include "Device/Clock.h"
+#include "Device/Errors.h"
+#include "Numerics/ChooseEvenly.h"
+
+#include <algorithm>
+#include <cmath>
+
+namespace tyndall
+{
+namespace
+{
+constexpr int StepsPerLook = 16;   ///< after which it is looked at how much changes, at least
+constexpr int MostSteps = 200000;  ///< where the tolerance is not met
+constexpr double Slowest = 0.9999; ///< of changes from look to look: beyond, their rest is not known
+}
+
+Settling::Settling(Device& device, Lattice& lattice, const Grid& grid, const LatticeSettings& settings)
+  : TheDevice(device)
+  , TheLattice(lattice)
+  , Settings(settings)
+{
+  const auto probes = static_cast<std::size_t>(settings.probes);
+  if (probes > 0 && probes < grid.VoxelCount())
+  {
+    std::vector<cl_int> places;
+    for (const std::size_t voxel : ChooseEvenly(grid.VoxelCount(), probes))
+    {
+      places.push_back(static_cast<cl_int>(voxel));
+    }
+    this->Places = Buffer<cl_int>(device, places, "probes");
+  }
+}
+
+/// Of fluence at the probes since it was looked at last, relative.
+double Settling::Change()
+{
+  const std::vector<float> now =
+    this->Places.Size() > 0 ? this->TheLattice.FluenceAt(this->Places) : this->TheLattice.Fluence();
+  this->Last.resize(now.size(), 0.0f);
+  double change = 0.0, all = 0.0;
+  for (std::size_t i = 0; i < now.size(); ++i)
+  {
+    change += std::abs(static_cast<double>(now[i]) - this->Last[i]);
+    all += std::abs(now[i]);
+  }
+  this->Last = now;
+  if (!std::isfinite(all))
+  {
+    throw InvalidInput(
+      "Steps as published have grown beyond all floats: sigma_t times a voxel's edge is above 1. Choose "
+      "the conservative scheme, or smaller voxels.");
+  }
+  return all > 0.0 ? change / all : 0.0;
+}
+
+/// What is still to come, from how changes fall.
+double Settling::Estimate(double change)
+{
+  const double ratio = this->LastChange > 0.0 ? std::min(change / this->LastChange, Slowest) : 1.0;
+  const bool compares = this->LastChange > 0.0;
+  this->LastChange = change;
+  return change == 0.0 ? 0.0 : compares ? std::min(change * ratio / (1.0 - ratio), 1.0) : 1.0;
+}
+
+/// Queued in parts of about 50 ms.
+void Settling::Step(int steps, double done, const Monitor& monitor)
+{
+  Batches batches;
+  batches.count = static_cast<std::size_t>(steps);
+  batches.whole = this->Settings.blockSize > 0 ? static_cast<std::size_t>(this->Settings.stepsPerExchange) : 1;
+  batches.first = batches.whole;
+  batches.from = batches.to = done;
+  InBatches(this->TheDevice, batches, monitor, [&](std::size_t begin, std::size_t size) {
+    this->TheLattice.Step(static_cast<int>(size), static_cast<int>(begin + size) == steps);
+  });
+}
+
+std::vector<float> Settling::Run(int stepsBefore, const Monitor& monitor, std::vector<ConvergenceRow>& rows)
+{
+  const double start = ClockSeconds();
+  const bool asked = this->Settings.maximumSteps > 0;
+  const int most = asked ? this->Settings.maximumSteps : MostSteps;
+  // A look costs about as much as a step; blocks are looked at after whole exchanges.
+  const int exchange = this->Settings.blockSize > 0 ? this->Settings.stepsPerExchange : 1;
+  const int look = (StepsPerLook + exchange - 1) / exchange * exchange;
+  double residual = 1.0, done = 0.0;
+  for (int step = stepsBefore; step < most && (asked || residual > this->Settings.tolerance);)
+  {
+    const int steps = std::min(look, most - step);
+    this->Step(steps, done, monitor);
+    step += steps;
+    ConvergenceRow row;
+    row.change = this->Change();
+    residual = this->Estimate(row.change);
+    row.iteration = step;
+    row.seconds = ClockSeconds() - start;
+    row.residual = residual;
+    rows.push_back(row);
+    done = asked
+      ? static_cast<double>(step) / most
+      : std::clamp(std::log(std::max(residual, 1e-30)) / std::log(std::min(this->Settings.tolerance, 0.9)), done, 1.0);
+    Report(monitor, done);
+  }
+  return this->TheLattice.Fluence();
+}
+}

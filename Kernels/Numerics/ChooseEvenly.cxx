@@ -1,0 +1,22 @@
+#include "Numerics/ChooseEvenly.h"
+
+#include <algorithm>
+#include <cmath>
+
+namespace tyndall
+{
+std::vector<std::size_t> ChooseEvenly(std::size_t size, std::size_t count)
+{
+  std::vector<std::size_t> chosen;
+  count = std::min(count, size);
+  const double golden = 0.5 * (std::sqrt(5.0) - 1.0);
+  for (std::size_t i = 0; i < count; ++i)
+  {
+    const double within = std::fmod((i + 1.0) * golden, 1.0);
+    const auto number = static_cast<std::size_t>((i + within) / count * size);
+    const std::size_t least = chosen.empty() ? 0 : chosen.back() + 1;
+    chosen.push_back(std::clamp(number, least, size - (count - i)));
+  }
+  return chosen;
+}
+}

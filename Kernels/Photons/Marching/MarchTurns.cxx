@@ -1,0 +1,139 @@
+#include "Photons/Marching/MarchTurns.h"
+
+#include "Device/Defines.h"
+#include "Device/Sizes.h"
+
+#include <algorithm>
+#include <vector>
+
+namespace tyndall
+{
+namespace
+{
+constexpr int Few = 100; ///< a turn is the last one where one packet of so many is on its way still
+
+struct Span
+{
+  double begin = 0.0, end = 0.0; ///< s
+};
+
+Span SpanOf(const cl::Event& first, const cl::Event& last)
+{
+  return { 1e-9 * static_cast<double>(first.getProfilingInfo<CL_PROFILING_COMMAND_START>()),
+    1e-9 * static_cast<double>(last.getProfilingInfo<CL_PROFILING_COMMAND_END>()) };
+}
+
+/// Photons between turns, and what their kernel needs.
+class TurnsOfPhotons
+{
+public:
+  TurnsOfPhotons(
+    const MarchMedium& medium, const PackedPhotons& packed, const PhotonsOnDevice& photons, const MarchSums& target)
+    : Medium(medium)
+    , Photons(photons)
+    , Target(target)
+    , Count(packed.Count())
+    , PacketCount(PartsOf(packed.Count(), static_cast<std::size_t>(medium.device.KernelWidth())))
+    , March(MarchKernelFor(medium, target, packed.channels, "march_turn", Define("TURNS", 1)))
+    , None(medium.device, 0, "cells of the voxels")
+    , Packets(medium.device, this->PacketCount * this->BytesOfPacket(packed.channels), "photons on their way")
+    , Going(medium.device, this->PacketCount, "packets on their way")
+    , Left(medium.device, 1, "number of packets on their way")
+    , Next(medium.device, 1, "number of the next photon")
+  {
+  }
+
+  std::size_t Packed() const { return this->PacketCount; }
+  /// Queued. @param stretches  at most the medium's limit
+  cl::Event Turn(const cl::CommandQueue& queue, int turn, int stretches, bool last);
+  /// Waits.
+  std::size_t StillGoing(const cl::CommandQueue& queue) const
+  {
+    cl_int left = 0;
+    queue.enqueueReadBuffer(this->Left.Handle(), CL_TRUE, 0, sizeof(left), &left);
+    return static_cast<std::size_t>(left);
+  }
+
+private:
+  std::size_t BytesOfPacket(int channels) const
+  {
+    cl::Kernel size = MarchKernelFor(this->Medium, this->Target, channels, "size_packet", Define("TURNS", 1));
+    const Buffer<cl_int> bytes(this->Medium.device, 1, "size of a packet");
+    this->Medium.Launch(With(size, bytes), cl::NDRange(1));
+    return static_cast<std::size_t>(bytes.Read().front());
+  }
+
+  const MarchMedium& Medium;
+  const PhotonsOnDevice& Photons;
+  const MarchSums& Target;
+  std::size_t Count, PacketCount;
+  cl::Kernel March;
+  Buffer<cl_int> None;
+  Buffer<cl_uchar> Packets;
+  Buffer<cl_int> Going, Left, Next;
+};
+
+cl::Event TurnsOfPhotons::Turn(const cl::CommandQueue& queue, int turn, int stretches, bool last)
+{
+  const MarchShares& shares = this->Target.shares;
+  const std::size_t stride =
+    shares.copies > 1 ? this->Target.records * static_cast<std::size_t>(this->Target.numbers) : 0;
+  queue.enqueueFillBuffer(this->Left.Handle(), cl_int(0), 0, sizeof(cl_int));
+  queue.enqueueFillBuffer(this->Next.Handle(), cl_int(0), 0, sizeof(cl_int));
+  With(this->March, this->Medium.Describe(), this->Medium.sigma, this->Medium.coefficients, this->Medium.nodes,
+    this->Photons.values, this->Photons.marks, this->None, this->Photons.ends, *this->Target.sums, cl_ulong(stride),
+    this->Packets, this->Going, this->Left, this->Next, cl_int(this->Count), cl_int(turn), cl_int(stretches),
+    cl_int(last));
+  const bool workers = shares.workers > 0;
+  cl::Event marched;
+  queue.enqueueNDRangeKernel(this->March, cl::NullRange,
+    cl::NDRange(workers ? static_cast<std::size_t>(shares.workers) : this->PacketCount),
+    workers || this->Medium.device.IsCpu() ? cl::NDRange(1) : cl::NullRange, nullptr, &marched);
+  queue.flush();
+  return marched;
+}
+
+void AddTimes(const cl::Event& marched, const std::array<cl::Event, 2>& meanwhile, TurnTimes& times)
+{
+  const Span marching = SpanOf(marched, marched), beside = SpanOf(meanwhile[0], meanwhile[1]);
+  times.meanwhile += beside.end - beside.begin;
+  times.together += std::max(0.0, std::min(marching.end, beside.end) - std::max(marching.begin, beside.begin));
+}
+}
+
+TurnTimes MarchInTurns(const MarchMedium& medium, const PackedPhotons& packed, const PhotonsOnDevice& photons,
+  const MarchSums& target, const MarchTurns& turns,
+  const std::function<const Buffer<float>&(const cl::CommandQueue& queue)>& show, const Monitor& monitor)
+{
+  TurnTimes times;
+  const cl::CommandQueue mine = medium.device.AnotherQueue();
+  const cl::CommandQueue theirs = turns.sideBySide ? medium.device.AnotherQueue() : mine;
+  TurnsOfPhotons all(medium, packed, photons, target);
+  medium.device.Finish(); // what is on the device's own queue
+  const int limit = medium.EventLimit();
+  std::size_t left = all.Packed();
+  for (double gone = 0.0; left > 0; ++times.turns)
+  {
+    const bool last =
+      turns.stretches == 0 || left < all.Packed() / Few || gone + turns.stretches >= static_cast<double>(limit);
+    const int stretches = last ? limit : turns.stretches;
+    gone += stretches;
+    const std::vector<cl::Event> marched = { all.Turn(mine, times.turns, stretches, last) };
+    if (times.turns > 0)
+    {
+      const std::array<cl::Event, 2> meanwhile = turns.meanwhile(theirs);
+      theirs.finish();
+      marched.front().wait();
+      AddTimes(marched.front(), meanwhile, times);
+    }
+    theirs.enqueueBarrierWithWaitList(&marched);
+    turns.take(theirs, show(theirs));
+    theirs.finish();
+    const Span span = SpanOf(marched.front(), marched.front());
+    times.marching += span.end - span.begin;
+    left = all.StillGoing(mine);
+    Report(monitor, 1.0 - static_cast<double>(left) / all.Packed());
+  }
+  return times;
+}
+}
