@@ -23,6 +23,27 @@ void CheckCubes(const Grid& grid)
   }
 }
 
+/// Light stays for so many collisions in voxels that absorb nothing.
+void CheckThickness(const Medium& medium)
+{
+  constexpr double thickest = 1e10, absorbsAtLeast = 1e-3; // of doubles 1e-16 are left
+  const double edge = medium.grid.spacing[0];
+  const int channels = medium.sigma_a.components > 1 || medium.sigma_s.components > 1 ? 3 : 1;
+  for (std::size_t i = 0; i < medium.grid.VoxelCount(); ++i)
+  {
+    for (int c = 0; c < channels; ++c)
+    {
+      const double thickness = edge * medium.TransportSigmaT(i, c);
+      if (thickness > thickest && edge * medium.sigma_a.At(i, c) < absorbsAtLeast)
+      {
+        throw InvalidInput("Voxel " + VoxelName(medium.grid, i) + " has optical thickness " + Text("%.6g", thickness) +
+          " and absorbs next to nothing of it; the lattice's numbers hold up to 1e10. Make "
+          "sigma_s or voxels smaller.");
+      }
+    }
+  }
+}
+
 void CheckIndex(const Field& ior, const Grid& grid)
 {
   for (std::size_t i = 0; ior.values && i < grid.VoxelCount(); ++i)
@@ -76,6 +97,7 @@ void CheckLattice(const Medium& medium, const Field& ior, const LatticeSettings&
   Check(settings);
   Check(medium);
   CheckCubes(medium.grid);
+  CheckThickness(medium);
   CheckIndex(ior, medium.grid);
 }
 
