@@ -254,6 +254,7 @@ tyndall::ComparisonSettings vtkSolverComparison::Settings() const
     { this->AsPublished, ComparedMethod::Published },
     { this->AsPublishedSequential, ComparedMethod::PublishedSequential },
     { this->DiscreteOrdinates, ComparedMethod::DiscreteOrdinates },
+    { this->LatticeBoltzmann, ComparedMethod::LatticeBoltzmann },
     { this->Photons, ComparedMethod::Photons },
     { this->AdaptivePhotons, ComparedMethod::AdaptivePhotons },
     { this->PublishedPhotons, ComparedMethod::PublishedPhotons },
@@ -275,6 +276,7 @@ tyndall::ComparisonSettings vtkSolverComparison::Settings() const
   tried.orders = this->Orders;
   tried.photonCounts = this->PhotonCounts;
   tried.tolerance = this->Tolerance;
+  tried.monteCarloReference = this->MonteCarloReference;
   if (this->AllSamplers)
   {
     using tyndall::Sampler;
@@ -331,6 +333,7 @@ void vtkSolverComparison::PrintSelf(ostream& os, vtkIndent indent)
   os << indent << "AsPublished: " << this->AsPublished << "\n";
   os << indent << "AsPublishedSequential: " << this->AsPublishedSequential << "\n";
   os << indent << "DiscreteOrdinates: " << this->DiscreteOrdinates << "\n";
+  os << indent << "LatticeBoltzmann: " << this->LatticeBoltzmann << "\n";
   os << indent << "Photons: " << this->Photons << "\n";
   os << indent << "AdaptivePhotons: " << this->AdaptivePhotons << "\n";
   os << indent << "PublishedPhotons: " << this->PublishedPhotons << "\n";
@@ -341,6 +344,7 @@ void vtkSolverComparison::PrintSelf(ostream& os, vtkIndent indent)
   PrintList(os, indent, "Orders", this->Orders);
   PrintList(os, indent, "PhotonCounts", this->PhotonCounts);
   os << indent << "AllSamplers: " << this->AllSamplers << "\n";
+  os << indent << "MonteCarloReference: " << this->MonteCarloReference << "\n";
   os << indent << "Repeats: " << this->Repeats << "\n";
   os << indent << "TimeBudget: " << this->TimeBudget << "\n";
   os << indent << "ReferenceText: " << this->ReferenceText << "\n";

@@ -62,7 +62,7 @@ struct ComparisonSettings;
  * The settings that are tried: of propagation, all Directions on all Coarsenings of the grid (those that do not divide
  * it are left out); MapResolutions above 1 where directions are 25 or more; limited Orders with the number of
  * Directions nearest to 25. Of photons, all PhotonCounts by Hammersley's sampler, and with AllSamplers the largest but
- * one by the others.
+ * one by the others. Both lattices on all Coarsenings.
  *
  * With EstimateError (default on here) solvers estimate their own errors, by a run more whose time does not count.
  * Photons do not go round periodic axes; they are left out then.
@@ -124,12 +124,31 @@ public:
 
   ///@{
   /// Whether photons that are scattered until they end are compared, by all light and without a filter: Monte Carlo,
-  /// without bias, and the only one that scatters light which is bent. Default off. Where light is bent and there is no
-  /// input 3, such photons make the reference then. Left out where the medium emits, axes are periodic or faces give
-  /// back light.
+  /// without bias, by the medium's own phase function and along bent rays. Default off. Where light is bent and there
+  /// is no input 3, such photons make the reference then. Left out where the medium emits, axes are periodic or faces
+  /// give back light.
   vtkSetMacro(MonteCarlo, bool);
   vtkGetMacro(MonteCarlo, bool);
   vtkBooleanMacro(MonteCarlo, bool);
+  ///@}
+
+  ///@{
+  /// Whether lattices of 18 and of 6 directions are compared, as vtkLatticeBoltzmannLighting solves them by default:
+  /// diffusion. Default off. Left out where voxels are not cubes. Where light is bent the lattice is given the
+  /// uncollided light of photons, of each of the numbers that are tried, and left out where Monte Carlo is.
+  vtkSetMacro(LatticeBoltzmann, bool);
+  vtkGetMacro(LatticeBoltzmann, bool);
+  vtkBooleanMacro(LatticeBoltzmann, bool);
+  ///@}
+
+  ///@{
+  /// Whether, without input 3, photons that are scattered until they end make the reference also where light goes
+  /// straight: sixteen to sixty-four times the largest of PhotonCounts. It shares no solver with the methods then, but
+  /// has noise, of which field data `reference` gives the standard error. Default off: light propagation maps. An error
+  /// where the medium emits, axes are periodic or faces give back light.
+  vtkSetMacro(MonteCarloReference, bool);
+  vtkGetMacro(MonteCarloReference, bool);
+  vtkBooleanMacro(MonteCarloReference, bool);
   ///@}
 
   ///@{
@@ -207,6 +226,7 @@ private:
   bool AsPublished = true;
   bool AsPublishedSequential = false;
   bool DiscreteOrdinates = false;
+  bool LatticeBoltzmann = false;
   bool Photons = true;
   bool AdaptivePhotons = false;
   bool PublishedPhotons = false;
@@ -217,6 +237,7 @@ private:
   std::vector<int> Orders;
   std::vector<int> PhotonCounts;
   bool AllSamplers = false;
+  bool MonteCarloReference = false;
   int Repeats;
   double TimeBudget;
 

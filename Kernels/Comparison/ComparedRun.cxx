@@ -1,5 +1,6 @@
 #include "Comparison/ComparedRun.h"
 
+#include "Comparison/LatticeRuns.h"
 #include "Comparison/PhotonRuns.h"
 #include "Comparison/PropagationRuns.h"
 #include "Device/Errors.h"
@@ -17,6 +18,7 @@ const char* NameOf(ComparedMethod method)
     case ComparedMethod::Published: return "as published";
     case ComparedMethod::PublishedSequential: return "as published, sequential";
     case ComparedMethod::DiscreteOrdinates: return "discrete ordinates";
+    case ComparedMethod::LatticeBoltzmann: return "lattice Boltzmann";
     case ComparedMethod::Photons: return "photons";
     case ComparedMethod::AdaptivePhotons: return "adaptive photons";
     case ComparedMethod::MonteCarlo: return "Monte Carlo";
@@ -39,6 +41,7 @@ std::vector<ComparedRun> RunsOf(
   ComparedMethod method, Device& device, const ComparedScene& scene, const ComparedSettings& settings)
 {
   std::vector<ComparedRun> runs = IsOfPhotons(method) ? PhotonRunsOf(method, device, scene, settings)
+    : method == ComparedMethod::LatticeBoltzmann      ? LatticeRunsOf(device, scene, settings)
                                                       : PropagationRunsOf(method, device, scene, settings);
   std::stable_sort(
     runs.begin(), runs.end(), [](const ComparedRun& a, const ComparedRun& b) { return a.cost < b.cost; });

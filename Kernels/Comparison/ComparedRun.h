@@ -20,6 +20,7 @@ enum class ComparedMethod
   Published,            ///< light propagation maps as published, Algorithm 2
   PublishedSequential,  ///< the same, Algorithm 1: slow
   DiscreteOrdinates,    ///< conservative, anisotropic scattering by spherical harmonics
+  LatticeBoltzmann,     ///< diffusion on lattices of 18 and of 6 directions, solved for its steady state
   Photons,              ///< spread evenly, conservative marching and reconstruction
   AdaptivePhotons,      ///< the same with an importance map
   PublishedPhotons,     ///< marching and Gauss filter as published
@@ -35,7 +36,8 @@ bool IsDirectOnly(ComparedMethod method);
 
 /// The settings that are tried: of propagation all directions on all grids; finer maps where there are 25 directions or
 /// more; limited orders with the number of directions nearest to 25; of photons all counts by the first sampler, and
-/// the largest but one by the others.
+/// the largest but one by the others. Both lattices on all grids whose voxels are cubes; where light is bent, on the
+/// scene's own with uncollided light of all counts of photons.
 struct ComparedSettings
 {
   std::vector<int> directionsPerFace = { 4, 9, 25, 64, 100 };
@@ -47,6 +49,8 @@ struct ComparedSettings
   std::vector<Sampler> samplers = { Sampler::Hammersley };
   double tolerance = PropagationSettings().tolerance; ///< of propagation
   bool scattersReference = false; ///< where light is bent, photons that make the reference are scattered, too
+  /// Such photons make the reference also where light goes straight: it shares no solver with methods compared then.
+  bool monteCarloReference = false;
 };
 
 /// A method with a setting, ready to run.

@@ -20,6 +20,16 @@ bool ComparedScene::Emits() const
     std::any_of(emission.values, emission.values + count, [](float value) { return value > 0.0f; });
 }
 
+std::string ComparedScene::WhyNotByPhotons(bool all) const
+{
+  const bool goesRound = this->periodic[0] || this->periodic[1] || this->periodic[2];
+  return !Shines(this->illumination)      ? "photons are made of lights, and nothing shines on this medium"
+    : this->Emits()                       ? "photons are made of lights, and this medium emits"
+    : goesRound                           ? "photons do not return on the other side of periodic axes"
+    : all && Reflects(this->illumination) ? "photons do not come back from faces that give back light"
+                                          : "";
+}
+
 std::vector<float> RescaledScene::Rescaled(const Field& field, To to, const Factors& factors, const Grid& from) const
 {
   return !field.values  ? std::vector<float>()

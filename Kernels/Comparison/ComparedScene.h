@@ -6,6 +6,7 @@
 
 #include <array>
 #include <cstdint>
+#include <string>
 #include <vector>
 
 namespace tyndall
@@ -21,6 +22,9 @@ struct ComparedScene
 
   bool BendsLight() const; ///< whether the index is not the same everywhere
   bool Emits() const;      ///< whether any voxel emits
+  /// Why photons cannot make the light of this scene; empty: they can.
+  /// @param all  scattered light, too
+  std::string WhyNotByPhotons(bool all) const;
 };
 
 /// The same scene on a coarser or a finer grid: coefficients are means over the voxels, or repeated; the mean cosine is

@@ -206,7 +206,12 @@ ReferenceLight ByPhotons(
 ReferenceLight ConvergedLight(
   Device& device, const ComparedScene& scene, const ComparedSettings& settings, double seconds, const Monitor& monitor)
 {
-  return scene.BendsLight() ? ByPhotons(device, scene, settings, seconds, monitor)
-                            : ByPropagation(device, scene, seconds, monitor);
+  const std::string whyNot = settings.monteCarloReference ? scene.WhyNotByPhotons(true) : "";
+  if (!whyNot.empty())
+  {
+    throw InvalidInput("MonteCarloReference cannot be made: " + whyNot + ". Switch it off, or connect a reference.");
+  }
+  return scene.BendsLight() || settings.monteCarloReference ? ByPhotons(device, scene, settings, seconds, monitor)
+                                                            : ByPropagation(device, scene, seconds, monitor);
 }
 }

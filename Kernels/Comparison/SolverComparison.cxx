@@ -3,6 +3,7 @@
 #include "Comparison/ComparisonErrors.h"
 #include "Comparison/TimeLimit.h"
 #include "Device/Errors.h"
+#include "LatticeBoltzmann/CubicVoxels.h"
 #include "LightPropagation/Published/PublishedModel.h"
 
 #include <algorithm>
@@ -97,14 +98,15 @@ private:
 /// Why a method is not compared on a scene; empty: it is.
 std::string WhyNot(ComparedMethod method, const ComparedScene& scene, const Comparator& comparator)
 {
-  const bool periodic = scene.periodic[0] || scene.periodic[1] || scene.periodic[2];
-  if (IsOfPhotons(method))
+  const bool lattice = method == ComparedMethod::LatticeBoltzmann;
+  if (lattice && !HasCubicVoxels(scene.medium.grid))
   {
-    return !Shines(scene.illumination) ? "photons are made of lights, and nothing shines on this medium"
-      : scene.Emits()                  ? "photons are made of lights, and this medium emits"
-      : periodic                       ? "photons do not return on the other side of periodic axes"
-      : !IsDirectOnly(method) && Reflects(scene.illumination)
-      ? "photons do not come back from faces that give back light"
+    return "its voxels have to be cubes";
+  }
+  if (IsOfPhotons(method) || (lattice && scene.BendsLight())) // whose uncollided light is of photons then
+  {
+    const std::string why = scene.WhyNotByPhotons(!IsDirectOnly(method));
+    return !why.empty()        ? why
       : comparator.Has(method) ? ""
       : IsDirectOnly(method)   ? "the reference has no 'fluence_direct'"
                                : "the reference has no 'fluence'";
@@ -309,8 +311,10 @@ Comparison CompareSolvers(Device& device, const ComparedScene& scene, const Comp
   Comparison result;
   result.device = device.Name();
   ComparedSettings tried = settings.tried;
-  tried.scattersReference =
-    std::count(settings.methods.begin(), settings.methods.end(), ComparedMethod::MonteCarlo) > 0;
+  tried.scattersReference = tried.monteCarloReference ||
+    std::any_of(settings.methods.begin(), settings.methods.end(), [](ComparedMethod method) {
+      return method == ComparedMethod::MonteCarlo || method == ComparedMethod::LatticeBoltzmann;
+    });
   result.reference = reference
     ? *reference
     : ConvergedLight(device, scene, tried, 0.5 * settings.timeBudget, PartWithin(HUGE_VAL, monitor, 0.0, begun));

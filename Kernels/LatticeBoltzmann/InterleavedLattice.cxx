@@ -24,12 +24,12 @@ double UsualFluence(const Rgb& power, const Grid& grid)
 }
 
 /// Part of a channel's light that a step's way through a voxel scatters.
-std::vector<float> ScattersOf(const Medium& medium, int channel, double unit)
+std::vector<float> ScattersOf(const Medium& medium, int channel, double unit, const std::vector<double>& begins)
 {
   std::vector<float> scatters(medium.grid.VoxelCount());
   for (std::size_t i = 0; i < scatters.size(); ++i)
   {
-    scatters[i] = static_cast<float>(unit * medium.grid.spacing[0] * medium.sigma_s.At(i, channel));
+    scatters[i] = static_cast<float>(begins[i] * unit * medium.grid.spacing[0] * medium.sigma_s.At(i, channel));
   }
   return scatters;
 }
@@ -90,7 +90,8 @@ void InterleavedLattice::Begin(const PackedPhotons& packed, int channels)
     channel.power = escaped > 0.0 ? solved.escaped[0][c] / escaped : 0.0;
     Lattice& lattice = channel.lattice->TheLattice();
     channel.scatters =
-      lattice.Placed(ScattersOf(this->Problem->TheMedium(), c, channel.fluence), "how voxels scatter photons");
+      lattice.Placed(ScattersOf(this->Problem->TheMedium(), c, channel.fluence, channel.lattice->TheVoxels().begins),
+        "how voxels scatter photons");
     channel.glows = lattice.Placed(channel.lattice->TheVoxels().source, "what voxels emit");
     this->Channels.push_back(std::move(channel));
   }

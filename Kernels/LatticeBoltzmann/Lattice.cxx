@@ -52,6 +52,8 @@ LatticeVoxels::LatticeVoxels(const PropagationProblem& problem, const Field& ior
     this->lost.push_back(static_cast<float>(published ? absorbs : -std::expm1(-absorbs)));
     this->kept.push_back(published ? static_cast<float>(1.0 - s) : 1.0f - this->lost.back());
     this->passes.push_back(static_cast<float>(!published && s > most ? most / s : 1.0));
+    const double lost = this->lost.back();
+    this->begins.push_back(published || absorbs < 1e-6 ? 1.0 : 2.0 * lost / ((2.0 - lost) * absorbs));
     this->squared.push_back(ior.values && !published ? ior.At(i, 0) * ior.At(i, 0) : 1.0f);
     this->passesAll = this->passesAll && this->passes.back() == 1.0f;
     this->bends = this->bends || this->squared.back() != this->squared.front();
@@ -73,7 +75,7 @@ void LatticeVoxels::Shine(const PropagationProblem& problem, const UncollidedIma
   this->source.resize(medium.grid.VoxelCount());
   for (std::size_t i = 0; i < this->source.size(); ++i)
   {
-    this->source[i] = static_cast<float>(medium.grid.spacing[0] *
+    this->source[i] = static_cast<float>(this->begins[i] * medium.grid.spacing[0] *
       (medium.sigma_s.At(i, channel) * direct.fluence.At(i, channel) + 4.0 * Pi * medium.emission.At(i, channel)));
   }
 }
@@ -135,19 +137,24 @@ std::vector<float> Lattice::Arrange(const Inside& inside, const Outside& outside
     {
       for (at[0] = -1; at[0] <= this->Size[0]; ++at[0])
       {
-        int face = -1;
+        int faces = 0;
+        float beyondThem = 0.0f; // of a corner: halfway between its faces
         std::array<int, 3> near = at;
         for (int a = 0; a < 3; ++a)
         {
           const bool beyond = at[a] < 0 || at[a] >= this->Size[a];
-          face = face < 0 && beyond && !this->Settings.periodic[a] ? 2 * a + (at[a] < 0 ? 0 : 1) : face;
+          if (beyond && !this->Settings.periodic[a])
+          {
+            beyondThem += outside(2 * a + (at[a] < 0 ? 0 : 1));
+            ++faces;
+          }
           near[a] = beyond ? (at[a] + this->Size[a]) % this->Size[a] : at[a];
         }
         const std::size_t voxel =
           (static_cast<std::size_t>(near[2]) * this->Size[1] + near[1]) * this->Size[0] + near[0];
         const std::size_t place = static_cast<std::size_t>(at[2] + 1) * this->TheInfo.layer +
           static_cast<std::size_t>(at[1] + 1) * this->TheInfo.row + static_cast<std::size_t>(at[0] + LatticeFirst);
-        values[place] = face < 0 ? inside(voxel) : outside(face);
+        values[place] = faces == 0 ? inside(voxel) : beyondThem / static_cast<float>(faces);
       }
     }
   }

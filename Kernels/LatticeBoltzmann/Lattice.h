@@ -28,6 +28,7 @@ struct LatticeVoxels
   std::vector<float> passes;        ///< part that links let through
   std::vector<float> squared;       ///< n^2
   std::vector<float> source;        ///< W / length^2, that begins evenly in all directions
+  std::vector<double> begins;       ///< part of what begins in a voxel that is not absorbed in the same step, Eq. (L4a)
   bool bends = false;               ///< n^2 varies
   bool passesAll = true;            ///< no link gives back light
   double thickest = 0.0;            ///< sigma_t h, by the transport extinction

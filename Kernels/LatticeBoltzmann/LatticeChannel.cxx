@@ -66,11 +66,14 @@ double LatticeChannel::CountVoxels(LightField& light) const
   {
     const double tau = edge * medium.sigma_a.At(i, channel);
     const double direct = this->Direct.image.fluence.At(i, channel), lost = this->Voxels.lost[i];
+    // Of what begins in a voxel, what is absorbed before it is in the lattice's light.
+    const double own = this->Voxels.source[i] * (1.0 / this->Voxels.begins[i] - 1.0);
+    const double absorbed = lost * this->Fluence[i] + own;
     // Where much is absorbed in a step, fluence is the mean over that.
-    const double mean = tau > 1e-6 ? lost / tau : 1.0;
-    light.fluence[i * light.channels + this->Channel] = static_cast<float>(direct + mean * this->Fluence[i]);
+    const double scattered = tau > 1e-6 ? absorbed / tau : this->Fluence[i];
+    light.fluence[i * light.channels + this->Channel] = static_cast<float>(direct + scattered);
     light.fluenceDirect[i * light.channels + this->Channel] = static_cast<float>(direct);
-    light.balance.absorbed[this->Channel] += area * (lost * this->Fluence[i] + tau * direct);
+    light.balance.absorbed[this->Channel] += area * (absorbed + tau * direct);
     light.balance.emitted[this->Channel] += area * edge * 4.0 * Pi * medium.emission.At(i, channel);
     entered += area * direct * (tau + edge * medium.sigma_s.At(i, channel));
   }
@@ -107,13 +110,16 @@ double LatticeChannel::CountFaces(LightField& light)
 void LatticeChannel::AddFlux(LightField& light)
 {
   const std::vector<float> flux = this->Photons.NetFlux();
-  const std::size_t voxels = this->Problem.TheGrid().VoxelCount();
+  const Medium& medium = this->Problem.TheMedium();
+  const std::size_t voxels = medium.grid.VoxelCount();
   for (std::size_t i = 0; i < voxels; ++i)
   {
+    const double tau = medium.grid.spacing[0] * medium.sigma_a.At(i, static_cast<int>(this->Channel));
+    const double mean = tau > 1e-6 ? this->Voxels.lost[i] / tau : 1.0; // as fluence
     for (std::size_t a = 0; a < 3; ++a)
     {
       const std::size_t to = 3 * (i * light.channels + this->Channel) + a;
-      light.netFlux[to] = this->Direct.netFlux[to] + flux[a * voxels + i];
+      light.netFlux[to] = static_cast<float>(this->Direct.netFlux[to] + mean * flux[a * voxels + i]);
     }
   }
 }

@@ -1,6 +1,7 @@
 #include "LatticeBoltzmann/LatticeLight.h"
 
 #include "Device/Errors.h"
+#include "LatticeBoltzmann/CubicVoxels.h"
 #include "Light/LeftOut.h"
 #include "LightPropagation/Convergence.h"
 #include "Numerics/Constants.h"
@@ -13,15 +14,33 @@ namespace tyndall
 {
 namespace
 {
-constexpr double CubesTo = 1e-3; ///< edges of a voxel may differ by so much
-
 void CheckCubes(const Grid& grid)
 {
-  const auto [least, most] = std::minmax_element(grid.spacing.begin(), grid.spacing.end());
-  if (*most > (1.0 + CubesTo) * *least)
+  if (!HasCubicVoxels(grid))
   {
     throw InvalidInput("The lattice's voxels have to be cubes; their edges are " + Text("%.6g", grid.spacing[0]) +
       ", " + Text("%.6g", grid.spacing[1]) + ", " + Text("%.6g", grid.spacing[2]) + ". Resample the image.");
+  }
+}
+
+/// Light stays for so many collisions in voxels that absorb nothing.
+void CheckThickness(const Medium& medium)
+{
+  constexpr double thickest = 1e10, absorbsAtLeast = 1e-3; // of doubles 1e-16 are left
+  const double edge = medium.grid.spacing[0];
+  const int channels = medium.sigma_a.components > 1 || medium.sigma_s.components > 1 ? 3 : 1;
+  for (std::size_t i = 0; i < medium.grid.VoxelCount(); ++i)
+  {
+    for (int c = 0; c < channels; ++c)
+    {
+      const double thickness = edge * medium.TransportSigmaT(i, c);
+      if (thickness > thickest && edge * medium.sigma_a.At(i, c) < absorbsAtLeast)
+      {
+        throw InvalidInput("Voxel " + VoxelName(medium.grid, i) + " has optical thickness " + Text("%.6g", thickness) +
+          " and absorbs next to nothing of it; the lattice's numbers hold up to 1e10. Make "
+          "sigma_s or voxels smaller.");
+      }
+    }
   }
 }
 
@@ -78,6 +97,7 @@ void CheckLattice(const Medium& medium, const Field& ior, const LatticeSettings&
   Check(settings);
   Check(medium);
   CheckCubes(medium.grid);
+  CheckThickness(medium);
   CheckIndex(ior, medium.grid);
 }
 

@@ -19,7 +19,8 @@
 typedef struct
 {
   int at[3];
-  int face; // of the box that was passed, -1: none. Then `at` is the last voxel
+  int face;  // of the box that was passed, -1: none. Then `at` is the last voxel
+  int other; // of a corner the second one, else the same
 } Place;
 
 // Parts of light that pass a link up the line and down it.
@@ -40,7 +41,8 @@ static Place next_along(LatticeInfo lattice, Place place, int i)
   {
     const int size = lattice.size[a], to = place.at[a] + Ways[i][a];
     const bool beyond = to < 0 || to >= size, periodic = lattice.periodic >> a & 1;
-    next.face = next.face < 0 && beyond && !periodic ? 2 * a + (to < 0 ? 0 : 1) : next.face;
+    next.other = beyond && !periodic ? 2 * a + (to < 0 ? 0 : 1) : next.other;
+    next.face = next.face < 0 ? next.other : next.face;
     next.at[a] = beyond ? (to + size) % size : to;
   }
   if (next.face >= 0)
@@ -62,17 +64,20 @@ static Link link_between(MEDIUM, ulong a, ulong b)
   return link;
 }
 
-// Of a face: what it lets in of what shines on it, and the part of what meets it from inside that comes back.
+// Of a face, or the mean of a corner's two: what it lets in of what shines on it, and the part of what meets it from
+// inside that comes back.
 typedef struct
 {
   exact in, back;
 } Border;
 
-static Border border_at(LatticeInfo lattice, MEDIUM, ulong voxel, int face, exact shines, int i)
+static Border border_at(LatticeInfo lattice, MEDIUM, ulong voxel, Place past, exact shines, int i)
 {
+  const exact incoming = 0.5f * (lattice.incoming[past.face] + lattice.incoming[past.other]);
+  const exact albedo = 0.5f * (lattice.albedo[past.face] + lattice.albedo[past.other]);
   const exact passing = 2 / (1 / (exact)passes[voxel] + 1);
-  const Border border = { passing * shines * EXACT_WEIGHT(i) * lattice.incoming[face] * (BENDS ? squared[voxel] : 1.0f),
-    1 - passing * (1 - (exact)lattice.albedo[face]) };
+  const Border border = { passing * shines * EXACT_WEIGHT(i) * incoming * (BENDS ? squared[voxel] : 1.0f),
+    1 - passing * (1 - albedo) };
   return border;
 }
 
@@ -93,7 +98,7 @@ static bool begin_line(LatticeInfo lattice, int i, Place* place, bool* closed)
       still[stills++] = a;
     }
   }
-  place->face = -1;
+  place->face = place->other = -1;
   const int a = moving[0], b = moving[1];
   const bool round_a = lattice.periodic >> a & 1, round_b = moves > 1 ? lattice.periodic >> b & 1 : true;
   const int first_a = Ways[i][a] > 0 ? 0 : lattice.size[a] - 1;
@@ -178,7 +183,7 @@ __kernel void sweep_lines(LatticeInfo lattice, MEDIUM, int pair, exact shines, _
   }
   else
   {
-    low = border_at(lattice, straight, passes, squared, even, voxel, before.face, shines, i);
+    low = border_at(lattice, straight, passes, squared, even, voxel, before, shines, i);
     arrived = low.in;
     back = low.back;
   }
@@ -232,7 +237,7 @@ __kernel void sweep_lines(LatticeInfo lattice, MEDIUM, int pair, exact shines, _
   else
   {
     const Border high =
-      border_at(lattice, straight, passes, squared, even, voxel, next_along(lattice, place, i).face, shines, i);
+      border_at(lattice, straight, passes, squared, even, voxel, next_along(lattice, place, i), shines, i);
     const exact rest = 1 - high.back * returns;
     comes = rest > 0 ? (high.in + high.back * sends) / rest : 0;
   }

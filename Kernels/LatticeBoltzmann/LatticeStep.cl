@@ -152,7 +152,7 @@ __kernel void wrap_lattice(__global float* densities, ulong stride, int u, int v
 }
 
 // W / length^2 that each voxel sends through the box's faces in the next step, [face][voxel]; a corner's light goes
-// through the first face that it meets. Periodic axes have no faces.
+// through both of its faces, half each. Periodic axes have no faces.
 __kernel void leave_lattice(
   LatticeInfo lattice, const __global float* resistance, const __global float* densities, __global float* leaving)
 {
@@ -163,16 +163,22 @@ __kernel void leave_lattice(
   float through[6] = { 0.0f };
   for (int i = 0; i < DIRECTIONS; ++i)
   {
+    int first = -1, second = -1;
     for (int a = 0; a < 3; ++a)
     {
       const int next = at[a] + Ways[i][a];
       if (!(lattice.periodic >> a & 1) && (next < 0 || next >= lattice.size[a]))
       {
-        const int face = 2 * a + (next < 0 ? 0 : 1);
-        through[face] +=
-          (1.0f - lattice.albedo[face]) * 2.0f / (resistance[place] + 1.0f) * densities[i * lattice.stride + place];
-        break;
+        second = 2 * a + (next < 0 ? 0 : 1);
+        first = first < 0 ? second : first;
       }
+    }
+    if (first >= 0)
+    {
+      const float black = 1.0f - 0.5f * (lattice.albedo[first] + lattice.albedo[second]);
+      const float half_of = black / (resistance[place] + 1.0f) * densities[i * lattice.stride + place];
+      through[first] += half_of;
+      through[second] += half_of;
     }
   }
   for (int face = 0; face < 6; ++face)

@@ -1,13 +1,16 @@
 // Lattice-Boltzmann lighting (Geist et al. 2004; Bernabei et al.): what a step costs beside the machine's bandwidth,
 // and how soon light is steady.
 //
-//   TyndallBenchLattice [--quick] [step] [blocks] [albedo] [turns]
+//   TyndallBenchLattice [--quick] [step] [blocks] [albedo] [isotropy] [diffusion] [turns]
 //
 //   step    a step of 128^3 voxels over the time that its bytes take at the bandwidth measured in the same run
 //   blocks  blocks of 4^3 voxels against all voxels together, steps and seconds (their Figure 6)
 //   albedo  steps, and iterations of the steady equations, against albedo (their Figure 11)
+//   isotropy   light of a point along axes and diagonals, 18 and 6 directions
+//   diffusion  cubes against Monte Carlo, by thickness and albedo: where diffusion can be trusted
 //   turns   photons that march k voxels while their light diffuses (their Table I), against taking turns
 
+#include "LatticeTables.h"
 #include "LatticeTurns.h"
 #include "MachineLimits.h"
 #include "Measure.h"
@@ -160,9 +163,22 @@ double LargestDifference(const std::vector<float>& values, const std::vector<flo
   return largest;
 }
 
+/// Sum of differences over all light: voxels that are almost dark do not count.
+double DifferenceOfAll(const std::vector<float>& values, const std::vector<float>& reference)
+{
+  double differences = 0.0, all = 0.0;
+  for (std::size_t i = 0; i < values.size(); ++i)
+  {
+    differences += std::abs(static_cast<double>(values[i]) - reference[i]);
+    all += reference[i];
+  }
+  return differences / all;
+}
+
 void PrintRun(Table& table, int edge, const std::string& scene, const char* method, const Run& run, const Run& against)
 {
   const double difference = LargestDifference(run.light.fluence, against.light.fluence);
+  const double ofAll = DifferenceOfAll(run.light.fluence, against.light.fluence);
   JsonLine()
     .Add("bench", "lattice")
     .Add("case", scene)
@@ -171,19 +187,20 @@ void PrintRun(Table& table, int edge, const std::string& scene, const char* meth
     .Add("iterations", run.Steps())
     .Add("seconds", run.seconds)
     .Add("error_max", difference)
+    .Add("error_l1", ofAll)
     .Add("left_over", run.light.balance.leftOver[0] / run.light.balance.entered[0])
     .Add("ratio", run.seconds / against.seconds)
     .Add("against", "all voxels together")
     .Add("load", LoadAverage())
     .Print();
   table.Add({ scene, method, std::to_string(run.Steps()), Text("%.3f", run.seconds),
-    Text("%.2f", run.seconds / against.seconds), Text("%.1e", difference) });
+    Text("%.2f", run.seconds / against.seconds), Text("%.1e", difference), Text("%.1e", ofAll) });
 }
 
 void PrintBlocks(Device& device, bool quick)
 {
   const int edge = quick ? 12 : 64;
-  Table table({ "albedo", "method", "steps", "s", "over together", "largest difference" });
+  Table table({ "albedo", "method", "steps", "s", "over together", "largest difference", "of all light" });
   for (double albedo : { 0.5, 0.9, 0.999 })
   {
     const Box box(edge, 0.5, albedo);
@@ -209,7 +226,7 @@ void PrintBlocks(Device& device, bool quick)
 void PrintAlbedo(Device& device, bool quick)
 {
   const int edge = quick ? 12 : 64;
-  Table table({ "albedo", "method", "steps", "s", "over together", "largest difference" });
+  Table table({ "albedo", "method", "steps", "s", "over together", "largest difference", "of all light" });
   for (double albedo : { 0.1, 0.5, 0.9, 0.99, 0.999, 1.0 })
   {
     const Box box(edge, 0.5, albedo);
@@ -240,6 +257,14 @@ int main(int argc, char* argv[])
     if (arguments.Asks("albedo"))
     {
       PrintAlbedo(device, arguments.quick);
+    }
+    if (arguments.Asks("isotropy"))
+    {
+      PrintIsotropy(device, arguments.quick);
+    }
+    if (arguments.Asks("diffusion"))
+    {
+      PrintDiffusion(device, arguments.quick);
     }
     if (arguments.Asks("turns"))
     {

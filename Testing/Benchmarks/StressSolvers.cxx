@@ -6,6 +6,7 @@
 
 #include "vtkDiscreteOrdinates.h"
 #include "vtkFieldData.h"
+#include "vtkLatticeBoltzmannLighting.h"
 #include "vtkLightRig.h"
 #include "vtkMediumRayCaster.h"
 #include "vtkPhotonEmitter.h"
@@ -193,6 +194,29 @@ void RunOrdinates(const StressScene& scene, Listener* listener, StressOutcome& o
   ReadLight(ordinates->GetOutput(), outcome);
 }
 
+void RunLattice(int directions, const StressScene& scene, double tolerance, Listener* listener, StressOutcome& outcome)
+{
+  vtkNew<vtkLightRig> rig;
+  SetRig(rig, scene);
+  vtkNew<vtkLatticeBoltzmannLighting> lattice;
+  listener->Hear(rig);
+  listener->Hear(lattice);
+  lattice->SetInputDataObject(ImageOf(scene));
+  lattice->SetLightsConnection(rig->GetOutputPort());
+  lattice->SetSkyColor(scene.sky[0], scene.sky[1], scene.sky[2]);
+  std::array<double, 6> faces = scene.faces;
+  lattice->SetFaceRadiance(faces.data());
+  lattice->SetPeriodicX(scene.periodic[0]);
+  lattice->SetPeriodicY(scene.periodic[1]);
+  lattice->SetPeriodicZ(scene.periodic[2]);
+  lattice->SetLattice(directions);
+  lattice->SetNetFlux(true);
+  lattice->SetTolerance(tolerance);
+  lattice->Update();
+  outcome.residual = lattice->GetResidual() / lattice->GetTolerance();
+  ReadLight(vtkImageData::SafeDownCast(lattice->GetOutputDataObject(0)), outcome);
+}
+
 /// Emitter and marcher, and what may stand before and after them.
 struct PhotonChain
 {
@@ -337,8 +361,8 @@ void RunView(bool bent, const StressScene& scene, Listener* listener, StressOutc
 const char* NameOf(StressSolver solver)
 {
   static const char* const names[] = { "maps", "maps, all", "maps, moments", "maps, orders", "maps, parallel",
-    "maps, sequential", "ordinates", "photons", "photons, published", "rebuilt", "rebuilt, published", "octree", "view",
-    "view, bent" };
+    "maps, sequential", "ordinates", "lattice", "lattice of 6", "photons", "photons, published", "rebuilt",
+    "rebuilt, published", "octree", "view", "view, bent" };
   return names[static_cast<int>(solver)];
 }
 
@@ -349,12 +373,18 @@ bool IsMaps(StressSolver solver)
 
 bool EndsByTolerance(StressSolver solver)
 {
-  return solver == StressSolver::Maps || solver == StressSolver::MapsAll || solver == StressSolver::MapsMoments;
+  return solver == StressSolver::Maps || solver == StressSolver::MapsAll || solver == StressSolver::MapsMoments ||
+    IsLattice(solver);
+}
+
+bool IsLattice(StressSolver solver)
+{
+  return solver == StressSolver::Lattice || solver == StressSolver::LatticeOfSix;
 }
 
 bool IsGrid(StressSolver solver)
 {
-  return IsMaps(solver) || solver == StressSolver::Ordinates;
+  return IsMaps(solver) || solver == StressSolver::Ordinates || IsLattice(solver);
 }
 
 bool CountsOrders(StressSolver solver)
@@ -433,6 +463,10 @@ StressOutcome RunStress(StressSolver solver, const StressScene& scene, double to
   else if (solver == StressSolver::Ordinates)
   {
     RunOrdinates(scene, listener, outcome);
+  }
+  else if (IsLattice(solver))
+  {
+    RunLattice(solver == StressSolver::Lattice ? 18 : 6, scene, tolerance, listener, outcome);
   }
   else if (IsView(solver))
   {

@@ -17,6 +17,8 @@ enum class StressSolver
   MapsParallel,     ///< as published, Algorithm 2
   MapsSequential,   ///< as published, Algorithm 1
   Ordinates,        ///< discrete ordinates, conservative
+  Lattice,          ///< lattice-Boltzmann lighting, 18 directions, untouched
+  LatticeOfSix,     ///< the same along axes alone
   Photons,          ///< emitter and marcher, conservative
   PhotonsPublished, ///< as published
   Rebuilt,          ///< importance, emitter, marcher, reconstruction, conservative
@@ -29,7 +31,8 @@ enum class StressSolver
 
 const char* NameOf(StressSolver solver);
 bool IsMaps(StressSolver solver);
-bool IsGrid(StressSolver solver);          ///< maps, or discrete ordinates
+bool IsLattice(StressSolver solver);
+bool IsGrid(StressSolver solver);          ///< maps, discrete ordinates, or lattices
 bool CountsOrders(StressSolver solver);    ///< conservative, with as many orders whatever is left
 bool EndsByTolerance(StressSolver solver); ///< others do as many orders whatever it is
 bool IsPhotons(StressSolver solver);       ///< photons, reconstructed or not
@@ -51,7 +54,7 @@ struct StressOutcome
   std::vector<double> halfRangeFlux; ///< one, of maps
   std::vector<double> scattered;     ///< W, of photons
   std::vector<float> directions;     ///< mean directions, 3 a voxel, of photons
-  double residual = 0.0;             ///< of maps, what the solver says is left, over its tolerance
+  double residual = 0.0;             ///< of grids, what the solver says is left, over its tolerance
   double rawTotal = 0.0;             ///< of reconstructions: the sum of the noisy fluence
   std::vector<float> levels;         ///< of the octree
   double nodes = 0.0;
@@ -59,10 +62,10 @@ struct StressOutcome
   std::vector<float> through;         ///< of views, 3 a pixel: a background of 1 seen through the unlit medium along -z
 };
 
-/// Of the maps: their default, and less where what is compared is not how far iterations went.
+/// Of maps and lattices: their default, and less where what is compared is not how far iterations went.
 constexpr double StressTolerance = 1e-4, StressTightTolerance = 3e-5;
 
-/// @param tolerance  of the maps
+/// @param tolerance  of maps and lattices
 StressOutcome RunStress(StressSolver solver, const StressScene& scene, double tolerance = StressTolerance);
 
 /// Index of each voxel as the bent view sees it: the scene's own, or that of a soft ball.

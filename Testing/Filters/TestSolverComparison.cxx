@@ -217,6 +217,36 @@ void MonteCarloIsComparedWithAllLight(test::Claims& claims)
     "photons do not go round");
 }
 
+void LatticesAreComparedWithPhotons(test::Claims& claims)
+{
+  vtkNew<vtkLightRig> rig;
+  vtkNew<vtkSolverComparison> comparison;
+  test::Errors errors(comparison);
+  AskForOne(comparison);
+  comparison->LightPropagationMapsOff();
+  comparison->LatticeBoltzmannOn();
+  comparison->MonteCarloReferenceOn();
+  comparison->RemoveAllPhotonCounts();
+  comparison->AddPhotonCount(20000);
+  comparison->SetTimeBudget(8.0);
+  comparison->SetInputDataObject(test::MakeMedium({ { 8, 8, 8 } }, 0.01, 0.4));
+  comparison->SetLightsConnection(rig->GetOutputPort());
+  comparison->Update();
+  vtkTable* table = comparison->GetOutput();
+  if (claims.That(errors.None() && table->GetNumberOfRows() == 2, "lattices of 6 and 18 directions"))
+  {
+    claims.That(
+      Text(table, 1, "method") == "lattice Boltzmann" && Text(table, 1, "setting") == "18 directions", "by name");
+    claims.That(Number(table, 1, "error_l2") < 0.1, "near light of photons");
+    claims.That(Number(table, 1, "error_l2") < Number(table, 0, "error_l2"), "more directions are better");
+    claims.That(std::string(comparison->GetReferenceText()).find("scattered until they end") != std::string::npos,
+      "photons make the reference");
+  }
+  comparison->SetPeriodicX(true);
+  comparison->Update();
+  claims.That(errors.WasOneWith("MonteCarloReference cannot be made"), "they cannot where axes are periodic");
+}
+
 vtkSmartPointer<vtkImageData> Reference(std::array<int, 3> cells, const char* array)
 {
   auto image = test::MakeImage({ cells });
@@ -373,6 +403,7 @@ int TestSolverComparison(int, char*[])
   GridsAreMatched(claims);
   PhotonsAreComparedWithDirectLight(claims);
   MonteCarloIsComparedWithAllLight(claims);
+  LatticesAreComparedWithPhotons(claims);
   BadInput(claims);
   UnknownIsSaid(claims);
   ThePublishedSchemeIsLeftOutWhereGVaries(claims);

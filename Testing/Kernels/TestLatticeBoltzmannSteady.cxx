@@ -184,3 +184,79 @@ TEST_F(SteadyLattices, AreTheSameEveryTime)
   scene.ShineAlong({ 0.1, 0.7, -0.9 });
   EXPECT_EQ(this->Solve(scene).fluence, this->Solve(scene).fluence);
 }
+
+/// What voxels emit is absorbed on its way out of them as what comes in is, whatever lies beside them.
+TEST_F(SteadyLattices, KeepAFurnaceBesideVoxelsThatAbsorb)
+{
+  for (const int directions : { 18, 6 })
+  {
+    for (const bool solves : { true, false })
+    {
+      Scene scene({ 6, 4, 5 });
+      scene.Randomise(1e4, 8.0, 0.3, 5);
+      scene.emission = scene.sigma_a;
+      scene.light.sky = { 1.0, 1.0, 1.0 };
+      LatticeSettings settings;
+      settings.directions = directions;
+      settings.solvesSteady = solves;
+      settings.tolerance = 1e-6;
+      const LightField light = this->Solve(scene, settings);
+      for (std::size_t i = 0; i < light.fluence.size(); ++i)
+      {
+        ASSERT_NEAR(light.fluence[i] / (4.0 * Pi), 1.0, 1e-3) << "voxel " << i << ", " << directions << ", " << solves;
+      }
+      EXPECT_LT(std::abs(light.balance.leftOver[0]), 1e-5 * (light.balance.entered[0] + light.balance.emitted[0]));
+    }
+  }
+}
+
+/// Light through -z is that through -x with both axes exchanged, also at the box's edges.
+TEST_F(SteadyLattices, AreTheSameAlongAllAxes)
+{
+  constexpr int Edge = 5;
+  LatticeSettings settings;
+  settings.tolerance = 1e-6;
+  std::array<LightField, 2> lights;
+  for (std::size_t one = 0; one < 2; ++one)
+  {
+    Scene scene({ Edge, Edge, Edge }, 0.05f, 0.3f);
+    scene.light.faces[4 * one] = { 1.0, 1.0, 1.0 };
+    scene.light.faceAlbedo[1 + 4 * one] = { 0.4, 0.4, 0.4 };
+    lights[one] = this->Solve(scene, settings);
+  }
+  for (int k = 0; k < Edge; ++k)
+  {
+    for (int j = 0; j < Edge; ++j)
+    {
+      for (int i = 0; i < Edge; ++i)
+      {
+        const float x = lights[0].fluence[(k * Edge + j) * Edge + i], z = lights[1].fluence[(i * Edge + j) * Edge + k];
+        ASSERT_NEAR(x, z, 1e-4 * x) << i << ", " << j << ", " << k;
+      }
+    }
+  }
+  for (std::size_t face = 0; face < 2; ++face)
+  {
+    EXPECT_NEAR(
+      lights[0].facePowerOut[face][0], lights[1].facePowerOut[4 + face][0], 1e-4 * lights[0].facePowerOut[face][0]);
+  }
+}
+
+TEST_F(SteadyLattices, RefuseWhiteVoxelsThatTheyCannotHold)
+{
+  Scene scene({ 3, 2, 2 }, 0.0f, 1.0f);
+  scene.sigma_s[4] = 1e12f;
+  scene.light.sky = { 1.0, 1.0, 1.0 };
+  try
+  {
+    this->Solve(scene);
+    FAIL() << "of 1e12 collisions none is to be lost";
+  }
+  catch (const InvalidInput& error)
+  {
+    EXPECT_NE(std::string(error.what()).find("Voxel (1, 1, 0) has optical thickness 1e+12"), std::string::npos)
+      << error.what();
+  }
+  scene.sigma_a[4] = 1.0f; // which ends light
+  EXPECT_NO_THROW(this->Solve(scene));
+}

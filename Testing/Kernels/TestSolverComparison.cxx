@@ -205,3 +205,101 @@ TEST_F(ComparedMonteCarlo, IsLeftOutWhereItsPhotonsMissLight)
   cube.scene.medium.emission = {};
   EXPECT_TRUE(CompareSolvers(this->GetDevice(), cube.scene, cube.settings, &reference).leftOut.empty());
 }
+
+class ComparedLattice : public DeviceTest
+{
+protected:
+  /// Errors by setting, against photons.
+  std::vector<ComparisonRow> Compared(SunlitCube& cube)
+  {
+    cube.settings.methods = { ComparedMethod::LatticeBoltzmann };
+    cube.settings.tried.monteCarloReference = true;
+    cube.settings.tried.coarsenings = { 1, 2 };
+    const Comparison found = CompareSolvers(this->GetDevice(), cube.scene, cube.settings);
+    EXPECT_NE(found.reference.text.find("scattered until they end"), std::string::npos) << found.reference.text;
+    return found.rows;
+  }
+};
+
+// Cheap ones first: 6 directions before 18 on each grid. Voxels of half a mean free path; with those twice as large,
+// in which light does not fall off, diffusion begins too deep.
+TEST_F(ComparedLattice, ComesNearPhotonsWhereVoxelsAreThin)
+{
+  SunlitCube cube(12);
+  cube.sigma_s.assign(cube.sigma_s.size(), 6.0f);
+  const std::vector<ComparisonRow> rows = this->Compared(cube);
+  ASSERT_EQ(rows.size(), 4u);
+  const char* const settings[] = { "6 directions, voxels x 2", "18 directions, voxels x 2", "6 directions",
+    "18 directions" };
+  for (std::size_t i = 0; i < 4; ++i)
+  {
+    EXPECT_EQ(rows[i].method, ComparedMethod::LatticeBoltzmann);
+    EXPECT_EQ(rows[i].setting, settings[i]);
+    EXPECT_LT(rows[i].balance, 1e-5) << rows[i].setting;
+  }
+  EXPECT_LT(rows[3].errorL2, 0.08);
+  EXPECT_GT(rows[1].errorL2, rows[3].errorL2);
+}
+
+// Bent light comes to the lattice by photons: more of them, less noise.
+TEST_F(ComparedLattice, TakesBentLightOfPhotons)
+{
+  SunlitCube cube(6);
+  for (std::size_t i = 0; i < cube.ior.size(); ++i)
+  {
+    cube.ior[i] = 1.0f + 0.002f * static_cast<float>(i);
+  }
+  cube.scene.ior = { cube.ior.data() };
+  cube.settings.tried.photonCounts = { 50, 20000 };
+  const std::vector<ComparisonRow> rows = this->Compared(cube);
+  ASSERT_EQ(rows.size(), 4u);
+  EXPECT_EQ(rows[1].setting, "18 directions, uncollided light of 50 photons");
+  EXPECT_EQ(rows[3].setting, "18 directions, uncollided light of 20000 photons");
+  EXPECT_LT(rows[3].errorL2, 0.5 * rows[1].errorL2);
+  EXPECT_LT(rows[3].errorL2, 0.1);
+}
+
+TEST_F(ComparedLattice, IsLeftOutWhereVoxelsAreNoCubes)
+{
+  SunlitCube cube(4);
+  ReferenceLight reference;
+  cube.scene.medium.grid.spacing[1] *= 1.01;
+  reference.grid = cube.scene.medium.grid;
+  reference.fluence.assign(cube.sigma_a.size(), 1.0f);
+  cube.settings.methods = { ComparedMethod::LatticeBoltzmann };
+  const Comparison found = CompareSolvers(this->GetDevice(), cube.scene, cube.settings, &reference);
+  ASSERT_EQ(found.leftOut.size(), 1u);
+  EXPECT_EQ(found.leftOut[0], "lattice Boltzmann: its voxels have to be cubes");
+}
+
+// The two references share no solver.
+TEST_F(ComparedMonteCarlo, MakesAReferenceThatAgreesWithConvergedPropagation)
+{
+  SunlitCube cube(8);
+  ComparedSettings& tried = cube.settings.tried;
+  tried.photonCounts = { 50000 };
+  const ReferenceLight maps = ConvergedLight(this->GetDevice(), cube.scene, tried, 5.0);
+  tried.monteCarloReference = tried.scattersReference = true;
+  const ReferenceLight photons = ConvergedLight(this->GetDevice(), cube.scene, tried, 0.1);
+  const std::optional<Factors> factors = FactorsBetween(maps.grid, photons.grid);
+  ASSERT_TRUE(factors);
+  const RelativeErrors errors = ErrorsOf(photons.fluence, Averaged(maps.fluence.data(), 1, maps.grid, *factors));
+  EXPECT_LT(errors.l2, 0.02) << photons.text; // 0.0064 of it is noise
+  EXPECT_GT(errors.l2, 0.0);
+}
+
+TEST_F(ComparedMonteCarlo, RefusesToBeTheReferenceOfWhatItCannotDo)
+{
+  SunlitCube cube(4);
+  cube.settings.tried.monteCarloReference = true;
+  cube.scene.medium.emission = { cube.sigma_a.data() };
+  try
+  {
+    CompareSolvers(this->GetDevice(), cube.scene, cube.settings);
+    FAIL() << "photons do not carry what a medium emits";
+  }
+  catch (const InvalidInput& error)
+  {
+    EXPECT_NE(std::string(error.what()).find("this medium emits"), std::string::npos) << error.what();
+  }
+}

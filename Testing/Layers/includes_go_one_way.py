@@ -17,9 +17,9 @@ LAYERS = {
         ["Numerics"],
         ["Medium", "PhaseFunction", "Lights", "Light"],
         ["LightPropagation"],
-        ["DiscreteOrdinates", "LatticeBoltzmann", "Refraction"],
+        ["DiscreteOrdinates", "Refraction"],
         ["Photons"],
-        ["Reconstruction", "Viewing"],
+        ["LatticeBoltzmann", "Reconstruction", "Viewing"],
         ["Comparison"],
     ],
     "Kernels/LightPropagation": [
