@@ -104,16 +104,17 @@ public:
   ///@}
 
   ///@{
-  /// Whether photons, where there are any, march while what they have left so far diffuses, by StepsPerExchange steps to
-  /// VoxelsPerTurn voxels of their ways, as published (Bernabei et al.); steps go on until Tolerance is met. Default
-  /// off: they march to their ends first.
+  /// Whether photons, where there are any, march while what they have left so far diffuses, by StepsPerExchange steps
+  /// to VoxelsPerTurn voxels of their ways, as published (Bernabei et al.); steps go on until Tolerance is met.
+  /// Default off: they march to their ends first.
   vtkSetMacro(Interleaved, bool);
   vtkGetMacro(Interleaved, bool);
   vtkBooleanMacro(Interleaved, bool);
   ///@}
 
   ///@{
-  /// Voxels that photons cross in a turn, where Interleaved. Default 16, valid [0, 1000000]; 0: to the end of their ways.
+  /// Voxels that photons cross in a turn, where Interleaved. Default 16, valid [0, 1000000]; 0: to the end of their
+  /// ways.
   tyndallSetRangeMacro(VoxelsPerTurn, int, 0, 1000000);
   vtkGetMacro(VoxelsPerTurn, int);
   ///@}
