@@ -12,6 +12,9 @@ import time
 
 from paraview.simple import *
 from paraview import servermanager
+from vtkmodules.vtkFiltersCore import vtkImageAppend
+from vtkmodules.vtkImagingCore import vtkExtractVOI
+from vtkmodules.vtkIOImage import vtkPNGReader, vtkPNGWriter
 
 LoadPlugin(os.environ["TYNDALL_PLUGIN"], remote=True, ns=globals())
 
@@ -21,7 +24,7 @@ arguments.add_argument("--output", required=True)
 arguments.add_argument("--grid", type=int, default=192, help="voxels along the box's longest edge")
 arguments.add_argument("--photons", type=int, default=3000000)
 arguments.add_argument("--size", type=int, nargs=2, default=[800, 600], help="columns and rows of the pictures")
-arguments.add_argument("--scenes", nargs="*", default=["armadillo", "elephant"])
+arguments.add_argument("--scenes", nargs="*", default=["armadillo", "elephant", "solvers"])
 arguments = arguments.parse_args()
 os.makedirs(arguments.output, exist_ok=True)
 
@@ -53,10 +56,10 @@ def standing(name):
     return upright, upright.GetDataInformation().GetBounds()
 
 
-def voxels(bounds):
-    """Cubic voxels in a box, as many along its longest edge as were asked for."""
+def voxels(bounds, part=1):
+    """Cubic voxels in a box, along its longest edge as many as were asked for, or a part of these."""
     edges = [bounds[2 * a + 1] - bounds[2 * a] for a in range(3)]
-    return [max(1, round(arguments.grid * edge / max(edges))) for edge in edges]
+    return [max(1, round(part * arguments.grid * edge / max(edges))) for edge in edges]
 
 
 def light_in(name, medium, lights, photons, environment=None):
@@ -85,6 +88,29 @@ def picture(name, light, **settings):
     return caster
 
 
+def panels(name, pictures):
+    """Save one picture of four: the squares in their middles, two above two."""
+    rows = vtkImageAppend()
+    rows.SetAppendAxis(1)
+    for pair in pictures[2:], pictures[:2]:
+        row = vtkImageAppend()
+        for one in pair:
+            reader = vtkPNGReader()
+            reader.SetFileName(output(one + ".png"))
+            reader.Update()
+            columns, height = reader.GetOutput().GetDimensions()[:2]
+            left = max(0, (columns - height) // 2)
+            middle = vtkExtractVOI()
+            middle.SetVOI(left, left + min(columns, height) - 1, 0, height - 1, 0, 0)
+            middle.SetInputConnection(reader.GetOutputPort())
+            row.AddInputConnection(middle.GetOutputPort())
+        rows.AddInputConnection(row.GetOutputPort())
+    writer = vtkPNGWriter()
+    writer.SetFileName(output(name + ".png"))
+    writer.SetInputConnection(rows.GetOutputPort())
+    writer.Write()
+
+
 def armadillo(sky):
     """Of green glass, on a table, in thin fog by the sea: the sun behind it draws a caustic."""
     mesh, b = standing("armadillo")
@@ -103,9 +129,9 @@ def armadillo(sky):
     return light
 
 
-def elephant():
+def elephant_in_a_sphere(part=1):
     """Inside a sphere of another material, lit by a spot from behind (Bernabei et al., figure 8a): one hue, and only the
-    refractive index and the density differ."""
+    refractive index and the density differ. Medium, lamp, and the centre."""
     mesh, b = standing("elephant")
     centre = [0.5 * (b[2 * a] + b[2 * a + 1]) for a in range(3)]
     sphere = Sphere(registrationName="Sphere", Center=centre, Radius=0.72, ThetaResolution=160, PhiResolution=160)
@@ -115,31 +141,85 @@ def elephant():
         return [number, index, *(density * h for h in (0.9, 0.55, 0.2)), *(density * h for h in (0.05, 0.225, 0.4)), 0]
 
     medium = MeshVoxelizer(registrationName="Elephant in a sphere", Input=[sphere, mesh], ModelBounds=box,
-                           SampleDimensions=voxels(box), OutsideScattering=[0, 0, 0],
+                           SampleDimensions=voxels(box, part), OutsideScattering=[0, 0, 0],
                            Materials=material(0, 1.1, 0.35) + material(1, 1.4, 5))
     stage("elephant: voxels", medium)
     lamp = around(centre, 4, 75, 35)
     spot = LightRig(registrationName="Spot", Sun=0,
                     SpotLights=[*lamp, *(c - p for c, p in zip(centre, lamp)), 60, 60, 60, 24])
+    return medium, spot, centre
+
+
+def seen(name, light, centre):
+    """The elephant from the side."""
+    picture("elephant-in-a-sphere" + name, light, CameraPosition=around(centre, 5, 260, 10), CameraFocalPoint=centre,
+            CameraViewAngle=19, SurfaceReflection="Fresnel")
+
+
+def elephant():
+    """Its light scattered once, and many times."""
+    medium, spot, centre = elephant_in_a_sphere()
     bent = light_in("elephant", medium, spot, arguments.photons)
     light = stage("elephant: scattered many times", LightPropagationMaps(registrationName="elephant scattered light",
                                                                          Input=medium, UncollidedLight=bent))
-    for name, shown in ("elephant-in-a-sphere-one-scattering", bent), ("elephant-in-a-sphere", light):
-        picture(name, shown, CameraPosition=around(centre, 5, 260, 10), CameraFocalPoint=centre, CameraViewAngle=19,
-                SurfaceReflection="Fresnel")
+    seen("-one-scattering", bent, centre)
+    seen("", light, centre)
     return light
 
 
+def elephant_by_four_solvers():
+    """The same light scattered many times by photons alone, by a lattice alone, by photons and a lattice, and by photons and
+    maps, in half as many voxels along each edge. Photons alone are without bias, and the others' measure."""
+    medium, spot, centre = elephant_in_a_sphere(0.5)
+    bent = light_in("elephant", medium, spot, arguments.photons // 3)
+    photons = PhotonMarcher(registrationName="elephant by photons", Input=medium, Photons=bent.Photons, Octree=bent.Octree,
+                            MaximumOrders=0, ErrorBatches=0)
+    solved = {
+        "photons": photons,
+        "lattice": LatticeBoltzmannLighting(registrationName="elephant by a lattice", Input=medium, Lights=spot,
+                                            Tolerance=1e-3),
+        "photons-and-lattice": LatticeBoltzmannLighting(registrationName="elephant by photons and a lattice", Input=medium,
+                                                        UncollidedLight=bent, Tolerance=1e-3),
+        "photons-and-maps": LightPropagationMaps(registrationName="elephant by photons and maps", Input=medium,
+                                                 UncollidedLight=bent, Tolerance=1e-3)}
+    for name, light in solved.items():
+        stage("elephant: by " + name, light)
+        seen("-by-" + name, light, centre)
+    panels("elephant-by-four-solvers", ["elephant-in-a-sphere-by-" + name for name in solved])
+    compare(photons, {name: light for name, light in solved.items() if light is not photons})
+    return photons
+
+
+def compare(reference, others):
+    """Print how far fluence is from that of photons that were followed through every scattering, where the medium is."""
+    right = fluence(reference)
+    for name, light in others.items():
+        found = fluence(light)
+        difference = sum(abs(a - b) for a, b in zip(found, right)) / sum(right)
+        comparisons.append(("elephant by %s, fluence against photons alone" % name, difference))
+
+
+def fluence(light):
+    """Of all voxels and channels."""
+    values = servermanager.Fetch(light).GetCellData().GetArray("fluence")
+    return [values.GetValue(i) for i in range(values.GetNumberOfValues())]
+
+
+comparisons = []
 sky = EnvironmentReader(registrationName="Sky", FileName=data("sunset.exr"))
 lights = {}
 if "armadillo" in arguments.scenes:
     lights["armadillo"] = armadillo(sky)
 if "elephant" in arguments.scenes:
     lights["elephant"] = elephant()
+if "solvers" in arguments.scenes:
+    lights["elephant by photons"] = elephant_by_four_solvers()
 
 print("%-34s %9s" % ("stage", "seconds"))
 for name, seconds in stages:
     print("%-34s %9.2f" % (name, seconds))
 for name, light in lights.items():
     light.UpdatePropertyInformation()
-    print("%-34s %9.1e" % (name + ": balance, relative error", light.BalanceError))
+    print("%-40s %9.1e" % (name + ": balance, relative error", light.BalanceError))
+for name, difference in comparisons:
+    print("%-62s %5.1f%%" % (name, 100 * difference))

@@ -15,7 +15,7 @@ SCENES = {
              ["skull-multiple-scattering", "skull-single-scattering", "skull-on-the-square", "fluence-slice"]),
     "refraction": ("Plugin/Examples/refraction.py",
                    "--data {data} --output {output} --grid 128 --photons 300000 --size 240 180",
-                   ["armadillo-in-glass", "elephant-in-a-sphere"]),
+                   ["armadillo-in-glass", "elephant-in-a-sphere", "elephant-by-four-solvers"]),
     "adaptive": ("Plugin/Examples/adaptive.py",
                  "--output {output} --grid 64 --photons 20000 --rich 400000 --size 120 90",
                  ["adaptive", "adaptive-against-even", "estimators"]),
