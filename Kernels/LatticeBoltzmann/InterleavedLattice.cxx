@@ -16,9 +16,7 @@ constexpr double Together = 0.05; ///< of the shorter part's time: with less, a 
 /// W / length^2 that are usual for light of so much power.
 double UsualFluence(const Rgb& power, const Grid& grid)
 {
-  const std::array<double, 3> size = { grid.size[0] * grid.spacing[0], grid.size[1] * grid.spacing[1],
-    grid.size[2] * grid.spacing[2] };
-  const double area = size[0] * size[1] + size[1] * size[2] + size[2] * size[0];
+  const double x = grid.Length(0), y = grid.Length(1), z = grid.Length(2), area = x * y + y * z + z * x;
   const double usual = Sum(power) / area;
   return usual > 1e-30 && usual < 1e30 ? usual : 1.0;
 }

@@ -6,6 +6,7 @@
 #include "LightPropagation/Convergence.h"
 #include "Numerics/Constants.h"
 #include "Numerics/NumberText.h"
+#include "Refraction/Index/IndexRange.h"
 
 #include <algorithm>
 #include <string>
@@ -28,10 +29,9 @@ void CheckThickness(const Medium& medium)
 {
   constexpr double thickest = 1e10, absorbsAtLeast = 1e-3; // of doubles 1e-16 are left
   const double edge = medium.grid.spacing[0];
-  const int channels = medium.sigma_a.components > 1 || medium.sigma_s.components > 1 ? 3 : 1;
   for (std::size_t i = 0; i < medium.grid.VoxelCount(); ++i)
   {
-    for (int c = 0; c < channels; ++c)
+    for (int c = 0; c < medium.Channels(); ++c)
     {
       const double thickness = edge * medium.TransportSigmaT(i, c);
       if (thickness > thickest && edge * medium.sigma_a.At(i, c) < absorbsAtLeast)
@@ -40,18 +40,6 @@ void CheckThickness(const Medium& medium)
           " and absorbs next to nothing of it; the lattice's numbers hold up to 1e10. Make "
           "sigma_s or voxels smaller.");
       }
-    }
-  }
-}
-
-void CheckIndex(const Field& ior, const Grid& grid)
-{
-  for (std::size_t i = 0; ior.values && i < grid.VoxelCount(); ++i)
-  {
-    if (const double n = ior.At(i, 0); !(n >= 1e-6 && n <= 1e6))
-    {
-      throw InvalidInput("The refractive index of voxel " + VoxelName(grid, i) + " is " + Text("%.6g", n) +
-        "; it must be positive (1e-6 to 1e6).");
     }
   }
 }

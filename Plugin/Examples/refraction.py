@@ -14,7 +14,8 @@ from paraview.simple import *
 from paraview import servermanager
 from vtkmodules.vtkFiltersCore import vtkImageAppend
 from vtkmodules.vtkImagingCore import vtkExtractVOI
-from vtkmodules.vtkIOImage import vtkPNGReader, vtkPNGWriter
+from vtkmodules.vtkIOImage import vtkPNGWriter
+from vtkmodules.util.numpy_support import vtk_to_numpy
 
 LoadPlugin(os.environ["TYNDALL_PLUGIN"], remote=True, ns=globals())
 
@@ -88,21 +89,19 @@ def picture(name, light, **settings):
     return caster
 
 
-def panels(name, pictures):
+def panels(name, casters):
     """Save one picture of four: the squares in their middles, two above two."""
     rows = vtkImageAppend()
     rows.SetAppendAxis(1)
-    for pair in pictures[2:], pictures[:2]:
+    for pair in casters[2:], casters[:2]:
         row = vtkImageAppend()
         for one in pair:
-            reader = vtkPNGReader()
-            reader.SetFileName(output(one + ".png"))
-            reader.Update()
-            columns, height = reader.GetOutput().GetDimensions()[:2]
+            image = servermanager.Fetch(one)
+            columns, height = image.GetDimensions()[:2]
             left = max(0, (columns - height) // 2)
             middle = vtkExtractVOI()
             middle.SetVOI(left, left + min(columns, height) - 1, 0, height - 1, 0, 0)
-            middle.SetInputConnection(reader.GetOutputPort())
+            middle.SetInputData(image)
             row.AddInputConnection(middle.GetOutputPort())
         rows.AddInputConnection(row.GetOutputPort())
     writer = vtkPNGWriter()
@@ -152,8 +151,8 @@ def elephant_in_a_sphere(part=1):
 
 def seen(name, light, centre):
     """The elephant from the side."""
-    picture("elephant-in-a-sphere" + name, light, CameraPosition=around(centre, 5, 260, 10), CameraFocalPoint=centre,
-            CameraViewAngle=19, SurfaceReflection="Fresnel")
+    return picture("elephant-in-a-sphere" + name, light, CameraPosition=around(centre, 5, 260, 10), CameraFocalPoint=centre,
+                   CameraViewAngle=19, SurfaceReflection="Fresnel")
 
 
 def elephant():
@@ -182,10 +181,8 @@ def elephant_by_four_solvers():
                                                         UncollidedLight=bent, Tolerance=1e-3),
         "photons-and-maps": LightPropagationMaps(registrationName="elephant by photons and maps", Input=medium,
                                                  UncollidedLight=bent, Tolerance=1e-3)}
-    for name, light in solved.items():
-        stage("elephant: by " + name, light)
-        seen("-by-" + name, light, centre)
-    panels("elephant-by-four-solvers", ["elephant-in-a-sphere-by-" + name for name in solved])
+    views = [seen("-by-" + name, stage("elephant: by " + name, light), centre) for name, light in solved.items()]
+    panels("elephant-by-four-solvers", views)
     compare(photons, {name: light for name, light in solved.items() if light is not photons})
     return photons
 
@@ -194,15 +191,13 @@ def compare(reference, others):
     """Print how far fluence is from that of photons that were followed through every scattering, where the medium is."""
     right = fluence(reference)
     for name, light in others.items():
-        found = fluence(light)
-        difference = sum(abs(a - b) for a, b in zip(found, right)) / sum(right)
+        difference = abs(fluence(light) - right).sum() / right.sum()
         comparisons.append(("elephant by %s, fluence against photons alone" % name, difference))
 
 
 def fluence(light):
     """Of all voxels and channels."""
-    values = servermanager.Fetch(light).GetCellData().GetArray("fluence")
-    return [values.GetValue(i) for i in range(values.GetNumberOfValues())]
+    return vtk_to_numpy(servermanager.Fetch(light).GetCellData().GetArray("fluence")).astype(float)
 
 
 comparisons = []

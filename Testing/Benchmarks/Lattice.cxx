@@ -11,7 +11,6 @@
 //   turns   photons that march k voxels while their light diffuses (their Table I), against taking turns
 
 #include "LatticeTables.h"
-#include "LatticeTurns.h"
 #include "MachineLimits.h"
 #include "Measure.h"
 #include "Program.h"
@@ -51,12 +50,6 @@ struct Box
     this->light.lights.push_back(sun);
   }
 };
-
-std::string GridText(int edge)
-{
-  const std::string text = std::to_string(edge);
-  return text + "x" + text + "x" + text;
-}
 
 /// Bytes that a step has to move: densities there and back, and what each voxel is.
 double BytesOfStep(const LatticeVoxels& voxels, int directions, std::size_t count)

@@ -177,12 +177,11 @@ void Compare(Device& device, const Cube& cube, const Truth& truth, Table& table)
   const Difference found = DifferenceOf(cube, light, truth);
   const int edge = cube.medium.grid.size[0];
   const std::string lit = cube.lit == Lit::BySun ? "sun" : "diffuse";
-  const std::string grid = std::to_string(edge) + "x" + std::to_string(edge) + "x" + std::to_string(edge);
   JsonLine()
     .Add("bench", "lattice")
     .Add("case", "diffusion, " + lit + ", thickness " + Text("%g", cube.tau) + ", albedo " + Text("%g", cube.albedo))
     .Add("method", "lattice, 18 directions, steady")
-    .Add("grid", grid)
+    .Add("grid", GridText(edge))
     .Add("seconds", seconds)
     .Add("sigma_t_h", cube.tau / edge)
     .Add("error_l1", found.fluence)
@@ -196,7 +195,7 @@ void Compare(Device& device, const Cube& cube, const Truth& truth, Table& table)
     .Add("against_seconds", truth.seconds)
     .Add("load", LoadAverage())
     .Print();
-  table.Add({ lit + ", " + Text("%g", cube.tau), Text("%g", cube.albedo), grid, Text("%.3g", cube.tau / edge),
+  table.Add({ lit + ", " + Text("%g", cube.tau), Text("%g", cube.albedo), GridText(edge), Text("%.3g", cube.tau / edge),
     Percent(found.fluence), Percent(found.bias), Percent(found.powers[0]), Percent(found.powers[1]),
     Percent(found.powers[2]), Percent(truth.noise), Text("%.2f", seconds), Text("%.1f", truth.seconds) });
 }

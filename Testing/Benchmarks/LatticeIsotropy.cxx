@@ -70,7 +70,6 @@ void PrintPoint(Device& device, bool quick, Table& table, int directions, const 
   settings.maximumSteps = of.steps;
   settings.tolerance = 1e-7; // far off there is little light
   const LightField light = SolveLatticeBoltzmann(device, point.medium, {}, {}, settings);
-  const std::string edge = std::to_string(point.edge), grid = edge + "x" + edge + "x" + edge;
   const std::string scene = "isotropy, sigma_t h " + Text("%g", of.thickness) + ", albedo " + Text("%g", of.albedo) +
     (of.steps == 0 ? ", steady" : ", after " + std::to_string(of.steps) + " steps");
   const std::string method = std::to_string(directions) + " directions";
@@ -83,7 +82,7 @@ void PrintPoint(Device& device, bool quick, Table& table, int directions, const 
       .Add("bench", "lattice")
       .Add("case", scene)
       .Add("method", method)
-      .Add("grid", grid)
+      .Add("grid", GridText(point.edge))
       .Add("distance_voxels", distance)
       .Add("face_diagonal_over_axis", face)
       .Add("space_diagonal_over_axis", space)

@@ -1,5 +1,6 @@
-#include "LatticeTurns.h"
+// Photons that march beside the lattice.
 
+#include "LatticeTables.h"
 #include "Measure.h"
 #include "Report.h"
 
@@ -11,7 +12,8 @@
 #include <string>
 #include <vector>
 
-using namespace bench;
+namespace bench
+{
 using namespace tyndall;
 
 namespace
@@ -88,7 +90,7 @@ void PrintLine(int edge, int stretches, const char* method, const Run& run, cons
     .Add("bench", "lattice")
     .Add("case", "turns, k " + std::to_string(stretches))
     .Add("method", method)
-    .Add("grid", std::to_string(edge) + "x" + std::to_string(edge) + "x" + std::to_string(edge))
+    .Add("grid", GridText(edge))
     .Add("iterations", run.steps)
     .Add("seconds", Median(run.seconds))
     .Add("ratio", Median(run.seconds) / Median(against.seconds))
@@ -138,4 +140,5 @@ void PrintTurns(Device& device, bool quick)
   table.Print("Photons march k voxels while their light diffuses 8 steps, " + std::to_string(edge) + "^3, " +
     std::to_string(cube.photons.size()) + " photons" +
     (overlaps ? "" : "; the device does marching and diffusion one after the other"));
+}
 }

@@ -113,12 +113,6 @@ double TooBright(const std::vector<float>& values, const std::vector<float>& ref
   return sum / all - 1.0;
 }
 
-std::string GridText(int edge)
-{
-  const std::string text = std::to_string(edge);
-  return text + "x" + text + "x" + text;
-}
-
 struct Way
 {
   std::string name;

@@ -44,6 +44,12 @@ std::string Text(const char* format, double value)
   return std::isfinite(value) ? text : "-";
 }
 
+std::string GridText(int edge)
+{
+  const std::string text = std::to_string(edge);
+  return text + "x" + text + "x" + text;
+}
+
 void Table::Print(const std::string& title) const
 {
   std::vector<std::size_t> widths;

@@ -22,6 +22,8 @@ private:
 /// printf's format with one number; "-" where it is not one.
 std::string Text(const char* format, double value);
 
+std::string GridText(int edge); ///< of a cube: "64x64x64"
+
 /// Columns as wide as they need to be, the first two to the left.
 class Table
 {

@@ -149,7 +149,7 @@ void SaysWhatIsWrong(test::Claims& claims)
   test::AddCells(bent, "ior", -1.0);
   lattice->SetInputDataObject(bent);
   lattice->Update();
-  claims.That(errors.WasOneWith("refractive index of voxel (0, 0, 0) is -1"), "refuses an index below 0");
+  claims.That(errors.WasOneWith("ior is -1 in voxel (0, 0, 0)"), "refuses an index below 0");
   lattice->SetInputDataObject(test::MakeMedium({ { 3, 3, 3 }, { 1.0, 1.0, 1.5 } }, 1.0, 1.0));
   lattice->Update();
   claims.That(errors.WasOneWith("have to be cubes"), "refuses voxels that are no cubes");

@@ -3,6 +3,8 @@
 #include "Numerics/ChooseEvenly.h"
 #include "Photons/Marching/PhotonMarcher.h"
 
+#include <gtest/gtest.h>
+
 #include <algorithm>
 #include <cmath>
 #include <random>
@@ -31,6 +33,21 @@ inline std::vector<tyndall::Photon> AnyPhotons(const tyndall::Grid& grid, std::s
     photon.weight = static_cast<float>(4.0 * uniform(random));
   }
   return photons;
+}
+
+/// Bit for bit, and the same ways.
+inline void ExpectSameLight(const tyndall::PhotonLight& light, const tyndall::PhotonLight& other)
+{
+  EXPECT_EQ(light.light.fluence, other.light.fluence);
+  EXPECT_EQ(light.meanDirection, other.meanDirection);
+  EXPECT_EQ(light.light.balance.entered, other.light.balance.entered);
+  EXPECT_EQ(light.light.balance.absorbed, other.light.balance.absorbed);
+  EXPECT_EQ(light.light.balance.escaped, other.light.balance.escaped);
+  EXPECT_EQ(light.light.balance.leftOver, other.light.balance.leftOver);
+  EXPECT_EQ(light.light.facePowerOut, other.light.facePowerOut);
+  EXPECT_EQ(light.scattered, other.scattered);
+  EXPECT_EQ(light.deposits, other.deposits);
+  EXPECT_EQ(light.steps, other.steps);
 }
 
 /// The voxels that a path crosses, one after the other: each stretch is cut at the planes between voxels.

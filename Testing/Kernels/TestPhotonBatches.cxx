@@ -55,19 +55,6 @@ std::vector<MarchSettings::Sums> SumsOf(const Device& device)
   return sums;
 }
 
-void ExpectSameLight(const PhotonLight& light, const PhotonLight& other)
-{
-  EXPECT_EQ(light.light.fluence, other.light.fluence);
-  EXPECT_EQ(light.meanDirection, other.meanDirection);
-  EXPECT_EQ(light.light.balance.entered, other.light.balance.entered);
-  EXPECT_EQ(light.light.balance.absorbed, other.light.balance.absorbed);
-  EXPECT_EQ(light.light.balance.escaped, other.light.balance.escaped);
-  EXPECT_EQ(light.light.balance.leftOver, other.light.balance.leftOver);
-  EXPECT_EQ(light.light.facePowerOut, other.light.facePowerOut);
-  EXPECT_EQ(light.scattered, other.scattered);
-  EXPECT_EQ(light.deposits, other.deposits);
-}
-
 std::vector<Photon> OfBatch(const std::vector<Photon>& photons, int batch)
 {
   std::vector<Photon> own;

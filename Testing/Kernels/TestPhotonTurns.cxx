@@ -48,18 +48,6 @@ protected:
     return marcher.MarchByTurns(photons, turns, shown.times, monitor);
   }
 };
-
-void ExpectSameLight(const PhotonLight& light, const PhotonLight& other)
-{
-  EXPECT_EQ(light.light.fluence, other.light.fluence);
-  EXPECT_EQ(light.meanDirection, other.meanDirection);
-  EXPECT_EQ(light.light.balance.absorbed, other.light.balance.absorbed);
-  EXPECT_EQ(light.light.balance.escaped, other.light.balance.escaped);
-  EXPECT_EQ(light.light.balance.leftOver, other.light.balance.leftOver);
-  EXPECT_EQ(light.light.facePowerOut, other.light.facePowerOut);
-  EXPECT_EQ(light.deposits, other.deposits);
-  EXPECT_EQ(light.steps, other.steps);
-}
 }
 
 TEST_F(PhotonTurns, LeaveTheLightOfPhotonsThatGoOnAtOnce)

@@ -107,6 +107,18 @@ IndexGrid MarchMedium::DescribeGrid() const
   return { { this->grid.size[0], this->grid.size[1], this->grid.size[2] } };
 }
 
+LightSumsInfo MarchMedium::DescribeSums(const PackedPhotons& packed, float weightUnit) const
+{
+  LightSumsInfo info = {};
+  info.grid = this->DescribeGrid();
+  info.diagonal = static_cast<float>(this->Diagonal());
+  info.fluence =
+    static_cast<float>(std::frexp(packed.unit * this->Diagonal() / this->grid.VoxelVolume(), &info.exponent));
+  std::copy(packed.colour.begin(), packed.colour.end(), info.colour);
+  info.weight = weightUnit;
+  return info;
+}
+
 double MarchMedium::Diagonal() const
 {
   return std::hypot(this->grid.spacing[0], this->grid.spacing[1], this->grid.spacing[2]);

@@ -5,6 +5,7 @@
 #include "Medium/Traits.h"
 #include "Photons/Marching/MarchShared.h"
 #include "Photons/Marching/PhotonPacking.h"
+#include "Photons/Marching/PhotonSumsShared.h"
 #include "Photons/Photons.h"
 #include "Refraction/Index/IndexRange.h"
 
@@ -22,6 +23,9 @@ public:
 
   MarchInfo Describe() const;
   IndexGrid DescribeGrid() const;
+  /// How the sums of these photons become light.
+  /// @param weightUnit  weight of one of the units that voxels sum up, where photons count
+  LightSumsInfo DescribeSums(const PackedPhotons& packed, float weightUnit = 0.0f) const;
   int EventLimit() const;  ///< walls and turns of a photon at most
   double Diagonal() const; ///< of a voxel
   /// Voxels, with one more at either end of each axis.

@@ -119,16 +119,15 @@ TurnTimes MarchInTurns(const MarchMedium& medium, const PackedPhotons& packed, c
     const int stretches = last ? limit : turns.stretches;
     gone += stretches;
     const std::vector<cl::Event> marched = { all.Turn(mine, times.turns, stretches, last) };
-    if (times.turns > 0)
-    {
-      const std::array<cl::Event, 2> meanwhile = turns.meanwhile(theirs);
-      theirs.finish();
-      marched.front().wait();
-      AddTimes(marched.front(), meanwhile, times);
-    }
+    const bool besides = times.turns > 0; // before, there is no light to do something with
+    const std::array<cl::Event, 2> meanwhile = besides ? turns.meanwhile(theirs) : std::array<cl::Event, 2>();
     theirs.enqueueBarrierWithWaitList(&marched);
     turns.take(theirs, show(theirs));
     theirs.finish();
+    if (besides)
+    {
+      AddTimes(marched.front(), meanwhile, times);
+    }
     const Span span = SpanOf(marched.front(), marched.front());
     times.marching += span.end - span.begin;
     left = all.StillGoing(mine);

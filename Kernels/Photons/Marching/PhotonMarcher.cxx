@@ -10,7 +10,6 @@
 #include "Photons/Marching/MarchedBatches.h"
 #include "Photons/Marching/MarchLaunch.h"
 #include "Photons/Marching/PhotonPaths.h"
-#include "Photons/Marching/PhotonSumsShared.h"
 #include "Photons/Scattering/ScatteredChannels.h"
 
 #include <algorithm>
@@ -108,7 +107,6 @@ private:
     return ShareSums(this->medium, this->medium.PaddedCount(), numbers, batches, this->Sums.Size() * sizeof(cl_long));
   }
   MarchSums PrepareSums(const PackedPhotons& packed);
-  LightSumsInfo InfoOf(const PackedPhotons& packed, float weightUnit) const;
   cl::Kernel SumsKernel(
     const char* name, const PackedPhotons& packed, const MarchSums& target, const LightField& light) const;
   void MarchTo(const MarchSums& target, const PackedPhotons& packed, const PhotonsOnDevice& photons,
@@ -173,18 +171,6 @@ void PhotonMarcher::Implementation::Tally(
   }
 }
 
-LightSumsInfo PhotonMarcher::Implementation::InfoOf(const PackedPhotons& packed, float weightUnit) const
-{
-  LightSumsInfo info = {};
-  info.grid = this->medium.DescribeGrid();
-  info.diagonal = static_cast<float>(this->medium.Diagonal());
-  info.fluence = static_cast<float>(
-    std::frexp(packed.unit * this->medium.Diagonal() / this->medium.grid.VoxelVolume(), &info.exponent));
-  std::copy(packed.colour.begin(), packed.colour.end(), info.colour);
-  info.weight = weightUnit;
-  return info;
-}
-
 cl::Kernel PhotonMarcher::Implementation::SumsKernel(
   const char* name, const PackedPhotons& packed, const MarchSums& target, const LightField& light) const
 {
@@ -207,7 +193,7 @@ void PhotonMarcher::Implementation::MarchTo(const MarchSums& target, const Packe
   const Buffer<float> fluence(
     this->medium.device, voxels * static_cast<std::size_t>(light.channels), "fluence of photons on their way");
   cl::Kernel show = this->SumsKernel("show_light", packed, target, light);
-  With(show, this->InfoOf(packed, 0.0f), this->medium.sigmaA, this->medium.sigmaS, this->Sums,
+  With(show, this->medium.DescribeSums(packed), this->medium.sigmaA, this->medium.sigmaS, this->Sums,
     cl_ulong(target.records * static_cast<std::size_t>(target.numbers)), fluence);
   turns->how.begin(packed, light.channels);
   turns->times = MarchInTurns(
@@ -243,7 +229,7 @@ void PhotonMarcher::Implementation::Finish(
     lend(result.batchFluence, batches > 1 ? batches * voxels * colours : 0, "fluence by batches");
   const Buffer<cl_long> taken(device, rows * 2 * channels, "tallies");
 
-  const LightSumsInfo info = this->InfoOf(packed, weightUnit);
+  const LightSumsInfo info = this->medium.DescribeSums(packed, weightUnit);
   cl::Kernel finish = this->SumsKernel("finish_light", packed, target, light);
   With(finish, info, this->medium.sigmaA, this->medium.sigmaS, this->Sums,
     cl_ulong(target.records * static_cast<std::size_t>(target.numbers)), fluence.Handle(), direction.Handle(),

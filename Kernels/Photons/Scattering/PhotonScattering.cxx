@@ -5,7 +5,6 @@
 #include "Device/HostMappedBuffer.h"
 #include "Device/HostMemory.h"
 #include "Photons/Marching/MarchLaunch.h"
-#include "Photons/Marching/PhotonSumsShared.h"
 #include "Photons/Scattering/ScatterShared.h"
 #include "TyndallKernelSources.h"
 
@@ -157,16 +156,10 @@ void PhotonScattering::TakeLight(Work& work)
   const HostMappedBuffer<float> toDirection(device, flow.data(), flow.size(), "mean direction");
   const Buffer<float> none(device, 0, "what is not asked for");
   const Buffer<cl_long> taken(device, 2 * rows, "tallies");
-  LightSumsInfo info = {};
-  info.grid = this->Through.DescribeGrid();
-  info.diagonal = static_cast<float>(this->Through.Diagonal());
-  info.fluence =
-    static_cast<float>(std::frexp(work.packed.unit * this->Through.Diagonal() / grid.VoxelVolume(), &info.exponent));
-  std::fill_n(info.colour, 3, 1.0f);
   cl::Kernel finish = this->Through.SumsKernel("finish_light", 1,
     Define("DIRECTIONS", directions) + Define("COUNTS", 0) + Define("COUNT_SHIFT", 0) + Define("COLOURS", 1) +
       Define("COPIES", work.shares.copies) + Define("BATCHES", 1) + Define("CARRIES", 1));
-  With(finish, info, this->Through.sigmaA, this->Through.sigmaS, work.sums,
+  With(finish, this->Through.DescribeSums(work.packed), this->Through.sigmaA, this->Through.sigmaS, work.sums,
     cl_ulong(this->Through.PaddedCount() * static_cast<std::size_t>(work.numbers)), toFluence.Handle(),
     toDirection.Handle(), none, none, none, taken);
   this->Through.Launch(finish, cl::NDRange(rows));
