@@ -243,11 +243,11 @@ TEST_F(ScatteredPhotonsTest, KeepColoursApart)
   EXPECT_LT(three.light.balance.RelativeError(3), 1e-6);
 }
 
-TEST_F(ScatteredPhotonsTest, ErrFourTimesLessWithSixteenTimesAsMany)
+TEST_F(ScatteredPhotonsTest, ErrAsOneOverTheRootOfTheirNumberOverFourDecades)
 {
   const Scene scene = Cube(3, 2.0, 0.9);
   std::vector<double> errors;
-  for (const std::size_t count : { 250, 4000, 64000, 1024000 })
+  for (const std::size_t count : { 250, 2500, 25000, 250000, 2500000 })
   {
     MarchSettings settings = AllOrders();
     settings.errorBatches = 50;
@@ -261,8 +261,9 @@ TEST_F(ScatteredPhotonsTest, ErrFourTimesLessWithSixteenTimesAsMany)
   }
   for (std::size_t i = 1; i < errors.size(); ++i)
   {
-    EXPECT_NEAR(errors[i - 1] / errors[i], 4.0, 0.5);
+    EXPECT_NEAR(errors[i - 1] / errors[i], std::sqrt(10.0), 0.4);
   }
+  EXPECT_NEAR(errors.front() / errors.back(), 100.0, 10.0);
 }
 
 /// Of 95 in 100 voxels the mean of many seeds lies within 1.96 standard errors.

@@ -215,6 +215,7 @@ protected:
     cube.settings.methods = { ComparedMethod::LatticeBoltzmann };
     cube.settings.tried.monteCarloReference = true;
     cube.settings.tried.coarsenings = { 1, 2 };
+    cube.settings.timeBudget = 120.0; // on a busy machine, too
     const Comparison found = CompareSolvers(this->GetDevice(), cube.scene, cube.settings);
     EXPECT_NE(found.reference.text.find("scattered until they end"), std::string::npos) << found.reference.text;
     return found.rows;
@@ -227,6 +228,7 @@ TEST_F(ComparedLattice, ComesNearPhotonsWhereVoxelsAreThin)
 {
   SunlitCube cube(12);
   cube.sigma_s.assign(cube.sigma_s.size(), 6.0f);
+  cube.settings.tried.photonCounts = { 20000 };
   const std::vector<ComparisonRow> rows = this->Compared(cube);
   ASSERT_EQ(rows.size(), 4u);
   const char* const settings[] = { "6 directions, voxels x 2", "18 directions, voxels x 2", "6 directions",
