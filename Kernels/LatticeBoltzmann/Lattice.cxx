@@ -2,7 +2,6 @@
 
 #include "Device/Defines.h"
 #include "Device/Sizes.h"
-#include "Numerics/Constants.h"
 #include "TyndallKernelSources.h"
 
 #include <algorithm>
@@ -23,72 +22,6 @@ cl::NDRange WholeBlocks(const std::array<int, 3>& size, int edge)
   return { static_cast<std::size_t>(RoundUp(size[0], edge)), static_cast<std::size_t>(RoundUp(size[1], edge)),
     static_cast<std::size_t>(RoundUp(size[2], edge)) };
 }
-}
-
-double LatticeWeight(int directions, int i)
-{
-  return directions == 6 ? 1.0 / 6.0 : i < 6 ? 1.0 / 12.0 : 1.0 / 24.0;
-}
-
-double LatticeSquares(int directions)
-{
-  return directions == 6 ? 1.0 / 3.0 : 0.5;
-}
-
-LatticeVoxels::LatticeVoxels(const PropagationProblem& problem, const Field& ior, const LatticeSettings& settings,
-  const UncollidedImage& direct, int channel)
-{
-  const Medium& medium = problem.TheMedium();
-  const double edge = medium.grid.spacing[0];
-  const bool published = settings.scheme == LatticeScheme::Published;
-  // Thickness of which every collision is even, and links pass all.
-  const double most = 2.0 / (3.0 * LatticeSquares(settings.directions));
-  for (std::size_t i = 0; i < medium.grid.VoxelCount(); ++i)
-  {
-    const double s = edge * medium.TransportSigmaT(i, channel), absorbs = edge * medium.sigma_a.At(i, channel);
-    this->thickest = std::max(this->thickest, s);
-    const double even = s > 0.0 ? std::min(1.0, 1.0 / (0.5 + 0.5 * most / s)) : 0.0;
-    this->turning.push_back(static_cast<float>(published ? s - absorbs : even));
-    this->lost.push_back(static_cast<float>(published ? absorbs : -std::expm1(-absorbs)));
-    this->kept.push_back(published ? static_cast<float>(1.0 - s) : 1.0f - this->lost.back());
-    this->passes.push_back(static_cast<float>(!published && s > most ? most / s : 1.0));
-    const double lost = this->lost.back();
-    this->begins.push_back(published || absorbs < 1e-6 ? 1.0 : 2.0 * lost / ((2.0 - lost) * absorbs));
-    this->squared.push_back(ior.values && !published ? ior.At(i, 0) * ior.At(i, 0) : 1.0f);
-    this->passesAll = this->passesAll && this->passes.back() == 1.0f;
-    this->bends = this->bends || this->squared.back() != this->squared.front();
-  }
-  const auto c = static_cast<std::size_t>(channel);
-  const double even = this->bends ? 1.0 : this->squared.front();
-  for (std::size_t face = 0; face < 6; ++face)
-  {
-    const Illumination& shining = problem.Shining();
-    this->incoming[face] = 4.0 * Pi * (shining.sky[c] + shining.faces[face][c]) * even;
-    this->albedo[face] = shining.faceAlbedo[face][c];
-  }
-  this->Shine(problem, direct, channel);
-}
-
-void LatticeVoxels::Shine(const PropagationProblem& problem, const UncollidedImage& direct, int channel)
-{
-  const Medium& medium = problem.TheMedium();
-  this->source.resize(medium.grid.VoxelCount());
-  for (std::size_t i = 0; i < this->source.size(); ++i)
-  {
-    this->source[i] = static_cast<float>(this->begins[i] * medium.grid.spacing[0] *
-      (medium.sigma_s.At(i, channel) * direct.fluence.At(i, channel) + 4.0 * Pi * medium.emission.At(i, channel)));
-  }
-}
-
-bool LatticeVoxels::Reflects() const
-{
-  return std::any_of(this->albedo.begin(), this->albedo.end(), [](double albedo) { return albedo > 0.0; });
-}
-
-double LatticeVoxels::Given() const
-{
-  return std::accumulate(this->incoming.begin(), this->incoming.end(), 0.0) +
-    std::accumulate(this->source.begin(), this->source.end(), 0.0);
 }
 
 Lattice::Lattice(Device& device, const Grid& grid, const LatticeSettings& settings, const LatticeVoxels& voxels)

@@ -3,9 +3,8 @@
 #include "Device/Buffer.h"
 #include "LatticeBoltzmann/LatticeSettings.h"
 #include "LatticeBoltzmann/LatticeShared.h"
-#include "LightPropagation/Problem/PropagationProblem.h"
-#include "Lights/UncollidedImage.h"
-#include "Medium/Field.h"
+#include "LatticeBoltzmann/LatticeVoxels.h"
+#include "Medium/Grid.h"
 
 #include <array>
 #include <string>
@@ -13,39 +12,6 @@
 
 namespace tyndall
 {
-/// Weight of a direction in even light; those of all directions add up to 1.
-double LatticeWeight(int directions, int i);
-
-/// Part of the density of even light that the links' ways carry along an axis, squared: sum of w c c.
-double LatticeSquares(int directions);
-
-/// What each voxel of one channel does to the light of a step (numerics.md, Eqs. (L2) to (L6)), by voxel.
-struct LatticeVoxels
-{
-  std::vector<float> turning;       ///< part of the density that collisions make even; published: that is scattered
-  std::vector<float> lost;          ///< part that is absorbed
-  std::vector<float> kept;          ///< part that is not, or as published neither absorbed nor scattered
-  std::vector<float> passes;        ///< part that links let through
-  std::vector<float> squared;       ///< n^2
-  std::vector<float> source;        ///< W / length^2, that begins evenly in all directions
-  std::vector<double> begins;       ///< part of what begins in a voxel that is not absorbed in the same step, Eq. (L4a)
-  bool bends = false;               ///< n^2 varies
-  bool passesAll = true;            ///< no link gives back light
-  double thickest = 0.0;            ///< sigma_t h, by the transport extinction
-  std::array<double, 6> incoming{}; ///< W / length^2: fluence of the diffuse light outside -x, +x, ... +z, over n^2
-  std::array<double, 6> albedo{};   ///< of the faces
-
-  /// @param ior  null: 1
-  LatticeVoxels(const PropagationProblem& problem, const Field& ior, const LatticeSettings& settings,
-    const UncollidedImage& direct, int channel);
-
-  /// Source of uncollided light, and of what the medium emits.
-  void Shine(const PropagationProblem& problem, const UncollidedImage& direct, int channel);
-
-  bool Reflects() const; ///< some face gives back light
-  double Given() const;  ///< above 0: something shines
-};
-
 /// Photon density of one channel on a device, that goes from voxel to voxel by steps.
 class Lattice
 {

@@ -15,6 +15,22 @@ namespace tyndall
 {
 namespace
 {
+constexpr double ThickForFirstMoments = 0.1; ///< mean free paths a voxel
+
+double ThickestOf(const PropagationProblem& problem)
+{
+  const Medium& medium = problem.TheMedium();
+  double thickest = 0.0;
+  for (std::size_t i = 0; i < medium.grid.VoxelCount(); ++i)
+  {
+    for (int c = 0; c < problem.Channels(); ++c)
+    {
+      thickest = std::max(thickest, medium.grid.spacing[0] * medium.TransportSigmaT(i, c));
+    }
+  }
+  return thickest;
+}
+
 /// That which is given, or else that of lamps and environment along the maps' rays. Nothing is truncated: the medium
 /// counts as scattering evenly.
 Uncollided FindUncollided(
@@ -33,6 +49,7 @@ Uncollided FindUncollided(
   PropagationSettings once = AsPropagation(settings);
   once.source = PropagationSource::Automatic;
   once.maximumOrders = 1;
+  once.firstMoments = settings.scheme == LatticeScheme::Conservative && ThickestOf(problem) > ThickForFirstMoments;
   Illumination narrow = problem.Shining(); // what is diffuse comes in on the lattice itself
   narrow.sky = {};
   narrow.faces = {};
@@ -46,6 +63,7 @@ Uncollided FindUncollided(
   }
   LightField light = SolveConservative(device, dark, narrow, once, monitor);
   found.fluence = std::move(light.fluenceDirect);
+  found.firstMoments = std::move(light.firstMoments);
   found.image.fluence = { found.fluence.data(), light.channels };
   found.image.escaped = light.facePowerOut;
   for (std::size_t i = 0; settings.netFlux && i < problem.TheGrid().VoxelCount(); ++i)

@@ -51,7 +51,7 @@ void LatticeChannel::Settle(const StepsBefore& before, const Monitor& monitor)
 
 void LatticeChannel::Shine()
 {
-  this->Voxels.Shine(this->Problem, this->Direct.image, static_cast<int>(this->Channel));
+  this->Voxels.Shine(this->Problem, this->Direct, static_cast<int>(this->Channel));
   this->Photons.Shine(this->Voxels.source);
 }
 
@@ -92,6 +92,7 @@ double LatticeChannel::CountFaces(LightField& light)
   {
     double power = this->Direct.image.escaped[face][this->Channel];
     entered += power;
+    power += area * this->Voxels.leaves[face];
     for (std::size_t i = 0; i < voxels; ++i)
     {
       // Of what comes in through links that give back a part, that leaves at once.
@@ -120,6 +121,25 @@ void LatticeChannel::AddFlux(LightField& light)
     {
       const std::size_t to = 3 * (i * light.channels + this->Channel) + a;
       light.netFlux[to] = static_cast<float>(this->Direct.netFlux[to] + mean * flux[a * voxels + i]);
+    }
+  }
+  this->AddCrossing(light);
+}
+
+/// What crosses a face at once goes half of the way through each of its voxels.
+void LatticeChannel::AddCrossing(LightField& light) const
+{
+  const Grid& grid = this->Problem.TheGrid();
+  for (std::size_t at = 0; at < this->Voxels.crossing.size(); ++at)
+  {
+    const std::size_t voxel = at / 6, face = at % 6, beyond = this->Voxels.Beyond(grid, voxel, face);
+    const float half = (face % 2 == 0 ? -0.5f : 0.5f) * this->Voxels.crossing[at];
+    for (const std::size_t i : { voxel, beyond })
+    {
+      if (i != LatticeVoxels::Outside)
+      {
+        light.netFlux[3 * (i * light.channels + this->Channel) + face / 2] += half;
+      }
     }
   }
 }

@@ -9,13 +9,6 @@
 
 namespace tyndall
 {
-/// Light that is not scattered, as an image and with its arrays.
-struct Uncollided
-{
-  std::vector<float> fluence, netFlux;
-  UncollidedImage image;
-};
-
 /// Mean directions times fluence, as LightField::netFlux has it.
 std::vector<float> NetFluxOf(const UncollidedImage& image, const Grid& grid, int channels);
 
@@ -29,7 +22,7 @@ public:
     , Problem(problem)
     , Settings(settings)
     , Direct(direct)
-    , Voxels(problem, ior, settings, direct.image, channel)
+    , Voxels(problem, ior, settings, direct, channel)
     , Photons(device, problem.TheGrid(), settings, this->Voxels)
     , Channel(static_cast<std::size_t>(channel))
   {
@@ -49,6 +42,7 @@ private:
   double CountVoxels(LightField& light) const;
   double CountFaces(LightField& light);
   void AddFlux(LightField& light);
+  void AddCrossing(LightField& light) const;
   void AddRows(LightField& light) const;
 
   Device& TheDevice;

@@ -83,14 +83,7 @@ void SteadyLattice::Load()
 void SteadyLattice::LoadDiffusion()
 {
   const LatticeVoxels& voxels = this->Voxels;
-  const double squares = LatticeSquares(this->Settings.directions);
-  const double thin = 1.0 / (0.5 + 1.0 / (3.0 * squares * Thinnest));
-  std::vector<double> passes; // from a voxel's centre to its face
-  for (std::size_t i = 0; i < this->Count; ++i)
-  {
-    const double removed = std::max(1.0 - (1.0 - voxels.lost[i]) * (1.0 - voxels.turning[i]), thin);
-    passes.push_back(2.0 * squares * (1.0 / removed - 0.5) * voxels.passes[i]);
-  }
+  const double thin = 1.0 / (0.5 + 1.0 / (3.0 * LatticeSquares(this->Settings.directions) * Thinnest));
   std::vector<float> conductance(3 * this->Count, 0.0f), loss;
   for (std::size_t i = 0; i < this->Count; ++i)
   {
@@ -104,18 +97,13 @@ void SteadyLattice::LoadDiffusion()
       if (at[a] > 0 || (periodic && size > 1))
       {
         const std::size_t j = at[a] > 0 ? i - step : i + (size - 1) * step;
-        const double ni = voxels.squared[i], nj = voxels.squared[j];
-        const double reflects = std::abs(1.0 / ni - 1.0 / nj) / squares;
-        conductance[a * this->Count + i] =
-          static_cast<float>(1.0 / (1.0 / (passes[i] * ni) + 1.0 / (passes[j] * nj) + reflects));
+        conductance[a * this->Count + i] = static_cast<float>(1.0 / voxels.ResistanceBetween(i, j, thin));
       }
       for (std::size_t face = 2 * a; face < 2 * a + 2 && !periodic; ++face)
       {
         if (at[a] == (face % 2 ? size - 1 : 0))
         {
-          const double out = (1.0 - voxels.albedo[face]) / (1.0 + voxels.albedo[face]) * squares;
-          loss.back() += static_cast<float>(
-            out > 0.0 ? voxels.squared[i] / (1.0 / out + 1.0 / passes[i]) : 0.0); // Marshak's condition
+          loss.back() += static_cast<float>(1.0 / voxels.ResistanceOfFace(i, face, thin));
         }
       }
     }

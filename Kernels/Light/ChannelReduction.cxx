@@ -63,6 +63,7 @@ void ForArrays(LightField& light, const Act& act)
     act(*values, std::size_t{ 1 });
   }
   act(light.netFlux, std::size_t{ 3 });
+  act(light.firstMoments, std::size_t{ 6 });
 }
 
 Field InChannel(const Field& field, int channel)

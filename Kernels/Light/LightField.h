@@ -42,8 +42,12 @@ struct ConvergenceRow
 struct LightField
 {
   int channels = 1;
-  std::vector<float> fluence;           ///< W / length^2, `channels` per voxel
-  std::vector<float> fluenceDirect;     ///< its unscattered part
+  std::vector<float> fluence;       ///< W / length^2, `channels` per voxel
+  std::vector<float> fluenceDirect; ///< its unscattered part
+  /// Distance in voxels, 0 to 1/2, from the middle of a voxel towards its faces -x, +x, ... +z of the mean place where
+  /// lamps' light is first lost, times the fluence of that light, W / length^2, 6 * channels a voxel: all faces of
+  /// channel 0, 1, 2 (numerics.md, Eq. (37)); empty: not asked for.
+  std::vector<float> firstMoments;
   std::vector<float> fluenceError;      ///< standard error of fluence, estimated
   std::vector<float> netFlux;           ///< W / length^2, 3 * channels per voxel: (x, y, z) of channel 0, 1, 2
   std::vector<float> scatteredRadiance; ///< W / (length^2 sr), channels * storedDirections a voxel

@@ -45,6 +45,8 @@ struct PropagationSettings
   PropagationSource source = PropagationSource::Automatic;
   PropagationAcceleration acceleration = PropagationAcceleration::Automatic; ///< not where maximumOrders is given
   bool netFlux = false;                                                      ///< compute net_flux too: it costs
+  /// Keep where in voxels lamps' light is first lost (LightField::firstMoments); not where orders are accelerated.
+  bool firstMoments = false;
   bool facePower = false; ///< keep the power that leaves through each cell of the box's faces
   /// Relative error, voxel by voxel, of the unscattered light of small bright parts of the medium, which is followed
   /// along exact rays (EmissionRays.h), about: a twentieth of the voxels may be off by more; 0.005 costs five to ten

@@ -75,10 +75,10 @@ void TimeStep(Device& device, bool quick, Table& table, const StepCase& of)
   std::fill(ior.begin(), ior.begin() + static_cast<std::ptrdiff_t>(count / 2), 1.3f);
   LatticeSettings settings;
   settings.directions = of.directions;
-  UncollidedImage image;
-  image.fluence = { direct.data(), 1 };
+  Uncollided uncollided;
+  uncollided.image.fluence = { direct.data(), 1 };
   const PropagationProblem problem(box.medium, box.light, PropagationSettings());
-  const LatticeVoxels voxels(problem, { of.bends ? ior.data() : nullptr, 1 }, settings, image, 0);
+  const LatticeVoxels voxels(problem, { of.bends ? ior.data() : nullptr, 1 }, settings, uncollided, 0);
   Lattice lattice(device, problem.TheGrid(), settings, voxels);
   const double bytes = BytesOfStep(voxels, of.directions, count);
   std::vector<double> seconds, ratios, bandwidths;

@@ -95,6 +95,72 @@ TEST_F(LatticeBoltzmann, TransmitsASlabAsDiffusionDoes)
   }
 }
 
+/// A beam into a white slab of thick voxels, along each axis and askew: what it transmits is in proportion to how deep
+/// light is first scattered, and much too much if that were in the middle of the first voxel.
+TEST_F(LatticeBoltzmann, BeginsWhereABeamIsFirstScattered)
+{
+  constexpr int Layers = 12;
+  for (const double thickness : { 0.7, 2.0, 5.0, 30.0 })
+  {
+    for (const double cosine : { 1.0, 0.5 })
+    {
+      const int axis = thickness < 1.0 ? 0 : thickness < 3.0 ? 1 : 2;
+      Scene scene({ 1, 1, 1 }, 0.0f, static_cast<float>(thickness));
+      scene.medium.grid.size[axis] = Layers;
+      scene.sigma_a.assign(Layers, 0.0f);
+      scene.sigma_s.assign(Layers, static_cast<float>(thickness));
+      std::array<double, 3> direction = {};
+      direction[(axis + 1) % 3] = std::sqrt(1.0 - cosine * cosine);
+      direction[axis] = -cosine;
+      scene.ShineAlong(direction);
+      LatticeSettings settings;
+      settings.periodic = { axis != 0, axis != 1, axis != 2 };
+      const LightField light = this->Solve(scene, settings);
+      const double transmitted = light.facePowerOut[2 * axis][0] / light.balance.entered[0];
+      const double expected = ThickSlabBeamTransmittance(thickness * Layers, cosine);
+      EXPECT_NEAR(transmitted / expected, 1.0, 0.02) << thickness << " " << cosine;
+      EXPECT_LT(light.balance.RelativeError(1), 1e-6);
+      EXPECT_LT(std::abs(light.balance.leftOver[0]), 1e-5 * light.balance.entered[0]);
+    }
+  }
+}
+
+/// Of thick voxels that absorb, too, by adding and doubling.
+TEST_F(LatticeBoltzmann, ReflectsABeamAsSlabsOfThickVoxelsDo)
+{
+  for (const double albedo : { 0.9, 0.99 })
+  {
+    const SlabReference slab = SlabOf(10.0, albedo);
+    Scene scene({ 1, 5, 1 }, static_cast<float>(2.0 * (1.0 - albedo)), static_cast<float>(2.0 * albedo));
+    scene.ShineAlong({ 0.0, 1.0, 0.0 });
+    LatticeSettings settings;
+    settings.periodic = { true, false, true };
+    const LightField light = this->Solve(scene, settings);
+    const double reflected = light.facePowerOut[2][0] / light.balance.entered[0];
+    EXPECT_NEAR(reflected, slab.beamR, 0.01) << albedo;
+  }
+}
+
+/// Light is nowhere negative, and none is lost, where a lamp's light comes into corners and goes from thick to thin.
+TEST_F(LatticeBoltzmann, KeepsPowerOfBeamsIntoThickVoxelsOfEveryKind)
+{
+  for (const double albedo : { 0.3, 0.999, 1.0 })
+  {
+    Scene scene({ 6, 5, 7 });
+    scene.Randomise(1e3, 6.0, albedo, 20261123);
+    scene.ShineAlong({ -0.5, 0.7, 0.5 });
+    scene.light.faceAlbedo[4] = { 0.6, 0.6, 0.6 };
+    LatticeSettings settings;
+    settings.netFlux = true;
+    const LightField light = this->Solve(scene, settings);
+    for (float fluence : light.fluence)
+    {
+      ASSERT_TRUE(std::isfinite(fluence) && fluence >= 0.0f) << albedo;
+    }
+    EXPECT_LT(std::abs(light.balance.leftOver[0]), 1e-5 * light.balance.entered[0]) << albedo;
+  }
+}
+
 TEST_F(LatticeBoltzmann, IsPositiveAndKeepsPowerWhateverItsVoxelsAre)
 {
   for (const double albedo : { 0.0, 0.5, 0.999, 1.0 })
@@ -192,9 +258,10 @@ TEST_F(LatticeBoltzmann, IsTheSameFromEverySide)
   EXPECT_LT(RelativeDifference(back, light.fluence), 1e-5);
 }
 
+/// In thick voxels a lamp's own light is first scattered where it comes in, light that is handed on in the middle.
 TEST_F(LatticeBoltzmann, TakesUncollidedLightOfAnotherSolver)
 {
-  Scene scene({ 8, 7, 9 }, 0.05f, 0.6f);
+  Scene scene({ 8, 7, 9 }, 0.01f, 0.08f);
   scene.ShineAlong({ 0.3, -0.2, -0.9 });
   const LightField own = this->Solve(scene);
   Scene again = scene;

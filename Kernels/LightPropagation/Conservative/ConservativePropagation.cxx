@@ -160,6 +160,7 @@ LightField LightOf(TransportParts& parts, IterationResult&& found, bool accelera
   }
   light.convergence = found.convergence.All();
   light.fluenceDirect = std::move(found.fluenceDirect);
+  light.firstMoments = std::move(found.firstMoments);
   light.surfaceRadiance = std::move(found.surfaceRadiance);
   light.device = parts.TheDevice.Name();
   return light;

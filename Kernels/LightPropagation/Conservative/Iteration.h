@@ -18,6 +18,7 @@ struct IterationResult
   EnergyLedger ledger;
   ConvergenceRecord convergence;
   std::vector<float> fluenceDirect, surfaceRadiance; ///< as LightField has them
+  std::vector<float> firstMoments;                   ///< the same, where it asks for them
   std::vector<double> leftByCell;                    ///< W through the faces' cells, [channel][cell], where it is kept
   /// Angular moments of what is scattered of all light but uncollided light of lamps, as ScatteringOperator writes a
   /// source; only where TransportParts::StoresMoments().

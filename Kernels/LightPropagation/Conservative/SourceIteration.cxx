@@ -172,14 +172,24 @@ void SourceIteration::AddUncollided(const Monitor& monitor)
   const bool escapes = this->Parts.Fine && this->Parts.Problem.Traits().scatters && !this->Parts.FacesReflect();
   const double all = static_cast<double>(sources.size() + (escapes ? 1 : 0));
   SweepTally tally;
+  Buffer<float> firstMoments(
+    this->Parts.TheDevice, this->Settings.firstMoments ? this->Parts.Layout.Floats(6) : 1, "where light is lost");
+  firstMoments.Fill(0.0f);
   for (std::size_t i = 0; i < sources.size(); ++i)
   {
     const Monitor ofSource = OfPart(monitor, i / all, (i + 1) / all);
-    Add(tally, this->Parts.AddUncollided(*sources[i], this->Parts.WholeDeposit(), ofSource));
+    Deposit deposit = this->Parts.WholeDeposit();
+    deposit.firstMoments = this->Settings.firstMoments && i < this->Parts.Lamps.size() ? &firstMoments : nullptr;
+    Add(tally, this->Parts.AddUncollided(*sources[i], deposit, ofSource));
     if (this->Parts.StoresMoments() && i + 1 == this->Parts.Lamps.size())
     {
       this->Parts.Scattering->AddFirstScattered(this->Parts.WholeDeposit(), this->Result.shown);
     }
+  }
+  if (this->Settings.firstMoments)
+  {
+    const VolumeLayout& layout = this->Parts.Layout;
+    this->Result.firstMoments = Interleaved(layout, firstMoments, 1.0 / layout.grid.VoxelVolume());
   }
   this->Result.ledger.Count(tally);
   this->Stranded = tally.onTheWay;

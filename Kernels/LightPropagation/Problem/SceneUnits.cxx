@@ -202,6 +202,7 @@ void ToWatts(LightField& light, double unit)
   Multiply(light.fluenceDirect, unit, "fluence_direct");
   Multiply(light.fluenceError, unit, "fluence_error");
   Multiply(light.netFlux, unit, "net_flux");
+  Multiply(light.firstMoments, unit, "first moments");
   Multiply(light.scatteredRadiance, unit, "scattered_radiance");
   Multiply(light.surfaceRadiance, unit, "surface_radiance");
   Multiply(light.scatteredMoments, unit, "scattered_moments");

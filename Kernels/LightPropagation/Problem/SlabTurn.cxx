@@ -145,6 +145,15 @@ void SlabTurn::Undo(LightField& light, const Grid& grid) const
       this->TurnedBack<float>({ light.netFlux[i], light.netFlux[i + 1], light.netFlux[i + 2] });
     std::copy(flux.begin(), flux.end(), light.netFlux.begin() + static_cast<std::ptrdiff_t>(i));
   }
+  for (std::size_t i = 0; i < light.firstMoments.size(); i += 6)
+  {
+    std::array<float, 6> moments;
+    std::copy_n(light.firstMoments.begin() + static_cast<std::ptrdiff_t>(i), 6, moments.begin());
+    for (int face = 0; face < 6; ++face)
+    {
+      light.firstMoments[i + static_cast<std::size_t>(face)] = moments[this->FaceWhenTurned(face)];
+    }
+  }
   for (std::array<double, 3>& direction : light.storedDirections)
   {
     direction = this->TurnedBack(direction);

@@ -1,0 +1,195 @@
+#include "LatticeBoltzmann/LatticeVoxels.h"
+
+#include "Numerics/Constants.h"
+
+#include <algorithm>
+#include <cmath>
+#include <numeric>
+
+namespace tyndall
+{
+namespace
+{
+/// Of light that begins between two places, what comes to the farther one before it comes to the nearer or is absorbed.
+/// @param way     from the nearer one, of all resistance between them
+/// @param decays  how many e-folds diffuse light falls by from one to the other
+double PartThatCrosses(double way, double decays)
+{
+  if (decays < 1e-3)
+  {
+    return way;
+  }
+  return std::exp((way - 1.0) * decays) * std::expm1(-2.0 * way * decays) / std::expm1(-2.0 * decays);
+}
+
+/// How many e-folds diffuse light falls by across a voxel.
+double DecaysAcross(const Medium& medium, std::size_t voxel, int channel)
+{
+  const double absorbs = medium.sigma_a.At(voxel, channel);
+  return medium.grid.spacing[0] * std::sqrt(3.0 * absorbs * medium.TransportSigmaT(voxel, channel));
+}
+}
+
+double LatticeWeight(int directions, int i)
+{
+  return directions == 6 ? 1.0 / 6.0 : i < 6 ? 1.0 / 12.0 : 1.0 / 24.0;
+}
+
+double LatticeSquares(int directions)
+{
+  return directions == 6 ? 1.0 / 3.0 : 0.5;
+}
+
+LatticeVoxels::LatticeVoxels(const PropagationProblem& problem, const Field& ior, const LatticeSettings& settings,
+  const Uncollided& direct, int channel)
+  : Directions(settings.directions)
+  , Periodic(settings.periodic)
+{
+  const Medium& medium = problem.TheMedium();
+  const double edge = medium.grid.spacing[0];
+  const bool published = settings.scheme == LatticeScheme::Published;
+  // Thickness of which every collision is even, and links pass all.
+  const double most = 2.0 / (3.0 * LatticeSquares(settings.directions));
+  for (std::size_t i = 0; i < medium.grid.VoxelCount(); ++i)
+  {
+    const double s = edge * medium.TransportSigmaT(i, channel), absorbs = edge * medium.sigma_a.At(i, channel);
+    this->thickest = std::max(this->thickest, s);
+    const double even = s > 0.0 ? std::min(1.0, 1.0 / (0.5 + 0.5 * most / s)) : 0.0;
+    this->turning.push_back(static_cast<float>(published ? s - absorbs : even));
+    this->lost.push_back(static_cast<float>(published ? absorbs : -std::expm1(-absorbs)));
+    this->kept.push_back(published ? static_cast<float>(1.0 - s) : 1.0f - this->lost.back());
+    this->passes.push_back(static_cast<float>(!published && s > most ? most / s : 1.0));
+    const double lost = this->lost.back();
+    this->begins.push_back(published || absorbs < 1e-6 ? 1.0 : 2.0 * lost / ((2.0 - lost) * absorbs));
+    this->squared.push_back(ior.values && !published ? ior.At(i, 0) * ior.At(i, 0) : 1.0f);
+    this->passesAll = this->passesAll && this->passes.back() == 1.0f;
+    this->bends = this->bends || this->squared.back() != this->squared.front();
+  }
+  const auto c = static_cast<std::size_t>(channel);
+  const double even = this->bends ? 1.0 : this->squared.front();
+  for (std::size_t face = 0; face < 6; ++face)
+  {
+    const Illumination& shining = problem.Shining();
+    this->incoming[face] = 4.0 * Pi * (shining.sky[c] + shining.faces[face][c]) * even;
+    this->albedo[face] = shining.faceAlbedo[face][c];
+  }
+  this->Shine(problem, direct, channel);
+}
+
+void LatticeVoxels::Shine(const PropagationProblem& problem, const Uncollided& direct, int channel)
+{
+  const Medium& medium = problem.TheMedium();
+  const double edge = medium.grid.spacing[0];
+  std::vector<double> begin(medium.grid.VoxelCount());
+  for (std::size_t i = 0; i < begin.size(); ++i)
+  {
+    begin[i] = edge * medium.sigma_s.At(i, channel) * direct.image.fluence.At(i, channel);
+  }
+  this->crossing.clear();
+  this->leaves = {};
+  if (!direct.firstMoments.empty())
+  {
+    this->CrossFaces(medium, direct, channel, begin);
+  }
+  this->source.resize(begin.size());
+  for (std::size_t i = 0; i < begin.size(); ++i)
+  {
+    const double emitted = edge * 4.0 * Pi * medium.emission.At(i, channel);
+    this->source[i] = static_cast<float>(this->begins[i] * (begin[i] + emitted));
+  }
+}
+
+/// What is first scattered beside the middle of a voxel drives the lattice's light as if a part of it began beyond the
+/// face that it is nearer to, Eq. (L13). What is scattered forwards does not turn back at once: it stays.
+/// @param begin  W / length^2 that are first scattered in each voxel, changed
+void LatticeVoxels::CrossFaces(const Medium& medium, const Uncollided& direct, int channel, std::vector<double>& begin)
+{
+  const auto channels = static_cast<std::size_t>(direct.image.fluence.components);
+  const std::size_t of = channels > 1 ? static_cast<std::size_t>(channel) : 0;
+  const std::vector<double> scattered = begin;
+  this->crossing.assign(6 * begin.size(), 0.0f);
+  for (std::size_t i = 0; i < begin.size(); ++i)
+  {
+    if (!(begin[i] > 0.0) || medium.phase.MeanCosine(i, channel) > 0.0)
+    {
+      continue;
+    }
+    std::array<double, 6> parts = {};
+    const double decays = 0.5 * DecaysAcross(medium, i, channel); // from the middle to a face
+    for (std::size_t face = 0; face < 6; ++face)
+    {
+      const double moment = direct.firstMoments[6 * (i * channels + of) + face];
+      const double nearer = 2.0 * moment / direct.image.fluence.At(i, channel);
+      const double part = nearer > 0.0 ? this->PartWithin(medium.grid, i, face) : 0.0;
+      parts[face] = part > 0.0 ? PartThatCrosses(nearer * part, decays / part) : 0.0;
+    }
+    // Of a corner no more can cross than there is.
+    const double all = std::max(std::accumulate(parts.begin(), parts.end(), 0.0), 1.0);
+    for (std::size_t face = 0; face < 6; ++face)
+    {
+      const double crosses = parts[face] / all * scattered[i];
+      const std::size_t beyond = this->Beyond(medium.grid, i, face);
+      this->crossing[6 * i + face] = static_cast<float>(crosses);
+      begin[i] = std::max(begin[i] - crosses, 0.0);
+      (beyond == Outside ? this->leaves[face] : begin[beyond]) += crosses;
+    }
+  }
+}
+
+std::size_t LatticeVoxels::Beyond(const Grid& grid, std::size_t voxel, std::size_t face) const
+{
+  const std::size_t axis = face / 2;
+  std::array<int, 3> at = grid.VoxelAt(voxel);
+  at[axis] += face % 2 == 0 ? -1 : 1;
+  const int size = grid.size[axis];
+  if ((at[axis] < 0 || at[axis] >= size) && !this->Periodic[axis])
+  {
+    return Outside;
+  }
+  at[axis] = (at[axis] + size) % size;
+  return grid.IndexOf(at);
+}
+
+/// Of the resistance from a voxel's centre to the next one's, or out of the box, the part that lies within it.
+double LatticeVoxels::PartWithin(const Grid& grid, std::size_t voxel, std::size_t face) const
+{
+  const std::size_t beyond = this->Beyond(grid, voxel, face);
+  const double within = this->ResistanceWithin(voxel);
+  const double all = beyond == Outside ? this->ResistanceOfFace(voxel, face) : this->ResistanceBetween(voxel, beyond);
+  return within > 0.0 && beyond != voxel ? within / all : 0.0;
+}
+
+double LatticeVoxels::ResistanceWithin(std::size_t voxel, double least) const
+{
+  const double squares = LatticeSquares(this->Directions);
+  const double straight = (1.0 - this->lost[voxel]) * (1.0 - this->turning[voxel]);
+  const double removed = std::max(1.0 - straight, least);
+  return removed > 0.0 ? 1.0 / (2.0 * squares * (1.0 / removed - 0.5) * this->passes[voxel] * this->squared[voxel])
+                       : 0.0;
+}
+
+double LatticeVoxels::ResistanceBetween(std::size_t a, std::size_t b, double least) const
+{
+  const double reflects = std::abs(1.0 / this->squared[a] - 1.0 / this->squared[b]);
+  return this->ResistanceWithin(a, least) + this->ResistanceWithin(b, least) +
+    reflects / LatticeSquares(this->Directions);
+}
+
+double LatticeVoxels::ResistanceOfFace(std::size_t voxel, std::size_t face, double least) const
+{
+  const double black = LatticeSquares(this->Directions) * this->squared[voxel]; // Marshak's condition
+  const double reflects = (1.0 + this->albedo[face]) / (1.0 - this->albedo[face]);
+  return this->ResistanceWithin(voxel, least) + reflects / black;
+}
+
+bool LatticeVoxels::Reflects() const
+{
+  return std::any_of(this->albedo.begin(), this->albedo.end(), [](double albedo) { return albedo > 0.0; });
+}
+
+double LatticeVoxels::Given() const
+{
+  return std::accumulate(this->incoming.begin(), this->incoming.end(), 0.0) +
+    std::accumulate(this->source.begin(), this->source.end(), 0.0);
+}
+}
