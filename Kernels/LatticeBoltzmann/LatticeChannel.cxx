@@ -126,19 +126,26 @@ void LatticeChannel::AddFlux(LightField& light)
   this->AddCrossing(light);
 }
 
-/// What crosses a face at once goes half of the way through each of its voxels.
+/// What crosses a face at once goes from where it is first scattered to the face, and half of the way through the voxel
+/// beyond.
 void LatticeChannel::AddCrossing(LightField& light) const
 {
   const Grid& grid = this->Problem.TheGrid();
+  const auto add = [&](std::size_t voxel, std::size_t axis, double flux) {
+    light.netFlux[3 * (voxel * light.channels + this->Channel) + axis] += static_cast<float>(flux);
+  };
   for (std::size_t at = 0; at < this->Voxels.crossing.size(); ++at)
   {
+    const double crosses = this->Voxels.crossing[at];
     const std::size_t voxel = at / 6, face = at % 6, beyond = this->Voxels.Beyond(grid, voxel, face);
-    const float half = (face % 2 == 0 ? -0.5f : 0.5f) * this->Voxels.crossing[at];
-    for (const std::size_t i : { voxel, beyond })
+    if (crosses > 0.0)
     {
-      if (i != LatticeVoxels::Outside)
+      const double out = face % 2 == 0 ? -crosses : crosses;
+      const double nearer = this->Direct.Nearer(voxel, static_cast<int>(this->Channel), face);
+      add(voxel, face / 2, (0.5 - nearer) * out);
+      if (beyond != LatticeVoxels::Outside)
       {
-        light.netFlux[3 * (i * light.channels + this->Channel) + face / 2] += half;
+        add(beyond, face / 2, 0.5 * out);
       }
     }
   }

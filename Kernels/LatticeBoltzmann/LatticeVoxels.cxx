@@ -30,6 +30,15 @@ double DecaysAcross(const Medium& medium, std::size_t voxel, int channel)
 }
 }
 
+double Uncollided::Nearer(std::size_t voxel, int channel, std::size_t face) const
+{
+  const auto channels = static_cast<std::size_t>(this->image.fluence.components);
+  const std::size_t of = channels > 1 ? static_cast<std::size_t>(channel) : 0;
+  const double fluence = this->image.fluence.At(voxel, channel);
+  const double moment = this->firstMoments.empty() ? 0.0 : this->firstMoments[6 * (voxel * channels + of) + face];
+  return fluence > 0.0 ? std::min(moment / fluence, 0.5) : 0.0;
+}
+
 double LatticeWeight(int directions, int i)
 {
   return directions == 6 ? 1.0 / 6.0 : i < 6 ? 1.0 / 12.0 : 1.0 / 24.0;
@@ -104,8 +113,6 @@ void LatticeVoxels::Shine(const PropagationProblem& problem, const Uncollided& d
 /// @param begin  W / length^2 that are first scattered in each voxel, changed
 void LatticeVoxels::CrossFaces(const Medium& medium, const Uncollided& direct, int channel, std::vector<double>& begin)
 {
-  const auto channels = static_cast<std::size_t>(direct.image.fluence.components);
-  const std::size_t of = channels > 1 ? static_cast<std::size_t>(channel) : 0;
   const std::vector<double> scattered = begin;
   this->crossing.assign(6 * begin.size(), 0.0f);
   for (std::size_t i = 0; i < begin.size(); ++i)
@@ -118,8 +125,7 @@ void LatticeVoxels::CrossFaces(const Medium& medium, const Uncollided& direct, i
     const double decays = 0.5 * DecaysAcross(medium, i, channel); // from the middle to a face
     for (std::size_t face = 0; face < 6; ++face)
     {
-      const double moment = direct.firstMoments[6 * (i * channels + of) + face];
-      const double nearer = 2.0 * moment / direct.image.fluence.At(i, channel);
+      const double nearer = 2.0 * direct.Nearer(i, channel, face);
       const double part = nearer > 0.0 ? this->PartWithin(medium.grid, i, face) : 0.0;
       parts[face] = part > 0.0 ? PartThatCrosses(nearer * part, decays / part) : 0.0;
     }

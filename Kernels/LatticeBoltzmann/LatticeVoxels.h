@@ -16,6 +16,9 @@ struct Uncollided
   std::vector<float> fluence, netFlux;
   std::vector<float> firstMoments; ///< as LightField has them, of the image's channels; empty: not known
   UncollidedImage image;
+
+  /// Distance in voxels, 0 to 1/2, from a voxel's middle towards a face of the mean place where its light is lost.
+  double Nearer(std::size_t voxel, int channel, std::size_t face) const;
 };
 
 /// Weight of a direction in even light; those of all directions add up to 1.

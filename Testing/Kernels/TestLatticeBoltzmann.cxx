@@ -153,9 +153,12 @@ TEST_F(LatticeBoltzmann, KeepsPowerOfBeamsIntoThickVoxelsOfEveryKind)
     LatticeSettings settings;
     settings.netFlux = true;
     const LightField light = this->Solve(scene, settings);
-    for (float fluence : light.fluence)
+    for (std::size_t i = 0; i < light.fluence.size(); ++i)
     {
-      ASSERT_TRUE(std::isfinite(fluence) && fluence >= 0.0f) << albedo;
+      ASSERT_TRUE(std::isfinite(light.fluence[i]) && light.fluence[i] >= 0.0f) << albedo;
+      const float* flux = light.netFlux.data() + 3 * i;
+      // Links along diagonals are longer than 1.
+      ASSERT_LE(std::hypot(flux[0], flux[1], flux[2]), std::sqrt(2.0) * light.fluence[i]) << albedo << " " << i;
     }
     EXPECT_LT(std::abs(light.balance.leftOver[0]), 1e-5 * light.balance.entered[0]) << albedo;
   }
