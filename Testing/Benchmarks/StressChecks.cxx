@@ -124,9 +124,10 @@ private:
     }
     this->Add("bad_directions", static_cast<double>(bad), 0.0);
     bad = 0;
-    // Of a lattice what is left over is a difference: in Energy().
-    const auto signless = static_cast<std::ptrdiff_t>(
-      IsLattice(this->Solver) ? static_cast<std::size_t>(LeftOver * o.channels) : o.balance.size());
+    // What is left over by a lattice, and what photons win or lose by chance, is a difference: in Energy().
+    const bool differs = IsLattice(this->Solver) || this->Solver == StressSolver::PhotonsScattered;
+    const auto signless =
+      static_cast<std::ptrdiff_t>(differs ? static_cast<std::size_t>(LeftOver * o.channels) : o.balance.size());
     for (const auto& [begin, end] :
       { std::pair(o.balance.begin(), o.balance.begin() + std::min<std::ptrdiff_t>(signless, o.balance.size())),
         std::pair(o.facePowerOut.begin(), o.facePowerOut.end()) })
@@ -222,17 +223,18 @@ private:
     {
       this->Add("left_over", this->Worst([&](int c) { return std::abs(this->Fact(LeftOver, c)) / this->In(c); }), 1e-4);
     }
-    // Photons are taken away by scattering as well.
+    // Of photons that are followed to where they are first scattered, scattering takes away as well.
+    const bool first = photons && this->Solver != StressSolver::PhotonsScattered;
     this->Add("absorbed_by_fluence", this->Worst([&](int c) {
       const int s = this->SceneChannel(c);
       const double lost = this->Scene.VoxelVolume() * this->Sum([&](std::size_t i) {
         const double sigma = static_cast<double>(this->Scene.At(this->Scene.absorption, i, s)) +
-          (photons ? this->Scene.At(this->Scene.scattering, i, s) : 0.0f);
+          (first ? this->Scene.At(this->Scene.scattering, i, s) : 0.0f);
         return sigma * this->Fluence(i, c);
       });
       return std::abs(lost - this->Fact(Absorbed, c)) / this->In(c);
     }),
-      1e-3);
+      first || !photons ? 1e-3 : 0.02); // where they are scattered, both are found by chance
     if (photons)
     {
       this->Add("left_over",

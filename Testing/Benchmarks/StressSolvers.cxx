@@ -24,7 +24,8 @@ namespace bench
 namespace
 {
 constexpr double Pi = 3.14159265358979323846;
-constexpr int ViewEdge = 12; ///< pixels
+constexpr double MostScatterings = 300.0; ///< of a photon: a cell is to take seconds
+constexpr int ViewEdge = 12;              ///< pixels
 
 /// Keeps what a filter says.
 class Listener : public vtkCommand
@@ -254,6 +255,12 @@ struct PhotonChain
     this->reconstruction->SetInputConnection(this->marcher->GetOutputPort());
   }
 
+  void Scatter(StressOutcome& outcome)
+  {
+    this->marcher->SetMaximumOrders(0);
+    this->March(false, outcome);
+  }
+
   void March(bool published, StressOutcome& outcome)
   {
     this->marcher->SetScheme(published ? vtkPhotonMarcher::PUBLISHED : vtkPhotonMarcher::CONSERVATIVE);
@@ -356,13 +363,41 @@ void RunView(bool bent, const StressScene& scene, Listener* listener, StressOutc
     }
   }
 }
+
+/// How often a photon is scattered, about, until it is absorbed or has left: as often as its mean way through the box has
+/// mean free paths, or the square of the box or the thickest voxel if it begins inside.
+double ScatteringsOf(const StressScene& scene)
+{
+  double scatters = 0.0, removes = 0.0, thickest = 0.0, area = 0.0, longest = 0.0, edge = 0.0;
+  for (std::size_t i = 0; i < scene.VoxelCount() * static_cast<std::size_t>(scene.channels); ++i)
+  {
+    const double one = scene.scattering.empty() ? 0.0 : scene.scattering[i];
+    scatters += one;
+    thickest = std::max(thickest, one);
+    removes += one + (scene.absorption.empty() ? 0.0 : scene.absorption[i]);
+  }
+  for (int axis = 0; axis < 3; ++axis)
+  {
+    const int a = (axis + 1) % 3, b = (axis + 2) % 3;
+    area += 2.0 * scene.cells[a] * scene.spacing[a] * scene.cells[b] * scene.spacing[b];
+    longest = std::max(longest, scene.cells[axis] * scene.spacing[axis]);
+    edge = std::max(edge, scene.spacing[axis]);
+  }
+  const double mean = scatters / static_cast<double>(scene.VoxelCount() * static_cast<std::size_t>(scene.channels));
+  const double volume = static_cast<double>(scene.VoxelCount()) * scene.VoxelVolume();
+  const bool inside =
+    std::any_of(scene.lamps.begin(), scene.lamps.end(), [](const Lamp& lamp) { return lamp.kind != Lamp::Sun; });
+  const double across = std::max(mean * longest, 0.5 * thickest * edge);
+  const double way = inside ? across * std::max(1.0, across) : mean * 4.0 * volume / area;
+  return scatters > 0.0 ? std::min(way, removes / std::max(removes - scatters, 1e-30)) : 0.0;
+}
 }
 
 const char* NameOf(StressSolver solver)
 {
   static const char* const names[] = { "maps", "maps, all", "maps, moments", "maps, orders", "maps, parallel",
-    "maps, sequential", "ordinates", "lattice", "lattice of 6", "photons", "photons, published", "rebuilt",
-    "rebuilt, published", "octree", "view", "view, bent" };
+    "maps, sequential", "ordinates", "lattice", "lattice of 6", "photons", "photons, all orders", "photons, published",
+    "rebuilt", "rebuilt, published", "octree", "view", "view, bent" };
   return names[static_cast<int>(solver)];
 }
 
@@ -405,6 +440,10 @@ bool IsView(StressSolver solver)
 bool Concerns(StressSolver solver, const StressCase& stressCase)
 {
   const StressScene& scene = stressCase.scene;
+  if (solver == StressSolver::PhotonsScattered)
+  {
+    return (!scene.lamps.empty() || scene.sky != Vector{}) && ScatteringsOf(scene) <= MostScatterings;
+  }
   if (stressCase.forward || solver == StressSolver::MapsMoments)
   {
     return stressCase.forward && (solver == StressSolver::MapsMoments || solver == StressSolver::Ordinates);
@@ -479,6 +518,7 @@ StressOutcome RunStress(StressSolver solver, const StressScene& scene, double to
     {
       case StressSolver::Rebuilt:
       case StressSolver::RebuiltPublished: chain.Rebuild(solver == StressSolver::RebuiltPublished, outcome); break;
+      case StressSolver::PhotonsScattered: chain.Scatter(outcome); break;
       case StressSolver::Octree: chain.MarchThroughOctree(outcome); break;
       default: chain.March(solver == StressSolver::PhotonsPublished, outcome);
     }

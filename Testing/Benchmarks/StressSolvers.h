@@ -20,6 +20,7 @@ enum class StressSolver
   Lattice,          ///< lattice-Boltzmann lighting, 18 directions, untouched
   LatticeOfSix,     ///< the same along axes alone
   Photons,          ///< emitter and marcher, conservative
+  PhotonsScattered, ///< the same, until they are absorbed or have left
   PhotonsPublished, ///< as published
   Rebuilt,          ///< importance, emitter, marcher, reconstruction, conservative
   RebuiltPublished, ///< as published
