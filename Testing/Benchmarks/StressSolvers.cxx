@@ -364,8 +364,8 @@ void RunView(bool bent, const StressScene& scene, Listener* listener, StressOutc
   }
 }
 
-/// How often a photon is scattered, about, until it is absorbed or has left: as often as its mean way through the box has
-/// mean free paths, or the square of the box or the thickest voxel if it begins inside.
+/// How often a photon is scattered, about, until it is absorbed or has left: as often as its mean way through the box
+/// has mean free paths, or the square of the box or the thickest voxel if it begins inside.
 double ScatteringsOf(const StressScene& scene)
 {
   double scatters = 0.0, removes = 0.0, thickest = 0.0, area = 0.0, longest = 0.0, edge = 0.0;
