@@ -276,7 +276,7 @@ tyndall::ComparisonSettings vtkSolverComparison::Settings() const
   tried.orders = this->Orders;
   tried.photonCounts = this->PhotonCounts;
   tried.tolerance = this->Tolerance;
-  tried.monteCarloReference = this->MonteCarloReference;
+  tried.monteCarloReference = static_cast<tyndall::MonteCarloReference>(this->MonteCarloReference);
   if (this->AllSamplers)
   {
     using tyndall::Sampler;

@@ -21,7 +21,7 @@ struct ComparisonSettings;
  * @brief error against run time: which solver at which setting is best for a scene
  *
  * Runs the chosen methods at several settings each on one scene, and compares their light with a reference: that of
- * input 3, or a converged run of the best method.
+ * input 3, or that of photons or a converged run of the best method (MonteCarloReference).
  *
  * Input 0, the medium: vtkImageData as vtkLightPropagationMaps and vtkPhotonMarcher read it: cell arrays `sigma_a`,
  * `sigma_s` (1 or 3 components, 1/length), optionally `emission` (W/(length^3 sr)), `ior` and `octree_level` (photons
@@ -143,12 +143,21 @@ public:
 
   ///@{
   /// Whether, without input 3, photons that are scattered until they end make the reference also where light goes
-  /// straight: sixteen to sixty-four times the largest of PhotonCounts. It shares no solver with the methods then, but
-  /// has noise, of which field data `reference` gives the standard error. Default off: light propagation maps. An error
-  /// where the medium emits, axes are periodic or faces give back light.
-  vtkSetMacro(MonteCarloReference, bool);
-  vtkGetMacro(MonteCarloReference, bool);
-  vtkBooleanMacro(MonteCarloReference, bool);
+  /// straight: sixteen to sixty-four sets of them. It shares no solver with the methods
+  /// then, but has noise, of which field data `reference` gives the standard error. 0: never, but light propagation
+  /// maps; 1: always, and an error where the medium emits, axes are periodic or faces give back light; 2, the default:
+  /// where they can beat the methods compared, that is where within half of TimeBudget their standard error is forecast
+  /// to be at most a third of what the finest maps that are tried are off by. `reference` says what was chosen, and
+  /// why.
+  enum MonteCarloReferences
+  {
+    NEVER = 0,
+    ALWAYS = 1,
+    WHERE_IT_CAN_BEAT = 2
+  };
+  vtkSetClampMacro(MonteCarloReference, int, NEVER, WHERE_IT_CAN_BEAT);
+  vtkGetMacro(MonteCarloReference, int);
+  vtkBooleanMacro(MonteCarloReference, int);
   ///@}
 
   ///@{
@@ -237,7 +246,7 @@ private:
   std::vector<int> Orders;
   std::vector<int> PhotonCounts;
   bool AllSamplers = false;
-  bool MonteCarloReference = false;
+  int MonteCarloReference = WHERE_IT_CAN_BEAT;
   int Repeats;
   double TimeBudget;
 

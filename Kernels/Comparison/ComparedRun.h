@@ -34,6 +34,14 @@ bool IsOfPhotons(ComparedMethod method);
 /// Whether a method finds unscattered light only, which is compared with `fluence_direct`.
 bool IsDirectOnly(ComparedMethod method);
 
+/// When photons that are scattered until they end make the reference of light that goes straight.
+enum class MonteCarloReference
+{
+  Never = 0,
+  Always = 1,        ///< an error in scenes that photons cannot do
+  WhereItCanBeat = 2 ///< where their standard error is forecast to be far below what the finest maps are off by
+};
+
 /// The settings that are tried: of propagation all directions on all grids; finer maps where there are 25 directions or
 /// more; limited orders with the number of directions nearest to 25; of photons all counts by the first sampler, and
 /// the largest but one by the others. Both lattices on all grids whose voxels are cubes; where light is bent, on the
@@ -49,8 +57,9 @@ struct ComparedSettings
   std::vector<Sampler> samplers = { Sampler::Hammersley };
   double tolerance = PropagationSettings().tolerance; ///< of propagation
   bool scattersReference = false; ///< where light is bent, photons that make the reference are scattered, too
-  /// Such photons make the reference also where light goes straight: it shares no solver with methods compared then.
-  bool monteCarloReference = false;
+  /// Whether such photons make the reference also where light goes straight: it shares no solver with methods compared
+  /// then.
+  MonteCarloReference monteCarloReference = MonteCarloReference::WhereItCanBeat;
 };
 
 /// A method with a setting, ready to run.

@@ -2,6 +2,7 @@
 
 // The reference that a comparison makes itself: see SolverComparison.h.
 
+#include "Comparison/PhotonReference.h"
 #include "Comparison/TimeLimit.h"
 #include "Device/Errors.h"
 
@@ -20,6 +21,11 @@ struct Rung
 };
 constexpr Rung Ladder[] = { { 2, 256, 2 }, { 2, 256, 1 }, { 2, 144, 1 }, { 1, 256, 2 }, { 1, 144, 2 }, { 1, 144, 1 } };
 constexpr double ConvergedTolerance = 1e-6;
+
+std::size_t LargestOf(const std::vector<int>& counts)
+{
+  return static_cast<std::size_t>(*std::max_element(counts.begin(), counts.end()));
+}
 
 Factors RefinementBy(int factor, const Grid& grid)
 {
@@ -128,90 +134,41 @@ ReferenceLight ByPropagation(Device& device, const ComparedScene& scene, double 
   }
   return {}; // not reached: the last rung has all the time it needs
 }
-
-/// Means of independent sets of photons, and how far they are off.
-class Means
-{
-public:
-  void Add(const std::vector<float>& values)
-  {
-    this->Sums.resize(values.size());
-    this->Squares.resize(values.size());
-    for (std::size_t i = 0; i < values.size(); ++i)
-    {
-      this->Sums[i] += values[i];
-      this->Squares[i] += static_cast<double>(values[i]) * values[i];
-    }
-    ++this->Count;
-  }
-
-  std::vector<float> Values() const
-  {
-    std::vector<float> means(this->Sums.size());
-    std::transform(this->Sums.begin(), this->Sums.end(), means.begin(),
-      [this](double sum) { return static_cast<float>(sum / this->Count); });
-    return means;
-  }
-
-  /// Root of the mean square of the standard errors, over that of the values; needs two sets.
-  double RelativeError() const
-  {
-    double variance = 0.0, squares = 0.0;
-    for (std::size_t i = 0; i < this->Sums.size(); ++i)
-    {
-      const double mean = this->Sums[i] / this->Count;
-      variance += std::max(0.0, this->Squares[i] / this->Count - mean * mean) / (this->Count - 1);
-      squares += mean * mean;
-    }
-    return squares > 0.0 ? std::sqrt(variance / squares) : 0.0;
-  }
-
-  int Count = 0;
-
-private:
-  std::vector<double> Sums, Squares;
-};
-
-/// Photons that are not filtered, scattered where that is asked for: sixteen to sixty-four times the largest number
-/// that is tried.
-ReferenceLight ByPhotons(
-  Device& device, const ComparedScene& scene, const ComparedSettings& settings, double seconds, const Monitor& monitor)
-{
-  constexpr int fewest = 16, most = 64;
-  const double start = ClockSeconds();
-  const auto set =
-    static_cast<std::size_t>(*std::max_element(settings.photonCounts.begin(), settings.photonCounts.end()));
-  const bool all = settings.scattersReference;
-  Means means, direct;
-  ReferenceLight reference;
-  while (means.Count < most && (means.Count < fewest || ClockSeconds() - start < seconds))
-  {
-    const Monitor part = PartWithin(HUGE_VAL, monitor, 1.0 * means.Count / most, (means.Count + 1.0) / most);
-    LightField light = MarchEvenly(device, scene, set, all ? 0 : 1, static_cast<std::uint64_t>(means.Count) + 1, part);
-    means.Add(light.fluence);
-    direct.Add(all ? light.fluenceDirect : light.fluence);
-    reference.channels = light.channels;
-  }
-  reference.grid = scene.medium.grid;
-  reference.fluence = all ? means.Values() : std::vector<float>();
-  reference.fluenceDirect = direct.Values();
-  char text[160];
-  std::snprintf(text, sizeof(text), "%d times %zu photons%s, not filtered, standard error %.2g, %.3g s", means.Count,
-    set, all ? " that are scattered until they end" : "", means.RelativeError(), ClockSeconds() - start);
-  reference.text = text;
-  return reference;
-}
 }
 
 ReferenceLight ConvergedLight(
   Device& device, const ComparedScene& scene, const ComparedSettings& settings, double seconds, const Monitor& monitor)
 {
-  const std::string whyNot = settings.monteCarloReference ? scene.WhyNotByPhotons(true) : "";
-  if (!whyNot.empty())
+  if (scene.BendsLight())
+  {
+    return ReferenceOfPhotons(device, scene, settings, LargestOf(settings.photonCounts), seconds, monitor);
+  }
+  const double start = ClockSeconds();
+  PhotonForecast forecast;
+  double asked = 0.0; // part of the work
+  const std::string whyNot = scene.WhyNotByPhotons(true);
+  if (settings.monteCarloReference == MonteCarloReference::Always && !whyNot.empty())
   {
     throw InvalidInput("MonteCarloReference cannot be made: " + whyNot + ". Switch it off, or connect a reference.");
   }
-  return scene.BendsLight() || settings.monteCarloReference ? ByPhotons(device, scene, settings, seconds, monitor)
-                                                            : ByPropagation(device, scene, seconds, monitor);
+  if (settings.monteCarloReference == MonteCarloReference::WhereItCanBeat && whyNot.empty())
+  {
+    asked = 0.3;
+    forecast = ForecastOfPhotons(device, scene, settings, seconds, PartWithin(HUGE_VAL, monitor, 0.0, asked));
+  }
+  const double left = seconds - (ClockSeconds() - start);
+  const Monitor rest = PartWithin(HUGE_VAL, monitor, asked, 1.0);
+  const bool always = settings.monteCarloReference == MonteCarloReference::Always;
+  ComparedSettings scattering = settings;
+  scattering.scattersReference = true;
+  ReferenceLight reference = always || forecast.beats
+    ? ReferenceOfPhotons(
+        device, scene, scattering, always ? LargestOf(settings.photonCounts) : forecast.photonsOfASet, left, rest)
+    : ByPropagation(device, scene, left, rest);
+  if (settings.monteCarloReference == MonteCarloReference::WhereItCanBeat)
+  {
+    reference.text += "; " + (whyNot.empty() ? forecast.why : "not photons: " + whyNot);
+  }
+  return reference;
 }
 }

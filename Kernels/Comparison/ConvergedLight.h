@@ -17,11 +17,11 @@ struct ReferenceLight
   std::string text;                 ///< what it is
 };
 
-/// A converged run of the best method: 256 directions a face, two rays a voxel's edge, tolerance 1e-6, on the doubled
-/// grid; less of it where that would take more than `seconds`. Where light is bent, photons: of
-/// unscattered light, or of all (ComparedSettings::scattersReference); these also where that is asked for
-/// (ComparedSettings::monteCarloReference).
-/// @throws InvalidInput where it is asked for, and photons cannot make the light of this scene
+/// Where light goes straight, as ComparedSettings::monteCarloReference says: photons that are scattered until they end
+/// (PhotonReference.h), or a converged run of the best method: 256 directions a face, two rays a voxel's edge,
+/// tolerance 1e-6, on the doubled grid; less of it where that would take more than `seconds`. Where light is bent,
+/// photons: of unscattered light, or of all (ComparedSettings::scattersReference).
+/// @throws InvalidInput where photons are asked for always, and cannot make the light of this scene
 ReferenceLight ConvergedLight(Device& device, const ComparedScene& scene, const ComparedSettings& settings,
   double seconds, const Monitor& monitor = {});
 }

@@ -311,7 +311,12 @@ Comparison CompareSolvers(Device& device, const ComparedScene& scene, const Comp
   Comparison result;
   result.device = device.Name();
   ComparedSettings tried = settings.tried;
-  tried.scattersReference = tried.monteCarloReference ||
+  if (tried.monteCarloReference == MonteCarloReference::WhereItCanBeat &&
+    std::all_of(settings.methods.begin(), settings.methods.end(), IsDirectOnly))
+  {
+    tried.monteCarloReference = MonteCarloReference::Never; // of unscattered light the maps have no noise
+  }
+  tried.scattersReference = tried.monteCarloReference == MonteCarloReference::Always ||
     std::any_of(settings.methods.begin(), settings.methods.end(), [](ComparedMethod method) {
       return method == ComparedMethod::MonteCarlo || method == ComparedMethod::LatticeBoltzmann;
     });

@@ -285,7 +285,7 @@ def parse():
     parser.add_argument("--sky", type=float, nargs=3, default=[0, 0, 0], help="W/(length^2 sr)")
     parser.add_argument("--environment", help=".exr or .hdr")
     parser.add_argument("--reference", help=".vti with fluence, fluence_direct or both; default: a converged run")
-    parser.add_argument("--monte-carlo-reference", action="store_true", help="a reference of photons that are scattered until they end, which shares no solver with the methods; its noise is told")
+    parser.add_argument("--monte-carlo-reference", choices=["never", "always", "auto"], default="auto", help="a reference of photons that are scattered until they end, which shares no solver with the methods; auto: where it can beat them")
     parser.add_argument("--save-reference", metavar="FILE.vti", help="keep the converged run for the next time")
     parser.add_argument("--extinction", type=float, default=1.0, help="per density, 1/length, where the medium has no sigma_a")
     parser.add_argument("--albedo", type=float, nargs=3, default=[0.99] * 3, help="where the medium has no sigma_a")
@@ -357,7 +357,7 @@ def main():
     }
     rows, facts = compare(arguments.methods, arguments.save_reference, Input=medium_of(arguments), SkyColor=arguments.sky, Directions=arguments.directions,
                           Coarsenings=arguments.coarsenings, PhotonCounts=arguments.photons, Repeats=arguments.repeats,
-                          TimeBudget=arguments.budget, MonteCarloReference=int(arguments.monte_carlo_reference), **{name: proxy for name, proxy in inputs.items() if proxy})
+                          TimeBudget=arguments.budget, MonteCarloReference=["never", "always", "auto"].index(arguments.monte_carlo_reference), **{name: proxy for name, proxy in inputs.items() if proxy})
     if not rows:
         raise SystemExit("Nothing was compared: " + "; ".join(facts["left_out"] or ["see the error above"]))
     name = os.path.splitext(os.path.basename(arguments.medium))[0]

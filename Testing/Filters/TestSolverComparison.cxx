@@ -225,6 +225,7 @@ void LatticesAreComparedWithPhotons(test::Claims& claims)
   AskForOne(comparison);
   comparison->LightPropagationMapsOff();
   comparison->LatticeBoltzmannOn();
+  claims.That(comparison->GetMonteCarloReference() == vtkSolverComparison::WHERE_IT_CAN_BEAT, "photons may be it");
   comparison->MonteCarloReferenceOn();
   comparison->RemoveAllPhotonCounts();
   comparison->AddPhotonCount(20000);

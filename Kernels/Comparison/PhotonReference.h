@@ -1,0 +1,31 @@
+#pragma once
+
+#include "Comparison/ConvergedLight.h"
+
+#include <cstddef>
+#include <string>
+
+namespace tyndall
+{
+/// Light of photons that are not filtered, in sixteen to sixty-four independent sets, of which its text says the
+/// standard error; scattered until they end where ComparedSettings::scattersReference asks for it.
+/// @param set  photons of a set
+/// @param seconds  after which no set is begun, once there are sixteen
+ReferenceLight ReferenceOfPhotons(Device& device, const ComparedScene& scene, const ComparedSettings& settings,
+  std::size_t set, double seconds, const Monitor& monitor);
+
+/// Whether photons can beat the methods compared within a time.
+struct PhotonForecast
+{
+  bool beats = false;
+  std::size_t photonsOfASet = 0; ///< that the time allows
+  std::string why;               ///< in words, with both errors
+};
+
+/// Looks at few photons, and at the finest maps that are tried on the scene's own grid. Of the mean square of their
+/// difference the photons' variance is a part; the maps are off by the rest, less twice its standard deviation. The
+/// standard error of as many photons as the time allows is to be at most a third of that.
+/// @param seconds  for forecast and reference together
+PhotonForecast ForecastOfPhotons(
+  Device& device, const ComparedScene& scene, const ComparedSettings& settings, double seconds, const Monitor& monitor);
+}
