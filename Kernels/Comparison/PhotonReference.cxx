@@ -74,7 +74,7 @@ private:
   std::vector<double> Sums, Squares;
 };
 
-/// Sum of the squared differences; the light of one channel stands for all.
+/// Sum of the squared differences from light of `ofA` channels; that of one channel stands for all.
 double SquaredDistance(const std::vector<float>& a, int ofA, const std::vector<float>& b, int ofB)
 {
   const int channels = std::max(ofA, ofB);
@@ -84,7 +84,7 @@ double SquaredDistance(const std::vector<float>& a, int ofA, const std::vector<f
     for (int c = 0; c < channels; ++c)
     {
       const double difference = static_cast<double>(a[i * ofA + c % ofA]) - b[i * ofB + c % ofB];
-      sum += difference * difference / channels;
+      sum += difference * difference * ofA / channels;
     }
   }
   return sum;
@@ -126,8 +126,8 @@ Pilot FewPhotons(
   Pilot pilot;
   pilot.photons = std::max(largest / PartToForecast, LeastToForecast);
   const auto march = [&](int seed) {
-    const Monitor part =
-      PartWithin(seconds, monitor, seed / (MostToForecast + 1.0), (seed + 1) / (MostToForecast + 1.0));
+    const double all = MostToForecast + 1.0, left = seconds - (ClockSeconds() - begun);
+    const Monitor part = PartWithin(seed > FewestToForecast ? HUGE_VAL : left, monitor, seed / all, (seed + 1) / all);
     return MarchEvenly(device, scene, pilot.photons, 0, static_cast<std::uint64_t>(seed) + 1, part);
   };
   march(0); // compiles
