@@ -2,6 +2,7 @@
 
 #include "Device/Clock.h"
 #include "LatticeBoltzmann/LatticeLight.h"
+#include "LatticeBoltzmann/WhereLightIsLost.h"
 #include "Light/LeftOut.h"
 
 #include <algorithm>
@@ -148,9 +149,17 @@ void InterleavedLattice::TakeAll(const PhotonLight& photons)
       this->Light.image.escaped[face][c] = channel.power * photons.light.facePowerOut[face][from];
     }
   }
-  if (this->Settings.netFlux)
+  if (!photons.meanDirection.empty())
   {
     this->Light.image.meanDirection = { photons.meanDirection.data(), 3 };
+  }
+  if (NeedsFirstMoments(this->Problem->TheMedium(), this->Settings))
+  {
+    this->Light.firstMoments =
+      EstimatedFirstMoments(this->Light.image, this->Problem->TheMedium(), this->Settings.periodic);
+  }
+  if (this->Settings.netFlux)
+  {
     this->Light.netFlux = NetFluxOf(this->Light.image, this->TheMedium.grid, static_cast<int>(all));
   }
   for (Channel& channel : this->Channels)

@@ -3,6 +3,7 @@
 #include "LatticeBoltzmann/InterleavedLattice.h"
 #include "LatticeBoltzmann/LatticeChannel.h"
 #include "LatticeBoltzmann/LatticeLight.h"
+#include "LatticeBoltzmann/WhereLightIsLost.h"
 #include "LightPropagation/Conservative/ConservativePropagation.h"
 #include "LightPropagation/Problem/PropagationProblem.h"
 #include "Photons/Marching/PhotonMarcher.h"
@@ -15,22 +16,6 @@ namespace tyndall
 {
 namespace
 {
-constexpr double ThickForFirstMoments = 0.1; ///< mean free paths a voxel
-
-double ThickestOf(const PropagationProblem& problem)
-{
-  const Medium& medium = problem.TheMedium();
-  double thickest = 0.0;
-  for (std::size_t i = 0; i < medium.grid.VoxelCount(); ++i)
-  {
-    for (int c = 0; c < problem.Channels(); ++c)
-    {
-      thickest = std::max(thickest, medium.grid.spacing[0] * medium.TransportSigmaT(i, c));
-    }
-  }
-  return thickest;
-}
-
 /// That which is given, or else that of lamps and environment along the maps' rays. Nothing is truncated: the medium
 /// counts as scattering evenly.
 Uncollided FindUncollided(
@@ -41,6 +26,10 @@ Uncollided FindUncollided(
   if (found.image.IsThere())
   {
     found.netFlux = settings.netFlux ? NetFluxOf(found.image, problem.TheGrid(), problem.Channels()) : found.netFlux;
+    if (NeedsFirstMoments(problem.TheMedium(), settings))
+    {
+      found.firstMoments = EstimatedFirstMoments(found.image, problem.TheMedium(), settings.periodic);
+    }
     return found;
   }
   Medium dark = problem.TheMedium();
@@ -49,7 +38,7 @@ Uncollided FindUncollided(
   PropagationSettings once = AsPropagation(settings);
   once.source = PropagationSource::Automatic;
   once.maximumOrders = 1;
-  once.firstMoments = settings.scheme == LatticeScheme::Conservative && ThickestOf(problem) > ThickForFirstMoments;
+  once.firstMoments = NeedsFirstMoments(problem.TheMedium(), settings);
   Illumination narrow = problem.Shining(); // what is diffuse comes in on the lattice itself
   narrow.sky = {};
   narrow.faces = {};
@@ -110,7 +99,7 @@ LightField SolveLatticeBoltzmann(Device& device, const Medium& medium, const Fie
                        "or light the lattice by lights.");
   }
   MarchSettings march;
-  march.meanDirection = settings.netFlux;
+  march.meanDirection = settings.netFlux || NeedsFirstMoments(medium, settings);
   PhotonMarcher marcher(device, medium, ior, march);
   if (settings.interleaves)
   {

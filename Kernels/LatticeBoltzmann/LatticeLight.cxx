@@ -89,6 +89,20 @@ void CheckLattice(const Medium& medium, const Field& ior, const LatticeSettings&
   CheckIndex(ior, medium.grid);
 }
 
+bool NeedsFirstMoments(const Medium& medium, const LatticeSettings& settings)
+{
+  constexpr double thick = 0.1;
+  double thickest = 0.0;
+  for (std::size_t i = 0; i < medium.grid.VoxelCount(); ++i)
+  {
+    for (int c = 0; c < medium.Channels(); ++c)
+    {
+      thickest = std::max(thickest, medium.grid.spacing[0] * medium.TransportSigmaT(i, c));
+    }
+  }
+  return settings.scheme == LatticeScheme::Conservative && thickest > thick;
+}
+
 PropagationSettings AsPropagation(const LatticeSettings& settings)
 {
   PropagationSettings of;

@@ -15,6 +15,9 @@ namespace tyndall
 /// @throws InvalidInput what SolveLatticeBoltzmann says of medium, index and settings
 void CheckLattice(const Medium& medium, const Field& ior, const LatticeSettings& settings);
 
+/// Whether it matters where in voxels light is first scattered, and the scheme minds.
+bool NeedsFirstMoments(const Medium& medium, const LatticeSettings& settings);
+
 /// As the parts of other solvers that serve the lattice are asked for.
 PropagationSettings AsPropagation(const LatticeSettings& settings);
 

@@ -18,7 +18,20 @@ inline double LargestDifference(const std::vector<float>& a, const std::vector<f
   return difference;
 }
 
-/// The same over the largest value of `b`.
+/// Sum of the differences over that of `b`.
+inline double SumOfDifferences(const std::vector<float>& a, const std::vector<float>& b)
+{
+  EXPECT_EQ(a.size(), b.size());
+  double difference = 0.0, sum = 0.0;
+  for (std::size_t i = 0; i < std::min(a.size(), b.size()); ++i)
+  {
+    difference += std::abs(static_cast<double>(a[i]) - b[i]);
+    sum += std::abs(b[i]);
+  }
+  return difference == 0.0 ? 0.0 : difference / sum;
+}
+
+/// The largest difference over the largest value of `b`.
 inline double RelativeDifference(const std::vector<float>& a, const std::vector<float>& b)
 {
   double largest = 0.0;

@@ -4,6 +4,8 @@
 #include "LatticeScene.h"
 
 #include "Numerics/Constants.h"
+#include "Photons/Emission/PhotonEmitter.h"
+#include "Photons/Marching/PhotonMarcher.h"
 #include "Reference/SlabReference.h"
 
 #include <algorithm>
@@ -121,7 +123,54 @@ TEST_F(LatticeBoltzmann, BeginsWhereABeamIsFirstScattered)
       EXPECT_NEAR(transmitted / expected, 1.0, 0.02) << thickness << " " << cosine;
       EXPECT_LT(light.balance.RelativeError(1), 1e-6);
       EXPECT_LT(std::abs(light.balance.leftOver[0]), 1e-5 * light.balance.entered[0]);
+      // Handed on by voxel, it is known by its direction and by how it falls off.
+      std::vector<float> along;
+      for (int i = 0; i < 3 * Layers; ++i)
+      {
+        along.push_back(static_cast<float>(direction[i % 3]));
+      }
+      Scene again = scene;
+      again.light = {};
+      again.light.uncollided.fluence = { light.fluenceDirect.data(), light.channels };
+      again.light.uncollided.meanDirection = { along.data(), 3 };
+      const LightField given = this->Solve(again, settings);
+      const double through = given.facePowerOut[2 * axis][0] / given.balance.entered[0];
+      EXPECT_NEAR(through / expected, 1.0, 0.02) << thickness << " " << cosine;
     }
+  }
+}
+
+/// In rough media with shadows where a voxel's light is lost is not told by its neighbours as well as by its rays, but
+/// better than by nothing: against photons that are scattered until they end.
+TEST_F(LatticeBoltzmann, GuessesWhereLightThatIsHandedOnIsFirstScattered)
+{
+  const std::array<double, 3> direction = { -0.48, 0.36, -0.8 };
+  for (const double decades : { 0.5, 1.5 })
+  {
+    Scene scene({ 9, 8, 10 });
+    scene.Randomise(8.0, decades, 0.99, 20261123);
+    scene.ShineAlong(direction);
+    const LightField own = this->Solve(scene);
+    MarchSettings all;
+    all.maximumOrders = 0;
+    const PhotonLight truth =
+      PhotonMarcher(this->GetDevice(), scene.medium, {}, all)
+        .March(EmitPhotons(scene.medium.grid, scene.light, { 400000, Sampler::Hammersley, 1 }).photons);
+    scene.light = {};
+    scene.light.uncollided.fluence = { own.fluenceDirect.data(), own.channels };
+    const LightField middle = this->Solve(scene);
+    std::vector<float> along;
+    for (std::size_t i = 0; i < 3 * own.fluence.size(); ++i)
+    {
+      along.push_back(static_cast<float>(direction[i % 3]));
+    }
+    scene.light.uncollided.meanDirection = { along.data(), 3 };
+    const LightField given = this->Solve(scene);
+    const auto off = [&](const LightField& light) { return SumOfDifferences(light.fluence, truth.light.fluence); };
+    EXPECT_LT(off(own), 0.15) << decades;
+    EXPECT_LT(off(given), 0.25) << decades;
+    EXPECT_LT(off(given), 0.5 * off(middle)) << decades;
+    EXPECT_LT(std::abs(given.balance.leftOver[0]), 1e-5 * given.balance.entered[0]);
   }
 }
 

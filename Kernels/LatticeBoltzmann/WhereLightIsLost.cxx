@@ -1,0 +1,130 @@
+#include "LatticeBoltzmann/WhereLightIsLost.h"
+
+#include <algorithm>
+#include <cmath>
+
+namespace tyndall
+{
+namespace
+{
+constexpr double Askew = 0.2; ///< less of the direction along an axis says nothing: shadows' edges fall off, too
+
+/// Mean of exp(-k x) over x from 0 to 1.
+double MeanOf(double k)
+{
+  return k > 1e-6 ? -std::expm1(-k) / k : 1.0 - 0.5 * k;
+}
+
+/// Distance of the mean place where exp(-k x) is lost from the middle, towards where it comes from.
+double NearerBy(double k)
+{
+  return k > 1e-2 ? std::min(0.5 - 1.0 / k + 1.0 / std::expm1(k), 0.5) : k / 12.0;
+}
+
+/// k of a voxel, at most `most`, where the next voxel on the way, `ratio` times as thick, has the part `passes` of its
+/// fluence: exp(-k) MeanOf(ratio k) / MeanOf(k) falls as k grows.
+double FallOff(double passes, double ratio, double most)
+{
+  double low = 0.0, high = most;
+  for (int i = 0; i < 40 && passes < 1.0; ++i)
+  {
+    const double k = 0.5 * (low + high);
+    (std::exp(-k) * MeanOf(ratio * k) > passes * MeanOf(k) ? low : high) = k;
+  }
+  return low;
+}
+
+/// One channel of an image in its medium.
+class LostLight
+{
+public:
+  LostLight(const UncollidedImage& image, const Medium& medium, const std::array<bool, 3>& periodic, int channel)
+    : Image(image)
+    , TheMedium(medium)
+    , Periodic(periodic)
+    , Channel(channel)
+  {
+  }
+
+  /// Distance of the mean place from the middle along the axis, against the way of the light.
+  double Nearer(std::size_t voxel, std::size_t axis) const
+  {
+    const double along = this->Image.meanDirection.At(voxel, static_cast<int>(axis));
+    const double thickness = this->Thickness(voxel, axis);
+    if (std::abs(along) < Askew || !(thickness > 0.0))
+    {
+      return 0.0;
+    }
+    const int way = along > 0.0 ? 1 : -1;
+    const double most = thickness / std::abs(along);
+    std::size_t other = 0;
+    if (this->Next(voxel, axis, way, other))
+    {
+      const double here = this->Fluence(voxel);
+      return NearerBy(FallOff(this->Fluence(other) / here, this->Thickness(other, axis) / thickness, most));
+    }
+    if (this->Next(voxel, axis, -way, other))
+    {
+      // Seen from the voxel before, whose thickness is the measure of k.
+      const double before = this->Thickness(other, axis), there = this->Fluence(other);
+      const double ratio = before > 0.0 ? thickness / before : 0.0;
+      return before > 0.0 && there > 0.0
+        ? NearerBy(std::min(ratio * FallOff(this->Fluence(voxel) / there, ratio, before / std::abs(along)), most))
+        : NearerBy(most);
+    }
+    return NearerBy(most);
+  }
+
+  double Fluence(std::size_t voxel) const { return this->Image.fluence.At(voxel, this->Channel); }
+
+private:
+  double Thickness(std::size_t voxel, std::size_t axis) const
+  {
+    return this->TheMedium.grid.spacing[axis] *
+      (this->TheMedium.sigma_a.At(voxel, this->Channel) + this->TheMedium.sigma_s.At(voxel, this->Channel));
+  }
+
+  bool Next(std::size_t voxel, std::size_t axis, int way, std::size_t& other) const
+  {
+    const Grid& grid = this->TheMedium.grid;
+    std::array<int, 3> at = grid.VoxelAt(voxel);
+    at[axis] += way;
+    const bool beyond = at[axis] < 0 || at[axis] >= grid.size[axis];
+    at[axis] = (at[axis] + grid.size[axis]) % grid.size[axis];
+    other = grid.IndexOf(at);
+    return !beyond || this->Periodic[axis];
+  }
+
+  const UncollidedImage& Image;
+  const Medium& TheMedium;
+  const std::array<bool, 3>& Periodic;
+  int Channel;
+};
+}
+
+std::vector<float> EstimatedFirstMoments(
+  const UncollidedImage& image, const Medium& medium, const std::array<bool, 3>& periodic)
+{
+  if (!image.meanDirection.values)
+  {
+    return {};
+  }
+  const auto channels = static_cast<std::size_t>(image.fluence.components);
+  std::vector<float> moments(6 * channels * medium.grid.VoxelCount(), 0.0f);
+  for (std::size_t c = 0; c < channels; ++c)
+  {
+    const LostLight light(image, medium, periodic, static_cast<int>(c));
+    for (std::size_t i = 0; i < medium.grid.VoxelCount(); ++i)
+    {
+      const double fluence = light.Fluence(i);
+      for (std::size_t axis = 0; axis < 3 && fluence > 0.0; ++axis)
+      {
+        const bool forwards = image.meanDirection.At(i, static_cast<int>(axis)) > 0.0f;
+        const std::size_t face = 2 * axis + (forwards ? 0 : 1);
+        moments[6 * (i * channels + c) + face] = static_cast<float>(fluence * light.Nearer(i, axis));
+      }
+    }
+  }
+  return moments;
+}
+}
