@@ -37,7 +37,8 @@ struct MediumInput;
  * Input 1, optional: lights as vtkLightRig makes them.
  * Input 2, optional: the environment, as vtkEnvironmentReader makes it.
  * Input 3, optional: uncollided light of another filter instead of all these (vtkScatteringSolver); that of lights and
- * environment goes straight, whatever the index.
+ * environment goes straight, whatever the index. In voxels thicker than a mean free path its `mean_direction` tells
+ * where it is first scattered.
  * Input 4, optional: photons as vtkPhotonEmitter makes them, instead of all these: they march along bent rays to where
  * they are first scattered, to their ends first, or (Interleaved) while their light diffuses. Not together with 3, nor
  * with periodic axes.

@@ -27,7 +27,9 @@ namespace tyndall
 /// above 1; a doubt says so.
 ///
 /// It is diffusion: wrong where light is not scattered often, and anisotropic scattering counts by the similarity
-/// relation. Mean directions of an UncollidedImage are used for the net flux alone.
+/// relation. In thick voxels, by the conservative scheme, light begins where it is first scattered: that of lamps where
+/// their rays say (Eq. (L13)), that of an UncollidedImage where its mean directions and the next voxels say (Eq.
+/// (L14)), and in the middle of voxels where it has none.
 ///
 /// @param ior  refractive index by voxel; null values: 1
 /// @throws InvalidInput where voxels are not cubes (to 0.1%), an index is not positive and finite (names the first such
