@@ -143,7 +143,7 @@ public:
 
   ///@{
   /// Whether, without input 3, photons that are scattered until they end make the reference also where light goes
-  /// straight: sixteen to sixty-four sets of them. It shares no solver with the methods
+  /// straight: sixteen sets of them or more. It shares no solver with the methods
   /// then, but has noise, of which field data `reference` gives the standard error. 0: never, but light propagation
   /// maps; 1: always, and an error where the medium emits, axes are periodic or faces give back light; 2, the default:
   /// where they can beat the methods compared, that is where within half of TimeBudget their standard error is forecast

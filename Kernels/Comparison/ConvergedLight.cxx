@@ -161,10 +161,10 @@ ReferenceLight ConvergedLight(
   const bool always = settings.monteCarloReference == MonteCarloReference::Always;
   ComparedSettings scattering = settings;
   scattering.scattersReference = true;
-  ReferenceLight reference = always || forecast.beats
-    ? ReferenceOfPhotons(
-        device, scene, scattering, always ? LargestOf(settings.photonCounts) : forecast.photonsOfASet, left, rest)
-    : ByPropagation(device, scene, left, rest);
+  ReferenceLight reference = always
+    ? ReferenceOfPhotons(device, scene, scattering, LargestOf(settings.photonCounts), left, rest)
+    : forecast.beats ? ReferenceOfPhotons(device, scene, scattering, forecast.photonsOfASet, 0.0, rest)
+                     : ByPropagation(device, scene, left, rest);
   if (settings.monteCarloReference == MonteCarloReference::WhereItCanBeat)
   {
     reference.text += "; " + (whyNot.empty() ? forecast.why : "not photons: " + whyNot);

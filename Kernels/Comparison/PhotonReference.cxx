@@ -18,6 +18,7 @@ constexpr std::size_t PartToForecast = 16, LeastToForecast = 1000; ///< photons 
 constexpr std::size_t MostOfASet = std::size_t{ 1 } << 21;         ///< a hundred megabytes
 constexpr double PartOfTime = 0.25;                                ///< for the maps, and for photons, to forecast by
 constexpr double Beats = 1.0 / 3.0; ///< error of the reference over that of the best method compared
+constexpr double Enough = 0.1;      ///< the same, of sixteen sets
 
 /// Means of independent sets of photons, and how far they are off.
 class Means
@@ -122,6 +123,7 @@ struct Pilot
 Pilot FewPhotons(
   Device& device, const ComparedScene& scene, std::size_t largest, double seconds, const Monitor& monitor)
 {
+  MarchEvenly(device, scene, LeastToForecast, 0, 1, PartWithin(seconds, monitor, 0.0, 0.1)); // compiles
   const double begun = ClockSeconds();
   Pilot pilot;
   pilot.photons = std::max(largest / PartToForecast, LeastToForecast);
@@ -130,8 +132,6 @@ Pilot FewPhotons(
     const Monitor part = PartWithin(seed > FewestToForecast ? HUGE_VAL : left, monitor, seed / all, (seed + 1) / all);
     return MarchEvenly(device, scene, pilot.photons, 0, static_cast<std::uint64_t>(seed) + 1, part);
   };
-  march(0); // compiles
-  const double start = ClockSeconds();
   while (
     pilot.means.Count < FewestToForecast || (pilot.means.Count < MostToForecast && ClockSeconds() - begun < seconds))
   {
@@ -139,7 +139,7 @@ Pilot FewPhotons(
     pilot.means.Add(light.fluence);
     pilot.channels = light.channels;
   }
-  pilot.seconds = (ClockSeconds() - start) / (static_cast<double>(pilot.photons) * pilot.means.Count);
+  pilot.seconds = (ClockSeconds() - begun) / (static_cast<double>(pilot.photons) * pilot.means.Count);
   return pilot;
 }
 
@@ -199,16 +199,19 @@ PhotonForecast ForecastOfPhotons(
   }
   const LightField maps = FinestMaps(device, scene, settings, PartOfTime * seconds, monitor);
   const double left = seconds - (ClockSeconds() - start), all = pilot.means.SumOfSquares();
-  const double affordable = std::max(left, 0.0) / pilot.seconds;
-  forecast.photonsOfASet = std::min(MostOfASet, static_cast<std::size_t>(affordable / FewestSets));
-  const double photons = std::min(affordable, 1.0 * MostSets * static_cast<double>(forecast.photonsOfASet));
   const double made = static_cast<double>(pilot.photons) * pilot.means.Count;
   const double ofMaps = std::sqrt(SquaredErrorOfMaps(pilot, maps) / all);
-  const double ofPhotons = std::sqrt(pilot.means.Variance() * made / std::max(photons, 1.0) / all);
-  forecast.beats = all > 0.0 && forecast.photonsOfASet > 0 && ofPhotons <= Beats * ofMaps;
+  const double ofMade = std::sqrt(pilot.means.Variance() / all);
+  const double affordable = std::min(std::max(left / pilot.seconds, 1.0), 1.0 * FewestSets * MostOfASet);
+  const double ofAffordable = ofMade * std::sqrt(made / affordable);
+  forecast.beats = all > 0.0 && ofAffordable <= Beats * ofMaps;
+  const double wanted = made * std::pow(ofMade / (Enough * ofMaps), 2);
+  const double photons = forecast.beats ? std::min(affordable, std::max(wanted, 1.0 * LeastToForecast)) : affordable;
+  forecast.photonsOfASet = static_cast<std::size_t>(std::ceil(photons / FewestSets));
   forecast.why = (forecast.beats ? "photons: their standard error was forecast to be "
                                  : "not photons: their standard error would be about ") +
-    Text("%.2g", ofPhotons) + ", the finest maps compared are off by at least " + Text("%.2g", ofMaps);
+    Text("%.2g", ofMade * std::sqrt(made / photons)) + ", the finest maps compared are off by at least " +
+    Text("%.2g", ofMaps);
   return forecast;
 }
 }

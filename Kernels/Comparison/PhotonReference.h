@@ -18,7 +18,7 @@ ReferenceLight ReferenceOfPhotons(Device& device, const ComparedScene& scene, co
 struct PhotonForecast
 {
   bool beats = false;
-  std::size_t photonsOfASet = 0; ///< that the time allows
+  std::size_t photonsOfASet = 0; ///< of sixteen, for a tenth of what the maps are off by, or as many as the time allows
   std::string why;               ///< in words, with both errors
 };
 
