@@ -155,7 +155,7 @@ public:
     ALWAYS = 1,
     WHERE_IT_CAN_BEAT = 2
   };
-  vtkSetClampMacro(MonteCarloReference, int, NEVER, WHERE_IT_CAN_BEAT);
+  vtkSetMacro(MonteCarloReference, int);
   vtkGetMacro(MonteCarloReference, int);
   vtkBooleanMacro(MonteCarloReference, int);
   ///@}

@@ -78,6 +78,12 @@ void Check(const ComparedSettings& settings)
   {
     throw InvalidInput("There is no sampler to try photons by.");
   }
+  const int reference = static_cast<int>(settings.monteCarloReference);
+  if (reference < 0 || reference > 2)
+  {
+    throw InvalidInput("MonteCarloReference is " + std::to_string(reference) +
+      "; it must be 0 (never), 1 (always) or 2 (where it can beat the methods).");
+  }
   PropagationSettings propagation;
   propagation.tolerance = settings.tolerance;
   Check(propagation);

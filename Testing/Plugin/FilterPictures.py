@@ -85,7 +85,7 @@ def plume_pictures():
     few = ResampleToImage(Input=density, UseInputBounds=1, SamplingDimensions=[13, 12, 23])
     small = ParticipatingMedium(Input=few, DensityArray=["POINTS", "smoke"], ExtinctionScale=14)
     # Errors by setting: run times are never the same.
-    settings = SolverComparison(Input=small, Lights=sun, Directions=[4, 9, 16, 25, 49], Coarsenings=[1], Repeats=1,
+    settings = SolverComparison(Input=small, Lights=sun, Directions=[4, 9, 16, 25, 49], Coarsenings=[1], Repeats=1, MonteCarloReference=0,
                                 MapResolutions=[1], PhotonCounts=[1000, 10000], EstimateError=0, TimeBudget=1e6)
     yield "SolverComparison", chart(OutputPort(settings, 0), None, "error_l2")
 
