@@ -137,13 +137,13 @@ void LatticeChannel::AddCrossing(LightField& light) const
   for (std::size_t at = 0; at < this->Voxels.crossing.size(); ++at)
   {
     const double crosses = this->Voxels.crossing[at];
-    const std::size_t voxel = at / 6, face = at % 6, beyond = this->Voxels.Beyond(grid, voxel, face);
+    const std::size_t voxel = at / 6, face = at % 6, beyond = VoxelBeyond(grid, this->Settings.periodic, voxel, face);
     if (crosses > 0.0)
     {
       const double out = face % 2 == 0 ? -crosses : crosses;
       const double nearer = this->Direct.Nearer(voxel, static_cast<int>(this->Channel), face);
       add(voxel, face / 2, (0.5 - nearer) * out);
-      if (beyond != LatticeVoxels::Outside)
+      if (beyond != Outside)
       {
         add(beyond, face / 2, 0.5 * out);
       }

@@ -39,6 +39,20 @@ double Uncollided::Nearer(std::size_t voxel, int channel, std::size_t face) cons
   return fluence > 0.0 ? std::min(moment / fluence, 0.5) : 0.0;
 }
 
+std::size_t VoxelBeyond(const Grid& grid, const std::array<bool, 3>& periodic, std::size_t voxel, std::size_t face)
+{
+  const std::size_t axis = face / 2;
+  std::array<int, 3> at = grid.VoxelAt(voxel);
+  at[axis] += face % 2 == 0 ? -1 : 1;
+  const int size = grid.size[axis];
+  if ((at[axis] < 0 || at[axis] >= size) && !periodic[axis])
+  {
+    return Outside;
+  }
+  at[axis] = (at[axis] + size) % size;
+  return grid.IndexOf(at);
+}
+
 double LatticeWeight(int directions, int i)
 {
   return directions == 6 ? 1.0 / 6.0 : i < 6 ? 1.0 / 12.0 : 1.0 / 24.0;
@@ -134,7 +148,7 @@ void LatticeVoxels::CrossFaces(const Medium& medium, const Uncollided& direct, i
     for (std::size_t face = 0; face < 6; ++face)
     {
       const double crosses = parts[face] / all * scattered[i];
-      const std::size_t beyond = this->Beyond(medium.grid, i, face);
+      const std::size_t beyond = VoxelBeyond(medium.grid, this->Periodic, i, face);
       this->crossing[6 * i + face] = static_cast<float>(crosses);
       begin[i] = std::max(begin[i] - crosses, 0.0);
       (beyond == Outside ? this->leaves[face] : begin[beyond]) += crosses;
@@ -142,24 +156,10 @@ void LatticeVoxels::CrossFaces(const Medium& medium, const Uncollided& direct, i
   }
 }
 
-std::size_t LatticeVoxels::Beyond(const Grid& grid, std::size_t voxel, std::size_t face) const
-{
-  const std::size_t axis = face / 2;
-  std::array<int, 3> at = grid.VoxelAt(voxel);
-  at[axis] += face % 2 == 0 ? -1 : 1;
-  const int size = grid.size[axis];
-  if ((at[axis] < 0 || at[axis] >= size) && !this->Periodic[axis])
-  {
-    return Outside;
-  }
-  at[axis] = (at[axis] + size) % size;
-  return grid.IndexOf(at);
-}
-
 /// Of the resistance from a voxel's centre to the next one's, or out of the box, the part that lies within it.
 double LatticeVoxels::PartWithin(const Grid& grid, std::size_t voxel, std::size_t face) const
 {
-  const std::size_t beyond = this->Beyond(grid, voxel, face);
+  const std::size_t beyond = VoxelBeyond(grid, this->Periodic, voxel, face);
   const double within = this->ResistanceWithin(voxel);
   const double all = beyond == Outside ? this->ResistanceOfFace(voxel, face) : this->ResistanceBetween(voxel, beyond);
   return within > 0.0 && beyond != voxel ? within / all : 0.0;

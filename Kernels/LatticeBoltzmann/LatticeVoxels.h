@@ -21,6 +21,11 @@ struct Uncollided
   double Nearer(std::size_t voxel, int channel, std::size_t face) const;
 };
 
+constexpr auto Outside = static_cast<std::size_t>(-1); ///< of the box
+
+/// The voxel past a face -x, +x, ... +z of another one, or Outside.
+std::size_t VoxelBeyond(const Grid& grid, const std::array<bool, 3>& periodic, std::size_t voxel, std::size_t face);
+
 /// Weight of a direction in even light; those of all directions add up to 1.
 double LatticeWeight(int directions, int i);
 
@@ -56,9 +61,6 @@ struct LatticeVoxels
 
   bool Reflects() const; ///< some face gives back light
   double Given() const;  ///< above 0: something shines
-
-  static constexpr auto Outside = static_cast<std::size_t>(-1);                    ///< of the box
-  std::size_t Beyond(const Grid& grid, std::size_t voxel, std::size_t face) const; ///< voxel past a face, or Outside
 
   /// Fluence over n^2 that drives 1 W / length^2: from a voxel's centre to its faces, to the centre of the next voxel,
   /// and out of the box through a face (Eq. (L12)). Infinite where a face gives back all.

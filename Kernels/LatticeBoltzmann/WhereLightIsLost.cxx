@@ -1,5 +1,7 @@
 #include "LatticeBoltzmann/WhereLightIsLost.h"
 
+#include "LatticeBoltzmann/LatticeVoxels.h"
+
 #include <algorithm>
 #include <cmath>
 
@@ -55,18 +57,19 @@ public:
     {
       return 0.0;
     }
-    const int way = along > 0.0 ? 1 : -1;
     const double most = thickness / std::abs(along);
-    std::size_t other = 0;
-    if (this->Next(voxel, axis, way, other))
+    const std::size_t ahead = along > 0.0 ? 1 : 0; // of the two faces across the axis
+    const std::size_t next = VoxelBeyond(this->TheMedium.grid, this->Periodic, voxel, 2 * axis + ahead);
+    if (next != Outside)
     {
       const double here = this->Fluence(voxel);
-      return NearerBy(FallOff(this->Fluence(other) / here, this->Thickness(other, axis) / thickness, most));
+      return NearerBy(FallOff(this->Fluence(next) / here, this->Thickness(next, axis) / thickness, most));
     }
-    if (this->Next(voxel, axis, -way, other))
+    const std::size_t last = VoxelBeyond(this->TheMedium.grid, this->Periodic, voxel, 2 * axis + 1 - ahead);
+    if (last != Outside)
     {
       // Seen from the voxel before, whose thickness is the measure of k.
-      const double before = this->Thickness(other, axis), there = this->Fluence(other);
+      const double before = this->Thickness(last, axis), there = this->Fluence(last);
       const double ratio = before > 0.0 ? thickness / before : 0.0;
       return before > 0.0 && there > 0.0
         ? NearerBy(std::min(ratio * FallOff(this->Fluence(voxel) / there, ratio, before / std::abs(along)), most))
@@ -82,17 +85,6 @@ private:
   {
     return this->TheMedium.grid.spacing[axis] *
       (this->TheMedium.sigma_a.At(voxel, this->Channel) + this->TheMedium.sigma_s.At(voxel, this->Channel));
-  }
-
-  bool Next(std::size_t voxel, std::size_t axis, int way, std::size_t& other) const
-  {
-    const Grid& grid = this->TheMedium.grid;
-    std::array<int, 3> at = grid.VoxelAt(voxel);
-    at[axis] += way;
-    const bool beyond = at[axis] < 0 || at[axis] >= grid.size[axis];
-    at[axis] = (at[axis] + grid.size[axis]) % grid.size[axis];
-    other = grid.IndexOf(at);
-    return !beyond || this->Periodic[axis];
   }
 
   const UncollidedImage& Image;
