@@ -143,12 +143,12 @@ public:
 
   ///@{
   /// Whether, without input 3, photons that are scattered until they end make the reference also where light goes
-  /// straight: sixteen sets of them or more. It shares no solver with the methods
-  /// then, but has noise, of which field data `reference` gives the standard error. 0: never, but light propagation
-  /// maps; 1: always, and an error where the medium emits, axes are periodic or faces give back light; 2, the default:
-  /// where they can beat the methods compared, that is where within half of TimeBudget their standard error is forecast
-  /// to be at most a third of what the finest maps that are tried are off by. `reference` says what was chosen, and
-  /// why.
+  /// straight: sixteen sets of them or more. It shares no solver with the methods then, but has noise, of which field
+  /// data `reference` gives the standard error. 0: never, but light propagation maps; 1: always, and an error where the
+  /// medium emits, axes are periodic or faces give back light; 2, the default: where they can beat the methods
+  /// compared, that is where within half of TimeBudget their standard error is forecast to be at most a third of what
+  /// the finest maps that are tried are off by, or where maps take too long or do not fit; never where photons alone
+  /// are compared. `reference` says what was chosen, and why.
   enum MonteCarloReferences
   {
     NEVER = 0,

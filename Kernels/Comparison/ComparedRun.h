@@ -42,6 +42,9 @@ enum class MonteCarloReference
   WhereItCanBeat = 2 ///< where their standard error is forecast to be far below what the finest maps are off by
 };
 
+/// Directions a face below which finer maps are not tried.
+constexpr int FewestForFinerMaps = 25;
+
 /// The settings that are tried: of propagation all directions on all grids; finer maps where there are 25 directions or
 /// more; limited orders with the number of directions nearest to 25; of photons all counts by the first sampler, and
 /// the largest but one by the others. Both lattices on all grids whose voxels are cubes; where light is bent, on the

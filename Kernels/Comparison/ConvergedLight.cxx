@@ -134,6 +134,41 @@ ReferenceLight ByPropagation(Device& device, const ComparedScene& scene, double 
   }
   return {}; // not reached: the last rung has all the time it needs
 }
+
+ReferenceLight ByPhotonsAlways(
+  Device& device, const ComparedScene& scene, const ComparedSettings& settings, double seconds, const Monitor& monitor)
+{
+  const std::string whyNot = scene.WhyNotByPhotons(true);
+  if (!whyNot.empty())
+  {
+    throw InvalidInput("MonteCarloReference cannot be made: " + whyNot + ". Switch it off, or connect a reference.");
+  }
+  return ReferenceOfPhotons(device, scene, settings, LargestOf(settings.photonCounts), seconds, nullptr, monitor);
+}
+
+ReferenceLight ByWhatIsBetter(
+  Device& device, const ComparedScene& scene, const ComparedSettings& settings, double seconds, const Monitor& monitor)
+{
+  const double start = ClockSeconds();
+  const std::string whyNot = scene.WhyNotByPhotons(true);
+  if (!whyNot.empty())
+  {
+    ReferenceLight reference = ByPropagation(device, scene, seconds, monitor);
+    reference.text += "; not photons: " + whyNot;
+    return reference;
+  }
+  constexpr double toForecast = 0.3; // of the progress
+  const PhotonForecast forecast =
+    ForecastOfPhotons(device, scene, settings, seconds, PartWithin(HUGE_VAL, monitor, 0.0, toForecast));
+  const LightField* const maps = forecast.maps ? &*forecast.maps : nullptr;
+  const double left = seconds - (ClockSeconds() - start);
+  const Monitor rest = PartWithin(HUGE_VAL, monitor, toForecast, 1.0);
+  ReferenceLight reference = forecast.beats
+    ? ReferenceOfPhotons(device, scene, settings, forecast.photonsOfASet, 0.0, maps, rest)
+    : ByPropagation(device, scene, left, rest);
+  reference.text += "; " + forecast.why;
+  return reference;
+}
 }
 
 ReferenceLight ConvergedLight(
@@ -141,34 +176,15 @@ ReferenceLight ConvergedLight(
 {
   if (scene.BendsLight())
   {
-    return ReferenceOfPhotons(device, scene, settings, LargestOf(settings.photonCounts), seconds, monitor);
+    return ReferenceOfPhotons(device, scene, settings, LargestOf(settings.photonCounts), seconds, nullptr, monitor);
   }
-  const double start = ClockSeconds();
-  PhotonForecast forecast;
-  double asked = 0.0; // part of the work
-  const std::string whyNot = scene.WhyNotByPhotons(true);
-  if (settings.monteCarloReference == MonteCarloReference::Always && !whyNot.empty())
-  {
-    throw InvalidInput("MonteCarloReference cannot be made: " + whyNot + ". Switch it off, or connect a reference.");
-  }
-  if (settings.monteCarloReference == MonteCarloReference::WhereItCanBeat && whyNot.empty())
-  {
-    asked = 0.3;
-    forecast = ForecastOfPhotons(device, scene, settings, seconds, PartWithin(HUGE_VAL, monitor, 0.0, asked));
-  }
-  const double left = seconds - (ClockSeconds() - start);
-  const Monitor rest = PartWithin(HUGE_VAL, monitor, asked, 1.0);
-  const bool always = settings.monteCarloReference == MonteCarloReference::Always;
   ComparedSettings scattering = settings;
   scattering.scattersReference = true;
-  ReferenceLight reference = always
-    ? ReferenceOfPhotons(device, scene, scattering, LargestOf(settings.photonCounts), left, rest)
-    : forecast.beats ? ReferenceOfPhotons(device, scene, scattering, forecast.photonsOfASet, 0.0, rest)
-                     : ByPropagation(device, scene, left, rest);
-  if (settings.monteCarloReference == MonteCarloReference::WhereItCanBeat)
+  switch (settings.monteCarloReference)
   {
-    reference.text += "; " + (whyNot.empty() ? forecast.why : "not photons: " + whyNot);
+    case MonteCarloReference::Always: return ByPhotonsAlways(device, scene, scattering, seconds, monitor);
+    case MonteCarloReference::WhereItCanBeat: return ByWhatIsBetter(device, scene, scattering, seconds, monitor);
+    default: return ByPropagation(device, scene, seconds, monitor);
   }
-  return reference;
 }
 }

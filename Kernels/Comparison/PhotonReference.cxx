@@ -1,12 +1,13 @@
 #include "Comparison/PhotonReference.h"
 
+#include "Comparison/MeansOfSets.h"
 #include "Comparison/TimeLimit.h"
+#include "Device/Errors.h"
 #include "Numerics/NumberText.h"
 
 #include <algorithm>
 #include <cmath>
 #include <cstdio>
-#include <numeric>
 
 namespace tyndall
 {
@@ -20,102 +21,42 @@ constexpr double PartOfTime = 0.25;                                ///< for the 
 constexpr double Beats = 1.0 / 3.0; ///< error of the reference over that of the best method compared
 constexpr double Enough = 0.1;      ///< the same, of sixteen sets
 
-/// Means of independent sets of photons, and how far they are off.
-class Means
-{
-public:
-  void Add(const std::vector<float>& values)
-  {
-    this->Sums.resize(values.size());
-    this->Squares.resize(values.size());
-    for (std::size_t i = 0; i < values.size(); ++i)
-    {
-      this->Sums[i] += values[i];
-      this->Squares[i] += static_cast<double>(values[i]) * values[i];
-    }
-    ++this->Count;
-  }
-
-  std::vector<float> Values() const
-  {
-    std::vector<float> means(this->Sums.size());
-    std::transform(this->Sums.begin(), this->Sums.end(), means.begin(),
-      [this](double sum) { return static_cast<float>(sum / this->Count); });
-    return means;
-  }
-
-  /// Sum of the squares of the standard errors; needs two sets.
-  double Variance() const
-  {
-    double variance = 0.0;
-    for (std::size_t i = 0; i < this->Sums.size(); ++i)
-    {
-      const double mean = this->Sums[i] / this->Count;
-      variance += std::max(0.0, this->Squares[i] / this->Count - mean * mean) / (this->Count - 1);
-    }
-    return variance;
-  }
-
-  double SumOfSquares() const
-  {
-    return std::accumulate(this->Sums.begin(), this->Sums.end(), 0.0,
-      [this](double sum, double values) { return sum + values * values / this->Count / this->Count; });
-  }
-
-  /// Root of the mean square of the standard errors, over that of the values.
-  double RelativeError() const
-  {
-    const double squares = this->SumOfSquares();
-    return squares > 0.0 ? std::sqrt(this->Variance() / squares) : 0.0;
-  }
-
-  int Count = 0;
-
-private:
-  std::vector<double> Sums, Squares;
-};
-
-/// Sum of the squared differences from light of `ofA` channels; that of one channel stands for all.
-double SquaredDistance(const std::vector<float>& a, int ofA, const std::vector<float>& b, int ofB)
-{
-  const int channels = std::max(ofA, ofB);
-  double sum = 0.0;
-  for (std::size_t i = 0; i < a.size() / static_cast<std::size_t>(ofA); ++i)
-  {
-    for (int c = 0; c < channels; ++c)
-    {
-      const double difference = static_cast<double>(a[i * ofA + c % ofA]) - b[i * ofB + c % ofB];
-      sum += difference * difference * ofA / channels;
-    }
-  }
-  return sum;
-}
-
-/// The finest maps that are tried, or few directions where these take too long.
-LightField FinestMaps(
+/// The finest maps that are tried, or few directions where these take too long or do not fit; none where these do,
+/// too.
+std::optional<LightField> FinestMaps(
   Device& device, const ComparedScene& scene, const ComparedSettings& settings, double seconds, const Monitor& monitor)
 {
-  PropagationSettings finest;
+  const double end = ClockSeconds() + seconds;
+  PropagationSettings finest, coarse;
   finest.directionsPerFace = *std::max_element(settings.directionsPerFace.begin(), settings.directionsPerFace.end());
-  finest.mapResolution = *std::max_element(settings.mapResolutions.begin(), settings.mapResolutions.end());
-  finest.tolerance = settings.tolerance;
-  try
+  finest.mapResolution = finest.directionsPerFace < FewestForFinerMaps
+    ? 1
+    : *std::max_element(settings.mapResolutions.begin(), settings.mapResolutions.end());
+  coarse.directionsPerFace = std::min(coarse.directionsPerFace, finest.directionsPerFace);
+  finest.tolerance = coarse.tolerance = settings.tolerance;
+  double done = 0.5, until = end - 0.3 * seconds;
+  for (const PropagationSettings& maps : { finest, coarse })
   {
-    return Propagate(device, scene, finest, PartWithin(seconds, monitor, 0.5, 0.9));
+    try
+    {
+      return Propagate(device, scene, maps, PartWithin(until - ClockSeconds(), monitor, done, done + 0.25));
+    }
+    catch (const TimeIsUp&)
+    {
+    }
+    catch (const DeviceError&)
+    {
+    }
+    done += 0.25;
+    until = end;
   }
-  catch (const TimeIsUp&)
-  {
-    finest.directionsPerFace = PropagationSettings().directionsPerFace;
-    finest.mapResolution = 1;
-    return Propagate(device, scene, finest, PartWithin(HUGE_VAL, monitor, 0.9, 1.0));
-  }
+  return std::nullopt;
 }
 
 /// A few photons, to forecast by.
 struct Pilot
 {
-  Means means;
-  int channels = 1;
+  MeansOfSets means;
   std::size_t photons = 0; ///< of a set
   double seconds = 0.0;    ///< of a photon
 };
@@ -132,51 +73,52 @@ Pilot FewPhotons(
     const Monitor part = PartWithin(seed > FewestToForecast ? HUGE_VAL : left, monitor, seed / all, (seed + 1) / all);
     return MarchEvenly(device, scene, pilot.photons, 0, static_cast<std::uint64_t>(seed) + 1, part);
   };
-  while (
-    pilot.means.Count < FewestToForecast || (pilot.means.Count < MostToForecast && ClockSeconds() - begun < seconds))
+  const auto goesOn = [&](int sets) {
+    return sets < FewestToForecast || (sets < MostToForecast && ClockSeconds() - begun < seconds);
+  };
+  while (goesOn(pilot.means.Count()))
   {
-    const LightField light = march(pilot.means.Count + 1);
-    pilot.means.Add(light.fluence);
-    pilot.channels = light.channels;
+    const LightField light = march(pilot.means.Count() + 1);
+    pilot.means.Add(light.fluence, light.channels);
   }
-  pilot.seconds = (ClockSeconds() - begun) / (static_cast<double>(pilot.photons) * pilot.means.Count);
+  pilot.seconds = (ClockSeconds() - begun) / (static_cast<double>(pilot.photons) * pilot.means.Count());
   return pilot;
-}
-
-/// What the maps are off by at least, squared: their distance from photons, less what the photons' chance makes of it
-/// and twice the standard deviation of that.
-double SquaredErrorOfMaps(const Pilot& pilot, const LightField& maps)
-{
-  const std::vector<float> values = pilot.means.Values();
-  const double variance = pilot.means.Variance(), sets = pilot.means.Count;
-  const double deviation = std::sqrt((2.0 + 2.0 / (sets - 1.0)) / static_cast<double>(values.size()));
-  const double distance = SquaredDistance(values, pilot.channels, maps.fluence, maps.channels);
-  return std::max(distance - (1.0 + 2.0 * deviation) * variance, 0.0);
 }
 }
 
 ReferenceLight ReferenceOfPhotons(Device& device, const ComparedScene& scene, const ComparedSettings& settings,
-  std::size_t set, double seconds, const Monitor& monitor)
+  std::size_t set, double seconds, const LightField* maps, const Monitor& monitor)
 {
   const double start = ClockSeconds();
   const bool all = settings.scattersReference;
-  Means means, direct;
-  ReferenceLight reference;
-  while (means.Count < MostSets && (means.Count < FewestSets || ClockSeconds() - start < seconds))
+  MeansOfSets fluence, direct;
+  const auto goesOn = [&](int sets) {
+    return sets < MostSets && (sets < FewestSets || ClockSeconds() - start < seconds);
+  };
+  while (goesOn(fluence.Count()))
   {
-    const Monitor part = PartWithin(HUGE_VAL, monitor, 1.0 * means.Count / MostSets, (means.Count + 1.0) / MostSets);
-    LightField light = MarchEvenly(device, scene, set, all ? 0 : 1, static_cast<std::uint64_t>(means.Count) + 1, part);
-    means.Add(light.fluence);
-    direct.Add(all ? light.fluenceDirect : light.fluence);
-    reference.channels = light.channels;
+    const int count = fluence.Count();
+    const Monitor part = PartWithin(HUGE_VAL, monitor, 1.0 * count / MostSets, (count + 1.0) / MostSets);
+    const LightField light = MarchEvenly(device, scene, set, all ? 0 : 1, static_cast<std::uint64_t>(count) + 1, part);
+    fluence.Add(light.fluence, light.channels);
+    direct.Add(all ? light.fluenceDirect : light.fluence, light.channels);
   }
+  ReferenceLight reference;
   reference.grid = scene.medium.grid;
-  reference.fluence = all ? means.Values() : std::vector<float>();
+  reference.channels = fluence.Channels();
+  reference.fluence = all ? fluence.Values() : std::vector<float>();
   reference.fluenceDirect = direct.Values();
   char text[160];
-  std::snprintf(text, sizeof(text), "%d times %zu photons%s, not filtered, standard error %.2g, %.3g s", means.Count,
-    set, all ? " that are scattered until they end" : "", means.RelativeError(), ClockSeconds() - start);
+  std::snprintf(text, sizeof(text), "%d times %zu photons%s, not filtered, standard error %.2g, %.3g s",
+    fluence.Count(), set, all ? " that are scattered until they end" : "", fluence.RelativeError(),
+    ClockSeconds() - start);
   reference.text = text;
+  if (maps && maps->channels == reference.channels &&
+    direct.SquaredErrorOf(maps->fluenceDirect, maps->channels) <= direct.Variance())
+  {
+    reference.fluenceDirect = maps->fluenceDirect;
+    reference.text += " (unscattered light: of the finest maps compared, which have no noise)";
+  }
   return reference;
 }
 
@@ -184,34 +126,36 @@ PhotonForecast ForecastOfPhotons(
   Device& device, const ComparedScene& scene, const ComparedSettings& settings, double seconds, const Monitor& monitor)
 {
   const double start = ClockSeconds();
-  const auto largest =
-    static_cast<std::size_t>(*std::max_element(settings.photonCounts.begin(), settings.photonCounts.end()));
   PhotonForecast forecast;
   Pilot pilot;
   try
   {
-    pilot = FewPhotons(device, scene, largest, PartOfTime * seconds, PartWithin(HUGE_VAL, monitor, 0.0, 0.5));
+    const int largest = *std::max_element(settings.photonCounts.begin(), settings.photonCounts.end());
+    pilot = FewPhotons(
+      device, scene, static_cast<std::size_t>(largest), PartOfTime * seconds, PartWithin(HUGE_VAL, monitor, 0.0, 0.5));
   }
   catch (const TimeIsUp&)
   {
     forecast.why = "not photons: they are scattered too often for the time";
     return forecast;
   }
-  const LightField maps = FinestMaps(device, scene, settings, PartOfTime * seconds, monitor);
+  forecast.maps = FinestMaps(device, scene, settings, PartOfTime * seconds, monitor);
   const double left = seconds - (ClockSeconds() - start), all = pilot.means.SumOfSquares();
-  const double made = static_cast<double>(pilot.photons) * pilot.means.Count;
-  const double ofMaps = std::sqrt(SquaredErrorOfMaps(pilot, maps) / all);
-  const double ofMade = std::sqrt(pilot.means.Variance() / all);
+  const double made = static_cast<double>(pilot.photons) * pilot.means.Count();
+  const double ofMade = pilot.means.RelativeError();
+  const double ofMaps = !forecast.maps ? HUGE_VAL
+    : all > 0.0 ? std::sqrt(pilot.means.SquaredErrorOf(forecast.maps->fluence, forecast.maps->channels) / all)
+                : 0.0;
   const double affordable = std::min(std::max(left / pilot.seconds, 1.0), 1.0 * FewestSets * MostOfASet);
-  const double ofAffordable = ofMade * std::sqrt(made / affordable);
-  forecast.beats = all > 0.0 && ofAffordable <= Beats * ofMaps;
-  const double wanted = made * std::pow(ofMade / (Enough * ofMaps), 2);
+  forecast.beats = all > 0.0 && ofMade * std::sqrt(made / affordable) <= Beats * ofMaps;
+  const double wanted = forecast.maps ? made * std::pow(ofMade / (Enough * ofMaps), 2) : affordable;
   const double photons = forecast.beats ? std::min(affordable, std::max(wanted, 1.0 * LeastToForecast)) : affordable;
   forecast.photonsOfASet = static_cast<std::size_t>(std::ceil(photons / FewestSets));
   forecast.why = (forecast.beats ? "photons: their standard error was forecast to be "
                                  : "not photons: their standard error would be about ") +
-    Text("%.2g", ofMade * std::sqrt(made / photons)) + ", the finest maps compared are off by at least " +
-    Text("%.2g", ofMaps);
+    Text("%.2g", ofMade * std::sqrt(made / photons)) +
+    (forecast.maps ? ", the finest maps compared are off by at least " + Text("%.2g", ofMaps)
+                   : ", and maps take too long or do not fit");
   return forecast;
 }
 }

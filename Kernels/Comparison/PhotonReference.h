@@ -3,6 +3,7 @@
 #include "Comparison/ConvergedLight.h"
 
 #include <cstddef>
+#include <optional>
 #include <string>
 
 namespace tyndall
@@ -11,8 +12,9 @@ namespace tyndall
 /// standard error; scattered until they end where ComparedSettings::scattersReference asks for it.
 /// @param set  photons of a set
 /// @param seconds  after which no set is begun, once there are sixteen
+/// @param maps  whose unscattered light is taken where photons cannot tell it from theirs; null: none
 ReferenceLight ReferenceOfPhotons(Device& device, const ComparedScene& scene, const ComparedSettings& settings,
-  std::size_t set, double seconds, const Monitor& monitor);
+  std::size_t set, double seconds, const LightField* maps, const Monitor& monitor);
 
 /// Whether photons can beat the methods compared within a time.
 struct PhotonForecast
@@ -20,11 +22,13 @@ struct PhotonForecast
   bool beats = false;
   std::size_t photonsOfASet = 0; ///< of sixteen, for a tenth of what the maps are off by, or as many as the time allows
   std::string why;               ///< in words, with both errors
+  std::optional<LightField> maps; ///< the finest that are tried; none where they take too long or do not fit
 };
 
 /// Looks at few photons, and at the finest maps that are tried on the scene's own grid. Of the mean square of their
 /// difference the photons' variance is a part; the maps are off by the rest, less twice its standard deviation. The
-/// standard error of as many photons as the time allows is to be at most a third of that.
+/// standard error of as many photons as the time allows is to be at most a third of that. Where not even maps of few
+/// directions come to an end within a quarter of the time, photons do.
 /// @param seconds  for forecast and reference together
 PhotonForecast ForecastOfPhotons(
   Device& device, const ComparedScene& scene, const ComparedSettings& settings, double seconds, const Monitor& monitor);

@@ -39,7 +39,7 @@ std::vector<Setting> SettingsToTry(const ComparedSettings& settings)
     {
       for (int map : settings.mapResolutions)
       {
-        if (map == 1 || (directions >= 25 && coarsening == 1))
+        if (map == 1 || (directions >= FewestForFinerMaps && coarsening == 1))
         {
           all.push_back({ directions, map, coarsening, 0 });
         }

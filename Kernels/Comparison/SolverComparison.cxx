@@ -312,9 +312,9 @@ Comparison CompareSolvers(Device& device, const ComparedScene& scene, const Comp
   result.device = device.Name();
   ComparedSettings tried = settings.tried;
   if (tried.monteCarloReference == MonteCarloReference::WhereItCanBeat &&
-    std::all_of(settings.methods.begin(), settings.methods.end(), IsDirectOnly))
+    std::all_of(settings.methods.begin(), settings.methods.end(), IsOfPhotons))
   {
-    tried.monteCarloReference = MonteCarloReference::Never; // of unscattered light the maps have no noise
+    tried.monteCarloReference = MonteCarloReference::Never; // maps have no noise, and share no solver with photons
   }
   tried.scattersReference = tried.monteCarloReference == MonteCarloReference::Always ||
     std::any_of(settings.methods.begin(), settings.methods.end(), [](ComparedMethod method) {

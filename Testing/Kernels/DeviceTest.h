@@ -1,12 +1,15 @@
 #pragma once
 
+#include "Device/Buffer.h"
 #include "Device/Device.h"
 #include "Device/Errors.h"
 
 #include <gtest/gtest.h>
 
+#include <algorithm>
 #include <cstdlib>
 #include <memory>
+#include <vector>
 
 /// A test that needs an OpenCL device: skipped where there is none, failed there if TYNDALL_REQUIRE_DEVICE is set.
 class DeviceTest : public testing::Test
@@ -32,3 +35,15 @@ protected:
 
   std::shared_ptr<tyndall::Device> TheDevice;
 };
+
+/// Takes a device's memory but for at most `rest` bytes, until it goes. Never touched: takes no real memory.
+inline std::vector<tyndall::Buffer<char>> AllMemoryBut(tyndall::Device& device, std::size_t rest)
+{
+  std::vector<tyndall::Buffer<char>> hoard;
+  const auto left = [&] { return device.MemoryLimit() - device.BytesInUse(); };
+  while (left() > rest)
+  {
+    hoard.emplace_back(device, std::min(device.AllocationLimit(), left() - rest), "nothing");
+  }
+  return hoard;
+}

@@ -291,12 +291,7 @@ TEST_F(ParallelPropagationTest, OrdersChainedByHandEqualTheSolver)
 TEST_F(ParallelPropagationTest, SaysHowMuchMemoryIsMissing)
 {
   RandomMedium random({ 64, 64, 64 });
-  std::vector<Buffer<char>> hoard; // never touched: takes no real memory
-  const auto left = [&] { return this->GetDevice().MemoryLimit() - this->GetDevice().BytesInUse(); };
-  while (left() > 1000000)
-  {
-    hoard.emplace_back(this->GetDevice(), std::min(this->GetDevice().AllocationLimit(), left() - 500000), "nothing");
-  }
+  const std::vector<Buffer<char>> hoard = AllMemoryBut(this->GetDevice(), 1000000);
   try
   {
     ParallelPropagation(this->GetDevice(), random.medium, GreyFaces(), {});

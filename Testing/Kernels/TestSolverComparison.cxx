@@ -1,12 +1,16 @@
 #include "DeviceTest.h"
 
 #include "Comparison/ComparisonErrors.h"
+#include "Comparison/MeansOfSets.h"
+#include "Comparison/PhotonReference.h"
 #include "Comparison/SolverComparison.h"
 #include "Medium/Coarsening.h"
 
 #include <gtest/gtest.h>
 
+#include <chrono>
 #include <cmath>
+#include <thread>
 
 namespace
 {
@@ -82,6 +86,40 @@ TEST(RescaledScene, WeighsTheMeanCosineByScattering)
   const RescaledScene finer(scene, RescaledScene::To::Finer, { 2, 1, 1 });
   EXPECT_EQ(finer.Scene().medium.phase.MeanCosine(3, 0), 0.4f);
   EXPECT_EQ(finer.Scene().medium.phase.MeanCosine(4, 0), 0.7f);
+}
+
+TEST(MeansOfSets, KnowTheirErrors)
+{
+  MeansOfSets means;
+  means.Add({ 1.0f, 4.0f }, 1);
+  means.Add({ 3.0f, 4.0f }, 1);
+  means.Add({ 5.0f, 4.0f }, 1);
+  EXPECT_EQ(means.Values(), (std::vector<float>{ 3.0f, 4.0f }));
+  EXPECT_NEAR(means.Variance(), 4.0 / 3.0, 1e-12); // 4, that of one set, of three
+  EXPECT_NEAR(means.RelativeError(), std::sqrt(4.0 / 3.0 / 25.0), 1e-12);
+  EXPECT_EQ(means.SquaredErrorOf({ 3.0f, 4.1f }, 1), 0.0) << "chance alone puts them off by more";
+  EXPECT_NEAR(means.SquaredErrorOf({ 3.0f, 14.0f }, 1), 100.0 - 4.0 / 3.0 * (1.0 + 2.0 * std::sqrt(1.5)), 1e-5);
+}
+
+// A set of few photons may have met white lamps only.
+TEST(MeansOfSets, TakeLightOfOneChannelForAll)
+{
+  MeansOfSets means;
+  means.Add({ 1.0f, 2.0f }, 1);
+  means.Add({ 1.0f, 3.0f, 5.0f, 2.0f, 4.0f, 6.0f }, 3);
+  means.Add({ 4.0f, 6.0f }, 1);
+  EXPECT_EQ(means.Channels(), 3);
+  const float thirds[] = { 6.0f, 8.0f, 10.0f, 10.0f, 12.0f, 14.0f };
+  const std::vector<float> values = means.Values();
+  ASSERT_EQ(values.size(), 6u);
+  for (std::size_t i = 0; i < 6; ++i)
+  {
+    EXPECT_NEAR(values[i], thirds[i] / 3.0, 1e-6);
+  }
+  const double ofGrey = means.SquaredErrorOf({ 100.0f, 200.0f }, 1),
+               ofAll = means.SquaredErrorOf({ 100.0f, 100.0f, 100.0f, 200.0f, 200.0f, 200.0f }, 3);
+  EXPECT_EQ(ofGrey, ofAll);
+  EXPECT_GT(ofGrey, 0.0);
 }
 
 TEST(Coarsening, WeighsByChannel)
@@ -307,6 +345,79 @@ TEST_F(ComparedMonteCarlo, MakesTheReferenceWhereItCanBeatTheMaps)
   const ReferenceLight maps = ConvergedLight(this->GetDevice(), fine.scene, fine.settings.tried, 4.0);
   EXPECT_NE(maps.text.find("not photons: their standard error would be"), std::string::npos) << maps.text;
   EXPECT_EQ(maps.text.find("light propagation maps"), 0u) << maps.text;
+}
+
+// What goes straight has no noise in maps.
+TEST_F(ComparedMonteCarlo, TakesUnscatteredLightOfMapsWherePhotonsCannotTellItFromTheirs)
+{
+  SunlitCube cube(8);
+  cube.scene.illumination.lights[0].direction = { 0.0, 0.0, -1.0 }; // of which maps make no error
+  ComparedSettings tried = cube.settings.tried;
+  tried.scattersReference = true;
+  LightField maps = Propagate(this->GetDevice(), cube.scene, {}, {});
+  const ReferenceLight with = ReferenceOfPhotons(this->GetDevice(), cube.scene, tried, 1000, 0.0, &maps, {});
+  EXPECT_EQ(with.fluenceDirect, maps.fluenceDirect) << with.text;
+  EXPECT_NE(with.fluence, maps.fluence);
+  for (float& direct : maps.fluenceDirect)
+  {
+    direct *= 1.1f;
+  }
+  const ReferenceLight without = ReferenceOfPhotons(this->GetDevice(), cube.scene, tried, 1000, 0.0, &maps, {});
+  EXPECT_NE(without.fluenceDirect, maps.fluenceDirect) << without.text;
+  EXPECT_EQ(without.fluence, with.fluence);
+}
+
+TEST_F(ComparedMonteCarlo, IsForecastByFewDirectionsWhereTheFinestMapsDoNotFit)
+{
+  SunlitCube cube(16);
+  cube.settings.tried.photonCounts = { 16000 };
+  PropagationSettings finest;
+  finest.directionsPerFace = cube.settings.tried.directionsPerFace.back();
+  finest.mapResolution = 8;
+  cube.settings.tried.mapResolutions = { 1, finest.mapResolution };
+  Device& device = this->GetDevice();
+  Propagate(device, cube.scene, finest, {}); // compiles
+  const std::size_t before = device.BytesInUse();
+  device.ResetPeak();
+  Propagate(device, cube.scene, finest, {});
+  const std::size_t needed = device.PeakBytes() - before;
+  const std::vector<Buffer<char>> hoard = AllMemoryBut(device, needed - 1);
+  EXPECT_THROW(Propagate(device, cube.scene, finest, {}), DeviceError);
+  const PhotonForecast forecast = ForecastOfPhotons(device, cube.scene, cube.settings.tried, 20.0, {});
+  ASSERT_TRUE(forecast.maps) << forecast.why;
+  EXPECT_EQ(forecast.maps->fluence, Propagate(device, cube.scene, {}, {}).fluence);
+}
+
+// Maps of so many rays take longer than all the photons that are wanted.
+TEST_F(ComparedMonteCarlo, MakesTheReferenceWhereMapsTakeTooLong)
+{
+  SunlitCube cube(24);
+  cube.settings.tried.photonCounts = { 16000 };
+  cube.settings.tried.tolerance = 1e-9;
+  Device& device = this->GetDevice();
+  MarchEvenly(device, cube.scene, 1000, 0, 1, {}); // compiles
+  int calls = 0;
+  const Monitor slowMaps = [&](double done) {
+    calls += done > 0.5 ? 1 : 0;
+    std::this_thread::sleep_for(std::chrono::milliseconds(done > 0.5 ? 400 : 0));
+    return true;
+  };
+  const PhotonForecast forecast = ForecastOfPhotons(device, cube.scene, cube.settings.tried, 2.0, slowMaps);
+  EXPECT_FALSE(forecast.maps) << "a second of maps in two calls of " << calls;
+  EXPECT_TRUE(forecast.beats) << forecast.why;
+  EXPECT_GT(forecast.photonsOfASet, 0u);
+  EXPECT_NE(forecast.why.find("maps take too long"), std::string::npos) << forecast.why;
+}
+
+// They are compared with light that shares no solver with them.
+TEST_F(ComparedMonteCarlo, IsComparedWithMapsWhereNothingElseIsCompared)
+{
+  SunlitCube cube(8);
+  cube.sigma_s.assign(cube.sigma_s.size(), 30.0f); // where photons would beat maps
+  cube.settings.tried.monteCarloReference = MonteCarloReference::WhereItCanBeat;
+  cube.settings.tried.photonCounts = { 2000 };
+  const Comparison found = CompareSolvers(this->GetDevice(), cube.scene, cube.settings);
+  EXPECT_EQ(found.reference.text.find("light propagation maps"), 0u) << found.reference.text;
 }
 
 TEST_F(ComparedMonteCarlo, LeavesTheReferenceToMapsWhereItKnowsNoPhotons)

@@ -267,13 +267,7 @@ TEST_P(Stopped, GivesBackWhatItTookWhereMemoryEnds)
   const std::size_t before = device.BytesInUse();
   work(device, {});
   const std::size_t needed = device.PeakBytes() - before;
-  std::vector<Buffer<char>> hoard; // never touched: takes no real memory
-  const auto left = [&] { return device.MemoryLimit() - device.BytesInUse(); };
-  const std::size_t rest = needed / 20;
-  while (left() > rest)
-  {
-    hoard.emplace_back(device, std::min(device.AllocationLimit(), left() - rest), "nothing");
-  }
+  std::vector<Buffer<char>> hoard = AllMemoryBut(device, needed / 20);
   const std::size_t hoarded = device.BytesInUse();
   EXPECT_THROW(work(device, {}), DeviceError);
   EXPECT_EQ(device.BytesInUse(), hoarded);
