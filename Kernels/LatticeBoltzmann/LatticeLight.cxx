@@ -91,16 +91,8 @@ void CheckLattice(const Medium& medium, const Field& ior, const LatticeSettings&
 
 bool NeedsFirstMoments(const Medium& medium, const LatticeSettings& settings)
 {
-  constexpr double thick = 0.1;
-  double thickest = 0.0;
-  for (std::size_t i = 0; i < medium.grid.VoxelCount(); ++i)
-  {
-    for (int c = 0; c < medium.Channels(); ++c)
-    {
-      thickest = std::max(thickest, medium.grid.spacing[0] * medium.TransportSigmaT(i, c));
-    }
-  }
-  return settings.scheme == LatticeScheme::Conservative && thickest > thick;
+  constexpr double thick = 0.1; // mean free paths
+  return settings.scheme == LatticeScheme::Conservative && AnyVoxelIsThickerThan(thick, medium);
 }
 
 PropagationSettings AsPropagation(const LatticeSettings& settings)

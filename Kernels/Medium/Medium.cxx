@@ -8,6 +8,23 @@
 
 namespace tyndall
 {
+bool AnyVoxelIsThickerThan(double meanFreePaths, const Medium& medium)
+{
+  const double longest = *std::max_element(medium.grid.spacing.begin(), medium.grid.spacing.end());
+  const int channels = medium.Channels();
+  for (std::size_t i = 0; i < medium.grid.VoxelCount(); ++i)
+  {
+    for (int c = 0; c < channels; ++c)
+    {
+      if (longest * medium.TransportSigmaT(i, c) > meanFreePaths)
+      {
+        return true;
+      }
+    }
+  }
+  return false;
+}
+
 std::string VoxelName(const Grid& grid, std::size_t voxel)
 {
   const std::array<int, 3> at = grid.VoxelAt(voxel);

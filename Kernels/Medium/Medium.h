@@ -39,6 +39,9 @@ struct Medium
   }
 };
 
+/// Whether any voxel is thicker than `meanFreePaths` along the grid's longest spacing, by TransportSigmaT.
+bool AnyVoxelIsThickerThan(double meanFreePaths, const Medium& medium);
+
 /// "(i, j, k)" of the voxel that is `voxel`th in an array.
 std::string VoxelName(const Grid& grid, std::size_t voxel);
 

@@ -43,21 +43,8 @@ UncollidedLight::UncollidedLight(TransportParts& parts, const Monitor& monitor)
 /// In thick voxels it matters where lamps' light is first scattered.
 bool UncollidedLight::NeedsFirstMoments() const
 {
-  if (!this->LinearSource || this->Parts.Lamps.empty())
-  {
-    return false;
-  }
-  const Grid& grid = this->TheMedium.grid;
-  const double longest = *std::max_element(grid.spacing.begin(), grid.spacing.end());
-  bool thick = false;
-  for (std::size_t i = 0; i < grid.VoxelCount() && !thick; ++i)
-  {
-    for (int c = 0; c < this->Parts.Layout.channels && !thick; ++c)
-    {
-      thick = this->TheMedium.TransportSigmaT(i, c) * longest > ThickForFirstMoments;
-    }
-  }
-  return thick;
+  return this->LinearSource && !this->Parts.Lamps.empty() &&
+    AnyVoxelIsThickerThan(ThickForFirstMoments, this->TheMedium);
 }
 
 /// Lamps and bright emission, into the arrays of all sources.
