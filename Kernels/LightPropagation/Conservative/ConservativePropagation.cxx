@@ -7,7 +7,7 @@
 #include "LightPropagation/Conservative/SourceIteration.h"
 #include "LightPropagation/Convergence.h"
 #include "LightPropagation/PlaneParallel/PlaneParallelPropagation.h"
-#include "LightPropagation/PlaneParallel/SlabScene.h"
+#include "LightPropagation/PlaneParallel/IsPlaneParallel.h"
 #include "LightPropagation/Problem/ScatteringOrders.h"
 #include "LightPropagation/Problem/SlabTurn.h"
 #include "Numerics/Constants.h"

@@ -6,7 +6,8 @@ namespace tyndall
 {
 namespace
 {
-constexpr double Thin = 1e-3; ///< below it (x^2 beside 1) is left out of a beam's integrals, above it differences are taken
+constexpr double Thin =
+  1e-3; ///< below it (x^2 beside 1) is left out of a beam's integrals, above it differences are taken
 
 /// (1 - exp(-r)) / r
 double MeanOfExponential(double r)

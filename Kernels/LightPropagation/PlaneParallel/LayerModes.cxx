@@ -26,7 +26,8 @@ Eigen::MatrixXd LegendreAtNodes(const HalfRangeQuadrature& nodes, int degree, in
 namespace
 {
 /// 1 less what is scattered, of the moments whose Legendre functions are even in the cosine, or odd.
-Eigen::MatrixXd OneLessScattered(const LayerScattering& scattering, const Eigen::MatrixXd& legendre, int order, bool even)
+Eigen::MatrixXd OneLessScattered(
+  const LayerScattering& scattering, const Eigen::MatrixXd& legendre, int order, bool even)
 {
   const Eigen::Index count = legendre.rows();
   Eigen::MatrixXd matrix = Eigen::MatrixXd::Identity(count, count);
@@ -56,8 +57,7 @@ double SmallestSquare(const LayerScattering& scattering, const Eigen::MatrixXd& 
 
 LayerModes::LayerModes(const LayerScattering& scattering, const HalfRangeQuadrature& nodes, int order)
 {
-  const Eigen::MatrixXd legendre =
-    LegendreAtNodes(nodes, static_cast<int>(scattering.phase.moments.size()) - 1, order);
+  const Eigen::MatrixXd legendre = LegendreAtNodes(nodes, static_cast<int>(scattering.phase.moments.size()) - 1, order);
   const Eigen::VectorXd cosines =
     Eigen::Map<const Eigen::VectorXd>(nodes.cosines.data(), static_cast<Eigen::Index>(nodes.cosines.size()));
   const Eigen::MatrixXd even = OneLessScattered(scattering, legendre, order, true);

@@ -227,7 +227,7 @@ private:
   std::vector<std::vector<double>> BeamsAt, OfBeams;
   double BeamsAtTop = 0.0, BeamsAtBottom = 0.0; ///< irradiance of what leaves
   std::vector<LayerSource> Sources;
-  std::vector<Below> Under; ///< each interface, from the top
+  std::vector<Below> Under;              ///< each interface, from the top
   std::vector<Eigen::MatrixXd> UpOfDown; ///< below each layer, of what comes down above it
   std::vector<Eigen::VectorXd> UpOfSources;
 };

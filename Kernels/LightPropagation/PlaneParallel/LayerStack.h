@@ -9,9 +9,9 @@ namespace tyndall
 {
 struct StackLayer
 {
-  double depth = 0.0;     ///< optical thickness, without what goes straight on
-  double emitted = 0.0;   ///< radiance that its whole height sends out
-  std::size_t kind = 0;   ///< of LayerStack::kinds
+  double depth = 0.0;   ///< optical thickness, without what goes straight on
+  double emitted = 0.0; ///< radiance that its whole height sends out
+  std::size_t kind = 0; ///< of LayerStack::kinds
 };
 
 /// Layers from top to bottom, in one channel.
@@ -24,9 +24,10 @@ struct LayerStack
 /// Parallel light. Its azimuth is in the number that it counts by.
 struct StackBeam
 {
-  double cosine = 1.0;     ///< to the axis of the layers, above 0
-  bool fromTop = true;     ///< or from the bottom
-  double irradiance = 0.0; ///< of a plane across the beam, where it comes in; of order m > 0: times cos or sin of m azimuth
+  double cosine = 1.0; ///< to the axis of the layers, above 0
+  bool fromTop = true; ///< or from the bottom
+  double irradiance =
+    0.0; ///< of a plane across the beam, where it comes in; of order m > 0: times cos or sin of m azimuth
 };
 
 struct StackLight
@@ -39,9 +40,9 @@ struct StackLight
 /// Scattered light of the layers, and diffuse light from outside: all but the beams.
 struct StackSolution
 {
-  std::vector<LayerMeans> means;             ///< of each layer
-  Eigen::VectorXd upAtTop, downAtBottom;     ///< what leaves
-  Eigen::VectorXd downAtTop, upAtBottom;     ///< what comes in, reflected light too
+  std::vector<LayerMeans> means;                ///< of each layer
+  Eigen::VectorXd upAtTop, downAtBottom;        ///< what leaves
+  Eigen::VectorXd downAtTop, upAtBottom;        ///< what comes in, reflected light too
   double beamsAtTop = 0.0, beamsAtBottom = 0.0; ///< W / length^2 that beams take out there
 };
 

@@ -3,6 +3,7 @@
 #include "Device/Clock.h"
 #include "Light/ChannelReduction.h"
 #include "Light/LeftOut.h"
+#include "LightPropagation/Angular/DirectionSet.h"
 #include "LightPropagation/PlaneParallel/SlabMoments.h"
 #include "LightPropagation/Problem/PropagationProblem.h"
 #include "Medium/BoxFaces.h"
@@ -135,13 +136,13 @@ private:
       for (std::size_t c = 0; c < all; ++c)
       {
         const SlabColumn& column = this->Columns[c];
-        const auto radiance =
-          AtSurfaceCosines(this->Nodes, side == 0 ? column.even.upAtTop : column.even.downAtBottom);
+        const auto radiance = AtSurfaceCosines(this->Nodes, side == 0 ? column.even.upAtTop : column.even.downAtBottom);
         for (std::size_t cell = first; cell < first + cells; ++cell)
         {
           for (std::size_t s = 0; s < SurfaceCosines.size() && thick; ++s)
           {
-            light.surfaceRadiance[(cell * SurfaceCosines.size() + s) * all + c] = static_cast<float>(std::max(radiance[s], 0.0));
+            light.surfaceRadiance[(cell * SurfaceCosines.size() + s) * all + c] =
+              static_cast<float>(std::max(radiance[s], 0.0));
           }
           if (this->Settings.facePower)
           {
@@ -240,11 +241,11 @@ void SayWhatIsLeftOut(const PropagationSettings& settings, const MediumTraits& t
 }
 }
 
-LightField SolvePlaneParallel(const Medium& medium, const Illumination& illumination,
-  const PropagationSettings& settings, const Monitor& monitor)
+LightField SolvePlaneParallel(
+  const Medium& medium, const Illumination& illumination, const PropagationSettings& settings, const Monitor& monitor)
 {
   Check(medium, illumination, settings);
-  EquiangularDirections{ settings.directionsPerFace }; // not read, but to be a number of directions all the same
+  EquiangularDirections(settings.directionsPerFace); // not read, but to be a number of directions all the same
   const double start = ClockSeconds();
   const MediumTraits traits = TraitsOf(medium, true);
   LightField light = SolveChannels(settings.leaveOut, SceneChannels(medium, traits, illumination), medium, illumination,

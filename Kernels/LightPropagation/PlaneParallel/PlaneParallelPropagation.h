@@ -7,8 +7,8 @@
 
 namespace tyndall
 {
-/// Light of a scene for which IsPlaneParallel (SlabScene.h) holds, in the cosine to the axis of the layers alone:
-/// discrete ordinates, exact within each layer (numerics.md, section 7.9). What is scattered forwards beyond the
+/// Light of a scene for which IsPlaneParallel (IsPlaneParallel.h) holds, in the cosine to the axis of the layers alone:
+/// discrete ordinates, exact within each layer (numerics.md, section 10 d). What is scattered forwards beyond the
 /// moments that the nodes carry goes straight on (delta-M). The host does it, in a few milliseconds for 64 layers;
 /// leftOut says so. One iteration, without a residual.
 ///

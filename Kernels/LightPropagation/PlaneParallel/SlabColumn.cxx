@@ -44,8 +44,7 @@ void ForLayersOf(const LayerStack& stack, const StackBeam& beam, const Act& act)
 }
 }
 
-SlabColumn::SlabColumn(
-  const SlabScene& scene, int channel, const HalfRangeQuadrature& nodes, int degree, int orders)
+SlabColumn::SlabColumn(const SlabScene& scene, int channel, const HalfRangeQuadrature& nodes, int degree, int orders)
   : fluence(scene.Count())
   , direct(scene.Count())
   , stack(scene.StackOf(channel, degree))
@@ -92,8 +91,7 @@ void SlabColumn::AddBeams(const SlabScene& scene, const StackLight& light, int c
 }
 
 /// Unscattered light of the faces and of what the medium sends out, along the nodes.
-void SlabColumn::AddDiffuse(
-  const StackLight& light, const LayerStack& unscattered, const HalfRangeQuadrature& nodes)
+void SlabColumn::AddDiffuse(const StackLight& light, const LayerStack& unscattered, const HalfRangeQuadrature& nodes)
 {
   const std::size_t count = unscattered.layers.size();
   for (const bool fromTop : { true, false })
@@ -115,8 +113,7 @@ void SlabColumn::AddDiffuse(
   }
 }
 
-void SlabColumn::SumUp(
-  const SlabScene& scene, const StackLight& light, const HalfRangeQuadrature& nodes, int channel)
+void SlabColumn::SumUp(const SlabScene& scene, const StackLight& light, const HalfRangeQuadrature& nodes, int channel)
 {
   this->entered[0] += Pi * light.radianceAtTop;
   this->entered[1] += Pi * light.radianceAtBottom;

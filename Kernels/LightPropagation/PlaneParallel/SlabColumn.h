@@ -14,13 +14,13 @@ public:
   /// @param orders  of the Fourier series in azimuth that are found, 0 to that; 1 for the flux along the layers
   SlabColumn(const SlabScene& scene, int channel, const HalfRangeQuadrature& nodes, int degree, int orders);
 
-  std::vector<double> fluence, direct;            ///< W / length^2
-  std::array<std::vector<double>, 3> flux;        ///< along the axis of the layers, and the two next
-  std::array<double, 2> out = {}, entered = {};   ///< at top and bottom; out before a face gives back its part
+  std::vector<double> fluence, direct;          ///< W / length^2
+  std::array<std::vector<double>, 3> flux;      ///< along the axis of the layers, and the two next
+  std::array<double, 2> out = {}, entered = {}; ///< at top and bottom; out before a face gives back its part
   double absorbed = 0.0, emitted = 0.0;
-  std::array<double, 2> escaped = {};             ///< less what faces give back
+  std::array<double, 2> escaped = {}; ///< less what faces give back
   LayerStack stack;
-  StackSolution even;                             ///< of order 0
+  StackSolution even;                                 ///< of order 0
   std::vector<std::array<StackSolution, 2>> slanting; ///< of orders 1, 2, ..., by cos and sin
 
 private:

@@ -7,56 +7,6 @@
 
 namespace tyndall
 {
-namespace
-{
-/// The axis that is not periodic; -1 unless it is the only one.
-int AxisOfLayers(const std::array<bool, 3>& periodic)
-{
-  int axis = -1, count = 0;
-  for (int a = 0; a < 3; ++a)
-  {
-    axis = periodic[a] ? axis : a;
-    count += periodic[a] ? 1 : 0;
-  }
-  return count == 2 ? axis : -1;
-}
-
-/// Whether a field is the same in all columns along an axis.
-bool IsLayered(const Field& field, const Grid& grid, int axis)
-{
-  const std::size_t stride = grid.Strides()[axis], count = static_cast<std::size_t>(grid.size[axis]);
-  const auto components = static_cast<std::size_t>(field.components);
-  for (std::size_t i = 0; field.values && i < grid.VoxelCount(); ++i)
-  {
-    const float* const first = field.values + i / stride % count * stride * components;
-    if (!std::equal(first, first + components, field.values + i * components))
-    {
-      return false;
-    }
-  }
-  return true;
-}
-
-bool IsLayered(const Medium& medium, int axis)
-{
-  const Grid& grid = medium.grid;
-  return IsLayered(medium.sigma_a, grid, axis) && IsLayered(medium.sigma_s, grid, axis) &&
-    IsLayered(medium.emission, grid, axis) && IsLayered(medium.phase.G(), grid, axis);
-}
-}
-
-bool IsPlaneParallel(const Medium& medium, const Illumination& illumination, const PropagationSettings& settings)
-{
-  const int axis = AxisOfLayers(settings.periodic);
-  const bool asked = settings.source == PropagationSource::Automatic &&
-    settings.acceleration == PropagationAcceleration::Automatic && settings.adaptDirections && settings.leaveOut &&
-    settings.maximumOrders == 0 && settings.angularDegree < 0 && !settings.firstMoments;
-  const bool near = std::any_of(illumination.lights.begin(), illumination.lights.end(),
-    [](const Light& light) { return light.type != LightType::Directional; });
-  return axis >= 0 && asked && !near && illumination.environment.Empty() && !illumination.uncollided.IsThere() &&
-    IsLayered(medium, axis);
-}
-
 SlabScene::SlabScene(const Medium& medium, const Illumination& illumination, const PropagationSettings& settings)
   : TheMedium(medium)
   , Shining(illumination)
@@ -69,8 +19,7 @@ SlabScene::SlabScene(const Medium& medium, const Illumination& illumination, con
     const double length = std::hypot(d[0], d[1], d[2]), along = d[this->Axis] / length;
     if (along != 0.0)
     {
-      this->Directions.push_back(
-        { along, d[(this->Axis + 1) % 3] / length, d[(this->Axis + 2) % 3] / length });
+      this->Directions.push_back({ along, d[(this->Axis + 1) % 3] / length, d[(this->Axis + 2) % 3] / length });
       this->Entering.push_back(i);
     }
   }
@@ -101,7 +50,7 @@ LayerStack SlabScene::StackOf(int channel, int degree) const
 {
   const Medium& medium = this->TheMedium;
   LayerStack stack;
-  std::map<double, DeltaM> phases;                           // by mean cosine
+  std::map<double, DeltaM> phases;                        // by mean cosine
   std::map<std::pair<double, double>, std::size_t> kinds; // by that and what is absorbed
   for (std::size_t i = 0; i < this->Count(); ++i)
   {
@@ -131,9 +80,10 @@ LayerStack SlabScene::UnscatteredStackOf(int channel) const
   for (std::size_t i = 0; i < this->Count(); ++i)
   {
     const std::size_t voxel = this->VoxelOf(i);
-    const double sigma_t = static_cast<double>(this->TheMedium.sigma_a.At(voxel, channel)) +
-      this->TheMedium.sigma_s.At(voxel, channel);
-    stack.layers.push_back({ sigma_t * this->Height(), this->TheMedium.emission.At(voxel, channel) * this->Height(), 0 });
+    const double sigma_t =
+      static_cast<double>(this->TheMedium.sigma_a.At(voxel, channel)) + this->TheMedium.sigma_s.At(voxel, channel);
+    stack.layers.push_back(
+      { sigma_t * this->Height(), this->TheMedium.emission.At(voxel, channel) * this->Height(), 0 });
   }
   return stack;
 }
@@ -163,8 +113,11 @@ StackLight SlabScene::BeamsOf(int channel, int order, bool sine) const
     const std::array<double, 3>& d = this->Directions[b];
     const double azimuth = order * std::atan2(d[2], d[1]);
     const double power = this->Shining.lights[this->Entering[b]].power[channel];
-    light.beams.push_back(
-      { std::abs(d[0]), d[0] > 0.0, power * (sine ? std::sin(azimuth) : order > 0 ? std::cos(azimuth) : 1.0) });
+    light.beams.push_back({ std::abs(d[0]), d[0] > 0.0,
+      power *
+        (sine           ? std::sin(azimuth)
+            : order > 0 ? std::cos(azimuth)
+                        : 1.0) });
   }
   return light;
 }

@@ -1,19 +1,12 @@
 #pragma once
 
+#include "LightPropagation/PlaneParallel/IsPlaneParallel.h"
 #include "LightPropagation/PlaneParallel/LayerStack.h"
-#include "LightPropagation/PropagationSettings.h"
-#include "Lights/Lights.h"
-#include "Medium/Medium.h"
 
 #include <array>
 
 namespace tyndall
 {
-/// Whether nothing varies along two axes: both are periodic, all columns of voxels are equal, and all that shines are
-/// directional lights, sky and faces; and nothing is asked for that only rays through the box have: a source that is
-/// constant, orders one by one, a number of directions or moments, where light is first lost, all that is not needed.
-bool IsPlaneParallel(const Medium& medium, const Illumination& illumination, const PropagationSettings& settings);
-
 /// A plane-parallel scene. Its layers lie along one axis, top to bottom by rising coordinate; azimuths are about it,
 /// from the next axis on in cyclic order.
 class SlabScene
@@ -25,8 +18,8 @@ public:
   int Along() const { return this->Axis; }
   std::size_t Count() const { return static_cast<std::size_t>(this->TheMedium.grid.size[this->Axis]); }
   double Height() const { return this->TheMedium.grid.spacing[this->Axis]; } ///< of a layer
-  double Across() const;                                                      ///< area of the slab
-  std::size_t VoxelOf(std::size_t layer) const; ///< in the first column
+  double Across() const;                                                     ///< area of the slab
+  std::size_t VoxelOf(std::size_t layer) const;                              ///< in the first column
   std::size_t LayerOf(std::size_t voxel) const;
   bool IsIsotropic() const { return this->Isotropic; }
   bool HasSlantingBeams() const;
@@ -49,7 +42,8 @@ private:
   const Illumination& Shining;
   int Axis = 0;
   bool Isotropic = true;
-  std::vector<std::array<double, 3>> Directions; ///< of the lights that enter: along the axis, and the two next, length 1
-  std::vector<std::size_t> Entering;             ///< which lights
+  std::vector<std::array<double, 3>>
+    Directions;                      ///< of the lights that enter: along the axis, and the two next, length 1
+  std::vector<std::size_t> Entering; ///< which lights
 };
 }
