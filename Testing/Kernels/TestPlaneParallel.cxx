@@ -3,6 +3,8 @@
 #include "DeviceTest.h"
 #include "MediumScene.h"
 
+#include "Device/Errors.h"
+#include "LightPropagation/Conservative/ErrorEstimate.h"
 #include "LightPropagation/PlaneParallel/IsPlaneParallel.h"
 #include "Medium/BoxFaces.h"
 #include "Numerics/Constants.h"
@@ -297,6 +299,42 @@ TEST_F(PlaneParallel, FindsInEqualColumnsWhatItFindsInOne)
   EXPECT_NEAR(light.facePowerOut[2][2], 16.0 * one.facePowerOut[2][2], 1e-9);
   four.sigma_s[33] *= 1.01f;
   EXPECT_EQ(four.Solve(this->GetDevice()).polarNodes, 0) << "one voxel is not like the others";
+}
+
+// A ray caster shows the ground by it.
+TEST_F(PlaneParallel, KeepsPowerByCellsWhereAFaceReflects)
+{
+  Scene scene = Slab(0.0, 0.0, 0.0, 3);
+  scene.light.faces[5] = { 1.0, 1.0, 1.0 };
+  EXPECT_TRUE(scene.Solve(this->GetDevice()).facePower.empty());
+  scene.light.faceAlbedo[4] = { 0.25, 0.25, 0.25 };
+  const LightField light = scene.Solve(this->GetDevice());
+  ASSERT_EQ(light.facePower.size(), BoxFaceCellCount(scene.medium.grid));
+  EXPECT_NEAR(light.facePower[LayoutOfFace(scene.medium.grid, 4).first], Pi, 1e-5);
+  EXPECT_NEAR(light.facePower[LayoutOfFace(scene.medium.grid, 5).first], 0.25 * Pi, 1e-5);
+  EXPECT_NEAR(light.facePowerOut[4][0], 0.75 * Pi, 1e-5);
+  EXPECT_EQ(light.facePower[0], 0.0f);
+}
+
+TEST_F(PlaneParallel, EstimatesItsErrorByFewerCosines)
+{
+  Scene scene = Slab(2.0, 0.9, 0.0, 6);
+  scene.light.faces[5] = { 1.0, 1.0, 1.0 };
+  scene.Attach();
+  const PropagationSolver solve = [&](const Medium& medium, const Illumination& light,
+                                    const PropagationSettings& settings, const Monitor& monitor) {
+    return SolveConservative(this->GetDevice(), medium, light, settings, monitor);
+  };
+  const LightField light = SolveWithErrorEstimate(scene.medium, scene.light, scene.settings, {}, solve);
+  ASSERT_EQ(light.fluenceError.size(), 6u);
+  EXPECT_GT(light.relativeError, 0.0);
+  EXPECT_LT(light.relativeError, 1e-4);
+  scene.settings.polarNodes = 4;
+  const LightField rough = SolveWithErrorEstimate(scene.medium, scene.light, scene.settings, {}, solve);
+  EXPECT_GT(rough.relativeError, 10.0 * light.relativeError);
+  EXPECT_GT(rough.relativeError, RelativeRms(rough.fluence, light.fluence));
+  scene.settings.polarNodes = 65;
+  EXPECT_THROW(scene.Solve(this->GetDevice()), InvalidInput);
 }
 
 TEST_F(PlaneParallel, SaysSo)

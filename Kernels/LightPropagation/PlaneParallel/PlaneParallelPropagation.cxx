@@ -68,6 +68,7 @@ public:
     : TheMedium(medium)
     , Settings(settings)
     , Channels(channels)
+    , KeepsFacePower(settings.facePower || Reflects(illumination))
     , Scene(medium, illumination, settings)
     , Nodes(NodesFor(this->Scene, settings))
     , Degree(this->Scene.IsIsotropic() ? 0 : static_cast<int>(this->Nodes.cosines.size()) - 1)
@@ -126,7 +127,7 @@ private:
     const Grid& grid = this->TheMedium.grid;
     const int along = this->Scene.Along();
     const auto all = static_cast<std::size_t>(this->Channels);
-    light.facePower.resize(this->Settings.facePower ? BoxFaceCellCount(grid) * all : 0);
+    light.facePower.resize(this->KeepsFacePower ? BoxFaceCellCount(grid) * all : 0);
     const bool thick = this->Scene.IsIsotropic() && this->IsThickAtSurface();
     light.surfaceRadiance.resize(thick ? BoxFaceCellCount(grid) * SurfaceCosines.size() * all : 0);
     const std::size_t cells = grid.VoxelCount() / static_cast<std::size_t>(grid.size[along]);
@@ -144,7 +145,7 @@ private:
             light.surfaceRadiance[(cell * SurfaceCosines.size() + s) * all + c] =
               static_cast<float>(std::max(radiance[s], 0.0));
           }
-          if (this->Settings.facePower)
+          if (this->KeepsFacePower)
           {
             light.facePower[cell * all + c] = static_cast<float>(column.out[side]);
           }
@@ -218,6 +219,7 @@ private:
   const Medium& TheMedium;
   const PropagationSettings& Settings;
   int Channels;
+  bool KeepsFacePower;
   SlabScene Scene;
   HalfRangeQuadrature Nodes;
   int Degree;
