@@ -32,7 +32,8 @@ public:
   ///@}
 
   ///@{
-  /// Whether rays that leave along an axis return on the other side. Default off.
+  /// Whether rays that leave along an axis return on the other side. Default off. Where two axes are and nothing varies
+  /// along them, vtkLightPropagationMaps solves layers in the cosine alone (numerics.md, section 10 d).
   vtkSetMacro(PeriodicX, bool);
   vtkGetMacro(PeriodicX, bool);
   vtkBooleanMacro(PeriodicX, bool);

@@ -47,6 +47,12 @@ std::string MirrorImages(int classes, int directions)
     std::to_string(directions) + " directions stand for all";
 }
 
+std::string TwoAxes(int polarNodes)
+{
+  return "two axes: nothing varies along them, the layers are solved in the cosine alone, with " +
+    std::to_string(polarNodes) + " cosines up and as many down";
+}
+
 std::string DirectionsAlongSlab(int perFace)
 {
   return "directions too few for a slab, or along it: solved with " + std::to_string(perFace) + " a face";

@@ -31,6 +31,7 @@ extern const char* const NotSideBySide;   ///< what was queued side by side was 
 std::string EmptySlabs(const VoxelBox& filled, const Grid& grid);
 std::string DarkDirections(double lit); ///< part of the rays
 std::string MirrorImages(int classes, int directions);
+std::string TwoAxes(int polarNodes);          ///< nothing varies along them
 std::string DirectionsAlongSlab(int perFace); ///< solved with instead
 }
 }

@@ -79,7 +79,8 @@ struct LightField
   /// this one did, too. Empty: it was not to begin from kept light (KeptLight.h).
   std::vector<int> sweepsSaved;
   bool converged = true; ///< the last residual is at most the tolerance, or as many orders were done as were asked for
-  std::vector<std::string> doubts;  ///< what may be wrong with the light, a sentence each, for a warning
+  std::vector<std::string> doubts; ///< what may be wrong with the light, a sentence each, for a warning
+  int polarNodes = 0; ///< of a plane-parallel solve (PropagationSettings::polarNodes); 0: along rays through the voxels
   int directionsPerFace = 0;        ///< solved with, where a solver chooses (PropagationSettings::adaptDirections)
   std::vector<std::string> leftOut; ///< what the scene did not need, in words
   std::string device;

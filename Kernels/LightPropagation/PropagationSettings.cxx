@@ -13,6 +13,11 @@ void Check(const PropagationSettings& settings)
     throw InvalidInput(
       "MapResolution is " + std::to_string(settings.mapResolution) + "; it must be at least 1 and at most 16.");
   }
+  if (settings.polarNodes < 0 || settings.polarNodes == 1 || settings.polarNodes > 64)
+  {
+    throw InvalidInput("PolarNodes is " + std::to_string(settings.polarNodes) +
+      "; it must be 2 to 64 cosines of a half of all directions, or 0 for as many as the scene needs.");
+  }
   if (settings.uncollidedDirections < 0)
   {
     throw InvalidInput("UncollidedDirections is " + std::to_string(settings.uncollidedDirections) +

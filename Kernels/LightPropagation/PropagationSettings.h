@@ -24,6 +24,9 @@ struct PropagationSettings
 {
   int directionsPerFace = 25;  ///< directions per cube face, a square number: 1, 4, 9, 16, 25, ...
   bool adaptDirections = true; ///< more of them for slabs (UnvaryingAxes.h); false: directionsPerFace
+  /// Cosines of half of all directions that layers are solved with (PlaneParallel/IsPlaneParallel.h); 0: 16,
+  /// or 20 where light is not scattered evenly.
+  int polarNodes = 0;
   /// Directions per cube face, a square number, of the unscattered light of shining faces, sky and environment
   /// (UncollidedBoundary.h); 0: the same as for scattered light.
   int uncollidedDirections = 0;

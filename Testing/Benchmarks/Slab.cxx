@@ -186,8 +186,13 @@ std::vector<SlabReference> Slabs(bool quick)
 void RunAll(Device& device, bool quick)
 {
   const std::vector<Method> methods = {
-    { "conservative", false,
+    { "in the cosine alone", false,
       [&](const Medium& medium, const Illumination& light, const PropagationSettings& settings) {
+        return SolveConservative(device, medium, light, settings);
+      } },
+    { "along rays", false,
+      [&](const Medium& medium, const Illumination& light, PropagationSettings settings) {
+        settings.angularDegree = 0; // of isotropic scattering the same, but solved in three dimensions
         return SolveConservative(device, medium, light, settings);
       } },
     { "sequential as published", true,

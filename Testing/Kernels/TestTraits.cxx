@@ -338,6 +338,7 @@ TEST_F(Traits, MirrorImagesAreOneDirectionWhereOrdersAreAccelerated)
   Scene scene({ 1, 1, 20 }, 0.001f, 5.0f);
   scene.light.faces[4] = { 1.0, 1.0, 1.0 };
   scene.settings.periodic = { true, true, false };
+  scene.settings.source = PropagationSource::Linear; // along rays
   this->ExpectLeftOut(scene, "mirror images", SameInThickSlab);
 }
 

@@ -214,6 +214,7 @@ TEST_F(WarmStarts, TakeFewerSweepsInAThickWhiteSlab)
   {
     Scene scene({ 1, 40, 1 }, 0.0f, static_cast<float>(tau / 40));
     scene.settings.periodic = { true, false, true };
+    scene.settings.source = PropagationSource::Linear; // along rays
     scene.light.faces[2] = { 1.0, 1.0, 1.0 };
     scene.ShineAlong({ 0.3, 0.9, 0.1 });
     Scene after = scene;

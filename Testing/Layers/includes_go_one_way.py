@@ -26,7 +26,7 @@ LAYERS = {
         ["."],  # settings, what all of them read
         ["Angular"],
         ["Sweep", "Problem"],
-        ["Scattering", "Uncollided", "Diffusion"],
+        ["Scattering", "Uncollided", "Diffusion", "PlaneParallel"],
         ["Conservative", "Published"],
     ],
     "Filters": [

@@ -6,6 +6,8 @@
 #include "LightPropagation/Conservative/ShownLight.h"
 #include "LightPropagation/Conservative/SourceIteration.h"
 #include "LightPropagation/Convergence.h"
+#include "LightPropagation/PlaneParallel/IsPlaneParallel.h"
+#include "LightPropagation/PlaneParallel/PlaneParallelPropagation.h"
 #include "LightPropagation/Problem/ScatteringOrders.h"
 #include "LightPropagation/Problem/SlabTurn.h"
 #include "Numerics/Constants.h"
@@ -206,6 +208,10 @@ LightField Solve(Device& device, const Medium& medium, const Illumination& illum
 LightField SolveConservative(Device& device, const Medium& medium, const Illumination& illumination,
   const PropagationSettings& settings, const Monitor& monitor, KeptLight* kept)
 {
+  if (IsPlaneParallel(medium, illumination, settings))
+  {
+    return SolvePlaneParallel(medium, illumination, settings, monitor);
+  }
   const SlabTurn turn(medium.grid, illumination, settings);
   if (!turn)
   {
