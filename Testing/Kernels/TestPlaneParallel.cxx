@@ -365,6 +365,7 @@ TEST_F(PlaneParallel, IsNotTakenWhereMoreIsAskedFor)
   EXPECT_TRUE(not_taken([](Scene& s) { s.settings.maximumOrders = 3; }));
   EXPECT_TRUE(not_taken([](Scene& s) { s.settings.angularDegree = 3; }));
   EXPECT_TRUE(not_taken([](Scene& s) { s.settings.source = PropagationSource::Constant; }));
+  EXPECT_FALSE(taken(Slab(1.0, 0.9, 0.5, 8193)));
   EXPECT_TRUE(not_taken([](Scene& s) { s.settings.adaptDirections = false; }));
   EXPECT_TRUE(not_taken([](Scene& s) { s.settings.leaveOut = false; }));
   EXPECT_TRUE(not_taken([](Scene& s) {

@@ -6,6 +6,8 @@ namespace tyndall
 {
 namespace
 {
+constexpr int MostLayers = 8192; ///< some 200 MB where all differ
+
 /// Whether a field is the same in all columns along an axis.
 bool IsLayered(const Field& field, const Grid& grid, int axis)
 {
@@ -49,7 +51,7 @@ bool IsPlaneParallel(const Medium& medium, const Illumination& illumination, con
     settings.maximumOrders == 0 && settings.angularDegree < 0 && !settings.firstMoments;
   const bool near = std::any_of(illumination.lights.begin(), illumination.lights.end(),
     [](const Light& light) { return light.type != LightType::Directional; });
-  return axis >= 0 && asked && !near && illumination.environment.Empty() && !illumination.uncollided.IsThere() &&
-    IsLayered(medium, axis);
+  return axis >= 0 && medium.grid.size[axis] <= MostLayers && asked && !near && illumination.environment.Empty() &&
+    !illumination.uncollided.IsThere() && IsLayered(medium, axis);
 }
 }
