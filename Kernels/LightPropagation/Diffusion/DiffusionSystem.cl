@@ -21,17 +21,15 @@ __kernel void diffusion_flat_source(
   float current = 0.0f;
   for (int axis = 0; axis < 3; ++axis)
   {
-    if (axis > 0 && layout.spacing[axis] == layout.spacing[axis - 1]) // as of cubes: it is dear
+    if (axis == 0 || layout.spacing[axis] != layout.spacing[axis - 1]) // of equal edges it is the same, and dear
     {
-      flat_source[(ulong)axis * layout.stride + i] = current;
-      continue;
-    }
-    current = flat_source_current(swept[i] * layout.spacing[axis]);
+      current = flat_source_current(swept[i] * layout.spacing[axis]);
 #if MOMENTS
-    // Of the current, what the source's first moment is carries itself: the rest has the excess of a flat source.
-    const float rest = swept[i] > 0.0f ? fmin(sigma_t[i] / swept[i], 1.0f) : 1.0f;
-    current = 1.0f / 6.0f + rest * (current - 1.0f / 6.0f);
+      // Of the current, what the source's first moment is carries itself: the rest has the excess of a flat source.
+      const float rest = swept[i] > 0.0f ? fmin(sigma_t[i] / swept[i], 1.0f) : 1.0f;
+      current = 1.0f / 6.0f + rest * (current - 1.0f / 6.0f);
 #endif
+    }
     flat_source[(ulong)axis * layout.stride + i] = current;
   }
 }
