@@ -135,9 +135,10 @@ public:
 
   ///@{
   /// Directions per face of a cube for unscattered light of shining faces, sky and environment (conservative scheme).
-  /// It has shadows with edges and is swept once: it may have many while scattered light does with few. Default 0: as
-  /// DirectionsPerFace; else square numbers up to 4096.
-  tyndallSetRangeMacro(UncollidedDirections, int, 0, VTK_INT_MAX);
+  /// It has shadows with edges and is swept once: it may have many while scattered light does with few. Default -1: as
+  /// many as cost a quarter more time, where faces shine unevenly (UncollidedDirections.h); 0: as DirectionsPerFace;
+  /// else square numbers up to 4096.
+  tyndallSetRangeMacro(UncollidedDirections, int, -1, VTK_INT_MAX);
   vtkGetMacro(UncollidedDirections, int);
   ///@}
 
@@ -151,7 +152,7 @@ public:
 
   ///@{
   /// Degree of the angular moments in which light is scattered (conservative scheme): higher ones show a forward peak
-  /// in finer detail, and take longer. -1 (default): 3, in thin media 5, in slabs 9, or less, as the phase function,
+  /// in finer detail, and take longer. -1 (default): 3, in thin media 6, in slabs 9, or less, as the phase function,
   /// Tolerance and memory ask for; 0: scattering is taken as isotropic with sigma_s (1 - g), the similarity relation.
   /// Valid [-1, 15]; DirectionsPerFace of n x n tell 2 n - 1 degrees apart, no more are used.
   tyndallSetRangeMacro(AngularDegree, int, -1, 15);
@@ -169,7 +170,8 @@ public:
 
   ///@{
   /// Whether rays of each direction start in a place of their own within a voxel (conservative scheme), those of
-  /// UncollidedDirections always. From some 64 directions per face on, half the error or less. Default off.
+  /// more than 100 UncollidedDirections always. From 144 directions per face on up to half the error, with fewer up to
+  /// twice. Default off.
   vtkSetMacro(StaggeredRays, bool);
   vtkGetMacro(StaggeredRays, bool);
   vtkBooleanMacro(StaggeredRays, bool);

@@ -18,10 +18,11 @@ void Check(const PropagationSettings& settings)
     throw InvalidInput("PolarNodes is " + std::to_string(settings.polarNodes) +
       "; it must be 2 to 64 cosines of a half of all directions, or 0 for as many as the scene needs.");
   }
-  if (settings.uncollidedDirections < 0)
+  if (settings.uncollidedDirections < -1)
   {
     throw InvalidInput("UncollidedDirections is " + std::to_string(settings.uncollidedDirections) +
-      "; give a square number of directions per face, or 0 for the same as DirectionsPerFace.");
+      "; give a square number of directions per face, 0 for the same as DirectionsPerFace, or -1 for as many as cost a "
+      "quarter more at most.");
   }
   if (settings.maximumOrders < 0)
   {

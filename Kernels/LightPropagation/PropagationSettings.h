@@ -28,10 +28,12 @@ struct PropagationSettings
   /// or 20 where light is not scattered evenly.
   int polarNodes = 0;
   /// Directions per cube face, a square number, of the unscattered light of shining faces, sky and environment
-  /// (UncollidedBoundary.h); 0: the same as for scattered light.
-  int uncollidedDirections = 0;
-  /// Rays of each direction start in a place of their own within a voxel (RayBundles.h); those of uncollidedDirections
-  /// always, unless the solve is accelerated. From some 64 directions a face on, half the error or less.
+  /// (UncollidedBoundary.h); 0: the same as for scattered light; -1: as many as cost about a quarter more at most,
+  /// where they gain (UncollidedDirections.h).
+  int uncollidedDirections = -1;
+  /// Rays of each direction start in a place of their own within a voxel (RayBundles.h); those of more than 100
+  /// uncollidedDirections always, unless the solve is accelerated. From 144 directions a face on up to half the error,
+  /// with fewer up to twice.
   bool staggeredRays = false;
   int mapResolution = 1;   ///< map points per voxel edge, 1 to 16
   int maximumOrders = 0;   ///< scattering orders (accelerated: sweeps) at most; 0: until the tolerance is met

@@ -70,7 +70,7 @@ SweepWork CountSweepWork(const Device& device, const Medium& medium, int directi
 {
   constexpr double waysAndAxes = 6.0;
   const Grid& grid = medium.grid;
-  const DirectionSet set = EquiangularDirections(directionsPerFace);
+  const DirectionSet set = FittedDirections(directionsPerFace);
   SweepWork work;
   for (int axis = 0; axis < 3; ++axis)
   {

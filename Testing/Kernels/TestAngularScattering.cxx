@@ -77,7 +77,7 @@ TEST(AngularBasis, IsOrthonormalOnEverySet)
 {
   for (const int perFace : { 4, 9, 25, 144 })
   {
-    const DirectionSet set = EquiangularDirections(perFace);
+    const DirectionSet set = FittedDirections(perFace);
     const AngularBasis basis(set, MostDegree(set, 7));
     std::vector<double> sums(basis.Count() * basis.Count(), 0.0);
     for (const Direction& direction : set.directions)
@@ -101,9 +101,19 @@ TEST(AngularBasis, IsOrthonormalOnEverySet)
   }
 }
 
+TEST(AngularBasis, IsToldApartByFittedDirectionsAsByThoseOfEqualAngles)
+{
+  for (const int perFace : { 9, 16, 25, 36, 49, 64 })
+  {
+    const int degree = 2 * static_cast<int>(std::lround(std::sqrt(perFace))) - 1;
+    EXPECT_EQ(MostDegree(FittedDirections(perFace), degree), perFace == 16 ? degree - 1 : degree) << perFace;
+    EXPECT_EQ(MostDegree(EquiangularDirections(perFace), degree), degree) << perFace;
+  }
+}
+
 TEST(AngularBasis, KnowsWhichFunctionsAreOdd)
 {
-  const AngularBasis basis(EquiangularDirections(25), 7);
+  const AngularBasis basis(FittedDirections(25), 7);
   const std::array<double, 3> omega = { 0.36, 0.48, 0.8 };
   const std::vector<double> values = basis.At(omega);
   for (int axis = 0; axis < 3; ++axis)
@@ -123,7 +133,7 @@ TEST(AngularBasis, MakesPhaseFunctionsWhoseRowsAndMeanCosineAreRight)
   const double g = 0.85;
   for (const int perFace : { 9, 25, 36 })
   {
-    const DirectionSet set = EquiangularDirections(perFace);
+    const DirectionSet set = FittedDirections(perFace);
     const AngularBasis basis(set, 5);
     const DeltaM truncated = Truncations(PhaseFunction::HenyeyGreenstein(g), 5).back();
     for (const Direction& from : { set.directions[0], set.directions[7], set.directions.back() })
@@ -244,7 +254,7 @@ TEST(TruncatedScattering, ConservesPowerAndMeanCosineOnEverySetAndIsReciprocal)
 {
   for (const int perFace : { 25, 36, 64, 100 })
   {
-    const DirectionSet set = EquiangularDirections(perFace);
+    const DirectionSet set = FittedDirections(perFace);
     for (const int degree : { 1, 3, 5, 7, 9 })
     {
       if (MostDegree(set, degree) < degree)
@@ -266,7 +276,7 @@ TEST(WithoutNegatives, IsNowhereNegativeAndKeepsPowerAndMeanCosine)
 {
   for (const int perFace : { 25, 36 })
   {
-    const DirectionSet set = EquiangularDirections(perFace);
+    const DirectionSet set = FittedDirections(perFace);
     for (const int degree : { 1, 3, 5 })
     {
       const AngularBasis basis(set, degree);
@@ -286,14 +296,14 @@ TEST(WithoutNegatives, IsNowhereNegativeAndKeepsPowerAndMeanCosine)
 TEST(WithoutNegatives, LeavesWhatIsNowhereNegativeAsItIs)
 {
   const DeltaM rayleigh = Truncations(PhaseFunction::Rayleigh(), 3).back();
-  const DirectionKernel kernel(EquiangularDirections(25), 3);
+  const DirectionKernel kernel(FittedDirections(25), 3);
   EXPECT_EQ(WithoutNegatives(rayleigh, kernel).moments, rayleigh.moments);
   EXPECT_LT(kernel.Least(Truncations(PhaseFunction::HenyeyGreenstein(-0.9), 3).back().moments), -0.1);
 }
 
 TEST(BeyondSmoothMoments, MakeTheSourceOfABeamPositiveAndKeepItsPowerAndMeanCosine)
 {
-  const DirectionSet set = EquiangularDirections(25);
+  const DirectionSet set = FittedDirections(25);
   const AngularBasis basis(set, 5);
   const DirectionKernel kernel(set, 5);
   for (const double g : { -0.5, 0.5, 0.85, 0.99 })

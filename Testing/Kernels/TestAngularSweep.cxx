@@ -26,7 +26,7 @@ struct SweepScene
     const std::array<bool, 3>& periodicAxes)
     : theDevice(device)
     , medium(grid, 1, 0.7f, 20261122)
-    , set(EquiangularDirections(perFace))
+    , set(FittedDirections(perFace))
     , basis(set, degree)
     , layout({ grid, channels, true })
     , scattering(medium.medium, 0, channels)

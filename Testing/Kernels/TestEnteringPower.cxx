@@ -64,6 +64,7 @@ Scene SceneOf(const Setting& setting, float sigma_a, float sigma_s = 0.0f)
   scene.settings.staggeredRays = setting.staggered;
   scene.settings.periodic = setting.periodic;
   scene.settings.maximumOrders = 2;
+  scene.settings.uncollidedDirections = 0;
   return scene;
 }
 
@@ -116,7 +117,7 @@ TEST_F(EnteringPower, OfAFaceIsItsAreaTimesTheFluxOfTheDirections)
       Scene scene = SceneOf(setting, 0.4f, 0.9f);
       scene.light.faces[face] = { 2.0, 2.0, 2.0 };
       const LightField light = scene.Solve(this->GetDevice());
-      const DirectionSet set = EquiangularDirections(setting.directions);
+      const DirectionSet set = FittedDirections(setting.directions);
       const double exact =
         setting.periodic[face / 2] ? 0.0 : 2.0 * Area(scene.medium.grid, face / 2) * Flux(set, face / 2, 1.0, {});
       EXPECT_NEAR(light.balance.entered[0], exact, Rounding * exact) << Text(setting) << ", face " << face;
@@ -138,7 +139,7 @@ TEST_F(EnteringPower, OfAnEvenSkyIsTheSurfaceTimesTheFluxOfTheDirections)
     {
       exact += setting.periodic[axis]
         ? 0.0
-        : 2.0 * Area(scene.medium.grid, axis) * Flux(EquiangularDirections(setting.directions), axis, 1.0, {});
+        : 2.0 * Area(scene.medium.grid, axis) * Flux(FittedDirections(setting.directions), axis, 1.0, {});
     }
     EXPECT_NEAR(light.balance.entered[0], exact, Rounding * exact) << Text(setting);
   }
@@ -152,7 +153,7 @@ TEST_F(EnteringPower, OfAnEnvironmentIsItsFluxThroughEveryFace)
     Scene scene = SceneOf(setting, 0.4f, 0.9f);
     scene.light.environment = environment;
     const LightField light = scene.Solve(this->GetDevice());
-    const DirectionSet set = EquiangularDirections(setting.directions);
+    const DirectionSet set = FittedDirections(setting.directions);
     const std::vector<Rgb> radiance = BoundaryRadiance(set, environment, {});
     double exact = 0.0;
     for (int axis = 0; axis < 3; ++axis)

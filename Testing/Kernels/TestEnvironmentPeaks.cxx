@@ -46,7 +46,7 @@ double Power(const Environment& environment, int channel)
 TEST(EnvironmentPeaks, TheSunBecomesALightAndNoPowerIsLost)
 {
   const Environment environment = SkyWithSun(0.1f, 1e4f, 20, 48);
-  const SplitEnvironment split = Split(environment, EquiangularDirections(25));
+  const SplitEnvironment split = Split(environment, FittedDirections(25));
   ASSERT_EQ(split.peaks.size(), 1u);
   for (int c = 0; c < 3; ++c)
   {
@@ -71,10 +71,10 @@ TEST(EnvironmentPeaks, ASkyThatVariesSlowlyHasNone)
       environment.radiance[3 * 128 * j + i] = 0.1f + j / 64.0f;
     }
   }
-  const SplitEnvironment split = Split(environment, EquiangularDirections(25));
+  const SplitEnvironment split = Split(environment, FittedDirections(25));
   EXPECT_TRUE(split.peaks.empty());
   EXPECT_EQ(split.smooth.radiance, environment.radiance);
-  EXPECT_TRUE(Split(Environment(), EquiangularDirections(25)).peaks.empty());
+  EXPECT_TRUE(Split(Environment(), FittedDirections(25)).peaks.empty());
 }
 
 class EnvironmentLight : public DeviceTest

@@ -51,12 +51,12 @@ double InAllDirections(const Wave& wave)
   return std::atan(k * Edge / wave.thickness) / k;
 }
 
-double InSet(const Wave& wave, int perFace)
+double InSet(const Wave& wave, const DirectionSet& set)
 {
   const std::array<double, 3> k = WaveVector(wave);
   const double sigma_t = wave.thickness / Edge;
   double sum = 0.0;
-  for (const Direction& d : EquiangularDirections(perFace).directions)
+  for (const Direction& d : set.directions)
   {
     const double along = k[0] * d.omega[0] + k[1] * d.omega[1] + k[2] * d.omega[2];
     sum += d.weight * sigma_t / (sigma_t * sigma_t + along * along);
@@ -149,7 +149,7 @@ protected:
     std::vector<double> errors;
     for (int n : voxels)
     {
-      errors.push_back(Error(this->GetDevice(), wave, n, PerFace, source, InSet(wave, PerFace)));
+      errors.push_back(Error(this->GetDevice(), wave, n, PerFace, source, InSet(wave, FittedDirections(PerFace))));
       const std::string what = source == PropagationSource::Linear ? " linear " : " constant ";
       this->RecordProperty(Name(wave) + what + std::to_string(n), std::to_string(errors.back()));
       std::printf("%s%s%d voxels: %.3e\n", Name(wave).c_str(), what.c_str(), n, errors.back());
@@ -157,7 +157,8 @@ protected:
     return errors;
   }
 
-  static constexpr int PerFace = 36;
+  /// Of 36 some have a cosine of 0.026, along which voxels are thick until there are many more of them.
+  static constexpr int PerFace = 25;
 };
 
 TEST_F(ManufacturedSolution, LinearSourceIsOfSecondOrderInVoxelSize)
@@ -167,10 +168,10 @@ TEST_F(ManufacturedSolution, LinearSourceIsOfSecondOrderInVoxelSize)
     Wave wave;
     std::vector<int> voxels;
   };
-  // Thin voxels (1/16 to 1/64 and 0.3 to 0.08 mean free paths) and thick ones (12 to 3); around one mean free path the
-  // error changes its sign, and is smaller than the order says.
+  // Thin voxels (1/16 to 1/64 and 0.3 to 0.16 mean free paths; from 0.08 on a floor of 1.5e-5 is near)
+  // and thick ones (12 to 3); around one mean free path the error changes its sign, and is smaller than the order says.
   for (const Case& one :
-    { Case{ { { 1, 0, 0 }, 1.0, 0.5 }, { 16, 32, 64 } }, Case{ { { 1, 0, 0 }, 20.0, 0.9 }, { 64, 128, 256 } },
+    { Case{ { { 1, 0, 0 }, 1.0, 0.5 }, { 16, 32, 64 } }, Case{ { { 1, 0, 0 }, 20.0, 0.9 }, { 64, 128 } },
       Case{ { { 1, 0, 0 }, 100.0, 0.99 }, { 8, 16, 32 } }, Case{ { { 1, 1, 0 }, 1.0, 0.5 }, { 16, 32 } },
       Case{ { { 1, 2, 0 }, 100.0, 0.99 }, { 8, 16, 32 } }, Case{ { { 1, 1, 1 }, 20.0, 0.9 }, { 8, 16 } } })
   {
@@ -198,13 +199,13 @@ TEST_F(ManufacturedSolution, LinearSourceIsNearerThanConstantWhereVoxelsAreThick
 
 TEST_F(ManufacturedSolution, DirectionsAreOfSecondOrderInTheirSpacing)
 {
-  // Sets: their mean against the integral. The solver: its error against the true solution, in voxels so thin that
-  // directions are the error.
+  // Sets of equal angles: their mean against the integral. The solver, along fitted ones from 16 on: its error against
+  // the true solution, in voxels so thin that directions are the error.
   for (const Wave& wave : { Wave{ { 1, 0, 0 }, 1.0, 0.5 }, Wave{ { 1, 1, 0 }, 1.0, 0.5 },
          Wave{ { 1, 0, 0 }, 20.0, 0.9 }, Wave{ { 1, 1, 1 }, 20.0, 0.9 } })
   {
-    const double coarse = std::abs(InSet(wave, 16) / InAllDirections(wave) - 1.0);
-    const double fine = std::abs(InSet(wave, 1024) / InAllDirections(wave) - 1.0);
+    const double coarse = std::abs(InSet(wave, EquiangularDirections(16)) / InAllDirections(wave) - 1.0);
+    const double fine = std::abs(InSet(wave, EquiangularDirections(1024)) / InAllDirections(wave) - 1.0);
     EXPECT_GE(std::log2(coarse / fine) / 3.0, 1.9) << Name(wave);
   }
   const Wave thin = { { 1, 0, 0 }, 1.0, 0.5 };

@@ -277,14 +277,15 @@ TEST_F(Traits, DarkDirectionsAreNotSwept)
   Scene scene = Cloud();
   scene.light.faces[4] = { 1.0, 1.0, 1.0 };
   scene.settings.netFlux = true;
+  scene.settings.uncollidedDirections = 0; // else light comes in along those
   this->ExpectLeftOut(scene, "dark directions");
   scene.light.faces[4] = {};
   scene.light.environment = { 8, 4, {} };
-  for (int j = 0; j < 4; ++j) // the upper half of the sky, brighter towards +x
+  for (int j = 0; j < 4; ++j) // the top of the sky, brighter towards +x
   {
     for (int i = 0; i < 8; ++i)
     {
-      const float radiance = j < 2 ? 0.0f : i < 2 ? 1.0f : 0.5f;
+      const float radiance = j < 3 ? 0.0f : i < 2 ? 1.0f : 0.5f;
       scene.light.environment.radiance.insert(scene.light.environment.radiance.end(), 3, radiance);
     }
   }

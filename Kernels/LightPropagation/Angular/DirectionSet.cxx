@@ -3,7 +3,7 @@
 #include "Device/Errors.h"
 #include "Numerics/Constants.h"
 
-#include <glm/gtc/constants.hpp>
+#include <Eigen/Eigenvalues>
 
 #include <algorithm>
 #include <cmath>
@@ -13,6 +13,10 @@ namespace tyndall
 {
 namespace
 {
+
+constexpr int FewestParts = 48;    ///< of a face's edge, of cells that are no grid
+constexpr double Aside = 1e-9;     ///< relative, of what lies on a border
+constexpr double LeastMode = 1e-3; ///< of fluxes, beside the largest: what less light can make up for
 
 int CellsPerEdge(int perFace, const std::string& name)
 {
@@ -34,17 +38,6 @@ double Tangent(bool equiangular, int n, double twicePosition)
   return std::copysign(tangent, fromMiddle);
 }
 
-std::array<double, 3> ThroughFace(int face, double s, double t)
-{
-  const int axis = face / 2;
-  const double scale = 1.0 / std::sqrt(1.0 + (s * s + t * t));
-  std::array<double, 3> omega;
-  omega[axis] = (face % 2 == 0 ? -1.0 : 1.0) * scale;
-  omega[(axis + 1) % 3] = s * scale;
-  omega[(axis + 2) % 3] = t * scale;
-  return omega;
-}
-
 /// Solid angle of the rectangle [0, s] x [0, t] at distance 1.
 double CornerSolidAngle(double s, double t)
 {
@@ -54,6 +47,154 @@ double CornerSolidAngle(double s, double t)
 double SolidAngle(double s0, double s1, double t0, double t1)
 {
   return CornerSolidAngle(s1, t1) - CornerSolidAngle(s0, t1) - CornerSolidAngle(s1, t0) + CornerSolidAngle(s0, t0);
+}
+
+/// The direction of a face whose cell holds these tangents, where cells are no grid. The set has the face's symmetry,
+/// so that of each orbit the direction of the same eighth of the face is nearest.
+int NearestOnFace(const DirectionSet& set, double s, double t)
+{
+  const bool exchanged = std::abs(s) > std::abs(t);
+  const double across = std::abs(exchanged ? t : s), along = std::abs(exchanged ? s : t);
+  const double length = std::sqrt(1.0 + (s * s + t * t));
+  const DirectionOrbit* nearest = nullptr;
+  double most = -1.0;
+  for (const DirectionOrbit& orbit : set.orbits)
+  {
+    const double ofOrbit = std::sqrt(1.0 + (orbit.across * orbit.across + orbit.along * orbit.along));
+    const double reached = (1.0 + across * orbit.across + along * orbit.along) / (length * ofOrbit) + orbit.reach;
+    if (reached > most)
+    {
+      most = reached;
+      nearest = &orbit;
+    }
+  }
+  const std::array<double, 2> there = { std::copysign(exchanged ? nearest->along : nearest->across, s),
+    std::copysign(exchanged ? nearest->across : nearest->along, t) };
+  return static_cast<int>(std::find(set.tangents.begin(), set.tangents.end(), there) - set.tangents.begin());
+}
+
+using Faces = Eigen::Matrix<double, 6, 1>;
+
+/// The cosines with which a direction goes through the cube's six faces, 0 where it does not.
+Faces Cosines(const std::array<double, 3>& omega)
+{
+  Faces cosines = Faces::Zero();
+  for (int axis = 0; axis < 3; ++axis)
+  {
+    cosines[2 * axis + (omega[axis] > 0.0 ? 1 : 0)] = std::abs(omega[axis]);
+  }
+  return cosines;
+}
+
+/// An environment as a set of directions sees it.
+struct Seen
+{
+  std::vector<Rgb> sum;               ///< radiance times solid angle, by direction
+  std::vector<double> solidAngle;     ///< of cells
+  std::array<Rgb, 6> flux = {};       ///< through the cube's faces, the way the light travels
+  std::array<double, 6> cosines = {}; ///< the same of radiance 1
+
+  explicit Seen(const DirectionSet& set)
+    : sum(set.directions.size(), Rgb{})
+    , solidAngle(set.directions.size(), 0.0)
+  {
+  }
+
+  /// @param omega  the way the light travels
+  void Add(int direction, const std::array<double, 3>& omega, double weight, const Rgb& radiance)
+  {
+    this->solidAngle[direction] += weight;
+    for (int c = 0; c < 3; ++c)
+    {
+      this->sum[direction][c] += weight * radiance[c];
+    }
+    const Faces through = weight * Cosines(omega);
+    for (int face = 0; face < 6; ++face)
+    {
+      this->cosines[face] += through[face];
+      for (int c = 0; c < 3; ++c)
+      {
+        this->flux[face][c] += through[face] * radiance[c];
+      }
+    }
+  }
+};
+
+/// Looks along the middles of parts of about half a pixel of all cells: a pixel spans pi / height, a cell about
+/// pi / (2 n). An even number of parts, so that none is a pole, where the azimuth is not defined.
+Seen LookAround(const DirectionSet& set, const Environment& environment)
+{
+  const int n = set.cellsPerEdge;
+  const bool grid = set.orbits.empty();
+  const int fewest = grid ? 2 : 2 * ((FewestParts + n) / (2 * n)); // cells that are no grid cut parts
+  const int parts = std::max(2 * std::clamp((environment.height / n + 1) / 2, 1, 128), fewest);
+  const bool equiangular = set.equiangular || !grid;
+  const auto tangent = [&](double part) { return Tangent(equiangular, n * parts, 2.0 * part); };
+  Seen seen(set);
+  for (int face = 0; face < 6; ++face)
+  {
+    for (int b = 0; b < n * parts; ++b)
+    {
+      for (int a = 0; a < n * parts; ++a)
+      {
+        const double weight = SolidAngle(tangent(a), tangent(a + 1), tangent(b), tangent(b + 1));
+        const double s = tangent(a + 0.5), t = tangent(b + 0.5);
+        const std::array<double, 3> omega = DirectionThroughFace(face, s, t);
+        const Rgb radiance = Lookup(environment, { -omega[0], -omega[1], -omega[2] });
+        const int first = face * n * n;
+        if (grid)
+        {
+          seen.Add(first + b / parts * n + a / parts, omega, weight, radiance);
+        }
+        else if (a == b || a + b == n * parts - 1) // a border of the face's eighths
+        {
+          seen.Add(first + NearestOnFace(set, s * (1.0 + Aside), t), omega, 0.5 * weight, radiance);
+          seen.Add(first + NearestOnFace(set, s, t * (1.0 + Aside)), omega, 0.5 * weight, radiance);
+        }
+        else
+        {
+          seen.Add(first + NearestOnFace(set, s, t), omega, weight, radiance);
+        }
+      }
+    }
+  }
+  return seen;
+}
+
+/// Radiance such that the flux through each face is the environment's own, as far as the set has the half-range flux:
+/// by factors 1 + sum of (factor of a face) (cosine), of all that do it those that are nearest to 1 (numerics.md, Eq.
+/// (31a)).
+void KeepFlux(const DirectionSet& set, const Seen& seen, std::vector<Rgb>& radiance)
+{
+  for (int c = 0; c < 3; ++c)
+  {
+    Faces missing = Faces::Zero();
+    Eigen::Matrix<double, 6, 6> products = Eigen::Matrix<double, 6, 6>::Zero();
+    for (std::size_t d = 0; d < radiance.size(); ++d)
+    {
+      const Faces cosines = Cosines(set.directions[d].omega);
+      for (int face = 0; face < 6; ++face)
+      {
+        const double mean = seen.flux[face][c] / seen.cosines[face];
+        missing[face] += set.directions[d].weight * cosines[face] * (mean - radiance[d][c]);
+      }
+      products += set.directions[d].weight * radiance[d][c] * cosines * cosines.transpose();
+    }
+    const Eigen::SelfAdjointEigenSolver<Eigen::Matrix<double, 6, 6>> modes(products);
+    Faces factors = Faces::Zero();
+    for (int mode = 0; mode < 6; ++mode)
+    {
+      const double value = modes.eigenvalues()[mode];
+      if (value > LeastMode * modes.eigenvalues()[5])
+      {
+        factors += modes.eigenvectors().col(mode) * (modes.eigenvectors().col(mode).dot(missing) / value);
+      }
+    }
+    for (std::size_t d = 0; d < radiance.size(); ++d)
+    {
+      radiance[d][c] *= std::clamp(1.0 + factors.dot(Cosines(set.directions[d].omega)), 0.5, 2.0);
+    }
+  }
 }
 
 DirectionSet CubeDirections(int perFace, bool equiangular, const std::string& name)
@@ -68,13 +209,24 @@ DirectionSet CubeDirections(int perFace, bool equiangular, const std::string& na
       for (int i = 0; i < n; ++i)
       {
         set.directions.push_back(
-          { ThroughFace(face, Tangent(equiangular, n, 2 * i + 1), Tangent(equiangular, n, 2 * j + 1)),
+          { DirectionThroughFace(face, Tangent(equiangular, n, 2 * i + 1), Tangent(equiangular, n, 2 * j + 1)),
             4.0 * Pi / (6.0 * n * n) });
       }
     }
   }
   return set;
 }
+}
+
+std::array<double, 3> DirectionThroughFace(int face, double s, double t)
+{
+  const int axis = face / 2;
+  const double scale = 1.0 / std::sqrt(1.0 + (s * s + t * t));
+  std::array<double, 3> omega;
+  omega[axis] = (face % 2 == 0 ? -1.0 : 1.0) * scale;
+  omega[(axis + 1) % 3] = s * scale;
+  omega[(axis + 2) % 3] = t * scale;
+  return omega;
 }
 
 DirectionSet PublishedDirections(int perFace)
@@ -123,47 +275,36 @@ int Nearest(const DirectionSet& set, const std::array<double, 3>& omega)
   };
   const double depth = std::abs(omega[axis]);
   const int face = 2 * axis + (omega[axis] > 0.0 ? 1 : 0);
+  if (!set.orbits.empty())
+  {
+    return face * set.PerFace() + NearestOnFace(set, omega[(axis + 1) % 3] / depth, omega[(axis + 2) % 3] / depth);
+  }
   return (face * n + cell(omega[(axis + 2) % 3] / depth)) * n + cell(omega[(axis + 1) % 3] / depth);
 }
 
 std::vector<Rgb> BoundaryRadiance(const DirectionSet& set, const Environment& environment, const Rgb& sky)
 {
-  std::vector<Rgb> radiance(set.directions.size(), sky);
-  if (environment.Empty())
+  std::vector<Rgb> radiance(set.directions.size(), Rgb{});
+  if (!environment.Empty())
   {
-    return radiance;
-  }
-  // Each cell in parts of about half a pixel: a pixel spans pi / height, a cell about pi / (2 n). An even number of
-  // them, so that none is a pole, where the azimuth is not defined.
-  const int n = set.cellsPerEdge;
-  const int parts = 2 * std::clamp((environment.height / n + 1) / 2, 1, 128);
-  for (std::size_t d = 0; d < set.directions.size(); ++d)
-  {
-    const int i = static_cast<int>(d) % n;
-    const int j = static_cast<int>(d) / n % n;
-    const int face = static_cast<int>(d) / (n * n);
-    const auto tangent = [&](int cell, double part) {
-      return Tangent(set.equiangular, n * parts, 2.0 * (cell * parts + part));
-    };
-    Rgb sum = {};
-    double total = 0.0;
-    for (int b = 0; b < parts; ++b)
+    const Seen seen = LookAround(set, environment);
+    for (std::size_t d = 0; d < radiance.size(); ++d)
     {
-      for (int a = 0; a < parts; ++a)
+      for (int c = 0; c < 3; ++c)
       {
-        const double weight = SolidAngle(tangent(i, a), tangent(i, a + 1), tangent(j, b), tangent(j, b + 1));
-        const std::array<double, 3> omega = ThroughFace(face, tangent(i, a + 0.5), tangent(j, b + 0.5));
-        const Rgb seen = Lookup(environment, { -omega[0], -omega[1], -omega[2] });
-        for (int c = 0; c < 3; ++c)
-        {
-          sum[c] += weight * seen[c];
-        }
-        total += weight;
+        radiance[d][c] = seen.sum[d][c] / seen.solidAngle[d];
       }
     }
+    if (set.equiangular || !set.orbits.empty())
+    {
+      KeepFlux(set, seen, radiance);
+    }
+  }
+  for (Rgb& one : radiance)
+  {
     for (int c = 0; c < 3; ++c)
     {
-      radiance[d][c] += sum[c] / total;
+      one[c] += sky[c];
     }
   }
   return radiance;

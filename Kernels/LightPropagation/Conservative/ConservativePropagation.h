@@ -12,7 +12,7 @@ namespace tyndall
 {
 /// Light propagation maps with the energy kept: the method of Fattal (2009) and Gruson et al. (2012), with
 ///  - conservative deposit: what a ray loses, its voxel gains (numerics.md, Eqs. (23) to (27)); no division by sigma_t;
-///  - EquiangularDirections;
+///  - FittedDirections;
 ///  - lights, and what is small and bright in environment and emission, as a first-collision source along exact rays;
 ///  - what else comes in from outside along more directions until it is first scattered, if uncollidedDirections are
 ///    given;

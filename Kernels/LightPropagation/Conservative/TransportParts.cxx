@@ -1,5 +1,6 @@
 #include "LightPropagation/Conservative/TransportParts.h"
 
+#include "LightPropagation/Problem/UncollidedDirections.h"
 #include "LightPropagation/Scattering/BeamScattering.h"
 #include "LightPropagation/Scattering/IsotropicScattering.h"
 #include "LightPropagation/Scattering/MomentScattering.h"
@@ -15,6 +16,7 @@
 #include <glm/vec3.hpp>
 
 #include <algorithm>
+#include <utility>
 
 namespace tyndall
 {
@@ -59,7 +61,7 @@ TransportParts::TransportParts(Device& device, const PropagationProblem& problem
   , OnDevice(
       device, problem.TheMedium(), problem.Scattering(), this->Layout, NeedsOf(problem, this->Layout, accelerated))
   , Scattering(this->MakeScattering())
-  , Usual(problem.TheGrid(), problem.Settings(), EquiangularDirections(problem.Settings().directionsPerFace),
+  , Usual(problem.TheGrid(), problem.Settings(), FittedDirections(problem.Settings().directionsPerFace),
       StartsOf(problem.Settings()))
   , Emission(EmissionOf(problem))
   , Accelerated(accelerated)
@@ -120,11 +122,11 @@ void TransportParts::FindBoundaryLight()
   const PropagationSettings& settings = this->Problem.Settings();
   const Illumination& shining = this->Problem.Shining();
   const Grid& grid = this->Problem.TheGrid();
-  if (settings.uncollidedDirections > 0)
+  if (const int directions = UncollidedDirectionsFor(this->Problem, this->Accelerated); directions > 0)
   {
-    this->Fine = std::make_unique<SweptDirections>(grid, settings,
-      EquiangularDirections(settings.uncollidedDirections, "UncollidedDirections"),
-      this->Accelerated ? StartsOf(settings) : RayStarts::Staggered);
+    DirectionSet set = FittedDirections(directions, "UncollidedDirections");
+    const RayStarts starts = this->Accelerated || !set.orbits.empty() ? StartsOf(settings) : RayStarts::Staggered;
+    this->Fine = std::make_unique<SweptDirections>(grid, settings, std::move(set), starts);
   }
   const SplitEnvironment environment = Split(shining.environment, (this->Fine ? *this->Fine : this->Usual).Set());
   this->Lamps = shining.lights;
@@ -137,8 +139,16 @@ void TransportParts::FindBoundaryLight()
     // bring beyond that, the sweeps' faces could not give back a part.
     if (fine->Shines() && !(this->Accelerated && (fine->IsEven() || Reflects(shining))))
     {
-      this->FineBoundary = std::move(fine);
-      this->FineBoundary->CheckRays(this->Layout.channels);
+      // Directions that nobody asked for are left where few of their rays would meet the faces.
+      const bool asked = settings.uncollidedDirections >= 0;
+      if (asked)
+      {
+        fine->CheckRays(this->Layout.channels);
+      }
+      if (asked || fine->HasEnoughRays(this->Layout.channels))
+      {
+        this->FineBoundary = std::move(fine);
+      }
     }
   }
   if (this->SweepsAreLit())

@@ -11,7 +11,7 @@ namespace
 {
 constexpr int MostMoments = 32;     ///< that are looked at
 constexpr double Negligible = 1e-3; ///< moment of a phase function
-constexpr int DegreeOfSlabs = 9, DegreeOfThin = 5, DegreeOfOthers = 3;
+constexpr int DegreeOfSlabs = 9, DegreeOfThin = 6, DegreeOfOthers = 3;
 constexpr double SomewhatForward = 0.6;
 constexpr double Thick = 8.0; ///< mean free paths through the box: light's first scattering is a small part of it
 constexpr double MuchThinner = 8.0;
@@ -91,9 +91,8 @@ int AngularDegreeFor(const Medium& medium, const PropagationSettings& settings, 
   const int usual = HighestThatFits(medium.grid, slab ? DegreeOfSlabs : thin ? DegreeOfThin : DegreeOfOthers, memory);
   const int wanted = settings.angularDegree >= 0 ? settings.angularDegree
                                                  : std::min(usual, lastAbove(std::max(Negligible, settings.tolerance)));
-  return wanted == 0 || lastAbove(Negligible) == 0
-    ? 0
-    : MostDegree(EquiangularDirections(settings.directionsPerFace), wanted);
+  return wanted == 0 || lastAbove(Negligible) == 0 ? 0
+                                                   : MostDegree(FittedDirections(settings.directionsPerFace), wanted);
 }
 
 bool IsMuchThinnerAlongOneAxis(const Medium& medium, int channels, const std::array<bool, 3>& periodic)

@@ -10,6 +10,7 @@ namespace
 constexpr double Width =
   10.0; ///< in edges across: wider gains little, and flat voxels make the diffusion system slower
 constexpr int EdgeInSlabs = 12;
+constexpr int EdgeWithCosineZero = 10; ///< of even ones: light along its axes' planes would go round for ever
 
 bool IsNear(const Light& light)
 {
@@ -55,7 +56,8 @@ int DirectionsPerFaceFor(const PropagationSettings& settings, const UnvaryingAxe
   }
   const bool goRound = settings.periodic[0] + settings.periodic[1] + settings.periodic[2] == 2;
   const int even = goRound || unvarying.IsSlab() ? edge + edge % 2 : edge;
-  const int enough = unvarying.IsSlab() ? std::max(even, EdgeInSlabs) : even;
+  const bool stays = goRound && even == EdgeWithCosineZero;
+  const int enough = unvarying.IsSlab() || stays ? std::max(even, EdgeInSlabs) : even;
   return enough * enough;
 }
 }

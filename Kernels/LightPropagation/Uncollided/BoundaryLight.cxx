@@ -21,6 +21,11 @@ int FaceOf(const Direction& direction, int axis)
   return EntryFace(axis, direction.omega[axis] > 0.0);
 }
 
+bool Enough(double exact, double whole)
+{
+  return std::abs(whole - exact) <= MissedAtMost * exact;
+}
+
 /// Light that enters, by exact shares of rays and by whole ones.
 struct EnteringRays
 {
@@ -129,7 +134,8 @@ std::array<Rgb, 6> BoundaryLight::IncomingPower() const
   return power;
 }
 
-void BoundaryLight::CheckRays(int channels) const
+/// By exact shares of rays, and by whole ones.
+std::pair<Rgb, Rgb> BoundaryLight::EnteringPower() const
 {
   EnteringRays entering;
   for (int axis = 0; axis < 3; ++axis)
@@ -165,12 +171,29 @@ void BoundaryLight::CheckRays(int channels) const
       }
     }
   }
+  return { entering.exact, entering.whole };
+}
+
+bool BoundaryLight::HasEnoughRays(int channels) const
+{
+  const auto [exact, whole] = this->EnteringPower();
+  bool enough = true;
   for (int c = 0; c < channels; ++c)
   {
-    if (std::abs(entering.whole[c] - entering.exact[c]) > MissedAtMost * entering.exact[c])
+    enough = enough && Enough(exact[c], whole[c]);
+  }
+  return enough;
+}
+
+void BoundaryLight::CheckRays(int channels) const
+{
+  const auto [exact, whole] = this->EnteringPower();
+  for (int c = 0; c < channels; ++c)
+  {
+    if (!Enough(exact[c], whole[c]))
     {
       const std::array<double, 3>& h = this->TheGrid.spacing;
-      throw InvalidInput("Whole rays bring " + Text("%.3g", 100.0 * entering.whole[c] / entering.exact[c]) +
+      throw InvalidInput("Whole rays bring " + Text("%.3g", 100.0 * whole[c] / exact[c]) +
         "% of the light that shines through the box's faces: too few of them meet the faces that shine, for voxels "
         "of " +
         Text("%g", h[0]) + " x " + Text("%g", h[1]) + " x " + Text("%g", h[2]) +

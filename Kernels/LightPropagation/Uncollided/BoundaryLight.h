@@ -5,6 +5,7 @@
 #include "Lights/Lights.h"
 
 #include <array>
+#include <utility>
 #include <vector>
 
 namespace tyndall
@@ -32,11 +33,13 @@ public:
   /// @param channels  that are looked at
   /// @throws InvalidInput where so few of them meet the faces that shine that whole rays would miss 30% of the power
   void CheckRays(int channels) const;
+  bool HasEnoughRays(int channels) const; ///< CheckRays would not throw
 
   const SweptDirections& Along() const { return this->Directions; }
 
 private:
   void FindRange();
+  std::pair<Rgb, Rgb> EnteringPower() const;
 
   Grid TheGrid;
   std::array<bool, 3> Periodic;
