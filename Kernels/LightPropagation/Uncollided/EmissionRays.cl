@@ -3,67 +3,9 @@
 //   NET_FLUX  1 where net flux is wanted
 //   MOST      rays of a voxel to the box around what shines, at most
 
-#include "LightPropagation/Uncollided/EmissionRaysShared.h"
-#include "Numerics/Numerics.cl"
+#include "LightPropagation/Uncollided/EmissionBox.cl"
 
 #define OPAQUE 80.0f // mean free paths beyond which nothing is left
-
-typedef struct
-{
-  int at[3];
-  int across;  // axis of the face that is lit, 3: it is the voxel itself
-  int up;      // which of its two faces
-  bool inside; // of the box of what shines
-} lit_voxel;
-
-// The scene with its axes in another order, some of them turned round, so that the peak lies one way from every voxel:
-// the light then has the symmetries of the scene.
-typedef struct
-{
-  float spacing[3];
-  int sourceFirst[3], sourceSize[3];
-  int strides[3], base;             // of sigma: voxel (0, 0, 0) is at `base`
-  int sourceStrides[3], sourceBase; // of emission
-  int last, sourceLast;             // the highest index of each
-  int axis[3];                      // of the scene, that each axis here is
-  float sign[3];
-} turned_scene;
-
-#if REAL_WIDTH == 1
-#define any_of(condition) (condition)
-#define take(from, index) ((from)[index])
-#else
-#define any_of(condition) any(condition)
-static inline real take(const __global float* from, integer i)
-{
-#if REAL_WIDTH == 4
-  return (real)(from[i.s0], from[i.s1], from[i.s2], from[i.s3]);
-#elif REAL_WIDTH == 8
-  return (real)(from[i.s0], from[i.s1], from[i.s2], from[i.s3], from[i.s4], from[i.s5], from[i.s6], from[i.s7]);
-#else
-  return (real)(from[i.s0], from[i.s1], from[i.s2], from[i.s3], from[i.s4], from[i.s5], from[i.s6], from[i.s7],
-    from[i.s8], from[i.s9], from[i.sa], from[i.sb], from[i.sc], from[i.sd], from[i.se], from[i.sf]);
-#endif
-}
-#endif
-
-// Part that is left in the mean over an optical length.
-static real mean_left(real tau, real* left)
-{
-  const real lost = extinguished(tau, left);
-  return select((real)1.0f, lost / fmax(tau, (real)1e-6f), tau > (real)1e-6f);
-}
-
-// A line from a point in a voxel to the box of what shines. Places on it are lengths from that point.
-typedef struct
-{
-  real rate[3];       // voxels per length along each axis
-  real step[3];       // length from one plane across each axis to the next
-  real next[3];       // place of the plane that it crosses next; moves on as the line is followed
-  integer up[3];      // it goes up that axis
-  real enter, leave;  // places where it comes into the box and out of it
-  real ahead, behind; // how far the point's voxel reaches, along the line and against it
-} box_ray;
 
 static void begin_ray(const turned_scene* s, const lit_voxel* voxel, const real* point, const real* way, box_ray* ray)
 {
@@ -88,26 +30,6 @@ static void begin_ray(const turned_scene* s, const lit_voxel* voxel, const real*
   ray->enter = fmin(ray->enter, ray->leave); // rounding: past its edge
 }
 
-// Which planes are crossed at `end`, before the way ends there; the next ones are then those behind them.
-static void cross_planes(box_ray* ray, real end, real way_ends, integer* crossed)
-{
-  for (int a = 0; a < 3; ++a)
-  {
-    crossed[a] = ray->next[a] <= end && end < way_ends;
-    ray->next[a] += select((real)0.0f, ray->step[a], crossed[a]);
-  }
-}
-
-static integer index_step(const box_ray* ray, const integer* crossed, const int* strides)
-{
-  integer step = 0;
-  for (int a = 0; a < 3; ++a)
-  {
-    step += select((integer)0, select((integer)-strides[a], (integer)strides[a], ray->up[a]), crossed[a]);
-  }
-  return step;
-}
-
 // Follows the ray from voxel `begin` of the grid to the box: optical length.
 static real follow_to_box(const turned_scene* s, box_ray* ray, int begin, const __global float* sigma)
 {
@@ -126,57 +48,6 @@ static real follow_to_box(const turned_scene* s, box_ray* ray, int begin, const 
     under_way = now < ray->enter && tau < (real)OPAQUE;
   }
   return tau;
-}
-
-// Goes on where the ray comes into the box: the voxel's index in the grid, and in the box.
-static void enter_box(const turned_scene* s, const real* point, box_ray* ray, integer* index, integer* shining)
-{
-  *shining = s->sourceBase;
-  *index = s->base;
-  for (int a = 0; a < 3; ++a)
-  {
-    const int first = s->sourceFirst[a];
-    const real at = point[a] + ray->rate[a] * ray->enter;
-    const integer cell = clamp(to_integer(floor(at)), (integer)first, (integer)(first + s->sourceSize[a] - 1));
-    const real x = at - to_real(cell);
-    ray->next[a] = ray->enter + fmax(select(x, 1.0f - x, ray->up[a]), (real)0.0f) * ray->step[a];
-    *index += cell * s->strides[a];
-    *shining += (cell - first) * s->sourceStrides[a];
-  }
-}
-
-// Adds up what shines along the ray through the box.
-//   received  part of that light that gets to the point
-static void see_box(const turned_scene* s, const real* point, box_ray* ray, real received, const __global float* sigma,
-  const __global float* emission, real* radiance)
-{
-  const int source_voxels = s->sourceLast + 1;
-  integer index, shining, crossed[3];
-  enter_box(s, point, ray, &index, &shining);
-  for (int c = 0; c < CHANNELS; ++c)
-  {
-    radiance[c] = 0.0f;
-  }
-  real now = ray->enter, left;
-  integer under_way = now < ray->leave;
-  while (any_of(under_way))
-  {
-    const real end = fmin(fmin(ray->next[0], fmin(ray->next[1], ray->next[2])), ray->leave);
-    const real length = fmax(end - now, (real)0.0f);
-    const real seen = received * length * mean_left(take(sigma, index) * length, &left);
-    for (int c = 0; c < CHANNELS; ++c)
-    {
-      radiance[c] += seen * take(emission + c * source_voxels, shining);
-    }
-    received *= left;
-    cross_planes(ray, end, ray->leave, crossed);
-    index += index_step(ray, crossed, s->strides);
-    shining += index_step(ray, crossed, s->sourceStrides);
-    index = clamp(index, (integer)0, (integer)s->last); // rounding, as above
-    shining = clamp(shining, (integer)0, (integer)s->sourceLast);
-    now = end;
-    under_way = now < ray->leave && received > (real)1e-35f;
-  }
 }
 
 // Rays from points to the box of what shines and through it: radiance at their beginnings, W / (length^2 sr),
@@ -369,40 +240,6 @@ static void find_ways(const EmissionInfo* s, const lit_voxel* voxel, ways_to_tur
   }
 }
 
-static void turn_scene(const EmissionInfo* s, const lit_voxel* voxel, const int* order, int turned, turned_scene* to,
-  lit_voxel* turned_voxel)
-{
-  const int strides[3] = { 1, s->size[0], s->size[0] * s->size[1] };
-  const int source_strides[3] = { 1, s->sourceSize[0], s->sourceSize[0] * s->sourceSize[1] };
-  to->base = to->sourceBase = 0;
-  to->last = s->size[2] * strides[2] - 1;
-  to->sourceLast = s->sourceSize[2] * source_strides[2] - 1;
-  turned_voxel->across = 3;
-  turned_voxel->up = 0;
-  turned_voxel->inside = voxel->inside;
-  for (int k = 0; k < 3; ++k)
-  {
-    const int a = order[k];
-    const bool round = (turned >> a & 1) != 0;
-    const int size = s->size[a], source_size = s->sourceSize[a];
-    to->axis[k] = a;
-    to->sign[k] = round ? -1.0f : 1.0f;
-    to->spacing[k] = s->spacing[a];
-    to->sourceSize[k] = source_size;
-    to->sourceFirst[k] = round ? size - s->sourceFirst[a] - source_size : s->sourceFirst[a];
-    to->strides[k] = round ? -strides[a] : strides[a];
-    to->base += round ? (size - 1) * strides[a] : 0;
-    to->sourceStrides[k] = round ? -source_strides[a] : source_strides[a];
-    to->sourceBase += round ? (source_size - 1) * source_strides[a] : 0;
-    turned_voxel->at[k] = round ? size - 1 - voxel->at[a] : voxel->at[a];
-    if (a == voxel->across)
-    {
-      turned_voxel->across = k;
-      turned_voxel->up = round ? 1 - voxel->up : voxel->up;
-    }
-  }
-}
-
 // Rays [from, end) of the lattice in every way to turn the scene: their mean.
 static void gather_ways(const EmissionInfo* s, const lit_voxel* voxel, const ways_to_turn* ways, int from, int end,
   const __global float* points, const __global float* sigma, const __global float* emission, float* sums)
@@ -476,12 +313,13 @@ static void gather(const EmissionInfo* s, lit_voxel* voxel, const __global float
 // path      W length, [channel][stride]
 // flux      W length, [channel][x, y, z][stride]
 // emission  of the box of what shines, [channel][voxel]
+// found     above 0: of voxels that have their light from fans (EmissionFans.cl)
 __kernel void gather_voxels(EmissionInfo s, const __global float* sigma, ulong sigma_first,
   const __global float* points, const __global float* emission, __global float* path, __global float* flux,
-  ulong stride, ulong first, ulong count)
+  ulong stride, const __global float* found, ulong first, ulong count)
 {
   const ulong i = first + get_global_id(0);
-  if (i >= count)
+  if (i >= count || found[i] > 0.0f)
   {
     return;
   }

@@ -1,5 +1,6 @@
 #include "LightPropagation/Uncollided/EmissionRays.h"
 
+#include "LightPropagation/Uncollided/EmissionFans.h"
 #include "LightPropagation/Uncollided/EmissionRaysShared.h"
 #include "Medium/BoxFaces.h"
 #include "Numerics/Constants.h"
@@ -99,14 +100,15 @@ private:
       this->Scene.fewest /= 2;
     }
     this->Scene.uneven = static_cast<float>(this->Error);
+    this->Scene.near = FarFrom(this->Peak.size);
     const std::size_t voxels = this->Peak.emission.size() / 3;
     const auto begin = this->Peak.emission.begin() + this->FirstChannel * voxels;
-    const std::vector<float> emission(begin, begin + this->Volume.channels * voxels);
-    for (std::size_t i = 0; i < emission.size(); ++i)
+    this->OfChannels.assign(begin, begin + this->Volume.channels * voxels);
+    for (std::size_t i = 0; i < this->OfChannels.size(); ++i)
     {
-      this->Emitted[i / voxels] += 4.0 * Pi * emission[i] * grid.VoxelVolume();
+      this->Emitted[i / voxels] += 4.0 * Pi * this->OfChannels[i] * grid.VoxelVolume();
     }
-    this->Emission = Buffer<float>(this->TheDevice, emission, "what shines");
+    this->Emission = Buffer<float>(this->TheDevice, this->OfChannels, "what shines");
     this->Points = Buffer<float>(this->TheDevice, LatticePoints(), "rays");
   }
 
@@ -118,10 +120,18 @@ private:
     this->Path.Fill(0.0f);
     this->Flux = Buffer<float>(device, volume.deposit.flux ? 3 * volume.stride * volume.channels : 0, "its net flux");
     this->Flux.Fill(0.0f);
+    Buffer<float> found(device, volume.stride, "voxels that fans light");
+    found.Fill(0.0f);
+    // Where voxels are so many that each would have few rays, fans have as many for less.
+    if (this->Scene.fewest == FewestRays)
+    {
+      found = GatherByFans(device, { volume, this->Scene, this->OfChannels, this->Emission }, this->Path, this->Flux,
+        OfPart(monitor, 0.0, 0.5));
+    }
     cl::Kernel gather = this->Kernel("gather_voxels", this->Width());
-    this->InParts(volume.grid.VoxelCount(), 0.0, 0.9, monitor, [&](std::size_t first, std::size_t size) {
+    this->InParts(volume.grid.VoxelCount(), 0.5, 0.9, monitor, [&](std::size_t first, std::size_t size) {
       With(gather, this->Scene, *volume.sigma_t, cl_ulong(volume.sigma_t_first), this->Points, this->Emission,
-        this->Path, this->Flux, cl_ulong(volume.stride), cl_ulong(first), cl_ulong(first + size));
+        this->Path, this->Flux, cl_ulong(volume.stride), found, cl_ulong(first), cl_ulong(first + size));
       device.Queue().enqueueNDRangeKernel(gather, cl::NullRange, cl::NDRange(size));
     });
     cl::Kernel take = this->Kernel("take_rows");
@@ -244,6 +254,7 @@ private:
   double Error;
   EmissionInfo Scene = {};
 
+  std::vector<float> OfChannels;  ///< emission of the box, W / (length^3 sr), [channel][voxel]
   Buffer<float> Points, Emission; ///< as in EmissionRays.cl
   Rgb Emitted = {};               ///< W
   Buffer<float> Path, Flux;
