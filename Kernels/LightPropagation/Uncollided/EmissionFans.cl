@@ -8,8 +8,8 @@
 
 #include "LightPropagation/Uncollided/EmissionBox.cl"
 
-#define OF_HALVES 4.0f // two halves of the fans may differ by that many times the error asked for: their mean is better
-#define DIM 1e-6f // part of what is not extinguished, below which halves of the fans need not agree
+#define OF_HALVES 2.5f // two halves of the fans may differ by that many times the error asked for: their mean is better
+#define DIM 1e-6f      // part of what is not extinguished, below which halves of the fans need not agree
 
 static void turn_fan(const EmissionInfo* s, const FanInfo* fan, turned_scene* turned)
 {
@@ -22,7 +22,8 @@ static void turn_fan(const EmissionInfo* s, const FanInfo* fan, turned_scene* tu
 __kernel void clear_box(EmissionInfo s, const __global float* sigma, ulong sigma_first, __global float* outside)
 {
   const ulong i = get_global_id(0);
-  const int at[3] = { (int)(i % s.size[0]), (int)(i / s.size[0] % s.size[1]), (int)(i / ((ulong)s.size[0] * s.size[1])) };
+  const int at[3] = { (int)(i % s.size[0]), (int)(i / s.size[0] % s.size[1]),
+    (int)(i / ((ulong)s.size[0] * s.size[1])) };
   bool inside = true;
   for (int a = 0; a < 3; ++a)
   {
@@ -76,15 +77,58 @@ static void weigh_line(const turned_scene* s, const float* point, const real* wa
   }
 }
 
-// Whether a line may still come to voxels of its part of space along a second axis.
-//   low, high  where the lines of a packet are, voxels
-static bool is_wanted(const turned_scene* s, const FanInfo* fan, int axis, int layer, int end, float low, float high,
-  float low_tangent, float high_tangent)
+// Lines of a fan beside each other.
+typedef struct
 {
-  const float middle = s->sourceFirst[axis] + 0.5f * s->sourceSize[axis];
-  const float away = layer + 1.0f - s->sourceFirst[0] - 0.5f * s->sourceSize[0]; // no voxel is farther aside
-  const bool above = low > end || (low_tangent >= 1.0f && low > middle + away + 0.5f);
-  return !above && !(high_tangent <= 0.0f && high < fan->first[axis]);
+  float point[3];        // where they begin, voxels
+  float low[2], high[2]; // least and largest tangent along the second and the third axis
+} line_packet;
+
+// Whether a packet may come to voxels of its part of space in a layer or behind it.
+static bool is_wanted(
+  const EmissionInfo* s, const turned_scene* turned, const FanInfo* fan, const line_packet* packet, int layer)
+{
+  const float near = layer - packet->point[0], far = near + 1.0f;
+  const float away = layer + 1.0f - turned->sourceFirst[0] - 0.5f * turned->sourceSize[0]; // no voxel is farther aside
+  bool wanted = true;
+  for (int a = 1; a < 3; ++a)
+  {
+    const float low_tangent = packet->low[a - 1], high_tangent = packet->high[a - 1];
+    const float low = packet->point[a] + low_tangent * (low_tangent > 0.0f ? near : far);
+    const float high = packet->point[a] + high_tangent * (high_tangent > 0.0f ? far : near);
+    const float middle = turned->sourceFirst[a] + 0.5f * turned->sourceSize[a];
+    const bool above = low > s->size[fan->order[a]] || (low_tangent >= 1.0f && low > middle + away + 0.5f);
+    wanted = wanted && !above && !(high_tangent <= 0.0f && high < fan->first[a]);
+  }
+  return wanted;
+}
+
+// Follows lines through a layer. Returns what is left of their light, mean over the voxel that they are in at `sample`.
+//   now, index, received  place on the line, voxel, part of the light that is left: moved on
+static real cross_layer(const turned_scene* s, const __global float* outside, real sample, real end_of_layer, real* now,
+  integer* index, real* received, box_ray* ray)
+{
+  real kept = 0.0f, through;
+  integer crossed[3];
+  integer under_way = *now < end_of_layer;
+  while (any_of(under_way))
+  {
+    const real to_planes = fmin(ray->next[0], fmin(ray->next[1], ray->next[2]));
+    const real end = select(*now, to_planes, under_way);
+    const real here = *received * mean_left(take(outside, *index) * fmax(end - *now, (real)0.0f), &through);
+    kept = select(kept, here, under_way && *now <= sample && sample < end);
+    *received *= through;
+    for (int a = 0; a < 3; ++a)
+    {
+      crossed[a] = under_way && ray->next[a] <= end;
+      ray->next[a] += select((real)0.0f, ray->step[a], crossed[a]);
+    }
+    *index = clamp(*index + index_step(ray, crossed, s->strides), (integer)0, (integer)s->last);
+    *now = end;
+    // The plane itself, found by sums of steps, ends the layer.
+    under_way = under_way && !crossed[0];
+  }
+  return kept;
 }
 
 // points  of the scene turned for this fan: [point][place along the three axes in voxels, depth of samples in a layer]
@@ -97,75 +141,45 @@ __kernel void follow_fan(EmissionInfo s, FanInfo fan, const __global float* sigm
 {
   const int line = get_global_id(0) * REAL_WIDTH, band_row = get_global_id(1), p = get_global_id(2);
   const float row_tangent = fan.firstRow + (fan.bandFirst + band_row) * fan.spacing;
-  const float low_tangent = fan.firstLine + line * fan.spacing;
-  const float high_tangent = low_tangent + (REAL_WIDTH - 1) * fan.spacing;
   const __global float* of_point = points + 4 * (fan.pointFirst + p);
-  const float point[3] = { of_point[0], of_point[1], of_point[2] };
-  const int ends[3] = { s.size[fan.order[0]], s.size[fan.order[1]], s.size[fan.order[2]] };
+  const line_packet packet = { { of_point[0], of_point[1], of_point[2] }, { tangents[line], row_tangent },
+    { tangents[line + REAL_WIDTH - 1], row_tangent } };
   turned_scene turned;
   turn_fan(&s, &fan, &turned);
-  const real tangent = load_real(line, tangents);
-  const real along[3] = { turned.spacing[0], tangent * turned.spacing[1], (real)(row_tangent * turned.spacing[2]) };
+  const real along[3] = { turned.spacing[0], load_real(line, tangents) * turned.spacing[1],
+    (real)(row_tangent * turned.spacing[2]) };
   const real per_layer = sqrt(along[0] * along[0] + along[1] * along[1] + along[2] * along[2]);
   const real way[3] = { along[0] / per_layer, along[1] / per_layer, along[2] / per_layer };
   box_ray ray;
-  real now = 0.0f, received = 1.0f, through;
-  integer index = turned.base, crossed[3];
-  begin_line(&turned, point, way, &ray);
+  real now = 0.0f, received = 1.0f, of_line[CHANNELS];
+  integer index = turned.base;
+  begin_line(&turned, packet.point, way, &ray);
   for (int a = 0; a < 3; ++a)
   {
-    index += (int)floor(point[a]) * turned.strides[a];
+    index += (int)floor(packet.point[a]) * turned.strides[a];
   }
-  const int start = (int)floor(point[0]);
-  const ulong lines = (ulong)fan.bandRows * fan.lines;
-  for (int layer = start; layer < fan.first[0] + fan.layers; ++layer)
+  const ulong lines = (ulong)fan.bandRows * fan.lines, place = (ulong)band_row * fan.lines + line;
+  for (int layer = (int)floor(packet.point[0]); layer < fan.first[0] + fan.layers; ++layer)
   {
-    const float near = layer - point[0], far = near + 1.0f;
-    const real end_of_layer = far * per_layer;
-    const real sample = (near + of_point[3]) * per_layer;
-    real kept = 0.0f;
-    if (layer >= fan.first[0])
+    const bool is_far = layer >= fan.first[0];
+    if (is_far && !is_wanted(&s, &turned, &fan, &packet, layer))
     {
-      const float low = point[1] + low_tangent * (low_tangent > 0.0f ? near : far);
-      const float high = point[1] + high_tangent * (high_tangent > 0.0f ? far : near);
-      const float row_low = point[2] + row_tangent * (row_tangent > 0.0f ? near : far);
-      const float row_high = point[2] + row_tangent * (row_tangent > 0.0f ? far : near);
-      if (!is_wanted(&turned, &fan, 1, layer, ends[1], low, high, low_tangent, high_tangent) ||
-        !is_wanted(&turned, &fan, 2, layer, ends[2], row_low, row_high, row_tangent, row_tangent))
-      {
-        return;
-      }
+      return;
+    }
+    const float begin = layer - packet.point[0];
+    const real kept = cross_layer(
+      &turned, outside, (begin + of_point[3]) * per_layer, (begin + 1.0f) * per_layer, &now, &index, &received, &ray);
+    if (is_far)
+    {
+      store_real(kept, ((ulong)p * fan.layers + layer - fan.first[0]) * lines + place, left);
     }
     if (layer == fan.first[0])
     {
-      real of_line[CHANNELS];
-      weigh_line(&turned, point, way, fan.emitted, sigma + sigma_first, outside, emission, of_line);
+      weigh_line(&turned, packet.point, way, fan.emitted, sigma + sigma_first, outside, emission, of_line);
       for (int c = 0; c < CHANNELS; ++c)
       {
-        store_real(of_line[c], (p * CHANNELS + c) * lines + (ulong)band_row * fan.lines + line, weights);
+        store_real(of_line[c], (p * CHANNELS + c) * lines + place, weights);
       }
-    }
-    integer under_way = now < end_of_layer;
-    while (any_of(under_way))
-    {
-      const real to_planes = fmin(ray.next[0], fmin(ray.next[1], ray.next[2]));
-      const real end = select(now, to_planes, under_way);
-      const real here = received * mean_left(take(outside, index) * fmax(end - now, (real)0.0f), &through);
-      kept = select(kept, here, under_way && now <= sample && sample < end);
-      received *= through;
-      for (int a = 0; a < 3; ++a)
-      {
-        crossed[a] = under_way && ray.next[a] <= end;
-        ray.next[a] += select((real)0.0f, ray.step[a], crossed[a]);
-      }
-      index = clamp(index + index_step(&ray, crossed, turned.strides), (integer)0, (integer)turned.last);
-      now = end;
-      // The plane itself, found by sums of steps, ends the layer.
-      under_way = under_way && !crossed[0];
-    }
-    if (layer >= fan.first[0])
-    {
-      store_real(kept, ((ulong)p * fan.layers + layer - fan.first[0]) * lines + (ulong)band_row * fan.lines + line, left);
     }
   }
 }
@@ -193,7 +207,48 @@ static int2 lines_between(float low, float high, float layers, float first, floa
   return (int2)(clamp(begin, 0, count), clamp(end, 0, count));
 }
 
-// path  W length, [channel][stride], added to;  flux  the same, [channel][x, y, z][stride]
+// Adds the mean of the lines of fan p that come through a voxel (numerics.md, Eqs. (41c), (41d)).
+//   at     the voxel, in the turned scene
+//   parts  of space that it lies in
+//   sums   [channel][fluence, net flux along the turned axes] times the voxel's volume
+static void add_fan(const turned_scene* s, const FanInfo* fan, int p, const int* at, int parts,
+  const __global float* points, const __global float* left, const __global float* weights, float* sums)
+{
+  const ulong lines = (ulong)fan->bandRows * fan->lines;
+  const __global float* point = points + 4 * (fan->pointFirst + p);
+  const float layers = at[0] + point[3] - point[0];
+  const float forward = (at[0] + 0.5f - point[0]) * s->spacing[0];
+  const int2 u =
+    lines_between(at[1] - point[1], at[1] + 1 - point[1], layers, fan->firstLine, fan->spacing, fan->lines);
+  const int2 v = lines_between(at[2] - point[2], at[2] + 1 - point[2], layers, fan->firstRow, fan->spacing, fan->rows);
+  const float share = fan->share / (parts * max((u.y - u.x) * (v.y - v.x), 1));
+  const __global float* of_layer = left + ((ulong)p * fan->layers + at[0] - fan->first[0]) * lines;
+  for (int row = max(v.x, fan->bandFirst); row < min(v.y, fan->bandFirst + fan->bandRows); ++row)
+  {
+    const float up = (fan->firstRow + row * fan->spacing) * layers * s->spacing[2];
+    for (int line = u.x; line < u.y; ++line)
+    {
+      const float aside = (fan->firstLine + line * fan->spacing) * layers * s->spacing[1];
+      const float inverse = 1.0f / (forward * forward + aside * aside + up * up);
+      const float deep = s->spacing[0] * s->spacing[0] * inverse / 24.0f;
+      const float seen = inverse * (1.0f + deep * (8.0f * forward * forward * inverse - 2.0f)) * share;
+      const ulong place = (ulong)(row - fan->bandFirst) * fan->lines + line;
+      for (int c = 0; c < CHANNELS; ++c)
+      {
+        const float got = seen * of_layer[place] * weights[(p * CHANNELS + c) * lines + place];
+        sums[4 * c] += got;
+#if NET_FLUX
+        const float part = got * sqrt(inverse);
+        sums[4 * c + 1] += part * forward;
+        sums[4 * c + 2] += part * aside;
+        sums[4 * c + 3] += part * up;
+#endif
+      }
+    }
+  }
+}
+
+// path  W length times the number of fans, [channel][stride], added to;  flux  the same, [channel][x, y, z][stride]
 // halves  path of half of the fans, sum over the channels, [voxel], added to
 __kernel void collect_fans(EmissionInfo s, FanInfo fan, const __global float* points, const __global float* left,
   const __global float* weights, __global float* path, __global float* flux, ulong stride, __global float* halves)
@@ -214,50 +269,23 @@ __kernel void collect_fans(EmissionInfo s, FanInfo fan, const __global float* po
   {
     return;
   }
-  const ulong lines = (ulong)fan.bandRows * fan.lines;
-  float sums[CHANNELS * 4], of_half = 0.0f;
+  float sums[CHANNELS * 4];
   for (int k = 0; k < CHANNELS * 4; ++k)
   {
     sums[k] = 0.0f;
   }
+  const int of_half = clamp(fan.halfOfPoints - fan.pointFirst, 0, fan.points);
   for (int p = 0; p < fan.points; ++p)
   {
-    const __global float* point = points + 4 * (fan.pointFirst + p);
-    const float layers = at[0] + point[3] - point[0];
-    const float forward = (at[0] + 0.5f - point[0]) * turned.spacing[0];
-    const int2 u = lines_between(
-      at[1] - point[1], at[1] + 1 - point[1], layers, fan.firstLine, fan.spacing, fan.lines);
-    const int2 v = lines_between(at[2] - point[2], at[2] + 1 - point[2], layers, fan.firstRow, fan.spacing, fan.rows);
-    const float share = fan.share / (parts * max((u.y - u.x) * (v.y - v.x), 1));
-    const __global float* of_layer = left + ((ulong)p * fan.layers + get_global_id(2)) * lines;
-    for (int row = max(v.x, fan.bandFirst); row < min(v.y, fan.bandFirst + fan.bandRows); ++row)
+    for (int c = 0; c < CHANNELS && p == of_half; ++c)
     {
-      const float up = (fan.firstRow + row * fan.spacing) * layers * turned.spacing[2];
-      for (int line = u.x; line < u.y; ++line)
-      {
-        const float aside = (fan.firstLine + line * fan.spacing) * layers * turned.spacing[1];
-        const float inverse = 1.0f / (forward * forward + aside * aside + up * up);
-        const float deep = turned.spacing[0] * turned.spacing[0] * inverse / 24.0f;
-        const float seen = inverse * (1.0f + deep * (8.0f * forward * forward * inverse - 2.0f)) * share;
-        const ulong place = (ulong)(row - fan.bandFirst) * fan.lines + line;
-        for (int c = 0; c < CHANNELS; ++c)
-        {
-          const float got = seen * of_layer[place] * weights[(p * CHANNELS + c) * lines + place];
-          sums[4 * c] += got;
-          of_half += fan.pointFirst + p < fan.halfOfPoints ? got : 0.0f;
-#if NET_FLUX
-          const float part = got * sqrt(inverse);
-          sums[4 * c + 1] += part * forward;
-          sums[4 * c + 2] += part * aside;
-          sums[4 * c + 3] += part * up;
-#endif
-        }
-      }
+      halves[i] += sums[4 * c];
     }
+    add_fan(&turned, &fan, p, at, parts, points, left, weights, sums);
   }
-  halves[i] += of_half;
   for (int c = 0; c < CHANNELS; ++c)
   {
+    halves[i] += of_half == fan.points ? sums[4 * c] : 0.0f;
     path[c * stride + i] += sums[4 * c];
 #if NET_FLUX
     for (int k = 0; k < 3; ++k)
@@ -285,7 +313,8 @@ __kernel void judge_fans(EmissionInfo s, const __global float* path, ulong strid
   const __global float* halves, __global float* found)
 {
   const ulong i = get_global_id(0);
-  const int at[3] = { (int)(i % s.size[0]), (int)(i / s.size[0] % s.size[1]), (int)(i / ((ulong)s.size[0] * s.size[1])) };
+  const int at[3] = { (int)(i % s.size[0]), (int)(i / s.size[0] % s.size[1]),
+    (int)(i / ((ulong)s.size[0] * s.size[1])) };
   float all = 0.0f, squared = 0.0f;
   int farthest = 0;
   for (int a = 0; a < 3; ++a)

@@ -12,13 +12,13 @@ namespace tyndall
 {
 namespace
 {
-constexpr int FewestPoints = 8;             ///< fans into each part of space; two halves, each of four mirror images
-constexpr int MostPoints = 256;             ///< the same
-constexpr double FewLeft = 0.012;           ///< of all voxels, may be left to 32 rays of their own rather than to one more fan
+constexpr int FewestPoints = 8;   ///< fans into each part of space; two halves, each of four mirror images
+constexpr int MostPoints = 256;   ///< the same
+constexpr double FewLeft = 0.012; ///< of all voxels, may be left to 32 rays of their own rather than to one more fan
 constexpr double LinesPerVoxel = 1.02;      ///< along an edge in the last layer: none is without a line
 constexpr int LineStep = 16;                ///< lines are a multiple of that: the widest packet
 constexpr std::size_t KeptFloats = 1 << 24; ///< of the fans that are kept at a time, about: 64 MiB
-constexpr int NearGap = 3;                  ///< voxels between what shines and the nearest voxel that a fan is asked for
+constexpr int NearGap = 3; ///< voxels between what shines and the nearest voxel that a fan is asked for
 
 /// Of Sobol's sequence in four dimensions (Joe and Kuo 2008), the first numbers of each, over 2, 4, 8, ...
 constexpr int SobolBits = 6;
@@ -317,8 +317,8 @@ private:
     cl::Kernel collect = this->Kernel("collect_fans");
     With(collect, this->Scene.info, fan, kept.points, kept.left, kept.weights, this->Path, this->Flux,
       cl_ulong(volume.stride), this->Halves);
-    const cl::NDRange voxels(volume.grid.size[fan.order[1]] - fan.first[1], volume.grid.size[fan.order[2]] - fan.first[2],
-      fan.layers);
+    const cl::NDRange voxels(
+      volume.grid.size[fan.order[1]] - fan.first[1], volume.grid.size[fan.order[2]] - fan.first[2], fan.layers);
     this->TheDevice.Queue().enqueueNDRangeKernel(collect, cl::NullRange, voxels, cl::NDRange(1, 1, 1));
     this->TheDevice.Finish();
   }
@@ -337,8 +337,8 @@ int FarFrom(const std::array<int, 3>& sourceSize)
   return 2 * (*std::max_element(sourceSize.begin(), sourceSize.end()) + NearGap);
 }
 
-Buffer<float> GatherByFans(Device& device, const FanScene& scene, const Buffer<float>& path, const Buffer<float>& flux,
-  const Monitor& monitor)
+Buffer<float> GatherByFans(
+  Device& device, const FanScene& scene, const Buffer<float>& path, const Buffer<float>& flux, const Monitor& monitor)
 {
   return EmissionFans(device, scene, path, flux).Run(monitor);
 }

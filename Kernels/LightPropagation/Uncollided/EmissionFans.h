@@ -23,10 +23,10 @@ struct FanScene
 /// work is that of a few rays a voxel, where rays of its own would cost each voxel all the way to what shines.
 ///
 /// @param path, flux  as DepositEmission finds them, 0 before; flux may be empty
-/// @return 1 for the voxels that have their light now, 0 for those too near or where two halves of the fans differ by
-///   more than info.uneven, whose path and flux count for nothing
-Buffer<float> GatherByFans(Device& device, const FanScene& scene, const Buffer<float>& path, const Buffer<float>& flux,
-  const Monitor& monitor);
+/// @return 1 for the voxels that have their light now; others, too near or where two halves of the fans differ too much
+///   for info.uneven, have less than 1, and their path and flux count for nothing
+Buffer<float> GatherByFans(
+  Device& device, const FanScene& scene, const Buffer<float>& path, const Buffer<float>& flux, const Monitor& monitor);
 
 /// Half voxels from the middle of the box of what shines, the least for a voxel to be far.
 int FarFrom(const std::array<int, 3>& sourceSize);

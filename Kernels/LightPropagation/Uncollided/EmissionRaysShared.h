@@ -19,16 +19,16 @@ typedef struct
 /// axis is that along which the voxels lie farthest from the box, and all three lead away from it.
 typedef struct
 {
-  int order[3], turned;            ///< axes of the scene, and bits of those that are turned round
-  int first[3];                    ///< the first voxel along each axis, in the turned scene
-  int layers;                      ///< of voxels along the first axis
-  int lines, rows;                 ///< of a fan along the second and third axis; lines a multiple of 16
-  float firstLine, firstRow;       ///< tangents, voxels a layer
-  float spacing;                   ///< of lines and of rows, in tangents
-  int bandFirst, bandRows;         ///< the rows that are kept at a time
-  int pointFirst, points;          ///< of the fans that are kept at a time
-  int halfOfPoints;                ///< the first half of all
-  float emitted;                   ///< integral of emission over the box, sum of the channels
-  float share;                     ///< volume of a voxel over all points
+  int order[3], turned;      ///< axes of the scene, and bits of those that are turned round
+  int first[3];              ///< the first voxel along each axis, in the turned scene
+  int layers;                ///< of voxels along the first axis
+  int lines, rows;           ///< of a fan along the second and third axis; lines a multiple of 16
+  float firstLine, firstRow; ///< tangents, voxels a layer
+  float spacing;             ///< of lines and of rows, in tangents
+  int bandFirst, bandRows;   ///< the rows that are kept at a time
+  int pointFirst, points;    ///< of the fans that are kept at a time
+  int halfOfPoints;          ///< the first half of all
+  float emitted;             ///< integral of emission over the box, sum of the channels
+  float share;               ///< volume of a voxel over all points
 } FanInfo;
 SHARED_END
