@@ -300,30 +300,35 @@ TEST_F(EmissionPeaks, InManyVoxelsHaveTheSymmetriesOfTheScene)
 
 TEST_F(EmissionPeaks, InManyVoxelsOfThreeColoursAreThreeGreyOnes)
 {
-  // One extinction, three ways to shine: a fan has the light of all three.
-  Scene colour = Symmetric(0.0);
-  std::fill(colour.sigma_a.begin(), colour.sigma_a.end(), 0.05f);
-  const std::vector<float> grey = colour.emission;
-  colour.emission.assign(3 * grey.size(), 0.0f);
-  std::vector<float> own[3] = { grey, grey, grey };
-  for (std::size_t i = 0, n = 0; i < grey.size(); ++i)
+  // One extinction. Colours that shine alike share fans of rays; others do not, and are right to rays of their own.
+  for (bool alike : { true, false })
   {
-    for (int c = 0; c < 3 && grey[i] > 0.0f; ++c)
+    Scene colour = Symmetric(0.0);
+    std::fill(colour.sigma_a.begin(), colour.sigma_a.end(), 0.05f);
+    const std::vector<float> grey = colour.emission;
+    colour.emission.assign(3 * grey.size(), 0.0f);
+    std::vector<float> own[3] = { grey, grey, grey };
+    for (std::size_t i = 0, n = 0; i < grey.size(); ++i)
     {
-      own[c][i] = 1.0f + 0.5f * ((n + c) % 3);
-      colour.emission[3 * i + c] = own[c][i];
+      for (int c = 0; c < 3 && grey[i] > 0.0f; ++c)
+      {
+        own[c][i] = alike ? 1.0f + 0.5f * c : 1.0f + 0.5f * ((n + c) % 3);
+        colour.emission[3 * i + c] = own[c][i];
+      }
+      n += grey[i] > 0.0f;
     }
-    n += grey[i] > 0.0f;
-  }
-  const LightField light = colour.Solve(this->GetDevice());
-  for (int c = 0; c < 3; ++c)
-  {
-    Scene one = colour;
-    one.emission = own[c];
-    const LightField alone = one.Solve(this->GetDevice());
-    for (std::size_t i = 0; i < grey.size(); i += 997)
+    const LightField light = colour.Solve(this->GetDevice());
+    EXPECT_FALSE(LeavesOutRays(light));
+    for (int c = 0; c < 3; ++c)
     {
-      EXPECT_NEAR(light.fluence[3 * i + c] / alone.fluence[i], 1.0, 0.03);
+      Scene one = Symmetric(0.0);
+      one.sigma_a = colour.sigma_a;
+      one.emission = own[c];
+      const LightField alone = one.Solve(this->GetDevice());
+      for (std::size_t i = 0; i < grey.size(); i += 997)
+      {
+        EXPECT_NEAR(light.fluence[3 * i + c] / alone.fluence[i], 1.0, alike ? 1e-4 : 0.15);
+      }
     }
   }
 }

@@ -11,7 +11,9 @@
 #include "Device/Defines.h"
 #include "LightPropagation/PropagationSettings.h"
 
+#include <algorithm>
 #include <array>
+#include <cmath>
 #include <cstdint>
 #include <string>
 #include <vector>
@@ -112,6 +114,22 @@ private:
     this->Points = Buffer<float>(this->TheDevice, LatticePoints(), "rays");
   }
 
+  /// Whether all channels shine from the same places, up to a factor: fans begin where their sum shines.
+  bool ShineAlike() const
+  {
+    const std::size_t voxels = this->OfChannels.size() / this->Volume.channels;
+    for (std::size_t i = voxels; i < this->OfChannels.size(); ++i)
+    {
+      const double here = this->OfChannels[i] * this->Emitted[0];
+      const double first = this->OfChannels[i % voxels] * this->Emitted[i / voxels];
+      if (std::abs(here - first) > 1e-4 * std::max(here, first))
+      {
+        return false;
+      }
+    }
+    return true;
+  }
+
   void GatherVoxels(const Monitor& monitor)
   {
     const SweepVolume& volume = this->Volume;
@@ -123,7 +141,7 @@ private:
     Buffer<float> found(device, volume.stride, "voxels that fans light");
     found.Fill(0.0f);
     // Where voxels are so many that each would have few rays, fans have as many for less.
-    if (this->Scene.fewest == FewestRays)
+    if (this->Scene.fewest == FewestRays && this->ShineAlike())
     {
       found = GatherByFans(device, { volume, this->Scene, this->OfChannels, this->Emission }, this->Path, this->Flux,
         OfPart(monitor, 0.0, 0.5));
