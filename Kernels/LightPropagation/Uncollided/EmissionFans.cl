@@ -4,7 +4,7 @@
 //
 // A fan is all rays from one point of the box of what shines into one 24th of space, on a grid of tangents that has a
 // ray in every voxel even of the last layer. Each ray keeps what is left of its light in every layer; each voxel takes
-// the mean of the rays that come through it (numerics.md, Eqs. (41c), (41d)).
+// the mean of the rays that come through it (numerics.md, Eqs. (40a), (40b)).
 
 #include "LightPropagation/Uncollided/EmissionBox.cl"
 
@@ -207,7 +207,7 @@ static int2 lines_between(float low, float high, float layers, float first, floa
   return (int2)(clamp(begin, 0, count), clamp(end, 0, count));
 }
 
-// Adds the mean of the lines of fan p that come through a voxel (numerics.md, Eqs. (41c), (41d)).
+// Adds the mean of the lines of fan p that come through a voxel (numerics.md, Eqs. (40a), (40b)).
 //   at     the voxel, in the turned scene
 //   parts  of space that it lies in
 //   sums   [channel][fluence, net flux along the turned axes] times the voxel's volume

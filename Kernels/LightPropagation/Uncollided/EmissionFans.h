@@ -18,7 +18,7 @@ struct FanScene
   const Buffer<float>& emissionOnDevice; ///< the same
 };
 
-/// The light of a small bright part of the medium in voxels far from it (numerics.md, Eqs. (41c), (41d)): rays from
+/// The light of a small bright part of the medium in voxels far from it (numerics.md, Eqs. (40a), (40b)): rays from
 /// points in it go out through all of the box, and every voxel that they cross takes its share of each, so that the
 /// work is that of a few rays a voxel, where rays of its own would cost each voxel all the way to what shines.
 ///
