@@ -248,7 +248,6 @@ double AtMany(const LightField& light, std::array<int, 3> v)
 
 TEST_F(EmissionPeaks, InManyVoxelsShineAsAPointDoesThroughAnAbsorber)
 {
-  // Measured: 1.1% at most; power that leaves is known to 0.6%.
   Scene scene({ Many, Many, Many }, 0.05f);
   scene.emission.assign(scene.sigma_a.size(), 0.0f);
   const std::array<int, 3> peak = { 20, 30, 40 };
