@@ -154,4 +154,11 @@ DirectionSet FittedDirections(int perFace, const std::string& name)
   }
   return EquiangularDirections(perFace, name);
 }
+
+DirectionSet DirectionsForVoxels(int perFace, const std::array<double, 3>& spacing)
+{
+  constexpr double Longer = 100.0;
+  const auto [least, most] = std::minmax_element(spacing.begin(), spacing.end());
+  return *most > Longer * *least ? EquiangularDirections(perFace) : FittedDirections(perFace);
+}
 }

@@ -52,16 +52,6 @@ SplitEmission EmissionOf(const PropagationProblem& problem)
   return problem.Traits().emits && problem.Settings().emissionError > 0.0 && !endless ? Split(problem.TheMedium())
                                                                                       : SplitEmission();
 }
-
-/// Of voxels far longer along one axis even directions: in white ones (spacing 1, 1, 1000) sweeps along fitted ones
-/// were seen to end half off with a small estimated error; along these they do not converge either, but say so.
-DirectionSet DirectionsOf(const PropagationProblem& problem)
-{
-  constexpr double Longer = 100.0;
-  const auto [least, most] = std::minmax_element(problem.TheGrid().spacing.begin(), problem.TheGrid().spacing.end());
-  const int perFace = problem.Settings().directionsPerFace;
-  return *most > Longer * *least ? EquiangularDirections(perFace) : FittedDirections(perFace);
-}
 }
 
 TransportParts::TransportParts(Device& device, const PropagationProblem& problem, bool accelerated)
@@ -71,7 +61,9 @@ TransportParts::TransportParts(Device& device, const PropagationProblem& problem
   , OnDevice(
       device, problem.TheMedium(), problem.Scattering(), this->Layout, NeedsOf(problem, this->Layout, accelerated))
   , Scattering(this->MakeScattering())
-  , Usual(problem.TheGrid(), problem.Settings(), DirectionsOf(problem), StartsOf(problem.Settings()))
+  , Usual(problem.TheGrid(), problem.Settings(),
+      DirectionsForVoxels(problem.Settings().directionsPerFace, problem.TheGrid().spacing),
+      StartsOf(problem.Settings()))
   , Emission(EmissionOf(problem))
   , Accelerated(accelerated)
 {

@@ -91,8 +91,9 @@ int AngularDegreeFor(const Medium& medium, const PropagationSettings& settings, 
   const int usual = HighestThatFits(medium.grid, slab ? DegreeOfSlabs : thin ? DegreeOfThin : DegreeOfOthers, memory);
   const int wanted = settings.angularDegree >= 0 ? settings.angularDegree
                                                  : std::min(usual, lastAbove(std::max(Negligible, settings.tolerance)));
-  return wanted == 0 || lastAbove(Negligible) == 0 ? 0
-                                                   : MostDegree(FittedDirections(settings.directionsPerFace), wanted);
+  return wanted == 0 || lastAbove(Negligible) == 0
+    ? 0
+    : MostDegree(DirectionsForVoxels(settings.directionsPerFace, medium.grid.spacing), wanted);
 }
 
 bool IsMuchThinnerAlongOneAxis(const Medium& medium, int channels, const std::array<bool, 3>& periodic)

@@ -82,7 +82,7 @@ void PropagationProblem::Truncate(int degree)
   std::optional<DirectionKernel> kernel;
   if (degree > 0 && IsMuchThinnerAlongOneAxis(this->Solved, this->ChannelCount, this->TheSettings.periodic))
   {
-    kernel.emplace(FittedDirections(this->TheSettings.directionsPerFace), degree);
+    kernel.emplace(DirectionsForVoxels(this->TheSettings.directionsPerFace, this->TheGrid().spacing), degree);
   }
   this->Truncated.emplace(this->Solved, degree, this->ChannelCount, kernel ? &*kernel : nullptr);
 }
