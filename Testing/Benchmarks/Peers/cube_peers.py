@@ -13,7 +13,7 @@ import time
 from environment import WANTED_LLVM, environment, newest_llvm, rerun
 
 RUNS = 3
-PATIENCE = {"forward": 2.0, "adjoint": 3.0}  # seconds; no setting is tried after a run that took longer
+PATIENCE = {"forward": 1.0, "adjoint": 2.0}  # seconds; no setting is tried after a run that took longer
 FIRST = {"forward": 1 << 13, "adjoint": 1}   # histories; paths a block
 
 
