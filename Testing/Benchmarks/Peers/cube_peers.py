@@ -13,7 +13,8 @@ import time
 from environment import WANTED_LLVM, environment, newest_llvm, rerun
 
 RUNS = 3
-PATIENCE = {"forward": 1.0, "adjoint": 2.0}  # seconds; no setting is tried after a run that took longer
+PATIENCE = {"forward": 1.5, "adjoint": 3.0}  # seconds that a run may be foreseen to take
+MORE = 4  # times the samples of the setting before
 FIRST = {"forward": 1 << 13, "adjoint": 1}   # histories; paths a block
 
 
@@ -45,9 +46,9 @@ def solve_all(names, quick):
                 ("forward", drjit, "histories", lambda n, seed: forward.block_fluence(extinction, albedo, n, seed)[0]),
                 ("adjoint", mitsuba, "paths a block", lambda n, seed: adjoint.block_fluence(loaded, n, seed))):
             samples, longest = FIRST[program], 0.0
-            while longest < PATIENCE[program]:
+            while MORE * longest < PATIENCE[program]:
                 longest = measure(program, "%d %s" % (samples, unit), lambda seed: solve(samples, seed), name, version)
-                samples *= 4
+                samples *= MORE
                 if quick:
                     break
 
