@@ -19,7 +19,7 @@ struct PeerAnswer
   double reflectance, transmittance, seconds;
 };
 
-/// What disortpp and PythonicDISORT of PyPI say, run by Peers/slab_peers.py in a virtual environment that is made at the
-/// first run. Empty where there is no python3 or PyPI cannot be reached; then it says so.
+/// What disortpp and PythonicDISORT of PyPI say, run by Peers/slab_peers.py in a virtual environment that is made at
+/// the first run. Empty where there is no python3 or PyPI cannot be reached; then it says so.
 std::vector<PeerAnswer> AskPeers(const std::vector<PeerCase>& cases);
 }

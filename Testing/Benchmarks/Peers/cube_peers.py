@@ -6,11 +6,11 @@ FOLDER gets a virtual environment with Mitsuba (and Dr.Jit, which it brings) onc
 samples. A line of JSON a setting: scene, program with its version, setting, seconds of each of some runs, and the fluence
 of the blocks that each found. What cannot be run is told of on stderr."""
 import json
-import os
 import sys
 import time
 
-from environment import WANTED_LLVM, environment, newest_llvm, rerun
+sys.dont_write_bytecode = True
+from environment import WANTED_LLVM, environment, newest_llvm, rerun  # noqa: E402
 
 RUNS = 3
 PATIENCE = {"forward": 1.5, "adjoint": 3.0}  # seconds that a run may be foreseen to take
@@ -67,7 +67,6 @@ def main(folder, *arguments):
 
 
 if __name__ == "__main__":
-    sys.dont_write_bytecode = True
     if len(sys.argv) < 3:
         sys.exit(__doc__)
     if sys.argv[1] == "--inside":

@@ -20,14 +20,14 @@ def environment(folder, programs, install=True):
             if not os.path.exists(complete):
                 if not install:
                     raise OSError("it is not in %s, and nothing is fetched in a quick run" % folder)
-                if not os.path.exists(python):
+                if not os.path.exists(os.path.join(folder, "bin", "pip")):
                     subprocess.run([sys.executable, "-m", "venv", folder], check=True, stdout=sys.stderr)
                 subprocess.run([python, "-m", "pip", "install", "--quiet", "--disable-pip-version-check",
                                 "--only-binary", ":all:", program], check=True, stdout=sys.stderr, timeout=300)
                 open(complete, "w").close()
             there.append(program)
         except subprocess.SubprocessError as error:
-            print("Without %s: PyPI is not reached, or has no package for this machine (%s)" % (program, error),
+            print("Without %s: no python3 -m venv, or PyPI is not reached, or has no package for this machine (%s)" % (program, error),
                   file=sys.stderr)
         except OSError as error:
             print("Without %s: %s" % (program, error), file=sys.stderr)

@@ -11,7 +11,8 @@ import statistics
 import sys
 import time
 
-from environment import environment, rerun
+sys.dont_write_bytecode = True
+from environment import environment, rerun  # noqa: E402
 
 STREAMS = 32
 COSINES = {"mu1": 1.0, "mu05": 0.5}
@@ -80,7 +81,6 @@ def answer_all(programs):
 SOLVERS = {"disortpp": by_disortpp, "PythonicDISORT": by_PythonicDISORT}
 
 if __name__ == "__main__":
-    sys.dont_write_bytecode = True
     if len(sys.argv) < 2:
         sys.exit(__doc__)
     if sys.argv[1] == "--inside":
