@@ -4,6 +4,7 @@
 //   DOUBLES     1 where the device has double precision
 //   PASSING     1: lamps' light passes faces at once where it is scattered
 //   MOMENTS     1: sweeps carry light that goes straight on where it is scattered forwards, or has angular moments
+//   SKIN        1: thick voxels lie beside thinner ones
 //
 // Arrays of the solver are [voxel], and may be read a vector beyond a row's end; arrays of rows are as MultigridRows.cl
 // has them. Of a row the face at x = 0 is apart: what is before it in memory is no neighbour.
@@ -193,6 +194,24 @@ static real skin_of(const DiffusionLayout* layout, const real* sigma_t)
   return layout->linear ? select((real)0.0f, most, most > (real)0.01f) : (real)0.0f;
 }
 
+// Which rows have voxels with a skin.
+// skins  [z][y]
+__kernel void diffusion_skins(DiffusionLayout layout, const __global float* extinction, __global int* skins)
+{
+  FOR_ROWS(layout.rows)
+  {
+    const int y = r % layout.size[1], z = r / layout.size[1];
+    real most = (real)0.0f;
+    for (int x = 0; x < layout.size[0]; x += REAL_WIDTH)
+    {
+      real sigma_t[7];
+      find_extinctions(&layout, y, z, x, extinction, sigma_t);
+      most = fmax(most, in_row(skin_of(&layout, sigma_t), layout.size[0] - x));
+    }
+    skins[r] = sum_of(most) > 0.0f;
+  }
+}
+
 // Exact values of a row by voxels from x on, as floats; what is beyond its end repeats the last.
 static real load_rounded(const __global exact* row, int x, int size)
 {
@@ -206,7 +225,7 @@ static real load_rounded(const __global exact* row, int x, int size)
 
 // The fluence at which the sweep's power is compared with diffusion (numerics.md, Eq. (56)): in thin voxels what
 // the sweep found, in thick ones what it was given.
-// extinction  sigma_t in rows, see diffusion_extinction
+// extinction  sigma_t in rows, see diffusion_extinction; where SKIN is 0 as the solver has it
 __kernel void diffusion_model(DiffusionLayout layout, const __global float* extinction, const __global float* path,
   const __global exact* fluence, const __global float* source, __global float* model)
 {
@@ -219,15 +238,20 @@ __kernel void diffusion_model(DiffusionLayout layout, const __global float* exti
     const int y = r % layout.size[1], z = r / layout.size[1], here = voxel_at(&layout, y, z);
     for (int x = 0; x < n; x += REAL_WIDTH)
     {
+      const real solved = load_rounded(fluence + here, x, n);
+#if SKIN
       real sigma_t[7];
       find_extinctions(&layout, y, z, x, extinction, sigma_t);
       const real skin = skin_of(&layout, sigma_t);
-      const real solved = load_rounded(fluence + here, x, n);
-      const real longest = sigma_t[0] * edge;
-      const real found = load_real(here + x, path) / volume_of(&layout);
-      const real thick = layout.linear ? 1.0f - 1.0f / (1.0f + longest * longest) : (real)0.0f;
       const real shining = 4.0f * M_PI_F * load_real(here + x, source) / fmax(sigma_t[0], (real)1e-37f);
       const real given = select(solved, mix(solved, shining, skin), skin > (real)0.0f);
+      const real longest = sigma_t[0] * edge;
+#else
+      const real given = solved;
+      const real longest = load_real(layout.firstT + here + x, extinction) * edge;
+#endif
+      const real found = load_real(here + x, path) / volume_of(&layout);
+      const real thick = layout.linear ? 1.0f - 1.0f / (1.0f + longest * longest) : (real)0.0f;
       const real value = select(found + thick * (given - found), given, longest > (real)1e9f);
       store_in_row(value, x, n, model + here);
     }

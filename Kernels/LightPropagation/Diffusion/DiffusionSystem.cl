@@ -27,12 +27,8 @@ static float conductance_at(const DiffusionLayout* layout, const __global float*
 __kernel void diffusion_border_loss(
   DiffusionLayout layout, const __global float* sigma_t, const __global float* sigma_a, __global float* loss)
 {
-  VOXEL(layout.size)
+  BORDER_VOXEL(layout)
   const int at[3] = { x, y, z };
-  if (!IS_OUTERMOST(layout, at))
-  {
-    return;
-  }
   const float s = sigma_t[layout.firstT + i], a = sigma_a[layout.first + i];
   float taken = 0.0f;
   for (int d = 0; d < 6; ++d)
@@ -353,11 +349,7 @@ __kernel void diffusion_border_balance(DiffusionLayout layout, const __global fl
   const __global float* model, const __global float* pattern, const __global float* source, const __global float* path,
   const __global float* given_flux, const __global float* faces, __global float* right)
 {
-  VOXEL(layout.size)
-  if (!IS_OUTERMOST(layout, ((int[3]){ x, y, z })))
-  {
-    return;
-  }
+  BORDER_VOXEL(layout)
   ARRAYS_OF_CHANNEL
   float power = 0.0f;
   for (int d = 0; d < 6; ++d)
@@ -387,11 +379,7 @@ __kernel void diffusion_outflow(DiffusionLayout layout, const __global float* si
   const __global float* pattern, const __global float* source, const __global float* path,
   const __global float* given_flux, __global float* faces, const __global exact* fluence, __global exact* outflow)
 {
-  VOXEL(layout.size)
-  if (!IS_OUTERMOST(layout, ((int[3]){ x, y, z })))
-  {
-    return;
-  }
+  BORDER_VOXEL(layout)
   ARRAYS_OF_CHANNEL
   remainder_of_borders(
     &layout, &arrays, i, next, at, source[i] * per_radiance - swept[i] * path[i], share, seeming, &transport_weight);
@@ -457,6 +445,7 @@ __kernel void diffusion_found_flux(DiffusionLayout layout, const __global float*
   __global exact* fluence)
 {
   VOXEL(layout.size)
+  const int count = layout.size[0] * layout.size[1] * layout.size[2];
   const __global float* moments = path;
   ARRAYS_OF_CHANNEL
   const ulong line = (ulong)z * layout.size[1] + y;
@@ -497,11 +486,16 @@ __kernel void diffusion_put_flux(
 
 // The next sweep's source where thick voxels lie beside thinner ones: what gives their surface the outward partial
 // current of diffusion, instead of what is emitted and scattered (numerics.md, Eqs. (63), (64)).
+// skins  of rows, see diffusion_skins
 __kernel void diffusion_surface_source(DiffusionLayout layout, const __global exact* fluence,
   const __global float* sigma_t, const __global float* sigma_a, const __global float* conductance,
-  const __global float* passed, __global float* source)
+  const __global float* passed, const __global int* skins, __global float* source)
 {
   VOXEL(layout.size)
+  if (!skins[z * layout.size[1] + y])
+  {
+    return;
+  }
   const ulong stride = layout.stride;
   const int count = layout.size[0] * layout.size[1] * layout.size[2];
   const ulong begin = layout.first;

@@ -1,6 +1,7 @@
 #include "LightPropagation/Diffusion/DiffusionSystem.h"
 
 #include "Device/Defines.h"
+#include "Device/Sizes.h"
 #include "LightPropagation/Diffusion/DiffusionLayout.h"
 #include "Medium/BoxFaces.h"
 #include "Numerics/Constants.h"
@@ -15,7 +16,8 @@ namespace tyndall
 namespace
 {
 constexpr double Floor = 0.05;     ///< optical length between centres of voxels that pass light as if it were that long
-constexpr double Reduction = 1e-3; ///< of the residual in one correction: sweeps gain less than that
+constexpr double Reduction = 1e-2; ///< of the residual in one correction: sweeps gain no more than that
+constexpr std::size_t BorderGroup = 256; ///< cells of the box's faces in a work-group
 constexpr int PerBorder = 5;       ///< values of a voxel's face at the box's border (diffusion_outflow)
 
 /// Rounding can leave dark faces a little below 0: they become 0, and the others are scaled so that the sum stays.
@@ -42,6 +44,7 @@ DiffusionSystem::DiffusionSystem(Device& device, const Grid& grid, const std::ar
   : TheDevice(device)
   , The(arrays)
   , Count(grid.VoxelCount())
+  , BorderCells(BoxFaceCellCount(grid))
   , Solver(device, grid.size, grid.spacing)
   , Mixing(device, grid.VoxelCount(), this->Values(), "the diffusion system")
 {
@@ -69,7 +72,7 @@ DiffusionSystem::DiffusionSystem(Device& device, const Grid& grid, const std::ar
   this->Next = ExactValues(device, this->Values(), what);
   this->Solution = ExactValues(device, this->Values(), what);
   this->Solution.Fill(0.0); // a dark channel is never solved for
-  this->Borders = ExactValues(device, PerBorder * BoxFaceCellCount(grid), what);
+  this->Borders = ExactValues(device, PerBorder * this->BorderCells, what);
 
   cl::Kernel flat_source = this->RowsKernel("diffusion_flat_source");
   With(flat_source, this->Layout, *arrays.sigma_t, *arrays.swept, this->FlatSource);
@@ -80,8 +83,9 @@ DiffusionSystem::DiffusionSystem(Device& device, const Grid& grid, const std::ar
   this->RunRows(conductance);
   cl::Kernel border = this->Kernel("diffusion_border_loss");
   With(border, this->Layout, *arrays.sigma_t, *arrays.sigma_a, this->Solver.Loss());
-  this->Run(border);
+  this->RunBorder(border);
   this->Solver.Coarsen();
+  this->FindSkins();
 }
 
 std::string DiffusionSystem::Options() const
@@ -99,12 +103,19 @@ cl::Kernel DiffusionSystem::Kernel(const char* name) const
 cl::Kernel DiffusionSystem::RowsKernel(const char* name) const
 {
   return this->TheDevice.Kernel(name, kernel_source::DiffusionRows,
-    this->Options() + Define("REAL_WIDTH", this->TheDevice.KernelWidth(4, RowVector, 4)));
+    this->Options() + Define("REAL_WIDTH", this->TheDevice.KernelWidth(4, RowVector, 4)) +
+      Define("SKIN", this->AnySkin));
 }
 
 void DiffusionSystem::Run(cl::Kernel& kernel)
 {
   RunVoxels(this->TheDevice, kernel, this->Layout);
+}
+
+void DiffusionSystem::RunBorder(cl::Kernel& kernel)
+{
+  this->TheDevice.Queue().enqueueNDRangeKernel(
+    kernel, cl::NullRange, cl::NDRange(RoundUp(this->BorderCells, BorderGroup)), cl::NDRange(BorderGroup));
 }
 
 void DiffusionSystem::RunRows(cl::Kernel& kernel) const
@@ -113,21 +124,47 @@ void DiffusionSystem::RunRows(cl::Kernel& kernel) const
 }
 
 template <class... More>
-void DiffusionSystem::RunOnArrays(const char* name, const More&... more)
+cl::Kernel DiffusionSystem::OnArrays(const char* name, const More&... more)
 {
   const Arrays& the = this->The;
   cl::Kernel kernel = this->Kernel(name);
   With(kernel, this->Layout, *the.sigma_t, *the.sigma_a, *the.swept, this->FlatSource, this->Solver.Conductance(),
     *the.partialCurrents, this->Passed(), this->Model, this->Pattern, *the.source, *the.path,
     the.givenFlux ? *the.givenFlux : *the.given, this->The.faces ? *this->The.faces : this->Model, more...);
-  this->Run(kernel);
+  return kernel;
+}
+
+/// Which rows have thick voxels beside thinner ones.
+void DiffusionSystem::FindSkins()
+{
+  this->Skins = Buffer<cl_int>(this->TheDevice, tyndall::Count(this->Layout.size[1] * this->Layout.size[2]), "rows of skins");
+  const Buffer<float>& extinction = this->ExtinctionInRows();
+  cl::Kernel kernel = this->RowsKernel("diffusion_skins");
+  With(kernel, this->Layout, extinction, this->Skins);
+  this->RunRows(kernel);
+  const std::vector<cl_int> rows = this->Skins.Read();
+  this->AnySkin = std::any_of(rows.begin(), rows.end(), [](cl_int any) { return any != 0; });
+}
+
+/// In an array that the solver takes back when it solves.
+const Buffer<float>& DiffusionSystem::ExtinctionInRows()
+{
+  const Buffer<float>& extinction = *this->Solver.Scratch().front();
+  cl::Kernel rows = this->RowsKernel("diffusion_extinction");
+  With(rows, this->Layout, *this->The.sigma_t, extinction);
+  this->RunRows(rows);
+  return extinction;
 }
 
 void DiffusionSystem::ShapeSource()
 {
+  if (!this->AnySkin)
+  {
+    return;
+  }
   cl::Kernel kernel = this->Kernel("diffusion_surface_source");
   With(kernel, this->Layout, this->Next.Handle(), *this->The.sigma_t, *this->The.sigma_a, this->Solver.Conductance(),
-    this->Passed(), *this->The.source);
+    this->Passed(), this->Skins, *this->The.source);
   this->Run(kernel);
 }
 
@@ -135,10 +172,7 @@ void DiffusionSystem::ShapeSource()
 void DiffusionSystem::FindModel()
 {
   const Arrays& the = this->The;
-  const Buffer<float>& extinction = *this->Solver.Scratch().front();
-  cl::Kernel rows = this->RowsKernel("diffusion_extinction");
-  With(rows, this->Layout, *the.sigma_t, extinction);
-  this->RunRows(rows);
+  const Buffer<float>& extinction = this->AnySkin ? this->ExtinctionInRows() : *the.sigma_t;
   cl::Kernel model = this->RowsKernel("diffusion_model");
   With(model, this->Layout, extinction, *the.path, this->Next.Handle(), *the.source, this->Model);
   this->RunRows(model);
@@ -157,7 +191,8 @@ void DiffusionSystem::Balance()
   cl::Kernel balance = this->RowsKernel("diffusion_balance");
   With(balance, this->Layout, *the.given, *x, *y, *z, this->Solver.Right());
   this->RunRows(balance);
-  this->RunOnArrays("diffusion_border_balance", this->Solver.Right());
+  cl::Kernel border = this->OnArrays("diffusion_border_balance", this->Solver.Right());
+  this->RunBorder(border);
 }
 
 double DiffusionSystem::Correct(double unit)
@@ -167,7 +202,9 @@ double DiffusionSystem::Correct(double unit)
   this->Solver.Solve(this->Solution, unit, Reduction);
   if (this->HasMoments())
   {
-    this->RunOnArrays("diffusion_found_flux", this->The.moments, cl_int(this->The.channel), this->Solution.Handle());
+    cl::Kernel flux =
+      this->OnArrays("diffusion_found_flux", this->The.moments, cl_int(this->The.channel), this->Solution.Handle());
+    this->Run(flux);
   }
 
   const auto& h = this->Layout.spacing;
@@ -205,7 +242,8 @@ std::vector<double> DiffusionSystem::Found() const
 
 std::array<double, 6> DiffusionSystem::Outflow(double entered, const std::array<double, 6>& ofSweep)
 {
-  this->RunOnArrays("diffusion_outflow", this->Solution.Handle(), this->Borders.Handle());
+  cl::Kernel kernel = this->OnArrays("diffusion_outflow", this->Solution.Handle(), this->Borders.Handle());
+  this->RunBorder(kernel);
   const std::vector<double> borders = this->Borders.Read();
   std::array<double, 6> outflow = {};
   std::array<double, 6> missing = ofSweep; // of what seems to leave
@@ -281,6 +319,7 @@ void DiffusionSystem::PutNextFlux(const Buffer<float>& path)
 
 void DiffusionSystem::AddFlux(const Buffer<float>& flux)
 {
-  this->RunOnArrays("diffusion_flux", this->Solution.Handle(), flux);
+  cl::Kernel kernel = this->OnArrays("diffusion_flux", this->Solution.Handle(), flux);
+  this->Run(kernel);
 }
 }
