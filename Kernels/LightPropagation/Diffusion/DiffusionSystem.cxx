@@ -215,7 +215,7 @@ double DiffusionSystem::Correct(double unit)
 void DiffusionSystem::Refine(double unit)
 {
   this->Balance();
-  this->Solver.Solve(this->Solution, unit, 1e-3, 1e-6);
+  this->Solver.Solve(this->Solution, unit, 0.1, 1e-6);
 }
 
 double DiffusionSystem::Absorbed() const

@@ -149,6 +149,10 @@ __kernel void begin_residual(MultigridLevel level, const __global float* conduct
       right[here + x] = left;
       guess[here + x] = inverse[here + x] * left;
     }
+    for (int x = level.size[0]; x % REAL_WIDTH != 0; ++x)
+    {
+      right[here + x] = 0.0f; // a ghost, perhaps
+    }
     fill_ghosts(guess + here, level.size[0]);
   }
 }

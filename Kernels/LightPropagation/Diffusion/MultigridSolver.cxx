@@ -15,7 +15,7 @@ namespace
 constexpr int FinishRounds = 12; ///< on the coarsest level
 constexpr int MostIterations = 300;
 constexpr int Patience = 12;         ///< iterations in which a residual has to halve, or is left as it is
-constexpr float Damping = 0.8f;      ///< of Jacobi's method, about the best for seven points
+constexpr float Damping = 0.87f;     ///< of Jacobi's method, about the best: 0.8 takes 8% more iterations, 0.95 as many
 constexpr double Negligible = 1e-12; ///< residual, of the first one
 
 /// Whether a residual is above a bound and has not stopped falling. Asked once an iteration.
