@@ -37,13 +37,13 @@ static bool find_border_voxel(const DiffusionLayout* layout, int cell, int* at)
 }
 
 // The voxel of a work-item, one of those at the box's faces: x, y, z and i.
-#define BORDER_VOXEL(layout)                                         \
-  int border[3];                                                     \
-  if (!find_border_voxel(&(layout), (int)get_global_id(0), border))  \
-  {                                                                  \
-    return;                                                          \
-  }                                                                  \
-  const int x = border[0], y = border[1], z = border[2];             \
+#define BORDER_VOXEL(layout)                                        \
+  int border[3];                                                    \
+  if (!find_border_voxel(&(layout), (int)get_global_id(0), border)) \
+  {                                                                 \
+    return;                                                         \
+  }                                                                 \
+  const int x = border[0], y = border[1], z = border[2];            \
   const int i = (z * (layout).size[1] + y) * (layout).size[0] + x;
 
 // Power through a face of the box that gives back a part, out less in (numerics.md, Eqs. (76b), (76c)):

@@ -96,8 +96,8 @@ __kernel void diffusion_flat_source(
 }
 
 // Of faces between voxels 0 and 1 across an axis, length^2.
-static real conductance_of(const DiffusionLayout* layout, int axis, real sigma_t0, real sigma_a0, real sigma_t1,
-  real sigma_a1, real flat_source)
+static real conductance_of(
+  const DiffusionLayout* layout, int axis, real sigma_t0, real sigma_a0, real sigma_t1, real sigma_a1, real flat_source)
 {
   const float h = layout->spacing[axis];
   const real tau0 = sigma_t0 * h, tau1 = sigma_t1 * h;
@@ -274,8 +274,9 @@ static real power_of_faces(
 {
   inner_face face = { { load_real(j, of->sigma_t), load_real(i, of->sigma_t) },
     { load_real(j, of->sigma_a), load_real(i, of->sigma_a) },
-    { load_real(j, of->flatSource), load_real(i, of->flatSource) }, { load_real(j, of->model), load_real(i, of->model) },
-    passes, load_real(i, of->low) - load_real(j, of->high), (real)0.0f, crossing };
+    { load_real(j, of->flatSource), load_real(i, of->flatSource) },
+    { load_real(j, of->model), load_real(i, of->model) }, passes, load_real(i, of->low) - load_real(j, of->high),
+    (real)0.0f, crossing };
 #if MOMENTS
   const float per_flux = 1.5f * layout->spacing[axis] * (4.0f * M_PI_F);
   face.driven = passes * per_flux * (load_real(j, of->givenFlux) + load_real(i, of->givenFlux));
@@ -311,7 +312,8 @@ __kernel void diffusion_face_powers(DiffusionLayout layout, const __global float
       const __global float* low = currents + 2 * axis * stride;
       const __global float* passed_low = passed + (PASSING ? 2 * axis * stride : 0);
       const face_arrays arrays = { sigma_t + layout.firstT, sigma_a + layout.first, flat_source + axis * stride, model,
-        low, low + stride, passed_low, passed_low + (PASSING ? stride : 0), given_flux + (MOMENTS ? axis * stride : 0) };
+        low, low + stride, passed_low, passed_low + (PASSING ? stride : 0),
+        given_flux + (MOMENTS ? axis * stride : 0) };
       const __global float* passes = conductance + axis * layout.rows.floats + row;
       const __global float* along_x = pattern + layout.pattern[2 * axis];
       const float of_row = pattern[layout.pattern[2 * axis + 1] + (axis == 2 ? y : z)];

@@ -35,10 +35,10 @@ typedef struct
   int firstT, first; ///< where this channel begins: of sigma_t, of all others (currents: six times that, flux: three)
   int pattern[6];    ///< where the tables of crossings begin: [axis][other axes in order]
   float spacing[3];
-  float halfRange;   ///< sum over directions of w mu / 4 pi, mu > 0: 1/4 but for the direction set
-  float floor;       ///< optical length between voxels' centres below which they pass no more
-  float incoming[6]; ///< W / length^2 through each face of the box
-  float albedo[6];   ///< part that each face gives back of what leaves through it
+  float halfRange;     ///< sum over directions of w mu / 4 pi, mu > 0: 1/4 but for the direction set
+  float floor;         ///< optical length between voxels' centres below which they pass no more
+  float incoming[6];   ///< W / length^2 through each face of the box
+  float albedo[6];     ///< part that each face gives back of what leaves through it
   MultigridLevel rows; ///< how conductances lie in memory
 } DiffusionLayout;
 

@@ -333,7 +333,7 @@ static exact power_leaving(const DiffusionLayout* layout, const diffusion_arrays
   path += layout.first;                                                                                           \
   const ulong stride = layout.stride;                                                                             \
   const diffusion_arrays arrays = { sigma_t, sigma_a, flat_source, conductance, currents, passed, model, pattern, \
-    given_flux, stride, faces };                                                                           \
+    given_flux, stride, faces };                                                                                  \
   const int at[3] = { x, y, z };                                                                                  \
   int next[6];                                                                                                    \
   find_neighbours(layout.size, x, y, z, i, next);                                                                 \

@@ -18,7 +18,7 @@ namespace
 constexpr double Floor = 0.05;     ///< optical length between centres of voxels that pass light as if it were that long
 constexpr double Reduction = 1e-2; ///< of the residual in one correction: sweeps gain no more than that
 constexpr std::size_t BorderGroup = 256; ///< cells of the box's faces in a work-group
-constexpr int PerBorder = 5;       ///< values of a voxel's face at the box's border (diffusion_outflow)
+constexpr int PerBorder = 5;             ///< values of a voxel's face at the box's border (diffusion_outflow)
 
 /// Rounding can leave dark faces a little below 0: they become 0, and the others are scaled so that the sum stays.
 std::array<double, 6> NotNegative(std::array<double, 6> powers)
@@ -137,7 +137,8 @@ cl::Kernel DiffusionSystem::OnArrays(const char* name, const More&... more)
 /// Which rows have thick voxels beside thinner ones.
 void DiffusionSystem::FindSkins()
 {
-  this->Skins = Buffer<cl_int>(this->TheDevice, tyndall::Count(this->Layout.size[1] * this->Layout.size[2]), "rows of skins");
+  this->Skins =
+    Buffer<cl_int>(this->TheDevice, tyndall::Count(this->Layout.size[1] * this->Layout.size[2]), "rows of skins");
   const Buffer<float>& extinction = this->ExtinctionInRows();
   cl::Kernel kernel = this->RowsKernel("diffusion_skins");
   With(kernel, this->Layout, extinction, this->Skins);

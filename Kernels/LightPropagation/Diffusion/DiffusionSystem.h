@@ -115,8 +115,8 @@ private:
   std::string Options() const;
   cl::Kernel Kernel(const char* name) const;
   cl::Kernel RowsKernel(const char* name) const; ///< that walks along rows
-  void Run(cl::Kernel& kernel);       ///< voxel by voxel
-  void RunBorder(cl::Kernel& kernel); ///< of voxels at the box's faces
+  void Run(cl::Kernel& kernel);                  ///< voxel by voxel
+  void RunBorder(cl::Kernel& kernel);            ///< of voxels at the box's faces
   void RunRows(cl::Kernel& kernel) const;
   /// The arguments that the kernels share, then `more`.
   template <class... More>

@@ -9,8 +9,8 @@ namespace tyndall
 {
 namespace
 {
-constexpr std::size_t FewVoxels = 64;      ///< of the coarsest level
-constexpr int VoxelsOfItem = 4096;         ///< that a work-item walks along, about
+constexpr std::size_t FewVoxels = 64;        ///< of the coarsest level
+constexpr int VoxelsOfItem = 4096;           ///< that a work-item walks along, about
 constexpr int BetweenPlanes = 2 * RowVector; ///< floats, beyond the rows
 
 /// How the arrays of a level of this size lie in memory.

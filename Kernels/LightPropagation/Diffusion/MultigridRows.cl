@@ -13,9 +13,9 @@
 #endif
 
 // The rows that this work-item walks along, one after the other: r, y and z.
-#define FOR_ROWS(level)                                                                                      \
-  for (int r = get_global_id(0) * (level).together,                                                          \
-           row_end = min((level).size[1] * (level).size[2], r + (level).together);                           \
+#define FOR_ROWS(level)                                                            \
+  for (int r = get_global_id(0) * (level).together,                                \
+           row_end = min((level).size[1] * (level).size[2], r + (level).together); \
        r < row_end; ++r)
 
 inline int row_at(const MultigridLevel* level, int y, int z)
@@ -38,7 +38,7 @@ inline void fill_ghosts(__global float* row, int size)
 
 typedef struct
 {
-  const __global float *own, *low_y, *high_y, *low_z, *high_z;                                   // values
+  const __global float *own, *low_y, *high_y, *low_z, *high_z;                                 // values
   const __global float *loss, *passes_x, *passes_y, *passes_high_y, *passes_z, *passes_high_z; // of faces
 } matrix_row;
 
@@ -52,8 +52,8 @@ inline matrix_row find_matrix_row(const MultigridLevel* level, int y, int z, con
   const int high_z = row_at(level, y, z < level->size[2] - 1 ? z + 1 : 0);
   const __global float* passes_y = conductance + level->floats;
   const __global float* passes_z = passes_y + level->floats;
-  const matrix_row row = { values + here, values + low_y, values + high_y, values + low_z, values + high_z,
-    loss + here, conductance + here, passes_y + here, passes_y + high_y, passes_z + here, passes_z + high_z };
+  const matrix_row row = { values + here, values + low_y, values + high_y, values + low_z, values + high_z, loss + here,
+    conductance + here, passes_y + here, passes_y + high_y, passes_z + here, passes_z + high_z };
   return row;
 }
 

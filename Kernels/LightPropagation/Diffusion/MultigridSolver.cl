@@ -117,8 +117,8 @@ __kernel void level_coarsen(MultigridLevel fine, MultigridLevel coarse, const __
 }
 
 // (b - A x) per unit in one voxel, in exact numbers; x by voxels without ghosts.
-static float residual_at(const MultigridLevel* level, const matrix_row* row, const __global exact* values, int x,
-  int y, int z, float right)
+static float residual_at(
+  const MultigridLevel* level, const matrix_row* row, const __global exact* values, int x, int y, int z, float right)
 {
   const int* n = level->size;
   const __global exact* own = values + ((ulong)z * n[1] + y) * n[0];
@@ -363,8 +363,8 @@ __kernel void go_along(MultigridLevel level, const __global float* direction, co
       of_row += to_exact_real(residual) * to_exact_real(residual);
       if (x + REAL_WIDTH <= n)
       {
-        store_exact(load_exact(x, of_voxels) + to_exact_real(load_real(x, direction + here)) * step_of_values, x,
-          of_voxels);
+        store_exact(
+          load_exact(x, of_voxels) + to_exact_real(load_real(x, direction + here)) * step_of_values, x, of_voxels);
       }
       else
       {

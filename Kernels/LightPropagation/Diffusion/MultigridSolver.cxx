@@ -42,8 +42,7 @@ private:
 };
 }
 
-MultigridSolver::MultigridSolver(
-  Device& device, const std::array<int, 3>& size, const std::array<double, 3>& spacing)
+MultigridSolver::MultigridSolver(Device& device, const std::array<int, 3>& size, const std::array<double, 3>& spacing)
   : TheDevice(device)
 {
   const char* what = "the diffusion system";
