@@ -69,7 +69,6 @@ void SteadyLattice::Load()
   const bool closes = periodic[0] || periodic[1] || periodic[2];
   this->Share = ExactValues(this->TheDevice, closes ? this->Count : 1, what);
   this->Sum = ExactValues(this->TheDevice, this->Count, what);
-  this->Right = ExactValues(this->TheDevice, this->Count, what);
   this->Correction = ExactValues(this->TheDevice, this->Count, what);
   Values straight;
   for (std::size_t i = 0; i < this->Count; ++i)
@@ -108,8 +107,8 @@ void SteadyLattice::LoadDiffusion()
       }
     }
   }
-  this->Diffusion.Conductance().Write(conductance.data());
-  this->Diffusion.Loss().Write(loss.data());
+  this->Diffusion.Conductance().Write(InRows(this->Diffusion.Rows(), conductance, 3).data());
+  this->Diffusion.Loss().Write(InRows(this->Diffusion.Rows(), loss).data());
   this->Diffusion.Coarsen();
 }
 
@@ -190,9 +189,9 @@ SteadyLattice::Values SteadyLattice::Preconditioned(const Values& residual)
   {
     return Values(this->Count, 0.0);
   }
-  this->Right.Write(residual);
+  this->Diffusion.Right().Write(InRows(this->Diffusion.Rows(), residual).data());
   this->Correction.Fill(0.0);
-  this->Diffusion.Solve(this->Right, this->Correction, unit, InnerReduction);
+  this->Diffusion.Solve(this->Correction, unit, InnerReduction);
   Values corrected = this->Correction.Read();
   for (std::size_t i = 0; i < this->Count; ++i)
   {

@@ -46,7 +46,7 @@ private:
   const LatticeVoxels& Voxels;
   const Lattice& Densities;
   std::size_t Count;
-  ExactValues Straight, Even, Behind, Share, Sum, Right, Correction;
+  ExactValues Straight, Even, Behind, Share, Sum, Correction;
   Buffer<float> Passes, Squared;
   MultigridSolver Diffusion;
   double Start, Work = 0.0;

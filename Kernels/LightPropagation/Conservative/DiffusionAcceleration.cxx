@@ -381,9 +381,7 @@ void DiffusionAcceleration::Correct(int iteration)
 /// among the faces.
 void DiffusionAcceleration::CountLight()
 {
-  const Grid& grid = this->Parts.Layout.grid;
   this->Result.ledger = this->Uncollided->Ledger();
-  this->Found.clear();
   for (int c = 0; c < this->Parts.Layout.channels; ++c)
   {
     double entered = 0.0;
@@ -396,15 +394,9 @@ void DiffusionAcceleration::CountLight()
     }
     if (!(this->VoxelPower(c) > 0.0))
     {
-      this->Found.emplace_back(grid.VoxelCount(), 0.0); // dark: never solved for
-      continue;
+      continue; // dark: never solved for
     }
-    this->Found.push_back(this->Systems[c]->Found());
-    for (std::size_t i = 0; i < grid.VoxelCount(); ++i)
-    {
-      this->Result.ledger.Absorb(
-        c, static_cast<double>(this->TheMedium.sigma_a.At(i, c)) * this->Found[c][i] * grid.VoxelVolume());
-    }
+    this->Result.ledger.Absorb(c, this->Systems[c]->Absorbed());
     const std::array<double, 6> outflow = this->Systems[c]->Outflow(entered, ofSweep);
     for (int face = 0; face < 6 && !this->Parts.Faces; ++face)
     {
@@ -457,9 +449,10 @@ void DiffusionAcceleration::BeginWarm()
   this->FirstMoments = parts.Basis ? parts.Path.Read() : std::vector<float>();
   for (int c = 0; c < layout.channels; ++c)
   {
+    const std::vector<double> found = this->Systems[c]->Found();
     for (std::size_t i = 0; i < layout.grid.VoxelCount(); ++i)
     {
-      this->First[c * layout.Stride() + i] += static_cast<float>(this->Found[c][i]);
+      this->First[c * layout.Stride() + i] += static_cast<float>(found[i]);
     }
     if (this->Warm.Begins())
     {
@@ -522,10 +515,11 @@ void DiffusionAcceleration::WriteFluence()
   std::vector<float> fluence(path.size(), 0.0f);
   for (int c = 0; c < parts.Layout.channels; ++c)
   {
+    const std::vector<double> solved = this->Systems[c]->Found();
     for (std::size_t i = 0; i < parts.Layout.grid.VoxelCount(); ++i)
     {
       const std::size_t at = c * parts.Layout.Stride() + i;
-      const double found = this->Found[c][i];
+      const double found = solved[i];
       const double swept = found >= 0.0 ? found : path[at] * perVolume;
       fluence[at] = std::max(static_cast<float>(swept + this->UncollidedFluence[at]), 0.0f);
     }

@@ -70,7 +70,6 @@ private:
   std::vector<HostMixing> BackMixing;                      ///< of CameBack, by channel
   SweepTally Tally;                                        ///< of the last sweep
   Rgb GivenPower = {}, PowerIn = {};                       ///< W, emitted or first scattered; through faces
-  std::vector<std::vector<double>> Found;                  ///< W / length^2, without uncollided light
   double Change = 1.0, LastRatio = 1.0, Residual = 1.0;
 
   WarmStart Warm;

@@ -1,5 +1,7 @@
 #pragma once
 
+#include "Device/Device.h"
+#include "Device/Sizes.h"
 #include "LightPropagation/Diffusion/DiffusionShared.h"
 #include "Medium/Grid.h"
 
@@ -22,5 +24,13 @@ DiffusionLayout LayoutOf(const Grid& grid, const std::array<bool, 3>& periodic, 
   layout.firstT = static_cast<cl_int>(arrays.firstT);
   layout.first = static_cast<cl_int>(arrays.first);
   return layout;
+}
+
+/// Runs a kernel whose work-items are voxels (VOXEL in DiffusionLayout.cl).
+inline void RunVoxels(Device& device, cl::Kernel& kernel, const DiffusionLayout& layout)
+{
+  const cl::NDRange range(RoundUp<std::size_t>(layout.size[0], 32), RoundUp<std::size_t>(layout.size[1], 8),
+    static_cast<std::size_t>(layout.size[2]));
+  device.Queue().enqueueNDRangeKernel(kernel, cl::NullRange, range, cl::NDRange(32, 8, 1));
 }
 }

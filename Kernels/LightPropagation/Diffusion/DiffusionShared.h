@@ -7,8 +7,23 @@ SHARED_BEGIN
 enum
 {
   DiffusionChunk = 4096, ///< values that a work-item sums up before the host adds the chunks in double
-  AndersonSums = 8       ///< of a chunk
+  AndersonSums = 8,      ///< of a chunk
+  RowVector = 8,         ///< the widest vector that walks along rows of a level, floats
+  RowsLead = 16          ///< floats before a level's first row
 };
+
+/// A level of multigrid, and how its arrays lie in memory: rows along x, each behind its left ghost (the last float of
+/// what is before it) and followed by its right one, so that vectors may be loaded one voxel aside; planes are a little
+/// further apart, for rows of neighbouring planes not to fall on the same lines of the caches.
+typedef struct
+{
+  int size[3];
+  int halved[3]; ///< to the next coarser level
+  int pitch;     ///< floats from row to row
+  int plane;     ///< from plane to plane
+  int floats;    ///< of an array
+  int together;  ///< rows that a work-item walks along
+} MultigridLevel;
 
 /// The grid and arrays of one channel.
 typedef struct
@@ -20,10 +35,11 @@ typedef struct
   int firstT, first; ///< where this channel begins: of sigma_t, of all others (currents: six times that, flux: three)
   int pattern[6];    ///< where the tables of crossings begin: [axis][other axes in order]
   float spacing[3];
-  float halfRange;   ///< sum over directions of w mu / 4 pi, mu > 0: 1/4 but for the direction set
-  float floor;       ///< optical length between voxels' centres below which they pass no more
-  float incoming[6]; ///< W / length^2 through each face of the box
-  float albedo[6];   ///< part that each face gives back of what leaves through it
+  float halfRange;     ///< sum over directions of w mu / 4 pi, mu > 0: 1/4 but for the direction set
+  float floor;         ///< optical length between voxels' centres below which they pass no more
+  float incoming[6];   ///< W / length^2 through each face of the box
+  float albedo[6];     ///< part that each face gives back of what leaves through it
+  MultigridLevel rows; ///< how conductances lie in memory
 } DiffusionLayout;
 
 /// Light by cells of the box's faces, W: rows of the array `faces`.
@@ -34,11 +50,4 @@ enum
   FaceLeft = 2,  ///< left in the sweep
   FaceLeaves = 3 ///< leaves by the solution
 };
-
-/// A level of multigrid.
-typedef struct
-{
-  int size[3];
-  int halved[3]; ///< to the next coarser level
-} MultigridLevel;
 SHARED_END

@@ -1,5 +1,5 @@
-// The diffusion system of a channel, see DiffusionSystem.h: what a sweep found becomes its right-hand side. The
-// host gives
+// The diffusion system of a channel at the box's faces, and what comes of its solution, voxel by voxel; what runs over all
+// voxels each time is in DiffusionRows.cl. The host gives
 //   DOUBLES  1 where the device has double precision
 //   PASSING  1: lamps' light passes faces at once where it is scattered
 //   FACES    1: light leaves and comes back by cells of the box's faces
@@ -7,81 +7,44 @@
 //
 // Face d of a voxel is -x, +x, -y, +y, -z, +z. tau is the optical length of a voxel along an axis.
 
-#include "LightPropagation/Diffusion/Conductance.cl"
+#include "LightPropagation/Diffusion/BoxBorders.cl"
+#include "LightPropagation/Diffusion/FaceRemainder.cl"
 #include "LightPropagation/Sweep/MomentPlacesShared.h"
 
-// flat_source  [axis][stride]
-// swept        sigma_t of the sweeps
-__kernel void diffusion_flat_source(
-  DiffusionLayout layout, const __global float* sigma_t, const __global float* swept, __global float* flat_source)
+// Conductance of face d of a voxel: of low faces, in rows (MultigridLevel).
+static float conductance_at(const DiffusionLayout* layout, const __global float* conductance, int d, const int* at)
 {
-  VOXEL(layout.size)
-  sigma_t += layout.firstT;
-  swept += layout.firstT;
-  float current = 0.0f;
-  for (int axis = 0; axis < 3; ++axis)
+  int of[3] = { at[0], at[1], at[2] };
+  if (d & 1)
   {
-    if (axis == 0 || layout.spacing[axis] != layout.spacing[axis - 1]) // of equal edges it is the same, and dear
-    {
-      current = flat_source_current(swept[i] * layout.spacing[axis]);
-#if MOMENTS
-      // Of the current, what the source's first moment is carries itself: the rest has the excess of a flat source.
-      const float rest = swept[i] > 0.0f ? fmin(sigma_t[i] / swept[i], 1.0f) : 1.0f;
-      current = 1.0f / 6.0f + rest * (current - 1.0f / 6.0f);
-#endif
-    }
-    flat_source[(ulong)axis * layout.stride + i] = current;
+    of[d / 2] = at[d / 2] + 1 < layout->size[d / 2] ? at[d / 2] + 1 : 0;
   }
+  const MultigridLevel* rows = &layout->rows;
+  return conductance[d / 2 * rows->floats + RowsLead + of[2] * rows->plane + of[1] * rows->pitch + of[0]];
 }
 
-// conductance  [axis][voxel] of the voxel's low face, length^2; 0 on the box's border
-// loss         what absorption and the border take per fluence
-__kernel void diffusion_conductance(DiffusionLayout layout, const __global float* sigma_t,
-  const __global float* sigma_a, const __global float* flat_source, __global float* conductance, __global float* loss)
+// What leaves through the box's border, per fluence, added to the loss.
+__kernel void diffusion_border_loss(
+  DiffusionLayout layout, const __global float* sigma_t, const __global float* sigma_a, __global float* loss)
 {
-  VOXEL(layout.size)
-  sigma_t += layout.firstT;
-  sigma_a += layout.first;
-  const ulong stride = layout.stride;
-  const int count = layout.size[0] * layout.size[1] * layout.size[2];
-  int next[6];
-  find_neighbours(layout.size, x, y, z, i, next);
-  float taken = sigma_a[i] * volume_of(&layout);
-  for (int axis = 0; axis < 3; ++axis)
+  BORDER_VOXEL(layout)
+  const int at[3] = { x, y, z };
+  const float s = sigma_t[layout.firstT + i], a = sigma_a[layout.first + i];
+  float taken = 0.0f;
+  for (int d = 0; d < 6; ++d)
   {
-    const float h = layout.spacing[axis];
-    const float area = face_area(&layout, axis);
-    const int at = axis == 0 ? x : axis == 1 ? y : z;
-    const int j = next[2 * axis];
-    const bool open = !layout.periodic[axis];
-    const float tau0 = sigma_t[j] * h, tau1 = sigma_t[i] * h;
-    const float y0 = half_diffusion_length(tau0, sigma_t[j], sigma_a[j]);
-    const float y1 = half_diffusion_length(tau1, sigma_t[i], sigma_a[i]);
-    const float passes =
-      area * pass_face(&layout, tau0, tau1, y0, y1, flat_source[axis * stride + i] + flat_source[axis * stride + j]);
-    conductance[axis * count + i] = (at == 0 && open) || layout.size[axis] == 1 ? 0.0f : passes;
+    if (is_border(&layout, at, d))
+    {
+      const float passes = pass_boundary(&layout, way_to_boundary(&layout, s * layout.spacing[d / 2], s, a));
+      const float leaves = face_area(&layout, d / 2) * passes;
 #if FACES
-    const float leaves = area * pass_boundary(&layout, way_to_boundary(&layout, tau1, sigma_t[i], sigma_a[i]));
-    for (int up = 0; up < 2 && open; ++up)
-    {
-      const bool border = at == (up ? layout.size[axis] - 1 : 0);
-      taken += border ? reflecting_face(&layout, 2 * axis + up, leaves / area).ofMedium * leaves : 0.0f;
-    }
+      taken += reflecting_face(&layout, d, passes).ofMedium * leaves;
 #else
-    const int borders = open ? (at == 0) + (at == layout.size[axis] - 1) : 0;
-    taken += borders * area * pass_boundary(&layout, way_to_boundary(&layout, tau1, sigma_t[i], sigma_a[i]));
+      taken += leaves;
 #endif
+    }
   }
-  loss[i] = taken;
-}
-
-// From 0 to 1: how thick a voxel of optical length tau is beside one of length beyond (numerics.md, Eq. (62)).
-static float contrast(float tau, float beyond)
-{
-  const float bounded = fmin(tau, 1e4f); // from there on it is as thick as can be, and a fourth power has an end
-  const float thick = 0.8f * bounded * bounded;
-  const float unlike = tau > beyond ? 1.0f - beyond / tau : 0.0f;
-  return unlike * unlike * thick * thick / ((1.0f + thick * thick) * (1.0f + beyond * beyond));
+  loss[RowsLead + z * layout.rows.plane + y * layout.rows.pitch + x] += taken;
 }
 
 // Of a voxel beside thinner ones: the largest contrast of its inner faces, 0 below 0.01, and that of each.
@@ -101,28 +64,6 @@ static float openness(
   return most > 0.01f ? most : 0.0f;
 }
 
-// The fluence at which the sweep's power is compared with diffusion (numerics.md, Eq. (56)): in thin voxels what
-// the sweep found, in thick ones what it was given.
-__kernel void diffusion_model(DiffusionLayout layout, const __global float* sigma_t, const __global float* path,
-  const __global exact* fluence, const __global float* source, __global float* model)
-{
-  VOXEL(layout.size)
-  sigma_t += layout.firstT;
-  path += layout.first;
-  source += layout.first;
-  const int at[3] = { x, y, z };
-  int next[6];
-  find_neighbours(layout.size, x, y, z, i, next);
-  float open[6];
-  const float skin = openness(&layout, sigma_t, i, next, at, open);
-  const float longest = sigma_t[i] * fmax(layout.spacing[0], fmax(layout.spacing[1], layout.spacing[2]));
-  const float found = path[i] / volume_of(&layout);
-  const float thick = layout.linear ? longest * longest / (1.0f + longest * longest) : 0.0f;
-  const float given =
-    skin > 0.0f ? mix((float)fluence[i], 4.0f * M_PI_F * source[i] / sigma_t[i], skin) : (float)fluence[i];
-  model[i] = longest > 1e9f ? given : found + thick * (given - found);
-}
-
 typedef struct
 {
   const __global float* sigma_t;
@@ -135,7 +76,6 @@ typedef struct
   const __global float* pattern;
   const __global float* givenFlux; // [axis][stride]
   ulong stride;
-  int count;
   const __global float* faces; // where FACES
 } diffusion_arrays;
 
@@ -193,44 +133,27 @@ static float drive_out(const DiffusionLayout* layout, const diffusion_arrays* ar
   return (d & 1 ? 1.0f : -1.0f) * drive(layout, arrays, d / 2, i);
 }
 
-// Power of rays that cross a face in their repeated pattern, over its mean (numerics.md, Eq. (65)).
-static float pattern_at(
-  const DiffusionLayout* layout, const diffusion_arrays* arrays, int axis, const int* at, float tau)
+// Of the pattern of rays that cross faces across an axis, at a voxel.
+static float crossing_at(const DiffusionLayout* layout, const diffusion_arrays* arrays, int axis, const int* at)
 {
   const int b = axis == 0 ? 1 : 0;
   const int c = axis == 2 ? 1 : 2;
-  const float crossing =
-    arrays->pattern[layout->pattern[2 * axis] + at[b]] + arrays->pattern[layout->pattern[2 * axis + 1] + at[c]];
-  const float thick = 1.0f - 1.0f / (1.0f + tau * tau); // in thin voxels it is in the light too
-  return 1.0f + thick * (crossing - 1.0f);
+  return arrays->pattern[layout->pattern[2 * axis] + at[b]] + arrays->pattern[layout->pattern[2 * axis + 1] + at[c]];
 }
 
-// The weight of the transport correction (numerics.md, Eq. (55)): 1 in thin voxels, little in thick or absorbing
-// ones, where the sweep's power holds nothing but the errors of its source.
-static float weight_of_transport(const DiffusionLayout* layout, float tau, float absorbing)
-{
-  return layout->linear ? 1.0f / (1.0f + tau * (0.25f * tau + (MOMENTS ? 0.0f : 3.0f) * absorbing)) : 1.0f;
-}
-
-// Power through inner face d out of voxel i, that of the sweep less that of the model (numerics.md, Eq. (54)).
+// Power through inner face d out of voxel i to j, that of the sweep less that of the model (numerics.md, Eq. (54)).
 static float remainder_of_face(
   const DiffusionLayout* layout, const diffusion_arrays* arrays, int d, int i, int j, const int* at)
 {
   const int axis = d / 2;
   const ulong stride = arrays->stride;
-  const float tau = 0.5f * layout->spacing[axis] * (arrays->sigma_t[i] + arrays->sigma_t[j]);
-  const float passes = arrays->conductance[axis * arrays->count + (d & 1 ? j : i)];
-  const float net = arrays->currents[(d ^ 1) * stride + j] - arrays->currents[d * stride + i];
-  const float flat_source = arrays->flatSource[axis * stride + i] + arrays->flatSource[axis * stride + j];
-  const float spread =
-    layout->linear ? 3.0f * passes * flat_source * pattern_at(layout, arrays, axis, at, tau) : passes;
-  const float absorbing = 0.5f * layout->spacing[axis] * (arrays->sigma_a[i] + arrays->sigma_a[j]);
-  const float h = layout->spacing[axis];
-  const float tau0 = h * arrays->sigma_t[i], tau1 = h * arrays->sigma_t[j];
-  const float skin = layout->linear ? contrast(fmax(tau0, tau1), fmin(tau0, tau1)) : 0.0f;
-  const float transport_weight = weight_of_transport(layout, tau, absorbing) * (1.0f - skin);
-  const float found = MOMENTS ? net - passes * drive_through(layout, arrays, d, i, j) : net;
-  return transport_weight > 1e-12f ? transport_weight * (found - spread * (arrays->model[i] - arrays->model[j])) : 0.0f;
+  const float passes = conductance_at(layout, arrays->conductance, d, at);
+  const inner_face face = { { arrays->sigma_t[i], arrays->sigma_t[j] }, { arrays->sigma_a[i], arrays->sigma_a[j] },
+    { arrays->flatSource[axis * stride + i], arrays->flatSource[axis * stride + j] },
+    { arrays->model[i], arrays->model[j] }, passes,
+    arrays->currents[(d ^ 1) * stride + j] - arrays->currents[d * stride + i],
+    passes * drive_through(layout, arrays, d, i, j), crossing_at(layout, arrays, axis, at) };
+  return remainder_of(layout, axis, &face);
 }
 
 // Power through a face of the box, out less in, that a sweep finds by the model (numerics.md, Eq. (59));
@@ -263,7 +186,7 @@ static float model_of_boundary(
   }
   const float at_face = light - 1.5f * way * net;
   const float spread = a * at_face + 3.0f * net * arrays->flatSource[axis * arrays->stride + i] - incoming;
-  return pattern_at(layout, arrays, axis, at, tau) * spread * area;
+  return pattern_of(crossing_at(layout, arrays, axis, at), tau) * spread * area;
 }
 
 // Lamps' light that is scattered near face d of voxel i and passes it at once, less what comes the other way, W.
@@ -376,7 +299,7 @@ static exact power_of_face(const DiffusionLayout* layout, const diffusion_arrays
   {
     return 0;
   }
-  const exact passes = arrays->conductance[axis * arrays->count + (d & 1 ? next[d] : i)];
+  const exact passes = conductance_at(layout, arrays->conductance, d, at);
   return passes * (fluence[i] - fluence[next[d]] + drive_through(layout, arrays, d, i, next[d])) +
     remainder_of_face(layout, arrays, d, i, next[d], at) + passing(layout, arrays, d, i, next, false);
 }
@@ -409,28 +332,26 @@ static exact power_leaving(const DiffusionLayout* layout, const diffusion_arrays
   source += layout.first;                                                                                         \
   path += layout.first;                                                                                           \
   const ulong stride = layout.stride;                                                                             \
-  const int count = layout.size[0] * layout.size[1] * layout.size[2];                                             \
   const diffusion_arrays arrays = { sigma_t, sigma_a, flat_source, conductance, currents, passed, model, pattern, \
-    given_flux, stride, count, faces };                                                                           \
+    given_flux, stride, faces };                                                                                  \
   const int at[3] = { x, y, z };                                                                                  \
   int next[6];                                                                                                    \
   find_neighbours(layout.size, x, y, z, i, next);                                                                 \
   const float per_radiance = 4.0f * M_PI_F * volume_of(&layout);                                                  \
   float share[6], seeming[6], transport_weight;
 
-// The right-hand side of numerics.md, Eq. (53), W.
-// given    emitted and first scattered light of lights, W / (length^3 sr); given_flux: its net flux over 4 pi, in
-//          angular moments, [channel][x, y, z][stride]
+// What passes the box's faces, added to the right-hand side of numerics.md, Eq. (53), W, in rows.
 // source   of the sweep, W / (length^3 sr)
-__kernel void diffusion_balance(DiffusionLayout layout, const __global float* sigma_t, const __global float* sigma_a,
-  const __global float* swept, const __global float* flat_source, const __global float* conductance,
-  const __global float* currents, const __global float* passed, const __global float* model,
-  const __global float* pattern, const __global float* source, const __global float* path, const __global float* given,
-  const __global float* given_flux, const __global float* faces, __global exact* right)
+// given_flux  of the given source, its net flux over 4 pi, in angular moments, [channel][x, y, z][stride]
+__kernel void diffusion_border_balance(DiffusionLayout layout, const __global float* sigma_t,
+  const __global float* sigma_a, const __global float* swept, const __global float* flat_source,
+  const __global float* conductance, const __global float* currents, const __global float* passed,
+  const __global float* model, const __global float* pattern, const __global float* source, const __global float* path,
+  const __global float* given_flux, const __global float* faces, __global float* right)
 {
-  VOXEL(layout.size)
+  BORDER_VOXEL(layout)
   ARRAYS_OF_CHANNEL
-  float power = given[layout.first + i] * per_radiance;
+  float power = 0.0f;
   for (int d = 0; d < 6; ++d)
   {
     if (is_border(&layout, at, d))
@@ -439,19 +360,10 @@ __kernel void diffusion_balance(DiffusionLayout layout, const __global float* si
       model_of_boundary(&layout, &arrays, d, i, at, &dark);
       power -= dark + part_that_leaves(&layout, &arrays, d, i) * passing(&layout, &arrays, d, i, next, true);
     }
-    else if (layout.size[d / 2] > 1)
-    {
-      const float passes = conductance[d / 2 * count + (d & 1 ? next[d] : i)];
-      power -= remainder_of_face(&layout, &arrays, d, i, next[d], at) + passing(&layout, &arrays, d, i, next, false) +
-        passes * drive_through(&layout, &arrays, d, i, next[d]);
-    }
   }
-  if (IS_OUTERMOST(layout, at))
-  {
-    power -= remainder_of_borders(
-      &layout, &arrays, i, next, at, source[i] * per_radiance - swept[i] * path[i], share, seeming, &transport_weight);
-  }
-  right[i] = power;
+  power -= remainder_of_borders(
+    &layout, &arrays, i, next, at, source[i] * per_radiance - swept[i] * path[i], share, seeming, &transport_weight);
+  right[RowsLead + z * layout.rows.plane + y * layout.rows.pitch + x] += power;
 }
 
 // A voxel's faces at the box's border, [face][row][voxel of the row], five values each:
@@ -464,14 +376,10 @@ __kernel void diffusion_balance(DiffusionLayout layout, const __global float* si
 __kernel void diffusion_outflow(DiffusionLayout layout, const __global float* sigma_t, const __global float* sigma_a,
   const __global float* swept, const __global float* flat_source, const __global float* conductance,
   const __global float* currents, const __global float* passed, const __global float* model,
-  const __global float* pattern, const __global float* source, const __global float* path, const __global float* given,
+  const __global float* pattern, const __global float* source, const __global float* path,
   const __global float* given_flux, __global float* faces, const __global exact* fluence, __global exact* outflow)
 {
-  VOXEL(layout.size)
-  if (!IS_OUTERMOST(layout, ((int[3]){ x, y, z })))
-  {
-    return;
-  }
+  BORDER_VOXEL(layout)
   ARRAYS_OF_CHANNEL
   remainder_of_borders(
     &layout, &arrays, i, next, at, source[i] * per_radiance - swept[i] * path[i], share, seeming, &transport_weight);
@@ -507,7 +415,7 @@ __kernel void diffusion_outflow(DiffusionLayout layout, const __global float* si
 __kernel void diffusion_flux(DiffusionLayout layout, const __global float* sigma_t, const __global float* sigma_a,
   const __global float* swept, const __global float* flat_source, const __global float* conductance,
   const __global float* currents, const __global float* passed, const __global float* model,
-  const __global float* pattern, const __global float* source, const __global float* path, const __global float* given,
+  const __global float* pattern, const __global float* source, const __global float* path,
   const __global float* given_flux, const __global float* faces, const __global exact* fluence, __global float* flux)
 {
   VOXEL(layout.size)
@@ -532,11 +440,12 @@ __kernel void diffusion_flux(DiffusionLayout layout, const __global float* sigma
 __kernel void diffusion_found_flux(DiffusionLayout layout, const __global float* sigma_t, const __global float* sigma_a,
   const __global float* swept, const __global float* flat_source, const __global float* conductance,
   const __global float* currents, const __global float* passed, const __global float* model,
-  const __global float* pattern, const __global float* source, const __global float* path, const __global float* given,
+  const __global float* pattern, const __global float* source, const __global float* path,
   const __global float* given_flux, const __global float* faces, MomentPlaces places, int channel,
   __global exact* fluence)
 {
   VOXEL(layout.size)
+  const int count = layout.size[0] * layout.size[1] * layout.size[2];
   const __global float* moments = path;
   ARRAYS_OF_CHANNEL
   const ulong line = (ulong)z * layout.size[1] + y;
@@ -549,7 +458,7 @@ __kernel void diffusion_found_flux(DiffusionLayout layout, const __global float*
       if (!is_border(&layout, at, d))
       {
         const float change = (float)(fluence[i] - fluence[j]) - (model[i] - model[j]);
-        sum += (d & 1 ? 1.0f : -1.0f) * conductance[axis * count + (d & 1 ? j : i)] * change;
+        sum += (d & 1 ? 1.0f : -1.0f) * conductance_at(&layout, conductance, d, at) * change;
       }
     }
     const int function = axis == 0 ? 3 : axis; // sqrt(3) times y, z, x
@@ -577,11 +486,16 @@ __kernel void diffusion_put_flux(
 
 // The next sweep's source where thick voxels lie beside thinner ones: what gives their surface the outward partial
 // current of diffusion, instead of what is emitted and scattered (numerics.md, Eqs. (63), (64)).
+// skins  of rows, see diffusion_skins
 __kernel void diffusion_surface_source(DiffusionLayout layout, const __global exact* fluence,
   const __global float* sigma_t, const __global float* sigma_a, const __global float* conductance,
-  const __global float* passed, __global float* source)
+  const __global float* passed, const __global int* skins, __global float* source)
 {
   VOXEL(layout.size)
+  if (!skins[z * layout.size[1] + y])
+  {
+    return;
+  }
   const ulong stride = layout.stride;
   const int count = layout.size[0] * layout.size[1] * layout.size[2];
   const ulong begin = layout.first;
@@ -601,7 +515,7 @@ __kernel void diffusion_surface_source(DiffusionLayout layout, const __global ex
       const int j = next[d];
       const float area = face_area(&layout, d / 2);
       const float beyond = sigma_t[j] * layout.spacing[d / 2];
-      float out = conductance[d / 2 * count + (d & 1 ? j : i)] * (float)(fluence[i] - fluence[j]) / area;
+      float out = conductance_at(&layout, conductance, d, at) * (float)(fluence[i] - fluence[j]) / area;
 #if PASSING
       out += (passed[d * stride + i] - passed[(d ^ 1) * stride + j]) / area;
 #endif

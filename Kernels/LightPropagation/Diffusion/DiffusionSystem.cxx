@@ -1,6 +1,7 @@
 #include "LightPropagation/Diffusion/DiffusionSystem.h"
 
 #include "Device/Defines.h"
+#include "Device/Sizes.h"
 #include "LightPropagation/Diffusion/DiffusionLayout.h"
 #include "Medium/BoxFaces.h"
 #include "Numerics/Constants.h"
@@ -15,8 +16,9 @@ namespace tyndall
 namespace
 {
 constexpr double Floor = 0.05;     ///< optical length between centres of voxels that pass light as if it were that long
-constexpr double Reduction = 1e-3; ///< of the residual in one correction: sweeps gain less than that
-constexpr int PerBorder = 5;       ///< values of a voxel's face at the box's border (diffusion_outflow)
+constexpr double Reduction = 1e-2; ///< of the residual in one correction: sweeps gain no more than that
+constexpr std::size_t BorderGroup = 256; ///< cells of the box's faces in a work-group
+constexpr int PerBorder = 5;             ///< values of a voxel's face at the box's border (diffusion_outflow)
 
 /// Rounding can leave dark faces a little below 0: they become 0, and the others are scaled so that the sum stays.
 std::array<double, 6> NotNegative(std::array<double, 6> powers)
@@ -42,6 +44,7 @@ DiffusionSystem::DiffusionSystem(Device& device, const Grid& grid, const std::ar
   : TheDevice(device)
   , The(arrays)
   , Count(grid.VoxelCount())
+  , BorderCells(BoxFaceCellCount(grid))
   , Solver(device, grid.size, grid.spacing)
   , Mixing(device, grid.VoxelCount(), this->Values(), "the diffusion system")
 {
@@ -58,75 +61,172 @@ DiffusionSystem::DiffusionSystem(Device& device, const Grid& grid, const std::ar
   std::copy(incoming.begin(), incoming.end(), this->Layout.incoming);
   std::copy(arrays.albedo.begin(), arrays.albedo.end(), this->Layout.albedo);
 
+  this->Layout.rows = this->Solver.Rows();
+
   const char* what = "the diffusion system";
-  this->Pattern = Buffer<float>(device, pattern.values, what);
-  this->FlatSource = Buffer<float>(device, 3 * arrays.stride, what);
-  this->Model = Buffer<float>(device, this->Count, what);
-  this->Right = ExactValues(device, this->Count, what);
+  std::vector<float> tables = pattern.values;
+  tables.resize(tables.size() + RowVector);
+  this->Pattern = Buffer<float>(device, tables, what);
+  this->FlatSource = Buffer<float>(device, 3 * arrays.stride + RowVector, what);
+  this->Model = Buffer<float>(device, this->Count + RowVector, what);
   this->Next = ExactValues(device, this->Values(), what);
   this->Solution = ExactValues(device, this->Values(), what);
   this->Solution.Fill(0.0); // a dark channel is never solved for
-  this->Borders = ExactValues(device, PerBorder * BoxFaceCellCount(grid), what);
+  this->Borders = ExactValues(device, PerBorder * this->BorderCells, what);
 
-  cl::Kernel flat_source = this->Kernel("diffusion_flat_source");
+  cl::Kernel flat_source = this->RowsKernel("diffusion_flat_source");
   With(flat_source, this->Layout, *arrays.sigma_t, *arrays.swept, this->FlatSource);
-  this->Run(flat_source);
-  cl::Kernel conductance = this->Kernel("diffusion_conductance");
+  this->RunRows(flat_source);
+  cl::Kernel conductance = this->RowsKernel("diffusion_conductance");
   With(conductance, this->Layout, *arrays.sigma_t, *arrays.sigma_a, this->FlatSource, this->Solver.Conductance(),
     this->Solver.Loss());
-  this->Run(conductance);
+  this->RunRows(conductance);
+  cl::Kernel border = this->Kernel("diffusion_border_loss");
+  With(border, this->Layout, *arrays.sigma_t, *arrays.sigma_a, this->Solver.Loss());
+  this->RunBorder(border);
   this->Solver.Coarsen();
+  this->FindSkins();
+}
+
+std::string DiffusionSystem::Options() const
+{
+  return ExactOption(this->TheDevice) + Define("PASSING", this->The.passed != nullptr) +
+    Define("MOMENTS", this->HasMoments());
 }
 
 cl::Kernel DiffusionSystem::Kernel(const char* name) const
 {
-  return this->TheDevice.Kernel(name, kernel_source::DiffusionSystem,
-    ExactOption(this->TheDevice) + Define("PASSING", this->The.passed != nullptr) +
-      Define("FACES", this->The.faces != nullptr) + Define("MOMENTS", this->HasMoments()));
+  return this->TheDevice.Kernel(
+    name, kernel_source::DiffusionSystem, this->Options() + Define("FACES", this->The.faces != nullptr));
+}
+
+cl::Kernel DiffusionSystem::RowsKernel(const char* name) const
+{
+  return this->TheDevice.Kernel(name, kernel_source::DiffusionRows,
+    this->Options() + Define("REAL_WIDTH", this->TheDevice.KernelWidth(4, RowVector, 4)) +
+      Define("SKIN", this->AnySkin));
 }
 
 void DiffusionSystem::Run(cl::Kernel& kernel)
 {
+  RunVoxels(this->TheDevice, kernel, this->Layout);
+}
+
+void DiffusionSystem::RunBorder(cl::Kernel& kernel)
+{
   this->TheDevice.Queue().enqueueNDRangeKernel(
-    kernel, cl::NullRange, this->Solver.Range(this->Layout.size), MultigridSolver::Group());
+    kernel, cl::NullRange, cl::NDRange(RoundUp(this->BorderCells, BorderGroup)), cl::NDRange(BorderGroup));
+}
+
+void DiffusionSystem::RunRows(cl::Kernel& kernel) const
+{
+  MultigridSolver::RunRows(this->TheDevice, kernel, this->Layout.rows);
 }
 
 template <class... More>
-void DiffusionSystem::RunOnArrays(const char* name, const More&... more)
+cl::Kernel DiffusionSystem::OnArrays(const char* name, const More&... more)
 {
   const Arrays& the = this->The;
   cl::Kernel kernel = this->Kernel(name);
   With(kernel, this->Layout, *the.sigma_t, *the.sigma_a, *the.swept, this->FlatSource, this->Solver.Conductance(),
-    *the.partialCurrents, this->The.passed ? *this->The.passed : this->Model, this->Model, this->Pattern, *the.source,
-    *the.path, *the.given, the.givenFlux ? *the.givenFlux : *the.given,
-    this->The.faces ? *this->The.faces : this->Model, more...);
-  this->Run(kernel);
+    *the.partialCurrents, this->Passed(), this->Model, this->Pattern, *the.source, *the.path,
+    the.givenFlux ? *the.givenFlux : *the.given, this->The.faces ? *this->The.faces : this->Model, more...);
+  return kernel;
+}
+
+/// Which rows have thick voxels beside thinner ones.
+void DiffusionSystem::FindSkins()
+{
+  this->Skins =
+    Buffer<cl_int>(this->TheDevice, tyndall::Count(this->Layout.size[1] * this->Layout.size[2]), "rows of skins");
+  const Buffer<float>& extinction = this->ExtinctionInRows();
+  cl::Kernel kernel = this->RowsKernel("diffusion_skins");
+  With(kernel, this->Layout, extinction, this->Skins);
+  this->RunRows(kernel);
+  const std::vector<cl_int> rows = this->Skins.Read();
+  this->AnySkin = std::any_of(rows.begin(), rows.end(), [](cl_int any) { return any != 0; });
+}
+
+/// In an array that the solver takes back when it solves.
+const Buffer<float>& DiffusionSystem::ExtinctionInRows()
+{
+  const Buffer<float>& extinction = *this->Solver.Scratch().front();
+  cl::Kernel rows = this->RowsKernel("diffusion_extinction");
+  With(rows, this->Layout, *this->The.sigma_t, extinction);
+  this->RunRows(rows);
+  return extinction;
 }
 
 void DiffusionSystem::ShapeSource()
 {
+  if (!this->AnySkin)
+  {
+    return;
+  }
   cl::Kernel kernel = this->Kernel("diffusion_surface_source");
   With(kernel, this->Layout, this->Next.Handle(), *this->The.sigma_t, *this->The.sigma_a, this->Solver.Conductance(),
-    this->The.passed ? *this->The.passed : this->Model, *this->The.source);
+    this->Passed(), this->Skins, *this->The.source);
   this->Run(kernel);
+}
+
+/// The fluence at which the sweep's power is compared with diffusion.
+void DiffusionSystem::FindModel()
+{
+  const Arrays& the = this->The;
+  const Buffer<float>& extinction = this->AnySkin ? this->ExtinctionInRows() : *the.sigma_t;
+  cl::Kernel model = this->RowsKernel("diffusion_model");
+  With(model, this->Layout, extinction, *the.path, this->Next.Handle(), *the.source, this->Model);
+  this->RunRows(model);
+}
+
+/// The system's right-hand side.
+void DiffusionSystem::Balance()
+{
+  const Arrays& the = this->The;
+  const auto [x, y, z] = this->Solver.Scratch();
+  cl::Kernel powers = this->RowsKernel("diffusion_face_powers");
+  With(powers, this->Layout, *the.sigma_t, *the.sigma_a, this->FlatSource, this->Solver.Conductance(),
+    *the.partialCurrents, this->Passed(), this->Model, this->Pattern, the.givenFlux ? *the.givenFlux : *the.given, *x,
+    *y, *z);
+  this->RunRows(powers);
+  cl::Kernel balance = this->RowsKernel("diffusion_balance");
+  With(balance, this->Layout, *the.given, *x, *y, *z, this->Solver.Right());
+  this->RunRows(balance);
+  cl::Kernel border = this->OnArrays("diffusion_border_balance", this->Solver.Right());
+  this->RunBorder(border);
 }
 
 double DiffusionSystem::Correct(double unit)
 {
-  const Arrays& the = this->The;
-  cl::Kernel model = this->Kernel("diffusion_model");
-  With(model, this->Layout, *the.sigma_t, *the.path, this->Next.Handle(), *the.source, this->Model);
-  this->Run(model);
-  this->RunOnArrays("diffusion_balance", this->Right.Handle());
-  this->Solver.Solve(this->Right, this->Solution, unit, Reduction);
+  this->FindModel();
+  this->Balance();
+  this->Solver.Solve(this->Solution, unit, Reduction);
   if (this->HasMoments())
   {
-    this->RunOnArrays("diffusion_found_flux", this->The.moments, cl_int(this->The.channel), this->Solution.Handle());
+    cl::Kernel flux =
+      this->OnArrays("diffusion_found_flux", this->The.moments, cl_int(this->The.channel), this->Solution.Handle());
+    this->Run(flux);
   }
 
   const auto& h = this->Layout.spacing;
   const float edge = std::cbrt(h[0] * h[1] * h[2]); // the same whichever axis is which
-  return this->Mixing.Mix(this->Next, this->Solution, { the.sigma_s, the.first, edge });
+  return this->Mixing.Mix(this->Next, this->Solution, { this->The.sigma_s, this->The.first, edge });
+}
+
+void DiffusionSystem::Refine(double unit)
+{
+  this->Balance();
+  this->Solver.Solve(this->Solution, unit, 0.1, 1e-6);
+}
+
+double DiffusionSystem::Absorbed() const
+{
+  cl::Kernel kernel = this->RowsKernel("diffusion_absorbed");
+  const ExactValues sums(this->TheDevice, MultigridSolver::ItemsOf(this->Layout.rows), "sums");
+  With(kernel, this->Layout, *this->The.sigma_a, this->Solution.Handle(), sums.Handle());
+  this->RunRows(kernel);
+  const std::vector<double> parts = sums.Read();
+  return std::accumulate(parts.begin(), parts.end(), 0.0);
 }
 
 bool DiffusionSystem::Reflects() const
@@ -143,7 +243,8 @@ std::vector<double> DiffusionSystem::Found() const
 
 std::array<double, 6> DiffusionSystem::Outflow(double entered, const std::array<double, 6>& ofSweep)
 {
-  this->RunOnArrays("diffusion_outflow", this->Solution.Handle(), this->Borders.Handle());
+  cl::Kernel kernel = this->OnArrays("diffusion_outflow", this->Solution.Handle(), this->Borders.Handle());
+  this->RunBorder(kernel);
   const std::vector<double> borders = this->Borders.Read();
   std::array<double, 6> outflow = {};
   std::array<double, 6> missing = ofSweep; // of what seems to leave
@@ -219,6 +320,7 @@ void DiffusionSystem::PutNextFlux(const Buffer<float>& path)
 
 void DiffusionSystem::AddFlux(const Buffer<float>& flux)
 {
-  this->RunOnArrays("diffusion_flux", this->Solution.Handle(), flux);
+  cl::Kernel kernel = this->OnArrays("diffusion_flux", this->Solution.Handle(), flux);
+  this->Run(kernel);
 }
 }

@@ -10,6 +10,7 @@
 #include "Medium/Grid.h"
 
 #include <array>
+#include <string>
 #include <vector>
 
 namespace tyndall
@@ -79,7 +80,10 @@ public:
   double Correct(double unit);
 
   /// Solve once more, for what the last correction found to more digits.
-  void Refine(double unit) { this->Solver.Solve(this->Right, this->Solution, unit, 1e-3, 1e-6); }
+  void Refine(double unit);
+
+  /// W, of what the last correction found.
+  double Absorbed() const;
 
   /// W / length^2, what the last correction found.
   std::vector<double> Found() const;
@@ -103,20 +107,31 @@ private:
   bool Reflects() const;
   std::size_t Values() const { return this->HasMoments() ? 4 * this->Count : this->Count; }
   bool HasMoments() const { return this->The.swept != this->The.sigma_t; }
+  const Buffer<float>& Passed() const { return this->The.passed ? *this->The.passed : this->Model; }
+  void FindSkins();
+  const Buffer<float>& ExtinctionInRows();
+  void FindModel();
+  void Balance();
+  std::string Options() const;
   cl::Kernel Kernel(const char* name) const;
-  void Run(cl::Kernel& kernel);
+  cl::Kernel RowsKernel(const char* name) const; ///< that walks along rows
+  void Run(cl::Kernel& kernel);                  ///< voxel by voxel
+  void RunBorder(cl::Kernel& kernel);            ///< of voxels at the box's faces
+  void RunRows(cl::Kernel& kernel) const;
   /// The arguments that the kernels share, then `more`.
   template <class... More>
-  void RunOnArrays(const char* kernel, const More&... more);
+  cl::Kernel OnArrays(const char* kernel, const More&... more);
 
   Device& TheDevice;
   DiffusionLayout Layout = {};
   Arrays The;
-  std::size_t Count;
+  std::size_t Count, BorderCells;
   MultigridSolver Solver;
   Buffer<float> FlatSource, Pattern, Model;
+  Buffer<cl_int> Skins; ///< by row: whether thick voxels lie beside thinner ones in it
+  bool AnySkin = false;
   AndersonMixing Mixing;
-  ExactValues Right, Borders;
+  ExactValues Borders;
   ExactValues Next, Solution; ///< of voxels; behind them, where there are moments, those of degree 1, [x, y, z][voxel]
 };
 }

@@ -1,7 +1,7 @@
 // Lamps' light in thick voxels, see LampPassing.h: it is scattered first near the faces that it comes in through,
 // and part of it passes those at once.
 
-#include "LightPropagation/Diffusion/Conductance.cl"
+#include "LightPropagation/Diffusion/BoxBorders.cl"
 
 // Part that returns to the face of light that is lost as exp(-b t) over tau and absorbed at k a mean free path on its
 // way back (numerics.md, Eq. (69)). r, 0 to 1, is how near to the face it is scattered: 1 - 2 t / tau for a mean

@@ -2,7 +2,6 @@
 
 #include "Device/ExactValues.h"
 #include "LightPropagation/Diffusion/DiffusionLayout.h"
-#include "LightPropagation/Diffusion/MultigridSolver.h"
 #include "TyndallKernelSources.h"
 
 namespace tyndall
@@ -14,7 +13,6 @@ void PassLampLight(Device& device, const Grid& grid, const std::array<bool, 3>& 
   cl::Kernel pass = device.Kernel("pass_lamp_light", kernel_source::LampPassing, ExactOption(device));
   With(pass, layout, *light.sigma_t, *light.sigma_a, *light.sigma_s, *light.swept, *light.path, *light.firstMoments,
     *light.passed, *light.allPath);
-  device.Queue().enqueueNDRangeKernel(
-    pass, cl::NullRange, MultigridSolver::Range(layout.size), MultigridSolver::Group());
+  RunVoxels(device, pass, layout);
 }
 }

@@ -1,223 +1,381 @@
-// Conjugate gradients, preconditioned by multigrid, for the diffusion system.
+// Conjugate gradients, preconditioned by multigrid, for the diffusion system (MultigridSolver.h). The host gives
+//   REAL_WIDTH  4 or 8 floats of a vector
+//   DOUBLES     1 where the device has double precision
 //
-// A level's matrix: row i is sum over faces of conductance (x_i - x_j) + loss_i x_i. Vectors of multigrid are float: it
-// only has to point in about the right direction.
+// Each kernel walks along rows (MultigridRows.cl). Vectors are float: multigrid only has to point in about the right
+// direction, and conjugate gradients begin from a residual that was found in double. What is beyond a row's last voxel
+// is 0 in right-hand sides and residuals, and never counts elsewhere.
 
-#include "LightPropagation/Diffusion/DiffusionLayout.cl"
+#include "LightPropagation/Diffusion/MultigridRows.cl"
+#include "Numerics/Exact.cl"
 
-static float neighbours_sum(
-  const __global float* conductance, int count, const __global float* values, int i, const int* next, float* passes)
+#if DOUBLES
+typedef TYNDALL_JOIN(double, REAL_WIDTH) exact_real;
+#define to_exact_real TYNDALL_JOIN(convert_double, REAL_WIDTH)
+#else
+typedef real exact_real;
+#define to_exact_real
+#endif
+typedef exact_real __attribute__((aligned(4))) exact_anywhere;
+#define load_exact(index, pointer) (*(const __global exact_anywhere*)((pointer) + (index)))
+#define store_exact(value, index, pointer) (*(__global exact_anywhere*)((pointer) + (index)) = (value))
+#if DOUBLES
+#define to_real_of_exact TYNDALL_JOIN(convert_float, REAL_WIDTH)
+#else
+#define to_real_of_exact
+#endif
+
+inline exact sum_of_exact(exact_real values)
 {
-  const float a = conductance[i], b = conductance[next[1]];
-  const float c = conductance[count + i], d = conductance[count + next[3]];
-  const float e = conductance[2 * count + i], f = conductance[2 * count + next[5]];
-  *passes = ((a + b) + (c + d)) + (e + f);
-  return ((a * values[next[0]] + b * values[next[1]]) + (c * values[next[2]] + d * values[next[3]])) +
-    (e * values[next[4]] + f * values[next[5]]);
+#if REAL_WIDTH == 4
+  return (values.s0 + values.s1) + (values.s2 + values.s3);
+#else
+  return ((values.s0 + values.s1) + (values.s2 + values.s3)) + ((values.s4 + values.s5) + (values.s6 + values.s7));
+#endif
 }
 
-// y = b - A x where `right` is true, else A x
-__kernel void diffusion_apply(MultigridLevel level, const __global float* conductance, const __global float* loss,
-  const __global exact* values, const __global exact* right, int subtract, __global exact* result)
+// damping / diagonal, 0 where the diagonal is: Jacobi's method.
+__kernel void level_invert(MultigridLevel level, const __global float* conductance, const __global float* loss,
+  __global float* inverse, float damping)
 {
-  VOXEL(level.size)
-  const int count = level.size[0] * level.size[1] * level.size[2];
-  int next[6];
-  find_neighbours(level.size, x, y, z, i, next);
-  const exact own = values[i];
-  exact sum = loss[i] * own;
-  for (int axis = 0; axis < 3; ++axis)
+  FOR_ROWS(level)
   {
-    const __global float* passes = conductance + axis * count;
-    sum += passes[i] * (own - values[next[2 * axis]]) + passes[next[2 * axis + 1]] * (own - values[next[2 * axis + 1]]);
-  }
-  result[i] = subtract ? right[i] - sum : sum;
-}
-
-// The first guess on a level: right / diagonal.
-__kernel void level_begin(MultigridLevel level, const __global float* conductance, const __global float* loss,
-  const __global float* right, __global float* values, float damping)
-{
-  VOXEL(level.size)
-  const int count = level.size[0] * level.size[1] * level.size[2];
-  int next[6];
-  find_neighbours(level.size, x, y, z, i, next);
-  const float passes =
-    ((conductance[i] + conductance[next[1]]) + (conductance[count + i] + conductance[count + next[3]])) +
-    (conductance[2 * count + i] + conductance[2 * count + next[5]]);
-  const float diagonal = passes + loss[i];
-  values[i] = diagonal > 0.0f ? damping * right[i] / diagonal : 0.0f;
-}
-
-// As level_begin, from the residual of conjugate gradients in units of `unit`.
-__kernel void finest_begin(MultigridLevel level, const __global float* conductance, const __global float* loss,
-  const __global exact* residual, float per_unit, __global float* right, __global float* values, float damping)
-{
-  VOXEL(level.size)
-  const int count = level.size[0] * level.size[1] * level.size[2];
-  int next[6];
-  find_neighbours(level.size, x, y, z, i, next);
-  const float passes =
-    ((conductance[i] + conductance[next[1]]) + (conductance[count + i] + conductance[count + next[3]])) +
-    (conductance[2 * count + i] + conductance[2 * count + next[5]]);
-  const float diagonal = passes + loss[i];
-  right[i] = (float)(residual[i] * per_unit);
-  values[i] = diagonal > 0.0f ? damping * right[i] / diagonal : 0.0f;
-}
-
-__kernel void level_smooth(MultigridLevel level, const __global float* conductance, const __global float* loss,
-  const __global float* right, const __global float* values, __global float* better, float damping)
-{
-  VOXEL(level.size)
-  const int count = level.size[0] * level.size[1] * level.size[2];
-  int next[6];
-  find_neighbours(level.size, x, y, z, i, next);
-  float passes;
-  const float sum = neighbours_sum(conductance, count, values, i, next, &passes);
-  const float diagonal = passes + loss[i];
-  better[i] = diagonal > 0.0f ? values[i] + damping * ((right[i] + sum) / diagonal - values[i]) : 0.0f;
-}
-
-__kernel void level_residual(MultigridLevel level, const __global float* conductance, const __global float* loss,
-  const __global float* right, const __global float* values, __global float* residual)
-{
-  VOXEL(level.size)
-  const int count = level.size[0] * level.size[1] * level.size[2];
-  int next[6];
-  find_neighbours(level.size, x, y, z, i, next);
-  float passes;
-  const float sum = neighbours_sum(conductance, count, values, i, next, &passes);
-  residual[i] = right[i] + sum - (passes + loss[i]) * values[i];
-}
-
-// Sum over the finer level's voxels in each of this one. A work-item a coarse voxel.
-__kernel void level_restrict(
-  MultigridLevel fine, MultigridLevel coarse, const __global float* residual, __global float* right)
-{
-  VOXEL(coarse.size)
-  float sum = 0.0f;
-  for (int c = 0; c <= fine.halved[2]; ++c)
-  {
-    for (int b = 0; b <= fine.halved[1]; ++b)
+    const int y = r % level.size[1], z = r / level.size[1];
+    const matrix_row row = find_matrix_row(&level, y, z, conductance, loss, inverse);
+    for (int x = 0; x < level.size[0]; x += REAL_WIDTH)
     {
-      for (int a = 0; a <= fine.halved[0]; ++a)
-      {
-        const int u = (x << fine.halved[0]) + a, v = (y << fine.halved[1]) + b, w = (z << fine.halved[2]) + c;
-        sum += u < fine.size[0] && v < fine.size[1] && w < fine.size[2]
-          ? residual[(w * fine.size[1] + v) * fine.size[0] + u]
-          : 0.0f;
-      }
+      const real diagonal = diagonal_of(&row, x);
+      const real value = select((real)0.0f, (real)damping / diagonal, diagonal > (real)0.0f);
+      store_real(in_row(value, level.size[0] - x), x, inverse + row_at(&level, y, z));
     }
   }
-  right[i] = sum;
-}
-
-__kernel void level_prolong(
-  MultigridLevel fine, MultigridLevel coarse, const __global float* correction, __global float* values)
-{
-  VOXEL(fine.size)
-  const int parent =
-    ((z >> fine.halved[2]) * coarse.size[1] + (y >> fine.halved[1])) * coarse.size[0] + (x >> fine.halved[0]);
-  values[i] += correction[parent];
 }
 
 // The coarser level's matrix (numerics.md, Eq. (70)): faces side by side add up; along a halved axis centres are twice
 // as far apart.
+typedef struct
+{
+  real loss, passes[3];
+} coarse_entries;
+
+// Of the fine row (v, w) behind coarse voxels from x on; b, c: whether it is the second row, or plane, of theirs.
+static void add_fine_row(const MultigridLevel* fine, int v, int w, int b, int c, int x,
+  const __global float* conductance, const __global float* loss, coarse_entries* sum)
+{
+  const int here = row_at(fine, v, w), n = fine->size[0];
+  const __global float* sources[4] = { loss + here, conductance + here, conductance + fine->floats + here,
+    conductance + 2 * fine->floats + here };
+  real values[4];
+  for (int k = 0; k < 4; ++k)
+  {
+    if (!fine->halved[0])
+    {
+      values[k] = in_row(load_real(x, sources[k]), n - x);
+      continue;
+    }
+    const int u = 2 * x;
+    const real low = in_row(load_real(u, sources[k]), n - u);
+    const real high = in_row(load_real(u + REAL_WIDTH, sources[k]), n - u - REAL_WIDTH);
+    values[k] = k == 1 ? first_of_pairs(low, high) : pair_sums(low, high);
+  }
+  sum->loss += values[0];
+  sum->passes[0] += values[1];
+  sum->passes[1] += b == 0 ? values[2] : (real)0.0f;
+  sum->passes[2] += c == 0 ? values[3] : (real)0.0f;
+}
+
 __kernel void level_coarsen(MultigridLevel fine, MultigridLevel coarse, const __global float* conductance,
   const __global float* loss, __global float* coarse_conductance, __global float* coarse_loss)
 {
-  VOXEL(coarse.size)
-  const int count = fine.size[0] * fine.size[1] * fine.size[2];
-  const int coarse_count = coarse.size[0] * coarse.size[1] * coarse.size[2];
-  float passes[3] = { 0.0f, 0.0f, 0.0f };
-  float taken = 0.0f;
-  for (int c = 0; c <= fine.halved[2]; ++c)
+  FOR_ROWS(coarse)
   {
-    for (int b = 0; b <= fine.halved[1]; ++b)
+    const int y = r % coarse.size[1], z = r / coarse.size[1];
+    const int here = row_at(&coarse, y, z);
+    for (int x = 0; x < coarse.size[0]; x += REAL_WIDTH)
     {
-      for (int a = 0; a <= fine.halved[0]; ++a)
+      coarse_entries sum = { (real)0.0f, { (real)0.0f, (real)0.0f, (real)0.0f } };
+      for (int c = 0; c <= fine.halved[2]; ++c)
       {
-        const int u = (x << fine.halved[0]) + a, v = (y << fine.halved[1]) + b, w = (z << fine.halved[2]) + c;
-        if (u < fine.size[0] && v < fine.size[1] && w < fine.size[2])
+        for (int b = 0; b <= fine.halved[1]; ++b)
         {
-          const int j = (w * fine.size[1] + v) * fine.size[0] + u;
-          taken += loss[j];
-          passes[0] += a == 0 ? conductance[j] : 0.0f;
-          passes[1] += b == 0 ? conductance[count + j] : 0.0f;
-          passes[2] += c == 0 ? conductance[2 * count + j] : 0.0f;
+          const int v = (y << fine.halved[1]) + b, w = (z << fine.halved[2]) + c;
+          if (v < fine.size[1] && w < fine.size[2])
+          {
+            add_fine_row(&fine, v, w, b, c, x, conductance, loss, &sum);
+          }
+        }
+      }
+      store_real(sum.loss, x, coarse_loss + here);
+      for (int axis = 0; axis < 3; ++axis)
+      {
+        const float part = coarse.size[axis] == 1 ? 0.0f : fine.halved[axis] ? 0.5f : 1.0f;
+        store_real(sum.passes[axis] * part, x, coarse_conductance + axis * coarse.floats + here);
+      }
+    }
+    fill_ghosts(coarse_conductance + here, coarse.size[0]);
+  }
+}
+
+// (b - A x) per unit in one voxel, in exact numbers; x by voxels without ghosts.
+static float residual_at(
+  const MultigridLevel* level, const matrix_row* row, const __global exact* values, int x, int y, int z, float right)
+{
+  const int* n = level->size;
+  const __global exact* own = values + ((ulong)z * n[1] + y) * n[0];
+  const __global exact* low_y = values + ((ulong)z * n[1] + (y > 0 ? y - 1 : n[1] - 1)) * n[0];
+  const __global exact* high_y = values + ((ulong)z * n[1] + (y < n[1] - 1 ? y + 1 : 0)) * n[0];
+  const __global exact* low_z = values + ((ulong)(z > 0 ? z - 1 : n[2] - 1) * n[1] + y) * n[0];
+  const __global exact* high_z = values + ((ulong)(z < n[2] - 1 ? z + 1 : 0) * n[1] + y) * n[0];
+  exact sum = row->loss[x] * own[x];
+  sum += row->passes_x[x] * (own[x] - own[x > 0 ? x - 1 : n[0] - 1]);
+  sum += row->passes_x[x + 1] * (own[x] - own[x < n[0] - 1 ? x + 1 : 0]);
+  sum += row->passes_y[x] * (own[x] - low_y[x]) + row->passes_high_y[x] * (own[x] - high_y[x]);
+  sum += row->passes_z[x] * (own[x] - low_z[x]) + row->passes_high_z[x] * (own[x] - high_z[x]);
+  return (float)(right - sum);
+}
+
+// The residual of `values`, per unit, in the place of the right-hand side, and Jacobi's first guess for it.
+__kernel void begin_residual(MultigridLevel level, const __global float* conductance, const __global float* loss,
+  const __global float* inverse, const __global exact* values, float per_unit, __global float* right,
+  __global float* guess)
+{
+  FOR_ROWS(level)
+  {
+    const int y = r % level.size[1], z = r / level.size[1], here = row_at(&level, y, z);
+    const matrix_row row = find_matrix_row(&level, y, z, conductance, loss, guess);
+    for (int x = 0; x < level.size[0]; ++x)
+    {
+      const float left = residual_at(&level, &row, values, x, y, z, right[here + x]) * per_unit;
+      right[here + x] = left;
+      guess[here + x] = inverse[here + x] * left;
+    }
+    for (int x = level.size[0]; x % REAL_WIDTH != 0; ++x)
+    {
+      right[here + x] = 0.0f; // a ghost, perhaps
+    }
+    fill_ghosts(guess + here, level.size[0]);
+  }
+}
+
+// What is left of a level's right-hand side, summed over the fine voxels of each coarse one, and Jacobi's first guess
+// there.
+static real left_of_row(const MultigridLevel* fine, const matrix_row* row, const __global float* right, int x)
+{
+  return in_row(load_real(x, right) - apply_row(row, x), fine->size[0] - x);
+}
+
+__kernel void level_restrict(MultigridLevel fine, MultigridLevel coarse, const __global float* conductance,
+  const __global float* loss, const __global float* right, const __global float* values,
+  const __global float* coarse_inverse, __global float* coarse_right, __global float* coarse_values)
+{
+  FOR_ROWS(coarse)
+  {
+    const int y = r % coarse.size[1], z = r / coarse.size[1], here = row_at(&coarse, y, z);
+    for (int c = 0; c <= fine.halved[2]; ++c)
+    {
+      for (int b = 0; b <= fine.halved[1]; ++b)
+      {
+        const int v = (y << fine.halved[1]) + b, w = (z << fine.halved[2]) + c;
+        const bool first = b == 0 && c == 0;
+        if (v >= fine.size[1] || w >= fine.size[2])
+        {
+          continue;
+        }
+        const matrix_row row = find_matrix_row(&fine, v, w, conductance, loss, values);
+        const __global float* fine_right = right + row_at(&fine, v, w);
+        for (int x = 0; x < coarse.size[0]; x += REAL_WIDTH)
+        {
+          const int u = x << fine.halved[0];
+          real left = left_of_row(&fine, &row, fine_right, u);
+          if (fine.halved[0])
+          {
+            left = pair_sums(left, left_of_row(&fine, &row, fine_right, u + REAL_WIDTH));
+          }
+          store_real(first ? left : load_real(x, coarse_right + here) + left, x, coarse_right + here);
         }
       }
     }
+    for (int x = 0; x < coarse.size[0]; x += REAL_WIDTH)
+    {
+      store_real(load_real(x, coarse_right + here) * load_real(x, coarse_inverse + here), x, coarse_values + here);
+    }
+    fill_ghosts(coarse_values + here, coarse.size[0]);
   }
-  for (int axis = 0; axis < 3; ++axis)
+}
+
+// Adds the coarser level's values.
+__kernel void level_prolong(
+  MultigridLevel fine, MultigridLevel coarse, const __global float* correction, __global float* values)
+{
+  FOR_ROWS(fine)
   {
-    const float part = coarse.size[axis] == 1 ? 0.0f : fine.halved[axis] ? 0.5f : 1.0f;
-    coarse_conductance[axis * coarse_count + i] = part * passes[axis];
+    const int y = r % fine.size[1], z = r / fine.size[1];
+    const __global float* from = correction + row_at(&coarse, y >> fine.halved[1], z >> fine.halved[2]);
+    __global float* to = values + row_at(&fine, y, z);
+    if (fine.halved[0])
+    {
+      for (int x = 0; 2 * x < fine.size[0]; x += REAL_WIDTH)
+      {
+        const real parents = load_real(x, from);
+        const int u = 2 * x;
+#if REAL_WIDTH == 4
+        store_real(load_real(u, to) + parents.s0011, u, to);
+        store_real(load_real(u + 4, to) + parents.s2233, u + 4, to);
+#else
+        store_real(load_real(u, to) + parents.s00112233, u, to);
+        if (u + 8 < fine.size[0])
+        {
+          store_real(load_real(u + 8, to) + parents.s44556677, u + 8, to);
+        }
+#endif
+      }
+    }
+    else
+    {
+      for (int x = 0; x < fine.size[0]; x += REAL_WIDTH)
+      {
+        store_real(load_real(x, to) + load_real(x, from), x, to);
+      }
+    }
+    fill_ghosts(to, fine.size[0]);
   }
-  coarse_loss[i] = taken;
+}
+
+// A step of Jacobi's method.
+// sums  [work-item] of right times better
+__kernel void level_smooth(MultigridLevel level, const __global float* conductance, const __global float* loss,
+  const __global float* inverse, const __global float* right, const __global float* values, __global float* better,
+  __global exact* sums)
+{
+  exact sum = 0;
+  FOR_ROWS(level)
+  {
+    const int y = r % level.size[1], z = r / level.size[1], here = row_at(&level, y, z);
+    const matrix_row row = find_matrix_row(&level, y, z, conductance, loss, values);
+    exact_real of_row = (exact_real)0;
+    for (int x = 0; x < level.size[0]; x += REAL_WIDTH)
+    {
+      const real b = load_real(x, right + here);
+      const real value =
+        multiply_add(b - apply_row(&row, x), load_real(x, inverse + here), load_real(x, values + here));
+      of_row += to_exact_real(b) * to_exact_real(value);
+      store_real(value, x, better + here);
+    }
+    fill_ghosts(better + here, level.size[0]);
+    sum += sum_of_exact(of_row);
+  }
+  sums[get_global_id(0)] = sum;
 }
 
 // A few voxels: Gauss and Seidel there and back, by one work-item.
+// sums  of right times values
 __kernel void level_finish(MultigridLevel level, const __global float* conductance, const __global float* loss,
-  const __global float* right, __global float* values, int rounds)
+  const __global float* right, __global float* values, __global exact* sums, int rounds)
 {
-  const int count = level.size[0] * level.size[1] * level.size[2];
-  for (int i = 0; i < count; ++i)
+  const int* n = level.size;
+  const int count = n[0] * n[1] * n[2];
+  for (int i = 0; i < n[1] * n[2]; ++i)
   {
-    values[i] = 0.0f;
+    __global float* row = values + row_at(&level, i % n[1], i / n[1]);
+    for (int x = -1; x <= n[0]; ++x)
+    {
+      row[x] = 0.0f;
+    }
   }
+  exact sum = 0;
   for (int round = 0; round < 2 * rounds; ++round)
   {
     for (int k = 0; k < count; ++k)
     {
       const int i = round & 1 ? count - 1 - k : k;
-      const int x = i % level.size[0], y = i / level.size[0] % level.size[1], z = i / (level.size[0] * level.size[1]);
-      int next[6];
-      find_neighbours(level.size, x, y, z, i, next);
-      float passes;
-      const float sum = neighbours_sum(conductance, count, values, i, next, &passes);
-      const float diagonal = passes + loss[i];
-      values[i] = diagonal > 0.0f ? (right[i] + sum) / diagonal : 0.0f;
+      const int x = i % n[0], y = i / n[0] % n[1], z = i / (n[0] * n[1]), here = row_at(&level, y, z);
+      const matrix_row row = find_matrix_row(&level, y, z, conductance, loss, values);
+      const float in_x = row.passes_x[x] * row.own[x - 1] + row.passes_x[x + 1] * row.own[x + 1];
+      const float in_y = row.passes_y[x] * row.low_y[x] + row.passes_high_y[x] * row.high_y[x];
+      const float in_z = row.passes_z[x] * row.low_z[x] + row.passes_high_z[x] * row.high_z[x];
+      const float passes = ((row.passes_x[x] + row.passes_x[x + 1]) + (row.passes_y[x] + row.passes_high_y[x])) +
+        (row.passes_z[x] + row.passes_high_z[x]);
+      const float diagonal = passes + row.loss[x];
+      values[here + x] = diagonal > 0.0f ? (right[here + x] + ((in_x + in_y) + in_z)) / diagonal : 0.0f;
+      fill_ghosts(values + here, n[0]);
+      sum += round == 2 * rounds - 1 ? (exact)right[here + x] * values[here + x] : 0;
     }
   }
+  sums[0] = sum;
 }
 
-// Chunks of the sum of a b; a work-item a chunk.
-#define DOT(name, type)                                                                                \
-  __kernel void name(const __global exact* a, const __global type* b, int count, __global exact* sums) \
-  {                                                                                                    \
-    const int begin = get_global_id(0) * DiffusionChunk;                                               \
-    const int end = min(count, begin + DiffusionChunk);                                                \
-    exact part[4] = { 0, 0, 0, 0 };                                                                    \
-    int i = begin;                                                                                     \
-    for (; i + 4 <= end; i += 4)                                                                       \
-    {                                                                                                  \
-      for (int k = 0; k < 4; ++k)                                                                      \
-      {                                                                                                \
-        part[k] += a[i + k] * b[i + k];                                                                \
-      }                                                                                                \
-    }                                                                                                  \
-    for (; i < end; ++i)                                                                               \
-    {                                                                                                  \
-      part[0] += a[i] * b[i];                                                                          \
-    }                                                                                                  \
-    sums[get_global_id(0)] = (part[0] + part[1]) + (part[2] + part[3]);                                \
-  }
-DOT(diffusion_dot, exact)
-DOT(diffusion_dot_float, float)
-#undef DOT
-
-// x += step p, r -= step q
-__kernel void diffusion_step(__global exact* values, __global exact* residual, const __global exact* direction,
-  const __global exact* applied, exact step)
-{
-  const int i = get_global_id(0);
-  values[i] += step * direction[i];
-  residual[i] -= step * applied[i];
-}
 // p = z + part p
-__kernel void diffusion_turn(__global exact* direction, const __global float* preconditioned, exact part)
+__kernel void turn_direction(
+  MultigridLevel level, const __global float* preconditioned, __global float* direction, float part)
 {
-  const int i = get_global_id(0);
-  direction[i] = preconditioned[i] + part * direction[i];
+  FOR_ROWS(level)
+  {
+    const int here = row_at(&level, r % level.size[1], r / level.size[1]);
+    for (int x = 0; x < level.size[0]; x += REAL_WIDTH)
+    {
+      store_real(multiply_add(load_real(x, direction + here), (real)part, load_real(x, preconditioned + here)), x,
+        direction + here);
+    }
+    fill_ghosts(direction + here, level.size[0]);
+  }
+}
+
+// q = A p
+// sums  [work-item] of p q
+__kernel void apply_matrix(MultigridLevel level, const __global float* conductance, const __global float* loss,
+  const __global float* direction, __global float* applied, __global exact* sums)
+{
+  exact sum = 0;
+  FOR_ROWS(level)
+  {
+    const int y = r % level.size[1], z = r / level.size[1], here = row_at(&level, y, z);
+    const matrix_row row = find_matrix_row(&level, y, z, conductance, loss, direction);
+    exact_real of_row = (exact_real)0;
+    for (int x = 0; x < level.size[0]; x += REAL_WIDTH)
+    {
+      const real q = in_row(apply_row(&row, x), level.size[0] - x);
+      of_row += to_exact_real(q) * to_exact_real(load_real(x, direction + here));
+      store_real(q, x, applied + here);
+    }
+    sum += sum_of_exact(of_row);
+  }
+  sums[get_global_id(0)] = sum;
+}
+
+// x += step p, r -= step q, and Jacobi's first guess for what is left.
+// values  by voxels, without ghosts; in units of the solver times `step_of_values` over `step`
+// sums    [work-item] of r r
+__kernel void go_along(MultigridLevel level, const __global float* direction, const __global float* applied,
+  const __global float* inverse, float step, exact step_of_values, __global float* left, __global float* guess,
+  __global exact* values, __global exact* sums)
+{
+  exact sum = 0;
+  FOR_ROWS(level)
+  {
+    const int y = r % level.size[1], z = r / level.size[1], here = row_at(&level, y, z), n = level.size[0];
+    __global exact* of_voxels = values + ((ulong)z * level.size[1] + y) * n;
+    exact_real of_row = (exact_real)0;
+    for (int x = 0; x < n; x += REAL_WIDTH)
+    {
+      const real residual = multiply_add(load_real(x, applied + here), (real)-step, load_real(x, left + here));
+      store_real(residual, x, left + here);
+      store_real(residual * load_real(x, inverse + here), x, guess + here);
+      of_row += to_exact_real(residual) * to_exact_real(residual);
+      if (x + REAL_WIDTH <= n)
+      {
+        store_exact(
+          load_exact(x, of_voxels) + to_exact_real(load_real(x, direction + here)) * step_of_values, x, of_voxels);
+      }
+      else
+      {
+        for (int k = x; k < n; ++k)
+        {
+          of_voxels[k] += direction[here + k] * step_of_values;
+        }
+      }
+    }
+    fill_ghosts(guess + here, n);
+    sum += sum_of_exact(of_row);
+  }
+  sums[get_global_id(0)] = sum;
 }

@@ -1,7 +1,7 @@
 #pragma once
 
 #include "Device/ExactValues.h"
-#include "LightPropagation/Diffusion/DiffusionShared.h"
+#include "LightPropagation/Diffusion/MultigridLayout.h"
 
 #include <array>
 #include <limits>
@@ -11,53 +11,67 @@ namespace tyndall
 {
 /// Solves the system of a diffusion matrix on a box of voxels,
 ///   sum over faces of conductance (x_i - x_j) + loss_i x_i = b_i,
-/// symmetric, with positive conductances and losses: conjugate gradients in double (Hestenes and Stiefel 1952),
-/// preconditioned by a V cycle of multigrid in float (voxels 2 x 2 x 2 together, damped Jacobi), so that its cost
-/// hardly grows with the number of voxels (numerics.md, section 7.8).
+/// symmetric, with positive conductances and losses: conjugate gradients (Hestenes and Stiefel 1952) from a residual that
+/// is found in double, preconditioned by a V cycle of multigrid in float (voxels 2 x 2 x 2 together, damped Jacobi), so
+/// that its cost hardly grows with the number of voxels (numerics.md, section 7.8).
+///
+/// Its arrays are rows as MultigridLayout.h has them, which kernels walk along in vectors: an iteration takes about as
+/// long as its bytes take (136 a voxel).
 class MultigridSolver
 {
 public:
   /// @param spacing  of voxels: an axis along which they are far shorter is coarsened first
   MultigridSolver(Device& device, const std::array<int, 3>& size, const std::array<double, 3>& spacing);
 
-  /// [axis][voxel] of low faces, 0 at the box's end.
+  const MultigridLevel& Rows() const { return this->Levels.front().layout; } ///< of the arrays below
+
+  /// [axis][rows] of low faces, 0 at the box's end, with ghosts.
   Buffer<float>& Conductance() { return this->Levels.front().conductance; }
   Buffer<float>& Loss() { return this->Levels.front().loss; }
   /// After the two were written.
   void Coarsen();
+
+  /// b, 0 beyond rows' voxels. To be written before each Solve, which spends it.
+  Buffer<float>& Right() { return this->Levels.front().right; }
+  /// Three arrays of rows whose contents are undefined, for others between solves.
+  std::array<const Buffer<float>*, 3> Scratch() const;
 
   /// Make the residual of `values`, in the norm of the preconditioner, smaller by `reduction`.
   /// @param unit  about as large as the entries of b
   /// @param leftAtMost  and its root mean square at most this, in units, for that norm hardly counts thin voxels beside
   ///   thick ones
   /// @return iterations
-  int Solve(const ExactValues& right, ExactValues& values, double unit, double reduction,
+  int Solve(const ExactValues& values, double unit, double reduction,
     double leftAtMost = std::numeric_limits<double>::infinity());
 
-  static cl::NDRange Range(const int* size);
-  static cl::NDRange Group() { return { 32, 8, 1 }; }
+  /// Work-items that walk along a level's rows.
+  static std::size_t ItemsOf(const MultigridLevel& level);
+  /// Runs a kernel that walks along the rows of a level.
+  static void RunRows(Device& device, cl::Kernel& kernel, const MultigridLevel& level);
 
 private:
   struct Level
   {
     MultigridLevel layout;
-    Buffer<float> conductance, loss, right, values, other;
+    /// `inverse`: damping over diagonal. `guess` and `better`: before and after a step of Jacobi's method.
+    Buffer<float> conductance, loss, inverse, right, guess, better;
   };
 
   cl::Kernel Kernel(const char* name) const;
-  void Run(cl::Kernel& kernel, const int* size);
-  void Precondition(double perUnit);
-  void Smooth(Level& level);
-  double Dot(const ExactValues& a, const cl::Buffer& b, bool ofFloats);
-  void Multiply(const ExactValues& x, const ExactValues* from, const ExactValues& into);
-  double PreconditionedNorm(double unit);
+  void Run(cl::Kernel& kernel, const Level& level) { RunRows(this->TheDevice, kernel, level.layout); }
+  double Precondition();
+  void Restrict(Level& fine, Level& coarse);
+  void Correct(Level& fine, const Level& coarse);
+  void Begin(const ExactValues& values, double unit);
   void Turn(double part);
-  void Step(const ExactValues& values, double length);
+  double Curvature();
+  double Step(const ExactValues& values, double length, double unit);
+  double SumOf(const ExactValues& parts) const;
 
   Device& TheDevice;
   std::vector<Level> Levels;
-  ExactValues Residual, Direction, Applied, Sums;
-  std::size_t Count;
+  Buffer<float> Direction;
+  ExactValues Sums;
   double FirstResidual = 0.0; ///< of the first solve, in units
 };
 }

@@ -4,7 +4,9 @@
 #include "Numerics/Constants.h"
 
 #include <algorithm>
+#include <array>
 #include <cmath>
+#include <vector>
 
 namespace tyndall
 {
@@ -19,27 +21,38 @@ constexpr double ManyOrdersInMoments = 20.0; ///< the same where sweeps are dear
 constexpr double ThickVoxel = 10.0; ///< mean free paths along its longest edge, with which diffusion may gain nothing
 constexpr double ManyOrdersInSlab = 12.0; ///< the same in a slab, whose diffusion system is small
 
-/// Optical thickness of the thickest line of voxels along an axis.
+/// Optical thickness of the thickest line of voxels along each axis.
 /// @param sigma_t  of a voxel
 template <class Extinction>
-double LongestLine(const Grid& grid, int axis, const Extinction& sigma_t)
+std::array<double, 3> LongestLines(const Grid& grid, const Extinction& sigma_t)
 {
-  const std::array<std::size_t, 3> step = { 1, static_cast<std::size_t>(grid.size[0]),
-    static_cast<std::size_t>(grid.size[0]) * grid.size[1] };
-  const int u = AcrossAxis(axis).u;
-  const int v = AcrossAxis(axis).v;
-  double longest = 0.0;
-  for (int j = 0; j < grid.size[v]; ++j)
+  const std::array<int, 3>& n = grid.size;
+  std::array<std::vector<double>, 3> lines;
+  for (int axis = 0; axis < 3; ++axis)
   {
-    for (int i = 0; i < grid.size[u]; ++i)
+    lines[axis].assign(grid.VoxelCount() / static_cast<std::size_t>(n[axis]), 0.0);
+  }
+  std::size_t i = 0;
+  for (int z = 0; z < n[2]; ++z)
+  {
+    for (int y = 0; y < n[1]; ++y)
     {
-      double tau = 0.0;
-      for (int k = 0; k < grid.size[axis]; ++k)
+      double& alongX = lines[0][static_cast<std::size_t>(z) * n[1] + y];
+      double* const alongY = lines[1].data() + static_cast<std::size_t>(z) * n[0];
+      double* const alongZ = lines[2].data() + static_cast<std::size_t>(y) * n[0];
+      for (int x = 0; x < n[0]; ++x, ++i)
       {
-        tau += sigma_t(i * step[u] + j * step[v] + k * step[axis]);
+        const double tau = sigma_t(i);
+        alongX += tau;
+        alongY[x] += tau;
+        alongZ[x] += tau;
       }
-      longest = std::max(longest, tau * grid.spacing[axis]);
     }
+  }
+  std::array<double, 3> longest;
+  for (int axis = 0; axis < 3; ++axis)
+  {
+    longest[axis] = grid.spacing[axis] * *std::max_element(lines[axis].begin(), lines[axis].end());
   }
   return longest;
 }
@@ -70,22 +83,27 @@ double AlbedoOf(const PropagationProblem& problem, int channel)
   return scattering > 0.0 ? albedo / scattering : 0.0;
 }
 
-/// What leaks out along an axis of the slowest mode, over what is extinguished (numerics.md, Eq. (86)).
-double LeakAlong(const PropagationProblem& problem, int axis, int channel)
+/// What leaks out along axes that are not periodic, of the slowest mode, over what is extinguished (numerics.md,
+/// Eq. (86)).
+double Leak(const PropagationProblem& problem, int channel)
 {
   const Grid& grid = problem.TheMedium().grid;
-  const double longest =
-    LongestLine(grid, axis, [&](std::size_t i) { return problem.TheMedium().TransportSigmaT(i, channel); });
-  const double extrapolated = longest + BothExtrapolations(problem, axis, channel, longest);
-  const double leak = Pi * Pi / 3.0 / (extrapolated * extrapolated);
-  if (problem.Scattering().Degree() == 0 || longest == 0.0)
-  {
-    return leak;
-  }
+  const std::array<double, 3> longest =
+    LongestLines(grid, [&](std::size_t i) { return double(problem.TheMedium().TransportSigmaT(i, channel)); });
   // Light diffuses as far as transport has it, but is scattered more often: each order does less.
-  const double scattered =
-    LongestLine(grid, axis, [&](std::size_t i) { return problem.Scattering().SigmaT(i, channel); });
-  return leak * longest / scattered;
+  const bool inMoments = problem.Scattering().Degree() > 0;
+  const std::array<double, 3> scattered = inMoments
+    ? LongestLines(grid, [&](std::size_t i) { return double(problem.Scattering().SigmaT(i, channel)); })
+    : longest;
+  double leak = 0.0;
+  for (int axis = 0; axis < 3; ++axis)
+  {
+    const double extrapolated = longest[axis] + BothExtrapolations(problem, axis, channel, longest[axis]);
+    const double along = Pi * Pi / 3.0 / (extrapolated * extrapolated);
+    const double part = inMoments && longest[axis] > 0.0 ? longest[axis] / scattered[axis] : 1.0;
+    leak += problem.Settings().periodic[axis] ? 0.0 : along * part;
+  }
+  return leak;
 }
 
 bool HasThickVoxels(const PropagationProblem& problem)
@@ -111,12 +129,7 @@ double OrdersNeeded(const PropagationProblem& problem)
   double slowest = 0.0;
   for (int c = 0; c < problem.Channels(); ++c)
   {
-    double leak = 0.0;
-    for (int axis = 0; axis < 3; ++axis)
-    {
-      leak += problem.Settings().periodic[axis] ? 0.0 : LeakAlong(problem, axis, c);
-    }
-    slowest = std::max(slowest, AlbedoOf(problem, c) / (1.0 + leak));
+    slowest = std::max(slowest, AlbedoOf(problem, c) / (1.0 + Leak(problem, c)));
   }
   return slowest <= 0.0 ? 0.0 : slowest >= 1.0 ? 1e30 : std::log(UsualTolerance) / std::log(slowest);
 }

@@ -301,31 +301,45 @@ static void FILL_OUTSIDE(sweep_state* state, const __global float* outside, cons
 #endif
 
 #if CURRENTS
-// The rays of row y by the face they come through, see SweepPartialCurrents.cl. `own` is the row itself, where rays
-// come from.
+// The rays of row y by the face they come through, see SweepPartialCurrents.cl: those of one face together. `own` is the
+// row itself, where rays come from.
 static void COUNT_CURRENTS(sweep_state* state, int y, bool first, const __global float** in, const __global float* own,
   const __global BundleInfo* bundle, int moveU, int moveV, float part)
 {
+  const __global float* through[CurrentFaces][MEMBERS];
+  int counts[CurrentFaces] = { 0, 0, 0, 0, 0 };
   for (int m = 0; m < MEMBERS; ++m)
   {
-    if (first)
-    {
-      add_current(state, y, CurrentAxis, in[m], 1.0f);
-      continue;
-    }
-    const int du = bundle->move[m][0] * moveU + bundle->move[m][1] * moveV;
-    const int dv = bundle->move[m][2] * moveU + bundle->move[m][3] * moveV;
+    const int du = first ? 0 : bundle->move[m][0] * moveU + bundle->move[m][1] * moveV;
+    const int dv = first ? 0 : bundle->move[m][2] * moveU + bundle->move[m][3] * moveV;
     if (du != 0 && dv != 0)
     {
       add_through_edge(state, y, du, dv, in[m], own + FIRST(m, 0), part);
+      continue;
     }
-    else if (du != 0)
+    const int face = first ? CurrentAxis
+      : du != 0            ? (du > 0 ? CurrentLowU : CurrentHighU)
+                           : (dv > 0 ? CurrentLowV : CurrentHighV);
+    through[face][counts[face]++] = in[m];
+  }
+  for (int face = 0; face < CurrentFaces; ++face)
+  {
+    int done = 0;
+    if (counts[face] == MEMBERS)
     {
-      add_current(state, y, du > 0 ? CurrentLowU : CurrentHighU, in[m], part);
+      add_currents(state, y, face, through[face], MEMBERS, part);
+      done = MEMBERS;
     }
-    else
+#if MEMBERS > 1
+    else if (counts[face] == MEMBERS / 2)
     {
-      add_current(state, y, dv > 0 ? CurrentLowV : CurrentHighV, in[m], part);
+      add_currents(state, y, face, through[face], MEMBERS / 2, part);
+      done = MEMBERS / 2;
+    }
+#endif
+    for (; done < counts[face]; ++done)
+    {
+      add_current(state, y, face, through[face][done], part);
     }
   }
 }

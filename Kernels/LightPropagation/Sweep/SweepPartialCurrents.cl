@@ -4,17 +4,28 @@
 #include "LightPropagation/Sweep/SweepLayout.cl"
 
 #if CURRENTS
-// Part of the rays of row y that come through one kind of face.
-static void add_current(sweep_state* state, int y, int face, const __global float* rays, float part)
+// Part of some rays of row y that come through one kind of face. To be called with a constant count.
+inline __attribute__((always_inline)) void add_currents(
+  sweep_state* state, int y, int face, const __global float** rays, int count, float part)
 {
   for (int c = 0; c < CHANNELS; ++c)
   {
     __global float* sum = ROW_OF(state->planes, PLANE_CURRENTS + CurrentFaces * c + face, y);
     for (int x = 0; x < state->width; x += REAL_WIDTH)
     {
-      store_real(multiply_add(load_real(x, rays + c * ROW), (real)part, load_real(x, sum)), x, sum);
+      real all = load_real(x, rays[0] + c * ROW);
+#pragma unroll
+      for (int k = 1; k < count; ++k)
+      {
+        all += load_real(x, rays[k] + c * ROW);
+      }
+      store_real(multiply_add(all, (real)part, load_real(x, sum)), x, sum);
     }
   }
+}
+static void add_current(sweep_state* state, int y, int face, const __global float* rays, float part)
+{
+  add_currents(state, y, face, &rays, 1, part);
 }
 
 // Part of the rays on their way to column x through column x - du of row y, which they enter through v; they enter x

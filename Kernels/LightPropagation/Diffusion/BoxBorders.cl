@@ -1,0 +1,62 @@
+// Voxels one by one at the box's faces, in the diffusion system.
+
+#pragma once
+#include "LightPropagation/Diffusion/Conductance.cl"
+#include "LightPropagation/Diffusion/DiffusionLayout.cl"
+
+static bool is_border(const DiffusionLayout* layout, const int* at, int d)
+{
+  const int axis = d / 2;
+  return !layout->periodic[axis] && at[axis] == (d & 1 ? layout->size[axis] - 1 : 0);
+}
+
+// Of a cell of the box's faces, counted as in Medium/BoxFaces.h, the voxel; false where the voxel has an earlier cell, or
+// the axis goes round.
+static bool find_border_voxel(const DiffusionLayout* layout, int cell, int* at)
+{
+  const int* n = layout->size;
+  for (int d = 0; d < 6; ++d)
+  {
+    const int axis = d / 2, u = axis == 0 ? 1 : 0, v = axis == 2 ? 1 : 2;
+    const int cells = n[u] * n[v];
+    if (cell < cells)
+    {
+      at[axis] = d & 1 ? n[axis] - 1 : 0;
+      at[u] = cell % n[u];
+      at[v] = cell / n[u];
+      bool first = !layout->periodic[axis];
+      for (int before = 0; before < d; ++before)
+      {
+        first = first && !is_border(layout, at, before);
+      }
+      return first;
+    }
+    cell -= cells;
+  }
+  return false;
+}
+
+// The voxel of a work-item, one of those at the box's faces: x, y, z and i.
+#define BORDER_VOXEL(layout)                                        \
+  int border[3];                                                    \
+  if (!find_border_voxel(&(layout), (int)get_global_id(0), border)) \
+  {                                                                 \
+    return;                                                         \
+  }                                                                 \
+  const int x = border[0], y = border[1], z = border[2];            \
+  const int i = (z * (layout).size[1] + y) * (layout).size[0] + x;
+
+// Power through a face of the box that gives back a part, out less in (numerics.md, Eqs. (76b), (76c)):
+//   ofMedium times what it would be without light from outside, less ofLight times the light that comes in from there.
+typedef struct
+{
+  float ofMedium, ofLight;
+} face_factors;
+
+static face_factors reflecting_face(const DiffusionLayout* layout, int d, float passes)
+{
+  const float albedo = layout->albedo[d], passes_in = passes / layout->halfRange;
+  const float whole = 1.0f - albedo + albedo * passes_in;
+  const face_factors factors = { (1.0f - albedo) / whole, passes_in / whole };
+  return factors;
+}

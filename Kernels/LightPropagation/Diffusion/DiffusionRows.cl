@@ -1,0 +1,383 @@
+// The diffusion system of a channel along rows of voxels, in vectors: its matrix, and what a sweep found as its
+// right-hand side, but for the box's faces (DiffusionSystem.cl). The host gives
+//   REAL_WIDTH  4 or 8 floats of a vector
+//   DOUBLES     1 where the device has double precision
+//   PASSING     1: lamps' light passes faces at once where it is scattered
+//   MOMENTS     1: sweeps carry light that goes straight on where it is scattered forwards, or has angular moments
+//   SKIN        1: thick voxels lie beside thinner ones
+//
+// Arrays of the solver are [voxel], and may be read a vector beyond a row's end; arrays of rows are as MultigridRows.cl
+// has them. Of a row the face at x = 0 is apart: what is before it in memory is no neighbour.
+
+#include "LightPropagation/Diffusion/FaceRemainder.cl"
+#include "LightPropagation/Diffusion/MultigridRows.cl"
+#include "Numerics/Exact.cl"
+
+// Voxels before a row.
+inline int voxel_at(const DiffusionLayout* layout, int y, int z)
+{
+  return (z * layout->size[1] + y) * layout->size[0];
+}
+
+// Low faces of a row across an axis that light passes from voxel to voxel, in one piece.
+typedef struct
+{
+  int begin, end; // along x
+  int before;     // where the row begins in memory on whose far side the faces are
+} face_span;
+
+// All of them: none at the box's border; across x the first face, round the axis, and then the others. A span's last
+// vector writes beyond its end, so they are to be gone through in turn.
+inline int find_spans(const DiffusionLayout* layout, int axis, int y, int z, face_span* spans)
+{
+  const int n = layout->size[0], here = voxel_at(layout, y, z);
+  const bool round = layout->periodic[axis] && layout->size[axis] > 1;
+  if (axis == 0)
+  {
+    const face_span first = { 0, round ? 1 : 0, here + n - 1 }, others = { 1, n, here - 1 };
+    spans[0] = first;
+    spans[1] = others;
+    return 2;
+  }
+  const bool begins = (axis == 1 ? y : z) == 0;
+  const int before_y = axis == 1 ? (begins ? layout->size[1] : y) - 1 : y;
+  const int before_z = axis == 2 ? (begins ? layout->size[2] : z) - 1 : z;
+  const face_span all = { 0, begins && !round ? 0 : n, voxel_at(layout, before_y, before_z) };
+  spans[0] = all;
+  return 1;
+}
+
+// Into a row by voxels, the last of which are no whole vector.
+inline void store_in_row(real values, int x, int size, __global float* row)
+{
+  if (x + REAL_WIDTH <= size)
+  {
+    store_real(values, x, row);
+    return;
+  }
+  float parts[REAL_WIDTH];
+  *(real*)parts = values;
+  for (int k = 0; x + k < size; ++k)
+  {
+    row[x + k] = parts[k];
+  }
+}
+
+// flat_source  [axis][stride]
+// swept        sigma_t of the sweeps
+__kernel void diffusion_flat_source(
+  DiffusionLayout layout, const __global float* sigma_t, const __global float* swept, __global float* flat_source)
+{
+  sigma_t += layout.firstT;
+  swept += layout.firstT;
+  FOR_ROWS(layout.rows)
+  {
+    const int here = r * layout.size[0];
+    for (int x = 0; x < layout.size[0]; x += REAL_WIDTH)
+    {
+      const real sweeps = load_real(x, swept + here);
+      real current = (real)0.0f;
+      for (int axis = 0; axis < 3; ++axis)
+      {
+        if (axis == 0 || layout.spacing[axis] != layout.spacing[axis - 1]) // of equal edges it is the same, and dear
+        {
+          current = flat_source_current(sweeps * layout.spacing[axis]);
+#if MOMENTS
+          // Of the current, what the source's first moment is carries itself: the rest has the excess of a flat source.
+          const real rest = fmin(load_real(x, sigma_t + here) / fmax(sweeps, (real)1e-37f), (real)1.0f);
+          const real part = select((real)1.0f, rest, sweeps > (real)0.0f);
+          current = 1.0f / 6.0f + part * (current - 1.0f / 6.0f);
+#endif
+        }
+        store_in_row(current, x, layout.size[0], flat_source + (ulong)axis * layout.stride + here);
+      }
+    }
+  }
+}
+
+// Of faces between voxels 0 and 1 across an axis, length^2.
+static real conductance_of(
+  const DiffusionLayout* layout, int axis, real sigma_t0, real sigma_a0, real sigma_t1, real sigma_a1, real flat_source)
+{
+  const float h = layout->spacing[axis];
+  const real tau0 = sigma_t0 * h, tau1 = sigma_t1 * h;
+  const real y0 = half_diffusion_length(tau0, sigma_t0, sigma_a0);
+  const real y1 = half_diffusion_length(tau1, sigma_t1, sigma_a1);
+  return face_area(layout, axis) * pass_face(layout, tau0, tau1, y0, y1, flat_source);
+}
+
+// conductance  [axis][rows] of the voxel's low face, length^2; 0 on the box's border
+// loss         [rows] what absorption takes per fluence
+__kernel void diffusion_conductance(DiffusionLayout layout, const __global float* sigma_t,
+  const __global float* sigma_a, const __global float* flat_source, __global float* conductance, __global float* loss)
+{
+  sigma_t += layout.firstT;
+  sigma_a += layout.first;
+  const int n = layout.size[0];
+  FOR_ROWS(layout.rows)
+  {
+    const int y = r % layout.size[1], z = r / layout.size[1], here = voxel_at(&layout, y, z);
+    const int row = row_at(&layout.rows, y, z);
+    for (int x = 0; x < n; x += REAL_WIDTH)
+    {
+      store_real(in_row(load_real(here + x, sigma_a) * volume_of(&layout), n - x), x, loss + row);
+    }
+    for (int axis = 0; axis < 3; ++axis)
+    {
+      __global float* passes = conductance + axis * layout.rows.floats + row;
+      const __global float* flat = flat_source + (ulong)axis * layout.stride;
+      face_span spans[2];
+      const int count = find_spans(&layout, axis, y, z, spans);
+      for (int s = 0; s < count; ++s)
+      {
+        for (int x = spans[s].begin; x < spans[s].end; x += REAL_WIDTH)
+        {
+          const int i = here + x, j = spans[s].before + x;
+          const real value = conductance_of(&layout, axis, load_real(j, sigma_t), load_real(j, sigma_a),
+            load_real(i, sigma_t), load_real(i, sigma_a), load_real(j, flat) + load_real(i, flat));
+          store_real(in_row(value, spans[s].end - x), x, passes);
+        }
+      }
+    }
+    fill_ghosts(conductance + row, n);
+  }
+}
+
+// sigma_t in rows. Beside the box's border as much as within, so that there is no contrast.
+__kernel void diffusion_extinction(DiffusionLayout layout, const __global float* sigma_t, __global float* extinction)
+{
+  sigma_t += layout.firstT;
+  const int n = layout.size[0];
+  FOR_ROWS(layout.rows)
+  {
+    const __global float* from = sigma_t + r * n;
+    __global float* row = extinction + row_at(&layout.rows, r % layout.size[1], r / layout.size[1]);
+    for (int x = 0; x < n; x += REAL_WIDTH)
+    {
+      store_real(load_real(x, from), x, row);
+    }
+    row[-1] = from[layout.periodic[0] ? n - 1 : 0];
+    row[n] = from[layout.periodic[0] ? 0 : n - 1];
+  }
+}
+
+// Extinction of the voxels at x of a row, [0], and of their neighbours, [1 + d].
+static void find_extinctions(
+  const DiffusionLayout* layout, int y, int z, int x, const __global float* extinction, real* sigma_t)
+{
+  const MultigridLevel* rows = &layout->rows;
+  const int last_y = layout->size[1] - 1, last_z = layout->size[2] - 1;
+  const int low_y = y > 0 ? y - 1 : layout->periodic[1] ? last_y : 0;
+  const int high_y = y < last_y ? y + 1 : layout->periodic[1] ? 0 : last_y;
+  const int low_z = z > 0 ? z - 1 : layout->periodic[2] ? last_z : 0;
+  const int high_z = z < last_z ? z + 1 : layout->periodic[2] ? 0 : last_z;
+  const int here = row_at(rows, y, z) + x;
+  sigma_t[0] = load_real(here, extinction);
+  sigma_t[1] = load_real(here - 1, extinction);
+  sigma_t[2] = load_real(here + 1, extinction);
+  sigma_t[3] = load_real(row_at(rows, low_y, z) + x, extinction);
+  sigma_t[4] = load_real(row_at(rows, high_y, z) + x, extinction);
+  sigma_t[5] = load_real(row_at(rows, y, low_z) + x, extinction);
+  sigma_t[6] = load_real(row_at(rows, y, high_z) + x, extinction);
+}
+
+// Of voxels beside thinner ones: the largest contrast of their faces, 0 below 0.01.
+static real skin_of(const DiffusionLayout* layout, const real* sigma_t)
+{
+  real most = (real)0.0f;
+#pragma unroll
+  for (int d = 0; d < 6; ++d)
+  {
+    const float h = layout->spacing[d / 2];
+    most = fmax(most, contrast(sigma_t[0] * h, sigma_t[1 + d] * h));
+  }
+  return layout->linear ? select((real)0.0f, most, most > (real)0.01f) : (real)0.0f;
+}
+
+// Which rows have voxels with a skin.
+// skins  [z][y]
+__kernel void diffusion_skins(DiffusionLayout layout, const __global float* extinction, __global int* skins)
+{
+  FOR_ROWS(layout.rows)
+  {
+    const int y = r % layout.size[1], z = r / layout.size[1];
+    real most = (real)0.0f;
+    for (int x = 0; x < layout.size[0]; x += REAL_WIDTH)
+    {
+      real sigma_t[7];
+      find_extinctions(&layout, y, z, x, extinction, sigma_t);
+      most = fmax(most, in_row(skin_of(&layout, sigma_t), layout.size[0] - x));
+    }
+    skins[r] = sum_of(most) > 0.0f;
+  }
+}
+
+// Exact values of a row by voxels from x on, as floats; what is beyond its end repeats the last.
+static real load_rounded(const __global exact* row, int x, int size)
+{
+  float values[REAL_WIDTH];
+  for (int k = 0; k < REAL_WIDTH; ++k)
+  {
+    values[k] = (float)row[min(x + k, size - 1)];
+  }
+  return *(real*)values;
+}
+
+// The fluence at which the sweep's power is compared with diffusion (numerics.md, Eq. (56)): in thin voxels what
+// the sweep found, in thick ones what it was given.
+// extinction  sigma_t in rows, see diffusion_extinction; where SKIN is 0 as the solver has it
+__kernel void diffusion_model(DiffusionLayout layout, const __global float* extinction, const __global float* path,
+  const __global exact* fluence, const __global float* source, __global float* model)
+{
+  path += layout.first;
+  source += layout.first;
+  const float edge = fmax(layout.spacing[0], fmax(layout.spacing[1], layout.spacing[2]));
+  const int n = layout.size[0];
+  FOR_ROWS(layout.rows)
+  {
+    const int y = r % layout.size[1], z = r / layout.size[1], here = voxel_at(&layout, y, z);
+    for (int x = 0; x < n; x += REAL_WIDTH)
+    {
+      const real solved = load_rounded(fluence + here, x, n);
+#if SKIN
+      real sigma_t[7];
+      find_extinctions(&layout, y, z, x, extinction, sigma_t);
+      const real skin = skin_of(&layout, sigma_t);
+      const real shining = 4.0f * M_PI_F * load_real(here + x, source) / fmax(sigma_t[0], (real)1e-37f);
+      const real given = select(solved, mix(solved, shining, skin), skin > (real)0.0f);
+      const real longest = sigma_t[0] * edge;
+#else
+      const real given = solved;
+      const real longest = load_real(layout.firstT + here + x, extinction) * edge;
+#endif
+      const real found = load_real(here + x, path) / volume_of(&layout);
+      const real thick = layout.linear ? 1.0f - 1.0f / (1.0f + longest * longest) : (real)0.0f;
+      const real value = select(found + thick * (given - found), given, longest > (real)1e9f);
+      store_in_row(value, x, n, model + here);
+    }
+  }
+}
+
+// Of a channel and an axis, what is found at the faces across it, [voxel].
+typedef struct
+{
+  const __global float *sigma_t, *sigma_a, *flatSource, *model;
+  const __global float *low, *high;             // W that entered through low faces, and through high ones
+  const __global float *passedLow, *passedHigh; // lamps' light that passed them at once
+  const __global float* givenFlux;
+} face_arrays;
+
+// Power through the faces between voxels j and those after them along the axis, i, towards i, but what their fluence
+// drives (numerics.md, Eqs. (53a), (54)).
+static real power_of_faces(
+  const DiffusionLayout* layout, const face_arrays* of, int axis, int j, int i, real passes, real crossing)
+{
+  inner_face face = { { load_real(j, of->sigma_t), load_real(i, of->sigma_t) },
+    { load_real(j, of->sigma_a), load_real(i, of->sigma_a) },
+    { load_real(j, of->flatSource), load_real(i, of->flatSource) },
+    { load_real(j, of->model), load_real(i, of->model) }, passes, load_real(i, of->low) - load_real(j, of->high),
+    (real)0.0f, crossing };
+#if MOMENTS
+  const float per_flux = 1.5f * layout->spacing[axis] * (4.0f * M_PI_F);
+  face.driven = passes * per_flux * (load_real(j, of->givenFlux) + load_real(i, of->givenFlux));
+#endif
+  real power = remainder_of(layout, axis, &face) + face.driven;
+#if PASSING
+  power += load_real(j, of->passedHigh) - load_real(i, of->passedLow);
+#endif
+  return power;
+}
+
+// Power through the voxels' low faces, in rows; 0 at the box's border.
+// currents  W, [-x, +x, -y, +y, -z, +z][stride], that entered in the sweep
+// passed    as currents; where PASSING
+// pattern   tables of crossings (DiffusionLayout)
+__kernel void diffusion_face_powers(DiffusionLayout layout, const __global float* sigma_t,
+  const __global float* sigma_a, const __global float* flat_source, const __global float* conductance,
+  const __global float* currents, const __global float* passed, const __global float* model,
+  const __global float* pattern, const __global float* given_flux, __global float* powers_x, __global float* powers_y,
+  __global float* powers_z)
+{
+  const ulong stride = layout.stride;
+  currents += 6 * (ulong)layout.first;
+  passed += PASSING ? 6 * (ulong)layout.first : 0;
+  given_flux += MOMENTS ? 3 * (ulong)layout.first : 0;
+  const int n = layout.size[0];
+  FOR_ROWS(layout.rows)
+  {
+    const int y = r % layout.size[1], z = r / layout.size[1], here = voxel_at(&layout, y, z);
+    const int row = row_at(&layout.rows, y, z);
+    for (int axis = 0; axis < 3; ++axis)
+    {
+      const __global float* low = currents + 2 * axis * stride;
+      const __global float* passed_low = passed + (PASSING ? 2 * axis * stride : 0);
+      const face_arrays arrays = { sigma_t + layout.firstT, sigma_a + layout.first, flat_source + axis * stride, model,
+        low, low + stride, passed_low, passed_low + (PASSING ? stride : 0),
+        given_flux + (MOMENTS ? axis * stride : 0) };
+      const __global float* passes = conductance + axis * layout.rows.floats + row;
+      const __global float* along_x = pattern + layout.pattern[2 * axis];
+      const float of_row = pattern[layout.pattern[2 * axis + 1] + (axis == 2 ? y : z)];
+      __global float* out = (axis == 0 ? powers_x : axis == 1 ? powers_y : powers_z) + row;
+      for (int x = 0; x < n; x += REAL_WIDTH)
+      {
+        store_real((real)0.0f, x, out);
+      }
+      face_span spans[2];
+      const int count = find_spans(&layout, axis, y, z, spans);
+      for (int s = 0; s < count; ++s)
+      {
+        for (int x = spans[s].begin; x < spans[s].end; x += REAL_WIDTH)
+        {
+          const real crossing = of_row + (axis == 0 ? (real)along_x[y] : load_real(x, along_x));
+          const real power =
+            power_of_faces(&layout, &arrays, axis, spans[s].before + x, here + x, load_real(x, passes), crossing);
+          store_real(in_row(power, spans[s].end - x), x, out);
+        }
+      }
+    }
+    fill_ghosts(powers_x + row, n);
+  }
+}
+
+// The right-hand side of numerics.md, Eq. (53), W, in rows, but for what passes the box's faces.
+// given    emitted and first scattered light of lights, W / (length^3 sr)
+// powers_  of low faces, see diffusion_face_powers
+__kernel void diffusion_balance(DiffusionLayout layout, const __global float* given, const __global float* powers_x,
+  const __global float* powers_y, const __global float* powers_z, __global float* right)
+{
+  given += layout.first;
+  const float per_radiance = 4.0f * M_PI_F * volume_of(&layout);
+  const int n = layout.size[0];
+  FOR_ROWS(layout.rows)
+  {
+    const int y = r % layout.size[1], z = r / layout.size[1], row = row_at(&layout.rows, y, z);
+    const int high_y = row_at(&layout.rows, y < layout.size[1] - 1 ? y + 1 : 0, z);
+    const int high_z = row_at(&layout.rows, y, z < layout.size[2] - 1 ? z + 1 : 0);
+    for (int x = 0; x < n; x += REAL_WIDTH)
+    {
+      const real along_x = load_real(row + x, powers_x) - load_real(row + x + 1, powers_x);
+      const real along_y = load_real(row + x, powers_y) - load_real(high_y + x, powers_y);
+      const real along_z = load_real(row + x, powers_z) - load_real(high_z + x, powers_z);
+      const real shines = load_real(r * n + x, given) * per_radiance;
+      store_real(in_row(shines + ((along_x + along_y) + along_z), n - x), row + x, right);
+    }
+  }
+}
+
+// What absorption takes of the fluence, W.
+// sums  [work-item]
+__kernel void diffusion_absorbed(
+  DiffusionLayout layout, const __global float* sigma_a, const __global exact* fluence, __global exact* sums)
+{
+  sigma_a += layout.first;
+  const int n = layout.size[0];
+  exact sum = 0;
+  FOR_ROWS(layout.rows)
+  {
+    for (int x = 0; x < n; ++x)
+    {
+      sum += sigma_a[r * n + x] * fluence[r * n + x];
+    }
+  }
+  sums[get_global_id(0)] = sum * volume_of(&layout);
+}

@@ -1,0 +1,62 @@
+#include "LightPropagation/Diffusion/MultigridLayout.h"
+
+#include "Device/Sizes.h"
+
+#include <algorithm>
+#include <cstddef>
+
+namespace tyndall
+{
+namespace
+{
+constexpr std::size_t FewVoxels = 64;        ///< of the coarsest level
+constexpr int VoxelsOfItem = 4096;           ///< that a work-item walks along, about
+constexpr int BetweenPlanes = 2 * RowVector; ///< floats, beyond the rows
+
+/// How the arrays of a level of this size lie in memory.
+void LayOut(MultigridLevel& level)
+{
+  level.pitch = RoundUp(level.size[0], int(RowVector)) + RowVector;
+  level.plane = level.size[1] * level.pitch + BetweenPlanes;
+  level.floats = RowsLead + level.size[2] * level.plane + 2 * RowVector;
+  level.together = std::max(1, VoxelsOfItem / level.pitch);
+}
+
+std::size_t VoxelsOf(const MultigridLevel& level)
+{
+  return static_cast<std::size_t>(level.size[0]) * level.size[1] * level.size[2];
+}
+}
+
+std::vector<MultigridLevel> MultigridLevels(const std::array<int, 3>& size, const std::array<double, 3>& ofSpacing)
+{
+  std::array<double, 3> spacing = ofSpacing;
+  MultigridLevel level = {};
+  std::copy(size.begin(), size.end(), level.size);
+  std::vector<MultigridLevel> levels;
+  for (;;)
+  {
+    double shortest = 0.0;
+    for (int axis = 0; axis < 3; ++axis)
+    {
+      const bool shorter = shortest == 0.0 || spacing[axis] < shortest;
+      shortest = level.size[axis] > 1 && shorter ? spacing[axis] : shortest;
+    }
+    for (int axis = 0; axis < 3; ++axis)
+    {
+      level.halved[axis] = level.size[axis] > 1 && spacing[axis] < 1.9 * shortest ? 1 : 0;
+    }
+    LayOut(level);
+    levels.push_back(level);
+    if (VoxelsOf(level) <= FewVoxels)
+    {
+      return levels;
+    }
+    for (int axis = 0; axis < 3; ++axis)
+    {
+      spacing[axis] *= 1 + level.halved[axis];
+      level.size[axis] = (level.size[axis] + level.halved[axis]) >> level.halved[axis];
+    }
+  }
+}
+}

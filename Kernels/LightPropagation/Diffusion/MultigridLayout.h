@@ -1,0 +1,36 @@
+#pragma once
+
+#include "LightPropagation/Diffusion/DiffusionShared.h"
+
+#include <array>
+#include <vector>
+
+namespace tyndall
+{
+/// The levels of multigrid on a box of voxels, the finest first: each joins voxels two by two along the axes whose edges
+/// are below 1.9 times the shortest, until few are left.
+/// @param spacing  of voxels: an axis along which they are far shorter is coarsened first
+std::vector<MultigridLevel> MultigridLevels(const std::array<int, 3>& size, const std::array<double, 3>& spacing);
+
+/// Values by voxel, x fastest, as a level's rows, of several arrays one after the other; 0 elsewhere.
+template <class Value>
+std::vector<float> InRows(const MultigridLevel& level, const std::vector<Value>& values, int arrays = 1)
+{
+  std::vector<float> rows(static_cast<std::size_t>(level.floats) * arrays, 0.0f);
+  const int* const n = level.size;
+  std::size_t i = 0;
+  for (int plane = 0; plane < arrays * n[2]; ++plane)
+  {
+    float* const first = rows.data() + std::size_t(plane / n[2]) * level.floats + RowsLead + plane % n[2] * level.plane;
+    for (float* row = first; row < first + n[1] * level.pitch; row += level.pitch)
+    {
+      for (int x = 0; x < n[0]; ++x, ++i)
+      {
+        row[x] = static_cast<float>(values[i]);
+      }
+      row[n[0]] = row[0]; // a periodic axis goes on there
+    }
+  }
+  return rows;
+}
+}

@@ -1,0 +1,89 @@
+// Rows of a multigrid level (DiffusionShared.h), and the matrix of a level along them:
+//   (A x)_i = sum over faces of conductance (x_i - x_j) + loss_i x_i
+// with the conductances of low faces, [axis][floats of an array]; 0 at the box's end.
+
+#pragma once
+#include "LightPropagation/Diffusion/DiffusionShared.h"
+#include "Numerics/Numerics.cl"
+
+#if REAL_WIDTH == 4
+#define LANES ((int4)(0, 1, 2, 3))
+#else
+#define LANES ((int8)(0, 1, 2, 3, 4, 5, 6, 7))
+#endif
+
+// The rows that this work-item walks along, one after the other: r, y and z.
+#define FOR_ROWS(level)                                                            \
+  for (int r = get_global_id(0) * (level).together,                                \
+           row_end = min((level).size[1] * (level).size[2], r + (level).together); \
+       r < row_end; ++r)
+
+inline int row_at(const MultigridLevel* level, int y, int z)
+{
+  return RowsLead + z * level->plane + y * level->pitch;
+}
+
+// 0 in lanes from `left` on: beyond a row's last voxel.
+inline real in_row(real values, int left)
+{
+  return left >= REAL_WIDTH ? values : select(values, (real)0.0f, LANES >= left);
+}
+
+// Beside a row's ends lie those of the other side: a periodic axis goes on there, and where the box ends nothing passes.
+inline void fill_ghosts(__global float* row, int size)
+{
+  row[-1] = row[size - 1];
+  row[size] = row[0];
+}
+
+typedef struct
+{
+  const __global float *own, *low_y, *high_y, *low_z, *high_z;                                 // values
+  const __global float *loss, *passes_x, *passes_y, *passes_high_y, *passes_z, *passes_high_z; // of faces
+} matrix_row;
+
+inline matrix_row find_matrix_row(const MultigridLevel* level, int y, int z, const __global float* conductance,
+  const __global float* loss, const __global float* values)
+{
+  const int here = row_at(level, y, z);
+  const int low_y = row_at(level, y > 0 ? y - 1 : level->size[1] - 1, z);
+  const int high_y = row_at(level, y < level->size[1] - 1 ? y + 1 : 0, z);
+  const int low_z = row_at(level, y, z > 0 ? z - 1 : level->size[2] - 1);
+  const int high_z = row_at(level, y, z < level->size[2] - 1 ? z + 1 : 0);
+  const __global float* passes_y = conductance + level->floats;
+  const __global float* passes_z = passes_y + level->floats;
+  const matrix_row row = { values + here, values + low_y, values + high_y, values + low_z, values + high_z, loss + here,
+    conductance + here, passes_y + here, passes_y + high_y, passes_z + here, passes_z + high_z };
+  return row;
+}
+
+inline real diagonal_of(const matrix_row* row, int x)
+{
+  return ((load_real(x, row->passes_x) + load_real(x + 1, row->passes_x)) +
+           (load_real(x, row->passes_y) + load_real(x, row->passes_high_y))) +
+    ((load_real(x, row->passes_z) + load_real(x, row->passes_high_z)) + load_real(x, row->loss));
+}
+
+// A x.
+inline real apply_row(const matrix_row* row, int x)
+{
+  const real own = load_real(x, row->own);
+  real sum = load_real(x, row->loss) * own;
+  sum = multiply_add(load_real(x, row->passes_x), own - load_real(x - 1, row->own), sum);
+  sum = multiply_add(load_real(x + 1, row->passes_x), own - load_real(x + 1, row->own), sum);
+  real aside = load_real(x, row->passes_y) * (own - load_real(x, row->low_y));
+  aside = multiply_add(load_real(x, row->passes_high_y), own - load_real(x, row->high_y), aside);
+  aside = multiply_add(load_real(x, row->passes_z), own - load_real(x, row->low_z), aside);
+  aside = multiply_add(load_real(x, row->passes_high_z), own - load_real(x, row->high_z), aside);
+  return sum + aside;
+}
+
+// Of two vectors side by side: sums of two neighbours, and of each two the first.
+inline real pair_sums(real a, real b)
+{
+  return (real)(a.even + a.odd, b.even + b.odd);
+}
+inline real first_of_pairs(real a, real b)
+{
+  return (real)(a.even, b.even);
+}

@@ -1,0 +1,154 @@
+#include "DeviceTest.h"
+
+#include "LightPropagation/Diffusion/MultigridSolver.h"
+
+#include <gtest/gtest.h>
+
+#include <algorithm>
+#include <array>
+#include <cmath>
+#include <random>
+#include <vector>
+
+namespace
+{
+using namespace tyndall;
+
+/// A diffusion matrix by chance, and its product with values in double.
+class RandomMatrix
+{
+public:
+  /// @param contrast  of conductances and losses, at most
+  RandomMatrix(const std::array<int, 3>& size, const std::array<bool, 3>& periodic, double contrast)
+    : Size(size)
+    , Count(static_cast<std::size_t>(size[0]) * size[1] * size[2])
+    , Conductance(3 * this->Count)
+  {
+    std::mt19937 random(7);
+    std::uniform_real_distribution<double> power(-1.0, 0.0);
+    for (std::size_t i = 0; i < this->Count; ++i)
+    {
+      this->Loss.push_back(static_cast<float>(0.1 * std::pow(contrast, power(random))));
+      for (int axis = 0; axis < 3; ++axis)
+      {
+        const bool passes = size[axis] > 1 && (periodic[axis] || this->At(i)[axis] > 0);
+        this->Conductance[axis * this->Count + i] =
+          passes ? static_cast<float>(std::pow(contrast, power(random))) : 0.0f;
+      }
+    }
+  }
+
+  std::vector<double> Times(const std::vector<double>& x) const
+  {
+    std::vector<double> product(this->Count);
+    for (std::size_t i = 0; i < this->Count; ++i)
+    {
+      product[i] += this->Loss[i] * x[i];
+      for (int axis = 0; axis < 3; ++axis)
+      {
+        const std::size_t j = this->Before(i, axis);
+        const double flow = this->Conductance[axis * this->Count + i] * (x[i] - x[j]);
+        product[i] += flow;
+        product[j] -= flow;
+      }
+    }
+    return product;
+  }
+
+  void LoadInto(MultigridSolver& solver) const
+  {
+    solver.Conductance().Write(InRows(solver.Rows(), this->Conductance, 3).data());
+    solver.Loss().Write(InRows(solver.Rows(), this->Loss).data());
+    solver.Coarsen();
+  }
+
+private:
+  std::array<int, 3> At(std::size_t i) const
+  {
+    const int in = static_cast<int>(i);
+    return { in % this->Size[0], in / this->Size[0] % this->Size[1], in / (this->Size[0] * this->Size[1]) };
+  }
+  std::size_t Before(std::size_t i, int axis) const
+  {
+    std::array<int, 3> at = this->At(i);
+    at[axis] = (at[axis] + this->Size[axis] - 1) % this->Size[axis];
+    return (static_cast<std::size_t>(at[2]) * this->Size[1] + at[1]) * this->Size[0] + at[0];
+  }
+
+  std::array<int, 3> Size;
+  std::size_t Count;
+  std::vector<float> Conductance, Loss;
+};
+
+class MultigridSolverTest : public DeviceTest
+{
+protected:
+  /// Largest error of what the solver finds, over the largest value; 1 where it takes too many iterations.
+  double ErrorOn(const std::array<int, 3>& size, const std::array<bool, 3>& periodic, double contrast, int most)
+  {
+    const RandomMatrix matrix(size, periodic, contrast);
+    std::vector<double> truth(static_cast<std::size_t>(size[0]) * size[1] * size[2]);
+    std::mt19937 random(11);
+    std::uniform_real_distribution<double> uniform(0.0, 1.0);
+    std::generate(truth.begin(), truth.end(), [&] { return uniform(random); });
+
+    MultigridSolver solver(this->GetDevice(), size, { 1.0, 1.0, 1.0 });
+    matrix.LoadInto(solver);
+    ExactValues found(this->GetDevice(), truth.size(), "a test");
+    for (int round = 0; round < 2; ++round) // each from a residual in double
+    {
+      solver.Right().Write(InRows(solver.Rows(), matrix.Times(truth)).data());
+      const int iterations = solver.Solve(found, 1.0, 1e-5);
+      EXPECT_LE(iterations, most);
+    }
+    const std::vector<double> values = found.Read();
+    double error = 0.0;
+    for (std::size_t i = 0; i < truth.size(); ++i)
+    {
+      error = std::max(error, std::abs(values[i] - truth[i]));
+    }
+    return error;
+  }
+};
+
+TEST_F(MultigridSolverTest, FindsWhatTheMatrixWasMultipliedWith)
+{
+  for (const std::array<int, 3>& size : std::vector<std::array<int, 3>>{ { 23, 17, 40 }, { 16, 16, 16 }, { 8, 9, 7 },
+         { 5, 3, 2 }, { 129, 1, 9 }, { 1, 1, 64 }, { 1, 31, 1 }, { 2, 2, 2 }, { 20, 16, 16 } })
+  {
+    EXPECT_LT(this->ErrorOn(size, { false, false, false }, 1.0, 25), 1e-4)
+      << size[0] << " x " << size[1] << " x " << size[2];
+  }
+}
+
+TEST_F(MultigridSolverTest, GoesRoundPeriodicAxes)
+{
+  for (int axis = 0; axis < 3; ++axis)
+  {
+    std::array<bool, 3> periodic = { false, false, false };
+    periodic[axis] = true;
+    EXPECT_LT(this->ErrorOn({ 19, 12, 24 }, periodic, 1.0, 25), 1e-4) << axis;
+    EXPECT_LT(this->ErrorOn({ 16, 8, 1 }, periodic, 1.0, 25), 1e-4) << axis;
+  }
+  EXPECT_LT(this->ErrorOn({ 21, 22, 9 }, { true, true, true }, 1.0, 25), 1e-4);
+}
+
+TEST_F(MultigridSolverTest, TakesConductancesThatDifferFromFaceToFace)
+{
+  EXPECT_LT(this->ErrorOn({ 24, 24, 24 }, { false, false, false }, 100.0, 40), 1e-3);
+  EXPECT_LT(this->ErrorOn({ 17, 26, 21 }, { false, true, false }, 1e4, 150), 1e-2);
+}
+
+TEST_F(MultigridSolverTest, FindsNothingWhereNothingShines)
+{
+  const RandomMatrix matrix({ 9, 9, 9 }, { false, false, false }, 1.0);
+  MultigridSolver solver(this->GetDevice(), { 9, 9, 9 }, { 1.0, 1.0, 1.0 });
+  matrix.LoadInto(solver);
+  const ExactValues found(this->GetDevice(), 729, "a test");
+  EXPECT_EQ(solver.Solve(found, 1.0, 1e-3), 0);
+  for (double value : found.Read())
+  {
+    EXPECT_EQ(value, 0.0);
+  }
+}
+}
