@@ -63,7 +63,7 @@ inline void store_in_row(real values, int x, int size, __global float* row)
   }
 }
 
-// flat_source  [axis][stride]
+// flat_source  [axis][flatStride]
 // swept        sigma_t of the sweeps
 __kernel void diffusion_flat_source(
   DiffusionLayout layout, const __global float* sigma_t, const __global float* swept, __global float* flat_source)
@@ -76,20 +76,16 @@ __kernel void diffusion_flat_source(
     for (int x = 0; x < layout.size[0]; x += REAL_WIDTH)
     {
       const real sweeps = load_real(x, swept + here);
-      real current = (real)0.0f;
-      for (int axis = 0; axis < 3; ++axis)
+      for (int axis = 0; axis < (layout.flatStride > 0 ? 3 : 1); ++axis)
       {
-        if (axis == 0 || layout.spacing[axis] != layout.spacing[axis - 1]) // of equal edges it is the same, and dear
-        {
-          current = flat_source_current(sweeps * layout.spacing[axis]);
+        real current = flat_source_current(sweeps * layout.spacing[axis]);
 #if MOMENTS
-          // Of the current, what the source's first moment is carries itself: the rest has the excess of a flat source.
-          const real rest = fmin(load_real(x, sigma_t + here) / fmax(sweeps, (real)1e-37f), (real)1.0f);
-          const real part = select((real)1.0f, rest, sweeps > (real)0.0f);
-          current = 1.0f / 6.0f + part * (current - 1.0f / 6.0f);
+        // Of the current, what the source's first moment is carries itself: the rest has the excess of a flat source.
+        const real rest = fmin(load_real(x, sigma_t + here) / fmax(sweeps, (real)1e-37f), (real)1.0f);
+        const real part = select((real)1.0f, rest, sweeps > (real)0.0f);
+        current = 1.0f / 6.0f + part * (current - 1.0f / 6.0f);
 #endif
-        }
-        store_in_row(current, x, layout.size[0], flat_source + (ulong)axis * layout.stride + here);
+        store_in_row(current, x, layout.size[0], flat_source + (ulong)axis * layout.flatStride + here);
       }
     }
   }
@@ -125,7 +121,7 @@ __kernel void diffusion_conductance(DiffusionLayout layout, const __global float
     for (int axis = 0; axis < 3; ++axis)
     {
       __global float* passes = conductance + axis * layout.rows.floats + row;
-      const __global float* flat = flat_source + (ulong)axis * layout.stride;
+      const __global float* flat = flat_source + (ulong)axis * layout.flatStride;
       face_span spans[2];
       const int count = find_spans(&layout, axis, y, z, spans);
       for (int s = 0; s < count; ++s)
@@ -311,9 +307,9 @@ __kernel void diffusion_face_powers(DiffusionLayout layout, const __global float
     {
       const __global float* low = currents + 2 * axis * stride;
       const __global float* passed_low = passed + (PASSING ? 2 * axis * stride : 0);
-      const face_arrays arrays = { sigma_t + layout.firstT, sigma_a + layout.first, flat_source + axis * stride, model,
-        low, low + stride, passed_low, passed_low + (PASSING ? stride : 0),
-        given_flux + (MOMENTS ? axis * stride : 0) };
+      const face_arrays arrays = { sigma_t + layout.firstT, sigma_a + layout.first,
+        flat_source + (ulong)axis * layout.flatStride, model, low, low + stride, passed_low,
+        passed_low + (PASSING ? stride : 0), given_flux + (MOMENTS ? axis * stride : 0) };
       const __global float* passes = conductance + axis * layout.rows.floats + row;
       const __global float* along_x = pattern + layout.pattern[2 * axis];
       const float of_row = pattern[layout.pattern[2 * axis + 1] + (axis == 2 ? y : z)];

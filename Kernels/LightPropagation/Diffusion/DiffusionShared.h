@@ -32,6 +32,7 @@ typedef struct
   int periodic[3];
   int linear;        ///< 1: the light between voxels' centres is linear; 0: each voxel is as one
   int stride;        ///< of channels in the solver's arrays
+  int flatStride;    ///< from axis to axis of flat_source: 0 where voxels' edges are equal, for it is the same
   int firstT, first; ///< where this channel begins: of sigma_t, of all others (currents: six times that, flux: three)
   int pattern[6];    ///< where the tables of crossings begin: [axis][other axes in order]
   float spacing[3];
@@ -41,6 +42,18 @@ typedef struct
   float albedo[6];     ///< part that each face gives back of what leaves through it
   MultigridLevel rows; ///< how conductances lie in memory
 } DiffusionLayout;
+
+/// What is known of each cell of the box's faces (Medium/BoxFaces.h), by the solution and by the sweep, W.
+enum
+{
+  BorderNet = 0,        ///< out less in, without the transport correction: right from voxel to voxel
+  BorderShare = 1,      ///< the transport correction of that: right for a face of the box as a whole
+  BorderSeeming = 2,    ///< out in the sweep, an estimate
+  BorderWeight = 3,     ///< of the transport correction, where the voxel has several such faces, else -1; no power
+  BorderCame = 4,       ///< came in in the sweep
+  BorderWholeShare = 5, ///< the correction before the face gives back its part
+  BorderValues = 6
+};
 
 /// Light by cells of the box's faces, W: rows of the array `faces`.
 enum

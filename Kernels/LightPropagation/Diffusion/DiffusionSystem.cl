@@ -79,7 +79,6 @@ typedef struct
   const __global float* faces; // where FACES
 } diffusion_arrays;
 
-#if FACES
 // Cell of the box's faces (Medium/BoxFaces.h).
 static int cell_of_face(const DiffusionLayout* layout, const int* at, int d)
 {
@@ -99,7 +98,6 @@ static int face_cells(const DiffusionLayout* layout)
   const int* n = layout->size;
   return 2 * (n[1] * n[2] + n[0] * n[2] + n[0] * n[1]);
 }
-#endif
 
 // W / length^2 through a cell of face d: in the sweep that was made, or what is given beside what the face gives back.
 static float coming_in(const DiffusionLayout* layout, const diffusion_arrays* arrays, int row, int d, const int* at)
@@ -149,7 +147,7 @@ static float remainder_of_face(
   const ulong stride = arrays->stride;
   const float passes = conductance_at(layout, arrays->conductance, d, at);
   const inner_face face = { { arrays->sigma_t[i], arrays->sigma_t[j] }, { arrays->sigma_a[i], arrays->sigma_a[j] },
-    { arrays->flatSource[axis * stride + i], arrays->flatSource[axis * stride + j] },
+    { arrays->flatSource[axis * layout->flatStride + i], arrays->flatSource[axis * layout->flatStride + j] },
     { arrays->model[i], arrays->model[j] }, passes,
     arrays->currents[(d ^ 1) * stride + j] - arrays->currents[d * stride + i],
     passes * drive_through(layout, arrays, d, i, j), crossing_at(layout, arrays, axis, at) };
@@ -185,7 +183,7 @@ static float model_of_boundary(
     return net * area;
   }
   const float at_face = light - 1.5f * way * net;
-  const float spread = a * at_face + 3.0f * net * arrays->flatSource[axis * arrays->stride + i] - incoming;
+  const float spread = a * at_face + 3.0f * net * arrays->flatSource[axis * layout->flatStride + i] - incoming;
   return pattern_of(crossing_at(layout, arrays, axis, at), tau) * spread * area;
 }
 
@@ -341,13 +339,14 @@ static exact power_leaving(const DiffusionLayout* layout, const diffusion_arrays
   float share[6], seeming[6], transport_weight;
 
 // What passes the box's faces, added to the right-hand side of numerics.md, Eq. (53), W, in rows.
+// borders  of each cell of the box's faces what DiffusionShared.h names, but BorderNet
 // source   of the sweep, W / (length^3 sr)
 // given_flux  of the given source, its net flux over 4 pi, in angular moments, [channel][x, y, z][stride]
 __kernel void diffusion_border_balance(DiffusionLayout layout, const __global float* sigma_t,
   const __global float* sigma_a, const __global float* swept, const __global float* flat_source,
   const __global float* conductance, const __global float* currents, const __global float* passed,
   const __global float* model, const __global float* pattern, const __global float* source, const __global float* path,
-  const __global float* given_flux, const __global float* faces, __global float* right)
+  const __global float* given_flux, const __global float* faces, __global float* right, __global exact* borders)
 {
   BORDER_VOXEL(layout)
   ARRAYS_OF_CHANNEL
@@ -364,50 +363,46 @@ __kernel void diffusion_border_balance(DiffusionLayout layout, const __global fl
   power -= remainder_of_borders(
     &layout, &arrays, i, next, at, source[i] * per_radiance - swept[i] * path[i], share, seeming, &transport_weight);
   right[RowsLead + z * layout.rows.plane + y * layout.rows.pitch + x] += power;
+  int count = 0;
+  for (int d = 0; d < 6; ++d)
+  {
+    count += is_border(&layout, at, d);
+  }
+  for (int d = 0; d < 6; ++d)
+  {
+    if (is_border(&layout, at, d))
+    {
+      __global exact* face = borders + BorderValues * cell_of_face(&layout, at, d);
+      face[BorderSeeming] = seeming[d];
+      face[BorderWeight] = count > 1 ? transport_weight : -1.0f;
+      face[BorderCame] = currents[d * stride + i];
+      face[BorderShare] = part_that_leaves(&layout, &arrays, d, i) * share[d];
+      face[BorderWholeShare] = share[d];
+    }
+  }
 }
 
-// A voxel's faces at the box's border, [face][row][voxel of the row], five values each:
-//   power out of the box less what came in in the sweep, W
-//   power out of the box in the sweep, W, an estimate
-//   weight of the transport correction, where the voxel has several such faces, else -1
-//   power out less in, W, without the transport correction: that is right for a face of the box as a whole, but not
-//   from voxel to voxel
-//   power that came in in the sweep, W
+// Power through the box's faces by the solution, into what diffusion_border_balance found there.
 __kernel void diffusion_outflow(DiffusionLayout layout, const __global float* sigma_t, const __global float* sigma_a,
   const __global float* swept, const __global float* flat_source, const __global float* conductance,
   const __global float* currents, const __global float* passed, const __global float* model,
   const __global float* pattern, const __global float* source, const __global float* path,
-  const __global float* given_flux, __global float* faces, const __global exact* fluence, __global exact* outflow)
+  const __global float* given_flux, __global float* faces, const __global exact* fluence, __global exact* borders)
 {
   BORDER_VOXEL(layout)
   ARRAYS_OF_CHANNEL
-  remainder_of_borders(
-    &layout, &arrays, i, next, at, source[i] * per_radiance - swept[i] * path[i], share, seeming, &transport_weight);
-  int borders = 0;
   for (int d = 0; d < 6; ++d)
   {
-    borders += is_border(&layout, at, d);
-  }
-  int begin = 0;
-  for (int d = 0; d < 6; ++d)
-  {
-    const int u = d / 2 == 0 ? 1 : 0;
-    const int v = d / 2 == 2 ? 1 : 2;
     if (is_border(&layout, at, d))
     {
-      __global exact* face = outflow + 5 * (begin + at[v] * layout.size[u] + at[u]);
+      __global exact* face = borders + BorderValues * cell_of_face(&layout, at, d);
       const float none[6] = { 0.0f };
-      face[3] = power_of_face(&layout, &arrays, fluence, d, i, next, at, none);
-      face[0] = face[3] + part_that_leaves(&layout, &arrays, d, i) * share[d];
+      face[BorderNet] = power_of_face(&layout, &arrays, fluence, d, i, next, at, none);
 #if FACES
       faces[FaceLeaves * face_cells(&layout) + cell_of_face(&layout, at, d)] =
-        (float)power_leaving(&layout, &arrays, fluence, d, i, next, at, share[d]);
+        (float)power_leaving(&layout, &arrays, fluence, d, i, next, at, (float)face[BorderWholeShare]);
 #endif
-      face[1] = seeming[d];
-      face[2] = borders > 1 ? transport_weight : -1.0f;
-      face[4] = currents[d * stride + i];
     }
-    begin += layout.size[u] * layout.size[v];
   }
 }
 

@@ -18,7 +18,6 @@ namespace
 constexpr double Floor = 0.05;     ///< optical length between centres of voxels that pass light as if it were that long
 constexpr double Reduction = 1e-2; ///< of the residual in one correction: sweeps gain no more than that
 constexpr std::size_t BorderGroup = 256; ///< cells of the box's faces in a work-group
-constexpr int PerBorder = 5;             ///< values of a voxel's face at the box's border (diffusion_outflow)
 
 /// Rounding can leave dark faces a little below 0: they become 0, and the others are scaled so that the sum stays.
 std::array<double, 6> NotNegative(std::array<double, 6> powers)
@@ -67,12 +66,14 @@ DiffusionSystem::DiffusionSystem(Device& device, const Grid& grid, const std::ar
   std::vector<float> tables = pattern.values;
   tables.resize(tables.size() + RowVector);
   this->Pattern = Buffer<float>(device, tables, what);
-  this->FlatSource = Buffer<float>(device, 3 * arrays.stride + RowVector, what);
+  const std::array<double, 3>& h = grid.spacing;
+  this->Layout.flatStride = h[0] == h[1] && h[1] == h[2] ? 0 : this->Layout.stride;
+  this->FlatSource = Buffer<float>(device, arrays.stride + 2 * this->Layout.flatStride + RowVector, what);
   this->Model = Buffer<float>(device, this->Count + RowVector, what);
   this->Next = ExactValues(device, this->Values(), what);
   this->Solution = ExactValues(device, this->Values(), what);
   this->Solution.Fill(0.0); // a dark channel is never solved for
-  this->Borders = ExactValues(device, PerBorder * this->BorderCells, what);
+  this->Borders = ExactValues(device, BorderValues * this->BorderCells, what);
 
   cl::Kernel flat_source = this->RowsKernel("diffusion_flat_source");
   With(flat_source, this->Layout, *arrays.sigma_t, *arrays.swept, this->FlatSource);
@@ -192,7 +193,7 @@ void DiffusionSystem::Balance()
   cl::Kernel balance = this->RowsKernel("diffusion_balance");
   With(balance, this->Layout, *the.given, *x, *y, *z, this->Solver.Right());
   this->RunRows(balance);
-  cl::Kernel border = this->OnArrays("diffusion_border_balance", this->Solver.Right());
+  cl::Kernel border = this->OnArrays("diffusion_border_balance", this->Solver.Right(), this->Borders.Handle());
   this->RunBorder(border);
 }
 
@@ -254,13 +255,13 @@ std::array<double, 6> DiffusionSystem::Outflow(double entered, const std::array<
   for (int face = 0; face < 6; ++face)
   {
     const PlaneAxes axes = AcrossAxis(face / 2);
-    for (int i = 0; i < this->Layout.size[axes.u] * this->Layout.size[axes.v]; ++i, at += PerBorder)
+    for (int i = 0; i < this->Layout.size[axes.u] * this->Layout.size[axes.v]; ++i, at += BorderValues)
     {
-      outflow[face] += borders[at];
-      came[face] += borders[at + 4];
-      missing[face] -= borders[at + 1];
-      const bool several = borders[at + 2] > 0.0;
-      transport_weight += several ? borders[at + 2] : 0.0;
+      outflow[face] += borders[at + BorderNet] + borders[at + BorderShare];
+      came[face] += borders[at + BorderCame];
+      missing[face] -= borders[at + BorderSeeming];
+      const bool several = borders[at + BorderWeight] > 0.0;
+      transport_weight += several ? borders[at + BorderWeight] : 0.0;
       shared += several ? 1.0 : 0.0;
     }
   }
@@ -285,20 +286,20 @@ SurfacePowers DiffusionSystem::PowersAtSurface() const
   const std::vector<double> borders = this->Borders.Read();
   SurfacePowers powers;
   powers.halfRange = this->Layout.halfRange;
-  const std::size_t cells = borders.size() / PerBorder;
+  const std::size_t cells = borders.size() / BorderValues;
   const std::vector<float> faces = this->Reflects() ? this->The.faces->Read() : std::vector<float>();
   const auto row = [&](std::size_t number) {
     return faces.empty() ? faces
                          : std::vector<float>(faces.begin() + number * cells, faces.begin() + (number + 1) * cells);
   };
   const std::vector<float> back = row(FaceGiven), leaves = row(FaceLeaves);
-  std::size_t at = 3;
+  std::size_t at = BorderNet;
   for (int face = 0; face < 6; ++face)
   {
     powers.in[face] = this->Layout.incoming[face];
     const PlaneAxes axes = AcrossAxis(face / 2);
     const double area = this->Layout.spacing[axes.u] * this->Layout.spacing[axes.v];
-    for (int i = 0; i < this->Layout.size[axes.u] * this->Layout.size[axes.v]; ++i, at += PerBorder)
+    for (int i = 0; i < this->Layout.size[axes.u] * this->Layout.size[axes.v]; ++i, at += BorderValues)
     {
       powers.net.push_back(borders[at] / area);
       if (!back.empty())
