@@ -81,6 +81,10 @@ UncollidedDirections UncollidedDirectionsFor(
   {
     return {};
   }
+  if (accelerated && problem.Scattering().Degree() > 0)
+  {
+    return {}; // all moments of four lights would be kept at once: hundreds of bytes a voxel
+  }
   const double lit = LitPart(problem.Shining(), settings.periodic), before = settings.directionsPerFace;
   const double affordable = More * (TimeOfLaterOrders(problem, accelerated) + lit) * before;
   UncollidedDirections found;
