@@ -282,11 +282,11 @@ TEST_F(UncollidedBoundary, TakesPartInTheErrorEstimate)
 
 TEST_F(UncollidedBoundary, HasFinerDirectionsByDefaultWhereAFaceShines)
 {
-  // One face, and two adjacent ones.
-  for (int kind = 0; kind < 2; ++kind)
+  // One face, and two adjacent ones; few orders, many, and accelerated ones.
+  for (int kind = 0; kind < 6; ++kind)
   {
-    Scene scene = LitCube(20, 5.0, 0.9);
-    scene.light.faces[0] = kind == 1 ? Rgb{ 0.5, 0.5, 0.5 } : Rgb{};
+    Scene scene = LitCube(20, kind < 2 ? 1.0 : 5.0, kind < 4 ? 0.9 : 1.0);
+    scene.light.faces[0] = kind % 2 == 1 ? Rgb{ 0.5, 0.5, 0.5 } : Rgb{};
     const LightField light = scene.Solve(this->GetDevice());
     scene.settings.uncollidedDirections = 0;
     const LightField few = scene.Solve(this->GetDevice());
@@ -301,19 +301,20 @@ TEST_F(UncollidedBoundary, HasFinerDirectionsByDefaultWhereAFaceShines)
 
 TEST_F(UncollidedBoundary, HasTheUsualDirectionsByDefaultWhereTheyDo)
 {
-  // Under an even sky, where nothing is scattered or seldom, where orders are accelerated, in slabs, where faces
-  // reflect.
+  // Under an even sky, where nothing is scattered, in slabs, where faces reflect, where few orders are asked for.
   enum
   {
     Sky,
     Absorber,
-    Thick,
     Slab,
-    Ground
+    Ground,
+    TwoOrders
   };
-  for (int kind : { Sky, Absorber, Thick, Slab, Ground })
+  for (int kind : { Sky, Absorber, Slab, Ground, TwoOrders })
   {
-    Scene scene = LitCube(12, kind == Thick ? 30.0 : 2.0, kind == Absorber ? 0.0 : 0.99);
+    Scene scene = LitCube(12, 2.0, kind == Absorber ? 0.0 : 0.99);
+    scene.light.faces[5] = kind == TwoOrders ? Rgb{ 0.5, 0.5, 0.5 } : Rgb{};
+    scene.settings.maximumOrders = kind == TwoOrders ? 1 : 0;
     if (kind == Slab)
     {
       scene = Scene({ 1, 1, 16 }, 0.01f, 0.1f);

@@ -169,7 +169,7 @@ void SourceIteration::AddUncollided(const Monitor& monitor)
   {
     sources.push_back(std::move(other));
   }
-  const bool escapes = this->Parts.Fine && this->Parts.Problem.Traits().scatters && !this->Parts.FacesReflect();
+  const bool escapes = this->Parts.CorrectsEscape;
   const double all = static_cast<double>(sources.size() + (escapes ? 1 : 0));
   SweepTally tally;
   Buffer<float> firstMoments(

@@ -123,9 +123,11 @@ void TransportParts::FindBoundaryLight()
   const PropagationSettings& settings = this->Problem.Settings();
   const Illumination& shining = this->Problem.Shining();
   const Grid& grid = this->Problem.TheGrid();
-  if (const int directions = UncollidedDirectionsFor(this->Problem, this->Accelerated); directions > 0)
+  const UncollidedDirections finer = UncollidedDirectionsFor(this->Problem, this->Usual.Set(), this->Accelerated);
+  this->CorrectsEscape = finer.correctsEscape && this->Problem.Traits().scatters && !Reflects(shining);
+  if (finer.perFace > 0)
   {
-    DirectionSet set = FittedDirections(directions, "UncollidedDirections");
+    DirectionSet set = FittedDirections(finer.perFace, "UncollidedDirections");
     const RayStarts starts = this->Accelerated || !set.orbits.empty() ? StartsOf(settings) : RayStarts::Staggered;
     this->Fine = std::make_unique<SweptDirections>(grid, settings, std::move(set), starts);
   }

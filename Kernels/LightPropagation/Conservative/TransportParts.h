@@ -45,6 +45,7 @@ public:
   std::unique_ptr<const AngularBasis> Basis; ///< of the moments in which light is scattered; null: all is isotropic
   /// Along directions of its own until it meets the medium, where they were asked for and differ from the usual ones.
   std::unique_ptr<const SweptDirections> Fine;
+  bool CorrectsEscape = false; ///< EscapeCorrection.h, where orders are added up one by one
   std::unique_ptr<const BoundaryLight> UsualBoundary, FineBoundary; ///< FineBoundary: null where there are none
   /// By cells of the box's faces: where they reflect, or face power is asked for; else null.
   std::unique_ptr<FaceLight> Faces;

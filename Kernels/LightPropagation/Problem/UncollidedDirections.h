@@ -1,13 +1,23 @@
 #pragma once
 
+#include "LightPropagation/Angular/DirectionSet.h"
 #include "LightPropagation/Problem/PropagationProblem.h"
 
 namespace tyndall
 {
-/// Directions per cube face of the unscattered light of faces, sky and environment: the settings', or, where these
-/// leave it open (-1), as many as make a solve about a quarter longer at most, by a forecast of its scattering orders:
-/// 49, 64 or 100, where faces of the box shine unevenly, none reflects, and orders are added up one by one. Else 0, the
-/// same as for scattered light: an even sky and a smooth environment are right along few directions, and so is the
-/// light that is scattered many times.
-int UncollidedDirectionsFor(const PropagationProblem& problem, bool accelerated);
+/// Along which directions the unscattered light of faces, sky and environment goes.
+struct UncollidedDirections
+{
+  int perFace = 0; ///< of a cube; 0: the same as for scattered light
+  /// What scattered light lets out otherwise than those is made up for (EscapeCorrection.h): three times as dear.
+  bool correctsEscape = false;
+};
+
+/// The settings', or, where these leave it open (-1), as many as make a solve a quarter longer at most, by a forecast of
+/// its scattering orders and of the directions that are lit: 36, 49, 64 or 100, where faces of the box shine unevenly and
+/// none reflects, but not in accelerated solves in angular moments, for memory. Else 0: an even sky and a smooth
+/// environment are right along few directions, and so is the light that is scattered many times.
+/// @param usual  directions of scattered light; only beside fitted ones more of them gain by themselves
+UncollidedDirections UncollidedDirectionsFor(
+  const PropagationProblem& problem, const DirectionSet& usual, bool accelerated);
 }
