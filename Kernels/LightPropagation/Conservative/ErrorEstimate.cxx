@@ -109,6 +109,30 @@ void WriteErrorOfCosines(LightField& light, const LightField& few)
 }
 }
 
+ErrorParts WriteErrorEstimate(LightField& light, const Coarsening& coarsening, const std::vector<float>& same,
+  const std::vector<float>& other, double partOfDifference)
+{
+  const double ratio = coarsening.Ratio();
+  const double inSpace = ratio > 1.0 ? 1.0 / (ratio * ratio - 1.0) : 0.0;
+  const std::vector<float> fine = coarsening.Average(light.fluence.data(), light.channels);
+  std::vector<double> variance(fine.size());
+  double ofSpace = 0.0, ofDirections = 0.0, all = 0.0;
+  for (std::size_t i = 0; i < fine.size(); ++i)
+  {
+    const double space = inSpace * (static_cast<double>(fine[i]) - same[i]);
+    const double directions = partOfDifference * (static_cast<double>(same[i]) - other[i]);
+    variance[i] = space * space + directions * directions;
+    ofSpace += space * space;
+    ofDirections += directions * directions;
+    all += static_cast<double>(fine[i]) * fine[i];
+  }
+  Smooth(variance, coarsening.Coarse(), light.channels);
+  WriteError(light, variance, coarsening);
+  const double scale = all > 0.0 ? 1.0 / all : 0.0;
+  return { std::sqrt(scale * ofSpace), std::sqrt(scale * ofDirections),
+    light.convergence.empty() ? 0.0 : light.convergence.back().residual };
+}
+
 LightField SolveWithErrorEstimate(const Medium& medium, const Illumination& illumination,
   const PropagationSettings& settings, const Monitor& monitor, const PropagationSolver& solve)
 {
@@ -143,19 +167,7 @@ LightField SolveWithErrorEstimate(const Medium& medium, const Illumination& illu
   }
   const std::vector<float> few = solve(coarse.TheMedium(), coarse.Shining(), plain, OfPart(monitor, 0.95, 1.0)).fluence;
 
-  const double ratio = coarsening.Ratio();
-  const double inSpace = ratio > 1.0 ? 1.0 / (ratio * ratio - 1.0) : 0.0;
-  const double inDirections = PartOfDifference(directions, plain.directionsPerFace);
-  const std::vector<float> fine = coarsening.Average(light.fluence.data(), light.channels);
-  std::vector<double> variance(fine.size());
-  for (std::size_t i = 0; i < fine.size(); ++i)
-  {
-    const double space = inSpace * (static_cast<double>(fine[i]) - many[i]);
-    const double directions = inDirections * (static_cast<double>(many[i]) - few[i]);
-    variance[i] = space * space + directions * directions;
-  }
-  Smooth(variance, coarsening.Coarse(), light.channels);
-  WriteError(light, variance, coarsening);
+  WriteErrorEstimate(light, coarsening, many, few, PartOfDifference(directions, plain.directionsPerFace));
   return light;
 }
 }

@@ -1,0 +1,96 @@
+#include "LightPropagation/Accuracy/DirectionForecast.h"
+
+#include "Light/Quality.h"
+
+#include <algorithm>
+#include <cmath>
+#include <vector>
+
+namespace tyndall
+{
+namespace
+{
+constexpr double Order = 0.9;
+constexpr double StaggeredStart = 2.0;  ///< measured: 256 staggered ones are as good as 100 to 144 in the middle
+constexpr int LargestUnstaggered = 100; ///< directions are fitted up to these
+constexpr double UncollidedWork = 4.0;  ///< of a direction of unscattered light, over one of a sweep
+constexpr double LeastSweeps = 3.0;
+constexpr int Directions[] = { 4, 9, 16, 25, 36, 49, 64, 81, 100, 256, 400 };
+constexpr int Uncollided[] = { 0, 49, 64, 81, 100, 256, 400, 900, 1600 };
+
+double FallenTo(int directions)
+{
+  return (directions > LargestUnstaggered ? StaggeredStart : 1.0) * std::pow(directions, -Order);
+}
+
+/// Root mean square of the difference of two parts of light, over that of `whole`.
+template <class Part>
+double Difference(const LightField& one, const LightField& other, const Part& part)
+{
+  double sum = 0.0, all = 0.0;
+  for (std::size_t i = 0; i < one.fluence.size(); ++i)
+  {
+    const double difference = part(one, i) - part(other, i);
+    sum += difference * difference;
+    all += static_cast<double>(other.fluence[i]) * other.fluence[i];
+  }
+  return all > 0.0 ? std::sqrt(sum / all) : 0.0;
+}
+}
+
+DirectionForecast::DirectionForecast(
+  const LightField& few, int fewDirections, const LightField& more, int moreDirections)
+  : Sweeps(std::max(LeastSweeps, static_cast<double>(more.convergence.size())))
+{
+  const double fallen = FallenTo(fewDirections) - FallenTo(moreDirections);
+  const auto direct = [](
+                        const LightField& light, std::size_t i) { return static_cast<double>(light.fluenceDirect[i]); };
+  const auto scattered = [&](const LightField& light, std::size_t i) { return light.fluence[i] - direct(light, i); };
+  this->OfUncollided = Difference(few, more, direct) / fallen;
+  this->OfScattered = Difference(few, more, scattered) / fallen;
+}
+
+double DirectionForecast::Error(const PropagationSettings& settings) const
+{
+  const int uncollided = settings.uncollidedDirections > 0 ? settings.uncollidedDirections : settings.directionsPerFace;
+  return std::hypot(
+    this->OfUncollided * FallenTo(uncollided), this->OfScattered * FallenTo(settings.directionsPerFace));
+}
+
+double DirectionForecast::Work(const PropagationSettings& settings) const
+{
+  return this->Sweeps * settings.directionsPerFace + UncollidedWork * std::max(0, settings.uncollidedDirections);
+}
+
+PropagationSettings DirectionForecast::Cheapest(const PropagationSettings& settings, double error) const
+{
+  const PropagationSettings byDefault;
+  PropagationSettings best;
+  bool any = false;
+  for (const int directions : Directions)
+  {
+    for (const int uncollided : Uncollided)
+    {
+      PropagationSettings tried = settings;
+      SetUnlessChosen(tried.directionsPerFace, byDefault.directionsPerFace, directions);
+      SetUnlessChosen(tried.uncollidedDirections, byDefault.uncollidedDirections,
+        uncollided > tried.directionsPerFace ? uncollided : 0);
+      SetUnlessChosen(tried.staggeredRays, byDefault.staggeredRays, tried.directionsPerFace > LargestUnstaggered);
+      const double ofTried = this->Error(tried), ofBest = any ? this->Error(best) : 0.0;
+      const bool better = ofTried <= error ? ofBest > error || this->Work(tried) < this->Work(best) : ofTried < ofBest;
+      if (!any || better)
+      {
+        best = tried;
+        any = true;
+      }
+    }
+  }
+  return best;
+}
+
+void DirectionForecast::Correct(double factor)
+{
+  this->OfUncollided *= factor;
+  this->OfScattered *= factor;
+}
+}
