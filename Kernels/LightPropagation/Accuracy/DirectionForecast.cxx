@@ -4,23 +4,38 @@
 
 #include <algorithm>
 #include <cmath>
+#include <iterator>
 #include <vector>
 
 namespace tyndall
 {
 namespace
 {
-constexpr double Order = 0.9;
-constexpr double StaggeredStart = 2.0;  ///< measured: 256 staggered ones are as good as 100 to 144 in the middle
 constexpr int LargestUnstaggered = 100; ///< directions are fitted up to these
-constexpr double UncollidedWork = 4.0;  ///< of a direction of unscattered light, over one of a sweep
+constexpr double UncollidedWork = 5.0;  ///< of a direction of unscattered light, over one of a sweep: measured
 constexpr double LeastSweeps = 3.0;
 constexpr int Directions[] = { 4, 9, 16, 25, 36, 49, 64, 81, 100, 256, 400 };
 constexpr int Uncollided[] = { 0, 49, 64, 81, 100, 256, 400, 900, 1600 };
 
+/// Error along so many directions a face, over that along 9; those of more than 100 staggered.
+struct Fall
+{
+  double directions, error;
+};
+constexpr Fall Falls[] = { { 1, 8.0 }, { 4, 2.8 }, { 9, 1.0 }, { 16, 0.65 }, { 25, 0.45 }, { 36, 0.37 }, { 49, 0.33 },
+  { 64, 0.28 }, { 100, 0.2 }, { 256, 0.15 }, { 400, 0.11 }, { 900, 0.06 }, { 1600, 0.035 }, { 4096, 0.02 } };
+
+/// Between these, straight in logarithms.
 double FallenTo(int directions)
 {
-  return (directions > LargestUnstaggered ? StaggeredStart : 1.0) * std::pow(directions, -Order);
+  const Fall* above = std::begin(Falls) + 1;
+  while (above + 1 != std::end(Falls) && above->directions < directions)
+  {
+    ++above;
+  }
+  const Fall& below = *(above - 1);
+  const double part = std::log(directions / below.directions) / std::log(above->directions / below.directions);
+  return below.error * std::pow(above->error / below.error, part);
 }
 
 /// Root mean square of the difference of two parts of light, over that of `whole`.
@@ -42,7 +57,7 @@ DirectionForecast::DirectionForecast(
   const LightField& few, int fewDirections, const LightField& more, int moreDirections)
   : Sweeps(std::max(LeastSweeps, static_cast<double>(more.convergence.size())))
 {
-  const double fallen = FallenTo(fewDirections) - FallenTo(moreDirections);
+  const double fallen = std::hypot(FallenTo(fewDirections), FallenTo(moreDirections));
   const auto direct = [](
                         const LightField& light, std::size_t i) { return static_cast<double>(light.fluenceDirect[i]); };
   const auto scattered = [&](const LightField& light, std::size_t i) { return light.fluence[i] - direct(light, i); };

@@ -6,8 +6,9 @@
 namespace tyndall
 {
 /// Forecast of the error that directions leave, and of the work of a solve, from two solves of one grid along few and
-/// along more directions. Errors fall as the number of directions to the power of minus 0.9, those of light that is not
-/// scattered yet and of scattered light each by their own number; rays that are staggered begin twice as high.
+/// along more directions. How errors fall with the number of directions was measured (measurements.md), those of light
+/// that is not scattered yet and of scattered light each by their own number; of two solves they have nothing to do with
+/// each other.
 class DirectionForecast
 {
 public:
@@ -25,7 +26,7 @@ public:
   void Correct(double factor);
 
 private:
-  double OfUncollided = 0.0, OfScattered = 0.0; ///< errors of one direction a face
+  double OfUncollided = 0.0, OfScattered = 0.0; ///< errors of 9 directions a face
   double Sweeps = 1.0;
 };
 }

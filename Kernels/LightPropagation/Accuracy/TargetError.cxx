@@ -18,12 +18,25 @@ namespace tyndall
 {
 namespace
 {
-constexpr double Aim = 0.75;          ///< of the target, for the estimate
-constexpr double DirectionPart = 0.6; ///< of that, for directions
+constexpr double Aim = 0.8;            ///< of the target, for the forecast
+constexpr double DirectionPart = 0.75; ///< of that, for directions
 constexpr double TolerancePart = 0.2;
 constexpr double LooseTolerance = 1e-2;
 constexpr int Few = 9, More = 25;
 constexpr double LeastEmissionError = 0.005;
+
+/// Fluence on the coarse grid, and the settings it was found with.
+struct CoarseLight
+{
+  PropagationSettings settings;
+  std::vector<float> fluence;
+
+  bool Has(const PropagationSettings& others) const
+  {
+    return others.directionsPerFace == this->settings.directionsPerFace && others.uncollidedDirections == 0 &&
+      others.mapResolution == this->settings.mapResolution && others.staggeredRays == this->settings.staggeredRays;
+  }
+};
 
 /// The search, step by step.
 class TargetSearch
@@ -57,7 +70,7 @@ public:
           const Monitor& monitor) { return this->Count(medium, light, settings, monitor); }));
     }
     this->SolveAlong(this->Forecast->Cheapest(this->Asked, DirectionPart * this->Goal), 0.1, 0.4);
-    if (this->Light.relativeError > this->Goal && this->Parts.inDirections > DirectionPart * this->Goal)
+    if (this->Light.relativeError > this->Target && this->Parts.inDirections > DirectionPart * this->Goal)
     {
       this->Forecast->Correct(this->Parts.inDirections / this->Forecast->Error(this->Used));
       const PropagationSettings better = this->Forecast->Cheapest(this->Asked, DirectionPart * this->Goal);
@@ -95,7 +108,6 @@ private:
   void LookAtDirections()
   {
     PropagationSettings settings = this->Asked;
-    settings.tolerance = std::max(settings.tolerance, LooseTolerance);
     settings.uncollidedDirections = 0;
     settings.staggeredRays = false;
     settings.directionsPerFace = Few;
@@ -103,11 +115,11 @@ private:
     this->Layers = few.polarNodes > 0;
     if (!this->Layers)
     {
+      this->AlongFew = { settings, few.fluence };
       settings.directionsPerFace = More;
       const LightField more = this->OnCoarse(settings, 0.03, 0.1);
       this->Forecast.emplace(few, Few, more, More);
-      this->OtherSettings = settings;
-      this->Other = more.fluence;
+      this->AlongMore = { settings, more.fluence };
     }
   }
 
@@ -117,11 +129,15 @@ private:
     this->Used = settings;
     const double middle = from + 0.8 * (to - from);
     this->Light = this->Count(this->TheMedium, this->Shining, settings, OfPart(this->TheMonitor, from, middle));
-    this->Same = this->OnCoarse(settings, middle, to).fluence;
-    const double error = this->Forecast->Error(settings), other = this->Forecast->Error(this->OtherSettings);
-    const double ratio = std::min(error, other) / std::max({ error, other, 1e-30 });
-    const double part = (error < other ? ratio : 1.0) / std::max(1.0 - ratio, 0.1);
-    this->Parts = WriteErrorEstimate(this->Light, this->Coarsened, this->Same, this->Other, part);
+    const CoarseLight* const solved = this->AlongFew.Has(settings) ? &this->AlongFew
+      : this->AlongMore.Has(settings)                              ? &this->AlongMore
+                                                                   : nullptr;
+    const std::vector<float> same = solved ? solved->fluence : this->OnCoarse(settings, middle, to).fluence;
+    const CoarseLight& other = solved == &this->AlongMore ? this->AlongFew : this->AlongMore;
+    const double error = this->Forecast->Error(settings);
+    const double difference = std::hypot(error, this->Forecast->Error(other.settings));
+    this->Parts = WriteErrorEstimate(
+      this->Light, this->Coarsened, same, other.fluence, difference > 0.0 ? error / difference : 0.0);
   }
 
   /// Voxels of half the edge leave a quarter of the error in voxel size.
@@ -207,8 +223,8 @@ private:
   std::chrono::steady_clock::time_point Start = std::chrono::steady_clock::now();
 
   std::optional<DirectionForecast> Forecast;
-  PropagationSettings OtherSettings, Used;
-  std::vector<float> Other, Same; ///< fluence on the coarse grid, along others and along the same directions
+  PropagationSettings Used;
+  CoarseLight AlongFew, AlongMore;
   LightField Light;
   ErrorParts Parts;
   bool Layers = false, InHalves = false;
