@@ -14,8 +14,8 @@ namespace
 constexpr int LargestUnstaggered = 100; ///< directions are fitted up to these
 constexpr double UncollidedWork = 5.0;  ///< of a direction of unscattered light, over one of a sweep: measured
 constexpr double LeastSweeps = 3.0;
-constexpr int Directions[] = { 4, 9, 16, 25, 36, 49, 64, 81, 100, 256, 400 };
-constexpr int Uncollided[] = { 0, 49, 64, 81, 100, 256, 400, 900, 1600 };
+constexpr int Directions[] = { 9, 16, 25, 36, 49, 64, 81, 100, 196, 256, 400 };
+constexpr int Uncollided[] = { 0, 49, 64, 81, 100, 256, 400, 576, 900, 1600 };
 
 /// Error along so many directions a face, over that along 9; those of more than 100 staggered.
 struct Fall

@@ -18,9 +18,9 @@ namespace tyndall
 {
 namespace
 {
-constexpr double Aim = 0.8;            ///< of the target, for the forecast
-constexpr double DirectionPart = 0.75; ///< of that, for directions
-constexpr double TolerancePart = 0.2;
+constexpr double Aim = 0.9;            ///< of the target, for the forecast
+constexpr double DirectionPart = 0.85; ///< of that, for directions
+constexpr double TolerancePart = 0.3;
 constexpr double LooseTolerance = 1e-2;
 constexpr int Few = 9, More = 25;
 constexpr double LeastEmissionError = 0.005;
