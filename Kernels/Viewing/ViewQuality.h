@@ -8,8 +8,8 @@
 
 namespace tyndall
 {
-/// Settings of a quality: the step of rays and the samples of rectangular lights, as far as `settings` has them at their
-/// default values.
+/// Settings of a quality: the step of rays and the samples of rectangular lights, as far as `settings` has them at
+/// their default values.
 ViewSettings AtQuality(Quality quality, ViewSettings settings);
 
 /// "Name = value" of each setting that a quality may choose.

@@ -6,9 +6,9 @@
 namespace tyndall
 {
 /// Forecast of the error that directions leave, and of the work of a solve, from two solves of one grid along few and
-/// along more directions. How errors fall with the number of directions was measured (measurements.md), those of light
-/// that is not scattered yet and of scattered light each by their own number; of two solves they have nothing to do with
-/// each other.
+/// along more directions. How errors fall with the number of directions was measured (measurements.md), those of
+/// light that is not scattered yet and of scattered light each by their own number; of two solves they have nothing
+/// to do with each other.
 class DirectionForecast
 {
 public:

@@ -13,7 +13,8 @@ namespace tyndall
 namespace
 {
 constexpr double OrderInDirections = 0.9; ///< error as number of directions to the power of minus this
-constexpr double FinePart = 0.8;          ///< of the whole time, for the monitor
+constexpr double OrderInSpace = 2.0;
+constexpr double FinePart = 0.8; ///< of the whole time, for the monitor
 
 /// Another number of directions a face: fewer, but for a single one; rows are even in number where `directionsPerFace`
 /// has such.
@@ -110,10 +111,10 @@ void WriteErrorOfCosines(LightField& light, const LightField& few)
 }
 
 ErrorParts WriteErrorEstimate(LightField& light, const Coarsening& coarsening, const std::vector<float>& same,
-  const std::vector<float>& other, double partOfDifference)
+  const std::vector<float>& other, double partOfDifference, double orderInSpace)
 {
   const double ratio = coarsening.Ratio();
-  const double inSpace = ratio > 1.0 ? 1.0 / (ratio * ratio - 1.0) : 0.0;
+  const double inSpace = ratio > 1.0 ? 1.0 / (std::pow(ratio, orderInSpace) - 1.0) : 0.0;
   const std::vector<float> fine = coarsening.Average(light.fluence.data(), light.channels);
   std::vector<double> variance(fine.size());
   double ofSpace = 0.0, ofDirections = 0.0, all = 0.0;
@@ -167,7 +168,7 @@ LightField SolveWithErrorEstimate(const Medium& medium, const Illumination& illu
   }
   const std::vector<float> few = solve(coarse.TheMedium(), coarse.Shining(), plain, OfPart(monitor, 0.95, 1.0)).fluence;
 
-  WriteErrorEstimate(light, coarsening, many, few, PartOfDifference(directions, plain.directionsPerFace));
+  WriteErrorEstimate(light, coarsening, many, few, PartOfDifference(directions, plain.directionsPerFace), OrderInSpace);
   return light;
 }
 }

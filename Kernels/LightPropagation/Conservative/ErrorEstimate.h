@@ -26,8 +26,9 @@ struct ErrorParts
 /// @param coarsening  of the light's grid
 /// @param same, other  fluence on the coarse grid, along the same directions and along others
 /// @param partOfDifference  error of the light's directions over its difference to that of the others
+/// @param orderInSpace  that the error falls with in voxel size
 ErrorParts WriteErrorEstimate(LightField& light, const Coarsening& coarsening, const std::vector<float>& same,
-  const std::vector<float>& other, double partOfDifference);
+  const std::vector<float>& other, double partOfDifference, double orderInSpace);
 
 /// Solve, and estimate the error of fluence without a reference, from two more solves on a grid of half the voxels an
 /// axis (numerics.md, section 9.2):
