@@ -195,7 +195,7 @@ void WriteLight(LightField&& light, vtkImageData* output)
     cells->RemoveArray(earlier); // of another solve that the input has been through
   }
   for (const char* earlier : { "stored_directions", "scattered", "packing_loss", "fluence_bias", "half_range_flux",
-         SurfaceRadianceFact, LampsApartFact, FacePowerFact, FaceAlbedoFact })
+         "settings_used", SurfaceRadianceFact, LampsApartFact, FacePowerFact, FaceAlbedoFact })
   {
     output->GetFieldData()->RemoveArray(earlier);
   }
@@ -244,6 +244,10 @@ void WriteLight(LightField&& light, vtkImageData* output)
     AddFact(output, FaceAlbedoFact, Channels({ back[0], back[1], back[2], back[3], back[4], back[5] }, 3), 3);
   }
   AddFact(output, "left_out", light.leftOut);
+  if (!light.settingsUsed.empty())
+  {
+    AddFact(output, "settings_used", light.settingsUsed);
+  }
   AddFact(output, "device", std::vector<std::string>{ light.device });
 }
 

@@ -54,7 +54,7 @@ std::string Lines(const std::vector<std::string>& texts);
 /// `fluence_error`, `net_flux`, `scattered_radiance` (channels fastest, then stored directions), `scattered_moments`
 /// (channels fastest, then spherical harmonics), `straight_on`, those that are not empty; field data `energy_balance`,
 /// `face_power_out`, `face_power`, `face_albedo`, `half_range_flux`, `stored_directions`, `surface_radiance`,
-/// `lamps_apart`, `left_out`, `device`. Light that the output already has is taken away.
+/// `lamps_apart`, `left_out`, `settings_used`, `device`. Light that the output already has is taken away.
 void WriteLight(LightField&& light, vtkImageData* output);
 
 /// One row an iteration: `iteration`, `seconds`, `residual`, `change`, `absorbed`, `escaped`, `left_over`, and

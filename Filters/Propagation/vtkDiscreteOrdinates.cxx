@@ -3,6 +3,7 @@
 #include "Common/LightTransportData.h"
 #include "Device/Device.h"
 #include "DiscreteOrdinates/DiscreteOrdinates.h"
+#include "DiscreteOrdinates/OrdinatesQuality.h"
 
 #include "Propagation/LastLight.h"
 
@@ -16,7 +17,8 @@
 
 namespace
 {
-tyndall::OrdinatesSettings SettingsOf(vtkDiscreteOrdinates* filter)
+tyndall::OrdinatesSettings SettingsOf(
+  vtkDiscreteOrdinates* filter, const tyndall::Medium& medium, const tyndall::Device& device)
 {
   tyndall::OrdinatesSettings settings;
   settings.scheme = static_cast<tyndall::OrdinatesScheme>(filter->GetScheme());
@@ -29,7 +31,8 @@ tyndall::OrdinatesSettings SettingsOf(vtkDiscreteOrdinates* filter)
   settings.periodic = { filter->GetPeriodicX(), filter->GetPeriodicY(), filter->GetPeriodicZ() };
   settings.netFlux = filter->GetNetFlux();
   settings.leaveOut = filter->GetLeaveOut();
-  return settings;
+  return tyndall::AtQuality(
+    static_cast<tyndall::Quality>(filter->GetQuality()), settings, medium, tyndall::MemoryOf(device));
 }
 }
 
@@ -58,8 +61,11 @@ int vtkDiscreteOrdinates::RequestData(vtkInformation*, vtkInformationVector** in
     const tyndall::IlluminationInput shining = this->ReadShining(inputs);
     const tyndall::Illumination& illumination = shining.illumination;
     this->WarnWhereDark(illumination, input.emission.IsThere());
-    tyndall::LightField light = tyndall::SolveDiscreteOrdinates(*tyndall::Device::Find(this->GetDevice()), input.medium,
-      illumination, SettingsOf(this), tyndall::MonitorOf(this), this->Last->Where(this->WarmStart));
+    const std::shared_ptr<tyndall::Device> device = tyndall::Device::Find(this->GetDevice());
+    const tyndall::OrdinatesSettings settings = SettingsOf(this, input.medium, *device);
+    tyndall::LightField light = tyndall::SolveDiscreteOrdinates(
+      *device, input.medium, illumination, settings, tyndall::MonitorOf(this), this->Last->Where(this->WarmStart));
+    light.settingsUsed = tyndall::Words(settings);
     this->Note(light);
     this->WriteSolved(image, std::move(light), outputs);
   });
@@ -76,6 +82,7 @@ void vtkDiscreteOrdinates::Note(const tyndall::LightField& light)
   this->HalfRangeFlux = light.halfRangeFlux;
   this->DeviceName = light.device;
   this->LeftOut = tyndall::Lines(light.leftOut);
+  this->SettingsUsed = tyndall::Lines(light.settingsUsed);
 }
 
 void vtkDiscreteOrdinates::PrintSelf(ostream& os, vtkIndent indent)

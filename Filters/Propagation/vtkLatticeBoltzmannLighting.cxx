@@ -3,6 +3,7 @@
 #include "Common/LightTransportData.h"
 #include "Device/Device.h"
 #include "LatticeBoltzmann/LatticeBoltzmann.h"
+#include "LatticeBoltzmann/LatticeQuality.h"
 #include "Photons/PhotonData.h"
 
 #include "vtkDataObject.h"
@@ -32,7 +33,7 @@ tyndall::LatticeSettings SettingsOf(vtkLatticeBoltzmannLighting* filter)
   settings.tolerance = filter->GetTolerance();
   settings.periodic = { filter->GetPeriodicX(), filter->GetPeriodicY(), filter->GetPeriodicZ() };
   settings.netFlux = filter->GetNetFlux();
-  return settings;
+  return tyndall::AtQuality(static_cast<tyndall::Quality>(filter->GetQuality()), settings);
 }
 
 /// Of all power, what is in none of the balance's accounts but the last, the worst channel.
@@ -134,6 +135,7 @@ int vtkLatticeBoltzmannLighting::RequestData(
   this->Note({});
   return tyndall::Guarded(this, outputs, [&] {
     tyndall::LightField light = this->Solve(inputs);
+    light.settingsUsed = tyndall::Words(SettingsOf(this));
     this->Note(light);
     this->WriteSolved(vtkImageData::GetData(inputs[MEDIUM]), std::move(light), outputs);
   });
@@ -148,6 +150,7 @@ void vtkLatticeBoltzmannLighting::Note(const tyndall::LightField& light)
   this->BalanceError = LeftOverOf(light);
   this->DeviceName = light.device;
   this->LeftOut = tyndall::Lines(light.leftOut);
+  this->SettingsUsed = tyndall::Lines(light.settingsUsed);
 }
 
 void vtkLatticeBoltzmannLighting::PrintSelf(ostream& os, vtkIndent indent)

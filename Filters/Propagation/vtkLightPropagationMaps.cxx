@@ -2,8 +2,11 @@
 
 #include "Common/LightTransportData.h"
 #include "Device/Device.h"
+#include "Device/Errors.h"
+#include "LightPropagation/Accuracy/TargetError.h"
 #include "LightPropagation/Conservative/ConservativePropagation.h"
 #include "LightPropagation/Conservative/ErrorEstimate.h"
+#include "LightPropagation/Problem/PropagationQuality.h"
 #include "LightPropagation/Published/ParallelPropagation.h"
 #include "LightPropagation/Published/SequentialPropagation.h"
 
@@ -54,23 +57,50 @@ tyndall::PropagationSettings SettingsOf(vtkLightPropagationMaps* filter)
   return settings;
 }
 
+/// By directions, tolerance and voxels that the target needs, whatever Quality has.
+tyndall::LightField SolveToTarget(vtkLightPropagationMaps* filter, const tyndall::Medium& medium,
+  const tyndall::Illumination& illumination, const tyndall::Monitor& monitor, const tyndall::PropagationSolver& solve)
+{
+  if (filter->GetScheme() == vtkLightPropagationMaps::PUBLISHED)
+  {
+    throw tyndall::InvalidInput(
+      "TargetError is for the conservative scheme: as published the error does not fall with directions. Set "
+      "TargetError to 0, or Scheme to conservative.");
+  }
+  tyndall::TargetLight found =
+    tyndall::SolveToTargetError(medium, illumination, SettingsOf(filter), filter->GetTargetError(), monitor, solve);
+  found.light.settingsUsed = tyndall::Words(found.settings);
+  found.light.settingsUsed.push_back("VoxelsDividedBy = " + std::to_string(found.divided ? 2 : 1));
+  found.light.solves = found.solves;
+  found.light.secondsOfAll = found.seconds;
+  return std::move(found.light);
+}
+
 tyndall::LightField Solve(vtkLightPropagationMaps* filter, const tyndall::Medium& medium,
   const tyndall::Illumination& illumination, tyndall::KeptLight* last)
 {
-  const tyndall::PropagationSettings settings = SettingsOf(filter);
+  const tyndall::PropagationSettings settings =
+    tyndall::AtQuality(static_cast<tyndall::Quality>(filter->GetQuality()), SettingsOf(filter), medium, illumination);
   const tyndall::Monitor monitor = tyndall::MonitorOf(filter);
   const bool published = filter->GetScheme() == vtkLightPropagationMaps::PUBLISHED;
   const bool sequential = published && filter->GetAlgorithm() == vtkLightPropagationMaps::SEQUENTIAL;
   const std::shared_ptr<tyndall::Device> device = sequential ? nullptr : tyndall::Device::Find(filter->GetDevice());
   const tyndall::PropagationSolver solve = [&](const tyndall::Medium& inside, const tyndall::Illumination& shining,
                                              const tyndall::PropagationSettings& how, const tyndall::Monitor& watch) {
-    tyndall::KeptLight* const kept = &inside == &medium ? last : nullptr; // not of the coarser ones
+    tyndall::KeptLight* const kept = &inside == &medium ? last : nullptr; // not of coarser or divided ones
     return sequential ? tyndall::SolveSequential(inside, shining, how, watch)
       : published     ? tyndall::SolveParallel(*device, inside, shining, how, watch, 0, kept)
                       : tyndall::SolveConservative(*device, inside, shining, how, watch, kept);
   };
-  return filter->GetEstimateError() ? tyndall::SolveWithErrorEstimate(medium, illumination, settings, monitor, solve)
-                                    : solve(medium, illumination, settings, monitor);
+  tyndall::LightField light = filter->GetTargetError() > 0.0
+    ? SolveToTarget(filter, medium, illumination, monitor, solve)
+    : filter->GetEstimateError() ? tyndall::SolveWithErrorEstimate(medium, illumination, settings, monitor, solve)
+                                 : solve(medium, illumination, settings, monitor);
+  if (light.settingsUsed.empty())
+  {
+    light.settingsUsed = tyndall::Words(settings);
+  }
+  return light;
 }
 }
 
@@ -118,12 +148,14 @@ void vtkLightPropagationMaps::Note(const tyndall::LightField& light)
   this->Orders = static_cast<int>(light.convergence.size());
   this->SweepsSaved = light.sweepsSaved.empty() ? 0 : light.sweepsSaved.back();
   this->Residual = any ? light.convergence.back().residual : 0.0;
-  this->Seconds = any ? light.convergence.back().seconds : 0.0;
+  this->Seconds = light.secondsOfAll > 0.0 ? light.secondsOfAll : any ? light.convergence.back().seconds : 0.0;
   this->EstimatedError = light.relativeError;
   this->BalanceError = light.balance.RelativeError(light.channels);
   this->HalfRangeFlux = light.halfRangeFlux;
   this->DeviceName = light.device;
   this->LeftOut = tyndall::Lines(light.leftOut);
+  this->SettingsUsed = tyndall::Lines(light.settingsUsed);
+  this->Solves = any ? light.solves : 0;
 }
 
 void vtkLightPropagationMaps::PrintSelf(ostream& os, vtkIndent indent)
@@ -145,6 +177,8 @@ void vtkLightPropagationMaps::PrintSelf(ostream& os, vtkIndent indent)
   os << indent << "NetFlux: " << this->NetFlux << "\n";
   os << indent << "LeaveOut: " << this->LeaveOut << "\n";
   os << indent << "StoredDirections: " << this->StoredDirections << "\n";
+  os << indent << "TargetError: " << this->TargetError << "\n";
+  os << indent << "Solves: " << this->Solves << "\n";
   os << indent << "Orders: " << this->Orders << "\n";
   os << indent << "SweepsSaved: " << this->SweepsSaved << "\n";
   os << indent << "Residual: " << this->Residual << "\n";

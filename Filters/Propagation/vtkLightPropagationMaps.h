@@ -43,7 +43,7 @@ struct LightField;
  * |---|---|---|---|
  * | `fluence` | 1 or 3 | W/length^2 | radiance integrated over all directions |
  * | `fluence_direct` | 1 or 3 | W/length^2 | its unscattered part |
- * | `fluence_error` | 1 or 3 | W/length^2 | its standard error (if EstimateError) |
+ * | `fluence_error` | 1 or 3 | W/length^2 | its standard error (if EstimateError or TargetError) |
  * | `net_flux` | 3 or 9 | W/length^2 | radiance times direction, integrated (if NetFlux) |
  * | `scattered_radiance` | StoredDirections x 1 or 3 | W/(length^2 sr) | radiance scattered into each direction |
  *
@@ -190,6 +190,15 @@ public:
   ///@}
 
   ///@{
+  /// Relative error of fluence (root mean square over that of fluence) to solve to, by the solver's own estimate
+  /// (conservative scheme): it chooses directions and tolerance where they have their default values, divides voxels
+  /// where these are too coarse, and warns where the estimate stays above. Quality is not read then. Default 0: not
+  /// asked for; valid [0, 0.5].
+  tyndallSetRangeMacro(TargetError, double, 0.0, 0.5);
+  vtkGetMacro(TargetError, double);
+  ///@}
+
+  ///@{
   /// Whether the light of the last update is the first guess of the next one: fewer sweeps where medium or lights
   /// changed a little, the same light within the tolerance. It is kept in memory until an update with WarmStart off: a
   /// float a voxel and channel, times (degree + 1)^2 with AngularDegree; not by the sequential algorithm. Default
@@ -221,12 +230,14 @@ public:
   ///@}
 
   ///@{
-  /// What came of the last update: scattering orders done, how many more the last update from darkness on took to the
-  /// same residual (0 where this was one), estimated relative error of fluence left by those that were
-  /// not done, estimated relative error of fluence altogether (0 without EstimateError; NaN, not known, after one
-  /// order), relative error of the energy balance, what the directions carry of the power that even light brings
-  /// through a face, over the exact value (0.9875 with 25 directions per face: light that enters from faces and sky is
-  /// off by as much), seconds, the device's name, and what the scene did not need, one per line.
+  /// What came of the last update: solves (more than one with TargetError), scattering orders done, how many more the
+  /// last update from darkness on took to the same residual (0 where this was one), estimated relative error of
+  /// fluence left by those that were not done, estimated relative error of fluence altogether (0 without
+  /// EstimateError or TargetError; NaN, not known, after one order), relative error of the energy balance, what the
+  /// directions carry of the power that even light brings through a face, over the exact value (0.9875 with 25
+  /// directions per face: light that enters from faces and sky is off by as much), seconds, the device's name, and
+  /// what the scene did not need, one per line.
+  vtkGetMacro(Solves, int);
   vtkGetMacro(Orders, int);
   vtkGetMacro(SweepsSaved, int);
   vtkGetMacro(Residual, double);
@@ -266,8 +277,10 @@ private:
   bool NetFlux;
   bool LeaveOut;
   int StoredDirections;
+  double TargetError = 0.0;
 
   std::unique_ptr<tyndall::LastLight> Last;
+  int Solves = 0;
   int Orders = 0;
   int SweepsSaved = 0;
   double Residual = 0.0;

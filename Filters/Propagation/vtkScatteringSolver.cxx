@@ -54,4 +54,6 @@ tyndall::IlluminationInput vtkScatteringSolver::ReadShining(vtkInformationVector
 void vtkScatteringSolver::PrintSelf(ostream& os, vtkIndent indent)
 {
   this->Superclass::PrintSelf(os, indent);
+  os << indent << "Quality: " << this->Quality << "\n";
+  os << indent << "SettingsUsed: " << this->SettingsUsed << "\n";
 }

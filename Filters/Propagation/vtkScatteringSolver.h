@@ -4,6 +4,8 @@
 #include "vtkPropagationAlgorithm.h"
 #include "vtkTyndallModule.h" // for export macro
 
+#include <string>
+
 namespace tyndall
 {
 struct IlluminationInput;
@@ -22,6 +24,8 @@ struct IlluminationInput;
  *
  * Output 1 is the table of convergence, vtkTable.
  *
+ * Field data `settings_used` of output 0: "Name = value" of each property that Quality chooses, as it was used.
+ *
  * @sa vtkLightPropagationMaps vtkDiscreteOrdinates vtkPhotonMarcher
  */
 class TYNDALL_EXPORT vtkScatteringSolver : public vtkPropagationAlgorithm
@@ -32,6 +36,25 @@ public:
 
   /// Number of the input port, behind those of vtkLitMediumAlgorithm.
   static constexpr int UNCOLLIDED = 3;
+
+  enum Qualities
+  {
+    DRAFT = 0, ///< to look at while settings are chosen
+    USUAL = 1, ///< every property as it stands
+    FINE = 2,
+    REFERENCE = 3 ///< to compare others with
+  };
+
+  ///@{
+  /// How exact the light is to be: chooses, from the scene, those of the properties below that have their default
+  /// value, and leaves those that have another one. DRAFT, USUAL (default), FINE or REFERENCE; with USUAL all are taken
+  /// as they stand.
+  tyndallSetRangeMacro(Quality, int, DRAFT, REFERENCE);
+  vtkGetMacro(Quality, int);
+  ///@}
+
+  /// "Name = value" of each property that Quality chooses, as the last update used it, one per line.
+  vtkGetCharFromStdStringMacro(SettingsUsed);
 
   ///@{
   /// Uncollided light (vtkImageData) by connection or as data; null: the solver's own.
@@ -49,6 +72,9 @@ protected:
   /// All that shines: uncollided light, or else lights, environment, the sky and what comes in through the faces.
   /// Checked.
   tyndall::IlluminationInput ReadShining(vtkInformationVector** inputs);
+
+  int Quality = USUAL;
+  std::string SettingsUsed;
 
 private:
   vtkScatteringSolver(const vtkScatteringSolver&) = delete;

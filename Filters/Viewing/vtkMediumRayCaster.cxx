@@ -9,6 +9,7 @@
 #include "Medium/BoxFaces.h"
 #include "Viewing/MediumRayCaster.h"
 #include "Viewing/ToneMapping.h"
+#include "Viewing/ViewQuality.h"
 
 #include "vtkCellData.h"
 #include "vtkDataArray.h"
@@ -64,7 +65,7 @@ tyndall::ViewSettings SettingsOf(vtkMediumRayCaster* filter)
   settings.tableColor = tyndall::Triple(filter->GetTableColor());
   settings.tableReflectance = filter->GetTableReflectance();
   settings.leaveOut = filter->GetLeaveOut();
-  return settings;
+  return tyndall::AtQuality(static_cast<tyndall::Quality>(filter->GetQuality()), settings);
 }
 
 tyndall::Camera CameraOf(vtkMediumRayCaster* filter, const tyndall::Grid& grid)
@@ -350,6 +351,7 @@ int vtkMediumRayCaster::RequestData(vtkInformation*, vtkInformationVector** inpu
   this->SceneKept = false;
   this->DeviceName.clear();
   this->LeftOut.clear();
+  this->SettingsUsed.clear();
   return tyndall::Guarded(this, outputs, [&] {
     tyndall::ToneMapping toneMapping;
     toneMapping.exposure = this->Exposure;
@@ -369,13 +371,16 @@ int vtkMediumRayCaster::RequestData(vtkInformation*, vtkInformationVector** inpu
     const std::string device = scene->key.device->Name();
     const std::vector<std::string>& leftOut = scene->caster->LeftOut();
     tyndall::AddFact(output, "exposure", std::vector<double>{ toneMapping.exposure });
+    const std::vector<std::string> settings = tyndall::Words(SettingsOf(this));
     tyndall::AddFact(output, "left_out", leftOut);
+    tyndall::AddFact(output, "settings_used", settings);
     tyndall::AddFact(output, "device", std::vector<std::string>{ device });
     tyndall::KeepWhatIsAskedFor(outputs->GetInformationObject(0), output);
 
     this->UsedExposure = toneMapping.exposure;
     this->DeviceName = device;
     this->LeftOut = tyndall::Lines(leftOut);
+    this->SettingsUsed = tyndall::Lines(settings);
     this->Kept = std::move(scene);
     this->Seconds = std::chrono::duration<double>(Clock::now() - start).count();
   });
@@ -384,6 +389,7 @@ int vtkMediumRayCaster::RequestData(vtkInformation*, vtkInformationVector** inpu
 void vtkMediumRayCaster::PrintSelf(ostream& os, vtkIndent indent)
 {
   this->Superclass::PrintSelf(os, indent);
+  os << indent << "Quality: " << this->Quality << "\n";
   os << indent << "ImageSize: " << this->ImageSize[0] << " " << this->ImageSize[1] << "\n";
   PrintNumbers(os, indent, "CameraPosition", this->CameraPosition, 3);
   PrintNumbers(os, indent, "CameraFocalPoint", this->CameraFocalPoint, 3);
@@ -411,4 +417,5 @@ void vtkMediumRayCaster::PrintSelf(ostream& os, vtkIndent indent)
   os << indent << "SceneKept: " << this->SceneKept << "\n";
   os << indent << "DeviceName: " << this->DeviceName << "\n";
   os << indent << "LeftOut: " << this->LeftOut << "\n";
+  os << indent << "SettingsUsed: " << this->SettingsUsed << "\n";
 }

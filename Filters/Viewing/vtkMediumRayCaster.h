@@ -75,7 +75,8 @@ struct ViewSettings;
  * | `alpha` | float | 1 | 1 - transmittance (mean of the channels) |
  * | `depth` | float | length | along the view, to where the channels' mean transmittance falls to 1/2 |
  *
- * and field data `exposure` (what radiance was multiplied by), `left_out` (what the scene did not need), `device`.
+ * and field data `exposure` (what radiance was multiplied by), `left_out` (what the scene did not need),
+ * `settings_used` ("Name = value" of what Quality chooses), `device`.
  *
  * Medium, light and illumination stay on the device, so that a picture from another camera, of another size, or of
  * other colours on the screen only casts its rays: until an input changes, another one is connected, a setting needs
@@ -112,6 +113,22 @@ public:
     FRESNEL = 1, ///< of unpolarised light
     FIXED = 2    ///< SurfaceReflectance
   };
+
+  enum Qualities
+  {
+    DRAFT = 0, ///< to look at while the camera moves
+    USUAL = 1, ///< every property as it stands
+    FINE = 2,
+    REFERENCE = 3 ///< to compare others with
+  };
+
+  ///@{
+  /// How exact the picture is to be: chooses StepSize and RectangleSamples where they have their default value, and
+  /// leaves those that have another one. DRAFT, USUAL (default), FINE or REFERENCE; with USUAL both are taken as they
+  /// stand.
+  tyndallSetRangeMacro(Quality, int, DRAFT, REFERENCE);
+  vtkGetMacro(Quality, int);
+  ///@}
 
   ///@{
   /// Columns and rows of the picture, pixels. Default 800 x 600, valid from 1 on.
@@ -259,6 +276,7 @@ public:
   vtkGetMacro(SceneKept, bool);
   vtkGetCharFromStdStringMacro(DeviceName);
   vtkGetCharFromStdStringMacro(LeftOut);
+  vtkGetCharFromStdStringMacro(SettingsUsed); ///< "Name = value" of what Quality chooses, one per line
   ///@}
 
   using Superclass::SetInputConnection;
@@ -285,6 +303,7 @@ private:
     vtkInformationVector** inputs, const tyndall::InputsKey& key, tyndall::ViewSettings settings);
   std::unique_ptr<Scene> FindScene(vtkInformationVector** inputs);
 
+  int Quality = USUAL;
   int ImageSize[2];
   double CameraPosition[3] = { 0.0, 0.0, 0.0 };
   double CameraFocalPoint[3] = { 0.0, 0.0, 0.0 };
@@ -315,6 +334,7 @@ private:
   bool SceneKept = false;
   std::string DeviceName;
   std::string LeftOut;
+  std::string SettingsUsed;
 };
 
 #endif

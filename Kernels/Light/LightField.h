@@ -81,8 +81,11 @@ struct LightField
   bool converged = true; ///< the last residual is at most the tolerance, or as many orders were done as were asked for
   std::vector<std::string> doubts; ///< what may be wrong with the light, a sentence each, for a warning
   int polarNodes = 0; ///< of a plane-parallel solve (PropagationSettings::polarNodes); 0: along rays through the voxels
-  int directionsPerFace = 0;        ///< solved with, where a solver chooses (PropagationSettings::adaptDirections)
-  std::vector<std::string> leftOut; ///< what the scene did not need, in words
+  int directionsPerFace = 0;             ///< solved with, where a solver chooses (PropagationSettings::adaptDirections)
+  std::vector<std::string> leftOut;      ///< what the scene did not need, in words
+  int solves = 1;                        ///< that it took, all together, those of coarser grids as well (TargetError.h)
+  double secondsOfAll = 0.0;             ///< of these; 0: there is one, see convergence
+  std::vector<std::string> settingsUsed; ///< "Name = value" of each setting that a quality chooses (Quality.h)
   std::string device;
 };
 }

@@ -28,6 +28,7 @@ LAYERS = {
         ["Sweep", "Problem"],
         ["Scattering", "Uncollided", "Diffusion", "PlaneParallel"],
         ["Conservative", "Published"],
+        ["Accuracy"],
     ],
     "Filters": [
         ["Common"],

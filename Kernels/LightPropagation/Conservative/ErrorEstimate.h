@@ -4,15 +4,31 @@
 #include "LightPropagation/PropagationSettings.h"
 
 #include "Device/Monitor.h"
+#include "Medium/Coarsening.h"
 #include "Medium/Medium.h"
 
 #include <functional>
+#include <vector>
 
 namespace tyndall
 {
 /// Solves a medium of the same box, with the same light on its grid, with settings.
 using PropagationSolver =
   std::function<LightField(const Medium&, const Illumination&, const PropagationSettings&, const Monitor&)>;
+
+/// Errors of light by the two parts of Eq. (84) that are looked at apart, each a root mean square over that of fluence.
+struct ErrorParts
+{
+  double inSpace = 0.0, inDirections = 0.0, residual = 0.0;
+};
+
+/// Fills in fluenceError and relativeError of light (Eqs. (82) to (84)).
+/// @param coarsening  of the light's grid
+/// @param same, other  fluence on the coarse grid, along the same directions and along others
+/// @param partOfDifference  error of the light's directions over its difference to that of the others
+/// @param orderInSpace  that the error falls with in voxel size
+ErrorParts WriteErrorEstimate(LightField& light, const Coarsening& coarsening, const std::vector<float>& same,
+  const std::vector<float>& other, double partOfDifference, double orderInSpace);
 
 /// Solve, and estimate the error of fluence without a reference, from two more solves on a grid of half the voxels an
 /// axis (numerics.md, section 9.2):

@@ -42,17 +42,6 @@ std::vector<double> LargestMoments(const Medium& medium)
   return largest;
 }
 
-/// Mean free paths through the box, in the mean of its voxels and edges.
-double Thickness(const Medium& medium)
-{
-  double sum = 0.0;
-  for (std::size_t i = 0; i < medium.grid.VoxelCount(); ++i)
-  {
-    sum += medium.sigma_a.At(i, 0) + medium.sigma_s.At(i, 0);
-  }
-  return sum * medium.grid.VoxelVolume() / std::cbrt(std::pow(medium.grid.VoxelCount() * medium.grid.VoxelVolume(), 2));
-}
-
 /// Up to `degree`, such that half of the memory is left for all else.
 int HighestThatFits(const Grid& grid, int degree, const DeviceMemory& memory)
 {
@@ -67,6 +56,16 @@ int HighestThatFits(const Grid& grid, int degree, const DeviceMemory& memory)
   }
   return degree;
 }
+}
+
+double MeanThickness(const Medium& medium)
+{
+  double sum = 0.0;
+  for (std::size_t i = 0; i < medium.grid.VoxelCount(); ++i)
+  {
+    sum += medium.sigma_a.At(i, 0) + medium.sigma_s.At(i, 0);
+  }
+  return sum * medium.grid.VoxelVolume() / std::cbrt(std::pow(medium.grid.VoxelCount() * medium.grid.VoxelVolume(), 2));
 }
 
 DeviceMemory MemoryOf(const Device& device)
@@ -87,7 +86,7 @@ int AngularDegreeFor(const Medium& medium, const PropagationSettings& settings, 
     return last;
   };
   // Of thin media the first scattering counts: there a narrower part of the peak is to go straight on.
-  const bool thin = moments[1] > SomewhatForward && Thickness(medium) < Thick;
+  const bool thin = moments[1] > SomewhatForward && MeanThickness(medium) < Thick;
   const int usual = HighestThatFits(medium.grid, slab ? DegreeOfSlabs : thin ? DegreeOfThin : DegreeOfOthers, memory);
   const int wanted = settings.angularDegree >= 0 ? settings.angularDegree
                                                  : std::min(usual, lastAbove(std::max(Negligible, settings.tolerance)));

@@ -17,6 +17,9 @@ struct DeviceMemory
 };
 DeviceMemory MemoryOf(const Device& device);
 
+/// Mean free paths through the box, in the mean of its voxels and edges.
+double MeanThickness(const Medium& medium);
+
 /// Degree of the angular moments to solve a medium with: the settings', or where they leave it open the highest whose
 /// moment of the phase function is more than the tolerance, up to 3 (in slabs 9, in thin media that scatter forwards
 /// 5), as far as there is memory; no more than the directions tell apart. 0 where scattering is isotropic, or so nearly

@@ -1,0 +1,61 @@
+#include "DiscreteOrdinates/OrdinatesQuality.h"
+
+#include "Numerics/NumberText.h"
+
+namespace tyndall
+{
+namespace
+{
+/// Numbers of one level.
+struct Level
+{
+  int rows; ///< of directions along a face's edge
+  int terms;
+  double tolerance;
+};
+
+constexpr Level Draft = { 3, 9, 1e-2 }, Fine = { 8, 49, 1e-4 }, Reference = { 12, 100, 1e-5 };
+
+/// Rows of directions whose radiance, one channel of every voxel, takes at most half of the memory.
+int RowsThatFit(int rows, int atLeast, const Grid& grid, const DeviceMemory& memory)
+{
+  constexpr std::size_t Faces = 6;
+  while (rows > atLeast && Faces * rows * rows * sizeof(float) * grid.VoxelCount() > memory.all / 2)
+  {
+    --rows;
+  }
+  return rows;
+}
+
+void SetLevel(const Level& level, OrdinatesSettings& settings, const Medium& medium, const DeviceMemory& memory)
+{
+  const OrdinatesSettings byDefault;
+  const int rows = RowsThatFit(level.rows, Draft.rows, medium.grid, memory);
+  SetUnlessChosen(settings.directionsPerFace, byDefault.directionsPerFace, rows * rows);
+  SetUnlessChosen(settings.tolerance, byDefault.tolerance, level.tolerance);
+  if (!medium.phase.IsIsotropic())
+  {
+    SetUnlessChosen(settings.terms, byDefault.terms, level.terms);
+  }
+}
+}
+
+OrdinatesSettings AtQuality(
+  Quality quality, OrdinatesSettings settings, const Medium& medium, const DeviceMemory& memory)
+{
+  switch (quality)
+  {
+    case Quality::Draft: SetLevel(Draft, settings, medium, memory); break;
+    case Quality::Default: break;
+    case Quality::Fine: SetLevel(Fine, settings, medium, memory); break;
+    case Quality::Reference: SetLevel(Reference, settings, medium, memory); break;
+  }
+  return settings;
+}
+
+std::vector<std::string> Words(const OrdinatesSettings& settings)
+{
+  return { "DirectionsPerFace = " + std::to_string(settings.directionsPerFace),
+    "Terms = " + std::to_string(settings.terms), "Tolerance = " + Text("%g", settings.tolerance) };
+}
+}

@@ -1,0 +1,20 @@
+#pragma once
+
+#include "DiscreteOrdinates/OrdinatesSettings.h"
+#include "Light/Quality.h"
+#include "LightPropagation/Problem/AngularDegree.h"
+#include "Medium/Medium.h"
+
+#include <string>
+#include <vector>
+
+namespace tyndall
+{
+/// Settings of a quality for a medium: directions, terms of its phase function where it has one, and tolerance, as far
+/// as `settings` has them at their default values. No more directions than half the device's memory holds.
+OrdinatesSettings AtQuality(
+  Quality quality, OrdinatesSettings settings, const Medium& medium, const DeviceMemory& memory);
+
+/// "Name = value" of each setting that a quality may choose.
+std::vector<std::string> Words(const OrdinatesSettings& settings);
+}

@@ -1,0 +1,111 @@
+#include "LightPropagation/Accuracy/DirectionForecast.h"
+
+#include "Light/Quality.h"
+
+#include <algorithm>
+#include <cmath>
+#include <iterator>
+#include <vector>
+
+namespace tyndall
+{
+namespace
+{
+constexpr int LargestUnstaggered = 100; ///< directions are fitted up to these
+constexpr double UncollidedWork = 5.0;  ///< of a direction of unscattered light, over one of a sweep: measured
+constexpr double LeastSweeps = 3.0;
+constexpr int Directions[] = { 9, 16, 25, 36, 49, 64, 81, 100, 196, 256, 400 };
+constexpr int Uncollided[] = { 0, 49, 64, 81, 100, 256, 400, 576, 900, 1600 };
+
+/// Error along so many directions a face, over that along 9; those of more than 100 staggered.
+struct Fall
+{
+  double directions, error;
+};
+constexpr Fall Falls[] = { { 1, 8.0 }, { 4, 2.8 }, { 9, 1.0 }, { 16, 0.65 }, { 25, 0.45 }, { 36, 0.37 }, { 49, 0.33 },
+  { 64, 0.28 }, { 100, 0.2 }, { 256, 0.15 }, { 400, 0.11 }, { 900, 0.06 }, { 1600, 0.035 }, { 4096, 0.02 } };
+
+/// Between these, straight in logarithms.
+double FallenTo(int directions)
+{
+  const Fall* above = std::begin(Falls) + 1;
+  while (above + 1 != std::end(Falls) && above->directions < directions)
+  {
+    ++above;
+  }
+  const Fall& below = *(above - 1);
+  const double part = std::log(directions / below.directions) / std::log(above->directions / below.directions);
+  return below.error * std::pow(above->error / below.error, part);
+}
+
+/// Root mean square of the difference of two parts of light, over that of `whole`.
+template <class Part>
+double Difference(const LightField& one, const LightField& other, const Part& part)
+{
+  double sum = 0.0, all = 0.0;
+  for (std::size_t i = 0; i < one.fluence.size(); ++i)
+  {
+    const double difference = part(one, i) - part(other, i);
+    sum += difference * difference;
+    all += static_cast<double>(other.fluence[i]) * other.fluence[i];
+  }
+  return all > 0.0 ? std::sqrt(sum / all) : 0.0;
+}
+}
+
+DirectionForecast::DirectionForecast(
+  const LightField& few, int fewDirections, const LightField& more, int moreDirections)
+  : Sweeps(std::max(LeastSweeps, static_cast<double>(more.convergence.size())))
+{
+  const double fallen = std::hypot(FallenTo(fewDirections), FallenTo(moreDirections));
+  const auto direct = [](
+                        const LightField& light, std::size_t i) { return static_cast<double>(light.fluenceDirect[i]); };
+  const auto scattered = [&](const LightField& light, std::size_t i) { return light.fluence[i] - direct(light, i); };
+  this->OfUncollided = Difference(few, more, direct) / fallen;
+  this->OfScattered = Difference(few, more, scattered) / fallen;
+}
+
+double DirectionForecast::Error(const PropagationSettings& settings) const
+{
+  const int uncollided = settings.uncollidedDirections > 0 ? settings.uncollidedDirections : settings.directionsPerFace;
+  return std::hypot(
+    this->OfUncollided * FallenTo(uncollided), this->OfScattered * FallenTo(settings.directionsPerFace));
+}
+
+double DirectionForecast::Work(const PropagationSettings& settings) const
+{
+  return this->Sweeps * settings.directionsPerFace + UncollidedWork * std::max(0, settings.uncollidedDirections);
+}
+
+PropagationSettings DirectionForecast::Cheapest(const PropagationSettings& settings, double error) const
+{
+  const PropagationSettings byDefault;
+  PropagationSettings best;
+  bool any = false;
+  for (const int directions : Directions)
+  {
+    for (const int uncollided : Uncollided)
+    {
+      PropagationSettings tried = settings;
+      SetUnlessChosen(tried.directionsPerFace, byDefault.directionsPerFace, directions);
+      SetUnlessChosen(tried.uncollidedDirections, byDefault.uncollidedDirections,
+        uncollided > tried.directionsPerFace ? uncollided : 0);
+      SetUnlessChosen(tried.staggeredRays, byDefault.staggeredRays, tried.directionsPerFace > LargestUnstaggered);
+      const double ofTried = this->Error(tried), ofBest = any ? this->Error(best) : 0.0;
+      const bool better = ofTried <= error ? ofBest > error || this->Work(tried) < this->Work(best) : ofTried < ofBest;
+      if (!any || better)
+      {
+        best = tried;
+        any = true;
+      }
+    }
+  }
+  return best;
+}
+
+void DirectionForecast::Correct(double factor)
+{
+  this->OfUncollided *= factor;
+  this->OfScattered *= factor;
+}
+}

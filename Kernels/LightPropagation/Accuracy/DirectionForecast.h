@@ -1,0 +1,32 @@
+#pragma once
+
+#include "Light/LightField.h"
+#include "LightPropagation/PropagationSettings.h"
+
+namespace tyndall
+{
+/// Forecast of the error that directions leave, and of the work of a solve, from two solves of one grid along few and
+/// along more directions. How errors fall with the number of directions was measured (measurements.md), those of
+/// light that is not scattered yet and of scattered light each by their own number; of two solves they have nothing
+/// to do with each other.
+class DirectionForecast
+{
+public:
+  /// @param few, more  along `fewDirections` and `moreDirections` a face, unscattered light along the same
+  DirectionForecast(const LightField& few, int fewDirections, const LightField& more, int moreDirections);
+
+  /// Relative, root mean square, of fluence.
+  double Error(const PropagationSettings& settings) const;
+  /// In sweeps along one direction a face.
+  double Work(const PropagationSettings& settings) const;
+  /// The settings with the least work whose error is at most `error`, or else those of the least error. Only numbers
+  /// that `settings` has at their default values are chosen.
+  PropagationSettings Cheapest(const PropagationSettings& settings, double error) const;
+  /// Errors turned out to be so many times those of the forecast.
+  void Correct(double factor);
+
+private:
+  double OfUncollided = 0.0, OfScattered = 0.0; ///< errors of 9 directions a face
+  double Sweeps = 1.0;
+};
+}

@@ -1,0 +1,253 @@
+#include "LightPropagation/Accuracy/TargetError.h"
+
+#include "Device/Errors.h"
+#include "Light/Quality.h"
+#include "LightPropagation/Accuracy/DirectionForecast.h"
+#include "LightPropagation/Problem/CoarseScene.h"
+#include "LightPropagation/Problem/DividedScene.h"
+#include "Numerics/NumberText.h"
+
+#include <algorithm>
+#include <chrono>
+#include <cmath>
+#include <optional>
+#include <string>
+#include <vector>
+
+namespace tyndall
+{
+namespace
+{
+constexpr double Aim = 0.9;            ///< of the target, for the forecast
+constexpr double DirectionPart = 0.85; ///< of that, for directions
+constexpr double TolerancePart = 0.3;
+constexpr double LooseTolerance = 1e-2;
+constexpr double OrderInSpace = 1.7, OrderBesideLamps = 1.5; ///< measured: clouds 1.7, lamps in fog 1.6
+constexpr int Few = 9, More = 25;
+constexpr double LeastEmissionError = 0.005;
+
+/// Fluence on the coarse grid, and the settings it was found with.
+struct CoarseLight
+{
+  PropagationSettings settings;
+  std::vector<float> fluence;
+
+  bool Has(const PropagationSettings& others) const
+  {
+    return others.directionsPerFace == this->settings.directionsPerFace && others.uncollidedDirections == 0 &&
+      others.mapResolution == this->settings.mapResolution && others.staggeredRays == this->settings.staggeredRays;
+  }
+};
+
+/// Light falls off steeply beside lamps, which have a place.
+bool HasLampsNearby(const Illumination& illumination)
+{
+  return std::any_of(illumination.lights.begin(), illumination.lights.end(),
+    [](const Light& light) { return light.type != LightType::Directional; });
+}
+
+/// The search, step by step.
+class TargetSearch
+{
+public:
+  TargetSearch(const Medium& medium, const Illumination& illumination, const PropagationSettings& settings,
+    double target, const Monitor& monitor, const PropagationSolver& solve)
+    : TheMedium(medium)
+    , Shining(illumination)
+    , Asked(settings)
+    , Goal(Aim * target)
+    , Target(target)
+    , TheMonitor(monitor)
+    , Solver(solve)
+    , Coarsened(medium.grid)
+    , Coarse(medium, illumination, this->Coarsened)
+  {
+    const PropagationSettings byDefault;
+    SetUnlessChosen(this->Asked.tolerance, byDefault.tolerance, std::min(LooseTolerance, TolerancePart * this->Goal));
+    SetUnlessChosen(this->Asked.emissionError, byDefault.emissionError,
+      std::clamp(target, LeastEmissionError, byDefault.emissionError));
+  }
+
+  TargetLight Run()
+  {
+    this->LookAtDirections();
+    if (this->Layers)
+    {
+      return this->Finish(SolveWithErrorEstimate(this->TheMedium, this->Shining, this->Asked, this->TheMonitor,
+        [this](const Medium& medium, const Illumination& light, const PropagationSettings& settings,
+          const Monitor& monitor) { return this->Count(medium, light, settings, monitor); }));
+    }
+    this->SolveAlong(this->Forecast->Cheapest(this->Asked, DirectionPart * this->Goal), 0.1, 0.4);
+    if (this->Light.relativeError > this->Target && this->Parts.inDirections > DirectionPart * this->Goal)
+    {
+      this->Forecast->Correct(this->Parts.inDirections / this->Forecast->Error(this->Used));
+      const PropagationSettings better = this->Forecast->Cheapest(this->Asked, DirectionPart * this->Goal);
+      if (this->Forecast->Error(better) < this->Forecast->Error(this->Used))
+      {
+        this->SolveAlong(better, 0.4, 0.6);
+      }
+    }
+    if (this->Light.relativeError > this->Target && this->PromisesToDoInHalves())
+    {
+      this->Divide();
+    }
+    return this->Finish(std::move(this->Light));
+  }
+
+private:
+  LightField Count(
+    const Medium& medium, const Illumination& illumination, const PropagationSettings& settings, const Monitor& monitor)
+  {
+    ++this->Solves;
+    return this->Solver(medium, illumination, settings, monitor);
+  }
+
+  LightField OnCoarse(PropagationSettings settings, double from, double to)
+  {
+    settings.netFlux = false;
+    settings.facePower = false;
+    settings.storeMoments = false;
+    settings.storedDirections = 1;
+    settings.adaptDirections = false;
+    return this->Count(this->Coarse.TheMedium(), this->Coarse.Shining(), settings, OfPart(this->TheMonitor, from, to));
+  }
+
+  /// The coarse grid along few and along more directions.
+  void LookAtDirections()
+  {
+    PropagationSettings settings = this->Asked;
+    settings.uncollidedDirections = 0;
+    settings.staggeredRays = false;
+    settings.directionsPerFace = Few;
+    const LightField few = this->OnCoarse(settings, 0.0, 0.03);
+    this->Layers = few.polarNodes > 0;
+    if (!this->Layers)
+    {
+      this->AlongFew = { settings, few.fluence };
+      settings.directionsPerFace = More;
+      const LightField more = this->OnCoarse(settings, 0.03, 0.1);
+      this->Forecast.emplace(few, Few, more, More);
+      this->AlongMore = { settings, more.fluence };
+    }
+  }
+
+  /// On the grid itself, and on the coarse one for the estimate.
+  void SolveAlong(const PropagationSettings& settings, double from, double to)
+  {
+    this->Used = settings;
+    const double middle = from + 0.8 * (to - from);
+    this->Light = this->Count(this->TheMedium, this->Shining, settings, OfPart(this->TheMonitor, from, middle));
+    const CoarseLight* const solved = this->AlongFew.Has(settings) ? &this->AlongFew
+      : this->AlongMore.Has(settings)                              ? &this->AlongMore
+                                                                   : nullptr;
+    const std::vector<float> same = solved ? solved->fluence : this->OnCoarse(settings, middle, to).fluence;
+    const CoarseLight& other = solved == &this->AlongMore ? this->AlongFew : this->AlongMore;
+    const double error = this->Forecast->Error(settings);
+    const double difference = std::hypot(error, this->Forecast->Error(other.settings));
+    this->Parts = WriteErrorEstimate(this->Light, this->Coarsened, same, other.fluence,
+      difference > 0.0 ? error / difference : 0.0, HasLampsNearby(this->Shining) ? OrderBesideLamps : OrderInSpace);
+  }
+
+  /// Voxels of half the edge leave a quarter of the error in voxel size.
+  bool PromisesToDoInHalves() const
+  {
+    const double left = std::hypot(this->Parts.inSpace / 4.0, this->Parts.inDirections, this->Parts.residual);
+    return this->Parts.inSpace > this->Parts.inDirections && left <= this->Target;
+  }
+
+  void Divide()
+  {
+    const DividedScene divided(this->TheMedium, this->Shining, this->Asked.periodic);
+    LightField light;
+    try
+    {
+      light = this->Count(divided.TheMedium(), divided.Shining(), this->Used, OfPart(this->TheMonitor, 0.6, 1.0));
+    }
+    catch (const DeviceError& error)
+    {
+      this->WhyNot = std::string(" Voxels of half the edge were tried: ") + error.what();
+      return;
+    }
+    divided.Undo(light);
+    this->InHalves = true;
+    this->EstimateOfDivided(light);
+    this->Light = std::move(light);
+  }
+
+  /// From the difference to whole voxels, which is three times the error that is left, and what else is left as before.
+  void EstimateOfDivided(LightField& light)
+  {
+    double errors = 0.0, all = 0.0;
+    const double rest = std::hypot(this->Parts.inDirections, this->Parts.residual);
+    light.fluenceError.resize(light.fluence.size());
+    for (std::size_t i = 0; i < light.fluence.size(); ++i)
+    {
+      const double error =
+        std::hypot((static_cast<double>(light.fluence[i]) - this->Light.fluence[i]) / 3.0, rest * light.fluence[i]);
+      light.fluenceError[i] = static_cast<float>(error);
+      errors += error * error;
+      all += static_cast<double>(light.fluence[i]) * light.fluence[i];
+    }
+    light.relativeError = all > 0.0 ? std::sqrt(errors / all) : 0.0;
+  }
+
+  TargetLight Finish(LightField&& light)
+  {
+    TargetLight found;
+    found.settings = this->Layers ? this->Asked : this->Used;
+    found.met = light.relativeError <= this->Target; // NaN: not known, so not met
+    found.divided = this->InHalves;
+    found.solves = this->Solves;
+    found.seconds = std::chrono::duration<double>(std::chrono::steady_clock::now() - this->Start).count();
+    if (!found.met)
+    {
+      light.doubts.push_back(this->WordsOfMiss(light.relativeError, found));
+    }
+    found.light = std::move(light);
+    return found;
+  }
+
+  std::string WordsOfMiss(double error, const TargetLight& found) const
+  {
+    const std::string cost = " after " + std::to_string(found.solves) + " solves in " + Text("%.3g", found.seconds) +
+      " s, of which voxels leave " + Text("%.2g", this->Parts.inSpace / (this->InHalves ? 4.0 : 1.0)) +
+      ", directions " + Text("%.2g", this->Parts.inDirections) + ", orders that were not computed " +
+      Text("%.2g", this->Parts.residual);
+    return "TargetError " + Text("%g", this->Target) + " is not met: the error of fluence is estimated to be " +
+      Text("%.2g", error) + cost + ". " +
+      (this->Parts.inSpace > this->Parts.inDirections ? "Give the medium in smaller voxels"
+                                                      : "Leave directions and tolerance at their default values") +
+      ", or ask for less." + this->WhyNot;
+  }
+
+  const Medium& TheMedium;
+  const Illumination& Shining;
+  PropagationSettings Asked;
+  double Goal, Target;
+  const Monitor& TheMonitor;
+  const PropagationSolver& Solver;
+  Coarsening Coarsened;
+  CoarseScene Coarse;
+  std::chrono::steady_clock::time_point Start = std::chrono::steady_clock::now();
+
+  std::optional<DirectionForecast> Forecast;
+  PropagationSettings Used;
+  CoarseLight AlongFew, AlongMore;
+  LightField Light;
+  ErrorParts Parts;
+  bool Layers = false, InHalves = false;
+  int Solves = 0;
+  std::string WhyNot;
+};
+}
+
+TargetLight SolveToTargetError(const Medium& medium, const Illumination& illumination,
+  const PropagationSettings& settings, double target, const Monitor& monitor, const PropagationSolver& solve)
+{
+  if (!(target > 0.0 && target < 1.0))
+  {
+    throw InvalidInput("TargetError is " + Text("%g", target) + "; it must be above 0 and below 1.");
+  }
+  return TargetSearch(medium, illumination, settings, target, monitor, solve).Run();
+}
+}

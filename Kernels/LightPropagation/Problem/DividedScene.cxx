@@ -1,0 +1,116 @@
+#include "LightPropagation/Problem/DividedScene.h"
+
+#include "Medium/BoxFaces.h"
+#include "Medium/Coarsening.h"
+
+namespace tyndall
+{
+namespace
+{
+Grid Divide(Grid grid, const std::array<bool, 3>& periodic)
+{
+  for (int axis = 0; axis < 3; ++axis)
+  {
+    const int parts = grid.size[axis] == 1 && periodic[axis] ? 1 : 2;
+    grid.size[axis] *= parts;
+    grid.spacing[axis] /= parts;
+  }
+  return grid;
+}
+}
+
+DividedScene::DividedScene(const Medium& medium, const Illumination& illumination, const std::array<bool, 3>& periodic)
+  : Whole(medium.grid)
+  , Divided(medium)
+  , Light(illumination)
+{
+  this->Divided.grid = Divide(medium.grid, periodic);
+  for (Field* field : { &this->Divided.sigma_a, &this->Divided.sigma_s, &this->Divided.emission,
+         &this->Light.uncollided.fluence, &this->Light.uncollided.meanDirection })
+  {
+    *field = this->Repeated(*field);
+  }
+  if (medium.phase.Varies())
+  {
+    this->Divided.phase = medium.phase.WithG(this->Repeated(medium.phase.G()));
+  }
+}
+
+double DividedScene::Parts() const
+{
+  return static_cast<double>(this->Divided.grid.VoxelCount()) / static_cast<double>(this->Whole.VoxelCount());
+}
+
+Field DividedScene::Repeated(const Field& field)
+{
+  if (!field.values)
+  {
+    return field;
+  }
+  const Grid& fine = this->Divided.grid;
+  std::array<int, 3> parts = {};
+  for (int axis = 0; axis < 3; ++axis)
+  {
+    parts[axis] = fine.size[axis] / this->Whole.size[axis];
+  }
+  std::vector<float> values;
+  values.reserve(fine.VoxelCount() * field.components);
+  for (int z = 0; z < fine.size[2]; ++z)
+  {
+    for (int y = 0; y < fine.size[1]; ++y)
+    {
+      for (int x = 0; x < fine.size[0]; ++x)
+      {
+        const float* const from =
+          field.values + this->Whole.IndexOf({ x / parts[0], y / parts[1], z / parts[2] }) * field.components;
+        values.insert(values.end(), from, from + field.components);
+      }
+    }
+  }
+  this->Arrays.push_back(std::move(values));
+  Field repeated = field;
+  repeated.values = this->Arrays.back().data();
+  return repeated;
+}
+
+void DividedScene::UndoCells(std::vector<float>& values) const
+{
+  const Grid& fine = this->Divided.grid;
+  const std::size_t components = values.size() / BoxFaceCellCount(fine);
+  if (components == 0)
+  {
+    return;
+  }
+  std::vector<float> sums(BoxFaceCellCount(this->Whole) * components, 0.0f);
+  ForBoxFaceCells(fine, [&](const BoxFaceCell& cell) {
+    const PlaneAxes axes = AcrossAxis(cell.face / 2);
+    const BoxFaceLayout layout = LayoutOfFace(this->Whole, cell.face);
+    const int partsU = fine.size[axes.u] / this->Whole.size[axes.u];
+    const int partsV = fine.size[axes.v] / this->Whole.size[axes.v];
+    const std::size_t parent =
+      layout.first + cell.u / partsU * layout.step[axes.u] + cell.v / partsV * layout.step[axes.v];
+    const float part = 1.0f / static_cast<float>(partsU * partsV);
+    for (std::size_t k = 0; k < components; ++k)
+    {
+      sums[parent * components + k] += part * values[cell.number * components + k];
+    }
+  });
+  values = std::move(sums);
+}
+
+void DividedScene::Undo(LightField& light) const
+{
+  const Coarsening back(this->Divided.grid, this->Whole);
+  const std::size_t voxels = this->Divided.grid.VoxelCount();
+  for (std::vector<float>* values : { &light.fluence, &light.fluenceDirect, &light.netFlux, &light.scatteredRadiance,
+         &light.scatteredMoments, &light.straightOn })
+  {
+    if (!values->empty())
+    {
+      *values = back.Average(values->data(), static_cast<int>(values->size() / voxels));
+    }
+  }
+  this->UndoCells(light.surfaceRadiance);
+  this->UndoCells(light.facePower);
+}
+}

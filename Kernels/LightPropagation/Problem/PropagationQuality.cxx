@@ -1,0 +1,77 @@
+#include "LightPropagation/Problem/PropagationQuality.h"
+
+#include "LightPropagation/Problem/AngularDegree.h"
+#include "Numerics/NumberText.h"
+
+#include <algorithm>
+
+namespace tyndall
+{
+namespace
+{
+constexpr double ThickBox = 8.0; ///< mean free paths across, from which on few directions do for scattered light
+
+/// Numbers of one level.
+struct Level
+{
+  int directions, directionsInThickBox;
+  int uncollidedDirections; ///< where light comes in from outside
+  double tolerance, emissionError;
+};
+
+constexpr Level Draft = { 9, 9, 0, 1e-2, 0.05 };
+constexpr Level Fine = { 64, 49, 400, 1e-4, 0.01 };
+constexpr Level Reference = { 256, 144, 1600, 1e-5, 0.005 };
+constexpr int Staggered = 144; ///< directions from which on rays of each in a place of their own halve the error
+
+bool ShinesThroughFaces(const Illumination& illumination)
+{
+  return Sum(illumination.sky) > 0.0 || !illumination.environment.Empty() ||
+    std::any_of(illumination.faces.begin(), illumination.faces.end(), [](const Rgb& face) { return Sum(face) > 0.0; });
+}
+
+bool Scatters(const Medium& medium)
+{
+  const std::size_t count = medium.grid.VoxelCount() * medium.sigma_s.components;
+  return medium.sigma_s.values &&
+    std::any_of(medium.sigma_s.values, medium.sigma_s.values + count, [](float value) { return value > 0.0f; });
+}
+
+void SetLevel(const Level& level, PropagationSettings& settings, const Medium& medium, const Illumination& illumination)
+{
+  const PropagationSettings byDefault;
+  const bool lit = ShinesThroughFaces(illumination);
+  const bool scatters = Scatters(medium);
+  const int ofScattered = MeanThickness(medium) < ThickBox ? level.directions : level.directionsInThickBox;
+  const int directions = scatters || !lit ? ofScattered : std::max(ofScattered, level.uncollidedDirections);
+  SetUnlessChosen(settings.directionsPerFace, byDefault.directionsPerFace, directions);
+  SetUnlessChosen(settings.uncollidedDirections, byDefault.uncollidedDirections,
+    lit && scatters && level.uncollidedDirections > settings.directionsPerFace ? level.uncollidedDirections : 0);
+  SetUnlessChosen(settings.staggeredRays, byDefault.staggeredRays, settings.directionsPerFace >= Staggered);
+  SetUnlessChosen(settings.tolerance, byDefault.tolerance, level.tolerance);
+  SetUnlessChosen(settings.emissionError, byDefault.emissionError, level.emissionError);
+}
+}
+
+PropagationSettings AtQuality(
+  Quality quality, PropagationSettings settings, const Medium& medium, const Illumination& illumination)
+{
+  switch (quality)
+  {
+    case Quality::Draft: SetLevel(Draft, settings, medium, illumination); break;
+    case Quality::Default: break;
+    case Quality::Fine: SetLevel(Fine, settings, medium, illumination); break;
+    case Quality::Reference: SetLevel(Reference, settings, medium, illumination); break;
+  }
+  return settings;
+}
+
+std::vector<std::string> Words(const PropagationSettings& settings)
+{
+  return { "DirectionsPerFace = " + std::to_string(settings.directionsPerFace),
+    "UncollidedDirections = " + std::to_string(settings.uncollidedDirections),
+    "MapResolution = " + std::to_string(settings.mapResolution),
+    "StaggeredRays = " + std::to_string(settings.staggeredRays ? 1 : 0),
+    "Tolerance = " + Text("%g", settings.tolerance), "EmissionError = " + Text("%g", settings.emissionError) };
+}
+}

@@ -1,0 +1,25 @@
+#pragma once
+
+#include "Light/Quality.h"
+#include "LightPropagation/PropagationSettings.h"
+#include "Lights/Lights.h"
+#include "Medium/Medium.h"
+
+#include <string>
+#include <vector>
+
+namespace tyndall
+{
+/// Settings of a quality for a scene: directions, those of unscattered light, where rays start, tolerance and the error
+/// of bright emission, as far as `settings` has them at their default values. What the levels cost and how exact they
+/// are was measured (measurements.md).
+///
+/// Of the scene it matters whether light comes in through faces, sky or environment (only then has unscattered light
+/// finer directions), whether anything is scattered (else the directions are those of unscattered light), and whether
+/// the box is so thick that scattered light hardly depends on directions.
+PropagationSettings AtQuality(
+  Quality quality, PropagationSettings settings, const Medium& medium, const Illumination& illumination);
+
+/// "Name = value" of each setting that a quality may choose.
+std::vector<std::string> Words(const PropagationSettings& settings);
+}

@@ -1,0 +1,144 @@
+#include "MediumScene.h"
+
+#include "vtkDiscreteOrdinates.h"
+#include "vtkLatticeBoltzmannLighting.h"
+#include "vtkMediumRayCaster.h"
+#include "vtkStringArray.h"
+
+#include <cmath>
+#include <string>
+
+namespace
+{
+/// The lines of field data settings_used; empty where there are none.
+std::string Used(vtkDataObject* output)
+{
+  auto* lines = vtkStringArray::SafeDownCast(output->GetFieldData()->GetAbstractArray("settings_used"));
+  std::string text;
+  for (vtkIdType i = 0; lines && i < lines->GetNumberOfValues(); ++i)
+  {
+    text += lines->GetValue(i) + "\n";
+  }
+  return text;
+}
+
+bool Has(const std::string& text, const std::string& line)
+{
+  return text.find(line + "\n") != std::string::npos;
+}
+
+vtkSmartPointer<vtkImageData> Medium()
+{
+  return test::MakeMedium({ { 7, 5, 9 }, { 0.5, 0.5, 0.5 } }, 0.02, 0.3);
+}
+
+void SetsWhatNobodySet(test::Claims& claims)
+{
+  vtkNew<vtkLightPropagationMaps> maps;
+  test::Errors errors(maps);
+  maps->SetInputDataObject(Medium());
+  maps->SetFaceRadiance(0.0, 0.0, 0.0, 1.0, 0.0, 0.0);
+  maps->Update();
+  const std::string usual = Used(maps->GetOutputDataObject(0));
+  claims.That(maps->GetQuality() == vtkLightPropagationMaps::USUAL, "default by default");
+  claims.That(Has(usual, "DirectionsPerFace = 25") && Has(usual, "Tolerance = 0.0001") &&
+      Has(usual, "UncollidedDirections = -1") && Has(usual, "MapResolution = 1"),
+    "by default properties stand for themselves: " + usual);
+  const std::string shown = maps->GetSettingsUsed();
+  claims.That(shown + "\n" == usual, "the panel shows the same as the field data");
+
+  maps->SetQuality(vtkLightPropagationMaps::FINE);
+  maps->Update();
+  const std::string fine = Used(maps->GetOutputDataObject(0));
+  claims.That(!Has(fine, "DirectionsPerFace = 25") && !Has(fine, "UncollidedDirections = -1"), "fine: " + fine);
+  claims.That(maps->GetDirectionsPerFace() == 25, "the property keeps its value");
+  maps->SetDirectionsPerFace(16);
+  maps->SetTolerance(0.02);
+  maps->Update();
+  const std::string chosen = Used(maps->GetOutputDataObject(0));
+  claims.That(Has(chosen, "DirectionsPerFace = 16") && Has(chosen, "Tolerance = 0.02"), "set by hand wins: " + chosen);
+  claims.That(errors.None(), "without complaint");
+}
+
+template <class Solver>
+void SetsTolerance(test::Claims& claims, const std::string& which)
+{
+  vtkNew<Solver> solver;
+  test::Errors errors(solver);
+  solver->SetInputDataObject(Medium());
+  solver->SetSkyColor(1.0, 1.0, 1.0);
+  solver->Update();
+  claims.That(Has(Used(solver->GetOutputDataObject(0)), "Tolerance = 0.0001"), which + ": default");
+  solver->SetQuality(Solver::DRAFT);
+  solver->Update();
+  claims.That(Has(Used(solver->GetOutputDataObject(0)), "Tolerance = 0.01"), which + ": draft");
+  claims.That(errors.None(), which + ": without complaint");
+  solver->SetQuality(4);
+  solver->Update();
+  claims.That(errors.WasOneWith("Quality is 4"), which + ": a level that there is not");
+}
+
+void SetsSteps(test::Claims& claims)
+{
+  vtkNew<vtkLightPropagationMaps> maps;
+  maps->SetInputDataObject(Medium());
+  maps->SetSkyColor(1.0, 1.0, 1.0);
+  vtkNew<vtkMediumRayCaster> caster;
+  test::Errors errors(caster);
+  caster->SetInputConnection(maps->GetOutputPort());
+  caster->SetImageSize(16, 12);
+  caster->SetQuality(vtkMediumRayCaster::REFERENCE);
+  caster->Update();
+  claims.That(Has(Used(caster->GetOutputDataObject(0)), "StepSize = 0.1"), "a picture's step");
+  caster->SetStepSize(0.7);
+  caster->Update();
+  claims.That(Has(Used(caster->GetOutputDataObject(0)), "StepSize = 0.7"), "a step that was chosen");
+  claims.That(errors.None(), "a picture without complaint");
+}
+
+void SolvesToATarget(test::Claims& claims)
+{
+  vtkNew<vtkLightPropagationMaps> maps;
+  test::Errors errors(maps);
+  maps->SetInputDataObject(Medium());
+  maps->SetFaceRadiance(0.0, 0.0, 0.0, 1.0, 0.0, 0.0);
+  maps->SetTargetError(0.03);
+  maps->Update();
+  const std::string used = Used(maps->GetOutputDataObject(0));
+  claims.That(errors.None(), "a target that can be met, without complaint");
+  claims.That(maps->GetEstimatedError() > 0.0 && maps->GetEstimatedError() <= 0.03, "its estimate is below the target");
+  claims.That(maps->GetSolves() >= 3 && maps->GetSeconds() > 0.0, "says at what cost");
+  claims.That(used.find("VoxelsDividedBy = ") != std::string::npos, "says by what: " + used);
+  claims.That(maps->GetOutput()->GetCellData()->GetArray("fluence_error") != nullptr, "an error by voxel");
+
+  maps->SetTargetError(1e-6);
+  maps->Update();
+  claims.That(errors.WasOneWith("TargetError 1e-06 is not met"), "one warning where it is missed");
+  claims.That(maps->GetEstimatedError() > 1e-6, "and the estimate says so");
+  maps->SetTargetError(-0.1);
+  maps->Update();
+  claims.That(errors.WasOneWith("TargetError is -0.1"), "no error below 0");
+  maps->SetTargetError(0.03);
+  maps->SetScheme(vtkLightPropagationMaps::PUBLISHED);
+  maps->Update();
+  claims.That(errors.WasOneWith("TargetError is for the conservative scheme"), "not as published");
+  maps->SetScheme(vtkLightPropagationMaps::CONSERVATIVE);
+  maps->Update();
+  claims.That(errors.None(), "heals");
+}
+}
+
+int TestQuality(int, char*[])
+{
+  if (!test::HasDevice())
+  {
+    return test::SkippedWithoutDevice("LightPropagationMaps gave an error");
+  }
+  test::Claims claims;
+  SetsWhatNobodySet(claims);
+  SetsTolerance<vtkDiscreteOrdinates>(claims, "ordinates");
+  SetsTolerance<vtkLatticeBoltzmannLighting>(claims, "lattice");
+  SetsSteps(claims);
+  SolvesToATarget(claims);
+  return claims.Result();
+}

@@ -1,0 +1,165 @@
+#include "DeviceTest.h"
+#include "MediumScene.h"
+
+#include "Device/Errors.h"
+#include "LightPropagation/Accuracy/DirectionForecast.h"
+#include "LightPropagation/Accuracy/TargetError.h"
+#include "LightPropagation/Problem/DividedScene.h"
+#include "LightPropagation/Problem/PropagationQuality.h"
+
+#include <cmath>
+
+using namespace tyndall;
+
+namespace
+{
+/// A cloud in a box of three different edges under a shining face.
+Scene Cloud()
+{
+  Scene scene({ 22, 15, 18 });
+  const std::array<int, 3>& size = scene.medium.grid.size;
+  for (std::size_t i = 0; i < scene.sigma_s.size(); ++i)
+  {
+    const std::array<int, 3> at = scene.medium.grid.VoxelAt(i);
+    const double wave = std::sin(0.7 * at[0]) * std::cos(0.4 * at[1] + 1.0) * std::sin(0.5 * at[2] + 0.3);
+    scene.sigma_s[i] = static_cast<float>(4.0 / size[0] * std::exp(wave));
+    scene.sigma_a[i] = 0.1f * scene.sigma_s[i];
+  }
+  scene.light.faces[2] = { 1.0, 1.0, 1.0 };
+  scene.Attach();
+  return scene;
+}
+
+double ErrorOf(const std::vector<float>& found, const std::vector<float>& exact)
+{
+  double errors = 0.0, all = 0.0;
+  for (std::size_t i = 0; i < exact.size(); ++i)
+  {
+    errors += std::pow(static_cast<double>(found[i]) - exact[i], 2);
+    all += std::pow(exact[i], 2);
+  }
+  return std::sqrt(errors / all);
+}
+
+PropagationSolver SolverOn(Device& device)
+{
+  return [&device](const Medium& medium, const Illumination& light, const PropagationSettings& settings,
+           const Monitor& monitor) { return SolveConservative(device, medium, light, settings, monitor); };
+}
+
+std::vector<float> Exact(Device& device, const Scene& scene)
+{
+  const DividedScene divided(scene.medium, scene.light, {});
+  PropagationSettings settings;
+  settings.directionsPerFace = 256;
+  settings.uncollidedDirections = 1600;
+  settings.staggeredRays = true;
+  settings.tolerance = 1e-5;
+  LightField light = SolveConservative(device, divided.TheMedium(), divided.Shining(), settings);
+  divided.Undo(light);
+  return light.fluence;
+}
+}
+
+class TargetError : public DeviceTest
+{
+};
+
+TEST_F(TargetError, IsMetByTheTrueError)
+{
+  const Scene scene = Cloud();
+  const std::vector<float> exact = Exact(this->GetDevice(), scene);
+  for (const double target : { 0.04, 0.01 })
+  {
+    const TargetLight found =
+      SolveToTargetError(scene.medium, scene.light, {}, target, {}, SolverOn(this->GetDevice()));
+    EXPECT_TRUE(found.met) << target;
+    EXPECT_TRUE(found.light.doubts.empty());
+    EXPECT_LE(found.light.relativeError, target);
+    EXPECT_LE(ErrorOf(found.light.fluence, exact), target);
+    EXPECT_EQ(found.light.fluenceError.size(), found.light.fluence.size());
+    EXPECT_GE(found.solves, 3);
+    EXPECT_GT(found.seconds, 0.0);
+  }
+}
+
+TEST_F(TargetError, IsRefusedWhereNothingReachesIt)
+{
+  const Scene scene = Cloud();
+  const TargetLight found = SolveToTargetError(scene.medium, scene.light, {}, 1e-5, {}, SolverOn(this->GetDevice()));
+  EXPECT_FALSE(found.met);
+  EXPECT_GT(found.light.relativeError, 1e-5);
+  ASSERT_EQ(found.light.doubts.size(), 1u);
+  EXPECT_NE(found.light.doubts[0].find("TargetError 1e-05 is not met"), std::string::npos) << found.light.doubts[0];
+}
+
+TEST_F(TargetError, DividesVoxelsWhereTheseAreTooCoarse)
+{
+  Scene scene({ 12, 13, 14 }, 0.06f, 0.24f);
+  Light lamp;
+  lamp.type = LightType::Point;
+  lamp.position = { 4.3, 8.6, 6.1 };
+  scene.light.lights.push_back(lamp);
+  scene.Attach();
+  const TargetLight found = SolveToTargetError(scene.medium, scene.light, {}, 0.02, {}, SolverOn(this->GetDevice()));
+  EXPECT_TRUE(found.divided);
+  EXPECT_EQ(found.light.fluence.size(), scene.medium.grid.VoxelCount());
+  EXPECT_LT(ErrorOf(found.light.fluence, Exact(this->GetDevice(), scene)), 0.02);
+}
+
+TEST_F(TargetError, LeavesWhatWasChosen)
+{
+  const Scene scene = Cloud();
+  PropagationSettings chosen;
+  chosen.directionsPerFace = 4;
+  chosen.uncollidedDirections = 0;
+  chosen.tolerance = 0.03;
+  const TargetLight found =
+    SolveToTargetError(scene.medium, scene.light, chosen, 0.005, {}, SolverOn(this->GetDevice()));
+  EXPECT_EQ(found.settings.directionsPerFace, 4);
+  EXPECT_EQ(found.settings.uncollidedDirections, 0);
+  EXPECT_EQ(found.settings.tolerance, 0.03);
+  EXPECT_FALSE(found.met);
+}
+
+TEST_F(TargetError, OfLayersIsThatOfTheirCosines)
+{
+  Scene scene({ 1, 1, 20 }, 0.02f, 0.1f);
+  scene.settings.periodic = { true, true, false };
+  scene.light.faces[4] = { 1.0, 1.0, 1.0 };
+  scene.Attach();
+  const TargetLight found =
+    SolveToTargetError(scene.medium, scene.light, scene.settings, 0.001, {}, SolverOn(this->GetDevice()));
+  EXPECT_TRUE(found.met);
+  EXPECT_GT(found.light.polarNodes, 0);
+}
+
+TEST_F(TargetError, IsAPartOfOne)
+{
+  const Scene scene = Cloud();
+  for (const double target : { 0.0, -0.1, 1.0, std::nan("") })
+  {
+    EXPECT_THROW(
+      SolveToTargetError(scene.medium, scene.light, {}, target, {}, SolverOn(this->GetDevice())), InvalidInput);
+  }
+}
+
+TEST(DirectionForecast, TellsUnscatteredLightFromTheRest)
+{
+  LightField few, more;
+  more.fluence = { 2.0f, 2.0f };
+  more.fluenceDirect = { 1.0f, 1.0f };
+  few.fluence = { 2.2f, 1.8f }; // all of the difference is in unscattered light
+  few.fluenceDirect = { 1.2f, 0.8f };
+  more.convergence.resize(10);
+  const DirectionForecast forecast(few, 9, more, 25);
+  PropagationSettings settings;
+  settings.uncollidedDirections = 400;
+  const double fine = forecast.Error(settings);
+  settings.uncollidedDirections = 0;
+  EXPECT_LT(4.0 * fine, forecast.Error(settings));
+  const PropagationSettings cheapest = forecast.Cheapest({}, 1.5 * fine);
+  EXPECT_LE(cheapest.directionsPerFace, 9);
+  EXPECT_GE(cheapest.uncollidedDirections, 256);
+  EXPECT_LE(forecast.Error(cheapest), 1.5 * fine);
+}
