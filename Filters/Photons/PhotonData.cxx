@@ -3,9 +3,11 @@
 #include "Common/FiniteValues.h"
 #include "Common/GhostFlags.h"
 #include "Common/LightTransportData.h"
+#include "Device/HostThreads.h"
 
 #include "vtkCellArray.h"
 #include "vtkCellData.h"
+#include "vtkDoubleArray.h"
 #include "vtkFieldData.h"
 #include "vtkFloatArray.h"
 #include "vtkIdTypeArray.h"
@@ -64,6 +66,7 @@ vtkSmartPointer<vtkFloatArray> NewFloats(const char* name, int components, std::
   return array;
 }
 
+constexpr std::size_t PhotonsOfThread = 8192; ///< at least
 constexpr const char* BoxName = "photon_box";
 constexpr double SameBox = 1e-6; ///< of its longest edge
 
@@ -125,24 +128,37 @@ void WritePhotons(const EmittedPhotons& emitted, const Grid& box, vtkPolyData* o
   vtkNew<vtkIntArray> batch;
   batch->SetName("batch");
   batch->SetNumberOfTuples(static_cast<vtkIdType>(count));
+  vtkNew<vtkIdTypeArray> starts, numbers; // of the cells, a photon each
+  starts->SetNumberOfValues(static_cast<vtkIdType>(count) + 1);
+  numbers->SetNumberOfValues(static_cast<vtkIdType>(count));
+  starts->SetValue(static_cast<vtkIdType>(count), static_cast<vtkIdType>(count));
+  auto* const places = vtkDoubleArray::SafeDownCast(points->GetData());
+  InThreads(count, PhotonsOfThread, [&](std::size_t begin, std::size_t end) {
+    for (auto i = static_cast<vtkIdType>(begin); i < static_cast<vtkIdType>(end); ++i)
+    {
+      const Photon& photon = emitted.photons[static_cast<std::size_t>(i)];
+      places->SetTypedTuple(i, photon.position.data());
+      direction->SetTypedTuple(i, photon.direction.data());
+      power->SetTypedTuple(i, photon.power.data());
+      weight->SetValue(i, photon.weight);
+      light->SetValue(i, emitted.lights[static_cast<std::size_t>(i)]);
+      batch->SetValue(i, photon.batch);
+      starts->SetValue(i, i);
+      numbers->SetValue(i, i);
+    }
+  });
   vtkNew<vtkCellArray> vertices;
-  vertices->AllocateEstimate(static_cast<vtkIdType>(count), 1);
-  for (vtkIdType i = 0; i < static_cast<vtkIdType>(count); ++i)
-  {
-    const Photon& photon = emitted.photons[static_cast<std::size_t>(i)];
-    points->SetPoint(i, photon.position.data());
-    direction->SetTypedTuple(i, photon.direction.data());
-    power->SetTypedTuple(i, photon.power.data());
-    weight->SetValue(i, photon.weight);
-    light->SetValue(i, emitted.lights[static_cast<std::size_t>(i)]);
-    batch->SetValue(i, photon.batch);
-    vertices->InsertNextCell(1, &i);
-  }
+  vertices->SetData(starts, numbers);
   const auto photonName = [](std::size_t photon) { return "photon " + std::to_string(photon); };
   for (vtkFloatArray* array : { direction.Get(), power.Get(), weight.Get() })
   {
-    RequireFinite(array->GetName(), array->GetPointer(0), static_cast<std::size_t>(array->GetNumberOfValues()),
-      array->GetNumberOfComponents(), photonName);
+    LeaveRanges(RequireFinite(array->GetName(), array->GetPointer(0),
+                  static_cast<std::size_t>(array->GetNumberOfValues()), array->GetNumberOfComponents(), photonName),
+      array);
+  }
+  for (vtkDataArray* array : std::initializer_list<vtkDataArray*>{ places, light, batch })
+  {
+    LeaveRanges(array);
   }
   const Box bounds = BoxOf(box);
   AddFact(output, BoxName, std::vector<double>(bounds.begin(), bounds.end()));

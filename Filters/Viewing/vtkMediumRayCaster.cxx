@@ -4,6 +4,7 @@
 #include "Common/InputsKey.h"
 #include "Common/LightTransportData.h"
 #include "Common/PhaseFunctionData.h"
+#include "Common/VectorArray.h"
 #include "Common/WholeImage.h"
 #include "Device/Device.h"
 #include "Medium/BoxFaces.h"
@@ -31,6 +32,7 @@
 #include <memory>
 #include <string>
 #include <tuple>
+#include <utility>
 #include <vector>
 
 namespace
@@ -83,17 +85,6 @@ tyndall::Camera CameraOf(vtkMediumRayCaster* filter, const tyndall::Grid& grid)
   }
   camera.parallelProjection = filter->GetCameraParallelProjection();
   return camera;
-}
-
-template <class Array, class Value>
-vtkSmartPointer<Array> PixelArray(const char* name, const std::vector<Value>& values, int components)
-{
-  auto array = vtkSmartPointer<Array>::New();
-  array->SetName(name);
-  array->SetNumberOfComponents(components);
-  array->SetNumberOfTuples(static_cast<vtkIdType>(values.size()) / components);
-  std::copy(values.begin(), values.end(), array->GetPointer(0));
-  return array;
 }
 
 /// What the solver said of the light at the box's faces; empty where it did not, or what it said is not of these
@@ -150,25 +141,27 @@ struct LightAtFaces
   }
 };
 
-void WritePicture(const tyndall::Picture& picture, const std::vector<std::uint8_t>& color, vtkImageData* output)
+void WritePicture(tyndall::Picture&& picture, std::vector<std::uint8_t>&& color, vtkImageData* output)
 {
   output->SetExtent(0, picture.width - 1, 0, picture.height - 1, 0, 0);
   output->SetOrigin(0.0, 0.0, 0.0);
   output->SetSpacing(1.0, 1.0, 1.0);
-  const auto pixelName = [&](std::size_t pixel) {
-    const auto width = static_cast<std::size_t>(picture.width);
+  vtkPointData* const pixels = output->GetPointData();
+  const auto shown = tyndall::ArrayOf<vtkUnsignedCharArray>("color", std::move(color), 4);
+  tyndall::LeaveRanges(shown);
+  pixels->SetScalars(shown);
+  const auto pixelName = [width = static_cast<std::size_t>(picture.width)](std::size_t pixel) {
     return "pixel (" + std::to_string(pixel % width) + ", " + std::to_string(pixel / width) + ") from below";
   };
   for (const auto& [name, values, components] : { std::tuple("radiance", &picture.radiance, 3),
          std::tuple("alpha", &picture.alpha, 1), std::tuple("depth", &picture.depth, 1) })
   {
-    tyndall::RequireFinite(name, values->data(), values->size(), components, pixelName);
+    const tyndall::ArrayRanges ranges =
+      tyndall::RequireFinite(name, values->data(), values->size(), components, pixelName);
+    const auto array = tyndall::ArrayOf<vtkFloatArray>(name, std::move(*values), components);
+    tyndall::LeaveRanges(ranges, array);
+    pixels->AddArray(array);
   }
-  vtkPointData* pixels = output->GetPointData();
-  pixels->SetScalars(PixelArray<vtkUnsignedCharArray>("color", color, 4));
-  pixels->AddArray(PixelArray<vtkFloatArray>("radiance", picture.radiance, 3));
-  pixels->AddArray(PixelArray<vtkFloatArray>("alpha", picture.alpha, 1));
-  pixels->AddArray(PixelArray<vtkFloatArray>("depth", picture.depth, 1));
 }
 }
 
@@ -356,16 +349,16 @@ int vtkMediumRayCaster::RequestData(vtkInformation*, vtkInformationVector** inpu
     toneMapping.curve = static_cast<tyndall::ToneCurve>(this->ToneCurve);
     tyndall::Check(toneMapping);
     std::unique_ptr<Scene> scene = this->FindScene(inputs);
-    const tyndall::Picture picture = scene->caster->Render(CameraOf(this, scene->grid), tyndall::MonitorOf(this));
+    tyndall::Picture picture = scene->caster->Render(CameraOf(this, scene->grid), tyndall::MonitorOf(this));
     if (toneMapping.exposure == 0.0)
     {
       toneMapping.exposure = tyndall::AutomaticExposure(picture.radiance);
     }
     const std::vector<float> opaque;
-    const auto color = tyndall::ToneMap(picture.radiance, this->ShowBackground ? opaque : picture.alpha, toneMapping);
+    auto color = tyndall::ToneMap(picture.radiance, this->ShowBackground ? opaque : picture.alpha, toneMapping);
 
     vtkImageData* output = vtkImageData::GetData(outputs);
-    WritePicture(picture, color, output);
+    WritePicture(std::move(picture), std::move(color), output);
     const std::string device = scene->key.device->Name();
     const std::vector<std::string>& leftOut = scene->caster->LeftOut();
     tyndall::AddFact(output, "exposure", std::vector<double>{ toneMapping.exposure });
