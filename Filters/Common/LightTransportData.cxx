@@ -24,6 +24,18 @@
 
 namespace tyndall
 {
+vtkSmartPointer<vtkFloatArray> AsFloats(vtkDataArray* array)
+{
+  auto* const given = vtkArrayDownCast<vtkFloatArray>(array);
+  if (given || !array)
+  {
+    return given;
+  }
+  auto floats = vtkSmartPointer<vtkFloatArray>::New();
+  floats->DeepCopy(array);
+  return floats;
+}
+
 namespace
 {
 std::string Quoted(const std::string& name)
@@ -54,17 +66,6 @@ void CheckShape(vtkDataArray* array, const std::string& name, vtkIdType tuples, 
     throw InvalidInput("Array " + Quoted(name) + " has " + std::to_string(array->GetNumberOfTuples()) +
       " values where the dataset has " + std::to_string(tuples) + ".");
   }
-}
-
-vtkSmartPointer<vtkFloatArray> AsFloats(vtkDataArray* array)
-{
-  if (auto* floats = vtkArrayDownCast<vtkFloatArray>(array))
-  {
-    return floats;
-  }
-  auto floats = vtkSmartPointer<vtkFloatArray>::New();
-  floats->DeepCopy(array);
-  return floats;
 }
 
 vtkSmartPointer<vtkFloatArray> AveragedToCells(vtkImageData* image, vtkFloatArray* ofPoints)

@@ -182,26 +182,28 @@ std::vector<Photon> ReadPhotons(vtkPolyData* data)
     StopWithFilterBefore(data);
     return {};
   }
-  vtkDataArray* direction = PhotonArray(data, "direction", Need::Required, { 3 });
-  vtkDataArray* power = PhotonArray(data, "power", Need::Required, { 1, 3 });
-  vtkDataArray* weight = PhotonArray(data, "weight", Need::Optional, { 1 });
+  const auto direction = AsFloats(PhotonArray(data, "direction", Need::Required, { 3 }));
+  const auto power = AsFloats(PhotonArray(data, "power", Need::Required, { 1, 3 }));
+  const auto weight = AsFloats(PhotonArray(data, "weight", Need::Optional, { 1 }));
   vtkDataArray* batch = PhotonArray(data, "batch", Need::Optional, { 1 });
   const int colours = power->GetNumberOfComponents();
   const std::vector<long long> points = PointsThatCount(data);
   std::vector<Photon> photons(points.size());
-  auto next = photons.begin();
-  for (const vtkIdType i : points)
-  {
-    Photon& photon = *next++;
-    data->GetPoint(i, photon.position.data());
-    for (int c = 0; c < 3; ++c)
+  InThreads(points.size(), PhotonsOfThread, [&](std::size_t begin, std::size_t end) {
+    for (std::size_t at = begin; at < end; ++at)
     {
-      photon.direction[c] = static_cast<float>(direction->GetComponent(i, c));
-      photon.power[c] = static_cast<float>(power->GetComponent(i, colours == 3 ? c : 0));
+      const vtkIdType i = points[at];
+      Photon& photon = photons[at];
+      data->GetPoint(i, photon.position.data());
+      for (int c = 0; c < 3; ++c)
+      {
+        photon.direction[c] = direction->GetTypedComponent(i, c);
+        photon.power[c] = power->GetTypedComponent(i, colours == 3 ? c : 0);
+      }
+      photon.weight = weight ? weight->GetValue(i) : 1.0f;
+      photon.batch = batch ? BatchOf(batch->GetComponent(i, 0), i) : 0;
     }
-    photon.weight = weight ? static_cast<float>(weight->GetComponent(i, 0)) : 1.0f;
-    photon.batch = batch ? BatchOf(batch->GetComponent(i, 0), i) : 0;
-  }
+  });
   return photons;
 }
 

@@ -6,6 +6,7 @@
 #include "Common/PhaseFunctionData.h"
 #include "Common/VectorArray.h"
 #include "Common/WholeImage.h"
+#include "Device/Clock.h"
 #include "Device/Device.h"
 #include "Medium/BoxFaces.h"
 #include "Viewing/MediumRayCaster.h"
@@ -27,7 +28,6 @@
 #include "vtkUnsignedCharArray.h"
 
 #include <algorithm>
-#include <chrono>
 #include <cstdint>
 #include <memory>
 #include <string>
@@ -337,8 +337,6 @@ std::unique_ptr<vtkMediumRayCaster::Scene> vtkMediumRayCaster::FindScene(vtkInfo
 
 int vtkMediumRayCaster::RequestData(vtkInformation*, vtkInformationVector** inputs, vtkInformationVector* outputs)
 {
-  using Clock = std::chrono::steady_clock;
-  const Clock::time_point start = Clock::now();
   this->Seconds = this->UsedExposure = 0.0;
   this->SceneKept = false;
   this->DeviceName.clear();
@@ -349,7 +347,9 @@ int vtkMediumRayCaster::RequestData(vtkInformation*, vtkInformationVector** inpu
     toneMapping.curve = static_cast<tyndall::ToneCurve>(this->ToneCurve);
     tyndall::Check(toneMapping);
     std::unique_ptr<Scene> scene = this->FindScene(inputs);
+    const double start = tyndall::ClockSeconds();
     tyndall::Picture picture = scene->caster->Render(CameraOf(this, scene->grid), tyndall::MonitorOf(this));
+    const double seconds = tyndall::ClockSeconds() - start;
     if (toneMapping.exposure == 0.0)
     {
       toneMapping.exposure = tyndall::AutomaticExposure(picture.radiance);
@@ -370,7 +370,7 @@ int vtkMediumRayCaster::RequestData(vtkInformation*, vtkInformationVector** inpu
     this->DeviceName = device;
     this->LeftOut = tyndall::Lines(leftOut);
     this->Kept = std::move(scene);
-    this->Seconds = std::chrono::duration<double>(Clock::now() - start).count();
+    this->Seconds = seconds;
   });
 }
 
