@@ -7,8 +7,8 @@
 class vtkDataArray;
 
 /// Smallest and largest values of arrays, found in threads where the values are made, and left where VTK and ParaView
-/// look for them before they compute: in the array's vtkInformation. ParaView asks for the range of every component, and
-/// of the norm of tuples, of every array that a filter gives out; VTK finds each in a pass of its own on one core.
+/// look for them before they compute: in the array's vtkInformation. ParaView asks for the range of every component
+/// and of the norm of tuples, of every array that a filter gives out; VTK finds each in a pass of its own on one core.
 namespace tyndall
 {
 struct ArrayRanges

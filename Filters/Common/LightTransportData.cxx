@@ -4,10 +4,12 @@
 #include "Common/LastFailure.h"
 #include "Common/PhaseFunctionData.h"
 #include "Common/SameVoxels.h"
+#include "Device/HostThreads.h"
 
 #include "vtkAlgorithm.h"
 #include "vtkCellData.h"
 #include "vtkDataSetAttributes.h"
+#include "vtkDoubleArray.h"
 #include "vtkFieldData.h"
 #include "vtkImageData.h"
 #include "vtkInformation.h"
@@ -32,7 +34,20 @@ vtkSmartPointer<vtkFloatArray> AsFloats(vtkDataArray* array)
     return given;
   }
   auto floats = vtkSmartPointer<vtkFloatArray>::New();
-  floats->DeepCopy(array);
+  auto* const doubles = vtkArrayDownCast<vtkDoubleArray>(array); // what VTK's own filters often make
+  if (!doubles)
+  {
+    floats->DeepCopy(array);
+    return floats;
+  }
+  floats->SetName(doubles->GetName());
+  floats->SetNumberOfComponents(doubles->GetNumberOfComponents());
+  floats->SetNumberOfTuples(doubles->GetNumberOfTuples());
+  const double* const from = doubles->GetPointer(0);
+  float* const to = floats->GetPointer(0);
+  InThreads(static_cast<std::size_t>(doubles->GetNumberOfValues()), 65536, [&](std::size_t begin, std::size_t end) {
+    std::transform(from + begin, from + end, to + begin, [](double value) { return static_cast<float>(value); });
+  });
   return floats;
 }
 
