@@ -3,7 +3,7 @@
 Through proxies, as a user does it: something changes, the filter's proxy is updated, and ParaView gathers what its panels show of
 the output (GetDataInformation of every port: ranges of all components). `seconds` is the wall time of both, `kernel_seconds` what the
 filter says that its kernels took in the same update (the property Seconds: wall time within Kernels/, the device's queue finished; of
-solvers up to the end of the last iteration; of the ray caster that of casting rays and reading the picture), `ratio` the median of
+maps and ordinates up to the end of the last iteration; of the ray caster that of casting rays and reading the picture), `ratio` the median of
 their quotients. Inputs are up to date, and so are ranges of their arrays; programs are compiled. ParticipatingMedium runs no kernels.
 
 `adaptive`: photons sent where they are needed against photons spread evenly, at equal error (of 122000 even ones), on the three scenes
