@@ -4,10 +4,12 @@
 #include "Common/LastFailure.h"
 #include "Common/PhaseFunctionData.h"
 #include "Common/SameVoxels.h"
+#include "Device/HostThreads.h"
 
 #include "vtkAlgorithm.h"
 #include "vtkCellData.h"
 #include "vtkDataSetAttributes.h"
+#include "vtkDoubleArray.h"
 #include "vtkFieldData.h"
 #include "vtkImageData.h"
 #include "vtkInformation.h"
@@ -24,6 +26,31 @@
 
 namespace tyndall
 {
+vtkSmartPointer<vtkFloatArray> AsFloats(vtkDataArray* array)
+{
+  auto* const given = vtkArrayDownCast<vtkFloatArray>(array);
+  if (given || !array)
+  {
+    return given;
+  }
+  auto floats = vtkSmartPointer<vtkFloatArray>::New();
+  auto* const doubles = vtkArrayDownCast<vtkDoubleArray>(array); // what VTK's own filters often make
+  if (!doubles)
+  {
+    floats->DeepCopy(array);
+    return floats;
+  }
+  floats->SetName(doubles->GetName());
+  floats->SetNumberOfComponents(doubles->GetNumberOfComponents());
+  floats->SetNumberOfTuples(doubles->GetNumberOfTuples());
+  const double* const from = doubles->GetPointer(0);
+  float* const to = floats->GetPointer(0);
+  InThreads(static_cast<std::size_t>(doubles->GetNumberOfValues()), 65536, [&](std::size_t begin, std::size_t end) {
+    std::transform(from + begin, from + end, to + begin, [](double value) { return static_cast<float>(value); });
+  });
+  return floats;
+}
+
 namespace
 {
 std::string Quoted(const std::string& name)
@@ -54,17 +81,6 @@ void CheckShape(vtkDataArray* array, const std::string& name, vtkIdType tuples, 
     throw InvalidInput("Array " + Quoted(name) + " has " + std::to_string(array->GetNumberOfTuples()) +
       " values where the dataset has " + std::to_string(tuples) + ".");
   }
-}
-
-vtkSmartPointer<vtkFloatArray> AsFloats(vtkDataArray* array)
-{
-  if (auto* floats = vtkArrayDownCast<vtkFloatArray>(array))
-  {
-    return floats;
-  }
-  auto floats = vtkSmartPointer<vtkFloatArray>::New();
-  floats->DeepCopy(array);
-  return floats;
 }
 
 vtkSmartPointer<vtkFloatArray> AveragedToCells(vtkImageData* image, vtkFloatArray* ofPoints)

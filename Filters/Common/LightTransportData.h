@@ -50,6 +50,9 @@ inline std::array<double, 3> Triple(const double* values)
 /// @throws InvalidInput where there is no image, no cell, a spacing that is not a positive number, or a rotation
 Grid GridOf(vtkImageData* image);
 
+/// The array itself where it is of floats, else a copy that is; null of null.
+vtkSmartPointer<vtkFloatArray> AsFloats(vtkDataArray* array);
+
 /// An array as floats, and the memory they are in.
 class FloatField
 {

@@ -1,6 +1,7 @@
 #include "Common/LightTransportWriting.h"
 
 #include "Common/FiniteValues.h"
+#include "Common/VectorArray.h"
 #include "Medium/BoxFaces.h"
 
 #include "vtkCellData.h"
@@ -10,7 +11,7 @@
 #include "vtkImageData.h"
 #include "vtkIntArray.h"
 #include "vtkNew.h"
-#include "vtkObjectFactory.h"
+#include "vtkSmartPointer.h"
 #include "vtkStringArray.h"
 #include "vtkTable.h"
 
@@ -21,26 +22,11 @@ namespace tyndall
 {
 namespace
 {
-/// A vtkFloatArray, to the last bit of its name, whose first values live in a vector.
-class VectorArray : public vtkFloatArray
-{
-public:
-  static VectorArray* New() { VTK_STANDARD_NEW_BODY(VectorArray); }
-
-  void Take(std::vector<float>&& values)
-  {
-    this->Values = std::move(values);
-    this->SetArray(this->Values.data(), static_cast<vtkIdType>(this->Values.size()), 1);
-  }
-
-private:
-  std::vector<float> Values;
-};
-
+/// Of colour.
 void NameChannels(vtkDataArray* array)
 {
   const char* const names[] = { "R", "G", "B" };
-  for (int c = 0; c < array->GetNumberOfComponents(); ++c)
+  for (int c = 0; c < 3 && array->GetNumberOfComponents() == 3; ++c)
   {
     array->SetComponentName(c, names[c]);
   }
@@ -67,18 +53,9 @@ std::vector<double> Channels(std::initializer_list<Rgb> rows, int channels)
   return values;
 }
 
-void AddLightCells(vtkImageData* output, const char* name, std::vector<float>&& values, int components)
-{
-  if (!values.empty())
-  {
-    AddCells(output, name, std::move(values), components);
-  }
-}
-}
-
-namespace
-{
-void AddCellsAsTheyAre(vtkImageData* image, const char* name, std::vector<float>&& values, int components)
+/// An array of an image's cells, not added to it yet.
+vtkSmartPointer<vtkFloatArray> CellArray(
+  vtkImageData* image, const char* name, std::vector<float>&& values, int components)
 {
   const auto needed = static_cast<std::size_t>(image->GetNumberOfCells()) * static_cast<std::size_t>(components);
   if (values.size() != needed)
@@ -86,34 +63,39 @@ void AddCellsAsTheyAre(vtkImageData* image, const char* name, std::vector<float>
     throw std::logic_error(std::string(name) + " has " + std::to_string(values.size()) +
       " values where the image takes " + std::to_string(needed) + ".");
   }
-  vtkNew<VectorArray> array;
-  array->SetName(name);
-  array->SetNumberOfComponents(components);
-  array->Take(std::move(values));
-  image->GetCellData()->AddArray(array);
+  return ArrayOf<vtkFloatArray>(name, std::move(values), components);
 }
 
+using NameComponents = void (*)(vtkDataArray*);
+
+void AddNamedCells(vtkImageData* image, const char* name, std::vector<float>&& values, int components,
+  NameComponents nameComponents, const char* advice = nullptr)
+{
+  const ArrayRanges ranges = RequireFiniteCells(image, name, values.data(), values.size(), components, advice);
+  const vtkSmartPointer<vtkFloatArray> array = CellArray(image, name, std::move(values), components);
+  nameComponents(array);
+  LeaveRanges(ranges, array);
+  image->GetCellData()->AddArray(array);
+}
 }
 
 void AddCells(vtkImageData* image, const char* name, std::vector<float>&& values, int components, const char* advice)
 {
-  RequireFiniteCells(image, name, values.data(), values.size(), components, advice);
-  AddCellsAsTheyAre(image, name, std::move(values), components);
+  AddNamedCells(
+    image, name, std::move(values), components, [](vtkDataArray*) {}, advice);
 }
 
 void AddLight(vtkImageData* image, const char* name, std::vector<float>&& values, int channels)
 {
-  RequireFiniteCells(image, name, values.data(), values.size(), channels);
-  AddGivenLight(image, name, std::move(values), channels);
+  AddNamedCells(image, name, std::move(values), channels, NameChannels);
 }
 
 void AddGivenLight(vtkImageData* image, const char* name, std::vector<float>&& values, int channels)
 {
-  AddCellsAsTheyAre(image, name, std::move(values), channels);
-  if (channels == 3)
-  {
-    NameChannels(image->GetCellData()->GetArray(name));
-  }
+  const vtkSmartPointer<vtkFloatArray> array = CellArray(image, name, std::move(values), channels);
+  NameChannels(array);
+  LeaveRanges(array);
+  image->GetCellData()->AddArray(array);
 }
 
 void AddFact(vtkDataObject* data, const char* name, const std::vector<double>& values, int components)
@@ -209,14 +191,16 @@ void WriteLight(LightField&& light, vtkImageData* output)
   {
     AddLight(output, "fluence_error", std::move(light.fluenceError), channels);
   }
-  AddLightCells(output, "net_flux", std::move(light.netFlux), 3 * channels);
-  const int stored = std::max(1, static_cast<int>(light.storedDirections.size()));
-  AddLightCells(output, "scattered_radiance", std::move(light.scatteredRadiance), channels * stored);
-  WriteMoments(std::move(light), output);
-  if (vtkDataArray* flux = cells->GetArray("net_flux"))
+  if (!light.netFlux.empty())
   {
-    NameFluxComponents(flux);
+    AddNamedCells(output, "net_flux", std::move(light.netFlux), 3 * channels, NameFluxComponents);
   }
+  if (!light.scatteredRadiance.empty())
+  {
+    const int stored = std::max(1, static_cast<int>(light.storedDirections.size()));
+    AddCells(output, "scattered_radiance", std::move(light.scatteredRadiance), channels * stored);
+  }
+  WriteMoments(std::move(light), output);
 
   const EnergyBalance& balance = light.balance;
   AddFact(output, "energy_balance",

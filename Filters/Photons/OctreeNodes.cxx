@@ -1,5 +1,9 @@
 #include "Photons/OctreeNodes.h"
 
+#include "Common/ArrayRanges.h"
+#include "Common/VectorArray.h"
+#include "Device/HostThreads.h"
+
 #include "vtkBitArray.h"
 #include "vtkCellData.h"
 #include "vtkDoubleArray.h"
@@ -11,6 +15,7 @@
 
 #include <algorithm>
 #include <array>
+#include <utility>
 #include <vector>
 
 namespace tyndall
@@ -38,60 +43,58 @@ vtkSmartPointer<vtkDoubleArray> Borders(const Grid& grid, int axis, int rootLeve
   return borders;
 }
 
-/// Describes trees one after the other, each breadth first, as vtkHyperTree wants it.
-class Trees
+/// A tree, breadth first, as vtkHyperTree wants it.
+struct Tree
+{
+  std::vector<unsigned char> levels;  ///< of vertices
+  std::vector<unsigned char> outside; ///< of the box: of vertices
+  std::vector<unsigned char> refined; ///< of all but the last depth: no vertex of that is refined
+  vtkIdType nodes = 0;
+};
+
+class TreeDescriber
 {
 public:
-  Trees(const Grid& grid, const Octree& octree)
+  TreeDescriber(const Grid& grid, const Octree& octree)
     : TheGrid(grid)
     , Levels(octree.levels.data())
   {
-    this->VertexLevels->SetName("octree_level");
   }
 
   /// @param root  its lowest voxel
-  void Describe(vtkHyperTree* tree, const Voxel& root, int rootLevel)
+  Tree Describe(const Voxel& root, int rootLevel) const
   {
-    tree->SetGlobalIndexStart(this->VertexLevels->GetNumberOfValues());
-    vtkNew<vtkBitArray> refined; // All but the last depth: no vertex of that is refined.
+    Tree tree;
     std::vector<Voxel> vertices = { root };
     for (int level = rootLevel; !vertices.empty(); --level)
     {
-      vertices = this->DescribeDepth(vertices, level, refined);
+      vertices = this->DescribeDepth(vertices, level, tree);
     }
-    tree->BuildFromBreadthFirstOrderDescriptor(refined, refined->GetNumberOfValues());
+    return tree;
   }
-
-  vtkUnsignedCharArray* LevelOfVertices() { return this->VertexLevels; }
-  vtkBitArray* MaskOfVertices() { return this->Masked; }
-  bool AnyMasked() const { return this->MaskedCount > 0; }
-  vtkIdType NodeCount() const { return this->Nodes; }
 
 private:
   /// @return the children
-  std::vector<Voxel> DescribeDepth(const std::vector<Voxel>& vertices, int level, vtkBitArray* refined)
+  std::vector<Voxel> DescribeDepth(const std::vector<Voxel>& vertices, int level, Tree& tree) const
   {
     std::vector<Voxel> children;
-    std::vector<bool> divided;
+    const std::size_t first = tree.refined.size();
     for (const Voxel& vertex : vertices)
     {
       const bool outside = this->IsOutside(vertex);
-      divided.push_back(!outside && this->LevelAt(vertex) < level);
-      this->VertexLevels->InsertNextValue(static_cast<unsigned char>(level));
-      this->Masked->InsertNextValue(outside);
-      this->MaskedCount += outside ? 1 : 0;
-      this->Nodes += outside || divided.back() ? 0 : 1;
-      for (int child = 0; child < 8 && divided.back(); ++child)
+      const bool divided = !outside && this->LevelAt(vertex) < level;
+      tree.refined.push_back(divided);
+      tree.levels.push_back(static_cast<unsigned char>(level));
+      tree.outside.push_back(outside);
+      tree.nodes += outside || divided ? 0 : 1;
+      for (int child = 0; child < 8 && divided; ++child)
       {
         const int half = 1 << (level - 1);
         children.push_back({ vertex[0] + (child & 1 ? half : 0), vertex[1] + (child & 2 ? half : 0),
           vertex[2] + (child & 4 ? half : 0) });
       }
     }
-    for (std::size_t i = 0; i < divided.size() && !children.empty(); ++i)
-    {
-      refined->InsertNextValue(divided[i]);
-    }
+    tree.refined.resize(children.empty() ? first : tree.refined.size());
     return children;
   }
 
@@ -105,11 +108,45 @@ private:
 
   const Grid& TheGrid;
   const std::uint8_t* Levels;
-  vtkNew<vtkUnsignedCharArray> VertexLevels;
-  vtkNew<vtkBitArray> Masked;
-  vtkIdType MaskedCount = 0;
-  vtkIdType Nodes = 0;
 };
+
+/// Trees are apart from each other: each is described and built on some core.
+std::vector<Tree> Build(const Grid& grid, const Octree& octree, int rootLevel, vtkHyperTreeGrid* nodes)
+{
+  const auto count = static_cast<std::size_t>(nodes->GetMaxNumberOfTrees());
+  const TreeDescriber describer(grid, octree);
+  std::vector<Tree> trees(count);
+  std::vector<vtkHyperTree*> built(count);
+  for (std::size_t index = 0; index < count; ++index)
+  {
+    built[index] = nodes->GetTree(static_cast<vtkIdType>(index), true);
+  }
+  InThreads(count, 8, [&](std::size_t begin, std::size_t end) {
+    for (std::size_t index = begin; index < end; ++index)
+    {
+      unsigned int root[3];
+      nodes->GetLevelZeroCoordinatesFromIndex(static_cast<vtkIdType>(index), root[0], root[1], root[2]);
+      Tree& tree = trees[index];
+      tree = describer.Describe({ static_cast<int>(root[0] << rootLevel), static_cast<int>(root[1] << rootLevel),
+                                  static_cast<int>(root[2] << rootLevel) },
+        rootLevel);
+      vtkNew<vtkBitArray> refined;
+      refined->SetNumberOfValues(static_cast<vtkIdType>(tree.refined.size()));
+      for (std::size_t i = 0; i < tree.refined.size(); ++i)
+      {
+        refined->SetValue(static_cast<vtkIdType>(i), tree.refined[i]);
+      }
+      built[index]->BuildFromBreadthFirstOrderDescriptor(refined, refined->GetNumberOfValues());
+    }
+  });
+  vtkIdType start = 0;
+  for (std::size_t index = 0; index < count; ++index)
+  {
+    built[index]->SetGlobalIndexStart(start);
+    start += static_cast<vtkIdType>(trees[index].levels.size());
+  }
+  return trees;
+}
 }
 
 vtkIdType FillWithNodes(const Grid& grid, const Octree& octree, vtkHyperTreeGrid* nodes)
@@ -124,21 +161,27 @@ vtkIdType FillWithNodes(const Grid& grid, const Octree& octree, vtkHyperTreeGrid
     static_cast<unsigned int>(nodes->GetYCoordinates()->GetNumberOfTuples()),
     static_cast<unsigned int>(nodes->GetZCoordinates()->GetNumberOfTuples()));
 
-  Trees trees(grid, octree);
-  for (vtkIdType index = 0; index < nodes->GetMaxNumberOfTrees(); ++index)
+  std::vector<unsigned char> levels, outside;
+  vtkIdType count = 0;
+  for (const Tree& tree : Build(grid, octree, rootLevel, nodes))
   {
-    unsigned int root[3];
-    nodes->GetLevelZeroCoordinatesFromIndex(index, root[0], root[1], root[2]);
-    trees.Describe(nodes->GetTree(index, true),
-      { static_cast<int>(root[0] << rootLevel), static_cast<int>(root[1] << rootLevel),
-        static_cast<int>(root[2] << rootLevel) },
-      rootLevel);
+    levels.insert(levels.end(), tree.levels.begin(), tree.levels.end());
+    outside.insert(outside.end(), tree.outside.begin(), tree.outside.end());
+    count += tree.nodes;
   }
-  if (trees.AnyMasked())
+  if (std::find(outside.begin(), outside.end(), 1) != outside.end())
   {
-    nodes->SetMask(trees.MaskOfVertices());
+    vtkNew<vtkBitArray> mask;
+    mask->SetNumberOfValues(static_cast<vtkIdType>(outside.size()));
+    for (std::size_t i = 0; i < outside.size(); ++i)
+    {
+      mask->SetValue(static_cast<vtkIdType>(i), outside[i]);
+    }
+    nodes->SetMask(mask);
   }
-  nodes->GetCellData()->SetScalars(trees.LevelOfVertices());
-  return trees.NodeCount();
+  const auto levelOfVertices = ArrayOf<vtkUnsignedCharArray>("octree_level", std::move(levels), 1);
+  LeaveRanges(levelOfVertices);
+  nodes->GetCellData()->SetScalars(levelOfVertices);
+  return count;
 }
 }

@@ -3,9 +3,11 @@
 #include "Common/FiniteValues.h"
 #include "Common/GhostFlags.h"
 #include "Common/LightTransportData.h"
+#include "Device/HostThreads.h"
 
 #include "vtkCellArray.h"
 #include "vtkCellData.h"
+#include "vtkDoubleArray.h"
 #include "vtkFieldData.h"
 #include "vtkFloatArray.h"
 #include "vtkIdTypeArray.h"
@@ -64,6 +66,7 @@ vtkSmartPointer<vtkFloatArray> NewFloats(const char* name, int components, std::
   return array;
 }
 
+constexpr std::size_t PhotonsOfThread = 8192; ///< at least
 constexpr const char* BoxName = "photon_box";
 constexpr double SameBox = 1e-6; ///< of its longest edge
 
@@ -125,24 +128,37 @@ void WritePhotons(const EmittedPhotons& emitted, const Grid& box, vtkPolyData* o
   vtkNew<vtkIntArray> batch;
   batch->SetName("batch");
   batch->SetNumberOfTuples(static_cast<vtkIdType>(count));
+  vtkNew<vtkIdTypeArray> starts, numbers; // of the cells, a photon each
+  starts->SetNumberOfValues(static_cast<vtkIdType>(count) + 1);
+  numbers->SetNumberOfValues(static_cast<vtkIdType>(count));
+  starts->SetValue(static_cast<vtkIdType>(count), static_cast<vtkIdType>(count));
+  auto* const places = vtkDoubleArray::SafeDownCast(points->GetData());
+  InThreads(count, PhotonsOfThread, [&](std::size_t begin, std::size_t end) {
+    for (auto i = static_cast<vtkIdType>(begin); i < static_cast<vtkIdType>(end); ++i)
+    {
+      const Photon& photon = emitted.photons[static_cast<std::size_t>(i)];
+      places->SetTypedTuple(i, photon.position.data());
+      direction->SetTypedTuple(i, photon.direction.data());
+      power->SetTypedTuple(i, photon.power.data());
+      weight->SetValue(i, photon.weight);
+      light->SetValue(i, emitted.lights[static_cast<std::size_t>(i)]);
+      batch->SetValue(i, photon.batch);
+      starts->SetValue(i, i);
+      numbers->SetValue(i, i);
+    }
+  });
   vtkNew<vtkCellArray> vertices;
-  vertices->AllocateEstimate(static_cast<vtkIdType>(count), 1);
-  for (vtkIdType i = 0; i < static_cast<vtkIdType>(count); ++i)
-  {
-    const Photon& photon = emitted.photons[static_cast<std::size_t>(i)];
-    points->SetPoint(i, photon.position.data());
-    direction->SetTypedTuple(i, photon.direction.data());
-    power->SetTypedTuple(i, photon.power.data());
-    weight->SetValue(i, photon.weight);
-    light->SetValue(i, emitted.lights[static_cast<std::size_t>(i)]);
-    batch->SetValue(i, photon.batch);
-    vertices->InsertNextCell(1, &i);
-  }
+  vertices->SetData(starts, numbers);
   const auto photonName = [](std::size_t photon) { return "photon " + std::to_string(photon); };
   for (vtkFloatArray* array : { direction.Get(), power.Get(), weight.Get() })
   {
-    RequireFinite(array->GetName(), array->GetPointer(0), static_cast<std::size_t>(array->GetNumberOfValues()),
-      array->GetNumberOfComponents(), photonName);
+    LeaveRanges(RequireFinite(array->GetName(), array->GetPointer(0),
+                  static_cast<std::size_t>(array->GetNumberOfValues()), array->GetNumberOfComponents(), photonName),
+      array);
+  }
+  for (vtkDataArray* array : std::initializer_list<vtkDataArray*>{ places, light, batch })
+  {
+    LeaveRanges(array);
   }
   const Box bounds = BoxOf(box);
   AddFact(output, BoxName, std::vector<double>(bounds.begin(), bounds.end()));
@@ -166,26 +182,28 @@ std::vector<Photon> ReadPhotons(vtkPolyData* data)
     StopWithFilterBefore(data);
     return {};
   }
-  vtkDataArray* direction = PhotonArray(data, "direction", Need::Required, { 3 });
-  vtkDataArray* power = PhotonArray(data, "power", Need::Required, { 1, 3 });
-  vtkDataArray* weight = PhotonArray(data, "weight", Need::Optional, { 1 });
+  const auto direction = AsFloats(PhotonArray(data, "direction", Need::Required, { 3 }));
+  const auto power = AsFloats(PhotonArray(data, "power", Need::Required, { 1, 3 }));
+  const auto weight = AsFloats(PhotonArray(data, "weight", Need::Optional, { 1 }));
   vtkDataArray* batch = PhotonArray(data, "batch", Need::Optional, { 1 });
   const int colours = power->GetNumberOfComponents();
   const std::vector<long long> points = PointsThatCount(data);
   std::vector<Photon> photons(points.size());
-  auto next = photons.begin();
-  for (const vtkIdType i : points)
-  {
-    Photon& photon = *next++;
-    data->GetPoint(i, photon.position.data());
-    for (int c = 0; c < 3; ++c)
+  InThreads(points.size(), PhotonsOfThread, [&](std::size_t begin, std::size_t end) {
+    for (std::size_t at = begin; at < end; ++at)
     {
-      photon.direction[c] = static_cast<float>(direction->GetComponent(i, c));
-      photon.power[c] = static_cast<float>(power->GetComponent(i, colours == 3 ? c : 0));
+      const vtkIdType i = points[at];
+      Photon& photon = photons[at];
+      data->GetPoint(i, photon.position.data());
+      for (int c = 0; c < 3; ++c)
+      {
+        photon.direction[c] = direction->GetTypedComponent(i, c);
+        photon.power[c] = power->GetTypedComponent(i, colours == 3 ? c : 0);
+      }
+      photon.weight = weight ? weight->GetValue(i) : 1.0f;
+      photon.batch = batch ? BatchOf(batch->GetComponent(i, 0), i) : 0;
     }
-    photon.weight = weight ? static_cast<float>(weight->GetComponent(i, 0)) : 1.0f;
-    photon.batch = batch ? BatchOf(batch->GetComponent(i, 0), i) : 0;
-  }
+  });
   return photons;
 }
 

@@ -3,6 +3,7 @@
 #include "Common/LightTransportData.h"
 #include "Common/WholeImage.h"
 #include "Device/Device.h"
+#include "Device/HostThreads.h"
 #include "Numerics/ChooseEvenly.h"
 #include "Photons/Marching/PublishedPhotons.h"
 #include "Photons/PhotonData.h"
@@ -66,15 +67,18 @@ tyndall::MarchSettings SettingsOf(vtkPhotonMarcher* filter, const std::vector<ty
 std::vector<float> VoxelByVoxel(const std::vector<float>& light, int batches, int channels)
 {
   const auto ofBatch = light.size() / static_cast<std::size_t>(batches);
+  const auto width = static_cast<std::size_t>(channels), components = width * static_cast<std::size_t>(batches);
   std::vector<float> byVoxel(light.size());
-  auto to = byVoxel.begin();
-  for (std::size_t voxel = 0; voxel < ofBatch; voxel += static_cast<std::size_t>(channels))
-  {
-    for (int batch = 0; batch < batches; ++batch)
+  tyndall::InThreads(ofBatch / width, 16384, [&](std::size_t begin, std::size_t end) {
+    float* to = byVoxel.data() + begin * components;
+    for (std::size_t at = begin * width; at < end * width; at += width)
     {
-      to = std::copy_n(light.begin() + static_cast<std::ptrdiff_t>(batch * ofBatch + voxel), channels, to);
+      for (std::size_t batch = 0; batch < light.size(); batch += ofBatch)
+      {
+        to = std::copy_n(light.data() + batch + at, width, to);
+      }
     }
-  }
+  });
   return byVoxel;
 }
 

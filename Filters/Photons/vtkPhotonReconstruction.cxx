@@ -3,6 +3,7 @@
 #include "Common/LightTransportData.h"
 #include "Common/WholeImage.h"
 #include "Device/Device.h"
+#include "Device/HostThreads.h"
 #include "Reconstruction/PhotonReconstruction.h"
 
 #include "vtkCellData.h"
@@ -17,6 +18,7 @@
 #include <algorithm>
 #include <cmath>
 #include <iterator>
+#include <numeric>
 #include <string>
 #include <utility>
 #include <vector>
@@ -67,16 +69,18 @@ std::vector<float> BatchByBatch(const FloatField& light, std::size_t voxels, int
     throw tyndall::InvalidInput("The array 'fluence_batches' has " + std::to_string(components) +
       " components; it must have " + std::to_string(channels) + " for each batch, as 'fluence' has.");
   }
+  const auto width = static_cast<std::size_t>(channels);
   std::vector<float> byBatch(voxels * static_cast<std::size_t>(components));
-  auto to = byBatch.begin();
-  for (int batch = 0; to != byBatch.end(); ++batch)
-  {
-    const float* from = light.Values() + static_cast<std::ptrdiff_t>(batch) * channels;
-    for (std::size_t voxel = 0; voxel < voxels; ++voxel, from += components)
+  tyndall::InThreads(voxels, 16384, [&](std::size_t begin, std::size_t end) {
+    const float* from = light.Values() + begin * static_cast<std::size_t>(components);
+    for (std::size_t at = begin * width; at < end * width; at += width)
     {
-      to = std::copy_n(from, channels, to);
+      for (std::size_t batch = 0; batch < byBatch.size(); batch += voxels * width, from += width)
+      {
+        std::copy_n(from, width, byBatch.data() + batch + at);
+      }
     }
-  }
+  });
   return byBatch;
 }
 
@@ -131,12 +135,18 @@ std::vector<std::string> Joined(vtkImageData* image, const std::vector<std::stri
 
 double SumOfSquares(const std::vector<float>& values)
 {
-  double sum = 0.0;
-  for (float value : values)
-  {
-    sum += static_cast<double>(value) * value;
-  }
-  return sum;
+  constexpr std::size_t OfPart = 32768; // parts are added in their order, on however many cores they were found
+  std::vector<double> sums((values.size() + OfPart - 1) / OfPart, 0.0);
+  tyndall::InThreads(sums.size(), 2, [&](std::size_t begin, std::size_t end) {
+    for (std::size_t part = begin; part < end; ++part)
+    {
+      for (std::size_t i = part * OfPart; i < std::min((part + 1) * OfPart, values.size()); ++i)
+      {
+        sums[part] += static_cast<double>(values[i]) * values[i];
+      }
+    }
+  });
+  return std::accumulate(sums.begin(), sums.end(), 0.0);
 }
 
 void Write(tyndall::ReconstructedLight&& light, vtkImageData* output)

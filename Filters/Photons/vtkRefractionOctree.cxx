@@ -1,6 +1,8 @@
 #include "vtkRefractionOctree.h"
 
+#include "Common/ArrayRanges.h"
 #include "Common/LightTransportData.h"
+#include "Common/VectorArray.h"
 #include "Common/WholeImage.h"
 #include "Photons/OctreeNodes.h"
 
@@ -10,14 +12,13 @@
 #include "vtkInformation.h"
 #include "vtkInformationIntegerKey.h"
 #include "vtkInformationVector.h"
-#include "vtkNew.h"
 #include "vtkObjectFactory.h"
 #include "vtkStreamingDemandDrivenPipeline.h"
 #include "vtkUnsignedCharArray.h"
 
-#include <algorithm>
 #include <cstdint>
 #include <string>
+#include <utility>
 #include <vector>
 
 namespace
@@ -58,12 +59,10 @@ tyndall::Octree Build(vtkRefractionOctree* filter, vtkImageData* image)
   return tyndall::BuildOctree(medium, index, SettingsOf(filter), filter->GetDevice(), tyndall::MonitorOf(filter));
 }
 
-void AddLevels(vtkImageData* output, const std::vector<std::uint8_t>& levels)
+void AddLevels(vtkImageData* output, std::vector<std::uint8_t>&& levels)
 {
-  vtkNew<vtkUnsignedCharArray> array;
-  array->SetName("octree_level");
-  array->SetNumberOfTuples(static_cast<vtkIdType>(levels.size()));
-  std::copy(levels.begin(), levels.end(), array->GetPointer(0));
+  const auto array = tyndall::ArrayOf<vtkUnsignedCharArray>("octree_level", std::move(levels), 1);
+  tyndall::LeaveRanges(array);
   output->GetCellData()->AddArray(array); // not SetScalars, which takes away what was active before
   output->GetCellData()->SetActiveScalars("octree_level");
 }
@@ -103,19 +102,19 @@ int vtkRefractionOctree::RequestData(
   this->LeftOut.clear();
   return tyndall::Guarded(this, outputs, [&] {
     vtkImageData* image = vtkImageData::GetData(inputs[0]);
-    const tyndall::Octree octree = Build(this, image);
-
-    vtkImageData* output = vtkImageData::GetData(outputs, 0);
-    tyndall::PassOn(image, output);
-    AddLevels(output, octree.levels);
-    tyndall::AddFact(output, "left_out", octree.leftOut);
-    tyndall::AddFact(output, "device", std::vector<std::string>{ octree.device });
-    tyndall::KeepWhatIsAskedFor(outputs->GetInformationObject(0), output);
+    tyndall::Octree octree = Build(this, image);
 
     if (tyndall::IsFirstPiece(request, outputs))
     {
       this->NodeCount = tyndall::FillWithNodes(tyndall::GridOf(image), octree, vtkHyperTreeGrid::GetData(outputs, 1));
     }
+    vtkImageData* output = vtkImageData::GetData(outputs, 0);
+    tyndall::PassOn(image, output);
+    AddLevels(output, std::move(octree.levels));
+    tyndall::AddFact(output, "left_out", octree.leftOut);
+    tyndall::AddFact(output, "device", std::vector<std::string>{ octree.device });
+    tyndall::KeepWhatIsAskedFor(outputs->GetInformationObject(0), output);
+
     this->Seconds = octree.seconds;
     this->DeviceName = octree.device;
     this->LeftOut = tyndall::Lines(octree.leftOut);

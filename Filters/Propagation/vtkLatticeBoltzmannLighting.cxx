@@ -1,6 +1,7 @@
 #include "vtkLatticeBoltzmannLighting.h"
 
 #include "Common/LightTransportData.h"
+#include "Device/Clock.h"
 #include "Device/Device.h"
 #include "LatticeBoltzmann/LatticeBoltzmann.h"
 #include "LatticeBoltzmann/LatticeQuality.h"
@@ -16,9 +17,20 @@
 #include <algorithm>
 #include <cmath>
 #include <utility>
+#include <vector>
 
 namespace
 {
+/// Light, and how long it took to find.
+template <class Solve>
+tyndall::LightField Timed(double& seconds, const Solve& solve)
+{
+  const double start = tyndall::ClockSeconds();
+  tyndall::LightField light = solve();
+  seconds = tyndall::ClockSeconds() - start;
+  return light;
+}
+
 tyndall::LatticeSettings SettingsOf(vtkLatticeBoltzmannLighting* filter)
 {
   tyndall::LatticeSettings settings;
@@ -109,8 +121,11 @@ tyndall::LightField vtkLatticeBoltzmannLighting::SolveWithPhotons(
   }
   tyndall::Illumination illumination;
   tyndall::AddFaceAlbedo(illumination, this->FaceAlbedo, this->FaceAlbedoColor);
-  return tyndall::SolveLatticeBoltzmann(*tyndall::Device::Find(this->GetDevice()), input.medium, ior,
-    tyndall::ReadPhotons(given), illumination, SettingsOf(this), tyndall::MonitorOf(this));
+  const std::vector<tyndall::Photon> photons = tyndall::ReadPhotons(given);
+  return Timed(this->Seconds, [&] {
+    return tyndall::SolveLatticeBoltzmann(*tyndall::Device::Find(this->GetDevice()), input.medium, ior, photons,
+      illumination, SettingsOf(this), tyndall::MonitorOf(this));
+  });
 }
 
 tyndall::LightField vtkLatticeBoltzmannLighting::Solve(vtkInformationVector** inputs)
@@ -125,14 +140,17 @@ tyndall::LightField vtkLatticeBoltzmannLighting::Solve(vtkInformationVector** in
   }
   const tyndall::IlluminationInput shining = this->ReadShining(inputs);
   this->WarnWhereDark(shining.illumination, input.emission.IsThere());
-  return tyndall::SolveLatticeBoltzmann(*tyndall::Device::Find(this->GetDevice()), input.medium, ior,
-    shining.illumination, SettingsOf(this), tyndall::MonitorOf(this));
+  return Timed(this->Seconds, [&] {
+    return tyndall::SolveLatticeBoltzmann(*tyndall::Device::Find(this->GetDevice()), input.medium, ior,
+      shining.illumination, SettingsOf(this), tyndall::MonitorOf(this));
+  });
 }
 
 int vtkLatticeBoltzmannLighting::RequestData(
   vtkInformation*, vtkInformationVector** inputs, vtkInformationVector* outputs)
 {
   this->Note({});
+  this->Seconds = 0.0;
   return tyndall::Guarded(this, outputs, [&] {
     tyndall::LightField light = this->Solve(inputs);
     light.settingsUsed = tyndall::Words(SettingsOf(this));
@@ -146,7 +164,6 @@ void vtkLatticeBoltzmannLighting::Note(const tyndall::LightField& light)
   const bool any = !light.convergence.empty();
   this->Steps = any ? light.convergence.back().iteration : 0;
   this->Residual = any ? light.convergence.back().residual : 0.0;
-  this->Seconds = any ? light.convergence.back().seconds : 0.0;
   this->BalanceError = LeftOverOf(light);
   this->DeviceName = light.device;
   this->LeftOut = tyndall::Lines(light.leftOut);

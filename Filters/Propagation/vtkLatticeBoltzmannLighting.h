@@ -150,8 +150,8 @@ public:
 
   ///@{
   /// What came of the last update: steps, or iterations of the steady state's equations, estimated relative error of
-  /// fluence, relative error of the energy balance, what is left over included, seconds, the device's name, and what
-  /// the scene did not need, one per line.
+  /// fluence, relative error of the energy balance, what is left over included, seconds of all
+  /// solving (uncollided light, too), the device's name, and what the scene did not need, one per line.
   vtkGetMacro(Steps, int);
   vtkGetMacro(Residual, double);
   vtkGetMacro(BalanceError, double);

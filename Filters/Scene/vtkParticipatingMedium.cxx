@@ -5,12 +5,12 @@
 #include "Common/LightTransportData.h"
 #include "Common/PhaseFunctionData.h"
 #include "Common/WholeImage.h"
+#include "Device/HostThreads.h"
 #include "Medium/Presets.h"
 
 #include "vtkImageData.h"
 #include "vtkInformation.h"
 #include "vtkObjectFactory.h"
-#include "vtkSMPTools.h"
 #include "vtkTable.h"
 
 #include <cmath>
@@ -23,6 +23,8 @@ using tyndall::InvalidInput;
 using tyndall::Require;
 using tyndall::Rgb;
 using tyndall::Times;
+
+constexpr std::size_t VoxelsOfThread = 16384; ///< at least
 
 /// The medium at relative density 1, in the dataset's unit.
 struct Recipe
@@ -151,20 +153,18 @@ std::vector<float> RelativeDensity(
       std::to_string(maximum) + "; the latter must not be less.");
   const float* values = density.Values();
   std::vector<float> relative(grid.VoxelCount());
-  vtkSMPTools::For(0, static_cast<vtkIdType>(relative.size()), [&](vtkIdType begin, vtkIdType end) {
-    for (vtkIdType i = begin; i < end; ++i)
+  tyndall::InThreads(relative.size(), VoxelsOfThread, [&](std::size_t begin, std::size_t end) {
+    for (std::size_t i = begin; i < end; ++i)
     {
       const double above = values[i] - minimum;
       relative[i] = static_cast<float>(above <= 0.0 ? 0.0 : maximum > minimum ? above / (maximum - minimum) : 1.0);
     }
   });
-  for (std::size_t i = 0; i < relative.size(); ++i)
+  const std::size_t first = tyndall::RangesOf(values, relative.size(), 1).firstNotFinite;
+  if (first < relative.size())
   {
-    if (!std::isfinite(values[i]))
-    {
-      throw InvalidInput("The density is " + std::to_string(values[i]) + " in voxel " + tyndall::VoxelName(grid, i) +
-        " (the first such voxel); it must be finite.");
-    }
+    throw InvalidInput("The density is " + std::to_string(values[first]) + " in voxel " +
+      tyndall::VoxelName(grid, first) + " (the first such voxel); it must be finite.");
   }
   tyndall::RequireFinite(
     "relative density", relative.data(), relative.size(), 1,
@@ -187,8 +187,8 @@ void AddProduct(vtkImageData* output, const char* name, const std::vector<float>
 {
   const int components = factor[0] == factor[1] && factor[1] == factor[2] ? 1 : 3;
   std::vector<float> values(density.size() * components);
-  vtkSMPTools::For(0, static_cast<vtkIdType>(density.size()), [&](vtkIdType begin, vtkIdType end) {
-    for (vtkIdType i = begin; i < end; ++i)
+  tyndall::InThreads(density.size(), VoxelsOfThread, [&](std::size_t begin, std::size_t end) {
+    for (std::size_t i = begin; i < end; ++i)
     {
       for (int c = 0; c < components; ++c)
       {

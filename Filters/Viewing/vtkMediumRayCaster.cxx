@@ -4,7 +4,9 @@
 #include "Common/InputsKey.h"
 #include "Common/LightTransportData.h"
 #include "Common/PhaseFunctionData.h"
+#include "Common/VectorArray.h"
 #include "Common/WholeImage.h"
+#include "Device/Clock.h"
 #include "Device/Device.h"
 #include "Medium/BoxFaces.h"
 #include "Viewing/MediumRayCaster.h"
@@ -27,11 +29,11 @@
 #include "vtkUnsignedCharArray.h"
 
 #include <algorithm>
-#include <chrono>
 #include <cstdint>
 #include <memory>
 #include <string>
 #include <tuple>
+#include <utility>
 #include <vector>
 
 namespace
@@ -84,17 +86,6 @@ tyndall::Camera CameraOf(vtkMediumRayCaster* filter, const tyndall::Grid& grid)
   }
   camera.parallelProjection = filter->GetCameraParallelProjection();
   return camera;
-}
-
-template <class Array, class Value>
-vtkSmartPointer<Array> PixelArray(const char* name, const std::vector<Value>& values, int components)
-{
-  auto array = vtkSmartPointer<Array>::New();
-  array->SetName(name);
-  array->SetNumberOfComponents(components);
-  array->SetNumberOfTuples(static_cast<vtkIdType>(values.size()) / components);
-  std::copy(values.begin(), values.end(), array->GetPointer(0));
-  return array;
 }
 
 /// What the solver said of the light at the box's faces; empty where it did not, or what it said is not of these
@@ -151,25 +142,27 @@ struct LightAtFaces
   }
 };
 
-void WritePicture(const tyndall::Picture& picture, const std::vector<std::uint8_t>& color, vtkImageData* output)
+void WritePicture(tyndall::Picture&& picture, std::vector<std::uint8_t>&& color, vtkImageData* output)
 {
   output->SetExtent(0, picture.width - 1, 0, picture.height - 1, 0, 0);
   output->SetOrigin(0.0, 0.0, 0.0);
   output->SetSpacing(1.0, 1.0, 1.0);
-  const auto pixelName = [&](std::size_t pixel) {
-    const auto width = static_cast<std::size_t>(picture.width);
+  vtkPointData* const pixels = output->GetPointData();
+  const auto shown = tyndall::ArrayOf<vtkUnsignedCharArray>("color", std::move(color), 4);
+  tyndall::LeaveRanges(shown);
+  pixels->SetScalars(shown);
+  const auto pixelName = [width = static_cast<std::size_t>(picture.width)](std::size_t pixel) {
     return "pixel (" + std::to_string(pixel % width) + ", " + std::to_string(pixel / width) + ") from below";
   };
   for (const auto& [name, values, components] : { std::tuple("radiance", &picture.radiance, 3),
          std::tuple("alpha", &picture.alpha, 1), std::tuple("depth", &picture.depth, 1) })
   {
-    tyndall::RequireFinite(name, values->data(), values->size(), components, pixelName);
+    const tyndall::ArrayRanges ranges =
+      tyndall::RequireFinite(name, values->data(), values->size(), components, pixelName);
+    const auto array = tyndall::ArrayOf<vtkFloatArray>(name, std::move(*values), components);
+    tyndall::LeaveRanges(ranges, array);
+    pixels->AddArray(array);
   }
-  vtkPointData* pixels = output->GetPointData();
-  pixels->SetScalars(PixelArray<vtkUnsignedCharArray>("color", color, 4));
-  pixels->AddArray(PixelArray<vtkFloatArray>("radiance", picture.radiance, 3));
-  pixels->AddArray(PixelArray<vtkFloatArray>("alpha", picture.alpha, 1));
-  pixels->AddArray(PixelArray<vtkFloatArray>("depth", picture.depth, 1));
 }
 }
 
@@ -345,8 +338,6 @@ std::unique_ptr<vtkMediumRayCaster::Scene> vtkMediumRayCaster::FindScene(vtkInfo
 
 int vtkMediumRayCaster::RequestData(vtkInformation*, vtkInformationVector** inputs, vtkInformationVector* outputs)
 {
-  using Clock = std::chrono::steady_clock;
-  const Clock::time_point start = Clock::now();
   this->Seconds = this->UsedExposure = 0.0;
   this->SceneKept = false;
   this->DeviceName.clear();
@@ -358,16 +349,18 @@ int vtkMediumRayCaster::RequestData(vtkInformation*, vtkInformationVector** inpu
     toneMapping.curve = static_cast<tyndall::ToneCurve>(this->ToneCurve);
     tyndall::Check(toneMapping);
     std::unique_ptr<Scene> scene = this->FindScene(inputs);
-    const tyndall::Picture picture = scene->caster->Render(CameraOf(this, scene->grid), tyndall::MonitorOf(this));
+    const double start = tyndall::ClockSeconds();
+    tyndall::Picture picture = scene->caster->Render(CameraOf(this, scene->grid), tyndall::MonitorOf(this));
+    const double seconds = tyndall::ClockSeconds() - start;
     if (toneMapping.exposure == 0.0)
     {
       toneMapping.exposure = tyndall::AutomaticExposure(picture.radiance);
     }
     const std::vector<float> opaque;
-    const auto color = tyndall::ToneMap(picture.radiance, this->ShowBackground ? opaque : picture.alpha, toneMapping);
+    auto color = tyndall::ToneMap(picture.radiance, this->ShowBackground ? opaque : picture.alpha, toneMapping);
 
     vtkImageData* output = vtkImageData::GetData(outputs);
-    WritePicture(picture, color, output);
+    WritePicture(std::move(picture), std::move(color), output);
     const std::string device = scene->key.device->Name();
     const std::vector<std::string>& leftOut = scene->caster->LeftOut();
     tyndall::AddFact(output, "exposure", std::vector<double>{ toneMapping.exposure });
@@ -382,7 +375,7 @@ int vtkMediumRayCaster::RequestData(vtkInformation*, vtkInformationVector** inpu
     this->LeftOut = tyndall::Lines(leftOut);
     this->SettingsUsed = tyndall::Lines(settings);
     this->Kept = std::move(scene);
-    this->Seconds = std::chrono::duration<double>(Clock::now() - start).count();
+    this->Seconds = seconds;
   });
 }
 

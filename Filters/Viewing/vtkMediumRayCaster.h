@@ -269,8 +269,9 @@ public:
   ///@}
 
   ///@{
-  /// What came of the last update: seconds, the exposure used, whether medium and light were on the device from an
-  /// earlier picture, the device's name, and what the scene did not need, one per line.
+  /// What came of the last update: seconds in which rays were cast and the picture was read, the exposure used, whether
+  /// medium and light were on the device from an earlier picture, the device's name, and what the scene did not need,
+  /// one per line.
   vtkGetMacro(Seconds, double);
   vtkGetMacro(UsedExposure, double);
   vtkGetMacro(SceneKept, bool);

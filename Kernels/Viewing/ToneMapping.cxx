@@ -1,17 +1,22 @@
 #include "Viewing/ToneMapping.h"
 
 #include "Device/Errors.h"
+#include "Device/HostThreads.h"
 
 #include <algorithm>
 #include <cmath>
 #include <cstdio>
 #include <cstring>
+#include <functional>
+#include <mutex>
+#include <numeric>
 
 namespace tyndall
 {
 namespace
 {
-constexpr double LargestExposure = 1e30; ///< no float overflows to where a product is no number
+constexpr std::size_t PixelsOfThread = 32768; ///< at least
+constexpr double LargestExposure = 1e30;      ///< no float overflows to where a product is no number
 
 double EncodeSrgb(double linear)
 {
@@ -85,18 +90,23 @@ double AutomaticExposure(const std::vector<float>& radiance)
   // How many pixels have which luminance, by the leading bits of the float: 256 classes for every doubling.
   constexpr int Shift = 23 - 8;
   std::vector<std::uint32_t> count((1u << (31 - Shift)), 0);
-  std::uint32_t lit = 0;
-  for (std::size_t i = 0; i + 2 < radiance.size(); i += 3)
-  {
-    const float luminance = 0.2126f * radiance[i] + 0.7152f * radiance[i + 1] + 0.0722f * radiance[i + 2];
-    if (luminance > 0.0f && std::isfinite(luminance))
+  std::mutex mutex;
+  InThreads(radiance.size() / 3, PixelsOfThread, [&](std::size_t begin, std::size_t end) {
+    std::vector<std::uint32_t> here(count.size(), 0);
+    for (std::size_t i = 3 * begin; i < 3 * end; i += 3)
     {
-      std::uint32_t bits;
-      std::memcpy(&bits, &luminance, sizeof(bits));
-      ++count[bits >> Shift];
-      ++lit;
+      const float luminance = 0.2126f * radiance[i] + 0.7152f * radiance[i + 1] + 0.0722f * radiance[i + 2];
+      if (luminance > 0.0f && std::isfinite(luminance))
+      {
+        std::uint32_t bits;
+        std::memcpy(&bits, &luminance, sizeof(bits));
+        ++here[bits >> Shift];
+      }
     }
-  }
+    const std::lock_guard<std::mutex> lock(mutex);
+    std::transform(here.begin(), here.end(), count.begin(), count.begin(), std::plus<std::uint32_t>());
+  });
+  const double lit = std::accumulate(count.begin(), count.end(), 0.0);
   const auto logarithm = [](std::size_t entry) { // of the class's middle
     return static_cast<double>(entry >> 8) - 127.0 + std::log2(1.0 + ((entry & 255) + 0.5) / 256.0);
   };
@@ -132,17 +142,19 @@ std::vector<std::uint8_t> ToneMap(
   const ScreenValues& screen = ScreenValuesOf(settings.curve);
   const std::size_t pixels = radiance.size() / 3;
   std::vector<std::uint8_t> colour(4 * pixels);
-  for (std::size_t pixel = 0; pixel < pixels; ++pixel)
-  {
-    const float opaque = alpha.empty() ? 1.0f : alpha[pixel];
-    const float scale = opaque > 0.0f ? 1.0f / opaque : 0.0f;
-    for (int c = 0; c < 3; ++c)
+  InThreads(pixels, PixelsOfThread, [&](std::size_t begin, std::size_t end) {
+    for (std::size_t pixel = begin; pixel < end; ++pixel)
     {
-      const float encoded = screen(radiance[3 * pixel + c] * exposure);
-      colour[4 * pixel + c] = static_cast<std::uint8_t>(std::min(encoded * scale, 255.0f) + 0.5f);
+      const float opaque = alpha.empty() ? 1.0f : alpha[pixel];
+      const float scale = opaque > 0.0f ? 1.0f / opaque : 0.0f;
+      for (int c = 0; c < 3; ++c)
+      {
+        const float encoded = screen(radiance[3 * pixel + c] * exposure);
+        colour[4 * pixel + c] = static_cast<std::uint8_t>(std::min(encoded * scale, 255.0f) + 0.5f);
+      }
+      colour[4 * pixel + 3] = static_cast<std::uint8_t>(255.0f * opaque + 0.5f);
     }
-    colour[4 * pixel + 3] = static_cast<std::uint8_t>(255.0f * opaque + 0.5f);
-  }
+  });
   return colour;
 }
 }

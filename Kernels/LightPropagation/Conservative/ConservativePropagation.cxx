@@ -1,6 +1,7 @@
 #include "LightPropagation/Conservative/ConservativePropagation.h"
 
 #include "Device/Errors.h"
+#include "Device/HostThreads.h"
 #include "Light/LeftOut.h"
 #include "LightPropagation/Conservative/DiffusionAcceleration.h"
 #include "LightPropagation/Conservative/ShownLight.h"
@@ -145,8 +146,12 @@ LightField LightOf(TransportParts& parts, IterationResult&& found, bool accelera
     light.netFlux = Interleaved(parts.Layout, parts.Flux, 1.0 / parts.Layout.grid.VoxelVolume());
   }
   light.scatteredRadiance.resize(light.fluence.size());
-  std::transform(light.fluence.begin(), light.fluence.end(), light.scatteredRadiance.begin(),
-    [](float fluence) { return static_cast<float>(fluence / (4.0 * Pi)); });
+  InThreads(light.fluence.size(), 65536, [&](std::size_t begin, std::size_t end) {
+    const auto from = light.fluence.begin();
+    std::transform(from + static_cast<std::ptrdiff_t>(begin), from + static_cast<std::ptrdiff_t>(end),
+      light.scatteredRadiance.begin() + static_cast<std::ptrdiff_t>(begin),
+      [](float fluence) { return static_cast<float>(fluence / (4.0 * Pi)); });
+  });
   light.storedDirections = { { 0.0, 0.0, 0.0 } };
   light.leftOut = Words(parts, found, accelerated);
   if (parts.StoresMoments())

@@ -1,5 +1,9 @@
 #include "LightPropagation/Sweep/VolumeLayout.h"
 
+#include "Device/HostThreads.h"
+
+#include <algorithm>
+
 namespace tyndall
 {
 std::vector<float> Interleaved(const VolumeLayout& layout, const Buffer<float>& planar, double scale)
@@ -8,13 +12,20 @@ std::vector<float> Interleaved(const VolumeLayout& layout, const Buffer<float>& 
   const std::size_t parts = (values.size() - SweepPadding) / layout.Stride();
   const std::size_t voxels = layout.grid.VoxelCount();
   std::vector<float> interleaved(voxels * parts);
-  for (std::size_t p = 0; p < parts; ++p)
-  {
-    for (std::size_t i = 0; i < voxels; ++i)
+  constexpr std::size_t AtOnce = 512; // voxels, of which all parts stay in a cache until lines of it are whole
+  InThreads(voxels, 16384, [&](std::size_t begin, std::size_t end) {
+    for (std::size_t from = begin; from < end; from += AtOnce)
     {
-      interleaved[i * parts + p] = static_cast<float>(values[p * layout.Stride() + i] * scale);
+      const std::size_t to = std::min(from + AtOnce, end);
+      for (std::size_t p = 0; p < parts; ++p)
+      {
+        for (std::size_t i = from; i < to; ++i)
+        {
+          interleaved[i * parts + p] = static_cast<float>(values[p * layout.Stride() + i] * scale);
+        }
+      }
     }
-  }
+  });
   return interleaved;
 }
 }

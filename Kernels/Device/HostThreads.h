@@ -1,0 +1,16 @@
+#pragma once
+
+#include <cstddef>
+#include <functional>
+
+namespace tyndall
+{
+/// Passes over large arrays on all of the host's cores: one core alone moves a part of what the memory can.
+///
+/// Calls work(begin, end), at the same time, for parts that together are [0, count), and waits for all of them. What a
+/// part finds must not depend on where it begins, so that results are the same on any number of cores.
+/// @param least  elements of a part, at least: below some hundred kilobytes a thread costs more than it saves
+/// What a part throws is thrown when all have ended; of several the first part's.
+void InThreads(
+  std::size_t count, std::size_t least, const std::function<void(std::size_t begin, std::size_t end)>& work);
+}

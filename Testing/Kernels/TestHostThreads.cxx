@@ -1,0 +1,49 @@
+// Passes over arrays on all of the host's cores.
+#include "Device/HostThreads.h"
+
+#include <gtest/gtest.h>
+
+#include <stdexcept>
+#include <string>
+#include <vector>
+
+using namespace tyndall;
+
+TEST(HostThreads, PartsAreTheWholeOnce)
+{
+  for (const std::size_t count : { 0, 1, 2, 5, 1000, 100003 })
+  {
+    for (const std::size_t least : { 0, 1, 3, 400, 1000000 })
+    {
+      std::vector<int> times(count, 0);
+      InThreads(count, least, [&](std::size_t begin, std::size_t end) {
+        for (std::size_t i = begin; i < end; ++i)
+        {
+          ++times[i];
+        }
+      });
+      EXPECT_EQ(times, std::vector<int>(count, 1)) << count << " by " << least;
+    }
+  }
+}
+
+TEST(HostThreads, FirstFailureIsThrownWhenAllHaveEnded)
+{
+  std::vector<int> seen(64, 0);
+  try
+  {
+    InThreads(seen.size(), 1, [&](std::size_t begin, std::size_t end) {
+      for (std::size_t i = begin; i < end; ++i)
+      {
+        seen[i] = 1;
+      }
+      throw std::runtime_error(std::to_string(begin));
+    });
+    FAIL() << "nothing was thrown";
+  }
+  catch (const std::runtime_error& failure)
+  {
+    EXPECT_STREQ(failure.what(), "0");
+  }
+  EXPECT_EQ(seen, std::vector<int>(64, 1));
+}
