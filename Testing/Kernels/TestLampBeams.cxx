@@ -176,3 +176,84 @@ TEST_F(LampBeams, AnIsolatedOpaqueVoxelStopsEveryRay)
   EXPECT_NEAR(light.balance.absorbed[0], 10.0, 1e-3);
   EXPECT_NEAR(light.balance.escaped[0], 0.0, 1e-6);
 }
+
+namespace
+{
+/// Integral of exp(-x / m) over m from 0 to 1.
+double ExponentialIntegral2(double x)
+{
+  constexpr int points = 4000;
+  double sum = 0.0;
+  for (int i = 0; i < points; ++i)
+  {
+    const double root = (i + 0.5) / points; // most where m is small
+    sum += 3.0 * root * root * std::exp(-x / (root * root * root)) / points;
+  }
+  return sum;
+}
+}
+
+TEST_F(LampBeams, RoundPeriodicAxesLeaveNothingOver)
+{
+  struct Case
+  {
+    std::array<int, 3> size;
+    std::array<double, 3> spacing;
+    double tau; ///< across the last axis
+    std::array<bool, 3> periodic;
+  };
+  for (const Case& box : { Case{ { 17, 12, 20 }, { 1.0, 1.0, 1.0 }, 0.1, { true, true, false } },
+         Case{ { 4, 4, 48 }, { 1.0, 1.0, 1.0 }, 0.1, { true, true, false } },
+         Case{ { 8, 6, 10 }, { 0.01, 0.01, 1.0 }, 0.05, { true, true, false } },
+         Case{ { 9, 11, 10 }, { 1.0, 1.3, 0.8 }, 0.0, { true, false, false } },
+         Case{ { 9, 7, 8 }, { 1.0, 1.0, 1.0 }, 1e-3, { true, true, true } } })
+  {
+    for (LightType type : { LightType::Point, LightType::Spot, LightType::Rectangle })
+    {
+      Scene scene(box.size, static_cast<float>(box.tau / (box.size[2] * box.spacing[2])));
+      scene.medium.grid.spacing = box.spacing;
+      scene.settings.periodic = box.periodic;
+      Light lamp = Lamp(type,
+        { 0.41 * box.size[0] * box.spacing[0], 0.53 * box.size[1] * box.spacing[1],
+          0.37 * box.size[2] * box.spacing[2] });
+      lamp.direction = { 0.8, 0.3, 0.1 };
+      lamp.size = { box.spacing[0], box.spacing[0] };
+      scene.light.lights = { lamp };
+      const LightField light = scene.Solve(this->GetDevice());
+      EXPECT_LT(light.balance.leftOver[0], 1e-3 * light.balance.entered[0]) << box.size[2] << ' ' << box.tau;
+      EXPECT_LT(light.balance.RelativeError(1), 1e-5) << box.size[2] << ' ' << box.tau << ' ' << static_cast<int>(type);
+      EXPECT_NEAR(light.balance.entered[0], 10.0, 1e-4);
+    }
+  }
+}
+
+TEST_F(LampBeams, InASlabOfPeriodicBoxesLightPlanesAsAPlaneOfLampsDoes)
+{
+  // Mean over a layer of power / (2 area) E1(sigma |z - lamp|).
+  for (const std::array<int, 3>& n : { std::array<int, 3>{ 4, 4, 48 }, { 13, 10, 22 } })
+  {
+    constexpr double tau = 0.2;
+    Scene scene(n, static_cast<float>(tau / n[2]));
+    scene.settings.periodic = { true, true, false };
+    const double z = 0.5 * (n[2] / 2) + 0.5;
+    scene.light.lights = { Lamp(LightType::Point, { 0.4 * n[0], 0.6 * n[1], z }) };
+    const LightField light = scene.Solve(this->GetDevice());
+    for (int layer = 0; layer < n[2]; ++layer)
+    {
+      if (std::abs(layer + 0.5 - z) < 2.0)
+      {
+        continue; // beside the lamp: a logarithm
+      }
+      double mean = 0.0;
+      for (int i = 0; i < n[0] * n[1]; ++i)
+      {
+        mean += light.fluence[static_cast<std::size_t>(layer) * n[0] * n[1] + i] / (n[0] * n[1]);
+      }
+      const double sigma = tau / n[2];
+      const double below = sigma * std::abs(layer - z), above = sigma * std::abs(layer + 1 - z);
+      const double exact =
+        10.0 / (2.0 * n[0] * n[1] * sigma) * std::abs(ExponentialIntegral2(below) - ExponentialIntegral2(above));
+      EXPECT_NEAR(mean / exact, 1.0, 0.05) << n[2] << ": " << layer;
+    }
+  }
+}

@@ -27,6 +27,7 @@ LAYERS = {
         ["Angular"],
         ["Sweep", "Problem"],
         ["Scattering", "Uncollided", "Diffusion", "PlaneParallel"],
+        ["Emission"],
         ["Conservative", "Published"],
         ["Accuracy"],
     ],

@@ -7,7 +7,7 @@
 #include "LightPropagation/Sweep/SweepInMemory.h"
 #include "LightPropagation/Uncollided/EnvironmentPeaks.h"
 #include "LightPropagation/Uncollided/UncollidedBoundary.h"
-#include "LightPropagation/Uncollided/UncollidedEmission.h"
+#include "LightPropagation/Emission/UncollidedEmission.h"
 #include "LightPropagation/Uncollided/UncollidedLamp.h"
 #include "Numerics/Constants.h"
 #include "Numerics/Vectors.h"

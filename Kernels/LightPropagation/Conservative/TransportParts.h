@@ -12,7 +12,7 @@
 #include "LightPropagation/Sweep/SweepWorkspace.h"
 #include "LightPropagation/Sweep/VolumeLayout.h"
 #include "LightPropagation/Uncollided/BoundaryLight.h"
-#include "LightPropagation/Uncollided/EmissionPeaks.h"
+#include "LightPropagation/Emission/EmissionPeaks.h"
 #include "LightPropagation/Uncollided/GivenLight.h"
 #include "LightPropagation/Uncollided/UncollidedSource.h"
 

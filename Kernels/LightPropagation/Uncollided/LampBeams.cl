@@ -66,6 +66,7 @@ static int place(const LampInfo* lamp, int axis, float tangent, int* i)
 typedef struct
 {
   float entered, escaped[6], stranded;
+  bool counts; // the beam has come where it is to be counted and put down
 #if FACE_OUT
   __global long* cells; // W in fixed point, parts of the lamp's power, [cell] (BoxFaces.h)
 #endif
@@ -74,6 +75,10 @@ typedef struct
 // Power that leaves through one face of the box at a voxel.
 static void leave_box(const LampInfo* lamp, int face, const int* voxel, float power, lamp_tally* tally)
 {
+  if (!tally->counts)
+  {
+    return;
+  }
   tally->escaped[face] += power;
 #if FACE_OUT
   long cell = lamp->faceFirst[face];
@@ -163,14 +168,14 @@ static void leave_aside(const LampInfo* lamp, const BeamRow* row, int face, floa
     leave_box(lamp, face, voxel, 0.5f * power, tally);
   }
 #else
-  tally->escaped[face] += power;
+  tally->escaped[face] += tally->counts ? power : 0.0f;
 #endif
 }
 
-// One step of a beam: every part of it through its voxel. Changes `left`; returns the part that will never be inside.
+// One step of a beam: every part of it through its voxel. Changes `left` and `rest`, what is too small to be seen in it.
 static void step_beam(const LampInfo* lamp, const BeamRow* row, int layer, bool first, bool last, float2 tangent,
   float2 middle, float2 width, float2 way, float length, const __global float* sigma, __global long* path, ulong stride,
-  float* left, lamp_tally* tally)
+  float* left, float* rest, lamp_tally* tally)
 {
   const int u = (row->axis + 1) % 3;
   const int v = (row->axis + 2) % 3;
@@ -180,7 +185,7 @@ static void step_beam(const LampInfo* lamp, const BeamRow* row, int layer, bool 
   overlap(middle.x - 0.5f * width.x, width.x, &voxel[0], &part_u);
   overlap(middle.y - 0.5f * width.y, width.y, &voxel[1], &part_v);
   lowest = (int2)(voxel[0], voxel[1]);
-  float after = 0.0f;
+  float after = 0.0f, taken = 0.0f;
   for (int q = 0; q < 4; ++q)
   {
     const float part = (q & 1 ? 1.0f - part_u : part_u) * (q & 2 ? 1.0f - part_v : part_v);
@@ -208,7 +213,7 @@ static void step_beam(const LampInfo* lamp, const BeamRow* row, int layer, bool 
     const float power = *left * part;
     if (missed)
     {
-      tally->entered -= power;
+      tally->entered -= tally->counts ? power : 0.0f;
     }
     else if (gone)
     {
@@ -227,13 +232,16 @@ static void step_beam(const LampInfo* lamp, const BeamRow* row, int layer, bool 
     }
     else
     {
-      const float counted = power * (mean_length * units_of(sigma[index], lamp->diagonal));
-      add_units(path + index, convert_long_sat_rte(counted * lamp->scale));
+      const float counted = tally->counts ? power * (mean_length * units_of(sigma[index], lamp->diagonal)) : 0.0f;
+      if (counted > 0.0f)
+      {
+        add_units(path + index, convert_long_sat_rte(counted * lamp->scale));
+      }
 #if NET_FLUX
       add_flux(lamp, row, tangent, way, length, counted, path + FIRST_OF_FLUX * stride + index, stride);
 #endif
 #if MOMENTS
-      if (sigma[index] * length > 0.5f * THIN)
+      if (tally->counts && sigma[index] * length > 0.5f * THIN)
       {
         const float2 mean = (float2)(q & 1
             ? 0.5f * (middle.x + 0.5f * width.x - lowest.x - 1.0f)
@@ -244,10 +252,15 @@ static void step_beam(const LampInfo* lamp, const BeamRow* row, int layer, bool 
           lamp, row, voxel, way, mean, tangent, sigma[index] * length, lost, counted, path + stride + index, stride);
       }
 #endif
-      after += mean_length * sigma[index] < 0.5f * length * sigma[index] ? power * through : power - power * lost;
+      const bool thick = mean_length * sigma[index] < 0.5f * length * sigma[index];
+      after += thick ? power * through : power;
+      taken += thick ? 0.0f : power * lost;
     }
   }
-  *left = after;
+  // What rounding took from thin losses is made up for: over thousands of steps it would add up.
+  const float change = *rest - taken;
+  *left = after + change;
+  *rest = change - (*left - after);
 }
 
 // What is left of a beam at the far end of its axis, through up to four cells there.
@@ -288,13 +301,16 @@ static void follow_beam(const LampInfo* lamp, const BeamRow* row, float2 tangent
   const int first =
     row->begin > 0.0f ? (row->up ? 0 : n - 1) : clamp((int)(row->up ? floor(start) : ceil(start) - 1.0f), 0, n - 1);
   const int layers = row->up ? n - first : first + 1;
-  const int all = lamp->periodic[row->axis] ? layers + n * lamp->rounds : layers;
+  const int all = lamp->periodic[row->axis] ? row->layers : layers;
   const bool sideways = lamp->position[u] < 0.0f || lamp->position[u] > lamp->size[u] || lamp->position[v] < 0.0f ||
     lamp->position[v] > lamp->size[v];
-  float left = power;
+  float left = power, rest = 0.0f;
   float now = row->begin;
-  for (int k = 0; k < all; ++k)
+  // Where an axis is periodic beams go on until next to nothing is left; others leave.
+  const float least = lamp->periodic[row->axis] ? 1e-7f * power : 0.0f;
+  for (int k = 0; k < all && left > least; ++k)
   {
+    tally->counts = k >= row->skipped;
     const int layer = row->up ? (first + k) % n : ((first - k) % n + n) % n;
     const float end = row->up ? first + k + 1 - start : start - (first - k);
     for (int s = 0; s < STEPS; ++s)
@@ -309,10 +325,11 @@ static void follow_beam(const LampInfo* lamp, const BeamRow* row, float2 tangent
       const float2 middle = (float2)(lamp->position[u] + tangent.x * t, lamp->position[v] + tangent.y * t);
       step_beam(lamp, row, layer, first_step, last_step, tangent, middle,
         clamp((float2)(row->widthU, row->widthV) * t, 1e-4f, 1.0f), (float2)(t0, t1), (t1 - t0) * per_layer, sigma,
-        path, stride, &left, tally);
+        path, stride, &left, &rest, tally);
     }
     now = end;
   }
+  tally->counts = true;
   if (lamp->periodic[row->axis])
   {
     tally->stranded += left;
@@ -359,7 +376,7 @@ static void follow_row(const LampInfo* lamp, const BeamRow* row, const __global 
   const int v = (row->axis + 2) % 3;
   const float hu = lamp->spacing[u], hv = lamp->spacing[v], hp = lamp->spacing[row->axis];
   float shone = 0.0f;
-  lamp_tally tally = { 0.0f, { 0.0f, 0.0f, 0.0f, 0.0f, 0.0f, 0.0f }, 0.0f };
+  lamp_tally tally = { 0.0f, { 0.0f, 0.0f, 0.0f, 0.0f, 0.0f, 0.0f }, 0.0f, true };
 #if FACE_OUT
   tally.cells = cells;
 #endif
@@ -377,7 +394,7 @@ static void follow_row(const LampInfo* lamp, const BeamRow* row, const __global 
     if (angle > 0.0f)
     {
       const float power = lamp->intensity * angle;
-      tally.entered += power;
+      tally.entered += row->skipped > 0 ? 0.0f : power;
       shone += power;
       follow_beam(lamp, row, tangent, power, sigma, path, stride, &tally);
     }
@@ -471,3 +488,9 @@ __kernel void add_fixed_moments(const __global long* fixed_path, __global float*
   }
 }
 #endif
+
+// The same path, W length, in every voxel.
+__kernel void add_evenly(__global float* path, ulong first, float each)
+{
+  path[first + get_global_id(0)] += each;
+}

@@ -1,7 +1,7 @@
 #include "LightPropagation/Uncollided/LampBeams.h"
 
 #include "Device/Defines.h"
-#include "LightPropagation/Uncollided/LampBeamsShared.h"
+#include "LightPropagation/Uncollided/LampPyramids.h"
 #include "Medium/BoxFaces.h"
 #include "Numerics/Constants.h"
 #include "Numerics/Vectors.h"
@@ -12,101 +12,21 @@
 
 #include <algorithm>
 #include <cmath>
+#include <numeric>
 #include <string>
 
 namespace tyndall
 {
 namespace
 {
-constexpr int PointsPerEdge = 4;    ///< of a rectangle
-constexpr double BeamWidth = 0.5;   ///< of a lamp's beams where they leave the box, voxels; a rectangle's: twice
-constexpr int BeamsAcrossCone = 16; ///< of a spot, at least
-constexpr int RowsPerLaunch = 256;  ///< keeps a launch well below a tenth of a second for rows of a thousand voxels
-constexpr int RoundsAtMost = 64;    ///< of a ray on a periodic axis
-
-/// Smallest and largest tangent (voxels along `aside` per layer) at which the box is seen from `position` between two
-/// depths, within the pyramid.
-std::array<double, 2> Tangents(const Grid& grid, const glm::dvec3& position, int aside, double near, double far)
-{
-  const double low = -position[aside];
-  const double high = grid.size[aside] - position[aside];
-  const double depth = std::max(near, 1e-9);
-  return { std::max(-1.0, std::min(low / depth, low / far)), std::min(1.0, std::max(high / depth, high / far)) };
-}
-
-/// Tangents (voxels along `aside` per layer) between which a spot's cone is seen in the pyramid along `axis`. The
-/// planes that touch the cone and hold the third axis are turned by asin(sin(half angle) / R) from its middle, R the
-/// length of that in the plane of the two axes. The first is larger than the second where the cone is not seen there.
-std::array<double, 2> TangentsOfCone(const Grid& grid, int axis, bool up, int aside, const Light& light)
-{
-  constexpr double rightAngle = 0.5 * Pi;
-  constexpr double margin = 1e-6; // rounding must not cut the cone
-  const glm::dvec3 middle = glm::normalize(Vector(light.direction));
-  const double forward = up ? middle[axis] : -middle[axis];
-  const double half = 0.5 * light.angle * Pi / 180.0;
-  const double inPlane = std::hypot(forward, middle[aside]);
-  if (half >= rightAngle || std::sin(half) >= inPlane)
-  {
-    return { -1.0, 1.0 };
-  }
-  const double turn = std::atan2(middle[aside], forward);
-  const double reach = std::asin(std::sin(half) / inPlane) + margin;
-  if (turn - reach >= rightAngle || turn + reach <= -rightAngle)
-  {
-    return { 1.0, -1.0 };
-  }
-  const auto tangent = [&](double angle) {
-    return std::abs(angle) >= rightAngle ? std::copysign(1.0, angle)
-                                         : std::tan(angle) * grid.spacing[axis] / grid.spacing[aside];
-  };
-  const double low = tangent(turn - reach), high = tangent(turn + reach);
-  const double aroundIt = 0.01 * (high - low); // beams' edges do not fall on the cone's
-  return { std::max(low - aroundIt, -1.0), std::min(high + aroundIt, 1.0) };
-}
-
-/// The beams of `light` from `position` (in voxels), row by row; a beam is at most `width` voxels wide where it leaves
-/// the box.
-std::vector<BeamRow> Beams(const Grid& grid, const Light& light, const glm::dvec3& position, double width)
-{
-  std::vector<BeamRow> rows;
-  for (int face = 0; face < 6; ++face)
-  {
-    const int axis = face / 2;
-    const bool up = face % 2 == 1;
-    const double near = std::max(0.0, up ? -position[axis] : position[axis] - grid.size[axis]);
-    const double far = up ? grid.size[axis] - position[axis] : position[axis];
-    if (far <= 0.0)
-    {
-      continue;
-    }
-    std::array<double, 2> u = Tangents(grid, position, (axis + 1) % 3, near, far);
-    std::array<double, 2> v = Tangents(grid, position, (axis + 2) % 3, near, far);
-    int fewest = 1;
-    if (light.type == LightType::Spot)
-    {
-      const std::array<double, 2> coneU = TangentsOfCone(grid, axis, up, (axis + 1) % 3, light);
-      const std::array<double, 2> coneV = TangentsOfCone(grid, axis, up, (axis + 2) % 3, light);
-      u = { std::max(u[0], coneU[0]), std::min(u[1], coneU[1]) };
-      v = { std::max(v[0], coneV[0]), std::min(v[1], coneV[1]) };
-      fewest = BeamsAcrossCone;
-    }
-    if (u[0] >= u[1] || v[0] >= v[1])
-    {
-      continue;
-    }
-    const auto parts = [=](double tangents) { return static_cast<int>(std::ceil(tangents * far / width - 1e-6)); };
-    const int countU = std::max({ fewest, 1, parts(u[1] - u[0]) }); // rounding must not decide on one more
-    const int countV = std::max({ fewest, 1, parts(v[1] - v[0]) });
-    for (int j = 0; j < countV; ++j)
-    {
-      const double widthU = (u[1] - u[0]) / countU;
-      const double widthV = (v[1] - v[0]) / countV;
-      rows.push_back({ axis, up, static_cast<float>(u[0] + 0.5 * widthU), static_cast<float>(v[0] + (j + 0.5) * widthV),
-        static_cast<float>(widthU), static_cast<float>(widthV), countU, static_cast<float>(near) });
-    }
-  }
-  return rows;
-}
+constexpr int PointsPerEdge = 4;        ///< of a rectangle
+constexpr double BeamWidth = 0.5;       ///< of a lamp's beams where they leave the box, voxels; a rectangle's: twice
+constexpr int RowsPerLaunch = 256;      ///< keeps a launch well below a tenth of a second for rows of a thousand voxels
+constexpr int RoundsAtMost = 64;        ///< that all power may go through one voxel, in fixed point
+constexpr double LayersPerLaunch = 4e6; ///< of beams that go round a periodic axis: the same
+constexpr int PassesAtMost = 9;         ///< in all
+constexpr int EvenFrom = 3;             ///< passes, after which the light of a box without faces is spread evenly
+constexpr double LeftAtMost = 5e-4;     ///< of the power: then no further pass
 
 bool IsInside(const Grid& grid, const glm::dvec3& position)
 {
@@ -157,11 +77,7 @@ public:
 
   SweepTally Run(const Monitor& monitor)
   {
-    const std::vector<glm::dvec3> points = Points(this->TheLight);
-    for (std::size_t p = 0; p < points.size(); ++p)
-    {
-      this->Follow(points[p], 1.0 / points.size(), [&](double done) { Report(monitor, (p + done) / points.size()); });
-    }
+    this->FollowAll(monitor);
     cl::Kernel add = this->Kernel("add_fixed");
     // All directions of a lamp inside the box were followed: so it is known what beams on the cone's border missed.
     const double correction = this->AllInside && this->Shone > 0.0 ? 1.0 / this->Shone : 1.0;
@@ -191,10 +107,77 @@ public:
     {
       this->AddCells(correction);
     }
+    if (this->Even > 0.0)
+    {
+      this->SpreadEvenly(correction);
+    }
     return this->TallyTimes(correction);
   }
 
 private:
+  /// Round periodic axes in passes (numerics.md, section 5.3): beams that are still in the box where one pass ends go on
+  /// as others, fewer, that share its power.
+  void FollowAll(const Monitor& monitor)
+  {
+    Pass pass = FirstPass(this->Volume.grid);
+    this->FollowPoints(pass, 1.0, OfPart(monitor, 0.0, 0.5));
+    const bool endless = this->Periodic[0] && this->Periodic[1] && this->Periodic[2];
+    for (int done = 1; done<PassesAtMost&& this->OnTheWay> LeftAtMost * this->Shone; ++done)
+    {
+      if (endless && done >= EvenFrom)
+      {
+        std::swap(this->Even, this->OnTheWay);
+        return;
+      }
+      const Monitor ofPass = OfPart(monitor, 1.0 - std::exp2(-done), 1.0 - std::exp2(-done - 1));
+      const double wanted = this->OnTheWay;
+      this->OnTheWay = 0.0;
+      pass = pass.Next();
+      this->FollowPoints({ pass.begin, pass.begin }, 1.0, {}); // what these beams have left where the pass begins
+      const double found = this->OnTheWay;
+      if (!(found > 0.0))
+      {
+        this->OnTheWay = wanted;
+        return;
+      }
+      this->OnTheWay = 0.0;
+      this->FollowPoints(pass, wanted / found, ofPass);
+    }
+  }
+
+  void FollowPoints(const Pass& pass, double factor, const Monitor& monitor)
+  {
+    // From far a rectangle is a point.
+    const std::vector<glm::dvec3> points =
+      pass.begin == 0 ? Points(this->TheLight) : std::vector<glm::dvec3>{ Vector(this->TheLight.position) };
+    const double all = static_cast<double>(points.size());
+    for (std::size_t p = 0; p < points.size(); ++p)
+    {
+      this->Follow(points[p], pass, factor / all, [&](double done) { Report(monitor, (p + done) / all); });
+    }
+  }
+
+  /// In a box without faces thin light crosses all places alike in the end.
+  void SpreadEvenly(double correction)
+  {
+    const SweepVolume& volume = this->Volume;
+    const std::vector<float> sigma = volume.sigma_t->Read();
+    const auto first = sigma.begin() + volume.sigma_t_first;
+    const double sum = std::accumulate(first, first + volume.grid.VoxelCount(), 0.0);
+    if (!(sum > 0.0))
+    {
+      this->OnTheWay = this->Even; // nothing ever takes it
+      return;
+    }
+    for (int c = 0; c < volume.channels; ++c)
+    {
+      cl::Kernel add = this->Kernel("add_evenly");
+      With(add, *volume.deposit.path, cl_ulong(volume.first + c * volume.stride),
+        static_cast<float>(this->TheLight.power[c] * correction * this->Even / sum));
+      this->TheDevice.Queue().enqueueNDRangeKernel(add, cl::NullRange, cl::NDRange(volume.grid.VoxelCount()));
+    }
+  }
+
   void AddCells(double factor)
   {
     cl_float4 watts = {};
@@ -251,7 +234,6 @@ private:
     info.cosine = static_cast<float>(std::cos(0.5 * this->TheLight.angle * Pi / 180.0));
     info.scale = static_cast<float>(this->Scale());
     info.diagonal = static_cast<float>(this->Diagonal());
-    info.rounds = RoundsAtMost;
     for (int face = 0; face < 6; ++face)
     {
       const BoxFaceLayout layout = LayoutOfFace(grid, face);
@@ -261,7 +243,7 @@ private:
     return info;
   }
 
-  void Follow(const glm::dvec3& point, double part, const std::function<void(double)>& report)
+  void Follow(const glm::dvec3& point, const Pass& pass, double part, const std::function<void(double)>& report)
   {
     const Grid& grid = this->Volume.grid;
     glm::dvec3 position;
@@ -271,7 +253,8 @@ private:
     }
     const bool many = this->TheLight.type == LightType::Rectangle;
     this->AllInside = this->AllInside && IsInside(grid, position);
-    const std::vector<BeamRow> rows = Beams(grid, this->TheLight, position, many ? 2.0 * BeamWidth : BeamWidth);
+    const std::vector<BeamRow> rows =
+      Beams(grid, this->Periodic, this->TheLight, position, many ? 2.0 * BeamWidth : BeamWidth, pass);
     if (rows.empty())
     {
       return;
@@ -280,9 +263,9 @@ private:
     Buffer<float> sums(this->TheDevice, rows.size() * LampRowSums, "sums");
     cl::Kernel kernel = this->Kernel("follow_lamp");
     const LampInfo info = this->Describe(position, part);
-    for (std::size_t first = 0; first < rows.size(); first += RowsPerLaunch)
+    for (std::size_t first = 0, count; first < rows.size(); first += count)
     {
-      const std::size_t count = std::min<std::size_t>(RowsPerLaunch, rows.size() - first);
+      count = std::min<std::size_t>(this->RowsTogether(rows[first]), rows.size() - first);
       With(kernel, info, *this->Volume.sigma_t, cl_ulong(this->Volume.sigma_t_first), this->Path,
         cl_ulong(this->Volume.stride), this->Cells, rowBuffer, cl_int(count), cl_int(first), sums);
       this->TheDevice.Queue().enqueueNDRangeKernel(
@@ -291,6 +274,13 @@ private:
       report(static_cast<double>(first + count) / rows.size());
     }
     this->Count(rows, sums.Read());
+  }
+
+  /// Rows of a launch. Round a periodic axis it may be far.
+  std::size_t RowsTogether(const BeamRow& row) const
+  {
+    const double layers = this->Periodic[row.axis] ? static_cast<double>(row.count) * row.layers : 1.0;
+    return static_cast<std::size_t>(std::clamp(LayersPerLaunch / layers, 1.0, static_cast<double>(RowsPerLaunch)));
   }
 
   void Count(const std::vector<BeamRow>& rows, const std::vector<float>& sums)
@@ -304,7 +294,7 @@ private:
         this->Out[face] += row[1 + face];
       }
       this->OnTheWay += row[7];
-      this->Shone += row[8];
+      this->Shone += rows[r].skipped > 0 ? 0.0 : row[8];
     }
   }
 
@@ -331,6 +321,7 @@ private:
   Buffer<cl_long> Cells, Path;
   std::array<double, 6> In = {}, Out = {}; ///< by face; these and the next are parts of the power
   double OnTheWay = 0.0;
+  double Even = 0.0;  ///< to be spread over the whole box
   double Shone = 0.0; ///< in the directions that were followed
   bool AllInside = true;
 };

@@ -24,7 +24,6 @@ typedef struct
   float intensity;                  ///< part of the power, per steradian; at normal emission where LAMBERT
   float scale;                      ///< fixed point units per length
   float diagonal;                   ///< of a voxel
-  int rounds;                       ///< of a beam round a periodic axis
   int faceFirst[6], faceStep[3][3]; ///< as BoxFaceLayout has them: of each face; of an axis' faces, along each axis
 } LampInfo;
 
@@ -36,5 +35,7 @@ typedef struct
   float widthU, widthV;     ///< of a beam, in tangents
   int count;                ///< of beams along u
   float begin;              ///< layers from the lamp to the box, 0 inside
+  int skipped;              ///< layers that they go before anything is counted and put down
+  int layers;               ///< that they go in all where the axis is periodic
 } BeamRow;
 SHARED_END

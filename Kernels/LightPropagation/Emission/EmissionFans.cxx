@@ -1,4 +1,4 @@
-#include "LightPropagation/Uncollided/EmissionFans.h"
+#include "LightPropagation/Emission/EmissionFans.h"
 
 #include "Device/Defines.h"
 #include "TyndallKernelSources.h"
@@ -12,29 +12,63 @@ namespace tyndall
 {
 namespace
 {
-constexpr int FewestPoints = 8;   ///< fans into each part of space; two halves, each of four mirror images
-constexpr int MostPoints = 256;   ///< the same
-constexpr double FewLeft = 0.012; ///< of all voxels, may be left to 32 rays of their own rather than to one more fan
-constexpr double LinesPerVoxel = 1.02;      ///< along an edge in the last layer: none is without a line
-constexpr int LineStep = 16;                ///< lines are a multiple of that: the widest packet
+constexpr int FewestPoints = 8;        ///< fans into each part of space; two halves, each of two mirrored pairs
+constexpr int MostPoints = 1024;       ///< the same
+constexpr double FewLeft = 0.001;      ///< of all voxels, may be left to rays of their own rather than to one more fan
+constexpr double LinesPerVoxel = 1.02; ///< along an edge in the last layer: none is without a line
+constexpr int LineStep = 16;           ///< lines are a multiple of that: the widest packet
 constexpr std::size_t KeptFloats = 1 << 24; ///< of the fans that are kept at a time, about: 64 MiB
 constexpr int NearGap = 3; ///< voxels between what shines and the nearest voxel that a fan is asked for
 
-/// Of Sobol's sequence in four dimensions (Joe and Kuo 2008), the first numbers of each, over 2, 4, 8, ...
-constexpr int SobolBits = 6;
-constexpr std::array<std::array<int, SobolBits>, 4> SobolNumbers = { { { 1, 1, 1, 1, 1, 1 }, { 1, 3, 5, 15, 17, 51 },
-  { 1, 3, 3, 9, 29, 23 }, { 1, 3, 1, 5, 31, 29 } } };
-
-/// 0 to 1, in the middle of a cell of all the points.
-double InSequence(int n, int dimension)
+/// Sobol's sequence in six dimensions (Joe and Kuo 2008).
+class Sobol
 {
-  int place = 0;
-  for (int bit = 0; bit < SobolBits; ++bit)
+public:
+  static constexpr int Dimensions = 6;
+
+  Sobol()
   {
-    place ^= (n >> bit & 1) * (SobolNumbers[dimension][bit] << (SobolBits - 1 - bit));
+    for (int d = 0; d < Dimensions; ++d)
+    {
+      const Polynomial& p = Polynomials[d];
+      for (int k = 0; k < Bits; ++k)
+      {
+        int number = k < p.degree ? p.first[k] : p.degree == 0 ? 1 : 0;
+        for (int i = 1; i <= p.degree && k >= p.degree; ++i)
+        {
+          const bool counts = i == p.degree || (p.inner >> (p.degree - 1 - i) & 1) != 0;
+          number ^= counts ? this->Numbers[d][k - i] << i : 0;
+        }
+        number ^= k >= p.degree && p.degree > 0 ? this->Numbers[d][k - p.degree] : 0;
+        this->Numbers[d][k] = number;
+      }
+    }
   }
-  return (place + 0.5) / (1 << SobolBits);
-}
+
+  /// 0 to 1, in the middle of a cell of all the points.
+  double At(int n, int dimension) const
+  {
+    int place = 0;
+    for (int bit = 0; bit < Bits; ++bit)
+    {
+      place ^= (n >> bit & 1) * (this->Numbers[dimension][bit] << (Bits - 1 - bit));
+    }
+    return (place + 0.5) / (1 << Bits);
+  }
+
+private:
+  static constexpr int Bits = 9; ///< MostPoints in pairs
+
+  /// Over the field of two elements: of what degree, its inner coefficients, the numbers to begin with.
+  struct Polynomial
+  {
+    int degree, inner;
+    std::array<int, 4> first;
+  };
+  static constexpr std::array<Polynomial, Dimensions> Polynomials = { { { 0, 0, {} }, { 1, 0, { 1 } },
+    { 2, 1, { 1, 3 } }, { 3, 1, { 1, 3, 1 } }, { 3, 2, { 1, 1, 1 } }, { 4, 1, { 1, 1, 3, 3 } } } };
+  std::array<std::array<int, Bits>, Dimensions> Numbers = {};
+};
 
 /// The box of what shines, its axes in another order and some of them turned round.
 class TurnedBox
@@ -96,7 +130,6 @@ private:
   double SumOf(const std::array<int, 3>& low, const std::array<int, 3>& high) const
   {
     const int* size = this->Scene.info.sourceSize;
-    const std::size_t voxels = this->Scene.emission.size() / this->Scene.volume.channels;
     double sum = 0.0;
     std::array<int, 3> at;
     for (at[2] = low[2]; at[2] < high[2]; ++at[2])
@@ -110,11 +143,7 @@ private:
           {
             v[this->Fan.order[k]] = this->IsTurned(k) ? this->Size[k] - 1 - at[k] : at[k];
           }
-          const std::size_t place = (static_cast<std::size_t>(v[2]) * size[1] + v[1]) * size[0] + v[0];
-          for (std::size_t i = place; i < this->Scene.emission.size(); i += voxels)
-          {
-            sum += this->Scene.emission[i];
-          }
+          sum += this->Scene.emission[(static_cast<std::size_t>(v[2]) * size[1] + v[1]) * size[0] + v[0]];
         }
       }
     }
@@ -128,37 +157,37 @@ private:
 class EmissionFans
 {
 public:
-  EmissionFans(Device& device, const FanScene& scene, const Buffer<float>& path, const Buffer<float>& flux)
+  EmissionFans(Device& device, const FanScene& scene)
     : TheDevice(device)
     , Scene(scene)
-    , Path(path)
-    , Flux(flux)
-    , Outside(device, scene.volume.stride, "extinction around what shines")
-    , Halves(device, scene.volume.stride, "half the light of what shines")
+    , Emission(device, scene.emission, "what shines")
+    , Outside(device, scene.volume.grid.VoxelCount() + 2 * FanMargin, "extinction around what shines")
+    , Halves(Zeros(scene.volume.stride))
+    , FaceHalves(Zeros(FanFaceFirst(scene.volume.grid, 6)))
   {
-    const SweepVolume& volume = scene.volume;
-    this->Halves.Fill(0.0f);
-    cl::Kernel clear = this->Kernel("clear_box");
-    With(clear, scene.info, *volume.sigma_t, cl_ulong(volume.sigma_t_first), this->Outside);
-    device.Queue().enqueueNDRangeKernel(clear, cl::NullRange, cl::NDRange(volume.grid.VoxelCount()));
-    this->Emitted = std::accumulate(scene.emission.begin(), scene.emission.end(), 0.0) * volume.grid.VoxelVolume();
+    this->Outside.Fill(0.0f);
+    this->Light.path = this->Zeros(scene.volume.stride);
+    this->Light.flux = this->Zeros(scene.volume.deposit.flux ? 3 * scene.volume.stride : 0);
+    this->Light.found = this->Zeros(scene.volume.stride);
+    this->Light.faces = this->Zeros(this->FaceHalves.Size());
+    this->Light.cellsFound = this->Zeros(this->FaceHalves.Size());
+    this->Emitted =
+      std::accumulate(scene.emission.begin(), scene.emission.end(), 0.0) * scene.volume.grid.VoxelVolume();
   }
 
-  Buffer<float> Run(const Monitor& monitor)
+  FanLight Run(const Monitor& monitor)
   {
-    Buffer<float> found(this->TheDevice, this->Scene.volume.stride, "voxels that fans light");
-    found.Fill(-1.0f);
     this->FollowAll(0, this->Points, OfPart(monitor, 0.0, 0.5));
-    while (this->ArePartsLeft(found) && this->Points < MostPoints)
+    while (this->AreManyLeft() && this->Points < MostPoints)
     {
-      cl::Kernel keep = this->Kernel("keep_half");
-      With(keep, this->Path, cl_ulong(this->Scene.volume.stride), this->Halves);
-      this->TheDevice.Queue().enqueueNDRangeKernel(
-        keep, cl::NullRange, cl::NDRange(this->Scene.volume.grid.VoxelCount()));
+      // What is there is a half, before the other one comes.
+      this->Halves.CopyFrom(this->Light.path, 0, this->Halves.Size());
+      this->FaceHalves.CopyFrom(this->Light.faces, 0, this->FaceHalves.Size());
       this->FollowAll(this->Points, 2 * this->Points, OfPart(monitor, 0.5, 1.0));
       this->Points *= 2;
     }
-    for (const Buffer<float>* values : { &this->Path, &this->Flux })
+    this->JudgeCells();
+    for (const Buffer<float>* values : { &this->Light.path, &this->Light.flux, &this->Light.faces })
     {
       if (values->Size() > 0)
       {
@@ -168,21 +197,41 @@ public:
       }
     }
     this->TheDevice.Finish();
-    return found;
+    return std::move(this->Light);
   }
 
 private:
-  /// Judges all voxels. @return whether more than a few of the far ones need more fans
-  bool ArePartsLeft(Buffer<float>& found)
+  Buffer<float> Zeros(std::size_t size)
   {
-    const SweepVolume& volume = this->Scene.volume;
-    cl::Kernel judge = this->Kernel("judge_fans");
-    With(judge, this->Scene.info, this->Path, cl_ulong(volume.stride),
-      static_cast<float>(this->Emitted * volume.grid.VoxelVolume() * this->Points), this->Halves, found);
-    this->TheDevice.Queue().enqueueNDRangeKernel(judge, cl::NullRange, cl::NDRange(volume.grid.VoxelCount()));
-    const std::vector<float> values = found.Read();
-    const std::ptrdiff_t left = std::count(values.begin(), values.begin() + volume.grid.VoxelCount(), 0.0f);
-    return left > FewLeft * this->Points * volume.grid.VoxelCount();
+    Buffer<float> values(this->TheDevice, size, "the light of fans");
+    values.Fill(0.0f);
+    return values;
+  }
+
+  /// Judges all voxels. @return whether more than a few of the far ones need more fans
+  bool AreManyLeft()
+  {
+    const std::size_t voxels = this->Scene.volume.grid.VoxelCount();
+    cl::Kernel judge = this->Kernel("judge_voxels");
+    With(judge, this->Scene.info, static_cast<float>(this->Emitted * this->Points), this->Light.path, this->Halves,
+      this->Light.found);
+    this->TheDevice.Queue().enqueueNDRangeKernel(judge, cl::NullRange, cl::NDRange(voxels));
+    const std::vector<float> values = this->Light.found.Read();
+    const std::ptrdiff_t left = std::count(values.begin(), values.begin() + voxels, 0.0f);
+    return left > FewLeft * this->Points * voxels;
+  }
+
+  void JudgeCells()
+  {
+    const Grid& grid = this->Scene.volume.grid;
+    for (int face = 0; face < 6; ++face)
+    {
+      cl::Kernel judge = this->Kernel("judge_cells");
+      With(judge, this->Scene.info, cl_int(face / 2), cl_int(face % 2), cl_ulong(FanFaceFirst(grid, face)),
+        static_cast<float>(this->Emitted * this->Points), this->Light.faces, this->FaceHalves, this->Light.cellsFound);
+      const std::size_t cells = grid.VoxelCount() / grid.size[face / 2];
+      this->TheDevice.Queue().enqueueNDRangeKernel(judge, cl::NullRange, cl::NDRange(cells));
+    }
   }
 
   /// @param from, end  points of each part of space
@@ -197,8 +246,19 @@ private:
   cl::Kernel Kernel(const char* name, int width = 1)
   {
     return this->TheDevice.Kernel(name, kernel_source::EmissionFans,
-      Define("REAL_WIDTH", width) + Define("CHANNELS", this->Scene.volume.channels) +
+      Define("REAL_WIDTH", width) + Define("CHANNELS", 1) +
         Define("NET_FLUX", this->Scene.volume.deposit.flux != nullptr));
+  }
+
+  /// sigma_t for the fans whose first axis is that of `fan`.
+  void LayOut(const FanInfo& fan)
+  {
+    const SweepVolume& volume = this->Scene.volume;
+    cl::Kernel layOut = this->Kernel("lay_out");
+    With(layOut, this->Scene.info, fan, *volume.sigma_t, cl_ulong(volume.sigma_t_first), this->Outside);
+    const std::array<int, 3>& size = volume.grid.size;
+    this->TheDevice.Queue().enqueueNDRangeKernel(
+      layOut, cl::NullRange, cl::NDRange(size[fan.order[1]], size[fan.order[2]], size[fan.order[0]]));
   }
 
   /// The fans into one part of space. @return no layers: it has no far voxels
@@ -212,6 +272,15 @@ private:
       fan.order[k] = (axis + k) % 3;
       fan.turned |= (part >> k & 1) << fan.order[k];
     }
+    const std::array<int, 3> strides = { info.size[fan.order[1]] * info.size[fan.order[2]], 1,
+      info.size[fan.order[1]] };
+    for (int k = 0; k < 3; ++k)
+    {
+      const bool round = (part >> k & 1) != 0;
+      fan.strides[k] = round ? -strides[k] : strides[k];
+      fan.base += round ? (info.size[fan.order[k]] - 1) * strides[k] : 0;
+    }
+    fan.faceFirst = static_cast<int>(FanFaceFirst(this->Scene.volume.grid, 2 * axis + (part & 1 ? 0 : 1)));
     const TurnedBox box(this->Scene, fan);
     std::array<int, 3> ends;
     for (int k = 0; k < 3; ++k)
@@ -232,35 +301,37 @@ private:
     const auto cover = [&](int k, float& first, int& count) {
       const double low = std::min(0.0, (fan.first[k] - box.First[k] - box.Size[k]) / nearest);
       const double high = std::min(away + 0.5 * box.Size[k] + 0.5, ends[k] - box.First[k] + 0.0) / nearest;
-      first = static_cast<float>(low) - 0.5f * fan.spacing;
-      count = static_cast<int>(std::ceil((high - low) / fan.spacing)) + 2;
+      first = static_cast<float>(low) - fan.spacing; // a point adds up to one spacing
+      count = static_cast<int>(std::ceil((high - low) / fan.spacing)) + 3;
     };
     cover(1, fan.firstLine, fan.lines);
     cover(2, fan.firstRow, fan.rows);
     fan.lines = (fan.lines + LineStep - 1) / LineStep * LineStep;
     fan.emitted = static_cast<float>(this->Emitted);
-    fan.share = static_cast<float>(this->Scene.volume.grid.VoxelVolume());
     return fan;
   }
 
-  /// [point][place along the turned axes, depth in a layer]; any four are mirror images of each other.
+  /// [point][FanPointFloats]; any two are mirror images of each other, second and third axis.
   std::vector<float> FindPoints(const FanInfo& fan, int from, int end) const
   {
     const TurnedBox box(this->Scene, fan);
+    const Sobol sobol;
     std::vector<float> points;
     for (int p = from; p < end; ++p)
     {
-      std::array<double, 4> parts;
-      for (int d = 0; d < 4; ++d)
+      const bool swapped = (p & 1) != 0;
+      std::array<double, Sobol::Dimensions> parts;
+      for (int d = 0; d < Sobol::Dimensions; ++d)
       {
-        const double part = InSequence(p / 4, d);
-        parts[d] = p & 2 ? 1.0 - part : part;
+        parts[d] = sobol.At(p / 2, d);
       }
-      for (float place : box.PointAt({ parts[0], parts[1], parts[2] }, (p & 1) != 0))
+      for (float place : box.PointAt({ parts[0], parts[1], parts[2] }, swapped))
       {
         points.push_back(place);
       }
       points.push_back(static_cast<float>(parts[3]));
+      points.push_back(static_cast<float>(parts[swapped ? 5 : 4]));
+      points.push_back(static_cast<float>(parts[swapped ? 4 : 5]));
     }
     return points;
   }
@@ -279,14 +350,19 @@ private:
     {
       tangents[i] = fan.firstLine + i * fan.spacing;
     }
-    const std::size_t ofRow = static_cast<std::size_t>(fan.layers) * fan.lines;
+    if (this->LaidOut != fan.order[0])
+    {
+      this->LayOut(fan);
+      this->LaidOut = fan.order[0];
+    }
+    const std::size_t ofRow = static_cast<std::size_t>(fan.layers + 1) * fan.lines;
     const int mostRows = static_cast<int>(std::max<std::size_t>(1, KeptFloats / ofRow));
     fan.bandRows = std::min(fan.rows, mostRows);
     const int together = std::max(1, std::min(all, mostRows / fan.rows));
     const std::size_t lines = static_cast<std::size_t>(fan.bandRows) * fan.lines * together;
     const KeptFans kept = { { this->TheDevice, this->FindPoints(fan, from, end), "fans of rays" },
-      { this->TheDevice, tangents, "fans of rays" }, { this->TheDevice, lines * fan.layers, "fans of rays" },
-      { this->TheDevice, lines * this->Scene.volume.channels, "fans of rays" } };
+      { this->TheDevice, tangents, "fans of rays" },
+      { this->TheDevice, lines * (fan.layers + 1) + FanMargin, "fans of rays" } };
     for (fan.pointFirst = 0; fan.pointFirst < all; fan.pointFirst += together)
     {
       fan.points = std::min(together, all - fan.pointFirst);
@@ -301,7 +377,7 @@ private:
   /// As in EmissionFans.cl.
   struct KeptFans
   {
-    Buffer<float> points, tangents, left, weights;
+    Buffer<float> points, tangents, light;
   };
 
   void FollowBand(const FanInfo& fan, const KeptFans& kept)
@@ -310,25 +386,28 @@ private:
     const std::size_t width = this->TheDevice.KernelWidth();
     cl::Kernel follow = this->Kernel("follow_fan", this->TheDevice.KernelWidth());
     With(follow, this->Scene.info, fan, *volume.sigma_t, cl_ulong(volume.sigma_t_first), this->Outside, kept.points,
-      kept.tangents, this->Scene.emissionOnDevice, kept.left, kept.weights);
+      kept.tangents, this->Emission, kept.light);
     const int rows = std::min(fan.bandRows, fan.rows - fan.bandFirst);
     this->TheDevice.Queue().enqueueNDRangeKernel(
       follow, cl::NullRange, cl::NDRange(fan.lines / width, rows, fan.points), cl::NDRange(1, 1, 1));
-    cl::Kernel collect = this->Kernel("collect_fans");
-    With(collect, this->Scene.info, fan, kept.points, kept.left, kept.weights, this->Path, this->Flux,
-      cl_ulong(volume.stride), this->Halves);
+    cl::Kernel collect = this->Kernel("collect_fans", this->TheDevice.KernelWidth());
+    With(collect, this->Scene.info, fan, kept.points, kept.light, this->Light.path, this->Light.flux,
+      cl_ulong(volume.stride), this->Halves, this->Light.faces, this->FaceHalves);
+    const std::size_t across = volume.grid.size[fan.order[1]] - fan.first[1];
     const cl::NDRange voxels(
-      volume.grid.size[fan.order[1]] - fan.first[1], volume.grid.size[fan.order[2]] - fan.first[2], fan.layers);
+      (across + width - 1) / width, volume.grid.size[fan.order[2]] - fan.first[2], fan.layers + 1);
     this->TheDevice.Queue().enqueueNDRangeKernel(collect, cl::NullRange, voxels, cl::NDRange(1, 1, 1));
     this->TheDevice.Finish();
   }
 
   Device& TheDevice;
   const FanScene& Scene;
-  const Buffer<float>&Path, &Flux;
-  Buffer<float> Outside, Halves; ///< as in EmissionFans.cl
-  double Emitted = 0.0;          ///< as FanInfo has it
-  int Points = FewestPoints;     ///< fans into each part of space
+  const Buffer<float> Emission;
+  Buffer<float> Outside, Halves, FaceHalves; ///< as in EmissionFans.cl
+  int LaidOut = -1;                          ///< first axis of the fans that Outside is laid out for
+  FanLight Light;
+  double Emitted = 0.0;      ///< as FanInfo has it
+  int Points = FewestPoints; ///< fans into each part of space
 };
 }
 
@@ -337,9 +416,18 @@ int FarFrom(const std::array<int, 3>& sourceSize)
   return 2 * (*std::max_element(sourceSize.begin(), sourceSize.end()) + NearGap);
 }
 
-Buffer<float> GatherByFans(
-  Device& device, const FanScene& scene, const Buffer<float>& path, const Buffer<float>& flux, const Monitor& monitor)
+std::size_t FanFaceFirst(const Grid& grid, int face)
 {
-  return EmissionFans(device, scene, path, flux).Run(monitor);
+  std::size_t first = 0;
+  for (int before = 0; before < face; ++before)
+  {
+    first += grid.VoxelCount() / grid.size[before / 2];
+  }
+  return first;
+}
+
+FanLight GatherByFans(Device& device, const FanScene& scene, const Monitor& monitor)
+{
+  return EmissionFans(device, scene).Run(monitor);
 }
 }

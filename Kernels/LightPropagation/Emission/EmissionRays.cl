@@ -3,7 +3,7 @@
 //   NET_FLUX  1 where net flux is wanted
 //   MOST      rays of a voxel to the box around what shines, at most
 
-#include "LightPropagation/Uncollided/EmissionBox.cl"
+#include "LightPropagation/Emission/EmissionBox.cl"
 
 #define OPAQUE 80.0f // mean free paths beyond which nothing is left
 
@@ -73,7 +73,7 @@ static void trace(const turned_scene* s, const lit_voxel* voxel, const real* poi
     received = mean_left(own * (ray.ahead + ray.behind), &left);
   }
   extinguished(tau, &left);
-  see_box(s, point, &ray, received * left, sigma, emission, radiance);
+  see_box(s, point, &ray, received * left, sigma, emission, radiance, 0);
 }
 
 // Solid angle of each side of the box that light comes through, from the voxel's middle, but no less than an eighth of
@@ -341,14 +341,17 @@ __kernel void gather_voxels(EmissionInfo s, const __global float* sigma, ulong s
   }
 }
 
-// What goes out through cell i of a face of the grid, [cell][CHANNELS], W.
+// What goes out through cell i of a face of the grid, [cell][CHANNELS], W / length^2.
+// found  above 0: of cells that have their light from fans (EmissionFans.cl)
+// face_first  the face's first cell in both
 __kernel void gather_face(EmissionInfo s, int axis, int up, const __global float* sigma, ulong sigma_first,
-  const __global float* points, const __global float* emission, __global float* out, ulong first, ulong count)
+  const __global float* points, const __global float* emission, __global float* out, const __global float* found,
+  ulong face_first, ulong first, ulong count)
 {
   const ulong i = first + get_global_id(0);
   const int u = (axis + 1) % 3;
   const int v = (axis + 2) % 3;
-  if (i >= count)
+  if (i >= count || found[face_first + i] > 0.0f)
   {
     return;
   }
@@ -360,7 +363,7 @@ __kernel void gather_face(EmissionInfo s, int axis, int up, const __global float
   gather(&s, &voxel, points, sigma + sigma_first, emission, sums);
   for (int c = 0; c < CHANNELS; ++c)
   {
-    out[i * CHANNELS + c] = fabs(sums[4 * c + 1 + axis]) * s.spacing[u] * s.spacing[v];
+    out[(face_first + i) * CHANNELS + c] = fabs(sums[4 * c + 1 + axis]);
   }
 }
 
@@ -383,4 +386,18 @@ __kernel void add_gathered(
 {
   const ulong i = get_global_id(0);
   values[first + i] += gathered[from + i] * factor;
+}
+
+// Light of fans: values[first + i * stride] = factor * brought[i]
+__kernel void take_fans(const __global float* brought, __global float* values, ulong first, ulong stride, float factor)
+{
+  const ulong i = get_global_id(0);
+  values[first + i * stride] = factor * brought[i];
+}
+
+// The least of both: what all sets of fans have found.
+__kernel void take_least(const __global float* found, __global float* values, ulong first, ulong stride, float factor)
+{
+  const ulong i = get_global_id(0);
+  values[first + i * stride] = fmin(values[first + i * stride], factor * found[i]);
 }

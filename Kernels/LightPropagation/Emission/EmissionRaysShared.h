@@ -21,14 +21,22 @@ typedef struct
 {
   int order[3], turned;      ///< axes of the scene, and bits of those that are turned round
   int first[3];              ///< the first voxel along each axis, in the turned scene
-  int layers;                ///< of voxels along the first axis
+  int layers;                ///< of voxels along the first axis, up to the face that it leads to
+  int faceFirst;             ///< that face's first cell
   int lines, rows;           ///< of a fan along the second and third axis; lines a multiple of 16
   float firstLine, firstRow; ///< tangents, voxels a layer
   float spacing;             ///< of lines and of rows, in tangents
   int bandFirst, bandRows;   ///< the rows that are kept at a time
   int pointFirst, points;    ///< of the fans that are kept at a time
   int halfOfPoints;          ///< the first half of all
-  float emitted;             ///< integral of emission over the box, sum of the channels
-  float share;               ///< volume of a voxel over all points
+  int strides[3], base;      ///< of sigma_t as it is laid out for the fans, in the turned scene
+  float emitted;             ///< integral of emission over the box
 } FanInfo;
+
+enum
+{
+  FanMargin = 16, ///< voxels before and behind those that are laid out for fans: one is loaded, but never counts
+  FanPointFloats =
+    6 ///< place along the turned axes, voxels; depth in a layer; what is added to the tangents, in spacings
+};
 SHARED_END

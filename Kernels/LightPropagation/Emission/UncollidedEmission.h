@@ -1,6 +1,6 @@
 #pragma once
 
-#include "LightPropagation/Uncollided/EmissionPeaks.h"
+#include "LightPropagation/Emission/EmissionPeaks.h"
 #include "LightPropagation/Uncollided/UncollidedSource.h"
 
 namespace tyndall

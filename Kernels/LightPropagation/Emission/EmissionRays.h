@@ -1,8 +1,8 @@
 #pragma once
 
+#include "LightPropagation/Emission/EmissionPeaks.h"
 #include "LightPropagation/Sweep/SweepTally.h"
 #include "LightPropagation/Sweep/SweepVolume.h"
-#include "LightPropagation/Uncollided/EmissionPeaks.h"
 
 #include "Device/Monitor.h"
 
@@ -14,7 +14,8 @@ namespace tyndall
 /// The mean over a voxel of the integral of radiance over the solid angle of the box around the peak (numerics.md,
 /// Eq. (40)), with exact optical lengths: points and directions are a lattice in five dimensions (of rank 1), 32 to
 /// 4096 rays a voxel at first, the more the smaller the grid and the error asked for. Where two halves of them differ
-/// by more than that, twice as many, up to 4096.
+/// by more than that, twice as many, up to 4096. Where the grid is so large that all would begin with 32, voxels far
+/// from the peak and cells of the box's faces share fans of rays (EmissionFans.h).
 ///
 /// Promises: the light has the symmetries of the scene, and what is taken and what leaves are the power emitted.
 ///

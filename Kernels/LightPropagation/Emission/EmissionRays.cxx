@@ -1,7 +1,7 @@
-#include "LightPropagation/Uncollided/EmissionRays.h"
+#include "LightPropagation/Emission/EmissionRays.h"
 
-#include "LightPropagation/Uncollided/EmissionFans.h"
-#include "LightPropagation/Uncollided/EmissionRaysShared.h"
+#include "LightPropagation/Emission/EmissionFans.h"
+#include "LightPropagation/Emission/EmissionRaysShared.h"
 #include "Medium/BoxFaces.h"
 #include "Numerics/Constants.h"
 
@@ -138,18 +138,21 @@ private:
     this->Path.Fill(0.0f);
     this->Flux = Buffer<float>(device, volume.deposit.flux ? 3 * volume.stride * volume.channels : 0, "its net flux");
     this->Flux.Fill(0.0f);
-    Buffer<float> found(device, volume.stride, "voxels that fans light");
-    found.Fill(0.0f);
+    this->Found = Buffer<float>(device, volume.stride, "voxels that fans light");
+    this->FaceLight = Buffer<float>(device, FanFaceFirst(volume.grid, 6) * volume.channels, "light that leaves");
+    this->CellsFound = Buffer<float>(device, FanFaceFirst(volume.grid, 6), "cells that fans light");
     // Where voxels are so many that each would have few rays, fans have as many for less.
-    if (this->Scene.fewest == FewestRays && this->ShineAlike())
+    const bool fans = this->Scene.fewest == FewestRays;
+    this->Found.Fill(fans ? 1.0f : 0.0f);
+    this->CellsFound.Fill(fans ? 1.0f : 0.0f);
+    if (fans)
     {
-      found = GatherByFans(device, { volume, this->Scene, this->OfChannels, this->Emission }, this->Path, this->Flux,
-        OfPart(monitor, 0.0, 0.5));
+      this->GatherByFansFor(OfPart(monitor, 0.0, 0.5));
     }
     cl::Kernel gather = this->Kernel("gather_voxels", this->Width());
     this->InParts(volume.grid.VoxelCount(), 0.5, 0.9, monitor, [&](std::size_t first, std::size_t size) {
       With(gather, this->Scene, *volume.sigma_t, cl_ulong(volume.sigma_t_first), this->Points, this->Emission,
-        this->Path, this->Flux, cl_ulong(volume.stride), found, cl_ulong(first), cl_ulong(first + size));
+        this->Path, this->Flux, cl_ulong(volume.stride), this->Found, cl_ulong(first), cl_ulong(first + size));
       device.Queue().enqueueNDRangeKernel(gather, cl::NullRange, cl::NDRange(size));
     });
     cl::Kernel take = this->Kernel("take_rows");
@@ -167,21 +170,71 @@ private:
     }
   }
 
+  /// Channels that shine alike have one set of fans, others one each.
+  void GatherByFansFor(const Monitor& monitor)
+  {
+    const SweepVolume& volume = this->Volume;
+    const std::size_t voxels = this->OfChannels.size() / volume.channels;
+    const int sets = this->ShineAlike() ? 1 : volume.channels;
+    for (int set = 0; set < sets; ++set)
+    {
+      const auto begin = this->OfChannels.begin() + set * voxels;
+      const FanScene scene = { volume, this->Scene, std::vector<float>(begin, begin + voxels) };
+      if (this->Emitted[set] == 0.0)
+      {
+        continue;
+      }
+      const FanLight light = GatherByFans(this->TheDevice, scene,
+        OfPart(monitor, set / static_cast<double>(sets), (set + 1) / static_cast<double>(sets)));
+      const auto keep = [&](const char* kernel, const Buffer<float>& from, const Buffer<float>& to, std::size_t first,
+                          std::size_t stride, float factor) {
+        cl::Kernel take = this->Kernel(kernel);
+        With(take, from, to, cl_ulong(first), cl_ulong(stride), factor);
+        this->TheDevice.Queue().enqueueNDRangeKernel(take, cl::NullRange, cl::NDRange(from.Size()));
+      };
+      for (int c = set; c < (sets == 1 ? volume.channels : set + 1); ++c)
+      {
+        const double part = this->Emitted[c] / this->Emitted[set];
+        const float ofVoxel = static_cast<float>(part * volume.grid.VoxelVolume());
+        keep("take_fans", light.path, this->Path, c * volume.stride, 1, ofVoxel);
+        keep("take_fans", light.faces, this->FaceLight, c, volume.channels, static_cast<float>(part));
+        if (light.flux.Size() > 0)
+        {
+          keep("take_fans", light.flux, this->Flux, 3 * c * volume.stride, 1, ofVoxel);
+        }
+      }
+      keep("take_least", light.found, this->Found, 0, 1, 1.0f);
+      keep("take_least", light.cellsFound, this->CellsFound, 0, 1, 1.0f);
+      this->TheDevice.Finish(); // the fans' light goes
+    }
+  }
+
   void GatherFaces(const Monitor& monitor)
   {
     const SweepVolume& volume = this->Volume;
     cl::Kernel gather = this->Kernel("gather_face", this->Width());
     for (int face = 0; face < 6; ++face)
     {
-      const std::size_t cells = volume.grid.VoxelCount() / volume.grid.size[face / 2];
-      Buffer<float> out(this->TheDevice, cells * volume.channels, "the light that leaves through a face");
+      const std::size_t first = FanFaceFirst(volume.grid, face);
+      const std::size_t cells = FanFaceFirst(volume.grid, face + 1) - first;
       this->InParts(
-        cells, 0.9 + face / 60.0, 0.9 + (face + 1) / 60.0, monitor, [&](std::size_t first, std::size_t size) {
+        cells, 0.9 + face / 60.0, 0.9 + (face + 1) / 60.0, monitor, [&](std::size_t begin, std::size_t size) {
           With(gather, this->Scene, cl_int(face / 2), cl_int(face % 2), *volume.sigma_t, cl_ulong(volume.sigma_t_first),
-            this->Points, this->Emission, out, cl_ulong(first), cl_ulong(first + size));
+            this->Points, this->Emission, this->FaceLight, this->CellsFound, cl_ulong(first), cl_ulong(begin),
+            cl_ulong(begin + size));
           this->TheDevice.Queue().enqueueNDRangeKernel(gather, cl::NullRange, cl::NDRange(size));
         });
-      const std::vector<float> power = out.Read();
+    }
+    const std::vector<float> all = this->FaceLight.Read();
+    for (int face = 0; face < 6; ++face)
+    {
+      const auto ofCell = [&](int of) { return all.begin() + FanFaceFirst(volume.grid, of) * volume.channels; };
+      std::vector<float> power(ofCell(face), ofCell(face + 1));
+      const double area = volume.grid.VoxelVolume() / volume.grid.spacing[face / 2];
+      for (float& watts : power)
+      {
+        watts *= static_cast<float>(area);
+      }
       this->KeepCells(face, power);
       for (std::size_t i = 0; i < power.size(); ++i)
       {
@@ -276,7 +329,10 @@ private:
   Buffer<float> Points, Emission; ///< as in EmissionRays.cl
   Rgb Emitted = {};               ///< W
   Buffer<float> Path, Flux;
-  Rgb Taken = {}; ///< W, by the medium
+  Buffer<float> Found;      ///< 1: by fans, of voxels; less: they need rays of their own
+  Buffer<float> CellsFound; ///< the same of cells of the faces
+  Buffer<float> FaceLight;  ///< W / length^2 that leaves there, [cell][channel]
+  Rgb Taken = {};           ///< W, by the medium
   std::array<Rgb, 6> Escaped = {};
   std::vector<float> EscapedByCell; ///< W, [channel][cell]; where it is wanted
   SweepTally Tally;

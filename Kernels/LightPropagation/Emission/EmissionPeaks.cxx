@@ -1,4 +1,4 @@
-#include "LightPropagation/Uncollided/EmissionPeaks.h"
+#include "LightPropagation/Emission/EmissionPeaks.h"
 
 #include <algorithm>
 #include <cmath>

@@ -1,6 +1,6 @@
-#include "LightPropagation/Uncollided/UncollidedEmission.h"
+#include "LightPropagation/Emission/UncollidedEmission.h"
 
-#include "LightPropagation/Uncollided/EmissionRays.h"
+#include "LightPropagation/Emission/EmissionRays.h"
 #include "LightPropagation/Uncollided/NarrowLight.h"
 
 #include <utility>

@@ -3,7 +3,7 @@
 
 #pragma once
 
-#include "LightPropagation/Uncollided/EmissionRaysShared.h"
+#include "LightPropagation/Emission/EmissionRaysShared.h"
 #include "Numerics/Numerics.cl"
 
 // What gathers light.
@@ -62,6 +62,8 @@ static void turn_scene(const EmissionInfo* s, const lit_voxel* voxel, const int*
   }
 }
 
+typedef float2 __attribute__((aligned(4))) float2_anywhere;
+
 #if REAL_WIDTH == 1
 #define any_of(condition) (condition)
 #define take(from, index) ((from)[index])
@@ -79,6 +81,35 @@ static inline real take(const __global float* from, integer i)
 #endif
 }
 #endif
+
+// Values at `i` and those behind them: half the loads of two that are taken apart.
+static inline void take_pairs(const __global float* from, integer i, real* first, real* second)
+{
+#if REAL_WIDTH == 1
+  *first = from[i];
+  *second = from[i + 1];
+#else
+#define PAIR(lane) const float2 p##lane = *(const __global float2_anywhere*)(from + i.s##lane);
+  PAIR(0)
+  PAIR(1)
+  PAIR(2) PAIR(3)
+#if REAL_WIDTH >= 8
+    PAIR(4) PAIR(5) PAIR(6) PAIR(7)
+#endif
+#if REAL_WIDTH == 16
+      PAIR(8) PAIR(9) PAIR(a) PAIR(b) PAIR(c) PAIR(d) PAIR(e) PAIR(f)* first =
+        (real)(p0.x, p1.x, p2.x, p3.x, p4.x, p5.x, p6.x, p7.x, p8.x, p9.x, pa.x, pb.x, pc.x, pd.x, pe.x, pf.x);
+  *second = (real)(p0.y, p1.y, p2.y, p3.y, p4.y, p5.y, p6.y, p7.y, p8.y, p9.y, pa.y, pb.y, pc.y, pd.y, pe.y, pf.y);
+#elif REAL_WIDTH == 8
+    * first = (real)(p0.x, p1.x, p2.x, p3.x, p4.x, p5.x, p6.x, p7.x);
+  *second = (real)(p0.y, p1.y, p2.y, p3.y, p4.y, p5.y, p6.y, p7.y);
+#else
+    * first = (real)(p0.x, p1.x, p2.x, p3.x);
+  *second = (real)(p0.y, p1.y, p2.y, p3.y);
+#endif
+#undef PAIR
+#endif
+}
 
 // Part that is left in the mean over an optical length.
 static real mean_left(real tau, real* left)
@@ -137,8 +168,9 @@ static void enter_box(const turned_scene* s, const real* point, box_ray* ray, in
 
 // Adds up what shines along the ray through the box.
 //   received  part of that light that gets to the point
+//   clear     null, or what would be seen if nothing were in the way
 static void see_box(const turned_scene* s, const real* point, box_ray* ray, real received, const __global float* sigma,
-  const __global float* emission, real* radiance)
+  const __global float* emission, real* radiance, real* clear)
 {
   const int source_voxels = s->sourceLast + 1;
   integer index, shining, crossed[3];
@@ -146,6 +178,10 @@ static void see_box(const turned_scene* s, const real* point, box_ray* ray, real
   for (int c = 0; c < CHANNELS; ++c)
   {
     radiance[c] = 0.0f;
+    if (clear)
+    {
+      clear[c] = 0.0f;
+    }
   }
   real now = ray->enter, left;
   integer under_way = now < ray->leave;
@@ -156,7 +192,12 @@ static void see_box(const turned_scene* s, const real* point, box_ray* ray, real
     const real seen = received * length * mean_left(take(sigma, index) * length, &left);
     for (int c = 0; c < CHANNELS; ++c)
     {
-      radiance[c] += seen * take(emission + c * source_voxels, shining);
+      const real shines = take(emission + c * source_voxels, shining);
+      radiance[c] += seen * shines;
+      if (clear)
+      {
+        clear[c] += length * shines;
+      }
     }
     received *= left;
     cross_planes(ray, end, ray->leave, crossed);
@@ -165,6 +206,6 @@ static void see_box(const turned_scene* s, const real* point, box_ray* ray, real
     index = clamp(index, (integer)0, (integer)s->last); // rounding, as above
     shining = clamp(shining, (integer)0, (integer)s->sourceLast);
     now = end;
-    under_way = now < ray->leave && received > (real)1e-35f;
+    under_way = now < ray->leave && (clear ? (integer)-1 : received > (real)1e-35f);
   }
 }

@@ -1,0 +1,424 @@
+// The light of a small bright part of the medium far from it, along fans of rays that many voxels share. The host gives
+//   CHANNELS  1
+//   NET_FLUX  1 where net flux is wanted
+//
+// A fan is all rays from one point of the box of what shines into one 24th of space, on a grid of tangents that has a
+// ray in every voxel even of the last layer. Each ray keeps what it brings to every layer; each voxel takes the mean of
+// the rays that come through it (numerics.md, Eqs. (40a), (40b)). A packet of rays lies in one row: they cross planes
+// between rows together, and between the voxels of a row at most one each in a step.
+
+#include "LightPropagation/Emission/EmissionBox.cl"
+
+#define OF_HALVES 3.0f // two halves of the fans may differ by that many times the error asked for: their mean is better
+#define DIM 1e-6f      // part of what is not extinguished, below which halves of the fans need not agree
+
+static void turn_fan(const EmissionInfo* s, const FanInfo* fan, turned_scene* turned)
+{
+  const lit_voxel nowhere = { { 0, 0, 0 }, 3, 0, false };
+  lit_voxel turned_nowhere;
+  turn_scene(s, &nowhere, fan->order, fan->turned, turned, &turned_nowhere);
+}
+
+// sigma_t, but none in the box: what rays lose after they have left it. Voxels along a fan's second axis lie beside each
+// other, then those along its third.
+__kernel void lay_out(
+  EmissionInfo s, FanInfo fan, const __global float* sigma, ulong sigma_first, __global float* outside)
+{
+  const int strides[3] = { 1, s.size[0], s.size[0] * s.size[1] };
+  const int at[3] = { (int)get_global_id(2), (int)get_global_id(0), (int)get_global_id(1) };
+  const ulong to = ((ulong)at[0] * s.size[fan.order[2]] + at[2]) * s.size[fan.order[1]] + at[1];
+  bool inside = true;
+  ulong from = sigma_first;
+  for (int k = 0; k < 3; ++k)
+  {
+    const int a = fan.order[k];
+    inside = inside && at[k] >= s.sourceFirst[a] && at[k] < s.sourceFirst[a] + s.sourceSize[a];
+    from += (ulong)at[k] * strides[a];
+  }
+  outside[FanMargin + to] = inside ? 0.0f : sigma[from];
+}
+
+// A line from a point of the box, both ways through the box.
+static void begin_line(const turned_scene* s, const float* point, const real* way, box_ray* ray)
+{
+  ray->enter = -1e30f;
+  ray->leave = 1e30f;
+  for (int a = 0; a < 3; ++a)
+  {
+    ray->rate[a] = way[a] / s->spacing[a];
+    ray->up[a] = ray->rate[a] > (real)0.0f;
+    ray->step[a] = 1.0f / fmax(fabs(ray->rate[a]), (real)1e-20f);
+    const float x = point[a] - floor(point[a]);
+    ray->next[a] = select((real)x, (real)(1.0f - x), ray->up[a]) * ray->step[a];
+    const float below = point[a] - s->sourceFirst[a], above = s->sourceSize[a] - below;
+    ray->leave = fmin(ray->leave, select((real)below, (real)above, ray->up[a]) * ray->step[a]);
+    ray->enter = fmax(ray->enter, -select((real)above, (real)below, ray->up[a]) * ray->step[a]);
+  }
+}
+
+// Radiance at the end of the line in the box, over the density of points along it: points are as dense as what shines,
+// so that in a clear box this is the same for all lines. W / sr
+static real weigh_line(const turned_scene* s, const float* point, const real* way, float emitted,
+  const __global float* sigma, const __global float* emission)
+{
+  const real back[3] = { -way[0], -way[1], -way[2] };
+  real at[3], seen[1], clear[1];
+  box_ray ray;
+  for (int a = 0; a < 3; ++a)
+  {
+    at[a] = point[a];
+  }
+  begin_line(s, point, back, &ray);
+  see_box(s, at, &ray, 1.0f, sigma, emission, seen, clear);
+  return seen[0] * emitted / fmax(clear[0], (real)1e-30f);
+}
+
+// Lines of a fan beside each other.
+typedef struct
+{
+  float point[3];        // where they begin, voxels
+  float low[2], high[2]; // least and largest tangent along the second and the third axis
+} line_packet;
+
+// Whether a packet may come to voxels of its part of space in a layer or behind it.
+static bool is_wanted(
+  const EmissionInfo* s, const turned_scene* turned, const FanInfo* fan, const line_packet* packet, int layer)
+{
+  const float near = layer - packet->point[0], far = near + 1.0f;
+  const float away = layer + 1.0f - turned->sourceFirst[0] - 0.5f * turned->sourceSize[0]; // no voxel is farther aside
+  bool wanted = true;
+  for (int a = 1; a < 3; ++a)
+  {
+    const float low_tangent = packet->low[a - 1], high_tangent = packet->high[a - 1];
+    const float low = packet->point[a] + low_tangent * (low_tangent > 0.0f ? near : far);
+    const float high = packet->point[a] + high_tangent * (high_tangent > 0.0f ? far : near);
+    const float middle = turned->sourceFirst[a] + 0.5f * turned->sourceSize[a];
+    const bool above = low > s->size[fan->order[a]] || (low_tangent >= 1.0f && low > middle + away + 0.5f);
+    wanted = wanted && !above && !(high_tangent <= 0.0f && high < fan->first[a]);
+  }
+  return wanted;
+}
+
+// Lines of a packet, and how far they have come.
+typedef struct
+{
+  float point[2], row_tangent; // along the second and the third axis
+  real tangent, inverse;       // along the second; 1 over it
+  real per_layer;              // length
+  real tau;                    // up to here
+  real kept;                   // part of the light that is left, mean over the voxel that the line is in at `sample`
+  float sample;                // layers from the point
+} fan_lines;
+
+// On from `from` to `to`, layers from the point, within one row of voxels; no line crosses more than one plane.
+static void cross_row(const turned_scene* s, const FanInfo* fan, const __global float* row, int last, float from,
+  float to, fan_lines* lines)
+{
+  const real begin = floor(lines->point[0] + lines->tangent * from);
+  const real end = floor(lines->point[0] + lines->tangent * to);
+  const real plane = clamp((fmax(begin, end) - lines->point[0]) * lines->inverse, (real)from, (real)to);
+  const real middle = select((real)to, plane, begin != end);
+  const integer low = clamp(to_integer(fmin(begin, end)), (integer)0, (integer)last);
+  const bool turned = fan->strides[1] < 0; // then voxels lie in memory the other way
+  real one, other;
+  take_pairs(row, turned ? -1 - low : low, &one, &other);
+  const integer as_they_lie = turned ? begin > end : begin <= end;
+  const real first = select(other, one, as_they_lie) * (middle - from) * lines->per_layer;
+  const real second = select(one, other, as_they_lie) * (to - middle) * lines->per_layer;
+  if (lines->sample >= from && lines->sample < to)
+  {
+    const integer later = middle <= (real)lines->sample;
+    real left, through;
+    extinguished(lines->tau + select((real)0.0f, first, later), &left);
+    lines->kept = left * mean_left(select(first, second, later), &through);
+  }
+  lines->tau += first + second;
+}
+
+// On from `from` to `to` in one layer, in steps in which no line crosses more than one plane across either axis.
+static void cross_layer(const turned_scene* s, const EmissionInfo* info, const FanInfo* fan,
+  const __global float* of_layer, int steps, float from, float to, fan_lines* lines)
+{
+  const int last[2] = { info->size[fan->order[1]] - 1, info->size[fan->order[2]] - 1 };
+  for (int step = 0; step < steps; ++step)
+  {
+    const float begin = from + (to - from) * step / steps, end = from + (to - from) * (step + 1) / steps;
+    const float low = floor(lines->point[1] + lines->row_tangent * begin);
+    const float high = floor(lines->point[1] + lines->row_tangent * end);
+    const float plane = low == high ? end : clamp((fmax(low, high) - lines->point[1]) / lines->row_tangent, begin, end);
+    cross_row(s, fan, of_layer + clamp((int)low, 0, last[1]) * fan->strides[2], last[0], begin, plane, lines);
+    if (plane < end)
+    {
+      cross_row(s, fan, of_layer + clamp((int)high, 0, last[1]) * fan->strides[2], last[0], plane, end, lines);
+    }
+  }
+}
+
+// What a line brings per solid angle becomes what it brings to a voxel's volume: 1 / r^2, mean over the layer.
+static real spread(const turned_scene* s, const fan_lines* lines, float layers)
+{
+  const float forward = layers * s->spacing[0], up = lines->row_tangent * lines->sample * s->spacing[2];
+  const real aside = lines->tangent * (lines->sample * s->spacing[1]);
+  const real inverse = 1.0f / (forward * forward + aside * aside + up * up);
+  const real deep = inverse * (s->spacing[0] * s->spacing[0] / 24.0f);
+  return inverse * (1.0f + deep * (8.0f * forward * forward * inverse - 2.0f));
+}
+
+// points    of the scene turned for this fan: [point][FanPointFloats]
+// tangents  of the lines, before what the point adds
+// outside   as lay_out makes it
+// light     W / length^2 that the line brings to the voxel that it is in, and last what goes through the face, W /
+//           length^2: [point][layer][row][line]
+__kernel void follow_fan(EmissionInfo s, FanInfo fan, const __global float* sigma, ulong sigma_first,
+  const __global float* outside, const __global float* points, const __global float* tangents,
+  const __global float* emission, __global float* light)
+{
+  const int line = get_global_id(0) * REAL_WIDTH, band_row = get_global_id(1), p = get_global_id(2);
+  const __global float* of_point = points + FanPointFloats * (fan.pointFirst + p);
+  const float aside = of_point[4] * fan.spacing;
+  const line_packet packet = { { of_point[0], of_point[1], of_point[2] },
+    { tangents[line] + aside, fan.firstRow + (fan.bandFirst + band_row + of_point[5]) * fan.spacing },
+    { tangents[line + REAL_WIDTH - 1] + aside,
+      fan.firstRow + (fan.bandFirst + band_row + of_point[5]) * fan.spacing } };
+  turned_scene turned;
+  turn_fan(&s, &fan, &turned);
+  fan_lines lines = { { of_point[1], of_point[2] }, packet.low[1], load_real(line, tangents) + aside };
+  const real along[3] = { turned.spacing[0], lines.tangent * turned.spacing[1],
+    (real)(lines.row_tangent * turned.spacing[2]) };
+  lines.inverse = 1.0f / select(lines.tangent, (real)1e-20f, lines.tangent == (real)0.0f);
+  lines.per_layer = sqrt(along[0] * along[0] + along[1] * along[1] + along[2] * along[2]);
+  lines.tau = 0.0f;
+  const int steps = max(1, (int)ceil(fmax(fmax(fabs(packet.low[0]), fabs(packet.high[0])), fabs(packet.low[1]))));
+  const ulong all = (ulong)fan.bandRows * fan.lines;
+  __global float* to = light + (ulong)p * (fan.layers + 1) * all + (ulong)band_row * fan.lines + line;
+  real weight = 0.0f;
+  for (int layer = (int)floor(of_point[0]); layer < fan.first[0] + fan.layers; ++layer)
+  {
+    const bool is_far = layer >= fan.first[0];
+    if (is_far && !is_wanted(&s, &turned, &fan, &packet, layer))
+    {
+      return;
+    }
+    const float begin = layer - of_point[0];
+    lines.sample = begin + of_point[3];
+    cross_layer(&turned, &s, &fan, outside + (FanMargin + fan.base + layer * fan.strides[0]), steps, fmax(begin, 0.0f),
+      begin + 1.0f, &lines);
+    if (layer == fan.first[0])
+    {
+      const real way[3] = { along[0] / lines.per_layer, along[1] / lines.per_layer, along[2] / lines.per_layer };
+      weight = weigh_line(&turned, packet.point, way, fan.emitted, sigma + sigma_first, emission);
+    }
+    if (is_far)
+    {
+      store_real(weight * lines.kept * spread(&turned, &lines, begin + 0.5f), (layer - fan.first[0]) * all, to);
+    }
+  }
+  real left;
+  extinguished(lines.tau, &left);
+  const float layers = fan.first[0] + fan.layers - of_point[0];
+  const real inverse = 1.0f / (layers * lines.per_layer);
+  store_real(weight * left * inverse * inverse * (along[0] / lines.per_layer), fan.layers * all, to);
+}
+
+// The lines of a fan from a place to the next voxel, as indices: those that come through at a depth.
+//   before  lines before the first one
+static integer lines_up_to(real place, float per_voxel, float before, int count)
+{
+  return clamp(to_integer(ceil(place * per_voxel - before)), (integer)0, (integer)count);
+}
+
+// Adds what lines of one row bring to voxels beside each other.
+//   tangents  of the lines and the row, times the voxel's edge
+//   sums      [fluence, net flux along the turned axes]
+static void add_lines(const turned_scene* s, real got, real aside, float up, real* sums)
+{
+  sums[0] += got;
+#if NET_FLUX
+  const real part = got * rsqrt(s->spacing[0] * s->spacing[0] + aside * aside + up * up);
+  sums[1] += part * s->spacing[0];
+  sums[2] += part * aside;
+  sums[3] += part * up;
+#endif
+}
+
+// Adds the mean of the lines of fan p that come through voxels beside each other (numerics.md, Eqs. (40a), (40b)), or
+// through cells of the face.
+//   layer  0 is the first, fan->layers the face
+//   at     along the second and the third axis
+static void add_fan(const turned_scene* s, const FanInfo* fan, int p, int layer, real at, int row_at,
+  const __global float* points, const __global float* light, real* sums)
+{
+  const ulong all = (ulong)fan->bandRows * fan->lines;
+  const __global float* point = points + FanPointFloats * (fan->pointFirst + p);
+  const float depth = layer == fan->layers ? 0.0f : point[3];
+  const float per_voxel = 1.0f / ((fan->first[0] + layer + depth - point[0]) * fan->spacing);
+  const float before = fan->firstLine / fan->spacing + point[4], rows_before = fan->firstRow / fan->spacing + point[5];
+  const integer begin = lines_up_to(at - point[1], per_voxel, before, fan->lines);
+  const integer end = lines_up_to(at + 1.0f - point[1], per_voxel, before, fan->lines);
+  const int low = clamp((int)ceil((row_at - point[2]) * per_voxel - rows_before), 0, fan->rows);
+  const int high = clamp((int)ceil((row_at + 1 - point[2]) * per_voxel - rows_before), 0, fan->rows);
+  const real share = 1.0f / fmax(to_real(end - begin) * (float)(high - low), (real)1.0f);
+  const __global float* of_layer = light + ((ulong)p * (fan->layers + 1) + layer) * all;
+  const float edge = fan->spacing * s->spacing[1];
+  for (int row = max(low, fan->bandFirst); row < min(high, fan->bandFirst + fan->bandRows); ++row)
+  {
+    const __global float* of_row = of_layer + (ulong)(row - fan->bandFirst) * fan->lines;
+    const float up = (row + rows_before) * fan->spacing * s->spacing[2];
+    for (integer line = begin; any_of(line < end); line += 2)
+    {
+      real one, next;
+      take_pairs(of_row, min(line, (integer)(fan->lines - 1)), &one, &next);
+      const real aside = (to_real(line) + before) * edge;
+      add_lines(s, select((real)0.0f, one * share, line < end), aside, up, sums);
+      add_lines(s, select((real)0.0f, next * share, line + 1 < end), aside + edge, up, sums);
+    }
+  }
+}
+
+// How many of the 24 parts of space a voxel lies in, if it is in one that leads up along all axes, the first of them the
+// farthest; else 0.
+//   distance  half voxels from the middle of the box along each axis
+static int parts_of_space(const int* distance)
+{
+  int parts = 1;
+  for (int a = 0; a < 3; ++a)
+  {
+    if (distance[a] < 0 || distance[a] > distance[0])
+    {
+      return 0;
+    }
+    parts *= distance[a] == 0 ? 2 : 1;
+  }
+  return parts * (1 + (distance[1] == distance[0]) + (distance[2] == distance[0]));
+}
+
+// Half voxels from the middle of the box along each axis, of a voxel or a cell of the face.
+static void find_distance(const turned_scene* s, const int* at, bool is_face, int* distance)
+{
+  for (int a = 0; a < 3; ++a)
+  {
+    distance[a] = 2 * at[a] + (a == 0 && is_face ? 0 : 1) - 2 * s->sourceFirst[a] - s->sourceSize[a];
+  }
+}
+
+// Index of a voxel of the turned scene.
+static ulong voxel_index(const turned_scene* s, const int* at)
+{
+  return s->base + (long)at[0] * s->strides[0] + (long)at[1] * s->strides[1] + (long)at[2] * s->strides[2];
+}
+
+// Index of a cell of the face that a fan leads to.
+static ulong cell_index(const EmissionInfo* s, const FanInfo* fan, const turned_scene* turned, const int* at)
+{
+  const int sizes[2] = { s->size[fan->order[1]], s->size[fan->order[2]] };
+  const int u = turned->sign[1] < 0.0f ? sizes[0] - 1 - at[1] : at[1];
+  const int v = turned->sign[2] < 0.0f ? sizes[1] - 1 - at[2] : at[2];
+  return fan->faceFirst + (ulong)v * sizes[0] + u;
+}
+
+// Sums over all fans so far, added to:
+//   path    W / length^2, [voxel];  flux  the same, [x, y, z][stride];  halves  path of half of the fans
+//   faces   W / length^2 that goes out through the box's faces, [cell];  face_halves  the same of half of the fans
+__kernel void collect_fans(EmissionInfo s, FanInfo fan, const __global float* points, const __global float* light,
+  __global float* path, __global float* flux, ulong stride, __global float* halves, __global float* faces,
+  __global float* face_halves)
+{
+  turned_scene turned;
+  turn_fan(&s, &fan, &turned);
+  const int layer = get_global_id(2);
+  const bool is_face = layer == fan.layers;
+  int at[3] = { fan.first[0] + layer, fan.first[1] + (int)get_global_id(0) * REAL_WIDTH,
+    fan.first[2] + (int)get_global_id(1) };
+  int distance[3];
+  find_distance(&turned, at, is_face, distance);
+  if (distance[2] < 0 || distance[2] > distance[0] || distance[1] > distance[0])
+  {
+    return;
+  }
+  real sums[4], early = 0.0f, beside; // all, those of the first half of the fans; places along the second axis
+  for (int lane = 0; lane < REAL_WIDTH; ++lane)
+  {
+    ((float*)&beside)[lane] = at[1] + lane;
+  }
+  for (int k = 0; k < 4; ++k)
+  {
+    sums[k] = 0.0f;
+  }
+  const int of_half = clamp(fan.halfOfPoints - fan.pointFirst, 0, fan.points);
+  for (int p = 0; p < fan.points; ++p)
+  {
+    early = p == of_half ? sums[0] : early;
+    add_fan(&turned, &fan, p, layer, beside, at[2], points, light, sums);
+  }
+  early = of_half == fan.points ? sums[0] : early;
+  for (int lane = 0; lane < REAL_WIDTH && at[1] < s.size[fan.order[1]]; ++lane, ++at[1], distance[1] += 2)
+  {
+    const int parts = parts_of_space(distance);
+    const float share = parts == 0 ? 0.0f : 1.0f / parts;
+    const float all = share * ((const float*)&sums[0])[lane], first_half = share * ((const float*)&early)[lane];
+    if (parts > 0 && is_face)
+    {
+      const ulong cell = cell_index(&s, &fan, &turned, at);
+      faces[cell] += all;
+      face_halves[cell] += first_half;
+    }
+    else if (parts > 0)
+    {
+      const ulong i = voxel_index(&turned, at);
+      path[i] += all;
+      halves[i] += first_half;
+#if NET_FLUX
+      for (int k = 0; k < 3; ++k)
+      {
+        flux[turned.axis[k] * stride + i] += turned.sign[k] * share * ((const float*)&sums[1 + k])[lane];
+      }
+#endif
+    }
+  }
+}
+
+// Whether two halves of the fans agree, beside what would come if nothing were in the way.
+static bool agree(const EmissionInfo* s, float all, float first_half, float clear)
+{
+  return fabs(all - 2.0f * first_half) <= OF_HALVES * s->uneven * fmax(all, DIM * clear);
+}
+
+// found    1 where two halves of the fans agree, -1 where a voxel is too near for them, else 0
+// emitted  of the box, times the number of fans
+__kernel void judge_voxels(
+  EmissionInfo s, float emitted, const __global float* path, const __global float* halves, __global float* found)
+{
+  const ulong i = get_global_id(0);
+  const int at[3] = { (int)(i % s.size[0]), (int)(i / s.size[0] % s.size[1]),
+    (int)(i / ((ulong)s.size[0] * s.size[1])) };
+  float squared = 0.0f;
+  int farthest = 0;
+  for (int a = 0; a < 3; ++a)
+  {
+    const int distance = abs(2 * at[a] + 1 - 2 * s.sourceFirst[a] - s.sourceSize[a]);
+    farthest = max(farthest, distance);
+    squared += 0.25f * distance * distance * s.spacing[a] * s.spacing[a];
+  }
+  found[i] = farthest < s.near ? -1.0f : agree(&s, path[i], halves[i], emitted / squared) ? 1.0f : 0.0f;
+}
+
+// The same of the cells of a face, up or down an axis; -1 where they lie farther aside than ahead.
+__kernel void judge_cells(EmissionInfo s, int axis, int up, ulong first, float emitted, const __global float* faces,
+  const __global float* halves, __global float* found)
+{
+  const ulong i = get_global_id(0);
+  const int u = (axis + 1) % 3, v = (axis + 2) % 3;
+  const int at[2] = { (int)(i % s.size[u]), (int)(i / s.size[u]) };
+  const int ahead = abs((up ? 2 * s.size[axis] : 0) - 2 * s.sourceFirst[axis] - s.sourceSize[axis]);
+  const int aside = max(abs(2 * at[0] + 1 - 2 * s.sourceFirst[u] - s.sourceSize[u]),
+    abs(2 * at[1] + 1 - 2 * s.sourceFirst[v] - s.sourceSize[v]));
+  const float away = 0.5f * ahead * s.spacing[axis];
+  const bool far = ahead > s.near && aside <= ahead; // some layer of fans lies before it
+  const bool even = agree(&s, faces[first + i], halves[first + i], emitted / fmax(away * away, 1e-30f));
+  found[first + i] = !far ? -1.0f : even ? 1.0f : 0.0f;
+}
+
+__kernel void scale_fans(__global float* values, float factor)
+{
+  values[get_global_id(0)] *= factor;
+}
