@@ -92,7 +92,8 @@ static inline void take_pairs(const __global float* from, integer i, real* first
 #define PAIR(lane) const float2 p##lane = *(const __global float2_anywhere*)(from + i.s##lane);
   PAIR(0)
   PAIR(1)
-  PAIR(2) PAIR(3)
+  PAIR(2)
+  PAIR(3)
 #if REAL_WIDTH >= 8
     PAIR(4) PAIR(5) PAIR(6) PAIR(7)
 #endif
