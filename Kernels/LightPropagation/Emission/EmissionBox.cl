@@ -89,22 +89,33 @@ static inline void take_pairs(const __global float* from, integer i, real* first
   *first = from[i];
   *second = from[i + 1];
 #else
-#define PAIR(lane) const float2 p##lane = *(const __global float2_anywhere*)(from + i.s##lane);
-  PAIR(0)
-  PAIR(1)
-  PAIR(2) PAIR(3)
+#define PAIR(lane) const float2 p##lane = *(const __global float2_anywhere*)(from + i.s##lane)
+  PAIR(0);
+  PAIR(1);
+  PAIR(2);
+  PAIR(3);
 #if REAL_WIDTH >= 8
-    PAIR(4) PAIR(5) PAIR(6) PAIR(7)
+  PAIR(4);
+  PAIR(5);
+  PAIR(6);
+  PAIR(7);
 #endif
 #if REAL_WIDTH == 16
-      PAIR(8) PAIR(9) PAIR(a) PAIR(b) PAIR(c) PAIR(d) PAIR(e) PAIR(f)* first =
-        (real)(p0.x, p1.x, p2.x, p3.x, p4.x, p5.x, p6.x, p7.x, p8.x, p9.x, pa.x, pb.x, pc.x, pd.x, pe.x, pf.x);
+  PAIR(8);
+  PAIR(9);
+  PAIR(a);
+  PAIR(b);
+  PAIR(c);
+  PAIR(d);
+  PAIR(e);
+  PAIR(f);
+  *first = (real)(p0.x, p1.x, p2.x, p3.x, p4.x, p5.x, p6.x, p7.x, p8.x, p9.x, pa.x, pb.x, pc.x, pd.x, pe.x, pf.x);
   *second = (real)(p0.y, p1.y, p2.y, p3.y, p4.y, p5.y, p6.y, p7.y, p8.y, p9.y, pa.y, pb.y, pc.y, pd.y, pe.y, pf.y);
 #elif REAL_WIDTH == 8
-    * first = (real)(p0.x, p1.x, p2.x, p3.x, p4.x, p5.x, p6.x, p7.x);
+  *first = (real)(p0.x, p1.x, p2.x, p3.x, p4.x, p5.x, p6.x, p7.x);
   *second = (real)(p0.y, p1.y, p2.y, p3.y, p4.y, p5.y, p6.y, p7.y);
 #else
-    * first = (real)(p0.x, p1.x, p2.x, p3.x);
+  *first = (real)(p0.x, p1.x, p2.x, p3.x);
   *second = (real)(p0.y, p1.y, p2.y, p3.y);
 #endif
 #undef PAIR

@@ -19,8 +19,8 @@ static void turn_fan(const EmissionInfo* s, const FanInfo* fan, turned_scene* tu
   turn_scene(s, &nowhere, fan->order, fan->turned, turned, &turned_nowhere);
 }
 
-// sigma_t, but none in the box: what rays lose after they have left it. Voxels along a fan's second axis lie beside each
-// other, then those along its third.
+// sigma_t, but none in the box: what rays lose after they have left it. Voxels along a fan's second axis lie beside
+// each other, then those along its third.
 __kernel void lay_out(
   EmissionInfo s, FanInfo fan, const __global float* sigma, ulong sigma_first, __global float* outside)
 {
@@ -275,8 +275,8 @@ static void add_fan(const turned_scene* s, const FanInfo* fan, int p, int layer,
   }
 }
 
-// How many of the 24 parts of space a voxel lies in, if it is in one that leads up along all axes, the first of them the
-// farthest; else 0.
+// How many of the 24 parts of space a voxel lies in, if it is in one that leads up along all axes, the first of them
+// the farthest; else 0.
 //   distance  half voxels from the middle of the box along each axis
 static int parts_of_space(const int* distance)
 {

@@ -172,7 +172,8 @@ static void leave_aside(const LampInfo* lamp, const BeamRow* row, int face, floa
 #endif
 }
 
-// One step of a beam: every part of it through its voxel. Changes `left` and `rest`, what is too small to be seen in it.
+// One step of a beam: every part of it through its voxel. Changes `left` and `rest`, what is too small to be seen in
+// it.
 static void step_beam(const LampInfo* lamp, const BeamRow* row, int layer, bool first, bool last, float2 tangent,
   float2 middle, float2 width, float2 way, float length, const __global float* sigma, __global long* path, ulong stride,
   float* left, float* rest, lamp_tally* tally)

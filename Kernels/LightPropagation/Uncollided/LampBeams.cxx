@@ -115,8 +115,8 @@ public:
   }
 
 private:
-  /// Round periodic axes in passes (numerics.md, section 5.3): beams that are still in the box where one pass ends go on
-  /// as others, fewer, that share its power.
+  /// Round periodic axes in passes (numerics.md, section 5.3): beams that are still in the box where one pass ends go
+  /// on as others, fewer, that share its power.
   void FollowAll(const Monitor& monitor)
   {
     Pass pass = FirstPass(this->Volume.grid);

@@ -16,7 +16,8 @@ namespace tyndall
 /// meet in 64-bit fixed point, Eq. (35), so that the sum does not depend on their order. All power of a lamp inside the
 /// box is followed.
 ///
-/// Where an axis is periodic, rays that leave return on the other side; a light outside the box then shines only on
+/// Where an axis is periodic, rays that leave return on the other side, in passes with fewer beams the farther they go,
+/// until 0.05% of the power is left (LampPyramids.h); a light outside the box then shines only on
 /// what it sees of the box itself, once for each period.
 ///
 /// @return what came in (for a light inside the box: all its power), what left, what still goes round a periodic axis
