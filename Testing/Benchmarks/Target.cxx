@@ -1,4 +1,5 @@
-// TargetError against the best hand-made setting: true error and time. `./run bench target [tuning] [size 0.5]`.
+// TargetError against the best hand-made setting: true error and time.
+// `./run bench target [tuning] [size 0.5] [scene 3]`
 
 #include "Measure.h"
 #include "Program.h"
@@ -237,8 +238,16 @@ int main(int argc, char* argv[])
     const auto word = std::find(arguments.words.begin(), arguments.words.end(), "size");
     const bool sized = word != arguments.words.end() && word + 1 != arguments.words.end();
     const double size = sized ? std::atof((word + 1)->c_str()) : arguments.quick ? 0.2 : 1.0;
+    const auto only = std::find(arguments.words.begin(), arguments.words.end(), "scene");
+    const std::size_t one =
+      only != arguments.words.end() && only + 1 != arguments.words.end() ? std::stoul(*(only + 1)) : 0;
     const bool tuning = !arguments.words.empty() && arguments.words.front() == "tuning";
-    RunAll(device, arguments.quick, tuning ? TuningScenes(size) : HeldOutScenes(size),
-      tuning ? "scenes tuned on" : "scenes held out");
+    std::vector<TargetScene> scenes = tuning ? TuningScenes(size) : HeldOutScenes(size);
+    if (one > 0 && one <= scenes.size())
+    {
+      std::rotate(scenes.begin(), scenes.begin() + static_cast<std::ptrdiff_t>(one - 1), scenes.end());
+      scenes.erase(scenes.begin() + 1, scenes.end());
+    }
+    RunAll(device, arguments.quick, scenes, tuning ? "scenes tuned on" : "scenes held out");
   });
 }

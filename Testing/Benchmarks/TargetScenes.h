@@ -18,6 +18,7 @@ struct TargetScene
 
   TargetScene() = default;
   TargetScene(TargetScene&&) = default;
+  TargetScene& operator=(TargetScene&&) = default;
 };
 
 /// Scenes that the forecasts and their constants were chosen on (DirectionForecast.cxx, TargetError.cxx).

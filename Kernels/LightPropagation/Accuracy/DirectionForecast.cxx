@@ -55,14 +55,27 @@ double Difference(const LightField& one, const LightField& other, const Part& pa
 
 DirectionForecast::DirectionForecast(
   const LightField& few, int fewDirections, const LightField& more, int moreDirections)
-  : Sweeps(std::max(LeastSweeps, static_cast<double>(more.convergence.size())))
+  : Fallen(std::hypot(FallenTo(fewDirections), FallenTo(moreDirections)))
+  , Sweeps(std::max(LeastSweeps, static_cast<double>(more.convergence.size())))
 {
-  const double fallen = std::hypot(FallenTo(fewDirections), FallenTo(moreDirections));
   const auto direct = [](
                         const LightField& light, std::size_t i) { return static_cast<double>(light.fluenceDirect[i]); };
   const auto scattered = [&](const LightField& light, std::size_t i) { return light.fluence[i] - direct(light, i); };
-  this->OfUncollided = Difference(few, more, direct) / fallen;
-  this->OfScattered = Difference(few, more, scattered) / fallen;
+  this->OfUncollided = Difference(few, more, direct) / this->Fallen;
+  this->OfScattered = Difference(few, more, scattered) / this->Fallen;
+}
+
+double DirectionForecast::UncollidedPart() const
+{
+  const double all = std::hypot(this->OfUncollided, this->OfScattered);
+  return all > 0.0 ? this->OfUncollided / all : 0.0;
+}
+
+void DirectionForecast::Separate(const LightField& few, const LightField& between, const LightField& more)
+{
+  const auto whole = [](const LightField& light, std::size_t i) { return static_cast<double>(light.fluence[i]); };
+  this->OfUncollided = Difference(few, between, whole) / this->Fallen;
+  this->OfScattered = Difference(between, more, whole) / this->Fallen;
 }
 
 double DirectionForecast::Error(const PropagationSettings& settings) const

@@ -15,6 +15,12 @@ public:
   /// @param few, more  along `fewDirections` and `moreDirections` a face, unscattered light along the same
   DirectionForecast(const LightField& few, int fewDirections, const LightField& more, int moreDirections);
 
+  /// The part of unscattered light of the difference, over all of it.
+  double UncollidedPart() const;
+  /// Where unscattered light is off, so is what is scattered of it: tells the two apart.
+  /// @param between  scattered light along the few, unscattered light along the more
+  void Separate(const LightField& few, const LightField& between, const LightField& more);
+
   /// Relative, root mean square, of fluence.
   double Error(const PropagationSettings& settings) const;
   /// In sweeps along one direction a face.
@@ -26,6 +32,7 @@ public:
   void Correct(double factor);
 
 private:
+  double Fallen;                                ///< the difference of the two solves over the error along 9
   double OfUncollided = 0.0, OfScattered = 0.0; ///< errors of 9 directions a face
   double Sweeps = 1.0;
 };

@@ -23,6 +23,7 @@ constexpr double DirectionPart = 0.85; ///< of that, for directions
 constexpr double TolerancePart = 0.3;
 constexpr double LooseTolerance = 1e-2;
 constexpr double OrderInSpace = 1.7, OrderBesideLamps = 1.5; ///< measured: clouds 1.7, lamps in fog 1.6
+constexpr double MuchUncollided = 0.3; ///< of the error, from which on a solve more tells how much it is
 constexpr int Few = 9, More = 25;
 constexpr double LeastEmissionError = 0.005;
 
@@ -77,7 +78,7 @@ public:
         [this](const Medium& medium, const Illumination& light, const PropagationSettings& settings,
           const Monitor& monitor) { return this->Count(medium, light, settings, monitor); }));
     }
-    this->SolveAlong(this->Forecast->Cheapest(this->Asked, DirectionPart * this->Goal), 0.1, 0.4);
+    this->SolveAlong(this->Forecast->Cheapest(this->Asked, DirectionPart * this->Goal), 0.12, 0.4);
     if (this->Light.relativeError > this->Target && this->Parts.inDirections > DirectionPart * this->Goal)
     {
       this->Forecast->Correct(this->Parts.inDirections / this->Forecast->Error(this->Used));
@@ -127,6 +128,14 @@ private:
       settings.directionsPerFace = More;
       const LightField more = this->OnCoarse(settings, 0.03, 0.1);
       this->Forecast.emplace(few, Few, more, More);
+      if (this->Forecast->UncollidedPart() > MuchUncollided)
+      {
+        settings.directionsPerFace = Few;
+        settings.uncollidedDirections = More;
+        this->Forecast->Separate(few, this->OnCoarse(settings, 0.1, 0.12), more);
+        settings.directionsPerFace = More;
+        settings.uncollidedDirections = 0;
+      }
       this->AlongMore = { settings, more.fluence };
     }
   }
@@ -140,12 +149,34 @@ private:
     const CoarseLight* const solved = this->AlongFew.Has(settings) ? &this->AlongFew
       : this->AlongMore.Has(settings)                              ? &this->AlongMore
                                                                    : nullptr;
-    const std::vector<float> same = solved ? solved->fluence : this->OnCoarse(settings, middle, to).fluence;
     const CoarseLight& other = solved == &this->AlongMore ? this->AlongFew : this->AlongMore;
     const double error = this->Forecast->Error(settings);
     const double difference = std::hypot(error, this->Forecast->Error(other.settings));
-    this->Parts = WriteErrorEstimate(this->Light, this->Coarsened, same, other.fluence,
-      difference > 0.0 ? error / difference : 0.0, HasLampsNearby(this->Shining) ? OrderBesideLamps : OrderInSpace);
+    const double order = HasLampsNearby(this->Shining) ? OrderBesideLamps : OrderInSpace;
+    const double part = difference > 0.0 ? error / difference : 0.0;
+    if (!solved && this->IsMetAtMost(other.fluence, error, order))
+    {
+      return;
+    }
+    const std::vector<float> same = solved ? solved->fluence : this->OnCoarse(settings, middle, to).fluence;
+    this->Parts = WriteErrorEstimate(this->Light, this->Coarsened, same, other.fluence, part, order);
+  }
+
+  /// Whether the target is met even if all of the difference to the coarse light along other directions were one in
+  /// voxel size. Then nobody has to tell the two apart.
+  bool IsMetAtMost(const std::vector<float>& other, double error, double order)
+  {
+    ErrorParts parts = WriteErrorEstimate(this->Light, this->Coarsened, other, other, 0.0, order);
+    parts.inDirections = error;
+    const double all = std::sqrt(this->Light.relativeError * this->Light.relativeError + error * error);
+    const double scale = this->Light.relativeError > 0.0 ? all / this->Light.relativeError : 1.0;
+    for (float& value : this->Light.fluenceError)
+    {
+      value *= static_cast<float>(scale);
+    }
+    this->Light.relativeError = all;
+    this->Parts = parts;
+    return all <= this->Goal;
   }
 
   /// Voxels of half the edge leave a quarter of the error in voxel size.
