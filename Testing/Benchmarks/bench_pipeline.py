@@ -110,12 +110,10 @@ def participating_medium(bench):
     bench.report_filter("ParticipatingMedium", medium, setter(medium, "ExtinctionScale", lambda i: (8.0 + 1e-4 * i) / bench.grid))
 
 
-def solver(bench, make, name, **settings):
+def solver(bench, make, name):
     sun = LightRig(SunElevation=50, SunAzimuth=130, SunPower=[3, 2.8, 2.5])
-    settings.setdefault("MaximumOrders", 3)
-    proxy = make(Input=cloud(bench), Lights=sun, SkyColor=[0.1, 0.15, 0.2], **settings)
+    proxy = make(Input=cloud(bench), Lights=sun, SkyColor=[0.1, 0.15, 0.2], MaximumOrders=3)
     bench.report_filter(name, proxy, setter(proxy, "SkyColor", lambda i: [0.1, 0.15, 0.2 + 1e-4 * i]))
-    return proxy
 
 
 def maps(bench):
@@ -127,7 +125,7 @@ def ordinates(bench):
 
 
 def lattice(bench):
-    solver(bench, LatticeBoltzmannLighting, "LatticeBoltzmannLighting", MaximumOrders=0)  # of which each is a step: until it has settled
+    solver(bench, LatticeBoltzmannLighting, "LatticeBoltzmannLighting")
 
 
 def caster(bench):
