@@ -1,5 +1,6 @@
 #include "LightPropagation/Conservative/TransportParts.h"
 
+#include "LightPropagation/Emission/UncollidedEmission.h"
 #include "LightPropagation/Problem/UncollidedDirections.h"
 #include "LightPropagation/Scattering/BeamScattering.h"
 #include "LightPropagation/Scattering/IsotropicScattering.h"
@@ -7,7 +8,6 @@
 #include "LightPropagation/Sweep/SweepInMemory.h"
 #include "LightPropagation/Uncollided/EnvironmentPeaks.h"
 #include "LightPropagation/Uncollided/UncollidedBoundary.h"
-#include "LightPropagation/Emission/UncollidedEmission.h"
 #include "LightPropagation/Uncollided/UncollidedLamp.h"
 #include "Numerics/Constants.h"
 #include "Numerics/Vectors.h"

@@ -5,6 +5,7 @@
 #include "LightPropagation/Angular/SweptDirections.h"
 #include "LightPropagation/Conservative/EnergyLedger.h"
 #include "LightPropagation/Conservative/FaceLight.h"
+#include "LightPropagation/Emission/EmissionPeaks.h"
 #include "LightPropagation/Problem/MediumOnDevice.h"
 #include "LightPropagation/Problem/PropagationProblem.h"
 #include "LightPropagation/Scattering/ScatteringOperator.h"
@@ -12,7 +13,6 @@
 #include "LightPropagation/Sweep/SweepWorkspace.h"
 #include "LightPropagation/Sweep/VolumeLayout.h"
 #include "LightPropagation/Uncollided/BoundaryLight.h"
-#include "LightPropagation/Emission/EmissionPeaks.h"
 #include "LightPropagation/Uncollided/GivenLight.h"
 #include "LightPropagation/Uncollided/UncollidedSource.h"
 

@@ -10,8 +10,8 @@ static bool is_border(const DiffusionLayout* layout, const int* at, int d)
   return !layout->periodic[axis] && at[axis] == (d & 1 ? layout->size[axis] - 1 : 0);
 }
 
-// Of a cell of the box's faces, counted as in Medium/BoxFaces.h, the voxel; false where the voxel has an earlier cell, or
-// the axis goes round.
+// Of a cell of the box's faces, counted as in Medium/BoxFaces.h, the voxel; false where the voxel has an earlier
+// cell, or the axis goes round.
 static bool find_border_voxel(const DiffusionLayout* layout, int cell, int* at)
 {
   const int* n = layout->size;

@@ -1,5 +1,5 @@
-// The diffusion system of a channel at the box's faces, and what comes of its solution, voxel by voxel; what runs over all
-// voxels each time is in DiffusionRows.cl. The host gives
+// The diffusion system of a channel at the box's faces, and what comes of its solution, voxel by voxel; what runs
+// over all voxels each time is in DiffusionRows.cl. The host gives
 //   DOUBLES  1 where the device has double precision
 //   PASSING  1: lamps' light passes faces at once where it is scattered
 //   FACES    1: light leaves and comes back by cells of the box's faces

@@ -7,8 +7,8 @@
 
 namespace tyndall
 {
-/// The levels of multigrid on a box of voxels, the finest first: each joins voxels two by two along the axes whose edges
-/// are below 1.9 times the shortest, until few are left.
+/// The levels of multigrid on a box of voxels, the finest first: each joins voxels two by two along the axes whose
+/// edges are below 1.9 times the shortest, until few are left.
 /// @param spacing  of voxels: an axis along which they are far shorter is coarsened first
 std::vector<MultigridLevel> MultigridLevels(const std::array<int, 3>& size, const std::array<double, 3>& spacing);
 

@@ -29,7 +29,8 @@ inline real in_row(real values, int left)
   return left >= REAL_WIDTH ? values : select(values, (real)0.0f, LANES >= left);
 }
 
-// Beside a row's ends lie those of the other side: a periodic axis goes on there, and where the box ends nothing passes.
+// Beside a row's ends lie those of the other side: a periodic axis goes on there, and where the box ends nothing
+// passes.
 inline void fill_ghosts(__global float* row, int size)
 {
   row[-1] = row[size - 1];

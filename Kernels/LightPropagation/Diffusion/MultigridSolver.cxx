@@ -129,8 +129,8 @@ void MultigridSolver::Correct(Level& fine, const Level& coarse)
   this->Run(smooth, fine);
 }
 
-/// A V cycle on the residual: the finest level's `better` is what comes of it. Jacobi's first guess on the way down and a
-/// step of his on the way up keep it symmetric.
+/// A V cycle on the residual: the finest level's `better` is what comes of it. Jacobi's first guess on the way down
+/// and a step of his on the way up keep it symmetric.
 /// @return the residual's norm in that of the preconditioner, squared, in units
 double MultigridSolver::Precondition()
 {

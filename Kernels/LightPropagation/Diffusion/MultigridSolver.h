@@ -11,9 +11,9 @@ namespace tyndall
 {
 /// Solves the system of a diffusion matrix on a box of voxels,
 ///   sum over faces of conductance (x_i - x_j) + loss_i x_i = b_i,
-/// symmetric, with positive conductances and losses: conjugate gradients (Hestenes and Stiefel 1952) from a residual that
-/// is found in double, preconditioned by a V cycle of multigrid in float (voxels 2 x 2 x 2 together, damped Jacobi), so
-/// that its cost hardly grows with the number of voxels (numerics.md, section 7.8).
+/// symmetric, with positive conductances and losses: conjugate gradients (Hestenes and Stiefel 1952) from a residual
+/// that is found in double, preconditioned by a V cycle of multigrid in float (voxels 2 x 2 x 2 together, damped
+/// Jacobi), so that its cost hardly grows with the number of voxels (numerics.md, section 7.8).
 ///
 /// Its arrays are rows as MultigridLayout.h has them, which kernels walk along in vectors: an iteration takes about as
 /// long as its bytes take (some 150 a voxel, counted).

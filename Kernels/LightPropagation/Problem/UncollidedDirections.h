@@ -13,10 +13,10 @@ struct UncollidedDirections
   bool correctsEscape = false;
 };
 
-/// The settings', or, where these leave it open (-1), as many as make a solve a quarter longer at most, by a forecast of
-/// its scattering orders and of the directions that are lit: 36, 49, 64 or 100, where faces of the box shine unevenly and
-/// none reflects, but not in accelerated solves in angular moments, for memory. Else 0: an even sky and a smooth
-/// environment are right along few directions, and so is the light that is scattered many times.
+/// The settings', or, where these leave it open (-1), as many as make a solve a quarter longer at most, by a forecast
+/// of its scattering orders and of the directions that are lit: 36, 49, 64 or 100, where faces of the box shine
+/// unevenly and none reflects, but not in accelerated solves in angular moments, for memory. Else 0: an even sky and
+/// a smooth environment are right along few directions, and so is the light that is scattered many times.
 /// @param usual  directions of scattered light; only beside fitted ones more of them gain by themselves
 UncollidedDirections UncollidedDirectionsFor(
   const PropagationProblem& problem, const DirectionSet& usual, bool accelerated);

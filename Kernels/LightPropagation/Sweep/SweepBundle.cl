@@ -301,8 +301,8 @@ static void FILL_OUTSIDE(sweep_state* state, const __global float* outside, cons
 #endif
 
 #if CURRENTS
-// The rays of row y by the face they come through, see SweepPartialCurrents.cl: those of one face together. `own` is the
-// row itself, where rays come from.
+// The rays of row y by the face they come through, see SweepPartialCurrents.cl: those of one face together. `own` is
+// the row itself, where rays come from.
 static void COUNT_CURRENTS(sweep_state* state, int y, bool first, const __global float** in, const __global float* own,
   const __global BundleInfo* bundle, int moveU, int moveV, float part)
 {
