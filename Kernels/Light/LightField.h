@@ -82,6 +82,7 @@ struct LightField
   std::vector<std::string> doubts; ///< what may be wrong with the light, a sentence each, for a warning
   int polarNodes = 0; ///< of a plane-parallel solve (PropagationSettings::polarNodes); 0: along rays through the voxels
   int directionsPerFace = 0;             ///< solved with, where a solver chooses (PropagationSettings::adaptDirections)
+  int uncollidedDirections = 0;          ///< a face, of unscattered light from outside; 0: the same
   std::vector<std::string> leftOut;      ///< what the scene did not need, in words
   int solves = 1;                        ///< that it took, all together, those of coarser grids as well (TargetError.h)
   double secondsOfAll = 0.0;             ///< of these; 0: there is one, see convergence

@@ -159,6 +159,7 @@ LightField LightOf(TransportParts& parts, IterationResult&& found, bool accelera
     AddShownLight(parts, found.shown, light);
   }
   light.halfRangeFlux = HalfRangeFlux((parts.FineBoundary && !accelerated ? *parts.Fine : parts.Usual).Set());
+  light.uncollidedDirections = parts.FineBoundary ? parts.Fine->Set().PerFace() : 0;
   light.balance = found.ledger.Balance();
   light.facePowerOut = found.ledger.FacePowerOut();
   if (parts.Faces)

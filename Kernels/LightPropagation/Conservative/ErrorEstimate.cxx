@@ -159,12 +159,13 @@ LightField SolveWithErrorEstimate(const Medium& medium, const Illumination& illu
   const int directions = light.directionsPerFace > 0 ? light.directionsPerFace : settings.directionsPerFace;
   plain.directionsPerFace = directions;
   plain.adaptDirections = false;
+  plain.uncollidedDirections = light.uncollidedDirections; // as they were chosen for the grid itself
   const std::vector<float> many =
     solve(coarse.TheMedium(), coarse.Shining(), plain, OfPart(monitor, FinePart, 0.95)).fluence;
   plain.directionsPerFace = OtherDirections(directions);
-  if (settings.uncollidedDirections > 0)
+  if (light.uncollidedDirections > 0)
   {
-    plain.uncollidedDirections = OtherDirections(settings.uncollidedDirections);
+    plain.uncollidedDirections = OtherDirections(light.uncollidedDirections);
   }
   const std::vector<float> few = solve(coarse.TheMedium(), coarse.Shining(), plain, OfPart(monitor, 0.95, 1.0)).fluence;
 

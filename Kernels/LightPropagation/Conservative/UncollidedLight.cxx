@@ -122,8 +122,8 @@ double UncollidedLight::PartOfDifference(std::size_t voxel, int channel) const
 
 /// Sweeps carry all light from outside along the usual directions, as the diffusion system needs it. The difference
 /// that finer ones make to it before it is scattered is added like the light of lamps (numerics.md, Eq. (76)): where
-/// light is scattered many times, scaled in each voxel so that power is as in the sweeps and an even sky stays even,
-/// else scaled by the power that enters. Power that this adds to voxels or takes from them is made up for by what
+/// light is scattered many times, and along directions that nobody asked for, scaled in each voxel so that power is as
+/// in the sweeps and an even sky stays even, else scaled by the power that enters. Power that this adds to voxels or takes from them is made up for by what
 /// leaves the box.
 void UncollidedLight::AddBoundaryDifference(const Monitor& monitor)
 {
@@ -132,8 +132,9 @@ void UncollidedLight::AddBoundaryDifference(const Monitor& monitor)
   const auto fine = parts.FindUncollided(UncollidedBoundary(settings, *parts.FineBoundary), OfPart(monitor, 0.0, 0.4));
   const auto usual =
     parts.FindUncollided(UncollidedBoundary(settings, *parts.UsualBoundary), OfPart(monitor, 0.4, 0.5));
-  const bool many = ScatteredManyTimes(parts.Problem);
-  const TransportParts::EvenSky even = many ? parts.FindEvenSky(OfPart(monitor, 0.5, 1.0)) : TransportParts::EvenSky();
+  const bool staysEven = ScatteredManyTimes(parts.Problem) || settings.uncollidedDirections < 0;
+  const TransportParts::EvenSky even =
+    staysEven ? parts.FindEvenSky(OfPart(monitor, 0.5, 1.0)) : TransportParts::EvenSky();
   std::vector<float> flux = parts.Problem.Settings().netFlux ? parts.Flux.Read() : std::vector<float>();
   const std::size_t stride = parts.Layout.Stride();
   const MomentPlaces places = parts.Layout.Places(parts.Functions());
@@ -150,7 +151,7 @@ void UncollidedLight::AddBoundaryDifference(const Monitor& monitor)
     {
       const std::size_t at = c * stride + i;
       const double part = this->PartOfDifference(i, c);
-      const double scale = many ? Ratio(even.usual.path[at], even.fine.path[at]) : whole;
+      const double scale = staysEven ? Ratio(even.usual.path[at], even.fine.path[at]) : whole;
       const double difference = part * (scale * fine.path[at] - usual.path[at]);
       this->Lengths[at] += static_cast<float>(difference);
       for (int q = 1; q < parts.Functions(); ++q)
@@ -168,7 +169,7 @@ void UncollidedLight::AddBoundaryDifference(const Monitor& monitor)
     std::array<double, 6> leaves;
     for (int face = 0; face < 6; ++face)
     {
-      const double scale = many ? Ratio(even.usual.tally.out[face][c], even.fine.tally.out[face][c]) : whole;
+      const double scale = staysEven ? Ratio(even.usual.tally.out[face][c], even.fine.tally.out[face][c]) : whole;
       leaves[face] = scale * fine.tally.out[face][c] - usual.tally.out[face][c];
       more += leaves[face];
       out += fine.tally.out[face][c];

@@ -135,10 +135,12 @@ static float residual_at(
 }
 
 // The residual of `values`, per unit, in the place of the right-hand side, and Jacobi's first guess for it.
+// sums  [work-item] of its square
 __kernel void begin_residual(MultigridLevel level, const __global float* conductance, const __global float* loss,
   const __global float* inverse, const __global exact* values, float per_unit, __global float* right,
-  __global float* guess)
+  __global float* guess, __global exact* sums)
 {
+  exact sum = 0;
   FOR_ROWS(level)
   {
     const int y = r % level.size[1], z = r / level.size[1], here = row_at(&level, y, z);
@@ -148,6 +150,7 @@ __kernel void begin_residual(MultigridLevel level, const __global float* conduct
       const float left = residual_at(&level, &row, values, x, y, z, right[here + x]) * per_unit;
       right[here + x] = left;
       guess[here + x] = inverse[here + x] * left;
+      sum += (exact)left * left;
     }
     for (int x = level.size[0]; x % REAL_WIDTH != 0; ++x)
     {
@@ -155,6 +158,7 @@ __kernel void begin_residual(MultigridLevel level, const __global float* conduct
     }
     fill_ghosts(guess + here, level.size[0]);
   }
+  sums[get_global_id(0)] = sum;
 }
 
 // What is left of a level's right-hand side, summed over the fine voxels of each coarse one, and Jacobi's first guess

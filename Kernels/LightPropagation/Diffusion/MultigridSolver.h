@@ -36,10 +36,10 @@ public:
   /// Three arrays of rows whose contents are undefined, for others between solves.
   std::array<const Buffer<float>*, 3> Scratch() const;
 
-  /// Make the residual of `values`, in the norm of the preconditioner, smaller by `reduction`.
+  /// Make the residual of `values`, in the norm of the preconditioner, smaller by `reduction`, and its root mean
+  /// square by ten times that at most, for that norm hardly counts thin voxels beside thick ones.
   /// @param unit  about as large as the entries of b
-  /// @param leftAtMost  and its root mean square at most this, in units, for that norm hardly counts thin voxels beside
-  ///   thick ones
+  /// @param leftAtMost  and the root mean square at most this, in units
   /// @return iterations
   int Solve(const ExactValues& values, double unit, double reduction,
     double leftAtMost = std::numeric_limits<double>::infinity());
@@ -62,7 +62,7 @@ private:
   double Precondition();
   void Restrict(Level& fine, Level& coarse);
   void Correct(Level& fine, const Level& coarse);
-  void Begin(const ExactValues& values, double unit);
+  double Begin(const ExactValues& values, double unit);
   void Turn(double part);
   double Curvature();
   double Step(const ExactValues& values, double length, double unit);
