@@ -122,9 +122,9 @@ double UncollidedLight::PartOfDifference(std::size_t voxel, int channel) const
 
 /// Sweeps carry all light from outside along the usual directions, as the diffusion system needs it. The difference
 /// that finer ones make to it before it is scattered is added like the light of lamps (numerics.md, Eq. (76)): where
-/// light is scattered many times, and along directions that nobody asked for, scaled in each voxel so that power is as
-/// in the sweeps and an even sky stays even, else scaled by the power that enters. Power that this adds to voxels or takes from them is made up for by what
-/// leaves the box.
+/// light is scattered many times, and along directions that nobody asked for, scaled in each voxel so that power is
+/// as in the sweeps and an even sky stays even, else scaled by the power that enters. Power that this adds to voxels
+/// or takes from them is made up for by what leaves the box.
 void UncollidedLight::AddBoundaryDifference(const Monitor& monitor)
 {
   TransportParts& parts = this->Parts;
