@@ -16,7 +16,7 @@ namespace tyndall
 namespace
 {
 constexpr double Floor = 0.05;     ///< optical length between centres of voxels that pass light as if it were that long
-constexpr double Reduction = 1e-2; ///< of the residual in one correction: sweeps gain no more than that
+constexpr double Reduction = 3e-3; ///< of the residual in one correction: sweeps gain little more than that
 constexpr std::size_t BorderGroup = 256; ///< cells of the box's faces in a work-group
 
 /// Rounding can leave dark faces a little below 0: they become 0, and the others are scaled so that the sum stays.
