@@ -17,6 +17,9 @@ namespace
 {
 constexpr double Floor = 0.05;     ///< optical length between centres of voxels that pass light as if it were that long
 constexpr double Reduction = 3e-3; ///< of the residual in one correction: sweeps gain little more than that
+/// And where the iteration is slow, after several corrections: what they leave of the residual adds up.
+constexpr double SlowReduction = 1e-4;
+constexpr int Several = 12;
 constexpr std::size_t BorderGroup = 256; ///< cells of the box's faces in a work-group
 
 /// Rounding can leave dark faces a little below 0: they become 0, and the others are scaled so that the sum stays.
@@ -201,7 +204,8 @@ double DiffusionSystem::Correct(double unit)
 {
   this->FindModel();
   this->Balance();
-  this->Solver.Solve(this->Solution, unit, Reduction);
+  this->Solver.Solve(this->Solution, unit, this->Corrections < Several ? Reduction : SlowReduction);
+  ++this->Corrections;
   if (this->HasMoments())
   {
     cl::Kernel flux =

@@ -130,6 +130,7 @@ private:
   Buffer<float> FlatSource, Pattern, Model;
   Buffer<cl_int> Skins; ///< by row: whether thick voxels lie beside thinner ones in it
   bool AnySkin = false;
+  int Corrections = 0; ///< made so far
   AndersonMixing Mixing;
   ExactValues Borders;
   ExactValues Next, Solution; ///< of voxels; behind them, where there are moments, those of degree 1, [x, y, z][voxel]
