@@ -19,11 +19,6 @@ typedef real exact_real;
 typedef exact_real __attribute__((aligned(4))) exact_anywhere;
 #define load_exact(index, pointer) (*(const __global exact_anywhere*)((pointer) + (index)))
 #define store_exact(value, index, pointer) (*(__global exact_anywhere*)((pointer) + (index)) = (value))
-#if DOUBLES
-#define to_real_of_exact TYNDALL_JOIN(convert_float, REAL_WIDTH)
-#else
-#define to_real_of_exact
-#endif
 
 inline exact sum_of_exact(exact_real values)
 {
