@@ -42,3 +42,16 @@ inline double RelativeDifference(const std::vector<float>& a, const std::vector<
   const double difference = LargestDifference(a, b);
   return difference == 0.0 ? 0.0 : difference / largest;
 }
+
+/// Root of the sum of squared differences over that of the squares of `b`.
+inline double SquareDifference(const std::vector<float>& a, const std::vector<float>& b)
+{
+  EXPECT_EQ(a.size(), b.size());
+  double differences = 0.0, all = 0.0;
+  for (std::size_t i = 0; i < std::min(a.size(), b.size()); ++i)
+  {
+    differences += std::pow(static_cast<double>(a[i]) - b[i], 2);
+    all += std::pow(b[i], 2);
+  }
+  return std::sqrt(differences / all);
+}

@@ -1,4 +1,5 @@
 #include "DeviceTest.h"
+#include "Difference.h"
 #include "MediumScene.h"
 
 #include "DiscreteOrdinates/OrdinatesQuality.h"
@@ -30,17 +31,6 @@ Scene Cloud(double thickest)
 std::vector<float> FluenceOf(Device& device, const Scene& scene, const PropagationSettings& settings)
 {
   return SolveConservative(device, scene.medium, scene.light, settings).fluence;
-}
-
-double ErrorOf(const std::vector<float>& found, const std::vector<float>& exact)
-{
-  double errors = 0.0, all = 0.0;
-  for (std::size_t i = 0; i < exact.size(); ++i)
-  {
-    errors += std::pow(static_cast<double>(found[i]) - exact[i], 2);
-    all += std::pow(exact[i], 2);
-  }
-  return std::sqrt(errors / all);
 }
 }
 
@@ -125,7 +115,7 @@ TEST_F(QualityOfLight, GrowsFromLevelToLevel)
     double last = 1.0;
     for (const Quality quality : Levels)
     {
-      const double error = ErrorOf(
+      const double error = SquareDifference(
         FluenceOf(this->GetDevice(), scene, AtQuality(quality, PropagationSettings(), scene.medium, scene.light)),
         light);
       EXPECT_LT(error, last) << "quality " << static_cast<int>(quality) << ", thickest " << thickest;
@@ -157,10 +147,10 @@ TEST_F(LightInDividedVoxels, IsThatOfTheScene)
   ASSERT_EQ(light.fluence.size(), whole.fluence.size());
   ASSERT_EQ(light.netFlux.size(), whole.netFlux.size());
   ASSERT_EQ(light.facePower.size(), whole.facePower.size());
-  EXPECT_LT(ErrorOf(light.fluence, whole.fluence), 0.1);
-  EXPECT_LT(ErrorOf(light.fluenceDirect, whole.fluenceDirect), 0.1);
-  EXPECT_LT(ErrorOf(light.netFlux, whole.netFlux), 0.15);
-  EXPECT_LT(ErrorOf(light.facePower, whole.facePower), 0.15);
+  EXPECT_LT(SquareDifference(light.fluence, whole.fluence), 0.1);
+  EXPECT_LT(SquareDifference(light.fluenceDirect, whole.fluenceDirect), 0.1);
+  EXPECT_LT(SquareDifference(light.netFlux, whole.netFlux), 0.15);
+  EXPECT_LT(SquareDifference(light.facePower, whole.facePower), 0.15);
   EXPECT_NEAR(light.balance.absorbed[0], whole.balance.absorbed[0], 0.05 * whole.balance.absorbed[0]);
   double absorbed = 0.0;
   for (std::size_t i = 0; i < light.fluence.size(); ++i)

@@ -1,4 +1,5 @@
 #include "DeviceTest.h"
+#include "Difference.h"
 #include "MediumScene.h"
 
 #include "Device/Errors.h"
@@ -28,17 +29,6 @@ Scene Cloud()
   scene.light.faces[2] = { 1.0, 1.0, 1.0 };
   scene.Attach();
   return scene;
-}
-
-double ErrorOf(const std::vector<float>& found, const std::vector<float>& exact)
-{
-  double errors = 0.0, all = 0.0;
-  for (std::size_t i = 0; i < exact.size(); ++i)
-  {
-    errors += std::pow(static_cast<double>(found[i]) - exact[i], 2);
-    all += std::pow(exact[i], 2);
-  }
-  return std::sqrt(errors / all);
 }
 
 PropagationSolver SolverOn(Device& device)
@@ -76,7 +66,7 @@ TEST_F(TargetError, IsMetByTheTrueError)
     EXPECT_TRUE(found.met) << target;
     EXPECT_TRUE(found.light.doubts.empty());
     EXPECT_LE(found.light.relativeError, target);
-    EXPECT_LE(ErrorOf(found.light.fluence, exact), target);
+    EXPECT_LE(SquareDifference(found.light.fluence, exact), target);
     EXPECT_EQ(found.light.fluenceError.size(), found.light.fluence.size());
     EXPECT_GE(found.solves, 3);
     EXPECT_GT(found.seconds, 0.0);
@@ -104,7 +94,7 @@ TEST_F(TargetError, DividesVoxelsWhereTheseAreTooCoarse)
   const TargetLight found = SolveToTargetError(scene.medium, scene.light, {}, 0.02, {}, SolverOn(this->GetDevice()));
   EXPECT_TRUE(found.divided);
   EXPECT_EQ(found.light.fluence.size(), scene.medium.grid.VoxelCount());
-  EXPECT_LT(ErrorOf(found.light.fluence, Exact(this->GetDevice(), scene)), 0.02);
+  EXPECT_LT(SquareDifference(found.light.fluence, Exact(this->GetDevice(), scene)), 0.02);
 }
 
 TEST_F(TargetError, LeavesWhatWasChosen)

@@ -149,13 +149,13 @@ double MultigridSolver::Precondition()
   {
     this->Correct(this->Levels[l], this->Levels[l + 1]);
   }
-  return this->SumOf(this->Sums);
+  return this->SumOfItems();
 }
 
-/// Over the finest level's work-items.
-double MultigridSolver::SumOf(const ExactValues& parts) const
+/// Of what the finest level's work-items have summed up.
+double MultigridSolver::SumOfItems() const
 {
-  const std::vector<double> values = parts.Read();
+  const std::vector<double> values = this->Sums.Read();
   const std::size_t items = ItemsOf(this->Rows());
   double sum = 0.0;
   for (std::size_t i = 0; i < items; ++i)
@@ -174,7 +174,7 @@ double MultigridSolver::Begin(const ExactValues& values, double unit)
     static_cast<float>(1.0 / unit), finest.right, finest.guess, this->Sums.Handle());
   this->Run(kernel, finest);
   this->Direction.Fill(0.0f);
-  return this->SumOf(this->Sums);
+  return this->SumOfItems();
 }
 
 /// The next direction: the preconditioned residual and `part` of the last direction.
@@ -193,7 +193,7 @@ double MultigridSolver::Curvature()
   cl::Kernel kernel = this->Kernel("apply_matrix");
   With(kernel, finest.layout, finest.conductance, finest.loss, this->Direction, finest.better, this->Sums.Handle());
   this->Run(kernel, finest);
-  return this->SumOf(this->Sums);
+  return this->SumOfItems();
 }
 
 /// Goes so far along the direction. @return the square of what is left, in units
@@ -205,7 +205,7 @@ double MultigridSolver::Step(const ExactValues& values, double length, double un
   SetExact(this->TheDevice, kernel, 5, length * unit);
   SetFrom(kernel, 6, finest.right, finest.guess, values.Handle(), this->Sums.Handle());
   this->Run(kernel, finest);
-  return this->SumOf(this->Sums);
+  return this->SumOfItems();
 }
 
 int MultigridSolver::Solve(const ExactValues& values, double unit, double reduction, double leftAtMost)

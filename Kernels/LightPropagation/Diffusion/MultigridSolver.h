@@ -66,7 +66,7 @@ private:
   void Turn(double part);
   double Curvature();
   double Step(const ExactValues& values, double length, double unit);
-  double SumOf(const ExactValues& parts) const;
+  double SumOfItems() const;
 
   Device& TheDevice;
   std::vector<Level> Levels;
