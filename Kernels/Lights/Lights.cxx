@@ -196,6 +196,12 @@ bool Shines(const Illumination& illumination)
     illumination.uncollided.IsThere();
 }
 
+bool ShinesThroughFaces(const Illumination& illumination)
+{
+  return Sum(illumination.sky) > 0.0 || !illumination.environment.Empty() ||
+    std::any_of(illumination.faces.begin(), illumination.faces.end(), [](const Rgb& face) { return Sum(face) > 0.0; });
+}
+
 bool Reflects(const Illumination& illumination)
 {
   return std::any_of(

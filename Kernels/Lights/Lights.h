@@ -70,6 +70,8 @@ Environment Turned(const Environment& environment, int up, double degrees);
 
 /// Whether anything of it shines: has a power or a radiance above 0.
 bool Shines(const Illumination& illumination);
+/// Whether a face, the sky or an environment lets light in that comes from everywhere, not from lamps.
+bool ShinesThroughFaces(const Illumination& illumination);
 
 /// Whether some face gives back light.
 bool Reflects(const Illumination& illumination);

@@ -1,9 +1,10 @@
 // TargetError against the best hand-made setting: true error and time.
-// `./run bench target [tuning] [size 0.5] [scene 3]`
+// `./run bench target [tuning] [falls] [size 0.5] [scene 3]`
 
 #include "Measure.h"
 #include "Program.h"
 #include "Report.h"
+#include "TargetFalls.h"
 #include "TargetScenes.h"
 
 #include "Light/Quality.h"
@@ -247,6 +248,11 @@ int main(int argc, char* argv[])
     {
       std::rotate(scenes.begin(), scenes.begin() + static_cast<std::ptrdiff_t>(one - 1), scenes.end());
       scenes.erase(scenes.begin() + 1, scenes.end());
+    }
+    if (std::count(arguments.words.begin(), arguments.words.end(), "falls") > 0)
+    {
+      PrintFalls(device, scenes);
+      return;
     }
     RunAll(device, arguments.quick, scenes, tuning ? "scenes tuned on" : "scenes held out");
   });

@@ -97,6 +97,27 @@ TEST_F(TargetError, DividesVoxelsWhereTheseAreTooCoarse)
   EXPECT_LT(SquareDifference(found.light.fluence, Exact(this->GetDevice(), scene)), 0.02);
 }
 
+TEST_F(TargetError, IsNotClaimedBesideLampsWhereItIsMissed)
+{
+  Scene scene({ 21, 26, 18 }, 0.01f, 0.19f);
+  for (const std::array<double, 3>& place : { std::array<double, 3>{ 5.2, 17.7, 8.1 }, { 15.6, 30.0, 3.3 } })
+  {
+    Light lamp;
+    lamp.type = LightType::Point;
+    lamp.position = place;
+    scene.light.lights.push_back(lamp);
+  }
+  scene.Attach();
+  const std::vector<float> exact = Exact(this->GetDevice(), scene);
+  for (const double target : { 0.05, 0.03, 0.02, 0.01 })
+  {
+    const TargetLight found =
+      SolveToTargetError(scene.medium, scene.light, {}, target, {}, SolverOn(this->GetDevice()));
+    EXPECT_TRUE(!found.met || SquareDifference(found.light.fluence, exact) <= target)
+      << target << ": " << SquareDifference(found.light.fluence, exact) << ", estimated " << found.light.relativeError;
+  }
+}
+
 TEST_F(TargetError, LeavesWhatWasChosen)
 {
   const Scene scene = Cloud();
@@ -142,12 +163,15 @@ TEST(DirectionForecast, TellsUnscatteredLightFromTheRest)
   few.fluence = { 2.2f, 1.8f }; // all of the difference is in unscattered light
   few.fluenceDirect = { 1.2f, 0.8f };
   more.convergence.resize(10);
-  const DirectionForecast forecast(few, 9, more, 25);
+  DirectionForecast forecast(few, 9, more, 25);
   PropagationSettings settings;
   settings.uncollidedDirections = 400;
   const double fine = forecast.Error(settings);
   settings.uncollidedDirections = 0;
   EXPECT_LT(4.0 * fine, forecast.Error(settings));
+  EXPECT_EQ(forecast.Cheapest({}, 1.5 * fine).uncollidedDirections, 0); // what is scattered of it is not known yet
+  LightField between = more;
+  forecast.Separate(few, between, more);
   const PropagationSettings cheapest = forecast.Cheapest({}, 1.5 * fine);
   EXPECT_LE(cheapest.directionsPerFace, 9);
   EXPECT_GE(cheapest.uncollidedDirections, 256);

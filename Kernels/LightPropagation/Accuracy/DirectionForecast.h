@@ -21,12 +21,15 @@ public:
   /// @param between  scattered light along the few, unscattered light along the more
   void Separate(const LightField& few, const LightField& between, const LightField& more);
 
-  /// Relative, root mean square, of fluence.
+  /// Relative, root mean square, of fluence, on a grid of twice the voxels an axis.
   double Error(const PropagationSettings& settings) const;
+  /// That error over the difference to the light along others, both on the coarse grid.
+  double PartOfDifference(const PropagationSettings& settings, const PropagationSettings& others) const;
   /// In sweeps along one direction a face.
   double Work(const PropagationSettings& settings) const;
   /// The settings with the least work whose error is at most `error`, or else those of the least error. Only numbers
-  /// that `settings` has at their default values are chosen.
+  /// that `settings` has at their default values are chosen; unscattered light goes along the same directions where
+  /// nothing told its errors apart (Separate).
   PropagationSettings Cheapest(const PropagationSettings& settings, double error) const;
   /// Errors turned out to be so many times those of the forecast.
   void Correct(double factor);
@@ -34,6 +37,7 @@ public:
 private:
   double Fallen;                                ///< the difference of the two solves over the error along 9
   double OfUncollided = 0.0, OfScattered = 0.0; ///< errors of 9 directions a face
+  bool Separated = false;
   double Sweeps = 1.0;
 };
 }

@@ -18,11 +18,13 @@ namespace tyndall
 {
 namespace
 {
-constexpr double Aim = 0.9;            ///< of the target, for the forecast
-constexpr double DirectionPart = 0.85; ///< of that, for directions
+constexpr double Aim = 0.95;          ///< of the target, for the forecast
+constexpr double DirectionPart = 0.9; ///< of that, for directions
+constexpr double LeastRoom = 0.3;     ///< for directions, of what is aimed at, beside the error of voxels
+constexpr double MuchTooCoarse = 1.5; ///< voxels, whose error is so many times what is aimed at
 constexpr double TolerancePart = 0.3;
 constexpr double LooseTolerance = 1e-2;
-constexpr double OrderInSpace = 1.7, OrderBesideLamps = 1.5; ///< measured: clouds 1.7, lamps in fog 1.6
+constexpr double OrderInSpace = 1.7, OrderBesideLamps = 1.4; ///< measured: clouds 1.7, lamps in fog 1.4 to 1.7
 constexpr double MuchUncollided = 0.3; ///< of the error, from which on a solve more tells how much it is
 constexpr int Few = 9, More = 25;
 constexpr double LeastEmissionError = 0.005;
@@ -79,18 +81,13 @@ public:
           const Monitor& monitor) { return this->Count(medium, light, settings, monitor); }));
     }
     this->SolveAlong(this->Forecast->Cheapest(this->Asked, DirectionPart * this->Goal), 0.12, 0.4);
-    if (this->Light.relativeError > this->Target && this->Parts.inDirections > DirectionPart * this->Goal)
+    if (this->Light.relativeError > this->Goal)
     {
-      this->Forecast->Correct(this->Parts.inDirections / this->Forecast->Error(this->Used));
-      const PropagationSettings better = this->Forecast->Cheapest(this->Asked, DirectionPart * this->Goal);
-      if (this->Forecast->Error(better) < this->Forecast->Error(this->Used))
-      {
-        this->SolveAlong(better, 0.4, 0.6);
-      }
+      this->TryBetterDirections();
     }
-    if (this->Light.relativeError > this->Target && this->PromisesToDoInHalves())
+    if (this->Light.relativeError > this->Goal)
     {
-      this->Divide();
+      this->TryHalves();
     }
     return this->Finish(std::move(this->Light));
   }
@@ -127,17 +124,23 @@ private:
       this->AlongFew = { settings, few.fluence };
       settings.directionsPerFace = More;
       const LightField more = this->OnCoarse(settings, 0.03, 0.1);
+      this->AlongMore = { settings, more.fluence };
       this->Forecast.emplace(few, Few, more, More);
-      if (this->Forecast->UncollidedPart() > MuchUncollided)
+      if (this->MayHaveFinerUncollided())
       {
         settings.directionsPerFace = Few;
         settings.uncollidedDirections = More;
         this->Forecast->Separate(few, this->OnCoarse(settings, 0.1, 0.12), more);
-        settings.directionsPerFace = More;
-        settings.uncollidedDirections = 0;
       }
-      this->AlongMore = { settings, more.fluence };
     }
+  }
+
+  /// Whether it pays to ask how much is off by unscattered light alone: much is, it comes in from outside, and the
+  /// target takes more than a few directions.
+  bool MayHaveFinerUncollided() const
+  {
+    return this->Forecast->UncollidedPart() > MuchUncollided && ShinesThroughFaces(this->Shining) &&
+      this->Forecast->Cheapest(this->Asked, DirectionPart * this->Goal).directionsPerFace > More;
   }
 
   /// On the grid itself, and on the coarse one for the estimate.
@@ -151,15 +154,50 @@ private:
                                                                    : nullptr;
     const CoarseLight& other = solved == &this->AlongMore ? this->AlongFew : this->AlongMore;
     const double error = this->Forecast->Error(settings);
-    const double difference = std::hypot(error, this->Forecast->Error(other.settings));
     const double order = HasLampsNearby(this->Shining) ? OrderBesideLamps : OrderInSpace;
-    const double part = difference > 0.0 ? error / difference : 0.0;
     if (!solved && this->IsMetAtMost(other.fluence, error, order))
     {
       return;
     }
     const std::vector<float> same = solved ? solved->fluence : this->OnCoarse(settings, middle, to).fluence;
-    this->Parts = WriteErrorEstimate(this->Light, this->Coarsened, same, other.fluence, part, order);
+    this->Parts = WriteErrorEstimate(this->Light, this->Coarsened, same, other.fluence,
+      this->Forecast->PartOfDifference(settings, other.settings), order);
+  }
+
+  /// What the errors of voxels and orders leave for directions; 0: next to nothing.
+  double RoomBeside(double inSpace) const
+  {
+    const double others = std::hypot(inSpace, this->Parts.residual);
+    const double room = std::sqrt(std::max(0.0, this->Goal * this->Goal - others * others));
+    return room < LeastRoom * this->Goal ? 0.0 : room;
+  }
+
+  /// The cheapest along which directions leave at most that; those used, where they do or no others are better.
+  PropagationSettings Within(double room)
+  {
+    if (this->Parts.inDirections <= room)
+    {
+      return this->Used;
+    }
+    this->Forecast->Correct(this->Parts.inDirections / this->Forecast->Error(this->Used));
+    const PropagationSettings better = this->Forecast->Cheapest(this->Asked, DirectionPart * room);
+    return this->Forecast->Error(better) < this->Forecast->Error(this->Used) ? better : this->Used;
+  }
+
+  /// Once more on the grid itself, if directions are off by more than there is room for, or by much: voxels of half
+  /// the edge would take far longer, and errors of directions make those of voxels look larger than they are.
+  void TryBetterDirections()
+  {
+    const double room = std::max(this->RoomBeside(this->Parts.inSpace), LeastRoom * this->Goal);
+    if (this->Parts.inSpace > MuchTooCoarse * this->Goal || this->Parts.inDirections <= room)
+    {
+      return;
+    }
+    const PropagationSettings better = this->Within(room);
+    if (this->Forecast->Error(better) < this->Forecast->Error(this->Used))
+    {
+      this->SolveAlong(better, 0.4, 0.6);
+    }
   }
 
   /// Whether the target is met even if all of the difference to the coarse light along other directions were one in
@@ -180,10 +218,23 @@ private:
   }
 
   /// Voxels of half the edge leave a quarter of the error in voxel size.
-  bool PromisesToDoInHalves() const
+  void TryHalves()
   {
-    const double left = std::hypot(this->Parts.inSpace / 4.0, this->Parts.inDirections, this->Parts.residual);
-    return this->Parts.inSpace > this->Parts.inDirections && left <= this->Target;
+    const double room = this->RoomBeside(this->Parts.inSpace / 4.0);
+    if (room == 0.0 || this->Parts.inSpace <= LeastRoom * this->Goal)
+    {
+      return;
+    }
+    const PropagationSettings along = this->Within(room);
+    if (this->Forecast->Error(along) < this->Forecast->Error(this->Used))
+    {
+      this->Used = along;
+      this->Parts.inDirections = this->Forecast->Error(along);
+    }
+    if (this->Parts.inDirections <= room)
+    {
+      this->Divide();
+    }
   }
 
   void Divide()

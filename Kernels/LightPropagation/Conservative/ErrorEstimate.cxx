@@ -6,6 +6,8 @@
 #include <array>
 #include <cmath>
 #include <limits>
+#include <numeric>
+#include <utility>
 #include <vector>
 
 namespace tyndall
@@ -72,22 +74,49 @@ bool IsStoppedTooSoonToTell(const LightField& light)
   return light.convergence.size() == 1 && light.convergence.front().residual > 0.0;
 }
 
-/// Fills in fluenceError and relativeError.
-/// @param variance  of the coarse voxels' fluence
-void WriteError(LightField& light, const std::vector<double>& variance, const Coarsening& coarsening)
+/// What a variance of coarse voxels' fluence is in each voxel of theirs: the brighter are off by more, as beside lamps.
+std::vector<double> InVoxels(const LightField& light, const std::vector<float>& averages,
+  const std::vector<double>& variance, const Coarsening& coarsening)
 {
-  const double residual = light.convergence.empty() ? 0.0 : light.convergence.back().residual;
   const auto channels = static_cast<std::size_t>(light.channels);
+  std::vector<double> squares(light.fluence.size());
+  for (std::size_t i = 0; i < squares.size(); ++i)
+  {
+    const std::size_t parent = coarsening.Parent(i / channels) * channels + i % channels;
+    const double part = averages[parent] > 0.0f ? static_cast<double>(light.fluence[i]) / averages[parent] : 1.0;
+    squares[i] = variance[parent] * part * part;
+  }
+  return squares;
+}
+
+double SumOfSquares(const std::vector<float>& values)
+{
+  return std::accumulate(
+    values.begin(), values.end(), 0.0, [](double sum, double value) { return sum + value * value; });
+}
+
+/// Fills in fluenceError and relativeError: errors of voxels smoothly, all together as large as they were, and not
+/// smaller beside the light of all than in the averages: beside lamps these do not see how it falls off in a few voxels.
+/// @param averages, variance  of the coarse voxels' fluence
+void WriteError(
+  LightField& light, const std::vector<float>& averages, std::vector<double> variance, const Coarsening& coarsening)
+{
+  const auto sum = [](const std::vector<double>& all) { return std::accumulate(all.begin(), all.end(), 0.0); };
+  const double fluences = SumOfSquares(light.fluence), ofAverages = SumOfSquares(averages);
+  const double asAverages = ofAverages > 0.0 ? fluences * sum(variance) / ofAverages : 0.0;
+  const double all = std::max(asAverages, sum(InVoxels(light, averages, variance, coarsening)));
+  Smooth(variance, coarsening.Coarse(), light.channels);
+  const std::vector<double> squares = InVoxels(light, averages, variance, coarsening);
+  const double smoothed = sum(squares), scale = smoothed > 0.0 ? all / smoothed : 1.0;
+  const double residual = light.convergence.empty() ? 0.0 : light.convergence.back().residual;
   light.fluenceError.resize(light.fluence.size());
-  double errors = 0.0, fluences = 0.0;
+  double errors = 0.0;
   for (std::size_t i = 0; i < light.fluence.size(); ++i)
   {
     const double fluence = light.fluence[i];
-    const std::size_t parent = coarsening.Parent(i / channels) * channels + i % channels;
-    const double square = variance[parent] + residual * residual * fluence * fluence;
+    const double square = scale * squares[i] + residual * residual * fluence * fluence;
     light.fluenceError[i] = static_cast<float>(std::sqrt(square));
     errors += square;
-    fluences += fluence * fluence;
   }
   light.relativeError = fluences > 0.0 ? std::sqrt(errors / fluences) : 0.0;
 }
@@ -127,8 +156,7 @@ ErrorParts WriteErrorEstimate(LightField& light, const Coarsening& coarsening, c
     ofDirections += directions * directions;
     all += static_cast<double>(fine[i]) * fine[i];
   }
-  Smooth(variance, coarsening.Coarse(), light.channels);
-  WriteError(light, variance, coarsening);
+  WriteError(light, fine, std::move(variance), coarsening);
   const double scale = all > 0.0 ? 1.0 / all : 0.0;
   return { std::sqrt(scale * ofSpace), std::sqrt(scale * ofDirections),
     light.convergence.empty() ? 0.0 : light.convergence.back().residual };

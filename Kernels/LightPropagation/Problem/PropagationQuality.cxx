@@ -24,12 +24,6 @@ constexpr Level Fine = { 64, 49, 400, 1e-4, 0.01 };
 constexpr Level Reference = { 256, 144, 1600, 1e-5, 0.005 };
 constexpr int Staggered = 144; ///< directions from which on rays of each in a place of their own halve the error
 
-bool ShinesThroughFaces(const Illumination& illumination)
-{
-  return Sum(illumination.sky) > 0.0 || !illumination.environment.Empty() ||
-    std::any_of(illumination.faces.begin(), illumination.faces.end(), [](const Rgb& face) { return Sum(face) > 0.0; });
-}
-
 bool Scatters(const Medium& medium)
 {
   const std::size_t count = medium.grid.VoxelCount() * medium.sigma_s.components;
