@@ -36,8 +36,8 @@ ErrorParts WriteErrorEstimate(LightField& light, const Coarsening& coarsening, c
 ///  - in directions, by 0.6 times as many along a face's edge, Eq. (83);
 ///  - of scattering orders that were not computed: the residual.
 /// fluenceError is a standard error, Eq. (84); relativeError that of all voxels. Too large where the medium has edges
-/// as sharp as a voxel (coarsening blurs them), and next to a lamp too large or too small by up to a factor of two. What was measured:
-/// measurements.md.
+/// as sharp as a voxel (coarsening blurs them), and next to a lamp too large or too small by up to a factor of two.
+/// What was measured: measurements.md.
 ///
 /// Not known of a solve that was stopped after its first order while light was left: one order does not tell how fast
 /// orders shrink. relativeError is NaN then, and fluenceError empty.
