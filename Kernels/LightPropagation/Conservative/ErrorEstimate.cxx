@@ -96,7 +96,7 @@ double SumOfSquares(const std::vector<float>& values)
 }
 
 /// Fills in fluenceError and relativeError: errors of voxels smoothly, all together as large as they were, and not
-/// smaller, relative to all light, than in the averages, which beside lamps do not see how it falls off in a few voxels.
+/// smaller, relative to all light, than in the averages, which beside lamps do not see how it falls off within voxels.
 /// @param averages, variance  of the coarse voxels' fluence
 void WriteError(
   LightField& light, const std::vector<float>& averages, std::vector<double> variance, const Coarsening& coarsening)
