@@ -10,12 +10,12 @@
 #include "Numerics/Vectors.h"
 #include "Refraction/Index/SquaredIndex.h"
 #include "TyndallKernelSources.h"
-#include "Viewing/Aureole.h"
-#include "Viewing/Bricks.h"
-#include "Viewing/GroundLight.h"
-#include "Viewing/SurfaceLight.h"
-#include "Viewing/ViewChecks.h"
-#include "Viewing/ViewLights.h"
+#include "Viewing/Backdrop/GroundLight.h"
+#include "Viewing/Backdrop/SurfaceLight.h"
+#include "Viewing/Backdrop/ViewLights.h"
+#include "Viewing/Samples/Bricks.h"
+#include "Viewing/Scene/ViewChecks.h"
+#include "Viewing/Sources/Aureole.h"
 
 #include <algorithm>
 #include <cmath>
@@ -643,7 +643,7 @@ cl::Kernel MediumRayCaster::CastingKernel(Packing what)
 {
   if (!this->Bends && this->Settings.tableFace < 0)
   {
-    return this->TheDevice.Kernel("cast_rays", kernel_source::MediumRayCaster,
+    return this->TheDevice.Kernel("cast_rays", kernel_source::StraightView,
       this->CastingOptions(what) + Define("SURFACE_LIGHT", this->Surface.Size() > 0));
   }
   const int surface = this->Reflects() ? static_cast<int>(this->Settings.surfaceReflection) : 0;

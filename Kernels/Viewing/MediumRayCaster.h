@@ -7,9 +7,9 @@
 #include "Medium/Medium.h"
 #include "Medium/Traits.h"
 #include "Refraction/Index/IndexRange.h"
-#include "Viewing/Camera.h"
-#include "Viewing/ViewedPhase.h"
-#include "Viewing/ViewShared.h"
+#include "Viewing/Scene/Camera.h"
+#include "Viewing/Scene/ViewedPhase.h"
+#include "Viewing/Scene/ViewShared.h"
 
 #include <array>
 #include <string>
