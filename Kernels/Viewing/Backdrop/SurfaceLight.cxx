@@ -2,7 +2,7 @@
 
 #include "Medium/BoxFaces.h"
 #include "Numerics/Constants.h"
-#include "Viewing/Backdrop/ViewLights.h"
+#include "Viewing/Backdrop/BoxFaceTables.h"
 
 #include <algorithm>
 #include <cmath>

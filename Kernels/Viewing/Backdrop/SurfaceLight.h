@@ -1,6 +1,7 @@
 #pragma once
 
-#include "Viewing/MediumRayCaster.h"
+#include "Device/OpenCL.h"
+#include "Viewing/Scene/SolvedLight.h"
 
 #include <vector>
 

@@ -1,12 +1,11 @@
 #include "Viewing/Scene/ViewChecks.h"
 
+#include "Device/Errors.h"
 #include "Medium/BoxFaces.h"
 #include "Numerics/NumberText.h"
-#include "Refraction/Index/IndexRange.h"
 
 #include <algorithm>
 #include <cmath>
-#include <string>
 
 namespace tyndall
 {

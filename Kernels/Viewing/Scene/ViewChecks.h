@@ -1,6 +1,12 @@
 #pragma once
 
-#include "Viewing/MediumRayCaster.h"
+#include "Refraction/Index/IndexRange.h"
+#include "Viewing/Scene/Camera.h"
+#include "Viewing/Scene/SolvedLight.h"
+#include "Viewing/Scene/ViewSettings.h"
+
+#include <string>
+#include <vector>
 
 namespace tyndall
 {

@@ -1,7 +1,7 @@
 #pragma once
 
 #include "Light/Quality.h"
-#include "Viewing/MediumRayCaster.h"
+#include "Viewing/Scene/ViewSettings.h"
 
 #include <string>
 #include <vector>

@@ -147,14 +147,20 @@ ViewedPhase ViewedPhaseOf(const PhaseOfMedium& phase)
     part[c] = shape.part;
   }
   viewed.parameters = { Float4(first), Float4(second), Float4(part) };
+  return viewed;
+}
+
+std::vector<float> RowsOf(const ViewedPhase& viewed, const PhaseOfMedium& phase)
+{
   if (viewed.formula == ViewedPhase::Schlick)
   {
-    viewed.rows = RowsOfSchlick();
+    return RowsOfSchlick();
   }
+  std::vector<float> rows;
   for (int c = 0; c < viewed.channels && viewed.formula == ViewedPhase::Rows; ++c)
   {
-    AddSpreadRows(functions[c], viewed.rows);
+    AddSpreadRows(phase.OfChannel(c), rows);
   }
-  return viewed;
+  return rows;
 }
 }

@@ -7,8 +7,8 @@
 
 namespace tyndall
 {
-/// How the ray caster's kernels evaluate a medium's phase function (PhaseFunction.cl): by a formula where there is one
-/// for light that is spread about its mean direction, else by a table.
+/// How the ray caster's kernels evaluate a medium's phase function (Samples/PhaseFunction.cl): by a formula where there
+/// is one for light that is spread about its mean direction, else by a table.
 struct ViewedPhase
 {
   enum Formula ///< the kernels' PHASE
@@ -25,8 +25,10 @@ struct ViewedPhase
   int channels = 1;    ///< 3 where they scatter differently
   bool varies = false; ///< g is that of the voxel
   PhaseInfo parameters = {};
-  std::vector<float> rows; ///< of Schlick and Rows
 };
 
 ViewedPhase ViewedPhaseOf(const PhaseOfMedium& phase);
+
+/// The tables of Schlick and Rows; empty for others.
+std::vector<float> RowsOf(const ViewedPhase& viewed, const PhaseOfMedium& phase);
 }
