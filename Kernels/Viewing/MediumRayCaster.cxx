@@ -146,7 +146,7 @@ void MediumRayCaster::AddUnscattered(ViewInfo view, const Monitor& monitor, std:
   view.background = Float4(behind, view.background.s[3]);
   OpticsInfo optics = OpticsInfoOf(this->Settings, this->Traits);
   optics.table.s[0] = optics.table.s[1] = optics.table.s[2] = 0.0f; // it is in the picture already
-  this->Rays.Cast(this->Settings, view, optics, Packing::Unscattered, 0.8, 1.0, monitor);
+  this->Rays.Cast(this->Settings, view, optics, 0.8, 1.0, monitor);
   const std::vector<float> sharp = this->Rays.ReadRadiance();
   std::transform(radiance.begin(), radiance.end(), sharp.begin(), radiance.begin(), std::plus<float>());
 }
@@ -171,7 +171,7 @@ Picture MediumRayCaster::Render(const Camera& camera, const Monitor& monitor)
   {
     view.background = Float4(glm::dvec3(0.0), view.background.s[3]); // does not shine on the medium: see AddUnscattered
   }
-  this->Rays.Cast(this->Settings, view, OpticsInfoOf(this->Settings, this->Traits), Packing::Scattered,
+  this->Rays.Cast(this->Settings, view, OpticsInfoOf(this->Settings, this->Traits),
     prepares && this->Traits.shadowRays ? 0.5 : 0.0, byMoments ? 0.8 : 1.0, monitor);
   picture.radiance = this->Rays.ReadRadiance();
   if (byMoments)

@@ -50,7 +50,7 @@ void RayCasting::Reserve(const ViewSettings& settings)
   }
 }
 
-std::string RayCasting::Options(const ViewSettings& settings, Packing what) const
+std::string RayCasting::Options(const ViewSettings& settings) const
 {
   const ViewTraits& traits = this->Traits;
   // Longest optical length of a step; the kernel has a shorter way to cross it up to 2. Bent steps can be a little
@@ -61,30 +61,30 @@ std::string RayCasting::Options(const ViewSettings& settings, Packing what) cons
     Define("ENVIRONMENT", this->Behind.HasEnvironment()) + Define("GROUND", this->Behind.FacesOfGround()) +
     Define("THIN_STEPS", longest <= (traits.bends ? 1.5 : 2.0)) + Define("GLOW", traits.GlowsApart()) +
     traits.PhaseOptions(traits.knowsFlow) + StepOption(LongestSteps(traits.grid, settings.stepSize)) +
-    this->Samples.ShownOptions(what);
+    this->Samples.ShownOptions();
 }
 
-cl::Kernel RayCasting::Kernel(const ViewSettings& settings, Packing what) const
+cl::Kernel RayCasting::Kernel(const ViewSettings& settings) const
 {
   if (this->Traits.OnlyStraight())
   {
     return this->TheDevice.Kernel("cast_rays", kernel_source::StraightView,
-      this->Options(settings, what) + Define("SURFACE_LIGHT", this->Behind.HasSurfaceLight()));
+      this->Options(settings) + Define("SURFACE_LIGHT", this->Behind.HasSurfaceLight()));
   }
   const int surface = this->Traits.Reflects(settings) ? static_cast<int>(settings.surfaceReflection) : 0;
   return this->TheDevice.Kernel("cast_bent_rays", kernel_source::BentView,
-    this->Options(settings, what) + Define("BENDS", this->Traits.bends) + Define("SURFACE", surface) +
+    this->Options(settings) + Define("BENDS", this->Traits.bends) + Define("SURFACE", surface) +
       Define("TABLE", this->Traits.hasTable));
 }
 
-void RayCasting::Cast(const ViewSettings& settings, ViewInfo view, const OpticsInfo& optics, Packing what, double from,
-  double to, const Monitor& monitor)
+void RayCasting::Cast(
+  const ViewSettings& settings, ViewInfo view, const OpticsInfo& optics, double from, double to, const Monitor& monitor)
 {
   const PackedSamples& s = this->Samples;
   const Backdrop& b = this->Behind;
-  const Buffer<cl_float4>& environment = what == Packing::Unscattered ? b.SharpEnvironment() : b.Environment();
+  const Buffer<cl_float4>& environment = s.PackedFor() == Packing::Unscattered ? b.SharpEnvironment() : b.Environment();
   const std::array<int, 2> packet = PacketPixels(this->Traits.packetWidth);
-  cl::Kernel cast = this->Kernel(settings, what);
+  cl::Kernel cast = this->Kernel(settings);
   // Batches of whole work-groups: else the last rows of one would be cast again by the next.
   const int group = 4;
   const std::size_t across = RoundUp<std::size_t>(view.picture.s[0], group * packet[0]) / (group * packet[0]);

@@ -38,10 +38,10 @@ public:
   /// @throws DeviceError if it does not fit
   void Reserve(const ViewSettings& settings);
 
-  /// A picture of what was packed. Reports from `from` to `to`.
-  /// @param what  was packed; the environment behind is that which belongs to it
+  /// A picture of what was packed, and of what of the environment belongs to that.
+  /// @param from, to  fractions done that are reported
   /// @throws Aborted
-  void Cast(const ViewSettings& settings, ViewInfo view, const OpticsInfo& optics, Packing what, double from, double to,
+  void Cast(const ViewSettings& settings, ViewInfo view, const OpticsInfo& optics, double from, double to,
     const Monitor& monitor);
 
   // What was cast last, see Picture.
@@ -50,8 +50,8 @@ public:
   std::vector<float> ReadDepth() const { return this->Depth.Read(); }
 
 private:
-  std::string Options(const ViewSettings& settings, Packing what) const;
-  cl::Kernel Kernel(const ViewSettings& settings, Packing what) const;
+  std::string Options(const ViewSettings& settings) const;
+  cl::Kernel Kernel(const ViewSettings& settings) const;
 
   Device& TheDevice;
   const SceneOnDevice& Scene;

@@ -73,20 +73,21 @@ void PackedSamples::PackBending(const Buffer<float>& ior)
 void PackedSamples::Pack(
   Packing what, const SceneOnDevice& scene, const Buffer<float>& direct, const Buffer<float>& diffuse)
 {
+  this->For = what;
   if (this->Traits.ShowsMoments())
   {
-    this->PackShown(what, scene, direct, diffuse);
+    this->PackShown(scene, direct, diffuse);
   }
   else
   {
-    this->PackSources(what, scene, direct);
+    this->PackSources(scene, direct);
   }
 }
 
-void PackedSamples::PackSources(Packing what, const SceneOnDevice& scene, const Buffer<float>& direct)
+void PackedSamples::PackSources(const SceneOnDevice& scene, const Buffer<float>& direct)
 {
   const ViewTraits& traits = this->Traits;
-  const bool forShadowRays = what == Packing::ForShadowRays;
+  const bool forShadowRays = this->For == Packing::ForShadowRays;
   const bool bends = traits.bends && !forShadowRays; // shadow rays go straight on
   const std::string options = traits.PackingOptions() + traits.PhaseOptions(traits.knowsFlow) +
     Define("SHADOW_RAYS", traits.shadowRays && !forShadowRays) + Define("BENDS", bends) + Define("SHOWN", 0);
@@ -100,24 +101,22 @@ void PackedSamples::PackSources(Packing what, const SceneOnDevice& scene, const 
   this->FindBricks(options);
 }
 
-std::string PackedSamples::ShownOptions(Packing what) const
+std::string PackedSamples::ShownOptions() const
 {
-  const int shown = !this->Traits.ShowsMoments() || what == Packing::ForShadowRays ? 0
-    : what == Packing::Scattered                                                   ? 1
-                                                                                   : 2;
+  const int shown = !this->Traits.ShowsMoments() || this->For == Packing::ForShadowRays ? 0
+    : this->For == Packing::Scattered                                                   ? 1
+                                                                                        : 2;
   return Define("SHOWN", shown) + Define("BEAMS", shown > 0 && this->Traits.ShowsBeams());
 }
 
-void PackedSamples::PackShown(
-  Packing what, const SceneOnDevice& scene, const Buffer<float>& direct, const Buffer<float>& diffuse)
+void PackedSamples::PackShown(const SceneOnDevice& scene, const Buffer<float>& direct, const Buffer<float>& diffuse)
 {
   const ViewTraits& traits = this->Traits;
   const std::string options = traits.PackingOptions() + traits.PhaseOptions(false) + Define("SHADOW_RAYS", 0) +
-    Define("BENDS", traits.bends && what != Packing::ForShadowRays) +
-    Define("STRAIGHT_ON", what == Packing::Unscattered ? 0 : traits.straightOnChannels) +
+    Define("BENDS", traits.bends && this->For != Packing::ForShadowRays) +
+    Define("STRAIGHT_ON", this->For == Packing::Unscattered ? 0 : traits.straightOnChannels) +
     Define("AUREOLE", traits.aureoleChannels);
-  cl::Kernel pack =
-    this->TheDevice.Kernel("pack_shown", kernel_source::ShownSamples, options + this->ShownOptions(what));
+  cl::Kernel pack = this->TheDevice.Kernel("pack_shown", kernel_source::ShownSamples, options + this->ShownOptions());
   With(pack, Int4(traits.grid.size), scene.arrays[0], scene.arrays[1], scene.arrays[2], scene.straightOn, diffuse,
     direct, scene.ior, this->Sources, this->ColouredExtinctions, this->Directions, this->Emission);
   this->Launch(pack);

@@ -30,9 +30,9 @@ public:
   /// @param direct, diffuse  see SeenSources.h; read where `what` is for the camera's rays
   void Pack(Packing what, const SceneOnDevice& scene, const Buffer<float>& direct, const Buffer<float>& diffuse);
 
-  /// SHOWN and BEAMS of the kernels that read what was packed.
-  std::string ShownOptions(Packing what) const;
-  /// Of the last packing.
+  // Of the last packing.
+  Packing PackedFor() const { return this->For; }
+  std::string ShownOptions() const; ///< SHOWN and BEAMS of the kernels
   bool HasEmptyBricks() const { return this->EmptyBricks; }
 
   const Buffer<cl_float4>& Samples() const { return this->Sources; } ///< source and grey extinction: ScatteredLight.cl
@@ -47,14 +47,15 @@ public:
 
 private:
   void PackBending(const Buffer<float>& ior);
-  void PackSources(Packing what, const SceneOnDevice& scene, const Buffer<float>& direct);
-  void PackShown(Packing what, const SceneOnDevice& scene, const Buffer<float>& direct, const Buffer<float>& diffuse);
+  void PackSources(const SceneOnDevice& scene, const Buffer<float>& direct);
+  void PackShown(const SceneOnDevice& scene, const Buffer<float>& direct, const Buffer<float>& diffuse);
   void Launch(cl::Kernel& kernel);
   void FindBricks(const std::string& options);
 
   Device& TheDevice;
   const ViewTraits& Traits;
   std::array<int, 3> Count;
+  Packing For = Packing::ForShadowRays;
   bool EmptyBricks = false;
   Buffer<cl_float4> Sources, ColouredExtinctions, Directions, ColouredG, Emission, Gradients;
   Buffer<cl_char> Distances;

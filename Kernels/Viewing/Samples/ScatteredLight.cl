@@ -11,23 +11,11 @@
 //   BENDS        1: the refractive index varies
 //   SHOWN        of what ShownSamples.cl packed: only the extinction tells what is empty
 
+#include "Viewing/Samples/Border.cl"
 #include "Viewing/Samples/Sampling.cl"
 #include "Viewing/Samples/VoxelChannels.cl"
 
 #define LARGEST_FLOW 0.9999f
-
-// Voxels by work-items of a plane with its border: the work-item's own place, and the voxel that is repeated there.
-inline int padded_index(int4 size)
-{
-  return ((int)get_global_id(2) * (size.y + 2) + (int)get_global_id(1)) * (size.x + 2) + (int)get_global_id(0);
-}
-inline int voxel_index(int4 size)
-{
-  const int i = clamp((int)get_global_id(0) - 1, 0, size.x - 1);
-  const int j = clamp((int)get_global_id(1) - 1, 0, size.y - 1);
-  const int k = clamp((int)get_global_id(2) - 1, 0, size.z - 1);
-  return (k * size.y + j) * size.x + i;
-}
 
 // In-scattered radiance of one channel. `fluence` holds everything, `unscattered` what of it came straight from a
 // light; what is seen of the lights by shadow rays is taken out of fluence, so that it does not count twice.

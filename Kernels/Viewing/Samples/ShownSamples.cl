@@ -11,6 +11,7 @@
 //   COLOURED, BENDS, GLOW  as in ScatteredLight.cl
 
 #include "Viewing/Samples/Beside.cl"
+#include "Viewing/Samples/Border.cl"
 #include "Viewing/Samples/VoxelChannels.cl"
 
 #define DARKEST 80.0f
@@ -45,18 +46,6 @@ inline coefficients coefficients_of(
   return here;
 }
 
-inline int padded_place(int4 size)
-{
-  return ((int)get_global_id(2) * (size.y + 2) + (int)get_global_id(1)) * (size.x + 2) + (int)get_global_id(0);
-}
-inline int repeated_voxel(int4 size)
-{
-  const int i = clamp((int)get_global_id(0) - 1, 0, size.x - 1);
-  const int j = clamp((int)get_global_id(1) - 1, 0, size.y - 1);
-  const int k = clamp((int)get_global_id(2) - 1, 0, size.z - 1);
-  return (k * size.y + j) * size.x + i;
-}
-
 inline float4 triple(__global const float* values, int voxel)
 {
   return (float4)(values[3 * voxel], values[3 * voxel + 1], values[3 * voxel + 2], 0.0f);
@@ -76,8 +65,8 @@ __kernel void pack_shown(int4 size, __global const float* restrict absorption,
   {
     return;
   }
-  const int voxel = repeated_voxel(size);
-  const int place = padded_place(size);
+  const int voxel = voxel_index(size);
+  const int place = padded_index(size);
   const coefficients here = coefficients_of(absorption, scattering, straight_on, voxel);
   float4 source = (float4)(0.0f);
   float perSquare = 1.0f;
