@@ -1,5 +1,5 @@
-// Samples have a border of one voxel that repeats the outermost ones. A work-item's place among them, and the voxel that
-// stands there.
+// Samples have a border of one voxel that repeats the outermost ones. A work-item's place among them, and the voxel
+// that stands there.
 
 #pragma once
 
