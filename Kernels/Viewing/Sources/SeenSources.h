@@ -26,9 +26,9 @@ public:
   SeenSources(Device& device, const Medium& medium, const SolvedLight& light, const std::vector<Light>& lamps,
     int rectangleSamples, const ViewTraits& traits);
 
+  /// Reports the first half of a picture.
   /// @param stepSize  voxels that shadow rays advance between samples
   /// @param samples   packed for shadow rays
-  /// Reports the first half of a picture.
   /// @throws Aborted
   void SeeLights(const Camera& camera, double stepSize, const SceneOnDevice& scene, const PackedSamples& samples,
     const Monitor& monitor);
