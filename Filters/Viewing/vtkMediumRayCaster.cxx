@@ -10,8 +10,8 @@
 #include "Device/Device.h"
 #include "Medium/BoxFaces.h"
 #include "Viewing/MediumRayCaster.h"
+#include "Viewing/Scene/ViewQuality.h"
 #include "Viewing/ToneMapping.h"
-#include "Viewing/ViewQuality.h"
 
 #include "vtkCellData.h"
 #include "vtkDataArray.h"

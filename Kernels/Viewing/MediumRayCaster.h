@@ -1,93 +1,26 @@
 #pragma once
 
-#include "Device/Buffer.h"
 #include "Device/Device.h"
 #include "Device/Monitor.h"
 #include "Lights/Lights.h"
 #include "Medium/Medium.h"
-#include "Medium/Traits.h"
-#include "Refraction/Index/IndexRange.h"
-#include "Viewing/Camera.h"
-#include "Viewing/ViewedPhase.h"
-#include "Viewing/ViewShared.h"
+#include "Viewing/Backdrop/Backdrop.h"
+#include "Viewing/Rays/Picture.h"
+#include "Viewing/Rays/RayCasting.h"
+#include "Viewing/Samples/PackedSamples.h"
+#include "Viewing/Scene/Camera.h"
+#include "Viewing/Scene/SceneOnDevice.h"
+#include "Viewing/Scene/SolvedLight.h"
+#include "Viewing/Scene/ViewSettings.h"
+#include "Viewing/Scene/ViewShared.h"
+#include "Viewing/Scene/ViewTraits.h"
+#include "Viewing/Sources/SeenSources.h"
 
-#include <array>
 #include <string>
 #include <vector>
 
 namespace tyndall
 {
-/// The light in a medium as a solver gives it, `fluence` and `fluence_direct` of the data contract; seen, not owned.
-struct SolvedLight
-{
-  Field fluence;       ///< W / length^2, all of it; null: dark
-  Field fluenceDirect; ///< its unscattered part; null: not known
-  /// Mean direction of the light weighted by power, 3 components; its length is the anisotropy, in [0, 1]. Null: not
-  /// known.
-  Field meanDirection;
-  /// W / (length^2 sr) that leaves through the box's faces, a value for each cell of BoxFaces.h, 4 components
-  /// (SurfaceCosines) or 3 times as many (cosine by cosine, red, green, blue). Null: not known.
-  Field surface = {};
-  /// LightField::scatteredMoments, (degree + 1)^2 or 3 times as many components, and straightOn and lampsApart that
-  /// belong to them. Null: not known.
-  Field scatteredMoments = {}, straightOn = {};
-  std::vector<Light> lampsApart = {};
-  /// LightField::facePower, 1 or 3 components, and faceAlbedo, of faces that give back light. Null: not known.
-  Field facePower = {};
-  std::array<Rgb, 6> faceAlbedo = {};
-};
-
-/// What a surface of refractive objects reflects of the light that meets it from the side of the smaller index.
-enum class SurfaceReflection
-{
-  None = 0,
-  Fresnel = 1, ///< of unpolarised light, for the indices on both sides
-  Fixed = 2,
-};
-
-/// The names are those of the filter's properties.
-struct ViewSettings
-{
-  std::array<int, 2> imageSize = { 800, 600 }; ///< pixels
-  double stepSize = 0.5;                       ///< voxels a ray advances between samples, [0.01, 10]
-  bool singleScatteringOnly = false;           ///< show only light that was scattered once
-  /// Find the lights' direct light by shadow rays, with the medium's phase function; without lamps and suns nothing
-  /// changes.
-  bool shadowRays = false;
-  int rectangleSamples = 3;                ///< per edge of a rectangular light, for shadow rays
-  bool showBackground = true;              ///< also in what surface and table reflect
-  Rgb backgroundColor = { 0.0, 0.0, 0.0 }; ///< radiance behind the medium where there is no environment, [0, 1e37]
-  bool skipEmptyBricks = true;             ///< leap over what is empty; changes the time and nothing else
-  /// Whether to leave out what the scene does not need; false: three channels, rays that could bend and no leaps, to
-  /// measure what that saves.
-  bool leaveOut = true;
-  double minimumTransmittance = 1e-3; ///< a ray that has less left stops; 0: never
-  SurfaceReflection surfaceReflection = SurfaceReflection::None;
-  double surfaceIndex = 0.0; ///< the surface is where n has this value, > 0; 0: midway between least and largest n
-  double surfaceReflectance = 0.1; ///< of SurfaceReflection::Fixed, [0, 1]
-  int tableFace = -1; ///< face of the box (-x, +x, -y, +y, -z, +z) that is a table, seen from within; -1: none
-  /// Diffuse reflectance of the table, lit by the light in the voxels on it, [0, 1]; at most 1 together with
-  /// tableReflectance.
-  Rgb tableColor = { 0.6, 0.6, 0.6 };
-  double tableReflectance = 0.1; ///< part that the table mirrors, [0, 1]
-  int packetWidth = 0; ///< rays marched together: 1, 4, 8 or 16; 0: what the device does best. Changes the time only
-};
-
-/// What a camera sees, row by row from the lowest, pixels from left to right.
-struct Picture
-{
-  int width = 0;
-  int height = 0;
-  std::vector<float> radiance; ///< 3 per pixel, W / (length^2 sr)
-  /// 1 - transmittance, its mean over the channels: what the medium, and a surface's reflection, let through of what is
-  /// behind. 1 where the table is seen.
-  std::vector<float> alpha;
-  /// Distance from the camera along the view axis to where transmittance (its mean over the channels) falls to 1/2, on
-  /// rays that bend as well. `farDepth` where it never does.
-  std::vector<float> depth;
-  float farDepth = 0.0f; ///< beyond every point of the box
-};
-
 /// Pictures of a medium whose light is known: marches a ray through every pixel and gathers scattered and emitted light
 /// and the background, each dimmed by the medium before it (numerics.md, section 14, Eq. (105)). The source and sigma_t
 /// are taken at voxel centres and interpolated linearly between them; each step is exact for the coefficients in its
@@ -161,6 +94,8 @@ public:
   ///   varies; with moments, these and 36 bytes more
   MediumRayCaster(Device& device, const Medium& medium, const SolvedLight& light, const Illumination& illumination,
     const ViewSettings& settings, const Field& ior = {});
+  MediumRayCaster(const MediumRayCaster&) = delete; // its parts see each other
+  MediumRayCaster& operator=(const MediumRayCaster&) = delete;
 
   /// Takes over those settings that need nothing new on the device, so that a caster can be kept while its medium,
   /// light and illumination stay as they are: imageSize, stepSize, backgroundColor, skipEmptyBricks,
@@ -180,114 +115,20 @@ public:
   const std::vector<std::string>& Warnings() const { return this->Doubts; }
 
 private:
-  ViewSettings Needed(ViewSettings asked) const;
-  double LongestSteps() const;
-  std::string StepOption() const;
-  std::string PackingOptions() const;
-  int PacketWidth() const;
-  bool SkipsBricks() const { return this->Settings.skipEmptyBricks && this->Settings.leaveOut; }
-  /// Whether the light's mean direction is kept times g, which then is that of all channels.
-  bool FlowHasG() const
-  {
-    return this->Phase.channels == 1 &&
-      (this->Phase.formula == ViewedPhase::HenyeyGreenstein || this->Phase.formula == ViewedPhase::Schlick);
-  }
-  bool ShowsMoments() const { return this->MomentDegree >= 0; }
-  /// Emission is not scattered.
-  bool GlowsApart() const { return (this->KnowsFlow || this->ShowsMoments()) && this->Components[2] > 0; }
-  bool ShowsBeams() const { return this->ShowsMoments() && this->LightCount > 0; }
-  double SurfaceIndex() const
-  {
-    return this->Settings.surfaceIndex > 0.0 ? this->Settings.surfaceIndex
-                                             : 0.5 * (this->Index.least + this->Index.largest);
-  }
-  bool Reflects() const
-  {
-    return this->Bends && this->Settings.surfaceReflection != SurfaceReflection::None &&
-      this->SurfaceIndex() > this->Index.least && this->SurfaceIndex() <= this->Index.largest;
-  }
-  void TakeMoments(const SolvedLight& light);
-  void PrepareAureole(const Medium& medium, const SolvedLight& light);
-  void FindTraits(const Medium& medium, const SolvedLight& light, const Field& ior);
-  void Upload(const Medium& medium, const SolvedLight& light, const Field& ior);
-  void Reserve();
-  void PrepareBackground(const Illumination& illumination);
-  void PrepareBending();
-  void PreparePhase(const PhaseOfMedium& phase);
-  std::string PhaseOptions(bool needed) const;
-  void PrepareTable(const SolvedLight& light, const Field& ior);
-  void PrepareGround(const SolvedLight& light);
-  void PrepareSurface(const Medium& medium, const SolvedLight& light);
-  void SayWhatIsLeftOut();
-  enum class Packing
-  {
-    ForShadowRays,
-    Scattered,  ///< what the camera's rays meet
-    Unscattered ///< the same in the dark: how much of what is behind comes through without being scattered at all
-  };
-  void Pack(Packing what);
-  void PackShown(Packing what);
-  std::string ShownOptions(Packing what) const;
-  void FindBricks(const std::string& options);
-  std::string CastingOptions(Packing what) const;
-  ShadowInfo MakeShadowInfo(const Camera& camera) const;
-  void SeeLights(const Camera& camera, const Monitor& monitor);
-  void SeeMoments(const Camera& camera);
-  void AddUnscattered(ViewInfo& view, const Monitor& monitor, std::vector<float>& radiance);
+  std::vector<std::string> LeftOutNow() const;
   void PrepareSources(const Camera& camera, const Monitor& monitor);
-  void CastRays(ViewInfo& view, const OpticsInfo& optics, Packing what, double from, double to, const Monitor& monitor);
-  cl::Kernel CastingKernel(Packing what);
-  ViewInfo MakeView(const Camera& camera) const;
-  OpticsInfo MakeOptics() const;
+  void AddUnscattered(ViewInfo view, const Monitor& monitor, std::vector<float>& radiance);
 
-  Device& TheDevice;
-  Grid TheGrid;
-  int MomentDegree = -1; ///< of the light; -1: it is not shown by moments
   bool LampsShine = false;
   bool AskedForShadowRays = false; ///< though there may be no lamp
   ViewSettings Settings;           ///< as far as the scene needs them
-  ViewedPhase Phase;
-  MediumTraits Traits;
-  bool HasEmptyBricks = false;
-  bool Coloured = false;  ///< extinction differs between channels
-  bool Grey = false;      ///< nor does the source
-  bool Bends = false;     ///< the refractive index varies
-  bool KnowsFlow = false; ///< the light's direction is known and scattering depends on it
-  IndexRange Index;
-  bool SourcesDependOnCamera = false;
+  ViewTraits Traits;
+  SceneOnDevice Scene; ///< given back once packed, where nothing will read it again
+  PackedSamples Samples;
+  SeenSources Sources;
+  Backdrop Behind;
+  RayCasting Rays;
   bool SourcesReady = false;
-  double LargestSigmaT = 0.0; ///< at least the largest sigma_t, 1/length
-  bool UnderSky = false;      ///< the background is the illumination's, not the settings'
-  Rgb Background = {};
-  std::array<int, 2> EnvironmentSize = { 0, 0 };
-  std::array<int, 3> BrickCount = {};
-  int LightCount = 0;
-  std::array<int, 5> Components = {};  ///< of absorption, scattering, emission, fluence, fluenceDirect
-  std::array<Buffer<float>, 5> Arrays; ///< given back once packed, where nothing will ask for them again
-  Buffer<float> MeanDirection, Ior;    ///< as Arrays
-  Buffer<float> Moments, StraightOn;   ///< where moments are shown
-  Buffer<float> AureoleTables;         ///< there, where g does not vary
-  int AureoleChannels = 0;
-  int MomentChannels = 0, StraightOnChannels = 0;
-  Buffer<float> MeanCosines; ///< g by voxel, likewise
-  Buffer<float> PhaseRows;
-  Buffer<float> Diffuse;     ///< 3 per voxel: what is scattered towards the eye of light that moments tell of
-  Buffer<float> Direct;      ///< 6 per voxel: what the lights scatter towards the eye, and their irradiance
-  Buffer<cl_float4> Samples; ///< source and grey extinction, with a border; see ScatteredLight.cl
-  Buffer<cl_float4> Extinctions;
-  Buffer<cl_float4> Flow;    ///< mean direction, times g where FlowHasG; of ShownSamples.cl lamps' light
-  Buffer<cl_float4> Glow;    ///< emission, where Flow is there
-  Buffer<cl_float4> Cosines; ///< coloured g by voxel, where Flow is there
-  Buffer<cl_float4> Bending; ///< gradient of n^2, and n^2
-  Buffer<cl_float4> Table;   ///< light on the table
-  Buffer<cl_float4> Ground;  ///< see GroundLight.h
-  int FacesOfGround = 0;     ///< a bit for each
-  Buffer<cl_float4> Surface; ///< see SurfaceLight.h
-  Buffer<cl_char> Bricks;
-  Buffer<cl_float4> EnvironmentPixels;
-  Buffer<cl_float4> SharpEnvironment; ///< where moments are shown: what of it is seen without being scattered at all
-  Buffer<SmallLight> Lights;
-  Buffer<float> Radiance, Alpha, Depth; ///< the last picture; kept for the next of its size
   std::vector<std::string> Omitted, Doubts;
 };
 }

@@ -6,7 +6,7 @@
 #include "LatticeBoltzmann/LatticeQuality.h"
 #include "LightPropagation/Problem/DividedScene.h"
 #include "LightPropagation/Problem/PropagationQuality.h"
-#include "Viewing/ViewQuality.h"
+#include "Viewing/Scene/ViewQuality.h"
 
 #include <cmath>
 #include <string>

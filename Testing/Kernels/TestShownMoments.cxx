@@ -7,7 +7,7 @@
 #include "Numerics/Constants.h"
 #include "Numerics/SphericalHarmonics.h"
 #include "Reference/ReferenceTable.h"
-#include "Viewing/Aureole.h"
+#include "Viewing/Sources/Aureole.h"
 
 #include <gmock/gmock.h>
 

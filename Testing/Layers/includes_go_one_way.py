@@ -31,6 +31,13 @@ LAYERS = {
         ["Conservative", "Published"],
         ["Accuracy"],
     ],
+    "Kernels/Viewing": [
+        ["Scene"],
+        ["Samples"],
+        ["Sources", "Backdrop"],
+        ["Rays"],
+        ["."],  # the ray caster, made of all of them
+    ],
     "Filters": [
         ["Common"],
         ["IO", "Scene", "Propagation", "Photons", "Viewing"],

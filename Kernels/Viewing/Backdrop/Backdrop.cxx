@@ -1,0 +1,62 @@
+#include "Viewing/Backdrop/Backdrop.h"
+
+#include "Viewing/Backdrop/EnvironmentPixels.h"
+#include "Viewing/Backdrop/GroundLight.h"
+#include "Viewing/Backdrop/SurfaceLight.h"
+#include "Viewing/Backdrop/TableLight.h"
+
+#include <vector>
+
+namespace tyndall
+{
+namespace
+{
+std::vector<cl_float4> LightOnTable(
+  const SolvedLight& light, const Field& ior, const ViewSettings& settings, const ViewTraits& traits, bool fromBelow)
+{
+  const bool single = settings.singleScatteringOnly && light.fluenceDirect.values;
+  return TableLight(traits.grid, single ? light.fluenceDirect : light.fluence, light.meanDirection,
+    traits.bends ? ior : Field{}, settings.tableFace, fromBelow);
+}
+
+/// Empty where there is none, and where not all light is seen plainly.
+std::vector<cl_float4> LightAtSurface(
+  const Medium& medium, const SolvedLight& light, double stepSize, const ViewTraits& traits)
+{
+  const bool plain = !traits.singleScatteringOnly && !traits.shadowRays && !traits.knowsFlow &&
+    !traits.ShowsMoments() && traits.OnlyStraight();
+  return plain && light.surface.values && light.fluence.values ? SurfaceLight(medium, light, stepSize)
+                                                               : std::vector<cl_float4>();
+}
+}
+
+Backdrop::Backdrop(Device& device, const Medium& medium, const SolvedLight& light, const Illumination& illumination,
+  const Field& ior, const ViewSettings& settings, const ViewTraits& traits)
+{
+  const tyndall::Environment& environment = illumination.environment;
+  this->UnderSky = !environment.Empty() || !IsBlack(illumination.sky);
+  this->Sky = illumination.sky;
+  EnvironmentPixels pixels;
+  if (!environment.Empty() && settings.showBackground)
+  {
+    this->Width = environment.width;
+    this->Height = environment.height;
+    pixels = PixelsOf(environment, traits.ShowsMoments());
+  }
+  if (!pixels.sharp.empty())
+  {
+    this->SharpPixels = Buffer<cl_float4>(device, pixels.sharp, "the environment");
+  }
+  this->Pixels = Buffer<cl_float4>(device, pixels.shown, "the environment");
+  if (traits.hasTable)
+  {
+    this->TableCells =
+      Buffer<cl_float4>(device, LightOnTable(light, ior, settings, traits, this->UnderSky), "light on the table");
+  }
+  this->GroundBits = settings.showBackground ? GroundFaces(light) : 0;
+  this->GroundCells = Buffer<cl_float4>(
+    device, this->GroundBits != 0 ? GroundLight(traits.grid, light) : std::vector<cl_float4>(), "light on the ground");
+  this->SurfaceCells =
+    Buffer<cl_float4>(device, LightAtSurface(medium, light, settings.stepSize, traits), "light at the surface");
+}
+}

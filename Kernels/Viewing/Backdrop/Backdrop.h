@@ -1,0 +1,46 @@
+#pragma once
+
+#include "Device/Buffer.h"
+#include "Lights/Lights.h"
+#include "Medium/Medium.h"
+#include "Viewing/Scene/SolvedLight.h"
+#include "Viewing/Scene/ViewSettings.h"
+#include "Viewing/Scene/ViewTraits.h"
+
+#include <array>
+
+namespace tyndall
+{
+/// What rays see that leave the medium or enter it: environment and sky, ground, table, and light at the surface of
+/// thick voxels. Arrays of what the scene does not have are empty.
+class Backdrop
+{
+public:
+  /// @throws DeviceError if it does not fit
+  Backdrop(Device& device, const Medium& medium, const SolvedLight& light, const Illumination& illumination,
+    const Field& ior, const ViewSettings& settings, const ViewTraits& traits);
+
+  /// Whether the background is the illumination's, not the settings'.
+  bool IsSky() const { return this->UnderSky; }
+  Rgb Colour(const ViewSettings& settings) const { return this->UnderSky ? this->Sky : settings.backgroundColor; }
+
+  bool HasEnvironment() const { return this->Width > 0; }
+  std::array<int, 2> EnvironmentSize() const { return { this->Width, this->Height }; } ///< pixels
+  const Buffer<cl_float4>& Environment() const { return this->Pixels; }
+  /// Where moments are shown: what of the environment is seen without being scattered at all.
+  const Buffer<cl_float4>& SharpEnvironment() const { return this->SharpPixels; }
+
+  int FacesOfGround() const { return this->GroundBits; }                ///< a bit for each
+  const Buffer<cl_float4>& Ground() const { return this->GroundCells; } ///< see GroundLight.h
+  const Buffer<cl_float4>& Table() const { return this->TableCells; }   ///< see TableLight.h
+  bool HasSurfaceLight() const { return this->SurfaceCells.Size() > 0; }
+  const Buffer<cl_float4>& SurfaceLight() const { return this->SurfaceCells; } ///< see SurfaceLight.h
+
+private:
+  bool UnderSky = false;
+  Rgb Sky = {};
+  int Width = 0, Height = 0;
+  Buffer<cl_float4> Pixels, SharpPixels, TableCells, GroundCells, SurfaceCells;
+  int GroundBits = 0;
+};
+}

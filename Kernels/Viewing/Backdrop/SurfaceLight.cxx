@@ -1,0 +1,162 @@
+#include "Viewing/Backdrop/SurfaceLight.h"
+
+#include "Medium/BoxFaces.h"
+#include "Numerics/Constants.h"
+#include "Viewing/Backdrop/BoxFaceTables.h"
+
+#include <algorithm>
+#include <cmath>
+
+namespace tyndall
+{
+namespace
+{
+constexpr double AllOfIt = 2.0;                   ///< in ThickAtSurface
+constexpr double Translucent = 1.5, Opaque = 3.0; ///< mean free paths of what is behind a cell
+constexpr double EnoughLeft = 1e-5;               ///< of a ray
+constexpr int MostSteps = 200;
+constexpr double FinestStep = 0.1; ///< voxels; smaller ones find the same
+constexpr int VoxelsBehind = 6;    ///< more than Opaque where one is ThickAtSurface
+
+/// Of one channel, as the march has them.
+struct Coefficients
+{
+  double sigma, source;
+};
+
+Coefficients CoefficientsOf(const Medium& medium, const SolvedLight& light, std::size_t voxel, int channel)
+{
+  const double scatters = medium.sigma_s.At(voxel, channel);
+  const double sigma = scatters + medium.sigma_a.At(voxel, channel);
+  return { sigma, scatters * light.fluence.At(voxel, channel) / (4.0 * Pi) + medium.emission.At(voxel, channel) };
+}
+
+/// From 0 to 1 between two places.
+double Between(double low, double high, double x)
+{
+  const double part = std::clamp((x - low) / (high - low), 0.0, 1.0);
+  return part * part * (3.0 - 2.0 * part);
+}
+
+/// That of the solver, mean free paths.
+double Thickness(const Medium& medium, std::size_t voxel, int channel, double length)
+{
+  return length * medium.TransportSigmaT(voxel, channel);
+}
+
+/// How much is to be added: none, some, all.
+double PartAt(const Medium& medium, const BoxFaceCell& cell, int channel)
+{
+  const int axis = cell.face / 2;
+  const double edge = medium.grid.spacing[axis];
+  const double first = Thickness(medium, cell.voxel, channel, edge);
+  const double thick = Between(ThickAtSurface, AllOfIt * ThickAtSurface, first);
+  double all = 0.0;
+  const auto step = static_cast<std::ptrdiff_t>(cell.inward) - static_cast<std::ptrdiff_t>(cell.voxel);
+  for (int n = 0; thick > 0.0 && n < std::min(VoxelsBehind, medium.grid.size[axis]); ++n)
+  {
+    all += Thickness(medium, cell.voxel + n * step, channel, edge);
+  }
+  return thick * Between(Translucent, Opaque, all);
+}
+
+/// The voxels behind a cell, of one channel; the last one goes on.
+struct Column
+{
+  std::array<Coefficients, 3> voxels;
+  double edge;   ///< of a voxel along the normal
+  double across; ///< the same to its sides
+
+  /// Between the centres, in voxels from the face; the outermost goes on to the face.
+  Coefficients At(double depth) const
+  {
+    const double place = std::clamp(depth - 0.5, 0.0, 2.0);
+    const std::size_t first = place < 1.0 ? 0 : 1;
+    const double part = place - static_cast<double>(first);
+    const Coefficients& a = this->voxels[first];
+    const Coefficients& b = this->voxels[first + 1];
+    return { a.sigma + part * (b.sigma - a.sigma), a.source + part * (b.source - a.source) };
+  }
+};
+
+/// What rays at a cosine to the normal find there, as they march, over what they lose on the way.
+double Marched(const Column& column, double mu, double step)
+{
+  const double voxelsPerLength = std::hypot(mu / column.edge, std::sqrt(1.0 - mu * mu) / column.across);
+  const double length = step / voxelsPerLength;
+  double left = 1.0, radiance = 0.0;
+  for (int n = 0; left > EnoughLeft && n < MostSteps; ++n)
+  {
+    const Coefficients there = column.At((n + 0.5) * length * mu / column.edge);
+    const double tau = there.sigma * length;
+    radiance += left * there.source * (tau > 1e-9 ? -std::expm1(-tau) / there.sigma : length);
+    left *= std::exp(-tau);
+  }
+  return radiance / std::max(1.0 - left, 1e-6);
+}
+
+Column ColumnBehind(const Medium& medium, const SolvedLight& light, const BoxFaceCell& cell, int channel)
+{
+  const std::array<double, 3>& h = medium.grid.spacing;
+  const int axis = cell.face / 2;
+  const int u = (axis + 1) % 3, v = (axis + 2) % 3;
+  Column column;
+  column.edge = h[axis];
+  column.across = std::sqrt(2.0 / (1.0 / (h[u] * h[u]) + 1.0 / (h[v] * h[v])));
+  const auto step = static_cast<std::ptrdiff_t>(cell.inward) - static_cast<std::ptrdiff_t>(cell.voxel);
+  for (int n = 0; n < 3; ++n)
+  {
+    const std::size_t voxel = cell.voxel + std::min(n, medium.grid.size[axis] - 1) * step;
+    column.voxels[n] = CoefficientsOf(medium, light, voxel, channel);
+  }
+  return column;
+}
+
+/// Of one cell and channel.
+std::array<double, 4> Missing(
+  const Medium& medium, const SolvedLight& light, const BoxFaceCell& cell, int channel, double step)
+{
+  std::array<double, 4> missing = {};
+  const double part = PartAt(medium, cell, channel);
+  if (part <= 0.0)
+  {
+    return missing;
+  }
+  const Column column = ColumnBehind(medium, light, cell, channel);
+  const int components = light.surface.components;
+  const int channels = components / static_cast<int>(SurfaceCosines.size());
+  for (std::size_t n = 0; n < missing.size(); ++n)
+  {
+    const double leaves = light.surface.values[cell.number * components + n * channels + (channels == 3 ? channel : 0)];
+    missing[n] = part * (leaves - Marched(column, SurfaceCosines[n], std::max(step, FinestStep)));
+  }
+  return missing;
+}
+}
+
+std::vector<cl_float4> SurfaceLight(const Medium& medium, const SolvedLight& light, double step)
+{
+  const Grid& grid = medium.grid;
+  std::array<std::vector<cl_float4>, SurfaceCosines.size()> cells;
+  cells.fill(std::vector<cl_float4>(BoxFaceCellCount(grid)));
+  bool any = false;
+  ForBoxFaceCells(grid, [&](const BoxFaceCell& cell) {
+    for (int c = 0; c < 3; ++c)
+    {
+      const std::array<double, 4> missing = Missing(medium, light, cell, c, step);
+      for (std::size_t n = 0; n < missing.size(); ++n)
+      {
+        cells[n][cell.number].s[c] = static_cast<float>(missing[n]);
+        any |= missing[n] != 0.0;
+      }
+    }
+  });
+  std::vector<cl_float4> table;
+  for (std::size_t n = 0; any && n < SurfaceCosines.size(); ++n)
+  {
+    const std::vector<cl_float4> padded = WithBorders(grid, cells[n]);
+    table.insert(table.end(), padded.begin(), padded.end());
+  }
+  return table;
+}
+}

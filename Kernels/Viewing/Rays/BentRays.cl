@@ -1,0 +1,171 @@
+// The march of rays that bend where the refractive index varies.
+//
+// With dt = ds / n a ray follows dr/dt = T, dT/dt = grad(n^2) / 2, |T| = n, as photons do: a leapfrog (numerics.md,
+// Eq. (91)) whose gradient is taken in the middle of each step. Where the index is constant that is a straight step,
+// and the gradient is not fetched.
+//
+// The host gives
+//   SKIP_BRICKS  1: rays leap over bricks in which nothing extinguishes, shines or bends
+
+#pragma once
+#include "Viewing/Rays/RayPackets.cl"
+#include "Viewing/Rays/SurfaceReflection.cl"
+
+// To the nearest face, voxels.
+inline real room_around(real3 p, int4 size)
+{
+#define ROOM(c) lesser(p.c, (real)(float)size.c - p.c)
+  return lesser(lesser(ROOM(x), ROOM(y)), ROOM(z));
+#undef ROOM
+}
+
+// Lanes of `last` that have come to the face which ends their step are no more inside.
+inline integer leave(ray_packets* t, integer last, int4 size)
+{
+  const real to_go = time_to_face(t->at, t->velocity, size) * sqrt(product(t->velocity, t->velocity));
+  const integer gone = last & (to_go < (real)1e-3f);
+  t->inside = gone ? (integer)0 : t->inside;
+  return gone;
+}
+
+#if BENDS
+// A few steps by the leapfrog. Samples outside the box are never read.
+__attribute__((always_inline)) inline void bend(
+  const surroundings* s, integer done, ray_packets* t, light* l, crossed* half_way, watch* w)
+{
+  const int4 size = s->v->size;
+  const float4 spacing = s->o->spacing;
+  const float stride = s->v->marching.x;
+  const float enough = s->v->marching.y;
+  const int steps = s->o->limits.y;
+  integer moves = done == 0;
+  // Most stretches lie so far inside that nothing can leave.
+  const int may_leave = any_lane(moves & (room_around(t->at, size) < (real)(stride * (float)(steps + 1) + 1.0f)));
+#if SURFACE
+  if (w->forgotten)
+  {
+    real3 unused;
+    w->square = index_at(s, t->at, &unused);
+    w->since = (real)0.0f;
+    w->forgotten = 0;
+  }
+#endif
+  real start = depth_of(t->at, s->v, spacing);
+  for (int n = 0; n < steps; ++n)
+  {
+    const real per_voxel = (real)1.0f / sqrt(greater(product(t->velocity, t->velocity), (real)1e-30f));
+    real time = moves ? (real)stride * per_voxel : (real)0.0f;
+    const real3 soon = further(t->at, (real)5.0f * per_voxel, t->velocity);
+    fetch_ahead(s->bending, soon, size);
+    fetch_ahead(s->scene.samples, soon, size);
+    integer last = (integer)0;
+    if (may_leave)
+    {
+      const real until = time_to_face(t->at, t->velocity, size);
+      last = moves & (until <= time);
+      time = lesser(time, until);
+    }
+    const real half_time = (real)0.5f * time;
+    const real3 middle = kept_within(further(t->at, half_time, t->velocity), size);
+    corners around;
+    find_corners(middle, size, &around);
+    rgb xyz;
+    real square;
+    gather(s->bending, &around, size, &xyz, &square);
+    const real3 turn = { xyz.r, xyz.g, xyz.b };
+#if SURFACE
+    const integer meets = moves & (w->met == 0) & (w->square < (real)s->o->surface.x) &
+      (square >= (real)s->o->surface.x) & (most_left(*l) > (real)enough);
+    if (any_lane(meets))
+    {
+      const met_step step = { middle, t->velocity, half_time, w->since };
+      split_at_surface(s, &step, meets, l, half_way, &w->reflected);
+      w->met |= meets;
+    }
+    w->square = square;
+    w->since = half_time;
+#endif
+    const real3 world = stretched(further(t->velocity, half_time, turn), spacing);
+    const real pace = sqrt(product(world, world));
+    const sample met = take_sample(&s->scene, &around, size, divided(world, greater(pace, (real)1e-20f)));
+    t->velocity = further(t->velocity, time, turn);
+    t->at = kept_within(further(middle, half_time, t->velocity), size);
+    if (may_leave)
+    {
+      moves = leave(t, last, size) ? (integer)0 : moves;
+    }
+    const real end = depth_of(t->at, s->v, spacing);
+    cross_sample(met, time * pace, start, end - start, enough, l, half_way);
+    start = end;
+  }
+}
+#endif
+
+// Steps through a region of constant index, or a leap. Returns how many.
+__attribute__((always_inline)) inline int go_straight(const surroundings* s, const rays* packet, real step,
+  stretch ahead, integer done, ray_packets* t, light* l, crossed* half_way)
+{
+  const int4 size = s->v->size;
+  const int steps = max(min(ahead.steps, (int)ceil(most_lanes(packet->length / step))), 1);
+#if SKIP_BRICKS
+  if (!ahead.empty)
+#endif
+  {
+    const real soon = step_length(packet->direction, 5.0f);
+    const real3 towards = stretched(packet->direction, s->o->spacing);
+    const real start = depth_of(t->at, s->v, s->o->spacing);
+    const real3 forward = { (real)s->v->forward.x, (real)s->v->forward.y, (real)s->v->forward.z };
+    const real slope = product(towards, forward);
+    for (int n = 0; n < steps; ++n)
+    {
+      const real so_far = step * (real)(float)n;
+      const real length = lesser(greater(packet->length - so_far, (real)0.0f), step);
+      corners at;
+      find_corners(along(*packet, fma(length, (real)0.5f, so_far)), size, &at);
+      const sample met = take_sample(&s->scene, &at, size, towards);
+      fetch_ahead(s->scene.samples, along(*packet, so_far + soon), size);
+      cross_sample(met, length, fma(so_far, slope, start), length * slope, s->v->marching.y, l, half_way);
+    }
+  }
+  const real end = step * (real)(float)steps;
+  t->inside = ((done == 0) & (end >= packet->length)) ? (integer)0 : t->inside;
+  t->at = kept_within(along(*packet, end), size);
+  return steps;
+}
+
+// Marches rays until they leave the box, have too little light left or have gone round for long.
+__attribute__((always_inline)) inline void march(
+  const surroundings* s, ray_packets* t, light* l, crossed* half_way, watch* w)
+{
+  const ViewInfo* v = s->v;
+  const int4 size = v->size;
+  const float enough = v->marching.y;
+  for (int n = 0; n < s->o->limits.x;)
+  {
+    const integer done = (t->inside == 0) | (most_left(*l) <= (real)enough);
+    if (all_lanes(done))
+    {
+      break;
+    }
+    const real3 world = stretched(t->velocity, s->o->spacing);
+    rays packet;
+    packet.entry = t->at;
+    packet.direction = divided(t->velocity, sqrt(greater(product(world, world), (real)1e-30f)));
+    packet.length = done ? (real)0.0f : time_to_face(t->at, packet.direction, size);
+    const real step = step_length(packet.direction, v->marching.x);
+    const stretch ahead = stretch_ahead(
+      s->bricks, v->bricks, along(packet, (real)0.5f * step), strides_per_voxel(packet.direction, step), done);
+#if BENDS
+    if (ahead.bends)
+    {
+      bend(s, done, t, l, half_way, w);
+      n += s->o->limits.y;
+      continue;
+    }
+#endif
+#if SURFACE
+    w->forgotten = 1;
+#endif
+    n += go_straight(s, &packet, step, ahead, done, t, l, half_way);
+  }
+}

@@ -1,0 +1,360 @@
+// What rays meet on their way and what it does to them:
+//   radiance = integral over the ray of T(t) q(t) dt + T(end) background,  T(t) = exp(-integral of sigma_t)
+// with q = sigma_s times in-scattered radiance plus emission, both interpolated between voxel centres.
+//
+// The host gives
+//   THIN_STEPS  1: no step's optical length is above 2
+//   PHASE, PHASE_CHANNELS  how light of a known direction scatters, see PhaseFunction.cl
+//   FLOW_WITH_G 1: `flow` is the light's mean direction times g; 0: the mean direction alone
+//   VARIED_G    1: `cosines` holds g by voxel
+//   GLOW        1: emission is kept apart from what is scattered
+//   SHOWN       0, or what ShownSamples.cl packed; BEAMS 1: with lamps' light, in `flow`
+//   SURFACE_LIGHT  1: there is light at the surface of thick voxels
+
+#pragma once
+#include "Viewing/Rays/View.cl"
+#include "Viewing/Samples/PhaseFunction.cl"
+#include "Viewing/Samples/Sampling.cl"
+
+#if COLOURED
+typedef rgb spectrum;
+#else
+typedef real spectrum;
+#endif
+
+// What is packed of the medium and its light, with a border of one voxel.
+typedef struct
+{
+  __global const float4*
+    samples; // red, green, blue of q, W / (length^3 sr), and grey sigma_t, 1/length; with GREY see there
+  __global const float4* extinctions; // coloured sigma_t
+  __global const float4* flow;        // x, y, z of the light's mean direction, times g with FLOW_WITH_G
+  __global const float4* glow;        // emission
+  __global const float4* cosines;     // with VARIED_G: red, green, blue of g
+  __global const float* phaseRows;    // of PHASE 2 and 5
+  PhaseInfo phase;
+} scenery;
+
+inline real product(real3 a, real3 b)
+{
+  return fma(a.x, b.x, fma(a.y, b.y, a.z * b.z));
+}
+
+// What is left of a ray's light, and what it has gathered.
+typedef struct
+{
+  spectrum left;
+  rgb radiance;
+#if MANY_STEPS
+  spectrum leftRest; // see add_to
+  rgb radianceRest;
+#endif
+} light;
+
+inline real mean_left(light l)
+{
+#if COLOURED
+  return (l.left.r + l.left.g + l.left.b) * (real)(1.0f / 3.0f);
+#else
+  return l.left;
+#endif
+}
+
+inline real most_left(light l)
+{
+#if COLOURED
+  return greater(greater(l.left.r, l.left.g), l.left.b);
+#else
+  return l.left;
+#endif
+}
+
+inline spectrum scaled(spectrum s, real factor)
+{
+#if COLOURED
+  s.r *= factor;
+  s.g *= factor;
+  s.b *= factor;
+  return s;
+#else
+  return s * factor;
+#endif
+}
+
+inline light unlit(real left)
+{
+  light l;
+#if COLOURED
+  l.left.r = l.left.g = l.left.b = left;
+#else
+  l.left = left;
+#endif
+  l.radiance.r = l.radiance.g = l.radiance.b = (real)0.0f;
+#if MANY_STEPS
+  l.leftRest = scaled(l.left, (real)0.0f);
+  l.radianceRest = l.radiance;
+#endif
+  return l;
+}
+
+// What comes through from behind, `part` of it.
+inline void add_background(rgb behind, real part, light* l)
+{
+#if COLOURED
+  l->radiance.r += behind.r * (l->left.r * part);
+  l->radiance.g += behind.g * (l->left.g * part);
+  l->radiance.b += behind.b * (l->left.b * part);
+#else
+  const real left = l->left * part;
+  l->radiance.r += behind.r * left;
+  l->radiance.g += behind.g * left;
+  l->radiance.b += behind.b * left;
+#endif
+}
+
+#if SURFACE_LIGHT
+// As much of the light at the surface (SurfaceLight.cl) as the ray has met of the medium.
+inline void add_surface_light(rgb missing, light* l)
+{
+#if COLOURED
+#define ADD(c) l->radiance.c = greater(fma(missing.c, (real)1.0f - l->left.c, l->radiance.c), (real)0.0f);
+#else
+#define ADD(c) l->radiance.c = greater(fma(missing.c, (real)1.0f - l->left, l->radiance.c), (real)0.0f);
+#endif
+  ADD(r)
+  ADD(g)
+  ADD(b)
+#undef ADD
+}
+#endif
+
+// Over a length of constant coefficients: what a unit of source adds to the radiance, and what is left of the light
+// behind.
+//   length (1 - exp(-tau)) / tau; tau = 0 is vacuum, where the fraction is 1.
+inline real cross_length(real sigma, real length, real* remains)
+{
+#if THIN_STEPS
+  // (1 - exp(-tau)) / tau on [0, 2], to 1e-7.
+  const real tau = sigma * length;
+  real p = fma(tau, (real)-1.17129066e-05f, (real)0.000167222737f);
+  p = fma(p, tau, (real)-0.00134923449f);
+  p = fma(p, tau, (real)0.00830663089f);
+  p = fma(p, tau, (real)-0.0416579582f);
+  p = fma(p, tau, (real)0.166665584f);
+  p = fma(p, tau, (real)-0.49999997f);
+  const real fraction = fma(p, tau, (real)1.0f);
+  *remains = fma(-tau, fraction, (real)1.0f);
+#else
+  const real tau = greater(sigma * length, (real)1e-30f);
+  const real fraction = extinguished(tau, remains) / tau;
+#endif
+  return length * fraction;
+}
+
+// The step in which half of a ray's light was lost: where it starts, how far it goes, and what was left before and
+// after. Where: along the ray, or along the view.
+typedef struct
+{
+  real start, length, before, after;
+} crossed;
+
+// The coefficients in the middle of a step.
+typedef struct
+{
+  rgb source;
+  spectrum sigma;
+} sample;
+
+#if PHASE
+// 4 pi times the phase function of light that is itself spread about its mean direction (numerics.md, section 14.1),
+// seen along unit vectors v away from the eye.
+__attribute__((always_inline)) inline rgb scattered_towards_eye(
+  const scenery* scene, const corners* at, int4 size, real3 v)
+{
+  rgb flow;
+  real none;
+  gather(scene->flow, at, size, &flow, &none);
+  const real3 b = { flow.r, flow.g, flow.b };
+  const real square = product(b, b);
+  const real along = product(b, v);
+#if FLOW_WITH_G && PHASE == 1
+  const real f = henyey_greenstein(square, along);
+  const rgb even = { f, f, f };
+  return even;
+#elif FLOW_WITH_G
+  const real f = schlick(square, along, scene->phaseRows);
+  const rgb even = { f, f, f };
+  return even;
+#else
+  phase_parameters p = parameters_of(&scene->phase);
+#if VARIED_G
+  gather(scene->cosines, at, size, &p.first, &none);
+#endif
+  return scattered_of_channels(square, along, p, scene->phaseRows);
+#endif
+}
+#endif
+
+#if SHOWN
+#if COLOURED
+#define SIGMA_OF(c) s->sigma.c
+#else
+#define SIGMA_OF(c) s->sigma
+#endif
+// From ratios of source to extinction to the source.
+__attribute__((always_inline)) inline void multiply_by_extinction(
+  const scenery* scene, const corners* at, int4 size, sample* s)
+{
+  real none;
+#if BEAMS
+  rgb beams, left;
+  gather(scene->flow, at, size, &beams, &none);
+  extinguished(beams.r, &left.r);
+  extinguished(beams.g, &left.g);
+  extinguished(beams.b, &left.b);
+#if SHOWN == 1
+#define RATIO(c) (s->source.c + left.c)
+#else
+#define RATIO(c) (s->source.c * left.c)
+#endif
+#else
+#define RATIO(c) s->source.c
+#endif
+  s->source.r = RATIO(r) * SIGMA_OF(r);
+  s->source.g = RATIO(g) * SIGMA_OF(g);
+  s->source.b = RATIO(b) * SIGMA_OF(b);
+#undef RATIO
+#if GLOW
+  rgb glow;
+  gather(scene->glow, at, size, &glow, &none);
+  s->source.r += glow.r;
+  s->source.g += glow.g;
+  s->source.b += glow.b;
+#endif
+}
+#undef SIGMA_OF
+#endif
+
+// v  unit vectors of the rays, away from the eye
+__attribute__((always_inline)) inline sample take_sample(const scenery* scene, const corners* at, int4 size, real3 v)
+{
+  sample s;
+  real grey;
+  gather_samples(scene->samples, at, size, &s.source, &grey);
+#if COLOURED
+  real unused;
+  gather(scene->extinctions, at, size, &s.sigma, &unused);
+#else
+  s.sigma = grey;
+#endif
+#if PHASE
+  const rgb part = scattered_towards_eye(scene, at, size, v);
+#if GLOW
+  rgb glow;
+  real none;
+  gather(scene->glow, at, size, &glow, &none);
+  s.source.r = fma(s.source.r, part.r, glow.r);
+  s.source.g = fma(s.source.g, part.g, glow.g);
+  s.source.b = fma(s.source.b, part.b, glow.b);
+#else
+  s.source.r *= part.r;
+  s.source.g *= part.g;
+  s.source.b *= part.b;
+#endif
+#endif
+#if SHOWN
+  multiply_by_extinction(scene, at, size, &s);
+#endif
+  return s;
+}
+
+#if MANY_STEPS
+// What a step takes is subtracted, not what it leaves multiplied: one less a thousandth of a millionth is one.
+inline void lose(real* left, real* rest, real part)
+{
+  add_to(left, rest, -lesser(part, (real)1.0f) * *left);
+  *left = greater(*left, (real)0.0f);
+}
+#endif
+
+// Over `length` from place `start`, along which the ray goes on by `gain`. Rays that have less light left than `enough`
+// stop. Nothing but the last product waits for what was left before.
+__attribute__((always_inline)) inline void cross_sample(
+  sample s, real length, real start, real gain, float enough, light* l, crossed* half_way)
+{
+  const integer goes_on = most_left(*l) > (real)enough;
+  const real before = mean_left(*l);
+#if MANY_STEPS
+#if COLOURED
+#define SIGMA(c) s.sigma.c
+#define LEFT(c) l->left.c
+#else
+#define SIGMA(c) s.sigma
+#define LEFT(c) l->left
+#endif
+#define GATHER(c)                                                                                  \
+  {                                                                                                \
+    real remains;                                                                                  \
+    const real weight = goes_on ? cross_length(SIGMA(c), length, &remains) * LEFT(c) : (real)0.0f; \
+    add_to(&l->radiance.c, &l->radianceRest.c, s.source.c* weight);                                \
+  }
+  GATHER(r)
+  GATHER(g)
+  GATHER(b)
+#undef GATHER
+#undef SIGMA
+#undef LEFT
+  real unused;
+#define LOSE(sigma, left, rest) lose(&left, &rest, goes_on ? sigma* cross_length(sigma, length, &unused) : (real)0.0f);
+#if COLOURED
+  LOSE(s.sigma.r, l->left.r, l->leftRest.r)
+  LOSE(s.sigma.g, l->left.g, l->leftRest.g)
+  LOSE(s.sigma.b, l->left.b, l->leftRest.b)
+#else
+  LOSE(s.sigma, l->left, l->leftRest)
+#endif
+#undef LOSE
+#elif COLOURED
+#define CROSS(c)                                                                               \
+  {                                                                                            \
+    real remains;                                                                              \
+    const real weight = cross_length(s.sigma.c, length, &remains);                             \
+    l->radiance.c = fma(s.source.c * weight, goes_on ? l->left.c : (real)0.0f, l->radiance.c); \
+    l->left.c *= goes_on ? remains : (real)1.0f;                                               \
+  }
+  CROSS(r)
+  CROSS(g)
+  CROSS(b)
+#undef CROSS
+#else
+  real remains;
+  const real weight = cross_length(s.sigma, length, &remains) * l->left;
+  l->radiance.r = goes_on ? fma(s.source.r, weight, l->radiance.r) : l->radiance.r;
+  l->radiance.g = goes_on ? fma(s.source.g, weight, l->radiance.g) : l->radiance.g;
+  l->radiance.b = goes_on ? fma(s.source.b, weight, l->radiance.b) : l->radiance.b;
+  l->left = goes_on ? l->left * remains : l->left;
+#endif
+  const real after = mean_left(*l);
+  const integer crossing = (before > (real)0.5f) & (after <= (real)0.5f);
+  half_way->start = crossing ? start : half_way->start;
+  half_way->length = crossing ? gain : half_way->length;
+  half_way->before = crossing ? before : half_way->before;
+  half_way->after = crossing ? after : half_way->after;
+}
+
+// Half of the light is lost at one place.
+inline void lose_half(integer where, real place, crossed* half_way)
+{
+  half_way->start = where ? place : half_way->start;
+  half_way->length = where ? (real)0.0f : half_way->length;
+  half_way->before = where ? (real)1.0f : half_way->before;
+  half_way->after = where ? (real)0.0f : half_way->after;
+}
+
+// ln(a/b) = 2 (a-b)/(a+b) but for the third order.
+inline real distance_to_half(crossed c)
+{
+  const real part = (c.before - (real)0.5f) * (c.before + c.after) /
+    ((c.before + (real)0.5f) * greater(c.before - c.after, (real)1e-30f));
+  return fma(part, c.length, c.start);
+}

@@ -1,0 +1,21 @@
+#pragma once
+
+#include <vector>
+
+namespace tyndall
+{
+/// What a camera sees, row by row from the lowest, pixels from left to right.
+struct Picture
+{
+  int width = 0;
+  int height = 0;
+  std::vector<float> radiance; ///< 3 per pixel, W / (length^2 sr)
+  /// 1 - transmittance, its mean over the channels: what the medium, and a surface's reflection, let through of what is
+  /// behind. 1 where the table is seen.
+  std::vector<float> alpha;
+  /// Distance from the camera along the view axis to where transmittance (its mean over the channels) falls to 1/2, on
+  /// rays that bend as well. `farDepth` where it never does.
+  std::vector<float> depth;
+  float farDepth = 0.0f; ///< beyond every point of the box
+};
+}

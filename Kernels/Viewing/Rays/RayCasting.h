@@ -1,0 +1,63 @@
+#pragma once
+
+#include "Device/Buffer.h"
+#include "Device/Monitor.h"
+#include "Viewing/Backdrop/Backdrop.h"
+#include "Viewing/Rays/Picture.h"
+#include "Viewing/Samples/PackedSamples.h"
+#include "Viewing/Scene/Camera.h"
+#include "Viewing/Scene/SceneOnDevice.h"
+#include "Viewing/Scene/ViewSettings.h"
+#include "Viewing/Scene/ViewTraits.h"
+
+#include <string>
+#include <vector>
+
+namespace tyndall
+{
+/// Rays through every pixel of a picture, straight or bent: they gather what samples shine and what is behind.
+class RayCasting
+{
+public:
+  /// What is given must stay.
+  RayCasting(Device& device, const SceneOnDevice& scene, const PackedSamples& samples, const Backdrop& backdrop,
+    const ViewTraits& traits)
+    : TheDevice(device)
+    , Scene(scene)
+    , Samples(samples)
+    , Behind(backdrop)
+    , Traits(traits)
+  {
+  }
+
+  /// The picture and its camera as the kernels have them, seen against the backdrop.
+  /// @throws InvalidInput for a camera that looks nowhere or is too far away
+  ViewInfo ViewOf(const Camera& camera, const ViewSettings& settings) const;
+
+  /// Takes the memory of a picture; keeps it for the next of its size.
+  /// @throws DeviceError if it does not fit
+  void Reserve(const ViewSettings& settings);
+
+  /// A picture of what was packed, and of what of the environment belongs to that.
+  /// @param from, to  fractions done that are reported
+  /// @throws Aborted
+  void Cast(const ViewSettings& settings, ViewInfo view, const OpticsInfo& optics, double from, double to,
+    const Monitor& monitor);
+
+  // What was cast last, see Picture.
+  std::vector<float> ReadRadiance() const { return this->Radiance.Read(); }
+  std::vector<float> ReadAlpha() const { return this->Alpha.Read(); }
+  std::vector<float> ReadDepth() const { return this->Depth.Read(); }
+
+private:
+  std::string Options(const ViewSettings& settings) const;
+  cl::Kernel Kernel(const ViewSettings& settings) const;
+
+  Device& TheDevice;
+  const SceneOnDevice& Scene;
+  const PackedSamples& Samples;
+  const Backdrop& Behind;
+  const ViewTraits& Traits;
+  Buffer<float> Radiance, Alpha, Depth;
+};
+}

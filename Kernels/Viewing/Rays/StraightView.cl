@@ -1,0 +1,91 @@
+// Primary rays through a medium of constant index, one work-item per packet of neighbouring pixels.
+//
+// The host gives
+//   SKIP_BRICKS  1: rays leap over bricks in which nothing extinguishes or shines
+
+#include "Viewing/Backdrop/Background.cl"
+#include "Viewing/Backdrop/GroundLight.cl"
+#include "Viewing/Backdrop/SurfaceLight.cl"
+#include "Viewing/Rays/Crossing.cl"
+#include "Viewing/Rays/View.cl"
+#include "Viewing/Samples/Sampling.cl"
+
+__kernel void cast_rays(ViewInfo v, __global const float4* restrict samples,
+  __global const float4* restrict extinctions, __global const float4* restrict flow,
+  __global const float4* restrict glow, __global const float4* restrict cosines,
+  __global const float* restrict phase_rows, __global const char* restrict bricks,
+  __global const float4* restrict environment, __global const float4* restrict ground,
+  __global const float4* restrict surface, __global float* restrict radiance, __global float* restrict alpha,
+  __global float* restrict depth)
+{
+  const int column = (get_global_id(0) + v.picture.w) * PACKET_WIDTH;
+  const int row = (get_global_id(1) + v.picture.z) * PACKET_HEIGHT;
+  if (column >= v.picture.x || row >= v.picture.y)
+  {
+    return;
+  }
+  const scenery scene = { samples, extinctions, flow, glow, cosines, phase_rows, v.phase };
+  const camera_rays seen = rays_through(&v, column, row);
+  const real3 direction = { seen.d.x * (real)v.inverseSpacing.x, seen.d.y * (real)v.inverseSpacing.y,
+    seen.d.z * (real)v.inverseSpacing.z };
+  real before;
+  const rays packet = clip_to_box(seen.from, direction, (real)1e30f, v.size, &before);
+
+  // The march.
+  const real step = step_length(direction, v.marching.x);
+  const real soon = step_length(direction, 5.0f);
+  const int steps = (int)ceil(most_lanes(packet.length / step));
+#if SKIP_BRICKS
+  const real3 strides = strides_per_voxel(direction, step);
+#endif
+  light l = unlit((real)1.0f);
+  crossed half_way = { (real)0.0f, (real)0.0f, (real)1.0f, (real)1.0f };
+  for (int n = 0; n < steps;)
+  {
+    int stop = steps;
+    const real so_far = step * (real)(float)n;
+    const integer done = (so_far >= packet.length) | (most_left(l) <= (real)v.marching.y);
+    if (all_lanes(done))
+    {
+      break;
+    }
+#if SKIP_BRICKS
+    const stretch ahead = stretch_ahead(bricks, v.bricks, along(packet, fma(step, (real)0.5f, so_far)), strides, done);
+    stop = n + ahead.steps;
+    if (ahead.empty)
+    {
+      n = stop;
+      continue;
+    }
+    stop = min(stop, steps);
+#else
+    stop = min(n + BrickEdge, steps);
+#endif
+    for (; n < stop; ++n)
+    {
+      // What is sampled does not depend on how much light is left, so that the next sample overlaps this one.
+      const real start = step * (real)(float)n;
+      const real length = lesser(greater(packet.length - start, (real)0.0f), step);
+      corners at;
+      find_corners(along(packet, fma(length, (real)0.5f, start)), v.size, &at);
+      const sample s = take_sample(&scene, &at, v.size, seen.d);
+      fetch_ahead(samples, along(packet, start + soon), v.size);
+      cross_sample(s, length, start, length, v.marching.y, &l, &half_way);
+    }
+  }
+
+  // What is behind, and the picture.
+  const real left = mean_left(l);
+#if SURFACE_LIGHT
+  add_surface_light(surface_light(surface, packet, seen.d, before, v.size), &l);
+#endif
+  rgb behind = look_behind(&v, seen.d, environment);
+#if GROUND
+  behind =
+    ground_or_behind(ground, along(packet, packet.length), direction, packet.length > (real)0.0f, v.size, behind);
+#endif
+  add_background(behind, (real)v.background.w, &l);
+  const real where = left > (real)0.5f ? (real)v.marching.z : (distance_to_half(half_way) + before) * seen.cosine;
+  const canvas picture = { radiance, alpha, depth };
+  paint(&v, picture, column, row, l.radiance, (real)1.0f - left, where);
+}

@@ -1,0 +1,88 @@
+// The picture and the rays through its pixels.
+
+#pragma once
+#include "Viewing/Samples/Sampling.cl"
+#include "Viewing/Scene/ViewShared.h"
+
+// Pixels of a packet.
+#if REAL_WIDTH == 16
+#define PACKET_WIDTH 4
+#define PACKET_HEIGHT 4
+#define ACROSS (real)(0, 1, 2, 3, 0, 1, 2, 3, 0, 1, 2, 3, 0, 1, 2, 3)
+#define UPWARDS (real)(0, 0, 0, 0, 1, 1, 1, 1, 2, 2, 2, 2, 3, 3, 3, 3)
+#elif REAL_WIDTH == 8
+#define PACKET_WIDTH 4
+#define PACKET_HEIGHT 2
+#define ACROSS (real)(0, 1, 2, 3, 0, 1, 2, 3)
+#define UPWARDS (real)(0, 0, 0, 0, 1, 1, 1, 1)
+#elif REAL_WIDTH == 4
+#define PACKET_WIDTH 2
+#define PACKET_HEIGHT 2
+#define ACROSS (real)(0, 1, 0, 1)
+#define UPWARDS (real)(0, 0, 1, 1)
+#else
+#define PACKET_WIDTH 1
+#define PACKET_HEIGHT 1
+#define ACROSS 0.0f
+#define UPWARDS 0.0f
+#endif
+
+// The rays through a packet's pixels: where they come from (voxels), their unit vectors in the world, and the cosine to
+// the view axis.
+typedef struct
+{
+  real3 from, d;
+  real cosine;
+} camera_rays;
+
+inline camera_rays rays_through(const ViewInfo* v, int column, int row)
+{
+  const real x = ((real)(float)column + ACROSS + (real)0.5f) * (real)(2.0f / (float)v->picture.x) - (real)1.0f;
+  const real y = ((real)(float)row + UPWARDS + (real)0.5f) * (real)(2.0f / (float)v->picture.y) - (real)1.0f;
+  const real3 offset = { fma(x, (real)v->right.x, y * (real)v->up.x), fma(x, (real)v->right.y, y * (real)v->up.y),
+    fma(x, (real)v->right.z, y * (real)v->up.z) };
+  const real spread = (real)(1.0f - v->eye.w);
+  camera_rays r;
+  r.d.x = fma(spread, offset.x, (real)v->forward.x);
+  r.d.y = fma(spread, offset.y, (real)v->forward.y);
+  r.d.z = fma(spread, offset.z, (real)v->forward.z);
+  r.cosine = (real)1.0f / sqrt(fma(r.d.x, r.d.x, fma(r.d.y, r.d.y, r.d.z * r.d.z)));
+  r.d.x *= r.cosine;
+  r.d.y *= r.cosine;
+  r.d.z *= r.cosine;
+  r.from.x = fma((real)(v->eye.w * v->inverseSpacing.x), offset.x, (real)v->eye.x);
+  r.from.y = fma((real)(v->eye.w * v->inverseSpacing.y), offset.y, (real)v->eye.y);
+  r.from.z = fma((real)(v->eye.w * v->inverseSpacing.z), offset.z, (real)v->eye.z);
+  return r;
+}
+
+// Where pictures go.
+//   radiance  3 per pixel, W / (length^2 sr)
+//   alpha     1 - mean transmittance
+//   depth     where the mean transmittance falls to a half, along the view axis
+typedef struct
+{
+  __global float* radiance;
+  __global float* alpha;
+  __global float* depth;
+} canvas;
+
+inline void paint(const ViewInfo* v, canvas picture, int column, int row, rgb radiance, real opaque, real where)
+{
+  const integer i = to_integer(ACROSS);
+  const integer j = to_integer(UPWARDS);
+  const integer pixel = (integer)(row * v->picture.x + column) + j * v->picture.x + i;
+  const integer inside = (i + column < (integer)v->picture.x) & (j + row < (integer)v->picture.y);
+#define PAINT(n)                                       \
+  if (LANE(inside, n))                                 \
+  {                                                    \
+    const int p = LANE(pixel, n);                      \
+    picture.radiance[3 * p] = LANE(radiance.r, n);     \
+    picture.radiance[3 * p + 1] = LANE(radiance.g, n); \
+    picture.radiance[3 * p + 2] = LANE(radiance.b, n); \
+    picture.alpha[p] = LANE(opaque, n);                \
+    picture.depth[p] = LANE(where, n);                 \
+  }
+  EACH_LANE(PAINT)
+#undef PAINT
+}

@@ -1,0 +1,17 @@
+#pragma once
+
+#include "Viewing/Scene/Camera.h"
+#include "Viewing/Scene/ViewSettings.h"
+#include "Viewing/Scene/ViewShared.h"
+#include "Viewing/Scene/ViewTraits.h"
+
+namespace tyndall
+{
+/// The picture and its camera, and the phase function, as kernels have them; background, environment and bricks are
+/// left to who has them.
+/// @throws InvalidInput for a camera that looks nowhere or is too far away
+ViewInfo ViewInfoOf(const Camera& camera, const ViewSettings& settings, const ViewTraits& traits);
+
+/// Surface and table, and how rays bend.
+OpticsInfo OpticsInfoOf(const ViewSettings& settings, const ViewTraits& traits);
+}

@@ -1,0 +1,36 @@
+// Voxels around a voxel that scatter.
+
+#pragma once
+#include "Viewing/Samples/VoxelChannels.cl"
+
+// Calls DO(neighbour) for the voxels around one, it included, that scatter in any channel.
+#define FOR_SCATTERING_AROUND(voxel, size, scattering, DO)                                                  \
+  {                                                                                                         \
+    const int3 at = { (voxel) % (size).x, (voxel) / (size).x % (size).y, (voxel) / ((size).x * (size).y) }; \
+    for (int z = max(at.z - 1, 0); z <= min(at.z + 1, (size).z - 1); ++z)                                   \
+      for (int y = max(at.y - 1, 0); y <= min(at.y + 1, (size).y - 1); ++y)                                 \
+        for (int x = max(at.x - 1, 0); x <= min(at.x + 1, (size).x - 1); ++x)                               \
+        {                                                                                                   \
+          const int neighbour = (z * (size).y + y) * (size).x + x;                                          \
+          if (scatters_at(scattering, neighbour))                                                           \
+          {                                                                                                 \
+            DO(neighbour)                                                                                   \
+          }                                                                                                 \
+        }                                                                                                   \
+  }
+
+inline int scatters_at(__global const float* scattering, int voxel)
+{
+  return channel_of(scattering, voxel, SCATTERING, 0) + channel_of(scattering, voxel, SCATTERING, 1) +
+    channel_of(scattering, voxel, SCATTERING, 2) >
+    0.0f;
+}
+
+inline int is_beside_scattering(__global const float* scattering, int voxel, int4 size)
+{
+  int found = 0;
+#define COUNT(neighbour) found = 1;
+  FOR_SCATTERING_AROUND(voxel, size, scattering, COUNT)
+#undef COUNT
+  return found;
+}

@@ -1,0 +1,16 @@
+// Samples have a border of one voxel that repeats the outermost ones. A work-item's place among them, and the voxel
+// that stands there.
+
+#pragma once
+
+inline int padded_index(int4 size)
+{
+  return ((int)get_global_id(2) * (size.y + 2) + (int)get_global_id(1)) * (size.x + 2) + (int)get_global_id(0);
+}
+inline int voxel_index(int4 size)
+{
+  const int i = clamp((int)get_global_id(0) - 1, 0, size.x - 1);
+  const int j = clamp((int)get_global_id(1) - 1, 0, size.y - 1);
+  const int k = clamp((int)get_global_id(2) - 1, 0, size.z - 1);
+  return (k * size.y + j) * size.x + i;
+}

@@ -1,0 +1,138 @@
+#include "Viewing/Samples/PackedSamples.h"
+
+#include "Device/Defines.h"
+#include "Device/Sizes.h"
+#include "Numerics/Vectors.h"
+#include "Refraction/Index/SquaredIndex.h"
+#include "TyndallKernelSources.h"
+#include "Viewing/Samples/Bricks.h"
+
+#include <algorithm>
+#include <vector>
+
+#include <glm/vec3.hpp>
+
+namespace tyndall
+{
+namespace
+{
+std::size_t PaddedCount(const Grid& grid)
+{
+  return static_cast<std::size_t>(grid.size[0] + 2) * (grid.size[1] + 2) * (grid.size[2] + 2);
+}
+}
+
+PackedSamples::PackedSamples(Device& device, const SceneOnDevice& scene, const ViewTraits& traits)
+  : TheDevice(device)
+  , Traits(traits)
+{
+  for (int axis = 0; axis < 3; ++axis)
+  {
+    this->Count[axis] = PartsOf<int>(traits.grid.size[axis], BrickEdge);
+  }
+  const std::size_t count = PaddedCount(traits.grid);
+  this->Sources = Buffer<cl_float4>(device, count, "the ray caster's samples");
+  this->ColouredExtinctions =
+    Buffer<cl_float4>(device, traits.coloured ? count : 0, "the ray caster's coloured extinction");
+  this->Directions = Buffer<cl_float4>(
+    device, traits.knowsFlow || traits.ShowsBeams() ? count : 0, "the ray caster's directions of light");
+  this->ColouredG = Buffer<cl_float4>(device, traits.PacksCosines() ? count : 0, "the ray caster's mean cosines");
+  this->Emission = Buffer<cl_float4>(device, traits.GlowsApart() ? count : 0, "the ray caster's emission");
+  this->Gradients = Buffer<cl_float4>(device, traits.bends ? count : 0, "the ray caster's refraction");
+  this->Distances = Buffer<cl_char>(
+    device, static_cast<std::size_t>(this->Count[0]) * this->Count[1] * this->Count[2], "the ray caster's bricks");
+  if (traits.bends)
+  {
+    this->PackBending(scene.ior);
+  }
+}
+
+/// Over all voxels with their border. Work-groups have fixed shapes throughout: PoCL compiles a kernel anew for every
+/// shape.
+void PackedSamples::Launch(cl::Kernel& kernel)
+{
+  const std::array<int, 3>& size = this->Traits.grid.size;
+  this->TheDevice.Queue().enqueueNDRangeKernel(kernel, cl::NullRange,
+    cl::NDRange(RoundUp<std::size_t>(size[0] + 2, 64), size[1] + 2, size[2] + 2), cl::NDRange(64, 1, 1));
+}
+
+void PackedSamples::PackBending(const Buffer<float>& ior)
+{
+  const Grid& grid = this->Traits.grid;
+  struct
+  {
+    cl_int size[3];
+  } const size = { { grid.size[0], grid.size[1], grid.size[2] } };
+  const Buffer<float> coefficients = SquaredIndexCoefficients(this->TheDevice, grid, ior);
+  cl::Kernel pack = this->TheDevice.Kernel("pack_bending", kernel_source::BendingField);
+  With(pack, size, Float4(1.0 / Vector(grid.spacing), 0.0), coefficients, this->Gradients);
+  this->Launch(pack);
+  this->TheDevice.Finish();
+}
+
+void PackedSamples::Pack(
+  Packing what, const SceneOnDevice& scene, const Buffer<float>& direct, const Buffer<float>& diffuse)
+{
+  this->For = what;
+  if (this->Traits.ShowsMoments())
+  {
+    this->PackShown(scene, direct, diffuse);
+  }
+  else
+  {
+    this->PackSources(scene, direct);
+  }
+}
+
+void PackedSamples::PackSources(const SceneOnDevice& scene, const Buffer<float>& direct)
+{
+  const ViewTraits& traits = this->Traits;
+  const bool forShadowRays = this->For == Packing::ForShadowRays;
+  const bool bends = traits.bends && !forShadowRays; // shadow rays go straight on
+  const std::string options = traits.PackingOptions() + traits.PhaseOptions(traits.knowsFlow) +
+    Define("SHADOW_RAYS", traits.shadowRays && !forShadowRays) + Define("BENDS", bends) + Define("SHOWN", 0);
+  const cl_int single = traits.singleScatteringOnly ? 1 : 0;
+
+  cl::Kernel pack = this->TheDevice.Kernel("pack_samples", kernel_source::ScatteredLight, options);
+  With(pack, Int4(traits.grid.size), single, traits.phase.parameters.first.s[0], scene.arrays[0], scene.arrays[1],
+    scene.arrays[2], scene.arrays[3], scene.arrays[4], direct, scene.meanDirection, scene.ior, scene.meanCosines,
+    this->Sources, this->ColouredExtinctions, this->Directions, this->Emission, this->ColouredG);
+  this->Launch(pack);
+  this->FindBricks(options);
+}
+
+std::string PackedSamples::ShownOptions() const
+{
+  const int shown = !this->Traits.ShowsMoments() || this->For == Packing::ForShadowRays ? 0
+    : this->For == Packing::Scattered                                                   ? 1
+                                                                                        : 2;
+  return Define("SHOWN", shown) + Define("BEAMS", shown > 0 && this->Traits.ShowsBeams());
+}
+
+void PackedSamples::PackShown(const SceneOnDevice& scene, const Buffer<float>& direct, const Buffer<float>& diffuse)
+{
+  const ViewTraits& traits = this->Traits;
+  const std::string options = traits.PackingOptions() + traits.PhaseOptions(false) + Define("SHADOW_RAYS", 0) +
+    Define("BENDS", traits.bends && this->For != Packing::ForShadowRays) +
+    Define("STRAIGHT_ON", this->For == Packing::Unscattered ? 0 : traits.straightOnChannels) +
+    Define("AUREOLE", traits.aureoleChannels);
+  cl::Kernel pack = this->TheDevice.Kernel("pack_shown", kernel_source::ShownSamples, options + this->ShownOptions());
+  With(pack, Int4(traits.grid.size), scene.arrays[0], scene.arrays[1], scene.arrays[2], scene.straightOn, diffuse,
+    direct, scene.ior, this->Sources, this->ColouredExtinctions, this->Directions, this->Emission);
+  this->Launch(pack);
+  this->FindBricks(options + Define("SHOWN", 1));
+}
+
+void PackedSamples::FindBricks(const std::string& options)
+{
+  const cl_int4 size = Int4(this->Traits.grid.size), bricks = Int4(this->Count);
+  cl::Kernel find = this->TheDevice.Kernel("find_empty_bricks", kernel_source::ScatteredLight, options);
+  With(find, size, bricks, this->Sources, this->ColouredExtinctions, this->Emission, this->Gradients, this->Distances);
+  this->TheDevice.Queue().enqueueNDRangeKernel(find, cl::NullRange,
+    cl::NDRange(RoundUp<std::size_t>(bricks.s[0], 4), bricks.s[1], bricks.s[2]), cl::NDRange(4, 1, 1));
+  std::vector<cl_char> distances = this->Distances.Read();
+  this->EmptyBricks = std::find(distances.begin(), distances.end(), 1) != distances.end();
+  FindDistances(distances, this->Count);
+  this->Distances.Write(distances.data());
+}
+}

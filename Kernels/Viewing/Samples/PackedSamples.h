@@ -1,0 +1,63 @@
+#pragma once
+
+#include "Device/Buffer.h"
+#include "Viewing/Scene/SceneOnDevice.h"
+#include "Viewing/Scene/ViewTraits.h"
+
+#include <array>
+#include <string>
+
+namespace tyndall
+{
+/// What samples are packed for.
+enum class Packing
+{
+  ForShadowRays,
+  Scattered,  ///< what the camera's rays meet
+  Unscattered ///< the same in the dark: how much of what is behind comes through without being scattered at all
+};
+
+/// What rays meet: source and extinction by voxel, with a border of one voxel around, and bricks in which there is
+/// nothing. Arrays that the scene does not need are empty.
+class PackedSamples
+{
+public:
+  /// Takes the memory, and packs how rays bend.
+  /// @param traits  must stay
+  /// @throws DeviceError if the samples do not fit
+  PackedSamples(Device& device, const SceneOnDevice& scene, const ViewTraits& traits);
+
+  /// @param direct, diffuse  see SeenSources.h; read where `what` is for the camera's rays
+  void Pack(Packing what, const SceneOnDevice& scene, const Buffer<float>& direct, const Buffer<float>& diffuse);
+
+  // Of the last packing.
+  Packing PackedFor() const { return this->For; }
+  std::string ShownOptions() const; ///< SHOWN and BEAMS of the kernels
+  bool HasEmptyBricks() const { return this->EmptyBricks; }
+
+  const Buffer<cl_float4>& Samples() const { return this->Sources; } ///< source and grey extinction: ScatteredLight.cl
+  const Buffer<cl_float4>& Extinctions() const { return this->ColouredExtinctions; }
+  /// Mean direction, times g where ViewTraits::FlowHasG; of ShownSamples.cl lamps' light.
+  const Buffer<cl_float4>& Flow() const { return this->Directions; }
+  const Buffer<cl_float4>& Glow() const { return this->Emission; }     ///< where ViewTraits::GlowsApart
+  const Buffer<cl_float4>& Cosines() const { return this->ColouredG; } ///< coloured g by voxel
+  const Buffer<cl_float4>& Bending() const { return this->Gradients; } ///< gradient of n^2, and n^2
+  const Buffer<cl_char>& Bricks() const { return this->Distances; }    ///< see Bricks.h
+  const std::array<int, 3>& BrickCount() const { return this->Count; }
+
+private:
+  void PackBending(const Buffer<float>& ior);
+  void PackSources(const SceneOnDevice& scene, const Buffer<float>& direct);
+  void PackShown(const SceneOnDevice& scene, const Buffer<float>& direct, const Buffer<float>& diffuse);
+  void Launch(cl::Kernel& kernel);
+  void FindBricks(const std::string& options);
+
+  Device& TheDevice;
+  const ViewTraits& Traits;
+  std::array<int, 3> Count;
+  Packing For = Packing::ForShadowRays;
+  bool EmptyBricks = false;
+  Buffer<cl_float4> Sources, ColouredExtinctions, Directions, ColouredG, Emission, Gradients;
+  Buffer<cl_char> Distances;
+};
+}

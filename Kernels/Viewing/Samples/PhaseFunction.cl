@@ -1,0 +1,128 @@
+// How much of the light that travels one way, or is spread about it, is scattered towards the eye: 4 pi times the
+// phase function, averaged over that light's directions (numerics.md, section 14.1).
+//
+// The host gives
+//   PHASE           0 evenly, 1 Henyey and Greenstein, 2 Schlick, 3 two of Henyey and Greenstein's, 4 Rayleigh, 5 rows
+//   PHASE_CHANNELS  1, or 3: red, green and blue scatter differently
+
+#pragma once
+#include "Viewing/Samples/Sampling.cl"
+#include "Viewing/Scene/ViewShared.h"
+
+// Between two rows of a table, `place` in [0, last] from its first; there is a row behind the last.
+inline real between_rows(__global const float* rows, real place, int last)
+{
+  const real at = lesser(greater(place, (real)0.0f), (real)(float)last);
+  const integer i = to_integer(at);
+  const real part = at - to_real(i);
+  real low, high;
+#define LOOK(n)                    \
+  LANE(low, n) = rows[LANE(i, n)]; \
+  LANE(high, n) = rows[LANE(i, n) + 1];
+  EACH_LANE(LOOK)
+#undef LOOK
+  return fma(part, high - low, low);
+}
+
+// Henyey and Greenstein's of mean cosine |b|, Eq. (107).
+//   square  b.b, b the light's mean direction times g
+//   along   b.v, v the ray's direction, away from the eye
+inline real henyey_greenstein(real square, real along)
+{
+  const real base = greater(fma((real)2.0f, along, (real)1.0f + square), (real)1e-8f);
+  return ((real)1.0f - square) / (base * sqrt(base));
+}
+
+#if PHASE == 2
+// Schlick's of mean cosine |b|, Eq. (108).
+//   rows  k/|b| by sqrt(1 - |b|)
+inline real schlick(real square, real along, __global const float* rows)
+{
+  const real size = lesser(sqrt(square), (real)1.0f);
+  const real k = between_rows(rows, sqrt((real)1.0f - size) * (real)(float)SchlickRows, SchlickRows);
+  const real base = greater(fma(k, along, (real)1.0f), (real)1e-6f);
+  return greater(fma(-square * k, k, (real)1.0f), (real)0.0f) / (base * base);
+}
+#endif
+
+#if PHASE == 5
+// Of a table of any function, bilinear.
+//   rows  by the cosine c of the scattering angle, sqrt(1 - c) forwards and 2 - sqrt(1 + c) backwards, in stretches of
+//         CosineRows + 2 by sqrt(1 - |m|)
+inline real spread_rows(real square, real along, __global const float* rows)
+{
+  const real size = lesser(sqrt(square), (real)1.0f);
+  const real cosine = lesser(greater(-along / greater(size, (real)1e-10f), (real)(-1.0f)), (real)1.0f);
+  const real aside = sqrt((real)1.0f - fabs(cosine)) * (real)(0.5f * CosineRows);
+  const real place = cosine > (real)0.0f ? aside : (real)(float)CosineRows - aside;
+  const real spread = sqrt((real)1.0f - size) * (real)(float)SpreadRows;
+  const integer row = to_integer(spread);
+  const real part = spread - to_real(row);
+  const integer column = to_integer(place);
+  const real beside = place - to_real(column);
+  real near_low, near_high, far_low, far_high;
+#define LOOK(n)                                                                          \
+  {                                                                                      \
+    __global const float* at = rows + LANE(row, n) * (CosineRows + 2) + LANE(column, n); \
+    LANE(near_low, n) = at[0];                                                           \
+    LANE(near_high, n) = at[1];                                                          \
+    LANE(far_low, n) = at[CosineRows + 2];                                               \
+    LANE(far_high, n) = at[CosineRows + 3];                                              \
+  }
+  EACH_LANE(LOOK)
+#undef LOOK
+  const real near = fma(beside, near_high - near_low, near_low);
+  return fma(part, fma(beside, far_high - far_low, far_low) - near, near);
+}
+#endif
+
+// What tells functions of one kind apart: of red, green and blue.
+typedef struct
+{
+  rgb first, second, part; // see PhaseInfo
+} phase_parameters;
+
+// Of one channel.
+//   square  m.m of the light's mean direction
+//   along   m.v
+inline real scattered_of_channel(
+  real square, real along, real first, real second, real part, __global const float* rows)
+{
+#if PHASE == 1
+  return henyey_greenstein(first * first * square, first * along);
+#elif PHASE == 2
+  return schlick(first * first * square, first * along, rows);
+#elif PHASE == 3
+  return fma(part, henyey_greenstein(first * first * square, first * along),
+    ((real)1.0f - part) * henyey_greenstein(second * second * square, second * along));
+#elif PHASE == 4
+  return fma((real)0.75f * along, along, fma((real)(-0.25f), square, (real)1.0f));
+#elif PHASE == 5
+  return spread_rows(square, along, rows);
+#else
+  return (real)1.0f;
+#endif
+}
+
+inline rgb scattered_of_channels(real square, real along, phase_parameters p, __global const float* rows)
+{
+  rgb f;
+  f.r = scattered_of_channel(square, along, p.first.r, p.second.r, p.part.r, rows);
+#if PHASE_CHANNELS == 3
+  // Each channel has rows of its own where there are rows of scattering.
+  const int apart = PHASE == 5 ? (SpreadRows + 2) * (CosineRows + 2) : 0;
+  f.g = scattered_of_channel(square, along, p.first.g, p.second.g, p.part.g, rows + apart);
+  f.b = scattered_of_channel(square, along, p.first.b, p.second.b, p.part.b, rows + 2 * apart);
+#else
+  f.g = f.b = f.r;
+#endif
+  return f;
+}
+
+inline phase_parameters parameters_of(const PhaseInfo* info)
+{
+  const phase_parameters p = { { (real)info->first.x, (real)info->first.y, (real)info->first.z },
+    { (real)info->second.x, (real)info->second.y, (real)info->second.z },
+    { (real)info->part.x, (real)info->part.y, (real)info->part.z } };
+  return p;
+}

@@ -1,0 +1,418 @@
+// Rays through a medium, REAL_WIDTH of them at a time, and what they meet there.
+//
+// The host gives
+//   COLOURED  1: extinction differs between red, green and blue; 0: one extinction serves all three
+//   GREY      1: so do sources; `samples` then hold source and extinction of a voxel, and those of the next one along y
+//
+//   MANY_STEPS 1: rays take so many steps that what rounding loses in each adds up
+//
+// Every result is rounded as written: else the compiler fuses multiply and add here but not there, and two variants of
+// a kernel (skipping bricks or not) would give pictures that differ in the last place.
+//
+// Positions are in voxels from the box's lower corner, so that voxel (i, j, k) covers [i, i+1] x [j, j+1] x [k, k+1].
+// Arrays named `samples` and `extinctions` have a border of one voxel that repeats the outermost ones: an interpolation
+// never has to ask where the box ends, and the medium ends at the box's faces, not half a voxel before.
+
+#pragma once
+#include "Numerics/Numerics.cl"
+#include "Viewing/Scene/ViewShared.h"
+
+#pragma OPENCL FP_CONTRACT OFF
+
+#if REAL_WIDTH == 1
+#define EACH_LANE(DO) DO(0)
+#define LANE(v, n) v
+#else
+#define LANE(v, n) TYNDALL_JOIN(v.s, n)
+#if REAL_WIDTH == 4
+#define EACH_LANE(DO) DO(0) DO(1) DO(2) DO(3)
+#elif REAL_WIDTH == 8
+#define EACH_LANE(DO) DO(0) DO(1) DO(2) DO(3) DO(4) DO(5) DO(6) DO(7)
+#else
+#define EACH_LANE(DO) DO(0) DO(1) DO(2) DO(3) DO(4) DO(5) DO(6) DO(7) DO(8) DO(9) DO(a) DO(b) DO(c) DO(d) DO(e) DO(f)
+#endif
+#endif
+
+// min and max as the hardware has them, one instruction for all lanes; not for NaN.
+#define lesser(a, b) ((a) < (b) ? (a) : (b))
+#define greater(a, b) ((a) > (b) ? (a) : (b))
+
+// Half the lanes with the other half, until four are left.
+#if REAL_WIDTH == 16
+#define REDUCED_TO_FOUR(type, v, operation)    \
+  const type##8 eight = operation(v.lo, v.hi); \
+  const type##4 four = operation(eight.lo, eight.hi);
+#elif REAL_WIDTH == 8
+#define REDUCED_TO_FOUR(type, v, operation) const type##4 four = operation(v.lo, v.hi);
+#else
+#define REDUCED_TO_FOUR(type, v, operation) const type##4 four = v;
+#endif
+#define either(a, b) ((a) | (b))
+#if REAL_WIDTH == 1
+#define least_lane(v) (v)
+#define any_lane(condition) (condition)
+#else
+inline float least_lane(real v)
+{
+  REDUCED_TO_FOUR(float, v, lesser)
+  const float2 two = lesser(four.lo, four.hi);
+  return lesser(two.x, two.y);
+}
+// PoCL's any tests lane by lane.
+inline int any_lane(integer condition)
+{
+  REDUCED_TO_FOUR(int, condition, either)
+  const int2 two = either(four.lo, four.hi);
+  return either(two.x, two.y) != 0;
+}
+#endif
+#define most_lanes(v) (-least_lane(-(v)))
+#define all_lanes(condition) (!any_lane((condition) == 0))
+
+typedef struct
+{
+  real x, y, z;
+} real3;
+
+typedef struct
+{
+  real r, g, b;
+} rgb;
+
+// sum + more; with MANY_STEPS `rest` keeps what the sum was rounded by (Kahan 1965).
+inline void add_to(real* sum, real* rest, real more)
+{
+#if MANY_STEPS
+  const real whole = more - *rest;
+  const real next = *sum + whole;
+  *rest = (next - *sum) - whole;
+  *sum = next;
+#else
+  *sum += more;
+#endif
+}
+
+// Packets of rays: where each enters the box, its direction in voxels per unit length, and how long it stays inside (0:
+// it misses).
+typedef struct
+{
+  real3 entry;
+  real3 direction;
+  real length;
+} rays;
+
+inline real at_least_tiny(real v)
+{
+  const real tiny = (real)1e-20f;
+  return fabs(v) > tiny ? v : copysign(tiny, v);
+}
+
+inline real within(real v, int size)
+{
+  return lesser(greater(v, (real)0.0f), (real)(float)size);
+}
+
+// The part of each ray from `from`, at most `farthest` long, that lies in the box.
+inline rays clip_to_box(real3 from, real3 direction, real farthest, int4 size, real* before)
+{
+  const real ix = (real)1.0f / at_least_tiny(direction.x);
+  const real iy = (real)1.0f / at_least_tiny(direction.y);
+  const real iz = (real)1.0f / at_least_tiny(direction.z);
+  const real x0 = -from.x * ix;
+  const real y0 = -from.y * iy;
+  const real z0 = -from.z * iz;
+  const real x1 = ((real)(float)size.x - from.x) * ix;
+  const real y1 = ((real)(float)size.y - from.y) * iy;
+  const real z1 = ((real)(float)size.z - from.z) * iz;
+  const real in = greater(greater(lesser(x0, x1), lesser(y0, y1)), greater(lesser(z0, z1), (real)0.0f));
+  const real out = lesser(lesser(greater(x0, x1), greater(y0, y1)), lesser(greater(z0, z1), farthest));
+  // A far camera's rounding errors may not carry a ray out of the box.
+  rays result;
+  result.direction = direction;
+  result.entry.x = within(fma(in, direction.x, from.x), size.x);
+  result.entry.y = within(fma(in, direction.y, from.y), size.y);
+  result.entry.z = within(fma(in, direction.z, from.z), size.z);
+  const real left_x = ((ix > (real)0.0f ? (real)(float)size.x : (real)0.0f) - result.entry.x) * ix;
+  const real left_y = ((iy > (real)0.0f ? (real)(float)size.y : (real)0.0f) - result.entry.y) * iy;
+  const real left_z = ((iz > (real)0.0f ? (real)(float)size.z : (real)0.0f) - result.entry.z) * iz;
+  const real left = lesser(lesser(left_x, left_y), lesser(left_z, farthest - in));
+  result.length = out > in ? greater(left, (real)0.0f) : (real)0.0f;
+  *before = result.length > (real)0.0f ? in : (real)0.0f;
+  return result;
+}
+
+// A length along each ray that advances by `step` voxels.
+inline real step_length(real3 direction, float step)
+{
+  return (real)step / sqrt(fma(direction.x, direction.x, fma(direction.y, direction.y, direction.z * direction.z)));
+}
+
+inline real3 along(rays packet, real distance)
+{
+  // Rays that have left stay where they left.
+  const real d = lesser(distance, packet.length);
+  real3 p;
+  p.x = fma(d, packet.direction.x, packet.entry.x);
+  p.y = fma(d, packet.direction.y, packet.entry.y);
+  p.z = fma(d, packet.direction.z, packet.entry.z);
+  return p;
+}
+
+// The eight voxel centres around each point of a packet: twice the first one's index, and the weights of the four pairs
+// along x and of the upper of a pair.
+typedef struct
+{
+  integer twiceFirst;
+  real nearLow, nearHigh, farLow, farHigh;
+  real x;
+#if GREY
+  real y, near, far; // weights of the upper along y, and of the two along z
+#endif
+} corners;
+
+__attribute__((always_inline)) inline void find_corners(real3 p, int4 size, corners* at)
+{
+  // Points of the box are at least half a voxel above the border's centres: cutting the fraction off is floor, of which
+  // PoCL makes eleven instructions.
+  const real px = p.x + (real)0.5f;
+  const real py = p.y + (real)0.5f;
+  const real pz = p.z + (real)0.5f;
+  const integer i = to_integer(px);
+  const real j = to_real(to_integer(py));
+  const real k = to_real(to_integer(pz));
+  const real y = py - j;
+  const real z = pz - k;
+  const real both = y * z;
+  const real z_only = z - both;
+  at->x = px - to_real(i);
+  at->farHigh = both;
+  at->nearHigh = y - both;
+  at->farLow = z_only;
+  at->nearLow = ((real)1.0f - y) - z_only;
+#if GREY
+  at->y = y;
+  at->near = (real)1.0f - z;
+  at->far = z;
+#endif
+  // Rows are counted in floats, which hold whole numbers up to 16 million.
+  const integer row = to_integer(fma(k, (real)(float)(size.y + 2), j));
+  at->twiceFirst = (row * (size.x + 2) + i) * 2;
+}
+
+#if REAL_WIDTH > 1 && defined(__clang__)
+// Asks for the rows of samples around a point that a packet will come to, before they are needed. May be anything.
+inline void fetch_ahead(__global const float4* samples, real3 p, int4 size)
+{
+  const int row = size.x + 2;
+  const int slice = row * (size.y + 2);
+  const integer j = to_integer(p.y + (real)0.5f);
+  const integer k = to_integer(p.z + (real)0.5f);
+  const integer at = k * slice + j * row + to_integer(p.x + (real)0.5f);
+#define ASK(place) __builtin_prefetch((const void*)(size_t)(samples + (place)))
+#define ASK_AROUND(n) ASK(LANE(at, n)), ASK(LANE(at, n) + row), ASK(LANE(at, n) + slice), ASK(LANE(at, n) + slice + row)
+  ASK_AROUND(0);
+  ASK_AROUND(3);
+#if REAL_WIDTH == 16
+  ASK_AROUND(c);
+  ASK_AROUND(f);
+#endif
+#undef ASK_AROUND
+#undef ASK
+}
+#else
+#define fetch_ahead(samples, p, size)
+#endif
+
+inline float8 neighbours(__global const float2* row, uint twice_first)
+{
+  __global const float4* at = (__global const float4*)(row + twice_first);
+  return (float8)(at[0], at[1]); // 16 bytes are aligned, 32 are not
+}
+
+#if REAL_WIDTH == 16
+// Four rays' v = (a at the lower x, a at the upper x), a of four values, in the order 0, 4, 8, c of a quarter each,
+// taken between the two by x: 16 lanes that hold the four values of one ray, of the next, ...
+inline float16 four_between(float8 v0, float8 v4, float8 v8, float8 vc, float16 x)
+{
+  const float16 left = (float16)(v0, v4);
+  const float16 right = (float16)(v8, vc);
+  const float16 lower = (float16)(left.s0123, left.s89ab, right.s0123, right.s89ab);
+  const float16 upper = (float16)(left.s4567, left.scdef, right.s4567, right.scdef);
+  return fma(x, upper - lower, lower);
+}
+#endif
+
+// The values at each ray's corners, between the voxel centres: colour and w. Neighbours along x lie side by side in
+// memory, so that four loads of eight floats bring all corners of a ray; two, and nothing is taken between along y,
+// where values hold two numbers and those of the next voxel along y (`paired`, a constant). size.w is 0, which the
+// compiler cannot know: so `at` stays in memory, from where a CPU broadcasts single lanes for nothing.
+__attribute__((always_inline)) inline void gather_values(
+  __global const float4* values, const corners* at, int4 size, const int paired, rgb* colour, real* w)
+{
+  __global const float2* near_low = (__global const float2*)values;
+  __global const float2* near_high = near_low + 2 * (size.x + 2);
+  __global const float2* far_low = near_low + 2 * (size.x + 2) * (size.y + 2);
+  __global const float2* far_high = far_low + 2 * (size.x + 2);
+#define FIRST(n) ((const uint*)&at->twiceFirst)[0x##n + size.w]
+#define WEIGHT(part, n) (((const float*)&at->part)[0x##n + size.w])
+#define FETCH_FOUR(n)                                                               \
+  v##n = WEIGHT(nearLow, n) * neighbours(near_low, FIRST(n));                       \
+  v##n = fma((float8)(WEIGHT(nearHigh, n)), neighbours(near_high, FIRST(n)), v##n); \
+  v##n = fma((float8)(WEIGHT(farLow, n)), neighbours(far_low, FIRST(n)), v##n);     \
+  v##n = fma((float8)(WEIGHT(farHigh, n)), neighbours(far_high, FIRST(n)), v##n);
+#if GREY
+#define FETCH(n)                                                               \
+  float8 v##n;                                                                 \
+  if (paired)                                                                  \
+  {                                                                            \
+    v##n = WEIGHT(near, n) * neighbours(near_low, FIRST(n));                   \
+    v##n = fma((float8)(WEIGHT(far, n)), neighbours(far_low, FIRST(n)), v##n); \
+  }                                                                            \
+  else                                                                         \
+  {                                                                            \
+    FETCH_FOUR(n)                                                              \
+  }
+#else
+#define FETCH(n) \
+  float8 v##n;   \
+  FETCH_FOUR(n)
+#endif
+#if REAL_WIDTH == 16
+  const float16 x = at->x;
+  FETCH(0) FETCH(4) FETCH(8) FETCH(c) const float16 a = four_between(v0, v4, v8, vc, x.s000044448888cccc);
+  FETCH(1) FETCH(5) FETCH(9) FETCH(d) const float16 b = four_between(v1, v5, v9, vd, x.s111155559999dddd);
+  FETCH(2) FETCH(6) FETCH(a) FETCH(e) const float16 c = four_between(v2, v6, va, ve, x.s22226666aaaaeeee);
+  FETCH(3) FETCH(7) FETCH(b) FETCH(f) const float16 d = four_between(v3, v7, vb, vf, x.s33337777bbbbffff);
+  // All that follows stays within quarters of a register.
+  const float16 ab_low =
+    (float16)(a.s0, b.s0, a.s1, b.s1, a.s4, b.s4, a.s5, b.s5, a.s8, b.s8, a.s9, b.s9, a.sc, b.sc, a.sd, b.sd);
+  const float16 cd_low =
+    (float16)(c.s0, d.s0, c.s1, d.s1, c.s4, d.s4, c.s5, d.s5, c.s8, d.s8, c.s9, d.s9, c.sc, d.sc, c.sd, d.sd);
+  const float16 ab_high =
+    (float16)(a.s2, b.s2, a.s3, b.s3, a.s6, b.s6, a.s7, b.s7, a.sa, b.sa, a.sb, b.sb, a.se, b.se, a.sf, b.sf);
+  const float16 cd_high =
+    (float16)(c.s2, d.s2, c.s3, d.s3, c.s6, d.s6, c.s7, d.s7, c.sa, d.sa, c.sb, d.sb, c.se, d.se, c.sf, d.sf);
+  // Pairs move as longs: else PoCL makes ten instructions of each of these.
+#define FIRST_PAIRS(p, q)                                                                                            \
+  as_float16((long8)(as_long8(p).s0, as_long8(q).s0, as_long8(p).s2, as_long8(q).s2, as_long8(p).s4, as_long8(q).s4, \
+    as_long8(p).s6, as_long8(q).s6))
+#define SECOND_PAIRS(p, q)                                                                                           \
+  as_float16((long8)(as_long8(p).s1, as_long8(q).s1, as_long8(p).s3, as_long8(q).s3, as_long8(p).s5, as_long8(q).s5, \
+    as_long8(p).s7, as_long8(q).s7))
+  colour->r = FIRST_PAIRS(ab_low, cd_low);
+  colour->g = SECOND_PAIRS(ab_low, cd_low);
+  colour->b = FIRST_PAIRS(ab_high, cd_high);
+  *w = SECOND_PAIRS(ab_high, cd_high);
+#undef FIRST_PAIRS
+#undef SECOND_PAIRS
+#else
+  EACH_LANE(FETCH)
+#define BETWEEN(n) const float4 u##n = fma((float4)(WEIGHT(x, n)), v##n.hi - v##n.lo, v##n.lo);
+  EACH_LANE(BETWEEN)
+#undef BETWEEN
+#if REAL_WIDTH == 1
+#define TRANSPOSED(c) u0.c
+#elif REAL_WIDTH == 4
+#define TRANSPOSED(c) (real)(u0.c, u1.c, u2.c, u3.c)
+#else
+#define TRANSPOSED(c) (real)(u0.c, u1.c, u2.c, u3.c, u4.c, u5.c, u6.c, u7.c)
+#endif
+  colour->r = TRANSPOSED(x);
+  colour->g = TRANSPOSED(y);
+  colour->b = TRANSPOSED(z);
+  *w = TRANSPOSED(w);
+#undef TRANSPOSED
+#endif
+#undef FETCH
+#undef FETCH_FOUR
+#undef FIRST
+#undef WEIGHT
+}
+
+inline void gather(__global const float4* values, const corners* at, int4 size, rgb* colour, real* w)
+{
+  gather_values(values, at, size, 0, colour, w);
+}
+
+// Sources and grey extinction.
+inline void gather_samples(__global const float4* samples, const corners* at, int4 size, rgb* source, real* sigma)
+{
+#if GREY
+  rgb low;
+  real high;
+  gather_values(samples, at, size, 1, &low, &high);
+  source->r = source->g = source->b = fma(at->y, low.b - low.r, low.r);
+  *sigma = fma(at->y, high - low.g, low.g);
+#else
+  gather_values(samples, at, size, 0, source, sigma);
+#endif
+}
+
+// Between four values of a picture for each ray: two side by side from `lower` on and two from `upper`; x goes from the
+// first of two to the second, y from the lower to the upper.
+inline rgb between_four(__global const float4* values, integer lower, integer upper, real x, real y)
+{
+  rgb seen;
+#define SEE(n)                                                               \
+  {                                                                          \
+    __global const float4* below = values + LANE(lower, n);                  \
+    __global const float4* above = values + LANE(upper, n);                  \
+    const float4 a = fma((float4)LANE(x, n), below[1] - below[0], below[0]); \
+    const float4 b = fma((float4)LANE(x, n), above[1] - above[0], above[0]); \
+    const float4 c = fma((float4)LANE(y, n), b - a, a);                      \
+    LANE(seen.r, n) = c.x;                                                   \
+    LANE(seen.g, n) = c.y;                                                   \
+    LANE(seen.b, n) = c.z;                                                   \
+  }
+  EACH_LANE(SEE)
+#undef SEE
+  return seen;
+}
+
+// Edge of a brick in voxels. Each brick has a number: how many bricks one has to go (as a chess king does) to one of
+// another kind; positive for a brick that is empty, negative for one where anything extinguishes or shines. It is 0
+// where rays bend.
+
+// What is ahead of a packet: how many steps, from the sample at p on, every ray can take before one of them leaves the
+// bricks around it that are known to be alike; whether all those steps are through nothing; whether a ray bends. Rays
+// that are done do not count.
+typedef struct
+{
+  int steps, empty, bends;
+} stretch;
+
+__attribute__((always_inline)) inline stretch stretch_ahead(
+  __global const char* bricks, int4 brick_count, real3 p, real3 strides, integer done)
+{
+  const integer bx = min(to_integer(p.x * (real)(1.0f / BrickEdge)), brick_count.x - 1);
+  const integer by = min(to_integer(p.y * (real)(1.0f / BrickEdge)), brick_count.y - 1);
+  const integer bz = min(to_integer(p.z * (real)(1.0f / BrickEdge)), brick_count.z - 1);
+  const integer brick = (bz * brick_count.y + by) * brick_count.x + bx;
+  integer distance = (integer)(int)bricks[LANE(brick, 0)];
+  if (any_lane(brick != (integer)LANE(brick, 0))) // neighbouring rays are mostly in the same brick
+  {
+#define DISTANCE(n) LANE(distance, n) = bricks[LANE(brick, n)];
+    EACH_LANE(DISTANCE)
+#undef DISTANCE
+  }
+  const integer reach = (distance < 0 ? -distance : distance) - 1;
+#define STEPS_LEFT(b, c) \
+  ((to_real(strides.c > (real)0.0f ? (b + reach + 1) * BrickEdge : (b - reach) * BrickEdge) - p.c) * strides.c)
+  const real steps = lesser(lesser(STEPS_LEFT(bx, x), STEPS_LEFT(by, y)), STEPS_LEFT(bz, z));
+#undef STEPS_LEFT
+  stretch s;
+  s.empty = all_lanes(done | (distance > 0));
+  s.bends = any_lane((done == 0) & (distance == 0));
+  s.steps = 1 + (int)lesser(greater(least_lane(done ? (real)1e6f : steps), 0.0f), 1e6f);
+  return s;
+}
+
+// How many steps take a ray on by a voxel along each axis.
+inline real3 strides_per_voxel(real3 direction, real step)
+{
+  real3 strides;
+  strides.x = (real)1.0f / at_least_tiny(direction.x * step);
+  strides.y = (real)1.0f / at_least_tiny(direction.y * step);
+  strides.z = (real)1.0f / at_least_tiny(direction.z * step);
+  return strides;
+}

@@ -1,0 +1,182 @@
+// What the rays meet: every voxel's source radiance per unit length and its extinction, made from the medium's arrays
+// and from the light that a solver left in them or that shadow rays find.
+//
+// The host gives
+//   ABSORPTION, SCATTERING, EMISSION, FLUENCE, UNSCATTERED   components of each array: 0 (there is none), 1 or 3
+//   SHADOW_RAYS  1: `direct` holds what the lights scatter towards the eye
+//   FLOW         1: the light's mean direction is packed, FLOW_WITH_G 1: times g
+//   MEAN_COSINE  components of g by voxel; 0: it is the same everywhere
+//   VARIED_G     1: g by voxel is packed apart
+//   GLOW         1: emission is packed apart
+//   BENDS        1: the refractive index varies
+//   SHOWN        of what ShownSamples.cl packed: only the extinction tells what is empty
+
+#include "Viewing/Samples/Border.cl"
+#include "Viewing/Samples/Sampling.cl"
+#include "Viewing/Samples/VoxelChannels.cl"
+
+#define LARGEST_FLOW 0.9999f
+
+// In-scattered radiance of one channel. `fluence` holds everything, `unscattered` what of it came straight from a
+// light; what is seen of the lights by shadow rays is taken out of fluence, so that it does not count twice.
+inline float in_scattered(__global const float* fluence, __global const float* unscattered,
+  __global const float* direct, int voxel, int channel, int single)
+{
+  const float whole = channel_of(fluence, voxel, FLUENCE, channel);
+  const float first = channel_of(unscattered, voxel, UNSCATTERED, channel);
+#if SHADOW_RAYS
+  const float seen = direct[voxel * 6 + channel];
+  const float from_lights = fmin(direct[voxel * 6 + 3 + channel], first);
+  return seen + (single ? 0.0f : fmax(whole - from_lights, 0.0f) * PER_SPHERE);
+#else
+  return (single ? first : whole) * PER_SPHERE;
+#endif
+}
+
+// What the medium and its light are made of, as the kernels' arguments.
+typedef struct
+{
+  __global const float* absorption;
+  __global const float* scattering;
+  __global const float* emission;
+  __global const float* fluence;
+  __global const float* unscattered;
+  __global const float* direct;
+  __global const float* ior;
+} ingredients;
+
+// Source of a voxel, by n^2 with BENDS: red, green, blue, and grey extinction; besides all of the extinction, and what
+// is emitted, which with GLOW is no part of the source.
+inline float4 source_of(const ingredients* from, int voxel, int single, float4* sigma_t, float4* emitted)
+{
+  float4 sigma_s = (float4)(0.0f);
+  float4 source = (float4)(0.0f);
+  *sigma_t = *emitted = (float4)(0.0f);
+#define CHANNEL(c, n)                                                          \
+  sigma_s.c = channel_of(from->scattering, voxel, SCATTERING, n);              \
+  sigma_t->c = sigma_s.c + channel_of(from->absorption, voxel, ABSORPTION, n); \
+  emitted->c = channel_of(from->emission, voxel, EMISSION, n);                 \
+  source.c = sigma_s.c * in_scattered(from->fluence, from->unscattered, from->direct, voxel, n, single);
+  CHANNEL(x, 0)
+  CHANNEL(y, 1)
+  CHANNEL(z, 2)
+#undef CHANNEL
+#if !GLOW
+  source += *emitted;
+#endif
+#if BENDS
+  const float square = from->ior[voxel] * from->ior[voxel];
+  source /= square;
+  *emitted /= square;
+#endif
+  source.w = sigma_t->x;
+  return source;
+}
+
+// single   1: only light that scatters once
+// samples  red, green, blue of the source, and grey extinction; with GREY source and extinction here and at the next
+//          voxel along y
+// flow     with FLOW: the light's mean direction; with FLOW_WITH_G times g, at most LARGEST_FLOW long
+// cosines  with VARIED_G: red, green, blue of g
+// glow     with GLOW: emission, which is then no part of `samples`
+// ior      with BENDS: sources are divided by n^2
+__kernel void pack_samples(int4 size, int single, float g, __global const float* restrict absorption,
+  __global const float* restrict scattering, __global const float* restrict emission,
+  __global const float* restrict fluence, __global const float* restrict unscattered,
+  __global const float* restrict direct, __global const float* restrict direction, __global const float* restrict ior,
+  __global const float* restrict mean_cosines, __global float4* restrict samples, __global float4* restrict extinctions,
+  __global float4* restrict flow, __global float4* restrict glow, __global float4* restrict cosines)
+{
+  if (get_global_id(0) >= size.x + 2)
+  {
+    return;
+  }
+  const int voxel = voxel_index(size);
+  const int place = padded_index(size);
+  const ingredients from = { absorption, scattering, emission, fluence, unscattered, direct, ior };
+  float4 sigma_t, emitted;
+  const float4 source = source_of(&from, voxel, single, &sigma_t, &emitted);
+#if GREY
+  const int row = get_global_id(1);
+  float4 unused, also_unused;
+  const float4 next = source_of(&from, row > 0 && row < size.y ? voxel + size.x : voxel, single, &unused, &also_unused);
+  samples[place] = (float4)(source.x, source.w, next.x, next.w);
+#else
+  samples[place] = source;
+#endif
+#if COLOURED
+  extinctions[place] = sigma_t;
+#endif
+#if FLOW
+  const float3 mean = (float3)(direction[3 * voxel], direction[3 * voxel + 1], direction[3 * voxel + 2]);
+  // No light is more than one beam.
+  const float3 held = mean / fmax(length(mean), 1.0f);
+#if FLOW_WITH_G
+  const float here = MEAN_COSINE ? mean_cosines[voxel] : g;
+  flow[place] = (float4)(held * (here * fmin(1.0f, LARGEST_FLOW / fmax(fabs(here) * length(held), 1e-30f))), 0.0f);
+#else
+  flow[place] = (float4)(held, 0.0f);
+#endif
+#endif
+#if VARIED_G
+  cosines[place] = (float4)(channel_of(mean_cosines, voxel, MEAN_COSINE, 0),
+    channel_of(mean_cosines, voxel, MEAN_COSINE, 1), channel_of(mean_cosines, voxel, MEAN_COSINE, 2), 0.0f);
+#endif
+#if GLOW
+  glow[place] = emitted;
+#endif
+}
+
+// Whether anything extinguishes or shines in a brick, or bends with BENDS, or does so close enough to be interpolated
+// into it:
+// 1 it is empty, -1 it is not, 0 rays bend.
+__kernel void find_empty_bricks(int4 size, int4 brick_count, __global const float4* restrict samples,
+  __global const float4* restrict extinctions, __global const float4* restrict glow,
+  __global const float4* restrict bending, __global char* restrict bricks)
+{
+  const int i = get_global_id(0);
+  const int j = get_global_id(1);
+  const int k = get_global_id(2);
+  if (i >= brick_count.x)
+  {
+    return;
+  }
+  const int row = size.x + 2;
+  const int slice = row * (size.y + 2);
+  const int x0 = i * BrickEdge, x1 = min(x0 + BrickEdge + 1, size.x + 1);
+  const int y0 = j * BrickEdge, y1 = min(y0 + BrickEdge + 1, size.y + 1);
+  const int z0 = k * BrickEdge, z1 = min(z0 + BrickEdge + 1, size.z + 1);
+  int filled = 0;
+  int bends = 0;
+#if BENDS
+#define LOOK_ON (!filled || !bends)
+#else
+#define LOOK_ON (!filled)
+#endif
+  for (int z = z0; z <= z1 && LOOK_ON; ++z)
+  {
+    for (int y = y0; y <= y1 && LOOK_ON; ++y)
+    {
+      for (int x = x0; x <= x1; ++x)
+      {
+        const int place = z * slice + y * row + x;
+#if GREY
+        filled |= any(samples[place].xy != (float2)(0.0f));
+#else
+        filled |= SHOWN ? samples[place].w != 0.0f : any(samples[place] != (float4)(0.0f));
+#endif
+#if COLOURED
+        filled |= any(extinctions[place] != (float4)(0.0f));
+#endif
+#if GLOW
+        filled |= any(glow[place] != (float4)(0.0f));
+#endif
+#if BENDS
+        bends |= any(bending[place].xyz != (float3)(0.0f));
+#endif
+      }
+    }
+  }
+#undef LOOK_ON
+  bricks[(k * brick_count.y + j) * brick_count.x + i] = bends ? 0 : filled ? -1 : 1;
+}

@@ -1,0 +1,124 @@
+// What the rays meet where scattered light is known by direction: instead of a source its ratio to the extinction,
+// which varies slowly where both fall off steeply, as behind the surface of a cloud, and is multiplied by the
+// extinction between voxel centres (numerics.md, section 14.7).
+//
+// The host gives
+//   ABSORPTION, SCATTERING, EMISSION   components of each array: 0 (there is none), 1 or 3
+//   STRAIGHT_ON  of the part of what is scattered that goes straight on; 0: extinction is that of all light
+//   SHOWN        0 nothing; 1 diffuse light, and lamps' light; 2 what lamps' light is scattered forwards more than once
+//   BEAMS        1: `direct` holds lamps' light
+//   AUREOLE      0: it holds none of SHOWN 2
+//   COLOURED, BENDS, GLOW  as in ScatteredLight.cl
+
+#include "Viewing/Samples/Beside.cl"
+#include "Viewing/Samples/Border.cl"
+#include "Viewing/Samples/VoxelChannels.cl"
+
+#define DARKEST 80.0f
+
+// What a voxel scatters over what it extinguishes; of one that does neither, the mean of those around it that do.
+typedef struct
+{
+  float4 sigma_t, albedo;
+} coefficients;
+
+inline coefficients coefficients_of(
+  __global const float* absorption, __global const float* scattering, __global const float* straight_on, int voxel)
+{
+  coefficients here;
+  here.sigma_t.w = here.albedo.w = 0.0f;
+#if STRAIGHT_ON
+#define TURNED(s, n) ((s) * (1.0f - channel_of(straight_on, voxel, STRAIGHT_ON, n)))
+#else
+#define TURNED(s, n) (s)
+#endif
+#define CHANNEL(c, n)                                                             \
+  {                                                                               \
+    const float s = channel_of(scattering, voxel, SCATTERING, n);                 \
+    here.sigma_t.c = TURNED(s, n) + channel_of(absorption, voxel, ABSORPTION, n); \
+    here.albedo.c = here.sigma_t.c > 0.0f ? s / here.sigma_t.c : 0.0f;            \
+  }
+  CHANNEL(x, 0)
+  CHANNEL(y, 1)
+  CHANNEL(z, 2)
+#undef CHANNEL
+#undef TURNED
+  return here;
+}
+
+inline float4 triple(__global const float* values, int voxel)
+{
+  return (float4)(values[3 * voxel], values[3 * voxel + 1], values[3 * voxel + 2], 0.0f);
+}
+
+// Of the voxel's light: `diffuse` 3 a voxel, `direct` 6 (ShadowRays.cl), W / (length^2 sr).
+//   samples  SHOWN 1: diffuse light times albedo; 2: what is scattered more than once over what lamps' is first; and
+//            grey extinction
+//   beams    - ln of lamps' light times albedo
+__kernel void pack_shown(int4 size, __global const float* restrict absorption,
+  __global const float* restrict scattering, __global const float* restrict emission,
+  __global const float* restrict straight_on, __global const float* restrict diffuse,
+  __global const float* restrict direct, __global const float* restrict ior, __global float4* restrict samples,
+  __global float4* restrict extinctions, __global float4* restrict beams, __global float4* restrict glow)
+{
+  if (get_global_id(0) >= size.x + 2)
+  {
+    return;
+  }
+  const int voxel = voxel_index(size);
+  const int place = padded_index(size);
+  const coefficients here = coefficients_of(absorption, scattering, straight_on, voxel);
+  float4 source = (float4)(0.0f);
+  float perSquare = 1.0f;
+#if BENDS
+  perSquare = 1.0f / (ior[voxel] * ior[voxel]);
+#endif
+#if SHOWN
+  float4 albedo = here.albedo;
+#if SHOWN == 1
+  float4 light = triple(diffuse, voxel);
+#endif
+  if (!scatters_at(scattering, voxel))
+  {
+    float4 albedos = (float4)(0.0f), lights = (float4)(0.0f);
+    float count = 0.0f;
+#define ADD(neighbour)                                                               \
+  albedos += coefficients_of(absorption, scattering, straight_on, neighbour).albedo; \
+  lights += SHOWN == 1 ? triple(diffuse, neighbour) : (float4)(0.0f);                \
+  count += 1.0f;
+    FOR_SCATTERING_AROUND(voxel, size, scattering, ADD)
+#undef ADD
+    // A voxel that absorbs and does not scatter is black.
+    albedo = any(here.sigma_t.xyz > (float3)(0.0f)) ? here.albedo : albedos / fmax(count, 1.0f);
+#if SHOWN == 1
+    light = lights / fmax(count, 1.0f);
+#endif
+  }
+#if SHOWN == 1
+  source = light * albedo * perSquare;
+#endif
+#if BEAMS
+  const float4 first = (float4)(direct[6 * voxel], direct[6 * voxel + 1], direct[6 * voxel + 2], 0.0f);
+  const float4 dimmest = (float4)(exp(-DARKEST));
+  beams[place] = -log(fmax(first * albedo * perSquare, dimmest));
+#if SHOWN == 2 && AUREOLE
+  const float4 more = (float4)(direct[6 * voxel + 3], direct[6 * voxel + 4], direct[6 * voxel + 5], 0.0f);
+  source = select((float4)(0.0f), more / fmax(first, 1e-37f), first * albedo * perSquare > dimmest);
+#endif
+#endif
+#endif
+  source.w = here.sigma_t.x;
+  samples[place] = source;
+#if COLOURED
+  extinctions[place] = here.sigma_t;
+#endif
+#if GLOW
+  float4 emitted = (float4)(0.0f);
+#if SHOWN == 1
+  emitted = (float4)(channel_of(emission, voxel, EMISSION, 0), channel_of(emission, voxel, EMISSION, 1),
+              channel_of(emission, voxel, EMISSION, 2), 0.0f) *
+    perSquare;
+#endif
+  glow[place] = emitted;
+#endif
+}

@@ -1,0 +1,29 @@
+#pragma once
+
+#include "Device/Buffer.h"
+#include "Medium/Medium.h"
+#include "Viewing/Scene/SolvedLight.h"
+#include "Viewing/Scene/ViewTraits.h"
+
+#include <array>
+
+namespace tyndall
+{
+/// Arrays of a medium and its light on a device, voxel by voxel, as far as pictures show them; the others are empty.
+struct SceneOnDevice
+{
+  /// @throws DeviceError if they do not fit
+  SceneOnDevice(
+    Device& device, const Medium& medium, const SolvedLight& light, const Field& ior, const ViewTraits& traits);
+
+  /// Gives back the memory of what is read only where samples are packed.
+  void GiveBackWhatIsPacked();
+
+  Buffer<float> moments, straightOn;   ///< where moments are shown
+  std::array<Buffer<float>, 5> arrays; ///< ViewedFields
+  Buffer<float> meanDirection;
+  Buffer<float> phaseRows;   ///< tables of the phase function, see Samples/PhaseFunction.cl
+  Buffer<float> meanCosines; ///< g as all channels are seen
+  Buffer<float> ior;         ///< 1 where rays could bend and it is not given
+};
+}

@@ -1,0 +1,83 @@
+#pragma once
+
+#include "Medium/Traits.h"
+#include "Refraction/Index/IndexRange.h"
+#include "Viewing/Scene/SolvedLight.h"
+#include "Viewing/Scene/ViewedPhase.h"
+#include "Viewing/Scene/ViewSettings.h"
+
+#include <array>
+#include <string>
+
+namespace tyndall
+{
+/// What of a scene varies, has colour or depends on the camera, as far as pictures show it. Found once; kernels are
+/// compiled for it. Depends on none of the settings that MediumRayCaster::Adopt takes over.
+struct ViewTraits
+{
+  Grid grid;
+  int packetWidth = 1; ///< rays marched together
+  bool leaveOut = true;
+  bool singleScatteringOnly = false;
+  bool shadowRays = false; ///< lamps shine, and their light is found by shadow rays
+  bool hasTable = false;
+
+  MediumTraits medium;
+  double largestSigmaT = 0.0; ///< at least the largest sigma_t, 1/length
+  ViewedPhase phase;
+  IndexRange index;
+  bool bends = false; ///< the refractive index varies
+
+  int momentDegree = -1; ///< of the light; -1: it is not shown by moments
+  int momentChannels = 0, straightOnChannels = 0;
+  int aureoleChannels = 0;            ///< of light scattered forwards more than once; 0: it is not known
+  bool knowsFlow = false;             ///< the light's direction is known and scattering depends on it
+  bool coloured = false;              ///< extinction differs between channels
+  bool grey = false;                  ///< nor does the source
+  bool sourcesDependOnCamera = false; ///< what voxels shine towards it
+  std::array<int, 5> components = {}; ///< on the device, of ViewedFields; 0 for what is not read
+
+  bool ShowsMoments() const { return this->momentDegree >= 0; }
+  bool ShowsBeams() const { return this->ShowsMoments() && this->shadowRays; }
+  /// Emission is not scattered.
+  bool GlowsApart() const { return (this->knowsFlow || this->ShowsMoments()) && this->components[2] > 0; }
+  /// Whether the light's mean direction is kept times g, which then is that of all channels.
+  bool FlowHasG() const
+  {
+    return this->phase.channels == 1 &&
+      (this->phase.formula == ViewedPhase::HenyeyGreenstein || this->phase.formula == ViewedPhase::Schlick);
+  }
+  /// Whether light of a known direction is scattered.
+  bool ReadsPhase() const { return this->knowsFlow || this->shadowRays; }
+  bool ReadsMeanCosines() const { return this->ReadsPhase() && this->phase.varies; } ///< g by voxel
+  bool PacksCosines() const { return this->knowsFlow && this->phase.varies && !this->FlowHasG(); }
+  /// Rays that cannot but go straight on have a kernel of their own.
+  bool OnlyStraight() const { return !this->bends && !this->hasTable; }
+
+  double SurfaceIndex(const ViewSettings& settings) const
+  {
+    return settings.surfaceIndex > 0.0 ? settings.surfaceIndex : 0.5 * (this->index.least + this->index.largest);
+  }
+  bool Reflects(const ViewSettings& settings) const;
+  bool SkipsBricks(const ViewSettings& settings) const { return settings.skipEmptyBricks && this->leaveOut; }
+
+  // Options that kernels are compiled with.
+  std::string PacketOptions() const;
+  std::string PackingOptions() const; ///< of what reads the medium's arrays
+  /// @param needed  whether light has a direction where this is asked
+  std::string PhaseOptions(bool needed) const;
+};
+
+/// Of the moments that a picture is made of; -1: of none.
+/// @throws InvalidInput as DegreeOf
+int ShownDegree(const SolvedLight& light, const ViewSettings& settings);
+
+/// Absorption, scattering, emission, fluence and fluenceDirect: what ViewTraits::components counts.
+std::array<Field, 5> ViewedFields(const Medium& medium, const SolvedLight& light);
+
+/// @param settings  with shadowRays only where lamps shine
+/// @param ior       null: constant
+/// @param kernelWidth  rays that the device marches together best
+ViewTraits ViewTraitsOf(
+  const Medium& medium, const SolvedLight& light, const Field& ior, const ViewSettings& settings, int kernelWidth);
+}

@@ -1,0 +1,315 @@
+// What the lights send straight to each voxel, and what is scattered of it towards the eye. The host gives
+//   SCATTERING  components of sigma_s: 1 or 3
+//   PHASE, PHASE_CHANNELS  see PhaseFunction.cl
+//   MEAN_COSINE  components of g by voxel; 0: it is the same everywhere
+//   AUREOLE      tables of what is scattered forwards more than once: 0, 1, or 3 for red, green and blue
+//   BESIDE       1: also in voxels beside such that scatter
+//   ABSORPTION, STRAIGHT_ON  with AUREOLE: components of these arrays
+
+#include "Viewing/Samples/Beside.cl"
+#include "Viewing/Samples/PhaseFunction.cl"
+#include "Viewing/Samples/Sampling.cl"
+#include "Viewing/Samples/VoxelChannels.cl"
+#include "Viewing/Scene/ViewShared.h"
+
+// A packet's way to a light: unit vectors to it and distances (world), and what would arrive through vacuum.
+typedef struct
+{
+  real3 d;
+  real distance, arriving;
+} way_to_light;
+
+inline way_to_light towards(const SmallLight* light, real3 place, real scatters, float nearest_square)
+{
+  const real point = (real)light->place.w;
+  const real3 to = { fma(point, (real)light->place.x - place.x, (real)((light->place.w - 1.0f) * light->axis.x)),
+    fma(point, (real)light->place.y - place.y, (real)((light->place.w - 1.0f) * light->axis.y)),
+    fma(point, (real)light->place.z - place.z, (real)((light->place.w - 1.0f) * light->axis.z)) };
+  const real square = greater(fma(to.x, to.x, fma(to.y, to.y, to.z * to.z)), (real)1e-30f);
+  const real distance = sqrt(square);
+  const real inverse = (real)1.0f / distance;
+  const real3 d = { to.x * inverse, to.y * inverse, to.z * inverse };
+  const real to_axis = -fma(d.x, (real)light->axis.x, fma(d.y, (real)light->axis.y, d.z * (real)light->axis.z));
+  real arriving = point > (real)0.0f ? (real)1.0f / greater(square, (real)nearest_square) : (real)1.0f;
+  arriving *= light->power.w > 0.0f ? greater(to_axis, (real)0.0f) : (real)1.0f;
+  arriving = to_axis >= (real)light->axis.w ? arriving : (real)0.0f;
+  arriving = scatters > (real)0.0f ? arriving : (real)0.0f;
+  const way_to_light way = { d, point > (real)0.0f ? distance : (real)1e30f, arriving };
+  return way;
+}
+
+#if MANY_STEPS
+#define PASS(sigma, sum, rest) add_to(&sum, &rest, sigma* length);
+#else
+#define PASS(sigma, sum, rest) sum = fma(sigma, length, sum);
+#endif
+// Optical length of the medium on the way, by channel where COLOURED, else in `r`; 30 and more is as good as any.
+inline rgb depths_on_the_way(const ShadowInfo* info, const way_to_light* way, real3 centre,
+  __global const float4* samples, __global const float4* extinctions, __global const char* bricks)
+{
+  const real3 direction = { way->d.x / (real)info->spacing.x, way->d.y / (real)info->spacing.y,
+    way->d.z / (real)info->spacing.z };
+  real before;
+  const rays packet = clip_to_box(centre, direction, way->distance, info->size, &before);
+  const real stride = step_length(direction, info->step);
+  const real3 strides = strides_per_voxel(direction, stride);
+  const int steps = (int)ceil(most_lanes(way->arriving > (real)0.0f ? packet.length / stride : (real)0.0f));
+  rgb depths = { (real)0.0f, (real)0.0f, (real)0.0f };
+  rgb rests = depths; // see add_to
+  for (int m = 0; m < steps;)
+  {
+    const real so_far = stride * (real)(float)m;
+#if COLOURED
+    const real least = lesser(lesser(depths.r, depths.g), depths.b);
+#else
+    const real least = depths.r;
+#endif
+    const integer done = (so_far >= packet.length) | (least > (real)30.0f) | (way->arriving <= (real)0.0f);
+    if (all_lanes(done))
+    {
+      break;
+    }
+    const stretch ahead =
+      stretch_ahead(bricks, info->bricks, along(packet, fma(stride, (real)0.5f, so_far)), strides, done);
+    const int stop = min(m + ahead.steps, steps);
+    for (m = ahead.empty ? stop : m; m < stop; ++m)
+    {
+      const real start = stride * (real)(float)m;
+      const real length = lesser(greater(packet.length - start, (real)0.0f), stride);
+      corners at;
+      find_corners(along(packet, fma(length, (real)0.5f, start)), info->size, &at);
+      rgb colour;
+      real w;
+#if COLOURED
+      gather(extinctions, &at, info->size, &colour, &w);
+      PASS(colour.r, depths.r, rests.r)
+      PASS(colour.g, depths.g, rests.g)
+      PASS(colour.b, depths.b, rests.b)
+#else
+      gather_samples(samples, &at, info->size, &colour, &w);
+      PASS(w, depths.r, rests.r)
+#endif
+    }
+  }
+  return depths;
+}
+#undef PASS
+
+// What arrives of a light's power through the medium, W / length^2.
+inline rgb arriving_through(const SmallLight* light, real arriving, rgb depths)
+{
+  rgb left;
+#if COLOURED
+  extinguished(depths.r, &left.r);
+  extinguished(depths.g, &left.g);
+  extinguished(depths.b, &left.b);
+#else
+  extinguished(depths.r, &left.r);
+  left.g = left.b = left.r;
+#endif
+  const rgb power = { arriving * left.r * (real)light->power.x, arriving * left.g * (real)light->power.y,
+    arriving * left.b * (real)light->power.z };
+  return power;
+}
+
+// The phase function of one channel, per steradian, by the cosine of the scattering angle.
+inline real phase_of_channel(real cosine, real first, real second, real part, __global const float* rows)
+{
+#if PHASE == 1
+  const real base = greater(fma((real)(-2.0f) * first, cosine, (real)1.0f + first * first), (real)1e-12f);
+  return (real)PER_SPHERE * ((real)1.0f - first * first) / (base * sqrt(base));
+#else
+  return (real)PER_SPHERE * scattered_of_channel((real)1.0f, -cosine, first, second, part, rows);
+#endif
+}
+
+inline rgb phase_at(real cosine, phase_parameters p, __global const float* rows)
+{
+  rgb f;
+  f.r = phase_of_channel(cosine, p.first.r, p.second.r, p.part.r, rows);
+#if PHASE_CHANNELS == 3
+  const int apart = PHASE == 5 ? (SpreadRows + 2) * (CosineRows + 2) : 0;
+  f.g = phase_of_channel(cosine, p.first.g, p.second.g, p.part.g, rows + apart);
+  f.b = phase_of_channel(cosine, p.first.b, p.second.b, p.part.b, rows + 2 * apart);
+#else
+  f.g = f.b = f.r;
+#endif
+  return f;
+}
+
+#if AUREOLE
+// Of a table of Aureole.h times the depth, bilinear: by the cosine as the rows of PhaseFunction.cl, and by the root of
+// the depth.
+inline real aureole_at(real cosine, real depth, __global const float* rows)
+{
+  const real c = lesser(greater(cosine, (real)(-1.0f)), (real)1.0f);
+  const real aside = sqrt((real)1.0f - fabs(c)) * (real)(0.5f * AureoleColumns);
+  const real place = c > (real)0.0f ? aside : (real)(float)AureoleColumns - aside;
+  const real deep = sqrt(lesser(depth * (real)(1.0f / AureoleDepth), (real)1.0f)) * (real)(float)AureoleRows;
+  const integer row = to_integer(deep);
+  const real part = deep - to_real(row);
+  const integer column = to_integer(place);
+  const real beside = place - to_real(column);
+  real near_low, near_high, far_low, far_high;
+#define LOOK(n)                                                                              \
+  {                                                                                          \
+    __global const float* at = rows + LANE(row, n) * (AureoleColumns + 2) + LANE(column, n); \
+    LANE(near_low, n) = at[0];                                                               \
+    LANE(near_high, n) = at[1];                                                              \
+    LANE(far_low, n) = at[AureoleColumns + 2];                                               \
+    LANE(far_high, n) = at[AureoleColumns + 3];                                              \
+  }
+  EACH_LANE(LOOK)
+#undef LOOK
+  const real near = fma(beside, near_high - near_low, near_low);
+  return depth * fma(part, fma(beside, far_high - far_low, far_low) - near, near);
+}
+
+// Optical length of all scattering, straight on or not, over that of the extinction that rays are marched with: taken
+// as the voxel's own on the whole way.
+inline real scattering_over_depth(__global const float* absorption, __global const float* scattering,
+  __global const float* straight_on, integer voxel, int channel)
+{
+  real over;
+#define RATIO(n)                                                                                     \
+  {                                                                                                  \
+    const float s = channel_of(scattering, LANE(voxel, n), SCATTERING, channel);                     \
+    const float turned = s * (1.0f - channel_of(straight_on, LANE(voxel, n), STRAIGHT_ON, channel)); \
+    const float all = turned + channel_of(absorption, LANE(voxel, n), ABSORPTION, channel);          \
+    LANE(over, n) = all > 0.0f ? s / all : 0.0f;                                                     \
+  }
+  EACH_LANE(RATIO)
+#undef RATIO
+  return over;
+}
+#endif
+
+// How the voxels of a packet scatter.
+inline phase_parameters phases_of(const ShadowInfo* info, integer voxel, __global const float* mean_cosines)
+{
+  phase_parameters p = parameters_of(&info->phase);
+#if MEAN_COSINE
+#define READ(n)                                                                  \
+  LANE(p.first.r, n) = channel_of(mean_cosines, LANE(voxel, n), MEAN_COSINE, 0); \
+  LANE(p.first.g, n) = channel_of(mean_cosines, LANE(voxel, n), MEAN_COSINE, 1); \
+  LANE(p.first.b, n) = channel_of(mean_cosines, LANE(voxel, n), MEAN_COSINE, 2);
+  EACH_LANE(READ)
+#undef READ
+#endif
+  return p;
+}
+
+// The voxels of a packet along x; beyond the row's end its last one, which is then written several times alike.
+inline integer packet_along_x(int first, int size)
+{
+#if REAL_WIDTH == 16
+  return min(first + (integer)(0, 1, 2, 3, 4, 5, 6, 7, 8, 9, 10, 11, 12, 13, 14, 15), size - 1);
+#elif REAL_WIDTH == 8
+  return min(first + (integer)(0, 1, 2, 3, 4, 5, 6, 7), size - 1);
+#elif REAL_WIDTH == 4
+  return min(first + (integer)(0, 1, 2, 3), size - 1);
+#else
+  return first;
+#endif
+}
+
+// Scatters towards the eye what the lights send straight to each voxel's centre. Work-items by packets of a slice.
+//   direct  6 per voxel: sum of irradiance times phase function, W / (length^2 sr), and sum of irradiance, W /
+//           length^2; with AUREOLE instead what scattering forwards more than once adds, W / (length^2 sr)
+__kernel void see_lights(ShadowInfo info, __global const SmallLight* restrict lights,
+  __global const float* restrict scattering, __global const float* restrict mean_cosines,
+  __global const float* restrict phase_rows, __global const float4* restrict samples,
+  __global const float4* restrict extinctions, __global const char* restrict bricks,
+  __global const float* restrict absorption, __global const float* restrict straight_on,
+  __global const float* restrict aureole, __global float* restrict direct)
+{
+  const int first = get_global_id(0) * REAL_WIDTH;
+  const int j = get_global_id(1) + info.firstRow;
+  const int k = get_global_id(2) + info.firstSlice;
+  if (first >= info.size.x || j >= info.size.y)
+  {
+    return;
+  }
+  const integer i = packet_along_x(first, info.size.x);
+  const integer voxel = i + (k * info.size.y + j) * info.size.x;
+  real scatters = (real)0.0f;
+#define SCATTERS(n)                                                           \
+  LANE(scatters, n) = channel_of(scattering, LANE(voxel, n), SCATTERING, 0) + \
+    channel_of(scattering, LANE(voxel, n), SCATTERING, 1) + channel_of(scattering, LANE(voxel, n), SCATTERING, 2);
+  EACH_LANE(SCATTERS)
+#undef SCATTERS
+#if BESIDE
+#define SCATTERS_BESIDE(n)                                                                         \
+  if (!(LANE(scatters, n) > 0.0f))                                                                 \
+  {                                                                                                \
+    LANE(scatters, n) = is_beside_scattering(scattering, LANE(voxel, n), info.size) ? 1.0f : 0.0f; \
+  }
+  EACH_LANE(SCATTERS_BESIDE)
+#undef SCATTERS_BESIDE
+#endif
+  const real3 centre = { to_real(i) + (real)0.5f, (real)((float)j + 0.5f), (real)((float)k + 0.5f) };
+  const real3 place = { centre.x * (real)info.spacing.x, centre.y * (real)info.spacing.y,
+    centre.z * (real)info.spacing.z };
+  // Towards the eye: back along the view axis where rays are parallel.
+  const real perspective = (real)(1.0f - info.eye.w);
+  const real3 out = { fma(perspective, (real)info.eye.x - place.x, (real)(-info.eye.w * info.forward.x)),
+    fma(perspective, (real)info.eye.y - place.y, (real)(-info.eye.w * info.forward.y)),
+    fma(perspective, (real)info.eye.z - place.z, (real)(-info.eye.w * info.forward.z)) };
+  const real out_scale = (real)1.0f / sqrt(greater(fma(out.x, out.x, fma(out.y, out.y, out.z * out.z)), (real)1e-30f));
+
+  const phase_parameters scatters_by = phases_of(&info, voxel, mean_cosines);
+  rgb towards_eye = { (real)0.0f, (real)0.0f, (real)0.0f };
+  rgb irradiance = towards_eye;
+  for (int n = 0; n < info.lights && any_lane(scatters > (real)0.0f); ++n)
+  {
+    const SmallLight light = lights[n];
+    const way_to_light way = towards(&light, place, scatters, info.nearestSquare);
+    if (!any_lane(way.arriving > (real)0.0f))
+    {
+      continue;
+    }
+    const rgb depths = depths_on_the_way(&info, &way, centre, samples, extinctions, bricks);
+    const rgb arrived = arriving_through(&light, way.arriving, depths);
+    // The light travels along -d.
+    const real cosine = -(fma(way.d.x, out.x, fma(way.d.y, out.y, way.d.z * out.z))) * out_scale;
+    const rgb phase = phase_at(cosine, scatters_by, phase_rows);
+#if AUREOLE
+    const int apart = AUREOLE == 3 ? (AureoleRows + 2) * (AureoleColumns + 2) : 0;
+#if COLOURED
+#define DEPTH(c) depths.c
+#else
+#define DEPTH(c) depths.r
+#endif
+#define SPREAD(c, n)                                                                                                 \
+  irradiance.c = fma(arrived.c,                                                                                      \
+    aureole_at(                                                                                                      \
+      cosine, DEPTH(c) * scattering_over_depth(absorption, scattering, straight_on, voxel, n), aureole + n * apart), \
+    irradiance.c);
+    SPREAD(r, 0)
+    SPREAD(g, 1)
+    SPREAD(b, 2)
+#undef SPREAD
+#undef DEPTH
+#else
+    irradiance.r += arrived.r;
+    irradiance.g += arrived.g;
+    irradiance.b += arrived.b;
+#endif
+    towards_eye.r = fma(arrived.r, phase.r, towards_eye.r);
+    towards_eye.g = fma(arrived.g, phase.g, towards_eye.g);
+    towards_eye.b = fma(arrived.b, phase.b, towards_eye.b);
+  }
+
+#define KEEP(n)                                         \
+  {                                                     \
+    __global float* kept = direct + 6 * LANE(voxel, n); \
+    kept[0] = LANE(towards_eye.r, n);                   \
+    kept[1] = LANE(towards_eye.g, n);                   \
+    kept[2] = LANE(towards_eye.b, n);                   \
+    kept[3] = LANE(irradiance.r, n);                    \
+    kept[4] = LANE(irradiance.g, n);                    \
+    kept[5] = LANE(irradiance.b, n);                    \
+  }
+  EACH_LANE(KEEP)
+#undef KEEP
+}

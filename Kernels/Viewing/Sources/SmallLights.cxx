@@ -1,0 +1,58 @@
+#include "Viewing/Sources/SmallLights.h"
+
+#include "Numerics/Constants.h"
+#include "Numerics/Vectors.h"
+
+#include <cmath>
+
+#include <glm/geometric.hpp>
+#include <glm/vec3.hpp>
+
+namespace tyndall
+{
+std::vector<SmallLight> SmallLights(const std::vector<Light>& lights, const Grid& grid, int rectangleSamples)
+{
+  std::vector<SmallLight> small;
+  const auto add = [&](const glm::dvec3& place, bool point, const glm::dvec3& axis, double cone, const Rgb& power,
+                     double scale, bool cosine) {
+    small.push_back(
+      { Float4(place, point ? 1.0 : 0.0), Float4(axis, cone), Float4(scale * Vector(power), cosine ? 1.0 : 0.0) });
+  };
+  for (const Light& light : lights)
+  {
+    const double length = glm::length(Vector(light.direction));
+    const glm::dvec3 axis = length > 0.0 ? Vector(light.direction) / length : glm::dvec3(0.0, 0.0, -1.0);
+    const glm::dvec3 place = Vector(light.position) - Vector(grid.origin);
+    if (IsBlack(light.power))
+    {
+      continue;
+    }
+    if (light.type == LightType::Directional)
+    {
+      add({ 0.0, 0.0, 0.0 }, false, axis, -2.0, light.power, 1.0, false);
+    }
+    else if (light.type == LightType::Point)
+    {
+      add(place, true, axis, -2.0, light.power, 1.0 / (4.0 * Pi), false);
+    }
+    else if (light.type == LightType::Spot)
+    {
+      const double cone = std::cos(light.angle * Pi / 360.0);
+      add(place, true, axis, cone, light.power, 1.0 / (2.0 * Pi * (1.0 - cone)), false);
+    }
+    else
+    {
+      // Lambertian: radiant intensity along the axis is power / pi.
+      const auto edges = RectangleEdges(light);
+      const int n = rectangleSamples;
+      for (int sample = 0; sample < n * n; ++sample)
+      {
+        const glm::dvec3 offset =
+          ((sample % n + 0.5) / n - 0.5) * Vector(edges[0]) + ((sample / n + 0.5) / n - 0.5) * Vector(edges[1]);
+        add(place + offset, true, axis, -2.0, light.power, 1.0 / (Pi * n * n), true);
+      }
+    }
+  }
+  return small;
+}
+}
