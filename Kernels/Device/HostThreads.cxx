@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <exception>
+#include <numeric>
 #include <system_error>
 #include <thread>
 #include <vector>
@@ -54,5 +55,17 @@ void InThreads(std::size_t count, std::size_t least, const std::function<void(st
       std::rethrow_exception(failure);
     }
   }
+}
+
+double SumInThreads(std::size_t count, std::size_t piece, const std::function<double(std::size_t, std::size_t)>& term)
+{
+  std::vector<double> sums((count + piece - 1) / piece, 0.0);
+  InThreads(sums.size(), 1, [&](std::size_t begin, std::size_t end) {
+    for (std::size_t k = begin; k < end; ++k)
+    {
+      sums[k] = term(k * piece, std::min((k + 1) * piece, count));
+    }
+  });
+  return std::accumulate(sums.begin(), sums.end(), 0.0);
 }
 }

@@ -13,4 +13,10 @@ namespace tyndall
 /// What a part throws is thrown when all have ended; of several the first part's.
 void InThreads(
   std::size_t count, std::size_t least, const std::function<void(std::size_t begin, std::size_t end)>& work);
+
+/// The sum of term(begin, end) over pieces that together are [0, count), found at the same time and added in turn: the
+/// same on any number of cores.
+/// @param piece  elements of a piece, but perhaps of the last
+double SumInThreads(
+  std::size_t count, std::size_t piece, const std::function<double(std::size_t begin, std::size_t end)>& term);
 }

@@ -3,6 +3,7 @@
 
 #include <gtest/gtest.h>
 
+#include <algorithm>
 #include <stdexcept>
 #include <string>
 #include <vector>
@@ -46,4 +47,24 @@ TEST(HostThreads, FirstFailureIsThrownWhenAllHaveEnded)
     EXPECT_STREQ(failure.what(), "0");
   }
   EXPECT_EQ(seen, std::vector<int>(64, 1));
+}
+
+TEST(HostThreads, SumsAreThoseOfPiecesInTurn)
+{
+  constexpr std::size_t count = 10007, piece = 64;
+  const auto term = [](std::size_t begin, std::size_t end) {
+    double sum = 0.0;
+    for (std::size_t i = begin; i < end; ++i)
+    {
+      sum += 1.0 / (1.0 + static_cast<double>(i));
+    }
+    return sum;
+  };
+  double inTurn = 0.0;
+  for (std::size_t begin = 0; begin < count; begin += piece)
+  {
+    inTurn += term(begin, std::min(begin + piece, count));
+  }
+  EXPECT_EQ(SumInThreads(count, piece, term), inTurn);
+  EXPECT_EQ(SumInThreads(0, piece, term), 0.0);
 }

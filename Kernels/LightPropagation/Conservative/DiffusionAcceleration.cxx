@@ -4,6 +4,7 @@
 #include "LightPropagation/Convergence.h"
 #include "LightPropagation/Scattering/MomentScattering.h"
 #include "Medium/BoxFaces.h"
+#include "Medium/VoxelSums.h"
 
 #include <algorithm>
 #include <cmath>
@@ -110,12 +111,12 @@ void DiffusionAcceleration::GiveFirstScattered()
   const double volume = parts.Layout.grid.VoxelVolume();
   for (int c = 0; c < parts.Layout.channels; ++c)
   {
-    for (std::size_t i = 0; i < parts.Layout.grid.VoxelCount(); ++i)
-    {
+    this->GivenPower[c] += SumOverVoxels(parts.Layout.grid, [&](std::size_t i) {
       float& here = path[c * parts.Layout.Stride() + i];
-      this->GivenPower[c] += static_cast<double>(parts.Problem.Scattering().SigmaS(i, c)) * here;
+      const double scattered = static_cast<double>(parts.Problem.Scattering().SigmaS(i, c)) * here;
       here = static_cast<float>(here / volume);
-    }
+      return scattered;
+    });
   }
   this->UncollidedFluence.swap(path);
 }
@@ -306,10 +307,12 @@ std::vector<float> DiffusionAcceleration::SweptFluence() const
 {
   const double perVolume = 1.0 / this->Parts.Layout.grid.VoxelVolume();
   std::vector<float> values = this->Parts.Path.Read();
-  for (std::size_t i = 0; i < values.size(); ++i)
-  {
-    values[i] = std::max(static_cast<float>(values[i] * perVolume + this->UncollidedFluence[i]), 0.0f);
-  }
+  InThreads(values.size(), 65536, [&](std::size_t begin, std::size_t end) {
+    for (std::size_t i = begin; i < end; ++i)
+    {
+      values[i] = std::max(static_cast<float>(values[i] * perVolume + this->UncollidedFluence[i]), 0.0f);
+    }
+  });
   return values;
 }
 
@@ -516,13 +519,15 @@ void DiffusionAcceleration::WriteFluence()
   for (int c = 0; c < parts.Layout.channels; ++c)
   {
     const std::vector<double> solved = this->Systems[c]->Found();
-    for (std::size_t i = 0; i < parts.Layout.grid.VoxelCount(); ++i)
-    {
-      const std::size_t at = c * parts.Layout.Stride() + i;
-      const double found = solved[i];
-      const double swept = found >= 0.0 ? found : path[at] * perVolume;
-      fluence[at] = std::max(static_cast<float>(swept + this->UncollidedFluence[at]), 0.0f);
-    }
+    InThreads(parts.Layout.grid.VoxelCount(), 65536, [&](std::size_t begin, std::size_t end) {
+      for (std::size_t i = begin; i < end; ++i)
+      {
+        const std::size_t at = c * parts.Layout.Stride() + i;
+        const double found = solved[i];
+        const double swept = found >= 0.0 ? found : path[at] * perVolume;
+        fluence[at] = std::max(static_cast<float>(swept + this->UncollidedFluence[at]), 0.0f);
+      }
+    });
     if (this->Settings.netFlux && !parts.Basis && this->VoxelPower(c) > 0.0)
     {
       this->Systems[c]->AddFlux(parts.Flux);
@@ -565,18 +570,20 @@ void DiffusionAcceleration::LimitFlux(const std::vector<float>& fluence)
   const double volume = this->Parts.Layout.grid.VoxelVolume();
   for (int c = 0; c < this->Parts.Layout.channels; ++c)
   {
-    for (std::size_t i = 0; i < this->Parts.Layout.grid.VoxelCount(); ++i)
-    {
-      float* const x = flux.data() + 3 * c * stride + i;
-      float* const y = x + stride;
-      float* const z = y + stride;
-      const double most = fluence[c * stride + i] * volume;
-      const double flows = std::hypot(*x, *y, *z);
-      const auto part = static_cast<float>(flows > most ? most / flows : 1.0);
-      *x *= part;
-      *y *= part;
-      *z *= part;
-    }
+    InThreads(this->Parts.Layout.grid.VoxelCount(), 16384, [&](std::size_t begin, std::size_t end) {
+      for (std::size_t i = begin; i < end; ++i)
+      {
+        float* const x = flux.data() + 3 * c * stride + i;
+        float* const y = x + stride;
+        float* const z = y + stride;
+        const double most = fluence[c * stride + i] * volume;
+        const double flows = std::hypot(*x, *y, *z);
+        const auto part = static_cast<float>(flows > most ? most / flows : 1.0);
+        *x *= part;
+        *y *= part;
+        *z *= part;
+      }
+    });
   }
   this->Parts.Flux.Write(flux.data());
 }

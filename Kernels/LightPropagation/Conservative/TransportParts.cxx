@@ -9,6 +9,7 @@
 #include "LightPropagation/Uncollided/EnvironmentPeaks.h"
 #include "LightPropagation/Uncollided/UncollidedBoundary.h"
 #include "LightPropagation/Uncollided/UncollidedLamp.h"
+#include "Medium/VoxelSums.h"
 #include "Numerics/Constants.h"
 #include "Numerics/Vectors.h"
 
@@ -108,12 +109,10 @@ bool TransportParts::LoadEmission(Buffer<float>& source) const
   {
     return false;
   }
-  bool shines = false;
   const Field smooth = this->Emission.Smooth(this->Problem.TheMedium());
-  const std::vector<float> emitted = Planar(this->Layout, this->Layout.channels, [&](std::size_t i, int c) {
-    shines = shines || smooth.At(i, c) > 0.0f;
-    return smooth.At(i, c);
-  });
+  const std::vector<float> emitted =
+    Planar(this->Layout, this->Layout.channels, [&](std::size_t i, int c) { return smooth.At(i, c); });
+  const bool shines = std::any_of(emitted.begin(), emitted.end(), [](float value) { return value > 0.0f; });
   source.Write(emitted.data(), emitted.size() - SweepPadding);
   return shines;
 }
@@ -250,10 +249,9 @@ void TransportParts::CountEmission(EnergyLedger& ledger) const
   const double volume = this->Layout.grid.VoxelVolume();
   for (int c = 0; c < this->Layout.channels && this->Problem.Traits().emits; ++c)
   {
-    for (std::size_t i = 0; i < this->Layout.grid.VoxelCount(); ++i)
-    {
-      ledger.Emit(c, 4.0 * Pi * this->Problem.TheMedium().emission.At(i, c) * volume);
-    }
+    ledger.Emit(c, SumOverVoxels(this->Layout.grid, [&](std::size_t i) {
+      return 4.0 * Pi * this->Problem.TheMedium().emission.At(i, c) * volume;
+    }));
   }
 }
 
@@ -355,6 +353,17 @@ std::vector<int> TransportParts::BrightestBeams() const
   return beams;
 }
 
+TransportParts::UncollidedPath TransportParts::FindUncollidedPath(
+  const UncollidedSource& source, const Monitor& monitor)
+{
+  Buffer<float> path(this->TheDevice, this->Layout.MomentFloats(this->Functions()), "uncollided light");
+  path.Fill(0.0f);
+  UncollidedPath found;
+  found.tally = this->AddUncollided(source, { &path }, monitor);
+  found.path = path.Read();
+  return found;
+}
+
 TransportParts::UncollidedFlux TransportParts::FindUncollided(const UncollidedSource& source, const Monitor& monitor)
 {
   const bool netFlux = this->Problem.Settings().netFlux;
@@ -381,7 +390,7 @@ TransportParts::EvenSky TransportParts::FindEvenSky(const Monitor& monitor)
   const PropagationSettings& settings = this->Problem.Settings();
   const auto along = [&](const SweptDirections& directions, const Monitor& ofThese) {
     const BoundaryLight light(this->Problem.TheGrid(), settings, directions, evenly, {});
-    return this->FindUncollided(UncollidedBoundary(settings, light), ofThese);
+    return this->FindUncollidedPath(UncollidedBoundary(settings, light), ofThese);
   };
   return { along(*this->Fine, OfPart(monitor, 0.0, 0.8)), along(this->Usual, OfPart(monitor, 0.8, 1.0)) };
 }

@@ -68,17 +68,22 @@ public:
   /// @return all channels
   SweepTally AddUncollided(const UncollidedSource& source, const Deposit& deposit, const Monitor& monitor);
   /// The same into arrays of its own, read back.
-  struct UncollidedFlux
+  struct UncollidedPath
   {
-    std::vector<float> path, flux; ///< as the deposit has them
+    std::vector<float> path; ///< as the deposit has it
     SweepTally tally;
   };
+  struct UncollidedFlux : UncollidedPath
+  {
+    std::vector<float> flux; ///< the same; empty where it is not asked for
+  };
+  UncollidedPath FindUncollidedPath(const UncollidedSource& source, const Monitor& monitor);
   UncollidedFlux FindUncollided(const UncollidedSource& source, const Monitor& monitor);
   /// Uncollided light of a sky of radiance 1, along the finer directions and along the usual ones. By reciprocity it is
   /// also what leaves the box of a source of 1 in each voxel (numerics.md, Eq. (45)).
   struct EvenSky
   {
-    UncollidedFlux fine, usual;
+    UncollidedPath fine, usual;
   };
   EvenSky FindEvenSky(const Monitor& monitor);
 

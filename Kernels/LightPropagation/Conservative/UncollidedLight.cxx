@@ -4,6 +4,7 @@
 #include "LightPropagation/Problem/ScatteringOrders.h"
 #include "LightPropagation/Scattering/MomentScattering.h"
 #include "LightPropagation/Uncollided/UncollidedBoundary.h"
+#include "Medium/VoxelSums.h"
 
 #include <algorithm>
 
@@ -147,8 +148,7 @@ void UncollidedLight::AddBoundaryDifference(const Monitor& monitor)
       usualIn += usual.tally.in[face][c];
     }
     const double whole = Ratio(usualIn, in);
-    for (std::size_t i = 0; i < parts.Layout.grid.VoxelCount(); ++i)
-    {
+    const auto addToVoxel = [&](std::size_t i) {
       const std::size_t at = c * stride + i;
       const double part = this->PartOfDifference(i, c);
       const double scale = staysEven ? Ratio(even.usual.path[at], even.fine.path[at]) : whole;
@@ -159,13 +159,14 @@ void UncollidedLight::AddBoundaryDifference(const Monitor& monitor)
         const std::size_t moment = parts.Layout.MomentPlace(places, q, c, i);
         this->Lengths[moment] += static_cast<float>(part * (scale * fine.path[moment] - usual.path[moment]));
       }
-      more += parts.Problem.Scattering().SigmaT(i, c) * difference;
       for (int a = 0; a < 3 && !flux.empty(); ++a)
       {
         const std::size_t along = (3 * c + a) * stride + i;
         flux[along] += static_cast<float>(part * (scale * fine.flux[along] - usual.flux[along]));
       }
-    }
+      return parts.Problem.Scattering().SigmaT(i, c) * difference;
+    };
+    more += SumOverVoxels(parts.Layout.grid, addToVoxel);
     std::array<double, 6> leaves;
     for (int face = 0; face < 6; ++face)
     {
@@ -190,11 +191,9 @@ void UncollidedLight::CountAbsorbed()
   const VolumeLayout& layout = this->Parts.Layout;
   for (int c = 0; c < layout.channels; ++c)
   {
-    for (std::size_t i = 0; i < layout.grid.VoxelCount(); ++i)
-    {
-      this->Counted.Absorb(
-        c, static_cast<double>(this->TheMedium.sigma_a.At(i, c)) * this->Lengths[c * layout.Stride() + i]);
-    }
+    this->Counted.Absorb(c, SumOverVoxels(layout.grid, [&](std::size_t i) {
+      return static_cast<double>(this->TheMedium.sigma_a.At(i, c)) * this->Lengths[c * layout.Stride() + i];
+    }));
     this->Counted.LeaveOver(c, this->OfSources.onTheWay[c]);
   }
 }

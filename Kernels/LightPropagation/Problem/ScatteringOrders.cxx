@@ -1,6 +1,7 @@
 #include "LightPropagation/Problem/ScatteringOrders.h"
 
 #include "LightPropagation/Angular/RayBundles.h"
+#include "Medium/VoxelSums.h"
 #include "Numerics/Constants.h"
 
 #include <algorithm>
@@ -32,23 +33,34 @@ std::array<double, 3> LongestLines(const Grid& grid, const Extinction& sigma_t)
   {
     lines[axis].assign(grid.VoxelCount() / static_cast<std::size_t>(n[axis]), 0.0);
   }
-  std::size_t i = 0;
-  for (int z = 0; z < n[2]; ++z)
-  {
-    for (int y = 0; y < n[1]; ++y)
+  const auto addRows = [&](int y, int z, double* alongX, double* alongOther) {
+    std::size_t i = grid.IndexOf({ 0, y, z });
+    for (int x = 0; x < n[0]; ++x, ++i)
     {
-      double& alongX = lines[0][static_cast<std::size_t>(z) * n[1] + y];
-      double* const alongY = lines[1].data() + static_cast<std::size_t>(z) * n[0];
-      double* const alongZ = lines[2].data() + static_cast<std::size_t>(y) * n[0];
-      for (int x = 0; x < n[0]; ++x, ++i)
+      const double tau = sigma_t(i);
+      *alongX += tau;
+      alongOther[x] += tau;
+    }
+  };
+  InThreads(n[2], 1, [&](std::size_t begin, std::size_t end) {
+    for (std::size_t z = begin; z < end; ++z)
+    {
+      for (int y = 0; y < n[1]; ++y)
       {
-        const double tau = sigma_t(i);
-        alongX += tau;
-        alongY[x] += tau;
-        alongZ[x] += tau;
+        addRows(y, static_cast<int>(z), &lines[0][z * n[1] + y], lines[1].data() + z * n[0]);
       }
     }
-  }
+  });
+  InThreads(n[1], 1, [&](std::size_t begin, std::size_t end) { // lines along z end in other planes
+    for (std::size_t y = begin; y < end; ++y)
+    {
+      for (int z = 0; z < n[2]; ++z)
+      {
+        double unused = 0.0;
+        addRows(static_cast<int>(y), z, &unused, lines[2].data() + y * n[0]);
+      }
+    }
+  });
   std::array<double, 3> longest;
   for (int axis = 0; axis < 3; ++axis)
   {
@@ -73,13 +85,12 @@ double BothExtrapolations(const PropagationProblem& problem, int axis, int chann
 double AlbedoOf(const PropagationProblem& problem, int channel)
 {
   const Medium& medium = problem.TheMedium();
-  double scattering = 0.0, albedo = 0.0;
-  for (std::size_t i = 0; i < medium.grid.VoxelCount(); ++i)
-  {
+  const double scattering =
+    SumOverVoxels(medium.grid, [&](std::size_t i) { return double(problem.Scattering().SigmaS(i, channel)); });
+  const double albedo = SumOverVoxels(medium.grid, [&](std::size_t i) {
     const double s = problem.Scattering().SigmaS(i, channel);
-    scattering += s;
-    albedo += s > 0.0 ? s * s / (s + medium.sigma_a.At(i, channel)) : 0.0;
-  }
+    return s > 0.0 ? s * s / (s + medium.sigma_a.At(i, channel)) : 0.0;
+  });
   return scattering > 0.0 ? albedo / scattering : 0.0;
 }
 

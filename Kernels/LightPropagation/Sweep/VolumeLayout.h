@@ -1,6 +1,7 @@
 #pragma once
 
 #include "Device/Buffer.h"
+#include "Device/HostThreads.h"
 #include "LightPropagation/Sweep/MomentPlacesShared.h"
 #include "Medium/Grid.h"
 
@@ -70,7 +71,7 @@ struct VolumeLayout
 };
 
 /// A quantity of voxel and channel, value(voxel, channel), as an array of that layout with `channels` channels; zero
-/// beyond the voxels.
+/// beyond the voxels. `value` is called from several threads.
 template <class Value>
 std::vector<float> Planar(const VolumeLayout& layout, int channels, const Value& value)
 {
@@ -78,10 +79,12 @@ std::vector<float> Planar(const VolumeLayout& layout, int channels, const Value&
   const std::size_t voxels = layout.grid.VoxelCount();
   for (int c = 0; c < channels; ++c)
   {
-    for (std::size_t i = 0; i < voxels; ++i)
-    {
-      values[c * layout.Stride() + i] = value(i, c);
-    }
+    InThreads(voxels, 16384, [&](std::size_t begin, std::size_t end) {
+      for (std::size_t i = begin; i < end; ++i)
+      {
+        values[c * layout.Stride() + i] = value(i, c);
+      }
+    });
   }
   return values;
 }
