@@ -139,6 +139,28 @@ TEST_F(MultigridSolverTest, TakesConductancesThatDifferFromFaceToFace)
   EXPECT_LT(this->ErrorOn({ 17, 26, 21 }, { false, true, false }, 1e4, 150), 1e-2);
 }
 
+TEST_F(MultigridSolverTest, TakesHardlyMoreIterationsOnMoreVoxels)
+{
+  int few = 0;
+  for (const std::array<int, 3>& size : std::vector<std::array<int, 3>>{ { 12, 9, 16 }, { 72, 60, 96 } })
+  {
+    const RandomMatrix matrix(size, { false, false, false }, 1.0);
+    MultigridSolver solver(this->GetDevice(), size, { 1.0, 1.0, 1.0 });
+    matrix.LoadInto(solver);
+    const std::size_t count = static_cast<std::size_t>(size[0]) * size[1] * size[2];
+    solver.Loss().Write(InRows(solver.Rows(), std::vector<float>(count, 1e-5f)).data()); // the box is one
+    solver.Coarsen();
+    const ExactValues found(this->GetDevice(), count, "a test");
+    std::vector<double> source(count, 0.0);
+    source[count / 3] = 1.0;
+    solver.Right().Write(InRows(solver.Rows(), source).data());
+    const int iterations = solver.Solve(found, 1.0, 1e-4);
+    few = few > 0 ? few : iterations;
+    EXPECT_LE(iterations, few + 1);
+  }
+  EXPECT_GT(few, 1);
+}
+
 TEST_F(MultigridSolverTest, FindsNothingWhereNothingShines)
 {
   const RandomMatrix matrix({ 9, 9, 9 }, { false, false, false }, 1.0);

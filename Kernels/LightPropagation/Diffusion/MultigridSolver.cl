@@ -266,6 +266,42 @@ __kernel void level_smooth(MultigridLevel level, const __global float* conductan
   sums[get_global_id(0)] = sum;
 }
 
+// Between two visits of a level: a part of what the first one found is kept, and what is left of the right-hand side takes
+// its place, with Jacobi's first guess for it.
+__kernel void level_revisit(MultigridLevel level, const __global float* conductance, const __global float* loss,
+  const __global float* inverse, const __global float* found, float part, __global float* kept, __global float* right,
+  __global float* guess)
+{
+  FOR_ROWS(level)
+  {
+    const int y = r % level.size[1], z = r / level.size[1], here = row_at(&level, y, z);
+    const matrix_row row = find_matrix_row(&level, y, z, conductance, loss, found);
+    for (int x = 0; x < level.size[0]; x += REAL_WIDTH)
+    {
+      const real left =
+        in_row(multiply_add(apply_row(&row, x), (real)-part, load_real(x, right + here)), level.size[0] - x);
+      store_real(load_real(x, found + here) * part, x, kept + here);
+      store_real(left, x, right + here);
+      store_real(left * load_real(x, inverse + here), x, guess + here);
+    }
+    fill_ghosts(guess + here, level.size[0]);
+  }
+}
+
+// The same part of what the second visit found, and what was kept.
+__kernel void level_join(MultigridLevel level, const __global float* kept, float part, __global float* found)
+{
+  FOR_ROWS(level)
+  {
+    const int here = row_at(&level, r % level.size[1], r / level.size[1]);
+    for (int x = 0; x < level.size[0]; x += REAL_WIDTH)
+    {
+      store_real(multiply_add(load_real(x, found + here), (real)part, load_real(x, kept + here)), x, found + here);
+    }
+    fill_ghosts(found + here, level.size[0]);
+  }
+}
+
 // A few voxels: Gauss and Seidel there and back, by one work-item.
 // sums  of right times values
 __kernel void level_finish(MultigridLevel level, const __global float* conductance, const __global float* loss,

@@ -12,8 +12,9 @@ namespace tyndall
 /// Solves the system of a diffusion matrix on a box of voxels,
 ///   sum over faces of conductance (x_i - x_j) + loss_i x_i = b_i,
 /// symmetric, with positive conductances and losses: conjugate gradients (Hestenes and Stiefel 1952) from a residual
-/// that is found in double, preconditioned by a V cycle of multigrid in float (voxels 2 x 2 x 2 together, damped
-/// Jacobi), so that its cost hardly grows with the number of voxels (numerics.md, section 7.8).
+/// that is found in double, preconditioned by a cycle of multigrid in float (voxels 2 x 2 x 2 together, damped Jacobi,
+/// two visits of the first coarser levels), so that its cost hardly grows with the number of voxels (numerics.md,
+/// section 7.8).
 ///
 /// Its arrays are rows as MultigridLayout.h has them, which kernels walk along in vectors: an iteration takes about as
 /// long as its bytes take (some 150 a voxel, counted).
@@ -54,12 +55,15 @@ private:
   {
     MultigridLevel layout;
     /// `inverse`: damping over diagonal. `guess` and `better`: before and after a step of Jacobi's method.
-    Buffer<float> conductance, loss, inverse, right, guess, better;
+    /// `kept`: of the first of two visits; empty where there is one.
+    Buffer<float> conductance, loss, inverse, right, guess, better, kept;
   };
 
   cl::Kernel Kernel(const char* name) const;
   void Run(cl::Kernel& kernel, const Level& level) { RunRows(this->TheDevice, kernel, level.layout); }
   double Precondition();
+  void Visit(std::size_t level);
+  void VisitTwice(std::size_t level);
   void Restrict(Level& fine, Level& coarse);
   void Correct(Level& fine, const Level& coarse);
   double Begin(const ExactValues& values, double unit);
