@@ -220,8 +220,7 @@ double DiffusionSystem::Correct(double unit)
 
 void DiffusionSystem::Refine(double unit)
 {
-  this->Balance();
-  this->Solver.Solve(this->Solution, unit, 0.1, 1e-6);
+  this->Solver.GoOn(this->Solution, unit, 0.1, 1e-6);
 }
 
 double DiffusionSystem::Absorbed() const

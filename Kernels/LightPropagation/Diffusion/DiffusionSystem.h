@@ -79,7 +79,7 @@ public:
   /// @return |found - given| / |found|
   double Correct(double unit);
 
-  /// Solve once more, for what the last correction found to more digits.
+  /// Solve on, for what the last correction found to more digits.
   void Refine(double unit);
 
   /// W, of what the last correction found.

@@ -244,7 +244,17 @@ double MultigridSolver::Step(const ExactValues& values, double length, double un
 
 int MultigridSolver::Solve(const ExactValues& values, double unit, double reduction, double leftAtMost)
 {
-  double left = this->Begin(values, unit);
+  return this->Iterate(values, this->Begin(values, unit), unit, reduction, leftAtMost);
+}
+
+int MultigridSolver::GoOn(const ExactValues& values, double unit, double reduction, double leftAtMost)
+{
+  return this->Iterate(values, this->Step(values, 0.0, unit), unit, reduction, leftAtMost);
+}
+
+/// @param left  square of the residual, in units
+int MultigridSolver::Iterate(const ExactValues& values, double left, double unit, double reduction, double leftAtMost)
+{
   double rz = this->Precondition();
   this->FirstResidual = std::max(this->FirstResidual, rz);
   const double enough = std::max(rz * reduction * reduction, this->FirstResidual * Negligible * Negligible);

@@ -45,6 +45,9 @@ public:
   int Solve(const ExactValues& values, double unit, double reduction,
     double leftAtMost = std::numeric_limits<double>::infinity());
 
+  /// The same of what the last Solve left, where neither matrix nor right-hand side nor values were written since.
+  int GoOn(const ExactValues& values, double unit, double reduction, double leftAtMost);
+
   /// Work-items that walk along a level's rows.
   static std::size_t ItemsOf(const MultigridLevel& level);
   /// Runs a kernel that walks along the rows of a level.
@@ -66,6 +69,7 @@ private:
   void VisitTwice(std::size_t level);
   void Restrict(Level& fine, Level& coarse);
   void Correct(Level& fine, const Level& coarse);
+  int Iterate(const ExactValues& values, double left, double unit, double reduction, double leftAtMost);
   double Begin(const ExactValues& values, double unit);
   void Turn(double part);
   double Curvature();
