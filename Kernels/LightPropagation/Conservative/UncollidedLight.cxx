@@ -133,7 +133,7 @@ void UncollidedLight::AddBoundaryDifference(const Monitor& monitor)
   const auto fine = parts.FindUncollided(UncollidedBoundary(settings, *parts.FineBoundary), OfPart(monitor, 0.0, 0.4));
   const auto usual =
     parts.FindUncollided(UncollidedBoundary(settings, *parts.UsualBoundary), OfPart(monitor, 0.4, 0.5));
-  const bool staysEven = ScatteredManyTimes(parts.Problem) || settings.uncollidedDirections < 0;
+  const bool staysEven = settings.uncollidedDirections < 0 || ScatteredManyTimes(parts.Problem);
   const TransportParts::EvenSky even =
     staysEven ? parts.FindEvenSky(OfPart(monitor, 0.5, 1.0)) : TransportParts::EvenSky();
   std::vector<float> flux = parts.Problem.Settings().netFlux ? parts.Flux.Read() : std::vector<float>();

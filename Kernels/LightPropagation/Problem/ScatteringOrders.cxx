@@ -17,15 +17,34 @@ namespace
 const double UsualTolerance = PropagationSettings().tolerance;
 /// The distance beyond a face at which diffuse light would be zero, mean free paths (numerics.md, Eq. (86)).
 constexpr double Extrapolation = 1.42 / 2.0;
-constexpr double ManyOrders = 40.0;          ///< source iteration that is dearer than acceleration
-constexpr double ManyOrdersInMoments = 20.0; ///< the same where sweeps are dear, beside which diffusion is cheap
 constexpr double ThickVoxel = 10.0; ///< mean free paths along its longest edge, with which diffusion may gain nothing
-constexpr double ManyOrdersInSlab = 12.0; ///< the same in a slab, whose diffusion system is small
 
-/// Optical thickness of the thickest line of voxels along each axis.
+/// What an accelerated solve takes, in plain scattering orders of the same scene (`./run bench thick`): to set it up and to
+/// finish it, and of each row a sweep and its correction. The one place that knows.
+struct AcceleratedTime
+{
+  double setUp, rows, correction;
+  double InOrders() const { return this->setUp + this->rows * (1.0 + this->correction); }
+};
+constexpr AcceleratedTime InEvenMedia = { 7.0, 6.0, 3.0 };
+constexpr AcceleratedTime InUnevenMedia = { 7.0, 7.0, 3.0 };
+constexpr double Uneven = 1.5; ///< the thickest line over the mean of all, each as much as lies in it
+constexpr AcceleratedTime InMoments = { 3.0, 8.0, 1.0 }; ///< sweeps are dear, beside which diffusion is cheap
+constexpr AcceleratedTime InSlab = { 2.0, 5.0, 1.0 };    ///< the diffusion system is small
+constexpr double PlainSetUp = 0.8; ///< of orders one after the other: measured 0.8 in 100^3 voxels, 2 in 40^3
+
+/// Optical thickness of lines of voxels along each axis. Light stays longest in the thickest ones, but leaks out of them
+/// into those beside: a mean of the thickest line (a third) and of all, each as much as lies in it (two thirds), forecasts
+/// the orders of log-normal media of tau 1 to 12, albedo 0.8 to 0.98 within a half; the thickest alone up to three times
+/// too many.
+struct Lines
+{
+  std::array<double, 3> along;
+  bool uneven = false;
+};
 /// @param sigma_t  of a voxel
 template <class Extinction>
-std::array<double, 3> LongestLines(const Grid& grid, const Extinction& sigma_t)
+Lines ThickLines(const Grid& grid, const Extinction& sigma_t)
 {
   const std::array<int, 3>& n = grid.size;
   std::array<std::vector<double>, 3> lines;
@@ -61,12 +80,27 @@ std::array<double, 3> LongestLines(const Grid& grid, const Extinction& sigma_t)
       }
     }
   });
-  std::array<double, 3> longest;
+  Lines thick;
   for (int axis = 0; axis < 3; ++axis)
   {
-    longest[axis] = grid.spacing[axis] * *std::max_element(lines[axis].begin(), lines[axis].end());
+    double all = 0.0, squares = 0.0;
+    for (const double line : lines[axis])
+    {
+      all += line;
+      squares += line * line;
+    }
+    const double thickest = *std::max_element(lines[axis].begin(), lines[axis].end());
+    const double mean = all > 0.0 ? squares / all : 0.0;
+    thick.along[axis] = grid.spacing[axis] * std::cbrt(mean * mean * thickest);
+    thick.uneven = thick.uneven || thickest > Uneven * mean;
   }
-  return longest;
+  return thick;
+}
+
+Lines DiffusingLines(const PropagationProblem& problem, int channel)
+{
+  return ThickLines(problem.TheGrid(),
+    [&](std::size_t i) { return static_cast<double>(problem.TheMedium().TransportSigmaT(i, channel)); });
 }
 
 /// Of both faces across an axis. A face that reflects sends light back as if the medium went on there, at most as a
@@ -99,12 +133,11 @@ double AlbedoOf(const PropagationProblem& problem, int channel)
 double Leak(const PropagationProblem& problem, int channel)
 {
   const Grid& grid = problem.TheMedium().grid;
-  const std::array<double, 3> longest =
-    LongestLines(grid, [&](std::size_t i) { return double(problem.TheMedium().TransportSigmaT(i, channel)); });
+  const std::array<double, 3> longest = DiffusingLines(problem, channel).along;
   // Light diffuses as far as transport has it, but is scattered more often: each order does less.
   const bool inMoments = problem.Scattering().Degree() > 0;
   const std::array<double, 3> scattered = inMoments
-    ? LongestLines(grid, [&](std::size_t i) { return double(problem.Scattering().SigmaT(i, channel)); })
+    ? ThickLines(grid, [&](std::size_t i) { return double(problem.Scattering().SigmaT(i, channel)); }).along
     : longest;
   double leak = 0.0;
   for (int axis = 0; axis < 3; ++axis)
@@ -133,6 +166,24 @@ bool HasThickVoxels(const PropagationProblem& problem)
   }
   return false;
 }
+
+const AcceleratedTime& AcceleratedTimeOf(const PropagationProblem& problem)
+{
+  if (problem.IsSlab())
+  {
+    return InSlab;
+  }
+  if (problem.Scattering().Degree() > 0 && !HasThickVoxels(problem))
+  {
+    return InMoments;
+  }
+  bool uneven = false;
+  for (int c = 0; c < problem.Channels(); ++c)
+  {
+    uneven = uneven || DiffusingLines(problem, c).uneven;
+  }
+  return uneven ? InUnevenMedia : InEvenMedia;
+}
 }
 
 double OrdersNeeded(const PropagationProblem& problem)
@@ -147,9 +198,7 @@ double OrdersNeeded(const PropagationProblem& problem)
 
 bool ScatteredManyTimes(const PropagationProblem& problem)
 {
-  const bool inMoments = problem.Scattering().Degree() > 0 && !HasThickVoxels(problem);
-  const double many = inMoments ? ManyOrdersInMoments : ManyOrders;
-  return OrdersNeeded(problem) > (problem.IsSlab() ? ManyOrdersInSlab : many);
+  return PlainSetUp + OrdersNeeded(problem) > AcceleratedTimeOf(problem).InOrders();
 }
 
 bool ToBeAccelerated(const PropagationProblem& problem)
