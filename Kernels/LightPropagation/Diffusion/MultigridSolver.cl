@@ -266,8 +266,8 @@ __kernel void level_smooth(MultigridLevel level, const __global float* conductan
   sums[get_global_id(0)] = sum;
 }
 
-// Between two visits of a level: a part of what the first one found is kept, and what is left of the right-hand side takes
-// its place, with Jacobi's first guess for it.
+// Between two visits of a level: a part of what the first one found is kept, and what is left of the right-hand side
+// takes its place, with Jacobi's first guess for it.
 __kernel void level_revisit(MultigridLevel level, const __global float* conductance, const __global float* loss,
   const __global float* inverse, const __global float* found, float part, __global float* kept, __global float* right,
   __global float* guess)

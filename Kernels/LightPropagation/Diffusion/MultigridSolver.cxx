@@ -146,8 +146,8 @@ double MultigridSolver::Precondition()
   return this->SumOfItems();
 }
 
-/// From a level's right-hand side and first guess to `better`. Jacobi's first guess on the way down and a step of his on
-/// the way up keep it symmetric.
+/// From a level's right-hand side and first guess to `better`. Jacobi's first guess on the way down and a step of his
+/// on the way up keep it symmetric.
 void MultigridSolver::Visit(std::size_t l)
 {
   Level& level = this->Levels[l];

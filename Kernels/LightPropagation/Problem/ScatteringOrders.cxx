@@ -19,8 +19,8 @@ const double UsualTolerance = PropagationSettings().tolerance;
 constexpr double Extrapolation = 1.42 / 2.0;
 constexpr double ThickVoxel = 10.0; ///< mean free paths along its longest edge, with which diffusion may gain nothing
 
-/// What an accelerated solve takes, in plain scattering orders of the same scene (`./run bench thick`): to set it up and to
-/// finish it, and of each row a sweep and its correction. The one place that knows.
+/// What an accelerated solve takes, in plain scattering orders of the same scene (`./run bench thick`): to set it up
+/// and to finish it, and of each row a sweep and its correction. The one place that knows.
 struct AcceleratedTime
 {
   double setUp, rows, correction;
@@ -29,14 +29,15 @@ struct AcceleratedTime
 constexpr AcceleratedTime InEvenMedia = { 7.0, 6.0, 3.0 };
 constexpr AcceleratedTime InUnevenMedia = { 7.0, 7.0, 3.0 };
 constexpr double Uneven = 1.5; ///< the thickest line over the mean of all, each as much as lies in it
-constexpr AcceleratedTime InMoments = { 3.0, 8.0, 1.0 }; ///< sweeps are dear, beside which diffusion is cheap
-constexpr AcceleratedTime InSlab = { 2.0, 5.0, 1.0 };    ///< the diffusion system is small
+/// Sweeps are dear in moments, and a slab's diffusion system is small: of these the sums alone were measured.
+constexpr AcceleratedTime InMoments = { 3.0, 8.0, 1.0 };
+constexpr AcceleratedTime InSlab = { 2.0, 5.0, 1.0 };
 constexpr double PlainSetUp = 0.8; ///< of orders one after the other: measured 0.8 in 100^3 voxels, 2 in 40^3
 
-/// Optical thickness of lines of voxels along each axis. Light stays longest in the thickest ones, but leaks out of them
-/// into those beside: a mean of the thickest line (a third) and of all, each as much as lies in it (two thirds), forecasts
-/// the orders of log-normal media of tau 1 to 12, albedo 0.8 to 0.98 within a half; the thickest alone up to three times
-/// too many.
+/// Optical thickness of lines of voxels along each axis. Light stays longest in the thickest ones, but leaks out of
+/// them into those beside: a mean of the thickest line (a third) and of all, each as much as lies in it (two thirds),
+/// forecasts the orders of log-normal media of tau 1 to 12, albedo 0.8 to 0.98 within two thirds; the thickest alone
+/// up to three times too many (numerics.md, Eq. (86a)).
 struct Lines
 {
   std::array<double, 3> along;

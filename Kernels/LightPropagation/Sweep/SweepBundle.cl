@@ -38,8 +38,10 @@
 // All rays of a row through one segment each (numerics.md, Eqs. (23), (24); Gruson et al., Eq. 3, conservative):
 //   path += p1 P,  P' = P - sigma p1 P + power q p1
 // The path of the source's own light in the voxel does not depend on P: Sweep.cl, add_own_light.
+// @param entered  rows of the power that comes into the plane, where it is wanted, [channel][CurrentFaces]; else null
 static inline __attribute__((always_inline)) void CROSS_VOXELS(sweep_state* state, int y, bool deposit, bool thin,
-  const __global float** in, __global float* out, float length, const __global BundleInfo* bundle)
+  const __global float** in, __global float* out, float length, const __global BundleInfo* bundle,
+  __global float* entered)
 {
   const __global float* sigma_row = ROW_OF(state->planes, PlaneSigma, y);
   const __global float* inverse_row = ROW_OF(state->planes, PlaneInverse, y);
@@ -100,6 +102,13 @@ static inline __attribute__((always_inline)) void CROSS_VOXELS(sweep_state* stat
         const real after = multiply_add(ray, change, kept);
         store_real(after, x, out + FIRST(m, c));
       }
+#if CURRENTS
+      if (entered)
+      {
+        __global float* here = entered + CurrentFaces * c * ROW;
+        store_real(load_real(x, here) + sum, x, here);
+      }
+#endif
       if (deposit)
       {
         store_real(multiply_add(mean_length, sum, load_real(x, path_row + c * ROW)), x, path_row + c * ROW);
@@ -128,7 +137,12 @@ static void STAGE_ROW(sweep_state* state, int y, int slot, bool first, bool depo
 #if DEGREE
 #define CROSS_ROW(thin) CROSS_MOMENTS(state, y, slot, first, thin, in, out, length, bundle)
 #else
-#define CROSS_ROW(thin) CROSS_VOXELS(state, y, deposit, thin, in, out, length, bundle)
+#if CURRENTS
+  __global float* const entered = first && deposit ? ROW_OF(state->planes, PLANE_CURRENTS + CurrentAxis, y) : 0;
+#else
+  __global float* const entered = 0;
+#endif
+#define CROSS_ROW(thin) CROSS_VOXELS(state, y, deposit, thin, in, out, length, bundle, entered)
 #endif
   if (state->thin[y])
   {
@@ -430,7 +444,7 @@ static void CROSS_PLANE(sweep_state* state, __global float* map, const __global 
         ? map + y * BLOCK
         : state->ring + (s & 1) * (RingRows * RAYS_OF_ROW) + (y & (RingRows - 1)) * RAYS_OF_ROW;
 #if CURRENTS
-      if (inside)
+      if (inside && (DEGREE || s > 0)) // else where voxels are crossed
       {
         COUNT_CURRENTS(state, y, s == 0, in, own, bundle, crossing->moveU[s], crossing->moveV[s], part);
       }
