@@ -2,6 +2,7 @@
 #include "MediumScene.h"
 
 #include "Device/Errors.h"
+#include "LightPropagation/Problem/ScatteringOrders.h"
 
 #include <algorithm>
 #include <cmath>
@@ -114,6 +115,23 @@ protected:
     this->RecordProperty(name, std::to_string(light.convergence.size()) + " sweeps, error " + std::to_string(error));
   }
 };
+
+// By the thickest line of voxels alone nearly twice as many orders were expected.
+TEST_F(Acceleration, ForecastsTheOrdersOfUnevenMedia)
+{
+  const int n = 24;
+  const std::vector<double> noise = SmoothNoise(n);
+  for (const double albedo : { 0.8, 0.9, 0.95 })
+  {
+    Scene scene = Plain(Cube(n, albedo, [&](int x, int y, int z) {
+      return 0.02 * std::exp(6.0 * noise[static_cast<std::size_t>((z * n + y) * n + x)]);
+    }));
+    const double orders = static_cast<double>(scene.Solve(this->GetDevice()).convergence.size());
+    const double expected = OrdersNeeded(PropagationProblem(scene.medium, scene.light, scene.settings, {}));
+    EXPECT_GT(expected, 0.7 * orders) << albedo;
+    EXPECT_LT(expected, 1.5 * orders) << albedo;
+  }
+}
 
 TEST_F(Acceleration, NeedsFewSweepsInHomogeneousCubes)
 {
