@@ -30,8 +30,8 @@ constexpr AcceleratedTime InEvenMedia = { 7.0, 6.0, 3.0 };
 constexpr AcceleratedTime InUnevenMedia = { 7.0, 7.0, 3.0 };
 constexpr double Uneven = 1.5; ///< the thickest line over the mean of all, each as much as lies in it
 /// Sweeps are dear in moments, and a slab's diffusion system is small: of these the sums alone were measured.
-constexpr AcceleratedTime InMoments = { 3.0, 8.0, 1.0 };
-constexpr AcceleratedTime InSlab = { 2.0, 5.0, 1.0 };
+constexpr AcceleratedTime InMoments = { 5.0, 8.0, 1.0 };
+constexpr AcceleratedTime InSlab = { 3.0, 5.0, 1.0 };
 constexpr double PlainSetUp = 0.8; ///< of orders one after the other: measured 0.8 in 100^3 voxels, 2 in 40^3
 
 /// Optical thickness of lines of voxels along each axis. Light stays longest in the thickest ones, but leaks out of
