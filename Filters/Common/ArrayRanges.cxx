@@ -255,6 +255,16 @@ void LeaveRanges(const ArrayRanges& ranges, vtkDataArray* array)
   }
 }
 
+void LeaveSameRanges(vtkDataArray* from, vtkDataArray* array)
+{
+  vtkInformation* const information = from->GetInformation();
+  for (vtkInformationKey* key : std::initializer_list<vtkInformationKey*>{ vtkDataArray::PER_COMPONENT(),
+         vtkDataArray::PER_FINITE_COMPONENT(), vtkDataArray::L2_NORM_RANGE(), vtkDataArray::L2_NORM_FINITE_RANGE() })
+  {
+    array->GetInformation()->CopyEntry(information, key, 1);
+  }
+}
+
 void LeaveRanges(vtkDataArray* array)
 {
   FindAndLeave<vtkFloatArray>(array) || FindAndLeave<vtkDoubleArray>(array) || FindAndLeave<vtkIntArray>(array) ||
