@@ -9,7 +9,6 @@
 #include "vtkInformationInformationVectorKey.h"
 #include "vtkInformationVector.h"
 #include "vtkIntArray.h"
-#include "vtkNew.h"
 #include "vtkUnsignedCharArray.h"
 
 #include <algorithm>
@@ -239,7 +238,7 @@ void LeaveRanges(const ArrayRanges& ranges, vtkDataArray* array)
   for (vtkInformationInformationVectorKey* key :
     { vtkDataArray::PER_COMPONENT(), vtkDataArray::PER_FINITE_COMPONENT() })
   {
-    vtkNew<vtkInformationVector> all;
+    auto* const all = vtkInformationVector::New();
     all->SetNumberOfInformationObjects(static_cast<int>(ranges.components.size()));
     for (std::size_t c = 0; c < ranges.components.size(); ++c)
     {
@@ -247,11 +246,22 @@ void LeaveRanges(const ArrayRanges& ranges, vtkDataArray* array)
         ->Set(vtkDataArray::COMPONENT_RANGE(), ranges.components[c].data(), 2);
     }
     information->Set(key, all);
+    all->FastDelete(); // Delete would look for cycles of references
   }
   if (ranges.components.size() > 1)
   {
     information->Set(vtkDataArray::L2_NORM_RANGE(), ranges.norm.data(), 2);
     information->Set(vtkDataArray::L2_NORM_FINITE_RANGE(), ranges.norm.data(), 2);
+  }
+}
+
+void LeaveSameRanges(vtkDataArray* from, vtkDataArray* array)
+{
+  vtkInformation* const information = from->GetInformation();
+  for (vtkInformationKey* key : std::initializer_list<vtkInformationKey*>{ vtkDataArray::PER_COMPONENT(),
+         vtkDataArray::PER_FINITE_COMPONENT(), vtkDataArray::L2_NORM_RANGE(), vtkDataArray::L2_NORM_FINITE_RANGE() })
+  {
+    array->GetInformation()->CopyEntry(information, key, 1);
   }
 }
 

@@ -26,6 +26,9 @@ ArrayRanges RangesOf(const float* values, std::size_t count, int components);
 /// own. Names and the number of components come before.
 void LeaveRanges(const ArrayRanges& ranges, vtkDataArray* array);
 
+/// The same of an array that has the values of another one, as far as ranges were left in that.
+void LeaveSameRanges(vtkDataArray* from, vtkDataArray* array);
+
 /// The same, found here; nothing where a value is not finite, or for arrays other than of float, double, int and
 /// unsigned char in tuples.
 void LeaveRanges(vtkDataArray* array);

@@ -26,6 +26,29 @@
 
 namespace tyndall
 {
+namespace
+{
+template <class Array>
+bool ConvertInThreads(vtkDataArray* array, vtkFloatArray* floats)
+{
+  using Value = typename Array::ValueType;
+  auto* const values = vtkArrayDownCast<Array>(array);
+  if (!values)
+  {
+    return false;
+  }
+  floats->SetName(values->GetName());
+  floats->SetNumberOfComponents(values->GetNumberOfComponents());
+  floats->SetNumberOfTuples(values->GetNumberOfTuples());
+  const Value* const from = values->GetPointer(0);
+  float* const to = floats->GetPointer(0);
+  InThreads(static_cast<std::size_t>(values->GetNumberOfValues()), 65536, [&](std::size_t begin, std::size_t end) {
+    std::transform(from + begin, from + end, to + begin, [](Value value) { return static_cast<float>(value); });
+  });
+  return true;
+}
+}
+
 vtkSmartPointer<vtkFloatArray> AsFloats(vtkDataArray* array)
 {
   auto* const given = vtkArrayDownCast<vtkFloatArray>(array);
@@ -34,20 +57,11 @@ vtkSmartPointer<vtkFloatArray> AsFloats(vtkDataArray* array)
     return given;
   }
   auto floats = vtkSmartPointer<vtkFloatArray>::New();
-  auto* const doubles = vtkArrayDownCast<vtkDoubleArray>(array); // what VTK's own filters often make
-  if (!doubles)
+  // Doubles are what VTK's own filters often make, bytes are an octree's levels.
+  if (!ConvertInThreads<vtkDoubleArray>(array, floats) && !ConvertInThreads<vtkUnsignedCharArray>(array, floats))
   {
     floats->DeepCopy(array);
-    return floats;
   }
-  floats->SetName(doubles->GetName());
-  floats->SetNumberOfComponents(doubles->GetNumberOfComponents());
-  floats->SetNumberOfTuples(doubles->GetNumberOfTuples());
-  const double* const from = doubles->GetPointer(0);
-  float* const to = floats->GetPointer(0);
-  InThreads(static_cast<std::size_t>(doubles->GetNumberOfValues()), 65536, [&](std::size_t begin, std::size_t end) {
-    std::transform(from + begin, from + end, to + begin, [](double value) { return static_cast<float>(value); });
-  });
   return floats;
 }
 

@@ -90,6 +90,17 @@ void AddLight(vtkImageData* image, const char* name, std::vector<float>&& values
   AddNamedCells(image, name, std::move(values), channels, NameChannels);
 }
 
+void AddSameLight(vtkImageData* image, const char* name, const char* as)
+{
+  vtkDataArray* const light = image->GetCellData()->GetArray(as);
+  vtkNew<vtkFloatArray> array;
+  array->ShallowCopy(light);
+  array->SetName(name);
+  NameChannels(array);
+  LeaveSameRanges(light, array);
+  image->GetCellData()->AddArray(array);
+}
+
 void AddGivenLight(vtkImageData* image, const char* name, std::vector<float>&& values, int channels)
 {
   const vtkSmartPointer<vtkFloatArray> array = CellArray(image, name, std::move(values), channels);

@@ -23,6 +23,10 @@ void AddCells(
 /// The same of light: of 3 channels they are named R, G, B.
 void AddLight(vtkImageData* image, const char* name, std::vector<float>&& values, int channels);
 
+/// Add the light that an array of the image holds under another name, without copying or looking at it: both have the
+/// same memory.
+void AddSameLight(vtkImageData* image, const char* name, const char* as);
+
 /// The same of light that a user gave, NaN where it is not known: not looked at.
 void AddGivenLight(vtkImageData* image, const char* name, std::vector<float>&& values, int channels);
 

@@ -1,5 +1,6 @@
 #pragma once
 
+#include "vtkBuffer.h"
 #include "vtkFloatArray.h"
 #include "vtkObjectFactory.h"
 #include "vtkSmartPointer.h"
@@ -10,6 +11,17 @@
 
 namespace tyndall
 {
+/// Memory of a vtkAOSDataArrayTemplate that is a vector's, whoever holds it last: arrays that are shallow copies of each
+/// other share it.
+template <class Value>
+class VectorBuffer : public vtkBuffer<Value>
+{
+public:
+  static VectorBuffer* New() { VTK_STANDARD_NEW_BODY(VectorBuffer); }
+
+  std::vector<Value> Values;
+};
+
 /// A vtkFloatArray (vtkUnsignedCharArray), to the last bit of its name, whose first values live in a vector: what
 /// kernels return becomes VTK's without a copy.
 template <class Array>
@@ -22,12 +34,12 @@ public:
 
   void Take(std::vector<Value>&& values)
   {
-    this->Values = std::move(values);
-    this->SetArray(this->Values.data(), static_cast<vtkIdType>(this->Values.size()), 1);
+    auto* const buffer = VectorBuffer<Value>::New();
+    buffer->Values = std::move(values);
+    this->Buffer->UnRegister(nullptr);
+    this->Buffer = buffer;
+    this->SetArray(buffer->Values.data(), static_cast<vtkIdType>(buffer->Values.size()), 1);
   }
-
-private:
-  std::vector<Value> Values;
 };
 
 /// @param values  tuples of `components` one after the other

@@ -121,14 +121,12 @@ inline void KeepWhatIsAskedFor(vtkInformation* information, vtkImageData* output
   }
 }
 
-/// The same for an output whose extent shows only when it is made: the pipeline, which had to guess, is told of it
-/// first.
+/// In RequestData: the extent of an output that shows only when it is made. The pipeline had to guess it, and would run
+/// the filter again for what the guess has beyond it.
 /// @param asking  the port that asks: VTK takes it that all ports then have its piece
-inline void TellExtentAndKeepWhatIsAskedFor(vtkInformation* asking, vtkInformation* information, vtkImageData* output)
+inline void TellExtent(vtkInformation* asking, vtkInformation* information, int extent[6])
 {
   using Pipeline = vtkStreamingDemandDrivenPipeline;
-  int extent[6];
-  output->GetExtent(extent);
   information->Set(Pipeline::WHOLE_EXTENT(), extent, 6);
   information->Set(Pipeline::UPDATE_EXTENT(), extent, 6);
   for (vtkInformationIntegerKey* key :
@@ -136,6 +134,12 @@ inline void TellExtentAndKeepWhatIsAskedFor(vtkInformation* asking, vtkInformati
   {
     information->CopyEntry(asking, key);
   }
+}
+
+/// The same of an image, of which then the piece that was asked for is kept.
+inline void TellExtentAndKeepWhatIsAskedFor(vtkInformation* asking, vtkInformation* information, vtkImageData* output)
+{
+  TellExtent(asking, information, output->GetExtent());
   KeepWhatIsAskedFor(information, output);
 }
 }

@@ -78,18 +78,23 @@ private:
   std::vector<Voxel> DescribeDepth(const std::vector<Voxel>& vertices, int level, Tree& tree) const
   {
     std::vector<Voxel> children;
-    const std::size_t first = tree.refined.size();
+    const std::size_t first = tree.refined.size(), firstOutside = tree.outside.size();
+    tree.levels.insert(tree.levels.end(), vertices.size(), static_cast<unsigned char>(level));
+    tree.outside.reserve(firstOutside + vertices.size());
     for (const Voxel& vertex : vertices)
     {
-      const bool outside = this->IsOutside(vertex);
-      const bool divided = !outside && this->LevelAt(vertex) < level;
+      tree.outside.push_back(this->IsOutside(vertex));
+      tree.nodes += tree.outside.back() ? 0 : 1;
+    }
+    const int half = level > 0 ? 1 << (level - 1) : 0;
+    for (std::size_t i = 0; i < vertices.size() && level > 0; ++i) // most vertices are single voxels
+    {
+      const Voxel& vertex = vertices[i];
+      const bool divided = !tree.outside[firstOutside + i] && this->LevelAt(vertex) < level;
       tree.refined.push_back(divided);
-      tree.levels.push_back(static_cast<unsigned char>(level));
-      tree.outside.push_back(outside);
-      tree.nodes += outside || divided ? 0 : 1;
+      tree.nodes -= divided ? 1 : 0;
       for (int child = 0; child < 8 && divided; ++child)
       {
-        const int half = 1 << (level - 1);
         children.push_back({ vertex[0] + (child & 1 ? half : 0), vertex[1] + (child & 2 ? half : 0),
           vertex[2] + (child & 4 ? half : 0) });
       }

@@ -14,6 +14,7 @@
 #include "vtkImageData.h"
 #include "vtkIntArray.h"
 #include "vtkNew.h"
+#include "vtkObjectFactory.h"
 #include "vtkPointData.h"
 #include "vtkPoints.h"
 #include "vtkPolyData.h"
@@ -92,6 +93,27 @@ std::string Text(const Box& box)
 }
 }
 
+namespace
+{
+/// Points that know their bounds: VTK would look for them on one core, without regard to ranges that were left.
+class BoundedPoints : public vtkPoints
+{
+public:
+  static BoundedPoints* New() { VTK_STANDARD_NEW_BODY(BoundedPoints); }
+
+  /// When nobody writes to them any more.
+  void FindBounds()
+  {
+    LeaveRanges(this->Data);
+    for (int axis = 0; axis < 3; ++axis)
+    {
+      this->Data->GetRange(this->Bounds + 2 * axis, axis);
+    }
+    this->ComputeTime.Modified();
+  }
+};
+}
+
 std::string DoubtOfBox(vtkPolyData* photons, const Grid& medium)
 {
   vtkDataArray* const found = photons ? photons->GetFieldData()->GetArray(BoxName) : nullptr;
@@ -116,7 +138,7 @@ std::string DoubtOfBox(vtkPolyData* photons, const Grid& medium)
 void WritePhotons(const EmittedPhotons& emitted, const Grid& box, vtkPolyData* output)
 {
   const std::size_t count = emitted.photons.size();
-  vtkNew<vtkPoints> points;
+  vtkNew<BoundedPoints> points;
   points->SetDataTypeToDouble();
   points->SetNumberOfPoints(static_cast<vtkIdType>(count));
   const vtkSmartPointer<vtkFloatArray> direction = NewFloats("direction", 3, count);
@@ -156,10 +178,9 @@ void WritePhotons(const EmittedPhotons& emitted, const Grid& box, vtkPolyData* o
                   static_cast<std::size_t>(array->GetNumberOfValues()), array->GetNumberOfComponents(), photonName),
       array);
   }
-  for (vtkDataArray* array : std::initializer_list<vtkDataArray*>{ places, light, batch })
-  {
-    LeaveRanges(array);
-  }
+  points->FindBounds();
+  LeaveRanges(light);
+  LeaveRanges(batch);
   const Box bounds = BoxOf(box);
   AddFact(output, BoxName, std::vector<double>(bounds.begin(), bounds.end()));
   output->SetPoints(points);
@@ -242,16 +263,18 @@ std::vector<std::uint8_t> ReadLevels(vtkImageData* image)
     return {};
   }
   std::vector<std::uint8_t> levels(static_cast<std::size_t>(image->GetNumberOfCells()));
-  for (std::size_t i = 0; i < levels.size(); ++i)
-  {
-    const float level = field.Values()[i];
-    if (!(level >= 0.0f && level <= 30.0f) || level != static_cast<int>(level))
+  InThreads(levels.size(), 65536, [&](std::size_t begin, std::size_t end) {
+    for (std::size_t i = begin; i < end; ++i)
     {
-      throw InvalidInput("octree_level is " + std::to_string(level) + " in voxel " + VoxelName(GridOf(image), i) +
-        "; it must be a whole number, as RefractionOctree makes it.");
+      const float level = field.Values()[i];
+      if (!(level >= 0.0f && level <= 30.0f) || level != static_cast<float>(static_cast<int>(level)))
+      {
+        throw InvalidInput("octree_level is " + std::to_string(level) + " in voxel " + VoxelName(GridOf(image), i) +
+          "; it must be a whole number, as RefractionOctree makes it.");
+      }
+      levels[i] = static_cast<std::uint8_t>(level);
     }
-    levels[i] = static_cast<std::uint8_t>(level);
-  }
+  });
   return levels;
 }
 }

@@ -3,7 +3,6 @@
 #include "Common/LightTransportData.h"
 #include "Common/WholeImage.h"
 #include "Device/Device.h"
-#include "Device/HostThreads.h"
 #include "Numerics/ChooseEvenly.h"
 #include "Photons/Marching/PublishedPhotons.h"
 #include "Photons/PhotonData.h"
@@ -63,34 +62,16 @@ tyndall::MarchSettings SettingsOf(vtkPhotonMarcher* filter, const std::vector<ty
   return settings;
 }
 
-/// [batch][voxel][channel] as [voxel][batch][channel].
-std::vector<float> VoxelByVoxel(const std::vector<float>& light, int batches, int channels)
-{
-  const auto ofBatch = light.size() / static_cast<std::size_t>(batches);
-  const auto width = static_cast<std::size_t>(channels), components = width * static_cast<std::size_t>(batches);
-  std::vector<float> byVoxel(light.size());
-  tyndall::InThreads(ofBatch / width, 16384, [&](std::size_t begin, std::size_t end) {
-    float* to = byVoxel.data() + begin * components;
-    for (std::size_t at = begin * width; at < end * width; at += width)
-    {
-      for (std::size_t batch = 0; batch < light.size(); batch += ofBatch)
-      {
-        to = std::copy_n(light.data() + batch + at, width, to);
-      }
-    }
-  });
-  return byVoxel;
-}
-
 void Write(tyndall::PhotonLight&& photons, vtkImageData* output)
 {
   const int channels = photons.light.channels;
-  if (photons.light.fluenceDirect.empty())
-  {
-    photons.light.fluenceDirect = photons.light.fluence; // none of it was scattered
-  }
   const bool scattered = photons.scatterings > 0;
+  const bool direct = photons.light.fluenceDirect.empty(); // none of it was scattered
   tyndall::WriteLight(std::move(photons.light), output);
+  if (direct)
+  {
+    tyndall::AddSameLight(output, "fluence_direct", "fluence");
+  }
   tyndall::AddCells(output, "mean_direction", std::move(photons.meanDirection), 3);
   if (!photons.photonCount.empty())
   {
@@ -99,8 +80,7 @@ void Write(tyndall::PhotonLight&& photons, vtkImageData* output)
   }
   if (!photons.batchFluence.empty())
   {
-    tyndall::AddCells(output, "fluence_batches", VoxelByVoxel(photons.batchFluence, photons.batches, channels),
-      photons.batches * channels);
+    tyndall::AddCells(output, "fluence_batches", std::move(photons.batchFluence), photons.batches * channels);
   }
   if (scattered)
   {

@@ -60,8 +60,8 @@ std::vector<float> DarkBatches(const FloatField& light, std::size_t voxels, int 
   return std::vector<float>(dark ? count * static_cast<std::size_t>(batches) : 0, 0.0f);
 }
 
-/// [voxel][batch][channel] as [batch][voxel][channel].
-std::vector<float> BatchByBatch(const FloatField& light, std::size_t voxels, int channels)
+/// How many batches an array has.
+int BatchesOf(const FloatField& light, int channels)
 {
   const int components = light.Components();
   if (components % channels != 0)
@@ -69,19 +69,7 @@ std::vector<float> BatchByBatch(const FloatField& light, std::size_t voxels, int
     throw tyndall::InvalidInput("The array 'fluence_batches' has " + std::to_string(components) +
       " components; it must have " + std::to_string(channels) + " for each batch, as 'fluence' has.");
   }
-  const auto width = static_cast<std::size_t>(channels);
-  std::vector<float> byBatch(voxels * static_cast<std::size_t>(components));
-  tyndall::InThreads(voxels, 16384, [&](std::size_t begin, std::size_t end) {
-    const float* from = light.Values() + begin * static_cast<std::size_t>(components);
-    for (std::size_t at = begin * width; at < end * width; at += width)
-    {
-      for (std::size_t batch = 0; batch < byBatch.size(); batch += voxels * width, from += width)
-      {
-        std::copy_n(from, width, byBatch.data() + batch + at);
-      }
-    }
-  });
-  return byBatch;
+  return components / channels;
 }
 
 tyndall::ReconstructedLight Reconstruct(vtkPhotonReconstruction* filter, vtkImageData* image)
@@ -99,22 +87,22 @@ tyndall::ReconstructedLight Reconstruct(vtkPhotonReconstruction* filter, vtkImag
   const bool conservative = filter->GetScheme() == vtkPhotonReconstruction::CONSERVATIVE;
   const FloatField batches = conservative ? read(FluenceBatches, "fluence_batches", {}) : FloatField();
   light.channels = fluence.Components();
-  std::vector<float> byBatch;
+  std::vector<float> dark;
   if (batches.IsThere())
   {
-    byBatch = BatchByBatch(batches, light.grid.VoxelCount(), light.channels);
-    light.batches = batches.Components() / light.channels;
+    light.batches = BatchesOf(batches, light.channels);
+    light.batchFluence = batches.Values();
   }
   else if (conservative)
   {
     light.batches = 2;
-    byBatch = DarkBatches(fluence, light.grid.VoxelCount(), light.batches);
+    dark = DarkBatches(fluence, light.grid.VoxelCount(), light.batches);
+    light.batchFluence = dark.empty() ? nullptr : dark.data();
   }
   light.fluence = fluence.Values();
   light.meanDirection = direction.Values();
   light.photonCount = count.Values();
   light.photonWeight = weight.Values();
-  light.batchFluence = byBatch.empty() ? nullptr : byBatch.data();
   return tyndall::Reconstruct(
     *tyndall::Device::Find(filter->GetDevice()), light, SettingsOf(filter), tyndall::MonitorOf(filter));
 }
@@ -133,6 +121,26 @@ std::vector<std::string> Joined(vtkImageData* image, const std::vector<std::stri
   return all;
 }
 
+/// Several sums at a time: one alone waits for each of its additions.
+double SumOfSquares(const float* values, std::size_t count)
+{
+  constexpr std::size_t Lanes = 16;
+  double sums[Lanes] = {};
+  std::size_t i = 0;
+  for (; i + Lanes <= count; i += Lanes)
+  {
+    for (std::size_t lane = 0; lane < Lanes; ++lane)
+    {
+      sums[lane] += static_cast<double>(values[i + lane]) * values[i + lane];
+    }
+  }
+  for (; i < count; ++i)
+  {
+    sums[0] += static_cast<double>(values[i]) * values[i];
+  }
+  return std::accumulate(sums, sums + Lanes, 0.0);
+}
+
 double SumOfSquares(const std::vector<float>& values)
 {
   constexpr std::size_t OfPart = 32768; // parts are added in their order, on however many cores they were found
@@ -140,10 +148,7 @@ double SumOfSquares(const std::vector<float>& values)
   tyndall::InThreads(sums.size(), 2, [&](std::size_t begin, std::size_t end) {
     for (std::size_t part = begin; part < end; ++part)
     {
-      for (std::size_t i = part * OfPart; i < std::min((part + 1) * OfPart, values.size()); ++i)
-      {
-        sums[part] += static_cast<double>(values[i]) * values[i];
-      }
+      sums[part] = SumOfSquares(values.data() + part * OfPart, std::min(OfPart, values.size() - part * OfPart));
     }
   });
   return std::accumulate(sums.begin(), sums.end(), 0.0);
@@ -158,11 +163,11 @@ void Write(tyndall::ReconstructedLight&& light, vtkImageData* output)
   {
     cells->RemoveArray(earlier);
   }
+  tyndall::AddLight(output, "fluence", std::move(light.fluence), channels);
   if (tyndall::ReadFact(output, tyndall::ScatteringsFact, 0.0) == 0.0) // else the marcher's own is there already
   {
-    tyndall::AddLight(output, "fluence_direct", std::vector<float>(light.fluence), channels);
+    tyndall::AddSameLight(output, "fluence_direct", "fluence");
   }
-  tyndall::AddLight(output, "fluence", std::move(light.fluence), channels);
   cells->SetActiveScalars("fluence");
   if (!light.meanDirection.empty())
   {

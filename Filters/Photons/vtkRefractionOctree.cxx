@@ -104,10 +104,13 @@ int vtkRefractionOctree::RequestData(
     vtkImageData* image = vtkImageData::GetData(inputs[0]);
     tyndall::Octree octree = Build(this, image);
 
+    vtkHyperTreeGrid* const nodes = vtkHyperTreeGrid::GetData(outputs, 1);
     if (tyndall::IsFirstPiece(request, outputs))
     {
-      this->NodeCount = tyndall::FillWithNodes(tyndall::GridOf(image), octree, vtkHyperTreeGrid::GetData(outputs, 1));
+      this->NodeCount = tyndall::FillWithNodes(tyndall::GridOf(image), octree, nodes);
     }
+    tyndall::TellExtent(
+      tyndall::AskingPort(request, outputs), outputs->GetInformationObject(1), const_cast<int*>(nodes->GetExtent()));
     vtkImageData* output = vtkImageData::GetData(outputs, 0);
     tyndall::PassOn(image, output);
     AddLevels(output, std::move(octree.levels));

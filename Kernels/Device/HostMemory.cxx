@@ -1,7 +1,10 @@
 #include "Device/HostMemory.h"
 
 #include "Device/Errors.h"
+#include "Device/HostThreads.h"
 
+#include <algorithm>
+#include <atomic>
 #include <cstdint>
 #include <cstdio>
 #include <sys/mman.h>
@@ -41,5 +44,17 @@ std::vector<float> Zeros(std::size_t count)
 #endif
   values.resize(count);
   return values;
+}
+
+void MakeZeros(std::vector<ZeroedArray> arrays)
+{
+  std::sort(arrays.begin(), arrays.end(), [](const ZeroedArray& a, const ZeroedArray& b) { return a.count > b.count; });
+  std::atomic<std::size_t> next(0);
+  InThreads(arrays.size(), 1, [&](std::size_t, std::size_t) {
+    for (std::size_t i = next++; i < arrays.size(); i = next++)
+    {
+      *arrays[i].values = Zeros(arrays[i].count);
+    }
+  });
 }
 }

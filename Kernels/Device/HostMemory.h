@@ -19,4 +19,14 @@ void RequireHostMemory(double bytes, const std::string& what, const std::string&
 /// `count` zeros, in pages of 2 MB where the system has them: to take a large array page by page of 4 kB can cost more
 /// than to fill it.
 std::vector<float> Zeros(std::size_t count);
+
+/// An array that is to hold so many zeros.
+struct ZeroedArray
+{
+  std::vector<float>* values;
+  std::size_t count;
+};
+
+/// The same for several arrays at a time: a core alone takes as long for them as kernels do to fill them.
+void MakeZeros(std::vector<ZeroedArray> arrays);
 }

@@ -93,7 +93,7 @@ struct PhotonLight
   /// Their mean `weight`, 0 where there is none, to 1e-4 of the largest. Empty: not asked for.
   std::vector<float> photonWeight;
   int batches = 1; ///< that the photons have: the largest `batch` and one
-  /// fluence by each batch alone, [batch][voxel][channel], as if it was all the light: their mean is `fluence`. Empty:
+  /// fluence by each batch alone, [voxel][batch][channel], as if it was all the light: their mean is `fluence`. Empty:
   /// not asked for.
   std::vector<float> batchFluence;
   std::size_t missed = 0;       ///< photons whose ways do not meet the volume; they are not among what entered

@@ -2,6 +2,7 @@
 //   BATCHES     independent ones, at least 2
 //   CHANNELS    of the light, 1 or 3
 //   DIRECTIONS  1: there are mean directions
+//   WOVEN       1: the grid's light is [voxel][batch][channel] of two batches; 0: [batch][voxel][channel]
 //   FINEST      1: the finer level is the grid itself, as the host has it; 0: rows of a level
 //
 // Fields of a level of the pyramid: each batch's light (sum of channels), then what is smoothed: the light's channels,
@@ -23,12 +24,51 @@ typedef struct
   pair carried[CARRIED];
 } light_pair;
 
+// The channels of a batch in two vectors of voxels.
+#if WOVEN && CHANNELS == 1
+inline void load_batches(const __global float* batches, size_t voxel, pair* light)
+{
+  const pair low = load_pair(2 * voxel, batches), high = load_pair(2 * voxel + 2 * REAL_WIDTH, batches);
+  light[0] = (pair)(low.even, high.even);
+  light[1] = (pair)(low.odd, high.odd);
+}
+#elif WOVEN
+inline void load_batches(const __global float* batches, size_t voxel, pair_of_three* light)
+{
+  const pair_of_three low = load_three(2 * voxel, batches), high = load_three(2 * voxel + 2 * REAL_WIDTH, batches);
+  light[0].x = (pair)(low.x.even, high.x.even);
+  light[0].y = (pair)(low.y.even, high.y.even);
+  light[0].z = (pair)(low.z.even, high.z.even);
+  light[1].x = (pair)(low.x.odd, high.x.odd);
+  light[1].y = (pair)(low.y.odd, high.y.odd);
+  light[1].z = (pair)(low.z.odd, high.z.odd);
+}
+#endif
+
 // Two vectors of voxels of the grid, in units of 1 / scale.
 inline light_pair load_voxels(
   const __global float* batches, const __global float* directions, int4 size, size_t voxel, float scale)
 {
-  const size_t all = (size_t)size.w * size.y * size.z;
   light_pair light;
+#if CHANNELS == 1
+  pair given[BATCHES];
+#else
+  pair_of_three given[BATCHES];
+#endif
+#if WOVEN
+  load_batches(batches, voxel, given);
+#else
+  const size_t all = (size_t)size.w * size.y * size.z;
+#pragma unroll
+  for (int b = 0; b < BATCHES; ++b)
+  {
+#if CHANNELS == 1
+    given[b] = load_pair(b * all + voxel, batches);
+#else
+    given[b] = load_three(b * all + voxel, batches);
+#endif
+  }
+#endif
 #pragma unroll
   for (int c = 0; c < CARRIED; ++c)
   {
@@ -38,10 +78,10 @@ inline light_pair load_voxels(
   for (int b = 0; b < BATCHES; ++b)
   {
 #if CHANNELS == 1
-    light.batch[b] = scale * load_pair(b * all + voxel, batches);
+    light.batch[b] = scale * given[b];
     light.carried[0] += light.batch[b];
 #else
-    const pair_of_three colour = load_three(b * all + voxel, batches);
+    const pair_of_three colour = given[b];
     light.carried[0] += scale * colour.x;
     light.carried[1] += scale * colour.y;
     light.carried[2] += scale * colour.z;

@@ -44,11 +44,46 @@ ConservativeLevel MakeLevel(Device& device, const NoisyLight& light, const std::
     LightRows(device, size, 2, width, what) };
 }
 
-std::string Options(const NoisyLight& light)
+/// Whether kernels read the light of batches as the host has it: two, in whole vectors. Of more, they would gather each
+/// value by itself.
+bool AreWoven(const NoisyLight& light, int width)
 {
-  return Define("BATCHES", light.batches) + Define("CHANNELS", light.channels) +
-    Define("DIRECTIONS", light.meanDirection != nullptr);
+  return light.batches == 2 && WholeVectors(light.grid.size[0], width) == light.grid.size[0];
 }
+
+std::string Options(const NoisyLight& light, int width)
+{
+  return Define("BATCHES", light.batches) + Define("WOVEN", AreWoven(light, width)) +
+    Define("CHANNELS", light.channels) + Define("DIRECTIONS", light.meanDirection != nullptr);
+}
+
+/// The light of the grid's voxels: the host's own, or a copy batch by batch, with rows that are whole vectors.
+class BatchedLight
+{
+public:
+  BatchedLight(const RowKernels& kernels, const HostMappedBuffer<float>& given, const NoisyLight& light)
+    : Given(given)
+  {
+    if (AreWoven(light, kernels.Width()))
+    {
+      return;
+    }
+    const int pitch = WholeVectors(light.grid.size[0], kernels.Width());
+    const std::size_t rows = Count(light.grid.size[1]) * Count(light.grid.size[2]);
+    this->Apart =
+      Buffer<float>(kernels.On(), rows * Count(pitch) * Count(light.batches * light.channels), "light of batches");
+    cl::Kernel copy = kernels.Kernel("copy_batches", kernel_source::LightPyramid);
+    With(copy, given.Handle(), cl_int(light.grid.size[0]), this->Apart, cl_int(pitch), cl_int(light.batches),
+      cl_int(light.channels));
+    kernels.On().Queue().enqueueNDRangeKernel(copy, cl::NullRange, cl::NDRange(rows), cl::NullRange);
+  }
+
+  const cl::Buffer& Handle() const { return this->Apart.Size() > 0 ? this->Apart.Handle() : this->Given.Handle(); }
+
+private:
+  const HostMappedBuffer<float>& Given;
+  Buffer<float> Apart;
+};
 
 /// A power of two that brings the light near 1, so that its squares neither overflow nor vanish.
 float ScaleOf(float largest)
@@ -63,14 +98,15 @@ public:
     : Task(task)
     , Result(result)
     , Size(task.light.grid.size)
-    , Kernels(task.device, RowWidth(task.device, task.light.grid), Options(task.light))
+    , Kernels(task.device, RowWidth(task.device, task.light.grid),
+        Options(task.light, RowWidth(task.device, task.light.grid)))
     , Scale(ScaleOf(task.range.largest))
     , Voxels(VoxelLayout(this->Size, this->Kernels.Width()))
     , FluenceOut(task.device, result.fluence.data(), result.fluence.size(), "fluence")
     , DirectionOut(task.device, result.meanDirection.data(), result.meanDirection.size(), "mean directions")
     , MipLevelOut(task.device, result.mipLevel.data(), result.mipLevel.size(), "levels")
     , ErrorOut(task.device, result.fluenceError.data(), result.fluenceError.size(), "errors")
-    , Light(Kernels, task.fluence, Size, task.light.batches, task.light.channels, false, "light of batches")
+    , Light(Kernels, task.fluence, task.light)
     , Direction(Kernels, task.direction, Size, task.light.meanDirection ? 1 : 0, 3, false, "mean directions")
     , Fluence(Kernels, FluenceOut, Size, 1, task.light.channels, true, "fluence")
     , MeanDirection(Kernels, DirectionOut, Size, task.light.meanDirection ? 1 : 0, 3, true, "mean directions")
@@ -146,7 +182,8 @@ private:
   float Scale;
   cl_int4 Voxels;
   HostMappedBuffer<float> FluenceOut, DirectionOut, MipLevelOut, ErrorOut;
-  WholeRows Light, Direction, Fluence, MeanDirection, MipLevel, Error;
+  BatchedLight Light;
+  WholeRows Direction, Fluence, MeanDirection, MipLevel, Error;
   std::vector<ConservativeLevel> Levels;
 };
 

@@ -116,6 +116,26 @@ __kernel void join_down(const __global float* fine, int4 fine_size, __global flo
   }
 }
 
+// Rows of voxels [voxel][batch][channel] as the host has them, to [batch][voxel][channel] with rows of another length;
+// what is too long repeats the last.
+__kernel void copy_batches(
+  const __global float* from, int count, __global float* to, int to_row, int batches, int channels)
+{
+  const size_t row = get_global_id(0), rows = get_global_size(0);
+  const __global float* values = from + row * count * batches * channels;
+  for (int b = 0; b < batches; ++b)
+  {
+    __global float* out = to + (b * rows + row) * to_row * channels;
+    for (int x = 0; x < to_row; ++x)
+    {
+      for (int c = 0; c < channels; ++c)
+      {
+        out[x * channels + c] = values[(min(x, count - 1) * batches + b) * channels + c];
+      }
+    }
+  }
+}
+
 // Rows of voxels as the host has them, with `components` each, to rows of another length; what is too long repeats the
 // last.
 __kernel void copy_rows(

@@ -13,7 +13,6 @@
 
 #include <algorithm>
 #include <cmath>
-#include <future>
 #include <limits>
 #include <numeric>
 
@@ -110,10 +109,11 @@ void CheckPresence(const NoisyLight& light, Estimator estimator)
 ArrayRange Checked(Device& device, const HostMappedBuffer<float>& array, const float* values, std::size_t count,
   int components, const Grid& grid, const char* name, float low, float high)
 {
+  const std::size_t width = count / grid.VoxelCount(); // of a voxel: components of one batch or of several
   const ArrayRange range = RangeOf(device, array, values, count, components, low, high);
   if (range.unfit)
   {
-    const std::size_t voxel = *range.unfit / static_cast<std::size_t>(components) % grid.VoxelCount();
+    const std::size_t voxel = *range.unfit / width;
     throw InvalidInput(std::string(name) + " is " + std::to_string(values[*range.unfit]) + " in voxel " +
       VoxelName(grid, voxel) + " (the first such voxel); it must be finite and " +
       (low < 0.0f ? "no longer than 1." : "not negative.") + " Clean the light, or march the photons anew.");
@@ -249,12 +249,9 @@ ReconstructedLight MakeRoom(const NoisyLight& light, bool conservative)
   const std::size_t voxels = light.grid.VoxelCount();
   const std::size_t values = voxels * static_cast<std::size_t>(light.channels);
   ReconstructedLight result;
-  std::future<void> directions =
-    std::async(std::launch::async, [&] { result.meanDirection = Zeros(light.meanDirection ? 3 * voxels : 0); });
-  result.fluence = Zeros(values);
-  result.mipLevel = Zeros(voxels);
-  result.fluenceError = Zeros(conservative ? values : 0);
-  directions.get();
+  MakeZeros(
+    { { &result.fluence, values }, { &result.mipLevel, voxels }, { &result.fluenceError, conservative ? values : 0 },
+      { &result.meanDirection, light.meanDirection ? 3 * voxels : 0 } });
   return result;
 }
 

@@ -21,7 +21,7 @@ struct NoisyLight
   const float* photonCount = nullptr;   ///< photons in each voxel; for the published and the nearest estimator
   const float* photonWeight = nullptr;  ///< their mean weight; for the published one
   int batches = 1;
-  /// [batch][voxel][channel]; for the conservative estimator, 2 to ComparedBatchesAtMost, whose mean is fluence.
+  /// [voxel][batch][channel]; for the conservative estimator, 2 to ComparedBatchesAtMost, whose mean is fluence.
   const float* batchFluence = nullptr;
 };
 

@@ -1,4 +1,4 @@
-"""What a ParaView user waits for beside the kernels, filter by filter.    ./run bench pipeline [FILTER...] [adaptive] [--grid 128] [--repeats 7] [--quick]
+"""What a ParaView user waits for beside the kernels, filter by filter.    ./run bench pipeline [FILTER...] [adaptive] [--grid 128] [--repeats 7] [--scenes ball ring] [--quick]
 
 Through proxies, as a user does it: something changes, the filter's proxy is updated, and ParaView gathers what its panels show of
 the output (GetDataInformation of every port: ranges of all components). `seconds` is the wall time of both, `kernel_seconds` what the
@@ -47,8 +47,8 @@ def known_seconds(proxy):
 
 
 class Bench:
-    def __init__(self, grid, repeats):
-        self.grid, self.repeats = grid, repeats
+    def __init__(self, grid, repeats, scenes=None):
+        self.grid, self.repeats, self.scenes = grid, repeats, scenes
 
     def report_filter(self, name, proxy, change, goal=RATIO_GOAL, **more):
         """Bring the proxy up to date again and again, after change(number of the time)."""
@@ -248,6 +248,8 @@ def adaptive(bench):
     }
     even_count, rich_count = (122000, 6000000) if bench.grid >= 64 else (2000, 50000)
     for name, make in scenes.items():
+        if bench.scenes and name not in bench.scenes:
+            continue
         scene = make()
         if scene is None:
             print("%s is not there (./run bench fetches it): left out" % name)
@@ -285,12 +287,13 @@ def main():
     parser.add_argument("parts", nargs="*", metavar="PART", help=", ".join(parts))
     parser.add_argument("--grid", type=int)
     parser.add_argument("--repeats", type=int)
+    parser.add_argument("--scenes", nargs="+", help="of adaptive: by their names")
     parser.add_argument("--quick", action="store_true", default="TYNDALL_BENCH_QUICK" in os.environ)
     arguments = parser.parse_args()
     unknown = [name for name in arguments.parts if name not in parts]
     if unknown:
         parser.error("there is no part %s; there are %s" % (unknown[0], ", ".join(parts)))
-    bench = Bench(arguments.grid or (16 if arguments.quick else 128), arguments.repeats or (2 if arguments.quick else 7))
+    bench = Bench(arguments.grid or (16 if arguments.quick else 128), arguments.repeats or (2 if arguments.quick else 7), arguments.scenes)
     for name in arguments.parts or parts:
         parts[name](bench)
 

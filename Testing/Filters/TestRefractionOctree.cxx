@@ -1,5 +1,6 @@
 #include "MediumScene.h"
 
+#include "vtkCallbackCommand.h"
 #include "vtkHyperTreeGrid.h"
 #include "vtkHyperTreeGridNonOrientedGeometryCursor.h"
 #include "vtkRefractionOctree.h"
@@ -277,6 +278,32 @@ void AConstantIndexNeedsNoDevice(test::Claims& claims)
   claims.That(errors.WasOneWith("no such device"), "another index needs one");
 }
 
+/// As ParaView does, one port after the other.
+void BothPortsAreMadeAtOnce(test::Claims& claims)
+{
+  for (const test::Box& box : { test::Box{ { 40, 23, 17 } }, test::Box{ { 5, 3, 64 } } })
+  {
+    vtkNew<vtkRefractionOctree> filter;
+    int runs = 0;
+    vtkNew<vtkCallbackCommand> count;
+    count->SetClientData(&runs);
+    count->SetCallback([](vtkObject*, unsigned long, void* data, void*) { ++*static_cast<int*>(data); });
+    filter->AddObserver(vtkCommand::StartEvent, count);
+    filter->SetInputDataObject(WithIndex(box, Waves));
+    for (int time = 1; time <= 3; ++time)
+    {
+      filter->SetTolerance(0.01 * time);
+      for (int port : { 0, 1, 0, 1 })
+      {
+        filter->Update(time == 3 ? 1 - port : port);
+      }
+      claims.That(runs == time,
+        "the octree is built once for both ports, not " + std::to_string(runs) + " times in " + std::to_string(time));
+      claims.That(NodesOf(filter)->GetNumberOfLeaves() > 1 && LevelsOf(filter), "both ports have theirs");
+    }
+  }
+}
+
 void BadInputIsOneError(test::Claims& claims)
 {
   vtkNew<vtkRefractionOctree> filter;
@@ -346,6 +373,7 @@ int TestRefractionOctree(int, char*[])
   ExtinctionCounts(claims);
   OtherArraysCanBeChosen(claims);
   AConstantIndexNeedsNoDevice(claims);
+  BothPortsAreMadeAtOnce(claims);
   BadInputIsOneError(claims);
   return claims.Result();
 }

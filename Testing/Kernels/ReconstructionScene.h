@@ -30,6 +30,17 @@ struct ReconstructionScene
     }
   }
 
+  /// Of a value of batchFluence: the fluence that it is of, and its batch.
+  std::size_t ValueOf(std::size_t i) const
+  {
+    const auto width = static_cast<std::size_t>(this->channels), sets = static_cast<std::size_t>(this->batches);
+    return i / (width * sets) * width + i % width;
+  }
+  std::size_t BatchOf(std::size_t i) const
+  {
+    return i / static_cast<std::size_t>(this->channels) % static_cast<std::size_t>(this->batches);
+  }
+
   std::size_t Values() const { return this->grid.VoxelCount() * static_cast<std::size_t>(this->channels); }
 
   /// truth(value) times 1 + noise * uniform of mean 0 and deviation 1, in every batch; fluence is their mean.
@@ -39,7 +50,7 @@ struct ReconstructionScene
     std::uniform_real_distribution<double> spread(-std::sqrt(3.0), std::sqrt(3.0));
     for (std::size_t i = 0; i < this->batchFluence.size(); ++i)
     {
-      this->batchFluence[i] = static_cast<float>(truth(i % this->Values()) * (1.0 + noise * spread(random)));
+      this->batchFluence[i] = static_cast<float>(truth(this->ValueOf(i)) * (1.0 + noise * spread(random)));
     }
     return this->Average();
   }
@@ -57,9 +68,8 @@ struct ReconstructionScene
     std::generate(noise.begin(), noise.end(), [&] { return crossing(random) / photons; });
     for (std::size_t i = 0; i < this->batchFluence.size(); ++i)
     {
-      const std::size_t batch = i / this->Values(),
-                        voxel = i % this->Values() / static_cast<std::size_t>(this->channels);
-      this->batchFluence[i] = static_cast<float>(truth(i % this->Values()) * noise[batch * columns + voxel % columns]);
+      const std::size_t value = this->ValueOf(i), voxel = value / static_cast<std::size_t>(this->channels);
+      this->batchFluence[i] = static_cast<float>(truth(value) * noise[this->BatchOf(i) * columns + voxel % columns]);
     }
     return this->Average();
   }
@@ -69,7 +79,7 @@ struct ReconstructionScene
     this->fluence.assign(this->Values(), 0.0f);
     for (std::size_t i = 0; i < this->batchFluence.size(); ++i)
     {
-      this->fluence[i % this->Values()] += this->batchFluence[i] / this->batches;
+      this->fluence[this->ValueOf(i)] += this->batchFluence[i] / this->batches;
     }
     return *this;
   }

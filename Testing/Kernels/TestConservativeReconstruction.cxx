@@ -133,7 +133,7 @@ TEST_F(ConservativeReconstruction, ColoursThatDifferHaveErrorsOfTheirOwn)
   {
     if (i % 3 == 2)
     {
-      scene.batchFluence[i] = static_cast<float>(Beam(scene, i % scene.Values() / 3)); // blue has no noise
+      scene.batchFluence[i] = static_cast<float>(Beam(scene, scene.ValueOf(i) / 3)); // blue has no noise
     }
   }
   scene.Average();
@@ -230,14 +230,13 @@ TEST_F(ConservativeReconstruction, ACausticOfFewPhotonsComesNearerToThatOfMany)
   };
   const std::vector<float> truth = march(1000000, 1).light.fluence;
   ReconstructionScene scene({ edge, edge, edge });
-  scene.batchFluence.clear();
-  for (std::uint64_t seed : { 2, 3 })
-  {
-    const PhotonLight batch = march(8000, seed);
-    scene.batchFluence.insert(scene.batchFluence.end(), batch.light.fluence.begin(), batch.light.fluence.end());
-    scene.direction = batch.meanDirection;
-  }
+  const PhotonLight batches[] = { march(8000, 2), march(8000, 3) };
+  scene.direction = batches[1].meanDirection;
   ASSERT_EQ(scene.batchFluence.size(), 2 * truth.size());
+  for (std::size_t i = 0; i < scene.batchFluence.size(); ++i)
+  {
+    scene.batchFluence[i] = batches[scene.BatchOf(i)].light.fluence[scene.ValueOf(i)];
+  }
   scene.Average();
   const ReconstructedLight light = this->Of(scene);
   const auto error = [&](const std::vector<float>& values) {

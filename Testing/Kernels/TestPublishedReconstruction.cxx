@@ -120,7 +120,7 @@ ReconstructionScene Sparse(std::array<int, 3> size)
   {
     scene.count[i] = part(random) < 0.4f ? 0.0f : std::floor(4.0f * part(random)) + 1.0f;
     scene.weight[i] = scene.count[i] > 0.0f ? 0.2f + 5.0f * part(random) * part(random) : 0.0f;
-    scene.batchFluence[i] = scene.batchFluence[scene.grid.VoxelCount() + i] = scene.count[i] * scene.weight[i];
+    scene.batchFluence[2 * i] = scene.batchFluence[2 * i + 1] = scene.count[i] * scene.weight[i];
   }
   return scene.Average();
 }

@@ -102,7 +102,7 @@ TEST_F(Reconstruction, NamesTheVoxelThatMeansNothing)
   {
     ReconstructionScene scene({ 50, 30, 20 });
     scene.Light([](std::size_t) { return 1.0; }, 0.0);
-    scene.batchFluence[30000 + (7 * 30 + 5) * 50 + 3] = bad;
+    scene.batchFluence[2 * ((7 * 30 + 5) * 50 + 3) + 1] = bad;
     EXPECT_THAT(this->Complaint(scene.Seen(), By(Estimator::Conservative)), HasSubstr("(3, 5, 7)")) << bad;
     EXPECT_EQ(this->Complaint(scene.Seen(), By(Estimator::Published)), "");
     scene.fluence.back() = bad;

@@ -216,17 +216,17 @@ void PhotonMarcher::Implementation::Finish(
   const std::size_t batches = static_cast<std::size_t>(target.shares.batches);
   const std::size_t colours = static_cast<std::size_t>(light.channels);
   const std::size_t channels = static_cast<std::size_t>(packed.channels);
-  const auto lend = [&](std::vector<float>& values, std::size_t size, const char* what) {
-    values = Zeros(size);
-    return HostMappedBuffer<float>(device, values.data(), size, what);
+  MakeZeros({ { &light.fluence, voxels * colours }, { &result.meanDirection, target.directions ? 3 * voxels : 0 },
+    { &result.photonCount, target.counts ? voxels : 0 }, { &result.photonWeight, target.counts ? voxels : 0 },
+    { &result.batchFluence, batches > 1 ? batches * voxels * colours : 0 } });
+  const auto lend = [&](std::vector<float>& values, const char* what) {
+    return HostMappedBuffer<float>(device, values.data(), values.size(), what);
   };
-  const HostMappedBuffer<float> fluence = lend(light.fluence, voxels * colours, "fluence");
-  const HostMappedBuffer<float> direction =
-    lend(result.meanDirection, target.directions ? 3 * voxels : 0, "mean direction");
-  const HostMappedBuffer<float> count = lend(result.photonCount, target.counts ? voxels : 0, "photon count");
-  const HostMappedBuffer<float> weight = lend(result.photonWeight, target.counts ? voxels : 0, "photon weight");
-  const HostMappedBuffer<float> batchFluence =
-    lend(result.batchFluence, batches > 1 ? batches * voxels * colours : 0, "fluence by batches");
+  const HostMappedBuffer<float> fluence = lend(light.fluence, "fluence");
+  const HostMappedBuffer<float> direction = lend(result.meanDirection, "mean direction");
+  const HostMappedBuffer<float> count = lend(result.photonCount, "photon count");
+  const HostMappedBuffer<float> weight = lend(result.photonWeight, "photon weight");
+  const HostMappedBuffer<float> batchFluence = lend(result.batchFluence, "fluence by batches");
   const Buffer<cl_long> taken(device, rows * 2 * channels, "tallies");
 
   const LightSumsInfo info = this->medium.DescribeSums(packed, weightUnit);

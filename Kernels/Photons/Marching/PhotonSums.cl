@@ -73,7 +73,7 @@ static void take_batch(__global long* record, ulong copyStride, int batch, long*
 //   fluence         COLOURS a voxel
 //   mean_direction  3 per voxel: sum of power times direction over sum of power, no longer than 1; 0 where it is dark
 //   photon_count    of a voxel; photon_weight: their mean weight, 0 where there is none
-//   batch_fluence   [batch][voxel][COLOURS] of each batch as if it was all the light
+//   batch_fluence   [voxel][batch][COLOURS] of each batch as if it was all the light
 //   taken           [row][absorbed, scattered][CHANNELS] units of power
 __kernel void finish_light(LightSumsInfo info, const __global float* sigma_a, const __global float* sigma_s,
   __global long* sums, ulong copyStride, __global float* fluence, __global float* mean_direction,
@@ -116,7 +116,7 @@ __kernel void finish_light(LightSumsInfo info, const __global float* sigma_a, co
       {
         sum[c] += part[c];
       }
-      __global float* to = batch_fluence + ((size_t)b * nx * ny * info.grid.size[2] + voxel) * COLOURS;
+      __global float* to = batch_fluence + (voxel * BATCHES + b) * COLOURS;
       for (int c = 0; c < CHANNELS; ++c)
       {
         put_fluence(&info, to, c, (float)part[c] / thickness[c] * BATCHES);

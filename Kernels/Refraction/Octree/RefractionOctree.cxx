@@ -1,7 +1,9 @@
 #include "Refraction/Octree/RefractionOctree.h"
 
+#include "Device/HostThreads.h"
 #include "Refraction/Octree/LevelPyramid.h"
 
+#include <atomic>
 #include <chrono>
 #include <cmath>
 #include <limits>
@@ -32,11 +34,18 @@ void CheckIndex(const Field& index, const Grid& grid)
     throw InvalidInput("The refractive index must be given, with one component a voxel.");
   }
   const std::size_t count = grid.VoxelCount();
-  bool good = true;
-  for (std::size_t i = 0; i < count; ++i)
-  {
-    good &= index.values[i] > 0.0f && index.values[i] <= std::numeric_limits<float>::max();
-  }
+  std::atomic<bool> good(true);
+  InThreads(count, 65536, [&](std::size_t begin, std::size_t end) {
+    bool all = true;
+    for (std::size_t i = begin; i < end; ++i)
+    {
+      all &= index.values[i] > 0.0f && index.values[i] <= std::numeric_limits<float>::max();
+    }
+    if (!all)
+    {
+      good = false;
+    }
+  });
   for (std::size_t i = 0; !good && i < count; ++i)
   {
     if (!(index.values[i] > 0.0f) || std::isinf(index.values[i]))
