@@ -82,6 +82,10 @@ IterationResult SourceIteration::Run(const Monitor& monitor)
   {
     this->SweepEmptySlabs(monitor);
   }
+  if (this->AtFaces || this->Warm.Begins())
+  {
+    this->CutOffNegative();
+  }
   this->Result.ledger.ShareEscaped(this->Escaped);
   this->Result.leftOut = this->LeftOut();
   if (this->Warm.Keeps())
@@ -223,8 +227,8 @@ void SourceIteration::AddUncollided(const Monitor& monitor)
 SweepTally SourceIteration::AddLamp(const UncollidedSource& lamp, const Monitor& monitor)
 {
   const Deposit whole = this->Parts.WholeDeposit();
-  const Deposit ofLamp = { &this->AtFaces->LampPath(), whole.flux, nullptr, &this->AtFaces->LampMoments(), whole.faceOut,
-    whole.spreadsAside };
+  const Deposit ofLamp = { &this->AtFaces->LampPath(), whole.flux, nullptr, &this->AtFaces->LampMoments(),
+    whole.faceOut, whole.spreadsAside };
   const SweepTally tally = this->Parts.AddUncollided(lamp, ofLamp, monitor);
   this->AtFaces->TakeLamp(this->Parts.Path);
   return tally;
@@ -415,18 +419,20 @@ void SourceIteration::GatherMoments()
   }
 }
 
-/// Rounding, and what the last sweeps would have taken away, can leave dark voxels a little below 0.
+/// Rounding, and what the last sweeps would have taken away, can leave dark voxels a little below 0; and what shines out
+/// of thick voxels, behind them.
+void SourceIteration::CutOffNegative()
+{
+  std::vector<float> fluence = this->Parts.Fluence.Read();
+  for (float& value : fluence)
+  {
+    value = std::max(value, 0.0f);
+  }
+  this->Parts.Fluence.Write(fluence.data());
+}
+
 void SourceIteration::Leave()
 {
-  if (this->Warm.Begins())
-  {
-    std::vector<float> fluence = this->Parts.Fluence.Read();
-    for (float& value : fluence)
-    {
-      value = std::max(value, 0.0f);
-    }
-    this->Parts.Fluence.Write(fluence.data());
-  }
   this->Result.warm = this->Warm.Begins();
   const Rgb rates = { this->Rest[0].Ratio(), this->Rest[1].Ratio(), this->Rest[2].Ratio() };
   this->Result.kept = this->Warm.Leave(this->Direct, this->Moments.Read(), rates);
@@ -479,6 +485,10 @@ std::vector<std::string> SourceIteration::LeftOut() const
   if (this->Filled)
   {
     words.push_back(left_out::EmptySlabs(this->Parts.Problem.Traits().filled, this->Parts.Layout.grid));
+  }
+  if (this->Parts.Problem.Traits().scatters && !OctantSources::AreThick(this->Parts.Problem))
+  {
+    words.emplace_back(left_out::ThinVoxels);
   }
   if (this->LitPart < 1.0)
   {

@@ -224,8 +224,7 @@ static real load_rounded(const __global exact* row, int x, int size)
 // extinction  sigma_t in rows, see diffusion_extinction; where SKIN is 0 as the solver has it
 // of_lamps    W / (length^3 sr), see DiffusionSystem::Arrays; where PASSING
 __kernel void diffusion_model(DiffusionLayout layout, const __global float* extinction, const __global float* path,
-  const __global exact* fluence, const __global float* source, const __global float* of_lamps,
-  __global float* model)
+  const __global exact* fluence, const __global float* source, const __global float* of_lamps, __global float* model)
 {
   path += layout.first;
   source += layout.first;

@@ -363,9 +363,8 @@ cl::Kernel AxisSweep::Implementation::SweepKernel(const Wanted& wanted)
     Define("ROW", plan.row) + Define("SOURCE", wanted.source) + Define("BORDER", wanted.border) +
     Define("NET_FLUX", wanted.flux) + Define("FACE_OUT", wanted.faceOut) + Define("FACE_SPREAD", wanted.spreadsAside) +
     Define("FACE_IN", wanted.faceIn) + Define("OCTANT_SOURCE", plan.octantSource && wanted.source) +
-    Define("CURRENTS", plan.partialCurrents) + DefineMoments(plan) +
-    Define("PERIODIC_P", this->IsPeriodic()) + Define("PERIODIC_U", plan.periodic[plan.axes.u]) +
-    Define("PERIODIC_V", plan.periodic[plan.axes.v]);
+    Define("CURRENTS", plan.partialCurrents) + DefineMoments(plan) + Define("PERIODIC_P", this->IsPeriodic()) +
+    Define("PERIODIC_U", plan.periodic[plan.axes.u]) + Define("PERIODIC_V", plan.periodic[plan.axes.v]);
   for (int members = 1; members <= MaxMembers; members *= 2)
   {
     const auto has = [&](const BundleInfo& bundle) { return bundle.members == members; };

@@ -331,8 +331,8 @@ static void pack_octants(
 // @param beams  of the source
 // @param octants  see `sweep`
 static void begin_planes(const SweepInfo* info, __global float* planes, __global int* thin, int first, int count,
-  const __global float* sigma, const __global float* source, const __global float* beams,
-  const __global float* octants, int backward)
+  const __global float* sigma, const __global float* source, const __global float* beams, const __global float* octants,
+  int backward)
 {
   const PlaneInfo* layout = &info->planes;
   pack(layout, planes + PlaneSigma * ROW, first, count, sigma);

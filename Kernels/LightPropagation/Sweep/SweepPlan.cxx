@@ -359,7 +359,8 @@ std::size_t SweepPlan::ScratchFloats() const
   // Behind those the row of rays that come in by cells of the box's faces.
   const std::size_t ring = kept + (this->faceIn ? 2 : 1) * (raysOfRow + this->vector);
   const int beams = this->angular ? this->angular->Beams() : 0;
-  const std::size_t quantities = PLANE_COUNT(this->channels, beams, this->netFlux, this->partialCurrents, this->octantSource);
+  const std::size_t quantities =
+    PLANE_COUNT(this->channels, beams, this->netFlux, this->partialCurrents, this->octantSource);
   const std::size_t rows = static_cast<std::size_t>(this->plane.block) * this->plane.sizeV;
   const std::size_t planes = quantities * rows * this->row;
   const std::size_t packed = this->momentsInPlace ? 0 : 2 * rows * this->momentRow; // source and path

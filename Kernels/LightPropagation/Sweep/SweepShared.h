@@ -45,8 +45,8 @@ enum
 
 /// Quantities of a plane: each channel has its source and its path, beams, and a flux and currents where they are
 /// wanted, and what shines besides by octant.
-#define PLANE_COUNT(channels, beams, netFlux, currents, octants)                                                      \
-  (PlaneSource +                                                                                                      \
+#define PLANE_COUNT(channels, beams, netFlux, currents, octants) \
+  (PlaneSource +                                                 \
     (2 + (beams) + ((netFlux) ? 3 : 0) + ((currents) ? CurrentFaces : 0) + ((octants) ? WaysAside : 0)) * (channels))
 
 /// Floats that a bundle keeps from one tile of rows to the next: two rings, and of MomentRows rows the members' sources

@@ -26,8 +26,8 @@ static layer_response response_of(const __global float* values, float albedo, fl
   return found;
 }
 
-#define VOXEL_AT                                                                 \
-  const int at[3] = { get_global_id(0), get_global_id(1), get_global_id(2) };    \
+#define VOXEL_AT                                                              \
+  const int at[3] = { get_global_id(0), get_global_id(1), get_global_id(2) }; \
   const ulong i = ((ulong)at[2] * info.size[1] + at[1]) * info.size[0] + at[0];
 
 // From the power that came in through voxels' faces to the mean radiance there.
@@ -60,7 +60,7 @@ static long next_voxel(const OctantSourceInfo* info, const int* at, ulong i, int
   return !last ? (long)i + ahead : info->periodic[axis] ? (long)i - ahead * (size - 1) : -1;
 }
 
-// Of what is scattered of the light that came in (numerics.md, Eq. (46g)), by octant.
+// Of what is scattered of the light that came in (numerics.md, Eqs. (46e), (46f)), by octant.
 // incoming  W / (length^2 sr), of the sweep
 // source    W / (length^3 sr), of the sweep, and `sources` with it
 // of_lamps  W / (length^3 sr) by face, where lamps is 1; cleared
@@ -131,9 +131,9 @@ __kernel void find_octant_sources(OctantSourceInfo info, const __global float* s
 // path, first_moments  of it, as in Sweep/Deposit.h; cleared
 // of_lamps  W / (length^3 sr), laid out as first_moments, added to
 // all_path  W length, added to
-__kernel void add_lamp(OctantSourceInfo info, const __global float* sigma_t,
-  const __global float* sigma_s, __global float* path, __global float* first_moments, const __global float* falling,
-  __global float* of_lamps, __global float* all_path)
+__kernel void add_lamp(OctantSourceInfo info, const __global float* sigma_t, const __global float* sigma_s,
+  __global float* path, __global float* first_moments, const __global float* falling, __global float* of_lamps,
+  __global float* all_path)
 {
   VOXEL_AT
   const float t = sigma_t[info.firstT + i], s = sigma_s[info.first + i], length = path[info.first + i];
@@ -150,7 +150,7 @@ __kernel void add_lamp(OctantSourceInfo info, const __global float* sigma_t,
       continue;
     }
     const float fall = fall_of(r) / tau;
-    const float place = clamp(log2(fmax(fall, 1e-6f)) - FirstProfile, 0.0f, ResponseProfiles - 1.001f);
+    const float place = clamp(2.0f * (log2(fmax(fall, 1e-6f)) - FirstProfile), 0.0f, ResponseProfiles - 1.001f);
     const float v = place - floor(place);
     const __global float* nearest = falling + (int)place * ResponseValues;
     const layer_response slow = response_of(nearest, s / t, tau);

@@ -14,12 +14,16 @@ namespace
 constexpr double Thick = 0.2; ///< mean free paths a voxel: thinner ones send back up to 1% too little
 }
 
+bool OctantSources::AreThick(const PropagationProblem& problem)
+{
+  return AnyVoxelIsThickerThan(Thick, problem.TheMedium());
+}
+
 bool OctantSources::Matter(const PropagationProblem& problem, bool otherSources)
 {
   const PropagationSettings& settings = problem.Settings();
   return problem.Traits().scatters && problem.Scattering().Degree() == 0 && !otherSources && !settings.firstMoments &&
-    settings.maximumOrders != 1 && settings.source == PropagationSource::Automatic &&
-    AnyVoxelIsThickerThan(Thick, problem.TheMedium());
+    settings.maximumOrders != 1 && settings.source == PropagationSource::Automatic && AreThick(problem);
 }
 
 OctantSources::OctantSources(Device& device, const PropagationProblem& problem, const VolumeLayout& layout,
@@ -66,7 +70,8 @@ const OctantSources::Crossings& OctantSources::CrossingsOf(const SweptDirections
   {
     perRadiance += HalfRange(grid, along.Set(), 0, marching);
   }
-  Crossings found = { Buffer<float>(this->TheDevice, pattern.values, "the pattern of rays"), pattern.first, perRadiance };
+  Crossings found = { Buffer<float>(this->TheDevice, pattern.values, "the pattern of rays"), pattern.first,
+    perRadiance };
   return this->Patterns.emplace(&along, std::move(found)).first->second;
 }
 

@@ -19,8 +19,10 @@ namespace tyndall
 class OctantSources
 {
 public:
-  /// Whether any voxel is so thick that it matters, scattering is isotropic and the source left to the solver; and all
-  /// light comes in through voxels' faces, or from lamps.
+  /// Whether any voxel is so thick that it matters.
+  static bool AreThick(const PropagationProblem& problem);
+  /// Whether some are, scattering is isotropic and the source left to the solver; and all light comes in through voxels'
+  /// faces, or from lamps.
   static bool Matter(const PropagationProblem& problem, bool otherSources);
 
   /// @param medium  on the device; must stay
@@ -62,8 +64,8 @@ private:
   Buffer<float> OfSweep, Incoming;                  ///< [channel][face][stride]
   Buffer<float> Found;                              ///< [channel][octant][stride]
   Buffer<float> PathOfLamp, MomentsOfLamp, OfLamps; ///< as Deposit has them; [channel][face][stride]
-  Buffer<float> Diffuse, Falling;                  ///< VoxelResponse
+  Buffer<float> Diffuse, Falling;                   ///< VoxelResponse
   std::map<const SweptDirections*, Crossings> Patterns;
-  bool LampsShine = false;                         ///< in what is found next
+  bool LampsShine = false; ///< in what is found next
 };
 }

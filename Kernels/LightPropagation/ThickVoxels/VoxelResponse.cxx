@@ -102,15 +102,15 @@ VoxelResponse::VoxelResponse()
       const Response even = layer.OfDiffuse();
       const double scattered = even.reflected + even.transmitted - even.straight; // out, of all orders
       const double kept = std::max(lost - scattered, 1e-6);
-      const double alike = std::clamp(
-        (scattered - 2.0 * leaves * albedo * even.collisions) / (albedo * lost * kept), 0.0, MostAlike);
+      const double alike =
+        std::clamp((scattered - 2.0 * leaves * albedo * even.collisions) / (albedo * lost * kept), 0.0, MostAlike);
       float* const values = this->diffuse.data() + ResponseParts * (a * ResponseDepths + d);
       values[0] = static_cast<float>(part * (even.reflected - even.transmitted + even.straight) / (albedo * lost));
       values[1] = static_cast<float>(part * alike);
       values[2] = static_cast<float>(lost);
       for (int p = 0; p < ResponseProfiles; ++p)
       {
-        const Response found = layer.OfFalling(albedo, std::exp2(FirstProfile + p));
+        const Response found = layer.OfFalling(albedo, std::exp2(FirstProfile + 0.5 * p));
         const double out = found.reflected + found.transmitted;
         const double beyond = 2.0 * leaves * albedo * found.collisions - albedo * alike * lost * out;
         float* const here = this->falling.data() + p * ResponseValues + ResponseParts * (a * ResponseDepths + d);

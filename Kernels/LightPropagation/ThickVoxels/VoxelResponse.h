@@ -5,7 +5,7 @@
 namespace tyndall
 {
 /// How a uniform layer sends back light that comes in at one side, over what it does where all that it scatters in one
-/// order shines evenly from its whole depth (numerics.md, Eqs. (46f) to (46h)): from the exact solution of the layer.
+/// order shines evenly from its whole depth (numerics.md, Eqs. (46g), (46h)): from the exact solution of the layer.
 /// Laid out as OctantSourcesShared.h says, [albedo][depth][part].
 struct VoxelResponse
 {
