@@ -48,12 +48,16 @@ static inline __attribute__((always_inline)) void CROSS_VOXELS(sweep_state* stat
   __global float* path_row = ROW_OF(state->planes, PLANE_PATH, y);
   const float power = bundle->power;
 #if OCTANT_SOURCE
-  int way[MEMBERS]; // as WaysAside
+  int way[MEMBERS], other[MEMBERS]; // as WaysAside: rays that go neither way along u or v are between two of them
 #pragma unroll
   for (int m = 0; m < MEMBERS; ++m)
   {
     const float2 signs = signs_of(bundle, m);
     way[m] = (signs.x > 0.0f ? 1 : 0) + (signs.y > 0.0f ? 2 : 0);
+    const bool exchanged = bundle->move[m][0] == 0;
+    const int between = (fabs(exchanged ? bundle->sineV : bundle->sineU) < 1e-5f ? 1 : 0) +
+      (fabs(exchanged ? bundle->sineU : bundle->sineV) < 1e-5f ? 2 : 0);
+    other[m] = way[m] ^ between;
   }
 #endif
 #if NET_FLUX
@@ -106,7 +110,7 @@ static inline __attribute__((always_inline)) void CROSS_VOXELS(sweep_state* stat
         sum_v = multiply_add(ray, (real)along_v[m], sum_v);
 #endif
 #if OCTANT_SOURCE
-        const real more = load_real(x, octants + way[m] * ROW);
+        const real more = 0.5f * (load_real(x, octants + way[m] * ROW) + load_real(x, octants + other[m] * ROW));
         all_more += more;
         const real shines = multiply_add(shine, more, gain);
         const real kept = thin ? ray + shines : multiply_add(ray, keep, shines);
