@@ -25,6 +25,7 @@ const char* const BlackFaces = "reflecting faces: no face of the box has an albe
 const char* const DarkOutside = "boundary radiance: no environment, sky or face shines";
 const char* const EvenOutside = "uncollided flux of the boundaries: what comes from outside is the same from "
                                 "everywhere and goes with scattered light";
+const char* const ThinVoxels = "light at the faces of thick voxels: there are none";
 const char* const NotSideBySide =
   "marching beside diffusion: the device does one after the other, and takes no longer than by turns";
 

@@ -27,6 +27,7 @@ extern const char* const NoEmissionPeaks; ///< what the medium emits needs no ra
 extern const char* const BlackFaces;      ///< no face of the box gives back light
 extern const char* const DarkOutside;     ///< neither environment nor sky nor faces shine
 extern const char* const EvenOutside;     ///< they shine evenly: directions of its own are not needed
+extern const char* const ThinVoxels;      ///< it does not matter where in voxels light is scattered
 extern const char* const NotSideBySide;   ///< what was queued side by side was done one after the other
 std::string EmptySlabs(const VoxelBox& filled, const Grid& grid);
 std::string DarkDirections(double lit); ///< part of the rays

@@ -7,7 +7,7 @@ namespace tyndall
 /// How the light that a voxel sends out is spread over it.
 enum class PropagationSource
 {
-  Automatic, ///< constant, or linear where orders are accelerated
+  Automatic, ///< linear where orders are accelerated; else constant, but by octant where voxels are thick (section 6.5)
   Constant,  ///< as published
   Linear     ///< from voxel centre to voxel centre (numerics.md, section 7): right however thick voxels are
 };

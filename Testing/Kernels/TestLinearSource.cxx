@@ -240,7 +240,7 @@ TEST_F(LinearSource, TransmitsBeamsAsSlabsDoHoweverThickVoxelsAre)
 
 TEST_F(LinearSource, TransmitsBeamsBetweenClearVoxels)
 {
-  // 16 voxels of albedo 1 between 8 clear ones on either side. At 30 (2 mean free paths a voxel) 6% are missed.
+  // 16 voxels of albedo 1 between 8 clear ones on either side.
   for (double tau : { 1.0, 10.0, 30.0, 100.0, 300.0, 1e3, 1e4 })
   {
     Scene scene = Slab(0.0, 1.0);
@@ -249,7 +249,7 @@ TEST_F(LinearSource, TransmitsBeamsBetweenClearVoxels)
     std::fill(scene.sigma_s.begin() + 8, scene.sigma_s.begin() + 24, static_cast<float>(tau / 16.0));
     const LightField light = scene.Solve(this->GetDevice());
     const double transmitted = tau == 1.0 ? SlabOf(1.0, 1.0).beamT : ThickSlabBeamTransmittance(tau, 1.0);
-    EXPECT_NEAR(Out(light, 5) / transmitted, 1.0, tau == 30.0 ? 0.065 : 0.02) << "optical thickness " << tau;
+    EXPECT_NEAR(Out(light, 5) / transmitted, 1.0, 0.02) << "optical thickness " << tau;
     EXPECT_NEAR(Out(light, 4) + Out(light, 5), 1.0, 1e-4) << "optical thickness " << tau;
     EXPECT_GE(Least(light), 0.0);
   }

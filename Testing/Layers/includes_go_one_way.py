@@ -27,7 +27,7 @@ LAYERS = {
         ["Angular"],
         ["Sweep", "Problem"],
         ["Scattering", "Uncollided", "Diffusion", "PlaneParallel"],
-        ["Emission"],
+        ["Emission", "ThickVoxels"],
         ["Conservative", "Published"],
         ["Accuracy"],
     ],

@@ -323,6 +323,11 @@ void DiffusionAcceleration::MakeSystems()
     parts.Layout.grid, parts.Usual.Set(), this->Settings.mapResolution, parts.Usual.Starts(), this->Settings.periodic);
   const std::array<Rgb, 6> incoming =
     parts.SweepsAreLit() ? parts.UsualBoundary->IncomingPower() : std::array<Rgb, 6>{};
+  const bool passes = this->Uncollided->Passed().Size() > 0;
+  if (passes)
+  {
+    this->OfLamps = Buffer<float>(parts.TheDevice, this->Uncollided->ScatteredInVoxels(), "light of lamps");
+  }
   for (int c = 0; c < parts.Layout.channels; ++c)
   {
     std::array<double, 6> ofChannel, albedo = {};
@@ -336,7 +341,7 @@ void DiffusionAcceleration::MakeSystems()
       c * parts.Layout.Stride(), &parts.OnDevice.TransportSigmaT(), &parts.OnDevice.SigmaT(), &parts.OnDevice.SigmaA(),
       &parts.OnDevice.SigmaS(), &this->Given, parts.Layout.Places(parts.Functions()), c,
       parts.Basis ? &this->GivenFlux : nullptr, &parts.Source, &parts.Path, &this->PartialCurrents,
-      this->Uncollided->Passed().Size() > 0 ? &this->Uncollided->Passed() : nullptr,
+      passes ? &this->Uncollided->Passed() : nullptr, passes ? &this->OfLamps : nullptr,
       parts.Faces ? &this->Faces[c] : nullptr, albedo };
     this->Systems.push_back(std::make_unique<DiffusionSystem>(parts.TheDevice, parts.Layout.grid,
       this->Settings.periodic, parts.Usual.Set(), pattern, arrays, ofChannel, this->LinearSource));

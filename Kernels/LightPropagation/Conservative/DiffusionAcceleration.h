@@ -61,7 +61,7 @@ private:
   std::vector<float> UncollidedFluence; ///< W / length^2, [channel][stride]
 
   // Scattered light, and what comes in along the usual directions
-  Buffer<float> Given, GivenFlux, PartialCurrents; ///< as DiffusionSystem::Arrays has them
+  Buffer<float> Given, GivenFlux, PartialCurrents, OfLamps; ///< as DiffusionSystem::Arrays has them
   std::unique_ptr<SweepOperator> Swept;
   std::vector<std::unique_ptr<DiffusionSystem>> Systems;
   /// By channel, where light by cells of the box's faces is wanted: as DiffusionSystem::Arrays has it.

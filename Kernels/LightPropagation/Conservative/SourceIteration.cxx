@@ -32,6 +32,10 @@ SourceIteration::SourceIteration(TransportParts& parts, const KeptLight* kept)
     this->Moments = Buffer<float>(parts.TheDevice, parts.Layout.MomentFloats(parts.Functions()), "the light to keep");
     this->Moments.Fill(0.0f);
   }
+  if (OctantSources::Matter(parts.Problem, !parts.OtherSources().empty()))
+  {
+    this->AtFaces.emplace(parts.TheDevice, parts.Problem, parts.Layout, parts.OnDevice, !parts.Lamps.empty());
+  }
   this->MakeSweeps();
   if (parts.StoresMoments())
   {
@@ -78,6 +82,10 @@ IterationResult SourceIteration::Run(const Monitor& monitor)
   {
     this->SweepEmptySlabs(monitor);
   }
+  if (this->AtFaces || this->Warm.Begins())
+  {
+    this->CutOffNegative();
+  }
   this->Result.ledger.ShareEscaped(this->Escaped);
   this->Result.leftOut = this->LeftOut();
   if (this->Warm.Keeps())
@@ -94,7 +102,8 @@ IterationResult SourceIteration::Run(const Monitor& monitor)
 void SourceIteration::MakeSweeps()
 {
   const int mostPlanes = this->Settings.maximumOrders > 0 ? MostPlanesAround : FewPlanes;
-  SweepRequest request = { this->Parts.WholeDeposit(), this->Parts.AllRays(), {}, mostPlanes };
+  SweepRequest request = { this->DepositOfSweep(), this->Parts.AllRays(), {}, mostPlanes };
+  request.octantSource = this->AtFaces ? &this->AtFaces->Sources() : nullptr;
   request.angular = this->Parts.UsualValues();
   request.faceIn = this->Parts.LightByCells();
   this->Whole = this->Parts.MakeSweep(request);
@@ -107,13 +116,14 @@ void SourceIteration::MakeSweeps()
 
 /// Orders after the first go through the box that the medium fills alone: what leaves it does not come back. Their
 /// light in the other voxels is found at the end, for all of them in one sweep. Not with periodic axes, whose rays
-/// would be on the way in both; nor where the light that leaves through the faces' cells is wanted.
+/// would be on the way in both; nor where the light that leaves through the faces' cells is wanted, or voxels shine
+/// otherwise through each face, of which the sweep at the end knows nothing.
 void SourceIteration::MakeFilledSweep()
 {
   const std::array<bool, 3>& periodic = this->Settings.periodic;
   const MediumTraits& traits = this->Parts.Problem.Traits();
   if (!this->Settings.leaveOut || !traits.scatters || !this->Parts.Scattering->CanScatterAllOrders() || periodic[0] ||
-    periodic[1] || periodic[2] || this->Parts.Faces)
+    periodic[1] || periodic[2] || this->Parts.Faces || this->AtFaces)
   {
     return;
   }
@@ -152,7 +162,7 @@ void SourceIteration::MakeLitSweep()
   if (lit <= MostlyLit * all)
   {
     this->LitPart = lit / all;
-    SweepRequest request = { this->Parts.WholeDeposit(), ways };
+    SweepRequest request = { this->DepositOfSweep(), ways };
     request.angular = this->Parts.UsualValues();
     this->Lit = this->Parts.MakeSweep(request);
   }
@@ -178,9 +188,19 @@ void SourceIteration::AddUncollided(const Monitor& monitor)
   for (std::size_t i = 0; i < sources.size(); ++i)
   {
     const Monitor ofSource = OfPart(monitor, i / all, (i + 1) / all);
-    Deposit deposit = this->Parts.WholeDeposit();
-    deposit.firstMoments = this->Settings.firstMoments && i < this->Parts.Lamps.size() ? &firstMoments : nullptr;
+    const bool isLamp = i < this->Parts.Lamps.size();
+    if (this->AtFaces && isLamp)
+    {
+      Add(tally, this->AddLamp(*sources[i], ofSource));
+      continue;
+    }
+    Deposit deposit = this->DepositOfSweep();
+    deposit.firstMoments = this->Settings.firstMoments && isLamp ? &firstMoments : nullptr;
     Add(tally, this->Parts.AddUncollided(*sources[i], deposit, ofSource));
+    if (this->AtFaces)
+    {
+      this->AtFaces->TakeIncoming(*this->Parts.Fine);
+    }
     if (this->Parts.StoresMoments() && i + 1 == this->Parts.Lamps.size())
     {
       this->Parts.Scattering->AddFirstScattered(this->Parts.WholeDeposit(), this->Result.shown);
@@ -201,6 +221,24 @@ void SourceIteration::AddUncollided(const Monitor& monitor)
   {
     this->Escaping.emplace(this->Parts, OfPart(monitor, sources.size() / all, 1.0)); // whatever shines: lights add up
   }
+}
+
+/// Beside it, where in thick voxels its light is first scattered.
+SweepTally SourceIteration::AddLamp(const UncollidedSource& lamp, const Monitor& monitor)
+{
+  const Deposit whole = this->Parts.WholeDeposit();
+  const Deposit ofLamp = { &this->AtFaces->LampPath(), whole.flux, nullptr, &this->AtFaces->LampMoments(),
+    whole.faceOut, whole.spreadsAside };
+  const SweepTally tally = this->Parts.AddUncollided(lamp, ofLamp, monitor);
+  this->AtFaces->TakeLamp(this->Parts.Path);
+  return tally;
+}
+
+Deposit SourceIteration::DepositOfSweep() const
+{
+  Deposit deposit = this->Parts.WholeDeposit();
+  deposit.partialCurrents = this->AtFaces ? &this->AtFaces->Currents() : nullptr;
+  return deposit;
 }
 
 void SourceIteration::SweepOrder(const Monitor& monitor)
@@ -271,6 +309,11 @@ void SourceIteration::ScatterOrder()
 {
   const TransportParts& parts = this->Parts;
   this->GatherMoments();
+  if (this->AtFaces)
+  {
+    this->AtFaces->TakeIncoming(parts.Usual);
+    this->AtFaces->Find(parts.Source);
+  }
   const ScatteringOperator::Powers powers =
     parts.Scattering->ScatterOrder(parts.WholeDeposit(), parts.Fluence, parts.Source, this->SweptValues());
   if (parts.StoresMoments())
@@ -376,18 +419,20 @@ void SourceIteration::GatherMoments()
   }
 }
 
-/// Rounding, and what the last sweeps would have taken away, can leave dark voxels a little below 0.
+/// Rounding, and what the last sweeps would have taken away, can leave dark voxels a little below 0; and what shines out
+/// of thick voxels, behind them.
+void SourceIteration::CutOffNegative()
+{
+  std::vector<float> fluence = this->Parts.Fluence.Read();
+  for (float& value : fluence)
+  {
+    value = std::max(value, 0.0f);
+  }
+  this->Parts.Fluence.Write(fluence.data());
+}
+
 void SourceIteration::Leave()
 {
-  if (this->Warm.Begins())
-  {
-    std::vector<float> fluence = this->Parts.Fluence.Read();
-    for (float& value : fluence)
-    {
-      value = std::max(value, 0.0f);
-    }
-    this->Parts.Fluence.Write(fluence.data());
-  }
   this->Result.warm = this->Warm.Begins();
   const Rgb rates = { this->Rest[0].Ratio(), this->Rest[1].Ratio(), this->Rest[2].Ratio() };
   this->Result.kept = this->Warm.Leave(this->Direct, this->Moments.Read(), rates);
@@ -440,6 +485,10 @@ std::vector<std::string> SourceIteration::LeftOut() const
   if (this->Filled)
   {
     words.push_back(left_out::EmptySlabs(this->Parts.Problem.Traits().filled, this->Parts.Layout.grid));
+  }
+  if (this->Parts.Problem.Traits().scatters && !OctantSources::AreThick(this->Parts.Problem))
+  {
+    words.emplace_back(left_out::ThinVoxels);
   }
   if (this->LitPart < 1.0)
   {

@@ -5,6 +5,7 @@
 #include "LightPropagation/Conservative/TransportParts.h"
 #include "LightPropagation/Conservative/WarmStart.h"
 #include "LightPropagation/Convergence.h"
+#include "LightPropagation/ThickVoxels/OctantSources.h"
 
 #include <memory>
 #include <optional>
@@ -26,6 +27,8 @@ private:
   void MakeLitSweep();
   void MakeFilledSweep();
   void AddUncollided(const Monitor& monitor);
+  SweepTally AddLamp(const UncollidedSource& lamp, const Monitor& monitor);
+  Deposit DepositOfSweep() const;
   void SweepOrder(const Monitor& monitor);
   void ReflectOrder();
   void ScatterOrder();
@@ -33,6 +36,7 @@ private:
   void BeginWarm();
   void GoOnWarm();
   void GatherMoments();
+  void CutOffNegative();
   void Leave();
   void SweepEmptySlabs(const Monitor& monitor);
   void AddOutside(const VoxelBox& box);
@@ -49,6 +53,7 @@ private:
   /// Of the orders after it, where the medium leaves much of the volume empty; else null.
   std::unique_ptr<SweepOperator> Filled;
   std::optional<EscapeCorrection> Escaping;
+  std::optional<OctantSources> AtFaces; ///< where voxels are thick
   WarmStart Warm;
   std::vector<float> Direct; ///< W / length^2, [channel][stride], where light is to be kept
   Buffer<float> Moments;     ///< of scattered light of all orders, W length, where they are to be kept

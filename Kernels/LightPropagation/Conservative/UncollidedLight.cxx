@@ -5,6 +5,7 @@
 #include "LightPropagation/Scattering/MomentScattering.h"
 #include "LightPropagation/Uncollided/UncollidedBoundary.h"
 #include "Medium/VoxelSums.h"
+#include "Numerics/Constants.h"
 
 #include <algorithm>
 
@@ -107,6 +108,20 @@ void UncollidedLight::PassFaces(const Buffer<float>& path, const Buffer<float>& 
         &parts.OnDevice.SigmaA(), &parts.OnDevice.SigmaS(), &parts.OnDevice.SigmaT(), &path, &firstMoments,
         &this->ThroughFaces, &parts.Path });
   }
+}
+
+std::vector<float> UncollidedLight::ScatteredInVoxels() const
+{
+  const VolumeLayout& layout = this->Parts.Layout;
+  const std::vector<float> passed = this->ThroughFaces.Read();
+  return Planar(layout, layout.channels, [&](std::size_t i, int c) {
+    double power = this->Parts.Problem.Scattering().SigmaS(i, c) * this->LengthsOfLamps[c * layout.Stride() + i];
+    for (int d = 0; d < 6; ++d)
+    {
+      power -= passed[(6 * c + d) * layout.Stride() + i];
+    }
+    return static_cast<float>(power / (4.0 * Pi * layout.grid.VoxelVolume()));
+  });
 }
 
 /// Weight of the difference of finer and usual directions (numerics.md, Eqs. (55), (76)): little in thick voxels, where

@@ -22,6 +22,8 @@ public:
   /// W, of lamps, as DiffusionSystem::Arrays has it; empty where voxels are thin, there are no lamps, or the source is
   /// constant.
   const Buffer<float>& Passed() const { return this->ThroughFaces; }
+  /// W / (length^3 sr), the same: what lamps' light is first scattered, less what passes faces at once.
+  std::vector<float> ScatteredInVoxels() const;
   /// What was emitted and came in, what of it left, and what was absorbed before it was scattered.
   const EnergyLedger& Ledger() const { return this->Counted; }
 

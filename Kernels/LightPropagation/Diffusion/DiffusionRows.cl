@@ -222,11 +222,13 @@ static real load_rounded(const __global exact* row, int x, int size)
 // The fluence at which the sweep's power is compared with diffusion (numerics.md, Eq. (56)): in thin voxels what
 // the sweep found, in thick ones what it was given.
 // extinction  sigma_t in rows, see diffusion_extinction; where SKIN is 0 as the solver has it
+// of_lamps    W / (length^3 sr), see DiffusionSystem::Arrays; where PASSING
 __kernel void diffusion_model(DiffusionLayout layout, const __global float* extinction, const __global float* path,
-  const __global exact* fluence, const __global float* source, __global float* model)
+  const __global exact* fluence, const __global float* source, const __global float* of_lamps, __global float* model)
 {
   path += layout.first;
   source += layout.first;
+  of_lamps += layout.first;
   const float edge = fmax(layout.spacing[0], fmax(layout.spacing[1], layout.spacing[2]));
   const int n = layout.size[0];
   FOR_ROWS(layout.rows)
@@ -239,7 +241,11 @@ __kernel void diffusion_model(DiffusionLayout layout, const __global float* exti
       real sigma_t[7];
       find_extinctions(&layout, y, z, x, extinction, sigma_t);
       const real skin = skin_of(&layout, sigma_t);
-      const real shining = 4.0f * M_PI_F * load_real(here + x, source) / fmax(sigma_t[0], (real)1e-37f);
+      real source_of_fluence = load_real(here + x, source);
+#if PASSING
+      source_of_fluence -= load_real(here + x, of_lamps); // the fluence that is solved for has none of it either
+#endif
+      const real shining = 4.0f * M_PI_F * source_of_fluence / fmax(sigma_t[0], (real)1e-37f);
       const real given = select(solved, mix(solved, shining, skin), skin > (real)0.0f);
       const real longest = sigma_t[0] * edge;
 #else

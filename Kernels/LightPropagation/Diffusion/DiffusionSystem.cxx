@@ -179,7 +179,8 @@ void DiffusionSystem::FindModel()
   const Arrays& the = this->The;
   const Buffer<float>& extinction = this->AnySkin ? this->ExtinctionInRows() : *the.sigma_t;
   cl::Kernel model = this->RowsKernel("diffusion_model");
-  With(model, this->Layout, extinction, *the.path, this->Next.Handle(), *the.source, this->Model);
+  With(model, this->Layout, extinction, *the.path, this->Next.Handle(), *the.source,
+    the.ofLamps ? *the.ofLamps : *the.source, this->Model);
   this->RunRows(model);
 }
 

@@ -2,14 +2,14 @@
 // and part of it passes those at once.
 
 #include "LightPropagation/Diffusion/BoxBorders.cl"
+#include "LightPropagation/Sweep/FallOfLight.cl"
 
 // Part that returns to the face of light that is lost as exp(-b t) over tau and absorbed at k a mean free path on its
 // way back (numerics.md, Eq. (69)). r, 0 to 1, is how near to the face it is scattered: 1 - 2 t / tau for a mean
 // depth t.
 static float comes_back(float tau, float r, float k)
 {
-  const float b = 2.0f * r * (3.0f - 2.0f * r) / (tau * fmax(1.0f - r, 1e-6f)); // exact for r near 0 and near 1
-  const float x = b * tau, y = (b + k) * tau;
+  const float x = fall_of(fmin(r, 0.999999f)), y = x + k * tau;
   const float shone = x < 1e-3f ? 1.0f - 0.5f * x : -expm1(-x) / x;
   const float back = y < 1e-3f ? 1.0f - 0.5f * y : -expm1(-y) / y;
   return back / shone;

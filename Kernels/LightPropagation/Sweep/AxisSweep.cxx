@@ -50,7 +50,8 @@ struct AxisSweep::Implementation
     const std::array<bool, 3>& periodic, SweepWorkspace& workspace, bool sameBoundary)
     : TheDevice(device)
     , Plan(device, volume.grid, volume.box, axis, bundles, volume.channels, periodic, volume.deposit.flux != nullptr,
-        volume.deposit.partialCurrents != nullptr, volume.angular, volume.moments, volume.faceIn != nullptr)
+        volume.deposit.partialCurrents != nullptr, volume.angular, volume.moments, volume.faceIn != nullptr,
+        volume.octantSource != nullptr)
     , Workspace(workspace)
     , SameBoundary(sameBoundary)
   {
@@ -260,6 +261,7 @@ void AxisSweep::Implementation::Launch(cl::Kernel kernel, const SweepVolume& vol
   info.faces = this->Faces(volume.faceFirst, volume.deposit);
   const Buffer<float>& faceOut = this->CellsOf(volume.deposit);
   const Buffer<float>& faceIn = volume.faceIn ? *volume.faceIn : *volume.deposit.path;
+  const Buffer<float>& octantSource = volume.octantSource ? *volume.octantSource : *volume.deposit.path;
   info.moments = plan.moments;
   info.packedMoments = plan.momentRow;
   info.sizeY = plan.grid.size[1];
@@ -269,7 +271,7 @@ void AxisSweep::Implementation::Launch(cl::Kernel kernel, const SweepVolume& vol
     info.launch = launch;
     With(kernel, info, *volume.sigma_t, source, *volume.deposit.path, lost, flux, partialCurrents, this->Maps(),
       this->Outside, this->Radiance, this->Workspace.scratch, this->Units, this->Bundles, this->Coefficients, crossings,
-      this->FirstOwnLight, schedule.planes, this->Sideways, faceOut, faceIn);
+      this->FirstOwnLight, schedule.planes, this->Sideways, faceOut, faceIn, octantSource);
     this->TheDevice.Queue().enqueueNDRangeKernel(kernel, cl::NullRange, cl::NDRange(plan.units.size()), cl::NDRange(1));
     this->TheDevice.Queued(plan.secondsPerLaunch);
     Report(monitor, (launch + 1.0) / schedule.launches);
@@ -360,9 +362,9 @@ cl::Kernel AxisSweep::Implementation::SweepKernel(const Wanted& wanted)
   std::string options = Define("REAL_WIDTH", plan.vector) + Define("CHANNELS", plan.channels) +
     Define("ROW", plan.row) + Define("SOURCE", wanted.source) + Define("BORDER", wanted.border) +
     Define("NET_FLUX", wanted.flux) + Define("FACE_OUT", wanted.faceOut) + Define("FACE_SPREAD", wanted.spreadsAside) +
-    Define("FACE_IN", wanted.faceIn) + Define("CURRENTS", plan.partialCurrents) + DefineMoments(plan) +
-    Define("PERIODIC_P", this->IsPeriodic()) + Define("PERIODIC_U", plan.periodic[plan.axes.u]) +
-    Define("PERIODIC_V", plan.periodic[plan.axes.v]);
+    Define("FACE_IN", wanted.faceIn) + Define("OCTANT_SOURCE", plan.octantSource && wanted.source) +
+    Define("CURRENTS", plan.partialCurrents) + DefineMoments(plan) + Define("PERIODIC_P", this->IsPeriodic()) +
+    Define("PERIODIC_U", plan.periodic[plan.axes.u]) + Define("PERIODIC_V", plan.periodic[plan.axes.v]);
   for (int members = 1; members <= MaxMembers; members *= 2)
   {
     const auto has = [&](const BundleInfo& bundle) { return bundle.members == members; };

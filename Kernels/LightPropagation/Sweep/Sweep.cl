@@ -308,10 +308,31 @@ static void unpack_moments(
 }
 #endif
 
+#if OCTANT_SOURCE
+// What shines besides, into the octants of one way along the axis.
+static void pack_octants(
+  const SweepInfo* info, __global float* planes, int first, int count, const __global float* octants, int backward)
+{
+  const int axis = info->axis;
+  const int u = axis == 0 ? 1 : 0, v = axis == 2 ? 1 : 2;
+  for (int c = 0; c < CHANNELS; ++c)
+  {
+    for (int way = 0; way < WaysAside; ++way)
+    {
+      const int octant = (backward ? 0 : 1 << axis) + (way & 1 ? 1 << u : 0) + (way & 2 ? 1 << v : 0);
+      pack(&info->planes, planes + (PLANE_OCTANTS + WaysAside * c + way) * ROW, first, count,
+        octants + (8 * c + octant) * info->stride);
+    }
+  }
+}
+#endif
+
 // Make planes [first, first + count) ready to be crossed.
 // @param beams  of the source
+// @param octants  see `sweep`
 static void begin_planes(const SweepInfo* info, __global float* planes, __global int* thin, int first, int count,
-  const __global float* sigma, const __global float* source, const __global float* beams)
+  const __global float* sigma, const __global float* source, const __global float* beams, const __global float* octants,
+  int backward)
 {
   const PlaneInfo* layout = &info->planes;
   pack(layout, planes + PlaneSigma * ROW, first, count, sigma);
@@ -341,9 +362,12 @@ static void begin_planes(const SweepInfo* info, __global float* planes, __global
         store_real((real)1.0f / s, at, row + PlaneInverse * ROW);
         store_real((real)0.0f, at, row + PlaneTaken * ROW);
       }
-      clear(row + PLANE_PATH * ROW, (PLANES - PLANE_PATH) * ROW);
+      clear(row + PLANE_PATH * ROW, (PLANE_OCTANTS - PLANE_PATH) * ROW);
     }
   }
+#if OCTANT_SOURCE
+  pack_octants(info, planes, first, count, octants, backward);
+#endif
 }
 
 #if SOURCE && !DEGREE
@@ -484,6 +508,7 @@ static void cross_bundles(sweep_state* state, __global float* maps, const __glob
 // schedule  [launch][unit] first plane and end, counted from where rays start; beyond the last plane the axis begins
 //           anew
 // tally     [plane from where rays start][unit][-u, +u, -v, +v][channel] W that left
+// octants   see SweepRequest::octantSource
 // face_out, face_in  see Deposit.h, SweepOperator.h; where FACE_OUT, FACE_IN; face_out [unit][channel][cell] where
 //           FACE_SPREAD
 __kernel __attribute__((reqd_work_group_size(1, 1, 1))) void sweep(SweepInfo info, const __global float* sigma,
@@ -491,7 +516,8 @@ __kernel __attribute__((reqd_work_group_size(1, 1, 1))) void sweep(SweepInfo inf
   __global float* currents, __global float* maps, const __global float* outside, const __global float* radiance,
   __global float* scratch, const __global UnitInfo* units, const __global BundleInfo* bundles,
   const __global float* coefficients, const __global CrossingInfo* crossings, const __global OwnLightInfo* own,
-  const __global int2* schedule, __global float* tally, __global float* face_out, const __global float* face_in)
+  const __global int2* schedule, __global float* tally, __global float* face_out, const __global float* face_in,
+  const __global float* octants)
 {
   const int u = get_global_id(0);
   const int unit_count = get_global_size(0);
@@ -551,6 +577,7 @@ __kernel __attribute__((reqd_work_group_size(1, 1, 1))) void sweep(SweepInfo inf
   lost += info.first;
   flux += 3 * info.first;
   currents += 6 * info.first;
+  octants += 8 * info.first;
   maps += unit.backward * info.mapsEachWay;
   outside += unit.backward * info.outsideEachWay;
   radiance += unit.backward * info.radianceEachWay;
@@ -575,7 +602,7 @@ __kernel __attribute__((reqd_work_group_size(1, 1, 1))) void sweep(SweepInfo inf
     count = min(count, of_one_group(&layout, begin - lap, unit.backward));
 #endif
     const int first = unit.backward ? layout.sizeP - (begin - lap) - count : begin - lap;
-    begin_planes(&info, planes, thin, first, count, sigma, source, beams);
+    begin_planes(&info, planes, thin, first, count, sigma, source, beams, octants, unit.backward);
 #if DEGREE && !MOMENTS_IN_PLACE
 #if SOURCE
     pack_moments(&info, packed_source, first, count, higher_source);

@@ -49,6 +49,19 @@ static inline __attribute__((always_inline)) void CROSS_VOXELS(sweep_state* stat
   const __global float* source_row = ROW_OF(state->planes, PlaneSource, y);
   __global float* path_row = ROW_OF(state->planes, PLANE_PATH, y);
   const float power = bundle->power;
+#if OCTANT_SOURCE
+  int way[MEMBERS], other[MEMBERS]; // as WaysAside: rays that go neither way along u or v are between two of them
+#pragma unroll
+  for (int m = 0; m < MEMBERS; ++m)
+  {
+    const float2 signs = signs_of(bundle, m);
+    way[m] = (signs.x > 0.0f ? 1 : 0) + (signs.y > 0.0f ? 2 : 0);
+    const bool exchanged = bundle->move[m][0] == 0;
+    const int between = (fabs(exchanged ? bundle->sineV : bundle->sineU) < 1e-5f ? 1 : 0) +
+      (fabs(exchanged ? bundle->sineU : bundle->sineV) < 1e-5f ? 2 : 0);
+    other[m] = way[m] ^ between;
+  }
+#endif
 #if NET_FLUX
   __global float* flux_row = ROW_OF(state->planes, PLANE_FLUX, y);
   float along_u[MEMBERS], along_v[MEMBERS];
@@ -82,6 +95,10 @@ static inline __attribute__((always_inline)) void CROSS_VOXELS(sweep_state* stat
       const real gain = shine * load_real(x, source_row + c * ROW);
 #endif
       real sum = (real)0.0f;
+#if OCTANT_SOURCE
+      const __global float* octants = ROW_OF(state->planes, PLANE_OCTANTS + WaysAside * c, y);
+      real all_more = (real)0.0f;
+#endif
 #if NET_FLUX
       real sum_u = (real)0.0f, sum_v = (real)0.0f;
 #endif
@@ -94,7 +111,12 @@ static inline __attribute__((always_inline)) void CROSS_VOXELS(sweep_state* stat
         sum_u = multiply_add(ray, (real)along_u[m], sum_u);
         sum_v = multiply_add(ray, (real)along_v[m], sum_v);
 #endif
-#if SOURCE
+#if OCTANT_SOURCE
+        const real more = 0.5f * (load_real(x, octants + way[m] * ROW) + load_real(x, octants + other[m] * ROW));
+        all_more += more;
+        const real shines = multiply_add(shine, more, gain);
+        const real kept = thin ? ray + shines : multiply_add(ray, keep, shines);
+#elif SOURCE
         const real kept = thin ? ray + gain : multiply_add(ray, keep, gain);
 #else
         const real kept = thin ? ray : ray * keep;
@@ -111,6 +133,9 @@ static inline __attribute__((always_inline)) void CROSS_VOXELS(sweep_state* stat
 #endif
       if (deposit)
       {
+#if OCTANT_SOURCE
+        sum -= all_more * load_real(x, inverse_row) * power; // what shines besides is not lost in its own voxel
+#endif
         store_real(multiply_add(mean_length, sum, load_real(x, path_row + c * ROW)), x, path_row + c * ROW);
 #if NET_FLUX
         __global float* flux = flux_row + 3 * c * ROW;

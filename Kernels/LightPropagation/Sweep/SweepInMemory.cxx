@@ -13,6 +13,7 @@ SweepInMemory::SweepInMemory(Device& device, const VolumeLayout& layout, const B
   , MostPlanes(request.mostPlanes)
   , Angular(request.angular)
   , FaceIn(request.faceIn)
+  , OctantSource(request.octantSource)
 {
   for (const AxisBundles& along : request.rays)
   {
@@ -38,6 +39,7 @@ SweepVolume SweepInMemory::VolumeOf(const ChannelGroup& group, const Buffer<floa
   volume.source = source;
   volume.angular = this->Angular;
   volume.faceIn = this->FaceIn;
+  volume.octantSource = this->OctantSource;
   volume.moments = this->Layout.Places(this->Angular ? this->Angular->Functions() : 1);
   volume.deposit.flux = this->Angular ? nullptr : volume.deposit.flux; // it is among the moments
   return volume;

@@ -33,6 +33,7 @@ private:
   int MostPlanes;
   const AngularValues* Angular;
   const Buffer<float>* FaceIn;
+  const Buffer<float>* OctantSource;
   /// Along one axis: one sweep for all groups of channels in turn; where the axis is periodic one a group, for it keeps
   /// rays that are on their way from one sweep to the next.
   struct Axis

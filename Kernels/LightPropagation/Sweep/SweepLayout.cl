@@ -11,6 +11,7 @@
 //   MOMENTS_IN_PLACE  1: they are read and added to where they are; 0: they are packed like the rest of a plane
 //   NET_FLUX  1 where the net flux is wanted
 //   CURRENTS  1 where the power that enters each voxel through each face is wanted
+//   OCTANT_SOURCE  1 where voxels shine otherwise into each octant; where SOURCE is 1 and DEGREE is 0
 //   BORDER    1 where light comes in through the faces that rays pass sideways
 //   PERIODIC_P  1 where rays go round the axis: planes are added to many times, and what rounding loses is kept
 //   PERIODIC_U, PERIODIC_V  1 where rays come back on the other side
@@ -33,7 +34,8 @@
 #define PLANE_PATH (PLANE_BEAMS + BEAMS * CHANNELS) // the path integral of power, W length
 #define PLANE_FLUX (PLANE_PATH + CHANNELS)
 #define PLANE_CURRENTS (PLANE_FLUX + FLUX * CHANNELS) // power that enters through CurrentFaces, W
-#define PLANES PLANE_COUNT(CHANNELS, BEAMS, NET_FLUX, CURRENTS)
+#define PLANE_OCTANTS (PLANE_CURRENTS + (CURRENTS ? CurrentFaces : 0) * CHANNELS) // by WaysAside, W / (length^3 sr)
+#define PLANES PLANE_COUNT(CHANNELS, BEAMS, NET_FLUX, CURRENTS, OCTANT_SOURCE)
 #define RAYS_OF_ROW (MaxMembers * CHANNELS * ROW)
 // A plane is [row][quantity][ROW]: what is needed at once lies together, and no stride is a power of two.
 #define ROW_OF(planes, quantity, row) ((planes) + ((row)*PLANES + (quantity)) * ROW)

@@ -39,6 +39,11 @@ struct SweepRequest
   /// [channel][cell] (BoxFaces.h), beside what each sweep is given as boundary; not among the powers that came in. Must
   /// stay; null: nothing.
   const Buffer<float>* faceIn = nullptr;
+  /// W / (length^3 sr), [channel][octant][stride]: by how much more than the source voxels shine out of themselves into
+  /// the octant of directions that are positive along x where bit 0 is set, along y, z bits 1 and 2. What so gets out
+  /// more, or less, is missing from their own path, or left in it: power is that of the source. Not with angular
+  /// moments. Must stay; null: voxels shine alike into all octants.
+  const Buffer<float>* octantSource = nullptr;
 };
 
 /// Carries light once through the medium: from what shines in its voxels and what comes in through the box's faces to

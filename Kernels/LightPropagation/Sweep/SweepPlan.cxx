@@ -91,7 +91,8 @@ double LongestWay(const std::vector<Bundle>& bundles)
 
 SweepPlan::SweepPlan(const Device& device, const Grid& ofGrid, const VoxelBox& ofBox, int axis,
   const std::vector<Bundle>& ofBundles, int channelCount, const std::array<bool, 3>& periodicAxes, bool wantsNetFlux,
-  bool wantsCurrents, const AngularValues* angularValues, const MomentPlaces& momentPlaces, bool entersByCells)
+  bool wantsCurrents, const AngularValues* angularValues, const MomentPlaces& momentPlaces, bool entersByCells,
+  bool shinesByOctant)
   : grid(ofGrid)
   , box(ofBox.VoxelCount() > 0 ? ofBox : VoxelBox{ { 0, 0, 0 }, ofGrid.size })
   , axes(AcrossAxis(axis))
@@ -102,6 +103,7 @@ SweepPlan::SweepPlan(const Device& device, const Grid& ofGrid, const VoxelBox& o
   , partialCurrents(wantsCurrents)
   , angular(angularValues)
   , faceIn(entersByCells)
+  , octantSource(shinesByOctant)
   , moments(momentPlaces)
   , order(angularValues ? angularValues->degree : 0, AcrossAxis(axis).u, AcrossAxis(axis).v)
 {
@@ -357,7 +359,8 @@ std::size_t SweepPlan::ScratchFloats() const
   // Behind those the row of rays that come in by cells of the box's faces.
   const std::size_t ring = kept + (this->faceIn ? 2 : 1) * (raysOfRow + this->vector);
   const int beams = this->angular ? this->angular->Beams() : 0;
-  const std::size_t quantities = PLANE_COUNT(this->channels, beams, this->netFlux, this->partialCurrents);
+  const std::size_t quantities =
+    PLANE_COUNT(this->channels, beams, this->netFlux, this->partialCurrents, this->octantSource);
   const std::size_t rows = static_cast<std::size_t>(this->plane.block) * this->plane.sizeV;
   const std::size_t planes = quantities * rows * this->row;
   const std::size_t packed = this->momentsInPlace ? 0 : 2 * rows * this->momentRow; // source and path

@@ -22,9 +22,10 @@ struct SweepPlan
   /// @param angular  of the bundles' directions, must stay; null: light has no angular moments
   /// @param moments  where they are
   /// @param faceIn  light comes in by cells of the box's faces
+  /// @param octantSource  voxels shine otherwise into each octant
   SweepPlan(const Device& device, const Grid& grid, const VoxelBox& box, int axis, const std::vector<Bundle>& bundles,
     int channels, const std::array<bool, 3>& periodic, bool netFlux, bool partialCurrents, const AngularValues* angular,
-    const MomentPlaces& moments, bool faceIn);
+    const MomentPlaces& moments, bool faceIn, bool octantSource);
 
   Grid grid;
   VoxelBox box;
@@ -36,6 +37,7 @@ struct SweepPlan
   bool partialCurrents;
   const AngularValues* angular;
   bool faceIn;
+  bool octantSource;
   MomentPlaces moments;
   bool forward = false; ///< some rays march that way
   bool backward = false;

@@ -37,10 +37,17 @@ enum
   CurrentFaces = 5
 };
 
+/// Ways that rays go along u and v: 1 for u upwards, 2 for v upwards.
+enum
+{
+  WaysAside = 4
+};
+
 /// Quantities of a plane: each channel has its source and its path, beams, and a flux and currents where they are
-/// wanted.
-#define PLANE_COUNT(channels, beams, netFlux, currents) \
-  (PlaneSource + (2 + (beams) + ((netFlux) ? 3 : 0) + ((currents) ? CurrentFaces : 0)) * (channels))
+/// wanted, and what shines besides by octant.
+#define PLANE_COUNT(channels, beams, netFlux, currents, octants) \
+  (PlaneSource +                                                 \
+    (2 + (beams) + ((netFlux) ? 3 : 0) + ((currents) ? CurrentFaces : 0) + ((octants) ? WaysAside : 0)) * (channels))
 
 /// Floats that a bundle keeps from one tile of rows to the next: two rings, and of MomentRows rows the members' sources
 /// and paths, and the path of a source of 1 in its own voxel.

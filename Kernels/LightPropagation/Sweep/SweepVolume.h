@@ -24,8 +24,9 @@ struct SweepVolume
   /// Where the first channel of source and path begins (flux: three times that, partialCurrents and firstMoments: six
   /// times).
   std::size_t first = 0;
-  const Buffer<float>* faceIn = nullptr; ///< as in SweepRequest
-  std::size_t faceFirst = 0;             ///< where the first channel of faceIn and faceOut begins
+  const Buffer<float>* faceIn = nullptr;       ///< as in SweepRequest
+  const Buffer<float>* octantSource = nullptr; ///< the same
+  std::size_t faceFirst = 0;                   ///< where the first channel of faceIn and faceOut begins
   int firstChannel = 0;
   MomentPlaces moments = {}; ///< of source and path, where light has angular moments
 };

@@ -16,6 +16,9 @@ namespace tyndall
 namespace
 {
 constexpr int RaysPerEdge = 2; ///< of a voxel
+/// The same where first moments are asked for: with few rays a slanting beam comes into some voxels through one face and
+/// into those beside through another, and each seems to be lit from its own side.
+constexpr int RaysPerThickEdge = 8;
 
 /// Adds what a beam deposited, and its first moments, which are found from the powers through the voxels' faces.
 void AddWithFirstMoments(const UncollidedVolume& volume, const std::array<double, 3>& omega, const Deposit& ofBeam)
@@ -67,11 +70,12 @@ SweepTally DepositBeam(const UncollidedVolume& volume, const Light& light, const
   {
     ofChannel /= static_cast<double>(axes.size());
   }
+  const int raysPerEdge = volume.deposit.firstMoments ? RaysPerThickEdge : RaysPerEdge;
   SweepTally tally;
   for (std::size_t a = 0; a < axes.size(); ++a)
   {
     const SweepRequest request = { deposit,
-      { { axes[a], BeamAlong(axes[a], grid, volume.periodic, omega, RaysPerEdge) } } };
+      { { axes[a], BeamAlong(axes[a], grid, volume.periodic, omega, raysPerEdge) } } };
     const double all = static_cast<double>(axes.size());
     const Monitor ofAxis = OfPart(monitor, a / all, (a + 1) / all);
     Add(tally,

@@ -1,0 +1,169 @@
+// How thick voxels shine into each octant beside what shines evenly in all of a voxel, see OctantSources.h. Face d of a
+// voxel is -x, +x, -y, +y, -z, +z.
+
+#include "LightPropagation/Sweep/FallOfLight.cl"
+#include "LightPropagation/ThickVoxels/OctantSourcesShared.h"
+
+typedef struct
+{
+  float differs, alike; // see VoxelResponse.h
+  float lost;
+} layer_response;
+
+// Of a layer as VoxelResponse.h has them, between its values. Of thin layers they are proportional to the thickness.
+static layer_response response_of(const __global float* values, float albedo, float tau)
+{
+  const float depth = clamp(2.0f * (log2(fmax(tau, 1e-30f)) - FirstDepth), 0.0f, ResponseDepths - 1.001f);
+  const float place = clamp(sqrt(fmax(1.0f - albedo, 0.0f)) * (ResponseAlbedos - 1), 0.0f, ResponseAlbedos - 1.001f);
+  const float u = place - floor(place), v = depth - floor(depth);
+  const __global float* low = values + ResponseParts * ((int)place * ResponseDepths + (int)depth);
+  const __global float* high = low + ResponseParts * ResponseDepths;
+  const float thin = clamp(tau * exp2((float)-FirstDepth), 0.0f, 1.0f);
+  layer_response found;
+  found.differs = thin * mix(mix(low[0], low[ResponseParts], v), mix(high[0], high[ResponseParts], v), u);
+  found.alike = thin * mix(mix(low[1], low[ResponseParts + 1], v), mix(high[1], high[ResponseParts + 1], v), u);
+  found.lost = thin * mix(low[2], low[ResponseParts + 2], v);
+  return found;
+}
+
+#define VOXEL_AT                                                              \
+  const int at[3] = { get_global_id(0), get_global_id(1), get_global_id(2) }; \
+  const ulong i = ((ulong)at[2] * info.size[1] + at[1]) * info.size[0] + at[0];
+
+// From the power that came in through voxels' faces to the mean radiance there.
+// currents  W, [face][stride] from 6 `first` on; cleared
+// pattern   of the rays that cross faces, see CrossingPattern.h
+// incoming  W / (length^2 sr), laid out as currents, added to
+__kernel void take_incoming(
+  OctantSourceInfo info, __global float* currents, const __global float* pattern, __global float* incoming)
+{
+  VOXEL_AT
+  for (int d = 0; d < 6; ++d)
+  {
+    const int axis = d / 2;
+    const int u = axis == 0 ? 1 : 0, v = axis == 2 ? 1 : 2;
+    const ulong here = 6 * info.first + d * info.stride + i;
+    const float crossing = pattern[info.pattern[2 * axis] + at[u]] + pattern[info.pattern[2 * axis + 1] + at[v]];
+    const float even = info.perRadiance * info.spacing[u] * info.spacing[v] * crossing;
+    incoming[here] += even > 0.0f ? currents[here] / even : 0.0f;
+    currents[here] = 0.0f;
+  }
+}
+
+// Of a voxel's neighbour across face d; -1 beyond the box.
+static long next_voxel(const OctantSourceInfo* info, const int* at, ulong i, int d)
+{
+  const int axis = d / 2, size = info->size[axis];
+  const long step = axis == 0 ? 1 : axis == 1 ? info->size[0] : (long)info->size[0] * info->size[1];
+  const bool last = at[axis] == (d & 1 ? size - 1 : 0);
+  const long ahead = d & 1 ? step : -step;
+  return !last ? (long)i + ahead : info->periodic[axis] ? (long)i - ahead * (size - 1) : -1;
+}
+
+// Of what is scattered of the light that came in (numerics.md, Eqs. (46e), (46f)), by octant.
+// incoming  W / (length^2 sr), of the sweep
+// source    W / (length^3 sr), of the sweep, and `sources` with it
+// of_lamps  W / (length^3 sr) by face, where lamps is 1; cleared
+// sources   W / (length^3 sr), [octant][stride] from 8 `first` on, replaced: beside what shines evenly. Where there is
+//           less than that the first orders may be below 0, for what later ones shine there out of the voxel.
+__kernel void find_octant_sources(OctantSourceInfo info, const __global float* sigma_t, const __global float* sigma_s,
+  const __global float* source, const __global float* responses, const __global float* incoming,
+  __global float* of_lamps, int lamps, __global float* sources)
+{
+  VOXEL_AT
+  const float t = sigma_t[info.firstT + i], s = sigma_s[info.first + i];
+  sources += 8 * info.first + i;
+  incoming += 6 * info.first;
+  float more[3][2];
+  for (int axis = 0; axis < 3; ++axis)
+  {
+    const layer_response response = response_of(responses, t > 0.0f ? s / t : 0.0f, t * info.spacing[axis]);
+    float net[2], in[2];
+    for (int d = 0; d < 2; ++d)
+    {
+      in[d] = incoming[(2 * axis + d) * info.stride + i];
+    }
+    for (int d = 0; d < 2; ++d)
+    {
+      const long next = next_voxel(&info, at, i, 2 * axis + d);
+      float out = 0.0f;
+      if (next >= 0)
+      {
+        out = incoming[(2 * axis + 1 - d) * info.stride + next];
+      }
+      else if (t > 0.0f)
+      {
+        // Through the box's faces it is not told by voxel: as of a layer.
+        float shines = source[info.first + i];
+        for (int octant = 0; octant < 8; ++octant)
+        {
+          shines += (octant >> axis & 1) == d ? 0.25f * sources[octant * info.stride] : 0.0f;
+        }
+        out = (1.0f - response.lost) * in[1 - d] + response.lost * shines / t;
+      }
+      net[d] = in[d] - out;
+    }
+    const float differs = 0.5f * response.differs * (in[0] - in[1]);
+    const float alike = 0.5f * response.alike * (net[0] + net[1]);
+    for (int d = 0; d < 2; ++d)
+    {
+      const ulong face = 6 * info.first + (2 * axis + d) * info.stride + i;
+      more[axis][d] = info.leftOut[axis] ? 0.0f : s * (alike + (d ? -differs : differs));
+      if (lamps)
+      {
+        more[axis][d] += of_lamps[face];
+        of_lamps[face] = 0.0f;
+      }
+    }
+  }
+  for (int octant = 0; octant < 8; ++octant)
+  {
+    float sum = 0.0f;
+    for (int axis = 0; axis < 3; ++axis)
+    {
+      sum += more[axis][octant >> axis & 1];
+    }
+    sources[octant * info.stride] = sum;
+  }
+}
+
+// The same of the light of one lamp (numerics.md, Eq. (46h)).
+// path, first_moments  of it, as in Sweep/Deposit.h; cleared
+// of_lamps  W / (length^3 sr), laid out as first_moments, added to
+// all_path  W length, added to
+__kernel void add_lamp(OctantSourceInfo info, const __global float* sigma_t, const __global float* sigma_s,
+  __global float* path, __global float* first_moments, const __global float* falling, __global float* of_lamps,
+  __global float* all_path)
+{
+  VOXEL_AT
+  const float t = sigma_t[info.firstT + i], s = sigma_s[info.first + i], length = path[info.first + i];
+  for (int axis = 0; axis < 3; ++axis)
+  {
+    const ulong low = 6 * info.first + 2 * axis * info.stride + i, high = low + info.stride;
+    const float h = info.spacing[axis], tau = t * h;
+    // How near to a face it is scattered: 1 - 2 t / tau for a mean depth t.
+    const float towards = length > 0.0f ? 2.0f * (first_moments[low] - first_moments[high]) / length : 0.0f;
+    const float r = clamp(fabs(towards), 0.0f, 0.9999f);
+    first_moments[low] = first_moments[high] = 0.0f;
+    if (tau <= 0.0f || r <= 0.0f || s <= 0.0f)
+    {
+      continue;
+    }
+    const float fall = fall_of(r) / tau;
+    const float place = clamp(2.0f * (log2(fmax(fall, 1e-6f)) - FirstProfile), 0.0f, ResponseProfiles - 1.001f);
+    const float v = place - floor(place);
+    const __global float* nearest = falling + (int)place * ResponseValues;
+    const layer_response slow = response_of(nearest, s / t, tau);
+    const layer_response fast = response_of(nearest + ResponseValues, s / t, tau);
+    const float falls = fmin(fall * exp2((float)-FirstProfile), 1.0f); // light that hardly falls off shines evenly
+    const float differs = falls * mix(slow.differs, fast.differs, v);
+    const float alike = falls * mix(slow.alike, fast.alike, v);
+    const float side = towards > 0.0f ? differs : -differs;
+    // Over what the voxel's faces across the axis let out of an even source.
+    const float per_face = 0.5f * M_1_PI_F * s * t * length * h / (info.spacing[0] * info.spacing[1] * info.spacing[2]);
+    of_lamps[low] += per_face * (alike + side);
+    of_lamps[high] += per_face * (alike - side);
+  }
+  all_path[info.first + i] += length;
+  path[info.first + i] = 0.0f;
+}

@@ -1,0 +1,71 @@
+#pragma once
+
+#include "LightPropagation/Angular/SweptDirections.h"
+#include "LightPropagation/Problem/MediumOnDevice.h"
+#include "LightPropagation/Problem/PropagationProblem.h"
+#include "LightPropagation/Sweep/VolumeLayout.h"
+#include "LightPropagation/ThickVoxels/OctantSourcesShared.h"
+
+#include <array>
+#include <map>
+
+namespace tyndall
+{
+/// Light of thick voxels, one order after the other: it is scattered near the faces that it came in through, and shines
+/// back through these more than through those beyond. Sweeps take what a voxel scatters as even in it, but for what
+/// shines out of it into each octant of directions; what does not get out stays, so that power is kept. That is found of
+/// the light that came in through both faces across each axis, by the exact response of a layer as thick as the voxel
+/// (numerics.md, section 6.5).
+class OctantSources
+{
+public:
+  /// Whether any voxel is so thick that it matters.
+  static bool AreThick(const PropagationProblem& problem);
+  /// Whether some are, scattering is isotropic and the source left to the solver; and all light comes in through voxels'
+  /// faces, or from lamps.
+  static bool Matter(const PropagationProblem& problem, bool otherSources);
+
+  /// @param medium  on the device; must stay
+  /// @param lamps  there are some
+  OctantSources(Device& device, const PropagationProblem& problem, const VolumeLayout& layout,
+    const MediumOnDevice& medium, bool lamps);
+
+  /// For Deposit::partialCurrents of every sweep.
+  const Buffer<float>& Currents() const { return this->OfSweep; }
+  /// For SweepRequest::octantSource.
+  const Buffer<float>& Sources() const { return this->Found; }
+
+  /// Takes over what came in through voxels' faces along some directions, which must stay.
+  void TakeIncoming(const SweptDirections& along);
+  /// The arrays that one lamp adds to, and takes over what it did: first scattered light near the faces.
+  const Buffer<float>& LampPath() const { return this->PathOfLamp; }
+  const Buffer<float>& LampMoments() const { return this->MomentsOfLamp; }
+  void TakeLamp(const Buffer<float>& allPath);
+  /// The sources of what is scattered of all light that was taken since the last time.
+  /// @param source  W / (length^3 sr), of the sweep that the last of it came in with
+  void Find(const Buffer<float>& source);
+
+private:
+  /// Of rays along some directions (CrossingPattern.h).
+  struct Crossings
+  {
+    Buffer<float> values;
+    std::array<int, 6> first;
+    double perRadiance;
+  };
+  const Crossings& CrossingsOf(const SweptDirections& along);
+  OctantSourceInfo InfoOf(int channel) const;
+  void Run(cl::Kernel& kernel) const;
+
+  Device& TheDevice;
+  const PropagationProblem& Problem;
+  const VolumeLayout Layout;
+  const MediumOnDevice& TheMedium;
+  Buffer<float> OfSweep, Incoming;                  ///< [channel][face][stride]
+  Buffer<float> Found;                              ///< [channel][octant][stride]
+  Buffer<float> PathOfLamp, MomentsOfLamp, OfLamps; ///< as Deposit has them; [channel][face][stride]
+  Buffer<float> Diffuse, Falling;                   ///< VoxelResponse
+  std::map<const SweptDirections*, Crossings> Patterns;
+  bool LampsShine = false; ///< in what is found next
+};
+}
