@@ -30,6 +30,7 @@ tyndall::PropagationSource SourceOf(int source)
   {
     case vtkLightPropagationMaps::CONSTANT: return tyndall::PropagationSource::Constant;
     case vtkLightPropagationMaps::LINEAR: return tyndall::PropagationSource::Linear;
+    case vtkLightPropagationMaps::OCTANTS: return tyndall::PropagationSource::Octants;
     default: return tyndall::PropagationSource::Automatic;
   }
 }

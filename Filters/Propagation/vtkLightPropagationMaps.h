@@ -83,9 +83,10 @@ public:
 
   enum Sources
   {
-    CONSTANT = 0,        ///< in each voxel, as published
-    LINEAR = 1,          ///< from voxel centre to voxel centre: right however thick voxels are
-    AUTOMATIC_SOURCE = 2 ///< linear where orders are accelerated
+    CONSTANT = 0,         ///< in each voxel, as published
+    LINEAR = 1,           ///< from voxel centre to voxel centre: right however thick voxels are
+    AUTOMATIC_SOURCE = 2, ///< linear where orders are accelerated
+    OCTANTS = 3           ///< the same, but of thick voxels by octant: right where they absorb much
   };
 
   enum Accelerations
@@ -113,9 +114,9 @@ public:
   ///@}
 
   ///@{
-  /// How the light that a voxel sends out is spread over it (conservative scheme): CONSTANT, LINEAR, or
-  /// AUTOMATIC_SOURCE (default).
-  tyndallSetRangeMacro(Source, int, CONSTANT, AUTOMATIC_SOURCE);
+  /// How the light that a voxel sends out is spread over it (conservative scheme): CONSTANT, LINEAR,
+  /// AUTOMATIC_SOURCE (default), or OCTANTS.
+  tyndallSetRangeMacro(Source, int, CONSTANT, OCTANTS);
   vtkGetMacro(Source, int);
   ///@}
 

@@ -7,9 +7,12 @@ namespace tyndall
 /// How the light that a voxel sends out is spread over it.
 enum class PropagationSource
 {
-  Automatic, ///< linear where orders are accelerated; else constant, but by octant where voxels are thick (section 6.5)
+  Automatic, ///< constant, or linear where orders are accelerated
   Constant,  ///< as published
-  Linear     ///< from voxel centre to voxel centre (numerics.md, section 7): right however thick voxels are
+  Linear,    ///< from voxel centre to voxel centre (numerics.md, section 7): right however thick voxels are
+  /// As Automatic, but where orders are added up one by one thick voxels shine back more through faces that light came
+  /// in through (section 6.5): right however much they absorb, at three to four times the time of an order.
+  Octants
 };
 
 /// How scattering orders are added up.

@@ -34,6 +34,8 @@ Scene Layers(int axis, int across, int layers, double perVoxel, double albedo, d
     scene.sigma_s[i] = inside ? static_cast<float>(perVoxel * albedo) : 0.0f;
   }
   scene.settings.adaptDirections = false;
+  scene.settings.source = PropagationSource::Octants;
+  scene.settings.acceleration = PropagationAcceleration::None;
   scene.settings.periodic = { true, true, true };
   scene.settings.periodic[axis] = false;
   if (cosine > 0.0)
@@ -57,6 +59,7 @@ double Reflected(const LightField& light, int axis)
 
 double ExactlyReflected(Scene scene, int axis)
 {
+  scene.settings.source = PropagationSource::Automatic;
   scene.Attach();
   return Reflected(SolvePlaneParallel(scene.medium, scene.light, scene.settings), axis);
 }
@@ -102,6 +105,7 @@ TEST_F(ThickVoxels, SendBackWhatCubesDoThroughEachFace)
   for (int face = 0; face < 6; ++face)
   {
     Scene scene({ 20, 20, 20 }, 1.25f, 1.25f);
+    scene.settings.source = PropagationSource::Octants;
     scene.light.faces[face] = { 1.0, 1.0, 1.0 };
     const LightField light = scene.Solve(this->GetDevice());
     EXPECT_NEAR(light.facePowerOut[face][0] / light.balance.entered[0] / cube.part[0], 1.0, 0.01) << face;
@@ -113,6 +117,7 @@ TEST_F(ThickVoxels, KeepEvenLightEven)
   // All that is absorbed is emitted, in voxels of 0.03 to 30 mean free paths.
   Scene scene({ 9, 7, 8 });
   scene.Randomise(30.0, 3.0, 0.6, 11);
+  scene.settings.source = PropagationSource::Octants;
   scene.emission = scene.sigma_a;
   scene.settings.emissionError = 0.0;
   scene.settings.tolerance = 1e-6;
@@ -128,6 +133,7 @@ TEST_F(ThickVoxels, AddUpTheLightOfBothLamps)
   const auto solve = [&](bool first, bool second) {
     Scene scene({ 7, 9, 6 });
     scene.Randomise(8.0, 2.0, 0.5, 3);
+    scene.settings.source = PropagationSource::Octants;
     scene.settings.tolerance = 1e-6;
     if (first)
     {
@@ -153,6 +159,7 @@ TEST_F(ThickVoxels, AreLookedForAndLeftOutWhereThereAreNone)
 {
   const auto leftOut = [&](float sigma) {
     Scene scene({ 5, 6, 7 }, sigma, sigma);
+    scene.settings.source = PropagationSource::Octants;
     scene.light.faces[2] = { 1.0, 1.0, 1.0 };
     return scene.Solve(this->GetDevice()).leftOut;
   };

@@ -486,7 +486,7 @@ std::vector<std::string> SourceIteration::LeftOut() const
   {
     words.push_back(left_out::EmptySlabs(this->Parts.Problem.Traits().filled, this->Parts.Layout.grid));
   }
-  if (this->Parts.Problem.Traits().scatters && !OctantSources::AreThick(this->Parts.Problem))
+  if (this->Settings.source == PropagationSource::Octants && !OctantSources::AreThick(this->Parts.Problem))
   {
     words.emplace_back(left_out::ThinVoxels);
   }

@@ -31,6 +31,7 @@ constexpr AcceleratedTime InUnevenMedia = { 7.0, 7.0, 3.0 };
 constexpr double Uneven = 1.5; ///< the thickest line over the mean of all, each as much as lies in it
 /// Sweeps are dear in moments, and a slab's diffusion system is small: of these the sums alone were measured.
 constexpr AcceleratedTime InMoments = { 5.0, 8.0, 1.0 };
+constexpr AcceleratedTime InMomentsOfThickVoxels = { 8.0, 8.0, 3.0 };
 constexpr AcceleratedTime InSlab = { 3.0, 5.0, 1.0 };
 constexpr double PlainSetUp = 0.8; ///< of orders one after the other: measured 0.8 in 100^3 voxels, 2 in 40^3
 
@@ -174,9 +175,9 @@ const AcceleratedTime& AcceleratedTimeOf(const PropagationProblem& problem)
   {
     return InSlab;
   }
-  if (problem.Scattering().Degree() > 0 && !HasThickVoxels(problem))
+  if (problem.Scattering().Degree() > 0)
   {
-    return InMoments;
+    return HasThickVoxels(problem) ? InMomentsOfThickVoxels : InMoments;
   }
   bool uneven = false;
   for (int c = 0; c < problem.Channels(); ++c)

@@ -111,7 +111,7 @@ __kernel void find_octant_sources(OctantSourceInfo info, const __global float* s
       more[axis][d] = info.leftOut[axis] ? 0.0f : s * (alike + (d ? -differs : differs));
       if (lamps)
       {
-        more[axis][d] += of_lamps[face];
+        more[axis][d] += info.leftOut[axis] ? 0.0f : of_lamps[face];
         of_lamps[face] = 0.0f;
       }
     }

@@ -12,6 +12,9 @@ namespace tyndall
 namespace
 {
 constexpr double Thick = 0.2; ///< mean free paths a voxel: thinner ones send back up to 1% too little
+/// Mean free paths a voxel: what does not get out of thicker ones is so little beside what is scattered in them that floats
+/// do not tell it.
+constexpr double Opaque = 1e4;
 }
 
 bool OctantSources::AreThick(const PropagationProblem& problem)
@@ -23,7 +26,8 @@ bool OctantSources::Matter(const PropagationProblem& problem, bool otherSources)
 {
   const PropagationSettings& settings = problem.Settings();
   return problem.Traits().scatters && problem.Scattering().Degree() == 0 && !otherSources && !settings.firstMoments &&
-    settings.maximumOrders != 1 && settings.source == PropagationSource::Automatic && AreThick(problem);
+    settings.maximumOrders != 1 && settings.source == PropagationSource::Octants && AreThick(problem) &&
+    !AnyVoxelIsThickerThan(Opaque, problem.TheMedium());
 }
 
 OctantSources::OctantSources(Device& device, const PropagationProblem& problem, const VolumeLayout& layout,

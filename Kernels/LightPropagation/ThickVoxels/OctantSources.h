@@ -21,7 +21,7 @@ class OctantSources
 public:
   /// Whether any voxel is so thick that it matters.
   static bool AreThick(const PropagationProblem& problem);
-  /// Whether some are, scattering is isotropic and the source left to the solver; and all light comes in through voxels'
+  /// Whether some are, none is opaque, scattering is isotropic and the source is to be by octant; and all light comes in through voxels'
   /// faces, or from lamps.
   static bool Matter(const PropagationProblem& problem, bool otherSources);
 
