@@ -11,8 +11,8 @@
 
 namespace tyndall
 {
-/// Memory of a vtkAOSDataArrayTemplate that is a vector's, whoever holds it last: arrays that are shallow copies of each
-/// other share it.
+/// Memory of a vtkAOSDataArrayTemplate that is a vector's, whoever holds it last: arrays that are shallow copies of
+/// each other share it.
 template <class Value>
 class VectorBuffer : public vtkBuffer<Value>
 {

@@ -1,5 +1,5 @@
-// Orders added up one after the other where voxels are thick and absorb: light is scattered near the faces that it comes
-// in through (numerics.md, section 6.5).
+// Orders added up one after the other where voxels are thick and absorb: light is scattered near the faces that it
+// comes in through (numerics.md, section 6.5).
 
 #include "DeviceTest.h"
 #include "MediumScene.h"
@@ -17,8 +17,8 @@ using namespace tyndall;
 
 namespace
 {
-/// Equal layers along an axis, voxels of a length of 1, in columns; between clear ones. Solved along rays through voxels,
-/// though nothing varies along two axes.
+/// Equal layers along an axis, voxels of a length of 1, in columns; between clear ones. Solved along rays through
+/// voxels, though nothing varies along two axes.
 /// @param cosine  of a beam of power 1 through the lower face; 0: diffuse light
 Scene Layers(int axis, int across, int layers, double perVoxel, double albedo, double cosine, int clear = 0)
 {

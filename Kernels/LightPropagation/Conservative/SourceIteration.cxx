@@ -419,8 +419,8 @@ void SourceIteration::GatherMoments()
   }
 }
 
-/// Rounding, and what the last sweeps would have taken away, can leave dark voxels a little below 0; and what shines out
-/// of thick voxels, behind them.
+/// Rounding, and what the last sweeps would have taken away, can leave dark voxels a little below 0; and what shines
+/// out of thick voxels, behind them.
 void SourceIteration::CutOffNegative()
 {
   std::vector<float> fluence = this->Parts.Fluence.Read();

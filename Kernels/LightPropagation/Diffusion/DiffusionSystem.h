@@ -49,7 +49,8 @@ public:
     /// W, [channel][-x, +x, -y, +y, -z, +z][stride]: lamps' light that passes a face at once where it is scattered
     /// (LampPassing.h); null: voxels are thin, or there are no lamps
     const Buffer<float>* passed;
-    /// W / (length^3 sr), [channel][stride]: what lamps' light is first scattered, less what passes; where that is there
+    /// W / (length^3 sr), [channel][stride]: what lamps' light is first scattered, less what passes; where that is
+    /// there
     const Buffer<float>* ofLamps;
     /// W, [row of DiffusionShared.h][cell of BoxFaces.h]: light by cells of the box's faces, the last row of which
     /// Outflow() writes; null: no face gives back light, and it is not asked for

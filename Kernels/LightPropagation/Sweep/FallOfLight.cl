@@ -2,8 +2,8 @@
 
 #pragma once
 
-// b tau, where light is lost as exp(-b t) over the depth tau, of r = 1 - 2 t / tau for its mean depth t, 0 <= r < 1: the
-// inverse of Langevin's function coth(x) - 1 / x at x = b tau / 2, to 0.2% (Petrosyan 2017).
+// b tau, where light is lost as exp(-b t) over the depth tau, of r = 1 - 2 t / tau for its mean depth t, 0 <= r < 1:
+// the inverse of Langevin's function coth(x) - 1 / x at x = b tau / 2, to 0.2% (Petrosyan 2017).
 static float fall_of(float r)
 {
   return 2.0f * (3.0f * r + 0.2f * r * r * sin(3.5f * r) + r * r * r / (1.0f - r));

@@ -12,8 +12,8 @@ namespace tyndall
 namespace
 {
 constexpr double Thick = 0.2; ///< mean free paths a voxel: thinner ones send back up to 1% too little
-/// Mean free paths a voxel: what does not get out of thicker ones is so little beside what is scattered in them that floats
-/// do not tell it.
+/// Mean free paths a voxel: what does not get out of thicker ones is so little beside what is scattered in them that
+/// floats do not tell it.
 constexpr double Opaque = 1e4;
 }
 

@@ -13,16 +13,16 @@ namespace tyndall
 {
 /// Light of thick voxels, one order after the other: it is scattered near the faces that it came in through, and shines
 /// back through these more than through those beyond. Sweeps take what a voxel scatters as even in it, but for what
-/// shines out of it into each octant of directions; what does not get out stays, so that power is kept. That is found of
-/// the light that came in through both faces across each axis, by the exact response of a layer as thick as the voxel
-/// (numerics.md, section 6.5).
+/// shines out of it into each octant of directions; what does not get out stays, so that power is kept. That is found
+/// of the light that came in through both faces across each axis, by the exact response of a layer as thick as the
+/// voxel (numerics.md, section 6.5).
 class OctantSources
 {
 public:
   /// Whether any voxel is so thick that it matters.
   static bool AreThick(const PropagationProblem& problem);
-  /// Whether some are, none is opaque, scattering is isotropic and the source is to be by octant; and all light comes in through voxels'
-  /// faces, or from lamps.
+  /// Whether some are, none is opaque, scattering is isotropic and the source is to be by octant; and all light comes
+  /// in through voxels' faces, or from lamps.
   static bool Matter(const PropagationProblem& problem, bool otherSources);
 
   /// @param medium  on the device; must stay

@@ -16,8 +16,8 @@ namespace tyndall
 namespace
 {
 constexpr int RaysPerEdge = 2; ///< of a voxel
-/// The same where first moments are asked for: with few rays a slanting beam comes into some voxels through one face and
-/// into those beside through another, and each seems to be lit from its own side.
+/// The same where first moments are asked for: with few rays a slanting beam comes into some voxels through one face
+/// and into those beside through another, and each seems to be lit from its own side.
 constexpr int RaysPerThickEdge = 8;
 
 /// Adds what a beam deposited, and its first moments, which are found from the powers through the voxels' faces.
