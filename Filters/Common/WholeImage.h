@@ -124,7 +124,7 @@ inline void KeepWhatIsAskedFor(vtkInformation* information, vtkImageData* output
 /// In RequestData: the extent of an output that shows only when it is made. The pipeline had to guess it, and would run
 /// the filter again for what the guess has beyond it.
 /// @param asking  the port that asks: VTK takes it that all ports then have its piece
-inline void TellExtent(vtkInformation* asking, vtkInformation* information, int extent[6])
+inline void TellExtent(vtkInformation* asking, vtkInformation* information, const int extent[6])
 {
   using Pipeline = vtkStreamingDemandDrivenPipeline;
   information->Set(Pipeline::WHOLE_EXTENT(), extent, 6);

@@ -143,15 +143,8 @@ double SumOfSquares(const float* values, std::size_t count)
 
 double SumOfSquares(const std::vector<float>& values)
 {
-  constexpr std::size_t OfPart = 32768; // parts are added in their order, on however many cores they were found
-  std::vector<double> sums((values.size() + OfPart - 1) / OfPart, 0.0);
-  tyndall::InThreads(sums.size(), 2, [&](std::size_t begin, std::size_t end) {
-    for (std::size_t part = begin; part < end; ++part)
-    {
-      sums[part] = SumOfSquares(values.data() + part * OfPart, std::min(OfPart, values.size() - part * OfPart));
-    }
-  });
-  return std::accumulate(sums.begin(), sums.end(), 0.0);
+  return tyndall::SumInThreads(values.size(), 32768,
+    [&](std::size_t begin, std::size_t end) { return SumOfSquares(values.data() + begin, end - begin); });
 }
 
 void Write(tyndall::ReconstructedLight&& light, vtkImageData* output)

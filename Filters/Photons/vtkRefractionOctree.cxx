@@ -109,8 +109,7 @@ int vtkRefractionOctree::RequestData(
     {
       this->NodeCount = tyndall::FillWithNodes(tyndall::GridOf(image), octree, nodes);
     }
-    tyndall::TellExtent(
-      tyndall::AskingPort(request, outputs), outputs->GetInformationObject(1), const_cast<int*>(nodes->GetExtent()));
+    tyndall::TellExtent(tyndall::AskingPort(request, outputs), outputs->GetInformationObject(1), nodes->GetExtent());
     vtkImageData* output = vtkImageData::GetData(outputs, 0);
     tyndall::PassOn(image, output);
     AddLevels(output, std::move(octree.levels));

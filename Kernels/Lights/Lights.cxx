@@ -182,6 +182,11 @@ std::string FaceName(std::size_t face)
 {
   return std::to_string(face) + " (-x, +x, -y, +y, -z, +z)";
 }
+
+bool AnyShines(const std::array<Rgb, 6>& faces)
+{
+  return std::any_of(faces.begin(), faces.end(), [](const Rgb& face) { return Sum(face) > 0.0; });
+}
 }
 
 bool Shines(const Illumination& illumination)
@@ -190,16 +195,14 @@ bool Shines(const Illumination& illumination)
   return Sum(illumination.sky) > 0.0 ||
     std::any_of(illumination.lights.begin(), illumination.lights.end(),
       [](const Light& light) { return Sum(light.power) > 0.0; }) ||
-    std::any_of(
-      illumination.faces.begin(), illumination.faces.end(), [](const Rgb& face) { return Sum(face) > 0.0; }) ||
+    AnyShines(illumination.faces) ||
     std::any_of(pixels.begin(), pixels.end(), [](float pixel) { return pixel > 0.0f; }) ||
     illumination.uncollided.IsThere();
 }
 
 bool ShinesThroughFaces(const Illumination& illumination)
 {
-  return Sum(illumination.sky) > 0.0 || !illumination.environment.Empty() ||
-    std::any_of(illumination.faces.begin(), illumination.faces.end(), [](const Rgb& face) { return Sum(face) > 0.0; });
+  return Sum(illumination.sky) > 0.0 || !illumination.environment.Empty() || AnyShines(illumination.faces);
 }
 
 bool Reflects(const Illumination& illumination)

@@ -4,7 +4,6 @@
 
 #include "LightPropagation/Conservative/ConservativePropagation.h"
 
-#include <array>
 #include <cmath>
 
 using namespace tyndall;
@@ -27,10 +26,10 @@ std::vector<float> Along(Device& device, const TargetScene& scene, int direction
   return SolveConservative(device, scene.medium, scene.light, settings).fluence;
 }
 
-/// What two solves are off, relative, root mean square; and the cosine between the two as vectors.
+/// What one of two solves is off, relative, root mean square; and the cosine between the errors of both as vectors.
 struct Errors
 {
-  double one = 0.0, other = 0.0, cosine = 0.0;
+  double one = 0.0, cosine = 0.0;
 };
 
 Errors Compare(const std::vector<float>& one, const std::vector<float>& other, const std::vector<float>& exact)
@@ -44,7 +43,7 @@ Errors Compare(const std::vector<float>& one, const std::vector<float>& other, c
     product += first * second;
     all += truth * truth;
   }
-  return { std::sqrt(ones / all), std::sqrt(others / all), product / std::sqrt(ones * others) };
+  return { std::sqrt(ones / all), product / std::sqrt(ones * others) };
 }
 
 void AddRow(Table& table, const TargetScene& scene, const char* what, const std::vector<std::vector<float>>& found,

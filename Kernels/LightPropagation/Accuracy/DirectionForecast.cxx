@@ -56,14 +56,14 @@ double Difference(const LightField& one, const LightField& other, const Part& pa
 
 DirectionForecast::DirectionForecast(
   const LightField& few, int fewDirections, const LightField& more, int moreDirections)
-  : Fallen(std::hypot(FallenTo(fewDirections), FallenTo(moreDirections)))
+  : Fallen(std::hypot(FallenTo(fewDirections), FallenTo(moreDirections)) / OnFinerGrid)
   , Sweeps(std::max(LeastSweeps, static_cast<double>(more.convergence.size())))
 {
   const auto direct = [](
                         const LightField& light, std::size_t i) { return static_cast<double>(light.fluenceDirect[i]); };
   const auto scattered = [&](const LightField& light, std::size_t i) { return light.fluence[i] - direct(light, i); };
-  this->OfUncollided = OnFinerGrid * Difference(few, more, direct) / this->Fallen;
-  this->OfScattered = OnFinerGrid * Difference(few, more, scattered) / this->Fallen;
+  this->OfUncollided = Difference(few, more, direct) / this->Fallen;
+  this->OfScattered = Difference(few, more, scattered) / this->Fallen;
 }
 
 double DirectionForecast::UncollidedPart() const
@@ -75,8 +75,8 @@ double DirectionForecast::UncollidedPart() const
 void DirectionForecast::Separate(const LightField& few, const LightField& between, const LightField& more)
 {
   const auto whole = [](const LightField& light, std::size_t i) { return static_cast<double>(light.fluence[i]); };
-  this->OfUncollided = OnFinerGrid * Difference(few, between, whole) / this->Fallen;
-  this->OfScattered = OnFinerGrid * Difference(between, more, whole) / this->Fallen;
+  this->OfUncollided = Difference(few, between, whole) / this->Fallen;
+  this->OfScattered = Difference(between, more, whole) / this->Fallen;
   this->Separated = true;
 }
 

@@ -35,7 +35,7 @@ public:
   void Correct(double factor);
 
 private:
-  double Fallen;                                ///< the difference of the two solves over the error along 9
+  double Fallen; ///< the difference of the two solves over the error along 9 on the finer grid
   double OfUncollided = 0.0, OfScattered = 0.0; ///< errors of 9 directions a face
   bool Separated = false;
   double Sweeps = 1.0;

@@ -172,16 +172,16 @@ private:
     return room < LeastRoom * this->Goal ? 0.0 : room;
   }
 
-  /// The cheapest along which directions leave at most that; those used, where they do or no others are better.
-  PropagationSettings Within(double room)
+  /// The cheapest along which directions leave at most that; nothing where those used do, or no others are better.
+  std::optional<PropagationSettings> BetterWithin(double room)
   {
     if (this->Parts.inDirections <= room)
     {
-      return this->Used;
+      return {};
     }
     this->Forecast->Correct(this->Parts.inDirections / this->Forecast->Error(this->Used));
     const PropagationSettings better = this->Forecast->Cheapest(this->Asked, DirectionPart * room);
-    return this->Forecast->Error(better) < this->Forecast->Error(this->Used) ? better : this->Used;
+    return this->Forecast->Error(better) < this->Forecast->Error(this->Used) ? std::optional(better) : std::nullopt;
   }
 
   /// Once more on the grid itself, if directions are off by more than there is room for, or by much: voxels of half
@@ -189,14 +189,13 @@ private:
   void TryBetterDirections()
   {
     const double room = std::max(this->RoomBeside(this->Parts.inSpace), LeastRoom * this->Goal);
-    if (this->Parts.inSpace > MuchTooCoarse * this->Goal || this->Parts.inDirections <= room)
+    if (this->Parts.inSpace > MuchTooCoarse * this->Goal)
     {
       return;
     }
-    const PropagationSettings better = this->Within(room);
-    if (this->Forecast->Error(better) < this->Forecast->Error(this->Used))
+    if (const std::optional<PropagationSettings> better = this->BetterWithin(room))
     {
-      this->SolveAlong(better, 0.4, 0.6);
+      this->SolveAlong(*better, 0.4, 0.6);
     }
   }
 
@@ -225,11 +224,10 @@ private:
     {
       return;
     }
-    const PropagationSettings along = this->Within(room);
-    if (this->Forecast->Error(along) < this->Forecast->Error(this->Used))
+    if (const std::optional<PropagationSettings> better = this->BetterWithin(room))
     {
-      this->Used = along;
-      this->Parts.inDirections = this->Forecast->Error(along);
+      this->Used = *better;
+      this->Parts.inDirections = this->Forecast->Error(*better);
     }
     if (this->Parts.inDirections <= room)
     {

@@ -20,7 +20,8 @@ constexpr double Extrapolation = 1.42 / 2.0;
 constexpr double ThickVoxel = 10.0; ///< mean free paths along its longest edge, with which diffusion may gain nothing
 
 /// What an accelerated solve takes, in plain scattering orders of the same scene (`./run bench thick`): to set it up
-/// and to finish it, and of each row a sweep and its correction. The one place that knows.
+/// and to finish it, and of each row a sweep and its correction. UncollidedDirections.cxx has an older figure of its
+/// own.
 struct AcceleratedTime
 {
   double setUp, rows, correction;
@@ -99,10 +100,16 @@ Lines ThickLines(const Grid& grid, const Extinction& sigma_t)
   return thick;
 }
 
-Lines DiffusingLines(const PropagationProblem& problem, int channel)
+/// Of each channel, as light diffuses.
+std::vector<Lines> DiffusingLines(const PropagationProblem& problem)
 {
-  return ThickLines(problem.TheGrid(),
-    [&](std::size_t i) { return static_cast<double>(problem.TheMedium().TransportSigmaT(i, channel)); });
+  std::vector<Lines> lines;
+  for (int c = 0; c < problem.Channels(); ++c)
+  {
+    lines.push_back(
+      ThickLines(problem.TheGrid(), [&](std::size_t i) { return double(problem.TheMedium().TransportSigmaT(i, c)); }));
+  }
+  return lines;
 }
 
 /// Of both faces across an axis. A face that reflects sends light back as if the medium went on there, at most as a
@@ -132,10 +139,10 @@ double AlbedoOf(const PropagationProblem& problem, int channel)
 
 /// What leaks out along axes that are not periodic, of the slowest mode, over what is extinguished (numerics.md,
 /// Eq. (86)).
-double Leak(const PropagationProblem& problem, int channel)
+/// @param longest  lines as light diffuses, of the channel
+double Leak(const PropagationProblem& problem, int channel, const std::array<double, 3>& longest)
 {
   const Grid& grid = problem.TheMedium().grid;
-  const std::array<double, 3> longest = DiffusingLines(problem, channel).along;
   // Light diffuses as far as transport has it, but is scattered more often: each order does less.
   const bool inMoments = problem.Scattering().Degree() > 0;
   const std::array<double, 3> scattered = inMoments
@@ -169,7 +176,7 @@ bool HasThickVoxels(const PropagationProblem& problem)
   return false;
 }
 
-const AcceleratedTime& AcceleratedTimeOf(const PropagationProblem& problem)
+const AcceleratedTime& AcceleratedTimeOf(const PropagationProblem& problem, const std::vector<Lines>& lines)
 {
   if (problem.IsSlab())
   {
@@ -179,28 +186,31 @@ const AcceleratedTime& AcceleratedTimeOf(const PropagationProblem& problem)
   {
     return HasThickVoxels(problem) ? InMomentsOfThickVoxels : InMoments;
   }
-  bool uneven = false;
-  for (int c = 0; c < problem.Channels(); ++c)
-  {
-    uneven = uneven || DiffusingLines(problem, c).uneven;
-  }
+  const bool uneven = std::any_of(lines.begin(), lines.end(), [](const Lines& ofChannel) { return ofChannel.uneven; });
   return uneven ? InUnevenMedia : InEvenMedia;
 }
-}
 
-double OrdersNeeded(const PropagationProblem& problem)
+double OrdersAlong(const PropagationProblem& problem, const std::vector<Lines>& lines)
 {
   double slowest = 0.0;
   for (int c = 0; c < problem.Channels(); ++c)
   {
-    slowest = std::max(slowest, AlbedoOf(problem, c) / (1.0 + Leak(problem, c)));
+    slowest = std::max(slowest, AlbedoOf(problem, c) / (1.0 + Leak(problem, c, lines[c].along)));
   }
   return slowest <= 0.0 ? 0.0 : slowest >= 1.0 ? 1e30 : std::log(UsualTolerance) / std::log(slowest);
 }
 
+}
+
+double OrdersNeeded(const PropagationProblem& problem)
+{
+  return OrdersAlong(problem, DiffusingLines(problem));
+}
+
 bool ScatteredManyTimes(const PropagationProblem& problem)
 {
-  return PlainSetUp + OrdersNeeded(problem) > AcceleratedTimeOf(problem).InOrders();
+  const std::vector<Lines> lines = DiffusingLines(problem);
+  return PlainSetUp + OrdersAlong(problem, lines) > AcceleratedTimeOf(problem, lines).InOrders();
 }
 
 bool ToBeAccelerated(const PropagationProblem& problem)

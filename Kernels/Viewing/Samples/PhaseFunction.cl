@@ -24,6 +24,32 @@ inline real between_rows(__global const float* rows, real place, int last)
   return fma(part, high - low, low);
 }
 
+// Of a table, bilinear: at `spread` rows from its first one, and by a cosine c, sqrt(1 - c) forwards and
+// 2 - sqrt(1 + c) backwards in `columns` of equal width; there are two columns more.
+inline real between_cosines(__global const float* rows, real spread, real cosine, int columns)
+{
+  const real c = lesser(greater(cosine, (real)(-1.0f)), (real)1.0f);
+  const real aside = sqrt((real)1.0f - fabs(c)) * (real)(0.5f * columns);
+  const real place = c > (real)0.0f ? aside : (real)(float)columns - aside;
+  const integer row = to_integer(spread);
+  const real part = spread - to_real(row);
+  const integer column = to_integer(place);
+  const real beside = place - to_real(column);
+  real near_low, near_high, far_low, far_high;
+#define LOOK(n)                                                                       \
+  {                                                                                   \
+    __global const float* at = rows + LANE(row, n) * (columns + 2) + LANE(column, n); \
+    LANE(near_low, n) = at[0];                                                        \
+    LANE(near_high, n) = at[1];                                                       \
+    LANE(far_low, n) = at[columns + 2];                                               \
+    LANE(far_high, n) = at[columns + 3];                                              \
+  }
+  EACH_LANE(LOOK)
+#undef LOOK
+  const real near = fma(beside, near_high - near_low, near_low);
+  return fma(part, fma(beside, far_high - far_low, far_low) - near, near);
+}
+
 // Henyey and Greenstein's of mean cosine |b|, Eq. (107).
 //   square  b.b, b the light's mean direction times g
 //   along   b.v, v the ray's direction, away from the eye
@@ -52,27 +78,8 @@ inline real schlick(real square, real along, __global const float* rows)
 inline real spread_rows(real square, real along, __global const float* rows)
 {
   const real size = lesser(sqrt(square), (real)1.0f);
-  const real cosine = lesser(greater(-along / greater(size, (real)1e-10f), (real)(-1.0f)), (real)1.0f);
-  const real aside = sqrt((real)1.0f - fabs(cosine)) * (real)(0.5f * CosineRows);
-  const real place = cosine > (real)0.0f ? aside : (real)(float)CosineRows - aside;
-  const real spread = sqrt((real)1.0f - size) * (real)(float)SpreadRows;
-  const integer row = to_integer(spread);
-  const real part = spread - to_real(row);
-  const integer column = to_integer(place);
-  const real beside = place - to_real(column);
-  real near_low, near_high, far_low, far_high;
-#define LOOK(n)                                                                          \
-  {                                                                                      \
-    __global const float* at = rows + LANE(row, n) * (CosineRows + 2) + LANE(column, n); \
-    LANE(near_low, n) = at[0];                                                           \
-    LANE(near_high, n) = at[1];                                                          \
-    LANE(far_low, n) = at[CosineRows + 2];                                               \
-    LANE(far_high, n) = at[CosineRows + 3];                                              \
-  }
-  EACH_LANE(LOOK)
-#undef LOOK
-  const real near = fma(beside, near_high - near_low, near_low);
-  return fma(part, fma(beside, far_high - far_low, far_low) - near, near);
+  return between_cosines(
+    rows, sqrt((real)1.0f - size) * (real)(float)SpreadRows, -along / greater(size, (real)1e-10f), CosineRows);
 }
 #endif
 

@@ -138,31 +138,11 @@ inline rgb phase_at(real cosine, phase_parameters p, __global const float* rows)
 }
 
 #if AUREOLE
-// Of a table of Aureole.h times the depth, bilinear: by the cosine as the rows of PhaseFunction.cl, and by the root of
-// the depth.
+// Of a table of Aureole.h times the depth: by the cosine, and by the root of the depth.
 inline real aureole_at(real cosine, real depth, __global const float* rows)
 {
-  const real c = lesser(greater(cosine, (real)(-1.0f)), (real)1.0f);
-  const real aside = sqrt((real)1.0f - fabs(c)) * (real)(0.5f * AureoleColumns);
-  const real place = c > (real)0.0f ? aside : (real)(float)AureoleColumns - aside;
   const real deep = sqrt(lesser(depth * (real)(1.0f / AureoleDepth), (real)1.0f)) * (real)(float)AureoleRows;
-  const integer row = to_integer(deep);
-  const real part = deep - to_real(row);
-  const integer column = to_integer(place);
-  const real beside = place - to_real(column);
-  real near_low, near_high, far_low, far_high;
-#define LOOK(n)                                                                              \
-  {                                                                                          \
-    __global const float* at = rows + LANE(row, n) * (AureoleColumns + 2) + LANE(column, n); \
-    LANE(near_low, n) = at[0];                                                               \
-    LANE(near_high, n) = at[1];                                                              \
-    LANE(far_low, n) = at[AureoleColumns + 2];                                               \
-    LANE(far_high, n) = at[AureoleColumns + 3];                                              \
-  }
-  EACH_LANE(LOOK)
-#undef LOOK
-  const real near = fma(beside, near_high - near_low, near_low);
-  return depth * fma(part, fma(beside, far_high - far_low, far_low) - near, near);
+  return depth * between_cosines(rows, deep, cosine, AureoleColumns);
 }
 
 // Optical length of all scattering, straight on or not, over that of the extinction that rays are marched with: taken
