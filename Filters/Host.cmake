@@ -6,14 +6,26 @@ if (TYNDALL_WITH_PARAVIEW)
   find_package(ParaView 5.11 QUIET COMPONENTS RemotingServerManager RemotingApplication)
 endif ()
 set(wrapping OFF)
+set(library_destination "${CMAKE_INSTALL_LIBDIR}")
 if (ParaView_FOUND)
   set(TYNDALL_HOST "ParaView ${ParaView_VERSION}")
   set(wrapping ON) # for the client-server streams of the plugin
+  set(TYNDALL_PLUGIN_SUBDIRECTORY "paraview-${ParaView_VERSION_MAJOR}.${ParaView_VERSION_MINOR}/plugins")
+  # Beside the plugin, as ParaView's own: so the library for plain VTK can be installed in the same prefix.
+  set(library_destination "${CMAKE_INSTALL_LIBDIR}/${TYNDALL_PLUGIN_SUBDIRECTORY}/Tyndall")
 else ()
   find_package(VTK 9.1 REQUIRED COMPONENTS
     CommonCore CommonDataModel CommonExecutionModel CommonMath FiltersCore IOCore IOImage IOLegacy IOXML ParallelCore
-    TestingCore)
+    TestingCore WrappingPythonCore)
   set(TYNDALL_HOST "VTK ${VTK_VERSION}")
+  get_target_property(wrapper VTK::WrapPython LOCATION)
+  if (VTK_WRAP_PYTHON AND EXISTS "${wrapper}")
+    set(wrapping ON)
+    include(Filters/TypesOfVTK.cmake)
+    tyndall_make_types(
+      VTK::CommonCore VTK::CommonDataModel VTK::CommonExecutionModel VTK::IOCore
+      VTK::CommonMath VTK::FiltersCore VTK::IOImage VTK::ParallelCore)
+  endif ()
 endif ()
 
 # A vtk.module in the root makes vtk_module_build ask for the binary directory of the whole project. So the module is
@@ -37,12 +49,19 @@ vtk_module_build(
   INSTALL_EXPORT Tyndall
   INSTALL_HEADERS ON
   ENABLE_WRAPPING ${wrapping}
+  VERSION "${PROJECT_VERSION}"
+  SOVERSION "${PROJECT_VERSION_MAJOR}.${PROJECT_VERSION_MINOR}"
   HEADERS_DESTINATION "${CMAKE_INSTALL_INCLUDEDIR}/Tyndall"
+  LIBRARY_DESTINATION "${library_destination}"
+  HIERARCHY_DESTINATION "${CMAKE_INSTALL_LIBDIR}/vtk/hierarchy/Tyndall"
   CMAKE_DESTINATION "${TYNDALL_CMAKE_DESTINATION}"
   TEST_DIRECTORY_NAME NONE)
 
+if (wrapping)
+  include(Filters/Python.cmake)
+endif ()
+
 if (ParaView_FOUND)
-  set(TYNDALL_PLUGIN_SUBDIRECTORY "paraview-${ParaView_VERSION_MAJOR}.${ParaView_VERSION_MINOR}/plugins")
   paraview_plugin_scan(
     PLUGIN_FILES "${PROJECT_SOURCE_DIR}/Plugin/paraview.plugin"
     PROVIDES_PLUGINS plugins
@@ -51,6 +70,8 @@ if (ParaView_FOUND)
     HIDE_PLUGINS_FROM_CACHE ON)
   paraview_plugin_build(
     PLUGINS ${plugins}
+    PLUGINS_FILE_NAME "tyndall.plugins.xml"
+    TARGET_COMPONENT "paraview_plugins" # of that file
     LIBRARY_SUBDIRECTORY "${TYNDALL_PLUGIN_SUBDIRECTORY}")
   set(TYNDALL_PLUGIN
     "${CMAKE_LIBRARY_OUTPUT_DIRECTORY}/${TYNDALL_PLUGIN_SUBDIRECTORY}/Tyndall/Tyndall${CMAKE_SHARED_MODULE_SUFFIX}")

@@ -1,0 +1,241 @@
+"""numpy in, numpy out: the filters in a few lines, for scripts and notebooks.
+
+All arrays are indexed [x, y, z], and a last index holds red, green and blue where there is colour. Lengths are in the
+unit of `spacing`; light is in W of that unit (fluence in W / length^2).
+"""
+import dataclasses
+import warnings
+
+import numpy
+from vtkmodules.util.numpy_support import numpy_to_vtk, vtk_to_numpy
+from vtkmodules.vtkCommonDataModel import vtkDataObject, vtkImageData, vtkTable
+
+from . import vtkTyndall as classes
+
+METHODS = {
+    "maps": classes.vtkLightPropagationMaps,
+    "ordinates": classes.vtkDiscreteOrdinates,
+    "lattice": classes.vtkLatticeBoltzmannLighting,
+}
+
+
+class SolvingError(RuntimeError):
+    """What a filter reported as an error."""
+
+
+@dataclasses.dataclass
+class Light:
+    """What a solver found. `light["name"]` is any cell array of `image`, as it lies in memory there, not a copy."""
+
+    image: vtkImageData  # the medium's voxels with all arrays: for further filters, files, a plotter
+    table: vtkTable  # convergence, a row an iteration
+
+    def __getitem__(self, name):
+        array = self.image.GetCellData().GetArray(name)
+        if array is None:
+            raise KeyError(f"{name}: there is {', '.join(self.names)}")
+        return by_voxels(vtk_to_numpy(array), self.image)
+
+    @property
+    def names(self):
+        data = self.image.GetCellData()
+        return [data.GetArrayName(i) for i in range(data.GetNumberOfArrays())]
+
+    @property
+    def fluence(self):
+        """Radiance integrated over all directions, W / length^2."""
+        return self["fluence"]
+
+    @property
+    def convergence(self):
+        """The columns of the table, by name."""
+        columns = [self.table.GetColumn(i) for i in range(self.table.GetNumberOfColumns())]
+        return {column.GetName(): vtk_to_numpy(column) for column in columns}
+
+    @property
+    def energy_balance(self):
+        """W entered, emitted, absorbed, escaped and left over, each a number or red, green and blue."""
+        tuples = vtk_to_numpy(self.image.GetFieldData().GetArray("energy_balance"))
+        return dict(zip(("entered", "emitted", "absorbed", "escaped", "left over"), tuples))
+
+    @property
+    def left_out(self):
+        """What the scene did not need, a line each."""
+        text = self.image.GetFieldData().GetAbstractArray("left_out")
+        return [text.GetValue(i) for i in range(text.GetNumberOfValues())] if text else []
+
+
+def solve(medium, spacing=1.0, *, origin=(0.0, 0.0, 0.0), extinction=1.0, albedo=0.9, g=0.0, emission=None, lights=None,
+          sky=None, environment=None, method="maps", **properties):
+    """Light that is scattered many times in a medium.
+
+    medium       density of each voxel, [x, y, z] (of which extinction and albedo make the medium); or a dict with
+                 sigma_a, sigma_s and perhaps emission, [x, y, z] or [x, y, z, rgb]; or a vtkImageData with cell arrays
+                 of these names (one of PyVista's is one, where it stands on the same VTK)
+    spacing      edge of a voxel, a number or three
+    extinction   1 / length of density 1: sigma_t = extinction * density
+    albedo       part of it that is scattered, a number or red, green and blue
+    g            mean cosine of Henyey and Greenstein's phase function
+    emission     radiance per unit length, W / (length^3 sr), [x, y, z] or [x, y, z, rgb]
+    lights       a vtkLightRig, or polydata as it makes it; None: its default sun, where nothing else shines
+    sky          radiance from everywhere, a number or red, green and blue, W / (length^2 sr)
+    environment  radiance in latitude-longitude layout, [row from the top, column, rgb], or a vtkImageData
+    method       "maps", "ordinates" or "lattice"
+    properties   of that solver, by their names: Tolerance=1e-3, MaximumOrders=3, Quality=0
+
+    Raises SolvingError with the filter's own words; its warnings become Python's.
+    """
+    solver = METHODS[method]() if method in METHODS else _no("method", method, METHODS)
+    filters = [solver]
+    if isinstance(medium, vtkImageData):
+        image = medium
+    elif isinstance(medium, dict):
+        image = image_of(spacing, origin, **medium)
+    else:
+        maker = classes.vtkParticipatingMedium()
+        filters.append(maker)
+        maker.SetInputData(image_of(spacing, origin, density=medium))
+        maker.SetInputArrayToProcess(0, 0, 0, vtkDataObject.FIELD_ASSOCIATION_CELLS, "density")
+        maker.SetMillimetresPerUnit(1.0)
+        maker.SetExtinctionScale(extinction)
+        maker.SetAlbedo(_triple(albedo))
+        maker.SetPhaseFunction(maker.HENYEY_GREENSTEIN if g else maker.ISOTROPIC)
+        maker.SetMeanCosine(g)
+        image = _result(maker, filters)
+    if emission is not None:
+        shining = vtkImageData()
+        shining.ShallowCopy(image)
+        _add(shining, "emission", emission)
+        image = shining
+    solver.SetInputData(image)
+    _light_up(solver, image, lights, sky, environment)
+    for name, value in properties.items():
+        _set(solver, name, value)
+    return Light(_result(solver, filters), solver.GetOutputDataObject(1))
+
+
+def picture(light, size=(800, 600), **properties):
+    """A picture of the medium in its light, [row from the top, column, red green blue alpha] as bytes.
+
+    properties are vtkMediumRayCaster's, by their names: CameraPosition=(0, -3, 1), CameraFocalPoint=..., Exposure=1.
+    Without a camera it stands before -y, far enough to see the whole box.
+    """
+    caster = classes.vtkMediumRayCaster()
+    caster.SetInputData(light.image)
+    caster.SetImageSize(*size)
+    if "CameraPosition" not in properties:
+        low, high = numpy.reshape(light.image.GetBounds(), (3, 2)).T
+        middle, diagonal = (low + high) / 2, float(numpy.linalg.norm(high - low))
+        caster.SetCameraFocalPoint(*middle)
+        caster.SetCameraPosition(middle[0], middle[1] - 2.0 * diagonal, middle[2])
+        caster.SetCameraViewUp(0.0, 0.0, 1.0)
+    for name, value in properties.items():
+        _set(caster, name, value)
+    image = _result(caster, [caster])
+    width, height, _ = image.GetDimensions()
+    color = vtk_to_numpy(image.GetPointData().GetArray("color"))
+    return numpy.ascontiguousarray(color.reshape(height, width, color.shape[1])[::-1])
+
+
+def by_voxels(values, image):
+    """Values of cells, seen as [x, y, z] or [x, y, z, component]."""
+    nx, ny, nz = (max(points - 1, 1) for points in image.GetDimensions())
+    turned = values.reshape((nz, ny, nx) + values.shape[1:])
+    return turned.transpose((2, 1, 0) + tuple(range(3, turned.ndim)))
+
+
+def image_of(spacing, origin=(0.0, 0.0, 0.0), **arrays):
+    """A vtkImageData of voxels with these cell arrays, each [x, y, z] or [x, y, z, component]."""
+    if not arrays:
+        raise ValueError("an image of no array has no size")
+    shape = numpy.shape(next(iter(arrays.values())))
+    if len(shape) < 3:
+        raise ValueError(f"voxels are [x, y, z], this array has {len(shape)} indices")
+    image = vtkImageData()
+    image.SetDimensions(*(count + 1 for count in shape[:3]))
+    image.SetSpacing(*_triple(spacing))
+    image.SetOrigin(*origin)
+    for name, values in arrays.items():
+        _add(image, name, values)
+    return image
+
+
+def _add(image, name, values):
+    values = numpy.asarray(values, dtype=numpy.float32)
+    voxels = tuple(max(points - 1, 1) for points in image.GetDimensions())
+    if values.shape[:3] != voxels or values.ndim not in (3, 4):
+        raise ValueError(f"{name} has the shape {values.shape}, the voxels are {voxels}")
+    turned = values.transpose((2, 1, 0) + tuple(range(3, values.ndim)))
+    flat = numpy.ascontiguousarray(turned).reshape((-1,) + values.shape[3:])
+    array = numpy_to_vtk(flat, deep=True)
+    array.SetName(name)
+    image.GetCellData().AddArray(array)
+
+
+def _light_up(solver, image, lights, sky, environment):
+    if lights is None and sky is None and environment is None and not image.GetCellData().GetArray("emission"):
+        lights = classes.vtkLightRig()
+    if isinstance(lights, classes.vtkLightRig):
+        solver.SetLightsConnection(lights.GetOutputPort())
+    elif lights is not None:
+        solver.SetLightsData(lights)
+    if sky is not None:
+        solver.SetSkyColor(_triple(sky))
+    if isinstance(environment, vtkImageData):
+        solver.SetEnvironmentData(environment)
+    elif environment is not None:
+        solver.SetEnvironmentData(_environment(environment))
+
+
+def _environment(radiance):
+    radiance = numpy.asarray(radiance, dtype=numpy.float32)
+    if radiance.ndim != 3 or radiance.shape[2] != 3:
+        raise ValueError(f"an environment is [row, column, rgb], this one has the shape {radiance.shape}")
+    image = vtkImageData()
+    image.SetDimensions(radiance.shape[1], radiance.shape[0], 1)
+    array = numpy_to_vtk(numpy.ascontiguousarray(radiance[::-1]).reshape(-1, 3), deep=True)
+    array.SetName("radiance")
+    image.GetPointData().SetScalars(array)
+    return image
+
+
+def _result(algorithm, filters):
+    """Updates it. The first error of any of the filters is raised."""
+    errors = []
+    told = []
+    for one in filters:
+        told.append((one, one.AddObserver("ErrorEvent", _hears(errors.append))))
+        told.append((one, one.AddObserver("WarningEvent", _hears(_warn))))
+    algorithm.Update()
+    for one, number in told:
+        one.RemoveObserver(number)
+    if errors:
+        raise SolvingError(errors[0])
+    return algorithm.GetOutputDataObject(0)
+
+
+def _hears(takes):
+    def hear(caller, event, text):
+        takes(text.split("): ", 1)[-1].strip())
+
+    hear.CallDataType = "string0"
+    return hear
+
+
+def _warn(text):
+    warnings.warn(text, stacklevel=5)
+
+
+def _set(algorithm, name, value):
+    setter = getattr(algorithm, "Set" + name, None)
+    if setter is None:
+        raise TypeError(f"{algorithm.GetClassName()} has no property {name}")
+    setter(*value) if isinstance(value, (tuple, list, numpy.ndarray)) else setter(value)
+
+
+def _triple(value):
+    return tuple(float(x) for x in numpy.broadcast_to(value, 3))
+
+
+def _no(what, value, known):
+    raise ValueError(f"{what} {value!r}: there is {', '.join(known)}")

@@ -1,0 +1,18 @@
+"""Every class with a header is in the package, with its properties, enumerations and documentation."""
+import tyndall
+from vtkmodules.vtkCommonDataModel import vtkImageData
+
+for name in ("vtkParticipatingMedium", "vtkLightRig", "vtkLightPropagationMaps", "vtkDiscreteOrdinates",
+             "vtkLatticeBoltzmannLighting", "vtkMediumRayCaster", "vtkMeshVoxelizer", "vtkRefractionOctree",
+             "vtkPhotonEmitter", "vtkPhotonMarcher", "vtkPhotonImportance", "vtkPhotonReconstruction", "vtkVDBReader",
+             "vtkVDBWriter", "vtkEnvironmentReader", "vtkSeparablePhaseFunction", "vtkSolverComparison"):
+    made = getattr(tyndall, name)()
+    assert made.GetClassName() == name, made.GetClassName()
+
+medium = tyndall.vtkParticipatingMedium()
+medium.SetAlbedo(0.25, 0.5, 0.75)
+assert medium.GetAlbedo() == (0.25, 0.5, 0.75), medium.GetAlbedo()
+assert "scattered" in medium.SetAlbedo.__doc__
+assert tyndall.vtkLightPropagationMaps.CONSERVATIVE == 1
+# One VTK for both: an image made by vtkmodules goes in.
+tyndall.vtkLightPropagationMaps().SetInputData(vtkImageData())

@@ -1,0 +1,58 @@
+"""tyndall.solve: arrays keep their axes, light its unit; what filters report comes as an exception."""
+import gc
+
+import numpy
+import tyndall
+
+shape = (9, 14, 11)
+
+
+def raises(kind, words, work):
+    try:
+        work()
+    except kind as error:
+        assert words in str(error), error
+        return
+    raise AssertionError(f"no {kind.__name__} about {words}")
+
+
+# A furnace: where all shines alike and nothing absorbs, fluence is 4 pi times the radiance, whatever scatters.
+density = numpy.random.default_rng(20261125).uniform(0.0, 1.0, shape)
+light = tyndall.solve(density, (0.5, 1.0, 2.0), albedo=1.0, sky=3.0, Tolerance=1e-5)
+assert light.fluence.shape == shape, light.fluence.shape
+numpy.testing.assert_allclose(light.fluence, 12.0 * numpy.pi, rtol=2e-3)
+balance = light.energy_balance
+assert abs(balance["escaped"] / balance["entered"] - 1.0) < 1e-4, balance
+assert len(light.convergence["residual"]) > 1
+
+# Axes: a plate across x, absorbing, that shines only behind: what is darker lies at high y where it stands there.
+sigma = numpy.zeros(shape)
+sigma[:, 10, :] = 5.0
+lamp = tyndall.vtkLightRig()
+lamp.SetSun(False)
+lamp.AddDirectionalLight(0.0, 1.0, 0.0, 1.0, 1.0, 1.0)  # travels along +y
+shadow = tyndall.solve(dict(sigma_a=sigma, sigma_s=0.0 * sigma), 1.0, lights=lamp)
+along = shadow.fluence.mean(axis=(0, 2)) if shadow.fluence.ndim == 3 else shadow.fluence[..., 0].mean(axis=(0, 2))
+numpy.testing.assert_allclose(along[:10], 1.0, rtol=1e-4)
+numpy.testing.assert_allclose(along[11:], numpy.exp(-5.0), rtol=1e-3)
+numpy.testing.assert_allclose(along[10], (1.0 - numpy.exp(-5.0)) / 5.0, rtol=1e-3)
+
+# Colour is the last index.
+coloured = tyndall.solve(density, 1.0, albedo=(0.2, 0.5, 0.9), sky=(1.0, 1.0, 1.0))
+means = coloured.fluence.mean(axis=(0, 1, 2))
+assert coloured.fluence.shape == shape + (3,) and means[0] < means[1] < means[2], means
+
+# An array outlives the light it came from.
+fluence = tyndall.solve(density, 1.0, sky=1.0, MaximumOrders=2).fluence
+before = fluence.copy()
+gc.collect()
+numpy.testing.assert_array_equal(fluence, before)
+
+picture = tyndall.picture(light, (40, 30))
+assert picture.shape == (30, 40, 4) and picture.dtype == numpy.uint8 and picture[..., :3].max() > 0
+
+raises(tyndall.SolvingError, "Tolerance is -1", lambda: tyndall.solve(density, Tolerance=-1.0))
+raises(TypeError, "no property Tollerance", lambda: tyndall.solve(density, Tollerance=1.0))
+raises(ValueError, "maps, ordinates, lattice", lambda: tyndall.solve(density, method="magic"))
+raises(ValueError, "has the shape", lambda: tyndall.solve(dict(sigma_a=density, sigma_s=density[1:])))
+raises(KeyError, "there is", lambda: light["brightness"])
