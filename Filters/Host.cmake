@@ -16,15 +16,16 @@ if (ParaView_FOUND)
 else ()
   find_package(VTK 9.1 REQUIRED COMPONENTS
     CommonCore CommonDataModel CommonExecutionModel CommonMath FiltersCore IOCore IOImage IOLegacy IOXML ParallelCore
-    TestingCore WrappingPythonCore)
+    TestingCore
+    OPTIONAL_COMPONENTS WrappingPythonCore)
   set(TYNDALL_HOST "VTK ${VTK_VERSION}")
-  get_target_property(wrapper VTK::WrapPython LOCATION)
-  if (VTK_WRAP_PYTHON AND EXISTS "${wrapper}")
+  if (VTK_WRAP_PYTHON AND TARGET VTK::WrapPython)
+    get_target_property(wrapper VTK::WrapPython LOCATION)
+  endif ()
+  if (EXISTS "${wrapper}") # Debian has it in a package of its own
     set(wrapping ON)
     include(Filters/TypesOfVTK.cmake)
-    tyndall_make_types(
-      VTK::CommonCore VTK::CommonDataModel VTK::CommonExecutionModel VTK::IOCore
-      VTK::CommonMath VTK::FiltersCore VTK::IOImage VTK::ParallelCore)
+    tyndall_make_types(${VTK_LIBRARIES})
   endif ()
 endif ()
 

@@ -18,14 +18,8 @@ vtk_module_wrap_python(
   INSTALL_HEADERS OFF
   COMPONENT "python")
 
-set(python_folder "${CMAKE_CURRENT_LIST_DIR}/Python")
-set(python_sources tyndall/__init__.py tyndall/solving.py)
-set(python_copies)
-foreach (file IN LISTS python_sources)
-  add_custom_command(OUTPUT "${TYNDALL_PYTHON_PACKAGES}/${file}"
-    COMMAND "${CMAKE_COMMAND}" -E copy "${python_folder}/${file}" "${TYNDALL_PYTHON_PACKAGES}/${file}"
-    DEPENDS "${python_folder}/${file}" VERBATIM)
-  list(APPEND python_copies "${TYNDALL_PYTHON_PACKAGES}/${file}")
-  install(FILES "${python_folder}/${file}" DESTINATION "${python_destination}/tyndall" COMPONENT "python")
+foreach (file IN ITEMS __init__.py solving.py)
+  configure_file("${CMAKE_CURRENT_LIST_DIR}/Python/tyndall/${file}" "${TYNDALL_PYTHON_PACKAGES}/tyndall/${file}" COPYONLY)
+  install(FILES "${CMAKE_CURRENT_LIST_DIR}/Python/tyndall/${file}"
+    DESTINATION "${python_destination}/tyndall" COMPONENT "python")
 endforeach ()
-add_custom_target(TyndallPythonPackage ALL DEPENDS ${python_copies})

@@ -20,9 +20,8 @@ lumps = numpy.sin(x / 37.0) * numpy.sin(y / 29.0 + 1.0) * numpy.sin(z / 41.0 + 2
 density = numpy.clip(1.5 * (1.0 - numpy.sqrt(x**2 + y**2 + z**2) / 200.0) + lumps, 0.0, 1.0)
 
 light = tyndall.solve(density, edge, extinction=0.05, albedo=0.999, Tolerance=1e-3)
-fluence = light.fluence if light.fluence.ndim == 3 else light.fluence[..., 1]
-balance = {name: numpy.ravel(power)[-1] for name, power in light.energy_balance.items()}
-print(", ".join(f"{name} {power:.4g} W" for name, power in balance.items()))
+fluence, direct = light.fluence, light["fluence_direct"]  # [x, y, z]: sun and cloud are grey
+print(", ".join(f"{name} {power:.4g} W" for name, power in light.energy_balance.items()))
 
 figure, (left, middle, right) = pyplot.subplots(1, 3, figsize=(13, 4), constrained_layout=True)
 half = count * edge / 2
@@ -31,8 +30,6 @@ left.set(title="fluence, y = 0", xlabel="x, m", ylabel="z, m")
 figure.colorbar(shown, ax=left, label="W / m$^2$")
 heights = z[0, 0, :]
 middle.plot(heights, fluence[count // 2, count // 2, :], color="#0072b2", label="all light")
-direct = light["fluence_direct"]
-direct = direct if direct.ndim == 3 else direct[..., 1]
 middle.plot(heights, direct[count // 2, count // 2, :], color="#d55e00", linestyle="--", label="unscattered")
 middle.set(title="the column x = y = 0", xlabel="z, m", ylabel="fluence, W / m$^2$", yscale="log")
 middle.legend()

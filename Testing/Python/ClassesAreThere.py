@@ -1,4 +1,4 @@
-"""Every class with a header is in the package, with its properties, enumerations and documentation."""
+"""The filters are in the package, with their properties, enumerations and documentation."""
 import tyndall
 from vtkmodules.vtkCommonDataModel import vtkImageData
 

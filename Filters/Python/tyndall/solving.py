@@ -85,7 +85,9 @@ def solve(medium, spacing=1.0, *, origin=(0.0, 0.0, 0.0), extinction=1.0, albedo
 
     Raises SolvingError with the filter's own words; its warnings become Python's.
     """
-    solver = METHODS[method]() if method in METHODS else _no("method", method, METHODS)
+    if method not in METHODS:
+        raise ValueError(f"method {method!r}: there is {', '.join(METHODS)}")
+    solver = METHODS[method]()
     filters = [solver]
     if isinstance(medium, vtkImageData):
         image = medium
@@ -139,9 +141,7 @@ def picture(light, size=(800, 600), **properties):
 
 def by_voxels(values, image):
     """Values of cells, seen as [x, y, z] or [x, y, z, component]."""
-    nx, ny, nz = (max(points - 1, 1) for points in image.GetDimensions())
-    turned = values.reshape((nz, ny, nx) + values.shape[1:])
-    return turned.transpose((2, 1, 0) + tuple(range(3, turned.ndim)))
+    return values.reshape(_voxels(image)[::-1] + values.shape[1:]).swapaxes(0, 2)
 
 
 def image_of(spacing, origin=(0.0, 0.0, 0.0), **arrays):
@@ -160,13 +160,16 @@ def image_of(spacing, origin=(0.0, 0.0, 0.0), **arrays):
     return image
 
 
+def _voxels(image):
+    return tuple(max(points - 1, 1) for points in image.GetDimensions())
+
+
 def _add(image, name, values):
     values = numpy.asarray(values, dtype=numpy.float32)
-    voxels = tuple(max(points - 1, 1) for points in image.GetDimensions())
+    voxels = _voxels(image)
     if values.shape[:3] != voxels or values.ndim not in (3, 4):
         raise ValueError(f"{name} has the shape {values.shape}, the voxels are {voxels}")
-    turned = values.transpose((2, 1, 0) + tuple(range(3, values.ndim)))
-    flat = numpy.ascontiguousarray(turned).reshape((-1,) + values.shape[3:])
+    flat = numpy.ascontiguousarray(values.swapaxes(0, 2)).reshape((-1,) + values.shape[3:])
     array = numpy_to_vtk(flat, deep=True)
     array.SetName(name)
     image.GetCellData().AddArray(array)
@@ -235,7 +238,3 @@ def _set(algorithm, name, value):
 
 def _triple(value):
     return tuple(float(x) for x in numpy.broadcast_to(value, 3))
-
-
-def _no(what, value, known):
-    raise ValueError(f"{what} {value!r}: there is {', '.join(known)}")
