@@ -16,7 +16,7 @@ if (ParaView_FOUND)
 else ()
   find_package(VTK 9.1 REQUIRED COMPONENTS
     CommonCore CommonDataModel CommonExecutionModel CommonMath FiltersCore IOCore IOImage IOLegacy IOXML ParallelCore
-    TestingCore
+    RenderingCore RenderingVolume TestingCore
     OPTIONAL_COMPONENTS WrappingPythonCore)
   set(TYNDALL_HOST "VTK ${VTK_VERSION}")
   if (VTK_WRAP_PYTHON AND TARGET VTK::WrapPython)
@@ -36,9 +36,23 @@ configure_file("${PROJECT_SOURCE_DIR}/vtk.module" "${module_folder}/vtk.module" 
 file(CONFIGURE OUTPUT "${module_folder}/CMakeLists.txt" @ONLY
   CONTENT "include(\"@PROJECT_SOURCE_DIR@/Filters/CMakeLists.txt\")\n")
 
+# What VTK's rendering is linked with, of which nothing is used here: where its development files are not installed, CMake
+# would miss the targets.
+foreach (library IN ITEMS GLEW::GLEW X11::X11)
+  if (NOT TARGET "${library}")
+    add_library("${library}" INTERFACE IMPORTED)
+  endif ()
+endforeach ()
+
+set(module_files "${module_folder}/vtk.module")
+set(requested_modules Tyndall::LightTransport)
+if (ParaView_FOUND)
+  list(APPEND module_files "${PROJECT_SOURCE_DIR}/Plugin/Representation/vtk.module")
+  list(APPEND requested_modules Tyndall::Representation)
+endif ()
 vtk_module_scan(
-  MODULE_FILES "${module_folder}/vtk.module"
-  REQUEST_MODULES Tyndall::LightTransport
+  MODULE_FILES ${module_files}
+  REQUEST_MODULES ${requested_modules}
   PROVIDES_MODULES module
   HIDE_MODULES_FROM_CACHE ON)
 

@@ -9,7 +9,7 @@ endif ()
 set(TYNDALL_PYTHON_PACKAGES "${CMAKE_BINARY_DIR}/${python_destination}")
 
 vtk_module_wrap_python(
-  MODULES ${module}
+  MODULES Tyndall::LightTransport
   TARGET Tyndall::Python
   PYTHON_PACKAGE "tyndall"
   MODULE_DESTINATION "${python_destination}"

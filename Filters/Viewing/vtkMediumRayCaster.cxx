@@ -1,5 +1,6 @@
 #include "vtkMediumRayCaster.h"
 
+#include "AskedView.h"
 #include "Common/FiniteValues.h"
 #include "Common/InputsKey.h"
 #include "Common/LightTransportData.h"
@@ -16,6 +17,7 @@
 #include "vtkCellData.h"
 #include "vtkDataArray.h"
 #include "vtkDataObject.h"
+#include "vtkExecutive.h"
 #include "vtkFieldData.h"
 #include "vtkFloatArray.h"
 #include "vtkImageData.h"
@@ -316,12 +318,13 @@ std::unique_ptr<vtkMediumRayCaster::Scene> vtkMediumRayCaster::MakeScene(
   return scene;
 }
 
-std::unique_ptr<vtkMediumRayCaster::Scene> vtkMediumRayCaster::FindScene(vtkInformationVector** inputs)
+std::unique_ptr<vtkMediumRayCaster::Scene> vtkMediumRayCaster::FindScene(
+  vtkInformationVector** inputs, const tyndall::ViewSettings& settings)
 {
+  this->SceneKept = false;
   this->ForgetOldScene();
   std::unique_ptr<Scene> kept = std::move(this->Kept); // it comes back after a good picture
   const tyndall::InputsKey key = this->KeyOf(inputs);
-  const tyndall::ViewSettings settings = SettingsOf(this);
   if (kept && kept->key == key)
   {
     tyndall::ViewSettings asked = settings;
@@ -348,7 +351,7 @@ int vtkMediumRayCaster::RequestData(vtkInformation*, vtkInformationVector** inpu
     toneMapping.exposure = this->Exposure;
     toneMapping.curve = static_cast<tyndall::ToneCurve>(this->ToneCurve);
     tyndall::Check(toneMapping);
-    std::unique_ptr<Scene> scene = this->FindScene(inputs);
+    std::unique_ptr<Scene> scene = this->FindScene(inputs, SettingsOf(this));
     const double start = tyndall::ClockSeconds();
     tyndall::Picture picture = scene->caster->Render(CameraOf(this, scene->grid), tyndall::MonitorOf(this));
     const double seconds = tyndall::ClockSeconds() - start;
@@ -377,6 +380,21 @@ int vtkMediumRayCaster::RequestData(vtkInformation*, vtkInformationVector** inpu
     this->Kept = std::move(scene);
     this->Seconds = seconds;
   });
+}
+
+bool vtkMediumRayCaster::See(const tyndall::AskedView& view, tyndall::Picture& picture)
+{
+  bool seen = false;
+  const vtkNew<vtkInformationVector> noOutputs;
+  tyndall::Guarded(this, noOutputs, [&] {
+    tyndall::ViewSettings settings = SettingsOf(this);
+    settings.imageSize = view.size;
+    std::unique_ptr<Scene> scene = this->FindScene(this->GetExecutive()->GetInputInformation(), settings);
+    picture = scene->caster->Render(view.camera, {}, view.ends);
+    this->Kept = std::move(scene);
+    seen = true;
+  });
+  return seen;
 }
 
 void vtkMediumRayCaster::PrintSelf(ostream& os, vtkIndent indent)

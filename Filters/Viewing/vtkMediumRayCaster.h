@@ -10,7 +10,9 @@
 
 namespace tyndall
 {
+struct AskedView;
 struct InputsKey;
+struct Picture;
 struct ViewSettings;
 }
 
@@ -297,12 +299,17 @@ private:
   vtkMediumRayCaster(const vtkMediumRayCaster&) = delete;
   void operator=(const vtkMediumRayCaster&) = delete;
 
+  friend class vtkLitVolumeMapper;
+  /// A picture of another camera and size, of the inputs as they are: for the mapper, which has updated them.
+  /// @return false where it failed: there was an error, and there is none again until something has changed
+  bool See(const tyndall::AskedView& view, tyndall::Picture& picture);
+
   struct Scene;
   void ForgetOldScene();
   tyndall::InputsKey KeyOf(vtkInformationVector** inputs);
   std::unique_ptr<Scene> MakeScene(
     vtkInformationVector** inputs, const tyndall::InputsKey& key, tyndall::ViewSettings settings);
-  std::unique_ptr<Scene> FindScene(vtkInformationVector** inputs);
+  std::unique_ptr<Scene> FindScene(vtkInformationVector** inputs, const tyndall::ViewSettings& settings);
 
   int Quality = USUAL;
   int ImageSize[2];

@@ -151,7 +151,7 @@ void MediumRayCaster::AddUnscattered(ViewInfo view, const Monitor& monitor, std:
   std::transform(radiance.begin(), radiance.end(), sharp.begin(), radiance.begin(), std::plus<float>());
 }
 
-Picture MediumRayCaster::Render(const Camera& camera, const Monitor& monitor)
+Picture MediumRayCaster::Render(const Camera& camera, const Monitor& monitor, const std::vector<float>& ends)
 {
   ViewInfo view = this->Rays.ViewOf(camera, this->Settings);
   Report(monitor, 0.0);
@@ -166,7 +166,7 @@ Picture MediumRayCaster::Render(const Camera& camera, const Monitor& monitor)
   picture.width = this->Settings.imageSize[0];
   picture.height = this->Settings.imageSize[1];
   picture.farDepth = view.marching.s[2];
-  this->Rays.Reserve(this->Settings);
+  this->Rays.Reserve(this->Settings, ends);
   if (byMoments && !this->Behind.IsSky())
   {
     view.background = Float4(glm::dvec3(0.0), view.background.s[3]); // does not shine on the medium: see AddUnscattered

@@ -105,8 +105,11 @@ public:
   bool Adopt(const ViewSettings& settings);
 
   /// The first picture packs what the rays meet; where nothing of it depends on the camera, later ones use it again.
-  /// @throws InvalidInput for a camera that looks nowhere; Aborted
-  Picture Render(const Camera& camera, const Monitor& monitor = {});
+  /// @param ends  where an opaque surface ends each pixel's ray, as a distance along the view axis, length; 1e30 where
+  ///   none does; empty: nowhere. What the surface hides, the background with it, is not in the picture then: alpha is
+  ///   1 - transmittance up to there. What is reflected or mirrored does not end.
+  /// @throws InvalidInput for a camera that looks nowhere, or ends of another number than pixels; Aborted
+  Picture Render(const Camera& camera, const Monitor& monitor = {}, const std::vector<float>& ends = {});
 
   /// What the scene did not need, in words.
   const std::vector<std::string>& LeftOut() const { return this->Omitted; }

@@ -174,6 +174,8 @@ def where(proxy):
         factory = proxy.find("Hints/" + kind)
         if factory is not None:
             return "%s, for %s" % (verb, " and ".join("." + each for each in factory.get("extensions").split()))
+    if proxy.tag == "RepresentationProxy":
+        return "Representation, %s, of an image in the 3D view" % label
     menu = "Filters" if proxy.find("InputProperty") is not None else "Sources"
     return "%s, %s, %s" % (menu, proxy.find("Hints/ShowInMenu").get("category"), label)
 
@@ -202,9 +204,9 @@ def all_proxies():
     seen, all_by_name = [], {}
     for file in sorted(PROXIES.glob("*.xml")):
         for group in ElementTree.parse(file).getroot().findall("ProxyGroup"):
-            for proxy in group:
+            for proxy in (each for each in group if each.tag != "Extension"):
                 all_by_name[proxy.get("name")] = proxy
-                if not group.get("name").startswith("internal"):
+                if not group.get("name").startswith("internal") or proxy.tag == "RepresentationProxy":
                     seen.append(proxy)
     return sorted(seen, key=lambda proxy: proxy.get("name").lower()), all_by_name
 

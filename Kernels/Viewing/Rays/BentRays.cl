@@ -65,6 +65,11 @@ __attribute__((always_inline)) inline void bend(
       last = moves & (until <= time);
       time = lesser(time, until);
     }
+#if ENDS
+    const real to_end = time_to_end(t, t->velocity, s);
+    const integer stops = moves & (to_end <= time);
+    time = lesser(time, to_end);
+#endif
     const real half_time = (real)0.5f * time;
     const real3 middle = kept_within(further(t->at, half_time, t->velocity), size);
     corners around;
@@ -94,6 +99,11 @@ __attribute__((always_inline)) inline void bend(
     {
       moves = leave(t, last, size) ? (integer)0 : moves;
     }
+#if ENDS
+    t->inside = stops ? (integer)0 : t->inside;
+    t->stopped |= stops;
+    moves = stops ? (integer)0 : moves;
+#endif
     const real end = depth_of(t->at, s->v, spacing);
     cross_sample(met, time * pace, start, end - start, enough, l, half_way);
     start = end;
@@ -152,6 +162,11 @@ __attribute__((always_inline)) inline void march(
     packet.entry = t->at;
     packet.direction = divided(t->velocity, sqrt(greater(product(world, world), (real)1e-30f)));
     packet.length = done ? (real)0.0f : time_to_face(t->at, packet.direction, size);
+#if ENDS
+    const real to_end = time_to_end(t, packet.direction, s);
+    const integer stops = (done == 0) & (to_end <= packet.length);
+    packet.length = lesser(packet.length, to_end);
+#endif
     const real step = step_length(packet.direction, v->marching.x);
     const stretch ahead = stretch_ahead(
       s->bricks, v->bricks, along(packet, (real)0.5f * step), strides_per_voxel(packet.direction, step), done);
@@ -167,5 +182,8 @@ __attribute__((always_inline)) inline void march(
     w->forgotten = 1;
 #endif
     n += go_straight(s, &packet, step, ahead, done, t, l, half_way);
+#if ENDS
+    t->stopped |= stops & (t->inside == 0);
+#endif
   }
 }

@@ -27,12 +27,16 @@ typedef struct
 } seeing;
 
 // Rays from the camera where they enter the box, as fast as the index there has it.
-inline ray_packets enter(const surroundings* s, camera_rays seen, real* entry_square)
+inline ray_packets enter(const surroundings* s, camera_rays seen, real end, real* entry_square)
 {
   const real3 direction = stretched(seen.d, s->v->inverseSpacing);
   real before;
-  const rays packet = clip_to_box(seen.from, direction, (real)1e30f, s->v->size, &before);
+  const rays packet = clip_to_box(seen.from, direction, end / seen.cosine, s->v->size, &before);
   ray_packets t = { packet.entry, direction, packet.length > (real)0.0f };
+#if ENDS
+  t.end = end;
+  t.stopped = (integer)0;
+#endif
   *entry_square = (real)1.0f;
 #if BENDS
   real3 unused;
@@ -51,6 +55,10 @@ inline int send_off(const waiting* next, ray_packets* t, light* l)
   t->at = next->at;
   t->velocity = next->velocity;
   t->inside = most_left(*l) > (real)0.0f;
+#if ENDS
+  t->end = (real)ENDLESS; // what ends the camera's rays is not known to be in the way of others
+  t->stopped = (integer)0;
+#endif
   return any_lane(t->inside);
 }
 
@@ -60,7 +68,10 @@ inline void arrive(const surroundings* s, const ray_packets* t, integer set_off,
   __global const float4* lit, __global const float4* environment, __global const float4* ground, crossed* half_way,
   seeing* to)
 {
-  const integer out = set_off & (t->inside == 0);
+  integer out = set_off & (t->inside == 0);
+#if ENDS
+  out &= t->stopped == 0;
+#endif
   const real3 world = stretched(t->velocity, s->o->spacing);
   real3 towards = divided(world, sqrt(greater(product(world, world), (real)1e-30f)));
   real square = to->entrySquare;
@@ -69,7 +80,11 @@ inline void arrive(const surroundings* s, const ray_packets* t, integer set_off,
   const real there = index_at(s, t->at, &unused);
   square = out ? there : square;
 #endif
+#if ENDS
+  real part = t->end < (real)ENDLESS ? (real)0.0f : (real)1.0f;
+#else
   real part = (real)1.0f;
+#endif
   real left = mean_left(to->l);
   integer ends = (integer)0;
 #if TABLE
@@ -109,7 +124,8 @@ __kernel void cast_bent_rays(ViewInfo v, OpticsInfo o, __global const float4* re
   __global const float* restrict phase_rows, __global const float4* restrict bending,
   __global const float4* restrict lit, __global const char* restrict bricks,
   __global const float4* restrict environment, __global const float4* restrict ground,
-  __global float* restrict radiance, __global float* restrict alpha, __global float* restrict depth)
+  __global const float* restrict ends, __global float* restrict radiance, __global float* restrict alpha,
+  __global float* restrict depth)
 {
   const int column = (get_global_id(0) + v.picture.w) * PACKET_WIDTH;
   const int row = (get_global_id(1) + v.picture.z) * PACKET_HEIGHT;
@@ -120,7 +136,12 @@ __kernel void cast_bent_rays(ViewInfo v, OpticsInfo o, __global const float4* re
   const surroundings s = { &v, &o, { samples, extinctions, flow, glow, cosines, phase_rows, v.phase }, bending,
     bricks };
   seeing to;
-  ray_packets t = enter(&s, rays_through(&v, column, row), &to.entrySquare);
+#if ENDS
+  const real end = ends_of(&v, ends, column, row);
+#else
+  const real end = (real)ENDLESS;
+#endif
+  ray_packets t = enter(&s, rays_through(&v, column, row), end, &to.entrySquare);
   to.l = unlit((real)1.0f);
   const waiting nothing = { t.at, t.velocity, unlit((real)0.0f).left };
   to.mirrored = nothing;

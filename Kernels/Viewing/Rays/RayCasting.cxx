@@ -1,6 +1,7 @@
 #include "Viewing/Rays/RayCasting.h"
 
 #include "Device/Defines.h"
+#include "Device/Errors.h"
 #include "Device/Sizes.h"
 #include "Numerics/Vectors.h"
 #include "TyndallKernelSources.h"
@@ -9,6 +10,7 @@
 
 #include <algorithm>
 #include <array>
+#include <string>
 
 #include <glm/vec3.hpp>
 
@@ -36,7 +38,7 @@ ViewInfo RayCasting::ViewOf(const Camera& camera, const ViewSettings& settings) 
   return view;
 }
 
-void RayCasting::Reserve(const ViewSettings& settings)
+void RayCasting::Reserve(const ViewSettings& settings, const std::vector<float>& ends)
 {
   const std::size_t pixels = static_cast<std::size_t>(settings.imageSize[0]) * settings.imageSize[1];
   if (this->Alpha.Size() != pixels)
@@ -48,6 +50,16 @@ void RayCasting::Reserve(const ViewSettings& settings)
     this->Alpha.Swap(alpha);
     this->Depth.Swap(depth);
   }
+  if (!ends.empty() && ends.size() != pixels)
+  {
+    throw InvalidInput("There are ends of " + std::to_string(ends.size()) + " rays for a picture of " +
+      std::to_string(pixels) + " pixels.");
+  }
+  if (this->Ends.Size() != ends.size())
+  {
+    this->Ends = Buffer<float>(this->TheDevice, ends.size(), "where rays end");
+  }
+  this->Ends.Write(ends.data());
 }
 
 std::string RayCasting::Options(const ViewSettings& settings) const
@@ -61,7 +73,7 @@ std::string RayCasting::Options(const ViewSettings& settings) const
     Define("ENVIRONMENT", this->Behind.HasEnvironment()) + Define("GROUND", this->Behind.FacesOfGround()) +
     Define("THIN_STEPS", longest <= (traits.bends ? 1.5 : 2.0)) + Define("GLOW", traits.GlowsApart()) +
     traits.PhaseOptions(traits.knowsFlow) + StepOption(LongestSteps(traits.grid, settings.stepSize)) +
-    this->Samples.ShownOptions();
+    Define("ENDS", this->Ends.Size() > 0) + this->Samples.ShownOptions();
 }
 
 cl::Kernel RayCasting::Kernel(const ViewSettings& settings) const
@@ -96,12 +108,13 @@ void RayCasting::Cast(
     if (this->Traits.OnlyStraight())
     {
       With(cast, view, s.Samples(), s.Extinctions(), s.Flow(), s.Glow(), s.Cosines(), this->Scene.phaseRows, s.Bricks(),
-        environment, b.Ground(), b.SurfaceLight(), this->Radiance, this->Alpha, this->Depth);
+        environment, b.Ground(), b.SurfaceLight(), this->Ends, this->Radiance, this->Alpha, this->Depth);
     }
     else
     {
       With(cast, view, optics, s.Samples(), s.Extinctions(), s.Flow(), s.Glow(), s.Cosines(), this->Scene.phaseRows,
-        s.Bending(), b.Table(), s.Bricks(), environment, b.Ground(), this->Radiance, this->Alpha, this->Depth);
+        s.Bending(), b.Table(), s.Bricks(), environment, b.Ground(), this->Ends, this->Radiance, this->Alpha,
+        this->Depth);
     }
     this->TheDevice.Queue().enqueueNDRangeKernel(
       cast, cl::NullRange, cl::NDRange(part.columns * group, part.rows * group), cl::NDRange(group, group));

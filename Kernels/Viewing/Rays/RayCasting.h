@@ -27,6 +27,7 @@ public:
     , Samples(samples)
     , Behind(backdrop)
     , Traits(traits)
+    , Ends(device, 0, "where rays end")
   {
   }
 
@@ -34,9 +35,10 @@ public:
   /// @throws InvalidInput for a camera that looks nowhere or is too far away
   ViewInfo ViewOf(const Camera& camera, const ViewSettings& settings) const;
 
-  /// Takes the memory of a picture; keeps it for the next of its size.
-  /// @throws DeviceError if it does not fit
-  void Reserve(const ViewSettings& settings);
+  /// Takes the memory of a picture, and where its rays end (MediumRayCaster::Render); keeps it for the next of that
+  /// size.
+  /// @throws InvalidInput for ends of another number than pixels; DeviceError if it does not fit
+  void Reserve(const ViewSettings& settings, const std::vector<float>& ends);
 
   /// A picture of what was packed, and of what of the environment belongs to that.
   /// @param from, to  fractions done that are reported
@@ -58,6 +60,6 @@ private:
   const PackedSamples& Samples;
   const Backdrop& Behind;
   const ViewTraits& Traits;
-  Buffer<float> Radiance, Alpha, Depth;
+  Buffer<float> Radiance, Alpha, Depth, Ends;
 };
 }

@@ -14,6 +14,10 @@ typedef struct
 {
   real3 at, velocity;
   integer inside;
+#if ENDS
+  real end;        // depth at which they end
+  integer stopped; // there
+#endif
 } ray_packets;
 
 // Rays that are marched later; without light left there are none.
@@ -90,6 +94,17 @@ inline real depth_of(real3 p, const ViewInfo* v, float4 spacing)
     (real)(v->forward.z * spacing.z) };
   return product(from_eye, forward);
 }
+
+#if ENDS
+// Until each ray that goes straight on comes to its end.
+inline real time_to_end(const ray_packets* t, real3 velocity, const surroundings* s)
+{
+  const real3 forward = { (real)s->v->forward.x, (real)s->v->forward.y, (real)s->v->forward.z };
+  const real pace = product(stretched(velocity, s->o->spacing), forward);
+  const real gap = greater(t->end - depth_of(t->at, s->v, s->o->spacing), (real)0.0f);
+  return pace > (real)1e-20f ? gap / pace : (real)ENDLESS;
+}
+#endif
 
 #if BENDS
 inline real index_at(const surroundings* s, real3 p, real3* bend)

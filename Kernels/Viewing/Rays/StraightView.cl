@@ -15,8 +15,8 @@ __kernel void cast_rays(ViewInfo v, __global const float4* restrict samples,
   __global const float4* restrict glow, __global const float4* restrict cosines,
   __global const float* restrict phase_rows, __global const char* restrict bricks,
   __global const float4* restrict environment, __global const float4* restrict ground,
-  __global const float4* restrict surface, __global float* restrict radiance, __global float* restrict alpha,
-  __global float* restrict depth)
+  __global const float4* restrict surface, __global const float* restrict ends, __global float* restrict radiance,
+  __global float* restrict alpha, __global float* restrict depth)
 {
   const int column = (get_global_id(0) + v.picture.w) * PACKET_WIDTH;
   const int row = (get_global_id(1) + v.picture.z) * PACKET_HEIGHT;
@@ -28,8 +28,15 @@ __kernel void cast_rays(ViewInfo v, __global const float4* restrict samples,
   const camera_rays seen = rays_through(&v, column, row);
   const real3 direction = { seen.d.x * (real)v.inverseSpacing.x, seen.d.y * (real)v.inverseSpacing.y,
     seen.d.z * (real)v.inverseSpacing.z };
+#if ENDS
+  const real end = ends_of(&v, ends, column, row);
+  const integer open = end >= (real)ENDLESS; // to what is behind
+#else
+  const real end = (real)ENDLESS;
+  const integer open = (integer)-1;
+#endif
   real before;
-  const rays packet = clip_to_box(seen.from, direction, (real)1e30f, v.size, &before);
+  const rays packet = clip_to_box(seen.from, direction, end / seen.cosine, v.size, &before);
 
   // The march.
   const real step = step_length(direction, v.marching.x);
@@ -84,7 +91,7 @@ __kernel void cast_rays(ViewInfo v, __global const float4* restrict samples,
   behind =
     ground_or_behind(ground, along(packet, packet.length), direction, packet.length > (real)0.0f, v.size, behind);
 #endif
-  add_background(behind, (real)v.background.w, &l);
+  add_background(behind, open ? (real)v.background.w : (real)0.0f, &l);
   const real where = left > (real)0.5f ? (real)v.marching.z : (distance_to_half(half_way) + before) * seen.cosine;
   const canvas picture = { radiance, alpha, depth };
   paint(&v, picture, column, row, l.radiance, (real)1.0f - left, where);

@@ -1,4 +1,7 @@
 // The picture and the rays through its pixels.
+//
+// The host gives
+//   ENDS  1: each pixel has a depth at which its ray ends
 
 #pragma once
 #include "Viewing/Samples/Sampling.cl"
@@ -37,8 +40,10 @@ typedef struct
 
 inline camera_rays rays_through(const ViewInfo* v, int column, int row)
 {
-  const real x = ((real)(float)column + ACROSS + (real)0.5f) * (real)(2.0f / (float)v->picture.x) - (real)1.0f;
-  const real y = ((real)(float)row + UPWARDS + (real)0.5f) * (real)(2.0f / (float)v->picture.y) - (real)1.0f;
+  const real x =
+    ((real)(float)column + ACROSS + (real)0.5f) * (real)(2.0f / (float)v->picture.x) - (real)1.0f + (real)v->right.w;
+  const real y =
+    ((real)(float)row + UPWARDS + (real)0.5f) * (real)(2.0f / (float)v->picture.y) - (real)1.0f + (real)v->up.w;
   const real3 offset = { fma(x, (real)v->right.x, y * (real)v->up.x), fma(x, (real)v->right.y, y * (real)v->up.y),
     fma(x, (real)v->right.z, y * (real)v->up.z) };
   const real spread = (real)(1.0f - v->eye.w);
@@ -55,6 +60,23 @@ inline camera_rays rays_through(const ViewInfo* v, int column, int row)
   r.from.z = fma((real)(v->eye.w * v->inverseSpacing.z), offset.z, (real)v->eye.z);
   return r;
 }
+
+#define ENDLESS 1e30f // a depth that no ray comes to
+
+#if ENDS
+// Where a packet's rays end, along the view axis; ENDLESS where they do not.
+inline real ends_of(const ViewInfo* v, __global const float* ends, int column, int row)
+{
+  const integer i = to_integer(lesser(ACROSS + (real)(float)column, (real)(float)(v->picture.x - 1)));
+  const integer j = to_integer(lesser(UPWARDS + (real)(float)row, (real)(float)(v->picture.y - 1)));
+  const integer pixel = j * v->picture.x + i;
+  real end;
+#define FETCH(n) LANE(end, n) = ends[LANE(pixel, n)];
+  EACH_LANE(FETCH)
+#undef FETCH
+  return end;
+}
+#endif
 
 // Where pictures go.
 //   radiance  3 per pixel, W / (length^2 sr)

@@ -43,12 +43,13 @@ ViewInfo ViewInfoOf(const Camera& camera, const ViewSettings& settings, const Vi
   const glm::dvec3 eye = Vector(camera.position) - Vector(grid.origin);
   const glm::dvec3 forward = Vector(axes[2]);
   const double halfHeight = camera.parallelProjection ? camera.parallelScale : std::tan(camera.viewAngle * Pi / 360.0);
-  const double halfWidth = halfHeight * settings.imageSize[0] / settings.imageSize[1];
+  const double aspect =
+    camera.aspect > 0.0 ? camera.aspect : static_cast<double>(settings.imageSize[0]) / settings.imageSize[1];
   ViewInfo view = {};
   view.eye = Float4(eye * inverseSpacing, camera.parallelProjection ? 1.0 : 0.0);
   view.forward = Float4(forward, 0.0);
-  view.right = Float4(halfWidth * Vector(axes[0]), 0.0);
-  view.up = Float4(halfHeight * Vector(axes[1]), 0.0);
+  view.right = Float4(halfHeight * aspect * Vector(axes[0]), camera.shift[0]);
+  view.up = Float4(halfHeight * Vector(axes[1]), camera.shift[1]);
   view.inverseSpacing = Float4(inverseSpacing, 0.0);
   view.marching = Float4({ settings.stepSize, settings.minimumTransmittance, FarDepth(grid, eye, forward) }, 0.0);
   view.picture = Int4({ settings.imageSize[0], settings.imageSize[1], 0 });

@@ -15,6 +15,10 @@ struct Camera
   double viewAngle = 30.0;         ///< between the picture's lower and upper edge, degrees, in (0, 180)
   bool parallelProjection = false; ///< parallel rays instead of rays from `position`
   double parallelScale = 1.0;      ///< then half the picture's height, length, > 0
+  double aspect = 0.0;             ///< the picture's width over its height; 0: as pixels that are square have it
+  /// From the focal point to the picture's middle, to the right and upwards, in halves of its width and height: of a
+  /// part of a larger picture, or one for the left or right eye.
+  std::array<double, 2> shift = { 0.0, 0.0 };
 };
 
 /// The direction of the default view: three quarters from the front and a little from above, with the axis nearest

@@ -27,10 +27,11 @@ typedef struct
 /// The picture and its camera.
 typedef struct
 {
-  float4 eye;            ///< voxels; w: 0 the rays come from one point, 1 they are parallel
-  float4 forward;        ///< unit vector, world
-  float4 right;          ///< to the picture's right edge; of the world at unit distance, or where parallel of the world
-  float4 up;             ///< to its upper edge
+  float4 eye;     ///< voxels; w: 0 the rays come from one point, 1 they are parallel
+  float4 forward; ///< unit vector, world
+  float4 right;   ///< to the picture's right edge; of the world at unit distance, or where parallel of the world;
+                  ///< w: from the view axis to the picture's middle, in such lengths
+  float4 up;      ///< to its upper edge; w: likewise
   float4 inverseSpacing; ///< voxels per length
   float4 background;     ///< W / (length^2 sr), added to the environment; w: 0 nothing is to be seen behind the medium
   float4 marching;       ///< step in voxels, transmittance at which to stop, depth where nothing is

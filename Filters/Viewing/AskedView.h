@@ -1,0 +1,17 @@
+#pragma once
+
+#include "Viewing/Scene/Camera.h"
+
+#include <array>
+#include <vector>
+
+namespace tyndall
+{
+/// A picture that vtkLitVolumeMapper asks its ray caster for.
+struct AskedView
+{
+  Camera camera;                ///< instead of the filter's own
+  std::array<int, 2> size = {}; ///< pixels, instead of ImageSize
+  std::vector<float> ends;      ///< of rays, see MediumRayCaster::Render
+};
+}

@@ -1,0 +1,111 @@
+#include "RenderedCamera.h"
+
+#include "Device/Errors.h"
+
+#include "vtkCamera.h"
+#include "vtkMatrix4x4.h"
+#include "vtkNew.h"
+#include "vtkRenderer.h"
+
+#include <algorithm>
+#include <cmath>
+
+namespace tyndall
+{
+namespace
+{
+constexpr double AlikeScales = 1e-6; ///< relative
+
+using Vec = std::array<double, 3>;
+
+Vec Column(vtkMatrix4x4* matrix, int column)
+{
+  return { matrix->GetElement(0, column), matrix->GetElement(1, column), matrix->GetElement(2, column) };
+}
+
+double Product(const Vec& a, const Vec& b)
+{
+  return a[0] * b[0] + a[1] * b[1] + a[2] * b[2];
+}
+
+/// @throws InvalidInput where lengths or angles change with direction, or left becomes right
+double ScaleOf(vtkMatrix4x4* matrix)
+{
+  const double square = Product(Column(matrix, 0), Column(matrix, 0));
+  double off = matrix->Determinant() > 0.0 ? 0.0 : 1.0;
+  for (int i = 0; i < 3; ++i)
+  {
+    for (int j = 0; j < 3; ++j)
+    {
+      off = std::max(off, std::abs(Product(Column(matrix, i), Column(matrix, j)) / square - (i == j ? 1.0 : 0.0)));
+    }
+  }
+  if (!(off <= AlikeScales))
+  {
+    throw InvalidInput(
+      "The volume is stretched, sheared or mirrored by its transformation, or the camera is; light has "
+      "been solved for the medium as it stands. Only turn, move and scale it alike along all axes.");
+  }
+  return std::sqrt(square);
+}
+}
+
+RenderedCamera::RenderedCamera(vtkRenderer* renderer, vtkMatrix4x4* place)
+{
+  vtkCamera* const camera = renderer->GetActiveCamera();
+  vtkNew<vtkMatrix4x4> toEye;
+  vtkMatrix4x4::Multiply4x4(camera->GetModelViewTransformMatrix(), place, toEye);
+  this->Scale = ScaleOf(toEye);
+  vtkNew<vtkMatrix4x4> fromEye;
+  vtkMatrix4x4::Invert(toEye, fromEye);
+  vtkMatrix4x4* const projection =
+    camera->GetProjectionTransformMatrix(renderer->GetTiledAspectRatio(), -1.0, 1.0); // of what OpenGL is told
+  const auto element = [projection](int row, int column) { return projection->GetElement(row, column); };
+  this->Depth = { element(2, 2), element(2, 3), element(3, 2), element(3, 3) };
+
+  const double distance = camera->GetDistance(); // in the world: fromEye's columns are as long as its unit
+  this->Seen.position = Column(fromEye, 3);
+  this->Seen.viewUp = Column(fromEye, 1);
+  for (int axis = 0; axis < 3; ++axis)
+  {
+    this->Seen.focalPoint[axis] = this->Seen.position[axis] - distance * fromEye->GetElement(axis, 2);
+  }
+  this->Seen.parallelProjection = camera->GetParallelProjection() != 0;
+  this->Seen.aspect = element(1, 1) / element(0, 0);
+  if (this->Seen.parallelProjection)
+  {
+    this->Seen.parallelScale = 1.0 / (element(1, 1) * this->Scale);
+    this->Seen.shift = { -element(0, 3), -element(1, 3) };
+  }
+  else
+  {
+    this->Seen.viewAngle = std::atan(1.0 / element(1, 1)) * 360.0 / std::acos(-1.0);
+    this->Seen.shift = { element(0, 2), element(1, 2) };
+  }
+}
+
+std::vector<float> RenderedCamera::EndsOf(
+  const std::vector<float>& depths, const std::array<int, 2>& buffer, const std::array<int, 2>& size) const
+{
+  if (std::all_of(depths.begin(), depths.end(), [](float depth) { return depth >= 1.0f; }))
+  {
+    return {};
+  }
+  const auto& [zz, z1, wz, w1] = this->Depth;
+  const auto end = [&, zz = zz, z1 = z1, wz = wz, w1 = w1](float depth) {
+    const double n = 2.0 * depth - 1.0;
+    return depth >= 1.0f ? Endless : static_cast<float>((n * w1 - z1) / (n * wz - zz) / this->Scale);
+  };
+  std::vector<float> ends(static_cast<std::size_t>(size[0]) * size[1]);
+  for (int j = 0; j < size[1]; ++j)
+  {
+    const std::size_t row = (2 * j + 1) * static_cast<std::size_t>(buffer[1]) / (2 * size[1]);
+    for (int i = 0; i < size[0]; ++i)
+    {
+      const std::size_t column = (2 * i + 1) * static_cast<std::size_t>(buffer[0]) / (2 * size[0]);
+      ends[static_cast<std::size_t>(j) * size[0] + i] = end(depths[row * buffer[0] + column]);
+    }
+  }
+  return ends;
+}
+}

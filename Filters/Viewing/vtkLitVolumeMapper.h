@@ -1,0 +1,120 @@
+#ifndef vtkLitVolumeMapper_h
+#define vtkLitVolumeMapper_h
+
+#include "PropertyRange.h"
+#include "vtkNew.h"
+#include "vtkTimeStamp.h"
+#include "vtkTyndallModule.h" // for export macro
+#include "vtkVolumeMapper.h"
+
+#include <memory>
+
+class vtkMediumRayCaster;
+
+namespace tyndall
+{
+struct AskedView;
+struct Picture;
+}
+
+/**
+ * @class vtkLitVolumeMapper
+ * @brief a medium whose light is known, in a scene of VTK
+ *
+ * A volume's mapper whose pixels are those of vtkMediumRayCaster, cast with the camera of the renderer. Rays end at the
+ * opaque surfaces that the renderer has drawn before, and what they gathered until there lies over these: a surface is
+ * dimmed by the medium before it, and lit by none of it. The volume may be turned, moved and scaled alike along all
+ * axes; its property (transfer functions) is not used.
+ *
+ * Input: vtkImageData with the arrays of vtkMediumRayCaster. How light is seen is what the properties of RayCaster say,
+ * and lights and environment are connected there; its ImageSize, camera and first input are not used. Its
+ * ShowBackground is off here unless it is switched on; the environment then hides what the renderer has as background.
+ *
+ * With Exposure 0, as it is at first, the exposure is chosen once for a scene, from four small pictures around it, so
+ * that it stays the same while the camera moves; UsedExposure tells it.
+ *
+ * While the renderer has little time for a frame (vtkRenderWindow::SetDesiredUpdateRate, as interactors set it), fewer
+ * rays are cast, so that a frame takes FrameTime. When it has more than a second, there is one for each pixel.
+ *
+ * @sa vtkMediumRayCaster
+ */
+class TYNDALL_EXPORT vtkLitVolumeMapper : public vtkVolumeMapper
+{
+public:
+  static vtkLitVolumeMapper* New();
+  vtkTypeMacro(vtkLitVolumeMapper, vtkVolumeMapper);
+  void PrintSelf(ostream& os, vtkIndent indent) override;
+
+  /// What casts the rays: light and environment go in here, and its properties say how light is seen.
+  vtkMediumRayCaster* GetRayCaster();
+
+  ///@{
+  /// Seconds that the rays of a frame are to take while the camera moves. Default 0.025, valid [0.001, 10].
+  tyndallSetRangeMacro(FrameTime, double, 0.001, 10.0);
+  vtkGetMacro(FrameTime, double);
+  ///@}
+
+  /// The exposure that would be chosen for the input as it is; 0 where there is no medium, or rays cannot be cast.
+  double EstimateExposure();
+
+  ///@{
+  /// What to take for Exposure 0 instead of choosing it, where several mappers show parts of one scene. Default 0:
+  /// choose. Valid [0, 1e30].
+  tyndallSetRangeMacro(CommonExposure, double, 0.0, 1e30);
+  vtkGetMacro(CommonExposure, double);
+  ///@}
+
+  ///@{
+  /// Whether other mappers show other parts of the medium, whose pixels will be laid over these or under them. Radiance
+  /// is then shown divided by alpha, and the screen's value multiplied by alpha, so that two parts look like the whole.
+  /// Default off: over black, the window shows what the ray caster's `color` is.
+  vtkSetMacro(IsPart, bool);
+  vtkGetMacro(IsPart, bool);
+  vtkBooleanMacro(IsPart, bool);
+  ///@}
+
+  ///@{
+  /// Of the last frame: what radiance was multiplied by, columns and rows of rays, and seconds in all.
+  vtkGetMacro(UsedExposure, double);
+  vtkGetVector2Macro(CastSize, int);
+  vtkGetMacro(Seconds, double);
+  ///@}
+
+  /// That of this and of RayCaster.
+  vtkMTimeType GetMTime() override;
+
+  void Render(vtkRenderer* renderer, vtkVolume* volume) override;
+  void ReleaseGraphicsResources(vtkWindow* window) override;
+
+protected:
+  vtkLitVolumeMapper();
+  ~vtkLitVolumeMapper() override;
+
+  int FillInputPortInformation(int port, vtkInformation* information) override;
+
+private:
+  vtkLitVolumeMapper(const vtkLitVolumeMapper&) = delete;
+  void operator=(const vtkLitVolumeMapper&) = delete;
+
+  bool UpdateInputs();
+  bool FindExposure();
+  void ChooseCastSize(const int drawn[2], double allowed);
+  bool Cast(const tyndall::AskedView& view, tyndall::Picture& picture);
+
+  vtkNew<vtkMediumRayCaster> RayCaster;
+  double FrameTime = 0.025;
+  double CommonExposure = 0.0;
+  bool IsPart = false;
+
+  struct Overlay;
+  std::unique_ptr<Overlay> Drawing;
+  double AutomaticExposure = 0.0;
+  vtkTimeStamp ExposureTime; ///< when it was chosen
+  double SecondsOfRay = 0.0; ///< in the last frame; 0: not known yet
+
+  double UsedExposure = 0.0;
+  int CastSize[2] = { 0, 0 };
+  double Seconds = 0.0;
+};
+
+#endif

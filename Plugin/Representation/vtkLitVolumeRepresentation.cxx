@@ -1,0 +1,194 @@
+#include "vtkLitVolumeRepresentation.h"
+
+#include "vtkLitVolumeMapper.h"
+#include "vtkMediumRayCaster.h"
+
+#include "vtkCommunicator.h"
+#include "vtkDataObject.h"
+#include "vtkInformation.h"
+#include "vtkInformationVector.h"
+#include "vtkMultiProcessController.h"
+#include "vtkObjectFactory.h"
+#include "vtkPVLODVolume.h"
+#include "vtkSmartPointer.h"
+
+#include <cmath>
+
+vtkStandardNewMacro(vtkLitVolumeRepresentation);
+
+namespace
+{
+/// What does not change when the filter behind it runs again for another asker.
+vtkSmartPointer<vtkDataObject> CopyOf(vtkInformationVector* inputs)
+{
+  vtkSmartPointer<vtkDataObject> copy;
+  if (vtkDataObject* const data =
+        inputs->GetNumberOfInformationObjects() > 0 ? vtkDataObject::GetData(inputs) : nullptr)
+  {
+    copy.TakeReference(data->NewInstance());
+    copy->ShallowCopy(data);
+  }
+  return copy;
+}
+}
+
+vtkLitVolumeRepresentation::vtkLitVolumeRepresentation()
+{
+  this->SetNumberOfInputPorts(3);
+  this->VolumeMapper = vtkSmartPointer<vtkLitVolumeMapper>::New();
+}
+
+vtkLitVolumeRepresentation::~vtkLitVolumeRepresentation() = default;
+
+vtkMediumRayCaster* vtkLitVolumeRepresentation::RayCaster()
+{
+  return vtkLitVolumeMapper::SafeDownCast(this->VolumeMapper)->GetRayCaster();
+}
+
+int vtkLitVolumeRepresentation::FillInputPortInformation(int port, vtkInformation* information)
+{
+  information->Set(
+    vtkAlgorithm::INPUT_REQUIRED_DATA_TYPE(), port == vtkMediumRayCaster::LIGHTS ? "vtkPolyData" : "vtkImageData");
+  information->Set(vtkAlgorithm::INPUT_IS_OPTIONAL(), 1); // other processes have none
+  return 1;
+}
+
+int vtkLitVolumeRepresentation::RequestData(
+  vtkInformation* request, vtkInformationVector** inputs, vtkInformationVector* outputs)
+{
+  vtkMediumRayCaster* const rays = this->RayCaster();
+  rays->SetLightsData(CopyOf(inputs[vtkMediumRayCaster::LIGHTS]));
+  rays->SetEnvironmentData(CopyOf(inputs[vtkMediumRayCaster::ENVIRONMENT]));
+  const int done = this->Superclass::RequestData(request, inputs, outputs);
+  this->AgreeOnExposure();
+  return done;
+}
+
+/// The logarithmic mean of what the ranks would choose for their pieces.
+void vtkLitVolumeRepresentation::AgreeOnExposure()
+{
+  vtkMultiProcessController* const ranks = vtkMultiProcessController::GetGlobalController();
+  if (!ranks || ranks->GetNumberOfProcesses() == 1)
+  {
+    return;
+  }
+  auto* const mapper = vtkLitVolumeMapper::SafeDownCast(this->VolumeMapper);
+  mapper->IsPartOn();
+  const double own = mapper->GetNumberOfInputConnections(0) > 0 ? mapper->EstimateExposure() : 0.0;
+  const double mine[2] = { own > 0.0 ? std::log(own) : 0.0, own > 0.0 ? 1.0 : 0.0 };
+  double all[2] = { 0.0, 0.0 };
+  ranks->AllReduce(mine, all, 2, vtkCommunicator::SUM_OP);
+  mapper->SetCommonExposure(all[1] > 0.0 ? std::exp(all[0] / all[1]) : 0.0);
+}
+
+/// The mapper asks for no array and no transfer function.
+void vtkLitVolumeRepresentation::UpdateMapperParameters()
+{
+  this->Actor->SetMapper(this->VolumeMapper);
+  this->Actor->SetVisibility(this->GetVisibility());
+}
+
+void vtkLitVolumeRepresentation::SetQuality(int quality)
+{
+  this->RayCaster()->SetQuality(quality);
+}
+
+void vtkLitVolumeRepresentation::SetSingleScatteringOnly(bool only)
+{
+  this->RayCaster()->SetSingleScatteringOnly(only);
+}
+
+void vtkLitVolumeRepresentation::SetShadowRays(bool cast)
+{
+  this->RayCaster()->SetShadowRays(cast);
+}
+
+void vtkLitVolumeRepresentation::SetStepSize(double voxels)
+{
+  this->RayCaster()->SetStepSize(voxels);
+}
+
+void vtkLitVolumeRepresentation::SetSurfaceReflection(int reflection)
+{
+  this->RayCaster()->SetSurfaceReflection(reflection);
+}
+
+void vtkLitVolumeRepresentation::SetSurfaceIndex(double index)
+{
+  this->RayCaster()->SetSurfaceIndex(index);
+}
+
+void vtkLitVolumeRepresentation::SetSurfaceReflectance(double reflectance)
+{
+  this->RayCaster()->SetSurfaceReflectance(reflectance);
+}
+
+void vtkLitVolumeRepresentation::SetTableFace(int face)
+{
+  this->RayCaster()->SetTableFace(face);
+}
+
+void vtkLitVolumeRepresentation::SetTableColor(double red, double green, double blue)
+{
+  this->RayCaster()->SetTableColor(red, green, blue);
+}
+
+void vtkLitVolumeRepresentation::SetTableReflectance(double reflectance)
+{
+  this->RayCaster()->SetTableReflectance(reflectance);
+}
+
+void vtkLitVolumeRepresentation::SetShowBackground(bool show)
+{
+  this->RayCaster()->SetShowBackground(show);
+}
+
+void vtkLitVolumeRepresentation::SetBackgroundColor(double red, double green, double blue)
+{
+  this->RayCaster()->SetBackgroundColor(red, green, blue);
+}
+
+void vtkLitVolumeRepresentation::SetEnvironmentUp(int axis)
+{
+  this->RayCaster()->SetEnvironmentUp(axis);
+}
+
+void vtkLitVolumeRepresentation::SetEnvironmentAzimuth(double degrees)
+{
+  this->RayCaster()->SetEnvironmentAzimuth(degrees);
+}
+
+void vtkLitVolumeRepresentation::SetExposure(double exposure)
+{
+  this->RayCaster()->SetExposure(exposure);
+}
+
+void vtkLitVolumeRepresentation::SetToneCurve(int curve)
+{
+  this->RayCaster()->SetToneCurve(curve);
+}
+
+void vtkLitVolumeRepresentation::SetDevice(const char* name)
+{
+  this->RayCaster()->SetDevice(name);
+}
+
+void vtkLitVolumeRepresentation::RemoveLights()
+{
+  this->SetInputConnection(vtkMediumRayCaster::LIGHTS, nullptr);
+}
+
+void vtkLitVolumeRepresentation::RemoveEnvironment()
+{
+  this->SetInputConnection(vtkMediumRayCaster::ENVIRONMENT, nullptr);
+}
+
+void vtkLitVolumeRepresentation::SetFrameTime(double seconds)
+{
+  vtkLitVolumeMapper::SafeDownCast(this->VolumeMapper)->SetFrameTime(seconds);
+}
+
+void vtkLitVolumeRepresentation::PrintSelf(ostream& os, vtkIndent indent)
+{
+  this->Superclass::PrintSelf(os, indent);
+}

@@ -1,0 +1,74 @@
+#ifndef vtkLitVolumeRepresentation_h
+#define vtkLitVolumeRepresentation_h
+
+#include "vtkImageVolumeRepresentation.h"
+#include "vtkTyndallRepresentationModule.h" // for export macro
+
+class vtkMediumRayCaster;
+
+/**
+ * @class vtkLitVolumeRepresentation
+ * @brief a medium with its light in ParaView's 3D view
+ *
+ * Shows vtkImageData by vtkLitVolumeMapper. Like the volumes of its superclass it is drawn where the data are: with a
+ * server by the server, in pieces by several ranks. Input 1: lights, input 2: environment, both optional, as
+ * vtkMediumRayCaster has them. The setters are those of vtkMediumRayCaster.
+ *
+ * With Exposure 0 several ranks agree on one when their data change.
+ *
+ * Transfer functions and the other properties of the superclass that colour a volume are not used.
+ */
+class TYNDALLREPRESENTATION_EXPORT vtkLitVolumeRepresentation : public vtkImageVolumeRepresentation
+{
+public:
+  static vtkLitVolumeRepresentation* New();
+  vtkTypeMacro(vtkLitVolumeRepresentation, vtkImageVolumeRepresentation);
+  void PrintSelf(ostream& os, vtkIndent indent) override;
+
+  ///@{
+  /// See vtkMediumRayCaster. SetShowBackground is off by default.
+  void SetQuality(int quality);
+  void SetSingleScatteringOnly(bool only);
+  void SetShadowRays(bool cast);
+  void SetStepSize(double voxels);
+  void SetSurfaceReflection(int reflection);
+  void SetSurfaceIndex(double index);
+  void SetSurfaceReflectance(double reflectance);
+  void SetTableFace(int face);
+  void SetTableColor(double red, double green, double blue);
+  void SetTableReflectance(double reflectance);
+  void SetShowBackground(bool show);
+  void SetBackgroundColor(double red, double green, double blue);
+  void SetEnvironmentUp(int axis);
+  void SetEnvironmentAzimuth(double degrees);
+  void SetExposure(double exposure);
+  void SetToneCurve(int curve);
+  void SetDevice(const char* name);
+  ///@}
+
+  ///@{
+  /// Disconnect inputs 1 and 2.
+  void RemoveLights();
+  void RemoveEnvironment();
+  ///@}
+
+  /// See vtkLitVolumeMapper.
+  void SetFrameTime(double seconds);
+
+protected:
+  vtkLitVolumeRepresentation();
+  ~vtkLitVolumeRepresentation() override;
+
+  int FillInputPortInformation(int port, vtkInformation* information) override;
+  int RequestData(vtkInformation* request, vtkInformationVector** inputs, vtkInformationVector* outputs) override;
+  void UpdateMapperParameters() override;
+
+private:
+  vtkLitVolumeRepresentation(const vtkLitVolumeRepresentation&) = delete;
+  void operator=(const vtkLitVolumeRepresentation&) = delete;
+
+  vtkMediumRayCaster* RayCaster();
+  void AgreeOnExposure();
+};
+
+#endif

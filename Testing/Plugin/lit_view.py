@@ -1,0 +1,64 @@
+"""Light in the 3D view, compared with Medium Ray Caster's picture, for the tests of the representation Lit Volume."""
+import os
+
+import numpy
+import pictures
+from paraview import servermanager
+from paraview.simple import *
+
+import paraview.simple
+
+paraview.simple._DisableFirstRenderCameraReset()
+
+SIZE = [200, 150]
+EXPOSURE = 4.0
+
+
+def load(remote):
+    LoadPlugin(os.environ["TYNDALL_PLUGIN"], remote=remote, ns=globals())
+
+
+def solved():
+    medium = ParticipatingMedium(Input=Wavelet(WholeExtent=[-8, 8, -8, 8, -8, 8]),
+                                 MinimumDensity=37, MaximumDensity=277, ExtinctionScale=0.1)
+    return LightPropagationMaps(Input=medium, Lights=LightRig(), DirectionsPerFace=4)
+
+
+def black_view():
+    view = CreateView("RenderView")
+    view.ViewSize = SIZE
+    view.OrientationAxesVisibility = 0
+    view.UseFXAA = 0
+    view.UseColorPaletteForBackground = 0
+    view.Background = [0, 0, 0]
+    view.CameraPosition = [9, -40, 21]
+    view.CameraFocalPoint = [1, 0.5, -1]
+    view.CameraViewUp = [0, 0, 1]
+    view.CameraViewAngle = 35
+    return view
+
+
+def show_lit(light, view):
+    shown = Show(light, view)
+    shown.Representation = "Lit Volume"
+    shown.Exposure = EXPOSURE
+    return shown
+
+
+def drawn(view):
+    Render(view)
+    return pictures.of_image(view.CaptureWindow(1))
+
+
+def cast(light, view):
+    """@return the pixels of Medium Ray Caster with the view's camera, over black"""
+    caster = MediumRayCaster(Input=light, ImageSize=SIZE, Exposure=EXPOSURE, CameraPosition=view.CameraPosition,
+                             CameraFocalPoint=view.CameraFocalPoint, CameraViewUp=view.CameraViewUp,
+                             CameraViewAngle=view.CameraViewAngle)
+    return pictures.of_image(servermanager.Fetch(caster), "color")
+
+
+def check_same(found, expected):
+    assert found.shape == expected.shape, (found.shape, expected.shape)
+    assert expected.max() > 100 and found.std() > 10, "there is nothing to compare"
+    assert numpy.abs(found - expected).max() <= 1, numpy.abs(found - expected).max()
