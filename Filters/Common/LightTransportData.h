@@ -141,6 +141,7 @@ struct IlluminationInput
 {
   Illumination illumination;
   UncollidedInput uncollided;
+  bool isDefaultSky = false; ///< nothing was given, see vtkPropagationAlgorithm
 };
 
 /// What PhotonMarcher or PhotonReconstruction found of light that is not scattered: cells `fluence_direct` (1 or 3
