@@ -280,7 +280,7 @@ Grid GridOf(vtkImageData* image)
     if (grid.size[axis] == 0)
     {
       throw InvalidInput("The input image has a single layer of points along " + std::string(axes[axis]) +
-        ", so no voxels; it needs at least two.");
+        ", so no voxels; it needs at least two. It may be a picture of a volume: take the volume itself.");
     }
     if (!(grid.spacing[axis] > 0.0) || std::isinf(grid.spacing[axis]))
     {

@@ -2,6 +2,7 @@
 
 #include "Common/FiniteValues.h"
 #include "Common/GhostFlags.h"
+#include "Common/ImageInput.h"
 #include "Common/LightTransportData.h"
 #include "Common/PhaseFunctionData.h"
 #include "Common/WholeImage.h"
@@ -318,12 +319,23 @@ void vtkParticipatingMedium::RemovePhaseTable()
 
 int vtkParticipatingMedium::FillInputPortInformation(int port, vtkInformation* information)
 {
-  information->Set(vtkAlgorithm::INPUT_REQUIRED_DATA_TYPE(), port == PHASE_TABLE ? "vtkTable" : "vtkImageData");
-  if (port == PHASE_TABLE)
+  if (port == DENSITY)
   {
+    tyndall::TakeImages(information);
+  }
+  else
+  {
+    information->Set(vtkAlgorithm::INPUT_REQUIRED_DATA_TYPE(), "vtkTable");
     information->Set(vtkAlgorithm::INPUT_IS_OPTIONAL(), 1);
   }
   return 1;
+}
+
+int vtkParticipatingMedium::RequestInformation(
+  vtkInformation* request, vtkInformationVector** inputs, vtkInformationVector* outputs)
+{
+  tyndall::TellSomeExtent(inputs[DENSITY], outputs);
+  return this->Superclass::RequestInformation(request, inputs, outputs);
 }
 
 /// Of the density what is asked for of the medium; of the table all.
