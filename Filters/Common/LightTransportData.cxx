@@ -559,6 +559,13 @@ Environment ReadEnvironment(vtkImageData* image)
   return std::move(read.environment);
 }
 
+bool MediumInput::Emits() const
+{
+  const std::size_t count = this->medium.grid.VoxelCount() * static_cast<std::size_t>(this->emission.Components());
+  const float* const values = this->emission.Values();
+  return values && std::any_of(values, values + count, [](float value) { return value > 0.0f; });
+}
+
 bool NothingShines(const Illumination& illumination)
 {
   return illumination.lights.empty() && illumination.environment.Empty() && IsBlack(illumination.sky) &&

@@ -114,6 +114,8 @@ struct MediumInput
 {
   Medium medium;
   FloatField sigma_a, sigma_s, emission, g;
+
+  bool Emits() const; ///< anywhere: an array of zeros is no light
 };
 
 /// The medium of an image: cells `sigma_a`, `sigma_s` (1 or 3 components, 1/length), `emission` (optional, 1 or 3) or

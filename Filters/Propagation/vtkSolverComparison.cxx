@@ -300,7 +300,7 @@ int vtkSolverComparison::RequestData(
     scene.ior = read.ior;
     scene.levels = read.Levels();
     scene.periodic = { this->PeriodicX, this->PeriodicY, this->PeriodicZ };
-    tyndall::IlluminationInput shining = this->ReadAllIllumination(inputs, read.input.emission.IsThere());
+    tyndall::IlluminationInput shining = this->ReadAllIllumination(inputs, read.input.Emits());
     scene.illumination = std::move(shining.illumination);
     const std::optional<tyndall::ReferenceLight> reference = ReadReference(vtkImageData::GetData(inputs[REFERENCE]));
     if (!tyndall::IsFirstPiece(request, outputs))

@@ -75,6 +75,9 @@ void IsNotUsedBesideOtherLight(test::Claims& claims)
   maps->SetLightsConnection(night->GetOutputPort());
   claims.That(!isUsed(maps) && errors.WasOneWith("Nothing shines"), "not where lights are connected, all of them off");
   maps->RemoveLights();
+  test::AddCells(medium, "emission", 0.0);
+  claims.That(isUsed(maps), "an emission of 0 is no light");
+  medium->GetCellData()->RemoveArray("emission");
   test::AddCells(medium, "emission", 1.0);
   claims.That(!isUsed(maps) && errors.None(), "not where the medium emits");
 }
