@@ -4,8 +4,9 @@ class vtkAlgorithm;
 class vtkInformation;
 class vtkInformationVector;
 
-/// For filters that work on images. A port that takes vtkImageData alone refuses other data by an error of VTK's executive
-/// for each pass of the pipeline, none of which says what to do. These ports take any dataset, and refuse it once.
+/// For filters that work on images. A port that takes vtkImageData alone refuses other data by an error of VTK's
+/// executive for each pass of the pipeline, none of which says what to do. These ports take any dataset, and refuse it
+/// once.
 namespace tyndall
 {
 /// In FillInputPortInformation: the port is for images.
