@@ -11,16 +11,12 @@
 
 #include <QApplication>
 #include <QElapsedTimer>
-#include <QMainWindow>
 #include <QMouseEvent>
 #include <QPointer>
-#include <QPushButton>
-#include <QStatusBar>
 #include <QTimer>
 #include <QToolButton>
 
 #include <map>
-#include <utility>
 
 namespace
 {
@@ -90,13 +86,7 @@ private:
         vtkLogF(TRACE, "%s is %.3g done", algorithm->GetClassName(), algorithm->GetProgress());
         this->HandleWaitingEvents();
         break;
-      default:
-        this->End();
-        this->ShowResults(algorithm);
-        if (std::exchange(this->WasAborted, false))
-        {
-          this->OfferToRunAgain(algorithm);
-        }
+      default: this->End(); this->ShowResults(algorithm);
     }
   }
 
@@ -121,7 +111,6 @@ private:
     {
       vtkLogF(TRACE, "%s is aborted", this->Running->GetClassName());
       this->Running->AbortExecute = 1; // SetAbortExecute would have it run again, later
-      this->WasAborted = true;
       this->Button->setDown(true);
     }
   }
@@ -146,33 +135,6 @@ private:
       {
         proxy->UpdatePropertyInformation();
       }
-    });
-  }
-
-  /// Nothing has changed that Apply could apply, so ParaView would not let it be pressed.
-  void OfferToRunAgain(vtkAlgorithm* algorithm)
-  {
-    const vtkWeakPointer<vtkAlgorithm> stopped = algorithm;
-    const vtkWeakPointer<vtkSMProxy> proxy = this->Proxies[algorithm];
-    QTimer::singleShot(0, this, [this, stopped, proxy] {
-      auto* const window = this->Button ? qobject_cast<QMainWindow*>(this->Button->window()) : nullptr;
-      auto* const apply = window ? window->findChild<QPushButton*>("Accept") : nullptr;
-      if (!apply || !proxy)
-      {
-        return;
-      }
-      window->statusBar()->showMessage(QString(proxy->GetXMLLabel()) + " stopped; Apply runs it again");
-      apply->setEnabled(true);
-      disconnect(this->Again);
-      this->Again = connect(apply, &QPushButton::pressed, this, [this, window, stopped, proxy] {
-        disconnect(this->Again);
-        window->statusBar()->clearMessage();
-        if (stopped && proxy)
-        {
-          stopped->Modified();
-          proxy->MarkModified(proxy); // tells the views
-        }
-      });
     });
   }
 
@@ -231,8 +193,6 @@ private:
   vtkWeakPointer<vtkAlgorithm> Running;
   vtkNew<vtkCallbackCommand> Watcher;
   QElapsedTimer SinceLast;
-  QMetaObject::Connection Again; ///< of Apply, with what runs a stopped filter again
-  bool WasAborted = false;
   bool HandlesEvents = false;
 };
 }

@@ -4,8 +4,7 @@
 /// Gives ParaView's window what version 5.11 lacks while a filter runs, for proxies with the hint <StopsOnAbort/>:
 ///
 /// - The abort button in the status bar works. ParaView has one, but never enables it, and does not listen to it.
-///   Pressed, it makes the filter's CheckAbort true. Filters on a server are out of its reach. The status bar says then
-///   that the filter stopped, and Apply, which has nothing to apply, can be pressed and runs it again.
+///   Pressed, it makes the filter's CheckAbort true. Filters on a server are out of its reach.
 /// - The results on the panel (information_only) are those of the last run. ParaView reads them before the run that an
 ///   Apply leads to.
 ///
