@@ -22,7 +22,7 @@ def rectilinear():
     for place in (grid.SetXCoordinates, grid.SetYCoordinates, grid.SetZCoordinates):
         place(numpy_to_vtk(numpy.array([0.0, 1.0, 3.0]), deep=1))
     density = numpy_to_vtk(numpy.ones(8), deep=1)
-    density.SetName("density")
+    density.SetName("RTData")
     grid.GetCellData().SetScalars(density)
     producer = TrivialProducer()
     producer.GetClientSideObject().SetOutput(grid)
