@@ -51,9 +51,9 @@ for kind, source in (("vtkRectilinearGrid", rectilinear()), ("vtkUnstructuredGri
         assert messages(proxy).count("ERROR") == 0, (make, kind)
         assert servermanager.Fetch(proxy).GetNumberOfCells() == 216, (make, kind)
 
-medium = ParticipatingMedium(Input=GroupDatasets(Input=[wavelet, wavelet]))
+medium = ParticipatingMedium(Input=GroupDatasets(Input=[wavelet, wavelet]), MaximumDensity=100)
 alone = vtk_to_numpy(servermanager.Fetch(LightPropagationMaps(
-    Input=ParticipatingMedium(Input=wavelet))).GetCellData().GetArray("fluence"))
+    Input=ParticipatingMedium(Input=wavelet, MaximumDensity=100))).GetCellData().GetArray("fluence"))
 blocks = servermanager.Fetch(LightPropagationMaps(Input=medium))
 assert blocks.GetNumberOfBlocks() == 2, blocks
 for i in range(2):
