@@ -2,6 +2,7 @@
 
 // How filters do their work, report and fail: see LightTransportData.h.
 #include "Common/GhostFlags.h"
+#include "Common/ImageInput.h"
 #include "Common/LastFailure.h"
 #include "Common/LightTransportWriting.h"
 #include "Device/Device.h"
@@ -85,6 +86,7 @@ int Guarded(vtkAlgorithm* filter, vtkInformationVector* outputs, const std::func
   };
   try
   {
+    RequireImages(filter);
     CheckProperties(filter);
     CheckDuplicates(filter, outputs);
     work();

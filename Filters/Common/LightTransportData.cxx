@@ -280,7 +280,7 @@ Grid GridOf(vtkImageData* image)
     if (grid.size[axis] == 0)
     {
       throw InvalidInput("The input image has a single layer of points along " + std::string(axes[axis]) +
-        ", so no voxels; it needs at least two.");
+        ", so no voxels; it needs at least two. It may be a picture of a volume: take the volume itself.");
     }
     if (!(grid.spacing[axis] > 0.0) || std::isinf(grid.spacing[axis]))
     {
@@ -557,6 +557,13 @@ Environment ReadEnvironment(vtkImageData* image)
   DarkenHidden(image, read.environment.radiance);
   Check(read);
   return std::move(read.environment);
+}
+
+bool MediumInput::Emits() const
+{
+  const std::size_t count = this->medium.grid.VoxelCount() * static_cast<std::size_t>(this->emission.Components());
+  const float* const values = this->emission.Values();
+  return values && std::any_of(values, values + count, [](float value) { return value > 0.0f; });
 }
 
 bool NothingShines(const Illumination& illumination)

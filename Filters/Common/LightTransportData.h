@@ -114,6 +114,8 @@ struct MediumInput
 {
   Medium medium;
   FloatField sigma_a, sigma_s, emission, g;
+
+  bool Emits() const; ///< anywhere: an array of zeros is no light
 };
 
 /// The medium of an image: cells `sigma_a`, `sigma_s` (1 or 3 components, 1/length), `emission` (optional, 1 or 3) or
@@ -141,6 +143,7 @@ struct IlluminationInput
 {
   Illumination illumination;
   UncollidedInput uncollided;
+  bool isDefaultSky = false; ///< nothing was given, see vtkPropagationAlgorithm
 };
 
 /// What PhotonMarcher or PhotonReconstruction found of light that is not scattered: cells `fluence_direct` (1 or 3

@@ -58,14 +58,15 @@ int vtkDiscreteOrdinates::RequestData(vtkInformation*, vtkInformationVector** in
   return tyndall::Guarded(this, outputs, [&] {
     vtkImageData* image = vtkImageData::GetData(inputs[MEDIUM]);
     const tyndall::MediumInput input = tyndall::ReadMedium(this, image);
-    const tyndall::IlluminationInput shining = this->ReadShining(inputs);
+    const tyndall::IlluminationInput shining = this->ReadShining(inputs, input.Emits());
     const tyndall::Illumination& illumination = shining.illumination;
-    this->WarnWhereDark(illumination, input.emission.IsThere());
+    this->WarnWhereDark(illumination, input.Emits());
     const std::shared_ptr<tyndall::Device> device = tyndall::Device::Find(this->GetDevice());
     const tyndall::OrdinatesSettings settings = SettingsOf(this, input.medium, *device);
     tyndall::LightField light = tyndall::SolveDiscreteOrdinates(
       *device, input.medium, illumination, settings, tyndall::MonitorOf(this), this->Last->Where(this->WarmStart));
     light.settingsUsed = tyndall::Words(settings);
+    TellOfDefaultSky(shining, light.leftOut);
     this->Note(light);
     this->WriteSolved(image, std::move(light), outputs);
   });

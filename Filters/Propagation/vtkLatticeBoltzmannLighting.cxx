@@ -138,12 +138,14 @@ tyndall::LightField vtkLatticeBoltzmannLighting::Solve(vtkInformationVector** in
   {
     return this->SolveWithPhotons(inputs, input, ior);
   }
-  const tyndall::IlluminationInput shining = this->ReadShining(inputs);
-  this->WarnWhereDark(shining.illumination, input.emission.IsThere());
-  return Timed(this->Seconds, [&] {
+  const tyndall::IlluminationInput shining = this->ReadShining(inputs, input.Emits());
+  this->WarnWhereDark(shining.illumination, input.Emits());
+  tyndall::LightField light = Timed(this->Seconds, [&] {
     return tyndall::SolveLatticeBoltzmann(*tyndall::Device::Find(this->GetDevice()), input.medium, ior,
       shining.illumination, SettingsOf(this), tyndall::MonitorOf(this));
   });
+  TellOfDefaultSky(shining, light.leftOut);
+  return light;
 }
 
 int vtkLatticeBoltzmannLighting::RequestData(

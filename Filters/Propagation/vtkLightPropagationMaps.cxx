@@ -132,12 +132,13 @@ int vtkLightPropagationMaps::RequestData(vtkInformation*, vtkInformationVector**
   return tyndall::Guarded(this, outputs, [&] {
     vtkImageData* image = vtkImageData::GetData(inputs[MEDIUM]);
     const tyndall::MediumInput input = tyndall::ReadMedium(this, image);
-    const tyndall::IlluminationInput shining = this->ReadShining(inputs);
+    const tyndall::IlluminationInput shining = this->ReadShining(inputs, input.Emits());
     const tyndall::Illumination& illumination = shining.illumination;
-    this->WarnWhereDark(illumination, input.emission.IsThere());
+    this->WarnWhereDark(illumination, input.Emits());
 
     tyndall::LightField light = Solve(this, input.medium, illumination, this->Last->Where(this->WarmStart));
 
+    TellOfDefaultSky(shining, light.leftOut);
     this->Note(light);
     this->WriteSolved(image, std::move(light), outputs);
   });

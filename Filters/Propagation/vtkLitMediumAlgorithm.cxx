@@ -1,5 +1,6 @@
 #include "vtkLitMediumAlgorithm.h"
 
+#include "Common/ImageInput.h"
 #include "Common/LightTransportData.h"
 #include "Common/WholeImage.h"
 #include "Lights/Lights.h"
@@ -48,11 +49,25 @@ void vtkLitMediumAlgorithm::RemoveEnvironment()
 
 int vtkLitMediumAlgorithm::FillInputPortInformation(int port, vtkInformation* information)
 {
-  information->Set(vtkAlgorithm::INPUT_REQUIRED_DATA_TYPE(), port == LIGHTS ? "vtkPolyData" : "vtkImageData");
+  if (port == LIGHTS)
+  {
+    information->Set(vtkAlgorithm::INPUT_REQUIRED_DATA_TYPE(), "vtkPolyData");
+  }
+  else
+  {
+    tyndall::TakeImages(information);
+  }
   if (port != MEDIUM)
   {
     information->Set(vtkAlgorithm::INPUT_IS_OPTIONAL(), 1);
   }
+  return 1;
+}
+
+int vtkLitMediumAlgorithm::RequestInformation(
+  vtkInformation*, vtkInformationVector** inputs, vtkInformationVector* outputs)
+{
+  tyndall::TellSomeExtent(inputs[MEDIUM], outputs);
   return 1;
 }
 

@@ -2,10 +2,14 @@
 
 #include "Common/LightTransportData.h"
 #include "Common/WholeImage.h"
+#include "Light/LeftOut.h"
 #include "LightPropagation/PropagationSettings.h"
+#include "Scene/vtkLightRig.h"
 
 #include "vtkImageData.h"
 #include "vtkInformationVector.h"
+#include "vtkNew.h"
+#include "vtkPolyData.h"
 #include "vtkTable.h"
 
 #include <algorithm>
@@ -21,6 +25,16 @@ bool OnlyFromFarAway(const tyndall::Illumination& illumination)
   return std::all_of(illumination.lights.begin(), illumination.lights.end(),
     [](const tyndall::Light& light) { return light.type == tyndall::LightType::Directional; });
 }
+
+/// A sun gives white media, which are all alike under an even sky, a bright and a dark side.
+void AddDefaultSky(tyndall::Illumination& illumination)
+{
+  constexpr double radiance = 0.1; // a third of the sun's irradiance, as a clear sky has
+  vtkNew<vtkLightRig> untouched;
+  untouched->Update();
+  illumination.lights = tyndall::ReadLights(untouched->GetOutput());
+  illumination.sky.fill(radiance);
+}
 }
 
 vtkPropagationAlgorithm::vtkPropagationAlgorithm()
@@ -34,12 +48,29 @@ vtkPropagationAlgorithm::vtkPropagationAlgorithm()
 
 vtkPropagationAlgorithm::~vtkPropagationAlgorithm() = default;
 
-tyndall::Illumination vtkPropagationAlgorithm::ReadAllIllumination(vtkInformationVector** inputs)
+tyndall::IlluminationInput vtkPropagationAlgorithm::ReadAllIllumination(vtkInformationVector** inputs, bool emits)
 {
-  tyndall::Illumination illumination = this->ReadIllumination(inputs);
+  tyndall::IlluminationInput shining;
+  tyndall::Illumination& illumination = shining.illumination;
+  illumination = this->ReadIllumination(inputs);
   tyndall::AddDiffuse(illumination, this->SkyColor, this->FaceRadiance);
   tyndall::AddFaceAlbedo(illumination, this->FaceAlbedo, this->FaceAlbedoColor);
-  return illumination;
+  const bool isConnected = vtkPolyData::GetData(inputs[LIGHTS]) || vtkImageData::GetData(inputs[ENVIRONMENT]);
+  shining.isDefaultSky = this->DefaultSky && !isConnected && !emits && tyndall::NothingShines(illumination);
+  if (shining.isDefaultSky)
+  {
+    AddDefaultSky(illumination);
+  }
+  return shining;
+}
+
+void vtkPropagationAlgorithm::TellOfDefaultSky(
+  const tyndall::IlluminationInput& shining, std::vector<std::string>& leftOut)
+{
+  if (shining.isDefaultSky)
+  {
+    leftOut.insert(leftOut.begin(), tyndall::left_out::DefaultSky);
+  }
 }
 
 void vtkPropagationAlgorithm::SetFaceAlbedoColor(const double values[18])
@@ -60,7 +91,9 @@ void vtkPropagationAlgorithm::WarnWhereDark(const tyndall::Illumination& illumin
   }
   if (tyndall::NothingShines(illumination) && !emits)
   {
-    vtkWarningMacro("Nothing shines on the medium, so it is dark. Connect Lights or an Environment, or set SkyColor.");
+    vtkWarningMacro(
+      "Nothing shines on the medium, so it is dark. Connect Lights or an Environment, or set SkyColor, or "
+      "switch DefaultSky on.");
   }
   else if (this->PeriodicX && this->PeriodicY && this->PeriodicZ && !emits && OnlyFromFarAway(illumination))
   {
@@ -95,5 +128,6 @@ void vtkPropagationAlgorithm::PrintSelf(ostream& os, vtkIndent indent)
   PrintNumbers(os, indent, "FaceAlbedo", this->FaceAlbedo, 6);
   PrintNumbers(os, indent, "FaceAlbedoColor", this->FaceAlbedoColor, 18);
   PrintNumbers(os, indent, "SkyColor", this->SkyColor, 3);
+  os << indent << "DefaultSky: " << this->DefaultSky << "\n";
   os << indent << "EstimateError: " << this->EstimateError << "\n";
 }

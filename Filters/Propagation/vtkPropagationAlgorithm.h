@@ -4,9 +4,13 @@
 #include "vtkLitImageAlgorithm.h"
 #include "vtkTyndallModule.h" // for export macro
 
+#include <string>
+#include <vector>
+
 class vtkImageData;
 namespace tyndall
 {
+struct IlluminationInput;
 struct LightField;
 }
 
@@ -73,6 +77,16 @@ public:
   ///@}
 
   ///@{
+  /// Whether a default sky shines where nothing else does: no Lights, Environment or other light is connected, SkyColor
+  /// and FaceRadiance are 0, and the medium does not emit. It is the sun of an untouched vtkLightRig (irradiance 1
+  /// W/length^2) and a grey sky of radiance 0.1 W/(length^2 sr) from every direction; `left_out` says that it shines.
+  /// Default on.
+  vtkSetMacro(DefaultSky, bool);
+  vtkGetMacro(DefaultSky, bool);
+  vtkBooleanMacro(DefaultSky, bool);
+  ///@}
+
+  ///@{
   /// Whether solvers estimate the error of fluence from coarser solves. Default: see the subclass.
   vtkSetMacro(EstimateError, bool);
   vtkGetMacro(EstimateError, bool);
@@ -83,8 +97,12 @@ protected:
   vtkPropagationAlgorithm();
   ~vtkPropagationAlgorithm() override;
 
-  /// The lights and the environment, with the sky and what shines through the faces. Checked.
-  tyndall::Illumination ReadAllIllumination(vtkInformationVector** inputs);
+  /// The lights and the environment, with the sky and what shines through the faces, or else the default sky. Checked.
+  /// @param emits  whether the medium does
+  tyndall::IlluminationInput ReadAllIllumination(vtkInformationVector** inputs, bool emits);
+
+  /// Says first in a solve's `left_out` where the default sky shone.
+  static void TellOfDefaultSky(const tyndall::IlluminationInput& shining, std::vector<std::string>& leftOut);
 
   /// Warns where neither the medium nor anything else shines, or no light can come in.
   void WarnWhereDark(const tyndall::Illumination& illumination, bool emits);
@@ -101,6 +119,7 @@ protected:
   double FaceAlbedoColor[18] = { 1.0, 1.0, 1.0, 1.0, 1.0, 1.0, 1.0, 1.0, 1.0, 1.0, 1.0, 1.0, 1.0, 1.0, 1.0, 1.0, 1.0,
     1.0 };
   double SkyColor[3] = { 0.0, 0.0, 0.0 };
+  bool DefaultSky = true;
   bool EstimateError = false;
 
 private:

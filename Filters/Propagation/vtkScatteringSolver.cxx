@@ -36,15 +36,14 @@ int vtkScatteringSolver::FillOutputPortInformation(int port, vtkInformation* inf
   return 1;
 }
 
-tyndall::IlluminationInput vtkScatteringSolver::ReadShining(vtkInformationVector** inputs)
+tyndall::IlluminationInput vtkScatteringSolver::ReadShining(vtkInformationVector** inputs, bool emits)
 {
   vtkImageData* const given = vtkImageData::GetData(inputs[UNCOLLIDED]);
-  tyndall::IlluminationInput input;
   if (!given)
   {
-    input.illumination = this->ReadAllIllumination(inputs);
-    return input;
+    return this->ReadAllIllumination(inputs, emits);
   }
+  tyndall::IlluminationInput input;
   input.uncollided = tyndall::ReadUncollided(given, tyndall::GridOf(vtkImageData::GetData(inputs[MEDIUM])));
   input.illumination.uncollided = input.uncollided.image;
   tyndall::AddFaceAlbedo(input.illumination, this->FaceAlbedo, this->FaceAlbedoColor);

@@ -69,9 +69,10 @@ protected:
 
   int FillOutputPortInformation(int port, vtkInformation* information) override;
 
-  /// All that shines: uncollided light, or else lights, environment, the sky and what comes in through the faces.
-  /// Checked.
-  tyndall::IlluminationInput ReadShining(vtkInformationVector** inputs);
+  /// All that shines: uncollided light, or else lights, environment, the sky and what comes in through the faces, or
+  /// the default sky. Checked.
+  /// @param emits  whether the medium does
+  tyndall::IlluminationInput ReadShining(vtkInformationVector** inputs, bool emits);
 
   int Quality = USUAL;
   std::string SettingsUsed;

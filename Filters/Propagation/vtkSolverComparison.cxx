@@ -300,7 +300,8 @@ int vtkSolverComparison::RequestData(
     scene.ior = read.ior;
     scene.levels = read.Levels();
     scene.periodic = { this->PeriodicX, this->PeriodicY, this->PeriodicZ };
-    scene.illumination = this->ReadAllIllumination(inputs);
+    tyndall::IlluminationInput shining = this->ReadAllIllumination(inputs, read.input.Emits());
+    scene.illumination = std::move(shining.illumination);
     const std::optional<tyndall::ReferenceLight> reference = ReadReference(vtkImageData::GetData(inputs[REFERENCE]));
     if (!tyndall::IsFirstPiece(request, outputs))
     {
@@ -308,6 +309,7 @@ int vtkSolverComparison::RequestData(
     }
     tyndall::Comparison comparison = tyndall::CompareSolvers(*tyndall::Device::Find(this->Device), scene,
       this->Settings(), reference ? &*reference : nullptr, tyndall::MonitorOf(this));
+    TellOfDefaultSky(shining, comparison.leftOut);
     Write(comparison, this->GetOutput());
     this->Note(comparison, tyndall::ClockSeconds() - start);
     vtkImageData* const output = vtkImageData::GetData(outputs, REFERENCE_OUTPUT);

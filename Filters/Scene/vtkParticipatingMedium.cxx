@@ -2,10 +2,12 @@
 
 #include "Common/FiniteValues.h"
 #include "Common/GhostFlags.h"
+#include "Common/ImageInput.h"
 #include "Common/LightTransportData.h"
 #include "Common/PhaseFunctionData.h"
 #include "Common/WholeImage.h"
 #include "Device/HostThreads.h"
+#include "Medium/OpticalSize.h"
 #include "Medium/Presets.h"
 
 #include "vtkImageData.h"
@@ -13,7 +15,10 @@
 #include "vtkObjectFactory.h"
 #include "vtkTable.h"
 
+#include <algorithm>
+#include <array>
 #include <cmath>
+#include <sstream>
 #include <string>
 #include <vector>
 
@@ -99,14 +104,56 @@ Recipe CustomMedium(vtkParticipatingMedium* filter)
   return recipe;
 }
 
+struct Unit
+{
+  const char* name;
+  double millimetres;
+};
+constexpr std::array<Unit, 5> Units = { { { "um", 1e-3 }, { "mm", 1.0 }, { "cm", 10.0 }, { "m", 1e3 },
+  { "km", 1e6 } } }; ///< as LengthUnits from MICROMETRES on
+
+/// Length of the dataset's unit.
+double MillimetresOf(vtkParticipatingMedium* filter)
+{
+  const int unit = filter->GetLengthUnit();
+  return unit == vtkParticipatingMedium::AS_GIVEN ? filter->GetMillimetresPerUnit()
+                                                  : Units[unit - vtkParticipatingMedium::MICROMETRES].millimetres;
+}
+
+/// The edges of the grid in words, in the largest unit of which the longest has at least one.
+std::string ExtentInWords(const tyndall::Grid& grid, double millimetres)
+{
+  const double longest = std::max({ grid.Length(0), grid.Length(1), grid.Length(2) }) * millimetres;
+  Unit unit = Units.front();
+  for (const Unit& larger : Units)
+  {
+    unit = longest >= larger.millimetres ? larger : unit;
+  }
+  std::ostringstream text;
+  text.precision(4);
+  for (int axis = 0; axis < 3; ++axis)
+  {
+    text << (axis > 0 ? " x " : "") << grid.Length(axis) * millimetres / unit.millimetres;
+  }
+  text << " " << unit.name;
+  return text.str();
+}
+
 Recipe RealMedium(vtkParticipatingMedium* filter)
 {
   const tyndall::MediumPreset& preset = tyndall::MediumPresets()[filter->GetPreset() - 1];
-  const double length = filter->GetMillimetresPerUnit();
-  Require(length > 0.0 && std::isfinite(length),
-    "MillimetresPerUnit is " + std::to_string(length) + "; it must be a positive number.");
-  const double factor = length * filter->GetExtinctionScale();
+  const double factor = MillimetresOf(filter) * filter->GetExtinctionScale();
   return { Times(preset.sigma_s, factor), Times(preset.sigma_a, factor), {}, preset.g };
+}
+
+double LargestExtinction(const Recipe& recipe)
+{
+  double largest = 0.0;
+  for (int c = 0; c < 3; ++c)
+  {
+    largest = std::max(largest, recipe.sigma_s[c] + recipe.sigma_a[c]);
+  }
+  return largest;
 }
 
 /// @param ofChannels  none, or those of red, green and blue
@@ -272,12 +319,23 @@ void vtkParticipatingMedium::RemovePhaseTable()
 
 int vtkParticipatingMedium::FillInputPortInformation(int port, vtkInformation* information)
 {
-  information->Set(vtkAlgorithm::INPUT_REQUIRED_DATA_TYPE(), port == PHASE_TABLE ? "vtkTable" : "vtkImageData");
-  if (port == PHASE_TABLE)
+  if (port == DENSITY)
   {
+    tyndall::TakeImages(information);
+  }
+  else
+  {
+    information->Set(vtkAlgorithm::INPUT_REQUIRED_DATA_TYPE(), "vtkTable");
     information->Set(vtkAlgorithm::INPUT_IS_OPTIONAL(), 1);
   }
   return 1;
+}
+
+int vtkParticipatingMedium::RequestInformation(
+  vtkInformation* request, vtkInformationVector** inputs, vtkInformationVector* outputs)
+{
+  tyndall::TellSomeExtent(inputs[DENSITY], outputs);
+  return this->Superclass::RequestInformation(request, inputs, outputs);
 }
 
 /// Of the density what is asked for of the medium; of the table all.
@@ -289,15 +347,39 @@ int vtkParticipatingMedium::RequestUpdateExtent(
   return done;
 }
 
+void vtkParticipatingMedium::NoteSize(
+  const tyndall::Grid& grid, const std::vector<float>& relativeDensity, double extinction)
+{
+  constexpr double thinnest = 0.01;
+  constexpr double thickest = 1e6;
+  const tyndall::OpticalSize size = tyndall::OpticalSizeOf(relativeDensity.data(), grid, extinction);
+  this->PhysicalExtent = ExtentInWords(grid, MillimetresOf(this));
+  this->OpticalThickness = size.thickness;
+  this->MeanFreePath = size.meanFreePath;
+  if (size.thickness > 0.0 && (size.thickness < thinnest || size.thickness > thickest))
+  {
+    const bool thin = size.thickness < thinnest;
+    vtkWarningMacro("The medium's optical thickness is "
+      << size.thickness << " at most, along x, y or z: "
+      << (thin ? "hardly any light meets it" : "no light comes deeper than its outermost voxels") << ". Look at "
+      << (this->Preset == CUSTOM ? "ExtinctionScale and MaximumDensity"
+                                 : "LengthUnit (the dataset is " + this->PhysicalExtent + " large) and MaximumDensity")
+      << ".");
+  }
+}
+
 int vtkParticipatingMedium::RequestData(vtkInformation*, vtkInformationVector** inputs, vtkInformationVector* outputs)
 {
+  this->PhysicalExtent.clear();
+  this->OpticalThickness = 0.0;
+  this->MeanFreePath = 0.0;
   return tyndall::Guarded(this, outputs, [&] {
     vtkImageData* input = vtkImageData::GetData(inputs[0]);
     const Recipe recipe = RecipeOf(this, this->ChannelMeanCosines);
     const tyndall::PhaseDescription phase = DescriptionOf(this, recipe.g, vtkTable::GetData(inputs[PHASE_TABLE]));
     const tyndall::FloatField density = tyndall::ReadChosenCells(this, 0, input, "", tyndall::Need::Required, { 1 });
-    std::vector<float> relative =
-      RelativeDensity(density, tyndall::GridOf(input), this->MinimumDensity, this->MaximumDensity);
+    const tyndall::Grid grid = tyndall::GridOf(input);
+    std::vector<float> relative = RelativeDensity(density, grid, this->MinimumDensity, this->MaximumDensity);
 
     EmptyHidden(input, relative);
 
@@ -310,6 +392,7 @@ int vtkParticipatingMedium::RequestData(vtkInformation*, vtkInformationVector** 
       AddProduct(output, "emission", relative, recipe.emission);
     }
     tyndall::WritePhaseDescription(output, phase);
+    this->NoteSize(grid, relative, LargestExtinction(recipe));
     if (const tyndall::FloatField g = tyndall::ReadCells(output, "g", tyndall::Need::Optional, { 1, 3 }); g.IsThere())
     {
       const tyndall::FloatField sigma_s = tyndall::ReadCells(output, "sigma_s", tyndall::Need::Required);
@@ -336,5 +419,9 @@ void vtkParticipatingMedium::PrintSelf(ostream& os, vtkIndent indent)
   os << indent << "FirstPart: " << this->FirstPart << "\n";
   os << indent << "EmissionScale: " << this->EmissionScale << "\n";
   print("EmissionColor", this->EmissionColor);
+  os << indent << "LengthUnit: " << this->LengthUnit << "\n";
+  os << indent << "PhysicalExtent: " << this->PhysicalExtent << "\n";
+  os << indent << "OpticalThickness: " << this->OpticalThickness << "\n";
+  os << indent << "MeanFreePath: " << this->MeanFreePath << "\n";
   os << indent << "MillimetresPerUnit: " << this->MillimetresPerUnit << "\n";
 }

@@ -5,7 +5,13 @@
 #include "vtkImageAlgorithm.h"
 #include "vtkTyndallModule.h" // for export macro
 
+#include <string>
 #include <vector>
+
+namespace tyndall
+{
+struct Grid;
+}
 
 /**
  * @class vtkParticipatingMedium
@@ -36,8 +42,10 @@
  *     emission = rho EmissionScale EmissionColor
  *
  * A preset gives sigma_s, sigma_a (1/mm at rho = 1) and g of a real medium instead of Albedo and MeanCosine;
- * ExtinctionScale then multiplies them, 1 being the medium as it was measured, and MillimetresPerUnit says how long a
- * unit of the dataset is.
+ * ExtinctionScale then multiplies them, 1 being the medium as it was measured, and LengthUnit or MillimetresPerUnit
+ * says how long a unit of the dataset is.
+ *
+ * Where the optical thickness is not 0, but below 0.01 or above 1e6, a warning says so: seldom is that what was meant.
  *
  * Cells that are hidden by `vtkGhostType` are empty.
  *
@@ -174,11 +182,38 @@ public:
   vtkGetVector3Macro(EmissionColor, double);
   ///@}
 
+  /// Units for SetLengthUnit.
+  enum LengthUnits
+  {
+    AS_GIVEN = 0, ///< MillimetresPerUnit
+    MICROMETRES,
+    MILLIMETRES,
+    CENTIMETRES,
+    METRES,
+    KILOMETRES
+  };
+
   ///@{
-  /// Length of the dataset's unit in millimetres, for presets: 1 for a scan in mm, 1000 for metres. Default 1, valid
-  /// (0, infinity).
+  /// The dataset's unit of length, for presets, one of LengthUnits. Default AS_GIVEN.
+  tyndallSetRangeMacro(LengthUnit, int, AS_GIVEN, KILOMETRES);
+  vtkGetMacro(LengthUnit, int);
+  ///@}
+
+  ///@{
+  /// Length of the dataset's unit in millimetres where LengthUnit is AS_GIVEN: 1 for a scan in mm, 1000 for metres.
+  /// Default 1, valid (0, infinity).
   tyndallSetRangeMacro(MillimetresPerUnit, double, tyndall::AboveZero, tyndall::AnyHigh);
   vtkGetMacro(MillimetresPerUnit, double);
+  ///@}
+
+  ///@{
+  /// Of the last update, in a parallel pipeline of this rank's piece: how large the dataset is by its unit of length,
+  /// as "480 x 480 x 240 m"; the largest optical thickness of a row of voxels along x, y or z, no unit; and the mean
+  /// free path, 1 over the mean extinction of the voxels that are not empty, in the dataset's unit (0 where all are).
+  /// Of the colour that is extinguished most. 0 and empty before, and after an error.
+  vtkGetCharFromStdStringMacro(PhysicalExtent);
+  vtkGetMacro(OpticalThickness, double);
+  vtkGetMacro(MeanFreePath, double);
   ///@}
 
 protected:
@@ -192,6 +227,8 @@ protected:
   ~vtkParticipatingMedium() override;
 
   int FillInputPortInformation(int port, vtkInformation* information) override;
+  int RequestInformation(
+    vtkInformation* request, vtkInformationVector** inputs, vtkInformationVector* outputs) override;
   int RequestUpdateExtent(
     vtkInformation* request, vtkInformationVector** inputs, vtkInformationVector* outputs) override;
   int RequestData(vtkInformation* request, vtkInformationVector** inputs, vtkInformationVector* outputs) override;
@@ -212,7 +249,15 @@ private:
   double FirstPart = 1.0;
   double EmissionScale = 0.0;
   double EmissionColor[3] = { 1.0, 1.0, 1.0 };
+  /// Of the medium that was made; warns where it is too thin or too thick to be meant.
+  /// @param extinction  at relative density 1, 1/length
+  void NoteSize(const tyndall::Grid& grid, const std::vector<float>& relativeDensity, double extinction);
+
+  int LengthUnit = AS_GIVEN;
   double MillimetresPerUnit = 1.0;
+  std::string PhysicalExtent;
+  double OpticalThickness = 0.0;
+  double MeanFreePath = 0.0;
 };
 
 #endif

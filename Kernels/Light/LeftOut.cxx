@@ -22,6 +22,7 @@ const char* const NoLights = "uncollided flux of lamps: there are no lights";
 const char* const NoEmissionPeaks = "uncollided flux of bright emission: no small bright part outshines all else, or "
                                     "an axis is periodic, or EmissionError is 0";
 const char* const BlackFaces = "reflecting faces: no face of the box has an albedo";
+const char* const DefaultSky = "lights of the scene: there are none, so the default sky shines (DefaultSky)";
 const char* const DarkOutside = "boundary radiance: no environment, sky or face shines";
 const char* const EvenOutside = "uncollided flux of the boundaries: what comes from outside is the same from "
                                 "everywhere and goes with scattered light";

@@ -25,6 +25,7 @@ extern const char* const NoLights;
 extern const char* const OwnUncollided;   ///< uncollided light was found by another solver
 extern const char* const NoEmissionPeaks; ///< what the medium emits needs no rays of its own
 extern const char* const BlackFaces;      ///< no face of the box gives back light
+extern const char* const DefaultSky;      ///< nothing was given that shines: light of the filter's own
 extern const char* const DarkOutside;     ///< neither environment nor sky nor faces shine
 extern const char* const EvenOutside;     ///< they shine evenly: directions of its own are not needed
 extern const char* const ThinVoxels;      ///< it does not matter where in voxels light is scattered

@@ -19,10 +19,10 @@ struct EmissionScene
   std::string name;
   tyndall::Medium medium;
   std::array<int, 3> sourceFirst = { 0, 0, 0 }, sourceSize = { 1, 1, 1 }; ///< the box of what shines
-  std::vector<float> sigma_a; ///< [voxel], of all channels
-  std::vector<float> emission; ///< [voxel][channel]
-  std::vector<float> sigma_s;  ///< 0
-  double error = 0.02;         ///< EmissionError asked for
+  std::vector<float> sigma_a;                                             ///< [voxel], of all channels
+  std::vector<float> emission;                                            ///< [voxel][channel]
+  std::vector<float> sigma_s;                                             ///< 0
+  double error = 0.02;                                                    ///< EmissionError asked for
 };
 
 /// Cubes of `edge` voxels around one peak, or with one in a corner; thin, thick, by chance; in colours. Kobayashi's

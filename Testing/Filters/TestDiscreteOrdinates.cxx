@@ -63,6 +63,7 @@ void SaysWhatIsWrong(test::Claims& claims)
   vtkNew<vtkDiscreteOrdinates> ordinates;
   test::Errors errors(ordinates);
   ordinates->SetInputDataObject(medium);
+  ordinates->DefaultSkyOff();
   ordinates->Update();
   claims.That(errors.WasOneWith("Nothing shines"), "warns where it is dark");
   ordinates->SetSkyColor(1.0, 1.0, 1.0);

@@ -133,6 +133,7 @@ void SaysWhatIsWrong(test::Claims& claims)
   vtkNew<vtkLatticeBoltzmannLighting> lattice;
   test::Errors errors(lattice);
   lattice->SetInputDataObject(test::MakeMedium({ { 3, 3, 3 } }, 1.0, 1.0));
+  lattice->DefaultSkyOff();
   lattice->Update();
   claims.That(errors.WasOneWith("Nothing shines"), "warns where it is dark");
   lattice->SetSkyColor(1.0, 1.0, 1.0);

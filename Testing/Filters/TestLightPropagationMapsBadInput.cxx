@@ -289,6 +289,7 @@ int TestLightPropagationMapsBadInput(int, char*[])
   refusals.None("good input after all the bad is solved");
 
   refusals->SetSkyColor(0.0, 0.0, 0.0);
+  refusals->DefaultSkyOff();
   refusals->Update();
   claims.That(refusals.WasOneWith("Nothing shines"), "the dark is warned of");
   claims.That(test::Deviation(refusals->GetOutput(), "fluence", 0.0) == 0.0, "and dark");

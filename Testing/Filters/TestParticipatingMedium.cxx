@@ -176,6 +176,55 @@ void PresetsAreRealMedia(test::Claims& claims)
   claims.That(std::string(vtkParticipatingMedium::GetPresetName(99)).empty(), "there is no preset 99");
 }
 
+void UnitsOfLengthHaveNames(test::Claims& claims)
+{
+  vtkNew<vtkParticipatingMedium> filter;
+  const auto image = test::MakeImage({ { 4, 3, 2 }, { 25.0, 25.0, 25.0 } });
+  test::AddCells(image, "density", 1.0);
+  image->GetCellData()->SetActiveScalars("density");
+  filter->SetInputDataObject(image);
+  filter->SetPreset(vtkParticipatingMedium::CLOUD);
+  const auto scattering = [&](int unit) {
+    filter->SetLengthUnit(unit);
+    filter->Update();
+    return At(filter, "sigma_s", 0);
+  };
+  const double inMetres = scattering(vtkParticipatingMedium::METRES);
+  claims.Near(inMetres, 0.15867, 1e-6, "sigma_s of a cloud, 1/m");
+  claims.That(filter->GetPhysicalExtent() == std::string("100 x 75 x 50 m"), "a cloud of a hundred metres");
+  claims.Near(filter->GetOpticalThickness(), 100.0 * 0.15867, 1e-3, "its optical thickness along x");
+  claims.Near(filter->GetMeanFreePath(), 1.0 / 0.15867, 1e-4, "its mean free path in metres");
+
+  claims.Near(scattering(vtkParticipatingMedium::KILOMETRES), 1e3 * inMetres, 1e-3, "1/km");
+  claims.Near(scattering(vtkParticipatingMedium::CENTIMETRES), 1e-2 * inMetres, 1e-8, "1/cm");
+  claims.That(filter->GetPhysicalExtent() == std::string("1 x 0.75 x 0.5 m"), "in the unit that fits");
+  filter->SetMillimetresPerUnit(1000.0);
+  claims.Near(scattering(vtkParticipatingMedium::AS_GIVEN), inMetres, 0.0, "as MillimetresPerUnit says");
+}
+
+void WarnsWhereItIsTooThinOrTooThick(test::Claims& claims)
+{
+  vtkNew<vtkParticipatingMedium> filter;
+  test::Errors errors(filter);
+  filter->SetInputDataObject(Ramp()); // of relative densities 0, 0, 1, 2
+  filter->SetMaximumDensity(1.0);
+  filter->Update();
+  claims.That(errors.None(), "no word of a medium that is neither");
+  filter->SetExtinctionScale(0.003);
+  filter->Update();
+  claims.That(errors.WasOneWith("optical thickness is 0.009 at most"), "a thin one");
+  filter->SetExtinctionScale(4e5);
+  filter->Update();
+  claims.That(errors.WasOneWith("optical thickness is 1.2e+06 at most"), "a thick one");
+  filter->SetExtinctionScale(0.0);
+  filter->Update();
+  claims.That(errors.None() && filter->GetMeanFreePath() == 0.0, "vacuum may be meant");
+  filter->SetExtinctionScale(1.0);
+  filter->SetPreset(vtkParticipatingMedium::CLOUD);
+  filter->Update();
+  claims.That(errors.WasOneWith("the dataset is 4 x 1 x 1 mm large"), "a cloud of millimetres");
+}
+
 void TheOutputSaysHowItScatters(test::Claims& claims)
 {
   vtkNew<vtkParticipatingMedium> filter;
@@ -244,6 +293,7 @@ void ATableIsThePhaseFunction(test::Claims& claims)
   claims.Near(FactOf(filter, "phase_cosine", 1), -1.0, 0.0, "cosines of the table");
   claims.Near(FactOf(filter, "phase_value", 0), 160.0, 0.0, "values of the table");
   filter->SetPreset(vtkParticipatingMedium::CLOUD);
+  filter->SetLengthUnit(vtkParticipatingMedium::METRES); // thick enough to be without a warning
   filter->Update();
   claims.That(errors.None() && PhaseFunctionOf(filter) == "tabulated", "a real medium with a table");
 
@@ -376,6 +426,8 @@ int TestParticipatingMedium(int, char*[])
   DensityIsARamp(claims);
   ColourMakesThreeComponents(claims);
   PresetsAreRealMedia(claims);
+  UnitsOfLengthHaveNames(claims);
+  WarnsWhereItIsTooThinOrTooThick(claims);
   TheOutputSaysHowItScatters(claims);
   ATableIsThePhaseFunction(claims);
   MeanCosinesByVoxelPassThrough(claims);

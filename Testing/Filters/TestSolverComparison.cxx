@@ -322,6 +322,7 @@ void UnknownIsSaid(test::Claims& claims)
   }
 
   comparison->SetSkyColor(0.0, 0.0, 0.0);
+  comparison->DefaultSkyOff();
   comparison->PhotonsOn();
   comparison->Update();
   claims.That(errors.None() &&

@@ -23,8 +23,14 @@ def brightness(proxy):
     return max(vtk_to_numpy(array).max() for array in found)
 
 
+def switch_default_sky_off(proxy):
+    if "DefaultSky" in proxy.ListProperties():
+        proxy.DefaultSky = 0
+
+
 for make in (LightPropagationMaps, LPMPropagate, MediumRayCaster):
     proxy = make(Input=medium)
+    switch_default_sky_off(proxy)
     dark = brightness(proxy)
     assert dark == 0, (make, dark)
     for name, source in (("Lights", lights), ("Environment", sky)):
@@ -37,7 +43,7 @@ emitter = PhotonEmitter(Input=medium, SkyColor=[1, 1, 1], PhotonCount=2000)
 
 marched = PhotonMarcher(Input=medium, Photons=emitter)
 for make in (LightPropagationMaps, DiscreteOrdinates, LatticeBoltzmannLighting):
-    proxy = make(Input=medium)
+    proxy = make(Input=medium, DefaultSky=0)
     proxy.UncollidedLight = marched
     assert brightness(proxy) > brightness(marched), make  # it is scattered as well
     proxy.UncollidedLight = None

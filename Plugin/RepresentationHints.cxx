@@ -1,0 +1,160 @@
+#include "RepresentationHints.h"
+
+#include "vtkCallbackCommand.h"
+#include "vtkCollection.h"
+#include "vtkDataObject.h"
+#include "vtkNew.h"
+#include "vtkPVArrayInformation.h"
+#include "vtkPVDataInformation.h"
+#include "vtkPVXMLElement.h"
+#include "vtkSMPropertyHelper.h"
+#include "vtkSMProxy.h"
+#include "vtkSMProxyManager.h"
+#include "vtkSMPVRepresentationProxy.h" // RemotingViews wants GLEW; of it only inline and virtual functions are called
+#include "vtkSMSessionProxyManager.h"
+#include "vtkSMSourceProxy.h"
+#include "vtkSMTransferFunctionProxy.h"
+
+#include <iterator>
+#include <set>
+#include <sstream>
+#include <string>
+
+namespace
+{
+constexpr double LogarithmicFrom = 100.0; ///< largest over smallest value
+constexpr double Decades = 1e-4;          ///< shown below the largest value where the smallest is 0
+
+void ShowDirectColors(vtkSMProxy* representation)
+{
+  vtkSMPropertyHelper(representation, "MapScalars").Set(0);
+  representation->UpdateVTKObjects();
+}
+
+/// What is shown: an output of a source.
+struct Shown
+{
+  vtkSMSourceProxy* source;
+  int port;
+};
+
+/// The hint of that name for what is shown, or null.
+vtkPVXMLElement* HintFor(const Shown& shown, const char* name)
+{
+  vtkPVXMLElement* const hints = shown.source ? shown.source->GetHints() : nullptr;
+  vtkPVXMLElement* const hint = hints ? hints->FindNestedElementByName(name) : nullptr;
+  int port = 0;
+  const bool isOfOther = hint && hint->GetScalarAttribute("port", &port) && port != shown.port;
+  return isOfOther ? nullptr : hint;
+}
+
+/// The cell array that the hint names, or null where the output does not have it.
+vtkPVArrayInformation* HintedArray(const Shown& shown, vtkPVXMLElement* hint)
+{
+  const char* const name = hint->GetAttributeOrEmpty("array");
+  return shown.source->GetDataInformation(shown.port)->GetArrayInformation(name, vtkDataObject::CELL);
+}
+
+/// @param colors  a map of colours that nobody has seen
+void FitColors(vtkSMProxy* colors, vtkPVArrayInformation* array)
+{
+  double range[2];
+  array->GetComponentRange(array->GetNumberOfComponents() > 1 ? -1 : 0, range); // -1: of the magnitude
+  const bool spansDecades = range[1] > 0.0 && range[1] >= LogarithmicFrom * range[0];
+  if (spansDecades && range[0] <= 0.0)
+  {
+    range[0] = Decades * range[1];
+  }
+  vtkSMTransferFunctionProxy::RescaleTransferFunction(colors, range);
+  if (spansDecades)
+  {
+    vtkSMTransferFunctionProxy::MapControlPointsToLogSpace(colors);
+    vtkSMPropertyHelper(colors, "UseLogScale").Set(1);
+    colors->UpdateVTKObjects();
+  }
+}
+
+void ColorBy(vtkSMProxy* representation, vtkPVArrayInformation* array)
+{
+  vtkSMPVRepresentationProxy::SetScalarColoring(representation, array->GetName(), vtkDataObject::CELL);
+  vtkSMProxy* const colors = vtkSMPropertyHelper(representation, "LookupTable").GetAsProxy();
+  if (colors && vtkSMPropertyHelper(colors, "ScalarRangeInitialized").GetAsInt() == 0)
+  {
+    FitColors(colors, array);
+  }
+}
+
+/// Charts that show nothing yet: the new representation goes to one of them.
+void MakeEmptyChartsLogarithmic(vtkSMSessionProxyManager* manager)
+{
+  vtkNew<vtkCollection> views;
+  manager->GetProxies("views", views);
+  for (int i = 0; i < views->GetNumberOfItems(); ++i)
+  {
+    auto* const view = vtkSMProxy::SafeDownCast(views->GetItemAsObject(i));
+    if (view && view->GetProperty("LeftAxisLogScale") &&
+      vtkSMPropertyHelper(view, "Representations").GetNumberOfElements() == 0)
+    {
+      vtkSMPropertyHelper(view, "LeftAxisLogScale").Set(1);
+      view->UpdateVTKObjects();
+    }
+  }
+}
+
+void Plot(vtkSMProxy* representation, vtkPVXMLElement* hint)
+{
+  std::istringstream names(hint->GetAttributeOrEmpty("y"));
+  const std::set<std::string> plotted{ std::istream_iterator<std::string>(names), {} };
+  vtkSMPropertyHelper(representation, "UseIndexForXAxis").Set(0);
+  vtkSMPropertyHelper(representation, "XArrayName").Set(hint->GetAttributeOrEmpty("x"));
+  vtkSMPropertyHelper visible(representation, "SeriesVisibility"); // name, 0 or 1, name, ...
+  for (unsigned int i = 0; i + 1 < visible.GetNumberOfElements(); i += 2)
+  {
+    visible.Set(i + 1, plotted.count(visible.GetAsString(i)) > 0 ? "1" : "0");
+  }
+  representation->UpdateVTKObjects();
+  MakeEmptyChartsLogarithmic(representation->GetSessionProxyManager());
+}
+
+/// A representation is registered when it knows its input, and before anybody sees it.
+void Notice(vtkObject*, unsigned long, void*, void* data)
+{
+  const auto* registered = static_cast<vtkSMProxyManager::RegisteredProxyInformation*>(data);
+  vtkSMProxy* const representation = registered->Proxy;
+  if (registered->Type != vtkSMProxyManager::RegisteredProxyInformation::PROXY || !representation ||
+    !representation->GetProperty("Input"))
+  {
+    return;
+  }
+  const vtkSMPropertyHelper input(representation, "Input", true);
+  const Shown shown = { vtkSMSourceProxy::SafeDownCast(input.GetAsProxy()), static_cast<int>(input.GetOutputPort()) };
+  const bool hasColors = representation->GetProperty("MapScalars");
+  if (hasColors && HintFor(shown, "DirectColors"))
+  {
+    ShowDirectColors(representation);
+  }
+  vtkPVXMLElement* const colored = hasColors ? HintFor(shown, "ColoredBy") : nullptr;
+  if (vtkPVArrayInformation* const array = colored ? HintedArray(shown, colored) : nullptr)
+  {
+    ColorBy(representation, array);
+  }
+  const bool isLineChart = representation->GetProperty("UseIndexForXAxis") && representation->GetProperty("XArrayName");
+  if (vtkPVXMLElement* const plotted = isLineChart ? HintFor(shown, "Plotted") : nullptr)
+  {
+    Plot(representation, plotted);
+  }
+}
+}
+
+void FollowRepresentationHints()
+{
+  static bool listening = false;
+  vtkSMProxyManager* manager = vtkSMProxyManager::GetProxyManager();
+  if (!listening && manager)
+  {
+    vtkNew<vtkCallbackCommand> command;
+    command->SetCallback(Notice);
+    manager->AddObserver(vtkCommand::RegisterEvent, command);
+    listening = true;
+  }
+}

@@ -1,0 +1,17 @@
+#ifndef RepresentationHints_h
+#define RepresentationHints_h
+
+/// Has new representations in views begin as the proxy that they show asks for in its hints. ParaView has no hints for:
+///
+/// - <DirectColors/>: pictures are shown in their own colours. ParaView would look bytes of red, green and blue up in a
+///   map of colours.
+/// - <ColoredBy port="P" array="NAME"/>: of output P, cell array NAME is what is seen, where it is there, whatever the
+///   input was coloured by. Where the array's map of colours is new and the array's largest value is a hundred times
+///   its smallest or more, the map is logarithmic.
+/// - <Plotted port="P" x="NAME" y="NAME NAME ..."/>: a line chart of table P begins with these columns, not with all
+///   over the row's number. Its left axis is logarithmic where nothing else is in the view.
+///
+/// To be called when the plugin is loaded; serves windows and scripts.
+void FollowRepresentationHints();
+
+#endif

@@ -1,0 +1,36 @@
+"""Light is shown by its fluence, logarithmic where it spans decades; a chart of its convergence begins with residual and change."""
+import os
+
+from paraview.simple import *
+
+LoadPlugin(os.environ["TYNDALL_PLUGIN"], remote=True, ns=globals())
+
+
+def shown(extinction, view):
+    medium = ParticipatingMedium(Input=Wavelet(WholeExtent=[-5, 5, -5, 5, -5, 5]), MaximumDensity=100,
+                                 ExtinctionScale=extinction, Albedo=[0.2, 0.2, 0.2])
+    light = LightPropagationMaps(Input=medium, SkyColor=[1, 1, 1], DirectionsPerFace=4)
+    light.UpdatePipeline()
+    return light, Show(OutputPort(light, 0), view)
+
+
+for extinction, decades in ((0.1, False), (5, True)):
+    view = CreateView("RenderView")
+    light, display = shown(extinction, view)
+    lowest, highest = light.CellData["fluence"].GetRange()
+    assert (highest >= 100 * lowest) == decades, (lowest, highest)
+    assert display.Representation == "Lit Volume" and display.ColorArrayName[1] == "fluence", display.ColorArrayName
+    colors = display.LookupTable
+    assert bool(colors.UseLogScale) == decades, (extinction, colors.UseLogScale)
+    assert colors.RGBPoints[0] > 0 and abs(colors.RGBPoints[-4] - highest) < 1e-6 * highest, colors.RGBPoints
+    Delete(colors)  # which all have in common that are coloured by fluence
+    Delete(view)
+
+chart = CreateView("XYChartView")
+plotted = Show(OutputPort(light, 1), chart)
+series = plotted.SMProxy.GetProperty("SeriesVisibility")  # name, 0 or 1, name, ...
+pairs = [series.GetElement(i) for i in range(series.GetNumberOfElements())]
+states = dict(zip(pairs[::2], pairs[1::2]))
+assert sorted(name for name, on in states.items() if on == "1") == ["change", "residual"], states
+assert plotted.XArrayName == "iteration" and plotted.UseIndexForXAxis == 0
+assert chart.LeftAxisLogScale == 1 and chart.BottomAxisLogScale == 0
