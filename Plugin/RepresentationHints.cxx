@@ -15,6 +15,7 @@
 #include "vtkSMSourceProxy.h"
 #include "vtkSMTransferFunctionProxy.h"
 
+#include <cstring>
 #include <iterator>
 #include <set>
 #include <sstream>
@@ -84,6 +85,45 @@ void ColorBy(vtkSMProxy* representation, vtkPVArrayInformation* array)
   }
 }
 
+Shown ShownBy(vtkSMProxy* representation)
+{
+  const vtkSMPropertyHelper input(representation, "Input", true);
+  return { vtkSMSourceProxy::SafeDownCast(input.GetAsProxy()), static_cast<int>(input.GetOutputPort()) };
+}
+
+bool IsLitVolume(const char* type)
+{
+  return type && std::strcmp(type, "Lit Volume") == 0;
+}
+
+void ColorAtFirstChange(vtkObject* caller, unsigned long, void*, void* property);
+
+vtkCallbackCommand* FirstChange()
+{
+  static vtkNew<vtkCallbackCommand> command;
+  command->SetCallback(ColorAtFirstChange);
+  return command;
+}
+
+/// Lit Volume does not use the map of colours, and its bar beside it would mislead: what opens as that is coloured when
+/// its type is changed.
+void ColorAtFirstChange(vtkObject* caller, unsigned long, void*, void* property)
+{
+  auto* const representation = vtkSMProxy::SafeDownCast(caller);
+  if (std::strcmp(static_cast<const char*>(property), "Representation") != 0 ||
+    IsLitVolume(vtkSMPropertyHelper(representation, "Representation").GetAsString()))
+  {
+    return;
+  }
+  representation->RemoveObserver(FirstChange());
+  const Shown shown = ShownBy(representation);
+  vtkPVXMLElement* const colored = HintFor(shown, "ColoredBy");
+  if (vtkPVArrayInformation* const array = colored ? HintedArray(shown, colored) : nullptr)
+  {
+    ColorBy(representation, array);
+  }
+}
+
 /// Charts that show nothing yet: the new representation goes to one of them.
 void MakeEmptyChartsLogarithmic(vtkSMSessionProxyManager* manager)
 {
@@ -126,15 +166,19 @@ void Notice(vtkObject*, unsigned long, void*, void* data)
   {
     return;
   }
-  const vtkSMPropertyHelper input(representation, "Input", true);
-  const Shown shown = { vtkSMSourceProxy::SafeDownCast(input.GetAsProxy()), static_cast<int>(input.GetOutputPort()) };
+  const Shown shown = ShownBy(representation);
   const bool hasColors = representation->GetProperty("MapScalars");
   if (hasColors && HintFor(shown, "DirectColors"))
   {
     ShowDirectColors(representation);
   }
   vtkPVXMLElement* const colored = hasColors ? HintFor(shown, "ColoredBy") : nullptr;
-  if (vtkPVArrayInformation* const array = colored ? HintedArray(shown, colored) : nullptr)
+  vtkPVXMLElement* const type = HintFor(shown, "RepresentationType");
+  if (colored && type && IsLitVolume(type->GetAttributeOrEmpty("type")))
+  {
+    representation->AddObserver(vtkCommand::PropertyModifiedEvent, FirstChange());
+  }
+  else if (vtkPVArrayInformation* const array = colored ? HintedArray(shown, colored) : nullptr)
   {
     ColorBy(representation, array);
   }

@@ -7,7 +7,8 @@
 ///   map of colours.
 /// - <ColoredBy port="P" array="NAME"/>: of output P, cell array NAME is what is seen, where it is there, whatever the
 ///   input was coloured by. Where the array's map of colours is new and the array's largest value is a hundred times
-///   its smallest or more, the map is logarithmic.
+///   its smallest or more, the map is logarithmic. What opens as Lit Volume, which uses no map, is coloured when it is
+///   first shown in another way.
 /// - <Plotted port="P" x="NAME" y="NAME NAME ..."/>: a line chart of table P begins with these columns, not with all
 ///   over the row's number. Its left axis is logarithmic where nothing else is in the view.
 ///

@@ -3,7 +3,7 @@
 //   TyndallBenchEmission [--quick] [--edge 128] [--voxels 60] [--pairs 20000] [--error E] [--only WORDS] [--seed N]
 //
 // A line a scene, without scattering:
-//   seconds, core_seconds  of the solve, less one that leaves this light to directions; core_seconds are of all threads
+//   seconds, core_seconds  of the solve, less one that leaves this light to directions; the latter of all threads
 //   rms, worst_twentieth   of single voxels that lie by chance outside what shines: relative error of fluence beside
 //                          `pairs` pairs of points, one by chance in the voxel and one in what shines; root mean square,
 //                          and what a twentieth of the voxels exceeds
