@@ -5,8 +5,8 @@
 // A line a scene, without scattering:
 //   seconds, core_seconds  of the solve, less one that leaves this light to directions; the latter of all threads
 //   rms, worst_twentieth   of single voxels that lie by chance outside what shines: relative error of fluence beside
-//                          `pairs` pairs of points, one by chance in the voxel and one in what shines; root mean square,
-//                          and what a twentieth of the voxels exceeds
+//                          `pairs` pairs of points, one by chance in the voxel and one in what shines; root mean
+//                          square, and what a twentieth of the voxels exceeds
 //   mean                   of these errors: 0 but for chance, or light is lost
 //   reference_error        root mean square of the standard errors of that comparison
 
