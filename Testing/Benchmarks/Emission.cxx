@@ -238,6 +238,7 @@ void Show(Device& device, const EmissionScene& scene, const Options& options)
   JsonLine line;
   line.Add("bench", "emission")
     .Add("case", scene.name)
+    .Add("method", "conservative, one order")
     .Add("grid", std::to_string(size[0]) + "x" + std::to_string(size[1]) + "x" + std::to_string(size[2]))
     .Add("emission_error", error)
     .Add("seconds", rays.seconds - directions.seconds)
