@@ -53,7 +53,7 @@ endif ()
 
 set(CPACK_GENERATOR "DEB")
 set(CPACK_PACKAGE_NAME "tyndall")
-set(CPACK_PACKAGE_CONTACT "Tyndall's authors <noreply@localhost>")
+set(CPACK_PACKAGE_CONTACT "The Tyndall authors <noreply@localhost>")
 set(CPACK_PACKAGING_INSTALL_PREFIX "/usr")
 set(CPACK_STRIP_FILES ON)
 set(CPACK_COMPONENTS_GROUPING ONE_PER_GROUP)
