@@ -42,11 +42,24 @@ coloured = tyndall.solve(density, 1.0, albedo=(0.2, 0.5, 0.9), sky=(1.0, 1.0, 1.
 means = coloured.fluence.mean(axis=(0, 1, 2))
 assert coloured.fluence.shape == shape + (3,) and means[0] < means[1] < means[2], means
 
-# An array outlives the light it came from.
-fluence = tyndall.solve(density, 1.0, sky=1.0, MaximumOrders=2).fluence
-before = fluence.copy()
+# An array outlives the light it came from: other light of the same size would be put where it lay.
+once = tyndall.solve(density, 1.0, sky=1.0, MaximumOrders=2)
+fluence, before = once.fluence, once.fluence.copy()
+del once
 gc.collect()
+others = [tyndall.solve(density, 1.0, sky=7.0, MaximumOrders=2) for _ in range(4)]
 numpy.testing.assert_array_equal(fluence, before)
+
+# The default sun shines where nothing else does, and properties are something: a clear medium shows the light alone.
+clear = dict(sigma_a=0.0 * density, sigma_s=0.0 * density)
+assert tyndall.solve(clear).fluence.max() > 0.0
+for method, properties in (("maps", dict(FaceRadiance=(2.0,) * 6)), ("maps", dict(SkyColor=(2.0, 2.0, 2.0))),
+                           ("ordinates", dict(SkyColor=(2.0, 2.0, 2.0)))):
+    numpy.testing.assert_allclose(tyndall.solve(clear, method=method, **properties).fluence, 8.0 * numpy.pi, rtol=2e-3)
+uncollided = tyndall.solve(density, sky=2.0, MaximumOrders=0).image
+furnace = tyndall.solve(density, albedo=1.0, sky=2.0, method="ordinates")
+sunless = tyndall.solve(density, albedo=1.0, UncollidedLightData=uncollided, method="ordinates")
+assert sunless.fluence.mean() < 1.01 * furnace.fluence.mean(), sunless.fluence.mean()
 
 picture = tyndall.picture(light, (40, 30))
 assert picture.shape == (30, 40, 4) and picture.dtype == numpy.uint8 and picture[..., :3].max() > 0
@@ -55,4 +68,6 @@ raises(tyndall.SolvingError, "Tolerance is -1", lambda: tyndall.solve(density, T
 raises(TypeError, "no property Tollerance", lambda: tyndall.solve(density, Tollerance=1.0))
 raises(ValueError, "maps, ordinates, lattice", lambda: tyndall.solve(density, method="magic"))
 raises(ValueError, "has the shape", lambda: tyndall.solve(dict(sigma_a=density, sigma_s=density[1:])))
+raises(TypeError, "extinction, g would not be used", lambda: tyndall.solve(clear, 1.0, extinction=2.0, g=0.0))
+raises(TypeError, "spacing, albedo would not be used", lambda: tyndall.solve(light.image, 1.0, albedo=0.5))
 raises(KeyError, "there is", lambda: light["brightness"])

@@ -65,44 +65,50 @@ class Light:
         return [text.GetValue(i) for i in range(text.GetNumberOfValues())] if text else []
 
 
-def solve(medium, spacing=1.0, *, origin=(0.0, 0.0, 0.0), extinction=1.0, albedo=0.9, g=0.0, emission=None, lights=None,
+def solve(medium, spacing=None, *, origin=None, extinction=None, albedo=None, g=None, emission=None, lights=None,
           sky=None, environment=None, method="maps", **properties):
     """Light that is scattered many times in a medium.
 
     medium       density of each voxel, [x, y, z] (of which extinction and albedo make the medium); or a dict with
                  sigma_a, sigma_s and perhaps emission, [x, y, z] or [x, y, z, rgb]; or a vtkImageData with cell arrays
                  of these names (one of PyVista's is one, where it stands on the same VTK)
-    spacing      edge of a voxel, a number or three
-    extinction   1 / length of density 1: sigma_t = extinction * density
-    albedo       part of it that is scattered, a number or red, green and blue
-    g            mean cosine of Henyey and Greenstein's phase function
+    spacing      edge of a voxel, a number or three, default 1; not with a vtkImageData, which has its own
+    origin       corner of the first voxel, default 0, 0, 0; not with a vtkImageData
+    extinction   1 / length of density 1: sigma_t = extinction * density, default 1; with density alone, as are
+    albedo       part of it that is scattered, a number or red, green and blue, default 0.9
+    g            mean cosine of Henyey and Greenstein's phase function, default 0: isotropic
     emission     radiance per unit length, W / (length^3 sr), [x, y, z] or [x, y, z, rgb]
     lights       a vtkLightRig, or polydata as it makes it; None: its default sun, where nothing else shines
     sky          radiance from everywhere, a number or red, green and blue, W / (length^2 sr)
     environment  radiance in latitude-longitude layout, [row from the top, column, rgb], or a vtkImageData
     method       "maps", "ordinates" or "lattice"
-    properties   of that solver, by their names: Tolerance=1e-3, MaximumOrders=3, Quality=0
+    properties   of that solver, by their names: Tolerance=1e-3, MaximumOrders=3, FaceRadiance=(1, 0, 0, 0, 0, 0)
 
-    Raises SolvingError with the filter's own words; its warnings become Python's.
+    Raises SolvingError with the filter's own words, and TypeError for an argument that this medium would not use; the
+    filter's warnings become Python's.
     """
     if method not in METHODS:
         raise ValueError(f"method {method!r}: there is {', '.join(METHODS)}")
     solver = METHODS[method]()
     filters = [solver]
+    place = _given(spacing=spacing, origin=origin)
+    making = _given(extinction=extinction, albedo=albedo, g=g)
     if isinstance(medium, vtkImageData):
+        _refuse({**place, **making}, "a vtkImageData has its own; leave them out, or give arrays")
         image = medium
     elif isinstance(medium, dict):
-        image = image_of(spacing, origin, **medium)
+        _refuse(making, "sigma_a and sigma_s say it already; leave them out, or give density alone")
+        image = image_of(**place, **medium)
     else:
         maker = classes.vtkParticipatingMedium()
         filters.append(maker)
-        maker.SetInputData(image_of(spacing, origin, density=medium))
+        maker.SetInputData(image_of(**place, density=medium))
         maker.SetInputArrayToProcess(0, 0, 0, vtkDataObject.FIELD_ASSOCIATION_CELLS, "density")
         maker.SetMillimetresPerUnit(1.0)
-        maker.SetExtinctionScale(extinction)
-        maker.SetAlbedo(_triple(albedo))
+        maker.SetExtinctionScale(making.get("extinction", 1.0))
+        maker.SetAlbedo(_triple(making.get("albedo", 0.9)))
         maker.SetPhaseFunction(maker.HENYEY_GREENSTEIN if g else maker.ISOTROPIC)
-        maker.SetMeanCosine(g)
+        maker.SetMeanCosine(making.get("g", 0.0))
         image = _result(maker, filters)
     if emission is not None:
         shining = vtkImageData()
@@ -110,9 +116,9 @@ def solve(medium, spacing=1.0, *, origin=(0.0, 0.0, 0.0), extinction=1.0, albedo
         _add(shining, "emission", emission)
         image = shining
     solver.SetInputData(image)
-    _light_up(solver, image, lights, sky, environment)
     for name, value in properties.items():
         _set(solver, name, value)
+    _light_up(solver, image, lights, sky, environment)
     return Light(_result(solver, filters), solver.GetOutputDataObject(1))
 
 
@@ -144,7 +150,7 @@ def by_voxels(values, image):
     return values.reshape(_voxels(image)[::-1] + values.shape[1:]).swapaxes(0, 2)
 
 
-def image_of(spacing, origin=(0.0, 0.0, 0.0), **arrays):
+def image_of(spacing=1.0, origin=(0.0, 0.0, 0.0), **arrays):
     """A vtkImageData of voxels with these cell arrays, each [x, y, z] or [x, y, z, component]."""
     if not arrays:
         raise ValueError("an image of no array has no size")
@@ -175,8 +181,18 @@ def _add(image, name, values):
     image.GetCellData().AddArray(array)
 
 
+def _given(**arguments):
+    return {name: value for name, value in arguments.items() if value is not None}
+
+
+def _refuse(arguments, why):
+    if arguments:
+        raise TypeError(f"{', '.join(arguments)} would not be used: {why}")
+
+
 def _light_up(solver, image, lights, sky, environment):
-    if lights is None and sky is None and environment is None and not image.GetCellData().GetArray("emission"):
+    given = _given(lights=lights, sky=sky, environment=environment)
+    if not given and not image.GetCellData().GetArray("emission") and not _shines(solver):
         lights = classes.vtkLightRig()
     if isinstance(lights, classes.vtkLightRig):
         solver.SetLightsConnection(lights.GetOutputPort())
@@ -188,6 +204,13 @@ def _light_up(solver, image, lights, sky, environment):
         solver.SetEnvironmentData(environment)
     elif environment is not None:
         solver.SetEnvironmentData(_environment(environment))
+
+
+def _shines(solver):
+    """Whether its properties bring light: through the faces, from the sky, or by an input beside the medium."""
+    colors = [getattr(solver, get)() for get in ("GetFaceRadiance", "GetSkyColor") if hasattr(solver, get)]
+    inputs = [solver.GetNumberOfInputConnections(port) for port in range(1, solver.GetNumberOfInputPorts())]
+    return numpy.any(inputs) or any(numpy.any(color) for color in colors)
 
 
 def _environment(radiance):

@@ -1,0 +1,68 @@
+# Debian packages by CPack (./run package), of this build tree as it is: for ParaView tyndall-paraview, for plain VTK
+# libtyndall0.1, libtyndall-dev and python3-tyndall. They are packed for /usr, where Debian's programs look.
+set(library_package "libtyndall${PROJECT_VERSION_MAJOR}.${PROJECT_VERSION_MINOR}")
+set(opencl "pocl-opencl-icd | opencl-icd")
+if (Python3_VERSION_MINOR) # compiled for one Python
+  math(EXPR next "${Python3_VERSION_MINOR} + 1")
+  set(python "python3 (>= 3.${Python3_VERSION_MINOR}), python3 (<< 3.${next}), python3-numpy")
+endif ()
+
+# tyndall_package(<group> <package> SUMMARY <text> [DEPENDS <list>] [CONFLICTS <list>] COMPONENTS <component>...): a
+# package of what is installed as these components. The libraries that it depends on are found by dpkg-shlibdeps.
+set(CPACK_COMPONENTS_ALL "")
+function (tyndall_package group package)
+  cmake_parse_arguments(PARSE_ARGV 2 arg "" "SUMMARY;DEPENDS;CONFLICTS" "COMPONENTS")
+  string(TOUPPER "${group}" group_upper)
+  set("CPACK_DEBIAN_${group_upper}_PACKAGE_NAME" "${package}" PARENT_SCOPE)
+  set("CPACK_DEBIAN_${group_upper}_PACKAGE_DEPENDS" "${arg_DEPENDS}" PARENT_SCOPE)
+  set("CPACK_DEBIAN_${group_upper}_PACKAGE_CONFLICTS" "${arg_CONFLICTS}" PARENT_SCOPE)
+  set("CPACK_DEBIAN_${group_upper}_DESCRIPTION" "${arg_SUMMARY}" PARENT_SCOPE)
+  foreach (component IN LISTS arg_COMPONENTS)
+    string(TOUPPER "${component}" component_upper)
+    set("CPACK_COMPONENT_${component_upper}_GROUP" "${group}" PARENT_SCOPE)
+  endforeach ()
+  set(CPACK_COMPONENTS_ALL ${CPACK_COMPONENTS_ALL} ${arg_COMPONENTS} PARENT_SCOPE)
+endfunction ()
+
+if (TYNDALL_PLUGIN)
+  # Beside its executable Debian's ParaView reads paraview.conf: a list of plugins a line, seen from there.
+  file(WRITE "${CMAKE_BINARY_DIR}/paraview.conf" "../lib/${TYNDALL_PLUGIN_SUBDIRECTORY}/tyndall.plugins.xml\n")
+  install(FILES "${CMAKE_BINARY_DIR}/paraview.conf" DESTINATION "bin" COMPONENT "paraview_conf" EXCLUDE_FROM_ALL)
+  tyndall_package(plugin tyndall-paraview
+    SUMMARY "Light transport in participating media: the plugin for ParaView, with scenes and the Python package tyndall"
+    DEPENDS "paraview, python3-paraview, ${python}, ${opencl}"
+    CONFLICTS "python3-tyndall" # python3-paraview and python3-vtk9 are in conflict, too
+    COMPONENTS runtime paraview_plugins paraview_conf python Unspecified)
+else ()
+  tyndall_package(library ${library_package}
+    SUMMARY "Light transport in participating media: VTK filters"
+    DEPENDS "${opencl}"
+    COMPONENTS runtime)
+  tyndall_package(headers libtyndall-dev
+    SUMMARY "Light transport in participating media: headers and CMake files of the VTK filters"
+    DEPENDS "${library_package} (= ${PROJECT_VERSION}), libvtk9-dev"
+    COMPONENTS development)
+  if (TYNDALL_PYTHON_PACKAGES)
+    tyndall_package(modules python3-tyndall
+      SUMMARY "Light transport in participating media: VTK filters for Python and numpy"
+      DEPENDS "${library_package} (= ${PROJECT_VERSION}), python3-vtk9, ${python}"
+      CONFLICTS "tyndall-paraview"
+      COMPONENTS python)
+  endif ()
+endif ()
+
+set(CPACK_GENERATOR "DEB")
+set(CPACK_PACKAGE_NAME "tyndall")
+set(CPACK_PACKAGE_CONTACT "The Tyndall authors <noreply@localhost>")
+set(CPACK_PACKAGING_INSTALL_PREFIX "/usr")
+set(CPACK_STRIP_FILES ON)
+set(CPACK_COMPONENTS_GROUPING ONE_PER_GROUP)
+set(CPACK_DEB_COMPONENT_INSTALL ON)
+set(CPACK_DEBIAN_FILE_NAME DEB-DEFAULT)
+set(CPACK_DEBIAN_PACKAGE_SECTION "science")
+set(CPACK_DEBIAN_PACKAGE_SHLIBDEPS ON)
+set(CPACK_DEBIAN_PACKAGE_SHLIBDEPS_PRIVATE_DIRS "${CMAKE_LIBRARY_OUTPUT_DIRECTORY}")
+set(CPACK_PRE_BUILD_SCRIPTS "${CMAKE_CURRENT_LIST_DIR}/PackagesForDebian.cmake")
+set(CPACK_RESOURCE_FILE_LICENSE "${PROJECT_SOURCE_DIR}/LICENSE")
+set(CPACK_VERBATIM_VARIABLES ON)
+include(CPack)

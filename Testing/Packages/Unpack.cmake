@@ -1,0 +1,11 @@
+# cmake -DCPACK=... -DBUILD=... -DMADE=... -DPREFIX=... -P: packs the build, and unpacks all packages into an empty prefix.
+file(REMOVE_RECURSE "${MADE}" "${PREFIX}")
+file(MAKE_DIRECTORY "${PREFIX}")
+execute_process(COMMAND "${CPACK}" -B "${MADE}" WORKING_DIRECTORY "${BUILD}" COMMAND_ERROR_IS_FATAL ANY)
+file(GLOB packages "${MADE}/*.deb")
+if (NOT packages)
+  message(FATAL_ERROR "no packages in ${MADE}")
+endif ()
+foreach (package IN LISTS packages)
+  execute_process(COMMAND dpkg -x "${package}" "${PREFIX}" COMMAND_ERROR_IS_FATAL ANY)
+endforeach ()
