@@ -45,7 +45,9 @@ public:
     }
   }
 
-  /// 0 to 1, in the middle of a cell of all the points.
+  /// 0 to 1. The sequence is shifted and folded: the mean of any first 2^n points is 1/2, where that of the sequence
+  /// itself is lower by half a cell of so many, an eighth with four. Fractions of a cell that the shift is of are never
+  /// near 0 or 1/2, where the fold would lay points on each other.
   double At(int n, int dimension) const
   {
     int place = 0;
@@ -53,11 +55,13 @@ public:
     {
       place ^= (n >> bit & 1) * (this->Numbers[dimension][bit] << (Bits - 1 - bit));
     }
-    return (place + 0.5) / (1 << Bits);
+    const double shifted = std::fmod(static_cast<double>(place) / (1 << Bits) + Shift, 1.0);
+    return 1.0 - std::abs(2.0 * shifted - 1.0);
   }
 
 private:
   static constexpr int Bits = 9; ///< MostPoints in pairs
+  static constexpr double Shift = 1.0 / 12.0;
 
   /// Over the field of two elements: of what degree, its inner coefficients, the numbers to begin with.
   struct Polynomial

@@ -280,6 +280,18 @@ static void gather_ways(const EmissionInfo* s, const lit_voxel* voxel, const way
   }
 }
 
+// Whether a voxel is in the box or next to it.
+static bool is_close(const EmissionInfo* s, const lit_voxel* voxel)
+{
+  bool close = true;
+  for (int a = 0; a < 3; ++a)
+  {
+    const int from_first = voxel->at[a] - s->sourceFirst[a];
+    close = close && from_first >= -1 && from_first <= s->sourceSize[a];
+  }
+  return close;
+}
+
 // With as many rays as it takes, in each way to turn the scene: half of a lattice in two ways is not as good as all of
 // it in one.
 static void gather(const EmissionInfo* s, lit_voxel* voxel, const __global float* points, const __global float* sigma,
@@ -294,9 +306,10 @@ static void gather(const EmissionInfo* s, lit_voxel* voxel, const __global float
       voxel->inside && voxel->at[a] >= s->sourceFirst[a] && voxel->at[a] < s->sourceFirst[a] + s->sourceSize[a];
   }
   find_ways(s, voxel, &ways);
-  gather_ways(s, voxel, &ways, 0, s->fewest / 2, points, sigma, emission, sums);
+  const int fewest = is_close(s, voxel) ? s->fewestClose : s->fewest;
+  gather_ways(s, voxel, &ways, 0, fewest / 2, points, sigma, emission, sums);
   bool even = false;
-  for (int count = s->fewest / 2; count < MOST && !even; count *= 2)
+  for (int count = fewest / 2; count < MOST && !even; count *= 2)
   {
     gather_ways(s, voxel, &ways, count, 2 * count, points, sigma, emission, others);
     float whole = 0.0f, difference = 0.0f;

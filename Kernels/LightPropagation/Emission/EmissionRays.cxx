@@ -22,9 +22,10 @@ namespace tyndall
 {
 namespace
 {
-constexpr int FewestRays = 32;     ///< of a voxel to the peak's box, at first
-constexpr int MostRays = 4096;     ///< the same, at last
-constexpr double AllRays = 0x1p22; ///< at first, about, for the usual error: a second
+constexpr int FewestRays = 32;       ///< of a voxel to the peak's box, at first
+constexpr int MostRays = 4096;       ///< the same, at last
+constexpr double AllRays = 0x1p22;   ///< at first, about, for the usual error: a second
+constexpr double CloseRays = 0x1p20; ///< the same, of voxels in what shines and next to it
 const double UsualError = PropagationSettings().emissionError;
 
 /// Of a lattice of points in five dimensions, found component by component for 32 to 2048 points; with 4096 the worst
@@ -101,6 +102,7 @@ private:
     {
       this->Scene.fewest /= 2;
     }
+    this->FindCloseRays();
     this->Scene.uneven = static_cast<float>(this->Error);
     this->Scene.near = FarFrom(this->Peak.size);
     const std::size_t voxels = this->Peak.emission.size() / 3;
@@ -112,6 +114,22 @@ private:
     }
     this->Emission = Buffer<float>(this->TheDevice, this->OfChannels, "what shines");
     this->Points = Buffer<float>(this->TheDevice, LatticePoints(), "rays");
+  }
+
+  /// What shines may lose most of its power through the faces beside it, and what is missed there, all the rest is
+  /// brightened by, so that powers add up.
+  void FindCloseRays()
+  {
+    double voxels = 1.0;
+    for (int size : this->Peak.size)
+    {
+      voxels *= size + 2;
+    }
+    this->Scene.fewestClose = MostRays;
+    while (this->Scene.fewestClose > this->Scene.fewest && this->Scene.fewestClose * voxels > CloseRays)
+    {
+      this->Scene.fewestClose /= 2;
+    }
   }
 
   /// Whether all channels shine from the same places, up to a factor: fans begin where their sum shines.

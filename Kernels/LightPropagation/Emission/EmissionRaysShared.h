@@ -11,6 +11,7 @@ typedef struct
   float spacing[3];
   int sourceFirst[3], sourceSize[3]; ///< the box of what shines
   int fewest;                        ///< rays of a voxel to it, at first; a power of two, at least 32
+  int fewestClose;                   ///< the same of voxels in it and next to it
   float uneven;                      ///< difference of two halves of them, to their sum, that will do
   int near;                          ///< half voxels from the box's middle, below which no fan is asked
 } EmissionInfo;
