@@ -58,9 +58,10 @@ int vtkDiscreteOrdinates::RequestData(vtkInformation*, vtkInformationVector** in
   return tyndall::Guarded(this, outputs, [&] {
     vtkImageData* image = vtkImageData::GetData(inputs[MEDIUM]);
     const tyndall::MediumInput input = tyndall::ReadMedium(this, image);
-    const tyndall::IlluminationInput shining = this->ReadShining(inputs, input.Emits());
+    const bool emits = input.Emits();
+    const tyndall::IlluminationInput shining = this->ReadShining(inputs, emits);
     const tyndall::Illumination& illumination = shining.illumination;
-    this->WarnWhereDark(illumination, input.Emits());
+    this->WarnWhereDark(illumination, emits);
     const std::shared_ptr<tyndall::Device> device = tyndall::Device::Find(this->GetDevice());
     const tyndall::OrdinatesSettings settings = SettingsOf(this, input.medium, *device);
     tyndall::LightField light = tyndall::SolveDiscreteOrdinates(

@@ -138,8 +138,9 @@ tyndall::LightField vtkLatticeBoltzmannLighting::Solve(vtkInformationVector** in
   {
     return this->SolveWithPhotons(inputs, input, ior);
   }
-  const tyndall::IlluminationInput shining = this->ReadShining(inputs, input.Emits());
-  this->WarnWhereDark(shining.illumination, input.Emits());
+  const bool emits = input.Emits();
+  const tyndall::IlluminationInput shining = this->ReadShining(inputs, emits);
+  this->WarnWhereDark(shining.illumination, emits);
   tyndall::LightField light = Timed(this->Seconds, [&] {
     return tyndall::SolveLatticeBoltzmann(*tyndall::Device::Find(this->GetDevice()), input.medium, ior,
       shining.illumination, SettingsOf(this), tyndall::MonitorOf(this));

@@ -132,9 +132,10 @@ int vtkLightPropagationMaps::RequestData(vtkInformation*, vtkInformationVector**
   return tyndall::Guarded(this, outputs, [&] {
     vtkImageData* image = vtkImageData::GetData(inputs[MEDIUM]);
     const tyndall::MediumInput input = tyndall::ReadMedium(this, image);
-    const tyndall::IlluminationInput shining = this->ReadShining(inputs, input.Emits());
+    const bool emits = input.Emits();
+    const tyndall::IlluminationInput shining = this->ReadShining(inputs, emits);
     const tyndall::Illumination& illumination = shining.illumination;
-    this->WarnWhereDark(illumination, input.Emits());
+    this->WarnWhereDark(illumination, emits);
 
     tyndall::LightField light = Solve(this, input.medium, illumination, this->Last->Where(this->WarmStart));
 

@@ -237,6 +237,10 @@ private:
   vtkParticipatingMedium(const vtkParticipatingMedium&) = delete;
   void operator=(const vtkParticipatingMedium&) = delete;
 
+  /// Of the medium that was made; warns where it is too thin or too thick to be meant.
+  /// @param extinction  at relative density 1, 1/length
+  void NoteSize(const tyndall::Grid& grid, const std::vector<float>& relativeDensity, double extinction);
+
   int Preset = CUSTOM;
   double MinimumDensity = 0.0;
   double MaximumDensity = 1.0;
@@ -249,10 +253,6 @@ private:
   double FirstPart = 1.0;
   double EmissionScale = 0.0;
   double EmissionColor[3] = { 1.0, 1.0, 1.0 };
-  /// Of the medium that was made; warns where it is too thin or too thick to be meant.
-  /// @param extinction  at relative density 1, 1/length
-  void NoteSize(const tyndall::Grid& grid, const std::vector<float>& relativeDensity, double extinction);
-
   int LengthUnit = AS_GIVEN;
   double MillimetresPerUnit = 1.0;
   std::string PhysicalExtent;

@@ -1,8 +1,10 @@
 #include "RenderedCamera.h"
 
 #include "Device/Errors.h"
+#include "Numerics/Constants.h"
 
 #include "vtkCamera.h"
+#include "vtkMath.h"
 #include "vtkMatrix4x4.h"
 #include "vtkNew.h"
 #include "vtkRenderer.h"
@@ -23,21 +25,17 @@ Vec Column(vtkMatrix4x4* matrix, int column)
   return { matrix->GetElement(0, column), matrix->GetElement(1, column), matrix->GetElement(2, column) };
 }
 
-double Product(const Vec& a, const Vec& b)
-{
-  return a[0] * b[0] + a[1] * b[1] + a[2] * b[2];
-}
-
 /// @throws InvalidInput where lengths or angles change with direction, or left becomes right
 double ScaleOf(vtkMatrix4x4* matrix)
 {
-  const double square = Product(Column(matrix, 0), Column(matrix, 0));
+  const Vec columns[3] = { Column(matrix, 0), Column(matrix, 1), Column(matrix, 2) };
+  const double square = vtkMath::Dot(columns[0], columns[0]);
   double off = matrix->Determinant() > 0.0 ? 0.0 : 1.0;
   for (int i = 0; i < 3; ++i)
   {
     for (int j = 0; j < 3; ++j)
     {
-      off = std::max(off, std::abs(Product(Column(matrix, i), Column(matrix, j)) / square - (i == j ? 1.0 : 0.0)));
+      off = std::max(off, std::abs(vtkMath::Dot(columns[i], columns[j]) / square - (i == j ? 1.0 : 0.0)));
     }
   }
   if (!(off <= AlikeScales))
@@ -79,7 +77,7 @@ RenderedCamera::RenderedCamera(vtkRenderer* renderer, vtkMatrix4x4* place)
   }
   else
   {
-    this->Seen.viewAngle = std::atan(1.0 / element(1, 1)) * 360.0 / std::acos(-1.0);
+    this->Seen.viewAngle = std::atan(1.0 / element(1, 1)) * 360.0 / Pi;
     this->Seen.shift = { element(0, 2), element(1, 2) };
   }
 }

@@ -67,15 +67,10 @@ std::vector<std::uint8_t> PixelsOfPart(
 }
 }
 
-struct vtkLitVolumeMapper::Overlay
-{
-  tyndall::PictureOverlay drawing;
-};
-
 vtkStandardNewMacro(vtkLitVolumeMapper);
 
 vtkLitVolumeMapper::vtkLitVolumeMapper()
-  : Drawing(std::make_unique<Overlay>())
+  : Overlay(std::make_unique<tyndall::PictureOverlay>())
 {
   this->RayCaster->ShowBackgroundOff();
 }
@@ -223,7 +218,7 @@ void vtkLitVolumeMapper::Render(vtkRenderer* renderer, vtkVolume* volume)
   tones.exposure = this->UsedExposure;
   tones.curve = static_cast<tyndall::ToneCurve>(this->RayCaster->GetToneCurve());
   const bool background = this->RayCaster->GetShowBackground();
-  this->Drawing->drawing.Draw(renderer,
+  this->Overlay->Draw(renderer,
     this->IsPart ? PixelsOfPart(std::move(picture), view.ends, background, tones)
                  : PixelsOf(picture, view.ends, background, tones),
     view.size);
@@ -232,7 +227,7 @@ void vtkLitVolumeMapper::Render(vtkRenderer* renderer, vtkVolume* volume)
 
 void vtkLitVolumeMapper::ReleaseGraphicsResources(vtkWindow* window)
 {
-  this->Drawing->drawing.Release(window);
+  this->Overlay->Release(window);
   this->Superclass::ReleaseGraphicsResources(window);
 }
 

@@ -13,6 +13,7 @@ class vtkMediumRayCaster;
 
 namespace tyndall
 {
+class PictureOverlay;
 struct AskedView;
 struct Picture;
 }
@@ -106,8 +107,7 @@ private:
   double CommonExposure = 0.0;
   bool IsPart = false;
 
-  struct Overlay;
-  std::unique_ptr<Overlay> Drawing;
+  std::unique_ptr<tyndall::PictureOverlay> Overlay;
   double AutomaticExposure = 0.0;
   vtkTimeStamp ExposureTime; ///< when it was chosen
   double SecondsOfRay = 0.0; ///< in the last frame; 0: not known yet

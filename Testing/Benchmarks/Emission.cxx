@@ -17,12 +17,11 @@
 
 #include "Device/HostThreads.h"
 #include "LightPropagation/Conservative/ConservativePropagation.h"
-#include "Numerics/Constants.h"
+#include "Reference/OpticalLength.h"
 
 #include <algorithm>
 #include <cmath>
 #include <cstdlib>
-#include <limits>
 #include <random>
 #include <stdexcept>
 
@@ -85,35 +84,6 @@ Options OptionsOf(const Arguments& arguments)
   return options;
 }
 
-using Point = std::array<double, 3>; // voxels
-
-/// Mean free paths between two points.
-double OpticalLength(const EmissionScene& scene, const Point& from, const Point& to)
-{
-  const Grid& grid = scene.medium.grid;
-  Point way, next;
-  std::array<int, 3> at;
-  double length = 0.0;
-  for (int a = 0; a < 3; ++a)
-  {
-    way[a] = to[a] - from[a];
-    length += std::pow(way[a] * grid.spacing[a], 2);
-    at[a] = static_cast<int>(from[a]);
-    next[a] = way[a] == 0.0 ? std::numeric_limits<double>::infinity() : (at[a] + (way[a] > 0.0) - from[a]) / way[a];
-  }
-  double tau = 0.0;
-  for (double now = 0.0; now < 1.0;)
-  {
-    const int axis = static_cast<int>(std::min_element(next.begin(), next.end()) - next.begin());
-    const double end = std::min(next[axis], 1.0);
-    tau += scene.sigma_a[grid.IndexOf(at)] * (end - now);
-    now = end;
-    at[axis] = std::clamp(at[axis] + (way[axis] > 0.0 ? 1 : -1), 0, grid.size[axis] - 1);
-    next[axis] += 1.0 / std::abs(way[axis]);
-  }
-  return tau * std::sqrt(length);
-}
-
 struct Estimate
 {
   double mean, standardError;
@@ -133,7 +103,7 @@ Estimate MeanFluence(const EmissionScene& scene, std::size_t voxel, int channel,
   }
   for (int i = 0; i < pairs; ++i)
   {
-    Point from, to;
+    std::array<double, 3> from, to; // voxels
     std::array<int, 3> shining;
     double squared = 0.0;
     for (int a = 0; a < 3; ++a)
@@ -144,8 +114,9 @@ Estimate MeanFluence(const EmissionScene& scene, std::size_t voxel, int channel,
       squared += std::pow((to[a] - from[a]) * grid.spacing[a], 2);
     }
     const double brightness = scene.medium.emission.At(grid.IndexOf(shining), channel);
-    const double value =
-      brightness > 0.0 ? brightness * volume * std::exp(-OpticalLength(scene, from, to)) / squared : 0.0;
+    const double value = brightness > 0.0 ? brightness * volume *
+        std::exp(-OpticalLength(grid.size, grid.spacing, scene.sigma_a.data(), from, to)) / squared
+                                          : 0.0;
     sum += value;
     squares += value * value;
   }

@@ -2,6 +2,7 @@
 #include "KobayashiScene.h"
 
 #include "Reference/KobayashiReference.h"
+#include "Reference/OpticalLength.h"
 
 #include <algorithm>
 #include <numeric>
@@ -372,28 +373,15 @@ double MeanOverPairs(const Scene& scene, const std::array<int, 3>& voxel, const 
   double sum = 0.0;
   for (int n = 0; n < pairs; ++n)
   {
-    std::array<double, 3> way, next, step;
-    std::array<int, 3> at = voxel;
+    std::array<double, 3> from, to;
     double squared = 0.0;
     for (int a = 0; a < 3; ++a)
     {
-      const double x = part(random);
-      way[a] = shining[a] + part(random) - voxel[a] - x;
-      step[a] = 1.0 / std::max(std::abs(way[a]), 1e-12);
-      next[a] = (way[a] > 0.0 ? 1.0 - x : x) * step[a];
-      squared += way[a] * grid.spacing[a] * way[a] * grid.spacing[a];
+      from[a] = voxel[a] + part(random);
+      to[a] = shining[a] + part(random);
+      squared += std::pow((to[a] - from[a]) * grid.spacing[a], 2);
     }
-    double tau = 0.0;
-    for (double now = 0.0; now < 1.0;)
-    {
-      const int a = static_cast<int>(std::min_element(next.begin(), next.end()) - next.begin());
-      const double end = std::min(1.0, next[a]);
-      const std::size_t i = (static_cast<std::size_t>(at[2]) * grid.size[1] + at[1]) * grid.size[0] + at[0];
-      tau += scene.sigma_a[i] * (end - now) * std::sqrt(squared);
-      now = end;
-      next[a] += step[a];
-      at[a] += way[a] > 0.0 ? 1 : -1;
-    }
+    const double tau = OpticalLength(grid.size, grid.spacing, scene.sigma_a.data(), from, to);
     sum += std::exp(-tau) / squared / pairs;
   }
   return sum * grid.VoxelVolume();

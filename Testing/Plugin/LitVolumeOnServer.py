@@ -3,12 +3,11 @@
     pvpython LitVolumeOnServer.py RANKS
 """
 import os
-import socket
-import subprocess
 import sys
 
 sys.path.insert(0, os.path.dirname(os.path.abspath(__file__)))
 
+import a_server
 import lit_view
 import numpy
 import pictures
@@ -21,17 +20,7 @@ lit_view.load(remote=False)
 view = lit_view.black_view()
 expected = lit_view.cast(lit_view.solved(), view)
 
-with socket.socket() as probe:
-    probe.bind(("localhost", 0))
-    port = probe.getsockname()[1]
-launcher = ["mpiexec", "--allow-run-as-root", "--oversubscribe", "-n", str(ranks)] if ranks > 1 else []
-# pvpython is a rank of MPI itself; what that has left in the environment would make mpiexec fail.
-environment = {name: value for name, value in os.environ.items() if not name.startswith(("OMPI_", "PMIX_"))}
-log = open(output + ".log", "w")
-server = subprocess.Popen(launcher + ["pvserver", "--server-port=%d" % port], stdout=subprocess.PIPE, stderr=log,
-                          text=True, env=environment)
-try:
-    assert any("Accepting connection" in line for line in server.stdout), "the server does not start, see " + log.name
+with a_server.started(ranks, output + ".log") as (port, _):
     Connect("localhost", port)
     lit_view.load(remote=True)
     view = lit_view.black_view()
@@ -49,9 +38,3 @@ try:
         for pixels in (found, chosen):
             column = pixels[40:115, 110].mean(axis=1)
             assert column.min() > 20 and numpy.abs(numpy.diff(column)).max() < 6, "there is a seam, or no medium"
-finally:
-    server.terminate()  # mpiexec takes its ranks with it
-    try:
-        server.wait(10)
-    except subprocess.TimeoutExpired:  # a server does not always hear it
-        server.kill()

@@ -10,9 +10,12 @@ has loaded the plugin for itself with remote=False. On a server that is started 
     pvpython TwoClientsOnServer.py PORT NAME    a client, which waits for a line before it goes
 """
 import os
-import socket
 import subprocess
 import sys
+
+sys.path.insert(0, os.path.dirname(os.path.abspath(__file__)))
+
+import a_server
 
 plugin = os.environ["TYNDALL_PLUGIN"]
 
@@ -38,14 +41,8 @@ def be_client(port, name):
     sys.stdin.readline()
 
 
-def free_port():
-    with socket.socket() as probe:
-        probe.bind(("localhost", 0))
-        return probe.getsockname()[1]
-
-
 def light_of_two(environment, options, first_word):
-    port = free_port()
+    port = a_server.free_port()
     server = subprocess.Popen(["pvserver", "--multi-clients", "--server-port=%d" % port, *options],
                               stdout=subprocess.PIPE, stderr=subprocess.STDOUT, text=True,
                               env={**os.environ, **environment})

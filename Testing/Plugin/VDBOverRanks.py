@@ -4,8 +4,9 @@
 """
 import os
 import shutil
-import socket
 import subprocess
+
+import a_server
 
 here = os.path.dirname(os.path.abspath(__file__))
 script = os.path.join(here, "vdb_saves.py")
@@ -40,23 +41,10 @@ def batch(ranks, *options):
 
 def on_server(ranks):
     folder = new_folder("server%d" % ranks)
-    with socket.socket() as probe:
-        probe.bind(("localhost", 0))
-        port = probe.getsockname()[1]
-    log = open(os.path.join(folder, "server.log"), "w")
-    server = subprocess.Popen(mpiexec + [str(ranks), "pvserver", "--server-port=%d" % port], stdout=subprocess.PIPE,
-                              stderr=log, text=True)
-    try:
-        assert any("Accepting connection" in line for line in server.stdout), "no server, see " + log.name
+    with a_server.started(ranks, os.path.join(folder, "server.log")) as (port, _):
         done = subprocess.run(["pvpython", script, folder, str(port)], stdout=subprocess.PIPE, stderr=subprocess.STDOUT,
                               text=True)
         assert done.returncode == 0 and "is done" in done.stdout, done.stdout
-    finally:
-        server.terminate()
-        try:
-            server.wait(10)
-        except subprocess.TimeoutExpired:
-            server.kill()
     return folder
 
 

@@ -53,6 +53,17 @@ std::vector<float> LatticePoints()
   return points;
 }
 
+/// Rays of each voxel at first, no more than `all` together but where each has `least`.
+int FewestFor(double voxels, double all, int least)
+{
+  int rays = MostRays;
+  while (rays > least && rays * voxels > all)
+  {
+    rays /= 2;
+  }
+  return rays;
+}
+
 /// The light of one peak in channels that share sigma_t.
 class PeakLight
 {
@@ -97,12 +108,12 @@ private:
       this->Scene.sourceSize[a] = this->Peak.size[a];
     }
     const double all = AllRays * (UsualError / this->Error) * (UsualError / this->Error);
-    this->Scene.fewest = MostRays;
-    while (this->Scene.fewest > FewestRays && this->Scene.fewest * static_cast<double>(grid.VoxelCount()) > all)
-    {
-      this->Scene.fewest /= 2;
-    }
-    this->FindCloseRays();
+    this->Scene.fewest = FewestFor(static_cast<double>(grid.VoxelCount()), all, FewestRays);
+    // What shines may lose most of its power through the faces beside it, and what is missed there, all the rest is
+    // brightened by, so that powers add up.
+    const std::array<int, 3>& size = this->Peak.size;
+    const double close = (size[0] + 2.0) * (size[1] + 2.0) * (size[2] + 2.0); // voxels
+    this->Scene.fewestClose = FewestFor(close, CloseRays, this->Scene.fewest);
     this->Scene.uneven = static_cast<float>(this->Error);
     this->Scene.near = FarFrom(this->Peak.size);
     const std::size_t voxels = this->Peak.emission.size() / 3;
@@ -114,22 +125,6 @@ private:
     }
     this->Emission = Buffer<float>(this->TheDevice, this->OfChannels, "what shines");
     this->Points = Buffer<float>(this->TheDevice, LatticePoints(), "rays");
-  }
-
-  /// What shines may lose most of its power through the faces beside it, and what is missed there, all the rest is
-  /// brightened by, so that powers add up.
-  void FindCloseRays()
-  {
-    double voxels = 1.0;
-    for (int size : this->Peak.size)
-    {
-      voxels *= size + 2;
-    }
-    this->Scene.fewestClose = MostRays;
-    while (this->Scene.fewestClose > this->Scene.fewest && this->Scene.fewestClose * voxels > CloseRays)
-    {
-      this->Scene.fewestClose /= 2;
-    }
   }
 
   /// Whether all channels shine from the same places, up to a factor: fans begin where their sum shines.
