@@ -87,7 +87,7 @@ std::vector<std::string> LeftOutOf(const TransportParts& parts, const IterationR
   return words;
 }
 
-std::vector<std::string> Words(const TransportParts& parts, const IterationResult& found, bool accelerated)
+std::vector<std::string> Words(const TransportParts& parts, const IterationResult& found)
 {
   std::vector<std::string> words;
   const PhaseOfMedium& phase = parts.Problem.TheMedium().phase;
@@ -117,11 +117,11 @@ std::vector<std::string> Words(const TransportParts& parts, const IterationResul
     const std::vector<std::string> ofScene = LeftOutOf(parts, found);
     words.insert(words.end(), ofScene.begin(), ofScene.end());
   }
-  if (parts.FacesReflect() && parts.Fine && accelerated)
+  if (parts.FacesReflect() && parts.Fine && parts.How == OrdersAdded::ByBalance)
   {
     words.emplace_back("finer directions of light from outside: the box's faces reflect");
   }
-  if (!accelerated)
+  if (parts.How == OrdersAdded::OneByOne)
   {
     words.emplace_back("acceleration: few scattering orders do");
   }
@@ -136,7 +136,7 @@ std::vector<std::string> Words(const TransportParts& parts, const IterationResul
   return words;
 }
 
-LightField LightOf(TransportParts& parts, IterationResult&& found, bool accelerated)
+LightField LightOf(TransportParts& parts, IterationResult&& found)
 {
   LightField light;
   light.channels = parts.Layout.channels;
@@ -153,12 +153,12 @@ LightField LightOf(TransportParts& parts, IterationResult&& found, bool accelera
       [](float fluence) { return static_cast<float>(fluence / (4.0 * Pi)); });
   });
   light.storedDirections = { { 0.0, 0.0, 0.0 } };
-  light.leftOut = Words(parts, found, accelerated);
+  light.leftOut = Words(parts, found);
   if (parts.StoresMoments())
   {
     AddShownLight(parts, found.shown, light);
   }
-  light.halfRangeFlux = HalfRangeFlux((parts.FineBoundary && !accelerated ? *parts.Fine : parts.Usual).Set());
+  light.halfRangeFlux = HalfRangeFlux((parts.FineBoundary && parts.How != OrdersAdded::ByBalance ? *parts.Fine : parts.Usual).Set());
   light.uncollidedDirections = parts.FineBoundary ? parts.Fine->Set().PerFace() : 0;
   light.balance = found.ledger.Balance();
   light.facePowerOut = found.ledger.FacePowerOut();
@@ -179,10 +179,9 @@ LightField Solve(Device& device, const Medium& medium, const Illumination& illum
   const PropagationSettings& settings, const Monitor& monitor, KeptLight* kept)
 {
   const PropagationProblem problem(medium, illumination, settings, MemoryOf(device));
-  const bool accelerated = ToBeAccelerated(problem);
-  TransportParts parts(device, problem, accelerated);
+  TransportParts parts(device, problem, HowOrdersAreAdded(problem));
   std::unique_ptr<Iteration> iteration;
-  if (accelerated)
+  if (parts.How == OrdersAdded::ByBalance)
   {
     iteration = std::make_unique<DiffusionAcceleration>(parts, kept);
   }
@@ -194,7 +193,7 @@ LightField Solve(Device& device, const Medium& medium, const Illumination& illum
   CheckBalance(problem, found.ledger.Balance());
   const bool warm = found.warm;
   KeptLight left = std::move(found.kept);
-  LightField light = LightOf(parts, std::move(found), accelerated);
+  LightField light = LightOf(parts, std::move(found));
   if (kept)
   {
     Keep(std::move(left), warm, light, *kept);

@@ -3,6 +3,7 @@
 #include "Device/Sizes.h"
 #include "Light/LeftOut.h"
 #include "LightPropagation/Convergence.h"
+#include "LightPropagation/Problem/ScatteringOrders.h"
 #include "LightPropagation/Scattering/MomentScattering.h"
 #include "LightPropagation/Uncollided/UncollidedBoundary.h"
 #include "TyndallKernelSources.h"
@@ -18,13 +19,14 @@ constexpr int MostOrders = 100000;
 constexpr int FewPlanes = 256;        ///< round a periodic axis, where there will be more orders as long as it matters
 constexpr double MostlyLit = 0.75;    ///< part of the rays from which on sweeps of their own do not pay
 constexpr double MostlyFilled = 0.75; ///< the same of voxels
+constexpr double FallByCells = 0.3;   ///< of what is left over from order to order, at least so much in the forecast
 constexpr int OrdersExpected = 6;     ///< to tell whether it pays to sweep empty slabs at the end only
 }
 
 SourceIteration::SourceIteration(TransportParts& parts, const KeptLight* kept)
   : Parts(parts)
   , Settings(parts.Problem.Settings())
-  , Warm(parts, kept, "source iteration")
+  , Warm(parts, kept, parts.How == OrdersAdded::ByCells ? "diffusion on cells" : "source iteration")
   , Shining(parts.HasSource())
 {
   if (this->Warm.Keeps() && parts.Basis)
@@ -35,6 +37,10 @@ SourceIteration::SourceIteration(TransportParts& parts, const KeptLight* kept)
   if (OctantSources::Matter(parts.Problem, !parts.OtherSources().empty()))
   {
     this->AtFaces.emplace(parts.TheDevice, parts.Problem, parts.Layout, parts.OnDevice, !parts.Lamps.empty());
+  }
+  if (parts.How == OrdersAdded::ByCells)
+  {
+    this->MakeCells();
   }
   this->MakeSweeps();
   if (parts.StoresMoments())
@@ -70,7 +76,7 @@ IterationResult SourceIteration::Run(const Monitor& monitor)
     }
     this->ReflectOrder();
     this->ScatterOrder();
-    if (this->Order == 0 && this->Warm.Begins())
+    if (this->Order == 0 && this->Warm.Begins() && this->Cells.empty())
     {
       this->BeginWarm();
     }
@@ -82,7 +88,8 @@ IterationResult SourceIteration::Run(const Monitor& monitor)
   {
     this->SweepEmptySlabs(monitor);
   }
-  if (this->AtFaces || this->Warm.Begins())
+  this->Result.ledger = this->WithOutOfCells();
+  if (this->AtFaces || this->Warm.Begins() || !this->Cells.empty())
   {
     this->CutOffNegative();
   }
@@ -101,7 +108,9 @@ IterationResult SourceIteration::Run(const Monitor& monitor)
 
 void SourceIteration::MakeSweeps()
 {
-  const int mostPlanes = this->Settings.maximumOrders > 0 ? MostPlanesAround : FewPlanes;
+  // What waits for the next sweep is light that the cells know nothing of.
+  const bool wholeWay = this->Settings.maximumOrders > 0 || !this->Cells.empty();
+  const int mostPlanes = wholeWay ? MostPlanesAround : FewPlanes;
   SweepRequest request = { this->DepositOfSweep(), this->Parts.AllRays(), {}, mostPlanes };
   request.octantSource = this->AtFaces ? &this->AtFaces->Sources() : nullptr;
   request.angular = this->Parts.UsualValues();
@@ -123,7 +132,7 @@ void SourceIteration::MakeFilledSweep()
   const std::array<bool, 3>& periodic = this->Settings.periodic;
   const MediumTraits& traits = this->Parts.Problem.Traits();
   if (!this->Settings.leaveOut || !traits.scatters || !this->Parts.Scattering->CanScatterAllOrders() || periodic[0] ||
-    periodic[1] || periodic[2] || this->Parts.Faces || this->AtFaces)
+    periodic[1] || periodic[2] || this->Parts.Faces || this->AtFaces || !this->Cells.empty())
   {
     return;
   }
@@ -305,8 +314,89 @@ std::array<std::size_t, 2> SourceIteration::SweptValues() const
     RoundUp(layer * (filled.first[2] + filled.size[2]), SweepPadding) };
 }
 
+/// Diffusion on cells of voxels, of each channel.
+void SourceIteration::MakeCells()
+{
+  const TransportParts& parts = this->Parts;
+  for (int c = 0; c < parts.Layout.channels; ++c)
+  {
+    this->Cells.push_back(std::make_unique<CoarseDiffusion>(parts.TheDevice, parts.Layout, c, parts.OnDevice,
+      this->Settings.periodic, CellHalvings(parts.Problem), parts.Problem.HasLinearSource()));
+    this->Rest[c].BeginWarm(FallByCells);
+  }
+}
+
+/// As ScatterOrder, with what the cells say of all orders to come, which the next sweep is to have less.
+void SourceIteration::ScatterByCells()
+{
+  const TransportParts& parts = this->Parts;
+  if (this->Order == 0)
+  {
+    this->LookAtDirect(parts.Path, 1.0 / parts.Layout.grid.VoxelVolume());
+  }
+  const bool guessed = this->Order == 0 && this->Warm.Begins();
+  this->Residual = 0.0;
+  this->Shining = false;
+  for (std::size_t i = 0; i < this->Cells.size(); ++i)
+  {
+    const auto c = static_cast<int>(i);
+    const CoarseDiffusion::Powers powers =
+      this->Cells[i]->ScatterOrder(parts.Path, parts.Fluence, parts.Source, guessed ? &this->Warm.Guess() : nullptr);
+    this->Result.ledger.Absorb(c, powers.absorbed);
+    this->Result.ledger.LeaveOver(c, powers.left + this->OnTheWay[c] + this->Stranded[c]);
+    for (int face = 0; face < 6; ++face)
+    {
+      this->OutOfCells[face][c] = powers.out[face];
+    }
+    this->Scattered[c] = powers.scattered;
+    this->AllScattered[c] += powers.scattered;
+    this->Shining = this->Shining || powers.magnitude > 0.0;
+    const double now = powers.magnitude + std::abs(this->OnTheWay[c]);
+    if (now > 0.0 && this->AllScattered[c] > 0.0)
+    {
+      this->Residual = std::max(this->Residual, this->Rest[c].After(now, this->AllScattered[c]));
+    }
+  }
+  const double all = Sum(this->AllScattered);
+  this->Result.convergence.Add(
+    this->Residual, all > 0.0 ? std::abs(Sum(this->Scattered)) / all : 0.0, this->WithOutOfCells());
+}
+
+/// Where the light is by the cells' last solution.
+EnergyLedger SourceIteration::WithOutOfCells() const
+{
+  EnergyLedger ledger = this->Result.ledger;
+  for (int face = 0; face < 6; ++face)
+  {
+    for (int c = 0; c < 3; ++c)
+    {
+      ledger.Escape(c, face, this->OutOfCells[face][c]);
+    }
+  }
+  return ledger;
+}
+
+/// @param scale  to W / length^2
+void SourceIteration::LookAtDirect(const Buffer<float>& fluence, double scale)
+{
+  this->Result.fluenceDirect = Interleaved(this->Parts.Layout, fluence, scale);
+  if (this->Warm.Keeps())
+  {
+    this->Direct = fluence.Read();
+    this->Direct.resize(this->Parts.Fluence.Size());
+    std::transform(this->Direct.begin(), this->Direct.end(), this->Direct.begin(),
+      [scale](float value) { return static_cast<float>(scale * value); });
+    this->Warm.Prepare(this->Direct);
+  }
+}
+
 void SourceIteration::ScatterOrder()
 {
+  if (!this->Cells.empty())
+  {
+    this->ScatterByCells();
+    return;
+  }
   const TransportParts& parts = this->Parts;
   this->GatherMoments();
   if (this->AtFaces)
@@ -346,12 +436,7 @@ void SourceIteration::ScatterOrder()
   }
   if (this->Order == 0)
   {
-    this->Result.fluenceDirect = Interleaved(this->Parts.Layout, this->Parts.Fluence, 1.0);
-    if (this->Warm.Keeps())
-    {
-      this->Direct = this->Parts.Fluence.Read();
-      this->Warm.Prepare(this->Direct);
-    }
+    this->LookAtDirect(this->Parts.Fluence, 1.0);
   }
   const double all = Sum(this->AllScattered);
   this->Result.convergence.Add(this->Residual, all > 0.0 ? Sum(this->Scattered) / all : 0.0, this->Result.ledger);

@@ -37,12 +37,12 @@ VolumeLayout LayoutOf(const PropagationProblem& problem)
 }
 
 /// Without absorption sigma_s is sigma_t; without scattering it is not read.
-MediumOnDevice::Needs NeedsOf(const PropagationProblem& problem, const VolumeLayout& layout, bool accelerated)
+MediumOnDevice::Needs NeedsOf(const PropagationProblem& problem, const VolumeLayout& layout, bool byBalance)
 {
   const MediumTraits& traits = problem.Traits();
   const bool alike = !traits.absorbs && (layout.channels == 1 || !layout.sharedExtinction);
-  const bool unused = !traits.scatters && !accelerated;
-  return { !(problem.Settings().leaveOut && (alike || unused)), accelerated };
+  const bool unused = !traits.scatters && !byBalance;
+  return { !(problem.Settings().leaveOut && (alike || unused)), byBalance };
 }
 
 /// Peaks go along rays of their own, but not round periodic axes: of their images there is no end.
@@ -55,18 +55,18 @@ SplitEmission EmissionOf(const PropagationProblem& problem)
 }
 }
 
-TransportParts::TransportParts(Device& device, const PropagationProblem& problem, bool accelerated)
+TransportParts::TransportParts(Device& device, const PropagationProblem& problem, OrdersAdded how)
   : TheDevice(device)
   , Problem(problem)
+  , How(how)
   , Layout(LayoutOf(problem))
   , OnDevice(
-      device, problem.TheMedium(), problem.Scattering(), this->Layout, NeedsOf(problem, this->Layout, accelerated))
+      device, problem.TheMedium(), problem.Scattering(), this->Layout, NeedsOf(problem, this->Layout, this->ByBalance()))
   , Scattering(this->MakeScattering())
   , Usual(problem.TheGrid(), problem.Settings(),
       DirectionsForVoxels(problem.Settings().directionsPerFace, problem.TheGrid().spacing),
       StartsOf(problem.Settings()))
   , Emission(EmissionOf(problem))
-  , Accelerated(accelerated)
 {
   if (const UncollidedImage& image = problem.Shining().uncollided; image.IsThere())
   {
@@ -76,7 +76,7 @@ TransportParts::TransportParts(Device& device, const PropagationProblem& problem
   this->FindFaceLight();
   this->FindAngularValues();
   const MediumTraits& traits = problem.Traits();
-  const bool needsSource = problem.ComputesScattering() || traits.emits || accelerated;
+  const bool needsSource = problem.ComputesScattering() || traits.emits || this->ByBalance();
   const int beams = static_cast<int>(this->Beams.size());
   this->Source = Buffer<float>(
     device, needsSource ? this->Layout.MomentFloats(this->Functions(), beams) : SweepPadding, "the scattered light");
@@ -122,12 +122,12 @@ void TransportParts::FindBoundaryLight()
   const PropagationSettings& settings = this->Problem.Settings();
   const Illumination& shining = this->Problem.Shining();
   const Grid& grid = this->Problem.TheGrid();
-  const UncollidedDirections finer = UncollidedDirectionsFor(this->Problem, this->Usual.Set(), this->Accelerated);
+  const UncollidedDirections finer = UncollidedDirectionsFor(this->Problem, this->Usual.Set(), this->How);
   this->CorrectsEscape = finer.correctsEscape && this->Problem.Traits().scatters && !Reflects(shining);
   if (finer.perFace > 0)
   {
     DirectionSet set = FittedDirections(finer.perFace, "UncollidedDirections");
-    const RayStarts starts = this->Accelerated || !set.orbits.empty() ? StartsOf(settings) : RayStarts::Staggered;
+    const RayStarts starts = this->ByBalance() || !set.orbits.empty() ? StartsOf(settings) : RayStarts::Staggered;
     this->Fine = std::make_unique<SweptDirections>(grid, settings, std::move(set), starts);
   }
   const SplitEnvironment environment = Split(shining.environment, (this->Fine ? *this->Fine : this->Usual).Set());
@@ -139,7 +139,7 @@ void TransportParts::FindBoundaryLight()
     auto fine = std::make_unique<BoundaryLight>(grid, settings, *this->Fine, shining, environment.smooth);
     // What comes in evenly from everywhere is what accelerated sweeps carry already; and of light that finer directions
     // bring beyond that, the sweeps' faces could not give back a part.
-    if (fine->Shines() && !(this->Accelerated && (fine->IsEven() || Reflects(shining))))
+    if (fine->Shines() && !(this->ByBalance() && (fine->IsEven() || Reflects(shining))))
     {
       // Directions that nobody asked for are left where few of their rays would meet the faces.
       const bool asked = settings.uncollidedDirections >= 0;

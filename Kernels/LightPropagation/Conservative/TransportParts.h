@@ -8,6 +8,7 @@
 #include "LightPropagation/Emission/EmissionPeaks.h"
 #include "LightPropagation/Problem/MediumOnDevice.h"
 #include "LightPropagation/Problem/PropagationProblem.h"
+#include "LightPropagation/Problem/ScatteringOrders.h"
 #include "LightPropagation/Scattering/ScatteringOperator.h"
 #include "LightPropagation/Sweep/SweepOperator.h"
 #include "LightPropagation/Sweep/SweepWorkspace.h"
@@ -28,14 +29,15 @@ class TransportParts
 {
 public:
   /// @param problem  must stay
-  /// @param accelerated  for diffusion acceleration
+  /// @param how  scattering orders are to be added up
   /// @throws DeviceError if the arrays do not fit; InvalidInput where rays are too few (BoundaryLight.h)
-  TransportParts(Device& device, const PropagationProblem& problem, bool accelerated);
+  TransportParts(Device& device, const PropagationProblem& problem, OrdersAdded how);
   TransportParts(const TransportParts&) = delete; // lights see directions that this owns
   TransportParts& operator=(const TransportParts&) = delete;
 
   Device& TheDevice;
   const PropagationProblem& Problem;
+  const OrdersAdded How;
   const VolumeLayout Layout;
   const MediumOnDevice OnDevice;
   const std::unique_ptr<const ScatteringOperator> Scattering;
@@ -62,7 +64,7 @@ public:
   bool HasSource() const { return this->MediumShines; }
   /// What sweeps along the usual directions carry of the light from outside; empty: nothing.
   SweepBoundary BoundaryOfSweeps() const;
-  bool SweepsAreLit() const { return this->UsualBoundary->Shines() && (this->Accelerated || !this->FineBoundary); }
+  bool SweepsAreLit() const { return this->UsualBoundary->Shines() && (this->ByBalance() || !this->FineBoundary); }
 
   /// The light of one source, added to where `deposit` says.
   /// @return all channels
@@ -119,6 +121,7 @@ public:
   std::unique_ptr<SweepOperator> MakeSweep(const SweepRequest& request);
 
 private:
+  bool ByBalance() const { return this->How == OrdersAdded::ByBalance; }
   /// The one place where a scattering operator is chosen.
   std::unique_ptr<const ScatteringOperator> MakeScattering() const;
   void LoadSource();
@@ -128,7 +131,6 @@ private:
   std::vector<int> BrightestBeams() const;
   int SlotOf(const UncollidedSource& source) const;
 
-  bool Accelerated;
   bool MediumShines = false;
   std::unique_ptr<const AngularValues> OfUsual;
   std::vector<int> Beams; ///< which of the lamps have an angular distribution of their own

@@ -33,4 +33,18 @@ std::vector<float> InRows(const MultigridLevel& level, const std::vector<Value>&
   }
   return rows;
 }
+
+/// Values by voxel, x fastest, of a level's rows.
+inline std::vector<float> OfRows(const MultigridLevel& level, const std::vector<float>& rows)
+{
+  const int* const n = level.size;
+  std::vector<float> values;
+  values.reserve(static_cast<std::size_t>(n[0]) * n[1] * n[2]);
+  for (int r = 0; r < n[1] * n[2]; ++r)
+  {
+    const auto first = rows.begin() + RowsLead + r / n[1] * level.plane + r % n[1] * level.pitch;
+    values.insert(values.end(), first, first + n[0]);
+  }
+  return values;
+}
 }

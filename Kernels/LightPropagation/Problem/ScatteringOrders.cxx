@@ -34,6 +34,9 @@ constexpr double Uneven = 1.5; ///< the thickest line over the mean of all, each
 constexpr AcceleratedTime InMoments = { 5.0, 8.0, 1.0 };
 constexpr AcceleratedTime InMomentsOfThickVoxels = { 8.0, 8.0, 3.0 };
 constexpr AcceleratedTime InSlab = { 3.0, 5.0, 1.0 };
+constexpr AcceleratedTime InCells = { 4.0, 7.0, 0.4 };
+constexpr double CellAtMost = 1.0; ///< optical width where the medium is thickest
+constexpr int MostHalvings = 3;
 constexpr double PlainSetUp = 0.8; ///< of orders one after the other: measured 0.8 in 100^3 voxels, 2 in 40^3
 
 /// Optical thickness of lines of voxels along each axis. Light stays longest in the thickest ones, but leaks out of
@@ -176,8 +179,21 @@ bool HasThickVoxels(const PropagationProblem& problem)
   return false;
 }
 
+/// Light is scattered alike into all directions, no voxel is so thick that diffusion has to tell what leaves it, and
+/// nothing comes back through the box's faces, which cells would have to forecast.
+bool CanUseCells(const PropagationProblem& problem)
+{
+  const std::array<int, 3> halvings = CellHalvings(problem);
+  return problem.Scattering().Degree() == 0 && !problem.IsSlab() && !Reflects(problem.Shining()) &&
+    std::any_of(halvings.begin(), halvings.end(), [](int times) { return times > 0; });
+}
+
 const AcceleratedTime& AcceleratedTimeOf(const PropagationProblem& problem, const std::vector<Lines>& lines)
 {
+  if (CanUseCells(problem))
+  {
+    return InCells;
+  }
   if (problem.IsSlab())
   {
     return InSlab;
@@ -213,11 +229,35 @@ bool ScatteredManyTimes(const PropagationProblem& problem)
   return PlainSetUp + OrdersAlong(problem, lines) > AcceleratedTimeOf(problem, lines).InOrders();
 }
 
-bool ToBeAccelerated(const PropagationProblem& problem)
+std::array<int, 3> CellHalvings(const PropagationProblem& problem)
+{
+  double thickest = 0.0;
+  for (int c = 0; c < problem.Channels(); ++c)
+  {
+    for (std::size_t i = 0; i < problem.TheGrid().VoxelCount(); ++i)
+    {
+      thickest = std::max<double>(thickest, problem.Scattering().SigmaT(i, c));
+    }
+  }
+  std::array<int, 3> halvings = {};
+  for (int axis = 0; axis < 3; ++axis)
+  {
+    const double tau = thickest * problem.TheGrid().spacing[axis];
+    int& times = halvings[axis];
+    while (times < MostHalvings && tau * (2 << times) <= CellAtMost && problem.TheGrid().size[axis] > 1 << times)
+    {
+      ++times;
+    }
+  }
+  return halvings;
+}
+
+OrdersAdded HowOrdersAreAdded(const PropagationProblem& problem)
 {
   const PropagationSettings& settings = problem.Settings();
-  return settings.source == PropagationSource::Linear ||
+  const bool accelerated = settings.source == PropagationSource::Linear ||
     (settings.acceleration == PropagationAcceleration::Automatic && settings.maximumOrders == 0 &&
       problem.Traits().scatters && ScatteredManyTimes(problem));
+  return !accelerated ? OrdersAdded::OneByOne : CanUseCells(problem) ? OrdersAdded::ByCells : OrdersAdded::ByBalance;
 }
 }

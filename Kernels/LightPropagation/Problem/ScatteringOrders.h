@@ -2,6 +2,8 @@
 
 #include "LightPropagation/Problem/PropagationProblem.h"
 
+#include <array>
+
 namespace tyndall
 {
 /// Scattering orders, as sweeps carry them, until 1e-4 is left, about: those of diffusion in a slab with extrapolated
@@ -12,6 +14,16 @@ double OrdersNeeded(const PropagationProblem& problem);
 /// sweeps and corrections were measured to take (`./run bench thick`).
 bool ScatteredManyTimes(const PropagationProblem& problem);
 
-/// Whether to solve with diffusion acceleration.
-bool ToBeAccelerated(const PropagationProblem& problem);
+/// How scattering orders are added up.
+enum class OrdersAdded
+{
+  OneByOne,  ///< Conservative/SourceIteration.h
+  ByCells,   ///< the same, each with what diffusion on cells of several voxels says of the rest: where voxels are thin
+  ByBalance, ///< between sweeps by the balance of each voxel, Conservative/DiffusionAcceleration.h
+};
+OrdersAdded HowOrdersAreAdded(const PropagationProblem& problem);
+
+/// Of how many voxels cells are to be along each axis, 2^this, for these to be about a mean free path wide at most
+/// where the medium is thickest; all 0: voxels are too thick for cells of several.
+std::array<int, 3> CellHalvings(const PropagationProblem& problem);
 }

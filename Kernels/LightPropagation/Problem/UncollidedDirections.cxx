@@ -1,6 +1,5 @@
 #include "LightPropagation/Problem/UncollidedDirections.h"
 
-#include "LightPropagation/Problem/ScatteringOrders.h"
 #include "Medium/BoxFaces.h"
 
 #include <algorithm>
@@ -16,6 +15,7 @@ constexpr double More = 0.25; ///< time, of a solve along the usual directions
 constexpr double SetUp = 0.8;
 /// An accelerated solve in such orders: one to set up three, and five sweeps with their corrections.
 constexpr double AcceleratedOrders = 18.0;
+constexpr double OrdersByCells = 12.0; ///< the same with cells: measured 9 in 128^3 voxels, 14 in 64^3
 constexpr double LeastOrders = 3.0; ///< that are swept however few are needed
 constexpr int Choices[] = { 36, 49, 64, 100 };
 
@@ -56,12 +56,14 @@ double LitPart(const Illumination& light, const std::array<bool, 3>& periodic)
 }
 
 /// In orders along all usual directions: a solve's, but for its first sweep.
-double TimeOfLaterOrders(const PropagationProblem& problem, bool accelerated)
+double TimeOfLaterOrders(const PropagationProblem& problem, OrdersAdded how)
 {
   const int most = problem.Settings().maximumOrders;
-  if (accelerated)
+  switch (how)
   {
-    return AcceleratedOrders - 1.0;
+    case OrdersAdded::ByBalance: return AcceleratedOrders - 1.0;
+    case OrdersAdded::ByCells: return OrdersByCells - 1.0;
+    case OrdersAdded::OneByOne: break;
   }
   const double orders = std::max(OrdersNeeded(problem), LeastOrders);
   return SetUp + (most > 0 ? std::min<double>(orders, most) : orders) - 1.0;
@@ -69,8 +71,10 @@ double TimeOfLaterOrders(const PropagationProblem& problem, bool accelerated)
 }
 
 UncollidedDirections UncollidedDirectionsFor(
-  const PropagationProblem& problem, const DirectionSet& usual, bool accelerated)
+  const PropagationProblem& problem, const DirectionSet& usual, OrdersAdded how)
 {
+  const bool oneByOne = how == OrdersAdded::OneByOne;
+  const bool besideUsual = how == OrdersAdded::ByBalance; // else the finer directions take the place of the usual ones
   const PropagationSettings& settings = problem.Settings();
   if (settings.uncollidedDirections >= 0)
   {
@@ -81,22 +85,22 @@ UncollidedDirections UncollidedDirectionsFor(
   {
     return {};
   }
-  if (accelerated && problem.Scattering().Degree() > 0)
+  if (besideUsual && problem.Scattering().Degree() > 0)
   {
     return {}; // all moments of four lights would be kept at once: hundreds of bytes a voxel
   }
   const double lit = LitPart(problem.Shining(), settings.periodic), before = settings.directionsPerFace;
-  const double affordable = More * (TimeOfLaterOrders(problem, accelerated) + lit) * before;
+  const double affordable = More * (TimeOfLaterOrders(problem, how) + lit) * before;
   UncollidedDirections found;
   for (int choice : Choices)
   {
-    // With acceleration light is swept along both, else the finer directions take the place of the usual ones.
-    const double light = lit * (accelerated ? choice + before : choice - before);
+    const double light = lit * (besideUsual ? choice + before : choice - before);
     const double evenSky = choice + before;
-    if (choice > before && light + (accelerated ? evenSky : 0.0) <= affordable)
+    if (choice > before && light + (oneByOne ? 0.0 : evenSky) <= affordable)
     {
-      // Beside fewer finer directions more of them gain more.
-      found = { choice, choice == Choices[std::size(Choices) - 1] && light + evenSky <= affordable };
+      // Beside fewer finer directions more of them gain more; but with cells they gain nothing by themselves.
+      const bool most = choice == Choices[std::size(Choices) - 1];
+      found = { choice, !besideUsual && (most || !oneByOne) && light + evenSky <= affordable };
     }
   }
   return found;

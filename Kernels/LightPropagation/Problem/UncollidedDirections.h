@@ -2,6 +2,7 @@
 
 #include "LightPropagation/Angular/DirectionSet.h"
 #include "LightPropagation/Problem/PropagationProblem.h"
+#include "LightPropagation/Problem/ScatteringOrders.h"
 
 namespace tyndall
 {
@@ -19,5 +20,5 @@ struct UncollidedDirections
 /// a smooth environment are right along few directions, and so is the light that is scattered many times.
 /// @param usual  directions of scattered light; only beside fitted ones more of them gain by themselves
 UncollidedDirections UncollidedDirectionsFor(
-  const PropagationProblem& problem, const DirectionSet& usual, bool accelerated);
+  const PropagationProblem& problem, const DirectionSet& usual, OrdersAdded how);
 }

@@ -1,0 +1,225 @@
+// From voxels to cells of them and back, between two sweeps (CoarseDiffusion.h). The host gives
+//   REAL_WIDTH  4 or 8 floats of a vector
+//   DOUBLES     1 where the device has double precision
+//   LINEAR      1: light is taken as linear across voxels; 0: as constant in each
+
+#include "LightPropagation/CoarseDiffusion/CoarseShared.h"
+#include "LightPropagation/Diffusion/MultigridRows.cl"
+#include "Numerics/Exact.cl"
+
+#define CELLS_AT_ONCE 64
+
+// Sums over the voxels of each cell. Work-items walk along rows of cells.
+__kernel void sum_cells(CoarseCells box, const __global float* values, float scale, __global float* sums, ulong first)
+{
+  values += first;
+  FOR_ROWS(box.cells)
+  {
+    const int y = r % box.cells.size[1], z = r / box.cells.size[1];
+    const int end_y = min((y + 1) << box.halvings[1], box.size[1]), end_z = min((z + 1) << box.halvings[2], box.size[2]);
+    __global float* row = sums + row_at(&box.cells, y, z);
+    for (int x = 0; x < box.cells.size[0]; ++x)
+    {
+      const int begin_x = x << box.halvings[0], end_x = min((x + 1) << box.halvings[0], box.size[0]);
+      float sum = 0.0f;
+      for (int w = z << box.halvings[2]; w < end_z; ++w)
+      {
+        for (int v = y << box.halvings[1]; v < end_y; ++v)
+        {
+          const __global float* voxels = values + ((ulong)w * box.size[1] + v) * box.size[0];
+          for (int u = begin_x; u < end_x; ++u)
+          {
+            sum += voxels[u];
+          }
+        }
+      }
+      row[x] = scale * sum;
+    }
+  }
+}
+
+// What a voxel scatters more of its light because light is not as smeared as constant voxels have it, once where it is
+// gathered and once where it shines (numerics.md, Eqs. (92), (93)); what one voxel gains the one beside it loses. Right
+// for light that changes evenly: the last factor is the current of a constant source (Eq. (51)) beyond that of a linear
+// one, over its first term, to 1e-4 for voxels up to 1.5 mean free paths.
+// own, other      light of the voxel, and of the one beside it
+// t, s            their sigma_t and sigma_s
+// spacing         from one to the other
+inline float sharpen(float own, float other, float t, float s, float other_t, float other_s, float spacing)
+{
+  const float both = t + other_t, tau = 0.5f * spacing * both;
+  return (s * t + other_s * other_t) * (own - other) / (12.0f * fmax(both, 1e-37f) * (1.0f + tau * (0.183f + 0.0163f * tau)));
+}
+
+// What is scattered of light that was gathered. A work-item a row of voxels.
+//   path        W length; may be negative
+//   source      W / (length^3 sr), added to
+//   per_volume  over 4 pi times the volume of a voxel
+//   tally       [row] of the source, and of its magnitude
+__kernel void scatter_row(CoarseCells box, const __global float* restrict path, const __global float* restrict sigma_t,
+  const __global float* restrict sigma_s, __global float* restrict source, float per_volume, int adds,
+  __global float2* tally)
+{
+  const int* n = box.size;
+  const int r = get_global_id(0), y = r % n[1], z = r / n[1];
+  const int i = r * n[0];
+  path += box.first + i;
+  source += box.first + i;
+  sigma_s += box.first + i;
+  sigma_t += box.firstT + i;
+  float sum = 0.0f, magnitude = 0.0f;
+  for (int x = 0; x < n[0]; ++x)
+  {
+    source[x] = (adds ? source[x] : 0.0f) + per_volume * sigma_s[x] * path[x];
+  }
+#if LINEAR
+  for (int x = 0; x + 1 < n[0]; ++x)
+  {
+    const float more = per_volume * sharpen(path[x], path[x + 1], sigma_t[x], sigma_s[x], sigma_t[x + 1], sigma_s[x + 1], box.spacing[0]);
+    source[x] += more;
+    source[x + 1] -= more;
+  }
+  if (box.periodic[0])
+  {
+    const int x = n[0] - 1;
+    const float more = per_volume * sharpen(path[x], path[0], sigma_t[x], sigma_s[x], sigma_t[0], sigma_s[0], box.spacing[0]);
+    source[x] += more;
+    source[0] -= more;
+  }
+  const int row = n[0], plane = n[0] * n[1];
+  const int beside[4] = { y > 0 ? -row : box.periodic[1] ? plane - row : 0,
+    y < n[1] - 1 ? row : box.periodic[1] ? row - plane : 0, z > 0 ? -plane : box.periodic[2] ? (n[2] - 1) * plane : 0,
+    z < n[2] - 1 ? plane : box.periodic[2] ? (1 - n[2]) * plane : 0 };
+  for (int k = 0; k < 4; ++k)
+  {
+    for (int x = 0; x < n[0] && beside[k] != 0; ++x)
+    {
+      const int other = x + beside[k];
+      source[x] +=
+        per_volume * sharpen(path[x], path[other], sigma_t[x], sigma_s[x], sigma_t[other], sigma_s[other], box.spacing[1 + k / 2]);
+    }
+  }
+#endif
+  for (int x = 0; x < n[0]; ++x)
+  {
+    sum += source[x];
+    magnitude += fabs(source[x]);
+  }
+  tally[r] = (float2)(sum, magnitude);
+}
+
+// Between the middles of which two cells a voxel lies along an axis, and how far from the first one; beyond the last
+// middle light goes on as between the last two.
+typedef struct
+{
+  int from, to;
+  float way;
+} between;
+
+inline between find_between(const CoarseCells* box, int axis, int voxel)
+{
+  const int edge = 1 << box->halvings[axis], cells = box->cells.size[axis];
+  between found;
+  found.from = voxel >> box->halvings[axis];
+  found.way = ((voxel & (edge - 1)) + 0.5f) / edge - 0.5f;
+  found.to = found.from + (found.way > 0.0f ? 1 : -1);
+  const bool outside = found.to < 0 || found.to >= cells;
+  if (outside && box->periodic[axis])
+  {
+    found.to = found.to < 0 ? cells - 1 : 0;
+    found.way = fabs(found.way);
+  }
+  else if (outside)
+  {
+    found.to = cells == 1 ? 0 : found.to < 0 ? 1 : cells - 2;
+    found.way = -fabs(found.way);
+  }
+  else
+  {
+    found.way = fabs(found.way);
+  }
+  return found;
+}
+
+// Adds what a sweep gathered and what the cells' solution has beyond it. Of the latter as much is taken from what the
+// next sweep will gather, for that carries all that is scattered of it. A work-item a row of voxels.
+//   found    W / length^2, by cells
+//   path     W length, replaced
+//   fluence  W / length^2, added to
+//   tally    [row] absorbed: of all that is added, of what the solution has
+__kernel void add_found(CoarseCells box, const __global exact* found, __global float* restrict path,
+  __global float* restrict fluence, const __global float* restrict sigma_t, const __global float* restrict sigma_s,
+  float volume, __global float2* tally)
+{
+  const int* n = box.size;
+  const int r = get_global_id(0);
+  path += box.first + r * n[0];
+  fluence += box.first + r * n[0];
+  sigma_s += box.first + r * n[0];
+  sigma_t += box.firstT + r * n[0];
+  const between y = find_between(&box, 1, r % n[1]), z = find_between(&box, 2, r / n[1]);
+  const int cells = box.cells.size[0], plane = cells * box.cells.size[1];
+  const __global exact* low = found + y.from * cells + z.from * plane;
+  const int aside = (y.to - y.from) * cells, above = (z.to - z.from) * plane;
+  float absorbed = 0.0f, of_found = 0.0f;
+  float line[CELLS_AT_ONCE + 2]; // of the row of voxels, with a cell on either side
+  for (int first = 0; first < cells; first += CELLS_AT_ONCE)
+  {
+    const int count = min(CELLS_AT_ONCE, cells - first);
+    for (int k = 0; k < count + 2; ++k)
+    {
+      int x = first + k - 1;
+      x = x < 0 ? (box.periodic[0] ? cells - 1 : 0) : x >= cells ? (box.periodic[0] ? 0 : cells - 1) : x;
+      const float a = low[x] + y.way * (low[x + aside] - low[x]);
+      const float b = low[x + above] + y.way * (low[x + above + aside] - low[x + above]);
+      line[k] = a + z.way * (b - a);
+    }
+    if (!box.periodic[0] && cells > 1)
+    {
+      line[0] = first == 0 ? 2.0f * line[1] - line[2] : line[0];
+      line[count + 1] = first + count == cells ? 2.0f * line[count] - line[count - 1] : line[count + 1];
+    }
+    const int edge = 1 << box.halvings[0], half_edge = edge >> 1;
+    for (int k = 0; k < edge; ++k)
+    {
+      const float way = (k + 0.5f) / edge - 0.5f;
+      const int to = k < half_edge ? 0 : 2;
+      for (int c = 0; c < count; ++c)
+      {
+        const int x = ((first + c) << box.halvings[0]) + k;
+        if (x < n[0])
+        {
+          const float more = line[c + 1] + fabs(way) * (line[c + to] - line[c + 1]);
+          const float path_of_found = volume * more;
+          const float all = path[x] + path_of_found, sigma_a = fmax(sigma_t[x] - sigma_s[x], 0.0f);
+          fluence[x] += all / volume;
+          absorbed += sigma_a * all;
+          of_found += sigma_a * path_of_found;
+          path[x] = -path_of_found;
+        }
+      }
+    }
+  }
+  tally[r] = (float2)(absorbed, of_found);
+}
+
+// The same of a guess by voxels.
+//   guess  W length
+__kernel void add_guess(CoarseCells box, const __global float* restrict guess, __global float* restrict path,
+  __global float* restrict fluence, const __global float* restrict sigma_t, const __global float* restrict sigma_s,
+  float volume, __global float2* tally)
+{
+  const int r = get_global_id(0);
+  float absorbed = 0.0f, of_guess = 0.0f;
+  for (int x = 0; x < box.size[0]; ++x)
+  {
+    const int i = box.first + r * box.size[0] + x;
+    const float sigma_a = fmax(sigma_t[box.firstT + r * box.size[0] + x] - sigma_s[i], 0.0f);
+    const float all = path[i] + guess[i];
+    fluence[i] += all / volume;
+    absorbed += sigma_a * all;
+    of_guess += sigma_a * guess[i];
+    path[i] = -guess[i];
+  }
+  tally[r] = (float2)(absorbed, of_guess);
+}

@@ -1,0 +1,190 @@
+#include "LightPropagation/CoarseDiffusion/CoarseDiffusion.h"
+
+#include "Device/Defines.h"
+#include "Device/Sizes.h"
+#include "LightPropagation/CoarseDiffusion/CoarseMatrix.h"
+#include "LightPropagation/Diffusion/MultigridLayout.h"
+#include "Numerics/Constants.h"
+#include "TyndallKernelSources.h"
+
+#include <algorithm>
+#include <numeric>
+
+namespace tyndall
+{
+namespace
+{
+constexpr double Reduction = 0.02; ///< of the residual: sweeps take away less than that
+const char* const What = "diffusion on cells";
+
+std::array<int, 3> CellsOf(const std::array<int, 3>& voxels, const std::array<int, 3>& halvings)
+{
+  std::array<int, 3> cells;
+  for (int axis = 0; axis < 3; ++axis)
+  {
+    cells[axis] = (voxels[axis] + (1 << halvings[axis]) - 1) >> halvings[axis];
+  }
+  return cells;
+}
+
+std::array<double, 3> EdgesOf(const std::array<double, 3>& voxel, const std::array<int, 3>& halvings)
+{
+  return { voxel[0] * (1 << halvings[0]), voxel[1] * (1 << halvings[1]), voxel[2] * (1 << halvings[2]) };
+}
+}
+
+CoarseDiffusion::CoarseDiffusion(Device& device, const VolumeLayout& layout, int channel, const MediumOnDevice& medium,
+  const std::array<bool, 3>& periodic, const std::array<int, 3>& halvings, bool linear)
+  : TheDevice(device)
+  , TheMedium(medium)
+  , TheGrid(layout.grid)
+  , Linear(linear)
+  , Solver(device, CellsOf(layout.grid.size, halvings), EdgesOf(layout.grid.spacing, halvings))
+  , Tally(device, Count(layout.grid.size[1]) * Count(layout.grid.size[2]), "sums")
+{
+  for (int axis = 0; axis < 3; ++axis)
+  {
+    this->Box.size[axis] = layout.grid.size[axis];
+    this->Box.spacing[axis] = static_cast<float>(layout.grid.spacing[axis]);
+    this->Box.periodic[axis] = periodic[axis];
+    this->Box.halvings[axis] = halvings[axis];
+  }
+  this->Box.first = static_cast<cl_int>(channel * layout.Stride());
+  this->Box.firstT = static_cast<cl_int>(layout.ExtinctionFirst(channel));
+  this->Box.cells = this->Solver.Rows();
+  const int* const cells = this->Box.cells.size;
+  this->Found = ExactValues(device, Count(cells[0]) * Count(cells[1]) * Count(cells[2]), What);
+  this->FindMatrix();
+}
+
+cl::Kernel CoarseDiffusion::Kernel(const char* name) const
+{
+  return this->TheDevice.Kernel(name, kernel_source::CoarseDiffusion,
+    Define("REAL_WIDTH", this->TheDevice.KernelWidth(4, RowVector, 4)) + Define("LINEAR", this->Linear) +
+      ExactOption(this->TheDevice));
+}
+
+/// Of each cell, x fastest.
+std::vector<float> CoarseDiffusion::SumOfVoxels(const Buffer<float>& values, int first)
+{
+  cl::Kernel kernel = this->Kernel("sum_cells");
+  With(kernel, this->Box, values, 1.0f, this->Solver.Right(), cl_ulong(first));
+  MultigridSolver::RunRows(this->TheDevice, kernel, this->Box.cells);
+  return OfRows(this->Box.cells, this->Solver.Right().Read());
+}
+
+void CoarseDiffusion::FindMatrix()
+{
+  const std::vector<float> sigmaT = this->SumOfVoxels(this->TheMedium.SigmaT(), this->Box.firstT);
+  const std::vector<float> sigmaS = this->SumOfVoxels(this->TheMedium.SigmaS(), this->Box.first);
+  CoarseMatrix matrix = FindCoarseMatrix(this->TheGrid, this->Box, sigmaT, sigmaS);
+  this->Solver.Conductance().Write(matrix.conductance.data());
+  this->Solver.Loss().Write(matrix.loss.data());
+  this->Solver.Coarsen();
+  this->Borders = std::move(matrix.borders);
+}
+
+CoarseDiffusion::Powers CoarseDiffusion::ScatterOrder(
+  const Buffer<float>& path, const Buffer<float>& fluence, const Buffer<float>& source, const Buffer<float>* guess)
+{
+  const double perSource = 4.0 * Pi * this->TheGrid.VoxelVolume();
+  const Sums swept = this->Scatter(path, source, 1.0, false);
+  this->Found.Fill(0.0);
+  if (!guess)
+  {
+    this->Solve(source, perSource * swept.second);
+  }
+  const Sums absorbed = guess ? this->AddGuess(*guess, path, fluence) : this->AddFound(path, fluence);
+  const Sums scattered = this->Scatter(path, source, -1.0, true);
+  Powers powers;
+  powers.absorbed = absorbed.first;
+  powers.scattered = perSource * scattered.first;
+  powers.magnitude = perSource * scattered.second;
+  powers.out = this->OutThroughFaces();
+  powers.left =
+    perSource * swept.first - absorbed.second - std::accumulate(powers.out.begin(), powers.out.end(), 0.0);
+  return powers;
+}
+
+/// Of what the last sweep scattered, W, all orders to come.
+void CoarseDiffusion::Solve(const Buffer<float>& source, double magnitude)
+{
+  if (!(magnitude > 0.0))
+  {
+    return;
+  }
+  cl::Kernel sum = this->Kernel("sum_cells");
+  With(sum, this->Box, source, static_cast<float>(4.0 * Pi * this->TheGrid.VoxelVolume()), this->Solver.Right(),
+    cl_ulong(this->Box.first));
+  MultigridSolver::RunRows(this->TheDevice, sum, this->Box.cells);
+  const int* const n = this->Box.cells.size;
+  this->Solver.Solve(this->Found, magnitude / (Count(n[0]) * Count(n[1]) * Count(n[2])), Reduction);
+}
+
+/// What is scattered of path integrals, times a sign, into the source. @return its sums
+CoarseDiffusion::Sums CoarseDiffusion::Scatter(
+  const Buffer<float>& path, const Buffer<float>& source, double sign, bool adds)
+{
+  cl::Kernel kernel = this->Kernel("scatter_row");
+  With(kernel, this->Box, path, this->TheMedium.SigmaT(), this->TheMedium.SigmaS(), source,
+    static_cast<float>(sign / (4.0 * Pi * this->TheGrid.VoxelVolume())), cl_int(adds), this->Tally);
+  return this->RunByRows(kernel);
+}
+
+CoarseDiffusion::Sums CoarseDiffusion::AddFound(const Buffer<float>& path, const Buffer<float>& fluence)
+{
+  cl::Kernel kernel = this->Kernel("add_found");
+  With(kernel, this->Box, this->Found.Handle(), path, fluence, this->TheMedium.SigmaT(), this->TheMedium.SigmaS(),
+    static_cast<float>(this->TheGrid.VoxelVolume()), this->Tally);
+  return this->RunByRows(kernel);
+}
+
+CoarseDiffusion::Sums CoarseDiffusion::AddGuess(
+  const Buffer<float>& guess, const Buffer<float>& path, const Buffer<float>& fluence)
+{
+  cl::Kernel kernel = this->Kernel("add_guess");
+  With(kernel, this->Box, guess, path, fluence, this->TheMedium.SigmaT(), this->TheMedium.SigmaS(),
+    static_cast<float>(this->TheGrid.VoxelVolume()), this->Tally);
+  return this->RunByRows(kernel);
+}
+
+CoarseDiffusion::Sums CoarseDiffusion::RunByRows(cl::Kernel& kernel)
+{
+  this->TheDevice.Queue().enqueueNDRangeKernel(
+    kernel, cl::NullRange, cl::NDRange(this->Tally.Size()), cl::NDRange(1));
+  Sums sums;
+  for (const cl_float2& row : this->Tally.Read())
+  {
+    sums.first += row.s[0];
+    sums.second += row.s[1];
+  }
+  return sums;
+}
+
+std::array<double, 6> CoarseDiffusion::OutThroughFaces() const
+{
+  const std::vector<double> found = this->Found.Read();
+  const int* const n = this->Box.cells.size;
+  std::array<double, 6> out = {};
+  std::array<std::size_t, 6> next = {};
+  std::size_t i = 0;
+  for (int z = 0; z < n[2]; ++z)
+  {
+    for (int y = 0; y < n[1]; ++y)
+    {
+      for (int x = 0; x < n[0]; ++x, ++i)
+      {
+        const std::array<int, 3> at = { x, y, z };
+        for (int face = 0; face < 6; ++face)
+        {
+          if (!this->Borders[face].empty() && at[face / 2] == (face % 2 == 0 ? 0 : n[face / 2] - 1))
+          {
+            out[face] += this->Borders[face][next[face]++] * found[i];
+          }
+        }
+      }
+    }
+  }
+  return out;
+}
+}

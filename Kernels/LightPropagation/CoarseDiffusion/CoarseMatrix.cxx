@@ -1,0 +1,144 @@
+#include "LightPropagation/CoarseDiffusion/CoarseMatrix.h"
+
+#include "LightPropagation/Diffusion/MultigridLayout.h"
+
+#include <algorithm>
+
+namespace tyndall
+{
+namespace
+{
+constexpr double MeanFreePath = 1.0; ///< optical width of the box whose mean extinction light diffuses with
+constexpr double Floor = 0.05;       ///< optical length between cells that pass light as if it were that long
+constexpr double Marshak = 2.0;      ///< resistance of a face of the box, over its area
+
+/// Cells of a coarser and coarser grid: mean extinctions and edges.
+struct Level
+{
+  std::array<int, 3> size;
+  std::array<std::vector<double>, 3> widths; ///< of cells, along each axis
+  std::vector<double> sigmaT;                ///< means
+
+  std::size_t At(int x, int y, int z) const { return (std::size_t(z) * size[1] + y) * size[0] + x; }
+  double Volume(int x, int y, int z) const { return this->widths[0][x] * this->widths[1][y] * this->widths[2][z]; }
+};
+
+template <class Call>
+void ForCells(const std::array<int, 3>& size, const Call& call)
+{
+  for (int z = 0; z < size[2]; ++z)
+  {
+    for (int y = 0; y < size[1]; ++y)
+    {
+      for (int x = 0; x < size[0]; ++x)
+      {
+        call(x, y, z);
+      }
+    }
+  }
+}
+
+Level Finest(const Grid& grid, const CoarseCells& box, const std::vector<float>& sigmaT)
+{
+  Level level;
+  for (int axis = 0; axis < 3; ++axis)
+  {
+    level.size[axis] = box.cells.size[axis];
+    const int edge = 1 << box.halvings[axis];
+    for (int cell = 0; cell < level.size[axis]; ++cell)
+    {
+      level.widths[axis].push_back(grid.spacing[axis] * std::min(edge, grid.size[axis] - cell * edge));
+    }
+  }
+  level.sigmaT.assign(sigmaT.begin(), sigmaT.end());
+  const double voxel = grid.VoxelVolume();
+  ForCells(level.size, [&](int x, int y, int z) { level.sigmaT[level.At(x, y, z)] *= voxel / level.Volume(x, y, z); });
+  return level;
+}
+
+Level Coarser(const Level& fine)
+{
+  Level level;
+  for (int axis = 0; axis < 3; ++axis)
+  {
+    level.size[axis] = (fine.size[axis] + 1) / 2;
+    level.widths[axis].assign(level.size[axis], 0.0);
+    for (int cell = 0; cell < fine.size[axis]; ++cell)
+    {
+      level.widths[axis][cell / 2] += fine.widths[axis][cell];
+    }
+  }
+  level.sigmaT.assign(std::size_t(level.size[0]) * level.size[1] * level.size[2], 0.0);
+  ForCells(fine.size, [&](int x, int y, int z) {
+    level.sigmaT[level.At(x / 2, y / 2, z / 2)] += fine.sigmaT[fine.At(x, y, z)] * fine.Volume(x, y, z);
+  });
+  ForCells(level.size, [&](int x, int y, int z) { level.sigmaT[level.At(x, y, z)] /= level.Volume(x, y, z); });
+  return level;
+}
+
+/// With which light diffuses: a cell thinner than a mean free path sends it on into those around, and is as dense as
+/// the smallest box around it that is as thick. 1 / (3 sigma_t) of thin cells alone would let light pass as it never
+/// does over so short a way.
+std::vector<double> Diffusing(const Level& level)
+{
+  if (level.sigmaT.size() == 1)
+  {
+    return level.sigmaT;
+  }
+  std::vector<double> sigma = level.sigmaT;
+  std::vector<double> around; // made where it is needed
+  Level coarser;
+  ForCells(level.size, [&](int x, int y, int z) {
+    double& here = sigma[level.At(x, y, z)];
+    if (here * std::max({ level.widths[0][x], level.widths[1][y], level.widths[2][z] }) < MeanFreePath)
+    {
+      if (around.empty())
+      {
+        coarser = Coarser(level);
+        around = Diffusing(coarser);
+      }
+      here = around[coarser.At(x / 2, y / 2, z / 2)];
+    }
+  });
+  return sigma;
+}
+}
+
+CoarseMatrix FindCoarseMatrix(const Grid& grid, const CoarseCells& box, const std::vector<float>& sigmaT,
+  const std::vector<float>& sigmaS)
+{
+  const Level level = Finest(grid, box, sigmaT);
+  const std::vector<double> sigma = Diffusing(level);
+  const std::size_t count = sigma.size();
+  std::vector<double> conductance(3 * count, 0.0), loss(count, 0.0);
+  CoarseMatrix matrix;
+  ForCells(level.size, [&](int x, int y, int z) {
+    const std::array<int, 3> at = { x, y, z };
+    const std::size_t here = level.At(x, y, z);
+    loss[here] = std::max(0.0, double(sigmaT[here]) - sigmaS[here]) * grid.VoxelVolume();
+    for (int face = 0; face < 6; ++face)
+    {
+      const int axis = face / 2, last = level.size[axis] - 1;
+      const double width = level.widths[axis][at[axis]], area = level.Volume(x, y, z) / width;
+      const bool outermost = at[axis] == (face % 2 == 0 ? 0 : last);
+      if (outermost && !box.periodic[axis])
+      {
+        const double passes = area / (1.5 * sigma[here] * width + Marshak);
+        loss[here] += passes;
+        matrix.borders[face].push_back(passes);
+      }
+      else if (face % 2 == 0)
+      {
+        std::array<int, 3> low = at;
+        low[axis] = outermost ? last : at[axis] - 1;
+        const double between =
+          sigma[here] * width + sigma[level.At(low[0], low[1], low[2])] * level.widths[axis][low[axis]];
+        conductance[axis * count + here] = area / (1.5 * std::max(between, 2.0 * Floor));
+      }
+    }
+  });
+  matrix.conductance = InRows(box.cells, conductance, 3);
+  matrix.loss = InRows(box.cells, loss);
+  return matrix;
+}
+}
