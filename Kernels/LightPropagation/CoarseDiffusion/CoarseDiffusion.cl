@@ -51,14 +51,22 @@ inline float sharpen(float own, float other, float t, float s, float other_t, fl
   return (s * t + other_s * other_t) * (own - other) / (12.0f * fmax(both, 1e-37f) * (1.0f + tau * (0.183f + 0.0163f * tau)));
 }
 
+// At a face of the box constant voxels let out more than light that falls off towards it does: as much is given to the
+// outermost voxels, and counted as not let out.
+inline float sharpen_at_face(float own, float inner, float t, float s, float spacing)
+{
+  const float tau = spacing * t;
+  return s * (inner - own) / (24.0f * (1.0f + tau * (0.183f + 0.0163f * tau)));
+}
+
 // What is scattered of light that was gathered. A work-item a row of voxels.
 //   path        W length; may be negative
 //   source      W / (length^3 sr), added to
 //   per_volume  over 4 pi times the volume of a voxel
-//   tally       [row] of the source, and of its magnitude
+//   tally       [row] of the source, of its magnitude, and of what is not let out through each face of the box
 __kernel void scatter_row(CoarseCells box, const __global float* restrict path, const __global float* restrict sigma_t,
   const __global float* restrict sigma_s, __global float* restrict source, float per_volume, int adds,
-  __global float2* tally)
+  __global float8* tally)
 {
   const int* n = box.size;
   const int r = get_global_id(0), y = r % n[1], z = r / n[1];
@@ -67,7 +75,7 @@ __kernel void scatter_row(CoarseCells box, const __global float* restrict path, 
   source += box.first + i;
   sigma_s += box.first + i;
   sigma_t += box.firstT + i;
-  float sum = 0.0f, magnitude = 0.0f;
+  float sum = 0.0f, magnitude = 0.0f, kept[6] = { 0.0f };
   for (int x = 0; x < n[0]; ++x)
   {
     source[x] = (adds ? source[x] : 0.0f) + per_volume * sigma_s[x] * path[x];
@@ -99,13 +107,31 @@ __kernel void scatter_row(CoarseCells box, const __global float* restrict path, 
         per_volume * sharpen(path[x], path[other], sigma_t[x], sigma_s[x], sigma_t[other], sigma_s[other], box.spacing[1 + k / 2]);
     }
   }
+  for (int side = 0; side < 2 && !box.periodic[0] && n[0] > 1; ++side)
+  {
+    const int x = side ? n[0] - 1 : 0, inner = side ? n[0] - 2 : 1;
+    const float more = per_volume * sharpen_at_face(path[x], path[inner], sigma_t[x], sigma_s[x], box.spacing[0]);
+    source[x] += more;
+    kept[side] += more;
+  }
+  for (int k = 0; k < 4; ++k)
+  {
+    const int inner = beside[k ^ 1];
+    for (int x = 0; x < n[0] && beside[k] == 0 && inner != 0; ++x)
+    {
+      const float more =
+        per_volume * sharpen_at_face(path[x], path[x + inner], sigma_t[x], sigma_s[x], box.spacing[1 + k / 2]);
+      source[x] += more;
+      kept[2 + k] += more;
+    }
+  }
 #endif
   for (int x = 0; x < n[0]; ++x)
   {
     sum += source[x];
     magnitude += fabs(source[x]);
   }
-  tally[r] = (float2)(sum, magnitude);
+  tally[r] = (float8)(sum, magnitude, kept[0], kept[1], kept[2], kept[3], kept[4], kept[5]);
 }
 
 // Between the middles of which two cells a voxel lies along an axis, and how far from the first one; beyond the last
@@ -149,7 +175,7 @@ inline between find_between(const CoarseCells* box, int axis, int voxel)
 //   tally    [row] absorbed: of all that is added, of what the solution has
 __kernel void add_found(CoarseCells box, const __global exact* found, __global float* restrict path,
   __global float* restrict fluence, const __global float* restrict sigma_t, const __global float* restrict sigma_s,
-  float volume, __global float2* tally)
+  float volume, __global float8* tally)
 {
   const int* n = box.size;
   const int r = get_global_id(0);
@@ -200,14 +226,14 @@ __kernel void add_found(CoarseCells box, const __global exact* found, __global f
       }
     }
   }
-  tally[r] = (float2)(absorbed, of_found);
+  tally[r] = (float8)(absorbed, of_found, 0.0f, 0.0f, 0.0f, 0.0f, 0.0f, 0.0f);
 }
 
 // The same of a guess by voxels.
 //   guess  W length
 __kernel void add_guess(CoarseCells box, const __global float* restrict guess, __global float* restrict path,
   __global float* restrict fluence, const __global float* restrict sigma_t, const __global float* restrict sigma_s,
-  float volume, __global float2* tally)
+  float volume, __global float8* tally)
 {
   const int r = get_global_id(0);
   float absorbed = 0.0f, of_guess = 0.0f;
@@ -221,5 +247,5 @@ __kernel void add_guess(CoarseCells box, const __global float* restrict guess, _
     of_guess += sigma_a * guess[i];
     path[i] = -guess[i];
   }
-  tally[r] = (float2)(absorbed, of_guess);
+  tally[r] = (float8)(absorbed, of_guess, 0.0f, 0.0f, 0.0f, 0.0f, 0.0f, 0.0f);
 }

@@ -103,6 +103,11 @@ CoarseDiffusion::Powers CoarseDiffusion::ScatterOrder(
   powers.out = this->OutThroughFaces();
   powers.left =
     perSource * swept.first - absorbed.second - std::accumulate(powers.out.begin(), powers.out.end(), 0.0);
+  for (int face = 0; face < 6; ++face)
+  {
+    powers.kept[face] = perSource * (swept.byFace[face] + scattered.byFace[face]);
+    powers.out[face] -= perSource * swept.byFace[face];
+  }
   return powers;
 }
 
@@ -153,10 +158,14 @@ CoarseDiffusion::Sums CoarseDiffusion::RunByRows(cl::Kernel& kernel)
   this->TheDevice.Queue().enqueueNDRangeKernel(
     kernel, cl::NullRange, cl::NDRange(this->Tally.Size()), cl::NDRange(1));
   Sums sums;
-  for (const cl_float2& row : this->Tally.Read())
+  for (const cl_float8& row : this->Tally.Read())
   {
     sums.first += row.s[0];
     sums.second += row.s[1];
+    for (int face = 0; face < 6; ++face)
+    {
+      sums.byFace[face] += row.s[2 + face];
+    }
   }
   return sums;
 }

@@ -30,6 +30,8 @@ public:
     double scattered = 0.0; ///< of it, the next source
     double magnitude = 0.0; ///< the same without signs
     double left = 0.0; ///< neither absorbed nor out, by the solution
+    /// Of the next source, what is to be let out less through each face of the box than the next sweep will.
+    std::array<double, 6> kept = {};
     std::array<double, 6> out = {}; ///< leaves through each face of the box, by the solution
   };
 
@@ -44,7 +46,8 @@ public:
 private:
   struct Sums
   {
-    double first = 0.0, second = 0.0;
+    double first = 0.0, second = 0.0; ///< what a kernel says of its tally
+    std::array<double, 6> byFace = {};
   };
   cl::Kernel Kernel(const char* name) const;
   std::vector<float> SumOfVoxels(const Buffer<float>& values, int first);
@@ -63,7 +66,7 @@ private:
   bool Linear;
   MultigridSolver Solver;
   ExactValues Found; ///< W / length^2, by cells
-  Buffer<cl_float2> Tally;
+  Buffer<cl_float8> Tally;
   std::array<std::vector<double>, 6> Borders; ///< W out through each cell at a face of the box, over its fluence
 };
 }

@@ -346,6 +346,8 @@ void SourceIteration::ScatterByCells()
     this->Result.ledger.LeaveOver(c, powers.left + this->OnTheWay[c] + this->Stranded[c]);
     for (int face = 0; face < 6; ++face)
     {
+      this->Result.ledger.Escape(c, face, -this->KeptByCells[face][c]); // that the sweep just done let out
+      this->KeptByCells[face][c] = powers.kept[face];
       this->OutOfCells[face][c] = powers.out[face];
     }
     this->Scattered[c] = powers.scattered;
