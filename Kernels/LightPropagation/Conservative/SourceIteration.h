@@ -24,6 +24,7 @@ public:
   IterationResult Run(const Monitor& monitor) override;
 
 private:
+  std::vector<double> LeftByCell() const;
   void MakeSweeps();
   void MakeLitSweep();
   void MakeFilledSweep();

@@ -183,9 +183,18 @@ bool HasThickVoxels(const PropagationProblem& problem)
 /// nothing comes back through the box's faces, which cells would have to forecast.
 bool CanUseCells(const PropagationProblem& problem)
 {
+  if (problem.Scattering().Degree() > 0 || problem.IsSlab() || Reflects(problem.Shining()))
+  {
+    return false;
+  }
   const std::array<int, 3> halvings = CellHalvings(problem);
-  return problem.Scattering().Degree() == 0 && !problem.IsSlab() && !Reflects(problem.Shining()) &&
-    std::any_of(halvings.begin(), halvings.end(), [](int times) { return times > 0; });
+  bool thin = true, any = false;
+  for (int axis = 0; axis < 3; ++axis)
+  {
+    thin = thin && (halvings[axis] > 0 || problem.TheGrid().size[axis] == 1);
+    any = any || halvings[axis] > 0;
+  }
+  return thin && any;
 }
 
 const AcceleratedTime& AcceleratedTimeOf(const PropagationProblem& problem, const std::vector<Lines>& lines)

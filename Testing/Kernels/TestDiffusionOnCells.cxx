@@ -1,0 +1,207 @@
+#include "DeviceTest.h"
+#include "MediumScene.h"
+
+#include "LightPropagation/Problem/ScatteringOrders.h"
+
+#include <algorithm>
+#include <cmath>
+
+using namespace tyndall;
+
+namespace
+{
+double Difference(const std::vector<float>& a, const std::vector<float>& b)
+{
+  double difference = 0.0, sum = 0.0;
+  for (std::size_t i = 0; i < a.size(); ++i)
+  {
+    difference += std::pow(static_cast<double>(a[i]) - b[i], 2);
+    sum += static_cast<double>(b[i]) * b[i];
+  }
+  return std::sqrt(difference / sum);
+}
+
+/// A round cloud, off the middle, in a thin haze: edges of voxels differ, rows do not fill cells.
+/// @param divided  into so many along each axis, the same cloud
+Scene Cloud(double tau, double albedo, double haze, int divided = 1)
+{
+  const std::array<int, 3> n = { 19 * divided, 26 * divided, 13 * divided };
+  Scene scene(n);
+  scene.medium.grid.spacing = { 1.0 / divided, 0.75 / divided, 1.5 / divided };
+  std::size_t i = 0;
+  for (int w = 0; w < n[2]; ++w)
+  {
+    for (int v = 0; v < n[1]; ++v)
+    {
+      for (int u = 0; u < n[0]; ++u, ++i)
+      {
+        const int x = u / divided, y = v / divided, z = w / divided;
+        const double r = std::hypot(x - 8.0, 0.75 * (y - 14.0), 1.5 * (z - 6.0));
+        const double sigma_t = tau / 19.0 * (r < 7.0 ? 1.0 + 0.3 * std::sin(x + 2.0 * y) : haze);
+        scene.sigma_s[i] = static_cast<float>(albedo * sigma_t);
+        scene.sigma_a[i] = static_cast<float>((1.0 - albedo) * sigma_t);
+      }
+    }
+  }
+  scene.ShineAlong({ 0.4, 0.3, -0.8 }, 2.0);
+  scene.light.faces[1] = { 0.7, 0.7, 0.7 };
+  return scene;
+}
+
+/// Means over the voxels that were divided.
+std::vector<float> Means(const Scene& scene, const LightField& light, int divided)
+{
+  const std::array<int, 3>& n = scene.medium.grid.size;
+  std::vector<float> means(light.fluence.size() / (divided * divided * divided), 0.0f);
+  for (std::size_t i = 0; i < light.fluence.size(); ++i)
+  {
+    const std::size_t x = i % n[0], y = i / n[0] % n[1], z = i / n[0] / n[1];
+    means[(z / divided * (n[1] / divided) + y / divided) * (n[0] / divided) + x / divided] +=
+      light.fluence[i] / static_cast<float>(divided * divided * divided);
+  }
+  return means;
+}
+
+OrdersAdded How(Scene scene)
+{
+  scene.Attach();
+  return HowOrdersAreAdded(PropagationProblem(scene.medium, scene.light, scene.settings, {}));
+}
+
+Scene Plain(Scene scene)
+{
+  scene.settings.acceleration = PropagationAcceleration::None;
+  return scene;
+}
+}
+
+class DiffusionOnCells : public DeviceTest
+{
+};
+
+TEST_F(DiffusionOnCells, EndsAtTheLightOfManyOrders)
+{
+  for (const double haze : { 1.0, 0.01 })
+  {
+    for (const bool periodic : { false, true })
+    {
+      Scene scene = Cloud(4.5, 0.995, haze);
+      scene.emission.assign(scene.sigma_a.size(), 0.003f);
+      scene.settings.periodic = { false, periodic, false };
+      scene.settings.source = PropagationSource::Constant;
+      scene.settings.uncollidedDirections = 0;
+      scene.settings.tolerance = 1e-6;
+      scene.settings.netFlux = true;
+      ASSERT_EQ(How(scene), OrdersAdded::ByCells) << haze;
+      const LightField light = scene.Solve(this->GetDevice());
+      const LightField exact = Plain(scene).Solve(this->GetDevice());
+      EXPECT_LE(light.convergence.size(), 16u) << haze;
+      EXPECT_GT(exact.convergence.size(), 2 * light.convergence.size()) << haze;
+      EXPECT_LT(Difference(light.fluence, exact.fluence), 1e-5) << haze << periodic;
+      EXPECT_LT(Difference(light.netFlux, exact.netFlux), 1e-5) << haze << periodic;
+      if (!periodic) // else rays are on the way when the first order ends
+      {
+        EXPECT_LT(Difference(light.fluenceDirect, exact.fluenceDirect), 1e-6) << haze;
+      }
+      EXPECT_LT(light.balance.RelativeError(1), 1e-5) << haze << periodic;
+      for (int face = 0; face < 6; ++face)
+      {
+        EXPECT_NEAR(light.facePowerOut[face][0], exact.facePowerOut[face][0], 2e-5 * light.balance.escaped[0]) << face;
+      }
+    }
+  }
+}
+
+TEST_F(DiffusionOnCells, TellsItsErrorAndCountsItsPower)
+{
+  for (const double tau : { 2.0, 4.5 })
+  {
+    for (const double albedo : { 0.97, 1.0 })
+    {
+      Scene scene = Cloud(tau, albedo, 0.05);
+      scene.settings.source = PropagationSource::Linear;
+      ASSERT_EQ(How(scene), OrdersAdded::ByCells) << tau;
+      const LightField light = scene.Solve(this->GetDevice());
+      scene.settings.tolerance = 1e-7;
+      const LightField exact = scene.Solve(this->GetDevice());
+      const double error = Difference(light.fluence, exact.fluence);
+      EXPECT_LT(error, 1e-4) << tau << ' ' << albedo;
+      EXPECT_LT(error, 2.0 * light.convergence.back().residual) << tau << ' ' << albedo;
+      EXPECT_LE(light.convergence.size(), 12u) << tau << ' ' << albedo;
+      EXPECT_LT(light.balance.RelativeError(1), 1e-5) << tau << ' ' << albedo;
+      EXPECT_LT(std::abs(light.balance.leftOver[0]), 1e-4 * light.balance.entered[0]) << tau << ' ' << albedo;
+    }
+  }
+}
+
+/// Which is a solution of its own. Light that is right is that of voxels a third as wide.
+TEST_F(DiffusionOnCells, IsAsRightAsTheBalanceOfVoxels)
+{
+  Scene fine = Plain(Cloud(4.5, 0.995, 0.05, 3));
+  fine.settings.uncollidedDirections = 0;
+  fine.settings.tolerance = 1e-5;
+  const std::vector<float> right = Means(fine, fine.Solve(this->GetDevice()), 3);
+  Scene scene = Cloud(4.5, 0.995, 0.05);
+  scene.settings.uncollidedDirections = 0;
+  ASSERT_EQ(How(scene), OrdersAdded::ByCells);
+  const double byCells = Difference(scene.Solve(this->GetDevice()).fluence, right);
+  scene.settings.source = PropagationSource::Linear;
+  scene.light.faceAlbedo[0] = { 1e-9, 1e-9, 1e-9 }; // faces that reflect are not for cells
+  ASSERT_EQ(How(scene), OrdersAdded::ByBalance);
+  const double byBalance = Difference(scene.Solve(this->GetDevice()).fluence, right);
+  printf("cells %.5f, balance %.5f\n", byCells, byBalance);
+  EXPECT_LT(byCells, byBalance);
+}
+
+TEST_F(DiffusionOnCells, KeepsEvenLightEven)
+{
+  Scene scene = Cloud(4.5, 1.0, 0.3);
+  scene.light = {};
+  scene.ShineFromEverywhere(1.0);
+  scene.settings.tolerance = 1e-6;
+  ASSERT_EQ(How(scene), OrdersAdded::ByCells);
+  for (const float fluence : scene.Solve(this->GetDevice()).fluence)
+  {
+    ASSERT_NEAR(fluence / (4.0 * M_PI), 1.0, 2e-5);
+  }
+}
+
+TEST_F(DiffusionOnCells, TellsWhatLeavesThroughEachCellOfAFace)
+{
+  Scene scene = Cloud(4.5, 0.995, 0.05);
+  scene.settings.facePower = true;
+  ASSERT_EQ(How(scene), OrdersAdded::ByCells);
+  const LightField light = scene.Solve(this->GetDevice());
+  const Grid& grid = scene.medium.grid;
+  std::size_t cell = 0;
+  for (int face = 0; face < 6; ++face)
+  {
+    const int axis = face / 2;
+    const auto cells = grid.VoxelCount() / static_cast<std::size_t>(grid.size[axis]);
+    double power = 0.0;
+    for (std::size_t i = 0; i < cells; ++i, ++cell)
+    {
+      power += light.facePower[cell] * grid.VoxelVolume() / grid.spacing[axis];
+    }
+    EXPECT_NEAR(power / light.facePowerOut[face][0], 1.0, 1e-4) << face;
+  }
+}
+
+TEST_F(DiffusionOnCells, BeginsFromTheLastLight)
+{
+  Scene scene = Cloud(4.5, 0.999, 0.05);
+  KeptLight kept;
+  const LightField first = scene.Solve(this->GetDevice(), {}, &kept);
+  const LightField again = scene.Solve(this->GetDevice(), {}, &kept);
+  EXPECT_LT(again.convergence.size(), first.convergence.size());
+  EXPECT_LT(Difference(again.fluence, first.fluence), 1e-4);
+  for (float& sigma_s : scene.sigma_s)
+  {
+    sigma_s *= 1.05f;
+  }
+  const LightField warm = scene.Solve(this->GetDevice(), {}, &kept);
+  const LightField cold = scene.Solve(this->GetDevice());
+  EXPECT_LE(warm.convergence.size(), cold.convergence.size());
+  EXPECT_LT(Difference(warm.fluence, cold.fluence), 1e-4);
+  EXPECT_LT(warm.balance.RelativeError(1), 1e-5);
+}
