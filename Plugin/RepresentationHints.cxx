@@ -26,9 +26,11 @@ namespace
 constexpr double LogarithmicFrom = 100.0; ///< largest over smallest value
 constexpr double Decades = 1e-4;          ///< shown below the largest value where the smallest is 0
 
+/// Without a map of colours there is no bar of it.
 void ShowDirectColors(vtkSMProxy* representation)
 {
   vtkSMPropertyHelper(representation, "MapScalars").Set(0);
+  vtkSMPropertyHelper(representation, "LookupTable").SetNumberOfElements(0);
   representation->UpdateVTKObjects();
 }
 

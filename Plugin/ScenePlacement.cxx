@@ -54,10 +54,12 @@ vtkBoundingBox BoxOfScene(vtkSMSessionProxyManager* manager)
   return box;
 }
 
-double ToTwoDigits(double value)
+/// Numbers to read on a panel.
+/// @param digits  behind the first one of `size` that are kept
+double Rounded(double value, double size, int digits)
 {
-  const double unit = std::pow(10.0, std::floor(std::log10(value)) - 1.0);
-  return std::round(value / unit) * unit;
+  const double unit = std::pow(10.0, digits - std::floor(std::log10(size)));
+  return std::round(value * unit) / unit;
 }
 }
 
@@ -79,11 +81,10 @@ public:
     double centre[3];
     box.GetCenter(centre);
     const double length = box.GetDiagonalLength();
+    const double size = this->IsPlace ? length : this->Factor * std::pow(length, this->Exponent);
     for (unsigned int i = 0; i < values.GetNumberOfElements(); ++i)
     {
-      values.Set(i,
-        this->IsPlace ? centre[i] + this->Offset[i] * length
-                      : ToTwoDigits(this->Factor * std::pow(length, this->Exponent)));
+      values.Set(i, this->IsPlace ? Rounded(centre[i] + this->Offset[i] * length, size, 2) : Rounded(size, size, 1));
     }
     return 1;
   }
