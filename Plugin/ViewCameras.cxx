@@ -10,7 +10,6 @@
 #include "vtkSMProxyManager.h"
 #include "vtkSMProxySelectionModel.h"
 #include "vtkSMSessionProxyManager.h"
-#include "vtkSMTrace.h"
 #include "vtkSMViewProxy.h" // RemotingViews wants GLEW; of it only inline and virtual functions are called
 
 #include <algorithm>
@@ -68,8 +67,11 @@ vtkSMViewProxy* ViewFor(vtkSMProxy* source)
   {
     views.insert(views.begin(), vtkSMViewProxy::SafeDownCast(active->GetCurrentProxy()));
   }
-  const auto found = std::find_if(views.begin(), views.end(),
-    [&](vtkSMViewProxy* view) { return view && view->GetProperty("CameraPositionInfo") && !Shows(view, source); });
+  int elsewhere = 0;
+  CameraHint(source)->GetScalarAttribute("elsewhere", &elsewhere);
+  const auto found = std::find_if(views.begin(), views.end(), [&](vtkSMViewProxy* view) {
+    return view && view->GetProperty("CameraPositionInfo") && (elsewhere == 0 || !Shows(view, source));
+  });
   return found == views.end() ? nullptr : *found;
 }
 
@@ -82,7 +84,6 @@ std::vector<double> OfView(vtkSMProxy* view, const char* property)
 /// @return whether anything changed
 bool Take(vtkSMProxy* view, vtkSMProxy* source)
 {
-  SM_SCOPED_TRACE(PropertiesModified).arg("proxy", source);
   view->UpdatePropertyInformation();
   vtkPVXMLElement* const hint = CameraHint(source);
   bool changed = false;
