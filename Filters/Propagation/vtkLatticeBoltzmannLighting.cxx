@@ -5,7 +5,9 @@
 #include "Device/Device.h"
 #include "LatticeBoltzmann/LatticeBoltzmann.h"
 #include "LatticeBoltzmann/LatticeQuality.h"
+#include "Medium/Coarsening.h"
 #include "Photons/PhotonData.h"
+#include "Propagation/PreviewLight.h"
 
 #include "vtkDataObject.h"
 #include "vtkImageData.h"
@@ -45,6 +47,13 @@ tyndall::LatticeSettings SettingsOf(vtkLatticeBoltzmannLighting* filter)
   settings.tolerance = filter->GetTolerance();
   settings.periodic = { filter->GetPeriodicX(), filter->GetPeriodicY(), filter->GetPeriodicZ() };
   settings.netFlux = filter->GetNetFlux();
+  if (filter->GetPreview())
+  {
+    settings.directions = 6;
+    settings.tolerance = std::max(settings.tolerance, tyndall::PreviewTolerance);
+    settings.netFlux = false;
+    return settings;
+  }
   return tyndall::AtQuality(static_cast<tyndall::Quality>(filter->GetQuality()), settings);
 }
 
@@ -141,9 +150,23 @@ tyndall::LightField vtkLatticeBoltzmannLighting::Solve(vtkInformationVector** in
   const bool emits = input.Emits();
   const tyndall::IlluminationInput shining = this->ReadShining(inputs, emits);
   this->WarnWhereDark(shining.illumination, emits);
+  const auto solve = [&](const tyndall::Medium& inside, const tyndall::Illumination& illumination,
+                       const tyndall::Field& index) {
+    return tyndall::SolveLatticeBoltzmann(*tyndall::Device::Find(this->GetDevice()), inside, index, illumination,
+      SettingsOf(this), tyndall::MonitorOf(this));
+  };
   tyndall::LightField light = Timed(this->Seconds, [&] {
-    return tyndall::SolveLatticeBoltzmann(*tyndall::Device::Find(this->GetDevice()), input.medium, ior,
-      shining.illumination, SettingsOf(this), tyndall::MonitorOf(this));
+    if (!this->Preview)
+    {
+      return solve(input.medium, shining.illumination, ior);
+    }
+    const std::vector<float> coarseIndex =
+      ior.IsThere() ? tyndall::Coarsening(input.medium.grid).Average(ior.Values(), 1) : std::vector<float>();
+    const tyndall::Field index = { ior.IsThere() ? coarseIndex.data() : nullptr, 1 };
+    return tyndall::SolvePreview(input.medium, shining.illumination,
+      [&](const tyndall::Medium& inside, const tyndall::Illumination& illumination) {
+        return solve(inside, illumination, index);
+      });
   });
   TellOfDefaultSky(shining, light.leftOut);
   return light;
