@@ -57,6 +57,12 @@ tyndall::LatticeSettings SettingsOf(vtkLatticeBoltzmannLighting* filter)
   return tyndall::AtQuality(static_cast<tyndall::Quality>(filter->GetQuality()), settings);
 }
 
+/// A preview of other grids has their own voxels: the lattice's have to be cubes.
+bool HalvesToCubes(const tyndall::Grid& grid)
+{
+  return std::all_of(grid.size.begin(), grid.size.end(), [](int voxels) { return voxels % 2 == 0; });
+}
+
 /// Of all power, what is in none of the balance's accounts but the last, the worst channel.
 double LeftOverOf(const tyndall::LightField& light)
 {
@@ -156,7 +162,7 @@ tyndall::LightField vtkLatticeBoltzmannLighting::Solve(vtkInformationVector** in
       SettingsOf(this), tyndall::MonitorOf(this));
   };
   tyndall::LightField light = Timed(this->Seconds, [&] {
-    if (!this->Preview)
+    if (!this->Preview || !HalvesToCubes(input.medium.grid))
     {
       return solve(input.medium, shining.illumination, ior);
     }

@@ -54,7 +54,7 @@ public:
   ///@}
 
   ///@{
-  /// Whether to find the light on half as many voxels along each axis, along few directions and to a few percent, as a
+  /// Whether to find the light on half as many voxels along each axis, along few directions and to some percent, as a
   /// preview while lights are moved: `fluence` and `fluence_direct` alone, linear between the coarse voxels' middles.
   /// Quality, TargetError and WarmStart are not read then. Default off.
   vtkSetMacro(Preview, bool);
