@@ -4,6 +4,7 @@
 #include "vtkCollection.h"
 #include "vtkNew.h"
 #include "vtkPVXMLElement.h"
+#include "vtkSMIntVectorProperty.h"
 #include "vtkSMProperty.h"
 #include "vtkSMPropertyHelper.h"
 #include "vtkSMProxy.h"
@@ -75,10 +76,32 @@ vtkSMViewProxy* ViewFor(vtkSMProxy* source)
   return found == views.end() ? nullptr : *found;
 }
 
-/// Numbers of the view's camera as it is, however the mouse has moved it.
-std::vector<double> OfView(vtkSMProxy* view, const char* property)
+std::vector<double> Numbers(vtkSMProxy* proxy, const std::string& property)
 {
-  return vtkSMPropertyHelper(view, (std::string(property) + "Info").c_str(), true).GetDoubleArray();
+  const vtkSMPropertyHelper helper(proxy, property.c_str(), true);
+  std::vector<double> numbers(helper.GetNumberOfElements());
+  for (unsigned int i = 0; i < numbers.size(); ++i)
+  {
+    numbers[i] = helper.GetAsDouble(i);
+  }
+  return numbers;
+}
+
+void SetNumbers(vtkSMProxy* proxy, const std::string& property, const std::vector<double>& numbers)
+{
+  vtkSMPropertyHelper helper(proxy, property.c_str());
+  const bool isWhole = vtkSMIntVectorProperty::SafeDownCast(proxy->GetProperty(property.c_str()));
+  for (unsigned int i = 0; i < numbers.size(); ++i)
+  {
+    isWhole ? helper.Set(i, static_cast<int>(numbers[i])) : helper.Set(i, numbers[i]);
+  }
+}
+
+/// Numbers of the view's camera as it is, however the mouse has moved it; what that does not move has no "Info".
+std::vector<double> OfView(vtkSMProxy* view, const std::string& property)
+{
+  const bool moves = view->GetProperty((property + "Info").c_str());
+  return Numbers(view, moves ? property + "Info" : property);
 }
 
 /// @return whether anything changed
@@ -90,11 +113,11 @@ bool Take(vtkSMProxy* view, vtkSMProxy* source)
   for (unsigned int i = 0; i < hint->GetNumberOfNestedElements(); ++i)
   {
     vtkPVXMLElement* const taken = hint->GetNestedElement(i);
-    const std::vector<double> values = OfView(view, taken->GetAttributeOrEmpty("of"));
-    vtkSMPropertyHelper property(source, taken->GetAttributeOrEmpty("name"));
-    if (values.size() == property.GetNumberOfElements() && values != property.GetDoubleArray())
+    const std::string name = taken->GetAttributeOrEmpty("name");
+    const std::vector<double> numbers = OfView(view, taken->GetAttributeOrEmpty("of"));
+    if (!numbers.empty() && numbers != Numbers(source, name))
     {
-      property.Set(values.data(), static_cast<unsigned int>(values.size()));
+      SetNumbers(source, name, numbers);
       changed = true;
     }
   }

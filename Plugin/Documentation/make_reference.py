@@ -209,7 +209,7 @@ def all_proxies():
             for proxy in (each for each in group if each.tag != "Extension"):
                 all_by_name[proxy.get("name")] = proxy
                 proxy.set("group", group.get("name"))
-                if not group.get("name").startswith("internal") or proxy.tag == "RepresentationProxy":
+                if not group.get("name").startswith(("internal", "views")) or proxy.tag == "RepresentationProxy":
                     seen.append(proxy)
     return sorted(seen, key=lambda proxy: proxy.get("name").lower()), all_by_name
 

@@ -134,7 +134,7 @@ def faults_of_property(prop):
 
 def check(file, group, proxy):
     name = proxy.get("name")
-    internal = group.startswith("internal")
+    internal = group.startswith(("internal", "views"))
     if not internal:
         faults.extend("%s: %s" % (name, fault) for fault in faults_of_proxy(proxy))
         if proxy.get("label", name).replace(" ", "") != name:
