@@ -1,22 +1,25 @@
 #include "ScenePlacement.h"
 
 #include "vtkBoundingBox.h"
-#include "vtkClientServerInterpreter.h"
-#include "vtkClientServerInterpreterInitializer.h"
+#include "vtkCallbackCommand.h"
 #include "vtkCollection.h"
 #include "vtkNew.h"
-#include "vtkObjectFactory.h"
 #include "vtkPVDataInformation.h"
 #include "vtkPVXMLElement.h"
-#include "vtkSMDomain.h"
+#include "vtkSmartPointer.h"
 #include "vtkSMProperty.h"
 #include "vtkSMPropertyHelper.h"
+#include "vtkSMPropertyIterator.h"
 #include "vtkSMProxy.h"
+#include "vtkSMProxyManager.h"
 #include "vtkSMSessionProxyManager.h"
 #include "vtkSMSourceProxy.h"
 #include "vtkType.h"
 
 #include <cmath>
+#include <cstring>
+#include <utility>
+#include <vector>
 
 namespace
 {
@@ -61,54 +64,72 @@ double Rounded(double value, double size, int digits)
   const double unit = std::pow(10.0, digits - std::floor(std::log10(size)));
   return std::round(value * unit) / unit;
 }
+
+void Place(vtkSMProperty* property, vtkPVXMLElement* hint, const vtkBoundingBox& box)
+{
+  double centre[3], offset[3], factor = 1.0, exponent = 1.0;
+  box.GetCenter(centre);
+  const double length = box.GetDiagonalLength();
+  const bool isPlace = hint->GetVectorAttribute("offset", 3, offset) == 3;
+  hint->GetScalarAttribute("factor", &factor);
+  hint->GetScalarAttribute("exponent", &exponent);
+  const double size = factor * std::pow(length, exponent);
+  vtkSMPropertyHelper values(property);
+  for (unsigned int i = 0; i < values.GetNumberOfElements(); ++i)
+  {
+    values.Set(i, isPlace ? Rounded(centre[i] + offset[i] * length, length, 2) : Rounded(size, size, 1));
+  }
 }
 
-class vtkSMSceneDomain : public vtkSMDomain
+/// Properties of a proxy that ask for it and are as they were made, with their hints.
+std::vector<std::pair<vtkSMProperty*, vtkPVXMLElement*>> PropertiesToPlace(vtkSMProxy* proxy)
 {
-public:
-  static vtkSMSceneDomain* New();
-  vtkTypeMacro(vtkSMSceneDomain, vtkSMDomain);
-
-  int SetDefaultValues(vtkSMProperty* property, bool useUnchecked) override
+  std::vector<std::pair<vtkSMProperty*, vtkPVXMLElement*>> found;
+  auto properties = vtk::TakeSmartPointer(proxy->NewPropertyIterator());
+  for (properties->Begin(); !properties->IsAtEnd(); properties->Next())
   {
-    const vtkBoundingBox box = BoxOfScene(property->GetParent()->GetSessionProxyManager());
-    if (!box.IsValid())
+    vtkSMProperty* const property = properties->GetProperty();
+    vtkPVXMLElement* const hints = property ? property->GetHints() : nullptr;
+    vtkPVXMLElement* const hint = hints ? hints->FindNestedElementByName("ScenePlacement") : nullptr;
+    if (hint && property->IsValueDefault())
     {
-      return 0;
+      found.emplace_back(property, hint);
     }
-    vtkSMPropertyHelper values(property);
-    values.SetUseUnchecked(useUnchecked);
-    double centre[3];
-    box.GetCenter(centre);
-    const double length = box.GetDiagonalLength();
-    const double size = this->IsPlace ? length : this->Factor * std::pow(length, this->Exponent);
-    for (unsigned int i = 0; i < values.GetNumberOfElements(); ++i)
-    {
-      values.Set(i, this->IsPlace ? Rounded(centre[i] + this->Offset[i] * length, size, 2) : Rounded(size, size, 1));
-    }
-    return 1;
   }
+  return found;
+}
 
-protected:
-  int ReadXMLAttributes(vtkSMProperty* property, vtkPVXMLElement* element) override
-  {
-    this->IsPlace = element->GetVectorAttribute("offset", 3, this->Offset) == 3;
-    element->GetScalarAttribute("factor", &this->Factor);
-    element->GetScalarAttribute("exponent", &this->Exponent);
-    return this->Superclass::ReadXMLAttributes(property, element);
-  }
-
-private:
-  bool IsPlace = false;
-  double Offset[3] = { 0.0, 0.0, 0.0 };
-  double Factor = 1.0;
-  double Exponent = 1.0;
-};
-
-vtkStandardNewMacro(vtkSMSceneDomain);
-
-void TeachScenePlacement()
+void Notice(vtkObject*, unsigned long, void*, void* data)
 {
-  vtkClientServerInterpreterInitializer::GetGlobalInterpreter()->AddNewInstanceFunction(
-    "vtkSMSceneDomain", [](void*) -> vtkObjectBase* { return vtkSMSceneDomain::New(); });
+  const auto* registered = static_cast<vtkSMProxyManager::RegisteredProxyInformation*>(data);
+  vtkSMProxy* const proxy = registered->Proxy;
+  if (registered->Type != vtkSMProxyManager::RegisteredProxyInformation::PROXY || !proxy ||
+    std::strcmp(registered->GroupName, "sources") != 0 || proxy->GetSessionProxyManager()->GetInLoadXMLState())
+  {
+    return;
+  }
+  const auto properties = PropertiesToPlace(proxy);
+  const vtkBoundingBox box = properties.empty() ? vtkBoundingBox() : BoxOfScene(proxy->GetSessionProxyManager());
+  if (box.IsValid())
+  {
+    for (const auto& [property, hint] : properties)
+    {
+      Place(property, hint, box);
+    }
+    proxy->UpdateVTKObjects();
+  }
+}
+}
+
+void FollowScenePlacement()
+{
+  static bool listening = false;
+  vtkSMProxyManager* const manager = vtkSMProxyManager::GetProxyManager();
+  if (!listening && manager)
+  {
+    vtkNew<vtkCallbackCommand> command;
+    command->SetCallback(Notice);
+    manager->AddObserver(vtkCommand::RegisterEvent, command);
+    listening = true;
+  }
 }

@@ -1,16 +1,17 @@
 #ifndef ScenePlacement_h
 #define ScenePlacement_h
 
-/// Teaches ParaView the domain <SceneDomain/>, by which a new source begins at a place and with a size that fit what is
-/// in the pipeline already: the box around all images with more than one voxel along each axis, of length L from corner
-/// to corner. Where there is none, the property has its default_values.
+/// Has new sources begin at a place and with a size that fit what is in the pipeline already: the box around all images
+/// with more than one voxel along each axis, of length L from corner to corner. Hints of properties ask for it:
 ///
-/// - <SceneDomain name="scene" offset="X Y Z"/>: a place, this many L away from the box's centre, to L / 100.
-/// - <SceneDomain name="scene" factor="F" exponent="E"/>: numbers that all are F L^E, to two digits; exponent is 1
-///   unless it is given.
+/// - <ScenePlacement offset="X Y Z"/>: a place, this many L away from the box's centre, to L / 100.
+/// - <ScenePlacement factor="F" exponent="E"/>: numbers that all are F L^E, to two digits; exponent is 1 unless it is
+///   given.
 ///
-/// As with ParaView's own domains, a value that a script gives when it makes the source stays.
-/// To be called when the plugin is loaded; serves windows and scripts.
-void TeachScenePlacement();
+/// A property that has another value than default_values when the source is registered keeps it, as do those of states.
+///
+/// To be called when the plugin is loaded; serves windows and scripts. A hint, not a domain: a script's client may know
+/// the proxies of a server without having the plugin's library, and would miss a domain of it.
+void FollowScenePlacement();
 
 #endif
