@@ -32,6 +32,56 @@ void ShowDirectColors(vtkSMProxy* representation)
   representation->UpdateVTKObjects();
 }
 
+/// Whether there is a representation with that map of colours, and none of them looks colours up in it.
+bool IsLookedUpByNone(vtkSMProxy* map)
+{
+  vtkNew<vtkCollection> representations;
+  map->GetSessionProxyManager()->GetProxies("representations", representations);
+  bool isThere = false;
+  for (int i = 0; i < representations->GetNumberOfItems(); ++i)
+  {
+    auto* const representation = vtkSMProxy::SafeDownCast(representations->GetItemAsObject(i));
+    if (representation && vtkSMPropertyHelper(representation, "LookupTable", true).GetAsProxy() == map)
+    {
+      isThere = true;
+      if (!representation->GetProperty("MapScalars") ||
+        vtkSMPropertyHelper(representation, "MapScalars").GetAsInt() != 0)
+      {
+        return false;
+      }
+    }
+  }
+  return isThere;
+}
+
+/// ParaView shows a bar beside whatever has scalars, of colours that are not there where they are not looked up.
+void HideUnusedBar(vtkSMProxy* bar)
+{
+  vtkSMPropertyHelper isVisible(bar, "Visibility", true);
+  vtkSMProxy* const map = vtkSMPropertyHelper(bar, "LookupTable", true).GetAsProxy();
+  if (isVisible.GetAsInt() != 0 && map && IsLookedUpByNone(map))
+  {
+    isVisible.Set(0);
+    bar->UpdateVTKObjects();
+  }
+}
+
+void HideBarAtChange(vtkObject* caller, unsigned long, void*, void* property)
+{
+  if (std::strcmp(static_cast<const char*>(property), "Visibility") == 0)
+  {
+    HideUnusedBar(vtkSMProxy::SafeDownCast(caller));
+  }
+}
+
+void WatchBar(vtkSMProxy* bar)
+{
+  static vtkNew<vtkCallbackCommand> hide;
+  hide->SetCallback(HideBarAtChange);
+  bar->AddObserver(vtkCommand::PropertyModifiedEvent, hide);
+  HideUnusedBar(bar);
+}
+
 /// What is shown: an output of a source.
 struct Shown
 {
@@ -161,8 +211,15 @@ void Notice(vtkObject*, unsigned long, void*, void* data)
 {
   const auto* registered = static_cast<vtkSMProxyManager::RegisteredProxyInformation*>(data);
   vtkSMProxy* const representation = registered->Proxy;
-  if (registered->Type != vtkSMProxyManager::RegisteredProxyInformation::PROXY || !representation ||
-    !representation->GetProperty("Input"))
+  if (registered->Type != vtkSMProxyManager::RegisteredProxyInformation::PROXY || !representation)
+  {
+    return;
+  }
+  if (std::strcmp(registered->GroupName, "scalar_bars") == 0)
+  {
+    WatchBar(representation);
+  }
+  if (!representation->GetProperty("Input"))
   {
     return;
   }

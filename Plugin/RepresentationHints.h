@@ -3,8 +3,8 @@
 
 /// Has new representations in views begin as the proxy that they show asks for in its hints. ParaView has no hints for:
 ///
-/// - <DirectColors/>: pictures are shown in their own colours. ParaView would look bytes of red, green and blue up in a
-///   map of colours.
+/// - <DirectColors port="P"/>: output P (every output where none is named) is shown in its own colours, without a bar.
+///   ParaView would look bytes of red, green and blue up in a map of colours.
 /// - <ColoredBy port="P" array="NAME"/>: of output P, cell array NAME is what is seen, where it is there, whatever the
 ///   input was coloured by. Where the array's map of colours is new and the array's largest value is a hundred times
 ///   its smallest or more, the map is logarithmic. What opens as Lit Volume, which uses no map, is coloured when it is

@@ -4,6 +4,7 @@
 #include "Common/VectorArray.h"
 #include "Medium/BoxFaces.h"
 
+#include "vtkCellArray.h"
 #include "vtkCellData.h"
 #include "vtkDoubleArray.h"
 #include "vtkFieldData.h"
@@ -11,9 +12,13 @@
 #include "vtkImageData.h"
 #include "vtkIntArray.h"
 #include "vtkNew.h"
+#include "vtkPointData.h"
+#include "vtkPoints.h"
+#include "vtkPolyData.h"
 #include "vtkSmartPointer.h"
 #include "vtkStringArray.h"
 #include "vtkTable.h"
+#include "vtkUnsignedCharArray.h"
 
 #include <algorithm>
 #include <utility>
@@ -51,6 +56,24 @@ std::vector<double> Channels(std::initializer_list<Rgb> rows, int channels)
     values.insert(values.end(), row.begin(), row.begin() + channels);
   }
   return values;
+}
+
+vtkNew<vtkDoubleArray> LightArray(const char* name, std::initializer_list<const char*> components, std::size_t tuples)
+{
+  vtkNew<vtkDoubleArray> array;
+  array->SetName(name);
+  array->SetNumberOfComponents(static_cast<int>(components.size()));
+  array->SetNumberOfTuples(static_cast<vtkIdType>(tuples));
+  int component = 0;
+  for (const char* componentName : components)
+  {
+    if (componentName[0] != '\0')
+    {
+      array->SetComponentName(component, componentName);
+    }
+    ++component;
+  }
+  return array;
 }
 
 /// An array of an image's cells, not added to it yet.
@@ -280,6 +303,38 @@ void WriteConvergence(const std::vector<ConvergenceRow>& rows, const std::vector
       saved->InsertNextValue(sweeps);
     }
     table->AddColumn(saved);
+  }
+}
+
+void WriteLights(const std::vector<Light>& lights, vtkPolyData* output)
+{
+  vtkNew<vtkPoints> points;
+  points->SetDataTypeToDouble();
+  vtkNew<vtkCellArray> vertices;
+  vtkNew<vtkUnsignedCharArray> type;
+  type->SetName("light_type");
+  type->SetNumberOfTuples(static_cast<vtkIdType>(lights.size()));
+  const auto direction = LightArray("direction", { "X", "Y", "Z" }, lights.size());
+  const auto power = LightArray("power", { "R", "G", "B" }, lights.size());
+  const auto size = LightArray("size", { "width", "height" }, lights.size());
+  const auto angle = LightArray("angle", { "" }, lights.size());
+
+  for (const Light& light : lights)
+  {
+    const vtkIdType id = points->InsertNextPoint(light.position.data());
+    vertices->InsertNextCell(1, &id);
+    type->SetValue(id, static_cast<unsigned char>(light.type));
+    direction->SetTuple(id, light.direction.data());
+    power->SetTuple(id, light.power.data());
+    size->SetTuple(id, light.size.data());
+    angle->SetValue(id, light.angle);
+  }
+
+  output->SetPoints(points);
+  output->SetVerts(vertices);
+  for (vtkDataArray* array : std::initializer_list<vtkDataArray*>{ type, direction, power, size, angle })
+  {
+    output->GetPointData()->AddArray(array);
   }
 }
 

@@ -1,6 +1,7 @@
 #pragma once
 
 #include "Light/LightField.h"
+#include "Lights/Lights.h"
 
 #include <array>
 #include <string>
@@ -8,6 +9,7 @@
 
 class vtkDataObject;
 class vtkImageData;
+class vtkPolyData;
 class vtkTable;
 
 /// The one place where filters write what flows between them: arrays, their names, shapes and units.
@@ -64,6 +66,9 @@ void WriteLight(LightField&& light, vtkImageData* output);
 /// One row an iteration: `iteration`, `seconds`, `residual`, `change`, `absorbed`, `escaped`, `left_over`, and
 /// `sweeps_saved` where light is kept (LightField.h).
 void WriteConvergence(const std::vector<ConvergenceRow>& rows, const std::vector<int>& sweepsSaved, vtkTable* table);
+
+/// A vertex a light, with the point arrays that vtkLightRig lists.
+void WriteLights(const std::vector<Light>& lights, vtkPolyData* output);
 
 /// Make the output the input's arrays, with field data of its own: a shallow copy alone would share that, so that what
 /// a filter adds would appear in its input, and vanish when that is made again.

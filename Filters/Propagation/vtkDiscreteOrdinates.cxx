@@ -6,6 +6,7 @@
 #include "DiscreteOrdinates/OrdinatesQuality.h"
 
 #include "Propagation/LastLight.h"
+#include "Propagation/PreviewLight.h"
 
 #include "vtkDataObject.h"
 #include "vtkImageData.h"
@@ -13,6 +14,7 @@
 #include "vtkInformationVector.h"
 #include "vtkObjectFactory.h"
 
+#include <algorithm>
 #include <utility>
 
 namespace
@@ -31,6 +33,15 @@ tyndall::OrdinatesSettings SettingsOf(
   settings.periodic = { filter->GetPeriodicX(), filter->GetPeriodicY(), filter->GetPeriodicZ() };
   settings.netFlux = filter->GetNetFlux();
   settings.leaveOut = filter->GetLeaveOut();
+  if (filter->GetPreview())
+  {
+    settings.directionsPerFace = std::min(settings.directionsPerFace, tyndall::PreviewDirections);
+    settings.spiralDirections = 0;
+    settings.terms = std::min(settings.terms, settings.directionsPerFace);
+    settings.tolerance = std::max(settings.tolerance, tyndall::PreviewTolerance);
+    settings.netFlux = false;
+    return settings;
+  }
   return tyndall::AtQuality(
     static_cast<tyndall::Quality>(filter->GetQuality()), settings, medium, tyndall::MemoryOf(device));
 }
@@ -64,8 +75,12 @@ int vtkDiscreteOrdinates::RequestData(vtkInformation*, vtkInformationVector** in
     this->WarnWhereDark(illumination, emits);
     const std::shared_ptr<tyndall::Device> device = tyndall::Device::Find(this->GetDevice());
     const tyndall::OrdinatesSettings settings = SettingsOf(this, input.medium, *device);
-    tyndall::LightField light = tyndall::SolveDiscreteOrdinates(
-      *device, input.medium, illumination, settings, tyndall::MonitorOf(this), this->Last->Where(this->WarmStart));
+    tyndall::KeptLight* const last = this->Last->Where(this->WarmStart && !this->Preview);
+    const tyndall::SolveIn solve = [&](const tyndall::Medium& inside, const tyndall::Illumination& shining) {
+      return tyndall::SolveDiscreteOrdinates(*device, inside, shining, settings, tyndall::MonitorOf(this), last);
+    };
+    tyndall::LightField light =
+      this->Preview ? tyndall::SolvePreview(input.medium, illumination, solve) : solve(input.medium, illumination);
     light.settingsUsed = tyndall::Words(settings);
     TellOfDefaultSky(shining, light.leftOut);
     this->Note(light);

@@ -5,7 +5,9 @@
 #include "Device/Device.h"
 #include "LatticeBoltzmann/LatticeBoltzmann.h"
 #include "LatticeBoltzmann/LatticeQuality.h"
+#include "Medium/Coarsening.h"
 #include "Photons/PhotonData.h"
+#include "Propagation/PreviewLight.h"
 
 #include "vtkDataObject.h"
 #include "vtkImageData.h"
@@ -45,7 +47,20 @@ tyndall::LatticeSettings SettingsOf(vtkLatticeBoltzmannLighting* filter)
   settings.tolerance = filter->GetTolerance();
   settings.periodic = { filter->GetPeriodicX(), filter->GetPeriodicY(), filter->GetPeriodicZ() };
   settings.netFlux = filter->GetNetFlux();
+  if (filter->GetPreview())
+  {
+    settings.directions = 6;
+    settings.tolerance = std::max(settings.tolerance, tyndall::PreviewTolerance);
+    settings.netFlux = false;
+    return settings;
+  }
   return tyndall::AtQuality(static_cast<tyndall::Quality>(filter->GetQuality()), settings);
+}
+
+/// A preview of other grids has their own voxels: the lattice's have to be cubes.
+bool HalvesToCubes(const tyndall::Grid& grid)
+{
+  return std::all_of(grid.size.begin(), grid.size.end(), [](int voxels) { return voxels % 2 == 0; });
 }
 
 /// Of all power, what is in none of the balance's accounts but the last, the worst channel.
@@ -141,9 +156,23 @@ tyndall::LightField vtkLatticeBoltzmannLighting::Solve(vtkInformationVector** in
   const bool emits = input.Emits();
   const tyndall::IlluminationInput shining = this->ReadShining(inputs, emits);
   this->WarnWhereDark(shining.illumination, emits);
+  const auto solve = [&](const tyndall::Medium& inside, const tyndall::Illumination& illumination,
+                       const tyndall::Field& index) {
+    return tyndall::SolveLatticeBoltzmann(*tyndall::Device::Find(this->GetDevice()), inside, index, illumination,
+      SettingsOf(this), tyndall::MonitorOf(this));
+  };
   tyndall::LightField light = Timed(this->Seconds, [&] {
-    return tyndall::SolveLatticeBoltzmann(*tyndall::Device::Find(this->GetDevice()), input.medium, ior,
-      shining.illumination, SettingsOf(this), tyndall::MonitorOf(this));
+    if (!this->Preview || !HalvesToCubes(input.medium.grid))
+    {
+      return solve(input.medium, shining.illumination, ior);
+    }
+    const std::vector<float> coarseIndex =
+      ior.IsThere() ? tyndall::Coarsening(input.medium.grid).Average(ior.Values(), 1) : std::vector<float>();
+    const tyndall::Field index = { ior.IsThere() ? coarseIndex.data() : nullptr, 1 };
+    return tyndall::SolvePreview(input.medium, shining.illumination,
+      [&](const tyndall::Medium& inside, const tyndall::Illumination& illumination) {
+        return solve(inside, illumination, index);
+      });
   });
   TellOfDefaultSky(shining, light.leftOut);
   return light;

@@ -11,6 +11,7 @@
 #include "LightPropagation/Published/SequentialPropagation.h"
 
 #include "Propagation/LastLight.h"
+#include "Propagation/PreviewLight.h"
 
 #include "vtkDataObject.h"
 #include "vtkImageData.h"
@@ -18,6 +19,7 @@
 #include "vtkInformationVector.h"
 #include "vtkObjectFactory.h"
 
+#include <algorithm>
 #include <memory>
 #include <string>
 #include <utility>
@@ -77,11 +79,26 @@ tyndall::LightField SolveToTarget(vtkLightPropagationMaps* filter, const tyndall
   return std::move(found.light);
 }
 
+tyndall::PropagationSettings OfPreview(tyndall::PropagationSettings settings)
+{
+  settings.directionsPerFace = std::min(settings.directionsPerFace, tyndall::PreviewDirections);
+  settings.uncollidedDirections = 0;
+  settings.adaptDirections = false;
+  settings.angularDegree = 0;
+  settings.storeMoments = false;
+  settings.emissionError = 0.0;
+  settings.storedDirections = 1;
+  settings.netFlux = false;
+  settings.tolerance = std::max(settings.tolerance, tyndall::PreviewTolerance);
+  return settings;
+}
+
 tyndall::LightField Solve(vtkLightPropagationMaps* filter, const tyndall::Medium& medium,
   const tyndall::Illumination& illumination, tyndall::KeptLight* last)
 {
-  const tyndall::PropagationSettings settings =
-    tyndall::AtQuality(static_cast<tyndall::Quality>(filter->GetQuality()), SettingsOf(filter), medium, illumination);
+  const tyndall::PropagationSettings settings = filter->GetPreview()
+    ? OfPreview(SettingsOf(filter))
+    : tyndall::AtQuality(static_cast<tyndall::Quality>(filter->GetQuality()), SettingsOf(filter), medium, illumination);
   const tyndall::Monitor monitor = tyndall::MonitorOf(filter);
   const bool published = filter->GetScheme() == vtkLightPropagationMaps::PUBLISHED;
   const bool sequential = published && filter->GetAlgorithm() == vtkLightPropagationMaps::SEQUENTIAL;
@@ -93,10 +110,14 @@ tyndall::LightField Solve(vtkLightPropagationMaps* filter, const tyndall::Medium
       : published     ? tyndall::SolveParallel(*device, inside, shining, how, watch, 0, kept)
                       : tyndall::SolveConservative(*device, inside, shining, how, watch, kept);
   };
-  tyndall::LightField light = filter->GetTargetError() > 0.0
-    ? SolveToTarget(filter, medium, illumination, monitor, solve)
-    : filter->GetEstimateError() ? tyndall::SolveWithErrorEstimate(medium, illumination, settings, monitor, solve)
-                                 : solve(medium, illumination, settings, monitor);
+  tyndall::LightField light = filter->GetPreview()
+    ? tyndall::SolvePreview(medium, illumination,
+        [&](const tyndall::Medium& inside, const tyndall::Illumination& shining) {
+          return solve(inside, shining, settings, monitor);
+        })
+    : filter->GetTargetError() > 0.0 ? SolveToTarget(filter, medium, illumination, monitor, solve)
+    : filter->GetEstimateError()     ? tyndall::SolveWithErrorEstimate(medium, illumination, settings, monitor, solve)
+                                     : solve(medium, illumination, settings, monitor);
   if (light.settingsUsed.empty())
   {
     light.settingsUsed = tyndall::Words(settings);

@@ -54,5 +54,6 @@ void vtkScatteringSolver::PrintSelf(ostream& os, vtkIndent indent)
 {
   this->Superclass::PrintSelf(os, indent);
   os << indent << "Quality: " << this->Quality << "\n";
+  os << indent << "Preview: " << this->Preview << "\n";
   os << indent << "SettingsUsed: " << this->SettingsUsed << "\n";
 }

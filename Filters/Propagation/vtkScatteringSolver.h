@@ -53,6 +53,15 @@ public:
   vtkGetMacro(Quality, int);
   ///@}
 
+  ///@{
+  /// Whether to find the light on half as many voxels along each axis, along few directions and to some percent, as a
+  /// preview while lights are moved: `fluence` and `fluence_direct` alone, linear between the coarse voxels' middles.
+  /// Quality, TargetError and WarmStart are not read then. Default off.
+  vtkSetMacro(Preview, bool);
+  vtkGetMacro(Preview, bool);
+  vtkBooleanMacro(Preview, bool);
+  ///@}
+
   /// "Name = value" of each property that Quality chooses, as the last update used it, one per line.
   vtkGetCharFromStdStringMacro(SettingsUsed);
 
@@ -75,6 +84,7 @@ protected:
   tyndall::IlluminationInput ReadShining(vtkInformationVector** inputs, bool emits);
 
   int Quality = USUAL;
+  bool Preview = false;
   std::string SettingsUsed;
 
 private:

@@ -1,18 +1,15 @@
 #include "vtkLightRig.h"
 
 #include "Common/LightTransportData.h"
+#include "Common/WholeImage.h"
 #include "Lights/Lights.h"
+#include "Scene/LightShapes.h"
 
-#include "vtkCellArray.h"
-#include "vtkDoubleArray.h"
 #include "vtkInformation.h"
+#include "vtkInformationVector.h"
 #include "vtkMath.h"
-#include "vtkNew.h"
 #include "vtkObjectFactory.h"
-#include "vtkPointData.h"
-#include "vtkPoints.h"
 #include "vtkPolyData.h"
-#include "vtkUnsignedCharArray.h"
 
 #include <array>
 #include <cmath>
@@ -23,6 +20,8 @@ namespace
 {
 using tyndall::Light;
 using tyndall::LightType;
+
+constexpr double BallSize = 0.02; ///< of a point light, in ShapeSize
 
 /// Unit vector, so that `direction` can be compared; a vector without length stays what it is.
 std::array<double, 3> Normalized(std::array<double, 3> direction)
@@ -42,24 +41,6 @@ Light SunLight(double elevation, double azimuth, const double power[3])
   return sun;
 }
 
-vtkNew<vtkDoubleArray> MakeArray(const char* name, std::initializer_list<const char*> components, std::size_t tuples)
-{
-  vtkNew<vtkDoubleArray> array;
-  array->SetName(name);
-  array->SetNumberOfComponents(static_cast<int>(components.size()));
-  array->SetNumberOfTuples(static_cast<vtkIdType>(tuples));
-  int component = 0;
-  for (const char* componentName : components)
-  {
-    if (componentName[0] != '\0')
-    {
-      array->SetComponentName(component, componentName);
-    }
-    ++component;
-  }
-  return array;
-}
-
 /// What defines a light, in the order of AddDirectionalLight, AddPointLight, ...
 struct NumbersOfLight
 {
@@ -74,38 +55,6 @@ constexpr NumbersOfLight NumbersOfLights[] = {
   { "spot", 10, "x, y, z, dx, dy, dz, red, green, blue, angle" },
   { "rectangle", 11, "x, y, z, dx, dy, dz, red, green, blue, width, height" },
 };
-
-void Pack(const std::vector<Light>& lights, vtkPolyData* output)
-{
-  vtkNew<vtkPoints> points;
-  points->SetDataTypeToDouble();
-  vtkNew<vtkCellArray> vertices;
-  vtkNew<vtkUnsignedCharArray> type;
-  type->SetName("light_type");
-  type->SetNumberOfTuples(static_cast<vtkIdType>(lights.size()));
-  const auto direction = MakeArray("direction", { "X", "Y", "Z" }, lights.size());
-  const auto power = MakeArray("power", { "R", "G", "B" }, lights.size());
-  const auto size = MakeArray("size", { "width", "height" }, lights.size());
-  const auto angle = MakeArray("angle", { "" }, lights.size());
-
-  for (const Light& light : lights)
-  {
-    const vtkIdType id = points->InsertNextPoint(light.position.data());
-    vertices->InsertNextCell(1, &id);
-    type->SetValue(id, static_cast<unsigned char>(light.type));
-    direction->SetTuple(id, light.direction.data());
-    power->SetTuple(id, light.power.data());
-    size->SetTuple(id, light.size.data());
-    angle->SetValue(id, light.angle);
-  }
-
-  output->SetPoints(points);
-  output->SetVerts(vertices);
-  for (vtkDataArray* array : std::initializer_list<vtkDataArray*>{ type, direction, power, size, angle })
-  {
-    output->GetPointData()->AddArray(array);
-  }
-}
 }
 
 struct vtkLightRig::AddedLights
@@ -157,7 +106,8 @@ vtkStandardNewMacro(vtkLightRig);
 vtkLightRig::vtkLightRig()
   : Added(new AddedLights)
 {
-  this->SetNumberOfInputPorts(0);
+  this->SetNumberOfInputPorts(1);
+  this->SetNumberOfOutputPorts(2);
 }
 
 vtkLightRig::~vtkLightRig() = default;
@@ -287,23 +237,67 @@ int vtkLightRig::GetNumberOfRectangleLights() const
   return static_cast<int>(this->Added->Rectangle.size());
 }
 
-int vtkLightRig::RequestData(vtkInformation*, vtkInformationVector**, vtkInformationVector* outputVector)
+int vtkLightRig::FillInputPortInformation(int, vtkInformation* information)
 {
-  return tyndall::Guarded(this, outputVector, [&] {
+  information->Set(vtkAlgorithm::INPUT_REQUIRED_DATA_TYPE(), "vtkPolyData");
+  information->Set(vtkAlgorithm::INPUT_IS_OPTIONAL(), 1);
+  information->Set(vtkAlgorithm::INPUT_IS_REPEATABLE(), 1);
+  return 1;
+}
+
+int vtkLightRig::RequestUpdateExtent(vtkInformation*, vtkInformationVector** inputs, vtkInformationVector*)
+{
+  tyndall::AskForAll(inputs[0]); // every rank has every light
+  return 1;
+}
+
+int vtkLightRig::RequestData(vtkInformation*, vtkInformationVector** inputs, vtkInformationVector* outputs)
+{
+  return tyndall::Guarded(this, outputs, [&] {
     this->Added->CheckNumbers();
-    tyndall::Illumination illumination;
+    std::vector<Light> lights;
     if (this->Sun)
     {
-      illumination.lights.push_back(SunLight(this->SunElevation, this->SunAzimuth, this->SunPower));
+      lights.push_back(SunLight(this->SunElevation, this->SunAzimuth, this->SunPower));
     }
     for (const auto* kind :
       { &this->Added->Directional, &this->Added->Point, &this->Added->Spot, &this->Added->Rectangle })
     {
-      illumination.lights.insert(illumination.lights.end(), kind->begin(), kind->end());
+      lights.insert(lights.end(), kind->begin(), kind->end());
     }
-    tyndall::Check(illumination);
-    Pack(illumination.lights, vtkPolyData::GetData(outputVector));
+    tyndall::Illumination own;
+    own.lights = lights;
+    tyndall::Check(own);
+    for (int i = 0; i < inputs[0]->GetNumberOfInformationObjects(); ++i)
+    {
+      const std::vector<Light> given = tyndall::ReadLights(vtkPolyData::GetData(inputs[0], i));
+      lights.insert(lights.end(), given.begin(), given.end());
+    }
+    tyndall::WriteLights(lights, vtkPolyData::GetData(outputs, 0));
+    this->DrawOwn(own.lights, vtkPolyData::GetData(outputs, 1));
   });
+}
+
+void vtkLightRig::DrawOwn(const std::vector<Light>& lights, vtkPolyData* shapes) const
+{
+  std::vector<tyndall::DrawnLight> drawn;
+  for (const Light& light : lights)
+  {
+    drawn.push_back({ light, this->ShapeSize });
+    if (light.type == LightType::Directional)
+    {
+      drawn.back().length *= 0.5;
+      for (int axis = 0; axis < 3; ++axis)
+      {
+        drawn.back().light.position[axis] = this->ShapeCenter[axis] - this->ShapeSize * light.direction[axis];
+      }
+    }
+    else if (light.type == LightType::Point)
+    {
+      drawn.back().length *= BallSize;
+    }
+  }
+  tyndall::DrawLights(drawn, shapes);
 }
 
 void vtkLightRig::PrintSelf(ostream& os, vtkIndent indent)
@@ -313,6 +307,9 @@ void vtkLightRig::PrintSelf(ostream& os, vtkIndent indent)
   os << indent << "SunElevation: " << this->SunElevation << "\n";
   os << indent << "SunAzimuth: " << this->SunAzimuth << "\n";
   os << indent << "SunPower: " << this->SunPower[0] << " " << this->SunPower[1] << " " << this->SunPower[2] << "\n";
+  os << indent << "ShapeCenter: " << this->ShapeCenter[0] << " " << this->ShapeCenter[1] << " " << this->ShapeCenter[2]
+     << "\n";
+  os << indent << "ShapeSize: " << this->ShapeSize << "\n";
   os << indent << "Directional lights: " << this->GetNumberOfDirectionalLights() << "\n";
   os << indent << "Point lights: " << this->GetNumberOfPointLights() << "\n";
   os << indent << "Spot lights: " << this->GetNumberOfSpotLights() << "\n";

@@ -6,12 +6,19 @@
 #include "vtkTyndallModule.h" // for export macro
 
 #include <memory>
+#include <vector>
+
+namespace tyndall
+{
+struct Light;
+}
 
 /**
  * @class vtkLightRig
  * @brief makes the lights of a scene, one vertex per light
  *
- * Output: vtkPolyData, one vertex at each light's position (directional lights: the origin), with the point arrays
+ * Input, optional and any number of them: further lights, as a rig or a vtkLightSource makes them.
+ * Output 0: vtkPolyData, one vertex at each light's position (directional lights: the origin), with the point arrays
  *
  * | array        | type       | meaning                                                                            |
  * |--------------|------------|------------------------------------------------------------------------------------|
@@ -22,13 +29,19 @@
  * | `angle`      | double     | full opening angle of a spot, degrees; else 0                                      |
  *
  * The lights come in this order: the sun, directional, point, spot and rectangle lights, each kind in the order in
- * which it was added. Untouched, the rig is one white sun of 1 W/length^2, halfway up.
+ * which it was added; then those of the inputs, one after the other. Untouched, the rig is one white sun of 1
+ * W/length^2, halfway up.
  *
  * A rectangle shines to one side, that of `direction`. Its first edge is horizontal (across z and `direction`; along x
  * where `direction` is vertical), its second one is across the first and `direction`.
  *
+ * Output 1: what the rig's own lights look like in a view (those of inputs are drawn by their sources): vtkPolyData of
+ * lines and polygons with point array `color` (bytes of red, green, blue).
+ *
  * A direction of length 0, an angle outside (0, 180], a size or power that is negative, or anything that is not finite,
- * is an error that names the light; the output is empty then.
+ * is an error that names the light; the outputs are empty then.
+ *
+ * @sa vtkSun vtkPointLight vtkSpotLight vtkRectangleLight
  */
 class TYNDALL_EXPORT vtkLightRig : public vtkPolyDataAlgorithm
 {
@@ -116,11 +129,23 @@ public:
   void AddRectangleLightNumber(double number);
   ///@}
 
+  ///@{
+  /// How output 1 draws: arrows of directional lights, and cones of spots, have their length by ShapeSize (default 1,
+  /// valid above 0); arrows point at ShapeCenter (default (0, 0, 0)). Light does not depend on it.
+  tyndallSetRangeMacro(ShapeSize, double, tyndall::AboveZero, tyndall::AnyHigh);
+  vtkGetMacro(ShapeSize, double);
+  tyndallSetRange3Macro(ShapeCenter, double, tyndall::AnyLow, tyndall::AnyHigh);
+  vtkGetVector3Macro(ShapeCenter, double);
+  ///@}
+
 protected:
   vtkLightRig();
   ~vtkLightRig() override;
 
-  int RequestData(vtkInformation* request, vtkInformationVector** input, vtkInformationVector* output) override;
+  int FillInputPortInformation(int port, vtkInformation* information) override;
+  int RequestUpdateExtent(
+    vtkInformation* request, vtkInformationVector** inputs, vtkInformationVector* outputs) override;
+  int RequestData(vtkInformation* request, vtkInformationVector** inputs, vtkInformationVector* outputs) override;
 
 private:
   vtkLightRig(const vtkLightRig&) = delete;
@@ -130,6 +155,10 @@ private:
   double SunElevation = 45.0;
   double SunAzimuth = 225.0;
   double SunPower[3] = { 1.0, 1.0, 1.0 };
+  double ShapeSize = 1.0;
+  double ShapeCenter[3] = { 0.0, 0.0, 0.0 };
+
+  void DrawOwn(const std::vector<tyndall::Light>& lights, vtkPolyData* shapes) const;
 
   struct AddedLights;
   std::unique_ptr<AddedLights> Added;

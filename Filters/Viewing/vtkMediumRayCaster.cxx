@@ -355,9 +355,15 @@ int vtkMediumRayCaster::RequestData(vtkInformation*, vtkInformationVector** inpu
     const double start = tyndall::ClockSeconds();
     tyndall::Picture picture = scene->caster->Render(CameraOf(this, scene->grid), tyndall::MonitorOf(this));
     const double seconds = tyndall::ClockSeconds() - start;
+    if (this->AutoExposure == EACH_PICTURE)
+    {
+      this->FirstExposure = 0.0;
+    }
     if (toneMapping.exposure == 0.0)
     {
-      toneMapping.exposure = tyndall::AutomaticExposure(picture.radiance);
+      toneMapping.exposure =
+        this->FirstExposure > 0.0 ? this->FirstExposure : tyndall::AutomaticExposure(picture.radiance);
+      this->FirstExposure = this->AutoExposure == FIRST_PICTURE ? toneMapping.exposure : 0.0;
     }
     const std::vector<float> opaque;
     auto color = tyndall::ToneMap(picture.radiance, this->ShowBackground ? opaque : picture.alpha, toneMapping);
@@ -415,6 +421,7 @@ void vtkMediumRayCaster::PrintSelf(ostream& os, vtkIndent indent)
   os << indent << "ShowBackground: " << this->ShowBackground << "\n";
   PrintNumbers(os, indent, "BackgroundColor", this->BackgroundColor, 3);
   os << indent << "Exposure: " << this->Exposure << "\n";
+  os << indent << "AutoExposure: " << this->AutoExposure << "\n";
   os << indent << "ToneCurve: " << (this->ToneCurve == LINEAR ? "linear" : "filmic") << "\n";
   os << indent << "SurfaceReflection: " << this->SurfaceReflection << "\n";
   os << indent << "SurfaceIndex: " << this->SurfaceIndex << "\n";

@@ -264,6 +264,19 @@ public:
   vtkGetMacro(Exposure, double);
   ///@}
 
+  enum AutoExposures
+  {
+    EACH_PICTURE = 0,
+    FIRST_PICTURE = 1
+  };
+
+  ///@{
+  /// What an Exposure of 0 is found from: EACH_PICTURE (default), or the FIRST_PICTURE after this was chosen, whose
+  /// exposure all later ones have, so that an animation does not flicker.
+  tyndallSetRangeMacro(AutoExposure, int, EACH_PICTURE, FIRST_PICTURE);
+  vtkGetMacro(AutoExposure, int);
+  ///@}
+
   ///@{
   /// How `color` follows radiance: LINEAR, or FILMIC (default).
   tyndallSetRangeMacro(ToneCurve, int, LINEAR, FILMIC);
@@ -326,6 +339,8 @@ private:
   bool ShowBackground;
   double BackgroundColor[3];
   double Exposure = 0.0;
+  int AutoExposure = EACH_PICTURE;
+  double FirstExposure = 0.0; ///< found from the first picture; 0: not yet
   int ToneCurve = FILMIC;
   int SurfaceReflection = NONE;
   double SurfaceIndex;

@@ -83,6 +83,8 @@ def component_labels(prop):
 
 
 def valid_values(prop):
+    if prop.tag == "Property":
+        return "a button; in Python `InvokeCommand(\"%s\")`" % prop.get("name")
     count = int(prop.get("number_of_elements", 1))
     several = "%d numbers, each " % count if count > 1 and prop.tag != "StringVectorProperty" else ""
     if prop.tag == "InputProperty":
@@ -176,7 +178,7 @@ def where(proxy):
             return "%s, for %s" % (verb, " and ".join("." + each for each in factory.get("extensions").split()))
     if proxy.tag == "RepresentationProxy":
         return "Representation, %s, of an image in the 3D view" % label
-    menu = "Filters" if proxy.find("InputProperty") is not None else "Sources"
+    menu = "Sources" if proxy.get("group") == "sources" else "Filters"
     return "%s, %s, %s" % (menu, proxy.find("Hints/ShowInMenu").get("category"), label)
 
 
@@ -206,7 +208,8 @@ def all_proxies():
         for group in ElementTree.parse(file).getroot().findall("ProxyGroup"):
             for proxy in (each for each in group if each.tag != "Extension"):
                 all_by_name[proxy.get("name")] = proxy
-                if not group.get("name").startswith("internal") or proxy.tag == "RepresentationProxy":
+                proxy.set("group", group.get("name"))
+                if not group.get("name").startswith(("internal", "views")) or proxy.tag == "RepresentationProxy":
                     seen.append(proxy)
     return sorted(seen, key=lambda proxy: proxy.get("name").lower()), all_by_name
 

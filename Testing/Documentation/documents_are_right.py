@@ -97,7 +97,7 @@ def faults_of_reference(root):
     sections = sections_of(root / "Plugin/Documentation/reference.md")
     for file in sorted((root / "Plugin/ServerManager").glob("*.xml")):
         for group in ElementTree.parse(file).getroot().findall("ProxyGroup"):
-            if group.get("name").startswith("internal"):
+            if group.get("name").startswith(("internal", "views")):
                 continue
             for proxy in (each for each in group if each.tag != "Extension"):
                 name = proxy.get("name")

@@ -29,11 +29,11 @@ def printed(filter_):
 
 faults, compared = [], 0
 for path in sorted(glob.glob(os.path.join(os.environ["TYNDALL_SOURCE"], "Plugin", "ServerManager", "*.xml"))):
-    for proxy in (p for p in ElementTree.parse(path).getroot().iter() if p.get("class") and p.get("name")):
-        group = "sources" if proxy.tag == "SourceProxy" and not proxy.findall("InputProperty") else "filters"
-        made = servermanager.ProxyManager().NewProxy(group, proxy.get("name"))
-        if made is None:  # readers and writers are in groups of their own
+    groups = ElementTree.parse(path).getroot().findall("ProxyGroup")
+    for group, proxy in ((g.get("name"), p) for g in groups for p in g if p.get("class") and p.get("name")):
+        if group not in ("sources", "filters"):  # readers, writers and representations
             continue
+        made = servermanager.ProxyManager().NewProxy(group, proxy.get("name"))
         made.UpdateVTKObjects()
         own = printed(made.GetClientSideObject().NewInstance())
         for prop in (p for p in proxy if p.tag in NUMBERS and not p.get("information_only")):

@@ -5,36 +5,12 @@
 import os
 import subprocess
 import sys
-import xml.etree.ElementTree as ElementTree
 
-folder = os.environ["TYNDALL_TEST_OUTPUT"]
+from saved_state import State, forget, values
+
 session = os.path.join(os.path.dirname(os.path.abspath(__file__)), "FirstApply.xml")
 
-
-class State:
-    """What ParaView saved."""
-
-    def __init__(self, name):
-        self.proxies = list(ElementTree.parse(os.path.join(folder, name)).iter("Proxy"))
-
-    def all(self, **attributes):
-        return [proxy for proxy in self.proxies if all(proxy.get(key) == value for key, value in attributes.items())]
-
-    def one(self, **attributes):
-        found = self.all(**attributes)
-        assert len(found) == 1, (attributes, found)
-        return found[0]
-
-
-def values(proxy, name):
-    """Numbers, texts or the proxies of a property."""
-    prop = next(each for each in proxy.findall("Property") if each.get("name") == name)
-    return [each.get("value") for each in prop if each.tag in ("Element", "Proxy")]
-
-
-for name in ("FirstApply.pvsm", "SecondApply.pvsm"):
-    if os.path.exists(os.path.join(folder, name)):
-        os.remove(os.path.join(folder, name))
+forget("FirstApply.pvsm", "SecondApply.pvsm")
 subprocess.run(sys.argv[1:] + ["--exit", "--test-script=" + session], check=True)
 
 first = State("FirstApply.pvsm")

@@ -17,4 +17,18 @@ with a_server.started(1, os.path.join(os.environ["TYNDALL_TEST_OUTPUT"], "LightR
     lights = servermanager.Fetch(rig)
     assert lights.GetPoint(1) == (1, 2, 3)
     assert servermanager.ActiveConnection.IsRemote()
+    Wavelet(WholeExtent=[0, 10, 0, 10, 0, 10]).UpdatePipeline()
+    assert list(Sun().FocalPoint) == [0, 0, 0], "the client does not have the plugin"
+    LoadPlugin(os.environ["TYNDALL_PLUGIN"], remote=False, ns=globals())
+    sun = Sun()
+    assert list(sun.FocalPoint) == [5, 5, 5], "it has, and the scene is the server's"
+    group = LightGroup(Input=[rig, sun])
+    group.UpdatePipeline()
+    assert servermanager.Fetch(group).GetNumberOfPoints() == 3
+    view = CreateRenderView()
+    view.CameraPosition = [1, 2, 30]
+    sun.InvokeCommand("TakeCamera")
+    assert list(sun.Position) == [1, 2, 30], list(sun.Position)
+    Show(OutputPort(sun, 1), view)
+    Render(view)
     assert server.poll() is None

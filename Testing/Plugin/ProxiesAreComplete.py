@@ -111,6 +111,8 @@ def faults_of_property(prop):
         if not is_internal(prop) and not (prop.get("panel_visibility") and prop.get("default_values") is not None):
             yield "a result that the panel does not show"
         return
+    if prop.tag == "Property":  # a button
+        return
     if prop.tag == "InputProperty":
         if prop.find("Hints/Optional") is not None and not prop.get("clean_command"):
             yield "it cannot be disconnected"
@@ -132,7 +134,7 @@ def faults_of_property(prop):
 
 def check(file, group, proxy):
     name = proxy.get("name")
-    internal = group.startswith("internal")
+    internal = group.startswith(("internal", "views"))
     if not internal:
         faults.extend("%s: %s" % (name, fault) for fault in faults_of_proxy(proxy))
         if proxy.get("label", name).replace(" ", "") != name:

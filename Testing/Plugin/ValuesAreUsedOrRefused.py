@@ -26,6 +26,7 @@ WIDER = {
     "Tolerance": "below above",  # above 0; of RefractionOctree see below
     "LPMPropagate.MapResolution": "above",  # to 16
     "StoredDirections": "above",
+    "SpotLight.Angle": "below",  # above 0
     "PhotonMarcher.StepSize": "above",  # to 1e4
     "CameraViewAngle": "below above",  # within (0, 180)
     "MediumRayCaster.StepSize": "below above",
@@ -50,6 +51,7 @@ WIDER = {
 }
 # The ends of what only says how a slider goes, or need something else set with them.
 AT_THE_END = {
+    "ShapeSize", "Size",  # above 0
     "PilotCount",  # a million photons
     "TableColor", "TableReflectance",  # both together are at most 1
     "TimeBudget",  # no time for a row
@@ -109,6 +111,7 @@ SCENES = {
     "DiscreteOrdinates": lambda: DiscreteOrdinates(Input=medium, Lights=LightRig(), Terms=4),
     "EnvironmentReader": lambda: EnvironmentReader(FileName=picture),
     "LatticeBoltzmannLighting": lambda: LatticeBoltzmannLighting(Input=medium, Lights=LightRig()),
+    "LightGroup": lambda: LightGroup(Input=[LightRig(), Sun()]),
     "LightRig": LightRig,
     "VDBReader": lambda: VDBReader(FileName=[stored]),
     "LPMPropagate": lambda: LPMPropagate(Input=medium, Lights=LightRig(), DirectionsPerFace=4),
@@ -120,6 +123,10 @@ SCENES = {
     "PhotonEmitter": lambda: PhotonEmitter(Input=medium, Lights=LightRig(), PhotonCount=200),
     "PhotonImportance": lambda: PhotonImportance(Input=medium, Lights=LightRig(), PilotCount=64, PilotDimensions=[4, 4, 4]),
     "PhotonMarcher": lambda: PhotonMarcher(Input=bends, Photons=photons(bends)),
+    "PointLight": PointLight,
+    "RectangleLight": RectangleLight,
+    "SpotLight": SpotLight,
+    "Sun": Sun,
     "PhotonReconstruction": lambda: PhotonReconstruction(Input=PhotonMarcher(
         Input=medium, Photons=photons(medium), PhotonCounts=1)),
     "RefractionOctree": lambda: RefractionOctree(Input=bends),
@@ -290,7 +297,7 @@ for group in trees:
     if group.get("name").startswith("internal"):
         internal.update({proxy.get("name"): proxy for proxy in group})
 for group in trees:
-    if not group.get("name").startswith("internal"):
+    if not group.get("name").startswith(("internal", "views")):
         for proxy in (each for each in group if each.tag != "Extension"):
             tried += check(proxy.get("name"), proxy)
 print("%d values tried" % tried)

@@ -5,7 +5,8 @@ from vtkmodules.vtkCommonDataModel import vtkImageData
 for name in ("vtkParticipatingMedium", "vtkLightRig", "vtkLightPropagationMaps", "vtkDiscreteOrdinates",
              "vtkLatticeBoltzmannLighting", "vtkMediumRayCaster", "vtkMeshVoxelizer", "vtkRefractionOctree",
              "vtkPhotonEmitter", "vtkPhotonMarcher", "vtkPhotonImportance", "vtkPhotonReconstruction", "vtkVDBReader",
-             "vtkVDBWriter", "vtkEnvironmentReader", "vtkSeparablePhaseFunction", "vtkSolverComparison"):
+             "vtkVDBWriter", "vtkEnvironmentReader", "vtkSeparablePhaseFunction", "vtkSolverComparison", "vtkSun",
+             "vtkPointLight", "vtkSpotLight", "vtkRectangleLight"):
     made = getattr(tyndall, name)()
     assert made.GetClassName() == name, made.GetClassName()
 

@@ -1,0 +1,41 @@
+#ifndef vtkPointLight_h
+#define vtkPointLight_h
+
+#include "vtkLightSource.h"
+#include "vtkTyndallModule.h" // for export macro
+
+/**
+ * @class vtkPointLight
+ * @brief a point that shines evenly in all directions
+ *
+ * In a view it is a ball.
+ *
+ * @sa vtkLightSource vtkLightRig
+ */
+class TYNDALL_EXPORT vtkPointLight : public vtkLightSource
+{
+public:
+  static vtkPointLight* New();
+  vtkTypeMacro(vtkPointLight, vtkLightSource);
+  void PrintSelf(ostream& os, vtkIndent indent) override;
+
+  ///@{
+  /// Radius of the ball, length. The light does not depend on it. Default 0.02, valid above 0.
+  tyndallSetRangeMacro(ShapeSize, double, tyndall::AboveZero, tyndall::AnyHigh);
+  vtkGetMacro(ShapeSize, double);
+  ///@}
+
+protected:
+  vtkPointLight();
+  ~vtkPointLight() override;
+
+  tyndall::DrawnLight MakeLight() const override;
+
+  double ShapeSize = 0.02;
+
+private:
+  vtkPointLight(const vtkPointLight&) = delete;
+  void operator=(const vtkPointLight&) = delete;
+};
+
+#endif

@@ -1,0 +1,33 @@
+#ifndef vtkSun_h
+#define vtkSun_h
+
+#include "vtkAimedLight.h"
+#include "vtkTyndallModule.h" // for export macro
+
+/**
+ * @class vtkSun
+ * @brief parallel light through all of space, in the direction from its position to its focal point
+ *
+ * Untouched it shines as the sun of an untouched vtkLightRig, to 1e-5. In a view it is an arrow from its position
+ * halfway to the focal point.
+ *
+ * @sa vtkLightSource vtkLightRig
+ */
+class TYNDALL_EXPORT vtkSun : public vtkAimedLight
+{
+public:
+  static vtkSun* New();
+  vtkTypeMacro(vtkSun, vtkAimedLight);
+
+protected:
+  vtkSun();
+  ~vtkSun() override;
+
+  tyndall::DrawnLight MakeLight() const override;
+
+private:
+  vtkSun(const vtkSun&) = delete;
+  void operator=(const vtkSun&) = delete;
+};
+
+#endif

@@ -1,0 +1,218 @@
+#include "ViewCameras.h"
+
+#include "vtkCallbackCommand.h"
+#include "vtkCollection.h"
+#include "vtkNew.h"
+#include "vtkPVXMLElement.h"
+#include "vtkSMIntVectorProperty.h"
+#include "vtkSMProperty.h"
+#include "vtkSMPropertyHelper.h"
+#include "vtkSMProxy.h"
+#include "vtkSMProxyManager.h"
+#include "vtkSMProxySelectionModel.h"
+#include "vtkSMSessionProxyManager.h"
+#include "vtkSMViewProxy.h" // RemotingViews wants GLEW; of it only inline and virtual functions are called
+
+#include <algorithm>
+#include <cstring>
+#include <string>
+#include <vector>
+
+namespace
+{
+using Information = vtkSMProxyManager::RegisteredProxyInformation;
+
+vtkPVXMLElement* CameraHint(vtkSMProxy* source)
+{
+  vtkPVXMLElement* const hints = source->GetHints();
+  return hints ? hints->FindNestedElementByName("ViewCamera") : nullptr;
+}
+
+/// Whether the view shows an output of the source.
+bool Shows(vtkSMProxy* view, vtkSMProxy* source)
+{
+  const vtkSMPropertyHelper representations(view, "Representations", true);
+  for (unsigned int i = 0; i < representations.GetNumberOfElements(); ++i)
+  {
+    vtkSMProxy* const shown = representations.GetAsProxy(i);
+    if (shown && vtkSMPropertyHelper(shown, "Input", true).GetAsProxy() == source &&
+      vtkSMPropertyHelper(shown, "Visibility", true).GetAsInt() != 0)
+    {
+      return true;
+    }
+  }
+  return false;
+}
+
+std::vector<vtkSMViewProxy*> Views(vtkSMSessionProxyManager* manager)
+{
+  vtkNew<vtkCollection> found;
+  manager->GetProxies("views", found);
+  std::vector<vtkSMViewProxy*> views;
+  for (int i = 0; i < found->GetNumberOfItems(); ++i)
+  {
+    if (auto* const view = vtkSMViewProxy::SafeDownCast(found->GetItemAsObject(i)))
+    {
+      views.push_back(view);
+    }
+  }
+  return views;
+}
+
+/// The view whose camera the source takes, or null.
+vtkSMViewProxy* ViewFor(vtkSMProxy* source)
+{
+  vtkSMSessionProxyManager* const manager = source->GetSessionProxyManager();
+  std::vector<vtkSMViewProxy*> views = Views(manager);
+  if (vtkSMProxySelectionModel* const active = manager->GetSelectionModel("ActiveView"))
+  {
+    views.insert(views.begin(), vtkSMViewProxy::SafeDownCast(active->GetCurrentProxy()));
+  }
+  int elsewhere = 0;
+  CameraHint(source)->GetScalarAttribute("elsewhere", &elsewhere);
+  const auto found = std::find_if(views.begin(), views.end(), [&](vtkSMViewProxy* view) {
+    return view && view->GetProperty("CameraPositionInfo") && (elsewhere == 0 || !Shows(view, source));
+  });
+  return found == views.end() ? nullptr : *found;
+}
+
+std::vector<double> Numbers(vtkSMProxy* proxy, const std::string& property)
+{
+  const vtkSMPropertyHelper helper(proxy, property.c_str(), true);
+  std::vector<double> numbers(helper.GetNumberOfElements());
+  for (unsigned int i = 0; i < numbers.size(); ++i)
+  {
+    numbers[i] = helper.GetAsDouble(i);
+  }
+  return numbers;
+}
+
+void SetNumbers(vtkSMProxy* proxy, const std::string& property, const std::vector<double>& numbers)
+{
+  vtkSMPropertyHelper helper(proxy, property.c_str());
+  const bool isWhole = vtkSMIntVectorProperty::SafeDownCast(proxy->GetProperty(property.c_str()));
+  for (unsigned int i = 0; i < numbers.size(); ++i)
+  {
+    isWhole ? helper.Set(i, static_cast<int>(numbers[i])) : helper.Set(i, numbers[i]);
+  }
+}
+
+/// Numbers of the view's camera as it is, however the mouse has moved it; what that does not move has no "Info".
+std::vector<double> OfView(vtkSMProxy* view, const std::string& property)
+{
+  const bool moves = view->GetProperty((property + "Info").c_str());
+  return Numbers(view, moves ? property + "Info" : property);
+}
+
+/// @return whether anything changed
+bool Take(vtkSMProxy* view, vtkSMProxy* source)
+{
+  view->UpdatePropertyInformation();
+  vtkPVXMLElement* const hint = CameraHint(source);
+  bool changed = false;
+  for (unsigned int i = 0; i < hint->GetNumberOfNestedElements(); ++i)
+  {
+    vtkPVXMLElement* const taken = hint->GetNestedElement(i);
+    const std::string name = taken->GetAttributeOrEmpty("name");
+    const std::vector<double> numbers = OfView(view, taken->GetAttributeOrEmpty("of"));
+    if (!numbers.empty() && numbers != Numbers(source, name))
+    {
+      SetNumbers(source, name, numbers);
+      changed = true;
+    }
+  }
+  source->UpdateVTKObjects();
+  return changed;
+}
+
+void DrawAgain(vtkSMProxy* source)
+{
+  for (vtkSMViewProxy* const view : Views(source->GetSessionProxyManager()))
+  {
+    if (Shows(view, source))
+    {
+      view->StillRender();
+    }
+  }
+}
+
+void Press(vtkObject* caller, unsigned long, void*, void* property)
+{
+  auto* const source = vtkSMProxy::SafeDownCast(caller);
+  const char* const button = CameraHint(source)->GetAttributeOrEmpty("button");
+  if (property && std::strcmp(static_cast<const char*>(property), button) == 0)
+  {
+    if (vtkSMViewProxy* const view = ViewFor(source))
+    {
+      Take(view, source);
+    }
+  }
+}
+
+void Follow(vtkObject* caller, unsigned long, void*, void* isInteractive)
+{
+  static bool drawing = false; // what shows a source is drawn by its change
+  auto* const view = vtkSMViewProxy::SafeDownCast(caller);
+  if (drawing || (isInteractive && *static_cast<int*>(isInteractive) != 0))
+  {
+    return;
+  }
+  drawing = true;
+  vtkNew<vtkCollection> sources;
+  view->GetSessionProxyManager()->GetProxies("sources", sources);
+  for (int i = 0; i < sources->GetNumberOfItems(); ++i)
+  {
+    auto* const source = vtkSMProxy::SafeDownCast(sources->GetItemAsObject(i));
+    vtkPVXMLElement* const hint = CameraHint(source);
+    const char* const follow = hint ? hint->GetAttributeOrEmpty("follow") : "";
+    if (vtkSMPropertyHelper(source, follow, true).GetAsInt() != 0 && ViewFor(source) == view && Take(view, source))
+    {
+      DrawAgain(source);
+    }
+  }
+  drawing = false;
+}
+
+vtkCallbackCommand* CommandOf(void (*function)(vtkObject*, unsigned long, void*, void*))
+{
+  auto* const command = vtkCallbackCommand::New();
+  command->SetCallback(function);
+  return command;
+}
+
+void Notice(vtkObject*, unsigned long, void*, void* data)
+{
+  static vtkCallbackCommand* const press = CommandOf(Press);
+  static vtkCallbackCommand* const follow = CommandOf(Follow);
+  const auto* registered = static_cast<Information*>(data);
+  vtkSMProxy* const proxy = registered->Proxy;
+  if (registered->Type != Information::PROXY || !proxy)
+  {
+    return;
+  }
+  if (CameraHint(proxy) && !proxy->HasObserver(vtkCommand::UpdatePropertyEvent, press))
+  {
+    proxy->AddObserver(vtkCommand::UpdatePropertyEvent, press);
+  }
+  for (vtkSMViewProxy* const view : Views(proxy->GetSessionProxyManager())) // some are older than the plugin
+  {
+    if (!view->HasObserver(vtkCommand::EndEvent, follow))
+    {
+      view->AddObserver(vtkCommand::EndEvent, follow);
+    }
+  }
+}
+}
+
+void FollowViewCameras()
+{
+  static bool listening = false;
+  vtkSMProxyManager* const manager = vtkSMProxyManager::GetProxyManager();
+  if (!listening && manager)
+  {
+    vtkNew<vtkCallbackCommand> command;
+    command->SetCallback(Notice);
+    manager->AddObserver(vtkCommand::RegisterEvent, command);
+    listening = true;
+  }
+}

@@ -1,0 +1,85 @@
+#include "TestSupport.h"
+
+#include "vtkCellData.h"
+#include "vtkDataArray.h"
+#include "vtkDiscreteOrdinates.h"
+#include "vtkDoubleArray.h"
+#include "vtkImageData.h"
+#include "vtkLatticeBoltzmannLighting.h"
+#include "vtkLightPropagationMaps.h"
+
+#include <cmath>
+#include <string>
+
+namespace
+{
+/// Fog that thickens along x, of these numbers of voxels.
+void FillWithFog(vtkImageData* medium, const int voxels[3])
+{
+  medium->SetDimensions(voxels[0] + 1, voxels[1] + 1, voxels[2] + 1);
+  for (const char* name : { "sigma_a", "sigma_s" })
+  {
+    vtkNew<vtkDoubleArray> array;
+    array->SetName(name);
+    array->SetNumberOfTuples(medium->GetNumberOfCells());
+    for (vtkIdType i = 0; i < medium->GetNumberOfCells(); ++i)
+    {
+      array->SetValue(i, (name[6] == 'a' ? 0.02 : 0.2) * (0.5 + static_cast<double>(i % voxels[0]) / voxels[0]));
+    }
+    medium->GetCellData()->AddArray(array);
+  }
+}
+
+/// @return false where the solver found nothing
+template <class Solver>
+bool IsLikeTheLight(const char* name, const int voxels[3], test::Claims& claims)
+{
+  vtkNew<vtkImageData> medium;
+  FillWithFog(medium, voxels);
+  vtkNew<Solver> solver;
+  test::Errors errors(solver);
+  solver->SetInputDataObject(medium);
+  vtkNew<vtkImageData> found[2];
+  for (int preview = 0; preview < 2; ++preview)
+  {
+    solver->SetPreview(preview != 0);
+    solver->Update();
+    found[preview]->ShallowCopy(solver->GetOutput());
+  }
+  vtkDataArray* const light = found[0]->GetCellData()->GetArray("fluence");
+  vtkDataArray* const preview = found[1]->GetCellData()->GetArray("fluence");
+  if (!light || !preview)
+  {
+    return false;
+  }
+  double difference = 0.0, all = 0.0;
+  for (vtkIdType i = 0; i < light->GetNumberOfTuples(); ++i)
+  {
+    difference += std::pow(light->GetComponent(i, 0) - preview->GetComponent(i, 0), 2);
+    all += std::pow(light->GetComponent(i, 0), 2);
+  }
+  const std::string who = name;
+  claims.That(preview->GetNumberOfTuples() == medium->GetNumberOfCells(), who + ": a value a voxel");
+  claims.That(difference > 0.0, who + ": a preview is not the light itself");
+  claims.Near(std::sqrt(difference / all), 0.0, 0.12, who + ": relative difference to the light");
+  const bool isHalved = std::string(solver->GetLeftOut()).find("a preview") != std::string::npos;
+  claims.That(
+    isHalved != (who == "the lattice" && voxels[0] % 2 == 1), who + " says where it is one of half the voxels");
+  claims.That(errors.None(), who + " has no errors");
+  return true;
+}
+}
+
+int TestPreview(int, char*[])
+{
+  test::Claims claims;
+  bool found = true;
+  constexpr int grids[][3] = { { 16, 12, 14 }, { 17, 12, 15 }, { 17, 12, 1 } };
+  for (const int* const voxels : grids)
+  {
+    found = IsLikeTheLight<vtkLightPropagationMaps>("light propagation maps", voxels, claims) && found;
+    found = IsLikeTheLight<vtkDiscreteOrdinates>("discrete ordinates", voxels, claims) && found;
+    found = IsLikeTheLight<vtkLatticeBoltzmannLighting>("the lattice", voxels, claims) && found;
+  }
+  return found ? claims.Result() : test::SkippedWithoutDevice("a solver gave no fluence");
+}
