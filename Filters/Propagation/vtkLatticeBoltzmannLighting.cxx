@@ -6,6 +6,7 @@
 #include "LatticeBoltzmann/LatticeBoltzmann.h"
 #include "LatticeBoltzmann/LatticeQuality.h"
 #include "Photons/PhotonData.h"
+#include "Propagation/LastOutputs.h"
 
 #include "vtkDataObject.h"
 #include "vtkImageData.h"
@@ -152,6 +153,10 @@ tyndall::LightField vtkLatticeBoltzmannLighting::Solve(vtkInformationVector** in
 int vtkLatticeBoltzmannLighting::RequestData(
   vtkInformation*, vtkInformationVector** inputs, vtkInformationVector* outputs)
 {
+  if (this->Solved->GiveBack(this, inputs, outputs))
+  {
+    return 1;
+  }
   this->Note({});
   this->Seconds = 0.0;
   return tyndall::Guarded(this, outputs, [&] {
@@ -159,6 +164,7 @@ int vtkLatticeBoltzmannLighting::RequestData(
     light.settingsUsed = tyndall::Words(SettingsOf(this));
     this->Note(light);
     this->WriteSolved(vtkImageData::GetData(inputs[MEDIUM]), std::move(light), outputs);
+    this->Solved->Keep(outputs);
   });
 }
 

@@ -11,6 +11,7 @@
 #include "LightPropagation/Published/SequentialPropagation.h"
 
 #include "Propagation/LastLight.h"
+#include "Propagation/LastOutputs.h"
 
 #include "vtkDataObject.h"
 #include "vtkImageData.h"
@@ -128,6 +129,10 @@ vtkLightPropagationMaps::~vtkLightPropagationMaps() = default;
 
 int vtkLightPropagationMaps::RequestData(vtkInformation*, vtkInformationVector** inputs, vtkInformationVector* outputs)
 {
+  if (this->Solved->GiveBack(this, inputs, outputs))
+  {
+    return 1;
+  }
   this->Note({});
   return tyndall::Guarded(this, outputs, [&] {
     vtkImageData* image = vtkImageData::GetData(inputs[MEDIUM]);
@@ -142,6 +147,7 @@ int vtkLightPropagationMaps::RequestData(vtkInformation*, vtkInformationVector**
     TellOfDefaultSky(shining, light.leftOut);
     this->Note(light);
     this->WriteSolved(image, std::move(light), outputs);
+    this->Solved->Keep(outputs);
   });
 }
 

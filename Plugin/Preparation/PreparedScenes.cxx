@@ -22,19 +22,20 @@ struct Scene
 {
   int voxels; ///< an edge; sweeps are compiled for rows of up to 32, 64, 96, ... voxels
   int preset;
+  double around; ///< density at the faces
 };
 
 const Scene Scenes[] = {
-  { 64, vtkParticipatingMedium::CUSTOM },
-  { 32, vtkParticipatingMedium::CUSTOM },
-  { 64, vtkParticipatingMedium::CLOUD },
-  { 128, vtkParticipatingMedium::CUSTOM },
-  { 96, vtkParticipatingMedium::CUSTOM },
-  { 128, vtkParticipatingMedium::CLOUD },
+  { 64, vtkParticipatingMedium::CUSTOM, 0.5 },
+  { 32, vtkParticipatingMedium::CUSTOM, 0.0 },
+  { 64, vtkParticipatingMedium::CLOUD, 0.0 },
+  { 128, vtkParticipatingMedium::CUSTOM, 0.0 },
+  { 96, vtkParticipatingMedium::CUSTOM, 0.0 },
+  { 128, vtkParticipatingMedium::CLOUD, 0.0 },
 };
 
-/// A ball that is densest in its middle, density 1, in a box of which a part is empty.
-vtkSmartPointer<vtkImageData> Density(int voxels)
+/// A ball that is densest in its middle, density 1.
+vtkSmartPointer<vtkImageData> Density(int voxels, double around)
 {
   auto image = vtkSmartPointer<vtkImageData>::New();
   image->SetDimensions(voxels + 1, voxels + 1, voxels + 1);
@@ -45,7 +46,7 @@ vtkSmartPointer<vtkImageData> Density(int voxels)
   for (vtkIdType i = 0; i < image->GetNumberOfCells(); ++i)
   {
     const double x = fromMiddle(i % voxels), y = fromMiddle(i / voxels % voxels), z = fromMiddle(i / voxels / voxels);
-    density->SetValue(i, static_cast<float>(std::max(0.0, 1.0 - std::sqrt(x * x + y * y + z * z))));
+    density->SetValue(i, static_cast<float>(std::max(around, 1.0 - std::sqrt(x * x + y * y + z * z))));
   }
   image->GetCellData()->SetScalars(density);
   return image;
@@ -74,7 +75,7 @@ bool PrepareScene(int number)
     filter->AddObserver(vtkCommand::ErrorEvent, count);
     filter->AddObserver(vtkCommand::WarningEvent, count);
   }
-  medium->SetInputDataObject(Density(scene.voxels));
+  medium->SetInputDataObject(Density(scene.voxels, scene.around));
   medium->SetPreset(scene.preset);
   medium->SetMillimetresPerUnit(1e4); // of presets: a cloud that light is scattered in many times
   light->SetInputConnection(medium->GetOutputPort());
