@@ -89,8 +89,11 @@ int Guarded(vtkAlgorithm* filter, vtkInformationVector* outputs, const std::func
     last.Note(LastFailure::Error);
   };
   const CompilationListener listener([filter] {
-    filter->SetProgressText(Compiling);
-    filter->UpdateProgress(filter->GetProgress());
+    if (filter->GetAbortExecute() == 0) // the compiler cannot be stopped; the filter stops when it is done
+    {
+      filter->SetProgressText(Compiling);
+      filter->UpdateProgress(filter->GetProgress());
+    }
   });
   try
   {

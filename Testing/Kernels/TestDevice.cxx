@@ -89,11 +89,11 @@ TEST_F(DeviceLayer, ShowsTheBuildLogOfAKernelThatDoesNotBuild)
   EXPECT_TRUE(Contains(complaint, "broken"));
 }
 
-/// Nobody has compiled it before, and both steps of the compiler take longer than a listener's patience: reading the
-/// unused functions, and what is left to do when the kernel first runs.
+/// Nobody has compiled it before (a comment would not do: caches pass it over), and both steps of the compiler take
+/// longer than a listener's patience: reading the unused functions, and what is left when the kernel first runs.
 std::string LargeKernel()
 {
-  std::string text = "__constant float once = " + std::to_string(ClockSeconds()) + "f;\n"; // no comment: caches pass it over
+  std::string text = "__constant float once = " + std::to_string(ClockSeconds()) + "f;\n";
   for (int number = 0; number < 30000; ++number)
   {
     text += "static inline float f" + std::to_string(number) + "(float a) { return a * 1.5f + 0.5f; }\n";
