@@ -6,8 +6,8 @@
 /// with their own work at once. It runs behind all other work, ends with this process, and does nothing where all was
 /// compiled before. TYNDALL_PREPARE=0 in the environment keeps it from starting.
 ///
-/// A process of its own, not a thread: a compiler cannot be stopped halfway, and a process with a thread in it cannot end
-/// before.
+/// A process of its own, not a thread: a compiler cannot be stopped halfway, and ParaView could not quit before it is
+/// done.
 ///
 /// To be called when the plugin is loaded.
 void StartPreparation();

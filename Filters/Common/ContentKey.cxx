@@ -7,8 +7,8 @@
 #include "vtkFieldData.h"
 #include "vtkImageData.h"
 #include "vtkMatrix3x3.h"
-#include "vtkPointSet.h"
 #include "vtkPoints.h"
+#include "vtkPointSet.h"
 #include "vtkPolyData.h"
 #include "vtkVariant.h"
 

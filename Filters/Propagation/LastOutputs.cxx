@@ -48,8 +48,7 @@ void AddRequest(std::vector<std::uint64_t>& key, vtkInformation* output)
 }
 }
 
-LastOutputs::Key LastOutputs::KeyOf(
-  vtkAlgorithm* filter, vtkInformationVector** inputs, vtkInformationVector* outputs)
+LastOutputs::Key LastOutputs::KeyOf(vtkAlgorithm* filter, vtkInformationVector** inputs, vtkInformationVector* outputs)
 {
   Key key = { filter->GetMTime() };
   for (int port = 0; port < filter->GetNumberOfInputPorts(); ++port)

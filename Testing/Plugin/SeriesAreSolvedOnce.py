@@ -35,12 +35,13 @@ for extension in ("vti", "vdb"):
 
     solver.AddObserver("StartEvent", begin)
     solver.AddObserver("ProgressEvent", report)
+    scene = GetAnimationScene()
+    scene.AnimationTime = 0.0
     light.UpdatePipeline()
     view = CreateRenderView(ViewSize=[60, 60])
     Show(light, view)
     Render(view)
     assert runs[0] == 1, (extension, runs)
-    scene = GetAnimationScene()
     scene.UpdateAnimationUsingDataTimeSteps()
     for time in (1.0, 2.0):
         scene.AnimationTime = time
