@@ -1,5 +1,6 @@
 #include "RunningFilters.h"
 
+#include "StoppedFilters.h"
 #include "vtkAlgorithm.h"
 #include "vtkCallbackCommand.h"
 #include "vtkLogger.h"
@@ -17,6 +18,7 @@
 #include <QToolButton>
 
 #include <map>
+#include <utility>
 
 namespace
 {
@@ -99,6 +101,7 @@ private:
     if (this->Button)
     {
       this->Running = algorithm;
+      this->IsAborted = false;
       this->Button->setEnabled(true);
       const QPoint place = this->Button->mapToGlobal(this->Button->rect().center());
       vtkLogF(TRACE, "%s can be aborted at (%d, %d)", algorithm->GetClassName(), place.x(), place.y());
@@ -112,6 +115,7 @@ private:
       vtkLogF(TRACE, "%s is aborted", this->Running->GetClassName());
       this->Running->AbortExecute = 1; // SetAbortExecute would have it run again, later
       this->Button->setDown(true);
+      this->IsAborted = true;
     }
   }
 
@@ -130,10 +134,15 @@ private:
   void ShowResults(vtkAlgorithm* algorithm)
   {
     const vtkWeakPointer<vtkSMProxy> proxy = this->Proxies[algorithm];
-    QTimer::singleShot(0, this, [proxy] {
+    const bool isAborted = std::exchange(this->IsAborted, false);
+    QTimer::singleShot(0, this, [this, proxy, isAborted] {
       if (proxy)
       {
         proxy->UpdatePropertyInformation();
+      }
+      if (proxy && isAborted)
+      {
+        this->Stopped.Add(proxy);
       }
     });
   }
@@ -193,7 +202,9 @@ private:
   vtkWeakPointer<vtkAlgorithm> Running;
   vtkNew<vtkCallbackCommand> Watcher;
   QElapsedTimer SinceLast;
+  StoppedFilters Stopped;
   bool HandlesEvents = false;
+  bool IsAborted = false; ///< the one that runs
 };
 }
 

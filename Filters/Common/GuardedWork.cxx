@@ -5,6 +5,7 @@
 #include "Common/ImageInput.h"
 #include "Common/LastFailure.h"
 #include "Common/LightTransportWriting.h"
+#include "Device/CompilationListener.h"
 #include "Device/Device.h"
 #include "Device/OpenCL.h"
 #include "PropertyRange.h"
@@ -22,6 +23,7 @@ namespace tyndall
 Monitor MonitorOf(vtkAlgorithm* filter)
 {
   return [filter](double fractionDone) {
+    filter->SetProgressText(nullptr);
     filter->UpdateProgress(fractionDone);
 #if VTK_VERSION_NUMBER >= VTK_VERSION_CHECK(9, 2, 20220823)
     return !filter->CheckAbort();
@@ -33,6 +35,8 @@ Monitor MonitorOf(vtkAlgorithm* filter)
 
 namespace
 {
+const char* const Compiling = "compiling kernels (once)";
+
 const char* const NoMemory =
   "The machine's memory does not suffice. Ask for less: fewer photons, a smaller grid, or fewer outputs.";
 
@@ -84,6 +88,13 @@ int Guarded(vtkAlgorithm* filter, vtkInformationVector* outputs, const std::func
     vtkErrorWithObjectMacro(filter, << why);
     last.Note(LastFailure::Error);
   };
+  const CompilationListener listener([filter] {
+    if (filter->GetAbortExecute() == 0) // the compiler cannot be stopped; the filter stops when it is done
+    {
+      filter->SetProgressText(Compiling);
+      filter->UpdateProgress(filter->GetProgress());
+    }
+  });
   try
   {
     RequireImages(filter);
@@ -119,6 +130,7 @@ int Guarded(vtkAlgorithm* filter, vtkInformationVector* outputs, const std::func
   {
     fail(error.what());
   }
+  filter->SetProgressText(nullptr);
   WarnOfDevices(filter);
   return 1;
 }

@@ -21,7 +21,8 @@ Monitor MonitorOf(vtkAlgorithm* filter);
 /// Runs the work of a filter's RequestData. Whatever it throws becomes one error of the filter; the outputs are empty
 /// then and after an abort, which is no error, and the filter runs again when something has changed. Empty outputs have
 /// field data `failed` or `aborted`, from which later filters know: they stay empty, too, without an error of their
-/// own. What the device layer has to tell users (Device::TakeWarnings) becomes a warning of the filter.
+/// own. While the device's compiler works the filter's progress text says so. What the device layer has to tell users
+/// (Device::TakeWarnings) becomes a warning of the filter.
 /// @return what RequestData is to return: always 1. With 0 the pipeline would add an error that says less, and run the
 ///   filter again, in vain, with every update.
 int Guarded(vtkAlgorithm* filter, vtkInformationVector* outputs, const std::function<void()>& work);

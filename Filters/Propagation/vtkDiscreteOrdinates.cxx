@@ -6,6 +6,7 @@
 #include "DiscreteOrdinates/OrdinatesQuality.h"
 
 #include "Propagation/LastLight.h"
+#include "Propagation/LastOutputs.h"
 #include "Propagation/PreviewLight.h"
 
 #include "vtkDataObject.h"
@@ -65,6 +66,10 @@ vtkDiscreteOrdinates::~vtkDiscreteOrdinates() = default;
 
 int vtkDiscreteOrdinates::RequestData(vtkInformation*, vtkInformationVector** inputs, vtkInformationVector* outputs)
 {
+  if (this->Solved->GiveBack(this, inputs, outputs))
+  {
+    return 1;
+  }
   this->Note({});
   return tyndall::Guarded(this, outputs, [&] {
     vtkImageData* image = vtkImageData::GetData(inputs[MEDIUM]);
@@ -85,6 +90,7 @@ int vtkDiscreteOrdinates::RequestData(vtkInformation*, vtkInformationVector** in
     TellOfDefaultSky(shining, light.leftOut);
     this->Note(light);
     this->WriteSolved(image, std::move(light), outputs);
+    this->Solved->Keep(outputs);
   });
 }
 

@@ -7,6 +7,7 @@
 #include "LatticeBoltzmann/LatticeQuality.h"
 #include "Medium/Coarsening.h"
 #include "Photons/PhotonData.h"
+#include "Propagation/LastOutputs.h"
 #include "Propagation/PreviewLight.h"
 
 #include "vtkDataObject.h"
@@ -181,6 +182,10 @@ tyndall::LightField vtkLatticeBoltzmannLighting::Solve(vtkInformationVector** in
 int vtkLatticeBoltzmannLighting::RequestData(
   vtkInformation*, vtkInformationVector** inputs, vtkInformationVector* outputs)
 {
+  if (this->Solved->GiveBack(this, inputs, outputs))
+  {
+    return 1;
+  }
   this->Note({});
   this->Seconds = 0.0;
   return tyndall::Guarded(this, outputs, [&] {
@@ -188,6 +193,7 @@ int vtkLatticeBoltzmannLighting::RequestData(
     light.settingsUsed = tyndall::Words(SettingsOf(this));
     this->Note(light);
     this->WriteSolved(vtkImageData::GetData(inputs[MEDIUM]), std::move(light), outputs);
+    this->Solved->Keep(outputs);
   });
 }
 

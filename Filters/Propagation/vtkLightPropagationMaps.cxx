@@ -11,6 +11,7 @@
 #include "LightPropagation/Published/SequentialPropagation.h"
 
 #include "Propagation/LastLight.h"
+#include "Propagation/LastOutputs.h"
 #include "Propagation/PreviewLight.h"
 
 #include "vtkDataObject.h"
@@ -149,6 +150,10 @@ vtkLightPropagationMaps::~vtkLightPropagationMaps() = default;
 
 int vtkLightPropagationMaps::RequestData(vtkInformation*, vtkInformationVector** inputs, vtkInformationVector* outputs)
 {
+  if (this->Solved->GiveBack(this, inputs, outputs))
+  {
+    return 1;
+  }
   this->Note({});
   return tyndall::Guarded(this, outputs, [&] {
     vtkImageData* image = vtkImageData::GetData(inputs[MEDIUM]);
@@ -163,6 +168,7 @@ int vtkLightPropagationMaps::RequestData(vtkInformation*, vtkInformationVector**
     TellOfDefaultSky(shining, light.leftOut);
     this->Note(light);
     this->WriteSolved(image, std::move(light), outputs);
+    this->Solved->Keep(outputs);
   });
 }
 

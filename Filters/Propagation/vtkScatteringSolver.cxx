@@ -1,6 +1,7 @@
 #include "vtkScatteringSolver.h"
 
 #include "Common/LightTransportData.h"
+#include "Propagation/LastOutputs.h"
 
 #include "vtkDataObject.h"
 #include "vtkImageData.h"
@@ -8,6 +9,7 @@
 #include "vtkInformationVector.h"
 
 vtkScatteringSolver::vtkScatteringSolver()
+  : Solved(std::make_unique<tyndall::LastOutputs>())
 {
   this->SetNumberOfInputPorts(UNCOLLIDED + 1);
   this->SetNumberOfOutputPorts(2);

@@ -4,11 +4,13 @@
 #include "vtkPropagationAlgorithm.h"
 #include "vtkTyndallModule.h" // for export macro
 
+#include <memory>
 #include <string>
 
 namespace tyndall
 {
 struct IlluminationInput;
+class LastOutputs;
 }
 
 /**
@@ -23,6 +25,9 @@ struct IlluminationInput;
  * added as always. What it lost and what left count as having come in, to 1e-5.
  *
  * Output 1 is the table of convergence, vtkTable.
+ *
+ * Asked again for the light of the same medium under the same light, even where filters before have made them anew,
+ * it gives out the light that it has.
  *
  * Field data `settings_used` of output 0: "Name = value" of each property that Quality chooses, as it was used.
  *
@@ -82,6 +87,9 @@ protected:
   /// the default sky. Checked.
   /// @param emits  whether the medium does
   tyndall::IlluminationInput ReadShining(vtkInformationVector** inputs, bool emits);
+
+  /// First and last in RequestData.
+  std::unique_ptr<tyndall::LastOutputs> Solved;
 
   int Quality = USUAL;
   bool Preview = false;

@@ -60,6 +60,7 @@ public:
   {
     if (count > 0)
     {
+      this->Owner->AwaitFirstRuns();
       this->Owner->Queue().enqueueWriteBuffer(this->Memory, CL_TRUE, 0, count * sizeof(T), values);
     }
   }
@@ -74,6 +75,7 @@ public:
   {
     if (count > 0)
     {
+      this->Owner->AwaitFirstRuns();
       this->Owner->Queue().enqueueReadBuffer(this->Memory, CL_TRUE, 0, count * sizeof(T), values);
     }
   }

@@ -1,13 +1,16 @@
 #include "Device/Device.h"
 
+#include "Device/CompilationListener.h"
 #include "Device/HostMemory.h"
 #include "Device/PoclCache.h"
 
 #include <algorithm>
 #include <cctype>
 #include <cstdlib>
+#include <future>
 #include <optional>
 #include <sys/mman.h>
+#include <thread>
 #include <utility>
 
 namespace tyndall
@@ -220,6 +223,39 @@ cl::Kernel Device::Kernel(const char* name, std::string_view source, const std::
   }
 }
 
+namespace
+{
+std::unique_lock<std::timed_mutex> LockHeard(std::timed_mutex& mutex)
+{
+  std::unique_lock<std::timed_mutex> lock(mutex, std::defer_lock);
+  if (const CompilationListener* listener = CompilationListener::OfThisThread())
+  {
+    listener->Wait([&](auto patience) { return lock.try_lock_for(patience); });
+  }
+  else
+  {
+    lock.lock();
+  }
+  return lock;
+}
+
+/// @return whether it took so long that it was no reading from a cache; false where nobody listens
+bool CallHeard(const std::function<void()>& build)
+{
+  const CompilationListener* listener = CompilationListener::OfThisThread();
+  if (!listener)
+  {
+    build();
+    return false;
+  }
+  std::future<void> built = std::async(std::launch::async, build);
+  const bool tookLong =
+    listener->Wait([&](auto patience) { return built.wait_for(patience) == std::future_status::ready; });
+  built.get();
+  return tookLong;
+}
+}
+
 cl::Program Device::ProgramOf(const char* kernel, const std::string& text, const std::string& options)
 {
   std::shared_ptr<KeptProgram> kept;
@@ -232,7 +268,7 @@ cl::Program Device::ProgramOf(const char* kernel, const std::string& text, const
     }
     kept = known;
   }
-  const std::lock_guard<std::mutex> lock(kept->Building);
+  const std::unique_lock<std::timed_mutex> lock = LockHeard(kept->Building);
   if (!kept->IsBuilt)
   {
     kept->Program = this->Build(kernel, text, options);
@@ -241,7 +277,7 @@ cl::Program Device::ProgramOf(const char* kernel, const std::string& text, const
   return kept->Program;
 }
 
-cl::Program Device::Build(const char* kernel, const std::string& text, const std::string& options) const
+cl::Program Device::Build(const char* kernel, const std::string& text, const std::string& options)
 {
   if (!this->CacheFolder.empty())
   {
@@ -250,7 +286,10 @@ cl::Program Device::Build(const char* kernel, const std::string& text, const std
   cl::Program program(this->TheContext, text);
   try
   {
-    program.build({ this->TheDevice }, options.c_str());
+    if (CallHeard([&] { program.build({ this->TheDevice }, options.c_str()); }))
+    {
+      this->CompiledSince = true;
+    }
   }
   catch (const cl::Error&)
   {
@@ -320,7 +359,29 @@ cl::Buffer Device::Allocate(std::size_t bytes, cl_mem_flags flags, const char* w
 void Device::Finish()
 {
   this->SecondsQueued = 0.0; // first: what other threads queue meanwhile is counted anew
+  this->AwaitFirstRuns();
   this->TheQueue.finish();
+}
+
+void Device::AwaitFirstRuns()
+{
+  const CompilationListener* listener = CompilationListener::OfThisThread();
+  if (!listener || !this->CompiledSince.exchange(false))
+  {
+    return;
+  }
+  cl::Event reached;
+  this->TheQueue.enqueueMarkerWithWaitList(nullptr, &reached);
+  this->TheQueue.flush();
+  listener->Wait([&](std::chrono::duration<double> patience) {
+    const auto isReached = [&] { return reached.getInfo<CL_EVENT_COMMAND_EXECUTION_STATUS>() <= CL_COMPLETE; };
+    const double end = ClockSeconds() + patience.count();
+    while (!isReached() && ClockSeconds() < end)
+    {
+      std::this_thread::sleep_for(std::chrono::milliseconds(1));
+    }
+    return isReached();
+  });
 }
 
 void Device::Queued(double seconds)

@@ -77,6 +77,10 @@ public:
   /// Another in-order queue, whose events know when they began and ended. What is on both may be done side by side.
   cl::CommandQueue AnotherQueue() const { return { this->TheContext, this->TheDevice, CL_QUEUE_PROFILING_ENABLE }; }
   void Finish();
+  /// To be called before other waits for what was queued, e.g. a blocking read: where a program was compiled since the
+  /// last one this waits itself, and this thread's CompilationListener hears of it. PoCL compiles the rest of a kernel
+  /// when it first runs.
+  void AwaitFirstRuns();
 
   /// Note that work of about so many seconds was queued, and wait for all of it once that is a tenth of a second:
   /// progress is reported and an abort noticed that often, while short kernels follow each other without the host.
@@ -90,13 +94,13 @@ private:
   /// A program, built by whichever thread needs it first. Only threads that need the same one wait.
   struct KeptProgram
   {
-    std::mutex Building;
+    std::timed_mutex Building;
     cl::Program Program;
     bool IsBuilt = false;
   };
 
   cl::Program ProgramOf(const char* kernel, const std::string& text, const std::string& options);
-  cl::Program Build(const char* kernel, const std::string& text, const std::string& options) const;
+  cl::Program Build(const char* kernel, const std::string& text, const std::string& options);
 
   cl::Device TheDevice;
   cl::Context TheContext;
@@ -113,5 +117,6 @@ private:
   Clock TheClock = ClockSeconds;
   std::mutex ProgramsGuard; ///< of the map, not of what is in it
   std::map<std::string, std::shared_ptr<KeptProgram>> Programs;
+  std::atomic<bool> CompiledSince{ false }; ///< the last wait for what was queued
 };
 }

@@ -57,6 +57,7 @@ public:
     }
     if (this->Count > 0) // mapping makes the values visible to the host; nothing is copied
     {
+      this->Owner->AwaitFirstRuns();
       cl::CommandQueue& queue = this->Owner->Queue();
       void* seen = queue.enqueueMapBuffer(this->Memory, CL_TRUE, CL_MAP_READ, 0, this->Count * sizeof(T));
       queue.enqueueUnmapMemObject(this->Memory, seen);

@@ -2,10 +2,15 @@
 
 #include "Device/Batches.h"
 #include "Device/Buffer.h"
+#include "Device/CompilationListener.h"
 #include "TyndallKernelSources.h"
 
+#include <chrono>
 #include <cmath>
+#include <future>
+#include <mutex>
 #include <string>
+#include <thread>
 #include <vector>
 
 using namespace tyndall;
@@ -82,6 +87,73 @@ TEST_F(DeviceLayer, ShowsTheBuildLogOfAKernelThatDoesNotBuild)
     ComplaintOf([&] { this->GetDevice().Kernel("broken", { "__kernel void broken() { undeclared = 1; }" }); });
   EXPECT_TRUE(Contains(complaint, "undeclared"));
   EXPECT_TRUE(Contains(complaint, "broken"));
+}
+
+/// Nobody has compiled it before (a comment would not do: caches pass it over), and both steps of the compiler take
+/// longer than a listener's patience: reading the unused functions, and what is left when the kernel first runs.
+std::string LargeKernel()
+{
+  std::string text = "__constant float once = " + std::to_string(ClockSeconds()) + "f;\n";
+  for (int number = 0; number < 30000; ++number)
+  {
+    text += "static inline float f" + std::to_string(number) + "(float a) { return a * 1.5f + 0.5f; }\n";
+  }
+  text += "__kernel void large(__global float* x) { float a = x[0];\n";
+  for (int line = 0; line < 500; ++line)
+  {
+    text += "a = native_sin(a * " + std::to_string(line) + ".5f) + x[" + std::to_string(line % 7) + "];\n";
+  }
+  return text + "x[0] = a; }";
+}
+
+TEST_F(DeviceLayer, WhoeverWaitsForTheCompilerHearsOfIt)
+{
+  Device& device = this->GetDevice();
+  const std::string source = LargeKernel();
+  int building = 0, running = 0, again = 0, elsewhere = 0;
+  const CompilationListener outer([&] { ++elsewhere; });
+  Buffer<float> values(device, std::vector<float>(7, 0.5f), "a test");
+  cl::Kernel kernel;
+  {
+    const CompilationListener listener([&] { ++building; });
+    kernel = device.Kernel("large", source);
+  }
+  EXPECT_GT(building, 0);
+  kernel.setArg(0, values.Handle());
+  device.Queue().enqueueNDRangeKernel(kernel, cl::NullRange, cl::NDRange(1), cl::NDRange(1));
+  {
+    const CompilationListener listener([&] { ++running; });
+    values.Read();
+  }
+  EXPECT_GT(running, 0) << "PoCL compiles the rest when the kernel first runs";
+  {
+    const CompilationListener listener([&] { ++again; });
+    device.Kernel("large", source);
+    device.Queue().enqueueNDRangeKernel(kernel, cl::NullRange, cl::NDRange(1), cl::NDRange(1));
+    device.Finish();
+  }
+  EXPECT_EQ(again, 0);
+  EXPECT_EQ(elsewhere, 0) << "the innermost listener hears";
+}
+
+TEST_F(DeviceLayer, WhoeverWaitsForTheCompilerOfAnotherThreadHearsOfIt)
+{
+  Device& device = this->GetDevice();
+  const std::string source = LargeKernel();
+  std::promise<void> compiles;
+  std::thread first([&] {
+    std::once_flag once;
+    const CompilationListener listener([&] { std::call_once(once, [&] { compiles.set_value(); }); });
+    device.Kernel("large", source);
+  });
+  int heard = 0;
+  if (compiles.get_future().wait_for(std::chrono::seconds(60)) == std::future_status::ready)
+  {
+    const CompilationListener listener([&] { ++heard; });
+    device.Kernel("large", source);
+  }
+  first.join();
+  EXPECT_GT(heard, 0);
 }
 
 /// What the sizes of batches are on a machine that does so many things a second.

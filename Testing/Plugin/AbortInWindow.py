@@ -1,4 +1,5 @@
-"""In ParaView's window a long solve shows its progress and stops at a click; a short one then ends well.
+"""In ParaView's window a long solve shows its progress and stops at a click; Apply runs it again, as the status bar says;
+a short one then ends well.
 
     python3 AbortInWindow.py paraview [arguments...]    on an X display, with xdotool
 
@@ -16,6 +17,7 @@ log = os.path.join(os.environ["TYNDALL_TEST_OUTPUT"], "AbortInWindow.log")
 session = os.path.join(os.path.dirname(os.path.abspath(__file__)), "SolveInWindow.xml")
 
 
+SOLVER = "vtkLightPropagationMaps"
 PATIENCE = 300  # seconds after which something hangs, on the slowest machine
 
 
@@ -31,6 +33,16 @@ def wait_for(pattern):
         assert paraview.poll() is None, "ParaView has gone"
         time.sleep(0.005)
     raise AssertionError("not within %g s: %s" % (PATIENCE, pattern))
+
+
+def abort(solver):
+    """A click on the button while the solver runs, which is the pattern of what the log says of it."""
+    begin = time.monotonic()
+    subprocess.run(["xdotool", "mousemove", str(x), str(y), "click", "1"], check=True)
+    heard = wait_for(r"%s is aborted(.*?)%s has ended" % (solver, SOLVER)).group(1)
+    print("from the click to the end: %.3f s" % (time.monotonic() - begin))
+    reports = heard.count(SOLVER + " is ")
+    assert reports <= 1, "%d reports of progress after the abort:%s" % (reports, heard)
 
 
 class Screen:
@@ -55,7 +67,7 @@ if os.path.exists(log):
     os.remove(log)
 paraview = subprocess.Popen(sys.argv[1:] + ["--log=%s,TRACE" % log, "--exit", "--test-script=" + session])
 try:
-    x, y = (int(number) for number in wait_for(r"vtkLightPropagationMaps can be aborted at \((\d+), (\d+)\)").groups())
+    x, y = (int(number) for number in wait_for(SOLVER + r" can be aborted at \((\d+), (\d+)\)").groups())
 
     screen = Screen()
     progress = set()
@@ -65,12 +77,11 @@ try:
         progress.add(screen.pixels(x + 15, y - 3, 200, 6))
         time.sleep(0.1)
 
-    begin = time.monotonic()
-    subprocess.run(["xdotool", "mousemove", str(x), str(y), "click", "1"], check=True)
-    heard = wait_for("vtkLightPropagationMaps is aborted(.*?)vtkLightPropagationMaps has ended").group(1)
-    print("from the click to the end: %.3f s" % (time.monotonic() - begin))
-    reports = heard.count("vtkLightPropagationMaps is ")
-    assert reports <= 1, "%d reports of progress after the abort:%s" % (reports, heard)
+    abort(SOLVER)
+    wait_for("status bar: %s1: stopped; Apply runs it again" % SOLVER[3:])
+    # Pressed, with nothing changed:
+    wait_for(r"%s has ended.*%s can be aborted" % (SOLVER, SOLVER))
+    abort(r"%s has ended.*%s" % (SOLVER, SOLVER))
 
     assert paraview.wait(PATIENCE) == 0, paraview.returncode
 finally:

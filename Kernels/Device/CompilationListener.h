@@ -1,0 +1,45 @@
+#pragma once
+
+#include <chrono>
+#include <functional>
+
+namespace tyndall
+{
+/// While one lives, it is called about ten times a second in the thread that made it whenever that thread waits for a
+/// device's compiler, which takes seconds where nobody has compiled the kernels before. Of several in a thread the last
+/// one is called.
+class CompilationListener
+{
+public:
+  using Call = std::function<void()>; ///< must not throw
+
+  explicit CompilationListener(Call call);
+  ~CompilationListener();
+  CompilationListener(const CompilationListener&) = delete;
+  CompilationListener& operator=(const CompilationListener&) = delete;
+
+  /// That of this thread, or null.
+  static const CompilationListener* OfThisThread();
+
+  /// Waits until isDone(for so long) says so; calls after each of these times that it did not.
+  /// @return whether it called
+  template <class IsDone>
+  bool Wait(const IsDone& isDone) const
+  {
+    bool called = false;
+    while (!isDone(Patience))
+    {
+      this->TheCall();
+      called = true;
+    }
+    return called;
+  }
+
+private:
+  /// What is read from the compiler's cache is there sooner.
+  static constexpr std::chrono::milliseconds Patience{ 150 };
+
+  Call TheCall;
+  const CompilationListener* Before;
+};
+}

@@ -1,0 +1,85 @@
+#include "PreparedScenes.h"
+
+#include "Device/PoclCache.h"
+
+#include <algorithm>
+#include <csignal>
+#include <cstdlib>
+#include <exception>
+#include <fstream>
+#include <iostream>
+#include <iterator>
+#include <string>
+#include <sys/prctl.h>
+#include <sys/resource.h>
+#include <unistd.h>
+
+// Solves and looks at small scenes, so that OpenCL's compiler keeps what the first solve in ParaView will need:
+//
+//     TyndallPreparation [COUNT [PARENT]]
+//
+// COUNT scenes, the likeliest first; without it all. With PARENT it ends when that process does. Where all was done
+// before, with the same library and cache, it does nothing. Exit status 1 if a filter reports an error.
+
+namespace
+{
+/// What is prepared, and where that is noted: beside what the compiler keeps, so that both go together.
+struct Note
+{
+  std::string file, content;
+
+  bool IsThere() const
+  {
+    std::ifstream found(this->file);
+    return std::string(std::istreambuf_iterator<char>(found), {}) == this->content;
+  }
+  void Write() const { std::ofstream(this->file) << this->content; }
+};
+
+Note NoteOfAll()
+{
+  const char* device = std::getenv("TYNDALL_DEVICE");
+  return { tyndall::ChoosePoclCache().folder + "/tyndall-prepared", LibraryVersion() + (device ? device : "") + "\n" };
+}
+
+/// Behind all that somebody waits for, and not longer than the one for whom it is done.
+void ServeParent(pid_t parent)
+{
+  setpriority(PRIO_PROCESS, 0, 19);
+  prctl(PR_SET_PDEATHSIG, SIGKILL);
+  if (getppid() != parent) // it has gone already
+  {
+    std::exit(0);
+  }
+}
+}
+
+int main(int argc, char* argv[])
+{
+  if (argc > 2)
+  {
+    ServeParent(static_cast<pid_t>(std::atol(argv[2])));
+  }
+  try
+  {
+    const Note note = NoteOfAll();
+    const int all = PreparedSceneCount(), wanted = argc > 1 ? std::atoi(argv[1]) : all;
+    for (int scene = 0; scene < std::min(wanted, all) && !note.IsThere(); ++scene)
+    {
+      if (!PrepareScene(scene))
+      {
+        return 1;
+      }
+      if (scene + 1 == all)
+      {
+        note.Write();
+      }
+    }
+  }
+  catch (const std::exception& error)
+  {
+    std::cerr << error.what() << '\n';
+    return 1;
+  }
+  return 0;
+}

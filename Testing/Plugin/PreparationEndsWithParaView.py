@@ -1,0 +1,31 @@
+"""ParaView's window starts TyndallPreparation, quits well while that compiles, and takes it along.
+
+    python3 PreparationEndsWithParaView.py paraview [arguments...]    on an X display
+"""
+import os
+import shutil
+import subprocess
+import sys
+import time
+
+cache = os.path.join(os.environ["TYNDALL_TEST_OUTPUT"], "empty_cache")
+session = os.path.join(os.path.dirname(os.path.abspath(__file__)), "LightRigFromMenu.xml")
+
+
+def preparations(parent):
+    """Processes that work for ParaView of this number."""
+    listed = subprocess.run(["ps", "-eo", "args"], capture_output=True, text=True, check=True).stdout
+    return [line for line in listed.splitlines() if "TyndallPreparation" in line and line.split()[-1] == str(parent)]
+
+
+shutil.rmtree(cache, ignore_errors=True)
+paraview = subprocess.Popen(sys.argv[1:] + ["--exit", "--test-script=" + session],
+                            env={**os.environ, "POCL_CACHE_DIR": cache})
+seen = []
+while paraview.poll() is None:
+    seen = seen or preparations(paraview.pid)
+    time.sleep(0.05)
+assert paraview.returncode == 0, paraview.returncode
+assert seen, "it was not started"
+time.sleep(1)
+assert not preparations(paraview.pid), "it goes on"
