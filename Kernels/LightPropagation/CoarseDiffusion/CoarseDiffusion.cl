@@ -16,7 +16,8 @@ __kernel void sum_cells(CoarseCells box, const __global float* values, float sca
   FOR_ROWS(box.cells)
   {
     const int y = r % box.cells.size[1], z = r / box.cells.size[1];
-    const int end_y = min((y + 1) << box.halvings[1], box.size[1]), end_z = min((z + 1) << box.halvings[2], box.size[2]);
+    const int end_y = min((y + 1) << box.halvings[1], box.size[1]),
+              end_z = min((z + 1) << box.halvings[2], box.size[2]);
     __global float* row = sums + row_at(&box.cells, y, z);
     for (int x = 0; x < box.cells.size[0]; ++x)
     {
@@ -39,7 +40,7 @@ __kernel void sum_cells(CoarseCells box, const __global float* values, float sca
 }
 
 // What a voxel scatters more of its light because light is not as smeared as constant voxels have it, once where it is
-// gathered and once where it shines (numerics.md, Eqs. (92), (93)); what one voxel gains the one beside it loses. Right
+// gathered and once where it shines (numerics.md, Eq. (76f)); what one voxel gains the one beside it loses. Right
 // for light that changes evenly: the last factor is the current of a constant source (Eq. (51)) beyond that of a linear
 // one, over its first term, to 1e-4 for voxels up to 1.5 mean free paths.
 // own, other      light of the voxel, and of the one beside it
@@ -48,10 +49,11 @@ __kernel void sum_cells(CoarseCells box, const __global float* values, float sca
 inline float sharpen(float own, float other, float t, float s, float other_t, float other_s, float spacing)
 {
   const float both = t + other_t, tau = 0.5f * spacing * both;
-  return (s * t + other_s * other_t) * (own - other) / (12.0f * fmax(both, 1e-37f) * (1.0f + tau * (0.183f + 0.0163f * tau)));
+  return (s * t + other_s * other_t) * (own - other) /
+    (12.0f * fmax(both, 1e-37f) * (1.0f + tau * (0.183f + 0.0163f * tau)));
 }
 
-// At a face of the box constant voxels let out more than light that falls off towards it does: as much is given to the
+// At a face of the box (Eq. (76g)) constant voxels let out more than light that falls off towards it does: as much is given to the
 // outermost voxels, and counted as not let out.
 inline float sharpen_at_face(float own, float inner, float t, float s, float spacing)
 {
@@ -83,28 +85,39 @@ __kernel void scatter_row(CoarseCells box, const __global float* restrict path, 
 #if LINEAR
   for (int x = 0; x + 1 < n[0]; ++x)
   {
-    const float more = per_volume * sharpen(path[x], path[x + 1], sigma_t[x], sigma_s[x], sigma_t[x + 1], sigma_s[x + 1], box.spacing[0]);
+    const float more = per_volume *
+      sharpen(path[x], path[x + 1], sigma_t[x], sigma_s[x], sigma_t[x + 1], sigma_s[x + 1], box.spacing[0]);
     source[x] += more;
     source[x + 1] -= more;
   }
   if (box.periodic[0])
   {
     const int x = n[0] - 1;
-    const float more = per_volume * sharpen(path[x], path[0], sigma_t[x], sigma_s[x], sigma_t[0], sigma_s[0], box.spacing[0]);
+    const float more =
+      per_volume * sharpen(path[x], path[0], sigma_t[x], sigma_s[x], sigma_t[0], sigma_s[0], box.spacing[0]);
     source[x] += more;
     source[0] -= more;
   }
   const int row = n[0], plane = n[0] * n[1];
-  const int beside[4] = { y > 0 ? -row : box.periodic[1] ? plane - row : 0,
-    y < n[1] - 1 ? row : box.periodic[1] ? row - plane : 0, z > 0 ? -plane : box.periodic[2] ? (n[2] - 1) * plane : 0,
-    z < n[2] - 1 ? plane : box.periodic[2] ? (1 - n[2]) * plane : 0 };
+  const int beside[4] = { y > 0 ? -row
+      : box.periodic[1]         ? plane - row
+                                : 0,
+    y < n[1] - 1        ? row
+      : box.periodic[1] ? row - plane
+                        : 0,
+    z > 0               ? -plane
+      : box.periodic[2] ? (n[2] - 1) * plane
+                        : 0,
+    z < n[2] - 1        ? plane
+      : box.periodic[2] ? (1 - n[2]) * plane
+                        : 0 };
   for (int k = 0; k < 4; ++k)
   {
     for (int x = 0; x < n[0] && beside[k] != 0; ++x)
     {
       const int other = x + beside[k];
-      source[x] +=
-        per_volume * sharpen(path[x], path[other], sigma_t[x], sigma_s[x], sigma_t[other], sigma_s[other], box.spacing[1 + k / 2]);
+      source[x] += per_volume *
+        sharpen(path[x], path[other], sigma_t[x], sigma_s[x], sigma_t[other], sigma_s[other], box.spacing[1 + k / 2]);
     }
   }
   for (int side = 0; side < 2 && !box.periodic[0] && n[0] > 1; ++side)

@@ -101,8 +101,7 @@ CoarseDiffusion::Powers CoarseDiffusion::ScatterOrder(
   powers.scattered = perSource * scattered.first;
   powers.magnitude = perSource * scattered.second;
   powers.out = this->OutThroughFaces();
-  powers.left =
-    perSource * swept.first - absorbed.second - std::accumulate(powers.out.begin(), powers.out.end(), 0.0);
+  powers.left = perSource * swept.first - absorbed.second - std::accumulate(powers.out.begin(), powers.out.end(), 0.0);
   for (int face = 0; face < 6; ++face)
   {
     powers.kept[face] = perSource * (swept.byFace[face] + scattered.byFace[face]);
@@ -155,8 +154,7 @@ CoarseDiffusion::Sums CoarseDiffusion::AddGuess(
 
 CoarseDiffusion::Sums CoarseDiffusion::RunByRows(cl::Kernel& kernel)
 {
-  this->TheDevice.Queue().enqueueNDRangeKernel(
-    kernel, cl::NullRange, cl::NDRange(this->Tally.Size()), cl::NDRange(1));
+  this->TheDevice.Queue().enqueueNDRangeKernel(kernel, cl::NullRange, cl::NDRange(this->Tally.Size()), cl::NDRange(1));
   Sums sums;
   for (const cl_float8& row : this->Tally.Read())
   {

@@ -9,12 +9,12 @@
 
 namespace tyndall
 {
-/// Diffusion of one channel on cells of 2, 4 or 8 voxels along each axis (numerics.md, section 7.12): what the orders to
+/// Diffusion of one channel on cells of 2, 4 or 8 voxels along each axis (numerics.md, section 7.13): what the orders to
 /// come will add, about, to the light that a sweep found. Cells are at most about a mean free path wide, so that what
 /// they do not see falls off fast in sweeps. A guess only: it is taken away again from what the next sweep finds of it,
 /// so that it changes how fast the light converges and not what it converges to.
 ///
-/// Related: diffusion synthetic acceleration (Alcouffe 1977; Larsen 1982), here on a coarser grid than the sweeps'.
+/// Related: diffusion synthetic acceleration (Adams and Larsen 2002), here on a coarser grid than the sweeps'.
 class CoarseDiffusion
 {
 public:
@@ -29,7 +29,7 @@ public:
     double absorbed = 0.0;  ///< of all light that is added
     double scattered = 0.0; ///< of it, the next source
     double magnitude = 0.0; ///< the same without signs
-    double left = 0.0; ///< neither absorbed nor out, by the solution
+    double left = 0.0;      ///< neither absorbed nor out, by the solution
     /// Of the next source, what is to be let out less through each face of the box than the next sweep will.
     std::array<double, 6> kept = {};
     std::array<double, 6> out = {}; ///< leaves through each face of the box, by the solution

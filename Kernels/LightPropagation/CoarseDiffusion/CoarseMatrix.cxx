@@ -104,8 +104,8 @@ std::vector<double> Diffusing(const Level& level)
 }
 }
 
-CoarseMatrix FindCoarseMatrix(const Grid& grid, const CoarseCells& box, const std::vector<float>& sigmaT,
-  const std::vector<float>& sigmaS)
+CoarseMatrix FindCoarseMatrix(
+  const Grid& grid, const CoarseCells& box, const std::vector<float>& sigmaT, const std::vector<float>& sigmaS)
 {
   const Level level = Finest(grid, box, sigmaT);
   const std::vector<double> sigma = Diffusing(level);

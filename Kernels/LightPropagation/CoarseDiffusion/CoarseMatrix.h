@@ -16,6 +16,6 @@ struct CoarseMatrix
 };
 
 /// @param sigmaT, sigmaS  1/length, summed over the voxels of each cell, x fastest
-CoarseMatrix FindCoarseMatrix(const Grid& grid, const CoarseCells& box, const std::vector<float>& sigmaT,
-  const std::vector<float>& sigmaS);
+CoarseMatrix FindCoarseMatrix(
+  const Grid& grid, const CoarseCells& box, const std::vector<float>& sigmaT, const std::vector<float>& sigmaS);
 }

@@ -10,8 +10,8 @@ typedef struct
   int size[3]; ///< voxels
   float spacing[3];
   int periodic[3];
-  int halvings[3];      ///< of voxels into cells along each axis: 2^halvings voxels an edge, the last cell perhaps fewer
-  int first, firstT;    ///< where the channel begins: of sigma_t, of all others
+  int halvings[3];   ///< of voxels into cells along each axis: 2^halvings voxels an edge, the last cell perhaps fewer
+  int first, firstT; ///< where the channel begins: of sigma_t, of all others
   MultigridLevel cells; ///< how arrays over cells lie in memory
 } CoarseCells;
 SHARED_END

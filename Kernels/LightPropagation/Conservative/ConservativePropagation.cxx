@@ -158,7 +158,8 @@ LightField LightOf(TransportParts& parts, IterationResult&& found)
   {
     AddShownLight(parts, found.shown, light);
   }
-  light.halfRangeFlux = HalfRangeFlux((parts.FineBoundary && parts.How != OrdersAdded::ByBalance ? *parts.Fine : parts.Usual).Set());
+  light.halfRangeFlux =
+    HalfRangeFlux((parts.FineBoundary && parts.How != OrdersAdded::ByBalance ? *parts.Fine : parts.Usual).Set());
   light.uncollidedDirections = parts.FineBoundary ? parts.Fine->Set().PerFace() : 0;
   light.balance = found.ledger.Balance();
   light.facePowerOut = found.ledger.FacePowerOut();

@@ -60,8 +60,8 @@ private:
   std::unique_ptr<SweepOperator> Filled;
   std::optional<EscapeCorrection> Escaping;
   std::vector<std::unique_ptr<CoarseDiffusion>> Cells; ///< by channel; empty: orders are added up one by one
-  std::array<Rgb, 6> KeptByCells = {}; ///< W, through faces, that the next sweep is to let out less
-  std::array<Rgb, 6> OutOfCells = {}; ///< W, through faces, of all orders to come by the cells' last solution
+  std::array<Rgb, 6> KeptByCells = {};                 ///< W, through faces, that the next sweep is to let out less
+  std::array<Rgb, 6> OutOfCells = {};   ///< W, through faces, of all orders to come by the cells' last solution
   std::optional<OctantSources> AtFaces; ///< where voxels are thick
   WarmStart Warm;
   std::vector<float> Direct; ///< W / length^2, [channel][stride], where light is to be kept

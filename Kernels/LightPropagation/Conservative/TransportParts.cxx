@@ -60,8 +60,8 @@ TransportParts::TransportParts(Device& device, const PropagationProblem& problem
   , Problem(problem)
   , How(how)
   , Layout(LayoutOf(problem))
-  , OnDevice(
-      device, problem.TheMedium(), problem.Scattering(), this->Layout, NeedsOf(problem, this->Layout, this->ByBalance()))
+  , OnDevice(device, problem.TheMedium(), problem.Scattering(), this->Layout,
+      NeedsOf(problem, this->Layout, this->ByBalance()))
   , Scattering(this->MakeScattering())
   , Usual(problem.TheGrid(), problem.Settings(),
       DirectionsForVoxels(problem.Settings().directionsPerFace, problem.TheGrid().spacing),

@@ -16,7 +16,7 @@ constexpr double SetUp = 0.8;
 /// An accelerated solve in such orders: one to set up three, and five sweeps with their corrections.
 constexpr double AcceleratedOrders = 18.0;
 constexpr double OrdersByCells = 12.0; ///< the same with cells: measured 9 in 128^3 voxels, 14 in 64^3
-constexpr double LeastOrders = 3.0; ///< that are swept however few are needed
+constexpr double LeastOrders = 3.0;    ///< that are swept however few are needed
 constexpr int Choices[] = { 36, 49, 64, 100 };
 
 /// Light comes in through some of the box's faces, and not the same through all.
