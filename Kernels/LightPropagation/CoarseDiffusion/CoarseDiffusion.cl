@@ -39,26 +39,31 @@ __kernel void sum_cells(CoarseCells box, const __global float* values, float sca
   }
 }
 
-// What a voxel scatters more of its light because light is not as smeared as constant voxels have it, once where it is
-// gathered and once where it shines (numerics.md, Eq. (76f)); what one voxel gains the one beside it loses. Right
-// for light that changes evenly: the last factor is the current of a constant source (Eq. (51)) beyond that of a linear
-// one, over its first term, to 1e-4 for voxels up to 1.5 mean free paths.
-// own, other      light of the voxel, and of the one beside it
-// t, s            their sigma_t and sigma_s
-// spacing         from one to the other
-inline float sharpen(float own, float other, float t, float s, float other_t, float other_s, float spacing)
+// The current of a constant source (numerics.md, Eq. (51)) beyond that of a linear one, over the first term of that,
+// to 1e-4 for voxels up to 1.5 mean free paths.
+inline float part_of_first_term(float tau)
 {
-  const float both = t + other_t, tau = 0.5f * spacing * both;
-  return (s * t + other_s * other_t) * (own - other) /
-    (12.0f * fmax(both, 1e-37f) * (1.0f + tau * (0.183f + 0.0163f * tau)));
+  return 1.0f / (1.0f + tau * (0.183f + 0.0163f * tau));
 }
 
-// At a face of the box (Eq. (76g)) constant voxels let out more than light that falls off towards it does: as much is given to the
-// outermost voxels, and counted as not let out.
+// What a voxel scatters more of its light because light is not as smeared as constant voxels have it, once where it is
+// gathered and once where it shines (Eq. (76f)); what one voxel gains the one beside it loses. Right for light that
+// changes evenly.
+//   own, other  light of the voxel, and of the one beside it
+//   t, s        their sigma_t and sigma_s
+//   spacing     from one to the other
+inline float sharpen(float own, float other, float t, float s, float other_t, float other_s, float spacing)
+{
+  const float both = t + other_t;
+  const float scattered = (s * t + other_s * other_t) / fmax(both, 1e-37f);
+  return scattered * (own - other) * part_of_first_term(0.5f * spacing * both) / 12.0f;
+}
+
+// At a face of the box (Eq. (76g)) constant voxels let out more than light that falls off towards it does: as much is
+// given to the outermost voxels, and counted as not let out.
 inline float sharpen_at_face(float own, float inner, float t, float s, float spacing)
 {
-  const float tau = spacing * t;
-  return s * (inner - own) / (24.0f * (1.0f + tau * (0.183f + 0.0163f * tau)));
+  return s * (inner - own) * part_of_first_term(spacing * t) / 24.0f;
 }
 
 // What is scattered of light that was gathered. A work-item a row of voxels.
