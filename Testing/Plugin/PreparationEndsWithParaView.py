@@ -20,7 +20,7 @@ def preparations(parent):
 
 shutil.rmtree(cache, ignore_errors=True)
 paraview = subprocess.Popen(sys.argv[1:] + ["--exit", "--test-script=" + session],
-                            env={**os.environ, "POCL_CACHE_DIR": cache})
+                            env={**os.environ, "POCL_CACHE_DIR": cache, "TYNDALL_PREPARE": "1"})
 seen = []
 while paraview.poll() is None:
     seen = seen or preparations(paraview.pid)
