@@ -1,5 +1,7 @@
 #include "RepresentationHints.h"
 
+#include "RegisteredProxies.h"
+
 #include "vtkCallbackCommand.h"
 #include "vtkCollection.h"
 #include "vtkDataObject.h"
@@ -250,12 +252,5 @@ void Notice(vtkObject*, unsigned long, void*, void* data)
 void FollowRepresentationHints()
 {
   static bool listening = false;
-  vtkSMProxyManager* manager = vtkSMProxyManager::GetProxyManager();
-  if (!listening && manager)
-  {
-    vtkNew<vtkCallbackCommand> command;
-    command->SetCallback(Notice);
-    manager->AddObserver(vtkCommand::RegisterEvent, command);
-    listening = true;
-  }
+  FollowRegisteredProxies(listening, Notice);
 }

@@ -1,5 +1,7 @@
 #include "ScenePlacement.h"
 
+#include "RegisteredProxies.h"
+
 #include "vtkBoundingBox.h"
 #include "vtkCallbackCommand.h"
 #include "vtkCollection.h"
@@ -124,12 +126,5 @@ void Notice(vtkObject*, unsigned long, void*, void* data)
 void FollowScenePlacement()
 {
   static bool listening = false;
-  vtkSMProxyManager* const manager = vtkSMProxyManager::GetProxyManager();
-  if (!listening && manager)
-  {
-    vtkNew<vtkCallbackCommand> command;
-    command->SetCallback(Notice);
-    manager->AddObserver(vtkCommand::RegisterEvent, command);
-    listening = true;
-  }
+  FollowRegisteredProxies(listening, Notice);
 }

@@ -1,5 +1,7 @@
 #include "ViewCameras.h"
 
+#include "RegisteredProxies.h"
+
 #include "vtkCallbackCommand.h"
 #include "vtkCollection.h"
 #include "vtkNew.h"
@@ -207,12 +209,5 @@ void Notice(vtkObject*, unsigned long, void*, void* data)
 void FollowViewCameras()
 {
   static bool listening = false;
-  vtkSMProxyManager* const manager = vtkSMProxyManager::GetProxyManager();
-  if (!listening && manager)
-  {
-    vtkNew<vtkCallbackCommand> command;
-    command->SetCallback(Notice);
-    manager->AddObserver(vtkCommand::RegisterEvent, command);
-    listening = true;
-  }
+  FollowRegisteredProxies(listening, Notice);
 }

@@ -40,7 +40,11 @@ SourceIteration::SourceIteration(TransportParts& parts, const KeptLight* kept)
   }
   if (parts.How == OrdersAdded::ByCells)
   {
-    this->MakeCells();
+    this->Cells.emplace(parts);
+    for (RestOfOrders& rest : this->Rest)
+    {
+      rest.BeginWarm(FallByCells);
+    }
   }
   this->MakeSweeps();
   if (parts.StoresMoments())
@@ -76,7 +80,7 @@ IterationResult SourceIteration::Run(const Monitor& monitor)
     }
     this->ReflectOrder();
     this->ScatterOrder();
-    if (this->Order == 0 && this->Warm.Begins() && this->Cells.empty())
+    if (this->Order == 0 && this->Warm.Begins() && !this->Cells)
     {
       this->BeginWarm();
     }
@@ -88,8 +92,11 @@ IterationResult SourceIteration::Run(const Monitor& monitor)
   {
     this->SweepEmptySlabs(monitor);
   }
-  this->Result.ledger = this->WithOutOfCells();
-  if (this->AtFaces || this->Warm.Begins() || !this->Cells.empty())
+  if (this->Cells)
+  {
+    this->Result.ledger = this->Cells->WithOut(this->Result.ledger);
+  }
+  if (this->AtFaces || this->Warm.Begins() || this->Cells)
   {
     this->CutOffNegative();
   }
@@ -111,7 +118,7 @@ std::vector<double> SourceIteration::LeftByCell() const
 {
   const FaceLight& faces = *this->Parts.Faces;
   std::vector<double> left = faces.LeftInAll();
-  if (this->Cells.empty())
+  if (!this->Cells)
   {
     return left;
   }
@@ -135,7 +142,7 @@ std::vector<double> SourceIteration::LeftByCell() const
 void SourceIteration::MakeSweeps()
 {
   // What waits for the next sweep is light that the cells know nothing of.
-  const bool wholeWay = this->Settings.maximumOrders > 0 || !this->Cells.empty();
+  const bool wholeWay = this->Settings.maximumOrders > 0 || this->Cells;
   const int mostPlanes = wholeWay ? MostPlanesAround : FewPlanes;
   SweepRequest request = { this->DepositOfSweep(), this->Parts.AllRays(), {}, mostPlanes };
   request.octantSource = this->AtFaces ? &this->AtFaces->Sources() : nullptr;
@@ -158,7 +165,7 @@ void SourceIteration::MakeFilledSweep()
   const std::array<bool, 3>& periodic = this->Settings.periodic;
   const MediumTraits& traits = this->Parts.Problem.Traits();
   if (!this->Settings.leaveOut || !traits.scatters || !this->Parts.Scattering->CanScatterAllOrders() || periodic[0] ||
-    periodic[1] || periodic[2] || this->Parts.Faces || this->AtFaces || !this->Cells.empty())
+    periodic[1] || periodic[2] || this->Parts.Faces || this->AtFaces || this->Cells)
   {
     return;
   }
@@ -340,18 +347,6 @@ std::array<std::size_t, 2> SourceIteration::SweptValues() const
     RoundUp(layer * (filled.first[2] + filled.size[2]), SweepPadding) };
 }
 
-/// Diffusion on cells of voxels, of each channel.
-void SourceIteration::MakeCells()
-{
-  const TransportParts& parts = this->Parts;
-  for (int c = 0; c < parts.Layout.channels; ++c)
-  {
-    this->Cells.push_back(std::make_unique<CoarseDiffusion>(parts.TheDevice, parts.Layout, c, parts.OnDevice,
-      this->Settings.periodic, CellHalvings(parts.Problem), parts.Problem.HasLinearSource()));
-    this->Rest[c].BeginWarm(FallByCells);
-  }
-}
-
 /// As ScatterOrder, with what the cells say of all orders to come, which the next sweep is to have less.
 void SourceIteration::ScatterByCells()
 {
@@ -361,25 +356,16 @@ void SourceIteration::ScatterByCells()
     this->LookAtDirect(parts.Path, 1.0 / parts.Layout.grid.VoxelVolume());
   }
   const bool guessed = this->Order == 0 && this->Warm.Begins();
+  const OrdersByCells::Powers powers =
+    this->Cells->ScatterOrder(this->Result.ledger, guessed ? &this->Warm.Guess() : nullptr);
+  this->Scattered = powers.scattered;
+  this->Shining = Sum(powers.magnitude) > 0.0;
   this->Residual = 0.0;
-  this->Shining = false;
-  for (std::size_t i = 0; i < this->Cells.size(); ++i)
+  for (int c = 0; c < parts.Layout.channels; ++c)
   {
-    const auto c = static_cast<int>(i);
-    const CoarseDiffusion::Powers powers =
-      this->Cells[i]->ScatterOrder(parts.Path, parts.Fluence, parts.Source, guessed ? &this->Warm.Guess() : nullptr);
-    this->Result.ledger.Absorb(c, powers.absorbed);
-    this->Result.ledger.LeaveOver(c, powers.left + this->OnTheWay[c] + this->Stranded[c]);
-    for (int face = 0; face < 6; ++face)
-    {
-      this->Result.ledger.Escape(c, face, -this->KeptByCells[face][c]); // that the sweep just done let out
-      this->KeptByCells[face][c] = powers.kept[face];
-      this->OutOfCells[face][c] = powers.out[face];
-    }
-    this->Scattered[c] = powers.scattered;
-    this->AllScattered[c] += powers.scattered;
-    this->Shining = this->Shining || powers.magnitude > 0.0;
-    const double now = powers.magnitude + std::abs(this->OnTheWay[c]);
+    this->Result.ledger.LeaveOver(c, powers.left[c] + this->OnTheWay[c] + this->Stranded[c]);
+    this->AllScattered[c] += powers.scattered[c];
+    const double now = powers.magnitude[c] + std::abs(this->OnTheWay[c]);
     if (now > 0.0 && this->AllScattered[c] > 0.0)
     {
       this->Residual = std::max(this->Residual, this->Rest[c].After(now, this->AllScattered[c]));
@@ -387,21 +373,7 @@ void SourceIteration::ScatterByCells()
   }
   const double all = Sum(this->AllScattered);
   this->Result.convergence.Add(
-    this->Residual, all > 0.0 ? std::abs(Sum(this->Scattered)) / all : 0.0, this->WithOutOfCells());
-}
-
-/// Where the light is by the cells' last solution.
-EnergyLedger SourceIteration::WithOutOfCells() const
-{
-  EnergyLedger ledger = this->Result.ledger;
-  for (int face = 0; face < 6; ++face)
-  {
-    for (int c = 0; c < 3; ++c)
-    {
-      ledger.Escape(c, face, this->OutOfCells[face][c]);
-    }
-  }
-  return ledger;
+    this->Residual, all > 0.0 ? std::abs(Sum(this->Scattered)) / all : 0.0, this->Cells->WithOut(this->Result.ledger));
 }
 
 /// @param scale  to W / length^2
@@ -420,7 +392,7 @@ void SourceIteration::LookAtDirect(const Buffer<float>& fluence, double scale)
 
 void SourceIteration::ScatterOrder()
 {
-  if (!this->Cells.empty())
+  if (this->Cells)
   {
     this->ScatterByCells();
     return;

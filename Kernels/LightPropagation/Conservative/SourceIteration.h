@@ -1,8 +1,8 @@
 #pragma once
 
-#include "LightPropagation/CoarseDiffusion/CoarseDiffusion.h"
 #include "LightPropagation/Conservative/EscapeCorrection.h"
 #include "LightPropagation/Conservative/Iteration.h"
+#include "LightPropagation/Conservative/OrdersByCells.h"
 #include "LightPropagation/Conservative/TransportParts.h"
 #include "LightPropagation/Conservative/WarmStart.h"
 #include "LightPropagation/Convergence.h"
@@ -33,10 +33,8 @@ private:
   Deposit DepositOfSweep() const;
   void SweepOrder(const Monitor& monitor);
   void ReflectOrder();
-  void MakeCells();
   void ScatterOrder();
   void ScatterByCells();
-  EnergyLedger WithOutOfCells() const;
   void LookAtDirect(const Buffer<float>& fluence, double scale);
   void EstimateResidual();
   void BeginWarm();
@@ -59,9 +57,7 @@ private:
   /// Of the orders after it, where the medium leaves much of the volume empty; else null.
   std::unique_ptr<SweepOperator> Filled;
   std::optional<EscapeCorrection> Escaping;
-  std::vector<std::unique_ptr<CoarseDiffusion>> Cells; ///< by channel; empty: orders are added up one by one
-  std::array<Rgb, 6> KeptByCells = {};                 ///< W, through faces, that the next sweep is to let out less
-  std::array<Rgb, 6> OutOfCells = {};   ///< W, through faces, of all orders to come by the cells' last solution
+  std::optional<OrdersByCells> Cells;   ///< none: orders are added up one by one
   std::optional<OctantSources> AtFaces; ///< where voxels are thick
   WarmStart Warm;
   std::vector<float> Direct; ///< W / length^2, [channel][stride], where light is to be kept

@@ -1,0 +1,51 @@
+#include "LightPropagation/Conservative/OrdersByCells.h"
+
+#include "LightPropagation/Problem/ScatteringOrders.h"
+
+namespace tyndall
+{
+OrdersByCells::OrdersByCells(const TransportParts& parts)
+  : Parts(parts)
+{
+  for (int c = 0; c < parts.Layout.channels; ++c)
+  {
+    this->Cells.push_back(std::make_unique<CoarseDiffusion>(parts.TheDevice, parts.Layout, c, parts.OnDevice,
+      parts.Problem.Settings().periodic, CellHalvings(parts.Problem), parts.Problem.HasLinearSource()));
+  }
+}
+
+OrdersByCells::Powers OrdersByCells::ScatterOrder(EnergyLedger& ledger, const Buffer<float>* guess)
+{
+  Powers all;
+  for (std::size_t i = 0; i < this->Cells.size(); ++i)
+  {
+    const auto c = static_cast<int>(i);
+    const CoarseDiffusion::Powers powers =
+      this->Cells[i]->ScatterOrder(this->Parts.Path, this->Parts.Fluence, this->Parts.Source, guess);
+    ledger.Absorb(c, powers.absorbed);
+    all.scattered[c] = powers.scattered;
+    all.magnitude[c] = powers.magnitude;
+    all.left[c] = powers.left;
+    for (int face = 0; face < 6; ++face)
+    {
+      ledger.Escape(c, face, -this->Kept[face][c]); // that the sweep just done let out
+      this->Kept[face][c] = powers.kept[face];
+      this->Out[face][c] = powers.out[face];
+    }
+  }
+  return all;
+}
+
+EnergyLedger OrdersByCells::WithOut(const EnergyLedger& ledger) const
+{
+  EnergyLedger with = ledger;
+  for (int face = 0; face < 6; ++face)
+  {
+    for (int c = 0; c < 3; ++c)
+    {
+      with.Escape(c, face, this->Out[face][c]);
+    }
+  }
+  return with;
+}
+}

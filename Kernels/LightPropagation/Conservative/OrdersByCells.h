@@ -1,0 +1,43 @@
+#pragma once
+
+#include "LightPropagation/CoarseDiffusion/CoarseDiffusion.h"
+#include "LightPropagation/Conservative/EnergyLedger.h"
+#include "LightPropagation/Conservative/TransportParts.h"
+
+#include <array>
+#include <memory>
+#include <vector>
+
+namespace tyndall
+{
+/// What diffusion on cells of voxels (CoarseDiffusion.h) says of all orders to come, for each channel of a solve, and
+/// how its power is counted.
+class OrdersByCells
+{
+public:
+  /// @param parts  must stay
+  explicit OrdersByCells(const TransportParts& parts);
+
+  /// W.
+  struct Powers
+  {
+    Rgb scattered = {}; ///< the next source
+    Rgb magnitude = {}; ///< the same without signs
+    Rgb left = {};      ///< that the cells' solution accounts for nowhere
+  };
+
+  /// From the path integrals of a sweep to fluence and the next source, with all orders to come.
+  /// @param ledger  what is absorbed is counted here, and that the sweep let out too much
+  /// @param guess  of all orders to come, in the place of the cells' solution; null: that
+  Powers ScatterOrder(EnergyLedger& ledger, const Buffer<float>* guess);
+
+  /// A ledger with what leaves of the orders to come.
+  EnergyLedger WithOut(const EnergyLedger& ledger) const;
+
+private:
+  const TransportParts& Parts;
+  std::vector<std::unique_ptr<CoarseDiffusion>> Cells; ///< by channel
+  std::array<Rgb, 6> Kept = {};                        ///< W, through faces, that the next sweep is to let out less
+  std::array<Rgb, 6> Out = {};                         ///< W, through faces, of all orders to come
+};
+}
