@@ -27,7 +27,7 @@ LAYERS = {
         ["Angular"],
         ["Sweep", "Problem"],
         ["Scattering", "Uncollided", "Diffusion", "PlaneParallel"],
-        ["Emission", "ThickVoxels"],
+        ["Emission", "ThickVoxels", "CoarseDiffusion"],
         ["Conservative", "Published"],
         ["Accuracy"],
     ],
