@@ -73,7 +73,12 @@ double FaceReflection::Pattern(std::size_t cell) const
 
 std::vector<double> FaceReflection::ScaledTo(std::vector<double> power, const std::vector<double>& sums) const
 {
-  const std::array<Rgb, 6> is = this->PowerOfFaces(power), shouldBe = this->PowerOfFaces(sums);
+  return this->ScaledTo(std::move(power), this->PowerOfFaces(sums));
+}
+
+std::vector<double> FaceReflection::ScaledTo(std::vector<double> power, const std::array<Rgb, 6>& shouldBe) const
+{
+  const std::array<Rgb, 6> is = this->PowerOfFaces(power);
   for (std::size_t i = 0; i < power.size(); ++i)
   {
     const int face = this->FaceOf(i % this->Cells());

@@ -46,6 +46,7 @@ public:
   double Pattern(std::size_t cell) const;
   /// Scaled such that the sums over faces are those of `sums`.
   std::vector<double> ScaledTo(std::vector<double> power, const std::vector<double>& sums) const;
+  std::vector<double> ScaledTo(std::vector<double> power, const std::array<Rgb, 6>& shouldBe) const; ///< W of faces
   /// W / length^2 of W, [channel][cell]; [cell][channel] as LightField::facePower has it.
   std::vector<float> PerArea(const std::vector<double>& power) const;
 

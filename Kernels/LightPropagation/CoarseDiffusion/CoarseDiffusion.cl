@@ -167,20 +167,12 @@ inline between find_between(const CoarseCells* box, int axis, int voxel)
   found.from = voxel >> box->halvings[axis];
   found.way = ((voxel & (edge - 1)) + 0.5f) / edge - 0.5f;
   found.to = found.from + (found.way > 0.0f ? 1 : -1);
-  const bool outside = found.to < 0 || found.to >= cells;
-  if (outside && box->periodic[axis])
+  found.way = fabs(found.way);
+  if (found.to < 0 || found.to >= cells)
   {
-    found.to = found.to < 0 ? cells - 1 : 0;
-    found.way = fabs(found.way);
-  }
-  else if (outside)
-  {
-    found.to = cells == 1 ? 0 : found.to < 0 ? 1 : cells - 2;
-    found.way = -fabs(found.way);
-  }
-  else
-  {
-    found.way = fabs(found.way);
+    const int inner = cells == 1 ? 0 : found.to < 0 ? 1 : cells - 2, around = found.to < 0 ? cells - 1 : 0;
+    found.to = box->periodic[axis] ? around : inner;
+    found.way = box->periodic[axis] ? found.way : -found.way;
   }
   return found;
 }

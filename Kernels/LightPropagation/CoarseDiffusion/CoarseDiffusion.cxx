@@ -4,10 +4,10 @@
 #include "Device/Sizes.h"
 #include "LightPropagation/CoarseDiffusion/CoarseMatrix.h"
 #include "LightPropagation/Diffusion/MultigridLayout.h"
+#include "Medium/BoxFaces.h"
 #include "Numerics/Constants.h"
 #include "TyndallKernelSources.h"
 
-#include <algorithm>
 #include <numeric>
 
 namespace tyndall
@@ -15,7 +15,6 @@ namespace tyndall
 namespace
 {
 constexpr double Reduction = 0.02; ///< of the residual: sweeps take away less than that
-const char* const What = "diffusion on cells";
 
 std::array<int, 3> CellsOf(const std::array<int, 3>& voxels, const std::array<int, 3>& halvings)
 {
@@ -52,8 +51,7 @@ CoarseDiffusion::CoarseDiffusion(Device& device, const VolumeLayout& layout, int
   this->Box.first = static_cast<cl_int>(channel * layout.Stride());
   this->Box.firstT = static_cast<cl_int>(layout.ExtinctionFirst(channel));
   this->Box.cells = this->Solver.Rows();
-  const int* const cells = this->Box.cells.size;
-  this->Found = ExactValues(device, Count(cells[0]) * Count(cells[1]) * Count(cells[2]), What);
+  this->Found = ExactValues(device, this->CellGrid().VoxelCount(), "diffusion on cells");
   this->FindMatrix();
 }
 
@@ -77,7 +75,7 @@ void CoarseDiffusion::FindMatrix()
 {
   const std::vector<float> sigmaT = this->SumOfVoxels(this->TheMedium.SigmaT(), this->Box.firstT);
   const std::vector<float> sigmaS = this->SumOfVoxels(this->TheMedium.SigmaS(), this->Box.first);
-  CoarseMatrix matrix = FindCoarseMatrix(this->TheGrid, this->Box, sigmaT, sigmaS);
+  CoarseMatrix matrix = FindCoarseMatrix(this->TheGrid, this->Box, this->CellGrid(), sigmaT, sigmaS);
   this->Solver.Conductance().Write(matrix.conductance.data());
   this->Solver.Loss().Write(matrix.loss.data());
   this->Solver.Coarsen();
@@ -121,8 +119,7 @@ void CoarseDiffusion::Solve(const Buffer<float>& source, double magnitude)
   With(sum, this->Box, source, static_cast<float>(4.0 * Pi * this->TheGrid.VoxelVolume()), this->Solver.Right(),
     cl_ulong(this->Box.first));
   MultigridSolver::RunRows(this->TheDevice, sum, this->Box.cells);
-  const int* const n = this->Box.cells.size;
-  this->Solver.Solve(this->Found, magnitude / (Count(n[0]) * Count(n[1]) * Count(n[2])), Reduction);
+  this->Solver.Solve(this->Found, magnitude / static_cast<double>(this->CellGrid().VoxelCount()), Reduction);
 }
 
 /// What is scattered of path integrals, times a sign, into the source. @return its sums
@@ -171,27 +168,18 @@ CoarseDiffusion::Sums CoarseDiffusion::RunByRows(cl::Kernel& kernel)
 std::array<double, 6> CoarseDiffusion::OutThroughFaces() const
 {
   const std::vector<double> found = this->Found.Read();
-  const int* const n = this->Box.cells.size;
   std::array<double, 6> out = {};
-  std::array<std::size_t, 6> next = {};
-  std::size_t i = 0;
-  for (int z = 0; z < n[2]; ++z)
-  {
-    for (int y = 0; y < n[1]; ++y)
-    {
-      for (int x = 0; x < n[0]; ++x, ++i)
-      {
-        const std::array<int, 3> at = { x, y, z };
-        for (int face = 0; face < 6; ++face)
-        {
-          if (!this->Borders[face].empty() && at[face / 2] == (face % 2 == 0 ? 0 : n[face / 2] - 1))
-          {
-            out[face] += this->Borders[face][next[face]++] * found[i];
-          }
-        }
-      }
-    }
-  }
+  ForBoxFaceCells(this->CellGrid(),
+    [&](const BoxFaceCell& cell) { out[cell.face] += this->Borders[cell.number] * found[cell.voxel]; });
   return out;
+}
+
+/// Their size alone.
+Grid CoarseDiffusion::CellGrid() const
+{
+  const int* const n = this->Box.cells.size;
+  Grid grid;
+  grid.size = { n[0], n[1], n[2] };
+  return grid;
 }
 }

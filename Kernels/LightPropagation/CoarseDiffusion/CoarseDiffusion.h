@@ -57,6 +57,7 @@ private:
   Sums AddFound(const Buffer<float>& path, const Buffer<float>& fluence);
   Sums AddGuess(const Buffer<float>& guess, const Buffer<float>& path, const Buffer<float>& fluence);
   std::array<double, 6> OutThroughFaces() const;
+  Grid CellGrid() const;
   Sums RunByRows(cl::Kernel& kernel);
 
   Device& TheDevice;
@@ -67,6 +68,6 @@ private:
   MultigridSolver Solver;
   ExactValues Found; ///< W / length^2, by cells
   Buffer<cl_float8> Tally;
-  std::array<std::vector<double>, 6> Borders; ///< W out through each cell at a face of the box, over its fluence
+  std::vector<double> Borders; ///< as CoarseMatrix has them
 };
 }

@@ -1,6 +1,7 @@
 #include "LightPropagation/CoarseDiffusion/CoarseMatrix.h"
 
 #include "LightPropagation/Diffusion/MultigridLayout.h"
+#include "Medium/BoxFaces.h"
 
 #include <algorithm>
 
@@ -104,38 +105,39 @@ std::vector<double> Diffusing(const Level& level)
 }
 }
 
-CoarseMatrix FindCoarseMatrix(
-  const Grid& grid, const CoarseCells& box, const std::vector<float>& sigmaT, const std::vector<float>& sigmaS)
+CoarseMatrix FindCoarseMatrix(const Grid& grid, const CoarseCells& box, const Grid& cells,
+  const std::vector<float>& sigmaT, const std::vector<float>& sigmaS)
 {
   const Level level = Finest(grid, box, sigmaT);
   const std::vector<double> sigma = Diffusing(level);
   const std::size_t count = sigma.size();
   std::vector<double> conductance(3 * count, 0.0), loss(count, 0.0);
-  CoarseMatrix matrix;
   ForCells(level.size, [&](int x, int y, int z) {
     const std::array<int, 3> at = { x, y, z };
     const std::size_t here = level.At(x, y, z);
     loss[here] = std::max(0.0, double(sigmaT[here]) - sigmaS[here]) * grid.VoxelVolume();
-    for (int face = 0; face < 6; ++face)
+    for (int axis = 0; axis < 3; ++axis)
     {
-      const int axis = face / 2, last = level.size[axis] - 1;
+      if (at[axis] == 0 && !box.periodic[axis])
+      {
+        continue;
+      }
+      std::array<int, 3> low = at;
+      low[axis] = at[axis] == 0 ? level.size[axis] - 1 : at[axis] - 1;
       const double width = level.widths[axis][at[axis]], area = level.Volume(x, y, z) / width;
-      const bool outermost = at[axis] == (face % 2 == 0 ? 0 : last);
-      if (outermost && !box.periodic[axis])
-      {
-        const double passes = area / (1.5 * sigma[here] * width + Marshak);
-        loss[here] += passes;
-        matrix.borders[face].push_back(passes);
-      }
-      else if (face % 2 == 0)
-      {
-        std::array<int, 3> low = at;
-        low[axis] = outermost ? last : at[axis] - 1;
-        const double between =
-          sigma[here] * width + sigma[level.At(low[0], low[1], low[2])] * level.widths[axis][low[axis]];
-        conductance[axis * count + here] = area / (1.5 * std::max(between, 2.0 * Floor));
-      }
+      const double between =
+        sigma[here] * width + sigma[level.At(low[0], low[1], low[2])] * level.widths[axis][low[axis]];
+      conductance[axis * count + here] = area / (1.5 * std::max(between, 2.0 * Floor));
     }
+  });
+  CoarseMatrix matrix;
+  ForBoxFaceCells(cells, [&](const BoxFaceCell& cell) {
+    const int axis = cell.face / 2;
+    const std::array<int, 3> at = cells.VoxelAt(cell.voxel);
+    const double width = level.widths[axis][at[axis]], area = level.Volume(at[0], at[1], at[2]) / width;
+    const double passes = box.periodic[axis] ? 0.0 : area / (1.5 * sigma[cell.voxel] * width + Marshak);
+    loss[cell.voxel] += passes;
+    matrix.borders.push_back(passes);
   });
   matrix.conductance = InRows(box.cells, conductance, 3);
   matrix.loss = InRows(box.cells, loss);

@@ -3,7 +3,6 @@
 #include "LightPropagation/CoarseDiffusion/CoarseShared.h"
 #include "Medium/Grid.h"
 
-#include <array>
 #include <vector>
 
 namespace tyndall
@@ -11,11 +10,12 @@ namespace tyndall
 /// The matrix of diffusion on cells (MultigridSolver.h), by rows of them.
 struct CoarseMatrix
 {
-  std::vector<float> conductance, loss;       ///< as the solver takes them
-  std::array<std::vector<double>, 6> borders; ///< by face of the box: what leaves through each cell over its fluence
+  std::vector<float> conductance, loss; ///< as the solver takes them
+  std::vector<double> borders;          ///< what leaves the box through each cell (BoxFaces.h) over its fluence
 };
 
+/// @param cells  of `box`, their size alone
 /// @param sigmaT, sigmaS  1/length, summed over the voxels of each cell, x fastest
-CoarseMatrix FindCoarseMatrix(
-  const Grid& grid, const CoarseCells& box, const std::vector<float>& sigmaT, const std::vector<float>& sigmaS);
+CoarseMatrix FindCoarseMatrix(const Grid& grid, const CoarseCells& box, const Grid& cells,
+  const std::vector<float>& sigmaT, const std::vector<float>& sigmaS);
 }

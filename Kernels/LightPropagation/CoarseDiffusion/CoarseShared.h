@@ -11,7 +11,7 @@ typedef struct
   float spacing[3];
   int periodic[3];
   int halvings[3];   ///< of voxels into cells along each axis: 2^halvings voxels an edge, the last cell perhaps fewer
-  int first, firstT; ///< where the channel begins: of sigma_t, of all others
+  int first, firstT; ///< where the channel begins: in all arrays but sigma_t, in that
   MultigridLevel cells; ///< how arrays over cells lie in memory
 } CoarseCells;
 SHARED_END

@@ -7,10 +7,11 @@ namespace tyndall
 OrdersByCells::OrdersByCells(const TransportParts& parts)
   : Parts(parts)
 {
+  const std::array<int, 3> halvings = CellHalvings(parts.Problem);
   for (int c = 0; c < parts.Layout.channels; ++c)
   {
     this->Cells.push_back(std::make_unique<CoarseDiffusion>(parts.TheDevice, parts.Layout, c, parts.OnDevice,
-      parts.Problem.Settings().periodic, CellHalvings(parts.Problem), parts.Problem.HasLinearSource()));
+      parts.Problem.Settings().periodic, halvings, parts.Problem.HasLinearSource()));
   }
 }
 

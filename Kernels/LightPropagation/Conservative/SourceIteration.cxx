@@ -108,35 +108,12 @@ IterationResult SourceIteration::Run(const Monitor& monitor)
   }
   if (this->Parts.Faces)
   {
-    this->Result.leftByCell = this->LeftByCell();
+    const FaceLight& faces = *this->Parts.Faces;
+    this->Result.leftByCell = this->Cells
+      ? faces.ScaledTo(faces.LeftInAll(), this->Result.ledger.FacePowerOut()) // cells change faces as a whole
+      : faces.LeftInAll();
   }
   return std::move(this->Result);
-}
-
-/// W; cells of voxels change what leaves through each face as a whole.
-std::vector<double> SourceIteration::LeftByCell() const
-{
-  const FaceLight& faces = *this->Parts.Faces;
-  std::vector<double> left = faces.LeftInAll();
-  if (!this->Cells)
-  {
-    return left;
-  }
-  const int channels = this->Parts.Layout.channels;
-  std::vector<double> sums(std::size_t(6) * channels, 0.0);
-  const auto sumOf = [&](std::size_t i) -> double& {
-    return sums[faces.FaceOf(i % faces.Cells()) * channels + i / faces.Cells()];
-  };
-  for (std::size_t i = 0; i < left.size(); ++i)
-  {
-    sumOf(i) += left[i];
-  }
-  for (std::size_t i = 0; i < left.size(); ++i)
-  {
-    const Rgb& out = this->Result.ledger.FacePowerOut()[faces.FaceOf(i % faces.Cells())];
-    left[i] *= sumOf(i) > 0.0 ? out[i / faces.Cells()] / sumOf(i) : 1.0;
-  }
-  return left;
 }
 
 void SourceIteration::MakeSweeps()

@@ -24,7 +24,6 @@ public:
   IterationResult Run(const Monitor& monitor) override;
 
 private:
-  std::vector<double> LeftByCell() const;
   void MakeSweeps();
   void MakeLitSweep();
   void MakeFilledSweep();

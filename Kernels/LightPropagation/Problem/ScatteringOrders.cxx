@@ -162,21 +162,25 @@ double Leak(const PropagationProblem& problem, int channel, const std::array<dou
   return leak;
 }
 
+/// As sweeps carry light, 1/length, of all voxels and channels.
+double ThickestExtinction(const PropagationProblem& problem)
+{
+  double largest = 0.0;
+  for (int c = 0; c < problem.Channels(); ++c)
+  {
+    for (std::size_t i = 0; i < problem.TheGrid().VoxelCount(); ++i)
+    {
+      largest = std::max<double>(largest, problem.Scattering().SigmaT(i, c));
+    }
+  }
+  return largest;
+}
+
 bool HasThickVoxels(const PropagationProblem& problem)
 {
   const Grid& grid = problem.TheGrid();
   const double longest = *std::max_element(grid.spacing.begin(), grid.spacing.end());
-  for (int c = 0; c < problem.Channels(); ++c)
-  {
-    for (std::size_t i = 0; i < grid.VoxelCount(); ++i)
-    {
-      if (longest * problem.Scattering().SigmaT(i, c) > ThickVoxel)
-      {
-        return true;
-      }
-    }
-  }
-  return false;
+  return longest * ThickestExtinction(problem) > ThickVoxel;
 }
 
 /// Light is scattered alike into all directions, no voxel is so thick that diffusion has to tell what leaves it, and
@@ -240,14 +244,7 @@ bool ScatteredManyTimes(const PropagationProblem& problem)
 
 std::array<int, 3> CellHalvings(const PropagationProblem& problem)
 {
-  double thickest = 0.0;
-  for (int c = 0; c < problem.Channels(); ++c)
-  {
-    for (std::size_t i = 0; i < problem.TheGrid().VoxelCount(); ++i)
-    {
-      thickest = std::max<double>(thickest, problem.Scattering().SigmaT(i, c));
-    }
-  }
+  const double thickest = ThickestExtinction(problem);
   std::array<int, 3> halvings = {};
   for (int axis = 0; axis < 3; ++axis)
   {
