@@ -68,6 +68,33 @@ TEST_F(EmissionPeaks, KeepTheirPower)
   }
 }
 
+TEST_F(EmissionPeaks, LeaveAStoneInAFurnaceAsItIs)
+{
+  // It hides as much as it sends, also where a face gives the light: its light must not be better than its shadow.
+  for (bool open : { true, false })
+  {
+    Scene scene({ 9, 11, 10 }, 0.0f, 0.0f);
+    const std::size_t stone = (4 * 11 + 6) * 9 + 3;
+    scene.emission.assign(scene.sigma_a.size(), 0.0f);
+    scene.sigma_a[stone] = scene.emission[stone] = 700.0f;
+    scene.light.sky = open ? Rgb{ 1.0, 1.0, 1.0 } : Rgb{};
+    scene.light.faces.fill(open ? Rgb{} : Rgb{ 1.0, 1.0, 1.0 });
+    const LightField light = scene.Solve(this->GetDevice());
+    EXPECT_TRUE(LeavesOutRays(light));
+    for (float fluence : light.fluence)
+    {
+      EXPECT_NEAR(fluence, 4.0 * Pi, 1e-3 * 4.0 * Pi);
+    }
+  }
+}
+
+TEST_F(EmissionPeaks, OfAStoneThatOutshinesTheSkyHaveRaysOfTheirOwn)
+{
+  Scene scene = Hearth({ 11, 12, 10 }, { 1, 1, 1 }, 3.0f);
+  scene.light.sky = { 0.02, 0.02, 0.02 };
+  EXPECT_FALSE(LeavesOutRays(scene.Solve(this->GetDevice())));
+}
+
 TEST_F(EmissionPeaks, GiveTheSameLightBitForBit)
 {
   Scene scene = Hearth({ 11, 12, 10 }, { 2, 3, 3 }, 0.5f);
