@@ -9,7 +9,8 @@ namespace tyndall
 namespace
 {
 constexpr std::size_t BrightPart = 64; ///< one voxel in so many may be part of a peak
-constexpr double Outshines = 4.0;      ///< times the mean of the rest, and the radiance that comes in
+constexpr double Outshines = 4.0;      ///< times the mean of the rest
+constexpr double Hides = 2.0;          ///< emission over what is absorbed of the light that comes in
 constexpr double PartOfAll = 0.5;      ///< that all peaks carry, at least
 constexpr double PartOfOne = 0.01;     ///< that each carries, at least
 constexpr std::size_t MostPeaks = 16;
@@ -244,22 +245,17 @@ bool IsOpaque(const Medium& medium, const std::vector<std::size_t>& group)
   });
 }
 
-/// By the light that comes in, of which it hides a part: in every channel.
-bool IsOutshone(
-  const Medium& medium, const EmissionPeak& peak, const std::vector<std::size_t>& group, const Rgb& comesIn)
+/// It absorbs about as much of the light that comes in as it emits, in every voxel and channel.
+bool HidesWhatItSends(const Medium& medium, const std::vector<std::size_t>& group, const Rgb& comesIn)
 {
-  const double width = peak.Width(medium.grid);
-  return std::none_of(group.begin(), group.end(), [&](std::size_t voxel) {
+  return std::all_of(group.begin(), group.end(), [&](std::size_t voxel) {
+    bool hides = true;
     for (int c = 0; c < 3; ++c)
     {
-      const double deep = 1.0 - std::exp(-width * medium.TransportSigmaT(voxel, c));
-      const double length = deep > 1e-3 ? deep / medium.TransportSigmaT(voxel, c) : width;
-      if (medium.emission.At(voxel, c) * length > Outshines * comesIn[c])
-      {
-        return true;
-      }
+      const double absorbs = static_cast<double>(medium.sigma_a.At(voxel, c)) * comesIn[c];
+      hides = hides && medium.emission.At(voxel, c) <= Hides * absorbs;
     }
-    return false;
+    return hides;
   });
 }
 
@@ -314,7 +310,7 @@ SplitEmission Split(const Medium& medium, const Rgb& comesIn)
     }
     const EmissionPeak peak = BoxAround(medium.grid, group);
     if (IsSmall(medium.grid, peak) && !IsOpaque(medium, group) && IsSeen(medium, peak) &&
-      !IsOutshone(medium, peak, group, comesIn))
+      !HidesWhatItSends(medium, group, comesIn))
     {
       candidates.push_back({ power, std::move(group), peak });
     }
