@@ -116,9 +116,11 @@ void OctantSources::TakeIncoming(const SweptDirections& along)
     OctantSourceInfo info = this->InfoOf(c);
     std::copy(crossings.first.begin(), crossings.first.end(), info.pattern);
     info.perRadiance = static_cast<float>(crossings.perRadiance);
-    With(take, info, this->OfSweep, crossings.values, this->Incoming);
-    this->Run(take);
+    With(take, info, this->OfSweep, crossings.values, this->Incoming, cl_int(!this->CameIn));
+    const std::array<int, 3>& n = this->Layout.grid.size;
+    this->TheDevice.Queue().enqueueNDRangeKernel(take, cl::NullRange, cl::NDRange(n[1], n[2], 6));
   }
+  this->CameIn = true;
 }
 
 void OctantSources::TakeLamp(const Buffer<float>& allPath)
@@ -128,7 +130,8 @@ void OctantSources::TakeLamp(const Buffer<float>& allPath)
   {
     With(add, this->InfoOf(c), this->TheMedium.SigmaT(), this->TheMedium.SigmaS(), this->PathOfLamp,
       this->MomentsOfLamp, this->Falling, this->OfLamps, allPath);
-    this->Run(add);
+    const std::array<int, 3>& n = this->Layout.grid.size;
+    this->TheDevice.Queue().enqueueNDRangeKernel(add, cl::NullRange, cl::NDRange(n[0], n[1], n[2]));
   }
   this->LampsShine = true;
 }
@@ -141,9 +144,10 @@ void OctantSources::Find(const Buffer<float>& source)
   {
     With(find, this->InfoOf(c), this->TheMedium.SigmaT(), this->TheMedium.SigmaS(), source, this->Diffuse,
       this->Incoming, lamps, cl_int(this->LampsShine), this->Found);
-    this->Run(find);
+    const std::array<int, 3>& n = this->Layout.grid.size;
+    this->TheDevice.Queue().enqueueNDRangeKernel(find, cl::NullRange, cl::NDRange(n[1], n[2]));
   }
-  this->Incoming.Fill(0.0f);
+  this->CameIn = false;
   this->LampsShine = false;
 }
 
@@ -163,11 +167,5 @@ OctantSourceInfo OctantSources::InfoOf(int channel) const
   info.first = channel * this->Layout.Stride();
   info.stride = this->Layout.Stride();
   return info;
-}
-
-void OctantSources::Run(cl::Kernel& kernel) const
-{
-  const std::array<int, 3>& n = this->Layout.grid.size;
-  this->TheDevice.Queue().enqueueNDRangeKernel(kernel, cl::NullRange, cl::NDRange(n[0], n[1], n[2]));
 }
 }

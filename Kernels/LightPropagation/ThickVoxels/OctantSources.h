@@ -56,7 +56,6 @@ private:
   };
   const Crossings& CrossingsOf(const SweptDirections& along);
   OctantSourceInfo InfoOf(int channel) const;
-  void Run(cl::Kernel& kernel) const;
 
   Device& TheDevice;
   const PropagationProblem& Problem;
@@ -67,6 +66,7 @@ private:
   Buffer<float> PathOfLamp, MomentsOfLamp, OfLamps; ///< as Deposit has them; [channel][face][stride]
   Buffer<float> Diffuse, Falling;                   ///< VoxelResponse
   std::map<const SweptDirections*, Crossings> Patterns;
+  bool CameIn = false;     ///< light was taken since the last time
   bool LampsShine = false; ///< in what is found next
 };
 }
