@@ -66,8 +66,8 @@ __kernel void mark_image_cells(EmissionInfo s, int mirrored, int face, ulong fir
 }
 
 // path  [channel][stride];  flux  [channel][x, y, z][stride], where has_flux is 1
-__kernel void copy_images(EmissionInfo s, int mirrored, int channels, ulong stride, __global float* path,
-  __global float* flux, int has_flux)
+__kernel void copy_images(
+  EmissionInfo s, int mirrored, int channels, ulong stride, __global float* path, __global float* flux, int has_flux)
 {
   int from[3];
   float sign[3];
@@ -92,8 +92,8 @@ __kernel void copy_images(EmissionInfo s, int mirrored, int channels, ulong stri
 }
 
 // faces  [cell][channel]: the face's from `first` on, as those from `from_first` on
-__kernel void copy_image_cells(EmissionInfo s, int mirrored, int face, ulong from_first, ulong first, int channels,
-  __global float* faces)
+__kernel void copy_image_cells(
+  EmissionInfo s, int mirrored, int face, ulong from_first, ulong first, int channels, __global float* faces)
 {
   const int u = (face / 2 + 1) % 3, v = (face / 2 + 2) % 3;
   const int at[2] = { get_global_id(0), get_global_id(1) };

@@ -20,7 +20,7 @@ constexpr double Many = 0.25; ///< of all that is scattered, in so thick voxels
 /// floats do not tell it.
 constexpr double Opaque = 1e4;
 
-/// Of the light that is scattered, if it were the same in all voxels, the part that thick ones scatter; of all channels.
+/// Of what is scattered of light that is the same in all voxels, the part that thick ones scatter; of all channels.
 double PartInThickVoxels(const PropagationProblem& problem)
 {
   const Grid& grid = problem.TheGrid();
