@@ -7,8 +7,8 @@
 
 namespace tyndall
 {
-/// Planes through the middle of the grid and of what shines, of which one side is the mirror image of the other: extinction and
-/// emission are the same there, and so is the light. It is found on the low side alone and copied.
+/// Planes through the middle of the grid and of what shines, of which one side is the mirror image of the other:
+/// extinction and emission are the same there, and so is the light. It is found on the low side alone and copied.
 class EmissionMirrors
 {
 public:
