@@ -85,8 +85,8 @@ public:
   {
     CONSTANT = 0,         ///< in each voxel, as published
     LINEAR = 1,           ///< from voxel centre to voxel centre: right however thick voxels are
-    AUTOMATIC_SOURCE = 2, ///< linear where orders are accelerated
-    OCTANTS = 3           ///< the same, but of thick voxels by octant: right where they absorb much
+    AUTOMATIC_SOURCE = 2, ///< linear where orders are accelerated, by octant where many voxels are thick, else constant
+    OCTANTS = 3           ///< of thick voxels by octant: right where they absorb much; linear where accelerated
   };
 
   enum Accelerations

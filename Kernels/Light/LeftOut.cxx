@@ -27,6 +27,9 @@ const char* const DarkOutside = "boundary radiance: no environment, sky or face 
 const char* const EvenOutside = "uncollided flux of the boundaries: what comes from outside is the same from "
                                 "everywhere and goes with scattered light";
 const char* const ThinVoxels = "light at the faces of thick voxels: there are none";
+const char* const NotByOctant =
+  "Source By octant: not with accelerated orders, angular moments, small bright emission, "
+  "light of another solver or voxels of more than 10000 mean free paths";
 const char* const NotSideBySide =
   "marching beside diffusion: the device does one after the other, and takes no longer than by turns";
 

@@ -29,6 +29,7 @@ extern const char* const DefaultSky;      ///< nothing was given that shines: li
 extern const char* const DarkOutside;     ///< neither environment nor sky nor faces shine
 extern const char* const EvenOutside;     ///< they shine evenly: directions of its own are not needed
 extern const char* const ThinVoxels;      ///< it does not matter where in voxels light is scattered
+extern const char* const NotByOctant;     ///< Source By octant was asked for, but does not go with the scene
 extern const char* const NotSideBySide;   ///< what was queued side by side was done one after the other
 std::string EmptySlabs(const VoxelBox& filled, const Grid& grid);
 std::string DarkDirections(double lit); ///< part of the rays

@@ -7,11 +7,12 @@ namespace tyndall
 /// How the light that a voxel sends out is spread over it.
 enum class PropagationSource
 {
-  Automatic, ///< constant, or linear where orders are accelerated
+  Automatic, ///< linear where orders are accelerated, by octant where many voxels are thick, else constant
   Constant,  ///< as published
   Linear,    ///< from voxel centre to voxel centre (numerics.md, section 7): right however thick voxels are
-  /// As Automatic, but where orders are added up one by one thick voxels shine back more through faces that light came
-  /// in through (section 6.5): right however much they absorb, at three to four times the time of an order.
+  /// Linear where orders are accelerated; where they are added up one by one thick voxels shine back more through faces
+  /// that light came in through (section 6.5): right however much they absorb, at two to three times the time of an
+  /// order.
   Octants
 };
 

@@ -353,7 +353,10 @@ private:
     {
       const double path =
         this->Scene.VoxelVolume() * this->Sum([&](std::size_t i) { return this->Fluence(i, 0); }) / this->In(0);
-      this->Add("path_in_box", std::abs(path / this->Case.pathInBox - 1.0), 0.03);
+      // Upwind differences spread a beam aside, by first order in the voxel's edge: the published step loses 8.5% of
+      // the way on 9 voxels, 3.1% on 27, 0.9% on 81 (limits.md).
+      const bool upwind = this->Solver == StressSolver::Ordinates;
+      this->Add("path_in_box", std::abs(path / this->Case.pathInBox - 1.0), upwind ? 0.1 : 0.03);
     }
   }
 
@@ -516,11 +519,14 @@ StressCheck CheckTurned(
 {
   const std::vector<float> expected = turn.Field(outcome.fluence, stressCase.scene.cells, outcome.channels);
   double worst = expected.size() == turned.fluence.size() ? 0.0 : std::nan(""), largest = 0.0;
+  double squares = 0.0, all = 0.0;
   for (std::size_t i = 0; i < std::min(expected.size(), turned.fluence.size()); ++i)
   {
     const double error = std::abs(static_cast<double>(expected[i]) - turned.fluence[i]);
     worst = error <= worst ? worst : error;
     largest = std::max<double>(largest, expected[i]);
+    squares += error * error;
+    all += static_cast<double>(expected[i]) * expected[i];
   }
   // Where next to nothing gets into an opaque box, rounding of what shines on it is all that there is: the scale is
   // also that.
@@ -533,9 +539,10 @@ StressCheck CheckTurned(
     surface += 2.0 * n[a] * h[a] * n[b] * h[b];
   }
   largest = std::max(largest, outcome.balance.empty() ? 0.0 : outcome.balance[0] / surface);
-  // Accelerated iterations end where rounding leads them, within the error that they tell.
+  // Accelerated iterations end where rounding leads them, within the error that they tell: that is a root mean square.
   const double told = StressTightTolerance * (outcome.residual + turned.residual);
-  return { "as_its_turned_self", worst == 0.0 ? 0.0 : worst / largest, std::max(1e-5, told) };
+  const double error = told > 1e-5 ? std::sqrt(squares / std::max(all, 1e-300)) : worst / std::max(largest, 1e-300);
+  return { "as_its_turned_self", worst == 0.0 ? 0.0 : error, std::max(1e-5, told) };
 }
 
 bool MayRefuse(StressSolver solver, const StressCase& stressCase, const std::string& error)

@@ -68,6 +68,75 @@ TEST_F(EmissionPeaks, KeepTheirPower)
   }
 }
 
+TEST_F(EmissionPeaks, LeaveAStoneInAFurnaceAsItIs)
+{
+  // It hides as much as it sends, also where a face gives the light: its light must not be better than its shadow.
+  for (bool open : { true, false })
+  {
+    Scene scene({ 9, 11, 10 }, 0.0f, 0.0f);
+    const std::size_t stone = (4 * 11 + 6) * 9 + 3;
+    scene.emission.assign(scene.sigma_a.size(), 0.0f);
+    scene.sigma_a[stone] = scene.emission[stone] = 700.0f;
+    scene.light.sky = open ? Rgb{ 1.0, 1.0, 1.0 } : Rgb{};
+    scene.light.faces.fill(open ? Rgb{} : Rgb{ 1.0, 1.0, 1.0 });
+    const LightField light = scene.Solve(this->GetDevice());
+    EXPECT_TRUE(LeavesOutRays(light));
+    for (float fluence : light.fluence)
+    {
+      EXPECT_NEAR(fluence, 4.0 * Pi, 1e-3 * 4.0 * Pi);
+    }
+  }
+}
+
+TEST_F(EmissionPeaks, OfAStoneThatOutshinesTheSkyHaveRaysOfTheirOwn)
+{
+  Scene scene = Hearth({ 11, 12, 10 }, { 1, 1, 1 }, 3.0f); // it absorbs 2.1 times what comes in
+  scene.light.sky = { 0.2, 0.2, 0.2 };
+  EXPECT_FALSE(LeavesOutRays(scene.Solve(this->GetDevice())));
+}
+
+TEST_F(EmissionPeaks, AreTheSameWhereHalfIsAMirrorImage)
+{
+  // A voxel in a corner that differs by 1e-5 mean free paths: there are no mirror images, and the same light. Fans and
+  // rays of voxels' own, voxels in a middle plane, and a side along which all is otherwise.
+  for (const std::array<int, 3>& size : { std::array<int, 3>{ 24, 17, 20 }, { 60, 51, 52 } })
+  {
+    Scene scene(size, 0.02f, 0.01f);
+    scene.emission.assign(scene.sigma_a.size(), 0.0f);
+    const auto index = [&](int x, int y, int z) { return (static_cast<std::size_t>(z) * size[1] + y) * size[0] + x; };
+    for (int x : { size[0] / 2 - 1, size[0] / 2 })
+    {
+      scene.emission[index(x, size[1] / 2, size[2] / 2 - 1)] = scene.emission[index(x, size[1] / 2, size[2] / 2)] =
+        9.0f;
+    }
+    for (int x = 0; x < size[0]; ++x) // a wall on one side along z
+    {
+      for (int y = size[1] / 4; y < size[1] - size[1] / 4; ++y)
+      {
+        scene.sigma_a[index(x, y, size[2] - 2)] = 0.5f;
+      }
+    }
+    scene.settings.netFlux = scene.settings.facePower = true;
+    const LightField light = scene.Solve(this->GetDevice());
+    scene.sigma_a[index(size[0] - 1, 0, 0)] += 1e-5f;
+    const LightField all = scene.Solve(this->GetDevice());
+    ASSERT_FALSE(LeavesOutRays(light));
+    const float most = *std::max_element(all.fluence.begin(), all.fluence.end());
+    for (std::size_t i = 0; i < all.fluence.size(); ++i)
+    {
+      ASSERT_NEAR(light.fluence[i], all.fluence[i], 2e-5f * all.fluence[i] + 1e-7f * most) << i;
+      for (int a = 0; a < 3; ++a)
+      {
+        ASSERT_NEAR(light.netFlux[3 * i + a], all.netFlux[3 * i + a], 2e-5f * all.fluence[i] + 1e-7f * most) << i;
+      }
+    }
+    for (int face = 0; face < 6; ++face)
+    {
+      EXPECT_NEAR(light.facePowerOut[face][0], all.facePowerOut[face][0], 2e-5 * all.facePowerOut[face][0]) << face;
+    }
+  }
+}
+
 TEST_F(EmissionPeaks, GiveTheSameLightBitForBit)
 {
   Scene scene = Hearth({ 11, 12, 10 }, { 2, 3, 3 }, 0.5f);

@@ -34,7 +34,7 @@ SourceIteration::SourceIteration(TransportParts& parts, const KeptLight* kept)
     this->Moments = Buffer<float>(parts.TheDevice, parts.Layout.MomentFloats(parts.Functions()), "the light to keep");
     this->Moments.Fill(0.0f);
   }
-  if (OctantSources::Matter(parts.Problem, !parts.OtherSources().empty()))
+  if (parts.How == OrdersAdded::OneByOne && OctantSources::Matter(parts.Problem, !parts.OtherSources().empty()))
   {
     this->AtFaces.emplace(parts.TheDevice, parts.Problem, parts.Layout, parts.OnDevice, !parts.Lamps.empty());
   }
@@ -548,9 +548,9 @@ std::vector<std::string> SourceIteration::LeftOut() const
   {
     words.push_back(left_out::EmptySlabs(this->Parts.Problem.Traits().filled, this->Parts.Layout.grid));
   }
-  if (this->Settings.source == PropagationSource::Octants && !OctantSources::AreThick(this->Parts.Problem))
+  if (this->Settings.source == PropagationSource::Octants && !this->AtFaces)
   {
-    words.emplace_back(left_out::ThinVoxels);
+    words.emplace_back(OctantSources::AreThick(this->Parts.Problem) ? left_out::NotByOctant : left_out::ThinVoxels);
   }
   if (this->LitPart < 1.0)
   {

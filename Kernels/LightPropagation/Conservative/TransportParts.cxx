@@ -45,13 +45,28 @@ MediumOnDevice::Needs NeedsOf(const PropagationProblem& problem, const VolumeLay
   return { !(problem.Settings().leaveOut && (alike || unused)), byBalance };
 }
 
+/// Mean radiance that comes in through the faces.
+Rgb MeanRadiance(const BoundaryLight& boundary)
+{
+  Rgb mean = {};
+  for (const Rgb& power : boundary.IncomingPower())
+  {
+    for (std::size_t c = 0; c < mean.size(); ++c)
+    {
+      mean[c] += power[c] / (6.0 * Pi);
+    }
+  }
+  return mean;
+}
+
 /// Peaks go along rays of their own, but not round periodic axes: of their images there is no end.
-SplitEmission EmissionOf(const PropagationProblem& problem)
+SplitEmission EmissionOf(const PropagationProblem& problem, const BoundaryLight& boundary)
 {
   const std::array<bool, 3>& periodic = problem.Settings().periodic;
   const bool endless = periodic[0] || periodic[1] || periodic[2];
-  return problem.Traits().emits && problem.Settings().emissionError > 0.0 && !endless ? Split(problem.TheMedium())
-                                                                                      : SplitEmission();
+  return problem.Traits().emits && problem.Settings().emissionError > 0.0 && !endless
+    ? Split(problem.TheMedium(), MeanRadiance(boundary))
+    : SplitEmission();
 }
 }
 
@@ -66,13 +81,13 @@ TransportParts::TransportParts(Device& device, const PropagationProblem& problem
   , Usual(problem.TheGrid(), problem.Settings(),
       DirectionsForVoxels(problem.Settings().directionsPerFace, problem.TheGrid().spacing),
       StartsOf(problem.Settings()))
-  , Emission(EmissionOf(problem))
 {
   if (const UncollidedImage& image = problem.Shining().uncollided; image.IsThere())
   {
     this->Given = std::make_unique<GivenLight>(image, problem.TheMedium(), problem.Scattering());
   }
   this->FindBoundaryLight();
+  this->Emission = EmissionOf(problem, *this->UsualBoundary);
   this->FindFaceLight();
   this->FindAngularValues();
   const MediumTraits& traits = problem.Traits();

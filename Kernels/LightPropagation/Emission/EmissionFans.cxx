@@ -315,6 +315,17 @@ private:
     return fan;
   }
 
+  /// Whether all that a fan lights are mirror images: not where it shares voxels in the middle with its own image.
+  bool IsImage(const FanInfo& fan) const
+  {
+    int even = 0;
+    for (int a = 0; a < 3; ++a)
+    {
+      even |= this->Scene.info.size[a] % 2 == 0 ? 1 << a : 0;
+    }
+    return (~fan.turned & this->Scene.info.mirrored & even) != 0; // it leads to the high side
+  }
+
   /// [point][FanPointFloats]; any two are mirror images of each other, second and third axis.
   std::vector<float> FindPoints(const FanInfo& fan, int from, int end) const
   {
@@ -343,7 +354,7 @@ private:
   void Follow(int part, int from, int end, const Monitor& monitor)
   {
     FanInfo fan = this->Describe(part);
-    if (fan.layers == 0)
+    if (fan.layers == 0 || this->IsImage(fan))
     {
       return;
     }

@@ -10,6 +10,7 @@ namespace
 {
 constexpr std::size_t BrightPart = 64; ///< one voxel in so many may be part of a peak
 constexpr double Outshines = 4.0;      ///< times the mean of the rest
+constexpr double Hides = 2.0;          ///< emission over what is absorbed of the light that comes in
 constexpr double PartOfAll = 0.5;      ///< that all peaks carry, at least
 constexpr double PartOfOne = 0.01;     ///< that each carries, at least
 constexpr std::size_t MostPeaks = 16;
@@ -244,6 +245,20 @@ bool IsOpaque(const Medium& medium, const std::vector<std::size_t>& group)
   });
 }
 
+/// It absorbs about as much of the light that comes in as it emits, in every voxel and channel.
+bool HidesWhatItSends(const Medium& medium, const std::vector<std::size_t>& group, const Rgb& comesIn)
+{
+  return std::all_of(group.begin(), group.end(), [&](std::size_t voxel) {
+    bool hides = true;
+    for (int c = 0; c < 3; ++c)
+    {
+      const double absorbs = static_cast<double>(medium.sigma_a.At(voxel, c)) * comesIn[c];
+      hides = hides && medium.emission.At(voxel, c) <= Hides * absorbs;
+    }
+    return hides;
+  });
+}
+
 /// Fills in the emission; the rest stays in `smooth`.
 void Take(const Medium& medium, const BrightVoxels& bright, const std::vector<std::size_t>& group, EmissionPeak& peak,
   std::vector<float>& smooth)
@@ -272,7 +287,7 @@ void Take(const Medium& medium, const BrightVoxels& bright, const std::vector<st
 }
 }
 
-SplitEmission Split(const Medium& medium)
+SplitEmission Split(const Medium& medium, const Rgb& comesIn)
 {
   struct Candidate
   {
@@ -294,7 +309,8 @@ SplitEmission Split(const Medium& medium)
       continue;
     }
     const EmissionPeak peak = BoxAround(medium.grid, group);
-    if (IsSmall(medium.grid, peak) && !IsOpaque(medium, group) && IsSeen(medium, peak))
+    if (IsSmall(medium.grid, peak) && !IsOpaque(medium, group) && IsSeen(medium, peak) &&
+      !HidesWhatItSends(medium, group, comesIn))
     {
       candidates.push_back({ power, std::move(group), peak });
     }

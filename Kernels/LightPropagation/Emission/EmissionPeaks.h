@@ -1,5 +1,6 @@
 #pragma once
 
+#include "Lights/Rgb.h"
 #include "Medium/Medium.h"
 
 #include <algorithm>
@@ -40,6 +41,9 @@ struct SplitEmission
 
 /// Connected groups of voxels among the brightest 64th that outshine the mean of the others more than fourfold: small
 /// ones (an eighth of the box's longest edge), in clear surroundings, not opaque, that carry half of the power
-/// together; else there are none (a cloud that shines, a flame). The limits: numerics.md, section 5.6.
-SplitEmission Split(const Medium& medium);
+/// together; else there are none (a cloud that shines, a flame). A dark stone that emits hardly more than it absorbs of
+/// the light that comes in is none either: its light and its shadow, which the sweeps cast, are exact together where
+/// both go along the same directions. The limits: numerics.md, section 5.6.
+/// @param comesIn  mean radiance through the box's faces, W / (length^2 sr)
+SplitEmission Split(const Medium& medium, const Rgb& comesIn = {});
 }

@@ -1,6 +1,7 @@
 #include "LightPropagation/Emission/EmissionRays.h"
 
 #include "LightPropagation/Emission/EmissionFans.h"
+#include "LightPropagation/Emission/EmissionMirrors.h"
 #include "LightPropagation/Emission/EmissionRaysShared.h"
 #include "Medium/BoxFaces.h"
 #include "Numerics/Constants.h"
@@ -80,8 +81,10 @@ public:
   SweepTally Run(const Monitor& monitor)
   {
     this->Load();
-    this->GatherVoxels(monitor);
-    this->GatherFaces(monitor);
+    const EmissionMirrors mirrors(this->TheDevice, this->Volume, this->Scene, this->OfChannels);
+    this->Scene.mirrored = mirrors.Axes();
+    this->GatherVoxels(mirrors, monitor);
+    this->GatherFaces(mirrors, monitor);
     this->AddGathered();
     return this->Tally;
   }
@@ -143,7 +146,7 @@ private:
     return true;
   }
 
-  void GatherVoxels(const Monitor& monitor)
+  void GatherVoxels(const EmissionMirrors& mirrors, const Monitor& monitor)
   {
     const SweepVolume& volume = this->Volume;
     Device& device = this->TheDevice;
@@ -162,12 +165,14 @@ private:
     {
       this->GatherByFansFor(OfPart(monitor, 0.0, 0.5));
     }
+    mirrors.MarkImages(this->Found, this->CellsFound);
     cl::Kernel gather = this->Kernel("gather_voxels", this->Width());
     this->InParts(volume.grid.VoxelCount(), 0.5, 0.9, monitor, [&](std::size_t first, std::size_t size) {
       With(gather, this->Scene, *volume.sigma_t, cl_ulong(volume.sigma_t_first), this->Points, this->Emission,
         this->Path, this->Flux, cl_ulong(volume.stride), this->Found, cl_ulong(first), cl_ulong(first + size));
       device.Queue().enqueueNDRangeKernel(gather, cl::NullRange, cl::NDRange(size));
     });
+    mirrors.CopyVoxels(this->Path, this->Flux);
     cl::Kernel take = this->Kernel("take_rows");
     const std::size_t rows = volume.grid.VoxelCount() / volume.grid.size[0];
     Buffer<float> taken(device, rows, "sums");
@@ -222,7 +227,7 @@ private:
     }
   }
 
-  void GatherFaces(const Monitor& monitor)
+  void GatherFaces(const EmissionMirrors& mirrors, const Monitor& monitor)
   {
     const SweepVolume& volume = this->Volume;
     cl::Kernel gather = this->Kernel("gather_face", this->Width());
@@ -238,6 +243,7 @@ private:
           this->TheDevice.Queue().enqueueNDRangeKernel(gather, cl::NullRange, cl::NDRange(size));
         });
     }
+    mirrors.CopyCells(this->FaceLight);
     const std::vector<float> all = this->FaceLight.Read();
     for (int face = 0; face < 6; ++face)
     {

@@ -13,6 +13,7 @@ typedef struct
   int fewest;                        ///< rays of a voxel to it, at first; a power of two, at least 32
   int fewestClose;                   ///< the same of voxels in it and next to it
   float uneven;                      ///< difference of two halves of them, to their sum, that will do
+  int mirrored;                      ///< bits of axes across whose middle all is alike (EmissionMirrors.h)
   int near;                          ///< half voxels from the box's middle, below which no fan is asked
 } EmissionInfo;
 

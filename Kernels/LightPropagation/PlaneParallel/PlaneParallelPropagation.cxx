@@ -89,7 +89,7 @@ public:
     this->FillFaces(light);
     this->FillMoments(light);
     this->Balance(light);
-    light.halfRangeFlux = Pi;
+    light.halfRangeFlux = 1.0;
     light.polarNodes = static_cast<int>(this->Nodes.cosines.size());
     light.directionsPerFace = this->Settings.directionsPerFace;
     light.device = "host, one core";

@@ -30,23 +30,26 @@ static layer_response response_of(const __global float* values, float albedo, fl
   const int at[3] = { get_global_id(0), get_global_id(1), get_global_id(2) }; \
   const ulong i = ((ulong)at[2] * info.size[1] + at[1]) * info.size[0] + at[0];
 
-// From the power that came in through voxels' faces to the mean radiance there.
+// From the power that came in through voxels' faces to the mean radiance there; a row of voxels and one face each.
 // currents  W, [face][stride] from 6 `first` on; cleared
 // pattern   of the rays that cross faces, see CrossingPattern.h
-// incoming  W / (length^2 sr), laid out as currents, added to
-__kernel void take_incoming(
-  OctantSourceInfo info, __global float* currents, const __global float* pattern, __global float* incoming)
+// incoming  W / (length^2 sr), laid out as currents, added to; where `fresh` is 1, replaced
+__kernel void take_incoming(OctantSourceInfo info, __global float* restrict currents,
+  const __global float* restrict pattern, __global float* restrict incoming, int fresh)
 {
-  VOXEL_AT
-  for (int d = 0; d < 6; ++d)
+  const int y = get_global_id(0), z = get_global_id(1), d = get_global_id(2);
+  const int axis = d / 2;
+  const int u = axis == 0 ? 1 : 0, v = axis == 2 ? 1 : 2;
+  const float area = info.perRadiance * info.spacing[u] * info.spacing[v];
+  const __global float* along = pattern + info.pattern[2 * axis]; // u: across x it is the same in all of the row
+  const float ofRow = pattern[info.pattern[2 * axis + 1] + (v == 1 ? y : z)];
+  const ulong row = 6 * info.first + d * info.stride + ((ulong)z * info.size[1] + y) * info.size[0];
+  for (int x = 0; x < info.size[0]; ++x)
   {
-    const int axis = d / 2;
-    const int u = axis == 0 ? 1 : 0, v = axis == 2 ? 1 : 2;
-    const ulong here = 6 * info.first + d * info.stride + i;
-    const float crossing = pattern[info.pattern[2 * axis] + at[u]] + pattern[info.pattern[2 * axis + 1] + at[v]];
-    const float even = info.perRadiance * info.spacing[u] * info.spacing[v] * crossing;
-    incoming[here] += even > 0.0f ? currents[here] / even : 0.0f;
-    currents[here] = 0.0f;
+    const float even = area * ((axis == 0 ? along[y] : along[x]) + ofRow);
+    const float radiance = even > 0.0f ? currents[row + x] / even : 0.0f;
+    incoming[row + x] = fresh ? radiance : incoming[row + x] + radiance;
+    currents[row + x] = 0.0f;
   }
 }
 
@@ -60,44 +63,36 @@ static long next_voxel(const OctantSourceInfo* info, const int* at, ulong i, int
   return !last ? (long)i + ahead : info->periodic[axis] ? (long)i - ahead * (size - 1) : -1;
 }
 
-// Of what is scattered of the light that came in (numerics.md, Eqs. (46e), (46f)), by octant.
-// incoming  W / (length^2 sr), of the sweep
-// source    W / (length^3 sr), of the sweep, and `sources` with it
-// of_lamps  W / (length^3 sr) by face, where lamps is 1; cleared
-// sources   W / (length^3 sr), [octant][stride] from 8 `first` on, replaced: beside what shines evenly. Where there is
-//           less than that the first orders may be below 0, for what later ones shine there out of the voxel.
-__kernel void find_octant_sources(OctantSourceInfo info, const __global float* sigma_t, const __global float* sigma_s,
-  const __global float* source, const __global float* responses, const __global float* incoming,
+// One voxel of find_octant_sources.
+// responses  of layers as thick as the voxel along each axis
+static void find_of_voxel(const OctantSourceInfo* info, const int* at, ulong i, float t, float s,
+  const layer_response* responses, const __global float* source, const __global float* incoming,
   __global float* of_lamps, int lamps, __global float* sources)
 {
-  VOXEL_AT
-  const float t = sigma_t[info.firstT + i], s = sigma_s[info.first + i];
-  sources += 8 * info.first + i;
-  incoming += 6 * info.first;
   float more[3][2];
   for (int axis = 0; axis < 3; ++axis)
   {
-    const layer_response response = response_of(responses, t > 0.0f ? s / t : 0.0f, t * info.spacing[axis]);
+    const layer_response response = responses[axis];
     float net[2], in[2];
     for (int d = 0; d < 2; ++d)
     {
-      in[d] = incoming[(2 * axis + d) * info.stride + i];
+      in[d] = incoming[(2 * axis + d) * info->stride + i];
     }
     for (int d = 0; d < 2; ++d)
     {
-      const long next = next_voxel(&info, at, i, 2 * axis + d);
+      const long next = next_voxel(info, at, i, 2 * axis + d);
       float out = 0.0f;
       if (next >= 0)
       {
-        out = incoming[(2 * axis + 1 - d) * info.stride + next];
+        out = incoming[(2 * axis + 1 - d) * info->stride + next];
       }
       else if (t > 0.0f)
       {
         // Through the box's faces it is not told by voxel: as of a layer.
-        float shines = source[info.first + i];
+        float shines = source[i];
         for (int octant = 0; octant < 8; ++octant)
         {
-          shines += (octant >> axis & 1) == d ? 0.25f * sources[octant * info.stride] : 0.0f;
+          shines += (octant >> axis & 1) == d ? 0.25f * sources[octant * info->stride + i] : 0.0f;
         }
         out = (1.0f - response.lost) * in[1 - d] + response.lost * shines / t;
       }
@@ -107,11 +102,11 @@ __kernel void find_octant_sources(OctantSourceInfo info, const __global float* s
     const float alike = 0.5f * response.alike * (net[0] + net[1]);
     for (int d = 0; d < 2; ++d)
     {
-      const ulong face = 6 * info.first + (2 * axis + d) * info.stride + i;
-      more[axis][d] = info.leftOut[axis] ? 0.0f : s * (alike + (d ? -differs : differs));
+      const ulong face = (2 * axis + d) * info->stride + i;
+      more[axis][d] = info->leftOut[axis] ? 0.0f : s * (alike + (d ? -differs : differs));
       if (lamps)
       {
-        more[axis][d] += info.leftOut[axis] ? 0.0f : of_lamps[face];
+        more[axis][d] += info->leftOut[axis] ? 0.0f : of_lamps[face];
         of_lamps[face] = 0.0f;
       }
     }
@@ -123,7 +118,40 @@ __kernel void find_octant_sources(OctantSourceInfo info, const __global float* s
     {
       sum += more[axis][octant >> axis & 1];
     }
-    sources[octant * info.stride] = sum;
+    sources[octant * info->stride + i] = sum;
+  }
+}
+
+// Of what is scattered of the light that came in (numerics.md, Eqs. (46e), (46f)), by octant; a row of voxels.
+// incoming  W / (length^2 sr), of the sweep
+// source    W / (length^3 sr), of the sweep, and `sources` with it
+// of_lamps  W / (length^3 sr) by face, where lamps is 1; cleared
+// sources   W / (length^3 sr), [octant][stride] from 8 `first` on, replaced: beside what shines evenly. Where there is
+//           less than that the first orders may be below 0, for what later ones shine there out of the voxel.
+__kernel void find_octant_sources(OctantSourceInfo info, const __global float* sigma_t, const __global float* sigma_s,
+  const __global float* source, const __global float* values, const __global float* incoming, __global float* of_lamps,
+  int lamps, __global float* sources)
+{
+  int at[3] = { 0, get_global_id(0), get_global_id(1) };
+  ulong i = ((ulong)at[2] * info.size[1] + at[1]) * info.size[0];
+  float last_t = -1.0f, last_s = -1.0f;
+  layer_response responses[3];
+  for (; at[0] < info.size[0]; ++at[0], ++i)
+  {
+    const float t = sigma_t[info.firstT + i], s = sigma_s[info.first + i];
+    for (int axis = 0; axis < 3 && (t != last_t || s != last_s); ++axis)
+    {
+      if (axis > 0 && info.spacing[axis] == info.spacing[axis - 1])
+      {
+        responses[axis] = responses[axis - 1];
+        continue;
+      }
+      responses[axis] = response_of(values, t > 0.0f ? s / t : 0.0f, t * info.spacing[axis]);
+    }
+    last_t = t;
+    last_s = s;
+    find_of_voxel(&info, at, i, t, s, responses, source + info.first, incoming + 6 * info.first,
+      of_lamps + 6 * info.first, lamps, sources + 8 * info.first);
   }
 }
 

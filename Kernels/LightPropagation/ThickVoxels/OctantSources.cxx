@@ -2,6 +2,7 @@
 
 #include "LightPropagation/Diffusion/CrossingPattern.h"
 #include "LightPropagation/ThickVoxels/VoxelResponse.h"
+#include "Medium/VoxelSums.h"
 #include "TyndallKernelSources.h"
 
 #include <algorithm>
@@ -12,9 +13,36 @@ namespace tyndall
 namespace
 {
 constexpr double Thick = 0.2; ///< mean free paths a voxel: thinner ones send back up to 1% too little
+/// The same, from which on nobody has to ask for it: 2% too little, for three to four times the time of an order.
+constexpr double ThickUnasked = 0.25;
+constexpr double Many = 0.25; ///< of all that is scattered, in so thick voxels
 /// Mean free paths a voxel: what does not get out of thicker ones is so little beside what is scattered in them that
 /// floats do not tell it.
 constexpr double Opaque = 1e4;
+
+/// Of what is scattered of light that is the same in all voxels, the part that thick ones scatter; of all channels.
+double PartInThickVoxels(const PropagationProblem& problem)
+{
+  const Grid& grid = problem.TheGrid();
+  const double longest = *std::max_element(grid.spacing.begin(), grid.spacing.end());
+  double all = 0.0, thick = 0.0;
+  for (int c = 0; c < problem.Channels(); ++c)
+  {
+    const auto scattered = [&](std::size_t i) { return double(problem.Scattering().SigmaS(i, c)); };
+    all += SumOverVoxels(grid, scattered);
+    thick += SumOverVoxels(grid,
+      [&](std::size_t i) { return problem.Scattering().SigmaT(i, c) * longest > ThickUnasked ? scattered(i) : 0.0; });
+  }
+  return all > 0.0 ? thick / all : 0.0;
+}
+
+/// Whether an automatic source is to be by octant.
+bool MatterUnasked(const PropagationProblem& problem)
+{
+  const PropagationSettings& settings = problem.Settings();
+  return settings.source == PropagationSource::Automatic && settings.maximumOrders == 0 &&
+    settings.acceleration == PropagationAcceleration::Automatic && PartInThickVoxels(problem) >= Many;
+}
 }
 
 bool OctantSources::AreThick(const PropagationProblem& problem)
@@ -25,9 +53,9 @@ bool OctantSources::AreThick(const PropagationProblem& problem)
 bool OctantSources::Matter(const PropagationProblem& problem, bool otherSources)
 {
   const PropagationSettings& settings = problem.Settings();
-  return problem.Traits().scatters && problem.Scattering().Degree() == 0 && !otherSources && !settings.firstMoments &&
-    settings.maximumOrders != 1 && settings.source == PropagationSource::Octants && AreThick(problem) &&
-    !AnyVoxelIsThickerThan(Opaque, problem.TheMedium());
+  const bool wanted = settings.source == PropagationSource::Octants ? AreThick(problem) : MatterUnasked(problem);
+  return wanted && problem.Traits().scatters && problem.Scattering().Degree() == 0 && !otherSources &&
+    !settings.firstMoments && settings.maximumOrders != 1 && !AnyVoxelIsThickerThan(Opaque, problem.TheMedium());
 }
 
 OctantSources::OctantSources(Device& device, const PropagationProblem& problem, const VolumeLayout& layout,
@@ -88,9 +116,11 @@ void OctantSources::TakeIncoming(const SweptDirections& along)
     OctantSourceInfo info = this->InfoOf(c);
     std::copy(crossings.first.begin(), crossings.first.end(), info.pattern);
     info.perRadiance = static_cast<float>(crossings.perRadiance);
-    With(take, info, this->OfSweep, crossings.values, this->Incoming);
-    this->Run(take);
+    With(take, info, this->OfSweep, crossings.values, this->Incoming, cl_int(!this->CameIn));
+    const std::array<int, 3>& n = this->Layout.grid.size;
+    this->TheDevice.Queue().enqueueNDRangeKernel(take, cl::NullRange, cl::NDRange(n[1], n[2], 6));
   }
+  this->CameIn = true;
 }
 
 void OctantSources::TakeLamp(const Buffer<float>& allPath)
@@ -100,7 +130,8 @@ void OctantSources::TakeLamp(const Buffer<float>& allPath)
   {
     With(add, this->InfoOf(c), this->TheMedium.SigmaT(), this->TheMedium.SigmaS(), this->PathOfLamp,
       this->MomentsOfLamp, this->Falling, this->OfLamps, allPath);
-    this->Run(add);
+    const std::array<int, 3>& n = this->Layout.grid.size;
+    this->TheDevice.Queue().enqueueNDRangeKernel(add, cl::NullRange, cl::NDRange(n[0], n[1], n[2]));
   }
   this->LampsShine = true;
 }
@@ -113,9 +144,10 @@ void OctantSources::Find(const Buffer<float>& source)
   {
     With(find, this->InfoOf(c), this->TheMedium.SigmaT(), this->TheMedium.SigmaS(), source, this->Diffuse,
       this->Incoming, lamps, cl_int(this->LampsShine), this->Found);
-    this->Run(find);
+    const std::array<int, 3>& n = this->Layout.grid.size;
+    this->TheDevice.Queue().enqueueNDRangeKernel(find, cl::NullRange, cl::NDRange(n[1], n[2]));
   }
-  this->Incoming.Fill(0.0f);
+  this->CameIn = false;
   this->LampsShine = false;
 }
 
@@ -135,11 +167,5 @@ OctantSourceInfo OctantSources::InfoOf(int channel) const
   info.first = channel * this->Layout.Stride();
   info.stride = this->Layout.Stride();
   return info;
-}
-
-void OctantSources::Run(cl::Kernel& kernel) const
-{
-  const std::array<int, 3>& n = this->Layout.grid.size;
-  this->TheDevice.Queue().enqueueNDRangeKernel(kernel, cl::NullRange, cl::NDRange(n[0], n[1], n[2]));
 }
 }

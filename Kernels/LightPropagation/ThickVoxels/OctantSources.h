@@ -21,8 +21,9 @@ class OctantSources
 public:
   /// Whether any voxel is so thick that it matters.
   static bool AreThick(const PropagationProblem& problem);
-  /// Whether some are, none is opaque, scattering is isotropic and the source is to be by octant; and all light comes
-  /// in through voxels' faces, or from lamps.
+  /// Whether the source is to be by octant, some voxels are thick, none is opaque, and scattering is isotropic; and all
+  /// light comes in through voxels' faces, or from lamps. Of an automatic source: where thick voxels scatter a quarter
+  /// of all light or more, and the orders are as many as the tolerance asks for.
   static bool Matter(const PropagationProblem& problem, bool otherSources);
 
   /// @param medium  on the device; must stay
@@ -55,7 +56,6 @@ private:
   };
   const Crossings& CrossingsOf(const SweptDirections& along);
   OctantSourceInfo InfoOf(int channel) const;
-  void Run(cl::Kernel& kernel) const;
 
   Device& TheDevice;
   const PropagationProblem& Problem;
@@ -66,6 +66,7 @@ private:
   Buffer<float> PathOfLamp, MomentsOfLamp, OfLamps; ///< as Deposit has them; [channel][face][stride]
   Buffer<float> Diffuse, Falling;                   ///< VoxelResponse
   std::map<const SweptDirections*, Crossings> Patterns;
+  bool CameIn = false;     ///< light was taken since the last time
   bool LampsShine = false; ///< in what is found next
 };
 }
