@@ -31,7 +31,7 @@ light = LightPropagationMaps(registrationName="Light", Input=hall, Lights=sun, S
                              Tolerance=2e-2)
 picture = MediumRayCaster(registrationName="Picture", Input=light, Lights=sun, ShadowRays=1, StepSize=0.2,
                           ImageSize=arguments.size, CameraPosition=[4.6, -4.9, 2.1], CameraFocalPoint=[2.3, 1.45, 1.35],
-                          CameraViewAngle=30, BackgroundColor=[0.01, 0.012, 0.016], Exposure=2.2)
+                          CameraViewAngle=30, BackgroundRadiance=[0.01, 0.012, 0.016], Exposure=2.2)
 if not sys.argv[0]:  # no command line: ParaView's window
     Show(picture, GetActiveViewOrCreate("RenderView"))
     ResetCamera()

@@ -36,7 +36,7 @@ light = LightPropagationMaps(registrationName="Light", Input=smoke, Lights=lamps
                              Tolerance=2e-2)
 picture = MediumRayCaster(registrationName="Picture", Input=light, Lights=lamps, ImageSize=arguments.size,
                           CameraPosition=[0.5, -9.6, 2.1], CameraFocalPoint=[0.1, 0, 2.16], CameraViewAngle=26.5,
-                          BackgroundColor=[0.02, 0.025, 0.035], Exposure=0.5)
+                          BackgroundRadiance=[0.02, 0.025, 0.035], Exposure=0.5)
 if not sys.argv[0]:  # no command line: ParaView's window
     Show(picture, GetActiveViewOrCreate("RenderView"))
     ResetCamera()

@@ -187,6 +187,12 @@ bool vtkLitVolumeMapper::Cast(const tyndall::AskedView& view, tyndall::Picture& 
   return true;
 }
 
+bool vtkLitVolumeMapper::ShowsBackgroundColor()
+{
+  const double* const color = this->RayCaster->GetBackgroundColor();
+  return this->RayCaster->GetShowBackground() && std::any_of(color, color + 3, [](double c) { return c > 0.0; });
+}
+
 void vtkLitVolumeMapper::Render(vtkRenderer* renderer, vtkVolume* volume)
 {
   const double start = tyndall::ClockSeconds();
@@ -198,6 +204,7 @@ void vtkLitVolumeMapper::Render(vtkRenderer* renderer, vtkVolume* volume)
   this->ChooseCastSize(size.data(), volume->GetAllocatedRenderTime());
   tyndall::AskedView view;
   view.size = { this->CastSize[0], this->CastSize[1] };
+  view.exposure = this->UsedExposure;
   try
   {
     const tyndall::RenderedCamera camera(renderer, volume->GetMatrix());
@@ -213,6 +220,11 @@ void vtkLitVolumeMapper::Render(vtkRenderer* renderer, vtkVolume* volume)
   if (!this->Cast(view, picture) || !this->FindExposure())
   {
     return; // the ray caster has said why
+  }
+  if (this->ShowsBackgroundColor() && view.exposure != this->UsedExposure) // which decides on the background's radiance
+  {
+    view.exposure = this->UsedExposure;
+    this->Cast(view, picture);
   }
   tyndall::ToneMapping tones;
   tones.exposure = this->UsedExposure;

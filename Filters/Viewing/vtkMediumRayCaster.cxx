@@ -52,7 +52,20 @@ enum LightArray
 constexpr const char* ArrayNames[] = { "sigma_a", "sigma_s", "emission", "fluence", "fluence_direct", "ior",
   "mean_direction" };
 
-tyndall::ViewSettings SettingsOf(vtkMediumRayCaster* filter)
+/// What is behind the medium in a picture that is shown with this exposure, radiance; 0: with one that is not known yet.
+tyndall::Rgb BackgroundOf(vtkMediumRayCaster* filter, double exposure)
+{
+  tyndall::Rgb background = tyndall::Triple(filter->GetBackgroundRadiance());
+  if (background == tyndall::Rgb{} && exposure > 0.0)
+  {
+    const auto curve = static_cast<tyndall::ToneCurve>(filter->GetToneCurve());
+    std::transform(filter->GetBackgroundColor(), filter->GetBackgroundColor() + 3, background.begin(),
+      [&](double shown) { return tyndall::ExposedAs(shown, curve) / exposure; });
+  }
+  return background;
+}
+
+tyndall::ViewSettings SettingsOf(vtkMediumRayCaster* filter, double exposure)
 {
   tyndall::ViewSettings settings;
   std::copy_n(filter->GetImageSize(), 2, settings.imageSize.begin());
@@ -61,7 +74,7 @@ tyndall::ViewSettings SettingsOf(vtkMediumRayCaster* filter)
   settings.shadowRays = filter->GetShadowRays();
   settings.rectangleSamples = filter->GetRectangleSamples();
   settings.showBackground = filter->GetShowBackground();
-  settings.backgroundColor = tyndall::Triple(filter->GetBackgroundColor());
+  settings.backgroundColor = BackgroundOf(filter, exposure);
   settings.surfaceReflection = static_cast<tyndall::SurfaceReflection>(filter->GetSurfaceReflection());
   settings.surfaceIndex = filter->GetSurfaceIndex();
   settings.surfaceReflectance = filter->GetSurfaceReflectance();
@@ -194,7 +207,7 @@ vtkMediumRayCaster::vtkMediumRayCaster()
   this->TableReflectance = defaults.tableReflectance;
   this->LeaveOut = defaults.leaveOut;
   std::copy(defaults.imageSize.begin(), defaults.imageSize.end(), this->ImageSize);
-  std::copy(defaults.backgroundColor.begin(), defaults.backgroundColor.end(), this->BackgroundColor);
+  std::copy(defaults.backgroundColor.begin(), defaults.backgroundColor.end(), this->BackgroundRadiance);
   std::copy(defaults.tableColor.begin(), defaults.tableColor.end(), this->TableColor);
 }
 
@@ -339,6 +352,28 @@ std::unique_ptr<vtkMediumRayCaster::Scene> vtkMediumRayCaster::FindScene(
   return this->MakeScene(inputs, key, settings);
 }
 
+/// A picture of the filter's own camera.
+/// @param exposure  what it will be shown with; where that is 0 it is chosen, from a picture without BackgroundColor
+tyndall::Picture vtkMediumRayCaster::Expose(Scene& scene, double& exposure)
+{
+  const tyndall::Camera camera = CameraOf(this, scene.grid);
+  const auto take = [&] { return scene.caster->Render(camera, tyndall::MonitorOf(this)); };
+  if (exposure > 0.0)
+  {
+    return take();
+  }
+  tyndall::Picture picture = take();
+  exposure = tyndall::AutomaticExposure(picture.radiance);
+  tyndall::ViewSettings settings = SettingsOf(this, exposure);
+  if (scene.caster->ShowsBackgroundColor() && settings.backgroundColor != BackgroundOf(this, 0.0))
+  {
+    settings.shadowRays |= scene.lightsAlone;
+    scene.caster->Adopt(settings);
+    picture = take();
+  }
+  return picture;
+}
+
 int vtkMediumRayCaster::RequestData(vtkInformation*, vtkInformationVector** inputs, vtkInformationVector* outputs)
 {
   this->Seconds = this->UsedExposure = 0.0;
@@ -351,18 +386,17 @@ int vtkMediumRayCaster::RequestData(vtkInformation*, vtkInformationVector** inpu
     toneMapping.exposure = this->Exposure;
     toneMapping.curve = static_cast<tyndall::ToneCurve>(this->ToneCurve);
     tyndall::Check(toneMapping);
-    std::unique_ptr<Scene> scene = this->FindScene(inputs, SettingsOf(this));
-    const double start = tyndall::ClockSeconds();
-    tyndall::Picture picture = scene->caster->Render(CameraOf(this, scene->grid), tyndall::MonitorOf(this));
-    const double seconds = tyndall::ClockSeconds() - start;
-    if (this->AutoExposure == EACH_PICTURE)
+    const bool automatic = toneMapping.exposure == 0.0;
+    if (automatic && this->AutoExposure == FIRST_PICTURE)
     {
-      this->FirstExposure = 0.0;
+      toneMapping.exposure = this->FirstExposure;
     }
-    if (toneMapping.exposure == 0.0)
+    std::unique_ptr<Scene> scene = this->FindScene(inputs, SettingsOf(this, toneMapping.exposure));
+    const double start = tyndall::ClockSeconds();
+    tyndall::Picture picture = this->Expose(*scene, toneMapping.exposure);
+    const double seconds = tyndall::ClockSeconds() - start;
+    if (automatic || this->AutoExposure == EACH_PICTURE)
     {
-      toneMapping.exposure =
-        this->FirstExposure > 0.0 ? this->FirstExposure : tyndall::AutomaticExposure(picture.radiance);
       this->FirstExposure = this->AutoExposure == FIRST_PICTURE ? toneMapping.exposure : 0.0;
     }
     const std::vector<float> opaque;
@@ -373,7 +407,7 @@ int vtkMediumRayCaster::RequestData(vtkInformation*, vtkInformationVector** inpu
     const std::string device = scene->key.device->Name();
     const std::vector<std::string>& leftOut = scene->caster->LeftOut();
     tyndall::AddFact(output, "exposure", std::vector<double>{ toneMapping.exposure });
-    const std::vector<std::string> settings = tyndall::Words(SettingsOf(this));
+    const std::vector<std::string> settings = tyndall::Words(SettingsOf(this, toneMapping.exposure));
     tyndall::AddFact(output, "left_out", leftOut);
     tyndall::AddFact(output, "settings_used", settings);
     tyndall::AddFact(output, "device", std::vector<std::string>{ device });
@@ -393,7 +427,7 @@ bool vtkMediumRayCaster::See(const tyndall::AskedView& view, tyndall::Picture& p
   bool seen = false;
   const vtkNew<vtkInformationVector> noOutputs;
   tyndall::Guarded(this, noOutputs, [&] {
-    tyndall::ViewSettings settings = SettingsOf(this);
+    tyndall::ViewSettings settings = SettingsOf(this, view.exposure);
     settings.imageSize = view.size;
     std::unique_ptr<Scene> scene = this->FindScene(this->GetExecutive()->GetInputInformation(), settings);
     picture = scene->caster->Render(view.camera, {}, view.ends);
@@ -420,6 +454,7 @@ void vtkMediumRayCaster::PrintSelf(ostream& os, vtkIndent indent)
   os << indent << "RectangleSamples: " << this->RectangleSamples << "\n";
   os << indent << "ShowBackground: " << this->ShowBackground << "\n";
   PrintNumbers(os, indent, "BackgroundColor", this->BackgroundColor, 3);
+  PrintNumbers(os, indent, "BackgroundRadiance", this->BackgroundRadiance, 3);
   os << indent << "Exposure: " << this->Exposure << "\n";
   os << indent << "AutoExposure: " << this->AutoExposure << "\n";
   os << indent << "ToneCurve: " << (this->ToneCurve == LINEAR ? "linear" : "filmic") << "\n";

@@ -198,17 +198,25 @@ public:
   ///@}
 
   ///@{
-  /// Whether the environment, or else BackgroundColor, is seen behind the medium. Default on.
+  /// Whether the environment, or else BackgroundRadiance or BackgroundColor, is seen behind the medium. Default on.
   vtkSetMacro(ShowBackground, bool);
   vtkGetMacro(ShowBackground, bool);
   vtkBooleanMacro(ShowBackground, bool);
   ///@}
 
   ///@{
-  /// Radiance behind the medium where there is no environment, red, green, blue, W/(length^2 sr). Default 0, valid
-  /// [0, 1e37].
-  tyndallSetRange3Macro(BackgroundColor, double, 0.0, 1e37);
+  /// Colour behind the medium where there is no environment, red, green, blue, as the array color is to have it (sRGB),
+  /// at any exposure and tone curve: radiance is what shows it so. The exposure is chosen as if it were black. Default
+  /// (0, 0, 0), valid [0, 1].
+  tyndallSetRange3Macro(BackgroundColor, double, 0.0, 1.0);
   vtkGetVector3Macro(BackgroundColor, double);
+  ///@}
+
+  ///@{
+  /// Radiance behind the medium where there is no environment, red, green, blue, W/(length^2 sr): instead of
+  /// BackgroundColor where it is not 0, the default. Valid [0, 1e37].
+  tyndallSetRange3Macro(BackgroundRadiance, double, 0.0, 1e37);
+  vtkGetVector3Macro(BackgroundRadiance, double);
   ///@}
 
   ///@{
@@ -323,6 +331,7 @@ private:
   std::unique_ptr<Scene> MakeScene(
     vtkInformationVector** inputs, const tyndall::InputsKey& key, tyndall::ViewSettings settings);
   std::unique_ptr<Scene> FindScene(vtkInformationVector** inputs, const tyndall::ViewSettings& settings);
+  tyndall::Picture Expose(Scene& scene, double& exposure);
 
   int Quality = USUAL;
   int ImageSize[2];
@@ -337,7 +346,8 @@ private:
   bool ShadowRays;
   int RectangleSamples;
   bool ShowBackground;
-  double BackgroundColor[3];
+  double BackgroundColor[3] = { 0.0, 0.0, 0.0 };
+  double BackgroundRadiance[3];
   double Exposure = 0.0;
   int AutoExposure = EACH_PICTURE;
   double FirstExposure = 0.0; ///< found from the first picture; 0: not yet

@@ -114,6 +114,11 @@ bool MediumRayCaster::Adopt(const ViewSettings& asked)
   return true;
 }
 
+bool MediumRayCaster::ShowsBackgroundColor() const
+{
+  return this->Settings.showBackground && !this->Behind.IsSky() && !this->Behind.HasEnvironment();
+}
+
 void MediumRayCaster::PrepareSources(const Camera& camera, const Monitor& monitor)
 {
   const auto pack = [this](Packing what) {

@@ -28,6 +28,18 @@ double Filmic(double x)
   return x * (2.51 * x + 0.03) / (x * (2.43 * x + 0.59) + 0.14);
 }
 
+double DecodeSrgb(double encoded)
+{
+  return encoded <= 0.04045 ? encoded / 12.92 : std::pow((encoded + 0.055) / 1.055, 2.4);
+}
+
+/// Where Filmic is y, in [0, 1]: the positive root of a quadratic equation.
+double FilmicInverse(double y)
+{
+  const double a = 2.51 - 2.43 * y, b = 0.03 - 0.59 * y;
+  return (-b + std::sqrt(b * b + 0.56 * a * y)) / (2.0 * a);
+}
+
 /// What a screen shows for an exposed radiance, 0 to 255: a table over the leading bits of the float, which has 4096
 /// entries for every doubling between Darkest and Brightest.
 class ScreenValues
@@ -132,6 +144,12 @@ double AutomaticExposure(const std::vector<float>& radiance)
     }
   }
   return counted > 0.0 ? 0.18 * std::exp2(-sum / counted) : 1.0;
+}
+
+double ExposedAs(double shown, ToneCurve curve)
+{
+  const double linear = DecodeSrgb(shown);
+  return curve == ToneCurve::Filmic ? FilmicInverse(linear) : linear;
 }
 
 std::vector<std::uint8_t> ToneMap(

@@ -30,6 +30,10 @@ void Check(const ToneMapping& settings);
 /// @param radiance  3 per pixel, not negative
 double AutomaticExposure(const std::vector<float>& radiance);
 
+/// The radiance times exposure that a screen shows as a channel of this value: what ToneMap makes of it is 255 times that.
+/// @param shown  [0, 1], encoded as sRGB
+double ExposedAs(double shown, ToneCurve curve);
+
 /// Eight bits per channel, red, green, blue and alpha, for a screen that follows sRGB (IEC 61966-2-1). Colours are not
 /// multiplied by alpha: laid over black, the picture is what the radiance says.
 /// @param alpha  one per pixel in [0, 1]; empty: opaque

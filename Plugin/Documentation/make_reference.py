@@ -179,7 +179,7 @@ def where(proxy):
     if proxy.tag == "RepresentationProxy":
         return "Representation, %s, of an image in the 3D view" % label
     menu = "Sources" if proxy.get("group") == "sources" else "Filters"
-    return "%s, %s, %s" % (menu, proxy.find("Hints/ShowInMenu").get("category"), label)
+    return "%s, Light Transport, %s" % (menu, label)
 
 
 def page_of(proxy, proxies):

@@ -16,7 +16,7 @@ cloud = ParticipatingMedium(Input=water, Preset="Cloud (1 g/m^3 of water, 10 um 
 
 sun = LightRig(SunElevation=30, SunAzimuth=180, SunPower=[4, 3.7, 3.2])
 light = LightPropagationMaps(Input=cloud, Lights=sun, SkyColor=[0.03, 0.06, 0.13], Tolerance=5e-3)
-picture = MediumRayCaster(Input=light, Lights=sun, ImageSize=[400, 300], BackgroundColor=[0.03, 0.06, 0.13],
+picture = MediumRayCaster(Input=light, Lights=sun, ImageSize=[400, 300], BackgroundRadiance=[0.03, 0.06, 0.13],
                           CameraPosition=[50, -95, 45], CameraViewAngle=24)
 SaveData(os.path.join(folder, "cloud.png"), proxy=picture)
 

@@ -20,7 +20,7 @@ cloud = ParticipatingMedium(Input=water, Preset="Cloud (1 g/m^3 of water, 10 um 
 sun = LightRig(SunElevation=50, SunAzimuth=200, SunPower=[4, 3.7, 3.2])
 light = LightPropagationMaps(Input=cloud, Lights=sun, SkyColor=[0.03, 0.06, 0.13], Tolerance=5e-3)
 picture = MediumRayCaster(Input=light, Lights=sun, ImageSize=[400, 300], Exposure=0.5,
-                          BackgroundColor=[0.03, 0.06, 0.13], CameraPosition=[70, -120, 26],
+                          BackgroundRadiance=[0.03, 0.06, 0.13], CameraPosition=[70, -120, 26],
                           CameraFocalPoint=[0, 0, -4], CameraViewAngle=24)
 
 from_below = {}

@@ -148,6 +148,11 @@ void vtkLitVolumeRepresentation::SetBackgroundColor(double red, double green, do
   this->RayCaster()->SetBackgroundColor(red, green, blue);
 }
 
+void vtkLitVolumeRepresentation::SetBackgroundRadiance(double red, double green, double blue)
+{
+  this->RayCaster()->SetBackgroundRadiance(red, green, blue);
+}
+
 void vtkLitVolumeRepresentation::SetEnvironmentUp(int axis)
 {
   this->RayCaster()->SetEnvironmentUp(axis);

@@ -39,6 +39,7 @@ public:
   void SetTableReflectance(double reflectance);
   void SetShowBackground(bool show);
   void SetBackgroundColor(double red, double green, double blue);
+  void SetBackgroundRadiance(double red, double green, double blue);
   void SetEnvironmentUp(int axis);
   void SetEnvironmentAzimuth(double degrees);
   void SetExposure(double exposure);

@@ -346,7 +346,7 @@ void RunView(bool bent, const StressScene& scene, Listener* listener, StressOutc
     listener->Hear(caster);
     caster->SetInputDataObject(ImageToView(scene, bent, lit));
     caster->SetImageSize(ViewEdge, ViewEdge);
-    caster->SetBackgroundColor(1.0, 1.0, 1.0);
+    caster->SetBackgroundRadiance(1.0, 1.0, 1.0);
     if (!lit)
     {
       LookDown(caster, scene);

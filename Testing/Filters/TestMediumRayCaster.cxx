@@ -94,7 +94,7 @@ void SlabFollowsTheClosedForm(test::Claims& claims)
   caster->SetInputData(image);
   caster->SetImageSize(41, 31);
   LookDown(caster, image);
-  caster->SetBackgroundColor(1.0, 0.0, 0.0);
+  caster->SetBackgroundRadiance(1.0, 0.0, 0.0);
   caster->Update();
   vtkImageData* picture = caster->GetOutput();
   claims.That(
@@ -210,7 +210,7 @@ void EnvironmentIsTheBackground(test::Claims& claims)
   caster->SetEnvironmentData(environment);
   caster->SetImageSize(9, 9);
   LookDown(caster, image);
-  caster->SetBackgroundColor(9.0, 9.0, 9.0);
+  caster->SetBackgroundRadiance(9.0, 9.0, 9.0);
   caster->Update();
   claims.Near(MiddlePixel(caster, "radiance"), 1.0, 1e-5, "what is below");
   caster->SetCameraPosition(image->GetCenter()[0], image->GetCenter()[1], -100.0);
@@ -260,8 +260,8 @@ void BadInputIsAnError(test::Claims& claims)
   }
   for (double colour : { -1.0, 1e39, HUGE_VAL, std::nan("") })
   {
-    refused("BackgroundColor",
-      [=](vtkMediumRayCaster* caster, vtkImageData*) { caster->SetBackgroundColor(0.1, colour, 0.2); });
+    refused("BackgroundRadiance",
+      [=](vtkMediumRayCaster* caster, vtkImageData*) { caster->SetBackgroundRadiance(0.1, colour, 0.2); });
   }
   for (double exposure : { -1.0, 1e39, HUGE_VAL, std::nan("") })
   {
@@ -343,7 +343,7 @@ void GroundIsSeen(test::Claims& claims, const std::string& which)
   test::Errors errors(caster);
   caster->SetInputConnection(solver->GetOutputPort());
   caster->SetImageSize(9, 9);
-  caster->SetBackgroundColor(7.0, 7.0, 7.0);
+  caster->SetBackgroundRadiance(7.0, 7.0, 7.0);
   LookDown(caster, image);
   caster->Update();
   claims.That(errors.None(), which + ": no complaint");
@@ -419,7 +419,7 @@ void PictureOfACloud(test::Claims& claims, const std::string& file)
   vtkNew<vtkMediumRayCaster> caster;
   caster->SetInputData(image);
   caster->SetLightsConnection(rig->GetOutputPort());
-  caster->SetBackgroundColor(0.1, 0.2, 0.45);
+  caster->SetBackgroundRadiance(0.1, 0.2, 0.45);
   caster->SetImageSize(400, 300);
   vtkNew<vtkPNGWriter> writer;
   writer->SetInputConnection(caster->GetOutputPort());

@@ -135,7 +135,7 @@ void SurfacesMirror(test::Claims& claims)
   test::AddCells(slab.medium, "sigma_a", 0.0);
   test::AddCells(slab.medium, "sigma_s", 0.0);
   slab.AddGlass();
-  slab.caster->SetBackgroundColor(1.0, 1.0, 1.0);
+  slab.caster->SetBackgroundRadiance(1.0, 1.0, 1.0);
   slab.caster->SetCameraPosition(1.0, 1.0, -9.0); // from the side of the smaller index
   claims.Near(slab.Radiance(), 1.0, 1e-4, "an even sky through glass");
   test::AddCells(slab.medium, "fluence", 0.0);

@@ -38,6 +38,21 @@ TEST(ToneMapping, IsMonotonousAndEndsAtWhite)
   }
 }
 
+TEST(ToneMapping, ShowsTheColourThatRadianceWasChosenFor)
+{
+  for (ToneCurve curve : { ToneCurve::Linear, ToneCurve::Filmic })
+  {
+    ToneMapping settings;
+    settings.exposure = 3.7;
+    settings.curve = curve;
+    for (int shown = 0; shown < 256; ++shown)
+    {
+      const auto radiance = static_cast<float>(ExposedAs(shown / 255.0, curve) / settings.exposure);
+      EXPECT_EQ(shown, ToneMap({ radiance, 0.0f, 0.0f }, {}, settings)[0]);
+    }
+  }
+}
+
 TEST(ToneMapping, ExposesTheMeanAsAGreyCard)
 {
   EXPECT_NEAR(0.18 / 3.0, AutomaticExposure({ 1.0f, 1.0f, 1.0f, 9.0f, 9.0f, 9.0f, 0.0f, 0.0f, 0.0f }), 2e-4);

@@ -21,7 +21,7 @@ def fact(caster, name):
 medium = ParticipatingMedium(Input=Wavelet(WholeExtent=[-8, 8, -8, 8, -8, 8]))
 lights = LightRig()
 light = LightPropagationMaps(Input=medium, Lights=lights, DirectionsPerFace=4)
-caster = MediumRayCaster(Input=light, ImageSize=[160, 120], BackgroundColor=[0.1, 0.2, 0.3])
+caster = MediumRayCaster(Input=light, ImageSize=[160, 120], BackgroundRadiance=[0.1, 0.2, 0.3])
 
 image = servermanager.Fetch(caster)
 assert image.GetDimensions() == (160, 120, 1)

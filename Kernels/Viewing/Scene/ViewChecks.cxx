@@ -131,7 +131,7 @@ void Check(const ViewSettings& settings)
   {
     if (!(channel >= 0.0 && channel <= LargestRadiance))
     {
-      throw InvalidInput("A channel of the background colour (BackgroundColor) is " + Text("%g", channel) +
+      throw InvalidInput("A channel of the background (BackgroundRadiance) is " + Text("%g", channel) +
         " W/(length^2 sr); it must be from 0 to " + Text("%g", LargestRadiance) + ".");
     }
   }

@@ -18,7 +18,7 @@ medium = ParticipatingMedium(Input=simulation, DensityArray=["CELLS", "density"]
 medium.MaximumDensity = 1  # once it is made: see the guide
 sun = LightRig(SunElevation=35, SunAzimuth=160, SunPower=[3, 2.8, 2.5])
 light = LightPropagationMaps(Input=medium, Lights=sun, SkyColor=[0.1, 0.14, 0.2], Tolerance=1e-3)
-picture = MediumRayCaster(Input=light, Lights=sun, ImageSize=[240, 320], BackgroundColor=[0.1, 0.14, 0.2], Exposure=2,
+picture = MediumRayCaster(Input=light, Lights=sun, ImageSize=[240, 320], BackgroundRadiance=[0.1, 0.14, 0.2], Exposure=2,
                           CameraPosition=[1.6, -1.6, 0.9], CameraFocalPoint=[0.5, 0.5, 0.5], CameraViewAngle=34)
 
 
