@@ -13,6 +13,6 @@ struct AskedView
   Camera camera;                ///< instead of the filter's own
   std::array<int, 2> size = {}; ///< pixels, instead of ImageSize
   std::vector<float> ends;      ///< of rays, see MediumRayCaster::Render
-  double exposure = 0.0;        ///< with which the picture will be shown: BackgroundColor's radiance follows from it; 0: none
+  double exposure = 0.0; ///< with which the picture will be shown, for BackgroundColor's radiance; 0: none is known
 };
 }

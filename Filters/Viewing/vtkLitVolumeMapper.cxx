@@ -221,8 +221,9 @@ void vtkLitVolumeMapper::Render(vtkRenderer* renderer, vtkVolume* volume)
   {
     return; // the ray caster has said why
   }
-  if (this->ShowsBackgroundColor() && view.exposure != this->UsedExposure) // which decides on the background's radiance
+  if (this->ShowsBackgroundColor() && view.exposure != this->UsedExposure)
   {
+    // The radiance of what is behind follows from the exposure, which was not known before.
     view.exposure = this->UsedExposure;
     this->Cast(view, picture);
   }

@@ -101,6 +101,7 @@ private:
   bool FindExposure();
   void ChooseCastSize(const int drawn[2], double allowed);
   bool Cast(const tyndall::AskedView& view, tyndall::Picture& picture);
+  bool ShowsBackgroundColor();
 
   vtkNew<vtkMediumRayCaster> RayCaster;
   double FrameTime = 0.025;

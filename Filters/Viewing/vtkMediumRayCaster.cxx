@@ -52,7 +52,8 @@ enum LightArray
 constexpr const char* ArrayNames[] = { "sigma_a", "sigma_s", "emission", "fluence", "fluence_direct", "ior",
   "mean_direction" };
 
-/// What is behind the medium in a picture that is shown with this exposure, radiance; 0: with one that is not known yet.
+/// What is behind the medium in a picture that is shown with this exposure, radiance.
+/// @param exposure  0: it is not known yet
 tyndall::Rgb BackgroundOf(vtkMediumRayCaster* filter, double exposure)
 {
   tyndall::Rgb background = tyndall::Triple(filter->GetBackgroundRadiance());

@@ -30,7 +30,7 @@ void Check(const ToneMapping& settings);
 /// @param radiance  3 per pixel, not negative
 double AutomaticExposure(const std::vector<float>& radiance);
 
-/// The radiance times exposure that a screen shows as a channel of this value: what ToneMap makes of it is 255 times that.
+/// The radiance times exposure that a screen shows as a channel of this value: ToneMap makes 255 times that of it.
 /// @param shown  [0, 1], encoded as sRGB
 double ExposedAs(double shown, ToneCurve curve);
 
