@@ -60,8 +60,10 @@ pictures.write(output + "Exposed.png", chosen)
 assert 40 < chosen[75, 100].max() < 256, "the exposure is chosen"
 shown.Exposure = lit_view.EXPOSURE
 shown.ShowBackground = 1
-shown.BackgroundColor = [0, 1, 0]
-assert lit_view.drawn(view)[0, 0].tolist()[1] > 100
+shown.BackgroundColor = [0, 0.6, 0.2]
+for shown.Exposure in (lit_view.EXPOSURE, 0):
+    assert abs(lit_view.drawn(view)[0, 0].astype(int) - [0, 153, 51]).max() <= 1, "the colour that was chosen"
+shown.Exposure = lit_view.EXPOSURE
 shown.ShowBackground = 0
 lit_view.check_same(lit_view.drawn(view), alone)
 

@@ -35,6 +35,18 @@ assert (depth > 0).all() and (depth < 1e4).all()
 assert fact(caster, "Seconds") > 0 and fact(caster, "UsedExposure") > 0
 assert "emission" in fact(caster, "LeftOut")
 
+# A background is shown in the colour that was chosen, at any exposure and by either curve, and leaves the exposure alone.
+caster.BackgroundRadiance = [0, 0, 0]
+caster.UpdatePipeline()
+black = fact(caster, "UsedExposure")
+caster.BackgroundColor = [0.2, 0.4, 0.8]
+for caster.ToneCurve in ("Filmic", "Linear"):
+    for caster.Exposure in (0, 0.3):
+        assert abs(pixels(caster, "color")[0][:3].astype(int) - [51, 102, 204]).max() <= 1, pixels(caster, "color")[0]
+        assert caster.Exposure or abs(fact(caster, "UsedExposure") / black - 1) < 1e-6
+caster.ToneCurve, caster.Exposure = "Filmic", 0
+caster.BackgroundColor = [0, 0, 0]
+
 # Less light in single scattering than in all, with and without shadow rays.
 caster.ShowBackground = 0
 everything = pixels(caster, "radiance").sum()

@@ -13,25 +13,26 @@ namespace tyndall
 namespace
 {
 constexpr double Thick = 0.2; ///< mean free paths a voxel: thinner ones send back up to 1% too little
-/// The same, from which on nobody has to ask for it: 2% too little, for three to four times the time of an order.
+/// The same, from which on nobody has to ask for it: 2% too little, for two to three times the time of an order.
 constexpr double ThickUnasked = 0.25;
-constexpr double Many = 0.25; ///< of all that is scattered, in so thick voxels
+constexpr double Many = 0.25; ///< of the voxels that scatter: few are walls, and all the others would pay for them
 /// Mean free paths a voxel: what does not get out of thicker ones is so little beside what is scattered in them that
 /// floats do not tell it.
 constexpr double Opaque = 1e4;
 
-/// Of what is scattered of light that is the same in all voxels, the part that thick ones scatter; of all channels.
-double PartInThickVoxels(const PropagationProblem& problem)
+/// Of the voxels that scatter, the part that is thick; of all channels.
+double ThickPart(const PropagationProblem& problem)
 {
   const Grid& grid = problem.TheGrid();
   const double longest = *std::max_element(grid.spacing.begin(), grid.spacing.end());
   double all = 0.0, thick = 0.0;
   for (int c = 0; c < problem.Channels(); ++c)
   {
-    const auto scattered = [&](std::size_t i) { return double(problem.Scattering().SigmaS(i, c)); };
-    all += SumOverVoxels(grid, scattered);
-    thick += SumOverVoxels(grid,
-      [&](std::size_t i) { return problem.Scattering().SigmaT(i, c) * longest > ThickUnasked ? scattered(i) : 0.0; });
+    const auto scatters = [&](std::size_t i) { return problem.Scattering().SigmaS(i, c) > 0.0f; };
+    all += SumOverVoxels(grid, [&](std::size_t i) { return scatters(i) ? 1.0 : 0.0; });
+    thick += SumOverVoxels(grid, [&](std::size_t i) {
+      return scatters(i) && problem.Scattering().SigmaT(i, c) * longest > ThickUnasked ? 1.0 : 0.0;
+    });
   }
   return all > 0.0 ? thick / all : 0.0;
 }
@@ -41,7 +42,7 @@ bool MatterUnasked(const PropagationProblem& problem)
 {
   const PropagationSettings& settings = problem.Settings();
   return settings.source == PropagationSource::Automatic && settings.maximumOrders == 0 &&
-    settings.acceleration == PropagationAcceleration::Automatic && PartInThickVoxels(problem) >= Many;
+    settings.acceleration == PropagationAcceleration::Automatic && ThickPart(problem) >= Many;
 }
 }
 

@@ -22,8 +22,8 @@ public:
   /// Whether any voxel is so thick that it matters.
   static bool AreThick(const PropagationProblem& problem);
   /// Whether the source is to be by octant, some voxels are thick, none is opaque, and scattering is isotropic; and all
-  /// light comes in through voxels' faces, or from lamps. Of an automatic source: where thick voxels scatter a quarter
-  /// of all light or more, and the orders are as many as the tolerance asks for.
+  /// light comes in through voxels' faces, or from lamps. Of an automatic source: where a quarter of the voxels
+  /// that scatter are thick or more, and the orders are as many as the tolerance asks for.
   static bool Matter(const PropagationProblem& problem, bool otherSources);
 
   /// @param medium  on the device; must stay
