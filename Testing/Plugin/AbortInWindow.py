@@ -6,12 +6,13 @@ a short one then ends well.
 That it stops at once is measured in reports of progress, of which there may be one more from when the filter heard of the
 click. How long that takes is printed, and no claim: it depends on the machine.
 """
-import ctypes
 import os
 import re
 import subprocess
 import sys
 import time
+
+from screen import Screen
 
 log = os.path.join(os.environ["TYNDALL_TEST_OUTPUT"], "AbortInWindow.log")
 session = os.path.join(os.path.dirname(os.path.abspath(__file__)), "SolveInWindow.xml")
@@ -43,24 +44,6 @@ def abort(solver):
     print("from the click to the end: %.3f s" % (time.monotonic() - begin))
     reports = heard.count(SOLVER + " is ")
     assert reports <= 1, "%d reports of progress after the abort:%s" % (reports, heard)
-
-
-class Screen:
-    def __init__(self):
-        self.x11 = ctypes.CDLL("libX11.so.6")
-        self.x11.XOpenDisplay.restype = ctypes.c_void_p
-        self.x11.XDefaultRootWindow.argtypes = [ctypes.c_void_p]
-        self.x11.XDefaultRootWindow.restype = ctypes.c_ulong
-        self.x11.XGetImage.argtypes = [ctypes.c_void_p, ctypes.c_ulong, ctypes.c_int, ctypes.c_int, ctypes.c_uint,
-                                       ctypes.c_uint, ctypes.c_ulong, ctypes.c_int]
-        self.x11.XGetImage.restype = ctypes.POINTER(ctypes.c_int * 6)  # width, height, xoffset, format, and data
-        self.display = self.x11.XOpenDisplay(None)
-        self.root = self.x11.XDefaultRootWindow(self.display)
-
-    def pixels(self, x, y, width, height):
-        image = self.x11.XGetImage(self.display, self.root, x, y, width, height, 0xFFFFFFFF, 2)
-        data = ctypes.cast(ctypes.byref(image.contents, 16), ctypes.POINTER(ctypes.c_void_p)).contents.value
-        return ctypes.string_at(data, 4 * width * height)
 
 
 if os.path.exists(log):

@@ -52,9 +52,9 @@ def write(path, pixels):
     writer.Write()
 
 
-def difference(name, pixels, mean, part):
+def difference(name, pixels, mean, part, folder=BASELINES):
     """@return what is wrong with a picture, a list"""
-    path = os.path.join(BASELINES, name + ".png")
+    path = os.path.join(folder, name + ".png")
     if not os.path.exists(path):
         return [name + ": there is no baseline"]
     baseline = read(path)
@@ -67,16 +67,17 @@ def difference(name, pixels, mean, part):
     return [] if found[0] <= mean and found[1] <= part else ["%s differs: %g, %g" % ((name,) + found)]
 
 
-def compare(name, pixels, mean=MEAN, part=PART):
+def compare(name, pixels, mean=MEAN, part=PART, folder=BASELINES):
     """
     @param mean  difference from the baseline at most, of 255, on the average of pixels
     @param part  of the pixels that may differ by more than 24 of 255
+    @param folder  of the baseline
     @return what is wrong, a list
     """
     write(os.path.join(os.environ["TYNDALL_TEST_OUTPUT"], name + ".png"), pixels)
-    wrong = difference(name, pixels, mean, part)
+    wrong = difference(name, pixels, mean, part, folder)
     if wrong and "TYNDALL_REMAKE_BASELINES" in os.environ:
         print("Remade: " + wrong[0])
-        write(os.path.join(BASELINES, name + ".png"), pixels)
+        write(os.path.join(folder, name + ".png"), pixels)
         return []
     return wrong

@@ -1,0 +1,82 @@
+"""In ParaView's window the page start.md is played, up to one of its pictures; which is as the window then looks.
+
+    python3 StartPage.py PICTURE paraview [arguments...]    on an X display
+
+`./run baselines` takes the page's pictures anew.
+"""
+import os
+import subprocess
+import sys
+import time
+
+import numpy
+
+import pictures
+import tutorial
+from saved_state import State, folder, forget, values
+from screen import Screen
+
+PATIENCE = 300  # seconds after which something hangs, on the slowest machine
+WIDTH, HEIGHT = 1152, 728  # of the window where it is tested, without the status bar and its figures
+IMAGES = os.path.join(os.environ["TYNDALL_SOURCE"], "Plugin/Documentation/images")
+# Measured: 0 on one machine. A button or a property elsewhere is more, as is another light.
+MEAN, PART = 0.5, 0.005
+
+picture = sys.argv[1]
+output = os.path.join(folder, picture)
+player = tutorial.Player()
+for step in tutorial.steps_until("start.md", picture):
+    player.play(step)
+player.save_state(output + ".pvsm")
+player.write(output + ".xml")
+print("%d clicks" % player.clicks)
+if picture == "start-lit":
+    assert player.clicks <= 8, "the page promises eight clicks"
+
+
+def wait_for(condition, what):
+    end = time.monotonic() + PATIENCE
+    while not condition():
+        assert time.monotonic() < end, "not within %g s: %s" % (PATIENCE, what)
+        assert paraview.poll() is None, "ParaView has gone"
+        with open(output + ".log", errors="replace") as log:
+            text = log.read()
+        assert "Success =  false" not in text, text
+        time.sleep(0.1)
+
+
+def window():
+    """The window's pixels, when they no longer change."""
+    last, pixels, same = None, None, 0
+    while same < 3:
+        last, pixels = pixels, screen.pixels(0, 0, WIDTH, HEIGHT)
+        same = same + 1 if pixels == last else 0
+        time.sleep(0.5)
+    rows = numpy.frombuffer(pixels, numpy.uint8).reshape(HEIGHT, WIDTH, 4)[::-1, :, 2::-1]  # bottom row first
+    return rows.astype(int)
+
+
+forget(picture + ".pvsm")
+with open(output + ".log", "w") as log:
+    paraview = subprocess.Popen(sys.argv[2:] + ["--test-script=%s.xml" % output], stdout=log, stderr=subprocess.STDOUT)
+try:
+    wait_for(lambda: "Success =  true" in open(output + ".log", errors="replace").read(), "the page's end")
+    screen = Screen()
+    seen = window()
+finally:
+    paraview.kill()
+    paraview.wait()
+
+state = State(picture + ".pvsm")
+medium, solver = state.one(type="ParticipatingMedium"), state.one(type="LightPropagationMaps")
+assert values(solver, "Input") == [medium.get("id")]
+shown = [proxy for proxy in state.all(group="representations", type="UniformGridRepresentation")
+         if values(proxy, "Visibility") == ["1"]]
+assert [values(proxy, "Input") for proxy in shown] == [[solver.get("id")]], "the light is what is seen"
+assert values(shown[0], "Representation") == ["Lit Volume"]
+bright = (seen[:, 310:1140].min(axis=2) > 120).mean()
+assert bright > 0.02, "no lit cloud: %.3f of the view is bright" % bright
+if picture == "start-water":
+    assert values(medium, "Preset") == ["1"] and values(medium, "LengthUnit") == ["4"]
+wrong = pictures.compare(picture, seen, MEAN, PART, IMAGES)
+assert not wrong, wrong
