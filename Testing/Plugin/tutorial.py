@@ -1,7 +1,7 @@
 """The steps of a page of the documentation, as events that ParaView plays.
 
 Steps are the items of numbered lists. In them, words in bold are what is clicked: a button of the toolbar Light Transport
-by its filter's name, Open, OK (after a file in `code`), Apply, an entry of the pipeline browser, or a property of the
+by its filter's name, Filters, Light Transport and an entry of that menu, Open, OK (after a file in `code`), Apply, an entry of the pipeline browser, or a property of the
 panel followed by the value in italics that is chosen for it.
 """
 import os
@@ -20,11 +20,14 @@ def filters():
     return [proxy.get("name") for proxy in menu.iterfind("ParaViewFilters/Category/Proxy")]
 
 
-def steps_until(page, picture):
-    """@return of each step before the picture, what is named: (kind of markup, words)"""
+def steps_to(page, picture):
+    """What leads to a picture: the steps of the page's first section, and those of the picture's own.
+    @return of each step what is named: (kind of markup, words)"""
     with open(os.path.join(SOURCE, "Plugin/Documentation", page)) as file:
-        text, found, _ = file.read().partition("(images/%s.png)" % picture)
-    assert found, "%s has no picture %s" % (page, picture)
+        sections = file.read().split("\n## ")[1:]
+    own = [section for section in sections if "(images/%s.png)" % picture in section]
+    assert len(own) == 1, "%s has no picture %s, or has it twice" % (page, picture)
+    text = "\n".join(dict.fromkeys(sections[:1] + own))
     items = re.findall(r"^\d+\. (.*(?:\n   .*)*)", text, re.MULTILINE)
     steps = [re.findall(r"(\*\*|\*|`)(.+?)\1", " ".join(item.split())) for item in items]
     assert steps and all(steps), "a step of %s names nothing" % page
@@ -34,6 +37,7 @@ def steps_until(page, picture):
 class Player:
     def __init__(self):
         self.events, self.clicks = [], 0
+        self.in_menu = False
         self.pipeline = []  # what is in the pipeline browser, each below the one before
 
     def event(self, thing, command, argument="", clicks=1):
@@ -57,12 +61,22 @@ class Player:
         elif word == "OK":
             self.event("pqClientMainWindow/FileOpenDialog", "filesSelected", os.path.join(SOURCE, before), clicks=2)
             self.pipeline.append(os.path.basename(before))
+        elif word in ("Filters", "Light Transport"):
+            self.in_menu = True
+            self.clicks += 1
         elif name in self.pipeline:
             self.select(name)
         else:
-            assert name in filters(), "no button, and nothing in the pipeline: " + word
+            self.make(name)
+
+    def make(self, name):
+        assert name in filters(), "no filter, and nothing in the pipeline: " + name
+        if self.in_menu:
+            self.event("pqClientMainWindow/menubar/menuFilters/Light Transport", "activate", name)
+        else:
             self.event("pqClientMainWindow/Light Transport/1QToolButton%d" % filters().index(name), "activate")
-            self.pipeline.append(name + "1")
+        self.in_menu = False
+        self.pipeline.append(name + "1")
 
     def play(self, step):
         for (kind, word), (next_kind, value) in zip(step, step[1:] + [("", "")]):
