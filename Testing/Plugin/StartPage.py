@@ -1,6 +1,6 @@
 """In ParaView's window the page start.md is played, up to one of its pictures; which is as the window then looks.
 
-    python3 StartPage.py PICTURE paraview [arguments...]    on an X display
+    python3 StartPage.py PICTURE paraview [arguments...]    on an X display of its own
 
 `./run baselines` takes the page's pictures anew.
 """
