@@ -151,10 +151,30 @@ def check(file, group, proxy):
         faults.extend("%s.%s: not reachable in Python" % (name, each) for each in names if each not in reachable)
 
 
+def faults_of_menus(files):
+    """Menu.xml has each proxy that is to be in a menu, and the plugin an icon of its own for each."""
+    plugin = os.path.join(os.environ["TYNDALL_SOURCE"], "Plugin")
+    listed = [proxy.get("name") for proxy in ElementTree.parse(os.path.join(plugin, "Menu/Menu.xml")).iter("Proxy")]
+    icons = [file.text for file in ElementTree.parse(os.path.join(plugin, "Icons/Tyndall.qrc")).iter("file")]
+    asked = {}
+    for file in files:
+        for proxy in ElementTree.parse(file).getroot().iterfind("ProxyGroup/SourceProxy"):
+            if proxy.find("Hints/ShowInMenu") is not None:
+                asked[proxy.get("name")] = os.path.basename(proxy.find("Hints/ShowInMenu").get("icon", "none"))
+    if sorted(listed) != sorted(asked):
+        yield "Menu.xml: it lists %s too much, and not %s" % (set(listed) - set(asked), set(asked) - set(listed))
+    for name, icon in asked.items():
+        if icon not in icons or not os.path.exists(os.path.join(plugin, "Icons", icon)):
+            yield "%s: there is no icon %s" % (name, icon)
+        if list(asked.values()).count(icon) > 1:
+            yield "%s: others have its icon, too" % name
+
+
 files = glob.glob(os.path.join(os.environ["TYNDALL_SOURCE"], "Plugin/ServerManager/*.xml"))
 assert len(files) >= 9, files
 for file in sorted(files):
     for group in ElementTree.parse(file).getroot().findall("ProxyGroup"):
         for proxy in (each for each in group if each.tag != "Extension"):
             check(file, group.get("name"), proxy)
+faults.extend(faults_of_menus(files))
 assert not faults, "\n" + "\n".join(faults)
