@@ -85,6 +85,7 @@ bright = (seen[:, 310:1140].min(axis=2) > 110).mean()
 assert bright > 0.02, "no lit cloud: %.3f of the view is bright" % bright
 if picture == "start-water":
     assert values(medium, "Preset") == ["1"] and values(medium, "LengthUnit") == ["4"]
+    assert values(solver, "Preview") == ["1"]
 if picture == "start-picture":
     assert values(state.one(type="MediumRayCaster"), "Input") == [solver.get("id")]
     assert len(state.all(type="PictureView")) == 1, "a view of its own"

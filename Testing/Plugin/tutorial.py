@@ -2,7 +2,7 @@
 
 Steps are the items of numbered lists. In them, words in bold are what is clicked: a button of the toolbar Light Transport
 by its filter's name, Filters, Light Transport and an entry of that menu, Open, OK (after a file in `code`), Apply, an entry of the pipeline browser, or a property of the
-panel followed by the value in italics that is chosen for it.
+panel followed by the value in italics that is chosen for it (on or off: of a check box).
 """
 import os
 import re
@@ -45,7 +45,11 @@ class Player:
         self.clicks += clicks
 
     def choose(self, label, value):
-        self.event(PROPERTIES + label.replace(" ", "") + "/ComboBox", "set_string", value, clicks=2)
+        widget = PROPERTIES + label.replace(" ", "")
+        if value in ("on", "off"):
+            self.event(widget + "/CheckBox", "set_boolean", "true" if value == "on" else "false")
+        else:
+            self.event(widget + "/ComboBox", "set_string", value, clicks=2)
 
     def select(self, name):
         place = "/0:0" * (2 + self.pipeline.index(name))
