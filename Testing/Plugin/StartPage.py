@@ -32,15 +32,15 @@ if picture == "start-lit":
     assert player.clicks <= 8, "the page promises eight clicks"
 
 
-def wait_for(condition, what):
-    end = time.monotonic() + PATIENCE
-    while not condition():
-        assert time.monotonic() < end, "not within %g s: %s" % (PATIENCE, what)
+def wait_for_the_end():
+    end, text = time.monotonic() + PATIENCE, ""
+    while "Success =  true" not in text:
+        assert time.monotonic() < end, "not played within %g s" % PATIENCE
         assert paraview.poll() is None, "ParaView has gone"
-        with open(output + ".log", errors="replace") as log:
-            text = log.read()
         assert "Success =  false" not in text, text
         time.sleep(0.1)
+        with open(output + ".log", errors="replace") as said:
+            text = said.read()
 
 
 def window():
@@ -65,7 +65,7 @@ forget(picture + ".pvsm")
 with open(output + ".log", "w") as log:
     paraview = subprocess.Popen(sys.argv[2:] + ["--test-script=%s.xml" % output], stdout=log, stderr=subprocess.STDOUT)
 try:
-    wait_for(lambda: "Success =  true" in open(output + ".log", errors="replace").read(), "the page's end")
+    wait_for_the_end()
     screen = Screen()
     if picture == "start-menu":
         open_menu()

@@ -1,8 +1,9 @@
 """The steps of a page of the documentation, as events that ParaView plays.
 
-Steps are the items of numbered lists. In them, words in bold are what is clicked: a button of the toolbar Light Transport
-by its filter's name, Filters, Light Transport and an entry of that menu, Open, OK (after a file in `code`), Apply, an entry of the pipeline browser, or a property of the
-panel followed by the value in italics that is chosen for it (on or off: of a check box).
+Steps are the items of numbered lists. In them, words in bold are what is clicked: a button of the toolbar Light
+Transport by its filter's name; Filters, Light Transport and an entry of that menu; Open; OK (after a file in `code`);
+Apply; an entry of the pipeline browser; or a property of the panel, followed by the value in italics that is chosen for
+it (on or off: of a check box).
 """
 import os
 import re
