@@ -134,8 +134,17 @@ private:
   void ShowResults(vtkAlgorithm* algorithm)
   {
     const vtkWeakPointer<vtkSMProxy> proxy = this->Proxies[algorithm];
-    const bool isAborted = std::exchange(this->IsAborted, false);
-    QTimer::singleShot(0, this, [this, proxy, isAborted] {
+    this->ShowLater(proxy, std::exchange(this->IsAborted, false), 0);
+  }
+
+  void ShowLater(const vtkWeakPointer<vtkSMProxy>& proxy, bool isAborted, int milliseconds)
+  {
+    QTimer::singleShot(milliseconds, this, [this, proxy, isAborted] {
+      if (this->Running) // the same update runs filters on, and timers come between their reports
+      {
+        this->ShowLater(proxy, isAborted, 50);
+        return;
+      }
       if (proxy)
       {
         proxy->UpdatePropertyInformation();
