@@ -1,5 +1,6 @@
 #include "RepresentationHints.h"
 
+#include "ChangedProperty.h"
 #include "RegisteredProxies.h"
 
 #include "vtkCallbackCommand.h"
@@ -70,7 +71,7 @@ void HideUnusedBar(vtkSMProxy* bar)
 
 void HideBarAtChange(vtkObject* caller, unsigned long, void*, void* property)
 {
-  if (std::strcmp(static_cast<const char*>(property), "Visibility") == 0)
+  if (IsChangeOf(property, "Visibility"))
   {
     HideUnusedBar(vtkSMProxy::SafeDownCast(caller));
   }
@@ -162,7 +163,7 @@ vtkCallbackCommand* FirstChange()
 void ColorAtFirstChange(vtkObject* caller, unsigned long, void*, void* property)
 {
   auto* const representation = vtkSMProxy::SafeDownCast(caller);
-  if (std::strcmp(static_cast<const char*>(property), "Representation") != 0 ||
+  if (!IsChangeOf(property, "Representation") ||
     IsLitVolume(vtkSMPropertyHelper(representation, "Representation").GetAsString()))
   {
     return;

@@ -1,5 +1,6 @@
 #include "ViewCameras.h"
 
+#include "ChangedProperty.h"
 #include "RegisteredProxies.h"
 
 #include "vtkCallbackCommand.h"
@@ -16,7 +17,6 @@
 #include "vtkSMViewProxy.h" // RemotingViews wants GLEW; of it only inline and virtual functions are called
 
 #include <algorithm>
-#include <cstring>
 #include <string>
 #include <vector>
 
@@ -142,7 +142,7 @@ void Press(vtkObject* caller, unsigned long, void*, void* property)
 {
   auto* const source = vtkSMProxy::SafeDownCast(caller);
   const char* const button = CameraHint(source)->GetAttributeOrEmpty("button");
-  if (property && std::strcmp(static_cast<const char*>(property), button) == 0)
+  if (IsChangeOf(property, button))
   {
     if (vtkSMViewProxy* const view = ViewFor(source))
     {

@@ -19,6 +19,11 @@ alone = lit_view.drawn(view)
 pictures.write(output + ".png", alone)
 lit_view.check_same(alone, lit_view.cast(light, view))
 
+# Colours, which Lit Volume does not use, are no change of it (they were the end of ParaView).
+ColorBy(shown, ("CELLS", "sigma_s"))
+assert shown.Representation == "Lit Volume"
+lit_view.check_same(lit_view.drawn(view), alone)
+
 # A screenshot, of another size.
 SaveScreenshot(output + "Large.png", view, ImageResolution=[400, 300])
 large = pictures.read(output + "Large.png")

@@ -52,7 +52,7 @@ def drawn(view):
 
 def cast(light, view):
     """@return the pixels of Medium Ray Caster with the view's camera, over black"""
-    caster = MediumRayCaster(Input=light, ImageSize=SIZE, Exposure=EXPOSURE, CameraPosition=view.CameraPosition,
+    caster = MediumRayCaster(Input=light, ImageSize=list(view.ViewSize), Exposure=EXPOSURE, CameraPosition=view.CameraPosition,
                              CameraFocalPoint=view.CameraFocalPoint, CameraViewUp=view.CameraViewUp,
                              CameraViewAngle=view.CameraViewAngle)
     return pictures.of_image(servermanager.Fetch(caster), "color")
