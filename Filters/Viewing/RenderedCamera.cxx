@@ -62,23 +62,36 @@ RenderedCamera::RenderedCamera(vtkRenderer* renderer, vtkMatrix4x4* place)
   this->Depth = { element(2, 2), element(2, 3), element(3, 2), element(3, 3) };
 
   const double distance = camera->GetDistance(); // in the world: fromEye's columns are as long as its unit
-  this->Seen.position = Column(fromEye, 3);
-  this->Seen.viewUp = Column(fromEye, 1);
-  for (int axis = 0; axis < 3; ++axis)
-  {
-    this->Seen.focalPoint[axis] = this->Seen.position[axis] - distance * fromEye->GetElement(axis, 2);
-  }
+  Vec forward = { 0.0, 0.0, -1.0 }, origin = { 0.0, 0.0, 0.0 }; // of rays, in the eye's axes
   this->Seen.parallelProjection = camera->GetParallelProjection() != 0;
   this->Seen.aspect = element(1, 1) / element(0, 0);
   if (this->Seen.parallelProjection)
   {
     this->Seen.parallelScale = 1.0 / (element(1, 1) * this->Scale);
     this->Seen.shift = { -element(0, 3), -element(1, 3) };
+    // For one of two eyes VTK shears the picture: rays are oblique to it. Here its plane is turned along, by a degree.
+    forward[0] = element(0, 2) / element(0, 0);
+    forward[1] = element(1, 2) / element(1, 1);
   }
   else
   {
     this->Seen.viewAngle = std::atan(1.0 / element(1, 1)) * 360.0 / Pi;
     this->Seen.shift = { element(0, 2), element(1, 2) };
+    // The left and the right eye stand beside the camera, and what is at the distance of the focal point stays in place.
+    origin[0] = -element(0, 3) / element(0, 0);
+    origin[1] = -element(1, 3) / element(1, 1);
+  }
+  this->Seen.viewUp = Column(fromEye, 1);
+  for (int axis = 0; axis < 3; ++axis)
+  {
+    this->Seen.position[axis] = fromEye->GetElement(axis, 3);
+    this->Seen.focalPoint[axis] = this->Seen.position[axis];
+    for (int eyeAxis = 0; eyeAxis < 3; ++eyeAxis)
+    {
+      this->Seen.position[axis] += origin[eyeAxis] * fromEye->GetElement(axis, eyeAxis);
+      this->Seen.focalPoint[axis] +=
+        (origin[eyeAxis] + distance * forward[eyeAxis]) * fromEye->GetElement(axis, eyeAxis);
+    }
   }
 }
 

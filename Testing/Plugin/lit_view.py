@@ -24,8 +24,7 @@ def solved():
     return LightPropagationMaps(Input=medium, Lights=LightRig(), DirectionsPerFace=4)
 
 
-def black_view():
-    view = CreateView("RenderView")
+def make_black(view):
     view.ViewSize = SIZE
     view.OrientationAxesVisibility = 0
     view.UseFXAA = 0
@@ -36,6 +35,10 @@ def black_view():
     view.CameraViewUp = [0, 0, 1]
     view.CameraViewAngle = 35
     return view
+
+
+def black_view():
+    return make_black(CreateView("RenderView"))
 
 
 def show_lit(light, view):
@@ -50,11 +53,15 @@ def drawn(view):
     return pictures.of_image(view.CaptureWindow(1))
 
 
-def cast(light, view):
-    """@return the pixels of Medium Ray Caster with the view's camera, over black"""
-    caster = MediumRayCaster(Input=light, ImageSize=list(view.ViewSize), Exposure=EXPOSURE, CameraPosition=view.CameraPosition,
+def cast(light, view, size=None, **more):
+    """
+    @param size  of the picture: otherwise the view's
+    @param more  properties of the caster
+    @return the pixels of Medium Ray Caster with the view's camera, over black
+    """
+    caster = MediumRayCaster(Input=light, ImageSize=list(size or view.ViewSize), Exposure=EXPOSURE, CameraPosition=view.CameraPosition,
                              CameraFocalPoint=view.CameraFocalPoint, CameraViewUp=view.CameraViewUp,
-                             CameraViewAngle=view.CameraViewAngle)
+                             CameraViewAngle=view.CameraViewAngle, **more)
     return pictures.of_image(servermanager.Fetch(caster), "color")
 
 
