@@ -28,6 +28,15 @@ for extinction, decades in ((0.1, False), (5, True)):
     Delete(colors)  # which all have in common that are coloured by fluence
     Delete(view)
 
+view = CreateView("RenderView")
+medium = ParticipatingMedium(Input=Wavelet(WholeExtent=[-5, 5, -5, 5, -5, 5]), MaximumDensity=300)
+marched = PhotonMarcher(Input=medium, Photons=PhotonEmitter(Input=medium, Lights=LightRig(), PhotonCount=1000, Batches=2))
+for filter in (marched, PhotonReconstruction(Input=marched), LPMCollect(Input=LPMPropagate(Input=medium, Lights=LightRig()))):
+    display = Show(OutputPort(filter, 0), view)
+    assert display.Representation == "Lit Volume", (filter, display.Representation)
+    display.Representation = "Slice"
+    assert display.ColorArrayName[1] == "fluence", (filter, display.ColorArrayName)
+
 chart = CreateView("XYChartView")
 plotted = Show(OutputPort(light, 1), chart)
 series = plotted.SMProxy.GetProperty("SeriesVisibility")  # name, 0 or 1, name, ...
