@@ -39,8 +39,8 @@ std::string HowToMakeAnImage(vtkDataObject* data)
   }
   if (data->IsA("vtkPolyData"))
   {
-    return "The filter MeshVoxelizer (Mesh Voxelizer) makes a medium of a closed mesh, GaussianResampling (Gaussian "
-           "Resampling) an image of points, and " +
+    return "The filter MeshVoxelizer (Mesh Voxelizer) makes a medium of a closed mesh, PointVolumeInterpolator (Point "
+           "Volume Interpolator) an image of points, and " +
       resample + " one of cells that have a volume.";
   }
   return "The filter " + resample + " makes one of it.";

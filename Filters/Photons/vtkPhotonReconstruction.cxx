@@ -199,7 +199,8 @@ int vtkPhotonReconstruction::FillInputPortInformation(int, vtkInformation* infor
   return 1;
 }
 
-int vtkPhotonReconstruction::RequestInformation(vtkInformation*, vtkInformationVector** inputs, vtkInformationVector* outputs)
+int vtkPhotonReconstruction::RequestInformation(
+  vtkInformation*, vtkInformationVector** inputs, vtkInformationVector* outputs)
 {
   tyndall::TellSomeExtent(inputs[0], outputs);
   return 1;

@@ -94,7 +94,8 @@ int vtkRefractionOctree::FillInputPortInformation(int, vtkInformation* informati
   return 1;
 }
 
-int vtkRefractionOctree::RequestInformation(vtkInformation*, vtkInformationVector** inputs, vtkInformationVector* outputs)
+int vtkRefractionOctree::RequestInformation(
+  vtkInformation*, vtkInformationVector** inputs, vtkInformationVector* outputs)
 {
   tyndall::TellSomeExtent(inputs[0], outputs);
   return 1;

@@ -55,7 +55,8 @@ protected:
   ~vtkLPMCollect() override;
 
   int FillInputPortInformation(int port, vtkInformation* information) override;
-  int RequestInformation(vtkInformation* request, vtkInformationVector** inputs, vtkInformationVector* outputs) override;
+  int RequestInformation(
+    vtkInformation* request, vtkInformationVector** inputs, vtkInformationVector* outputs) override;
   int RequestData(vtkInformation* request, vtkInformationVector** inputs, vtkInformationVector* outputs) override;
 
 private:

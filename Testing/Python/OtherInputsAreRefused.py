@@ -108,11 +108,14 @@ def ports_for_images(algorithm):
             yield port
 
 
+sun = tyndall.vtkLightRig()
+
+
 def photons():
     emitter = tyndall.vtkPhotonEmitter()
     emitter.SetPhotonCount(100)
     emitter.SetInputData(image())
-    emitter.SetLightsConnection(tyndall.vtkLightRig().GetOutputPort())
+    emitter.SetLightsConnection(sun.GetOutputPort())
     emitter.Update()
     return emitter.GetOutputDataObject(0)
 
@@ -128,6 +131,8 @@ def propagated():
 def with_valid_input(name):
     made = getattr(tyndall, name)()
     made.SetInputDataObject(0, propagated() if name == "vtkLPMCollect" else image())
+    if hasattr(made, "SetLightsConnection"):
+        made.SetLightsConnection(sun.GetOutputPort())
     if name == "vtkPhotonMarcher":
         made.SetPhotonsData(photons())
     if name == "vtkVDBWriter":
@@ -177,10 +182,12 @@ for name in FILTERS:
             refuses(algorithm, port, data.GetClassName() if name == "vtkVDBWriter" else named, data)
     said = messages(algorithm)
     assert "ERROR" not in said, (name, said)
-    if name != "vtkVDBWriter":
+    if name == "vtkVDBWriter":
+        os.remove(algorithm.GetFileName())
+    else:
         assert not is_empty(algorithm), name
     tried += 1
-assert tried == 13, tried
+assert tried == 14, tried
 
 # Images in blocks are worked on one by one, where the filter has an output; one image is written.
 for make, parts in ((blocks, 2), (collection, 2), (partitions, 1)):
