@@ -1,4 +1,4 @@
-"""PyVista's objects go in as they are, and what comes out is wrapped: they are VTK's own, where PyVista stands on its host's VTK."""
+"""PyVista's objects go in as they are, and it wraps what comes out: they are VTK's, where it stands on the host's VTK."""
 import sys
 
 import numpy
