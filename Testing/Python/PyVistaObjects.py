@@ -1,9 +1,11 @@
 """PyVista's objects go in as they are, and it wraps what comes out: they are VTK's, where it stands on the host's VTK."""
+import os
 import sys
 
 import numpy
 import tyndall
 
+sys.path.append(os.environ.get("TYNDALL_PYVISTA", ""))  # what `Data/fetch pyvista` fetched, behind all that is there
 try:
     import pyvista
 except ImportError as error:
