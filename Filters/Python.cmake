@@ -20,6 +20,9 @@ vtk_module_wrap_python(
 
 foreach (file IN ITEMS __init__.py solving.py)
   configure_file("${CMAKE_CURRENT_LIST_DIR}/Python/tyndall/${file}" "${TYNDALL_PYTHON_PACKAGES}/tyndall/${file}" COPYONLY)
-  install(FILES "${CMAKE_CURRENT_LIST_DIR}/Python/tyndall/${file}"
+endforeach ()
+configure_file("${CMAKE_CURRENT_LIST_DIR}/Python/tyndall/host.py.in" "${TYNDALL_PYTHON_PACKAGES}/tyndall/host.py" @ONLY)
+foreach (file IN ITEMS __init__.py host.py solving.py)
+  install(FILES "${TYNDALL_PYTHON_PACKAGES}/tyndall/${file}"
     DESTINATION "${python_destination}/tyndall" COMPONENT "python")
 endforeach ()

@@ -6,35 +6,68 @@
 #include "vtkDataObject.h"
 #include "vtkImageData.h"
 #include "vtkInformation.h"
+#include "vtkInformationIntegerKey.h"
+#include "vtkInformationStringVectorKey.h"
 #include "vtkInformationVector.h"
 #include "vtkStreamingDemandDrivenPipeline.h"
 
-#include <cstring>
 #include <string>
 
 namespace tyndall
 {
 namespace
 {
-const char* const AnyDataSet = "vtkDataSet"; // no filter has a port for any other reason
-
-bool IsForImages(vtkInformation* port)
+/// Of a port: that it is for images, whatever it takes.
+vtkInformationIntegerKey* ForImages()
 {
-  const char* const type = port->Get(vtkAlgorithm::INPUT_REQUIRED_DATA_TYPE(), 0);
-  return type && std::strcmp(type, AnyDataSet) == 0;
+  static auto* const key = vtkInformationIntegerKey::MakeKey("FOR_IMAGES", "Tyndall");
+  return key;
+}
+
+/// @return which filters of ParaView make an image of such data, as what they do
+std::string HowToMakeAnImage(vtkDataObject* data)
+{
+  const std::string resample = "ResampleToImage (Resample To Image)";
+  if (data->IsA("vtkTable"))
+  {
+    return "The filters TableToStructuredGrid (Table To Structured Grid) and then " + resample + " make one of it.";
+  }
+  if (data->IsA("vtkHyperTreeGrid"))
+  {
+    return "The filters HyperTreeGridToUnstructuredGrid (HyperTreeGrid To UnstructuredGrid) and then " + resample +
+      " make one of it.";
+  }
+  if (data->IsA("vtkPolyData"))
+  {
+    return "The filter MeshVoxelizer (Mesh Voxelizer) makes a medium of a closed mesh, PointVolumeInterpolator (Point "
+           "Volume Interpolator) an image of points, and " +
+      resample + " one of cells that have a volume.";
+  }
+  return "The filter " + resample + " makes one of it.";
 }
 }
 
 void TakeImages(vtkInformation* port)
 {
-  port->Set(vtkAlgorithm::INPUT_REQUIRED_DATA_TYPE(), AnyDataSet);
+  port->Set(ForImages(), 1);
+  port->Remove(vtkAlgorithm::INPUT_REQUIRED_DATA_TYPE());
+  for (const char* type : { "vtkDataSet", "vtkUniformGridAMR", "vtkHyperTreeGrid", "vtkTable", "vtkGraph" })
+  {
+    port->Append(vtkAlgorithm::INPUT_REQUIRED_DATA_TYPE(), type);
+  }
+}
+
+void TakeOneImage(vtkInformation* port)
+{
+  port->Set(ForImages(), 1);
+  port->Set(vtkAlgorithm::INPUT_REQUIRED_DATA_TYPE(), "vtkDataObject");
 }
 
 void RequireImages(vtkAlgorithm* filter)
 {
   for (int port = 0; port < filter->GetNumberOfInputPorts(); ++port)
   {
-    if (!IsForImages(filter->GetInputPortInformation(port)) || filter->GetNumberOfInputConnections(port) == 0)
+    if (!filter->GetInputPortInformation(port)->Has(ForImages()) || filter->GetNumberOfInputConnections(port) == 0)
     {
       continue;
     }
@@ -42,8 +75,7 @@ void RequireImages(vtkAlgorithm* filter)
     if (input && !vtkImageData::SafeDownCast(input))
     {
       throw InvalidInput("The input" + (port > 0 ? " " + std::to_string(port) : std::string()) + " is a " +
-        input->GetClassName() +
-        "; it must be an image, vtkImageData. The filter ResampleToImage (Resample To Image) makes " + "one of it.");
+        input->GetClassName() + "; it must be an image, vtkImageData. " + HowToMakeAnImage(input));
     }
   }
 }

@@ -5,18 +5,22 @@ class vtkInformation;
 class vtkInformationVector;
 
 /// For filters that work on images. A port that takes vtkImageData alone refuses other data by an error of VTK's
-/// executive for each pass of the pipeline, none of which says what to do. These ports take any dataset, and refuse it
+/// executive for each pass of the pipeline, none of which says what to do. These ports take any data, and refuse them
 /// once.
 namespace tyndall
 {
-/// In FillInputPortInformation: the port is for images.
+/// In FillInputPortInformation: the port is for images. Of blocks of images, vtkMultiBlockDataSet and the partitioned
+/// datasets, the pipeline hands on one after the other. Those of adaptive meshes (AMR) overlap, so these are refused.
 void TakeImages(vtkInformation* port);
 
+/// The same of a filter without outputs, a writer, to which VTK does not hand on blocks one by one: they are refused.
+void TakeOneImage(vtkInformation* port);
+
 /// To be asked before a filter works; Guarded does.
-/// @throws InvalidInput where a port for images has another dataset, with what to do about it
+/// @throws InvalidInput where a port for images has other data, with what to do about it
 void RequireImages(vtkAlgorithm* filter);
 
-/// In RequestInformation of a filter whose output has the extent of its input: where the input has none, as a dataset
-/// that is no image, the output has a voxel, so that the pipeline asks the filter for it.
+/// In RequestInformation of a filter whose output has the extent of its input: where the input has none, as data
+/// that are no image, the output has a voxel, so that the pipeline asks the filter for it.
 void TellSomeExtent(vtkInformationVector* inputs, vtkInformationVector* outputs);
 }

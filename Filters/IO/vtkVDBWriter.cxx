@@ -1,6 +1,7 @@
 #include "vtkVDBWriter.h"
 
 #include "Common/GatheredImage.h"
+#include "Common/ImageInput.h"
 #include "Device/Errors.h"
 #include "IO/VDB/VDBCells.h"
 #include "IO/VDB/VDBFile.h"
@@ -177,7 +178,7 @@ vtkImageData* vtkVDBWriter::GetImageInput()
 
 int vtkVDBWriter::FillInputPortInformation(int, vtkInformation* info)
 {
-  info->Set(vtkAlgorithm::INPUT_REQUIRED_DATA_TYPE(), "vtkImageData");
+  tyndall::TakeOneImage(info);
   return 1;
 }
 
@@ -222,7 +223,10 @@ void vtkVDBWriter::WriteData()
     });
     this->SetErrorCode(vtkErrorCode::FileFormatError); // until it is written
     std::vector<vtkSmartPointer<vtkDataArray>> arrays;
-    tyndall::OnAllRanks(this->Controller, [&] { arrays = CellArraysOf(this->GetImageInput()); });
+    tyndall::OnAllRanks(this->Controller, [&] {
+      tyndall::RequireImages(this);
+      arrays = CellArraysOf(this->GetImageInput());
+    });
     tyndall::GatheredImage image(this->Controller, this->GetImageInput(), arrays);
     tyndall::OnAllRanks(this->Controller, [&] {
       if (image.IsFirstRank() && (image.Frame() == nullptr || image.NumberOfArrays() == 0))

@@ -45,9 +45,10 @@ class vtkMultiProcessController;
  * trees have to fit its memory. A cell that several ranks have is taken from the first that does not flag it as a
  * duplicate. Field data are those of the first rank that has cells.
  *
- * Errors, each one message (on every rank), and the file that was there stays: no file name, nothing to write, an
- * unsigned 64-bit integer above 2^63 - 1, a number that 16 bits do not hold where SaveAsHalf is on (names array, voxel,
- * value), a file that cannot be written (names the file and the cause), pieces that are not of one image.
+ * Errors, each one message (on every rank), and the file that was there stays: no file name, what is no image (blocks,
+ * too: vtkResampleToImage makes one image of them), nothing to write, an unsigned 64-bit integer above 2^63 - 1, a
+ * number that 16 bits do not hold where SaveAsHalf is on (names array, voxel, value), a file that cannot be written
+ * (names the file and the cause), pieces that are not of one image.
  *
  * @sa vtkVDBReader
  */

@@ -1,5 +1,6 @@
 #include "vtkPhotonMarcher.h"
 
+#include "Common/ImageInput.h"
 #include "Common/LightTransportData.h"
 #include "Common/WholeImage.h"
 #include "Device/Device.h"
@@ -145,7 +146,14 @@ void vtkPhotonMarcher::RemoveOctree()
 
 int vtkPhotonMarcher::FillInputPortInformation(int port, vtkInformation* information)
 {
-  information->Set(vtkAlgorithm::INPUT_REQUIRED_DATA_TYPE(), port == PhotonsPort ? "vtkPolyData" : "vtkImageData");
+  if (port == PhotonsPort)
+  {
+    information->Set(vtkAlgorithm::INPUT_REQUIRED_DATA_TYPE(), "vtkPolyData");
+  }
+  else
+  {
+    tyndall::TakeImages(information);
+  }
   if (port == OctreePort)
   {
     information->Set(vtkAlgorithm::INPUT_IS_OPTIONAL(), 1);
@@ -166,6 +174,12 @@ void vtkPhotonMarcher::SetInputConnection(int port, vtkAlgorithmOutput* input)
     this->Kept->Forget();
   }
   this->Superclass::SetInputConnection(port, input);
+}
+
+int vtkPhotonMarcher::RequestInformation(vtkInformation*, vtkInformationVector** inputs, vtkInformationVector* outputs)
+{
+  tyndall::TellSomeExtent(inputs[MediumPort], outputs);
+  return 1;
 }
 
 /// The memory of an old medium is given back before the filters before run, which may need it.

@@ -198,6 +198,8 @@ protected:
 
   int FillInputPortInformation(int port, vtkInformation* information) override;
   int FillOutputPortInformation(int port, vtkInformation* information) override;
+  int RequestInformation(
+    vtkInformation* request, vtkInformationVector** inputs, vtkInformationVector* outputs) override;
   int RequestUpdateExtent(
     vtkInformation* request, vtkInformationVector** inputs, vtkInformationVector* outputs) override;
   int RequestData(vtkInformation* request, vtkInformationVector** inputs, vtkInformationVector* outputs) override;

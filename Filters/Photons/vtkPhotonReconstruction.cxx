@@ -1,5 +1,6 @@
 #include "vtkPhotonReconstruction.h"
 
+#include "Common/ImageInput.h"
 #include "Common/LightTransportData.h"
 #include "Common/WholeImage.h"
 #include "Device/Device.h"
@@ -194,7 +195,14 @@ vtkPhotonReconstruction::~vtkPhotonReconstruction() = default;
 
 int vtkPhotonReconstruction::FillInputPortInformation(int, vtkInformation* information)
 {
-  information->Set(vtkAlgorithm::INPUT_REQUIRED_DATA_TYPE(), "vtkImageData");
+  tyndall::TakeImages(information);
+  return 1;
+}
+
+int vtkPhotonReconstruction::RequestInformation(
+  vtkInformation*, vtkInformationVector** inputs, vtkInformationVector* outputs)
+{
+  tyndall::TellSomeExtent(inputs[0], outputs);
   return 1;
 }
 

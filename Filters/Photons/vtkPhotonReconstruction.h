@@ -132,6 +132,8 @@ protected:
   ~vtkPhotonReconstruction() override;
 
   int FillInputPortInformation(int port, vtkInformation* information) override;
+  int RequestInformation(
+    vtkInformation* request, vtkInformationVector** inputs, vtkInformationVector* outputs) override;
   int RequestUpdateExtent(
     vtkInformation* request, vtkInformationVector** inputs, vtkInformationVector* outputs) override;
   int RequestData(vtkInformation* request, vtkInformationVector** inputs, vtkInformationVector* outputs) override;

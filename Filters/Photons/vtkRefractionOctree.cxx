@@ -1,6 +1,7 @@
 #include "vtkRefractionOctree.h"
 
 #include "Common/ArrayRanges.h"
+#include "Common/ImageInput.h"
 #include "Common/LightTransportData.h"
 #include "Common/VectorArray.h"
 #include "Common/WholeImage.h"
@@ -84,6 +85,19 @@ vtkRefractionOctree::~vtkRefractionOctree() = default;
 int vtkRefractionOctree::FillOutputPortInformation(int port, vtkInformation* information)
 {
   information->Set(vtkDataObject::DATA_TYPE_NAME(), port == 0 ? "vtkImageData" : "vtkHyperTreeGrid");
+  return 1;
+}
+
+int vtkRefractionOctree::FillInputPortInformation(int, vtkInformation* information)
+{
+  tyndall::TakeImages(information);
+  return 1;
+}
+
+int vtkRefractionOctree::RequestInformation(
+  vtkInformation*, vtkInformationVector** inputs, vtkInformationVector* outputs)
+{
+  tyndall::TellSomeExtent(inputs[0], outputs);
   return 1;
 }
 

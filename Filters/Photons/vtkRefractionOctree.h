@@ -90,7 +90,10 @@ protected:
   vtkRefractionOctree();
   ~vtkRefractionOctree() override;
 
+  int FillInputPortInformation(int port, vtkInformation* information) override;
   int FillOutputPortInformation(int port, vtkInformation* information) override;
+  int RequestInformation(
+    vtkInformation* request, vtkInformationVector** inputs, vtkInformationVector* outputs) override;
   int RequestUpdateExtent(
     vtkInformation* request, vtkInformationVector** inputs, vtkInformationVector* outputs) override;
   int RequestData(vtkInformation* request, vtkInformationVector** inputs, vtkInformationVector* outputs) override;

@@ -1,5 +1,6 @@
 #include "vtkLPMCollect.h"
 
+#include "Common/ImageInput.h"
 #include "Common/LightTransportData.h"
 #include "Device/Device.h"
 #include "LightPropagation/Published/ParallelPropagation.h"
@@ -117,6 +118,18 @@ vtkStandardNewMacro(vtkLPMCollect);
 
 vtkLPMCollect::vtkLPMCollect() = default;
 vtkLPMCollect::~vtkLPMCollect() = default;
+
+int vtkLPMCollect::FillInputPortInformation(int, vtkInformation* information)
+{
+  tyndall::TakeImages(information);
+  return 1;
+}
+
+int vtkLPMCollect::RequestInformation(vtkInformation*, vtkInformationVector** inputs, vtkInformationVector* outputs)
+{
+  tyndall::TellSomeExtent(inputs[0], outputs);
+  return 1;
+}
 
 int vtkLPMCollect::RequestData(vtkInformation*, vtkInformationVector** inputs, vtkInformationVector* outputs)
 {

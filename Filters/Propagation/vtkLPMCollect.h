@@ -54,6 +54,9 @@ protected:
   vtkLPMCollect();
   ~vtkLPMCollect() override;
 
+  int FillInputPortInformation(int port, vtkInformation* information) override;
+  int RequestInformation(
+    vtkInformation* request, vtkInformationVector** inputs, vtkInformationVector* outputs) override;
   int RequestData(vtkInformation* request, vtkInformationVector** inputs, vtkInformationVector* outputs) override;
 
 private:

@@ -113,11 +113,12 @@ void vtkLatticeBoltzmannLighting::RemovePhotons()
 
 int vtkLatticeBoltzmannLighting::FillInputPortInformation(int port, vtkInformation* information)
 {
-  this->Superclass::FillInputPortInformation(port, information);
-  if (port == PHOTONS)
+  if (port != PHOTONS)
   {
-    information->Set(vtkAlgorithm::INPUT_REQUIRED_DATA_TYPE(), "vtkPolyData");
+    return this->Superclass::FillInputPortInformation(port, information);
   }
+  information->Set(vtkAlgorithm::INPUT_REQUIRED_DATA_TYPE(), "vtkPolyData");
+  information->Set(vtkAlgorithm::INPUT_IS_OPTIONAL(), 1);
   return 1;
 }
 

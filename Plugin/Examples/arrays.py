@@ -19,7 +19,8 @@ x, y, z = (numpy.indices((count,) * 3) - (count - 1) / 2) * edge
 lumps = numpy.sin(x / 37.0) * numpy.sin(y / 29.0 + 1.0) * numpy.sin(z / 41.0 + 2.0)
 density = numpy.clip(1.5 * (1.0 - numpy.sqrt(x**2 + y**2 + z**2) / 200.0) + lumps, 0.0, 1.0)
 
-light = tyndall.solve(density, edge, extinction=0.05, albedo=0.999, Tolerance=1e-3)
+sun = tyndall.vtkLightRig()
+light = tyndall.solve(density, edge, extinction=0.05, albedo=0.999, lights=sun, Tolerance=1e-3)
 fluence, direct = light.fluence, light["fluence_direct"]  # [x, y, z]: sun and cloud are grey
 print(", ".join(f"{name} {power:.4g} W" for name, power in light.energy_balance.items()))
 

@@ -1,8 +1,11 @@
 """tyndall.solve: arrays keep their axes, light its unit; what filters report comes as an exception."""
 import gc
+import warnings
 
 import numpy
 import tyndall
+from vtkmodules.util.numpy_support import vtk_to_numpy
+from vtkmodules.vtkCommonDataModel import vtkRectilinearGrid
 
 shape = (9, 14, 11)
 
@@ -50,9 +53,22 @@ gc.collect()
 others = [tyndall.solve(density, 1.0, sky=7.0, MaximumOrders=2) for _ in range(4)]
 numpy.testing.assert_array_equal(fluence, before)
 
-# The default sun shines where nothing else does, and properties are something: a clear medium shows the light alone.
+# Where nothing else shines it is the solvers' own default sky, and they say so; properties are something that shines.
+# A clear medium shows the light alone.
 clear = dict(sigma_a=0.0 * density, sigma_s=0.0 * density)
-assert tyndall.solve(clear).fluence.max() > 0.0
+maps = tyndall.vtkLightPropagationMaps()
+maps.SetInputData(tyndall.image_of(1.0, **clear))
+maps.Update()
+default = tyndall.solve(clear)
+numpy.testing.assert_array_equal(default.fluence.ravel(order="F"),
+                                 vtk_to_numpy(maps.GetOutputDataObject(0).GetCellData().GetArray("fluence")))
+assert default.fluence.min() > 0.0 and "DefaultSky" in default.left_out[0], default.left_out
+glowing = dict(clear, emission=0.0 * density)  # an array of zeros is no light
+assert "DefaultSky" in tyndall.solve(glowing).left_out[0]
+with warnings.catch_warnings(record=True) as told:
+    warnings.simplefilter("always")
+    assert tyndall.solve(clear, DefaultSky=False).fluence.max() == 0.0
+assert len(told) == 1 and "Nothing shines" in str(told[0].message), told
 for method, properties in (("maps", dict(FaceRadiance=(2.0,) * 6)), ("maps", dict(SkyColor=(2.0, 2.0, 2.0))),
                            ("ordinates", dict(SkyColor=(2.0, 2.0, 2.0)))):
     numpy.testing.assert_allclose(tyndall.solve(clear, method=method, **properties).fluence, 8.0 * numpy.pi, rtol=2e-3)
@@ -70,4 +86,5 @@ raises(ValueError, "maps, ordinates, lattice", lambda: tyndall.solve(density, me
 raises(ValueError, "has the shape", lambda: tyndall.solve(dict(sigma_a=density, sigma_s=density[1:])))
 raises(TypeError, "extinction, g would not be used", lambda: tyndall.solve(clear, 1.0, extinction=2.0, g=0.0))
 raises(TypeError, "spacing, albedo would not be used", lambda: tyndall.solve(light.image, 1.0, albedo=0.5))
+raises(TypeError, "vtkResampleToImage", lambda: tyndall.solve(vtkRectilinearGrid()))
 raises(KeyError, "there is", lambda: light["brightness"])

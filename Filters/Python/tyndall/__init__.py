@@ -4,9 +4,12 @@
     light = tyndall.solve(density, spacing)         # see solve's own help
 
 The classes belong to one VTK: that of the Python modules (vtkmodules) they were built beside, Debian's ParaView or
-Debian's VTK 9.1. Objects of another VTK in the same process (pip's vtk, on which pip's pyvista stands) are strangers to
-them; PyVista works where it is installed on the same VTK.
+Debian's VTK 9.1. PyVista's objects are VTK's, and go in as they are, where PyVista stands on the same VTK, not on pip's.
 """
+
+from .host import check_vtk
+
+check_vtk()
 
 from .vtkTyndall import *
 from .solving import Light, SolvingError, image_of, picture, solve

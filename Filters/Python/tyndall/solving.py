@@ -71,18 +71,21 @@ def solve(medium, spacing=None, *, origin=None, extinction=None, albedo=None, g=
 
     medium       density of each voxel, [x, y, z] (of which extinction and albedo make the medium); or a dict with
                  sigma_a, sigma_s and perhaps emission, [x, y, z] or [x, y, z, rgb]; or a vtkImageData with cell arrays
-                 of these names (one of PyVista's is one, where it stands on the same VTK)
+                 of these names, as pyvista.ImageData is one
     spacing      edge of a voxel, a number or three, default 1; not with a vtkImageData, which has its own
     origin       corner of the first voxel, default 0, 0, 0; not with a vtkImageData
     extinction   1 / length of density 1: sigma_t = extinction * density, default 1; with density alone, as are
     albedo       part of it that is scattered, a number or red, green and blue, default 0.9
     g            mean cosine of Henyey and Greenstein's phase function, default 0: isotropic
     emission     radiance per unit length, W / (length^3 sr), [x, y, z] or [x, y, z, rgb]
-    lights       a vtkLightRig, or polydata as it makes it; None: its default sun, where nothing else shines
+    lights       a vtkLightRig, or polydata as it makes it
     sky          radiance from everywhere, a number or red, green and blue, W / (length^2 sr)
     environment  radiance in latitude-longitude layout, [row from the top, column, rgb], or a vtkImageData
     method       "maps", "ordinates" or "lattice"
     properties   of that solver, by their names: Tolerance=1e-3, MaximumOrders=3, FaceRadiance=(1, 0, 0, 0, 0, 0)
+
+    Where nothing shines the solver's default sky does, a sun and a grey sky; `left_out` of the light says so, and
+    DefaultSky=False leaves it dark.
 
     Raises SolvingError with the filter's own words, and TypeError for an argument that this medium would not use; the
     filter's warnings become Python's.
@@ -96,6 +99,9 @@ def solve(medium, spacing=None, *, origin=None, extinction=None, albedo=None, g=
     if isinstance(medium, vtkImageData):
         _refuse({**place, **making}, "a vtkImageData has its own; leave them out, or give arrays")
         image = medium
+    elif hasattr(medium, "GetClassName"):
+        raise TypeError(f"medium is a {medium.GetClassName()}; it must be an image, vtkImageData: vtkResampleToImage "
+                        "(of PyVista: ImageData.sample) makes one of cells that have a volume")
     elif isinstance(medium, dict):
         _refuse(making, "sigma_a and sigma_s say it already; leave them out, or give density alone")
         image = image_of(**place, **medium)
@@ -118,7 +124,7 @@ def solve(medium, spacing=None, *, origin=None, extinction=None, albedo=None, g=
     solver.SetInputData(image)
     for name, value in properties.items():
         _set(solver, name, value)
-    _light_up(solver, image, lights, sky, environment)
+    _light_up(solver, lights, sky, environment)
     return Light(_result(solver, filters), solver.GetOutputDataObject(1))
 
 
@@ -190,10 +196,7 @@ def _refuse(arguments, why):
         raise TypeError(f"{', '.join(arguments)} would not be used: {why}")
 
 
-def _light_up(solver, image, lights, sky, environment):
-    given = _given(lights=lights, sky=sky, environment=environment)
-    if not given and not image.GetCellData().GetArray("emission") and not _shines(solver):
-        lights = classes.vtkLightRig()
+def _light_up(solver, lights, sky, environment):
     if isinstance(lights, classes.vtkLightRig):
         solver.SetLightsConnection(lights.GetOutputPort())
     elif lights is not None:
@@ -204,13 +207,6 @@ def _light_up(solver, image, lights, sky, environment):
         solver.SetEnvironmentData(environment)
     elif environment is not None:
         solver.SetEnvironmentData(_environment(environment))
-
-
-def _shines(solver):
-    """Whether its properties bring light: through the faces, from the sky, or by an input beside the medium."""
-    colors = [getattr(solver, get)() for get in ("GetFaceRadiance", "GetSkyColor") if hasattr(solver, get)]
-    inputs = [solver.GetNumberOfInputConnections(port) for port in range(1, solver.GetNumberOfInputPorts())]
-    return numpy.any(inputs) or any(numpy.any(color) for color in colors)
 
 
 def _environment(radiance):

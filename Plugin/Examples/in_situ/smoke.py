@@ -1,7 +1,7 @@
 """A simulation that hands its field to ParaView Catalyst while it runs: smoke that rises and curls.
 
     eval "$(./run env)"
-    python3 Plugin/Examples/in_situ/smoke.py Plugin/Examples/in_situ/light.py [OUTPUT FOLDER] [--steps 40]
+    python3 Plugin/Examples/in_situ/smoke.py Plugin/Examples/in_situ/light.py [OUTPUT FOLDER] [--steps 24]
 
 The script, light.py, lights it and makes a picture of each step. The simulation knows nothing of light: what it hands over
 is a density.
@@ -65,7 +65,7 @@ def main():
     parser = argparse.ArgumentParser(description=__doc__)
     parser.add_argument("script")
     parser.add_argument("folder", nargs="?", default=os.environ.get("TYNDALL_TEST_OUTPUT", "."))
-    parser.add_argument("--steps", type=int, default=40)
+    parser.add_argument("--steps", type=int, default=24)
     options = parser.parse_args()
     os.environ["IN_SITU_FOLDER"] = os.path.abspath(options.folder)  # for the script
     bridge.initialize()
