@@ -7,16 +7,31 @@ if (Python3_VERSION_MINOR) # compiled for one Python
   set(python "python3 (>= 3.${Python3_VERSION_MINOR}), python3 (<< 3.${next}), python3-numpy")
 endif ()
 
-# tyndall_package(<group> <package> SUMMARY <text> [DEPENDS <list>] [CONFLICTS <list>] COMPONENTS <component>...): a
-# package of what is installed as these components. The libraries that it depends on are found by dpkg-shlibdeps.
+# Who answers for a package is who makes it; the project itself has no address.
+set(TYNDALL_PACKAGE_MAINTAINER "The Tyndall authors <noreply@tyndall.invalid>" CACHE STRING
+  "Name and address in the Debian packages: of who makes them")
+set(debian "${CMAKE_CURRENT_LIST_DIR}/Debian")
+set(debian_made "${CMAKE_BINARY_DIR}/Debian")
+
+# tyndall_package(<group> <package> SUMMARY <text> [DEPENDS <list>] [CONFLICTS <list>] [CONTROL <file>...]
+# COMPONENTS <component>...): a package of what is installed as these components, with these files of control. The
+# libraries that it depends on are found by dpkg-shlibdeps. Python's modules in it are compiled where it is installed.
 set(CPACK_COMPONENTS_ALL "")
 function (tyndall_package group package)
-  cmake_parse_arguments(PARSE_ARGV 2 arg "" "SUMMARY;DEPENDS;CONFLICTS" "COMPONENTS")
+  cmake_parse_arguments(PARSE_ARGV 2 arg "" "SUMMARY;DEPENDS;CONFLICTS" "COMPONENTS;CONTROL")
   string(TOUPPER "${group}" group_upper)
   set("CPACK_DEBIAN_${group_upper}_PACKAGE_NAME" "${package}" PARENT_SCOPE)
   set("CPACK_DEBIAN_${group_upper}_PACKAGE_DEPENDS" "${arg_DEPENDS}" PARENT_SCOPE)
   set("CPACK_DEBIAN_${group_upper}_PACKAGE_CONFLICTS" "${arg_CONFLICTS}" PARENT_SCOPE)
   set("CPACK_DEBIAN_${group_upper}_DESCRIPTION" "${arg_SUMMARY}" PARENT_SCOPE)
+  if ("python" IN_LIST arg_COMPONENTS)
+    foreach (script IN ITEMS postinst prerm)
+      configure_file("${debian}/${script}.in" "${debian_made}/${package}/${script}" @ONLY
+        FILE_PERMISSIONS OWNER_READ OWNER_WRITE OWNER_EXECUTE GROUP_READ GROUP_EXECUTE WORLD_READ WORLD_EXECUTE)
+      list(APPEND arg_CONTROL "${debian_made}/${package}/${script}")
+    endforeach ()
+  endif ()
+  set("CPACK_DEBIAN_${group_upper}_PACKAGE_CONTROL_EXTRA" "${arg_CONTROL}" PARENT_SCOPE)
   foreach (component IN LISTS arg_COMPONENTS)
     string(TOUPPER "${component}" component_upper)
     set("CPACK_COMPONENT_${component_upper}_GROUP" "${group}" PARENT_SCOPE)
@@ -29,22 +44,25 @@ if (TYNDALL_PLUGIN)
   file(WRITE "${CMAKE_BINARY_DIR}/paraview.conf" "../lib/${TYNDALL_PLUGIN_SUBDIRECTORY}/tyndall.plugins.xml\n")
   install(FILES "${CMAKE_BINARY_DIR}/paraview.conf" DESTINATION "bin" COMPONENT "paraview_conf" EXCLUDE_FROM_ALL)
   tyndall_package(plugin tyndall-paraview
-    SUMMARY "Light transport in participating media: the plugin for ParaView, with scenes and the Python package tyndall"
+    SUMMARY "The plugin for ParaView, with scenes to open at once, and the Python package\ntyndall for ParaView's VTK."
     DEPENDS "paraview, python3-paraview, ${python}, ${opencl}"
     CONFLICTS "python3-tyndall" # python3-paraview and python3-vtk9 are in conflict, too
     COMPONENTS runtime paraview_plugins paraview_conf python Unspecified)
 else ()
+  set(soversion "${PROJECT_VERSION_MAJOR}.${PROJECT_VERSION_MINOR}")
+  file(WRITE "${debian_made}/shlibs" "libvtkTyndall ${soversion} ${library_package} (= ${PROJECT_VERSION})\n")
   tyndall_package(library ${library_package}
-    SUMMARY "Light transport in participating media: VTK filters"
+    SUMMARY "The library of VTK filters, for Debian's VTK 9.1."
     DEPENDS "${opencl}"
+    CONTROL "${debian_made}/shlibs" "${debian}/triggers"
     COMPONENTS runtime)
   tyndall_package(headers libtyndall-dev
-    SUMMARY "Light transport in participating media: headers and CMake files of the VTK filters"
+    SUMMARY "Headers and CMake files of the library of VTK filters."
     DEPENDS "${library_package} (= ${PROJECT_VERSION}), libvtk9-dev"
     COMPONENTS development)
   if (TYNDALL_PYTHON_PACKAGES)
     tyndall_package(modules python3-tyndall
-      SUMMARY "Light transport in participating media: VTK filters for Python and numpy"
+      SUMMARY "The VTK filters for Python and numpy: the package tyndall."
       DEPENDS "${library_package} (= ${PROJECT_VERSION}), python3-vtk9, ${python}"
       CONFLICTS "tyndall-paraview"
       COMPONENTS python)
@@ -53,7 +71,8 @@ endif ()
 
 set(CPACK_GENERATOR "DEB")
 set(CPACK_PACKAGE_NAME "tyndall")
-set(CPACK_PACKAGE_CONTACT "The Tyndall authors <noreply@localhost>")
+set(CPACK_PACKAGE_CONTACT "${TYNDALL_PACKAGE_MAINTAINER}")
+set(CPACK_TYNDALL_CHANGES "${PROJECT_SOURCE_DIR}/CHANGELOG.md")
 set(CPACK_PACKAGING_INSTALL_PREFIX "/usr")
 set(CPACK_STRIP_FILES ON)
 set(CPACK_COMPONENTS_GROUPING ONE_PER_GROUP)

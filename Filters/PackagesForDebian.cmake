@@ -10,12 +10,27 @@ foreach (root IN LISTS packages)
     cmake_path(GET emptied PARENT_PATH emptied)
     file(REMOVE_RECURSE "${emptied}")
   endif ()
-  # The licence, under the package's own name: several packages cannot hold one file.
+  # Licence and changes, under the package's own name: several packages cannot hold one file.
   cmake_path(GET root PARENT_PATH group)
   cmake_path(GET group FILENAME group)
   string(TOUPPER "${group}" group)
   file(REMOVE_RECURSE "${root}/share/licenses")
-  file(MAKE_DIRECTORY "${root}/share/doc/${CPACK_DEBIAN_${group}_PACKAGE_NAME}")
-  configure_file("${CPACK_RESOURCE_FILE_LICENSE}"
-    "${root}/share/doc/${CPACK_DEBIAN_${group}_PACKAGE_NAME}/copyright" COPYONLY)
+  set(package "${CPACK_DEBIAN_${group}_PACKAGE_NAME}")
+  set(documents "${root}/share/doc/${package}")
+  file(MAKE_DIRECTORY "${documents}")
+  file(READ "${CPACK_RESOURCE_FILE_LICENSE}" licence)
+  string(REGEX REPLACE "^[^\n]*\n\n[^\n]*\n" "" licence "${licence}") # its name and the owners
+  string(STRIP "${licence}" licence)
+  string(REPLACE "\n\n" "\n.\n" licence "${licence}")
+  string(REPLACE "\n" "\n " licence "${licence}")
+  file(WRITE "${documents}/copyright"
+    "Format: https://www.debian.org/doc/packaging-manuals/copyright-format/1.0/\nUpstream-Name: Tyndall\n\n"
+    "Files: *\nCopyright: the Tyndall authors\nLicense: BSD-3-Clause\n ${licence}\n")
+  configure_file("${CPACK_TYNDALL_CHANGES}" "${documents}/CHANGELOG.md" COPYONLY)
+  string(TIMESTAMP now "%a, %d %b %Y %H:%M:%S +0000" UTC) # that of SOURCE_DATE_EPOCH, where it is set
+  file(WRITE "${documents}/changelog"
+    "tyndall (${CPACK_PACKAGE_VERSION}) bookworm; urgency=medium\n\n"
+    "  * Made by CPack. What changed in Tyndall is in CHANGELOG.md.gz.\n\n"
+    " -- ${CPACK_PACKAGE_CONTACT}  ${now}\n")
+  execute_process(COMMAND gzip -9n "${documents}/changelog" "${documents}/CHANGELOG.md" COMMAND_ERROR_IS_FATAL ANY)
 endforeach ()

@@ -338,11 +338,12 @@ int vtkParticipatingMedium::RequestInformation(
   return this->Superclass::RequestInformation(request, inputs, outputs);
 }
 
-/// Of the density what is asked for of the medium; of the table all.
+/// All of the density, whatever piece of the medium is asked for: its size is told of the whole.
 int vtkParticipatingMedium::RequestUpdateExtent(
   vtkInformation* request, vtkInformationVector** inputs, vtkInformationVector* outputs)
 {
   const int done = this->Superclass::RequestUpdateExtent(request, inputs, outputs);
+  tyndall::AskForAll(inputs[DENSITY]);
   tyndall::AskForAll(inputs[PHASE_TABLE]);
   return done;
 }
@@ -398,6 +399,7 @@ int vtkParticipatingMedium::RequestData(vtkInformation*, vtkInformationVector** 
       const tyndall::FloatField sigma_s = tyndall::ReadCells(output, "sigma_s", tyndall::Need::Required);
       tyndall::ReadPhase(output, g, sigma_s); // says what is wrong with the input's
     }
+    tyndall::KeepWhatIsAskedFor(outputs->GetInformationObject(0), output);
   });
 }
 

@@ -207,10 +207,10 @@ public:
   ///@}
 
   ///@{
-  /// Of the last update, in a parallel pipeline of this rank's piece: how large the dataset is by its unit of length,
-  /// as "480 x 480 x 240 m"; the largest optical thickness of a row of voxels along x, y or z, no unit; and the mean
-  /// free path, 1 over the mean extinction of the voxels that are not empty, in the dataset's unit (0 where all are).
-  /// Of the colour that is extinguished most. 0 and empty before, and after an error.
+  /// Of the last update, and of the whole dataset on every rank: how large it is by its unit of length, as
+  /// "480 x 480 x 240 m"; the largest optical thickness of a row of voxels along x, y or z, no unit; and the mean free
+  /// path, 1 over the mean extinction of the voxels that are not empty, in the dataset's unit (0 where all are). Of the
+  /// colour that is extinguished most. 0 and empty before, and after an error.
   vtkGetCharFromStdStringMacro(PhysicalExtent);
   vtkGetMacro(OpticalThickness, double);
   vtkGetMacro(MeanFreePath, double);

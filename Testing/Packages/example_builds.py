@@ -1,4 +1,4 @@
-"""example_builds.py ROOT PREFIX FOLDER: the guide's commands for the C++ example, word for word, with the packages that
+"""example_builds.py PREFIX ROOT FOLDER: the guide's commands for the C++ example, word for word, with the packages that
 are unpacked in the prefix: CMAKE_PREFIX_PATH stands in for their installation in /usr.
 """
 import os
@@ -8,7 +8,7 @@ import shutil
 import subprocess
 import sys
 
-root, prefix, folder = (pathlib.Path(argument).resolve() for argument in sys.argv[1:])
+prefix, root, folder = (pathlib.Path(argument).resolve() for argument in sys.argv[1:])
 guide = (root / "Plugin/Documentation/guide.md").read_text(encoding="utf-8")
 found = re.search(r"<!-- run by a test: Testing/Packages/example_builds.py -->\n+((?:    .*\n)+)", guide)
 assert found, "guide.md has no commands for the example"

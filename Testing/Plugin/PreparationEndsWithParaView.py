@@ -2,6 +2,7 @@
 
     python3 PreparationEndsWithParaView.py paraview [arguments...]    on an X display
 """
+import glob
 import os
 import shutil
 import subprocess
@@ -13,9 +14,17 @@ session = os.path.join(os.path.dirname(os.path.abspath(__file__)), "LightRigFrom
 
 
 def preparations(parent):
-    """Processes that work for ParaView of this number."""
-    listed = subprocess.run(["ps", "-eo", "args"], capture_output=True, text=True, check=True).stdout
-    return [line for line in listed.splitlines() if "TyndallPreparation" in line and line.split()[-1] == str(parent)]
+    """Processes that work for ParaView of this number, each as its words."""
+    found = []
+    for path in glob.glob("/proc/[0-9]*/cmdline"):
+        try:
+            with open(path) as file:
+                words = file.read().split("\0")[:-1]
+        except OSError:  # it has ended
+            continue
+        if words and words[0].endswith("TyndallPreparation") and words[-1] == str(parent):
+            found.append(words)
+    return found
 
 
 shutil.rmtree(cache, ignore_errors=True)
