@@ -40,6 +40,7 @@ tyndall::OrdinatesSettings SettingsOf(
     settings.spiralDirections = 0;
     settings.terms = std::min(settings.terms, settings.directionsPerFace);
     settings.tolerance = std::max(settings.tolerance, tyndall::PreviewTolerance);
+    settings.seriesAfter = tyndall::PreviewOrders;
     settings.netFlux = false;
     return settings;
   }
