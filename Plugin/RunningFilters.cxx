@@ -85,7 +85,8 @@ private:
     {
       case vtkCommand::StartEvent: this->Begin(algorithm); break;
       case vtkCommand::ProgressEvent:
-        vtkLogF(TRACE, "%s is %.3g done", algorithm->GetClassName(), algorithm->GetProgress());
+        vtkLogF(TRACE, "%s is %.3g done%s%s", algorithm->GetClassName(), algorithm->GetProgress(),
+          algorithm->GetProgressText() ? ": " : "", algorithm->GetProgressText() ? algorithm->GetProgressText() : "");
         this->HandleWaitingEvents();
         break;
       default: this->End(); this->ShowResults(algorithm);

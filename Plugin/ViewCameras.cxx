@@ -17,6 +17,7 @@
 #include "vtkSMViewProxy.h" // RemotingViews wants GLEW; of it only inline and virtual functions are called
 
 #include <algorithm>
+#include <functional>
 #include <string>
 #include <vector>
 
@@ -106,6 +107,18 @@ std::vector<double> OfView(vtkSMProxy* view, const std::string& property)
   return Numbers(view, moves ? property + "Info" : property);
 }
 
+/// What a Property of the hint is to be.
+std::vector<double> Asked(vtkSMProxy* view, vtkPVXMLElement* property)
+{
+  std::vector<double> numbers = OfView(view, property->GetAttributeOrEmpty("of"));
+  if (const char* const from = property->GetAttribute("from"))
+  {
+    const std::vector<double> begin = OfView(view, from);
+    std::transform(numbers.begin(), numbers.end(), begin.begin(), numbers.begin(), std::minus<>());
+  }
+  return numbers;
+}
+
 /// @return whether anything changed
 bool Take(vtkSMProxy* view, vtkSMProxy* source)
 {
@@ -116,7 +129,7 @@ bool Take(vtkSMProxy* view, vtkSMProxy* source)
   {
     vtkPVXMLElement* const taken = hint->GetNestedElement(i);
     const std::string name = taken->GetAttributeOrEmpty("name");
-    const std::vector<double> numbers = OfView(view, taken->GetAttributeOrEmpty("of"));
+    const std::vector<double> numbers = Asked(view, taken);
     if (!numbers.empty() && numbers != Numbers(source, name))
     {
       SetNumbers(source, name, numbers);

@@ -6,6 +6,7 @@
 
 #include <algorithm>
 #include <cstddef>
+#include <string>
 #include <utility>
 #include <vector>
 
@@ -13,6 +14,23 @@ namespace tyndall
 {
 namespace
 {
+/// Half as many voxels along each axis, and half of those while more than `most` are left.
+/// @param may  whether a grid is one to be halved
+template <class May>
+Grid Halved(Grid grid, std::size_t most, const May& may)
+{
+  for (bool first = true; may(grid) && (first || grid.VoxelCount() > most); first = false)
+  {
+    grid = Coarsening(grid).Coarse();
+  }
+  return grid;
+}
+
+std::string SizeOf(const Grid& grid)
+{
+  return std::to_string(grid.size[0]) + " x " + std::to_string(grid.size[1]) + " x " + std::to_string(grid.size[2]);
+}
+
 /// Of each voxel along an axis: its value is (1 - part) of the coarse voxel `first` and part of `second`.
 struct Between
 {
@@ -78,11 +96,24 @@ std::vector<float> Refined(const std::vector<float>& values, int channels, const
 }
 }
 
-LightField SolvePreview(const Medium& medium, const Illumination& illumination, const SolveIn& solve)
+Grid PreviewGrid(const Grid& grid, std::size_t most)
 {
-  const Coarsening coarsening(medium.grid);
-  const CoarseScene coarse(medium, illumination, coarsening);
-  LightField found = solve(coarse.TheMedium(), coarse.Shining());
+  return Halved(grid, most, [](const Grid&) { return true; });
+}
+
+Grid CubicPreviewGrid(const Grid& grid, std::size_t most)
+{
+  return Halved(grid, most, [](const Grid& halved) {
+    return std::all_of(halved.size.begin(), halved.size.end(), [](int voxels) { return voxels % 2 == 0; });
+  });
+}
+
+LightField SolvePreview(
+  const Medium& medium, const Illumination& illumination, const Grid& coarse, const SolveIn& solve)
+{
+  const Coarsening coarsening(medium.grid, coarse);
+  const CoarseScene scene(medium, illumination, coarsening);
+  LightField found = solve(scene.TheMedium(), scene.Shining());
   LightField light;
   light.channels = found.channels;
   light.fluence = Refined(found.fluence, found.channels, coarsening);
@@ -97,7 +128,8 @@ LightField SolvePreview(const Medium& medium, const Illumination& illumination, 
   light.sweepsSaved = std::move(found.sweepsSaved);
   light.device = std::move(found.device);
   light.leftOut = std::move(found.leftOut);
-  light.leftOut.insert(light.leftOut.begin(), "half the voxels along each axis, few directions: a preview");
+  light.leftOut.insert(light.leftOut.begin(),
+    "detail: a preview, of " + SizeOf(coarse) + " of " + SizeOf(medium.grid) + " voxels, few directions");
   return light;
 }
 }

@@ -40,6 +40,7 @@ tyndall::OrdinatesSettings SettingsOf(
     settings.spiralDirections = 0;
     settings.terms = std::min(settings.terms, settings.directionsPerFace);
     settings.tolerance = std::max(settings.tolerance, tyndall::PreviewTolerance);
+    settings.seriesAfter = tyndall::PreviewOrders;
     settings.netFlux = false;
     return settings;
   }
@@ -84,8 +85,9 @@ int vtkDiscreteOrdinates::RequestData(vtkInformation*, vtkInformationVector** in
     const tyndall::SolveIn solve = [&](const tyndall::Medium& inside, const tyndall::Illumination& shining) {
       return tyndall::SolveDiscreteOrdinates(*device, inside, shining, settings, tyndall::MonitorOf(this), last);
     };
-    tyndall::LightField light =
-      this->Preview ? tyndall::SolvePreview(input.medium, illumination, solve) : solve(input.medium, illumination);
+    const tyndall::Grid coarse = tyndall::PreviewGrid(input.medium.grid, tyndall::PreviewVoxelsOfOthers);
+    tyndall::LightField light = this->Preview ? tyndall::SolvePreview(input.medium, illumination, coarse, solve)
+                                              : solve(input.medium, illumination);
     light.settingsUsed = tyndall::Words(settings);
     TellOfDefaultSky(shining, light.leftOut);
     this->Note(light);

@@ -58,12 +58,6 @@ tyndall::LatticeSettings SettingsOf(vtkLatticeBoltzmannLighting* filter)
   return tyndall::AtQuality(static_cast<tyndall::Quality>(filter->GetQuality()), settings);
 }
 
-/// A preview of other grids has their own voxels: the lattice's have to be cubes.
-bool HalvesToCubes(const tyndall::Grid& grid)
-{
-  return std::all_of(grid.size.begin(), grid.size.end(), [](int voxels) { return voxels % 2 == 0; });
-}
-
 /// Of all power, what is in none of the balance's accounts but the last, the worst channel.
 double LeftOverOf(const tyndall::LightField& light)
 {
@@ -164,14 +158,16 @@ tyndall::LightField vtkLatticeBoltzmannLighting::Solve(vtkInformationVector** in
       SettingsOf(this), tyndall::MonitorOf(this));
   };
   tyndall::LightField light = Timed(this->Seconds, [&] {
-    if (!this->Preview || !HalvesToCubes(input.medium.grid))
+    // A preview of grids that cannot be halved to cubes has their own voxels.
+    const tyndall::Grid coarse = tyndall::CubicPreviewGrid(input.medium.grid, tyndall::PreviewVoxelsOfOthers);
+    if (!this->Preview || coarse.size == input.medium.grid.size)
     {
       return solve(input.medium, shining.illumination, ior);
     }
     const std::vector<float> coarseIndex =
-      ior.IsThere() ? tyndall::Coarsening(input.medium.grid).Average(ior.Values(), 1) : std::vector<float>();
+      ior.IsThere() ? tyndall::Coarsening(input.medium.grid, coarse).Average(ior.Values(), 1) : std::vector<float>();
     const tyndall::Field index = { ior.IsThere() ? coarseIndex.data() : nullptr, 1 };
-    return tyndall::SolvePreview(input.medium, shining.illumination,
+    return tyndall::SolvePreview(input.medium, shining.illumination, coarse,
       [&](const tyndall::Medium& inside, const tyndall::Illumination& illumination) {
         return solve(inside, illumination, index);
       });

@@ -59,9 +59,10 @@ public:
   ///@}
 
   ///@{
-  /// Whether to find the light on half as many voxels along each axis, along few directions and to some percent, as a
-  /// preview while lights are moved: `fluence` and `fluence_direct` alone, linear between the coarse voxels' middles.
-  /// Quality, TargetError and WarmStart are not read then. Default off.
+  /// Whether to find the light on half as many voxels along each axis (and half of those where many are left; LeftOut
+  /// says how many), along few directions and to some percent, as a preview while lights are moved: `fluence` and
+  /// `fluence_direct` alone, linear between the coarse voxels' middles. Quality, TargetError and WarmStart are not read
+  /// then. Default off.
   vtkSetMacro(Preview, bool);
   vtkGetMacro(Preview, bool);
   vtkBooleanMacro(Preview, bool);

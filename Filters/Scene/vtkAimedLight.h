@@ -8,7 +8,7 @@
  * @class vtkAimedLight
  * @brief superclass of the lights that shine from their position towards a focal point
  *
- * @sa vtkSun vtkSpotLight vtkRectangleLight
+ * @sa vtkSun vtkSpotLight
  */
 class TYNDALL_EXPORT vtkAimedLight : public vtkLightSource
 {

@@ -1,7 +1,9 @@
 #include "vtkRectangleLight.h"
 
+#include "Common/LightTransportData.h"
 #include "Scene/LightShapes.h"
 
+#include "vtkMath.h"
 #include "vtkObjectFactory.h"
 
 vtkStandardNewMacro(vtkRectangleLight);
@@ -15,8 +17,10 @@ vtkRectangleLight::~vtkRectangleLight() = default;
 
 tyndall::DrawnLight vtkRectangleLight::MakeLight() const
 {
-  tyndall::DrawnLight drawn = this->Superclass::MakeLight();
+  tyndall::DrawnLight drawn;
   drawn.light.type = tyndall::LightType::Rectangle;
+  drawn.light.direction = tyndall::Triple(this->Direction);
+  vtkMath::Normalize(drawn.light.direction.data());
   drawn.light.size = { this->Size[0], this->Size[1] };
   return drawn;
 }
@@ -24,5 +28,6 @@ tyndall::DrawnLight vtkRectangleLight::MakeLight() const
 void vtkRectangleLight::PrintSelf(ostream& os, vtkIndent indent)
 {
   this->Superclass::PrintSelf(os, indent);
+  os << indent << "Direction: " << this->Direction[0] << " " << this->Direction[1] << " " << this->Direction[2] << "\n";
   os << indent << "Size: " << this->Size[0] << " " << this->Size[1] << "\n";
 }

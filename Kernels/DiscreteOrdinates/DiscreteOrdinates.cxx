@@ -340,7 +340,8 @@ void TakeLeft(KeptLight& left, const OrdinatesResult& found, const OrdinatesSett
 void Judge(const OrdinatesSettings& settings, bool diverged, LightField& light)
 {
   const double residual = light.convergence.empty() ? 0.0 : light.convergence.back().residual;
-  light.converged = !diverged && (settings.maximumOrders > 0 || residual <= settings.tolerance);
+  const bool isAsked = settings.maximumOrders > 0 || (settings.seriesAfter > 0 && !IsPublished(settings));
+  light.converged = !diverged && (isAsked || residual <= settings.tolerance);
   if (diverged)
   {
     light.doubts.push_back("The light grows without end and was stopped after " +
@@ -406,6 +407,11 @@ LightField SolveDiscreteOrdinates(Device& device, const Medium& medium, const Il
     left.scattered = diverged ? std::vector<float>() : std::move(left.scattered);
     light.leftOut.push_back(WordsOfWarmStart(whyNot));
     Keep(std::move(left), whyNot.empty(), light, *kept);
+  }
+  if (!IsPublished(settings) && settings.seriesAfter > 0 &&
+    light.convergence.size() >= static_cast<std::size_t>(settings.seriesAfter))
+  {
+    light.leftOut.push_back("orders: those after " + std::to_string(settings.seriesAfter) + " are a geometric series");
   }
   problem.Undo(light);
   Judge(settings, diverged, light);

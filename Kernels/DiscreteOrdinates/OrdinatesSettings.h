@@ -29,6 +29,7 @@ struct OrdinatesSettings
   int terms = 25;             ///< of the phase function; at most as many as there are directions
   int maximumOrders = 0;      ///< scattering orders (as published: steps) at most; 0: until the tolerance is met
   double tolerance = 1e-4;    ///< relative error of fluence at which to stop, > 0
+  int seriesAfter = 0;        ///< orders after so many (conservative) go on as the last one fell; 0: all are swept
   std::array<bool, 3> periodic = { false, false, false }; ///< light leaving an axis returns on the other side
   bool netFlux = false;                                   ///< compute net_flux too
   bool leaveOut = true;                                   ///< what the scene does not need

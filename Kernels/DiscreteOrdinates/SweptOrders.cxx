@@ -10,6 +10,7 @@ namespace tyndall
 namespace
 {
 constexpr int MostOrders = 10000;
+constexpr double FastestSeries = 0.99; ///< ratio of orders that are not swept: a guess must not make light without end
 
 PairSums SumsOf(const OrdinatesSettings& settings)
 {
@@ -52,6 +53,7 @@ public:
         monitor ? Monitor([&](double) { return monitor(std::clamp(0.1 + 0.9 * done, 0.1, 0.99)); }) : Monitor());
     }
     this->Arrays.Read(this->Result);
+    this->AddSeries();
     if (this->Arrays.Faces)
     {
       this->Result.facePower = this->Arrays.Faces->PerArea(this->Arrays.Faces->LeftInAll());
@@ -142,6 +144,23 @@ private:
     this->Guess.clear();
   }
 
+  bool GoesOnAsSeries() const
+  {
+    return this->Settings.seriesAfter > 0 && static_cast<int>(this->Record.All().size()) >= this->Settings.seriesAfter;
+  }
+
+  /// The orders that are not swept: each as bright, compared with the one before it, as the last one was.
+  void AddSeries()
+  {
+    if (this->GoesOnAsSeries() && this->GoesOn > 0.0)
+    {
+      const double rate = std::clamp(this->Record.Rate(), 0.0, FastestSeries);
+      const std::vector<float> last = this->Arrays.Light.order.Read();
+      std::transform(last.begin(), last.end(), this->Result.fluence.begin(), this->Result.fluence.begin(),
+        [&](float ofLast, float found) { return static_cast<float>(found + rate / (1.0 - rate) * ofLast); });
+    }
+  }
+
   void Leave()
   {
     for (float& value : this->Result.fluence)
@@ -205,7 +224,7 @@ private:
   bool Done() const
   {
     const int orders = static_cast<int>(this->Record.All().size());
-    if (this->GoesOn == 0.0 || orders >= MostOrders)
+    if (this->GoesOn == 0.0 || orders >= MostOrders || this->GoesOnAsSeries())
     {
       return true;
     }

@@ -61,7 +61,7 @@ struct Sources
     this->Spot->SetPower(2, 2, 2);
     this->Spot->SetAngle(30);
     this->Rectangle->SetPosition(0, 0, 4);
-    this->Rectangle->SetFocalPoint(3, 0, 0);
+    this->Rectangle->SetDirection(3, 0, -4);
     this->Rectangle->SetPower(5, 4, 3);
     this->Rectangle->SetSize(2, 1);
   }
@@ -149,7 +149,7 @@ void ShapesAreWhereTheLightIs(test::Claims& claims)
   sources.Spot->Update();
   Bounds(sources.Spot->GetOutput(1), -1, 1, 0, std::sqrt(3.0), "cone", claims);
   sources.Rectangle->SetPosition(0, 0, 4);
-  sources.Rectangle->SetFocalPoint(0, 0, 3);
+  sources.Rectangle->SetDirection(0, 0, -1);
   sources.Rectangle->Update();
   Bounds(sources.Rectangle->GetOutput(1), -1, 1, 4 - 0.35 * 2, 4, "rectangle and its arrow", claims);
 
@@ -182,6 +182,13 @@ void BadLightsAreErrors(test::Claims& claims)
   sun->SetPower(1, 1, 1);
   sun->Update();
   claims.That(errors.None() && sun->GetOutput(0)->GetNumberOfPoints() == 1, "a good sun after a bad one");
+
+  vtkNew<vtkRectangleLight> rectangle;
+  test::Errors ofRectangle(rectangle);
+  rectangle->SetDirection(0, 0, 0);
+  rectangle->Update();
+  claims.That(ofRectangle.WasOneWith("direction (0, 0, 0)"), "a rectangle without normal is refused");
+  claims.That(rectangle->GetOutput(0)->GetNumberOfPoints() == 0, "the output is empty after an error");
 
   vtkNew<vtkLightRig> rig;
   test::Errors ofRig(rig);

@@ -14,7 +14,7 @@
 namespace
 {
 /// Fog that thickens along x, of these numbers of voxels.
-void FillWithFog(vtkImageData* medium, const int voxels[3])
+void FillWithFog(vtkImageData* medium, const int voxels[3], double absorption = 0.02, double scattering = 0.2)
 {
   medium->SetDimensions(voxels[0] + 1, voxels[1] + 1, voxels[2] + 1);
   for (const char* name : { "sigma_a", "sigma_s" })
@@ -24,10 +24,22 @@ void FillWithFog(vtkImageData* medium, const int voxels[3])
     array->SetNumberOfTuples(medium->GetNumberOfCells());
     for (vtkIdType i = 0; i < medium->GetNumberOfCells(); ++i)
     {
-      array->SetValue(i, (name[6] == 'a' ? 0.02 : 0.2) * (0.5 + static_cast<double>(i % voxels[0]) / voxels[0]));
+      array->SetValue(
+        i, (name[6] == 'a' ? absorption : scattering) * (0.5 + static_cast<double>(i % voxels[0]) / voxels[0]));
     }
     medium->GetCellData()->AddArray(array);
   }
+}
+
+double RelativeDifference(vtkDataArray* found, vtkDataArray* light)
+{
+  double difference = 0.0, all = 0.0;
+  for (vtkIdType i = 0; i < light->GetNumberOfTuples(); ++i)
+  {
+    difference += std::pow(light->GetComponent(i, 0) - found->GetComponent(i, 0), 2);
+    all += std::pow(light->GetComponent(i, 0), 2);
+  }
+  return std::sqrt(difference / all);
 }
 
 /// @return false where the solver found nothing
@@ -52,21 +64,38 @@ bool IsLikeTheLight(const char* name, const int voxels[3], test::Claims& claims)
   {
     return false;
   }
-  double difference = 0.0, all = 0.0;
-  for (vtkIdType i = 0; i < light->GetNumberOfTuples(); ++i)
-  {
-    difference += std::pow(light->GetComponent(i, 0) - preview->GetComponent(i, 0), 2);
-    all += std::pow(light->GetComponent(i, 0), 2);
-  }
+  const double difference = RelativeDifference(preview, light);
   const std::string who = name;
   claims.That(preview->GetNumberOfTuples() == medium->GetNumberOfCells(), who + ": a value a voxel");
   claims.That(difference > 0.0, who + ": a preview is not the light itself");
-  claims.Near(std::sqrt(difference / all), 0.0, 0.12, who + ": relative difference to the light");
+  claims.Near(difference, 0.0, 0.12, who + ": relative difference to the light");
   const bool isHalved = std::string(solver->GetLeftOut()).find("a preview") != std::string::npos;
   claims.That(
     isHalved != (who == "the lattice" && voxels[0] % 2 == 1), who + " says where it is one of half the voxels");
   claims.That(errors.None(), who + " has no errors");
   return true;
+}
+
+/// Thick and bright, so that there are many orders: a preview sweeps few of them, and adds the others.
+void OrdinatesGoOnAsASeries(test::Claims& claims)
+{
+  constexpr int voxels[3] = { 16, 16, 16 };
+  vtkNew<vtkImageData> medium;
+  FillWithFog(medium, voxels, 0.005, 1.0);
+  vtkNew<vtkDiscreteOrdinates> solver;
+  test::Errors errors(solver);
+  solver->SetInputDataObject(medium);
+  solver->Update();
+  vtkNew<vtkImageData> light;
+  light->ShallowCopy(solver->GetOutput());
+  solver->PreviewOn();
+  solver->Update();
+  claims.That(std::string(solver->GetLeftOut()).find("those after 24 are a geometric series") != std::string::npos,
+    "discrete ordinates say after how many orders a series goes on");
+  claims.That(errors.None(), "which is no error");
+  claims.Near(RelativeDifference(
+                solver->GetOutput()->GetCellData()->GetArray("fluence"), light->GetCellData()->GetArray("fluence")),
+    0.0, 0.15, "discrete ordinates with a series: relative difference to the light");
 }
 }
 
@@ -80,6 +109,10 @@ int TestPreview(int, char*[])
     found = IsLikeTheLight<vtkLightPropagationMaps>("light propagation maps", voxels, claims) && found;
     found = IsLikeTheLight<vtkDiscreteOrdinates>("discrete ordinates", voxels, claims) && found;
     found = IsLikeTheLight<vtkLatticeBoltzmannLighting>("the lattice", voxels, claims) && found;
+  }
+  if (found)
+  {
+    OrdinatesGoOnAsASeries(claims);
   }
   return found ? claims.Result() : test::SkippedWithoutDevice("a solver gave no fluence");
 }

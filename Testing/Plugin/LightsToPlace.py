@@ -49,6 +49,8 @@ view = CreateRenderView()
 view.CameraPosition, view.CameraFocalPoint = [1, 2, 30], [1, 1, 1]
 sun.InvokeCommand("TakeCamera")
 assert list(sun.Position) == [1, 2, 30] and list(sun.FocalPoint) == [1, 1, 1], list(sun.Position)
+panel.InvokeCommand("TakeCamera")
+assert list(panel.Position) == [1, 2, 30] and list(panel.Direction) == [0, -1, -29], list(panel.Direction)
 
 state = os.path.join(os.environ["TYNDALL_TEST_OUTPUT"], "LightsToPlace.pvsm")
 SaveState(state)
