@@ -29,7 +29,7 @@ constexpr double PreviewTolerance = 0.1; ///< relative error of fluence that its
 constexpr int PreviewDirections = 4;     ///< per cube face
 constexpr int PreviewOrders = 24;        ///< of discrete ordinates; those after them are a geometric series
 
-/// Voxels of which a solver finds a preview in less than 0.2 s on two cores (measurements.md): 64^3 of light propagation
+/// Voxels of which a solver is to find a preview in 0.2 s on two cores (measurements.md): 64^3 of light propagation
 /// maps, 32^3 of discrete ordinates and the lattice, which take many steps in thick media.
 constexpr std::size_t PreviewVoxelsOfMaps = 262144, PreviewVoxelsOfOthers = 32768;
 }

@@ -8,9 +8,9 @@
  * @class vtkRectangleLight
  * @brief a rectangle that shines to one side, as a Lambertian emitter
  *
- * Its position is its centre. It is placed like a plane, by its normal and not by a focal point. Its first edge is horizontal (across z and the direction; along x where the light shines
- * straight up or down), its second one is across the first and the direction. In a view it is itself, with an arrow to
- * the side that it shines to.
+ * Its position is its centre. It is placed like a plane, by its normal and not by a focal point. Its first edge is
+ * horizontal (across z and the direction; along x where the light shines straight up or down), its second one is across
+ * the first and the direction. In a view it is itself, with an arrow to the side that it shines to.
  *
  * @sa vtkLightSource vtkLightRig
  */
