@@ -2,20 +2,16 @@
 
 #include "ChangedProperty.h"
 #include "RegisteredProxies.h"
+#include "ShownOutput.h"
+#include "VolumeColors.h"
 
 #include "vtkCallbackCommand.h"
 #include "vtkCollection.h"
-#include "vtkDataObject.h"
 #include "vtkNew.h"
-#include "vtkPVArrayInformation.h"
-#include "vtkPVDataInformation.h"
-#include "vtkPVXMLElement.h"
-#include "vtkSMPropertyHelper.h"
 #include "vtkSMProxy.h"
 #include "vtkSMProxyManager.h"
 #include "vtkSMPVRepresentationProxy.h" // RemotingViews wants GLEW; of it only inline and virtual functions are called
 #include "vtkSMSessionProxyManager.h"
-#include "vtkSMSourceProxy.h"
 #include "vtkSMTransferFunctionProxy.h"
 
 #include <cstring>
@@ -85,30 +81,6 @@ void WatchBar(vtkSMProxy* bar)
   HideUnusedBar(bar);
 }
 
-/// What is shown: an output of a source.
-struct Shown
-{
-  vtkSMSourceProxy* source;
-  int port;
-};
-
-/// The hint of that name for what is shown, or null.
-vtkPVXMLElement* HintFor(const Shown& shown, const char* name)
-{
-  vtkPVXMLElement* const hints = shown.source ? shown.source->GetHints() : nullptr;
-  vtkPVXMLElement* const hint = hints ? hints->FindNestedElementByName(name) : nullptr;
-  int port = 0;
-  const bool isOfOther = hint && hint->GetScalarAttribute("port", &port) && port != shown.port;
-  return isOfOther ? nullptr : hint;
-}
-
-/// The cell array that the hint names, or null where the output does not have it.
-vtkPVArrayInformation* HintedArray(const Shown& shown, vtkPVXMLElement* hint)
-{
-  const char* const name = hint->GetAttributeOrEmpty("array");
-  return shown.source->GetDataInformation(shown.port)->GetArrayInformation(name, vtkDataObject::CELL);
-}
-
 /// @param colors  a map of colours that nobody has seen
 void FitColors(vtkSMProxy* colors, vtkPVArrayInformation* array)
 {
@@ -136,12 +108,6 @@ void ColorBy(vtkSMProxy* representation, vtkPVArrayInformation* array)
   {
     FitColors(colors, array);
   }
-}
-
-Shown ShownBy(vtkSMProxy* representation)
-{
-  const vtkSMPropertyHelper input(representation, "Input", true);
-  return { vtkSMSourceProxy::SafeDownCast(input.GetAsProxy()), static_cast<int>(input.GetOutputPort()) };
 }
 
 bool IsLitVolume(const char* type)
@@ -242,6 +208,7 @@ void Notice(vtkObject*, unsigned long, void*, void* data)
   {
     ColorBy(representation, array);
   }
+  FollowVolumeColors(representation); // after the others: its colours replace theirs
   const bool isLineChart = representation->GetProperty("UseIndexForXAxis") && representation->GetProperty("XArrayName");
   if (vtkPVXMLElement* const plotted = isLineChart ? HintFor(shown, "Plotted") : nullptr)
   {

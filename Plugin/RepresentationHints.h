@@ -11,6 +11,7 @@
 ///   first shown in another way.
 /// - <Plotted port="P" x="NAME" y="NAME NAME ..."/>: a line chart of table P begins with these columns, not with all
 ///   over the row's number. Its left axis is logarithmic where nothing else is in the view.
+/// - <VolumeColors .../>: see VolumeColors.h.
 ///
 /// To be called when the plugin is loaded; serves windows and scripts.
 void FollowRepresentationHints();

@@ -206,12 +206,13 @@ void WriteLight(LightField&& light, vtkImageData* output)
   vtkCellData* cells = output->GetCellData();
   for (const char* earlier :
     { "fluence", "fluence_direct", "fluence_error", "fluence_batches", "net_flux", "scattered_radiance",
-      "mean_direction", "photon_count", "photon_weight", "mip_level", MomentsArray, StraightOnArray })
+      "mean_direction", "photon_count", "photon_weight", "mip_level", MomentsArray, StraightOnArray, LitColorArray })
   {
     cells->RemoveArray(earlier); // of another solve that the input has been through
   }
-  for (const char* earlier : { "stored_directions", "scattered", "packing_loss", "fluence_bias", "half_range_flux",
-         "settings_used", SurfaceRadianceFact, LampsApartFact, FacePowerFact, FaceAlbedoFact })
+  for (const char* earlier :
+    { "stored_directions", "scattered", "packing_loss", "fluence_bias", "half_range_flux", "settings_used",
+      SurfaceRadianceFact, LampsApartFact, FacePowerFact, FaceAlbedoFact, LitColorDistanceFact, LitColorExposureFact })
   {
     output->GetFieldData()->RemoveArray(earlier);
   }
@@ -267,6 +268,20 @@ void WriteLight(LightField&& light, vtkImageData* output)
     AddFact(output, "settings_used", light.settingsUsed);
   }
   AddFact(output, "device", std::vector<std::string>{ light.device });
+}
+
+void WriteLitColor(LitColor&& lit, vtkImageData* output)
+{
+  const auto array = ArrayOf<vtkUnsignedCharArray>(LitColorArray, std::move(lit.rgba), 4);
+  const char* const names[] = { "R", "G", "B", "A" };
+  for (int c = 0; c < 4; ++c)
+  {
+    array->SetComponentName(c, names[c]);
+  }
+  LeaveRanges(array);
+  output->GetCellData()->AddArray(array);
+  AddFact(output, LitColorDistanceFact, std::vector<double>{ lit.distance });
+  AddFact(output, LitColorExposureFact, std::vector<double>{ lit.exposure });
 }
 
 void WriteConvergence(const std::vector<ConvergenceRow>& rows, const std::vector<int>& sweepsSaved, vtkTable* table)
@@ -338,7 +353,7 @@ void WriteLights(const std::vector<Light>& lights, vtkPolyData* output)
   }
 }
 
-void PassOn(vtkImageData* input, vtkImageData* output)
+void PassOn(vtkDataObject* input, vtkDataObject* output)
 {
   output->ShallowCopy(input);
   vtkNew<vtkFieldData> own;

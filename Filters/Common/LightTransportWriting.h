@@ -2,6 +2,7 @@
 
 #include "Light/LightField.h"
 #include "Lights/Lights.h"
+#include "Viewing/LitColor.h"
 
 #include <array>
 #include <string>
@@ -63,6 +64,12 @@ std::string Lines(const std::vector<std::string>& texts);
 /// `lamps_apart`, `left_out`, `settings_used`, `device`. Light that the output already has is taken away.
 void WriteLight(LightField&& light, vtkImageData* output);
 
+/// Cells: LitColor::rgba, unsigned char, 4 components; field data: its distance, length, and its exposure.
+constexpr const char* LitColorArray = "lit_color";
+constexpr const char* LitColorDistanceFact = "lit_color_distance";
+constexpr const char* LitColorExposureFact = "lit_color_exposure";
+void WriteLitColor(LitColor&& lit, vtkImageData* output);
+
 /// One row an iteration: `iteration`, `seconds`, `residual`, `change`, `absorbed`, `escaped`, `left_over`, and
 /// `sweeps_saved` where light is kept (LightField.h).
 void WriteConvergence(const std::vector<ConvergenceRow>& rows, const std::vector<int>& sweepsSaved, vtkTable* table);
@@ -72,5 +79,5 @@ void WriteLights(const std::vector<Light>& lights, vtkPolyData* output);
 
 /// Make the output the input's arrays, with field data of its own: a shallow copy alone would share that, so that what
 /// a filter adds would appear in its input, and vanish when that is made again.
-void PassOn(vtkImageData* input, vtkImageData* output);
+void PassOn(vtkDataObject* input, vtkDataObject* output);
 }

@@ -1,15 +1,12 @@
 #include "Propagation/LastOutputs.h"
 
 #include "Common/ContentKey.h"
+#include "Common/LightTransportWriting.h"
 
-#include "vtkAlgorithm.h"
 #include "vtkDataObject.h"
 #include "vtkInformation.h"
 #include "vtkInformationDoubleKey.h"
-#include "vtkInformationIntegerKey.h"
-#include "vtkInformationIntegerVectorKey.h"
 #include "vtkInformationVector.h"
-#include "vtkStreamingDemandDrivenPipeline.h"
 
 #include <utility>
 
@@ -23,7 +20,7 @@ void CopyButTime(vtkDataObject* from, vtkDataObject* to)
   vtkInformation* const facts = to->GetInformation();
   const bool hasTime = facts->Has(vtkDataObject::DATA_TIME_STEP()) != 0;
   const double time = hasTime ? facts->Get(vtkDataObject::DATA_TIME_STEP()) : 0.0;
-  to->ShallowCopy(from);
+  PassOn(from, to);
   if (hasTime)
   {
     facts->Set(vtkDataObject::DATA_TIME_STEP(), time);
@@ -33,38 +30,25 @@ void CopyButTime(vtkDataObject* from, vtkDataObject* to)
     facts->Remove(vtkDataObject::DATA_TIME_STEP());
   }
 }
-
-/// Which part of the output is asked for.
-void AddRequest(std::vector<std::uint64_t>& key, vtkInformation* output)
-{
-  using Pipeline = vtkStreamingDemandDrivenPipeline;
-  for (vtkInformationIntegerKey* piece :
-    { Pipeline::UPDATE_PIECE_NUMBER(), Pipeline::UPDATE_NUMBER_OF_PIECES(), Pipeline::UPDATE_NUMBER_OF_GHOST_LEVELS() })
-  {
-    key.push_back(static_cast<std::uint64_t>(output->Get(piece)));
-  }
-  const int* const extent = output->Get(Pipeline::UPDATE_EXTENT());
-  key.insert(key.end(), extent, extent + (extent ? output->Length(Pipeline::UPDATE_EXTENT()) : 0));
-}
 }
 
-LastOutputs::Key LastOutputs::KeyOf(vtkAlgorithm* filter, vtkInformationVector** inputs, vtkInformationVector* outputs)
+LastOutputs::Key LastOutputs::KeyOf(vtkMTimeType settings, vtkInformationVector** inputs, int ports)
 {
-  Key key = { filter->GetMTime() };
-  for (int port = 0; port < filter->GetNumberOfInputPorts(); ++port)
+  Key key = { settings };
+  for (int port = 0; port < ports; ++port)
   {
     for (int i = 0; i < inputs[port]->GetNumberOfInformationObjects(); ++i)
     {
       key.push_back(ContentKey(vtkDataObject::GetData(inputs[port], i)));
     }
   }
-  AddRequest(key, outputs->GetInformationObject(0));
   return key;
 }
 
-bool LastOutputs::GiveBack(vtkAlgorithm* filter, vtkInformationVector** inputs, vtkInformationVector* outputs)
+bool LastOutputs::GiveBack(
+  vtkMTimeType settings, vtkInformationVector** inputs, int ports, vtkInformationVector* outputs)
 {
-  Key key = KeyOf(filter, inputs, outputs);
+  Key key = KeyOf(settings, inputs, ports);
   if (key != this->MadeOf || this->Outputs.empty())
   {
     this->MadeOf = std::move(key);
@@ -84,7 +68,7 @@ void LastOutputs::Keep(vtkInformationVector* outputs)
   {
     vtkDataObject* const made = vtkDataObject::GetData(outputs, port);
     const auto kept = vtkSmartPointer<vtkDataObject>::Take(made->NewInstance());
-    kept->ShallowCopy(made);
+    PassOn(made, kept);
     this->Outputs.push_back(kept);
   }
 }

@@ -6,7 +6,6 @@
 #include "DiscreteOrdinates/OrdinatesQuality.h"
 
 #include "Propagation/LastLight.h"
-#include "Propagation/LastOutputs.h"
 #include "Propagation/PreviewLight.h"
 
 #include "vtkDataObject.h"
@@ -67,7 +66,7 @@ vtkDiscreteOrdinates::~vtkDiscreteOrdinates() = default;
 
 int vtkDiscreteOrdinates::RequestData(vtkInformation*, vtkInformationVector** inputs, vtkInformationVector* outputs)
 {
-  if (this->Solved->GiveBack(this, inputs, outputs))
+  if (this->GiveSolved(inputs, outputs))
   {
     return 1;
   }
@@ -91,8 +90,7 @@ int vtkDiscreteOrdinates::RequestData(vtkInformation*, vtkInformationVector** in
     light.settingsUsed = tyndall::Words(settings);
     TellOfDefaultSky(shining, light.leftOut);
     this->Note(light);
-    this->WriteSolved(image, std::move(light), outputs);
-    this->Solved->Keep(outputs);
+    this->WriteSolved(std::move(light), inputs, outputs);
   });
 }
 

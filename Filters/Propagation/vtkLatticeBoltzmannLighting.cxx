@@ -7,7 +7,6 @@
 #include "LatticeBoltzmann/LatticeQuality.h"
 #include "Medium/Coarsening.h"
 #include "Photons/PhotonData.h"
-#include "Propagation/LastOutputs.h"
 #include "Propagation/PreviewLight.h"
 
 #include "vtkDataObject.h"
@@ -179,7 +178,7 @@ tyndall::LightField vtkLatticeBoltzmannLighting::Solve(vtkInformationVector** in
 int vtkLatticeBoltzmannLighting::RequestData(
   vtkInformation*, vtkInformationVector** inputs, vtkInformationVector* outputs)
 {
-  if (this->Solved->GiveBack(this, inputs, outputs))
+  if (this->GiveSolved(inputs, outputs))
   {
     return 1;
   }
@@ -189,8 +188,7 @@ int vtkLatticeBoltzmannLighting::RequestData(
     tyndall::LightField light = this->Solve(inputs);
     light.settingsUsed = tyndall::Words(SettingsOf(this));
     this->Note(light);
-    this->WriteSolved(vtkImageData::GetData(inputs[MEDIUM]), std::move(light), outputs);
-    this->Solved->Keep(outputs);
+    this->WriteSolved(std::move(light), inputs, outputs);
   });
 }
 

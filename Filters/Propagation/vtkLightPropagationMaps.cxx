@@ -11,7 +11,6 @@
 #include "LightPropagation/Published/SequentialPropagation.h"
 
 #include "Propagation/LastLight.h"
-#include "Propagation/LastOutputs.h"
 #include "Propagation/PreviewLight.h"
 
 #include "vtkDataObject.h"
@@ -150,7 +149,7 @@ vtkLightPropagationMaps::~vtkLightPropagationMaps() = default;
 
 int vtkLightPropagationMaps::RequestData(vtkInformation*, vtkInformationVector** inputs, vtkInformationVector* outputs)
 {
-  if (this->Solved->GiveBack(this, inputs, outputs))
+  if (this->GiveSolved(inputs, outputs))
   {
     return 1;
   }
@@ -167,8 +166,7 @@ int vtkLightPropagationMaps::RequestData(vtkInformation*, vtkInformationVector**
 
     TellOfDefaultSky(shining, light.leftOut);
     this->Note(light);
-    this->WriteSolved(image, std::move(light), outputs);
-    this->Solved->Keep(outputs);
+    this->WriteSolved(std::move(light), inputs, outputs);
   });
 }
 

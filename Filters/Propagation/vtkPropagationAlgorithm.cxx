@@ -1,7 +1,6 @@
 #include "vtkPropagationAlgorithm.h"
 
 #include "Common/LightTransportData.h"
-#include "Common/WholeImage.h"
 #include "Light/LeftOut.h"
 #include "LightPropagation/PropagationSettings.h"
 #include "Scene/vtkLightRig.h"
@@ -10,7 +9,6 @@
 #include "vtkInformationVector.h"
 #include "vtkNew.h"
 #include "vtkPolyData.h"
-#include "vtkTable.h"
 
 #include <algorithm>
 #include <string>
@@ -100,21 +98,6 @@ void vtkPropagationAlgorithm::WarnWhereDark(const tyndall::Illumination& illumin
     vtkWarningMacro("With all three axes periodic the box has no face that light of the sky, an environment, faces or "
                     "a directional light could come in through, so it is dark. Leave one axis open.");
   }
-}
-
-void vtkPropagationAlgorithm::WriteSolved(
-  vtkImageData* medium, tyndall::LightField&& light, vtkInformationVector* outputs)
-{
-  const std::vector<std::string> doubts = light.doubts;
-  tyndall::WriteConvergence(light.convergence, light.sweepsSaved, vtkTable::GetData(outputs, 1));
-  vtkImageData* output = vtkImageData::GetData(outputs, 0);
-  tyndall::PassOn(medium, output);
-  tyndall::WriteLight(std::move(light), output); // light that is not finite is an error, with no warnings before
-  for (const std::string& doubt : doubts)
-  {
-    vtkWarningMacro(<< doubt);
-  }
-  tyndall::KeepWhatIsAskedFor(outputs->GetInformationObject(0), output);
 }
 
 void vtkPropagationAlgorithm::PrintSelf(ostream& os, vtkIndent indent)

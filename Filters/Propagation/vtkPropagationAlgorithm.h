@@ -7,11 +7,9 @@
 #include <string>
 #include <vector>
 
-class vtkImageData;
 namespace tyndall
 {
 struct IlluminationInput;
-struct LightField;
 }
 
 /**
@@ -106,9 +104,6 @@ protected:
 
   /// Warns where neither the medium nor anything else shines, or no light can come in.
   void WarnWhereDark(const tyndall::Illumination& illumination, bool emits);
-
-  /// Solved light on output 0 beside the arrays of `medium`, its convergence on output 1; then a warning of each doubt.
-  void WriteSolved(vtkImageData* medium, tyndall::LightField&& light, vtkInformationVector* outputs);
 
   double Tolerance;
   bool PeriodicX;

@@ -1,12 +1,20 @@
 #include "vtkScatteringSolver.h"
 
 #include "Common/LightTransportData.h"
+#include "Common/WholeImage.h"
 #include "Propagation/LastOutputs.h"
+#include "Viewing/LitColor.h"
 
+#include "vtkCommand.h"
 #include "vtkDataObject.h"
 #include "vtkImageData.h"
 #include "vtkInformation.h"
 #include "vtkInformationVector.h"
+#include "vtkTable.h"
+
+#include <algorithm>
+#include <utility>
+#include <vector>
 
 vtkScatteringSolver::vtkScatteringSolver()
   : Solved(std::make_unique<tyndall::LastOutputs>())
@@ -52,10 +60,91 @@ tyndall::IlluminationInput vtkScatteringSolver::ReadShining(vtkInformationVector
   return input;
 }
 
+void vtkScatteringSolver::ColorsModified()
+{
+  this->ColorsTime.Modified();
+  this->InvokeEvent(vtkCommand::ModifiedEvent);
+}
+
+void vtkScatteringSolver::SetLitColor(bool make)
+{
+  if (this->LitColor != make)
+  {
+    this->LitColor = make;
+    this->ColorsModified();
+  }
+}
+
+void vtkScatteringSolver::SetExposure(double exposure)
+{
+  if (tyndall::SetInRange<double>(this, "Exposure", &this->Exposure, { exposure }, 0.0, 1e30))
+  {
+    this->ColorsModified();
+  }
+}
+
+void vtkScatteringSolver::SetToneCurve(int curve)
+{
+  if (tyndall::SetInRange<int>(this, "ToneCurve", &this->ToneCurve, { curve }, 0.0, 1.0))
+  {
+    this->ColorsModified();
+  }
+}
+
+vtkMTimeType vtkScatteringSolver::GetMTime()
+{
+  return std::max(this->Superclass::GetMTime(), this->ColorsTime.GetMTime());
+}
+
+bool vtkScatteringSolver::GiveSolved(vtkInformationVector** inputs, vtkInformationVector* outputs)
+{
+  if (!this->Solved->GiveBack(this->Superclass::GetMTime(), inputs, this->GetNumberOfInputPorts(), outputs))
+  {
+    return false;
+  }
+  tyndall::Guarded(this, outputs, [&] { this->HandOn(inputs, outputs); });
+  return true;
+}
+
+void vtkScatteringSolver::WriteSolved(
+  tyndall::LightField&& light, vtkInformationVector** inputs, vtkInformationVector* outputs)
+{
+  const std::vector<std::string> doubts = light.doubts;
+  tyndall::WriteConvergence(light.convergence, light.sweepsSaved, vtkTable::GetData(outputs, 1));
+  vtkImageData* const output = vtkImageData::GetData(outputs, 0);
+  tyndall::PassOn(vtkImageData::GetData(inputs[MEDIUM]), output);
+  tyndall::WriteLight(std::move(light), output); // light that is not finite is an error, with no warnings before
+  for (const std::string& doubt : doubts)
+  {
+    vtkWarningMacro(<< doubt);
+  }
+  this->Solved->Keep(outputs);
+  this->HandOn(inputs, outputs);
+}
+
+/// What is made of the light of the whole image, and the piece that was asked for.
+void vtkScatteringSolver::HandOn(vtkInformationVector** inputs, vtkInformationVector* outputs)
+{
+  vtkImageData* const output = vtkImageData::GetData(outputs, 0);
+  if (this->LitColor)
+  {
+    const tyndall::MediumInput input = tyndall::ReadMedium(this, vtkImageData::GetData(inputs[MEDIUM]));
+    const tyndall::FloatField fluence = tyndall::ReadCells(output, "fluence", tyndall::Need::Required);
+    tyndall::ToneMapping tones;
+    tones.exposure = this->Exposure;
+    tones.curve = static_cast<tyndall::ToneCurve>(this->ToneCurve);
+    tyndall::WriteLitColor(tyndall::ColorLitMedium(input.medium, fluence, tones), output);
+  }
+  tyndall::KeepWhatIsAskedFor(outputs->GetInformationObject(0), output);
+}
+
 void vtkScatteringSolver::PrintSelf(ostream& os, vtkIndent indent)
 {
   this->Superclass::PrintSelf(os, indent);
   os << indent << "Quality: " << this->Quality << "\n";
   os << indent << "Preview: " << this->Preview << "\n";
   os << indent << "SettingsUsed: " << this->SettingsUsed << "\n";
+  os << indent << "LitColor: " << this->LitColor << "\n";
+  os << indent << "Exposure: " << this->Exposure << "\n";
+  os << indent << "ToneCurve: " << this->ToneCurve << "\n";
 }

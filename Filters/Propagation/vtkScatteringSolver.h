@@ -2,14 +2,18 @@
 #define vtkScatteringSolver_h
 
 #include "vtkPropagationAlgorithm.h"
+#include "vtkTimeStamp.h"
 #include "vtkTyndallModule.h" // for export macro
 
 #include <memory>
 #include <string>
 
+class vtkImageData;
+
 namespace tyndall
 {
 struct IlluminationInput;
+struct LightField;
 class LastOutputs;
 }
 
@@ -27,7 +31,15 @@ class LastOutputs;
  * Output 1 is the table of convergence, vtkTable.
  *
  * Asked again for the light of the same medium under the same light, even where filters before have made them anew,
- * it gives out the light that it has.
+ * it gives out the light that it has; so it does where another piece is asked for, or LitColor, Exposure or ToneCurve
+ * has changed. Each rank keeps the light of the whole image for that.
+ *
+ * With LitColor output 0 has the cell array `lit_color` too, unsigned char, 4 components: what each voxel sends to the
+ * eye as a screen shows it, red, green, blue, not multiplied by alpha, and an opacity. A volume mapper that takes them
+ * as they are (vtkVolumeProperty with IndependentComponents off, an opacity function from 0 to 1 over 0 to 255, and
+ * SetScalarOpacityUnitDistance(3, d)) shows the lit medium without OpenCL, about as vtkMediumRayCaster does over black
+ * (numerics.md, section 14.8). d is field data `lit_color_distance`, length; field data `lit_color_exposure` is what
+ * radiance was multiplied by.
  *
  * Field data `settings_used` of output 0: "Name = value" of each property that Quality chooses, as it was used.
  *
@@ -68,6 +80,30 @@ public:
   vtkBooleanMacro(Preview, bool);
   ///@}
 
+  ///@{
+  /// Whether to make `lit_color`. Default off. What is on is seen from every side alike: light is scattered evenly in
+  /// it, whatever the phase function.
+  void SetLitColor(bool make);
+  vtkGetMacro(LitColor, bool);
+  vtkBooleanMacro(LitColor, bool);
+  ///@}
+
+  ///@{
+  /// What radiance is multiplied by for `lit_color`. Default 0: so that the mean of the lit part, seen along the axes,
+  /// becomes a medium grey. Valid [0, 1e30].
+  void SetExposure(double exposure);
+  vtkGetMacro(Exposure, double);
+  ///@}
+
+  ///@{
+  /// How `lit_color` follows radiance, as vtkMediumRayCaster::ToneCurve: 0 linear, 1 filmic (default).
+  void SetToneCurve(int curve);
+  vtkGetMacro(ToneCurve, int);
+  ///@}
+
+  /// That of the properties, those of `lit_color` as well.
+  vtkMTimeType GetMTime() override;
+
   /// "Name = value" of each property that Quality chooses, as the last update used it, one per line.
   vtkGetCharFromStdStringMacro(SettingsUsed);
 
@@ -89,16 +125,30 @@ protected:
   /// @param emits  whether the medium does
   tyndall::IlluminationInput ReadShining(vtkInformationVector** inputs, bool emits);
 
-  /// First and last in RequestData.
-  std::unique_ptr<tyndall::LastOutputs> Solved;
+  /// First in RequestData.
+  /// @return whether the outputs are there, of the last solve
+  bool GiveSolved(vtkInformationVector** inputs, vtkInformationVector* outputs);
+
+  /// Last in RequestData, within Guarded: solved light on output 0 beside the arrays of the medium, its convergence on
+  /// output 1; then a warning of each doubt. Kept for GiveSolved.
+  void WriteSolved(tyndall::LightField&& light, vtkInformationVector** inputs, vtkInformationVector* outputs);
 
   int Quality = USUAL;
   bool Preview = false;
   std::string SettingsUsed;
+  bool LitColor = false;
+  double Exposure = 0.0;
+  int ToneCurve = 1;
 
 private:
   vtkScatteringSolver(const vtkScatteringSolver&) = delete;
   void operator=(const vtkScatteringSolver&) = delete;
+
+  void ColorsModified();
+  void HandOn(vtkInformationVector** inputs, vtkInformationVector* outputs);
+
+  std::unique_ptr<tyndall::LastOutputs> Solved;
+  vtkTimeStamp ColorsTime; ///< of LitColor, Exposure, ToneCurve: they do not change the light
 };
 
 #endif

@@ -127,7 +127,7 @@ def faults_of_property(prop):
         if domain.get("none_string") != "(by name)" or domain.get("attribute_type") != "EdgeFlag":
             yield "where there is no array of its name, another one is chosen"
     if not prop.get("repeat_command") and not prop.find("FileListDomain") is not None:
-        chosen = is_array_chooser(prop) or name == "FileName"
+        chosen = is_array_chooser(prop) or name == "FileName" or prop.tag == "ProxyProperty"
         if not chosen and prop.get("default_values") is None:
             yield "no default"
 

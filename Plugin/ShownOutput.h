@@ -1,0 +1,42 @@
+#ifndef ShownOutput_h
+#define ShownOutput_h
+
+#include "vtkDataObject.h"
+#include "vtkPVArrayInformation.h"
+#include "vtkPVDataInformation.h"
+#include "vtkPVXMLElement.h"
+#include "vtkSMPropertyHelper.h"
+#include "vtkSMProxy.h"
+#include "vtkSMSourceProxy.h"
+
+/// What is shown: an output of a source.
+struct Shown
+{
+  vtkSMSourceProxy* source;
+  int port;
+};
+
+inline Shown ShownBy(vtkSMProxy* representation)
+{
+  const vtkSMPropertyHelper input(representation, "Input", true);
+  return { vtkSMSourceProxy::SafeDownCast(input.GetAsProxy()), static_cast<int>(input.GetOutputPort()) };
+}
+
+/// The hint of that name for what is shown, or null.
+inline vtkPVXMLElement* HintFor(const Shown& shown, const char* name)
+{
+  vtkPVXMLElement* const hints = shown.source ? shown.source->GetHints() : nullptr;
+  vtkPVXMLElement* const hint = hints ? hints->FindNestedElementByName(name) : nullptr;
+  int port = 0;
+  const bool isOfOther = hint && hint->GetScalarAttribute("port", &port) && port != shown.port;
+  return isOfOther ? nullptr : hint;
+}
+
+/// The cell array that the hint names, or null where the output does not have it.
+inline vtkPVArrayInformation* HintedArray(const Shown& shown, vtkPVXMLElement* hint)
+{
+  const char* const name = hint->GetAttributeOrEmpty("array");
+  return shown.source->GetDataInformation(shown.port)->GetArrayInformation(name, vtkDataObject::CELL);
+}
+
+#endif

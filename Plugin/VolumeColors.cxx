@@ -1,0 +1,188 @@
+#include "VolumeColors.h"
+
+#include "ShownOutput.h"
+
+#include "vtkCallbackCommand.h"
+#include "vtkNew.h"
+#include "vtkSmartPointer.h"
+#include "vtkSMPVRepresentationProxy.h" // RemotingViews wants GLEW; of it only inline and virtual functions are called
+#include "vtkSMSessionProxyManager.h"
+
+#include <cstring>
+#include <iterator>
+
+namespace
+{
+constexpr double Opacity[] = { 0.0, 0.0, 0.5, 0.0, 255.0, 1.0, 0.5, 0.0 }; ///< value, opacity, midpoint, sharpness
+constexpr int NeverRescaled = -1;
+
+vtkPVXMLElement* HintOf(vtkSMProxy* representation)
+{
+  return HintFor(ShownBy(representation), "VolumeColors");
+}
+
+bool IsVolume(vtkSMProxy* representation)
+{
+  const char* const type = vtkSMPropertyHelper(representation, "Representation", true).GetAsString();
+  return type && std::strcmp(type, "Volume") == 0;
+}
+
+bool HasColors(vtkSMProxy* representation)
+{
+  return HintedArray(ShownBy(representation), HintOf(representation)) != nullptr;
+}
+
+bool IsColoredByThem(vtkSMProxy* representation)
+{
+  const vtkSMPropertyHelper chosen(representation, "ColorArrayName", true);
+  const char* const name = chosen.GetInputArrayNameToProcess();
+  return name && std::strcmp(name, HintOf(representation)->GetAttributeOrEmpty("array")) == 0;
+}
+
+/// @return 0 where it is not known
+double DistanceOf(vtkSMProxy* representation)
+{
+  const Shown shown = ShownBy(representation);
+  const char* const name = HintOf(representation)->GetAttributeOrEmpty("distance");
+  vtkPVArrayInformation* const fact =
+    shown.source->GetDataInformation(shown.port)->GetArrayInformation(name, vtkDataObject::FIELD);
+  return fact ? fact->GetComponentRange(0)[0] : 0.0;
+}
+
+/// That of alpha, which is no property of ParaView's: see vtkVolumeUnitDistance.
+void GiveDistance(vtkSMProxy* representation)
+{
+  const double distance = DistanceOf(representation);
+  vtkSmartPointer<vtkSMProxy> giver;
+  giver.TakeReference(
+    representation->GetSessionProxyManager()->NewProxy("internal_representations", "VolumeUnitDistance"));
+  if (giver && distance > 0.0)
+  {
+    vtkSMPropertyHelper(giver, "Representation").Set(representation);
+    giver->UpdateVTKObjects();
+    vtkSMPropertyHelper(giver, "Distance").Set(distance);
+    giver->UpdateVTKObjects();
+  }
+}
+
+/// From the least to the largest byte: whatever is between is the user's.
+void GiveRange(vtkSMProxy* function)
+{
+  vtkSMPropertyHelper points(function, "Points");
+  const unsigned int count = points.GetNumberOfElements();
+  const bool isRescaled =
+    count < std::size(Opacity) || points.GetAsDouble(0) != Opacity[0] || points.GetAsDouble(count - 4) != Opacity[4];
+  if (isRescaled)
+  {
+    points.Set(Opacity, static_cast<unsigned int>(std::size(Opacity)));
+    function->UpdateVTKObjects();
+  }
+}
+
+/// ParaView rescales it, to the range of the colours' norm.
+void GiveRangeAtChange(vtkObject* caller, unsigned long, void*, void* property)
+{
+  if (property && std::strcmp(static_cast<const char*>(property), "Points") == 0)
+  {
+    GiveRange(vtkSMProxy::SafeDownCast(caller));
+  }
+}
+
+void FitOpacity(vtkSMProxy* representation)
+{
+  static vtkNew<vtkCallbackCommand> change;
+  change->SetCallback(GiveRangeAtChange);
+  if (vtkSMProxy* const function = vtkSMPropertyHelper(representation, "ScalarOpacityFunction", true).GetAsProxy())
+  {
+    GiveRange(function);
+    if (!function->HasObserver(vtkCommand::PropertyModifiedEvent, change))
+    {
+      function->AddObserver(vtkCommand::PropertyModifiedEvent, change);
+    }
+  }
+  if (vtkSMProxy* const colors = vtkSMPropertyHelper(representation, "LookupTable", true).GetAsProxy())
+  {
+    vtkSMPropertyHelper(colors, "AutomaticRescaleRangeMode", true).Set(NeverRescaled);
+    vtkSMPropertyHelper(colors, "ScalarRangeInitialized", true).Set(1);
+    colors->UpdateVTKObjects();
+  }
+}
+
+/// What is right for the array that it is coloured by.
+void Fit(vtkSMProxy* representation)
+{
+  const bool own = IsColoredByThem(representation);
+  vtkSMPropertyHelper(representation, "MapScalars").Set(own ? 0 : 1);
+  if (own)
+  {
+    FitOpacity(representation);
+    const double distance = DistanceOf(representation);
+    if (distance > 0.0)
+    {
+      vtkSMPropertyHelper(representation, "ScalarOpacityUnitDistance", true).Set(distance);
+    }
+  }
+  representation->UpdateVTKObjects();
+}
+
+void ShowColors(vtkSMProxy* representation)
+{
+  const char* const name = HintOf(representation)->GetAttributeOrEmpty("array");
+  vtkSMPVRepresentationProxy::SetScalarColoring(representation, name, vtkDataObject::CELL);
+  Fit(representation);
+  GiveDistance(representation);
+}
+
+void FollowProperty(vtkObject* caller, unsigned long, void*, void* data)
+{
+  auto* const representation = vtkSMProxy::SafeDownCast(caller);
+  const char* const property = data ? static_cast<const char*>(data) : ""; // null: of a part's that is its own
+  if (!HintOf(representation))
+  {
+    return;
+  }
+  if (std::strcmp(property, "Representation") == 0 && IsVolume(representation) && HasColors(representation))
+  {
+    representation->UpdateVTKObjects(); // so that the volume is what is shown
+    ShowColors(representation);
+  }
+  else if (std::strcmp(property, "ColorArrayName") == 0 || std::strcmp(property, "ScalarOpacityFunction") == 0)
+  {
+    Fit(representation);
+  }
+}
+
+/// The distance may be another one, at another time or in a state that is being loaded.
+void FollowData(vtkObject* caller, unsigned long, void*, void*)
+{
+  auto* const representation = vtkSMProxy::SafeDownCast(caller);
+  if (HintOf(representation) && IsVolume(representation) && IsColoredByThem(representation))
+  {
+    GiveDistance(representation);
+  }
+}
+
+void Follow(vtkSMProxy* representation)
+{
+  vtkNew<vtkCallbackCommand> property, data;
+  property->SetCallback(FollowProperty);
+  data->SetCallback(FollowData);
+  representation->AddObserver(vtkCommand::PropertyModifiedEvent, property);
+  representation->AddObserver(vtkCommand::UpdateDataEvent, data);
+}
+}
+
+void FollowVolumeColors(vtkSMProxy* representation)
+{
+  if (!representation->GetProperty("MapScalars") || !representation->GetProperty("ScalarOpacityFunction") ||
+    !HintOf(representation))
+  {
+    return;
+  }
+  Follow(representation);
+  if (HasColors(representation))
+  {
+    vtkSMPropertyHelper(representation, "Representation").Set("Volume"); // what follows is done by FollowProperty
+    representation->UpdateVTKObjects();
+  }
+}
