@@ -1,5 +1,6 @@
 #include "VolumeColors.h"
 
+#include "ChangedProperty.h"
 #include "ShownOutput.h"
 
 #include "vtkCallbackCommand.h"
@@ -82,7 +83,7 @@ void GiveRange(vtkSMProxy* function)
 /// ParaView rescales it, to the range of the colours' norm.
 void GiveRangeAtChange(vtkObject* caller, unsigned long, void*, void* property)
 {
-  if (property && std::strcmp(static_cast<const char*>(property), "Points") == 0)
+  if (IsChangeOf(property, "Points"))
   {
     GiveRange(vtkSMProxy::SafeDownCast(caller));
   }
@@ -136,17 +137,16 @@ void ShowColors(vtkSMProxy* representation)
 void FollowProperty(vtkObject* caller, unsigned long, void*, void* data)
 {
   auto* const representation = vtkSMProxy::SafeDownCast(caller);
-  const char* const property = data ? static_cast<const char*>(data) : ""; // null: of a part's that is its own
   if (!HintOf(representation))
   {
     return;
   }
-  if (std::strcmp(property, "Representation") == 0 && IsVolume(representation) && HasColors(representation))
+  if (IsChangeOf(data, "Representation") && IsVolume(representation) && HasColors(representation))
   {
     representation->UpdateVTKObjects(); // so that the volume is what is shown
     ShowColors(representation);
   }
-  else if (std::strcmp(property, "ColorArrayName") == 0 || std::strcmp(property, "ScalarOpacityFunction") == 0)
+  else if (IsChangeOf(data, "ColorArrayName") || IsChangeOf(data, "ScalarOpacityFunction"))
   {
     Fit(representation);
   }

@@ -61,8 +61,8 @@ RenderedCamera::RenderedCamera(vtkRenderer* renderer, vtkMatrix4x4* place)
   const auto element = [projection](int row, int column) { return projection->GetElement(row, column); };
   this->Depth = { element(2, 2), element(2, 3), element(3, 2), element(3, 3) };
 
-  const double distance = camera->GetDistance(); // in the world: fromEye's columns are as long as its unit
-  Vec forward = { 0.0, 0.0, -1.0 }, origin = { 0.0, 0.0, 0.0 }; // of rays, in the eye's axes
+  // Where rays begin and where they go up to, in the eye's axes; fromEye's columns are as long as the world's unit.
+  Vec origin = { 0.0, 0.0, 0.0 }, forward = { 0.0, 0.0, -1.0 };
   this->Seen.parallelProjection = camera->GetParallelProjection() != 0;
   this->Seen.aspect = element(1, 1) / element(0, 0);
   if (this->Seen.parallelProjection)
@@ -77,7 +77,7 @@ RenderedCamera::RenderedCamera(vtkRenderer* renderer, vtkMatrix4x4* place)
   {
     this->Seen.viewAngle = std::atan(1.0 / element(1, 1)) * 360.0 / Pi;
     this->Seen.shift = { element(0, 2), element(1, 2) };
-    // The left and the right eye stand beside the camera, and what is at the distance of the focal point stays in place.
+    // Each of two eyes stands beside the camera, and sees what is as far off as the focal point in the same place.
     origin[0] = -element(0, 3) / element(0, 0);
     origin[1] = -element(1, 3) / element(1, 1);
   }
@@ -86,11 +86,11 @@ RenderedCamera::RenderedCamera(vtkRenderer* renderer, vtkMatrix4x4* place)
   {
     this->Seen.position[axis] = fromEye->GetElement(axis, 3);
     this->Seen.focalPoint[axis] = this->Seen.position[axis];
-    for (int eyeAxis = 0; eyeAxis < 3; ++eyeAxis)
+    for (int i = 0; i < 3; ++i)
     {
-      this->Seen.position[axis] += origin[eyeAxis] * fromEye->GetElement(axis, eyeAxis);
-      this->Seen.focalPoint[axis] +=
-        (origin[eyeAxis] + distance * forward[eyeAxis]) * fromEye->GetElement(axis, eyeAxis);
+      const double step = fromEye->GetElement(axis, i);
+      this->Seen.position[axis] += origin[i] * step;
+      this->Seen.focalPoint[axis] += (origin[i] + camera->GetDistance() * forward[i]) * step;
     }
   }
 }

@@ -46,6 +46,10 @@ def select(row):
     player.event(tutorial.BROWSER, "mouseRelease", "1,0,0,30,8," + row)
 
 
+def preview(on):
+    player.event(tutorial.PROPERTIES + "Preview/CheckBox", "set_boolean", "true" if on else "false")
+
+
 def pause():
     """Auto Apply comes a moment after the change."""
     player.event("pqClientMainWindow", "pause", "1000")
@@ -106,7 +110,7 @@ select("/0:0/0:0")
 make("pqClientMainWindow/menubar/menuFilters/Light Transport", "ParticipatingMedium")
 player.event("pqClientMainWindow/menubar/menuFilters/Light Transport", "activate", "LightPropagationMaps")
 player.event(tutorial.PROPERTIES + "Lights/1QComboBox0", "set_string", kind + "1:Lights")
-player.choose("Preview", "on")
+preview(True)
 player.event(tutorial.PANEL + "Accept", "activate")
 player.event("pqClientMainWindow/MainControlsToolbar/actionAutoApply", "set_boolean", "true")
 player.save_state(path("Before", "pvsm"))
@@ -117,7 +121,7 @@ player.save_state(path("After", "pvsm"))
 save_picture("After")
 select(SOLVER_ROW)
 save_light("After")
-player.choose("Preview", "off")
+preview(False)
 pause()
 save_light("Full")
 player.event("pqClientMainWindow/MainControlsToolbar/actionAutoApply", "set_boolean", "false")

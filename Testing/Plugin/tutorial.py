@@ -18,6 +18,7 @@ from pipeline_browser import Browser
 SOURCE = os.environ["TYNDALL_SOURCE"]
 WINDOW = "pqClientMainWindow/"
 PANEL = WINDOW + "propertiesDock/propertiesPanel/"
+BROWSER = WINDOW + "pipelineBrowserDock/pipelineBrowser"
 PROPERTIES = PANEL + "scrollArea/qt_scrollarea_viewport/scrollAreaWidgetContents/PropertiesFrame/ProxyPanel/"
 PROXIES_OF_OTHERS = {"Sphere": "SphereSource", "Slice": "Cut", "Plot Over Line": "ProbeLine"}
 BUTTONS = {
@@ -107,7 +108,7 @@ class Player:
         else:
             self.event(widget + "/ComboBox", "set_string", value, clicks=2)
 
-    def select(self, name, tree=WINDOW + "pipelineBrowserDock/pipelineBrowser"):
+    def select(self, name, tree=BROWSER):
         place = self.browser.place(name)
         self.event(tree, "mousePress", "1,1,0,30,8," + place, clicks=0)
         self.event(tree, "mouseRelease", "1,0,0,30,8," + place)
