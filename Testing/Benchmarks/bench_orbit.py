@@ -70,39 +70,43 @@ class Window:
         import lit_view
         import pictures
         from paraview import simple
+        self.edge = float(grid)
         self.grid, self.frames, self.rounds, self.reach, self.picture = "%dx%dx%d" % ((grid,) * 3), frames, rounds, reach, picture
         half = grid // 2
         medium = simple.ParticipatingMedium(Input=simple.Wavelet(WholeExtent=[-half, half] * 3), MinimumDensity=37, MaximumDensity=277,
                                             ExtinctionScale=2.56 / grid)
         self.light = simple.LightPropagationMaps(Input=medium, Lights=simple.LightRig())
         if self.light.GetProperty("LitColor"):
-            self.light.LitColor = 1
+            self.light.LitColor, self.light.Exposure = 1, lit_view.EXPOSURE
         self.view = view = simple.GetActiveViewOrCreate("RenderView")
         simple.GetLayout().SetSize(*size)
         view.OrientationAxesVisibility = 0
         view.UseFXAA = 0
         view.UseColorPaletteForBackground = 0
         view.Background = [0, 0, 0]
-        view.CenterOfRotation = view.CameraFocalPoint = [0, 0, 0]
-        view.CameraPosition = [0.55 * grid, -2.5 * grid, 1.25 * grid]
-        view.CameraViewUp = [0, 0, 1]
+        self.look()
         simple.Render(view)
         assert list(view.ViewSize) == list(size), ("the screen is too small for this view", list(view.ViewSize))
         self.shown = simple.Show(self.light, view)
+
+    def look(self):
+        self.view.CenterOfRotation = self.view.CameraFocalPoint = [0, 0, 0]
+        self.view.CameraPosition = [0.55 * self.edge, -2.5 * self.edge, 1.25 * self.edge]
+        self.view.CameraViewUp = [0, 0, 1]
 
     def lit_volume(self):
         self.shown.Representation = "Lit Volume"
         self.shown.Exposure = lit_view.EXPOSURE
 
-    def volume(self, name="sigma_s"):
-        simple.ColorBy(self.shown, ("CELLS", name))
+    def volume(self, array):
         self.shown.Representation = "Volume"
+        simple.ColorBy(self.shown, ("CELLS", array))
         self.shown.Shade = 0
         self.shown.VolumetricScatteringBlending = 0
         self.shown.GlobalIlluminationReach = 0
 
     def one_color(self):
-        self.volume()
+        self.volume("sigma_s")
         low, high = self.light.CellData["sigma_s"].GetRange(0)
         high = max(high, low + 1e-9)
         self.shown.LookupTable.RGBPoints = [low, 0.9, 0.9, 0.9, high, 0.9, 0.9, 0.9]
@@ -116,9 +120,7 @@ class Window:
         self.shown.GlobalIlluminationReach = self.reach
 
     def lit_color(self):
-        self.shown.Representation = "Volume"
-        simple.ColorBy(self.shown, ("CELLS", "lit_color"))
-        self.shown.MapScalars = 0
+        self.volume("lit_color")
 
     def ways(self):
         ways = {"Lit Volume": self.lit_volume, "Volume of one colour": self.one_color, "Volume with scattering": self.scattering}
@@ -165,12 +167,13 @@ class Window:
         times = {}
         for turn in range(self.rounds):
             for way, choose in self.ways().items():
+                self.look()
                 choose()
+                if turn == 0:
+                    self.save(way)
                 moving, still = times.setdefault(way, ([], []))
                 moving += self.moving()
                 still += self.still()
-                if turn == 0:
-                    self.save(way)
         ours = [statistics.median(of_one) for of_one in times["Lit Volume"]]
         for way, (moving, still) in times.items():
             row = {"ratio_moving": statistics.median(moving) / ours[0], "ratio_still": statistics.median(still) / ours[1]}

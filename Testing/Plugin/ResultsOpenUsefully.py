@@ -31,7 +31,8 @@ for extinction, decades in ((0.1, False), (5, True)):
 view = CreateView("RenderView")
 medium = ParticipatingMedium(Input=Wavelet(WholeExtent=[-5, 5, -5, 5, -5, 5]), MaximumDensity=300)
 marched = PhotonMarcher(Input=medium, Photons=PhotonEmitter(Input=medium, Lights=LightRig(), PhotonCount=1000, Batches=2))
-for filter in (marched, PhotonReconstruction(Input=marched), LPMCollect(Input=LPMPropagate(Input=medium, Lights=LightRig()))):
+assert Show(marched, view).Representation == "Outline", "its paths are to be seen"
+for filter in (PhotonReconstruction(Input=marched), LPMCollect(Input=LPMPropagate(Input=medium, Lights=LightRig()))):
     display = Show(OutputPort(filter, 0), view)
     assert display.Representation == "Lit Volume", (filter, display.Representation)
     display.Representation = "Slice"
