@@ -14,12 +14,12 @@ namespace tyndall
 {
 namespace
 {
-/// Half as many voxels along each axis, and half of those while more than `most` are left.
+/// Half as many voxels along each axis, and half of those while more than PreviewVoxels are left.
 /// @param may  whether a grid is one to be halved
 template <class May>
-Grid Halved(Grid grid, std::size_t most, const May& may)
+Grid Halved(Grid grid, const May& may)
 {
-  for (bool first = true; may(grid) && (first || grid.VoxelCount() > most); first = false)
+  for (bool first = true; may(grid) && (first || grid.VoxelCount() > PreviewVoxels); first = false)
   {
     grid = Coarsening(grid).Coarse();
   }
@@ -96,14 +96,14 @@ std::vector<float> Refined(const std::vector<float>& values, int channels, const
 }
 }
 
-Grid PreviewGrid(const Grid& grid, std::size_t most)
+Grid PreviewGrid(const Grid& grid)
 {
-  return Halved(grid, most, [](const Grid&) { return true; });
+  return Halved(grid, [](const Grid&) { return true; });
 }
 
-Grid CubicPreviewGrid(const Grid& grid, std::size_t most)
+Grid CubicPreviewGrid(const Grid& grid)
 {
-  return Halved(grid, most, [](const Grid& halved) {
+  return Halved(grid, [](const Grid& halved) {
     return std::all_of(halved.size.begin(), halved.size.end(), [](int voxels) { return voxels % 2 == 0; });
   });
 }

@@ -12,11 +12,11 @@ namespace tyndall
 /// Finds light in the medium and with the light that it is given, which have the same box.
 using SolveIn = std::function<LightField(const Medium&, const Illumination&)>;
 
-/// The grid of a preview: half as many voxels along each axis, and half of those while more than `most` are left.
-Grid PreviewGrid(const Grid& grid, std::size_t most);
+/// The grid of a preview: half as many voxels along each axis, and half of those while more than PreviewVoxels are left.
+Grid PreviewGrid(const Grid& grid);
 
 /// The same by whole voxels alone, so that cubes stay cubes: the grid as it was where some axis cannot be halved.
-Grid CubicPreviewGrid(const Grid& grid, std::size_t most);
+Grid CubicPreviewGrid(const Grid& grid);
 
 /// What a solver finds on a coarser grid (averages; Coarsening.h), linear between its voxels' middles: to look at while
 /// something is changed. `fluence`, `fluence_direct`, powers and the table of iterations; whatever else is known by
@@ -29,7 +29,6 @@ constexpr double PreviewTolerance = 0.1; ///< relative error of fluence that its
 constexpr int PreviewDirections = 4;     ///< per cube face
 constexpr int PreviewOrders = 24;        ///< of discrete ordinates; those after them are a geometric series
 
-/// Voxels of which a solver is to find a preview in 0.2 s on two cores (measurements.md): 64^3 of light propagation
-/// maps, 32^3 of discrete ordinates and the lattice, which take many steps in thick media.
-constexpr std::size_t PreviewVoxelsOfMaps = 262144, PreviewVoxelsOfOthers = 32768;
+/// Of which a solver finds a preview in less than 0.2 s on two cores (measurements.md).
+constexpr std::size_t PreviewVoxels = 32768;
 }

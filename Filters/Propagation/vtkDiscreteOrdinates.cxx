@@ -84,7 +84,7 @@ int vtkDiscreteOrdinates::RequestData(vtkInformation*, vtkInformationVector** in
     const tyndall::SolveIn solve = [&](const tyndall::Medium& inside, const tyndall::Illumination& shining) {
       return tyndall::SolveDiscreteOrdinates(*device, inside, shining, settings, tyndall::MonitorOf(this), last);
     };
-    const tyndall::Grid coarse = tyndall::PreviewGrid(input.medium.grid, tyndall::PreviewVoxelsOfOthers);
+    const tyndall::Grid coarse = tyndall::PreviewGrid(input.medium.grid);
     tyndall::LightField light = this->Preview ? tyndall::SolvePreview(input.medium, illumination, coarse, solve)
                                               : solve(input.medium, illumination);
     light.settingsUsed = tyndall::Words(settings);

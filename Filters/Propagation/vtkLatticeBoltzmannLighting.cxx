@@ -158,7 +158,7 @@ tyndall::LightField vtkLatticeBoltzmannLighting::Solve(vtkInformationVector** in
   };
   tyndall::LightField light = Timed(this->Seconds, [&] {
     // A preview of grids that cannot be halved to cubes has their own voxels.
-    const tyndall::Grid coarse = tyndall::CubicPreviewGrid(input.medium.grid, tyndall::PreviewVoxelsOfOthers);
+    const tyndall::Grid coarse = tyndall::CubicPreviewGrid(input.medium.grid);
     if (!this->Preview || coarse.size == input.medium.grid.size)
     {
       return solve(input.medium, shining.illumination, ior);

@@ -111,7 +111,7 @@ tyndall::LightField Solve(vtkLightPropagationMaps* filter, const tyndall::Medium
                       : tyndall::SolveConservative(*device, inside, shining, how, watch, kept);
   };
   tyndall::LightField light = filter->GetPreview()
-    ? tyndall::SolvePreview(medium, illumination, tyndall::PreviewGrid(medium.grid, tyndall::PreviewVoxelsOfMaps),
+    ? tyndall::SolvePreview(medium, illumination, tyndall::PreviewGrid(medium.grid),
         [&](const tyndall::Medium& inside, const tyndall::Illumination& shining) {
           return solve(inside, shining, settings, monitor);
         })
