@@ -12,7 +12,7 @@ namespace tyndall
 /// Finds light in the medium and with the light that it is given, which have the same box.
 using SolveIn = std::function<LightField(const Medium&, const Illumination&)>;
 
-/// The grid of a preview: half as many voxels along each axis, and half of those while more are left than PreviewVoxels.
+/// The grid of a preview: half as many voxels along each axis, half of those while more than PreviewVoxels are left.
 Grid PreviewGrid(const Grid& grid);
 
 /// The same by whole voxels alone, so that cubes stay cubes: the grid as it was where some axis cannot be halved.
