@@ -1,9 +1,11 @@
-"""Frames while the camera goes round a volume in ParaView's window.    ./run bench orbit [--grid 128] [--frames 20] [--rounds 3] [--size 800 600] [--quick]
+"""Frames while the camera goes round a volume in ParaView's window.
+
+    ./run bench orbit [--grid 128] [--frames 20] [--rounds 3] [--size 800 600] [--quick]
 
 The volume is shown as Lit Volume, as ParaView's own Volume of one colour, and by that with its scattering option (shaded, scattering
-blended by 1, `--reach` of its shadows, 0 to 1), in turns, in one run; as Volume with the solver's LitColor too. ParaView's window is opened, and the mouse dragged
-over the 3D view: the events go to the view's interactor, which draws a frame for each of them as it does for a hand's. `moving` and `still`
-are seconds a frame, medians and longest of all rounds; still frames are drawn with the full resolution after the mouse is let go, with the
+blended by 1, `--reach` of its shadows, 0 to 1), in turns, in one run; as Volume with the solver's LitColor too. ParaView's window is
+opened, and the mouse dragged over the 3D view: the events go to the view's interactor, which draws a frame for each of them as it does
+for a hand's. `seconds` (moving) and `still` are seconds a frame, medians and longest of all rounds; still frames are drawn with the full resolution after the mouse is let go, with the
 camera turned between them. The first frames of a turn are not counted: they take the data to the mapper and find the resolution for the
 frame time. What took 30 seconds is not drawn again.
 
@@ -40,8 +42,7 @@ def parse():
     given = parser.parse_args()
     quick = given.quick
     return {"grid": given.grid or (16 if quick else 128), "frames": given.frames or (3 if quick else 20), "picture": given.picture,
-            "reach": given.reach,
-            "rounds": given.rounds or (1 if quick else 3), "size": given.size or ([200, 150] if quick else [800, 600])}
+            "reach": given.reach, "rounds": given.rounds or (1 if quick else 3), "size": given.size or ([200, 150] if quick else [800, 600])}
 
 
 def open_window(arguments):
@@ -64,26 +65,20 @@ class Window:
     """The view of ParaView's window, and a solved medium in it."""
 
     def __init__(self, grid, frames, rounds, size, reach, picture, here):
-        global simple, lit_view, pictures
+        global simple, lit_view
         os.environ.setdefault("TYNDALL_SOURCE", os.path.dirname(os.path.dirname(here)))
         sys.path.insert(0, os.path.join(here, "../Plugin"))
         import lit_view
-        import pictures
         from paraview import simple
         self.edge = float(grid)
         self.grid, self.frames, self.rounds, self.reach, self.picture = "%dx%dx%d" % ((grid,) * 3), frames, rounds, reach, picture
         half = grid // 2
         medium = simple.ParticipatingMedium(Input=simple.Wavelet(WholeExtent=[-half, half] * 3), MinimumDensity=37, MaximumDensity=277,
                                             ExtinctionScale=2.56 / grid)
-        self.light = simple.LightPropagationMaps(Input=medium, Lights=simple.LightRig())
-        if self.light.GetProperty("LitColor"):
-            self.light.LitColor, self.light.Exposure = 1, lit_view.EXPOSURE
+        self.light = simple.LightPropagationMaps(Input=medium, Lights=simple.LightRig(), LitColor=1, Exposure=lit_view.EXPOSURE)
         self.view = view = simple.GetActiveViewOrCreate("RenderView")
         simple.GetLayout().SetSize(*size)
-        view.OrientationAxesVisibility = 0
-        view.UseFXAA = 0
-        view.UseColorPaletteForBackground = 0
-        view.Background = [0, 0, 0]
+        lit_view.show_nothing_else(view)
         self.look()
         simple.Render(view)
         assert list(view.ViewSize) == list(size), ("the screen is too small for this view", list(view.ViewSize))
@@ -123,10 +118,8 @@ class Window:
         self.volume("lit_color")
 
     def ways(self):
-        ways = {"Lit Volume": self.lit_volume, "Volume of one colour": self.one_color, "Volume with scattering": self.scattering}
-        if self.light.GetProperty("LitColor"):
-            ways["Volume of lit_color"] = self.lit_color
-        return ways
+        return {"Lit Volume": self.lit_volume, "Volume of one colour": self.one_color, "Volume with scattering": self.scattering,
+                "Volume of lit_color": self.lit_color}
 
     def moving(self):
         """Drag the mouse. @return seconds of each frame"""

@@ -9,9 +9,9 @@ from paraview.vtk.util.numpy_support import vtk_to_numpy
 LoadPlugin(os.environ["TYNDALL_PLUGIN"], remote=True, ns=globals())
 
 
-def balance(density, array="RTData"):
+def balance(density):
     """@return absorbed and escaped, of all power that came in"""
-    medium = ParticipatingMedium(Input=density, DensityArray=["POINTS", array], ExtinctionScale=0.2)
+    medium = ParticipatingMedium(Input=density, DensityArray=["POINTS", "RTData"], ExtinctionScale=0.2)
     light = LightPropagationMaps(Input=medium, SkyColor=[1, 1, 1], DirectionsPerFace=4)
     light.UpdatePipeline()
     output = light.GetClientSideObject().GetOutputDataObject(0)

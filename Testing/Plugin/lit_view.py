@@ -24,12 +24,17 @@ def solved():
     return LightPropagationMaps(Input=medium, Lights=LightRig(), DirectionsPerFace=4)
 
 
-def make_black(view):
-    view.ViewSize = SIZE
+def show_nothing_else(view):
+    """Pixels are those of what is shown, over black."""
     view.OrientationAxesVisibility = 0
     view.UseFXAA = 0
     view.UseColorPaletteForBackground = 0
     view.Background = [0, 0, 0]
+
+
+def make_black(view):
+    view.ViewSize = SIZE
+    show_nothing_else(view)
     view.CameraPosition = [9, -40, 21]
     view.CameraFocalPoint = [1, 0.5, -1]
     view.CameraViewUp = [0, 0, 1]
