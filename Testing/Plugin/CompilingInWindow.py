@@ -12,10 +12,8 @@ import sys
 import time
 
 import numpy
-from vtkmodules.util.numpy_support import numpy_to_vtk
-from vtkmodules.vtkCommonDataModel import vtkImageData
-from vtkmodules.vtkIOImage import vtkPNGWriter
 
+import pictures
 from screen import Screen
 
 folder = os.environ["TYNDALL_TEST_OUTPUT"]
@@ -43,17 +41,6 @@ def letters(bar):
     return columns[-1] - columns[0] + 1 if len(columns) else 0
 
 
-def save(pixels):
-    image = vtkImageData()
-    image.SetDimensions(pixels.shape[1], pixels.shape[0], 1)
-    colors = numpy_to_vtk(numpy.ascontiguousarray(pixels[::-1]).reshape(-1, 3), deep=True)
-    image.GetPointData().SetScalars(colors)
-    writer = vtkPNGWriter()
-    writer.SetFileName(os.path.join(folder, "CompilingInWindow.png"))
-    writer.SetInputData(image)
-    writer.Write()
-
-
 shutil.rmtree(cache, ignore_errors=True)
 os.makedirs(cache)
 if os.path.exists(log):
@@ -73,7 +60,7 @@ try:
         x, y = (int(number) for number in re.search(r"Maps can be aborted at \((\d+), (\d+)\)", said).groups())
         widths.append(letters(seen(x + 15, y - 8, 350, 16)))
         if len(widths) == 5:
-            save(seen(0, 0, WIDTH, HEIGHT))
+            pictures.write(os.path.join(folder, "CompilingInWindow.png"), seen(0, 0, WIDTH, HEIGHT)[::-1])
 finally:
     if paraview.poll() is None:
         paraview.kill()

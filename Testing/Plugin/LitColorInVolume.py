@@ -7,7 +7,8 @@ import pictures
 from paraview import servermanager
 from paraview.simple import *
 
-LoadPlugin(os.environ["TYNDALL_PLUGIN"], remote=True, ns=globals())
+lit_view.load(remote=True)
+LoadPlugin(os.environ["TYNDALL_PLUGIN"], remote=True, ns=globals())  # its names, here too
 PICTURES = os.path.join(os.environ["TYNDALL_TEST_OUTPUT"], "LitColorInVolume")
 
 
@@ -48,10 +49,7 @@ def view_from(position):
 
 
 def picture(light, view, exposure):
-    caster = MediumRayCaster(Input=light, ImageSize=view.ViewSize, Exposure=exposure, CameraPosition=view.CameraPosition,
-                             CameraFocalPoint=view.CameraFocalPoint, CameraViewUp=view.CameraViewUp,
-                             CameraViewAngle=view.CameraViewAngle)
-    image = servermanager.Fetch(caster)
+    image = servermanager.Fetch(lit_view.caster(light, view, Exposure=exposure))
     return pictures.of_image(image, "color"), image.GetFieldData().GetArray("exposure").GetValue(0)
 
 

@@ -45,7 +45,7 @@ def lights_and_environment(light, view):
 def larger_than_the_screen(light, view):
     size = [8 * length for length in view.ViewSize]
     SaveScreenshot(output + "Large.png", view, ImageResolution=size)
-    lit_view.check_same(pictures.read(output + "Large.png"), lit_view.cast(light, view, size))
+    lit_view.check_same(pictures.read(output + "Large.png"), lit_view.cast(light, view, ImageSize=size))
 
 
 def middle_of(pixels):

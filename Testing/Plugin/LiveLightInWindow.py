@@ -9,9 +9,9 @@ import sys
 
 import numpy
 from vtkmodules.util.numpy_support import vtk_to_numpy
-from vtkmodules.vtkIOImage import vtkPNGReader
 from vtkmodules.vtkIOXML import vtkXMLImageDataReader
 
+import pictures
 import tutorial
 from saved_state import State, folder, forget, values
 
@@ -93,11 +93,7 @@ def fluence(moment):
 
 
 def picture(moment):
-    reader = vtkPNGReader()
-    reader.SetFileName(path(moment, "png"))
-    reader.Update()
-    width, height, _ = reader.GetOutput().GetDimensions()
-    return vtk_to_numpy(reader.GetOutput().GetPointData().GetScalars()).reshape(height, width, -1)[:, :, :3].astype(int)
+    return pictures.read(path(moment, "png"))
 
 
 def difference(one, other):

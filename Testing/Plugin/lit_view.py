@@ -58,16 +58,20 @@ def drawn(view):
     return pictures.of_image(view.CaptureWindow(1))
 
 
-def cast(light, view, size=None, **more):
+def caster(light, view, **more):
     """
-    @param size  of the picture: otherwise the view's
-    @param more  properties of the caster
-    @return the pixels of Medium Ray Caster with the view's camera, over black
+    @param more  properties that it has otherwise than the view, or beside it
+    @return a Medium Ray Caster with the view's camera and size
     """
-    caster = MediumRayCaster(Input=light, ImageSize=list(size or view.ViewSize), Exposure=EXPOSURE, CameraPosition=view.CameraPosition,
-                             CameraFocalPoint=view.CameraFocalPoint, CameraViewUp=view.CameraViewUp,
-                             CameraViewAngle=view.CameraViewAngle, **more)
-    return pictures.of_image(servermanager.Fetch(caster), "color")
+    of_view = {"ImageSize": list(view.ViewSize), "Exposure": EXPOSURE, "CameraPosition": view.CameraPosition,
+               "CameraFocalPoint": view.CameraFocalPoint, "CameraViewUp": view.CameraViewUp,
+               "CameraViewAngle": view.CameraViewAngle}
+    return MediumRayCaster(Input=light, **{**of_view, **more})
+
+
+def cast(light, view, **more):
+    """@return the pixels of such a picture, over black"""
+    return pictures.of_image(servermanager.Fetch(caster(light, view, **more)), "color")
 
 
 def check_same(found, expected):
