@@ -82,10 +82,12 @@ def sent_by_ranks(folder):
 def run(grid, ranks, orders, repeats):
     """@return what each rank found; the whole fluence; bytes and messages of the rank that sent most"""
     import numpy
+
+    sys.path.insert(0, os.path.join(os.path.dirname(os.path.abspath(__file__)), "../Plugin"))
+    import a_server
+
     with tempfile.TemporaryDirectory() as folder:
-        # pvpython is a run of MPI itself: its runs would take ours for a part of it.
-        outside = {name: value for name, value in os.environ.items() if not name.startswith(("OMPI_", "PMIX_", "OPAL_", "ORTE_"))}
-        environment = {**outside, WORKER: json.dumps({"folder": folder, "grid": grid, "orders": orders, "repeats": repeats}),
+        environment = {**a_server.without_mpi(), WORKER: json.dumps({"folder": folder, "grid": grid, "orders": orders, "repeats": repeats}),
                        "POCL_MAX_PTHREAD_COUNT": str(max(1, (os.cpu_count() or 1) // ranks)), "TYNDALL_PREPARE": "0"}
         command = ["mpiexec", "--allow-run-as-root", "--oversubscribe", "-n", str(ranks), "--mca", "pml_monitoring_enable", "2", "--mca",
                    "pml_monitoring_enable_output", "3", "--mca", "pml_monitoring_filename", os.path.join(folder, "sent"), "pvbatch",

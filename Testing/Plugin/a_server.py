@@ -11,6 +11,11 @@ def free_port():
         return probe.getsockname()[1]
 
 
+def without_mpi():
+    """@return the environment, for mpiexec: pvpython is a rank of MPI itself, and what that leaves in it would make it fail"""
+    return {name: value for name, value in os.environ.items() if not name.startswith(("OMPI_", "PMIX_"))}
+
+
 @contextlib.contextmanager
 def started(ranks, log_file):
     """
@@ -20,11 +25,9 @@ def started(ranks, log_file):
     """
     port = free_port()
     launcher = ["mpiexec", "--allow-run-as-root", "--oversubscribe", "-n", str(ranks)] if ranks > 1 else []
-    # pvpython is a rank of MPI itself; what that has left in the environment would make mpiexec fail.
-    environment = {name: value for name, value in os.environ.items() if not name.startswith(("OMPI_", "PMIX_"))}
     with open(log_file, "w") as log:
         server = subprocess.Popen(launcher + ["pvserver", "--server-port=%d" % port], stdout=subprocess.PIPE,
-                                  stderr=log, text=True, env=environment)
+                                  stderr=log, text=True, env=without_mpi())
         try:
             assert any("Accepting connection" in line for line in server.stdout), \
                 "the server does not start, see " + log_file
