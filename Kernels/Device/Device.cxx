@@ -182,7 +182,7 @@ Device::Device(const cl::Platform& platform, const cl::Device& device, std::stri
   , DeviceName(device.getInfo<CL_DEVICE_NAME>() + " [" + platform.getInfo<CL_PLATFORM_NAME>() + "]")
   , Extensions(device.getInfo<CL_DEVICE_EXTENSIONS>())
   , CacheFolder(std::move(cacheFolder))
-  , Cpu((device.getInfo<CL_DEVICE_TYPE>() & CL_DEVICE_TYPE_CPU) != 0)
+  , Cpu((device.getInfo<CL_DEVICE_TYPE>() & CL_DEVICE_TYPE_CPU) != 0 && !std::getenv("TYNDALL_AS_GPU"))
   , Units(static_cast<int>(device.getInfo<CL_DEVICE_MAX_COMPUTE_UNITS>()))
   , VectorWidth(static_cast<int>(device.getInfo<CL_DEVICE_NATIVE_VECTOR_WIDTH_FLOAT>()))
   , LargestAllocation(device.getInfo<CL_DEVICE_MAX_MEM_ALLOC_SIZE>())

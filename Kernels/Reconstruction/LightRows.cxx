@@ -59,7 +59,7 @@ void RowKernels::Run(
   if (this->RowWidth > 1)
   {
     this->TheDevice.Queue().enqueueNDRangeKernel(
-      kernel, cl::NDRange(0, first), cl::NDRange(Count(cells[1]), layers), cl::NDRange(1, 1));
+      kernel, cl::NDRange(0, first), cl::NDRange(Count(cells[1]), layers), this->TheDevice.GroupOfLargeItems(2));
   }
   else
   {

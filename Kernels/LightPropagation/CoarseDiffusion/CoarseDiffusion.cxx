@@ -151,7 +151,8 @@ CoarseDiffusion::Sums CoarseDiffusion::AddGuess(
 
 CoarseDiffusion::Sums CoarseDiffusion::RunByRows(cl::Kernel& kernel)
 {
-  this->TheDevice.Queue().enqueueNDRangeKernel(kernel, cl::NullRange, cl::NDRange(this->Tally.Size()), cl::NDRange(1));
+  this->TheDevice.Queue().enqueueNDRangeKernel(
+    kernel, cl::NullRange, cl::NDRange(this->Tally.Size()), this->TheDevice.GroupOfLargeItems());
   Sums sums;
   for (const cl_float8& row : this->Tally.Read())
   {

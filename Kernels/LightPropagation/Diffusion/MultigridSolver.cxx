@@ -85,7 +85,7 @@ std::size_t MultigridSolver::ItemsOf(const MultigridLevel& level)
 
 void MultigridSolver::RunRows(Device& device, cl::Kernel& kernel, const MultigridLevel& level)
 {
-  device.Queue().enqueueNDRangeKernel(kernel, cl::NullRange, cl::NDRange(ItemsOf(level)), cl::NDRange(1));
+  device.Queue().enqueueNDRangeKernel(kernel, cl::NullRange, cl::NDRange(ItemsOf(level)), device.GroupOfLargeItems());
 }
 
 std::array<const Buffer<float>*, 3> MultigridSolver::Scratch() const

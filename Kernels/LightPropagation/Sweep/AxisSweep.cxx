@@ -201,7 +201,7 @@ void AxisSweep::Implementation::DarkenBeside()
   With(kernel, this->OwnMaps, cl_ulong(plan.mapsEachWay), this->MapPlaces, cl_int(plan.channels), cl_int(plan.row),
     cl_int(plan.vector), plan.plane.sizeU, plan.plane.width);
   this->TheDevice.Queue().enqueueNDRangeKernel(
-    kernel, cl::NullRange, cl::NDRange(plan.plane.sizeV, plan.bundles.size(), 2), cl::NDRange(1, 1, 1));
+    kernel, cl::NullRange, cl::NDRange(plan.plane.sizeV, plan.bundles.size(), 2), this->TheDevice.GroupOfLargeItems(3));
 }
 
 /// From where rays start to where they leave the axis for the first time, or the last lap ends.
@@ -314,7 +314,7 @@ void AxisSweep::Implementation::EnterByCells(const SweepVolume& volume)
     cl_ulong(volume.faceFirst + LayoutOfFace(plan.grid, low).first),
     cl_ulong(volume.faceFirst + LayoutOfFace(plan.grid, low + 1).first), cl_ulong(BoxFaceCellCount(plan.grid)));
   this->TheDevice.Queue().enqueueNDRangeKernel(
-    kernel, cl::NullRange, cl::NDRange(plan.plane.sizeV, plan.bundles.size(), 2), cl::NDRange(1, 1, 1));
+    kernel, cl::NullRange, cl::NDRange(plan.plane.sizeV, plan.bundles.size(), 2), this->TheDevice.GroupOfLargeItems(3));
   this->TheDevice.Finish(); // the powers go
 }
 
@@ -353,7 +353,7 @@ void AxisSweep::Implementation::LeaveByCells(const SweepVolume& volume)
     cl_ulong(volume.faceFirst + LayoutOfFace(plan.grid, low + 1).first),
     cl_ulong(volume.faceFirst + LayoutOfFace(plan.grid, low).first), cl_ulong(BoxFaceCellCount(plan.grid)));
   this->TheDevice.Queue().enqueueNDRangeKernel(
-    kernel, cl::NullRange, cl::NDRange(plan.plane.sizeV, 2), cl::NDRange(1, 1));
+    kernel, cl::NullRange, cl::NDRange(plan.plane.sizeV, 2), this->TheDevice.GroupOfLargeItems(2));
 }
 
 cl::Kernel AxisSweep::Implementation::SweepKernel(const Wanted& wanted)
@@ -414,7 +414,7 @@ void AxisSweep::Implementation::SumMaps()
   With(kernel, this->Maps(), cl_ulong(plan.mapsEachWay), this->MapPlaces, plan.plane.sizeV, cl_int(plan.channels),
     cl_int(plan.row), cl_int(plan.vector), plan.plane.sizeU, this->Sums);
   this->TheDevice.Queue().enqueueNDRangeKernel(
-    kernel, cl::NullRange, cl::NDRange(plan.plane.sizeV, plan.bundles.size(), 2), cl::NDRange(1, 1, 1));
+    kernel, cl::NullRange, cl::NDRange(plan.plane.sizeV, plan.bundles.size(), 2), this->TheDevice.GroupOfLargeItems(3));
 }
 
 /// By way, as SumMaps found it.

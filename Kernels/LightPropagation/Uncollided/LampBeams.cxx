@@ -269,7 +269,7 @@ private:
       With(kernel, info, *this->Volume.sigma_t, cl_ulong(this->Volume.sigma_t_first), this->Path,
         cl_ulong(this->Volume.stride), this->Cells, rowBuffer, cl_int(count), cl_int(first), sums);
       this->TheDevice.Queue().enqueueNDRangeKernel(
-        kernel, cl::NullRange, cl::NDRange(this->HasAtomics() ? count : 1), cl::NDRange(1));
+        kernel, cl::NullRange, cl::NDRange(this->HasAtomics() ? count : 1), this->TheDevice.GroupOfLargeItems());
       this->TheDevice.Finish();
       report(static_cast<double>(first + count) / rows.size());
     }

@@ -88,7 +88,7 @@ cl::Event TurnsOfPhotons::Turn(const cl::CommandQueue& queue, int turn, int stre
   cl::Event marched;
   queue.enqueueNDRangeKernel(this->March, cl::NullRange,
     cl::NDRange(workers ? static_cast<std::size_t>(shares.workers) : this->PacketCount),
-    workers || this->Medium.device.IsCpu() ? cl::NDRange(1) : cl::NullRange, nullptr, &marched);
+    workers ? cl::NDRange(1) : this->Medium.device.GroupOfLargeItems(), nullptr, &marched);
   queue.flush();
   return marched;
 }

@@ -56,7 +56,7 @@ std::vector<PhotonPath> TracePaths(
   const auto run = [&](bool counting, const Buffer<cl_float4>& vertices) {
     With(trace, medium.Describe(), medium.sigma, medium.coefficients, medium.nodes, onDevice.values, onDevice.ends,
       cl_int(counting), offsets, vertices, counts);
-    medium.Launch(trace, cl::NDRange(packed.Count()), cl::NDRange(1));
+    medium.Launch(trace, cl::NDRange(packed.Count()), device.GroupOfLargeItems());
     device.Finish();
   };
   run(true, Buffer<cl_float4>(device, 0, "paths"));
