@@ -39,18 +39,7 @@ public:
   Device(const cl::Platform& platform, const cl::Device& device, std::string cacheFolder = {});
 
   const std::string& Name() const { return this->DeviceName; }
-  /// Which organisation of kernels suits it. False for CPUs too where the environment variable TYNDALL_AS_GPU is set: to
-  /// try on them what GPUs get.
   bool IsCpu() const { return this->Cpu; }
-  /// The work-group size for work-items that each do much alone, a row or more: on a CPU one, so that all its threads
-  /// have some; on a GPU the driver's choice, for groups of one would leave most of its lanes idle.
-  cl::NDRange GroupOfLargeItems(int dimensions = 1) const
-  {
-    return !this->Cpu   ? cl::NullRange
-      : dimensions == 1 ? cl::NDRange(1)
-      : dimensions == 2 ? cl::NDRange(1, 1)
-                        : cl::NDRange(1, 1, 1);
-  }
   int ComputeUnits() const { return this->Units; }
   int FloatVectorWidth() const { return this->VectorWidth; } ///< 1 on GPUs, 4 to 16 on CPUs
   /// Floats that a work-item is to handle at once: on a CPU as many as its registers hold, but from `least` to `most`,

@@ -1,6 +1,7 @@
 #include "LightPropagation/Conservative/EscapeCorrection.h"
 
 #include "Device/Defines.h"
+#include "Device/GroupSize.h"
 #include "Device/Sizes.h"
 #include "LightPropagation/Scattering/CollectShared.h"
 #include "Numerics/Constants.h"
@@ -38,7 +39,7 @@ Rgb EscapeCorrection::Apply()
   With(kernel, parts.Path, parts.Source, this->Extra, parts.OnDevice.SigmaT(), tally, cl_ulong(parts.Layout.Stride()),
     cl_int(parts.Layout.sharedExtinction));
   parts.TheDevice.Queue().enqueueNDRangeKernel(
-    kernel, cl::NullRange, cl::NDRange(chunks, channels), parts.TheDevice.GroupOfLargeItems(2));
+    kernel, cl::NullRange, cl::NDRange(chunks, channels), GroupOfLargeItems(parts.TheDevice, 2));
   Rgb escaped = {};
   const std::vector<float> sums = tally.Read();
   for (std::size_t i = 0; i < sums.size(); ++i)
