@@ -1,8 +1,8 @@
-// Rays through one plane, on a GPU: a work-item a voxel of the plane and way along the axis. It reads the rays that come
-// into its voxel in each of the up to three segments of the plane, from the maps of the plane before, and computes what
-// its neighbours did to them anew: arithmetic is what a GPU has to spare, and rays are read and written once a plane
-// without anything between work-items but the launch. Each voxel is added to by its own work-item alone, bundle by
-// bundle, so sums have one order. Physics and numbers are those of SweepBundle.cl (numerics.md, section 4).
+// Rays through one plane, on a GPU: a work-item a voxel of the plane and way along the axis (numerics.md, section 4.8).
+// It reads the rays that come into its voxel in each of the up to three segments of the plane, from the maps of the
+// plane before, and computes what its neighbours did to them anew: arithmetic is what a GPU has to spare, and rays are
+// read and written once a plane without anything between work-items but the launch. Each voxel is added to by its own
+// work-item alone, bundle by bundle, so sums have one order. Physics and numbers are those of SweepBundle.cl.
 //
 // The host gives CHANNELS, SOURCE, NET_FLUX, CURRENTS as SweepLayout.cl has them, and
 //   ADDS  1: lanes follow one another and add to what is there; 0: each writes arrays of its own

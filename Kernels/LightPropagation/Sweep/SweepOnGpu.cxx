@@ -21,7 +21,6 @@ namespace
 constexpr std::size_t GroupU = 32, GroupV = 4; ///< work-items along u, whose voxels mostly lie together, and along v
 constexpr double SecondsPerRay = 1e-10;        ///< through a voxel: only says how often to wait
 constexpr int MostAtOnce = 4;                  ///< part of the memory that ways at once may take: a quarter
-
 }
 
 class SweepOnGpu::Implementation
@@ -33,6 +32,7 @@ public:
   SweepTally Apply(const Buffer<float>* source, const SweepBoundary& boundary, const Monitor& monitor);
 
 private:
+  void LayPlan(const SweepPlan& plan);
   void LayLane(const SweepPlan& plan, int way, int firstBundle, int firstCrossing);
   void ChooseWays(Ways ways);
   void MakeBuffers();
@@ -108,21 +108,27 @@ SweepOnGpu::Implementation::Implementation(
   }
   for (const SweepPlan& plan : this->Plans)
   {
-    const int firstBundle = static_cast<int>(this->BundleRows.size());
-    const int firstCrossing = static_cast<int>(this->CrossingRows.size());
-    this->BundleRows.insert(this->BundleRows.end(), plan.bundleRows.begin(), plan.bundleRows.end());
-    const std::vector<CrossingInfo> crossings = plan.Crossings(0, plan.CrossingPlanes());
-    this->CrossingRows.insert(this->CrossingRows.end(), crossings.begin(), crossings.end());
-    for (int way = 0; way < 2; ++way)
-    {
-      if (way == 0 ? plan.forward : plan.backward)
-      {
-        this->LayLane(plan, way, firstBundle, firstCrossing);
-      }
-    }
+    this->LayPlan(plan);
   }
   this->ChooseWays(ways);
   this->MakeBuffers();
+}
+
+/// Its bundles and crossings behind those that have their place, and a lane for each way.
+void SweepOnGpu::Implementation::LayPlan(const SweepPlan& plan)
+{
+  const int firstBundle = static_cast<int>(this->BundleRows.size());
+  const int firstCrossing = static_cast<int>(this->CrossingRows.size());
+  this->BundleRows.insert(this->BundleRows.end(), plan.bundleRows.begin(), plan.bundleRows.end());
+  const std::vector<CrossingInfo> crossings = plan.Crossings(0, plan.CrossingPlanes());
+  this->CrossingRows.insert(this->CrossingRows.end(), crossings.begin(), crossings.end());
+  for (int way = 0; way < 2; ++way)
+  {
+    if (way == 0 ? plan.forward : plan.backward)
+    {
+      this->LayLane(plan, way, firstBundle, firstCrossing);
+    }
+  }
 }
 
 /// One more lane, but for where its maps and deposits are.
@@ -146,8 +152,8 @@ void SweepOnGpu::Implementation::LayLane(const SweepPlan& plan, int way, int fir
   this->Lanes.push_back(lane);
 }
 
-/// All at once, where what they find has room beside each other; else one by one. Of a part of the grid one by one: what
-/// is not swept would have to be cleared.
+/// All at once, where what they find has room beside each other; else one by one. Of a part of the grid one by one:
+/// what is not swept would have to be cleared.
 void SweepOnGpu::Implementation::ChooseWays(Ways ways)
 {
   const std::size_t bytes =

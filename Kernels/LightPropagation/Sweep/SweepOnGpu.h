@@ -8,9 +8,9 @@
 
 namespace tyndall
 {
-/// The sweep of a volume in one device's memory, organised for GPUs: a work-item a voxel of a plane, all rays of one way
-/// along an axis, and all six ways at once where there is memory for it. Its light is that of SweepInMemory to 1e-5, and
-/// the same bit for bit each time (numerics.md, section 4.8).
+/// The sweep of a volume in one device's memory, organised for GPUs: a work-item a voxel of a plane, all rays of one
+/// way along an axis, and all six ways at once where there is memory for it. Its light is that of SweepInMemory to
+/// 1e-5, and the same bit for bit each time (numerics.md, section 4.8).
 ///
 /// Memory: two floats a voxel of a plane, ray and channel; where ways go at once, each has its own path, flux and
 /// partial currents, in at most a quarter of the memory that is left. Else they follow one another.
@@ -21,14 +21,15 @@ public:
   /// sources by octant. SweepInMemory can, on GPUs too.
   static bool Can(const SweepRequest& request, const std::array<bool, 3>& periodic);
 
-  /// @param sigma_t  must stay
-  /// @param request  what Can was true of
-  /// @param waysAtOnce  Automatic: where there is memory
+  /// Along the axes, there and back.
   enum class Ways
   {
-    Automatic,
+    Automatic, ///< all at once where there is memory
     OneByOne
   };
+
+  /// @param sigma_t  must stay
+  /// @param request  what Can was true of
   SweepOnGpu(Device& device, const VolumeLayout& layout, const Buffer<float>& sigma_t, const SweepRequest& request,
     Ways ways = Ways::Automatic);
   ~SweepOnGpu() override;
