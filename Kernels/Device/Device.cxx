@@ -175,6 +175,12 @@ std::size_t MemoryOf(const cl::Device& device)
   const bool cpu = (device.getInfo<CL_DEVICE_TYPE>() & CL_DEVICE_TYPE_CPU) != 0;
   return cpu ? std::max<std::size_t>(said, HostMemory() / 4 * 3) : said;
 }
+
+/// Whether kernels are organised for a CPU. TYNDALL_AS_GPU has what GPUs get tried on one.
+bool IsTakenAsCpu(const cl::Device& device)
+{
+  return (device.getInfo<CL_DEVICE_TYPE>() & CL_DEVICE_TYPE_CPU) != 0 && !std::getenv("TYNDALL_AS_GPU");
+}
 }
 
 Device::Device(const cl::Platform& platform, const cl::Device& device, std::string cacheFolder)
@@ -182,7 +188,7 @@ Device::Device(const cl::Platform& platform, const cl::Device& device, std::stri
   , DeviceName(device.getInfo<CL_DEVICE_NAME>() + " [" + platform.getInfo<CL_PLATFORM_NAME>() + "]")
   , Extensions(device.getInfo<CL_DEVICE_EXTENSIONS>())
   , CacheFolder(std::move(cacheFolder))
-  , Cpu((device.getInfo<CL_DEVICE_TYPE>() & CL_DEVICE_TYPE_CPU) != 0)
+  , Cpu(IsTakenAsCpu(device))
   , Units(static_cast<int>(device.getInfo<CL_DEVICE_MAX_COMPUTE_UNITS>()))
   , VectorWidth(static_cast<int>(device.getInfo<CL_DEVICE_NATIVE_VECTOR_WIDTH_FLOAT>()))
   , LargestAllocation(device.getInfo<CL_DEVICE_MAX_MEM_ALLOC_SIZE>())

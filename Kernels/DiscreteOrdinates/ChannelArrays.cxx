@@ -1,7 +1,7 @@
 #include "DiscreteOrdinates/ChannelArrays.h"
 
 #include "Device/Defines.h"
-#include "LightPropagation/Sweep/SweepInMemory.h"
+#include "LightPropagation/Sweep/SweepOfDevice.h"
 #include "LightPropagation/Uncollided/GivenLight.h"
 #include "LightPropagation/Uncollided/UncollidedLamp.h"
 #include "Medium/BoxFaces.h"
@@ -68,7 +68,7 @@ void ChannelArrays::AddLamps(
   const LampScattering scattering(this->TheDevice, this->Layout.grid, this->Angles.groups, this->Angles.function);
   const Buffer<float> sigma_t = this->Load("sigma_t", 1.0, 1.0), sigma_s = this->Load("sigma_s", 0.0, 1.0);
   const SweepMaker sweeps = [&](const SweepRequest& request) {
-    return std::make_unique<SweepInMemory>(this->TheDevice, this->Layout, sigma_t, periodic, request, this->Workspace);
+    return SweepOfDevice(this->TheDevice, this->Layout, sigma_t, periodic, request, this->Workspace);
   };
   Buffer<float> path(this->TheDevice, this->Layout.Floats(), "the light of a lamp");
   const double all = static_cast<double>(this->Scene.lamps.size());

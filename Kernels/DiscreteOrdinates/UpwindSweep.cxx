@@ -2,6 +2,7 @@
 
 #include "Device/Batches.h"
 #include "Device/Defines.h"
+#include "Device/GroupSize.h"
 #include "Medium/BoxFaces.h"
 #include "TyndallKernelSources.h"
 
@@ -117,7 +118,7 @@ FacePowers UpwindSweep::Apply(const Buffer<float>& radiance, const Buffer<float>
     With(sweep, radiance, sigma_t, scale, this->Shares, this->Up, this->Faces[0], this->Faces[1], this->Faces[2], n[0],
       n[1], n[2], cl_ulong(OrdinateStride(this->TheGrid.VoxelCount())), cl_int(begin), cl_int(begin + size));
     this->TheDevice.Queue().enqueueNDRangeKernel(
-      sweep, cl::NullRange, cl::NDRange(this->Groups.Lanes() / width), cl::NDRange(1));
+      sweep, cl::NullRange, cl::NDRange(this->Groups.Lanes() / width), GroupOfLargeItems(this->TheDevice));
   });
   this->Count(powers);
   if (this->Reflecting)

@@ -1,5 +1,6 @@
 #include "Reconstruction/ArrayRange.h"
 
+#include "Device/GroupSize.h"
 #include "Device/Sizes.h"
 #include "Reconstruction/ArrayRangeShared.h"
 #include "TyndallKernelSources.h"
@@ -20,7 +21,7 @@ ArrayRange RangeOf(Device& device, const HostMappedBuffer<float>& array, const f
   Buffer<RunRange> told(device, runs, "the range of an array");
   cl::Kernel kernel = device.Kernel("range_of_runs", kernel_source::ArrayRange);
   With(kernel, array.Handle(), cl_ulong(count), cl_int(Run), cl_int(components), low, high, told);
-  device.Queue().enqueueNDRangeKernel(kernel, cl::NullRange, cl::NDRange(runs), cl::NDRange(1));
+  device.Queue().enqueueNDRangeKernel(kernel, cl::NullRange, cl::NDRange(runs), GroupOfLargeItems(device));
 
   ArrayRange range;
   const std::vector<RunRange> ranges = told.Read();

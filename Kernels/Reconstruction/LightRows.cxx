@@ -1,6 +1,7 @@
 #include "Reconstruction/LightRows.h"
 
 #include "Device/Defines.h"
+#include "Device/GroupSize.h"
 #include "TyndallKernelSources.h"
 
 namespace tyndall
@@ -59,7 +60,7 @@ void RowKernels::Run(
   if (this->RowWidth > 1)
   {
     this->TheDevice.Queue().enqueueNDRangeKernel(
-      kernel, cl::NDRange(0, first), cl::NDRange(Count(cells[1]), layers), cl::NDRange(1, 1));
+      kernel, cl::NDRange(0, first), cl::NDRange(Count(cells[1]), layers), GroupOfLargeItems(this->TheDevice, 2));
   }
   else
   {

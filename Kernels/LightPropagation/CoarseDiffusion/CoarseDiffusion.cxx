@@ -1,6 +1,7 @@
 #include "LightPropagation/CoarseDiffusion/CoarseDiffusion.h"
 
 #include "Device/Defines.h"
+#include "Device/GroupSize.h"
 #include "Device/Sizes.h"
 #include "LightPropagation/CoarseDiffusion/CoarseMatrix.h"
 #include "LightPropagation/Diffusion/MultigridLayout.h"
@@ -151,7 +152,8 @@ CoarseDiffusion::Sums CoarseDiffusion::AddGuess(
 
 CoarseDiffusion::Sums CoarseDiffusion::RunByRows(cl::Kernel& kernel)
 {
-  this->TheDevice.Queue().enqueueNDRangeKernel(kernel, cl::NullRange, cl::NDRange(this->Tally.Size()), cl::NDRange(1));
+  this->TheDevice.Queue().enqueueNDRangeKernel(
+    kernel, cl::NullRange, cl::NDRange(this->Tally.Size()), GroupOfLargeItems(this->TheDevice));
   Sums sums;
   for (const cl_float8& row : this->Tally.Read())
   {

@@ -1,6 +1,7 @@
 #include "LightPropagation/Conservative/EscapeCorrection.h"
 
 #include "Device/Defines.h"
+#include "Device/GroupSize.h"
 #include "Device/Sizes.h"
 #include "LightPropagation/Scattering/CollectShared.h"
 #include "Numerics/Constants.h"
@@ -37,7 +38,8 @@ Rgb EscapeCorrection::Apply()
   Buffer<float> tally(parts.TheDevice, chunks * channels, "sums");
   With(kernel, parts.Path, parts.Source, this->Extra, parts.OnDevice.SigmaT(), tally, cl_ulong(parts.Layout.Stride()),
     cl_int(parts.Layout.sharedExtinction));
-  parts.TheDevice.Queue().enqueueNDRangeKernel(kernel, cl::NullRange, cl::NDRange(chunks, channels), cl::NDRange(1, 1));
+  parts.TheDevice.Queue().enqueueNDRangeKernel(
+    kernel, cl::NullRange, cl::NDRange(chunks, channels), GroupOfLargeItems(parts.TheDevice, 2));
   Rgb escaped = {};
   const std::vector<float> sums = tally.Read();
   for (std::size_t i = 0; i < sums.size(); ++i)

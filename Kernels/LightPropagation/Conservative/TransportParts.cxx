@@ -5,7 +5,7 @@
 #include "LightPropagation/Scattering/BeamScattering.h"
 #include "LightPropagation/Scattering/IsotropicScattering.h"
 #include "LightPropagation/Scattering/MomentScattering.h"
-#include "LightPropagation/Sweep/SweepInMemory.h"
+#include "LightPropagation/Sweep/SweepOfDevice.h"
 #include "LightPropagation/Uncollided/EnvironmentPeaks.h"
 #include "LightPropagation/Uncollided/UncollidedBoundary.h"
 #include "LightPropagation/Uncollided/UncollidedLamp.h"
@@ -207,8 +207,8 @@ std::vector<AxisBundles> TransportParts::AllRays() const
 
 std::unique_ptr<SweepOperator> TransportParts::MakeSweep(const SweepRequest& request)
 {
-  return std::make_unique<SweepInMemory>(this->TheDevice, this->Layout, this->OnDevice.SigmaT(),
-    this->Problem.Settings().periodic, request, this->Workspace);
+  return SweepOfDevice(this->TheDevice, this->Layout, this->OnDevice.SigmaT(), this->Problem.Settings().periodic,
+    request, this->Workspace);
 }
 
 std::unique_ptr<const ScatteringOperator> TransportParts::MakeScattering() const

@@ -1,5 +1,6 @@
 #include "LightPropagation/Conservative/WarmStart.h"
 
+#include "Device/GroupSize.h"
 #include "Numerics/Constants.h"
 #include "TyndallKernelSources.h"
 
@@ -98,7 +99,7 @@ Rgb WarmStart::MagnitudeOf(const Buffer<float>& source) const
   cl::Kernel kernel = this->Parts.TheDevice.Kernel("sum_magnitudes", kernel_source::WarmStart);
   With(kernel, layout.Places(this->Parts.Functions()), source, tally, cl_ulong(layout.Stride()));
   this->Parts.TheDevice.Queue().enqueueNDRangeKernel(
-    kernel, cl::NullRange, cl::NDRange(lines, layout.channels), cl::NDRange(1, 1));
+    kernel, cl::NullRange, cl::NDRange(lines, layout.channels), GroupOfLargeItems(this->Parts.TheDevice, 2));
   Rgb sums = {};
   const std::vector<float> values = tally.Read();
   for (std::size_t i = 0; i < values.size(); ++i)

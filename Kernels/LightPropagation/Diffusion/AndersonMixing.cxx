@@ -2,6 +2,7 @@
 
 #include "LightPropagation/Diffusion/DiffusionShared.h"
 
+#include "Device/GroupSize.h"
 #include "Device/Sizes.h"
 
 #include "TyndallKernelSources.h"
@@ -51,7 +52,8 @@ std::array<double, 2> AndersonMixing::Weights(
   With(kernel, given.Handle(), found.Handle(), this->ChangeBefore[0], this->ChangeBefore[1], *weighting.sigma_s,
     cl_int(weighting.first), weighting.length, cl_int(this->Voxels), cl_int(this->Count), this->Sums.Handle());
   const std::size_t chunks = PartsOf<std::size_t>(this->Count, DiffusionChunk);
-  this->TheDevice.Queue().enqueueNDRangeKernel(kernel, cl::NullRange, cl::NDRange(chunks), cl::NDRange(1));
+  this->TheDevice.Queue().enqueueNDRangeKernel(
+    kernel, cl::NullRange, cl::NDRange(chunks), GroupOfLargeItems(this->TheDevice));
   std::array<double, AndersonSums> sums = {};
   const std::vector<double> parts = this->Sums.Read();
   for (std::size_t i = 0; i < parts.size(); ++i)

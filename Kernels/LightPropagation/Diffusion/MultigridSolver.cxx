@@ -1,6 +1,7 @@
 #include "LightPropagation/Diffusion/MultigridSolver.h"
 
 #include "Device/Defines.h"
+#include "Device/GroupSize.h"
 #include "Device/Sizes.h"
 
 #include "TyndallKernelSources.h"
@@ -85,7 +86,7 @@ std::size_t MultigridSolver::ItemsOf(const MultigridLevel& level)
 
 void MultigridSolver::RunRows(Device& device, cl::Kernel& kernel, const MultigridLevel& level)
 {
-  device.Queue().enqueueNDRangeKernel(kernel, cl::NullRange, cl::NDRange(ItemsOf(level)), cl::NDRange(1));
+  device.Queue().enqueueNDRangeKernel(kernel, cl::NullRange, cl::NDRange(ItemsOf(level)), GroupOfLargeItems(device));
 }
 
 std::array<const Buffer<float>*, 3> MultigridSolver::Scratch() const

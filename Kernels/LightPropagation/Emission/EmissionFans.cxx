@@ -1,6 +1,7 @@
 #include "LightPropagation/Emission/EmissionFans.h"
 
 #include "Device/Defines.h"
+#include "Device/GroupSize.h"
 #include "TyndallKernelSources.h"
 
 #include <algorithm>
@@ -404,14 +405,14 @@ private:
       kept.tangents, this->Emission, kept.light);
     const int rows = std::min(fan.bandRows, fan.rows - fan.bandFirst);
     this->TheDevice.Queue().enqueueNDRangeKernel(
-      follow, cl::NullRange, cl::NDRange(fan.lines / width, rows, fan.points), cl::NDRange(1, 1, 1));
+      follow, cl::NullRange, cl::NDRange(fan.lines / width, rows, fan.points), GroupOfLargeItems(this->TheDevice, 3));
     cl::Kernel collect = this->Kernel("collect_fans", this->TheDevice.KernelWidth());
     With(collect, this->Scene.info, fan, kept.points, kept.light, this->Light.path, this->Light.flux,
       cl_ulong(volume.stride), this->Halves, this->Light.faces, this->FaceHalves);
     const std::size_t across = volume.grid.size[fan.order[1]] - fan.first[1];
     const cl::NDRange voxels(
       (across + width - 1) / width, volume.grid.size[fan.order[2]] - fan.first[2], fan.layers + 1);
-    this->TheDevice.Queue().enqueueNDRangeKernel(collect, cl::NullRange, voxels, cl::NDRange(1, 1, 1));
+    this->TheDevice.Queue().enqueueNDRangeKernel(collect, cl::NullRange, voxels, GroupOfLargeItems(this->TheDevice, 3));
     this->TheDevice.Finish();
   }
 

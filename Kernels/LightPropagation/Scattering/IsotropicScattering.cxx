@@ -1,6 +1,7 @@
 #include "LightPropagation/Scattering/IsotropicScattering.h"
 
 #include "Device/Defines.h"
+#include "Device/GroupSize.h"
 #include "Device/Sizes.h"
 #include "LightPropagation/Scattering/CollectShared.h"
 #include "Numerics/Constants.h"
@@ -35,7 +36,8 @@ ScatteringOperator::Powers IsotropicScattering::ScatterOrder(const Deposit& swep
   With(kernel, *swept.path, fluence, source, this->TheMedium.SigmaT(), this->TheMedium.SigmaS(), tally,
     cl_ulong(this->Layout.Stride()), cl_ulong(begin), cl_ulong(end), cl_int(this->Layout.sharedExtinction),
     this->PerVolume());
-  this->TheDevice.Queue().enqueueNDRangeKernel(kernel, cl::NullRange, cl::NDRange(chunks, channels), cl::NDRange(1, 1));
+  this->TheDevice.Queue().enqueueNDRangeKernel(
+    kernel, cl::NullRange, cl::NDRange(chunks, channels), GroupOfLargeItems(this->TheDevice, 2));
   Powers powers;
   const std::vector<cl_float2> sums = tally.Read();
   for (std::size_t i = 0; i < sums.size(); ++i)

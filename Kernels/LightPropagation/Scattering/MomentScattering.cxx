@@ -1,5 +1,6 @@
 #include "LightPropagation/Scattering/MomentScattering.h"
 
+#include "Device/GroupSize.h"
 #include "Numerics/Constants.h"
 #include "TyndallKernelSources.h"
 
@@ -24,8 +25,8 @@ void MomentScattering::RunOnMoments(const char* name, int channel, const Argumen
   cl::Kernel kernel = this->TheDevice.Kernel(name, kernel_source::MomentScattering);
   With(kernel, this->Layout.Places(this->Functions), cl_int(channel), arguments...);
   const std::array<int, 3>& size = this->Layout.grid.size;
-  this->TheDevice.Queue().enqueueNDRangeKernel(
-    kernel, cl::NullRange, cl::NDRange(static_cast<std::size_t>(size[1]) * size[2]), cl::NDRange(1));
+  this->TheDevice.Queue().enqueueNDRangeKernel(kernel, cl::NullRange,
+    cl::NDRange(static_cast<std::size_t>(size[1]) * size[2]), GroupOfLargeItems(this->TheDevice));
 }
 
 /// From a path integral, W length, to the source of what is scattered of it with a coefficient of 1.

@@ -1,6 +1,7 @@
 #include "LightPropagation/Sweep/AxisSweep.h"
 
 #include "Device/Defines.h"
+#include "Device/GroupSize.h"
 #include "LightPropagation/Sweep/SweepBorder.h"
 #include "LightPropagation/Sweep/SweepPlan.h"
 #include "Medium/BoxFaces.h"
@@ -200,8 +201,8 @@ void AxisSweep::Implementation::DarkenBeside()
   cl::Kernel kernel = this->TheDevice.Kernel("darken_beside", kernel_source::SweepMaps);
   With(kernel, this->OwnMaps, cl_ulong(plan.mapsEachWay), this->MapPlaces, cl_int(plan.channels), cl_int(plan.row),
     cl_int(plan.vector), plan.plane.sizeU, plan.plane.width);
-  this->TheDevice.Queue().enqueueNDRangeKernel(
-    kernel, cl::NullRange, cl::NDRange(plan.plane.sizeV, plan.bundles.size(), 2), cl::NDRange(1, 1, 1));
+  this->TheDevice.Queue().enqueueNDRangeKernel(kernel, cl::NullRange,
+    cl::NDRange(plan.plane.sizeV, plan.bundles.size(), 2), GroupOfLargeItems(this->TheDevice, 3));
 }
 
 /// From where rays start to where they leave the axis for the first time, or the last lap ends.
@@ -313,8 +314,8 @@ void AxisSweep::Implementation::EnterByCells(const SweepVolume& volume)
     cl_int(plan.row), cl_int(plan.vector), plan.plane.sizeU, *volume.faceIn,
     cl_ulong(volume.faceFirst + LayoutOfFace(plan.grid, low).first),
     cl_ulong(volume.faceFirst + LayoutOfFace(plan.grid, low + 1).first), cl_ulong(BoxFaceCellCount(plan.grid)));
-  this->TheDevice.Queue().enqueueNDRangeKernel(
-    kernel, cl::NullRange, cl::NDRange(plan.plane.sizeV, plan.bundles.size(), 2), cl::NDRange(1, 1, 1));
+  this->TheDevice.Queue().enqueueNDRangeKernel(kernel, cl::NullRange,
+    cl::NDRange(plan.plane.sizeV, plan.bundles.size(), 2), GroupOfLargeItems(this->TheDevice, 3));
   this->TheDevice.Finish(); // the powers go
 }
 
@@ -353,7 +354,7 @@ void AxisSweep::Implementation::LeaveByCells(const SweepVolume& volume)
     cl_ulong(volume.faceFirst + LayoutOfFace(plan.grid, low + 1).first),
     cl_ulong(volume.faceFirst + LayoutOfFace(plan.grid, low).first), cl_ulong(BoxFaceCellCount(plan.grid)));
   this->TheDevice.Queue().enqueueNDRangeKernel(
-    kernel, cl::NullRange, cl::NDRange(plan.plane.sizeV, 2), cl::NDRange(1, 1));
+    kernel, cl::NullRange, cl::NDRange(plan.plane.sizeV, 2), GroupOfLargeItems(this->TheDevice, 2));
 }
 
 cl::Kernel AxisSweep::Implementation::SweepKernel(const Wanted& wanted)
@@ -413,8 +414,8 @@ void AxisSweep::Implementation::SumMaps()
   cl::Kernel kernel = this->TheDevice.Kernel("map_power", kernel_source::SweepMaps);
   With(kernel, this->Maps(), cl_ulong(plan.mapsEachWay), this->MapPlaces, plan.plane.sizeV, cl_int(plan.channels),
     cl_int(plan.row), cl_int(plan.vector), plan.plane.sizeU, this->Sums);
-  this->TheDevice.Queue().enqueueNDRangeKernel(
-    kernel, cl::NullRange, cl::NDRange(plan.plane.sizeV, plan.bundles.size(), 2), cl::NDRange(1, 1, 1));
+  this->TheDevice.Queue().enqueueNDRangeKernel(kernel, cl::NullRange,
+    cl::NDRange(plan.plane.sizeV, plan.bundles.size(), 2), GroupOfLargeItems(this->TheDevice, 3));
 }
 
 /// By way, as SumMaps found it.

@@ -6,10 +6,11 @@
 
 namespace tyndall
 {
-SweepBorder::SweepBorder(const SweepPlan& plan, const SweepBoundary& boundary)
-  : maps(2 * plan.mapsEachWay, 0.0f)
-  , outside(2 * plan.outsideEachWay, 0.0f)
-  , radiance(2 * plan.radianceEachWay, 0.0f)
+SweepBorder::SweepBorder(const SweepPlan& plan, const SweepBoundary& boundary, Holds holds)
+  : rays(holds == Holds::Maps ? 0 : 2 * plan.radianceEachWay, cl_float4{})
+  , maps(holds == Holds::Maps ? 2 * plan.mapsEachWay : 0, 0.0f)
+  , outside(holds == Holds::Maps ? 2 * plan.outsideEachWay : 0, 0.0f)
+  , radiance(holds == Holds::Maps ? 2 * plan.radianceEachWay : 0, 0.0f)
   , Plan(plan)
 {
   for (std::size_t b = 0; b < plan.bundles.size(); ++b)
@@ -89,6 +90,11 @@ Rgb SweepBorder::PowerOfRay(const SweepBoundary& boundary, const Bundle& bundle,
 void SweepBorder::Write(std::size_t b, int way, int slot, float fromU, float fromV, float fromP)
 {
   const BundleInfo& bundle = this->Plan.bundleRows[b];
+  if (!this->rays.empty())
+  {
+    this->rays[way * this->Plan.radianceEachWay + bundle.border + slot] = { { fromU, fromV, fromP, 0.0f } };
+    return;
+  }
   const int width = this->Plan.plane.width;
   const std::size_t inBlock = static_cast<std::size_t>(slot) * this->Plan.row + this->Plan.vector;
   const std::size_t block = static_cast<std::size_t>(bundle.members) * this->Plan.channels * this->Plan.row;

@@ -12,9 +12,19 @@ namespace tyndall
 class SweepBorder
 {
 public:
+  /// What it is made for.
+  enum class Holds
+  {
+    Maps,     ///< all but `rays`
+    RaysAlone ///< `rays` and `powerIn`
+  };
+
   /// @param plan  must stay
   /// @param boundary  not empty
-  SweepBorder(const SweepPlan& plan, const SweepBoundary& boundary);
+  SweepBorder(const SweepPlan& plan, const SweepBoundary& boundary, Holds holds = Holds::Maps);
+
+  /// W of each ray, [way][bundle][member][channel]: that comes in through u's face, through v's, and where it starts.
+  std::vector<cl_float4> rays;
 
   /// Power that rays start with; in the columns beside, that of those that come in through u's faces.
   std::vector<float> maps;

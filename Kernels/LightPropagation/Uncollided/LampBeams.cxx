@@ -1,6 +1,7 @@
 #include "LightPropagation/Uncollided/LampBeams.h"
 
 #include "Device/Defines.h"
+#include "Device/GroupSize.h"
 #include "LightPropagation/Uncollided/LampPyramids.h"
 #include "Medium/BoxFaces.h"
 #include "Numerics/Constants.h"
@@ -269,7 +270,7 @@ private:
       With(kernel, info, *this->Volume.sigma_t, cl_ulong(this->Volume.sigma_t_first), this->Path,
         cl_ulong(this->Volume.stride), this->Cells, rowBuffer, cl_int(count), cl_int(first), sums);
       this->TheDevice.Queue().enqueueNDRangeKernel(
-        kernel, cl::NullRange, cl::NDRange(this->HasAtomics() ? count : 1), cl::NDRange(1));
+        kernel, cl::NullRange, cl::NDRange(this->HasAtomics() ? count : 1), GroupOfLargeItems(this->TheDevice));
       this->TheDevice.Finish();
       report(static_cast<double>(first + count) / rows.size());
     }

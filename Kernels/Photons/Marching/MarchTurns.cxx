@@ -1,6 +1,7 @@
 #include "Photons/Marching/MarchTurns.h"
 
 #include "Device/Defines.h"
+#include "Device/GroupSize.h"
 #include "Device/Sizes.h"
 
 #include <algorithm>
@@ -88,7 +89,7 @@ cl::Event TurnsOfPhotons::Turn(const cl::CommandQueue& queue, int turn, int stre
   cl::Event marched;
   queue.enqueueNDRangeKernel(this->March, cl::NullRange,
     cl::NDRange(workers ? static_cast<std::size_t>(shares.workers) : this->PacketCount),
-    workers || this->Medium.device.IsCpu() ? cl::NDRange(1) : cl::NullRange, nullptr, &marched);
+    workers ? cl::NDRange(1) : GroupOfLargeItems(this->Medium.device), nullptr, &marched);
   queue.flush();
   return marched;
 }

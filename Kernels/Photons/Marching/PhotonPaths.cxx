@@ -1,6 +1,7 @@
 #include "Photons/Marching/PhotonPaths.h"
 
 #include "Device/Defines.h"
+#include "Device/GroupSize.h"
 #include "Photons/Marching/MarchLaunch.h"
 
 #include <algorithm>
@@ -56,7 +57,7 @@ std::vector<PhotonPath> TracePaths(
   const auto run = [&](bool counting, const Buffer<cl_float4>& vertices) {
     With(trace, medium.Describe(), medium.sigma, medium.coefficients, medium.nodes, onDevice.values, onDevice.ends,
       cl_int(counting), offsets, vertices, counts);
-    medium.Launch(trace, cl::NDRange(packed.Count()), cl::NDRange(1));
+    medium.Launch(trace, cl::NDRange(packed.Count()), GroupOfLargeItems(device));
     device.Finish();
   };
   run(true, Buffer<cl_float4>(device, 0, "paths"));

@@ -1,0 +1,33 @@
+// Shared by C++ and the kernels of the sweep on GPUs: their arguments.
+#pragma once
+
+#include "Device/SharedTypes.h"
+#include "LightPropagation/Sweep/SweepShared.h"
+
+SHARED_BEGIN
+/// All rays that march one way along an axis: they cross a plane of it in one launch, a work-item a voxel of the plane.
+typedef struct
+{
+  PlaneInfo planes;
+  int axis;
+  int backward; ///< 0 marches from the lower end of the axis, 1 from the upper
+  int firstBundle, bundles;
+  int crossings; ///< where those of its first plane begin, [plane][bundle]
+  int firstRay;  ///< of all lanes' rays, each a float4 [channel] in `entering`; its maps begin there, too
+  ulong map;     ///< floats before its maps, [ray][channel][v][u]
+  ulong path;    ///< floats before its path; flux: three times, currents: six times that
+  ulong escaped; ///< where its tally begins, [plane][-u, +u, -v, +v][channel][position along the face]
+  int positions; ///< of that
+  int rays;
+} SweepLane;
+
+/// A launch of the kernel `cross_plane`.
+typedef struct
+{
+  ulong sigmaFirst, sourceFirst; ///< where the first channel begins
+  ulong putFirst;                ///< the same in `path` (flux: three times, currents: six times that)
+  ulong stride;                  ///< from one channel to the next
+  int plane;                     ///< from where rays start
+  int firstLane;                 ///< that of the first work-items
+} PlaneLaunch;
+SHARED_END

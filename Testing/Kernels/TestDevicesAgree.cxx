@@ -1,0 +1,179 @@
+// The same scenes on PoCL and on another OpenCL of this machine: run by on_intel, with Intel's.
+
+#include "DeviceTest.h"
+#include "Difference.h"
+#include "LatticeScene.h"
+#include "MediumScene.h"
+#include "MeshShapes.h"
+#include "OrdinatesScene.h"
+#include "PhotonScene.h"
+#include "ScatteredScene.h"
+#include "ViewScene.h"
+#include "WholeCounts.h"
+
+#include "LightPropagation/Published/ParallelPropagation.h"
+
+#include <functional>
+#include <string>
+#include <vector>
+
+using namespace tyndall;
+
+namespace
+{
+constexpr double Same = 1e-5; ///< of the largest value
+
+Scene Cloud()
+{
+  Scene scene({ 13, 10, 11 });
+  scene.Randomise(2.0, 2.0, 0.9);
+  scene.ShineFromEverywhere(1.0);
+  scene.ShineAlong({ 0.3, -0.4, -0.8 });
+  return scene;
+}
+}
+
+class DevicesAgree : public testing::Test
+{
+protected:
+  void SetUp() override
+  {
+    try
+    {
+      this->Pocl = Device::Find("Portable Computing Language");
+      this->Other = Device::Find();
+    }
+    catch (const DeviceError& error)
+    {
+      FAIL() << error.what();
+    }
+    ASSERT_NE(this->Pocl, this->Other) << "TYNDALL_DEVICE names no other device than PoCL's";
+  }
+
+  using Values = std::vector<float>;
+
+  /// @param solve  what is to be the same, by device
+  void Compare(const std::function<Values(Device&)>& solve, double same = Same)
+  {
+    const Values one = solve(*this->Pocl), other = solve(*this->Other);
+    ASSERT_EQ(one.size(), other.size());
+    ASSERT_FALSE(one.empty());
+    EXPECT_LT(RelativeDifference(other, one), same) << "on " << this->Other->Name();
+  }
+
+  void CompareMaps(Scene scene)
+  {
+    scene.settings.netFlux = true;
+    const LightField one = scene.Solve(*this->Pocl), other = scene.Solve(*this->Other);
+    EXPECT_LT(RelativeDifference(other.fluence, one.fluence), Same);
+    EXPECT_LT(RelativeDifference(other.netFlux, one.netFlux), Same);
+  }
+
+  std::shared_ptr<Device> Pocl, Other;
+};
+
+TEST_F(DevicesAgree, OnAcceleratedMaps)
+{
+  this->CompareMaps(Cloud());
+}
+
+TEST_F(DevicesAgree, OnMapsOfThreeColoursOrderByOrder)
+{
+  Scene scene = Cloud();
+  scene.settings.acceleration = PropagationAcceleration::None;
+  std::vector<float> scattering;
+  for (std::size_t i = 0; i < scene.sigma_s.size(); ++i)
+  {
+    scattering.insert(scattering.end(), { scene.sigma_s[i], 0.5f * scene.sigma_s[i], 0.25f * scene.sigma_s[i] });
+  }
+  scene.sigma_s = scattering;
+  scene.emission.assign(scene.sigma_a.size(), 0.1f);
+  this->CompareMaps(scene);
+}
+
+TEST_F(DevicesAgree, OnMapsRoundAPeriodicAxis)
+{
+  Scene scene = Cloud();
+  scene.settings.periodic = { false, true, false };
+  this->CompareMaps(scene);
+}
+
+TEST_F(DevicesAgree, OnMapsThatScatterForwards)
+{
+  Scene scene = Cloud();
+  scene.medium.phase = PhaseFunction::HenyeyGreenstein(0.7);
+  this->CompareMaps(scene);
+}
+
+TEST_F(DevicesAgree, OnMapsAsPublished)
+{
+  this->Compare([](Device& device) {
+    Scene scene = Cloud();
+    scene.Attach();
+    scene.settings.maximumOrders = 4;
+    return SolveParallel(device, scene.medium, scene.light, scene.settings).fluence;
+  });
+}
+
+TEST_F(DevicesAgree, OnDiscreteOrdinates)
+{
+  this->Compare([](Device& device) {
+    LitMedium scene({ 9, 8, 7 });
+    scene.Randomise(1.0, 1.0, 0.8);
+    scene.ShineFromEverywhere(1.0);
+    scene.ScatterWith(0.6);
+    return scene.SolveOrdinates(device).fluence;
+  });
+}
+
+TEST_F(DevicesAgree, OnALattice)
+{
+  this->Compare([](Device& device) {
+    Scene scene = Cloud();
+    scene.Attach();
+    return SolveLatticeBoltzmann(device, scene.medium, {}, scene.light, {}).fluence;
+  });
+}
+
+TEST_F(DevicesAgree, OnPhotonsThroughGlass)
+{
+  this->Compare([](Device& device) {
+    PhotonScene scene(16, 1.0, 0.1f, 0.2f);
+    scene.SetBall(0.6, 1.3);
+    return scene.March(device, RandomPhotons(scene.medium.grid).ThroughAllFaces(20000)).light.fluence;
+  });
+}
+
+TEST_F(DevicesAgree, OnScatteredPhotons)
+{
+  this->Compare([](Device& device) {
+    PhotonScene scene = UnitCube(8, 3.0, 0.9, 0.5);
+    return scene.March(device, RandomPhotons(scene.medium.grid).ThroughAllFaces(20000)).light.fluence;
+  });
+}
+
+TEST_F(DevicesAgree, OnAPicture)
+{
+  this->Compare([](Device& device) {
+    viewing::Scene scene(viewing::GridOf(12, 9, 10));
+    scene.sigma_a = scene.Everywhere(0.05);
+    scene.sigma_s = scene.Everywhere(0.1);
+    for (std::size_t i = 0; i < scene.grid.VoxelCount(); ++i)
+    {
+      scene.fluence.push_back(static_cast<float>(i % 17));
+    }
+    return scene.Seen(device).radiance;
+  });
+}
+
+TEST_F(DevicesAgree, OnAVoxelizedMesh)
+{
+  this->Compare([](Device& device) {
+    Grid grid{ { 24, 24, 24 } };
+    grid.spacing = { 0.1, 0.1, 0.1 };
+    grid.origin = { -1.2, -1.2, -1.2 };
+    const auto mesh = shapes::Sphere({ 0.0, 0.0, 0.0 }, 1.0);
+    const auto counts = CountWhole(device, grid, { { &mesh } }, {}).counts[0];
+    return Values(counts.begin(), counts.end());
+  });
+}

@@ -1,0 +1,298 @@
+// The sweep for GPUs beside the sweep for CPUs, on whatever device there is.
+
+#include "DeviceTest.h"
+#include "Difference.h"
+#include "MediumScene.h"
+#include "RandomMedium.h"
+
+#include "LightPropagation/Angular/DirectionSet.h"
+#include "LightPropagation/Problem/MediumOnDevice.h"
+#include "LightPropagation/Sweep/SweepInMemory.h"
+#include "LightPropagation/Sweep/SweepOnGpu.h"
+
+#include <cmath>
+#include <cstdlib>
+#include <memory>
+#include <optional>
+#include <vector>
+
+using namespace tyndall;
+
+namespace
+{
+constexpr double Same = 1e-5; ///< of the largest value
+
+/// A box of random voxels and how it is swept.
+struct Sweeping
+{
+  Grid grid{ { 9, 6, 7 } };
+  int components = 1; ///< of sigma_t
+  int channels = 1;
+  float densest = 0.7f;
+  int perFace = 25;
+  bool shines = true, lit = true, flux = false, currents = false;
+  VoxelBox box = {};
+  std::array<double, 3> beam = {}; ///< instead of all directions
+};
+
+struct Found
+{
+  std::vector<float> path, flux, currents;
+  SweepTally tally;
+};
+
+std::vector<AxisBundles> RaysOf(const Sweeping& how)
+{
+  std::vector<AxisBundles> rays;
+  if (how.beam != std::array<double, 3>{})
+  {
+    const int axis = MarchingAxes(how.grid, how.beam).front();
+    rays.push_back({ axis, BeamAlong(axis, how.grid, {}, how.beam, 2) });
+    return rays;
+  }
+  for (int axis = 0; axis < 3; ++axis)
+  {
+    rays.push_back({ axis, BundlesAlong(axis, how.grid, {}, FittedDirections(how.perFace), 1) });
+  }
+  return rays;
+}
+}
+
+class SweepOnGpuTest : public DeviceTest
+{
+protected:
+  /// @param ways  of SweepOnGpu; none: SweepInMemory
+  Found Sweep(const Sweeping& how, std::optional<SweepOnGpu::Ways> ways)
+  {
+    Device& device = this->GetDevice();
+    const RandomMedium medium(how.grid, how.components, how.densest, 20261126);
+    const VolumeLayout layout = { how.grid, how.channels, how.components == 1 };
+    const TruncatedScattering scattering(medium.medium, 0, how.channels);
+    const MediumOnDevice onDevice(device, medium.medium, scattering, layout, { true, false });
+    const Buffer<float> source(device,
+      Planar(layout, how.channels, [&](std::size_t i, int c) { return static_cast<float>((7 * i + c) % 11); }),
+      "source");
+    Buffer<float> path(device, layout.Floats(), "path"), flux(device, layout.Floats(3), "flux"),
+      currents(device, layout.Floats(6), "currents");
+    path.Fill(1.0f); // is added to
+    flux.Fill(0.0f);
+    currents.Fill(0.0f);
+    SweepWorkspace workspace;
+    SweepRequest request = { { &path, how.flux ? &flux : nullptr, how.currents ? &currents : nullptr }, RaysOf(how) };
+    request.box = how.box;
+    std::unique_ptr<SweepOperator> sweep;
+    if (ways)
+    {
+      EXPECT_TRUE(SweepOnGpu::Can(request, {}));
+      sweep = std::make_unique<SweepOnGpu>(device, layout, onDevice.SigmaT(), request, *ways);
+    }
+    else
+    {
+      sweep =
+        std::make_unique<SweepInMemory>(device, layout, onDevice.SigmaT(), std::array<bool, 3>{}, request, workspace);
+    }
+    const SweepBoundary boundary = [](int d, int face) { return Rgb{ 1.0 + 0.3 * face, 0.5 + d % 3, 0.1 * (d % 7) }; };
+    Found found;
+    found.tally = sweep->Apply(how.shines ? &source : nullptr, how.lit ? boundary : SweepBoundary(), {});
+    found.path = path.Read();
+    found.flux = flux.Read();
+    found.currents = currents.Read();
+    return found;
+  }
+
+  static void ExpectSame(const Found& found, const Found& expected, const char* what)
+  {
+    EXPECT_LT(RelativeDifference(found.path, expected.path), Same) << what;
+    EXPECT_LT(RelativeDifference(found.flux, expected.flux), Same) << what;
+    EXPECT_LT(RelativeDifference(found.currents, expected.currents), Same) << what;
+    double out = 0.0;
+    for (const Rgb& rgb : expected.tally.out)
+    {
+      out = std::max(out, Sum(rgb));
+    }
+    for (int face = 0; face < 6; ++face)
+    {
+      for (int c = 0; c < 3; ++c)
+      {
+        EXPECT_NEAR(found.tally.in[face][c], expected.tally.in[face][c], 1e-12) << what;
+        EXPECT_NEAR(found.tally.out[face][c], expected.tally.out[face][c], 1e-6 * out) << what << ", face " << face;
+      }
+    }
+  }
+
+  /// The device once more, taken as a GPU.
+  std::shared_ptr<Device> AsGpu() const
+  {
+    const cl::Device device = this->TheDevice->Context().getInfo<CL_CONTEXT_DEVICES>().front();
+    setenv("TYNDALL_AS_GPU", "1", 1);
+    const auto asGpu = std::make_shared<Device>(cl::Platform(device.getInfo<CL_DEVICE_PLATFORM>()), device);
+    unsetenv("TYNDALL_AS_GPU");
+    return asGpu;
+  }
+
+  void Compare(const Sweeping& how)
+  {
+    const Found expected = this->Sweep(how, {});
+    ExpectSame(this->Sweep(how, SweepOnGpu::Ways::Automatic), expected, "all ways at once");
+    ExpectSame(this->Sweep(how, SweepOnGpu::Ways::OneByOne), expected, "way by way");
+  }
+};
+
+TEST_F(SweepOnGpuTest, FindsTheLightOfASource)
+{
+  Sweeping how;
+  how.lit = false;
+  this->Compare(how);
+}
+
+TEST_F(SweepOnGpuTest, FindsTheLightThatComesIn)
+{
+  Sweeping how;
+  how.shines = false;
+  this->Compare(how);
+}
+
+TEST_F(SweepOnGpuTest, FindsFluxAndCurrents)
+{
+  Sweeping how;
+  how.flux = how.currents = true;
+  this->Compare(how);
+}
+
+TEST_F(SweepOnGpuTest, FindsFluxAndCurrentsOfEqualAnglesThatMoveBothWaysAtOnce)
+{
+  Sweeping how;
+  how.perFace = 1; // and of 121: not fitted, some on the diagonal
+  how.flux = how.currents = true;
+  this->Compare(how);
+  how.perFace = 121;
+  this->Compare(how);
+}
+
+TEST_F(SweepOnGpuTest, FindsThreeColoursOfOneExtinction)
+{
+  Sweeping how;
+  how.channels = 3;
+  how.flux = how.currents = true;
+  this->Compare(how);
+}
+
+TEST_F(SweepOnGpuTest, FindsThreeColoursOfThreeExtinctions)
+{
+  Sweeping how;
+  how.components = how.channels = 3;
+  how.flux = how.currents = true;
+  this->Compare(how);
+}
+
+TEST_F(SweepOnGpuTest, FindsTheLightInUnequalVoxels)
+{
+  Sweeping how;
+  how.grid.spacing = { 1.0, 0.7, 1.6 };
+  how.flux = how.currents = true;
+  this->Compare(how);
+}
+
+TEST_F(SweepOnGpuTest, FindsTheLightInThickAndThinVoxels)
+{
+  for (const float densest : { 0.0f, 1e-4f, 0.9f, 3.0f, 1e6f })
+  {
+    Sweeping how;
+    how.densest = densest;
+    how.flux = true;
+    this->Compare(how);
+  }
+}
+
+TEST_F(SweepOnGpuTest, FindsTheLightInASlabOneVoxelWide)
+{
+  Sweeping how;
+  how.grid.size = { 1, 40, 3 };
+  how.currents = true;
+  this->Compare(how);
+}
+
+TEST_F(SweepOnGpuTest, FindsTheLightOfABeam)
+{
+  Sweeping how;
+  how.beam = { 0.3, -0.5, std::sqrt(1.0 - 0.34) };
+  how.flux = how.currents = true;
+  how.shines = false;
+  this->Compare(how);
+}
+
+TEST_F(SweepOnGpuTest, FindsTheLightInAPartOfTheGrid)
+{
+  Sweeping how;
+  how.box = { { 2, 1, 3 }, { 4, 5, 3 } };
+  how.flux = true;
+  this->Compare(how);
+}
+
+TEST_F(SweepOnGpuTest, IsTheSameEachTime)
+{
+  Sweeping how;
+  how.flux = how.currents = true;
+  const Found once = this->Sweep(how, SweepOnGpu::Ways::Automatic),
+              again = this->Sweep(how, SweepOnGpu::Ways::Automatic);
+  EXPECT_EQ(once.path, again.path);
+  EXPECT_EQ(once.flux, again.flux);
+  EXPECT_EQ(once.currents, again.currents);
+}
+
+TEST_F(SweepOnGpuTest, KeepsEveryWatt)
+{
+  Sweeping how;
+  how.grid.size = { 12, 11, 10 };
+  const Found found = this->Sweep(how, SweepOnGpu::Ways::Automatic);
+  const RandomMedium medium(how.grid, 1, how.densest, 20261126);
+  double in = 0.0, out = 0.0;
+  for (std::size_t i = 0; i < how.grid.VoxelCount(); ++i)
+  {
+    in += 16.0 * std::atan(1.0) * static_cast<double>(7 * i % 11);
+    out += medium.medium.TransportSigmaT(i, 0) * (static_cast<double>(found.path[i]) - 1.0);
+  }
+  for (int face = 0; face < 6; ++face)
+  {
+    in += found.tally.in[face][0];
+    out += found.tally.out[face][0];
+  }
+  EXPECT_NEAR(out / in, 1.0, 1e-6);
+}
+
+TEST_F(SweepOnGpuTest, LeavesToTheOtherWhatItCannotDo)
+{
+  const Buffer<float> cells(this->GetDevice(), 1, "cells");
+  SweepRequest request;
+  EXPECT_TRUE(SweepOnGpu::Can(request, {}));
+  EXPECT_FALSE(SweepOnGpu::Can(request, { false, true, false }));
+  request.faceIn = &cells;
+  EXPECT_FALSE(SweepOnGpu::Can(request, {}));
+  request = {};
+  request.deposit.faceOut = &cells;
+  EXPECT_FALSE(SweepOnGpu::Can(request, {}));
+  request = {};
+  request.octantSource = &cells;
+  EXPECT_FALSE(SweepOnGpu::Can(request, {}));
+}
+
+TEST_F(SweepOnGpuTest, SolvesAsTheOtherDoes)
+{
+  for (const auto acceleration : { PropagationAcceleration::Automatic, PropagationAcceleration::None })
+  {
+    const std::shared_ptr<Device> asGpu = this->AsGpu();
+    ASSERT_FALSE(asGpu->IsCpu());
+    std::vector<float> fluence[2];
+    for (int i = 0; i < 2; ++i)
+    {
+      ::Scene scene({ 13, 10, 11 });
+      scene.Randomise(2.0, 2.0, 0.9);
+      scene.ShineFromEverywhere(1.0);
+      scene.ShineAlong({ 0.3, -0.4, -0.8 });
+      scene.settings.acceleration = acceleration;
+      fluence[i] = scene.Solve(i == 0 ? this->GetDevice() : *asGpu).fluence;
+    }
+    EXPECT_NE(fluence[0], fluence[1]); // bit for bit: another sweep it was
+    EXPECT_LT(RelativeDifference(fluence[1], fluence[0]), Same);
+  }
+}
