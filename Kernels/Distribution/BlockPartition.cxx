@@ -12,8 +12,7 @@ namespace
 /// Cut into `parts`, which get the ranks from `first` on.
 void Cut(const VoxelBox& box, int parts, int first, std::vector<VoxelBox>& blocks)
 {
-  const int axis =
-    static_cast<int>(std::max_element(box.size.begin(), box.size.end()) - box.size.begin());
+  const int axis = static_cast<int>(std::max_element(box.size.begin(), box.size.end()) - box.size.begin());
   if (parts == 1 || box.size[axis] < 2)
   {
     blocks[first] = box;

@@ -88,8 +88,8 @@ struct BlockScene
     return medium.medium.grid.IndexOf(voxel);
   }
 
-  using Maker = std::function<std::unique_ptr<SweepOperator>(const VolumeLayout&, const Buffer<float>& sigma_t,
-    const SweepRequest&)>;
+  using Maker = std::function<std::unique_ptr<SweepOperator>(
+    const VolumeLayout&, const Buffer<float>& sigma_t, const SweepRequest&)>;
 
   /// What is asked for of a sweep.
   struct Wants
@@ -115,8 +115,7 @@ struct BlockScene
     const SweepRequest request = { { &path, &flux, &currents, nullptr }, Rays() };
     const std::unique_ptr<SweepOperator> sweep = make(layout, onDevice.SigmaT(), request);
     Found found;
-    found.tally =
-      sweep->Apply(wants.source ? &source : nullptr, wants.boundary ? Boundary() : SweepBoundary(), {});
+    found.tally = sweep->Apply(wants.source ? &source : nullptr, wants.boundary ? Boundary() : SweepBoundary(), {});
     const auto ofVoxels = [&](const Buffer<float>& buffer, int parts) {
       const std::vector<float> all = buffer.Read();
       std::vector<float> kept;
@@ -136,10 +135,10 @@ struct BlockScene
   Found InMemory(const Wants& wants) const
   {
     SweepWorkspace workspace;
-    return Sweep(medium, wants, [&](const VolumeLayout& layout, const Buffer<float>& sigma_t,
-                                    const SweepRequest& request) {
-      return std::make_unique<SweepInMemory>(theDevice, layout, sigma_t, open, request, workspace);
-    });
+    return Sweep(
+      medium, wants, [&](const VolumeLayout& layout, const Buffer<float>& sigma_t, const SweepRequest& request) {
+        return std::make_unique<SweepInMemory>(theDevice, layout, sigma_t, open, request, workspace);
+      });
   }
 
   Found InBlocks(const BlockPartition& partition, const Wants& wants, int mostRays) const
@@ -152,11 +151,11 @@ struct BlockScene
     RunInThreads(static_cast<int>(partition.blocks.size()), [&](Communicator& communicator) {
       const VoxelBox& box = partition.blocks[communicator.Rank()];
       BlockWorkspace workspace;
-      const Found found = Sweep(Part(box), wants, [&](const VolumeLayout& layout, const Buffer<float>& sigma_t,
-                                                    const SweepRequest& request) {
-        return std::make_unique<SweepInBlocks>(
-          theDevice, communicator, partition, layout, sigma_t, request, workspace, mostRays);
-      });
+      const Found found = Sweep(
+        Part(box), wants, [&](const VolumeLayout& layout, const Buffer<float>& sigma_t, const SweepRequest& request) {
+          return std::make_unique<SweepInBlocks>(
+            theDevice, communicator, partition, layout, sigma_t, request, workspace, mostRays);
+        });
       const std::lock_guard<std::mutex> lock(guard);
       PutInto(all.path, found.path, box);
       PutInto(all.flux, found.flux, box);

@@ -13,8 +13,8 @@ namespace tyndall
 namespace
 {
 /// The ray pattern is that of the whole grid, arrays are the block's own.
-SweepPlan PlanOf(Device& device, const BlockPartition& partition, int rank, const ParallelBundles& rays,
-  const SweepVolume& volume)
+SweepPlan PlanOf(
+  Device& device, const BlockPartition& partition, int rank, const ParallelBundles& rays, const SweepVolume& volume)
 {
   SweepPlan plan(device, partition.whole, partition.blocks[rank], rays.axis, rays.bundles, volume.channels,
     { false, false, false }, volume.deposit.flux != nullptr, volume.deposit.partialCurrents != nullptr, nullptr,
@@ -48,7 +48,7 @@ BlockSweep::BlockSweep(Device& device, const BlockPartition& partition, int rank
   , Plan(PlanOf(device, partition, rank, rays, volume))
   , Crossings(this->Plan.Crossings(this->Plan.PlanesBefore(rays.way), this->Plan.Planes()))
   , SideFloats(static_cast<std::size_t>(this->Plan.plane.sizeU) + this->Plan.plane.sizeV + 1)
-  , Rays(this->Plan.radianceEachWay)
+  , RayCount(this->Plan.radianceEachWay)
 {
   const SweepPlan& plan = this->Plan;
   for (const Bundle& bundle : plan.bundles)
@@ -66,7 +66,7 @@ BlockSweep::BlockSweep(Device& device, const BlockPartition& partition, int rank
     this->Moves.push_back(moves);
   }
   workspace.sweep.Reserve(device, plan.mapsEachWay, plan.units.size() * plan.ScratchFloats());
-  const std::size_t sides = this->Rays * plan.Planes() * this->SideFloats;
+  const std::size_t sides = this->RayCount * plan.Planes() * this->SideFloats;
   if (workspace.sidesIn.Size() < sides)
   {
     workspace.sidesIn = Buffer<float>(device, sides, "the rays that come in from other blocks");
@@ -74,8 +74,8 @@ BlockSweep::BlockSweep(Device& device, const BlockPartition& partition, int rank
   }
   this->Outside = Buffer<float>(device, plan.outsideEachWay, "the light that comes in sideways");
   this->Radiance = Buffer<float>(device, 2 * plan.radianceEachWay, "the light that comes in sideways");
-  this->Sideways = Buffer<float>(
-    device, plan.units.size() * plan.Planes() * 4 * plan.channels, "the power that leaves sideways");
+  this->Sideways =
+    Buffer<float>(device, plan.units.size() * plan.Planes() * 4 * plan.channels, "the power that leaves sideways");
   this->Coefficients = Buffer<float>(device, std::vector<float>{ 0.0f }, "the angular functions");
   this->BundlesOnDevice = Buffer<BundleInfo>(device, plan.bundleRows, "the bundles of rays");
   this->Units = Buffer<UnitInfo>(device, plan.units, "the units of work");
@@ -115,7 +115,7 @@ RaysAtFaces BlockSweep::FromOutside(const SweepBoundary& boundary) const
   const SweepPlan& plan = this->Plan;
   RaysAtFaces rays;
   rays.maps.assign(plan.mapsEachWay, 0.0f);
-  rays.sides.assign(this->Rays * plan.Planes() * this->SideFloats, 0.0f);
+  rays.sides.assign(this->RayCount * plan.Planes() * this->SideFloats, 0.0f);
   for (std::size_t b = 0; boundary && b < plan.bundles.size(); ++b)
   {
     const BundleInfo& bundle = plan.bundleRows[b];
@@ -145,7 +145,7 @@ void BlockSweep::FillSides(const Light& light, std::size_t ray, int c, RaysAtFac
   const float u = outerU ? static_cast<float>(light.u[c]) : 0.0f, v = outerV ? static_cast<float>(light.v[c]) : 0.0f;
   for (int k = 0; k < this->Plan.Planes(); ++k)
   {
-    float* side = rays.sides.data() + (k * this->Rays + ray) * this->SideFloats;
+    float* side = rays.sides.data() + (k * this->RayCount + ray) * this->SideFloats;
     float* acrossU = side + this->Plan.plane.sizeU;
     float* edge = acrossU + this->Plan.plane.sizeV;
     std::fill(side, acrossU, v);
@@ -310,8 +310,8 @@ void BlockSweep::CountLeft(const RaysAtFaces& out, SweepTally& tally) const
 /// visit(value) for each place of a ray that goes through a contact, in the order of the whole grid's cells, so that
 /// sender and receiver agree.
 /// @param out  places are those of rays that go out, else of those that come in
-template <class Rays, class Visit>
-void BlockSweep::ForEachRay(const BlockContact& contact, bool out, Rays& rays, const Visit& visit) const
+template <class AtFaces, class Visit>
+void BlockSweep::ForEachRay(const BlockContact& contact, bool out, AtFaces& rays, const Visit& visit) const
 {
   const SweepPlan& plan = this->Plan;
   const PlaneAxes& axes = plan.axes;
@@ -350,15 +350,16 @@ void BlockSweep::ForEachRay(const BlockContact& contact, bool out, Rays& rays, c
         for (int s = 1; s < crossing.stages; ++s)
         {
           const auto [du, dv] = MoveOf(bundle, slot / plan.channels, crossing, s);
-          goes = goes || (contact.kind == BlockContact::AsideU ? du != 0
-                             : contact.kind == BlockContact::AsideV ? dv != 0
-                                                                    : du != 0 && dv != 0);
+          goes = goes ||
+            (contact.kind == BlockContact::AsideU      ? du != 0
+                : contact.kind == BlockContact::AsideV ? dv != 0
+                                                       : du != 0 && dv != 0);
         }
         if (!goes)
         {
           continue;
         }
-        auto* acrossV = rays.sides.data() + (k * this->Rays + bundle.border + slot) * this->SideFloats;
+        auto* acrossV = rays.sides.data() + (k * this->RayCount + bundle.border + slot) * this->SideFloats;
         auto* acrossU = acrossV + plan.plane.sizeU;
         if (contact.kind == BlockContact::AsideU)
         {
@@ -390,6 +391,6 @@ void BlockSweep::Unpack(
 
 std::size_t BlockSweep::Bytes() const
 {
-  return 2 * (this->Plan.mapsEachWay + this->Rays * this->Plan.Planes() * this->SideFloats) * sizeof(float);
+  return 2 * (this->Plan.mapsEachWay + this->RayCount * this->Plan.Planes() * this->SideFloats) * sizeof(float);
 }
 }

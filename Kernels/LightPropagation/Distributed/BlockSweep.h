@@ -47,15 +47,14 @@ public:
 
   /// @param in  is used up
   /// @param tally  what leaves the grid from this block is added to
-  RaysAtFaces Cross(
-    const SweepVolume& volume, RaysAtFaces in, const SweepBoundary& boundary, SweepTally& tally, const Monitor& monitor);
+  RaysAtFaces Cross(const SweepVolume& volume, RaysAtFaces in, const SweepBoundary& boundary, SweepTally& tally,
+    const Monitor& monitor);
 
   /// What goes through a contact with another block, in an order that both ranks know, behind what `message` holds; and
   /// the other way round.
   /// @param at  where it begins; moved behind it
   void Pack(const BlockContact& contact, const RaysAtFaces& out, std::vector<float>& message) const;
-  void Unpack(
-    const BlockContact& contact, const std::vector<float>& message, std::size_t& at, RaysAtFaces& in) const;
+  void Unpack(const BlockContact& contact, const std::vector<float>& message, std::size_t& at, RaysAtFaces& in) const;
 
   std::size_t Bytes() const; ///< of rays at faces, in and out, on the host
 
@@ -72,8 +71,8 @@ private:
   void Launch(const SweepVolume& volume, const Monitor& monitor);
   cl::Kernel Kernel(const SweepVolume& volume);
   void CountLeft(const RaysAtFaces& out, SweepTally& tally) const;
-  template <class Rays, class Visit>
-  void ForEachRay(const BlockContact& contact, bool out, Rays& rays, const Visit& visit) const;
+  template <class AtFaces, class Visit>
+  void ForEachRay(const BlockContact& contact, bool out, AtFaces& rays, const Visit& visit) const;
 
   Device& TheDevice;
   ParallelBundles Bundles;
@@ -81,10 +80,10 @@ private:
   VoxelBox Block;
   BlockWorkspace& Workspace;
   SweepPlan Plan;
-  std::vector<CrossingInfo> Crossings; ///< [plane of the block][bundle]
+  std::vector<CrossingInfo> Crossings;      ///< [plane of the block][bundle]
   std::vector<std::array<double, 2>> Moves; ///< of a bundle along its own u and v through the whole grid, voxels
-  std::size_t SideFloats = 0;          ///< of one ray and plane
-  std::size_t Rays = 0;                ///< members of all bundles, times channels
+  std::size_t SideFloats = 0;               ///< of one ray and plane
+  std::size_t RayCount = 0;                 ///< members of all bundles, times channels
 
   Buffer<float> Outside, Radiance, Sideways, Coefficients;
   Buffer<BundleInfo> BundlesOnDevice;

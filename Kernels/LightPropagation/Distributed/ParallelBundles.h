@@ -12,10 +12,10 @@ namespace tyndall
 struct ParallelBundles
 {
   int axis = 0;
-  int way = 0;                        ///< 0 forward along the axis, 1 backward
+  int way = 0;                            ///< 0 forward along the axis, 1 backward
   std::array<int, 3> signs = { 1, 1, 1 }; ///< along x, y, z: 1 upwards, -1 downwards
-  std::vector<Bundle> bundles;        ///< members have a direction one way alone
-  bool goThroughEdges = false;        ///< some move both ways aside at once
+  std::vector<Bundle> bundles;            ///< members have a direction one way alone
+  bool goThroughEdges = false;            ///< some move both ways aside at once
 
   int Rays() const; ///< a voxel of the plane across the axis
 };

@@ -29,9 +29,8 @@ public:
   /// @param workspace  must stay; shared by sweeps that never run at the same time
   /// @param mostRays  that go through a block at once: fewer keep more ranks busy, with more messages; 0: an octant's
   /// @throws InvalidInput where the request has what this cannot do, or blocks wait for each other
-  SweepInBlocks(Device& device, Communicator& communicator, const BlockPartition& partition,
-    const VolumeLayout& layout, const Buffer<float>& sigma_t, const SweepRequest& request, BlockWorkspace& workspace,
-    int mostRays = 0);
+  SweepInBlocks(Device& device, Communicator& communicator, const BlockPartition& partition, const VolumeLayout& layout,
+    const Buffer<float>& sigma_t, const SweepRequest& request, BlockWorkspace& workspace, int mostRays = 0);
 
   /// @return of all ranks together, the same on each
   /// @throws on every rank what any of them throws

@@ -101,10 +101,10 @@ class Play
 {
 public:
   Play(const BlockPartition& partition, const std::vector<ParallelBundles>& tasks, const SweepCosts& costs)
-    : Partition(partition)
+    : orders(partition.blocks.size())
+    , Partition(partition)
     , Tasks(tasks)
     , Costs(costs)
-    , orders(partition.blocks.size())
     , Ready(partition.blocks.size())
     , Busy(partition.blocks.size(), false)
   {
@@ -180,8 +180,7 @@ private:
     {
       ++this->messages;
       this->rays += receiver.rays;
-      const double arrives =
-        now + this->Costs.ofMessage + this->Costs.ofValue * static_cast<double>(receiver.rays);
+      const double arrives = now + this->Costs.ofMessage + this->Costs.ofValue * static_cast<double>(receiver.rays);
       double& last = this->LastArrival[{ receiver.rank, task }];
       last = std::max(last, arrives);
       if (--graph.waitsFor[receiver.rank] == 0)
@@ -197,7 +196,7 @@ private:
   std::vector<TaskGraph> Graphs;
   std::vector<std::set<std::pair<int, int>>> Ready; ///< by rank: the most urgent first
   std::vector<bool> Busy;
-  std::set<int> Touched; ///< ranks to which something has happened at this time
+  std::set<int> Touched;                             ///< ranks to which something has happened at this time
   std::map<std::pair<int, int>, double> LastArrival; ///< by rank and task
   using Event = std::tuple<double, int, int, int>;   ///< time; 0 ready, 1 finished; rank; task
   std::priority_queue<Event, std::vector<Event>, std::greater<Event>> Events;

@@ -29,10 +29,10 @@ public:
   /// Tasks in the order of a rank; none of an empty block.
   const std::vector<int>& OrderOf(int rank) const { return this->Orders[rank]; }
 
-  double Time() const { return this->Makespan; }         ///< until the last rank is through
-  double BusyTime() const { return this->Work; }         ///< of all ranks together
-  std::size_t Messages() const { return this->Sent; }    ///< of all
-  std::size_t Values() const { return this->SentRays; }  ///< at most: rays in them, of one channel
+  double Time() const { return this->Makespan; }        ///< until the last rank is through
+  double BusyTime() const { return this->Work; }        ///< of all ranks together
+  std::size_t Messages() const { return this->Sent; }   ///< of all
+  std::size_t Values() const { return this->SentRays; } ///< at most: rays in them, of one channel
 
 private:
   std::vector<std::vector<int>> Orders;
