@@ -126,8 +126,7 @@ void ExpectSame(const LightField& found, const LightField& expected)
     EXPECT_NEAR(found.balance.entered[c], expected.balance.entered[c], 1e-6 * expected.balance.entered[c]);
     for (int face = 0; face < 6; ++face)
     {
-      EXPECT_NEAR(
-        found.facePowerOut[face][c], expected.facePowerOut[face][c], 1e-6 * expected.facePowerOut[face][c]);
+      EXPECT_NEAR(found.facePowerOut[face][c], expected.facePowerOut[face][c], 1e-6 * expected.facePowerOut[face][c]);
     }
   }
 }
@@ -146,7 +145,8 @@ TEST_F(PropagationBlocks, HaveTheLightOfTheWholeOnOneToEightRanks)
   for (const int ranks : { 1, 2, 3, 4, 8 })
   {
     SCOPED_TRACE(std::to_string(ranks) + " ranks");
-    ExpectSame(LightOfAll(GetDevice(), BlockPartition::Even(whole.medium.grid, ranks), whole, LitFromOutside(), settings),
+    ExpectSame(
+      LightOfAll(GetDevice(), BlockPartition::Even(whole.medium.grid, ranks), whole, LitFromOutside(), settings),
       expected);
   }
 }
@@ -222,15 +222,16 @@ TEST_F(PropagationBlocksFail, TogetherWhereOneHasBadInput)
 
 TEST_F(PropagationBlocksFail, TogetherWhereTheyDisagree)
 {
-  ExpectErrors("disagree about the components", [](int rank, PartOf& part, Illumination&, PropagationSettings&, Monitor&) {
-    part.medium.emission = rank == 2 ? Field() : part.medium.emission;
-  });
-  ExpectErrors("disagree about settings", [](int rank, PartOf&, Illumination&, PropagationSettings& settings, Monitor&) {
-    settings.tolerance *= 1.0 + rank;
-  });
-  ExpectErrors("disagree about what shines", [](int rank, PartOf&, Illumination& shining, PropagationSettings&, Monitor&) {
-    shining.faces[3][0] += rank;
-  });
+  ExpectErrors(
+    "disagree about the components", [](int rank, PartOf& part, Illumination&, PropagationSettings&, Monitor&) {
+      part.medium.emission = rank == 2 ? Field() : part.medium.emission;
+    });
+  ExpectErrors(
+    "disagree about settings", [](int rank, PartOf&, Illumination&, PropagationSettings& settings, Monitor&) {
+      settings.tolerance *= 1.0 + rank;
+    });
+  ExpectErrors("disagree about what shines",
+    [](int rank, PartOf&, Illumination& shining, PropagationSettings&, Monitor&) { shining.faces[3][0] += rank; });
 }
 
 TEST_F(PropagationBlocksFail, TogetherWhereOneIsStopped)
@@ -245,9 +246,8 @@ TEST_F(PropagationBlocksFail, TogetherWhereOneIsStopped)
 
 TEST_F(PropagationBlocksFail, WithWordsOnWhatIsNotCarriedFromRankToRank)
 {
-  ExpectErrors("periodic", [](int, PartOf&, Illumination&, PropagationSettings& settings, Monitor&) {
-    settings.periodic[1] = true;
-  });
+  ExpectErrors("periodic",
+    [](int, PartOf&, Illumination&, PropagationSettings& settings, Monitor&) { settings.periodic[1] = true; });
   ExpectErrors("point, spot or rectangle", [](int, PartOf&, Illumination& shining, PropagationSettings&, Monitor&) {
     shining.lights[0].type = LightType::Point;
   });

@@ -250,8 +250,8 @@ std::unique_ptr<SweepOperator> IterationInBlocks::MakeSweep(const SweepRequest& 
 {
   std::unique_ptr<SweepOperator> sweep;
   this->Others.Together([&] {
-    sweep = std::make_unique<SweepInBlocks>(this->TheDevice, this->Others, this->Partition, this->Layout,
-      this->OnDevice.SigmaT(), request, this->Workspace);
+    sweep = std::make_unique<SweepInBlocks>(
+      this->TheDevice, this->Others, this->Partition, this->Layout, this->OnDevice.SigmaT(), request, this->Workspace);
   });
   return sweep;
 }
@@ -358,9 +358,8 @@ bool IterationInBlocks::Done() const
 LightField IterationInBlocks::Run(const Monitor& monitor)
 {
   this->LoadEmission();
-  const std::unique_ptr<SweepOperator> sweep =
-    this->MakeSweep({ this->WholeDeposit(), { { 0, this->Directions.Along(0) }, { 1, this->Directions.Along(1) },
-                                              { 2, this->Directions.Along(2) } } });
+  const std::unique_ptr<SweepOperator> sweep = this->MakeSweep({ this->WholeDeposit(),
+    { { 0, this->Directions.Along(0) }, { 1, this->Directions.Along(1) }, { 2, this->Directions.Along(2) } } });
   do
   {
     const Monitor ofOrder =

@@ -67,6 +67,19 @@ int FindBehind(TaskGraph& graph, int rank)
   return behind;
 }
 
+/// Or share a face, an edge or a corner: only then is there anything to look at.
+bool Touch(const VoxelBox& a, const VoxelBox& b)
+{
+  for (int axis = 0; axis < 3; ++axis)
+  {
+    if (a.first[axis] > EndOf(b, axis) || b.first[axis] > EndOf(a, axis))
+    {
+      return false;
+    }
+  }
+  return true;
+}
+
 TaskGraph GraphOf(const BlockPartition& partition, const ParallelBundles& bundles)
 {
   const int ranks = static_cast<int>(partition.blocks.size());
@@ -76,6 +89,10 @@ TaskGraph GraphOf(const BlockPartition& partition, const ParallelBundles& bundle
   {
     for (int to = 0; to < ranks; ++to)
     {
+      if (!Touch(partition.blocks[from], partition.blocks[to]))
+      {
+        continue;
+      }
       Receiver receiver = { to, 0 };
       const std::vector<BlockContact> contacts = ContactsBetween(partition, bundles, from, to);
       for (const BlockContact& contact : contacts)
@@ -111,6 +128,8 @@ public:
     for (const ParallelBundles& task : tasks)
     {
       this->Graphs.push_back(GraphOf(partition, task));
+      const std::vector<int>& behind = this->Graphs.back().behind;
+      this->inALine = std::max(this->inALine, 1 + *std::max_element(behind.begin(), behind.end()));
     }
   }
 
@@ -151,6 +170,7 @@ public:
   std::vector<std::vector<int>> orders;
   double time = 0.0, work = 0.0;
   std::size_t messages = 0, rays = 0;
+  int inALine = 0;
 
 private:
   void StartAll(double now)
@@ -213,5 +233,6 @@ SweepSchedule::SweepSchedule(
   this->Work = play.work;
   this->Sent = play.messages;
   this->SentRays = play.rays;
+  this->InALine = play.inALine;
 }
 }

@@ -33,9 +33,12 @@ public:
   double BusyTime() const { return this->Work; }        ///< of all ranks together
   std::size_t Messages() const { return this->Sent; }   ///< of all
   std::size_t Values() const { return this->SentRays; } ///< at most: rays in them, of one channel
+  /// That light comes through one after the other, at most.
+  int BlocksInALine() const { return this->InALine; }
 
 private:
   std::vector<std::vector<int>> Orders;
+  int InALine = 0;
   double Makespan = 0.0, Work = 0.0;
   std::size_t Sent = 0, SentRays = 0;
 };
