@@ -13,8 +13,8 @@ namespace tyndall
 namespace
 {
 // Sums and agreements have tags of their own, behind those of all else.
-constexpr int SumTag = 32000;
-constexpr int AgreementTag = 32001;
+constexpr int SumTag = 30000;
+constexpr int AgreementTag = 30001;
 
 /// What can go wrong, as ranks tell each other.
 enum class Trouble : char

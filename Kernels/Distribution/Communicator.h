@@ -24,7 +24,7 @@ public:
   virtual int Ranks() const = 0;
 
   /// Does not wait for the other rank.
-  /// @param tag  0 or above
+  /// @param tag  0 to 29999
   template <class T>
   void Send(int to, int tag, const std::vector<T>& values)
   {
