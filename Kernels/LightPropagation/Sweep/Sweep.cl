@@ -8,6 +8,7 @@
 #include "LightPropagation/Sweep/SweepFaces.cl"
 #include "LightPropagation/Sweep/SweepLayout.cl"
 #include "LightPropagation/Sweep/SweepPartialCurrents.cl"
+#include "LightPropagation/Sweep/SweepSides.cl"
 
 // One bundle through one plane, once for each number of members.
 #ifdef MEMBERS_1
@@ -511,13 +512,20 @@ static void cross_bundles(sweep_state* state, __global float* maps, const __glob
 // octants   see SweepRequest::octantSource
 // face_out, face_in  see Deposit.h, SweepOperator.h; where FACE_OUT, FACE_IN; face_out [unit][channel][cell] where
 //           FACE_SPREAD
+// sides_in, sides_out  [plane from the box's first on][ray], see SweepSides.cl; outer_sides: bit i, of light through
+//           its side i, that it leaves the whole grid; where SIDES
 __kernel __attribute__((reqd_work_group_size(1, 1, 1))) void sweep(SweepInfo info, const __global float* sigma,
   const __global float* source, __global float* path, __global float* lost, __global float* flux,
   __global float* currents, __global float* maps, const __global float* outside, const __global float* radiance,
   __global float* scratch, const __global UnitInfo* units, const __global BundleInfo* bundles,
   const __global float* coefficients, const __global CrossingInfo* crossings, const __global OwnLightInfo* own,
   const __global int2* schedule, __global float* tally, __global float* face_out, const __global float* face_in,
-  const __global float* octants)
+  const __global float* octants
+#if SIDES
+  ,
+  const __global float* sides_in, __global float* sides_out, int outer_sides
+#endif
+)
 {
   const int u = get_global_id(0);
   const int unit_count = get_global_size(0);
@@ -549,8 +557,13 @@ __kernel __attribute__((reqd_work_group_size(1, 1, 1))) void sweep(SweepInfo inf
 #endif
 #if FACE_IN
   state.faceIn = face_in;
+#endif
+#if FACE_IN || SIDES
   state.outside = planes;
   planes += RAYS_OF_ROW + PAD;
+#endif
+#if SIDES
+  state.outerSides = outer_sides;
 #endif
   __global int* thin = (__global int*)(planes + layout.block * plane_floats(&layout));
 #if DEGREE
@@ -619,6 +632,11 @@ __kernel __attribute__((reqd_work_group_size(1, 1, 1))) void sweep(SweepInfo inf
 #endif
 #if FACE_OUT
       state.facePlane = plane;
+#endif
+#if SIDES
+      const ulong sides_of_plane = (ulong)k * info.radianceEachWay * SIDE_FLOATS(&state);
+      state.sidesIn = sides_in + sides_of_plane;
+      state.sidesOut = sides_out + sides_of_plane;
 #endif
 #if DEGREE && MOMENTS_IN_PLACE
       const ulong line = info.moments.channels * channel;

@@ -195,8 +195,9 @@ static void STAGE_ROW(sweep_state* state, int y, int slot, bool first, bool depo
 static void COUNT_ESCAPED(sweep_state* state, const __global float* row, int y, int m, int du, int dv, float part,
   const __global BundleInfo* bundle, const __global float* across_u, const __global float* across_v)
 {
-  const bool through_v = !PERIODIC_V && ((dv < 0 && y == 0) || (dv > 0 && y == state->sizeV - 1));
-  const bool through_u = !PERIODIC_U && du != 0;
+  const bool through_v =
+    !PERIODIC_V && ((dv < 0 && y == 0) || (dv > 0 && y == state->sizeV - 1)) && LEAVES_GRID(state, dv > 0 ? 3 : 2);
+  const bool through_u = !PERIODIC_U && du != 0 && LEAVES_GRID(state, du > 0 ? 1 : 0);
   const int edge = du > 0 ? state->sizeU - 1 : 0;
   for (int c = 0; c < CHANNELS; ++c)
   {
@@ -405,6 +406,12 @@ static void CROSS_PLANE(sweep_state* state, __global float* map, const __global 
 #if FACE_IN
   FILL_OUTSIDE(state, outside, radiance, bundle, crossing);
   const __global float* const beside = state->outside;
+#elif SIDES
+  if (stages > 1)
+  {
+    take_across_v(state, bundle, MEMBERS * CHANNELS);
+  }
+  const __global float* const beside = state->outside;
 #else
   const __global float* const beside = outside;
 #endif
@@ -456,6 +463,9 @@ static void CROSS_PLANE(sweep_state* state, __global float* map, const __global 
           row = before + (from & (RingRows - 1)) * RAYS_OF_ROW;
           if (inside && (du != 0 || dv != 0))
           {
+#if SIDES
+            give_sides(state, bundle, m, own, y, du, dv);
+#endif
             COUNT_ESCAPED(state, own, y, m, du, dv, part, bundle, radiance, outside);
           }
         }
@@ -490,6 +500,15 @@ static void CROSS_PLANE(sweep_state* state, __global float* map, const __global 
       if (s < stages - 1)
       {
         ENTER_ASIDE(state, wrapped, radiance, bundle, crossing->moveU[s + 1], crossing->moveV[s + 1], out);
+      }
+#elif SIDES
+      for (int m = 0; s < stages - 1 && m < MEMBERS; ++m)
+      {
+        const int du = bundle->move[m][0] * crossing->moveU[s + 1] + bundle->move[m][1] * crossing->moveV[s + 1];
+        if (du != 0)
+        {
+          take_across_u(state, bundle, m, wrapped, du, out);
+        }
       }
 #endif
 #if DEGREE

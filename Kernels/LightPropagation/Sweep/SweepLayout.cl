@@ -16,6 +16,7 @@
 //   PERIODIC_P  1 where rays go round the axis: planes are added to many times, and what rounding loses is kept
 //   PERIODIC_U, PERIODIC_V  1 where rays come back on the other side
 //   FACE_OUT, FACE_IN  1 where light leaves and comes in by cells of the box's faces (SweepFaces.cl)
+//   SIDES     1 where the box is a block of a larger one (SweepSides.cl); may be left out
 //
 // Rays carry power (W), so that leaving through any face needs no further factor. A map row holds the rays by the voxel
 // they enter, for all members of a bundle and all channels: float [member][channel][ROW].
@@ -79,7 +80,14 @@ typedef struct
 #endif
 #if FACE_IN
   const __global float* faceIn;
+#endif
+#if FACE_IN || SIDES
   __global float* outside; // the row of rays that come in through the faces across v, of the bundle in this plane
+#endif
+#if SIDES
+  const __global float* sidesIn; // of the plane that is being crossed (SweepSides.cl)
+  __global float* sidesOut;
+  int outerSides;
 #endif
 } sweep_state;
 

@@ -1,0 +1,36 @@
+#pragma once
+
+#include "Medium/Grid.h"
+#include "Medium/VoxelBox.h"
+
+#include <array>
+#include <vector>
+
+namespace tyndall
+{
+/// A grid that is cut into boxes, one a rank, some of which may be empty.
+struct BlockPartition
+{
+  Grid whole;
+  std::vector<VoxelBox> blocks; ///< by rank, in voxels of the whole grid
+
+  /// @throws InvalidInput where a block reaches beyond the grid, two have a voxel in common, or a voxel is in none
+  void Check() const;
+
+  /// The grid of a rank's own voxels; of an empty block one of no voxels.
+  Grid OwnGrid(int rank) const;
+
+  /// The same grid cut again and again across its longest edge, as evenly as voxels allow; into fewer blocks where
+  /// there are fewer voxels than ranks, and the last ones are empty.
+  static BlockPartition Even(const Grid& whole, int ranks);
+};
+
+/// Past the last voxel of a box along an axis.
+inline int EndOf(const VoxelBox& box, int axis)
+{
+  return box.first[axis] + box.size[axis];
+}
+
+/// The voxels that two boxes share; without any its size is 0 along some axis.
+VoxelBox Common(const VoxelBox& a, const VoxelBox& b);
+}

@@ -1,0 +1,164 @@
+#include "Distribution/Communicator.h"
+
+#include "Device/Errors.h"
+
+#include <algorithm>
+#include <exception>
+#include <stdexcept>
+#include <string>
+#include <utility>
+
+namespace tyndall
+{
+namespace
+{
+// Sums and agreements have tags of their own, behind those of all else.
+constexpr int SumTag = 30000;
+constexpr int AgreementTag = 30001;
+
+/// What can go wrong, as ranks tell each other.
+enum class Trouble : char
+{
+  None,
+  Stopped, ///< Aborted
+  OfInput, ///< InvalidInput
+  OfDevice,
+  Other
+};
+
+/// What went wrong on this rank, and its words.
+struct Outcome
+{
+  Trouble trouble = Trouble::None;
+  std::string words;
+  std::exception_ptr error;
+};
+
+Outcome Try(const std::function<void()>& work)
+{
+  Outcome outcome;
+  try
+  {
+    work();
+  }
+  catch (const Aborted& error)
+  {
+    outcome = { Trouble::Stopped, error.what(), std::current_exception() };
+  }
+  catch (const InvalidInput& error)
+  {
+    outcome = { Trouble::OfInput, error.what(), std::current_exception() };
+  }
+  catch (const DeviceError& error)
+  {
+    outcome = { Trouble::OfDevice, error.what(), std::current_exception() };
+  }
+  catch (const std::exception& error)
+  {
+    outcome = { Trouble::Other, error.what(), std::current_exception() };
+  }
+  return outcome;
+}
+
+[[noreturn]] void Throw(Trouble trouble, const std::string& words)
+{
+  switch (trouble)
+  {
+    case Trouble::Stopped: throw Aborted();
+    case Trouble::OfInput: throw InvalidInput(words);
+    case Trouble::OfDevice: throw DeviceError(words);
+    default: throw std::runtime_error(words);
+  }
+}
+}
+
+void Communicator::CountAndSend(int to, int tag, std::vector<char> bytes)
+{
+  ++this->Counted.messages;
+  this->Counted.bytes += bytes.size();
+  this->Give(to, tag, std::move(bytes));
+}
+
+/// Rank 0 joins what the others have, one after the other, and tells them.
+std::vector<double> Communicator::OverRanks(const std::vector<double>& values, const Joined& join)
+{
+  if (this->Rank() > 0)
+  {
+    this->Send(0, SumTag, values);
+    return this->Receive<double>(0, SumTag);
+  }
+  std::vector<double> all = values;
+  for (int rank = 1; rank < this->Ranks(); ++rank)
+  {
+    join(all, this->Receive<double>(rank, SumTag));
+  }
+  for (int rank = 1; rank < this->Ranks(); ++rank)
+  {
+    this->Send(rank, SumTag, all);
+  }
+  return all;
+}
+
+std::vector<double> Communicator::Sum(const std::vector<double>& values)
+{
+  return this->OverRanks(values, [](std::vector<double>& all, const std::vector<double>& ofRank) {
+    std::transform(all.begin(), all.end(), ofRank.begin(), all.begin(), std::plus<double>());
+  });
+}
+
+std::vector<double> Communicator::Largest(const std::vector<double>& values)
+{
+  return this->OverRanks(values, [](std::vector<double>& all, const std::vector<double>& ofRank) {
+    std::transform(
+      all.begin(), all.end(), ofRank.begin(), all.begin(), [](double a, double b) { return std::max(a, b); });
+  });
+}
+
+void Communicator::Together(const std::function<void()>& work)
+{
+  const Outcome own = Try(work);
+  std::vector<char> first = { static_cast<char>(own.trouble) };
+  first.insert(first.end(), own.words.begin(), own.words.end());
+  if (this->Rank() > 0)
+  {
+    this->Send(0, AgreementTag, first);
+    first = this->Receive<char>(0, AgreementTag);
+  }
+  else
+  {
+    for (int rank = 1; rank < this->Ranks(); ++rank)
+    {
+      const std::vector<char> ofRank = this->Receive<char>(rank, AgreementTag);
+      if (first[0] == static_cast<char>(Trouble::None) && ofRank[0] != first[0])
+      {
+        const std::string where = "rank " + std::to_string(rank) + ": ";
+        first = { ofRank[0] };
+        first.insert(first.end(), where.begin(), where.end());
+        first.insert(first.end(), ofRank.begin() + 1, ofRank.end());
+      }
+    }
+    for (int rank = 1; rank < this->Ranks(); ++rank)
+    {
+      this->Send(rank, AgreementTag, first);
+    }
+  }
+  if (own.error)
+  {
+    std::rethrow_exception(own.error);
+  }
+  if (first[0] != static_cast<char>(Trouble::None))
+  {
+    Throw(static_cast<Trouble>(first[0]), std::string(first.begin() + 1, first.end()));
+  }
+}
+
+void SingleRank::Give(int, int, std::vector<char>)
+{
+  throw std::logic_error("a single rank has nobody to send to");
+}
+
+std::vector<char> SingleRank::Take(int, int)
+{
+  throw std::logic_error("a single rank has nobody to hear from");
+}
+}

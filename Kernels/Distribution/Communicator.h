@@ -1,0 +1,87 @@
+#pragma once
+
+#include <cstddef>
+#include <cstring>
+#include <functional>
+#include <vector>
+
+namespace tyndall
+{
+/// What ranks that share one computation say to each other. Each rank has one of its own and calls it from one thread.
+/// Messages from one rank to another with the same tag arrive in the order they were sent in.
+class Communicator
+{
+public:
+  /// Sent by this rank, sums and agreements among them.
+  struct Traffic
+  {
+    std::size_t messages = 0;
+    std::size_t bytes = 0;
+  };
+
+  virtual ~Communicator() = default;
+  virtual int Rank() const = 0;
+  virtual int Ranks() const = 0;
+
+  /// Does not wait for the other rank.
+  /// @param tag  0 to 29999
+  template <class T>
+  void Send(int to, int tag, const std::vector<T>& values)
+  {
+    std::vector<char> bytes(values.size() * sizeof(T));
+    if (!bytes.empty())
+    {
+      std::memcpy(bytes.data(), values.data(), bytes.size());
+    }
+    this->CountAndSend(to, tag, std::move(bytes));
+  }
+  /// Waits for it.
+  template <class T>
+  std::vector<T> Receive(int from, int tag)
+  {
+    const std::vector<char> bytes = this->Take(from, tag);
+    std::vector<T> values(bytes.size() / sizeof(T));
+    if (!bytes.empty())
+    {
+      std::memcpy(values.data(), bytes.data(), values.size() * sizeof(T));
+    }
+    return values;
+  }
+
+  /// Added up over the ranks in their order, and the largest of all ranks: the same on each, value by value. All ranks
+  /// call it.
+  std::vector<double> Sum(const std::vector<double>& values);
+  std::vector<double> Largest(const std::vector<double>& values);
+
+  /// Runs `work` on every rank. Where it throws on one, it does on all: on those where nothing went wrong the error of
+  /// the first rank where something did, with its number. All ranks call it; what they send each other in `work` they
+  /// must send although something has gone wrong (SweepInBlocks.cxx does).
+  /// @throws Aborted where a rank was, InvalidInput, DeviceError and others likewise
+  void Together(const std::function<void()>& work);
+
+  const Traffic& Sent() const { return this->Counted; }
+
+protected:
+  virtual void Give(int to, int tag, std::vector<char> bytes) = 0;
+  virtual std::vector<char> Take(int from, int tag) = 0;
+
+private:
+  using Joined = std::function<void(std::vector<double>& all, const std::vector<double>& ofRank)>;
+  std::vector<double> OverRanks(const std::vector<double>& values, const Joined& join);
+  void CountAndSend(int to, int tag, std::vector<char> bytes);
+
+  Traffic Counted;
+};
+
+/// A computation's only rank.
+class SingleRank : public Communicator
+{
+public:
+  int Rank() const override { return 0; }
+  int Ranks() const override { return 1; }
+
+protected:
+  void Give(int to, int tag, std::vector<char> bytes) override;
+  std::vector<char> Take(int from, int tag) override;
+};
+}

@@ -1,0 +1,28 @@
+#pragma once
+
+#include "Distribution/BlockPartition.h"
+#include "LightPropagation/Distributed/ParallelBundles.h"
+
+#include <vector>
+
+namespace tyndall
+{
+/// Where rays go from one block into another.
+struct BlockContact
+{
+  enum Kind
+  {
+    Along,  ///< through the faces across the axis that they march along, at the end of a plane
+    AsideU, ///< through those across u or v, within one
+    AsideV,
+    Edge ///< by a move along both at once
+  };
+  int from = 0, to = 0;
+  Kind kind = Along;
+  VoxelBox cells; ///< that they come from, in voxels of the whole grid
+};
+
+/// All contacts of one block with another, none or one of most kinds, in the order of these.
+std::vector<BlockContact> ContactsBetween(
+  const BlockPartition& partition, const ParallelBundles& rays, int from, int to);
+}

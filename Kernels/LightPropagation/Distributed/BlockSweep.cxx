@@ -1,0 +1,396 @@
+#include "LightPropagation/Distributed/BlockSweep.h"
+
+#include "Device/Defines.h"
+#include "Medium/BoxFaces.h"
+#include "TyndallKernelSources.h"
+
+#include <algorithm>
+#include <string>
+#include <utility>
+
+namespace tyndall
+{
+namespace
+{
+/// The ray pattern is that of the whole grid, arrays are the block's own.
+SweepPlan PlanOf(
+  Device& device, const BlockPartition& partition, int rank, const ParallelBundles& rays, const SweepVolume& volume)
+{
+  SweepPlan plan(device, partition.whole, partition.blocks[rank], rays.axis, rays.bundles, volume.channels,
+    { false, false, false }, volume.deposit.flux != nullptr, volume.deposit.partialCurrents != nullptr, nullptr,
+    volume.moments, true, volume.octantSource != nullptr);
+  const std::array<int, 3>& n = partition.blocks[rank].size;
+  const std::array<int, 3> step = { 1, n[0], n[0] * n[1] };
+  PlaneInfo& plane = plan.plane;
+  plane.firstU = plane.firstV = plane.firstP = 0;
+  plane.stepU = step[plan.axes.u];
+  plane.stepV = step[plan.axes.v];
+  plane.stepP = step[plan.axes.axis];
+  return plan;
+}
+
+/// Of a member that moves as the bundle's crossing has it in a stage.
+std::array<int, 2> MoveOf(const BundleInfo& bundle, int member, const CrossingInfo& crossing, int stage)
+{
+  const cl_int* move = bundle.move[member];
+  return { move[0] * crossing.moveU[stage] + move[1] * crossing.moveV[stage],
+    move[2] * crossing.moveU[stage] + move[3] * crossing.moveV[stage] };
+}
+}
+
+BlockSweep::BlockSweep(Device& device, const BlockPartition& partition, int rank, const ParallelBundles& rays,
+  const SweepVolume& volume, BlockWorkspace& workspace)
+  : TheDevice(device)
+  , Bundles(rays)
+  , Whole(partition.whole)
+  , Block(partition.blocks[rank])
+  , Workspace(workspace)
+  , Plan(PlanOf(device, partition, rank, rays, volume))
+  , Crossings(this->Plan.Crossings(this->Plan.PlanesBefore(rays.way), this->Plan.Planes()))
+  , SideFloats(static_cast<std::size_t>(this->Plan.plane.sizeU) + this->Plan.plane.sizeV + 1)
+  , RayCount(this->Plan.radianceEachWay)
+{
+  const SweepPlan& plan = this->Plan;
+  for (const Bundle& bundle : plan.bundles)
+  {
+    std::array<double, 2> moves = {};
+    for (int k = 0; k < this->Whole.size[rays.axis]; ++k)
+    {
+      const PlaneCrossing crossing = bundle.Crossing(k);
+      for (int s = 1; s < crossing.count; ++s)
+      {
+        moves[0] += crossing.segments[s].part * crossing.segments[s].moveU;
+        moves[1] += crossing.segments[s].part * crossing.segments[s].moveV;
+      }
+    }
+    this->Moves.push_back(moves);
+  }
+  workspace.sweep.Reserve(device, plan.mapsEachWay, plan.units.size() * plan.ScratchFloats());
+  const std::size_t sides = this->RayCount * plan.Planes() * this->SideFloats;
+  if (workspace.sidesIn.Size() < sides)
+  {
+    workspace.sidesIn = Buffer<float>(device, sides, "the rays that come in from other blocks");
+    workspace.sidesOut = Buffer<float>(device, sides, "the rays that go out to other blocks");
+  }
+  this->Outside = Buffer<float>(device, plan.outsideEachWay, "the light that comes in sideways");
+  this->Radiance = Buffer<float>(device, 2 * plan.radianceEachWay, "the light that comes in sideways");
+  this->Sideways =
+    Buffer<float>(device, plan.units.size() * plan.Planes() * 4 * plan.channels, "the power that leaves sideways");
+  this->Coefficients = Buffer<float>(device, std::vector<float>{ 0.0f }, "the angular functions");
+  this->BundlesOnDevice = Buffer<BundleInfo>(device, plan.bundleRows, "the bundles of rays");
+  this->Units = Buffer<UnitInfo>(device, plan.units, "the units of work");
+  this->Schedule = Buffer<cl_int2>(device, plan.schedule, "the schedule");
+  this->CrossingsOnDevice = Buffer<CrossingInfo>(device, plan.Crossings(0, plan.CrossingPlanes()), "the ray pattern");
+  this->OwnLight = Buffer<OwnLightInfo>(device, plan.OwnLight(), "the ray pattern");
+}
+
+int BlockSweep::DirectionOf(const Member& member) const
+{
+  return this->Bundles.way == 0 ? member.direction : member.opposite;
+}
+
+bool BlockSweep::IsOuter(int axis, bool entry) const
+{
+  const bool low = (this->Bundles.signs[axis] > 0) == entry;
+  return low ? this->Block.first[axis] == 0 : EndOf(this->Block, axis) == this->Whole.size[axis];
+}
+
+BlockSweep::Light BlockSweep::LightOf(const SweepBoundary& boundary, std::size_t b, const Member& member) const
+{
+  const PlaneAxes& axes = this->Plan.axes;
+  const float power = static_cast<float>(this->Plan.bundles[b].power);
+  const auto through = [&](int axis) {
+    Rgb light = boundary ? boundary(this->DirectionOf(member), EntryFace(axis, this->Bundles.signs[axis] > 0)) : Rgb{};
+    for (double& value : light)
+    {
+      value = static_cast<float>(value * power);
+    }
+    return light;
+  };
+  return { through(axes.u), through(axes.v), through(axes.axis) };
+}
+
+RaysAtFaces BlockSweep::FromOutside(const SweepBoundary& boundary) const
+{
+  const SweepPlan& plan = this->Plan;
+  RaysAtFaces rays;
+  rays.maps.assign(plan.mapsEachWay, 0.0f);
+  rays.sides.assign(this->RayCount * plan.Planes() * this->SideFloats, 0.0f);
+  for (std::size_t b = 0; boundary && b < plan.bundles.size(); ++b)
+  {
+    const BundleInfo& bundle = plan.bundleRows[b];
+    for (int m = 0; m < bundle.members; ++m)
+    {
+      const Light light = this->LightOf(boundary, b, plan.bundles[b].members[m]);
+      for (int c = 0; c < plan.channels; ++c)
+      {
+        const std::size_t slot = static_cast<std::size_t>(m) * plan.channels + c;
+        this->FillSides(light, bundle.border + slot, c, rays);
+        for (int v = 0; this->IsOuter(plan.axes.axis, true) && v < plan.plane.sizeV; ++v)
+        {
+          float* row = rays.maps.data() + bundle.map + plan.vector +
+            (static_cast<std::size_t>(v) * bundle.members * plan.channels + slot) * plan.row;
+          std::fill(row, row + plan.plane.sizeU, static_cast<float>(light.along[c]));
+        }
+      }
+    }
+  }
+  return rays;
+}
+
+/// Beyond an edge of the grid half comes in through either face.
+void BlockSweep::FillSides(const Light& light, std::size_t ray, int c, RaysAtFaces& rays) const
+{
+  const bool outerU = this->IsOuter(this->Plan.axes.u, true), outerV = this->IsOuter(this->Plan.axes.v, true);
+  const float u = outerU ? static_cast<float>(light.u[c]) : 0.0f, v = outerV ? static_cast<float>(light.v[c]) : 0.0f;
+  for (int k = 0; k < this->Plan.Planes(); ++k)
+  {
+    float* side = rays.sides.data() + (k * this->RayCount + ray) * this->SideFloats;
+    float* acrossU = side + this->Plan.plane.sizeU;
+    float* edge = acrossU + this->Plan.plane.sizeV;
+    std::fill(side, acrossU, v);
+    std::fill(acrossU, edge, u);
+    *edge = outerU && outerV ? 0.5f * (u + v) : u + v;
+  }
+}
+
+std::array<Rgb, 6> BlockSweep::PowerIn(const SweepBoundary& boundary) const
+{
+  std::array<Rgb, 6> power = {};
+  const PlaneAxes& axes = this->Plan.axes;
+  const auto face = [this](int axis) { return EntryFace(axis, this->Bundles.signs[axis] > 0); };
+  const double sizeU = this->Whole.size[axes.u], sizeV = this->Whole.size[axes.v];
+  for (std::size_t b = 0; boundary && b < this->Plan.bundles.size(); ++b)
+  {
+    for (const Member& member : this->Plan.bundles[b].members)
+    {
+      const Light light = this->LightOf(boundary, b, member);
+      const bool swapped = member.uFromU == 0;
+      for (int c = 0; c < this->Plan.channels; ++c)
+      {
+        power[face(axes.axis)][c] += light.along[c] * sizeU * sizeV;
+        power[face(axes.u)][c] += light.u[c] * this->Moves[b][swapped ? 1 : 0] * sizeV;
+        power[face(axes.v)][c] += light.v[c] * this->Moves[b][swapped ? 0 : 1] * sizeU;
+      }
+    }
+  }
+  return power;
+}
+
+RaysAtFaces BlockSweep::Cross(
+  const SweepVolume& volume, RaysAtFaces in, const SweepBoundary& boundary, SweepTally& tally, const Monitor& monitor)
+{
+  this->WriteBeyond(boundary);
+  this->Workspace.sweep.maps.Write(in.maps.data(), in.maps.size());
+  this->Workspace.sidesIn.Write(in.sides.data(), in.sides.size());
+  this->Launch(volume, monitor);
+  this->Workspace.sweep.maps.Read(in.maps.data(), in.maps.size());
+  this->Workspace.sidesOut.Read(in.sides.data(), in.sides.size());
+  this->CountLeft(in, tally);
+  return in;
+}
+
+/// Light from beyond the grid, for rays that come in at one of its edges and leave at another without crossing a voxel.
+void BlockSweep::WriteBeyond(const SweepBoundary& boundary)
+{
+  const SweepPlan& plan = this->Plan;
+  std::vector<float> outside(plan.outsideEachWay, 0.0f), radiance(2 * plan.radianceEachWay, 0.0f);
+  for (std::size_t b = 0; boundary && b < plan.bundles.size(); ++b)
+  {
+    const BundleInfo& bundle = plan.bundleRows[b];
+    for (int m = 0; m < bundle.members; ++m)
+    {
+      const Light light = this->LightOf(boundary, b, plan.bundles[b].members[m]);
+      for (int c = 0; c < plan.channels; ++c)
+      {
+        const std::size_t slot = static_cast<std::size_t>(m) * plan.channels + c;
+        float* row = outside.data() + bundle.outside + slot * plan.row + plan.vector;
+        std::fill(row, row + plan.plane.sizeU, static_cast<float>(light.v[c]));
+        for (int way = 0; way < 2; ++way)
+        {
+          radiance[way * plan.radianceEachWay + bundle.border + slot] = static_cast<float>(light.u[c]);
+        }
+      }
+    }
+  }
+  this->Outside.Write(outside.data());
+  this->Radiance.Write(radiance.data());
+}
+
+cl::Kernel BlockSweep::Kernel(const SweepVolume& volume)
+{
+  const SweepPlan& plan = this->Plan;
+  const bool shines = volume.source != nullptr;
+  std::string options = Define("SIDES", 1) + Define("REAL_WIDTH", plan.vector) + Define("CHANNELS", plan.channels) +
+    Define("ROW", plan.row) + Define("SOURCE", shines) + Define("BORDER", 0) + Define("NET_FLUX", plan.netFlux) +
+    Define("FACE_OUT", 0) + Define("FACE_SPREAD", 0) + Define("FACE_IN", 0) +
+    Define("OCTANT_SOURCE", plan.octantSource && shines) + Define("CURRENTS", plan.partialCurrents) +
+    Define("DEGREE", 0) + Define("BEAMS", 0) + Define("PERIODIC_P", 0) + Define("PERIODIC_U", 0) +
+    Define("PERIODIC_V", 0);
+  for (int members = 1; members <= MaxMembers; members *= 2)
+  {
+    const auto has = [&](const BundleInfo& bundle) { return bundle.members == members; };
+    if (std::any_of(plan.bundleRows.begin(), plan.bundleRows.end(), has))
+    {
+      options += Define(("MEMBERS_" + std::to_string(members)).c_str(), 1);
+    }
+  }
+  return this->TheDevice.Kernel("sweep", kernel_source::Sweep, options);
+}
+
+void BlockSweep::Launch(const SweepVolume& volume, const Monitor& monitor)
+{
+  const SweepPlan& plan = this->Plan;
+  const Buffer<float>& path = *volume.deposit.path; // stands for what the kernel does not touch
+  const Buffer<float>& flux = volume.deposit.flux ? *volume.deposit.flux : path;
+  const Buffer<float>& currents = volume.deposit.partialCurrents ? *volume.deposit.partialCurrents : path;
+  const Buffer<float>& source = volume.source ? *volume.source : path;
+  const Buffer<float>& octants = volume.octantSource ? *volume.octantSource : path;
+  SweepInfo info = {};
+  info.sigmaFirst = volume.sigma_t_first;
+  info.first = volume.first;
+  info.stride = volume.stride;
+  info.radianceEachWay = static_cast<uint>(plan.radianceEachWay); // the other buffers hold one way alone
+  info.bundles = static_cast<int>(plan.bundles.size());
+  info.patternPlanes = plan.PatternPlanes();
+  info.axis = plan.axes.axis;
+  info.planes = plan.plane;
+  info.moments = plan.moments;
+  info.sizeY = this->Block.size[1];
+  info.firstChannel = volume.firstChannel;
+  cl_int outer = 0;
+  for (int side = 0; side < 4; ++side)
+  {
+    const int axis = side < 2 ? plan.axes.u : plan.axes.v;
+    const bool exit = (side % 2 == 1) == (this->Bundles.signs[axis] > 0);
+    outer |= exit && this->IsOuter(axis, false) ? 1 << side : 0;
+  }
+  cl::Kernel kernel = this->Kernel(volume);
+  for (int launch = 0; launch < plan.launches; ++launch)
+  {
+    info.launch = launch;
+    With(kernel, info, *volume.sigma_t, source, path, path, flux, currents, this->Workspace.sweep.maps, this->Outside,
+      this->Radiance, this->Workspace.sweep.scratch, this->Units, this->BundlesOnDevice, this->Coefficients,
+      this->CrossingsOnDevice, this->OwnLight, this->Schedule, this->Sideways, path, path, octants,
+      this->Workspace.sidesIn, this->Workspace.sidesOut, outer);
+    this->TheDevice.Queue().enqueueNDRangeKernel(kernel, cl::NullRange, cl::NDRange(plan.units.size()), cl::NDRange(1));
+    this->TheDevice.Queued(plan.secondsPerLaunch);
+    Report(monitor, (launch + 1.0) / plan.launches);
+  }
+}
+
+void BlockSweep::CountLeft(const RaysAtFaces& out, SweepTally& tally) const
+{
+  const SweepPlan& plan = this->Plan;
+  const PlaneAxes& axes = plan.axes;
+  const std::array<int, 4> faces = { 2 * axes.u, 2 * axes.u + 1, 2 * axes.v, 2 * axes.v + 1 };
+  const std::vector<float> left = this->Sideways.Read();
+  for (std::size_t i = 0; i < left.size(); ++i)
+  {
+    tally.out[faces[i / plan.channels % 4]][i % plan.channels] += left[i];
+  }
+  if (!this->IsOuter(axes.axis, false))
+  {
+    return;
+  }
+  for (const BundleInfo& bundle : plan.bundleRows)
+  {
+    for (int row = 0; row < plan.plane.sizeV * bundle.members * plan.channels; ++row)
+    {
+      const float* rays = out.maps.data() + bundle.map + static_cast<std::size_t>(row) * plan.row + plan.vector;
+      double& sum = tally.out[2 * axes.axis + 1 - this->Bundles.way][row % plan.channels];
+      for (int u = 0; u < plan.plane.sizeU; ++u)
+      {
+        sum += rays[u];
+      }
+    }
+  }
+}
+
+/// visit(value) for each place of a ray that goes through a contact, in the order of the whole grid's cells, so that
+/// sender and receiver agree.
+/// @param out  places are those of rays that go out, else of those that come in
+template <class AtFaces, class Visit>
+void BlockSweep::ForEachRay(const BlockContact& contact, bool out, AtFaces& rays, const Visit& visit) const
+{
+  const SweepPlan& plan = this->Plan;
+  const PlaneAxes& axes = plan.axes;
+  const VoxelBox& cells = contact.cells;
+  const int firstU = cells.first[axes.u] - this->Block.first[axes.u], endU = firstU + cells.size[axes.u];
+  const int firstV = cells.first[axes.v] - this->Block.first[axes.v], endV = firstV + cells.size[axes.v];
+  if (contact.kind == BlockContact::Along)
+  {
+    for (const BundleInfo& bundle : plan.bundleRows)
+    {
+      const int slots = bundle.members * plan.channels;
+      for (int v = firstV; v < endV; ++v)
+      {
+        for (int slot = 0; slot < slots; ++slot)
+        {
+          auto* row =
+            rays.maps.data() + bundle.map + (static_cast<std::size_t>(v) * slots + slot) * plan.row + plan.vector;
+          std::for_each(row + firstU, row + endU, visit);
+        }
+      }
+    }
+    return;
+  }
+  const int edgeU = this->Bundles.signs[axes.u] > 0 ? plan.plane.sizeU - 1 : 0; // where rays leave across u
+  for (int plane = 0; plane < cells.size[axes.axis]; ++plane)
+  {
+    const int inBlock = cells.first[axes.axis] - this->Block.first[axes.axis] + plane;
+    const int k = this->Bundles.way == 0 ? inBlock : plan.Planes() - 1 - inBlock;
+    for (std::size_t b = 0; b < plan.bundles.size(); ++b)
+    {
+      const BundleInfo& bundle = plan.bundleRows[b];
+      const CrossingInfo& crossing = this->Crossings[k * plan.bundles.size() + b];
+      for (int slot = 0; slot < bundle.members * plan.channels; ++slot)
+      {
+        bool goes = false;
+        for (int s = 1; s < crossing.stages; ++s)
+        {
+          const auto [du, dv] = MoveOf(bundle, slot / plan.channels, crossing, s);
+          goes = goes ||
+            (contact.kind == BlockContact::AsideU      ? du != 0
+                : contact.kind == BlockContact::AsideV ? dv != 0
+                                                       : du != 0 && dv != 0);
+        }
+        if (!goes)
+        {
+          continue;
+        }
+        auto* acrossV = rays.sides.data() + (k * this->RayCount + bundle.border + slot) * this->SideFloats;
+        auto* acrossU = acrossV + plan.plane.sizeU;
+        if (contact.kind == BlockContact::AsideU)
+        {
+          std::for_each(acrossU + firstV, acrossU + endV, visit);
+        }
+        else if (contact.kind == BlockContact::AsideV)
+        {
+          std::for_each(acrossV + firstU, acrossV + endU, visit);
+        }
+        else
+        {
+          visit(!out ? acrossU[plan.plane.sizeV] : firstU == edgeU ? acrossU[firstV] : acrossV[firstU]);
+        }
+      }
+    }
+  }
+}
+
+void BlockSweep::Pack(const BlockContact& contact, const RaysAtFaces& out, std::vector<float>& message) const
+{
+  this->ForEachRay(contact, true, out, [&](float ray) { message.push_back(ray); });
+}
+
+void BlockSweep::Unpack(
+  const BlockContact& contact, const std::vector<float>& message, std::size_t& at, RaysAtFaces& in) const
+{
+  this->ForEachRay(contact, false, in, [&](float& ray) { ray = message.at(at++); });
+}
+
+std::size_t BlockSweep::Bytes() const
+{
+  return 2 * (this->Plan.mapsEachWay + this->RayCount * this->Plan.Planes() * this->SideFloats) * sizeof(float);
+}
+}

@@ -1,0 +1,39 @@
+#pragma once
+
+#include "Device/Device.h"
+#include "Device/Monitor.h"
+#include "Distribution/BlockPartition.h"
+#include "Distribution/Communicator.h"
+#include "Light/LightField.h"
+#include "LightPropagation/PropagationSettings.h"
+#include "Lights/Lights.h"
+#include "Medium/Medium.h"
+
+#include <string>
+
+namespace tyndall
+{
+/// The light of a medium that is spread over ranks by blocks, by light propagation maps (ConservativePropagation.h)
+/// with scattering orders added up one by one: sweeps go from rank to rank (SweepInBlocks.h), what counts power and
+/// when orders end is the same on all. No rank holds more than its block. All ranks call it together.
+///
+/// Carried are light that comes in through the box's faces, from the sky and the environment, of directional lights,
+/// and emission, all of it along the usual directions; scattering is isotropic, or by the similarity relation where
+/// settings.angularDegree is 0. The light is that of SolveConservative with emissionError, uncollidedDirections 0,
+/// constant source and no acceleration, but for rounding.
+///
+/// @param medium  of the rank's block, with the grid that partition.OwnGrid() has; looked at by nobody where that has
+///   no voxels
+/// @param illumination, settings  the same on all ranks
+/// @return the light of the rank's block; balance, face powers and convergence are of the whole. Empty arrays where the
+///   block is
+/// @throws InvalidInput  on every rank, where one of them has an input that Check() refuses, where they disagree, or
+///   where the scene has something that is not carried from rank to rank: names it
+/// @throws DeviceError, Aborted  on every rank what one of them throws
+LightField SolveInBlocks(Device& device, Communicator& communicator, const BlockPartition& partition,
+  const Medium& medium, const Illumination& illumination, const PropagationSettings& settings,
+  const Monitor& monitor = {});
+
+/// What of a scene keeps SolveInBlocks from it, in words for an error; empty: nothing does.
+std::string NotInBlocks(const Medium& medium, const Illumination& illumination, const PropagationSettings& settings);
+}

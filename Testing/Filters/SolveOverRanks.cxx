@@ -1,0 +1,151 @@
+// A medium that ParaView's extent translator spreads over MPI ranks, solved block by block, against the whole on one.
+// Run by mpiexec; a program by itself.
+
+#include "Common/ControllerCommunicator.h"
+
+#include "LightPropagation/Distributed/PropagationInBlocks.h"
+
+#include "vtkExtentTranslator.h"
+#include "vtkMPIController.h"
+#include "vtkNew.h"
+
+#include <algorithm>
+#include <cmath>
+#include <cstdlib>
+#include <exception>
+#include <iostream>
+#include <vector>
+
+using namespace tyndall;
+
+namespace
+{
+/// The blocks of cells that the ranks of a pipeline have of an image.
+BlockPartition PartitionOf(const Grid& grid, int ranks)
+{
+  BlockPartition partition = { grid, {} };
+  vtkNew<vtkExtentTranslator> translator;
+  translator->SetWholeExtent(0, grid.size[0], 0, grid.size[1], 0, grid.size[2]);
+  translator->SetNumberOfPieces(ranks);
+  for (int rank = 0; rank < ranks; ++rank)
+  {
+    translator->SetPiece(rank);
+    translator->PieceToExtent();
+    int extent[6];
+    translator->GetExtent(extent);
+    VoxelBox block;
+    for (int axis = 0; axis < 3; ++axis)
+    {
+      block.first[axis] = extent[2 * axis];
+      block.size[axis] = std::max(0, extent[2 * axis + 1] - extent[2 * axis]);
+    }
+    partition.blocks.push_back(block);
+  }
+  return partition;
+}
+
+/// Coefficients of a block, by where voxels are in the whole.
+struct Waves
+{
+  explicit Waves(const BlockPartition& partition, int rank)
+  {
+    medium.grid = partition.OwnGrid(rank);
+    const VoxelBox& block = partition.blocks[rank];
+    for (std::size_t i = 0; i < block.VoxelCount(); ++i)
+    {
+      const std::array<int, 3> at = medium.grid.VoxelAt(i);
+      const double wave = std::sin(0.7 * (at[0] + block.first[0])) * std::sin(0.5 * (at[1] + block.first[1])) *
+        std::sin(0.9 * (at[2] + block.first[2]));
+      absorption.push_back(static_cast<float>(0.1 * (1.0 + wave)));
+      scattering.push_back(static_cast<float>(0.4 * (1.0 - wave)));
+    }
+    medium.sigma_a = { absorption.data() };
+    medium.sigma_s = { scattering.data() };
+  }
+  Waves(const Waves&) = delete;
+  Waves& operator=(const Waves&) = delete;
+
+  Medium medium;
+  std::vector<float> absorption, scattering;
+};
+
+/// The largest difference from the light of the whole, over its largest value; of rank 0, else 0.
+double DifferenceFromWhole(Communicator& communicator, const BlockPartition& partition, const LightField& own,
+  const std::function<LightField()>& solveWhole)
+{
+  communicator.Send(0, 1, own.fluence);
+  if (communicator.Rank() > 0)
+  {
+    return 0.0;
+  }
+  const LightField whole = solveWhole();
+  double largest = 0.0, difference = 0.0;
+  for (int rank = 0; rank < communicator.Ranks(); ++rank)
+  {
+    const std::vector<float> part = communicator.Receive<float>(rank, 1);
+    const Grid grid = partition.OwnGrid(rank);
+    for (std::size_t i = 0; i < part.size(); ++i)
+    {
+      std::array<int, 3> at = grid.VoxelAt(i);
+      for (int axis = 0; axis < 3; ++axis)
+      {
+        at[axis] += partition.blocks[rank].first[axis];
+      }
+      const double expected = whole.fluence[partition.whole.IndexOf(at)];
+      largest = std::max(largest, expected);
+      difference = std::max(difference, std::abs(part[i] - expected));
+    }
+  }
+  return difference / largest;
+}
+
+bool Solve(Communicator& communicator)
+{
+  Grid grid;
+  grid.size = { 17, 12, 9 };
+  const BlockPartition partition = PartitionOf(grid, communicator.Ranks());
+  const std::shared_ptr<Device> device = Device::Find();
+  Illumination shining;
+  shining.sky = { 1.0, 1.0, 1.0 };
+  shining.lights.emplace_back();
+  PropagationSettings settings;
+  settings.directionsPerFace = 9;
+  const Waves block(partition, communicator.Rank());
+  const LightField light = SolveInBlocks(*device, communicator, partition, block.medium, shining, settings);
+  const double difference = DifferenceFromWhole(communicator, partition, light, [&] {
+    const BlockPartition alone = { grid, { { { 0, 0, 0 }, grid.size } } };
+    SingleRank single;
+    return SolveInBlocks(*device, single, alone, Waves(alone, 0).medium, shining, settings);
+  });
+  if (communicator.Rank() == 0)
+  {
+    std::cout << communicator.Ranks() << " ranks, " << communicator.Sent().bytes << " bytes sent by rank 0; differs by "
+              << difference << ", balance off by " << light.balance.RelativeError(1) << "\n";
+  }
+  return difference < 1e-6 && light.balance.RelativeError(1) < 1e-6;
+}
+}
+
+int main(int argc, char* argv[])
+{
+  vtkNew<vtkMPIController> controller;
+  controller->Initialize(&argc, &argv);
+  bool right = false;
+  try
+  {
+    ControllerCommunicator communicator(controller, 60.0);
+    right = Solve(communicator);
+  }
+  catch (const DeviceError& error)
+  {
+    std::cerr << error.what() << "\n";
+    controller->Finalize();
+    return std::getenv("TYNDALL_REQUIRE_DEVICE") ? EXIT_FAILURE : 125;
+  }
+  catch (const std::exception& error)
+  {
+    std::cerr << error.what() << "\n";
+  }
+  controller->Finalize();
+  return right ? EXIT_SUCCESS : EXIT_FAILURE;
+}

@@ -1,0 +1,254 @@
+// The light of a medium that is spread over ranks, against that of the whole on one.
+
+#include "DeviceTest.h"
+#include "RandomMedium.h"
+
+#include "Distribution/RanksInThreads.h"
+#include "LightPropagation/Conservative/ConservativePropagation.h"
+#include "LightPropagation/Distributed/PropagationInBlocks.h"
+
+#include <functional>
+#include <mutex>
+#include <string>
+#include <vector>
+
+using namespace tyndall;
+
+namespace
+{
+/// Such that one rank and many do the same.
+PropagationSettings SettingsOf(int orders)
+{
+  PropagationSettings settings;
+  settings.directionsPerFace = 9;
+  settings.maximumOrders = orders;
+  settings.netFlux = true;
+  settings.acceleration = PropagationAcceleration::None;
+  settings.source = PropagationSource::Constant;
+  settings.uncollidedDirections = 0;
+  settings.emissionError = 0.0;
+  return settings;
+}
+
+Illumination LitFromOutside()
+{
+  Illumination shining;
+  shining.faces[0] = { 1.0, 1.0, 1.0 };
+  shining.sky = { 0.2, 0.2, 0.2 };
+  Light sun;
+  sun.direction = { 0.3, -0.5, -0.9 };
+  sun.power = { 2.0, 2.0, 2.0 };
+  shining.lights = { sun };
+  return shining;
+}
+
+/// The arrays of a box of a medium.
+struct PartOf
+{
+  PartOf(const RandomMedium& whole, const VoxelBox& box)
+    : medium(whole.medium)
+    , components(static_cast<std::size_t>(whole.medium.sigma_a.components))
+  {
+    medium.grid.size = box.size;
+    for (std::size_t i = 0; i < box.VoxelCount(); ++i)
+    {
+      std::array<int, 3> voxel = medium.grid.VoxelAt(i);
+      for (int axis = 0; axis < 3; ++axis)
+      {
+        voxel[axis] += box.first[axis];
+      }
+      places.push_back(whole.medium.grid.IndexOf(voxel));
+      for (std::size_t c = 0; c < components; ++c)
+      {
+        absorption.push_back(whole.absorption[places.back() * components + c]);
+        scattering.push_back(whole.scattering[places.back() * components + c]);
+        emission.push_back(whole.emission[places.back() * components + c]);
+      }
+    }
+    medium.sigma_a.values = absorption.data();
+    medium.sigma_s.values = scattering.data();
+    medium.emission.values = emission.data();
+  }
+  PartOf(const PartOf&) = delete;
+  PartOf& operator=(const PartOf&) = delete;
+
+  Medium medium;
+  std::size_t components;
+  std::vector<std::size_t> places; ///< in the whole
+  std::vector<float> absorption, scattering, emission;
+};
+
+/// Arrays of the blocks put together; all else of rank 0, which must be that of all.
+LightField LightOfAll(Device& device, const BlockPartition& partition, const RandomMedium& whole,
+  const Illumination& shining, const PropagationSettings& settings)
+{
+  LightField all;
+  std::mutex guard;
+  RunInThreads(static_cast<int>(partition.blocks.size()), [&](Communicator& communicator) {
+    const PartOf part(whole, partition.blocks[communicator.Rank()]);
+    const LightField light = SolveInBlocks(device, communicator, partition, part.medium, shining, settings);
+    const std::lock_guard<std::mutex> lock(guard);
+    const std::size_t channels = static_cast<std::size_t>(light.channels);
+    const std::size_t values = whole.medium.grid.VoxelCount() * channels;
+    if (all.fluence.empty())
+    {
+      all = light;
+      all.fluence.assign(values, 0.0f);
+      all.fluenceDirect.assign(values, 0.0f);
+      all.netFlux.assign(3 * values, 0.0f);
+    }
+    EXPECT_EQ(light.facePowerOut, all.facePowerOut);
+    EXPECT_EQ(light.balance.absorbed, all.balance.absorbed);
+    EXPECT_EQ(light.convergence.size(), all.convergence.size());
+    const auto put = [&](const std::vector<float>& from, std::vector<float>& to, std::size_t width) {
+      for (std::size_t i = 0; i < part.places.size() * width; ++i)
+      {
+        to[part.places[i / width] * width + i % width] = from[i];
+      }
+    };
+    put(light.fluence, all.fluence, channels);
+    put(light.fluenceDirect, all.fluenceDirect, channels);
+    put(light.netFlux, all.netFlux, 3 * channels);
+  });
+  return all;
+}
+
+void ExpectSame(const LightField& found, const LightField& expected)
+{
+  EXPECT_LT(RelativeRmse(found.fluence, expected.fluence), 1e-6);
+  EXPECT_LT(RelativeRmse(found.fluenceDirect, expected.fluenceDirect), 1e-6);
+  EXPECT_LT(RelativeRmse(found.netFlux, expected.netFlux), 1e-6);
+  EXPECT_EQ(found.convergence.size(), expected.convergence.size());
+  EXPECT_LT(found.balance.RelativeError(expected.channels), 1e-6);
+  for (int c = 0; c < expected.channels; ++c)
+  {
+    EXPECT_NEAR(found.balance.absorbed[c], expected.balance.absorbed[c], 1e-6 * expected.balance.absorbed[c]);
+    EXPECT_NEAR(found.balance.entered[c], expected.balance.entered[c], 1e-6 * expected.balance.entered[c]);
+    for (int face = 0; face < 6; ++face)
+    {
+      EXPECT_NEAR(found.facePowerOut[face][c], expected.facePowerOut[face][c], 1e-6 * expected.facePowerOut[face][c]);
+    }
+  }
+}
+}
+
+class PropagationBlocks : public DeviceTest
+{
+};
+
+TEST_F(PropagationBlocks, HaveTheLightOfTheWholeOnOneToEightRanks)
+{
+  RandomMedium whole(Grid{ { 12, 9, 7 } }, 1, 0.8f, 5);
+  whole.Emit(0.3f);
+  const PropagationSettings settings = SettingsOf(0);
+  const LightField expected = SolveConservative(GetDevice(), whole.medium, LitFromOutside(), settings);
+  for (const int ranks : { 1, 2, 3, 4, 8 })
+  {
+    SCOPED_TRACE(std::to_string(ranks) + " ranks");
+    ExpectSame(
+      LightOfAll(GetDevice(), BlockPartition::Even(whole.medium.grid, ranks), whole, LitFromOutside(), settings),
+      expected);
+  }
+}
+
+TEST_F(PropagationBlocks, HaveTheLightOfTheWholeInColour)
+{
+  RandomMedium whole(Grid{ { 6, 7, 5 } }, 3, 0.8f, 6);
+  whole.Emit(0.3f);
+  Illumination shining = LitFromOutside();
+  shining.lights[0].power = { 1.0, 0.0, 3.0 };
+  const PropagationSettings settings = SettingsOf(3);
+  ExpectSame(LightOfAll(GetDevice(), BlockPartition::Even(whole.medium.grid, 3), whole, shining, settings),
+    SolveConservative(GetDevice(), whole.medium, shining, settings));
+}
+
+TEST_F(PropagationBlocks, GoOnBesideARankWithoutVoxels)
+{
+  RandomMedium whole(Grid{ { 2, 1, 1 } }, 1, 0.8f, 6);
+  whole.Emit(0.3f);
+  const PropagationSettings settings = SettingsOf(3);
+  ExpectSame(LightOfAll(GetDevice(), BlockPartition::Even(whole.medium.grid, 4), whole, LitFromOutside(), settings),
+    SolveConservative(GetDevice(), whole.medium, LitFromOutside(), settings));
+}
+
+/// Whatever goes wrong on one rank is one error on each, and none waits for the others.
+class PropagationBlocksFail : public PropagationBlocks
+{
+protected:
+  /// @param change  of what a rank is given
+  /// @return the errors by rank
+  std::vector<std::string> Errors(
+    const std::function<void(int rank, PartOf&, Illumination&, PropagationSettings&, Monitor&)>& change)
+  {
+    RandomMedium whole(Grid{ { 6, 5, 4 } }, 1, 0.8f, 6);
+    whole.Emit(0.3f);
+    const BlockPartition partition = BlockPartition::Even(whole.medium.grid, 3);
+    std::vector<std::string> errors(3);
+    RunInThreads(3, [&](Communicator& communicator) {
+      const int rank = communicator.Rank();
+      PartOf part(whole, partition.blocks[rank]);
+      Illumination shining = LitFromOutside();
+      PropagationSettings settings = SettingsOf(2);
+      Monitor monitor;
+      change(rank, part, shining, settings, monitor);
+      try
+      {
+        SolveInBlocks(GetDevice(), communicator, partition, part.medium, shining, settings, monitor);
+      }
+      catch (const std::exception& error)
+      {
+        errors[rank] = error.what();
+      }
+    });
+    return errors;
+  }
+
+  void ExpectErrors(const std::string& words,
+    const std::function<void(int rank, PartOf&, Illumination&, PropagationSettings&, Monitor&)>& change)
+  {
+    for (const std::string& error : Errors(change))
+    {
+      EXPECT_NE(error.find(words), std::string::npos) << error;
+    }
+  }
+};
+
+TEST_F(PropagationBlocksFail, TogetherWhereOneHasBadInput)
+{
+  ExpectErrors("sigma_a", [](int rank, PartOf& part, Illumination&, PropagationSettings&, Monitor&) {
+    part.absorption[0] = rank == 1 ? -1.0f : part.absorption[0];
+  });
+}
+
+TEST_F(PropagationBlocksFail, TogetherWhereTheyDisagree)
+{
+  ExpectErrors(
+    "disagree about the components", [](int rank, PartOf& part, Illumination&, PropagationSettings&, Monitor&) {
+      part.medium.emission = rank == 2 ? Field() : part.medium.emission;
+    });
+  ExpectErrors(
+    "disagree about settings", [](int rank, PartOf&, Illumination&, PropagationSettings& settings, Monitor&) {
+      settings.tolerance *= 1.0 + rank;
+    });
+  ExpectErrors("disagree about what shines",
+    [](int rank, PartOf&, Illumination& shining, PropagationSettings&, Monitor&) { shining.faces[3][0] += rank; });
+}
+
+TEST_F(PropagationBlocksFail, TogetherWhereOneIsStopped)
+{
+  ExpectErrors("aborted", [](int rank, PartOf&, Illumination&, PropagationSettings&, Monitor& monitor) {
+    if (rank == 1)
+    {
+      monitor = [](double done) { return done < 0.5; };
+    }
+  });
+}
+
+TEST_F(PropagationBlocksFail, WithWordsOnWhatIsNotCarriedFromRankToRank)
+{
+  ExpectErrors("periodic",
+    [](int, PartOf&, Illumination&, PropagationSettings& settings, Monitor&) { settings.periodic[1] = true; });
+  ExpectErrors("point, spot or rectangle", [](int, PartOf&, Illumination& shining, PropagationSettings&, Monitor&) {
+    shining.lights[0].type = LightType::Point;
+  });
+}
