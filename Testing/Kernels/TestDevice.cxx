@@ -125,7 +125,10 @@ TEST_F(DeviceLayer, WhoeverWaitsForTheCompilerHearsOfIt)
     const CompilationListener listener([&] { ++running; });
     values.Read();
   }
-  EXPECT_GT(running, 0) << "PoCL compiles the rest when the kernel first runs";
+  if (device.Name().find("Portable Computing Language") != std::string::npos)
+  {
+    EXPECT_GT(running, 0) << "PoCL compiles the rest when the kernel first runs";
+  }
   {
     const CompilationListener listener([&] { ++again; });
     device.Kernel("large", source);

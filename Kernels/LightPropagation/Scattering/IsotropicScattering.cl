@@ -8,6 +8,8 @@
 #include "Numerics/Exact.cl"
 #include "Numerics/Numerics.cl"
 
+#define ADDED_UP 32 // vectors
+
 // One order: what the sweep gathered becomes light and the next source. A work-item a chunk of a channel; a channel's
 // arrays begin at a vector's border and are filled up with zeros to a whole number of vectors.
 // path     W length; cleared
@@ -28,22 +30,30 @@ __kernel void scatter_order(__global float* path, __global float* fluence, __glo
   sigma_s += channel * stride;
   sigma_t += one_sigma_t ? 0 : channel * stride;
   real absorbed = (real)0.0f, scattered = (real)0.0f;
-  for (ulong i = begin; i < end; i += REAL_WIDTH)
+  // In two steps: floats lose digits where as many are added up one by one as a chunk has.
+  for (ulong part = begin; part < end; part += ADDED_UP * REAL_WIDTH)
   {
-    const real p = load_real(i, path);
+    real absorbed_of_part = (real)0.0f, scattered_of_part = (real)0.0f;
+    const ulong end_of_part = min(end, part + ADDED_UP * REAL_WIDTH);
+    for (ulong i = part; i < end_of_part; i += REAL_WIDTH)
+    {
+      const real p = load_real(i, path);
 #if SCATTERS
-    const real s = load_real(i, sigma_s);
+      const real s = load_real(i, sigma_s);
 #else
-    const real s = (real)0.0f;
+      const real s = (real)0.0f;
 #endif
-    const real f = multiply_add(p, (real)per_volume, load_real(i, fluence));
-    absorbed = multiply_add(fmax(load_real(i, sigma_t) - s, (real)0.0f), p, absorbed);
-    scattered = multiply_add(s, p, scattered);
-    store_real(f, i, fluence);
+      const real f = multiply_add(p, (real)per_volume, load_real(i, fluence));
+      absorbed_of_part = multiply_add(fmax(load_real(i, sigma_t) - s, (real)0.0f), p, absorbed_of_part);
+      scattered_of_part = multiply_add(s, p, scattered_of_part);
+      store_real(f, i, fluence);
 #if SCATTERS
-    store_real(s * p * (per_volume * M_1_PI_F * 0.25f), i, source);
+      store_real(s * p * (per_volume * M_1_PI_F * 0.25f), i, source);
 #endif
-    store_real((real)0.0f, i, path);
+      store_real((real)0.0f, i, path);
+    }
+    absorbed += absorbed_of_part;
+    scattered += scattered_of_part;
   }
   tally[channel * get_global_size(0) + get_global_id(0)] = (float2)(sum_of(absorbed), sum_of(scattered));
 }
