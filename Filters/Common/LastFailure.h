@@ -20,11 +20,6 @@ namespace tyndall
 constexpr const char* AbortedFact = "aborted";
 constexpr const char* FailedFact = "failed";
 
-/// Thrown where an input is empty because the filter before failed, which has said why.
-struct InputFailed
-{
-};
-
 /// When a filter's last run failed, and how. VTK runs a filter again with every update while its output does not cover
 /// the extent that was asked for, and that is so while the output is empty; ParaView makes several updates. This keeps
 /// them from reporting the same error each time.
