@@ -290,7 +290,7 @@ void GatheredImage::MakeWhole(int first)
       points.Add(PointBoxOf(piece.Extent));
       cells += static_cast<double>(CellBoxOf(piece.Extent).Count());
     }
-    const std::array<int, 6> extent = { points.low[0], points.high[0], points.low[1], points.high[1], points.low[2],
+    std::array<int, 6> extent = { points.low[0], points.high[0], points.low[1], points.high[1], points.low[2],
       points.high[2] };
     const ValueBox box = CellBoxOf(extent);
     double wanted = 1.0;
@@ -317,11 +317,11 @@ void GatheredImage::MakeWhole(int first)
 /// @param own  flags of the own piece
 void GatheredImage::LayOut(Kind kind, const std::vector<unsigned char>& own)
 {
-  const unsigned char duplicate = kind == Cells ? Flags::DUPLICATECELL : Flags::DUPLICATEPOINT;
-  const unsigned char hidden = kind == Cells ? Flags::HIDDENCELL : Flags::HIDDENPOINT;
+  constexpr std::array<unsigned char, Kinds> duplicates = { Flags::DUPLICATECELL, Flags::DUPLICATEPOINT };
+  constexpr std::array<unsigned char, Kinds> hiddens = { Flags::HIDDENCELL, Flags::HIDDENPOINT };
   if (this->Ranks == 1)
   {
-    this->Hidden[kind] = Only(hidden, own);
+    this->Hidden[kind] = Only(hiddens[kind], own);
     return;
   }
   std::vector<PieceLayout::Piece> pieces(this->Pieces.size());
@@ -365,7 +365,7 @@ void GatheredImage::LayOut(Kind kind, const std::vector<unsigned char>& own)
       }
     }
     const ValueBox whole = kind == Cells ? CellBoxOf(all) : PointBoxOf(all);
-    this->Layouts[kind] = std::make_unique<PieceLayout>(whole, std::move(pieces), duplicate, hidden);
+    this->Layouts[kind] = std::make_unique<PieceLayout>(whole, std::move(pieces), duplicates[kind], hiddens[kind]);
     if (const std::size_t gap = this->Layouts[kind]->FirstGap(); gap < whole.Count())
     {
       std::string place;
@@ -377,7 +377,7 @@ void GatheredImage::LayOut(Kind kind, const std::vector<unsigned char>& own)
       this->Refuse("its pieces leave a gap: no rank has " + std::string(KindNames[kind]) + " (" + place +
         "). Give the ranks pieces of one image.");
     }
-    this->Hidden[kind] = Only(hidden, this->Layouts[kind]->Flags());
+    this->Hidden[kind] = Only(hiddens[kind], this->Layouts[kind]->Flags());
   });
 }
 

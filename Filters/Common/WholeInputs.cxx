@@ -130,7 +130,8 @@ RankGlance Read(vtkMultiProcessStream& stream)
   RankGlance rank;
   int count = 0, inputs = 0;
   stream >> count;
-  for (rank.connections.resize(static_cast<std::size_t>(count)); int& connections : rank.connections)
+  rank.connections.resize(static_cast<std::size_t>(count));
+  for (int& connections : rank.connections)
   {
     stream >> connections;
     inputs += connections;
