@@ -6,6 +6,7 @@
 #include "Common/ImageInput.h"
 #include "Common/LastFailure.h"
 #include "Common/LightTransportWriting.h"
+#include "Common/RankMeeting.h"
 #include "Common/Ranks.h"
 #include "Common/WholeInputs.h"
 #include "Device/CompilationListener.h"
@@ -77,6 +78,43 @@ void WarnOfDevices(vtkAlgorithm* filter)
 
 namespace
 {
+void EmptyWithout(vtkInformationVector* outputs)
+{
+  EmptyOutputs(outputs, FailedFact);
+  for (int port = 0; port < outputs->GetNumberOfInformationObjects(); ++port)
+  {
+    if (vtkDataObject* output = vtkDataObject::GetData(outputs, port))
+    {
+      AddFact(output, MissingFact, std::vector<double>{ 1.0 });
+    }
+  }
+}
+
+/// Whether a rank did not come to this filter, and nothing has changed since, or to one before it.
+bool IsKnownToMiss(vtkAlgorithm* filter, const LastFailure& last)
+{
+  bool known = last.Was(LastFailure::Missing) && last.StillHolds();
+  for (int port = 0; port < filter->GetNumberOfInputPorts(); ++port)
+  {
+    for (int i = 0; i < filter->GetNumberOfInputConnections(port); ++i)
+    {
+      vtkDataObject* const input = filter->GetInputDataObject(port, i);
+      known = known || (input && input->GetFieldData()->HasArray(MissingFact));
+    }
+  }
+  return known;
+}
+
+/// That a rank does not come: nobody waits for it twice.
+void FailWithout(int missing, vtkAlgorithm* filter, vtkInformationVector* outputs, LastFailure& last)
+{
+  EmptyWithout(outputs);
+  vtkErrorWithObjectMacro(filter, << "Rank " << missing << " did not come to this filter within " << SecondsToWait()
+                                  << " seconds: look for an error of a filter before on that rank, such as a file that "
+                                     "it does not have. If it only takes longer, set TYNDALL_RANKS_WAIT (seconds).");
+  last.Note(LastFailure::Missing);
+}
+
 /// Whether nothing has changed on any rank since the last run failed.
 bool StillHolds(vtkMultiProcessController* ranks, const LastFailure& last)
 {
@@ -92,6 +130,16 @@ int GuardedOn(vtkMultiProcessController* ranks, vtkAlgorithm* filter, vtkInforma
   const std::function<void()>& work)
 {
   LastFailure last(filter);
+  if (ranks && IsKnownToMiss(filter, last))
+  {
+    EmptyWithout(outputs);
+    return 1;
+  }
+  if (const int missing = ranks ? MissingRank(ranks) : -1; missing >= 0)
+  {
+    FailWithout(missing, filter, outputs, last);
+    return 1;
+  }
   if (StillHolds(ranks, last))
   {
     EmptyOutputs(outputs, last.Was(LastFailure::Abort) ? AbortedFact : FailedFact);

@@ -71,6 +71,11 @@ for ranks in (1, 2, 3, 4, 8):
         print("\n".join(sorted(set(line for line in said.splitlines() if ": The input" in line or ": On" in line))))
 
 start = time.time()
+os.environ["TYNDALL_RANKS_WAIT"] = "4"
+code, said = run(3, "missing")
+assert code == 0 and said.count("is done") == 3, said
+print("a rank that does not come: %.0f s" % (time.time() - start))
+start = time.time()
 code, said = run(3, "killed")
 assert code != 0 and "begins" in said and "is done" not in said, (code, said)
 print("a killed rank: all ended after %.0f s, with code %d" % (time.time() - start, code))

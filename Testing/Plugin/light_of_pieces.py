@@ -10,8 +10,9 @@ import sys
 import numpy
 from paraview import servermanager
 from paraview.simple import *
-from paraview.vtk import vtkDoubleArray, vtkFloatArray, vtkImageData, vtkUnsignedCharArray
+from paraview.vtk import vtkDoubleArray, vtkImageData
 from paraview.vtk.util.numpy_support import numpy_to_vtk, vtk_to_numpy
+from vtkmodules.vtkIOXML import vtkXMLImageDataWriter
 
 folder = sys.argv[1]
 LoadPlugin(os.environ["TYNDALL_PLUGIN"], remote=True, ns=globals())
@@ -196,6 +197,24 @@ def abort():
     light.UpdatePipeline()
     output = solver.GetOutputDataObject(0)
     assert not errors and output.GetNumberOfCells() == 0 and output.GetFieldData().HasArray("aborted"), errors
+
+
+def missing():
+    """A file that the last rank does not have: the others do not wait for it forever (TYNDALL_RANKS_WAIT), and not twice."""
+    path = os.path.join(folder, "own%d.vti" % rank)
+    if rank < ranks - 1:
+        writer = vtkXMLImageDataWriter()
+        writer.SetFileName(path)
+        writer.SetInputData(piece_of([0, 12, 0, 5, 0, 4]))
+        writer.Write()
+    medium = ParticipatingMedium(Input=XMLImageDataReader(FileName=[path]), DensityArray=["CELLS", "density"])
+    light = LightPropagationMaps(Input=medium, SkyColor=[1, 1, 1])
+    errors, later = errors_of(medium), errors_of(light)
+    for _ in range(2):
+        light.UpdatePipeline()
+    assert not later and light.GetClientSideObject().GetOutputDataObject(0).GetNumberOfCells() == 0, later
+    if rank < ranks - 1:
+        assert len(errors) == 1 and "Rank %d did not come" % (ranks - 1) in errors[0], errors
 
 
 def killed():
