@@ -53,14 +53,10 @@ void Throw(const Ending& ending)
 {
   switch (ending.kind)
   {
-    case Ending::Done:
-      return;
-    case Ending::Aborted:
-      throw Aborted();
-    case Ending::InputFailed:
-      throw InputFailed();
-    case Ending::Failed:
-      throw InvalidInput(ending.why);
+    case Ending::Done: return;
+    case Ending::Aborted: throw Aborted();
+    case Ending::InputFailed: throw InputFailed();
+    case Ending::Failed: throw InvalidInput(ending.why);
   }
 }
 }

@@ -424,7 +424,7 @@ void GatheredImage::Bring(const char* own, char* values, vtkIdType bytes, int fr
   {
     std::memcpy(values, own, static_cast<std::size_t>(bytes));
   }
-  for (vtkIdType done = 0; done < bytes && this->Ranks > 1; done += LongestMessage)
+  for (vtkIdType done = 0; done<bytes&& this->Ranks> 1; done += LongestMessage)
   {
     const vtkIdType length = std::min(LongestMessage, bytes - done);
     if (this->Where == On::EveryRank)
@@ -461,8 +461,7 @@ vtkSmartPointer<vtkDataArray> GatheredImage::Array(Kind kind, int index)
     size = TupleSize(whole);
     if (this->IsHere())
     {
-      whole->SetNumberOfTuples(
-        kind == Cells ? this->Whole->GetNumberOfCells() : this->Whole->GetNumberOfPoints());
+      whole->SetNumberOfTuples(kind == Cells ? this->Whole->GetNumberOfCells() : this->Whole->GetNumberOfPoints());
       vtkIdType most = 0;
       for (int rank = 0; rank < this->Ranks; ++rank)
       {
@@ -500,7 +499,8 @@ void GatheredImage::CheckOverlap(Kind kind, vtkDataArray* own, vtkDataArray* who
     {
       throw InvalidInput(this->Refusal + ": where its pieces on " +
         RanksInWords(this->Layouts[kind]->OwnerOf(at), this->Rank) + " overlap, " + KindNames[kind] + " array \"" +
-        whole->GetName() + "\" has different values. Mark cells that another rank has, too, as duplicates "
+        whole->GetName() +
+        "\" has different values. Mark cells that another rank has, too, as duplicates "
         "(vtkGhostType), or give each rank cells of its own.");
     }
   });

@@ -206,8 +206,7 @@ int Guarded(vtkAlgorithm* filter, vtkInformation* request, vtkInformationVector*
 bool AreEmptied(vtkInformationVector* outputs)
 {
   vtkDataObject* const output = vtkDataObject::GetData(outputs, 0);
-  return output &&
-    (output->GetFieldData()->HasArray(FailedFact) || output->GetFieldData()->HasArray(AbortedFact));
+  return output && (output->GetFieldData()->HasArray(FailedFact) || output->GetFieldData()->HasArray(AbortedFact));
 }
 
 bool GuardedInformation(vtkAlgorithm* filter, const std::function<void()>& work)

@@ -227,9 +227,8 @@ std::string PhaseInWords(vtkDataObject* medium)
     {
       values += " " + fact->GetVariantValue(i).ToString();
     }
-    words += fact->GetNumberOfValues() <= most
-      ? values
-      : " of " + std::to_string(fact->GetNumberOfValues()) + " numbers (" +
+    words += fact->GetNumberOfValues() <= most ? values
+                                               : " of " + std::to_string(fact->GetNumberOfValues()) + " numbers (" +
         std::to_string(std::hash<std::string>()(values) % 1000000) + ")";
   }
   return words.empty() ? "nothing" : words;

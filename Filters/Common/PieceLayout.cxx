@@ -62,8 +62,7 @@ PieceLayout::PieceLayout(
 
 std::size_t PieceLayout::FirstGap() const
 {
-  return static_cast<std::size_t>(
-    std::find(this->Owners.begin(), this->Owners.end(), Nobody) - this->Owners.begin());
+  return static_cast<std::size_t>(std::find(this->Owners.begin(), this->Owners.end(), Nobody) - this->Owners.begin());
 }
 
 std::vector<unsigned char> PieceLayout::Flags() const

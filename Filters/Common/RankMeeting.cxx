@@ -20,7 +20,7 @@ constexpr double UsualWait = 600.0;
 
 #ifdef TYNDALL_HAS_MPI
 constexpr int ComeTag = 745203, GoTag = 745204; ///< of messages to the first rank, and from it
-constexpr double Slack = 5.0; ///< seconds that others wait longer than the first rank, which decides
+constexpr double Slack = 5.0;                   ///< seconds that others wait longer than the first rank, which decides
 
 using Clock = std::chrono::steady_clock;
 

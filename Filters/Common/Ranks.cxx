@@ -101,8 +101,8 @@ std::string Words(vtkMultiProcessController* controller, const Ending& own, cons
   std::string words = own.why;
   words.resize(static_cast<std::size_t>(told.length));
   controller->Broadcast(words.data(), told.length, rank);
-  const bool alike = std::all_of(all.begin(), all.end(),
-    [&](const Told& other) { return other.kind == told.kind && other.words == told.words; });
+  const bool alike = std::all_of(
+    all.begin(), all.end(), [&](const Told& other) { return other.kind == told.kind && other.words == told.words; });
   return alike ? words : "On rank " + std::to_string(rank) + ": " + words;
 }
 
@@ -255,8 +255,7 @@ void WorkOnAllRanks(vtkMultiProcessController* controller, vtkAlgorithm* filter,
 
 bool IsStoppedByOthers(vtkAlgorithm* filter)
 {
-  auto* const controller =
-    vtkMultiProcessController::SafeDownCast(filter->GetInformation()->Get(WorkingRanks()));
+  auto* const controller = vtkMultiProcessController::SafeDownCast(filter->GetInformation()->Get(WorkingRanks()));
   return controller && StopMessages(controller).Waits();
 }
 }

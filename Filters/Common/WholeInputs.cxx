@@ -41,8 +41,8 @@ struct Glance
   bool isThere = false; ///< with any value
   bool isImage = false;
   Extent extent = NoExtent;
-  Extent whole = NoExtent; ///< that its source says there is
-  std::uint64_t key = 0;   ///< of its content
+  Extent whole = NoExtent;           ///< that its source says there is
+  std::uint64_t key = 0;             ///< of its content
   std::array<std::string, 2> active; ///< names of active scalars, of cells and points
 };
 
@@ -77,6 +77,7 @@ std::string ActiveName(vtkDataSetAttributes* attributes)
   return active && active->GetName() ? active->GetName() : "";
 }
 
+/// All but the key.
 Glance GlanceAt(vtkInformation* connection)
 {
   Glance glance;
@@ -90,7 +91,6 @@ Glance GlanceAt(vtkInformation* connection)
     StopWithFilterBefore(data);
     return glance;
   }
-  glance.key = ContentKey(data);
   if (image)
   {
     std::copy_n(image->GetExtent(), 6, glance.extent.begin());
@@ -233,7 +233,7 @@ void CheckExtent(vtkDataObject* data, const OnRanks& glances, const std::string&
   const Extent& told = glances[0].whole;
   const bool oneExtent =
     std::all_of(glances.begin(), glances.end(), [&](const Glance& glance) { return glance.whole == told; });
-  if (image && oneExtent && !std::equal(told.begin(), told.end(), image->GetExtent()))
+  if (image && oneExtent && PointBoxOf(told).Count() > 0 && !std::equal(told.begin(), told.end(), image->GetExtent()))
   {
     const auto words = [](const int* extent) {
       std::string text;
@@ -254,8 +254,8 @@ vtkSmartPointer<vtkDataObject> FromOneRank(
 {
   const auto hasAny = [](const Glance& glance) { return glance.isThere; };
   const auto first = std::find_if(glances.begin(), glances.end(), hasAny);
-  const auto other =
-    std::find_if(first + 1, glances.end(), [&](const Glance& glance) { return glance.isThere && glance.key != first->key; });
+  const auto other = std::find_if(
+    first + 1, glances.end(), [&](const Glance& glance) { return glance.isThere && glance.key != first->key; });
   if (other != glances.end())
   {
     throw InvalidInput(named + " is different on ranks " + std::to_string(first - glances.begin()) + " and " +
@@ -277,18 +277,18 @@ vtkSmartPointer<vtkDataObject> FromOneRank(
 vtkSmartPointer<vtkDataObject> WholeOf(
   vtkMultiProcessController* ranks, vtkDataObject* own, const OnRanks& glances, const std::string& named)
 {
-  if (Alike(glances))
+  const bool any = std::any_of(glances.begin(), glances.end(), [](const Glance& glance) { return glance.isThere; });
+  if (!any || Alike(glances))
   {
     return own;
   }
-  const bool images = std::any_of(
-    glances.begin(), glances.end(), [](const Glance& glance) { return glance.isThere && glance.isImage; });
+  const bool images =
+    std::any_of(glances.begin(), glances.end(), [](const Glance& glance) { return glance.isThere && glance.isImage; });
   if (!images)
   {
     return FromOneRank(ranks, own, glances, named);
   }
-  const vtkSmartPointer<vtkDataObject> whole =
-    WholeImageOf(ranks, vtkImageData::SafeDownCast(own), glances, named);
+  const vtkSmartPointer<vtkDataObject> whole = WholeImageOf(ranks, vtkImageData::SafeDownCast(own), glances, named);
   CheckExtent(whole, glances, named);
   return whole;
 }
@@ -306,7 +306,8 @@ void RequireAll(vtkAlgorithm* filter, vtkInformationVector** given)
       both.Add(PointBoxOf(glance.whole));
       Require(!glance.isImage || !glance.isThere || both.Count() == PointBoxOf(glance.extent).Count(),
         Named(port) +
-          " has a piece of its image only: its source gives no rank the whole. Ask for pieces on all ranks, as a view or "
+          " has a piece of its image only: its source gives no rank the whole. Ask for pieces on all ranks, as a view "
+          "or "
           "UpdatePipeline does, so that they are put together.");
     }
   }
@@ -320,7 +321,9 @@ RankGlance GlanceAtAll(vtkAlgorithm* filter, vtkInformationVector** given, vtkIn
     rank.connections.push_back(given[port]->GetNumberOfInformationObjects());
     for (int i = 0; i < rank.connections.back(); ++i)
     {
-      rank.inputs.push_back(GlanceAt(given[port]->GetInformationObject(i)));
+      vtkInformation* const connection = given[port]->GetInformationObject(i);
+      rank.inputs.push_back(GlanceAt(connection));
+      rank.inputs.back().key = ContentKey(vtkDataObject::GetData(connection));
     }
   }
   for (int port = 0; port < outputs->GetNumberOfInformationObjects(); ++port)
@@ -362,8 +365,8 @@ void NoteParts(const std::vector<RankGlance>& all, int rank, vtkInformationVecto
 }
 }
 
-WholeInputs::WholeInputs(vtkMultiProcessController* ranks, vtkAlgorithm* filter, vtkInformationVector** given,
-  vtkInformationVector* outputs)
+WholeInputs::WholeInputs(
+  vtkMultiProcessController* ranks, vtkAlgorithm* filter, vtkInformationVector** given, vtkInformationVector* outputs)
 {
   const int ports = filter->GetNumberOfInputPorts();
   if (ranks == nullptr)

@@ -51,8 +51,7 @@ int vtkPhotonEmitter::FillOutputPortInformation(int, vtkInformation* information
   return 1;
 }
 
-int vtkPhotonEmitter::RequestData(
-  vtkInformation* request, vtkInformationVector** given, vtkInformationVector* outputs)
+int vtkPhotonEmitter::RequestData(vtkInformation* request, vtkInformationVector** given, vtkInformationVector* outputs)
 {
   this->Photons = 0;
   this->Power = 0.0;

@@ -238,8 +238,7 @@ vtkPhotonMarcher::Marched vtkPhotonMarcher::March(
   return marched;
 }
 
-int vtkPhotonMarcher::RequestData(
-  vtkInformation* request, vtkInformationVector** given, vtkInformationVector* outputs)
+int vtkPhotonMarcher::RequestData(vtkInformation* request, vtkInformationVector** given, vtkInformationVector* outputs)
 {
   this->Note({});
   this->PackingLoss = 0.0;

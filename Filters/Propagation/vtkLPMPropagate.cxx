@@ -94,8 +94,7 @@ vtkLPMPropagate::vtkLPMPropagate()
 }
 vtkLPMPropagate::~vtkLPMPropagate() = default;
 
-int vtkLPMPropagate::RequestData(
-  vtkInformation* request, vtkInformationVector** given, vtkInformationVector* outputs)
+int vtkLPMPropagate::RequestData(vtkInformation* request, vtkInformationVector** given, vtkInformationVector* outputs)
 {
   this->Order = 0;
   this->Bytes = 0.0;

@@ -252,8 +252,7 @@ int vtkLightRig::RequestUpdateExtent(
   return 1;
 }
 
-int vtkLightRig::RequestData(
-  vtkInformation* request, vtkInformationVector** given, vtkInformationVector* outputs)
+int vtkLightRig::RequestData(vtkInformation* request, vtkInformationVector** given, vtkInformationVector* outputs)
 {
   return tyndall::Guarded(this, request, given, outputs, [&](vtkInformationVector** inputs) {
     this->Added->CheckNumbers();

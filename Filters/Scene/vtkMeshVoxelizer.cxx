@@ -265,8 +265,7 @@ int vtkMeshVoxelizer::RequestUpdateExtent(
   return 1;
 }
 
-int vtkMeshVoxelizer::RequestData(
-  vtkInformation* request, vtkInformationVector** given, vtkInformationVector* outputs)
+int vtkMeshVoxelizer::RequestData(vtkInformation* request, vtkInformationVector** given, vtkInformationVector* outputs)
 {
   this->OccupiedVolume = 0.0;
   std::fill_n(this->UsedOutsideScattering, 3, 0.0);
