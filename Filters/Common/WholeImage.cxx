@@ -34,8 +34,8 @@ vtkInformationIntegerVectorKey* PartsOfRanks()
   return key;
 }
 
-/// Flags values that a neighbouring piece has, too. Other flags stay, and so do the arrays of the input, which the image
-/// may share.
+/// Flags values that a neighbouring piece has, too. Other flags stay, and so do the arrays of the input, which the
+/// image may share.
 /// @param box  numbers of the values
 void Mark(vtkDataSetAttributes* of, const ValueBox& box, unsigned char flag,
   const std::function<bool(const std::array<int, 3>&)>& isDuplicate)
