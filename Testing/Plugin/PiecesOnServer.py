@@ -20,7 +20,6 @@ SIZE = [-8, 8, -7, 7, -6, 6]
 
 
 def medium_of_tetrahedra():
-    LoadPlugin(os.environ["TYNDALL_PLUGIN"], remote=True, ns=globals())
     cells = Tetrahedralize(Input=Wavelet(WholeExtent=SIZE))
     image = ResampleToImage(Input=cells, UseInputBounds=0, SamplingBounds=SIZE, SamplingDimensions=[17, 15, 13])
     return ParticipatingMedium(Input=image, DensityArray=["POINTS", "RTData"], ExtinctionScale=0.2, MinimumDensity=0,
@@ -29,6 +28,7 @@ def medium_of_tetrahedra():
 
 def light_and_picture():
     """@return fluence, balance and radiance, at the client"""
+    LoadPlugin(os.environ["TYNDALL_PLUGIN"], remote=True, ns=globals())
     light = LightPropagationMaps(Input=medium_of_tetrahedra(), SkyColor=[1, 1, 1], DirectionsPerFace=4)
     picture = MediumRayCaster(Input=light, CameraPosition=[30, 20, 10], CameraFocalPoint=[0, 0, 0], ImageSize=[24, 18])
     light.UpdatePipeline()

@@ -65,10 +65,10 @@ for ranks in (1, 2, 3, 4, 8):
         assert error < 1e-6, (ranks, case, error)
         assert abs(balance - wanted).max() < 1e-6 * wanted[0], (ranks, case, balance, wanted)
     if "tetrahedra" in cases:
-        picture, expected = whole(ranks, "tetrahedra", "picture")[0], whole(1, "tetrahedra", "picture")[0]
+        picture, expected = whole(ranks, "picture", "picture")[0], whole(1, "picture", "picture")[0]
         assert abs(picture - expected).max() < 1e-6 * expected.max(), ranks
     if more:
-        print("\n".join(sorted(set(line for line in said.splitlines() if ": The input" in line or ": On" in line))))
+        print(said)
 
 start = time.time()
 os.environ["TYNDALL_RANKS_WAIT"] = "4"

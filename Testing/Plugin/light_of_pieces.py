@@ -112,10 +112,11 @@ def even_cuts():
 
 def tetrahedra():
     light = resampled(Tetrahedralize(Input=Wavelet(WholeExtent=SIZE)))
+    keep("tetrahedra", light)  # before the ray caster asks each rank for all of it
     camera = dict(CameraPosition=[30, 20, 10], CameraFocalPoint=[0, 0, 0], ImageSize=[24, 18])
     picture = MediumRayCaster(Input=light, **camera)
     picture.UpdatePipeline()
-    keep("tetrahedra", light, picture)
+    keep("picture", None, picture)
 
 
 def adaptive():
