@@ -109,9 +109,11 @@ bool IsKnownToMiss(vtkAlgorithm* filter, const LastFailure& last)
 void FailWithout(int missing, vtkAlgorithm* filter, vtkInformationVector* outputs, LastFailure& last)
 {
   EmptyWithout(outputs);
-  vtkErrorWithObjectMacro(filter, << "Rank " << missing << " did not come to this filter within " << SecondsToWait()
-                                  << " seconds: look for an error of a filter before on that rank, such as a file that "
-                                     "it does not have. If it only takes longer, set TYNDALL_RANKS_WAIT (seconds).");
+  vtkErrorWithObjectMacro(
+    filter, << "Rank " << missing << " did not come to this filter within " << SecondsToWait()
+            << " seconds. All ranks have to update the same filters: look at the script, and for an "
+               "error of a filter before on that rank. If it only takes longer, set "
+               "TYNDALL_RANKS_WAIT (seconds).");
   last.Note(LastFailure::Missing);
 }
 

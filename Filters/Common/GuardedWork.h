@@ -31,8 +31,8 @@ int Guarded(vtkAlgorithm* filter, vtkInformationVector* outputs, const std::func
 /// The same of a filter that needs all of its inputs, whatever piece is asked for.
 ///
 /// Where ranks run it together (Ranks.h), what fails on one of them is one error on all, with the same words, and the
-/// outputs of all are empty; so it is with an abort. One that does not come here, as its filter
-/// before returned 0, is an error after a while (RankMeeting.h).
+/// outputs of all are empty; so it is with an abort. One that does not come is an error
+/// after a while (RankMeeting.h).
 /// @param given  the inputs of RequestData
 /// @param work   is given them as wholes (WholeInputs.h), the same on all ranks
 int Guarded(vtkAlgorithm* filter, vtkInformation* request, vtkInformationVector** given, vtkInformationVector* outputs,

@@ -4,8 +4,8 @@ class vtkMultiProcessController;
 
 namespace tyndall
 {
-/// Waits until all ranks are here, which are about to work together, but not forever: a rank on which a filter before
-/// gave up (RequestData or RequestInformation returned 0) never comes, for VTK does not run what is after that.
+/// Waits until all ranks are here, which are about to work together, but not forever: a rank whose script does not
+/// update the filter, or where the pipeline stopped before it, never comes.
 ///
 /// They wait 600 seconds, or as many as the variable TYNDALL_RANKS_WAIT says: a filter before may take that much longer
 /// on one rank than on another. Without MPI nobody waits here.
