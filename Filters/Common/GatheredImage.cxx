@@ -1,5 +1,8 @@
 #include "Common/GatheredImage.h"
 
+#include "Common/ContentKey.h"
+#include "Common/PhaseFunctionData.h"
+#include "Common/Ranks.h"
 #include "Device/Errors.h"
 
 #include "vtkDataSetAttributes.h"
@@ -14,25 +17,16 @@
 #include <algorithm>
 #include <cmath>
 #include <cstring>
-#include <new>
+#include <utility>
 
 namespace tyndall
 {
 namespace
 {
-constexpr int Tag = 745201; ///< of our messages
-constexpr int Nobody = -1;
-
-/// The last cell of an extent along an axis; a flat image has one layer.
-int LastCell(const std::array<int, 6>& extent, int axis)
-{
-  return std::max(extent[2 * axis], extent[2 * axis + 1] - 1);
-}
-
-vtkIdType CellsAlong(const std::array<int, 6>& extent, int axis)
-{
-  return static_cast<vtkIdType>(LastCell(extent, axis)) - extent[2 * axis] + 1;
-}
+constexpr int Tag = 745201;                      ///< of our messages
+constexpr vtkIdType LongestMessage = 1073741824; ///< bytes; MPI counts in int
+constexpr const char* KindNames[] = { "cell", "point" };
+using Flags = vtkDataSetAttributes;
 
 /// Bytes of a tuple; 0 for types of less than a byte, which no writer takes.
 vtkIdType TupleSize(vtkDataArray* array)
@@ -40,11 +34,22 @@ vtkIdType TupleSize(vtkDataArray* array)
   return static_cast<vtkIdType>(array->GetDataTypeSize()) * array->GetNumberOfComponents();
 }
 
-std::vector<unsigned char> GhostsOf(vtkImageData* piece)
+std::vector<unsigned char> FlagsOf(vtkUnsignedCharArray* ghosts)
 {
-  auto* ghosts = piece->GetCellGhostArray();
   return ghosts ? std::vector<unsigned char>(ghosts->GetPointer(0), ghosts->GetPointer(0) + ghosts->GetNumberOfTuples())
                 : std::vector<unsigned char>();
+}
+
+/// One flag of each value; empty: none has it.
+std::vector<unsigned char> Only(unsigned char flag, std::vector<unsigned char> flags)
+{
+  bool any = false;
+  for (unsigned char& value : flags)
+  {
+    value &= flag;
+    any = any || value;
+  }
+  return any ? flags : std::vector<unsigned char>();
 }
 
 /// Whether two pieces are parts of one lattice, to rounding.
@@ -60,50 +65,33 @@ bool SamePlace(const std::array<double, 15>& a, const std::array<double, 15>& b)
   }
   return true;
 }
+
+std::string RanksInWords(int first, int other)
+{
+  return "ranks " + std::to_string(first) + " and " + std::to_string(other);
 }
 
-void OnAllRanks(vtkMultiProcessController* controller, const std::function<void()>& act)
+/// Whether two values of arrays are the same, but for rounding.
+bool SameValue(vtkDataArray* a, vtkIdType inA, vtkDataArray* b, vtkIdType inB)
 {
-  std::string failure;
-  try
+  for (int component = 0; component < a->GetNumberOfComponents(); ++component)
   {
-    act();
-  }
-  catch (const std::bad_alloc&)
-  {
-    failure = "The machine's memory does not suffice to write the image. Write fewer arrays at a time.";
-  }
-  catch (const std::exception& error)
-  {
-    failure = error.what();
-  }
-  if (controller && controller->GetNumberOfProcesses() > 1)
-  {
-    const int length = static_cast<int>(failure.size());
-    std::vector<int> lengths(static_cast<std::size_t>(controller->GetNumberOfProcesses()));
-    controller->AllGather(&length, lengths.data(), 1);
-    const auto failed = std::find_if(lengths.begin(), lengths.end(), [](int of) { return of > 0; });
-    failure.resize(failed == lengths.end() ? 0 : static_cast<std::size_t>(*failed));
-    if (!failure.empty())
+    const double x = a->GetComponent(inA, component), y = b->GetComponent(inB, component);
+    if (!(std::abs(x - y) <= 1e-5 * std::max(std::abs(x), std::abs(y))) && !(std::isnan(x) && std::isnan(y)))
     {
-      controller->Broadcast(&failure[0], *failed, static_cast<int>(failed - lengths.begin()));
+      return false;
     }
   }
-  if (!failure.empty())
-  {
-    throw InvalidInput(failure);
-  }
+  return true;
+}
 }
 
-vtkIdType GatheredImage::Piece::Count() const
-{
-  return this->HasCells() ? CellsAlong(this->Extent, 0) * CellsAlong(this->Extent, 1) * CellsAlong(this->Extent, 2) : 0;
-}
-
-GatheredImage::GatheredImage(
-  vtkMultiProcessController* controller, vtkImageData* piece, std::vector<vtkSmartPointer<vtkDataArray>> cells)
+GatheredImage::GatheredImage(vtkMultiProcessController* controller, vtkImageData* piece, Arrays cells, Arrays points,
+  On where, const std::string& refusal)
   : Controller(controller)
-  , Arrays(std::move(cells))
+  , Where(where)
+  , Refusal(refusal)
+  , Own{ std::move(cells), std::move(points) }
 {
   if (controller)
   {
@@ -112,26 +100,38 @@ GatheredImage::GatheredImage(
   }
   Piece own;
   OnAllRanks(controller, [&] { own = this->Describe(piece); });
+  this->ShareDescriptions(own);
+  const int first = this->FirstWithCells();
+  if (first == PieceLayout::Nobody)
+  {
+    return;
+  }
+  OnAllRanks(controller, [&] { this->CheckPieces(first); });
+  for (const Kind kind : { Cells, Points })
+  {
+    this->Sort(kind, this->Pieces[static_cast<std::size_t>(first)]);
+  }
   if (this->Ranks == 1)
   {
-    this->Whole = own.HasCells() ? piece : nullptr;
-    this->HiddenCells = std::move(own.Ghosts);
+    this->Whole = piece;
   }
   else
   {
-    this->GatherPieces(own);
-    this->PutTogether(piece);
+    this->MakeWhole(first);
+    this->ShareFieldData(piece, first);
   }
-  bool any = false;
-  for (unsigned char& flags : this->HiddenCells)
+  this->LayOut(Cells, FlagsOf(own.HasFlags[Cells] ? piece->GetCellGhostArray() : nullptr));
+  if (!this->Pieces[static_cast<std::size_t>(first)].Arrays[Points].empty())
   {
-    flags &= vtkDataSetAttributes::HIDDENCELL;
-    any = any || flags;
+    this->LayOut(Points, FlagsOf(own.HasFlags[Points] ? piece->GetPointGhostArray() : nullptr));
   }
-  if (!any)
-  {
-    this->HiddenCells.clear();
-  }
+}
+
+GatheredImage::~GatheredImage() = default;
+
+void GatheredImage::Refuse(const std::string& why) const
+{
+  throw InvalidInput(this->Refusal + ": " + why);
 }
 
 GatheredImage::Piece GatheredImage::Describe(vtkImageData* piece) const
@@ -145,218 +145,244 @@ GatheredImage::Piece GatheredImage::Describe(vtkImageData* piece) const
   std::copy_n(piece->GetOrigin(), 3, own.Place.begin());
   std::copy_n(piece->GetSpacing(), 3, own.Place.begin() + 3);
   std::copy_n(piece->GetDirectionMatrix()->GetData(), 9, own.Place.begin() + 6);
-  own.Ghosts = GhostsOf(piece);
-  for (const auto& array : this->Arrays)
+  own.HasFlags = { piece->GetCellGhostArray() != nullptr, piece->GetPointGhostArray() != nullptr };
+  own.Phase = PhaseInWords(piece);
+  for (const Kind kind : { Cells, Points })
   {
-    const std::string name = array->GetName() ? array->GetName() : "";
-    own.Arrays.push_back({ name, array->GetDataType(), array->GetNumberOfComponents() });
-    if (array->GetNumberOfTuples() != piece->GetNumberOfCells())
+    const vtkIdType values = kind == Cells ? piece->GetNumberOfCells() : piece->GetNumberOfPoints();
+    for (const auto& array : this->Own[kind])
     {
-      throw InvalidInput("Array \"" + name + "\" has " + std::to_string(array->GetNumberOfTuples()) + " values for " +
-        std::to_string(piece->GetNumberOfCells()) + " cells. Leave it out.");
+      const std::string name = array->GetName() ? array->GetName() : "";
+      own.Arrays[kind].push_back({ name, array->GetDataType(), array->GetNumberOfComponents() });
+      if (array->GetNumberOfTuples() != values)
+      {
+        throw InvalidInput("Array \"" + name + "\" has " + std::to_string(array->GetNumberOfTuples()) + " values for " +
+          std::to_string(values) + " " + KindNames[kind] + "s. Leave it out.");
+      }
     }
   }
   return own;
 }
 
-/// Brings the description of each piece to the first rank.
-void GatheredImage::GatherPieces(const Piece& own)
+/// Brings the description of each piece to all ranks.
+void GatheredImage::ShareDescriptions(const Piece& own)
 {
+  if (this->Ranks == 1)
+  {
+    this->Pieces.push_back(own);
+    return;
+  }
   vtkMultiProcessStream stream;
   std::for_each(own.Extent.begin(), own.Extent.end(), [&](int bound) { stream << bound; });
   std::for_each(own.Place.begin(), own.Place.end(), [&](double number) { stream << number; });
-  stream << static_cast<int>(own.Arrays.size());
-  for (const ArrayKind& array : own.Arrays)
+  for (const Kind kind : { Cells, Points })
   {
-    stream << array.Name << array.Type << array.Components;
+    stream << static_cast<int>(own.HasFlags[kind]) << static_cast<int>(own.Arrays[kind].size());
+    for (const ArrayKind& array : own.Arrays[kind])
+    {
+      stream << array.Name << array.Type << array.Components;
+    }
   }
-  stream << static_cast<int>(!own.Ghosts.empty());
+  stream << own.Phase;
   std::vector<vtkMultiProcessStream> streams;
-  this->Controller->Gather(stream, streams, 0);
-  if (!this->IsFirstRank())
+  this->Controller->AllGather(stream, streams);
+  for (vtkMultiProcessStream& from : streams)
   {
-    if (!own.Ghosts.empty())
+    Piece piece;
+    std::for_each(piece.Extent.begin(), piece.Extent.end(), [&](int& bound) { from >> bound; });
+    std::for_each(piece.Place.begin(), piece.Place.end(), [&](double& number) { from >> number; });
+    for (const Kind kind : { Cells, Points })
     {
-      this->Controller->Send(own.Ghosts.data(), static_cast<vtkIdType>(own.Ghosts.size()), 0, Tag);
+      int hasFlags = 0, arrays = 0;
+      from >> hasFlags >> arrays;
+      piece.HasFlags[kind] = hasFlags != 0;
+      piece.Arrays[kind].resize(static_cast<std::size_t>(arrays));
+      for (ArrayKind& array : piece.Arrays[kind])
+      {
+        from >> array.Name >> array.Type >> array.Components;
+      }
     }
-    return;
+    from >> piece.Phase;
+    this->Pieces.push_back(std::move(piece));
   }
-  for (int rank = 0; rank < this->Ranks; ++rank)
-  {
-    this->Pieces.push_back(this->Receive(streams[static_cast<std::size_t>(rank)], rank, own));
-  }
-}
-
-GatheredImage::Piece GatheredImage::Receive(vtkMultiProcessStream& stream, int rank, const Piece& own) const
-{
-  Piece piece;
-  int arrays = 0, hasGhosts = 0;
-  std::for_each(piece.Extent.begin(), piece.Extent.end(), [&](int& bound) { stream >> bound; });
-  std::for_each(piece.Place.begin(), piece.Place.end(), [&](double& number) { stream >> number; });
-  stream >> arrays;
-  piece.Arrays.resize(static_cast<std::size_t>(arrays));
-  for (ArrayKind& array : piece.Arrays)
-  {
-    stream >> array.Name >> array.Type >> array.Components;
-  }
-  stream >> hasGhosts;
-  if (rank == 0)
-  {
-    piece.Ghosts = own.Ghosts;
-  }
-  else if (hasGhosts)
-  {
-    piece.Ghosts.resize(static_cast<std::size_t>(piece.Count()));
-    this->Controller->Receive(piece.Ghosts.data(), piece.Count(), rank, Tag);
-  }
-  return piece;
-}
-
-/// Agrees on what the whole is.
-void GatheredImage::PutTogether(vtkImageData* piece)
-{
-  int first = Nobody;
-  OnAllRanks(this->Controller, [&] {
-    if (this->IsFirstRank() && (first = this->FirstWithCells()) != Nobody)
-    {
-      this->CheckPieces(first);
-      this->MakeWhole(first);
-      this->FindOwners();
-    }
-  });
-  this->Controller->Broadcast(&first, 1, 0);
-  if (first == Nobody)
-  {
-    this->Arrays.clear();
-    return;
-  }
-  int arrays = static_cast<int>(this->Arrays.size());
-  this->Controller->Broadcast(&arrays, 1, first);
-  this->Arrays.resize(static_cast<std::size_t>(arrays)); // ranks without cells have none
-  this->GatherFieldData(piece, first);
 }
 
 int GatheredImage::FirstWithCells() const
 {
   const auto found =
     std::find_if(this->Pieces.begin(), this->Pieces.end(), [](const Piece& piece) { return piece.HasCells(); });
-  return found == this->Pieces.end() ? Nobody : static_cast<int>(found - this->Pieces.begin());
+  return found == this->Pieces.end() ? PieceLayout::Nobody : static_cast<int>(found - this->Pieces.begin());
 }
 
 void GatheredImage::CheckPieces(int first) const
 {
-  for (int rank = first + 1; first != Nobody && rank < this->Ranks; ++rank)
+  const Piece& one = this->Pieces[static_cast<std::size_t>(first)];
+  for (int rank = first + 1; rank < this->Ranks; ++rank)
   {
-    const Piece& one = this->Pieces[static_cast<std::size_t>(first)];
     const Piece& other = this->Pieces[static_cast<std::size_t>(rank)];
-    const std::string ranks = "ranks " + std::to_string(first) + " and " + std::to_string(rank);
     if (!other.HasCells())
     {
       continue;
     }
     if (!SamePlace(one.Place, other.Place))
     {
-      throw InvalidInput("The image is not written: its pieces on " + ranks +
+      this->Refuse("its pieces on " + RanksInWords(first, rank) +
         " have different origins, spacings or directions. Resample it to one image.");
     }
-    if (!std::equal(one.Arrays.begin(), one.Arrays.end(), other.Arrays.begin(), other.Arrays.end()))
+    if (one.Phase != other.Phase)
     {
-      throw InvalidInput("The image is not written: its pieces on " + ranks +
-        " have different arrays, or in a different order. Pass on only those that all have.");
+      this->Refuse("field data of its pieces on " + RanksInWords(first, rank) +
+        " say different things of the phase function (" + one.Phase + "; " + other.Phase +
+        "). Give all ranks the same, or cells 'g'.");
     }
+    this->CheckArrays(first, rank, Cells);
+    this->CheckArrays(first, rank, Points);
   }
+}
+
+void GatheredImage::CheckArrays(int first, int other, Kind kind) const
+{
+  const auto check = [&](int a, int b) {
+    for (const ArrayKind& array : this->Pieces[static_cast<std::size_t>(a)].Arrays[kind])
+    {
+      const std::vector<ArrayKind>& arrays = this->Pieces[static_cast<std::size_t>(b)].Arrays[kind];
+      const auto same =
+        std::find_if(arrays.begin(), arrays.end(), [&](const ArrayKind& of) { return of.Name == array.Name; });
+      const std::string named = std::string("its ") + KindNames[kind] + " array \"" + array.Name + "\" ";
+      if (same == arrays.end())
+      {
+        this->Refuse(named + "is on rank " + std::to_string(a) + " and not on rank " + std::to_string(b) +
+          ". Pass on only arrays that all ranks have.");
+      }
+      if (same->Type != array.Type || same->Components != array.Components)
+      {
+        this->Refuse(named + "has other components or another type on " + RanksInWords(a, b) +
+          ". Make them the same on all ranks.");
+      }
+    }
+  };
+  check(first, other);
+  check(other, first);
+}
+
+/// Brings arrays into the order of the first piece. Ranks without cells have none of them.
+void GatheredImage::Sort(Kind kind, const Piece& first)
+{
+  Arrays sorted;
+  for (const ArrayKind& array : first.Arrays[kind])
+  {
+    const auto found = std::find_if(this->Own[kind].begin(), this->Own[kind].end(),
+      [&](const auto& own) { return array.Name == (own->GetName() ? own->GetName() : ""); });
+    sorted.push_back(found == this->Own[kind].end() ? nullptr : *found);
+  }
+  this->Own[kind] = std::move(sorted);
 }
 
 /// The extent of all pieces, where the first of them lies.
 void GatheredImage::MakeWhole(int first)
 {
-  const Piece& one = this->Pieces[static_cast<std::size_t>(first)];
-  std::array<int, 6> extent = one.Extent;
-  double cells = 0.0;
-  for (const Piece& piece : this->Pieces)
-  {
-    for (int axis = 0; piece.HasCells() && axis < 3; ++axis)
+  OnAllRanks(this->Controller, [&] {
+    const Piece& one = this->Pieces[static_cast<std::size_t>(first)];
+    ValueBox points;
+    double cells = 0.0;
+    for (const Piece& piece : this->Pieces)
     {
-      extent[2 * axis] = std::min(extent[2 * axis], piece.Extent[2 * axis]);
-      extent[2 * axis + 1] = std::max(extent[2 * axis + 1], piece.Extent[2 * axis + 1]);
+      points.Add(PointBoxOf(piece.Extent));
+      cells += static_cast<double>(CellBoxOf(piece.Extent).Count());
     }
-    cells += static_cast<double>(piece.Count());
-  }
-  double wanted = 1.0;
-  for (int axis = 0; axis < 3; ++axis)
-  {
-    wanted *= static_cast<double>(CellsAlong(extent, axis));
-  }
-  if (cells < wanted)
-  {
-    throw InvalidInput(
-      "The image is not written: the ranks have fewer cells than its extent. Give each a piece of it.");
-  }
-  this->Whole = vtkSmartPointer<vtkImageData>::New();
-  this->Whole->SetExtent(extent.data());
-  this->Whole->SetOrigin(one.Place.data());
-  this->Whole->SetSpacing(one.Place.data() + 3);
-  this->Whole->SetDirectionMatrix(one.Place.data() + 6);
+    std::array<int, 6> extent = { points.low[0], points.high[0], points.low[1], points.high[1], points.low[2],
+      points.high[2] };
+    const ValueBox box = CellBoxOf(extent);
+    double wanted = 1.0;
+    for (int axis = 0; axis < 3; ++axis)
+    {
+      wanted *= static_cast<double>(box.Along(axis));
+    }
+    if (cells < wanted)
+    {
+      this->Refuse("the ranks have fewer cells than its extent. Give each a piece of it.");
+    }
+    if (this->IsHere())
+    {
+      this->Whole = vtkSmartPointer<vtkImageData>::New();
+      this->Whole->SetExtent(extent.data());
+      this->Whole->SetOrigin(one.Place.data());
+      this->Whole->SetSpacing(one.Place.data() + 3);
+      this->Whole->SetDirectionMatrix(one.Place.data() + 6);
+    }
+  });
 }
 
-/// Calls act with the number of each of a piece's cells in the piece, and in the whole. A piece without thickness has
-/// none where the whole has some.
-template <typename Do>
-void GatheredImage::ForCells(const Piece& piece, const Do& act) const
+/// Finds out where each value comes from, and which are hidden.
+/// @param own  flags of the own piece
+void GatheredImage::LayOut(Kind kind, const std::vector<unsigned char>& own)
 {
-  std::array<int, 6> all = {};
-  std::copy_n(this->Whole->GetExtent(), 6, all.begin());
-  for (int axis = 0; axis < 3; ++axis)
+  constexpr std::array<unsigned char, Kinds> duplicates = { Flags::DUPLICATECELL, Flags::DUPLICATEPOINT };
+  constexpr std::array<unsigned char, Kinds> hiddens = { Flags::HIDDENCELL, Flags::HIDDENPOINT };
+  if (this->Ranks == 1)
   {
-    if (!piece.HasCells() ||
-      (piece.Extent[2 * axis] == piece.Extent[2 * axis + 1] && all[2 * axis] < all[2 * axis + 1]))
-    {
-      return;
-    }
+    this->Hidden[kind] = Only(hiddens[kind], own);
+    return;
   }
-  vtkIdType cell = 0;
-  for (int k = piece.Extent[4]; k <= LastCell(piece.Extent, 2); ++k)
-  {
-    for (int j = piece.Extent[2]; j <= LastCell(piece.Extent, 1); ++j)
-    {
-      vtkIdType at = ((static_cast<vtkIdType>(k) - all[4]) * CellsAlong(all, 1) + j - all[2]) * CellsAlong(all, 0) +
-        piece.Extent[0] - all[0];
-      for (int i = piece.Extent[0]; i <= LastCell(piece.Extent, 0); ++i)
-      {
-        act(static_cast<std::size_t>(cell++), static_cast<std::size_t>(at++));
-      }
-    }
-  }
-}
-
-void GatheredImage::FindOwners()
-{
-  const auto count = static_cast<std::size_t>(this->Whole->GetNumberOfCells());
-  this->Owners.assign(count, Nobody);
-  this->HiddenCells.assign(count, 0);
-  for (bool duplicates : { false, true }) // those that no rank has as its own come from one that has a copy
-  {
+  std::vector<PieceLayout::Piece> pieces(this->Pieces.size());
+  OnAllRanks(this->Controller, [&] {
     for (int rank = 0; rank < this->Ranks; ++rank)
     {
       const Piece& piece = this->Pieces[static_cast<std::size_t>(rank)];
-      this->ForCells(piece, [&](std::size_t cell, std::size_t at) {
-        const unsigned char flags = piece.Ghosts.empty() ? 0 : piece.Ghosts[cell];
-        if (this->Owners[at] == Nobody && (duplicates || !(flags & vtkDataSetAttributes::DUPLICATECELL)))
-        {
-          this->Owners[at] = rank;
-          this->HiddenCells[at] = flags;
-        }
-      });
+      auto& laid = pieces[static_cast<std::size_t>(rank)];
+      laid.values = kind == Cells ? CellBoxOf(piece.Extent) : PointBoxOf(piece.Extent);
+      if (this->IsHere() && piece.HasFlags[kind])
+      {
+        laid.flags.resize(laid.values.Count());
+      }
+    }
+  });
+  for (int rank = 0; rank < this->Ranks; ++rank)
+  {
+    auto& laid = pieces[static_cast<std::size_t>(rank)];
+    if (this->Pieces[static_cast<std::size_t>(rank)].HasFlags[kind])
+    {
+      this->Bring(reinterpret_cast<const char*>(own.data()), reinterpret_cast<char*>(laid.flags.data()),
+        static_cast<vtkIdType>(laid.values.Count()), rank);
     }
   }
-  if (std::find(this->Owners.begin(), this->Owners.end(), Nobody) != this->Owners.end())
-  {
-    throw InvalidInput("The image is not written: its pieces leave a gap. Give the ranks pieces of one image.");
-  }
+  OnAllRanks(this->Controller, [&] {
+    if (!this->IsHere())
+    {
+      return;
+    }
+    std::array<int, 6> all = {};
+    std::copy_n(this->Whole->GetExtent(), 6, all.begin());
+    for (std::size_t rank = 0; rank < pieces.size(); ++rank)
+    {
+      const std::array<int, 6>& extent = this->Pieces[rank].Extent;
+      for (int axis = 0; axis < 3; ++axis) // a piece without thickness has no cells where the whole has some
+      {
+        if (kind == Cells && extent[2 * axis] == extent[2 * axis + 1] && all[2 * axis] < all[2 * axis + 1])
+        {
+          pieces[rank].values = {};
+        }
+      }
+    }
+    const ValueBox whole = kind == Cells ? CellBoxOf(all) : PointBoxOf(all);
+    this->Layouts[kind] = std::make_unique<PieceLayout>(whole, std::move(pieces), duplicates[kind], hiddens[kind]);
+    if (const std::size_t gap = this->Layouts[kind]->FirstGap(); gap < whole.Count())
+    {
+      std::string place;
+      std::size_t rest = gap;
+      for (int axis = 0; axis < 3; rest /= whole.Along(axis), ++axis)
+      {
+        place += (axis > 0 ? ", " : "") + std::to_string(whole.low[axis] + static_cast<int>(rest % whole.Along(axis)));
+      }
+      this->Refuse("its pieces leave a gap: no rank has " + std::string(KindNames[kind]) + " (" + place +
+        "). Give the ranks pieces of one image.");
+    }
+    this->Hidden[kind] = Only(hiddens[kind], this->Layouts[kind]->Flags());
+  });
 }
 
 /// Field data are those of the first piece.
-void GatheredImage::GatherFieldData(vtkImageData* piece, int from)
+void GatheredImage::ShareFieldData(vtkImageData* piece, int from)
 {
   vtkNew<vtkImageData> carrier; // of field data only
   carrier->SetDimensions(1, 1, 1);
@@ -364,81 +390,119 @@ void GatheredImage::GatherFieldData(vtkImageData* piece, int from)
   {
     carrier->GetFieldData()->ShallowCopy(piece->GetFieldData());
   }
-  if (from != 0 && this->Rank == from)
+  if (this->Where == On::EveryRank)
+  {
+    this->Controller->Broadcast(carrier, from);
+  }
+  else if (from != 0 && this->Rank == from)
   {
     this->Controller->Send(carrier, 0, Tag);
   }
-  if (this->IsFirstRank())
+  else if (from != 0 && this->IsFirstRank())
   {
-    if (from != 0)
-    {
-      this->Controller->Receive(carrier, from, Tag);
-    }
+    this->Controller->Receive(carrier, from, Tag);
+  }
+  if (this->IsHere())
+  {
     this->Whole->GetFieldData()->ShallowCopy(carrier->GetFieldData());
   }
 }
 
-/// Room for the whole of an array.
-vtkSmartPointer<vtkDataArray> GatheredImage::NewArray(const ArrayKind& kind) const
+vtkIdType GatheredImage::CountOf(Kind kind, int rank) const
 {
-  auto whole = vtkSmartPointer<vtkDataArray>::Take(vtkDataArray::CreateDataArray(kind.Type));
-  whole->SetName(kind.Name.c_str());
-  whole->SetNumberOfComponents(kind.Components);
-  whole->SetNumberOfTuples(this->Whole->GetNumberOfCells());
-  return whole;
+  const std::array<int, 6>& extent = this->Pieces[static_cast<std::size_t>(rank)].Extent;
+  return static_cast<vtkIdType>((kind == Cells ? CellBoxOf(extent) : PointBoxOf(extent)).Count());
 }
 
-/// Copies what a rank owns from the values of its piece.
-void GatheredImage::Paste(int rank, const char* values, vtkDataArray* whole) const
+/// Brings bytes of one rank to where the whole is.
+/// @param own     on that rank: they
+/// @param values  where the whole is: where they come
+void GatheredImage::Bring(const char* own, char* values, vtkIdType bytes, int from) const
 {
-  const auto size = static_cast<std::size_t>(TupleSize(whole));
-  char* const to = static_cast<char*>(whole->GetVoidPointer(0));
-  this->ForCells(this->Pieces[static_cast<std::size_t>(rank)], [&](std::size_t cell, std::size_t at) {
-    if (this->Owners[at] == rank)
+  const bool mine = this->Rank == from;
+  if (mine && this->IsHere() && bytes > 0)
+  {
+    std::memcpy(values, own, static_cast<std::size_t>(bytes));
+  }
+  for (vtkIdType done = 0; done<bytes&& this->Ranks> 1; done += LongestMessage)
+  {
+    const vtkIdType length = std::min(LongestMessage, bytes - done);
+    if (this->Where == On::EveryRank)
     {
-      std::memcpy(to + at * size, values + cell * size, size);
+      this->Controller->Broadcast(values + done, length, from);
     }
-  });
+    else if (from != 0 && mine)
+    {
+      this->Controller->Send(own + done, length, 0, Tag);
+    }
+    else if (from != 0 && this->IsFirstRank())
+    {
+      this->Controller->Receive(values + done, length, from, Tag);
+    }
+  }
 }
 
-vtkSmartPointer<vtkDataArray> GatheredImage::Array(int index)
+vtkSmartPointer<vtkDataArray> GatheredImage::Array(Kind kind, int index)
 {
-  vtkDataArray* own = this->Arrays[static_cast<std::size_t>(index)];
+  vtkDataArray* const own = this->Own[kind][static_cast<std::size_t>(index)];
   if (this->Ranks == 1)
   {
     return own;
   }
   vtkSmartPointer<vtkDataArray> whole;
   std::vector<char> buffer;
+  vtkIdType size = 0;
   OnAllRanks(this->Controller, [&] {
-    if (this->IsFirstRank())
+    const Piece& first = this->Pieces[static_cast<std::size_t>(this->FirstWithCells())];
+    const ArrayKind& array = first.Arrays[kind][static_cast<std::size_t>(index)];
+    whole = vtkSmartPointer<vtkDataArray>::Take(vtkDataArray::CreateDataArray(array.Type));
+    whole->SetName(array.Name.c_str());
+    whole->SetNumberOfComponents(array.Components);
+    size = TupleSize(whole);
+    if (this->IsHere())
     {
-      const Piece& first = this->Pieces[static_cast<std::size_t>(this->FirstWithCells())];
-      whole = this->NewArray(first.Arrays[static_cast<std::size_t>(index)]);
+      whole->SetNumberOfTuples(kind == Cells ? this->Whole->GetNumberOfCells() : this->Whole->GetNumberOfPoints());
       vtkIdType most = 0;
-      std::for_each(
-        this->Pieces.begin(), this->Pieces.end(), [&](const Piece& piece) { most = std::max(most, piece.Count()); });
-      buffer.resize(static_cast<std::size_t>(most * TupleSize(whole)));
+      for (int rank = 0; rank < this->Ranks; ++rank)
+      {
+        most = std::max(most, this->CountOf(kind, rank));
+      }
+      buffer.resize(static_cast<std::size_t>(most * size));
     }
   });
-  const char* const values = own ? static_cast<const char*>(own->GetVoidPointer(0)) : nullptr;
-  if (!this->IsFirstRank())
-  {
-    if (own && TupleSize(own) > 0)
-    {
-      this->Controller->Send(values, own->GetNumberOfTuples() * TupleSize(own), 0, Tag);
-    }
-    return nullptr;
-  }
   for (int rank = 0; rank < this->Ranks; ++rank)
   {
-    const vtkIdType bytes = this->Pieces[static_cast<std::size_t>(rank)].Count() * TupleSize(whole);
-    if (rank > 0 && bytes > 0)
+    this->Bring(own ? static_cast<const char*>(own->GetVoidPointer(0)) : nullptr, buffer.data(),
+      this->CountOf(kind, rank) * size, rank);
+    if (this->IsHere())
     {
-      this->Controller->Receive(buffer.data(), bytes, rank, Tag);
+      this->Layouts[kind]->Paste(
+        rank, buffer.data(), static_cast<std::size_t>(size), static_cast<char*>(whole->GetVoidPointer(0)));
     }
-    this->Paste(rank, rank > 0 ? buffer.data() : values, whole);
   }
-  return whole;
+  if (this->Where == On::EveryRank)
+  {
+    OnAllRanks(this->Controller, [&] { this->CheckOverlap(kind, own, whole); });
+  }
+  return this->IsHere() ? whole : nullptr;
+}
+
+/// @throws InvalidInput where the own piece has another value as its own than the one that was taken
+void GatheredImage::CheckOverlap(Kind kind, vtkDataArray* own, vtkDataArray* whole) const
+{
+  if (own == nullptr)
+  {
+    return;
+  }
+  this->Layouts[kind]->ForOverlap(this->Rank, [&](std::size_t value, std::size_t at) {
+    if (!SameValue(own, static_cast<vtkIdType>(value), whole, static_cast<vtkIdType>(at)))
+    {
+      throw InvalidInput(this->Refusal + ": where its pieces on " +
+        RanksInWords(this->Layouts[kind]->OwnerOf(at), this->Rank) + " overlap, " + KindNames[kind] + " array \"" +
+        whole->GetName() +
+        "\" has different values. Mark cells that another rank has, too, as duplicates "
+        "(vtkGhostType), or give each rank cells of its own.");
+    }
+  });
 }
 }

@@ -1,100 +1,123 @@
 #pragma once
 
+#include "Common/PieceLayout.h"
+
 #include "vtkSmartPointer.h"
 
 #include <array>
-#include <functional>
+#include <cstdint>
+#include <memory>
 #include <string>
 #include <vector>
 
 class vtkDataArray;
+class vtkDataSetAttributes;
 class vtkImageData;
 class vtkMultiProcessController;
 class vtkMultiProcessStream;
 
-/// For writers that run on several ranks, and write on the first.
 namespace tyndall
 {
-/// Does something on each rank. All of them have to call it.
-/// @param controller  null: there is one rank
-/// @throws InvalidInput on every rank, with the same words, where it threw on any of them
-void OnAllRanks(vtkMultiProcessController* controller, const std::function<void()>& act);
-
-/// An image whose pieces lie on several ranks, put together on the first: one array after the other, so that no more
-/// than one is there twice.
+/// An image whose pieces lie on several ranks, put together on the first or on each: one array after the other, so that
+/// no more than one is there twice.
 ///
-/// A cell is taken from the first rank that does not flag it as a duplicate (vtkGhostType). With one rank nothing is
-/// copied.
+/// Pieces may overlap, and may have ghost cells (vtkGhostType): PieceLayout.h says which piece a cell or point is taken
+/// from. What others have as their own there has to be the same. Ranks without cells have no part in it. Field data are
+/// those of the first piece; those of the phase function have to be the same on all. With one rank nothing is copied.
 ///
 /// All ranks have to construct it and to ask for the arrays in the same order; what fails on one throws InvalidInput on
 /// all.
 class GatheredImage
 {
 public:
+  enum class On
+  {
+    FirstRank,
+    EveryRank,
+  };
+
+  using Arrays = std::vector<vtkSmartPointer<vtkDataArray>>;
+
   /// @param controller  null: there is one rank
   /// @param piece       may be null or without cells
-  /// @param cells       its arrays, each with a value for each cell
+  /// @param cells, points  its arrays, each with a value for each cell or point, in any order
+  /// @param refusal     how messages begin, as "The image is not written"
   /// @throws InvalidInput where pieces leave a gap, lie on different grids or have different arrays
-  GatheredImage(
-    vtkMultiProcessController* controller, vtkImageData* piece, std::vector<vtkSmartPointer<vtkDataArray>> cells);
+  GatheredImage(vtkMultiProcessController* controller, vtkImageData* piece, Arrays cells, Arrays points, On where,
+    const std::string& refusal);
+  ~GatheredImage();
 
   bool IsFirstRank() const { return this->Rank == 0; }
-  int NumberOfArrays() const { return static_cast<int>(this->Arrays.size()); }
+  int NumberOfCellArrays() const { return static_cast<int>(this->Own[Cells].size()); }
+  int NumberOfPointArrays() const { return static_cast<int>(this->Own[Points].size()); }
 
-  /// On the first rank: the whole image's extent, place and field data, without arrays. Null where no piece has cells.
+  /// Where the whole is: its extent, place and field data, without arrays. Null where no piece has cells, and on ranks
+  /// that have no whole.
   vtkImageData* Frame() const { return this->Whole; }
 
-  /// On the first rank: a flag for each cell that is hidden by vtkGhostType; null: none is.
-  const std::vector<unsigned char>* Hidden() const { return this->HiddenCells.empty() ? nullptr : &this->HiddenCells; }
+  /// Where the whole is: a flag for each cell, or point, that is hidden by vtkGhostType; null: none is.
+  const std::vector<unsigned char>* HiddenCells() const { return this->HiddenOf(Cells); }
+  const std::vector<unsigned char>* HiddenPoints() const { return this->HiddenOf(Points); }
 
-  /// The whole array, on the first rank; null on others.
-  vtkSmartPointer<vtkDataArray> Array(int index);
+  /// The whole array; null on ranks that have no whole.
+  vtkSmartPointer<vtkDataArray> CellArray(int index) { return this->Array(Cells, index); }
+  vtkSmartPointer<vtkDataArray> PointArray(int index) { return this->Array(Points, index); }
 
 private:
+  enum Kind
+  {
+    Cells,
+    Points,
+    Kinds,
+  };
+
   struct ArrayKind
   {
     std::string Name;
     int Type = 0;
     int Components = 0;
-
-    bool operator==(const ArrayKind& other) const
-    {
-      return this->Name == other.Name && this->Type == other.Type && this->Components == other.Components;
-    }
   };
 
-  /// What the first rank knows of each piece.
+  /// What is known of each piece on every rank.
   struct Piece
   {
     std::array<int, 6> Extent = { 0, -1, 0, -1, 0, -1 };
     std::array<double, 15> Place = {}; ///< origin, spacing, direction
-    std::vector<ArrayKind> Arrays;
-    std::vector<unsigned char> Ghosts; ///< of each cell; empty: none is one
+    std::array<std::vector<ArrayKind>, Kinds> Arrays;
+    std::array<bool, Kinds> HasFlags = {};
+    std::string Phase; ///< what its field data say of the phase function
 
     bool HasCells() const { return this->Extent[0] <= this->Extent[1]; }
-    vtkIdType Count() const;
   };
 
+  bool IsHere() const { return this->Where == On::EveryRank || this->IsFirstRank(); }
+  const std::vector<unsigned char>* HiddenOf(Kind kind) const
+  {
+    return this->Hidden[kind].empty() ? nullptr : &this->Hidden[kind];
+  }
+  [[noreturn]] void Refuse(const std::string& why) const;
   Piece Describe(vtkImageData* piece) const;
-  void GatherPieces(const Piece& own);
-  Piece Receive(vtkMultiProcessStream& stream, int rank, const Piece& own) const;
-  void PutTogether(vtkImageData* piece);
+  void ShareDescriptions(const Piece& own);
   int FirstWithCells() const;
   void CheckPieces(int first) const;
+  void CheckArrays(int first, int other, Kind kind) const;
+  void Sort(Kind kind, const Piece& first);
   void MakeWhole(int first);
-  void FindOwners();
-  void GatherFieldData(vtkImageData* piece, int from);
-  vtkSmartPointer<vtkDataArray> NewArray(const ArrayKind& kind) const;
-  void Paste(int rank, const char* values, vtkDataArray* whole) const;
-  template <typename Do>
-  void ForCells(const Piece& piece, const Do& act) const;
+  void LayOut(Kind kind, const std::vector<unsigned char>& own);
+  void ShareFieldData(vtkImageData* piece, int from);
+  vtkIdType CountOf(Kind kind, int rank) const;
+  void Bring(const char* own, char* values, vtkIdType bytes, int from) const;
+  vtkSmartPointer<vtkDataArray> Array(Kind kind, int index);
+  void CheckOverlap(Kind kind, vtkDataArray* own, vtkDataArray* whole) const;
 
   vtkMultiProcessController* Controller;
+  On Where;
+  std::string Refusal;
   int Rank = 0, Ranks = 1;
-  std::vector<vtkSmartPointer<vtkDataArray>> Arrays; ///< of the own piece, or null
+  std::array<Arrays, Kinds> Own; ///< of the own piece, or null
   vtkSmartPointer<vtkImageData> Whole;
-  std::vector<Piece> Pieces; ///< on the first rank
-  std::vector<int> Owners;   ///< on the first rank: which rank each cell is taken from
-  std::vector<unsigned char> HiddenCells;
+  std::vector<Piece> Pieces;
+  std::array<std::unique_ptr<PieceLayout>, Kinds> Layouts; ///< where the whole is
+  std::array<std::vector<unsigned char>, Kinds> Hidden;
 };
 }

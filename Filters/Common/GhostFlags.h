@@ -14,10 +14,11 @@ class vtkPolyData;
 /// that all filters agree. Their values may be anything, also NaN, which is what ResampleToImage leaves outside of its
 /// input.
 ///
-/// Duplicates (DUPLICATECELL) are cells that another rank has, too. In an image that one rank has as a whole each of
-/// them is there once, is a part of the medium like others, and its power is counted once. Where the output is divided
-/// among ranks, each would solve its part with cells of its neighbours, and the sum over ranks would have their power
-/// twice: that is refused.
+/// Duplicates (DUPLICATECELL) are cells that another rank has, too. In an image that one process has as a whole each of
+/// them is there once, is a part of the medium like others, and its power is counted once. Over ranks that run a filter
+/// together each is taken from the rank that has it as its own (WholeInputs.h). Where the output is divided otherwise,
+/// as one process streams it, each piece would be solved with cells of its neighbours, and the sum over pieces would
+/// have their power twice: that is refused.
 ///
 /// Of lights and photons, hidden points and duplicates are left out: every rank asks for all of them, so that the one
 /// that a duplicate repeats is there.

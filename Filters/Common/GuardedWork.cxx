@@ -1,22 +1,26 @@
 #include "Common/GuardedWork.h"
 
 // How filters do their work, report and fail: see LightTransportData.h.
+#include "Common/Failure.h"
 #include "Common/GhostFlags.h"
 #include "Common/ImageInput.h"
 #include "Common/LastFailure.h"
 #include "Common/LightTransportWriting.h"
+#include "Common/RankMeeting.h"
+#include "Common/Ranks.h"
+#include "Common/WholeInputs.h"
 #include "Device/CompilationListener.h"
 #include "Device/Device.h"
-#include "Device/OpenCL.h"
 #include "PropertyRange.h"
 
 #include "vtkAlgorithm.h"
+#include "vtkCommunicator.h"
+#include "vtkDataObject.h"
+#include "vtkFieldData.h"
 #include "vtkInformation.h"
 #include "vtkInformationVector.h"
+#include "vtkMultiProcessController.h"
 #include "vtkVersionMacros.h"
-
-#include <new>
-#include <stdexcept>
 
 namespace tyndall
 {
@@ -26,19 +30,17 @@ Monitor MonitorOf(vtkAlgorithm* filter)
     filter->SetProgressText(nullptr);
     filter->UpdateProgress(fractionDone);
 #if VTK_VERSION_NUMBER >= VTK_VERSION_CHECK(9, 2, 20220823)
-    return !filter->CheckAbort();
+    const bool aborted = filter->CheckAbort();
 #else
-    return filter->GetAbortExecute() == 0;
+    const bool aborted = filter->GetAbortExecute() != 0;
 #endif
+    return !aborted && !IsStoppedByOthers(filter);
   };
 }
 
 namespace
 {
 const char* const Compiling = "compiling kernels (once)";
-
-const char* const NoMemory =
-  "The machine's memory does not suffice. Ask for less: fewer photons, a smaller grid, or fewer outputs.";
 
 void EmptyOutputs(vtkInformationVector* outputs, const char* why)
 {
@@ -74,20 +76,78 @@ void WarnOfDevices(vtkAlgorithm* filter)
 }
 }
 
-int Guarded(vtkAlgorithm* filter, vtkInformationVector* outputs, const std::function<void()>& work)
+namespace
+{
+void EmptyWithout(vtkInformationVector* outputs)
+{
+  EmptyOutputs(outputs, FailedFact);
+  for (int port = 0; port < outputs->GetNumberOfInformationObjects(); ++port)
+  {
+    if (vtkDataObject* output = vtkDataObject::GetData(outputs, port))
+    {
+      AddFact(output, MissingFact, std::vector<double>{ 1.0 });
+    }
+  }
+}
+
+/// Whether a rank did not come to this filter, and nothing has changed since, or to one before it.
+bool IsKnownToMiss(vtkAlgorithm* filter, const LastFailure& last)
+{
+  bool known = last.Was(LastFailure::Missing) && last.StillHolds();
+  for (int port = 0; port < filter->GetNumberOfInputPorts(); ++port)
+  {
+    for (int i = 0; i < filter->GetNumberOfInputConnections(port); ++i)
+    {
+      vtkDataObject* const input = filter->GetInputDataObject(port, i);
+      known = known || (input && input->GetFieldData()->HasArray(MissingFact));
+    }
+  }
+  return known;
+}
+
+/// That a rank does not come: nobody waits for it twice.
+void FailWithout(int missing, vtkAlgorithm* filter, vtkInformationVector* outputs, LastFailure& last)
+{
+  EmptyWithout(outputs);
+  vtkErrorWithObjectMacro(
+    filter, << "Rank " << missing << " did not come to this filter within " << SecondsToWait()
+            << " seconds. All ranks have to update the same filters: look at the script, and for an "
+               "error of a filter before on that rank. If it only takes longer, set "
+               "TYNDALL_RANKS_WAIT (seconds).");
+  last.Note(LastFailure::Missing);
+}
+
+/// Whether nothing has changed on any rank since the last run failed.
+bool StillHolds(vtkMultiProcessController* ranks, const LastFailure& last)
+{
+  int own = last.StillHolds(), all = own;
+  if (ranks)
+  {
+    ranks->AllReduce(&own, &all, 1, vtkCommunicator::MIN_OP);
+  }
+  return all != 0;
+}
+
+int GuardedOn(vtkMultiProcessController* ranks, vtkAlgorithm* filter, vtkInformationVector* outputs,
+  const std::function<void()>& work)
 {
   LastFailure last(filter);
-  if (last.StillHolds())
+  if (ranks && IsKnownToMiss(filter, last))
+  {
+    EmptyWithout(outputs);
+    return 1;
+  }
+  if (const int missing = ranks ? MissingRank(ranks) : -1; missing >= 0)
+  {
+    FailWithout(missing, filter, outputs, last);
+    return 1;
+  }
+  if (StillHolds(ranks, last))
   {
     EmptyOutputs(outputs, last.Was(LastFailure::Abort) ? AbortedFact : FailedFact);
     return 1;
   }
   last.Forget();
-  const auto fail = [&](const std::string& why) {
-    EmptyOutputs(outputs, FailedFact);
-    vtkErrorWithObjectMacro(filter, << why);
-    last.Note(LastFailure::Error);
-  };
   const CompilationListener listener([filter] {
     if (filter->GetAbortExecute() == 0) // the compiler cannot be stopped; the filter stops when it is done
     {
@@ -95,44 +155,60 @@ int Guarded(vtkAlgorithm* filter, vtkInformationVector* outputs, const std::func
       filter->UpdateProgress(filter->GetProgress());
     }
   });
-  try
-  {
-    RequireImages(filter);
-    CheckProperties(filter);
-    CheckDuplicates(filter, outputs);
-    work();
-  }
-  catch (const Aborted&)
+  const Ending ending = EndingOf([&] { WorkOnAllRanks(ranks, filter, work); });
+  if (ending.kind == Ending::Aborted)
   {
     EmptyOutputs(outputs, AbortedFact);
     ForgetAbort(filter);
     last.Note(LastFailure::Abort);
   }
-  catch (const InputFailed&)
+  else if (ending.kind != Ending::Done)
   {
     EmptyOutputs(outputs, FailedFact);
+    if (ending.kind == Ending::Failed)
+    {
+      vtkErrorWithObjectMacro(filter, << ending.why);
+    }
     last.Note(LastFailure::Error);
-  }
-  catch (const cl::Error& error)
-  {
-    fail(std::string("The OpenCL device failed in ") + error.what() + " (OpenCL error " + std::to_string(error.err()) +
-      "). Try another device (property Device or variable TYNDALL_DEVICE).");
-  }
-  catch (const std::bad_alloc&)
-  {
-    fail(NoMemory);
-  }
-  catch (const std::length_error&) // more than any memory has
-  {
-    fail(NoMemory);
-  }
-  catch (const std::exception& error)
-  {
-    fail(error.what());
   }
   filter->SetProgressText(nullptr);
   WarnOfDevices(filter);
   return 1;
+}
+}
+
+int Guarded(vtkAlgorithm* filter, vtkInformationVector* outputs, const std::function<void()>& work)
+{
+  return GuardedOn(nullptr, filter, outputs, [&] {
+    RequireImages(filter);
+    CheckProperties(filter);
+    CheckDuplicates(filter, outputs);
+    work();
+  });
+}
+
+int Guarded(vtkAlgorithm* filter, vtkInformation* request, vtkInformationVector** given, vtkInformationVector* outputs,
+  const std::function<void(vtkInformationVector** inputs)>& work)
+{
+  vtkMultiProcessController* const ranks = RanksTogether(request, outputs);
+  return GuardedOn(ranks, filter, outputs, [&] {
+    OnAllRanks(ranks, [&] {
+      RequireImages(filter);
+      CheckProperties(filter);
+      if (!ranks) // else WholeInputs takes each cell once
+      {
+        CheckDuplicates(filter, outputs);
+      }
+    });
+    WholeInputs whole(ranks, filter, given, outputs);
+    work(whole.Vectors());
+  });
+}
+
+bool AreEmptied(vtkInformationVector* outputs)
+{
+  vtkDataObject* const output = vtkDataObject::GetData(outputs, 0);
+  return output && (output->GetFieldData()->HasArray(FailedFact) || output->GetFieldData()->HasArray(AbortedFact));
 }
 
 bool GuardedInformation(vtkAlgorithm* filter, const std::function<void()>& work)

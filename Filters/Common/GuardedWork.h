@@ -6,6 +6,7 @@
 
 class vtkAlgorithm;
 class vtkDataObject;
+class vtkInformation;
 class vtkInformationVector;
 
 /// Work of a filter that may fail, be stopped, and tells how far it is.
@@ -15,7 +16,7 @@ namespace tyndall
 /// aborted.
 void StopWithFilterBefore(vtkDataObject* input);
 
-/// Reports to the filter's progress; says stop when the filter is asked to abort.
+/// Reports to the filter's progress; says stop when the filter is asked to abort, on this rank or another.
 Monitor MonitorOf(vtkAlgorithm* filter);
 
 /// Runs the work of a filter's RequestData. Whatever it throws becomes one error of the filter; the outputs are empty
@@ -26,6 +27,19 @@ Monitor MonitorOf(vtkAlgorithm* filter);
 /// @return what RequestData is to return: always 1. With 0 the pipeline would add an error that says less, and run the
 ///   filter again, in vain, with every update.
 int Guarded(vtkAlgorithm* filter, vtkInformationVector* outputs, const std::function<void()>& work);
+
+/// The same of a filter that needs all of its inputs, whatever piece is asked for.
+///
+/// Where ranks run it together (Ranks.h), what fails on one of them is one error on all, with the same words, and the
+/// outputs of all are empty; so it is with an abort. One that does not come is an error
+/// after a while (RankMeeting.h).
+/// @param given  the inputs of RequestData
+/// @param work   is given them as wholes (WholeInputs.h), the same on all ranks
+int Guarded(vtkAlgorithm* filter, vtkInformation* request, vtkInformationVector** given, vtkInformationVector* outputs,
+  const std::function<void(vtkInformationVector** inputs)>& work);
+
+/// After Guarded: whether outputs are empty because it failed, or was aborted.
+bool AreEmptied(vtkInformationVector* outputs);
 
 /// Runs what may fail in a reader's RequestInformation. What it throws becomes one error, however often ParaView asks,
 /// until the reader is modified; Guarded then leaves the outputs empty.

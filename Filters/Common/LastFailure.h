@@ -19,11 +19,8 @@ namespace tyndall
 /// Field data of outputs that are empty because their filter was aborted, or failed.
 constexpr const char* AbortedFact = "aborted";
 constexpr const char* FailedFact = "failed";
-
-/// Thrown where an input is empty because the filter before failed, which has said why.
-struct InputFailed
-{
-};
+/// Beside FailedFact: because a rank did not come, so that it is not waited for again.
+constexpr const char* MissingFact = "rank_missing";
 
 /// When a filter's last run failed, and how. VTK runs a filter again with every update while its output does not cover
 /// the extent that was asked for, and that is so while the output is empty; ParaView makes several updates. This keeps
@@ -36,6 +33,7 @@ public:
     Error,
     Abort,
     Information, ///< an error already of RequestInformation
+    Missing,     ///< a rank did not come
   };
 
   explicit LastFailure(vtkAlgorithm* filter)

@@ -1,5 +1,6 @@
 #include "Common/LightTransportData.h"
 
+#include "Common/Failure.h"
 #include "Common/GhostFlags.h"
 #include "Common/LastFailure.h"
 #include "Common/PhaseFunctionData.h"

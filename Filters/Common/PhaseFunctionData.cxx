@@ -210,6 +210,30 @@ PhaseDescription ReadPhaseDescription(vtkDataObject* medium)
   return description;
 }
 
+std::string PhaseInWords(vtkDataObject* medium)
+{
+  constexpr vtkIdType most = 9; // values that are listed
+  std::string words;
+  for (const char* name : Facts)
+  {
+    vtkAbstractArray* const fact = medium->GetFieldData()->GetAbstractArray(name);
+    if (!fact)
+    {
+      continue;
+    }
+    words += (words.empty() ? "" : ", ") + std::string(name);
+    std::string values;
+    for (vtkIdType i = 0; i < fact->GetNumberOfValues(); ++i)
+    {
+      values += " " + fact->GetVariantValue(i).ToString();
+    }
+    words += fact->GetNumberOfValues() <= most ? values
+                                               : " of " + std::to_string(fact->GetNumberOfValues()) + " numbers (" +
+        std::to_string(std::hash<std::string>()(values) % 1000000) + ")";
+  }
+  return words.empty() ? "nothing" : words;
+}
+
 void WritePhaseDescription(vtkDataObject* medium, const PhaseDescription& description)
 {
   for (const char* fact : Facts)

@@ -49,6 +49,10 @@ struct PhaseDescription
 /// @throws InvalidInput where field data have another type or shape than the table above says
 PhaseDescription ReadPhaseDescription(vtkDataObject* medium);
 
+/// What field data say, for messages, and to compare: names and numbers, of tables how many there are and a number that
+/// others hardly have.
+std::string PhaseInWords(vtkDataObject* medium);
+
 /// Writes it as field data, and takes away those that it does not need. `g` of functions that need none is their mean
 /// cosine.
 void WritePhaseDescription(vtkDataObject* medium, const PhaseDescription& description);

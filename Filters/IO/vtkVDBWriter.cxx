@@ -2,6 +2,7 @@
 
 #include "Common/GatheredImage.h"
 #include "Common/ImageInput.h"
+#include "Common/Ranks.h"
 #include "Device/Errors.h"
 #include "IO/VDB/VDBCells.h"
 #include "IO/VDB/VDBFile.h"
@@ -140,9 +141,9 @@ openvdb::GridPtrVec GridsOf(tyndall::GatheredImage& image, vtkMultiProcessContro
       place = tyndall::PlacementOf(image.Frame());
     }
   });
-  for (int i = 0; i < image.NumberOfArrays(); ++i)
+  for (int i = 0; i < image.NumberOfCellArrays(); ++i)
   {
-    const vtkSmartPointer<vtkDataArray> array = image.Array(i);
+    const vtkSmartPointer<vtkDataArray> array = image.CellArray(i);
     tyndall::OnAllRanks(controller, [&] {
       if (image.IsFirstRank())
       {
@@ -150,7 +151,7 @@ openvdb::GridPtrVec GridsOf(tyndall::GatheredImage& image, vtkMultiProcessContro
         grids.insert(grids.end(), made.begin(), made.end());
       }
     });
-    progress(static_cast<double>(i + 1) / image.NumberOfArrays());
+    progress(static_cast<double>(i + 1) / image.NumberOfCellArrays());
   }
   return grids;
 }
@@ -227,15 +228,16 @@ void vtkVDBWriter::WriteData()
       tyndall::RequireImages(this);
       arrays = CellArraysOf(this->GetImageInput());
     });
-    tyndall::GatheredImage image(this->Controller, this->GetImageInput(), arrays);
+    tyndall::GatheredImage image(this->Controller, this->GetImageInput(), arrays, {},
+      tyndall::GatheredImage::On::FirstRank, "The image is not written");
     tyndall::OnAllRanks(this->Controller, [&] {
-      if (image.IsFirstRank() && (image.Frame() == nullptr || image.NumberOfArrays() == 0))
+      if (image.IsFirstRank() && (image.Frame() == nullptr || image.NumberOfCellArrays() == 0))
       {
         throw InvalidInput("\"" + std::string(this->FileName) + "\" is not written: the image has no " +
           (image.Frame() ? "arrays." : "cells."));
       }
     });
-    const tyndall::VoxelOptions options{ this->Background, this->Tolerance, this->SaveAsHalf, image.Hidden() };
+    const tyndall::VoxelOptions options{ this->Background, this->Tolerance, this->SaveAsHalf, image.HiddenCells() };
     const openvdb::GridPtrVec grids =
       GridsOf(image, this->Controller, options, [this](double done) { this->UpdateProgress(0.5 * done); });
     this->SetErrorCode(vtkErrorCode::CannotOpenFileError);

@@ -51,12 +51,12 @@ int vtkPhotonEmitter::FillOutputPortInformation(int, vtkInformation* information
   return 1;
 }
 
-int vtkPhotonEmitter::RequestData(vtkInformation* request, vtkInformationVector** inputs, vtkInformationVector* outputs)
+int vtkPhotonEmitter::RequestData(vtkInformation* request, vtkInformationVector** given, vtkInformationVector* outputs)
 {
   this->Photons = 0;
   this->Power = 0.0;
   this->Seconds = 0.0;
-  return tyndall::Guarded(this, outputs, [&] {
+  return tyndall::Guarded(this, request, given, outputs, [&](vtkInformationVector** inputs) {
     const tyndall::Grid grid = tyndall::GridOf(vtkImageData::GetData(inputs[MEDIUM]));
     tyndall::Illumination illumination = this->ReadIllumination(inputs);
     std::copy_n(this->SkyColor, 3, illumination.sky.begin());

@@ -141,11 +141,11 @@ tyndall::Importance vtkPhotonImportance::Find(vtkInformationVector** inputs)
 }
 
 int vtkPhotonImportance::RequestData(
-  vtkInformation* request, vtkInformationVector** inputs, vtkInformationVector* outputs)
+  vtkInformation* request, vtkInformationVector** given, vtkInformationVector* outputs)
 {
   this->DeviceName.clear();
   this->Note({});
-  return tyndall::Guarded(this, outputs, [&] {
+  return tyndall::Guarded(this, request, given, outputs, [&](vtkInformationVector** inputs) {
     tyndall::Importance importance = this->Find(inputs);
     this->Note(importance);
     vtkImageData* const map = vtkImageData::GetData(outputs, 0);

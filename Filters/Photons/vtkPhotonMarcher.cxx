@@ -183,12 +183,13 @@ int vtkPhotonMarcher::RequestInformation(vtkInformation*, vtkInformationVector**
 }
 
 /// The memory of an old medium is given back before the filters before run, which may need it.
-int vtkPhotonMarcher::RequestUpdateExtent(vtkInformation*, vtkInformationVector** inputs, vtkInformationVector*)
+int vtkPhotonMarcher::RequestUpdateExtent(
+  vtkInformation* request, vtkInformationVector** inputs, vtkInformationVector* outputs)
 {
   this->Kept->ForgetIfRan(this, { MediumPort, OctreePort });
   for (int port = 0; port < InputPortCount; ++port)
   {
-    tyndall::AskForAll(inputs[port]);
+    tyndall::AskForAll(request, inputs[port], outputs);
   }
   return 1;
 }
@@ -237,12 +238,12 @@ vtkPhotonMarcher::Marched vtkPhotonMarcher::March(
   return marched;
 }
 
-int vtkPhotonMarcher::RequestData(vtkInformation* request, vtkInformationVector** inputs, vtkInformationVector* outputs)
+int vtkPhotonMarcher::RequestData(vtkInformation* request, vtkInformationVector** given, vtkInformationVector* outputs)
 {
   this->Note({});
   this->PackingLoss = 0.0;
   this->MediumKept = false;
-  return tyndall::Guarded(this, outputs, [&] {
+  return tyndall::Guarded(this, request, given, outputs, [&](vtkInformationVector** inputs) {
     vtkPolyData* const given = vtkPolyData::GetData(inputs[PhotonsPort]);
     const std::vector<tyndall::Photon> photons = tyndall::ReadPhotons(given);
     const std::string doubt = tyndall::DoubtOfBox(given, tyndall::GridOf(vtkImageData::GetData(inputs[MediumPort])));

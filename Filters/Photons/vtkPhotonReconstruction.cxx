@@ -206,16 +206,18 @@ int vtkPhotonReconstruction::RequestInformation(
   return 1;
 }
 
-int vtkPhotonReconstruction::RequestUpdateExtent(vtkInformation*, vtkInformationVector** inputs, vtkInformationVector*)
+int vtkPhotonReconstruction::RequestUpdateExtent(
+  vtkInformation* request, vtkInformationVector** inputs, vtkInformationVector* outputs)
 {
-  tyndall::AskForAll(inputs[0]);
+  tyndall::AskForAll(request, inputs[0], outputs);
   return 1;
 }
 
-int vtkPhotonReconstruction::RequestData(vtkInformation*, vtkInformationVector** inputs, vtkInformationVector* outputs)
+int vtkPhotonReconstruction::RequestData(
+  vtkInformation* request, vtkInformationVector** given, vtkInformationVector* outputs)
 {
   this->Note({});
-  return tyndall::Guarded(this, outputs, [&] {
+  return tyndall::Guarded(this, request, given, outputs, [&](vtkInformationVector** inputs) {
     vtkImageData* const image = vtkImageData::GetData(inputs[0]);
     tyndall::ReconstructedLight light = Reconstruct(this, image);
     this->Note(light);

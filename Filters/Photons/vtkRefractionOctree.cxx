@@ -101,20 +101,21 @@ int vtkRefractionOctree::RequestInformation(
   return 1;
 }
 
-int vtkRefractionOctree::RequestUpdateExtent(vtkInformation*, vtkInformationVector** inputs, vtkInformationVector*)
+int vtkRefractionOctree::RequestUpdateExtent(
+  vtkInformation* request, vtkInformationVector** inputs, vtkInformationVector* outputs)
 {
-  tyndall::AskForAll(inputs[0]);
+  tyndall::AskForAll(request, inputs[0], outputs);
   return 1;
 }
 
 int vtkRefractionOctree::RequestData(
-  vtkInformation* request, vtkInformationVector** inputs, vtkInformationVector* outputs)
+  vtkInformation* request, vtkInformationVector** given, vtkInformationVector* outputs)
 {
   this->NodeCount = 0;
   this->Seconds = 0.0;
   this->DeviceName.clear();
   this->LeftOut.clear();
-  return tyndall::Guarded(this, outputs, [&] {
+  return tyndall::Guarded(this, request, given, outputs, [&](vtkInformationVector** inputs) {
     vtkImageData* image = vtkImageData::GetData(inputs[0]);
     tyndall::Octree octree = Build(this, image);
 

@@ -64,14 +64,11 @@ vtkDiscreteOrdinates::vtkDiscreteOrdinates()
 
 vtkDiscreteOrdinates::~vtkDiscreteOrdinates() = default;
 
-int vtkDiscreteOrdinates::RequestData(vtkInformation*, vtkInformationVector** inputs, vtkInformationVector* outputs)
+int vtkDiscreteOrdinates::RequestData(
+  vtkInformation* request, vtkInformationVector** given, vtkInformationVector* outputs)
 {
-  if (this->GiveSolved(inputs, outputs))
-  {
-    return 1;
-  }
-  this->Note({});
-  return tyndall::Guarded(this, outputs, [&] {
+  const auto forget = [this] { this->Note({}); };
+  return this->GiveOrSolve(request, given, outputs, forget, [&](vtkInformationVector** inputs) {
     vtkImageData* image = vtkImageData::GetData(inputs[MEDIUM]);
     const tyndall::MediumInput input = tyndall::ReadMedium(this, image);
     const bool emits = input.Emits();

@@ -94,11 +94,11 @@ vtkLPMPropagate::vtkLPMPropagate()
 }
 vtkLPMPropagate::~vtkLPMPropagate() = default;
 
-int vtkLPMPropagate::RequestData(vtkInformation*, vtkInformationVector** inputs, vtkInformationVector* outputs)
+int vtkLPMPropagate::RequestData(vtkInformation* request, vtkInformationVector** given, vtkInformationVector* outputs)
 {
   this->Order = 0;
   this->Bytes = 0.0;
-  return tyndall::Guarded(this, outputs, [&] {
+  return tyndall::Guarded(this, request, given, outputs, [&](vtkInformationVector** inputs) {
     vtkImageData* image = vtkImageData::GetData(inputs[MEDIUM]);
     const tyndall::MediumInput input = tyndall::ReadMedium(this, image);
     const tyndall::FloatField unscattered = tyndall::ReadCells(image, "unscattered", tyndall::Need::Optional, {});

@@ -176,15 +176,13 @@ tyndall::LightField vtkLatticeBoltzmannLighting::Solve(vtkInformationVector** in
 }
 
 int vtkLatticeBoltzmannLighting::RequestData(
-  vtkInformation*, vtkInformationVector** inputs, vtkInformationVector* outputs)
+  vtkInformation* request, vtkInformationVector** given, vtkInformationVector* outputs)
 {
-  if (this->GiveSolved(inputs, outputs))
-  {
-    return 1;
-  }
-  this->Note({});
-  this->Seconds = 0.0;
-  return tyndall::Guarded(this, outputs, [&] {
+  const auto forget = [this] {
+    this->Note({});
+    this->Seconds = 0.0;
+  };
+  return this->GiveOrSolve(request, given, outputs, forget, [&](vtkInformationVector** inputs) {
     tyndall::LightField light = this->Solve(inputs);
     light.settingsUsed = tyndall::Words(SettingsOf(this));
     this->Note(light);

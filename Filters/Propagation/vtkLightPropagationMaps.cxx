@@ -147,14 +147,11 @@ vtkLightPropagationMaps::vtkLightPropagationMaps()
 
 vtkLightPropagationMaps::~vtkLightPropagationMaps() = default;
 
-int vtkLightPropagationMaps::RequestData(vtkInformation*, vtkInformationVector** inputs, vtkInformationVector* outputs)
+int vtkLightPropagationMaps::RequestData(
+  vtkInformation* request, vtkInformationVector** given, vtkInformationVector* outputs)
 {
-  if (this->GiveSolved(inputs, outputs))
-  {
-    return 1;
-  }
-  this->Note({});
-  return tyndall::Guarded(this, outputs, [&] {
+  const auto forget = [this] { this->Note({}); };
+  return this->GiveOrSolve(request, given, outputs, forget, [&](vtkInformationVector** inputs) {
     vtkImageData* image = vtkImageData::GetData(inputs[MEDIUM]);
     const tyndall::MediumInput input = tyndall::ReadMedium(this, image);
     const bool emits = input.Emits();

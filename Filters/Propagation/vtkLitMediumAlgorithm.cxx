@@ -71,11 +71,12 @@ int vtkLitMediumAlgorithm::RequestInformation(
   return 1;
 }
 
-int vtkLitMediumAlgorithm::RequestUpdateExtent(vtkInformation*, vtkInformationVector** inputs, vtkInformationVector*)
+int vtkLitMediumAlgorithm::RequestUpdateExtent(
+  vtkInformation* request, vtkInformationVector** inputs, vtkInformationVector* outputs)
 {
   for (int port = 0; port < this->GetNumberOfInputPorts(); ++port)
   {
-    tyndall::AskForAll(inputs[port]);
+    tyndall::AskForAll(request, inputs[port], outputs);
   }
   return 1;
 }

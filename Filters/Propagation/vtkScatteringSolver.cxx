@@ -96,14 +96,24 @@ vtkMTimeType vtkScatteringSolver::GetMTime()
   return std::max(this->Superclass::GetMTime(), this->ColorsTime.GetMTime());
 }
 
-bool vtkScatteringSolver::GiveSolved(vtkInformationVector** inputs, vtkInformationVector* outputs)
+int vtkScatteringSolver::GiveOrSolve(vtkInformation* request, vtkInformationVector** given,
+  vtkInformationVector* outputs, const std::function<void()>& forget,
+  const std::function<void(vtkInformationVector** inputs)>& solve)
 {
-  if (!this->Solved->GiveBack(this->Superclass::GetMTime(), inputs, this->GetNumberOfInputPorts(), outputs))
+  const int done = tyndall::Guarded(this, request, given, outputs, [&](vtkInformationVector** inputs) {
+    if (this->Solved->GiveBack(this->Superclass::GetMTime(), inputs, this->GetNumberOfInputPorts(), outputs))
+    {
+      this->HandOn(inputs, outputs);
+      return;
+    }
+    forget();
+    solve(inputs);
+  });
+  if (tyndall::AreEmptied(outputs))
   {
-    return false;
+    forget();
   }
-  tyndall::Guarded(this, outputs, [&] { this->HandOn(inputs, outputs); });
-  return true;
+  return done;
 }
 
 void vtkScatteringSolver::WriteSolved(

@@ -5,6 +5,7 @@
 #include "vtkTimeStamp.h"
 #include "vtkTyndallModule.h" // for export macro
 
+#include <functional>
 #include <memory>
 #include <string>
 
@@ -125,12 +126,15 @@ protected:
   /// @param emits  whether the medium does
   tyndall::IlluminationInput ReadShining(vtkInformationVector** inputs, bool emits);
 
-  /// First in RequestData.
-  /// @return whether the outputs are there, of the last solve
-  bool GiveSolved(vtkInformationVector** inputs, vtkInformationVector* outputs);
+  /// RequestData: gives out the light of the last solve where that is asked for again, or solves. What fails is one
+  /// error (Common/GuardedWork.h).
+  /// @param forget  what is told on the panel; before solving, and where it failed
+  /// @param solve   is given all inputs as wholes, by port; ends with WriteSolved
+  int GiveOrSolve(vtkInformation* request, vtkInformationVector** given, vtkInformationVector* outputs,
+    const std::function<void()>& forget, const std::function<void(vtkInformationVector** inputs)>& solve);
 
-  /// Last in RequestData, within Guarded: solved light on output 0 beside the arrays of the medium, its convergence on
-  /// output 1; then a warning of each doubt. Kept for GiveSolved.
+  /// Last in RequestData: solved light on output 0 beside the arrays of the medium, its convergence on
+  /// output 1; then a warning of each doubt. Kept for GiveOrSolve.
   void WriteSolved(tyndall::LightField&& light, vtkInformationVector** inputs, vtkInformationVector* outputs);
 
   int Quality = USUAL;

@@ -289,10 +289,10 @@ tyndall::ComparisonSettings vtkSolverComparison::Settings() const
 }
 
 int vtkSolverComparison::RequestData(
-  vtkInformation* request, vtkInformationVector** inputs, vtkInformationVector* outputs)
+  vtkInformation* request, vtkInformationVector** given, vtkInformationVector* outputs)
 {
   this->Note({}, 0.0);
-  return tyndall::Guarded(this, outputs, [&] {
+  return tyndall::Guarded(this, request, given, outputs, [&](vtkInformationVector** inputs) {
     const double start = tyndall::ClockSeconds();
     const tyndall::RefractiveInput read = tyndall::ReadRefractiveMedium(this, vtkImageData::GetData(inputs[MEDIUM]));
     tyndall::ComparedScene scene;

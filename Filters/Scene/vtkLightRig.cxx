@@ -245,15 +245,16 @@ int vtkLightRig::FillInputPortInformation(int, vtkInformation* information)
   return 1;
 }
 
-int vtkLightRig::RequestUpdateExtent(vtkInformation*, vtkInformationVector** inputs, vtkInformationVector*)
+int vtkLightRig::RequestUpdateExtent(
+  vtkInformation* request, vtkInformationVector** inputs, vtkInformationVector* outputs)
 {
-  tyndall::AskForAll(inputs[0]); // every rank has every light
+  tyndall::AskForAll(request, inputs[0], outputs); // every rank has every light
   return 1;
 }
 
-int vtkLightRig::RequestData(vtkInformation*, vtkInformationVector** inputs, vtkInformationVector* outputs)
+int vtkLightRig::RequestData(vtkInformation* request, vtkInformationVector** given, vtkInformationVector* outputs)
 {
-  return tyndall::Guarded(this, outputs, [&] {
+  return tyndall::Guarded(this, request, given, outputs, [&](vtkInformationVector** inputs) {
     this->Added->CheckNumbers();
     std::vector<Light> lights;
     if (this->Sun)

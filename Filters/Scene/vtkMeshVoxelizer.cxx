@@ -258,20 +258,21 @@ int vtkMeshVoxelizer::RequestInformation(vtkInformation*, vtkInformationVector**
   return 1;
 }
 
-int vtkMeshVoxelizer::RequestUpdateExtent(vtkInformation*, vtkInformationVector** inputs, vtkInformationVector*)
+int vtkMeshVoxelizer::RequestUpdateExtent(
+  vtkInformation* request, vtkInformationVector** inputs, vtkInformationVector* outputs)
 {
-  tyndall::AskForAll(inputs[0]);
+  tyndall::AskForAll(request, inputs[0], outputs);
   return 1;
 }
 
-int vtkMeshVoxelizer::RequestData(vtkInformation*, vtkInformationVector** inputs, vtkInformationVector* outputs)
+int vtkMeshVoxelizer::RequestData(vtkInformation* request, vtkInformationVector** given, vtkInformationVector* outputs)
 {
   this->OccupiedVolume = 0.0;
   std::fill_n(this->UsedOutsideScattering, 3, 0.0);
   this->Seconds = 0.0;
   this->DeviceName.clear();
   this->LeftOut.clear();
-  return tyndall::Guarded(this, outputs, [&] {
+  return tyndall::Guarded(this, request, given, outputs, [&](vtkInformationVector** inputs) {
     this->Added->Check();
     const Material inside = { this->InsideIndex, Triple(this->InsideAbsorption), Triple(this->InsideScattering),
       this->InsideMeanCosine };

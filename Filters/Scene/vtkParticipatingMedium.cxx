@@ -12,6 +12,7 @@
 
 #include "vtkImageData.h"
 #include "vtkInformation.h"
+#include "vtkInformationVector.h"
 #include "vtkObjectFactory.h"
 #include "vtkTable.h"
 
@@ -343,8 +344,8 @@ int vtkParticipatingMedium::RequestUpdateExtent(
   vtkInformation* request, vtkInformationVector** inputs, vtkInformationVector* outputs)
 {
   const int done = this->Superclass::RequestUpdateExtent(request, inputs, outputs);
-  tyndall::AskForAll(inputs[DENSITY]);
-  tyndall::AskForAll(inputs[PHASE_TABLE]);
+  tyndall::AskForAll(request, inputs[DENSITY], outputs);
+  tyndall::AskForAll(request, inputs[PHASE_TABLE], outputs);
   return done;
 }
 
@@ -369,12 +370,13 @@ void vtkParticipatingMedium::NoteSize(
   }
 }
 
-int vtkParticipatingMedium::RequestData(vtkInformation*, vtkInformationVector** inputs, vtkInformationVector* outputs)
+int vtkParticipatingMedium::RequestData(
+  vtkInformation* request, vtkInformationVector** given, vtkInformationVector* outputs)
 {
   this->PhysicalExtent.clear();
   this->OpticalThickness = 0.0;
   this->MeanFreePath = 0.0;
-  return tyndall::Guarded(this, outputs, [&] {
+  return tyndall::Guarded(this, request, given, outputs, [&](vtkInformationVector** inputs) {
     vtkImageData* input = vtkImageData::GetData(inputs[0]);
     const Recipe recipe = RecipeOf(this, this->ChannelMeanCosines);
     const tyndall::PhaseDescription phase = DescriptionOf(this, recipe.g, vtkTable::GetData(inputs[PHASE_TABLE]));

@@ -375,14 +375,15 @@ tyndall::Picture vtkMediumRayCaster::Expose(Scene& scene, double& exposure)
   return picture;
 }
 
-int vtkMediumRayCaster::RequestData(vtkInformation*, vtkInformationVector** inputs, vtkInformationVector* outputs)
+int vtkMediumRayCaster::RequestData(
+  vtkInformation* request, vtkInformationVector** given, vtkInformationVector* outputs)
 {
   this->Seconds = this->UsedExposure = 0.0;
   this->SceneKept = false;
   this->DeviceName.clear();
   this->LeftOut.clear();
   this->SettingsUsed.clear();
-  return tyndall::Guarded(this, outputs, [&] {
+  return tyndall::Guarded(this, request, given, outputs, [&](vtkInformationVector** inputs) {
     tyndall::ToneMapping toneMapping;
     toneMapping.exposure = this->Exposure;
     toneMapping.curve = static_cast<tyndall::ToneCurve>(this->ToneCurve);

@@ -1,0 +1,62 @@
+#include "Common/Failure.h"
+
+#include "Device/Errors.h"
+#include "Device/OpenCL.h"
+
+#include <new>
+#include <stdexcept>
+
+namespace tyndall
+{
+namespace
+{
+const char* const NoMemory =
+  "The machine's memory does not suffice. Ask for less: fewer photons, a smaller grid, or fewer outputs.";
+}
+
+Ending EndingOf(const std::function<void()>& work)
+{
+  try
+  {
+    work();
+  }
+  catch (const Aborted&)
+  {
+    return { Ending::Aborted, "" };
+  }
+  catch (const InputFailed&)
+  {
+    return { Ending::InputFailed, "" };
+  }
+  catch (const cl::Error& error)
+  {
+    return { Ending::Failed,
+      std::string("The OpenCL device failed in ") + error.what() + " (OpenCL error " + std::to_string(error.err()) +
+        "). Try another device (property Device or variable TYNDALL_DEVICE)." };
+  }
+  catch (const std::bad_alloc&)
+  {
+    return { Ending::Failed, NoMemory };
+  }
+  catch (const std::length_error&) // more than any memory has
+  {
+    return { Ending::Failed, NoMemory };
+  }
+  catch (const std::exception& error)
+  {
+    return { Ending::Failed, error.what() };
+  }
+  return {};
+}
+
+void Throw(const Ending& ending)
+{
+  switch (ending.kind)
+  {
+    case Ending::Done: return;
+    case Ending::Aborted: throw Aborted();
+    case Ending::InputFailed: throw InputFailed();
+    case Ending::Failed: throw InvalidInput(ending.why);
+  }
+}
+}

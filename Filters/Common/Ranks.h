@@ -1,0 +1,38 @@
+#pragma once
+
+#include <functional>
+
+class vtkAlgorithm;
+class vtkInformation;
+class vtkInformationVector;
+class vtkMultiProcessController;
+
+/// The ranks of MPI that run a filter together, each for its piece of the output.
+///
+/// They do where ParaView spreads data (pvbatch --symmetric, pvserver), and in programs of VTK's whose ranks each ask
+/// for one of as many pieces as there are ranks. Then all that they agree on is agreed by operations of VTK's global
+/// controller that each of them reaches, whether its own part of the work failed or not. Where fewer pieces are asked
+/// for, as by a rank that looks at the whole alone, nothing is agreed on, and nobody waits.
+namespace tyndall
+{
+/// In RequestUpdateExtent: tells the filters before a port whether all ranks ask them, though each for the whole.
+void AskTogether(vtkInformation* request, vtkInformationVector* outputs, vtkInformationVector* inputs);
+
+/// In RequestData.
+/// @return of the ranks that run the filter together; null: this process runs it alone
+vtkMultiProcessController* RanksTogether(vtkInformation* request, vtkInformationVector* outputs);
+
+/// Does something on each rank. All of them have to call it.
+/// @param controller  null: there is one rank
+/// @throws what it threw, on every rank, where it threw on any of them: InvalidInput with the same words; where those
+///   are not of all ranks, they say of which. An abort (Aborted) and a filter before that failed (InputFailed) are no
+///   errors of their own
+void OnAllRanks(vtkMultiProcessController* controller, const std::function<void()>& act);
+
+/// The same of long work that can be stopped: where it ends early on one rank, the Monitor of the filter (MonitorOf)
+/// stops it on the others.
+void WorkOnAllRanks(vtkMultiProcessController* controller, vtkAlgorithm* filter, const std::function<void()>& work);
+
+/// Whether other ranks want a filter's work to stop, which is in WorkOnAllRanks.
+bool IsStoppedByOthers(vtkAlgorithm* filter);
+}

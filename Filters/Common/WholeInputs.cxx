@@ -1,0 +1,401 @@
+#include "Common/WholeInputs.h"
+
+#include "Common/ContentKey.h"
+#include "Common/GatheredImage.h"
+#include "Common/GuardedWork.h"
+#include "Common/Ranks.h"
+#include "Common/WholeImage.h"
+#include "Device/Errors.h"
+
+#include "vtkAlgorithm.h"
+#include "vtkCellData.h"
+#include "vtkDataObject.h"
+#include "vtkDataSetAttributes.h"
+#include "vtkImageData.h"
+#include "vtkInformation.h"
+#include "vtkInformationVector.h"
+#include "vtkMultiProcessController.h"
+#include "vtkMultiProcessStream.h"
+#include "vtkPointData.h"
+#include "vtkStreamingDemandDrivenPipeline.h"
+#include "vtkUnsignedCharArray.h"
+
+#include <algorithm>
+#include <array>
+#include <cstdint>
+#include <cstring>
+#include <string>
+
+namespace tyndall
+{
+namespace
+{
+using Pipeline = vtkStreamingDemandDrivenPipeline;
+using Extent = std::array<int, 6>;
+
+constexpr Extent NoExtent = { 0, -1, 0, -1, 0, -1 };
+
+/// What ranks tell each other of what one connection gave them.
+struct Glance
+{
+  bool isThere = false; ///< with any value
+  bool isImage = false;
+  Extent extent = NoExtent;
+  Extent whole = NoExtent;           ///< that its source says there is
+  std::uint64_t key = 0;             ///< of its content
+  std::array<std::string, 2> active; ///< names of active scalars, of cells and points
+};
+
+/// Of all connections of a rank, and what it is asked for.
+struct RankGlance
+{
+  std::vector<int> connections; ///< of each port
+  std::vector<Glance> inputs;
+  std::vector<Extent> asked; ///< of each output
+};
+
+bool HasValues(vtkDataObject* data)
+{
+  return data &&
+    (data->GetNumberOfElements(vtkDataObject::POINT) > 0 || data->GetNumberOfElements(vtkDataObject::CELL) > 0 ||
+      data->GetNumberOfElements(vtkDataObject::ROW) > 0);
+}
+
+Extent ExtentIn(vtkInformation* information, vtkInformationIntegerVectorKey* key)
+{
+  Extent extent = NoExtent;
+  if (information->Has(key))
+  {
+    information->Get(key, extent.data());
+  }
+  return extent;
+}
+
+std::string ActiveName(vtkDataSetAttributes* attributes)
+{
+  vtkAbstractArray* const active = attributes->GetAbstractAttribute(vtkDataSetAttributes::SCALARS);
+  return active && active->GetName() ? active->GetName() : "";
+}
+
+/// All but the key.
+Glance GlanceAt(vtkInformation* connection)
+{
+  Glance glance;
+  vtkDataObject* const data = vtkDataObject::GetData(connection);
+  auto* const image = vtkImageData::SafeDownCast(data);
+  glance.isImage = image != nullptr;
+  glance.whole = ExtentIn(connection, Pipeline::WHOLE_EXTENT());
+  glance.isThere = image ? image->GetNumberOfCells() > 0 : HasValues(data);
+  if (!glance.isThere)
+  {
+    StopWithFilterBefore(data);
+    return glance;
+  }
+  if (image)
+  {
+    std::copy_n(image->GetExtent(), 6, glance.extent.begin());
+    glance.active = { ActiveName(image->GetCellData()), ActiveName(image->GetPointData()) };
+  }
+  return glance;
+}
+
+vtkMultiProcessStream& operator<<(vtkMultiProcessStream& stream, const Extent& extent)
+{
+  std::for_each(extent.begin(), extent.end(), [&](int bound) { stream << bound; });
+  return stream;
+}
+
+vtkMultiProcessStream& operator>>(vtkMultiProcessStream& stream, Extent& extent)
+{
+  std::for_each(extent.begin(), extent.end(), [&](int& bound) { stream >> bound; });
+  return stream;
+}
+
+void Write(const RankGlance& rank, vtkMultiProcessStream& stream)
+{
+  stream << static_cast<int>(rank.connections.size());
+  std::for_each(rank.connections.begin(), rank.connections.end(), [&](int count) { stream << count; });
+  for (const Glance& glance : rank.inputs)
+  {
+    stream << static_cast<int>(glance.isThere) << static_cast<int>(glance.isImage) << glance.extent << glance.whole
+           << static_cast<int>(glance.key >> 32) << static_cast<int>(glance.key & 0xFFFFFFFFu) << glance.active[0]
+           << glance.active[1];
+  }
+  stream << static_cast<int>(rank.asked.size());
+  std::for_each(rank.asked.begin(), rank.asked.end(), [&](const Extent& extent) { stream << extent; });
+}
+
+RankGlance Read(vtkMultiProcessStream& stream)
+{
+  RankGlance rank;
+  int count = 0, inputs = 0;
+  stream >> count;
+  rank.connections.resize(static_cast<std::size_t>(count));
+  for (int& connections : rank.connections)
+  {
+    stream >> connections;
+    inputs += connections;
+  }
+  rank.inputs.resize(static_cast<std::size_t>(inputs));
+  for (Glance& glance : rank.inputs)
+  {
+    int isThere = 0, isImage = 0, high = 0, low = 0;
+    stream >> isThere >> isImage >> glance.extent >> glance.whole >> high >> low >> glance.active[0] >>
+      glance.active[1];
+    glance.isThere = isThere != 0;
+    glance.isImage = isImage != 0;
+    glance.key = static_cast<std::uint64_t>(static_cast<std::uint32_t>(high)) << 32 | static_cast<std::uint32_t>(low);
+  }
+  stream >> count;
+  rank.asked.resize(static_cast<std::size_t>(count));
+  std::for_each(rank.asked.begin(), rank.asked.end(), [&](Extent& extent) { stream >> extent; });
+  return rank;
+}
+
+/// The same connection on all ranks.
+using OnRanks = std::vector<Glance>;
+
+bool Alike(const OnRanks& glances)
+{
+  return std::all_of(glances.begin(), glances.end(), [&](const Glance& glance) {
+    return glance.isThere == glances[0].isThere && glance.key == glances[0].key && glance.extent == glances[0].extent;
+  });
+}
+
+std::string Named(int port)
+{
+  return "The input" + (port > 0 ? " " + std::to_string(port) : std::string());
+}
+
+/// The arrays that can be put together: those of numbers that have a value for each cell or point.
+GatheredImage::Arrays ArraysOf(vtkDataSetAttributes* attributes, vtkIdType values)
+{
+  GatheredImage::Arrays arrays;
+  for (int i = 0; i < attributes->GetNumberOfArrays(); ++i)
+  {
+    vtkDataArray* const array = attributes->GetArray(i);
+    const bool isFlags =
+      array && array->GetName() && std::strcmp(array->GetName(), vtkDataSetAttributes::GhostArrayName()) == 0;
+    if (array && !isFlags && array->GetDataTypeSize() > 0 && array->GetNumberOfTuples() == values)
+    {
+      arrays.emplace_back(array);
+    }
+  }
+  return arrays;
+}
+
+void AddHidden(vtkDataSetAttributes* attributes, const std::vector<unsigned char>* hidden)
+{
+  if (hidden)
+  {
+    vtkNew<vtkUnsignedCharArray> flags;
+    flags->SetName(vtkDataSetAttributes::GhostArrayName());
+    flags->SetNumberOfTuples(static_cast<vtkIdType>(hidden->size()));
+    std::copy(hidden->begin(), hidden->end(), flags->GetPointer(0));
+    attributes->AddArray(flags);
+  }
+}
+
+/// Pieces of an image as one, on each rank.
+vtkSmartPointer<vtkDataObject> WholeImageOf(
+  vtkMultiProcessController* ranks, vtkImageData* piece, const OnRanks& glances, const std::string& named)
+{
+  const bool any = piece && piece->GetNumberOfCells() > 0;
+  GatheredImage::Arrays cells, points;
+  if (any)
+  {
+    cells = ArraysOf(piece->GetCellData(), piece->GetNumberOfCells());
+    points = ArraysOf(piece->GetPointData(), piece->GetNumberOfPoints());
+  }
+  GatheredImage gathered(ranks, piece, std::move(cells), std::move(points), GatheredImage::On::EveryRank,
+    named + " lies in pieces on several ranks, which make no whole");
+  vtkSmartPointer<vtkImageData> whole = gathered.Frame();
+  for (int i = 0; i < gathered.NumberOfCellArrays(); ++i)
+  {
+    whole->GetCellData()->AddArray(gathered.CellArray(i));
+  }
+  for (int i = 0; i < gathered.NumberOfPointArrays(); ++i)
+  {
+    whole->GetPointData()->AddArray(gathered.PointArray(i));
+  }
+  AddHidden(whole->GetCellData(), gathered.HiddenCells());
+  AddHidden(whole->GetPointData(), gathered.HiddenPoints());
+  const auto first = std::find_if(glances.begin(), glances.end(), [](const Glance& glance) { return glance.isThere; });
+  whole->GetCellData()->SetActiveScalars(first->active[0].c_str());
+  whole->GetPointData()->SetActiveScalars(first->active[1].c_str());
+  return whole;
+}
+
+/// All that the source says there is must be on some rank, where all ranks are told of one extent.
+void CheckExtent(vtkDataObject* data, const OnRanks& glances, const std::string& named)
+{
+  auto* const image = vtkImageData::SafeDownCast(data);
+  const Extent& told = glances[0].whole;
+  const bool oneExtent =
+    std::all_of(glances.begin(), glances.end(), [&](const Glance& glance) { return glance.whole == told; });
+  if (image && oneExtent && PointBoxOf(told).Count() > 0 && !std::equal(told.begin(), told.end(), image->GetExtent()))
+  {
+    const auto words = [](const int* extent) {
+      std::string text;
+      for (int i = 0; i < 6; ++i)
+      {
+        text += (i > 0 ? " " : "") + std::to_string(extent[i]);
+      }
+      return text;
+    };
+    throw InvalidInput(named + " lies in pieces on several ranks, which together have the extent " +
+      words(image->GetExtent()) + " of " + words(told.data()) + ". Give the ranks all pieces.");
+  }
+}
+
+/// Data that are no image: those of the one rank that has any.
+vtkSmartPointer<vtkDataObject> FromOneRank(
+  vtkMultiProcessController* ranks, vtkDataObject* own, const OnRanks& glances, const std::string& named)
+{
+  const auto hasAny = [](const Glance& glance) { return glance.isThere; };
+  const auto first = std::find_if(glances.begin(), glances.end(), hasAny);
+  const auto other = std::find_if(
+    first + 1, glances.end(), [&](const Glance& glance) { return glance.isThere && glance.key != first->key; });
+  if (other != glances.end())
+  {
+    throw InvalidInput(named + " is different on ranks " + std::to_string(first - glances.begin()) + " and " +
+      std::to_string(other - glances.begin()) +
+      ". Light crosses the borders of pieces, so that every rank needs all of it: give all ranks the same, or one rank "
+      "all and the others nothing.");
+  }
+  const int from = static_cast<int>(first - glances.begin());
+  const bool mine = ranks->GetLocalProcessId() == from;
+  const auto all = vtkSmartPointer<vtkDataObject>::Take(own->NewInstance());
+  if (mine)
+  {
+    all->ShallowCopy(own);
+  }
+  ranks->Broadcast(all, from);
+  return all;
+}
+
+vtkSmartPointer<vtkDataObject> WholeOf(
+  vtkMultiProcessController* ranks, vtkDataObject* own, const OnRanks& glances, const std::string& named)
+{
+  const bool any = std::any_of(glances.begin(), glances.end(), [](const Glance& glance) { return glance.isThere; });
+  if (!any || Alike(glances))
+  {
+    return own;
+  }
+  const bool images =
+    std::any_of(glances.begin(), glances.end(), [](const Glance& glance) { return glance.isThere && glance.isImage; });
+  if (!images)
+  {
+    return FromOneRank(ranks, own, glances, named);
+  }
+  const vtkSmartPointer<vtkDataObject> whole = WholeImageOf(ranks, vtkImageData::SafeDownCast(own), glances, named);
+  CheckExtent(whole, glances, named);
+  return whole;
+}
+
+/// Where one of several ranks looks at the whole alone, nobody can help it with what its source does not give it.
+void RequireAll(vtkAlgorithm* filter, vtkInformationVector** given)
+{
+  vtkMultiProcessController* const all = vtkMultiProcessController::GetGlobalController();
+  for (int port = 0; all && all->GetNumberOfProcesses() > 1 && port < filter->GetNumberOfInputPorts(); ++port)
+  {
+    for (int i = 0; i < given[port]->GetNumberOfInformationObjects(); ++i)
+    {
+      const Glance glance = GlanceAt(given[port]->GetInformationObject(i));
+      ValueBox both = PointBoxOf(glance.extent);
+      both.Add(PointBoxOf(glance.whole));
+      Require(!glance.isImage || !glance.isThere || both.Count() == PointBoxOf(glance.extent).Count(),
+        Named(port) +
+          " has a piece of its image only: its source gives no rank the whole. Ask for pieces on all ranks, as a view "
+          "or "
+          "UpdatePipeline does, so that they are put together.");
+    }
+  }
+}
+
+RankGlance GlanceAtAll(vtkAlgorithm* filter, vtkInformationVector** given, vtkInformationVector* outputs)
+{
+  RankGlance rank;
+  for (int port = 0; port < filter->GetNumberOfInputPorts(); ++port)
+  {
+    rank.connections.push_back(given[port]->GetNumberOfInformationObjects());
+    for (int i = 0; i < rank.connections.back(); ++i)
+    {
+      vtkInformation* const connection = given[port]->GetInformationObject(i);
+      rank.inputs.push_back(GlanceAt(connection));
+      rank.inputs.back().key = ContentKey(vtkDataObject::GetData(connection));
+    }
+  }
+  for (int port = 0; port < outputs->GetNumberOfInformationObjects(); ++port)
+  {
+    rank.asked.push_back(ExtentIn(outputs->GetInformationObject(port), Pipeline::UPDATE_EXTENT()));
+  }
+  return rank;
+}
+
+std::vector<RankGlance> Share(vtkMultiProcessController* ranks, const RankGlance& own)
+{
+  vtkMultiProcessStream stream;
+  Write(own, stream);
+  std::vector<vtkMultiProcessStream> streams;
+  ranks->AllGather(stream, streams);
+  std::vector<RankGlance> all;
+  for (std::size_t rank = 0; rank < streams.size(); ++rank)
+  {
+    all.push_back(Read(streams[rank]));
+    Require(all[rank].connections == all[0].connections,
+      "Ranks 0 and " + std::to_string(rank) + " have other inputs connected. Make the same pipeline on all ranks.");
+  }
+  return all;
+}
+
+/// Where ranks are asked for parts of their own, as those of sources that know no other.
+void NoteParts(const std::vector<RankGlance>& all, int rank, vtkInformationVector* outputs)
+{
+  for (int port = 0; port < outputs->GetNumberOfInformationObjects(); ++port)
+  {
+    std::vector<Extent> parts;
+    for (const RankGlance& of : all)
+    {
+      parts.push_back(of.asked[static_cast<std::size_t>(port)]);
+    }
+    const bool alike = std::all_of(parts.begin(), parts.end(), [&](const Extent& part) { return part == parts[0]; });
+    NotePartsOfRanks(outputs->GetInformationObject(port), alike ? std::vector<Extent>() : parts, rank);
+  }
+}
+}
+
+WholeInputs::WholeInputs(
+  vtkMultiProcessController* ranks, vtkAlgorithm* filter, vtkInformationVector** given, vtkInformationVector* outputs)
+{
+  const int ports = filter->GetNumberOfInputPorts();
+  if (ranks == nullptr)
+  {
+    RequireAll(filter, given);
+    NoteParts({}, 0, outputs);
+    this->Ports.assign(given, given + ports);
+    return;
+  }
+  RankGlance own;
+  OnAllRanks(ranks, [&] { own = GlanceAtAll(filter, given, outputs); });
+  const std::vector<RankGlance> all = Share(ranks, own);
+  NoteParts(all, ranks->GetLocalProcessId(), outputs);
+  std::size_t connection = 0;
+  for (int port = 0; port < ports; ++port)
+  {
+    this->Kept.push_back(vtkSmartPointer<vtkInformationVector>::New());
+    this->Ports.push_back(this->Kept.back());
+    for (int i = 0; i < given[port]->GetNumberOfInformationObjects(); ++i, ++connection)
+    {
+      OnRanks glances;
+      std::for_each(all.begin(), all.end(), [&](const RankGlance& of) { glances.push_back(of.inputs[connection]); });
+      vtkInformation* const information = given[port]->GetInformationObject(i);
+      vtkDataObject* const data = vtkDataObject::GetData(information);
+      const vtkSmartPointer<vtkDataObject> whole = WholeOf(ranks, data, glances, Named(port));
+      vtkNew<vtkInformation> replaced;
+      replaced->Set(vtkDataObject::DATA_OBJECT(), whole);
+      this->Ports.back()->Append(whole == data ? information : replaced.Get());
+    }
+  }
+}
+}

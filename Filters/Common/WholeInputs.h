@@ -1,0 +1,41 @@
+#pragma once
+
+#include "vtkNew.h"
+#include "vtkSmartPointer.h"
+
+#include <vector>
+
+class vtkAlgorithm;
+class vtkInformation;
+class vtkInformationVector;
+class vtkMultiProcessController;
+
+namespace tyndall
+{
+/// In RequestData: what a filter is given, the same on all ranks that run it together (Ranks.h).
+///
+/// Filters whose light crosses the borders of pieces ask for the whole of their inputs (AskForAll, WholeImage.h). Many
+/// sources give it to every rank; then nothing is copied and nothing is sent but a number that says so. Others have
+/// only what lies on their rank: Resample To Image, a source of pieces of one's own, a file's reader where the file is
+/// on one rank alone. Then each rank gets all of it: pieces of an image are put together (GatheredImage.h), with cell
+/// and point arrays, ghost cells once; of other data, as tables and lights, what one rank alone has goes to all.
+///
+/// Memory of each rank: the whole image, and one piece of one array.
+class WholeInputs
+{
+public:
+  /// @param ranks  null: this process is alone, and has what it is given
+  /// @param given  by port
+  /// @param outputs  notes for KeepWhatIsAskedFor what each rank is asked for
+  /// @throws InvalidInput on all ranks with the same words where pieces make no whole
+  WholeInputs(vtkMultiProcessController* ranks, vtkAlgorithm* filter, vtkInformationVector** given,
+    vtkInformationVector* outputs);
+
+  /// By port.
+  vtkInformationVector** Vectors() { return this->Ports.data(); }
+
+private:
+  std::vector<vtkSmartPointer<vtkInformationVector>> Kept;
+  std::vector<vtkInformationVector*> Ports;
+};
+}

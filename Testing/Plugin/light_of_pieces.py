@@ -1,0 +1,238 @@
+"""What PiecesOverRanks.py runs: light in media of which each rank has only a piece.
+
+    pvbatch --symmetric light_of_pieces.py FOLDER CASE...
+
+Of the cases that give light each rank writes its pieces to FOLDER; those that must fail, and an abort, are checked here.
+"""
+import os
+import sys
+
+import numpy
+from paraview import servermanager
+from paraview.simple import *
+from paraview.vtk import vtkDoubleArray, vtkImageData
+from paraview.vtk.util.numpy_support import numpy_to_vtk, vtk_to_numpy
+from vtkmodules.vtkIOXML import vtkXMLImageDataWriter
+
+folder = sys.argv[1]
+LoadPlugin(os.environ["TYNDALL_PLUGIN"], remote=True, ns=globals())
+module = servermanager.vtkProcessModule.GetProcessModule()
+rank, ranks = module.GetPartitionId(), module.GetNumberOfLocalPartitions()
+SIZE = [-8, 8, -7, 7, -6, 6]
+same = {"UseInputBounds": 0, "SamplingBounds": SIZE, "SamplingDimensions": [17, 15, 13]}
+
+
+def errors_of(proxy):
+    """@return the texts of the errors that the proxy's filter makes from now on"""
+    texts = []
+
+    def note(caller, event, text):
+        texts.append(text)
+
+    note.CallDataType = "string0"
+    proxy.GetClientSideObject().AddObserver("ErrorEvent", note)
+    return texts
+
+
+def density_of(extent):
+    """Cells of a cloud that is told by where they are, x fastest."""
+    x, y, z = (numpy.arange(extent[2 * a], extent[2 * a + 1]) + 0.5 for a in range(3))
+    z, y, x = numpy.meshgrid(z, y, x, indexing="ij")
+    return (0.3 + 0.2 * numpy.sin(0.7 * x) * numpy.cos(0.5 * y + 0.3 * z)).astype(numpy.float32).ravel()
+
+
+def piece_of(extent, own=None, name="density", components=1, spacing=1.0, g=None):
+    """@param own  cells outside of this extent are duplicates of another rank's, with a wrong value"""
+    image = vtkImageData()
+    image.SetExtent(extent)
+    image.SetSpacing(spacing, spacing, spacing)
+    values = density_of(extent)
+    if own:
+        x, y, z = (numpy.arange(extent[2 * a], extent[2 * a + 1]) for a in range(3))
+        inside = [(n >= own[2 * a]) & (n < own[2 * a + 1]) for a, n in enumerate((x, y, z))]
+        ghost = ~(inside[2][:, None, None] & inside[1][None, :, None] & inside[0][None, None, :]).ravel()
+        values[ghost] = 99
+        flags = numpy_to_vtk(ghost.astype(numpy.uint8), deep=True)
+        flags.SetName("vtkGhostType")
+        image.GetCellData().AddArray(flags)
+    array = numpy_to_vtk(numpy.repeat(values, components).reshape(-1, components), deep=True)
+    array.SetName(name)
+    image.GetCellData().AddArray(array)
+    if g is not None:
+        fact = vtkDoubleArray()
+        fact.SetName("g")
+        fact.InsertNextValue(g)
+        image.GetFieldData().AddArray(fact)
+    return image
+
+
+def source_of(piece):
+    producer = servermanager.sources.PVTrivialProducer()
+    producer.GetClientSideObject().SetOutput(piece)
+    return producer
+
+
+def solved(density, array):
+    medium = ParticipatingMedium(Input=density, DensityArray=array, ExtinctionScale=0.2, MinimumDensity=0,
+                                 MaximumDensity=1, Albedo=[0.9, 0.9, 0.9])
+    light = LightPropagationMaps(Input=medium, SkyColor=[1, 1, 1], DirectionsPerFace=4)
+    light.UpdatePipeline()
+    return light
+
+
+def keep(case, light, picture=None):
+    """Writes the rank's piece of the light, and of a picture, with where it lies."""
+    kept = {}
+    for name, proxy, arrays in (("light", light, "CellData"), ("picture", picture, "PointData")):
+        output = proxy.GetClientSideObject().GetOutputDataObject(0) if proxy else None
+        if output and output.GetNumberOfCells() > 0:
+            attributes = getattr(output, "Get" + arrays)()
+            values = vtk_to_numpy(attributes.GetArray("fluence" if name == "light" else "radiance"))
+            ghosts = attributes.GetArray("vtkGhostType")
+            kept[name] = values
+            kept[name + "_extent"] = output.GetExtent()
+            kept[name + "_ghosts"] = vtk_to_numpy(ghosts) if ghosts else numpy.zeros(len(values))
+            if name == "light":
+                kept["balance"] = vtk_to_numpy(output.GetFieldData().GetArray("energy_balance"))
+    numpy.savez(os.path.join(folder, "%s.%d.npz" % (case, rank)), **kept)
+
+
+def resampled(data):
+    return solved(ResampleToImage(Input=data, **same), ["POINTS", "RTData"])
+
+
+def parts(cuts):
+    """Extents, a rank each, of an image of 12 x 5 x 4 cells that is cut along x."""
+    return [[cuts[r], cuts[r + 1], 0, 5, 0, 4] for r in range(ranks)]
+
+
+def even_cuts():
+    return [round(12 * r / ranks) for r in range(ranks + 1)]
+
+
+def tetrahedra():
+    light = resampled(Tetrahedralize(Input=Wavelet(WholeExtent=SIZE)))
+    keep("tetrahedra", light)  # before the ray caster asks each rank for all of it
+    camera = dict(CameraPosition=[30, 20, 10], CameraFocalPoint=[0, 0, 0], ImageSize=[24, 18])
+    picture = MediumRayCaster(Input=light, **camera)
+    picture.UpdatePipeline()
+    keep("picture", None, picture)
+
+
+def adaptive():
+    keep("adaptive", resampled(ImageDataToAMR(Input=Wavelet(WholeExtent=SIZE))))
+
+
+def pvti():
+    path = os.path.join(folder, "wavelet%d.pvti" % ranks)
+    SaveData(path, proxy=Wavelet(WholeExtent=SIZE))
+    keep("pvti", solved(XMLPartitionedImageDataReader(FileName=[path]), ["POINTS", "RTData"]))
+
+
+def own_pieces(case, pieces):
+    keep(case, solved(source_of(pieces[rank]), ["CELLS", "density"]))
+
+
+def even():
+    own_pieces("even", [piece_of(extent) for extent in parts(even_cuts())])
+
+
+def ghosts():
+    """Pieces with two layers of neighbours, of which they have wrong values."""
+    own = parts(even_cuts())
+    own_pieces("ghosts", [piece_of([max(e[0] - 2, 0), min(e[1] + 2, 12)] + e[2:], own=e) for e in own])
+
+
+def uneven():
+    """Blocks of a voxel each before the last rank, which has the rest; the second rank has no data."""
+    cuts = [0] + [max(r - 1, 1) if ranks > 2 else r for r in range(1, ranks)] + [12]
+    pieces = [piece_of(extent) if extent[1] > extent[0] else vtkImageData() for extent in parts(cuts)]
+    own_pieces("uneven", pieces)
+
+
+def alone():
+    """The last rank has all."""
+    own_pieces("alone", [vtkImageData() for _ in range(ranks - 1)] + [piece_of([0, 12, 0, 5, 0, 4])])
+
+
+def fails(case, piece, said, filters=(lambda density: ParticipatingMedium(Input=density,
+                                                                          DensityArray=["CELLS", "density"]),)):
+    """One error, with the same words on every rank, and an empty output; that of the filter after it is empty, too."""
+    medium = filters[0](source_of(piece))
+    light = LightPropagationMaps(Input=medium, SkyColor=[1, 1, 1], DirectionsPerFace=4)
+    errors, later = errors_of(medium), errors_of(light)
+    light.UpdatePipeline()
+    assert len(errors) == 1 and said in errors[0] and not later, (case, rank, errors, later)
+    assert light.GetClientSideObject().GetOutputDataObject(0).GetNumberOfCells() == 0, case
+    light.UpdatePipeline()
+    assert len(errors) == 1, (case, "again", errors)
+    print("%s: %s" % (case, errors[0].split("): ")[-1].strip()), flush=True)
+
+
+def errors():
+    odd = rank == ranks - 1
+    whole = parts(even_cuts())[rank]
+    fails("arrays", piece_of(whole, name="smoke" if odd else "density"), '"density" is on rank 0 and not on rank')
+    fails("components", piece_of(whole, components=3 if odd else 1), "other components or another type")
+    fails("spacing", piece_of(whole, spacing=2.0 if odd else 1.0), "different origins, spacings or directions")
+    fails("g", piece_of(whole, g=0.5 if odd else 0.2), "say different things of the phase function (g 0.2; g 0.5)")
+    gap = [whole[0] + odd, whole[1] + odd] + whole[2:]
+    fails("gap", piece_of(gap), "which make no whole")
+    mine = piece_of([0, 12, 0, 5, 0, 4])
+    vtk_to_numpy(mine.GetCellData().GetArray("density"))[7] += rank
+    fails("overlap", mine, 'cell array "density" has different values')
+    fails("one rank", piece_of(whole), "On rank %d: " % (ranks - 1),
+          [lambda density: ParticipatingMedium(Input=density, DensityArray=["CELLS", "none" if odd else "density"])])
+
+
+def abort():
+    """What one rank aborts ends on all."""
+    medium = ParticipatingMedium(Input=source_of(piece_of(parts(even_cuts())[rank])),
+                                 DensityArray=["CELLS", "density"])
+    light = LightPropagationMaps(Input=medium, SkyColor=[1, 1, 1], DirectionsPerFace=16, Acceleration=0,
+                                 MaximumOrders=100000, Tolerance=1e-12)
+    solver = light.GetClientSideObject()
+    if rank == ranks - 1:
+        solver.AddObserver("ProgressEvent", lambda caller, event: caller.SetAbortExecute(1))
+    errors = errors_of(light)
+    light.UpdatePipeline()
+    output = solver.GetOutputDataObject(0)
+    assert not errors and output.GetNumberOfCells() == 0 and output.GetFieldData().HasArray("aborted"), errors
+
+
+def no_file():
+    """A file that only the first rank has: all have the light of it."""
+    path = os.path.join(folder, "own%d.vti" % rank)
+    if rank == 0:
+        writer = vtkXMLImageDataWriter()
+        writer.SetFileName(path)
+        writer.SetInputData(piece_of([0, 12, 0, 5, 0, 4]))
+        writer.Write()
+    keep("no_file", solved(XMLImageDataReader(FileName=[path]), ["CELLS", "density"]))
+
+
+def missing():
+    """The last rank asks for nothing: the others do not wait for it forever (TYNDALL_RANKS_WAIT), nor twice."""
+    medium = ParticipatingMedium(Input=source_of(piece_of([0, 12, 0, 5, 0, 4])), DensityArray=["CELLS", "density"])
+    light = LightPropagationMaps(Input=medium, SkyColor=[1, 1, 1])
+    errors, later = errors_of(medium), errors_of(light)
+    for _ in range(2 if rank < ranks - 1 else 0):
+        light.UpdatePipeline()
+        assert len(errors) == 1 and "Rank %d did not come" % (ranks - 1) in errors[0] and not later, (errors, later)
+        assert light.GetClientSideObject().GetOutputDataObject(0).GetNumberOfCells() == 0
+
+
+def killed():
+    """The last rank is killed amid its work; the others are to hear of it from mpiexec."""
+    medium = ParticipatingMedium(Input=source_of(piece_of(parts(even_cuts())[rank])),
+                                 DensityArray=["CELLS", "density"])
+    light = LightPropagationMaps(Input=medium, SkyColor=[1, 1, 1], DirectionsPerFace=16)
+    if rank == ranks - 1:
+        light.GetClientSideObject().AddObserver("ProgressEvent", lambda caller, event: os.kill(os.getpid(), 9))
+    print("begins", flush=True)
+    light.UpdatePipeline()
+
+
+for case in sys.argv[2:]:
+    globals()[case]()
+print("rank %d is done" % rank, flush=True)
