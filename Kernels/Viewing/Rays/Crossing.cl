@@ -69,6 +69,17 @@ inline real most_left(light l)
 #endif
 }
 
+// What comes through of what other blocks have behind, `part` of it.
+inline rgb passed_of(light l, real part)
+{
+#if COLOURED
+  const rgb passed = { l.left.r * part, l.left.g * part, l.left.b * part };
+#else
+  const rgb passed = { l.left * part, l.left * part, l.left * part };
+#endif
+  return passed;
+}
+
 inline spectrum scaled(spectrum s, real factor)
 {
 #if COLOURED
