@@ -431,9 +431,12 @@ bool vtkMediumRayCaster::See(const tyndall::AskedView& view, tyndall::Picture& p
     tyndall::ViewSettings settings = SettingsOf(this, view.exposure);
     settings.imageSize = view.size;
     std::unique_ptr<Scene> scene = this->FindScene(this->GetExecutive()->GetInputInformation(), settings);
-    picture = scene->caster->Render(view.camera, {}, view.ends);
+    seen = !view.block || scene->caster->CastsBlocks();
+    if (seen)
+    {
+      picture = scene->caster->Render(view.camera, {}, view.ends, view.block ? &*view.block : nullptr);
+    }
     this->Kept = std::move(scene);
-    seen = true;
   });
   return seen;
 }
