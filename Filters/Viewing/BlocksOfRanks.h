@@ -42,7 +42,8 @@ public:
   /// @param wanted  pixels
   /// @param failed  this rank has no picture, though it should
   /// @return nothing, on all ranks, where one of them failed
-  std::optional<Seen> Exchange(const BlockPixels& own, const PixelRect& wanted, bool failed, const Camera& camera) const;
+  std::optional<Seen> Exchange(
+    const BlockPixels& own, const PixelRect& wanted, bool failed, const Camera& camera) const;
 
 private:
   void Swap(int partner, const std::vector<BlockPixel>& mine, std::vector<BlockPixel>& theirs) const;

@@ -300,9 +300,8 @@ tyndall::InputsKey vtkMediumRayCaster::KeyOf(vtkInformationVector** inputs, cons
   return key;
 }
 
-std::unique_ptr<vtkMediumRayCaster::Scene> vtkMediumRayCaster::MakeScene(
-  vtkInformationVector** inputs, const tyndall::InputsKey& key, tyndall::ViewSettings settings,
-  const tyndall::GridBlock* block)
+std::unique_ptr<vtkMediumRayCaster::Scene> vtkMediumRayCaster::MakeScene(vtkInformationVector** inputs,
+  const tyndall::InputsKey& key, tyndall::ViewSettings settings, const tyndall::GridBlock* block)
 {
   using tyndall::Need;
   vtkImageData* const image = vtkImageData::GetData(inputs[MEDIUM]);

@@ -100,8 +100,7 @@ void vtkLitVolumeRepresentation::BeforeFrame(vtkObject* renderer, unsigned long,
   if (this->GetVisibility())
   {
     this->Actor->ComputeMatrix();
-    vtkLitVolumeMapper::SafeDownCast(this->VolumeMapper)
-      ->SeePieces(vtkRenderer::SafeDownCast(renderer), this->Actor);
+    vtkLitVolumeMapper::SafeDownCast(this->VolumeMapper)->SeePieces(vtkRenderer::SafeDownCast(renderer), this->Actor);
   }
 }
 

@@ -2,6 +2,7 @@
 
 #include "ViewScene.h"
 
+#include "Viewing/Blocks/BlockFaces.h"
 #include "Viewing/Blocks/BlockOrder.h"
 #include "Viewing/Blocks/BlockPixels.h"
 #include "Viewing/Blocks/ShownBlock.h"
@@ -63,6 +64,11 @@ Scene PartOf(const Scene& scene, const GridBlock& block)
       std::transform(voxel.begin(), voxel.end(), block.first.begin(), voxel.begin(), std::plus<int>());
       (part.*field)[i] = from[components * scene.grid.IndexOf(voxel) + i % components];
     }
+  }
+  if (!scene.surface.empty())
+  {
+    const auto cosines = static_cast<int>(SurfaceCosines.size());
+    part.surface = FacesOfBlock(scene.surface, cosines, block, part.grid.size);
   }
   return part;
 }
@@ -196,6 +202,24 @@ TEST_F(BlocksInView, EndWhereRaysEnd)
   ExpectSame(whole, SeenOf(this->GetDevice(), scene, Cut(scene.grid, Cuts.back()), camera, ends), 1e-5);
 }
 
+TEST_F(BlocksInView, ShowLightAtTheSurfaceOfThickVoxels)
+{
+  Scene scene = Cloud(1);
+  std::fill(scene.sigma_s.begin(), scene.sigma_s.end(), 8.0f);
+  const Picture without = scene.Seen(this->GetDevice());
+  ForBoxFaceCells(scene.grid, [&](const BoxFaceCell& cell) {
+    scene.surface.insert(scene.surface.end(), SurfaceCosines.size(), 0.2f + 0.01f * (cell.u + cell.v));
+  });
+  const Picture whole = scene.Seen(this->GetDevice());
+  EXPECT_GT(LargestDifference(without.radiance, whole.radiance), 0.05);
+  for (const auto& cuts : Cuts)
+  {
+    const std::vector<BlockPixels> seen = SeenOf(this->GetDevice(), scene, Cut(scene.grid, cuts), scene.Framed());
+    const std::vector<float> radiance = RadianceOfAll(seen, { { 0, 0 }, { whole.width, whole.height } });
+    EXPECT_LT(LargestDifference(radiance, whole.radiance), 2e-3); // thick blocks are no whole half-space
+  }
+}
+
 TEST_F(BlocksInView, DoNotBendRays)
 {
   Scene scene = Cloud(1);
@@ -266,8 +290,8 @@ std::array<int, 4> ShownOfWhole(
 
 const std::vector<std::vector<BlockPixel>> Columns = { { Grey(0.1f, 0.7f), Grey(0.3f, 0.2f) },
   { Grey(0.0f, 0.05f), Grey(20.0f, 0.0f) }, // dark before bright
-  { Grey(0.02f, 0.9f), Grey(0.0f, 1.0f), Grey(0.3f, 0.9f), Grey(0.2f, 0.5f) },
-  { Grey(50.0f, 0.0f), Grey(1.0f, 0.3f) }, { Grey(0.0f, 1.0f), Grey(0.0f, 1.0f) } };
+  { Grey(0.02f, 0.9f), Grey(0.0f, 1.0f), Grey(0.3f, 0.9f), Grey(0.2f, 0.5f) }, { Grey(50.0f, 0.0f), Grey(1.0f, 0.3f) },
+  { Grey(0.0f, 1.0f), Grey(0.0f, 1.0f) } };
 }
 
 TEST(ShownBlock, TogetherShowTheWhole)

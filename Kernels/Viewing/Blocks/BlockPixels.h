@@ -16,9 +16,8 @@ struct PixelRect
   bool IsEmpty() const { return this->end[0] <= this->begin[0] || this->end[1] <= this->begin[1]; }
   std::size_t Count() const
   {
-    return this->IsEmpty()
-      ? 0
-      : static_cast<std::size_t>(this->end[0] - this->begin[0]) * (this->end[1] - this->begin[1]);
+    return this->IsEmpty() ? 0
+                           : static_cast<std::size_t>(this->end[0] - this->begin[0]) * (this->end[1] - this->begin[1]);
   }
   bool Has(int column, int row) const
   {
@@ -57,9 +56,9 @@ struct BlockPixels
   BlockPixel At(int column, int row) const
   {
     const int width = this->rect.end[0] - this->rect.begin[0];
-    return this->rect.Has(column, row) ? this->pixels[static_cast<std::size_t>(row - this->rect.begin[1]) * width +
-                                           (column - this->rect.begin[0])]
-                                       : BlockPixel();
+    return this->rect.Has(column, row)
+      ? this->pixels[static_cast<std::size_t>(row - this->rect.begin[1]) * width + (column - this->rect.begin[0])]
+      : BlockPixel();
   }
 };
 

@@ -18,8 +18,9 @@ using Shown = std::array<float, 3>; ///< [0, 255]
 Shown ShownOf(const std::array<float, 3>& radiance, const ToneMapping& tones)
 {
   Shown shown;
-  std::transform(radiance.begin(), radiance.end(), shown.begin(),
-    [&](float value) { return std::floor(ShownValue(value * static_cast<float>(tones.exposure), tones.curve) + 0.5f); });
+  std::transform(radiance.begin(), radiance.end(), shown.begin(), [&](float value) {
+    return std::floor(ShownValue(value * static_cast<float>(tones.exposure), tones.curve) + 0.5f);
+  });
   return shown;
 }
 

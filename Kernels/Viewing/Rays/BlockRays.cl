@@ -32,14 +32,14 @@ inline rays clip_to_block(
 
   // From the entry to the planes between blocks: the same numbers on both sides of each.
   real in = (real)-BEYOND, out = (real)BEYOND;
-#define CLIP(c)                                                                                                     \
-  {                                                                                                                 \
-    const real inverse = (real)1.0f / at_least_tiny(direction.c);                                                   \
-    const real beyond = copysign((real)BEYOND, inverse);                                                            \
-    const real lower = v->begin.c > 0 ? ((real)(float)v->begin.c - whole.entry.c) * inverse : -beyond;              \
-    const real upper = v->end.c < v->whole.c ? ((real)(float)v->end.c - whole.entry.c) * inverse : beyond;          \
-    in = greater(in, lesser(lower, upper));                                                                         \
-    out = lesser(out, greater(lower, upper));                                                                       \
+#define CLIP(c)                                                                                            \
+  {                                                                                                        \
+    const real inverse = (real)1.0f / at_least_tiny(direction.c);                                          \
+    const real beyond = copysign((real)BEYOND, inverse);                                                   \
+    const real lower = v->begin.c > 0 ? ((real)(float)v->begin.c - whole.entry.c) * inverse : -beyond;     \
+    const real upper = v->end.c < v->whole.c ? ((real)(float)v->end.c - whole.entry.c) * inverse : beyond; \
+    in = greater(in, lesser(lower, upper));                                                                \
+    out = lesser(out, greater(lower, upper));                                                              \
   }
   CLIP(x)
   CLIP(y)

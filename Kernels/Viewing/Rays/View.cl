@@ -96,13 +96,13 @@ inline void paint_passed(const ViewInfo* v, __global float* passed, int column, 
   const integer j = to_integer(UPWARDS);
   const integer pixel = (integer)(row * v->picture.x + column) + j * v->picture.x + i;
   const integer inside = (i + column < (integer)v->picture.x) & (j + row < (integer)v->picture.y);
-#define PAINT(n)                               \
-  if (LANE(inside, n))                         \
-  {                                            \
-    const int p = LANE(pixel, n);              \
-    passed[3 * p] = LANE(part.r, n);           \
-    passed[3 * p + 1] = LANE(part.g, n);       \
-    passed[3 * p + 2] = LANE(part.b, n);       \
+#define PAINT(n)                         \
+  if (LANE(inside, n))                   \
+  {                                      \
+    const int p = LANE(pixel, n);        \
+    passed[3 * p] = LANE(part.r, n);     \
+    passed[3 * p + 1] = LANE(part.g, n); \
+    passed[3 * p + 2] = LANE(part.b, n); \
   }
   EACH_LANE(PAINT)
 #undef PAINT

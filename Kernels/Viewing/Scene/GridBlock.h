@@ -14,9 +14,9 @@ namespace tyndall
 struct GridBlock
 {
   Grid whole;
-  std::array<int, 3> first = {};            ///< voxel of the whole at which the arrays begin
-  std::array<int, 3> begin = {}, end = {};  ///< its own voxels of the whole: from begin on, before end
-  bool showsBackgroundBeside = false;       ///< to rays that miss the whole; one of the blocks does
+  std::array<int, 3> first = {};           ///< voxel of the whole at which the arrays begin
+  std::array<int, 3> begin = {}, end = {}; ///< its own voxels of the whole: from begin on, before end
+  bool showsBackgroundBeside = false;      ///< to rays that miss the whole; one of the blocks does
 
   std::size_t OwnVoxels() const
   {
