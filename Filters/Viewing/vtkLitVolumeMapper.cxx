@@ -335,8 +335,8 @@ bool vtkLitVolumeMapper::ShowsBackgroundColor()
   return this->RayCaster->GetShowBackground() && std::any_of(color, color + 3, [](double c) { return c > 0.0; });
 }
 
-/// What a piece adds to a frame follows from what is before it, on other ranks: they are asked before the frame, in which
-/// not all of them may draw.
+/// What a piece adds to a frame follows from what is before it, on other ranks: they are asked before the frame, in
+/// which not all of them may draw.
 void vtkLitVolumeMapper::SeePieces(vtkRenderer* renderer, vtkVolume* volume)
 {
   if (!this->IsPiece())

@@ -134,8 +134,8 @@ FaceValues ReadFaces(vtkImageData* image, const char* name, std::size_t tuples, 
   return faces;
 }
 
-/// What light at the faces is seen: it belongs to the array that the solver wrote. Ranks that have a block each know that
-/// of all faces.
+/// What light at the faces is seen: it belongs to the array that the solver wrote. Ranks that have a block each know
+/// that of all faces.
 struct LightAtFaces
 {
   FaceValues surface, power, albedo;

@@ -14,7 +14,8 @@ inline real steps_before(real distance, real step, real steps, real last_middle)
 {
   const real nominal = ceil(distance / step - (real)0.5f);
   const real full = lesser(greater(nominal, (real)0.0f), greater(steps - (real)1.0f, (real)0.0f));
-  return full + ((steps > (real)0.0f) & (last_middle < distance) ? (real)1.0f : (real)0.0f);
+  const integer all = (steps > (real)0.0f) & (last_middle < distance);
+  return full + (all ? (real)1.0f : (real)0.0f);
 }
 
 // The part of each ray that lies in the block, in the block's voxels.
