@@ -125,7 +125,8 @@ void ExpectSame(const Picture& whole, const std::vector<BlockPixels>& blocks, do
         ASSERT_NEAR(all.radiance[c], whole.radiance[3 * pixel + c], tolerance) << column << ", " << row;
         lit += all.radiance[c];
       }
-      ASSERT_NEAR(all.hidden, whole.alpha[pixel], tolerance) << column << ", " << row;
+      const bool coloured = all.transmittance[0] != all.transmittance[1];
+      ASSERT_NEAR(all.hidden, whole.alpha[pixel], coloured ? 3e-3 : tolerance) << column << ", " << row;
     }
   }
   EXPECT_GT(lit, 0.02 * pixel) << "there is nothing to compare";
@@ -157,6 +158,9 @@ TEST_F(BlocksInView, MakeUpThePictureOfTheWhole)
         const Picture whole = scene.Seen(this->GetDevice(), camera);
         for (const auto& cuts : Cuts)
         {
+          SCOPED_TRACE(testing::Message()
+            << components << " channels, steps of " << stepSize << ", from " << testing::PrintToString(camera.position)
+            << ", cut at " << testing::PrintToString(cuts));
           ExpectSame(whole, SeenOf(this->GetDevice(), scene, Cut(scene.grid, cuts), camera), 1e-5);
         }
       }
@@ -216,7 +220,7 @@ TEST_F(BlocksInView, ShowLightAtTheSurfaceOfThickVoxels)
   {
     const std::vector<BlockPixels> seen = SeenOf(this->GetDevice(), scene, Cut(scene.grid, cuts), scene.Framed());
     const std::vector<float> radiance = RadianceOfAll(seen, { { 0, 0 }, { whole.width, whole.height } });
-    EXPECT_LT(LargestDifference(radiance, whole.radiance), 2e-3); // thick blocks are no whole half-space
+    EXPECT_LT(LargestDifference(radiance, whole.radiance), 2e-3); // not all that is behind a thick block is thick
   }
 }
 

@@ -32,7 +32,9 @@ struct BlockPixel
 {
   std::array<float, 3> radiance = {};                        ///< W / (length^2 sr)
   std::array<float, 3> transmittance = { 1.0f, 1.0f, 1.0f }; ///< of the radiance behind
-  float hidden = 0.0f;                                       ///< part of the scene behind that is not seen
+  /// Part of the scene behind that is not seen. Of extinction that differs between channels it is a mean, and that of
+  /// several blocks is found from theirs, to some thousandths.
+  float hidden = 0.0f;
 
   /// Adds what is behind this.
   void LayBefore(const BlockPixel& behind)

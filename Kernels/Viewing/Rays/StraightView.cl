@@ -44,7 +44,7 @@ __kernel void cast_rays(ViewInfo v, __global const float4* restrict samples,
   const integer sees_behind = open & leaves;
 #else
   const rays packet = clip_to_box(seen.from, direction, end / seen.cosine, v.size, &before);
-  const integer enters = (integer)-1;
+  const integer enters = (integer)-1, leaves = (integer)-1;
   const integer sees_behind = open;
 #endif
 
@@ -94,7 +94,7 @@ __kernel void cast_rays(ViewInfo v, __global const float4* restrict samples,
   // What is behind, and the picture.
   const real left = mean_left(l);
 #if SURFACE_LIGHT
-  add_surface_light(surface_light(surface, packet, seen.d, enters ? before : (real)0.0f, v.size), &l);
+  add_surface_light(surface_light(surface, packet, seen.d, enters ? before : (real)0.0f, v.size), leaves == 0, &l);
 #endif
   rgb behind = look_behind(&v, seen.d, environment);
 #if GROUND
