@@ -160,12 +160,13 @@ BlocksOfRanks::BlocksOfRanks(vtkMultiProcessController* ranks, vtkImageData* ima
 /// Sends pixels to a rank, and receives as many as there is room for from it.
 void BlocksOfRanks::Swap(int partner, const std::vector<BlockPixel>& mine, std::vector<BlockPixel>& theirs) const
 {
-  static_assert(sizeof(BlockPixel) == 7 * sizeof(float), "pixels are sent as floats");
+  constexpr std::size_t floats = sizeof(BlockPixel) / sizeof(float);
+  static_assert(floats == 9, "pixels are sent as floats");
   const auto send = [&] {
     if (!mine.empty())
     {
       this->Ranks->Send(
-        reinterpret_cast<const float*>(mine.data()), static_cast<vtkIdType>(7 * mine.size()), partner, Tag);
+        reinterpret_cast<const float*>(mine.data()), static_cast<vtkIdType>(floats * mine.size()), partner, Tag);
     }
   };
   const bool first = static_cast<int>(this->Rank) < partner; // else both would wait
@@ -176,7 +177,7 @@ void BlocksOfRanks::Swap(int partner, const std::vector<BlockPixel>& mine, std::
   if (!theirs.empty())
   {
     this->Ranks->Receive(
-      reinterpret_cast<float*>(theirs.data()), static_cast<vtkIdType>(7 * theirs.size()), partner, Tag);
+      reinterpret_cast<float*>(theirs.data()), static_cast<vtkIdType>(floats * theirs.size()), partner, Tag);
   }
   if (!first)
   {

@@ -190,6 +190,7 @@ Picture MediumRayCaster::Render(
   {
     this->AddUnscattered(view, monitor, picture.radiance);
   }
+  picture.sceneTransmittance = byMoments ? this->Rays.ReadTransmittance() : picture.transmittance;
   picture.alpha = this->Rays.ReadAlpha();
   picture.depth = this->Rays.ReadDepth();
   return picture;

@@ -22,8 +22,8 @@ BlockPixel PixelOf(const Picture& picture, std::size_t pixel)
   {
     found.radiance[c] = picture.radiance[3 * pixel + c];
     found.transmittance[c] = picture.transmittance[3 * pixel + c];
+    found.seen[c] = picture.sceneTransmittance[3 * pixel + c];
   }
-  found.hidden = picture.alpha[pixel];
   return found;
 }
 

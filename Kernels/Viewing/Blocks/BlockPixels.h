@@ -32,9 +32,10 @@ struct BlockPixel
 {
   std::array<float, 3> radiance = {};                        ///< W / (length^2 sr)
   std::array<float, 3> transmittance = { 1.0f, 1.0f, 1.0f }; ///< of the radiance behind
-  /// Part of the scene behind that is not seen. Of extinction that differs between channels it is a mean, and that of
-  /// several blocks is found from theirs, to some thousandths.
-  float hidden = 0.0f;
+  std::array<float, 3> seen = { 1.0f, 1.0f, 1.0f };          ///< of the scene behind
+
+  /// Part of the scene behind that is not seen.
+  float Hidden() const { return 1.0f - (this->seen[0] + this->seen[1] + this->seen[2]) / 3.0f; }
 
   /// Adds what is behind this.
   void LayBefore(const BlockPixel& behind)
@@ -43,8 +44,8 @@ struct BlockPixel
     {
       this->radiance[c] += this->transmittance[c] * behind.radiance[c];
       this->transmittance[c] *= behind.transmittance[c];
+      this->seen[c] *= behind.seen[c];
     }
-    this->hidden = 1.0f - (1.0f - this->hidden) * (1.0f - behind.hidden);
   }
 };
 
