@@ -125,8 +125,7 @@ void ExpectSame(const Picture& whole, const std::vector<BlockPixels>& blocks, do
         ASSERT_NEAR(all.radiance[c], whole.radiance[3 * pixel + c], tolerance) << column << ", " << row;
         lit += all.radiance[c];
       }
-      const bool coloured = all.transmittance[0] != all.transmittance[1];
-      ASSERT_NEAR(all.hidden, whole.alpha[pixel], coloured ? 3e-3 : tolerance) << column << ", " << row;
+      ASSERT_NEAR(all.Hidden(), whole.alpha[pixel], tolerance) << column << ", " << row;
     }
   }
   EXPECT_GT(lit, 0.02 * pixel) << "there is nothing to compare";
@@ -186,7 +185,7 @@ TEST_F(BlocksInView, ShowWhatIsBehindOnce)
       {
         all.LayBefore(block.At(pixel % whole.width, pixel / whole.width));
       }
-      EXPECT_EQ(all.hidden, 1.0f);
+      EXPECT_EQ(all.Hidden(), 1.0f);
     }
   }
 }
@@ -220,7 +219,7 @@ TEST_F(BlocksInView, ShowLightAtTheSurfaceOfThickVoxels)
   {
     const std::vector<BlockPixels> seen = SeenOf(this->GetDevice(), scene, Cut(scene.grid, cuts), scene.Framed());
     const std::vector<float> radiance = RadianceOfAll(seen, { { 0, 0 }, { whole.width, whole.height } });
-    EXPECT_LT(LargestDifference(radiance, whole.radiance), 2e-3); // not all that is behind a thick block is thick
+    EXPECT_LT(LargestDifference(radiance, whole.radiance), 5e-3); // not all that is behind a thick block is thick
   }
 }
 
@@ -252,7 +251,8 @@ std::vector<BlockPixels> PixelOfBlocks(const std::vector<BlockPixel>& frontToBac
 
 BlockPixel Grey(float radiance, float transmittance)
 {
-  return { { radiance, radiance, radiance }, { transmittance, transmittance, transmittance }, 1.0f - transmittance };
+  return { { radiance, radiance, radiance }, { transmittance, transmittance, transmittance },
+    { transmittance, transmittance, transmittance } };
 }
 
 /// As IceT lays pictures over each other.
@@ -288,7 +288,7 @@ std::array<int, 4> ShownOfWhole(
     all.LayBefore(pixel);
   }
   std::vector<std::uint8_t> front = ToneMap({ all.radiance.begin(), all.radiance.end() }, {}, tones);
-  front[3] = static_cast<std::uint8_t>(255.0f * all.hidden + 0.5f);
+  front[3] = static_cast<std::uint8_t>(255.0f * all.Hidden() + 0.5f);
   return Over(front, background);
 }
 
@@ -328,6 +328,7 @@ TEST(ShownBlock, ShowsWhatIsBeforeAnOpaqueSurfaceInIt)
   Picture picture;
   picture.radiance = { 0.2f, 0.2f, 0.2f };
   picture.transmittance = { 0.6f, 0.6f, 0.6f };
+  picture.sceneTransmittance = picture.transmittance;
   picture.alpha = { 0.4f };
   const auto blocks = PixelOfBlocks(column);
   const auto second = Over(ShownBlock(blocks, 1, { 1, 1 }, tones).Pixels(picture, { true }), surface);
