@@ -36,6 +36,7 @@ namespace
 constexpr double StillTime = 1.0;         ///< seconds that a renderer has for a frame where nothing moves
 constexpr double CoarsestRays = 8.0;      ///< pixels from ray to ray
 constexpr double StepsOfCoarseness = 4.0; ///< in a pixel, so that a picture's size does not change with every frame
+constexpr double FarAway = 1e4;           ///< diagonals of a piece
 constexpr int ExposedSize[2] = { 64, 48 };
 
 /// The corners of a tetrahedron: from these sides the scene is looked at for its exposure.
@@ -157,6 +158,22 @@ vtkMediumRayCaster* vtkLitVolumeMapper::GetRayCaster()
 vtkMTimeType vtkLitVolumeMapper::GetMTime()
 {
   return std::max(this->Superclass::GetMTime(), this->RayCaster->GetMTime());
+}
+
+double* vtkLitVolumeMapper::GetBounds()
+{
+  double* const bounds = this->Superclass::GetBounds();
+  if (this->IsPiece() && this->Spread->view && this->Spread->view->block->showsBackgroundBeside &&
+    this->RayCaster->GetShowBackground())
+  {
+    const double far = FarAway *
+      std::hypot(bounds[1] - bounds[0], std::hypot(bounds[3] - bounds[2], bounds[5] - bounds[4]));
+    for (int side = 0; side < 6; ++side)
+    {
+      bounds[side] += side % 2 ? far : -far;
+    }
+  }
+  return bounds;
 }
 
 int vtkLitVolumeMapper::FillInputPortInformation(int, vtkInformation* information)

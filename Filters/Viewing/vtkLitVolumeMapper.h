@@ -80,6 +80,13 @@ public:
   vtkGetMacro(Seconds, double);
   ///@}
 
+  ///@{
+  /// The input's. Of the piece that shows the background beside the medium those of all that may be seen: IceT takes
+  /// nothing of a rank from outside of its bounds.
+  double* GetBounds() override;
+  using Superclass::GetBounds;
+  ///@}
+
   /// That of this and of RayCaster.
   vtkMTimeType GetMTime() override;
 
