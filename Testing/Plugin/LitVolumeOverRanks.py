@@ -18,6 +18,7 @@ rank = servermanager.vtkProcessModule.GetProcessModule().GetPartitionId()
 assert servermanager.vtkProcessModule.GetProcessModule().GetNumberOfLocalPartitions() == 2
 output = os.path.join(os.environ["TYNDALL_TEST_OUTPUT"], "LitVolumeOverRanks")
 lit_view.load(remote=True)
+LoadPlugin(os.environ["TYNDALL_PLUGIN"], remote=True, ns=globals())  # its names, here too
 view = lit_view.black_view()
 
 
@@ -58,7 +59,8 @@ check("Coloured", coloured, ShowBackground=1)
 Hide(coloured, view)
 
 # One voxel: the second rank has none.
-single = ParticipatingMedium(Input=Wavelet(WholeExtent=[-8, -7, -8, -7, -8, -7]), MinimumDensity=0, MaximumDensity=100)
+single = ParticipatingMedium(Input=Wavelet(WholeExtent=[-8, -7, -8, -7, -8, -7]), MinimumDensity=0, MaximumDensity=100,
+                             ExtinctionScale=5)
 one = LightPropagationMaps(Input=single, Lights=LightRig(), DirectionsPerFace=4)
 lit_view.show_lit(one, view)
 view.CameraPosition, view.CameraFocalPoint = [-5.5, -12, -6], [-7.5, -7.5, -7.5]
