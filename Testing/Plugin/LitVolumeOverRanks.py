@@ -20,6 +20,7 @@ output = os.path.join(os.environ["TYNDALL_TEST_OUTPUT"], "LitVolumeOverRanks")
 lit_view.load(remote=True)
 LoadPlugin(os.environ["TYNDALL_PLUGIN"], remote=True, ns=globals())  # its names, here too
 view = lit_view.black_view()
+wrong = []  # said at the end: until then the other rank waits for this one
 
 
 def drawn(name, size):
@@ -38,8 +39,10 @@ def check(name, light, **more):
         apart = numpy.abs(found.astype(int) - expected)
         pictures.write(output + name + "Beside.png", numpy.concatenate([found, expected], axis=1))
         print(name, "largest difference", apart.max(), flush=True)
-        assert expected.max() > 100 and found.std() > 5, name + ": there is nothing to compare"
-        assert apart.max() <= 2, (name, apart.max())
+        if expected.max() < 100 or found.std() < 5:
+            wrong.append(name + ": there is nothing to compare")
+        if apart.max() > 2:
+            wrong.append("%s: %d apart" % (name, apart.max()))
 
 
 light = lit_view.solved()
@@ -75,5 +78,6 @@ shown = Show(glass, view)
 shown.Representation = "Lit Volume"
 ResetCamera(view)
 found = drawn("Glass", lit_view.SIZE)
-if rank == 0:
-    assert found.max() > 50, "nothing is shown"
+if rank == 0 and found.max() < 50:
+    wrong.append("Glass: nothing is shown")
+assert not wrong, wrong
