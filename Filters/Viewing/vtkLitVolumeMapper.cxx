@@ -136,6 +136,7 @@ struct vtkLitVolumeMapper::Pieces
   vtkNew<vtkTrivialProducer> surrounded;
   std::optional<tyndall::AskedView> view; ///< none: each shows its piece alone
   std::array<int, 2> drawn = {};          ///< the size of the frame
+  bool together = false;                  ///< the last frame was of all pieces
   tyndall::ShownBlock shown;
   double seconds = 0.0; ///< that took
 };
@@ -166,8 +167,8 @@ double* vtkLitVolumeMapper::GetBounds()
   if (this->IsPiece() && this->Spread->view && this->Spread->view->block->showsBackgroundBeside &&
     this->RayCaster->GetShowBackground())
   {
-    const double far = FarAway *
-      std::hypot(bounds[1] - bounds[0], std::hypot(bounds[3] - bounds[2], bounds[5] - bounds[4]));
+    const double far =
+      FarAway * std::hypot(bounds[1] - bounds[0], std::hypot(bounds[3] - bounds[2], bounds[5] - bounds[4]));
     for (int side = 0; side < 6; ++side)
     {
       bounds[side] += side % 2 ? far : -far;
@@ -273,6 +274,14 @@ void vtkLitVolumeMapper::SetPiece(vtkMultiProcessController* ranks, vtkImageData
   this->Spread->surrounded->SetOutput(surrounded);
 }
 
+/// On any rank: how light is seen has changed. On all ranks.
+bool vtkLitVolumeMapper::IsExposureOld()
+{
+  const bool old = this->RayCaster->GetExposure() == 0.0 && this->RayCaster->GetMTime() > this->ExposureTime;
+  const std::vector<double> said = tyndall::SaidByAll(this->Spread->ranks, { old ? 1.0 : 0.0 });
+  return std::any_of(said.begin(), said.end(), [](double rank) { return rank > 0.0; });
+}
+
 void vtkLitVolumeMapper::AgreeOnExposure()
 {
   this->CommonExposure = this->ExposureOfPieces();
@@ -284,6 +293,7 @@ void vtkLitVolumeMapper::AgreeOnExposure()
     this->Spread->ranks->AllReduce(mine, all, 2, vtkCommunicator::SUM_OP);
     this->CommonExposure = all[1] > 0.0 ? std::exp(all[0] / all[1]) : 0.0;
   }
+  this->ExposureTime.Modified();
 }
 
 /// Once for a scene, where it is to be chosen.
@@ -362,6 +372,11 @@ void vtkLitVolumeMapper::SeePieces(vtkRenderer* renderer, vtkVolume* volume)
   }
   const double start = tyndall::ClockSeconds();
   this->Spread->view.reset();
+  if (this->Spread->together && this->IsExposureOld())
+  {
+    this->AgreeOnExposure();
+  }
+  this->Spread->together = false;
   const bool exposed = this->FindExposure();
   const std::array<int, 2> drawn = tyndall::DrawnSize(renderer);
   const std::optional<tyndall::Camera> camera = CameraOf(renderer, volume);
@@ -385,6 +400,7 @@ void vtkLitVolumeMapper::SeePieces(vtkRenderer* renderer, vtkVolume* volume)
   const bool seen = !blocks.HasOwn() || this->Cast(view, picture);
   const tyndall::BlockPixels own = tyndall::SeenPart(picture);
   auto pieces = blocks.Exchange(own, own.rect, !seen, view.camera);
+  this->Spread->together = pieces.has_value();
   if (pieces && blocks.HasOwn())
   {
     this->Spread->shown = { std::move(pieces->frontToBack), pieces->own, view.size, this->Tones() };

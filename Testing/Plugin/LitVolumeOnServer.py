@@ -33,6 +33,9 @@ def drawn_pictures():
     view.CameraParallelProjection = 0
     shown.Exposure = 0
     found["Exposed"] = lit_view.drawn(view)
+    shown.SingleScatteringOnly = 1
+    found["ExposedAgain"] = lit_view.drawn(view)
+    shown.SingleScatteringOnly = 0
     shown.ShowBackground, shown.BackgroundColor = 1, [0, 0.6, 0.2]
     found["Behind"] = lit_view.drawn(view)
     shown.ShowBackground, shown.Exposure = 0, lit_view.EXPOSURE
