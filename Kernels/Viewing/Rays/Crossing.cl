@@ -124,8 +124,8 @@ inline void add_background(rgb behind, real part, light* l)
 }
 
 #if SURFACE_LIGHT
-// As much of the light at the surface (SurfaceLight.cl) as the ray has met of the medium; all where it goes on in another
-// block, for behind thick voxels there is more.
+// As much of the light at the surface (SurfaceLight.cl) as the ray has met of the medium; all where it goes on in
+// another block, for behind thick voxels there is more.
 inline void add_surface_light(rgb missing, integer goes_on, light* l)
 {
 #if COLOURED
