@@ -10,7 +10,6 @@
 #include <algorithm>
 #include <array>
 #include <cmath>
-#include <functional>
 #include <utility>
 
 namespace tyndall
@@ -77,6 +76,44 @@ std::vector<double> Words(vtkImageData* image)
   return words;
 }
 
+Voxels VoxelsIn(const double* words)
+{
+  Voxels voxels;
+  std::transform(words, words + 3, voxels.begin.begin(), [](double word) { return static_cast<int>(word); });
+  std::transform(words + 3, words + 6, voxels.end.begin(), [](double word) { return static_cast<int>(word); });
+  return voxels;
+}
+
+std::array<int, 3> Less(const std::array<int, 3>& a, const std::array<int, 3>& b)
+{
+  return { a[0] - b[0], a[1] - b[1], a[2] - b[2] };
+}
+
+/// The least box around both.
+Voxels Around(const Voxels& a, const Voxels& b)
+{
+  Voxels around;
+  for (int axis = 0; axis < 3; ++axis)
+  {
+    around.begin[axis] = std::min(a.begin[axis], b.begin[axis]);
+    around.end[axis] = std::max(a.end[axis], b.end[axis]);
+  }
+  return around;
+}
+
+/// @param words  of one of its blocks
+Grid GridOfVoxels(const Voxels& voxels, const double* words)
+{
+  Grid grid;
+  grid.size = Less(voxels.end, voxels.begin);
+  for (int axis = 0; axis < 3; ++axis)
+  {
+    grid.spacing[axis] = words[9 + axis];
+    grid.origin[axis] = words[6 + axis] + voxels.begin[axis] * grid.spacing[axis];
+  }
+  return grid;
+}
+
 /// To rounding.
 bool OfOneGrid(const double* a, const double* b)
 {
@@ -104,57 +141,39 @@ BlocksOfRanks::BlocksOfRanks(vtkMultiProcessController* ranks, vtkImageData* ima
   , Blocks(static_cast<std::size_t>(ranks->GetNumberOfProcesses()))
 {
   const std::vector<double> said = SaidByAll(ranks, Words(image));
-  const double* one = nullptr; // of those that have a block
+  const double* first = nullptr; // of those that have a block
   bool alike = true;
-  std::array<int, 3> least = {}, largest = {};
+  std::size_t voxels = 0;
+  Voxels all;
   for (std::size_t rank = 0; rank < this->Blocks.size(); ++rank)
   {
-    GridBlock& block = this->Blocks[rank];
     const double* const words = said.data() + WordsOfBlock * rank;
-    for (int axis = 0; axis < 3; ++axis)
+    GridBlock& block = this->Blocks[rank];
+    const Voxels own = VoxelsIn(words);
+    block.begin = own.begin;
+    block.end = own.end;
+    if (block.OwnVoxels() > 0)
     {
-      block.begin[axis] = static_cast<int>(words[axis]);
-      block.end[axis] = static_cast<int>(words[3 + axis]);
+      block.showsBackgroundBeside = !first;
+      all = first ? Around(all, own) : own;
+      first = first ? first : words;
+      alike &= OfOneGrid(first, words);
+      voxels += block.OwnVoxels();
     }
-    if (block.OwnVoxels() == 0)
-    {
-      continue;
-    }
-    alike &= !one || OfOneGrid(one, words);
-    for (int axis = 0; axis < 3; ++axis)
-    {
-      least[axis] = one ? std::min(least[axis], block.begin[axis]) : block.begin[axis];
-      largest[axis] = one ? std::max(largest[axis], block.end[axis]) : block.end[axis];
-    }
-    block.showsBackgroundBeside = !one;
-    one = one ? one : words;
   }
-  Grid whole;
-  std::size_t voxels = 0;
-  for (int axis = 0; axis < 3 && one; ++axis)
-  {
-    whole.size[axis] = largest[axis] - least[axis];
-    whole.spacing[axis] = one[9 + axis];
-    whole.origin[axis] = one[6 + axis] + least[axis] * one[9 + axis];
-  }
+  const Grid whole = first ? GridOfVoxels(all, first) : Grid();
   for (GridBlock& block : this->Blocks)
   {
-    voxels += block.OwnVoxels();
     block.whole = whole;
-    for (int axis = 0; axis < 3 && block.OwnVoxels() > 0; ++axis)
-    {
-      block.begin[axis] -= least[axis];
-      block.end[axis] -= least[axis];
-      block.first[axis] = block.begin[axis];
-    }
+    block.begin = Less(block.begin, all.begin);
+    block.end = Less(block.end, all.begin);
+    block.first = block.begin;
   }
   if (this->HasOwn())
   {
-    const Voxels all = VoxelsOf(image);
-    std::transform(
-      all.begin.begin(), all.begin.end(), least.begin(), this->Blocks[this->Rank].first.begin(), std::minus<int>());
+    this->Blocks[this->Rank].first = Less(VoxelsOf(image).begin, all.begin);
   }
-  this->Tiled = one && alike && voxels == whole.VoxelCount();
+  this->Tiled = first && alike && voxels == whole.VoxelCount();
 }
 
 /// Sends pixels to a rank, and receives as many as there is room for from it.
@@ -183,6 +202,24 @@ void BlocksOfRanks::Swap(int partner, const std::vector<BlockPixel>& mine, std::
   {
     send();
   }
+}
+
+/// @param ranks  whose pixels these are
+BlocksOfRanks::Seen BlocksOfRanks::InOrder(
+  const std::vector<std::size_t>& ranks, std::vector<BlockPixels> pixels, const Camera& camera) const
+{
+  std::vector<GridBlock> blocks;
+  for (std::size_t rank : ranks)
+  {
+    blocks.push_back(this->Blocks[rank]);
+  }
+  Seen seen;
+  for (int number : FrontToBack(blocks, camera))
+  {
+    seen.own = ranks[number] == this->Rank ? seen.frontToBack.size() : seen.own;
+    seen.frontToBack.push_back(std::move(pixels[number]));
+  }
+  return seen;
 }
 
 std::optional<BlocksOfRanks::Seen> BlocksOfRanks::Exchange(
@@ -234,17 +271,6 @@ std::optional<BlocksOfRanks::Seen> BlocksOfRanks::Exchange(
       pixels.push_back(std::move(theirs));
     }
   }
-  std::vector<GridBlock> blocks;
-  for (std::size_t rank : from)
-  {
-    blocks.push_back(this->Blocks[rank]);
-  }
-  Seen seen;
-  for (int number : FrontToBack(blocks, camera))
-  {
-    seen.own = from[number] == this->Rank ? seen.frontToBack.size() : seen.own;
-    seen.frontToBack.push_back(std::move(pixels[number]));
-  }
-  return seen;
+  return this->InOrder(from, std::move(pixels), camera);
 }
 }

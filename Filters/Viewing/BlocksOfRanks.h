@@ -48,6 +48,8 @@ public:
 private:
   void Swap(int partner, const std::vector<BlockPixel>& mine, std::vector<BlockPixel>& theirs) const;
 
+  Seen InOrder(const std::vector<std::size_t>& ranks, std::vector<BlockPixels> pixels, const Camera& camera) const;
+
   vtkMultiProcessController* Ranks;
   std::size_t Rank;
   std::vector<GridBlock> Blocks; ///< by rank
