@@ -113,7 +113,7 @@ public:
   ///   none does; empty: nowhere. What the surface hides, the background with it, is not in the picture then: alpha is
   ///   1 - transmittance up to there. What is reflected or mirrored does not end.
   /// @param block  of the larger grid of which the medium is a block; null: of none. The picture then has what the
-  ///   block adds to that of the whole (Blocks/LaidBehind.h), where CastsBlocks
+  ///   block adds to that of the whole (Blocks/BlockPixels.h), where CastsBlocks
   /// @throws InvalidInput for a camera that looks nowhere, or ends of another number than pixels; Aborted
   Picture Render(const Camera& camera, const Monitor& monitor = {}, const std::vector<float>& ends = {},
     const GridBlock* block = nullptr);
