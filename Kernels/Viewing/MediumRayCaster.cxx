@@ -103,7 +103,8 @@ bool MediumRayCaster::Adopt(const ViewSettings& asked)
   if (settings.singleScatteringOnly != now.singleScatteringOnly || settings.shadowRays != now.shadowRays ||
     settings.rectangleSamples != now.rectangleSamples || settings.showBackground != now.showBackground ||
     settings.packetWidth != now.packetWidth || settings.tableFace != now.tableFace ||
-    settings.leaveOut != now.leaveOut || (this->Behind.HasSurfaceLight() && settings.stepSize != now.stepSize))
+    settings.leaveOut != now.leaveOut || settings.skipEmptyBricks != now.skipEmptyBricks ||
+    (this->Behind.HasSurfaceLight() && settings.stepSize != now.stepSize))
   {
     return false;
   }

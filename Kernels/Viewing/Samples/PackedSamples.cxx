@@ -25,11 +25,8 @@ std::size_t PaddedCount(const Grid& grid)
 PackedSamples::PackedSamples(Device& device, const SceneOnDevice& scene, const ViewTraits& traits)
   : TheDevice(device)
   , Traits(traits)
+  , Count(traits.bricks.count)
 {
-  for (int axis = 0; axis < 3; ++axis)
-  {
-    this->Count[axis] = PartsOf<int>(traits.grid.size[axis], BrickEdge);
-  }
   const std::size_t count = PaddedCount(traits.grid);
   this->Sources = Buffer<cl_float4>(device, count, "the ray caster's samples");
   this->ColouredExtinctions =
@@ -41,6 +38,7 @@ PackedSamples::PackedSamples(Device& device, const SceneOnDevice& scene, const V
   this->Gradients = Buffer<cl_float4>(device, traits.bends ? count : 0, "the ray caster's refraction");
   this->Distances = Buffer<cl_char>(
     device, static_cast<std::size_t>(this->Count[0]) * this->Count[1] * this->Count[2], "the ray caster's bricks");
+  this->Sight = Buffer<cl_uchar>(device, traits.bricks.sight, "the bricks that rays see");
   if (traits.bends)
   {
     this->PackBending(scene.ior);
@@ -96,7 +94,7 @@ void PackedSamples::PackSources(const SceneOnDevice& scene, const Buffer<float>&
   cl::Kernel pack = this->TheDevice.Kernel("pack_samples", kernel_source::ScatteredLight, options);
   With(pack, Int4(traits.grid.size), single, traits.phase.parameters.first.s[0], scene.arrays[0], scene.arrays[1],
     scene.arrays[2], scene.arrays[3], scene.arrays[4], direct, scene.meanDirection, scene.ior, scene.meanCosines,
-    this->Sources, this->ColouredExtinctions, this->Directions, this->Emission, this->ColouredG);
+    this->Sources, this->ColouredExtinctions, this->Directions, this->Emission, this->ColouredG, this->Sight);
   this->Launch(pack);
   this->FindBricks(options);
 }
@@ -118,7 +116,7 @@ void PackedSamples::PackShown(const SceneOnDevice& scene, const Buffer<float>& d
     Define("AUREOLE", traits.aureoleChannels);
   cl::Kernel pack = this->TheDevice.Kernel("pack_shown", kernel_source::ShownSamples, options + this->ShownOptions());
   With(pack, Int4(traits.grid.size), scene.arrays[0], scene.arrays[1], scene.arrays[2], scene.straightOn, diffuse,
-    direct, scene.ior, this->Sources, this->ColouredExtinctions, this->Directions, this->Emission);
+    direct, scene.ior, this->Sources, this->ColouredExtinctions, this->Directions, this->Emission, this->Sight);
   this->Launch(pack);
   this->FindBricks(options + Define("SHOWN", 1));
 }
@@ -127,7 +125,8 @@ void PackedSamples::FindBricks(const std::string& options)
 {
   const cl_int4 size = Int4(this->Traits.grid.size), bricks = Int4(this->Count);
   cl::Kernel find = this->TheDevice.Kernel("find_empty_bricks", kernel_source::ScatteredLight, options);
-  With(find, size, bricks, this->Sources, this->ColouredExtinctions, this->Emission, this->Gradients, this->Distances);
+  With(find, size, bricks, this->Sources, this->ColouredExtinctions, this->Emission, this->Gradients, this->Sight,
+    this->Distances);
   this->TheDevice.Queue().enqueueNDRangeKernel(find, cl::NullRange,
     cl::NDRange(RoundUp<std::size_t>(bricks.s[0], 4), bricks.s[1], bricks.s[2]), cl::NDRange(4, 1, 1));
   std::vector<cl_char> distances = this->Distances.Read();

@@ -18,7 +18,8 @@ enum class Packing
 };
 
 /// What rays meet: source and extinction by voxel, with a border of one voxel around, and bricks in which there is
-/// nothing. Arrays that the scene does not need are empty.
+/// nothing. Arrays that the scene does not need are empty. Of voxels that rays do not see nothing is packed: on a CPU those
+/// samples take no memory either.
 class PackedSamples
 {
 public:
@@ -59,5 +60,6 @@ private:
   bool EmptyBricks = false;
   Buffer<cl_float4> Sources, ColouredExtinctions, Directions, ColouredG, Emission, Gradients;
   Buffer<cl_char> Distances;
+  Buffer<cl_uchar> Sight; ///< SeenBricks::sight
 };
 }

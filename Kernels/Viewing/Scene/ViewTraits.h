@@ -2,6 +2,7 @@
 
 #include "Medium/Traits.h"
 #include "Refraction/Index/IndexRange.h"
+#include "Viewing/Scene/SeenBricks.h"
 #include "Viewing/Scene/SolvedLight.h"
 #include "Viewing/Scene/ViewedPhase.h"
 #include "Viewing/Scene/ViewSettings.h"
@@ -23,6 +24,7 @@ struct ViewTraits
   bool hasTable = false;
 
   MediumTraits medium;
+  SeenBricks bricks;
   double largestSigmaT = 0.0; ///< at least the largest sigma_t, 1/length
   ViewedPhase phase;
   IndexRange index;
