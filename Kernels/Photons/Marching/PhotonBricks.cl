@@ -57,7 +57,8 @@ static void set_off_in_bricks(
   FOR_AXES(a)
   {
     const integer still = truth(u[a] == (real)0.0f);
-    PUT(lanes->start[a], still ? to_real(voxel[a]) + (real)0.5f : p[a]);
+    // One that goes along the grid's upper face is not to leave through it.
+    PUT(lanes->start[a], still ? lesser(p[a], to_real(voxel[a]) + (real)0.999f) : p[a]);
     PUT(lanes->inverse[a], still ? (real)NO_SLOPE : (real)1.0f / u[a]);
     PUT_INTEGERS(lanes->voxel[a], voxel[a]);
   }

@@ -28,13 +28,14 @@ PackedSamples::PackedSamples(Device& device, const SceneOnDevice& scene, const V
   , Count(traits.bricks.count)
 {
   const std::size_t count = PaddedCount(traits.grid);
-  this->Sources = Buffer<cl_float4>(device, count, "the ray caster's samples");
-  this->ColouredExtinctions =
-    Buffer<cl_float4>(device, traits.coloured ? count : 0, "the ray caster's coloured extinction");
-  this->Directions = Buffer<cl_float4>(
-    device, traits.knowsFlow || traits.ShowsBeams() ? count : 0, "the ray caster's directions of light");
-  this->ColouredG = Buffer<cl_float4>(device, traits.PacksCosines() ? count : 0, "the ray caster's mean cosines");
-  this->Emission = Buffer<cl_float4>(device, traits.GlowsApart() ? count : 0, "the ray caster's emission");
+  const auto samples = [&](bool needed, const char* what) {
+    return ZeroedBuffer<cl_float4>(device, needed ? count : 0, traits.bricks.all, what);
+  };
+  this->Sources = samples(true, "the ray caster's samples");
+  this->ColouredExtinctions = samples(traits.coloured, "the ray caster's coloured extinction");
+  this->Directions = samples(traits.knowsFlow || traits.ShowsBeams(), "the ray caster's directions of light");
+  this->ColouredG = samples(traits.PacksCosines(), "the ray caster's mean cosines");
+  this->Emission = samples(traits.GlowsApart(), "the ray caster's emission");
   this->Gradients = Buffer<cl_float4>(device, traits.bends ? count : 0, "the ray caster's refraction");
   this->Distances = Buffer<cl_char>(
     device, static_cast<std::size_t>(this->Count[0]) * this->Count[1] * this->Count[2], "the ray caster's bricks");
@@ -94,7 +95,7 @@ void PackedSamples::PackSources(const SceneOnDevice& scene, const Buffer<float>&
   cl::Kernel pack = this->TheDevice.Kernel("pack_samples", kernel_source::ScatteredLight, options);
   With(pack, Int4(traits.grid.size), single, traits.phase.parameters.first.s[0], scene.arrays[0], scene.arrays[1],
     scene.arrays[2], scene.arrays[3], scene.arrays[4], direct, scene.meanDirection, scene.ior, scene.meanCosines,
-    this->Sources, this->ColouredExtinctions, this->Directions, this->Emission, this->ColouredG, this->Sight);
+    this->Samples(), this->Extinctions(), this->Flow(), this->Glow(), this->Cosines(), this->Sight);
   this->Launch(pack);
   this->FindBricks(options);
 }
@@ -116,7 +117,7 @@ void PackedSamples::PackShown(const SceneOnDevice& scene, const Buffer<float>& d
     Define("AUREOLE", traits.aureoleChannels);
   cl::Kernel pack = this->TheDevice.Kernel("pack_shown", kernel_source::ShownSamples, options + this->ShownOptions());
   With(pack, Int4(traits.grid.size), scene.arrays[0], scene.arrays[1], scene.arrays[2], scene.straightOn, diffuse,
-    direct, scene.ior, this->Sources, this->ColouredExtinctions, this->Directions, this->Emission, this->Sight);
+    direct, scene.ior, this->Samples(), this->Extinctions(), this->Flow(), this->Glow(), this->Sight);
   this->Launch(pack);
   this->FindBricks(options + Define("SHOWN", 1));
 }
@@ -125,7 +126,7 @@ void PackedSamples::FindBricks(const std::string& options)
 {
   const cl_int4 size = Int4(this->Traits.grid.size), bricks = Int4(this->Count);
   cl::Kernel find = this->TheDevice.Kernel("find_empty_bricks", kernel_source::ScatteredLight, options);
-  With(find, size, bricks, this->Sources, this->ColouredExtinctions, this->Emission, this->Gradients, this->Sight,
+  With(find, size, bricks, this->Samples(), this->Extinctions(), this->Glow(), this->Gradients, this->Sight,
     this->Distances);
   this->TheDevice.Queue().enqueueNDRangeKernel(find, cl::NullRange,
     cl::NDRange(RoundUp<std::size_t>(bricks.s[0], 4), bricks.s[1], bricks.s[2]), cl::NDRange(4, 1, 1));

@@ -38,7 +38,9 @@ Buffer<float> Upload(
   Device& device, const float* values, std::size_t components, const ViewTraits& traits, const char* what)
 {
   Buffer<float> buffer(device, traits.grid.VoxelCount() * components, what);
-  if (traits.bricks.all || !device.IsCpu() || buffer.Size() == 0)
+  // Shadow rays and moments look at voxels one by one, seen or not.
+  const bool whole = traits.bricks.all || traits.shadowRays || traits.ShowsMoments();
+  if (whole || !device.IsCpu() || buffer.Size() == 0)
   {
     buffer.Write(values);
     return buffer;
