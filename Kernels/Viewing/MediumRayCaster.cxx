@@ -60,6 +60,10 @@ MediumRayCaster::MediumRayCaster(Device& device, const Medium& medium, const Sol
   , Omitted(this->LeftOutNow())
   , Doubts(DoubtsAbout(this->Settings, light, this->Traits.bends ? ior : Field{}, this->Traits.index, medium.grid))
 {
+  if (this->Traits.PacksOnce())
+  {
+    this->PrepareSources({}, {}); // while the caller's arrays are there
+  }
 }
 
 std::vector<std::string> MediumRayCaster::LeftOutNow() const
@@ -137,7 +141,7 @@ void MediumRayCaster::PrepareSources(const Camera& camera, const Monitor& monito
   pack(Packing::Scattered);
   this->Omitted = this->LeftOutNow(); // now empty bricks are known
   this->SourcesReady = true;
-  if (!this->Traits.sourcesDependOnCamera && !this->Traits.shadowRays)
+  if (this->Traits.PacksOnce())
   {
     this->Scene.GiveBackWhatIsPacked();
   }

@@ -108,7 +108,7 @@ public:
   /// Whether settings' backgroundColor is seen: there is nothing else behind the medium, and the background is shown.
   bool ShowsBackgroundColor() const;
 
-  /// The first picture packs what the rays meet; where nothing of it depends on the camera, later ones use it again.
+  /// What the rays meet is packed by the constructor; with shadow rays, and where it depends on the camera, here.
   /// @param ends  where an opaque surface ends each pixel's ray, as a distance along the view axis, length; 1e30 where
   ///   none does; empty: nowhere. What the surface hides, the background with it, is not in the picture then: alpha is
   ///   1 - transmittance up to there. What is reflected or mirrored does not end.

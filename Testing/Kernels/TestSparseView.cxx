@@ -82,10 +82,10 @@ TEST_F(SparseViewTest, BricksBesideFilledOnesAreSeen)
   values[medium.grid.IndexOf({ 40, 0, 15 })] = 1.0f;
   const SeenBricks bricks = SeenBricksOf(medium, false);
   EXPECT_EQ(bricks.count, (std::array<int, 3>{ 6, 1, 2 }));
-  EXPECT_EQ(bricks.sight, (std::vector<unsigned char>{ 0, 0, 0, 1, 2, 2, 0, 0, 0, 1, 2, 2 }));
+  EXPECT_EQ(bricks.seen, (std::vector<unsigned char>{ 0, 0, 0, 0, 1, 1, 0, 0, 0, 0, 1, 1 }));
   EXPECT_FALSE(bricks.all);
   EXPECT_TRUE(SeenBricksOf(medium, true).all);
-  EXPECT_EQ(SeenBricksOf(medium, true).sight, std::vector<unsigned char>(12, 2));
+  EXPECT_EQ(SeenBricksOf(medium, true).seen, std::vector<unsigned char>(12, 1));
 }
 
 TEST_F(SparseViewTest, PicturesAreTheSameToTheLastBit)

@@ -39,7 +39,7 @@ PackedSamples::PackedSamples(Device& device, const SceneOnDevice& scene, const V
   this->Gradients = Buffer<cl_float4>(device, traits.bends ? count : 0, "the ray caster's refraction");
   this->Distances = Buffer<cl_char>(
     device, static_cast<std::size_t>(this->Count[0]) * this->Count[1] * this->Count[2], "the ray caster's bricks");
-  this->Sight = Buffer<cl_uchar>(device, traits.bricks.sight, "the bricks that rays see");
+  this->Seen = Buffer<cl_uchar>(device, traits.bricks.seen, "the bricks that rays see");
   if (traits.bends)
   {
     this->PackBending(scene.ior);
@@ -93,9 +93,10 @@ void PackedSamples::PackSources(const SceneOnDevice& scene, const Buffer<float>&
   const cl_int single = traits.singleScatteringOnly ? 1 : 0;
 
   cl::Kernel pack = this->TheDevice.Kernel("pack_samples", kernel_source::ScatteredLight, options);
-  With(pack, Int4(traits.grid.size), single, traits.phase.parameters.first.s[0], scene.arrays[0], scene.arrays[1],
-    scene.arrays[2], scene.arrays[3], scene.arrays[4], direct, scene.meanDirection, scene.ior, scene.meanCosines,
-    this->Samples(), this->Extinctions(), this->Flow(), this->Glow(), this->Cosines(), this->Sight);
+  With(pack, Int4(traits.grid.size), single, traits.phase.parameters.first.s[0], scene.arrays[0].Handle(),
+    scene.arrays[1].Handle(), scene.arrays[2].Handle(), scene.arrays[3].Handle(), scene.arrays[4].Handle(), direct,
+    scene.meanDirection.Handle(), scene.ior, scene.meanCosines, this->Samples(), this->Extinctions(), this->Flow(),
+    this->Glow(), this->Cosines(), this->Seen);
   this->Launch(pack);
   this->FindBricks(options);
 }
@@ -116,8 +117,9 @@ void PackedSamples::PackShown(const SceneOnDevice& scene, const Buffer<float>& d
     Define("STRAIGHT_ON", this->For == Packing::Unscattered ? 0 : traits.straightOnChannels) +
     Define("AUREOLE", traits.aureoleChannels);
   cl::Kernel pack = this->TheDevice.Kernel("pack_shown", kernel_source::ShownSamples, options + this->ShownOptions());
-  With(pack, Int4(traits.grid.size), scene.arrays[0], scene.arrays[1], scene.arrays[2], scene.straightOn, diffuse,
-    direct, scene.ior, this->Samples(), this->Extinctions(), this->Flow(), this->Glow(), this->Sight);
+  With(pack, Int4(traits.grid.size), scene.arrays[0].Handle(), scene.arrays[1].Handle(), scene.arrays[2].Handle(),
+    scene.straightOn, diffuse, direct, scene.ior, this->Samples(), this->Extinctions(), this->Flow(), this->Glow(),
+    this->Seen);
   this->Launch(pack);
   this->FindBricks(options + Define("SHOWN", 1));
 }
@@ -126,7 +128,7 @@ void PackedSamples::FindBricks(const std::string& options)
 {
   const cl_int4 size = Int4(this->Traits.grid.size), bricks = Int4(this->Count);
   cl::Kernel find = this->TheDevice.Kernel("find_empty_bricks", kernel_source::ScatteredLight, options);
-  With(find, size, bricks, this->Samples(), this->Extinctions(), this->Glow(), this->Gradients, this->Sight,
+  With(find, size, bricks, this->Samples(), this->Extinctions(), this->Glow(), this->Gradients, this->Seen,
     this->Distances);
   this->TheDevice.Queue().enqueueNDRangeKernel(find, cl::NullRange,
     cl::NDRange(RoundUp<std::size_t>(bricks.s[0], 4), bricks.s[1], bricks.s[2]), cl::NDRange(4, 1, 1));

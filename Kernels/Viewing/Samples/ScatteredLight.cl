@@ -88,9 +88,9 @@ __kernel void pack_samples(int4 size, int single, float g, __global const float*
   __global const float* restrict direct, __global const float* restrict direction, __global const float* restrict ior,
   __global const float* restrict mean_cosines, __global float4* restrict samples, __global float4* restrict extinctions,
   __global float4* restrict flow, __global float4* restrict glow, __global float4* restrict cosines,
-  __global const uchar* restrict sight)
+  __global const uchar* restrict seen)
 {
-  if (get_global_id(0) >= size.x + 2 || !is_seen(sight, size))
+  if (get_global_id(0) >= size.x + 2 || !is_seen(seen, size))
   {
     return;
   }
@@ -131,11 +131,11 @@ __kernel void pack_samples(int4 size, int single, float g, __global const float*
 }
 
 // Whether anything extinguishes or shines in a brick, or bends with BENDS, or does so close enough to be interpolated
-// into it (sight: SeenBricks.h; what is not Seen, 2, is empty, and its samples are not there):
+// into it (seen: SeenBricks.h; the others are empty):
 // 1 it is empty, -1 it is not, 0 rays bend.
 __kernel void find_empty_bricks(int4 size, int4 brick_count, __global const float4* restrict samples,
   __global const float4* restrict extinctions, __global const float4* restrict glow,
-  __global const float4* restrict bending, __global const uchar* restrict sight, __global char* restrict bricks)
+  __global const float4* restrict bending, __global const uchar* restrict seen, __global char* restrict bricks)
 {
   const int i = get_global_id(0);
   const int j = get_global_id(1);
@@ -145,7 +145,7 @@ __kernel void find_empty_bricks(int4 size, int4 brick_count, __global const floa
     return;
   }
   const int brick = (k * brick_count.y + j) * brick_count.x + i;
-  if (sight[brick] != 2)
+  if (!seen[brick])
   {
     bricks[brick] = 1;
     return;

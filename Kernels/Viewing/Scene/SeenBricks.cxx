@@ -21,16 +21,6 @@ std::vector<unsigned char> Widened(const std::vector<unsigned char>& bricks, con
   }
   return wide;
 }
-
-/// With all neighbours, by corners too.
-std::vector<unsigned char> WithNeighbours(std::vector<unsigned char> bricks, const std::array<int, 3>& count)
-{
-  for (int axis = 0; axis < 3; ++axis)
-  {
-    bricks = Widened(bricks, count, axis);
-  }
-  return bricks;
-}
 }
 
 SeenBricks SeenBricksOf(const Medium& medium, bool everywhere)
@@ -40,14 +30,15 @@ SeenBricks SeenBricksOf(const Medium& medium, bool everywhere)
   bricks.count = filled.count;
   if (everywhere)
   {
-    bricks.sight.assign(filled.filled.size(), SeenBricks::Seen);
+    bricks.seen.assign(filled.filled.size(), 1);
     return bricks;
   }
-  bricks.sight = WithNeighbours(filled.filled, filled.count);
-  const std::vector<unsigned char> beside = WithNeighbours(bricks.sight, filled.count);
-  std::transform(bricks.sight.begin(), bricks.sight.end(), beside.begin(), bricks.sight.begin(),
-    [](unsigned char seen, unsigned char near) { return static_cast<unsigned char>(seen + near); });
-  bricks.all = std::count(bricks.sight.begin(), bricks.sight.end(), SeenBricks::Unseen) == 0;
+  bricks.seen = filled.filled;
+  for (int axis = 0; axis < 3; ++axis) // neighbours by corners too
+  {
+    bricks.seen = Widened(bricks.seen, filled.count, axis);
+  }
+  bricks.all = std::count(bricks.seen.begin(), bricks.seen.end(), 0) == 0;
   return bricks;
 }
 }

@@ -7,22 +7,15 @@
 
 namespace tyndall
 {
-/// Which bricks of a medium's grid rays may look into: those that are filled and their neighbours, into which values
-/// between voxel centres reach. Nothing need be known of the voxels of the others but of those beside.
+/// Which bricks of a medium's grid rays have to look into: those that are filled, and their neighbours, into which
+/// values between voxel centres reach. Of the voxels of the others it is enough that they hold nothing.
 struct SeenBricks
 {
-  enum Sight : unsigned char
-  {
-    Unseen = 0,
-    Beside = 1, ///< next to a brick that rays look into
-    Seen = 2
-  };
-
   std::array<int, 3> count = { 0, 0, 0 };
-  std::vector<unsigned char> sight; ///< a Sight of each, x fastest
-  bool all = true;                  ///< none is Unseen
+  std::vector<unsigned char> seen; ///< 1 or 0 of each, x fastest
+  bool all = true;                 ///< are
 };
 
-/// @param everywhere  rays do not leap over empty bricks: all are Seen
+/// @param everywhere  rays do not leap over empty bricks: all are seen
 SeenBricks SeenBricksOf(const Medium& medium, bool everywhere);
 }

@@ -56,6 +56,9 @@ struct ViewTraits
   /// Rays that cannot but go straight on have a kernel of their own.
   bool OnlyStraight() const { return !this->bends && !this->hasTable; }
 
+  /// Whether samples stay as they are, from every side.
+  bool PacksOnce() const { return !this->sourcesDependOnCamera && !this->shadowRays; }
+
   double SurfaceIndex(const ViewSettings& settings) const
   {
     return settings.surfaceIndex > 0.0 ? settings.surfaceIndex : 0.5 * (this->index.least + this->index.largest);
