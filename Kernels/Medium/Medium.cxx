@@ -7,6 +7,7 @@
 #include <algorithm>
 #include <atomic>
 #include <cmath>
+#include <limits>
 
 namespace tyndall
 {
@@ -45,7 +46,8 @@ void CheckComponents(const Field& field, const char* name)
 namespace
 {
 constexpr double LongestSpacing = 1e30; ///< and the shortest is its inverse: products of several areas stay doubles
-constexpr double MostUnequal = 1e9;     ///< longest spacing over shortest
+constexpr float LargestFloat = std::numeric_limits<float>::max();
+constexpr double MostUnequal = 1e9; ///< longest spacing over shortest
 
 /// Whether any of [0, count) is as `is` says, on all cores: to find which one it is, is for those few that need it.
 template <class Is>
@@ -53,12 +55,12 @@ bool AnyOf(std::size_t count, const Is& is)
 {
   std::atomic<bool> any(false);
   InThreads(count, 1 << 18, [&](std::size_t begin, std::size_t end) {
-    bool here = false;
-    for (std::size_t i = begin; i < end; ++i)
+    int here = 0;
+    for (std::size_t i = begin; i < end; ++i) // without a branch: many at a time
     {
-      here = here || is(i);
+      here |= is(i) ? 1 : 0;
     }
-    if (here)
+    if (here != 0)
     {
       any = true;
     }
@@ -74,7 +76,7 @@ void CheckField(const Field& field, const char* name, const Grid& grid)
   }
   CheckComponents(field, name);
   const std::size_t count = grid.VoxelCount() * static_cast<std::size_t>(field.components);
-  if (!AnyOf(count, [&](std::size_t i) { return !(field.values[i] >= 0.0f) || std::isinf(field.values[i]); }))
+  if (!AnyOf(count, [&](std::size_t i) { return !(field.values[i] >= 0.0f && field.values[i] <= LargestFloat); }))
   {
     return;
   }
@@ -121,15 +123,12 @@ void CheckExtinction(const Medium& medium)
     const double g = std::abs(medium.phase.MeanCosine(i, c));
     return medium.sigma_a.At(i, c) + (1.0 + g) * medium.sigma_s.At(i, c);
   };
-  const bool any = AnyOf(medium.grid.VoxelCount(), [&](std::size_t i) {
-    double largest = extinctionOf(i, 0);
-    for (int c = 1; c < channels; ++c)
-    {
-      largest = std::max(largest, extinctionOf(i, c));
-    }
-    return largest > LargestExtinction;
-  });
-  if (!any)
+  const auto mayBeTooMuch = [&](const Field& field) {
+    constexpr float little = static_cast<float>(LargestExtinction / 4.0); // 1 + g is 2 at most
+    const std::size_t count = medium.grid.VoxelCount() * static_cast<std::size_t>(field.components);
+    return field.values && AnyOf(count, [&](std::size_t i) { return field.values[i] > little; });
+  };
+  if (!mayBeTooMuch(medium.sigma_a) && !mayBeTooMuch(medium.sigma_s))
   {
     return;
   }

@@ -20,6 +20,26 @@ std::size_t PaddedCount(const Grid& grid)
 {
   return static_cast<std::size_t>(grid.size[0] + 2) * (grid.size[1] + 2) * (grid.size[2] + 2);
 }
+
+constexpr int PackedAlong = 64; ///< voxels of a row that a work-group packs
+
+/// Of each work-group in rows of one brick: whether any of its voxels, of which the first is the border's, is seen.
+std::vector<cl_uchar> SeenGroups(const SeenBricks& bricks, const Grid& grid)
+{
+  const int along = PartsOf(grid.size[0] + 2, PackedAlong);
+  std::vector<cl_uchar> seen;
+  for (int row = 0; row < bricks.count[1] * bricks.count[2]; ++row)
+  {
+    const unsigned char* const ofRow = bricks.seen.data() + Count(row) * Count(bricks.count[0]);
+    for (int group = 0; group < along; ++group)
+    {
+      const int first = std::max(group * PackedAlong - 1, 0) / BrickEdge;
+      const int last = std::min((group + 1) * PackedAlong - 2, grid.size[0] - 1) / BrickEdge;
+      seen.push_back(*std::max_element(ofRow + std::min(first, last), ofRow + last + 1));
+    }
+  }
+  return seen;
+}
 }
 
 PackedSamples::PackedSamples(Device& device, const SceneOnDevice& scene, const ViewTraits& traits)
@@ -40,6 +60,8 @@ PackedSamples::PackedSamples(Device& device, const SceneOnDevice& scene, const V
   this->Distances = Buffer<cl_char>(
     device, static_cast<std::size_t>(this->Count[0]) * this->Count[1] * this->Count[2], "the ray caster's bricks");
   this->Seen = Buffer<cl_uchar>(device, traits.bricks.seen, "the bricks that rays see");
+  this->SeenGroups =
+    Buffer<cl_uchar>(device, tyndall::SeenGroups(traits.bricks, traits.grid), "the samples that rays see");
   if (traits.bends)
   {
     this->PackBending(scene.ior);
@@ -52,7 +74,8 @@ void PackedSamples::Launch(cl::Kernel& kernel)
 {
   const std::array<int, 3>& size = this->Traits.grid.size;
   this->TheDevice.Queue().enqueueNDRangeKernel(kernel, cl::NullRange,
-    cl::NDRange(RoundUp<std::size_t>(size[0] + 2, 64), size[1] + 2, size[2] + 2), cl::NDRange(64, 1, 1));
+    cl::NDRange(RoundUp<std::size_t>(size[0] + 2, PackedAlong), size[1] + 2, size[2] + 2),
+    cl::NDRange(PackedAlong, 1, 1));
 }
 
 void PackedSamples::PackBending(const Buffer<float>& ior)
@@ -96,7 +119,7 @@ void PackedSamples::PackSources(const SceneOnDevice& scene, const Buffer<float>&
   With(pack, Int4(traits.grid.size), single, traits.phase.parameters.first.s[0], scene.arrays[0].Handle(),
     scene.arrays[1].Handle(), scene.arrays[2].Handle(), scene.arrays[3].Handle(), scene.arrays[4].Handle(), direct,
     scene.meanDirection.Handle(), scene.ior, scene.meanCosines, this->Samples(), this->Extinctions(), this->Flow(),
-    this->Glow(), this->Cosines(), this->Seen);
+    this->Glow(), this->Cosines(), this->SeenGroups);
   this->Launch(pack);
   this->FindBricks(options);
 }
@@ -119,7 +142,7 @@ void PackedSamples::PackShown(const SceneOnDevice& scene, const Buffer<float>& d
   cl::Kernel pack = this->TheDevice.Kernel("pack_shown", kernel_source::ShownSamples, options + this->ShownOptions());
   With(pack, Int4(traits.grid.size), scene.arrays[0].Handle(), scene.arrays[1].Handle(), scene.arrays[2].Handle(),
     scene.straightOn, diffuse, direct, scene.ior, this->Samples(), this->Extinctions(), this->Flow(), this->Glow(),
-    this->Seen);
+    this->SeenGroups);
   this->Launch(pack);
   this->FindBricks(options + Define("SHOWN", 1));
 }

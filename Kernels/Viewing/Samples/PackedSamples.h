@@ -62,6 +62,7 @@ private:
   ZeroedBuffer<cl_float4> Sources, ColouredExtinctions, Directions, ColouredG, Emission;
   Buffer<cl_float4> Gradients;
   Buffer<cl_char> Distances;
-  Buffer<cl_uchar> Seen; ///< SeenBricks::seen
+  Buffer<cl_uchar> Seen;       ///< SeenBricks::seen
+  Buffer<cl_uchar> SeenGroups; ///< Border.cl
 };
 }
