@@ -1,5 +1,5 @@
-// Photons by bricks of voxels, where most of these are empty. In an empty brick a photon goes to the brick's wall in one
-// stretch, and what it leaves there goes to the brick's one record; in a filled one it goes from voxel to voxel. A
+// Photons by bricks of voxels, where most of these are empty. In an empty brick a photon goes to the brick's wall in
+// one stretch, and what it leaves there goes to the brick's one record; in a filled one it goes from voxel to voxel. A
 // voxel's place is the number of its record (PhotonBricks.h). The index is constant.
 
 #pragma once
