@@ -156,10 +156,10 @@ public:
 
   ///@{
   /// How light is kept in bricks of 8^3 voxels that hold no medium: voxel by voxel, or as the mean over the brick,
-  /// which photons then cross in one stretch. By bricks takes a small part of the time and of the memory where a medium is
-  /// mostly empty; in bricks that hold anything `fluence` is the same, to rounding. Applies where the index is constant
-  /// and three quarters of the bricks are empty at least, of order 1 and the conservative scheme, without PhotonCounts
-  /// and photons of several batches. Default AS_READ.
+  /// which photons then cross in one stretch. By bricks takes a small part of the time and of the memory where a medium
+  /// is mostly empty; in bricks that hold anything `fluence` is the same, to rounding. Applies where the index is
+  /// constant and three quarters of the bricks are empty at least, of order 1 and the conservative scheme, without
+  /// PhotonCounts and photons of several batches. Default AS_READ.
   tyndallSetRangeMacro(EmptySpace, int, BY_VOXEL, BY_BRICK);
   vtkGetMacro(EmptySpace, int);
   ///@}
