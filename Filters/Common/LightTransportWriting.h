@@ -33,6 +33,8 @@ void AddSameLight(vtkImageData* image, const char* name, const char* as);
 /// The same of light that a user gave, NaN where it is not known: not looked at.
 void AddGivenLight(vtkImageData* image, const char* name, std::vector<float>&& values, int channels);
 
+/// Of an image that was read: the part of its voxels that the file holds as active. Not there: nobody knows.
+constexpr const char* ActivePartFact = "active_part";
 /// Add field data.
 /// @param values  tuples of `components` one after the other
 /// Field data of light of photons that were scattered: how often, all together. Not there: they were not.

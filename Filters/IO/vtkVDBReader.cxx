@@ -80,6 +80,17 @@ std::string Summary(const VDBFile& file)
   return lines.str();
 }
 
+/// The largest part of an image's voxels that is active in any of its grids.
+double ActivePart(const std::vector<const VDBGrid*>& grids, const std::array<std::int64_t, 6>& extent)
+{
+  double most = 0.0;
+  for (const VDBGrid* grid : grids)
+  {
+    most = std::max(most, static_cast<double>(grid->Tree.ActiveVoxels) / tyndall::CellsOf(extent));
+  }
+  return most;
+}
+
 /// Without a MaximumMemory, an image takes no more than the larger of these, bytes and bytes for each of its file,
 /// unless the file notes that it was an image of that size. Clouds with a sparse outline take 10 to 300 bytes for one
 /// of their file; one changed bit of a small file can say terabytes.
@@ -410,6 +421,8 @@ int vtkVDBReader::RequestData(vtkInformation*, vtkInformationVector**, vtkInform
       this->UpdateProgress(++done / static_cast<double>(internal.Chosen.size()));
     }
     tyndall::AddMetadata(image, tyndall::FieldName("", ""), internal.File->Metadata());
+    tyndall::AddFact(
+      image, tyndall::ActivePartFact, std::vector<double>{ ActivePart(internal.Chosen, geometry.Extent) });
     tyndall::AddMediumFacts(image, internal.File->Metadata());
     image->GetCellData()->SetActiveScalars(internal.Chosen.front()->Name.c_str());
   });

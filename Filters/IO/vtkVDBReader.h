@@ -37,6 +37,10 @@ class vtkDataArraySelection;
  * `g`, `phase_function` and what else says how a medium scatters are the file's metadata `medium_g`, ... Metadata of
  * types that OpenVDB does not know are left out.
  *
+ * `active_part` the part of the whole image's voxels that are active, of the grid that has most: by it vtkPhotonMarcher
+ * knows that a medium is sparse. No mask of what is active goes with the image: it would be wrong after a filter that
+ * changes an array, and solvers find what is empty from the values in one pass.
+ *
  * The file is listed without loading a voxel value, and leaves are loaded where the requested extent needs them only.
  *
  * Errors, each one message, with empty output: a file that is not there, truncated or corrupt (see VDBFile.h for what

@@ -55,9 +55,10 @@ InputsKey KeyOf(vtkAlgorithm* filter, const std::shared_ptr<Device>& device, vtk
   key.Add(ofLevels->GetCellData()->GetArray(LevelsName));
   key.Add(ofLevels->GetPointData()->GetArray(LevelsName));
   AddPhase(key, medium);
-  key.Add({ octree ? 1.0 : 0.0, 1.0 * settings.order, settings.stepSize, 1.0 * settings.meanDirection,
-    1.0 * settings.counts, 1.0 * settings.batches, 1.0 * static_cast<int>(settings.sums), 1.0 * settings.leaveOut,
-    1.0 * settings.maximumOrders, static_cast<double>(settings.seed), 1.0 * settings.errorBatches });
+  key.Add(
+    { octree ? 1.0 : 0.0, 1.0 * settings.order, settings.stepSize, 1.0 * settings.meanDirection, 1.0 * settings.counts,
+      1.0 * settings.batches, 1.0 * static_cast<int>(settings.sums), 1.0 * settings.leaveOut, 1.0 * settings.byBricks,
+      1.0 * settings.maximumOrders, static_cast<double>(settings.seed), 1.0 * settings.errorBatches });
   return key;
 }
 }

@@ -32,7 +32,18 @@ enum InputPort
   InputPortCount
 };
 
-tyndall::MarchSettings SettingsOf(vtkPhotonMarcher* filter, const std::vector<tyndall::Photon>& photons)
+/// Whether light in empty space is to be kept by bricks. That is a way to keep light, not the medium: where what was
+/// read has been changed since, the light is right all the same.
+bool ByBricks(vtkPhotonMarcher* filter, vtkImageData* medium)
+{
+  constexpr double mostActive = 0.25;
+  const bool sparse = tyndall::ReadFact(medium, tyndall::ActivePartFact, 1.0) <= mostActive;
+  return filter->GetEmptySpace() == vtkPhotonMarcher::BY_BRICK ||
+    (filter->GetEmptySpace() == vtkPhotonMarcher::AS_READ && sparse);
+}
+
+tyndall::MarchSettings SettingsOf(
+  vtkPhotonMarcher* filter, vtkImageData* medium, const std::vector<tyndall::Photon>& photons)
 {
   const bool published = filter->GetScheme() == vtkPhotonMarcher::PUBLISHED;
   if (published && filter->GetMaximumOrders() != 1)
@@ -51,6 +62,7 @@ tyndall::MarchSettings SettingsOf(vtkPhotonMarcher* filter, const std::vector<ty
   settings.stepSize = published ? 1.0 : filter->GetStepSize();
   settings.counts = filter->GetPhotonCounts();
   settings.leaveOut = filter->GetLeaveOut();
+  settings.byBricks = !published && ByBricks(filter, medium);
   settings.maximumOrders = published ? 1 : filter->GetMaximumOrders();
   settings.seed = static_cast<std::uint64_t>(filter->GetSeed());
   if (settings.maximumOrders != 1)
@@ -213,7 +225,7 @@ vtkPhotonMarcher::Marched vtkPhotonMarcher::March(
   vtkInformationVector** inputs, const std::vector<tyndall::Photon>& photons)
 {
   this->Kept->ForgetIfRan(this, { MediumPort, OctreePort });
-  const tyndall::MarchSettings settings = SettingsOf(this, photons);
+  const tyndall::MarchSettings settings = SettingsOf(this, vtkImageData::GetData(inputs[MediumPort]), photons);
   const bool published = this->Scheme == PUBLISHED;
   Marched marched;
   if (published)
@@ -311,6 +323,7 @@ void vtkPhotonMarcher::PrintSelf(ostream& os, vtkIndent indent)
   os << indent << "IntegratorOrder: " << this->IntegratorOrder << "\n";
   os << indent << "StepSize: " << this->StepSize << "\n";
   os << indent << "LeaveOut: " << this->LeaveOut << "\n";
+  os << indent << "EmptySpace: " << this->EmptySpace << "\n";
   os << indent << "PhotonCounts: " << this->PhotonCounts << "\n";
   os << indent << "MaximumOrders: " << this->MaximumOrders << "\n";
   os << indent << "Seed: " << this->Seed << "\n";

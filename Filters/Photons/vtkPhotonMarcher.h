@@ -146,6 +146,24 @@ public:
   vtkBooleanMacro(LeaveOut, bool);
   ///@}
 
+  /// Where light in empty space is kept by bricks of 8^3 voxels.
+  enum EmptySpaces
+  {
+    BY_VOXEL = 0, ///< nowhere
+    AS_READ = 1,  ///< where the medium's field data `active_part` (vtkVDBReader) is at most 0.25
+    BY_BRICK = 2  ///< wherever a medium is mostly empty
+  };
+
+  ///@{
+  /// How light is kept in bricks of 8^3 voxels that hold no medium: voxel by voxel, or as the mean over the brick,
+  /// which photons then cross in one stretch. By bricks takes a small part of the time and of the memory where a medium
+  /// is mostly empty; in bricks that hold anything `fluence` is the same, to rounding. Applies where the index is
+  /// constant and three quarters of the bricks are empty at least, of order 1 and the conservative scheme, without
+  /// PhotonCounts and photons of several batches. Default AS_READ.
+  tyndallSetRangeMacro(EmptySpace, int, BY_VOXEL, BY_BRICK);
+  vtkGetMacro(EmptySpace, int);
+  ///@}
+
   ///@{
   /// Number of photons, spread evenly over all, whose paths go to the second output. Default 0, valid [0, infinity).
   tyndallSetRangeMacro(PathCount, int, 0, VTK_INT_MAX);
@@ -219,6 +237,7 @@ private:
   double StepSize;
   bool PhotonCounts;
   bool LeaveOut;
+  int EmptySpace = AS_READ;
   int MaximumOrders;
   int Seed = 1;
   int ErrorBatches = 16;

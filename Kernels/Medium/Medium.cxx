@@ -1,10 +1,13 @@
 #include "Medium/Medium.h"
 
 #include "Device/Errors.h"
+#include "Device/HostThreads.h"
 #include "Numerics/NumberText.h"
 
 #include <algorithm>
+#include <atomic>
 #include <cmath>
+#include <limits>
 
 namespace tyndall
 {
@@ -43,7 +46,27 @@ void CheckComponents(const Field& field, const char* name)
 namespace
 {
 constexpr double LongestSpacing = 1e30; ///< and the shortest is its inverse: products of several areas stay doubles
-constexpr double MostUnequal = 1e9;     ///< longest spacing over shortest
+constexpr float LargestFloat = std::numeric_limits<float>::max();
+constexpr double MostUnequal = 1e9; ///< longest spacing over shortest
+
+/// Whether any of [0, count) is as `is` says, on all cores: to find which one it is, is for those few that need it.
+template <class Is>
+bool AnyOf(std::size_t count, const Is& is)
+{
+  std::atomic<bool> any(false);
+  InThreads(count, 1 << 18, [&](std::size_t begin, std::size_t end) {
+    int here = 0;
+    for (std::size_t i = begin; i < end; ++i) // without a branch: many at a time
+    {
+      here |= is(i) ? 1 : 0;
+    }
+    if (here != 0)
+    {
+      any = true;
+    }
+  });
+  return any;
+}
 
 void CheckField(const Field& field, const char* name, const Grid& grid)
 {
@@ -53,6 +76,10 @@ void CheckField(const Field& field, const char* name, const Grid& grid)
   }
   CheckComponents(field, name);
   const std::size_t count = grid.VoxelCount() * static_cast<std::size_t>(field.components);
+  if (!AnyOf(count, [&](std::size_t i) { return !(field.values[i] >= 0.0f && field.values[i] <= LargestFloat); }))
+  {
+    return;
+  }
   for (std::size_t i = 0; i < count; ++i)
   {
     if (!(field.values[i] >= 0.0f) || std::isinf(field.values[i]))
@@ -92,12 +119,24 @@ void CheckExtinction(const Medium& medium)
     return; // also a box that is only asked about, of more voxels than could be counted
   }
   const int channels = medium.phase.HasColour() ? 3 : std::max(medium.sigma_a.components, medium.sigma_s.components);
+  const auto extinctionOf = [&](std::size_t i, int c) {
+    const double g = std::abs(medium.phase.MeanCosine(i, c));
+    return medium.sigma_a.At(i, c) + (1.0 + g) * medium.sigma_s.At(i, c);
+  };
+  const auto mayBeTooMuch = [&](const Field& field) {
+    constexpr float little = static_cast<float>(LargestExtinction / 4.0); // 1 + g is 2 at most
+    const std::size_t count = medium.grid.VoxelCount() * static_cast<std::size_t>(field.components);
+    return field.values && AnyOf(count, [&](std::size_t i) { return field.values[i] > little; });
+  };
+  if (!mayBeTooMuch(medium.sigma_a) && !mayBeTooMuch(medium.sigma_s))
+  {
+    return;
+  }
   for (std::size_t i = 0; i < medium.grid.VoxelCount(); ++i)
   {
     for (int c = 0; c < channels; ++c)
     {
-      const double g = std::abs(medium.phase.MeanCosine(i, c));
-      const double sigma_t = medium.sigma_a.At(i, c) + (1.0 + g) * medium.sigma_s.At(i, c);
+      const double sigma_t = extinctionOf(i, c);
       if (sigma_t > LargestExtinction)
       {
         throw InvalidInput("sigma_a and sigma_s add up to " + Text("%.3g", sigma_t) + " in voxel " +

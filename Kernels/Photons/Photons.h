@@ -43,6 +43,13 @@ struct MarchSettings
   /// Batches of photons (one by chance of each so many), up to MarchedBatchesAtMost, of whose light the standard error
   /// is found (fluenceError of the light); 0: it is not wanted. Not together with counts or batches.
   int errorBatches = 0;
+  /// Whether light in bricks of 8^3 voxels that hold no medium is kept brick by brick: its mean over the brick, in a
+  /// record of its own, which photons cross in one stretch. Where a medium is mostly empty that takes a small part of
+  /// the memory and of the time; in voxels of bricks that hold anything the light is the same, to rounding. Applies
+  /// where the index is constant (nothing gathers light in empty space then), at least three quarters of the bricks
+  /// are empty, and photons are of one order, without counts, batches and Unsafe sums; else light is kept voxel by
+  /// voxel as ever.
+  bool byBricks = false;
   /// Whether to leave out what the scene does not need; false: three channels and the integrator, to measure what that
   /// saves.
   bool leaveOut = true;

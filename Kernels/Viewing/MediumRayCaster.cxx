@@ -61,6 +61,10 @@ MediumRayCaster::MediumRayCaster(Device& device, const Medium& medium, const Sol
   , Omitted(this->LeftOutNow())
   , Doubts(DoubtsAbout(this->Settings, light, this->Traits.bends ? ior : Field{}, this->Traits.index, medium.grid))
 {
+  if (this->Traits.PacksOnce())
+  {
+    this->PrepareSources({}, {}); // while the caller's arrays are there
+  }
 }
 
 std::vector<std::string> MediumRayCaster::LeftOutNow() const
@@ -104,7 +108,8 @@ bool MediumRayCaster::Adopt(const ViewSettings& asked)
   if (settings.singleScatteringOnly != now.singleScatteringOnly || settings.shadowRays != now.shadowRays ||
     settings.rectangleSamples != now.rectangleSamples || settings.showBackground != now.showBackground ||
     settings.packetWidth != now.packetWidth || settings.tableFace != now.tableFace ||
-    settings.leaveOut != now.leaveOut || (this->Behind.HasSurfaceLight() && settings.stepSize != now.stepSize))
+    settings.leaveOut != now.leaveOut || settings.skipEmptyBricks != now.skipEmptyBricks ||
+    (this->Behind.HasSurfaceLight() && settings.stepSize != now.stepSize))
   {
     return false;
   }
@@ -137,7 +142,7 @@ void MediumRayCaster::PrepareSources(const Camera& camera, const Monitor& monito
   pack(Packing::Scattered);
   this->Omitted = this->LeftOutNow(); // now empty bricks are known
   this->SourcesReady = true;
-  if (!this->Traits.sourcesDependOnCamera && !this->Traits.shadowRays)
+  if (this->Traits.PacksOnce())
   {
     this->Scene.GiveBackWhatIsPacked();
   }

@@ -90,7 +90,8 @@ public:
   /// @throws InvalidInput as Check(medium) and Check(illumination); for a light array that is not finite or has not 1
   ///   or 3 components (a direction 3); for an index that is not within [1e-3, 1e3] or has not one component; where
   ///   settings ask for an array that is not there; for a setting out of its range
-  /// @throws DeviceError if the samples do not fit: 16 bytes per voxel, and as many again for each of coloured
+  /// @throws DeviceError if the samples do not fit: 16 bytes per voxel (on a CPU, of a medium that is mostly empty, of
+  ///   bricks in and around what is filled only), and as many again for each of coloured
   ///   extinction, the light's direction, emission beside it, a coloured g by voxel, and a refractive index that
   ///   varies; with moments, these and 36 bytes more
   MediumRayCaster(Device& device, const Medium& medium, const SolvedLight& light, const Illumination& illumination,
@@ -99,8 +100,8 @@ public:
   MediumRayCaster& operator=(const MediumRayCaster&) = delete;
 
   /// Takes over those settings that need nothing new on the device, so that a caster can be kept while its medium,
-  /// light and illumination stay as they are: imageSize, stepSize, backgroundColor, skipEmptyBricks,
-  /// minimumTransmittance, those of the surface, tableColor, tableReflectance.
+  /// light and illumination stay as they are: imageSize, stepSize, backgroundColor, minimumTransmittance,
+  /// those of the surface, tableColor, tableReflectance.
   /// @return false, and nothing is changed, where one of the others differs: that needs a new caster
   /// @throws InvalidInput as the constructor
   bool Adopt(const ViewSettings& settings);
@@ -108,7 +109,7 @@ public:
   /// Whether settings' backgroundColor is seen: there is nothing else behind the medium, and the background is shown.
   bool ShowsBackgroundColor() const;
 
-  /// The first picture packs what the rays meet; where nothing of it depends on the camera, later ones use it again.
+  /// What the rays meet is packed by the constructor; with shadow rays, and where it depends on the camera, here.
   /// @param ends  where an opaque surface ends each pixel's ray, as a distance along the view axis, length; 1e30 where
   ///   none does; empty: nowhere. What the surface hides, the background with it, is not in the picture then: alpha is
   ///   1 - transmittance up to there. What is reflected or mirrored does not end.

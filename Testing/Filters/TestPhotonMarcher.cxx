@@ -280,6 +280,40 @@ void TrappedLightIsAWarning(test::Claims& claims)
   claims.That(pipeline.Light()->GetNumberOfCells() > 0, "there is light all the same");
 }
 
+/// A cloudlet in a corner of a box of 4 x 4 x 4 bricks: light of empty space is by voxel, as a file says, or by brick.
+void EmptySpaceIsKeptAsAskedFor(test::Claims& claims)
+{
+  vtkSmartPointer<vtkImageData> medium = test::MakeMedium({ { 32, 32, 32 }, { 0.1, 0.1, 0.1 } }, 0.0, 0.0);
+  medium->GetCellData()->GetArray("sigma_s")->SetComponent(33 * 32 + 1, 0, 5.0);
+  Pipeline pipeline(medium);
+  pipeline.rig->SetSunElevation(55.0);
+  const auto deposits = [&](int emptySpace) {
+    pipeline.marcher->SetEmptySpace(emptySpace);
+    pipeline.marcher->Update();
+    return pipeline.marcher->GetDeposits();
+  };
+  const auto said = [&] {
+    return std::string(pipeline.marcher->GetLeftOut()).find("light voxel by voxel in empty space") != std::string::npos;
+  };
+  const vtkIdType byVoxel = deposits(vtkPhotonMarcher::BY_VOXEL);
+  claims.That(!said() && byVoxel > 6400 * 20, "light voxel by voxel");
+  const vtkIdType byBrick = deposits(vtkPhotonMarcher::BY_BRICK);
+  claims.That(said() && 2 * byBrick < byVoxel, "light by brick");
+  claims.That(pipeline.marcher->GetBalanceError() < 1e-6, "the balance by brick");
+  vtkDataArray* fluence = pipeline.Light()->GetCellData()->GetArray("fluence");
+  claims.That(fluence->GetComponent(16 * 1024 + 16 * 32 + 16, 0) == fluence->GetComponent(23 * 1024 + 23 * 32 + 23, 0),
+    "one light in a brick");
+  claims.That(deposits(vtkPhotonMarcher::AS_READ) == byVoxel && !said(), "nothing says that the medium is sparse");
+  for (const double active : { 0.24, 0.26 })
+  {
+    test::AddValues<vtkDoubleArray>(
+      medium->GetFieldData(), "active_part", 1, 1, [&](vtkIdType, int) { return active; });
+    medium->Modified();
+    claims.That(
+      (deposits(vtkPhotonMarcher::AS_READ) == byBrick) == (active < 0.25), "a file of which a part is active");
+  }
+}
+
 void BadInputIsOneError(test::Claims& claims)
 {
   auto medium = test::MakeMedium({}, 0.1, 0.1);
@@ -352,6 +386,7 @@ int TestPhotonMarcher(int, char*[])
   PackingLossIsToldApart(claims);
   CountsAndBatchesAddUp(claims);
   TrappedLightIsAWarning(claims);
+  EmptySpaceIsKeptAsAskedFor(claims);
   BadInputIsOneError(claims);
   return claims.Result();
 }

@@ -63,6 +63,8 @@ void VoxelsBecomeCells(test::Claims& claims)
   }
   claims.That(total == 10.0, "every active voxel is there, the others are background");
   vtkFieldData* field = image->GetFieldData();
+  vtkDataArray* active = field->GetArray("active_part");
+  claims.Near(active ? active->GetComponent(0, 0) : 0.0, 4.0 / 280.0, 1e-12, "the active part");
   auto* author = vtkStringArray::SafeDownCast(field->GetAbstractArray("vdb::author"));
   claims.That(author && author->GetValue(0) == "Tyndall", "the file's metadata is field data");
   auto* kind = vtkStringArray::SafeDownCast(field->GetAbstractArray("vdb:density:class"));

@@ -146,12 +146,13 @@ void MarchPhotons(const MarchMedium& medium, const PackedPhotons& packed, const 
   const int copies = std::max(shares.copies, shares.workers);
   cl::Kernel march = MarchKernelFor(medium, target, packed.channels, "march_photons");
   const Buffer<cl_int> none(device, 0, "cells of the voxels");
+  const Buffer<cl_int>& cells = medium.bricks.AreThere() ? medium.bricks.First() : target.cells ? *target.cells : none;
   Buffer<cl_int> next(device, static_cast<std::size_t>(shares.batches), "number of the next photon");
   InBatches(device, LaunchesOf(medium, packed, shares), monitor, [&](std::size_t first, std::size_t count) {
     next.Fill(0);
     With(march, medium.Describe(), medium.sigma, medium.coefficients, medium.nodes, photons.values, photons.marks,
-      target.cells ? *target.cells : none, photons.ends, *target.sums, cl_ulong(stride), cl_int(copies),
-      cl_int(shares.batches), photons.batchBegin, next, cl_int(first), cl_int(count));
+      cells, photons.ends, *target.sums, cl_ulong(stride), cl_int(copies), cl_int(shares.batches), photons.batchBegin,
+      next, cl_int(first), cl_int(count));
     const std::size_t packets = PartsOf(count, Count(width));
     if (shares.workers > 0)
     {

@@ -39,7 +39,7 @@ struct PhotonsOnDevice
 struct MarchSums
 {
   MarchShares shares;
-  std::size_t records = 0;               ///< of a copy: voxels of the padded grid, or cells
+  std::size_t records = 0;               ///< of a copy: voxels of the padded grid, records of bricks, or cells
   int numbers = 1;                       ///< of a record
   bool directions = false;               ///< are among them
   bool counts = false;                   ///< and photons that crossed voxels

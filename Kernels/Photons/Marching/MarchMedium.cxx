@@ -11,13 +11,27 @@ namespace tyndall
 {
 namespace
 {
-constexpr int RoundsAtMost = 64;   ///< of a photon through the volume, in sums of its edges
-constexpr float DarkUnits = 1e-3f; ///< power that no sum would show
+constexpr int RoundsAtMost = 64;      ///< of a photon through the volume, in sums of its edges
+constexpr float DarkUnits = 1e-3f;    ///< power that no sum would show
+constexpr double FilledAtMost = 0.25; ///< of bricks: where more are filled, to go by bricks saves little
 
 /// Components to upload: 0 where a coefficient is zero everywhere.
 int ComponentsOf(const Field& field, bool needed)
 {
   return field.values && needed ? field.components : 0;
+}
+
+/// None where light is to be kept voxel by voxel.
+PhotonBricks BricksOf(Device& device, const Medium& medium, const MarchSettings& settings, bool bends, bool scatters)
+{
+  const bool oneOrder = settings.maximumOrders == 1 || !scatters;
+  if (!settings.byBricks || bends || !oneOrder || settings.counts || settings.batches ||
+    settings.sums == MarchSettings::Sums::Unsafe)
+  {
+    return {};
+  }
+  const FilledBricks bricks = FindFilledBricks(medium);
+  return bricks.FilledPart() > FilledAtMost ? PhotonBricks() : PhotonBricks(device, bricks, medium.grid);
 }
 }
 
@@ -34,6 +48,36 @@ MarchMedium::MarchMedium(
   , hasLevels(levels && this->bends)
   , AComponents(ComponentsOf(medium.sigma_a, !with.leaveOut || this->traits.absorbs))
   , SComponents(ComponentsOf(medium.sigma_s, !with.leaveOut || this->traits.scatters))
+{
+  this->bricks = BricksOf(this->device, medium, with, this->bends, this->traits.scatters);
+  if (this->bricks.AreThere())
+  {
+    this->PackBricks(medium);
+  }
+  else
+  {
+    this->PackVoxels(medium, ior, levels);
+  }
+  this->device.Finish();
+}
+
+void MarchMedium::PackBricks(const Medium& medium)
+{
+  const auto upload = [this](const std::vector<float>& values, const char* what) {
+    return Buffer<float>(this->device, values, what);
+  };
+  const auto coefficient = [&](const Field& field, int components, const char* what) {
+    return components > 0 ? upload(this->bricks.Coefficient(field, components), what)
+                          : Buffer<float>(this->device, 0, what);
+  };
+  this->sigmaA = coefficient(medium.sigma_a, this->AComponents, "sigma_a");
+  this->sigmaS = coefficient(medium.sigma_s, this->SComponents, "sigma_s");
+  this->sigma = upload(this->bricks.Extinction(medium, this->Diagonal(), this->channels), "extinction");
+  this->coefficients = Buffer<float>(this->device, 0, "squared index");
+  this->nodes = Buffer<cl_uchar>(this->device, 0, "octree nodes");
+}
+
+void MarchMedium::PackVoxels(const Medium& medium, const Field& ior, const std::uint8_t* levels)
 {
   this->sigmaA = this->Upload(medium.sigma_a.values, this->AComponents, "sigma_a");
   this->sigmaS = this->Upload(medium.sigma_s.values, this->SComponents, "sigma_s");
@@ -57,7 +101,7 @@ MarchMedium::MarchMedium(
   With(pack, this->DescribeGrid(), static_cast<float>(this->Diagonal()), this->sigmaA, this->sigmaS, low, high, given,
     this->sigma, this->nodes);
   this->Launch(pack, Range(this->Padded(2)));
-  this->device.Finish();
+  this->device.Finish(); // before what is local goes
 }
 
 void MarchMedium::FindRanges(Buffer<float>& low, Buffer<float>& high) const
@@ -142,14 +186,14 @@ MarchInfo MarchMedium::Describe() const
   info.slowest = 0.5f * this->index.least / *std::max_element(info.spacing, info.spacing + 3);
   info.darkness = DarkUnits;
   info.eventLimit = this->EventLimit();
-  info.copy = this->PaddedCount();
+  info.copy = this->Records();
   return info;
 }
 
 std::string MarchMedium::Options() const
 {
   return Define("MEDIUM_CHANNELS", this->channels) + Define("BENDS", this->bends) + Define("LEVELS", this->hasLevels) +
-    " -cl-mad-enable";
+    Define("BRICKS", this->bricks.AreThere()) + " -cl-mad-enable";
 }
 
 cl::Kernel MarchMedium::MediumKernel(const char* name) const

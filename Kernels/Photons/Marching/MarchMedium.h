@@ -4,6 +4,7 @@
 #include "Medium/Medium.h"
 #include "Medium/Traits.h"
 #include "Photons/Marching/MarchShared.h"
+#include "Photons/Marching/PhotonBricks.h"
 #include "Photons/Marching/PhotonPacking.h"
 #include "Photons/Marching/PhotonSumsShared.h"
 #include "Photons/Photons.h"
@@ -30,6 +31,8 @@ public:
   double Diagonal() const; ///< of a voxel
   /// Voxels, with one more at either end of each axis.
   std::size_t PaddedCount() const { return Count(this->Padded(2)); }
+  /// Of extinction and of sums: those of bricks, or the voxels of the padded grid.
+  std::size_t Records() const { return this->bricks.AreThere() ? this->bricks.Records() : this->PaddedCount(); }
 
   /// A kernel of PhotonMarch.cl for so many channels of light; `options` are those that do not follow from the medium.
   cl::Kernel MarchKernel(const char* name, int channels, bool directions, const std::string& options) const;
@@ -50,11 +53,12 @@ public:
   bool coloured; ///< coefficients have three components, as data
   IndexRange index;
   bool bends, hasLevels;
+  PhotonBricks bricks; ///< where all arrays stand by bricks
 
   /// Channels of the light that so many photons leave.
   int ColoursOf(const PackedPhotons& packed) const { return packed.grey && !this->coloured ? 1 : 3; }
   Buffer<float> sigmaA, sigmaS;
-  Buffer<float> sigma;        ///< PhotonMedium.cl, pack_extinction
+  Buffer<float> sigma;        ///< PhotonMedium.cl, pack_extinction; or PhotonBricks.h
   Buffer<float> coefficients; ///< SquaredIndex.cl
   Buffer<cl_uchar> nodes;     ///< PhotonMedium.cl, pack_extinction
 
@@ -66,6 +70,8 @@ private:
   Buffer<float> Upload(const float* values, int components, const char* what) const;
   cl::Kernel MediumKernel(const char* name) const;
   void FindRanges(Buffer<float>& low, Buffer<float>& high) const;
+  void PackVoxels(const Medium& medium, const Field& ior, const std::uint8_t* levels);
+  void PackBricks(const Medium& medium);
 
   int AComponents, SComponents;
 };

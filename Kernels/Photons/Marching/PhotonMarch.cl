@@ -8,6 +8,7 @@
 //   CELLS            1: what is deposited are coarse cells, which also count photons, and sum up the columns and rows
 //                    that these set out from, by their marks: column and row << 16
 //   PATHS            1: nothing is summed, vertices are written
+//   BRICKS           1: the medium, and the sums, stand by bricks (PhotonBricks.cl), without COUNTS and CELLS
 //   TURNS            1: photons march in turns, and are kept between them; one batch, without PATHS
 //
 // A step is followed from voxel wall to voxel wall (Amanatides and Woo 1987). In a voxel whose extinction over a
@@ -43,6 +44,9 @@ typedef struct
 #if COUNTS || CELLS
   integer counted; // place where the photon was counted last
 #endif
+#if BRICKS
+  integer voxel[3], last;
+#endif
 } photon_flight;
 
 // What a stretch leaves where.
@@ -63,7 +67,13 @@ static void land(const photon_flight* flight, photon_lanes* lanes)
   FOR_AXES(a)
   {
     PUT(lanes->wall[a], flight->wall[a]);
+#if BRICKS
+    PUT_INTEGERS(lanes->voxel[a], flight->voxel[a]);
+#endif
   }
+#if BRICKS
+  PUT_INTEGERS(lanes->last, flight->last);
+#endif
   FOR_CHANNELS(c)
   {
     PUT(lanes->power[c], flight->power[c]);
@@ -77,7 +87,13 @@ static void take_off(const march_arrays* arrays, const photon_lanes* lanes, phot
   FOR_AXES(a)
   {
     flight->wall[a] = VECTOR(lanes->wall[a]);
+#if BRICKS
+    flight->voxel[a] = INTEGERS(lanes->voxel[a]);
+#endif
   }
+#if BRICKS
+  flight->last = INTEGERS(lanes->last);
+#endif
   flight->now = VECTOR(lanes->now);
   flight->sigma = gather(float, arrays->sigma, flight->at);
 }
@@ -178,10 +194,10 @@ static void deposit_all(const march_arrays* arrays, const photon_lanes* lanes, c
 }
 
 // Most of the time of a march across a large grid is spent on memory. It is prefetched a few voxels ahead of the
-// photons, as far as they go straight on, where the compiler has a builtin for that.
+// photons, as far as they go straight on, where the compiler has a builtin for that. Bricks are small enough without.
 static void ask_ahead(const march_arrays* arrays, const photon_lanes* lanes, integer at)
 {
-#if REAL_WIDTH > 1 && defined(__has_builtin)
+#if REAL_WIDTH > 1 && !BRICKS && defined(__has_builtin)
 #if __has_builtin(__builtin_prefetch)
   const integer there = at + INTEGERS(lanes->ahead);
 #if CELLS // few, whose sums are near already
@@ -217,12 +233,16 @@ static void leave_light(const march_arrays* arrays, photon_flight* flight, real 
 // Through the walls that are reached at time `next`.
 static void cross_walls(const march_arrays* arrays, const photon_lanes* lanes, photon_flight* flight, real next)
 {
+#if BRICKS
+  cross_in_bricks(arrays, lanes, next, flight->voxel, &flight->last, flight->wall, &flight->at);
+#else
   FOR_AXES(a)
   {
     const integer through = truth(flight->wall[a] <= next);
     flight->at += through & INTEGERS(lanes->stride[a]);
     flight->wall[a] += masked(through, VECTOR(lanes->across[a]));
   }
+#endif
   flight->now = next;
   flight->sigma = gather(float, arrays->sigma, flight->at);
 }
@@ -289,7 +309,7 @@ static void attend(
     const int beyond = bits_of(outside);
     FOR_LANES(k, ended)
     {
-      const int face = beyond >> k & 1 ? face_left(arrays->info, lanes->at[k]) : Dark;
+      const int face = beyond >> k & 1 ? face_left(arrays->info, lanes, k) : Dark;
       end_photon(lanes, k, face, arrays->ends + first + k);
       rest(lanes, k);
     }
@@ -467,12 +487,12 @@ static int march_packet(const march_arrays* arrays, const __global float* photon
 // The path of photon i, a work-item each. Its `counts[i]` vertices go to vertices + offsets[i]; with `counting` they
 // are only counted.
 __kernel void trace_paths(MarchInfo info, const __global float* sigma, const __global float* coefficients,
-  const __global uchar* nodes, const __global float* photons, __global PhotonEnd* ends, int counting,
-  const __global int* offsets, __global float4* vertices, __global int* counts)
+  const __global uchar* nodes, const __global float* photons, const __global int* cells, __global PhotonEnd* ends,
+  int counting, const __global int* offsets, __global float4* vertices, __global int* counts)
 {
   const int i = get_global_id(0);
   const march_arrays arrays = { &info, sigma, coefficients, nodes, 0, ends, counting ? 0 : vertices + offsets[i], 0,
-    0 };
+    cells };
   counts[i] = march_packet(&arrays, photons, i, i + 1);
 }
 #elif TURNS

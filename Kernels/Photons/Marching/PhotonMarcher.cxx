@@ -4,6 +4,7 @@
 #include "Device/Defines.h"
 #include "Device/HostMappedBuffer.h"
 #include "Device/HostMemory.h"
+#include "Device/Sizes.h"
 #include "Light/ChannelReduction.h"
 #include "Light/LeftOut.h"
 #include "Photons/Importance/PilotGathering.h"
@@ -96,6 +97,14 @@ public:
   };
   PhotonLight March(const std::vector<Photon>& photons, const PhotonNumbers& numbers, const Monitor& monitor,
     const Turns* turns = nullptr);
+  /// @throws InvalidInput where light is kept by bricks
+  void RequireVoxels(const char* what) const
+  {
+    if (this->medium.bricks.AreThere())
+    {
+      throw InvalidInput(std::string(what) + " voxel by voxel. Do not ask for light by bricks.");
+    }
+  }
   PhotonLight MarchInBatches(const std::vector<Photon>& photons, const Monitor& monitor);
 
   MarchMedium medium;
@@ -104,7 +113,7 @@ public:
 private:
   MarchShares Share(int numbers, int batches) const
   {
-    return ShareSums(this->medium, this->medium.PaddedCount(), numbers, batches, this->Sums.Size() * sizeof(cl_long));
+    return ShareSums(this->medium, this->medium.Records(), numbers, batches, this->Sums.Size() * sizeof(cl_long));
   }
   MarchSums PrepareSums(const PackedPhotons& packed);
   cl::Kernel SumsKernel(
@@ -112,6 +121,10 @@ private:
   void MarchTo(const MarchSums& target, const PackedPhotons& packed, const PhotonsOnDevice& photons,
     const LightField& light, const Turns* turns, const Monitor& monitor);
   void Tally(const PackedPhotons& packed, const std::vector<cl_int>& ends, PhotonLight& result) const;
+  void FinishVoxels(const PackedPhotons& packed, const MarchSums& target, float weightUnit, PhotonLight& result,
+    const Buffer<cl_long>& taken) const;
+  void FinishBricks(
+    const PackedPhotons& packed, const MarchSums& target, PhotonLight& result, const Buffer<cl_long>& taken) const;
   void Finish(const PackedPhotons& packed, const MarchSums& target, float weightUnit, PhotonLight& result);
   void SayWhatIsLeftOut(const PackedPhotons& packed, LightField& light) const;
 
@@ -123,7 +136,7 @@ MarchSums PhotonMarcher::Implementation::PrepareSums(const PackedPhotons& packed
 {
   const MarchSettings& settings = this->medium.settings;
   MarchSums target;
-  target.records = this->medium.PaddedCount();
+  target.records = this->medium.Records();
   target.directions = settings.meanDirection;
   target.counts = settings.counts;
   target.numbers = packed.channels + (settings.meanDirection ? 3 : 0) + (settings.counts ? 1 : 0);
@@ -206,8 +219,8 @@ void PhotonMarcher::Implementation::MarchTo(const MarchSums& target, const Packe
     monitor);
 }
 
-void PhotonMarcher::Implementation::Finish(
-  const PackedPhotons& packed, const MarchSums& target, float weightUnit, PhotonLight& result)
+void PhotonMarcher::Implementation::FinishVoxels(const PackedPhotons& packed, const MarchSums& target, float weightUnit,
+  PhotonLight& result, const Buffer<cl_long>& taken) const
 {
   LightField& light = result.light;
   Device& device = this->medium.device;
@@ -215,7 +228,6 @@ void PhotonMarcher::Implementation::Finish(
   const std::size_t voxels = grid.VoxelCount(), rows = voxels / static_cast<std::size_t>(grid.size[0]);
   const std::size_t batches = static_cast<std::size_t>(target.shares.batches);
   const std::size_t colours = static_cast<std::size_t>(light.channels);
-  const std::size_t channels = static_cast<std::size_t>(packed.channels);
   MakeZeros({ { &light.fluence, voxels * colours }, { &result.meanDirection, target.directions ? 3 * voxels : 0 },
     { &result.photonCount, target.counts ? voxels : 0 }, { &result.photonWeight, target.counts ? voxels : 0 },
     { &result.batchFluence, batches > 1 ? batches * voxels * colours : 0 } });
@@ -227,7 +239,6 @@ void PhotonMarcher::Implementation::Finish(
   const HostMappedBuffer<float> count = lend(result.photonCount, "photon count");
   const HostMappedBuffer<float> weight = lend(result.photonWeight, "photon weight");
   const HostMappedBuffer<float> batchFluence = lend(result.batchFluence, "fluence by batches");
-  const Buffer<cl_long> taken(device, rows * 2 * channels, "tallies");
 
   const LightSumsInfo info = this->medium.DescribeSums(packed, weightUnit);
   cl::Kernel finish = this->SumsKernel("finish_light", packed, target, light);
@@ -238,6 +249,51 @@ void PhotonMarcher::Implementation::Finish(
   for (const HostMappedBuffer<float>* array : { &fluence, &direction, &count, &weight, &batchFluence })
   {
     array->Fetch();
+  }
+}
+
+void PhotonMarcher::Implementation::FinishBricks(
+  const PackedPhotons& packed, const MarchSums& target, PhotonLight& result, const Buffer<cl_long>& taken) const
+{
+  LightField& light = result.light;
+  const MarchMedium& through = this->medium;
+  Device& device = through.device;
+  const Grid& grid = through.grid;
+  const std::size_t colours = static_cast<std::size_t>(light.channels), voxels = grid.VoxelCount();
+  const Buffer<float> ofRecords(device, target.records * colours, "fluence of bricks");
+  const Buffer<float> directions(device, target.directions ? 3 * target.records : 0, "mean direction of bricks");
+  const LightSumsInfo info = through.DescribeSums(packed);
+  cl::Kernel finish = this->SumsKernel("finish_bricks", packed, target, light);
+  With(finish, info, through.bricks.First(), through.sigmaA, through.sigmaS, this->Sums,
+    cl_ulong(target.records * static_cast<std::size_t>(target.numbers)), ofRecords, directions, taken);
+  through.Launch(finish, cl::NDRange(through.bricks.Count()));
+  MakeZeros({ { &light.fluence, voxels * colours }, { &result.meanDirection, target.directions ? 3 * voxels : 0 } });
+  const HostMappedBuffer<float> fluence(device, light.fluence.data(), light.fluence.size(), "fluence");
+  const HostMappedBuffer<float> direction(
+    device, result.meanDirection.data(), result.meanDirection.size(), "mean direction");
+  cl::Kernel spread = this->SumsKernel("spread_bricks", packed, target, light);
+  With(spread, info, through.bricks.First(), ofRecords, directions, fluence.Handle(), direction.Handle());
+  through.Launch(spread, cl::NDRange(Count(grid.size[1]), Count(grid.size[2])));
+  fluence.Fetch();
+  direction.Fetch();
+}
+
+void PhotonMarcher::Implementation::Finish(
+  const PackedPhotons& packed, const MarchSums& target, float weightUnit, PhotonLight& result)
+{
+  LightField& light = result.light;
+  const bool byBricks = this->medium.bricks.AreThere();
+  const std::size_t channels = static_cast<std::size_t>(packed.channels);
+  const std::size_t rows = this->medium.grid.VoxelCount() / Count(this->medium.grid.size[0]);
+  const Buffer<cl_long> taken(
+    this->medium.device, (byBricks ? this->medium.bricks.Count() : rows) * 2 * channels, "tallies");
+  if (byBricks)
+  {
+    this->FinishBricks(packed, target, result, taken);
+  }
+  else
+  {
+    this->FinishVoxels(packed, target, weightUnit, result, taken);
   }
   result.secondsMarching += ClockSeconds();
 
@@ -269,6 +325,7 @@ void PhotonMarcher::Implementation::SayWhatIsLeftOut(const PackedPhotons& packed
   say(packed.channels == 3 && through.channels == 1, left_out::GreyExtinction);
   say(leaveOut && !through.traits.scatters, left_out::NoScattering);
   say(leaveOut && !through.traits.absorbs, left_out::NoAbsorption);
+  say(through.bricks.AreThere(), "light voxel by voxel in empty space: it is kept by bricks of 8x8x8 voxels there");
   say(!through.settings.meanDirection, "mean direction: it was not asked for");
 }
 
@@ -401,6 +458,7 @@ PhotonLight PhotonMarcher::MarchByTurns(
   {
     throw InvalidInput("Photons march in turns up to where they are first scattered, and without batches.");
   }
+  this->Inside->RequireVoxels("Photons march in turns");
   const Implementation::Turns inTurns = { turns, times };
   return this->Inside->March(photons, {}, monitor, &inTurns);
 }
@@ -413,6 +471,7 @@ std::vector<PhotonPath> PhotonMarcher::Paths(const std::vector<Photon>& photons,
 PilotLight PhotonMarcher::Gather(const std::vector<Photon>& photons, const std::vector<std::array<int, 2>>& origins,
   const std::array<int, 3>& cells, const Monitor& monitor)
 {
+  this->Inside->RequireVoxels("Pilot photons are gathered");
   return this->Inside->pilots.Gather(photons, origins, cells, monitor);
 }
 }

@@ -46,7 +46,7 @@ public:
 
   /// The same light, of photons that march in turns. Without batches, and of one order.
   /// @param times  how long turns took
-  /// @throws InvalidInput where settings ask for batches or other orders than 1; and as March
+  /// @throws InvalidInput where settings ask for batches or other orders than 1, or light is kept by bricks; as March
   PhotonLight MarchByTurns(
     const std::vector<Photon>& photons, const MarchTurns& turns, TurnTimes& times, const Monitor& monitor = {});
 
@@ -55,8 +55,8 @@ public:
   /// rounded down.
   /// @param origins  of each photon: column and row of the cell of the photon plane that it was made in, 0 to 65535
   /// @param cells    along each axis, 1 to the medium's voxels (more are cut to them)
-  /// @throws InvalidInput as March, or where there are not as many origins as photons, one is out of its range, or
-  ///   there are no cells; Aborted
+  /// @throws InvalidInput as March, or where light is kept by bricks, there are not as many origins as photons, one is
+  ///   out of its range, or there are no cells; Aborted
   PilotLight Gather(const std::vector<Photon>& photons, const std::vector<std::array<int, 2>>& origins,
     const std::array<int, 3>& cells, const Monitor& monitor = {});
 

@@ -52,11 +52,13 @@ std::vector<PhotonPath> TracePaths(
       Define("CELLS", 0));
   Device& device = medium.device;
   const PhotonsOnDevice onDevice(device, packed);
+  const Buffer<cl_int> none(device, 0, "cells of the voxels");
+  const Buffer<cl_int>& cells = medium.bricks.AreThere() ? medium.bricks.First() : none;
   Buffer<cl_int> offsets(device, packed.Count(), "offsets of paths");
   const Buffer<cl_int> counts(device, packed.Count(), "lengths of paths");
   const auto run = [&](bool counting, const Buffer<cl_float4>& vertices) {
-    With(trace, medium.Describe(), medium.sigma, medium.coefficients, medium.nodes, onDevice.values, onDevice.ends,
-      cl_int(counting), offsets, vertices, counts);
+    With(trace, medium.Describe(), medium.sigma, medium.coefficients, medium.nodes, onDevice.values, cells,
+      onDevice.ends, cl_int(counting), offsets, vertices, counts);
     medium.Launch(trace, cl::NDRange(packed.Count()), GroupOfLargeItems(device));
     device.Finish();
   };

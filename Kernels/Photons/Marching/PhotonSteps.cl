@@ -4,6 +4,7 @@
 //   LEVELS      1: there are octree levels
 //   DIRECTIONS  1: directions are asked for
 //   COUNTS, CELLS  1: photons bear marks (PhotonMarch.cl)
+//   BRICKS      1: the medium stands by bricks (PhotonBricks.cl); places are records, and [copy] of them
 //
 // A path obeys dr/dt = T, dT/dt = grad(n^2) / 2 with dt = ds / n (numerics.md, Eq. (90)). It becomes steps, straight
 // lines of constant velocity:
@@ -41,7 +42,7 @@ typedef struct
   __global float4*
     vertices; // of a path: position in voxels, part of the power that is left; null: they are only counted
   const __global ulong* marks; // of photons, with COUNTS or CELLS
-  const __global int* cells;   // [copy] of voxels, with CELLS
+  const __global int* cells;   // [copy] of voxels, with CELLS; with BRICKS of bricks: PhotonBricks.h
 } march_arrays;
 
 // The state of REAL_WIDTH photons.
@@ -68,7 +69,16 @@ typedef struct
 #if COUNTS || CELLS
   LANES(ulong, mark);
 #endif
+#if BRICKS
+  LANES_3(int, voxel);
+  LANES(int, last);        // of the voxels that a step crosses, along an edge: PhotonBricks.cl
+  LANES_3(float, inverse); // time across a voxel, with the sign of the velocity
+#endif
 } photon_lanes;
+
+#if BRICKS
+#include "Photons/Marching/PhotonBricks.cl"
+#endif
 
 static int3 size_of(const MarchInfo* info)
 {
@@ -83,10 +93,14 @@ static int3 voxel_of(const MarchInfo* info, int at)
   return (int3)(at - z * layer - y * row - 1, y - 1, z - 1);
 }
 
-// The face through which a photon came to voxel `at` of the padding.
-static int face_left(const MarchInfo* info, int at)
+// The face through which photon k came to where it is, beyond the grid.
+static int face_left(const MarchInfo* info, const photon_lanes* lanes, int k)
 {
-  const int3 voxel = voxel_of(info, at);
+#if BRICKS
+  const int3 voxel = (int3)(lanes->voxel[0][k], lanes->voxel[1][k], lanes->voxel[2][k]);
+#else
+  const int3 voxel = voxel_of(info, lanes->at[k]);
+#endif
   const int3 size = size_of(info);
   return voxel.x < 0 ? 0 : voxel.x >= size.x ? 1 : voxel.y < 0 ? 2 : voxel.y >= size.y ? 3 : voxel.z < 0 ? 4 : 5;
 }
@@ -392,6 +406,14 @@ static void rest(photon_lanes* lanes, int k)
   }
   lanes->now[k] = lanes->pace[k] = 0.0f;
   lanes->ahead[k] = 0;
+#if BRICKS
+  FOR_AXES(a)
+  {
+    lanes->voxel[a][k] = -1;
+    lanes->inverse[a][k] = lanes->velocity[a][k] = 0.0f;
+  }
+  lanes->last[k] = 0;
+#endif
   lanes->turn[k] = NEVER;
 }
 
@@ -430,6 +452,9 @@ static void set_off(const march_arrays* arrays, photon_lanes* lanes, real* p, re
     inverse[a] = (real)1.0f / u[a];
   }
   begin_steps(info, lanes, all, voxel, p, u, inverse);
+#if BRICKS
+  set_off_in_bricks(arrays, lanes, voxel, p, u);
+#endif
 #if BENDS
   if (anywhere(varies))
   {

@@ -5,8 +5,10 @@
 //   A_CHANNELS, S_CHANNELS  components of sigma_a and sigma_s, 0: there is none
 //   CARRIES                 where it is defined: what is less than a unit of a voxel's power counts in the next one
 //                           of its row. Sums in large units need it: half a unit of each voxel would be lost
+//   BRICKS                  1: the sums stand by bricks (PhotonBricks.h)
 //   COLOURS                 channels of what comes out: 3 also where one channel stands for three (CHANNELS 1)
 
+#include "Medium/BrickShared.h"
 #include "Numerics/Numerics.cl"
 #include "Photons/Marching/PhotonSumsShared.h"
 #include "Refraction/Index/SquaredIndex.cl"
@@ -68,6 +70,20 @@ static void take_batch(__global long* record, ulong copyStride, int batch, long*
     }
   }
 }
+
+#if DIRECTIONS
+// Of a few units of power, whose fractions are lost, directions are coarse, and could be longer than the power.
+static void put_direction(__global float* mean_direction, const long* sum, float total)
+{
+  const float3 flow = (float3)(sum[CHANNELS], sum[CHANNELS + 1], sum[CHANNELS + 2]);
+  const float most = fmax(total, length(flow));
+  const float part = total > 0.0f ? 1.0f / most : 0.0f;
+  for (int a = 0; a < 3; ++a)
+  {
+    mean_direction[a] = sum[CHANNELS + a] * part;
+  }
+}
+#endif
 
 // Row by row: the copies of the sums are added up, and are zero afterwards.
 //   fluence         COLOURS a voxel
@@ -133,14 +149,7 @@ __kernel void finish_light(LightSumsInfo info, const __global float* sigma_a, co
       scattered[c] += taken_by(&info, sum[c], component(sigma_s, S_CHANNELS, voxel, c), extinction[c], &carried[1][c]);
     }
 #if DIRECTIONS
-    // Of a few units of power, whose fractions are lost, directions are coarse, and could be longer than the power.
-    const float3 flow = (float3)(sum[CHANNELS], sum[CHANNELS + 1], sum[CHANNELS + 2]);
-    const float most = fmax(total, length(flow));
-    const float part = total > 0.0f ? 1.0f / most : 0.0f;
-    for (int a = 0; a < 3; ++a)
-    {
-      mean_direction[voxel * 3 + a] = sum[CHANNELS + a] * part;
-    }
+    put_direction(mean_direction + voxel * 3, sum, total);
 #endif
 #if COUNTS
     const ulong counted = sum[RECORD - 1], weights = counted & (((ulong)1 << COUNT_SHIFT) - 1);
@@ -159,6 +168,80 @@ __kernel void finish_light(LightSumsInfo info, const __global float* sigma_a, co
     taken[(r * 2 + 1) * CHANNELS + c] = scattered[c];
   }
 }
+
+#if BRICKS
+// Brick by brick: as finish_light, of records (PhotonBricks.h). One batch, and no counts.
+//   sigma_a, sigma_s  by records
+//   fluence, mean_direction  by records; of an empty brick the mean over its voxels
+//   taken             [brick][absorbed, scattered][CHANNELS] units of power
+__kernel void finish_bricks(LightSumsInfo info, const __global int* bricks, const __global float* sigma_a,
+  const __global float* sigma_s, __global long* sums, ulong copyStride, __global float* fluence,
+  __global float* mean_direction, __global long* taken)
+{
+  const int brick = get_global_id(0), first = bricks[brick];
+  const int nx = (info.grid.size[0] + BrickEdge - 1) / BrickEdge, ny = (info.grid.size[1] + BrickEdge - 1) / BrickEdge;
+  const int place[3] = { brick % nx, brick / nx % ny, brick / (nx * ny) };
+  float voxels = 1.0f;
+  for (int a = 0; a < 3; ++a)
+  {
+    voxels *= first < 0 ? min((int)BrickEdge, info.grid.size[a] - place[a] * BrickEdge) : 1;
+  }
+  long absorbed[CHANNELS], scattered[CHANNELS];
+  for (int c = 0; c < CHANNELS; ++c)
+  {
+    absorbed[c] = scattered[c] = 0;
+  }
+  for (int i = 0; i < (first < 0 ? 1 : BrickVoxels); ++i)
+  {
+    const size_t record = first < 0 ? -first : first + i;
+    long sum[RECORD];
+    take_batch(sums + record * RECORD, copyStride, 0, sum);
+    float total = 0.0f;
+    for (int c = 0; c < CHANNELS; ++c)
+    {
+      const float a = component(sigma_a, A_CHANNELS, record, c), s = component(sigma_s, S_CHANNELS, record, c);
+      total += sum[c];
+      put_fluence(&info, fluence + record * COLOURS, c, (float)sum[c] / (fmax(info.diagonal * (a + s), 1.0f) * voxels));
+      absorbed[c] += taken_by(&info, sum[c], a, a + s, 0);
+      scattered[c] += taken_by(&info, sum[c], s, a + s, 0);
+    }
+#if DIRECTIONS
+    put_direction(mean_direction + record * 3, sum, total);
+#endif
+  }
+  for (int c = 0; c < CHANNELS; ++c)
+  {
+    taken[(brick * 2 + 0) * CHANNELS + c] = absorbed[c];
+    taken[(brick * 2 + 1) * CHANNELS + c] = scattered[c];
+  }
+}
+
+// Row by row: voxels have what their records have.
+__kernel void spread_bricks(LightSumsInfo info, const __global int* bricks, const __global float* of_records,
+  const __global float* directions, __global float* fluence, __global float* mean_direction)
+{
+  const int y = get_global_id(0), z = get_global_id(1);
+  const int nx = (info.grid.size[0] + BrickEdge - 1) / BrickEdge, ny = (info.grid.size[1] + BrickEdge - 1) / BrickEdge;
+  const int within = BrickEdge - 1, row = ((z & within) * BrickEdge + (y & within)) * BrickEdge;
+  const __global int* here = bricks + ((z >> BrickBits) * ny + (y >> BrickBits)) * nx;
+  for (int x = 0; x < info.grid.size[0]; ++x)
+  {
+    const int first = here[x >> BrickBits];
+    const size_t record = first < 0 ? -first : first + row + (x & within);
+    const size_t voxel = ((size_t)z * info.grid.size[1] + y) * info.grid.size[0] + x;
+    for (int c = 0; c < COLOURS; ++c)
+    {
+      fluence[voxel * COLOURS + c] = of_records[record * COLOURS + c];
+    }
+#if DIRECTIONS
+    for (int a = 0; a < 3; ++a)
+    {
+      mean_direction[voxel * 3 + a] = directions[record * 3 + a];
+    }
+#endif
+  }
+}
+#endif
 
 // Row by row: what voxels have gained so far, as finish_light gives it. The sums stay.
 __kernel void show_light(LightSumsInfo info, const __global float* sigma_a, const __global float* sigma_s,

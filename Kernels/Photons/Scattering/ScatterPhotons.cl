@@ -180,7 +180,7 @@ static ScatterEnd follow(const march_arrays* arrays, const scattering* medium, c
     const float there = arrays->sigma[lanes.at[0]];
     if (there == OUTSIDE)
     {
-      end.face = face_left(arrays->info, lanes.at[0]);
+      end.face = face_left(arrays->info, &lanes, 0);
     }
 #if BENDS
     else if (lanes.turn[0] <= next || (as_int(there) < 0 && lanes.turn[0] == NEVER && next >= lanes.settled[0]))

@@ -20,27 +20,48 @@ std::size_t PaddedCount(const Grid& grid)
 {
   return static_cast<std::size_t>(grid.size[0] + 2) * (grid.size[1] + 2) * (grid.size[2] + 2);
 }
+
+constexpr int PackedAlong = 64; ///< voxels of a row that a work-group packs
+
+/// Of each work-group in rows of one brick: whether any of its voxels, of which the first is the border's, is seen.
+std::vector<cl_uchar> SeenGroups(const SeenBricks& bricks, const Grid& grid)
+{
+  const int along = PartsOf(grid.size[0] + 2, PackedAlong);
+  std::vector<cl_uchar> seen;
+  for (int row = 0; row < bricks.count[1] * bricks.count[2]; ++row)
+  {
+    const unsigned char* const ofRow = bricks.seen.data() + Count(row) * Count(bricks.count[0]);
+    for (int group = 0; group < along; ++group)
+    {
+      const int first = std::max(group * PackedAlong - 1, 0) / BrickEdge;
+      const int last = std::min((group + 1) * PackedAlong - 2, grid.size[0] - 1) / BrickEdge;
+      seen.push_back(*std::max_element(ofRow + std::min(first, last), ofRow + last + 1));
+    }
+  }
+  return seen;
+}
 }
 
 PackedSamples::PackedSamples(Device& device, const SceneOnDevice& scene, const ViewTraits& traits)
   : TheDevice(device)
   , Traits(traits)
+  , Count(traits.bricks.count)
 {
-  for (int axis = 0; axis < 3; ++axis)
-  {
-    this->Count[axis] = PartsOf<int>(traits.grid.size[axis], BrickEdge);
-  }
   const std::size_t count = PaddedCount(traits.grid);
-  this->Sources = Buffer<cl_float4>(device, count, "the ray caster's samples");
-  this->ColouredExtinctions =
-    Buffer<cl_float4>(device, traits.coloured ? count : 0, "the ray caster's coloured extinction");
-  this->Directions = Buffer<cl_float4>(
-    device, traits.knowsFlow || traits.ShowsBeams() ? count : 0, "the ray caster's directions of light");
-  this->ColouredG = Buffer<cl_float4>(device, traits.PacksCosines() ? count : 0, "the ray caster's mean cosines");
-  this->Emission = Buffer<cl_float4>(device, traits.GlowsApart() ? count : 0, "the ray caster's emission");
+  const auto samples = [&](bool needed, const char* what) {
+    return ZeroedBuffer<cl_float4>(device, needed ? count : 0, traits.bricks.all, what);
+  };
+  this->Sources = samples(true, "the ray caster's samples");
+  this->ColouredExtinctions = samples(traits.coloured, "the ray caster's coloured extinction");
+  this->Directions = samples(traits.knowsFlow || traits.ShowsBeams(), "the ray caster's directions of light");
+  this->ColouredG = samples(traits.PacksCosines(), "the ray caster's mean cosines");
+  this->Emission = samples(traits.GlowsApart(), "the ray caster's emission");
   this->Gradients = Buffer<cl_float4>(device, traits.bends ? count : 0, "the ray caster's refraction");
   this->Distances = Buffer<cl_char>(
     device, static_cast<std::size_t>(this->Count[0]) * this->Count[1] * this->Count[2], "the ray caster's bricks");
+  this->Seen = Buffer<cl_uchar>(device, traits.bricks.seen, "the bricks that rays see");
+  this->SeenGroups =
+    Buffer<cl_uchar>(device, tyndall::SeenGroups(traits.bricks, traits.grid), "the samples that rays see");
   if (traits.bends)
   {
     this->PackBending(scene.ior);
@@ -53,7 +74,8 @@ void PackedSamples::Launch(cl::Kernel& kernel)
 {
   const std::array<int, 3>& size = this->Traits.grid.size;
   this->TheDevice.Queue().enqueueNDRangeKernel(kernel, cl::NullRange,
-    cl::NDRange(RoundUp<std::size_t>(size[0] + 2, 64), size[1] + 2, size[2] + 2), cl::NDRange(64, 1, 1));
+    cl::NDRange(RoundUp<std::size_t>(size[0] + 2, PackedAlong), size[1] + 2, size[2] + 2),
+    cl::NDRange(PackedAlong, 1, 1));
 }
 
 void PackedSamples::PackBending(const Buffer<float>& ior)
@@ -94,9 +116,10 @@ void PackedSamples::PackSources(const SceneOnDevice& scene, const Buffer<float>&
   const cl_int single = traits.singleScatteringOnly ? 1 : 0;
 
   cl::Kernel pack = this->TheDevice.Kernel("pack_samples", kernel_source::ScatteredLight, options);
-  With(pack, Int4(traits.grid.size), single, traits.phase.parameters.first.s[0], scene.arrays[0], scene.arrays[1],
-    scene.arrays[2], scene.arrays[3], scene.arrays[4], direct, scene.meanDirection, scene.ior, scene.meanCosines,
-    this->Sources, this->ColouredExtinctions, this->Directions, this->Emission, this->ColouredG);
+  With(pack, Int4(traits.grid.size), single, traits.phase.parameters.first.s[0], scene.arrays[0].Handle(),
+    scene.arrays[1].Handle(), scene.arrays[2].Handle(), scene.arrays[3].Handle(), scene.arrays[4].Handle(), direct,
+    scene.meanDirection.Handle(), scene.ior, scene.meanCosines, this->Samples(), this->Extinctions(), this->Flow(),
+    this->Glow(), this->Cosines(), this->SeenGroups);
   this->Launch(pack);
   this->FindBricks(options);
 }
@@ -117,8 +140,9 @@ void PackedSamples::PackShown(const SceneOnDevice& scene, const Buffer<float>& d
     Define("STRAIGHT_ON", this->For == Packing::Unscattered ? 0 : traits.straightOnChannels) +
     Define("AUREOLE", traits.aureoleChannels);
   cl::Kernel pack = this->TheDevice.Kernel("pack_shown", kernel_source::ShownSamples, options + this->ShownOptions());
-  With(pack, Int4(traits.grid.size), scene.arrays[0], scene.arrays[1], scene.arrays[2], scene.straightOn, diffuse,
-    direct, scene.ior, this->Sources, this->ColouredExtinctions, this->Directions, this->Emission);
+  With(pack, Int4(traits.grid.size), scene.arrays[0].Handle(), scene.arrays[1].Handle(), scene.arrays[2].Handle(),
+    scene.straightOn, diffuse, direct, scene.ior, this->Samples(), this->Extinctions(), this->Flow(), this->Glow(),
+    this->SeenGroups);
   this->Launch(pack);
   this->FindBricks(options + Define("SHOWN", 1));
 }
@@ -127,7 +151,8 @@ void PackedSamples::FindBricks(const std::string& options)
 {
   const cl_int4 size = Int4(this->Traits.grid.size), bricks = Int4(this->Count);
   cl::Kernel find = this->TheDevice.Kernel("find_empty_bricks", kernel_source::ScatteredLight, options);
-  With(find, size, bricks, this->Sources, this->ColouredExtinctions, this->Emission, this->Gradients, this->Distances);
+  With(find, size, bricks, this->Samples(), this->Extinctions(), this->Glow(), this->Gradients, this->Seen,
+    this->Distances);
   this->TheDevice.Queue().enqueueNDRangeKernel(find, cl::NullRange,
     cl::NDRange(RoundUp<std::size_t>(bricks.s[0], 4), bricks.s[1], bricks.s[2]), cl::NDRange(4, 1, 1));
   std::vector<cl_char> distances = this->Distances.Read();

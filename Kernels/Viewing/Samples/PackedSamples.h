@@ -1,6 +1,7 @@
 #pragma once
 
 #include "Device/Buffer.h"
+#include "Device/ZeroedBuffer.h"
 #include "Viewing/Scene/SceneOnDevice.h"
 #include "Viewing/Scene/ViewTraits.h"
 
@@ -18,7 +19,8 @@ enum class Packing
 };
 
 /// What rays meet: source and extinction by voxel, with a border of one voxel around, and bricks in which there is
-/// nothing. Arrays that the scene does not need are empty.
+/// nothing. Arrays that the scene does not need are empty. Of voxels that rays do not see nothing is packed: those
+/// samples are zero (packets step as long as one of their rays sees something), and on a CPU they take no memory.
 class PackedSamples
 {
 public:
@@ -35,14 +37,14 @@ public:
   std::string ShownOptions() const; ///< SHOWN and BEAMS of the kernels
   bool HasEmptyBricks() const { return this->EmptyBricks; }
 
-  const Buffer<cl_float4>& Samples() const { return this->Sources; } ///< source and grey extinction: ScatteredLight.cl
-  const Buffer<cl_float4>& Extinctions() const { return this->ColouredExtinctions; }
+  const cl::Buffer& Samples() const { return this->Sources.Handle(); } ///< source, grey extinction: ScatteredLight.cl
+  const cl::Buffer& Extinctions() const { return this->ColouredExtinctions.Handle(); }
   /// Mean direction, times g where ViewTraits::FlowHasG; of ShownSamples.cl lamps' light.
-  const Buffer<cl_float4>& Flow() const { return this->Directions; }
-  const Buffer<cl_float4>& Glow() const { return this->Emission; }     ///< where ViewTraits::GlowsApart
-  const Buffer<cl_float4>& Cosines() const { return this->ColouredG; } ///< coloured g by voxel
-  const Buffer<cl_float4>& Bending() const { return this->Gradients; } ///< gradient of n^2, and n^2
-  const Buffer<cl_char>& Bricks() const { return this->Distances; }    ///< see Bricks.h
+  const cl::Buffer& Flow() const { return this->Directions.Handle(); }
+  const cl::Buffer& Glow() const { return this->Emission.Handle(); }     ///< where ViewTraits::GlowsApart
+  const cl::Buffer& Cosines() const { return this->ColouredG.Handle(); } ///< coloured g by voxel
+  const Buffer<cl_float4>& Bending() const { return this->Gradients; }   ///< gradient of n^2, and n^2
+  const Buffer<cl_char>& Bricks() const { return this->Distances; }      ///< see Bricks.h
   const std::array<int, 3>& BrickCount() const { return this->Count; }
 
 private:
@@ -57,7 +59,10 @@ private:
   std::array<int, 3> Count;
   Packing For = Packing::ForShadowRays;
   bool EmptyBricks = false;
-  Buffer<cl_float4> Sources, ColouredExtinctions, Directions, ColouredG, Emission, Gradients;
+  ZeroedBuffer<cl_float4> Sources, ColouredExtinctions, Directions, ColouredG, Emission;
+  Buffer<cl_float4> Gradients;
   Buffer<cl_char> Distances;
+  Buffer<cl_uchar> Seen;       ///< SeenBricks::seen
+  Buffer<cl_uchar> SeenGroups; ///< Border.cl
 };
 }

@@ -73,6 +73,8 @@ inline float4 source_of(const ingredients* from, int voxel, int single, float4* 
   return source;
 }
 
+// Of voxels that rays do not see (SeenBricks.h) nothing is packed.
+//
 // single   1: only light that scatters once
 // samples  red, green, blue of the source, and grey extinction; with GREY source and extinction here and at the next
 //          voxel along y
@@ -85,9 +87,10 @@ __kernel void pack_samples(int4 size, int single, float g, __global const float*
   __global const float* restrict fluence, __global const float* restrict unscattered,
   __global const float* restrict direct, __global const float* restrict direction, __global const float* restrict ior,
   __global const float* restrict mean_cosines, __global float4* restrict samples, __global float4* restrict extinctions,
-  __global float4* restrict flow, __global float4* restrict glow, __global float4* restrict cosines)
+  __global float4* restrict flow, __global float4* restrict glow, __global float4* restrict cosines,
+  __global const uchar* restrict seen)
 {
-  if (get_global_id(0) >= size.x + 2)
+  if (get_global_id(0) >= size.x + 2 || !is_seen(seen, size))
   {
     return;
   }
@@ -128,17 +131,23 @@ __kernel void pack_samples(int4 size, int single, float g, __global const float*
 }
 
 // Whether anything extinguishes or shines in a brick, or bends with BENDS, or does so close enough to be interpolated
-// into it:
+// into it (seen: SeenBricks.h; the others are empty):
 // 1 it is empty, -1 it is not, 0 rays bend.
 __kernel void find_empty_bricks(int4 size, int4 brick_count, __global const float4* restrict samples,
   __global const float4* restrict extinctions, __global const float4* restrict glow,
-  __global const float4* restrict bending, __global char* restrict bricks)
+  __global const float4* restrict bending, __global const uchar* restrict seen, __global char* restrict bricks)
 {
   const int i = get_global_id(0);
   const int j = get_global_id(1);
   const int k = get_global_id(2);
   if (i >= brick_count.x)
   {
+    return;
+  }
+  const int brick = (k * brick_count.y + j) * brick_count.x + i;
+  if (!seen[brick])
+  {
+    bricks[brick] = 1;
     return;
   }
   const int row = size.x + 2;
@@ -178,5 +187,5 @@ __kernel void find_empty_bricks(int4 size, int4 brick_count, __global const floa
     }
   }
 #undef LOOK_ON
-  bricks[(k * brick_count.y + j) * brick_count.x + i] = bends ? 0 : filled ? -1 : 1;
+  bricks[brick] = bends ? 0 : filled ? -1 : 1;
 }

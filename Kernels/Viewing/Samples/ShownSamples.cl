@@ -59,9 +59,10 @@ __kernel void pack_shown(int4 size, __global const float* restrict absorption,
   __global const float* restrict scattering, __global const float* restrict emission,
   __global const float* restrict straight_on, __global const float* restrict diffuse,
   __global const float* restrict direct, __global const float* restrict ior, __global float4* restrict samples,
-  __global float4* restrict extinctions, __global float4* restrict beams, __global float4* restrict glow)
+  __global float4* restrict extinctions, __global float4* restrict beams, __global float4* restrict glow,
+  __global const uchar* restrict seen)
 {
-  if (get_global_id(0) >= size.x + 2)
+  if (get_global_id(0) >= size.x + 2 || !is_seen(seen, size))
   {
     return;
   }

@@ -34,10 +34,11 @@ SceneOnDevice::SceneOnDevice(
   const std::array<const char*, 5> names = { "sigma_a", "sigma_s", "emission", "fluence", "fluence_direct" };
   for (std::size_t i = 0; i < fields.size(); ++i)
   {
-    this->arrays[i] = Buffer<float>(device, fields[i].values, voxels * traits.components[i], names[i]);
+    this->arrays[i] =
+      ViewedArray(device, fields[i].values, voxels * traits.components[i], traits.PacksOnce(), names[i]);
   }
-  this->meanDirection =
-    Buffer<float>(device, light.meanDirection.values, traits.knowsFlow ? 3 * voxels : 0, "mean_direction");
+  this->meanDirection = ViewedArray(
+    device, light.meanDirection.values, traits.knowsFlow ? 3 * voxels : 0, traits.PacksOnce(), "mean_direction");
   this->phaseRows = Buffer<float>(device,
     traits.ReadsPhase() ? RowsOf(traits.phase, medium.phase) : std::vector<float>(), "the rows of the phase function");
   this->meanCosines = Buffer<float>(device, MeanCosines(medium.phase, traits), "g");

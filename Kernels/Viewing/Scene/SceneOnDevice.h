@@ -3,6 +3,7 @@
 #include "Device/Buffer.h"
 #include "Medium/Medium.h"
 #include "Viewing/Scene/SolvedLight.h"
+#include "Viewing/Scene/ViewedArray.h"
 #include "Viewing/Scene/ViewTraits.h"
 
 #include <array>
@@ -12,6 +13,8 @@ namespace tyndall
 /// Arrays of a medium and its light on a device, voxel by voxel, as far as pictures show them; the others are empty.
 struct SceneOnDevice
 {
+  /// Where samples are packed once (ViewTraits::PacksOnce) medium and light must stay until GiveBackWhatIsPacked: no
+  /// copies are made of them.
   /// @throws DeviceError if they do not fit
   SceneOnDevice(
     Device& device, const Medium& medium, const SolvedLight& light, const Field& ior, const ViewTraits& traits);
@@ -19,9 +22,9 @@ struct SceneOnDevice
   /// Gives back the memory of what is read only where samples are packed.
   void GiveBackWhatIsPacked();
 
-  Buffer<float> moments, straightOn;   ///< where moments are shown
-  std::array<Buffer<float>, 5> arrays; ///< ViewedFields
-  Buffer<float> meanDirection;
+  Buffer<float> moments, straightOn; ///< where moments are shown
+  std::array<ViewedArray, 5> arrays; ///< ViewedFields
+  ViewedArray meanDirection;
   Buffer<float> phaseRows;   ///< tables of the phase function, see Samples/PhaseFunction.cl
   Buffer<float> meanCosines; ///< g as all channels are seen
   Buffer<float> ior;         ///< 1 where rays could bend and it is not given

@@ -2,11 +2,11 @@
 #pragma once
 
 #include "Device/SharedTypes.h"
+#include "Medium/BrickShared.h"
 
 SHARED_BEGIN
 enum
 {
-  BrickEdge = 8, ///< voxels per edge of a brick
   // Rows of the tables of phase functions; each table has a row more behind its last.
   SchlickRows = 1024,
   CosineRows = 2048,

@@ -74,6 +74,7 @@ ViewTraits ViewTraitsOf(
   traits.phase = ViewedPhaseOf(medium.phase);
   traits.index = IndexRangeOf(ior, medium.grid);
   traits.bends = !settings.leaveOut || traits.index.Varies();
+  traits.bricks = SeenBricksOf(medium, traits.bends || !traits.SkipsBricks(settings));
   traits.momentDegree = ShownDegree(light, settings);
   FindMoments(medium.phase, light, traits);
 

@@ -2,6 +2,7 @@
 
 #include "Medium/Traits.h"
 #include "Refraction/Index/IndexRange.h"
+#include "Viewing/Scene/SeenBricks.h"
 #include "Viewing/Scene/SolvedLight.h"
 #include "Viewing/Scene/ViewedPhase.h"
 #include "Viewing/Scene/ViewSettings.h"
@@ -23,6 +24,7 @@ struct ViewTraits
   bool hasTable = false;
 
   MediumTraits medium;
+  SeenBricks bricks;
   double largestSigmaT = 0.0; ///< at least the largest sigma_t, 1/length
   ViewedPhase phase;
   IndexRange index;
@@ -53,6 +55,9 @@ struct ViewTraits
   bool PacksCosines() const { return this->knowsFlow && this->phase.varies && !this->FlowHasG(); }
   /// Rays that cannot but go straight on have a kernel of their own.
   bool OnlyStraight() const { return !this->bends && !this->hasTable; }
+
+  /// Whether samples stay as they are, from every side.
+  bool PacksOnce() const { return !this->sourcesDependOnCamera && !this->shadowRays; }
 
   double SurfaceIndex(const ViewSettings& settings) const
   {

@@ -88,8 +88,9 @@ void SeenSources::SeeLights(const Camera& camera, double stepSize, const SceneOn
   const auto launch = [&](const Patch& part) {
     info.firstSlice = part.row;
     info.firstRow = part.column;
-    With(see, info, this->Lights, scene.arrays[1], scene.meanCosines, scene.phaseRows, samples.Samples(),
-      samples.Extinctions(), samples.Bricks(), scene.arrays[0], scene.straightOn, this->AureoleTables, this->OfLights);
+    With(see, info, this->Lights, scene.arrays[1].Handle(), scene.meanCosines, scene.phaseRows, samples.Samples(),
+      samples.Extinctions(), samples.Bricks(), scene.arrays[0].Handle(), scene.straightOn, this->AureoleTables,
+      this->OfLights);
     this->TheDevice.Queue().enqueueNDRangeKernel(
       see, cl::NullRange, cl::NDRange(across, part.columns, part.rows), cl::NDRange(4, 1, 1));
   };

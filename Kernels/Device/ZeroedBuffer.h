@@ -1,0 +1,53 @@
+#pragma once
+
+#include "Device/Buffer.h"
+#include "Device/HostMappedBuffer.h"
+
+#include <cstdlib>
+#include <memory>
+#include <string>
+
+namespace tyndall
+{
+/// An array on a device that is zero where nothing was written. On a CPU what is never written takes no memory: a
+/// system's new pages are one page of zeros until then. So only the part that is written need fit.
+template <class T>
+class ZeroedBuffer
+{
+public:
+  ZeroedBuffer() = default;
+
+  /// @param everywhere  kernels write all of it before it is read: it is as any other array
+  /// @throws DeviceError where it does not fit
+  ZeroedBuffer(Device& device, std::size_t count, bool everywhere, const char* what)
+  {
+    if (count == 0 || everywhere || !device.IsCpu())
+    {
+      this->Whole = Buffer<T>(device, count, what);
+      if (!everywhere)
+      {
+        this->Whole.Fill(T());
+      }
+      return;
+    }
+    this->Pages.reset(static_cast<T*>(std::calloc(count, sizeof(T))));
+    if (!this->Pages)
+    {
+      throw DeviceError("The machine has no room for " + std::string(what) + ", an array of " +
+        std::to_string(count * sizeof(T)) + " bytes. Use a coarser grid.");
+    }
+    this->Mapped = std::make_unique<HostMappedBuffer<T>>(device, this->Pages.get(), count, what);
+  }
+
+  const cl::Buffer& Handle() const { return this->Mapped ? this->Mapped->Handle() : this->Whole.Handle(); }
+
+private:
+  struct Free
+  {
+    void operator()(T* pages) const { std::free(pages); }
+  };
+  std::unique_ptr<T, Free> Pages;
+  std::unique_ptr<HostMappedBuffer<T>> Mapped; // goes before its pages
+  Buffer<T> Whole;
+};
+}
