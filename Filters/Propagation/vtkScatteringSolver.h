@@ -5,6 +5,7 @@
 #include "vtkTimeStamp.h"
 #include "vtkTyndallModule.h" // for export macro
 
+#include <cstddef>
 #include <memory>
 #include <string>
 
@@ -81,6 +82,15 @@ public:
   ///@}
 
   ///@{
+  /// MiB of the device's memory that a solve may take. Default 0: nine tenths of what the device has. What arrays over
+  /// all voxels do not fit lie in host memory then, and are streamed through the device slice by slice: the same light,
+  /// bit for bit, later. Where the device is a processor, which works on host memory in place, it is a bound of what a
+  /// solve takes beside these arrays. DeviceName and field data `device` say how much was streamed. Valid [0, 2^31).
+  tyndallSetRangeMacro(MemoryBudget, int, 0, VTK_INT_MAX);
+  vtkGetMacro(MemoryBudget, int);
+  ///@}
+
+  ///@{
   /// Whether to make `lit_color`. Default off. What is on is seen from every side alike: light is scattered evenly in
   /// it, whatever the phase function.
   void SetLitColor(bool make);
@@ -135,6 +145,7 @@ protected:
 
   int Quality = USUAL;
   bool Preview = false;
+  int MemoryBudget = 0;
   std::string SettingsUsed;
   bool LitColor = false;
   double Exposure = 0.0;

@@ -1,5 +1,6 @@
 #include "DiscreteOrdinates/DiscreteOrdinates.h"
 
+#include "Device/DeviceWords.h"
 #include "Device/Errors.h"
 #include "DiscreteOrdinates/OrdinatesScene.h"
 #include "DiscreteOrdinates/PublishedOrders.h"
@@ -400,7 +401,7 @@ LightField SolveDiscreteOrdinates(Device& device, const Medium& medium, const Il
   light.storedDirections = { { 0.0, 0.0, 0.0 } };
   light.halfRangeFlux = HalfRangeFlux({ 0, false, far.directions });
   light.faceAlbedo = illumination.faceAlbedo;
-  light.device = device.Name();
+  light.device = NameWithStreaming(device);
   if (kept)
   {
     left.fromDarkness = kept->fromDarkness;
