@@ -97,8 +97,8 @@ tyndall::PropagationSettings OfPreview(tyndall::PropagationSettings settings)
 
 /// What does not fit the budget is an error: this scheme keeps a volume a direction.
 tyndall::LightField SolvePublished(vtkLightPropagationMaps* filter, tyndall::Device& device,
-  const tyndall::Medium& medium, const tyndall::Illumination& illumination, const tyndall::PropagationSettings& settings,
-  const tyndall::Monitor& monitor, tyndall::KeptLight* kept)
+  const tyndall::Medium& medium, const tyndall::Illumination& illumination,
+  const tyndall::PropagationSettings& settings, const tyndall::Monitor& monitor, tyndall::KeptLight* kept)
 {
   tyndall::Device within(device, tyndall::BudgetOf(filter->GetMemoryBudget(), false));
   return tyndall::SolveParallel(within, medium, illumination, settings, monitor, 0, kept);

@@ -1,6 +1,7 @@
 #include "vtkMediumRayCaster.h"
 
 #include "AskedView.h"
+#include "Common/DeviceBudget.h"
 #include "Common/FiniteValues.h"
 #include "Common/InputsKey.h"
 #include "Common/LightTransportData.h"
@@ -258,7 +259,7 @@ int vtkMediumRayCaster::RequestUpdateExtent(
 tyndall::InputsKey vtkMediumRayCaster::KeyOf(vtkInformationVector** inputs)
 {
   tyndall::InputsKey key;
-  key.device = tyndall::Device::Find(this->Device);
+  key.device = tyndall::FindWithin(this->Within, this->Device, this->MemoryBudget);
   vtkImageData* const image = vtkImageData::GetData(inputs[MEDIUM]);
   key.Add(tyndall::GridOf(image));
   key.AddGhosts(image);
@@ -469,6 +470,7 @@ void vtkMediumRayCaster::PrintSelf(ostream& os, vtkIndent indent)
   os << indent << "Seconds: " << this->Seconds << "\n";
   os << indent << "UsedExposure: " << this->UsedExposure << "\n";
   os << indent << "SceneKept: " << this->SceneKept << "\n";
+  os << indent << "MemoryBudget: " << this->MemoryBudget << "\n";
   os << indent << "DeviceName: " << this->DeviceName << "\n";
   os << indent << "LeftOut: " << this->LeftOut << "\n";
   os << indent << "SettingsUsed: " << this->SettingsUsed << "\n";

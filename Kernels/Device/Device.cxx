@@ -388,8 +388,7 @@ Device::Allocation Device::Allocate(std::size_t bytes, cl_mem_flags flags, const
   }
   if (bytes > this->LargestAllocation)
   {
-    this->Complain(
-      what, bytes, "the largest single allocation is " + std::to_string(this->LargestAllocation), Advice);
+    this->Complain(what, bytes, "the largest single allocation is " + std::to_string(this->LargestAllocation), Advice);
   }
   if (!this->Memory.Take(bytes)) // before it is asked for: another thread must not count on the same bytes
   {

@@ -65,7 +65,7 @@ public:
   /// Kernels work on host memory in place, so that copies would gain nothing. What TYNDALL_WITHOUT calls `host_memory`
   /// is left out, as extensions are.
   bool SharesHostMemory() const { return this->Cpu && !IsHidden("host_memory"); }
-  std::size_t HostBytes() const { return this->OnHost.InUse(); }     ///< of arrays in host memory
+  std::size_t HostBytes() const { return this->OnHost.InUse(); }    ///< of arrays in host memory
   std::size_t PeakHostBytes() const { return this->OnHost.Peak(); } ///< largest of them
   std::size_t BytesInUse() const { return this->Memory.InUse(); }
   std::size_t PeakBytes() const { return this->Memory.Peak(); } ///< largest BytesInUse since ResetPeak

@@ -166,7 +166,8 @@ TEST_F(Streaming, OfABoxThatIsMostlyEmptyIsTheSameLightBitForBit)
   Scene scene = RandomScene(SmallSize);
   for (std::size_t i = 0; i < scene.sigma_a.size(); ++i)
   {
-    const bool filled = i % 40 > 8 && i % 40 < 30 && i / 40 % 33 > 5 && i / 40 % 33 < 25 && i / 1320 > 7 && i / 1320 < 22;
+    const bool filled =
+      i % 40 > 8 && i % 40 < 30 && i / 40 % 33 > 5 && i / 40 % 33 < 25 && i / 1320 > 7 && i / 1320 < 22;
     scene.sigma_a[i] *= filled ? 1.0f : 0.0f;
     scene.sigma_s[i] *= filled ? 1.0f : 0.0f;
   }
@@ -186,8 +187,8 @@ TEST_F(Streaming, SaysWhatABudgetIsShortOf)
   catch (const DeviceError& error)
   {
     const std::string text = error.what();
-    EXPECT_NE(text.find("the second: 500 bytes are needed, 400 of 1000 are left of the memory budget"),
-      std::string::npos)
+    EXPECT_NE(
+      text.find("the second: 500 bytes are needed, 400 of 1000 are left of the memory budget"), std::string::npos)
       << text;
   }
 }

@@ -30,12 +30,9 @@ std::size_t ArraysOfOrders(const PropagationProblem& problem, OrdersAdded how)
   constexpr std::size_t OfOctants = 28, OfCells = 2, OfBalance = 34;
   switch (how)
   {
-    case OrdersAdded::ByBalance:
-      return OfBalance + 2 * moments + (problem.Settings().netFlux ? 6 : 0);
-    case OrdersAdded::ByCells:
-      return OfCells;
-    default:
-      return OctantSources::Matter(problem, false) ? OfOctants : 0;
+    case OrdersAdded::ByBalance: return OfBalance + 2 * moments + (problem.Settings().netFlux ? 6 : 0);
+    case OrdersAdded::ByCells: return OfCells;
+    default: return OctantSources::Matter(problem, false) ? OfOctants : 0;
   }
 }
 
@@ -43,7 +40,8 @@ std::size_t ArraysOfOrders(const PropagationProblem& problem, OrdersAdded how)
 std::size_t BytesOfSweep(const PropagationProblem& problem)
 {
   const std::array<int, 3>& n = problem.TheGrid().size;
-  const std::size_t plane = std::max({ Count(n[0]) * Count(n[1]), Count(n[1]) * Count(n[2]), Count(n[0]) * Count(n[2]) });
+  const std::size_t plane =
+    std::max({ Count(n[0]) * Count(n[1]), Count(n[1]) * Count(n[2]), Count(n[0]) * Count(n[2]) });
   const std::size_t rays = Count(std::max(problem.Settings().directionsPerFace, 1)) * 2 + 16 * 4 * 16;
   return 2 * sizeof(float) * Count(problem.Channels()) * plane * rays;
 }

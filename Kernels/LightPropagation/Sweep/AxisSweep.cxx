@@ -152,8 +152,8 @@ void AxisSweep::Implementation::MakeBuffers()
     device, this->IsPeriodic() ? 0 : 2 * plan.mapsEachWay, plan.units.size() * plan.ScratchFloats());
   if (this->IsPeriodic())
   {
-    this->OwnMaps = Buffer<float>(
-      device, 2 * plan.mapsEachWay, "the light propagation maps", CL_MEM_READ_WRITE, Residence::Device);
+    this->OwnMaps =
+      Buffer<float>(device, 2 * plan.mapsEachWay, "the light propagation maps", CL_MEM_READ_WRITE, Residence::Device);
     this->OwnMaps.Fill(0.0f);
   }
   this->Outside = Buffer<float>(device, 2 * plan.outsideEachWay, "the light that comes in sideways");
@@ -396,9 +396,10 @@ cl::Kernel AxisSweep::Implementation::SweepKernel(const Wanted& wanted)
   std::string options = Define("REAL_WIDTH", plan.vector) + Define("CHANNELS", plan.channels) +
     Define("ROW", plan.row) + Define("SOURCE", wanted.source) + Define("BORDER", wanted.border) +
     Define("NET_FLUX", wanted.flux) + Define("FACE_OUT", wanted.faceOut) + Define("FACE_SPREAD", wanted.spreadsAside) +
-    Define("FACE_IN", wanted.faceIn) + Define("STREAMED", this->Stream != nullptr) + Define("OCTANT_SOURCE", plan.octantSource && wanted.source) +
-    Define("CURRENTS", plan.partialCurrents) + DefineMoments(plan) + Define("PERIODIC_P", this->IsPeriodic()) +
-    Define("PERIODIC_U", plan.periodic[plan.axes.u]) + Define("PERIODIC_V", plan.periodic[plan.axes.v]);
+    Define("FACE_IN", wanted.faceIn) + Define("STREAMED", this->Stream != nullptr) +
+    Define("OCTANT_SOURCE", plan.octantSource && wanted.source) + Define("CURRENTS", plan.partialCurrents) +
+    DefineMoments(plan) + Define("PERIODIC_P", this->IsPeriodic()) + Define("PERIODIC_U", plan.periodic[plan.axes.u]) +
+    Define("PERIODIC_V", plan.periodic[plan.axes.v]);
   for (int members = 1; members <= MaxMembers; members *= 2)
   {
     const auto has = [&](const BundleInfo& bundle) { return bundle.members == members; };

@@ -8,9 +8,9 @@ namespace tyndall
 {
 namespace
 {
-constexpr int SliceThickness = 16;       ///< planes of a slot: as many as Gruson et al. take, if there is room
-constexpr std::size_t PartForSlots = 4;  ///< of the memory that there is
-constexpr std::size_t SlotsPerUnit = 2;  ///< one that is crossed, and one whose slice comes or goes
+constexpr int SliceThickness = 16;      ///< planes of a slot: as many as Gruson et al. take, if there is room
+constexpr std::size_t PartForSlots = 4; ///< of the memory that there is
+constexpr std::size_t SlotsPerUnit = 2; ///< one that is crossed, and one whose slice comes or goes
 
 /// Floats of one voxel in all arrays.
 std::size_t FloatsOfVoxel(const SweepPlan& plan)
@@ -18,8 +18,10 @@ std::size_t FloatsOfVoxel(const SweepPlan& plan)
   const int light = plan.angular ? plan.moments.functions : 1;
   const int beams = plan.angular ? plan.angular->Beams() : 0;
   const int lost = plan.periodic[plan.axes.axis] ? light : 0;
-  return Count(1 + plan.channels * (2 * light + beams + lost + (plan.netFlux ? 3 : 0) + (plan.partialCurrents ? 6 : 0) +
-    (plan.octantSource ? 8 : 0)));
+  return Count(1 +
+    plan.channels *
+      (2 * light + beams + lost + (plan.netFlux ? 3 : 0) + (plan.partialCurrents ? 6 : 0) +
+        (plan.octantSource ? 8 : 0)));
 }
 
 /// Planes of a slot, such that all slots are a part of the device's memory; one at the least.
@@ -53,8 +55,7 @@ bool IsApart(const std::vector<std::vector<SlicePiece>>& launches, int aligned)
 bool Follows(const std::vector<SlicePiece>& now, const std::vector<SlicePiece>& next, int aligned)
 {
   return std::any_of(now.begin(), now.end(), [&](const SlicePiece& before) {
-    return std::any_of(
-      next.begin(), next.end(), [&](const SlicePiece& after) { return Meet(before, after, aligned); });
+    return std::any_of(next.begin(), next.end(), [&](const SlicePiece& after) { return Meet(before, after, aligned); });
   });
 }
 }
@@ -123,18 +124,12 @@ std::size_t SliceStream::SlotFloats(SlotArray array) const
   const std::size_t beams = this->HasMoments() ? Count(this->Plan.angular->Beams()) : 0;
   switch (array)
   {
-    case SlotArray::SigmaT:
-      return this->Stride;
-    case SlotArray::Source:
-      return this->Places.beams + beams * all;
-    case SlotArray::Flux:
-      return 3 * all;
-    case SlotArray::PartialCurrents:
-      return 6 * all;
-    case SlotArray::OctantSource:
-      return 8 * all;
-    default:
-      return this->Places.beams;
+    case SlotArray::SigmaT: return this->Stride;
+    case SlotArray::Source: return this->Places.beams + beams * all;
+    case SlotArray::Flux: return 3 * all;
+    case SlotArray::PartialCurrents: return 6 * all;
+    case SlotArray::OctantSource: return 8 * all;
+    default: return this->Places.beams;
   }
 }
 
@@ -249,14 +244,15 @@ SliceStream::Rows SliceStream::MomentRows(const SlicePiece& piece) const
   const int axis = this->Plan.axes.axis;
   const std::size_t group = Count(host.functions - 1) * MomentGroup;
   const std::size_t ofChannel = Count(host.groups) * group, line = Count(host.channels) * ofChannel;
-  const std::size_t slotChannel = Count(this->Places.groups) * group, slotLine = Count(this->Plan.channels) * slotChannel;
+  const std::size_t slotChannel = Count(this->Places.groups) * group,
+                    slotLine = Count(this->Plan.channels) * slotChannel;
   const std::size_t lines = Count(this->Plan.grid.size[1]);
   if (axis == 0)
   {
     const std::size_t begin = Count(piece.begin / MomentGroup), end = Count(PartsOf<int>(piece.end, MomentGroup));
     return { { (end - begin) * group, Count(this->Plan.channels), lines * Count(box.size[2]) },
-      host.second + begin * group + line * lines * Count(box.first[2]), ofChannel, line, this->Places.second, slotChannel,
-      slotLine };
+      host.second + begin * group + line * lines * Count(box.first[2]), ofChannel, line, this->Places.second,
+      slotChannel, slotLine };
   }
   std::array<int, 3> first = box.first, size = box.size;
   first[axis] += piece.begin;

@@ -62,10 +62,10 @@ private:
   {
     const Buffer<float>* host;
     SlotArray slots;
-    int parts; ///< [part][stride]
+    int parts;         ///< [part][stride]
     std::size_t first; ///< of part 0, and of the angular moments of light
-    bool comesBack; ///< it is added to
-    int beams = -1; ///< of arrays with angular moments: how many; -1: of others
+    bool comesBack;    ///< it is added to
+    int beams = -1;    ///< of arrays with angular moments: how many; -1: of others
   };
   std::vector<Streamed> ArraysOf(const SweepVolume& volume) const;
   void LaySlots();
@@ -83,9 +83,9 @@ private:
   const SweepPlan& Plan;
   SweepWorkspace& Workspace;
   cl::CommandQueue Transfers;
-  std::array<int, 3> Extent; ///< of a slot, voxels
-  std::size_t Stride = 0;    ///< of a part of a slot
-  MomentPlaces Places = {};  ///< in a slot
+  std::array<int, 3> Extent;      ///< of a slot, voxels
+  std::size_t Stride = 0;         ///< of a part of a slot
+  MomentPlaces Places = {};       ///< in a slot
   std::vector<cl::Event> Waiting; ///< for which the next transfer has to wait
   cl::Event Last;                 ///< of the last transfer
 };

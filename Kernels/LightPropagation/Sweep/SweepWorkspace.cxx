@@ -12,7 +12,8 @@ void SweepWorkspace::Reserve(Device& device, std::size_t mapFloats, std::size_t 
   if (this->scratch.Size() < scratchFloats)
   {
     this->scratch = {};
-    this->scratch = Buffer<float>(device, scratchFloats, "the planes being crossed", CL_MEM_READ_WRITE, Residence::Device);
+    this->scratch =
+      Buffer<float>(device, scratchFloats, "the planes being crossed", CL_MEM_READ_WRITE, Residence::Device);
   }
 }
 
