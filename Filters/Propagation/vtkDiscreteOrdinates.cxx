@@ -81,7 +81,7 @@ int vtkDiscreteOrdinates::RequestData(vtkInformation*, vtkInformationVector** in
     this->WarnWhereDark(illumination, emits);
     const std::shared_ptr<tyndall::Device> device = tyndall::Device::Find(this->GetDevice());
     const tyndall::OrdinatesSettings settings = SettingsOf(this, input.medium, *device);
-    tyndall::Device within(*device, tyndall::BudgetOf(this->MemoryBudget, true));
+    tyndall::Device within(*device, tyndall::BudgetOf(this->MemoryBudget, false));
     tyndall::KeptLight* const last = this->Last->Where(this->WarmStart && !this->Preview);
     const tyndall::SolveIn solve = [&](const tyndall::Medium& inside, const tyndall::Illumination& shining) {
       return tyndall::SolveDiscreteOrdinates(within, inside, shining, settings, tyndall::MonitorOf(this), last);

@@ -370,7 +370,7 @@ private:
   int MemoryBudget = 0;
 
   std::shared_ptr<tyndall::Device> Within; ///< MemoryBudget, where there is one
-  std::unique_ptr<Scene> Kept; ///< of the last picture, if it succeeded
+  std::unique_ptr<Scene> Kept;             ///< of the last picture, if it succeeded
 
   double Seconds = 0.0;
   double UsedExposure = 0.0;

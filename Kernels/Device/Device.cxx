@@ -215,7 +215,7 @@ Device::Device(Device& whole, const MemoryBudget& budget)
   , LargestAllocation(whole.LargestAllocation)
   , Whole(&whole)
   , Budget(budget)
-  , Memory(std::min(budget.bytes, whole.Memory.Limit()))
+  , Memory(whole.Budget.spills ? budget.bytes : std::min(budget.bytes, whole.Memory.Limit()))
   , OnHost(whole.OnHost.Limit())
   , TheClock(whole.TheClock)
   , Programs(whole.Programs)
@@ -378,7 +378,13 @@ Device::Allocation Device::Allocate(std::size_t bytes, cl_mem_flags flags, const
     }
     try
     {
-      return this->Whole->Allocate(bytes, flags, what);
+      Allocation allocation = this->Whole->Allocate(bytes, flags, what, residence);
+      if (allocation.onHost) // the whole is a part itself
+      {
+        this->Memory.GiveBack(bytes);
+        this->OnHost.Take(bytes);
+      }
+      return allocation;
     }
     catch (...)
     {
@@ -416,6 +422,10 @@ Device::Allocation Device::AllocateOnHost(std::size_t bytes, cl_mem_flags flags,
   }
   try
   {
+    if (this->Whole->Whole)
+    {
+      return this->Whole->AllocateOnHost(bytes, flags, what);
+    }
     return { this->SharesHostMemory() ? this->Whole->Allocate(bytes, flags, what).memory
                                       : cl::Buffer(this->TheContext, flags | CL_MEM_ALLOC_HOST_PTR, bytes),
       true };
@@ -435,7 +445,11 @@ Device::Allocation Device::AllocateOnHost(std::size_t bytes, cl_mem_flags flags,
 void Device::Release(std::size_t bytes, bool onHost)
 {
   (onHost ? this->OnHost : this->Memory).GiveBack(bytes);
-  if (this->Whole && (!onHost || this->SharesHostMemory()))
+  if (this->Whole && this->Whole->Whole)
+  {
+    this->Whole->Release(bytes, onHost);
+  }
+  else if (this->Whole && (!onHost || this->SharesHostMemory()))
   {
     this->Whole->Release(bytes, false);
   }

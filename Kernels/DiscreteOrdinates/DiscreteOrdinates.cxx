@@ -1,6 +1,5 @@
 #include "DiscreteOrdinates/DiscreteOrdinates.h"
 
-#include "Device/DeviceWords.h"
 #include "Device/Errors.h"
 #include "DiscreteOrdinates/OrdinatesScene.h"
 #include "DiscreteOrdinates/PublishedOrders.h"
@@ -401,7 +400,7 @@ LightField SolveDiscreteOrdinates(Device& device, const Medium& medium, const Il
   light.storedDirections = { { 0.0, 0.0, 0.0 } };
   light.halfRangeFlux = HalfRangeFlux({ 0, false, far.directions });
   light.faceAlbedo = illumination.faceAlbedo;
-  light.device = NameWithStreaming(device);
+  light.device = device.Name();
   if (kept)
   {
     left.fromDarkness = kept->fromDarkness;

@@ -1,5 +1,5 @@
-// Volumes that are streamed through a part of the device's memory, beside the same ones as a whole: seconds, bytes on the
-// device, and whether it is the same light (Gruson et al., section 4.2 and figure 7).
+// Volumes that are streamed through a part of the device's memory, beside the same ones as a whole: seconds, bytes on
+// the device, and whether it is the same light (Gruson et al., section 4.2 and figure 7).
 //
 //   TyndallBenchStream [--quick] [edge, or "orders", or "converged", or budget=<MiB>...]
 //

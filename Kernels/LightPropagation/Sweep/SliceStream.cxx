@@ -9,7 +9,7 @@ namespace tyndall
 namespace
 {
 constexpr int SliceThickness = 16;      ///< planes of a slot: as many as Gruson et al. take, if there is room
-constexpr std::size_t PartForSlots = 4; ///< of the memory that there is
+constexpr std::size_t PartForSlots = 2; ///< of the memory that there is
 constexpr std::size_t SlotsPerUnit = 2; ///< one that is crossed, and one whose slice comes or goes
 
 /// Floats of one voxel in all arrays.
