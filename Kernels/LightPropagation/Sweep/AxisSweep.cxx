@@ -142,12 +142,6 @@ void AxisSweep::Implementation::MakeBuffers()
   Device& device = this->TheDevice;
   const SweepPlan& plan = this->Plan;
   const std::size_t channels = static_cast<std::size_t>(plan.channels);
-  this->Stream = SliceStream::Make(device, plan, this->Workspace);
-  if (this->Stream)
-  {
-    this->StreamedFirst = this->Stream->Cut(plan.schedule);
-    this->StreamedRounds = this->Stream->Cut(plan.roundSchedule);
-  }
   this->Workspace.Reserve(
     device, this->IsPeriodic() ? 0 : 2 * plan.mapsEachWay, plan.units.size() * plan.ScratchFloats());
   if (this->IsPeriodic())
@@ -155,6 +149,12 @@ void AxisSweep::Implementation::MakeBuffers()
     this->OwnMaps =
       Buffer<float>(device, 2 * plan.mapsEachWay, "the light propagation maps", CL_MEM_READ_WRITE, Residence::Device);
     this->OwnMaps.Fill(0.0f);
+  }
+  this->Stream = SliceStream::Make(device, plan, this->Workspace);
+  if (this->Stream)
+  {
+    this->StreamedFirst = this->Stream->Cut(plan.schedule);
+    this->StreamedRounds = this->Stream->Cut(plan.roundSchedule);
   }
   this->Outside = Buffer<float>(device, 2 * plan.outsideEachWay, "the light that comes in sideways");
   this->Radiance = Buffer<float>(device, 2 * plan.radianceEachWay, "the light that comes in sideways");

@@ -9,7 +9,6 @@ namespace tyndall
 namespace
 {
 constexpr int SliceThickness = 16;      ///< planes of a slot: as many as Gruson et al. take, if there is room
-constexpr std::size_t PartForSlots = 2; ///< of the memory that there is
 constexpr std::size_t SlotsPerUnit = 2; ///< one that is crossed, and one whose slice comes or goes
 
 /// Floats of one voxel in all arrays.
@@ -24,11 +23,16 @@ std::size_t FloatsOfVoxel(const SweepPlan& plan)
         (plan.octantSource ? 8 : 0)));
 }
 
-/// Planes of a slot, such that all slots are a part of the device's memory; one at the least.
-int ThicknessFor(const Device& device, const SweepPlan& plan)
+/// Planes of a slot, such that all slots fit what rays and scratch leave; one at the least.
+int ThicknessFor(const Device& device, const SweepPlan& plan, const SweepWorkspace& workspace)
 {
+  std::size_t left = device.MemoryLimit() - std::min(device.BytesInUse(), device.MemoryLimit());
+  for (const Buffer<float>& slot : workspace.slots) // of other axes: they are shared
+  {
+    left += slot.Size() * sizeof(float);
+  }
   const std::size_t plane = Count(plan.plane.sizeU) * Count(plan.plane.sizeV) * FloatsOfVoxel(plan) * sizeof(float);
-  const std::size_t fit = device.MemoryLimit() / PartForSlots / (SlotsPerUnit * plan.units.size() * plane);
+  const std::size_t fit = left / 4 * 3 / (SlotsPerUnit * plan.units.size() * plane);
   return static_cast<int>(std::clamp<std::size_t>(fit, 1, SliceThickness));
 }
 
@@ -66,7 +70,7 @@ std::unique_ptr<SliceStream> SliceStream::Make(Device& device, const SweepPlan& 
   {
     return nullptr;
   }
-  int thickness = std::min(ThicknessFor(device, plan), plan.Planes());
+  int thickness = std::min(ThicknessFor(device, plan, workspace), plan.Planes());
   const bool byGroups = plan.angular && plan.axes.axis == 0;
   if (byGroups)
   {

@@ -25,7 +25,7 @@ public:
   /// Null where the volume is not to be streamed: it lies on the device, or kernels work on host memory in place; or
   /// its planes along the axis cannot be told apart in memory (moments along x of boxes that are cut, or whose slabs
   /// do not end between groups of voxels). Then a sweep reads and adds to the arrays where they are.
-  /// @param plan, workspace  must stay
+  /// @param plan, workspace  must stay; the workspace has its maps and scratch
   static std::unique_ptr<SliceStream> Make(Device& device, const SweepPlan& plan, SweepWorkspace& workspace);
 
   SliceStream(Device& device, const SweepPlan& plan, SweepWorkspace& workspace, int thickness);
