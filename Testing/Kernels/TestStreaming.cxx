@@ -175,6 +175,35 @@ TEST_F(Streaming, OfABoxThatIsMostlyEmptyIsTheSameLightBitForBit)
   this->ExpectSameLight(scene, { 2, 16 });
 }
 
+TEST_F(Streaming, IsChosenWhereTheWholeDoesNotFit)
+{
+  Scene scene = RandomScene(SmallSize);
+  Device& device = this->GetDevice();
+  const OwnMemory ownMemory;
+  const LightField whole = scene.Solve(device);
+  EXPECT_EQ(whole.device, device.Name());
+  const std::vector<Buffer<char>> hoard = AllMemoryBut(device, std::size_t(2) << 20);
+  const LightField light = scene.Solve(device);
+  EXPECT_NE(light.device.find("streamed from host memory"), std::string::npos) << light.device;
+  ExpectSameBits(light, whole);
+}
+
+TEST_F(Streaming, KeepsABudgetWithinAnother)
+{
+  Device outer(this->GetDevice(), MemoryBudget{ 1000, true });
+  {
+    Device inner(outer, MemoryBudget{});
+    const Buffer<char> first(inner, 600, "the first");
+    const Buffer<char> second(inner, 500, "the second"); // has no room in the outer one
+    EXPECT_EQ(inner.BytesInUse(), 600u);
+    EXPECT_EQ(inner.HostBytes(), 500u);
+    EXPECT_EQ(outer.BytesInUse(), 600u);
+    EXPECT_EQ(outer.HostBytes(), 500u);
+  }
+  EXPECT_EQ(outer.BytesInUse(), 0u);
+  EXPECT_EQ(outer.HostBytes(), 0u);
+}
+
 TEST_F(Streaming, SaysWhatABudgetIsShortOf)
 {
   Device part(this->GetDevice(), MemoryBudget{ 1000 });
