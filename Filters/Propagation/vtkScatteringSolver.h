@@ -83,11 +83,11 @@ public:
 
   ///@{
   /// MiB of the device's memory that a solve may take. Default 0: what the device has. vtkLightPropagationMaps keeps
-  /// arrays over all voxels that do not fit in host memory then, and streams them through the device slice by slice: the
-  /// same light, bit for bit, later; with 0 beyond nine tenths of the device. vtkLatticeBoltzmannLighting leaves what
-  /// does not fit in host memory, and of vtkDiscreteOrdinates it is an error. Where the device is a processor, which
-  /// works on host memory in place, it bounds what a solve takes beside these arrays. DeviceName and field data `device`
-  /// say how much lay where. Valid [0, 2^31).
+  /// arrays over all voxels that do not fit in host memory then, and streams them through the device slice by slice:
+  /// the same light, bit for bit, later; with 0 beyond nine tenths of the device. vtkLatticeBoltzmannLighting leaves
+  /// what does not fit in host memory, and of vtkDiscreteOrdinates it is an error. Where the device is a processor,
+  /// which works on host memory in place, it bounds what a solve takes beside these arrays. DeviceName and field data
+  /// `device` say how much lay where. Valid [0, 2^31).
   tyndallSetRangeMacro(MemoryBudget, int, 0, VTK_INT_MAX);
   vtkGetMacro(MemoryBudget, int);
   ///@}

@@ -1,5 +1,5 @@
-// Counts from outside what a process takes of a device: put before OpenCL (LD_PRELOAD), it adds up the buffers that live,
-// but for those in host memory (CL_MEM_ALLOC_HOST_PTR), and prints the largest sum of both at the end.
+// Counts from outside what a process takes of a device: put before OpenCL (LD_PRELOAD), it adds up the buffers that
+// live, but for those in host memory (CL_MEM_ALLOC_HOST_PTR), and prints the largest sum of both at the end.
 
 #define CL_TARGET_OPENCL_VERSION 120
 #include <CL/cl.h>

@@ -495,8 +495,8 @@ static void cross_bundles(sweep_state* state, __global float* maps, const __glob
 }
 
 #if STREAMED
-// Of volumes that are streamed there are slices in slots (SliceStream.h): the steps of PlaneInfo are a slot's, and plane
-// `slot.y` of the box is the first one there.
+// Of volumes that are streamed there are slices in slots (SliceStream.h): the steps of PlaneInfo are a slot's, and
+// plane `slot.y` of the box is the first one there.
 static void go_to_slot(SweepInfo* info, int2 slot, const __global float** sigma, const __global float** source,
   __global float** path, __global float** lost, __global float** flux, __global float** currents,
   const __global float** octants)
